@@ -1,0 +1,250 @@
+"""Each rule is fed a good house, where it must be silent, and bad ones, where it must name the fault and nothing else."""
+import json
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+import commands
+import house
+import includes
+import length
+import mirror
+import sources
+import words
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+
+GOOD = {
+    "cmake/sources.cmake": "set(CONTROL_SOURCES control/a.c)\nset(DRIVERS_SOURCES drivers/b.c)\n"
+                           "set(BSP_SOURCES bsp/c.c)\nset(FIRMWARE_SOURCES\n    firmware/d.c) # all\n",
+    "control/a.h": "#include <stdint.h>\n/* 8 ticks, no task, a double look */\n",
+    "control/a.c": '#include <math.h>\n#include "a.h"\nint16_t a(void)\n{\n    return 1;\n}\n',
+    "drivers/b.h": "#include <stdbool.h>\n",
+    "drivers/b.c": '#include "b.h"\nconst char *b = "no /* comment, \\" malloc(1)";\n',
+    "bsp/c.h": "#include <stdint.h>\n",
+    "bsp/c.c": '#include "driverlib.h"\n#include "c.h"\n#include "inc/hw_memmap.h"\n',
+    "firmware/d.c": '#include <xdc/std.h>\n#include <ti/sysbios/knl/Task.h>\n#include "a.h"\n#include "b.h"\n#include "c.h"\n',
+    "sim/devices/e.h": "",
+    "sim/devices/e.c": '#include "sim/devices/e.h"\n#include <stdio.h>\n',
+    "tests/control/test_a.c": "", "tests/drivers/test_b.c": "", "tests/bsp/test_c.c": "", "tests/firmware/test_d.c": "",
+    "tests/rules/excuses.txt": "# none\n",
+    "tests/fixtures/stream.txt": "as recorded \n",
+}
+
+
+class Sample(unittest.TestCase):
+    def setUp(self):
+        self.root = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.root)
+        for path, text in GOOD.items():
+            self.write(path, text)
+        self.write("cmake/poison.txt", (REPOSITORY / "cmake/poison.txt").read_text(encoding="utf-8"))
+
+    def write(self, path, text):
+        (self.root / path).parent.mkdir(parents=True, exist_ok=True)
+        (self.root / path).write_text(text, encoding="utf-8")
+
+    def complaints(self, rule):
+        return rule.check(house.House(self.root))
+
+    def assert_one(self, rule, start, *mentioned):
+        found = self.complaints(rule)
+        self.assertEqual(len(found), 1, found)
+        self.assertTrue(found[0].startswith(start), found[0])
+        for word in mentioned:
+            self.assertIn(word, found[0])
+
+
+class GoodHouse(Sample):
+    def test_no_rule_complains(self):
+        for rule in (includes, words, sources, mirror, length):
+            self.assertEqual(self.complaints(rule), [], rule.__name__)
+
+
+class Includes(Sample):
+    def test_each_room_refuses_what_is_not_its_own(self):
+        for path, line in (
+                ("control/a.c", '#include "b.h"'),
+                ("control/a.c", "#include <stdio.h>"),
+                ("control/a.c", '#include "../drivers/b.h"'),
+                ("control/a.h", "#  include  <ti/sysbios/BIOS.h>"),
+                ("drivers/b.c", '#include "a.h"'),
+                ("drivers/b.c", "#include <stdlib.h>"),
+                ("drivers/b.c", '#include "driverlib.h"'),
+                ("bsp/c.c", '#include "a.h"'),
+                ("bsp/c.c", "#include <xdc/std.h>"),
+                ("bsp/c.h", '#include "driverlib.h"'),
+                ("bsp/c.c", '#include "chip.h"'),
+                ("firmware/d.c", '#include "driverlib.h"'),
+                ("firmware/d.c", '#include "kernel.h"'),
+                ("firmware/d.c", '#include "sim/devices/e.h"'),
+                ("firmware/d.c", "#include <pthread.h>"),
+                ("firmware/d.c", "#include HEADER"),
+                ("sim/devices/e.c", '#include "drivers/b.h"'),
+                ("sim/devices/e.c", '#include "b.h"'),
+        ):
+            with self.subTest(path=path, line=line):
+                self.write(path, "\n" + line + "\n")
+                self.assert_one(includes, f"{path}:2:")
+                self.write(path, GOOD[path])
+
+    def test_a_comment_includes_nothing(self):
+        self.write("control/a.c", '/*\n#include "b.h"\n*/\n// #include <stdio.h>\n')
+        self.assertEqual(self.complaints(includes), [])
+
+
+class Words(Sample):
+    def test_each_room_refuses_its_poison(self):
+        for path, line, word in (
+                ("control/a.c", "/* an uint8_t */", "uint8_t"),
+                ("drivers/b.h", "int8_t x;", "int8_t"),
+                ("bsp/c.c", "double x;", "double"),
+                ("firmware/d.c", "x = sprintf(y);", "sprintf"),
+                ("drivers/b.c", "strtod(p, 0);", "strtod"),
+                ("drivers/b.c", "void *p = malloc(3);", "malloc"),
+                ("drivers/b.c", "free (p);", "free"),
+                ("control/a.c", "#ifdef UNIT_TEST", "UNIT_TEST"),
+                ("control/a.c", "#ifdef SIM", "SIM"),
+                ("control/a.c", "#if defined(__linux__)", "__linux__"),
+                ("control/a.c", "x = sqrt(y);", "sqrt"),
+                ("control/a.c", "unsigned char c;", "unsigned char"),
+                ("bsp/c.c", "chip_reset();", "chip_reset("),
+                ("control/a.c", "octet_t x;", "octet_t"),
+                ("control/a.c", "int taskPeriod;", "taskPeriod"),
+                ("control/a.c", "#define MAX_TICKS 3", "MAX_TICKS"),
+                ("drivers/b.c", "float kp_gain;", "kp_gain"),
+                ("drivers/b.c", "Task_create();", "Task_create"),
+                ("bsp/c.c", "int scan_count;", "scan_count"),
+                ("firmware/d.c", "SCI_writeCharArray(x);", "SCI_writeCharArray"),
+                ("firmware/d.c", "HWREGH(x) = 1;", "HWREGH"),
+                ("firmware/d.c", "height_mm * 0.001F", "0.001F"),
+                ("docs/x.md", "see /home/me/file", "/home/m"),
+                ("docs/x.md", "as issue 12 says", "issue 12"),
+                ("docs/x.md", "ends in blanks  ", "blank"),
+        ):
+            with self.subTest(path=path, line=line):
+                self.write(path, "\n" + line + "\n")
+                self.assert_one(words, f"{path}:2:", word)
+                if path in GOOD:
+                    self.write(path, GOOD[path])
+                else:
+                    (self.root / path).unlink()
+
+    def test_only_whole_words_are_meant(self):
+        self.write("control/a.c", "doubled, sine, printing, free_fall_m, blocked, asin_table, x = 0.5F;\n")
+        self.write("firmware/d.c", "x = 0.0F; height_mm = altitude.height_mm; Swi_post(laser_swi);\n")
+        self.write("docs/x.md", "the net/work/home page, ~/home/x, https://x.org/root/\n")
+        self.assertEqual([text for text in self.complaints(words) if "docs" not in text], [])
+
+    def test_a_row_that_cannot_be_read_is_an_error(self):
+        self.write("cmake/poison.txt", "product  sounds  code  boom  why\n")
+        with self.assertRaises(ValueError):
+            self.complaints(words)
+
+
+class Sources(Sample):
+    def test_an_unlisted_file(self):
+        self.write("drivers/sub/f.c", "")
+        self.assert_one(sources, "drivers/sub/f.c: not in")
+
+    def test_a_file_that_does_not_exist(self):
+        (self.root / "bsp/c.c").unlink()
+        self.assert_one(sources, "cmake/sources.cmake: bsp/c.c does not exist")
+
+    def test_a_file_listed_twice(self):
+        self.write("cmake/sources.cmake", GOOD["cmake/sources.cmake"].replace("control/a.c", "control/a.c control/a.c"))
+        self.assert_one(sources, "cmake/sources.cmake: control/a.c twice")
+
+    def test_a_file_in_a_comment_is_not_listed(self):
+        self.write("cmake/sources.cmake", GOOD["cmake/sources.cmake"].replace("bsp/c.c", "# bsp/c.c\n"))
+        self.assert_one(sources, "bsp/c.c: not in")
+
+    def test_a_list_that_is_missing(self):
+        self.write("cmake/sources.cmake", GOOD["cmake/sources.cmake"].replace("BSP_SOURCES", "OTHER_SOURCES"))
+        self.assertIn("cmake/sources.cmake: no list BSP_SOURCES", self.complaints(sources))
+
+    def test_a_source_file_in_the_ccs_project(self):
+        self.write("ccs_project/main.c", "")
+        self.assert_one(sources, "ccs_project/main.c:")
+
+
+class Mirror(Sample):
+    def test_a_source_without_a_test(self):
+        (self.root / "tests/drivers/test_b.c").unlink()
+        self.assert_one(mirror, "drivers/b.c: no test_b.c")
+
+    def test_a_test_in_another_room_does_not_count(self):
+        (self.root / "tests/drivers/test_b.c").rename(self.root / "tests/control/test_b.c")
+        self.assert_one(mirror, "drivers/b.c: no test_b.c")
+
+    def test_an_excuse_is_heard_only_for_its_own_rule(self):
+        (self.root / "tests/drivers/test_b.c").unlink()
+        self.write("tests/rules/excuses.txt", "mirror drivers/b.c trivial\n")
+        self.assertEqual(self.complaints(mirror), [])
+        self.write("tests/rules/excuses.txt", "length drivers/b.c trivial\n")
+        self.assert_one(mirror, "drivers/b.c: no test_b.c")
+
+    def test_stale_excuses(self):
+        self.write("tests/rules/excuses.txt", "mirror drivers/b.c trivial\n")
+        self.assert_one(mirror, "tests/rules/excuses.txt: drivers/b.c has a test")
+        self.write("tests/rules/excuses.txt", "mirror drivers/z.c trivial\n")
+        self.assert_one(mirror, "tests/rules/excuses.txt: drivers/z.c does not exist")
+
+    def test_a_test_that_ctest_does_not_run(self):
+        listing = {"tests": [{"name": f"test_{stem}"} for stem in "abc"]}
+        self.assertEqual(mirror.check_registered(house.House(self.root), json.dumps(listing)),
+                         ["tests/firmware/test_d.c: ctest does not run it"])
+
+
+class Length(Sample):
+    @staticmethod
+    def function(lines, name="long_one"):
+        return f"static void {name}(const float *x,\n        int y)\n{{\n" + "    if (x) { y = '{'; }\n" * lines + "}\n"
+
+    def test_forty_lines_are_enough(self):
+        self.write("control/a.c", "struct s {\n" + "    int x;\n" * 50 + "};\n#define M(x) \\\n    { x\n" + self.function(40))
+        self.assertEqual(self.complaints(length), [])
+
+    def test_forty_one_are_not(self):
+        self.write("control/a.c", self.function(3, "short_one") + self.function(41))
+        self.assert_one(length, "control/a.c:8: long_one has 41 lines")
+
+    def test_an_excuse_and_a_stale_one(self):
+        self.write("tests/rules/excuses.txt", "length control/a.c:long_one a table\n")
+        self.assert_one(length, "tests/rules/excuses.txt: control/a.c:long_one")
+        self.write("control/a.c", self.function(41))
+        self.assertEqual(self.complaints(length), [])
+
+
+class Commands(unittest.TestCase):
+    PARAMS = "name  unit  limits  default\nKP    N/mm  0..1    0.015\nLAW   -     PD|PID  PID\n"
+    README = ("| Command | Unit | Meaning | Limits |\n|---|:--|---|---|\n| `#KP 0.015` | N/mm | gain | 0 … 1 |\n"
+              "| `#LAW PD` |  | law | PD\\|PID |\n| `#GET` | | all | |\n| `#HELP` | | | |\n| `#PING n` | | | |\n")
+    PACKETS = "<data>" + "".join(f"<packet><payload>{text.encode().hex()}0A</payload></packet>" for text in (
+        "#KP 1", "#LAW PD", "#GET", "#GET KP", "#HELP", "#PING 1")) + "</data>"
+
+    def check(self, params=PARAMS, readme=README, packets=PACKETS):
+        return commands.check(params, readme, packets)
+
+    def test_agreement(self):
+        self.assertEqual(self.check(), [])
+
+    def test_each_disagreement_is_named(self):
+        self.assertEqual(self.check(readme=self.README.replace("#KP", "#KQ")),
+                         ["README: no row for #KP", "README: #KQ is no command"])
+        self.assertEqual(self.check(readme=self.README.replace("N/mm", "N/m")),
+                         ["README: #KP unit is 'N/m', the program says 'N/mm'"])
+        self.assertEqual(self.check(readme=self.README.replace("0 … 1", "0 … 2")),
+                         ["README: #KP limits is '0..2', the program says '0..1'"])
+        self.assertEqual(self.check(readme=self.README.replace("Unit", "Einheit")),
+                         ["README: #KP has no column 'unit'", "README: #LAW has no column 'unit'"])
+        self.assertEqual(self.check(params=self.PARAMS + "KI    N/mm  0..1   0\n"),
+                         ["README: no row for #KI", "packets: none for #KI"])
+        self.assertEqual(self.check(packets=self.PACKETS.replace("#LAW".encode().hex(), "#LOW".encode().hex())),
+                         ["packets: none for #LAW", "packets: #LOW is no command"])
+        self.assertEqual(self.check(readme=self.README.replace("| `#HELP` | | | |\n", "")), ["README: no row for #HELP"])
+
+
+if __name__ == "__main__":
+    unittest.main()
