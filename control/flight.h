@@ -1,0 +1,42 @@
+/* One control cycle: supervisor (who decides), control law or descent (how much thrust), actuator map (which pulse).
+ * Pure: time is an argument; the caller owns the state. Task context, TaskControl only. */
+#ifndef CONTROL_FLIGHT_H
+#define CONTROL_FLIGHT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "descent.h"
+#include "parameters.h"
+#include "pid.h"
+#include "supervisor.h"
+
+typedef struct {
+    float thrust_n;                 /* commanded, newtons per motor, 0 .. THRUST_MAX_N */
+    float pulse_us;                 /* throttle pulse, thrust.h */
+    flight_state_t state;
+    uint16_t flags;                 /* FLIGHT_FLAG_*, supervisor.h */
+    float reference_m;              /* reference in force, 0 = none */
+} flight_outputs_t;
+
+typedef struct {
+    supervisor_t supervisor;
+    pid_state_t law;
+    bool integral;                  /* the law had an integral action in the previous cycle */
+    descent_t descent;
+    float hover_n;                  /* best known hover thrust: slow mean of the thrust while FLYING, GRAV +-1.5 N */
+    float wanted_n;                 /* what the state in charge wants */
+    float bridge_n;                 /* added to it, fades out: no jump where the one in charge changes */
+    float thrust_n;                 /* the previous command */
+} flight_t;
+
+void flight_init(flight_t *flight);
+
+/* One release of the control task. With RELEASE FREE the law takes a sample in each call, as the seed's did, be the
+ * height new or not; with SCAN only when a new height has come, and holds its thrust otherwise. What takes over in the
+ * air starts from the thrust of before, at most 0.5 N from hover, and the difference fades with 0.4 s; but a descent
+ * with a height acts at once, and so does the law on the ground. A change of law alone starts exactly from the thrust
+ * of before. parameters: a set kept by parameters_set(). */
+void flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in, flight_outputs_t *out);
+
+#endif

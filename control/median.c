@@ -1,0 +1,48 @@
+#include "median.h"
+
+#include <math.h>
+
+#define PI_RAD 3.14159265F
+
+float median_of(const float *values, uint16_t count)
+{
+    const uint16_t middle = (uint16_t)((count - 1U) / 2U);
+    uint16_t chosen = 0U;
+
+    for (uint16_t i = 0U; i < count; ++i) {
+        uint16_t below = 0U;
+        uint16_t not_above = 0U;
+        for (uint16_t j = 0U; j < count; ++j) {
+            below = (uint16_t)(below + (values[j] < values[i]));
+            not_above = (uint16_t)(not_above + (values[j] <= values[i]));
+        }
+        if (below <= middle && middle < not_above) {
+            chosen = i;
+        }
+    }
+    return values[chosen];
+}
+
+static float arc_rad(float from_rad, float to_rad)
+{
+    const float apart_rad = fabsf(to_rad - from_rad);
+    return (apart_rad > PI_RAD) ? 2.0F * PI_RAD - apart_rad : apart_rad;
+}
+
+float median_of_angles(const float *angles_rad, uint16_t count)
+{
+    uint16_t chosen = 0U;
+    float least_rad = 0.0F;
+
+    for (uint16_t i = 0U; i < count; ++i) {
+        float sum_rad = 0.0F;
+        for (uint16_t j = 0U; j < count; ++j) {
+            sum_rad += arc_rad(angles_rad[i], angles_rad[j]);
+        }
+        if (i == 0U || sum_rad < least_rad) {
+            chosen = i;
+            least_rad = sum_rad;
+        }
+    }
+    return angles_rad[chosen];
+}

@@ -1,0 +1,59 @@
+/* The parameter table: every number and choice that an operator may set, with its unit, limits, default and meaning.
+ * One row feeds validation, the #GET answers, #HELP, `plomada params` and the command table of the README.
+ * Pure; the caller owns the set. */
+#ifndef CONTROL_PARAMETERS_H
+#define CONTROL_PARAMETERS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef enum {
+    PARAMETER_SETR,     /* m, height reference; 0 = none (on the ground) or land */
+    PARAMETER_KP,       /* N/mm */
+    PARAMETER_KD,       /* N/mm per sample */
+    PARAMETER_KI,       /* N/mm per sample */
+    PARAMETER_USAT,     /* N above GRAV */
+    PARAMETER_DSAT,     /* N below GRAV */
+    PARAMETER_GRAV,     /* N per motor */
+    PARAMETER_LAW,      /* choice, control_law_t */
+    PARAMETER_RELEASE,  /* choice, control_release_t */
+    PARAMETER_LINK,     /* s, 0 = link supervision off */
+    PARAMETER_COUNT
+} parameter_id_t;
+
+typedef enum { LAW_PD, LAW_PID, LAW_COUNT } control_law_t;
+typedef enum { RELEASE_FREE, RELEASE_SCAN, RELEASE_COUNT } control_release_t;
+
+typedef struct {
+    const char *name;               /* as typed after '#', upper case */
+    const char *unit;               /* "m", "N/mm", "N", "s", or "-" for a choice */
+    float minimum;
+    float maximum;
+    float initial;
+    const char *const *choices;     /* NULL for a number; else maximum + 1 names, the value is the index */
+    const char *meaning;            /* one sentence */
+} parameter_row_t;
+
+extern const parameter_row_t parameter_table[PARAMETER_COUNT];
+
+typedef struct {
+    float value[PARAMETER_COUNT];
+    uint32_t generation;            /* +1 with every accepted value, be it the old one */
+} parameters_t;
+
+typedef enum { PARAMETER_ACCEPTED, PARAMETER_OUT_OF_RANGE } parameter_status_t;
+
+void parameters_init(parameters_t *parameters);
+
+/* Case-insensitive look-up of `length` characters. Returns PARAMETER_COUNT when there is no such name. */
+parameter_id_t parameter_find(const char *name, size_t length);
+
+/* Case-insensitive look-up of a choice's name. Returns -1 when row is no choice or has no such name. */
+int16_t parameter_choice(parameter_id_t id, const char *name, size_t length);
+
+/* Stores value if it is finite and within the row's limits (a choice: also whole); otherwise nothing changes. -0 is
+ * stored as 0. */
+parameter_status_t parameters_set(parameters_t *parameters, parameter_id_t id, float value);
+
+#endif

@@ -1,0 +1,282 @@
+#include "supervisor.h"
+
+#include <math.h>
+
+#include "parameters.h"
+
+#define HEIGHT_FRESH_US UINT32_C(300000)
+#define HEIGHT_LOST_US UINT32_C(1000000)
+#define ATTITUDE_FRESH_US UINT32_C(250000)
+#define ALOFT_HELD_US UINT32_C(1000000)
+#define REST_HELD_US UINT32_C(500000)
+#define LINK_HOLD_US UINT32_C(5000000)
+#define SPENT_US UINT32_C(45000000)
+#define AGE_MAX_US UINT32_C(3600000000)
+
+#define HEIGHT_MIN_MM (-500.0F)
+#define HEIGHT_MAX_MM 5000.0F
+#define OFF_GROUND_MM 150.0F
+#define REST_BELOW_MM 50.0F
+#define REST_FALL_MM 20.0F
+#define TOO_HIGH_MM 800.0F
+#define BACK_MM 300.0F
+#define TOO_HIGH_HEIGHTS 2U
+#define RATE_MAX_MM_S 3000.0F
+#define RATE_CHANGE_MAX_MM_S2 10000.0F
+#define CLIMB_AHEAD_S 0.25F
+
+#define GO (FLIGHT_IF_REFERENCE | FLIGHT_IF_READY | FLIGHT_IF_HEIGHT)
+
+const flight_transition_t flight_transitions[FLIGHT_TRANSITION_COUNT] = {
+    {FLIGHT_GROUND, FLIGHT_IF_ALOFT, 0U, FLIGHT_FLOATING},
+    {FLIGHT_GROUND, GO, 0U, FLIGHT_TAKEOFF},
+
+    {FLIGHT_TAKEOFF, 0U, FLIGHT_IF_HEIGHT, FLIGHT_COASTING},
+    {FLIGHT_TAKEOFF, 0U, FLIGHT_IF_REFERENCE, FLIGHT_LANDING},
+    {FLIGHT_TAKEOFF, FLIGHT_IF_TOO_HIGH, 0U, FLIGHT_LOWERING},
+    {FLIGHT_TAKEOFF, FLIGHT_IF_OFF_GROUND, 0U, FLIGHT_FLYING},
+
+    {FLIGHT_FLYING, 0U, FLIGHT_IF_HEIGHT, FLIGHT_COASTING},
+    {FLIGHT_FLYING, 0U, FLIGHT_IF_REFERENCE, FLIGHT_LANDING},
+    {FLIGHT_FLYING, FLIGHT_IF_TOO_HIGH, 0U, FLIGHT_LOWERING},
+
+    {FLIGHT_FLOATING, GO, 0U, FLIGHT_FLYING},
+    {FLIGHT_FLOATING, FLIGHT_IF_LAND | FLIGHT_IF_HEIGHT, 0U, FLIGHT_LANDING},
+    {FLIGHT_FLOATING, FLIGHT_IF_LAND, 0U, FLIGHT_DESCENDING},
+    {FLIGHT_FLOATING, FLIGHT_IF_AT_REST, 0U, FLIGHT_GROUND},
+
+    {FLIGHT_COASTING, 0U, FLIGHT_IF_REFERENCE, FLIGHT_DESCENDING},
+    {FLIGHT_COASTING, FLIGHT_IF_HEIGHT, 0U, FLIGHT_FLYING},
+    {FLIGHT_COASTING, FLIGHT_IF_LOST, 0U, FLIGHT_DESCENDING},
+
+    {FLIGHT_DESCENDING, GO, 0U, FLIGHT_FLYING},
+    {FLIGHT_DESCENDING, FLIGHT_IF_HEIGHT, 0U, FLIGHT_LANDING},
+    {FLIGHT_DESCENDING, FLIGHT_IF_SPENT, 0U, FLIGHT_GROUND},
+
+    {FLIGHT_LANDING, GO, 0U, FLIGHT_FLYING},
+    {FLIGHT_LANDING, 0U, FLIGHT_IF_HEIGHT, FLIGHT_DESCENDING},
+    {FLIGHT_LANDING, FLIGHT_IF_AT_REST, 0U, FLIGHT_GROUND},
+
+    {FLIGHT_LOWERING, 0U, FLIGHT_IF_HEIGHT, FLIGHT_COASTING},
+    {FLIGHT_LOWERING, 0U, FLIGHT_IF_REFERENCE, FLIGHT_LANDING},
+    {FLIGHT_LOWERING, FLIGHT_IF_BACK, 0U, FLIGHT_FLYING},
+};
+
+static const char *const state_names[FLIGHT_STATE_COUNT] = {
+    [FLIGHT_GROUND] = "GROUND",     [FLIGHT_TAKEOFF] = "TAKEOFF",       [FLIGHT_FLYING] = "FLYING",
+    [FLIGHT_FLOATING] = "FLOATING", [FLIGHT_COASTING] = "COASTING",     [FLIGHT_DESCENDING] = "DESCENDING",
+    [FLIGHT_LANDING] = "LANDING",   [FLIGHT_LOWERING] = "LOWERING",
+};
+
+const char *flight_state_name(flight_state_t state)
+{
+    return state_names[state];
+}
+
+flight_state_t flight_next_state(flight_state_t from, uint16_t conditions)
+{
+    for (uint16_t i = 0U; i < FLIGHT_TRANSITION_COUNT; ++i) {
+        const flight_transition_t *row = &flight_transitions[i];
+        if (row->from == from && (conditions & row->all_of) == row->all_of && (conditions & row->none_of) == 0U) {
+            return row->to;
+        }
+    }
+    return from;
+}
+
+void supervisor_init(supervisor_t *supervisor)
+{
+    *supervisor = (supervisor_t){
+        .state = FLIGHT_GROUND,
+        .height.age_us = AGE_MAX_US,
+        .attitude_age_us = AGE_MAX_US,
+        .link_age_us = AGE_MAX_US,
+    };
+}
+
+static uint32_t grown(uint32_t age_us, uint32_t by_us)
+{
+    return (by_us < AGE_MAX_US - age_us) ? age_us + by_us : AGE_MAX_US;
+}
+
+static uint32_t elapsed(uint32_t now_us, uint32_t then_us)
+{
+    const uint32_t ago_us = now_us - then_us;
+    return (ago_us <= AGE_MAX_US) ? ago_us : 0U;
+}
+
+static void hold(hold_t *held, bool condition, uint32_t step_us)
+{
+    held->for_us = (condition && held->on) ? grown(held->for_us, step_us) : 0U;
+    held->on = condition;
+}
+
+static void observe_time(supervisor_t *s, const flight_inputs_t *in)
+{
+    s->step_us = s->started ? in->now_us - s->now_us : 0U;
+    s->state_us = grown(s->state_us, s->step_us);
+    s->now_us = in->now_us;
+    s->started = true;
+}
+
+static float between(float lowest, float value, float highest)
+{
+    return fminf(fmaxf(value, lowest), highest);
+}
+
+static float rate_after(const height_track_t *before, float height_mm, uint32_t gap_us)
+{
+    if (before->age_us > HEIGHT_LOST_US || gap_us == 0U) {
+        return 0.0F;
+    }
+    const float gap_s = (float)gap_us * 1.0e-6F;
+    const float change_mm_s = RATE_CHANGE_MAX_MM_S2 * gap_s;
+    const float rate_mm_s = between(-RATE_MAX_MM_S, (height_mm - before->height_mm) / gap_s, RATE_MAX_MM_S);
+    return between(before->rate_mm_s - change_mm_s, rate_mm_s, before->rate_mm_s + change_mm_s);
+}
+
+static void observe_height(supervisor_t *s, const flight_inputs_t *in)
+{
+    height_track_t *track = &s->height;
+    const bool plausible = in->height_mm >= HEIGHT_MIN_MM && in->height_mm <= HEIGHT_MAX_MM;
+
+    track->age_us = grown(track->age_us, s->step_us);
+    track->is_new = in->height_valid && in->height_sequence != track->sequence && plausible;
+    if (!track->is_new) {
+        return;
+    }
+    track->gap_us = in->height_time_us - track->time_us;
+    track->rate_mm_s = rate_after(track, in->height_mm, track->gap_us);
+    track->height_mm = in->height_mm;
+    track->time_us = in->height_time_us;
+    track->sequence = in->height_sequence;
+    track->age_us = elapsed(in->now_us, in->height_time_us);
+}
+
+static void observe_attitude(supervisor_t *s, const flight_inputs_t *in)
+{
+    const bool is_new = in->attitude_time_us != s->attitude_time_us;
+    s->attitude_age_us =
+        is_new ? elapsed(in->now_us, in->attitude_time_us) : grown(s->attitude_age_us, s->step_us);
+    s->attitude_time_us = in->attitude_time_us;
+}
+
+static void observe_link(supervisor_t *s, const flight_inputs_t *in)
+{
+    const bool is_new = in->link_sequence != s->link_sequence;
+    s->link_age_us = is_new ? elapsed(in->now_us, in->link_time_us) : grown(s->link_age_us, s->step_us);
+    s->link_sequence = in->link_sequence;
+}
+
+static bool link_silent(const supervisor_t *s, float link_s, uint32_t longer_us)
+{
+    const uint32_t limit_us = (uint32_t)(link_s * 1.0e6F) + longer_us;
+    return link_s > 0.0F && s->link_sequence != 0U && s->link_age_us > limit_us;
+}
+
+static void observe_reference(supervisor_t *s, float link_s, const flight_inputs_t *in)
+{
+    const bool is_new = in->reference_sequence != s->reference_sequence;
+    const bool plausible = in->reference_m >= 0.0F && in->reference_m <= parameter_table[PARAMETER_SETR].maximum;
+
+    s->reference_sequence = in->reference_sequence;
+    s->land = is_new && in->reference_m == 0.0F;
+    if (is_new) {
+        s->link_age_us = 0U;
+    }
+    if (is_new && plausible) {
+        s->reference_m = in->reference_m;
+    }
+    if (link_silent(s, link_s, LINK_HOLD_US)) {
+        s->reference_m = 0.0F;
+    }
+}
+
+static bool height_fresh(const supervisor_t *s)
+{
+    return s->height.age_us <= HEIGHT_FRESH_US;
+}
+
+static float above_reference_mm(const supervisor_t *s)
+{
+    return s->height.height_mm - s->reference_m * 1000.0F;
+}
+
+static void observe_ground(supervisor_t *s)
+{
+    const float height_mm = s->height.height_mm;
+    const bool fresh = height_fresh(s);
+    const bool resting = fresh && height_mm < REST_BELOW_MM && height_mm >= s->rest_from_mm - REST_FALL_MM;
+
+    hold(&s->aloft, fresh && height_mm > OFF_GROUND_MM, s->step_us);
+    hold(&s->rest, resting, s->step_us);
+    s->rest_from_mm = resting ? s->rest_from_mm : height_mm;
+    if (s->height.is_new) {
+        const float climb_mm = fmaxf(s->height.rate_mm_s, 0.0F) * CLIMB_AHEAD_S;
+        const bool above = above_reference_mm(s) + climb_mm > TOO_HIGH_MM;
+        s->too_high_count = above ? (uint16_t)(s->too_high_count + (s->too_high_count < TOO_HIGH_HEIGHTS)) : 0U;
+    }
+}
+
+static uint16_t bit(bool condition, uint16_t mask)
+{
+    return condition ? mask : 0U;
+}
+
+static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
+{
+    const bool fresh = height_fresh(s);
+    const bool reference = s->reference_m > 0.0F;
+    const bool too_high = s->too_high_count == TOO_HIGH_HEIGHTS;
+
+    return (uint16_t)(bit(reference, FLIGHT_IF_REFERENCE)
+                      | bit(in->attitude_ready, FLIGHT_IF_READY)
+                      | bit(fresh, FLIGHT_IF_HEIGHT)
+                      | bit(s->height.age_us > HEIGHT_LOST_US, FLIGHT_IF_LOST)
+                      | bit(fresh && s->height.height_mm > OFF_GROUND_MM, FLIGHT_IF_OFF_GROUND)
+                      | bit(s->aloft.for_us >= ALOFT_HELD_US, FLIGHT_IF_ALOFT)
+                      | bit(s->rest.for_us >= REST_HELD_US, FLIGHT_IF_AT_REST)
+                      | bit(too_high && reference, FLIGHT_IF_TOO_HIGH)
+                      | bit(fresh && above_reference_mm(s) < BACK_MM, FLIGHT_IF_BACK)
+                      | bit(s->land, FLIGHT_IF_LAND)
+                      | bit(s->state == FLIGHT_DESCENDING && s->state_us >= SPENT_US, FLIGHT_IF_SPENT));
+}
+
+static uint16_t flags(const supervisor_t *s, uint16_t met, float link_s, const flight_inputs_t *in)
+{
+    const bool fresh = height_fresh(s);
+    const bool level = in->attitude_ready && s->attitude_age_us <= ATTITUDE_FRESH_US;
+    const bool too_high = s->state == FLIGHT_LOWERING || (met & FLIGHT_IF_TOO_HIGH) != 0U;
+
+    return (uint16_t)(bit(!fresh, FLIGHT_FLAG_HEIGHT)
+                      | bit(!level, FLIGHT_FLAG_ATTITUDE)
+                      | bit(fresh && in->disagree, FLIGHT_FLAG_DISAGREE)
+                      | bit(too_high, FLIGHT_FLAG_TOO_HIGH)
+                      | bit(link_silent(s, link_s, 0U), FLIGHT_FLAG_LINK));
+}
+
+static void enter(supervisor_t *s, flight_state_t state)
+{
+    s->state = state;
+    s->state_us = 0U;
+    if (state == FLIGHT_GROUND || state == FLIGHT_DESCENDING) {
+        s->reference_m = 0.0F;
+    }
+}
+
+void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs_t *in)
+{
+    observe_time(supervisor, in);
+    observe_height(supervisor, in);
+    observe_attitude(supervisor, in);
+    observe_link(supervisor, in);
+    observe_reference(supervisor, link_s, in);
+    observe_ground(supervisor);
+
+    const uint16_t met = conditions(supervisor, in);
+    const flight_state_t next = flight_next_state(supervisor->state, met);
+    if (next != supervisor->state) {
+        enter(supervisor, next);
+    }
+    supervisor->flags = flags(supervisor, met, link_s, in);
+}

@@ -1,0 +1,22 @@
+#include "thrust.h"
+
+#define SLOPE_TICKS_PER_N 177.21F
+#define IDLE_TICKS 4166.0F
+
+float thrust_to_pulse_us(float thrust_n)
+{
+    const float pulse_us = (IDLE_TICKS - SLOPE_TICKS_PER_N * thrust_n) * THRUST_TICK_US;
+    if (pulse_us < THRUST_FULL_PULSE_US) {
+        return THRUST_FULL_PULSE_US;
+    }
+    return (pulse_us < THRUST_IDLE_PULSE_US) ? pulse_us : THRUST_IDLE_PULSE_US;
+}
+
+float thrust_from_pulse_us(float pulse_us)
+{
+    const float thrust_n = (IDLE_TICKS - pulse_us / THRUST_TICK_US) / SLOPE_TICKS_PER_N;
+    if (thrust_n > THRUST_MAX_N) {
+        return THRUST_MAX_N;
+    }
+    return (thrust_n > 0.0F) ? thrust_n : 0.0F;
+}

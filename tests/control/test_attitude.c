@@ -1,0 +1,170 @@
+#include "attitude.h"
+#include "unity.h"
+
+#include <math.h>
+
+static attitude_filter_t filter;
+static attitude_t level, median;
+
+static bool step(float roll, float pitch, float yaw)
+{
+    const attitude_t raw = {roll, pitch, yaw};
+    return attitude_step(&filter, &raw, &level, &median);
+}
+
+static void learn(float roll, float pitch)
+{
+    for (unsigned i = 0; i < ATTITUDE_OFFSET_FRAMES; i++) {
+        TEST_ASSERT_FALSE(step(roll, pitch, 1.0F));
+    }
+}
+
+void setUp(void)
+{
+    attitude_init(&filter);
+    level = median = (attitude_t){9.0F, 9.0F, 9.0F};
+}
+
+void tearDown(void) {}
+
+void test_nothing_is_given_before_the_offset_is_known(void)
+{
+    TEST_ASSERT_FALSE(step(0.1F, 0.2F, 0.3F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, level.roll_rad);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, level.yaw_rad);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, median.roll_rad);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, median.pitch_rad);
+    TEST_ASSERT_FALSE(filter.ready);
+}
+
+void test_twenty_frames_make_the_offset_and_the_next_is_the_first_to_use_it(void)
+{
+    for (unsigned i = 0; i < 19; i++) {
+        TEST_ASSERT_FALSE(step(0.05F, -0.03F, 2.0F));
+        TEST_ASSERT_FALSE(filter.ready);
+    }
+    TEST_ASSERT_FALSE(step(0.05F, -0.03F, 2.0F));
+    TEST_ASSERT_TRUE(filter.ready);
+    TEST_ASSERT_TRUE(step(0.06F, -0.05F, 2.5F));
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.01F, level.roll_rad);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, -0.02F, level.pitch_rad);
+}
+
+void test_the_offset_is_the_mean_of_its_frames(void)
+{
+    for (int i = 0; i < 20; i++) {
+        (void)step(0.001F * (float)i, (i % 2 == 0) ? 0.1F : -0.1F, 0.0F);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.0095F, filter.offset.roll_rad);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.0F, filter.offset.pitch_rad);
+}
+
+void test_yaw_keeps_its_offset_at_zero(void)
+{
+    learn(0.0F, 0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, filter.offset.yaw_rad);
+    (void)step(0.0F, 0.0F, 2.5F);
+    TEST_ASSERT_EQUAL_FLOAT(2.5F, level.yaw_rad);
+    TEST_ASSERT_EQUAL_FLOAT(2.5F, median.yaw_rad);
+}
+
+void test_an_offset_over_ten_degrees_is_refused_and_taken_anew(void)
+{
+    static const float tilts[][2] = {{0.176F, 0.0F}, {-0.176F, 0.0F}, {0.0F, 0.176F}, {0.0F, -0.176F}};
+    for (unsigned i = 0; i < 4; i++) {
+        attitude_init(&filter);
+        learn(tilts[i][0], tilts[i][1]);
+        TEST_ASSERT_FALSE(filter.ready);
+        TEST_ASSERT_EQUAL_UINT16(1, filter.refusals);
+        learn(0.02F, 0.0F);
+        TEST_ASSERT_TRUE(filter.ready);
+        TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.02F, filter.offset.roll_rad);
+        TEST_ASSERT_EQUAL_UINT16(1, filter.refusals);
+    }
+}
+
+void test_an_offset_just_under_ten_degrees_is_taken(void)
+{
+    learn(0.174F, -0.174F);
+    TEST_ASSERT_TRUE(filter.ready);
+    TEST_ASSERT_EQUAL_UINT16(0, filter.refusals);
+}
+
+void test_a_nan_cannot_become_the_offset(void)
+{
+    (void)step(NAN, 0.0F, 0.0F);
+    for (unsigned i = 0; i < 19; i++) {
+        (void)step(0.0F, 0.0F, 0.0F);
+    }
+    TEST_ASSERT_FALSE(filter.ready);
+    learn(0.0F, 0.0F);
+    TEST_ASSERT_TRUE(filter.ready);
+}
+
+void test_the_count_of_refusals_stays_at_its_end(void)
+{
+    filter.refusals = UINT16_MAX;
+    learn(1.0F, 0.0F);
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, filter.refusals);
+}
+
+void test_spikes_leave_the_median_alone(void)
+{
+    learn(0.0F, 0.0F);
+    for (int i = 0; i < 200; i++) {
+        const bool spike = i % 5 == 4;
+        (void)step(spike ? 0.35F : 0.01F, spike ? -0.35F : -0.01F, spike ? -2.0F : 3.0F);
+        if (i >= 2) {
+            TEST_ASSERT_EQUAL_FLOAT(0.01F, median.roll_rad);
+            TEST_ASSERT_EQUAL_FLOAT(-0.01F, median.pitch_rad);
+            TEST_ASSERT_EQUAL_FLOAT(3.0F, median.yaw_rad);
+        }
+    }
+}
+
+void test_a_ramp_is_followed_two_frames_late(void)
+{
+    learn(0.0F, 0.0F);
+    for (int i = 0; i < 30; i++) {
+        (void)step(0.01F * (float)i, 0.0F, 0.0F);
+        TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.01F * (float)i, level.roll_rad);
+        if (i >= 4) {
+            TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.01F * (float)(i - 2), median.roll_rad);
+        }
+    }
+}
+
+void test_the_first_frames_give_the_median_of_what_there_is(void)
+{
+    learn(0.0F, 0.0F);
+    (void)step(0.03F, 0.0F, 0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.03F, median.roll_rad);
+    (void)step(0.01F, 0.0F, 0.0F);
+    TEST_ASSERT_TRUE(median.roll_rad == 0.03F || median.roll_rad == 0.01F);
+    (void)step(0.02F, 0.0F, 0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.02F, median.roll_rad);
+    TEST_ASSERT_EQUAL_UINT16(3, filter.held);
+}
+
+void test_yaw_passes_the_seam_without_a_jump_through_zero(void)
+{
+    learn(0.0F, 0.0F);
+    for (int i = 0; i < 20; i++) {
+        float yaw = 3.0F + 0.02F * (float)i;
+        yaw = yaw > 3.14159265F ? yaw - 6.2831853F : yaw;
+        (void)step(0.0F, 0.0F, yaw);
+        TEST_ASSERT_TRUE(fabsf(median.yaw_rad) > 2.9F);
+    }
+}
+
+void test_a_restored_offset_is_used_at_once(void)
+{
+    const attitude_t offset = {0.04F, -0.02F, 0.0F};
+    learn(0.5F, 0.5F);
+    attitude_restore(&filter, &offset);
+    TEST_ASSERT_TRUE(filter.ready);
+    TEST_ASSERT_TRUE(step(0.05F, 0.0F, 1.0F));
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.01F, level.roll_rad);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.02F, median.pitch_rad);
+    TEST_ASSERT_EQUAL_UINT16(1, filter.held);
+}

@@ -1,0 +1,135 @@
+#include "descent.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+static descent_t descent;
+
+void setUp(void)
+{
+    descent_start(&descent, -DESCENT_RATE_MM_S);
+}
+
+void tearDown(void) {}
+
+/* D v / g of the hover thrust: 2.4 * 0.3 / 9.81 = 7.3 %. */
+void test_at_the_wanted_rate_the_thrust_is_seven_per_cent_below_hover(void)
+{
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 7.0F * (1.0F - 0.0734F), descent_step(&descent, 7.0F, 2000.0F, -300.0F, 0.1F));
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.0F, descent.trim_n);
+}
+
+void test_too_fast_is_more_thrust_and_too_slow_is_less(void)
+{
+    const float right_n = descent_step(&descent, 7.0F, 2000.0F, -300.0F, 0.0F);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, right_n + 0.4F, descent_step(&descent, 7.0F, 2000.0F, -500.0F, 0.0F));
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, right_n - 0.4F, descent_step(&descent, 7.0F, 2000.0F, -100.0F, 0.0F));
+}
+
+void test_the_wanted_rate_flares_to_at_most_200_mm_s_below_200_mm(void)
+{
+    float before_mm_s = 0.0F;
+    for (int height = -50; height <= 1000; height += 10) {
+        descent_start(&descent, -1000.0F);
+        (void)descent_step(&descent, 7.0F, (float)height, 0.0F, 0.0F);
+        TEST_ASSERT_TRUE(descent.sink_mm_s >= before_mm_s);
+        TEST_ASSERT_TRUE(height > 200 || descent.sink_mm_s <= 200.0F);
+        TEST_ASSERT_TRUE(height < 600 || descent.sink_mm_s == DESCENT_RATE_MM_S);
+        TEST_ASSERT_TRUE(descent.sink_mm_s >= 150.0F);
+        before_mm_s = descent.sink_mm_s;
+    }
+}
+
+void test_the_wanted_rate_starts_at_the_present_one_and_grows_to_its_end(void)
+{
+    descent_start(&descent, 400.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, descent.sink_mm_s);
+    descent_start(&descent, -120.0F);
+    TEST_ASSERT_EQUAL_FLOAT(120.0F, descent.sink_mm_s);
+    (void)descent_step(&descent, 7.0F, 2000.0F, -120.0F, 0.1F);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 150.0F, descent.sink_mm_s);
+    for (int i = 0; i < 20; i++) {
+        (void)descent_step(&descent, 7.0F, 2000.0F, -120.0F, 0.1F);
+    }
+    TEST_ASSERT_EQUAL_FLOAT(DESCENT_RATE_MM_S, descent.sink_mm_s);
+}
+
+void test_the_trim_is_learned_slowly_and_within_two_newtons(void)
+{
+    for (int i = 0; i < 10; i++) {
+        (void)descent_step(&descent, 7.0F, 2000.0F, 0.0F, 0.1F);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, -0.3F, descent.trim_n);
+    for (int i = 0; i < 10000; i++) {
+        (void)descent_step(&descent, 7.0F, 2000.0F, 1000.0F, 0.1F);
+    }
+    TEST_ASSERT_EQUAL_FLOAT(-2.0F, descent.trim_n);
+    for (int i = 0; i < 10000; i++) {
+        (void)descent_step(&descent, 7.0F, 2000.0F, -1000.0F, 0.1F);
+    }
+    TEST_ASSERT_EQUAL_FLOAT(2.0F, descent.trim_n);
+}
+
+void test_a_wild_sink_is_answered_with_at_most_two_newtons(void)
+{
+    const float right_n = descent_step(&descent, 7.0F, 2000.0F, -300.0F, 0.0F);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, right_n + 2.0F, descent_step(&descent, 7.0F, 2000.0F, -3000.0F, 0.0F));
+}
+
+void test_a_climb_is_braked_three_times_as_hard_beyond_a_metre_per_second_of_error(void)
+{
+    const float right_n = descent_step(&descent, 7.0F, 2000.0F, -300.0F, 0.0F);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, right_n - 2.0F, descent_step(&descent, 7.0F, 2000.0F, 700.0F, 0.0F));
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, right_n - 2.0F - 0.6F, descent_step(&descent, 7.0F, 2000.0F, 800.0F, 0.0F));
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 1.75F, descent_step(&descent, 7.0F, 2000.0F, 3000.0F, 0.0F));
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 10.0F * (1.0F - 0.073F) - 5.0F,
+                             descent_step(&descent, 10.0F, 2000.0F, 3000.0F, 0.0F));
+}
+
+void test_a_quarter_of_the_hover_thrust_is_always_kept(void)
+{
+    for (int i = 0; i < 1000; i++) {
+        TEST_ASSERT_TRUE(descent_step(&descent, 6.0F, 2000.0F, 3000.0F, 0.1F) >= 1.5F);
+    }
+}
+
+void test_a_new_descent_forgets_the_trim(void)
+{
+    (void)descent_step(&descent, 7.0F, 2000.0F, 0.0F, 0.1F);
+    descent_start(&descent, 0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, descent.trim_n);
+}
+
+void test_blind_it_starts_at_the_sinking_thrust(void)
+{
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 7.0F * (1.0F - 0.0734F), descent_blind(7.0F, 0.0F));
+}
+
+void test_blind_it_only_decreases_and_never_jumps_until_nothing_is_left(void)
+{
+    float before_n = descent_blind(8.5F, 0.0F);
+    for (int i = 1; i <= 600; i++) {
+        const float thrust_n = descent_blind(8.5F, 0.1F * (float)i);
+        TEST_ASSERT_TRUE(thrust_n >= 0.0F);
+        TEST_ASSERT_TRUE(thrust_n <= before_n && before_n - thrust_n < 0.05F);
+        TEST_ASSERT_TRUE(thrust_n < before_n || thrust_n == 0.0F);
+        before_n = thrust_n;
+    }
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, before_n);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, descent_blind(7.0F, 45.0F));
+}
+
+/* Terminal speed at damping 2.4: from 3 m the ground comes after about 8 s. */
+void test_blind_it_sinks_at_0_3_m_s_at_first_and_below_half_a_metre_per_second_for_3_m(void)
+{
+    double fallen_m = 0.0, speed_m_s = 0.0, t_s = 0.0;
+    while (fallen_m < 3.0 && t_s < 60.0) {
+        speed_m_s = 9.81 * (1.0 - (double)descent_blind(7.4F, (float)t_s) / 7.4) / 2.4;
+        TEST_ASSERT_TRUE(t_s > 1.0 || fabs(speed_m_s - 0.3) < 0.01);
+        fallen_m += speed_m_s * 0.01;
+        t_s += 0.01;
+    }
+    TEST_ASSERT_FLOAT_WITHIN(1.0F, 8.0F, (float)t_s);
+    TEST_ASSERT_TRUE(speed_m_s < 0.5);
+}

@@ -1,0 +1,165 @@
+#include "parameters.h"
+#include "unity.h"
+
+#include <math.h>
+#include <string.h>
+
+static parameters_t parameters;
+
+void setUp(void)
+{
+    parameters_init(&parameters);
+}
+
+void tearDown(void) {}
+
+static parameter_id_t find(const char *name)
+{
+    return parameter_find(name, strlen(name));
+}
+
+static void refused(parameter_id_t id, float value)
+{
+    const parameters_t before = parameters;
+    TEST_ASSERT_EQUAL(PARAMETER_OUT_OF_RANGE, parameters_set(&parameters, id, value));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &parameters, sizeof before);
+}
+
+static void accepted(parameter_id_t id, float value)
+{
+    const uint32_t generation = parameters.generation;
+    TEST_ASSERT_EQUAL(PARAMETER_ACCEPTED, parameters_set(&parameters, id, value));
+    TEST_ASSERT_EQUAL_FLOAT(value, parameters.value[id]);
+    TEST_ASSERT_EQUAL_UINT32(generation + 1U, parameters.generation);
+}
+
+/* Best flown values, seed document, Annex III. */
+void test_the_defaults_are_the_seeds_best_values(void)
+{
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, parameters.value[PARAMETER_SETR]);
+    TEST_ASSERT_EQUAL_FLOAT(0.015F, parameters.value[PARAMETER_KP]);
+    TEST_ASSERT_EQUAL_FLOAT(0.008F, parameters.value[PARAMETER_KD]);
+    TEST_ASSERT_EQUAL_FLOAT(0.01F, parameters.value[PARAMETER_KI]);
+    TEST_ASSERT_EQUAL_FLOAT(1.0F, parameters.value[PARAMETER_USAT]);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, parameters.value[PARAMETER_DSAT]);
+    TEST_ASSERT_EQUAL_FLOAT(7.0F, parameters.value[PARAMETER_GRAV]);
+    TEST_ASSERT_EQUAL_FLOAT((float)LAW_PID, parameters.value[PARAMETER_LAW]);
+    TEST_ASSERT_EQUAL_FLOAT((float)RELEASE_FREE, parameters.value[PARAMETER_RELEASE]);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, parameters.value[PARAMETER_LINK]);
+    TEST_ASSERT_EQUAL_UINT32(0, parameters.generation);
+}
+
+void test_every_row_is_complete_and_its_default_is_within_its_limits(void)
+{
+    for (int i = 0; i < PARAMETER_COUNT; i++) {
+        const parameter_row_t *row = &parameter_table[i];
+        TEST_ASSERT_NOT_NULL(row->name);
+        TEST_ASSERT_TRUE_MESSAGE(row->minimum < row->maximum, row->name);
+        TEST_ASSERT_TRUE_MESSAGE(row->initial >= row->minimum && row->initial <= row->maximum, row->name);
+        TEST_ASSERT_EQUAL_CHAR_MESSAGE('.', row->meaning[strlen(row->meaning) - 1], row->name);
+        TEST_ASSERT_EQUAL_MESSAGE(row->choices != NULL, strcmp(row->unit, "-") == 0, row->name);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(i, find(row->name), row->name);
+    }
+}
+
+void test_every_choice_is_found_by_its_name(void)
+{
+    int choices = 0;
+    for (int i = 0; i < PARAMETER_COUNT; i++) {
+        const parameter_row_t *row = &parameter_table[i];
+        for (int k = 0; row->choices != NULL && k <= (int)row->maximum; k++) {
+            TEST_ASSERT_EQUAL_INT16(k, parameter_choice((parameter_id_t)i, row->choices[k], strlen(row->choices[k])));
+            choices++;
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(LAW_COUNT + RELEASE_COUNT, choices);
+}
+
+void test_names_are_found_in_any_case_and_only_whole(void)
+{
+    TEST_ASSERT_EQUAL(PARAMETER_KP, find("kp"));
+    TEST_ASSERT_EQUAL(PARAMETER_SETR, find("SeTr"));
+    TEST_ASSERT_EQUAL(PARAMETER_KP, parameter_find("KPX", 2));
+    TEST_ASSERT_EQUAL(PARAMETER_COUNT, find("K"));
+    TEST_ASSERT_EQUAL(PARAMETER_COUNT, find("KPP"));
+    TEST_ASSERT_EQUAL(PARAMETER_COUNT, find(""));
+    TEST_ASSERT_EQUAL(PARAMETER_COUNT, find("K\xD0"));
+    TEST_ASSERT_EQUAL(PARAMETER_COUNT, parameter_find("KP\0", 3));
+}
+
+void test_choices_are_found_in_any_case_and_only_whole(void)
+{
+    TEST_ASSERT_EQUAL_INT16(LAW_PD, parameter_choice(PARAMETER_LAW, "pd", 2));
+    TEST_ASSERT_EQUAL_INT16(LAW_PID, parameter_choice(PARAMETER_LAW, "Pid", 3));
+    TEST_ASSERT_EQUAL_INT16(RELEASE_SCAN, parameter_choice(PARAMETER_RELEASE, "scan", 4));
+    TEST_ASSERT_EQUAL_INT16(-1, parameter_choice(PARAMETER_LAW, "P", 1));
+    TEST_ASSERT_EQUAL_INT16(-1, parameter_choice(PARAMETER_LAW, "PIDS", 4));
+    TEST_ASSERT_EQUAL_INT16(-1, parameter_choice(PARAMETER_LAW, "", 0));
+    TEST_ASSERT_EQUAL_INT16(-1, parameter_choice(PARAMETER_KP, "PD", 2));
+}
+
+void test_the_limits_themselves_are_accepted_and_what_lies_beyond_is_not(void)
+{
+    for (int i = 0; i < PARAMETER_COUNT; i++) {
+        const parameter_row_t *row = &parameter_table[i];
+        const parameter_id_t id = (parameter_id_t)i;
+        accepted(id, row->minimum);
+        accepted(id, row->maximum);
+        refused(id, nextafterf(row->maximum, INFINITY));
+        refused(id, nextafterf(row->minimum, -INFINITY));
+    }
+}
+
+void test_what_is_no_finite_number_is_refused_everywhere(void)
+{
+    for (int i = 0; i < PARAMETER_COUNT; i++) {
+        refused((parameter_id_t)i, NAN);
+        refused((parameter_id_t)i, -NAN);
+        refused((parameter_id_t)i, INFINITY);
+        refused((parameter_id_t)i, -INFINITY);
+        refused((parameter_id_t)i, 1.0e9F);
+    }
+}
+
+void test_the_operators_mistakes_are_refused(void)
+{
+    refused(PARAMETER_SETR, -1.0F);
+    refused(PARAMETER_SETR, 60.0F); /* centimetres */
+    refused(PARAMETER_KP, 15.0F);   /* N/m */
+    refused(PARAMETER_USAT, -0.5F);
+    refused(PARAMETER_GRAV, 12.0F);
+}
+
+void test_a_choice_is_whole(void)
+{
+    refused(PARAMETER_LAW, 0.5F);
+    refused(PARAMETER_RELEASE, 0.999F);
+    refused(PARAMETER_LAW, -1.0F);
+    refused(PARAMETER_LAW, (float)LAW_COUNT);
+    accepted(PARAMETER_LAW, (float)LAW_PD);
+}
+
+void test_minus_zero_is_stored_as_zero(void)
+{
+    TEST_ASSERT_EQUAL(PARAMETER_ACCEPTED, parameters_set(&parameters, PARAMETER_SETR, -0.0F));
+    TEST_ASSERT_EQUAL_INT(0, signbit(parameters.value[PARAMETER_SETR]) != 0);
+}
+
+void test_a_value_changes_nothing_but_itself(void)
+{
+    for (int i = 0; i < PARAMETER_COUNT; i++) {
+        parameters_init(&parameters);
+        accepted((parameter_id_t)i, parameter_table[i].maximum);
+        for (int k = 0; k < PARAMETER_COUNT; k++) {
+            if (k != i) {
+                TEST_ASSERT_EQUAL_FLOAT(parameter_table[k].initial, parameters.value[k]);
+            }
+        }
+    }
+}
+
+/* The sensor's two-character distances end at 4095 mm; 205 mm of it lie above the gear. */
+void test_the_take_over_above_the_highest_reference_is_still_in_range_of_the_sensor(void)
+{
+    TEST_ASSERT_TRUE(parameter_table[PARAMETER_SETR].maximum + 0.8F < 4.095F - 0.205F);
+}

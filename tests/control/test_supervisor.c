@@ -1,0 +1,987 @@
+#include "supervisor.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define SEED 77031U
+
+static supervisor_t s;
+static flight_inputs_t in;
+static float link_s;
+
+void setUp(void)
+{
+    supervisor_init(&s);
+    in = (flight_inputs_t){.now_us = 0xFFF00000U, .attitude_ready = true}; /* the clock wraps a second later */
+    link_s = 0.0F;
+}
+
+void tearDown(void) {}
+
+static void cycle(uint32_t ms)
+{
+    in.now_us += ms * 1000U;
+    in.attitude_time_us = in.now_us;
+    supervisor_step(&s, link_s, &in);
+}
+
+static void see(float height_mm)
+{
+    in.height_valid = true;
+    in.height_mm = height_mm;
+    in.height_time_us = in.now_us + 90000U; /* arrives 10 ms before the next cycle of 100 ms */
+    in.height_sequence++;
+}
+
+/* Cycles of 100 ms, each with a new height. */
+static void watch(float height_mm, int cycles)
+{
+    for (int i = 0; i < cycles; i++) {
+        see(height_mm);
+        cycle(100);
+    }
+}
+
+static void blind(uint32_t ms)
+{
+    for (; ms >= 100U; ms -= 100U) {
+        cycle(100);
+    }
+}
+
+static void setr(float reference_m)
+{
+    in.reference_m = reference_m;
+    in.reference_sequence++;
+}
+
+static void line(void)
+{
+    in.link_time_us = in.now_us;
+    in.link_sequence++;
+}
+
+static void state_is(flight_state_t state)
+{
+    TEST_ASSERT_EQUAL_STRING(flight_state_name(state), flight_state_name(s.state));
+}
+
+static void take_off(void)
+{
+    watch(0.0F, 3);
+    setr(0.5F);
+    watch(0.0F, 1);
+    state_is(FLIGHT_TAKEOFF);
+}
+
+static void fly(void)
+{
+    take_off();
+    watch(500.0F, 10);
+    state_is(FLIGHT_FLYING);
+}
+
+static void coast(void)
+{
+    fly();
+    blind(300);
+    state_is(FLIGHT_COASTING);
+}
+
+static void descend(void)
+{
+    coast();
+    blind(1000);
+    state_is(FLIGHT_DESCENDING);
+}
+
+static void land(void)
+{
+    fly();
+    setr(0.0F);
+    watch(500.0F, 1);
+    state_is(FLIGHT_LANDING);
+}
+
+static void lower(void)
+{
+    fly();
+    watch(1310.0F, 2);
+    state_is(FLIGHT_LOWERING);
+}
+
+static void floating(void)
+{
+    watch(400.0F, 11);
+    state_is(FLIGHT_FLOATING);
+}
+
+/* ---- the table */
+
+static const char *const condition_names[] = {"REFERENCE", "READY", "HEIGHT",   "LOST", "OFF_GROUND", "ALOFT",
+                                              "AT_REST",   "TOO_HIGH", "BACK", "LAND", "SPENT"};
+
+static void row_text(const flight_transition_t *row, char *text, size_t size)
+{
+    size_t used = (size_t)snprintf(text, size, "| %s |", flight_state_name(row->from));
+    for (unsigned i = 0; i < 11; i++) {
+        const unsigned mask = 1U << i;
+        if (((row->all_of | row->none_of) & mask) != 0U) {
+            used += (size_t)snprintf(text + used, size - used, " %s%s", (row->none_of & mask) != 0U ? "!" : "",
+                                     condition_names[i]);
+        }
+    }
+    snprintf(text + used, size - used, " | %s |\n", flight_state_name(row->to));
+}
+
+static FILE *open_document(void)
+{
+    char path[1024];
+    const char *room = strstr(__FILE__, "tests/control/");
+    snprintf(path, sizeof path, "%.*sdocs/flight_states.md", (int)(room - __FILE__), __FILE__);
+    return fopen(path, "r");
+}
+
+void test_the_document_shows_the_same_table(void)
+{
+    char expected[160], found[400] = "";
+    FILE *document = open_document();
+    TEST_ASSERT_NOT_NULL(document);
+    while (strcmp(found, "| from | when | to |\n") != 0) {
+        TEST_ASSERT_NOT_NULL(fgets(found, sizeof found, document));
+    }
+    TEST_ASSERT_EQUAL_STRING("|---|---|---|\n", fgets(found, sizeof found, document));
+    for (unsigned i = 0; i < FLIGHT_TRANSITION_COUNT; i++) {
+        row_text(&flight_transitions[i], expected, sizeof expected);
+        TEST_ASSERT_EQUAL_STRING(expected, fgets(found, sizeof found, document));
+    }
+    TEST_ASSERT_EQUAL_STRING("\n", fgets(found, sizeof found, document));
+    fclose(document);
+}
+
+/* What the table must say, written as sentences of another kind. c has a bit per condition. */
+static flight_state_t expected_next(flight_state_t from, unsigned c)
+{
+    const bool reference = c & FLIGHT_IF_REFERENCE, height = c & FLIGHT_IF_HEIGHT;
+    const bool go = reference && height && (c & FLIGHT_IF_READY);
+    switch (from) {
+    case FLIGHT_GROUND:
+        return (c & FLIGHT_IF_ALOFT) ? FLIGHT_FLOATING : go ? FLIGHT_TAKEOFF : from;
+    case FLIGHT_TAKEOFF:
+    case FLIGHT_FLYING:
+        if (!height) {
+            return FLIGHT_COASTING;
+        }
+        if (!reference) {
+            return FLIGHT_LANDING;
+        }
+        if (c & FLIGHT_IF_TOO_HIGH) {
+            return FLIGHT_LOWERING;
+        }
+        return (c & FLIGHT_IF_OFF_GROUND) ? FLIGHT_FLYING : from;
+    case FLIGHT_FLOATING:
+        if (go) {
+            return FLIGHT_FLYING;
+        }
+        if (c & FLIGHT_IF_LAND) {
+            return height ? FLIGHT_LANDING : FLIGHT_DESCENDING;
+        }
+        return (c & FLIGHT_IF_AT_REST) ? FLIGHT_GROUND : from;
+    case FLIGHT_COASTING:
+        if (!reference) {
+            return FLIGHT_DESCENDING;
+        }
+        return height ? FLIGHT_FLYING : (c & FLIGHT_IF_LOST) ? FLIGHT_DESCENDING : from;
+    case FLIGHT_DESCENDING:
+        return go ? FLIGHT_FLYING : height ? FLIGHT_LANDING : (c & FLIGHT_IF_SPENT) ? FLIGHT_GROUND : from;
+    case FLIGHT_LANDING:
+        return go ? FLIGHT_FLYING : !height ? FLIGHT_DESCENDING : (c & FLIGHT_IF_AT_REST) ? FLIGHT_GROUND : from;
+    default:
+        if (!height) {
+            return FLIGHT_COASTING;
+        }
+        return !reference ? FLIGHT_LANDING : (c & FLIGHT_IF_BACK) ? FLIGHT_FLYING : from;
+    }
+}
+
+void test_every_state_under_every_set_of_conditions_goes_where_it_must(void)
+{
+    for (int from = 0; from < FLIGHT_STATE_COUNT; from++) {
+        for (unsigned c = 0; c <= FLIGHT_IF_ALL; c++) {
+            char where[64];
+            snprintf(where, sizeof where, "%s under %u", flight_state_name((flight_state_t)from), c);
+            TEST_ASSERT_EQUAL_INT_MESSAGE(expected_next((flight_state_t)from, c),
+                                          flight_next_state((flight_state_t)from, (uint16_t)c), where);
+        }
+    }
+}
+
+static unsigned first_row(flight_state_t from, unsigned c)
+{
+    unsigned i = 0;
+    while (i < FLIGHT_TRANSITION_COUNT &&
+           (flight_transitions[i].from != from || (c & flight_transitions[i].all_of) != flight_transitions[i].all_of ||
+            (c & flight_transitions[i].none_of) != 0U)) {
+        i++;
+    }
+    return i;
+}
+
+void test_every_row_of_the_table_is_the_first_for_some_conditions(void)
+{
+    for (unsigned i = 0; i < FLIGHT_TRANSITION_COUNT; i++) {
+        unsigned times = 0;
+        for (unsigned c = 0; c <= FLIGHT_IF_ALL; c++) {
+            times += first_row(flight_transitions[i].from, c) == i;
+        }
+        TEST_ASSERT_TRUE(times > 0);
+        TEST_ASSERT_TRUE(flight_transitions[i].to != flight_transitions[i].from);
+    }
+}
+
+/* ---- every transition once, through the inputs */
+
+void test_ground_to_floating_when_a_pilot_has_been_aloft_for_a_second(void)
+{
+    watch(151.0F, 10);
+    state_is(FLIGHT_GROUND);
+    watch(151.0F, 1);
+    state_is(FLIGHT_FLOATING);
+}
+
+void test_ground_to_takeoff_by_a_reference(void)
+{
+    take_off();
+    TEST_ASSERT_EQUAL_FLOAT(0.5F, s.reference_m);
+    TEST_ASSERT_EQUAL_UINT16(0, s.flags);
+}
+
+void test_takeoff_to_coasting_without_height(void)
+{
+    take_off();
+    blind(200);
+    state_is(FLIGHT_TAKEOFF);
+    blind(100);
+    state_is(FLIGHT_COASTING);
+}
+
+void test_takeoff_to_landing_by_setr_0(void)
+{
+    take_off();
+    setr(0.0F);
+    watch(20.0F, 1);
+    state_is(FLIGHT_LANDING);
+}
+
+void test_takeoff_to_lowering_when_too_high(void)
+{
+    take_off();
+    see(1310.0F);
+    s.too_high_count = 1; /* a first one before */
+    cycle(100);
+    state_is(FLIGHT_LOWERING);
+}
+
+void test_takeoff_to_flying_above_150_mm(void)
+{
+    take_off();
+    watch(150.0F, 1);
+    state_is(FLIGHT_TAKEOFF);
+    watch(150.5F, 1);
+    state_is(FLIGHT_FLYING);
+}
+
+void test_flying_to_coasting_without_height(void)
+{
+    fly();
+    blind(200);
+    state_is(FLIGHT_FLYING); /* 10 ms + 200 ms */
+    TEST_ASSERT_EQUAL_UINT16(0, s.flags);
+    blind(100);
+    state_is(FLIGHT_COASTING); /* 310 ms */
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_HEIGHT, s.flags);
+    TEST_ASSERT_EQUAL_FLOAT(0.5F, s.reference_m);
+}
+
+void test_flying_to_landing_by_setr_0(void)
+{
+    land();
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, s.reference_m);
+}
+
+void test_flying_to_lowering_when_too_high_twice(void)
+{
+    fly();
+    watch(1290.0F, 30);
+    state_is(FLIGHT_FLYING);
+    watch(1301.0F, 1);
+    watch(1299.0F, 2);
+    watch(1301.0F, 1);
+    state_is(FLIGHT_FLYING);
+    watch(1301.0F, 1);
+    state_is(FLIGHT_LOWERING);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_TOO_HIGH, s.flags);
+}
+
+void test_a_climb_counts_for_a_quarter_of_a_second_and_a_descent_not_at_all(void)
+{
+    fly();
+    watch(600.0F, 1);
+    watch(700.0F, 1);
+    watch(800.0F, 1);
+    watch(900.0F, 1);
+    watch(1000.0F, 1);  /* 1 m/s: 1250 */
+    watch(1100.0F, 1);  /* 1350 */
+    state_is(FLIGHT_FLYING);
+    watch(1200.0F, 1);
+    state_is(FLIGHT_LOWERING);
+    watch(700.0F, 1);
+    watch(1280.0F, 3);
+    watch(1310.0F, 1);
+    watch(1290.0F, 2);
+    state_is(FLIGHT_FLYING);
+}
+
+void test_floating_to_flying_by_a_reference(void)
+{
+    floating();
+    setr(0.6F);
+    watch(400.0F, 1);
+    state_is(FLIGHT_FLYING);
+}
+
+void test_floating_to_landing_by_setr_0(void)
+{
+    floating();
+    setr(0.0F);
+    watch(400.0F, 1);
+    state_is(FLIGHT_LANDING);
+}
+
+void test_floating_to_descending_by_setr_0_without_height(void)
+{
+    floating();
+    blind(2000);
+    state_is(FLIGHT_FLOATING);
+    setr(0.0F);
+    blind(100);
+    state_is(FLIGHT_DESCENDING);
+}
+
+void test_floating_to_ground_at_rest(void)
+{
+    floating();
+    watch(10.0F, 6); /* the first only starts the comparison */
+    state_is(FLIGHT_FLOATING);
+    watch(10.0F, 1);
+    state_is(FLIGHT_GROUND);
+}
+
+void test_coasting_to_descending_by_setr_0(void)
+{
+    coast();
+    setr(0.0F);
+    blind(100);
+    state_is(FLIGHT_DESCENDING);
+}
+
+void test_coasting_to_flying_when_the_height_is_back(void)
+{
+    coast();
+    watch(480.0F, 1);
+    state_is(FLIGHT_FLYING);
+    TEST_ASSERT_EQUAL_FLOAT(0.5F, s.reference_m);
+}
+
+void test_coasting_to_descending_when_the_height_is_lost(void)
+{
+    coast();
+    blind(600);
+    state_is(FLIGHT_COASTING); /* 910 ms */
+    blind(100);
+    state_is(FLIGHT_DESCENDING); /* 1010 ms */
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, s.reference_m);
+}
+
+void test_descending_to_flying_by_a_new_reference_once_the_height_is_back(void)
+{
+    descend();
+    setr(0.4F);
+    blind(100);
+    state_is(FLIGHT_DESCENDING);
+    TEST_ASSERT_EQUAL_FLOAT(0.4F, s.reference_m);
+    watch(480.0F, 1);
+    state_is(FLIGHT_FLYING);
+}
+
+void test_descending_to_landing_when_the_height_is_back(void)
+{
+    descend();
+    watch(480.0F, 1);
+    state_is(FLIGHT_LANDING);
+    watch(480.0F, 20);
+    state_is(FLIGHT_LANDING); /* latched */
+}
+
+void test_descending_to_ground_after_45_seconds(void)
+{
+    descend();
+    s.state_us = 0;
+    blind(44900);
+    state_is(FLIGHT_DESCENDING);
+    blind(100);
+    state_is(FLIGHT_GROUND);
+}
+
+void test_landing_to_flying_by_a_new_reference(void)
+{
+    land();
+    setr(0.7F);
+    watch(480.0F, 1);
+    state_is(FLIGHT_FLYING);
+    TEST_ASSERT_EQUAL_FLOAT(0.7F, s.reference_m);
+}
+
+void test_landing_to_descending_without_height(void)
+{
+    land();
+    blind(200);
+    state_is(FLIGHT_LANDING);
+    blind(100);
+    state_is(FLIGHT_DESCENDING);
+}
+
+void test_landing_to_ground_at_rest(void)
+{
+    land();
+    watch(49.0F, 6);
+    state_is(FLIGHT_LANDING);
+    watch(49.0F, 1);
+    state_is(FLIGHT_GROUND);
+}
+
+void test_lowering_to_coasting_without_height(void)
+{
+    lower();
+    blind(300);
+    state_is(FLIGHT_COASTING);
+}
+
+void test_lowering_to_landing_by_setr_0(void)
+{
+    lower();
+    setr(0.0F);
+    watch(1310.0F, 1);
+    state_is(FLIGHT_LANDING);
+}
+
+void test_lowering_to_flying_below_reference_and_300_mm(void)
+{
+    lower();
+    watch(801.0F, 1);
+    state_is(FLIGHT_LOWERING);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_TOO_HIGH, s.flags);
+    watch(799.0F, 1);
+    state_is(FLIGHT_FLYING);
+    TEST_ASSERT_EQUAL_UINT16(0, s.flags);
+}
+
+/* ---- what holds a take-off back */
+
+void test_without_the_offset_of_the_imu_the_reference_waits(void)
+{
+    in.attitude_ready = false;
+    watch(0.0F, 3);
+    setr(0.5F);
+    watch(0.0F, 50);
+    state_is(FLIGHT_GROUND);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_ATTITUDE, s.flags);
+    TEST_ASSERT_EQUAL_FLOAT(0.5F, s.reference_m);
+    in.attitude_ready = true;
+    watch(0.0F, 1);
+    state_is(FLIGHT_TAKEOFF);
+}
+
+void test_without_a_height_the_reference_waits(void)
+{
+    setr(0.5F);
+    blind(5000);
+    state_is(FLIGHT_GROUND);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_HEIGHT, s.flags);
+    watch(0.0F, 1);
+    state_is(FLIGHT_TAKEOFF);
+}
+
+void test_a_reference_that_waits_is_withdrawn_by_setr_0(void)
+{
+    setr(0.5F);
+    blind(500);
+    setr(0.0F);
+    blind(100);
+    watch(0.0F, 20);
+    state_is(FLIGHT_GROUND);
+}
+
+void test_a_reference_without_a_new_sequence_is_not_looked_at(void)
+{
+    watch(0.0F, 3);
+    in.reference_m = 0.5F;
+    watch(0.0F, 3);
+    state_is(FLIGHT_GROUND);
+    fly();
+    in.reference_m = 0.0F;
+    watch(500.0F, 3);
+    state_is(FLIGHT_FLYING);
+}
+
+void test_a_reference_that_is_no_height_is_ignored(void)
+{
+    const float wrong[] = {NAN, INFINITY, -INFINITY, -0.5F, 3.01F, 1e9F};
+    fly();
+    for (unsigned i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        setr(wrong[i]);
+        watch(500.0F, 2);
+        state_is(FLIGHT_FLYING);
+        TEST_ASSERT_EQUAL_FLOAT(0.5F, s.reference_m);
+    }
+}
+
+void test_the_pilots_height_must_be_held_without_a_break(void)
+{
+    watch(400.0F, 9);
+    watch(150.0F, 1);
+    watch(400.0F, 7);
+    state_is(FLIGHT_GROUND);
+    blind(400); /* stale */
+    watch(400.0F, 10);
+    state_is(FLIGHT_GROUND);
+    watch(400.0F, 1);
+    state_is(FLIGHT_FLOATING);
+}
+
+void test_a_height_never_valid_is_the_ground(void)
+{
+    blind(20000);
+    state_is(FLIGHT_GROUND);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_HEIGHT, s.flags);
+}
+
+void test_after_being_aloft_an_unknown_height_is_airborne(void)
+{
+    floating();
+    blind(120000);
+    state_is(FLIGHT_FLOATING);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_HEIGHT, s.flags);
+}
+
+/* ---- the seed's flights are left alone */
+
+void test_bounces_and_heights_of_zero_leave_flying_alone(void)
+{
+    fly();
+    watch(0.0F, 30);
+    state_is(FLIGHT_FLYING);
+    watch(-40.0F, 30);
+    state_is(FLIGHT_FLYING);
+}
+
+void test_overshoots_platforms_and_edges_leave_flying_alone(void)
+{
+    take_off();
+    setr(0.3F);
+    watch(0.0F, 1);
+    watch(900.0F, 10);  /* P alone: 0.6 m over 0.3 m */
+    watch(10.0F, 10);
+    watch(1090.0F, 10);
+    state_is(FLIGHT_FLYING);
+    TEST_ASSERT_EQUAL_UINT16(0, s.flags);
+}
+
+void test_a_vehicle_that_does_not_lift_stays_in_takeoff(void)
+{
+    take_off();
+    watch(3.0F, 600);
+    state_is(FLIGHT_TAKEOFF);
+}
+
+/* ---- the ground */
+
+void test_a_descent_through_50_mm_is_not_rest(void)
+{
+    land();
+    for (float height_mm = 60.0F; height_mm > -60.0F; height_mm -= 5.0F) { /* 0.05 m/s */
+        watch(height_mm, 1);
+        state_is(FLIGHT_LANDING);
+    }
+}
+
+void test_noise_of_the_sensor_does_not_hide_the_ground(void)
+{
+    land();
+    for (int i = 0; i < 8; i++) {
+        watch((i % 2 != 0) ? 8.0F : -8.0F, 1);
+    }
+    state_is(FLIGHT_GROUND);
+}
+
+void test_a_platform_of_60_mm_is_not_the_ground(void)
+{
+    land();
+    watch(60.0F, 100);
+    state_is(FLIGHT_LANDING);
+}
+
+void test_a_height_that_is_gone_cannot_show_the_ground(void)
+{
+    land();
+    watch(10.0F, 3);
+    blind(2000);
+    state_is(FLIGHT_DESCENDING);
+}
+
+/* ---- latches */
+
+void test_after_a_failure_the_ground_is_not_left_without_a_new_reference(void)
+{
+    descend();
+    watch(480.0F, 5);
+    watch(0.0F, 10);
+    state_is(FLIGHT_GROUND);
+    watch(0.0F, 100);
+    state_is(FLIGHT_GROUND);
+    setr(0.5F);
+    watch(0.0F, 1);
+    state_is(FLIGHT_TAKEOFF);
+}
+
+void test_a_reference_given_while_descending_does_not_survive_the_ground(void)
+{
+    descend();
+    setr(0.5F);
+    blind(45000);
+    state_is(FLIGHT_GROUND);
+    watch(0.0F, 100);
+    state_is(FLIGHT_GROUND);
+}
+
+/* ---- heights that are none */
+
+void test_heights_that_are_no_heights_count_as_missing(void)
+{
+    const float wrong[] = {NAN, INFINITY, -INFINITY, 5001.0F, -501.0F, 1e30F};
+    for (unsigned i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        setUp();
+        fly();
+        watch(wrong[i], 2);
+        state_is(FLIGHT_FLYING);
+        TEST_ASSERT_EQUAL_FLOAT(500.0F, s.height.height_mm);
+        watch(wrong[i], 1);
+        state_is(FLIGHT_COASTING);
+    }
+}
+
+void test_scans_without_height_count_as_missing(void)
+{
+    fly();
+    for (int i = 0; i < 3; i++) {
+        in.height_valid = false;
+        in.height_mm = 0.0F;
+        cycle(100);
+    }
+    state_is(FLIGHT_COASTING);
+}
+
+void test_an_old_height_that_only_now_arrives_is_stale(void)
+{
+    watch(0.0F, 3);
+    setr(0.5F);
+    see(0.0F);
+    in.height_time_us -= 400000U;
+    cycle(100);
+    state_is(FLIGHT_GROUND);
+}
+
+void test_a_height_from_just_after_now_is_fresh(void)
+{
+    watch(0.0F, 3);
+    setr(0.5F);
+    see(0.0F);
+    in.height_time_us += 12000U; /* 2 ms after the cycle's now */
+    cycle(100);
+    TEST_ASSERT_EQUAL_UINT32(0, s.height.age_us);
+    state_is(FLIGHT_TAKEOFF);
+}
+
+void test_a_height_lost_for_longer_than_the_clock_wraps_stays_lost(void)
+{
+    watch(0.0F, 3);
+    blind(400);
+    setr(0.5F);
+    for (int i = 0; i < 5000; i++) { /* 83 minutes; the 32-bit clock takes 71.6 */
+        cycle(1000);
+        state_is(FLIGHT_GROUND);
+    }
+}
+
+/* ---- rate of change */
+
+void test_the_rate_is_between_heights_and_not_between_cycles(void)
+{
+    fly();
+    watch(520.0F, 1);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 200.0F, s.height.rate_mm_s);
+    TEST_ASSERT_EQUAL_UINT32(100000, s.height.gap_us);
+    cycle(50);
+    TEST_ASSERT_FALSE(s.height.is_new);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 200.0F, s.height.rate_mm_s);
+    cycle(50);
+    watch(460.0F, 1);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, -300.0F, s.height.rate_mm_s);
+    TEST_ASSERT_EQUAL_UINT32(200000, s.height.gap_us);
+}
+
+void test_the_rate_changes_by_ten_metres_per_second_squared_at_most(void)
+{
+    fly();
+    watch(850.0F, 1);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 1000.0F, s.height.rate_mm_s);
+    watch(500.0F, 1);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.0F, s.height.rate_mm_s);
+    watch(250.0F, 1);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, -1000.0F, s.height.rate_mm_s);
+}
+
+void test_the_rate_ends_at_three_metres_per_second(void)
+{
+    watch(0.0F, 1);
+    for (int i = 1; i < 10; i++) {
+        watch(400.0F * (float)i, 1);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 3000.0F, s.height.rate_mm_s);
+}
+
+void test_the_first_height_and_one_after_a_loss_have_no_rate(void)
+{
+    watch(400.0F, 1);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, s.height.rate_mm_s);
+    watch(410.0F, 1);
+    blind(1000);
+    watch(900.0F, 1);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, s.height.rate_mm_s);
+}
+
+void test_two_heights_with_one_time_have_no_rate(void)
+{
+    fly();
+    in.height_sequence++;
+    in.height_mm = 520.0F;
+    cycle(100);
+    TEST_ASSERT_TRUE(s.height.is_new);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, s.height.rate_mm_s);
+}
+
+/* ---- flags */
+
+void test_a_silent_imu_is_a_flag_and_nothing_else(void)
+{
+    fly();
+    for (int i = 0; i < 30; i++) {
+        see(500.0F);
+        in.now_us += 100000U;
+        supervisor_step(&s, link_s, &in);
+        TEST_ASSERT_EQUAL_UINT16(i < 2 ? 0 : FLIGHT_FLAG_ATTITUDE, s.flags);
+        state_is(FLIGHT_FLYING);
+    }
+    watch(500.0F, 1);
+    TEST_ASSERT_EQUAL_UINT16(0, s.flags);
+}
+
+void test_disagreeing_mirrors_are_a_flag_as_long_as_there_is_a_height(void)
+{
+    fly();
+    in.disagree = true;
+    watch(500.0F, 1);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_DISAGREE, s.flags);
+    blind(300);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_HEIGHT, s.flags);
+}
+
+/* ---- link */
+
+static void silence(uint32_t ms)
+{
+    for (; ms >= 100U; ms -= 100U) {
+        watch(500.0F, 1);
+    }
+}
+
+void test_a_link_that_is_not_armed_is_never_missed(void)
+{
+    fly();
+    line();
+    silence(120000);
+    state_is(FLIGHT_FLYING);
+    TEST_ASSERT_EQUAL_UINT16(0, s.flags);
+}
+
+void test_an_armed_link_that_never_spoke_is_not_missed(void)
+{
+    link_s = 2.0F;
+    fly();
+    silence(120000);
+    state_is(FLIGHT_FLYING);
+    TEST_ASSERT_EQUAL_UINT16(0, s.flags);
+}
+
+void test_a_silent_link_flags_then_holds_for_five_seconds_then_lands(void)
+{
+    link_s = 2.0F;
+    fly();
+    line();
+    silence(2000);
+    TEST_ASSERT_EQUAL_UINT16(0, s.flags);
+    silence(100);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_LINK, s.flags);
+    silence(4900);
+    state_is(FLIGHT_FLYING);
+    TEST_ASSERT_EQUAL_FLOAT(0.5F, s.reference_m);
+    silence(100);
+    state_is(FLIGHT_LANDING);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_LINK, s.flags);
+}
+
+void test_any_line_keeps_the_link_alive(void)
+{
+    link_s = 2.0F;
+    fly();
+    for (int i = 0; i < 20; i++) {
+        line();
+        silence(1900);
+        TEST_ASSERT_EQUAL_UINT16(0, s.flags);
+    }
+    state_is(FLIGHT_FLYING);
+}
+
+void test_a_link_that_comes_back_does_not_end_the_landing_but_a_reference_does(void)
+{
+    link_s = 2.0F;
+    fly();
+    line();
+    silence(7100);
+    state_is(FLIGHT_LANDING);
+    line();
+    silence(1000);
+    state_is(FLIGHT_LANDING);
+    TEST_ASSERT_EQUAL_UINT16(0, s.flags);
+    line();
+    setr(0.5F);
+    silence(100);
+    state_is(FLIGHT_FLYING);
+}
+
+void test_a_reference_counts_as_life_even_when_its_line_is_reported_later(void)
+{
+    link_s = 2.0F;
+    fly();
+    line();
+    silence(7100);
+    setr(0.5F);
+    silence(200);
+    state_is(FLIGHT_FLYING);
+}
+
+void test_a_lost_link_withdraws_a_reference_that_waits_on_the_ground(void)
+{
+    link_s = 2.0F;
+    in.attitude_ready = false;
+    watch(0.0F, 3);
+    line();
+    setr(0.5F);
+    watch(0.0F, 72);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, s.reference_m);
+    in.attitude_ready = true;
+    line();
+    watch(0.0F, 10);
+    state_is(FLIGHT_GROUND);
+}
+
+void test_a_link_silent_for_longer_than_the_clock_wraps_stays_silent(void)
+{
+    link_s = 60.0F;
+    line();
+    cycle(100);
+    for (int i = 0; i < 5000; i++) {
+        cycle(1000);
+        TEST_ASSERT_TRUE(i < 60 || (s.flags & FLIGHT_FLAG_LINK) != 0U);
+    }
+}
+
+/* ---- the whole */
+
+void test_the_start_is_the_ground_with_every_doubt_shown(void)
+{
+    in.attitude_ready = false;
+    supervisor_step(&s, 0.0F, &in);
+    state_is(FLIGHT_GROUND);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_HEIGHT | FLIGHT_FLAG_ATTITUDE, s.flags);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, s.reference_m);
+    TEST_ASSERT_EQUAL_UINT32(0, s.step_us);
+}
+
+void test_the_time_in_a_state_starts_with_the_state(void)
+{
+    take_off();
+    TEST_ASSERT_EQUAL_UINT32(0, s.state_us);
+    watch(0.0F, 7);
+    TEST_ASSERT_EQUAL_UINT32(700000, s.state_us);
+}
+
+static uint32_t noise = SEED;
+
+static uint32_t any(uint32_t below)
+{
+    noise = noise * 1664525U + 1013904223U;
+    return (noise >> 8) % below;
+}
+
+/* Whatever comes in: the state is one of the table's, a transition is a row of it, the reference in force is within its
+ * limits, and the ground is reached from the air only at rest or after a spent descent. */
+void test_random_inputs_never_leave_the_table(void)
+{
+    static const float heights[] = {NAN, INFINITY, -9e9F, 0.0F, 20.0F, 160.0F, 500.0F, 900.0F, 1900.0F, 4900.0F, 9e9F};
+    static const float references[] = {NAN, 0.0F, 0.3F, 1.0F, 3.0F, -1.0F, INFINITY};
+    char seed[32];
+    unsigned seen = 0;
+    snprintf(seed, sizeof seed, "seed %u", SEED);
+    TEST_MESSAGE(seed);
+    for (int i = 0; i < 200000; i++) {
+        const flight_state_t from = s.state;
+        const bool quiet = (i / 500) % 4 == 3;
+        if (!quiet && any(10) < 8) {
+            see(heights[any(40) == 0 ? any(11) : 3 + (uint32_t)(i / 300) % 6]);
+        }
+        if (any(60) == 0) {
+            setr(references[any(7)]);
+        }
+        if (any(30) == 0) {
+            line();
+        }
+        link_s = (i / 5000) % 2 == 0 ? 0.0F : 1.0F;
+        in.attitude_ready = any(50) != 0;
+        cycle(50 + any(100));
+        bool row = from == s.state;
+        for (unsigned k = 0; k < FLIGHT_TRANSITION_COUNT; k++) {
+            row = row || (flight_transitions[k].from == from && flight_transitions[k].to == s.state);
+        }
+        TEST_ASSERT_TRUE(row);
+        TEST_ASSERT_TRUE(s.reference_m >= 0.0F && s.reference_m <= 3.0F);
+        TEST_ASSERT_TRUE(isfinite(s.height.height_mm) && isfinite(s.height.rate_mm_s));
+        if (s.state == FLIGHT_GROUND && from != FLIGHT_GROUND && from != FLIGHT_DESCENDING) {
+            TEST_ASSERT_TRUE(s.height.height_mm < 50.0F && s.rest.for_us >= 500000U);
+        }
+        seen |= 1U << s.state;
+    }
+    TEST_ASSERT_EQUAL_UINT32((1U << FLIGHT_STATE_COUNT) - 1U, seen);
+}
