@@ -1,0 +1,203 @@
+#include "razor.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "decimal.h"
+
+/* Axis signs of the sensor as mounted. */
+static const float imu_yaw_sign = 1.0F;
+static const float imu_pitch_sign = 1.0F;   /* pitch > 0 raises the nose */
+static const float imu_roll_sign = 1.0F;    /* roll > 0 raises the mirror's side */
+static const float imu_forward_sign = 1.0F; /* x of A-C */
+static const float imu_right_sign = 1.0F;   /* y of A-C */
+static const float imu_down_sign = 1.0F;    /* z of A-C: +1 g at rest */
+
+#define RAD_PER_DEGREE 0.017453293F
+#define MPS2_PER_COUNT (9.80665F / 256.0F)
+#define ANGLE_MAX_DEGREE 360.0F
+#define ACCELERATION_MAX_COUNT (16.0F * 256.0F)
+
+#define TITLE_LENGTH 5U
+static const char acceleration_title[] = "#A-C=";
+static const char angles_title[] = "#YPR=";
+
+enum { PASSING, DELIVERED, TITLE, ACCELERATION, ANGLES };
+
+void razor_collector_init(razor_collector_t *collector)
+{
+    collector->overlong = 0U;
+    collector->cut = 0U;
+    razor_collector_broken(collector);
+}
+
+void razor_collector_broken(razor_collector_t *collector)
+{
+    collector->gathered.length = 0U;
+    collector->part_start = 0U;
+    collector->state = PASSING;
+}
+
+static void keep(razor_collector_t *collector, char character)
+{
+    razor_text_t *gathered = &collector->gathered;
+
+    if (gathered->length == RAZOR_FRAME_MAX) {
+        collector->overlong++;
+        razor_collector_broken(collector);
+    } else {
+        gathered->text[gathered->length++] = character;
+    }
+}
+
+static void drop_part(razor_collector_t *collector)
+{
+    collector->gathered.length = collector->part_start;
+    collector->state = PASSING;
+}
+
+static void begin_part(razor_collector_t *collector)
+{
+    if (collector->state == TITLE) {
+        drop_part(collector);
+    } else if (collector->state == ANGLES) {
+        collector->cut++;
+        collector->gathered.length = 0U;
+    } else if (collector->state == DELIVERED) {
+        collector->gathered.length = 0U;
+    }
+    collector->part_start = collector->gathered.length;
+    collector->state = TITLE;
+    keep(collector, '#');
+}
+
+static void end_title(razor_collector_t *collector)
+{
+    razor_text_t *gathered = &collector->gathered;
+    char *title = &gathered->text[collector->part_start];
+
+    if (memcmp(title, angles_title, TITLE_LENGTH) == 0) {
+        collector->state = ANGLES;
+    } else if (memcmp(title, acceleration_title, TITLE_LENGTH) == 0) {
+        (void)memmove(gathered->text, title, TITLE_LENGTH);
+        gathered->length = TITLE_LENGTH;
+        collector->state = ACCELERATION;
+    } else {
+        drop_part(collector);
+    }
+}
+
+static bool end_line(razor_collector_t *collector)
+{
+    switch (collector->state) {
+    case ANGLES:
+        collector->state = DELIVERED;
+        return true;
+    case ACCELERATION:
+        collector->state = PASSING;
+        keep(collector, '\n');
+        return false;
+    case TITLE:
+        drop_part(collector);
+        return false;
+    default:
+        return false;
+    }
+}
+
+static void gather(razor_collector_t *collector, char character)
+{
+    if (collector->state == PASSING || collector->state == DELIVERED) {
+        return;
+    }
+    keep(collector, character);
+    if (collector->state == TITLE && collector->gathered.length == collector->part_start + TITLE_LENGTH) {
+        end_title(collector);
+    }
+}
+
+bool razor_collect(razor_collector_t *collector, octet_t octet)
+{
+    char character = (char)octet;
+
+    if (character == '\r' || character == '\n') {
+        return end_line(collector);
+    }
+    if (character == '#') {
+        begin_part(collector);
+    } else {
+        gather(collector, character);
+    }
+    return false;
+}
+
+static bool has_title(const char *text, const char *end, const char *title)
+{
+    return (size_t)(end - text) >= TITLE_LENGTH && memcmp(text, title, TITLE_LENGTH) == 0;
+}
+
+static bool is_separator(char character)
+{
+    return character == '\n' || character == ',' || character == ' ';
+}
+
+/* Exactly three numbers with commas between. */
+static bool read_triple(const char *text, const char *end, float triple[3])
+{
+    for (uint16_t i = 0U; i < 3U; i++) {
+        const char *stop = i < 2U ? memchr(text, ',', (size_t)(end - text)) : end;
+
+        if (stop == NULL || !decimal_read(text, (size_t)(stop - text), &triple[i])) {
+            return false;
+        }
+        text = i < 2U ? stop + 1 : end;
+    }
+    return true;
+}
+
+/* Reads what stands behind the title of A-C. Returns where the next part begins, NULL when malformed. */
+static const char *read_acceleration(const char *body, const char *end, float xyz[3])
+{
+    const char *next = memchr(body, '#', (size_t)(end - body));
+    const char *stop = next;
+
+    if (next == NULL) {
+        return NULL;
+    }
+    if (stop > body && is_separator(stop[-1])) {
+        stop--;
+    }
+    return read_triple(body, stop, xyz) ? next : NULL;
+}
+
+static bool within(const float triple[3], float limit)
+{
+    return fabsf(triple[0]) <= limit && fabsf(triple[1]) <= limit && fabsf(triple[2]) <= limit;
+}
+
+razor_status_t razor_parse(const razor_text_t *text, razor_frame_t *frame)
+{
+    const char *angles = text->text;
+    const char *end = text->text + text->length;
+    bool has_acceleration = has_title(angles, end, acceleration_title);
+    float xyz[3] = {0.0F, 0.0F, 0.0F};
+    float ypr[3];
+
+    if (has_acceleration) {
+        angles = read_acceleration(angles + TITLE_LENGTH, end, xyz);
+    }
+    if (angles == NULL || !has_title(angles, end, angles_title) || !read_triple(angles + TITLE_LENGTH, end, ypr)) {
+        return RAZOR_MALFORMED;
+    }
+    if (!within(ypr, ANGLE_MAX_DEGREE) || !within(xyz, ACCELERATION_MAX_COUNT)) {
+        return RAZOR_OUT_OF_RANGE;
+    }
+    frame->yaw_rad = imu_yaw_sign * RAD_PER_DEGREE * ypr[0];
+    frame->pitch_rad = imu_pitch_sign * RAD_PER_DEGREE * ypr[1];
+    frame->roll_rad = imu_roll_sign * RAD_PER_DEGREE * ypr[2];
+    frame->has_acceleration = has_acceleration;
+    frame->forward_mps2 = imu_forward_sign * MPS2_PER_COUNT * xyz[0];
+    frame->right_mps2 = imu_right_sign * MPS2_PER_COUNT * xyz[1];
+    frame->down_mps2 = imu_down_sign * MPS2_PER_COUNT * xyz[2];
+    return RAZOR_OK;
+}

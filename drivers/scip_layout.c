@@ -1,0 +1,100 @@
+#include "scip_layout.h"
+
+#define DEGREES_PER_STEP 0.3515625F
+
+const scip_layout_t scip_layouts[SCIP_LAYOUT_COUNT] = {
+    [SCIP_LAYOUT_FRONT] = { "front", 372U, 406U, 1U, { { 372U, 406U } } },
+    [SCIP_LAYOUT_TWO_BEAMS] = { "two-beams", 249U, 519U, 2U, { { 249U, 277U }, { 491U, 519U } } },
+    [SCIP_LAYOUT_THREE_MIRRORS] = { "three-mirrors", 111U, 657U, 3U, { { 111U, 145U }, { 372U, 406U }, { 623U, 657U } } },
+};
+
+typedef struct {
+    uint32_t sum, least, most;
+    uint16_t bad;
+} tally_t;
+
+static uint16_t largest_distance(const scip_scan_t *scan)
+{
+    return scan->characters == 3U ? SCIP_DMAX_MM : SCIP_FAR_2_MM - 1U;
+}
+
+static uint16_t smaller(uint16_t a, uint16_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint16_t steps_per_point(const scip_scan_t *scan)
+{
+    return scan->cluster > 1U ? scan->cluster : 1U;
+}
+
+/* Steps from the scan's first to this one; 0 when it lies before. */
+static uint16_t steps_into(const scip_scan_t *scan, uint16_t step)
+{
+    return step > scan->first_step ? (uint16_t)(step - scan->first_step) : 0U;
+}
+
+/* Index of the first point that begins at the step or after it. */
+static uint16_t point_from(const scip_scan_t *scan, uint16_t step)
+{
+    const uint16_t cluster = steps_per_point(scan);
+    return (uint16_t)((steps_into(scan, step) + (uint16_t)(cluster - 1U)) / cluster);
+}
+
+/* Number of points that end before the step. */
+static uint16_t points_before(const scip_scan_t *scan, uint16_t step)
+{
+    return smaller((uint16_t)(steps_into(scan, step) / steps_per_point(scan)), scan->points);
+}
+
+static tally_t tally(const scip_scan_t *scan, uint16_t begin, uint16_t end)
+{
+    const uint32_t span = (uint32_t)largest_distance(scan) - SCIP_CODE_LIMIT_MM;
+    tally_t t = { 0U, UINT16_MAX, 0U, 0U };
+    for (uint16_t i = begin; i < end; i++) {
+        const uint32_t distance = scan->distance_mm[i];
+        if (distance - SCIP_CODE_LIMIT_MM > span) {
+            t.bad++;
+            continue;
+        }
+        t.sum += distance;
+        t.least = distance < t.least ? distance : t.least;
+        t.most = distance > t.most ? distance : t.most;
+    }
+    return t;
+}
+
+scip_group_mean_t scip_group_mean(const scip_scan_t *scan, const scip_group_t *group)
+{
+    const uint16_t behind = (uint16_t)(group->last_step + 1U);
+    const uint16_t rays = (uint16_t)((behind - group->first_step) / steps_per_point(scan));
+    const uint16_t end = points_before(scan, behind);
+    const uint16_t begin = smaller(point_from(scan, group->first_step), end);
+    const tally_t t = tally(scan, begin, end);
+    scip_group_mean_t mean = { .good_rays = (uint16_t)(end - begin - t.bad) };
+    if (mean.good_rays > 0U) {
+        mean.mean_mm = (float)t.sum / (float)mean.good_rays;
+        mean.spread_mm = (uint16_t)(t.most - t.least);
+        mean.valid = 2U * mean.good_rays >= rays;
+    }
+    return mean;
+}
+
+float scip_step_degrees(uint16_t step)
+{
+    return ((float)step - (float)SCIP_STEP_FRONT) * DEGREES_PER_STEP;
+}
+
+uint16_t scip_step_at_degrees(float degrees)
+{
+    const float step = degrees / DEGREES_PER_STEP + (float)SCIP_STEP_FRONT + 0.5F;
+    if (!(step >= (float)SCIP_STEP_FIRST)) {
+        return SCIP_STEP_FIRST;
+    }
+    return step >= (float)SCIP_STEP_LAST ? SCIP_STEP_LAST : (uint16_t)step;
+}
+
+uint32_t scip_step_delay_us(uint16_t step)
+{
+    return ((uint32_t)step * 3125U) >> 5;
+}

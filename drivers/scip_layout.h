@@ -1,0 +1,62 @@
+/* Which rays look at which mirror: ray-group layouts in one table, and the mean over a group's good rays. Pure.
+ *
+ * Steps run counter-clockwise seen from above, 1024 to the turn (360/1024 = 0.3515625 degrees); step 384 looks to the
+ * front, step 0 is sampled first. */
+#ifndef DRIVERS_SCIP_LAYOUT_H
+#define DRIVERS_SCIP_LAYOUT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "scip_parser.h"
+
+#define SCIP_GROUPS_MAX 3U
+#define SCIP_CODE_LIMIT_MM 20U      /* smaller values are codes, not distances */
+#define SCIP_FAR_2_MM 4095U         /* two characters end here: far or unknown */
+#define SCIP_DMAX_MM 5600U          /* the sensor's own DMAX: larger values of three characters are no distances */
+
+#define SCIP_STEP_FRONT 384U
+#define SCIP_STEP_FIRST 44U         /* AMIN and AMAX: outside them nothing is measured */
+#define SCIP_STEP_LAST 725U
+
+typedef struct {
+    uint16_t first_step;
+    uint16_t last_step;
+} scip_group_t;
+
+typedef struct {
+    const char *name;
+    uint16_t first_step;    /* asked of the sensor */
+    uint16_t last_step;
+    uint16_t group_count;
+    scip_group_t groups[SCIP_GROUPS_MAX];   /* 5 steps inside each mirror's edges, measured on the vehicle */
+} scip_layout_t;
+
+typedef enum { SCIP_LAYOUT_FRONT, SCIP_LAYOUT_TWO_BEAMS, SCIP_LAYOUT_THREE_MIRRORS, SCIP_LAYOUT_COUNT } scip_layout_id_t;
+extern const scip_layout_t scip_layouts[SCIP_LAYOUT_COUNT];
+
+/* Largest number of points any layout asks for (three mirrors: 111..657), with a cluster of 1. */
+#define SCIP_LAYOUT_POINTS_MAX 547U
+
+typedef struct {
+    bool valid;             /* at least half of the group's rays were good */
+    float mean_mm;          /* of the good rays; 0 when there is none */
+    uint16_t spread_mm;     /* largest minus smallest good ray */
+    uint16_t good_rays;
+} scip_group_mean_t;
+
+/* Mean over the good rays of one group: 20 mm or more, and below 4095 mm (two characters) or up to 5600 mm (three).
+ * Rays that the scan does not hold count as bad. With a cluster a ray is a point all of whose steps lie in the group. */
+scip_group_mean_t scip_group_mean(const scip_scan_t *scan, const scip_group_t *group);
+
+/* Direction of a step, degrees, positive to the left of the front. Exact. */
+float scip_step_degrees(uint16_t step);
+
+/* The step nearest to a direction, kept within 44..725 (NaN: 44). */
+uint16_t scip_step_at_degrees(float degrees);
+
+/* When a step is sampled, after the instant of the scan's time stamp (step 0), at 600 revolutions a minute. Microseconds,
+ * step: 0..1023. */
+uint32_t scip_step_delay_us(uint16_t step);
+
+#endif

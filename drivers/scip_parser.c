@@ -1,0 +1,526 @@
+#include "scip_parser.h"
+
+#include <stddef.h>
+
+#define STAMP_MASK ((uint32_t)0xFFFFFFUL)
+#define STAMP_STEP_MAX_MS ((uint32_t)10000UL)   /* two frames of one stream are never further apart */
+
+enum {
+    HUNT,           /* not in step: any line may end in the awaited echo */
+    ECHO,           /* in step with a stream: the next line is its echo */
+    STATUS,
+    TIME,
+    TEXT,
+    LEGACY_END,     /* the empty line after "E" */
+    REPLY_END,      /* the empty line after a reply without points */
+    DATA,
+    SCAN_END        /* the empty line after the points */
+};
+
+/* What is noted of a line's encoded characters: their sum, and bits above the sixth when one was outside 30H..6FH. */
+typedef struct {
+    uint16_t sum, outside;
+} check_t;
+
+static bool is_stream(const scip_request_t *request)
+{
+    return request->kind == SCIP_STREAM_2 || request->kind == SCIP_STREAM_3;
+}
+
+static bool is_counted(const scip_request_t *request)
+{
+    return is_stream(request) && request->range.scans != 0U;
+}
+
+static bool has_status(const scip_parser_t *parser, char first, char second)
+{
+    return parser->reply.status[0] == (octet_t)first && parser->reply.status[1] == (octet_t)second;
+}
+
+static bool line_is_empty(const scip_parser_t *parser)
+{
+    return parser->line_length == 0U;
+}
+
+static bool line_is_refusal(const scip_parser_t *parser)
+{
+    return parser->line_length == 1U && parser->line[0] == (octet_t)'E';
+}
+
+static uint16_t sum_character(uint16_t sum)
+{
+    return (uint16_t)((sum & 0x3FU) + 0x30U);
+}
+
+static bool read_count(const octet_t *text, uint16_t *count)
+{
+    uint16_t tens = (uint16_t)(text[0] - 0x30U);
+    uint16_t ones = (uint16_t)(text[1] - 0x30U);
+    *count = (uint16_t)(10U * tens + ones);
+    return tens <= 9U && ones <= 9U;
+}
+
+/* True when the line ends in the awaited echo. The last two digits of a counted run's echo are the remaining scans.
+ * Octets in front of it may be what is left of a lost frame. */
+static bool take_echo(scip_parser_t *parser)
+{
+    const uint16_t length = parser->awaited.echo_length;
+    const octet_t *echo = scip_request_echo(&parser->awaited);
+    const octet_t *end = &parser->line[parser->line_length];
+    uint16_t fixed = length;
+    uint16_t remaining = 0U;
+    if (!parser->awaiting || parser->line_length < length) {
+        return false;
+    }
+    if (is_counted(&parser->awaited)) {
+        fixed = (uint16_t)(length - 2U);
+        if (!read_count(end - 2, &remaining)) {
+            return false;
+        }
+    }
+    for (uint16_t i = 0U; i < fixed; i++) {
+        if (echo[i] != (end - length)[i]) {
+            return false;
+        }
+    }
+    parser->gap = parser->gap || parser->line_length > length;
+    parser->remaining = remaining;
+    parser->state = STATUS;
+    return true;
+}
+
+static scip_event_t damage(scip_parser_t *parser, scip_damage_t cause)
+{
+    parser->counters.damaged[cause]++;
+    parser->last_damage = cause;
+    parser->gap = true;
+    parser->state = HUNT;
+    parser->skipping = !take_echo(parser) && !line_is_empty(parser);
+    return SCIP_DAMAGED;
+}
+
+static scip_event_t end_of_skipped(scip_parser_t *parser)
+{
+    bool after_text = parser->skipping;
+    parser->skipping = false;
+    if (take_echo(parser) || line_is_empty(parser)) {
+        return SCIP_NOTHING;
+    }
+    if (after_text && !parser->flowing && line_is_refusal(parser)) {
+        parser->state = LEGACY_END;
+        return SCIP_NOTHING;
+    }
+    parser->skipping = true;
+    parser->counters.skipped_lines++;
+    return SCIP_NOTHING;
+}
+
+static scip_event_t end_of_echo(scip_parser_t *parser)
+{
+    if (take_echo(parser) || line_is_empty(parser)) {
+        return SCIP_NOTHING;
+    }
+    return damage(parser, SCIP_DAMAGE_ECHO);
+}
+
+static bool line_has(const scip_parser_t *parser, uint16_t characters)
+{
+    return parser->line_length == characters + 1U && !parser->line_cut;
+}
+
+/* Six bits of an encoded value; the check notes the character. */
+static inline uint16_t take(check_t *check, octet_t character)
+{
+    const uint16_t bits = (uint16_t)(character - 0x30U);
+    check->sum = (uint16_t)(check->sum + character);
+    check->outside = (uint16_t)(check->outside | bits);
+    return bits;
+}
+
+static scip_damage_t verdict(const check_t *check, octet_t sum)
+{
+    if ((check->outside & 0xFFC0U) != 0U) {
+        return SCIP_DAMAGE_CHARACTER;
+    }
+    return sum == sum_character(check->sum) ? SCIP_DAMAGE_NONE : SCIP_DAMAGE_SUM;
+}
+
+static bool speaks_legacy(scip_kind_t kind)
+{
+    return kind == SCIP_LASER_OFF_1 || kind == SCIP_SWITCH;
+}
+
+static uint16_t state_after_status(const scip_parser_t *parser)
+{
+    const scip_kind_t kind = parser->awaited.kind;
+    if (is_stream(&parser->awaited)) {
+        return has_status(parser, '9', '9') ? TIME : REPLY_END;
+    }
+    if (!has_status(parser, '0', '0')) {
+        return REPLY_END;
+    }
+    switch (kind) {
+    case SCIP_SINGLE_2:
+    case SCIP_SINGLE_3:
+    case SCIP_TIME_READ:
+        return TIME;
+    case SCIP_VERSION:
+    case SCIP_PARAMETERS:
+    case SCIP_STATE:
+        return TEXT;
+    default:
+        return REPLY_END;
+    }
+}
+
+static scip_event_t end_of_status(scip_parser_t *parser)
+{
+    const octet_t *line = parser->line;
+    check_t check = { 0U, 0U };
+    scip_damage_t cause;
+    if (line_is_refusal(parser)) {
+        parser->state = LEGACY_END;
+        return SCIP_NOTHING;
+    }
+    if (parser->line_length == 1U && speaks_legacy(parser->awaited.kind)) {
+        parser->reply = (scip_reply_t){ .status = { line[0], 0U }, .legacy = true };
+        parser->state = REPLY_END;
+        return SCIP_NOTHING;
+    }
+    if (!line_has(parser, 2U)) {
+        return damage(parser, SCIP_DAMAGE_LENGTH);
+    }
+    (void)take(&check, line[0]);
+    (void)take(&check, line[1]);
+    cause = verdict(&check, line[2]);
+    if (cause != SCIP_DAMAGE_NONE) {
+        return damage(parser, cause);
+    }
+    parser->reply = (scip_reply_t){ .status = { line[0], line[1] } };
+    if (is_counted(&parser->awaited) && has_status(parser, '0', '0') &&
+        parser->remaining != parser->awaited.range.scans) {
+        return damage(parser, SCIP_DAMAGE_ECHO);
+    }
+    parser->state = state_after_status(parser);
+    return SCIP_NOTHING;
+}
+
+static scip_event_t begin_data(scip_parser_t *parser, uint32_t stamp)
+{
+    if (parser->scan != NULL && parser->scan->capacity < parser->awaited.points) {
+        return damage(parser, SCIP_DAMAGE_LENGTH);
+    }
+    parser->timestamp_ms = stamp;
+    parser->characters_left = (uint16_t)(parser->awaited.characters * parser->awaited.points);
+    parser->received = 0U;
+    parser->partial = 0U;
+    parser->partial_characters = 0U;
+    parser->state = DATA;
+    return SCIP_NOTHING;
+}
+
+static scip_event_t end_of_time(scip_parser_t *parser)
+{
+    check_t check = { 0U, 0U };
+    uint32_t stamp = 0U;
+    scip_damage_t cause;
+    if (!line_has(parser, 4U)) {
+        return damage(parser, SCIP_DAMAGE_LENGTH);
+    }
+    for (uint16_t i = 0U; i < 4U; i++) {
+        stamp = (stamp << 6) | take(&check, parser->line[i]);
+    }
+    cause = verdict(&check, parser->line[4]);
+    if (cause != SCIP_DAMAGE_NONE) {
+        return damage(parser, cause);
+    }
+    if (parser->awaited.kind == SCIP_TIME_READ) {
+        parser->reply.timestamp_ms = stamp;
+        parser->state = REPLY_END;
+        return SCIP_NOTHING;
+    }
+    return begin_data(parser, stamp);
+}
+
+/* Two characters a point never straddle a block. */
+static check_t decode_pairs(scip_parser_t *parser, uint16_t *out, uint16_t characters)
+{
+    const octet_t *line = parser->line;
+    const size_t points = characters / 2U;
+    check_t check = { 0U, 0U };
+    for (size_t i = 0U; i < points; i++) {
+        const uint16_t high = take(&check, line[2U * i]);
+        const uint16_t low = take(&check, line[2U * i + 1U]);
+        out[i] = (uint16_t)((high << 6) | low);
+    }
+    parser->received = (uint16_t)(parser->received + points);
+    return check;
+}
+
+static check_t decode_triples(scip_parser_t *parser, uint16_t *out, uint16_t characters)
+{
+    check_t check = { 0U, 0U };
+    for (uint16_t i = 0U; i < characters; i++) {
+        parser->partial = (parser->partial << 6) | take(&check, parser->line[i]);
+        parser->partial_characters++;
+        if (parser->partial_characters == 3U) {
+            *out = (uint16_t)(parser->partial > 0xFFFFU ? 0xFFFFU : parser->partial);
+            out++;
+            parser->received++;
+            parser->partial = 0U;
+            parser->partial_characters = 0U;
+        }
+    }
+    return check;
+}
+
+static check_t pass(const scip_parser_t *parser, uint16_t characters)
+{
+    check_t check = { 0U, 0U };
+    for (uint16_t i = 0U; i < characters; i++) {
+        (void)take(&check, parser->line[i]);
+    }
+    return check;
+}
+
+static check_t decode(scip_parser_t *parser, uint16_t characters)
+{
+    if (parser->scan == NULL) {
+        return pass(parser, characters);
+    }
+    uint16_t *out = &parser->scan->distance_mm[parser->received];
+    return parser->awaited.characters == 2U ? decode_pairs(parser, out, characters)
+                                            : decode_triples(parser, out, characters);
+}
+
+static scip_event_t end_of_data(scip_parser_t *parser)
+{
+    const uint16_t characters = parser->characters_left < SCIP_BLOCK ? parser->characters_left : (uint16_t)SCIP_BLOCK;
+    if (!line_has(parser, characters)) {
+        return damage(parser, SCIP_DAMAGE_LENGTH);
+    }
+    const check_t check = decode(parser, characters);
+    const scip_damage_t cause = verdict(&check, parser->line[characters]);
+    if (cause != SCIP_DAMAGE_NONE) {
+        return damage(parser, cause);
+    }
+    parser->characters_left = (uint16_t)(parser->characters_left - characters);
+    if (parser->characters_left == 0U) {
+        parser->state = SCAN_END;
+    }
+    return SCIP_NOTHING;
+}
+
+static bool stamp_follows(const scip_parser_t *parser)
+{
+    if (parser->stamps == 0U) {
+        return true;
+    }
+    if (parser->timestamp_ms == parser->last_stamps_ms[0]) {
+        return false;
+    }
+    for (uint16_t i = 0U; i < parser->stamps; i++) {
+        if (((parser->timestamp_ms - parser->last_stamps_ms[i]) & STAMP_MASK) <= STAMP_STEP_MAX_MS) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool counter_follows(const scip_parser_t *parser)
+{
+    if (!is_counted(&parser->awaited)) {
+        return true;
+    }
+    if (parser->gap) {
+        return parser->remaining < parser->last_remaining;
+    }
+    return parser->remaining + 1U == parser->last_remaining;
+}
+
+/* A stamp follows when it is ahead of one of the last two seen, so a wrong one whose sum was right harms no later frame.
+ * No two frames in a row are dropped here, so a restarted clock or a wrong counter costs one scan. */
+static bool in_sequence(scip_parser_t *parser)
+{
+    bool follows = parser->doubted || (stamp_follows(parser) && counter_follows(parser));
+    parser->last_stamps_ms[1] = parser->last_stamps_ms[0];
+    parser->last_stamps_ms[0] = parser->timestamp_ms;
+    if (parser->stamps < 2U) {
+        parser->stamps++;
+    }
+    parser->doubted = !follows;
+    if (follows) {
+        parser->last_remaining = parser->remaining;
+        parser->gap = false;
+    }
+    return follows;
+}
+
+static scip_event_t deliver(const scip_parser_t *parser)
+{
+    scip_scan_t *scan = parser->scan;
+    if (scan == NULL) {
+        return SCIP_NOTHING;
+    }
+    scan->points = parser->awaited.points;
+    scan->characters = parser->awaited.characters;
+    scan->first_step = parser->awaited.range.first_step;
+    scan->cluster = parser->awaited.range.cluster;
+    scan->remaining = parser->remaining;
+    scan->timestamp_ms = parser->timestamp_ms;
+    return SCIP_SCAN;
+}
+
+static scip_event_t end_of_scan(scip_parser_t *parser)
+{
+    if (!line_is_empty(parser)) {
+        return damage(parser, SCIP_DAMAGE_LENGTH);
+    }
+    if (is_stream(&parser->awaited)) {
+        parser->flowing = true;
+        if (!in_sequence(parser)) {
+            (void)damage(parser, SCIP_DAMAGE_SEQUENCE);
+            parser->state = ECHO;
+            return SCIP_DAMAGED;
+        }
+        parser->state = ECHO;
+    } else {
+        parser->awaiting = false;
+        parser->state = HUNT;
+    }
+    parser->counters.scans++;
+    return deliver(parser);
+}
+
+static void begin_stream(scip_parser_t *parser)
+{
+    parser->flowing = true;
+    parser->gap = false;
+    parser->doubted = false;
+    parser->stamps = 0U;
+    parser->last_remaining = parser->awaited.range.scans;
+    parser->state = ECHO;
+}
+
+static scip_event_t end_of_reply(scip_parser_t *parser)
+{
+    if (!line_is_empty(parser)) {
+        return damage(parser, SCIP_DAMAGE_LENGTH);
+    }
+    parser->state = HUNT;
+    if (is_stream(&parser->awaited) && parser->reply.status[0] >= (octet_t)'2') {
+        parser->gap = true;
+        parser->flowing = true;
+        parser->state = ECHO;
+        parser->counters.notices++;
+        return SCIP_NOTICE;
+    }
+    parser->counters.replies++;
+    parser->awaiting = is_stream(&parser->awaited) && has_status(parser, '0', '0');
+    if (parser->awaiting) {
+        begin_stream(parser);
+    }
+    return SCIP_REPLY;
+}
+
+static scip_event_t end_of_legacy(scip_parser_t *parser)
+{
+    if (!line_is_empty(parser)) {
+        return damage(parser, SCIP_DAMAGE_LENGTH);
+    }
+    parser->state = HUNT;
+    parser->counters.legacy++;
+    return SCIP_LEGACY;
+}
+
+static scip_event_t end_of_text(scip_parser_t *parser)
+{
+    const octet_t *line = parser->line;
+    uint16_t length = parser->line_length;
+    uint16_t sum = 0U;
+    if (length == 0U) {
+        return end_of_reply(parser);
+    }
+    if (parser->line_cut) {
+        parser->counters.skipped_lines++;
+        return SCIP_NOTHING;
+    }
+    parser->text_length = length;
+    parser->text_proved = false;
+    if (length >= 2U && line[length - 2U] == (octet_t)';') {
+        parser->text_length = (uint16_t)(length - 2U);
+        for (uint16_t i = 0U; i < parser->text_length; i++) {
+            sum = (uint16_t)(sum + line[i]);
+        }
+        parser->text_proved = line[length - 1U] == sum_character(sum);
+    }
+    return SCIP_TEXT;
+}
+
+static scip_event_t (*const at_line_end[])(scip_parser_t *parser) = {
+    [HUNT] = end_of_skipped, [ECHO] = end_of_echo,         [STATUS] = end_of_status,
+    [TIME] = end_of_time,    [TEXT] = end_of_text,         [LEGACY_END] = end_of_legacy,
+    [DATA] = end_of_data,    [REPLY_END] = end_of_reply,   [SCAN_END] = end_of_scan,
+};
+
+void scip_parser_init(scip_parser_t *parser)
+{
+    *parser = (scip_parser_t){ .state = HUNT };
+}
+
+void scip_parser_expect(scip_parser_t *parser, const scip_request_t *request)
+{
+    parser->awaited = *request;
+    parser->awaiting = true;
+    parser->state = HUNT;
+    parser->skipping = false;
+    parser->flowing = false;
+    parser->gap = true;
+    parser->doubted = false;
+    parser->stamps = 0U;
+    parser->last_remaining = request->range.scans;
+}
+
+void scip_parser_scan_into(scip_parser_t *parser, scip_scan_t *scan)
+{
+    if (parser->state == DATA || parser->state == SCAN_END) {
+        parser->state = HUNT;
+        parser->gap = true;
+    }
+    parser->scan = scan;
+}
+
+void scip_parser_line_broken(scip_parser_t *parser)
+{
+    parser->state = HUNT;
+    parser->skipping = false;
+    parser->gap = true;
+    parser->counters.octets += parser->gathered;
+    parser->gathered = 0U;
+    parser->cutting = false;
+}
+
+void scip_parser_cut_line(scip_parser_t *parser)
+{
+    for (uint16_t i = 0U; i < SCIP_REQUEST_MAX; i++) {
+        parser->line[i] = parser->line[SCIP_LINE_MAX - SCIP_REQUEST_MAX + i];
+    }
+    parser->counters.octets += SCIP_LINE_MAX - SCIP_REQUEST_MAX;
+    parser->gathered = SCIP_REQUEST_MAX;
+    parser->cutting = true;
+}
+
+scip_event_t scip_parser_end_line(scip_parser_t *parser)
+{
+    parser->line_length = parser->gathered;
+    parser->line_cut = parser->cutting;
+    parser->counters.octets += (uint32_t)parser->gathered + 1U;
+    parser->gathered = 0U;
+    parser->cutting = false;
+    return at_line_end[parser->state](parser);
+}
+
+uint32_t scip_unwrap_ms(uint32_t unwrapped_ms, uint32_t timestamp_ms)
+{
+    return unwrapped_ms + ((timestamp_ms - unwrapped_ms) & STAMP_MASK);
+}

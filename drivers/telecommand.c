@@ -1,0 +1,133 @@
+#include "telecommand.h"
+
+static void restart(telecommand_collector_t *collector)
+{
+    collector->line.length = 0U;
+    collector->line.overlong = false;
+}
+
+void telecommand_collector_init(telecommand_collector_t *collector)
+{
+    restart(collector);
+    collector->started = false;
+    collector->strays = 0U;
+}
+
+static bool is_blank(char character)
+{
+    return character == ' ' || character == '\t';
+}
+
+static bool end_line(telecommand_collector_t *collector)
+{
+    bool complete = collector->started;
+
+    collector->started = false;
+    return complete;
+}
+
+static void gather(telecommand_collector_t *collector, char character)
+{
+    telecommand_line_t *line = &collector->line;
+
+    if (!collector->started) {
+        collector->strays += is_blank(character) ? 0U : 1U;
+    } else if (line->length == TELECOMMAND_LINE_MAX) {
+        line->overlong = true;
+    } else {
+        line->text[line->length++] = character;
+    }
+}
+
+bool telecommand_collect(telecommand_collector_t *collector, octet_t octet)
+{
+    char character = (char)octet;
+
+    if (character == '\0') {
+        return false;
+    }
+    if (character == '\r' || character == '\n') {
+        return end_line(collector);
+    }
+    if (character == '#') {
+        restart(collector);
+        collector->started = true;
+    }
+    gather(collector, character);
+    return false;
+}
+
+static bool is_name(char character)
+{
+    return (character >= 'A' && character <= 'Z') || (character >= '0' && character <= '9') || character == '_';
+}
+
+static char upper(char character)
+{
+    return character >= 'a' && character <= 'z' ? (char)(character - 'a' + 'A') : character;
+}
+
+static bool is_legible(const telecommand_line_t *line)
+{
+    for (uint16_t i = 0U; i < line->length; i++) {
+        char character = line->text[i];
+
+        if ((character < ' ' || character > '~') && character != '\t') {
+            return false;
+        }
+    }
+    return true;
+}
+
+static uint16_t skip_blanks(const telecommand_line_t *line, uint16_t at, uint16_t end)
+{
+    while (at < end && is_blank(line->text[at])) {
+        at++;
+    }
+    return at;
+}
+
+static telecommand_status_t take_name(const telecommand_line_t *line, uint16_t *at, uint16_t end, telecommand_t *command)
+{
+    uint16_t length = 0U;
+
+    for (; *at < end && !is_blank(line->text[*at]); (*at)++) {
+        char character = upper(line->text[*at]);
+
+        if (!is_name(character)) {
+            return TELECOMMAND_CHARACTER;
+        }
+        if (length < TELECOMMAND_NAME_MAX) {
+            command->name[length++] = character;
+        }
+    }
+    command->name_length = length;
+    return length > 0U ? TELECOMMAND_OK : TELECOMMAND_EMPTY;
+}
+
+telecommand_status_t telecommand_parse(const telecommand_line_t *line, telecommand_t *command)
+{
+    uint16_t end = line->length;
+    uint16_t at;
+    telecommand_status_t status;
+
+    command->name_length = 0U;
+    command->argument_length = 0U;
+    if (line->overlong) {
+        return TELECOMMAND_OVERLONG;
+    }
+    if (!is_legible(line)) {
+        return TELECOMMAND_CHARACTER;
+    }
+    while (end > 1U && is_blank(line->text[end - 1U])) {
+        end--;
+    }
+    at = skip_blanks(line, 1U, end);
+    status = take_name(line, &at, end, command);
+    if (status == TELECOMMAND_OK) {
+        for (at = skip_blanks(line, at, end); at < end; at++) {
+            command->argument[command->argument_length++] = line->text[at];
+        }
+    }
+    return status;
+}

@@ -1,0 +1,50 @@
+/* Operator's lines: `#NAME value` LF (CR LF, blanks and lower case accepted). A '#' restarts the line. Pure.
+ *
+ * The collector runs in the receive interrupt; parsing is the task's. */
+#ifndef DRIVERS_TELECOMMAND_H
+#define DRIVERS_TELECOMMAND_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "octet.h"
+
+#define TELECOMMAND_LINE_MAX 32U    /* characters from '#' to before the line end */
+#define TELECOMMAND_NAME_MAX 12U
+
+typedef struct {
+    char text[TELECOMMAND_LINE_MAX];    /* from '#', without the line end */
+    uint16_t length;
+    bool overlong;                      /* more came than fit; the text is the beginning */
+} telecommand_line_t;
+
+typedef struct {
+    telecommand_line_t line;
+    bool started;           /* a '#' has come */
+    uint32_t strays;        /* octets outside a line, except blank, tab, line ends and NUL */
+} telecommand_collector_t;
+
+void telecommand_collector_init(telecommand_collector_t *collector);
+/* True at a LF or CR that ends a line begun with '#': collector->line is complete and valid until the next call. (The LF
+ * of CR LF begins nothing.) NUL is ignored. */
+bool telecommand_collect(telecommand_collector_t *collector, octet_t octet);
+
+typedef enum {
+    TELECOMMAND_OK,
+    TELECOMMAND_EMPTY,      /* '#' alone, or blanks behind it */
+    TELECOMMAND_OVERLONG,
+    TELECOMMAND_CHARACTER   /* a control character (other than a tab) or one above 7EH, or a name with other than A-Z 0-9 _ */
+} telecommand_status_t;
+
+typedef struct {
+    char name[TELECOMMAND_NAME_MAX];    /* upper case, no terminator; longer names are cut (and match nothing) */
+    uint16_t name_length;
+    char argument[TELECOMMAND_LINE_MAX];/* rest without outer blanks and tabs, as typed */
+    uint16_t argument_length;           /* 0 = none */
+} telecommand_t;
+
+/* A line as collected. Always writes *command; name and argument are empty unless the result is OK. */
+telecommand_status_t telecommand_parse(const telecommand_line_t *line, telecommand_t *command);
+
+#endif

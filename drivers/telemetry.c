@@ -1,0 +1,90 @@
+#include "telemetry.h"
+
+#include <string.h>
+
+#include "decimal.h"
+
+#define COUNT_DIGITS_MAX 10U
+
+void telemetry_begin(telemetry_line_t *line)
+{
+    line->length = 0U;
+    line->overflowed = false;
+}
+
+void telemetry_characters(telemetry_line_t *line, const char *text, size_t length)
+{
+    if (line->overflowed || length > TELEMETRY_LINE_MAX - (size_t)line->length) {
+        line->overflowed = true;
+        return;
+    }
+    (void)memcpy(&line->text[line->length], text, length);
+    line->length = (uint16_t)(line->length + length);
+}
+
+void telemetry_text(telemetry_line_t *line, const char *text)
+{
+    telemetry_characters(line, text, strlen(text));
+}
+
+static void add_number(telemetry_line_t *line, const char *text, size_t length)
+{
+    if (length == 0U) {
+        telemetry_text(line, "-");
+    } else {
+        telemetry_characters(line, text, length);
+    }
+}
+
+void telemetry_fixed(telemetry_line_t *line, float value, uint16_t decimals)
+{
+    char text[DECIMAL_TEXT_MAX];
+
+    add_number(line, text, decimal_write(text, DECIMAL_TEXT_MAX, value, decimals));
+}
+
+void telemetry_number(telemetry_line_t *line, float value)
+{
+    char text[DECIMAL_TEXT_MAX];
+
+    add_number(line, text, decimal_write_shortest(text, DECIMAL_TEXT_MAX, value));
+}
+
+void telemetry_count(telemetry_line_t *line, uint32_t value)
+{
+    char text[COUNT_DIGITS_MAX];
+    size_t at = COUNT_DIGITS_MAX;
+
+    do {
+        text[--at] = (char)('0' + (int16_t)(value % 10U));
+        value /= 10U;
+    } while (value > 0U);
+    telemetry_characters(line, &text[at], COUNT_DIGITS_MAX - at);
+}
+
+void telemetry_end(telemetry_line_t *line)
+{
+    telemetry_text(line, "\r\n");
+}
+
+void telemetry_status(telemetry_line_t *line, const telemetry_t *telemetry)
+{
+    telemetry_begin(line);
+    telemetry_text(line, "alt:");
+    if (telemetry->height_valid) {
+        telemetry_fixed(line, telemetry->height_mm * 0.001F, 3U);
+    } else {
+        telemetry_text(line, "-");
+    }
+    telemetry_text(line, " ref:");
+    telemetry_fixed(line, telemetry->reference_m, 3U);
+    telemetry_text(line, " laser:");
+    telemetry_text(line, telemetry->laser);
+    telemetry_text(line, " thr:");
+    telemetry_fixed(line, telemetry->thrust_n, 2U);
+    telemetry_text(line, " state:");
+    telemetry_text(line, telemetry->state);
+    telemetry_text(line, " flags:");
+    telemetry_count(line, telemetry->flags);
+    telemetry_end(line);
+}

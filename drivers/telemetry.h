@@ -1,0 +1,42 @@
+/* What the operator reads: telemetry lines and answers, built into a bounded text. Documented in docs/operator.md. Pure. */
+#ifndef DRIVERS_TELEMETRY_H
+#define DRIVERS_TELEMETRY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define TELEMETRY_LINE_MAX 95U  /* line end included: one XBee packet */
+
+typedef struct {
+    char text[TELEMETRY_LINE_MAX];
+    uint16_t length;
+    bool overflowed;        /* something did not fit: the line is not to be sent */
+} telemetry_line_t;
+
+/* A line is built between telemetry_begin and telemetry_end. What does not fit is left out whole, sets `overflowed`, and
+ * nothing more is added to the line. A number that decimal.h cannot write becomes "-". */
+void telemetry_begin(telemetry_line_t *line);
+void telemetry_text(telemetry_line_t *line, const char *text);              /* zero-terminated */
+void telemetry_characters(telemetry_line_t *line, const char *text, size_t length);
+void telemetry_fixed(telemetry_line_t *line, float value, uint16_t decimals);
+void telemetry_number(telemetry_line_t *line, float value);                 /* shortest, decimal.h */
+void telemetry_count(telemetry_line_t *line, uint32_t value);
+void telemetry_end(telemetry_line_t *line);                                 /* CR LF */
+
+/* The periodic line: "alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0" CR LF; "alt:-" without a valid
+ * height. */
+typedef struct {
+    bool height_valid;
+    float height_mm;
+    float reference_m;
+    const char *laser;      /* zero-terminated, borrowed for the call */
+    float thrust_n;
+    const char *state;      /* likewise */
+    uint16_t flags;
+} telemetry_t;
+
+/* From begin to end. With names of up to 8 characters (laser) and 10 (state) it fits whatever the numbers are. */
+void telemetry_status(telemetry_line_t *line, const telemetry_t *telemetry);
+
+#endif

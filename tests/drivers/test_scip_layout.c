@@ -1,0 +1,263 @@
+#include "unity.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "scip_layout.h"
+#include "scip_request.h"
+
+static uint16_t points[SCIP_POINTS_MAX];
+static scip_scan_t scan;
+
+void setUp(void)
+{
+    memset(points, 0, sizeof points);
+    scan = (scip_scan_t){ .distance_mm = points, .capacity = SCIP_POINTS_MAX, .points = 35, .characters = 2,
+                          .first_step = 372, .cluster = 1 };
+}
+
+void tearDown(void)
+{
+}
+
+static void fill(uint16_t value)
+{
+    for (uint16_t i = 0; i < scan.points; i++) {
+        points[i] = value;
+    }
+}
+
+static scip_group_mean_t mean_of(uint16_t first, uint16_t last)
+{
+    const scip_group_t group = { first, last };
+    return scip_group_mean(&scan, &group);
+}
+
+/* --- the table --------------------------------------------------------------------------------------------------- */
+
+void test_every_layout_can_be_asked_for_and_holds_its_groups(void)
+{
+    uint16_t largest = 0;
+    for (int id = 0; id < SCIP_LAYOUT_COUNT; id++) {
+        const scip_layout_t *layout = &scip_layouts[id];
+        const scip_range_t range = { layout->first_step, layout->last_step, 1, 0, 0 };
+        scip_request_t request;
+        TEST_ASSERT_TRUE(scip_request_scan(&request, SCIP_STREAM_2, &range));
+        largest = request.points > largest ? request.points : largest;
+        TEST_ASSERT_GREATER_OR_EQUAL_UINT16(SCIP_STEP_FIRST, layout->first_step);
+        TEST_ASSERT_LESS_OR_EQUAL_UINT16(SCIP_STEP_LAST, layout->last_step);
+        TEST_ASSERT_EQUAL_UINT16(id + 1, layout->group_count);
+        TEST_ASSERT_EQUAL_UINT16(layout->first_step, layout->groups[0].first_step);
+        TEST_ASSERT_EQUAL_UINT16(layout->last_step, layout->groups[layout->group_count - 1].last_step);
+        for (uint16_t g = 0; g < layout->group_count; g++) {
+            TEST_ASSERT_LESS_OR_EQUAL_UINT16(layout->groups[g].last_step, layout->groups[g].first_step);
+            if (g > 0) {
+                TEST_ASSERT_GREATER_THAN_UINT16(layout->groups[g - 1].last_step, layout->groups[g].first_step);
+            }
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT16(SCIP_LAYOUT_POINTS_MAX, largest);
+}
+
+void test_the_layouts_are_those_of_the_vehicle(void)
+{
+    const scip_layout_t *front = &scip_layouts[SCIP_LAYOUT_FRONT];
+    const scip_layout_t *beams = &scip_layouts[SCIP_LAYOUT_TWO_BEAMS];
+    const scip_layout_t *mirrors = &scip_layouts[SCIP_LAYOUT_THREE_MIRRORS];
+    TEST_ASSERT_EQUAL_STRING("front", front->name);
+    TEST_ASSERT_EQUAL_UINT16(372, front->first_step);
+    TEST_ASSERT_EQUAL_UINT16(406, front->last_step);
+    TEST_ASSERT_EQUAL_STRING("two-beams", beams->name);
+    TEST_ASSERT_EQUAL_UINT16(249, beams->first_step);
+    TEST_ASSERT_EQUAL_UINT16(519, beams->last_step);
+    for (uint16_t g = 0; g < 2; g++) { /* two beams of about 10 degrees */
+        TEST_ASSERT_FLOAT_WITHIN(0.3F, 10.0F, scip_step_degrees(beams->groups[g].last_step + 1) -
+                                                  scip_step_degrees(beams->groups[g].first_step));
+    }
+    TEST_ASSERT_EQUAL_STRING("three-mirrors", mirrors->name);
+    /* mirrors at 30, 120 and 210 degrees, counted from step 44 - 1.3 degrees: steps 128, 384 and 640 */
+    static const uint16_t centres[] = { 128, 384, 640 };
+    for (uint16_t g = 0; g < 3; g++) {
+        TEST_ASSERT_EQUAL_UINT16(34, mirrors->groups[g].last_step - mirrors->groups[g].first_step);
+        TEST_ASSERT_TRUE(mirrors->groups[g].first_step <= centres[g] - 5);
+        TEST_ASSERT_TRUE(mirrors->groups[g].last_step >= centres[g] + 5);
+    }
+}
+
+/* --- the mean ---------------------------------------------------------------------------------------------------- */
+
+void test_equal_rays_give_that_distance_and_no_spread(void)
+{
+    fill(600);
+    scip_group_mean_t mean = mean_of(372, 406);
+    TEST_ASSERT_TRUE(mean.valid);
+    TEST_ASSERT_EQUAL_FLOAT(600.0F, mean.mean_mm);
+    TEST_ASSERT_EQUAL_UINT16(0, mean.spread_mm);
+    TEST_ASSERT_EQUAL_UINT16(35, mean.good_rays);
+}
+
+void test_codes_and_overrange_take_no_part(void)
+{
+    fill(1000);
+    for (uint16_t i = 0; i < 10; i++) {
+        points[i] = i < 5 ? i : 4095;
+    }
+    points[10] = 19;
+    points[11] = 20;
+    points[12] = 4094;
+    scip_group_mean_t mean = mean_of(372, 406);
+    TEST_ASSERT_EQUAL_UINT16(24, mean.good_rays);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, (22 * 1000.0F + 20 + 4094) / 24, mean.mean_mm);
+    TEST_ASSERT_EQUAL_UINT16(4074, mean.spread_mm);
+    TEST_ASSERT_TRUE(mean.valid);
+}
+
+void test_three_character_scans_reach_to_5600(void)
+{
+    static const uint16_t sent[] = { 4095, 5600, 5601, 65535 };
+    static const uint16_t good[] = { 1, 1, 0, 0 };
+    scan.characters = 3;
+    for (unsigned i = 0; i < 4; i++) {
+        points[0] = sent[i];
+        TEST_ASSERT_EQUAL_UINT16(good[i], mean_of(372, 372).good_rays);
+        TEST_ASSERT_EQUAL(good[i] != 0, mean_of(372, 372).valid);
+    }
+}
+
+void test_half_of_the_rays_must_be_good(void)
+{
+    for (uint16_t good = 0; good <= 35; good++) {
+        fill(0);
+        for (uint16_t i = 0; i < good; i++) {
+            points[34 - i] = (uint16_t)(500 + i);
+        }
+        scip_group_mean_t mean = mean_of(372, 406);
+        TEST_ASSERT_EQUAL_UINT16(good, mean.good_rays);
+        TEST_ASSERT_EQUAL(good >= 18, mean.valid);
+        TEST_ASSERT_EQUAL_UINT16(good > 0 ? good - 1 : 0, mean.spread_mm);
+        TEST_ASSERT_FLOAT_WITHIN(0.01F, good > 0 ? 500.0F + (float)(good - 1) / 2 : 0.0F, mean.mean_mm);
+    }
+    fill(0);
+    points[0] = points[1] = 700;
+    TEST_ASSERT_TRUE(mean_of(372, 375).valid); /* 2 of 4 */
+    TEST_ASSERT_FALSE(mean_of(372, 376).valid); /* 2 of 5 */
+}
+
+void test_only_the_group_counts(void)
+{
+    for (uint16_t i = 0; i < 35; i++) {
+        points[i] = (uint16_t)(1000 + i);
+    }
+    scip_group_mean_t mean = mean_of(380, 390);
+    TEST_ASSERT_EQUAL_UINT16(11, mean.good_rays);
+    TEST_ASSERT_EQUAL_FLOAT(1013.0F, mean.mean_mm);
+    TEST_ASSERT_EQUAL_UINT16(10, mean.spread_mm);
+    mean = mean_of(372, 372);
+    TEST_ASSERT_EQUAL_FLOAT(1000.0F, mean.mean_mm);
+    mean = mean_of(406, 406);
+    TEST_ASSERT_EQUAL_FLOAT(1034.0F, mean.mean_mm);
+}
+
+void test_rays_that_the_scan_does_not_hold_are_bad(void)
+{
+    fill(800);
+    TEST_ASSERT_EQUAL_UINT16(9, mean_of(362, 380).good_rays);   /* of 19 */
+    TEST_ASSERT_FALSE(mean_of(362, 380).valid);
+    TEST_ASSERT_TRUE(mean_of(363, 380).valid);                  /* 9 of 18 */
+    TEST_ASSERT_EQUAL_UINT16(7, mean_of(400, 413).good_rays);
+    TEST_ASSERT_TRUE(mean_of(400, 413).valid);
+    TEST_ASSERT_FALSE(mean_of(400, 414).valid);
+    TEST_ASSERT_EQUAL_UINT16(35, mean_of(0, 768).good_rays);
+    TEST_ASSERT_FALSE(mean_of(0, 768).valid);
+    TEST_ASSERT_EQUAL_UINT16(0, mean_of(0, 371).good_rays);
+    TEST_ASSERT_EQUAL_UINT16(0, mean_of(407, 500).good_rays);
+    TEST_ASSERT_FALSE(mean_of(500, 600).valid);
+    scan.points = 0;
+    TEST_ASSERT_EQUAL_UINT16(0, mean_of(372, 406).good_rays);
+}
+
+void test_with_a_cluster_a_ray_is_a_point_wholly_inside_the_group(void)
+{
+    scan.first_step = 100;
+    scan.cluster = 5;
+    scan.points = 20; /* 100..104, 105..109, .. 195..199 */
+    for (uint16_t i = 0; i < 20; i++) {
+        points[i] = (uint16_t)(500 + i);
+    }
+    scip_group_mean_t mean = mean_of(110, 124);
+    TEST_ASSERT_EQUAL_UINT16(3, mean.good_rays);
+    TEST_ASSERT_EQUAL_FLOAT(503.0F, mean.mean_mm);
+    mean = mean_of(109, 125);
+    TEST_ASSERT_EQUAL_UINT16(3, mean.good_rays);
+    TEST_ASSERT_TRUE(mean.valid);
+    mean = mean_of(111, 123);
+    TEST_ASSERT_EQUAL_UINT16(1, mean.good_rays);
+    TEST_ASSERT_EQUAL_FLOAT(503.0F, mean.mean_mm);
+    TEST_ASSERT_EQUAL_UINT16(0, mean_of(111, 114).good_rays);
+    TEST_ASSERT_FALSE(mean_of(111, 114).valid);
+    TEST_ASSERT_EQUAL_UINT16(20, mean_of(100, 199).good_rays);
+}
+
+void test_a_cluster_of_zero_is_one_as_on_the_wire(void)
+{
+    fill(700);
+    scan.cluster = 0;
+    TEST_ASSERT_EQUAL_UINT16(35, mean_of(372, 406).good_rays);
+    TEST_ASSERT_TRUE(mean_of(372, 406).valid);
+}
+
+void test_the_largest_group_of_the_largest_distances_does_not_overflow(void)
+{
+    scan.first_step = 0;
+    scan.points = 769;
+    scan.characters = 3;
+    fill(5600);
+    scip_group_mean_t mean = mean_of(0, 768);
+    TEST_ASSERT_EQUAL_UINT16(769, mean.good_rays);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 5600.0F, mean.mean_mm);
+}
+
+/* --- directions and times ---------------------------------------------------------------------------------------- */
+
+void test_steps_are_1024_to_the_turn_from_the_front_to_the_left(void)
+{
+    static const struct {
+        uint16_t step;
+        float degrees;
+    } rows[] = {
+        { 384, 0.0F },          { 372, -4.21875F },     { 406, 7.734375F },  { 249, -47.4609375F },
+        { 519, 47.4609375F },   { 44, -119.53125F },    { 725, 119.8828125F },
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        TEST_ASSERT_FLOAT_WITHIN(0.000001F, rows[i].degrees, scip_step_degrees(rows[i].step));
+        TEST_ASSERT_EQUAL_UINT16(rows[i].step, scip_step_at_degrees(rows[i].degrees));
+    }
+}
+
+void test_a_direction_finds_its_nearest_step(void)
+{
+    for (uint16_t step = SCIP_STEP_FIRST; step <= SCIP_STEP_LAST; step++) {
+        TEST_ASSERT_EQUAL_UINT16(step, scip_step_at_degrees(scip_step_degrees(step) + 0.17F));
+        TEST_ASSERT_EQUAL_UINT16(step, scip_step_at_degrees(scip_step_degrees(step) - 0.17F));
+    }
+}
+
+void test_directions_outside_the_field_of_view_end_at_its_edges(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(44, scip_step_at_degrees(-120.0F));
+    TEST_ASSERT_EQUAL_UINT16(44, scip_step_at_degrees(-1.0e9F));
+    TEST_ASSERT_EQUAL_UINT16(44, scip_step_at_degrees(-INFINITY));
+    TEST_ASSERT_EQUAL_UINT16(44, scip_step_at_degrees(NAN));
+    TEST_ASSERT_EQUAL_UINT16(725, scip_step_at_degrees(121.0F));
+    TEST_ASSERT_EQUAL_UINT16(725, scip_step_at_degrees(1.0e9F));
+    TEST_ASSERT_EQUAL_UINT16(725, scip_step_at_degrees(INFINITY));
+}
+
+/* 97.66 us a step: step 384 at 37.5 ms, step 725 at 70.8 ms. */
+void test_steps_are_sampled_one_after_the_other(void)
+{
+    TEST_ASSERT_EQUAL_UINT32(0, scip_step_delay_us(0));
+    TEST_ASSERT_EQUAL_UINT32(37500, scip_step_delay_us(384));
+    TEST_ASSERT_EQUAL_UINT32(70800, scip_step_delay_us(725));
+    TEST_ASSERT_EQUAL_UINT32(99902, scip_step_delay_us(1023));
+}
