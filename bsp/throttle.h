@@ -1,0 +1,21 @@
+/* The throttle pulse on ePWM2A (GPIO2, J8.80): period 13.6 ms, high from the start of the period. */
+#ifndef BSP_THROTTLE_H
+#define BSP_THROTTLE_H
+
+#include <stdint.h>
+
+#define BSP_THROTTLE_PERIOD_COUNTS 28332U   /* TBPRD, seed eq. 14: (28332 + 1) * 0.48 us = 13.60 ms */
+#define BSP_THROTTLE_IDLE_COUNTS 4166U      /* compare for no thrust, "2 ms", eq. 15 */
+#define BSP_THROTTLE_FULL_COUNTS 2082U      /* compare for full thrust, "1 ms", eq. 16 */
+
+/* Time base, shadow loads at zero, action qualifiers, compare at idle. From bsp_board_init() only. */
+void bsp_throttle_init(void);
+
+/* High time from the next period on, microseconds; rounded to the nearest count of 0.48 us and clipped to
+ * [full, idle]; NaN gives idle. Any context. */
+void bsp_throttle_set_pulse_us(float pulse_us);
+
+/* No thrust from the next period on. Any context, interrupts on or off. */
+void bsp_throttle_idle(void);
+
+#endif
