@@ -1,0 +1,281 @@
+#include "commands.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "decimal.h"
+#include "parameters.h"
+#include "servers.h"
+#include "telemetry.h"
+#include "xbee_port.h"
+
+/* What a command leaves behind: the answer under construction and whether the line was valid. */
+typedef struct {
+    const telecommand_t *command;
+    telemetry_line_t line;
+} answer_t;
+
+typedef struct {
+    const char *name;
+    bool (*execute)(answer_t *answer);
+    const char *meaning;
+} verb_t;
+
+static void begin(answer_t *answer, const char *verdict)
+{
+    telemetry_begin(&answer->line);
+    telemetry_text(&answer->line, verdict);
+}
+
+static void send(answer_t *answer)
+{
+    telemetry_end(&answer->line);
+    xbee_port_answer(&answer->line);
+}
+
+static void begin_error(answer_t *answer)
+{
+    begin(answer, "ERR ");
+    if (answer->command->name_length > 0U) {
+        telemetry_characters(&answer->line, answer->command->name, answer->command->name_length);
+    } else {
+        telemetry_text(&answer->line, "-");
+    }
+    telemetry_text(&answer->line, " ");
+}
+
+static bool refuse(answer_t *answer, const char *reason)
+{
+    begin_error(answer);
+    telemetry_text(&answer->line, reason);
+    send(answer);
+    return false;
+}
+
+static float value_of(parameter_id_t id, const parameters_t *parameters)
+{
+    reference_sample_t reference;
+
+    if (id != PARAMETER_SETR) {
+        return parameters->value[id];
+    }
+    reference_server_read(&reference);
+    return reference.reference_m;
+}
+
+static void write_value(telemetry_line_t *line, parameter_id_t id, float value)
+{
+    const parameter_row_t *row = &parameter_table[id];
+
+    if (row->choices != NULL) {
+        telemetry_text(line, row->choices[(uint16_t)value]);
+    } else {
+        telemetry_number(line, value);
+    }
+}
+
+static void report_value(answer_t *answer, parameter_id_t id)
+{
+    parameters_t parameters;
+
+    parameter_server_read(&parameters);
+    begin(answer, "OK ");
+    telemetry_text(&answer->line, parameter_table[id].name);
+    telemetry_text(&answer->line, " ");
+    write_value(&answer->line, id, value_of(id, &parameters));
+    send(answer);
+}
+
+static bool execute_get(answer_t *answer)
+{
+    const telecommand_t *command = answer->command;
+    uint16_t id;
+
+    if (command->argument_length > 0U) {
+        id = (uint16_t)parameter_find(command->argument, command->argument_length);
+        if (id == (uint16_t)PARAMETER_COUNT) {
+            return refuse(answer, "unknown parameter");
+        }
+        report_value(answer, (parameter_id_t)id);
+        return true;
+    }
+    for (id = 0U; id < (uint16_t)PARAMETER_COUNT; id++) {
+        report_value(answer, (parameter_id_t)id);
+    }
+    return true;
+}
+
+static bool execute_ping(answer_t *answer)
+{
+    begin(answer, "OK PING");
+    if (answer->command->argument_length > 0U) {
+        telemetry_text(&answer->line, " ");
+        telemetry_characters(&answer->line, answer->command->argument, answer->command->argument_length);
+    }
+    send(answer);
+    return true;
+}
+
+static bool execute_help(answer_t *answer);
+
+static const verb_t verbs[] = {
+    {"GET", execute_get, "[NAME] - one parameter, or all"},
+    {"PING", execute_ping, "[TEXT] - answers the same text"},
+    {"HELP", execute_help, "- this list"},
+};
+#define VERB_COUNT (sizeof verbs / sizeof verbs[0])
+
+static void write_limits(telemetry_line_t *line, const parameter_row_t *row)
+{
+    uint16_t i;
+
+    if (row->choices == NULL) {
+        telemetry_number(line, row->minimum);
+        telemetry_text(line, "..");
+        telemetry_number(line, row->maximum);
+        telemetry_text(line, " ");
+        telemetry_text(line, row->unit);
+        return;
+    }
+    for (i = 0U; i <= (uint16_t)row->maximum; i++) {
+        telemetry_text(line, (i > 0U) ? "|" : "");
+        telemetry_text(line, row->choices[i]);
+    }
+}
+
+static void help_parameter(answer_t *answer, const parameter_row_t *row)
+{
+    begin(answer, "OK HELP #");
+    telemetry_text(&answer->line, row->name);
+    telemetry_text(&answer->line, " ");
+    write_limits(&answer->line, row);
+    telemetry_text(&answer->line, " - ");
+    telemetry_text(&answer->line, row->meaning);
+    send(answer);
+}
+
+static bool execute_help(answer_t *answer)
+{
+    uint16_t i;
+
+    for (i = 0U; i < (uint16_t)PARAMETER_COUNT; i++) {
+        help_parameter(answer, &parameter_table[i]);
+    }
+    for (i = 0U; i < VERB_COUNT; i++) {
+        begin(answer, "OK HELP #");
+        telemetry_text(&answer->line, verbs[i].name);
+        telemetry_text(&answer->line, " ");
+        telemetry_text(&answer->line, verbs[i].meaning);
+        send(answer);
+    }
+    return true;
+}
+
+static bool refuse_range(answer_t *answer, const parameter_row_t *row)
+{
+    begin_error(answer);
+    telemetry_text(&answer->line, (row->choices == NULL) ? "out of range " : "one of ");
+    write_limits(&answer->line, row);
+    send(answer);
+    return false;
+}
+
+static void set_reference(float reference_m)
+{
+    reference_sample_t reference;
+
+    reference_server_read(&reference);
+    reference.reference_m = reference_m;
+    reference.sequence++;
+    reference_server_write(&reference);
+}
+
+static bool execute_set(answer_t *answer, parameter_id_t id)
+{
+    const telecommand_t *command = answer->command;
+    const parameter_row_t *row = &parameter_table[id];
+    parameters_t parameters;
+    float value = (float)parameter_choice(id, command->argument, command->argument_length);
+
+    if (command->argument_length == 0U) {
+        return refuse(answer, "value missing");
+    }
+    if (row->choices == NULL && !decimal_read(command->argument, command->argument_length, &value)) {
+        return refuse(answer, "not a number");
+    }
+    parameter_server_read(&parameters);
+    if (parameters_set(&parameters, id, value) != PARAMETER_ACCEPTED) {
+        return refuse_range(answer, row);
+    }
+    if (id == PARAMETER_SETR) {
+        set_reference(value);
+    } else {
+        parameter_server_write(&parameters);
+    }
+    report_value(answer, id);
+    return true;
+}
+
+static bool execute(answer_t *answer)
+{
+    const telecommand_t *command = answer->command;
+    parameter_id_t id = parameter_find(command->name, command->name_length);
+    uint16_t i;
+
+    if (id != PARAMETER_COUNT) {
+        return execute_set(answer, id);
+    }
+    for (i = 0U; i < VERB_COUNT; i++) {
+        if (strlen(verbs[i].name) == command->name_length &&
+            strncmp(verbs[i].name, command->name, command->name_length) == 0) {
+            return verbs[i].execute(answer);
+        }
+    }
+    return refuse(answer, "unknown command, try #HELP");
+}
+
+static void link_alive(uint32_t arrival_us)
+{
+    reference_sample_t reference;
+
+    reference_server_read(&reference);
+    reference.link_time_us = arrival_us;
+    reference.link_sequence++;
+    reference_server_write(&reference);
+}
+
+void commands_execute(const telecommand_line_t *line, uint32_t arrival_us)
+{
+    static const char *const reasons[] = {
+        [TELECOMMAND_OK] = "",
+        [TELECOMMAND_EMPTY] = "empty command",
+        [TELECOMMAND_OVERLONG] = "line too long",
+        [TELECOMMAND_CHARACTER] = "bad character",
+    };
+    static telecommand_t command;
+    static answer_t answer;
+    telecommand_status_t status;
+
+    command.name_length = 0U;
+    status = telecommand_parse(line, &command);
+    answer.command = &command;
+    if (status != TELECOMMAND_OK) {
+        command.name_length = 0U;
+        (void)refuse(&answer, reasons[status]);
+    } else if (execute(&answer)) {
+        link_alive(arrival_us);
+    }
+}
+
+void commands_report_lost(uint16_t count)
+{
+    static telemetry_line_t line;
+
+    telemetry_begin(&line);
+    telemetry_text(&line, "ERR - ");
+    telemetry_count(&line, count);
+    telemetry_text(&line, " lines lost: sent too fast");
+    telemetry_end(&line);
+    xbee_port_answer(&line);
+}

@@ -1,0 +1,70 @@
+#include "imu_port.h"
+
+#include <stddef.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/knl/Semaphore.h>
+#include <ti/sysbios/knl/Swi.h>
+#include <xdc/std.h>
+
+#include "schedule.h"
+#include "timebase.h"
+#include "uart_port.h"
+
+#define IMU_BIT_RATE 57600UL
+
+static razor_collector_t collector; /* receive Hwi only */
+static imu_message_t fresh;         /* written by the receive Hwi, read by IMU_SWI at once */
+static imu_message_t mailbox;       /* written by IMU_SWI, read by TaskIMU with Swis off */
+static Swi_Handle imu_swi;
+static Semaphore_Handle imu_ready;
+
+static void received(const bsp_uart_burst_t *burst)
+{
+    uint16_t i;
+
+    if (burst->framing || burst->overrun) {
+        razor_collector_broken(&collector);
+    }
+    for (i = 0U; i < burst->count; i++) {
+        if (razor_collect(&collector, octet_of(burst->octets[i]))) {
+            fresh.text = collector.gathered;
+            fresh.arrival_us = bsp_time_us();
+            Swi_post(imu_swi);
+        }
+    }
+}
+
+static Void imu_swi_run(UArg unused0, UArg unused1)
+{
+    (void)unused0;
+    (void)unused1;
+    mailbox = fresh;
+    Semaphore_post(imu_ready);
+}
+
+void imu_port_create(void)
+{
+    Swi_Params swi;
+    Semaphore_Params semaphore;
+
+    razor_collector_init(&collector);
+    Semaphore_Params_init(&semaphore);
+    semaphore.mode = Semaphore_Mode_BINARY;
+    imu_ready = Semaphore_create(0, &semaphore, NULL);
+    Swi_Params_init(&swi);
+    swi.instance->name = "IMU_SWI";
+    swi.priority = IMU_SWI_PRIORITY;
+    imu_swi = Swi_create(imu_swi_run, &swi, NULL);
+    uart_port_create(BSP_UART_IMU, IMU_BIT_RATE, received);
+    (void)uart_port_send(BSP_UART_IMU, "#o1", 3U);
+}
+
+void imu_port_wait(imu_message_t *message)
+{
+    UInt key;
+
+    (void)Semaphore_pend(imu_ready, BIOS_WAIT_FOREVER);
+    key = Swi_disable();
+    *message = mailbox;
+    Swi_restore(key);
+}

@@ -1,0 +1,159 @@
+#include "laser_port.h"
+
+#include <stddef.h>
+#include <string.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/family/c28/Hwi.h>
+#include <ti/sysbios/knl/Semaphore.h>
+#include <ti/sysbios/knl/Swi.h>
+#include <xdc/std.h>
+
+#include "schedule.h"
+#include "timebase.h"
+#include "uart_port.h"
+
+/* Written by the receive Hwi. The parser fills one of two scans while the other, complete, waits for Laser_SWI. */
+static scip_parser_t parser;
+static uint16_t points[2][SCIP_LAYOUT_POINTS_MAX];
+static scip_scan_t scans[2];
+static uint16_t filling;
+static bool scan_complete;
+static uint32_t scan_arrival_us;
+static urg_seen_t seen;
+
+static laser_message_t mailbox; /* written by Laser_SWI, read by TaskReceiveLaser with Swis off */
+static Swi_Handle laser_swi;
+static Semaphore_Handle laser_ready;
+
+static void scan_done(void)
+{
+    seen.scan_count++;
+    scan_complete = true;
+    scan_arrival_us = bsp_time_us();
+    filling ^= 1U;
+    scip_parser_scan_into(&parser, &scans[filling]);
+}
+
+static void note(scip_event_t event)
+{
+    switch (event) {
+    case SCIP_REPLY:
+        seen.reply_count++;
+        seen.reply_kind = parser.awaited.kind;
+        seen.reply = parser.reply;
+        break;
+    case SCIP_SCAN:
+        scan_done();
+        break;
+    case SCIP_NOTICE:
+        seen.notice_count++;
+        seen.notice = parser.reply;
+        break;
+    case SCIP_LEGACY:
+        seen.legacy_count++;
+        break;
+    case SCIP_DAMAGED:
+        seen.damage_count++;
+        break;
+    default:
+        break;
+    }
+}
+
+static void received(const bsp_uart_burst_t *burst)
+{
+    uint16_t i;
+
+    if (burst->framing || burst->overrun) {
+        scip_parser_line_broken(&parser);
+        seen.framing_count += burst->framing ? 1U : 0U;
+        seen.damage_count += burst->overrun ? 1U : 0U;
+    }
+    seen.octet_count += burst->count;
+    for (i = 0U; i < burst->count; i++) {
+        scip_event_t event = scip_parser_feed(&parser, octet_of(burst->octets[i]));
+
+        if (event != SCIP_NOTHING) {
+            note(event);
+            Swi_post(laser_swi);
+        }
+    }
+}
+
+static Void laser_swi_run(UArg unused0, UArg unused1)
+{
+    UInt key = Hwi_disable();
+    const scip_scan_t *done = &scans[filling ^ 1U];
+    bool has_scan = scan_complete;
+
+    (void)unused0;
+    (void)unused1;
+    scan_complete = false;
+    mailbox.seen = seen;
+    mailbox.arrival_us = scan_arrival_us;
+    Hwi_restore(key);
+    if (has_scan) {
+        mailbox.has_scan = true;
+        mailbox.scan = *done;
+        (void)memcpy(mailbox.distance_mm, done->distance_mm, done->points * sizeof done->distance_mm[0]);
+    }
+    Semaphore_post(laser_ready);
+}
+
+void laser_port_create(uint32_t bit_rate)
+{
+    Swi_Params swi;
+    Semaphore_Params semaphore;
+    uint16_t i;
+
+    scip_parser_init(&parser);
+    for (i = 0U; i < 2U; i++) {
+        scans[i].distance_mm = points[i];
+        scans[i].capacity = SCIP_LAYOUT_POINTS_MAX;
+    }
+    scip_parser_scan_into(&parser, &scans[filling]);
+    Semaphore_Params_init(&semaphore);
+    semaphore.mode = Semaphore_Mode_BINARY;
+    laser_ready = Semaphore_create(0, &semaphore, NULL);
+    Swi_Params_init(&swi);
+    swi.instance->name = "Laser_SWI";
+    swi.priority = LASER_SWI_PRIORITY;
+    laser_swi = Swi_create(laser_swi_run, &swi, NULL);
+    uart_port_create(BSP_UART_LASER, bit_rate, received);
+}
+
+void laser_port_wait(laser_message_t *message)
+{
+    UInt key;
+
+    (void)Semaphore_pend(laser_ready, BIOS_WAIT_FOREVER);
+    key = Swi_disable();
+    *message = mailbox;
+    mailbox.has_scan = false;
+    Swi_restore(key);
+    message->scan.distance_mm = message->distance_mm;
+}
+
+void laser_port_set_rate(uint32_t bit_rate)
+{
+    UInt key = Hwi_disable();
+
+    scip_parser_line_broken(&parser);
+    Hwi_restore(key);
+    uart_port_reopen(BSP_UART_LASER, bit_rate);
+}
+
+void laser_port_send(const scip_request_t *request)
+{
+    char text[SCIP_REQUEST_MAX];
+    uint16_t i;
+    UInt key;
+
+    for (i = 0U; i < request->text_length; i++) {
+        text[i] = (char)request->text[i];
+    }
+    key = Hwi_disable();
+    scip_parser_expect(&parser, request);
+    Hwi_restore(key);
+    (void)uart_port_send(BSP_UART_LASER, text, request->text_length);
+}

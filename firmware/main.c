@@ -1,0 +1,41 @@
+#include <ti/sysbios/BIOS.h>
+#include <xdc/std.h>
+
+#include "board.h"
+#include "mounting.h"
+#include "servers.h"
+#include "tasks.h"
+
+int main(void);
+
+static void laser_config(urg_config_t *config)
+{
+    const scip_layout_t *layout = &scip_layouts[LASER_LAYOUT];
+
+    config->wait_us = LASER_WAIT_US;
+    config->first_rate = LASER_FIRST_RATE;
+    config->stream_rate = LASER_STREAM_RATE;
+    config->stream = SCIP_STREAM_2;
+    config->range.first_step = layout->first_step;
+    config->range.last_step = layout->last_step;
+    config->range.cluster = 1U;
+    config->range.interval = 0U;
+    config->range.scans = 0U;
+}
+
+int main(void)
+{
+    static urg_config_t config;
+
+    bsp_board_init();
+    servers_create();
+    laser_config(&config);
+    task_imu_create();
+    task_receive_laser_create();
+    task_control_create();
+    task_send_laser_create(&config);
+    task_send_comm_create();
+    task_receive_comm_create();
+    BIOS_start();
+    return 0;
+}

@@ -1,0 +1,20 @@
+/* How the scanner is used on this vehicle: the one line to change for another ray layout or sensor rate. */
+#ifndef FIRMWARE_MOUNTING_H
+#define FIRMWARE_MOUNTING_H
+
+#include "altitude.h"
+#include "scip_layout.h"
+
+#define LASER_LAYOUT SCIP_LAYOUT_FRONT
+#define LASER_FIRST_RATE 115200UL       /* the sensor's rate at power-up */
+#define LASER_STREAM_RATE 250000UL      /* the MAX3222's limit */
+#define LASER_WAIT_US 10000000UL        /* sensor and RS232 adapter after power-up, seed document 5.2.1.3 */
+
+/* The mirror behind each group of each layout. */
+static const mirror_t laser_mirrors[SCIP_LAYOUT_COUNT][SCIP_GROUPS_MAX] = {
+    {MIRROR_FRONT, MIRROR_FRONT, MIRROR_FRONT},
+    {MIRROR_AFT, MIRROR_FORE, MIRROR_FRONT},
+    {MIRROR_AFT, MIRROR_FRONT, MIRROR_FORE},
+};
+
+#endif

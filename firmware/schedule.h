@@ -1,0 +1,28 @@
+/* Who runs when: priorities, periods and stacks of the six tasks and three Swis (seed document, Annex IV).
+ * Periods in Clock ticks of 1 ms; stacks in 16-bit cells. */
+#ifndef FIRMWARE_SCHEDULE_H
+#define FIRMWARE_SCHEDULE_H
+
+#define TASK_IMU_PRIORITY 6
+#define TASK_RECEIVE_LASER_PRIORITY 5
+#define TASK_CONTROL_PRIORITY 4
+#define TASK_SEND_LASER_PRIORITY 3
+#define TASK_SEND_COMM_PRIORITY 2
+#define TASK_RECEIVE_COMM_PRIORITY 1
+
+#define IMU_SWI_PRIORITY 3U
+#define LASER_SWI_PRIORITY 2U
+#define XBEE_SWI_PRIORITY 1U
+
+#define CONTROL_PERIOD_MS 108U          /* release FREE */
+#define CONTROL_TIMEOUT_MS 150U         /* control runs at least this often, whatever the release */
+#define SEND_LASER_PERIOD_MS 150U
+#define SEND_COMM_PERIOD_MS 200U
+
+#define TASK_STACK_CELLS 512U
+
+#if CONTROL_PERIOD_MS >= 65535U || CONTROL_TIMEOUT_MS >= 65535U
+#error "SYS/BIOS takes 65535 ticks for ever on a C28x"
+#endif
+
+#endif

@@ -1,0 +1,171 @@
+#include "servers.h"
+
+#include <stddef.h>
+#include <ti/sysbios/gates/GateMutexPri.h>
+#include <xdc/std.h>
+
+#include "watch.h"
+
+static GateMutexPri_Handle altitude_gate;
+static GateMutexPri_Handle imu_gate;
+static GateMutexPri_Handle laser_gate;
+static GateMutexPri_Handle reference_gate;
+static GateMutexPri_Handle parameter_gate;
+static GateMutexPri_Handle flight_gate;
+
+static altitude_sample_t altitude;
+static imu_sample_t imu;
+static imu_sample_t imu_history[IMU_HISTORY];
+static uint16_t imu_next;
+static laser_sample_t laser;
+static reference_sample_t reference;
+static parameters_t parameters;
+static flight_status_t flight;
+
+const altitude_sample_t *const watch_altitude = &altitude;
+const imu_sample_t *const watch_imu = &imu;
+const laser_sample_t *const watch_laser = &laser;
+const reference_sample_t *const watch_reference = &reference;
+const parameters_t *const watch_parameters = &parameters;
+const flight_status_t *const watch_flight = &flight;
+
+static GateMutexPri_Handle gate_create(const char *name)
+{
+    GateMutexPri_Params params;
+
+    GateMutexPri_Params_init(&params);
+    params.instance->name = name;
+    return GateMutexPri_create(&params, NULL);
+}
+
+void servers_create(void)
+{
+    altitude_gate = gate_create("Altitude_server");
+    imu_gate = gate_create("IMU_server");
+    laser_gate = gate_create("LaserStatus_server");
+    reference_gate = gate_create("Reference_server");
+    parameter_gate = gate_create("Parameter_server");
+    flight_gate = gate_create("FlightStatus_server");
+    parameters_init(&parameters);
+    flight.state = FLIGHT_GROUND;
+    flight.flags = FLIGHT_FLAG_HEIGHT | FLIGHT_FLAG_ATTITUDE;
+}
+
+void altitude_server_write(const altitude_sample_t *sample)
+{
+    IArg key = GateMutexPri_enter(altitude_gate);
+
+    altitude = *sample;
+    GateMutexPri_leave(altitude_gate, key);
+}
+
+void altitude_server_read(altitude_sample_t *sample)
+{
+    IArg key = GateMutexPri_enter(altitude_gate);
+
+    *sample = altitude;
+    GateMutexPri_leave(altitude_gate, key);
+}
+
+void imu_server_write(const imu_sample_t *sample)
+{
+    IArg key = GateMutexPri_enter(imu_gate);
+
+    imu = *sample;
+    imu_history[imu_next] = *sample;
+    imu_next = (uint16_t)((imu_next + 1U) % IMU_HISTORY);
+    GateMutexPri_leave(imu_gate, key);
+}
+
+void imu_server_read(imu_sample_t *sample)
+{
+    IArg key = GateMutexPri_enter(imu_gate);
+
+    *sample = imu;
+    GateMutexPri_leave(imu_gate, key);
+}
+
+uint16_t imu_server_history(imu_sample_t history[IMU_HISTORY])
+{
+    IArg key = GateMutexPri_enter(imu_gate);
+    uint16_t held = (imu.sequence < IMU_HISTORY) ? (uint16_t)imu.sequence : (uint16_t)IMU_HISTORY;
+    uint16_t i;
+
+    for (i = 0U; i < held; i++) {
+        history[i] = imu_history[(imu_next + IMU_HISTORY - 1U - i) % IMU_HISTORY];
+    }
+    GateMutexPri_leave(imu_gate, key);
+    return held;
+}
+
+void laser_server_write_seen(const urg_seen_t *seen)
+{
+    IArg key = GateMutexPri_enter(laser_gate);
+
+    laser.seen = *seen;
+    GateMutexPri_leave(laser_gate, key);
+}
+
+void laser_server_write_status(laser_status_t status)
+{
+    IArg key = GateMutexPri_enter(laser_gate);
+
+    laser.status = status;
+    GateMutexPri_leave(laser_gate, key);
+}
+
+void laser_server_read(laser_sample_t *sample)
+{
+    IArg key = GateMutexPri_enter(laser_gate);
+
+    *sample = laser;
+    GateMutexPri_leave(laser_gate, key);
+}
+
+void reference_server_write(const reference_sample_t *sample)
+{
+    IArg key = GateMutexPri_enter(reference_gate);
+
+    reference = *sample;
+    GateMutexPri_leave(reference_gate, key);
+}
+
+void reference_server_read(reference_sample_t *sample)
+{
+    IArg key = GateMutexPri_enter(reference_gate);
+
+    *sample = reference;
+    GateMutexPri_leave(reference_gate, key);
+}
+
+void parameter_server_write(const parameters_t *set)
+{
+    IArg key = GateMutexPri_enter(parameter_gate);
+
+    parameters = *set;
+    GateMutexPri_leave(parameter_gate, key);
+}
+
+void parameter_server_read(parameters_t *set)
+{
+    IArg key = GateMutexPri_enter(parameter_gate);
+
+    *set = parameters;
+    GateMutexPri_leave(parameter_gate, key);
+}
+
+void flight_status_server_write(const flight_status_t *status)
+{
+    IArg key = GateMutexPri_enter(flight_gate);
+
+    flight = *status;
+    GateMutexPri_leave(flight_gate, key);
+}
+
+void flight_status_server_read(flight_status_t *status)
+{
+    IArg key = GateMutexPri_enter(flight_gate);
+
+    *status = flight;
+    GateMutexPri_leave(flight_gate, key);
+}

@@ -1,0 +1,89 @@
+/* The shared values and their locks. A server owns one value and one GateMutexPri (priority inheritance): copy in, copy
+ * out, never a call outward while the gate is held. Task context or main(), never Hwi or Swi.
+ *
+ * Every value has one writing task, named here; any task may read. */
+#ifndef FIRMWARE_SERVERS_H
+#define FIRMWARE_SERVERS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "altitude.h"
+#include "attitude.h"
+#include "parameters.h"
+#include "supervisor.h"
+#include "urg_link.h"
+
+/* All gates. Call once from main(). */
+void servers_create(void);
+
+/* Altitude server, written by TaskReceiveLaser. */
+typedef struct {
+    altitude_t altitude;        /* the latest scan that gave a height */
+    bool scan_valid;            /* the very latest scan gave one */
+    uint32_t sensor_time_ms;    /* of that height, 24-bit sensor clock */
+    uint32_t arrival_us;        /* last octet of that scan, bsp_time_us() */
+    uint32_t sequence;          /* heights so far; 0 = never one */
+    uint32_t heightless;        /* scans that gave none */
+} altitude_sample_t;
+
+void altitude_server_write(const altitude_sample_t *sample);
+void altitude_server_read(altitude_sample_t *sample);
+
+/* IMU server, written by TaskIMU. */
+#define IMU_HISTORY 16U
+
+typedef struct {
+    bool ready;                 /* the offset is known */
+    attitude_t level;           /* offset removed */
+    attitude_t median;
+    bool has_acceleration;
+    float forward_mps2, right_mps2, down_mps2;
+    uint32_t arrival_us;
+    uint32_t sequence;          /* frames so far; 0 = never one */
+    uint32_t malformed;         /* frames refused */
+} imu_sample_t;
+
+void imu_server_write(const imu_sample_t *sample);
+void imu_server_read(imu_sample_t *sample);
+/* The latest samples, newest first; returns how many (0..IMU_HISTORY). */
+uint16_t imu_server_history(imu_sample_t history[IMU_HISTORY]);
+
+/* LaserStatus server: what was received is written by TaskReceiveLaser, the status by TaskSendLaser. */
+typedef struct {
+    laser_status_t status;
+    urg_seen_t seen;
+} laser_sample_t;
+
+void laser_server_write_seen(const urg_seen_t *seen);
+void laser_server_write_status(laser_status_t status);
+void laser_server_read(laser_sample_t *sample);
+
+/* Reference server: what the operator wants, written by TaskReceiveComm. */
+typedef struct {
+    float reference_m;          /* 0 = none, or land */
+    uint32_t sequence;          /* accepted #SETR so far */
+    uint32_t link_time_us;      /* arrival of the latest valid line */
+    uint32_t link_sequence;     /* valid lines so far; 0 = never one */
+} reference_sample_t;
+
+void reference_server_write(const reference_sample_t *sample);
+void reference_server_read(reference_sample_t *sample);
+
+/* Parameter server, written by TaskReceiveComm: Kp, Kd, Ki, AscensionSat, DescensionSat, GravityCompensation and the
+ * later ones, behind one gate, so that no reader sees half a change. */
+void parameter_server_write(const parameters_t *parameters);
+void parameter_server_read(parameters_t *parameters);
+
+/* FlightStatus server, written by TaskControl: what the latest control cycle decided. */
+typedef struct {
+    float thrust_n;
+    float reference_m;          /* in force */
+    flight_state_t state;
+    uint16_t flags;
+} flight_status_t;
+
+void flight_status_server_write(const flight_status_t *status);
+void flight_status_server_read(flight_status_t *status);
+
+#endif

@@ -1,0 +1,105 @@
+#include <stddef.h>
+#include <ti/sysbios/knl/Clock.h>
+#include <ti/sysbios/knl/Event.h>
+#include <ti/sysbios/knl/Task.h>
+#include <xdc/std.h>
+
+#include "flight.h"
+#include "schedule.h"
+#include "servers.h"
+#include "tasks.h"
+#include "throttle.h"
+#include "timebase.h"
+
+#define EVENT_PERIOD Event_Id_00
+#define EVENT_ALTITUDE Event_Id_01
+
+static const UInt release_events[RELEASE_COUNT] = {EVENT_PERIOD, EVENT_ALTITUDE};
+
+static Event_Handle event;
+static flight_t flight;
+
+static Void release(UArg unused)
+{
+    (void)unused;
+    Event_post(event, EVENT_PERIOD);
+}
+
+void task_control_altitude_arrived(void)
+{
+    Event_post(event, EVENT_ALTITUDE);
+}
+
+static void look(flight_inputs_t *in)
+{
+    altitude_sample_t altitude;
+    imu_sample_t imu;
+    reference_sample_t reference;
+
+    altitude_server_read(&altitude);
+    imu_server_read(&imu);
+    reference_server_read(&reference);
+    in->now_us = bsp_time_us();
+    in->height_valid = altitude.scan_valid;
+    in->height_mm = altitude.altitude.height_mm;
+    in->height_time_us = altitude.arrival_us;
+    in->height_sequence = altitude.sequence;
+    in->disagree = altitude.altitude.disagree;
+    in->attitude_ready = imu.ready;
+    in->roll_rad = imu.median.roll_rad;
+    in->pitch_rad = imu.median.pitch_rad;
+    in->attitude_time_us = imu.arrival_us;
+    in->reference_m = reference.reference_m;
+    in->reference_sequence = reference.sequence;
+    in->link_time_us = reference.link_time_us;
+    in->link_sequence = reference.link_sequence;
+}
+
+static void publish(const flight_outputs_t *out)
+{
+    flight_status_t status;
+
+    status.thrust_n = out->thrust_n;
+    status.reference_m = out->reference_m;
+    status.state = out->state;
+    status.flags = out->flags;
+    flight_status_server_write(&status);
+}
+
+static Void task_control(UArg unused0, UArg unused1)
+{
+    static parameters_t parameters;
+    static flight_inputs_t in;
+    static flight_outputs_t out;
+
+    (void)unused0;
+    (void)unused1;
+    parameter_server_read(&parameters);
+    for (;;) {
+        (void)Event_pend(event, Event_Id_NONE, release_events[(uint16_t)parameters.value[PARAMETER_RELEASE]],
+                         CONTROL_TIMEOUT_MS);
+        parameter_server_read(&parameters);
+        look(&in);
+        flight_step(&flight, &parameters, &in, &out);
+        bsp_throttle_set_pulse_us(out.pulse_us);
+        publish(&out);
+    }
+}
+
+void task_control_create(void)
+{
+    Clock_Params clock;
+    Task_Params task;
+
+    flight_init(&flight);
+    event = Event_create(NULL, NULL);
+    Clock_Params_init(&clock);
+    clock.period = CONTROL_PERIOD_MS;
+    clock.startFlag = TRUE;
+    (void)Clock_create(release, CONTROL_PERIOD_MS, &clock, NULL);
+    Task_Params_init(&task);
+    task.instance->name = "TaskControl";
+    task.priority = TASK_CONTROL_PRIORITY;
+    task.stackSize = TASK_STACK_CELLS;
+    (void)Task_create(task_control, &task, NULL);
+}

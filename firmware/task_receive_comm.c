@@ -1,0 +1,36 @@
+#include <stddef.h>
+#include <ti/sysbios/knl/Task.h>
+#include <xdc/std.h>
+
+#include "commands.h"
+#include "schedule.h"
+#include "tasks.h"
+#include "xbee_port.h"
+
+static Void task_receive_comm(UArg unused0, UArg unused1)
+{
+    static xbee_message_t message;
+
+    (void)unused0;
+    (void)unused1;
+    for (;;) {
+        uint16_t lost = xbee_port_wait(&message);
+
+        if (lost > 0U) {
+            commands_report_lost(lost);
+        }
+        commands_execute(&message.line, message.arrival_us);
+    }
+}
+
+void task_receive_comm_create(void)
+{
+    Task_Params params;
+
+    xbee_port_create();
+    Task_Params_init(&params);
+    params.instance->name = "TaskReceiveComm";
+    params.priority = TASK_RECEIVE_COMM_PRIORITY;
+    params.stackSize = TASK_STACK_CELLS;
+    (void)Task_create(task_receive_comm, &params, NULL);
+}

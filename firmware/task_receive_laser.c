@@ -1,0 +1,77 @@
+#include <stddef.h>
+#include <ti/sysbios/knl/Task.h>
+#include <xdc/std.h>
+
+#include "altitude.h"
+#include "laser_port.h"
+#include "mounting.h"
+#include "schedule.h"
+#include "scip_layout.h"
+#include "servers.h"
+#include "tasks.h"
+
+static altitude_t height_of(const scip_scan_t *scan, const attitude_t *tilt)
+{
+    const scip_layout_t *layout = &scip_layouts[LASER_LAYOUT];
+    mirror_range_t ranges[SCIP_GROUPS_MAX];
+    uint16_t i;
+
+    for (i = 0U; i < layout->group_count; i++) {
+        scip_group_mean_t mean = scip_group_mean(scan, &layout->groups[i]);
+
+        ranges[i].mirror = laser_mirrors[LASER_LAYOUT][i];
+        ranges[i].valid = mean.valid;
+        ranges[i].slant_mm = mean.mean_mm;
+        ranges[i].spread_mm = mean.spread_mm;
+        ranges[i].good_rays = mean.good_rays;
+    }
+    return altitude_from_ranges(ranges, layout->group_count, tilt->roll_rad, tilt->pitch_rad);
+}
+
+static void take(altitude_sample_t *sample, const laser_message_t *message)
+{
+    imu_sample_t imu;
+    altitude_t altitude;
+
+    imu_server_read(&imu);
+    altitude = height_of(&message->scan, &imu.median);
+    sample->scan_valid = altitude.valid;
+    if (altitude.valid) {
+        sample->altitude = altitude;
+        sample->sensor_time_ms = message->scan.timestamp_ms;
+        sample->arrival_us = message->arrival_us;
+        sample->sequence++;
+    } else {
+        sample->heightless++;
+    }
+    altitude_server_write(sample);
+    task_control_altitude_arrived();
+}
+
+static Void task_receive_laser(UArg unused0, UArg unused1)
+{
+    static laser_message_t message;
+    static altitude_sample_t sample;
+
+    (void)unused0;
+    (void)unused1;
+    for (;;) {
+        laser_port_wait(&message);
+        laser_server_write_seen(&message.seen);
+        if (message.has_scan) {
+            take(&sample, &message);
+        }
+    }
+}
+
+void task_receive_laser_create(void)
+{
+    Task_Params params;
+
+    laser_port_create(LASER_FIRST_RATE);
+    Task_Params_init(&params);
+    params.instance->name = "TaskReceiveLaser";
+    params.priority = TASK_RECEIVE_LASER_PRIORITY;
+    params.stackSize = TASK_STACK_CELLS;
+    (void)Task_create(task_receive_laser, &params, NULL);
+}

@@ -1,0 +1,73 @@
+#include <stddef.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/knl/Clock.h>
+#include <ti/sysbios/knl/Semaphore.h>
+#include <ti/sysbios/knl/Task.h>
+#include <xdc/std.h>
+
+#include "schedule.h"
+#include "servers.h"
+#include "tasks.h"
+#include "telemetry.h"
+#include "xbee_port.h"
+
+static Semaphore_Handle tick;
+
+static Void release(UArg unused)
+{
+    (void)unused;
+    Semaphore_post(tick);
+}
+
+static void report(telemetry_line_t *line)
+{
+    altitude_sample_t altitude;
+    laser_sample_t laser;
+    flight_status_t flight;
+    telemetry_t telemetry;
+
+    altitude_server_read(&altitude);
+    laser_server_read(&laser);
+    flight_status_server_read(&flight);
+    telemetry.height_valid = (flight.flags & FLIGHT_FLAG_HEIGHT) == 0U;
+    telemetry.height_mm = altitude.altitude.height_mm;
+    telemetry.reference_m = flight.reference_m;
+    telemetry.laser = laser_status_name(laser.status);
+    telemetry.thrust_n = flight.thrust_n;
+    telemetry.state = flight_state_name(flight.state);
+    telemetry.flags = flight.flags;
+    telemetry_status(line, &telemetry);
+}
+
+static Void task_send_comm(UArg unused0, UArg unused1)
+{
+    static telemetry_line_t line;
+
+    (void)unused0;
+    (void)unused1;
+    for (;;) {
+        (void)Semaphore_pend(tick, BIOS_WAIT_FOREVER);
+        report(&line);
+        xbee_port_report(&line);
+    }
+}
+
+void task_send_comm_create(void)
+{
+    Task_Params task;
+    Clock_Params clock;
+    Semaphore_Params semaphore;
+
+    Semaphore_Params_init(&semaphore);
+    semaphore.mode = Semaphore_Mode_BINARY;
+    tick = Semaphore_create(0, &semaphore, NULL);
+    Clock_Params_init(&clock);
+    clock.period = SEND_COMM_PERIOD_MS;
+    clock.startFlag = TRUE;
+    (void)Clock_create(release, SEND_COMM_PERIOD_MS, &clock, NULL);
+    Task_Params_init(&task);
+    task.instance->name = "TaskSendComm";
+    task.priority = TASK_SEND_COMM_PRIORITY;
+    task.stackSize = TASK_STACK_CELLS;
+    (void)Task_create(task_send_comm, &task, NULL);
+}

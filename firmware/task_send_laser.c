@@ -1,0 +1,80 @@
+#include <stddef.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/knl/Clock.h>
+#include <ti/sysbios/knl/Semaphore.h>
+#include <ti/sysbios/knl/Task.h>
+#include <xdc/std.h>
+
+#include "laser_port.h"
+#include "led.h"
+#include "schedule.h"
+#include "servers.h"
+#include "tasks.h"
+#include "timebase.h"
+#include "urg_link.h"
+
+static urg_link_t urg;
+static Semaphore_Handle tick;
+
+static Void release(UArg unused)
+{
+    (void)unused;
+    Semaphore_post(tick);
+}
+
+static void obey(const urg_action_t *action)
+{
+    if (action->set_rate) {
+        laser_port_set_rate(action->rate);
+    }
+    if (action->send) {
+        laser_port_send(&action->request);
+    }
+}
+
+static void show(laser_status_t status)
+{
+    static bool on;
+
+    on = (status == LASER_OK) || !on;
+    bsp_led_blue(on);
+    bsp_led_red(status == LASER_LOST);
+}
+
+static Void task_send_laser(UArg unused0, UArg unused1)
+{
+    static laser_sample_t laser;
+    static urg_action_t action;
+
+    (void)unused0;
+    (void)unused1;
+    for (;;) {
+        (void)Semaphore_pend(tick, BIOS_WAIT_FOREVER);
+        laser_server_read(&laser);
+        urg_link_step(&urg, &laser.seen, bsp_time_us(), &action);
+        obey(&action);
+        laser_server_write_status(urg.status);
+        show(urg.status);
+    }
+}
+
+void task_send_laser_create(const urg_config_t *config)
+{
+    Task_Params task;
+    Clock_Params clock;
+    Semaphore_Params semaphore;
+
+    urg_link_init(&urg, config, bsp_time_us());
+    Semaphore_Params_init(&semaphore);
+    semaphore.mode = Semaphore_Mode_BINARY;
+    tick = Semaphore_create(0, &semaphore, NULL);
+    Clock_Params_init(&clock);
+    clock.period = SEND_LASER_PERIOD_MS;
+    clock.startFlag = TRUE;
+    (void)Clock_create(release, SEND_LASER_PERIOD_MS, &clock, NULL);
+    Task_Params_init(&task);
+    task.instance->name = "TaskSendLaser";
+    task.priority = TASK_SEND_LASER_PRIORITY;
+    task.stackSize = TASK_STACK_CELLS;
+    (void)Task_create(task_send_laser, &task, NULL);
+}

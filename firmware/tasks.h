@@ -1,0 +1,17 @@
+/* The six tasks. Each xxx_create() makes a task and what releases it; main() only. */
+#ifndef FIRMWARE_TASKS_H
+#define FIRMWARE_TASKS_H
+
+#include "urg_link.h"
+
+void task_imu_create(void);
+void task_receive_laser_create(void);
+void task_control_create(void);
+void task_send_laser_create(const urg_config_t *config);
+void task_send_comm_create(void);
+void task_receive_comm_create(void);
+
+/* TaskControl's release by a new altitude; any task. */
+void task_control_altitude_arrived(void);
+
+#endif

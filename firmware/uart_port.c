@@ -1,0 +1,95 @@
+#include "uart_port.h"
+
+#include <stddef.h>
+#include <ti/sysbios/family/c28/Hwi.h>
+#include <xdc/std.h>
+
+typedef struct {
+    uart_port_received_t received;
+    uint16_t cells[UART_PORT_TRANSMIT_CELLS];
+    uint16_t head;      /* next to send */
+    uint16_t count;
+} uart_port_t;
+
+static uart_port_t ports[BSP_UART_COUNT];
+
+static Void receive_hwi(UArg uart)
+{
+    bsp_uart_burst_t burst;
+
+    bsp_uart_receive((bsp_uart_t)uart, &burst);
+    ports[uart].received(&burst);
+}
+
+static void feed_transmitter(bsp_uart_t uart)
+{
+    uart_port_t *port = &ports[uart];
+    uint16_t run = (uint16_t)(UART_PORT_TRANSMIT_CELLS - port->head);
+    uint16_t sent;
+
+    if (run > port->count) {
+        run = port->count;
+    }
+    sent = bsp_uart_transmit(uart, &port->cells[port->head], run);
+    port->head = (uint16_t)((uint16_t)(port->head + sent) % UART_PORT_TRANSMIT_CELLS);
+    port->count = (uint16_t)(port->count - sent);
+    bsp_uart_transmit_interrupt_enable(uart, port->count > 0U);
+}
+
+static Void transmit_hwi(UArg uart)
+{
+    feed_transmitter((bsp_uart_t)uart);
+    bsp_uart_transmit_acknowledge((bsp_uart_t)uart);
+}
+
+static void hwi_create(int16_t interrupt, Hwi_FuncPtr function, bsp_uart_t uart)
+{
+    Hwi_Params params;
+
+    Hwi_Params_init(&params);
+    params.arg = (UArg)uart;
+    (void)Hwi_create((Int)interrupt, function, &params, NULL);
+}
+
+void uart_port_create(bsp_uart_t uart, uint32_t bit_rate, uart_port_received_t received)
+{
+    ports[uart].received = received;
+    bsp_uart_open(uart, bit_rate);
+    hwi_create(bsp_uart_receive_interrupt(uart), receive_hwi, uart);
+    hwi_create(bsp_uart_transmit_interrupt(uart), transmit_hwi, uart);
+}
+
+void uart_port_reopen(bsp_uart_t uart, uint32_t bit_rate)
+{
+    UInt key = Hwi_disable();
+
+    ports[uart].head = 0U;
+    ports[uart].count = 0U;
+    bsp_uart_open(uart, bit_rate);
+    Hwi_restore(key);
+}
+
+bool uart_port_send(bsp_uart_t uart, const char *text, uint16_t count)
+{
+    uart_port_t *port = &ports[uart];
+    UInt key = Hwi_disable();
+    bool fits = (uint16_t)(UART_PORT_TRANSMIT_CELLS - port->count) >= count;
+    uint16_t i;
+
+    for (i = 0U; fits && i < count; i++) {
+        port->cells[(uint16_t)(port->head + port->count) % UART_PORT_TRANSMIT_CELLS] = (uint16_t)text[i] & 0xFFU;
+        port->count++;
+    }
+    feed_transmitter(uart);
+    Hwi_restore(key);
+    return fits;
+}
+
+uint16_t uart_port_room(bsp_uart_t uart)
+{
+    UInt key = Hwi_disable();
+    uint16_t room = (uint16_t)(UART_PORT_TRANSMIT_CELLS - ports[uart].count);
+
+    Hwi_restore(key);
+    return room;
+}
