@@ -1,0 +1,31 @@
+#include "sim/ti/driverlib/chip.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "sim/ti/driverlib/model.h"
+
+_Noreturn void chip_unmodelled(const char *what)
+{
+    fprintf(stderr, "chip model: %s\n", what);
+    abort();
+}
+
+void chip_reset(void (*raise)(int interrupt))
+{
+    sysctl_reset();
+    cputimer_reset();
+    gpio_reset();
+    sci_reset(raise);
+    epwm_reset();
+}
+
+uint32_t chip_register(const char *name)
+{
+    uint32_t value;
+    if (sysctl_register(name, &value) || gpio_register(name, &value) || sci_register(name, &value)
+        || epwm_register(name, &value)) {
+        return value;
+    }
+    chip_unmodelled(name);
+}

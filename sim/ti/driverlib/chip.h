@@ -1,0 +1,40 @@
+/* What the PC board asks of the chip model behind the driverlib stand-in: wires on the UARTs, the throttle pin, LEDs and
+ * interrupt lines. The firmware never includes this. */
+#ifndef SIM_TI_DRIVERLIB_CHIP_H
+#define SIM_TI_DRIVERLIB_CHIP_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "sim/timeline.h"
+
+/* Power-on state of every register. raise(interrupt) is called when an enabled interrupt condition rises, with the
+ * SYS/BIOS number (INT_xxx >> 16). */
+void chip_reset(void (*raise)(int interrupt));
+
+/* A transmitted octet, delivered at the end of its stop bit; bit_ns is the length of one bit as sent. */
+typedef void (*chip_octet_t)(void *context, unsigned octet, double bit_ns);
+void chip_sci_connect(uint32_t base, chip_octet_t transmitted, void *context);
+
+/* An octet arrives on the receive pin, at the end of its stop bit. When bit_ns is off by more than 4.5 % from the
+ * receiver's own rate, or the pin is not muxed to this SCI, it is a framing error or nothing, as on the chip. */
+void chip_sci_receive(uint32_t base, unsigned octet, double bit_ns);
+
+/* The rate that is set now, bits per second (0 while the SCI is in reset). */
+double chip_sci_rate(uint32_t base);
+
+/* The throttle pin: called at each falling edge with the high time; the pin is only driven when GPIO2 is muxed to
+ * EPWM2A and the time base runs. */
+typedef void (*chip_pulse_t)(void *context, sim_time_t high_ns);
+void chip_pwm_connect(chip_pulse_t pulse, void *context);
+
+/* Level on an output pin. */
+bool chip_pin(uint32_t pin);
+/* Level that the outside world puts on an input pin. */
+void chip_drive_pin(uint32_t pin, bool level);
+
+/* Raw register values for tests: "SCIA.BRR", "LOSPCP", "PERCLKDIVSEL", "EPWM2.TBPRD", "EPWM2.TBCTL", "EPWM2.CMPA",
+ * "EPWM2.AQCTLA", "GPIO64.MUX", ... Aborts on an unknown name. */
+uint32_t chip_register(const char *name);
+
+#endif

@@ -1,0 +1,10 @@
+/* Processor intrinsics, as in TI's header of this name. */
+#ifndef CPU_H
+#define CPU_H
+
+#include <stdlib.h>
+
+/* Emulation stop: halts under a debugger on the chip, ends the program here. */
+#define ESTOP0 abort()
+
+#endif

@@ -1,0 +1,31 @@
+/* Pin functions, as in TI's header of this name: offset of the mux register << 16 | shift << 8 | mux value. Only the
+ * pins of this project and the alternatives of its three UARTs on the LaunchPad. */
+#ifndef PIN_MAP_H
+#define PIN_MAP_H
+
+#define GPIO_2_GPIO2 0x00060400U
+#define GPIO_2_EPWM2A 0x00060401U
+#define GPIO_12_GPIO12 0x00061800U
+#define GPIO_13_GPIO13 0x00061A00U
+#define GPIO_42_GPIO42 0x00461400U
+#define GPIO_42_SCITXDA 0x0046140FU
+#define GPIO_43_GPIO43 0x00461600U
+#define GPIO_43_SCIRXDA 0x0046160FU
+#define GPIO_64_GPIO64 0x00860000U
+#define GPIO_64_SCIRXDA 0x00860006U
+#define GPIO_65_GPIO65 0x00860200U
+#define GPIO_65_SCITXDA 0x00860206U
+#define GPIO_84_GPIO84 0x00880800U
+#define GPIO_84_SCITXDA 0x00880805U
+#define GPIO_85_GPIO85 0x00880A00U
+#define GPIO_85_SCIRXDA 0x00880A05U
+#define GPIO_86_GPIO86 0x00880C00U
+#define GPIO_86_SCITXDB 0x00880C05U
+#define GPIO_87_GPIO87 0x00880E00U
+#define GPIO_87_SCIRXDB 0x00880E05U
+#define GPIO_89_GPIO89 0x00881200U
+#define GPIO_89_SCITXDC 0x00881206U
+#define GPIO_90_GPIO90 0x00881400U
+#define GPIO_90_SCIRXDC 0x00881406U
+
+#endif

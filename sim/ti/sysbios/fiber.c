@@ -1,0 +1,111 @@
+#include "sim/ti/sysbios/fiber.h"
+
+#include <stdlib.h>
+
+static ucontext_t scheduler;
+static fiber_t *current;
+
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/common_interface_defs.h>
+
+static void *scheduler_fake_stack;
+static const void *scheduler_stack;
+static size_t scheduler_stack_size;
+
+static void announce_fiber(fiber_t *fiber)
+{
+    __sanitizer_start_switch_fiber(&scheduler_fake_stack, fiber->stack, FIBER_STACK);
+}
+
+static void announce_scheduler(void **fake_stack)
+{
+    __sanitizer_start_switch_fiber(fake_stack, scheduler_stack, scheduler_stack_size);
+}
+
+static void arrived_in_fiber(void *fake_stack)
+{
+    __sanitizer_finish_switch_fiber(fake_stack, &scheduler_stack, &scheduler_stack_size);
+}
+
+static void arrived_in_scheduler(void)
+{
+    __sanitizer_finish_switch_fiber(scheduler_fake_stack, NULL, NULL);
+}
+#else
+static void announce_fiber(fiber_t *fiber)
+{
+    (void)fiber;
+}
+
+static void announce_scheduler(void **fake_stack)
+{
+    (void)fake_stack;
+}
+
+static void arrived_in_fiber(void *fake_stack)
+{
+    (void)fake_stack;
+}
+
+static void arrived_in_scheduler(void)
+{
+}
+#endif
+
+static void begin(void)
+{
+    fiber_t *self = current;
+
+    arrived_in_fiber(NULL);
+    self->entry(self->argument);
+    abort();
+}
+
+bool fiber_create(fiber_t *fiber, void (*entry)(void *argument), void *argument)
+{
+    *fiber = (fiber_t){.stack = malloc(FIBER_STACK), .entry = entry, .argument = argument};
+    if (fiber->stack == NULL || getcontext(&fiber->context) != 0) {
+        fiber_free(fiber);
+        return false;
+    }
+    fiber->context.uc_stack.ss_sp = fiber->stack;
+    fiber->context.uc_stack.ss_size = FIBER_STACK;
+    makecontext(&fiber->context, begin, 0);
+    return true;
+}
+
+void fiber_free(fiber_t *fiber)
+{
+    free(fiber->stack);
+    fiber->stack = NULL;
+}
+
+void fiber_resume(fiber_t *fiber)
+{
+    current = fiber;
+    announce_fiber(fiber);
+    (void)swapcontext(&scheduler, &fiber->context);
+    arrived_in_scheduler();
+    current = NULL;
+}
+
+void fiber_pause(void)
+{
+    fiber_t *self = current;
+
+    announce_scheduler(&self->fake_stack);
+    (void)swapcontext(&self->context, &scheduler);
+    arrived_in_fiber(self->fake_stack);
+}
+
+void fiber_leave(void)
+{
+    announce_scheduler(NULL);
+    (void)setcontext(&scheduler);
+    abort();
+}
+
+bool fiber_inside(void)
+{
+    return current != NULL;
+}

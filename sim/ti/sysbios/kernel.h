@@ -1,0 +1,59 @@
+/* What the PC board asks of the kernel that stands in for SYS/BIOS: start it, run it in virtual time, raise interrupts,
+ * and say what each job costs. The firmware never includes this.
+ *
+ * One processor. Runnable, highest first: pending Hwi (lowest PIE number first, not nested), posted Swi by priority,
+ * ready Task by priority, FIFO among equals, idle. Every job has a cost that it consumes, preemptibly, before its code
+ * runs: a Hwi or Swi before its function, a Task after the wait (pend, sleep) that released it returns; a gate entry
+ * consumes its cost while the gate is held. Code itself takes no virtual time. */
+#ifndef SIM_TI_SYSBIOS_KERNEL_H
+#define SIM_TI_SYSBIOS_KERNEL_H
+
+#include <stdbool.h>
+
+#include "sim/timeline.h"
+
+/* Costs in ns; names are those of Task_Params.instance->name and Swi_Params.instance->name, Hwi by interrupt number.
+ * A job without an entry costs nothing. */
+typedef struct {
+    const char *name;       /* task or Swi; NULL for a Hwi */
+    int interrupt;          /* Hwi number; -1 otherwise */
+    sim_time_t job;
+} kernel_cost_t;
+
+typedef struct {
+    const kernel_cost_t *jobs;
+    int job_count;
+    sim_time_t gate_access;     /* per GateMutexPri_enter, held */
+    sim_time_t switches;        /* two context switches: once per task job and once per blocking on a gate */
+} kernel_costs_t;
+
+/* Runs entry (the firmware's main) on its own stack until it calls BIOS_start(). Resets any earlier state. */
+void kernel_boot(int (*entry)(void), const kernel_costs_t *costs);
+
+/* Runs tasks, Swis, Hwis and timeline events up to and including virtual time `until`. Returns false when the system
+ * has halted (System_abort, System_exit, a broken rule): virtual time then still advances and devices live on. */
+bool kernel_run_until(sim_time_t until);
+
+/* An interrupt line of the chip rises (latched until taken). Ignored, but remembered, while not enabled. */
+void kernel_raise(int interrupt);
+
+/* NULL while running; afterwards what stopped it. */
+const char *kernel_halt_reason(void);
+
+/* Called before virtual time moves to `next`; may wait for the wall clock and may post timeline events earlier than
+ * `next` (the kernel then looks again). NULL = as fast as possible. */
+void kernel_set_pacer(void (*pacer)(sim_time_t next));
+
+/* Observation, for traces and timing reports. NULL = none. */
+typedef enum {
+    KERNEL_RELEASED,    /* job became ready: task released from its wait, Swi posted, Hwi raised */
+    KERNEL_DISPATCHED,  /* gets the processor */
+    KERNEL_PREEMPTED,   /* loses it before its job is done */
+    KERNEL_FINISHED,    /* job done: task waits again, Swi or Hwi returned */
+    KERNEL_GATE_BLOCKED, KERNEL_GATE_ENTERED, KERNEL_GATE_LEFT,
+    KERNEL_INHERITED    /* task's priority raised, detail = new priority */
+} kernel_event_t;
+typedef void (*kernel_observer_t)(void *context, sim_time_t when, kernel_event_t event, const char *name, int detail);
+void kernel_observe(kernel_observer_t observer, void *context);
+
+#endif
