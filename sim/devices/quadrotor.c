@@ -1,0 +1,297 @@
+#include "sim/devices/quadrotor.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "sim/noise.h"
+
+#define STEP ((sim_time_t)500000)
+#define STEP_S 0.0005
+#define GRAVITY_MPS2 9.80665
+#define DEGREE_RAD (M_PI / 180.0)
+#define SQRT_3 1.7320508075688772
+
+#define PULSE_COUNT_NS 480.0
+#define PULSE_NO_THRUST_COUNTS 4166.0
+#define PULSE_COUNTS_PER_N 177.21
+#define SIGNAL_LOST (100 * SIM_MS)
+#define PULSES 32U              /* on their way through the autopilot */
+
+#define MOTORS_TURN_N 1.0       /* no lift up to here */
+#define ROTOR_RADIUS_M 0.127
+#define ROTOR_ABOVE_GEAR_M 0.28
+#define TUG_TAU_S 0.12
+
+#define ATTITUDE_RAD_PER_S (2.0 * M_PI * 0.6)
+#define ATTITUDE_DAMPING 0.4
+#define GROUND_DRIVE 0.15
+#define ADVANCE_PITCH_RAD (1.0 * DEGREE_RAD)
+#define ADVANCE_MARGIN_S 2.0
+#define HEADING_RAD M_PI        /* due south: the heading crosses the wrap all the time */
+#define YAW_DRIFT_RAD (10.0 * DEGREE_RAD)
+#define YAW_STEP_RAD (0.06 * DEGREE_RAD)
+
+#define CONTACT_ARMED_M 0.03
+#define CONTACT_MPS (-0.02)
+#define REBOUND 0.15
+
+const quadrotor_config_t quadrotor_default = {
+    .gain = 1.0, .tau_s = 0.12, .damping_per_s = 2.4, .hover_thrust_n = 7.4, .sag_per_s = 0.001,
+    .turbulence_mps2 = 0.2, .turbulence_tau_s = 0.5, .attitude_rms_rad = 2.0 * DEGREE_RAD,
+    .actuator_delay_s = 0.010, .tug_rate_per_s = 0.0, .tug_mps2 = -1.5,
+    .anchored = false, .bench_height_m = 0.0};
+
+typedef struct {
+    sim_time_t active;
+    double thrust_n;
+} demand_t;
+
+typedef struct {
+    double angle_rad, rate_radps;
+    noise_t noise;
+} axis_t;
+
+struct quadrotor {
+    quadrotor_config_t config;
+    terrain_t terrain;
+    sim_time_t clock, origin;
+    quadrotor_state_t state;
+
+    demand_t demand[PULSES];
+    size_t head, waiting;
+    sim_time_t last_pulse;
+    double demand_n, lag;
+
+    double turbulence_mps2, turbulence_keep, turbulence_drive;
+    double tug_mps2, tug_keep, tug_probability;
+    noise_t turbulence_noise, tug_noise;
+
+    axis_t roll, pitch;
+    double attitude_drive, yaw_drift_rad;
+    noise_t yaw_noise;
+
+    bool counting, was_above;
+};
+
+static void prepare_noise(quadrotor_t *q, unsigned long seed)
+{
+    noise_init(&q->turbulence_noise, seed, "quadrotor turbulence");
+    noise_init(&q->tug_noise, seed, "quadrotor tug");
+    noise_init(&q->roll.noise, seed, "quadrotor roll");
+    noise_init(&q->pitch.noise, seed, "quadrotor pitch");
+    noise_init(&q->yaw_noise, seed, "quadrotor yaw");
+    q->turbulence_mps2 = q->config.turbulence_mps2 * noise_gauss(&q->turbulence_noise);
+}
+
+/* x'' + 2 z w x' + w^2 x = white noise of intensity S has the stationary variance S / (4 z w^3). */
+static void prepare_steps(quadrotor_t *q)
+{
+    const quadrotor_config_t *c = &q->config;
+    q->lag = 1.0 - exp(-STEP_S / c->tau_s);
+    q->turbulence_keep = exp(-STEP_S / c->turbulence_tau_s);
+    q->turbulence_drive = c->turbulence_mps2 * sqrt(1.0 - q->turbulence_keep * q->turbulence_keep);
+    q->tug_keep = exp(-STEP_S / TUG_TAU_S);
+    q->tug_probability = 1.0 - exp(-c->tug_rate_per_s * STEP_S);
+    q->attitude_drive = c->attitude_rms_rad * sqrt(4.0 * ATTITUDE_DAMPING * pow(ATTITUDE_RAD_PER_S, 3.0) * STEP_S);
+}
+
+quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const terrain_t *terrain, unsigned long seed)
+{
+    quadrotor_t *q = calloc(1, sizeof *q);
+    if (q == NULL) {
+        abort();
+    }
+    q->config = *config;
+    q->terrain = *terrain;
+    q->clock = timeline_now();
+    q->last_pulse = q->clock;
+    q->origin = SIM_NEVER;
+    q->counting = true;
+    q->state.altitude_m = q->state.height_m = config->anchored ? config->bench_height_m : 0.0;
+    q->state.on_ground = !config->anchored;
+    q->state.yaw_rad = config->anchored ? 0.0 : HEADING_RAD;
+    prepare_noise(q, seed);
+    prepare_steps(q);
+    return q;
+}
+
+void quadrotor_destroy(quadrotor_t *quadrotor)
+{
+    free(quadrotor);
+}
+
+static double scenario_s(const quadrotor_t *q)
+{
+    return (double)(q->clock - q->origin) / 1e9;
+}
+
+static void hear_throttle(quadrotor_t *q)
+{
+    while (q->waiting > 0 && q->demand[q->head].active <= q->clock) {
+        q->demand_n = q->demand[q->head].thrust_n;
+        q->head = (q->head + 1) % PULSES;
+        q->waiting--;
+    }
+    if (q->clock - q->last_pulse > SIGNAL_LOST) {
+        q->demand_n = 0.0;
+    }
+}
+
+/* White, deviation 1. Uniform draws are cheap, and what they drive adds up hundreds of them: it is Gaussian all the
+ * same. */
+static double white(noise_t *noise)
+{
+    return noise_uniform(noise, -SQRT_3, SQRT_3);
+}
+
+static double disturbance_mps2(quadrotor_t *q)
+{
+    q->turbulence_mps2 = q->turbulence_mps2 * q->turbulence_keep + q->turbulence_drive * white(&q->turbulence_noise);
+    if (q->config.tug_rate_per_s <= 0.0) {
+        return q->turbulence_mps2;
+    }
+    q->tug_mps2 *= q->tug_keep;
+    if (noise_uniform(&q->tug_noise, 0.0, 1.0) < q->tug_probability) {
+        q->tug_mps2 += q->config.tug_mps2;
+    }
+    return q->turbulence_mps2 + q->tug_mps2;
+}
+
+static void swing(axis_t *axis, double drive, double rest_rad)
+{
+    const double w = ATTITUDE_RAD_PER_S;
+    axis->rate_radps += STEP_S * (w * w * (rest_rad - axis->angle_rad) - 2.0 * ATTITUDE_DAMPING * w * axis->rate_radps);
+    axis->rate_radps += drive * white(&axis->noise);
+    axis->angle_rad += STEP_S * axis->rate_radps;
+}
+
+static double advance_pitch_rad(const quadrotor_t *q, double t_s)
+{
+    const bool advancing = q->terrain.ramp && t_s >= q->terrain.ramp_start_s - ADVANCE_MARGIN_S &&
+                           t_s < q->terrain.edge_s + ADVANCE_MARGIN_S;
+    return advancing ? ADVANCE_PITCH_RAD : 0.0;
+}
+
+static void rotate(quadrotor_t *q, double t_s)
+{
+    const double share = q->state.on_ground ? GROUND_DRIVE : 1.0;
+    swing(&q->roll, share * q->attitude_drive, 0.0);
+    swing(&q->pitch, share * q->attitude_drive, advance_pitch_rad(q, t_s));
+    q->state.roll_rad = q->roll.angle_rad;
+    q->state.pitch_rad = q->pitch.angle_rad;
+
+    const double wander = q->yaw_drift_rad + share * noise_uniform(&q->yaw_noise, -YAW_STEP_RAD, YAW_STEP_RAD);
+    q->yaw_drift_rad = fmin(fmax(wander, -YAW_DRIFT_RAD), YAW_DRIFT_RAD);
+    q->state.yaw_rad = remainder(HEADING_RAD + q->yaw_drift_rad, 2.0 * M_PI);
+}
+
+static double ground_effect(double height_m)
+{
+    const double ratio = ROTOR_RADIUS_M / (4.0 * (height_m + ROTOR_ABOVE_GEAR_M));
+    return 1.0 / (1.0 - 2.0 * ratio * ratio);
+}
+
+static double lift_mps2(const quadrotor_t *q, double t_s)
+{
+    const quadrotor_state_t *s = &q->state;
+    if (s->thrust_n <= MOTORS_TURN_N) {
+        return 0.0;
+    }
+    const double hover_n = q->config.hover_thrust_n * (1.0 + q->config.sag_per_s * fmax(t_s, 0.0));
+    const double excess = q->config.gain * (s->thrust_n - hover_n) / q->config.hover_thrust_n;
+    return GRAVITY_MPS2 * (1.0 + excess) * ground_effect(s->height_m) * cos(s->roll_rad) * cos(s->pitch_rad);
+}
+
+static void touch(quadrotor_t *q, double terrain_m, double terrain_mps)
+{
+    quadrotor_state_t *s = &q->state;
+    const double closing_mps = s->speed_mps - terrain_mps;
+    const bool impact = closing_mps < CONTACT_MPS;
+    if (impact && q->was_above && q->counting) {
+        s->contacts++;
+    }
+    q->was_above = false;
+    s->altitude_m = terrain_m;
+    s->speed_mps = impact ? terrain_mps - REBOUND * closing_mps : 0.0;
+    s->on_ground = !impact;
+}
+
+static void rise_or_rest(quadrotor_t *q, double acceleration_mps2, double terrain_m)
+{
+    quadrotor_state_t *s = &q->state;
+    const double terrain_mps = (terrain_m - s->terrain_m) / STEP_S;
+    if (s->on_ground && acceleration_mps2 <= 0.0 && terrain_mps >= 0.0) {
+        s->altitude_m = terrain_m;
+        s->acceleration_mps2 = 0.0;
+        return;
+    }
+    s->on_ground = false;
+    s->acceleration_mps2 = acceleration_mps2;
+    s->speed_mps += STEP_S * acceleration_mps2;
+    s->altitude_m += STEP_S * s->speed_mps;
+    if (s->altitude_m - terrain_m > CONTACT_ARMED_M) {
+        q->was_above = true;
+    }
+    if (s->altitude_m <= terrain_m) {
+        touch(q, terrain_m, terrain_mps);
+    }
+}
+
+static void step(quadrotor_t *q)
+{
+    quadrotor_state_t *s = &q->state;
+    hear_throttle(q);
+    q->clock += STEP;
+    const double t_s = scenario_s(q);
+    const double terrain_m = terrain_height_m(&q->terrain, t_s);
+    s->thrust_n += q->lag * (q->demand_n - s->thrust_n);
+    if (!q->config.anchored) {
+        rotate(q, t_s);
+        const double acceleration_mps2 =
+            lift_mps2(q, t_s) - GRAVITY_MPS2 - q->config.damping_per_s * s->speed_mps + disturbance_mps2(q);
+        rise_or_rest(q, acceleration_mps2, terrain_m);
+    }
+    s->terrain_m = terrain_m;
+    s->height_m = s->altitude_m - terrain_m;
+}
+
+static void bring_up(quadrotor_t *q)
+{
+    while (q->clock + STEP <= timeline_now()) {
+        step(q);
+    }
+}
+
+void quadrotor_set_origin(quadrotor_t *quadrotor, sim_time_t origin)
+{
+    bring_up(quadrotor);
+    quadrotor->origin = origin;
+}
+
+void quadrotor_pulse(quadrotor_t *quadrotor, sim_time_t high_ns)
+{
+    quadrotor_t *q = quadrotor;
+    bring_up(q);
+    const double counts = (double)high_ns / PULSE_COUNT_NS;
+    if (q->waiting < PULSES) {
+        q->waiting++;
+    }
+    q->demand[(q->head + q->waiting - 1) % PULSES] = (demand_t){
+        .active = timeline_now() + (sim_time_t)llround(q->config.actuator_delay_s * 1e9),
+        .thrust_n = fmax((PULSE_NO_THRUST_COUNTS - counts) / PULSE_COUNTS_PER_N, 0.0)};
+    q->last_pulse = timeline_now();
+}
+
+const quadrotor_state_t *quadrotor_state(quadrotor_t *quadrotor)
+{
+    bring_up(quadrotor);
+    return &quadrotor->state;
+}
+
+void quadrotor_stop_counting_contacts(quadrotor_t *quadrotor)
+{
+    bring_up(quadrotor);
+    quadrotor->counting = false;
+}

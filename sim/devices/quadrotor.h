@@ -1,0 +1,53 @@
+/* The airframe with its autopilot, motors, attitude motion, turbulence, rope tugs and the ground under it. Integrated
+ * with a fixed step of 0.5 ms, lazily: every query first brings the state up to timeline_now().
+ *
+ * SI units; thrust in the seed's newtons per motor. The seed's angles: roll > 0 raises the mirror's side (right),
+ * pitch > 0 raises the nose. Heights: `height` of the landing gear above the terrain below it, `altitude` above the
+ * floor. */
+#ifndef SIM_DEVICES_QUADROTOR_H
+#define SIM_DEVICES_QUADROTOR_H
+
+#include <stdbool.h>
+
+#include "sim/devices/terrain.h"
+#include "sim/timeline.h"
+
+typedef struct {
+    double gain;                /* 1 */
+    double tau_s;               /* 0.12, motor lag */
+    double damping_per_s;       /* D 2.4 */
+    double hover_thrust_n;      /* TH0 7.4 */
+    double sag_per_s;           /* 0.001 */
+    double turbulence_mps2;     /* 0.2 rms */
+    double turbulence_tau_s;    /* 0.5 */
+    double attitude_rms_rad;    /* 2 deg */
+    double actuator_delay_s;    /* 0.010 behind the end of the pulse */
+    double tug_rate_per_s;      /* 0; 0.4 in tug runs */
+    double tug_mps2;            /* -1.5 */
+    bool anchored;              /* bench: stands still at bench_height_m, whatever the thrust */
+    double bench_height_m;
+} quadrotor_config_t;
+
+extern const quadrotor_config_t quadrotor_default;
+
+typedef struct {
+    double altitude_m, height_m, terrain_m, speed_mps, acceleration_mps2; /* acceleration of the body, upwards, without g */
+    double thrust_n;            /* what the motors deliver now */
+    double roll_rad, pitch_rad, yaw_rad;
+    bool on_ground;
+    unsigned contacts;          /* touches after the first 30 mm */
+} quadrotor_state_t;
+
+typedef struct quadrotor quadrotor_t;
+
+/* origin: virtual time of scenario time t = 0 (terrain, sag and the pitch bias follow t); may be set later. */
+quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const terrain_t *terrain, unsigned long seed);
+void quadrotor_destroy(quadrotor_t *quadrotor);
+void quadrotor_set_origin(quadrotor_t *quadrotor, sim_time_t origin);
+/* The throttle pulse that reached the autopilot, at its falling edge. No pulse yet: no thrust. */
+void quadrotor_pulse(quadrotor_t *quadrotor, sim_time_t high_ns);
+const quadrotor_state_t *quadrotor_state(quadrotor_t *quadrotor);
+/* Resets the contact counter's "was above 30 mm" memory and stops counting, as at the landing command. */
+void quadrotor_stop_counting_contacts(quadrotor_t *quadrotor);
+
+#endif

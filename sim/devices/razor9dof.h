@@ -1,0 +1,38 @@
+/* Model of the Razor 9DOF IMU with the vehicle's text format: every 25 ms `#A-C=x,y,z` CR LF `#YPR=yaw,pitch,roll` CR LF
+ * at 57600, content 15 ms old, noise and spikes as in the plant description. Shares no writer with the product. */
+#ifndef SIM_DEVICES_RAZOR9DOF_H
+#define SIM_DEVICES_RAZOR9DOF_H
+
+#include <stdbool.h>
+
+#include "sim/devices/serial.h"
+
+typedef struct {
+    double roll_rad, pitch_rad, yaw_rad;
+    double up_mps2;         /* acceleration of the body along the earth's vertical, without g */
+} razor_truth_t;
+
+typedef razor_truth_t (*razor_world_t)(void *context);
+
+typedef struct {
+    sim_time_t period;              /* 25 ms */
+    sim_time_t age;                 /* 15 ms */
+    sim_time_t phase;               /* first frame after power-up */
+    double angle_noise_rad;         /* 0.25 deg */
+    double spike_probability;       /* 0.005 per angle */
+    double spike_rad;               /* 0.35 */
+    double acceleration_noise_mps2; /* 0.4 */
+    double acceleration_bias_mps2;  /* 0.15 */
+    double mount_roll_rad, mount_pitch_rad; /* constant misalignment, what the offset must remove */
+    bool joined;                    /* both parts on one line */
+} razor_config_t;
+
+extern const razor_config_t razor_default;
+
+typedef struct razor9dof razor9dof_t;
+razor9dof_t *razor9dof_create(const razor_config_t *config, razor_world_t world, void *world_context, unsigned long seed,
+                              serial_sink_t sink, void *sink_context);
+void razor9dof_destroy(razor9dof_t *razor);
+void razor9dof_power(razor9dof_t *razor, bool on);
+
+#endif

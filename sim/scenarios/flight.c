@@ -1,0 +1,448 @@
+#define _GNU_SOURCE
+#include "sim/scenarios/flight.h"
+
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <time.h>
+
+#include "firmware/watch.h"
+#include "sim/devices/xbee.h"
+#include "sim/host/port.h"
+
+#define START_LIMIT (60 * SIM_S)
+#define STEP (10 * SIM_MS)
+#define LINE_SPACING_S 0.05
+
+static struct {
+    board_config_t config;
+    metrics_record_t record;
+    sim_time_t origin;
+    char line[128]; /* of the operator's terminal */
+    size_t line_length;
+    unsigned ok, err;
+    port_t port;
+    bool radio_is_real;
+    struct timespec wall_start;
+    volatile sig_atomic_t interrupted;
+} flight;
+
+/* Plant figures that --set plant.NAME=VALUE reaches. */
+typedef struct {
+    const char *name, *unit, *meaning;
+    double *field;
+} figure_t;
+
+static const figure_t figures[] = {
+    {"gain", "-", "thrust effectiveness", &flight.config.quadrotor.gain},
+    {"tau", "s", "motor time constant", &flight.config.quadrotor.tau_s},
+    {"damping", "1/s", "vertical damping D", &flight.config.quadrotor.damping_per_s},
+    {"hover_thrust", "N", "hover thrust per motor TH0", &flight.config.quadrotor.hover_thrust_n},
+    {"sag", "1/s", "battery sag", &flight.config.quadrotor.sag_per_s},
+    {"turbulence", "m/s2", "rms", &flight.config.quadrotor.turbulence_mps2},
+    {"turbulence_tau", "s", "correlation time", &flight.config.quadrotor.turbulence_tau_s},
+    {"attitude_rms", "rad", "roll and pitch motion", &flight.config.quadrotor.attitude_rms_rad},
+    {"tdelay", "s", "autopilot delay behind the pulse", &flight.config.quadrotor.actuator_delay_s},
+    {"tug_rate", "1/s", "rope tugs", &flight.config.quadrotor.tug_rate_per_s},
+    {"tug", "m/s2", "of one rope tug", &flight.config.quadrotor.tug_mps2},
+    {"ray_noise", "mm", "of each ray, rms", &flight.config.scene.ray_sigma_mm},
+    {"common_noise", "mm", "of all rays of a scan, rms", &flight.config.scene.common_sigma_mm},
+    {"glitches", "-", "probability of a broken scan", &flight.config.scene.glitch_probability},
+    {"imu_noise", "rad", "of roll and pitch, rms", &flight.config.imu.angle_noise_rad},
+    {"imu_spikes", "-", "probability of a spike per angle", &flight.config.imu.spike_probability},
+    {"acc_noise", "m/s2", "accelerometer, rms", &flight.config.imu.acceleration_noise_mps2},
+    {"acc_bias", "m/s2", "accelerometer", &flight.config.imu.acceleration_bias_mps2},
+};
+#define FIGURE_COUNT (sizeof figures / sizeof figures[0])
+
+static const figure_t *figure_find(const char *name)
+{
+    for (size_t i = 0; i < FIGURE_COUNT; i++) {
+        if (strncmp(name, "plant.", 6) == 0 && strcmp(figures[i].name, name + 6) == 0) {
+            return &figures[i];
+        }
+    }
+    return NULL;
+}
+
+void flight_print_plant_figures(FILE *out)
+{
+    for (size_t i = 0; i < FIGURE_COUNT; i++) {
+        fprintf(out, "  plant.%-16s %-6s %s\n", figures[i].name, figures[i].unit, figures[i].meaning);
+    }
+}
+
+static const char *check_parameter(parameter_id_t id, const char *text)
+{
+    parameters_t parameters;
+    char *end;
+    float value;
+
+    parameters_init(&parameters);
+    if (parameter_table[id].choices != NULL) {
+        return parameter_choice(id, text, strlen(text)) < 0 ? "no such choice" : NULL;
+    }
+    value = strtof(text, &end);
+    if (*text == '\0' || *end != '\0') {
+        return "not a number";
+    }
+    return parameters_set(&parameters, id, value) == PARAMETER_ACCEPTED ? NULL : "out of range";
+}
+
+static const char *check_figure(const char *text)
+{
+    char *end;
+    double value = strtod(text, &end);
+
+    return *text == '\0' || *end != '\0' || !isfinite(value) ? "not a number" : NULL;
+}
+
+const char *flight_override(flight_options_t *options, const char *assignment)
+{
+    const char *equals = strchr(assignment, '=');
+    flight_override_t *o = &options->overrides[options->override_count];
+    parameter_id_t id;
+    const char *error;
+
+    if (equals == NULL || (size_t)(equals - assignment) >= sizeof o->name || strlen(equals + 1) >= sizeof o->value) {
+        return "not of the form NAME=VALUE";
+    }
+    if (options->override_count == FLIGHT_OVERRIDES_MAX) {
+        return "too many --set";
+    }
+    snprintf(o->name, sizeof o->name, "%.*s", (int)(equals - assignment), assignment);
+    snprintf(o->value, sizeof o->value, "%s", equals + 1);
+    id = parameter_find(o->name, strlen(o->name));
+    if (id == PARAMETER_COUNT && figure_find(o->name) == NULL) {
+        return "unknown name";
+    }
+    error = id == PARAMETER_COUNT ? check_figure(o->value) : check_parameter(id, o->value);
+    options->override_count += error == NULL;
+    return error;
+}
+
+static const char *overridden(const flight_options_t *options, const char *name)
+{
+    for (int i = options->override_count - 1; i >= 0; i--) {
+        if (strcasecmp(options->overrides[i].name, name) == 0) {
+            return options->overrides[i].value;
+        }
+    }
+    return NULL;
+}
+
+/* The operator's terminal ---------------------------------------------------------------------------------------- */
+
+static void terminal(void *context, unsigned octet)
+{
+    unsigned char c = (unsigned char)octet;
+
+    (void)context;
+    if (flight.port.fd >= 0) {
+        port_write(&flight.port, &c, 1);
+    }
+    if (octet != '\n') {
+        if (flight.line_length < sizeof flight.line) {
+            flight.line[flight.line_length++] = (char)c;
+        }
+        return;
+    }
+    flight.ok += flight.line_length >= 3 && memcmp(flight.line, "OK ", 3) == 0;
+    flight.err += flight.line_length >= 4 && memcmp(flight.line, "ERR ", 4) == 0;
+    flight.line_length = 0;
+}
+
+static void type_event(void *text)
+{
+    board_type(text, strlen(text));
+    free(text);
+}
+
+static sim_time_t at(double t_s)
+{
+    return flight.origin + (sim_time_t)llround(t_s * 1e9);
+}
+
+static void type_at(sim_time_t when, const char *name, const char *value)
+{
+    size_t size = strlen(name) + strlen(value) + 4;
+    char *text = malloc(size);
+
+    if (text == NULL) {
+        abort();
+    }
+    snprintf(text, size, "#%s %s\n", name, value);
+    timeline_at(when, type_event, text);
+}
+
+/* The line is complete at the firmware's pin at t_s. */
+static void type_complete_at(double t_s, const char *name, const char *value)
+{
+    type_at(at(t_s) - xbee_latency(strlen(name) + strlen(value) + 3), name, value);
+}
+
+static void type_settings(const scenario_t *scenario, const flight_options_t *options)
+{
+    char name[16];
+    double t_s = 0.0;
+
+    for (int i = 0; i < SCENARIO_SETTINGS_MAX && scenario->settings[i] != NULL; i++) {
+        const char *setting = scenario->settings[i];
+        const char *value = strchr(setting, ' ') + 1;
+
+        snprintf(name, sizeof name, "%.*s", (int)(value - setting - 1), setting);
+        if (overridden(options, name) == NULL) {
+            type_at(at(t_s), name, value);
+            t_s += LINE_SPACING_S;
+        }
+    }
+    for (parameter_id_t id = PARAMETER_KP; id < PARAMETER_COUNT; id++) {
+        const char *value = overridden(options, parameter_table[id].name);
+
+        if (value != NULL) {
+            type_at(at(t_s), parameter_table[id].name, value);
+            t_s += LINE_SPACING_S;
+        }
+    }
+}
+
+static void landing(void *context)
+{
+    (void)context;
+    quadrotor_stop_counting_contacts(board_quadrotor());
+}
+
+static void plan(const scenario_t *scenario, const flight_options_t *options)
+{
+    char reference[32];
+
+    snprintf(reference, sizeof reference, "%g", flight.record.reference_m);
+    type_settings(scenario, options);
+    type_complete_at(METRICS_REFERENCE_S, "SETR", reference);
+    type_complete_at(scenario->land_s, "SETR", "0");
+    timeline_at(at(scenario->land_s), landing, NULL);
+}
+
+/* The wall clock ------------------------------------------------------------------------------------------------- */
+
+static sim_time_t wall_now(void)
+{
+    struct timespec now;
+
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (sim_time_t)(now.tv_sec - flight.wall_start.tv_sec) * SIM_S +
+           (sim_time_t)(now.tv_nsec - flight.wall_start.tv_nsec);
+}
+
+typedef struct {
+    size_t count;
+    unsigned char octets[256];
+} typed_t;
+
+static void typed_event(void *context)
+{
+    typed_t *typed = context;
+
+    if (flight.radio_is_real) {
+        for (size_t i = 0; i < typed->count; i++) {
+            board_radio_receive(typed->octets[i]);
+        }
+    } else {
+        board_type((const char *)typed->octets, typed->count);
+    }
+    free(typed);
+}
+
+static void read_terminal(sim_time_t next)
+{
+    typed_t *typed = malloc(sizeof *typed);
+    sim_time_t when = wall_now();
+
+    if (typed == NULL) {
+        abort();
+    }
+    typed->count = port_read(&flight.port, typed->octets, sizeof typed->octets);
+    if (typed->count == 0) {
+        free(typed);
+        return;
+    }
+    when = when < timeline_now() ? timeline_now() : when;
+    timeline_at(when > next ? next : when, typed_event, typed);
+}
+
+static void pace(sim_time_t next)
+{
+    struct pollfd watched = {.fd = flight.port.fd, .events = POLLIN};
+    sim_time_t ahead = next - wall_now();
+    struct timespec patience;
+
+    if (flight.interrupted || ahead <= 0) {
+        if (poll(&watched, 1, 0) > 0) {
+            read_terminal(next);
+        }
+        return;
+    }
+    patience.tv_sec = (time_t)(ahead / SIM_S);
+    patience.tv_nsec = (long)(ahead % SIM_S);
+    if (ppoll(&watched, 1, &patience, NULL) > 0) {
+        read_terminal(next);
+    }
+}
+
+static void interrupt(int signal_number)
+{
+    (void)signal_number;
+    flight.interrupted = 1;
+}
+
+static void radio_out(void *context, unsigned octet)
+{
+    terminal(context, octet);
+}
+
+static const char *open_radio(const flight_options_t *options)
+{
+    const char *error;
+
+    flight.radio_is_real = strcmp(options->radio, "pty") != 0;
+    error = flight.radio_is_real ? port_open_device(&flight.port, options->radio, 9600) : port_open_pty(&flight.port);
+    if (error == NULL) {
+        printf("xbee: %s\n", flight.port.name);
+        fflush(stdout);
+        signal(SIGINT, interrupt);
+        signal(SIGTERM, interrupt);
+        clock_gettime(CLOCK_MONOTONIC, &flight.wall_start);
+    }
+    return error;
+}
+
+/* The flight ----------------------------------------------------------------------------------------------------- */
+
+static void sample(FILE *csv)
+{
+    const quadrotor_state_t *state = quadrotor_state(board_quadrotor());
+    double t_s = (double)(timeline_now() - flight.origin) * 1e-9;
+
+    if (flight.record.count < METRICS_MAX_SAMPLES) {
+        flight.record.samples[flight.record.count++] =
+            (metrics_sample_t){t_s, state->height_m, (double)watch_flight->thrust_n};
+    }
+    if (csv == NULL) {
+        return;
+    }
+    fprintf(csv, "%.2f,%.4f,%.4f,%.4f,", t_s, state->height_m, state->altitude_m, state->terrain_m);
+    if (watch_altitude->sequence > 0U) {
+        fprintf(csv, "%.4f", (double)watch_altitude->altitude.height_mm * 1e-3);
+    }
+    fprintf(csv, ",%.3f,%.4f,%.2f,%s,%u\n", (double)watch_flight->reference_m, (double)watch_flight->thrust_n,
+            board_pulse_us(), flight_state_name(watch_flight->state), (unsigned)watch_flight->flags);
+}
+
+static void power_on(const scenario_t *scenario, const flight_options_t *options)
+{
+    flight.config = board_config(options->seed);
+    flight.config.terrain = scenario->platform ? terrain_platform : terrain_flat;
+    flight.config.quadrotor.tug_rate_per_s = scenario->tug_rate_per_s;
+    for (int i = 0; i < options->override_count; i++) {
+        const figure_t *figure = figure_find(options->overrides[i].name);
+
+        if (figure != NULL) {
+            *figure->field = strtod(options->overrides[i].value, NULL);
+        }
+    }
+    board_power_on(&flight.config, terminal, NULL);
+    if (flight.radio_is_real) {
+        board_radio_connect(radio_out, NULL);
+    }
+}
+
+/* Runs until scans arrive and the IMU's offset is known; then sets the origin of scenario time, at a phase against the
+ * control loop that the seed draws. */
+static bool start_up(const flight_options_t *options)
+{
+    noise_t phase;
+
+    while (!(watch_laser->seen.scan_count >= 3U && watch_imu->ready)) {
+        if (timeline_now() >= START_LIMIT || !kernel_run_until(timeline_now() + STEP)) {
+            return false;
+        }
+    }
+    noise_init(&phase, options->seed, "origin");
+    flight.origin = timeline_now() + 300 * SIM_MS + (sim_time_t)noise_uniform(&phase, 0.0, 108e6);
+    quadrotor_set_origin(board_quadrotor(), flight.origin);
+    return kernel_run_until(flight.origin);
+}
+
+static void fly(const scenario_t *scenario, const flight_options_t *options)
+{
+    long steps = lround(scenario->end_s * 100.0);
+
+    for (long i = 0; i <= steps && kernel_run_until(flight.origin + (sim_time_t)i * STEP); i++) {
+        sample(options->csv);
+    }
+}
+
+static void fly_by_hand(const flight_options_t *options)
+{
+    sim_time_t end = options->duration_s > 0.0 ? (sim_time_t)(options->duration_s * 1e9) : SIM_NEVER;
+    sim_time_t start = timeline_now() / STEP * STEP;
+
+    for (long i = 1; !flight.interrupted && timeline_now() < end; i++) {
+        if (!kernel_run_until(start + (sim_time_t)i * STEP)) {
+            return;
+        }
+        sample(options->csv);
+    }
+}
+
+static void conclude(flight_result_t *result)
+{
+    double *value;
+
+    metrics_compute(&flight.record, &result->metrics);
+    value = result->metrics.value;
+    value[METRIC_GROUND_CONTACTS] = quadrotor_state(board_quadrotor())->contacts;
+    value[METRIC_SCANS] = watch_laser->seen.scan_count;
+    value[METRIC_SCANS_REJECTED] = (double)watch_laser->seen.damage_count + watch_altitude->heightless;
+    value[METRIC_COMMANDS_OK] = flight.ok;
+    value[METRIC_COMMANDS_ERR] = flight.err;
+    result->halt = kernel_halt_reason();
+}
+
+bool flight_run(const scenario_t *scenario, const flight_options_t *options, flight_result_t *result,
+                const char **error)
+{
+    const char *reference = overridden(options, "SETR");
+
+    memset(&flight, 0, sizeof flight);
+    memset(result, 0, sizeof *result);
+    flight.port.fd = flight.port.slave = -1;
+    flight.record.reference_m = reference != NULL ? strtod(reference, NULL) : scenario->reference_m;
+    flight.record.terrain = scenario->platform;
+    flight.record.land_s = scenario->land_s;
+    *error = options->realtime ? open_radio(options) : NULL;
+    if (*error != NULL) {
+        return false;
+    }
+    power_on(scenario, options);
+    kernel_set_pacer(options->realtime ? pace : NULL);
+    if (options->csv != NULL) {
+        fprintf(options->csv, "t_s,height_m,abs_m,terrain_m,est_m,ref_m,thrust_n,pulse_us,state,flags\n");
+    }
+    if (options->realtime) {
+        fly_by_hand(options);
+        result->started = true;
+    } else if (start_up(options)) {
+        result->started = true;
+        plan(scenario, options);
+        fly(scenario, options);
+    }
+    conclude(result);
+    kernel_set_pacer(NULL);
+    board_power_off();
+    port_close(&flight.port);
+    return true;
+}

@@ -1,0 +1,55 @@
+/* What a flight was like: figures of the true height, from 100 Hz samples in scenario time (t = 1.0 s: #SETR complete at
+ * the receiver). */
+#ifndef SIM_SCENARIOS_METRICS_H
+#define SIM_SCENARIOS_METRICS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define METRICS_REFERENCE_S 1.0     /* the reference arrives */
+#define METRICS_EDGE_S 11.02        /* recovery counts from here */
+#define METRICS_RECOVERY_END_S 15.0
+#define METRICS_MAX_SAMPLES 20000
+
+typedef struct {
+    double t_s, height_m, thrust_n;
+} metrics_sample_t;
+
+typedef struct {
+    double reference_m;
+    bool terrain;           /* ramp and platform: hover is 4.5-7.2 s and 15-20 s; flat ground: 6 s to the landing */
+    double land_s;          /* the landing command */
+    size_t count;
+    metrics_sample_t samples[METRICS_MAX_SAMPLES];
+} metrics_record_t;
+
+typedef enum {
+    METRIC_RISE_TIME_S,         /* 10 to 90 % of the reference */
+    METRIC_OVERSHOOT_MM,        /* highest above the reference, 1-5.5 s, at least 0 */
+    METRIC_HOVER_RMS_MM,        /* of height - reference over the hover windows */
+    METRIC_HOVER_MEAN_ERROR_MM,
+    METRIC_TERRAIN_RMS_MM,      /* 7.2-15 s */
+    METRIC_RECOVERY_S,          /* last instant in 11.02-15 s with |error| > 50 mm, minus 11.02; 3.98 if never within */
+    METRIC_UNDERSHOOT_MM,       /* deepest below the reference, 11.02-15 s, at least 0 */
+    METRIC_GROUND_CONTACTS,
+    METRIC_THRUST_STD_N,        /* of the commanded thrust over the hover windows */
+    METRIC_SCANS,
+    METRIC_SCANS_REJECTED,
+    METRIC_COMMANDS_OK,
+    METRIC_COMMANDS_ERR,
+    METRIC_COUNT
+} metric_t;
+
+extern const char *const metric_names[METRIC_COUNT];
+
+/* A metric that does not apply (never rose, no terrain) is NAN, and null in JSON. */
+typedef struct {
+    double value[METRIC_COUNT];
+    bool failed;
+    const char *failure;        /* "never reached 90 %", "rose above reference + 1 m", "more than 0.55 m off", or NULL */
+} metrics_t;
+
+/* Fills everything that follows from the samples; the counters are left at 0. */
+void metrics_compute(const metrics_record_t *record, metrics_t *metrics);
+
+#endif

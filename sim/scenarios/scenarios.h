@@ -1,0 +1,44 @@
+/* The flights: the seed's, and what each must look like. A scenario pins law, gains, gravity and release; it types them
+ * on the operator's terminal like anybody else. */
+#ifndef SIM_SCENARIOS_SCENARIOS_H
+#define SIM_SCENARIOS_SCENARIOS_H
+
+#include <stdbool.h>
+
+#include "sim/scenarios/metrics.h"
+
+#define SCENARIO_SETTINGS_MAX 16
+#define SCENARIO_EXPECTATIONS_MAX 10
+
+typedef struct {
+    metric_t metric;
+    double minimum, maximum;    /* inclusive; a metric that does not apply breaks it */
+} expectation_t;
+
+/* What the judgement of metrics_t.failed must be. */
+typedef enum { FATE_SUCCEEDS, FATE_FAILS, FATE_EITHER } scenario_fate_t;
+
+typedef struct {
+    const char *name;
+    const char *summary;
+    const char *settings[SCENARIO_SETTINGS_MAX];    /* "LAW PID", ... NULL ends */
+    double reference_m;
+    bool platform;              /* the seed's ramp and platform; else flat */
+    double tug_rate_per_s;      /* rope tugs; 0 = none */
+    double land_s;              /* #SETR 0 */
+    double end_s;
+    scenario_fate_t fate;
+    expectation_t expectations[SCENARIO_EXPECTATIONS_MAX];
+    int expectation_count;
+} scenario_t;
+
+extern const scenario_t scenarios[];
+extern const int scenario_count;
+
+/* NULL when there is none of that name. */
+const scenario_t *scenario_find(const char *name);
+
+/* True when every expectation holds; otherwise the first broken one is returned through *broken. */
+bool scenario_met(const scenario_t *scenario, const metrics_t *metrics, const expectation_t **broken);
+
+#endif
