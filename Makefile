@@ -1,0 +1,59 @@
+# A thin facade: CMake builds, ctest tests, tools/setup/setup.sh installs what is missing.
+.DEFAULT_GOAL := help
+.NOTPARALLEL:
+MAKEFLAGS += --no-print-directory
+.PHONY: help build fly plot test coverage clean
+
+setup := tools/setup/setup.sh
+python := build/venv/bin/python -B
+flight := pid-60cm-ramp
+# Where setup.sh puts CMock when it may not install packages; CMake falls back to the system's.
+export CMOCK_ROOT ?= $(CURDIR)/build/cmock/usr/share/cmock
+# As many jobs as processors, unless make was told how many.
+jobs = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
+ctest = ctest --output-on-failure -j$(shell nproc) --test-dir
+
+help: ## This list
+	@sed -nE 's/^([a-z]+):.*## (.*)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
+
+build: ## The program build/plomada
+	@$(setup) build
+	@cmake -S . -B build -DCMAKE_BUILD_TYPE=Release $(if $(wildcard build/CMakeCache.txt),,-DPLOMADA_TESTS=OFF)
+	+@cmake --build build --target plomada $(jobs)
+
+fly: ## Fly the seed's 60 cm flight; CSV, JSON and a picture in build/
+	@$(setup) build plot
+	@$(MAKE) build
+	@build/plomada fly $(flight) --csv build/$(flight).csv --json build/$(flight).json; flown=$$?; \
+	    [ $$flown -le 1 ] || exit $$flown; \
+	    $(python) tools/plot/plot.py build/$(flight).csv -o build/$(flight).png && \
+	    printf '%s\n' "$(CURDIR)/build/$(flight).csv" "$(CURDIR)/build/$(flight).json" && exit $$flown
+
+plot: ## Draw LOG=FILE: a flight's CSV (or several), an XCTU console log or telemetry text
+	@test -n "$(LOG)" || { echo "usage: make plot LOG=FILE" >&2; exit 2; }
+	@$(setup) plot
+	@$(python) tools/plot/plot.py $(LOG) -o build/
+
+test: ## Every test: under ASan and UBSan, then as released
+	@$(setup) build test plot
+	@printf '\n== build with ASan and UBSan ==\n'
+	@cmake -S . -B build-sanitize -DCMAKE_BUILD_TYPE=Debug -DSANITIZE=ON -DPLOMADA_TESTS=ON
+	+@cmake --build build-sanitize $(jobs)
+	@printf '\n== build as released ==\n'
+	@cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON
+	+@cmake --build build $(jobs)
+	@printf '\n== tests under ASan and UBSan ==\n'
+	@$(ctest) build-sanitize
+	@printf '\n== tests as released ==\n'
+	@$(ctest) build
+
+coverage: ## Line coverage of drivers/ and control/, at least 95 %
+	@$(setup) build test coverage
+	@cmake -S . -B build-coverage -DCMAKE_BUILD_TYPE=Debug -DCOVERAGE=ON -DPLOMADA_TESTS=ON
+	+@cmake --build build-coverage $(jobs)
+	@find build-coverage -name '*.gcda' -delete
+	@$(ctest) build-coverage
+	@gcovr --root . --object-directory build-coverage --filter control/ --filter drivers/ --fail-under-line 95
+
+clean: ## Remove everything that was built, the Python environment included
+	rm -rf build build-*

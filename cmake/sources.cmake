@@ -1,0 +1,13 @@
+# The product: the single list of files, read by CMakeLists.txt and by the check of ccs_project/.
+set(CONTROL_SOURCES
+    control/altitude.c control/attitude.c control/descent.c control/flight.c control/median.c control/parameters.c control/pid.c
+    control/supervisor.c control/thrust.c)
+set(DRIVERS_SOURCES
+    drivers/decimal.c drivers/razor.c drivers/scip_layout.c drivers/scip_parser.c drivers/scip_request.c
+    drivers/telecommand.c drivers/telemetry.c drivers/urg_link.c)
+set(BSP_SOURCES
+    bsp/board.c bsp/led.c bsp/throttle.c bsp/timebase.c bsp/uart.c)
+set(FIRMWARE_SOURCES
+    firmware/commands.c firmware/imu_port.c firmware/laser_port.c firmware/main.c firmware/servers.c
+    firmware/task_control.c firmware/task_imu.c firmware/task_receive_comm.c firmware/task_receive_laser.c
+    firmware/task_send_comm.c firmware/task_send_laser.c firmware/uart_port.c firmware/xbee_port.c)

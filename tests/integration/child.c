@@ -1,0 +1,88 @@
+#include "child.h"
+
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "unity.h"
+
+static void write_all(int fd, const void *data, size_t size)
+{
+    const char *next = data;
+
+    while (size > 0) {
+        ssize_t put = write(fd, next, size);
+
+        if (put <= 0) {
+            _exit(3);
+        }
+        next += put;
+        size -= (size_t)put;
+    }
+}
+
+void child_run(child_work_t work, void *argument, void *result, size_t size)
+{
+    int ends[2], status;
+    size_t have = 0;
+    ssize_t got;
+    pid_t pid;
+
+    TEST_ASSERT_EQUAL_INT(0, pipe(ends));
+    pid = fork();
+    TEST_ASSERT_NOT_EQUAL(-1, pid);
+    if (pid == 0) {
+        close(ends[0]);
+        work(argument, result);
+        write_all(ends[1], result, size);
+        _exit(0);
+    }
+    close(ends[1]);
+    while (have < size && (got = read(ends[0], (char *)result + have, size - have)) > 0) {
+        have += (size_t)got;
+    }
+    close(ends[0]);
+    waitpid(pid, &status, 0);
+    TEST_ASSERT_TRUE_MESSAGE(WIFEXITED(status) && WEXITSTATUS(status) == 0 && have == size, "the child crashed");
+}
+
+typedef struct {
+    const char *scenario;
+    unsigned long seed;
+    const char *const *assignments;
+} order_t;
+
+static void fly(void *argument, void *result)
+{
+    static flight_options_t options;
+    const order_t *order = argument;
+    const char *error = NULL;
+
+    options.seed = order->seed;
+    for (int i = 0; order->assignments != NULL && order->assignments[i] != NULL; i++) {
+        if (flight_override(&options, order->assignments[i]) != NULL) {
+            _exit(4);
+        }
+    }
+    if (!flight_run(scenario_find(order->scenario), &options, result, &error)) {
+        _exit(5);
+    }
+}
+
+void child_fly(const char *scenario, unsigned long seed, const char *const *assignments, flight_result_t *result)
+{
+    order_t order = {scenario, seed, assignments};
+
+    child_run(fly, &order, result, sizeof *result);
+    TEST_ASSERT_TRUE_MESSAGE(result->started, "the sensors did not come up");
+}
+
+void child_terminal_take(void *terminal, unsigned octet)
+{
+    child_terminal_t *t = terminal;
+
+    if (t->length < sizeof t->text - 1) {
+        t->text[t->length++] = (char)octet;
+        t->text[t->length] = '\0';
+    }
+}

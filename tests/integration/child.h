@@ -1,0 +1,27 @@
+/* Runs a piece of a test in a child process and brings its result back: one power-on of the board per process. */
+#ifndef TESTS_INTEGRATION_CHILD_H
+#define TESTS_INTEGRATION_CHILD_H
+
+#include <stddef.h>
+
+#include "sim/scenarios/flight.h"
+
+typedef void (*child_work_t)(void *argument, void *result);
+
+/* Runs work(argument, result) in a child; its result (size octets) replaces *result. Fails the test when the child
+ * crashes. */
+void child_run(child_work_t work, void *argument, void *result, size_t size);
+
+/* One flight; assignments are --set texts, NULL ends. */
+void child_fly(const char *scenario, unsigned long seed, const char *const *assignments, flight_result_t *result);
+
+/* Everything that the operator's terminal received. */
+#define CHILD_TERMINAL_MAX 20000
+typedef struct {
+    char text[CHILD_TERMINAL_MAX];
+    size_t length;
+} child_terminal_t;
+
+void child_terminal_take(void *terminal, unsigned octet);   /* board_terminal_t shape */
+
+#endif

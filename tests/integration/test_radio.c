@@ -1,0 +1,239 @@
+/* The operator's side of the running firmware: what is typed on the radio and what comes back. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "child.h"
+#include "firmware/watch.h"
+#include "sim/noise.h"
+#include "unity.h"
+
+void setUp(void) {}
+void tearDown(void) {}
+
+typedef struct {
+    child_terminal_t terminal;
+    parameters_t parameters;
+    float reference_m;
+    double sent_s;
+} talk_t;
+
+static talk_t talk;
+
+typedef struct {
+    const char *text;
+    size_t count;
+    double spacing_s;   /* between lines; 0: as fast as the link goes */
+    double listen_s;
+} script_t;
+
+static void run_script(void *argument, void *result)
+{
+    const script_t *script = argument;
+    talk_t *t = result;
+    board_config_t config = board_config(1);
+    const char *next = script->text, *end = script->text + script->count;
+
+    board_power_on(&config, child_terminal_take, &t->terminal);
+    kernel_run_until(500 * SIM_MS);
+    while (next < end) {
+        const char *lf = memchr(next, '\n', (size_t)(end - next));
+        size_t count = script->spacing_s > 0.0 && lf != NULL ? (size_t)(lf - next) + 1 : (size_t)(end - next);
+
+        count = count > 64 && script->spacing_s <= 0.0 ? 64 : count;
+        board_type(next, count);
+        next += count;
+        kernel_run_until(timeline_now() +
+                         (sim_time_t)(script->spacing_s > 0.0 ? script->spacing_s * 1e9 : (double)count * 1.05e6));
+    }
+    t->sent_s = (double)timeline_now() * 1e-9;
+    kernel_run_until(timeline_now() + (sim_time_t)(script->listen_s * 1e9));
+    t->parameters = *watch_parameters;
+    t->reference_m = watch_reference->reference_m;
+    if (kernel_halt_reason() != NULL) {
+        abort();
+    }
+}
+
+static void type(const char *text, size_t count, double spacing_s, double listen_s)
+{
+    script_t script = {text, count, spacing_s, listen_s};
+
+    memset(&talk, 0, sizeof talk);
+    child_run(run_script, &script, &talk, sizeof talk);
+}
+
+static void type_line(const char *text)
+{
+    type(text, strlen(text), 0.0, 1.0);
+}
+
+static bool answered(const char *line)
+{
+    char needle[128];
+
+    snprintf(needle, sizeof needle, "%s\r\n", line);
+    for (const char *found = strstr(talk.terminal.text, needle); found != NULL; found = strstr(found + 1, needle)) {
+        if (found == talk.terminal.text || found[-1] == '\n') {
+            return true;
+        }
+    }
+    return false;
+}
+
+static int count_of(const char *prefix)
+{
+    int count = strncmp(talk.terminal.text, prefix, strlen(prefix)) == 0;
+    char needle[64];
+
+    snprintf(needle, sizeof needle, "\n%s", prefix);
+    for (const char *found = strstr(talk.terminal.text, needle); found != NULL; found = strstr(found + 1, needle)) {
+        count++;
+    }
+    return count;
+}
+
+static void assert_nothing_changed(void)
+{
+    parameters_t untouched;
+
+    parameters_init(&untouched);
+    for (int i = 0; i < PARAMETER_COUNT; i++) {
+        TEST_ASSERT_EQUAL_FLOAT(untouched.value[i], talk.parameters.value[i]);
+    }
+    TEST_ASSERT_EQUAL_UINT32(untouched.generation, talk.parameters.generation);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, talk.reference_m);
+}
+
+void test_radio_and_telemetry_live_during_the_sensor_wait(void)
+{
+    type_line("#PING 42\n");
+    TEST_ASSERT_TRUE(answered("OK PING 42"));
+    TEST_ASSERT_TRUE(answered("alt:- ref:0.000 laser:WAIT thr:0.00 state:GROUND flags:3") ||
+                     answered("alt:- ref:0.000 laser:WAIT thr:0.00 state:GROUND flags:1"));
+}
+
+void test_every_command_of_annex_ii_takes_effect_and_is_answered(void)
+{
+    type_line("#KP 0.02\n#KD 0.009\n#KI 0.00\n#USAT 1.5\n#DSAT 0.25\n#GRAV 6.4\n#SETR 0.5\n");
+    TEST_ASSERT_TRUE(answered("OK KP 0.02"));
+    TEST_ASSERT_TRUE(answered("OK KD 0.009"));
+    TEST_ASSERT_TRUE(answered("OK KI 0"));
+    TEST_ASSERT_TRUE(answered("OK USAT 1.5"));
+    TEST_ASSERT_TRUE(answered("OK DSAT 0.25"));
+    TEST_ASSERT_TRUE(answered("OK GRAV 6.4"));
+    TEST_ASSERT_TRUE(answered("OK SETR 0.5"));
+    TEST_ASSERT_EQUAL_FLOAT(0.02F, talk.parameters.value[PARAMETER_KP]);
+    TEST_ASSERT_EQUAL_FLOAT(6.4F, talk.parameters.value[PARAMETER_GRAV]);
+    TEST_ASSERT_EQUAL_FLOAT(0.5F, talk.reference_m);
+}
+
+void test_choices_blanks_lower_case_and_crlf_are_accepted(void)
+{
+    type_line("  #  law   pd  \r\n#release\tscan\r#kp 0.01\r\n");
+    TEST_ASSERT_TRUE(answered("OK LAW PD"));
+    TEST_ASSERT_TRUE(answered("OK RELEASE SCAN"));
+    TEST_ASSERT_TRUE(answered("OK KP 0.01"));
+    TEST_ASSERT_EQUAL_INT(3, count_of("OK "));
+    TEST_ASSERT_EQUAL_INT(0, count_of("ERR "));
+}
+
+void test_bad_values_are_refused_by_name_and_change_nothing(void)
+{
+    type_line("#KP nan\n#KP 1e9\n#SETR -1\n#KP\n#KP 0.01x\n#LAW XYZ\n#FOO 1\n#GET FOO\n#\n#KP inf\n");
+    TEST_ASSERT_EQUAL_INT(10, count_of("ERR "));
+    TEST_ASSERT_EQUAL_INT(0, count_of("OK "));
+    TEST_ASSERT_TRUE(answered("ERR KP not a number"));
+    TEST_ASSERT_TRUE(answered("ERR KP value missing"));
+    TEST_ASSERT_TRUE(answered("ERR LAW one of PD|PID"));
+    TEST_ASSERT_TRUE(answered("ERR FOO unknown command, try #HELP"));
+    TEST_ASSERT_TRUE(answered("ERR - empty command"));
+    assert_nothing_changed();
+}
+
+void test_a_half_line_is_restarted_and_an_overlong_one_costs_one_error(void)
+{
+    type_line("#KP 0.0#KP 0.01\n#KP 0.00000000000000000000000000000000001\n#KD 0.001\n");
+    TEST_ASSERT_TRUE(answered("OK KP 0.01"));
+    TEST_ASSERT_TRUE(answered("ERR - line too long"));
+    TEST_ASSERT_TRUE(answered("OK KD 0.001"));
+    TEST_ASSERT_EQUAL_INT(1, count_of("ERR "));
+    TEST_ASSERT_EQUAL_INT(2, count_of("OK "));
+}
+
+void test_get_alone_lists_every_parameter_once(void)
+{
+    char line[64];
+
+    type("#GET\n", 5, 0.0, 2.0);
+    TEST_ASSERT_EQUAL_INT(PARAMETER_COUNT, count_of("OK "));
+    TEST_ASSERT_TRUE(answered("OK KP 0.015"));
+    for (int i = 0; i < PARAMETER_COUNT; i++) {
+        snprintf(line, sizeof line, "OK %s ", parameter_table[i].name);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(1, count_of(line), line);
+    }
+}
+
+void test_help_names_every_parameter_and_verb(void)
+{
+    char line[64];
+
+    type("#HELP\n", 6, 0.0, 3.0);
+    for (int i = 0; i < PARAMETER_COUNT; i++) {
+        snprintf(line, sizeof line, "OK HELP #%s ", parameter_table[i].name);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(1, count_of(line), line);
+    }
+    TEST_ASSERT_EQUAL_INT(1, count_of("OK HELP #PING "));
+    TEST_ASSERT_EQUAL_INT(0, count_of("ERR "));
+}
+
+void test_a_hundred_lines_ten_milliseconds_apart_are_all_kept(void)
+{
+    static char text[2000];
+    size_t count = 0;
+
+    for (int i = 0; i < 100; i++) {
+        count += (size_t)snprintf(text + count, sizeof text - count, "#PING %d\n", i);
+    }
+    type(text, count, 0.010, 4.0);
+    TEST_ASSERT_EQUAL_INT(100, count_of("OK PING "));
+    for (int i = 0; i < 100; i++) {
+        char line[32];
+
+        snprintf(line, sizeof line, "OK PING %d", i);
+        TEST_ASSERT_TRUE_MESSAGE(answered(line), line);
+    }
+}
+
+void test_ten_thousand_random_octets_change_nothing_and_lose_no_later_command(void)
+{
+    static char text[10020];
+    const char *last = "\n#PING 77\n";
+    noise_t noise;
+
+    noise_init(&noise, 20261121, "garbage");
+    printf("seed 20261121\n");
+    for (int i = 0; i < 10000; i++) {
+        text[i] = (char)(noise_bits(&noise) & 0xFF);
+    }
+    memcpy(text + 10000, last, strlen(last));
+    type(text, 10000 + strlen(last), 0.0, 3.0);
+    assert_nothing_changed();
+    TEST_ASSERT_TRUE(answered("OK PING 77"));
+    TEST_ASSERT_TRUE_MESSAGE(count_of("ERR ") > 0, "no complete line in 10 000 random octets");
+}
+
+void test_telemetry_comes_five_times_a_second_in_lines_of_at_most_95_octets(void)
+{
+    size_t longest = 0, start = 0;
+
+    type("", 0, 0.0, 10.0);
+    for (size_t i = 0; i < talk.terminal.length; i++) {
+        if (talk.terminal.text[i] == '\n') {
+            longest = i + 1 - start > longest ? i + 1 - start : longest;
+            start = i + 1;
+        }
+    }
+    TEST_ASSERT_INT_WITHIN(2, 52, count_of("alt:"));
+    TEST_ASSERT_TRUE(longest <= 95 && longest >= 50);
+}

@@ -1,0 +1,113 @@
+/* A person at a terminal: the firmware paced by the wall clock, its radio on a pseudo-terminal. */
+#define _GNU_SOURCE
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "child.h"
+#include "unity.h"
+
+static pid_t pid;
+static FILE *program;
+
+void setUp(void) {}
+
+void tearDown(void)
+{
+    if (pid > 0) {
+        kill(pid, SIGKILL);
+        waitpid(pid, NULL, 0);
+        pid = 0;
+    }
+}
+
+static void start(const char *duration)
+{
+    int ends[2];
+
+    TEST_ASSERT_EQUAL_INT(0, pipe(ends));
+    pid = fork();
+    if (pid == 0) {
+        dup2(ends[1], 1);
+        execl(PLOMADA, "plomada", "fly", "hover-60s", "--realtime", "--xbee", "pty", "--duration", duration, (char *)NULL);
+        _exit(127);
+    }
+    close(ends[1]);
+    program = fdopen(ends[0], "r");
+}
+
+static int open_radio(void)
+{
+    char line[200] = "";
+    struct termios raw;
+    int fd;
+
+    TEST_ASSERT_NOT_NULL(fgets(line, sizeof line, program));
+    TEST_ASSERT_EQUAL_INT(0, strncmp(line, "xbee: /dev/pts/", 15));
+    line[strcspn(line, "\n")] = '\0';
+    fd = open(line + 6, O_RDWR | O_NOCTTY);
+    TEST_ASSERT_TRUE(fd >= 0);
+    tcgetattr(fd, &raw);
+    cfmakeraw(&raw);
+    tcsetattr(fd, TCSANOW, &raw);
+    return fd;
+}
+
+static bool hears(int fd, const char *text, int patience_ms)
+{
+    static char heard[20000];
+    size_t count = 0;
+
+    while (patience_ms > 0 && count < sizeof heard - 1) {
+        struct pollfd watched = {.fd = fd, .events = POLLIN};
+
+        if (poll(&watched, 1, 50) > 0) {
+            ssize_t got = read(fd, heard + count, sizeof heard - 1 - count);
+
+            count += got > 0 ? (size_t)got : 0;
+            heard[count] = '\0';
+            if (strstr(heard, text) != NULL) {
+                return true;
+            }
+        }
+        patience_ms -= 50;
+    }
+    return false;
+}
+
+void test_typed_commands_are_answered_and_telemetry_flows(void)
+{
+    int fd, status;
+
+    start("3");
+    fd = open_radio();
+    TEST_ASSERT_TRUE(hears(fd, "laser:WAIT", 2000));
+    TEST_ASSERT_EQUAL_INT(9, (int)write(fd, "#PING hi\n", 9));
+    TEST_ASSERT_TRUE(hears(fd, "OK PING hi\r\n", 2000));
+    waitpid(pid, &status, 0);
+    pid = 0;
+    close(fd);
+    TEST_ASSERT_TRUE(WIFEXITED(status));
+    TEST_ASSERT_EQUAL_INT(0, WEXITSTATUS(status));
+}
+
+void test_ctrl_c_ends_it_in_good_order(void)
+{
+    int fd, status;
+
+    start("60");
+    fd = open_radio();
+    TEST_ASSERT_TRUE(hears(fd, "alt:", 2000));
+    kill(pid, SIGINT);
+    waitpid(pid, &status, 0);
+    pid = 0;
+    close(fd);
+    TEST_ASSERT_TRUE(WIFEXITED(status));
+    TEST_ASSERT_EQUAL_INT(0, WEXITSTATUS(status));
+}

@@ -1,0 +1,151 @@
+"""tools/plot: reading the three kinds of recordings, refusing all else, and a picture of each."""
+import math
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools/plot"))
+import plot  # noqa: E402
+import recording  # noqa: E402
+
+HEADER = "t_s,height_m,abs_m,terrain_m,est_m,ref_m,thrust_n,pulse_us,state,flags\n"
+FLIGHT = HEADER + "".join(
+    f"{0.01 * k:.2f},{0.002 * k:.3f},{0.002 * k + 0.1:.3f},0.100,{'' if k < 5 else 0.4},{0 if k < 50 else 0.6},7.00,1400.0,"
+    f"{'GROUND' if k < 100 else 'FLYING'},{5 if 120 < k < 130 else 0}\n" for k in range(200))
+LINE = "alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0"
+GAP = "alt:- ref:0.600 laser:LOST thr:6.90 state:COASTING flags:1"
+
+
+def packets(text, size):
+    octets = text.encode("ascii")
+    return [octets[at:at + size].hex().upper() for at in range(0, len(octets), size)]
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.dir = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.dir)
+
+    def write(self, name, text):
+        (self.dir / name).write_bytes(text if isinstance(text, bytes) else text.encode())
+        return self.dir / name
+
+    def console(self, rows):
+        head = '02-05-2015 23:59:58.000,-,AT,"Plomada,0013A2004031A8D7,XBee,10EF,COM4 - 9600/8/N/1/N"\n'
+        return self.write("console.log", head + "".join(row + "\n" for row in rows))
+
+
+class Reading(Case):
+    def test_a_flight(self):
+        rec = recording.read(self.write("flight.csv", FLIGHT))
+        self.assertEqual((rec.kind, rec.name, len(rec.t)), ("flight", "flight", 200))
+        self.assertTrue(math.isnan(rec.columns["est_m"][4]))
+        self.assertEqual(rec.columns["est_m"][5], 0.4)
+        self.assertEqual(rec.columns["state"][99:101], ["GROUND", "FLYING"])
+        self.assertAlmostEqual(rec.t[-1], 1.99)
+
+    def test_columns_are_found_by_name_and_missing_ones_named(self):
+        swapped = "".join(",".join(row.split(",")[:1] + row.split(",")[:0:-1]) + "\n" for row in FLIGHT.split())
+        self.assertEqual(recording.read(self.write("f.csv", swapped)).columns, recording.read(self.write("g.csv", FLIGHT)).columns)
+        with self.assertRaisesRegex(recording.Unreadable, "no column ref_m"):
+            recording.read(self.write("f.csv", FLIGHT.replace("ref_m", "reference")))
+
+    def test_a_damaged_flight_names_its_line(self):
+        with self.assertRaisesRegex(recording.Unreadable, ":3: .*zero"):
+            recording.read(self.write("f.csv", HEADER + "0,0,0,0,0,0,0,0,GROUND,0\nzero,0,0,0,0,0,0,0,GROUND,0\n"))
+        with self.assertRaisesRegex(recording.Unreadable, "no samples"):
+            recording.read(self.write("f.csv", HEADER))
+
+    def test_telemetry_text_runs_at_200_ms_and_answers_take_no_time(self):
+        rec = recording.read(self.write("t.txt", f"OK SETR 0.6\r\n{LINE}\r\n\r\nERR KP range\r\n{GAP}\r\nalt:0.5 re\r\n{LINE}\r\n"))
+        self.assertEqual(rec.kind, "telemetry")
+        self.assertEqual([round(t, 6) for t in rec.t], [0.0, 0.2, 0.6])
+        self.assertEqual(rec.damaged, 1)
+        self.assertTrue(math.isnan(rec.columns["est_m"][1]))
+        self.assertEqual(rec.columns["laser"], ["OK", "LOST", "OK"])
+        self.assertEqual(rec.columns["thrust_n"], [7.12, 6.9, 7.12])
+
+    def test_a_console_log_split_anywhere_gives_the_same_lines(self):
+        text = f"{LINE}\r\nOK SETR 0.6\r\n{GAP}\r\n{LINE}\r\n"
+        for size in range(1, len(text) + 1):
+            rec = recording.read(self.console(f"02-05-2015 23:59:58.100,{k},RECV,{packet}"
+                                              for k, packet in enumerate(packets(text, size))))
+            self.assertEqual((rec.kind, rec.columns["state"], rec.damaged), ("console", ["FLYING", "COASTING", "FLYING"], 0), size)
+
+    def test_a_console_log_over_midnight_with_commands_sent(self):
+        line = (LINE + "\r\n").encode().hex()
+        rec = recording.read(self.console([
+            f"02-05-2015 23:59:59.900,0,RECV,{line}",
+            "02-05-2015 23:59:59.950,1,SENT,23534554", "03-05-2015 00:00:00.000,1,SENT,5220302E350A",
+            "what is this", f"03-05-2015 00:00:00.100,2,RECV,{line}", "03-05-2015 00:00:00.100,2,RECV,ABC"]))
+        self.assertEqual([round(t, 3) for t in rec.t], [0.0, 0.2])
+        self.assertEqual([(round(t, 3), text) for t, text in rec.sent], [(0.1, "#SETR 0.5")])
+        self.assertEqual(rec.damaged, 1)
+
+    def test_anything_else_is_refused(self):
+        for text in ("", "\n\n", "hello world\n", "a,b,c\n1,2,3\n", b"\x00\x01\x02", b"\xff\xfe\xfd\n",
+                     "OK SETR 0.6\n", "02-05-2015 11:44:56.017,-,AT,\"x\"\n02-05-2015 11:44:56.100,0,RECV,4F4B0A\n"):
+            with self.subTest(text=text), self.assertRaises(recording.Unreadable):
+                recording.read(self.write("x", text))
+
+
+class Drawing(Case):
+    def plot(self, *arguments):
+        return subprocess.run([sys.executable, "-B", ROOT / "tools/plot/plot.py", *arguments], capture_output=True, text=True,
+                              check=False)
+
+    def assert_picture(self, done, path):
+        self.assertEqual((done.returncode, done.stderr, done.stdout.strip()), (0, "", str(path)))
+        head = path.read_bytes()[:24]
+        self.assertEqual(head[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(struct.unpack(">II", head[16:]), (1200, 900))
+
+    def test_every_kind_gives_a_picture(self):
+        flight = self.write("flight.csv", FLIGHT)
+        self.write("flight.json", '{"overshoot_mm": 12.5, "rise_time_s": null}')
+        other = self.write("other.csv", FLIGHT.replace("0.6", "0.5"))
+        self.assert_picture(self.plot(flight), self.dir / "flight.png")
+        self.assert_picture(self.plot(flight, other, "-o", self.dir / "two/both.png"), self.dir / "two/both.png")
+        log = self.console([f"02-05-2015 11:44:56.100,0,RECV,{(LINE + chr(10)).encode().hex()}",
+                            "02-05-2015 11:44:56.150,0,SENT,23474554" + "0A"])
+        self.assert_picture(self.plot(log, "-o", f"{self.dir}/"), self.dir / "console.png")
+        text = self.write("text.txt", f"{LINE}\n{GAP}\n" * 4)
+        self.assert_picture(self.plot(text), self.dir / "text.png")
+
+    def test_the_colours_of_states_and_the_names_of_flags_are_the_firmwares(self):
+        header = (ROOT / "control/supervisor.h").read_text(encoding="utf-8")
+        states = {name for name in re.findall(r"\bFLIGHT_([A-Z]+),", header)}
+        flags = {int(value) for value in re.findall(r"#define FLIGHT_FLAG_\w+ (\d+)U", header)}
+        self.assertEqual(states, set(plot.STATE_COLOURS))
+        self.assertEqual(flags, set(plot.FLAG_NAMES))
+
+    def test_a_file_that_cannot_be_read_exits_2_with_one_line(self):
+        junk = self.write("junk.txt", "hello\n")
+        text = self.write("text.txt", f"{LINE}\n")
+        for arguments, reason in (((junk,), "neither a flight CSV, an XCTU console log nor telemetry text"),
+                                  ((self.dir / "none.csv",), "No such file"),
+                                  ((text, text), "only flight CSVs can be drawn together")):
+            done = self.plot(*arguments)
+            self.assertEqual((done.returncode, done.stdout, done.stderr.count("\n")), (2, "", 1), done.stderr)
+            self.assertIn(reason, done.stderr)
+
+    def test_stretches_of_equal_values(self):
+        self.assertEqual(list(plot.runs([0, 1, 2, 3], "aabb")), [(0, 2, "a"), (2, 4, "b")])
+        self.assertEqual(list(plot.runs([5], "a")), [(5, 6, "a")])
+
+    def test_the_window_opens_1_s_before_the_first_reference(self):
+        def rec(t, ref):
+            return recording.Recording("x", "flight", {"t_s": t, "ref_m": ref})
+        self.assertEqual(plot.window([rec([-11.0, 0.0, 1.0, 24.0], [0, 0, 0.6, 0])]), (0.0, 24.0))
+        self.assertEqual(plot.window([rec([3.0, 4.0], [0, 0])]), (3.0, 4.0))
+        self.assertEqual(plot.window([rec([3.0], [0.5])]), (3.0, 4.0))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,107 @@
+"""tools/setup/setup.sh on machines that lack something, played by stand-ins on PATH."""
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+BASICS = ("bash", "env", "dirname", "cmp", "cat", "mkdir", "mktemp", "rm", "cp", "grep", "head", "chmod", "touch")
+
+
+class Setup(unittest.TestCase):
+    def setUp(self):
+        self.dir = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.dir)
+        self.bin = self.dir / "bin"
+        self.log = self.dir / "log"
+        self.project = self.dir / "project"
+        shutil.copytree(ROOT / "tools/setup", self.project / "tools/setup")
+        shutil.copytree(ROOT / "tools/plot", self.project / "tools/plot")
+        cmock = self.dir / "cmock"
+        for file in ("lib/cmock.rb", "vendor/unity/src/unity.c"):
+            (cmock / file).parent.mkdir(parents=True)
+            (cmock / file).touch()
+        self.bin.mkdir()
+        for name in BASICS:
+            (self.bin / name).symlink_to(shutil.which(name))
+        for name in ("gcc", "cmake", "ruby", "python3", "gcovr"):
+            self.stand_in(name, "exit 0")
+        self.stand_in("id", '[ "$1" = -u ] && echo 1000 || echo joe')
+        self.stand_in("apt-cache", 'echo "Package: $3"')
+        self.stand_in("apt-get", f'echo "apt-get $*" >> {self.log}')
+
+    def stand_in(self, name, body):
+        (self.bin / name).unlink(missing_ok=True)
+        (self.bin / name).write_text(f"#!/bin/sh\n{body}\n", encoding="utf-8")
+        (self.bin / name).chmod(0o755)
+
+    def lack(self, *names):
+        for name in names:
+            (self.bin / name).unlink()
+
+    def run_setup(self, *jobs):
+        done = subprocess.run([self.project / "tools/setup/setup.sh", *jobs], capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL, check=False,
+                              env={"PATH": str(self.bin), "HOME": str(self.dir), "CMOCK_ROOT": str(self.dir / "cmock")})
+        self.calls = self.log.read_text(encoding="utf-8").splitlines() if self.log.exists() else []
+        return done
+
+    def test_nothing_is_said_or_called_when_nothing_is_missing(self):
+        done = self.run_setup("build", "test", "coverage")
+        self.assertEqual((done.returncode, done.stdout, done.stderr, self.calls), (0, "", "", []))
+
+    def test_root_installs_everything_missing_in_one_call(self):
+        self.stand_in("id", "echo 0")
+        self.lack("cmake", "ruby", "gcovr")
+        done = self.run_setup("build", "test", "coverage")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(len(self.calls), 1, self.calls)
+        self.assertTrue(self.calls[0].endswith("install --no-install-recommends cmake ruby gcovr"), self.calls)
+        self.assertIn("DPkg::Lock::Timeout=300", self.calls[0])
+
+    def test_lists_are_read_first_when_apt_knows_nothing(self):
+        self.stand_in("id", "echo 0")
+        self.stand_in("apt-cache", "exit 100")
+        self.lack("cmake")
+        self.assertEqual(self.run_setup("build").returncode, 0)
+        self.assertEqual([call.split()[-1] for call in self.calls], ["update", "cmake"])
+
+    def test_lists_are_read_once_more_when_they_are_stale(self):
+        self.stand_in("id", "echo 0")
+        self.stand_in("apt-get", f'echo "apt-get $*" >> {self.log}\n'
+                                 f'case "$*" in *update) touch {self.dir}/fresh;; *) [ -e {self.dir}/fresh ];; esac')
+        self.lack("cmake")
+        self.assertEqual(self.run_setup("build").returncode, 0)
+        self.assertEqual([call.split()[-1] for call in self.calls], ["cmake", "update", "cmake"])
+
+    def test_a_failed_installation_is_a_failure(self):
+        self.stand_in("id", "echo 0")
+        self.stand_in("apt-get", "exit 100")
+        self.lack("cmake")
+        self.assertNotEqual(self.run_setup("build").returncode, 0)
+
+    def test_sudo_is_used_where_it_needs_no_password(self):
+        self.stand_in("sudo", f'echo sudo >> {self.log}; [ "$1" = -n ] && shift; exec "$@"')
+        self.stand_in("true", "exit 0")
+        self.lack("cmake")
+        self.assertEqual(self.run_setup("build").returncode, 0)
+        self.assertTrue(self.calls[-1].endswith("install --no-install-recommends cmake"), self.calls)
+
+    def test_without_root_one_line_says_what_to_install(self):
+        self.stand_in("sudo", "exit 1")
+        self.lack("cmake", "ruby")
+        done = self.run_setup("build", "test")
+        self.assertEqual((done.returncode, self.calls), (1, []))
+        self.assertEqual(done.stderr, "setup: not root and no sudo; first run as root: "
+                                      "apt-get install -y --no-install-recommends cmake ruby\n")
+
+    def test_an_unknown_job_is_refused(self):
+        for jobs in ((), ("biuld",), ("build", "")):
+            self.assertEqual(self.run_setup(*jobs).returncode, 2, jobs)
+        self.assertEqual(self.calls, [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,156 @@
+#!/usr/bin/env bash
+# setup.sh build|test|coverage|plot ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
+#
+#   build     C compiler, CMake
+#   test      Ruby and CMock, which generates the mocks; Python 3 for the checks of the house rules
+#   coverage  gcovr
+#   plot      Python virtual environment build/venv with the pinned packages of tools/plot/requirements.txt
+#
+# Non-interactive and idempotent: silent, and no call of apt or pip, when nothing is missing. Packages are installed
+# as root, or by sudo where the user may use it; otherwise one line says what to install, and the status is 1.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+root=$(cd "$here/../.." && pwd)
+venv=$root/build/venv
+requirements=$root/tools/plot/requirements.txt
+cmock_private=$root/build/cmock
+
+say() { printf 'setup: %s\n' "$*" >&2; }
+die() { say "$*"; exit 1; }
+has() { command -v "$1" >/dev/null 2>&1; }
+cmock_in() { [ -f "$1/lib/cmock.rb" ] && [ -f "$1/vendor/unity/src/unity.c" ]; }
+
+cmock_ready() {
+    cmock_in /usr/share/cmock || cmock_in "$cmock_private/usr/share/cmock" || cmock_in "${CMOCK_ROOT:-/nowhere}"
+}
+
+# Prints a Python that can make virtual environments: Debian's, or the first on PATH.
+venv_maker() {
+    local python
+    for python in /usr/bin/python3 python3; do
+        if has "$python" && "$python" -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
+            echo "$python"
+            return 0
+        fi
+    done
+    return 1
+}
+
+venv_ready() {
+    [ -x "$venv/bin/python" ] && cmp -s "$requirements" "$venv/requirements.txt" &&
+        "$venv/bin/python" -c 'import sys, importlib.util as u; sys.exit(u.find_spec("matplotlib") is None)' 2>/dev/null
+}
+
+# Debian packages that the job lacks; cmock is treated apart.
+missing_packages() {
+    case $1 in
+        build)
+            has gcc || has cc || has "${CC:-cc}" || echo gcc
+            [ -f /usr/include/stdio.h ] || echo libc6-dev
+            has cmake || echo cmake ;;
+        test)
+            has ruby || echo ruby
+            has python3 || echo python3 ;;
+        coverage)
+            has gcovr || echo gcovr ;;
+        plot)
+            venv_ready || venv_maker >/dev/null || echo python3-venv ;;
+        *)
+            say "unknown job '$1'; know build, test, coverage, plot"
+            exit 2 ;;
+    esac
+}
+
+# How to run apt as root: empty for root, "sudo", or failure.
+elevation() {
+    [ "$(id -u)" -ne 0 ] || return 0
+    if has sudo && { sudo -n true 2>/dev/null || { [ -t 0 ] && id -nG | grep -qwE 'sudo|wheel|admin'; }; }; then
+        echo sudo
+    else
+        return 1
+    fi
+}
+
+known() { [ -n "$(apt-cache show --no-all-versions "$1" 2>/dev/null)" ]; }
+
+as_root() {
+    if [ -n "$sudo" ]; then sudo "$@"; else "$@"; fi
+}
+
+apt_get() {
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -y -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 "$@"
+}
+
+update_lists() {
+    say "reading the package lists"
+    apt_get update
+    updated=yes
+}
+
+# One apt-get call for everything; the package lists are read first only when they do not know a name.
+install_packages() {
+    local wanted=("$@") package updated=
+    for package in "${wanted[@]}" ${want_cmock:+ruby}; do
+        if ! known "$package"; then
+            update_lists
+            break
+        fi
+    done
+    if [ -n "$want_cmock" ]; then
+        if known cmock; then
+            wanted+=(cmock)
+        else
+            scratch=$(mktemp -d)
+            trap 'rm -rf "$scratch"' EXIT
+            package=$("$here/fetch_cmock.sh" "$scratch")
+            wanted+=("$package")
+        fi
+    fi
+    say "installing ${wanted[*]##*/}"
+    if ! apt_get install --no-install-recommends "${wanted[@]}" >&2; then
+        [ -z "$updated" ] || return 1
+        update_lists
+        apt_get install --no-install-recommends "${wanted[@]}" >&2
+    fi
+}
+
+make_venv() {
+    local python
+    python=$(venv_maker) || die "no Python 3.11 or later that can make a virtual environment: apt-get install python3-venv"
+    say "making build/venv with the packages of tools/plot/requirements.txt"
+    rm -rf "$venv"
+    mkdir -p "$root/build"
+    "$python" -m venv "$venv"
+    "$venv/bin/python" -m pip --quiet --disable-pip-version-check install --only-binary :all: -r "$requirements" ||
+        die "pip could not install tools/plot/requirements.txt (see above)"
+    cp "$requirements" "$venv/requirements.txt"
+}
+
+[ $# -gt 0 ] || { say "usage: setup.sh build|test|coverage|plot ..."; exit 2; }
+
+packages=()
+want_cmock=
+want_venv=
+for job in "$@"; do
+    list=$(missing_packages "$job")
+    for package in $list; do packages+=("$package"); done
+    case $job in
+        test) cmock_ready || want_cmock=yes ;;
+        plot) venv_ready || want_venv=yes ;;
+    esac
+done
+
+if [ ${#packages[@]} -gt 0 ] || [ -n "$want_cmock" ]; then
+    has apt-get || die "no apt-get here; install: ${packages[*]} ${want_cmock:+cmock}"
+    if sudo=$(elevation); then
+        install_packages ${packages[@]+"${packages[@]}"}
+    elif [ ${#packages[@]} -gt 0 ]; then
+        die "not root and no sudo; first run as root: apt-get install -y --no-install-recommends ${packages[*]}"
+    else
+        say "not root: CMock goes to build/cmock"
+        mkdir -p "$cmock_private"
+        package=$("$here/fetch_cmock.sh" "$cmock_private")
+        dpkg-deb -x "$package" "$cmock_private"
+    fi
+fi
+[ -z "$want_venv" ] || make_venv

@@ -1,0 +1,47 @@
+#!/usr/bin/env python3
+"""packets.py [--check]: writes docs/xctu_packets.xml, the list that XCTU's "Send packets" panel loads.
+
+With --check nothing is written; the status is 1 when the file differs from what would be.
+"""
+import sys
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+FILE = Path(__file__).resolve().parents[2] / "docs" / "xctu_packets.xml"
+LINE_END = b"\n"
+COMMANDS = (
+    "#SETR 0.6", "#SETR 0.5", "#SETR 0",
+    "#KP 0.015", "#KD 0.008", "#KI 0.01",
+    "#USAT 1", "#DSAT 0", "#GRAV 7",
+    "#LAW PD", "#LAW PID",
+    "#RELEASE FREE", "#RELEASE SCAN",
+    "#LINK 2", "#LINK 0",
+    "#PING 1",
+    "#GET", "#GET KP", "#HELP",
+)
+
+
+def document(commands=COMMANDS):
+    lines = ['<?xml version="1.0" encoding="UTF-8"?>', "", "<data>", "  <loop>false</loop>",
+             "  <repeat_times>1</repeat_times>", "  <repeat_period>500</repeat_period>", "  <packets_list>"]
+    for command in commands:
+        lines += [f"    <packet name={quoteattr(command)}>",
+                  f"      <payload>{(command.encode('ascii') + LINE_END).hex().upper()}</payload>", "    </packet>"]
+    return "\n".join(lines + ["  </packets_list>", "</data>", ""])
+
+
+def main(arguments):
+    if arguments == ["--check"]:
+        if FILE.read_text(encoding="utf-8") == document():
+            return 0
+        print(f"{FILE}: run {Path(__file__).name}", file=sys.stderr)
+        return 1
+    if arguments:
+        print(__doc__, file=sys.stderr)
+        return 2
+    FILE.write_text(document(), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
