@@ -1,11 +1,11 @@
 #include "thrust.h"
 
-#define SLOPE_TICKS_PER_N 177.21F
-#define IDLE_TICKS 4166.0F
+#define SLOPE_STEPS_PER_N 177.21F
+#define IDLE_STEPS 4166.0F
 
 float thrust_to_pulse_us(float thrust_n)
 {
-    const float pulse_us = (IDLE_TICKS - SLOPE_TICKS_PER_N * thrust_n) * THRUST_TICK_US;
+    const float pulse_us = (IDLE_STEPS - SLOPE_STEPS_PER_N * thrust_n) * THRUST_STEP_US;
     if (pulse_us < THRUST_FULL_PULSE_US) {
         return THRUST_FULL_PULSE_US;
     }
@@ -14,7 +14,7 @@ float thrust_to_pulse_us(float thrust_n)
 
 float thrust_from_pulse_us(float pulse_us)
 {
-    const float thrust_n = (IDLE_TICKS - pulse_us / THRUST_TICK_US) / SLOPE_TICKS_PER_N;
+    const float thrust_n = (IDLE_STEPS - pulse_us / THRUST_STEP_US) / SLOPE_STEPS_PER_N;
     if (thrust_n > THRUST_MAX_N) {
         return THRUST_MAX_N;
     }

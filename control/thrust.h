@@ -4,9 +4,9 @@
 #define CONTROL_THRUST_H
 
 #define THRUST_MAX_N 11.76F
-#define THRUST_TICK_US 0.48F                            /* one count of the seed's compare register */
-#define THRUST_IDLE_PULSE_US (4166.0F * THRUST_TICK_US) /* no thrust, "2 ms" */
-#define THRUST_FULL_PULSE_US (2082.0F * THRUST_TICK_US) /* full thrust, "1 ms" */
+#define THRUST_STEP_US 0.48F                            /* the seed's resolution of the pulse */
+#define THRUST_IDLE_PULSE_US (4166.0F * THRUST_STEP_US) /* no thrust, "2 ms" */
+#define THRUST_FULL_PULSE_US (2082.0F * THRUST_STEP_US) /* full thrust, "1 ms" */
 
 /* Pulse for a thrust, clipped to the two ends: (4166 - 177.21 T) counts of 0.48 us. NaN gives the idle pulse. */
 float thrust_to_pulse_us(float thrust_n);

@@ -80,8 +80,8 @@ void test_every_mirror_agrees_with_a_ray_model_but_for_the_seeds_two_cosines(voi
                         altitude_under_mirror(&mirror_geometry[places[i].mirror], slant_mm, (float)r, (float)p);
                     char where[64];
                     snprintf(where, sizeof where, "mirror %u roll %d pitch %d height %d", i, roll, pitch, height);
-                    TEST_ASSERT_FLOAT_WITHIN_MESSAGE(0.01F, (float)(height + seeds_error_mm(&places[i], r, p)), found_mm,
-                                                     where);
+                    const float expected_mm = (float)(height + seeds_error_mm(&places[i], r, p));
+                    TEST_ASSERT_FLOAT_WITHIN_MESSAGE(0.01F, expected_mm, found_mm, where);
                 }
             }
         }
@@ -96,8 +96,9 @@ void test_the_formula_is_within_the_documented_millimetres_up_to_ten_degrees(voi
             for (int pitch = -10; pitch <= 10; pitch++) {
                 const double r = roll * DEGREE, p = pitch * DEGREE;
                 const float slant_mm = (float)ray_mm(&places[i], 600.0, r, p);
-                const double off = fabs(
-                    (double)altitude_under_mirror(&mirror_geometry[places[i].mirror], slant_mm, (float)r, (float)p) - 600.0);
+                const float found_mm =
+                    altitude_under_mirror(&mirror_geometry[places[i].mirror], slant_mm, (float)r, (float)p);
+                const double off = fabs((double)found_mm - 600.0);
                 worst_both = fmax(worst_both, off);
                 worst_one = fmax(worst_one, (roll == 0 || pitch == 0) ? off : 0.0);
             }

@@ -590,7 +590,6 @@ void test_descending_comes_down_and_ends_on_the_ground_without_a_jump(void)
 void test_descending_with_a_wrong_hover_thrust_comes_down_all_the_same(void)
 {
     for (double error_n = -0.5; error_n < 0.6; error_n += 0.5) {
-        calm_law();
         board(7.4, 2.4);
         calm_law();
         hover_at(0.8F);
@@ -598,7 +597,7 @@ void test_descending_with_a_wrong_hover_thrust_comes_down_all_the_same(void)
         plant.hover_n += error_n;
         run(40.0);
         TEST_ASSERT_TRUE(plant.height_m < 0.001);
-        run_until(FLIGHT_GROUND, 5.0);
+        run_until(FLIGHT_GROUND, 8.0);
         TEST_ASSERT_TRUE(plant.hardest_m_s < 0.9);
     }
 }
@@ -748,8 +747,8 @@ void test_random_inputs_never_leave_the_actuators_range(void)
     TEST_ASSERT_EQUAL_UINT32((1U << FLIGHT_STATE_COUNT) - 1U, seen);
 }
 
-/* With the seed's window the law itself never asks for less than GRAV; nothing else may cut the thrust either. Only
- * the end of a fade without a height comes to nothing. */
+/* With the seed's window the law itself never asks for less than GRAV; nothing else may cut the thrust either. Gaps are
+ * too short here for the fade of a descent without a height to come near its end. */
 void test_with_the_seeds_parameters_the_thrust_is_never_cut_off_the_ground(void)
 {
     int landings = 0;
@@ -768,5 +767,5 @@ void test_with_the_seeds_parameters_the_thrust_is_never_cut_off_the_ground(void)
         TEST_ASSERT_TRUE(out.state == FLIGHT_GROUND || out.thrust_n > 1.3F);
         landings += out.state == FLIGHT_LANDING;
     }
-    TEST_ASSERT_TRUE(landings > 1000); /* and no fade came near its end */
+    TEST_ASSERT_TRUE(landings > 1000);
 }

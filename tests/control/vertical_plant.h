@@ -57,7 +57,7 @@ static inline void plant_move(plant_t *p, double dt_s)
 {
     const double above_m = p->height_m - p->terrain_m;
     const double z_r = 0.127 / (4.0 * (above_m + 0.28));
-    const double lift = p->thrust_n > 1.0 ? (1.0 + (p->thrust_n - p->hover_n) / p->hover_n) / (1.0 - 2.0 * z_r * z_r) : 0.0;
+    const double lift = p->thrust_n > 1.0 ? p->thrust_n / p->hover_n / (1.0 - 2.0 * z_r * z_r) : 0.0;
     const double acceleration = 9.81 * (lift - 1.0) - p->damping_per_s * p->speed_m_s;
     const uint32_t since_us = p->time_us - p->latch_us;
 

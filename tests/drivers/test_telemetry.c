@@ -100,7 +100,7 @@ void test_no_input_makes_the_line_longer_than_a_radio_packet(void)
 
 void test_the_longest_line_that_fits_is_95_characters_and_one_more_is_not_to_be_sent(void)
 {
-    telemetry_t telemetry = {.height_valid = true, .height_mm = -4294966.5F, .reference_m = -4294966.5F,
+    telemetry_t telemetry = {.height_valid = true, .height_mm = -4294966500.0F, .reference_m = -4294966.5F,
                              .laser = "EIGHT_CH", .thrust_n = -4294966.5F, .state = "DESCENDING", .flags = 65535U};
     telemetry_status(&line, &telemetry);
     TEST_ASSERT_EQUAL(95U, line.length);

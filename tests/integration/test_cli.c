@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include "child.h"
+#include "parameters.h"
 #include "unity.h"
 
 void setUp(void) {}

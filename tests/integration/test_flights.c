@@ -94,11 +94,11 @@ void test_rope_tugs_disturb_the_hover(void)
     static flight_result_t result;
     double calm = 0.0, tugged = 0.0;
 
-    for (unsigned long seed = 1; seed <= 5; seed++) {
+    for (unsigned long seed = 1; seed <= SEEDS; seed++) {
         child_fly("pid-40cm", seed, NULL, &result);
-        calm += result.metrics.value[METRIC_HOVER_RMS_MM] / 5.0;
+        calm += result.metrics.value[METRIC_HOVER_RMS_MM] / SEEDS;
         child_fly("pid-40cm-tugs", seed, NULL, &result);
-        tugged += result.metrics.value[METRIC_HOVER_RMS_MM] / 5.0;
+        tugged += result.metrics.value[METRIC_HOVER_RMS_MM] / SEEDS;
         TEST_ASSERT_FALSE(result.metrics.failed);
     }
     TEST_ASSERT_TRUE_MESSAGE(tugged > calm, "the ropes went unnoticed");
