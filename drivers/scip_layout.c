@@ -5,7 +5,8 @@
 const scip_layout_t scip_layouts[SCIP_LAYOUT_COUNT] = {
     [SCIP_LAYOUT_FRONT] = { "front", 372U, 406U, 1U, { { 372U, 406U } } },
     [SCIP_LAYOUT_TWO_BEAMS] = { "two-beams", 249U, 519U, 2U, { { 249U, 277U }, { 491U, 519U } } },
-    [SCIP_LAYOUT_THREE_MIRRORS] = { "three-mirrors", 111U, 657U, 3U, { { 111U, 145U }, { 372U, 406U }, { 623U, 657U } } },
+    [SCIP_LAYOUT_THREE_MIRRORS] = { "three-mirrors", 111U, 657U, 3U,
+                                    { { 111U, 145U }, { 372U, 406U }, { 623U, 657U } } },
 };
 
 typedef struct {

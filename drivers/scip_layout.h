@@ -32,7 +32,12 @@ typedef struct {
     scip_group_t groups[SCIP_GROUPS_MAX];   /* 5 steps inside each mirror's edges, measured on the vehicle */
 } scip_layout_t;
 
-typedef enum { SCIP_LAYOUT_FRONT, SCIP_LAYOUT_TWO_BEAMS, SCIP_LAYOUT_THREE_MIRRORS, SCIP_LAYOUT_COUNT } scip_layout_id_t;
+typedef enum {
+    SCIP_LAYOUT_FRONT,
+    SCIP_LAYOUT_TWO_BEAMS,
+    SCIP_LAYOUT_THREE_MIRRORS,
+    SCIP_LAYOUT_COUNT
+} scip_layout_id_t;
 extern const scip_layout_t scip_layouts[SCIP_LAYOUT_COUNT];
 
 /* Largest number of points any layout asks for (three mirrors: 111..657), with a cluster of 1. */
@@ -46,7 +51,7 @@ typedef struct {
 } scip_group_mean_t;
 
 /* Mean over the good rays of one group: 20 mm or more, and below 4095 mm (two characters) or up to 5600 mm (three).
- * Rays that the scan does not hold count as bad. With a cluster a ray is a point all of whose steps lie in the group. */
+ * Rays that the scan does not hold count as bad. With a cluster a ray is a point whose steps all lie in the group. */
 scip_group_mean_t scip_group_mean(const scip_scan_t *scan, const scip_group_t *group);
 
 /* Direction of a step, degrees, positive to the left of the front. Exact. */
@@ -55,7 +60,7 @@ float scip_step_degrees(uint16_t step);
 /* The step nearest to a direction, kept within 44..725 (NaN: 44). */
 uint16_t scip_step_at_degrees(float degrees);
 
-/* When a step is sampled, after the instant of the scan's time stamp (step 0), at 600 revolutions a minute. Microseconds,
+/* When a step is sampled, microseconds after the instant of the scan's time stamp (step 0), at 600 revolutions a minute.
  * step: 0..1023. */
 uint32_t scip_step_delay_us(uint16_t step);
 

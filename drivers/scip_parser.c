@@ -65,21 +65,21 @@ static bool read_count(const octet_t *text, uint16_t *count)
 static bool take_echo(scip_parser_t *parser)
 {
     const uint16_t length = parser->awaited.echo_length;
-    const octet_t *echo = scip_request_echo(&parser->awaited);
-    const octet_t *end = &parser->line[parser->line_length];
     uint16_t fixed = length;
     uint16_t remaining = 0U;
     if (!parser->awaiting || parser->line_length < length) {
         return false;
     }
+    const octet_t *echo = scip_request_echo(&parser->awaited);
+    const octet_t *end = &parser->line[parser->line_length - length];
     if (is_counted(&parser->awaited)) {
         fixed = (uint16_t)(length - 2U);
-        if (!read_count(end - 2, &remaining)) {
+        if (!read_count(&end[fixed], &remaining)) {
             return false;
         }
     }
     for (uint16_t i = 0U; i < fixed; i++) {
-        if (echo[i] != (end - length)[i]) {
+        if (echo[i] != end[i]) {
             return false;
         }
     }
@@ -338,7 +338,7 @@ static bool counter_follows(const scip_parser_t *parser)
     return parser->remaining + 1U == parser->last_remaining;
 }
 
-/* A stamp follows when it is ahead of one of the last two seen, so a wrong one whose sum was right harms no later frame.
+/* A stamp follows when it is ahead of one of the last two seen, so a wrong one whose sum was right harms no later one.
  * No two frames in a row are dropped here, so a restarted clock or a wrong counter costs one scan. */
 static bool in_sequence(scip_parser_t *parser)
 {

@@ -33,7 +33,7 @@ typedef enum {
     SCIP_DAMAGE_NONE,
     SCIP_DAMAGE_SUM,        /* a sum does not match */
     SCIP_DAMAGE_LENGTH,     /* a line or the number of points is too short or too long */
-    SCIP_DAMAGE_ECHO,       /* between two frames of a stream: a line that is not its echo; an answer with another count */
+    SCIP_DAMAGE_ECHO,       /* between two frames: a line that is not the stream's echo; an answer with another count */
     SCIP_DAMAGE_CHARACTER,  /* outside 30H..6FH in status, time stamp or data */
     SCIP_DAMAGE_SEQUENCE,   /* remaining-scan counter or time stamp did not follow; the scan itself is dropped */
     SCIP_DAMAGE_COUNT
@@ -81,8 +81,8 @@ typedef struct {
     uint16_t line_length;       /* SCIP_TEXT: of the whole line, ';' and sum included */
     uint16_t text_length;       /* SCIP_TEXT: characters before ';' and sum; line_length when it has none */
     bool text_proved;           /* SCIP_TEXT: the line has a sum and it is right; some firmware sends wrong ones */
+    scip_request_t awaited;     /* latest given to scip_parser_expect(); its kind is that of SCIP_REPLY */
     /* private */
-    scip_request_t awaited;
     bool awaiting;
     uint16_t state;
     uint16_t gathered;          /* octets of the line in reception */
@@ -111,8 +111,8 @@ void scip_parser_init(scip_parser_t *parser);
 void scip_parser_expect(scip_parser_t *parser, const scip_request_t *request);
 
 /* Where the next scan goes; NULL: scans are checked and counted but not stored and not delivered. A scan with more
- * points than capacity is damage by length. May be changed on SCIP_SCAN, which makes double buffers free of copying; at
- * another time the scan in reception is given up. The scan must outlive its use here. */
+ * points than capacity is damage by length. May be changed on SCIP_SCAN, so that two memories can take turns without
+ * copying; at another time the scan in reception is given up. The scan must outlive its use here. */
 void scip_parser_scan_into(scip_parser_t *parser, scip_scan_t *scan);
 
 /* The UART lost or mangled octets: what is being received is given up (the caller counts the cause). */

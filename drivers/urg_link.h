@@ -1,12 +1,12 @@
-/* The URG-04LX from power-up to a stream of scans, and back to it after any loss: a state machine without clock, port or
- * task. It is stepped every 150 ms with what the parser has seen and answers with what to do.
+/* The URG-04LX from power-up to a stream of scans, and back to it after any loss: a state machine without clock, port
+ * or task. It is stepped every 150 ms with what the parser has seen and answers with what to do.
  *
  *   WAIT -> STOP1 (L0) -> SWITCH (SCIP2.0) -> RATE (SS) -> STOP2 (QT) -> STREAM (MS) -> OK
  *
- * Each command is repeated, after its own time-out, until confirmed; the own UART follows a new rate one step after the
- * sensor's reply. Nothing is assumed of the sensor's state. QT is what every state answers (SCIP2.0 "00", streaming "00"
- * after the frames under way, time mode "0E", SCIP1.1 "E"), so QT is asked at one rate after the other, for ever, when
- * the sensor is not where it should be. Found there, but without scans: QT and MS again, then TM2, then RS.
+ * Each command is repeated, after its own time-out, until confirmed; the own UART follows a new rate one step after
+ * the sensor's reply. Nothing is assumed of the sensor's state. QT is what every state answers (SCIP2.0 "00", streaming
+ * "00" after the frames under way, time mode "0E", SCIP1.1 "E"), so QT is asked at one rate after the other, for ever,
+ * when the sensor is not where it should be. Found there, but without scans: QT and MS again, then TM2, then RS.
  *
  * Pure; Task context (TaskSendLaser). Times in microseconds, wrapping; steps must be less than 35 minutes apart. */
 #ifndef DRIVERS_URG_LINK_H
@@ -90,7 +90,8 @@ typedef struct {
 
 void urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us);
 
-/* `seen` is what was received up to now. *action is written whole at every step. */
+/* `seen` is what was received up to now; its octet and framing counts too are those of this moment, whether or not
+ * anything was complete since the last step. *action is written whole. */
 void urg_link_step(urg_link_t *link, const urg_seen_t *seen, uint32_t now_us, urg_action_t *action);
 
 #endif

@@ -33,7 +33,7 @@ static scip_group_mean_t mean_of(uint16_t first, uint16_t last)
     return scip_group_mean(&scan, &group);
 }
 
-/* --- the table --------------------------------------------------------------------------------------------------- */
+/* --- the table ---------------------------------------------------------------------------------------------------- */
 
 void test_every_layout_can_be_asked_for_and_holds_its_groups(void)
 {
@@ -75,16 +75,16 @@ void test_the_layouts_are_those_of_the_vehicle(void)
                                                   scip_step_degrees(beams->groups[g].first_step));
     }
     TEST_ASSERT_EQUAL_STRING("three-mirrors", mirrors->name);
-    /* mirrors at 30, 120 and 210 degrees, counted from step 44 - 1.3 degrees: steps 128, 384 and 640 */
-    static const uint16_t centres[] = { 128, 384, 640 };
-    for (uint16_t g = 0; g < 3; g++) {
+    for (uint16_t g = 0; g < 3; g++) { /* mirrors at 30, 120 and 210 degrees; the front is 120 */
+        const uint16_t centre = scip_step_at_degrees(90.0F * (float)g - 90.0F);
+        TEST_ASSERT_EQUAL_UINT16(128 + 256 * g, centre);
         TEST_ASSERT_EQUAL_UINT16(34, mirrors->groups[g].last_step - mirrors->groups[g].first_step);
-        TEST_ASSERT_TRUE(mirrors->groups[g].first_step <= centres[g] - 5);
-        TEST_ASSERT_TRUE(mirrors->groups[g].last_step >= centres[g] + 5);
+        TEST_ASSERT_TRUE(mirrors->groups[g].first_step <= centre - 5);
+        TEST_ASSERT_TRUE(mirrors->groups[g].last_step >= centre + 5);
     }
 }
 
-/* --- the mean ---------------------------------------------------------------------------------------------------- */
+/* --- the mean ----------------------------------------------------------------------------------------------------- */
 
 void test_equal_rays_give_that_distance_and_no_spread(void)
 {
@@ -217,7 +217,7 @@ void test_the_largest_group_of_the_largest_distances_does_not_overflow(void)
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 5600.0F, mean.mean_mm);
 }
 
-/* --- directions and times ---------------------------------------------------------------------------------------- */
+/* --- directions and times ----------------------------------------------------------------------------------------- */
 
 void test_steps_are_1024_to_the_turn_from_the_front_to_the_left(void)
 {

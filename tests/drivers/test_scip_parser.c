@@ -9,7 +9,7 @@
 #define WIRE_MAX 16000
 #define SCANS_MAX 40
 
-/* --- the sensor's side, written apart from the product ----------------------------------------------------------- */
+/* --- the sensor's side, written apart from the product ------------------------------------------------------------ */
 
 typedef struct {
     unsigned octets[WIRE_MAX];
@@ -102,7 +102,7 @@ static void put_frame(wire_t *wire, const order_t *order, unsigned remaining, un
     put(wire, '\n');
 }
 
-/* --- the product's side ------------------------------------------------------------------------------------------ */
+/* --- the product's side ------------------------------------------------------------------------------------------- */
 
 static const order_t front = { "MS", 372, 406, 1, 0, 0 };
 static const order_t wide = { "MD", 384, 405, 1, 0, 0 }; /* 22 points of 3: one straddles two blocks */
@@ -227,7 +227,7 @@ static void assert_numbered_scan(unsigned index, const order_t *order, unsigned 
     }
 }
 
-/* --- vectors ----------------------------------------------------------------------------------------------------- */
+/* --- vectors ------------------------------------------------------------------------------------------------------ */
 
 /* Hokuyo C-42-03320B, section "data encoding": CB = 1234, m2@0 = 16 000 000. */
 void test_two_character_values_and_time_stamps_decode_as_in_the_specification(void)
@@ -382,7 +382,7 @@ void test_a_recording_with_clusters_is_read_whole(void)
     TEST_ASSERT_EQUAL_UINT16(44, scan.first_step);
 }
 
-/* --- replies without points ---------------------------------------------------------------------------------------- */
+/* --- replies without points --------------------------------------------------------------------------------------- */
 
 static void assert_reply(scip_kind_t kind, const char *text, const char *status, bool legacy)
 {
@@ -513,7 +513,7 @@ void test_the_clock_reply_checks_length_characters_and_sum(void)
     }
 }
 
-/* --- VV PP II -------------------------------------------------------------------------------------------------------- */
+/* --- VV PP II ----------------------------------------------------------------------------------------------------- */
 
 static void assert_line(const char *octets, const char *text, bool proved)
 {
@@ -575,7 +575,7 @@ void test_a_refused_information_request_has_no_lines(void)
     assert_reply(SCIP_STATE, "II\n0Ee\n\n", "0E", false);
 }
 
-/* --- SCIP1.1 answers "E" ----------------------------------------------------------------------------------------------- */
+/* --- SCIP1.1 answers "E" ------------------------------------------------------------------------------------------ */
 
 void test_an_e_under_the_awaited_echo_tells_scip_1_1(void)
 {
@@ -619,7 +619,7 @@ void test_a_cut_block_of_a_running_stream_is_not_taken_for_scip_1_1(void)
     TEST_ASSERT_EQUAL(SCIP_SCAN, feed_text("MS0384038401000\n99b\n00033\nDQE\n\n"));
 }
 
-/* --- streams ------------------------------------------------------------------------------------------------------------ */
+/* --- streams ------------------------------------------------------------------------------------------------------ */
 
 void test_a_stream_is_answered_and_then_delivers_scan_by_scan(void)
 {
@@ -776,7 +776,7 @@ void test_no_run_of_wrong_counters_silences_the_stream(void)
     TEST_ASSERT_EQUAL_UINT(5, seen.scans);
 }
 
-/* --- time stamps -------------------------------------------------------------------------------------------------------- */
+/* --- time stamps -------------------------------------------------------------------------------------------------- */
 
 static scip_event_t stamped_frame(unsigned long stamp)
 {
@@ -878,7 +878,7 @@ void test_stamps_are_unwrapped(void)
     }
 }
 
-/* --- the owner of the scan ---------------------------------------------------------------------------------------------- */
+/* --- the owner of the scan ---------------------------------------------------------------------------------------- */
 
 void test_a_scan_larger_than_its_memory_is_damage_and_writes_nothing(void)
 {
@@ -910,7 +910,8 @@ void test_without_memory_scans_are_checked_and_counted_only(void)
 void test_two_memories_take_turns_without_copying(void)
 {
     static uint16_t memory[2][35];
-    scip_scan_t scans[2] = { { .distance_mm = memory[0], .capacity = 35 }, { .distance_mm = memory[1], .capacity = 35 } };
+    scip_scan_t scans[2] = { { .distance_mm = memory[0], .capacity = 35 },
+                             { .distance_mm = memory[1], .capacity = 35 } };
     unsigned filling = 0;
     scip_parser_scan_into(&parser, &scans[filling]);
     expect_order(&front);
@@ -953,7 +954,7 @@ void test_a_parser_and_a_scan_of_271_points_fit_2_kib(void)
     TEST_ASSERT_LESS_OR_EQUAL_size_t(2048, sizeof(scip_parser_t) + sizeof(scip_scan_t) + 271 * sizeof(uint16_t));
 }
 
-/* --- faults --------------------------------------------------------------------------------------------------------------- */
+/* --- faults ------------------------------------------------------------------------------------------------------- */
 
 #define FRAMES 4
 
@@ -997,8 +998,8 @@ static void assert_run_survives(const order_t *order, const wire_t *w, size_t at
 static const order_t *const runs[] = { &front, &counted, &wide };
 #define RUNS (sizeof runs / sizeof runs[0])
 
-/* A single flipped bit never escapes: bits 0..5 change the six-bit sum, bits 6 and 7 leave 30H..6FH, and what has no sum
- * (echo, line ends) is compared. */
+/* A single flipped bit never escapes: bits 0..5 change the six-bit sum, bits 6 and 7 leave 30H..6FH, and what has no
+ * sum (echo, line ends) is compared. */
 void test_no_flipped_bit_yields_a_distance_or_costs_another_frame(void)
 {
     for (size_t r = 0; r < RUNS; r++) {
@@ -1031,7 +1032,6 @@ void test_no_dropped_octet_yields_a_distance_or_costs_another_frame(void)
     }
 }
 
-/* An octet inserted at the border of two frames belongs to neither, and costs neither when it is no line end inside. */
 static void assert_insertion_survives(const order_t *order, size_t at, unsigned octet)
 {
     static wire_t faulty;
@@ -1222,7 +1222,7 @@ void test_a_frame_inside_a_frame_is_delivered(void)
     }
 }
 
-/* --- properties ----------------------------------------------------------------------------------------------------------- */
+/* --- properties --------------------------------------------------------------------------------------------------- */
 
 static unsigned long random_state;
 

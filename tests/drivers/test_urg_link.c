@@ -1,0 +1,1014 @@
+#include "unity.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scip_parser.h"
+#include "urg_link.h"
+
+#define STEP_US 150000U
+#define STEP_MS 150U
+#define NEVER 1000000U
+#define LOG_MAX 2000
+
+/* --- a small scripted sensor, written apart from the product ------------------------------------------------------ */
+
+static struct {
+    unsigned rate, power_up_rate;
+    bool on, scip2, streaming, time_mode;
+    bool knows_switch, knows_rate, knows_stream, streams, refuses_all;
+    char command[80];
+    unsigned length;
+    char echo[40];
+    unsigned scans_left; /* of a counted run, 0 endless */
+    unsigned clock_ms, next_frame_ms;
+    unsigned latency_steps;
+    const char *rate_refusal, *stream_refusal;
+} sensor;
+
+typedef struct {
+    unsigned octet, rate, due_step;
+} flying_t;
+
+static flying_t queue[200000];
+static unsigned queued, taken;
+static unsigned step_number;
+static unsigned sent_to_host, sent_to_sensor;           /* octets, for faults by position */
+static unsigned drop_to_host, flip_to_host, drop_to_sensor;
+
+static void send_octet(unsigned octet)
+{
+    if (queued == sizeof queue / sizeof queue[0]) {
+        TEST_FAIL_MESSAGE("queue full");
+    }
+    queue[queued++] = (flying_t){ octet, sensor.rate, step_number + sensor.latency_steps };
+}
+
+static void send_text(const char *text)
+{
+    while (*text != '\0') {
+        send_octet((unsigned)*text++);
+    }
+}
+
+static void send_status(const char *echo, const char *status)
+{
+    char sum[2] = { (char)(((status[0] + status[1]) & 63) + 48), '\0' };
+    send_text(echo);
+    send_text("\n");
+    send_text(status);
+    send_text(sum);
+    send_text("\n\n");
+}
+
+static void send_frame(void)
+{
+    char echo[40];
+    unsigned sum = 0;
+    strcpy(echo, sensor.echo);
+    if (sensor.scans_left > 0) {
+        sensor.scans_left--;
+        echo[13] = (char)(48 + sensor.scans_left / 10);
+        echo[14] = (char)(48 + sensor.scans_left % 10);
+        sensor.streaming = sensor.scans_left > 0;
+    }
+    send_text(echo);
+    send_text("\n99b\n");
+    for (unsigned i = 0; i < 4; i++) {
+        unsigned character = 48 + (sensor.clock_ms >> (18 - 6 * i) & 63);
+        sum += character;
+        send_octet(character);
+    }
+    send_octet((sum & 63) + 48);
+    send_text("\n9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H");
+    send_octet(((32 * (57 + 72)) & 63) + 48);
+    send_text("\n9H9H9H");
+    send_octet(((3 * (57 + 72)) & 63) + 48);
+    send_text("\n\n");
+}
+
+static void answer_1(const char *command)
+{
+    char reply[100];
+    bool switching = strcmp(command, "SCIP2.0") == 0 && sensor.knows_switch;
+    snprintf(reply, sizeof reply, "%s\n%s\n\n", command, switching || strcmp(command, "L0") == 0 ? "0" : "E");
+    send_text(reply);
+    sensor.scip2 = switching;
+}
+
+static void answer_rate(const char *command)
+{
+    unsigned rate = (unsigned)atoi(&command[2]);
+    if (!sensor.knows_rate) {
+        send_status(command, sensor.rate_refusal);
+    } else if (rate == sensor.rate) {
+        send_status(command, "03");
+    } else {
+        send_status(command, "00");
+        sensor.rate = rate;
+    }
+}
+
+static void answer_stream(const char *command)
+{
+    if (strlen(command) != 15 || !sensor.knows_stream) {
+        send_status(command, strlen(command) != 15 ? "0C" : sensor.stream_refusal);
+        return;
+    }
+    send_status(command, "00");
+    strcpy(sensor.echo, command);
+    sensor.scans_left = (unsigned)atoi(&command[13]);
+    sensor.streaming = sensor.streams;
+    sensor.next_frame_ms = sensor.clock_ms + 100;
+}
+
+static void answer_2(const char *command)
+{
+    if (sensor.refuses_all || (sensor.time_mode && strncmp(command, "TM", 2) != 0)) {
+        send_status(command, "0E");
+    } else if (strcmp(command, "QT") == 0) {
+        if (sensor.streaming) {
+            send_frame();
+        }
+        sensor.streaming = false;
+        send_status(command, "00");
+    } else if (strcmp(command, "TM2") == 0) {
+        send_status(command, sensor.time_mode ? "00" : "03");
+        sensor.time_mode = false;
+    } else if (strcmp(command, "RS") == 0) {
+        send_status(command, "00");
+        sensor.streaming = false;
+        sensor.rate = sensor.power_up_rate;
+        sensor.clock_ms = 0;
+    } else if (strncmp(command, "SS", 2) == 0 && strlen(command) == 8) {
+        answer_rate(command);
+    } else if (strncmp(command, "MS", 2) == 0) {
+        answer_stream(command);
+    } else {
+        send_status(command, "0E");
+    }
+}
+
+static void sensor_hears(unsigned octet)
+{
+    if (octet != '\n') {
+        sensor.command[sensor.length] = (char)octet;
+        sensor.length = (sensor.length + 1) % (sizeof sensor.command - 1);
+        return;
+    }
+    sensor.command[sensor.length] = '\0';
+    if (sensor.length > 0) {
+        (sensor.scip2 ? answer_2 : answer_1)(sensor.command);
+    }
+    sensor.length = 0;
+}
+
+static void sensor_runs(unsigned ms)
+{
+    for (; ms > 0 && sensor.on; ms--) {
+        sensor.clock_ms++;
+        if (sensor.streaming && sensor.clock_ms >= sensor.next_frame_ms) {
+            sensor.next_frame_ms += 100;
+            send_frame();
+        }
+    }
+}
+
+static void sensor_powers_up(void)
+{
+    sensor.on = true;
+    sensor.scip2 = sensor.streaming = sensor.time_mode = false;
+    sensor.rate = sensor.power_up_rate;
+    sensor.length = 0;
+    sensor.clock_ms = 0;
+}
+
+/* --- the host ----------------------------------------------------------------------------------------------------- */
+
+static scip_parser_t parser;
+static scip_scan_t scan;
+static uint16_t points[35];
+static urg_link_t link_;
+static urg_config_t config;
+static urg_seen_t seen;
+static urg_action_t action;
+static uint32_t now_us;
+static unsigned host_rate;
+static unsigned power_cycles;
+
+static struct {
+    char text[20];
+    unsigned step, rate;
+    laser_status_t status;
+} asked[LOG_MAX];
+static unsigned asked_count;
+
+static void note_event(scip_event_t event)
+{
+    switch (event) {
+    case SCIP_REPLY:
+        seen.reply_count++;
+        seen.reply_kind = parser.awaited.kind;
+        seen.reply = parser.reply;
+        break;
+    case SCIP_SCAN:
+        seen.scan_count++;
+        seen.scan_remaining = scan.remaining;
+        break;
+    case SCIP_NOTICE:
+        seen.notice_count++;
+        seen.notice = parser.reply;
+        break;
+    case SCIP_LEGACY:
+        seen.legacy_count++;
+        break;
+    case SCIP_DAMAGED:
+        seen.damage_count++;
+        break;
+    default:
+        break;
+    }
+}
+
+static void host_hears(void)
+{
+    for (; taken < queued && queue[taken].due_step <= step_number; taken++) {
+        unsigned octet = queue[taken].octet;
+        sent_to_host++;
+        if (queue[taken].rate != host_rate) {
+            seen.framing_count++;
+            scip_parser_line_broken(&parser);
+            continue;
+        }
+        if (sent_to_host == drop_to_host) {
+            continue;
+        }
+        octet ^= sent_to_host == flip_to_host ? 4U : 0U;
+        note_event(scip_parser_feed(&parser, (octet_t)octet));
+    }
+    seen.octet_count = parser.counters.octets;
+    if (taken == queued) {
+        taken = queued = 0;
+    }
+}
+
+static void host_sends(void)
+{
+    if (asked_count == LOG_MAX) {
+        asked_count = LOG_MAX / 2;
+    }
+    memset(&asked[asked_count], 0, sizeof asked[0]);
+    for (uint16_t i = 0; i < action.request.text_length; i++) {
+        asked[asked_count].text[i] = (char)action.request.text[i];
+        sent_to_sensor++;
+        if (sensor.on && host_rate == sensor.rate && sent_to_sensor != drop_to_sensor) {
+            sensor_hears(action.request.text[i]);
+        }
+    }
+    asked[asked_count].step = step_number;
+    asked[asked_count].rate = host_rate;
+    asked[asked_count].status = link_.status;
+    asked_count++;
+}
+
+/* One step of 150 ms: what came since the last one is seen, the machine acts, the sensor answers. */
+static void step(void)
+{
+    host_hears();
+    urg_link_step(&link_, &seen, now_us, &action);
+    TEST_ASSERT_EQUAL_UINT32(link_.rate, action.rate);
+    if (action.set_rate) {
+        TEST_ASSERT_TRUE_MESSAGE(host_rate != action.rate, "reopened at the same rate");
+        host_rate = action.rate;
+    }
+    TEST_ASSERT_EQUAL_UINT(host_rate, action.rate);
+    if (action.cycle_power) {
+        power_cycles++;
+    }
+    if (action.send) {
+        scip_parser_expect(&parser, &action.request);
+        host_sends();
+    }
+    sensor_runs(STEP_MS);
+    now_us += STEP_US;
+    step_number++;
+}
+
+static void steps(unsigned count)
+{
+    while (count-- > 0) {
+        step();
+    }
+}
+
+/* Steps until scans arrive; NEVER after 60 s. */
+static unsigned steps_to_ok(void)
+{
+    for (unsigned count = 1; count <= 400; count++) {
+        step();
+        if (link_.status == LASER_OK) {
+            return count;
+        }
+    }
+    return NEVER;
+}
+
+static void host_starts(uint32_t wait_us)
+{
+    config = (urg_config_t){ .wait_us = wait_us, .first_rate = 115200, .stream_rate = 250000, .stream = SCIP_STREAM_2,
+                             .range = { 372, 406, 1, 0, 0 } };
+    memset(&seen, 0, sizeof seen);
+    asked_count = 0;
+    power_cycles = 0;
+    host_rate = 115200;
+    scan = (scip_scan_t){ .distance_mm = points, .capacity = 35 };
+    scip_parser_init(&parser);
+    scip_parser_scan_into(&parser, &scan);
+    urg_link_init(&link_, &config, now_us);
+}
+
+static void fresh_sensor(unsigned rate)
+{
+    memset(&sensor, 0, sizeof sensor);
+    sensor.power_up_rate = rate;
+    sensor.knows_switch = sensor.knows_rate = sensor.knows_stream = sensor.streams = true;
+    sensor_powers_up();
+}
+
+static void start_streaming(unsigned rate)
+{
+    sensor.rate = rate;
+    sensor.scip2 = sensor.streaming = true;
+    strcpy(sensor.echo, "MS0372040601000");
+    sensor.next_frame_ms = sensor.clock_ms + 50;
+}
+
+static void reset(uint32_t wait_us)
+{
+    queued = taken = step_number = sent_to_host = sent_to_sensor = 0;
+    drop_to_host = flip_to_host = drop_to_sensor = NEVER;
+    now_us = 1000000;
+    fresh_sensor(115200);
+    host_starts(wait_us);
+}
+
+void setUp(void)
+{
+    reset(10000000);
+}
+
+void tearDown(void)
+{
+}
+
+static void assert_asked(unsigned index, const char *text, unsigned at_step, unsigned rate, laser_status_t status)
+{
+    TEST_ASSERT_LESS_THAN_UINT(asked_count, index);
+    TEST_ASSERT_EQUAL_STRING(text, asked[index].text);
+    TEST_ASSERT_EQUAL_UINT(at_step, asked[index].step);
+    TEST_ASSERT_EQUAL_UINT(rate, asked[index].rate);
+    TEST_ASSERT_EQUAL_STRING(laser_status_name(status), laser_status_name(asked[index].status));
+}
+
+static unsigned times_asked(const char *command)
+{
+    unsigned count = 0;
+    for (unsigned i = 0; i < asked_count; i++) {
+        const char *text = asked[i].text[0] == '\n' ? &asked[i].text[1] : asked[i].text;
+        count += strncmp(text, command, strlen(command)) == 0;
+    }
+    return count;
+}
+
+/* --- the start as the seed has it --------------------------------------------------------------------------------- */
+
+void test_the_status_names_are_those_of_the_telemetry(void)
+{
+    static const char *const names[] = { "WAIT", "STOP1", "SWITCH", "RATE", "STOP2", "STREAM", "OK", "LOST" };
+    for (int status = 0; status < LASER_STATUS_COUNT; status++) {
+        TEST_ASSERT_EQUAL_STRING(names[status], laser_status_name((laser_status_t)status));
+    }
+}
+
+/* 10 s are 66.7 steps. One command a step; the own rate follows one step after the reply. */
+void test_a_sensor_after_power_up_is_started_in_the_order_of_the_seed(void)
+{
+    steps(67);
+    TEST_ASSERT_EQUAL_UINT(0, asked_count);
+    TEST_ASSERT_EQUAL(LASER_WAIT, link_.status);
+    TEST_ASSERT_EQUAL_UINT(6, steps_to_ok() - 1);
+    TEST_ASSERT_EQUAL_UINT(5, asked_count);
+    assert_asked(0, "\nL0\n", 67, 115200, LASER_STOP1);
+    assert_asked(1, "SCIP2.0\n", 68, 115200, LASER_SWITCH);
+    assert_asked(2, "SS250000\n", 69, 115200, LASER_RATE);
+    assert_asked(3, "\nQT\n", 71, 250000, LASER_STOP2);
+    assert_asked(4, "MS0372040601000\n", 72, 250000, LASER_STREAM);
+    TEST_ASSERT_EQUAL_UINT32(0, link_.restarts);
+    TEST_ASSERT_EQUAL_UINT32(0, link_.timeouts);
+    TEST_ASSERT_EQUAL_UINT32(0, seen.damage_count);
+    TEST_ASSERT_EQUAL_UINT(0, power_cycles);
+}
+
+void test_without_a_wait_the_start_begins_at_once(void)
+{
+    reset(0);
+    TEST_ASSERT_EQUAL_UINT(7, steps_to_ok());
+    assert_asked(0, "\nL0\n", 0, 115200, LASER_STOP1);
+}
+
+void test_nothing_is_sent_while_scans_arrive(void)
+{
+    steps_to_ok();
+    unsigned before = asked_count;
+    steps(4000);
+    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    TEST_ASSERT_EQUAL_UINT(before, asked_count);
+    TEST_ASSERT_EQUAL_UINT32(0, link_.restarts);
+    TEST_ASSERT_GREATER_THAN_UINT32(5900, seen.scan_count);
+}
+
+void test_time_may_wrap_at_any_moment(void)
+{
+    for (uint32_t before = 0; before < 14000000; before += 500000) {
+        reset(10000000);
+        now_us = 0U - before;
+        host_starts(10000000);
+        TEST_ASSERT_EQUAL_UINT(67 + 7, steps_to_ok());
+        steps(40);
+        TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    }
+}
+
+void test_the_time_in_a_status_is_known(void)
+{
+    steps(68);
+    TEST_ASSERT_EQUAL_UINT32(now_us - STEP_US, link_.since_us);
+    steps_to_ok();
+    uint32_t entered = now_us - STEP_US;
+    steps(20);
+    TEST_ASSERT_EQUAL_UINT32(entered, link_.since_us);
+}
+
+/* Real sensors were seen to take 381 ms for a first reply: no command is repeated before 400 ms. */
+void test_a_slow_sensor_is_not_asked_twice(void)
+{
+    sensor.latency_steps = 1;
+    TEST_ASSERT_NOT_EQUAL_UINT(NEVER, steps_to_ok());
+    TEST_ASSERT_EQUAL_UINT32(0, link_.timeouts);
+    TEST_ASSERT_EQUAL_UINT(5, asked_count);
+}
+
+void test_every_command_is_repeated_only_after_400_ms(void)
+{
+    sensor.on = false;
+    steps(1000);
+    for (unsigned i = 1; i < asked_count; i++) {
+        TEST_ASSERT_GREATER_OR_EQUAL_UINT(3, asked[i].step - asked[i - 1].step);
+    }
+}
+
+/* --- any state at the start --------------------------------------------------------------------------------------- */
+
+typedef enum { SCIP1, IDLE, STREAMING, TIMING } state_t;
+
+static unsigned start_from(state_t state, unsigned rate, uint32_t wait_us)
+{
+    reset(wait_us);
+    sensor.power_up_rate = sensor.rate = rate;
+    sensor.scip2 = state != SCIP1;
+    sensor.time_mode = state == TIMING;
+    if (state == STREAMING) {
+        start_streaming(rate);
+    }
+    return steps_to_ok();
+}
+
+/* The longest time from the first command (or from reset, when the sensor is heard) to the first scan. */
+void test_streaming_is_reached_from_every_state_at_every_rate_without_a_power_cycle(void)
+{
+    static const char *const names[] = { "SCIP1.1", "SCIP2.0 idle", "streaming", "time mode" };
+    static const unsigned rates[] = { 19200, 57600, 115200, 250000 };
+    static const unsigned limit_ms[4][4] = {
+        /* 19200 57600 115200 250000 */
+        { 2850, 3450, 1050, 1650 },
+        { 2700, 3300, 1050, 1350 },
+        { 1350, 1500, 1050, 600 },
+        { 3000, 3600, 1350, 1650 },
+    };
+    for (int state = SCIP1; state <= TIMING; state++) {
+        for (unsigned r = 0; r < 4; r++) {
+            unsigned ms = STEP_MS * start_from((state_t)state, rates[r], 0);
+            printf("%s at %u: %u ms\n", names[state], rates[r], ms);
+            TEST_ASSERT_LESS_OR_EQUAL_UINT(limit_ms[state][r], ms);
+            TEST_ASSERT_EQUAL_UINT(250000, host_rate);
+            TEST_ASSERT_EQUAL_UINT(0, power_cycles);
+            TEST_ASSERT_EQUAL_UINT32(0, link_.restarts);
+            steps(10);
+            TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+        }
+    }
+}
+
+void test_a_sensor_that_already_streams_cuts_the_wait_short(void)
+{
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(6, start_from(STREAMING, 250000, 10000000));
+    TEST_ASSERT_EQUAL_STRING("\nQT\n", asked[0].text);
+    TEST_ASSERT_EQUAL_UINT(250000, asked[0].rate);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(8, start_from(STREAMING, 115200, 10000000));
+    TEST_ASSERT_EQUAL_UINT(115200, asked[0].rate);
+}
+
+void test_half_a_command_at_the_sensor_and_half_a_reply_in_the_line_do_no_harm(void)
+{
+    static const char *const halves[] = { "M", "MS0372", "QT", "SCIP2.", "\x15\x80garbage" };
+    for (unsigned i = 0; i < 5; i++) {
+        for (int state = SCIP1; state <= TIMING; state++) {
+            reset(0);
+            sensor.scip2 = state != SCIP1;
+            sensor.time_mode = state == TIMING;
+            strcpy(sensor.command, halves[i]);
+            sensor.length = (unsigned)strlen(halves[i]);
+            send_text("MS0372040601000\n99b\n01");
+            TEST_ASSERT_LESS_OR_EQUAL_UINT(12, steps_to_ok());
+        }
+    }
+}
+
+void test_a_sensor_that_boots_after_the_host_is_found(void)
+{
+    for (unsigned late = 0; late < 60; late++) {
+        reset(0);
+        sensor.on = false;
+        steps(late);
+        sensor_powers_up();
+        TEST_ASSERT_LESS_OR_EQUAL_UINT(22, steps_to_ok());
+    }
+}
+
+/* --- damage in the dialogue --------------------------------------------------------------------------------------- */
+
+/* 67 steps of waiting and 7 of talk without a fault. The worst is the lost end of SS: the next command ends it, at the
+ * wrong moment. */
+static void assert_start_survives(const char *fault, unsigned position)
+{
+    char text[60];
+    unsigned count = steps_to_ok();
+    snprintf(text, sizeof text, "%s %u", fault, position);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT_MESSAGE(67 + 7 + 17, count, text);
+    TEST_ASSERT_EQUAL_UINT(250000, host_rate);
+    steps(10);
+    TEST_ASSERT_EQUAL_MESSAGE(LASER_OK, link_.status, text);
+    TEST_ASSERT_EQUAL_UINT32(0, link_.restarts);
+}
+
+void test_any_octet_of_any_reply_may_be_lost_or_wrong(void)
+{
+    steps_to_ok();
+    const unsigned octets = sent_to_host;
+    TEST_ASSERT_GREATER_THAN_UINT(6 + 11 + 14 + 8 + 21, octets);
+    for (unsigned k = 1; k <= octets; k++) {
+        reset(10000000);
+        drop_to_host = k;
+        assert_start_survives("dropped", k);
+        reset(10000000);
+        flip_to_host = k;
+        assert_start_survives("flipped", k);
+    }
+}
+
+void test_any_octet_of_any_command_may_be_lost(void)
+{
+    steps_to_ok();
+    const unsigned octets = sent_to_sensor;
+    TEST_ASSERT_EQUAL_UINT(4 + 8 + 9 + 4 + 16, octets);
+    for (unsigned k = 1; k <= octets; k++) {
+        reset(10000000);
+        drop_to_sensor = k;
+        assert_start_survives("command octet", k);
+    }
+}
+
+void test_the_sensor_may_restart_at_any_step_of_the_dialogue(void)
+{
+    for (unsigned at = 66; at < 80; at++) {
+        reset(10000000);
+        steps(at);
+        sensor_powers_up();
+        steps(5);
+        if (link_.status != LASER_OK) {
+            TEST_ASSERT_LESS_OR_EQUAL_UINT(25, steps_to_ok());
+        }
+        steps(10);
+        TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    }
+}
+
+/* --- loss and recovery -------------------------------------------------------------------------------------------- */
+
+/* 450 ms for the front at 250000: two revolutions, a frame and a margin. */
+void test_a_mute_sensor_is_noticed_within_600_ms_and_not_before_450(void)
+{
+    steps_to_ok();
+    steps(20);
+    sensor.on = false;
+    uint32_t last = link_.scan_us;
+    while (link_.status == LASER_OK) {
+        step();
+        last = link_.scan_us;
+    }
+    const uint32_t silent = now_us - STEP_US - last;
+    TEST_ASSERT_GREATER_OR_EQUAL_UINT32(450000, silent);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT32(600000, silent);
+    TEST_ASSERT_EQUAL(LASER_LOST, link_.status);
+    TEST_ASSERT_EQUAL_UINT32(1, link_.restarts);
+}
+
+void test_a_stream_that_stopped_is_started_again_at_the_same_rate(void)
+{
+    steps_to_ok();
+    steps(20);
+    sensor.streaming = false;
+    unsigned before = asked_count;
+    steps(10);
+    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    TEST_ASSERT_EQUAL_UINT(before + 2, asked_count);
+    TEST_ASSERT_EQUAL_STRING("\nQT\n", asked[before].text);
+    TEST_ASSERT_EQUAL_STRING("MS0372040601000\n", asked[before + 1].text);
+    TEST_ASSERT_EQUAL_UINT16(0, link_.failures);
+}
+
+/* 22 steps: 3.3 s from the end of the sensor's boot to scans. */
+void test_a_brown_out_of_the_sensor_is_overcome(void)
+{
+    for (unsigned off = 0; off < 40; off++) {
+        reset(0);
+        steps_to_ok();
+        steps(10);
+        sensor.on = false;
+        steps(off);
+        sensor_powers_up();
+        steps(5);
+        unsigned count = link_.status == LASER_OK ? 0 : steps_to_ok();
+        TEST_ASSERT_LESS_OR_EQUAL_UINT(22, count);
+        steps(10);
+        TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+        TEST_ASSERT_EQUAL_UINT32(1, link_.restarts);
+    }
+}
+
+void test_a_host_reset_while_the_sensor_streams_costs_less_than_a_second(void)
+{
+    reset(0);
+    steps_to_ok();
+    steps(10);
+    host_starts(0);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(6, steps_to_ok());
+    TEST_ASSERT_EQUAL_UINT(0, times_asked("SCIP2.0"));
+}
+
+void test_a_sensor_in_time_mode_is_taken_out_of_it(void)
+{
+    steps_to_ok();
+    sensor.streaming = false;
+    sensor.time_mode = true;
+    steps(12);
+    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    TEST_ASSERT_EQUAL_UINT(1, times_asked("TM2"));
+}
+
+/* Every rate has its turn, the configured ones once only, for ever; power is cycled every 20 s where it can be. */
+void test_a_dead_sensor_is_looked_for_at_every_rate_for_ever(void)
+{
+    static const unsigned rates[] = { 250000, 115200, 19200, 57600 };
+    reset(0);
+    sensor.on = false;
+    steps(800);
+    TEST_ASSERT_EQUAL_UINT(2, times_asked("L0"));
+    TEST_ASSERT_EQUAL_UINT(asked_count - 2, times_asked("QT"));
+    TEST_ASSERT_GREATER_THAN_UINT(200, asked_count);
+    for (unsigned i = 2; i < asked_count; i++) {
+        TEST_ASSERT_EQUAL_UINT(rates[(i - 2) % 4], asked[i].rate);
+        TEST_ASSERT_EQUAL(LASER_LOST, asked[i].status);
+        TEST_ASSERT_EQUAL_UINT('\n', (unsigned)asked[i].text[0]);
+    }
+    TEST_ASSERT_EQUAL_UINT(5, power_cycles);
+    TEST_ASSERT_EQUAL_UINT32(asked_count - 1, link_.timeouts);
+    sensor_powers_up();
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(22, steps_to_ok());
+}
+
+void test_other_configured_rates_are_probed_first(void)
+{
+    static const unsigned rates[] = { 500000, 750000, 19200, 57600, 115200, 250000 };
+    reset(0);
+    config.first_rate = 750000;
+    config.stream_rate = 500000;
+    host_rate = 750000;
+    urg_link_init(&link_, &config, now_us);
+    sensor.on = false;
+    steps(100);
+    for (unsigned i = 2; i < 20; i++) {
+        TEST_ASSERT_EQUAL_UINT(rates[(i - 2) % 6], asked[i].rate);
+    }
+}
+
+/* The sensor answers everything but never scans: QT, then TM2, then RS. */
+void test_a_sensor_that_answers_but_does_not_scan_climbs_the_ladder(void)
+{
+    steps_to_ok();
+    sensor.streams = false;
+    sensor.streaming = false;
+    unsigned begin = asked_count;
+    steps(30);
+    static const char *const ladder[] = { "\nQT\n", "MS0372040601000\n", "\nTM2\n", "QT\n",
+                                          "MS0372040601000\n", "\nRS\n", "\nQT\n" };
+    for (unsigned i = 0; i < 7; i++) {
+        TEST_ASSERT_EQUAL_STRING(ladder[i], asked[begin + i].text);
+    }
+    TEST_ASSERT_EQUAL_UINT(115200, asked[begin + 6].rate);
+    steps(270);
+    TEST_ASSERT_GREATER_THAN_UINT(3, times_asked("RS"));
+    TEST_ASSERT_EQUAL_UINT(2, power_cycles);
+    sensor.streams = true;
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(30, steps_to_ok());
+    TEST_ASSERT_EQUAL_UINT16(0, link_.failures);
+}
+
+void test_a_sensor_that_refuses_everything_is_reset_again_and_again(void)
+{
+    reset(0);
+    sensor.scip2 = sensor.refuses_all = true;
+    steps(100);
+    TEST_ASSERT_GREATER_THAN_UINT(3, times_asked("RS"));
+    sensor.refuses_all = false;
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(20, steps_to_ok());
+}
+
+void test_a_scan_order_that_is_refused_is_not_just_repeated(void)
+{
+    static const char *const refusals[] = { "04", "0E" };
+    for (unsigned i = 0; i < 2; i++) {
+        reset(0);
+        sensor.knows_stream = false;
+        sensor.stream_refusal = refusals[i];
+        steps(60);
+        TEST_ASSERT_GREATER_THAN_UINT(1, times_asked("MS"));
+        TEST_ASSERT_GREATER_THAN_UINT(0, times_asked("TM2"));
+        TEST_ASSERT_GREATER_THAN_UINT(0, times_asked("RS"));
+        sensor.knows_stream = true;
+        TEST_ASSERT_LESS_OR_EQUAL_UINT(20, steps_to_ok());
+    }
+}
+
+void test_a_sensor_that_does_not_know_the_rate_streams_at_its_own(void)
+{
+    static const char *const refusals[] = { "02", "04", "0F" };
+    for (unsigned i = 0; i < 3; i++) {
+        reset(0);
+        sensor.knows_rate = false;
+        sensor.rate_refusal = refusals[i];
+        TEST_ASSERT_LESS_OR_EQUAL_UINT(8, steps_to_ok());
+        TEST_ASSERT_EQUAL_UINT(115200, host_rate);
+        TEST_ASSERT_EQUAL_UINT(i == 2 ? 2 : 1, times_asked("SS"));
+        sensor.streaming = false;
+        steps(10);
+        TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+        TEST_ASSERT_EQUAL_UINT(115200, host_rate);
+    }
+}
+
+void test_a_sensor_that_has_the_rate_already_is_taken_at_its_word(void)
+{
+    reset(0);
+    steps(2);
+    TEST_ASSERT_EQUAL(LASER_SWITCH, link_.status);
+    step();
+    TEST_ASSERT_EQUAL(LASER_RATE, link_.status);
+    queued = taken = 0;
+    sensor.rate = 115200;
+    send_text("SS250000\n03S\n\n");
+    sensor.rate = 250000;
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(5, steps_to_ok());
+    TEST_ASSERT_EQUAL_UINT(1, times_asked("SS"));
+}
+
+void test_first_and_stream_rate_may_be_the_same(void)
+{
+    reset(0);
+    config.stream_rate = 115200;
+    urg_link_init(&link_, &config, now_us);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(6, steps_to_ok());
+    TEST_ASSERT_EQUAL_UINT(0, times_asked("SS"));
+    TEST_ASSERT_EQUAL_UINT(115200, host_rate);
+}
+
+void test_firmware_without_scip_2_is_asked_for_ever_but_never_given_up(void)
+{
+    reset(0);
+    sensor.knows_switch = false;
+    steps(100);
+    TEST_ASSERT_GREATER_THAN_UINT(10, times_asked("SCIP2.0"));
+    sensor.knows_switch = true;
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(20, steps_to_ok());
+}
+
+/* --- hardware notices --------------------------------------------------------------------------------------------- */
+
+static void reach_ok(void)
+{
+    reset(0);
+    steps_to_ok();
+    steps(5);
+}
+
+void test_hardware_trouble_ends_the_stream_and_is_met_at_once(void)
+{
+    reach_ok();
+    send_status("MS0372040601000", "50");
+    sensor.streaming = false;
+    steps(1);
+    TEST_ASSERT_EQUAL(LASER_LOST, link_.status);
+    steps(6);
+    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    TEST_ASSERT_EQUAL_UINT32(1, link_.restarts);
+}
+
+void test_a_sensor_that_verifies_an_error_is_given_two_seconds(void)
+{
+    reach_ok();
+    send_status("MS0372040601000", "21");
+    sensor.streaming = false;
+    steps(13);
+    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    steps(2);
+    TEST_ASSERT_EQUAL(LASER_LOST, link_.status);
+}
+
+void test_the_all_clear_changes_nothing(void)
+{
+    reach_ok();
+    send_status("MS0372040601000", "98");
+    steps(20);
+    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    TEST_ASSERT_EQUAL_UINT32(0, link_.restarts);
+    TEST_ASSERT_EQUAL_UINT32(1, seen.notice_count);
+}
+
+void test_after_verifying_the_usual_time_out_holds_again(void)
+{
+    reach_ok();
+    send_status("MS0372040601000", "21");
+    send_status("MS0372040601000", "98");
+    steps(10);
+    sensor.streaming = false;
+    steps(6);
+    TEST_ASSERT_EQUAL_UINT32(1, link_.restarts);
+}
+
+/* --- other ranges ------------------------------------------------------------------------------------------------- */
+
+void test_a_counted_run_is_ordered_again_when_it_ends(void)
+{
+    reset(0);
+    config.range.scans = 7;
+    urg_link_init(&link_, &config, now_us);
+    steps_to_ok();
+    steps(200);
+    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    TEST_ASSERT_EQUAL_UINT32(0, link_.restarts);
+    TEST_ASSERT_GREATER_THAN_UINT(15, times_asked("MS0372040601007"));
+    TEST_ASSERT_GREATER_OR_EQUAL_UINT32(7 * 15, seen.scan_count);
+    TEST_ASSERT_EQUAL_UINT32(0, seen.damage_count);
+}
+
+void test_a_counted_run_whose_last_scan_is_lost_is_ordered_again_too(void)
+{
+    reset(0);
+    config.range.scans = 7;
+    urg_link_init(&link_, &config, now_us);
+    steps_to_ok();
+    sensor.streaming = false;
+    steps(8);
+    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    TEST_ASSERT_EQUAL_UINT32(1, link_.restarts);
+}
+
+/* Time-outs follow revolutions and frame lengths. */
+void test_longer_scans_are_waited_for_longer(void)
+{
+    static const struct {
+        scip_range_t range;
+        uint32_t least_us, most_us;
+    } rows[] = {
+        { { 372, 406, 1, 0, 0 }, 450000, 460000 },
+        { { 372, 406, 1, 9, 0 }, 2250000, 2260000 },
+        { { 111, 657, 1, 0, 0 }, 490000, 505000 },
+    };
+    for (unsigned i = 0; i < 3; i++) {
+        urg_seen_t some = { .scan_count = 0 };
+        reset(0);
+        config.range = rows[i].range;
+        config.first_rate = config.stream_rate;
+        urg_link_init(&link_, &config, 0);
+        urg_link_step(&link_, &some, 0, &action);
+        some.reply_count = 1;
+        some.reply_kind = SCIP_LASER_OFF_1;
+        some.reply.legacy = false;
+        urg_link_step(&link_, &some, STEP_US, &action);
+        some.reply_count = 2;
+        some.reply_kind = SCIP_STOP;
+        urg_link_step(&link_, &some, 2 * STEP_US, &action);
+        TEST_ASSERT_EQUAL(LASER_STREAM, link_.status);
+        TEST_ASSERT_EQUAL(SCIP_STREAM_2, action.request.kind);
+        TEST_ASSERT_GREATER_THAN_UINT32(rows[i].least_us - 50000, link_.timeout_us);
+        some.scan_count = 1;
+        urg_link_step(&link_, &some, 3 * STEP_US, &action);
+        TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+        TEST_ASSERT_GREATER_OR_EQUAL_UINT32(rows[i].least_us, link_.timeout_us);
+        TEST_ASSERT_LESS_OR_EQUAL_UINT32(rows[i].most_us, link_.timeout_us);
+    }
+}
+
+void test_a_reply_of_another_kind_confirms_nothing(void)
+{
+    urg_seen_t some = { .reply_count = 0 };
+    reset(0);
+    urg_link_step(&link_, &some, 0, &action);
+    some.reply_count = 1;
+    some.reply_kind = SCIP_STOP;
+    urg_link_step(&link_, &some, STEP_US, &action);
+    TEST_ASSERT_EQUAL(LASER_STOP1, link_.status);
+    TEST_ASSERT_FALSE(action.send);
+}
+
+void test_late_scans_of_an_older_order_do_not_end_the_start(void)
+{
+    urg_seen_t some = { .reply_count = 0 };
+    reset(0);
+    urg_link_step(&link_, &some, 0, &action);
+    some.scan_count = 5;
+    urg_link_step(&link_, &some, STEP_US, &action);
+    TEST_ASSERT_EQUAL(LASER_STOP1, link_.status);
+}
+
+static void probe_hears(uint32_t octets, uint32_t framing)
+{
+    urg_seen_t some = { .octet_count = 0 };
+    reset(0);
+    urg_link_step(&link_, &some, 0, &action);
+    urg_link_step(&link_, &some, 450000, &action);
+    urg_link_step(&link_, &some, 900000, &action);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    some.octet_count += octets;
+    some.framing_count += framing;
+    urg_link_step(&link_, &some, 1350000, &action);
+    TEST_ASSERT_TRUE(action.send);
+}
+
+void test_a_probe_that_hears_clean_octets_stays_at_its_rate(void)
+{
+    probe_hears(0, 0);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    probe_hears(30, 0);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    TEST_ASSERT_EQUAL_UINT16(2, link_.attempt);
+    probe_hears(30, 1);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    probe_hears(0, 7);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+}
+
+void test_a_burst_of_framing_errors_ends_a_probe_early_and_a_few_do_not(void)
+{
+    for (uint32_t framing = 0; framing < 20; framing++) {
+        urg_seen_t some = { .octet_count = 0 };
+        reset(0);
+        urg_link_step(&link_, &some, 0, &action);
+        some.framing_count = framing;
+        urg_link_step(&link_, &some, STEP_US, &action);
+        TEST_ASSERT_EQUAL(framing >= 8 ? LASER_LOST : LASER_STOP1, link_.status);
+        TEST_ASSERT_EQUAL(framing >= 8, action.set_rate);
+    }
+}
+
+/* Random losses in both directions at one octet in a hundred: the stream always comes back. */
+void test_a_noisy_cable_never_ends_it(void)
+{
+    unsigned long seed = 19991231UL;
+    unsigned ok = 0;
+    printf("random seed %lu\n", seed);
+    reset(0);
+    for (unsigned i = 0; i < 20000; i++) {
+        seed = (seed * 1103515245UL + 12345UL) & 0x7FFFFFFFUL;
+        drop_to_host = sent_to_host + 1 + (unsigned)(seed >> 8) % 300;
+        drop_to_sensor = sent_to_sensor + 1 + (unsigned)(seed >> 16) % 30;
+        if (i % 1000 == 500) {
+            sensor_powers_up();
+        }
+        step();
+        ok += link_.status == LASER_OK;
+    }
+    TEST_ASSERT_GREATER_THAN_UINT(19000, ok);
+    TEST_ASSERT_GREATER_OR_EQUAL_UINT32(20, link_.restarts);
+}
