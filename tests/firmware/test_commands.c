@@ -1,0 +1,467 @@
+/* Operator's lines from their octets to the servers and the answers; parser, parameter table and texts are real, the
+ * servers and the radio are mocked. */
+#include "commands.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "decimal.h"
+#include "kernel.h"
+#include "mock_servers.h"
+#include "mock_xbee_port.h"
+#include "unity.h"
+
+#define ANSWERS_MAX 40U
+#define ARRIVAL_US 123456U
+
+static parameters_t parameters;
+static reference_sample_t reference;
+static uint16_t parameter_writes;
+static uint16_t reference_writes;
+static char answers[ANSWERS_MAX][TELEMETRY_LINE_MAX + 1U];
+static uint16_t answer_count;
+
+static void parameters_read(parameters_t *set, int calls)
+{
+    (void)calls;
+    *set = parameters;
+}
+
+static void parameters_write(const parameters_t *set, int calls)
+{
+    (void)calls;
+    TEST_ASSERT_EQUAL_UINT16_MESSAGE(0, answer_count, "answered before it was done");
+    parameters = *set;
+    parameter_writes++;
+}
+
+static void reference_read(reference_sample_t *sample, int calls)
+{
+    (void)calls;
+    *sample = reference;
+}
+
+static void reference_write(const reference_sample_t *sample, int calls)
+{
+    (void)calls;
+    reference = *sample;
+    reference_writes++;
+}
+
+/* Every answer, whatever it says, is one line of at most one radio packet that begins with its verdict. */
+static void answer(const telemetry_line_t *line, int calls)
+{
+    char *text = answers[answer_count];
+
+    (void)calls;
+    TEST_ASSERT_LESS_THAN(ANSWERS_MAX, answer_count);
+    TEST_ASSERT_FALSE_MESSAGE(line->overflowed, "the answer does not fit");
+    TEST_ASSERT_LESS_OR_EQUAL_UINT16(TELEMETRY_LINE_MAX, line->length);
+    TEST_ASSERT_GREATER_THAN_UINT16(2, line->length);
+    (void)memcpy(text, line->text, line->length);
+    text[line->length] = '\0';
+    TEST_ASSERT_EQUAL_STRING("\r\n", &text[line->length - 2U]);
+    text[line->length - 2U] = '\0';
+    TEST_ASSERT_NULL(strpbrk(text, "\r\n"));
+    TEST_ASSERT_TRUE_MESSAGE(strncmp(text, "OK ", 3) == 0 || strncmp(text, "ERR ", 4) == 0, text);
+    answer_count++;
+}
+
+void setUp(void)
+{
+    kernel_reset();
+    parameters_init(&parameters);
+    reference = (reference_sample_t){.reference_m = 0.0F, .sequence = 7U, .link_time_us = 11U, .link_sequence = 40U};
+    parameter_writes = reference_writes = answer_count = 0U;
+    parameter_server_read_Stub(parameters_read);
+    parameter_server_write_Stub(parameters_write);
+    reference_server_read_Stub(reference_read);
+    reference_server_write_Stub(reference_write);
+    xbee_port_answer_Stub(answer);
+}
+
+void tearDown(void)
+{
+    kernel_check();
+}
+
+/* The characters of one line, without its end, as they come from the radio. */
+static void type_characters(const char *text, size_t length)
+{
+    telecommand_collector_t collector;
+
+    telecommand_collector_init(&collector);
+    answer_count = 0U;
+    for (size_t i = 0; i < length; i++) {
+        TEST_ASSERT_FALSE(telecommand_collect(&collector, octet_of((uint16_t)text[i])));
+    }
+    TEST_ASSERT_TRUE(telecommand_collect(&collector, '\n'));
+    commands_execute(&collector.line, ARRIVAL_US);
+}
+
+static void type(const char *text)
+{
+    type_characters(text, strlen(text));
+}
+
+static void assert_answer(const char *expected, const char *line)
+{
+    type(line);
+    TEST_ASSERT_EQUAL_STRING_MESSAGE(expected, answers[0], line);
+    TEST_ASSERT_EQUAL_UINT16_MESSAGE(1, answer_count, line);
+}
+
+/* A refusal leaves everything as it is, the link's life sign included. */
+static void assert_refused(const char *expected, const char *line)
+{
+    const parameters_t parameters_before = parameters;
+    const reference_sample_t reference_before = reference;
+
+    parameter_writes = reference_writes = 0U;
+    assert_answer(expected, line);
+    TEST_ASSERT_EQUAL_UINT16_MESSAGE(0, parameter_writes, line);
+    TEST_ASSERT_EQUAL_UINT16_MESSAGE(0, reference_writes, line);
+    TEST_ASSERT_EQUAL_MEMORY(&parameters_before, &parameters, sizeof parameters);
+    TEST_ASSERT_EQUAL_MEMORY(&reference_before, &reference, sizeof reference);
+}
+
+void test_a_parameter_is_set_written_once_and_answered_with_its_value(void)
+{
+    assert_answer("OK KP 0.02", "#KP 0.02");
+    TEST_ASSERT_EQUAL_FLOAT(0.02F, parameters.value[PARAMETER_KP]);
+    TEST_ASSERT_EQUAL_UINT32(1, parameters.generation);
+    TEST_ASSERT_EQUAL_UINT16(1, parameter_writes);
+}
+
+void test_only_the_named_parameter_changes(void)
+{
+    parameters_t expected;
+
+    for (uint16_t id = PARAMETER_KP; id < PARAMETER_LAW; id++) {
+        char line[40];
+        char text[40];
+
+        expected = parameters;
+        expected.value[id] = 0.5F;
+        expected.generation++;
+        (void)snprintf(line, sizeof line, "#%s 0.5", parameter_table[id].name);
+        (void)snprintf(text, sizeof text, "OK %s 0.5", parameter_table[id].name);
+        assert_answer(text, line);
+        TEST_ASSERT_EQUAL_MEMORY(&expected, &parameters, sizeof expected);
+    }
+}
+
+void test_the_reference_goes_to_its_own_server_with_the_next_sequence(void)
+{
+    const parameters_t before = parameters;
+
+    assert_answer("OK SETR 0.6", "#SETR 0.6");
+    TEST_ASSERT_EQUAL_FLOAT(0.6F, reference.reference_m);
+    TEST_ASSERT_EQUAL_UINT32(8, reference.sequence);
+    TEST_ASSERT_EQUAL_UINT16(0, parameter_writes);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &parameters, sizeof before);
+    assert_answer("OK SETR 0", "#SETR 0");
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, reference.reference_m);
+    TEST_ASSERT_EQUAL_UINT32(9, reference.sequence);
+}
+
+void test_the_same_reference_again_is_a_new_command(void)
+{
+    assert_answer("OK SETR 0.6", "#SETR 0.6");
+    assert_answer("OK SETR 0.6", "#SETR 0.6");
+    TEST_ASSERT_EQUAL_UINT32(9, reference.sequence);
+}
+
+void test_a_reference_of_minus_zero_is_zero(void)
+{
+    assert_answer("OK SETR 0", "#SETR -0");
+    TEST_ASSERT_FALSE(signbit(reference.reference_m));
+}
+
+void test_the_limits_themselves_are_accepted_and_the_next_number_is_not(void)
+{
+    for (uint16_t id = 0; id < PARAMETER_COUNT; id++) {
+        const parameter_row_t *row = &parameter_table[id];
+        char line[TELECOMMAND_LINE_MAX + 1U];
+        char text[TELEMETRY_LINE_MAX];
+        const float limits[2] = {row->minimum, row->maximum};
+
+        if (row->choices != NULL) {
+            continue;
+        }
+        for (uint16_t i = 0; i < 2U; i++) {
+            (void)snprintf(line, sizeof line, "#%s %.9g", row->name, (double)limits[i]);
+            type(line);
+            TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE("OK ", answers[0], 3, line);
+        }
+        (void)snprintf(text, sizeof text, "ERR %s out of range %.9g..%.4g %s", row->name, (double)row->minimum,
+                       (double)row->maximum, row->unit);
+        (void)snprintf(line, sizeof line, "#%s %.9g", row->name, (double)nextafterf(row->maximum, INFINITY));
+        assert_refused(text, line);
+        (void)snprintf(line, sizeof line, "#%s %.9g", row->name, (double)nextafterf(row->minimum, -1.0F) - 1e-6);
+        assert_refused(text, line);
+        (void)snprintf(line, sizeof line, "#%s 1e9", row->name);
+        assert_refused(text, line);
+    }
+}
+
+void test_the_limits_are_told_with_their_unit(void)
+{
+    assert_refused("ERR SETR out of range 0..3 m", "#SETR -1");
+    assert_refused("ERR SETR out of range 0..3 m", "#SETR 3.001");
+    assert_refused("ERR KP out of range 0..1 N/mm", "#KP 1e9");
+    assert_refused("ERR USAT out of range 0..11.76 N", "#USAT 12");
+    assert_refused("ERR LINK out of range 0..60 s", "#LINK 61");
+}
+
+void test_a_choice_is_set_by_its_name_in_either_case_and_answered_by_it(void)
+{
+    assert_answer("OK LAW PD", "#LAW PD");
+    TEST_ASSERT_EQUAL_FLOAT((float)LAW_PD, parameters.value[PARAMETER_LAW]);
+    assert_answer("OK LAW PID", "#law pid");
+    TEST_ASSERT_EQUAL_FLOAT((float)LAW_PID, parameters.value[PARAMETER_LAW]);
+    assert_answer("OK RELEASE SCAN", "#RELEASE scan");
+    TEST_ASSERT_EQUAL_FLOAT((float)RELEASE_SCAN, parameters.value[PARAMETER_RELEASE]);
+    assert_answer("OK RELEASE FREE", "#Release Free");
+    TEST_ASSERT_EQUAL_FLOAT((float)RELEASE_FREE, parameters.value[PARAMETER_RELEASE]);
+    TEST_ASSERT_EQUAL_UINT16(4, parameter_writes);
+}
+
+void test_a_choice_by_another_name_or_by_number_is_refused_with_the_list(void)
+{
+    assert_refused("ERR LAW one of PD|PID", "#LAW EST");
+    assert_refused("ERR LAW one of PD|PID", "#LAW 1");
+    assert_refused("ERR LAW one of PD|PID", "#LAW P");
+    assert_refused("ERR LAW one of PD|PID", "#LAW PIDD");
+    assert_refused("ERR RELEASE one of FREE|SCAN", "#RELEASE 0");
+}
+
+void test_what_is_no_number_is_refused(void)
+{
+    static const char *const bad[] = {"nan", "inf", "-inf", "0x1", "1,5", "1.5m", "0.6 0.7", "--1", "1e", ".", "+", "1e99",
+                                      "six"};
+
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        char line[TELECOMMAND_LINE_MAX + 1U];
+
+        (void)snprintf(line, sizeof line, "#SETR %s", bad[i]);
+        assert_refused("ERR SETR not a number", line);
+        (void)snprintf(line, sizeof line, "#KP %s", bad[i]);
+        assert_refused("ERR KP not a number", line);
+    }
+}
+
+void test_a_missing_value_is_refused(void)
+{
+    assert_refused("ERR KP value missing", "#KP");
+    assert_refused("ERR KP value missing", "#KP   ");
+    assert_refused("ERR SETR value missing", "#SETR");
+    assert_refused("ERR LAW value missing", "#LAW");
+}
+
+void test_an_unknown_command_is_refused_by_the_name_as_far_as_it_is_kept(void)
+{
+    assert_refused("ERR FLY unknown command, try #HELP", "#FLY 1");
+    assert_refused("ERR GE unknown command, try #HELP", "#GE");
+    assert_refused("ERR GETS unknown command, try #HELP", "#GETS KP");
+    assert_refused("ERR KPP unknown command, try #HELP", "#KPP 0.1");
+    assert_refused("ERR ABCDEFGHIJKL unknown command, try #HELP", "#ABCDEFGHIJKLMNOP 1");
+    assert_refused("ERR A unknown command, try #HELP", "#A");
+}
+
+void test_lines_that_are_no_command_are_refused_with_their_reason(void)
+{
+    assert_refused("ERR - empty command", "#");
+    assert_refused("ERR - empty command", "#   \t ");
+    assert_refused("ERR - line too long", "#PING 123456789 123456789 1234567");
+    assert_refused("ERR - line too long", "#SETR 0.600000000000000000000000000000000000");
+    assert_refused("ERR - bad character", "#KP\x01 0.1");
+    assert_refused("ERR - bad character", "#SETR \xE9");
+    assert_refused("ERR - bad character", "#KP=0.1");
+}
+
+void test_get_of_one_parameter_answers_its_value(void)
+{
+    parameters.value[PARAMETER_KI] = 0.0125F;
+    reference.reference_m = 0.45F;
+    assert_answer("OK KP 0.015", "#GET KP");
+    assert_answer("OK KI 0.0125", "#get ki");
+    assert_answer("OK LAW PID", "#GET LAW");
+    assert_answer("OK RELEASE FREE", "#GET  release ");
+    assert_answer("OK SETR 0.45", "#GET SETR"); /* the reference server's, not the table's */
+    TEST_ASSERT_EQUAL_UINT16(0, parameter_writes);
+    TEST_ASSERT_EQUAL_UINT32(7, reference.sequence);
+}
+
+void test_get_of_an_unknown_parameter_is_refused(void)
+{
+    assert_refused("ERR GET unknown parameter", "#GET K");
+    assert_refused("ERR GET unknown parameter", "#GET PING");
+    assert_refused("ERR GET unknown parameter", "#GET KP KD");
+}
+
+void test_get_alone_answers_one_line_per_parameter_in_the_tables_order(void)
+{
+    reference.reference_m = 1.25F;
+    type("#GET");
+    TEST_ASSERT_EQUAL_UINT16(PARAMETER_COUNT, answer_count);
+    TEST_ASSERT_EQUAL_STRING("OK SETR 1.25", answers[PARAMETER_SETR]);
+    TEST_ASSERT_EQUAL_STRING("OK GRAV 7", answers[PARAMETER_GRAV]);
+    TEST_ASSERT_EQUAL_STRING("OK LAW PID", answers[PARAMETER_LAW]);
+    for (uint16_t id = 0; id < PARAMETER_COUNT; id++) {
+        const size_t length = strlen(parameter_table[id].name);
+
+        TEST_ASSERT_EQUAL_STRING_LEN(parameter_table[id].name, &answers[id][3], length);
+        TEST_ASSERT_EQUAL_INT(' ', answers[id][3U + length]);
+    }
+}
+
+void test_every_answer_of_get_can_be_typed_back_as_a_command(void)
+{
+    static char told[ANSWERS_MAX][TELEMETRY_LINE_MAX + 1U];
+    parameters_t before;
+
+    parameters.value[PARAMETER_KP] = 0.0123456F;
+    parameters.value[PARAMETER_LAW] = (float)LAW_PD;
+    reference.reference_m = 0.333333F;
+    before = parameters;
+    type("#GET");
+    (void)memcpy(told, answers, sizeof told);
+    for (uint16_t id = 0; id < PARAMETER_COUNT; id++) {
+        char line[TELEMETRY_LINE_MAX + 2U];
+
+        (void)snprintf(line, sizeof line, "#%s", &told[id][3]);
+        assert_answer(told[id], line);
+    }
+    TEST_ASSERT_EQUAL_MEMORY(before.value, parameters.value, sizeof before.value);
+    TEST_ASSERT_EQUAL_FLOAT(0.333333F, reference.reference_m);
+}
+
+void test_ping_answers_its_own_text(void)
+{
+    assert_answer("OK PING 17", "#PING 17");
+    assert_answer("OK PING", "#PING");
+    assert_answer("OK PING Are you  there?", "#ping Are you  there? ");
+    assert_answer("OK PING 12345678901234567890123456", "#PING 12345678901234567890123456"); /* 32 characters */
+    TEST_ASSERT_EQUAL_UINT16(0, parameter_writes);
+}
+
+void test_help_tells_every_parameter_and_every_verb_with_limits_and_meaning(void)
+{
+    type("#HELP");
+    TEST_ASSERT_EQUAL_UINT16(PARAMETER_COUNT + 3U, answer_count);
+    for (uint16_t id = 0; id < PARAMETER_COUNT; id++) {
+        char begin[32];
+        char end[TELEMETRY_LINE_MAX];
+        const size_t length = strlen(answers[id]);
+
+        (void)snprintf(begin, sizeof begin, "OK HELP #%s ", parameter_table[id].name);
+        (void)snprintf(end, sizeof end, " - %s", parameter_table[id].meaning);
+        TEST_ASSERT_EQUAL_STRING_LEN(begin, answers[id], strlen(begin));
+        TEST_ASSERT_GREATER_THAN_UINT64(strlen(begin) + strlen(end), length);
+        TEST_ASSERT_EQUAL_STRING(end, &answers[id][length - strlen(end)]);
+    }
+    TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #SETR 0..3 m - ", answers[PARAMETER_SETR], 23);
+    TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #USAT 0..11.76 N - ", answers[PARAMETER_USAT], 27);
+    TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #LAW PD|PID - ", answers[PARAMETER_LAW], 22);
+    TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #RELEASE FREE|SCAN - ", answers[PARAMETER_RELEASE], 29);
+    TEST_ASSERT_EQUAL_STRING("OK HELP #GET [NAME] - one parameter, or all", answers[PARAMETER_COUNT]);
+    TEST_ASSERT_EQUAL_STRING("OK HELP #PING [TEXT] - answers the same text", answers[PARAMETER_COUNT + 1U]);
+    TEST_ASSERT_EQUAL_STRING("OK HELP #HELP - this list", answers[PARAMETER_COUNT + 2U]);
+}
+
+void test_every_valid_line_is_a_life_sign_of_the_link(void)
+{
+    static const char *const valid[] = {"#PING", "#GET", "#GET KP", "#HELP", "#KP 0.01", "#SETR 0.5", "#LAW PD", "#LINK 2"};
+
+    for (uint32_t i = 0; i < sizeof valid / sizeof valid[0]; i++) {
+        reference.link_time_us = 0U;
+        type(valid[i]);
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(ARRIVAL_US, reference.link_time_us, valid[i]);
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(41U + i, reference.link_sequence, valid[i]);
+    }
+    TEST_ASSERT_EQUAL_UINT32(8, reference.sequence); /* the one #SETR */
+    TEST_ASSERT_EQUAL_FLOAT(0.5F, reference.reference_m);
+}
+
+void test_a_command_after_a_refused_one_works(void)
+{
+    assert_refused("ERR KP not a number", "#KP nan");
+    assert_answer("OK KP 0.02", "#KP 0.02");
+    assert_refused("ERR - line too long", "#PING 123456789 123456789 1234567");
+    assert_answer("OK SETR 0.6", "#SETR 0.6");
+    assert_refused("ERR - empty command", "#");
+    assert_answer("OK PING 1", "#PING 1");
+}
+
+/* Commands with some characters changed, cut or doubled. */
+static size_t damaged_line(char *line)
+{
+    static const char *const seeds[] = {"#SETR 0.6", "#KP 0.015", "#LAW PID", "#GET USAT", "#RELEASE SCAN", "#PING 5",
+                                        "#LINK 10", "#HELP", "#GET"};
+    size_t length;
+
+    (void)strcpy(line, seeds[kernel_random(sizeof seeds / sizeof seeds[0])]);
+    length = strlen(line);
+    for (uint16_t n = kernel_random(4U); n > 0U; n--) {
+        const size_t at = 1U + kernel_random((uint32_t)length);
+
+        if (kernel_random(4U) == 0U && length < 60U) {
+            (void)memmove(&line[at + 1U], &line[at], length + 1U - at);
+            length++;
+        } else if (at < length) {
+            line[at] = (char)(1U + kernel_random(255U));
+            if (strchr("\r\n#", line[at]) != NULL) {
+                line[at] = '0';
+            }
+        }
+    }
+    return strlen(line);
+}
+
+void test_whatever_comes_is_answered_and_changes_all_or_nothing(void)
+{
+    uint16_t accepted = 0;
+    uint16_t refused = 0;
+
+    kernel_random_seed(20260719U);
+    for (uint16_t n = 0; n < 20000U; n++) {
+        char line[80];
+        const size_t length = damaged_line(line);
+        const parameters_t parameters_before = parameters;
+        const reference_sample_t reference_before = reference;
+
+        parameter_writes = reference_writes = 0U;
+        type_characters(line, length);
+        TEST_ASSERT_GREATER_THAN_UINT16_MESSAGE(0, answer_count, line);
+        if (answers[0][0] == 'E') {
+            refused++;
+            TEST_ASSERT_EQUAL_UINT16_MESSAGE(1, answer_count, line);
+            TEST_ASSERT_EQUAL_UINT16_MESSAGE(0, parameter_writes, line);
+            TEST_ASSERT_EQUAL_UINT16_MESSAGE(0, reference_writes, line);
+        } else {
+            accepted++;
+            TEST_ASSERT_EQUAL_UINT32(reference_before.link_sequence + 1U, reference.link_sequence);
+            TEST_ASSERT_EQUAL_UINT32(parameters_before.generation + parameter_writes, parameters.generation);
+            TEST_ASSERT_LESS_OR_EQUAL_UINT16(1, parameter_writes);
+        }
+        for (uint16_t id = 0; id < PARAMETER_COUNT; id++) {
+            TEST_ASSERT_TRUE(parameters.value[id] >= parameter_table[id].minimum);
+            TEST_ASSERT_TRUE(parameters.value[id] <= parameter_table[id].maximum);
+        }
+        TEST_ASSERT_TRUE(reference.reference_m >= 0.0F && reference.reference_m <= 3.0F);
+    }
+    TEST_ASSERT_GREATER_THAN_UINT16(2000, accepted);
+    TEST_ASSERT_GREATER_THAN_UINT16(2000, refused);
+}
+
+void test_lost_lines_are_told_with_their_number(void)
+{
+    commands_report_lost(1U);
+    commands_report_lost(65535U);
+    TEST_ASSERT_EQUAL_STRING("ERR - 1 lines lost: sent too fast", answers[0]);
+    TEST_ASSERT_EQUAL_STRING("ERR - 65535 lines lost: sent too fast", answers[1]);
+    TEST_ASSERT_EQUAL_UINT16(2, answer_count);
+    TEST_ASSERT_EQUAL_UINT16(0, reference_writes);
+}

@@ -1,0 +1,544 @@
+/* The scanner's port with the real SCIP parser, fed as the receive Hwi is: the sensor's side is written here after its
+ * protocol (Hokuyo C-42-03320B). */
+#include "laser_port.h"
+
+#include <string.h>
+
+#include "kernel.h"
+#include "mock_timebase.h"
+#include "mock_uart_port.h"
+#include "unity.h"
+
+#define POINTS 35U          /* steps 372..406 */
+#define OCTET_US 40U        /* ten bits at 250000 */
+
+static uart_port_received_t receiver;
+static uint32_t now_us;
+static uint32_t reopened_at;
+static char sent[64];
+static uint16_t sent_count;
+static const char *answer_while_sending;    /* comes before uart_port_send() returns, or NULL */
+static laser_message_t message;
+static urg_seen_t before;
+static scip_request_t request;
+
+static void port_create(bsp_uart_t uart, uint32_t bit_rate, uart_port_received_t received, int calls)
+{
+    (void)calls;
+    TEST_ASSERT_EQUAL(BSP_UART_LASER, uart);
+    TEST_ASSERT_EQUAL_UINT32(115200, bit_rate);
+    TEST_ASSERT_EQUAL_UINT16(1, kernel.swi.created);
+    TEST_ASSERT_EQUAL_UINT16(1, kernel.semaphore.created);
+    receiver = received;
+    kernel_note("create");
+}
+
+static void port_reopen(bsp_uart_t uart, uint32_t bit_rate, int calls)
+{
+    (void)calls;
+    TEST_ASSERT_EQUAL(BSP_UART_LASER, uart);
+    kernel_no_lock();
+    reopened_at = bit_rate;
+}
+
+static uint32_t time_us(int calls)
+{
+    (void)calls;
+    return now_us;
+}
+
+/* As the Hwi does it, without the Swi. */
+static void octet(uint16_t cell)
+{
+    bsp_uart_burst_t burst = {.count = 1U, .octets = {cell}};
+
+    TEST_ASSERT_EQUAL(0, kernel.hwi.depth);
+    now_us += OCTET_US;
+    receiver(&burst);
+}
+
+static void feed_only(const char *text)
+{
+    for (; *text != '\0'; text++) {
+        octet((uint16_t)*text);
+    }
+}
+
+static void feed(const char *text)
+{
+    for (; *text != '\0'; text++) {
+        octet((uint16_t)*text);
+        kernel_run_swi();
+    }
+}
+
+static void feed_broken(const char *text, bool overrun, bool framing)
+{
+    bsp_uart_burst_t burst = {.overrun = overrun, .framing = framing};
+
+    for (; *text != '\0'; text++) {
+        TEST_ASSERT_LESS_THAN(BSP_UART_FIFO_DEPTH, burst.count);
+        burst.octets[burst.count++] = (uint16_t)*text;
+    }
+    receiver(&burst);
+    kernel_run_swi();
+}
+
+static bool port_send(bsp_uart_t uart, const char *text, uint16_t count, int calls)
+{
+    (void)calls;
+    TEST_ASSERT_EQUAL(BSP_UART_LASER, uart);
+    TEST_ASSERT_LESS_THAN(sizeof sent, count);
+    kernel_no_lock();
+    (void)memcpy(sent, text, count);
+    sent[count] = '\0';
+    sent_count = count;
+    if (answer_while_sending != NULL) {
+        feed(answer_while_sending);
+    }
+    return true;
+}
+
+static void wait(void)
+{
+    laser_port_wait(&message);
+}
+
+/* The counters outlive laser_port_create(): what a test sees is counted from here. */
+static void baseline(void)
+{
+    feed_broken("", false, true);
+    TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
+    laser_port_send(&request);
+    feed("QT\n00P\n\n");
+    wait();
+    before = message.seen;
+    kernel.swi.posts = 0U;
+    kernel.swi.disabled = 0U;
+}
+
+void setUp(void)
+{
+    kernel_reset();
+    now_us = 5000U;
+    reopened_at = 0U;
+    answer_while_sending = NULL;
+    uart_port_create_Stub(port_create);
+    uart_port_reopen_Stub(port_reopen);
+    uart_port_send_Stub(port_send);
+    bsp_time_us_Stub(time_us);
+    laser_port_create(115200U);
+    baseline();
+}
+
+void tearDown(void)
+{
+    kernel_check();
+}
+
+static void append_with_sum(char *text, const char *characters, size_t count)
+{
+    unsigned sum = 0;
+    size_t end = strlen(text);
+
+    for (size_t i = 0; i < count; i++) {
+        sum += (unsigned)characters[i];
+        text[end++] = characters[i];
+    }
+    text[end++] = (char)((sum & 0x3FU) + 0x30U);
+    text[end++] = '\n';
+    text[end] = '\0';
+}
+
+/* One frame of the stream 372..406: distances first_mm, first_mm + 1, ... */
+static const char *scan_text(uint32_t stamp_ms, uint16_t first_mm)
+{
+    static char text[256];
+    char stamp[4];
+    char data[2U * POINTS];
+
+    for (uint32_t i = 0; i < 4U; i++) {
+        stamp[i] = (char)(((stamp_ms >> (18U - 6U * i)) & 0x3FU) + 0x30U);
+    }
+    for (uint16_t i = 0; i < POINTS; i++) {
+        data[2U * i] = (char)((((unsigned)first_mm + i) >> 6) + 0x30U);
+        data[2U * i + 1U] = (char)((((unsigned)first_mm + i) & 0x3FU) + 0x30U);
+    }
+    (void)strcpy(text, "MS0372040601000\n");
+    append_with_sum(text, "99", 2U);
+    append_with_sum(text, stamp, 4U);
+    append_with_sum(text, data, 64U);
+    append_with_sum(text, &data[64], 2U * POINTS - 64U);
+    return strcat(text, "\n");
+}
+
+static void start_stream(void)
+{
+    const scip_range_t range = {.first_step = 372U, .last_step = 406U, .cluster = 1U};
+
+    TEST_ASSERT_TRUE(scip_request_scan(&request, SCIP_STREAM_2, &range));
+    laser_port_send(&request);
+    feed("MS0372040601000\n00P\n\n");
+    wait();
+    TEST_ASSERT_EQUAL_UINT32(before.reply_count + 1U, message.seen.reply_count);
+    before = message.seen;
+    kernel.swi.posts = 0U;
+}
+
+static void assert_scan(uint32_t stamp_ms, uint16_t first_mm)
+{
+    TEST_ASSERT_TRUE(message.has_scan);
+    TEST_ASSERT_EQUAL_UINT16(POINTS, message.scan.points);
+    TEST_ASSERT_EQUAL_UINT16(372, message.scan.first_step);
+    TEST_ASSERT_EQUAL_UINT32(stamp_ms, message.scan.timestamp_ms);
+    TEST_ASSERT_EQUAL_PTR(message.distance_mm, message.scan.distance_mm);
+    for (uint16_t i = 0; i < POINTS; i++) {
+        TEST_ASSERT_EQUAL_UINT16(first_mm + i, message.distance_mm[i]);
+    }
+}
+
+void test_create_makes_the_swi_and_a_binary_semaphore_then_the_uart(void)
+{
+    TEST_ASSERT_EQUAL_STRING_LEN("create ", kernel.notes, 7);
+    TEST_ASSERT_EQUAL_STRING("Laser_SWI", kernel.swi.name);
+    TEST_ASSERT_EQUAL_UINT(2, kernel.swi.params.priority);
+    TEST_ASSERT_EQUAL(Semaphore_Mode_BINARY, kernel.semaphore.mode);
+    TEST_ASSERT_EQUAL_UINT16(1, kernel.semaphore.created);
+}
+
+void test_the_task_waits_while_nothing_is_complete(void)
+{
+    TEST_ASSERT_TRUE(kernel_blocks(wait));
+    start_stream();
+    feed("MS0372040601000\n99b\n");
+    TEST_ASSERT_TRUE(kernel_blocks(wait));
+}
+
+void test_send_writes_the_requests_octets_and_nothing_else(void)
+{
+    const scip_range_t range = {.first_step = 372U, .last_step = 406U, .cluster = 1U};
+
+    TEST_ASSERT_EQUAL_UINT16(3, sent_count);
+    TEST_ASSERT_EQUAL_STRING("QT\n", sent);
+    TEST_ASSERT_TRUE(scip_request_bit_rate(&request, 250000U));
+    scip_request_end_line_first(&request);
+    laser_port_send(&request);
+    TEST_ASSERT_EQUAL_UINT16(10, sent_count);
+    TEST_ASSERT_EQUAL_STRING("\nSS250000\n", sent);
+    TEST_ASSERT_TRUE(scip_request_scan(&request, SCIP_STREAM_2, &range));
+    scip_request_end_line_first(&request);
+    laser_port_send(&request);
+    TEST_ASSERT_EQUAL_UINT16(SCIP_REQUEST_MAX, sent_count);
+    TEST_ASSERT_EQUAL_STRING("\nMS0372040601000\n", sent);
+}
+
+void test_a_reply_is_awaited_before_the_request_is_on_the_wire(void)
+{
+    answer_while_sending = "SS250000\n00P\n\n";
+    TEST_ASSERT_TRUE(scip_request_bit_rate(&request, 250000U));
+    laser_port_send(&request);
+    wait();
+    TEST_ASSERT_EQUAL_UINT32(before.reply_count + 1U, message.seen.reply_count);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, message.seen.reply_kind);
+}
+
+void test_a_reply_is_counted_with_its_kind_and_status(void)
+{
+    TEST_ASSERT_TRUE(scip_request_bit_rate(&request, 250000U));
+    laser_port_send(&request);
+    feed("SS250000\n03S\n\n");
+    wait();
+    TEST_ASSERT_EQUAL_UINT32(before.reply_count + 1U, message.seen.reply_count);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, message.seen.reply_kind);
+    TEST_ASSERT_EQUAL_HEX16('0', message.seen.reply.status[0]);
+    TEST_ASSERT_EQUAL_HEX16('3', message.seen.reply.status[1]);
+    TEST_ASSERT_FALSE(message.has_scan);
+    TEST_ASSERT_EQUAL_UINT32(before.octet_count + 14U, message.seen.octet_count);
+}
+
+void test_the_reply_of_an_older_request_is_not_taken_for_the_present_one(void)
+{
+    TEST_ASSERT_TRUE(scip_request_bit_rate(&request, 250000U));
+    laser_port_send(&request);
+    feed("QT\n00P\n\n");
+    TEST_ASSERT_TRUE(kernel_blocks(wait));
+    feed("SS250000\n00P\n\n");
+    wait();
+    TEST_ASSERT_EQUAL_UINT32(before.reply_count + 1U, message.seen.reply_count);
+}
+
+void test_the_lines_of_a_text_reply_count_for_nothing_but_the_reply_at_their_end(void)
+{
+    TEST_ASSERT_TRUE(scip_request(&request, SCIP_VERSION));
+    laser_port_send(&request);
+    feed("VV\n00P\nVEND:Hokuyo;0\nPROD:URG-04LX;0\n");
+    wait();
+    TEST_ASSERT_EQUAL_UINT32(before.reply_count, message.seen.reply_count);
+    feed("\n");
+    wait();
+    TEST_ASSERT_EQUAL_UINT32(before.reply_count + 1U, message.seen.reply_count);
+    TEST_ASSERT_EQUAL(SCIP_VERSION, message.seen.reply_kind);
+    TEST_ASSERT_EQUAL_UINT32(before.damage_count, message.seen.damage_count);
+}
+
+void test_a_scip11_refusal_is_counted(void)
+{
+    TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
+    laser_port_send(&request);
+    feed("QT\nE\n\n");
+    wait();
+    TEST_ASSERT_EQUAL_UINT32(before.legacy_count + 1U, message.seen.legacy_count);
+    TEST_ASSERT_EQUAL_UINT32(before.reply_count, message.seen.reply_count);
+}
+
+void test_a_notice_of_the_stream_is_counted_with_its_status(void)
+{
+    char text[64] = "MS0372040601000\n";
+
+    start_stream();
+    append_with_sum(text, "21", 2U);
+    feed(strcat(text, "\n"));
+    wait();
+    TEST_ASSERT_EQUAL_UINT32(before.notice_count + 1U, message.seen.notice_count);
+    TEST_ASSERT_EQUAL_HEX16('2', message.seen.notice.status[0]);
+    TEST_ASSERT_EQUAL_HEX16('1', message.seen.notice.status[1]);
+    TEST_ASSERT_EQUAL_UINT32(before.reply_count, message.seen.reply_count);
+    TEST_ASSERT_FALSE(message.has_scan);
+}
+
+void test_a_scan_is_handed_over_at_its_last_octet_with_the_time_of_that_octet(void)
+{
+    const char *text;
+
+    start_stream();
+    text = scan_text(123456U, 700U);
+    while (text[1] != '\0') {
+        octet((uint16_t)*text++);
+        TEST_ASSERT_EQUAL_UINT16(0, kernel.swi.posts);
+    }
+    now_us = 1000000U;
+    octet('\n');
+    TEST_ASSERT_EQUAL_UINT16(1, kernel.swi.posts);
+    now_us = 1500000U;
+    kernel_run_swi();
+    wait();
+    assert_scan(123456U, 700U);
+    TEST_ASSERT_EQUAL_UINT32(1000000U + OCTET_US, message.arrival_us);
+    TEST_ASSERT_EQUAL_UINT32(before.scan_count + 1U, message.seen.scan_count);
+    TEST_ASSERT_EQUAL_UINT32(before.octet_count + 101U, message.seen.octet_count); /* 27 + 2n + 2 ceil(2n / 64) */
+}
+
+void test_scans_alternate_between_the_two_buffers_and_all_arrive(void)
+{
+    start_stream();
+    for (uint16_t n = 0; n < 7U; n++) {
+        feed(scan_text(1000U + 100U * n, (uint16_t)(500U + 100U * n)));
+        wait();
+        assert_scan(1000U + 100U * n, (uint16_t)(500U + 100U * n));
+        TEST_ASSERT_EQUAL_UINT32(before.scan_count + n + 1U, message.seen.scan_count);
+    }
+}
+
+void test_the_next_scan_in_reception_does_not_touch_the_complete_one(void)
+{
+    char half[80];
+
+    start_stream();
+    feed_only(scan_text(1000U, 700U));
+    (void)memcpy(half, scan_text(1100U, 2000U), 79U);
+    half[79] = '\0';
+    feed_only(half);            /* before Laser_SWI has run */
+    kernel_run_swi();
+    wait();
+    assert_scan(1000U, 700U);
+    feed(&scan_text(1100U, 2000U)[79]);
+    wait();
+    assert_scan(1100U, 2000U);
+}
+
+void test_a_message_copied_out_is_the_tasks_own(void)
+{
+    start_stream();
+    feed(scan_text(1000U, 700U));
+    wait();
+    feed(scan_text(1100U, 2000U));
+    feed(scan_text(1200U, 3000U));
+    assert_scan(1000U, 700U);
+}
+
+void test_a_scan_comes_once_though_messages_follow(void)
+{
+    start_stream();
+    feed(scan_text(1000U, 700U));
+    wait();
+    TEST_ASSERT_TRUE(message.has_scan);
+    TEST_ASSERT_TRUE(kernel_blocks(wait));
+    TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
+    laser_port_send(&request);
+    feed("QT\n00P\n\n");
+    wait();
+    TEST_ASSERT_FALSE(message.has_scan);
+    TEST_ASSERT_EQUAL_UINT32(before.scan_count + 1U, message.seen.scan_count);
+}
+
+void test_a_scan_that_waits_survives_a_reply_that_follows(void)
+{
+    start_stream();
+    feed(scan_text(1000U, 700U));
+    TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
+    laser_port_send(&request);
+    feed("QT\n00P\n\n");
+    wait();
+    assert_scan(1000U, 700U);
+    TEST_ASSERT_EQUAL_UINT32(before.reply_count + 1U, message.seen.reply_count);
+    TEST_ASSERT_TRUE(kernel_blocks(wait));
+}
+
+void test_a_late_task_gets_the_newest_scan_and_the_count_of_all(void)
+{
+    start_stream();
+    feed(scan_text(1000U, 700U));
+    feed(scan_text(1100U, 800U));
+    feed(scan_text(1200U, 900U));
+    wait();
+    assert_scan(1200U, 900U);
+    TEST_ASSERT_EQUAL_UINT32(before.scan_count + 3U, message.seen.scan_count);
+    TEST_ASSERT_TRUE(kernel_blocks(wait));
+}
+
+void test_a_damaged_scan_is_counted_gives_none_and_leaves_the_next_alone(void)
+{
+    char text[256];
+
+    start_stream();
+    (void)strcpy(text, scan_text(1000U, 700U));
+    text[40] ^= 1;
+    feed(text);
+    wait();
+    TEST_ASSERT_FALSE(message.has_scan);
+    TEST_ASSERT_EQUAL_UINT32(before.damage_count + 1U, message.seen.damage_count);
+    TEST_ASSERT_EQUAL_UINT32(before.scan_count, message.seen.scan_count);
+    feed(scan_text(1100U, 800U));
+    wait();
+    assert_scan(1100U, 800U);
+}
+
+/* A burst with an error in the middle of a scan. */
+static void break_a_scan(bool overrun, bool framing)
+{
+    char text[256];
+
+    start_stream();
+    (void)strcpy(text, scan_text(1000U, 700U));
+    text[50] = '\0';
+    feed(text);
+    feed_broken("0", overrun, framing);
+    feed(&text[51]);
+    feed(scan_text(1100U, 800U));
+    wait();
+    assert_scan(1100U, 800U);
+    TEST_ASSERT_EQUAL_UINT32(before.scan_count + 1U, message.seen.scan_count);
+    TEST_ASSERT_TRUE(kernel_blocks(wait));
+}
+
+void test_a_framing_error_costs_the_scan_under_way_and_is_counted_as_framing(void)
+{
+    break_a_scan(false, true);
+    TEST_ASSERT_EQUAL_UINT32(before.framing_count + 1U, message.seen.framing_count);
+    TEST_ASSERT_EQUAL_UINT32(before.damage_count, message.seen.damage_count);
+}
+
+void test_an_overrun_costs_the_scan_under_way_and_is_counted_as_damage(void)
+{
+    break_a_scan(true, false);
+    TEST_ASSERT_EQUAL_UINT32(before.framing_count, message.seen.framing_count);
+    TEST_ASSERT_EQUAL_UINT32(before.damage_count + 1U, message.seen.damage_count);
+}
+
+void test_what_was_read_after_an_overrun_is_taken(void)
+{
+    start_stream();
+    feed("MS0372040601");
+    feed_broken("MS0372040601", true, false);
+    feed(&scan_text(1000U, 700U)[12]);
+    wait();
+    assert_scan(1000U, 700U);
+}
+
+void test_flag_bits_above_an_octet_are_dropped(void)
+{
+    start_stream();
+    for (const char *text = scan_text(1000U, 700U); *text != '\0'; text++) {
+        octet((uint16_t)((uint16_t)*text | 0xC000U));
+    }
+    kernel_run_swi();
+    wait();
+    assert_scan(1000U, 700U);
+}
+
+void test_scans_in_bursts_of_any_size_arrive_whole(void)
+{
+    start_stream();
+    kernel_random_seed(11U);
+    for (uint16_t n = 0; n < 200U; n++) {
+        const char *text = scan_text(1000U + 100U * n, (uint16_t)(20U + 20U * n));
+
+        while (*text != '\0') {
+            bsp_uart_burst_t burst = {.count = 0U};
+            const uint16_t size = (uint16_t)(1U + kernel_random(BSP_UART_FIFO_DEPTH));
+
+            while (burst.count < size && *text != '\0') {
+                burst.octets[burst.count++] = (uint16_t)*text++;
+            }
+            receiver(&burst);
+            if (kernel_random(3U) == 0U) {
+                kernel_run_swi();
+            }
+        }
+        kernel_run_swi();
+        wait();
+        assert_scan(1000U + 100U * n, (uint16_t)(20U + 20U * n));
+    }
+}
+
+void test_a_new_rate_reopens_the_uart_and_drops_what_was_in_reception(void)
+{
+    start_stream();
+    feed("MS0372040601000\n99b\n");
+    laser_port_set_rate(250000U);
+    TEST_ASSERT_EQUAL_UINT32(250000, reopened_at);
+    feed(scan_text(1000U, 700U)); /* would be a damaged line, had the status been kept */
+    wait();
+    assert_scan(1000U, 700U);
+    TEST_ASSERT_EQUAL_UINT32(before.damage_count, message.seen.damage_count);
+}
+
+void test_a_part_of_a_line_from_before_a_new_rate_is_forgotten(void)
+{
+    TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
+    laser_port_send(&request);
+    feed("QT\n00P\n\n");
+    TEST_ASSERT_TRUE(scip_request(&request, SCIP_VERSION));
+    laser_port_send(&request);
+    feed("V");
+    laser_port_set_rate(57600U);
+    feed("V\n00P\n\n");
+    wait();
+    TEST_ASSERT_EQUAL_UINT32(before.reply_count + 1U, message.seen.reply_count); /* QT's alone */
+    TEST_ASSERT_TRUE(kernel_blocks(wait));
+}
+
+void test_the_copy_to_the_task_is_made_with_swis_off_and_the_parser_touched_with_interrupts_off(void)
+{
+    start_stream();
+    kernel.swi.disabled = 0U;
+    kernel.hwi.disabled = 0U;
+    feed(scan_text(1000U, 700U));
+    TEST_ASSERT_EQUAL_UINT16(1, kernel.hwi.disabled);   /* Laser_SWI */
+    wait();
+    TEST_ASSERT_EQUAL_UINT16(1, kernel.swi.disabled);
+    laser_port_set_rate(250000U);
+    TEST_ASSERT_EQUAL_UINT16(2, kernel.hwi.disabled);
+    laser_port_send(&request);
+    TEST_ASSERT_EQUAL_UINT16(3, kernel.hwi.disabled);
+}

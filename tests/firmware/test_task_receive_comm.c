@@ -1,0 +1,95 @@
+/* TaskReceiveComm between a scripted radio and recording commands. */
+#include "tasks.h"
+
+#include <string.h>
+
+#include "kernel.h"
+#include "mock_commands.h"
+#include "mock_xbee_port.h"
+#include "unity.h"
+
+static const struct {
+    const char *text;
+    uint32_t arrival_us;
+    uint16_t lost;
+} script[] = {{"#PING 1", 1000U, 0U}, {"#SETR 0.6", 2000U, 3U}, {"#PING 2", 0xFFFFFFF0U, 1U}};
+#define SCRIPT (sizeof script / sizeof script[0])
+
+static size_t taken;
+static size_t executed;
+static uint16_t reported[SCRIPT];
+static size_t reports;
+
+static void port_create(int calls)
+{
+    TEST_ASSERT_EQUAL_INT(0, calls);
+    TEST_ASSERT_EQUAL_UINT16(0, kernel.task.created);
+    kernel_note("port");
+}
+
+static uint16_t port_wait(xbee_message_t *message, int calls)
+{
+    (void)calls;
+    kernel_note("wait");
+    if (taken == SCRIPT) {
+        kernel_block();
+    }
+    message->line.length = (uint16_t)strlen(script[taken].text);
+    message->line.overlong = false;
+    (void)memcpy(message->line.text, script[taken].text, message->line.length);
+    message->arrival_us = script[taken].arrival_us;
+    return script[taken++].lost;
+}
+
+static void execute(const telecommand_line_t *line, uint32_t arrival_us, int calls)
+{
+    (void)calls;
+    kernel_note("execute");
+    TEST_ASSERT_EQUAL_UINT16(strlen(script[executed].text), line->length);
+    TEST_ASSERT_EQUAL_STRING_LEN(script[executed].text, line->text, line->length);
+    TEST_ASSERT_EQUAL_UINT32(script[executed].arrival_us, arrival_us);
+    executed++;
+}
+
+static void report_lost(uint16_t count, int calls)
+{
+    (void)calls;
+    kernel_note("lost");
+    TEST_ASSERT_LESS_THAN_UINT64(SCRIPT, reports);
+    reported[reports++] = count;
+}
+
+void setUp(void)
+{
+    kernel_reset();
+    taken = executed = reports = 0U;
+    xbee_port_create_Stub(port_create);
+    xbee_port_wait_Stub(port_wait);
+    commands_execute_Stub(execute);
+    commands_report_lost_Stub(report_lost);
+    task_receive_comm_create();
+}
+
+void tearDown(void)
+{
+    kernel_check();
+}
+
+void test_create_makes_the_port_first_and_then_one_task_of_priority_1(void)
+{
+    TEST_ASSERT_EQUAL_STRING("port ", kernel.notes);
+    TEST_ASSERT_EQUAL_UINT16(1, kernel.task.created);
+    TEST_ASSERT_EQUAL_STRING("TaskReceiveComm", kernel.task.name);
+    TEST_ASSERT_EQUAL_INT(1, kernel.task.params.priority);
+    TEST_ASSERT_EQUAL_UINT64(512, kernel.task.params.stackSize);
+}
+
+void test_each_line_is_executed_once_in_its_order_and_losses_are_told_before_it(void)
+{
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_STRING("port wait execute wait lost execute wait lost execute wait ", kernel.notes);
+    TEST_ASSERT_EQUAL_UINT64(SCRIPT, executed);
+    TEST_ASSERT_EQUAL_UINT64(2, reports);
+    TEST_ASSERT_EQUAL_UINT16(3, reported[0]);
+    TEST_ASSERT_EQUAL_UINT16(1, reported[1]);
+}

@@ -1,0 +1,226 @@
+/* TaskReceiveLaser with the real ray groups and altitude correction, between a scripted port and recording servers. The
+ * task keeps its sample from one test to the next: what counts up is compared with the first write. */
+#include "tasks.h"
+
+#include <string.h>
+
+#include "kernel.h"
+#include "mock_laser_port.h"
+#include "mock_servers.h"
+#include "unity.h"
+
+#define MESSAGES_MAX 40U
+#define POINTS 35U
+
+static laser_message_t messages[MESSAGES_MAX];
+static uint16_t message_count;
+static uint16_t next_message;
+static imu_sample_t imu;
+static altitude_sample_t written[MESSAGES_MAX];
+static uint16_t write_count;
+static urg_seen_t seen[MESSAGES_MAX];
+static uint16_t seen_count;
+
+static void port_create(uint32_t bit_rate, int calls)
+{
+    TEST_ASSERT_EQUAL_INT(0, calls);
+    TEST_ASSERT_EQUAL_UINT32(115200, bit_rate);
+    TEST_ASSERT_EQUAL_UINT16(0, kernel.task.created);
+    kernel_note("port");
+}
+
+static void port_wait(laser_message_t *message, int calls)
+{
+    (void)calls;
+    kernel_note("wait");
+    if (next_message == message_count) {
+        kernel_block();
+    }
+    *message = messages[next_message++];
+    message->scan.distance_mm = message->distance_mm;
+}
+
+static void write_seen(const urg_seen_t *value, int calls)
+{
+    (void)calls;
+    kernel_note("seen");
+    seen[seen_count++] = *value;
+}
+
+static void imu_read(imu_sample_t *sample, int calls)
+{
+    (void)calls;
+    kernel_note("imu");
+    *sample = imu;
+}
+
+static void altitude_write(const altitude_sample_t *sample, int calls)
+{
+    (void)calls;
+    kernel_note("altitude");
+    written[write_count++] = *sample;
+}
+
+/* TaskControl's. */
+void task_control_altitude_arrived(void)
+{
+    kernel_note("arrived");
+}
+
+void setUp(void)
+{
+    kernel_reset();
+    message_count = next_message = write_count = seen_count = 0U;
+    (void)memset(&imu, 0, sizeof imu);
+    (void)memset(messages, 0, sizeof messages);
+    laser_port_create_Stub(port_create);
+    laser_port_wait_Stub(port_wait);
+    laser_server_write_seen_Stub(write_seen);
+    imu_server_read_Stub(imu_read);
+    altitude_server_write_Stub(altitude_write);
+    task_receive_laser_create();
+}
+
+void tearDown(void)
+{
+    kernel_check();
+}
+
+static laser_message_t *reply(void)
+{
+    TEST_ASSERT_LESS_THAN(MESSAGES_MAX, message_count);
+    messages[message_count].seen.reply_count = message_count + 100U;
+    return &messages[message_count++];
+}
+
+static laser_message_t *scan(uint16_t distance_mm)
+{
+    laser_message_t *message = reply();
+
+    message->has_scan = true;
+    message->scan.points = POINTS;
+    message->scan.characters = 2U;
+    message->scan.first_step = 372U;
+    message->scan.cluster = 1U;
+    message->scan.timestamp_ms = 7000U + 100U * message_count;
+    message->arrival_us = 50000U + 100000U * message_count;
+    for (uint16_t i = 0; i < POINTS; i++) {
+        message->distance_mm[i] = distance_mm;
+    }
+    return message;
+}
+
+void test_create_makes_the_port_at_the_sensors_first_rate_and_then_one_task_of_priority_5(void)
+{
+    TEST_ASSERT_EQUAL_STRING("port ", kernel.notes);
+    TEST_ASSERT_EQUAL_UINT16(1, kernel.task.created);
+    TEST_ASSERT_EQUAL_STRING("TaskReceiveLaser", kernel.task.name);
+    TEST_ASSERT_EQUAL_INT(5, kernel.task.params.priority);
+    TEST_ASSERT_EQUAL_UINT64(512, kernel.task.params.stackSize);
+}
+
+void test_a_scan_is_published_before_control_is_released(void)
+{
+    (void)scan(700U);
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_STRING("port wait seen imu altitude arrived wait ", kernel.notes);
+}
+
+void test_a_reply_without_a_scan_reaches_the_laser_server_alone(void)
+{
+    (void)reply();
+    (void)reply();
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_STRING("port wait seen wait seen wait ", kernel.notes);
+    TEST_ASSERT_EQUAL_UINT32(100, seen[0].reply_count);
+    TEST_ASSERT_EQUAL_UINT32(101, seen[1].reply_count);
+}
+
+void test_a_level_vehicle_is_as_high_as_the_slant_less_mirror_and_leg(void)
+{
+    (void)scan(805U);
+    kernel_run_task();
+    TEST_ASSERT_TRUE(written[0].scan_valid);
+    TEST_ASSERT_TRUE(written[0].altitude.valid);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 600.0F, written[0].altitude.height_mm); /* 805 - 105 - 100 */
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 805.0F, written[0].altitude.slant_mm);
+    TEST_ASSERT_EQUAL_UINT16(POINTS, written[0].altitude.good_rays);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F, written[0].altitude.spread_mm);
+    TEST_ASSERT_EQUAL_UINT32(7100, written[0].sensor_time_ms);
+    TEST_ASSERT_EQUAL_UINT32(150000, written[0].arrival_us);
+}
+
+void test_the_tilt_is_the_imus_median_with_roll_and_pitch_in_their_places(void)
+{
+    imu.median.roll_rad = 0.1F;
+    imu.median.pitch_rad = 0.2F;
+    imu.level.roll_rad = 1.0F;
+    imu.level.pitch_rad = -1.0F;
+    (void)scan(1105U);
+    kernel_run_task();
+    /* 1000 cos(0.2) cos(0.1) - 220 sin(0.1) - 100 = 975.1703 - 21.9633 - 100 */
+    TEST_ASSERT_FLOAT_WITHIN(0.05F, 853.2070F, written[0].altitude.height_mm);
+}
+
+void test_the_mean_is_of_the_good_rays_alone(void)
+{
+    laser_message_t *message = scan(800U);
+
+    for (uint16_t i = 0; i < 17U; i++) {
+        message->distance_mm[2U * i] = (i % 2U == 0U) ? 19U : 4095U;
+    }
+    message->distance_mm[1] = 830U;
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_UINT16(18, written[0].altitude.good_rays);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 800.0F + 30.0F / 18.0F, written[0].altitude.slant_mm);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 30.0F, written[0].altitude.spread_mm);
+}
+
+void test_a_heightless_scan_is_counted_and_keeps_the_last_height(void)
+{
+    (void)scan(805U);
+    (void)scan(4095U);
+    (void)scan(19U);
+    (void)scan(905U);
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_UINT16(4, write_count);
+    for (uint16_t n = 1; n <= 2U; n++) {
+        altitude_sample_t expected = written[0];
+
+        expected.scan_valid = false;
+        expected.heightless += n;
+        TEST_ASSERT_FALSE(written[n].scan_valid);
+        TEST_ASSERT_EQUAL_UINT32(expected.heightless, written[n].heightless);
+        TEST_ASSERT_EQUAL_UINT32(expected.sequence, written[n].sequence);
+        TEST_ASSERT_EQUAL_UINT32(expected.arrival_us, written[n].arrival_us);
+        TEST_ASSERT_EQUAL_FLOAT(expected.altitude.height_mm, written[n].altitude.height_mm);
+        TEST_ASSERT_EQUAL_MEMORY(&expected, &written[n], sizeof expected);
+    }
+    TEST_ASSERT_TRUE(written[3].scan_valid);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 700.0F, written[3].altitude.height_mm);
+    TEST_ASSERT_EQUAL_UINT32(written[0].sequence + 1U, written[3].sequence);
+    TEST_ASSERT_EQUAL_UINT32(written[0].heightless + 2U, written[3].heightless);
+    TEST_ASSERT_EQUAL_UINT32(450000, written[3].arrival_us);
+    TEST_ASSERT_EQUAL_UINT32(7400, written[3].sensor_time_ms);
+}
+
+void test_a_heightless_scan_releases_control_all_the_same(void)
+{
+    (void)scan(4095U);
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_STRING("port wait seen imu altitude arrived wait ", kernel.notes);
+}
+
+void test_each_height_has_the_next_sequence_number(void)
+{
+    for (uint16_t n = 0; n < 30U; n++) {
+        (void)scan((uint16_t)(400U + 100U * n));
+    }
+    kernel_run_task();
+    TEST_ASSERT_GREATER_THAN_UINT32(0, written[0].sequence);
+    for (uint16_t n = 0; n < 30U; n++) {
+        TEST_ASSERT_EQUAL_UINT32(written[0].sequence + n, written[n].sequence);
+        TEST_ASSERT_FLOAT_WITHIN(0.01F, 195.0F + 100.0F * (float)n, written[n].altitude.height_mm);
+        TEST_ASSERT_EQUAL_UINT32(100U + n, seen[n].reply_count);
+    }
+}

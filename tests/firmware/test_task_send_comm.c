@@ -1,0 +1,156 @@
+/* TaskSendComm: one telemetry line every 200 ms, from the servers to the radio. */
+#include "tasks.h"
+
+#include <string.h>
+
+#include "kernel.h"
+#include "mock_servers.h"
+#include "mock_xbee_port.h"
+#include "unity.h"
+
+static altitude_sample_t altitude;
+static laser_sample_t laser;
+static flight_status_t flight;
+static telemetry_line_t line;
+static uint16_t lines;
+
+static void altitude_read(altitude_sample_t *sample, int calls)
+{
+    (void)calls;
+    *sample = altitude;
+}
+
+static void laser_read(laser_sample_t *sample, int calls)
+{
+    (void)calls;
+    *sample = laser;
+}
+
+static void flight_read(flight_status_t *status, int calls)
+{
+    (void)calls;
+    *status = flight;
+}
+
+static void report(const telemetry_line_t *text, int calls)
+{
+    (void)calls;
+    kernel_note("report");
+    line = *text;
+    lines++;
+}
+
+void setUp(void)
+{
+    kernel_reset();
+    lines = 0U;
+    (void)memset(&line, 0, sizeof line);
+    (void)memset(&laser, 0, sizeof laser);
+    (void)memset(&altitude, 0, sizeof altitude);
+    altitude.altitude.valid = true;
+    altitude.altitude.height_mm = 598.4F;
+    altitude.altitude.slant_mm = 803.0F;
+    laser.status = LASER_OK;
+    flight.thrust_n = 7.123F;
+    flight.reference_m = 0.6F;
+    flight.state = FLIGHT_FLYING;
+    flight.flags = 0U;
+    altitude_server_read_Stub(altitude_read);
+    laser_server_read_Stub(laser_read);
+    flight_status_server_read_Stub(flight_read);
+    xbee_port_report_Stub(report);
+    task_send_comm_create();
+}
+
+void tearDown(void)
+{
+    kernel_check();
+}
+
+static void assert_line(const char *expected)
+{
+    kernel.clock.function(kernel.clock.params.arg);
+    kernel_run_task();
+    TEST_ASSERT_FALSE(line.overflowed);
+    TEST_ASSERT_EQUAL_UINT16(strlen(expected), line.length);
+    TEST_ASSERT_EQUAL_STRING_LEN(expected, line.text, line.length);
+}
+
+void test_create_makes_a_binary_tick_every_200_ms_and_one_task_of_priority_2(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(1, kernel.semaphore.created);
+    TEST_ASSERT_EQUAL(Semaphore_Mode_BINARY, kernel.semaphore.mode);
+    TEST_ASSERT_EQUAL_INT(0, kernel.semaphore.count);
+    TEST_ASSERT_EQUAL_UINT16(1, kernel.clock.created);
+    TEST_ASSERT_EQUAL_UINT(200, kernel.clock.timeout);
+    TEST_ASSERT_EQUAL_UINT32(200, kernel.clock.params.period);
+    TEST_ASSERT_TRUE(kernel.clock.params.startFlag);
+    TEST_ASSERT_EQUAL_UINT16(1, kernel.task.created);
+    TEST_ASSERT_EQUAL_STRING("TaskSendComm", kernel.task.name);
+    TEST_ASSERT_EQUAL_INT(2, kernel.task.params.priority);
+    TEST_ASSERT_EQUAL_UINT64(512, kernel.task.params.stackSize);
+}
+
+void test_nothing_is_sent_before_the_first_tick(void)
+{
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_STRING("pend ", kernel.notes);
+}
+
+void test_each_tick_sends_one_line(void)
+{
+    for (uint16_t n = 1; n <= 3U; n++) {
+        kernel.clock.function(kernel.clock.params.arg);
+        kernel_run_task();
+        TEST_ASSERT_EQUAL_UINT16(n, lines);
+    }
+    TEST_ASSERT_EQUAL_STRING("pend report pend pend report pend pend report pend ", kernel.notes);
+}
+
+void test_ticks_that_a_late_task_missed_are_not_made_up_for(void)
+{
+    kernel.clock.function(kernel.clock.params.arg);
+    kernel.clock.function(kernel.clock.params.arg);
+    kernel.clock.function(kernel.clock.params.arg);
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_UINT16(1, lines);
+}
+
+void test_the_line_says_what_the_servers_hold(void)
+{
+    assert_line("alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0\r\n");
+}
+
+void test_without_a_fresh_height_the_altitude_is_a_dash(void)
+{
+    flight.flags = FLIGHT_FLAG_HEIGHT | FLIGHT_FLAG_LINK;
+    flight.state = FLIGHT_COASTING;
+    laser.status = LASER_LOST;
+    assert_line("alt:- ref:0.600 laser:LOST thr:7.12 state:COASTING flags:17\r\n");
+}
+
+void test_flags_other_than_the_heights_leave_the_altitude(void)
+{
+    flight.flags = FLIGHT_FLAG_ATTITUDE | FLIGHT_FLAG_DISAGREE | FLIGHT_FLAG_TOO_HIGH | FLIGHT_FLAG_LINK;
+    altitude.altitude.height_mm = -12.0F;
+    assert_line("alt:-0.012 ref:0.600 laser:OK thr:7.12 state:FLYING flags:30\r\n");
+}
+
+void test_every_laser_status_and_every_state_is_told_by_its_name_and_fits_the_packet(void)
+{
+    altitude.altitude.height_mm = -4999.0F;
+    flight.reference_m = 3.0F;
+    flight.thrust_n = 11.76F;
+    flight.flags = 30U;
+    for (uint16_t status = 0; status < LASER_STATUS_COUNT; status++) {
+        for (uint16_t state = 0; state < FLIGHT_STATE_COUNT; state++) {
+            char expected[TELEMETRY_LINE_MAX + 1U] = "alt:-4.999 ref:3.000 laser:";
+
+            laser.status = (laser_status_t)status;
+            flight.state = (flight_state_t)state;
+            (void)strcat(strcat(expected, laser_status_name(laser.status)), " thr:11.76 state:");
+            (void)strcat(strcat(expected, flight_state_name(flight.state)), " flags:30\r\n");
+            assert_line(expected);
+        }
+    }
+}
