@@ -8,6 +8,6 @@ set(DRIVERS_SOURCES
 set(BSP_SOURCES
     bsp/board.c bsp/led.c bsp/throttle.c bsp/timebase.c bsp/uart.c)
 set(FIRMWARE_SOURCES
-    firmware/commands.c firmware/imu_port.c firmware/laser_port.c firmware/main.c firmware/servers.c
+    firmware/answer.c firmware/commands.c firmware/fault.c firmware/imu_port.c firmware/laser_port.c firmware/main.c firmware/servers.c
     firmware/task_control.c firmware/task_imu.c firmware/task_receive_comm.c firmware/task_receive_laser.c
-    firmware/task_send_comm.c firmware/task_send_laser.c firmware/uart_port.c firmware/xbee_port.c)
+    firmware/task_send_comm.c firmware/task_send_laser.c firmware/uart_port.c firmware/verb_laser.c firmware/xbee_port.c)

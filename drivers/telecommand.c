@@ -4,6 +4,7 @@ static void restart(telecommand_collector_t *collector)
 {
     collector->line.length = 0U;
     collector->line.overlong = false;
+    collector->line.damaged = false;
 }
 
 void telecommand_collector_init(telecommand_collector_t *collector)
@@ -55,6 +56,11 @@ bool telecommand_collect(telecommand_collector_t *collector, octet_t octet)
     }
     gather(collector, character);
     return false;
+}
+
+void telecommand_collector_broken(telecommand_collector_t *collector)
+{
+    collector->line.damaged = collector->started;
 }
 
 static bool is_name(char character)
@@ -113,6 +119,9 @@ telecommand_status_t telecommand_parse(const telecommand_line_t *line, telecomma
 
     command->name_length = 0U;
     command->argument_length = 0U;
+    if (line->damaged) {
+        return TELECOMMAND_DAMAGED;
+    }
     if (line->overlong) {
         return TELECOMMAND_OVERLONG;
     }

@@ -17,6 +17,7 @@ typedef struct {
     char text[TELECOMMAND_LINE_MAX];    /* from '#', without the line end */
     uint16_t length;
     bool overlong;                      /* more came than fit; the text is the beginning */
+    bool damaged;                       /* the UART lost or mangled some of it */
 } telecommand_line_t;
 
 typedef struct {
@@ -30,8 +31,12 @@ void telecommand_collector_init(telecommand_collector_t *collector);
  * of CR LF begins nothing.) NUL is ignored. */
 bool telecommand_collect(telecommand_collector_t *collector, octet_t octet);
 
+/* The UART lost or mangled octets: the line in reception is not to be believed. */
+void telecommand_collector_broken(telecommand_collector_t *collector);
+
 typedef enum {
     TELECOMMAND_OK,
+    TELECOMMAND_DAMAGED,
     TELECOMMAND_EMPTY,      /* '#' alone, or blanks behind it */
     TELECOMMAND_OVERLONG,
     TELECOMMAND_CHARACTER   /* a control character (other than a tab) or one above 7EH, or a name with other than A-Z 0-9 _ */

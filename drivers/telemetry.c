@@ -9,12 +9,19 @@
 void telemetry_begin(telemetry_line_t *line)
 {
     line->length = 0U;
+    line->limit = TELEMETRY_LINE_MAX;
     line->overflowed = false;
+}
+
+void telemetry_begin_answer(telemetry_line_t *line)
+{
+    telemetry_begin(line);
+    line->limit = TELEMETRY_ANSWER_MAX;
 }
 
 void telemetry_characters(telemetry_line_t *line, const char *text, size_t length)
 {
-    if (line->overflowed || length > TELEMETRY_LINE_MAX - (size_t)line->length) {
+    if (line->overflowed || length > (size_t)(line->limit - line->length)) {
         line->overflowed = true;
         return;
     }

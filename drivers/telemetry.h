@@ -6,10 +6,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#define TELEMETRY_ANSWER_MAX 160U   /* the longest line at all: answers may take two packets */
 #define TELEMETRY_LINE_MAX 95U  /* line end included: one XBee packet */
 
 typedef struct {
-    char text[TELEMETRY_LINE_MAX];
+    char text[TELEMETRY_ANSWER_MAX];
+    uint16_t limit;         /* TELEMETRY_LINE_MAX or TELEMETRY_ANSWER_MAX */
     uint16_t length;
     bool overflowed;        /* something did not fit: the line is not to be sent */
 } telemetry_line_t;
@@ -17,6 +19,8 @@ typedef struct {
 /* A line is built between telemetry_begin and telemetry_end. What does not fit is left out whole, sets `overflowed`, and
  * nothing more is added to the line. A number that decimal.h cannot write becomes "-". */
 void telemetry_begin(telemetry_line_t *line);
+/* A line that may take two packets: answers. */
+void telemetry_begin_answer(telemetry_line_t *line);
 void telemetry_text(telemetry_line_t *line, const char *text);              /* zero-terminated */
 void telemetry_characters(telemetry_line_t *line, const char *text, size_t length);
 void telemetry_fixed(telemetry_line_t *line, float value, uint16_t decimals);

@@ -4,54 +4,18 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "answer.h"
 #include "decimal.h"
 #include "parameters.h"
 #include "servers.h"
-#include "telemetry.h"
+#include "verbs.h"
 #include "xbee_port.h"
-
-/* What a command leaves behind: the answer under construction and whether the line was valid. */
-typedef struct {
-    const telecommand_t *command;
-    telemetry_line_t line;
-} answer_t;
 
 typedef struct {
     const char *name;
     bool (*execute)(answer_t *answer);
     const char *meaning;
 } verb_t;
-
-static void begin(answer_t *answer, const char *verdict)
-{
-    telemetry_begin(&answer->line);
-    telemetry_text(&answer->line, verdict);
-}
-
-static void send(answer_t *answer)
-{
-    telemetry_end(&answer->line);
-    xbee_port_answer(&answer->line);
-}
-
-static void begin_error(answer_t *answer)
-{
-    begin(answer, "ERR ");
-    if (answer->command->name_length > 0U) {
-        telemetry_characters(&answer->line, answer->command->name, answer->command->name_length);
-    } else {
-        telemetry_text(&answer->line, "-");
-    }
-    telemetry_text(&answer->line, " ");
-}
-
-static bool refuse(answer_t *answer, const char *reason)
-{
-    begin_error(answer);
-    telemetry_text(&answer->line, reason);
-    send(answer);
-    return false;
-}
 
 static float value_of(parameter_id_t id, const parameters_t *parameters)
 {
@@ -64,27 +28,24 @@ static float value_of(parameter_id_t id, const parameters_t *parameters)
     return reference.reference_m;
 }
 
-static void write_value(telemetry_line_t *line, parameter_id_t id, float value)
-{
-    const parameter_row_t *row = &parameter_table[id];
-
-    if (row->choices != NULL) {
-        telemetry_text(line, row->choices[(uint16_t)value]);
-    } else {
-        telemetry_number(line, value);
-    }
-}
-
 static void report_value(answer_t *answer, parameter_id_t id)
 {
+    const parameter_row_t *row = &parameter_table[id];
     parameters_t parameters;
+    float value;
 
     parameter_server_read(&parameters);
-    begin(answer, "OK ");
-    telemetry_text(&answer->line, parameter_table[id].name);
+    value = value_of(id, &parameters);
+    telemetry_begin(&answer->line);
+    telemetry_text(&answer->line, "OK ");
+    telemetry_text(&answer->line, row->name);
     telemetry_text(&answer->line, " ");
-    write_value(&answer->line, id, value_of(id, &parameters));
-    send(answer);
+    if (row->choices != NULL) {
+        telemetry_text(&answer->line, row->choices[(uint16_t)value]);
+    } else {
+        telemetry_number(&answer->line, value);
+    }
+    answer_send(answer);
 }
 
 static bool execute_get(answer_t *answer)
@@ -95,7 +56,7 @@ static bool execute_get(answer_t *answer)
     if (command->argument_length > 0U) {
         id = (uint16_t)parameter_find(command->argument, command->argument_length);
         if (id == (uint16_t)PARAMETER_COUNT) {
-            return refuse(answer, "unknown parameter");
+            return answer_refuse(answer, "unknown parameter");
         }
         report_value(answer, (parameter_id_t)id);
         return true;
@@ -108,12 +69,12 @@ static bool execute_get(answer_t *answer)
 
 static bool execute_ping(answer_t *answer)
 {
-    begin(answer, "OK PING");
+    answer_begin(answer);
     if (answer->command->argument_length > 0U) {
         telemetry_text(&answer->line, " ");
         telemetry_characters(&answer->line, answer->command->argument, answer->command->argument_length);
     }
-    send(answer);
+    answer_send(answer);
     return true;
 }
 
@@ -121,38 +82,18 @@ static bool execute_help(answer_t *answer);
 
 static const verb_t verbs[] = {
     {"GET", execute_get, "[NAME] - one parameter, or all"},
+    {"LASER", verb_laser, "- the scanner's state, rate, frames and errors by cause"},
     {"PING", execute_ping, "[TEXT] - answers the same text"},
     {"HELP", execute_help, "- this list"},
 };
 #define VERB_COUNT (sizeof verbs / sizeof verbs[0])
 
-static void write_limits(telemetry_line_t *line, const parameter_row_t *row)
+static void begin_help(answer_t *answer, const char *name)
 {
-    uint16_t i;
-
-    if (row->choices == NULL) {
-        telemetry_number(line, row->minimum);
-        telemetry_text(line, "..");
-        telemetry_number(line, row->maximum);
-        telemetry_text(line, " ");
-        telemetry_text(line, row->unit);
-        return;
-    }
-    for (i = 0U; i <= (uint16_t)row->maximum; i++) {
-        telemetry_text(line, (i > 0U) ? "|" : "");
-        telemetry_text(line, row->choices[i]);
-    }
-}
-
-static void help_parameter(answer_t *answer, const parameter_row_t *row)
-{
-    begin(answer, "OK HELP #");
-    telemetry_text(&answer->line, row->name);
+    answer_begin(answer);
+    telemetry_text(&answer->line, " #");
+    telemetry_text(&answer->line, name);
     telemetry_text(&answer->line, " ");
-    write_limits(&answer->line, row);
-    telemetry_text(&answer->line, " - ");
-    telemetry_text(&answer->line, row->meaning);
-    send(answer);
 }
 
 static bool execute_help(answer_t *answer)
@@ -160,25 +101,18 @@ static bool execute_help(answer_t *answer)
     uint16_t i;
 
     for (i = 0U; i < (uint16_t)PARAMETER_COUNT; i++) {
-        help_parameter(answer, &parameter_table[i]);
+        begin_help(answer, parameter_table[i].name);
+        answer_limits(answer, &parameter_table[i]);
+        telemetry_text(&answer->line, " - ");
+        telemetry_text(&answer->line, parameter_table[i].meaning);
+        answer_send(answer);
     }
     for (i = 0U; i < VERB_COUNT; i++) {
-        begin(answer, "OK HELP #");
-        telemetry_text(&answer->line, verbs[i].name);
-        telemetry_text(&answer->line, " ");
+        begin_help(answer, verbs[i].name);
         telemetry_text(&answer->line, verbs[i].meaning);
-        send(answer);
+        answer_send(answer);
     }
     return true;
-}
-
-static bool refuse_range(answer_t *answer, const parameter_row_t *row)
-{
-    begin_error(answer);
-    telemetry_text(&answer->line, (row->choices == NULL) ? "out of range " : "one of ");
-    write_limits(&answer->line, row);
-    send(answer);
-    return false;
 }
 
 static void set_reference(float reference_m)
@@ -199,14 +133,14 @@ static bool execute_set(answer_t *answer, parameter_id_t id)
     float value = (float)parameter_choice(id, command->argument, command->argument_length);
 
     if (command->argument_length == 0U) {
-        return refuse(answer, "value missing");
+        return answer_refuse(answer, "value missing");
     }
     if (row->choices == NULL && !decimal_read(command->argument, command->argument_length, &value)) {
-        return refuse(answer, "not a number");
+        return answer_refuse(answer, "not a number");
     }
     parameter_server_read(&parameters);
     if (parameters_set(&parameters, id, value) != PARAMETER_ACCEPTED) {
-        return refuse_range(answer, row);
+        return answer_refuse_range(answer, row);
     }
     if (id == PARAMETER_SETR) {
         set_reference(value);
@@ -232,7 +166,7 @@ static bool execute(answer_t *answer)
             return verbs[i].execute(answer);
         }
     }
-    return refuse(answer, "unknown command, try #HELP");
+    return answer_refuse(answer, "unknown command, try #HELP");
 }
 
 static void link_alive(uint32_t arrival_us)
@@ -249,20 +183,18 @@ void commands_execute(const telecommand_line_t *line, uint32_t arrival_us)
 {
     static const char *const reasons[] = {
         [TELECOMMAND_OK] = "",
+        [TELECOMMAND_DAMAGED] = "line damaged",
         [TELECOMMAND_EMPTY] = "empty command",
         [TELECOMMAND_OVERLONG] = "line too long",
         [TELECOMMAND_CHARACTER] = "bad character",
     };
     static telecommand_t command;
     static answer_t answer;
-    telecommand_status_t status;
+    telecommand_status_t status = telecommand_parse(line, &command);
 
-    command.name_length = 0U;
-    status = telecommand_parse(line, &command);
     answer.command = &command;
     if (status != TELECOMMAND_OK) {
-        command.name_length = 0U;
-        (void)refuse(&answer, reasons[status]);
+        (void)answer_refuse(&answer, reasons[status]);
     } else if (execute(&answer)) {
         link_alive(arrival_us);
     }

@@ -17,9 +17,9 @@ static scip_parser_t parser;
 static uint16_t points[2][SCIP_LAYOUT_POINTS_MAX];
 static scip_scan_t scans[2];
 static uint16_t filling;
-static bool scan_complete;
 static uint32_t scan_arrival_us;
 static urg_seen_t seen;
+static uint32_t overruns;
 
 static laser_message_t mailbox; /* written by Laser_SWI, read by TaskReceiveLaser with Swis off */
 static Swi_Handle laser_swi;
@@ -28,10 +28,11 @@ static Semaphore_Handle laser_ready;
 static void scan_done(void)
 {
     seen.scan_count++;
-    scan_complete = true;
+    seen.scan_remaining = scans[filling].remaining;
     scan_arrival_us = bsp_time_us();
     filling ^= 1U;
     scip_parser_scan_into(&parser, &scans[filling]);
+    Swi_post(laser_swi);
 }
 
 static void note(scip_event_t event)
@@ -60,23 +61,23 @@ static void note(scip_event_t event)
     }
 }
 
+static void note_errors(const bsp_uart_burst_t *burst)
+{
+    if (burst->framing || burst->overrun) {
+        scip_parser_line_broken(&parser);
+        seen.framing_count += burst->framing ? 1U : 0U;
+        overruns += burst->overrun ? 1U : 0U;
+    }
+}
+
 static void received(const bsp_uart_burst_t *burst)
 {
     uint16_t i;
 
-    if (burst->framing || burst->overrun) {
-        scip_parser_line_broken(&parser);
-        seen.framing_count += burst->framing ? 1U : 0U;
-        seen.damage_count += burst->overrun ? 1U : 0U;
-    }
+    note_errors(burst);
     seen.octet_count += burst->count;
     for (i = 0U; i < burst->count; i++) {
-        scip_event_t event = scip_parser_feed(&parser, octet_of(burst->octets[i]));
-
-        if (event != SCIP_NOTHING) {
-            note(event);
-            Swi_post(laser_swi);
-        }
+        note(scip_parser_feed(&parser, octet_of(burst->octets[i])));
     }
 }
 
@@ -84,19 +85,13 @@ static Void laser_swi_run(UArg unused0, UArg unused1)
 {
     UInt key = Hwi_disable();
     const scip_scan_t *done = &scans[filling ^ 1U];
-    bool has_scan = scan_complete;
 
     (void)unused0;
     (void)unused1;
-    scan_complete = false;
-    mailbox.seen = seen;
     mailbox.arrival_us = scan_arrival_us;
     Hwi_restore(key);
-    if (has_scan) {
-        mailbox.has_scan = true;
-        mailbox.scan = *done;
-        (void)memcpy(mailbox.distance_mm, done->distance_mm, done->points * sizeof done->distance_mm[0]);
-    }
+    mailbox.scan = *done;
+    (void)memcpy(mailbox.distance_mm, done->distance_mm, done->points * sizeof done->distance_mm[0]);
     Semaphore_post(laser_ready);
 }
 
@@ -129,9 +124,19 @@ void laser_port_wait(laser_message_t *message)
     (void)Semaphore_pend(laser_ready, BIOS_WAIT_FOREVER);
     key = Swi_disable();
     *message = mailbox;
-    mailbox.has_scan = false;
     Swi_restore(key);
     message->scan.distance_mm = message->distance_mm;
+}
+
+void laser_port_statistics(laser_statistics_t *statistics)
+{
+    UInt key = Hwi_disable();
+
+    statistics->seen = seen;
+    statistics->scip = parser.counters;
+    statistics->last_damage = parser.last_damage;
+    statistics->overruns = overruns;
+    Hwi_restore(key);
 }
 
 void laser_port_set_rate(uint32_t bit_rate)

@@ -1,4 +1,5 @@
-/* The scanner's UART: the receive Hwi feeds the SCIP parser, Laser_SWI hands what is complete to TaskReceiveLaser. */
+/* The scanner's UART: the receive Hwi feeds the SCIP parser, Laser_SWI hands complete scans to TaskReceiveLaser. Replies
+ * to commands need no task of their own: TaskSendLaser looks at the statistics at its next tick. */
 #ifndef FIRMWARE_LASER_PORT_H
 #define FIRMWARE_LASER_PORT_H
 
@@ -10,18 +11,27 @@
 #include "urg_link.h"
 
 typedef struct {
-    bool has_scan;              /* a scan has come since the previous message */
     scip_scan_t scan;           /* its points are in distance_mm below */
     uint16_t distance_mm[SCIP_LAYOUT_POINTS_MAX];
     uint32_t arrival_us;        /* last octet of that scan */
-    urg_seen_t seen;
 } laser_message_t;
+
+/* What has gone well and wrong since power-up. */
+typedef struct {
+    urg_seen_t seen;
+    scip_counters_t scip;
+    scip_damage_t last_damage;
+    uint32_t overruns;          /* times that the UART lost octets */
+} laser_statistics_t;
 
 /* Creates the port at `bit_rate`. main() only. */
 void laser_port_create(uint32_t bit_rate);
 
-/* Blocks TaskReceiveLaser until something is complete; copies it out. */
+/* Blocks TaskReceiveLaser until a scan is complete; copies the latest out. */
 void laser_port_wait(laser_message_t *message);
+
+/* What the receiving side has seen up to now. Task. */
+void laser_port_statistics(laser_statistics_t *statistics);
 
 /* TaskSendLaser: the own UART's rate; and a request, whose reply is awaited from now on. */
 void laser_port_set_rate(uint32_t bit_rate);

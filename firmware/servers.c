@@ -71,9 +71,11 @@ void imu_server_write(const imu_sample_t *sample)
 {
     IArg key = GateMutexPri_enter(imu_gate);
 
+    if (sample->sequence != imu.sequence) {
+        imu_history[imu_next] = *sample;
+        imu_next = (uint16_t)((imu_next + 1U) % IMU_HISTORY);
+    }
     imu = *sample;
-    imu_history[imu_next] = *sample;
-    imu_next = (uint16_t)((imu_next + 1U) % IMU_HISTORY);
     GateMutexPri_leave(imu_gate, key);
 }
 
@@ -98,19 +100,11 @@ uint16_t imu_server_history(imu_sample_t history[IMU_HISTORY])
     return held;
 }
 
-void laser_server_write_seen(const urg_seen_t *seen)
+void laser_server_write(const laser_sample_t *sample)
 {
     IArg key = GateMutexPri_enter(laser_gate);
 
-    laser.seen = *seen;
-    GateMutexPri_leave(laser_gate, key);
-}
-
-void laser_server_write_status(laser_status_t status)
-{
-    IArg key = GateMutexPri_enter(laser_gate);
-
-    laser.status = status;
+    laser = *sample;
     GateMutexPri_leave(laser_gate, key);
 }
 

@@ -49,14 +49,16 @@ void imu_server_read(imu_sample_t *sample);
 /* The latest samples, newest first; returns how many (0..IMU_HISTORY). */
 uint16_t imu_server_history(imu_sample_t history[IMU_HISTORY]);
 
-/* LaserStatus server: what was received is written by TaskReceiveLaser, the status by TaskSendLaser. */
+/* LaserStatus server, written by TaskSendLaser. */
 typedef struct {
     laser_status_t status;
-    urg_seen_t seen;
+    uint32_t rate;              /* bits per second */
+    uint32_t restarts;          /* times that the stream was lost */
+    uint32_t timeouts;          /* commands without an answer */
+    urg_seen_t seen;            /* at that time */
 } laser_sample_t;
 
-void laser_server_write_seen(const urg_seen_t *seen);
-void laser_server_write_status(laser_status_t status);
+void laser_server_write(const laser_sample_t *sample);
 void laser_server_read(laser_sample_t *sample);
 
 /* Reference server: what the operator wants, written by TaskReceiveComm. */

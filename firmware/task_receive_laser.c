@@ -57,10 +57,7 @@ static Void task_receive_laser(UArg unused0, UArg unused1)
     (void)unused1;
     for (;;) {
         laser_port_wait(&message);
-        laser_server_write_seen(&message.seen);
-        if (message.has_scan) {
-            take(&sample, &message);
-        }
+        take(&sample, &message);
     }
 }
 

@@ -41,19 +41,31 @@ static void show(laser_status_t status)
     bsp_led_red(status == LASER_LOST);
 }
 
+static void publish(const urg_seen_t *seen)
+{
+    static laser_sample_t sample;
+
+    sample.status = urg.status;
+    sample.rate = urg.rate;
+    sample.restarts = urg.restarts;
+    sample.timeouts = urg.timeouts;
+    sample.seen = *seen;
+    laser_server_write(&sample);
+}
+
 static Void task_send_laser(UArg unused0, UArg unused1)
 {
-    static laser_sample_t laser;
+    static laser_statistics_t statistics;
     static urg_action_t action;
 
     (void)unused0;
     (void)unused1;
     for (;;) {
         (void)Semaphore_pend(tick, BIOS_WAIT_FOREVER);
-        laser_server_read(&laser);
-        urg_link_step(&urg, &laser.seen, bsp_time_us(), &action);
+        laser_port_statistics(&statistics);
+        urg_link_step(&urg, &statistics.seen, bsp_time_us(), &action);
         obey(&action);
-        laser_server_write_status(urg.status);
+        publish(&statistics.seen);
         show(urg.status);
     }
 }

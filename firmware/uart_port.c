@@ -21,7 +21,7 @@ static Void receive_hwi(UArg uart)
     ports[uart].received(&burst);
 }
 
-static void feed_transmitter(bsp_uart_t uart)
+static uint16_t feed_run(bsp_uart_t uart)
 {
     uart_port_t *port = &ports[uart];
     uint16_t run = (uint16_t)(UART_PORT_TRANSMIT_CELLS - port->head);
@@ -33,7 +33,15 @@ static void feed_transmitter(bsp_uart_t uart)
     sent = bsp_uart_transmit(uart, &port->cells[port->head], run);
     port->head = (uint16_t)((uint16_t)(port->head + sent) % UART_PORT_TRANSMIT_CELLS);
     port->count = (uint16_t)(port->count - sent);
-    bsp_uart_transmit_interrupt_enable(uart, port->count > 0U);
+    return sent;
+}
+
+/* Until the FIFO is full or the buffer empty, so that the interrupt is on only behind a full FIFO. */
+static void feed_transmitter(bsp_uart_t uart)
+{
+    while (ports[uart].count > 0U && feed_run(uart) > 0U) {
+    }
+    bsp_uart_transmit_interrupt_enable(uart, ports[uart].count > 0U);
 }
 
 static Void transmit_hwi(UArg uart)

@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 #include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/family/c28/Hwi.h>
 #include <ti/sysbios/knl/Semaphore.h>
 #include <ti/sysbios/knl/Swi.h>
 #include <ti/sysbios/knl/Task.h>
@@ -15,37 +16,55 @@
 #define ROOM_POLL_MS 10U    /* ten characters leave meanwhile */
 #define REPORT_ROOM (UART_PORT_TRANSMIT_CELLS / 2U)
 
-static telecommand_collector_t collector;   /* receive Hwi only */
-static xbee_message_t fresh;                /* written by the receive Hwi, read by XBee_SWI at once */
-static xbee_message_t lines[XBEE_PORT_LINES];   /* the rest: XBee_SWI, and TaskReceiveComm with Swis off */
+/* Written by the receive Hwi; the queue is emptied by TaskReceiveComm with Hwis off. */
+static telecommand_collector_t collector;
+static xbee_message_t lines[XBEE_PORT_LINES];
 static uint16_t oldest;
 static uint16_t waiting;
+static uint16_t unannounced;    /* lines since XBee_SWI ran last */
 static uint16_t lost;
 static Swi_Handle xbee_swi;
 static Semaphore_Handle line_ready;
+
+static void queue_line(void)
+{
+    xbee_message_t *message = &lines[(uint16_t)(oldest + waiting) % XBEE_PORT_LINES];
+
+    if (waiting == XBEE_PORT_LINES) {
+        lost++;
+        return;
+    }
+    message->line = collector.line;
+    message->arrival_us = bsp_time_us();
+    waiting++;
+    unannounced++;
+    Swi_post(xbee_swi);
+}
 
 static void received(const bsp_uart_burst_t *burst)
 {
     uint16_t i;
 
+    if (burst->framing || burst->overrun) {
+        telecommand_collector_broken(&collector);
+    }
     for (i = 0U; i < burst->count; i++) {
         if (telecommand_collect(&collector, octet_of(burst->octets[i]))) {
-            fresh.line = collector.line;
-            fresh.arrival_us = bsp_time_us();
-            Swi_post(xbee_swi);
+            queue_line();
         }
     }
 }
 
 static Void xbee_swi_run(UArg unused0, UArg unused1)
 {
+    UInt key = Hwi_disable();
+    uint16_t fresh = unannounced;
+
     (void)unused0;
     (void)unused1;
-    if (waiting == XBEE_PORT_LINES) {
-        lost++;
-    } else {
-        lines[(uint16_t)(oldest + waiting) % XBEE_PORT_LINES] = fresh;
-        waiting++;
+    unannounced = 0U;
+    Hwi_restore(key);
+    for (; fresh > 0U; fresh--) {
         Semaphore_post(line_ready);
     }
 }
@@ -69,13 +88,13 @@ uint16_t xbee_port_wait(xbee_message_t *message)
     uint16_t missed;
 
     (void)Semaphore_pend(line_ready, BIOS_WAIT_FOREVER);
-    key = Swi_disable();
+    key = Hwi_disable();
     *message = lines[oldest];
     oldest = (uint16_t)((oldest + 1U) % XBEE_PORT_LINES);
     waiting--;
     missed = lost;
     lost = 0U;
-    Swi_restore(key);
+    Hwi_restore(key);
     return missed;
 }
 

@@ -1,0 +1,41 @@
+#include "fault.h"
+
+#include <stdbool.h>
+#include <ti/sysbios/family/c28/Hwi.h>
+
+#include "led.h"
+#include "throttle.h"
+
+static void stay_safe(void)
+{
+    (void)Hwi_disable();
+    for (;;) {
+        bsp_throttle_idle();
+        bsp_led_red(true);
+        bsp_led_blue(false);
+    }
+}
+
+Void fault_error(Error_Block *error)
+{
+    (void)error;
+    stay_safe();
+}
+
+Void fault_abort(Void)
+{
+    stay_safe();
+}
+
+Void fault_exit(Int status)
+{
+    (void)status;
+    stay_safe();
+}
+
+void __error__(const char *file, uint32_t line)
+{
+    (void)file;
+    (void)line;
+    stay_safe();
+}
