@@ -1,12 +1,12 @@
 """The operator's commands are the same in the program, the README and the packet list.
 
-Usage: commands.py PROGRAM README PACKETS
+Usage: commands.py PROGRAM VERBS README PACKETS
   PROGRAM  whose `params` prints a header line, then one line per parameter, no blanks in a cell but the last
+  VERBS    the C file whose table `verbs` holds the commands that are no parameters
   README   Markdown with one table whose rows begin with | `#NAME ...` |
   PACKETS  the XCTU packet list
 
-Columns of the two tables are compared where their titles agree (unit must be among them). Commands that are no
-parameters: GET, HELP, PING.
+Columns of the two tables are compared where their titles agree (unit must be among them).
 """
 import re
 import subprocess
@@ -16,7 +16,6 @@ from pathlib import Path
 
 import house
 
-OTHERS = {"GET", "HELP", "PING"}
 NEEDED = {"unit"}
 DASH = re.compile(r"^(?:-|–|—|)$")
 
@@ -52,14 +51,19 @@ def readme_commands(text):
     return found
 
 
+def verb_names(source):
+    table = re.search(r"verb_t verbs\[\] = \{(.*?)\n\};", source, re.S).group(1)
+    return set(re.findall(r'\{"(\w+)"', table))
+
+
 def packet_commands(text):
     payloads = [bytes.fromhex(element.text).decode("ascii") for element in ElementTree.fromstring(text).iter("payload")]
     return {re.match(r"#(\w+)", payload).group(1) for payload in payloads if payload.startswith("#")}
 
 
-def check(params, readme, packets):
+def check(params, verbs, readme, packets):
     table, written, sent = parameters(params), readme_commands(readme), packet_commands(packets)
-    expected = set(table) | OTHERS
+    expected = set(table) | verb_names(verbs)
     complaints = [f"README: no row for #{name}" for name in sorted(expected - set(written))]
     complaints += [f"README: #{name} is no command" for name in sorted(set(written) - expected)]
     complaints += [f"packets: none for #{name}" for name in sorted(expected - sent)]
@@ -74,7 +78,7 @@ def check(params, readme, packets):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 4:
+    if len(sys.argv) != 5:
         sys.exit(__doc__)
     printed = subprocess.run([sys.argv[1], "params"], check=True, capture_output=True, text=True).stdout
     house.report(check(printed, *(Path(path).read_text(encoding="utf-8") for path in sys.argv[2:])), "commands")

@@ -224,8 +224,10 @@ class Commands(unittest.TestCase):
     PACKETS = "<data>" + "".join(f"<packet><payload>{text.encode().hex()}0A</payload></packet>" for text in (
         "#KP 1", "#LAW PD", "#GET", "#GET KP", "#HELP", "#PING 1")) + "</data>"
 
-    def check(self, params=PARAMS, readme=README, packets=PACKETS):
-        return commands.check(params, readme, packets)
+    VERBS = 'static const verb_t verbs[] = {\n    {"GET", get, ""},\n    {"HELP", help, ""},\n    {"PING", ping, ""},\n};\n'
+
+    def check(self, params=PARAMS, verbs=VERBS, readme=README, packets=PACKETS):
+        return commands.check(params, verbs, readme, packets)
 
     def test_agreement(self):
         self.assertEqual(self.check(), [])
@@ -244,6 +246,9 @@ class Commands(unittest.TestCase):
         self.assertEqual(self.check(packets=self.PACKETS.replace("#LAW".encode().hex(), "#LOW".encode().hex())),
                          ["packets: none for #LAW", "packets: #LOW is no command"])
         self.assertEqual(self.check(readme=self.README.replace("| `#HELP` | | | |\n", "")), ["README: no row for #HELP"])
+        self.assertEqual(self.check(verbs=self.VERBS.replace("PING", "PONG")),
+                         ["README: no row for #PONG", "README: #PING is no command", "packets: none for #PONG",
+                          "packets: #PING is no command"])
 
 
 if __name__ == "__main__":

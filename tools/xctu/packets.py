@@ -17,7 +17,7 @@ COMMANDS = (
     "#RELEASE FREE", "#RELEASE SCAN",
     "#LINK 2", "#LINK 0",
     "#PING 1",
-    "#GET", "#GET KP", "#HELP",
+    "#GET", "#GET KP", "#LASER", "#HELP",
 )
 
 
