@@ -1,0 +1,335 @@
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "commands.h"
+#include "tools/rta/analysis.h"
+#include "tools/rta/table.h"
+
+static const char usage[] =
+    "usage: plomada rta [seed|plomada|FILE] [OPTION]...\n\n"
+    "Response-time analysis of a table of tasks, Swis and interrupts: the seed's (default), this firmware's, or a CSV file.\n"
+    "Per task, times in ms: the demand W(D) up to its deadline as the seed computed it, with its horizons corrected, with\n"
+    "the context switches of every job; the true worst response time, and the slack it leaves before the deadline.\n"
+    "The first three look at the table alone; the options below change the response, load and growth.\n\n"
+    "  --switch-ms MS      two context switches, per task job and per blocking (default 0.057; the first three as well)\n"
+    "  --access-ms MS      one server access, for the column accesses (default 0.0093; the first three as well)\n"
+    "  --jitter MS         every release may come this late (default 0)\n"
+    "  --bursts            rows with burst_n come in frames of burst_n every burst_period_ms, not as endless streams\n"
+    "  --chain A,B,...,Z   also the worst time from what releases A to the end of task Z, when each releases the next\n"
+    "  --set ROW.COLUMN=VALUE\n"
+    "                      changes a number of the table; may be repeated\n"
+    "  --json FILE         the same figures\n"
+    "  --print             prints the table itself, as CSV, and does nothing else\n\n"
+    "A FILE begins with name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings and may add\n"
+    "accesses,burst_n,burst_period_ms; kind is hwi, swi or task. --print shows an example.\n\n"
+    "Exit status: 0 all deadlines hold, 1 one does not, 2 usage or not a table.\n";
+
+enum { OPT_SWITCH = 1, OPT_ACCESS, OPT_JITTER, OPT_BURSTS, OPT_CHAIN, OPT_SET, OPT_JSON, OPT_PRINT, OPT_HELP };
+
+static const struct option long_options[] = {
+    {"switch-ms", required_argument, NULL, OPT_SWITCH}, {"access-ms", required_argument, NULL, OPT_ACCESS},
+    {"jitter", required_argument, NULL, OPT_JITTER},    {"bursts", no_argument, NULL, OPT_BURSTS},
+    {"chain", required_argument, NULL, OPT_CHAIN},      {"set", required_argument, NULL, OPT_SET},
+    {"json", required_argument, NULL, OPT_JSON},        {"print", no_argument, NULL, OPT_PRINT},
+    {"help", no_argument, NULL, OPT_HELP},              {NULL, 0, NULL, 0},
+};
+
+#define SETTINGS_MAX 64
+
+typedef struct {
+    const char *table_name, *json_path, *chain_text;
+    const char *setting[SETTINGS_MAX];
+    int settings;
+    bool print, help;
+    rta_options_t options;
+    rta_table_t table;
+    int chain[RTA_ROWS_MAX];
+    int chain_members;
+} request_t;
+
+static bool complain(const char *subject, const char *what)
+{
+    fprintf(stderr, "plomada rta: %s: %s\n", subject, what);
+    return false;
+}
+
+/* ---- arguments ---- */
+
+static bool read_ms(const char *text, rta_ps_t *time)
+{
+    char *end;
+    double ms = strtod(text, &end);
+
+    *time = round(ms * RTA_PS_PER_MS);
+    return (strspn(text, "0123456789.") == strlen(text) && text[0] != '\0' && *end == '\0' && ms <= 100000.0) ||
+           complain(text, "not a time in ms");
+}
+
+static bool add_setting(request_t *request, const char *text)
+{
+    if (request->settings == SETTINGS_MAX) {
+        return complain(text, "too many settings");
+    }
+    request->setting[request->settings++] = text;
+    return true;
+}
+
+static bool read_option(request_t *request, int option, const char *argument)
+{
+    switch (option) {
+    case OPT_SWITCH: return read_ms(argument, &request->options.switches);
+    case OPT_ACCESS: return read_ms(argument, &request->options.access);
+    case OPT_JITTER: return read_ms(argument, &request->options.jitter);
+    case OPT_BURSTS: request->options.bursts = true; return true;
+    case OPT_CHAIN: request->chain_text = argument; return true;
+    case OPT_SET: return add_setting(request, argument);
+    case OPT_JSON: request->json_path = argument; return true;
+    case OPT_PRINT: request->print = true; return true;
+    case OPT_HELP: request->help = true; return true;
+    default: return false;
+    }
+}
+
+static bool read_arguments(request_t *request, int argc, char **argv)
+{
+    int option;
+
+    optind = 1;
+    while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {
+        if (!read_option(request, option, optarg)) {
+            return false;
+        }
+    }
+    if (optind < argc) {
+        request->table_name = argv[optind++];
+    }
+    return optind == argc || complain(argv[optind], "one table is enough");
+}
+
+/* ---- the table ---- */
+
+static const char *load_text(const char *name)
+{
+    static char text[RTA_TEXT_MAX];
+    const char *builtin = rta_table_builtin(name);
+    FILE *file;
+    size_t count;
+
+    if (builtin != NULL) {
+        return builtin;
+    }
+    file = fopen(name, "r");
+    if (file == NULL) {
+        complain(name, "neither seed nor plomada, nor a file that can be read");
+        return NULL;
+    }
+    count = fread(text, 1, sizeof text, file);
+    if (ferror(file) || count == sizeof text || memchr(text, '\0', count) != NULL) {
+        complain(name, "not a text of less than 65536 characters");
+        fclose(file);
+        return NULL;
+    }
+    fclose(file);
+    text[count] = '\0';
+    return text;
+}
+
+static bool load_table(request_t *request, const char *text)
+{
+    rta_error_t error;
+
+    if (!rta_table_read(&request->table, text, &error)) {
+        fprintf(stderr, "plomada rta: %s:%d: %s\n", request->table_name, error.line, error.reason);
+        return false;
+    }
+    return rta_table_set(&request->table, request->setting, request->settings, &error) || complain("--set", error.reason);
+}
+
+static bool goes_before_last(const rta_table_t *table, const int *chain, int members)
+{
+    const rta_row_t *last = &table->row[chain[members - 1]];
+
+    for (int i = 0; i < members - 1; i++) {
+        const rta_row_t *row = &table->row[chain[i]];
+
+        if (row == last || (row->kind == RTA_TASK && row->priority < last->priority)) {
+            return false;
+        }
+    }
+    return last->kind == RTA_TASK;
+}
+
+static bool read_chain(request_t *request)
+{
+    for (const char *at = request->chain_text; at != NULL;) {
+        size_t length = strcspn(at, ",");
+        int row = rta_table_find(&request->table, at, (int)length);
+
+        if (row < 0 || request->chain_members == RTA_ROWS_MAX) {
+            return complain(at, "--chain: no such row");
+        }
+        request->chain[request->chain_members++] = row;
+        at = at[length] == ',' ? at + length + 1 : NULL;
+    }
+    return request->chain_members == 0 || goes_before_last(&request->table, request->chain, request->chain_members) ||
+           complain(request->chain_text, "--chain: the last must be a task, and none before it of lower priority");
+}
+
+/* ---- report ---- */
+
+static const char *ms(char text[32], rta_ps_t time)
+{
+    if (isinf(time)) {
+        strcpy(text, "-");
+    } else {
+        snprintf(text, 32, "%.4f", time / RTA_PS_PER_MS);
+    }
+    return text;
+}
+
+static void print_task(const request_t *request, int task)
+{
+    const rta_row_t *row = &request->table.row[task];
+    rta_ps_t response = rta_response(&request->table, &request->options, task);
+    char text[5][32];
+
+    printf("%-18s %4d %8g %10s %10s %10s %10s %10s%s\n", row->name, row->priority, row->deadline / RTA_PS_PER_MS,
+           ms(text[0], rta_demand_seed(&request->table, &request->options, task)),
+           ms(text[1], rta_demand(&request->table, &request->options, task)),
+           ms(text[2], rta_demand_switching(&request->table, &request->options, task)), ms(text[3], response),
+           isinf(response) ? "-" : ms(text[4], row->deadline - response), response > row->deadline ? "  LATE" : "");
+}
+
+static void print_growth(const request_t *request)
+{
+    rta_growth_t costs = rta_growth(&request->table, &request->options, false);
+    rta_growth_t all = rta_growth(&request->table, &request->options, true);
+
+    printf("growth: at %.2f times these costs %s is late; context switches too: %.2f\n", costs.factor,
+           request->table.row[costs.first_missed].name, all.factor);
+}
+
+static void print_chain(const request_t *request)
+{
+    char text[32];
+
+    if (request->chain_members > 0) {
+        printf("%s: %s\n", request->chain_text,
+               ms(text, rta_chain(&request->table, &request->options, request->chain, request->chain_members)));
+    }
+}
+
+static void print_report(const request_t *request, bool holds)
+{
+    rta_load_t load = rta_load(&request->table, &request->options);
+    int task[RTA_ROWS_MAX];
+    int tasks = rta_tasks(&request->table, task);
+
+    printf("%-18s %4s %8s %10s %10s %10s %10s %10s\n", request->table_name, "prio", "D", "seed W(D)", "W(D)", "switching",
+           "response", "slack");
+    for (int i = 0; i < tasks; i++) {
+        print_task(request, task[i]);
+    }
+    print_chain(request);
+    printf("load: hwi %.4f, swi %.4f, tasks %.4f, switches %.4f, total %.4f\n", load.kind[RTA_HWI], load.kind[RTA_SWI],
+           load.kind[RTA_TASK], load.switches, load.total);
+    print_growth(request);
+    printf("%s\n", holds ? "all deadlines hold" : "NOT all deadlines hold");
+}
+
+static void write_json_ms(FILE *out, const char *key, rta_ps_t time)
+{
+    if (isinf(time)) {
+        fprintf(out, ", \"%s\": null", key);
+    } else {
+        fprintf(out, ", \"%s\": %.9g", key, time / RTA_PS_PER_MS);
+    }
+}
+
+static void write_json_task(FILE *out, const request_t *request, int task)
+{
+    const rta_table_t *table = &request->table;
+    rta_ps_t response = rta_response(table, &request->options, task);
+
+    fprintf(out, "{\"name\": \"%s\", \"priority\": %d", table->row[task].name, table->row[task].priority);
+    write_json_ms(out, "period_ms", table->row[task].period);
+    write_json_ms(out, "deadline_ms", table->row[task].deadline);
+    write_json_ms(out, "demand_seed_ms", rta_demand_seed(table, &request->options, task));
+    write_json_ms(out, "demand_ms", rta_demand(table, &request->options, task));
+    write_json_ms(out, "demand_switching_ms", rta_demand_switching(table, &request->options, task));
+    write_json_ms(out, "response_ms", response);
+    write_json_ms(out, "slack_ms", isinf(response) ? response : table->row[task].deadline - response);
+    fprintf(out, "}");
+}
+
+static void write_json(FILE *out, const request_t *request, bool holds)
+{
+    rta_load_t load = rta_load(&request->table, &request->options);
+    int task[RTA_ROWS_MAX];
+    int tasks = rta_tasks(&request->table, task);
+
+    fprintf(out, "{\n  \"holds\": %s,\n  \"tasks\": [", holds ? "true" : "false");
+    for (int i = 0; i < tasks; i++) {
+        fprintf(out, "%s\n    ", i > 0 ? "," : "");
+        write_json_task(out, request, task[i]);
+    }
+    fprintf(out, "\n  ],\n  \"load\": {\"hwi\": %.6f, \"swi\": %.6f, \"tasks\": %.6f, \"switches\": %.6f, \"total\": %.6f}",
+            load.kind[RTA_HWI], load.kind[RTA_SWI], load.kind[RTA_TASK], load.switches, load.total);
+    if (request->chain_members > 0) {
+        fprintf(out, ",\n  \"chain\": {\"members\": \"%s\"", request->chain_text);
+        write_json_ms(out, "response_ms",
+                      rta_chain(&request->table, &request->options, request->chain, request->chain_members));
+        fprintf(out, "}");
+    }
+    fprintf(out, ",\n  \"growth\": %.6g,\n  \"growth_with_switches\": %.6g\n}\n",
+            rta_growth(&request->table, &request->options, false).factor,
+            rta_growth(&request->table, &request->options, true).factor);
+}
+
+static int run(request_t *request)
+{
+    const char *text = load_text(request->table_name);
+    FILE *json;
+    bool holds;
+
+    if (text == NULL || !load_table(request, text) || !read_chain(request)) {
+        return 2;
+    }
+    if (request->print) {
+        fputs(text, stdout);
+        return 0;
+    }
+    holds = rta_holds(&request->table, &request->options);
+    if (request->json_path != NULL) {
+        json = fopen(request->json_path, "w");
+        if (json == NULL) {
+            perror(request->json_path);
+            return 2;
+        }
+        write_json(json, request, holds);
+        fclose(json);
+    }
+    print_report(request, holds);
+    return holds ? 0 : 1;
+}
+
+int command_rta(int argc, char **argv)
+{
+    static request_t request;
+
+    request.table_name = "seed";
+    request.options.switches = round(0.057 * RTA_PS_PER_MS);
+    request.options.access = round(0.0093 * RTA_PS_PER_MS);
+    if (!read_arguments(&request, argc, argv)) {
+        fprintf(stderr, "`plomada rta --help` tells more.\n");
+        return 2;
+    }
+    if (request.help) {
+        fputs(usage, stdout);
+        return 0;
+    }
+    return run(&request);
+}
