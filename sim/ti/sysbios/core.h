@@ -27,11 +27,8 @@
 #define WORD_MAX 65535U         /* UInt of a C28x */
 #define INT_MAX_C28 32767
 
-typedef enum { JOB_HWI, JOB_SWI, JOB_TASK } job_kind_t;
-
 typedef struct {
-    job_kind_t kind;
-    const char *name;
+    kernel_job_t id;
     int rank;               /* Hwi: its number; Swi, Task: its priority now */
     sim_time_t cost;        /* of every run */
     sim_time_t remaining;   /* to be consumed before its code goes on */
@@ -51,7 +48,6 @@ struct Task_Object {
     job_t job;
     Task_FuncPtr function;
     UArg arguments[2];
-    Int base;                       /* priority without what is inherited */
     link_t ready;
     link_t wait;                    /* in the queue of a semaphore or gate */
     struct Clock_Object timeout;
@@ -77,7 +73,7 @@ void kernel_observed(kernel_event_t event, const job_t *job, int detail);
 void kernel_yield_processor(kernel_event_t event, const job_t *job, int detail);
 const kernel_costs_t *kernel_costs(void);
 sim_time_t kernel_cost_of_name(const char *name);
-sim_time_t kernel_cost_of_interrupt(int number);
+const kernel_cost_t *kernel_cost_of_interrupt(int number);   /* NULL: none */
 void kernel_halt(const char *format, ...) __attribute__((noreturn, format(printf, 1, 2)));
 /* Halts when the condition is false. */
 void kernel_require(bool condition, const char *message);
@@ -99,8 +95,8 @@ void task_require_wait(const char *function);
  * task_wake() was given, 0 after the timeout. By then the cost of the next job is consumed. */
 UInt task_wait(UInt32 timeout);
 void task_wake(Task_Handle task, UInt outcome);
-/* The wait that the task called for is over at once: the next job begins. */
-void task_no_wait(void);
+/* The wait that the task called for is over at once: the next job begins. `since`: when it was posted. */
+void task_no_wait(sim_time_t since);
 /* Off the ready list, and back on it. */
 void task_block(Task_Handle task);
 void task_unblock(Task_Handle task);
@@ -138,6 +134,11 @@ void clock_module_reset(void);              /* after hwi and swi */
 void clock_module_start(void);
 void clock_arm(struct Clock_Object *object, UInt32 timeout);    /* and append it to the list */
 void clock_init(struct Clock_Object *object, Clock_FuncPtr function, UArg argument);
+
+/* load.c */
+
+void load_module_reset(void);
+void load_idle(sim_time_t from, sim_time_t to);     /* nobody had the processor; in order of time */
 
 /* semaphore.c, event.c */
 

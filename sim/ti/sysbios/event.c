@@ -5,9 +5,11 @@
 #include "sim/ti/sysbios/core.h"
 
 #define EVENTS 32
+#define FLAGS 16
 
 struct Event_Object {
     UInt posted;
+    sim_time_t since[FLAGS];
     UInt and_mask, or_mask; /* of the waiting task */
     link_t waiting;         /* at most one task */
 };
@@ -45,6 +47,28 @@ static UInt consume(Event_Handle event, UInt and_mask, UInt or_mask)
     return matching;
 }
 
+static sim_time_t earliest(const struct Event_Object *event, UInt flags)
+{
+    sim_time_t when = SIM_NEVER;
+
+    for (int i = 0; i < FLAGS; i++) {
+        if ((flags >> i & 1u) != 0 && event->since[i] < when) {
+            when = event->since[i];
+        }
+    }
+    return when;
+}
+
+static void put(Event_Handle event, UInt flags)
+{
+    for (int i = 0; i < FLAGS; i++) {
+        if ((flags & ~event->posted) >> i & 1u) {
+            event->since[i] = timeline_now();
+        }
+    }
+    event->posted |= flags;
+}
+
 UInt Event_pend(Event_Handle handle, UInt andMask, UInt orMask, UInt32 timeout)
 {
     kernel_require((andMask | orMask) != 0, "Event_pend: both masks are 0");
@@ -54,7 +78,7 @@ UInt Event_pend(Event_Handle handle, UInt andMask, UInt orMask, UInt32 timeout)
 
     if (matching != 0 || timeout == BIOS_NO_WAIT) {
         if (timeout != BIOS_NO_WAIT && kernel_context() == CONTEXT_TASK) {
-            task_no_wait();
+            task_no_wait(earliest(handle, matching));
         }
         return matching;
     }
@@ -70,7 +94,7 @@ Void Event_post(Event_Handle handle, UInt eventMask)
 {
     kernel_require(eventMask != 0, "Event_post: no event");
     kernel_require(eventMask <= WORD_MAX, "Event_post: mask does not fit 16 bits");
-    handle->posted |= eventMask;
+    put(handle, eventMask);
     if (!link_alone(&handle->waiting)) {
         UInt matching = consume(handle, handle->and_mask, handle->or_mask);
 

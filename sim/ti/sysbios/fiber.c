@@ -1,6 +1,9 @@
 #include "sim/ti/sysbios/fiber.h"
 
 #include <stdlib.h>
+#include <string.h>
+
+#define PATTERN 0xBE
 
 static ucontext_t scheduler;
 static fiber_t *current;
@@ -68,6 +71,7 @@ bool fiber_create(fiber_t *fiber, void (*entry)(void *argument), void *argument)
         fiber_free(fiber);
         return false;
     }
+    memset(fiber->stack, PATTERN, FIBER_STACK);
     fiber->context.uc_stack.ss_sp = fiber->stack;
     fiber->context.uc_stack.ss_size = FIBER_STACK;
     makecontext(&fiber->context, begin, 0);
@@ -78,6 +82,18 @@ void fiber_free(fiber_t *fiber)
 {
     free(fiber->stack);
     fiber->stack = NULL;
+}
+
+/* The sanitizer marks parts of a stack that is in use. */
+__attribute__((no_sanitize("address"))) size_t fiber_stack_used(const fiber_t *fiber)
+{
+    const unsigned char *stack = fiber->stack;
+    size_t unused = 0;
+
+    while (unused < FIBER_STACK && stack[unused] == PATTERN) {
+        unused++;
+    }
+    return FIBER_STACK - unused;
 }
 
 void fiber_resume(fiber_t *fiber)

@@ -21,6 +21,9 @@ typedef struct {
 bool fiber_create(fiber_t *fiber, void (*entry)(void *argument), void *argument);
 void fiber_free(fiber_t *fiber); /* in any state but running */
 
+/* Most that it has ever had on its stack, in octets: what still has the pattern of fiber_create() was never used. */
+size_t fiber_stack_used(const fiber_t *fiber);
+
 /* Scheduler only: runs the fiber until it pauses or leaves. */
 void fiber_resume(fiber_t *fiber);
 /* Fiber only: back to the scheduler, until resumed. */

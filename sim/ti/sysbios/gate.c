@@ -8,6 +8,7 @@ enum { KEY_FIRST, KEY_NESTED };
 
 struct GateMutexPri_Object {
     int number;         /* in order of creation */
+    const char *name;
     Task_Handle owner;  /* NULL: free */
     int depth;          /* enters of the owner */
     link_t held;        /* in the owner's list */
@@ -21,6 +22,11 @@ void gate_module_reset(void)
 {
     memset(gates, 0, sizeof gates);
     gate_count = 0;
+}
+
+const char *kernel_gate_name(int number)
+{
+    return gates[number].name;
 }
 
 static Task_Handle first_waiting(const struct GateMutexPri_Object *gate)
@@ -51,7 +57,6 @@ Task_Handle gate_requeue(GateMutexPri_Handle gate, Task_Handle waiting)
 
 GateMutexPri_Handle GateMutexPri_create(const GateMutexPri_Params *params, Error_Block *eb)
 {
-    (void)params;
     kernel_require_create_context("GateMutexPri_create");
     if (gate_count == GATES) {
         return kernel_create_failed(eb, "GateMutexPri_create: no memory");
@@ -59,6 +64,7 @@ GateMutexPri_Handle GateMutexPri_create(const GateMutexPri_Params *params, Error
     struct GateMutexPri_Object *gate = &gates[gate_count];
 
     gate->number = gate_count++;
+    gate->name = params != NULL ? kernel_name(params->instance) : "";
     link_init(&gate->held);
     link_init(&gate->waiting);
     return gate;

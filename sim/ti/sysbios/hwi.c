@@ -11,6 +11,7 @@ struct Hwi_Object {
     job_t job;
     Hwi_FuncPtr function; /* NULL: number not taken */
     UArg argument;
+    sim_time_t raised_at;
 };
 
 static struct Hwi_Object hwis[NUMBERS];
@@ -34,13 +35,19 @@ void hwi_module_reset(void)
     memset(enabled, 0, sizeof enabled);
 }
 
+static void release(int number)
+{
+    hwis[number].raised_at = timeline_now();
+    kernel_observed(KERNEL_RELEASED, &hwis[number].job, number);
+}
+
 void kernel_raise(int interrupt)
 {
     kernel_require(interrupt >= 0 && interrupt < NUMBERS, "kernel_raise: no such interrupt");
     if (!is_on(raised, interrupt)) {
         turn_on(raised, interrupt);
         if (is_on(enabled, interrupt)) {
-            kernel_observed(KERNEL_RELEASED, &hwis[interrupt].job, interrupt);
+            release(interrupt);
         }
     }
 }
@@ -68,6 +75,7 @@ job_t *hwi_take(void)
 
     raised[number / 64] &= ~((uint64_t)1 << (number % 64));
     hwis[number].job.remaining = hwis[number].job.cost;
+    hwis[number].job.id.released = hwis[number].raised_at;
     return &hwis[number].job;
 }
 
@@ -80,10 +88,14 @@ void hwi_run(job_t *job)
 
 static Hwi_Handle create(Int number, Hwi_FuncPtr function, UArg argument, const char *name)
 {
-    hwis[number] = (struct Hwi_Object){
-        .job = {.kind = JOB_HWI, .name = name, .rank = number, .cost = kernel_cost_of_interrupt(number)},
-        .function = function,
-        .argument = argument};
+    const kernel_cost_t *cost = kernel_cost_of_interrupt(number);
+    bool needs_name = name[0] == '\0' && cost != NULL && cost->name != NULL;
+
+    hwis[number] = (struct Hwi_Object){.job = {.id = {KERNEL_HWI, needs_name ? cost->name : name, number, number, 0},
+                                               .rank = number,
+                                               .cost = cost != NULL ? cost->job : 0},
+                                       .function = function,
+                                       .argument = argument};
     return &hwis[number];
 }
 
@@ -92,7 +104,7 @@ static void enable(int number)
     if (!is_on(enabled, number)) {
         turn_on(enabled, number);
         if (is_on(raised, number)) {
-            kernel_observed(KERNEL_RELEASED, &hwis[number].job, number);
+            release(number);
             kernel_reschedule();
         }
     }

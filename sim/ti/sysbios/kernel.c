@@ -24,6 +24,7 @@ static job_t *holder;           /* has the processor */
 static job_t *hwi_in_hand;      /* Hwis are not nested */
 static job_t *resumed;          /* thread whose code runs */
 
+static void (*fault_hook)(void);
 static void (*pacer)(sim_time_t next);
 static kernel_observer_t observer;
 static void *observer_context;
@@ -38,7 +39,7 @@ job_t *kernel_thread(void)
 context_t kernel_context(void)
 {
     if (resumed != NULL) {
-        return resumed->kind == JOB_TASK ? CONTEXT_TASK : CONTEXT_SWI;
+        return resumed->id.kind == KERNEL_TASK ? CONTEXT_TASK : CONTEXT_SWI;
     }
     return fiber_inside() ? CONTEXT_MAIN : CONTEXT_HWI;
 }
@@ -63,24 +64,39 @@ const kernel_costs_t *kernel_costs(void)
 sim_time_t kernel_cost_of_name(const char *name)
 {
     for (int i = 0; i < costs.job_count; i++) {
-        if (costs.jobs[i].name != NULL && strcmp(costs.jobs[i].name, name) == 0) {
+        if (costs.jobs[i].interrupt < 0 && strcmp(costs.jobs[i].name, name) == 0) {
             return costs.jobs[i].job;
         }
     }
     return 0;
 }
 
-sim_time_t kernel_cost_of_interrupt(int number)
+const kernel_cost_t *kernel_cost_of_interrupt(int number)
 {
     for (int i = 0; i < costs.job_count; i++) {
-        if (costs.jobs[i].name == NULL && costs.jobs[i].interrupt == number) {
-            return costs.jobs[i].job;
+        if (costs.jobs[i].interrupt == number) {
+            return &costs.jobs[i];
         }
     }
-    return 0;
+    return NULL;
 }
 
 /* ---- the end ---- */
+
+void kernel_set_fault_hook(void (*hook)(void))
+{
+    fault_hook = hook;
+}
+
+static void first_halt(const char *format, va_list arguments)
+{
+    (void)vsnprintf(halt_reason, sizeof halt_reason, format, arguments);
+    halted = true;
+    holder = NULL;
+    if (fault_hook != NULL) {
+        fault_hook();
+    }
+}
 
 void kernel_halt(const char *format, ...)
 {
@@ -88,11 +104,9 @@ void kernel_halt(const char *format, ...)
         va_list arguments;
 
         va_start(arguments, format);
-        (void)vsnprintf(halt_reason, sizeof halt_reason, format, arguments);
+        first_halt(format, arguments);
         va_end(arguments);
     }
-    halted = true;
-    holder = NULL;
     if (fiber_inside()) {
         fiber_leave();
     }
@@ -141,8 +155,8 @@ void kernel_observe(kernel_observer_t new_observer, void *context)
 
 void kernel_observed(kernel_event_t event, const job_t *job, int detail)
 {
-    if (observer != NULL) {
-        observer(observer_context, timeline_now(), event, job->name, detail);
+    if (observer != NULL && !halted) {
+        observer(observer_context, timeline_now(), event, &job->id, detail);
     }
 }
 
@@ -194,7 +208,7 @@ static void hand_over(job_t *job)
     }
     holder = job;
     if (job != NULL) {
-        if (job->kind == JOB_SWI) {
+        if (job->id.kind == KERNEL_SWI) {
             swi_begin(job);
         }
         kernel_observed(KERNEL_DISPATCHED, job, job->rank);
@@ -211,7 +225,7 @@ void kernel_reschedule(void)
 {
     job_t *self = resumed;
 
-    if (self == NULL) {
+    if (self == NULL || halted) {
         return;
     }
     if (self->remaining > 0 || holder != self || first_thread() != self || interrupt_goes_before(self)) {
@@ -229,17 +243,17 @@ void kernel_consume(sim_time_t cost)
 
 static void execute(job_t *job)
 {
-    switch (job->kind) {
-    case JOB_HWI:
+    switch (job->id.kind) {
+    case KERNEL_HWI:
         hwi_run(job);
         hwi_in_hand = NULL;
         kernel_yield_processor(KERNEL_FINISHED, job, job->rank);
         break;
-    case JOB_SWI:
+    case KERNEL_SWI:
         resumed = job;
         swi_run(job);
         break;
-    case JOB_TASK:
+    case KERNEL_TASK:
         resumed = job;
         fiber_resume(&job->fiber);
         break;
@@ -269,6 +283,8 @@ static void let_time_pass(job_t *job)
     timeline_move_to(next);
     if (job != NULL) {
         job->remaining -= next - now;
+    } else {
+        load_idle(now, next);
     }
 }
 
@@ -327,6 +343,7 @@ void kernel_boot(int (*entry)(void), const kernel_costs_t *new_costs)
     event_module_reset();
     gate_module_reset();
     clock_module_reset();
+    load_module_reset();
     main_entry = entry;
     fiber_free(&main_fiber);
     if (!fiber_create(&main_fiber, run_main, NULL)) {

@@ -9,6 +9,7 @@
 struct Semaphore_Object {
     UInt count;
     Semaphore_Mode mode;
+    sim_time_t since; /* the first of the posts that are counted has its turn */
     link_t waiting; /* tasks */
 };
 
@@ -48,9 +49,12 @@ Semaphore_Handle Semaphore_create(Int count, const Semaphore_Params *params, Err
 
 static Bool take(Semaphore_Handle semaphore, UInt32 timeout)
 {
+    sim_time_t since = semaphore->since;
+
     semaphore->count--;
+    semaphore->since = timeline_now();
     if (timeout != BIOS_NO_WAIT && kernel_context() == CONTEXT_TASK) {
-        task_no_wait();
+        task_no_wait(since);
     }
     return TRUE;
 }
@@ -78,6 +82,9 @@ Void Semaphore_post(Semaphore_Handle handle)
     if (!link_alone(&handle->waiting)) {
         task_wake(LINK_OWNER(handle->waiting.next, struct Task_Object, wait), 1);
         return;
+    }
+    if (handle->count == 0) {
+        handle->since = timeline_now();
     }
     if (is_binary(handle)) {
         handle->count = 1;

@@ -10,6 +10,7 @@ struct Swi_Object {
     UArg arguments[2];
     bool posted;            /* and not begun */
     bool begun;
+    sim_time_t posted_at;
     link_t link;            /* in posted[], while posted */
     bool (*needed)(void);   /* kernel's own: false = nothing to do, the function need not be called; or NULL */
 };
@@ -75,6 +76,7 @@ void swi_begin(job_t *job)
         swi->begun = true;
         begun[job->rank] = swi;
         job->remaining = job->cost;
+        job->id.released = swi->posted_at;
     }
 }
 
@@ -119,10 +121,8 @@ static Swi_Handle create(Swi_FuncPtr function, const Swi_Params *params, const c
     if (swi_count == SWIS || !fiber_create(&swi->job.fiber, thread, swi)) {
         return kernel_create_failed(eb, "Swi_create: no memory");
     }
-    swi_count++;
-    swi->job.kind = JOB_SWI;
-    swi->job.name = name;
     swi->job.rank = params->priority == ~(0U) ? PRIORITIES - 1 : (int)params->priority;
+    swi->job.id = (kernel_job_t){KERNEL_SWI, name, swi_count++, swi->job.rank, 0};
     swi->job.cost = kernel_cost_of_name(name);
     swi->function = function;
     swi->arguments[0] = params->arg0;
@@ -160,6 +160,7 @@ Void Swi_post(Swi_Handle handle)
         return;
     }
     handle->posted = true;
+    handle->posted_at = timeline_now();
     link_before(&posted[handle->job.rank], &handle->link);
     update(handle->job.rank);
     kernel_observed(KERNEL_RELEASED, &handle->job, handle->job.rank);

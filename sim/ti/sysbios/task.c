@@ -45,7 +45,7 @@ Task_Handle task_self(void)
 {
     job_t *job = kernel_thread();
 
-    return job != NULL && job->kind == JOB_TASK ? LINK_OWNER(job, struct Task_Object, job) : NULL;
+    return job != NULL && job->id.kind == KERNEL_TASK ? LINK_OWNER(job, struct Task_Object, job) : NULL;
 }
 
 /* ---- ready or not ---- */
@@ -78,8 +78,6 @@ void task_queue_by_priority(link_t *queue, Task_Handle task)
 
 static void set_rank(Task_Handle task, int rank)
 {
-    bool raised = rank > task->job.rank;
-
     if (link_alone(&task->ready)) {
         task->job.rank = rank;
     } else {
@@ -91,16 +89,14 @@ static void set_rank(Task_Handle task, int rank)
             link_before(ready[rank].next, &task->ready);
         }
     }
-    if (raised && rank > task->base) {
-        kernel_observed(KERNEL_INHERITED, &task->job, rank);
-    }
+    kernel_observed(KERNEL_PRIORITY, &task->job, rank);
 }
 
 void task_inherit(Task_Handle task)
 {
     while (task != NULL) {
         Int waiting = gate_highest_waiting(&task->held);
-        int rank = waiting > task->base ? waiting : task->base;
+        int rank = waiting > task->job.id.priority ? waiting : task->job.id.priority;
 
         if (rank == task->job.rank) {
             return;
@@ -112,10 +108,10 @@ void task_inherit(Task_Handle task)
 
 Int Task_setPri(Task_Handle handle, Int newpri)
 {
-    Int old = handle->base;
+    Int old = handle->job.id.priority;
 
     kernel_require(newpri >= 1 && newpri < PRIORITIES, "Task_setPri: priority out of range");
-    handle->base = newpri;
+    handle->job.id.priority = newpri;
     task_inherit(handle);
     kernel_reschedule();
     return old;
@@ -146,9 +142,10 @@ void task_require_wait(const char *function)
     }
 }
 
-static void release(Task_Handle task)
+static void release(Task_Handle task, sim_time_t since)
 {
     task->job.remaining = task->job.cost;
+    task->job.id.released = since;
     kernel_observed(KERNEL_RELEASED, &task->job, task->job.rank);
 }
 
@@ -172,16 +169,16 @@ void task_wake(Task_Handle task, UInt outcome)
     task->timeout.active = false;
     link_remove(&task->wait);
     task_unblock(task);
-    release(task);
+    release(task, timeline_now());
     kernel_reschedule();
 }
 
-void task_no_wait(void)
+void task_no_wait(sim_time_t since)
 {
     Task_Handle self = task_self();
 
     kernel_yield_processor(KERNEL_FINISHED, &self->job, self->job.rank);
-    release(self);
+    release(self, since < self->job.id.released ? timeline_now() : since);
     kernel_reschedule();
 }
 
@@ -198,7 +195,7 @@ static void thread(void *argument)
 
     task->function(task->arguments[0], task->arguments[1]);
     if (lock_holder != NULL || swi_lock_holder() != NULL) {
-        kernel_halt("Task \"%s\" ended with the scheduler disabled", task->job.name);
+        kernel_halt("Task \"%s\" ended with the scheduler disabled", task->job.id.name);
     }
     task_block(task);
     kernel_yield_processor(KERNEL_FINISHED, &task->job, task->job.rank);
@@ -220,15 +217,13 @@ Task_Handle Task_create(Task_FuncPtr fxn, const Task_Params *params, Error_Block
     if (task_count == TASKS || !fiber_create(&task->job.fiber, thread, task)) {
         return kernel_create_failed(eb, "Task_create: no memory");
     }
-    task_count++;
-    task->job.kind = JOB_TASK;
-    task->job.name = kernel_name(params->instance);
+    task->job.id = (kernel_job_t){KERNEL_TASK, kernel_name(params->instance), task_count++, params->priority,
+                                  timeline_now()};
     task->job.rank = params->priority;
-    task->job.cost = kernel_cost_of_name(task->job.name) + kernel_costs()->switches;
+    task->job.cost = kernel_cost_of_name(task->job.id.name) + kernel_costs()->switches;
     task->function = fxn;
     task->arguments[0] = params->arg0;
     task->arguments[1] = params->arg1;
-    task->base = params->priority;
     link_init(&task->wait);
     link_init(&task->held);
     clock_init(&task->timeout, timed_out, (UArg)task);
@@ -260,6 +255,13 @@ Void Task_yield(Void)
         link_before(list, first);
         kernel_reschedule();
     }
+}
+
+Void Task_stat(Task_Handle handle, Task_Stat *statbuf)
+{
+    statbuf->priority = handle->job.rank;
+    statbuf->stackSize = FIBER_STACK;
+    statbuf->used = fiber_stack_used(&handle->job.fiber);
 }
 
 UInt Task_disable(Void)

@@ -125,6 +125,7 @@ void setUp(void)
     timeline_reset();
     kernel_observe(NULL, NULL);
     kernel_set_pacer(NULL);
+    kernel_set_fault_hook(NULL);
 }
 
 void tearDown(void) {}
@@ -1358,12 +1359,21 @@ static Void inherit_high(UArg a0, UArg a1)
     GateMutexPri_leave(gate, key);
 }
 
-static void observe_priorities(void *context, sim_time_t when, kernel_event_t what, const char *name, int detail)
+static void observe_priorities(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail)
 {
     (void)context;
     (void)when;
-    if (what == KERNEL_INHERITED) {
-        say("[%s %d]", name, detail);
+    if (what == KERNEL_PRIORITY && detail > job->priority) {
+        say("[%s %d]", job->name, detail);
+    }
+}
+
+static void observe_changes(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail)
+{
+    (void)context;
+    (void)when;
+    if (what == KERNEL_PRIORITY) {
+        say("[%s %d of %d]", job->name, detail, job->priority);
     }
 }
 
@@ -1375,6 +1385,20 @@ static int inherit_main(void)
     (void)task("high", 9, inherit_high);
     BIOS_start();
     return 0;
+}
+
+void test_the_observer_sees_a_priority_inherited_and_given_back(void)
+{
+    kernel_observe(observe_changes, NULL);
+    boot_and_run_ms(inherit_main, 5);
+    TEST_ASSERT_EQUAL_STRING("[low 9 of 1]@2000 low@3000 [low 1 of 1]@3000 high@3000 mid@3000 low again low@3000 ", trace);
+}
+
+void test_the_observer_sees_a_priority_set(void)
+{
+    kernel_observe(observe_changes, NULL);
+    boot_and_run_ms(pri_main, 1);
+    TEST_ASSERT_EQUAL_STRING("[b 9 of 9]@0 b@0 was 2@0 raised b@0 [a 1 of 1]@0 c@0 was 5@0 lowered a@0 d@0 ", trace);
 }
 
 void test_the_owner_inherits_the_priority_of_the_waiting_task_until_it_leaves(void)
@@ -1625,15 +1649,15 @@ void test_costs_are_consumed_preemptibly_before_the_code_runs(void)
     TEST_ASSERT_EQUAL_STRING("hwi@1520 swi@1570 hwi b@2110 High@2467 Low@2998 ", trace);
 }
 
-static const char *const event_names[] = {"R", "D", "P", "F", "B", "E", "L", "I"};
+static const char *const event_names[] = {"R", "D", "P", "F", "B", "E", "L", "N"};
 
-static void observe_all(void *context, sim_time_t when, kernel_event_t what, const char *name, int detail)
+static void observe_all(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail)
 {
     (void)context;
     (void)detail;
     TEST_ASSERT_EQUAL_INT64(timeline_now(), when);
-    if (strncmp(name, "Clock", 5) != 0) {
-        say("%s:%s", event_names[what], name);
+    if (strncmp(job->name, "Clock", 5) != 0) {
+        say("%s:%s", event_names[what], job->name);
     }
 }
 
@@ -1675,6 +1699,202 @@ void test_the_observer_sees_a_job_for_every_wait_that_returns_at_once(void)
     kernel_observe(observe_all, NULL);
     boot_and_run_ms(backlog_main, 1);
     TEST_ASSERT_EQUAL_STRING("R:t@0 D:t@0 F:t@0 R:t@0 D:t@0 one@0 F:t@0 R:t@0 D:t@0 two@0 F:t@0 ", trace);
+}
+
+static void observe_responses(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail)
+{
+    (void)context;
+    (void)detail;
+    if (what == KERNEL_FINISHED && strncmp(job->name, "Clock", 5) != 0) {
+        say("%s%d %" PRId64, job->name, job->number, (when - job->released) / SIM_US);
+    }
+}
+
+static const kernel_cost_t response_jobs[] = {
+    {"t", -1, 400 * SIM_US}, {"s", -1, 100 * SIM_US}, {NULL, 96, 10 * SIM_US}, {NULL, 97, 20 * SIM_US},
+    {NULL, 98, 30 * SIM_US},
+};
+static const kernel_costs_t response_costs = {response_jobs, 5, 0, 0};
+
+static Void pends_semaphore(UArg a0, UArg a1)
+{
+    (void)a0;
+    (void)a1;
+    for (;;) {
+        (void)Semaphore_pend(sem, BIOS_WAIT_FOREVER);
+    }
+}
+
+static Void pends_event(UArg a0, UArg a1)
+{
+    (void)a0;
+    (void)a1;
+    for (;;) {
+        (void)Event_pend(event, Event_Id_NONE, Event_Id_00 | Event_Id_01, BIOS_WAIT_FOREVER);
+    }
+}
+
+static Void quiet_swi(UArg a0, UArg a1)
+{
+    (void)a0;
+    (void)a1;
+    Semaphore_post(sem);
+    Event_post(event, Event_Id_01);
+    Event_post(event, Event_Id_02); /* nobody waits for this one */
+}
+
+static Void quiet_hwi(UArg number)
+{
+    Swi_post(swi_low);
+    for (int i = 0; number == 98 && i < 3; i++) {
+        Semaphore_post(sem);
+    }
+}
+
+static Semaphore_Mode response_mode;
+static Task_FuncPtr response_task;
+
+static int response_main(void)
+{
+    sem = semaphore(0, response_mode);
+    event = Event_create(NULL, NULL);
+    (void)task("t", 3, response_task);
+    swi_low = swi("s", 3, quiet_swi);
+    hwi(96, quiet_hwi);
+    hwi(97, quiet_hwi);
+    hwi(98, quiet_hwi);
+    BIOS_start();
+    return 0;
+}
+
+static void observe_responses_from_100_us(void)
+{
+    kernel_boot(response_main, &response_costs);
+    (void)kernel_run_until(100 * SIM_US);
+    kernel_observe(observe_responses, NULL);
+    run_ms(3);
+}
+
+/* 200 Hwi 96; the Swi has done 90 of 100 when Hwi 97 comes at 300 and posts it anew at 320; it ends at 330 and again at
+ * 430. The task is released at 330 and, with nothing done, at 430: jobs of 400 end at 830 and 1230. */
+TEST_CASE(0)
+TEST_CASE(1)
+TEST_CASE(2)
+void test_a_response_counts_from_the_release_also_when_the_job_found_it_waiting(int kind)
+{
+    response_mode = kind == 0 ? Semaphore_Mode_BINARY : Semaphore_Mode_COUNTING;
+    response_task = kind == 2 ? pends_event : pends_semaphore;
+    raise_at_us(200, 96);
+    raise_at_us(300, 97);
+    observe_responses_from_100_us();
+    TEST_ASSERT_EQUAL_STRING("hwi96 10@210 hwi97 20@320 s1 120@330 s1 110@430 t0 500@830 t0 800@1230 ", trace);
+}
+
+/* Hwi 98 ends at 230 with three posts; the Swi until 330 brings a fourth. Jobs end at 730, 1130, 1530, 1930: released 230,
+ * 230 (it waited), 730 (the job ahead of it began), 1130. */
+void test_posts_behind_one_another_are_released_when_the_job_ahead_begins(void)
+{
+    response_mode = Semaphore_Mode_COUNTING;
+    response_task = pends_semaphore;
+    raise_at_us(200, 98);
+    observe_responses_from_100_us();
+    TEST_ASSERT_EQUAL_STRING("hwi98 30@230 s1 100@330 t0 500@730 t0 900@1130 t0 800@1530 t0 800@1930 ", trace);
+}
+
+static const char *const kind_names[] = {"hwi", "swi", "task"};
+
+static void observe_identities(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail)
+{
+    (void)context;
+    (void)when;
+    if (what == KERNEL_DISPATCHED) {
+        say("%s:%s:%d:%d:%d", kind_names[job->kind], job->name, job->number, job->priority, detail);
+    }
+}
+
+static Void pends_in_turn(UArg a0, UArg a1)
+{
+    (void)a0;
+    (void)a1;
+    for (;;) {
+        (void)Event_pend(event, Event_Id_NONE, Event_Id_01, BIOS_WAIT_FOREVER);
+        (void)Event_pend(event, Event_Id_NONE, Event_Id_02, BIOS_WAIT_FOREVER);
+    }
+}
+
+/* 200 Hwi 96, Swi until 310: flag 1 ends the wait, and flag 2 is there already, both posted at 310; jobs until 710 and
+ * 1110 + 110, because at 800 Hwi 96 and the Swi come again, with both flags at 910. Jobs until 1620 and 2020 for them. */
+void test_flags_posted_together_are_released_together(void)
+{
+    response_task = pends_in_turn;
+    raise_at_us(200, 96);
+    raise_at_us(800, 96);
+    observe_responses_from_100_us();
+    TEST_ASSERT_EQUAL_STRING("hwi96 10@210 s1 100@310 t0 400@710 hwi96 10@810 s1 100@910 t0 910@1220 t0 710@1620 "
+                             "t0 1110@2020 ",
+                             trace);
+}
+
+static Void pends_late(UArg a0, UArg a1)
+{
+    (void)a0;
+    (void)a1;
+    for (;;) {
+        (void)Event_pend(event, Event_Id_NONE, Event_Id_01, BIOS_WAIT_FOREVER);
+        Task_sleep(1);
+        (void)Event_pend(event, Event_Id_NONE, Event_Id_02, BIOS_WAIT_FOREVER);
+    }
+}
+
+/* Flags 1 and 2 at 310; job until 710; the sleep ends at 1000, job until 1400; flag 2 is older than the sleep's end. */
+void test_a_flag_that_nobody_waited_for_releases_when_it_is_asked_for(void)
+{
+    response_task = pends_late;
+    raise_at_us(200, 96);
+    observe_responses_from_100_us();
+    TEST_ASSERT_EQUAL_STRING("hwi96 10@210 s1 100@310 t0 400@710 t0 400@1400 t0 400@1800 ", trace);
+}
+
+static const kernel_cost_t label_jobs[] = {
+    {"label", 96, 5 * SIM_US}, {"other label", 97, 5 * SIM_US}, {"label", -1, 100 * SIM_US}, {NULL, 98, 5 * SIM_US},
+};
+static const kernel_costs_t label_costs = {label_jobs, 4, 0, 0};
+
+static Void tick_function(UArg unused)
+{
+    (void)unused;
+}
+
+static int label_main(void)
+{
+    Hwi_Params params;
+
+    sem = semaphore(0, Semaphore_Mode_COUNTING);
+    (void)Hwi_create(96, post_sem, NULL, NULL);
+    Hwi_Params_init(&params);
+    params.instance->name = "own name";
+    (void)Hwi_create(97, hwi_function, &params, NULL);
+    (void)Hwi_create(98, hwi_function, NULL, NULL);
+    (void)clock_object(tick_function, 1, 0, TRUE, 0);
+    (void)task("other", 1, pends_semaphore);
+    (void)task("label", 7, pends_semaphore);
+    BIOS_start();
+    return 0;
+}
+
+/* The task "label" costs what its own entry says, not the interrupt's of the same name. */
+void test_a_hwi_without_a_name_is_known_by_that_of_its_cost(void)
+{
+    raise_at_us(500, 96);
+    raise_at_us(700, 97);
+    raise_at_us(800, 98);
+    kernel_boot(label_main, &label_costs);
+    (void)kernel_run_until(400 * SIM_US);
+    kernel_observe(observe_identities, NULL);
+    run_ms(1);
+    TEST_ASSERT_EQUAL_STRING("hwi:label:96:96:96@500 task:label:1:7:7@505 hwi:own name:97:97:97@700 hwi 0@705 "
+                             "hwi::98:98:98@800 hwi 0@805 hwi:Clock:38:38:38@1000 swi:Clock_swi:0:15:15@1000 ",
+                             trace);
 }
 
 static const kernel_cost_t hwi_jobs[] = {
@@ -1794,12 +2014,12 @@ void test_gate_access_costs_time_while_the_gate_is_held_and_a_blocking_costs_two
     TEST_ASSERT_EQUAL_STRING("high wants@1060 [low 9]@1060 hwi b@1065 low in@1120 high in@1230 mid@1240 low out@1240 ", trace);
 }
 
-static void observe_gates(void *context, sim_time_t when, kernel_event_t what, const char *name, int detail)
+static void observe_gates(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail)
 {
     (void)context;
     (void)when;
     if (what == KERNEL_GATE_BLOCKED || what == KERNEL_GATE_ENTERED || what == KERNEL_GATE_LEFT) {
-        say("%s:%s:%d", event_names[what], name, detail);
+        say("%s:%s:%d", event_names[what], job->name, detail);
     }
 }
 
@@ -1812,6 +2032,28 @@ void test_the_observer_sees_gates_blocked_entered_and_left(void)
     TEST_ASSERT_EQUAL_STRING("E:low:0@1010 high wants@1060 B:high:0@1060 low in@1120 L:low:0@1120 E:high:0@1120 "
                              "high in@1230 L:high:0@1230 low out@1230 ",
                              trace);
+}
+
+static int named_gates_main(void)
+{
+    GateMutexPri_Params params;
+
+    GateMutexPri_Params_init(&params);
+    params.instance->name = "first";
+    (void)GateMutexPri_create(&params, NULL);
+    (void)GateMutexPri_create(NULL, NULL);
+    GateMutexPri_Params_init(&params);
+    (void)GateMutexPri_create(&params, NULL);
+    BIOS_start();
+    return 0;
+}
+
+void test_gates_are_known_by_number_and_name(void)
+{
+    boot_and_run_ms(named_gates_main, 1);
+    TEST_ASSERT_EQUAL_STRING("first", kernel_gate_name(0));
+    TEST_ASSERT_EQUAL_STRING("", kernel_gate_name(1));
+    TEST_ASSERT_EQUAL_STRING("", kernel_gate_name(2));
 }
 
 static Void nested_access(UArg a0, UArg a1)
@@ -2465,6 +2707,103 @@ void test_after_a_halt_the_world_goes_on_and_the_first_reason_stays(void)
     TEST_ASSERT_EQUAL_STRING("System_abort: the reason", kernel_halt_reason());
 }
 
+static int fault_calls;
+
+static void fault_hook(void)
+{
+    fault_calls++;
+    say("fault: %s", kernel_halt_reason());
+}
+
+TEST_CASE(0)
+TEST_CASE(1)
+TEST_CASE(2)
+TEST_CASE(3)
+TEST_CASE(4)
+void test_the_fault_hook_runs_once_at_the_halt_wherever_it_happens(int where)
+{
+    static const char *const when[] = {"0", "1000", "0", "1500", "1000"};
+    char expected[60];
+
+    fault_calls = 0;
+    offence = system_abort;
+    offence_where = (enum where)where;
+    raise_at_us(1500, 96);
+    kernel_set_fault_hook(fault_hook);
+    kernel_boot(offending_main, NULL);
+    TEST_ASSERT_FALSE(kernel_run_until(3 * SIM_MS));
+    TEST_ASSERT_FALSE(kernel_run_until(6 * SIM_MS));
+    (void)snprintf(expected, sizeof expected, "fault: System_abort: the reason@%s ", when[where]);
+    TEST_ASSERT_EQUAL_STRING(expected, trace);
+    TEST_ASSERT_EQUAL_INT(1, fault_calls);
+}
+
+static void abort_in_gate(void)
+{
+    (void)GateMutexPri_enter(gate);
+    (void)Semaphore_pend(sem, 65535);
+}
+
+void test_the_fault_hook_hears_of_a_broken_rule_and_outlives_a_boot(void)
+{
+    fault_calls = 0;
+    offence = abort_in_gate;
+    offence_where = IN_TASK;
+    kernel_set_fault_hook(fault_hook);
+    for (int i = 0; i < 2; i++) {
+        kernel_boot(offending_main, NULL);
+        TEST_ASSERT_EQUAL_INT(i, fault_calls);
+        TEST_ASSERT_FALSE(kernel_run_until(timeline_now() + 3 * SIM_MS));
+    }
+    TEST_ASSERT_EQUAL_INT(2, fault_calls);
+    TEST_ASSERT_NOT_NULL(strstr(trace, "fault: Semaphore_pend: timeout of 65535 ticks"));
+}
+
+static void busy_fault_hook(void)
+{
+    UInt key = Hwi_disable();
+
+    fault_calls++;
+    Swi_post(swi_low);
+    Semaphore_post(sem_b);
+    Hwi_restore(key);
+    say("hook");
+    System_abort("again");
+}
+
+TEST_CASE(0)
+TEST_CASE(1)
+TEST_CASE(2)
+TEST_CASE(3)
+TEST_CASE(4)
+void test_a_fault_hook_that_calls_the_kernel_gets_to_its_end_and_wakes_nobody(int where)
+{
+    fault_calls = 0;
+    offence = system_abort;
+    offence_where = (enum where)where;
+    raise_at_us(1500, 96);
+    kernel_set_fault_hook(busy_fault_hook);
+    kernel_boot(offending_main, NULL);
+    TEST_ASSERT_FALSE(kernel_run_until(6 * SIM_MS));
+    TEST_ASSERT_EQUAL_INT(1, fault_calls);
+    TEST_ASSERT_EQUAL_STRING_LEN("hook@", trace, 5);
+    TEST_ASSERT_NULL(strchr(trace + 5, '@'));
+    TEST_ASSERT_EQUAL_STRING("System_abort: the reason", kernel_halt_reason());
+}
+
+void test_the_observer_sees_nothing_after_a_halt(void)
+{
+    raise_at_us(1500, 96);
+    raise_at_us(1700, 96);
+    offence = system_abort;
+    offence_where = IN_HWI;
+    kernel_boot(offending_main, NULL);
+    (void)kernel_run_until(1400 * SIM_US);
+    kernel_observe(observe_all, NULL);
+    TEST_ASSERT_FALSE(kernel_run_until(6 * SIM_MS));
+    TEST_ASSERT_EQUAL_STRING("R:hwi@1500 D:hwi@1500 ", trace);
+}
+
 static int printing_main(void)
 {
     say("%d", System_printf("%s %u\n", "printed by the firmware:", 42u));
@@ -2623,12 +2962,12 @@ static int inside[2], overlaps;
 static GateMutexPri_Handle busy_gates[2];
 static Semaphore_Handle busy_sems[3];
 
-static void observe_hash(void *context, sim_time_t when, kernel_event_t what, const char *name, int detail)
+static void observe_hash(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail)
 {
     (void)context;
     hash = (hash ^ (uint64_t)when) * 0x100000001B3u;
     hash = (hash ^ (uint64_t)what) * 0x100000001B3u;
-    hash = (hash ^ (uint64_t)(unsigned char)name[0]) * 0x100000001B3u;
+    hash = (hash ^ (uint64_t)(unsigned char)job->name[0]) * 0x100000001B3u;
     hash = (hash ^ (uint64_t)detail) * 0x100000001B3u;
     observed++;
 }
@@ -2794,11 +3133,12 @@ static int account_of(const char *name, int detail, bool is_hwi)
     return account_count++;
 }
 
-static void observe_accounts(void *context, sim_time_t when, kernel_event_t what, const char *name, int detail)
+static void observe_accounts(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail)
 {
-    int account = account_of(name, detail, strcmp(name, "hwi") == 0);
+    int account = account_of(job->name, job->number, strcmp(job->name, "hwi") == 0);
 
     (void)context;
+    (void)detail;
     if (what == KERNEL_RELEASED) {
         accounts[account].released++;
     } else if (what == KERNEL_DISPATCHED) {

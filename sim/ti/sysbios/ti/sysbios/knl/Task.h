@@ -36,6 +36,16 @@ Void Task_yield(Void);
 UInt Task_disable(Void);
 Void Task_restore(UInt key);
 
+/* Of a task's stack: its size, and the most that was ever used. On the PC octets of its host stack. */
+typedef struct {
+    Int priority;
+    SizeT stackSize;
+    SizeT used;
+} Task_Stat;
+
+/* Any context. */
+Void Task_stat(Task_Handle handle, Task_Stat *statbuf);
+
 /* Returns the previous priority. newpri 1..15; what is inherited through a gate stays on top of it. */
 Int Task_setPri(Task_Handle handle, Int newpri);
 
