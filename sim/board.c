@@ -3,27 +3,39 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "firmware/fault.h"
 #include "sim/costs.h"
 #include "sim/devices/rc_mux.h"
 #include "sim/devices/xbee.h"
 #include "sim/ti/driverlib/chip.h"
 #include "sim/ti/driverlib/driverlib.h"
+#include "sim/variables.h"
 
 int firmware_main(void);
 
+/* One UART of the firmware and the real device on it, if any. */
+typedef struct {
+    uint32_t base;
+    void (*out)(void *context, unsigned octet); /* NULL: the model is on the wire */
+    void *context;
+    serial_t far_end;
+} wire_t;
+
 static struct {
+    wire_t wires[BOARD_WIRES];
     quadrotor_t *quadrotor;
     scene_t scene;
+    line_fault_t *laser_faults;
     urg04lx_t *laser;
     razor9dof_t *imu;
     xbee_t *xbee;
     rc_mux_t mux;
     board_terminal_t terminal;
     void *terminal_context;
-    void (*radio_out)(void *context, unsigned octet);
-    void *radio_context;
+    const kernel_costs_t *costs;
     sim_time_t pulse;
 } board;
+static board_probes_t probes;
 
 board_config_t board_config(unsigned long seed)
 {
@@ -47,22 +59,35 @@ board_config_t board_config(unsigned long seed)
 static void to_firmware(void *base, unsigned octet, double bit_ns)
 {
     chip_sci_receive((uint32_t)(uintptr_t)base, octet, bit_ns);
+    if (probes.laser_octet != NULL && (uint32_t)(uintptr_t)base == SCIA_BASE) {
+        probes.laser_octet(octet, bit_ns);
+    }
 }
 
-static void to_laser(void *context, unsigned octet, double bit_ns)
+static void from_firmware(void *context, unsigned octet, double bit_ns)
 {
-    (void)context;
-    urg04lx_receive(board.laser, octet, bit_ns);
-}
+    const wire_t *wire = context;
 
-static void to_radio(void *context, unsigned octet, double bit_ns)
-{
-    (void)context;
-    if (board.radio_out != NULL) {
-        board.radio_out(board.radio_context, octet);
-    } else {
+    if (wire->out != NULL) {
+        wire->out(wire->context, octet);
+    } else if (wire == &board.wires[BOARD_LASER]) {
+        urg04lx_receive(board.laser, octet, bit_ns);
+    } else if (wire == &board.wires[BOARD_RADIO]) {
         xbee_from_firmware(board.xbee, octet, bit_ns);
     }
+}
+
+static void restart_laser(void *context)
+{
+    (void)context;
+    urg04lx_power(board.laser, false);
+    urg04lx_power(board.laser, true);
+}
+
+static void trouble_laser(void *context, unsigned code)
+{
+    (void)context;
+    urg04lx_trouble(board.laser, code);
 }
 
 static void to_terminal(void *context, unsigned octet, double bit_ns)
@@ -79,6 +104,9 @@ static void throttle_pulse(void *context, sim_time_t high_ns)
     (void)context;
     board.pulse = high_ns;
     rc_mux_firmware_pulse(&board.mux, high_ns);
+    if (probes.pulse != NULL) {
+        probes.pulse(high_ns);
+    }
 }
 
 static void autopilot_pulse(void *context, sim_time_t high_ns)
@@ -96,6 +124,34 @@ static razor_truth_t motion(void *context)
     return truth;
 }
 
+static void lay_wires(void)
+{
+    static const uint32_t bases[BOARD_WIRES] = {SCIA_BASE, SCIB_BASE, SCIC_BASE};
+
+    for (int i = 0; i < BOARD_WIRES; i++) {
+        board.wires[i].base = bases[i];
+        serial_init(&board.wires[i].far_end, 1.0, to_firmware, (void *)(uintptr_t)bases[i]);
+        chip_sci_connect(bases[i], from_firmware, &board.wires[i]);
+    }
+}
+
+static void create_laser(const board_config_t *config)
+{
+    const line_fault_ends_t ends = {to_firmware, (void *)(uintptr_t)SCIA_BASE, restart_laser, trouble_laser, NULL};
+
+    board.laser_faults = line_fault_create(config->laser_faults, config->laser_fault_count, config->seed, &ends);
+    board.laser = urg04lx_create(&config->laser, scene_scan, &board.scene, line_fault_octet, board.laser_faults);
+}
+
+/* The world goes on, and so does what is on the wires. */
+static void restart(void *unused)
+{
+    (void)unused;
+    chip_restart();
+    variables_reset();
+    kernel_boot(firmware_main, board.costs);
+}
+
 void board_power_on(const board_config_t *config, board_terminal_t terminal, void *terminal_context)
 {
     memset(&board, 0, sizeof board);
@@ -105,21 +161,28 @@ void board_power_on(const board_config_t *config, board_terminal_t terminal, voi
     chip_reset(kernel_raise);
     board.quadrotor = quadrotor_create(&config->quadrotor, &config->terrain, config->seed);
     scene_init(&board.scene, &config->scene, board.quadrotor, config->seed);
-    board.laser = urg04lx_create(&config->laser, scene_scan, &board.scene, to_firmware, (void *)(uintptr_t)SCIA_BASE);
+    create_laser(config);
     board.imu = razor9dof_create(&config->imu, motion, NULL, config->seed, to_firmware, (void *)(uintptr_t)SCIB_BASE);
     board.xbee = xbee_create(to_firmware, (void *)(uintptr_t)SCIC_BASE, to_terminal, NULL);
     rc_mux_init(&board.mux, autopilot_pulse, NULL);
-    chip_sci_connect(SCIA_BASE, to_laser, NULL);
-    chip_sci_connect(SCIC_BASE, to_radio, NULL);
+    lay_wires();
     chip_pwm_connect(throttle_pulse, NULL);
     urg04lx_power(board.laser, true);
     razor9dof_power(board.imu, true);
+    board.costs = config->costs;
+    chip_watchdog_connect(restart, NULL);
+    variables_reset();
+    kernel_set_fault_hook(fault_make_safe);
     kernel_boot(firmware_main, config->costs);
 }
 
 void board_power_off(void)
 {
+    for (int i = 0; i < BOARD_WIRES; i++) {
+        serial_flush(&board.wires[i].far_end);
+    }
     urg04lx_destroy(board.laser);
+    line_fault_destroy(board.laser_faults);
     razor9dof_destroy(board.imu);
     xbee_destroy(board.xbee);
     quadrotor_destroy(board.quadrotor);
@@ -128,18 +191,42 @@ void board_power_off(void)
 
 void board_type(const char *text, size_t count)
 {
-    xbee_from_operator(board.xbee, text, count);
+    if (board.wires[BOARD_RADIO].out != NULL) {
+        board_receive(BOARD_RADIO, text, count);
+    } else {
+        xbee_from_operator(board.xbee, text, count);
+    }
 }
 
-void board_radio_connect(void (*out)(void *context, unsigned octet), void *context)
+void board_connect(board_wire_t wire, void (*out)(void *context, unsigned octet), void *context)
 {
-    board.radio_out = out;
-    board.radio_context = context;
+    board.wires[wire].out = out;
+    board.wires[wire].context = context;
+    if (wire == BOARD_LASER) {
+        urg04lx_power(board.laser, false);
+    } else if (wire == BOARD_IMU) {
+        razor9dof_power(board.imu, false);
+    }
 }
 
-void board_radio_receive(unsigned octet)
+void board_receive(board_wire_t wire, const void *octets, size_t count)
 {
-    chip_sci_receive(SCIC_BASE, octet, 1e9 / 9600.0);
+    double rate = board_rate(wire);
+
+    if (rate > 0.0) {
+        serial_set_rate(&board.wires[wire].far_end, rate);
+        serial_send(&board.wires[wire].far_end, octets, count);
+    }
+}
+
+double board_rate(board_wire_t wire)
+{
+    return chip_sci_rate(board.wires[wire].base);
+}
+
+void board_probe(const board_probes_t *wanted)
+{
+    probes = wanted != NULL ? *wanted : (board_probes_t){.pulse = NULL};
 }
 
 quadrotor_t *board_quadrotor(void)
@@ -150,6 +237,11 @@ quadrotor_t *board_quadrotor(void)
 const urg04lx_t *board_laser(void)
 {
     return board.laser;
+}
+
+const line_fault_t *board_laser_faults(void)
+{
+    return board.laser_faults;
 }
 
 double board_pulse_us(void)

@@ -5,6 +5,7 @@
 
 #include <stddef.h>
 
+#include "sim/devices/line_fault.h"
 #include "sim/devices/quadrotor.h"
 #include "sim/devices/razor9dof.h"
 #include "sim/devices/scene.h"
@@ -17,6 +18,8 @@ typedef struct {
     terrain_t terrain;
     scene_config_t scene;
     urg04lx_config_t laser;
+    const line_fault_spec_t *laser_faults;   /* between the scanner model and the firmware */
+    int laser_fault_count;
     razor_config_t imu;
     const kernel_costs_t *costs;
 } board_config_t;
@@ -31,15 +34,31 @@ typedef void (*board_terminal_t)(void *context, unsigned octet);
 void board_power_on(const board_config_t *config, board_terminal_t terminal, void *terminal_context);
 void board_power_off(void);
 
-/* The operator's terminal sends; octets go through the radio pair. */
+/* The operator's terminal sends; octets go through the radio pair. With a real radio they join those that it sends. */
 void board_type(const char *text, size_t count);
 
-/* With a real radio module instead of the pair: octets to and from its UART. */
-void board_radio_connect(void (*out)(void *context, unsigned octet), void *context);
-void board_radio_receive(unsigned octet);
+/* The firmware's three UARTs. */
+typedef enum { BOARD_LASER, BOARD_IMU, BOARD_RADIO, BOARD_WIRES } board_wire_t;
+
+/* A real device in place of the model on that wire, which is switched off. `out` gets each octet that the firmware sends
+ * there, at the end of its stop bit. Between board_power_on() and the first run. */
+void board_connect(board_wire_t wire, void (*out)(void *context, unsigned octet), void *context);
+/* The real device has sent: the octets arrive one after the other at the UART's present rate. */
+void board_receive(board_wire_t wire, const void *octets, size_t count);
+/* Bits per second that the firmware has set for its UART, 0 while it is closed. */
+double board_rate(board_wire_t wire);
+
+/* Probes: an octet for the scanner's UART has come, at its stop bit; a throttle pulse has ended. NULL: none. They stay
+ * through board_power_on() and _off(). */
+typedef struct {
+    void (*laser_octet)(unsigned octet, double bit_ns);
+    void (*pulse)(sim_time_t high_ns);
+} board_probes_t;
+void board_probe(const board_probes_t *probes);
 
 quadrotor_t *board_quadrotor(void);
 const urg04lx_t *board_laser(void);
+const line_fault_t *board_laser_faults(void);
 double board_pulse_us(void);    /* latest throttle pulse, 0 before the first */
 
 #endif

@@ -20,6 +20,9 @@
 #define COMMAND_N 80
 #define QUEUE_N 8
 #define STRING_N 16
+#define TROUBLE_ENDS 50 /* first code that ends a measurement */
+#define TROUBLE_OVER 98
+#define VERIFY_TURNS 10
 
 typedef struct {
     char text[COMMAND_N + 1];
@@ -63,6 +66,8 @@ struct urg04lx {
     scan_t single, stream;
     bool endless;
     int remaining, interval;
+    unsigned trouble;           /* to be reported; 0: none */
+    bool verifying;             /* 98 is next */
 
     unsigned scans_sent, revolutions_skipped, octets_mismatched, commands, refused;
 };
@@ -286,6 +291,7 @@ static void pump(urg04lx_t *urg)
 static void stop_measuring(urg04lx_t *urg)
 {
     drop_scan(&urg->stream);
+    urg->verifying = false;
     urg->laser_on = false;
 }
 
@@ -300,28 +306,75 @@ static void request_scan(scan_t *scan, const command_t *command)
 
 /* ---- SCIP2.0 ---- */
 
+typedef struct {
+    char characters[3];
+} status_t;
+
+static status_t trouble_text(unsigned code)
+{
+    return (status_t){{(char)('0' + code / 10), (char)('0' + code % 10), '\0'}};
+}
+
+static void refuse_single(const scan_t *scan)
+{
+    urg04lx_t *urg = scan->urg;
+
+    answer(urg, &scan->command, trouble_text(urg->trouble).characters);
+    urg->trouble = 0;
+    urg->laser_on = false;
+}
+
 static void scip2_single_over(void *context)
 {
     scan_t *scan = context;
     urg04lx_t *urg = scan->urg;
 
     scan->active = false;
-    put_head(urg, &scan->command, "00");
-    put_time(urg, turn_start(urg, scan->turn));
-    put_blocks(scan, true);
+    if (urg->trouble >= TROUBLE_ENDS && urg->trouble != TROUBLE_OVER) {
+        refuse_single(scan);
+    } else {
+        put_head(urg, &scan->command, "00");
+        put_time(urg, turn_start(urg, scan->turn));
+        put_blocks(scan, true);
+    }
     pump(urg);
 }
 
-static void put_stream_frame(scan_t *scan)
+static void put_stream_head(scan_t *scan, const char *status)
 {
     urg04lx_t *urg = scan->urg;
 
     scan->command.text[13] = (char)('0' + urg->remaining / 10);
     scan->command.text[14] = (char)('0' + urg->remaining % 10);
     put_echo(urg, &scan->command);
-    put_summed(urg, "99", 2);
-    put_time(urg, turn_start(urg, scan->turn));
+    put_summed(urg, status, 2);
+}
+
+static void put_stream_frame(scan_t *scan)
+{
+    put_stream_head(scan, "99");
+    put_time(scan->urg, turn_start(scan->urg, scan->turn));
     put_blocks(scan, true);
+}
+
+/* In place of a stream's frame. */
+static void report_trouble(scan_t *scan)
+{
+    urg04lx_t *urg = scan->urg;
+    unsigned code = urg->trouble != 0 ? urg->trouble : TROUBLE_OVER;
+
+    put_stream_head(scan, trouble_text(code).characters);
+    put_text(urg, "\n");
+    urg->trouble = 0;
+    urg->verifying = code < TROUBLE_ENDS;
+    if (code == TROUBLE_OVER) {
+        await_turn(scan, scan->turn + 1 + urg->interval);
+    } else if (urg->verifying) {
+        await_turn(scan, scan->turn + VERIFY_TURNS);
+    } else {
+        scan->active = false;
+        urg->laser_on = false;
+    }
 }
 
 static void stream_turn_over(void *context)
@@ -332,6 +385,10 @@ static void stream_turn_over(void *context)
     if (!serial_idle(&urg->line)) {
         urg->revolutions_skipped++;
         await_turn(scan, scan->turn + 1);
+        return;
+    }
+    if (urg->trouble != 0 || urg->verifying) {
+        report_trouble(scan);
         return;
     }
     if (!urg->endless) {
@@ -425,6 +482,7 @@ static void handle_stream(urg04lx_t *urg, const command_t *command)
         return;
     }
     drop_scan(&urg->stream);
+    urg->verifying = false;
     set_range(&urg->stream, &range, width_of(command));
     urg->endless = range.count == 0;
     urg->remaining = range.count;
@@ -812,6 +870,13 @@ void urg04lx_receive(urg04lx_t *urg, unsigned octet, double bit_ns)
     command->length++;
 }
 
+void urg04lx_trouble(urg04lx_t *urg, unsigned code)
+{
+    if (urg->ready) {
+        urg->trouble = code;
+    }
+}
+
 /* The one way from the model's transmitter to the wire. */
 static void octet_left(void *context, unsigned octet, double bit_ns)
 {
@@ -856,6 +921,8 @@ static void switch_off(urg04lx_t *urg)
     urg->next_rate = 0.0;
     urg->boot_event = urg->command_event = 0;
     urg->queue_count = 0;
+    urg->trouble = 0;
+    urg->verifying = false;
     urg->powered = urg->ready = urg->scip2 = urg->laser_on = urg->time_mode = false;
 }
 

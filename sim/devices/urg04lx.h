@@ -45,6 +45,12 @@ void urg04lx_power(urg04lx_t *urg, bool on);
 /* Octet from the host, at its stop bit. */
 void urg04lx_receive(urg04lx_t *urg, unsigned octet, double bit_ns);
 
+/* Hardware trouble, reported in place of the next scan asked for. 50..97: the measurement ends, the laser goes off; a
+ * stream reports it by a frame without data, GD and GS answer it. 21..49, streams only: the sensor stops to verify the
+ * error and reports ten revolutions later how that went: by 98, after which it goes on, or by another code of trouble
+ * given meanwhile. 98 alone: reported, streams only. */
+void urg04lx_trouble(urg04lx_t *urg, unsigned code);
+
 /* For harnesses and tests. */
 typedef struct {
     bool powered, scip2, streaming, time_mode, laser_on;

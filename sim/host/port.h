@@ -2,6 +2,7 @@
 #ifndef SIM_HOST_PORT_H
 #define SIM_HOST_PORT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef struct {
@@ -10,13 +11,19 @@ typedef struct {
     char name[128];         /* what the other side opens */
 } port_t;
 
-/* Raw mode, 8N1, non-blocking. NULL when fine, else what failed. */
-const char *port_open_pty(port_t *port);
+/* Raw mode, 8N1, non-blocking; what is already in the port's buffers is dropped. Any bit rate that the port's driver can
+ * make, 250000 among them; a pseudo-terminal takes any. NULL when fine (then port_close), else what failed. */
+const char *port_open_pty(port_t *port, unsigned long bit_rate);
 const char *port_open_device(port_t *port, const char *path, unsigned long bit_rate);
 void port_close(port_t *port);
 
-/* Octets read now (0: none). */
-size_t port_read(port_t *port, unsigned char *octets, size_t capacity);
+/* From now on the port runs at this rate. NULL when fine, else what failed, and the port is as it was. */
+const char *port_set_rate(port_t *port, unsigned long bit_rate);
+/* Bits per second that are set now, on a pseudo-terminal by either side; 0 when there is none. */
+unsigned long port_rate(const port_t *port);
+
+/* Octets read now (0: none). Sets *lost when the port is gone: unplugged, or the far end's maker has closed it. */
+size_t port_read(port_t *port, unsigned char *octets, size_t capacity, bool *lost);
 /* Drops what the other side does not take. */
 void port_write(port_t *port, const unsigned char *octets, size_t count);
 

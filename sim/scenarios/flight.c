@@ -1,33 +1,35 @@
-#define _GNU_SOURCE
 #include "sim/scenarios/flight.h"
 
 #include <math.h>
-#include <poll.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <time.h>
 
 #include "firmware/watch.h"
 #include "sim/devices/xbee.h"
-#include "sim/host/port.h"
+#include "sim/host/pace.h"
+#include "sim/scenarios/wires.h"
 
 #define START_LIMIT (60 * SIM_S)
 #define STEP (10 * SIM_MS)
 #define LINE_SPACING_S 0.05
+#define BENCH_SETTINGS_S 0.5
+#define ANSWER_PATIENCE (3 * SIM_S)
+#define ANSWER_END (300 * SIM_MS)   /* of silence */
 
 static struct {
     board_config_t config;
     metrics_record_t record;
     sim_time_t origin;
+    FILE *telemetry;
     char line[128]; /* of the operator's terminal */
     size_t line_length;
     unsigned ok, err;
-    port_t port;
-    bool radio_is_real;
-    struct timespec wall_start;
-    volatile sig_atomic_t interrupted;
+    bool asked;             /* #LASER has been typed */
+    char answer[1024];      /* to it */
+    sim_time_t answered;    /* its latest line; 0: none */
+    double ray_instant_s, outage_start_s, outage_s;
+    line_fault_spec_t outage;
 } flight;
 
 /* Plant figures that --set plant.NAME=VALUE reaches. */
@@ -48,9 +50,13 @@ static const figure_t figures[] = {
     {"tdelay", "s", "autopilot delay behind the pulse", &flight.config.quadrotor.actuator_delay_s},
     {"tug_rate", "1/s", "rope tugs", &flight.config.quadrotor.tug_rate_per_s},
     {"tug", "m/s2", "of one rope tug", &flight.config.quadrotor.tug_mps2},
+    {"platform", "m", "height of the ramp's platform", &flight.config.terrain.height_m},
     {"ray_noise", "mm", "of each ray, rms", &flight.config.scene.ray_sigma_mm},
     {"common_noise", "mm", "of all rays of a scan, rms", &flight.config.scene.common_sigma_mm},
     {"glitches", "-", "probability of a broken scan", &flight.config.scene.glitch_probability},
+    {"ray_instant", "s", "sampling instant after the start of a revolution", &flight.ray_instant_s},
+    {"outage_start", "s", "scenario time from which the scanner's line is mute", &flight.outage_start_s},
+    {"outage", "s", "for how long, from the first octet lost; 0: not at all", &flight.outage_s},
     {"imu_noise", "rad", "of roll and pitch, rms", &flight.config.imu.angle_noise_rad},
     {"imu_spikes", "-", "probability of a spike per angle", &flight.config.imu.spike_probability},
     {"acc_noise", "m/s2", "accelerometer, rms", &flight.config.imu.acceleration_noise_mps2},
@@ -136,23 +142,47 @@ static const char *overridden(const flight_options_t *options, const char *name)
 
 /* The operator's terminal ---------------------------------------------------------------------------------------- */
 
+static bool begins(const char *text)
+{
+    return strncmp(flight.line, text, strlen(text)) == 0;
+}
+
+static void keep_answer(void)
+{
+    const size_t used = strlen(flight.answer);
+
+    snprintf(flight.answer + used, sizeof flight.answer - used, "%s\n", flight.line);
+    flight.answered = timeline_now();
+}
+
+static void line_complete(void)
+{
+    flight.ok += begins("OK ");
+    flight.err += begins("ERR ");
+    if (flight.asked && (begins("OK LASER") || begins("ERR LASER"))) {
+        keep_answer();
+    } else if (flight.telemetry != NULL) {
+        fprintf(flight.telemetry, "%s\n", flight.line);
+        fflush(flight.telemetry);
+    }
+}
+
+static void hear(void *context, unsigned octet)
+{
+    (void)context;
+    if (octet == '\n') {
+        flight.line[flight.line_length] = '\0';
+        flight.line_length = 0;
+        line_complete();
+    } else if (octet != '\r' && flight.line_length < sizeof flight.line - 1) {
+        flight.line[flight.line_length++] = (char)octet;
+    }
+}
+
 static void terminal(void *context, unsigned octet)
 {
-    unsigned char c = (unsigned char)octet;
-
-    (void)context;
-    if (flight.port.fd >= 0) {
-        port_write(&flight.port, &c, 1);
-    }
-    if (octet != '\n') {
-        if (flight.line_length < sizeof flight.line) {
-            flight.line[flight.line_length++] = (char)c;
-        }
-        return;
-    }
-    flight.ok += flight.line_length >= 3 && memcmp(flight.line, "OK ", 3) == 0;
-    flight.err += flight.line_length >= 4 && memcmp(flight.line, "ERR ", 4) == 0;
-    flight.line_length = 0;
+    wires_show(octet);
+    hear(context, octet);
 }
 
 static void type_event(void *text)
@@ -184,6 +214,19 @@ static void type_complete_at(double t_s, const char *name, const char *value)
     type_at(at(t_s) - xbee_latency(strlen(name) + strlen(value) + 3), name, value);
 }
 
+static double type_overrides(const flight_options_t *options, parameter_id_t first, double t_s)
+{
+    for (parameter_id_t id = first; id < PARAMETER_COUNT; id++) {
+        const char *value = overridden(options, parameter_table[id].name);
+
+        if (value != NULL) {
+            type_at(at(t_s), parameter_table[id].name, value);
+            t_s += LINE_SPACING_S;
+        }
+    }
+    return t_s;
+}
+
 static void type_settings(const scenario_t *scenario, const flight_options_t *options)
 {
     char name[16];
@@ -199,14 +242,7 @@ static void type_settings(const scenario_t *scenario, const flight_options_t *op
             t_s += LINE_SPACING_S;
         }
     }
-    for (parameter_id_t id = PARAMETER_KP; id < PARAMETER_COUNT; id++) {
-        const char *value = overridden(options, parameter_table[id].name);
-
-        if (value != NULL) {
-            type_at(at(t_s), parameter_table[id].name, value);
-            t_s += LINE_SPACING_S;
-        }
-    }
+    type_overrides(options, PARAMETER_KP, t_s);
 }
 
 static void landing(void *context)
@@ -226,109 +262,18 @@ static void plan(const scenario_t *scenario, const flight_options_t *options)
     timeline_at(at(scenario->land_s), landing, NULL);
 }
 
-/* The wall clock ------------------------------------------------------------------------------------------------- */
-
-static sim_time_t wall_now(void)
-{
-    struct timespec now;
-
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (sim_time_t)(now.tv_sec - flight.wall_start.tv_sec) * SIM_S +
-           (sim_time_t)(now.tv_nsec - flight.wall_start.tv_nsec);
-}
-
-typedef struct {
-    size_t count;
-    unsigned char octets[256];
-} typed_t;
-
-static void typed_event(void *context)
-{
-    typed_t *typed = context;
-
-    if (flight.radio_is_real) {
-        for (size_t i = 0; i < typed->count; i++) {
-            board_radio_receive(typed->octets[i]);
-        }
-    } else {
-        board_type((const char *)typed->octets, typed->count);
-    }
-    free(typed);
-}
-
-static void read_terminal(sim_time_t next)
-{
-    typed_t *typed = malloc(sizeof *typed);
-    sim_time_t when = wall_now();
-
-    if (typed == NULL) {
-        abort();
-    }
-    typed->count = port_read(&flight.port, typed->octets, sizeof typed->octets);
-    if (typed->count == 0) {
-        free(typed);
-        return;
-    }
-    when = when < timeline_now() ? timeline_now() : when;
-    timeline_at(when > next ? next : when, typed_event, typed);
-}
-
-static void pace(sim_time_t next)
-{
-    struct pollfd watched = {.fd = flight.port.fd, .events = POLLIN};
-    sim_time_t ahead = next - wall_now();
-    struct timespec patience;
-
-    if (flight.interrupted || ahead <= 0) {
-        if (poll(&watched, 1, 0) > 0) {
-            read_terminal(next);
-        }
-        return;
-    }
-    patience.tv_sec = (time_t)(ahead / SIM_S);
-    patience.tv_nsec = (long)(ahead % SIM_S);
-    if (ppoll(&watched, 1, &patience, NULL) > 0) {
-        read_terminal(next);
-    }
-}
-
-static void interrupt(int signal_number)
-{
-    (void)signal_number;
-    flight.interrupted = 1;
-}
-
-static void radio_out(void *context, unsigned octet)
-{
-    terminal(context, octet);
-}
-
-static const char *open_radio(const flight_options_t *options)
-{
-    const char *error;
-
-    flight.radio_is_real = strcmp(options->radio, "pty") != 0;
-    error = flight.radio_is_real ? port_open_device(&flight.port, options->radio, 9600) : port_open_pty(&flight.port);
-    if (error == NULL) {
-        printf("xbee: %s\n", flight.port.name);
-        fflush(stdout);
-        signal(SIGINT, interrupt);
-        signal(SIGTERM, interrupt);
-        clock_gettime(CLOCK_MONOTONIC, &flight.wall_start);
-    }
-    return error;
-}
-
 /* The flight ----------------------------------------------------------------------------------------------------- */
 
 static void sample(FILE *csv)
 {
     const quadrotor_state_t *state = quadrotor_state(board_quadrotor());
     double t_s = (double)(timeline_now() - flight.origin) * 1e-9;
+    const flight_state_t phase = watch_flight->state;
 
     if (flight.record.count < METRICS_MAX_SAMPLES) {
         flight.record.samples[flight.record.count++] =
-            (metrics_sample_t){t_s, state->height_m, (double)watch_flight->thrust_n};
+            (metrics_sample_t){t_s, state->height_m, state->speed_mps, (double)watch_flight->thrust_n,
+                               phase == FLIGHT_LOWERING || phase == FLIGHT_DESCENDING};
     }
     if (csv == NULL) {
         return;
@@ -338,12 +283,13 @@ static void sample(FILE *csv)
         fprintf(csv, "%.4f", (double)watch_altitude->altitude.height_mm * 1e-3);
     }
     fprintf(csv, ",%.3f,%.4f,%.2f,%s,%u\n", (double)watch_flight->reference_m, (double)watch_flight->thrust_n,
-            board_pulse_us(), flight_state_name(watch_flight->state), (unsigned)watch_flight->flags);
+            board_pulse_us(), flight_state_name(phase), (unsigned)watch_flight->flags);
 }
 
-static void power_on(const scenario_t *scenario, const flight_options_t *options)
+static void configure(const scenario_t *scenario, const flight_options_t *options)
 {
     flight.config = board_config(options->seed);
+    flight.ray_instant_s = (double)flight.config.laser.ray_instant * 1e-9;
     flight.config.terrain = scenario->platform ? terrain_platform : terrain_flat;
     flight.config.quadrotor.tug_rate_per_s = scenario->tug_rate_per_s;
     for (int i = 0; i < options->override_count; i++) {
@@ -353,9 +299,31 @@ static void power_on(const scenario_t *scenario, const flight_options_t *options
             *figure->field = strtod(options->overrides[i].value, NULL);
         }
     }
+    if (options->costs != NULL) {
+        flight.config.costs = options->costs;
+    }
+    flight.config.laser.ray_instant = (sim_time_t)llround(flight.ray_instant_s * 1e9);
+    flight.config.quadrotor.anchored = scenario->bench;
+    flight.config.quadrotor.bench_height_m = options->height_m;
+}
+
+static void power_on(const flight_options_t *options)
+{
     board_power_on(&flight.config, terminal, NULL);
-    if (flight.radio_is_real) {
-        board_radio_connect(radio_out, NULL);
+    if (options->realtime) {
+        pace_begin();
+        wires_connect(hear, NULL);
+        kernel_set_pacer(wires_pace);
+    }
+}
+
+static void power_off(const flight_options_t *options)
+{
+    board_power_off();
+    if (options->realtime) {
+        kernel_set_pacer(NULL);
+        pace_end();
+        wires_close();
     }
 }
 
@@ -376,6 +344,22 @@ static bool start_up(const flight_options_t *options)
     return kernel_run_until(flight.origin);
 }
 
+/* Which octet of the scanner begins the outage is found by a start without it: up to there both are the same, because
+ * the scanner's octets are as many whatever the vehicle does. */
+static void prepare_outage(const flight_options_t *options)
+{
+    board_power_on(&flight.config, NULL, NULL);
+    if (start_up(options)) {
+        kernel_run_until(at(flight.outage_start_s));
+    }
+    flight.outage = (line_fault_spec_t){.kind = LINE_FAULT_MUTE,
+                                        .position = line_fault_octets(board_laser_faults()),
+                                        .argument = (unsigned)lround(flight.outage_s * 1e3)};
+    flight.config.laser_faults = &flight.outage;
+    flight.config.laser_fault_count = 1;
+    board_power_off();
+}
+
 static void fly(const scenario_t *scenario, const flight_options_t *options)
 {
     long steps = lround(scenario->end_s * 100.0);
@@ -385,17 +369,44 @@ static void fly(const scenario_t *scenario, const flight_options_t *options)
     }
 }
 
-static void fly_by_hand(const flight_options_t *options)
+static void run_by_hand(const flight_options_t *options, double duration_s)
 {
-    sim_time_t end = options->duration_s > 0.0 ? (sim_time_t)(options->duration_s * 1e9) : SIM_NEVER;
+    sim_time_t end = duration_s > 0.0 ? (sim_time_t)(duration_s * 1e9) : SIM_NEVER;
     sim_time_t start = timeline_now() / STEP * STEP;
 
-    for (long i = 1; !flight.interrupted && timeline_now() < end; i++) {
+    for (long i = 1; !(options->realtime && pace_interrupted()) && timeline_now() < end; i++) {
         if (!kernel_run_until(start + (sim_time_t)i * STEP)) {
             return;
         }
         sample(options->csv);
     }
+}
+
+static void ask_laser(void)
+{
+    static const char question[] = "#LASER\n";
+    sim_time_t end = timeline_now() + ANSWER_PATIENCE;
+
+    flight.asked = true;
+    board_type(question, strlen(question));
+    while (timeline_now() < end && (flight.answered == 0 || timeline_now() < flight.answered + ANSWER_END) &&
+           kernel_run_until(timeline_now() + STEP)) {
+    }
+    if (flight.telemetry != NULL) {
+        fputs(flight.answer, flight.telemetry);
+    }
+}
+
+static void stand(const scenario_t *scenario, const flight_options_t *options)
+{
+    double duration_s = options->duration_s;
+
+    if (duration_s == 0.0 && !options->realtime) {
+        duration_s = scenario->end_s;
+    }
+    type_overrides(options, PARAMETER_SETR, BENCH_SETTINGS_S);
+    run_by_hand(options, duration_s);
+    ask_laser();
 }
 
 static void conclude(flight_result_t *result)
@@ -412,6 +423,34 @@ static void conclude(flight_result_t *result)
     result->halt = kernel_halt_reason();
 }
 
+static const char *open_devices(const flight_options_t *options)
+{
+    static char message[256];
+    board_wire_t failed;
+    const char *error = options->realtime ? wires_open(options->device, &failed) : NULL;
+
+    if (error == NULL) {
+        return NULL;
+    }
+    snprintf(message, sizeof message, "--%s %s: %s", wire_names[failed], options->device[failed], error);
+    return message;
+}
+
+static void run(const scenario_t *scenario, const flight_options_t *options, flight_result_t *result)
+{
+    result->started = true;
+    if (scenario->bench) {
+        stand(scenario, options);
+    } else if (options->realtime) {
+        run_by_hand(options, options->duration_s);
+    } else if (start_up(options)) {
+        plan(scenario, options);
+        fly(scenario, options);
+    } else {
+        result->started = false;
+    }
+}
+
 bool flight_run(const scenario_t *scenario, const flight_options_t *options, flight_result_t *result,
                 const char **error)
 {
@@ -419,30 +458,24 @@ bool flight_run(const scenario_t *scenario, const flight_options_t *options, fli
 
     memset(&flight, 0, sizeof flight);
     memset(result, 0, sizeof *result);
-    flight.port.fd = flight.port.slave = -1;
+    flight.telemetry = options->telemetry;
     flight.record.reference_m = reference != NULL ? strtod(reference, NULL) : scenario->reference_m;
     flight.record.terrain = scenario->platform;
     flight.record.land_s = scenario->land_s;
-    *error = options->realtime ? open_radio(options) : NULL;
+    *error = open_devices(options);
     if (*error != NULL) {
         return false;
     }
-    power_on(scenario, options);
-    kernel_set_pacer(options->realtime ? pace : NULL);
+    configure(scenario, options);
+    if (flight.outage_s > 0.0 && !scenario->bench && !options->realtime) {
+        prepare_outage(options);
+    }
+    power_on(options);
     if (options->csv != NULL) {
         fprintf(options->csv, "t_s,height_m,abs_m,terrain_m,est_m,ref_m,thrust_n,pulse_us,state,flags\n");
     }
-    if (options->realtime) {
-        fly_by_hand(options);
-        result->started = true;
-    } else if (start_up(options)) {
-        result->started = true;
-        plan(scenario, options);
-        fly(scenario, options);
-    }
+    run(scenario, options, result);
     conclude(result);
-    kernel_set_pacer(NULL);
-    board_power_off();
-    port_close(&flight.port);
+    power_off(options);
     return true;
 }

@@ -1,5 +1,5 @@
 /* One flight of one scenario: power-up, start-up of the sensors, the operator's commands, take-off to landing, with the
- * log and the metrics. */
+ * log and the metrics. Or the bench: the vehicle stands still, and at the end the operator asks for #LASER. */
 #ifndef SIM_SCENARIOS_FLIGHT_H
 #define SIM_SCENARIOS_FLIGHT_H
 
@@ -23,9 +23,13 @@ typedef struct {
     FILE *csv;                  /* NULL: no log */
     flight_override_t overrides[FLIGHT_OVERRIDES_MAX];
     int override_count;
-    bool realtime;              /* paced by the wall clock, no commands of its own */
-    const char *radio;          /* realtime: "pty" or a device */
-    double duration_s;          /* realtime: 0 = until interrupted */
+    bool realtime;              /* paced by the wall clock; of a flight then: no commands of its own */
+    const char *device[BOARD_WIRES];    /* realtime: real devices as for wires_open(); NULL: the model */
+    double duration_s;          /* realtime and bench; 0 = realtime: until interrupted, bench: the scenario's end */
+    const kernel_costs_t *costs;    /* NULL: Annex IV's */
+    double height_m;            /* bench: of the landing gear above the floor */
+    FILE *telemetry;            /* lines that the operator's terminal receives; NULL: none. Bench: the answer to #LASER
+                                 * last */
 } flight_options_t;
 
 typedef struct {
@@ -40,7 +44,7 @@ const char *flight_override(flight_options_t *options, const char *assignment);
 /* Names, units and meanings of the plant figures for --help. */
 void flight_print_plant_figures(FILE *out);
 
-/* False: the flight could not begin (terminal device); *error says why. */
+/* False: the flight could not begin; *error says which device could not be opened, and why. */
 bool flight_run(const scenario_t *scenario, const flight_options_t *options, flight_result_t *result,
                 const char **error);
 

@@ -6,11 +6,15 @@
 #define OVERSHOOT_END_S 5.5
 #define SETTLED_S 5.0
 #define WITHIN_MM 50.0
+#define MAX_ERROR_START_S 6.0
+#define AIRBORNE_M 0.03
+#define TOUCHED_M 0.003
 
 const char *const metric_names[METRIC_COUNT] = {
     "rise_time_s", "overshoot_mm", "hover_rms_mm", "hover_mean_error_mm", "terrain_rms_mm",
     "recovery_s", "undershoot_mm", "ground_contacts", "thrust_std_n", "scans",
-    "scans_rejected", "commands_ok", "commands_err",
+    "scans_rejected", "commands_ok", "commands_err", "max_error_mm", "highest_mm",
+    "touch_speed_mps", "takeovers", "cuts",
 };
 
 typedef struct {
@@ -77,6 +81,65 @@ static void judge(const metrics_record_t *record, metrics_t *metrics)
     metrics->failed = metrics->failure != NULL;
 }
 
+static void find_extremes(const metrics_record_t *record, double *value)
+{
+    double largest = 0.0, highest = -INFINITY;
+
+    for (size_t i = 0; i < record->count; i++) {
+        const metrics_sample_t *s = &record->samples[i];
+        double error_mm = (s->height_m - record->reference_m) * 1000.0;
+
+        if (s->t_s >= METRICS_REFERENCE_S) {
+            highest = fmax(highest, error_mm);
+        }
+        if (s->t_s >= MAX_ERROR_START_S && s->t_s <= record->land_s) {
+            largest = fmax(largest, fabs(error_mm));
+        }
+    }
+    value[METRIC_HIGHEST_MM] = isfinite(highest) ? highest : NAN;
+    value[METRIC_MAX_ERROR_MM] = largest;
+}
+
+static double hardest_touch(const metrics_record_t *record)
+{
+    double hardest = NAN, fall = 0.0;
+    bool airborne = false;
+
+    for (size_t i = 0; i < record->count; i++) {
+        const metrics_sample_t *s = &record->samples[i];
+
+        if (s->height_m > AIRBORNE_M) {
+            airborne = true;
+            fall = 0.0;
+        }
+        fall = fmax(fall, -s->speed_mps);
+        if (airborne && s->height_m <= TOUCHED_M) {
+            airborne = false;
+            hardest = fmax(hardest, fall);
+        }
+    }
+    return hardest;
+}
+
+static bool cut(const metrics_sample_t *s)
+{
+    return s->height_m > AIRBORNE_M && s->thrust_n <= 0.0;
+}
+
+static void count_incidents(const metrics_record_t *record, double *value)
+{
+    double takeovers = 0.0, cuts = 0.0;
+
+    for (size_t i = 1; i < record->count; i++) {
+        const metrics_sample_t *before = &record->samples[i - 1], *s = &record->samples[i];
+
+        takeovers += s->taken_over && !before->taken_over && s->t_s < record->land_s;
+        cuts += cut(s) && !cut(before);
+    }
+    value[METRIC_TAKEOVERS] = takeovers;
+    value[METRIC_CUTS] = cuts;
+}
+
 void metrics_compute(const metrics_record_t *record, metrics_t *metrics)
 {
     moments_t hover = {0}, thrust = {0}, terrain = {0};
@@ -112,5 +175,8 @@ void metrics_compute(const metrics_record_t *record, metrics_t *metrics)
     value[METRIC_TERRAIN_RMS_MM] = record->terrain ? rms(&terrain) : NAN;
     value[METRIC_RECOVERY_S] = record->terrain ? last_off_s - METRICS_EDGE_S : NAN;
     value[METRIC_UNDERSHOOT_MM] = record->terrain ? undershoot : NAN;
+    value[METRIC_TOUCH_SPEED_MPS] = hardest_touch(record);
+    find_extremes(record, value);
+    count_incidents(record, value);
     judge(record, metrics);
 }

@@ -12,7 +12,8 @@
 #define METRICS_MAX_SAMPLES 20000
 
 typedef struct {
-    double t_s, height_m, thrust_n;
+    double t_s, height_m, speed_mps, thrust_n;  /* thrust: commanded */
+    bool taken_over;        /* the supervisor has taken the vehicle from the law: LOWERING or DESCENDING */
 } metrics_sample_t;
 
 typedef struct {
@@ -37,6 +38,11 @@ typedef enum {
     METRIC_SCANS_REJECTED,
     METRIC_COMMANDS_OK,
     METRIC_COMMANDS_ERR,
+    METRIC_MAX_ERROR_MM,        /* largest |height - reference|, 6 s to the landing command */
+    METRIC_HIGHEST_MM,          /* above the reference, from the reference to the end of the flight */
+    METRIC_TOUCH_SPEED_MPS,     /* hardest touch: fastest fall within the last 30 mm; NAN when it never came down */
+    METRIC_TAKEOVERS,           /* times that the supervisor took over before the landing command */
+    METRIC_CUTS,                /* times that the thrust was cut above 30 mm, landing included */
     METRIC_COUNT
 } metric_t;
 

@@ -170,6 +170,15 @@ const scenario_t scenarios[] = {
                          {METRIC_GROUND_CONTACTS, 0, 0},
                          {METRIC_THRUST_STD_N, 0.37, 0.5}},
     },
+    {
+        .name = "bench",
+        .summary = "no flight: the vehicle stands still at --height; for real sensors, and for a look at the start-up",
+        .bench = true,
+        .end_s = 30.0,
+        .fate = FATE_EITHER,
+        .expectation_count = 2,
+        .expectations = {{METRIC_SCANS, 175, 205}, {METRIC_SCANS_REJECTED, 0, 0}},
+    },
 };
 const int scenario_count = sizeof scenarios / sizeof scenarios[0];
 

@@ -1,5 +1,5 @@
 /* The flights: the seed's, and what each must look like. A scenario pins law, gains, gravity and release; it types them
- * on the operator's terminal like anybody else. */
+ * on the operator's terminal like anybody else. And the bench, without a flight. */
 #ifndef SIM_SCENARIOS_SCENARIOS_H
 #define SIM_SCENARIOS_SCENARIOS_H
 
@@ -22,6 +22,7 @@ typedef struct {
     const char *name;
     const char *summary;
     const char *settings[SCENARIO_SETTINGS_MAX];    /* "LAW PID", ... NULL ends */
+    bool bench;                 /* the vehicle stands still: no flight, no commands; ends at end_s */
     double reference_m;
     bool platform;              /* the seed's ramp and platform; else flat */
     double tug_rate_per_s;      /* rope tugs; 0 = none */

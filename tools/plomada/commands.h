@@ -4,7 +4,10 @@
 #define TOOLS_PLOMADA_COMMANDS_H
 
 int command_fly(int argc, char **argv);
+int command_laser(int argc, char **argv);
 int command_list(int argc, char **argv);
 int command_params(int argc, char **argv);
+int command_rta(int argc, char **argv);
+int command_scip(int argc, char **argv);
 
 #endif

@@ -5,7 +5,10 @@
 #include <string.h>
 
 #include "commands.h"
+#include "measure.h"
 #include "sim/scenarios/flight.h"
+
+#define HEIGHT_MAX_M 5.0
 
 static const char usage[] =
     "usage: plomada fly SCENARIO [OPTION]...\n\n"
@@ -14,28 +17,45 @@ static const char usage[] =
     "  --csv FILE          log at 100 Hz: t_s,height_m,abs_m,terrain_m,est_m,ref_m,thrust_n,pulse_us,state,flags\n"
     "  --json FILE         metrics\n"
     "  --set NAME=VALUE    a telecommand parameter (see `plomada params`) or a plant figure; may be repeated\n"
-    "  --realtime --xbee pty|DEVICE\n"
-    "                      paced by the wall clock with the radio on a pseudo-terminal (its name is the first line of\n"
-    "                      the output) or an existing serial port at 9600; the scenario then sends no commands\n"
-    "  --duration S        with --realtime: ends after S seconds (default: Ctrl-C ends it)\n\n"
-    "Exit status: 0 the flight met the scenario's expectations, 1 it did not, 2 usage.\n\n"
+    "  --timing            observed response times, blocking, inversions and latency next to the bounds of the analysis\n"
+    "                      (see `plomada rta plomada`); beyond a bound or a deadline the flight is not met\n"
+    "  --trace FILE        the schedule, for https://ui.perfetto.dev or chrome://tracing; about 2 MB per second\n"
+    "  --cost-scale X      every execution cost and context switch X times, 0.01..100 (default 1)\n"
+    "  --laser DEVICE      a real scanner, IMU or radio on a serial port (or a pseudo-terminal, see `plomada laser`) in\n"
+    "  --imu DEVICE        place of the model. The port follows the rates that the firmware sets. The flight is then\n"
+    "  --xbee DEVICE|pty   paced by the wall clock, and the scenario sends no commands. pty: the radio stays modelled, its\n"
+    "                      ground end is a pseudo-terminal whose name is the first line of the output. Without --xbee\n"
+    "                      the telemetry goes to stdout\n"
+    "  --realtime          paced by the wall clock; needs one of the three above, but for bench\n"
+    "  --duration S        with --realtime or bench: ends after S seconds (default: Ctrl-C ends it; bench in virtual\n"
+    "                      time: 30)\n"
+    "  --height M          bench: the landing gear is at M metres above the floor, 0..5 (default 0)\n\n"
+    "bench has no flight: the vehicle stands still, the telemetry goes to stdout, and the last line is the answer to\n"
+    "#LASER. It needs no commands; those of --set are typed soon after power-up.\n\n"
+    "Exit status: 0 the flight met the scenario's expectations (real time and bench: it came to its end), 1 it did not,\n"
+    "2 usage.\n\n"
     "Plant figures:\n";
 
-enum { OPT_SEED = 1, OPT_CSV, OPT_JSON, OPT_SET, OPT_REALTIME, OPT_XBEE, OPT_DURATION, OPT_HELP };
+enum { OPT_SEED = 1, OPT_CSV, OPT_JSON, OPT_SET, OPT_TIMING, OPT_TRACE, OPT_COST_SCALE, OPT_REALTIME, OPT_LASER, OPT_IMU, OPT_XBEE,
+       OPT_DURATION, OPT_HEIGHT, OPT_HELP };
 
 static const struct option long_options[] = {
     {"seed", required_argument, NULL, OPT_SEED},         {"csv", required_argument, NULL, OPT_CSV},
     {"json", required_argument, NULL, OPT_JSON},         {"set", required_argument, NULL, OPT_SET},
-    {"realtime", no_argument, NULL, OPT_REALTIME},       {"xbee", required_argument, NULL, OPT_XBEE},
-    {"duration", required_argument, NULL, OPT_DURATION}, {"help", no_argument, NULL, OPT_HELP},
-    {NULL, 0, NULL, 0},
+    {"timing", no_argument, NULL, OPT_TIMING},           {"trace", required_argument, NULL, OPT_TRACE},
+    {"cost-scale", required_argument, NULL, OPT_COST_SCALE},
+    {"realtime", no_argument, NULL, OPT_REALTIME},       {"laser", required_argument, NULL, OPT_LASER},
+    {"imu", required_argument, NULL, OPT_IMU},           {"xbee", required_argument, NULL, OPT_XBEE},
+    {"duration", required_argument, NULL, OPT_DURATION}, {"height", required_argument, NULL, OPT_HEIGHT},
+    {"help", no_argument, NULL, OPT_HELP},               {NULL, 0, NULL, 0},
 };
 
 typedef struct {
     flight_options_t flight;
     const scenario_t *scenario;
-    const char *csv_path, *json_path;
-    bool help;
+    const char *csv_path, *json_path, *trace_path;
+    double cost_scale;
+    bool help, height, timing;
 } request_t;
 
 static bool complain(const char *what, const char *subject)
@@ -61,6 +81,32 @@ static bool read_duration(request_t *request, const char *text)
            complain("not a number of seconds", text);
 }
 
+static bool read_height(request_t *request, const char *text)
+{
+    char *end;
+
+    request->height = true;
+    request->flight.height_m = strtod(text, &end);
+    return (*text != '\0' && *end == '\0' && request->flight.height_m >= 0.0 && request->flight.height_m <= HEIGHT_MAX_M) ||
+           complain("not a height, 0..5 m", text);
+}
+
+static bool read_cost_scale(request_t *request, const char *text)
+{
+    char *end;
+
+    request->cost_scale = strtod(text, &end);
+    return (*text != '\0' && *end == '\0' && request->cost_scale >= 0.01 && request->cost_scale <= 100.0) ||
+           complain("not a factor, 0.01..100", text);
+}
+
+static bool use_device(request_t *request, board_wire_t wire, const char *device)
+{
+    request->flight.device[wire] = device;
+    request->flight.realtime = true;
+    return true;
+}
+
 static bool read_option(request_t *request, int option, const char *argument)
 {
     const char *error;
@@ -72,12 +118,45 @@ static bool read_option(request_t *request, int option, const char *argument)
     case OPT_SET:
         error = flight_override(&request->flight, argument);
         return error == NULL || complain(error, argument);
+    case OPT_TIMING: request->timing = true; return true;
+    case OPT_TRACE: request->trace_path = argument; return true;
+    case OPT_COST_SCALE: return read_cost_scale(request, argument);
     case OPT_REALTIME: request->flight.realtime = true; return true;
-    case OPT_XBEE: request->flight.radio = argument; return true;
+    case OPT_LASER: return use_device(request, BOARD_LASER, argument);
+    case OPT_IMU: return use_device(request, BOARD_IMU, argument);
+    case OPT_XBEE: return use_device(request, BOARD_RADIO, argument);
     case OPT_DURATION: return read_duration(request, argument);
+    case OPT_HEIGHT: return read_height(request, argument);
     case OPT_HELP: request->help = true; return true;
     default: return false;
     }
+}
+
+static bool anything_real(const flight_options_t *options)
+{
+    for (int i = 0; i < BOARD_WIRES; i++) {
+        if (options->device[i] != NULL) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What goes together, once the scenario is known. */
+static bool check_arguments(const request_t *request)
+{
+    const flight_options_t *options = &request->flight;
+
+    if (request->scenario->bench) {
+        return true;
+    }
+    if (request->height) {
+        return complain("goes with bench", "--height");
+    }
+    if (options->realtime && !anything_real(options)) {
+        return complain("needs one of --laser, --imu, --xbee", "--realtime");
+    }
+    return options->realtime || options->duration_s == 0.0 || complain("goes with --realtime or bench", "--duration");
 }
 
 static bool read_arguments(request_t *request, int argc, char **argv)
@@ -100,11 +179,21 @@ static bool read_arguments(request_t *request, int argc, char **argv)
     if (request->scenario == NULL) {
         return complain("no such scenario, see `plomada list`", argv[optind]);
     }
-    if (request->flight.realtime != (request->flight.radio != NULL)) {
-        return complain("--realtime and --xbee go together", "fly");
+    return check_arguments(request);
+}
+
+static int decimals(metric_t metric)
+{
+    switch (metric) {
+    case METRIC_GROUND_CONTACTS:
+    case METRIC_SCANS:
+    case METRIC_SCANS_REJECTED:
+    case METRIC_COMMANDS_OK:
+    case METRIC_COMMANDS_ERR:
+    case METRIC_TAKEOVERS:
+    case METRIC_CUTS: return 0;
+    default: return 3;
     }
-    return request->flight.realtime || request->flight.duration_s == 0.0 ||
-           complain("goes with --realtime", "--duration");
 }
 
 static void print_table(const request_t *request, const flight_result_t *result)
@@ -116,7 +205,7 @@ static void print_table(const request_t *request, const flight_result_t *result)
         if (isnan(value)) {
             printf("  %-20s -\n", metric_names[i]);
         } else {
-            printf("  %-20s %.*f\n", metric_names[i], i >= METRIC_SCANS || i == METRIC_GROUND_CONTACTS ? 0 : 3, value);
+            printf("  %-20s %.*f\n", metric_names[i], decimals((metric_t)i), value);
         }
     }
 }
@@ -148,6 +237,20 @@ static bool print_verdict(const request_t *request, const flight_result_t *resul
     return met;
 }
 
+static bool print_result(const request_t *request, const flight_result_t *result)
+{
+    print_table(request, result);
+    return print_verdict(request, result);
+}
+
+static bool bench_ended(const flight_result_t *result)
+{
+    if (result->halt != NULL) {
+        fprintf(stderr, "plomada fly: the firmware stopped: %s\n", result->halt);
+    }
+    return result->halt == NULL;
+}
+
 static void write_json(FILE *out, const request_t *request, const flight_result_t *result, bool met)
 {
     fprintf(out, "{\n  \"scenario\": \"%s\",\n  \"seed\": %lu,\n  \"met\": %s,\n  \"failed\": %s", request->scenario->name,
@@ -159,7 +262,8 @@ static void write_json(FILE *out, const request_t *request, const flight_result_
             fprintf(out, ",\n  \"%s\": %.6g", metric_names[i], result->metrics.value[i]);
         }
     }
-    fprintf(out, "\n}\n");
+    fprintf(out, ",\n  \"started\": %s,\n  \"halted\": %s\n}\n", result->started ? "true" : "false",
+            result->halt != NULL ? "true" : "false");
 }
 
 static FILE *open_output(const char *path)
@@ -175,20 +279,31 @@ static FILE *open_output(const char *path)
 static int run(request_t *request)
 {
     static flight_result_t result;
-    FILE *json = NULL;
+    FILE *json = NULL, *trace = NULL;
     const char *error;
     bool met;
 
     if ((request->csv_path != NULL && (request->flight.csv = open_output(request->csv_path)) == NULL) ||
-        (request->json_path != NULL && (json = open_output(request->json_path)) == NULL)) {
+        (request->json_path != NULL && (json = open_output(request->json_path)) == NULL) ||
+        (request->trace_path != NULL && (trace = open_output(request->trace_path)) == NULL)) {
         return 2;
     }
+    if (request->scenario->bench || (request->flight.realtime && request->flight.device[BOARD_RADIO] == NULL)) {
+        request->flight.telemetry = stdout;
+    }
+    request->flight.costs = measure_begin(request->cost_scale, trace);
     if (!flight_run(request->scenario, &request->flight, &result, &error)) {
-        complain(error, request->flight.radio);
+        fprintf(stderr, "plomada fly: %s\n", error);
         return 2;
     }
-    print_table(request, &result);
-    met = print_verdict(request, &result);
+    measure_end();
+    met = request->scenario->bench ? bench_ended(&result) : print_result(request, &result);
+    if (request->timing) {
+        met = measure_report(stdout) && met;
+    }
+    if (trace != NULL) {
+        fclose(trace);
+    }
     if (json != NULL) {
         write_json(json, request, &result, met);
         fclose(json);
@@ -204,6 +319,7 @@ int command_fly(int argc, char **argv)
     static request_t request;
 
     request.flight.seed = 1;
+    request.cost_scale = 1.0;
     if (!read_arguments(&request, argc, argv)) {
         fprintf(stderr, "`plomada fly --help` tells more.\n");
         return 2;

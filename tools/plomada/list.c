@@ -6,8 +6,10 @@
 
 static void print_scenario(const scenario_t *scenario)
 {
-    printf("%s\n    %s\n    ref %.2f m, lands at %.0f s;", scenario->name, scenario->summary, scenario->reference_m,
-           scenario->land_s);
+    printf("%s\n    %s\n   ", scenario->name, scenario->summary);
+    if (!scenario->bench) {
+        printf(" ref %.2f m, lands at %.0f s;", scenario->reference_m, scenario->land_s);
+    }
     for (int i = 0; i < SCENARIO_SETTINGS_MAX && scenario->settings[i] != NULL; i++) {
         printf(" #%s", scenario->settings[i]);
     }

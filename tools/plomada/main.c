@@ -11,8 +11,11 @@ typedef struct {
 
 static const subcommand_t subcommands[] = {
     {"fly", command_fly, "fly a scenario with the unmodified firmware"},
+    {"laser", command_laser, "serve the scanner model on a pseudo-terminal"},
     {"list", command_list, "the scenarios and what each must look like"},
     {"params", command_params, "the parameters an operator may set"},
+    {"rta", command_rta, "response-time analysis: does every task meet its deadline?"},
+    {"scip", command_scip, "scanner recordings and real scanners: decode, mirrors, record"},
 };
 #define SUBCOMMAND_COUNT (sizeof subcommands / sizeof subcommands[0])
 

@@ -1,0 +1,32 @@
+/* The wall clock as pacer of virtual time, and ports whose input arrives in it. One per process. */
+#ifndef SIM_HOST_PACE_H
+#define SIM_HOST_PACE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "sim/host/port.h"
+#include "sim/timeline.h"
+
+/* From now on virtual time goes with the wall clock, both being what they are now. SIGINT and SIGTERM are caught until
+ * pace_end(). No port is watched yet. */
+void pace_begin(void);
+void pace_end(void);
+
+/* True after SIGINT or SIGTERM: come to an end. */
+bool pace_interrupted(void);
+
+/* Octets that come in at the port are given to `take` by an event of the timeline. At most PACE_PORTS ports. A port that
+ * is lost is reported on stderr and no longer watched. */
+#define PACE_PORTS 4
+typedef void (*pace_take_t)(void *context, const unsigned char *octets, size_t count);
+void pace_watch(port_t *port, pace_take_t take, void *context);
+
+/* Returns when the wall clock has reached `next`, when input has been posted (not later than `next`), or at a signal.
+ * Shape of kernel_set_pacer(). */
+void pace_wait(sim_time_t next);
+
+/* Without a kernel: runs the events that the wall clock reaches, for at most 50 ms. */
+void pace_run(void);
+
+#endif

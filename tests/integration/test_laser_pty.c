@@ -1,0 +1,430 @@
+/* plomada laser: the scanner model on a pseudo-terminal, for a bare SCIP client, for plomada scip record, and for the
+ * firmware itself. Paced by the wall clock. */
+#define _GNU_SOURCE
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "sim/host/port.h"
+#include "unity.h"
+
+#define LINK SCRATCH "/urg"
+
+static pid_t server;
+static port_t client;
+
+void setUp(void)
+{
+    client.fd = client.slave = -1;
+    unlink(LINK);
+}
+
+static int end_server(int signal_number)
+{
+    int status = -1;
+
+    kill(server, signal_number);
+    waitpid(server, &status, 0);
+    server = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+void tearDown(void)
+{
+    port_close(&client);
+    if (server > 0) {
+        end_server(SIGKILL);
+    }
+    unlink(LINK);
+}
+
+static long now_ms(void)
+{
+    struct timespec now;
+
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (long)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
+
+static bool is_link(void)
+{
+    struct stat status;
+
+    return lstat(LINK, &status) == 0 && S_ISLNK(status.st_mode);
+}
+
+/* The server's first line is there: it serves. */
+static bool has_begun(void)
+{
+    struct stat status;
+
+    return stat(SCRATCH "/laser.out", &status) == 0 && status.st_size > 10;
+}
+
+static void begin(const char *a, const char *b, const char *c, const char *d)
+{
+    const long end_ms = now_ms() + 10000;
+
+    unlink(SCRATCH "/laser.out");
+    server = fork();
+    if (server == 0) {
+        const int out = open(SCRATCH "/laser.out", O_WRONLY | O_CREAT | O_TRUNC, 0644);
+
+        dup2(out, 1);
+        dup2(out, 2);
+        execl(PLOMADA, "plomada", "laser", "--link", LINK, a, b, c, d, (char *)NULL);
+        _exit(127);
+    }
+    while (!has_begun() && now_ms() < end_ms) {
+        usleep(5000);
+    }
+    TEST_ASSERT_TRUE_MESSAGE(has_begun() && is_link(), "no link");
+}
+
+static void start(const char *a, const char *b, const char *c, const char *d, unsigned long rate)
+{
+    begin(a, b, c, d);
+    TEST_ASSERT_NULL(port_open_device(&client, LINK, rate));
+}
+
+static char heard[100000];
+static size_t heard_count;
+
+static void listen_ms(long patience_ms, const char *until)
+{
+    const long end_ms = now_ms() + patience_ms;
+    bool lost = false;
+
+    heard_count = 0;
+    heard[0] = '\0';
+    while (now_ms() < end_ms && !lost && (until == NULL || strstr(heard, until) == NULL)) {
+        struct pollfd watched = {.fd = client.fd, .events = POLLIN};
+
+        poll(&watched, 1, 20);
+        heard_count += port_read(&client, (unsigned char *)heard + heard_count, sizeof heard - 1 - heard_count, &lost);
+        heard[heard_count] = '\0';
+    }
+}
+
+static void say(const char *text)
+{
+    port_write(&client, (const unsigned char *)text, strlen(text));
+}
+
+static void answers(const char *command, const char *reply)
+{
+    say(command);
+    listen_ms(3000, reply);
+    TEST_ASSERT_EQUAL_STRING(reply, heard);
+}
+
+static int run(const char *arguments, char *output, size_t size)
+{
+    char command[1024];
+    FILE *pipe;
+    size_t count;
+    int status;
+
+    snprintf(command, sizeof command, "cd '" SCRATCH "' && '" PLOMADA "' %s", arguments);
+    pipe = popen(command, "r");
+    TEST_ASSERT_NOT_NULL(pipe);
+    count = fread(output, 1, size - 1, pipe);
+    output[count] = '\0';
+    status = pclose(pipe);
+    TEST_ASSERT_TRUE(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+static size_t read_file(const char *name, char *text, size_t size)
+{
+    char path[512];
+    FILE *file;
+    size_t count;
+
+    snprintf(path, sizeof path, SCRATCH "/%s", name);
+    file = fopen(path, "rb");
+    TEST_ASSERT_NOT_NULL_MESSAGE(file, path);
+    count = fread(text, 1, size - 1, file);
+    text[count] = '\0';
+    fclose(file);
+    return count;
+}
+
+/* ---- a bare client ---- */
+
+void test_a_client_talks_both_protocols_and_is_corrected(void)
+{
+    start(NULL, NULL, NULL, NULL, 115200);
+    answers("QT\n", "QT\nE\n\n");
+    answers("L0\n", "L0\n0\n\n");
+    answers("scip2.0\n", "scip2.0\nE\n\n");
+    answers("SCIP2.0\n", "SCIP2.0\n0\n\n");
+    answers("SCIP2.0\n", "SCIP2.0\n0Ee\n\n");
+    answers("MS0372\n", "MS0372\n0Cc\n\n");
+    answers("MS0372076901000\n", "MS0372076901000\n04T\n\n");
+    answers("MSx372040601000\n", "MSx372040601000\n01Q\n\n");
+    answers("QT;$\n", "QT;$\n0Hh\n\n");
+    answers("GS0384038401\n", "GS0384038401\n10Q\n\n");
+    TEST_ASSERT_EQUAL_INT(0, end_server(SIGTERM));
+}
+
+void test_the_rate_follows_ss_and_a_client_that_does_not_follow_hears_nonsense(void)
+{
+    static char report[4000];
+
+    start("--height", "0.4", NULL, NULL, 115200);
+    answers("SCIP2.0\n", "SCIP2.0\n0\n\n");
+    answers("SS250000\n", "SS250000\n00P\n\n");
+    say("QT\n");
+    listen_ms(300, NULL);
+    TEST_ASSERT_EQUAL_size_t(0, heard_count);
+    TEST_ASSERT_NULL(port_set_rate(&client, 250000));
+    answers("QT\n", "QT\n00P\n\n");
+    say("MS0372040601000\n");
+    listen_ms(3000, "99b\n");
+    TEST_ASSERT_NOT_NULL(strstr(heard, "99b\n"));
+    TEST_ASSERT_NULL(port_set_rate(&client, 115200));
+    listen_ms(200, NULL);
+    listen_ms(400, NULL);
+    TEST_ASSERT_TRUE(heard_count > 150);
+    TEST_ASSERT_NULL(strstr(heard, "99b\n"));
+    TEST_ASSERT_NULL(port_set_rate(&client, 250000));
+    listen_ms(2000, "99b\n");
+    TEST_ASSERT_NOT_NULL(strstr(heard, "99b\n"));
+    TEST_ASSERT_EQUAL_INT(0, end_server(SIGINT));
+    read_file("laser.out", report, sizeof report);
+    TEST_ASSERT_NOT_NULL(strstr(report, "at another rate: 3 octets ignored"));
+    TEST_ASSERT_NULL(strstr(report, " 0 sent as nonsense"));
+}
+
+void test_the_power_up_rate_is_the_one_asked_for(void)
+{
+    start("--rate", "19200", NULL, NULL, 19200);
+    TEST_ASSERT_EQUAL_UINT32(19200, port_rate(&client));
+    answers("SCIP2.0\n", "SCIP2.0\n0\n\n");
+}
+
+/* The pseudo-terminal itself has the power-up rate, for clients that set none. */
+void test_a_client_that_sets_no_rate_is_understood(void)
+{
+    begin("--rate", "57600", NULL, NULL);
+    client.fd = open(LINK, O_RDWR | O_NOCTTY | O_NONBLOCK);
+    TEST_ASSERT_TRUE(client.fd >= 0);
+    TEST_ASSERT_EQUAL_UINT32(57600, port_rate(&client));
+    answers("SCIP2.0\n", "SCIP2.0\n0\n\n");
+}
+
+void test_faults_strike_by_position(void)
+{
+    start("--fault", "drop@1", "--fault", "dup@9", 115200);
+    answers("L0\n", "L\n0\n\n");
+    answers("QT\n", "QT\nEE\n\n");
+}
+
+/* ---- the link ---- */
+
+void test_the_link_leads_to_the_terminal_and_both_signals_remove_it(void)
+{
+    static const int signals[] = {SIGINT, SIGTERM};
+    char target[128] = "", line[256];
+
+    for (int i = 0; i < 2; i++) {
+        begin(NULL, NULL, NULL, NULL);
+        TEST_ASSERT_TRUE(readlink(LINK, target, sizeof target - 1) > 0);
+        TEST_ASSERT_EQUAL_STRING_LEN("/dev/pts/", target, 9);
+        TEST_ASSERT_EQUAL_INT(0, end_server(signals[i]));
+        TEST_ASSERT_FALSE(is_link());
+        read_file("laser.out", line, sizeof line);
+        TEST_ASSERT_EQUAL_STRING_LEN("laser: /dev/pts/", line, 16);
+    }
+}
+
+void test_the_link_of_a_killed_server_is_replaced(void)
+{
+    begin(NULL, NULL, NULL, NULL);
+    end_server(SIGKILL);
+    TEST_ASSERT_TRUE(is_link());
+    start(NULL, NULL, NULL, NULL, 115200);
+    answers("L0\n", "L0\n0\n\n");
+}
+
+void test_a_link_that_leads_nowhere_is_replaced(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, symlink("/no/such/thing", LINK));
+    begin(NULL, NULL, NULL, NULL);
+    TEST_ASSERT_EQUAL_INT(0, access(LINK, F_OK));
+}
+
+void test_anything_else_in_the_links_place_is_left_alone(void)
+{
+    char output[1000];
+    FILE *file = fopen(LINK, "w");
+
+    fputs("precious", file);
+    fclose(file);
+    TEST_ASSERT_EQUAL_INT(2, run("laser --link '" LINK "' 2>&1", output, sizeof output));
+    TEST_ASSERT_NOT_NULL(strstr(output, "File exists"));
+    TEST_ASSERT_EQUAL_size_t(8, read_file("urg", output, sizeof output));
+    unlink(LINK);
+    TEST_ASSERT_EQUAL_INT(0, symlink("/dev/null", LINK));
+    TEST_ASSERT_EQUAL_INT(2, run("laser --link '" LINK "' 2>&1", output, sizeof output));
+    TEST_ASSERT_TRUE(is_link());
+}
+
+void test_usage_errors_exit_2_and_help_tells_of_every_fault(void)
+{
+    static const char *const bad[] = {
+        "laser", "laser x", "laser --link", "laser --link '" LINK "' --rate 38400", "laser --link '" LINK "' --rate x",
+        "laser --link '" LINK "' --height -1", "laser --link '" LINK "' --fault drop", "laser --link '" LINK "' --seed x",
+        "laser --link /no/such/directory/urg", "laser --link '" LINK "' more", "laser --bogus",
+    };
+    static char output[10000], command[256];
+
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        snprintf(command, sizeof command, "%s 2>&1", bad[i]);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(2, run(command, output, sizeof output), bad[i]);
+        TEST_ASSERT_FALSE(is_link());
+    }
+    TEST_ASSERT_EQUAL_INT(0, run("laser --help", output, sizeof output));
+    TEST_ASSERT_NOT_NULL(strstr(output, "status@N:CODE"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "TCSETS2"));
+}
+
+/* ---- record ---- */
+
+/* Every octet of both directions is in the table once, in order. */
+static void check_time_table(const char *table, long rx_octets, long tx_octets)
+{
+    long expected[2] = {0, 0};
+    long long last_us = 0;
+
+    TEST_ASSERT_EQUAL_STRING_LEN("dir,t_us,offset,length\n", table, 23);
+    for (const char *p = strchr(table, '\n') + 1; *p != '\0'; p = strchr(p, '\n') + 1) {
+        char dir[3];
+        long long t_us;
+        long offset, length;
+        int tx;
+
+        TEST_ASSERT_EQUAL_INT(4, sscanf(p, "%2[rtx],%lld,%ld,%ld\n", dir, &t_us, &offset, &length));
+        tx = dir[0] == 't';
+        TEST_ASSERT_EQUAL_INT64(expected[tx], offset);
+        TEST_ASSERT_TRUE(length > 0 && t_us >= last_us);
+        expected[tx] += length;
+        last_us = t_us;
+    }
+    TEST_ASSERT_EQUAL_INT64(rx_octets, expected[0]);
+    TEST_ASSERT_EQUAL_INT64(tx_octets, expected[1]);
+    TEST_ASSERT_TRUE(last_us > 1000000);
+}
+
+void test_a_recording_is_whole_and_has_its_birth_certificate(void)
+{
+    static char text[200000], octets[200000];
+    size_t rx, tx;
+
+    begin("--height", "0.4", "--rate", "57600");
+    TEST_ASSERT_EQUAL_INT(0, run("scip record '" LINK "' live.bin --seconds 2 --rate 250000 2>&1", text, sizeof text));
+    TEST_ASSERT_NOT_NULL(strstr(text, "damaged: 0\n"));
+    rx = read_file("live.bin", octets, sizeof octets);
+    TEST_ASSERT_TRUE(rx > 15 * 1435);
+    TEST_ASSERT_NOT_NULL(strstr(octets, "MS0044072501000\n00P\n\n"));
+    tx = read_file("live.bin.tx", octets, sizeof octets);
+    TEST_ASSERT_NOT_NULL(strstr(octets, "SS250000\n"));
+    read_file("live.bin.csv", text, sizeof text);
+    check_time_table(text, (long)rx, (long)tx);
+    read_file("live.bin.md", text, sizeof text);
+    TEST_ASSERT_NOT_NULL(strstr(text, "# live.bin: birth certificate\n"));
+    TEST_ASSERT_NOT_NULL(strstr(text, "FIRM:3.1.04(02/Aug./2007)\n"));
+    TEST_ASSERT_NOT_NULL(strstr(text, "SERI:H0706400\n"));
+    TEST_ASSERT_NOT_NULL(strstr(text, "DMAX:5600\n"));
+    TEST_ASSERT_NOT_NULL(strstr(text, "| rate of the stream | 250000 bit/s |"));
+    TEST_ASSERT_NOT_NULL(strstr(text, " UTC, from `" LINK "` |"));
+    TEST_ASSERT_EQUAL_INT(0, run("scip decode live.bin 2>/dev/null | grep -c '^[0-9]'", text, sizeof text));
+    TEST_ASSERT_TRUE(atoi(text) >= 18);
+    TEST_ASSERT_EQUAL_INT(0, run("scip mirrors live.bin --height 0.4 2>/dev/null", text, sizeof text));
+    TEST_ASSERT_NOT_NULL(strstr(text, "{ { 111U, 145U }, { 372U, 406U }, { 623U, 657U } }"));
+}
+
+void test_ctrl_c_ends_a_recording_in_good_order(void)
+{
+    static char text[100000];
+    int status;
+    pid_t recorder;
+
+    begin(NULL, NULL, NULL, NULL);
+    recorder = fork();
+    if (recorder == 0) {
+        execl(PLOMADA, "plomada", "scip", "record", LINK, SCRATCH "/cut.bin", "--seconds", "600", "--steps", "372..406",
+              (char *)NULL);
+        _exit(127);
+    }
+    usleep(1800000);
+    kill(recorder, SIGINT);
+    waitpid(recorder, &status, 0);
+    TEST_ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    read_file("cut.bin.md", text, sizeof text);
+    TEST_ASSERT_NOT_NULL(strstr(text, "SERI:H0706400\n"));
+}
+
+void test_mirrors_are_found_on_a_live_sensor(void)
+{
+    static char text[10000];
+
+    begin("--height", "1.2", NULL, NULL);
+    TEST_ASSERT_EQUAL_INT(0, run("scip mirrors '" LINK "' --height 1.2 2>/dev/null", text, sizeof text));
+    TEST_ASSERT_NOT_NULL(strstr(text, "{ { 111U, 145U }, { 372U, 406U }, { 623U, 657U } }"));
+}
+
+/* ---- the firmware ---- */
+
+static void heights_are(const char *text, double expected_m, int at_least)
+{
+    int count = 0;
+    double height_m;
+
+    for (const char *p = text; (p = strstr(p, "alt:")) != NULL; p++) {
+        if (sscanf(p, "alt:%lf", &height_m) == 1) {
+            TEST_ASSERT_DOUBLE_WITHIN(0.025, expected_m, height_m);
+            count++;
+        }
+    }
+    TEST_ASSERT_TRUE_MESSAGE(count >= at_least, text);
+}
+
+static long number_after(const char *text, const char *label)
+{
+    const char *at = strstr(text, label);
+
+    TEST_ASSERT_NOT_NULL_MESSAGE(at, label);
+    return strtol(at + strlen(label), NULL, 10);
+}
+
+/* The first run finds the sensor in SCIP1.1 after its ten seconds of patience; the second finds it streaming at 250000,
+ * as after a reset of the host, and need not wait: it is heard. */
+void test_the_firmware_flies_on_a_sensor_behind_a_port_and_finds_it_again_after_its_own_reset(void)
+{
+    static char text[40000];
+    const char *answer;
+
+    begin("--height", "0.4", NULL, NULL);
+    TEST_ASSERT_EQUAL_INT(0, run("fly bench --realtime --laser '" LINK "' --duration 13", text, sizeof text));
+    TEST_ASSERT_NOT_NULL(strstr(text, "laser:WAIT"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "laser:OK"), text);
+    heights_are(text, 0.4, 5);
+    answer = strstr(text, "\nOK LASER ");
+    TEST_ASSERT_NOT_NULL_MESSAGE(answer, text);
+    TEST_ASSERT_NULL(strstr(answer + 1, "\nalt:"));
+    TEST_ASSERT_EQUAL_INT(250000, number_after(answer, "rate:"));
+    TEST_ASSERT_TRUE(number_after(answer, "frames:") > 10);
+    TEST_ASSERT_EQUAL_INT(0, number_after(answer, "sum:"));
+    TEST_ASSERT_EQUAL_INT(0, run("fly bench --laser '" LINK "' --duration 9", text, sizeof text));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "laser:OK"), text);
+    heights_are(text, 0.4, 5);
+}

@@ -1,0 +1,624 @@
+/* plomada scip decode and mirrors, on streams that the scanner model makes and that are then damaged in every way. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+
+#include "sim/devices/scene.h"
+#include "sim/devices/urg04lx.h"
+#include "sim/noise.h"
+#include "tools/plomada/scip_reader.h"
+#include "unity.h"
+
+#define STREAM_MAX 600000
+#define LINE_MAX_N 6000
+#define FRAMES_MAX 400
+
+/* ---- a stream and the truth about it ---- */
+
+static unsigned char stream[STREAM_MAX];
+static size_t stream_length;
+
+typedef struct {
+    long stamp_ms;
+    int distance_mm[769];   /* of the steps asked for */
+    int first, last;
+} truth_t;
+
+static truth_t truth[FRAMES_MAX];
+static int truth_count;
+
+static urg04lx_t *urg;
+static noise_t world_noise;
+static double rate;
+
+static void hear(void *context, unsigned octet, double bit_ns)
+{
+    (void)context;
+    (void)bit_ns;
+    TEST_ASSERT_TRUE(stream_length < STREAM_MAX);
+    stream[stream_length++] = (unsigned char)octet;
+}
+
+/* Distances of every kind: codes, near, beyond two characters, up to DMAX. */
+static void world(void *context, int first_step, int last_step, int *distance_mm)
+{
+    truth_t *t = &truth[truth_count++];
+
+    (void)context;
+    TEST_ASSERT_TRUE(truth_count <= FRAMES_MAX);
+    t->stamp_ms = (long)((timeline_now() - urg04lx_default.ray_instant) / SIM_MS) & 0xFFFFFFL;
+    t->first = first_step;
+    t->last = last_step;
+    for (int i = 0; i <= last_step - first_step; i++) {
+        const double kind = noise_uniform(&world_noise, 0.0, 1.0);
+
+        distance_mm[i] = (int)noise_uniform(&world_noise, kind < 0.1 ? 0.0 : 20.0, kind < 0.1 ? 20.0 : 5601.0);
+        t->distance_mm[i] = distance_mm[i];
+    }
+}
+
+static void run_until(sim_time_t end)
+{
+    while (timeline_next() <= end) {
+        timeline_move_to(timeline_next());
+        timeline_run_due();
+    }
+    timeline_move_to(end);
+}
+
+static void say(const char *text, double wait_s)
+{
+    for (; *text != '\0'; text++) {
+        run_until(timeline_now() + (sim_time_t)(1e10 / rate));
+        urg04lx_receive(urg, (unsigned char)*text, 1e9 / rate);
+    }
+    run_until(timeline_now() + (sim_time_t)(wait_s * 1e9));
+}
+
+static void power_on(urg_world_t what, void *context)
+{
+    timeline_reset();
+    stream_length = 0;
+    truth_count = 0;
+    rate = 115200.0;
+    noise_init(&world_noise, 4, "world");
+    urg = urg04lx_create(&urg04lx_default, what, context, hear, NULL);
+    urg04lx_power(urg, true);
+    run_until(9 * SIM_S);
+}
+
+static void to_scip2(void)
+{
+    say("SCIP2.0\n", 0.1);
+    say("SS250000\n", 0.1);
+    rate = 250000.0;
+}
+
+void setUp(void)
+{
+    urg = NULL;
+}
+
+void tearDown(void)
+{
+    if (urg != NULL) {
+        urg04lx_destroy(urg);
+    }
+}
+
+/* What decode must print of one truth. */
+static int as_sent(const truth_t *t, int step, int largest)
+{
+    if (step < 44 || step > 725) {
+        return 19;
+    }
+    return t->distance_mm[step - t->first] > largest ? largest : t->distance_mm[step - t->first];
+}
+
+static int cluster_as_sent(const truth_t *t, int from, int cluster, int largest)
+{
+    int value = as_sent(t, from, largest);
+
+    for (int step = from + 1; step < from + cluster && step <= t->last; step++) {
+        const int mm = as_sent(t, step, largest);
+
+        if (mm >= 20 && (value < 20 || mm < value)) {
+            value = mm;
+        }
+    }
+    return value;
+}
+
+static void truth_line(const truth_t *t, int cluster, int largest, char *line)
+{
+    line += sprintf(line, "%ld,%d", t->stamp_ms, (t->last - t->first + cluster) / cluster);
+    for (int step = t->first; step <= t->last; step += cluster) {
+        line += sprintf(line, ",%d", cluster_as_sent(t, step, cluster, largest));
+    }
+}
+
+/* ---- the reader itself ---- */
+
+static char lines[FRAMES_MAX][LINE_MAX_N];
+static int line_count;
+static scip_reader_t reader;
+
+static void take(void *context, const scip_scan_t *scan)
+{
+    char *line = lines[line_count++];
+
+    TEST_ASSERT_EQUAL_PTR(lines, context);
+    TEST_ASSERT_TRUE(line_count <= FRAMES_MAX);
+    line += sprintf(line, "%lu,%u", (unsigned long)scan->timestamp_ms, scan->points);
+    for (int i = 0; i < scan->points; i++) {
+        line += sprintf(line, ",%u", scan->distance_mm[i]);
+    }
+}
+
+static void read_stream(const unsigned char *octets, size_t count)
+{
+    line_count = 0;
+    scip_reader_init(&reader, take, lines);
+    scip_reader_feed(&reader, octets, count);
+    scip_reader_end(&reader);
+}
+
+static void lines_are_the_truth(int first, int count, int cluster, int largest)
+{
+    static char expected[LINE_MAX_N];
+
+    TEST_ASSERT_EQUAL_INT(count, line_count);
+    for (int i = 0; i < count; i++) {
+        truth_line(&truth[first + i], cluster, largest, expected);
+        TEST_ASSERT_EQUAL_STRING(expected, lines[i]);
+    }
+}
+
+static unsigned long damage(void)
+{
+    unsigned long sum = 0;
+
+    for (int i = 0; i < SCIP_DAMAGE_COUNT; i++) {
+        sum += reader.parser.counters.damaged[i];
+    }
+    return sum;
+}
+
+void test_every_kind_of_measurement_comes_out_as_it_went_in(void)
+{
+    static const struct {
+        const char *command;
+        int cluster, largest;
+    } kinds[] = {
+        {"MS0372040601000\n", 1, 4095},  {"MD0372040601000\n", 1, 262143}, {"MS0000076801000\n", 1, 4095},
+        {"MD0000076801000\n", 1, 262143}, {"MD0044072505000\n", 5, 262143}, {"MS0044072599000\n", 99, 4095},
+        {"MD0384038400000\n", 1, 262143}, {"MS0249051902000\n", 2, 4095},   {"MD0372040601200\n", 1, 262143},
+        {"MS0372040601010\n", 1, 4095},   {"MD0372040601299\n", 1, 262143},
+    };
+
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        power_on(world, NULL);
+        to_scip2();
+        say(kinds[i].command, 2.0);
+        say("QT\n", 0.5);
+        read_stream(stream, stream_length);
+        TEST_ASSERT_TRUE(line_count >= 5);
+        lines_are_the_truth(0, line_count, kinds[i].cluster, kinds[i].largest);
+        TEST_ASSERT_EQUAL_UINT32(0, damage());
+        TEST_ASSERT_EQUAL_UINT32(1, reader.totals.answers);
+        TEST_ASSERT_FALSE(reader.totals.unfinished);
+        urg04lx_destroy(urg);
+        urg = NULL;
+    }
+}
+
+void test_single_scans_runs_and_endless_streams_may_follow_each_other(void)
+{
+    power_on(world, NULL);
+    say("V\n", 0.3);
+    to_scip2();
+    say("VV\n", 0.3);
+    say("BM\n", 0.3);
+    say("GS0372040601\n", 0.4);
+    say("GD0000076800\n", 0.4);
+    say("GD0000076800\n", 0.4);
+    say("PP\n", 0.3);
+    say("MS0372040601003\n", 0.8);
+    say("MS0372040601005\n", 1.0);
+    say("MD0372040601005\n", 1.0);
+    say("MD0040080001000\n", 0.4);  /* refused: 04 */
+    say("GS0400039901\n", 0.4);     /* refused: 05 */
+    say("MD0372040601000\n", 0.5);
+    say("MS0300040001000\n", 0.5);
+    say("QT\n", 0.3);
+    say("II\n", 0.3);
+    read_stream(stream, stream_length);
+    TEST_ASSERT_EQUAL_UINT32(0, damage());
+    TEST_ASSERT_TRUE(line_count >= 3 + 3 + 5 + 5 + 3 + 3);
+    TEST_ASSERT_TRUE(line_count == truth_count || line_count == truth_count - 1); /* one may be given up by a new stream */
+    TEST_ASSERT_EQUAL_UINT32(5, reader.totals.answers);
+    TEST_ASSERT_EQUAL_UINT32(10, reader.totals.skipped); /* V SCIP2.0 SS VV BM PP 04 05 QT II */
+    for (int i = 0; i < 16; i++) {
+        static const int largest[16] = {4095, 262143, 262143, 4095, 4095, 4095, 4095, 4095, 4095, 4095, 4095,
+                                        262143, 262143, 262143, 262143, 262143};
+        static char expected[LINE_MAX_N];
+
+        truth_line(&truth[i], 1, largest[i], expected);
+        TEST_ASSERT_EQUAL_STRING(expected, lines[i]);
+    }
+}
+
+static size_t frame_starts[FRAMES_MAX];
+static int frame_count;
+
+/* Ten frames of 372..406 behind their answer. */
+static void make_short_stream(const char *command, size_t frame_octets)
+{
+    size_t answer = strlen(command) + 5;
+
+    power_on(world, NULL);
+    to_scip2();
+    stream_length = 0;
+    say(command, 1.15);
+    say("QT\n", 0.5);
+    frame_count = 0;
+    while (answer + (size_t)frame_count * frame_octets + frame_octets <= stream_length) {
+        frame_starts[frame_count] = answer + (size_t)frame_count * frame_octets;
+        frame_count++;
+    }
+    TEST_ASSERT_INT_WITHIN(2, 10, frame_count);
+    read_stream(stream, stream_length);
+    TEST_ASSERT_EQUAL_INT(frame_count, line_count);
+}
+
+static char good[FRAMES_MAX][LINE_MAX_N];
+
+static void keep_good(void)
+{
+    memcpy(good, lines, (size_t)frame_count * sizeof good[0]);
+}
+
+/* Every line is one of the good ones, in their order, and only those of the frames lost_from..lost_to may be missing. */
+static void only_lost(int lost_from, int lost_to, const char *how, size_t where)
+{
+    char message[96];
+    int next = 0;
+
+    snprintf(message, sizeof message, "%s at octet %zu", how, where);
+    for (int i = 0; i < line_count; i++) {
+        while (next < frame_count && strcmp(lines[i], good[next]) != 0) {
+            TEST_ASSERT_TRUE_MESSAGE(next >= lost_from && next <= lost_to, message);
+            next++;
+        }
+        TEST_ASSERT_TRUE_MESSAGE(next < frame_count, message);
+        next++;
+    }
+    TEST_ASSERT_TRUE_MESSAGE(next == frame_count || (next >= lost_from && frame_count - 1 <= lost_to), message);
+}
+
+static int frame_at(size_t offset)
+{
+    int frame = -1;
+
+    while (frame + 1 < frame_count && frame_starts[frame + 1] <= offset) {
+        frame++;
+    }
+    return frame;
+}
+
+static unsigned char changed[STREAM_MAX];
+
+static void drop_everywhere(void)
+{
+    for (size_t k = 0; k < stream_length; k++) {
+        memcpy(changed, stream, k);
+        memcpy(changed + k, stream + k + 1, stream_length - k - 1);
+        read_stream(changed, stream_length - 1);
+        only_lost(frame_at(k), frame_at(k), "drop", k);
+    }
+}
+
+static void put_in_everywhere(int octet)
+{
+    for (size_t k = 0; k < stream_length; k++) {
+        memcpy(changed, stream, k);
+        changed[k] = (unsigned char)(octet < 0 ? stream[k] : octet);
+        memcpy(changed + k + 1, stream + k, stream_length - k);
+        read_stream(changed, stream_length + 1);
+        /* between two frames it may be read as part of either */
+        only_lost(frame_at(k == 0 ? 0 : k - 1), frame_at(k), octet < 0 ? "duplicate" : "stray", k);
+    }
+}
+
+static void flip_everywhere(void)
+{
+    for (size_t k = 0; k < stream_length; k++) {
+        for (int bit = 0; bit < 8; bit++) {
+            memcpy(changed, stream, stream_length);
+            changed[k] = (unsigned char)(changed[k] ^ 1U << bit);
+            read_stream(changed, stream_length);
+            only_lost(frame_at(k), frame_at(k), "flip", k);
+        }
+    }
+}
+
+static void begin_everywhere(void)
+{
+    for (size_t k = 0; k < stream_length; k++) {
+        read_stream(stream + k, stream_length - k);
+        only_lost(0, frame_at(k == 0 ? 0 : k - 1), "begin", k);
+    }
+}
+
+void test_any_one_fault_costs_the_frame_that_it_hits_and_nothing_else(void)
+{
+    static const struct {
+        const char *command;
+        size_t frame;
+    } streams[] = {{"MS0372040601000\n", 101}, {"MD0383040401000\n", 97}};
+
+    for (size_t i = 0; i < 2; i++) {
+        make_short_stream(streams[i].command, streams[i].frame);
+        keep_good();
+        drop_everywhere();
+        put_in_everywhere(-1);
+        put_in_everywhere('A');
+        put_in_everywhere('\n');
+        put_in_everywhere(0xFF);
+        flip_everywhere();
+        urg04lx_destroy(urg);
+        urg = NULL;
+    }
+}
+
+void test_a_recording_may_begin_anywhere(void)
+{
+    make_short_stream("MS0372040601000\n", 101);
+    keep_good();
+    begin_everywhere();
+}
+
+void test_a_recording_of_a_counted_run_may_begin_anywhere(void)
+{
+    make_short_stream("MD0372040601010\n", 136);
+    TEST_ASSERT_EQUAL_INT(10, frame_count);
+    keep_good();
+    begin_everywhere();
+}
+
+void test_a_recording_may_end_anywhere(void)
+{
+    make_short_stream("MS0372040601000\n", 101);
+    keep_good();
+    for (size_t k = 0; k < stream_length; k++) {
+        read_stream(stream, k);
+        TEST_ASSERT_EQUAL_INT(k < frame_starts[0] + 101 ? 0 : frame_at(k - 101) + 1, line_count);
+        TEST_ASSERT_EQUAL_UINT32(0, damage());
+    }
+}
+
+void test_noise_makes_no_scan_and_no_crash(void)
+{
+    static unsigned char noise_octets[50000];
+    noise_t noise;
+
+    noise_init(&noise, 1, "noise");
+    for (int round = 0; round < 20; round++) {
+        for (size_t i = 0; i < sizeof noise_octets; i++) {
+            const unsigned octet = (unsigned)(noise_bits(&noise) & (round % 2 == 0 ? 0xFFU : 0x3FU));
+
+            noise_octets[i] = (unsigned char)(octet == 7 ? '\n' : octet);
+        }
+        read_stream(noise_octets, sizeof noise_octets);
+        TEST_ASSERT_EQUAL_INT(0, line_count);
+    }
+}
+
+void test_echoes_that_no_sensor_of_this_kind_answers_are_skipped(void)
+{
+    static const char *const foreign[] = {
+        "MD0000108001000\n99b\nabcd?\nxxx\n\n", "MS0406037201000\n00P\n\n", "ME0000076801000\n99b\n00000\n00\n\n",
+        "GD00000768\n00P\n\n", "MS0372040601000;who\n99b\n\n",
+    };
+
+    for (size_t i = 0; i < sizeof foreign / sizeof foreign[0]; i++) {
+        read_stream((const unsigned char *)foreign[i], strlen(foreign[i]));
+        TEST_ASSERT_EQUAL_INT(0, line_count);
+        TEST_ASSERT_EQUAL_UINT32(0, damage());
+        TEST_ASSERT_EQUAL_UINT32(1, reader.totals.skipped);
+    }
+}
+
+void test_hardware_trouble_is_a_notice(void)
+{
+    power_on(world, NULL);
+    to_scip2();
+    say("MS0372040601000\n", 0.5);
+    urg04lx_trouble(urg, 21);
+    run_until(timeline_now() + 2 * SIM_S);
+    urg04lx_trouble(urg, 77);
+    run_until(timeline_now() + SIM_S);
+    read_stream(stream, stream_length);
+    TEST_ASSERT_EQUAL_UINT32(3, reader.totals.notices);
+    TEST_ASSERT_EQUAL_UINT32(0, damage());
+    TEST_ASSERT_EQUAL_INT(truth_count - 3, line_count); /* these were given up for it */
+}
+
+/* ---- the program ---- */
+
+static char output[400000];
+
+static int run(const char *arguments)
+{
+    char command[1024];
+    FILE *pipe;
+    size_t count;
+    int status;
+
+    snprintf(command, sizeof command, "cd '" SCRATCH "' && '" PLOMADA "' scip %s", arguments);
+    pipe = popen(command, "r");
+    TEST_ASSERT_NOT_NULL(pipe);
+    count = fread(output, 1, sizeof output - 1, pipe);
+    output[count] = '\0';
+    status = pclose(pipe);
+    TEST_ASSERT_TRUE(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+static void write_stream(const char *name)
+{
+    char path[512];
+    FILE *file;
+
+    snprintf(path, sizeof path, SCRATCH "/%s", name);
+    file = fopen(path, "wb");
+    TEST_ASSERT_NOT_NULL(file);
+    TEST_ASSERT_EQUAL_size_t(stream_length, fwrite(stream, 1, stream_length, file));
+    fclose(file);
+}
+
+void test_decode_prints_one_line_a_scan_and_a_summary(void)
+{
+    static char expected[LINE_MAX_N];
+    char *line;
+
+    power_on(world, NULL);
+    to_scip2();
+    say("MD0000076801007\n", 1.5);
+    write_stream("md.bin");
+    TEST_ASSERT_EQUAL_INT(0, run("decode md.bin 2>md.err"));
+    line = strtok(output, "\n");
+    for (int i = 0; line != NULL; line = strtok(NULL, "\n")) {
+        if (line[0] >= '0' && line[0] <= '9') {
+            truth_line(&truth[i++], 1, 262143, expected);
+            TEST_ASSERT_EQUAL_STRING(expected, line);
+            TEST_ASSERT_TRUE(i <= 7);
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(0, run("decode - <md.bin 2>/dev/null | grep -c '^[0-9]'"));
+    TEST_ASSERT_EQUAL_STRING("7\n", output);
+    TEST_ASSERT_EQUAL_INT(0, run("decode md.bin 2>&1 >/dev/null"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "scans: 7\n"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "skipped packets: 2\n"));
+}
+
+void test_decode_of_nothing_exits_1_and_of_an_unreadable_file_2(void)
+{
+    TEST_ASSERT_EQUAL_INT(1, run("decode - </dev/null 2>&1"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "scans: 0\n"));
+    TEST_ASSERT_EQUAL_INT(2, run("decode no-such-file 2>&1"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "no-such-file"));
+    TEST_ASSERT_EQUAL_INT(2, run("decode . 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("decode 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("decode a b 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("guess 2>&1"));
+    TEST_ASSERT_EQUAL_INT(0, run("--help"));
+    TEST_ASSERT_EQUAL_INT(0, run("decode --help"));
+    TEST_ASSERT_EQUAL_INT(0, run("mirrors --help"));
+    TEST_ASSERT_EQUAL_INT(0, run("record --help"));
+}
+
+/* ---- mirrors ---- */
+
+static void record_scene(double height_m, const char *command, double seconds, const char *name)
+{
+    quadrotor_config_t config = quadrotor_default;
+    quadrotor_t *quadrotor;
+    scene_t scene;
+
+    timeline_reset();
+    config.anchored = true;
+    config.bench_height_m = height_m;
+    quadrotor = quadrotor_create(&config, &terrain_flat, 1);
+    scene_init(&scene, &scene_default, quadrotor, 1);
+    power_on(scene_scan, &scene);
+    to_scip2();
+    say(command, seconds);
+    write_stream(name);
+    urg04lx_destroy(urg);
+    urg = NULL;
+    quadrotor_destroy(quadrotor);
+}
+
+#define THREE "{ \"three-mirrors\", 111U, 657U, 3U, { { 111U, 145U }, { 372U, 406U }, { 623U, 657U } } },\n"
+
+void test_the_three_mirrors_are_found_at_any_bench_height(void)
+{
+    static const double heights[] = {0.0, 0.4, 1.5, 3.0};
+    static const char *const commands[] = {"MS0044072501000\n", "MD0000076801000\n"};
+
+    for (size_t i = 0; i < 8; i++) {
+        char arguments[128];
+
+        record_scene(heights[i / 2], commands[i % 2], 5.0, "scene.bin");
+        snprintf(arguments, sizeof arguments, "mirrors scene.bin --height %g 2>/dev/null", heights[i / 2]);
+        TEST_ASSERT_EQUAL_INT(0, run(arguments));
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "[SCIP_LAYOUT_THREE_MIRRORS] = " THREE), output);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "367..411"), output);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "106..150"), output);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "618..662"), output);
+    }
+}
+
+void test_part_of_the_circle_shows_the_front_mirror_alone(void)
+{
+    record_scene(0.4, "MS0300050001000\n", 3.0, "front.bin");
+    TEST_ASSERT_EQUAL_INT(0, run("mirrors front.bin --height 0.4 2>/dev/null"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "[SCIP_LAYOUT_FRONT] = { \"front\", 372U, 406U, 1U, { { 372U, 406U } } },\n"));
+}
+
+void test_the_side_mirrors_without_the_front_are_two_beams(void)
+{
+    record_scene(0.4, "MS0044030001030\n", 4.0, "aft.bin");
+    TEST_ASSERT_EQUAL_INT(1, run("mirrors aft.bin --height 0.4 2>/dev/null"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "no layout"));
+    record_scene(0.4, "MS0500072501030\n", 4.0, "fore.bin");
+    TEST_ASSERT_EQUAL_INT(0, system("cd '" SCRATCH "' && cat aft.bin fore.bin >sides.bin"));
+    TEST_ASSERT_EQUAL_INT(0, run("mirrors sides.bin --height 0.4 2>/dev/null"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "[SCIP_LAYOUT_TWO_BEAMS] = { \"two-beams\", 111U, 657U, 2U, { { 111U, 145U }, "
+                                        "{ 623U, 657U } } },\n"));
+}
+
+void test_a_wrong_height_finds_no_mirror(void)
+{
+    record_scene(0.4, "MS0044072501000\n", 3.0, "wrong.bin");
+    TEST_ASSERT_EQUAL_INT(1, run("mirrors wrong.bin --height 0.5 2>/dev/null"));
+    TEST_ASSERT_EQUAL_INT(1, run("mirrors wrong.bin --height 0.3 2>/dev/null"));
+    TEST_ASSERT_EQUAL_INT(0, run("mirrors wrong.bin --height 0.5 --tolerance 150 2>/dev/null"));
+    TEST_ASSERT_EQUAL_INT(1, run("mirrors wrong.bin --height 0.4 --tolerance 0 2>/dev/null"));
+}
+
+void test_few_scans_and_clusters_tell_nothing(void)
+{
+    record_scene(0.4, "MS0044072501009\n", 3.0, "few.bin");
+    TEST_ASSERT_EQUAL_INT(1, run("mirrors few.bin --height 0.4 2>/dev/null"));
+    record_scene(0.4, "MS0044072502000\n", 3.0, "cluster.bin");
+    TEST_ASSERT_EQUAL_INT(1, run("mirrors cluster.bin --height 0.4 2>/dev/null"));
+}
+
+void test_mirrors_needs_a_source_and_a_height(void)
+{
+    TEST_ASSERT_EQUAL_INT(2, run("mirrors 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("mirrors md.bin 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("mirrors --height 0.4 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("mirrors md.bin --height 4 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("mirrors md.bin --height x 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("mirrors no-such-file --height 0.4 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("mirrors /dev/null --height 0.4 2>&1"));
+}
+
+void test_record_refuses_what_it_cannot_do(void)
+{
+    TEST_ASSERT_EQUAL_INT(2, run("record 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("record /dev/null 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("record /dev/null x.bin 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("record /dev/null x.bin --rate 38400 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("record /dev/null x.bin --steps 5 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("record /dev/null x.bin --steps 5..769 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("record /dev/null x.bin --steps 9..5 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("record /dev/null x.bin --seconds 0 2>&1"));
+    TEST_ASSERT_EQUAL_INT(2, run("record /no/such/device x.bin 2>&1"));
+}
