@@ -6,13 +6,18 @@
 #include "led.h"
 #include "throttle.h"
 
+void fault_make_safe(void)
+{
+    bsp_throttle_idle();
+    bsp_led_red(true);
+    bsp_led_blue(false);
+}
+
 static void stay_safe(void)
 {
     (void)Hwi_disable();
     for (;;) {
-        bsp_throttle_idle();
-        bsp_led_red(true);
-        bsp_led_blue(false);
+        fault_make_safe();
     }
 }
 

@@ -14,6 +14,9 @@
 #include <xdc/runtime/Error.h>
 #include <xdc/std.h>
 
+/* What each of them does over and over: idle pulse, red on, blue off. Returns. */
+void fault_make_safe(void);
+
 Void fault_error(Error_Block *error);
 Void fault_abort(Void);
 Void fault_exit(Int status);
