@@ -1,0 +1,83 @@
+#include "sim/timing/latency.h"
+
+#include <string.h>
+
+#include "firmware/watch.h"
+#include "sim/ti/driverlib/chip.h"
+
+void latency_init(latency_t *latency)
+{
+    memset(latency, 0, sizeof *latency);
+}
+
+void latency_octet(latency_t *latency, unsigned octet)
+{
+    if (octet == '\n' && latency->previous_octet == '\n') {
+        latency->reply_end = timeline_now();
+    }
+    latency->previous_octet = octet;
+}
+
+static bool left(kernel_event_t event, int gate, const char *name)
+{
+    return event == KERNEL_GATE_LEFT && strcmp(kernel_gate_name(gate), name) == 0;
+}
+
+static void note_write(latency_t *latency)
+{
+    if (watch_altitude->sequence != latency->written.sequence) {
+        latency->written.sequence = watch_altitude->sequence;
+        latency->written.scan_end = latency->reply_end;
+        latency->written.release = latency->release;
+    }
+}
+
+static void answer(latency_t *latency, sim_time_t when)
+{
+    latency_figures_t *figures = &latency->by_release[latency->read.release];
+    sim_time_t taken = when - latency->read.scan_end;
+
+    latency->answered = true;
+    latency->answer_to = latency->read.scan_end;
+    latency->answered_sequence = latency->read.sequence;
+    if (figures->answers == 0 || taken < figures->shortest) {
+        figures->shortest = taken;
+    }
+    if (taken > figures->longest) {
+        figures->longest = taken;
+        figures->longest_since = latency->read.scan_end;
+    }
+    figures->answers++;
+    figures->total += taken;
+}
+
+static void follow_control(latency_t *latency, sim_time_t when, kernel_event_t event, int detail)
+{
+    uint32_t compare = chip_register("EPWM2.CMPA");
+
+    if (latency->read.sequence != latency->answered_sequence &&
+        (compare != latency->compare || event == KERNEL_FINISHED)) {
+        answer(latency, when);
+    }
+    latency->compare = compare;
+    if (left(event, detail, "Altitude_server")) {
+        latency->read = latency->written;
+    } else if (left(event, detail, "Parameter_server")) {
+        latency->release = (int)watch_parameters->value[PARAMETER_RELEASE];
+    }
+}
+
+void latency_observe(void *context, sim_time_t when, kernel_event_t event, const kernel_job_t *job, int detail)
+{
+    latency_t *latency = context;
+
+    latency->answered = false;
+    if (job->kind != KERNEL_TASK) {
+        return;
+    }
+    if (strcmp(job->name, "TaskReceiveLaser") == 0 && left(event, detail, "Altitude_server")) {
+        note_write(latency);
+    } else if (strcmp(job->name, "TaskControl") == 0) {
+        follow_control(latency, when, event, detail);
+    }
+}
