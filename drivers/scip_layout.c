@@ -1,5 +1,7 @@
 #include "scip_layout.h"
 
+#include <stddef.h>
+
 #define DEGREES_PER_STEP 0.3515625F
 
 const scip_layout_t scip_layouts[SCIP_LAYOUT_COUNT] = {
@@ -14,14 +16,14 @@ typedef struct {
     uint16_t bad;
 } tally_t;
 
-static uint16_t largest_distance(const scip_scan_t *scan)
-{
-    return scan->characters == 3U ? SCIP_DMAX_MM : SCIP_FAR_2_MM - 1U;
-}
-
 static uint16_t smaller(uint16_t a, uint16_t b)
 {
     return a < b ? a : b;
+}
+
+static uint16_t largest_distance(const scip_scan_t *scan, const scip_limits_t *limits)
+{
+    return scan->characters == 3U ? limits->dmax_mm : smaller(limits->dmax_mm, SCIP_FAR_2_MM - 1U);
 }
 
 static uint16_t steps_per_point(const scip_scan_t *scan)
@@ -48,30 +50,35 @@ static uint16_t points_before(const scip_scan_t *scan, uint16_t step)
     return smaller((uint16_t)(steps_into(scan, step) / steps_per_point(scan)), scan->points);
 }
 
-static tally_t tally(const scip_scan_t *scan, uint16_t begin, uint16_t end)
+/* Distances are counted from dmin, so that one comparison tells both limits. */
+static tally_t tally(const scip_scan_t *scan, uint16_t begin, uint16_t end, const scip_limits_t *limits)
 {
-    const uint32_t span = (uint32_t)largest_distance(scan) - SCIP_CODE_LIMIT_MM;
+    const uint16_t *rays = &scan->distance_mm[begin];
+    const uint32_t nearest = limits->dmin_mm;
+    const uint32_t span = largest_distance(scan, limits) - nearest;
     tally_t t = { 0U, UINT16_MAX, 0U, 0U };
-    for (uint16_t i = begin; i < end; i++) {
-        const uint32_t distance = scan->distance_mm[i];
-        if (distance - SCIP_CODE_LIMIT_MM > span) {
+    for (size_t i = (size_t)end - begin; i > 0U; i--) {
+        const uint32_t beyond = rays[i - 1U] - nearest;
+        if (beyond > span) {
             t.bad++;
             continue;
         }
-        t.sum += distance;
-        t.least = distance < t.least ? distance : t.least;
-        t.most = distance > t.most ? distance : t.most;
+        t.sum += beyond;
+        t.least = beyond < t.least ? beyond : t.least;
+        t.most = beyond > t.most ? beyond : t.most;
     }
+    t.sum += nearest * ((uint32_t)(end - begin) - t.bad);
     return t;
 }
 
-scip_group_mean_t scip_group_mean(const scip_scan_t *scan, const scip_group_t *group)
+scip_group_mean_t scip_group_mean_within(const scip_scan_t *scan, const scip_group_t *group,
+                                         const scip_limits_t *limits)
 {
     const uint16_t behind = (uint16_t)(group->last_step + 1U);
     const uint16_t rays = (uint16_t)((behind - group->first_step) / steps_per_point(scan));
     const uint16_t end = points_before(scan, behind);
     const uint16_t begin = smaller(point_from(scan, group->first_step), end);
-    const tally_t t = tally(scan, begin, end);
+    const tally_t t = tally(scan, begin, end, limits);
     scip_group_mean_t mean = { .good_rays = (uint16_t)(end - begin - t.bad) };
     if (mean.good_rays > 0U) {
         mean.mean_mm = (float)t.sum / (float)mean.good_rays;
@@ -79,6 +86,29 @@ scip_group_mean_t scip_group_mean(const scip_scan_t *scan, const scip_group_t *g
         mean.valid = 2U * mean.good_rays >= rays;
     }
     return mean;
+}
+
+scip_group_mean_t scip_group_mean(const scip_scan_t *scan, const scip_group_t *group)
+{
+    return scip_group_mean_within(scan, group, &scip_limits_urg04lx);
+}
+
+uint16_t scip_group_step_mm(const scip_scan_t *scan, const scip_group_t *group)
+{
+    const uint16_t end = points_before(scan, (uint16_t)(group->last_step + 1U));
+    const uint16_t furthest = largest_distance(scan, &scip_limits_urg04lx);
+    uint16_t before = 0U;
+    uint16_t largest = 0U;
+    for (uint16_t i = point_from(scan, group->first_step); i < end; i++) {
+        const uint16_t distance = scan->distance_mm[i];
+        const bool good = distance >= SCIP_CODE_LIMIT_MM && distance <= furthest;
+        if (good && before != 0U) {
+            const uint16_t step = (uint16_t)(distance > before ? distance - before : before - distance);
+            largest = step > largest ? step : largest;
+        }
+        before = good ? distance : 0U;
+    }
+    return largest;
 }
 
 float scip_step_degrees(uint16_t step)

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "scip_info.h"
 #include "scip_parser.h"
 
 #define SCIP_GROUPS_MAX 3U
@@ -53,6 +54,15 @@ typedef struct {
 /* Mean over the good rays of one group: 20 mm or more, and below 4095 mm (two characters) or up to 5600 mm (three).
  * Rays that the scan does not hold count as bad. With a cluster a ray is a point whose steps all lie in the group. */
 scip_group_mean_t scip_group_mean(const scip_scan_t *scan, const scip_group_t *group);
+
+/* The same with the limits that a sensor tells (dmin_mm and dmax_mm of scip_info_limits()). */
+scip_group_mean_t scip_group_mean_within(const scip_scan_t *scan, const scip_group_t *group,
+                                         const scip_limits_t *limits);
+
+/* The largest difference between two neighbouring good rays of the group, mm; 0 when no two are neighbours. Good means
+ * the limits of scip_group_mean(). On ground it stays small however the ground slopes; a scan with two damages whose
+ * sums cancel out mostly shows a large one. */
+uint16_t scip_group_step_mm(const scip_scan_t *scan, const scip_group_t *group);
 
 /* Direction of a step, degrees, positive to the left of the front. Exact. */
 float scip_step_degrees(uint16_t step);

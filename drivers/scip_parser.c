@@ -65,23 +65,20 @@ static bool read_count(const octet_t *text, uint16_t *count)
 static bool take_echo(scip_parser_t *parser)
 {
     const uint16_t length = parser->awaited.echo_length;
-    uint16_t fixed = length;
+    const size_t fixed = parser->echo_fixed;
     uint16_t remaining = 0U;
     if (!parser->awaiting || parser->line_length < length) {
         return false;
     }
     const octet_t *echo = scip_request_echo(&parser->awaited);
     const octet_t *end = &parser->line[parser->line_length - length];
-    if (is_counted(&parser->awaited)) {
-        fixed = (uint16_t)(length - 2U);
-        if (!read_count(&end[fixed], &remaining)) {
+    for (size_t i = fixed; i > 0U; i--) {
+        if (echo[i - 1U] != end[i - 1U]) {
             return false;
         }
     }
-    for (uint16_t i = 0U; i < fixed; i++) {
-        if (echo[i] != end[i]) {
-            return false;
-        }
+    if (fixed < length && !read_count(&end[fixed], &remaining)) {
+        return false;
     }
     parser->gap = parser->gap || parser->line_length > length;
     parser->remaining = remaining;
@@ -128,11 +125,16 @@ static bool line_has(const scip_parser_t *parser, uint16_t characters)
     return parser->line_length == characters + 1U && !parser->line_cut;
 }
 
+static check_t check_of(uint16_t characters)
+{
+    return (check_t){ (uint16_t)(0x30U * characters), 0U };
+}
+
 /* Six bits of an encoded value; the check notes the character. */
 static inline uint16_t take(check_t *check, octet_t character)
 {
     const uint16_t bits = (uint16_t)(character - 0x30U);
-    check->sum = (uint16_t)(check->sum + character);
+    check->sum = (uint16_t)(check->sum + bits);
     check->outside = (uint16_t)(check->outside | bits);
     return bits;
 }
@@ -176,7 +178,7 @@ static uint16_t state_after_status(const scip_parser_t *parser)
 static scip_event_t end_of_status(scip_parser_t *parser)
 {
     const octet_t *line = parser->line;
-    check_t check = { 0U, 0U };
+    check_t check = check_of(2U);
     scip_damage_t cause;
     if (line_is_refusal(parser)) {
         parser->state = LEGACY_END;
@@ -221,7 +223,7 @@ static scip_event_t begin_data(scip_parser_t *parser, uint32_t stamp)
 
 static scip_event_t end_of_time(scip_parser_t *parser)
 {
-    check_t check = { 0U, 0U };
+    check_t check = check_of(4U);
     uint32_t stamp = 0U;
     scip_damage_t cause;
     if (!line_has(parser, 4U)) {
@@ -242,16 +244,16 @@ static scip_event_t end_of_time(scip_parser_t *parser)
     return begin_data(parser, stamp);
 }
 
-/* Two characters a point never straddle a block. */
+/* Two characters a point never straddle a block. Loops over octets and rays count down: fewer instructions. */
 static check_t decode_pairs(scip_parser_t *parser, uint16_t *out, uint16_t characters)
 {
     const octet_t *line = parser->line;
     const size_t points = characters / 2U;
-    check_t check = { 0U, 0U };
-    for (size_t i = 0U; i < points; i++) {
-        const uint16_t high = take(&check, line[2U * i]);
-        const uint16_t low = take(&check, line[2U * i + 1U]);
-        out[i] = (uint16_t)((high << 6) | low);
+    check_t check = check_of(characters);
+    for (size_t i = points; i > 0U; i--) {
+        const uint16_t high = take(&check, line[2U * i - 2U]);
+        const uint16_t low = take(&check, line[2U * i - 1U]);
+        out[i - 1U] = (uint16_t)((high << 6) | low);
     }
     parser->received = (uint16_t)(parser->received + points);
     return check;
@@ -259,7 +261,7 @@ static check_t decode_pairs(scip_parser_t *parser, uint16_t *out, uint16_t chara
 
 static check_t decode_triples(scip_parser_t *parser, uint16_t *out, uint16_t characters)
 {
-    check_t check = { 0U, 0U };
+    check_t check = check_of(characters);
     for (uint16_t i = 0U; i < characters; i++) {
         parser->partial = (parser->partial << 6) | take(&check, parser->line[i]);
         parser->partial_characters++;
@@ -276,7 +278,7 @@ static check_t decode_triples(scip_parser_t *parser, uint16_t *out, uint16_t cha
 
 static check_t pass(const scip_parser_t *parser, uint16_t characters)
 {
-    check_t check = { 0U, 0U };
+    check_t check = check_of(characters);
     for (uint16_t i = 0U; i < characters; i++) {
         (void)take(&check, parser->line[i]);
     }
@@ -293,6 +295,16 @@ static check_t decode(scip_parser_t *parser, uint16_t characters)
                                             : decode_triples(parser, out, characters);
 }
 
+/* A quick look at the octet where the awaited echo would begin. */
+static bool may_end_in_echo(const scip_parser_t *parser)
+{
+    const uint16_t length = parser->awaited.echo_length;
+    return parser->line_length >= length &&
+           parser->line[parser->line_length - length] == *scip_request_echo(&parser->awaited);
+}
+
+/* What is left of a frame that was cut short may, with the next frame's echo behind it, have a block's length and a
+ * right sum. */
 static scip_event_t end_of_data(scip_parser_t *parser)
 {
     const uint16_t characters = parser->characters_left < SCIP_BLOCK ? parser->characters_left : (uint16_t)SCIP_BLOCK;
@@ -300,7 +312,8 @@ static scip_event_t end_of_data(scip_parser_t *parser)
         return damage(parser, SCIP_DAMAGE_LENGTH);
     }
     const check_t check = decode(parser, characters);
-    const scip_damage_t cause = verdict(&check, parser->line[characters]);
+    const scip_damage_t cause = may_end_in_echo(parser) && take_echo(parser) ? SCIP_DAMAGE_LENGTH
+ : verdict(&check, parser->line[characters]);
     if (cause != SCIP_DAMAGE_NONE) {
         return damage(parser, cause);
     }
@@ -327,15 +340,15 @@ static bool stamp_follows(const scip_parser_t *parser)
     return false;
 }
 
+static bool has_fallen_by_one(const scip_parser_t *parser)
+{
+    return parser->remaining + 1U == parser->latest_remaining;
+}
+
+/* The counter has no sum, so it is held against the one before only when that one is beyond doubt. */
 static bool counter_follows(const scip_parser_t *parser)
 {
-    if (!is_counted(&parser->awaited)) {
-        return true;
-    }
-    if (parser->gap) {
-        return parser->remaining < parser->last_remaining;
-    }
-    return parser->remaining + 1U == parser->last_remaining;
+    return !is_counted(&parser->awaited) || parser->gap || !parser->in_step || has_fallen_by_one(parser);
 }
 
 /* A stamp follows when it is ahead of one of the last two seen, so a wrong one whose sum was right harms no later one.
@@ -350,7 +363,8 @@ static bool in_sequence(scip_parser_t *parser)
     }
     parser->doubted = !follows;
     if (follows) {
-        parser->last_remaining = parser->remaining;
+        parser->in_step = !parser->gap && has_fallen_by_one(parser);
+        parser->latest_remaining = parser->remaining;
         parser->gap = false;
     }
     return follows;
@@ -398,7 +412,8 @@ static void begin_stream(scip_parser_t *parser)
     parser->gap = false;
     parser->doubted = false;
     parser->stamps = 0U;
-    parser->last_remaining = parser->awaited.range.scans;
+    parser->latest_remaining = parser->awaited.range.scans;
+    parser->in_step = true;
     parser->state = ECHO;
 }
 
@@ -471,6 +486,7 @@ void scip_parser_init(scip_parser_t *parser)
 void scip_parser_expect(scip_parser_t *parser, const scip_request_t *request)
 {
     parser->awaited = *request;
+    parser->echo_fixed = (uint16_t)(request->echo_length - (is_counted(request) ? 2U : 0U));
     parser->awaiting = true;
     parser->state = HUNT;
     parser->skipping = false;
@@ -478,7 +494,6 @@ void scip_parser_expect(scip_parser_t *parser, const scip_request_t *request)
     parser->gap = true;
     parser->doubted = false;
     parser->stamps = 0U;
-    parser->last_remaining = request->range.scans;
 }
 
 void scip_parser_scan_into(scip_parser_t *parser, scip_scan_t *scan)
@@ -497,7 +512,7 @@ void scip_parser_line_broken(scip_parser_t *parser)
     parser->gap = true;
     parser->counters.octets += parser->gathered;
     parser->gathered = 0U;
-    parser->cutting = false;
+    parser->line_cut = false;
 }
 
 void scip_parser_cut_line(scip_parser_t *parser)
@@ -507,17 +522,57 @@ void scip_parser_cut_line(scip_parser_t *parser)
     }
     parser->counters.octets += SCIP_LINE_MAX - SCIP_REQUEST_MAX;
     parser->gathered = SCIP_REQUEST_MAX;
-    parser->cutting = true;
+    parser->line_cut = true;
+}
+
+static scip_event_t end_line_of(scip_parser_t *parser, size_t length)
+{
+    parser->line_length = (uint16_t)length;
+    parser->counters.octets += (uint32_t)length + 1U;
+    parser->gathered = 0U;
+    const scip_event_t event = at_line_end[parser->state](parser);
+    parser->line_cut = false;
+    return event;
 }
 
 scip_event_t scip_parser_end_line(scip_parser_t *parser)
 {
-    parser->line_length = parser->gathered;
-    parser->line_cut = parser->cutting;
-    parser->counters.octets += (uint32_t)parser->gathered + 1U;
-    parser->gathered = 0U;
-    parser->cutting = false;
-    return at_line_end[parser->state](parser);
+    return end_line_of(parser, parser->gathered);
+}
+
+/* Copies behind what is gathered, up to the end of the line, of its memory or of the octets. Returns how many. */
+static size_t gather(scip_parser_t *parser, const octet_t *octets, size_t count)
+{
+    octet_t *line = &parser->line[parser->gathered];
+    const size_t room = (size_t)SCIP_LINE_MAX - parser->gathered;
+    const size_t most = count < room ? count : room;
+    size_t i = 0U;
+    while (i < most && octet_of(octets[i]) != SCIP_LINE_FEED) {
+        line[i] = octet_of(octets[i]);
+        i++;
+    }
+    return i;
+}
+
+size_t scip_parser_feed_run(scip_parser_t *parser, const octet_t *octets, size_t count, scip_event_t *event)
+{
+    size_t taken = 0U;
+    scip_event_t seen = SCIP_NOTHING;
+    while (seen == SCIP_NOTHING && taken < count) {
+        const size_t more = gather(parser, &octets[taken], count - taken);
+        const size_t length = parser->gathered + more;
+        taken += more;
+        if (length == SCIP_LINE_MAX) {
+            scip_parser_cut_line(parser);
+        } else if (taken < count) {
+            taken++;
+            seen = end_line_of(parser, length);
+        } else {
+            parser->gathered = (uint16_t)length;
+        }
+    }
+    *event = seen;
+    return taken;
 }
 
 uint32_t scip_unwrap_ms(uint32_t unwrapped_ms, uint32_t timestamp_ms)

@@ -14,6 +14,7 @@
 #define DRIVERS_SCIP_PARSER_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "octet.h"
@@ -84,10 +85,10 @@ typedef struct {
     scip_request_t awaited;     /* latest given to scip_parser_expect(); its kind is that of SCIP_REPLY */
     /* private */
     bool awaiting;
+    uint16_t echo_fixed;        /* octets of the awaited echo that never change: all but a counted run's counter */
     uint16_t state;
     uint16_t gathered;          /* octets of the line in reception */
-    bool cutting;               /* more came than fits: only the line's last octets are kept */
-    bool line_cut;              /* that, of the complete line */
+    bool line_cut;              /* more came than fits: only the line's last octets are kept */
     bool skipping;              /* the line before was skipped and not empty */
     scip_scan_t *scan;
     uint16_t characters_left;   /* of the scan's data */
@@ -99,7 +100,8 @@ typedef struct {
     bool flowing;               /* the stream's answer or a frame has come */
     bool gap;                   /* something was lost since the last good frame */
     bool doubted;               /* the last frame was dropped for its sequence */
-    uint16_t last_remaining;
+    uint16_t latest_remaining;  /* of the latest good frame */
+    bool in_step;               /* which came without a loss after one with the counter above its own */
     uint16_t stamps;            /* number of last_stamps_ms that count, 0..2 */
     uint32_t last_stamps_ms[2];
 } scip_parser_t;
@@ -137,6 +139,11 @@ static inline scip_event_t scip_parser_feed(scip_parser_t *parser, octet_t octet
     }
     return SCIP_NOTHING;
 }
+
+/* The same for octets that come in bursts (FIFO, DMA, read()), at about half the cost: takes them up to and including the
+ * one that makes an event, or all. Returns how many were taken; *event is SCIP_NOTHING when no event came. Call again
+ * with the rest. */
+size_t scip_parser_feed_run(scip_parser_t *parser, const octet_t *octets, size_t count, scip_event_t *event);
 
 /* Sensor time without the wrap of 24 bits: the first time at or after unwrapped_ms (wrapping at 2^32) whose low 24 bits
  * are timestamp_ms. Start with the first stamp itself; right as long as less than 4 h 39 min lie between two calls. */

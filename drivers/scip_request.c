@@ -141,8 +141,3 @@ void scip_request_end_line_first(scip_request_t *request)
     request->text[0] = SCIP_LINE_FEED;
     request->text_length++;
 }
-
-const octet_t *scip_request_echo(const scip_request_t *request)
-{
-    return &request->text[request->text_length - 1U - request->echo_length];
-}

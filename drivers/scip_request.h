@@ -69,6 +69,9 @@ bool scip_request_scan(scip_request_t *request, scip_kind_t kind, const scip_ran
 void scip_request_end_line_first(scip_request_t *request);
 
 /* The echo's first octet, within request->text. */
-const octet_t *scip_request_echo(const scip_request_t *request);
+static inline const octet_t *scip_request_echo(const scip_request_t *request)
+{
+    return &request->text[request->text_length - 1U - request->echo_length];
+}
 
 #endif

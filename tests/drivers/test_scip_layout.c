@@ -261,3 +261,79 @@ void test_steps_are_sampled_one_after_the_other(void)
     TEST_ASSERT_EQUAL_UINT32(70800, scip_step_delay_us(725));
     TEST_ASSERT_EQUAL_UINT32(99902, scip_step_delay_us(1023));
 }
+
+/* --- a sensor's own limits ---------------------------------------------------------------------------------------- */
+
+void test_the_limits_may_be_those_that_a_sensor_tells(void)
+{
+    static const scip_limits_t near = { 100, 3000, 1024, 44, 725, 384, 600 };
+    static const scip_limits_t far = { 20, 30000, 1024, 44, 725, 384, 600 };
+    const scip_group_t group = { 372, 406 };
+    fill(1000);
+    points[0] = 99;
+    points[1] = 100;
+    points[2] = 3000;
+    points[3] = 3001;
+    points[4] = 4095;
+    TEST_ASSERT_EQUAL_UINT16(32, scip_group_mean_within(&scan, &group, &near).good_rays);
+    TEST_ASSERT_EQUAL_UINT16(2900, scip_group_mean_within(&scan, &group, &near).spread_mm);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, (30 * 1000.0F + 3100) / 32, scip_group_mean_within(&scan, &group, &near).mean_mm);
+    TEST_ASSERT_EQUAL_UINT16(34, scip_group_mean_within(&scan, &group, &far).good_rays); /* 4095 is none of two characters */
+    scan.characters = 3;
+    points[5] = 30000;
+    points[6] = 30001;
+    TEST_ASSERT_EQUAL_UINT16(34, scip_group_mean_within(&scan, &group, &far).good_rays);
+    TEST_ASSERT_EQUAL_UINT16(29901, scip_group_mean_within(&scan, &group, &far).spread_mm);
+}
+
+/* --- steps from ray to ray ---------------------------------------------------------------------------------------- */
+
+static uint16_t step_of(uint16_t first, uint16_t last)
+{
+    const scip_group_t group = { first, last };
+    return scip_group_step_mm(&scan, &group);
+}
+
+void test_a_slope_has_small_steps_and_a_large_spread(void)
+{
+    for (uint16_t i = 0; i < 35; i++) {
+        points[i] = (uint16_t)(600 + 10 * i);
+    }
+    TEST_ASSERT_EQUAL_UINT16(10, step_of(372, 406));
+    TEST_ASSERT_EQUAL_UINT16(340, mean_of(372, 406).spread_mm);
+}
+
+void test_the_largest_step_counts_up_or_down_anywhere_in_the_group(void)
+{
+    for (uint16_t at = 0; at < 35; at++) {
+        for (uint16_t up = 0; up < 2; up++) {
+            fill(1000);
+            points[at] = up != 0 ? 1064 : 936;
+            TEST_ASSERT_EQUAL_UINT16(64, step_of(372, 406));
+        }
+    }
+    fill(1000);
+    points[0] = 900;
+    TEST_ASSERT_EQUAL_UINT16(0, step_of(373, 406));
+    points[34] = 900;
+    TEST_ASSERT_EQUAL_UINT16(0, step_of(373, 405));
+}
+
+void test_steps_are_only_between_neighbours_that_are_both_good(void)
+{
+    fill(1000);
+    points[10] = 19;
+    points[11] = 2000;
+    points[12] = 4095;
+    TEST_ASSERT_EQUAL_UINT16(0, step_of(372, 406));
+    points[20] = 20;
+    TEST_ASSERT_EQUAL_UINT16(980, step_of(372, 406));
+    fill(0);
+    TEST_ASSERT_EQUAL_UINT16(0, step_of(372, 406));
+    TEST_ASSERT_EQUAL_UINT16(0, step_of(300, 310));
+    scan.characters = 3;
+    fill(5600);
+    points[7] = 5601;
+    points[8] = 5500;
+    TEST_ASSERT_EQUAL_UINT16(100, step_of(372, 406));
+}

@@ -155,7 +155,7 @@ void test_a_lone_sharp_is_empty(void)
 
 void test_a_line_of_no_character_is_empty(void)
 {
-    telecommand_line_t line = {.length = 0U, .overlong = false};
+    telecommand_line_t line = {.length = 0U};
     TEST_ASSERT_EQUAL(TELECOMMAND_EMPTY, telecommand_parse(&line, &command));
 }
 
@@ -272,6 +272,73 @@ void test_lines_in_one_breath_are_all_kept(void)
         }
     }
     TEST_ASSERT_EQUAL(7U, lines);
+}
+
+void test_a_broken_line_is_damaged_and_parses_to_nothing(void)
+{
+    TEST_ASSERT_EQUAL(0U, feed("#SETR "));
+    telecommand_collector_broken(&collector);
+    TEST_ASSERT_EQUAL(1U, feed("3\n"));
+    TEST_ASSERT_TRUE(collector.line.damaged);
+    TEST_ASSERT_EQUAL(TELECOMMAND_DAMAGED, telecommand_parse(&collector.line, &command));
+    TEST_ASSERT_EQUAL(0U, command.name_length);
+    TEST_ASSERT_EQUAL(0U, command.argument_length);
+    assert_parses("#SETR 0.3\n", "SETR", "0.3");
+}
+
+void test_damage_is_told_before_any_other_fault(void)
+{
+    static const char *const rests[] = {"\n", "\x01\n", "KP=1\n", "PING 123456789 123456789 123456789\n"};
+
+    for (uint16_t i = 0; i < sizeof rests / sizeof rests[0]; i++) {
+        TEST_ASSERT_EQUAL(0U, feed("#"));
+        telecommand_collector_broken(&collector);
+        assert_error(TELECOMMAND_DAMAGED, rests[i]);
+    }
+}
+
+void test_a_sharp_begins_an_undamaged_line(void)
+{
+    TEST_ASSERT_EQUAL(0U, feed("#SETR 0."));
+    telecommand_collector_broken(&collector);
+    assert_parses("#KP 0.1\n", "KP", "0.1");
+}
+
+void test_what_is_lost_between_lines_harms_none(void)
+{
+    telecommand_collector_broken(&collector);
+    assert_parses("#KP 0.1\n", "KP", "0.1");
+    telecommand_collector_broken(&collector);
+    TEST_ASSERT_FALSE(telecommand_collect(&collector, '\n'));
+    TEST_ASSERT_EQUAL(0U, feed("noise"));
+    telecommand_collector_broken(&collector);
+    assert_parses(" #KP 0.1\n", "KP", "0.1");
+}
+
+void test_a_new_collector_holds_no_damage(void)
+{
+    TEST_ASSERT_EQUAL(0U, feed("#KP 0."));
+    telecommand_collector_broken(&collector);
+    telecommand_collector_init(&collector);
+    TEST_ASSERT_EQUAL(0U, feed("1\n"));
+    assert_parses("#KP 0.1\n", "KP", "0.1");
+}
+
+/* Any octet lost, told by the UART at the same place: no other command may come of it. */
+void test_a_line_that_lost_any_run_of_octets_never_parses(void)
+{
+    static const char text[] = "#SETR 0.3";
+    const uint16_t length = (uint16_t)strlen(text);
+
+    for (uint16_t from = 1; from < length; from++) {
+        for (uint16_t to = (uint16_t)(from + 1U); to <= length; to++) {
+            TEST_ASSERT_EQUAL(0U, feed_octets(text, from));
+            telecommand_collector_broken(&collector);
+            TEST_ASSERT_EQUAL(0U, feed_octets(&text[to], (size_t)(length - to)));
+            TEST_ASSERT_TRUE(telecommand_collect(&collector, '\n'));
+            TEST_ASSERT_EQUAL(TELECOMMAND_DAMAGED, telecommand_parse(&collector.line, &command));
+        }
+    }
 }
 
 void test_ten_thousand_random_octets_lose_no_later_command(void)

@@ -200,3 +200,33 @@ void test_a_line_is_ended_whole_or_marked_at_every_length(void)
         }
     }
 }
+
+void test_an_answer_may_have_160_characters_and_not_one_more(void)
+{
+    char filler[TELEMETRY_ANSWER_MAX + 1U];
+
+    memset(filler, 'x', sizeof filler);
+    for (uint16_t length = 0; length <= TELEMETRY_ANSWER_MAX + 1U; length++) {
+        telemetry_begin_answer(&line);
+        telemetry_characters(&line, filler, length);
+        telemetry_end(&line);
+        TEST_ASSERT_EQUAL(length > 158U, line.overflowed);
+        if (!line.overflowed) {
+            TEST_ASSERT_EQUAL(length + 2U, line.length);
+            TEST_ASSERT_EQUAL_STRING_LEN("\r\n", &line.text[length], 2);
+        }
+    }
+}
+
+void test_the_status_line_keeps_to_one_packet_after_an_answer(void)
+{
+    telemetry_t telemetry = flying();
+
+    telemetry_begin_answer(&line);
+    telemetry_status(&line, &telemetry);
+    TEST_ASSERT_EQUAL(TELEMETRY_LINE_MAX, line.limit);
+    telemetry_begin_answer(&line);
+    TEST_ASSERT_EQUAL(TELEMETRY_ANSWER_MAX, line.limit);
+    telemetry_begin(&line);
+    TEST_ASSERT_EQUAL(TELEMETRY_LINE_MAX, line.limit);
+}

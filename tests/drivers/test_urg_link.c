@@ -10,45 +10,46 @@
 #define STEP_US 150000U
 #define STEP_MS 150U
 #define NEVER 1000000U
-#define LOG_MAX 2000
+#define LOG_MAX 400
+#define QUEUE_MAX 400
 
 /* --- a small scripted sensor, written apart from the product ------------------------------------------------------ */
 
 static struct {
-    unsigned rate, power_up_rate;
+    uint32_t rate, power_up_rate;
     bool on, scip2, streaming, time_mode;
     bool knows_switch, knows_rate, knows_stream, streams, refuses_all;
     char command[80];
-    unsigned length;
+    uint32_t length;
     char echo[40];
-    unsigned scans_left; /* of a counted run, 0 endless */
-    unsigned clock_ms, next_frame_ms;
-    unsigned latency_steps;
+    uint32_t scans_left; /* of a counted run, 0 endless */
+    uint32_t clock_ms, next_frame_ms;
+    uint32_t latency_steps;
     const char *rate_refusal, *stream_refusal;
 } sensor;
 
 typedef struct {
-    unsigned octet, rate, due_step;
+    uint32_t octet, rate, due_step;
 } flying_t;
 
-static flying_t queue[200000];
-static unsigned queued, taken;
-static unsigned step_number;
-static unsigned sent_to_host, sent_to_sensor;           /* octets, for faults by position */
-static unsigned drop_to_host, flip_to_host, drop_to_sensor;
+static flying_t queue[QUEUE_MAX];    /* a ring */
+static uint32_t queued, taken;
+static uint32_t step_number;
+static uint32_t sent_to_host, sent_to_sensor;           /* octets, for faults by position */
+static uint32_t drop_to_host, flip_to_host, drop_to_sensor;
 
-static void send_octet(unsigned octet)
+static void send_octet(uint32_t octet)
 {
-    if (queued == sizeof queue / sizeof queue[0]) {
+    if (queued - taken == QUEUE_MAX) {
         TEST_FAIL_MESSAGE("queue full");
     }
-    queue[queued++] = (flying_t){ octet, sensor.rate, step_number + sensor.latency_steps };
+    queue[queued++ % QUEUE_MAX] = (flying_t){ octet, sensor.rate, step_number + sensor.latency_steps };
 }
 
 static void send_text(const char *text)
 {
     while (*text != '\0') {
-        send_octet((unsigned)*text++);
+        send_octet((uint32_t)*text++);
     }
 }
 
@@ -65,7 +66,7 @@ static void send_status(const char *echo, const char *status)
 static void send_frame(void)
 {
     char echo[40];
-    unsigned sum = 0;
+    uint32_t sum = 0;
     strcpy(echo, sensor.echo);
     if (sensor.scans_left > 0) {
         sensor.scans_left--;
@@ -75,8 +76,8 @@ static void send_frame(void)
     }
     send_text(echo);
     send_text("\n99b\n");
-    for (unsigned i = 0; i < 4; i++) {
-        unsigned character = 48 + (sensor.clock_ms >> (18 - 6 * i) & 63);
+    for (uint32_t i = 0; i < 4; i++) {
+        uint32_t character = 48 + (sensor.clock_ms >> (18 - 6 * i) & 63);
         sum += character;
         send_octet(character);
     }
@@ -99,7 +100,7 @@ static void answer_1(const char *command)
 
 static void answer_rate(const char *command)
 {
-    unsigned rate = (unsigned)atoi(&command[2]);
+    uint32_t rate = (uint32_t)atol(&command[2]);
     if (!sensor.knows_rate) {
         send_status(command, sensor.rate_refusal);
     } else if (rate == sensor.rate) {
@@ -118,7 +119,7 @@ static void answer_stream(const char *command)
     }
     send_status(command, "00");
     strcpy(sensor.echo, command);
-    sensor.scans_left = (unsigned)atoi(&command[13]);
+    sensor.scans_left = (uint32_t)atol(&command[13]);
     sensor.streaming = sensor.streams;
     sensor.next_frame_ms = sensor.clock_ms + 100;
 }
@@ -150,7 +151,7 @@ static void answer_2(const char *command)
     }
 }
 
-static void sensor_hears(unsigned octet)
+static void sensor_hears(uint32_t octet)
 {
     if (octet != '\n') {
         sensor.command[sensor.length] = (char)octet;
@@ -164,7 +165,7 @@ static void sensor_hears(unsigned octet)
     sensor.length = 0;
 }
 
-static void sensor_runs(unsigned ms)
+static void sensor_runs(uint32_t ms)
 {
     for (; ms > 0 && sensor.on; ms--) {
         sensor.clock_ms++;
@@ -194,15 +195,15 @@ static urg_config_t config;
 static urg_seen_t seen;
 static urg_action_t action;
 static uint32_t now_us;
-static unsigned host_rate;
-static unsigned power_cycles;
+static uint32_t host_rate;
+static uint32_t power_cycles;
 
 static struct {
     char text[20];
-    unsigned step, rate;
+    uint32_t step, rate;
     laser_status_t status;
 } asked[LOG_MAX];
-static unsigned asked_count;
+static uint32_t asked_count;
 
 static void note_event(scip_event_t event)
 {
@@ -233,10 +234,11 @@ static void note_event(scip_event_t event)
 
 static void host_hears(void)
 {
-    for (; taken < queued && queue[taken].due_step <= step_number; taken++) {
-        unsigned octet = queue[taken].octet;
+    for (; taken != queued && queue[taken % QUEUE_MAX].due_step <= step_number; taken++) {
+        const flying_t *flying = &queue[taken % QUEUE_MAX];
+        uint32_t octet = flying->octet;
         sent_to_host++;
-        if (queue[taken].rate != host_rate) {
+        if (flying->rate != host_rate) {
             seen.framing_count++;
             scip_parser_line_broken(&parser);
             continue;
@@ -248,9 +250,6 @@ static void host_hears(void)
         note_event(scip_parser_feed(&parser, (octet_t)octet));
     }
     seen.octet_count = parser.counters.octets;
-    if (taken == queued) {
-        taken = queued = 0;
-    }
 }
 
 static void host_sends(void)
@@ -295,7 +294,7 @@ static void step(void)
     step_number++;
 }
 
-static void steps(unsigned count)
+static void steps(uint32_t count)
 {
     while (count-- > 0) {
         step();
@@ -303,9 +302,9 @@ static void steps(unsigned count)
 }
 
 /* Steps until scans arrive; NEVER after 60 s. */
-static unsigned steps_to_ok(void)
+static uint32_t steps_to_ok(void)
 {
-    for (unsigned count = 1; count <= 400; count++) {
+    for (uint32_t count = 1; count <= 400; count++) {
         step();
         if (link_.status == LASER_OK) {
             return count;
@@ -328,7 +327,7 @@ static void host_starts(uint32_t wait_us)
     urg_link_init(&link_, &config, now_us);
 }
 
-static void fresh_sensor(unsigned rate)
+static void fresh_sensor(uint32_t rate)
 {
     memset(&sensor, 0, sizeof sensor);
     sensor.power_up_rate = rate;
@@ -336,7 +335,7 @@ static void fresh_sensor(unsigned rate)
     sensor_powers_up();
 }
 
-static void start_streaming(unsigned rate)
+static void start_streaming(uint32_t rate)
 {
     sensor.rate = rate;
     sensor.scip2 = sensor.streaming = true;
@@ -362,7 +361,7 @@ void tearDown(void)
 {
 }
 
-static void assert_asked(unsigned index, const char *text, unsigned at_step, unsigned rate, laser_status_t status)
+static void assert_asked(uint32_t index, const char *text, uint32_t at_step, uint32_t rate, laser_status_t status)
 {
     TEST_ASSERT_LESS_THAN_UINT(asked_count, index);
     TEST_ASSERT_EQUAL_STRING(text, asked[index].text);
@@ -371,10 +370,10 @@ static void assert_asked(unsigned index, const char *text, unsigned at_step, uns
     TEST_ASSERT_EQUAL_STRING(laser_status_name(status), laser_status_name(asked[index].status));
 }
 
-static unsigned times_asked(const char *command)
+static uint32_t times_asked(const char *command)
 {
-    unsigned count = 0;
-    for (unsigned i = 0; i < asked_count; i++) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < asked_count; i++) {
         const char *text = asked[i].text[0] == '\n' ? &asked[i].text[1] : asked[i].text;
         count += strncmp(text, command, strlen(command)) == 0;
     }
@@ -420,7 +419,7 @@ void test_without_a_wait_the_start_begins_at_once(void)
 void test_nothing_is_sent_while_scans_arrive(void)
 {
     steps_to_ok();
-    unsigned before = asked_count;
+    uint32_t before = asked_count;
     steps(4000);
     TEST_ASSERT_EQUAL(LASER_OK, link_.status);
     TEST_ASSERT_EQUAL_UINT(before, asked_count);
@@ -463,7 +462,7 @@ void test_every_command_is_repeated_only_after_400_ms(void)
 {
     sensor.on = false;
     steps(1000);
-    for (unsigned i = 1; i < asked_count; i++) {
+    for (uint32_t i = 1; i < asked_count; i++) {
         TEST_ASSERT_GREATER_OR_EQUAL_UINT(3, asked[i].step - asked[i - 1].step);
     }
 }
@@ -472,7 +471,7 @@ void test_every_command_is_repeated_only_after_400_ms(void)
 
 typedef enum { SCIP1, IDLE, STREAMING, TIMING } state_t;
 
-static unsigned start_from(state_t state, unsigned rate, uint32_t wait_us)
+static uint32_t start_from(state_t state, uint32_t rate, uint32_t wait_us)
 {
     reset(wait_us);
     sensor.power_up_rate = sensor.rate = rate;
@@ -488,8 +487,8 @@ static unsigned start_from(state_t state, unsigned rate, uint32_t wait_us)
 void test_streaming_is_reached_from_every_state_at_every_rate_without_a_power_cycle(void)
 {
     static const char *const names[] = { "SCIP1.1", "SCIP2.0 idle", "streaming", "time mode" };
-    static const unsigned rates[] = { 19200, 57600, 115200, 250000 };
-    static const unsigned limit_ms[4][4] = {
+    static const uint32_t rates[] = { 19200, 57600, 115200, 250000 };
+    static const uint32_t limit_ms[4][4] = {
         /* 19200 57600 115200 250000 */
         { 2850, 3450, 1050, 1650 },
         { 2700, 3300, 1050, 1350 },
@@ -497,9 +496,9 @@ void test_streaming_is_reached_from_every_state_at_every_rate_without_a_power_cy
         { 3000, 3600, 1350, 1650 },
     };
     for (int state = SCIP1; state <= TIMING; state++) {
-        for (unsigned r = 0; r < 4; r++) {
-            unsigned ms = STEP_MS * start_from((state_t)state, rates[r], 0);
-            printf("%s at %u: %u ms\n", names[state], rates[r], ms);
+        for (uint32_t r = 0; r < 4; r++) {
+            uint32_t ms = STEP_MS * start_from((state_t)state, rates[r], 0);
+            printf("%s at %lu: %lu ms\n", names[state], (unsigned long)rates[r], (unsigned long)ms);
             TEST_ASSERT_LESS_OR_EQUAL_UINT(limit_ms[state][r], ms);
             TEST_ASSERT_EQUAL_UINT(250000, host_rate);
             TEST_ASSERT_EQUAL_UINT(0, power_cycles);
@@ -522,13 +521,13 @@ void test_a_sensor_that_already_streams_cuts_the_wait_short(void)
 void test_half_a_command_at_the_sensor_and_half_a_reply_in_the_line_do_no_harm(void)
 {
     static const char *const halves[] = { "M", "MS0372", "QT", "SCIP2.", "\x15\x80garbage" };
-    for (unsigned i = 0; i < 5; i++) {
+    for (uint32_t i = 0; i < 5; i++) {
         for (int state = SCIP1; state <= TIMING; state++) {
             reset(0);
             sensor.scip2 = state != SCIP1;
             sensor.time_mode = state == TIMING;
             strcpy(sensor.command, halves[i]);
-            sensor.length = (unsigned)strlen(halves[i]);
+            sensor.length = (uint32_t)strlen(halves[i]);
             send_text("MS0372040601000\n99b\n01");
             TEST_ASSERT_LESS_OR_EQUAL_UINT(12, steps_to_ok());
         }
@@ -537,7 +536,7 @@ void test_half_a_command_at_the_sensor_and_half_a_reply_in_the_line_do_no_harm(v
 
 void test_a_sensor_that_boots_after_the_host_is_found(void)
 {
-    for (unsigned late = 0; late < 60; late++) {
+    for (uint32_t late = 0; late < 60; late++) {
         reset(0);
         sensor.on = false;
         steps(late);
@@ -550,11 +549,11 @@ void test_a_sensor_that_boots_after_the_host_is_found(void)
 
 /* 67 steps of waiting and 7 of talk without a fault. The worst is the lost end of SS: the next command ends it, at the
  * wrong moment. */
-static void assert_start_survives(const char *fault, unsigned position)
+static void assert_start_survives(const char *fault, uint32_t position)
 {
     char text[60];
-    unsigned count = steps_to_ok();
-    snprintf(text, sizeof text, "%s %u", fault, position);
+    uint32_t count = steps_to_ok();
+    snprintf(text, sizeof text, "%s %lu", fault, (unsigned long)position);
     TEST_ASSERT_LESS_OR_EQUAL_UINT_MESSAGE(67 + 7 + 17, count, text);
     TEST_ASSERT_EQUAL_UINT(250000, host_rate);
     steps(10);
@@ -565,9 +564,9 @@ static void assert_start_survives(const char *fault, unsigned position)
 void test_any_octet_of_any_reply_may_be_lost_or_wrong(void)
 {
     steps_to_ok();
-    const unsigned octets = sent_to_host;
+    const uint32_t octets = sent_to_host;
     TEST_ASSERT_GREATER_THAN_UINT(6 + 11 + 14 + 8 + 21, octets);
-    for (unsigned k = 1; k <= octets; k++) {
+    for (uint32_t k = 1; k <= octets; k++) {
         reset(10000000);
         drop_to_host = k;
         assert_start_survives("dropped", k);
@@ -580,9 +579,9 @@ void test_any_octet_of_any_reply_may_be_lost_or_wrong(void)
 void test_any_octet_of_any_command_may_be_lost(void)
 {
     steps_to_ok();
-    const unsigned octets = sent_to_sensor;
+    const uint32_t octets = sent_to_sensor;
     TEST_ASSERT_EQUAL_UINT(4 + 8 + 9 + 4 + 16, octets);
-    for (unsigned k = 1; k <= octets; k++) {
+    for (uint32_t k = 1; k <= octets; k++) {
         reset(10000000);
         drop_to_sensor = k;
         assert_start_survives("command octet", k);
@@ -591,7 +590,7 @@ void test_any_octet_of_any_command_may_be_lost(void)
 
 void test_the_sensor_may_restart_at_any_step_of_the_dialogue(void)
 {
-    for (unsigned at = 66; at < 80; at++) {
+    for (uint32_t at = 66; at < 80; at++) {
         reset(10000000);
         steps(at);
         sensor_powers_up();
@@ -629,7 +628,7 @@ void test_a_stream_that_stopped_is_started_again_at_the_same_rate(void)
     steps_to_ok();
     steps(20);
     sensor.streaming = false;
-    unsigned before = asked_count;
+    uint32_t before = asked_count;
     steps(10);
     TEST_ASSERT_EQUAL(LASER_OK, link_.status);
     TEST_ASSERT_EQUAL_UINT(before + 2, asked_count);
@@ -641,7 +640,7 @@ void test_a_stream_that_stopped_is_started_again_at_the_same_rate(void)
 /* 22 steps: 3.3 s from the end of the sensor's boot to scans. */
 void test_a_brown_out_of_the_sensor_is_overcome(void)
 {
-    for (unsigned off = 0; off < 40; off++) {
+    for (uint32_t off = 0; off < 40; off++) {
         reset(0);
         steps_to_ok();
         steps(10);
@@ -649,7 +648,7 @@ void test_a_brown_out_of_the_sensor_is_overcome(void)
         steps(off);
         sensor_powers_up();
         steps(5);
-        unsigned count = link_.status == LASER_OK ? 0 : steps_to_ok();
+        uint32_t count = link_.status == LASER_OK ? 0 : steps_to_ok();
         TEST_ASSERT_LESS_OR_EQUAL_UINT(22, count);
         steps(10);
         TEST_ASSERT_EQUAL(LASER_OK, link_.status);
@@ -680,17 +679,17 @@ void test_a_sensor_in_time_mode_is_taken_out_of_it(void)
 /* Every rate has its turn, the configured ones once only, for ever; power is cycled every 20 s where it can be. */
 void test_a_dead_sensor_is_looked_for_at_every_rate_for_ever(void)
 {
-    static const unsigned rates[] = { 250000, 115200, 19200, 57600 };
+    static const uint32_t rates[] = { 250000, 115200, 19200, 57600 };
     reset(0);
     sensor.on = false;
     steps(800);
     TEST_ASSERT_EQUAL_UINT(2, times_asked("L0"));
     TEST_ASSERT_EQUAL_UINT(asked_count - 2, times_asked("QT"));
     TEST_ASSERT_GREATER_THAN_UINT(200, asked_count);
-    for (unsigned i = 2; i < asked_count; i++) {
+    for (uint32_t i = 2; i < asked_count; i++) {
         TEST_ASSERT_EQUAL_UINT(rates[(i - 2) % 4], asked[i].rate);
         TEST_ASSERT_EQUAL(LASER_LOST, asked[i].status);
-        TEST_ASSERT_EQUAL_UINT('\n', (unsigned)asked[i].text[0]);
+        TEST_ASSERT_EQUAL_UINT('\n', (uint32_t)asked[i].text[0]);
     }
     TEST_ASSERT_EQUAL_UINT(5, power_cycles);
     TEST_ASSERT_EQUAL_UINT32(asked_count - 1, link_.timeouts);
@@ -700,7 +699,7 @@ void test_a_dead_sensor_is_looked_for_at_every_rate_for_ever(void)
 
 void test_other_configured_rates_are_probed_first(void)
 {
-    static const unsigned rates[] = { 500000, 750000, 19200, 57600, 115200, 250000 };
+    static const uint32_t rates[] = { 500000, 750000, 19200, 57600, 115200, 250000 };
     reset(0);
     config.first_rate = 750000;
     config.stream_rate = 500000;
@@ -708,7 +707,7 @@ void test_other_configured_rates_are_probed_first(void)
     urg_link_init(&link_, &config, now_us);
     sensor.on = false;
     steps(100);
-    for (unsigned i = 2; i < 20; i++) {
+    for (uint32_t i = 2; i < 20; i++) {
         TEST_ASSERT_EQUAL_UINT(rates[(i - 2) % 6], asked[i].rate);
     }
 }
@@ -719,11 +718,11 @@ void test_a_sensor_that_answers_but_does_not_scan_climbs_the_ladder(void)
     steps_to_ok();
     sensor.streams = false;
     sensor.streaming = false;
-    unsigned begin = asked_count;
+    uint32_t begin = asked_count;
     steps(30);
     static const char *const ladder[] = { "\nQT\n", "MS0372040601000\n", "\nTM2\n", "QT\n",
                                           "MS0372040601000\n", "\nRS\n", "\nQT\n" };
-    for (unsigned i = 0; i < 7; i++) {
+    for (uint32_t i = 0; i < 7; i++) {
         TEST_ASSERT_EQUAL_STRING(ladder[i], asked[begin + i].text);
     }
     TEST_ASSERT_EQUAL_UINT(115200, asked[begin + 6].rate);
@@ -748,7 +747,7 @@ void test_a_sensor_that_refuses_everything_is_reset_again_and_again(void)
 void test_a_scan_order_that_is_refused_is_not_just_repeated(void)
 {
     static const char *const refusals[] = { "04", "0E" };
-    for (unsigned i = 0; i < 2; i++) {
+    for (uint32_t i = 0; i < 2; i++) {
         reset(0);
         sensor.knows_stream = false;
         sensor.stream_refusal = refusals[i];
@@ -764,7 +763,7 @@ void test_a_scan_order_that_is_refused_is_not_just_repeated(void)
 void test_a_sensor_that_does_not_know_the_rate_streams_at_its_own(void)
 {
     static const char *const refusals[] = { "02", "04", "0F" };
-    for (unsigned i = 0; i < 3; i++) {
+    for (uint32_t i = 0; i < 3; i++) {
         reset(0);
         sensor.knows_rate = false;
         sensor.rate_refusal = refusals[i];
@@ -905,7 +904,7 @@ void test_longer_scans_are_waited_for_longer(void)
         { { 372, 406, 1, 9, 0 }, 2250000, 2260000 },
         { { 111, 657, 1, 0, 0 }, 490000, 505000 },
     };
-    for (unsigned i = 0; i < 3; i++) {
+    for (uint32_t i = 0; i < 3; i++) {
         urg_seen_t some = { .scan_count = 0 };
         reset(0);
         config.range = rows[i].range;
@@ -996,13 +995,13 @@ void test_a_burst_of_framing_errors_ends_a_probe_early_and_a_few_do_not(void)
 void test_a_noisy_cable_never_ends_it(void)
 {
     unsigned long seed = 19991231UL;
-    unsigned ok = 0;
+    uint32_t ok = 0;
     printf("random seed %lu\n", seed);
     reset(0);
-    for (unsigned i = 0; i < 20000; i++) {
+    for (uint32_t i = 0; i < 20000; i++) {
         seed = (seed * 1103515245UL + 12345UL) & 0x7FFFFFFFUL;
-        drop_to_host = sent_to_host + 1 + (unsigned)(seed >> 8) % 300;
-        drop_to_sensor = sent_to_sensor + 1 + (unsigned)(seed >> 16) % 30;
+        drop_to_host = sent_to_host + 1 + (uint32_t)(seed >> 8) % 300;
+        drop_to_sensor = sent_to_sensor + 1 + (uint32_t)(seed >> 16) % 30;
         if (i % 1000 == 500) {
             sensor_powers_up();
         }

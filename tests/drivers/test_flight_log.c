@@ -1,0 +1,142 @@
+#include "flight_log.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "unity.h"
+
+static const flight_log_t flying = {123456U, 598.0F, 601.0F, -12.0F, 0.6F, 7.123F, -0.0123F, 0.0345F, 2U, 5U};
+
+static telemetry_line_t line;
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static const char *text(void)
+{
+    static char copy[TELEMETRY_ANSWER_MAX + 1U];
+
+    TEST_ASSERT_FALSE(line.overflowed);
+    TEST_ASSERT_TRUE(line.length <= TELEMETRY_LINE_MAX);
+    memcpy(copy, line.text, line.length);
+    copy[line.length] = '\0';
+    return copy;
+}
+
+static flight_log_t round_trip(const flight_log_t *record)
+{
+    uint16_t cells[FLIGHT_LOG_CELLS];
+    flight_log_t back;
+
+    flight_log_pack(cells, record);
+    flight_log_unpack(&back, cells);
+    return back;
+}
+
+void test_a_row_is_pinned(void)
+{
+    flight_log_row(&line, &flying, "FLYING");
+    TEST_ASSERT_EQUAL_STRING("OK LOG 123.456,0.598,0.601,-0.012,0.600,7.123,-0.0123,0.0345,FLYING,5\r\n", text());
+}
+
+void test_the_title_line_names_as_many_columns_as_a_row_has(void)
+{
+    size_t titles = 0, columns = 0;
+
+    flight_log_titles(&line);
+    TEST_ASSERT_EQUAL_STRING("OK LOG t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags\r\n", text());
+    for (const char *p = text(); (p = strchr(p, ',')) != NULL; p++) {
+        titles++;
+    }
+    flight_log_row(&line, &flying, "FLYING");
+    for (const char *p = text(); (p = strchr(p, ',')) != NULL; p++) {
+        columns++;
+    }
+    TEST_ASSERT_EQUAL(titles, columns);
+}
+
+void test_packing_keeps_every_field_within_half_a_step(void)
+{
+    for (int i = -320; i <= 320; i++) {
+        const float x = (float)i;
+        const flight_log_t record = {(uint32_t)(i + 320) * UINT32_C(6700417), x * 101.3F, -x * 99.9F, x * 7.7F, x * 0.0101F,
+                                     fabsf(x) * 0.0367F, x * 0.0098F, -x * 0.0097F, (uint16_t)((i + 320) % 16),
+                                     (uint16_t)((i + 320) * 6)};
+        const flight_log_t back = round_trip(&record);
+
+        TEST_ASSERT_EQUAL_UINT32(record.time_ms, back.time_ms);
+        TEST_ASSERT_FLOAT_WITHIN(0.51F, record.height_mm, back.height_mm);
+        TEST_ASSERT_FLOAT_WITHIN(0.51F, record.estimate_mm, back.estimate_mm);
+        TEST_ASSERT_FLOAT_WITHIN(0.51F, record.innovation_mm, back.innovation_mm);
+        TEST_ASSERT_FLOAT_WITHIN(0.00051F, record.reference_m, back.reference_m);
+        TEST_ASSERT_FLOAT_WITHIN(0.00051F, record.thrust_n, back.thrust_n);
+        TEST_ASSERT_FLOAT_WITHIN(0.000051F, record.roll_rad, back.roll_rad);
+        TEST_ASSERT_FLOAT_WITHIN(0.000051F, record.pitch_rad, back.pitch_rad);
+        TEST_ASSERT_EQUAL_UINT16(record.state, back.state);
+        TEST_ASSERT_EQUAL_UINT16(record.flags, back.flags);
+    }
+}
+
+void test_what_is_not_there_stays_so_and_leaves_its_column_empty(void)
+{
+    const flight_log_t nothing = {7U, NAN, NAN, NAN, NAN, NAN, NAN, NAN, 0U, 0U};
+    const flight_log_t back = round_trip(&nothing);
+
+    TEST_ASSERT_TRUE(isnan(back.height_mm) && isnan(back.estimate_mm) && isnan(back.innovation_mm));
+    TEST_ASSERT_TRUE(isnan(back.reference_m) && isnan(back.thrust_n) && isnan(back.roll_rad) && isnan(back.pitch_rad));
+    flight_log_row(&line, &back, "GROUND");
+    TEST_ASSERT_EQUAL_STRING("OK LOG 0.007,,,,,,,,GROUND,0\r\n", text());
+}
+
+void test_what_is_beyond_the_range_becomes_its_end(void)
+{
+    const flight_log_t high = {0U, 1.0e9F, INFINITY, 40000.0F, 99.0F, 1000.0F, 4.0F, INFINITY, 0U, 0U};
+    const flight_log_t low = {0U, -1.0e9F, -INFINITY, -40000.0F, -99.0F, -1.0F, -4.0F, -INFINITY, 0U, 0U};
+    flight_log_t back = round_trip(&high);
+
+    TEST_ASSERT_EQUAL_FLOAT(32767.0F, back.height_mm);
+    TEST_ASSERT_EQUAL_FLOAT(32767.0F, back.estimate_mm);
+    TEST_ASSERT_EQUAL_FLOAT(32767.0F, back.innovation_mm);
+    TEST_ASSERT_EQUAL_FLOAT(32.767F, back.reference_m);
+    TEST_ASSERT_EQUAL_FLOAT(65.534F, back.thrust_n);
+    TEST_ASSERT_EQUAL_FLOAT(3.2767F, back.roll_rad);
+    TEST_ASSERT_EQUAL_FLOAT(3.2767F, back.pitch_rad);
+    back = round_trip(&low);
+    TEST_ASSERT_EQUAL_FLOAT(-32767.0F, back.height_mm);
+    TEST_ASSERT_EQUAL_FLOAT(-32.767F, back.reference_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, back.thrust_n);
+    TEST_ASSERT_EQUAL_FLOAT(-3.2767F, back.pitch_rad);
+}
+
+void test_the_longest_row_fits_one_radio_packet(void)
+{
+    const flight_log_t longest = {UINT32_C(4294967295), -32767.0F, -32767.0F, -32767.0F, -32.767F, 65.534F, -3.2767F, -3.2767F,
+                                  15U, 4095U};
+
+    flight_log_row(&line, &longest, "DESCENDING");
+    TEST_ASSERT_EQUAL_STRING(
+        "OK LOG 4294967.295,-32.767,-32.767,-32.767,-32.767,65.534,-3.2767,-3.2767,DESCENDING,4095\r\n", text());
+}
+
+void test_milliseconds_are_written_with_their_zeros(void)
+{
+    static const struct {
+        uint32_t ms;
+        const char *start;
+    } rows[] = {{0U, "OK LOG 0.000,"}, {9U, "OK LOG 0.009,"}, {90U, "OK LOG 0.090,"}, {1001U, "OK LOG 1.001,"},
+                {60100U, "OK LOG 60.100,"}};
+
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        flight_log_t record = flying;
+
+        record.time_ms = rows[i].ms;
+        flight_log_row(&line, &record, "FLYING");
+        TEST_ASSERT_EQUAL_STRING_LEN(rows[i].start, text(), strlen(rows[i].start));
+    }
+}

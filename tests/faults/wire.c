@@ -1,0 +1,143 @@
+#include "wire.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const fault_names[FAULT_COUNT] = { "flip", "drop", "insert", "duplicate", "truncation" };
+
+int wire_width(const wire_order_t *order)
+{
+    return order->symbol[1] == 'S' ? 2 : 3;
+}
+
+bool wire_is_stream(const wire_order_t *order)
+{
+    return order->symbol[0] == 'M';
+}
+
+int wire_points(const wire_order_t *order)
+{
+    const int steps = order->last - order->first + 1;
+    return (steps + order->cluster - 1) / order->cluster;
+}
+
+static void put(wire_t *wire, unsigned octet)
+{
+    if (wire->length == WIRE_OCTETS_MAX) {
+        abort();
+    }
+    wire->octets[wire->length++] = (uint8_t)octet;
+}
+
+static void put_text(wire_t *wire, const char *text)
+{
+    for (; *text != '\0'; text++) {
+        put(wire, (unsigned char)*text);
+    }
+}
+
+static void put_summed(wire_t *wire, const char *text, size_t length)
+{
+    unsigned sum = 0;
+
+    for (size_t i = 0; i < length; i++) {
+        sum += (unsigned char)text[i];
+        put(wire, (unsigned char)text[i]);
+    }
+    put(wire, sum % 64 + '0');
+    put(wire, '\n');
+}
+
+static void encode(char *text, uint32_t value, int width)
+{
+    while (width-- > 0) {
+        text[width] = (char)(value % 64 + '0');
+        value /= 64;
+    }
+}
+
+static void put_echo(wire_t *wire, const wire_order_t *order, int remaining)
+{
+    char text[40];
+
+    snprintf(text, sizeof text, "%s%04d%04d%02d", order->symbol, order->first, order->last, order->cluster);
+    put_text(wire, text);
+    if (wire_is_stream(order)) {
+        snprintf(text, sizeof text, "0%02d", remaining);
+        put_text(wire, text);
+    }
+    put(wire, '\n');
+}
+
+size_t wire_time_begins(const wire_order_t *order)
+{
+    return wire_is_stream(order) ? 20 : 17;
+}
+
+void wire_frame(wire_t *wire, const wire_order_t *order, int remaining, uint32_t stamp_ms, const uint16_t *distance_mm)
+{
+    const int width = wire_width(order), points = wire_points(order);
+    const size_t length = (size_t)(width * points);
+    char time[4], data[3 * WIRE_POINTS_MAX];
+
+    wire->length = 0;
+    put_echo(wire, order, remaining);
+    put_summed(wire, wire_is_stream(order) ? "99" : "00", 2);
+    encode(time, stamp_ms, 4);
+    put_summed(wire, time, 4);
+    for (int i = 0; i < points; i++) {
+        encode(data + i * width, distance_mm[i], width);
+    }
+    for (size_t at = 0; at < length; at += 64) {
+        put_summed(wire, data + at, length - at < 64 ? length - at : 64);
+    }
+    put(wire, '\n');
+}
+
+void wire_put(wire_t *wire, const uint8_t *octets, size_t count)
+{
+    if (count > WIRE_OCTETS_MAX - wire->length) {
+        abort();
+    }
+    memcpy(wire->octets + wire->length, octets, count);
+    wire->length += count;
+}
+
+bool wire_put_faulty(wire_t *wire, unsigned octet, fault_t fault, uint32_t random)
+{
+    switch (fault) {
+    case FAULT_FLIP:
+        put(wire, octet ^ (1U << (random % 8)));
+        break;
+    case FAULT_INSERT:
+        put(wire, random % 256);
+        put(wire, octet);
+        break;
+    case FAULT_DUPLICATE:
+        put(wire, octet);
+        put(wire, octet);
+        break;
+    default:
+        break;
+    }
+    return fault != FAULT_TRUNCATION;
+}
+
+uint32_t dice_roll(dice_t *dice)
+{
+    dice->state ^= dice->state >> 12;
+    dice->state ^= dice->state << 25;
+    dice->state ^= dice->state >> 27;
+    return (uint32_t)((dice->state * 0x2545F4914F6CDD1DULL) >> 32);
+}
+
+uint32_t dice_below(dice_t *dice, uint32_t limit)
+{
+    return (uint32_t)(((uint64_t)dice_roll(dice) * limit) >> 32);
+}
+
+double dice_unit(dice_t *dice)
+{
+    return dice_roll(dice) / 4294967296.0;
+}

@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""Instructions of each step of the firmware on x86-64 at -O2, counted by callgrind, against baseline.csv.
+
+Usage: bench.py [--write] [BUILD_DIRECTORY]
+  --write  makes the counts the new baseline
+
+A count is the same on every run, so a change of it is a change of the code (or of the compiler or the C library: then the
+ratios move together). Exit status 1 when a step has become more than a tenth dearer, or the scanner's driver is beyond its
+limits; 77 when valgrind is not installed.
+"""
+import argparse
+import csv
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+BASELINE = HERE / "baseline.csv"
+DEARER = 1.10
+FRAME_LIMIT = 2500      # scip_frame: 101 octets to the mean distance, the application's loop included
+MEMORY_LIMIT = 2048     # one instance of the driver with 271 points
+
+
+def build(directory):
+    for command in (["cmake", "-S", HERE, "-B", directory], ["cmake", "--build", directory]):
+        done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode != 0:
+            sys.exit(done.stdout + done.stderr)
+    return directory / "steps"
+
+
+def count(program, name):
+    """Instructions inside measured(), without its own few."""
+    done = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null",
+                           "--toggle-collect=measured", program, name], capture_output=True, text=True)
+    match = re.search(r"Collected : (\d+)", done.stderr)
+    if done.returncode != 0 or match is None:
+        sys.exit(f"bench: {name}: {done.stderr}")
+    return int(match.group(1))
+
+
+def read_baseline():
+    with BASELINE.open(encoding="utf-8") as file:
+        return {row["step"]: row for row in csv.DictReader(file)}
+
+
+def write_baseline(baseline, counts):
+    with BASELINE.open("w", encoding="utf-8") as file:
+        file.write("step,instructions,annex_us\n")
+        for name, instructions in counts.items():
+            file.write(f"{name},{instructions},{baseline.get(name, {}).get('annex_us', '')}\n")
+
+
+def show(baseline, counts):
+    """Prints the table; returns {step: ratio}."""
+    ratios = {}
+    print(f"{'step':<22} {'instructions':>12} {'baseline':>9} {'ratio':>6} {'Annex IV C, us':>15}")
+    for name, instructions in counts.items():
+        row = baseline.get(name)
+        before = int(row["instructions"]) if row else instructions
+        ratios[name] = instructions / before
+        print(f"{name:<22} {instructions:>12} {before:>9} {ratios[name]:>6.3f} {row['annex_us'] if row else '':>15}")
+    return ratios
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--write", action="store_true")
+    parser.add_argument("directory", nargs="?", type=Path, default=HERE.parents[1] / "build/bench")
+    options = parser.parse_args()
+    if shutil.which("valgrind") is None:
+        print("bench: no valgrind: tools/setup/setup.sh bench")
+        sys.exit(77)
+    program = build(options.directory)
+    names = subprocess.run([program], check=True, capture_output=True, text=True).stdout.split()
+    counts = {name: count(program, name) for name in names}
+    memory = subprocess.run([program, "--memory"], check=True, capture_output=True, text=True).stdout
+    baseline = read_baseline()
+    if options.write:
+        write_baseline(baseline, counts)
+        baseline = read_baseline()
+    ratios = show(baseline, counts)
+    worst = max(ratios, key=ratios.get)
+    octets = int(re.search(r": (\d+) octets", memory).group(1))
+    print(f"\nworst change: {worst}, {(ratios[worst] - 1) * 100:+.1f} %")
+    print(f"scip_frame: {counts['scip_frame']} instructions for 101 octets, at most {FRAME_LIMIT}")
+    print(f"RAM of one driver: {memory.strip()}, at most {MEMORY_LIMIT}")
+    sys.exit(ratios[worst] > DEARER or counts["scip_frame"] > FRAME_LIMIT or octets > MEMORY_LIMIT)
+
+
+if __name__ == "__main__":
+    main()

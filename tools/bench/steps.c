@@ -1,0 +1,367 @@
+/* What each task and interrupt of the firmware does with one message, as it does it. `steps NAME` runs the step NAME, first
+ * twice for practice (caches of the dynamic linker), then once inside measured(), which is what callgrind counts.
+ * `steps` alone lists the names; `steps --memory` prints the driver's RAM. */
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "altitude.h"
+#include "attitude.h"
+#include "decimal.h"
+#include "flight.h"
+#include "parameters.h"
+#include "razor.h"
+#include "scip_layout.h"
+#include "scip_parser.h"
+#include "telecommand.h"
+#include "telemetry.h"
+#include "urg_link.h"
+
+#define REQUIRE(condition)                                                \
+    do {                                                                  \
+        if (!(condition)) {                                               \
+            fprintf(stderr, "steps: %s does not hold\n", #condition);     \
+            exit(2);                                                      \
+        }                                                                 \
+    } while (0)
+
+/* ---- the scanner: one MS frame of 35 points, 101 octets, from its first octet to the mean distance ---- */
+
+#define FRAME_N 101
+#define FRONT (&scip_layouts[SCIP_LAYOUT_FRONT].groups[0])
+
+static octet_t frame[FRAME_N];
+static uint32_t stamp_ms;
+static scip_parser_t parser;
+static scip_scan_t scan;
+static uint16_t points[271];
+static volatile float mean_mm;
+
+static size_t put_sum(size_t from, size_t to)
+{
+    unsigned sum = 0;
+
+    for (size_t i = from; i < to; i++) {
+        sum += frame[i];
+    }
+    frame[to] = (octet_t)(sum % 64 + 48);
+    frame[to + 1] = '\n';
+    return to + 2;
+}
+
+static size_t put_value(size_t at, uint32_t value, unsigned width)
+{
+    for (unsigned i = width; i-- > 0; value /= 64) {
+        frame[at + i] = (octet_t)(value % 64 + 48);
+    }
+    return at + width;
+}
+
+static void next_frame(void)
+{
+    size_t at = 20;
+
+    memcpy(frame, "MS0372040601000\n99b\n", at);
+    stamp_ms += 100;
+    at = put_sum(20, put_value(at, stamp_ms, 4));
+    for (unsigned i = 0; i < 32; i++) {
+        at = put_value(at, 600 + i, 2);
+    }
+    at = put_sum(26, at);
+    for (unsigned i = 32; i < 35; i++) {
+        at = put_value(at, 600 + i, 2);
+    }
+    at = put_sum(at - 6, at);
+    frame[at++] = '\n';
+    REQUIRE(at == FRAME_N);
+}
+
+static void begin_stream(void)
+{
+    scip_request_t request;
+
+    REQUIRE(scip_request_scan(&request, SCIP_STREAM_2, &(scip_range_t){ 372, 406, 1, 0, 0 }));
+    scan = (scip_scan_t){ .distance_mm = points, .capacity = 271 };
+    scip_parser_init(&parser);
+    scip_parser_scan_into(&parser, &scan);
+    scip_parser_expect(&parser, &request);
+    next_frame();
+}
+
+static void use_scan(void)
+{
+    mean_mm = scip_group_mean(&scan, FRONT).mean_mm;
+}
+
+/* As an application does it that gets octets in bursts. */
+static void scip_bursts(const octet_t *octets, size_t count, size_t most)
+{
+    while (count > 0) {
+        scip_event_t event;
+        const size_t taken = scip_parser_feed_run(&parser, octets, count < most ? count : most, &event);
+
+        octets += taken;
+        count -= taken;
+        if (event == SCIP_SCAN) {
+            use_scan();
+        }
+    }
+}
+
+static void scip_frame(void)
+{
+    scip_bursts(frame, FRAME_N, FRAME_N);
+}
+
+static void scip_frame_by_16(void)
+{
+    scip_bursts(frame, FRAME_N, 16);
+}
+
+static void scip_frame_by_octet(void)
+{
+    for (unsigned i = 0; i < FRAME_N; i++) {
+        if (scip_parser_feed(&parser, frame[i]) == SCIP_SCAN) {
+            use_scan();
+        }
+    }
+}
+
+static void next_scip_frame(void)
+{
+    REQUIRE(mean_mm == 617.0F);
+    mean_mm = 0.0F;
+    next_frame();
+}
+
+/* ---- TaskReceiveLaser: from a scan to a height ---- */
+
+static altitude_t altitude;
+
+static void prepare_altitude(void)
+{
+    begin_stream();
+    scip_frame();
+}
+
+static void receive_laser(void)
+{
+    const scip_group_mean_t mean = scip_group_mean(&scan, FRONT);
+    const mirror_range_t range = { MIRROR_FRONT, mean.valid, mean.mean_mm, mean.spread_mm, mean.good_rays };
+
+    altitude = altitude_from_ranges(&range, 1, 0.05F, -0.03F);
+}
+
+/* ---- TaskSendLaser: supervision of a stream ---- */
+
+static urg_link_t link_;
+static urg_seen_t seen;
+static urg_action_t action;
+static uint32_t now_us;
+
+static void send_laser(void)
+{
+    urg_link_step(&link_, &seen, now_us, &action);
+}
+
+static void next_tick(void)
+{
+    seen.scan_count++;
+    now_us += 150000U;
+}
+
+static void prepare_link(void)
+{
+    urg_link_init(&link_, &(urg_config_t){ 0, 115200, 115200, SCIP_STREAM_2, { 372, 406, 1, 0, 0 } }, 0);
+    for (unsigned i = 0; i < 100 && link_.status != LASER_OK; i++) {
+        now_us += 150000U;
+        send_laser();
+        seen.reply_count++;
+        seen.reply_kind = link_.command;
+        seen.reply = (scip_reply_t){ .status = { '0', '0' }, .legacy = link_.command == SCIP_SWITCH };
+        seen.scan_count += link_.status == LASER_STREAM;
+    }
+    REQUIRE(link_.status == LASER_OK);
+    next_tick();
+}
+
+/* ---- TaskIMU: a frame's text to filtered angles ---- */
+
+static const char imu_text[] = "#A-C=-3.00,12.50,255.75#YPR=-123.45,-1.62,2.04";
+static razor_text_t razor_text;
+static razor_collector_t collector;
+static attitude_filter_t filter;
+static attitude_t level, median;
+
+static void imu(void)
+{
+    razor_frame_t razor;
+    attitude_t raw;
+
+    if (razor_parse(&razor_text, &razor) == RAZOR_OK) {
+        raw = (attitude_t){ razor.roll_rad, razor.pitch_rad, razor.yaw_rad };
+        (void)attitude_step(&filter, &raw, &level, &median);
+    }
+}
+
+static void prepare_imu(void)
+{
+    razor_text.length = sizeof imu_text - 1;
+    memcpy(razor_text.text, imu_text, razor_text.length);
+    attitude_init(&filter);
+    for (unsigned i = 0; i < 30; i++) {
+        imu();
+    }
+    REQUIRE(filter.ready);
+}
+
+static void imu_octets(void)
+{
+    for (const char *octet = imu_text; *octet != '\0'; octet++) {
+        (void)razor_collect(&collector, (octet_t)*octet);
+    }
+    REQUIRE(razor_collect(&collector, '\n'));
+}
+
+static void prepare_imu_octets(void)
+{
+    razor_collector_init(&collector);
+}
+
+/* ---- TaskControl: one cycle in flight, under the law of the defaults ---- */
+
+static parameters_t parameters;
+static flight_t flight;
+static flight_inputs_t in;
+static flight_outputs_t out;
+
+static void control(void)
+{
+    flight_step(&flight, &parameters, &in, &out);
+}
+
+static void next_cycle(void)
+{
+    in.now_us += 108000U;
+    in.height_time_us = in.now_us - 20000U;
+    in.height_sequence++;
+    in.height_mm = in.height_mm < 600.0F ? in.height_mm + 10.0F : 595.0F;
+    in.attitude_time_us = in.now_us - 10000U;
+}
+
+static void prepare_control(void)
+{
+    parameters_init(&parameters);
+    flight_init(&flight);
+    in = (flight_inputs_t){ .height_valid = true, .height_mm = 10.0F, .attitude_ready = true };
+    for (unsigned i = 0; i < 200; i++) {
+        in.reference_m = 0.6F;
+        in.reference_sequence = i < 20 ? 0 : 1;
+        in.height_mm = i < 20 ? 10.0F : in.height_mm;
+        next_cycle();
+        control();
+    }
+    REQUIRE(out.state == FLIGHT_FLYING && out.flags == 0);
+}
+
+/* ---- TaskSendComm, TaskReceiveComm: a telemetry line; a command, and the answer to it ---- */
+
+static telemetry_line_t line;
+
+static void send_comm(void)
+{
+    const telemetry_t telemetry = { .height_valid = true, .height_mm = 598.43F, .reference_m = 0.6F, .laser = "OK",
+                                    .thrust_n = 7.1234F, .state = "FLYING", .flags = 0 };
+
+    telemetry_status(&line, &telemetry);
+}
+
+static telecommand_collector_t commands;
+
+static void receive_comm(void)
+{
+    telecommand_t command;
+    float value = 0.0F;
+
+    (void)telecommand_parse(&commands.line, &command);
+    const parameter_id_t id = parameter_find(command.name, command.name_length);
+    REQUIRE(id != PARAMETER_COUNT && decimal_read(command.argument, command.argument_length, &value));
+    (void)parameters_set(&parameters, id, value);
+    telemetry_begin_answer(&line);
+    telemetry_text(&line, "OK ");
+    telemetry_text(&line, parameter_table[id].name);
+    telemetry_text(&line, " ");
+    telemetry_number(&line, parameters.value[id]);
+    telemetry_end(&line);
+}
+
+static void prepare_command(void)
+{
+    const char *text = "#KP 0.0155\n";
+
+    parameters_init(&parameters);
+    telecommand_collector_init(&commands);
+    while (!telecommand_collect(&commands, (octet_t)*text)) {
+        text++;
+    }
+}
+
+static void nothing(void)
+{
+}
+
+static const struct {
+    const char *name;
+    void (*prepare)(void);
+    void (*step)(void);
+    void (*next)(void);         /* between two runs */
+} steps[] = {
+    { "scip_frame", begin_stream, scip_frame, next_scip_frame },
+    { "scip_frame_by_16", begin_stream, scip_frame_by_16, next_scip_frame },
+    { "scip_frame_by_octet", begin_stream, scip_frame_by_octet, next_scip_frame },
+    { "imu_octets", prepare_imu_octets, imu_octets, nothing },
+    { "TaskIMU", prepare_imu, imu, nothing },
+    { "TaskReceiveLaser", prepare_altitude, receive_laser, nothing },
+    { "TaskControl", prepare_control, control, next_cycle },
+    { "TaskSendLaser", prepare_link, send_laser, next_tick },
+    { "TaskSendComm", nothing, send_comm, nothing },
+    { "TaskReceiveComm", prepare_command, receive_comm, nothing },
+};
+
+void measured(void (*step)(void));
+
+__attribute__((noinline)) void measured(void (*step)(void))
+{
+    step();
+}
+
+static void print_memory(void)
+{
+    const size_t whole = sizeof(scip_parser_t) + sizeof(scip_scan_t) + sizeof points + sizeof(urg_link_t);
+
+    printf("parser %zu, scan %zu, 271 points %zu, link %zu: %zu octets\n", sizeof(scip_parser_t), sizeof(scip_scan_t),
+           sizeof points, sizeof(urg_link_t), whole);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc == 2 && strcmp(argv[1], "--memory") == 0) {
+        print_memory();
+        return 0;
+    }
+    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
+        if (argc == 1) {
+            printf("%s\n", steps[i].name);
+        } else if (strcmp(argv[1], steps[i].name) == 0) {
+            steps[i].prepare();
+            steps[i].step();
+            steps[i].next();
+            steps[i].step();
+            steps[i].next();
+            measured(steps[i].step);
+            return 0;
+        }
+    }
+    return argc == 1 ? 0 : 2;
+}
