@@ -14,6 +14,7 @@ void setUp(void)
 {
     timeline_reset();
     chip_reset(ignore);
+    SysCtl_disableWatchdog();
     timeline_move_to(5 * SIM_MS);
     (void)SysCtl_setClock(DEVICE_SETCLOCK_CFG); /* spoils the count of the timer in use */
     bsp_time_init();

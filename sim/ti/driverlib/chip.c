@@ -11,20 +11,35 @@ _Noreturn void chip_unmodelled(const char *what)
     abort();
 }
 
-void chip_reset(void (*raise)(int interrupt))
+static void (*raise_interrupt)(int interrupt);
+
+static void reset_registers(void)
 {
     sysctl_reset();
     cputimer_reset();
     gpio_reset();
-    sci_reset(raise);
+    sci_reset(raise_interrupt);
     epwm_reset();
+}
+
+void chip_reset(void (*raise)(int interrupt))
+{
+    raise_interrupt = raise;
+    reset_registers();
+    watchdog_power_on();
+}
+
+void chip_restart(void)
+{
+    reset_registers();
+    watchdog_reset();
 }
 
 uint32_t chip_register(const char *name)
 {
     uint32_t value;
     if (sysctl_register(name, &value) || gpio_register(name, &value) || sci_register(name, &value)
-        || epwm_register(name, &value)) {
+        || epwm_register(name, &value) || watchdog_register(name, &value)) {
         return value;
     }
     chip_unmodelled(name);

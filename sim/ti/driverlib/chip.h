@@ -12,6 +12,13 @@
  * SYS/BIOS number (INT_xxx >> 16). */
 void chip_reset(void (*raise)(int interrupt));
 
+/* Any other reset: every register as after power-on, but the causes of reset. Wires stay connected. */
+void chip_restart(void);
+
+/* Called when the watchdog overflows, from an event of the timeline, with the cause set. It is the board that then
+ * restarts chip and firmware. NULL: nobody, and the watchdog rests. */
+void chip_watchdog_connect(void (*reset)(void *context), void *context);
+
 /* A transmitted octet, delivered at the end of its stop bit; bit_ns is the length of one bit as sent. */
 typedef void (*chip_octet_t)(void *context, unsigned octet, double bit_ns);
 void chip_sci_connect(uint32_t base, chip_octet_t transmitted, void *context);

@@ -7,4 +7,8 @@
 /* Emulation stop: halts under a debugger on the chip, ends the program here. */
 #define ESTOP0 abort()
 
+/* Access to protected registers on and off: open to all here. */
+#define EALLOW
+#define EDIS
+
 #endif

@@ -50,6 +50,12 @@ void epwm_catch_up(void);
 bool epwm_level(void);
 bool epwm_register(const char *name, uint32_t *value);
 
+/* Watchdog and causes of reset. */
+void watchdog_power_on(void);
+/* All but the causes. */
+void watchdog_reset(void);
+bool watchdog_register(const char *name, uint32_t *value);
+
 /* CPU timers. */
 void cputimer_reset(void);
 /* Before any change of clocks or gates. */

@@ -7,13 +7,12 @@
 #define CRYSTAL_HZ 10000000U
 #define PCLKCR_COUNT 32U
 #define PLL_ON 3U /* PLLEN and PLLCLKEN */
-#define WDDIS 0x40U
 /* What the check of the new SYSCLK leaves in CPU timers 1 and 2: it counts 0x800 periods of the crystal. */
 #define TIMER1_AFTER (0xF0000000U - 0x800U * 20U)
 #define TIMER2_AFTER 0x800U
 
 static struct {
-    uint32_t clksrcctl1, syspllmult, syspllctl1, sysclkdivsel, lospcp, perclkdivsel, wdcr;
+    uint32_t clksrcctl1, syspllmult, syspllctl1, sysclkdivsel, lospcp, perclkdivsel;
     uint32_t pclkcr[PCLKCR_COUNT];
     bool crystal_failed;
 } sys;
@@ -117,11 +116,6 @@ bool sysctl_clocked(uint32_t peripheral)
     return (sys.pclkcr[peripheral & 0x1F] >> (peripheral >> 8) & 1U) != 0;
 }
 
-void SysCtl_disableWatchdog(void)
-{
-    sys.wdcr |= WDDIS;
-}
-
 bool sysctl_register(const char *name, uint32_t *value)
 {
     const struct {
@@ -130,7 +124,7 @@ bool sysctl_register(const char *name, uint32_t *value)
     } words[] = {
         {"CLKSRCCTL1", sys.clksrcctl1}, {"SYSPLLMULT", sys.syspllmult}, {"SYSPLLCTL1", sys.syspllctl1},
         {"SYSCLKDIVSEL", sys.sysclkdivsel}, {"LOSPCP", sys.lospcp}, {"PERCLKDIVSEL", sys.perclkdivsel},
-        {"WDCR", sys.wdcr}, {"PCLKCR0", sys.pclkcr[0]}, {"PCLKCR2", sys.pclkcr[2]}, {"PCLKCR7", sys.pclkcr[7]},
+        {"PCLKCR0", sys.pclkcr[0]}, {"PCLKCR2", sys.pclkcr[2]}, {"PCLKCR7", sys.pclkcr[7]},
     };
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
         if (strcmp(name, words[i].name) == 0) {

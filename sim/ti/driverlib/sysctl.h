@@ -23,6 +23,24 @@
 #define SYSCTL_PLL_DISABLE 0x00000000U
 #define SYSCTL_DEFAULT_OSC_FREQ 10000000U
 
+#define SYSCTL_CAUSE_POR 0x00000001U
+#define SYSCTL_CAUSE_XRS 0x00000002U
+#define SYSCTL_CAUSE_WDRS 0x00000004U
+#define SYSCTL_CAUSE_NMIWDRS 0x00000008U
+#define SYSCTL_CAUSE_SCCRESET 0x00000100U
+
+typedef enum { SYSCTL_WD_MODE_RESET, SYSCTL_WD_MODE_INTERRUPT } SysCtl_WDMode;
+
+typedef enum {
+    SYSCTL_WD_PRESCALE_1 = 1,
+    SYSCTL_WD_PRESCALE_2 = 2,
+    SYSCTL_WD_PRESCALE_4 = 3,
+    SYSCTL_WD_PRESCALE_8 = 4,
+    SYSCTL_WD_PRESCALE_16 = 5,
+    SYSCTL_WD_PRESCALE_32 = 6,
+    SYSCTL_WD_PRESCALE_64 = 7
+} SysCtl_WDPrescaler;
+
 /* Bit << 8 | number of the PCLKCR register. */
 typedef enum {
     SYSCTL_PERIPH_CLK_TIMER0 = 0x0300,
@@ -60,7 +78,20 @@ void SysCtl_setLowSpeedClock(SysCtl_LSPCLKPrescaler prescaler);
 void SysCtl_setEPWMClockDivider(SysCtl_EPWMCLKDivider divider);
 void SysCtl_enablePeripheral(SysCtl_PeripheralPCLOCKCR peripheral);
 void SysCtl_disablePeripheral(SysCtl_PeripheralPCLOCKCR peripheral);
-/* The watchdog itself is not modelled, only its control register. */
+
+/* The watchdog: 8 bits, from reset on counting internal oscillator 1 (10 MHz) / 512 / prescaler, at first 1. When it
+ * overflows the chip is reset; the interrupt in place of the reset is not modelled. */
+void SysCtl_setWatchdogMode(SysCtl_WDMode mode);
+void SysCtl_setWatchdogPrescaler(SysCtl_WDPrescaler prescaler);
+void SysCtl_enableWatchdog(void);
+/* Stops the count where it stands. */
 void SysCtl_disableWatchdog(void);
+/* The count begins again at 0. */
+void SysCtl_serviceWatchdog(void);
+
+/* Sticky, so possibly several. A watchdog reset also pulls the reset pin. What the boot ROM noted of power-on and pin is
+ * added, and stays after a clear. */
+uint32_t SysCtl_getResetCause(void);
+void SysCtl_clearResetCause(uint32_t rstCauses);
 
 #endif

@@ -1,0 +1,76 @@
+#include <stdint.h>
+#include <string.h>
+#include <ti/sysbios/utils/Load.h>
+
+#include "boot.h"
+#include "monitor.h"
+#include "verbs.h"
+
+static const char *const servers[MONITOR_SERVERS] = {
+    [MONITOR_ALTITUDE] = "altitude",   [MONITOR_IMU_SAMPLE] = "imu",        [MONITOR_LASER_STATUS] = "laser",
+    [MONITOR_REFERENCE] = "reference", [MONITOR_PARAMETERS] = "parameters", [MONITOR_FLIGHT_STATUS] = "flight",
+};
+
+static void answer_run(answer_t *answer)
+{
+    answer_begin(answer);
+    telemetry_text(&answer->line, " reset:");
+    telemetry_text(&answer->line, boot_cause());
+    answer_count(answer, "load", (uint32_t)Load_getCPULoad());
+    answer_send(answer);
+}
+
+static void answer_task(answer_t *answer, monitor_task_t task)
+{
+    monitor_report_t report;
+
+    monitor_report(task, &report);
+    answer_begin(answer);
+    telemetry_text(&answer->line, " ");
+    telemetry_text(&answer->line, report.name);
+    answer_count(answer, "worst_us", report.longest_us);
+    answer_count(answer, "late", report.late);
+    answer_count(answer, "stack", report.stack_used);
+    telemetry_text(&answer->line, "/");
+    telemetry_count(&answer->line, report.stack_size);
+    answer_send(answer);
+}
+
+static void answer_waits(answer_t *answer)
+{
+    uint16_t i;
+
+    answer_begin(answer);
+    telemetry_text(&answer->line, " wait_us");
+    for (i = 0U; i < (uint16_t)MONITOR_SERVERS; i++) {
+        answer_count(answer, servers[i], monitor_longest_wait_us((monitor_server_t)i));
+    }
+    answer_send(answer);
+}
+
+static bool reset(answer_t *answer)
+{
+    monitor_reset();
+    answer_begin(answer);
+    telemetry_text(&answer->line, " RESET");
+    answer_send(answer);
+    return true;
+}
+
+bool verb_perf(answer_t *answer)
+{
+    uint16_t task;
+
+    if (answer_argument_is(answer, "RESET")) {
+        return reset(answer);
+    }
+    if (answer->command->argument_length > 0U) {
+        return answer_refuse(answer, "one of RESET");
+    }
+    answer_run(answer);
+    for (task = 0U; task < (uint16_t)MONITOR_TASKS; task++) {
+        answer_task(answer, (monitor_task_t)task);
+    }
+    answer_waits(answer);
+    return true;
+}

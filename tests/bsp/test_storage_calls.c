@@ -1,0 +1,97 @@
+/* storage.c on mocks of driverlib and of the flash library, every call in its order. */
+#include "storage.h"
+
+#include "mock_F021_F2837xS_C28x.h"
+#include "mock_flash.h"
+#include "mock_sysctl.h"
+#include "unity.h"
+
+uint16_t flash_sectors_m_n[BSP_STORAGE_SLOTS][BSP_STORAGE_CELLS];
+Fapi_FmcRegistersType f021_registers;
+int GlobalExpectCount, GlobalVerifyOrder;
+
+void setUp(void)
+{
+    GlobalExpectCount = GlobalVerifyOrder = 0;
+}
+
+void tearDown(void)
+{
+}
+
+static void expect_open(void)
+{
+    Flash_claimPumpSemaphore_Expect(0x00050024U, FLASH_BANK0_WRAPPER);
+    Fapi_initializeAPI_ExpectAndReturn(&f021_registers, 200U, Fapi_Status_Success);
+    Fapi_setActiveFlashBank_ExpectAndReturn(Fapi_FlashBank0, Fapi_Status_Success);
+}
+
+static void expect_close(void)
+{
+    Fapi_flushPipeline_Expect();
+    Flash_releasePumpSemaphore_Expect(0x00050024U);
+}
+
+static void expect_wait(unsigned busy)
+{
+    for (; busy > 0U; busy--) {
+        Fapi_checkFsmForReady_ExpectAndReturn(Fapi_Status_FsmBusy);
+        SysCtl_serviceWatchdog_Expect();
+    }
+    Fapi_checkFsmForReady_ExpectAndReturn(Fapi_Status_FsmReady);
+}
+
+void test_cells_are_read_with_the_error_correction_off(void)
+{
+    uint16_t cells[2];
+
+    flash_sectors_m_n[1][1] = 0x1234U;
+    Flash_disableECC_Expect(0x0005FB00U);
+    Flash_enableECC_Expect(0x0005FB00U);
+    bsp_storage_read(1U, cells, 2U);
+    TEST_ASSERT_EQUAL_HEX16(0x1234U, cells[1]);
+}
+
+void test_an_erasure_waits_for_the_flash_and_services_the_watchdog_meanwhile(void)
+{
+    expect_open();
+    Fapi_issueAsyncCommandWithAddress_ExpectAndReturn(Fapi_EraseSector, (uint32 *)(void *)flash_sectors_m_n[1],
+                                                      Fapi_Status_Success);
+    expect_wait(3U);
+    Fapi_getFsmStatus_ExpectAndReturn(0U);
+    expect_close();
+    TEST_ASSERT_TRUE(bsp_storage_erase(1U));
+}
+
+void test_a_status_other_than_zero_is_a_fault(void)
+{
+    expect_open();
+    Fapi_issueAsyncCommandWithAddress_ExpectAndReturn(Fapi_EraseSector, (uint32 *)(void *)flash_sectors_m_n[0],
+                                                      Fapi_Status_Success);
+    expect_wait(1U);
+    Fapi_getFsmStatus_ExpectAndReturn(0x10U);
+    expect_close();
+    TEST_ASSERT_FALSE(bsp_storage_erase(0U));
+}
+
+void test_a_block_is_programmed_with_its_error_correction(void)
+{
+    const uint16_t cells[BSP_STORAGE_BLOCK] = {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U};
+
+    expect_open();
+    Fapi_issueProgrammingCommand_ExpectAndReturn((uint32 *)(void *)&flash_sectors_m_n[0][16], (uint16 *)(uintptr_t)cells, 8U,
+                                                 NULL, 0U, Fapi_AutoEccGeneration, Fapi_Status_Success);
+    Fapi_issueProgrammingCommand_IgnoreArg_pu16DataBuffer();
+    expect_wait(2U);
+    Fapi_getFsmStatus_ExpectAndReturn(0U);
+    expect_close();
+    TEST_ASSERT_TRUE(bsp_storage_program(0U, 16U, cells));
+}
+
+void test_a_library_that_refuses_to_start_is_a_fault_and_the_pump_is_given_back(void)
+{
+    Flash_claimPumpSemaphore_Expect(0x00050024U, FLASH_BANK0_WRAPPER);
+    Fapi_initializeAPI_ExpectAndReturn(&f021_registers, 200U, Fapi_Error_InvalidHclkValue);
+    expect_close();
+    TEST_ASSERT_FALSE(bsp_storage_erase(0U));
+}
