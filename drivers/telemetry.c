@@ -93,5 +93,9 @@ void telemetry_status(telemetry_line_t *line, const telemetry_t *telemetry)
     telemetry_text(line, telemetry->state);
     telemetry_text(line, " flags:");
     telemetry_count(line, telemetry->flags);
+    if (telemetry->reset != NULL) {
+        telemetry_text(line, " reset:");
+        telemetry_text(line, telemetry->reset);
+    }
     telemetry_end(line);
 }

@@ -13,6 +13,20 @@ static void add_name(answer_t *answer)
     }
 }
 
+static char upper(char character)
+{
+    return (character >= 'a' && character <= 'z') ? (char)(character - 'a' + 'A') : character;
+}
+
+bool answer_argument_is(const answer_t *answer, const char *word)
+{
+    uint16_t i;
+
+    for (i = 0U; i < answer->command->argument_length && word[i] == upper(answer->command->argument[i]); i++) {
+    }
+    return i == answer->command->argument_length && word[i] == '\0';
+}
+
 void answer_begin(answer_t *answer)
 {
     telemetry_begin_answer(&answer->line);
@@ -20,18 +34,23 @@ void answer_begin(answer_t *answer)
     add_name(answer);
 }
 
-void answer_send(answer_t *answer)
-{
-    telemetry_end(&answer->line);
-    xbee_port_answer(&answer->line);
-}
-
 static void begin_error(answer_t *answer)
 {
-    telemetry_begin(&answer->line);
+    telemetry_begin_answer(&answer->line);
     telemetry_text(&answer->line, "ERR ");
     add_name(answer);
     telemetry_text(&answer->line, " ");
+}
+
+void answer_send(answer_t *answer)
+{
+    telemetry_end(&answer->line);
+    if (answer->line.overflowed) {
+        begin_error(answer);
+        telemetry_text(&answer->line, "answer too long");
+        telemetry_end(&answer->line);
+    }
+    xbee_port_answer(&answer->line);
 }
 
 bool answer_refuse(answer_t *answer, const char *reason)

@@ -1,4 +1,5 @@
-/* One answer line under construction: `OK ...` or `ERR NAME reason`. TaskReceiveComm only. */
+/* One answer line under construction, of up to TELEMETRY_ANSWER_MAX characters: `OK ...` or `ERR NAME reason`.
+ * TaskReceiveComm only. */
 #ifndef FIRMWARE_ANSWER_H
 #define FIRMWARE_ANSWER_H
 
@@ -13,9 +14,11 @@ typedef struct {
     telemetry_line_t line;
 } answer_t;
 
+/* The command's argument is that word (upper case here, either case typed). */
+bool answer_argument_is(const answer_t *answer, const char *word);
 /* Begins a line with `OK ` and the command's name. */
 void answer_begin(answer_t *answer);
-/* Sends the line. */
+/* Sends the line; instead of one that did not fit, `ERR NAME answer too long`. */
 void answer_send(answer_t *answer);
 /* `ERR NAME reason`; returns false, so that a verb can return it. */
 bool answer_refuse(answer_t *answer, const char *reason);

@@ -3,13 +3,18 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <string.h>
+#include <ti/sysbios/knl/Task.h>
+#include <xdc/std.h>
 
 #include "answer.h"
+#include "calibrator.h"
 #include "decimal.h"
 #include "parameters.h"
 #include "servers.h"
 #include "verbs.h"
 #include "xbee_port.h"
+
+#define CONTINUE_POLL_MS 10U    /* ten characters leave meanwhile */
 
 typedef struct {
     const char *name;
@@ -82,7 +87,13 @@ static bool execute_help(answer_t *answer);
 
 static const verb_t verbs[] = {
     {"GET", execute_get, "[NAME] - one parameter, or all"},
+    {"SAVE", verb_save, "- stores the parameters, all but SETR"},
+    {"LOAD", verb_load, "- the stored parameters"},
+    {"DEFAULTS", verb_defaults, "- the parameters as delivered; the stored ones stay"},
+    {"LOG", verb_log, "[SECONDS|CLEAR|STOP] - the flight recorder as CSV"},
+    {"CALIBRATE", verb_calibrate, "[COUNTS [SECONDS]] - thrust step by step, tied down; any line but #PING ends it"},
     {"LASER", verb_laser, "- the scanner's state, rate, frames and errors by cause"},
+    {"PERF", verb_perf, "[RESET] - responses, deadlines, stacks, load, waits; RESET clears them"},
     {"PING", execute_ping, "[TEXT] - answers the same text"},
     {"HELP", execute_help, "- this list"},
 };
@@ -179,6 +190,11 @@ static void link_alive(uint32_t arrival_us)
     reference_server_write(&reference);
 }
 
+static bool is_ping(const telecommand_t *command)
+{
+    return command->name_length == strlen("PING") && strncmp(command->name, "PING", command->name_length) == 0;
+}
+
 void commands_execute(const telecommand_line_t *line, uint32_t arrival_us)
 {
     static const char *const reasons[] = {
@@ -192,11 +208,27 @@ void commands_execute(const telecommand_line_t *line, uint32_t arrival_us)
     static answer_t answer;
     telecommand_status_t status = telecommand_parse(line, &command);
 
+    if (status != TELECOMMAND_OK || !is_ping(&command)) {
+        calibrator_stop();
+    }
     answer.command = &command;
     if (status != TELECOMMAND_OK) {
         (void)answer_refuse(&answer, reasons[status]);
     } else if (execute(&answer)) {
         link_alive(arrival_us);
+    }
+}
+
+void commands_continue(void)
+{
+    bool more = true;
+
+    while (more && !xbee_port_waiting()) {
+        more = verb_log_more();
+        more = verb_calibrate_more() || more;
+        if (more) {
+            Task_sleep(CONTINUE_POLL_MS);
+        }
     }
 }
 

@@ -10,6 +10,9 @@
  * radio takes the answers. arrival_us: when the line was complete. */
 void commands_execute(const telecommand_line_t *line, uint32_t arrival_us);
 
+/* Goes on with the answers that take long, until they are complete or a line waits. Blocks between their lines. */
+void commands_continue(void);
+
 /* Tells the operator that `count` lines came faster than they could be queued. */
 void commands_report_lost(uint16_t count);
 

@@ -6,6 +6,7 @@
 #include <ti/sysbios/knl/Swi.h>
 #include <xdc/std.h>
 
+#include "monitor.h"
 #include "schedule.h"
 #include "timebase.h"
 #include "uart_port.h"
@@ -18,17 +19,20 @@ static imu_message_t mailbox;       /* written by IMU_SWI, read by TaskIMU with 
 static Swi_Handle imu_swi;
 static Semaphore_Handle imu_ready;
 
+/* A frame has no sum of its own: with an error, whichever octet it hit, nothing of the burst is believed. */
 static void received(const bsp_uart_burst_t *burst)
 {
     uint16_t i;
 
     if (burst->framing || burst->overrun) {
         razor_collector_broken(&collector);
+        return;
     }
     for (i = 0U; i < burst->count; i++) {
         if (razor_collect(&collector, octet_of(burst->octets[i]))) {
             fresh.text = collector.gathered;
             fresh.arrival_us = bsp_time_us();
+            monitor_released(MONITOR_IMU, fresh.arrival_us);
             Swi_post(imu_swi);
         }
     }

@@ -8,6 +8,7 @@
 #include <ti/sysbios/knl/Swi.h>
 #include <xdc/std.h>
 
+#include "monitor.h"
 #include "schedule.h"
 #include "timebase.h"
 #include "uart_port.h"
@@ -30,6 +31,7 @@ static void scan_done(void)
     seen.scan_count++;
     seen.scan_remaining = scans[filling].remaining;
     scan_arrival_us = bsp_time_us();
+    monitor_released(MONITOR_RECEIVE_LASER, scan_arrival_us);
     filling ^= 1U;
     scip_parser_scan_into(&parser, &scans[filling]);
     Swi_post(laser_swi);

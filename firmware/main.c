@@ -2,9 +2,12 @@
 #include <xdc/std.h>
 
 #include "board.h"
+#include "boot.h"
 #include "mounting.h"
 #include "servers.h"
 #include "tasks.h"
+#include "verbs.h"
+#include "watchdog.h"
 
 int main(void);
 
@@ -12,7 +15,7 @@ static void laser_config(urg_config_t *config)
 {
     const scip_layout_t *layout = &scip_layouts[LASER_LAYOUT];
 
-    config->wait_us = LASER_WAIT_US;
+    config->wait_us = boot_is_restart() ? 0U : LASER_WAIT_US;
     config->first_rate = LASER_FIRST_RATE;
     config->stream_rate = LASER_STREAM_RATE;
     config->stream = SCIP_STREAM_2;
@@ -28,6 +31,7 @@ int main(void)
     static urg_config_t config;
 
     bsp_board_init();
+    boot_init();
     servers_create();
     laser_config(&config);
     task_imu_create();
@@ -36,6 +40,8 @@ int main(void)
     task_send_laser_create(&config);
     task_send_comm_create();
     task_receive_comm_create();
+    verb_load_at_start();
+    bsp_watchdog_start();
     BIOS_start();
     return 0;
 }

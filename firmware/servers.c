@@ -4,6 +4,8 @@
 #include <ti/sysbios/gates/GateMutexPri.h>
 #include <xdc/std.h>
 
+#include "monitor.h"
+#include "timebase.h"
 #include "watch.h"
 
 static GateMutexPri_Handle altitude_gate;
@@ -51,9 +53,18 @@ void servers_create(void)
     flight.flags = FLIGHT_FLAG_HEIGHT | FLIGHT_FLAG_ATTITUDE;
 }
 
+static IArg enter(GateMutexPri_Handle gate, monitor_server_t server)
+{
+    uint32_t asked_us = bsp_time_us();
+    IArg key = GateMutexPri_enter(gate);
+
+    monitor_entered(server, asked_us);
+    return key;
+}
+
 void altitude_server_write(const altitude_sample_t *sample)
 {
-    IArg key = GateMutexPri_enter(altitude_gate);
+    IArg key = enter(altitude_gate, MONITOR_ALTITUDE);
 
     altitude = *sample;
     GateMutexPri_leave(altitude_gate, key);
@@ -61,7 +72,7 @@ void altitude_server_write(const altitude_sample_t *sample)
 
 void altitude_server_read(altitude_sample_t *sample)
 {
-    IArg key = GateMutexPri_enter(altitude_gate);
+    IArg key = enter(altitude_gate, MONITOR_ALTITUDE);
 
     *sample = altitude;
     GateMutexPri_leave(altitude_gate, key);
@@ -69,7 +80,7 @@ void altitude_server_read(altitude_sample_t *sample)
 
 void imu_server_write(const imu_sample_t *sample)
 {
-    IArg key = GateMutexPri_enter(imu_gate);
+    IArg key = enter(imu_gate, MONITOR_IMU_SAMPLE);
 
     if (sample->sequence != imu.sequence) {
         imu_history[imu_next] = *sample;
@@ -81,7 +92,7 @@ void imu_server_write(const imu_sample_t *sample)
 
 void imu_server_read(imu_sample_t *sample)
 {
-    IArg key = GateMutexPri_enter(imu_gate);
+    IArg key = enter(imu_gate, MONITOR_IMU_SAMPLE);
 
     *sample = imu;
     GateMutexPri_leave(imu_gate, key);
@@ -89,7 +100,7 @@ void imu_server_read(imu_sample_t *sample)
 
 uint16_t imu_server_history(imu_sample_t history[IMU_HISTORY])
 {
-    IArg key = GateMutexPri_enter(imu_gate);
+    IArg key = enter(imu_gate, MONITOR_IMU_SAMPLE);
     uint16_t held = (imu.sequence < IMU_HISTORY) ? (uint16_t)imu.sequence : (uint16_t)IMU_HISTORY;
     uint16_t i;
 
@@ -102,7 +113,7 @@ uint16_t imu_server_history(imu_sample_t history[IMU_HISTORY])
 
 void laser_server_write(const laser_sample_t *sample)
 {
-    IArg key = GateMutexPri_enter(laser_gate);
+    IArg key = enter(laser_gate, MONITOR_LASER_STATUS);
 
     laser = *sample;
     GateMutexPri_leave(laser_gate, key);
@@ -110,7 +121,7 @@ void laser_server_write(const laser_sample_t *sample)
 
 void laser_server_read(laser_sample_t *sample)
 {
-    IArg key = GateMutexPri_enter(laser_gate);
+    IArg key = enter(laser_gate, MONITOR_LASER_STATUS);
 
     *sample = laser;
     GateMutexPri_leave(laser_gate, key);
@@ -118,7 +129,7 @@ void laser_server_read(laser_sample_t *sample)
 
 void reference_server_write(const reference_sample_t *sample)
 {
-    IArg key = GateMutexPri_enter(reference_gate);
+    IArg key = enter(reference_gate, MONITOR_REFERENCE);
 
     reference = *sample;
     GateMutexPri_leave(reference_gate, key);
@@ -126,7 +137,7 @@ void reference_server_write(const reference_sample_t *sample)
 
 void reference_server_read(reference_sample_t *sample)
 {
-    IArg key = GateMutexPri_enter(reference_gate);
+    IArg key = enter(reference_gate, MONITOR_REFERENCE);
 
     *sample = reference;
     GateMutexPri_leave(reference_gate, key);
@@ -134,7 +145,7 @@ void reference_server_read(reference_sample_t *sample)
 
 void parameter_server_write(const parameters_t *set)
 {
-    IArg key = GateMutexPri_enter(parameter_gate);
+    IArg key = enter(parameter_gate, MONITOR_PARAMETERS);
 
     parameters = *set;
     GateMutexPri_leave(parameter_gate, key);
@@ -142,7 +153,7 @@ void parameter_server_write(const parameters_t *set)
 
 void parameter_server_read(parameters_t *set)
 {
-    IArg key = GateMutexPri_enter(parameter_gate);
+    IArg key = enter(parameter_gate, MONITOR_PARAMETERS);
 
     *set = parameters;
     GateMutexPri_leave(parameter_gate, key);
@@ -150,7 +161,7 @@ void parameter_server_read(parameters_t *set)
 
 void flight_status_server_write(const flight_status_t *status)
 {
-    IArg key = GateMutexPri_enter(flight_gate);
+    IArg key = enter(flight_gate, MONITOR_FLIGHT_STATUS);
 
     flight = *status;
     GateMutexPri_leave(flight_gate, key);
@@ -158,7 +169,7 @@ void flight_status_server_write(const flight_status_t *status)
 
 void flight_status_server_read(flight_status_t *status)
 {
-    IArg key = GateMutexPri_enter(flight_gate);
+    IArg key = enter(flight_gate, MONITOR_FLIGHT_STATUS);
 
     *status = flight;
     GateMutexPri_leave(flight_gate, key);

@@ -4,7 +4,11 @@
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
+#include "alive.h"
+#include "calibrator.h"
 #include "flight.h"
+#include "flight_recorder.h"
+#include "monitor.h"
 #include "schedule.h"
 #include "servers.h"
 #include "tasks.h"
@@ -17,17 +21,33 @@
 static const UInt release_events[RELEASE_COUNT] = {EVENT_PERIOD, EVENT_ALTITUDE};
 
 static Event_Handle event;
+static control_release_t in_force;
 static flight_t flight;
 
-static Void release(UArg unused)
+static void post(control_release_t release)
+{
+    if (release == in_force) {
+        monitor_released(MONITOR_CONTROL, bsp_time_us());
+    }
+    Event_post(event, release_events[release]);
+}
+
+static Void period_over(UArg unused)
 {
     (void)unused;
-    Event_post(event, EVENT_PERIOD);
+    post(RELEASE_FREE);
 }
 
 void task_control_altitude_arrived(void)
 {
-    Event_post(event, EVENT_ALTITUDE);
+    post(RELEASE_SCAN);
+}
+
+static void wait(const parameters_t *parameters)
+{
+    in_force = (control_release_t)(uint16_t)parameters->value[PARAMETER_RELEASE];
+    (void)Event_pend(event, Event_Id_NONE, release_events[in_force], CONTROL_TIMEOUT_MS);
+    monitor_begin(MONITOR_CONTROL);
 }
 
 static void look(flight_inputs_t *in)
@@ -76,13 +96,16 @@ static Void task_control(UArg unused0, UArg unused1)
     (void)unused1;
     parameter_server_read(&parameters);
     for (;;) {
-        (void)Event_pend(event, Event_Id_NONE, release_events[(uint16_t)parameters.value[PARAMETER_RELEASE]],
-                         CONTROL_TIMEOUT_MS);
+        wait(&parameters);
         parameter_server_read(&parameters);
         look(&in);
         flight_step(&flight, &parameters, &in, &out);
+        calibrator_overlay(parameters.value[PARAMETER_LINK], &in, &out);
         bsp_throttle_set_pulse_us(out.pulse_us);
         publish(&out);
+        flight_recorder_take(&in, &out);
+        monitor_done(MONITOR_CONTROL);
+        alive_report(ALIVE_CONTROL);
     }
 }
 
@@ -96,10 +119,10 @@ void task_control_create(void)
     Clock_Params_init(&clock);
     clock.period = CONTROL_PERIOD_MS;
     clock.startFlag = TRUE;
-    (void)Clock_create(release, CONTROL_PERIOD_MS, &clock, NULL);
+    (void)Clock_create(period_over, CONTROL_PERIOD_MS, &clock, NULL);
     Task_Params_init(&task);
     task.instance->name = "TaskControl";
     task.priority = TASK_CONTROL_PRIORITY;
     task.stackSize = TASK_STACK_CELLS;
-    (void)Task_create(task_control, &task, NULL);
+    monitor_watch(MONITOR_CONTROL, Task_create(task_control, &task, NULL));
 }

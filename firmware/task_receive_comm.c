@@ -3,6 +3,7 @@
 #include <xdc/std.h>
 
 #include "commands.h"
+#include "monitor.h"
 #include "schedule.h"
 #include "tasks.h"
 #include "xbee_port.h"
@@ -14,12 +15,17 @@ static Void task_receive_comm(UArg unused0, UArg unused1)
     (void)unused0;
     (void)unused1;
     for (;;) {
-        uint16_t lost = xbee_port_wait(&message);
+        uint16_t lost;
 
+        commands_continue();
+        lost = xbee_port_wait(&message);
+        monitor_released(MONITOR_RECEIVE_COMM, message.arrival_us);
+        monitor_begin(MONITOR_RECEIVE_COMM);
         if (lost > 0U) {
             commands_report_lost(lost);
         }
         commands_execute(&message.line, message.arrival_us);
+        monitor_done(MONITOR_RECEIVE_COMM);
     }
 }
 
@@ -32,5 +38,5 @@ void task_receive_comm_create(void)
     params.instance->name = "TaskReceiveComm";
     params.priority = TASK_RECEIVE_COMM_PRIORITY;
     params.stackSize = TASK_STACK_CELLS;
-    (void)Task_create(task_receive_comm, &params, NULL);
+    monitor_watch(MONITOR_RECEIVE_COMM, Task_create(task_receive_comm, &params, NULL));
 }

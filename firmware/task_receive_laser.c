@@ -4,6 +4,7 @@
 
 #include "altitude.h"
 #include "laser_port.h"
+#include "monitor.h"
 #include "mounting.h"
 #include "schedule.h"
 #include "scip_layout.h"
@@ -57,7 +58,9 @@ static Void task_receive_laser(UArg unused0, UArg unused1)
     (void)unused1;
     for (;;) {
         laser_port_wait(&message);
+        monitor_begin(MONITOR_RECEIVE_LASER);
         take(&sample, &message);
+        monitor_done(MONITOR_RECEIVE_LASER);
     }
 }
 
@@ -70,5 +73,5 @@ void task_receive_laser_create(void)
     params.instance->name = "TaskReceiveLaser";
     params.priority = TASK_RECEIVE_LASER_PRIORITY;
     params.stackSize = TASK_STACK_CELLS;
-    (void)Task_create(task_receive_laser, &params, NULL);
+    monitor_watch(MONITOR_RECEIVE_LASER, Task_create(task_receive_laser, &params, NULL));
 }

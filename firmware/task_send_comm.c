@@ -5,10 +5,13 @@
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
+#include "boot.h"
+#include "monitor.h"
 #include "schedule.h"
 #include "servers.h"
 #include "tasks.h"
 #include "telemetry.h"
+#include "timebase.h"
 #include "xbee_port.h"
 
 static Semaphore_Handle tick;
@@ -16,10 +19,11 @@ static Semaphore_Handle tick;
 static Void release(UArg unused)
 {
     (void)unused;
+    monitor_released(MONITOR_SEND_COMM, bsp_time_us());
     Semaphore_post(tick);
 }
 
-static void report(telemetry_line_t *line)
+static void report(telemetry_line_t *line, const char *reset)
 {
     altitude_sample_t altitude;
     laser_sample_t laser;
@@ -36,19 +40,24 @@ static void report(telemetry_line_t *line)
     telemetry.thrust_n = flight.thrust_n;
     telemetry.state = flight_state_name(flight.state);
     telemetry.flags = flight.flags;
+    telemetry.reset = reset;
     telemetry_status(line, &telemetry);
 }
 
 static Void task_send_comm(UArg unused0, UArg unused1)
 {
     static telemetry_line_t line;
+    const char *reset = boot_cause();
 
     (void)unused0;
     (void)unused1;
     for (;;) {
         (void)Semaphore_pend(tick, BIOS_WAIT_FOREVER);
-        report(&line);
+        monitor_begin(MONITOR_SEND_COMM);
+        report(&line, reset);
         xbee_port_report(&line);
+        reset = NULL;
+        monitor_done(MONITOR_SEND_COMM);
     }
 }
 
@@ -69,5 +78,5 @@ void task_send_comm_create(void)
     task.instance->name = "TaskSendComm";
     task.priority = TASK_SEND_COMM_PRIORITY;
     task.stackSize = TASK_STACK_CELLS;
-    (void)Task_create(task_send_comm, &task, NULL);
+    monitor_watch(MONITOR_SEND_COMM, Task_create(task_send_comm, &task, NULL));
 }

@@ -5,8 +5,10 @@
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
+#include "alive.h"
 #include "laser_port.h"
 #include "led.h"
+#include "monitor.h"
 #include "schedule.h"
 #include "servers.h"
 #include "tasks.h"
@@ -19,6 +21,7 @@ static Semaphore_Handle tick;
 static Void release(UArg unused)
 {
     (void)unused;
+    monitor_released(MONITOR_SEND_LASER, bsp_time_us());
     Semaphore_post(tick);
 }
 
@@ -62,11 +65,14 @@ static Void task_send_laser(UArg unused0, UArg unused1)
     (void)unused1;
     for (;;) {
         (void)Semaphore_pend(tick, BIOS_WAIT_FOREVER);
+        monitor_begin(MONITOR_SEND_LASER);
         laser_port_statistics(&statistics);
         urg_link_step(&urg, &statistics.seen, bsp_time_us(), &action);
         obey(&action);
         publish(&statistics.seen);
         show(urg.status);
+        monitor_done(MONITOR_SEND_LASER);
+        alive_report(ALIVE_SEND_LASER);
     }
 }
 
@@ -88,5 +94,5 @@ void task_send_laser_create(const urg_config_t *config)
     task.instance->name = "TaskSendLaser";
     task.priority = TASK_SEND_LASER_PRIORITY;
     task.stackSize = TASK_STACK_CELLS;
-    (void)Task_create(task_send_laser, &task, NULL);
+    monitor_watch(MONITOR_SEND_LASER, Task_create(task_send_laser, &task, NULL));
 }

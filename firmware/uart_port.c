@@ -50,13 +50,13 @@ static Void transmit_hwi(UArg uart)
     bsp_uart_transmit_acknowledge((bsp_uart_t)uart);
 }
 
-static void hwi_create(int16_t interrupt, Hwi_FuncPtr function, bsp_uart_t uart)
+static void hwi_create(int16_t number, Hwi_FuncPtr function, bsp_uart_t uart)
 {
     Hwi_Params params;
 
     Hwi_Params_init(&params);
     params.arg = (UArg)uart;
-    (void)Hwi_create((Int)interrupt, function, &params, NULL);
+    (void)Hwi_create((Int)number, function, &params, NULL);
 }
 
 void uart_port_create(bsp_uart_t uart, uint32_t bit_rate, uart_port_received_t received)

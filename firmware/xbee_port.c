@@ -15,6 +15,7 @@
 #define XBEE_BIT_RATE 9600UL
 #define ROOM_POLL_MS 10U    /* ten characters leave meanwhile */
 #define REPORT_ROOM (UART_PORT_TRANSMIT_CELLS / 2U)
+#define SPARE_ROOM (UART_PORT_TRANSMIT_CELLS - 192U)    /* 192 characters leave in 0.2 s */
 
 /* Written by the receive Hwi; the queue is emptied by TaskReceiveComm with Hwis off. */
 static telecommand_collector_t collector;
@@ -41,18 +42,25 @@ static void queue_line(void)
     Swi_post(xbee_swi);
 }
 
+/* Which octet of a burst was hit is not known, nor whether some were lost before or behind it. */
+static void doubt(const bsp_uart_burst_t *burst)
+{
+    if (burst->framing || burst->overrun) {
+        telecommand_collector_broken(&collector);
+    }
+}
+
 static void received(const bsp_uart_burst_t *burst)
 {
     uint16_t i;
 
-    if (burst->framing || burst->overrun) {
-        telecommand_collector_broken(&collector);
-    }
     for (i = 0U; i < burst->count; i++) {
+        doubt(burst);
         if (telecommand_collect(&collector, octet_of(burst->octets[i]))) {
             queue_line();
         }
     }
+    doubt(burst);
 }
 
 static Void xbee_swi_run(UArg unused0, UArg unused1)
@@ -103,6 +111,17 @@ void xbee_port_answer(const telemetry_line_t *line)
     while (!uart_port_send(BSP_UART_XBEE, line->text, line->length)) {
         Task_sleep(ROOM_POLL_MS);
     }
+}
+
+bool xbee_port_waiting(void)
+{
+    return waiting > 0U;
+}
+
+bool xbee_port_spare(const telemetry_line_t *line)
+{
+    return uart_port_room(BSP_UART_XBEE) >= SPARE_ROOM + line->length
+           && uart_port_send(BSP_UART_XBEE, line->text, line->length);
 }
 
 void xbee_port_report(const telemetry_line_t *line)

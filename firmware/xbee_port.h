@@ -26,6 +26,13 @@ uint16_t xbee_port_wait(xbee_message_t *message);
 /* Sends an answer; waits (Task_sleep) until there is room. Task. */
 void xbee_port_answer(const telemetry_line_t *line);
 
+/* True when a line waits: xbee_port_wait would not block. TaskReceiveComm. */
+bool xbee_port_waiting(void);
+
+/* Sends one line of a long answer, or returns false when more than a fifth of a second of lines is still to go: so
+ * telemetry and other answers are not held up. Task. */
+bool xbee_port_spare(const telemetry_line_t *line);
+
 /* Sends a telemetry line, or drops it when answers fill the buffer. Task. */
 void xbee_port_report(const telemetry_line_t *line);
 

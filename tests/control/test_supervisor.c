@@ -139,8 +139,8 @@ static void row_text(const flight_transition_t *row, char *text, size_t size)
 static FILE *open_document(void)
 {
     char path[1024];
-    const char *room = strstr(__FILE__, "tests/control/");
-    snprintf(path, sizeof path, "%.*sdocs/flight_states.md", (int)(room - __FILE__), __FILE__);
+    strcpy(path, __FILE__);
+    strcpy(strstr(path, "tests/control/"), "docs/flight_states.md");
     return fopen(path, "r");
 }
 

@@ -1,5 +1,5 @@
 /* Operator's lines from their octets to the servers and the answers; parser, parameter table and texts are real, the
- * servers and the radio are mocked. */
+ * servers, the verbs of other files and the radio are mocked. */
 #include "commands.h"
 
 #include <math.h>
@@ -8,7 +8,9 @@
 
 #include "decimal.h"
 #include "kernel.h"
+#include "mock_calibrator.h"
 #include "mock_servers.h"
+#include "mock_verbs.h"
 #include "mock_xbee_port.h"
 #include "unity.h"
 
@@ -19,8 +21,8 @@ static parameters_t parameters;
 static reference_sample_t reference;
 static uint16_t parameter_writes;
 static uint16_t reference_writes;
-static char answers[ANSWERS_MAX][TELEMETRY_LINE_MAX + 1U];
-static uint16_t answer_count;
+static char answers[ANSWERS_MAX][TELEMETRY_ANSWER_MAX + 1U];
+static uint16_t answered;
 
 static void parameters_read(parameters_t *set, int calls)
 {
@@ -31,7 +33,7 @@ static void parameters_read(parameters_t *set, int calls)
 static void parameters_write(const parameters_t *set, int calls)
 {
     (void)calls;
-    TEST_ASSERT_EQUAL_UINT16_MESSAGE(0, answer_count, "answered before it was done");
+    TEST_ASSERT_EQUAL_UINT16_MESSAGE(0, answered, "answered before it was done");
     parameters = *set;
     parameter_writes++;
 }
@@ -49,15 +51,15 @@ static void reference_write(const reference_sample_t *sample, int calls)
     reference_writes++;
 }
 
-/* Every answer, whatever it says, is one line of at most one radio packet that begins with its verdict. */
+/* Every answer, whatever it says, is one line that begins with its verdict. */
 static void answer(const telemetry_line_t *line, int calls)
 {
-    char *text = answers[answer_count];
+    char *text = answers[answered];
 
     (void)calls;
-    TEST_ASSERT_LESS_THAN(ANSWERS_MAX, answer_count);
+    TEST_ASSERT_LESS_THAN(ANSWERS_MAX, answered);
     TEST_ASSERT_FALSE_MESSAGE(line->overflowed, "the answer does not fit");
-    TEST_ASSERT_LESS_OR_EQUAL_UINT16(TELEMETRY_LINE_MAX, line->length);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT16(TELEMETRY_ANSWER_MAX, line->length);
     TEST_ASSERT_GREATER_THAN_UINT16(2, line->length);
     (void)memcpy(text, line->text, line->length);
     text[line->length] = '\0';
@@ -65,7 +67,15 @@ static void answer(const telemetry_line_t *line, int calls)
     text[line->length - 2U] = '\0';
     TEST_ASSERT_NULL(strpbrk(text, "\r\n"));
     TEST_ASSERT_TRUE_MESSAGE(strncmp(text, "OK ", 3) == 0 || strncmp(text, "ERR ", 4) == 0, text);
-    answer_count++;
+    answered++;
+}
+
+static uint16_t stops;          /* of a hover calibration */
+
+static void stop(int calls)
+{
+    (void)calls;
+    stops++;
 }
 
 void setUp(void)
@@ -73,12 +83,14 @@ void setUp(void)
     kernel_reset();
     parameters_init(&parameters);
     reference = (reference_sample_t){.reference_m = 0.0F, .sequence = 7U, .link_time_us = 11U, .link_sequence = 40U};
-    parameter_writes = reference_writes = answer_count = 0U;
+    parameter_writes = reference_writes = answered = 0U;
     parameter_server_read_Stub(parameters_read);
     parameter_server_write_Stub(parameters_write);
     reference_server_read_Stub(reference_read);
     reference_server_write_Stub(reference_write);
     xbee_port_answer_Stub(answer);
+    calibrator_stop_Stub(stop);
+    stops = 0U;
 }
 
 void tearDown(void)
@@ -92,7 +104,7 @@ static void type_characters(const char *text, size_t length)
     telecommand_collector_t collector;
 
     telecommand_collector_init(&collector);
-    answer_count = 0U;
+    answered = 0U;
     for (size_t i = 0; i < length; i++) {
         TEST_ASSERT_FALSE(telecommand_collect(&collector, octet_of((uint16_t)text[i])));
     }
@@ -109,7 +121,7 @@ static void assert_answer(const char *expected, const char *line)
 {
     type(line);
     TEST_ASSERT_EQUAL_STRING_MESSAGE(expected, answers[0], line);
-    TEST_ASSERT_EQUAL_UINT16_MESSAGE(1, answer_count, line);
+    TEST_ASSERT_EQUAL_UINT16_MESSAGE(1, answered, line);
 }
 
 /* A refusal leaves everything as it is, the link's life sign included. */
@@ -305,7 +317,7 @@ void test_get_alone_answers_one_line_per_parameter_in_the_tables_order(void)
 {
     reference.reference_m = 1.25F;
     type("#GET");
-    TEST_ASSERT_EQUAL_UINT16(PARAMETER_COUNT, answer_count);
+    TEST_ASSERT_EQUAL_UINT16(PARAMETER_COUNT, answered);
     TEST_ASSERT_EQUAL_STRING("OK SETR 1.25", answers[PARAMETER_SETR]);
     TEST_ASSERT_EQUAL_STRING("OK GRAV 7", answers[PARAMETER_GRAV]);
     TEST_ASSERT_EQUAL_STRING("OK LAW PID", answers[PARAMETER_LAW]);
@@ -319,7 +331,7 @@ void test_get_alone_answers_one_line_per_parameter_in_the_tables_order(void)
 
 void test_every_answer_of_get_can_be_typed_back_as_a_command(void)
 {
-    static char told[ANSWERS_MAX][TELEMETRY_LINE_MAX + 1U];
+    static char told[ANSWERS_MAX][TELEMETRY_ANSWER_MAX + 1U];
     parameters_t before;
 
     parameters.value[PARAMETER_KP] = 0.0123456F;
@@ -350,7 +362,7 @@ void test_ping_answers_its_own_text(void)
 void test_help_tells_every_parameter_and_every_verb_with_limits_and_meaning(void)
 {
     type("#HELP");
-    TEST_ASSERT_EQUAL_UINT16(PARAMETER_COUNT + 3U, answer_count);
+    TEST_ASSERT_GREATER_THAN_UINT16(PARAMETER_COUNT + 3U, answered);
     for (uint16_t id = 0; id < PARAMETER_COUNT; id++) {
         char begin[32];
         char end[TELEMETRY_LINE_MAX];
@@ -367,8 +379,74 @@ void test_help_tells_every_parameter_and_every_verb_with_limits_and_meaning(void
     TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #LAW PD|PID - ", answers[PARAMETER_LAW], 22);
     TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #RELEASE FREE|SCAN - ", answers[PARAMETER_RELEASE], 29);
     TEST_ASSERT_EQUAL_STRING("OK HELP #GET [NAME] - one parameter, or all", answers[PARAMETER_COUNT]);
-    TEST_ASSERT_EQUAL_STRING("OK HELP #PING [TEXT] - answers the same text", answers[PARAMETER_COUNT + 1U]);
-    TEST_ASSERT_EQUAL_STRING("OK HELP #HELP - this list", answers[PARAMETER_COUNT + 2U]);
+    TEST_ASSERT_EQUAL_STRING("OK HELP #HELP - this list", answers[answered - 1U]);
+}
+
+static bool verb_took;
+
+static bool verb(answer_t *answer, int calls)
+{
+    (void)calls;
+    TEST_ASSERT_NOT_NULL(answer->command);
+    verb_took = true;
+    return true;
+}
+
+/* "OK HELP #NAME ..." -> "#NAME" */
+static void name_told(const char *told, char *line)
+{
+    size_t length;
+
+    TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #", told, 9);
+    length = 1U + strcspn(&told[9], " ");
+    (void)memcpy(line, &told[8], length);
+    line[length] = '\0';
+}
+
+void test_every_command_that_help_tells_of_is_known(void)
+{
+    static char told[ANSWERS_MAX][TELEMETRY_ANSWER_MAX + 1U];
+    uint16_t count;
+
+    verb_laser_Stub(verb);
+    verb_perf_Stub(verb);
+    verb_save_Stub(verb);
+    verb_load_Stub(verb);
+    verb_defaults_Stub(verb);
+    verb_log_Stub(verb);
+    verb_calibrate_Stub(verb);
+    type("#HELP");
+    count = answered;
+    (void)memcpy(told, answers, sizeof told);
+    for (uint16_t i = 0; i < count; i++) {
+        char line[TELEMETRY_ANSWER_MAX + 1U];
+
+        name_told(told[i], line);
+        verb_took = false;
+        type(line);
+        TEST_ASSERT_TRUE_MESSAGE(verb_took || answered > 0U, line);
+        TEST_ASSERT_NULL_MESSAGE(verb_took ? NULL : strstr(answers[0], "unknown"), line);
+    }
+}
+
+static bool verb_refuses(answer_t *answer, int calls)
+{
+    (void)calls;
+    TEST_ASSERT_EQUAL_UINT16(5, answer->command->name_length);
+    TEST_ASSERT_EQUAL_STRING_LEN("LASER", answer->command->name, 5);
+    TEST_ASSERT_EQUAL_STRING_LEN("x", answer->command->argument, 1);
+    return false;
+}
+
+void test_a_verb_gets_the_command_and_its_verdict_is_the_links_life_sign(void)
+{
+    verb_laser_Stub(verb_refuses);
+    type("#laser x");
+    TEST_ASSERT_EQUAL_UINT16(0, reference_writes);
+    verb_laser_Stub(verb);
+    type("#LASER");
+    TEST_ASSERT_EQUAL_UINT16(1, reference_writes);
+    TEST_ASSERT_EQUAL_UINT32(41, reference.link_sequence);
 }
 
 void test_every_valid_line_is_a_life_sign_of_the_link(void)
@@ -383,6 +461,28 @@ void test_every_valid_line_is_a_life_sign_of_the_link(void)
     }
     TEST_ASSERT_EQUAL_UINT32(8, reference.sequence); /* the one #SETR */
     TEST_ASSERT_EQUAL_FLOAT(0.5F, reference.reference_m);
+}
+
+/* As the radio's port marks it when the UART has lost octets: `#SETR 0.3` that comes as `#SETR 3`. */
+void test_a_damaged_line_never_executes(void)
+{
+    static const char *const lines[] = {"#SETR 3", "#KP 1", "#LAW PD", "#GET", "#PING 1", "#HELP", "#LASER", "#", "#?"};
+    const parameters_t parameters_before = parameters;
+
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        telecommand_line_t line = {.damaged = true};
+
+        answered = 0U;
+        line.length = (uint16_t)strlen(lines[i]);
+        (void)memcpy(line.text, lines[i], line.length);
+        commands_execute(&line, ARRIVAL_US);
+        TEST_ASSERT_EQUAL_UINT16(1, answered);
+        TEST_ASSERT_EQUAL_STRING("ERR - line damaged", answers[0]);
+    }
+    TEST_ASSERT_EQUAL_UINT16(0, parameter_writes);
+    TEST_ASSERT_EQUAL_UINT16(0, reference_writes);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, reference.reference_m);
+    TEST_ASSERT_EQUAL_MEMORY(&parameters_before, &parameters, sizeof parameters);
 }
 
 void test_a_command_after_a_refused_one_works(void)
@@ -434,10 +534,10 @@ void test_whatever_comes_is_answered_and_changes_all_or_nothing(void)
 
         parameter_writes = reference_writes = 0U;
         type_characters(line, length);
-        TEST_ASSERT_GREATER_THAN_UINT16_MESSAGE(0, answer_count, line);
+        TEST_ASSERT_GREATER_THAN_UINT16_MESSAGE(0, answered, line);
         if (answers[0][0] == 'E') {
             refused++;
-            TEST_ASSERT_EQUAL_UINT16_MESSAGE(1, answer_count, line);
+            TEST_ASSERT_EQUAL_UINT16_MESSAGE(1, answered, line);
             TEST_ASSERT_EQUAL_UINT16_MESSAGE(0, parameter_writes, line);
             TEST_ASSERT_EQUAL_UINT16_MESSAGE(0, reference_writes, line);
         } else {
@@ -456,12 +556,99 @@ void test_whatever_comes_is_answered_and_changes_all_or_nothing(void)
     TEST_ASSERT_GREATER_THAN_UINT16(2000, refused);
 }
 
+void test_any_line_but_a_ping_ends_a_calibration(void)
+{
+    static const char *const others[] = {"#GET KP", "#KP 0.01", "#KP nan", "#", "#?", "#PINGS", "#PIN", "#FLY"};
+
+    type("#PING");
+    type("#ping 1");
+    TEST_ASSERT_EQUAL_UINT16(0, stops);
+    for (uint16_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        type(others[i]);
+        TEST_ASSERT_EQUAL_UINT16_MESSAGE(i + 1U, stops, others[i]);
+    }
+}
+
+static uint16_t log_lines;
+static uint16_t calibration_lines;
+static bool line_waits;
+
+static bool log_more(int calls)
+{
+    (void)calls;
+    kernel_note("log");
+    if (log_lines > 0U) {
+        log_lines--;
+    }
+    return log_lines > 0U;
+}
+
+static bool calibration_more(int calls)
+{
+    (void)calls;
+    kernel_note("calibration");
+    if (calibration_lines > 0U) {
+        calibration_lines--;
+    }
+    return calibration_lines > 0U;
+}
+
+static bool waiting(int calls)
+{
+    (void)calls;
+    return line_waits;
+}
+
+static void meanwhile(void)
+{
+    kernel_note("sleep");
+}
+
+static void long_answers(uint16_t log, uint16_t calibration)
+{
+    log_lines = log;
+    calibration_lines = calibration;
+    line_waits = false;
+    verb_log_more_Stub(log_more);
+    verb_calibrate_more_Stub(calibration_more);
+    xbee_port_waiting_Stub(waiting);
+    kernel.task.on_sleep = meanwhile;
+    kernel.notes[0] = '\0';
+}
+
+void test_long_answers_go_on_ten_milliseconds_apart_until_both_are_complete(void)
+{
+    long_answers(3U, 2U);
+    commands_continue();
+    TEST_ASSERT_EQUAL_STRING("log calibration sleep log calibration sleep log calibration ", kernel.notes);
+    TEST_ASSERT_EQUAL_UINT32(10, kernel.task.slept_ticks);
+    long_answers(0U, 0U);
+    commands_continue();
+    TEST_ASSERT_EQUAL_STRING("log calibration ", kernel.notes);
+}
+
+static void a_line_comes(void)
+{
+    kernel_note("sleep");
+    line_waits = true;
+}
+
+void test_a_line_that_waits_goes_before_the_rest_of_a_long_answer(void)
+{
+    long_answers(100U, 0U);
+    kernel.task.on_sleep = a_line_comes;
+    commands_continue();
+    TEST_ASSERT_EQUAL_STRING("log calibration sleep ", kernel.notes);
+    commands_continue();
+    TEST_ASSERT_EQUAL_STRING("log calibration sleep ", kernel.notes);
+}
+
 void test_lost_lines_are_told_with_their_number(void)
 {
     commands_report_lost(1U);
     commands_report_lost(65535U);
     TEST_ASSERT_EQUAL_STRING("ERR - 1 lines lost: sent too fast", answers[0]);
     TEST_ASSERT_EQUAL_STRING("ERR - 65535 lines lost: sent too fast", answers[1]);
-    TEST_ASSERT_EQUAL_UINT16(2, answer_count);
+    TEST_ASSERT_EQUAL_UINT16(2, answered);
     TEST_ASSERT_EQUAL_UINT16(0, reference_writes);
 }

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "jobs.h"
 #include "kernel.h"
 #include "mock_timebase.h"
 #include "mock_uart_port.h"
@@ -19,7 +20,8 @@ static char sent[64];
 static uint16_t sent_count;
 static const char *answer_while_sending;    /* comes before uart_port_send() returns, or NULL */
 static laser_message_t message;
-static urg_seen_t before;
+static laser_statistics_t now;
+static laser_statistics_t before;
 static scip_request_t request;
 
 static void port_create(bsp_uart_t uart, uint32_t bit_rate, uart_port_received_t received, int calls)
@@ -104,6 +106,11 @@ static void wait(void)
     laser_port_wait(&message);
 }
 
+static void look(void)
+{
+    laser_port_statistics(&now);
+}
+
 /* The counters outlive laser_port_create(): what a test sees is counted from here. */
 static void baseline(void)
 {
@@ -111,8 +118,7 @@ static void baseline(void)
     TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
     laser_port_send(&request);
     feed("QT\n00P\n\n");
-    wait();
-    before = message.seen;
+    laser_port_statistics(&before);
     kernel.swi.posts = 0U;
     kernel.swi.disabled = 0U;
 }
@@ -127,6 +133,7 @@ void setUp(void)
     uart_port_reopen_Stub(port_reopen);
     uart_port_send_Stub(port_send);
     bsp_time_us_Stub(time_us);
+    jobs_reset();
     laser_port_create(115200U);
     baseline();
 }
@@ -179,15 +186,14 @@ static void start_stream(void)
     TEST_ASSERT_TRUE(scip_request_scan(&request, SCIP_STREAM_2, &range));
     laser_port_send(&request);
     feed("MS0372040601000\n00P\n\n");
-    wait();
-    TEST_ASSERT_EQUAL_UINT32(before.reply_count + 1U, message.seen.reply_count);
-    before = message.seen;
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count + 1U, now.seen.reply_count);
+    before = now;
     kernel.swi.posts = 0U;
 }
 
 static void assert_scan(uint32_t stamp_ms, uint16_t first_mm)
 {
-    TEST_ASSERT_TRUE(message.has_scan);
     TEST_ASSERT_EQUAL_UINT16(POINTS, message.scan.points);
     TEST_ASSERT_EQUAL_UINT16(372, message.scan.first_step);
     TEST_ASSERT_EQUAL_UINT32(stamp_ms, message.scan.timestamp_ms);
@@ -237,9 +243,9 @@ void test_a_reply_is_awaited_before_the_request_is_on_the_wire(void)
     answer_while_sending = "SS250000\n00P\n\n";
     TEST_ASSERT_TRUE(scip_request_bit_rate(&request, 250000U));
     laser_port_send(&request);
-    wait();
-    TEST_ASSERT_EQUAL_UINT32(before.reply_count + 1U, message.seen.reply_count);
-    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, message.seen.reply_kind);
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count + 1U, now.seen.reply_count);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, now.seen.reply_kind);
 }
 
 void test_a_reply_is_counted_with_its_kind_and_status(void)
@@ -247,13 +253,13 @@ void test_a_reply_is_counted_with_its_kind_and_status(void)
     TEST_ASSERT_TRUE(scip_request_bit_rate(&request, 250000U));
     laser_port_send(&request);
     feed("SS250000\n03S\n\n");
-    wait();
-    TEST_ASSERT_EQUAL_UINT32(before.reply_count + 1U, message.seen.reply_count);
-    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, message.seen.reply_kind);
-    TEST_ASSERT_EQUAL_HEX16('0', message.seen.reply.status[0]);
-    TEST_ASSERT_EQUAL_HEX16('3', message.seen.reply.status[1]);
-    TEST_ASSERT_FALSE(message.has_scan);
-    TEST_ASSERT_EQUAL_UINT32(before.octet_count + 14U, message.seen.octet_count);
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count + 1U, now.seen.reply_count);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, now.seen.reply_kind);
+    TEST_ASSERT_EQUAL_HEX16('0', now.seen.reply.status[0]);
+    TEST_ASSERT_EQUAL_HEX16('3', now.seen.reply.status[1]);
+    TEST_ASSERT_EQUAL_UINT16(0, kernel.swi.posts);
+    TEST_ASSERT_EQUAL_UINT32(before.seen.octet_count + 14U, now.seen.octet_count);
 }
 
 void test_the_reply_of_an_older_request_is_not_taken_for_the_present_one(void)
@@ -261,10 +267,11 @@ void test_the_reply_of_an_older_request_is_not_taken_for_the_present_one(void)
     TEST_ASSERT_TRUE(scip_request_bit_rate(&request, 250000U));
     laser_port_send(&request);
     feed("QT\n00P\n\n");
-    TEST_ASSERT_TRUE(kernel_blocks(wait));
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count, now.seen.reply_count);
     feed("SS250000\n00P\n\n");
-    wait();
-    TEST_ASSERT_EQUAL_UINT32(before.reply_count + 1U, message.seen.reply_count);
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count + 1U, now.seen.reply_count);
 }
 
 void test_the_lines_of_a_text_reply_count_for_nothing_but_the_reply_at_their_end(void)
@@ -272,13 +279,13 @@ void test_the_lines_of_a_text_reply_count_for_nothing_but_the_reply_at_their_end
     TEST_ASSERT_TRUE(scip_request(&request, SCIP_VERSION));
     laser_port_send(&request);
     feed("VV\n00P\nVEND:Hokuyo;0\nPROD:URG-04LX;0\n");
-    wait();
-    TEST_ASSERT_EQUAL_UINT32(before.reply_count, message.seen.reply_count);
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count, now.seen.reply_count);
     feed("\n");
-    wait();
-    TEST_ASSERT_EQUAL_UINT32(before.reply_count + 1U, message.seen.reply_count);
-    TEST_ASSERT_EQUAL(SCIP_VERSION, message.seen.reply_kind);
-    TEST_ASSERT_EQUAL_UINT32(before.damage_count, message.seen.damage_count);
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count + 1U, now.seen.reply_count);
+    TEST_ASSERT_EQUAL(SCIP_VERSION, now.seen.reply_kind);
+    TEST_ASSERT_EQUAL_UINT32(before.seen.damage_count, now.seen.damage_count);
 }
 
 void test_a_scip11_refusal_is_counted(void)
@@ -286,9 +293,9 @@ void test_a_scip11_refusal_is_counted(void)
     TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
     laser_port_send(&request);
     feed("QT\nE\n\n");
-    wait();
-    TEST_ASSERT_EQUAL_UINT32(before.legacy_count + 1U, message.seen.legacy_count);
-    TEST_ASSERT_EQUAL_UINT32(before.reply_count, message.seen.reply_count);
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.legacy_count + 1U, now.seen.legacy_count);
+    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count, now.seen.reply_count);
 }
 
 void test_a_notice_of_the_stream_is_counted_with_its_status(void)
@@ -298,12 +305,12 @@ void test_a_notice_of_the_stream_is_counted_with_its_status(void)
     start_stream();
     append_with_sum(text, "21", 2U);
     feed(strcat(text, "\n"));
-    wait();
-    TEST_ASSERT_EQUAL_UINT32(before.notice_count + 1U, message.seen.notice_count);
-    TEST_ASSERT_EQUAL_HEX16('2', message.seen.notice.status[0]);
-    TEST_ASSERT_EQUAL_HEX16('1', message.seen.notice.status[1]);
-    TEST_ASSERT_EQUAL_UINT32(before.reply_count, message.seen.reply_count);
-    TEST_ASSERT_FALSE(message.has_scan);
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.notice_count + 1U, now.seen.notice_count);
+    TEST_ASSERT_EQUAL_HEX16('2', now.seen.notice.status[0]);
+    TEST_ASSERT_EQUAL_HEX16('1', now.seen.notice.status[1]);
+    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count, now.seen.reply_count);
+    TEST_ASSERT_EQUAL_UINT16(0, kernel.swi.posts);
 }
 
 void test_a_scan_is_handed_over_at_its_last_octet_with_the_time_of_that_octet(void)
@@ -324,8 +331,9 @@ void test_a_scan_is_handed_over_at_its_last_octet_with_the_time_of_that_octet(vo
     wait();
     assert_scan(123456U, 700U);
     TEST_ASSERT_EQUAL_UINT32(1000000U + OCTET_US, message.arrival_us);
-    TEST_ASSERT_EQUAL_UINT32(before.scan_count + 1U, message.seen.scan_count);
-    TEST_ASSERT_EQUAL_UINT32(before.octet_count + 101U, message.seen.octet_count); /* 27 + 2n + 2 ceil(2n / 64) */
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.scan_count + 1U, now.seen.scan_count);
+    TEST_ASSERT_EQUAL_UINT32(before.seen.octet_count + 101U, now.seen.octet_count); /* 27 + 2n + 2 ceil(2n / 64) */
 }
 
 void test_scans_alternate_between_the_two_buffers_and_all_arrive(void)
@@ -335,7 +343,8 @@ void test_scans_alternate_between_the_two_buffers_and_all_arrive(void)
         feed(scan_text(1000U + 100U * n, (uint16_t)(500U + 100U * n)));
         wait();
         assert_scan(1000U + 100U * n, (uint16_t)(500U + 100U * n));
-        TEST_ASSERT_EQUAL_UINT32(before.scan_count + n + 1U, message.seen.scan_count);
+        look();
+        TEST_ASSERT_EQUAL_UINT32(before.seen.scan_count + n + 1U, now.seen.scan_count);
     }
 }
 
@@ -366,19 +375,34 @@ void test_a_message_copied_out_is_the_tasks_own(void)
     assert_scan(1000U, 700U);
 }
 
-void test_a_scan_comes_once_though_messages_follow(void)
+void test_a_scan_comes_once(void)
 {
     start_stream();
     feed(scan_text(1000U, 700U));
     wait();
-    TEST_ASSERT_TRUE(message.has_scan);
     TEST_ASSERT_TRUE(kernel_blocks(wait));
+}
+
+void test_only_scans_wake_the_task(void)
+{
+    char notice[64] = "MS0372040601000\n";
+    char damaged[256];
+
+    start_stream();
+    append_with_sum(notice, "21", 2U);
+    feed(strcat(notice, "\n"));
+    (void)strcpy(damaged, scan_text(1000U, 700U));
+    damaged[40] ^= 1;
+    feed(damaged);
     TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
     laser_port_send(&request);
     feed("QT\n00P\n\n");
-    wait();
-    TEST_ASSERT_FALSE(message.has_scan);
-    TEST_ASSERT_EQUAL_UINT32(before.scan_count + 1U, message.seen.scan_count);
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.notice_count + 1U, now.seen.notice_count);
+    TEST_ASSERT_EQUAL_UINT32(before.seen.damage_count + 1U, now.seen.damage_count);
+    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count + 1U, now.seen.reply_count);
+    TEST_ASSERT_EQUAL_UINT16(0, kernel.swi.posts);
+    TEST_ASSERT_EQUAL_INT(0, kernel.semaphore.count);
 }
 
 void test_a_scan_that_waits_survives_a_reply_that_follows(void)
@@ -390,11 +414,10 @@ void test_a_scan_that_waits_survives_a_reply_that_follows(void)
     feed("QT\n00P\n\n");
     wait();
     assert_scan(1000U, 700U);
-    TEST_ASSERT_EQUAL_UINT32(before.reply_count + 1U, message.seen.reply_count);
     TEST_ASSERT_TRUE(kernel_blocks(wait));
 }
 
-void test_a_late_task_gets_the_newest_scan_and_the_count_of_all(void)
+void test_a_late_task_gets_the_newest_scan_while_all_are_counted(void)
 {
     start_stream();
     feed(scan_text(1000U, 700U));
@@ -402,11 +425,12 @@ void test_a_late_task_gets_the_newest_scan_and_the_count_of_all(void)
     feed(scan_text(1200U, 900U));
     wait();
     assert_scan(1200U, 900U);
-    TEST_ASSERT_EQUAL_UINT32(before.scan_count + 3U, message.seen.scan_count);
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.scan_count + 3U, now.seen.scan_count);
     TEST_ASSERT_TRUE(kernel_blocks(wait));
 }
 
-void test_a_damaged_scan_is_counted_gives_none_and_leaves_the_next_alone(void)
+void test_a_damaged_scan_is_counted_by_its_cause_gives_none_and_leaves_the_next_alone(void)
 {
     char text[256];
 
@@ -414,13 +438,36 @@ void test_a_damaged_scan_is_counted_gives_none_and_leaves_the_next_alone(void)
     (void)strcpy(text, scan_text(1000U, 700U));
     text[40] ^= 1;
     feed(text);
-    wait();
-    TEST_ASSERT_FALSE(message.has_scan);
-    TEST_ASSERT_EQUAL_UINT32(before.damage_count + 1U, message.seen.damage_count);
-    TEST_ASSERT_EQUAL_UINT32(before.scan_count, message.seen.scan_count);
+    TEST_ASSERT_TRUE(kernel_blocks(wait));
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.damage_count + 1U, now.seen.damage_count);
+    TEST_ASSERT_EQUAL_UINT32(before.scip.damaged[SCIP_DAMAGE_SUM] + 1U, now.scip.damaged[SCIP_DAMAGE_SUM]);
+    TEST_ASSERT_EQUAL(SCIP_DAMAGE_SUM, now.last_damage);
+    TEST_ASSERT_EQUAL_UINT32(before.seen.scan_count, now.seen.scan_count);
     feed(scan_text(1100U, 800U));
     wait();
     assert_scan(1100U, 800U);
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.scip.scans + 1U, now.scip.scans);
+    TEST_ASSERT_EQUAL(SCIP_DAMAGE_SUM, now.last_damage);
+}
+
+void test_the_remaining_scans_of_a_counted_run_are_seen(void)
+{
+    const scip_range_t range = {.first_step = 372U, .last_step = 406U, .cluster = 1U, .scans = 2U};
+    char text[256];
+
+    TEST_ASSERT_TRUE(scip_request_scan(&request, SCIP_STREAM_2, &range));
+    laser_port_send(&request);
+    feed("MS0372040601002\n00P\n\n");
+    for (uint16_t left = 2U; left-- > 0U;) {
+        (void)strcpy(text, scan_text(1000U + 100U * (2U - left), 700U));
+        text[14] = (char)('0' + left);
+        feed(text);
+        wait();
+        look();
+        TEST_ASSERT_EQUAL_UINT16(left, now.seen.scan_remaining);
+    }
 }
 
 /* A burst with an error in the middle of a scan. */
@@ -437,22 +484,34 @@ static void break_a_scan(bool overrun, bool framing)
     feed(scan_text(1100U, 800U));
     wait();
     assert_scan(1100U, 800U);
-    TEST_ASSERT_EQUAL_UINT32(before.scan_count + 1U, message.seen.scan_count);
     TEST_ASSERT_TRUE(kernel_blocks(wait));
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.scan_count + 1U, now.seen.scan_count);
+    TEST_ASSERT_EQUAL_UINT32(before.seen.framing_count + (framing ? 1U : 0U), now.seen.framing_count);
+    TEST_ASSERT_EQUAL_UINT32(before.overruns + (overrun ? 1U : 0U), now.overruns);
+    TEST_ASSERT_EQUAL_UINT32(before.seen.damage_count, now.seen.damage_count);
 }
 
 void test_a_framing_error_costs_the_scan_under_way_and_is_counted_as_framing(void)
 {
     break_a_scan(false, true);
-    TEST_ASSERT_EQUAL_UINT32(before.framing_count + 1U, message.seen.framing_count);
-    TEST_ASSERT_EQUAL_UINT32(before.damage_count, message.seen.damage_count);
 }
 
-void test_an_overrun_costs_the_scan_under_way_and_is_counted_as_damage(void)
+void test_an_overrun_costs_the_scan_under_way_and_is_counted_as_overrun(void)
 {
     break_a_scan(true, false);
-    TEST_ASSERT_EQUAL_UINT32(before.framing_count, message.seen.framing_count);
-    TEST_ASSERT_EQUAL_UINT32(before.damage_count + 1U, message.seen.damage_count);
+}
+
+void test_both_errors_in_one_burst_are_counted_each(void)
+{
+    break_a_scan(true, true);
+}
+
+void test_octets_are_counted_as_they_come_not_at_line_ends(void)
+{
+    feed("abc");
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.octet_count + 3U, now.seen.octet_count);
 }
 
 void test_what_was_read_after_an_overrun_is_taken(void)
@@ -510,22 +569,26 @@ void test_a_new_rate_reopens_the_uart_and_drops_what_was_in_reception(void)
     feed(scan_text(1000U, 700U)); /* would be a damaged line, had the status been kept */
     wait();
     assert_scan(1000U, 700U);
-    TEST_ASSERT_EQUAL_UINT32(before.damage_count, message.seen.damage_count);
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.damage_count, now.seen.damage_count);
 }
 
 void test_a_part_of_a_line_from_before_a_new_rate_is_forgotten(void)
 {
-    TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
-    laser_port_send(&request);
-    feed("QT\n00P\n\n");
     TEST_ASSERT_TRUE(scip_request(&request, SCIP_VERSION));
     laser_port_send(&request);
     feed("V");
     laser_port_set_rate(57600U);
     feed("V\n00P\n\n");
-    wait();
-    TEST_ASSERT_EQUAL_UINT32(before.reply_count + 1U, message.seen.reply_count); /* QT's alone */
-    TEST_ASSERT_TRUE(kernel_blocks(wait));
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count, now.seen.reply_count);
+}
+
+void test_statistics_are_copied_with_interrupts_off(void)
+{
+    kernel.hwi.disabled = 0U;
+    look();
+    TEST_ASSERT_EQUAL_UINT16(1, kernel.hwi.disabled);
 }
 
 void test_the_copy_to_the_task_is_made_with_swis_off_and_the_parser_touched_with_interrupts_off(void)
@@ -541,4 +604,12 @@ void test_the_copy_to_the_task_is_made_with_swis_off_and_the_parser_touched_with
     TEST_ASSERT_EQUAL_UINT16(2, kernel.hwi.disabled);
     laser_port_send(&request);
     TEST_ASSERT_EQUAL_UINT16(3, kernel.hwi.disabled);
+}
+
+void test_the_task_is_released_by_the_last_octet_of_a_scan(void)
+{
+    start_stream();
+    feed(scan_text(1000U, 700U));
+    TEST_ASSERT_EQUAL_UINT16(1, jobs[MONITOR_RECEIVE_LASER].released);
+    TEST_ASSERT_EQUAL_UINT32(now_us, jobs[MONITOR_RECEIVE_LASER].released_us);
 }

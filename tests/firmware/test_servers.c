@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "kernel.h"
+#include "mock_monitor.h"
+#include "mock_timebase.h"
 #include "unity.h"
 #include "watch.h"
 
@@ -23,9 +25,30 @@ static reference_sample_t reference;
 static parameters_t parameters;
 static flight_status_t flight;
 
+static uint32_t now_us;
+static uint32_t entered_us[MONITOR_SERVERS];
+static uint16_t entries[MONITOR_SERVERS];
+
+static uint32_t time_us(int calls)
+{
+    (void)calls;
+    return now_us;
+}
+
+static void entered(monitor_server_t server, uint32_t asked_us, int calls)
+{
+    (void)calls;
+    entries[server]++;
+    entered_us[server] = asked_us;
+}
+
 void setUp(void)
 {
     kernel_reset();
+    now_us = 0U;
+    (void)memset(entries, 0, sizeof entries);
+    bsp_time_us_Stub(time_us);
+    monitor_entered_Stub(entered);
     servers_create();
 }
 
@@ -93,6 +116,16 @@ void test_without_a_frame_the_history_is_empty_and_the_callers_memory_untouched(
     TEST_ASSERT_EQUAL_HEX32(0x5A5A5A5AU, history[IMU_HISTORY - 1U].sequence);
 }
 
+void test_frames_refused_before_the_first_good_one_leave_the_history_empty(void)
+{
+    imu_sample_t sample = frame(0U);
+
+    sample.malformed = 7U;
+    imu_server_write(&sample);
+    imu_server_write(&sample);
+    TEST_ASSERT_EQUAL_UINT16(0, imu_server_history(history));
+}
+
 void test_the_history_has_the_newest_first_and_holds_the_latest_sixteen(void)
 {
     for (uint32_t n = 1; n <= 3U * IMU_HISTORY + 5U; n++) {
@@ -108,6 +141,31 @@ void test_the_history_has_the_newest_first_and_holds_the_latest_sixteen(void)
         }
         imu_server_read(&imu);
         TEST_ASSERT_EQUAL_UINT32(n, imu.sequence);
+    }
+}
+
+/* TaskIMU publishes again, with the same sequence number, when it refuses a frame. */
+void test_a_refused_frame_is_not_in_the_history(void)
+{
+    imu_sample_t sample;
+    uint32_t first;
+
+    imu_server_read(&sample);
+    first = sample.sequence + 1U;
+    kernel_random_seed(8U);
+    for (uint32_t n = first; n < first + 200U; n++) {
+        sample = frame(n);
+        imu_server_write(&sample);
+        for (uint16_t refused = kernel_random(4U); refused > 0U; refused--) {
+            sample.malformed++;
+            imu_server_write(&sample);
+        }
+        imu_server_read(&imu);
+        TEST_ASSERT_EQUAL_UINT32(sample.malformed, imu.malformed);
+        TEST_ASSERT_EQUAL_UINT16(IMU_HISTORY, imu_server_history(history));
+        for (uint32_t i = 0; i < IMU_HISTORY; i++) {
+            TEST_ASSERT_EQUAL_UINT32(n - i, history[i].sequence);
+        }
     }
 }
 
@@ -137,8 +195,7 @@ static void read_altitude(void) { altitude_server_read(&altitude); }
 static void write_imu(void) { imu_server_write(&imu); }
 static void read_imu(void) { imu_server_read(&imu); }
 static void read_history(void) { (void)imu_server_history(history); }
-static void write_seen(void) { laser_server_write_seen(&laser.seen); }
-static void write_status(void) { laser_server_write_status(laser.status); }
+static void write_laser(void) { laser_server_write(&laser); }
 static void read_laser(void) { laser_server_read(&laser); }
 static void write_reference(void) { reference_server_write(&reference); }
 static void read_reference(void) { reference_server_read(&reference); }
@@ -159,8 +216,7 @@ static const struct {
     {write_imu, IMU, true, &imu, sizeof imu},
     {read_imu, IMU, false, &imu, sizeof imu},
     {read_history, IMU, false, history, sizeof history},
-    {write_seen, LASER, true, &laser.seen, sizeof laser.seen},
-    {write_status, LASER, true, &laser.status, sizeof laser.status},
+    {write_laser, LASER, true, &laser, sizeof laser},
     {read_laser, LASER, false, &laser, sizeof laser},
     {write_reference, REFERENCE, true, &reference, sizeof reference},
     {read_reference, REFERENCE, false, &reference, sizeof reference},
@@ -175,9 +231,8 @@ static const struct {
 static const void *served(size_t access)
 {
     const void *const values[ACCESSES] = {
-        watch_altitude, watch_altitude,  watch_imu,       watch_imu,        watch_imu,        &watch_laser->seen,
-        &watch_laser->status, watch_laser, watch_reference, watch_reference, watch_parameters, watch_parameters,
-        watch_flight,   watch_flight,
+        watch_altitude,  watch_altitude,  watch_imu,        watch_imu,        watch_imu,    watch_laser,  watch_laser,
+        watch_reference, watch_reference, watch_parameters, watch_parameters, watch_flight, watch_flight,
     };
 
     return values[access];
@@ -255,8 +310,7 @@ void test_what_is_written_is_what_is_read_and_what_the_debugger_sees(void)
         all_filled_with(value);
         write_altitude();
         write_imu();
-        write_seen();
-        write_status();
+        write_laser();
         write_reference();
         write_parameters();
         write_flight();
@@ -267,6 +321,7 @@ void test_what_is_written_is_what_is_read_and_what_the_debugger_sees(void)
         TEST_ASSERT_EQUAL_HEX32(value * 0x1010101, imu.malformed);
         TEST_ASSERT_EQUAL_HEX32(value * 0x1010101, laser.seen.damage_count);
         TEST_ASSERT_EQUAL_HEX32(value * 0x1010101, laser.status);
+        TEST_ASSERT_EQUAL_HEX32(value * 0x1010101, laser.timeouts);
         TEST_ASSERT_EQUAL_HEX32(value * 0x1010101, reference.link_sequence);
         TEST_ASSERT_EQUAL_HEX32(value * 0x1010101, parameters.generation);
         TEST_ASSERT_EQUAL_HEX16(value * 0x101, flight.flags);
@@ -279,18 +334,28 @@ void test_what_is_written_is_what_is_read_and_what_the_debugger_sees(void)
     }
 }
 
-void test_the_two_writers_of_the_laser_status_leave_each_others_half_alone(void)
+static void wait_at_the_gate(void)
 {
-    (void)memset(&laser, 0, sizeof laser);
-    laser.seen.scan_count = 4711;
-    write_seen();
-    laser_server_write_status(LASER_STREAM);
-    laser.seen.scan_count = 4712;
-    write_seen();
-    read_laser();
-    TEST_ASSERT_EQUAL(LASER_STREAM, laser.status);
-    laser_server_write_status(LASER_OK);
-    read_laser();
-    TEST_ASSERT_EQUAL(LASER_OK, laser.status);
-    TEST_ASSERT_EQUAL_UINT32(4712, laser.seen.scan_count);
+    now_us += 1000U;
+}
+
+void test_every_wait_is_told_with_its_server_and_the_time_it_was_asked_for(void)
+{
+    static const monitor_server_t servers[ACCESSES] = {
+        MONITOR_ALTITUDE,     MONITOR_ALTITUDE,  MONITOR_IMU_SAMPLE, MONITOR_IMU_SAMPLE, MONITOR_IMU_SAMPLE,
+        MONITOR_LASER_STATUS, MONITOR_LASER_STATUS, MONITOR_REFERENCE, MONITOR_REFERENCE, MONITOR_PARAMETERS,
+        MONITOR_PARAMETERS,   MONITOR_FLIGHT_STATUS, MONITOR_FLIGHT_STATUS,
+    };
+
+    kernel.gates.on_enter = wait_at_the_gate;
+    read_all();
+    (void)memset(entries, 0, sizeof entries);
+    for (size_t a = 0; a < ACCESSES; a++) {
+        const uint16_t before = entries[servers[a]];
+        const uint32_t asked_us = now_us;
+
+        accesses[a].access();
+        TEST_ASSERT_EQUAL_UINT16(before + 1U, entries[servers[a]]);
+        TEST_ASSERT_EQUAL_UINT32(asked_us, entered_us[servers[a]]);
+    }
 }

@@ -5,7 +5,11 @@
 #include <string.h>
 
 #include "flight.h"
+#include "jobs.h"
 #include "kernel.h"
+#include "mock_alive.h"
+#include "mock_calibrator.h"
+#include "mock_flight_recorder.h"
 #include "mock_servers.h"
 #include "mock_throttle.h"
 #include "mock_timebase.h"
@@ -39,6 +43,8 @@ static uint16_t pulse_count;
 static uint16_t publications;
 static void (*between)(uint16_t wait);  /* changes the world while the task waits, or NULL */
 static UInt released_by;        /* what Event_pend() returns */
+static float overlay_us;        /* what the calibrator adds */
+static uint16_t alive_reports;
 
 void __wrap_flight_step(flight_t *flight, const parameters_t *set, const flight_inputs_t *in, flight_outputs_t *out)
 {
@@ -113,6 +119,32 @@ static UInt pend(UInt mask)
     return released_by;
 }
 
+static void overlay(float link_s, const flight_inputs_t *in, flight_outputs_t *out, int calls)
+{
+    (void)calls;
+    kernel_note("overlay");
+    TEST_ASSERT_EQUAL_FLOAT(parameters.value[PARAMETER_LINK], link_s);
+    TEST_ASSERT_EQUAL_MEMORY(&inputs[steps - 1U], in, sizeof *in);
+    out->pulse_us += overlay_us;
+    outputs[steps - 1U] = *out;
+}
+
+static void record(const flight_inputs_t *in, const flight_outputs_t *out, int calls)
+{
+    (void)calls;
+    kernel_note("record");
+    TEST_ASSERT_EQUAL_MEMORY(&inputs[steps - 1U], in, sizeof *in);
+    TEST_ASSERT_EQUAL_MEMORY(&outputs[steps - 1U], out, sizeof *out);
+}
+
+static void alive(alive_t task, int calls)
+{
+    (void)calls;
+    TEST_ASSERT_EQUAL(ALIVE_CONTROL, task);
+    TEST_ASSERT_EQUAL_UINT16_MESSAGE(alive_reports + 1U, publications, "alive before the cycle was complete");
+    alive_reports++;
+}
+
 void setUp(void)
 {
     kernel_reset();
@@ -133,6 +165,12 @@ void setUp(void)
     flight_status_server_write_Stub(status_write);
     bsp_throttle_set_pulse_us_Stub(set_pulse);
     bsp_time_us_Stub(time_us);
+    calibrator_overlay_Stub(overlay);
+    flight_recorder_take_Stub(record);
+    alive_report_Stub(alive);
+    overlay_us = 0.0F;
+    alive_reports = 0U;
+    jobs_reset();
     task_control_create();
 }
 
@@ -172,12 +210,12 @@ void test_the_clock_and_an_altitude_post_one_event_each(void)
     TEST_ASSERT_EQUAL_HEX16(Event_Id_01, kernel.event.posted);
 }
 
-void test_a_cycle_waits_looks_steps_drives_the_throttle_and_publishes(void)
+void test_a_cycle_waits_looks_steps_drives_the_throttle_publishes_and_records(void)
 {
     run(2U);
     TEST_ASSERT_EQUAL_STRING("parameters "
-                             "pend parameters altitude imu reference time step pulse publish "
-                             "pend parameters altitude imu reference time step pulse publish "
+                             "pend parameters altitude imu reference time step overlay pulse publish record "
+                             "pend parameters altitude imu reference time step overlay pulse publish record "
                              "pend ", kernel.notes);
 }
 
@@ -369,10 +407,49 @@ void test_a_new_create_begins_on_the_ground_again(void)
     run(100U);
     TEST_ASSERT_EQUAL(FLIGHT_FLYING, published[99].state);
     between = NULL;
-    waits = steps = pulse_count = publications = 0U;
+    waits = steps = pulse_count = publications = alive_reports = 0U;
+    jobs_reset();
     (void)memset(&reference, 0, sizeof reference);
     task_control_create();
     run(1U);
     TEST_ASSERT_EQUAL(FLIGHT_GROUND, published[0].state);
     TEST_ASSERT_FLOAT_WITHIN(0.01F, IDLE_PULSE_US, pulses_us[0]);
+}
+
+void test_the_pulse_is_what_the_calibrator_leaves(void)
+{
+    overlay_us = -250.0F;
+    run(1U);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, IDLE_PULSE_US - 250.0F, pulses_us[0]);
+}
+
+void test_every_complete_cycle_is_a_sign_of_life_whatever_released_it(void)
+{
+    released_by = 0U;
+    run(7U);
+    TEST_ASSERT_EQUAL_UINT16(7, alive_reports);
+}
+
+void test_every_cycle_is_one_job(void)
+{
+    run(5U);
+    jobs_assert(MONITOR_CONTROL, 5U);
+}
+
+/* An altitude that nobody waits for is no release. */
+void test_a_job_is_measured_from_the_event_that_is_waited_for(void)
+{
+    for (uint16_t release = 0; release < RELEASE_COUNT; release++) {
+        parameters.value[PARAMETER_RELEASE] = (float)release;
+        run(1U);
+        waits = steps = pulse_count = publications = alive_reports = 0U;
+        jobs[MONITOR_CONTROL].released = 0U;
+        now_us = 5000U;
+        kernel.clock.function(kernel.clock.params.arg);
+        TEST_ASSERT_EQUAL_UINT16(release == RELEASE_FREE ? 1U : 0U, jobs[MONITOR_CONTROL].released);
+        now_us = 6000U;
+        task_control_altitude_arrived();
+        TEST_ASSERT_EQUAL_UINT16(1, jobs[MONITOR_CONTROL].released);
+        TEST_ASSERT_EQUAL_UINT32(release == RELEASE_FREE ? 5000U : 6000U, jobs[MONITOR_CONTROL].released_us);
+    }
 }

@@ -2,10 +2,13 @@
  * sample from one test to the next, as it does from frame to frame: what counts up is compared with the first write. */
 #include "tasks.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "jobs.h"
 #include "kernel.h"
+#include "mock_boot.h"
 #include "mock_imu_port.h"
 #include "mock_servers.h"
 #include "unity.h"
@@ -45,6 +48,26 @@ static void server_write(const imu_sample_t *sample, int calls)
     written[write_count++] = *sample;
 }
 
+static bool restart;
+static attitude_t kept;
+static uint16_t kept_count;
+
+static bool kept_offset(attitude_t *offset, int calls)
+{
+    (void)calls;
+    if (restart) {
+        *offset = kept;
+    }
+    return restart;
+}
+
+static void keep_offset(const attitude_t *offset, int calls)
+{
+    (void)calls;
+    kept = *offset;
+    kept_count++;
+}
+
 void setUp(void)
 {
     kernel_reset();
@@ -52,6 +75,11 @@ void setUp(void)
     imu_port_create_Stub(port_create);
     imu_port_wait_Stub(port_wait);
     imu_server_write_Stub(server_write);
+    boot_kept_offset_Stub(kept_offset);
+    boot_keep_offset_Stub(keep_offset);
+    restart = false;
+    kept_count = 0U;
+    jobs_reset();
     task_imu_create();
 }
 
@@ -198,4 +226,55 @@ void test_malformed_frames_do_not_count_towards_the_offset(void)
     kernel_run_task();
     TEST_ASSERT_FALSE(written[write_count - 2U].ready);
     TEST_ASSERT_TRUE(written[write_count - 1U].ready);
+}
+
+void test_every_frame_good_or_not_is_one_job_that_its_arrival_has_released(void)
+{
+    angles(1.0, 2.0, 3.0);
+    frame("#YPR=1,2");
+    angles(1.0, 2.0, 3.0);
+    kernel_run_task();
+    jobs_assert(MONITOR_IMU, 3U);
+    TEST_ASSERT_EQUAL_UINT16(0, jobs[MONITOR_IMU].released); /* the port's */
+}
+
+void test_the_offset_is_kept_once_when_it_is_known(void)
+{
+    at_rest(-2.0, 3.0);
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_UINT16(1, kept_count);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 3.0F * RAD_PER_DEGREE, fabsf(kept.roll_rad));
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 2.0F * RAD_PER_DEGREE, fabsf(kept.pitch_rad));
+    angles(1.0, 1.0, 1.0);
+    angles(1.0, 1.0, 1.0);
+    at_rest(4.0, 4.0);
+    kernel_run_task(); /* begins anew: a second offset */
+    TEST_ASSERT_EQUAL_UINT16(2, kept_count);
+}
+
+void test_before_the_offset_is_known_nothing_is_kept(void)
+{
+    for (uint16_t n = 0; n < OFFSET_FRAMES - 1U; n++) {
+        angles(0.0, 1.0, 1.0);
+    }
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_UINT16(0, kept_count);
+}
+
+/* In the air the vehicle is not level: no new offset. */
+void test_after_a_watchdog_reset_the_kept_offset_is_in_force_from_the_first_frame(void)
+{
+    imu_sample_t expected;
+
+    at_rest(-2.0, 3.0);
+    angles(0.0, 10.0, 20.0);
+    kernel_run_task();
+    expected = written[write_count - 1U];
+    restart = true;
+    angles(0.0, 10.0, 20.0);
+    kernel_run_task();
+    TEST_ASSERT_TRUE(written[write_count - 1U].ready);
+    TEST_ASSERT_EQUAL_FLOAT(expected.level.roll_rad, written[write_count - 1U].level.roll_rad);
+    TEST_ASSERT_EQUAL_FLOAT(expected.level.pitch_rad, written[write_count - 1U].level.pitch_rad);
+    TEST_ASSERT_EQUAL_UINT16(1, kept_count);
 }

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "jobs.h"
 #include "kernel.h"
 #include "mock_commands.h"
 #include "mock_xbee_port.h"
@@ -51,6 +52,12 @@ static void execute(const telecommand_line_t *line, uint32_t arrival_us, int cal
     executed++;
 }
 
+static void go_on(int calls)
+{
+    (void)calls;
+    kernel_note("continue");
+}
+
 static void report_lost(uint16_t count, int calls)
 {
     (void)calls;
@@ -67,6 +74,8 @@ void setUp(void)
     xbee_port_wait_Stub(port_wait);
     commands_execute_Stub(execute);
     commands_report_lost_Stub(report_lost);
+    commands_continue_Stub(go_on);
+    jobs_reset();
     task_receive_comm_create();
 }
 
@@ -84,12 +93,21 @@ void test_create_makes_the_port_first_and_then_one_task_of_priority_1(void)
     TEST_ASSERT_EQUAL_UINT64(512, kernel.task.params.stackSize);
 }
 
-void test_each_line_is_executed_once_in_its_order_and_losses_are_told_before_it(void)
+void test_each_line_is_executed_once_in_its_order_losses_told_before_it_long_answers_between_lines(void)
 {
     kernel_run_task();
-    TEST_ASSERT_EQUAL_STRING("port wait execute wait lost execute wait lost execute wait ", kernel.notes);
+    TEST_ASSERT_EQUAL_STRING("port continue wait execute continue wait lost execute continue wait lost execute "
+                             "continue wait ", kernel.notes);
     TEST_ASSERT_EQUAL_UINT64(SCRIPT, executed);
     TEST_ASSERT_EQUAL_UINT64(2, reports);
     TEST_ASSERT_EQUAL_UINT16(3, reported[0]);
     TEST_ASSERT_EQUAL_UINT16(1, reported[1]);
+}
+
+void test_every_line_is_one_job_released_when_it_was_complete(void)
+{
+    kernel_run_task();
+    jobs_assert(MONITOR_RECEIVE_COMM, SCRIPT);
+    TEST_ASSERT_EQUAL_UINT16(SCRIPT, jobs[MONITOR_RECEIVE_COMM].released);
+    TEST_ASSERT_EQUAL_UINT32(0xFFFFFFF0U, jobs[MONITOR_RECEIVE_COMM].released_us);
 }

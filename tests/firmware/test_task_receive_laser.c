@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "jobs.h"
 #include "kernel.h"
 #include "mock_laser_port.h"
 #include "mock_servers.h"
@@ -18,8 +19,6 @@ static uint16_t next_message;
 static imu_sample_t imu;
 static altitude_sample_t written[MESSAGES_MAX];
 static uint16_t write_count;
-static urg_seen_t seen[MESSAGES_MAX];
-static uint16_t seen_count;
 
 static void port_create(uint32_t bit_rate, int calls)
 {
@@ -38,13 +37,6 @@ static void port_wait(laser_message_t *message, int calls)
     }
     *message = messages[next_message++];
     message->scan.distance_mm = message->distance_mm;
-}
-
-static void write_seen(const urg_seen_t *value, int calls)
-{
-    (void)calls;
-    kernel_note("seen");
-    seen[seen_count++] = *value;
 }
 
 static void imu_read(imu_sample_t *sample, int calls)
@@ -70,14 +62,14 @@ void task_control_altitude_arrived(void)
 void setUp(void)
 {
     kernel_reset();
-    message_count = next_message = write_count = seen_count = 0U;
+    message_count = next_message = write_count = 0U;
     (void)memset(&imu, 0, sizeof imu);
     (void)memset(messages, 0, sizeof messages);
     laser_port_create_Stub(port_create);
     laser_port_wait_Stub(port_wait);
-    laser_server_write_seen_Stub(write_seen);
     imu_server_read_Stub(imu_read);
     altitude_server_write_Stub(altitude_write);
+    jobs_reset();
     task_receive_laser_create();
 }
 
@@ -86,18 +78,12 @@ void tearDown(void)
     kernel_check();
 }
 
-static laser_message_t *reply(void)
-{
-    TEST_ASSERT_LESS_THAN(MESSAGES_MAX, message_count);
-    messages[message_count].seen.reply_count = message_count + 100U;
-    return &messages[message_count++];
-}
-
 static laser_message_t *scan(uint16_t distance_mm)
 {
-    laser_message_t *message = reply();
+    laser_message_t *message = &messages[message_count];
 
-    message->has_scan = true;
+    TEST_ASSERT_LESS_THAN(MESSAGES_MAX, message_count);
+    message_count++;
     message->scan.points = POINTS;
     message->scan.characters = 2U;
     message->scan.first_step = 372U;
@@ -123,17 +109,7 @@ void test_a_scan_is_published_before_control_is_released(void)
 {
     (void)scan(700U);
     kernel_run_task();
-    TEST_ASSERT_EQUAL_STRING("port wait seen imu altitude arrived wait ", kernel.notes);
-}
-
-void test_a_reply_without_a_scan_reaches_the_laser_server_alone(void)
-{
-    (void)reply();
-    (void)reply();
-    kernel_run_task();
-    TEST_ASSERT_EQUAL_STRING("port wait seen wait seen wait ", kernel.notes);
-    TEST_ASSERT_EQUAL_UINT32(100, seen[0].reply_count);
-    TEST_ASSERT_EQUAL_UINT32(101, seen[1].reply_count);
+    TEST_ASSERT_EQUAL_STRING("port wait imu altitude arrived wait ", kernel.notes);
 }
 
 void test_a_level_vehicle_is_as_high_as_the_slant_less_mirror_and_leg(void)
@@ -208,7 +184,7 @@ void test_a_heightless_scan_releases_control_all_the_same(void)
 {
     (void)scan(4095U);
     kernel_run_task();
-    TEST_ASSERT_EQUAL_STRING("port wait seen imu altitude arrived wait ", kernel.notes);
+    TEST_ASSERT_EQUAL_STRING("port wait imu altitude arrived wait ", kernel.notes);
 }
 
 void test_each_height_has_the_next_sequence_number(void)
@@ -221,6 +197,14 @@ void test_each_height_has_the_next_sequence_number(void)
     for (uint16_t n = 0; n < 30U; n++) {
         TEST_ASSERT_EQUAL_UINT32(written[0].sequence + n, written[n].sequence);
         TEST_ASSERT_FLOAT_WITHIN(0.01F, 195.0F + 100.0F * (float)n, written[n].altitude.height_mm);
-        TEST_ASSERT_EQUAL_UINT32(100U + n, seen[n].reply_count);
     }
+}
+
+void test_every_scan_is_one_job_that_its_arrival_has_released(void)
+{
+    (void)scan(805U);
+    (void)scan(4095U);
+    kernel_run_task();
+    jobs_assert(MONITOR_RECEIVE_LASER, 2U);
+    TEST_ASSERT_EQUAL_UINT16(0, jobs[MONITOR_RECEIVE_LASER].released); /* the port's */
 }

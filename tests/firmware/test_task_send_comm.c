@@ -3,8 +3,11 @@
 
 #include <string.h>
 
+#include "jobs.h"
 #include "kernel.h"
+#include "mock_boot.h"
 #include "mock_servers.h"
+#include "mock_timebase.h"
 #include "mock_xbee_port.h"
 #include "unity.h"
 
@@ -13,6 +16,8 @@ static laser_sample_t laser;
 static flight_status_t flight;
 static telemetry_line_t line;
 static uint16_t lines;
+static const char *cause;          /* NULL: not told */
+static uint16_t more_ticks;        /* that come while the task runs */
 
 static void altitude_read(altitude_sample_t *sample, int calls)
 {
@@ -38,6 +43,16 @@ static void report(const telemetry_line_t *text, int calls)
     kernel_note("report");
     line = *text;
     lines++;
+    if (more_ticks > 0U) {
+        more_ticks--;
+        kernel.clock.function(kernel.clock.params.arg);
+    }
+}
+
+static const char *boot(int calls)
+{
+    (void)calls;
+    return cause;
 }
 
 void setUp(void)
@@ -59,6 +74,11 @@ void setUp(void)
     laser_server_read_Stub(laser_read);
     flight_status_server_read_Stub(flight_read);
     xbee_port_report_Stub(report);
+    boot_cause_Stub(boot);
+    bsp_time_us_IgnoreAndReturn(4711U);
+    jobs_reset();
+    cause = NULL;
+    more_ticks = 0U;
     task_send_comm_create();
 }
 
@@ -153,4 +173,34 @@ void test_every_laser_status_and_every_state_is_told_by_its_name_and_fits_the_pa
             assert_line(expected);
         }
     }
+}
+
+static void run(uint16_t ticks)
+{
+    more_ticks = (uint16_t)(ticks - 1U);
+    kernel.clock.function(kernel.clock.params.arg);
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_UINT16(ticks, lines);
+}
+
+void test_the_first_line_alone_tells_the_cause_of_the_reset(void)
+{
+    cause = "WATCHDOG";
+    run(1U);
+    TEST_ASSERT_EQUAL_STRING_LEN("alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0 reset:WATCHDOG\r\n", line.text,
+                                 line.length);
+    lines = 0U;
+    run(2U);
+    TEST_ASSERT_EQUAL_STRING_LEN("alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0\r\n", line.text, line.length);
+    lines = 0U;
+    run(9U);
+    TEST_ASSERT_EQUAL_STRING_LEN("alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0\r\n", line.text, line.length);
+}
+
+void test_every_job_is_measured_from_the_tick_that_released_it(void)
+{
+    run(3U);
+    jobs_assert(MONITOR_SEND_COMM, 3U);
+    TEST_ASSERT_EQUAL_UINT16(3, jobs[MONITOR_SEND_COMM].released);
+    TEST_ASSERT_EQUAL_UINT32(4711, jobs[MONITOR_SEND_COMM].released_us);
 }

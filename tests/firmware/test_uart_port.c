@@ -291,6 +291,35 @@ void test_the_interrupt_is_on_exactly_while_something_waits_in_the_ring(void)
     }
 }
 
+/* The ring's end is no reason for a second interrupt: what waits on both sides of it fills one FIFO. */
+void test_the_fifo_is_filled_from_both_ends_of_the_ring(void)
+{
+    const bsp_uart_t uart = BSP_UART_LASER;
+    static char text[UART_PORT_TRANSMIT_CELLS];
+
+    (void)memset(text, 'x', sizeof text);
+    for (uint16_t to_end = 1; to_end < 2U * FIFO; to_end++) {
+        uart_port_reopen(uart, 115200U); /* the ring begins at its first cell */
+        uarts[uart].sent = 0U;
+        TEST_ASSERT_TRUE(uart_port_send(uart, text, (uint16_t)(UART_PORT_TRANSMIT_CELLS - to_end)));
+        send_all(uart);
+        uarts[uart].fifo = FIFO;
+        TEST_ASSERT_TRUE(uart_port_send(uart, "0123456789abcdef0123456789ABCDEF+", 33U));
+        uarts[uart].sent = 0U;
+        transmit_hwi(uart);
+        TEST_ASSERT_EQUAL_UINT32(16, uarts[uart].sent);
+        transmit_hwi(uart);
+        TEST_ASSERT_EQUAL_UINT32(32, uarts[uart].sent);
+        TEST_ASSERT_TRUE(uarts[uart].interrupt_on);
+        transmit_hwi(uart);
+        TEST_ASSERT_EQUAL_UINT32(33, uarts[uart].sent);
+        TEST_ASSERT_FALSE(uarts[uart].interrupt_on);
+        for (uint16_t i = 0; i < 33U; i++) {
+            TEST_ASSERT_EQUAL_HEX16("0123456789abcdef0123456789ABCDEF+"[i], uarts[uart].wire[i]);
+        }
+    }
+}
+
 void test_a_reopened_uart_has_dropped_what_was_not_sent(void)
 {
     const bsp_uart_t uart = BSP_UART_LASER;

@@ -292,11 +292,118 @@ void test_flag_bits_above_an_octet_are_dropped(void)
     assert_line("#KP 1");
 }
 
-void test_the_copy_is_made_with_swis_off(void)
+void test_the_copy_is_made_with_interrupts_off(void)
 {
     feed("#KP 1\n");
+    kernel.hwi.disabled = 0U;
     wait();
-    TEST_ASSERT_EQUAL_UINT16(1, kernel.swi.disabled);
+    TEST_ASSERT_EQUAL_UINT16(1, kernel.hwi.disabled);
+    TEST_ASSERT_EQUAL_UINT16(0, kernel.swi.disabled);
+}
+
+static void burst_of(const char *text, bool overrun, bool framing)
+{
+    bsp_uart_burst_t burst = {.overrun = overrun, .framing = framing};
+
+    for (; *text != '\0'; text++) {
+        TEST_ASSERT_LESS_THAN(BSP_UART_FIFO_DEPTH, burst.count);
+        burst.octets[burst.count++] = (uint16_t)*text;
+    }
+    receiver(&burst);
+}
+
+void test_two_lines_in_one_burst_are_both_kept(void)
+{
+    burst_of("#KP 1\n#KD 2\n", false, false);
+    TEST_ASSERT_EQUAL_INT(0, kernel.semaphore.count);
+    kernel_run_swi();
+    wait();
+    assert_line("#KP 1");
+    wait();
+    assert_line("#KD 2");
+    TEST_ASSERT_TRUE(kernel_blocks(wait));
+}
+
+void test_lines_of_several_bursts_before_the_swi_runs_are_all_kept(void)
+{
+    for (unsigned n = 0; n < 10U; n++) {
+        char text[16];
+
+        (void)snprintf(text, sizeof text, "#PING %u\n", n);
+        burst_of(text, false, false);
+    }
+    kernel_run_swi();
+    TEST_ASSERT_EQUAL_INT(10, kernel.semaphore.count);
+    for (unsigned n = 0; n < 10U; n++) {
+        wait();
+        assert_numbered(n);
+    }
+    TEST_ASSERT_TRUE(kernel_blocks(wait));
+}
+
+void test_a_swi_posted_for_lines_already_announced_announces_none_twice(void)
+{
+    feed("#KP 1\n");
+    kernel.swi.posted = true;
+    kernel_run_swi();
+    TEST_ASSERT_EQUAL_INT(1, kernel.semaphore.count);
+    wait();
+    TEST_ASSERT_TRUE(kernel_blocks(wait));
+}
+
+/* A command, two bursts around the octets that were lost or mangled. */
+static void assert_damaged(const char *before, const char *with_error, const char *after, bool overrun)
+{
+    feed(before);
+    burst_of(with_error, overrun, !overrun);
+    feed(after);
+    kernel_run_swi();
+    wait();
+    TEST_ASSERT_TRUE_MESSAGE(message.line.damaged, after);
+    feed("#KP 1\n");
+    wait();
+    assert_line("#KP 1");
+    TEST_ASSERT_FALSE(message.line.damaged);
+    TEST_ASSERT_TRUE(kernel_blocks(wait));
+}
+
+/* 0.3 m must not become 3 m. */
+void test_a_reference_that_lost_its_decimal_point_is_damaged(void)
+{
+    for (uint16_t kind = 0; kind < 2U; kind++) {
+        assert_damaged("#SETR ", "3", "\n", kind == 0U);
+        assert_damaged("#SETR ", "", "3\n", kind == 0U);
+        assert_damaged("#SETR ", "3\n", "", kind == 0U);
+        assert_damaged("", "#SETR ", "3\n", kind == 0U);
+        assert_damaged("", "#SETR 3\n", "", kind == 0U);
+        assert_damaged("", "#", "SETR 3\n", kind == 0U);
+        assert_damaged("#SETR 3", "\n", "", kind == 0U);
+    }
+}
+
+void test_no_line_with_an_octet_in_a_damaged_burst_passes_for_whole(void)
+{
+    static const char text[] = "#SETR 0.3\n#SETR 0.3\n";
+    const size_t length = strlen(text);
+
+    for (size_t begin = 0; begin < length; begin++) {
+        for (size_t size = 1; size <= BSP_UART_FIFO_DEPTH && begin + size <= length; size++) {
+            char part[sizeof text];
+
+            (void)memcpy(part, text, begin);
+            part[begin] = '\0';
+            feed(part);
+            (void)memcpy(part, &text[begin], size);
+            part[size] = '\0';
+            burst_of(part, true, false);
+            feed(&text[begin + size]);
+            kernel_run_swi();
+            wait();
+            TEST_ASSERT_EQUAL(begin < 10U, message.line.damaged);
+            wait();
+            TEST_ASSERT_EQUAL(begin + size > 10U, message.line.damaged);
+        }
+    }
 }
 
 void test_an_answer_goes_out_at_once_when_there_is_room(void)
@@ -354,4 +461,29 @@ void test_a_report_needs_half_of_the_buffer_free(void)
     xbee_port_report(&line);
     TEST_ASSERT_EQUAL_STRING("alt:-\r\n", sent);
     TEST_ASSERT_EQUAL_UINT16(0, kernel.task.sleeps);
+}
+
+void test_a_line_of_a_long_answer_leaves_at_most_a_fifth_of_a_second_to_go(void)
+{
+    const telemetry_line_t line = line_of("OK LOG 1\r\n");
+
+    room = UART_PORT_TRANSMIT_CELLS - 192U + 9U;
+    TEST_ASSERT_FALSE(xbee_port_spare(&line));
+    TEST_ASSERT_EQUAL_STRING("", sent);
+    TEST_ASSERT_EQUAL_UINT16(0, sends);
+    room++;
+    TEST_ASSERT_TRUE(xbee_port_spare(&line));
+    TEST_ASSERT_EQUAL_STRING("OK LOG 1\r\n", sent);
+    TEST_ASSERT_EQUAL_UINT16(0, kernel.task.sleeps);
+}
+
+void test_a_complete_line_waits_until_it_is_taken(void)
+{
+    TEST_ASSERT_FALSE(xbee_port_waiting());
+    feed("#PING");
+    TEST_ASSERT_FALSE(xbee_port_waiting());
+    feed("\n");
+    TEST_ASSERT_TRUE(xbee_port_waiting());
+    wait();
+    TEST_ASSERT_FALSE(xbee_port_waiting());
 }

@@ -1,0 +1,133 @@
+#include "parameter_image.h"
+
+#include <stddef.h>
+
+#define MARK 0x504CU
+#define ERASED 0xFFFFU
+#define CRC_START UINT32_C(0xFFFFFFFF)
+#define CRC_POLYNOMIAL UINT32_C(0xEDB88320)
+
+enum { CELL_MARK, CELL_VERSION, CELL_COUNT, CELL_NAMES, CELL_GENERATION = 5, CELL_VALUES = 7 };
+
+typedef union {
+    float number;
+    uint32_t bits;
+} pattern_t;
+
+static uint32_t crc_octet(uint32_t crc, uint16_t octet)
+{
+    uint16_t bit;
+
+    crc ^= (uint32_t)(octet & 0xFFU);
+    for (bit = 0U; bit < 8U; bit++) {
+        crc = (crc >> 1) ^ (((crc & 1U) != 0U) ? CRC_POLYNOMIAL : UINT32_C(0));
+    }
+    return crc;
+}
+
+static uint32_t crc_of(const uint16_t *cells, uint16_t count)
+{
+    uint32_t crc = CRC_START;
+    uint16_t i;
+
+    for (i = 0U; i < count; i++) {
+        crc = crc_octet(crc, cells[i]);
+        crc = crc_octet(crc, (uint16_t)(cells[i] >> 8));
+    }
+    return crc ^ CRC_START;
+}
+
+static void put(uint16_t *cells, uint32_t number)
+{
+    cells[0] = (uint16_t)(number & 0xFFFFU);
+    cells[1] = (uint16_t)(number >> 16);
+}
+
+static uint32_t get(const uint16_t *cells)
+{
+    return (uint32_t)cells[0] | ((uint32_t)cells[1] << 16);
+}
+
+static uint16_t checked_cells(uint16_t count)
+{
+    return (uint16_t)(CELL_VALUES + 2U * count);
+}
+
+uint16_t parameter_image_write(uint16_t cells[PARAMETER_IMAGE_CELLS_MAX], const parameter_image_t *image)
+{
+    const uint16_t checked = checked_cells(image->count);
+    uint16_t used = (uint16_t)(checked + 2U);
+    uint16_t i;
+
+    cells[CELL_MARK] = MARK;
+    cells[CELL_VERSION] = PARAMETER_IMAGE_VERSION;
+    cells[CELL_COUNT] = image->count;
+    put(&cells[CELL_NAMES], image->names);
+    put(&cells[CELL_GENERATION], image->generation);
+    for (i = 0U; i < image->count; i++) {
+        pattern_t pattern;
+
+        pattern.number = image->values[i];
+        put(&cells[checked_cells(i)], pattern.bits);
+    }
+    put(&cells[checked], crc_of(cells, checked));
+    for (; used % PARAMETER_IMAGE_BLOCK != 0U; used++) {
+        cells[used] = ERASED;
+    }
+    return used;
+}
+
+static parameter_image_status_t look(const uint16_t *cells)
+{
+    const uint16_t count = cells[CELL_COUNT];
+
+    if (cells[CELL_MARK] == ERASED && cells[CELL_VERSION] == ERASED && count == ERASED) {
+        return PARAMETER_IMAGE_NONE;
+    }
+    if (cells[CELL_MARK] == MARK && cells[CELL_VERSION] != PARAMETER_IMAGE_VERSION && cells[CELL_VERSION] != ERASED) {
+        return PARAMETER_IMAGE_VERSION_UNKNOWN;
+    }
+    if (cells[CELL_MARK] != MARK || cells[CELL_VERSION] == ERASED || count == 0U || count > PARAMETER_IMAGE_VALUES_MAX) {
+        return PARAMETER_IMAGE_DAMAGED;
+    }
+    return (get(&cells[checked_cells(count)]) == crc_of(cells, checked_cells(count))) ? PARAMETER_IMAGE_GOOD
+                                                                                       : PARAMETER_IMAGE_DAMAGED;
+}
+
+parameter_image_status_t parameter_image_read(parameter_image_t *image,
+                                              const uint16_t cells[PARAMETER_IMAGE_CELLS_MAX])
+{
+    const parameter_image_status_t status = look(cells);
+    uint16_t i;
+
+    if (status != PARAMETER_IMAGE_GOOD) {
+        return status;
+    }
+    image->names = get(&cells[CELL_NAMES]);
+    image->generation = get(&cells[CELL_GENERATION]);
+    image->count = cells[CELL_COUNT];
+    for (i = 0U; i < image->count; i++) {
+        pattern_t pattern;
+
+        pattern.bits = get(&cells[checked_cells(i)]);
+        image->values[i] = pattern.number;
+    }
+    return status;
+}
+
+uint32_t parameter_image_name(uint32_t names, const char *name)
+{
+    size_t i;
+
+    for (i = 0U; name[i] != '\0'; i++) {
+        names = crc_octet(names, (uint16_t)name[i]);
+    }
+    return crc_octet(names, ERASED);
+}
+
+bool parameter_image_newer(uint32_t generation, uint32_t than)
+{
+    const uint32_t ahead = generation - than;
+
+    return ahead != 0U && ahead < UINT32_C(0x80000000);
+}

@@ -1,0 +1,10 @@
+/* When nothing flies and nothing is about to: the time for what stalls or bypasses control. */
+#ifndef FIRMWARE_GROUND_H
+#define FIRMWARE_GROUND_H
+
+#include <stdbool.h>
+
+/* In GROUND with no thrust, and no reference is set. Task. */
+bool ground_idle(void);
+
+#endif

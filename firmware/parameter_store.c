@@ -1,0 +1,203 @@
+#include "parameter_store.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <string.h>
+#include <ti/sysbios/family/c28/Hwi.h>
+#include <xdc/std.h>
+
+#include "parameter_image.h"
+#include "storage.h"
+
+#define VALUES ((uint16_t)PARAMETER_COUNT - 1U)
+#define SLOTS BSP_STORAGE_SLOTS
+#define NO_SLOT SLOTS
+
+typedef struct {
+    parameter_image_status_t status;
+    parameter_image_t image;
+} copy_t;
+
+static copy_t copies[SLOTS];
+static uint16_t cells[PARAMETER_IMAGE_CELLS_MAX];
+static uint16_t read_back[PARAMETER_IMAGE_CELLS_MAX];
+
+static uint32_t names_of_choices(uint32_t names, const parameter_row_t *row)
+{
+    uint16_t i;
+
+    for (i = 0U; row->choices != NULL && i <= (uint16_t)row->maximum; i++) {
+        names = parameter_image_name(names, row->choices[i]);
+    }
+    return names;
+}
+
+static uint32_t names_of_all(void)
+{
+    uint32_t names = 0U;
+    uint16_t id;
+
+    for (id = 0U; id < (uint16_t)PARAMETER_COUNT; id++) {
+        if (id != (uint16_t)PARAMETER_SETR) {
+            names = parameter_image_name(names, parameter_table[id].name);
+            names = names_of_choices(names, &parameter_table[id]);
+        }
+    }
+    return names;
+}
+
+static void look(void)
+{
+    uint16_t slot;
+
+    for (slot = 0U; slot < SLOTS; slot++) {
+        bsp_storage_read(slot, cells, PARAMETER_IMAGE_CELLS_MAX);
+        copies[slot].status = parameter_image_read(&copies[slot].image, cells);
+    }
+}
+
+static bool usable(const copy_t *copy, uint32_t names, bool foreign_too)
+{
+    const bool ours = copy->image.names == names && copy->image.count == VALUES;
+
+    return copy->status == PARAMETER_IMAGE_GOOD && (ours || foreign_too);
+}
+
+static uint16_t newest(uint32_t names, bool foreign_too)
+{
+    const bool first = usable(&copies[0], names, foreign_too);
+    const bool second = usable(&copies[1], names, foreign_too);
+
+    if (first && second) {
+        return parameter_image_newer(copies[1].image.generation, copies[0].image.generation) ? 1U : 0U;
+    }
+    return first ? 0U : (second ? 1U : NO_SLOT);
+}
+
+static parameter_store_status_t why_none(void)
+{
+    uint16_t slot;
+    parameter_store_status_t why = PARAMETER_STORE_EMPTY;
+
+    for (slot = 0U; slot < SLOTS; slot++) {
+        const parameter_image_status_t status = copies[slot].status;
+
+        if (status == PARAMETER_IMAGE_GOOD || status == PARAMETER_IMAGE_VERSION_UNKNOWN) {
+            return PARAMETER_STORE_FOREIGN;
+        }
+        if (status == PARAMETER_IMAGE_DAMAGED) {
+            why = PARAMETER_STORE_DAMAGED;
+        }
+    }
+    return why;
+}
+
+/* Returns the first parameter that its limits refuse, PARAMETER_COUNT when there is none. */
+static parameter_id_t take(parameters_t *parameters, const float *values)
+{
+    uint16_t id;
+
+    for (id = 0U; id < (uint16_t)PARAMETER_COUNT; id++) {
+        if (id == (uint16_t)PARAMETER_SETR) {
+            continue;
+        }
+        if (parameters_set(parameters, (parameter_id_t)id, *values) != PARAMETER_ACCEPTED) {
+            return (parameter_id_t)id;
+        }
+        values++;
+    }
+    return PARAMETER_COUNT;
+}
+
+parameter_store_result_t parameter_store_load(parameters_t *parameters)
+{
+    parameter_store_result_t result = {PARAMETER_STORE_DONE, 0U, PARAMETER_COUNT};
+    static parameters_t wanted;
+    uint16_t slot;
+
+    look();
+    slot = newest(names_of_all(), false);
+    if (slot == NO_SLOT) {
+        result.status = why_none();
+        return result;
+    }
+    wanted = *parameters;
+    result.generation = copies[slot].image.generation;
+    result.parameter = take(&wanted, copies[slot].image.values);
+    if (result.parameter != PARAMETER_COUNT) {
+        result.status = PARAMETER_STORE_RANGE;
+    } else {
+        *parameters = wanted;
+    }
+    return result;
+}
+
+static void fill(parameter_image_t *image, const parameters_t *parameters)
+{
+    uint16_t id;
+
+    image->count = 0U;
+    for (id = 0U; id < (uint16_t)PARAMETER_COUNT; id++) {
+        if (id != (uint16_t)PARAMETER_SETR) {
+            image->values[image->count] = parameters->value[id];
+            image->count++;
+        }
+    }
+}
+
+static bool erase(uint16_t slot)
+{
+    UInt key = Hwi_disable();
+    bool erased = bsp_storage_erase(slot);
+
+    Hwi_restore(key);
+    return erased;
+}
+
+static bool program(uint16_t slot, uint16_t first)
+{
+    UInt key = Hwi_disable();
+    bool programmed = bsp_storage_program(slot, first, &cells[first]);
+
+    Hwi_restore(key);
+    return programmed;
+}
+
+static bool write(uint16_t slot, const parameter_image_t *image)
+{
+    const uint16_t count = parameter_image_write(cells, image);
+    bool written = erase(slot);
+    uint16_t at;
+
+    for (at = 0U; written && at < count; at = (uint16_t)(at + BSP_STORAGE_BLOCK)) {
+        written = program(slot, at);
+    }
+    bsp_storage_read(slot, read_back, count);
+    for (at = 0U; written && at < count; at++) {
+        written = read_back[at] == cells[at];
+    }
+    return written;
+}
+
+parameter_store_result_t parameter_store_save(const parameters_t *parameters)
+{
+    parameter_store_result_t result = {PARAMETER_STORE_DONE, 1U, PARAMETER_COUNT};
+    static parameter_image_t image;
+    uint16_t kept;
+    uint16_t latest;
+
+    look();
+    image.names = names_of_all();
+    latest = newest(image.names, true);
+    kept = newest(image.names, false);
+    if (latest != NO_SLOT) {
+        result.generation = copies[latest].image.generation + 1U;
+        kept = (kept != NO_SLOT) ? kept : latest;
+    }
+    image.generation = result.generation;
+    fill(&image, parameters);
+    if (!write((kept == 0U) ? 1U : 0U, &image)) {
+        result.status = PARAMETER_STORE_FAULT;
+    }
+    return result;
+}

@@ -1,0 +1,119 @@
+#include "decimal.h"
+#include "flight_recorder.h"
+#include "servers.h"
+#include "verbs.h"
+#include "xbee_port.h"
+
+#define SECONDS_MAX 3600U
+
+static struct {
+    uint32_t number;    /* next to send */
+    uint32_t end;       /* first not to send */
+    bool titles;        /* still to send */
+    bool active;
+} dump;
+
+static bool same(const telecommand_t *command, const char *text)
+{
+    uint16_t i;
+
+    for (i = 0U; i < command->argument_length; i++) {
+        const char c = command->argument[i];
+
+        if (text[i] == '\0' || (c != text[i] && (char)(c - 'a' + 'A') != text[i])) {
+            return false;
+        }
+    }
+    return text[i] == '\0';
+}
+
+static bool say(answer_t *answer, const char *text)
+{
+    answer_begin(answer);
+    telemetry_text(&answer->line, text);
+    answer_send(answer);
+    return true;
+}
+
+static bool start(answer_t *answer, uint32_t first)
+{
+    dump.number = first;
+    dump.end = flight_recorder_span().next;
+    dump.titles = true;
+    dump.active = true;
+    answer_begin(answer);
+    answer_count(answer, "records", dump.end - dump.number);
+    answer_send(answer);
+    return true;
+}
+
+bool verb_log(answer_t *answer)
+{
+    const telecommand_t *command = answer->command;
+    float seconds;
+
+    if (command->argument_length == 0U) {
+        return start(answer, flight_recorder_span().oldest);
+    }
+    if (same(command, "STOP")) {
+        dump.active = false;
+        return say(answer, " STOP");
+    }
+    if (same(command, "CLEAR")) {
+        dump.active = false;
+        flight_recorder_clear();
+        return say(answer, " CLEAR");
+    }
+    if (!decimal_read(command->argument, command->argument_length, &seconds)) {
+        return answer_refuse(answer, "seconds, CLEAR or STOP");
+    }
+    if (!(seconds > 0.0F && seconds <= (float)SECONDS_MAX)) {
+        return answer_refuse(answer, "out of range 0..3600 s");
+    }
+    return start(answer, flight_recorder_since((uint16_t)seconds));
+}
+
+/* Skips what was overwritten meanwhile. */
+static bool next_record(flight_log_t *record)
+{
+    const flight_recorder_span_t span = flight_recorder_span();
+
+    if (span.oldest - dump.number < dump.end - dump.number) {
+        dump.number = span.oldest;
+    }
+    return dump.number != dump.end && flight_recorder_read(dump.number, record);
+}
+
+static bool send_titles(telemetry_line_t *line)
+{
+    flight_log_titles(line);
+    dump.titles = !xbee_port_spare(line);
+    return !dump.titles;
+}
+
+static bool send_row(telemetry_line_t *line)
+{
+    flight_log_t record;
+    bool sent;
+
+    if (!next_record(&record)) {
+        telemetry_begin(line);
+        telemetry_text(line, "OK LOG END");
+        telemetry_end(line);
+        dump.active = !xbee_port_spare(line);
+        return false;
+    }
+    flight_log_row(line, &record, flight_state_name((flight_state_t)record.state));
+    sent = xbee_port_spare(line);
+    dump.number += sent ? 1U : 0U;
+    return sent;
+}
+
+bool verb_log_more(void)
+{
+    static telemetry_line_t line;
+
+    while (dump.active && !xbee_port_waiting() && (dump.titles ? send_titles(&line) : send_row(&line))) {
+    }
+    return dump.active;
+}

@@ -1,0 +1,116 @@
+#include <stddef.h>
+
+#include "ground.h"
+#include "parameter_store.h"
+#include "servers.h"
+#include "verbs.h"
+
+static const char *const reasons[] = {
+    [PARAMETER_STORE_EMPTY] = "nothing stored",
+    [PARAMETER_STORE_DAMAGED] = "stored set damaged",
+    [PARAMETER_STORE_FOREIGN] = "stored by another firmware",
+    [PARAMETER_STORE_FAULT] = "storage fault",
+};
+
+static bool refuse_stored(answer_t *answer, const parameter_row_t *row)
+{
+    telemetry_begin_answer(&answer->line);
+    telemetry_text(&answer->line, "ERR ");
+    telemetry_characters(&answer->line, answer->command->name, answer->command->name_length);
+    telemetry_text(&answer->line, " stored ");
+    telemetry_text(&answer->line, row->name);
+    telemetry_text(&answer->line, " out of range ");
+    answer_limits(answer, row);
+    answer_send(answer);
+    return false;
+}
+
+static bool report(answer_t *answer, const parameter_store_result_t *result)
+{
+    if (result->status == PARAMETER_STORE_RANGE) {
+        return refuse_stored(answer, &parameter_table[result->parameter]);
+    }
+    if (result->status != PARAMETER_STORE_DONE) {
+        return answer_refuse(answer, reasons[result->status]);
+    }
+    answer_begin(answer);
+    answer_count(answer, "generation", result->generation);
+    answer_send(answer);
+    return true;
+}
+
+static parameter_store_result_t load(void)
+{
+    static parameters_t parameters;
+    parameter_store_result_t result;
+
+    parameter_server_read(&parameters);
+    result = parameter_store_load(&parameters);
+    if (result.status == PARAMETER_STORE_DONE) {
+        parameter_server_write(&parameters);
+    }
+    return result;
+}
+
+/* False after the refusal: the command takes no argument and needs the ground. */
+static bool allowed(answer_t *answer)
+{
+    if (answer->command->argument_length > 0U) {
+        return answer_refuse(answer, "takes no value");
+    }
+    return ground_idle() || answer_refuse(answer, "not on the ground");
+}
+
+bool verb_save(answer_t *answer)
+{
+    static parameters_t parameters;
+    parameter_store_result_t result;
+
+    if (!allowed(answer)) {
+        return false;
+    }
+    parameter_server_read(&parameters);
+    result = parameter_store_save(&parameters);
+    return report(answer, &result);
+}
+
+bool verb_load(answer_t *answer)
+{
+    parameter_store_result_t result;
+
+    if (!allowed(answer)) {
+        return false;
+    }
+    result = load();
+    return report(answer, &result);
+}
+
+bool verb_defaults(answer_t *answer)
+{
+    static parameters_t parameters;
+    uint32_t generation;
+
+    if (!allowed(answer)) {
+        return false;
+    }
+    parameter_server_read(&parameters);
+    generation = parameters.generation;
+    parameters_init(&parameters);
+    parameters.generation = generation + 1U;
+    parameter_server_write(&parameters);
+    answer_begin(answer);
+    answer_send(answer);
+    return true;
+}
+
+void verb_load_at_start(void)
+{
+    static const telecommand_t command = {.name = "LOAD", .name_length = 4U};
+    static answer_t answer;
+    const parameter_store_result_t result = load();
+
+    answer.command = &command;
+    if (result.status != PARAMETER_STORE_EMPTY) {
+        (void)report(&answer, &result);
+    }
+}

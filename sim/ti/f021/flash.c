@@ -1,0 +1,226 @@
+#include "sim/ti/f021/flash.h"
+
+#include <errno.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "sim/ti/driverlib/flash.h"
+#include "sim/ti/f021/include/F021_F2837xS_C28x.h"
+
+#define BLOCK 8
+#define BLANK 0xFFFFU
+#define HALF_DONE 0x5A5AU
+#define FILE_OCTETS ((size_t)FLASH_SECTORS * FLASH_SECTOR_CELLS * 2)
+#define FSM_FAILED 0x30U
+
+/* The linker command file of the target gives it its address. */
+extern uint16_t flash_sectors_m_n[FLASH_SECTORS][FLASH_SECTOR_CELLS];
+uint16_t flash_sectors_m_n[FLASH_SECTORS][FLASH_SECTOR_CELLS] = {
+    [0 ... FLASH_SECTORS - 1] = {[0 ... FLASH_SECTOR_CELLS - 1] = BLANK},
+};
+
+Fapi_FmcRegistersType f021_registers;
+
+static struct {
+    bool programmed[FLASH_SECTORS][FLASH_SECTOR_CELLS / BLOCK];
+    bool pump, initialised, active, busy;
+    Fapi_FlashStatusType status;
+    bool cut;
+    long left;      /* cells until the power fails, when cut */
+    long changed;
+} flash;
+
+void flash_blank(void)
+{
+    memset(flash_sectors_m_n, 0xFF, sizeof flash_sectors_m_n);
+    memset(&flash, 0, sizeof flash);
+}
+
+static void find_programmed(void)
+{
+    for (int sector = 0; sector < FLASH_SECTORS; sector++) {
+        for (int cell = 0; cell < FLASH_SECTOR_CELLS; cell++) {
+            bool *programmed = &flash.programmed[sector][cell / BLOCK];
+
+            *programmed = (cell % BLOCK != 0 && *programmed) || flash_sectors_m_n[sector][cell] != BLANK;
+        }
+    }
+}
+
+bool flash_load(const char *path)
+{
+    static unsigned char octets[FILE_OCTETS + 1];
+    uint16_t *cells = flash_sectors_m_n[0];
+    FILE *file = fopen(path, "rb");
+    size_t count;
+
+    if (file == NULL) {
+        if (errno == ENOENT) {
+            flash_blank();
+        }
+        return errno == ENOENT;
+    }
+    count = fread(octets, 1, sizeof octets, file);
+    fclose(file);
+    if (count != FILE_OCTETS) {
+        return false;
+    }
+    for (size_t i = 0; i < FILE_OCTETS / 2; i++) {
+        cells[i] = (uint16_t)(octets[2 * i] | octets[2 * i + 1] << 8);
+    }
+    find_programmed();
+    return true;
+}
+
+bool flash_store(const char *path)
+{
+    const uint16_t *cells = flash_sectors_m_n[0];
+    FILE *file = fopen(path, "wb");
+    bool stored = file != NULL;
+
+    for (size_t i = 0; stored && i < FILE_OCTETS / 2; i++) {
+        stored = fputc(cells[i] & 0xFF, file) != EOF && fputc(cells[i] >> 8, file) != EOF;
+    }
+    return file != NULL && fclose(file) == 0 && stored;
+}
+
+void flash_cut_power_after(long cells)
+{
+    flash.cut = cells >= 0;
+    flash.left = cells;
+}
+
+long flash_cells_changed(void)
+{
+    return flash.changed;
+}
+
+/* False when the power has failed. */
+static bool change(uint16_t *cell, uint16_t value)
+{
+    if (flash.cut && flash.left <= 0) {
+        if (flash.left == 0) {
+            *cell = (uint16_t)((*cell & HALF_DONE) | (value & (uint16_t)~HALF_DONE));
+            flash.left = -1;
+        }
+        return false;
+    }
+    flash.left -= flash.cut;
+    flash.changed++;
+    *cell = value;
+    return true;
+}
+
+static bool ready(void)
+{
+    return flash.pump && flash.initialised && flash.active && !flash.busy;
+}
+
+/* The sector of an address and the cell in it; -1: not in these sectors. */
+static int sector_of(const void *address, int *cell)
+{
+    ptrdiff_t at = ((const char *)address - (const char *)flash_sectors_m_n) / (ptrdiff_t)sizeof(uint16_t);
+
+    *cell = (int)(at % FLASH_SECTOR_CELLS);
+    return at < 0 || at >= FLASH_SECTORS * FLASH_SECTOR_CELLS ? -1 : (int)(at / FLASH_SECTOR_CELLS);
+}
+
+void Flash_claimPumpSemaphore(uint32_t pumpSemBase, Flash_PumpOwnership wrapper)
+{
+    flash.pump = pumpSemBase == FLASHPUMPSEMAPHORE_BASE && wrapper == FLASH_BANK0_WRAPPER;
+}
+
+void Flash_releasePumpSemaphore(uint32_t pumpSemBase)
+{
+    (void)pumpSemBase;
+    flash.pump = false;
+}
+
+void Flash_enableECC(uint32_t eccBase)
+{
+    (void)eccBase;
+}
+
+void Flash_disableECC(uint32_t eccBase)
+{
+    (void)eccBase;
+}
+
+Fapi_StatusType Fapi_initializeAPI(Fapi_FmcRegistersType *poFlashControlRegister, uint32 u32HclkFrequency)
+{
+    flash.initialised = poFlashControlRegister == F021_CPU0_W0_BASE_ADDRESS && u32HclkFrequency == 200U;
+    return flash.initialised ? Fapi_Status_Success : Fapi_Error_InvalidHclkValue;
+}
+
+Fapi_StatusType Fapi_setActiveFlashBank(Fapi_FlashBankType oNewFlashBank)
+{
+    flash.active = oNewFlashBank == Fapi_FlashBank0;
+    return flash.active ? Fapi_Status_Success : Fapi_Error_InvalidBank;
+}
+
+Fapi_StatusType Fapi_issueAsyncCommandWithAddress(Fapi_FlashStateCommandsType oCommand, uint32 *pu32StartAddress)
+{
+    int cell, sector = sector_of(pu32StartAddress, &cell);
+
+    if (!ready() || oCommand != Fapi_EraseSector) {
+        return Fapi_Error_Fail;
+    }
+    if (sector < 0) {
+        return Fapi_Error_InvalidAddress;
+    }
+    flash.busy = true;
+    flash.status = 0;
+    for (cell = 0; cell < FLASH_SECTOR_CELLS && change(&flash_sectors_m_n[sector][cell], BLANK); cell++) {
+    }
+    if (cell < FLASH_SECTOR_CELLS) {
+        flash.status = FSM_FAILED;
+    }
+    find_programmed();
+    return Fapi_Status_Success;
+}
+
+Fapi_StatusType Fapi_issueProgrammingCommand(uint32 *pu32StartAddress, uint16 *pu16DataBuffer,
+                                             uint16 u16DataBufferSizeInWords, uint16 *pu16EccBuffer,
+                                             uint16 u16EccBufferSizeInBytes, Fapi_FlashProgrammingCommandsType oMode)
+{
+    int cell, sector = sector_of(pu32StartAddress, &cell);
+    bool *programmed;
+
+    if (!ready() || oMode != Fapi_AutoEccGeneration || pu16EccBuffer != NULL || u16EccBufferSizeInBytes != 0) {
+        return Fapi_Error_Fail;
+    }
+    if (sector < 0 || cell % BLOCK != 0) {
+        return Fapi_Error_InvalidAddress;
+    }
+    if (u16DataBufferSizeInWords != BLOCK) {
+        return Fapi_Error_AsyncIncorrectDataBufferLength;
+    }
+    programmed = &flash.programmed[sector][cell / BLOCK];
+    flash.busy = true;
+    flash.status = *programmed ? FSM_FAILED : 0U;
+    *programmed = true;
+    for (int i = 0; i < BLOCK && flash.status == 0U; i++) {
+        uint16_t *at = &flash_sectors_m_n[sector][cell + i];
+
+        if (!change(at, *at & pu16DataBuffer[i])) {
+            flash.status = FSM_FAILED;
+        }
+    }
+    return Fapi_Status_Success;
+}
+
+Fapi_StatusType Fapi_checkFsmForReady(void)
+{
+    Fapi_StatusType status = flash.busy ? Fapi_Status_FsmBusy : Fapi_Status_FsmReady;
+
+    flash.busy = false;
+    return status;
+}
+
+Fapi_FlashStatusType Fapi_getFsmStatus(void)
+{
+    return flash.status;
+}
+
+void Fapi_flushPipeline(void) {}

@@ -1,0 +1,59 @@
+#include "ground.h"
+
+#include "mock_servers.h"
+#include "unity.h"
+
+static flight_status_t flight;
+static reference_sample_t reference;
+
+static void read_flight(flight_status_t *status, int calls)
+{
+    (void)calls;
+    *status = flight;
+}
+
+static void read_reference(reference_sample_t *sample, int calls)
+{
+    (void)calls;
+    *sample = reference;
+}
+
+void setUp(void)
+{
+    flight = (flight_status_t){.state = FLIGHT_GROUND};
+    reference = (reference_sample_t){.reference_m = 0.0F};
+    flight_status_server_read_Stub(read_flight);
+    reference_server_read_Stub(read_reference);
+}
+
+void tearDown(void)
+{
+}
+
+void test_on_the_ground_without_thrust_and_reference_it_is_idle(void)
+{
+    TEST_ASSERT_TRUE(ground_idle());
+}
+
+void test_in_any_other_state_it_is_not(void)
+{
+    for (int state = FLIGHT_GROUND + 1; state < FLIGHT_STATE_COUNT; state++) {
+        flight.state = (flight_state_t)state;
+        TEST_ASSERT_FALSE(ground_idle());
+    }
+}
+
+void test_thrust_is_not_idle(void)
+{
+    flight.thrust_n = 0.17F;
+    TEST_ASSERT_FALSE(ground_idle());
+}
+
+void test_a_reference_in_force_or_on_its_way_is_not_idle(void)
+{
+    flight.reference_m = 0.5F;
+    TEST_ASSERT_FALSE(ground_idle());
+    flight.reference_m = 0.0F;
+    reference.reference_m = 0.5F;
+    TEST_ASSERT_FALSE(ground_idle());
+}

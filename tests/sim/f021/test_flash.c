@@ -1,0 +1,141 @@
+#include "sim/ti/f021/flash.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "sim/ti/driverlib/flash.h"
+#include "sim/ti/f021/include/F021_F2837xS_C28x.h"
+#include "unity.h"
+
+extern uint16_t flash_sectors_m_n[FLASH_SECTORS][FLASH_SECTOR_CELLS];
+
+static const char path[] = SCRATCH "/flash.bin";
+static uint16_t block[8] = {1, 2, 3, 4, 5, 6, 7, 8};
+
+void setUp(void)
+{
+    flash_blank();
+    (void)remove(path);
+}
+
+void tearDown(void)
+{
+    (void)remove(path);
+}
+
+static void start(void)
+{
+    Flash_claimPumpSemaphore(FLASHPUMPSEMAPHORE_BASE, FLASH_BANK0_WRAPPER);
+    TEST_ASSERT_EQUAL(Fapi_Status_Success, Fapi_initializeAPI(F021_CPU0_W0_BASE_ADDRESS, 200));
+    TEST_ASSERT_EQUAL(Fapi_Status_Success, Fapi_setActiveFlashBank(Fapi_FlashBank0));
+}
+
+static Fapi_StatusType program_words(uint16_t *at, uint16_t *words, uint16_t count)
+{
+    return Fapi_issueProgrammingCommand((uint32 *)(void *)at, words, count, NULL, 0, Fapi_AutoEccGeneration);
+}
+
+static Fapi_StatusType erase(uint16_t *at)
+{
+    return Fapi_issueAsyncCommandWithAddress(Fapi_EraseSector, (uint32 *)(void *)at);
+}
+
+static void wait(void)
+{
+    TEST_ASSERT_EQUAL(Fapi_Status_FsmBusy, Fapi_checkFsmForReady());
+    TEST_ASSERT_EQUAL(Fapi_Status_FsmReady, Fapi_checkFsmForReady());
+}
+
+void test_it_is_blank_at_first(void)
+{
+    TEST_ASSERT_EACH_EQUAL_HEX16(0xFFFF, flash_sectors_m_n[0], FLASH_SECTORS * FLASH_SECTOR_CELLS);
+}
+
+void test_nothing_goes_without_pump_library_and_bank_or_while_busy(void)
+{
+    TEST_ASSERT_NOT_EQUAL(Fapi_Status_Success, erase(flash_sectors_m_n[0]));
+    start();
+    TEST_ASSERT_NOT_EQUAL(Fapi_Status_Success, Fapi_initializeAPI(F021_CPU0_W0_BASE_ADDRESS, 194));
+    TEST_ASSERT_NOT_EQUAL(Fapi_Status_Success, erase(flash_sectors_m_n[0]));
+    start();
+    Flash_releasePumpSemaphore(FLASHPUMPSEMAPHORE_BASE);
+    TEST_ASSERT_NOT_EQUAL(Fapi_Status_Success, program_words(flash_sectors_m_n[0], block, 8));
+    start();
+    TEST_ASSERT_EQUAL(Fapi_Status_Success, erase(flash_sectors_m_n[0]));
+    TEST_ASSERT_NOT_EQUAL(Fapi_Status_Success, erase(flash_sectors_m_n[0]));
+    wait();
+    TEST_ASSERT_EQUAL(Fapi_Status_Success, erase(flash_sectors_m_n[0]));
+}
+
+void test_programming_only_clears_bits_and_only_whole_blocks_once(void)
+{
+    static uint16_t ones[8];
+
+    start();
+    TEST_ASSERT_EQUAL(Fapi_Error_InvalidAddress, program_words(&flash_sectors_m_n[1][4], block, 8));
+    TEST_ASSERT_EQUAL(Fapi_Error_AsyncIncorrectDataBufferLength, program_words(flash_sectors_m_n[1], block, 4));
+    TEST_ASSERT_EQUAL(Fapi_Error_InvalidAddress, program_words(ones, block, 8));
+    TEST_ASSERT_EQUAL(Fapi_Status_Success, program_words(flash_sectors_m_n[1], block, 8));
+    wait();
+    TEST_ASSERT_EQUAL(0, Fapi_getFsmStatus());
+    TEST_ASSERT_EQUAL_HEX16_ARRAY(block, flash_sectors_m_n[1], 8);
+    memset(ones, 0, sizeof ones);
+    TEST_ASSERT_EQUAL(Fapi_Status_Success, program_words(flash_sectors_m_n[1], ones, 8));
+    wait();
+    TEST_ASSERT_NOT_EQUAL(0, Fapi_getFsmStatus());
+    TEST_ASSERT_EQUAL_HEX16_ARRAY(block, flash_sectors_m_n[1], 8);
+}
+
+void test_power_fails_at_the_cell_that_was_named_which_is_left_half_done(void)
+{
+    start();
+    flash_cut_power_after(3);
+    TEST_ASSERT_EQUAL(Fapi_Status_Success, program_words(flash_sectors_m_n[0], block, 8));
+    wait();
+    TEST_ASSERT_NOT_EQUAL(0, Fapi_getFsmStatus());
+    TEST_ASSERT_EQUAL_HEX16_ARRAY(block, flash_sectors_m_n[0], 3);
+    TEST_ASSERT_TRUE(flash_sectors_m_n[0][3] != 0xFFFF && flash_sectors_m_n[0][3] != block[3]);
+    TEST_ASSERT_EACH_EQUAL_HEX16(0xFFFF, &flash_sectors_m_n[0][4], 100);
+    TEST_ASSERT_EQUAL(3, flash_cells_changed());
+    TEST_ASSERT_EQUAL(Fapi_Status_Success, erase(flash_sectors_m_n[0]));
+    wait();
+    TEST_ASSERT_EQUAL_HEX16_ARRAY_MESSAGE(block, flash_sectors_m_n[0], 3, "without power nothing is erased");
+    flash_cut_power_after(-1);
+    TEST_ASSERT_EQUAL(Fapi_Status_Success, erase(flash_sectors_m_n[0]));
+    wait();
+    TEST_ASSERT_EACH_EQUAL_HEX16(0xFFFF, flash_sectors_m_n[0], FLASH_SECTOR_CELLS);
+}
+
+void test_a_file_keeps_the_cells_and_what_is_programmed(void)
+{
+    start();
+    (void)program_words(&flash_sectors_m_n[1][8], block, 8);
+    wait();
+    TEST_ASSERT_TRUE(flash_store(path));
+    flash_blank();
+    TEST_ASSERT_TRUE(flash_load(path));
+    TEST_ASSERT_EQUAL_HEX16_ARRAY(block, &flash_sectors_m_n[1][8], 8);
+    TEST_ASSERT_EACH_EQUAL_HEX16(0xFFFF, flash_sectors_m_n[1], 8);
+    start();
+    (void)program_words(&flash_sectors_m_n[1][8], block, 8);
+    wait();
+    TEST_ASSERT_NOT_EQUAL(0, Fapi_getFsmStatus());
+}
+
+void test_no_file_is_blank_and_a_short_one_is_refused(void)
+{
+    FILE *file;
+
+    flash_sectors_m_n[0][0] = 0;
+    TEST_ASSERT_TRUE(flash_load(path));
+    TEST_ASSERT_EQUAL_HEX16(0xFFFF, flash_sectors_m_n[0][0]);
+    file = fopen(path, "wb");
+    TEST_ASSERT_NOT_NULL(file);
+    fputs("short", file);
+    fclose(file);
+    flash_sectors_m_n[0][0] = 0x77;
+    TEST_ASSERT_FALSE(flash_load(path));
+    TEST_ASSERT_EQUAL_HEX16(0x77, flash_sectors_m_n[0][0]);
+    TEST_ASSERT_FALSE(flash_store(SCRATCH "/no such directory/flash.bin"));
+}
