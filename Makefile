@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot test coverage clean
+.PHONY: help build fly plot campaign tune test coverage firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -14,7 +14,7 @@ jobs = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 ctest = ctest --output-on-failure -j$(shell nproc) --test-dir
 
 help: ## This list
-	@sed -nE 's/^([a-z]+):.*## (.*)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
+	@sed -nE 's/^([a-z-]+):.*## (.*)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
 
 build: ## The program build/plomada
 	@$(setup) build
@@ -33,6 +33,17 @@ plot: ## Draw LOG=FILE: a flight's CSV (or several), an XCTU console log or tele
 	@test -n "$(LOG)" || { echo "usage: make plot LOG=FILE" >&2; exit 2; }
 	@$(setup) plot
 	@$(python) tools/plot/plot.py $(LOG) -o build/
+
+campaign: ## Fly every law on 200 drawn vehicles; table, CSV, JSON and a picture in build/campaign/ (ARGS=--help)
+	@$(setup) build campaign
+	@$(MAKE) build
+	@$(python) tools/campaign/campaign.py $(ARGS)
+
+tune: ## Search the gains of LAW=PD, PID ... on the campaign's cost and print the commands that set them
+	@test -n "$(LAW)" || { echo "usage: make tune LAW=PID [ARGS=...]" >&2; exit 2; }
+	@$(setup) build campaign
+	@$(MAKE) build
+	@$(python) tools/tune/tune.py $(LAW) $(ARGS)
 
 test: ## Every test: under ASan and UBSan, then as released
 	@$(setup) build test plot
@@ -54,6 +65,15 @@ coverage: ## Line coverage of drivers/ and control/, at least 95 %
 	@find build-coverage -name '*.gcda' -delete
 	@$(ctest) build-coverage
 	@gcovr --root . --object-directory build-coverage --filter control/ --filter drivers/ --fail-under-line 95
+
+firmware: ## The target image, by TI's tools without CCS: docs/flashing.md
+	@python3 -B tools/ti/firmware.py
+
+flash: ## Put it on the LaunchPad, by the XDS100v2 on its USB
+	@python3 -B tools/ti/flash.py
+
+check-ti: ## The target sources and sim/'s stand-ins against TI's headers; error 77: a root is missing
+	@python3 -B tools/ti/check_ti.py
 
 clean: ## Remove everything that was built, the Python environment included
 	rm -rf build build-*

@@ -1,13 +1,17 @@
 # The product: the single list of files, read by CMakeLists.txt and by the check of ccs_project/.
 set(CONTROL_SOURCES
-    control/altitude.c control/attitude.c control/descent.c control/flight.c control/median.c control/parameters.c control/pid.c
-    control/supervisor.c control/thrust.c)
+    control/altitude.c control/attitude.c control/calibration.c control/descent.c control/flight.c control/median.c
+    control/parameters.c control/pid.c control/supervisor.c control/thrust.c)
 set(DRIVERS_SOURCES
-    drivers/decimal.c drivers/razor.c drivers/scip_layout.c drivers/scip_parser.c drivers/scip_request.c
-    drivers/telecommand.c drivers/telemetry.c drivers/urg_link.c)
+    drivers/decimal.c drivers/flight_log.c drivers/parameter_image.c drivers/razor.c drivers/scip_info.c
+    drivers/scip_layout.c drivers/scip_parser.c drivers/scip_request.c drivers/scip_time.c drivers/telecommand.c
+    drivers/telemetry.c drivers/urg_link.c)
 set(BSP_SOURCES
-    bsp/board.c bsp/led.c bsp/throttle.c bsp/timebase.c bsp/uart.c)
+    bsp/board.c bsp/led.c bsp/retained.c bsp/start.c bsp/storage.c bsp/throttle.c bsp/timebase.c bsp/uart.c bsp/watchdog.c)
 set(FIRMWARE_SOURCES
-    firmware/answer.c firmware/commands.c firmware/fault.c firmware/imu_port.c firmware/laser_port.c firmware/main.c firmware/servers.c
-    firmware/task_control.c firmware/task_imu.c firmware/task_receive_comm.c firmware/task_receive_laser.c
-    firmware/task_send_comm.c firmware/task_send_laser.c firmware/uart_port.c firmware/verb_laser.c firmware/xbee_port.c)
+    firmware/alive.c firmware/answer.c firmware/boot.c firmware/calibrator.c firmware/commands.c firmware/fault.c
+    firmware/flight_recorder.c firmware/ground.c firmware/imu_port.c firmware/laser_port.c firmware/main.c
+    firmware/monitor.c firmware/parameter_store.c firmware/servers.c firmware/task_control.c firmware/task_imu.c
+    firmware/task_receive_comm.c firmware/task_receive_laser.c firmware/task_send_comm.c firmware/task_send_laser.c
+    firmware/uart_port.c firmware/verb_calibrate.c firmware/verb_laser.c firmware/verb_log.c firmware/verb_perf.c
+    firmware/verb_save.c firmware/xbee_port.c)

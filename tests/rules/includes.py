@@ -8,7 +8,7 @@ TARGET = re.compile(r'^([<"])([^>"]+)[>"]$')
 
 STANDARD = {f"{name}.h" for name in ("float", "limits", "math", "stdbool", "stddef", "stdint", "string")}
 DRIVERLIB = re.compile(r"^(?:driverlib/)?(?:driverlib|device|adc|asysctl|cputimer|epwm|flash|gpio|interrupt|pin_map|sci|sysctl|xbar|version|debug)\.h$"
-                       r"|^inc/hw_\w+\.h$|^hw_\w+\.h$")
+                       r"|^inc/hw_\w+\.h$|^hw_\w+\.h$|^F021_F2837xS_C28x\.h$")
 SYSBIOS = re.compile(r"^(?:xdc|ti/sysbios)/[\w/]+\.h$")
 
 # room: rooms whose headers it may include

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# setup.sh build|test|coverage|plot ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
+# setup.sh build|test|coverage|plot|campaign ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
 #
 #   build     C compiler, CMake
 #   test      Ruby and CMock, which generates the mocks; Python 3 for the checks of the house rules
 #   coverage  gcovr
 #   plot      Python virtual environment build/venv with the pinned packages of tools/plot/requirements.txt
+#   campaign  the same, and in it those of tools/campaign/requirements.txt
 #
 # Non-interactive and idempotent: silent, and no call of apt or pip, when nothing is missing. Packages are installed
 # as root, or by sudo where the user may use it; otherwise one line says what to install, and the status is 1.
@@ -13,6 +14,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
 venv=$root/build/venv
 requirements=$root/tools/plot/requirements.txt
+campaign_requirements=$root/tools/campaign/requirements.txt
 cmock_private=$root/build/cmock
 
 say() { printf 'setup: %s\n' "$*" >&2; }
@@ -41,6 +43,8 @@ venv_ready() {
         "$venv/bin/python" -c 'import sys, importlib.util as u; sys.exit(u.find_spec("matplotlib") is None)' 2>/dev/null
 }
 
+campaign_ready() { venv_ready && cmp -s "$campaign_requirements" "$venv/campaign.txt"; }
+
 # Debian packages that the job lacks; cmock is treated apart.
 missing_packages() {
     case $1 in
@@ -53,10 +57,10 @@ missing_packages() {
             has python3 || echo python3 ;;
         coverage)
             has gcovr || echo gcovr ;;
-        plot)
+        plot|campaign)
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
         *)
-            say "unknown job '$1'; know build, test, coverage, plot"
+            say "unknown job '$1'; know build, test, coverage, plot, campaign"
             exit 2 ;;
     esac
 }
@@ -121,22 +125,34 @@ make_venv() {
     rm -rf "$venv"
     mkdir -p "$root/build"
     "$python" -m venv "$venv"
-    "$venv/bin/python" -m pip --quiet --disable-pip-version-check install --only-binary :all: -r "$requirements" ||
-        die "pip could not install tools/plot/requirements.txt (see above)"
+    pip_install -r "$requirements" || die "pip could not install tools/plot/requirements.txt (see above)"
     cp "$requirements" "$venv/requirements.txt"
 }
 
-[ $# -gt 0 ] || { say "usage: setup.sh build|test|coverage|plot ..."; exit 2; }
+pip_install() { "$venv/bin/python" -m pip --quiet --disable-pip-version-check install --only-binary :all: "$@"; }
+
+add_campaign() {
+    say "adding the packages of tools/campaign/requirements.txt to build/venv"
+    pip_install -r "$requirements" -r "$campaign_requirements" ||
+        die "pip could not install tools/campaign/requirements.txt (see above)"
+    cp "$campaign_requirements" "$venv/campaign.txt"
+}
+
+[ $# -gt 0 ] || { say "usage: setup.sh build|test|coverage|plot|campaign ..."; exit 2; }
 
 packages=()
 want_cmock=
 want_venv=
+want_campaign=
 for job in "$@"; do
     list=$(missing_packages "$job")
     for package in $list; do packages+=("$package"); done
     case $job in
         test) cmock_ready || want_cmock=yes ;;
         plot) venv_ready || want_venv=yes ;;
+        campaign)
+            venv_ready || want_venv=yes
+            campaign_ready || want_campaign=yes ;;
     esac
 done
 
@@ -154,3 +170,4 @@ if [ ${#packages[@]} -gt 0 ] || [ -n "$want_cmock" ]; then
     fi
 fi
 [ -z "$want_venv" ] || make_venv
+[ -z "$want_campaign" ] || add_campaign

@@ -15,9 +15,11 @@ COMMANDS = (
     "#USAT 1", "#DSAT 0", "#GRAV 7",
     "#LAW PD", "#LAW PID",
     "#RELEASE FREE", "#RELEASE SCAN",
-    "#LINK 2", "#LINK 0",
+    "#SAVE", "#LOAD", "#DEFAULTS",
+    "#LINK 60", "#CALIBRATE 30 5", "#LINK 2", "#LINK 0",
     "#PING 1",
-    "#GET", "#GET KP", "#LASER", "#HELP",
+    "#LOG 10", "#LOG", "#LOG STOP", "#LOG CLEAR",
+    "#GET", "#GET KP", "#LASER", "#PERF", "#PERF RESET", "#HELP",
 )
 
 

@@ -1,6 +1,4 @@
 /* Processor load and stack marks, as the firmware asks for them. */
-#include <string.h>
-
 #include <ti/sysbios/BIOS.h>
 #include <ti/sysbios/knl/Clock.h>
 #include <ti/sysbios/knl/Semaphore.h>
@@ -15,21 +13,33 @@ static const kernel_costs_t costs = {.jobs = jobs, .job_count = 1};
 
 static Semaphore_Handle work;
 static Task_Handle worker_task;
-static Task_Handle idle_task;
-static volatile char sink;
+static Task_Handle waiting_task;
 
-static Void worker(UArg depth, UArg unused)
+static __attribute__((noinline)) void dig_a_pit(void)
+{
+    volatile char pit[4096];
+
+    for (size_t i = 0; i < sizeof pit; i++) {
+        pit[i] = 1;
+    }
+}
+
+static Void worker(UArg dig, UArg unused)
 {
     (void)unused;
     for (;;) {
-        char pit[4096];
-
         (void)Semaphore_pend(work, BIOS_WAIT_FOREVER);
-        if (depth > 0) {
-            memset(pit, 1, sizeof pit);
-            sink = pit[sizeof pit / 2];
+        if (dig > 0) {
+            dig_a_pit();
         }
     }
+}
+
+static Void waits(UArg unused0, UArg unused1)
+{
+    (void)unused0;
+    (void)unused1;
+    (void)Semaphore_pend(Semaphore_create(0, NULL, NULL), BIOS_WAIT_FOREVER);
 }
 
 static Void post(UArg unused)
@@ -54,7 +64,7 @@ static int boot_main(void)
     worker_task = Task_create(worker, &task, NULL);
     Task_Params_init(&task);
     task.priority = 1;
-    idle_task = Task_create(worker, &task, NULL);
+    waiting_task = Task_create(waits, &task, NULL);
     Clock_Params_init(&clock);
     clock.period = period;
     clock.startFlag = period > 0;
@@ -129,7 +139,7 @@ void test_the_stacks_mark_is_the_most_that_was_used(void)
     Task_stat(worker_task, &before);
     run_ms(2000);
     Task_stat(worker_task, &after);
-    Task_stat(idle_task, &shallow);
+    Task_stat(waiting_task, &shallow);
     TEST_ASSERT_EQUAL_INT(3, after.priority);
     TEST_ASSERT_GREATER_THAN_UINT64(0, before.used);
     TEST_ASSERT_GREATER_THAN_UINT64(before.used + 3000U, after.used);

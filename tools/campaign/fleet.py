@@ -1,0 +1,131 @@
+"""Flights by the hundred: one process per flight, in batches, through Dask."""
+import contextlib
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+BATCH = 10
+FLIGHT_LIMIT_S = 120
+
+
+class Broken(Exception):
+    """The program did not fly; the text says why."""
+
+
+def fly(program, arguments):
+    """The figures of one flight, as `plomada fly --json` gives them."""
+    with tempfile.TemporaryDirectory(prefix="plomada-") as scratch:
+        path = Path(scratch, "flight.json")
+        try:
+            done = subprocess.run([program, "fly", *arguments, "--json", str(path)], stdin=subprocess.DEVNULL,
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False,
+                                  timeout=FLIGHT_LIMIT_S)
+            if done.returncode in (0, 1):
+                return json.loads(path.read_text(encoding="utf-8"))
+            reason = done.stderr.strip() or f"ended with status {done.returncode}"
+        except (OSError, ValueError, subprocess.TimeoutExpired) as error:
+            reason = str(error)
+    raise Broken(f"{program} fly {' '.join(arguments)}: {reason}")
+
+
+def fly_batch(program, flights):
+    """One task. flights: [(key, arguments)]; gives [(key, figures)]."""
+    return [(key, fly(program, arguments)) for key, arguments in flights]
+
+
+def digest(program):
+    return hashlib.sha256(Path(program).read_bytes()).hexdigest()
+
+
+def key(program_digest, arguments):
+    """Names a flight: the same program with the same arguments gives the same figures."""
+    return hashlib.sha256(json.dumps([program_digest, *arguments]).encode()).hexdigest()[:24]
+
+
+@contextlib.contextmanager
+def fleet(scheduler=None):
+    """A Dask client: of the cluster at that address, else of this machine with a thread per processor, each of which
+    waits for the process of its flight. A cluster's workers need the program at the same path."""
+    import cloudpickle
+    from distributed import Client, LocalCluster
+
+    cloudpickle.register_pickle_by_value(sys.modules[__name__])
+    if scheduler:
+        with Client(scheduler) as client:
+            yield client
+        return
+    with LocalCluster(n_workers=1, threads_per_worker=len(os.sched_getaffinity(0)), processes=False,
+                      dashboard_address=None, silence_logs="ERROR") as cluster, Client(cluster) as client:
+        yield client
+
+
+def fly_all(client, program, flights, batch=BATCH):
+    """Yields (key, figures) of [(key, arguments)] as they come, in any order. Raises Broken with the first flight that
+    could not be flown."""
+    from distributed import as_completed
+
+    flights = list(flights)
+    futures = [client.submit(fly_batch, program, flights[at:at + batch], pure=False)
+               for at in range(0, len(flights), batch)]
+    try:
+        for _, results in as_completed(futures, with_results=True):
+            yield from results
+    finally:
+        client.cancel(futures)
+
+
+class Store:
+    """Results as JSON lines, one per flight, appended as they come. A line torn by an interruption is flown again."""
+
+    def __init__(self, path):
+        self.path = Path(path)
+        self.known = {}
+        if self.path.exists():
+            for line in self.path.read_text(encoding="utf-8").splitlines():
+                with contextlib.suppress(ValueError, KeyError, TypeError):
+                    record = json.loads(line)
+                    self.known[record["key"]] = record["figures"]
+
+    def __enter__(self):
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        torn = self.path.exists() and not self.path.read_bytes().endswith(b"\n") and self.path.stat().st_size > 0
+        self.file = self.path.open("a", encoding="utf-8", buffering=1)
+        if torn:
+            self.file.write("\n")
+        return self
+
+    def __exit__(self, *_):
+        self.file.close()
+
+    def add(self, flight_key, label, figures):
+        """label: what a reader wants to know of the flight (law, set, run)."""
+        self.known[flight_key] = figures
+        self.file.write(json.dumps({"key": flight_key, **label, "figures": figures}) + "\n")
+
+
+class Progress:
+    """Flights done and the time that remains, on stderr: in place on a terminal, else a line every 5 s."""
+
+    def __init__(self, total, out=None):
+        self.out = sys.stderr if out is None else out
+        self.total, self.done = total, 0
+        self.start = self.shown = time.monotonic()
+        self.every_s = 0.2 if self.out.isatty() else 5.0
+
+    def step(self):
+        self.done += 1
+        now = time.monotonic()
+        if now - self.shown >= self.every_s:
+            self.shown = now
+            self.show(now)
+
+    def show(self, now):
+        left = (now - self.start) / self.done * (self.total - self.done)
+        end = "\r" if self.out.isatty() else "\n"
+        self.out.write(f"{self.done} of {self.total} flights, {left:.0f} s remain   {end}")
+        self.out.flush()

@@ -1,0 +1,91 @@
+"""What a campaign flies: the laws, the sets of vehicles, and the vehicle of each run."""
+import math
+import random
+from dataclasses import dataclass
+
+SCENARIO = "pid-60cm-ramp"
+RUNS_PER_SEED = 1_000_000
+
+
+@dataclass(frozen=True)
+class Law:
+    """A line of the tables: a scenario, and what is typed differently from its settings."""
+    settings: dict
+    scenario: str = SCENARIO
+
+
+# GRAV stays at 7 N, as the scenario pins it: what a vehicle really needs is drawn.
+LAWS = {
+    "PD": Law({"LAW": "PD", "KP": "0.01", "KD": "0.004", "KI": "0"}),
+    "PID": Law({"LAW": "PID"}),
+    "PID-SCAN": Law({"LAW": "PID", "RELEASE": "SCAN"}),
+    "PID-TUNED": Law({"LAW": "PID", "KP": "0.005", "KD": "0.0282", "KI": "0.00016", "USAT": "1.5", "DSAT": "4"}),
+    "PID-TUNED-SCAN": Law({"LAW": "PID", "RELEASE": "SCAN", "KP": "0.0063", "KD": "0.0349", "KI": "0.00018",
+                           "USAT": "1.5", "DSAT": "4"}),
+    "PIDT": Law({"LAW": "PIDT", "RELEASE": "SCAN", "USAT": "1.5", "DSAT": "4"}),
+    "EST": Law({}, "est-60cm-ramp"),
+}
+
+
+@dataclass(frozen=True)
+class Set:
+    summary: str
+    figures: tuple          # names of draws() that the vehicle takes; the others stay nominal
+    fixed: dict             # plant figures of every run
+    lands: bool = False     # the supervisor is to land the vehicle: it fails when it never touches the ground
+
+
+VEHICLE = ("gain", "tau", "damping", "ray_noise", "common_noise", "ray_instant", "acc_bias", "acc_noise", "attitude_rms",
+           "imu_noise", "turbulence", "tdelay")
+SETS = {
+    "nominal": Set("the nominal vehicle", (), {}),
+    "trimmed": Set("drawn vehicles, GRAV trimmed by hand", VEHICLE + ("hover_trimmed",), {}),
+    "untrimmed": Set("drawn vehicles, mass +-20 %, not trimmed", VEHICLE + ("hover_untrimmed",), {}),
+    "glitches": Set("nominal, 3 % of the scans broken", (), {"glitches": 0.03}),
+    "vibration": Set("nominal, four times the accelerometer noise", (), {"acc_noise": 1.6}),
+    "outages": Set("nominal, flat ground, scanner silent for 0.5 s", ("outage_start",), {"outage": 0.5, "platform": 0.0}),
+    "blind": Set("nominal, flat ground, scanner silent for 3 s: must land", ("outage_start",),
+                 {"outage": 3.0, "platform": 0.0}, lands=True),
+}
+HOVER = {"hover_trimmed", "hover_untrimmed"}
+
+
+def draws(seed, run):
+    """Every figure that may vary, of this run. Nothing but seed and run counts, so laws and sets share their vehicles.
+    The order of the draws is part of the result."""
+    rng = random.Random(f"{seed}/{run}")
+    noise = rng.uniform(1.0, 2.0)
+    return {
+        "ray_noise": 5.0 * noise,
+        "common_noise": 3.0 * noise,
+        "gain": rng.uniform(0.8, 1.2),
+        "tau": rng.uniform(0.09, 0.15),
+        "damping": rng.uniform(1.5, 3.0),
+        "ray_instant": 0.034 + rng.uniform(-0.030, 0.030),
+        "acc_bias": rng.uniform(-0.25, 0.25),
+        "acc_noise": 0.4 * rng.uniform(1.0, 2.0),
+        "attitude_rms": math.radians(2.0) * rng.uniform(0.8, 1.5),
+        "imu_noise": math.radians(0.25) * rng.uniform(1.0, 2.0),
+        "turbulence": 0.2 * rng.uniform(0.8, 1.5),
+        "tdelay": rng.uniform(0.005, 0.020),
+        "hover_trimmed": 7.0 + rng.uniform(0.25, 0.55),
+        "hover_untrimmed": 7.0 * rng.uniform(0.8, 1.2),
+        "outage_start": rng.uniform(8.0, 14.0),
+    }
+
+
+def plant(set_name, seed, run):
+    """The plant figures that are set for this run: name -> value."""
+    drawn = draws(seed, run)
+    figures = {"hover_thrust" if name in HOVER else name: drawn[name] for name in SETS[set_name].figures}
+    return figures | SETS[set_name].fixed
+
+
+def arguments(law, set_name, seed, run):
+    """The command line behind `plomada fly`. law is a Law; runs count from 1."""
+    words = [law.scenario, "--seed", str((seed - 1) * RUNS_PER_SEED + run)]
+    for name, value in law.settings.items():
+        words += ["--set", f"{name}={value}"]
+    for name, value in plant(set_name, seed, run).items():
+        words += ["--set", f"plant.{name}={value:.9g}"]
+    return words
