@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define TELEMETRY_ANSWER_MAX 160U   /* the longest line at all: answers may take two packets */
+#define TELEMETRY_ANSWER_MAX 240U   /* the longest line at all: answers may take several packets */
 #define TELEMETRY_LINE_MAX 95U  /* line end included: one XBee packet */
 
 typedef struct {

@@ -7,12 +7,11 @@ static const char *const causes[SCIP_DAMAGE_COUNT] = {
     [SCIP_DAMAGE_ECHO] = "echo",    [SCIP_DAMAGE_CHARACTER] = "char", [SCIP_DAMAGE_SEQUENCE] = "seq",
 };
 
-static void answer_stream(answer_t *answer, const laser_statistics_t *statistics)
+static void add_stream(answer_t *answer, const laser_statistics_t *statistics)
 {
     static laser_sample_t laser;
 
     laser_server_read(&laser);
-    answer_begin(answer);
     telemetry_text(&answer->line, " state:");
     telemetry_text(&answer->line, laser_status_name(laser.status));
     answer_count(answer, "rate", laser.rate);
@@ -21,20 +20,17 @@ static void answer_stream(answer_t *answer, const laser_statistics_t *statistics
     answer_count(answer, "restart", laser.restarts);
     answer_count(answer, "overrun", statistics->overruns);
     answer_count(answer, "framing", statistics->seen.framing_count);
-    answer_send(answer);
 }
 
-static void answer_damages(answer_t *answer, const laser_statistics_t *statistics)
+static void add_damages(answer_t *answer, const laser_statistics_t *statistics)
 {
     uint16_t i;
 
-    answer_begin(answer);
     for (i = (uint16_t)SCIP_DAMAGE_SUM; i < (uint16_t)SCIP_DAMAGE_COUNT; i++) {
         answer_count(answer, causes[i], statistics->scip.damaged[i]);
     }
     telemetry_text(&answer->line, " last:");
     telemetry_text(&answer->line, causes[statistics->last_damage]);
-    answer_send(answer);
 }
 
 bool verb_laser(answer_t *answer)
@@ -42,7 +38,9 @@ bool verb_laser(answer_t *answer)
     static laser_statistics_t statistics;
 
     laser_port_statistics(&statistics);
-    answer_stream(answer, &statistics);
-    answer_damages(answer, &statistics);
+    answer_begin(answer);
+    add_stream(answer, &statistics);
+    add_damages(answer, &statistics);
+    answer_send(answer);
     return true;
 }

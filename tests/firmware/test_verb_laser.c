@@ -9,7 +9,7 @@
 #include "mock_xbee_port.h"
 #include "unity.h"
 
-#define LINES 2U
+#define LINES 1U
 
 static laser_statistics_t statistics;
 static laser_sample_t laser;
@@ -66,8 +66,7 @@ void test_before_the_first_octet_all_is_zero(void)
 {
     laser.rate = 115200U;
     ask();
-    TEST_ASSERT_EQUAL_STRING("OK LASER state:WAIT rate:115200 frames:0 timeout:0 restart:0 overrun:0 framing:0\r\n", sent[0]);
-    TEST_ASSERT_EQUAL_STRING("OK LASER sum:0 length:0 echo:0 char:0 seq:0 last:-\r\n", sent[1]);
+    TEST_ASSERT_EQUAL_STRING("OK LASER state:WAIT rate:115200 frames:0 timeout:0 restart:0 overrun:0 framing:0 sum:0 length:0 echo:0 char:0 seq:0 last:-\r\n", sent[0]);
 }
 
 void test_every_number_stands_in_its_own_field(void)
@@ -88,8 +87,7 @@ void test_every_number_stands_in_its_own_field(void)
     statistics.scip.damaged[SCIP_DAMAGE_SEQUENCE] = 11U;
     statistics.last_damage = SCIP_DAMAGE_ECHO;
     ask();
-    TEST_ASSERT_EQUAL_STRING("OK LASER state:OK rate:250000 frames:731 timeout:3 restart:4 overrun:5 framing:6\r\n", sent[0]);
-    TEST_ASSERT_EQUAL_STRING("OK LASER sum:7 length:8 echo:9 char:10 seq:11 last:echo\r\n", sent[1]);
+    TEST_ASSERT_EQUAL_STRING("OK LASER state:OK rate:250000 frames:731 timeout:3 restart:4 overrun:5 framing:6 sum:7 length:8 echo:9 char:10 seq:11 last:echo\r\n", sent[0]);
 }
 
 void test_every_cause_has_a_name_of_its_own(void)
@@ -102,7 +100,7 @@ void test_every_cause_has_a_name_of_its_own(void)
         (void)snprintf(end, sizeof end, " last:%s\r\n", names[cause]);
         statistics.last_damage = (scip_damage_t)cause;
         ask();
-        TEST_ASSERT_EQUAL_STRING(end, &sent[1][strlen(sent[1]) - strlen(end)]);
+        TEST_ASSERT_EQUAL_STRING(end, &sent[0][strlen(sent[0]) - strlen(end)]);
     }
 }
 
@@ -126,7 +124,7 @@ void test_the_largest_counts_fit(void)
     laser.status = LASER_SWITCH;
     statistics.last_damage = SCIP_DAMAGE_LENGTH;
     ask();
-    TEST_ASSERT_EQUAL_STRING_LEN("OK LASER state:SWITCH rate:4294967295 frames:4294967295", sent[0], 55);
-    TEST_ASSERT_EQUAL_STRING("OK LASER sum:4294967295 length:4294967295 echo:4294967295 char:4294967295 seq:4294967295 "
-                             "last:length\r\n", sent[1]);
+    TEST_ASSERT_EQUAL_STRING("OK LASER state:SWITCH rate:4294967295 frames:4294967295 timeout:4294967295 "
+                             "restart:4294967295 overrun:4294967295 framing:4294967295 sum:4294967295 "
+                             "length:4294967295 echo:4294967295 char:4294967295 seq:4294967295 last:length\r\n", sent[0]);
 }
