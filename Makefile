@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot campaign tune test coverage firmware flash check-ti clean
+.PHONY: help build fly plot campaign tune test faults fuzz bench coverage firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -58,13 +58,30 @@ test: ## Every test: under ASan and UBSan, then as released
 	@printf '\n== tests as released ==\n'
 	@$(ctest) build
 
-coverage: ## Line coverage of drivers/ and control/, at least 95 %
+faults: ## The scanner's driver under FRAMES=10000000 damaged frames, and faults at every octet of its start
+	@$(setup) build test
+	@cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON
+	+@cmake --build build --target scip_faults scip_start $(jobs)
+	@build/tests/faults/scip_faults -n $(or $(FRAMES),10000000)
+	@build/tests/faults/scip_start --faults
+
+fuzz: ## The scanner's parser under libFuzzer for SECONDS=60; what breaks it stays in build/fuzz/
+	@$(setup) build fuzz
+	@tests/fuzz/fuzz.sh build/fuzz $(or $(SECONDS),60)
+
+bench: ## Instructions of each step of the firmware (callgrind) against tools/bench/baseline.csv
+	@$(setup) build bench
+	@python3 -B tools/bench/bench.py $(ARGS)
+
+coverage: ## Lines of drivers/ and control/, at least 95 %; lines and branches of the scanner's driver, all
 	@$(setup) build test coverage
 	@cmake -S . -B build-coverage -DCMAKE_BUILD_TYPE=Debug -DCOVERAGE=ON -DPLOMADA_TESTS=ON
 	+@cmake --build build-coverage $(jobs)
 	@find build-coverage -name '*.gcda' -delete
 	@$(ctest) build-coverage
 	@gcovr --root . --object-directory build-coverage --filter control/ --filter drivers/ --fail-under-line 95
+	@gcovr --root . --object-directory build-coverage --filter drivers/scip_ --filter drivers/urg_link \
+	    --fail-under-line 100 --fail-under-branch 100 --branches
 
 firmware: ## The target image, by TI's tools without CCS: docs/flashing.md
 	@python3 -B tools/ti/firmware.py

@@ -51,6 +51,11 @@ void bsp_uart_open(bsp_uart_t uart, uint32_t bit_rate)
     SCI_enableInterrupt(base, SCI_INT_RXFF | SCI_INT_RXERR);
 }
 
+void bsp_uart_set_receive_level(bsp_uart_t uart, uint16_t octets)
+{
+    SCI_setFIFOInterruptLevel(PORTS[uart].base, SCI_FIFO_TX0, (SCI_RxFIFOLevel)octets);
+}
+
 static void recover(uint32_t base, bsp_uart_burst_t *burst)
 {
     const uint16_t status = SCI_getRxStatus(base);

@@ -25,7 +25,11 @@ int16_t bsp_uart_transmit_interrupt(bsp_uart_t uart);
  * main() or Task. rates: 9600 .. 250000. Reopening drops what is in the FIFOs. */
 void bsp_uart_open(bsp_uart_t uart, uint32_t bit_rate);
 
-/* From the receive Hwi: takes what the FIFO holds, clears error and overflow conditions so that reception goes on, and
+/* Receive interrupt from that many octets in the FIFO on, 1..16; 1 after bsp_uart_open(). Fewer wait there: the chip has no
+ * time-out of its own. Caller excludes both Hwis. */
+void bsp_uart_set_receive_level(bsp_uart_t uart, uint16_t octets);
+
+/* From the receive Hwi, or while it is excluded: takes what the FIFO holds, clears error and overflow conditions so that reception goes on, and
  * last the interrupt flag. */
 void bsp_uart_receive(bsp_uart_t uart, bsp_uart_burst_t *burst);
 

@@ -16,6 +16,35 @@ float altitude_under_mirror(const mirror_geometry_t *mirror, float slant_mm, flo
          - mirror->leg_mm;
 }
 
+float altitude_at_tilt(const altitude_t *altitude, float roll_rad, float pitch_rad)
+{
+    return (altitude->slant_mm - altitude->distance_mm) * cosf(pitch_rad) * cosf(roll_rad)
+         - altitude->arm_mm * sinf(roll_rad)
+         - altitude->fore_mm * sinf(pitch_rad)
+         - altitude->leg_mm;
+}
+
+static void add_mirror(altitude_t *altitude, const mirror_geometry_t *mirror, const mirror_range_t *range)
+{
+    altitude->slant_mm += range->slant_mm;
+    altitude->spread_mm = fmaxf(altitude->spread_mm, range->spread_mm);
+    altitude->good_rays = (uint16_t)(altitude->good_rays + range->good_rays);
+    altitude->distance_mm += mirror->distance_mm;
+    altitude->leg_mm += mirror->leg_mm;
+    altitude->arm_mm += mirror->arm_mm;
+    altitude->fore_mm += mirror->fore_sign * mirror->distance_mm;
+}
+
+static void divide(altitude_t *altitude, float groups)
+{
+    altitude->height_mm /= groups;
+    altitude->slant_mm /= groups;
+    altitude->distance_mm /= groups;
+    altitude->leg_mm /= groups;
+    altitude->arm_mm /= groups;
+    altitude->fore_mm /= groups;
+}
+
 altitude_t altitude_from_ranges(const mirror_range_t *ranges, size_t count, float roll_rad, float pitch_rad)
 {
     altitude_t altitude = {.valid = false};
@@ -28,20 +57,17 @@ altitude_t altitude_from_ranges(const mirror_range_t *ranges, size_t count, floa
         if (!range->valid) {
             continue;
         }
-        const float height_mm =
-            altitude_under_mirror(&mirror_geometry[range->mirror], range->slant_mm, roll_rad, pitch_rad);
+        const mirror_geometry_t *mirror = &mirror_geometry[range->mirror];
+        const float height_mm = altitude_under_mirror(mirror, range->slant_mm, roll_rad, pitch_rad);
         lowest_mm = altitude.valid ? fminf(lowest_mm, height_mm) : height_mm;
         highest_mm = altitude.valid ? fmaxf(highest_mm, height_mm) : height_mm;
         altitude.valid = true;
         altitude.height_mm += height_mm;
-        altitude.slant_mm += range->slant_mm;
-        altitude.spread_mm = fmaxf(altitude.spread_mm, range->spread_mm);
-        altitude.good_rays = (uint16_t)(altitude.good_rays + range->good_rays);
+        add_mirror(&altitude, mirror, range);
         groups += 1.0F;
     }
     if (altitude.valid) {
-        altitude.height_mm /= groups;
-        altitude.slant_mm /= groups;
+        divide(&altitude, groups);
         altitude.disagree = highest_mm - lowest_mm > ALTITUDE_DISAGREE_MM;
     }
     return altitude;

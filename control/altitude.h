@@ -55,10 +55,18 @@ typedef struct {
     float slant_mm;     /* mean over the valid groups */
     float spread_mm;    /* largest over the valid groups */
     uint16_t good_rays; /* sum over the valid groups */
+    float distance_mm;  /* means over the valid groups, for altitude_at_tilt(): d */
+    float leg_mm;       /* l */
+    float arm_mm;       /* L */
+    float fore_mm;      /* s d */
 } altitude_t;
 
 /* Height under one mirror. slant_mm finite, angles in radians, |angle| < pi/2. */
 float altitude_under_mirror(const mirror_geometry_t *mirror, float slant_mm, float roll_rad, float pitch_rad);
+
+/* The height that altitude_from_ranges() would have found in the same ranges under another tilt: exact, the formula is
+ * linear in what it takes the mean of. */
+float altitude_at_tilt(const altitude_t *altitude, float roll_rad, float pitch_rad);
 
 /* Mean height of the valid groups among `count` ranges (borrowed for the call). */
 altitude_t altitude_from_ranges(const mirror_range_t *ranges, size_t count, float roll_rad, float pitch_rad);

@@ -13,6 +13,7 @@
 #define RATE_ACTION_LEAST_N (-5.0F)
 #define RATE_ACTION_MOST_N 2.0F
 #define TRIM_GAIN_N_PER_MM 0.0010F
+#define CLIMB_TRIM_GAIN_N_PER_MM 0.0030F
 #define TRIM_MAX_N 2.0F
 #define LEAST_SHARE 0.25F
 #define FADE_N_PER_S2 0.004F
@@ -46,7 +47,9 @@ float descent_step(descent_t *descent, float hover_n, float height_mm, float rat
     const float error_mm_s = -descent->sink_mm_s - rate_mm_s;
     const float sink_n = SINK_SHARE * hover_n * descent->sink_mm_s / DESCENT_RATE_MM_S;
 
-    descent->trim_n = between(-TRIM_MAX_N, descent->trim_n + TRIM_GAIN_N_PER_MM * error_mm_s * dt_s, TRIM_MAX_N);
+    const float trim_gain = (rate_mm_s > 0.0F) ? CLIMB_TRIM_GAIN_N_PER_MM : TRIM_GAIN_N_PER_MM;
+
+    descent->trim_n = between(-TRIM_MAX_N, descent->trim_n + trim_gain * error_mm_s * dt_s, TRIM_MAX_N);
     return fmaxf(hover_n - sink_n + descent->trim_n + rate_action_n(error_mm_s), LEAST_SHARE * hover_n);
 }
 

@@ -12,18 +12,30 @@
 #define GAP_MAX_S 0.3F
 #define BLIND_MAX_S 60.0F
 
-typedef enum { CHARGE_IDLE, CHARGE_LAW, CHARGE_HOVER, CHARGE_DESCENT, CHARGE_BLIND } charge_t;
+#define PIDT_WINDOW_N 3.0F
 
-static const charge_t in_charge[FLIGHT_STATE_COUNT] = {
+static const flight_charge_t charges[FLIGHT_STATE_COUNT] = {
     [FLIGHT_GROUND] = CHARGE_IDLE,      [FLIGHT_TAKEOFF] = CHARGE_LAW,      [FLIGHT_FLYING] = CHARGE_LAW,
     [FLIGHT_FLOATING] = CHARGE_HOVER,   [FLIGHT_COASTING] = CHARGE_HOVER,   [FLIGHT_DESCENDING] = CHARGE_BLIND,
-    [FLIGHT_LANDING] = CHARGE_DESCENT,  [FLIGHT_LOWERING] = CHARGE_DESCENT,
+    [FLIGHT_LANDING] = CHARGE_DESCENT,  [FLIGHT_LOWERING] = CHARGE_DESCENT, [FLIGHT_CUT] = CHARGE_IDLE,
+};
+/* The same with law EST. */
+static const flight_charge_t charges_est[FLIGHT_STATE_COUNT] = {
+    [FLIGHT_GROUND] = CHARGE_IDLE,      [FLIGHT_TAKEOFF] = CHARGE_HOLD,     [FLIGHT_FLYING] = CHARGE_HOLD,
+    [FLIGHT_FLOATING] = CHARGE_HOVER,   [FLIGHT_COASTING] = CHARGE_HOLD,    [FLIGHT_DESCENDING] = CHARGE_SINK,
+    [FLIGHT_LANDING] = CHARGE_LAND,     [FLIGHT_LOWERING] = CHARGE_DESCENT, [FLIGHT_CUT] = CHARGE_IDLE,
 };
 
 void flight_init(flight_t *flight)
 {
     *flight = (flight_t){.hover_n = 0.0F};
     supervisor_init(&flight->supervisor);
+    est_law_init(&flight->est);
+}
+
+static bool is_est(flight_charge_t charge)
+{
+    return charge == CHARGE_HOLD || charge == CHARGE_LAND || charge == CHARGE_SINK;
 }
 
 static float between(float lowest, float value, float highest)
@@ -42,6 +54,8 @@ static void keep_hover(flight_t *flight, float gravity_n)
 
     if (state == FLIGHT_GROUND || state == FLIGHT_TAKEOFF || state == FLIGHT_FLOATING) {
         flight->hover_n = gravity_n;
+    } else if (is_est(flight->charge)) {
+        flight->hover_n = flight->est.hover.thrust_n;
     } else if (state == FLIGHT_FLYING) {
         const float share = seconds(flight->supervisor.step_us, STEP_MAX_S) / HOVER_TIME_S;
         flight->hover_n += share * (flight->thrust_n - flight->hover_n);
@@ -51,7 +65,7 @@ static void keep_hover(flight_t *flight, float gravity_n)
 }
 
 /* Another is in charge. The law keeps its integral action through COASTING alone. */
-static void hand_over(flight_t *flight, charge_t before, charge_t now)
+static void hand_over(flight_t *flight, flight_charge_t before, flight_charge_t now)
 {
     if (before == CHARGE_DESCENT) {
         flight->hover_n += flight->descent.trim_n;
@@ -61,20 +75,30 @@ static void hand_over(flight_t *flight, charge_t before, charge_t now)
     }
     if (now == CHARGE_LAW) {
         pid_resume(&flight->law);
+        pidt_resume(&flight->pidt);
     } else if (now != CHARGE_HOVER) {
         pid_reset(&flight->law);
+        pidt_reset(&flight->pidt);
+    }
+    if (is_est(now) && !is_est(before) && before != CHARGE_IDLE) {
+        est_law_take_over(&flight->est, flight->thrust_n, flight->hover_n);
     }
 }
 
+static float reference_mm(const flight_t *flight)
+{
+    return flight->supervisor.reference_m * 1000.0F;
+}
+
 /* Returns true when the law has gained or lost its integral action since its previous sample. */
-static bool step_law(flight_t *flight, const parameters_t *parameters)
+static bool step_pid(flight_t *flight, const parameters_t *parameters)
 {
     const height_track_t *height = &flight->supervisor.height;
     const float *value = parameters->value;
     const pid_gains_t gains = {
         .kp_n_per_mm = value[PARAMETER_KP],
         .kd_n_per_mm = value[PARAMETER_KD],
-        .ki_n_per_mm = (value[PARAMETER_LAW] == (float)LAW_PID) ? value[PARAMETER_KI] : 0.0F,
+        .ki_n_per_mm = (flight->flown == LAW_PID) ? value[PARAMETER_KI] : 0.0F,
         .gravity_n = value[PARAMETER_GRAV],
         .ascension_n = value[PARAMETER_USAT],
         .descension_n = value[PARAMETER_DSAT],
@@ -85,9 +109,30 @@ static bool step_law(flight_t *flight, const parameters_t *parameters)
     if (!every_release && !height->is_new && flight->law.primed) {
         return false;
     }
-    flight->wanted_n = pid_step(&flight->law, &gains, flight->supervisor.reference_m * 1000.0F - height->height_mm);
+    flight->wanted_n = pid_step(&flight->law, &gains, reference_mm(flight) - height->height_mm);
     flight->integral = gains.ki_n_per_mm > 0.0F;
     return flight->integral != had_integral;
+}
+
+static void step_pidt(flight_t *flight, const parameters_t *parameters)
+{
+    const height_track_t *height = &flight->supervisor.height;
+    const float *value = parameters->value;
+    const pidt_gains_t gains = {
+        .kp_n_per_m = value[PARAMETER_PKP],
+        .ki_n_per_m_s = value[PARAMETER_PKI],
+        .kd_n_s_per_m = value[PARAMETER_PKD],
+        .gravity_n = value[PARAMETER_GRAV],
+        .most_n = fminf(value[PARAMETER_GRAV] + PIDT_WINDOW_N, THRUST_MAX_N),
+        .least_n = fmaxf(value[PARAMETER_GRAV] - PIDT_WINDOW_N, 0.0F),
+    };
+
+    if (height->is_new || !flight->pidt.primed) {
+        const uint32_t rays_us = flight->est.rays_us;
+        flight->wanted_n = pidt_step(&flight->pidt, &gains, flight->supervisor.reference_m,
+                                     height->height_mm * 0.001F, seconds(rays_us - flight->pidt_rays_us, GAP_MAX_S));
+        flight->pidt_rays_us = rays_us;
+    }
 }
 
 static void step_descent(flight_t *flight, bool started)
@@ -101,17 +146,32 @@ static void step_descent(flight_t *flight, bool started)
     }
 }
 
-/* What the one in charge wants. Returns true when it is the law and the law has changed. */
-static bool decide(flight_t *flight, const parameters_t *parameters, charge_t before, charge_t now)
+/* What the one in charge wants. Returns true when it is the law and its integral action came or went. */
+static bool decide(flight_t *flight, const parameters_t *parameters, bool new_charge)
 {
-    switch (now) {
+    const float reference_m = flight->supervisor.reference_m;
+
+    switch (flight->charge) {
     case CHARGE_LAW:
-        return step_law(flight, parameters);
+        if (flight->flown != LAW_PIDT) {
+            return step_pid(flight, parameters);
+        }
+        step_pidt(flight, parameters);
+        break;
+    case CHARGE_HOLD:
+        flight->wanted_n = est_law_step(&flight->est, parameters, EST_HOLD, reference_m);
+        break;
+    case CHARGE_LAND:
+        flight->wanted_n = est_law_step(&flight->est, parameters, EST_LAND, 0.0F);
+        break;
+    case CHARGE_SINK:
+        flight->wanted_n = est_law_step(&flight->est, parameters, EST_SINK, 0.0F);
+        break;
     case CHARGE_HOVER:
         flight->wanted_n = flight->hover_n;
         break;
     case CHARGE_DESCENT:
-        step_descent(flight, before != now);
+        step_descent(flight, new_charge);
         break;
     case CHARGE_BLIND:
         flight->wanted_n = descent_blind(flight->hover_n, seconds(flight->supervisor.state_us, BLIND_MAX_S));
@@ -124,40 +184,81 @@ static bool decide(flight_t *flight, const parameters_t *parameters, charge_t be
     return false;
 }
 
-static void bridge(flight_t *flight, charge_t before, charge_t now, bool law_changed)
+static void bridge(flight_t *flight, flight_charge_t before, bool law_changed)
 {
+    const flight_charge_t now = flight->charge;
     const float hover_n = flight->hover_n;
+    const bool other = before != now && !(is_est(before) && is_est(now));
 
-    if (before != now && (before == CHARGE_IDLE || now == CHARGE_IDLE || now == CHARGE_DESCENT)) {
+    if (other && (before == CHARGE_IDLE || now == CHARGE_IDLE || now == CHARGE_DESCENT)) {
         flight->bridge_n = 0.0F;
-    } else if (before != now) {
-        flight->bridge_n =
-            between(hover_n - BRIDGE_START_N, flight->thrust_n, hover_n + BRIDGE_START_N) - flight->wanted_n;
     } else if (law_changed) {
         flight->bridge_n = flight->thrust_n - flight->wanted_n;
+    } else if (other) {
+        flight->bridge_n =
+            between(hover_n - BRIDGE_START_N, flight->thrust_n, hover_n + BRIDGE_START_N) - flight->wanted_n;
     } else {
         flight->bridge_n *= BRIDGE_TIME_S / (BRIDGE_TIME_S + seconds(flight->supervisor.step_us, STEP_MAX_S));
     }
 }
 
-void flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in, flight_outputs_t *out)
+static void listen(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)
+{
+    const bool at_rest = flight->supervisor.state == FLIGHT_GROUND && flight->supervisor.rest.on;
+
+    est_law_listen(&flight->est, parameters, in->frames, in->frame_count, in->now_us);
+    if (flight->supervisor.height.is_new) {
+        est_law_see(&flight->est, &in->altitude, in->height_stamp_ms, in->height_time_us, at_rest);
+    }
+    if (flight->supervisor.state == FLIGHT_GROUND) {
+        est_law_stand(&flight->est, parameters);
+    }
+}
+
+/* The law that is flown. Returns true when it is another than before. */
+static bool choose_law(flight_t *flight, const parameters_t *parameters)
+{
+    const control_law_t before = flight->flown;
+    const control_law_t wanted = (control_law_t)(uint16_t)parameters->value[PARAMETER_LAW];
+
+    flight->flown = (wanted == LAW_EST && !est_law_ready(&flight->est)) ? LAW_PIDT : wanted;
+    return flight->flown != before;
+}
+
+static void tell(const flight_t *flight, const parameters_t *parameters, flight_outputs_t *out)
 {
     const supervisor_t *supervisor = &flight->supervisor;
-    const charge_t before = in_charge[supervisor->state];
-
-    supervisor_step(&flight->supervisor, parameters->value[PARAMETER_LINK], in);
-    const charge_t now = in_charge[supervisor->state];
-    if (before != now) {
-        hand_over(flight, before, now);
-    }
-    keep_hover(flight, parameters->value[PARAMETER_GRAV]);
-    const bool law_changed = decide(flight, parameters, before, now);
-    bridge(flight, before, now, law_changed);
-    flight->thrust_n = between(0.0F, flight->wanted_n + flight->bridge_n, THRUST_MAX_N);
+    const estimator_t *estimator = &flight->est.estimator;
+    const bool estimated = flight->flown == LAW_EST;
+    const bool in_its_place =
+        flight->charge == CHARGE_LAW && !estimated && parameters->value[PARAMETER_LAW] == (float)LAW_EST;
+    const float measured_mm = (supervisor->height.sequence != 0U) ? supervisor->height.height_mm : NAN;
 
     out->thrust_n = flight->thrust_n;
     out->pulse_us = thrust_to_pulse_us(flight->thrust_n);
     out->state = supervisor->state;
-    out->flags = supervisor->flags;
+    out->flags = (uint16_t)(supervisor->flags | (in_its_place ? FLIGHT_FLAG_ATTITUDE : 0U));
     out->reference_m = supervisor->reference_m;
+    out->estimate_mm = estimated ? estimator->now.height_m * 1000.0F : measured_mm;
+    out->innovation_mm = estimated ? estimator->innovation_m * 1000.0F : NAN;
+}
+
+void flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in, flight_outputs_t *out)
+{
+    const supervisor_t *supervisor = &flight->supervisor;
+    const flight_charge_t before = flight->charge;
+
+    supervisor_step(&flight->supervisor, parameters->value[PARAMETER_LINK], in);
+    listen(flight, parameters, in);
+    const bool other_law = choose_law(flight, parameters);
+    flight->charge = (flight->flown == LAW_EST) ? charges_est[supervisor->state] : charges[supervisor->state];
+    if (before != flight->charge) {
+        hand_over(flight, before, flight->charge);
+    }
+    keep_hover(flight, parameters->value[PARAMETER_GRAV]);
+    const bool other_action = decide(flight, parameters, before != flight->charge);
+    bridge(flight, before, other_law || other_action);
+    flight->thrust_n = between(0.0F, flight->wanted_n + flight->bridge_n, THRUST_MAX_N);
+    est_law_commanded(&flight->est, flight->thrust_n);
+    tell(flight, parameters, out);
 }

@@ -7,8 +7,10 @@
 #include <stdint.h>
 
 #include "descent.h"
+#include "est_law.h"
 #include "parameters.h"
 #include "pid.h"
+#include "pidt.h"
 #include "supervisor.h"
 
 typedef struct {
@@ -17,12 +19,31 @@ typedef struct {
     flight_state_t state;
     uint16_t flags;                 /* FLIGHT_FLAG_*, supervisor.h */
     float reference_m;              /* reference in force, 0 = none */
+    float estimate_mm;              /* height that the law acts on; NAN: none is known */
+    float innovation_mm;            /* latest height less its prediction; NAN where nothing is predicted */
 } flight_outputs_t;
+
+/* Who decides the thrust. */
+typedef enum {
+    CHARGE_IDLE,                    /* nobody: none */
+    CHARGE_LAW,                     /* PD, PID, PIDT */
+    CHARGE_HOVER,
+    CHARGE_DESCENT,
+    CHARGE_BLIND,
+    CHARGE_HOLD,                    /* law EST, also while it coasts */
+    CHARGE_LAND,
+    CHARGE_SINK
+} flight_charge_t;
 
 typedef struct {
     supervisor_t supervisor;
+    flight_charge_t charge;
     pid_state_t law;
     bool integral;                  /* the law had an integral action in the previous cycle */
+    pidt_state_t pidt;
+    uint32_t pidt_rays_us;          /* of its previous height */
+    est_law_t est;
+    control_law_t flown;            /* the law that acts, or would: PIDT in place of EST without a fresh estimate */
     descent_t descent;
     float hover_n;                  /* best known hover thrust: slow mean of the thrust while FLYING, GRAV +-1.5 N */
     float wanted_n;                 /* what the state in charge wants */

@@ -17,13 +17,25 @@ typedef enum {
     PARAMETER_DSAT,     /* N below GRAV */
     PARAMETER_GRAV,     /* N per motor */
     PARAMETER_LAW,      /* choice, control_law_t */
-    PARAMETER_RELEASE,  /* choice, control_release_t */
+    PARAMETER_RELEASE,  /* choice, control_release_t; of laws PD and PID */
+    PARAMETER_PKP,      /* N/m, law PIDT */
+    PARAMETER_PKI,      /* N/(m s) */
+    PARAMETER_PKD,      /* N s/m */
+    PARAMETER_POSK,     /* 1/s, law EST: height -> speed */
+    PARAMETER_VELK,     /* 1/s, law EST: speed -> acceleration */
+    PARAMETER_VUP,      /* m/s, law EST: fastest climb */
+    PARAMETER_VDN,      /* m/s, law EST: fastest descent */
+    PARAMETER_TERRAIN,  /* choice, control_terrain_t; law EST */
+    PARAMETER_PLANT,    /* choice, control_plant_t; law EST */
+    PARAMETER_CRATE,    /* m/s per N, with PLANT CLIMB */
     PARAMETER_LINK,     /* s, 0 = link supervision off */
     PARAMETER_COUNT
 } parameter_id_t;
 
-typedef enum { LAW_PD, LAW_PID, LAW_COUNT } control_law_t;
+typedef enum { LAW_PD, LAW_PID, LAW_PIDT, LAW_EST, LAW_COUNT } control_law_t;
 typedef enum { RELEASE_FREE, RELEASE_SCAN, RELEASE_COUNT } control_release_t;
+typedef enum { TERRAIN_FOLLOW, TERRAIN_IGNORE, TERRAIN_COUNT } control_terrain_t;
+typedef enum { PLANT_THRUST, PLANT_CLIMB, PLANT_COUNT } control_plant_t; /* what the autopilot's throttle commands */
 
 typedef struct {
     const char *name;               /* as typed after '#', upper case */

@@ -23,49 +23,61 @@
 #define TOO_HIGH_HEIGHTS 2U
 #define RATE_MAX_MM_S 3000.0F
 #define RATE_CHANGE_MAX_MM_S2 10000.0F
-#define CLIMB_AHEAD_S 0.25F
+#define CLIMB_AHEAD_S 0.40F
+#define BRAKE_MPS2 4.0F
+#define TILTED_ATTITUDES 3U
+#define TILTED_COS 0.70710678F
+#define LEVEL_COS 0.93969262F
 
 #define GO (FLIGHT_IF_REFERENCE | FLIGHT_IF_READY | FLIGHT_IF_HEIGHT)
 
 const flight_transition_t flight_transitions[FLIGHT_TRANSITION_COUNT] = {
     {FLIGHT_GROUND, FLIGHT_IF_ALOFT, 0U, FLIGHT_FLOATING},
-    {FLIGHT_GROUND, GO, 0U, FLIGHT_TAKEOFF},
+    {FLIGHT_GROUND, GO, FLIGHT_IF_TILTED, FLIGHT_TAKEOFF},
 
+    {FLIGHT_TAKEOFF, FLIGHT_IF_TILTED, 0U, FLIGHT_CUT},
     {FLIGHT_TAKEOFF, 0U, FLIGHT_IF_HEIGHT, FLIGHT_COASTING},
     {FLIGHT_TAKEOFF, 0U, FLIGHT_IF_REFERENCE, FLIGHT_LANDING},
     {FLIGHT_TAKEOFF, FLIGHT_IF_TOO_HIGH, 0U, FLIGHT_LOWERING},
     {FLIGHT_TAKEOFF, FLIGHT_IF_OFF_GROUND, 0U, FLIGHT_FLYING},
 
+    {FLIGHT_FLYING, FLIGHT_IF_TILTED, 0U, FLIGHT_CUT},
     {FLIGHT_FLYING, 0U, FLIGHT_IF_HEIGHT, FLIGHT_COASTING},
     {FLIGHT_FLYING, 0U, FLIGHT_IF_REFERENCE, FLIGHT_LANDING},
     {FLIGHT_FLYING, FLIGHT_IF_TOO_HIGH, 0U, FLIGHT_LOWERING},
 
-    {FLIGHT_FLOATING, GO, 0U, FLIGHT_FLYING},
+    {FLIGHT_FLOATING, GO, FLIGHT_IF_TILTED, FLIGHT_FLYING},
     {FLIGHT_FLOATING, FLIGHT_IF_LAND | FLIGHT_IF_HEIGHT, 0U, FLIGHT_LANDING},
     {FLIGHT_FLOATING, FLIGHT_IF_LAND, 0U, FLIGHT_DESCENDING},
     {FLIGHT_FLOATING, FLIGHT_IF_AT_REST, 0U, FLIGHT_GROUND},
 
+    {FLIGHT_COASTING, FLIGHT_IF_TILTED, 0U, FLIGHT_CUT},
     {FLIGHT_COASTING, 0U, FLIGHT_IF_REFERENCE, FLIGHT_DESCENDING},
     {FLIGHT_COASTING, FLIGHT_IF_HEIGHT, 0U, FLIGHT_FLYING},
     {FLIGHT_COASTING, FLIGHT_IF_LOST, 0U, FLIGHT_DESCENDING},
 
+    {FLIGHT_DESCENDING, FLIGHT_IF_TILTED, 0U, FLIGHT_CUT},
     {FLIGHT_DESCENDING, GO, 0U, FLIGHT_FLYING},
     {FLIGHT_DESCENDING, FLIGHT_IF_HEIGHT, 0U, FLIGHT_LANDING},
     {FLIGHT_DESCENDING, FLIGHT_IF_SPENT, 0U, FLIGHT_GROUND},
 
+    {FLIGHT_LANDING, FLIGHT_IF_TILTED, 0U, FLIGHT_CUT},
     {FLIGHT_LANDING, GO, 0U, FLIGHT_FLYING},
     {FLIGHT_LANDING, 0U, FLIGHT_IF_HEIGHT, FLIGHT_DESCENDING},
     {FLIGHT_LANDING, FLIGHT_IF_AT_REST, 0U, FLIGHT_GROUND},
 
+    {FLIGHT_LOWERING, FLIGHT_IF_TILTED, 0U, FLIGHT_CUT},
     {FLIGHT_LOWERING, 0U, FLIGHT_IF_HEIGHT, FLIGHT_COASTING},
     {FLIGHT_LOWERING, 0U, FLIGHT_IF_REFERENCE, FLIGHT_LANDING},
     {FLIGHT_LOWERING, FLIGHT_IF_BACK, 0U, FLIGHT_FLYING},
+
+    {FLIGHT_CUT, FLIGHT_IF_AT_REST | FLIGHT_IF_LEVEL, 0U, FLIGHT_GROUND},
 };
 
 static const char *const state_names[FLIGHT_STATE_COUNT] = {
     [FLIGHT_GROUND] = "GROUND",     [FLIGHT_TAKEOFF] = "TAKEOFF",       [FLIGHT_FLYING] = "FLYING",
     [FLIGHT_FLOATING] = "FLOATING", [FLIGHT_COASTING] = "COASTING",     [FLIGHT_DESCENDING] = "DESCENDING",
-    [FLIGHT_LANDING] = "LANDING",   [FLIGHT_LOWERING] = "LOWERING",
+    [FLIGHT_LANDING] = "LANDING",   [FLIGHT_LOWERING] = "LOWERING", [FLIGHT_CUT] = "CUT",
 };
 
 const char *flight_state_name(flight_state_t state)
@@ -159,6 +171,12 @@ static void observe_attitude(supervisor_t *s, const flight_inputs_t *in)
     s->attitude_age_us =
         is_new ? elapsed(in->now_us, in->attitude_time_us) : grown(s->attitude_age_us, s->step_us);
     s->attitude_time_us = in->attitude_time_us;
+    if (is_new && in->attitude_ready) {
+        const float upright = cosf(in->roll_rad) * cosf(in->pitch_rad);
+        const bool tilted = upright < TILTED_COS;
+        s->tilted_count = tilted ? (uint16_t)(s->tilted_count + (s->tilted_count < TILTED_ATTITUDES)) : 0U;
+        s->level = upright > LEVEL_COS;
+    }
 }
 
 static void observe_link(supervisor_t *s, const flight_inputs_t *in)
@@ -197,9 +215,21 @@ static bool height_fresh(const supervisor_t *s)
     return s->height.age_us <= HEIGHT_FRESH_US;
 }
 
+static bool attitude_fresh(const supervisor_t *s)
+{
+    return s->attitude_age_us <= ATTITUDE_FRESH_US;
+}
+
 static float above_reference_mm(const supervisor_t *s)
 {
     return s->height.height_mm - s->reference_m * 1000.0F;
+}
+
+/* Where the present climb ends once it is braked; a descent does not count. */
+static float peak_above_reference_mm(const supervisor_t *s)
+{
+    const float climb_mm_s = fmaxf(s->height.rate_mm_s, 0.0F);
+    return above_reference_mm(s) + climb_mm_s * (CLIMB_AHEAD_S + climb_mm_s * (0.0005F / BRAKE_MPS2));
 }
 
 static void observe_ground(supervisor_t *s)
@@ -212,8 +242,7 @@ static void observe_ground(supervisor_t *s)
     hold(&s->rest, resting, s->step_us);
     s->rest_from_mm = resting ? s->rest_from_mm : height_mm;
     if (s->height.is_new) {
-        const float climb_mm = fmaxf(s->height.rate_mm_s, 0.0F) * CLIMB_AHEAD_S;
-        const bool above = above_reference_mm(s) + climb_mm > TOO_HIGH_MM;
+        const bool above = peak_above_reference_mm(s) > TOO_HIGH_MM;
         s->too_high_count = above ? (uint16_t)(s->too_high_count + (s->too_high_count < TOO_HIGH_HEIGHTS)) : 0U;
     }
 }
@@ -237,29 +266,33 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
                       | bit(s->aloft.for_us >= ALOFT_HELD_US, FLIGHT_IF_ALOFT)
                       | bit(s->rest.for_us >= REST_HELD_US, FLIGHT_IF_AT_REST)
                       | bit(too_high && reference, FLIGHT_IF_TOO_HIGH)
-                      | bit(fresh && above_reference_mm(s) < BACK_MM, FLIGHT_IF_BACK)
+                      | bit(fresh && peak_above_reference_mm(s) < BACK_MM, FLIGHT_IF_BACK)
                       | bit(s->land, FLIGHT_IF_LAND)
-                      | bit(s->state == FLIGHT_DESCENDING && s->state_us >= SPENT_US, FLIGHT_IF_SPENT));
+                      | bit(s->state == FLIGHT_DESCENDING && s->state_us >= SPENT_US, FLIGHT_IF_SPENT)
+                      | bit(s->tilted_count == TILTED_ATTITUDES, FLIGHT_IF_TILTED)
+                      | bit(s->level && attitude_fresh(s), FLIGHT_IF_LEVEL));
 }
 
 static uint16_t flags(const supervisor_t *s, uint16_t met, float link_s, const flight_inputs_t *in)
 {
     const bool fresh = height_fresh(s);
-    const bool level = in->attitude_ready && s->attitude_age_us <= ATTITUDE_FRESH_US;
+    const bool level = in->attitude_ready && attitude_fresh(s);
     const bool too_high = s->state == FLIGHT_LOWERING || (met & FLIGHT_IF_TOO_HIGH) != 0U;
+    const bool tilted = s->state == FLIGHT_CUT || (met & FLIGHT_IF_TILTED) != 0U;
 
     return (uint16_t)(bit(!fresh, FLIGHT_FLAG_HEIGHT)
                       | bit(!level, FLIGHT_FLAG_ATTITUDE)
                       | bit(fresh && in->disagree, FLIGHT_FLAG_DISAGREE)
                       | bit(too_high, FLIGHT_FLAG_TOO_HIGH)
-                      | bit(link_silent(s, link_s, 0U), FLIGHT_FLAG_LINK));
+                      | bit(link_silent(s, link_s, 0U), FLIGHT_FLAG_LINK)
+                      | bit(tilted, FLIGHT_FLAG_TILT));
 }
 
 static void enter(supervisor_t *s, flight_state_t state)
 {
     s->state = state;
     s->state_us = 0U;
-    if (state == FLIGHT_GROUND || state == FLIGHT_DESCENDING) {
+    if (state == FLIGHT_GROUND || state == FLIGHT_DESCENDING || state == FLIGHT_CUT) {
         s->reference_m = 0.0F;
     }
 }

@@ -7,6 +7,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "altitude.h"
+#include "estimator.h"
+
 typedef enum {
     FLIGHT_GROUND,      /* on the ground: no thrust */
     FLIGHT_TAKEOFF,     /* reference set, still on the ground or just leaving it: the law acts */
@@ -16,6 +19,7 @@ typedef enum {
     FLIGHT_DESCENDING,  /* height stale for long: bounded descent without a height, latched */
     FLIGHT_LANDING,     /* #SETR 0 in flight, or link lost: bounded descent to the ground */
     FLIGHT_LOWERING,    /* above reference + 0.8 m: bounded descent until back below */
+    FLIGHT_CUT,         /* tilted over 45 degrees: no thrust until level and at rest on the ground */
     FLIGHT_STATE_COUNT
 } flight_state_t;
 
@@ -24,6 +28,7 @@ typedef enum {
 #define FLIGHT_FLAG_DISAGREE 4U     /* mirrors disagree */
 #define FLIGHT_FLAG_TOO_HIGH 8U     /* above reference + 0.8 m, or LOWERING */
 #define FLIGHT_FLAG_LINK 16U        /* armed link is silent */
+#define FLIGHT_FLAG_TILT 32U        /* tilted over 45 degrees, or CUT */
 
 /* What the cycle knows, copied from the servers. Times in microseconds on one wrapping 32-bit clock; a time slightly
  * later than now_us counts as now. Steps may not be more than 71 minutes apart. */
@@ -35,9 +40,14 @@ typedef struct {
     uint32_t height_sequence;       /* +1 per valid height; 0 = never one */
     bool disagree;                  /* mirrors disagree, see altitude.h */
     bool attitude_ready;            /* offset known */
-    float roll_rad;                 /* not used by laws PD and PID */
+    float roll_rad;                 /* median of the latest five frames; not used by laws PD and PID */
     float pitch_rad;                /* likewise */
     uint32_t attitude_time_us;      /* arrival of the latest IMU frame */
+    altitude_t altitude;            /* what height_mm was made of; for law EST */
+    uint32_t height_stamp_ms;       /* 24-bit sensor time of that scan; for laws PIDT and EST */
+    const motion_frame_t *frames;   /* the latest frames, oldest first, old ones again or not; for law EST; borrowed for
+                                     * the call, NULL when frame_count is 0 */
+    uint16_t frame_count;
     float reference_m;              /* looked at when its sequence changes; outside the limits of SETR: ignored */
     uint32_t reference_sequence;    /* +1 per accepted #SETR, 0 m included */
     uint32_t link_time_us;          /* arrival of the latest complete valid command line */
@@ -52,11 +62,14 @@ typedef struct {
 #define FLIGHT_IF_OFF_GROUND 16U    /* fresh height above 0.15 m */
 #define FLIGHT_IF_ALOFT 32U         /* fresh heights above 0.15 m for 1 s */
 #define FLIGHT_IF_AT_REST 64U       /* fresh heights below 0.05 m that did not fall by 0.02 m for 0.5 s */
-#define FLIGHT_IF_TOO_HIGH 128U     /* two heights in a row that 0.25 s of climbing bring above reference + 0.8 m */
-#define FLIGHT_IF_BACK 256U         /* fresh height below reference + 0.3 m */
+#define FLIGHT_IF_TOO_HIGH 128U     /* two heights in a row from where the present climb, 0.4 s long and then braked by
+                                     * 4 m/s2, ends above reference + 0.8 m */
+#define FLIGHT_IF_BACK 256U         /* fresh height from where it ends below reference + 0.3 m */
 #define FLIGHT_IF_LAND 512U         /* #SETR 0 arrived in this cycle */
 #define FLIGHT_IF_SPENT 1024U       /* 45 s in DESCENDING: its thrust has faded out */
-#define FLIGHT_IF_ALL 2047U
+#define FLIGHT_IF_TILTED 2048U      /* three fresh attitudes in a row over 45 degrees */
+#define FLIGHT_IF_LEVEL 4096U       /* fresh attitude within 20 degrees */
+#define FLIGHT_IF_ALL 8191U
 
 typedef struct {
     flight_state_t from;
@@ -65,7 +78,7 @@ typedef struct {
     flight_state_t to;
 } flight_transition_t;
 
-#define FLIGHT_TRANSITION_COUNT 25U
+#define FLIGHT_TRANSITION_COUNT 32U
 extern const flight_transition_t flight_transitions[FLIGHT_TRANSITION_COUNT];
 
 /* The first row of the table that applies, else the same state. */
@@ -108,13 +121,15 @@ typedef struct {
     hold_t rest;
     float rest_from_mm;
     uint16_t too_high_count;
+    uint16_t tilted_count;
+    bool level;
 } supervisor_t;
 
 /* GROUND, nothing known. */
 void supervisor_init(supervisor_t *supervisor);
 
 /* One cycle: observes, then makes at most one transition. A #SETR puts its reference in force; a lost link withdraws
- * it, and so does entering GROUND or DESCENDING, so that nothing but a new #SETR flies again.
+ * it, and so does entering GROUND, DESCENDING or CUT, so that nothing but a new #SETR flies again.
  * link_s: longest silence of the link, 0 = not armed. */
 void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs_t *in);
 

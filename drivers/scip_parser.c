@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #define STAMP_MASK ((uint32_t)0xFFFFFFUL)
+#define STATUS_OCTETS 4U    /* two characters, sum, LF */
 #define STAMP_STEP_MAX_MS ((uint32_t)10000UL)   /* two frames of one stream are never further apart */
 
 enum {
@@ -573,6 +574,37 @@ size_t scip_parser_feed_run(scip_parser_t *parser, const octet_t *octets, size_t
     }
     *event = seen;
     return taken;
+}
+
+/* From the present line's first octet on. */
+static uint32_t expected_from_line(const scip_parser_t *parser)
+{
+    const uint32_t scan = parser->awaited.scan_octets;
+    const uint32_t echo = (uint32_t)parser->awaited.echo_length + 1U;
+    const uint32_t left = parser->characters_left;
+    const uint32_t blocks = (left + SCIP_BLOCK - 1U) / SCIP_BLOCK;
+    switch (parser->state) {
+    case ECHO:
+        return scan;
+    case STATUS:
+        return scan == 0U ? 0U : scan - echo;
+    case TIME:
+        return scan == 0U ? 0U : scan - echo - STATUS_OCTETS;
+    case DATA:
+        return left + 2U * blocks + 1U;
+    case LEGACY_END:
+    case REPLY_END:
+    case SCAN_END:
+        return 1U;
+    default:
+        return 0U;
+    }
+}
+
+uint16_t scip_parser_expected(const scip_parser_t *parser)
+{
+    const uint32_t whole = expected_from_line(parser);
+    return parser->gathered < whole ? (uint16_t)(whole - parser->gathered) : 0U;
 }
 
 uint32_t scip_unwrap_ms(uint32_t unwrapped_ms, uint32_t timestamp_ms)

@@ -120,6 +120,10 @@ void scip_parser_scan_into(scip_parser_t *parser, scip_scan_t *scan);
 /* The UART lost or mangled octets: what is being received is given up (the caller counts the cause). */
 void scip_parser_line_broken(scip_parser_t *parser);
 
+/* Octets still to come until the reply or scan under way is complete, as far as that is known by now; 0 when it is not.
+ * Between the scans of a stream: of the next one. A notice or the stream's end is shorter. */
+uint16_t scip_parser_expected(const scip_parser_t *parser);
+
 /* Private halves of scip_parser_feed(): a line is complete; a line is full and only its last octets are kept. */
 scip_event_t scip_parser_end_line(scip_parser_t *parser);
 void scip_parser_cut_line(scip_parser_t *parser);

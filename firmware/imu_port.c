@@ -20,13 +20,13 @@ static Swi_Handle imu_swi;
 static Semaphore_Handle imu_ready;
 
 /* A frame has no sum of its own: with an error, whichever octet it hit, nothing of the burst is believed. */
-static void received(const bsp_uart_burst_t *burst)
+static uint16_t received(const bsp_uart_burst_t *burst)
 {
     uint16_t i;
 
     if (burst->framing || burst->overrun) {
         razor_collector_broken(&collector);
-        return;
+        return UART_PORT_BURST;
     }
     for (i = 0U; i < burst->count; i++) {
         if (razor_collect(&collector, octet_of(burst->octets[i]))) {
@@ -36,6 +36,7 @@ static void received(const bsp_uart_burst_t *burst)
             Swi_post(imu_swi);
         }
     }
+    return UART_PORT_BURST;
 }
 
 static Void imu_swi_run(UArg unused0, UArg unused1)

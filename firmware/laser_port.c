@@ -72,8 +72,10 @@ static void note_errors(const bsp_uart_burst_t *burst)
     }
 }
 
-static void received(const bsp_uart_burst_t *burst)
+/* The last octet of a scan makes an interrupt; where the end is not known, the tick is soon enough. */
+static uint16_t received(const bsp_uart_burst_t *burst)
 {
+    uint16_t expected;
     uint16_t i;
 
     note_errors(burst);
@@ -81,6 +83,8 @@ static void received(const bsp_uart_burst_t *burst)
     for (i = 0U; i < burst->count; i++) {
         note(scip_parser_feed(&parser, octet_of(burst->octets[i])));
     }
+    expected = scip_parser_expected(&parser);
+    return (expected > 0U) ? expected : (uint16_t)UART_PORT_BURST;
 }
 
 static Void laser_swi_run(UArg unused0, UArg unused1)

@@ -6,6 +6,7 @@
 #include "mounting.h"
 #include "servers.h"
 #include "tasks.h"
+#include "uart_port.h"
 #include "verbs.h"
 #include "watchdog.h"
 
@@ -40,6 +41,7 @@ int main(void)
     task_send_laser_create(&config);
     task_send_comm_create();
     task_receive_comm_create();
+    uart_port_start();
     verb_load_at_start();
     bsp_watchdog_start();
     BIOS_start();

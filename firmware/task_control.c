@@ -17,58 +17,104 @@
 
 #define EVENT_PERIOD Event_Id_00
 #define EVENT_ALTITUDE Event_Id_01
+#define EVENT_IMU Event_Id_02
 
-static const UInt release_events[RELEASE_COUNT] = {EVENT_PERIOD, EVENT_ALTITUDE};
+/* Release is a property of the law; that of the seed's laws is set by the operator. */
+static const UInt seed_releases[RELEASE_COUNT] = {EVENT_PERIOD, EVENT_ALTITUDE};
 
 static Event_Handle event;
-static control_release_t in_force;
+static UInt in_force;
 static flight_t flight;
 
-static void post(control_release_t release)
+static void post(UInt release)
 {
-    if (release == in_force) {
+    if ((release & in_force) != 0U) {
         monitor_released(MONITOR_CONTROL, bsp_time_us());
     }
-    Event_post(event, release_events[release]);
+    Event_post(event, release);
 }
 
 static Void period_over(UArg unused)
 {
     (void)unused;
-    post(RELEASE_FREE);
+    post(EVENT_PERIOD);
 }
 
 void task_control_altitude_arrived(void)
 {
-    post(RELEASE_SCAN);
+    post(EVENT_ALTITUDE);
+}
+
+void task_control_imu_arrived(void)
+{
+    post(EVENT_IMU);
+}
+
+static UInt releases(const parameters_t *parameters)
+{
+    switch ((control_law_t)(uint16_t)parameters->value[PARAMETER_LAW]) {
+    case LAW_EST:
+        return EVENT_ALTITUDE | EVENT_IMU;
+    case LAW_PIDT:
+        return EVENT_ALTITUDE;
+    default:
+        return seed_releases[(uint16_t)parameters->value[PARAMETER_RELEASE]];
+    }
 }
 
 static void wait(const parameters_t *parameters)
 {
-    in_force = (control_release_t)(uint16_t)parameters->value[PARAMETER_RELEASE];
-    (void)Event_pend(event, Event_Id_NONE, release_events[in_force], CONTROL_TIMEOUT_MS);
+    in_force = releases(parameters);
+    (void)Event_pend(event, Event_Id_NONE, in_force, CONTROL_TIMEOUT_MS);
     monitor_begin(MONITOR_CONTROL);
+}
+
+/* The IMU's history, oldest first, in the shape of the control room. Returns the latest sample. */
+static const imu_sample_t *look_back(flight_inputs_t *in)
+{
+    static imu_sample_t history[IMU_HISTORY];
+    static motion_frame_t frames[IMU_HISTORY];
+    uint16_t held = imu_server_history(history);
+    uint16_t i;
+
+    for (i = 0U; i < held; i++) {
+        const imu_sample_t *sample = &history[held - 1U - i];
+
+        frames[i].sequence = sample->sequence;
+        frames[i].arrival_us = sample->arrival_us;
+        frames[i].usable = sample->ready && sample->has_acceleration;
+        frames[i].forward_mps2 = sample->forward_mps2;
+        frames[i].right_mps2 = sample->right_mps2;
+        frames[i].down_mps2 = sample->down_mps2;
+        frames[i].roll_rad = sample->median.roll_rad;
+        frames[i].pitch_rad = sample->median.pitch_rad;
+    }
+    in->frames = frames;
+    in->frame_count = held;
+    return &history[0];
 }
 
 static void look(flight_inputs_t *in)
 {
     altitude_sample_t altitude;
-    imu_sample_t imu;
+    const imu_sample_t *imu;
     reference_sample_t reference;
 
     altitude_server_read(&altitude);
-    imu_server_read(&imu);
+    imu = look_back(in);
     reference_server_read(&reference);
     in->now_us = bsp_time_us();
     in->height_valid = altitude.scan_valid;
     in->height_mm = altitude.altitude.height_mm;
     in->height_time_us = altitude.arrival_us;
     in->height_sequence = altitude.sequence;
+    in->height_stamp_ms = altitude.sensor_time_ms;
+    in->altitude = altitude.altitude;
     in->disagree = altitude.altitude.disagree;
-    in->attitude_ready = imu.ready;
-    in->roll_rad = imu.median.roll_rad;
-    in->pitch_rad = imu.median.pitch_rad;
-    in->attitude_time_us = imu.arrival_us;
+    in->attitude_ready = imu->ready;
+    in->roll_rad = imu->median.roll_rad;
+    in->pitch_rad = imu->median.pitch_rad;
+    in->attitude_time_us = imu->arrival_us;
     in->reference_m = reference.reference_m;
     in->reference_sequence = reference.sequence;
     in->link_time_us = reference.link_time_us;

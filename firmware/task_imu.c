@@ -63,6 +63,7 @@ static Void task_imu(UArg unused0, UArg unused1)
             sample.malformed++;
         }
         imu_server_write(&sample);
+        task_control_imu_arrived();
         monitor_done(MONITOR_IMU);
     }
 }

@@ -11,7 +11,8 @@ void task_send_laser_create(const urg_config_t *config);
 void task_send_comm_create(void);
 void task_receive_comm_create(void);
 
-/* TaskControl's release by a new altitude; any task. */
+/* TaskControl's releases by a new altitude and by a new IMU frame; any task. */
 void task_control_altitude_arrived(void);
+void task_control_imu_arrived(void);
 
 #endif

@@ -2,10 +2,14 @@
 
 #include <stddef.h>
 #include <ti/sysbios/family/c28/Hwi.h>
+#include <ti/sysbios/knl/Clock.h>
 #include <xdc/std.h>
+
+#define POLL_TICKS 1U
 
 typedef struct {
     uart_port_received_t received;
+    uint16_t level;     /* octets that the receive interrupt waits for */
     uint16_t cells[UART_PORT_TRANSMIT_CELLS];
     uint16_t head;      /* next to send */
     uint16_t count;
@@ -13,12 +17,42 @@ typedef struct {
 
 static uart_port_t ports[BSP_UART_COUNT];
 
+static void take(bsp_uart_t uart)
+{
+    uart_port_t *port = &ports[uart];
+    bsp_uart_burst_t burst;
+    uint16_t level;
+
+    bsp_uart_receive(uart, &burst);
+    level = port->received(&burst);
+    if (level > UART_PORT_BURST) {
+        level = UART_PORT_BURST;
+    }
+    if (level != port->level) {
+        port->level = level;
+        bsp_uart_set_receive_level(uart, level);
+    }
+}
+
 static Void receive_hwi(UArg uart)
 {
-    bsp_uart_burst_t burst;
+    take((bsp_uart_t)uart);
+}
 
-    bsp_uart_receive((bsp_uart_t)uart, &burst);
-    ports[uart].received(&burst);
+/* Where every octet makes an interrupt there is nothing to fetch. */
+static Void poll(UArg unused)
+{
+    uint16_t uart;
+
+    (void)unused;
+    for (uart = 0U; uart < (uint16_t)BSP_UART_COUNT; uart++) {
+        UInt key = Hwi_disable();
+
+        if (ports[uart].level > 1U) {
+            take((bsp_uart_t)uart);
+        }
+        Hwi_restore(key);
+    }
 }
 
 static uint16_t feed_run(bsp_uart_t uart)
@@ -59,12 +93,28 @@ static void hwi_create(int16_t number, Hwi_FuncPtr function, bsp_uart_t uart)
     (void)Hwi_create((Int)number, function, &params, NULL);
 }
 
+static void open(bsp_uart_t uart, uint32_t bit_rate)
+{
+    bsp_uart_open(uart, bit_rate);
+    ports[uart].level = 1U;
+}
+
 void uart_port_create(bsp_uart_t uart, uint32_t bit_rate, uart_port_received_t received)
 {
     ports[uart].received = received;
-    bsp_uart_open(uart, bit_rate);
+    open(uart, bit_rate);
     hwi_create(bsp_uart_receive_interrupt(uart), receive_hwi, uart);
     hwi_create(bsp_uart_transmit_interrupt(uart), transmit_hwi, uart);
+}
+
+void uart_port_start(void)
+{
+    Clock_Params params;
+
+    Clock_Params_init(&params);
+    params.period = POLL_TICKS;
+    params.startFlag = TRUE;
+    (void)Clock_create(poll, POLL_TICKS, &params, NULL);
 }
 
 void uart_port_reopen(bsp_uart_t uart, uint32_t bit_rate)
@@ -73,7 +123,7 @@ void uart_port_reopen(bsp_uart_t uart, uint32_t bit_rate)
 
     ports[uart].head = 0U;
     ports[uart].count = 0U;
-    bsp_uart_open(uart, bit_rate);
+    open(uart, bit_rate);
     Hwi_restore(key);
 }
 

@@ -50,7 +50,8 @@ static void doubt(const bsp_uart_burst_t *burst)
     }
 }
 
-static void received(const bsp_uart_burst_t *burst)
+/* Every octet for itself: commands are short, rare and slow. */
+static uint16_t received(const bsp_uart_burst_t *burst)
 {
     uint16_t i;
 
@@ -61,6 +62,7 @@ static void received(const bsp_uart_burst_t *burst)
         }
     }
     doubt(burst);
+    return 1U;
 }
 
 static Void xbee_swi_run(UArg unused0, UArg unused1)

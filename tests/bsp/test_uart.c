@@ -397,3 +397,72 @@ void test_the_transmit_interrupt_pumps_a_long_message_out(void)
     }
     TEST_ASSERT_EQUAL_INT(0, raised[98]);
 }
+
+/* ---- receive level ---- */
+
+void test_the_interrupt_comes_with_the_octet_that_fills_the_level(void)
+{
+    for (uint16_t level = 1; level <= BSP_UART_FIFO_DEPTH; level++) {
+        bsp_uart_open(BSP_UART_LASER, 250000);
+        bsp_uart_set_receive_level(BSP_UART_LASER, level);
+        raised[96] = 0;
+        for (uint16_t i = 1; i <= level; i++) {
+            TEST_ASSERT_EQUAL_INT(0, receive_interrupts(BSP_UART_LASER));
+            arrive(BSP_UART_LASER, i, 250000);
+        }
+        TEST_ASSERT_EQUAL_INT(1, receive_interrupts(BSP_UART_LASER));
+        bsp_uart_receive(BSP_UART_LASER, &burst);
+        TEST_ASSERT_EQUAL_UINT16(level, burst.count);
+        TEST_ASSERT_FALSE(burst.overrun);
+    }
+}
+
+void test_fewer_octets_wait_and_are_there_for_whoever_looks(void)
+{
+    bsp_uart_open(BSP_UART_IMU, 57600);
+    bsp_uart_set_receive_level(BSP_UART_IMU, 12U);
+    for (unsigned i = 0; i < 11; i++) {
+        arrive(BSP_UART_IMU, 'a' + i, 57600);
+    }
+    run_for(SIM_S);
+    TEST_ASSERT_EQUAL_INT(0, receive_interrupts(BSP_UART_IMU));
+    bsp_uart_receive(BSP_UART_IMU, &burst);
+    TEST_ASSERT_EQUAL_UINT16(11, burst.count);
+    TEST_ASSERT_EQUAL_HEX16('k', burst.octets[10]);
+    for (unsigned i = 0; i < 12; i++) {
+        arrive(BSP_UART_IMU, 'a' + i, 57600);
+    }
+    TEST_ASSERT_EQUAL_INT(1, receive_interrupts(BSP_UART_IMU));
+}
+
+void test_a_level_below_what_is_there_interrupts_at_once(void)
+{
+    bsp_uart_open(BSP_UART_LASER, 250000);
+    bsp_uart_set_receive_level(BSP_UART_LASER, 12U);
+    arrive(BSP_UART_LASER, 'a', 250000);
+    arrive(BSP_UART_LASER, 'b', 250000);
+    TEST_ASSERT_EQUAL_INT(0, receive_interrupts(BSP_UART_LASER));
+    bsp_uart_set_receive_level(BSP_UART_LASER, 2U);
+    TEST_ASSERT_EQUAL_INT(1, receive_interrupts(BSP_UART_LASER));
+}
+
+void test_an_error_interrupts_below_the_level_too(void)
+{
+    bsp_uart_open(BSP_UART_LASER, 250000);
+    bsp_uart_set_receive_level(BSP_UART_LASER, 12U);
+    arrive(BSP_UART_LASER, 'a', 250000);
+    run_for(llround(10 * bit_of(19200)));
+    chip_sci_receive(SCIA_BASE, 0, bit_of(19200));
+    TEST_ASSERT_GREATER_THAN_INT(0, receive_interrupts(BSP_UART_LASER));
+    bsp_uart_receive(BSP_UART_LASER, &burst);
+    TEST_ASSERT_TRUE(burst.framing);
+}
+
+void test_a_new_open_interrupts_at_every_octet_again(void)
+{
+    bsp_uart_open(BSP_UART_LASER, 115200);
+    bsp_uart_set_receive_level(BSP_UART_LASER, 12U);
+    bsp_uart_open(BSP_UART_LASER, 250000);
+    arrive(BSP_UART_LASER, 'a', 250000);
+    TEST_ASSERT_EQUAL_INT(1, receive_interrupts(BSP_UART_LASER));
+}

@@ -121,3 +121,11 @@ void test_transmitting_asks_the_fifo_then_the_shift_register(void)
     driverlib_halfword_ExpectAndReturn(0x7204, &EMPTY);
     TEST_ASSERT_FALSE(bsp_uart_transmitting(BSP_UART_LASER));
 }
+
+void test_the_receive_level_leaves_the_transmit_interrupt_at_empty(void)
+{
+    SCI_setFIFOInterruptLevel_Expect(SCIB_BASE, SCI_FIFO_TX0, SCI_FIFO_RX12);
+    bsp_uart_set_receive_level(BSP_UART_IMU, 12U);
+    SCI_setFIFOInterruptLevel_Expect(SCIA_BASE, SCI_FIFO_TX0, SCI_FIFO_RX1);
+    bsp_uart_set_receive_level(BSP_UART_LASER, 1U);
+}

@@ -121,12 +121,13 @@ static void floating(void)
 /* ---- the table */
 
 static const char *const condition_names[] = {"REFERENCE", "READY", "HEIGHT",   "LOST", "OFF_GROUND", "ALOFT",
-                                              "AT_REST",   "TOO_HIGH", "BACK", "LAND", "SPENT"};
+                                              "AT_REST",   "TOO_HIGH", "BACK",   "LAND", "SPENT",      "TILTED", "LEVEL"};
+#define CONDITION_COUNT (sizeof condition_names / sizeof condition_names[0])
 
 static void row_text(const flight_transition_t *row, char *text, size_t size)
 {
     size_t used = (size_t)snprintf(text, size, "| %s |", flight_state_name(row->from));
-    for (unsigned i = 0; i < 11; i++) {
+    for (unsigned i = 0; i < CONDITION_COUNT; i++) {
         const unsigned mask = 1U << i;
         if (((row->all_of | row->none_of) & mask) != 0U) {
             used += (size_t)snprintf(text + used, size - used, " %s%s", (row->none_of & mask) != 0U ? "!" : "",
@@ -165,10 +166,14 @@ void test_the_document_shows_the_same_table(void)
 static flight_state_t expected_next(flight_state_t from, unsigned c)
 {
     const bool reference = c & FLIGHT_IF_REFERENCE, height = c & FLIGHT_IF_HEIGHT;
+    const bool tilted = c & FLIGHT_IF_TILTED;
     const bool go = reference && height && (c & FLIGHT_IF_READY);
+    if (tilted && from != FLIGHT_GROUND && from != FLIGHT_FLOATING && from != FLIGHT_CUT) {
+        return FLIGHT_CUT;
+    }
     switch (from) {
     case FLIGHT_GROUND:
-        return (c & FLIGHT_IF_ALOFT) ? FLIGHT_FLOATING : go ? FLIGHT_TAKEOFF : from;
+        return (c & FLIGHT_IF_ALOFT) ? FLIGHT_FLOATING : (go && !tilted) ? FLIGHT_TAKEOFF : from;
     case FLIGHT_TAKEOFF:
     case FLIGHT_FLYING:
         if (!height) {
@@ -182,7 +187,7 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
         }
         return (c & FLIGHT_IF_OFF_GROUND) ? FLIGHT_FLYING : from;
     case FLIGHT_FLOATING:
-        if (go) {
+        if (go && !tilted) {
             return FLIGHT_FLYING;
         }
         if (c & FLIGHT_IF_LAND) {
@@ -198,6 +203,8 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
         return go ? FLIGHT_FLYING : height ? FLIGHT_LANDING : (c & FLIGHT_IF_SPENT) ? FLIGHT_GROUND : from;
     case FLIGHT_LANDING:
         return go ? FLIGHT_FLYING : !height ? FLIGHT_DESCENDING : (c & FLIGHT_IF_AT_REST) ? FLIGHT_GROUND : from;
+    case FLIGHT_CUT:
+        return ((c & FLIGHT_IF_AT_REST) && (c & FLIGHT_IF_LEVEL)) ? FLIGHT_GROUND : from;
     default:
         if (!height) {
             return FLIGHT_COASTING;
@@ -325,17 +332,14 @@ void test_flying_to_lowering_when_too_high_twice(void)
     TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_TOO_HIGH, s.flags);
 }
 
-void test_a_climb_counts_for_a_quarter_of_a_second_and_a_descent_not_at_all(void)
+void test_a_climb_counts_for_0_4_seconds_and_its_brake_and_a_descent_not_at_all(void)
 {
     fly();
     watch(600.0F, 1);
     watch(700.0F, 1);
     watch(800.0F, 1);
+    state_is(FLIGHT_FLYING); /* 1 m/s: 400 mm and 125 mm more, 1325 */
     watch(900.0F, 1);
-    watch(1000.0F, 1);  /* 1 m/s: 1250 */
-    watch(1100.0F, 1);  /* 1350 */
-    state_is(FLIGHT_FLYING);
-    watch(1200.0F, 1);
     state_is(FLIGHT_LOWERING);
     watch(700.0F, 1);
     watch(1280.0F, 3);
@@ -477,6 +481,16 @@ void test_lowering_to_landing_by_setr_0(void)
     state_is(FLIGHT_LANDING);
 }
 
+void test_lowering_goes_on_while_the_vehicle_still_climbs(void)
+{
+    lower();
+    s.height.rate_mm_s = 2000.0F;
+    watch(790.0F, 1); /* the rate may fall by 1 m/s: 1 m/s is left, the climb ends at 1315 */
+    state_is(FLIGHT_LOWERING);
+    watch(790.0F, 1);
+    state_is(FLIGHT_FLYING);
+}
+
 void test_lowering_to_flying_below_reference_and_300_mm(void)
 {
     lower();
@@ -486,6 +500,158 @@ void test_lowering_to_flying_below_reference_and_300_mm(void)
     watch(799.0F, 1);
     state_is(FLIGHT_FLYING);
     TEST_ASSERT_EQUAL_UINT16(0, s.flags);
+}
+
+/* ---- tilt */
+
+static void tilt(float degrees)
+{
+    in.roll_rad = degrees * 0.0174532925F;
+}
+
+static void tilt_cuts(void (*enter)(void), float height_mm)
+{
+    setUp();
+    enter();
+    const flight_state_t from = s.state;
+    tilt(46.0F);
+    watch(height_mm, 2);
+    TEST_ASSERT_EQUAL_STRING(flight_state_name(from), flight_state_name(s.state));
+    watch(height_mm, 1);
+    state_is(FLIGHT_CUT);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, s.reference_m);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_TILT, s.flags & ~FLIGHT_FLAG_TOO_HIGH);
+}
+
+void test_takeoff_to_cut_by_tilt(void)
+{
+    tilt_cuts(take_off, 30.0F);
+}
+
+void test_flying_to_cut_by_tilt(void)
+{
+    tilt_cuts(fly, 500.0F);
+}
+
+void test_landing_to_cut_by_tilt(void)
+{
+    tilt_cuts(land, 500.0F);
+}
+
+void test_lowering_to_cut_by_tilt(void)
+{
+    tilt_cuts(lower, 1310.0F);
+}
+
+void test_coasting_to_cut_by_tilt(void)
+{
+    coast();
+    tilt(-50.0F);
+    blind(200);
+    state_is(FLIGHT_COASTING);
+    blind(100);
+    state_is(FLIGHT_CUT);
+}
+
+void test_descending_to_cut_by_tilt(void)
+{
+    descend();
+    in.pitch_rad = 0.8F;
+    blind(300);
+    state_is(FLIGHT_CUT);
+}
+
+void test_cut_to_ground_level_and_at_rest(void)
+{
+    fly();
+    tilt(60.0F);
+    watch(500.0F, 3);
+    watch(20.0F, 20);
+    state_is(FLIGHT_CUT); /* lies on its side */
+    tilt(21.0F);
+    watch(20.0F, 10);
+    state_is(FLIGHT_CUT);
+    tilt(19.0F);
+    watch(20.0F, 1);
+    state_is(FLIGHT_GROUND);
+    TEST_ASSERT_EQUAL_UINT16(0, s.flags);
+    watch(20.0F, 30);
+    state_is(FLIGHT_GROUND); /* the reference of before does not fly again */
+}
+
+void test_a_cut_is_latched_against_a_new_reference(void)
+{
+    fly();
+    tilt(60.0F);
+    watch(500.0F, 3);
+    tilt(0.0F);
+    setr(0.8F);
+    watch(500.0F, 50);
+    state_is(FLIGHT_CUT);
+}
+
+void test_a_reference_given_while_cut_does_not_start_the_motors_on_the_ground(void)
+{
+    fly();
+    tilt(60.0F);
+    watch(500.0F, 3);
+    setr(0.8F);
+    tilt(0.0F);
+    watch(20.0F, 30);
+    state_is(FLIGHT_GROUND);
+    setr(0.8F);
+    watch(20.0F, 1);
+    state_is(FLIGHT_TAKEOFF);
+}
+
+void test_both_angles_make_the_tilt_and_44_degrees_do_not(void)
+{
+    fly();
+    in.roll_rad = in.pitch_rad = 0.56F; /* cos cos = 0.718 */
+    watch(500.0F, 30);
+    state_is(FLIGHT_FLYING);
+    in.roll_rad = in.pitch_rad = 0.58F; /* 0.700 */
+    watch(500.0F, 3);
+    state_is(FLIGHT_CUT);
+}
+
+void test_spikes_and_attitudes_that_stand_still_do_not_cut(void)
+{
+    fly();
+    for (int i = 0; i < 30; i++) {
+        tilt(i % 3 == 2 ? 0.0F : 70.0F);
+        watch(500.0F, 1);
+    }
+    state_is(FLIGHT_FLYING);
+    tilt(70.0F);
+    for (int i = 0; i < 30; i++) { /* one frame, seen again and again */
+        see(500.0F);
+        in.now_us += 100000U;
+        supervisor_step(&s, link_s, &in);
+    }
+    state_is(FLIGHT_FLYING);
+}
+
+void test_an_attitude_that_is_no_number_does_not_cut(void)
+{
+    fly();
+    in.roll_rad = NAN;
+    watch(500.0F, 30);
+    state_is(FLIGHT_FLYING);
+}
+
+void test_a_tilted_vehicle_does_not_take_off_and_a_pilots_is_not_cut(void)
+{
+    tilt(50.0F);
+    watch(0.0F, 3);
+    setr(0.5F);
+    watch(0.0F, 30);
+    state_is(FLIGHT_GROUND);
+    setUp();
+    floating();
+    tilt(80.0F);
+    watch(400.0F, 30);
+    state_is(FLIGHT_FLOATING);
 }
 
 /* ---- what holds a take-off back */
@@ -970,6 +1136,7 @@ void test_random_inputs_never_leave_the_table(void)
         }
         link_s = (i / 5000) % 2 == 0 ? 0.0F : 1.0F;
         in.attitude_ready = any(50) != 0;
+        in.pitch_rad = (i / 700) % 9 == 8 ? 1.0F : 0.1F;
         cycle(50 + any(100));
         bool row = from == s.state;
         for (unsigned k = 0; k < FLIGHT_TRANSITION_COUNT; k++) {

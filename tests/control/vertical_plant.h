@@ -12,6 +12,7 @@
 typedef struct {
     double hover_n;         /* thrust that carries the vehicle */
     double damping_per_s;
+    double climb_m_s_per_n; /* not 0: thrust commands the climb rate, attained with 0.25 s */
     double terrain_m;
     uint32_t control_us;    /* period of flight_step() */
     uint32_t phase_us;      /* of control against the scanner */
@@ -58,7 +59,9 @@ static inline void plant_move(plant_t *p, double dt_s)
     const double above_m = p->height_m - p->terrain_m;
     const double z_r = 0.127 / (4.0 * (above_m + 0.28));
     const double lift = p->thrust_n > 1.0 ? p->thrust_n / p->hover_n / (1.0 - 2.0 * z_r * z_r) : 0.0;
-    const double acceleration = 9.81 * (lift - 1.0) - p->damping_per_s * p->speed_m_s;
+    const double thrust_only = 9.81 * (lift - 1.0) - p->damping_per_s * p->speed_m_s;
+    const double climbing = 4.0 * (p->climb_m_s_per_n * (p->thrust_n - p->hover_n) - p->speed_m_s);
+    const double acceleration = p->climb_m_s_per_n > 0.0 ? climbing : thrust_only;
     const uint32_t since_us = p->time_us - p->latch_us;
 
     p->thrust_n += ((since_us >= 11500U ? p->latched_n[0] : p->latched_n[1]) - p->thrust_n) * dt_s / 0.12;

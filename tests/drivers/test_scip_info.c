@@ -299,6 +299,18 @@ void test_limits_that_do_not_fit_together_are_not_used(void)
     }
 }
 
+void test_a_turn_of_no_steps_is_not_used(void)
+{
+    begin_pp();
+    tell_all_limits_but("none");
+    tell("AMAX:0", true);
+    tell("AFRT:0", true);
+    tell("ARES:1", true);
+    TEST_ASSERT_FALSE(limits_are_default());
+    tell("ARES:0", true);
+    TEST_ASSERT_TRUE(limits_are_default());
+}
+
 void test_limits_at_their_edges_are_used(void)
 {
     static const char *const lines[] = { "DMIN:1000", "DMAX:22", "ARES:1080", "ARES:4095", "AMIN:540", "AMAX:540", "AMAX:1080" };

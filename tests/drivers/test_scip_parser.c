@@ -1446,3 +1446,105 @@ void test_a_burst_stops_behind_the_octet_that_makes_an_event(void)
     TEST_ASSERT_EQUAL_size_t(5, scip_parser_feed_run(&parser, &octets[202], 5, &event));
     TEST_ASSERT_EQUAL(SCIP_NOTHING, event);
 }
+
+/* --- octets still to come ------------------------------------------------------------------------------------------ */
+
+/* From octet `known` on the parser knows how many are left. */
+static void assert_countdown(size_t known)
+{
+    for (size_t i = 0; i < wire.length; i++) {
+        const size_t left = wire.length - i;
+
+        if (i >= known) {
+            TEST_ASSERT_EQUAL_UINT64(left, scip_parser_expected(&parser));
+        } else {
+            TEST_ASSERT_LESS_OR_EQUAL_UINT64(left, scip_parser_expected(&parser));
+        }
+        (void)feed(wire.octets[i]);
+    }
+}
+
+void test_in_a_stream_the_octets_of_the_next_scan_are_known_from_its_first_to_its_last(void)
+{
+    static const order_t orders[] = {{"MS", 372, 406, 1, 0, 0}, {"MD", 384, 405, 1, 0, 0}, {"MS", 0, 31, 1, 0, 0},
+                                     {"MS", 0, 32, 1, 0, 0},    {"MS", 5, 5, 1, 0, 0},     {"MS", 0, 768, 2, 0, 0}};
+
+    for (unsigned o = 0; o < sizeof orders / sizeof orders[0]; o++) {
+        start();
+        expect_order(&orders[o]);
+        wire.length = 0;
+        put_answer(&wire, &orders[o], "00");
+        (void)feed_range(&wire, 0, wire.length);
+        for (unsigned frame = 0; frame < 3; frame++) {
+            wire.length = 0;
+            put_numbered_frame(&wire, &orders[o], frame);
+            TEST_ASSERT_EQUAL_UINT64(request.scan_octets, wire.length);
+            assert_countdown(0);
+        }
+        TEST_ASSERT_EQUAL_UINT(3, seen.events[SCIP_SCAN]);
+    }
+}
+
+void test_a_scan_found_in_noise_is_counted_down_from_its_status_on(void)
+{
+    expect_order(&front);
+    put_numbered_frame(&wire, &front, 1);
+    assert_countdown(16); /* echo and its LF */
+    TEST_ASSERT_EQUAL_UINT(1, seen.events[SCIP_SCAN]);
+}
+
+void test_before_an_echo_nothing_is_expected(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(0, scip_parser_expected(&parser));
+    expect_order(&front);
+    TEST_ASSERT_EQUAL_UINT16(0, scip_parser_expected(&parser));
+    (void)feed_text("MS03720406010");
+    TEST_ASSERT_EQUAL_UINT16(0, scip_parser_expected(&parser));
+}
+
+void test_text_replies_have_no_known_length(void)
+{
+    expect_plain(SCIP_VERSION);
+    (void)feed_text("VV\n00P\nVEND:Hokuyo;0\n");
+    TEST_ASSERT_EQUAL_UINT16(0, scip_parser_expected(&parser));
+}
+
+void test_the_end_of_a_plain_reply_is_one_octet_away(void)
+{
+    expect_plain(SCIP_STOP);
+    (void)feed_text("QT\n00P\n");
+    TEST_ASSERT_EQUAL_UINT16(1, scip_parser_expected(&parser));
+}
+
+void test_a_line_that_runs_on_beyond_its_scan_expects_nothing(void)
+{
+    expect_order(&front);
+    put_numbered_frame(&wire, &front, 1);
+    (void)feed_range(&wire, 0, 95); /* in the last block */
+    (void)feed_text("0000000000");
+    TEST_ASSERT_EQUAL_UINT16(0, scip_parser_expected(&parser));
+}
+
+/* Whatever was lost or came too much: never more than one scan, and the next one is counted down again. */
+void test_the_count_is_never_more_than_a_scan_and_right_again_for_the_next_one(void)
+{
+    expect_order(&front);
+    put_answer(&wire, &front, "00");
+    (void)feed_range(&wire, 0, wire.length);
+    for (size_t cut = 0; cut < 101; cut++) {
+        wire.length = 0;
+        put_numbered_frame(&wire, &front, 1);
+        for (size_t i = 0; i < wire.length; i++) {
+            if (i != cut) {
+                (void)feed(wire.octets[i]);
+                TEST_ASSERT_LESS_OR_EQUAL_UINT16(101, scip_parser_expected(&parser));
+            }
+        }
+        (void)feed_text("\n\n");
+        wire.length = 0;
+        put_numbered_frame(&wire, &front, 2);
+        assert_countdown(16);
+        seen.scans = 0;
+        parser.stamps = 0; /* the same two stamps all over */
+    }
+}

@@ -243,7 +243,7 @@ static void power_down(void)
 static double seconds_to_stream(void)
 {
     const sim_time_t end = timeline_now() + PATIENCE;
-    sim_time_t first = 0, before = 0;
+    sim_time_t first = 0;
 
     while (timeline_now() < end) {
         run_until(timeline_now() + 50 * SIM_MS);
@@ -251,9 +251,7 @@ static double seconds_to_stream(void)
             first = 0;
         } else if (first == 0) {
             first = host.latest_scan;
-        }
-        before = first != 0 ? timeline_now() - first : 0;
-        if (before > 1000 * SIM_MS) {
+        } else if (timeline_now() - first > SIM_S) {
             return (double)(first - host.started) / 1e9;
         }
     }

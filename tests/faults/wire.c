@@ -136,8 +136,3 @@ uint32_t dice_below(dice_t *dice, uint32_t limit)
 {
     return (uint32_t)(((uint64_t)dice_roll(dice) * limit) >> 32);
 }
-
-double dice_unit(dice_t *dice)
-{
-    return dice_roll(dice) / 4294967296.0;
-}

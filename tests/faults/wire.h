@@ -52,6 +52,5 @@ typedef struct {
 } dice_t;
 uint32_t dice_roll(dice_t *dice);
 uint32_t dice_below(dice_t *dice, uint32_t limit);
-double dice_unit(dice_t *dice);     /* 0 <= x < 1 */
 
 #endif

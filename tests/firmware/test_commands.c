@@ -242,10 +242,10 @@ void test_a_choice_is_set_by_its_name_in_either_case_and_answered_by_it(void)
 
 void test_a_choice_by_another_name_or_by_number_is_refused_with_the_list(void)
 {
-    assert_refused("ERR LAW one of PD|PID", "#LAW EST");
-    assert_refused("ERR LAW one of PD|PID", "#LAW 1");
-    assert_refused("ERR LAW one of PD|PID", "#LAW P");
-    assert_refused("ERR LAW one of PD|PID", "#LAW PIDD");
+    assert_refused("ERR LAW one of PD|PID|PIDT|EST", "#LAW ESTX");
+    assert_refused("ERR LAW one of PD|PID|PIDT|EST", "#LAW 1");
+    assert_refused("ERR LAW one of PD|PID|PIDT|EST", "#LAW P");
+    assert_refused("ERR LAW one of PD|PID|PIDT|EST", "#LAW PIDD");
     assert_refused("ERR RELEASE one of FREE|SCAN", "#RELEASE 0");
 }
 
@@ -299,7 +299,7 @@ void test_get_of_one_parameter_answers_its_value(void)
     reference.reference_m = 0.45F;
     assert_answer("OK KP 0.015", "#GET KP");
     assert_answer("OK KI 0.0125", "#get ki");
-    assert_answer("OK LAW PID", "#GET LAW");
+    assert_answer("OK LAW EST", "#GET LAW");
     assert_answer("OK RELEASE FREE", "#GET  release ");
     assert_answer("OK SETR 0.45", "#GET SETR"); /* the reference server's, not the table's */
     TEST_ASSERT_EQUAL_UINT16(0, parameter_writes);
@@ -320,7 +320,7 @@ void test_get_alone_answers_one_line_per_parameter_in_the_tables_order(void)
     TEST_ASSERT_EQUAL_UINT16(PARAMETER_COUNT, answered);
     TEST_ASSERT_EQUAL_STRING("OK SETR 1.25", answers[PARAMETER_SETR]);
     TEST_ASSERT_EQUAL_STRING("OK GRAV 7", answers[PARAMETER_GRAV]);
-    TEST_ASSERT_EQUAL_STRING("OK LAW PID", answers[PARAMETER_LAW]);
+    TEST_ASSERT_EQUAL_STRING("OK LAW EST", answers[PARAMETER_LAW]);
     for (uint16_t id = 0; id < PARAMETER_COUNT; id++) {
         const size_t length = strlen(parameter_table[id].name);
 
@@ -376,7 +376,7 @@ void test_help_tells_every_parameter_and_every_verb_with_limits_and_meaning(void
     }
     TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #SETR 0..3 m - ", answers[PARAMETER_SETR], 23);
     TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #USAT 0..11.76 N - ", answers[PARAMETER_USAT], 27);
-    TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #LAW PD|PID - ", answers[PARAMETER_LAW], 22);
+    TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #LAW PD|PID|PIDT|EST - ", answers[PARAMETER_LAW], 31);
     TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #RELEASE FREE|SCAN - ", answers[PARAMETER_RELEASE], 29);
     TEST_ASSERT_EQUAL_STRING("OK HELP #GET [NAME] - one parameter, or all", answers[PARAMETER_COUNT]);
     TEST_ASSERT_EQUAL_STRING("OK HELP #HELP - this list", answers[answered - 1U]);

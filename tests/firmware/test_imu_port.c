@@ -67,7 +67,7 @@ static void octet(uint16_t cell)
     bsp_uart_burst_t burst = {.count = 1U, .octets = {cell}};
 
     now_us += 174U; /* ten bits at 57600 */
-    receiver(&burst);
+    TEST_ASSERT_EQUAL_UINT16(UART_PORT_BURST, receiver(&burst)); /* the tick brings the end of a frame */
     kernel_run_swi();
 }
 
@@ -87,7 +87,7 @@ static void feed_burst(const char *text, bool overrun, bool framing)
         TEST_ASSERT_LESS_THAN(BSP_UART_FIFO_DEPTH, burst.count);
         burst.octets[burst.count++] = (uint16_t)*text;
     }
-    receiver(&burst);
+    TEST_ASSERT_EQUAL_UINT16(UART_PORT_BURST, receiver(&burst));
     kernel_run_swi();
 }
 

@@ -19,6 +19,7 @@ static uint32_t reopened_at;
 static char sent[64];
 static uint16_t sent_count;
 static const char *answer_while_sending;    /* comes before uart_port_send() returns, or NULL */
+static uint16_t level;              /* octets until the port wants to be called again */
 static laser_message_t message;
 static laser_statistics_t now;
 static laser_statistics_t before;
@@ -56,7 +57,7 @@ static void octet(uint16_t cell)
 
     TEST_ASSERT_EQUAL(0, kernel.hwi.depth);
     now_us += OCTET_US;
-    receiver(&burst);
+    level = receiver(&burst);
 }
 
 static void feed_only(const char *text)
@@ -82,7 +83,7 @@ static void feed_broken(const char *text, bool overrun, bool framing)
         TEST_ASSERT_LESS_THAN(BSP_UART_FIFO_DEPTH, burst.count);
         burst.octets[burst.count++] = (uint16_t)*text;
     }
-    receiver(&burst);
+    level = receiver(&burst);
     kernel_run_swi();
 }
 
@@ -549,7 +550,7 @@ void test_scans_in_bursts_of_any_size_arrive_whole(void)
             while (burst.count < size && *text != '\0') {
                 burst.octets[burst.count++] = (uint16_t)*text++;
             }
-            receiver(&burst);
+            level = receiver(&burst);
             if (kernel_random(3U) == 0U) {
                 kernel_run_swi();
             }
@@ -612,4 +613,111 @@ void test_the_task_is_released_by_the_last_octet_of_a_scan(void)
     feed(scan_text(1000U, 700U));
     TEST_ASSERT_EQUAL_UINT16(1, jobs[MONITOR_RECEIVE_LASER].released);
     TEST_ASSERT_EQUAL_UINT32(now_us, jobs[MONITOR_RECEIVE_LASER].released_us);
+}
+
+/* The FIFO as the levels empty it: returns the interrupts for that text; what is left in the FIFO at its end stays. */
+static bsp_uart_burst_t fifo;
+
+static uint16_t arrive(const char *text)
+{
+    uint16_t interrupts = 0;
+
+    for (; *text != '\0'; text++) {
+        fifo.octets[fifo.count++] = (uint16_t)*text;
+        now_us += OCTET_US;
+        if (fifo.count >= (level < UART_PORT_BURST ? level : UART_PORT_BURST)) {
+            level = receiver(&fifo);
+            kernel_run_swi();
+            fifo.count = 0U;
+            interrupts++;
+        }
+    }
+    return interrupts;
+}
+
+static void tick(void)
+{
+    level = receiver(&fifo);
+    kernel_run_swi();
+    fifo.count = 0U;
+}
+
+void test_the_last_octet_of_every_scan_makes_its_interrupt(void)
+{
+    start_stream();
+    fifo.count = 0U;
+    for (uint16_t n = 0; n < 50U; n++) {
+        TEST_ASSERT_EQUAL_UINT16(13, arrive(scan_text(1000U + 100U * n, (uint16_t)(500U + n)))); /* 12 * 8 + 5 */
+        TEST_ASSERT_EQUAL_UINT16(0, fifo.count);
+        wait();
+        assert_scan(1000U + 100U * n, (uint16_t)(500U + n));
+        TEST_ASSERT_EQUAL_UINT32(now_us, message.arrival_us);
+    }
+}
+
+void test_ticks_anywhere_between_leave_the_last_octets_interrupt_where_it_is(void)
+{
+    start_stream();
+    fifo.count = 0U;
+    kernel_random_seed(21U);
+    for (uint16_t n = 0; n < 300U; n++) {
+        char text[256];
+        char part[2] = {0};
+
+        (void)strcpy(text, scan_text(1000U + 100U * n, (uint16_t)(500U + n)));
+        for (const char *at = text; *at != '\0'; at++) {
+            part[0] = *at;
+            (void)arrive(part);
+            if (kernel_random(25U) == 0U && at[1] != '\0') {
+                tick();
+            }
+        }
+        TEST_ASSERT_EQUAL_UINT16(0, fifo.count);
+        wait();
+        assert_scan(1000U + 100U * n, (uint16_t)(500U + n));
+        TEST_ASSERT_EQUAL_UINT32(now_us, message.arrival_us);
+    }
+}
+
+/* Any number of octets lost anywhere costs that scan, with what is left of it fetched by the tick, and no other. */
+void test_lost_octets_cost_their_scan_alone(void)
+{
+    uint32_t stamp_ms = 1000U;
+
+    start_stream();
+    fifo.count = 0U;
+    for (size_t from = 0; from < 101U; from += 3U) {
+        for (size_t lost = 1; lost <= 20U && from + lost <= 101U; lost += 4U) {
+            char text[256];
+
+            (void)strcpy(text, scan_text(stamp_ms, 700U));
+            (void)memmove(&text[from], &text[from + lost], strlen(&text[from + lost]) + 1U);
+            (void)arrive(text);
+            tick();
+            tick();
+            (void)kernel_blocks(wait);
+            stamp_ms += 100U;
+            (void)arrive(scan_text(stamp_ms, 800U));
+            tick();
+            wait();
+            assert_scan(stamp_ms, 800U);
+            stamp_ms += 100U;
+            (void)arrive(scan_text(stamp_ms, 900U));
+            TEST_ASSERT_EQUAL_UINT16(0, fifo.count);
+            wait();
+            assert_scan(stamp_ms, 900U);
+            stamp_ms += 100U;
+        }
+    }
+}
+
+void test_a_reply_is_complete_with_the_tick_after_it(void)
+{
+    fifo.count = 0U;
+    TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
+    laser_port_send(&request);
+    (void)arrive("QT\n00P\n\n");
+    tick();
+    look();
+    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count + 1U, now.seen.reply_count);
 }

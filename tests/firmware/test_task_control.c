@@ -26,6 +26,7 @@ void __wrap_flight_step(flight_t *flight, const parameters_t *parameters, const 
 
 static altitude_sample_t altitude;
 static imu_sample_t imu;
+static imu_sample_t imu_before;
 static reference_sample_t reference;
 static parameters_t parameters;
 static uint32_t now_us;
@@ -63,11 +64,13 @@ static void altitude_read(altitude_sample_t *sample, int calls)
     *sample = altitude;
 }
 
-static void imu_read(imu_sample_t *sample, int calls)
+static uint16_t imu_history(imu_sample_t history[IMU_HISTORY], int calls)
 {
     (void)calls;
     kernel_note("imu");
-    *sample = imu;
+    history[0] = imu;
+    history[1] = imu_before;
+    return imu.sequence < 2U ? (uint16_t)imu.sequence : 2U;
 }
 
 static void reference_read(reference_sample_t *sample, int calls)
@@ -152,6 +155,7 @@ void setUp(void)
     (void)memset(&imu, 0, sizeof imu);
     (void)memset(&reference, 0, sizeof reference);
     parameters_init(&parameters);
+    parameters.value[PARAMETER_LAW] = (float)LAW_PID;
     now_us = 0xFFFF0000U; /* wraps on the way */
     waits = steps = pulse_count = publications = 0U;
     cycles = 1U;
@@ -159,7 +163,7 @@ void setUp(void)
     released_by = Event_Id_00;
     kernel.event.on_pend = pend;
     altitude_server_read_Stub(altitude_read);
-    imu_server_read_Stub(imu_read);
+    imu_server_history_Stub(imu_history);
     reference_server_read_Stub(reference_read);
     parameter_server_read_Stub(parameters_read);
     flight_status_server_write_Stub(status_write);
@@ -201,13 +205,16 @@ void test_create_makes_an_event_a_clock_of_108_ms_and_one_task_of_priority_4(voi
     TEST_ASSERT_EQUAL_UINT64(512, kernel.task.params.stackSize);
 }
 
-void test_the_clock_and_an_altitude_post_one_event_each(void)
+void test_the_clock_an_altitude_and_an_imu_frame_post_one_event_each(void)
 {
     kernel.clock.function(kernel.clock.params.arg);
     TEST_ASSERT_EQUAL_HEX16(Event_Id_00, kernel.event.posted);
     kernel.event.posted = 0U;
     task_control_altitude_arrived();
     TEST_ASSERT_EQUAL_HEX16(Event_Id_01, kernel.event.posted);
+    kernel.event.posted = 0U;
+    task_control_imu_arrived();
+    TEST_ASSERT_EQUAL_HEX16(Event_Id_02, kernel.event.posted);
 }
 
 void test_a_cycle_waits_looks_steps_drives_the_throttle_publishes_and_records(void)
@@ -256,6 +263,17 @@ void test_the_very_first_wait_follows_the_release_parameter_too(void)
     TEST_ASSERT_EQUAL_HEX16(Event_Id_01, masks[0]);
 }
 
+void test_the_later_laws_have_releases_of_their_own(void)
+{
+    parameters.value[PARAMETER_LAW] = (float)LAW_PIDT;
+    run(1U);
+    TEST_ASSERT_EQUAL_HEX16(Event_Id_01, masks[1]);
+    waits = steps = pulse_count = publications = alive_reports = 0U;
+    parameters.value[PARAMETER_LAW] = (float)LAW_EST;
+    run(1U);
+    TEST_ASSERT_EQUAL_HEX16(Event_Id_01 | Event_Id_02, masks[1]);
+}
+
 void test_released_by_scans_the_clock_does_not_run_a_cycle(void)
 {
     parameters.value[PARAMETER_RELEASE] = (float)RELEASE_SCAN;
@@ -286,6 +304,12 @@ void test_every_value_of_the_servers_reaches_its_own_place_in_the_inputs(void)
     altitude.scan_valid = true;
     altitude.altitude.height_mm = 601.0F;
     altitude.altitude.slant_mm = 1.0F;
+    imu_before.sequence = 11U;
+    imu_before.arrival_us = 0xFFFE0010U;
+    imu.has_acceleration = true;
+    imu.forward_mps2 = 0.11F;
+    imu.right_mps2 = 0.12F;
+    imu.down_mps2 = 9.8F;
     altitude.altitude.disagree = true;
     altitude.sensor_time_ms = 2U;
     altitude.arrival_us = 0xFFFE0001U;
@@ -318,6 +342,19 @@ void test_every_value_of_the_servers_reaches_its_own_place_in_the_inputs(void)
     TEST_ASSERT_EQUAL_UINT32(14, in->reference_sequence);
     TEST_ASSERT_EQUAL_HEX32(0xFFFE0015U, in->link_time_us);
     TEST_ASSERT_EQUAL_UINT32(16, in->link_sequence);
+    TEST_ASSERT_EQUAL_UINT32(2, in->height_stamp_ms);
+    TEST_ASSERT_EQUAL_FLOAT(1.0F, in->altitude.slant_mm);
+    TEST_ASSERT_EQUAL_UINT16(2, in->frame_count);
+    TEST_ASSERT_EQUAL_UINT32(11, in->frames[0].sequence);
+    TEST_ASSERT_FALSE(in->frames[0].usable);
+    TEST_ASSERT_EQUAL_HEX32(0xFFFE0010U, in->frames[0].arrival_us);
+    TEST_ASSERT_EQUAL_UINT32(12, in->frames[1].sequence);
+    TEST_ASSERT_TRUE(in->frames[1].usable);
+    TEST_ASSERT_EQUAL_FLOAT(0.11F, in->frames[1].forward_mps2);
+    TEST_ASSERT_EQUAL_FLOAT(0.12F, in->frames[1].right_mps2);
+    TEST_ASSERT_EQUAL_FLOAT(9.8F, in->frames[1].down_mps2);
+    TEST_ASSERT_EQUAL_FLOAT(0.08F, in->frames[1].roll_rad);
+    TEST_ASSERT_EQUAL_FLOAT(-0.09F, in->frames[1].pitch_rad);
 }
 
 static void set_one_flag(uint16_t wait)

@@ -1,4 +1,4 @@
-/* The transmit ring and the six Hwis, on a mocked UART whose FIFO takes 16 octets. */
+/* The transmit ring, the receive levels, the six Hwis and the tick, on a mocked UART whose FIFO takes 16 octets. */
 #include "uart_port.h"
 
 #include <string.h>
@@ -22,6 +22,9 @@ static struct {
     bsp_uart_burst_t burst;     /* what the next receive interrupt finds */
     bsp_uart_burst_t received;
     uint16_t receptions;
+    uint16_t asked;             /* by the receiver: octets until it wants to be called again */
+    uint16_t level;             /* of the receive interrupt */
+    uint16_t level_changes;
 } uarts[BSP_UART_COUNT];
 static bool in_hwi;
 
@@ -44,11 +47,22 @@ static void open(bsp_uart_t uart, uint32_t bit_rate, int calls)
     uarts[uart].rate = bit_rate;
     uarts[uart].opened++;
     uarts[uart].interrupt_on = false;
+    uarts[uart].level = 1U;
+}
+
+static void set_level(bsp_uart_t uart, uint16_t octets, int calls)
+{
+    (void)calls;
+    TEST_ASSERT_TRUE_MESSAGE(in_hwi || kernel.hwi.depth > 0, "the receive Hwi is not excluded");
+    TEST_ASSERT_TRUE(octets >= 1U && octets <= FIFO);
+    uarts[uart].level = octets;
+    uarts[uart].level_changes++;
 }
 
 static void receive(bsp_uart_t uart, bsp_uart_burst_t *burst, int calls)
 {
     (void)calls;
+    TEST_ASSERT_TRUE_MESSAGE(in_hwi || kernel.hwi.depth > 0, "the receive Hwi is not excluded");
     *burst = uarts[uart].burst;
 }
 
@@ -80,15 +94,16 @@ static void acknowledge(bsp_uart_t uart, int calls)
     kernel_note("acknowledge");
 }
 
-static void received(bsp_uart_t uart, const bsp_uart_burst_t *burst)
+static uint16_t received(bsp_uart_t uart, const bsp_uart_burst_t *burst)
 {
     uarts[uart].received = *burst;
     uarts[uart].receptions++;
+    return uarts[uart].asked;
 }
 
-static void laser_received(const bsp_uart_burst_t *burst) { received(BSP_UART_LASER, burst); }
-static void imu_received(const bsp_uart_burst_t *burst) { received(BSP_UART_IMU, burst); }
-static void xbee_received(const bsp_uart_burst_t *burst) { received(BSP_UART_XBEE, burst); }
+static uint16_t laser_received(const bsp_uart_burst_t *burst) { return received(BSP_UART_LASER, burst); }
+static uint16_t imu_received(const bsp_uart_burst_t *burst) { return received(BSP_UART_IMU, burst); }
+static uint16_t xbee_received(const bsp_uart_burst_t *burst) { return received(BSP_UART_XBEE, burst); }
 
 void setUp(void)
 {
@@ -99,12 +114,17 @@ void setUp(void)
     bsp_uart_transmit_interrupt_Stub(transmit_number);
     bsp_uart_open_Stub(open);
     bsp_uart_receive_Stub(receive);
+    bsp_uart_set_receive_level_Stub(set_level);
     bsp_uart_transmit_Stub(transmit);
     bsp_uart_transmit_interrupt_enable_Stub(interrupt_enable);
     bsp_uart_transmit_acknowledge_Stub(acknowledge);
     uart_port_create(BSP_UART_LASER, 115200U, laser_received);
     uart_port_create(BSP_UART_IMU, 57600U, imu_received);
     uart_port_create(BSP_UART_XBEE, 9600U, xbee_received);
+    for (uint16_t u = 0; u < BSP_UART_COUNT; u++) {
+        uarts[u].asked = 1U;
+    }
+    uart_port_start();
 }
 
 void tearDown(void)
@@ -113,6 +133,19 @@ void tearDown(void)
     for (uint16_t u = 0; u < BSP_UART_COUNT; u++) {
         uart_port_reopen((bsp_uart_t)u, 9600U);
     }
+}
+
+static void receive_hwi(bsp_uart_t uart)
+{
+    in_hwi = true;
+    kernel_interrupt(RECEIVE_NUMBER + (Int)uart);
+    in_hwi = false;
+}
+
+static void tick(void)
+{
+    kernel.clock.function(kernel.clock.params.arg);
+    kernel_no_lock();
 }
 
 /* The FIFO ran empty. */
@@ -157,7 +190,7 @@ void test_a_receive_interrupt_hands_its_burst_to_its_own_receiver_alone(void)
         uarts[u].burst.octets[2] = (uint16_t)(0x41U + u);
         uarts[u].burst.framing = u == 1U;
         uarts[u].burst.overrun = u == 2U;
-        kernel_interrupt(RECEIVE_NUMBER + (Int)u);
+        receive_hwi((bsp_uart_t)u);
         TEST_ASSERT_EQUAL_UINT16(1, uarts[u].receptions);
         TEST_ASSERT_EQUAL_UINT16(3U + u, uarts[u].received.count);
         TEST_ASSERT_EQUAL_HEX16(0x41U + u, uarts[u].received.octets[2]);
@@ -361,4 +394,69 @@ void test_the_three_uarts_have_rings_of_their_own(void)
     TEST_ASSERT_EQUAL_UINT32(2, uarts[BSP_UART_XBEE].sent);
     TEST_ASSERT_EQUAL_UINT32(0, uarts[BSP_UART_IMU].sent);
     TEST_ASSERT_EQUAL_UINT32(0, uarts[BSP_UART_LASER].sent);
+}
+
+void test_start_makes_one_tick_a_millisecond(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(1, kernel.clock.created);
+    TEST_ASSERT_EQUAL_UINT(1, kernel.clock.timeout);
+    TEST_ASSERT_EQUAL_UINT32(1, kernel.clock.params.period);
+    TEST_ASSERT_TRUE(kernel.clock.params.startFlag);
+}
+
+void test_the_level_is_what_the_receiver_asks_for_and_leaves_half_of_the_fifo_free(void)
+{
+    for (uint16_t asked = 1; asked <= 300U; asked++) {
+        uarts[0].asked = asked;
+        receive_hwi(BSP_UART_LASER);
+        TEST_ASSERT_EQUAL_UINT16(asked < 8U ? asked : 8U, uarts[0].level);
+    }
+    TEST_ASSERT_EQUAL_UINT16(7, uarts[0].level_changes); /* 1 is there already, 8 is set once */
+    TEST_ASSERT_EQUAL_UINT16(0, uarts[1].level_changes);
+    TEST_ASSERT_EQUAL_UINT16(0, uarts[2].level_changes);
+}
+
+void test_the_tick_takes_what_waits_and_sets_the_next_level(void)
+{
+    uarts[0].asked = 12U;
+    receive_hwi(BSP_UART_LASER);
+    uarts[0].burst.count = 7U;
+    uarts[0].burst.framing = true;
+    uarts[0].asked = 3U;
+    tick();
+    TEST_ASSERT_EQUAL_UINT16(2, uarts[0].receptions);
+    TEST_ASSERT_EQUAL_UINT16(7, uarts[0].received.count);
+    TEST_ASSERT_TRUE(uarts[0].received.framing);
+    TEST_ASSERT_EQUAL_UINT16(3, uarts[0].level);
+}
+
+void test_the_tick_leaves_a_uart_alone_whose_every_octet_interrupts(void)
+{
+    uarts[0].asked = uarts[1].asked = 5U;
+    receive_hwi(BSP_UART_LASER);
+    receive_hwi(BSP_UART_IMU);
+    receive_hwi(BSP_UART_XBEE);
+    tick();
+    tick();
+    TEST_ASSERT_EQUAL_UINT16(3, uarts[0].receptions);
+    TEST_ASSERT_EQUAL_UINT16(3, uarts[1].receptions);
+    TEST_ASSERT_EQUAL_UINT16(1, uarts[2].receptions);
+    uarts[1].asked = 1U;
+    tick();
+    tick();
+    TEST_ASSERT_EQUAL_UINT16(5, uarts[0].receptions);
+    TEST_ASSERT_EQUAL_UINT16(4, uarts[1].receptions);
+}
+
+void test_a_reopened_uart_begins_with_an_interrupt_per_octet(void)
+{
+    uarts[0].asked = 12U;
+    receive_hwi(BSP_UART_LASER);
+    uart_port_reopen(BSP_UART_LASER, 250000U);
+    TEST_ASSERT_EQUAL_UINT16(1, uarts[0].level);
+    tick();
+    TEST_ASSERT_EQUAL_UINT16(1, uarts[0].receptions);
+    receive_hwi(BSP_UART_LASER);
+    TEST_ASSERT_EQUAL_UINT16(8, uarts[0].level);
+    TEST_ASSERT_EQUAL_UINT16(2, uarts[0].level_changes);
 }

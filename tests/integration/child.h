@@ -16,7 +16,7 @@ void child_run(child_work_t work, void *argument, void *result, size_t size);
 void child_fly(const char *scenario, unsigned long seed, const char *const *assignments, flight_result_t *result);
 
 /* Everything that the operator's terminal received. */
-#define CHILD_TERMINAL_MAX 20000
+#define CHILD_TERMINAL_MAX 100000
 typedef struct {
     char text[CHILD_TERMINAL_MAX];
     size_t length;

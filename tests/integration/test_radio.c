@@ -145,7 +145,7 @@ void test_bad_values_are_refused_by_name_and_change_nothing(void)
     TEST_ASSERT_EQUAL_INT(0, count_of("OK "));
     TEST_ASSERT_TRUE(answered("ERR KP not a number"));
     TEST_ASSERT_TRUE(answered("ERR KP value missing"));
-    TEST_ASSERT_TRUE(answered("ERR LAW one of PD|PID"));
+    TEST_ASSERT_TRUE(answered("ERR LAW one of PD|PID|PIDT|EST"));
     TEST_ASSERT_TRUE(answered("ERR FOO unknown command, try #HELP"));
     TEST_ASSERT_TRUE(answered("ERR - empty command"));
     assert_nothing_changed();

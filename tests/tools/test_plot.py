@@ -1,4 +1,4 @@
-"""tools/plot: reading the three kinds of recordings, refusing all else, and a picture of each."""
+"""tools/plot: reading the four kinds of recordings, refusing all else, and a picture of each."""
 import math
 import re
 import shutil
@@ -19,6 +19,8 @@ FLIGHT = HEADER + "".join(
     f"{0.01 * k:.2f},{0.002 * k:.3f},{0.002 * k + 0.1:.3f},0.100,{'' if k < 5 else 0.4},{0 if k < 50 else 0.6},7.00,1400.0,"
     f"{'GROUND' if k < 100 else 'FLYING'},{5 if 120 < k < 130 else 0}\n" for k in range(200))
 LINE = "alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0"
+RECORDER = "t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags\n" + "".join(
+    f"{70 + 0.108 * k:.3f},{'' if k == 3 else 0.59},0.598,,0.600,7.123,-0.0123,0.0345,FLYING,{k % 2}\n" for k in range(50))
 GAP = "alt:- ref:0.600 laser:LOST thr:6.90 state:COASTING flags:1"
 
 
@@ -42,6 +44,14 @@ class Case(unittest.TestCase):
 
 
 class Reading(Case):
+    def test_a_flight_recorder(self):
+        rec = recording.read(self.write("flown.csv", RECORDER))
+        self.assertEqual((rec.kind, len(rec.t), rec.columns["thrust_n"][7], rec.columns["flags"][7]), ("recorder", 50, 7.123, 1))
+        self.assertTrue(math.isnan(rec.columns["meas_m"][3]))
+        self.assertAlmostEqual(rec.t[1] - rec.t[0], 0.108)
+        with self.assertRaisesRegex(recording.Unreadable, "no column est_m"):
+            recording.read(self.write("flown.csv", RECORDER.replace("est_m", "e")))
+
     def test_a_flight(self):
         rec = recording.read(self.write("flight.csv", FLIGHT))
         self.assertEqual((rec.kind, rec.name, len(rec.t)), ("flight", "flight", 200))
@@ -117,6 +127,8 @@ class Drawing(Case):
         self.assert_picture(self.plot(log, "-o", f"{self.dir}/"), self.dir / "console.png")
         text = self.write("text.txt", f"{LINE}\n{GAP}\n" * 4)
         self.assert_picture(self.plot(text), self.dir / "text.png")
+        flown = self.write("flown.csv", RECORDER)
+        self.assert_picture(self.plot(flown), self.dir / "flown.png")
 
     def test_the_colours_of_states_and_the_names_of_flags_are_the_firmwares(self):
         header = (ROOT / "control/supervisor.h").read_text(encoding="utf-8")

@@ -97,6 +97,14 @@ class Setup(unittest.TestCase):
         self.assertEqual(done.stderr, "setup: not root and no sudo; first run as root: "
                                       "apt-get install -y --no-install-recommends cmake ruby\n")
 
+    def test_the_fuzzer_is_that_of_the_systems_clang(self):
+        self.stand_in("id", "echo 0")
+        self.stand_in("apt-cache", 'echo "  Depends: clang-19"')
+        (self.bin / "sed").symlink_to(shutil.which("sed"))
+        self.assertEqual(self.run_setup("bench", "fuzz").returncode, 0)
+        self.assertTrue(self.calls[-1].endswith("install --no-install-recommends valgrind clang-19 libclang-rt-19-dev"),
+                        self.calls)
+
     def test_an_unknown_job_is_refused(self):
         for jobs in ((), ("biuld",), ("build", "")):
             self.assertEqual(self.run_setup(*jobs).returncode, 2, jobs)

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Instructions of each step of the firmware on x86-64 at -O2, counted by callgrind, against baseline.csv.
 
-Usage: bench.py [--write] [BUILD_DIRECTORY]
-  --write  makes the counts the new baseline
+Usage: bench.py [--write] [--driver] [BUILD_DIRECTORY]
+  --write   makes the counts the new baseline
+  --driver  only the scanner's driver
 
 A count is the same on every run, so a change of it is a change of the code (or of the compiler or the C library: then the
 ratios move together). Exit status 1 when a step has become more than a tenth dearer, or the scanner's driver is beyond its
@@ -61,13 +62,15 @@ def show(baseline, counts):
         row = baseline.get(name)
         before = int(row["instructions"]) if row else instructions
         ratios[name] = instructions / before
-        print(f"{name:<22} {instructions:>12} {before:>9} {ratios[name]:>6.3f} {row['annex_us'] if row else '':>15}")
+        line = f"{name:<22} {instructions:>12} {before:>9} {ratios[name]:>6.3f} {row['annex_us'] if row else '':>15}"
+        print(line.rstrip())
     return ratios
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--write", action="store_true")
+    parser.add_argument("--driver", action="store_true")
     parser.add_argument("directory", nargs="?", type=Path, default=HERE.parents[1] / "build/bench")
     options = parser.parse_args()
     if shutil.which("valgrind") is None:
@@ -75,10 +78,11 @@ def main():
         sys.exit(77)
     program = build(options.directory)
     names = subprocess.run([program], check=True, capture_output=True, text=True).stdout.split()
+    names = [name for name in names if name.startswith("scip_") or not options.driver]
     counts = {name: count(program, name) for name in names}
     memory = subprocess.run([program, "--memory"], check=True, capture_output=True, text=True).stdout
     baseline = read_baseline()
-    if options.write:
+    if options.write and not options.driver:
         write_baseline(baseline, counts)
         baseline = read_baseline()
     ratios = show(baseline, counts)

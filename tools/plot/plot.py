@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """plot.py FILE... [-o PNG]: draws a flight.
 
-FILE is a flight CSV of `plomada fly --csv`, a console log saved by XCTU, or telemetry text as a terminal captured it;
-the kind is found from the content. Several flight CSVs are drawn over one another. PNG may be a directory; by default
+FILE is a flight CSV of `plomada fly --csv`, the flight recorder's (`#LOG`, docs/operator.md), a console log saved by
+XCTU, or telemetry text as a terminal captured it; the kind is found from the content. Several flight CSVs are drawn over one another. PNG may be a directory; by default
 the picture lies beside the first FILE. Where FILE.json of `plomada fly --json` lies beside a CSV, its metrics are quoted.
 The path of the picture is printed. Exit 2 when a FILE cannot be read.
 """
@@ -26,10 +26,11 @@ STATE_COLOURS = {
     "DESCENDING": "#d1495b",
     "LANDING": "#9d8df1",
     "LOWERING": "#e07be0",
+    "CUT": "#222222",
 }
 LASER_COLOURS = {"OK": "#7bc47f", "WAIT": "#c9c9c9"}
 OTHER_COLOURS = ("#5fa8a8", "#b08968", "#a3b18a", "#cdb4db", "#6d8fb3")
-FLAG_NAMES = {1: "height", 2: "attitude", 4: "disagree", 8: "too high", 16: "link"}
+FLAG_NAMES = {1: "height", 2: "attitude", 4: "disagree", 8: "too high", 16: "link", 32: "tilt"}
 
 HEIGHT, ESTIMATE, REFERENCE, TERRAIN, THRUST = "#1f5fa8", "#e07a1f", "#333333", "#b79268", "#a0303f"
 FLIGHT_COLOURS = ("#1f5fa8", "#e07a1f", "#2a8f4f", "#a0303f", "#7550a8", "#5a5a5a", "#1a9aa0", "#b3589a")
@@ -235,9 +236,9 @@ def describe(paths, recordings):
     rec = recordings[0]
     if rec.kind == "flight":
         return rec.name, metrics_text(paths[0])
-    source = "XCTU console log" if rec.kind == "console" else "telemetry text"
+    source = {"console": "XCTU console log", "recorder": "flight recorder"}.get(rec.kind, "telemetry text")
     damaged = f", {rec.damaged} damaged lines left out" if rec.damaged else ""
-    return rec.name, f"{source}: {len(rec.t)} lines of telemetry{damaged}"
+    return rec.name, f"{source}: {len(rec.t)} lines{damaged}"
 
 
 def picture_path(output, first):

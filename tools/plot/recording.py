@@ -1,4 +1,4 @@
-"""What was recorded: flight CSV, XCTU console log or telemetry text, read into one Recording.
+"""What was recorded: flight CSV, flight recorder CSV, XCTU console log or telemetry text, read into one Recording.
 
 Columns hold floats, NaN where the file has no value. No library beyond Python's own.
 """
@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 FLIGHT_COLUMNS = ("t_s", "height_m", "abs_m", "terrain_m", "est_m", "ref_m", "thrust_n", "pulse_us", "state", "flags")
+RECORDER_COLUMNS = ("t_s", "meas_m", "est_m", "ref_m", "thrust_n", "state", "flags")
 TEXT_COLUMNS = ("state", "laser")
 TELEMETRY_PERIOD_S = 0.2
 
@@ -20,13 +21,13 @@ ANSWER = re.compile(r"^(OK|ERR)( |$)")
 
 
 class Unreadable(Exception):
-    """The file is none of the three kinds, or a damaged one."""
+    """The file is none of the four kinds, or a damaged one."""
 
 
 @dataclass
 class Recording:
     name: str
-    kind: str                                       # "flight", "console" or "telemetry"
+    kind: str                                       # "flight", "recorder", "console" or "telemetry"
     columns: dict = field(default_factory=dict)     # name -> list, all of one length
     sent: list = field(default_factory=list)        # (t_s, text) of the operator's lines, console logs only
     damaged: int = 0                                # telemetry lines that could not be read
@@ -52,7 +53,8 @@ def read(path):
     lines = raw.decode("utf-8-sig", errors="replace").replace("\r\n", "\n").replace("\r", "\n").split("\n")
     first = next((line for line in lines if line.strip()), "")
     if first.startswith("t_s,"):
-        return read_flight(path, lines)
+        recorder = "meas_m" in first.split(",")
+        return read_csv(path, lines, "recorder" if recorder else "flight", RECORDER_COLUMNS if recorder else FLIGHT_COLUMNS)
     if CONSOLE_START.match(first):
         return read_console(path, lines)
     recording = Recording(path.stem, "telemetry")
@@ -63,22 +65,22 @@ def read(path):
     return recording
 
 
-def read_flight(path, lines):
+def read_csv(path, lines, kind, names):
     rows = csv.DictReader(line for line in lines if line)
-    missing = [name for name in FLIGHT_COLUMNS if name not in rows.fieldnames]
+    missing = [name for name in names if name not in rows.fieldnames]
     if missing:
         raise Unreadable(f"{path}: no column {', '.join(missing)}")
-    columns = {name: [] for name in FLIGHT_COLUMNS}
+    columns = {name: [] for name in names}
     for row in rows:
         try:
-            values = {name: row[name] if name in TEXT_COLUMNS else number(row[name]) for name in FLIGHT_COLUMNS}
+            values = {name: row[name] if name in TEXT_COLUMNS else number(row[name]) for name in names}
         except ValueError as error:
             raise Unreadable(f"{path}:{rows.line_num}: {error}") from None
         for name, value in values.items():
             columns[name].append(value)
     if not columns["t_s"]:
         raise Unreadable(f"{path}: no samples")
-    return Recording(path.stem, "flight", columns)
+    return Recording(path.stem, kind, columns)
 
 
 def read_console(path, lines):

@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# setup.sh build|test|coverage|plot|campaign ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
+# setup.sh build|test|coverage|bench|fuzz|plot|campaign ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
 #
 #   build     C compiler, CMake
 #   test      Ruby and CMock, which generates the mocks; Python 3 for the checks of the house rules
 #   coverage  gcovr
+#   bench     valgrind
+#   fuzz      clang and its libFuzzer
 #   plot      Python virtual environment build/venv with the pinned packages of tools/plot/requirements.txt
 #   campaign  the same, and in it those of tools/campaign/requirements.txt
 #
@@ -45,6 +47,23 @@ venv_ready() {
 
 campaign_ready() { venv_ready && cmp -s "$campaign_requirements" "$venv/campaign.txt"; }
 
+# A clang that has libFuzzer.
+fuzzer_ready() {
+    local clang
+    for clang in clang clang-{14..30}; do
+        if has "$clang" && [ -n "$(find "$("$clang" -print-resource-dir)/" -name 'libclang_rt.fuzzer*' -print -quit)" ]; then
+            return 0
+        fi
+    done
+    return 1
+}
+
+fuzzer_packages() {
+    local version
+    version=$(apt-cache depends clang 2>/dev/null | sed -n 's/^ *Depends: clang-\([0-9]*\)$/\1/p') || true
+    echo "clang-${version:-14} libclang-rt-${version:-14}-dev"
+}
+
 # Debian packages that the job lacks; cmock is treated apart.
 missing_packages() {
     case $1 in
@@ -57,10 +76,15 @@ missing_packages() {
             has python3 || echo python3 ;;
         coverage)
             has gcovr || echo gcovr ;;
+        bench)
+            has python3 || echo python3
+            has valgrind || echo valgrind ;;
+        fuzz)
+            fuzzer_ready || fuzzer_packages ;;
         plot|campaign)
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
         *)
-            say "unknown job '$1'; know build, test, coverage, plot, campaign"
+            say "unknown job '$1'; know build, test, coverage, bench, fuzz, plot, campaign"
             exit 2 ;;
     esac
 }
@@ -138,7 +162,7 @@ add_campaign() {
     cp "$campaign_requirements" "$venv/campaign.txt"
 }
 
-[ $# -gt 0 ] || { say "usage: setup.sh build|test|coverage|plot|campaign ..."; exit 2; }
+[ $# -gt 0 ] || { say "usage: setup.sh build|test|coverage|bench|fuzz|plot|campaign ..."; exit 2; }
 
 packages=()
 want_cmock=

@@ -25,6 +25,7 @@ static void close_windows(sim_time_t now)
 
 void load_idle(sim_time_t from, sim_time_t to)
 {
+    close_windows(from);
     while (to - window_start >= WINDOW) {
         const sim_time_t end = window_start + WINDOW;
 

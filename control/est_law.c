@@ -1,0 +1,303 @@
+#include "est_law.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#define GRAVITY_MPS2 9.80665F
+#define DAMPING_PER_S 2.5F
+#define CLIMB_PER_S 4.0F /* how fast an autopilot that commands the climb rate attains it */
+#define STEP_MAX_S 0.5F
+
+#define HOVER_BOUND_N 2.0F
+#define HOVER_SIGMA_START_N 0.7F
+#define HOVER_SIGMA_TAKE_OVER_N 0.5F
+#define SPEED_DOUBT_N_PER_MPS 0.5F
+#define IN_THE_AIR_M 0.04F
+#define EXPECTED_NOISE_MPS2 0.84F
+#define BLIND_S 0.4F
+#define BLIND_NOISE_MPS2 0.35F
+#define GUST_N_PER_M 28.0F
+
+#define RAMP_START 0.68F
+#define RAMP_N_PER_S 4.0F
+#define RAMP_MOST 1.35F
+#define LIFTED_M 0.030F
+#define HIGH_M 0.1F
+#define LIFTED_MPS2 0.9F
+#define LIFTED_SIGMAS 1.2F
+#define LIFTED_SHARE 0.7F
+#define KICK_TIME_S 0.08F
+
+#define LAND_MPS 0.15F
+#define LAND_PER_S 0.25F
+#define LAND_MAX_MPS 0.40F
+#define SINK_MPS 0.28F
+#define SINK_PER_S 0.07F
+#define SINK_MAX_MPS 0.6F
+#define SINK_ABOVE_HOVER_N 0.5F
+#define SINK_FADE_N_PER_S 0.2F
+#define TERRAIN_KEEP_S 30.0F
+#define LOWEST_OVER_TERRAIN_M 0.15F
+
+static float between(float lowest, float value, float highest)
+{
+    return fminf(fmaxf(value, lowest), highest);
+}
+
+static float seconds(uint32_t from_us, uint32_t to_us)
+{
+    return (float)(int32_t)(to_us - from_us) * 1.0e-6F;
+}
+
+void est_law_init(est_law_t *law)
+{
+    *law = (est_law_t){.now_us = 0U};
+    estimator_init(&law->estimator);
+    ray_clock_init(&law->ray_clock);
+}
+
+static cascade_vehicle_t vehicle_of(const est_law_t *law, const parameters_t *parameters)
+{
+    const bool climb = parameters->value[PARAMETER_PLANT] == (float)PLANT_CLIMB;
+    const estimator_t *e = &law->estimator;
+    cascade_vehicle_t vehicle = {
+        .authority_mps2_per_n = GRAVITY_MPS2 / fmaxf(law->hover.thrust_n, 1.0F),
+        .damping_per_s = DAMPING_PER_S,
+        .hover_n = law->hover.thrust_n,
+        .need_n = law->hover.thrust_n + law->hover.gust_n,
+        .upright = cosf(e->latest.roll_rad) * cosf(e->latest.pitch_rad),
+    };
+    if (climb) {
+        vehicle.damping_per_s = CLIMB_PER_S;
+        vehicle.authority_mps2_per_n = CLIMB_PER_S * parameters->value[PARAMETER_CRATE];
+        vehicle.upright = 1.0F;
+    }
+    return vehicle;
+}
+
+/* On the ground the acceleration tells nothing but that the hover thrust is not less than the present one. */
+static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt_s)
+{
+    const estimator_t *e = &law->estimator;
+    const cascade_vehicle_t vehicle = vehicle_of(law, parameters);
+    const float drag_mps2 = vehicle.damping_per_s * e->now.speed_mps;
+    const float taken_n = (e->up_mps2 - e->now.bias_mps2 + drag_mps2) / vehicle.authority_mps2_per_n;
+    const float seen_n = law->actuator.thrust_n * vehicle.upright - taken_n;
+    const float doubt_n = SPEED_DOUBT_N_PER_MPS * fabsf(e->now.speed_mps);
+
+    if (e->now.height_m > IN_THE_AIR_M || seen_n > law->hover.thrust_n) {
+        hover_step(&law->hover, seen_n, e->noise_mps2 / vehicle.authority_mps2_per_n + doubt_n, dt_s);
+    }
+}
+
+/* No height for long. */
+static bool blind(const est_law_t *law)
+{
+    return seconds(law->rays_us, law->now_us) > BLIND_S;
+}
+
+/* Known once it flies. */
+static expected_motion_t expect(const est_law_t *law, const parameters_t *parameters)
+{
+    const cascade_vehicle_t vehicle = vehicle_of(law, parameters);
+    const estimate_t *now = &law->estimator.now;
+
+    return (expected_motion_t){
+        .known = law->lifted && law->estimator.started && now->height_m > IN_THE_AIR_M,
+        .up_mps2 = vehicle.authority_mps2_per_n * (law->actuator.thrust_n * vehicle.upright - vehicle.need_n)
+                 - vehicle.damping_per_s * now->speed_mps,
+        .noise_mps2 = blind(law) ? BLIND_NOISE_MPS2 : EXPECTED_NOISE_MPS2,
+    };
+}
+
+static void follow(est_law_t *law, const parameters_t *parameters, const motion_frame_t *frame)
+{
+    const uint32_t before_us = law->estimator.now_us;
+
+    estimator_move(&law->estimator, frame, expect(law, parameters));
+    const float dt_s = seconds(before_us, law->estimator.now_us);
+    if (dt_s <= 0.0F || dt_s > STEP_MAX_S) {
+        return;
+    }
+    actuator_advance(&law->actuator, law->estimator.now_us);
+    law->kick_mps2 += fminf(dt_s / KICK_TIME_S, 1.0F)
+                    * (law->estimator.up_mps2 - law->estimator.now.bias_mps2 - law->kick_mps2);
+    if (law->lifted) {
+        learn_hover(law, parameters, dt_s);
+    }
+}
+
+void est_law_listen(est_law_t *law, const parameters_t *parameters, const motion_frame_t *frames, uint16_t count,
+                    uint32_t now_us)
+{
+    if (!law->listening) {
+        law->listening = true;
+        law->now_us = now_us;
+        actuator_init(&law->actuator, now_us);
+    }
+    law->step_s = between(0.0F, seconds(law->now_us, now_us), STEP_MAX_S);
+    law->now_us = now_us;
+    for (uint16_t i = 0U; i < count; ++i) {
+        follow(law, parameters, &frames[i]);
+    }
+}
+
+static float kick_of_lift_mps2(const est_law_t *law)
+{
+    return fmaxf(LIFTED_MPS2, LIFTED_SIGMAS * law->estimator.noise_mps2);
+}
+
+/* It has not been told to fly, or what it has been told does not lift it yet. */
+static bool stands(const est_law_t *law)
+{
+    return !law->lifted && law->ramping && law->kick_mps2 < 0.4F * kick_of_lift_mps2(law);
+}
+
+void est_law_see(est_law_t *law, const altitude_t *altitude, uint32_t stamp_ms, uint32_t arrival_us, bool at_rest)
+{
+    law->rays_us = ray_clock_step(&law->ray_clock, stamp_ms, arrival_us);
+    const height_outcome_t outcome =
+        estimator_see(&law->estimator, altitude, law->rays_us, at_rest || stands(law));
+    if (law->lifted && outcome == HEIGHT_FUSED) {
+        const float expected = 1.0F - law->estimator.latest.share;
+        hover_nudge(&law->hover, -GUST_N_PER_M * expected * law->estimator.innovation_m);
+    }
+}
+
+bool est_law_ready(const est_law_t *law)
+{
+    const estimator_t *e = &law->estimator;
+    return e->started && law->now_us - e->latest.time_us <= ESTIMATOR_FRESH_US;
+}
+
+static void start_hover(est_law_t *law, const parameters_t *parameters, float thrust_n, float sigma_n)
+{
+    const float gravity_n = parameters->value[PARAMETER_GRAV];
+    hover_init(&law->hover, thrust_n, sigma_n, fmaxf(gravity_n - HOVER_BOUND_N, 0.0F), gravity_n + HOVER_BOUND_N);
+}
+
+void est_law_stand(est_law_t *law, const parameters_t *parameters)
+{
+    law->lifted = false;
+    law->ramping = false;
+    law->ramp_n = RAMP_START * parameters->value[PARAMETER_GRAV];
+    law->terrain_m = law->estimator.stepped_m;
+    law->sunk_s = 0.0F;
+    start_hover(law, parameters, parameters->value[PARAMETER_GRAV], HOVER_SIGMA_START_N);
+    cascade_init(&law->cascade, law->ramp_n);
+}
+
+void est_law_take_over(est_law_t *law, float thrust_n, float hover_n)
+{
+    law->lifted = true;
+    law->terrain_m = law->estimator.stepped_m;
+    law->sunk_s = 0.0F;
+    law->hover.thrust_n = between(law->hover.least_n, hover_n, law->hover.most_n);
+    law->hover.variance_n2 = HOVER_SIGMA_TAKE_OVER_N * HOVER_SIGMA_TAKE_OVER_N;
+    law->hover.gust_n = 0.0F;
+    cascade_init(&law->cascade, thrust_n);
+}
+
+/* Estimate and thrust at the instant when a command given now takes effect. */
+static cascade_state_t foresee(const est_law_t *law, const cascade_vehicle_t *vehicle)
+{
+    const estimate_t *now = &law->estimator.now;
+    const float ahead_s = seconds(law->estimator.now_us, law->now_us + ACTUATOR_DELAY_US);
+    actuator_t then = law->actuator;
+
+    actuator_advance(&then, law->now_us + ACTUATOR_DELAY_US);
+    const float thrust_n = 0.5F * (law->actuator.thrust_n + then.thrust_n) * vehicle->upright;
+    const float acceleration_mps2 = vehicle->authority_mps2_per_n * (thrust_n - vehicle->need_n)
+                                  - vehicle->damping_per_s * now->speed_mps;
+    return (cascade_state_t){
+        .height_m = now->height_m + (now->speed_mps - now->terrain_mps + 0.5F * acceleration_mps2 * ahead_s) * ahead_s,
+        .speed_mps = now->speed_mps + acceleration_mps2 * ahead_s,
+        .terrain_mps = now->terrain_mps,
+        .thrust_n = then.thrust_n,
+    };
+}
+
+/* Thrust grows until the vehicle leaves the ground: what carries it is then known. */
+static bool lift(est_law_t *law, const parameters_t *parameters)
+{
+    const float gravity_n = parameters->value[PARAMETER_GRAV];
+    const float taken_n = law->kick_mps2 / vehicle_of(law, parameters).authority_mps2_per_n;
+    const bool strong = law->actuator.thrust_n > LIFTED_SHARE * gravity_n;
+
+    law->ramping = true;
+    law->lifted = law->estimator.now.height_m > HIGH_M
+               || (strong && (law->estimator.now.height_m > LIFTED_M || law->kick_mps2 > kick_of_lift_mps2(law)));
+    if (law->lifted) {
+        start_hover(law, parameters, law->actuator.thrust_n - taken_n, HOVER_SIGMA_START_N);
+        cascade_init(&law->cascade, law->ramp_n);
+    } else {
+        law->ramp_n = fminf(law->ramp_n + RAMP_N_PER_S * law->step_s, RAMP_MOST * gravity_n);
+    }
+    return law->lifted;
+}
+
+static float landing_mps(float height_m)
+{
+    return -fminf(LAND_MPS + LAND_PER_S * fmaxf(height_m, 0.0F), LAND_MAX_MPS);
+}
+
+static float sinking_mps(float height_m)
+{
+    return -fminf(SINK_MPS + SINK_PER_S * fmaxf(height_m, 0.0F), SINK_MAX_MPS);
+}
+
+/* Whatever the estimate, which nothing corrects now: more and more certainly down, and off on the ground. */
+static float sinking_most_n(const est_law_t *law)
+{
+    return fmaxf(law->hover.thrust_n + SINK_ABOVE_HOVER_N - SINK_FADE_N_PER_S * law->sunk_s, 0.0F);
+}
+
+static float target_m(est_law_t *law, const parameters_t *parameters, float reference_m)
+{
+    const float ignored_m = law->estimator.stepped_m - law->terrain_m;
+
+    if (parameters->value[PARAMETER_TERRAIN] == (float)TERRAIN_FOLLOW || reference_m != law->reference_m) {
+        law->terrain_m = law->estimator.stepped_m;
+        law->reference_m = reference_m;
+        return reference_m;
+    }
+    law->terrain_m += ignored_m * law->step_s / TERRAIN_KEEP_S;
+    return fmaxf(reference_m - ignored_m, LOWEST_OVER_TERRAIN_M);
+}
+
+static float wanted_mps(est_law_t *law, const parameters_t *parameters, const cascade_gains_t *gains,
+                        const cascade_state_t *state, est_wish_t wish, float reference_m)
+{
+    switch (wish) {
+    case EST_LAND:
+        return landing_mps(state->height_m);
+    case EST_SINK:
+        return sinking_mps(state->height_m);
+    case EST_HOLD:
+    default:
+        return cascade_speed_to(gains, state, target_m(law, parameters, reference_m));
+    }
+}
+
+float est_law_step(est_law_t *law, const parameters_t *parameters, est_wish_t wish, float reference_m)
+{
+    const float *value = parameters->value;
+    const cascade_gains_t gains = {value[PARAMETER_POSK], value[PARAMETER_VELK], value[PARAMETER_VUP],
+                                   value[PARAMETER_VDN]};
+
+    if (!law->lifted && !lift(law, parameters)) {
+        return law->ramp_n;
+    }
+    const cascade_vehicle_t vehicle = vehicle_of(law, parameters);
+    const cascade_state_t state = foresee(law, &vehicle);
+    const float speed_mps = wanted_mps(law, parameters, &gains, &state, wish, reference_m);
+    const float thrust_n = cascade_step(&law->cascade, &gains, &vehicle, &state, speed_mps, law->step_s);
+
+    law->sunk_s = (wish == EST_SINK) ? law->sunk_s + law->step_s : 0.0F;
+    return (wish == EST_SINK) ? fminf(thrust_n, sinking_most_n(law)) : thrust_n;
+}
+
+void est_law_commanded(est_law_t *law, float thrust_n)
+{
+    actuator_command(&law->actuator, thrust_n, law->now_us);
+}

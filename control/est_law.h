@@ -1,0 +1,65 @@
+/* Law EST: estimator, hover thrust and cascade put together. It listens all the time, whichever law flies, so that it
+ * can take over at any instant. Pure; the caller owns the state. */
+#ifndef CONTROL_EST_LAW_H
+#define CONTROL_EST_LAW_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "actuator.h"
+#include "altitude.h"
+#include "cascade.h"
+#include "estimator.h"
+#include "hover.h"
+#include "parameters.h"
+#include "ray_clock.h"
+
+typedef enum {
+    EST_HOLD,               /* keep reference_m */
+    EST_LAND,               /* sink towards the ground, gently at its end */
+    EST_SINK                /* the same without a height */
+} est_wish_t;
+
+typedef struct {
+    estimator_t estimator;
+    ray_clock_t ray_clock;
+    actuator_t actuator;
+    hover_t hover;
+    cascade_t cascade;
+    bool listening;         /* now_us holds */
+    uint32_t now_us;
+    float step_s;           /* of the latest est_law_listen() */
+    uint32_t rays_us;       /* of the latest height */
+    bool lifted;            /* it is off the ground */
+    bool ramping;           /* it shall leave the ground */
+    float ramp_n;           /* take-off thrust until then */
+    float kick_mps2;        /* low-passed upward acceleration */
+    float reference_m;
+    float terrain_m;        /* estimator.stepped_m where reference_m was given */
+    float sunk_s;           /* for how long it has been sinking without a height */
+} est_law_t;
+
+void est_law_init(est_law_t *law);
+
+/* The frames of one cycle, oldest first; those that were seen before change nothing. Every cycle, at now_us. */
+void est_law_listen(est_law_t *law, const parameters_t *parameters, const motion_frame_t *frames, uint16_t count,
+                    uint32_t now_us);
+
+/* A new height: its scan's 24-bit stamp and arrival. at_rest: the vehicle is known to stand on the ground. */
+void est_law_see(est_law_t *law, const altitude_t *altitude, uint32_t stamp_ms, uint32_t arrival_us, bool at_rest);
+
+/* Frames with accelerations are fresh and a height has been seen. */
+bool est_law_ready(const est_law_t *law);
+
+/* On the ground, each cycle: the next est_law_step() begins a take-off. */
+void est_law_stand(est_law_t *law, const parameters_t *parameters);
+/* In the air, taking over: hover_n is the best known hover thrust, thrust_n the previous command. */
+void est_law_take_over(est_law_t *law, float thrust_n, float hover_n);
+
+/* Newtons per motor. reference_m: for EST_HOLD. */
+float est_law_step(est_law_t *law, const parameters_t *parameters, est_wish_t wish, float reference_m);
+
+/* What was commanded in the end. */
+void est_law_commanded(est_law_t *law, float thrust_n);
+
+#endif

@@ -1,0 +1,91 @@
+/* Height above the terrain, vertical speed, accelerometer bias and terrain rate: a Kalman filter of four states,
+ *
+ *   height' = speed - terrain rate,   speed' = upward acceleration - bias,   bias' = 0,   rate' = -rate / 0.7 s,
+ *
+ * driven by the accelerations of the IMU frames, mixed with what the thrust lets expect, and corrected by heights at the instant of their rays. The filter with
+ * its covariance lives at the instant of the latest rays; the frames since then are kept, and the estimate of now is the
+ * filter's state carried through them. So a height of 70 ms ago is fused as exactly as one of now.
+ *
+ * A height further from the expectation than a bound of at most 80 mm is not fused. Two in a row that agree are a step of
+ * the terrain; the third in a row, whatever it says, starts the height anew with an open covariance, and the two after
+ * it are fused unseen: no state keeps the heights out.
+ *
+ * Metres, seconds, 32-bit float. Times in microseconds on one wrapping 32-bit clock. Pure; the caller owns the state. */
+#ifndef CONTROL_ESTIMATOR_H
+#define CONTROL_ESTIMATOR_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "altitude.h"
+
+#define ESTIMATOR_FRAMES 16U
+#define ESTIMATOR_STATES 4U
+#define ESTIMATOR_FRESH_US UINT32_C(250000)     /* older frames make the estimate useless */
+
+/* One IMU frame. Accelerations are what a scale would feel: at rest and level 0, 0, +9.81. */
+typedef struct {
+    uint32_t sequence;      /* +1 per frame; 0 = none yet */
+    uint32_t arrival_us;
+    bool usable;            /* has accelerations, and the offset of its angles is known */
+    float forward_mps2, right_mps2, down_mps2;
+    float roll_rad, pitch_rad;  /* median of the frame and the four before */
+} motion_frame_t;
+
+typedef struct {
+    float height_m;         /* above the terrain */
+    float speed_mps;        /* upwards, against the earth */
+    float bias_mps2;        /* of the accelerometer, upwards */
+    float terrain_mps;      /* the terrain below rises */
+} estimate_t;
+
+/* What the acceleration should be, from the thrust. */
+typedef struct {
+    bool known;
+    float up_mps2;
+    float noise_mps2;       /* how wrong that may be, rms, > 0 */
+} expected_motion_t;
+
+typedef struct {
+    uint32_t time_us;       /* of the content */
+    float up_mps2;          /* without gravity, from the frame before to this one */
+    float share;            /* of the accelerometer in it, and so of its bias; the rest is expectation */
+    float roll_rad, pitch_rad;
+} estimator_frame_t;
+
+typedef enum { HEIGHT_FUSED, HEIGHT_REFUSED, HEIGHT_STEP, HEIGHT_ANEW } height_outcome_t;
+
+typedef struct {
+    bool started;           /* a frame has come, and a height with it */
+    estimate_t past;
+    float covariance[ESTIMATOR_STATES][ESTIMATOR_STATES];
+    uint32_t past_us;
+    estimate_t now;         /* at now_us, the latest frame's instant */
+    uint32_t now_us;
+    float up_mps2;          /* felt in the latest frame, gravity removed, bias not */
+    estimator_frame_t latest;
+    estimator_frame_t frames[ESTIMATOR_FRAMES];     /* since past_us, oldest first */
+    uint16_t held;
+    bool moving;            /* a frame has come */
+    uint32_t sequence;
+    float before_mps2[2];   /* raw accelerations of the two frames before */
+    float noise_mps2;       /* measured rms of the accelerometer's noise */
+    float expected_noise_mps2;
+    uint16_t refused;       /* heights in a row */
+    uint16_t unseen;        /* heights still to be fused whatever they say */
+    float refused_m;        /* innovation of the latest refused height */
+    float innovation_m;     /* latest */
+    float stepped_m;        /* sum of the terrain's steps and of its rate: terrain height since the start */
+} estimator_t;
+
+void estimator_init(estimator_t *estimator);
+
+/* One frame, in order; one that was seen before changes nothing. The noisier the accelerometer is measured to be, the
+ * more the expected motion counts. */
+void estimator_move(estimator_t *estimator, const motion_frame_t *frame, expected_motion_t expected);
+
+/* One valid height, its rays taken at rays_us. at_rest: the vehicle is known to stand on the ground, which tells speed
+ * and bias. Without a frame before nothing happens (HEIGHT_REFUSED). */
+height_outcome_t estimator_see(estimator_t *estimator, const altitude_t *altitude, uint32_t rays_us, bool at_rest);
+
+#endif

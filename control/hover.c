@@ -1,0 +1,46 @@
+#include "hover.h"
+
+#include <math.h>
+
+#define DRIFT_N2_PER_S 0.00038F
+#define SLOW_SHARE 6.6F
+#define GUST_RATE_PER_S 2.1F
+#define GUST_NOISE_N 0.48F
+#define GUST_TIME_S 0.76F
+#define GUST_MAX_N 1.0F
+#define SHARE_MAX 0.5F
+
+static float between(float lowest, float value, float highest)
+{
+    return fminf(fmaxf(value, lowest), highest);
+}
+
+void hover_init(hover_t *hover, float thrust_n, float sigma_n, float least_n, float most_n)
+{
+    *hover = (hover_t){
+        .thrust_n = between(least_n, thrust_n, most_n),
+        .variance_n2 = sigma_n * sigma_n,
+        .least_n = least_n,
+        .most_n = most_n,
+    };
+}
+
+void hover_step(hover_t *hover, float seen_n, float noise_n, float dt_s)
+{
+    const float noise_n2 = SLOW_SHARE * noise_n * noise_n;
+    const float unexplained_n = seen_n - hover->thrust_n - hover->gust_n;
+    const float quiet = fminf(GUST_NOISE_N * GUST_NOISE_N / (noise_n * noise_n), 1.0F);
+    const float gust_share = fminf(GUST_RATE_PER_S * quiet * dt_s, SHARE_MAX);
+
+    hover->variance_n2 += DRIFT_N2_PER_S * dt_s;
+    const float gain = hover->variance_n2 / (hover->variance_n2 + noise_n2);
+    hover->thrust_n = between(hover->least_n, hover->thrust_n + gain * (seen_n - hover->thrust_n), hover->most_n);
+    hover->variance_n2 *= 1.0F - gain;
+    hover->gust_n = between(-GUST_MAX_N, hover->gust_n + gust_share * unexplained_n, GUST_MAX_N);
+    hover->gust_n *= fmaxf(1.0F - dt_s / GUST_TIME_S, 0.0F);
+}
+
+void hover_nudge(hover_t *hover, float more_n)
+{
+    hover->gust_n = between(-GUST_MAX_N, hover->gust_n + more_n, GUST_MAX_N);
+}

@@ -1,0 +1,44 @@
+#include "pidt.h"
+
+#include <math.h>
+
+#define LOW_PASS_S 0.0199F
+#define STEP_MIN_S 0.02F
+#define STEP_MAX_S 0.5F
+
+void pidt_reset(pidt_state_t *state)
+{
+    *state = (pidt_state_t){.integral_n = 0.0F};
+}
+
+void pidt_resume(pidt_state_t *state)
+{
+    state->primed = false;
+}
+
+static void differentiate(pidt_state_t *state, float height_m, float dt_s)
+{
+    if (dt_s > 0.0F) {
+        state->rate_mps += dt_s / (dt_s + LOW_PASS_S) * ((height_m - state->height_m) / dt_s - state->rate_mps);
+    } else {
+        state->rate_mps = 0.0F;
+    }
+    state->height_m = height_m;
+    state->primed = true;
+}
+
+float pidt_step(pidt_state_t *state, const pidt_gains_t *gains, float reference_m, float height_m, float dt_s)
+{
+    const bool steady = state->primed && dt_s >= STEP_MIN_S && dt_s <= STEP_MAX_S;
+    const float step_s = steady ? dt_s : 0.0F;
+    const float error_m = reference_m - height_m;
+
+    differentiate(state, height_m, step_s);
+    const float other_n = gains->gravity_n + gains->kp_n_per_m * error_m - gains->kd_n_s_per_m * state->rate_mps;
+    const float more_n = gains->ki_n_per_m_s * error_m * step_s;
+    const float thrust_n = other_n + state->integral_n + more_n;
+    const bool further = (thrust_n > gains->most_n && more_n > 0.0F) || (thrust_n < gains->least_n && more_n < 0.0F);
+
+    state->integral_n += further ? 0.0F : more_n;
+    return fminf(fmaxf(other_n + state->integral_n, gains->least_n), gains->most_n);
+}

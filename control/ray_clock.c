@@ -1,0 +1,24 @@
+#include "ray_clock.h"
+
+#define STAMP_MASK UINT32_C(0xFFFFFF)
+#define GAP_MAX_MS UINT32_C(5000)
+#define DRIFT_US_PER_MS UINT32_C(4) /* 0.3 %, and a little to rise again */
+#define APART_MAX_US INT32_C(50000)
+
+void ray_clock_init(ray_clock_t *ray_clock)
+{
+    *ray_clock = (ray_clock_t){.started = false};
+}
+
+uint32_t ray_clock_step(ray_clock_t *ray_clock, uint32_t stamp_ms, uint32_t arrival_us)
+{
+    const uint32_t gap_ms = (stamp_ms - ray_clock->stamp_ms) & STAMP_MASK;
+    const uint32_t latest_us = ray_clock->earliest_us + gap_ms * (UINT32_C(1000) + DRIFT_US_PER_MS);
+    const int32_t ahead_us = (int32_t)(latest_us - arrival_us);
+    const bool follows = ray_clock->started && gap_ms <= GAP_MAX_MS && ahead_us > -APART_MAX_US && ahead_us < APART_MAX_US;
+
+    ray_clock->earliest_us = (follows && ahead_us < 0) ? latest_us : arrival_us;
+    ray_clock->stamp_ms = stamp_ms & STAMP_MASK;
+    ray_clock->started = true;
+    return ray_clock->earliest_us - (RAY_CLOCK_REPLY_US - RAY_CLOCK_RAYS_US);
+}

@@ -1,0 +1,79 @@
+#include "actuator.h"
+#include "unity.h"
+
+#include <math.h>
+
+static actuator_t actuator;
+
+void setUp(void)
+{
+    actuator_init(&actuator, 0xFFFFFF00U); /* wraps at once */
+}
+
+void tearDown(void) {}
+
+static uint32_t after(uint32_t us)
+{
+    return 0xFFFFFF00U + us;
+}
+
+void test_a_command_does_nothing_before_the_dead_time(void)
+{
+    actuator_command(&actuator, 8.0F, after(0U));
+    actuator_advance(&actuator, after(ACTUATOR_DELAY_US));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, actuator.thrust_n);
+    actuator_advance(&actuator, after(ACTUATOR_DELAY_US + 5000U));
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, 8.0F * (1.0F - expf(-5.0F / 120.0F)), actuator.thrust_n);
+}
+
+void test_the_lag_is_120_ms_in_steps_of_any_length(void)
+{
+    for (uint32_t step_us = 500U; step_us < 60000U; step_us *= 3U) {
+        setUp();
+        actuator_command(&actuator, 5.0F, after(0U));
+        for (uint32_t us = 0U; us <= ACTUATOR_DELAY_US + 240000U; us += step_us) {
+            actuator_advance(&actuator, after(us));
+        }
+        actuator_advance(&actuator, after(ACTUATOR_DELAY_US + 240000U));
+        TEST_ASSERT_FLOAT_WITHIN(0.05F, 5.0F * (1.0F - expf(-2.0F)), actuator.thrust_n);
+    }
+}
+
+void test_commands_take_effect_in_their_order_and_at_their_time(void)
+{
+    actuator_command(&actuator, 4.0F, after(0U));
+    actuator_command(&actuator, 6.0F, after(25000U));
+    actuator_advance(&actuator, after(ACTUATOR_DELAY_US + 24000U));
+    TEST_ASSERT_EQUAL_FLOAT(4.0F, actuator.demand_n);
+    actuator_advance(&actuator, after(ACTUATOR_DELAY_US + 25000U));
+    TEST_ASSERT_EQUAL_FLOAT(6.0F, actuator.demand_n);
+    TEST_ASSERT_EQUAL_UINT16(0, actuator.count);
+}
+
+void test_an_earlier_instant_changes_nothing(void)
+{
+    actuator_command(&actuator, 8.0F, after(0U));
+    actuator_advance(&actuator, after(100000U));
+    const actuator_t before = actuator;
+    actuator_advance(&actuator, after(50000U));
+    TEST_ASSERT_EQUAL_FLOAT(before.thrust_n, actuator.thrust_n);
+    TEST_ASSERT_EQUAL_UINT32(before.time_us, actuator.time_us);
+}
+
+void test_too_many_commands_let_the_oldest_take_effect(void)
+{
+    for (uint16_t i = 0U; i <= ACTUATOR_COMMANDS; i++) {
+        actuator_command(&actuator, (float)i, after(i));
+    }
+    TEST_ASSERT_EQUAL_UINT16(ACTUATOR_COMMANDS, actuator.count);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, actuator.demand_n);
+    TEST_ASSERT_EQUAL_FLOAT(1.0F, actuator.coming[0].thrust_n);
+}
+
+void test_a_long_pause_ends_at_the_demand(void)
+{
+    actuator_command(&actuator, 7.0F, after(0U));
+    actuator_advance(&actuator, after(1000U));
+    actuator_advance(&actuator, after(30000000U));
+    TEST_ASSERT_FLOAT_WITHIN(1e-4F, 7.0F, actuator.thrust_n);
+}

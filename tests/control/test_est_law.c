@@ -1,0 +1,488 @@
+#include "noisy_plant.h"
+#include "thrust.h"
+#include "unity.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#define SEEDS 30U
+
+static noisy_t world;
+static flight_t flight;
+static parameters_t parameters;
+static flight_inputs_t in;
+static flight_outputs_t out;
+static uint32_t clock_us;
+static double highest_m, largest_error_m, least_n, sum, sum_of_squares, thrust_sum, thrust_squares;
+static long samples;
+
+static void set(parameter_id_t id, float value)
+{
+    TEST_ASSERT_EQUAL(PARAMETER_ACCEPTED, parameters_set(&parameters, id, value));
+}
+
+static void board(uint32_t seed)
+{
+    world = noisy_on_ground(seed);
+    flight_init(&flight);
+    parameters_init(&parameters);
+    set(PARAMETER_LAW, LAW_EST);
+    memset(&in, 0, sizeof in);
+    memset(&out, 0, sizeof out);
+    in.attitude_ready = true;
+    clock_us = 0xFFC00000U; /* wraps 4 s later */
+    highest_m = 0.0;
+    least_n = 99.0;
+}
+
+void setUp(void)
+{
+    board(1U);
+}
+
+void tearDown(void) {}
+
+static void setr(float reference_m)
+{
+    in.reference_m = reference_m;
+    in.reference_sequence++;
+}
+
+static double height_m(void)
+{
+    return world.body.height_m - world.body.terrain_m;
+}
+
+static void advance(void)
+{
+    noisy_step(&world, &in, clock_us);
+    if (world.released || world.body.time_us % 150000U == 0U) {
+        flight_step(&flight, &parameters, &in, &out);
+        world.body.command_n = (double)thrust_from_pulse_us(out.pulse_us);
+        if (out.state != FLIGHT_GROUND && out.state != FLIGHT_CUT) {
+            least_n = fmin(least_n, (double)out.thrust_n);
+        }
+    }
+    highest_m = fmax(highest_m, height_m());
+}
+
+static void run(double seconds)
+{
+    for (long i = lround(seconds * 2000.0); i > 0; i--) {
+        advance();
+    }
+}
+
+static void run_until(flight_state_t state, double at_most_s)
+{
+    for (long i = lround(at_most_s * 2000.0); i > 0 && out.state != state; i--) {
+        advance();
+    }
+    TEST_ASSERT_EQUAL_STRING(flight_state_name(state), flight_state_name(out.state));
+}
+
+static void measure(double seconds, double reference_m)
+{
+    sum = sum_of_squares = thrust_sum = thrust_squares = largest_error_m = 0.0;
+    samples = lround(seconds * 2000.0);
+    for (long i = samples; i > 0; i--) {
+        advance();
+        const double error_m = height_m() - reference_m;
+        largest_error_m = fmax(largest_error_m, fabs(error_m));
+        sum += error_m;
+        sum_of_squares += error_m * error_m;
+        thrust_sum += (double)out.thrust_n;
+        thrust_squares += (double)out.thrust_n * (double)out.thrust_n;
+    }
+}
+
+static double rms_mm(void)
+{
+    return 1000.0 * sqrt(sum_of_squares / (double)samples);
+}
+
+static double activity_n(void)
+{
+    const double mean = thrust_sum / (double)samples;
+    return sqrt(fmax(thrust_squares / (double)samples - mean * mean, 0.0));
+}
+
+static void hover_at(float reference_m)
+{
+    run(1.5);
+    setr(reference_m);
+    run(6.0);
+    TEST_ASSERT_EQUAL_STRING("FLYING", flight_state_name(out.state));
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double p95(double *values, unsigned count)
+{
+    qsort(values, count, sizeof *values, ascending);
+    return values[(unsigned)(0.95 * count)];
+}
+
+/* ---- holding */
+
+static double mean_rms_mm(void (*spoil)(void), unsigned seeds, double *activity)
+{
+    double total_mm = 0.0;
+    *activity = 0.0;
+    for (uint32_t seed = 1U; seed <= seeds; seed++) {
+        board(seed);
+        spoil();
+        hover_at(0.6F);
+        measure(8.0, 0.6);
+        total_mm += rms_mm();
+        *activity += activity_n() / seeds;
+        TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
+        TEST_ASSERT_EQUAL_UINT16(0, out.flags);
+    }
+    return total_mm / seeds;
+}
+
+static void nothing(void) {}
+
+void test_the_hover_is_within_13_5_mm_at_half_a_newton_of_activity(void)
+{
+    double activity;
+    const double mm = mean_rms_mm(nothing, SEEDS, &activity);
+    TEST_ASSERT_TRUE(mm > 5.0 && mm <= 13.5);
+    TEST_ASSERT_TRUE(activity > 0.1 && activity <= 0.5);
+}
+
+static void glitches(void)
+{
+    world.glitch = 0.015;
+}
+
+void test_glitches_hardly_change_it(void)
+{
+    double activity;
+    TEST_ASSERT_TRUE(mean_rms_mm(glitches, SEEDS, &activity) <= 14.0);
+}
+
+static void shaken(void)
+{
+    world.acceleration_noise_m_s2 = 1.6;
+}
+
+void test_four_times_the_accelerometers_noise_is_borne_without_four_times_the_activity(void)
+{
+    double activity;
+    TEST_ASSERT_TRUE(mean_rms_mm(shaken, SEEDS, &activity) <= 26.0);
+    TEST_ASSERT_TRUE(activity <= 0.8);
+    TEST_ASSERT_FLOAT_WITHIN(0.3F, 1.6F, flight.est.estimator.noise_mps2);
+}
+
+void test_a_fifth_more_or_less_weight_needs_no_trim(void)
+{
+    for (double hover_n = 5.6; hover_n < 8.45; hover_n += 0.7) {
+        for (uint32_t seed = 1U; seed <= 6U; seed++) {
+            board(seed);
+            world.body.hover_n = hover_n;
+            world.body.damping_per_s = 1.5 + 0.3 * seed;
+            hover_at(0.6F);
+            TEST_ASSERT_TRUE(highest_m < 0.75);
+            measure(6.0, 0.6);
+            TEST_ASSERT_TRUE(rms_mm() <= 30.0);
+            TEST_ASSERT_FLOAT_WITHIN(0.35F, (float)hover_n, flight.est.hover.thrust_n);
+            TEST_ASSERT_EQUAL_INT(0, world.body.contacts);
+            TEST_ASSERT_TRUE(least_n > 1.5);
+        }
+    }
+}
+
+void test_an_edge_of_25_cm_is_followed_within_a_second(void)
+{
+    double recovered_s[SEEDS];
+    for (uint32_t seed = 1U; seed <= SEEDS; seed++) {
+        board(seed);
+        world.body.terrain_m = 0.25;
+        world.body.height_m = 0.25;
+        hover_at(0.6F);
+        run(0.0031 * seed);
+        world.body.terrain_m = 0.0;
+        double lowest_m = 9.0;
+        recovered_s[seed - 1U] = 0.0;
+        for (int i = 0; i < 6000; i++) {
+            advance();
+            recovered_s[seed - 1U] = fabs(height_m() - 0.6) > 0.05 ? i * 0.0005 : recovered_s[seed - 1U];
+            lowest_m = fmin(lowest_m, height_m());
+        }
+        TEST_ASSERT_TRUE(lowest_m > 0.54);
+        TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
+    }
+    const double p95_s = p95(recovered_s, SEEDS);
+    TEST_ASSERT_TRUE(recovered_s[SEEDS / 2U] > 0.4 && recovered_s[SEEDS / 2U] <= 0.9);
+    TEST_ASSERT_TRUE(p95_s <= 1.0);
+}
+
+void test_ignoring_the_terrain_keeps_the_altitude_over_a_step(void)
+{
+    set(PARAMETER_TERRAIN, TERRAIN_IGNORE);
+    hover_at(0.8F);
+    world.body.terrain_m = 0.25;
+    for (int i = 0; i < 4000; i++) {
+        advance();
+        TEST_ASSERT_FLOAT_WITHIN(0.12F, 0.8F, (float)world.body.height_m);
+    }
+    world.body.terrain_m = 0.0;
+    for (int i = 0; i < 4000; i++) {
+        advance();
+        TEST_ASSERT_FLOAT_WITHIN(0.12F, 0.8F, (float)world.body.height_m);
+    }
+}
+
+void test_ignoring_never_goes_below_15_cm_over_the_terrain(void)
+{
+    set(PARAMETER_TERRAIN, TERRAIN_IGNORE);
+    hover_at(0.5F);
+    world.body.terrain_m = 0.45;
+    run(4.0);
+    TEST_ASSERT_TRUE(height_m() > 0.1);
+}
+
+void test_a_new_reference_forgets_the_terrain_that_was_ignored(void)
+{
+    set(PARAMETER_TERRAIN, TERRAIN_IGNORE);
+    hover_at(0.8F);
+    world.body.terrain_m = 0.25;
+    run(2.0);
+    setr(0.7F);
+    run(4.0);
+    TEST_ASSERT_FLOAT_WITHIN(0.06F, 0.7F, (float)height_m());
+}
+
+/* ---- an autopilot whose throttle commands the climb rate */
+
+void test_plant_climb_flies_climb_rate_autopilots(void)
+{
+    static const float rates[] = {0.6F, 1.0F, 1.6F};
+    for (unsigned i = 0; i < 3; i++) {
+        for (uint32_t seed = 1U; seed <= 5U; seed++) {
+            board(seed);
+            set(PARAMETER_PLANT, PLANT_CLIMB);
+            set(PARAMETER_CRATE, rates[i]);
+            world.body.climb_m_s_per_n = 1.0;
+            hover_at(0.6F);
+            TEST_ASSERT_TRUE(highest_m < 0.75);
+            measure(6.0, 0.6);
+            TEST_ASSERT_TRUE(rms_mm() <= 25.0);
+            setr(0.0F);
+            run_until(FLIGHT_GROUND, 10.0);
+            TEST_ASSERT_TRUE(world.body.hardest_m_s <= 0.4);
+        }
+    }
+}
+
+/* ---- the scanner falls silent */
+
+void test_half_a_second_without_a_height_is_hardly_seen(void)
+{
+    double errors_m[SEEDS];
+    for (uint32_t seed = 1U; seed <= SEEDS; seed++) {
+        board(seed);
+        hover_at(0.6F);
+        world.body.mute = true;
+        measure(0.5, 0.6);
+        errors_m[seed - 1U] = largest_error_m;
+        TEST_ASSERT_EQUAL(FLIGHT_COASTING, out.state);
+        world.body.mute = false;
+        measure(1.0, 0.6);
+        errors_m[seed - 1U] = fmax(errors_m[seed - 1U], largest_error_m);
+        TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
+    }
+    const double p95_m = p95(errors_m, SEEDS);
+    TEST_ASSERT_TRUE(p95_m > 0.01 && p95_m <= 0.09);
+}
+
+void test_three_seconds_without_a_height_land_from_60_cm(void)
+{
+    for (uint32_t seed = 1U; seed <= SEEDS; seed++) {
+        board(seed);
+        hover_at(0.6F);
+        world.body.mute = true;
+        run(3.0);
+        TEST_ASSERT_EQUAL(FLIGHT_DESCENDING, out.state);
+        TEST_ASSERT_TRUE(height_m() < 0.4);
+        world.body.mute = false;
+        run_until(FLIGHT_GROUND, 6.0);
+        TEST_ASSERT_TRUE(world.body.contacts >= 1);
+        TEST_ASSERT_TRUE(world.body.hardest_m_s > 0.02 && world.body.hardest_m_s <= 0.5);
+        TEST_ASSERT_TRUE(highest_m < 0.75);
+    }
+}
+
+void test_a_height_that_never_comes_back_ends_on_the_ground_without_thrust(void)
+{
+    for (float reference_m = 0.6F; reference_m < 1.9F; reference_m += 0.6F) {
+        board((uint32_t)(reference_m * 10.0F));
+        hover_at(reference_m);
+        world.body.mute = true;
+        run(15.0);
+        TEST_ASSERT_TRUE(height_m() < 0.001);
+        TEST_ASSERT_TRUE(world.body.hardest_m_s > 0.02 && world.body.hardest_m_s <= 0.7);
+        run_until(FLIGHT_GROUND, 40.0);
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, out.thrust_n);
+    }
+}
+
+/* ---- the IMU falls silent */
+
+void test_without_frames_pidt_takes_over_and_says_so(void)
+{
+    hover_at(0.6F);
+    world.imu_mute = true;
+    run(0.5);
+    TEST_ASSERT_EQUAL(LAW_PIDT, flight.flown);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_ATTITUDE, out.flags);
+    measure(15.0, 0.6);
+    TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
+    TEST_ASSERT_TRUE(largest_error_m < 0.3);
+    world.imu_mute = false;
+    run(0.2);
+    TEST_ASSERT_EQUAL(LAW_EST, flight.flown);
+    run(3.0);
+    measure(6.0, 0.6);
+    TEST_ASSERT_EQUAL_UINT16(0, out.flags);
+    TEST_ASSERT_TRUE(rms_mm() < 30.0);
+}
+
+void test_frames_without_accelerations_do_not_fly_it(void)
+{
+    world.no_acceleration = true;
+    hover_at(0.6F);
+    TEST_ASSERT_EQUAL(LAW_PIDT, flight.flown);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_ATTITUDE, out.flags);
+    TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.6F, (float)height_m());
+}
+
+/* ---- taking over and giving away */
+
+void test_laws_change_in_flight_without_a_jump(void)
+{
+    static const int laws[] = {LAW_PIDT, LAW_EST, LAW_PID, LAW_EST, LAW_PD, LAW_PIDT, LAW_PID, LAW_EST};
+    set(PARAMETER_KP, 0.005F);
+    set(PARAMETER_KD, 0.028F);
+    set(PARAMETER_KI, 0.0005F);
+    set(PARAMETER_USAT, 2.5F);
+    set(PARAMETER_DSAT, 2.5F);
+    set(PARAMETER_RELEASE, RELEASE_SCAN);
+    hover_at(0.8F);
+    for (unsigned i = 0; i < sizeof laws / sizeof laws[0]; i++) {
+        const float before_n = out.thrust_n;
+        set(PARAMETER_LAW, (float)laws[i]);
+        do {
+            advance();
+        } while (!world.released);
+        TEST_ASSERT_FLOAT_WITHIN(0.35F, before_n, out.thrust_n);
+        measure(6.0, 0.8);
+        TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
+        TEST_ASSERT_TRUE(largest_error_m < 0.3);
+    }
+}
+
+void test_a_reference_given_to_a_floating_vehicle_starts_within_half_a_newton_of_hover(void)
+{
+    for (uint32_t seed = 1U; seed <= 10U; seed++) {
+        board(seed);
+        for (int i = 0; i < 4000; i++) { /* a pilot holds it */
+            advance();
+            world.body.height_m = 0.5;
+            world.body.speed_m_s = 0.0;
+            world.body.thrust_n = world.body.hover_n;
+        }
+        TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
+        setr(0.7F);
+        run_until(FLIGHT_FLYING, 0.2);
+        TEST_ASSERT_FLOAT_WITHIN(0.55F, 7.0F, out.thrust_n);
+        run(4.0);
+        measure(4.0, 0.7);
+        TEST_ASSERT_TRUE(rms_mm() < 35.0);
+    }
+}
+
+/* ---- landing */
+
+void test_landing_touches_softly(void)
+{
+    for (double hover_n = 5.6; hover_n < 8.45; hover_n += 1.4) {
+        for (uint32_t seed = 1U; seed <= 5U; seed++) {
+            board(seed);
+            world.body.hover_n = hover_n;
+            hover_at(0.4F + 0.2F * (float)seed);
+            setr(0.0F);
+            run_until(FLIGHT_GROUND, 10.0);
+            TEST_ASSERT_TRUE(height_m() < 0.01);
+            TEST_ASSERT_TRUE(world.body.hardest_m_s > 0.02 && world.body.hardest_m_s <= 0.35);
+        }
+    }
+}
+
+void test_it_flies_again_after_a_landing(void)
+{
+    hover_at(0.6F);
+    setr(0.0F);
+    run_until(FLIGHT_GROUND, 10.0);
+    run(1.0);
+    highest_m = 0.0;
+    hover_at(0.6F);
+    TEST_ASSERT_TRUE(highest_m < 0.72);
+    measure(4.0, 0.6);
+    TEST_ASSERT_TRUE(rms_mm() < 30.0);
+}
+
+/* ---- what it must never do */
+
+/* The study's fly-away: a scan that catches the edge half-way, then the edge, then noise that agrees with nothing. */
+void test_scans_that_disagree_never_make_it_fly_away(void)
+{
+    for (uint32_t seed = 1U; seed <= 20U; seed++) {
+        board(seed);
+        world.body.terrain_m = 0.25;
+        world.body.height_m = 0.25;
+        hover_at(0.6F);
+        for (int scan = 0; scan < 6; scan++) {
+            world.body.terrain_m = scan < 2 ? 0.125 : 0.0;
+            world.glitch = scan % 2 == 0 ? 0.9 : 0.4;
+            run(0.1);
+        }
+        world.glitch = 0.0;
+        run(1.5);
+        TEST_ASSERT_TRUE(highest_m < 0.6 + 0.8);
+        measure(3.0, 0.6);
+        TEST_ASSERT_TRUE(largest_error_m < 0.25);
+        TEST_ASSERT_TRUE(world.body.contacts == 0 && least_n > 1.5);
+    }
+}
+
+void test_a_law_that_starts_with_a_wrong_speed_recovers(void)
+{
+    hover_at(0.6F);
+    flight.est.estimator.past.speed_mps = 3.0F;
+    flight.est.estimator.now.speed_mps = 3.0F;
+    run(3.0);
+    measure(3.0, 0.6);
+    TEST_ASSERT_TRUE(largest_error_m < 0.1);
+    TEST_ASSERT_EQUAL_INT(0, world.body.contacts);
+}
+
+void test_a_tilt_over_45_degrees_cuts(void)
+{
+    hover_at(0.6F);
+    world.tilt_rad = 0.0;
+    world.fallen_rad = 1.0;
+    run(0.05);
+    TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
+    run(0.06);
+    TEST_ASSERT_EQUAL(FLIGHT_CUT, out.state);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, out.thrust_n);
+    TEST_ASSERT_EQUAL_FLOAT(THRUST_IDLE_PULSE_US, out.pulse_us);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_TILT, out.flags & FLIGHT_FLAG_TILT);
+}

@@ -1,0 +1,418 @@
+#include "estimator.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define SEED 31415U
+#define GRAVITY 9.80665
+
+static estimator_t e;
+static uint32_t bits;
+static uint32_t time_us; /* of the world; frames show it 23.6 ms later, heights 70.5 ms later */
+static uint32_t sequence;
+static double height_m, speed_mps, acceleration, bias, noise_rms;
+static double past_m[400];
+static uint32_t steps;
+
+static double uniform(void)
+{
+    bits = bits * 1664525U + 1013904223U;
+    return (double)(bits >> 8) / 16777216.0;
+}
+
+static double gauss(void)
+{
+    double sum = -6.0;
+    for (int i = 0; i < 12; i++) {
+        sum += uniform();
+    }
+    return sum;
+}
+
+void setUp(void)
+{
+    estimator_init(&e);
+    bits = SEED;
+    time_us = 0xFFF00000U; /* wraps after a second */
+    sequence = 0U;
+    steps = 0U;
+    height_m = 0.5;
+    speed_mps = acceleration = noise_rms = 0.0;
+    bias = 0.15;
+}
+
+void tearDown(void) {}
+
+static altitude_t altitude(double metres)
+{
+    return (altitude_t){.valid = true, .height_mm = (float)(metres * 1000.0), .slant_mm = (float)(metres * 1000.0)};
+}
+
+static motion_frame_t frame(void)
+{
+    return (motion_frame_t){
+        .sequence = ++sequence,
+        .arrival_us = time_us + 23600U,
+        .usable = true,
+        .down_mps2 = (float)(GRAVITY + acceleration + bias + noise_rms * gauss()),
+    };
+}
+
+static const expected_motion_t nothing_expected;
+
+/* 5 ms of the world; frames every 25 ms. */
+static void move(void)
+{
+    height_m += speed_mps * 0.005 + 0.5 * acceleration * 0.000025;
+    speed_mps += acceleration * 0.005;
+    time_us += 5000U;
+    past_m[++steps % 400U] = height_m;
+    if (steps % 5U == 0U) {
+        const motion_frame_t f = frame();
+        estimator_move(&e, &f, nothing_expected);
+    }
+}
+
+static double seen_m(uint32_t steps_ago)
+{
+    return past_m[(steps - steps_ago) % 400U];
+}
+
+/* Seconds of flight along a gentle sine; heights every 100 ms, 15 steps old when they come. */
+static void fly(double seconds, double sigma_m)
+{
+    for (int i = (int)(seconds * 200.0); i > 0; i--) {
+        acceleration = 0.8 * cos(1.7 * steps * 0.005);
+        move();
+        if (steps % 20U == 17U && steps > 40U) {
+            const altitude_t a = altitude(seen_m(15U) + sigma_m * gauss());
+            (void)estimator_see(&e, &a, time_us - 75000U, false);
+        }
+    }
+}
+
+static void assert_sound(void)
+{
+    const float *x = &e.past.height_m;
+    for (int i = 0; i < 4; i++) {
+        TEST_ASSERT_TRUE(isfinite(x[i]));
+        TEST_ASSERT_TRUE(e.covariance[i][i] > 0.0F && e.covariance[i][i] <= 1.0001F);
+        for (int j = 0; j < 4; j++) {
+            TEST_ASSERT_TRUE(isfinite(e.covariance[i][j]));
+            TEST_ASSERT_FLOAT_WITHIN(1e-6F + 1e-4F * fabsf(e.covariance[i][j]), e.covariance[j][i], e.covariance[i][j]);
+            TEST_ASSERT_TRUE(e.covariance[i][j] * e.covariance[i][j] <=
+                             1.01F * e.covariance[i][i] * e.covariance[j][j] + 1e-12F);
+        }
+    }
+}
+
+void test_height_speed_and_bias_are_found(void)
+{
+    fly(10.0, 0.003);
+    TEST_ASSERT_TRUE(e.started);
+    TEST_ASSERT_FLOAT_WITHIN(0.012F, (float)past_m[(steps - steps % 5U) % 400U], e.now.height_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.08F, (float)speed_mps, e.now.speed_mps);
+    TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.15F, e.now.bias_mps2);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.0F, e.now.terrain_mps);
+    assert_sound();
+}
+
+/* A climb at 1 m/s: taken for fresh, a height of 75 ms ago would be 75 mm wrong. */
+void test_an_old_height_is_fused_where_it_belongs(void)
+{
+    bias = 0.0;
+    speed_mps = 1.0;
+    height_m = 0.2;
+    for (int i = 0; i < 600; i++) {
+        move();
+        if (steps % 20U == 17U && steps > 40U) {
+            const altitude_t a = altitude(seen_m(15U));
+            (void)estimator_see(&e, &a, time_us - 75000U, false);
+        }
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, (float)height_m, e.now.height_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.03F, 1.0F, e.now.speed_mps);
+}
+
+void test_no_height_no_estimate(void)
+{
+    for (int i = 0; i < 100; i++) {
+        move();
+    }
+    TEST_ASSERT_FALSE(e.started);
+    const altitude_t a = altitude(0.4);
+    TEST_ASSERT_EQUAL(HEIGHT_ANEW, estimator_see(&e, &a, time_us - 75000U, false));
+    TEST_ASSERT_TRUE(e.started);
+}
+
+void test_no_frame_no_estimate(void)
+{
+    const altitude_t a = altitude(0.4);
+    TEST_ASSERT_EQUAL(HEIGHT_REFUSED, estimator_see(&e, &a, time_us, false));
+    TEST_ASSERT_FALSE(e.started);
+}
+
+void test_a_frame_seen_twice_or_out_of_order_counts_once(void)
+{
+    fly(3.0, 0.003);
+    const estimator_t before = e;
+    motion_frame_t f = frame();
+    f.sequence = sequence - 1U;
+    estimator_move(&e, &f, nothing_expected);
+    f.sequence = sequence - 7U;
+    estimator_move(&e, &f, nothing_expected);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &e, sizeof e);
+}
+
+void test_a_useless_frame_changes_nothing(void)
+{
+    static const float wrong[] = {NAN, INFINITY, 1e9F};
+    fly(3.0, 0.003);
+    const estimator_t before = e;
+    for (unsigned i = 0; i < 4; i++) {
+        motion_frame_t f = frame();
+        f.usable = i != 3U;
+        f.down_mps2 = i < 3U ? wrong[i] : 9.8F;
+        estimator_move(&e, &f, nothing_expected);
+        f = frame();
+        f.roll_rad = i < 3U ? wrong[i] : 0.0F;
+        f.usable = i != 3U;
+        estimator_move(&e, &f, nothing_expected);
+    }
+    TEST_ASSERT_EQUAL_MEMORY(&before, &e, sizeof e);
+}
+
+void test_gravity_is_taken_out_of_a_tilted_frame(void)
+{
+    motion_frame_t f = frame();
+    const float roll = 0.3F, pitch = -0.2F, felt = 9.80665F + 1.5F;
+    f.forward_mps2 = -felt * sinf(pitch);
+    f.right_mps2 = felt * cosf(pitch) * sinf(roll);
+    f.down_mps2 = felt * cosf(pitch) * cosf(roll);
+    f.roll_rad = roll;
+    f.pitch_rad = pitch;
+    estimator_move(&e, &f, nothing_expected);
+    TEST_ASSERT_FLOAT_WITHIN(1e-4F, 1.5F, e.up_mps2);
+}
+
+void test_the_tilt_at_the_rays_corrects_the_height(void)
+{
+    altitude_t a = {.valid = true, .slant_mm = 805.0F, .distance_mm = 105.0F, .leg_mm = 100.0F, .arm_mm = 220.0F};
+    for (int i = 0; i < 20; i++) {
+        motion_frame_t f = frame();
+        time_us += 25000U;
+        f.roll_rad = i < 15 ? 0.0F : 0.1F; /* medians show 50 ms before: rolled since 75 ms ago at the newest */
+        estimator_move(&e, &f, nothing_expected);
+    }
+    (void)estimator_see(&e, &a, time_us - 300000U, false);
+    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.6F, e.past.height_m);
+    (void)estimator_see(&e, &a, time_us - 50000U, false);
+    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.7F * cosf(0.1F) - 0.22F * sinf(0.1F) - 0.1F, e.past.height_m + 0.0F * e.innovation_m + 0.0F);
+}
+
+void test_the_accelerometers_noise_is_measured(void)
+{
+    static const double rms[] = {0.1, 0.4, 1.6};
+    for (unsigned i = 0; i < 3; i++) {
+        setUp();
+        noise_rms = rms[i];
+        fly(12.0, 0.003);
+        TEST_ASSERT_FLOAT_WITHIN(0.3F * (float)rms[i], (float)rms[i], e.noise_mps2);
+    }
+}
+
+void test_noise_gives_the_expectation_its_share(void)
+{
+    const expected_motion_t expected = {true, 0.0F, 0.84F};
+    for (int i = 0; i < 300; i++) {
+        motion_frame_t f = frame();
+        time_us += 25000U;
+        estimator_move(&e, &f, expected);
+    }
+    TEST_ASSERT_TRUE(e.latest.share > 0.95F);
+    noise_rms = 1.6;
+    for (int i = 0; i < 300; i++) {
+        motion_frame_t f = frame();
+        time_us += 25000U;
+        estimator_move(&e, &f, expected);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.84F * 0.84F / (0.84F * 0.84F + 1.6F * 1.6F), e.latest.share);
+}
+
+void test_rest_tells_the_bias(void)
+{
+    for (int i = 0; i < 2000; i++) {
+        move();
+        if (steps % 20U == 17U && steps > 40U) {
+            const altitude_t a = altitude(0.0);
+            (void)estimator_see(&e, &a, time_us - 75000U, true);
+        }
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.03F, 0.15F, e.now.bias_mps2);
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.0F, e.now.speed_mps);
+}
+
+/* ---- heights that do not fit */
+
+static height_outcome_t see(double metres)
+{
+    for (int i = 0; i < 20; i++) {
+        acceleration = 0.0;
+        speed_mps = 0.0;
+        move();
+    }
+    const altitude_t a = altitude(metres);
+    return estimator_see(&e, &a, time_us - 75000U, false);
+}
+
+static void hover(void)
+{
+    for (int i = 0; i < 60; i++) {
+        (void)see(0.5);
+    }
+    TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.5));
+}
+
+void test_one_glitch_is_not_fused(void)
+{
+    hover();
+    TEST_ASSERT_EQUAL(HEIGHT_REFUSED, see(0.85));
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.5F, e.now.height_m);
+    TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.5));
+    TEST_ASSERT_EQUAL(HEIGHT_REFUSED, see(0.15));
+    TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.5));
+}
+
+void test_two_that_agree_are_a_step_of_the_terrain(void)
+{
+    hover();
+    const float terrain_m = e.stepped_m;
+    TEST_ASSERT_EQUAL(HEIGHT_REFUSED, see(0.75));
+    TEST_ASSERT_EQUAL(HEIGHT_STEP, see(0.76));
+    TEST_ASSERT_FLOAT_WITHIN(0.015F, 0.76F, e.now.height_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.05F, 0.0F, e.now.speed_mps);
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, terrain_m - 0.26F, e.stepped_m);
+    TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.75));
+}
+
+void test_the_third_in_a_row_starts_anew_whatever_it_says(void)
+{
+    hover();
+    TEST_ASSERT_EQUAL(HEIGHT_REFUSED, see(0.9));
+    TEST_ASSERT_EQUAL(HEIGHT_REFUSED, see(0.1));
+    TEST_ASSERT_EQUAL(HEIGHT_ANEW, see(1.4));
+    TEST_ASSERT_FLOAT_WITHIN(0.05F, 1.4F, e.past.height_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, e.past.terrain_mps);
+    TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.5));
+    TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.5));
+    for (int i = 0; i < 12; i++) {
+        (void)see(0.5);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.03F, 0.5F, e.now.height_m);
+}
+
+/* The bound is at least 53 mm, and no more than 80 mm after any silence. */
+void test_the_bound_is_never_more_than_80_mm(void)
+{
+    for (int silence = 0; silence < 40; silence += 4) {
+        setUp();
+        hover();
+        for (int i = 0; i < 20 * silence; i++) {
+            acceleration = speed_mps = 0.0;
+            move();
+        }
+        const float before_m = e.now.height_m;
+        TEST_ASSERT_EQUAL(HEIGHT_REFUSED, see((double)before_m + 0.5 + 0.2 * silence));
+    }
+    setUp();
+    hover();
+    TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.545));
+}
+
+/* The fly-away of a bound without a way out: a wrong speed, and every height refused for ever. */
+void test_from_any_wrong_state_it_recovers_within_two_seconds(void)
+{
+    for (int i = 0; i < 500; i++) {
+        setUp();
+        bits = SEED + (uint32_t)i;
+        hover();
+        e.past.height_m += (float)(4.0 * uniform() - 2.0);
+        e.past.speed_mps = (float)(8.0 * uniform() - 4.0);
+        e.past.bias_mps2 = (float)(3.0 * uniform() - 1.5);
+        e.past.terrain_mps = (float)(uniform() - 0.5);
+        for (int k = 0; k < 20; k++) {
+            (void)see(0.5);
+        }
+        TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.5F, e.now.height_m);
+        for (int k = 0; k < 20; k++) {
+            (void)see(0.5);
+        }
+        TEST_ASSERT_FLOAT_WITHIN(0.03F, 0.5F, e.now.height_m);
+        TEST_ASSERT_FLOAT_WITHIN(0.25F, 0.0F, e.now.speed_mps);
+    }
+}
+
+void test_after_any_rubbish_it_recovers_within_two_seconds(void)
+{
+    for (int i = 0; i < 200; i++) {
+        setUp();
+        bits = SEED * 3U + (uint32_t)i;
+        hover();
+        for (int k = 0; k < 30; k++) {
+            (void)see(4.0 * uniform());
+            assert_sound();
+        }
+        for (int k = 0; k < 40; k++) {
+            (void)see(0.5);
+        }
+        TEST_ASSERT_FLOAT_WITHIN(0.03F, 0.5F, e.now.height_m);
+    }
+}
+
+/* ---- numbers */
+
+void test_the_covariance_stays_positive_through_anything(void)
+{
+    char seed[32];
+    snprintf(seed, sizeof seed, "seed %u", SEED);
+    TEST_MESSAGE(seed);
+    for (int i = 0; i < 60000; i++) {
+        noise_rms = (i / 5000) % 2 == 0 ? 0.4 : 4.0;
+        acceleration = 30.0 * (uniform() - 0.5);
+        speed_mps = 0.0;
+        height_m = 2.0 + 2.0 * uniform();
+        move();
+        if (uniform() < 0.04 && (i / 3000) % 4 != 3) {
+            const altitude_t a = altitude(uniform() < 0.8 ? height_m : 4.0 * uniform());
+            (void)estimator_see(&e, &a, time_us - (uint32_t)(uniform() * 400000.0), uniform() < 0.1);
+        }
+        time_us += uniform() < 0.001 ? (uint32_t)(uniform() * 2e6) : 0U;
+        assert_sound();
+        TEST_ASSERT_TRUE(fabsf(e.now.speed_mps) <= 4.0F && fabsf(e.now.terrain_mps) <= 0.5F);
+    }
+}
+
+void test_a_million_quiet_steps_do_not_wear_the_covariance_down(void)
+{
+    bias = 0.0;
+    noise_rms = 0.01;
+    for (int i = 0; i < 50000; i++) {
+        (void)see(0.5);
+    }
+    assert_sound();
+    TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.52));
+    TEST_ASSERT_TRUE(e.past.height_m > 0.503F);
+}
+
+void test_after_a_gap_of_the_frames_it_starts_anew(void)
+{
+    hover();
+    time_us += 400000U;
+    motion_frame_t f = frame();
+    estimator_move(&e, &f, nothing_expected);
+    TEST_ASSERT_FALSE(e.started);
+    const altitude_t a = altitude(0.7);
+    TEST_ASSERT_EQUAL(HEIGHT_ANEW, estimator_see(&e, &a, time_us - 75000U, false));
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.7F, e.now.height_m);
+}

@@ -1,0 +1,98 @@
+#include "hover.h"
+#include "unity.h"
+
+#include <math.h>
+
+static hover_t hover;
+static uint32_t random_bits;
+
+void setUp(void)
+{
+    hover_init(&hover, 7.0F, 0.7F, 5.0F, 9.0F);
+    random_bits = 4711U;
+}
+
+void tearDown(void) {}
+
+static float noise(float rms)
+{
+    float sum = -6.0F;
+    for (int i = 0; i < 12; i++) {
+        random_bits = random_bits * 1664525U + 1013904223U;
+        sum += (float)(random_bits >> 8) / 16777216.0F;
+    }
+    return rms * sum;
+}
+
+static void see(float thrust_n, float rms_n, float seconds)
+{
+    for (float t = 0.0F; t < seconds; t += 0.025F) {
+        hover_step(&hover, thrust_n + noise(rms_n), rms_n > 0.0F ? rms_n : 0.3F, 0.025F);
+    }
+}
+
+void test_a_start_outside_the_bounds_is_clipped(void)
+{
+    hover_init(&hover, 12.0F, 0.5F, 5.0F, 9.0F);
+    TEST_ASSERT_EQUAL_FLOAT(9.0F, hover.thrust_n);
+    hover_init(&hover, -1.0F, 0.5F, 5.0F, 9.0F);
+    TEST_ASSERT_EQUAL_FLOAT(5.0F, hover.thrust_n);
+}
+
+void test_a_wrong_start_is_mended_within_a_second(void)
+{
+    see(8.2F, 0.3F, 1.0F);
+    TEST_ASSERT_FLOAT_WITHIN(0.35F, 8.2F, hover.thrust_n + hover.gust_n);
+    see(8.2F, 0.3F, 4.0F);
+    TEST_ASSERT_FLOAT_WITHIN(0.2F, 8.2F, hover.thrust_n);
+    TEST_ASSERT_FLOAT_WITHIN(0.15F, 0.0F, hover.gust_n);
+}
+
+void test_once_known_it_moves_slowly_and_the_gusts_quickly(void)
+{
+    see(7.4F, 0.3F, 20.0F);
+    const float before_n = hover.thrust_n;
+    see(8.0F, 0.3F, 0.4F);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, before_n, hover.thrust_n);
+    TEST_ASSERT_TRUE(hover.gust_n > 0.12F && hover.gust_n < 0.6F);
+}
+
+void test_a_sagging_battery_is_followed(void)
+{
+    see(7.4F, 0.3F, 10.0F);
+    for (int i = 0; i < 600; i++) { /* 0.3 % in a second, for a minute */
+        see(7.4F + 0.0022F * (float)i, 0.3F, 0.1F);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.25F, 8.72F, hover.thrust_n + hover.gust_n);
+}
+
+void test_noise_slows_the_gusts_down(void)
+{
+    hover_t quiet = hover, loud = hover;
+    hover_step(&quiet, 8.0F, 0.3F, 0.025F);
+    hover_step(&loud, 8.0F, 1.5F, 0.025F);
+    TEST_ASSERT_TRUE(quiet.gust_n > 4.0F * loud.gust_n && loud.gust_n > 0.0F);
+}
+
+void test_a_nudge_moves_the_gusts_alone_within_a_newton(void)
+{
+    hover_nudge(&hover, 0.3F);
+    TEST_ASSERT_EQUAL_FLOAT(0.3F, hover.gust_n);
+    TEST_ASSERT_EQUAL_FLOAT(7.0F, hover.thrust_n);
+    hover_nudge(&hover, 5.0F);
+    TEST_ASSERT_EQUAL_FLOAT(1.0F, hover.gust_n);
+    hover_nudge(&hover, -9.0F);
+    TEST_ASSERT_EQUAL_FLOAT(-1.0F, hover.gust_n);
+}
+
+void test_nothing_leaves_the_bounds_whatever_is_seen(void)
+{
+    static const float seen[] = {-1e6F, 1e6F, 0.0F, 20.0F};
+    for (int i = 0; i < 20000; i++) {
+        random_bits = random_bits * 1664525U + 1013904223U;
+        hover_step(&hover, seen[random_bits >> 30], 0.05F + noise(0.01F), 0.001F * (float)((random_bits >> 20) % 500U));
+        TEST_ASSERT_TRUE(hover.thrust_n >= 5.0F && hover.thrust_n <= 9.0F);
+        TEST_ASSERT_TRUE(fabsf(hover.gust_n) <= 1.0F);
+        TEST_ASSERT_TRUE(hover.variance_n2 >= 0.0F && hover.variance_n2 < 1.0F);
+    }
+}
