@@ -6,7 +6,7 @@ MAKEFLAGS += --no-print-directory
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
-flight := pid-60cm-ramp
+flights := pid-60cm-ramp est-60cm-ramp
 # Where setup.sh puts CMock when it may not install packages; CMake falls back to the system's.
 export CMOCK_ROOT ?= $(CURDIR)/build/cmock/usr/share/cmock
 # As many jobs as processors, unless make was told how many.
@@ -21,13 +21,15 @@ build: ## The program build/plomada
 	@cmake -S . -B build -DCMAKE_BUILD_TYPE=Release $(if $(wildcard build/CMakeCache.txt),,-DPLOMADA_TESTS=OFF)
 	+@cmake --build build --target plomada $(jobs)
 
-fly: ## Fly the seed's 60 cm flight; CSV, JSON and a picture in build/
+fly: ## Fly the seed's 60 cm flight, by its own law and by the estimator's; CSV, JSON and pictures in build/
 	@$(setup) build plot
 	@$(MAKE) build
-	@build/plomada fly $(flight) --csv build/$(flight).csv --json build/$(flight).json; flown=$$?; \
-	    [ $$flown -le 1 ] || exit $$flown; \
-	    $(python) tools/plot/plot.py build/$(flight).csv -o build/$(flight).png && \
-	    printf '%s\n' "$(CURDIR)/build/$(flight).csv" "$(CURDIR)/build/$(flight).json" && exit $$flown
+	@for flight in $(flights); do \
+	    build/plomada fly $$flight --csv build/$$flight.csv --json build/$$flight.json || [ $$? -eq 1 ] || exit 2; \
+	    $(python) tools/plot/plot.py build/$$flight.csv -o build/$$flight.png || exit 2; \
+	    printf '%s\n' "$(CURDIR)/build/$$flight.csv" "$(CURDIR)/build/$$flight.json"; done
+	@$(python) tools/plot/plot.py $(flights:%=build/%.csv) -o build/fly.png
+	@grep -L '"met": true' $(flights:%=build/%.json) | sed 's/$$/: not as it must be/' | (! grep .)
 
 plot: ## Draw LOG=FILE: a flight's CSV (or several), an XCTU console log or telemetry text
 	@test -n "$(LOG)" || { echo "usage: make plot LOG=FILE" >&2; exit 2; }

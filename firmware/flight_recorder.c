@@ -55,8 +55,8 @@ void flight_recorder_take(const flight_inputs_t *in, const flight_outputs_t *out
     const flight_log_t record = {
         .time_ms = tell_ms(in->now_us),
         .height_mm = height_mm,
-        .estimate_mm = height_mm,
-        .innovation_mm = NAN,
+        .estimate_mm = out->estimate_mm,
+        .innovation_mm = out->innovation_mm,
         .reference_m = out->reference_m,
         .thrust_n = out->thrust_n,
         .roll_rad = in->attitude_ready ? in->roll_rad : NAN,

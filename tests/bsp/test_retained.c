@@ -56,8 +56,8 @@ void test_any_flipped_bit_and_any_two_are_found(void)
     for (uint32_t a = 0; a < bits; a++) {
         for (uint32_t b = a; b < bits; b++) {
             bsp_retained_store(words);
-            cells[a / 32U] ^= 1UL << (a % 32U);
-            cells[b / 32U] ^= (a == b) ? 0U : 1UL << (b % 32U);
+            cells[a / 32U] ^= (uint32_t)1U << (a % 32U);
+            cells[b / 32U] ^= (a == b) ? 0U : (uint32_t)1U << (b % 32U);
             TEST_ASSERT_FALSE(bsp_retained_load(back));
         }
     }

@@ -67,8 +67,12 @@ void test_a_cycle_is_recorded_as_it_was(void)
     in.pitch_rad = -0.02F;
     out.reference_m = 0.6F;
     out.flags = 3U;
+    out.estimate_mm = 598.0F;
+    out.innovation_mm = -4.0F;
     take(CYCLE_US);
     record = newest();
+    TEST_ASSERT_EQUAL_FLOAT(598.0F, record.estimate_mm);
+    TEST_ASSERT_EQUAL_FLOAT(-4.0F, record.innovation_mm);
     TEST_ASSERT_EQUAL_FLOAT(601.0F, record.height_mm);
     TEST_ASSERT_EQUAL_FLOAT(0.6F, record.reference_m);
     TEST_ASSERT_EQUAL_FLOAT(7.01F, record.thrust_n);

@@ -64,6 +64,7 @@ static void fly_and_ask(void *argument, void *result)
 
     board_power_on(&config, take, f);
     run_for(14.0);
+    type("#LAW PID\n");
     type("#SETR 0.6\n");
     run_for(60.0);
     type("#SETR 0\n");
