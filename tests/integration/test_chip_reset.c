@@ -2,6 +2,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include <xdc/runtime/System.h>
+
 #include "firmware/watch.h"
 #include "sim/board.h"
 #include "sim/ti/driverlib/chip.h"
@@ -183,6 +185,28 @@ void test_a_flight_goes_on_after_a_watchdog_reset(void)
     run_until_s(34.0);
     TEST_ASSERT_DOUBLE_WITHIN(0.3, 0.6, height_m());
     TEST_ASSERT_GREATER_OR_EQUAL_INT(0, find("state:FLYING", 30.0));
+}
+
+static void abort_now(void *unused)
+{
+    (void)unused;
+    System_abort("as a failed assert would");
+}
+
+/* Where the firmware stops for good nobody services the watchdog any more. */
+void test_a_fault_of_the_firmware_ends_in_a_reset_too(void)
+{
+    run_until_s(5.0);
+    (void)timeline_after(SIM_MS, abort_now, NULL);
+    TEST_ASSERT_FALSE(kernel_run_until(5 * SIM_S + 100 * SIM_MS));
+    (void)kernel_run_until(6 * SIM_S); /* the reset is within */
+    run_until_s(8.0);
+    const int first = find("reset:WATCHDOG", 5.0);
+
+    TEST_ASSERT_TRUE(seconds_of(first) < 6.3);
+    type("#PING 1\n");
+    run_until_s(9.0);
+    TEST_ASSERT_GREATER_OR_EQUAL_INT(0, find("OK PING 1", 8.0));
 }
 
 void test_the_watchdog_bites_a_second_time(void)
