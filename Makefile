@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot campaign tune test faults fuzz bench coverage firmware flash check-ti clean
+.PHONY: help build fly plot campaign test faults fuzz bench coverage firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -40,12 +40,6 @@ campaign: ## Fly every law on 200 drawn vehicles; table, CSV, JSON and a picture
 	@$(setup) build campaign
 	@$(MAKE) build
 	@$(python) tools/campaign/campaign.py $(ARGS)
-
-tune: ## Search the gains of LAW=PD, PID ... on the campaign's cost and print the commands that set them
-	@test -n "$(LAW)" || { echo "usage: make tune LAW=PID [ARGS=...]" >&2; exit 2; }
-	@$(setup) build campaign
-	@$(MAKE) build
-	@$(python) tools/tune/tune.py $(LAW) $(ARGS)
 
 test: ## Every test: under ASan and UBSan, then as released
 	@$(setup) build test plot
