@@ -253,6 +253,7 @@ static void next_cycle(void)
 static void prepare_control(void)
 {
     parameters_init(&parameters);
+    parameters.value[PARAMETER_LAW] = (float)LAW_PID;
     flight_init(&flight);
     in = (flight_inputs_t){ .height_valid = true, .height_mm = 10.0F, .attitude_ready = true };
     for (unsigned i = 0; i < 200; i++) {
