@@ -2,8 +2,9 @@
  * nobody serves, a failed create, a return from main(), driverlib's asserts in a build with DEBUG.
  *
  * Each of these turns interrupts off, makes the throttle pulse the idle one, lights the red LED, darkens the blue one, and
- * does so until the watchdog resets the chip, 0.84 s later: no task can raise the thrust again. In the air that lets the vehicle fall, as any loss of the
- * firmware does; the pilot's switch takes over. Any context; nothing of SYS/BIOS is relied upon. None returns.
+ * does so until the watchdog resets the chip, 0.84 s later: no task can raise the thrust meanwhile. In the air that lets
+ * the vehicle fall, as any loss of the firmware does; the pilot's switch takes over. Any context; nothing of SYS/BIOS is
+ * relied upon. None returns.
  *
  * Nobody in the firmware calls them: ccs_project/app.cfg names them as Error.raiseHook, System.abortFxn and
  * System.exitFxn. */
