@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot campaign test faults fuzz bench coverage firmware flash check-ti clean
+.PHONY: help build fly plot campaign tune test port size faults fuzz bench coverage firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -36,13 +36,19 @@ plot: ## Draw LOG=FILE: a flight's CSV (or several), an XCTU console log or tele
 	@$(setup) plot
 	@$(python) tools/plot/plot.py $(LOG) -o build/
 
-campaign: ## Fly every law on 200 drawn vehicles; table, CSV, JSON and a picture in build/campaign/ (ARGS=--help)
+campaign: ## Fly every law on hundreds of vehicles; table, verdicts, CSV, JSON, picture in build/campaign/ (ARGS=--help)
 	@$(setup) build campaign
 	@$(MAKE) build
 	@$(python) tools/campaign/campaign.py $(ARGS)
 
+tune: ## Search the gains of LAW=EST on drawn vehicles; prints the commands that set the best (ARGS=--help)
+	@test -n "$(LAW)" || { echo "usage: make tune LAW=NAME [ARGS=--help]" >&2; exit 2; }
+	@$(setup) build campaign
+	@$(MAKE) build
+	@$(python) tools/tune/tune.py $(LAW) $(ARGS)
+
 test: ## Every test: under ASan and UBSan, then as released
-	@$(setup) build test plot
+	@$(setup) build test campaign
 	@printf '\n== build with ASan and UBSan ==\n'
 	@cmake -S . -B build-sanitize -DCMAKE_BUILD_TYPE=Debug -DSANITIZE=ON -DPLOMADA_TESTS=ON
 	+@cmake --build build-sanitize $(jobs)
@@ -53,6 +59,16 @@ test: ## Every test: under ASan and UBSan, then as released
 	@$(ctest) build-sanitize
 	@printf '\n== tests as released ==\n'
 	@$(ctest) build
+
+port: ## The unit tests of drivers/ and control/ also with 16-bit octets, 16-bit int and CHAR_BIT 16 (simulated)
+	@$(setup) build test port
+	@cmake -S . -B build-port -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON -DPLOMADA_PORT=ON
+	+@cmake --build build-port --target port $(jobs)
+	@$(ctest) build-port -L port; status=$$?; python3 -B tests/port/summary.py build-port && exit $$status
+
+size: ## Flash, static RAM and stacks against the chip's limits, and docs/memory.md against them (ARGS=--write)
+	@$(setup) size
+	@python3 -B tools/size/size.py $(ARGS)
 
 faults: ## The scanner's driver under FRAMES=10000000 damaged frames, and faults at every octet of its start
 	@$(setup) build test

@@ -7,8 +7,9 @@
  * are bsp/storage.c's. No code lies in the last 16 words of the bank and the last 8 of M1 (erratum: prefetch beyond valid
  * memory).
  *
- * SP has 16 bits, so every stack must lie below 0x10000: the main stack in M01SARAM; in RAMGS02 what SYS/BIOS puts into
- * .ebss:taskStackSection, the idle task's stack and the heap, of which the other tasks' stacks are made.
+ * SP has 16 bits, so every stack must lie below 0x10000: the main stack in LS45SARAM, M01SARAM being too small for it
+ * (docs/memory.md); in RAMGS02 what SYS/BIOS puts into .ebss:taskStackSection, the idle task's stack and the heap, of
+ * which the other tasks' stacks are made.
  *
  * Variables lie in one piece, because bsp/start.c sets them to zero: .ebss must not be split (>>). */
 MEMORY
@@ -17,13 +18,14 @@ PAGE 0:
     BEGIN     : origin = 0x080000, length = 0x000002
     FLASHA    : origin = 0x080002, length = 0x001FFE
     FLASH     : origin = 0x082000, length = 0x03A000    /* sectors B to L */
-    LS05SARAM : origin = 0x008000, length = 0x003000
+    LS03SARAM : origin = 0x008000, length = 0x002000
     D01SARAM  : origin = 0x00B000, length = 0x001000
     RESET     : origin = 0x3FFFC0, length = 0x000002
 
 PAGE 1:
     BOOT_RSVD : origin = 0x000002, length = 0x000120    /* stack of the boot ROM */
     M01SARAM  : origin = 0x000122, length = 0x0006D6
+    LS45SARAM : origin = 0x00A000, length = 0x001000
     RAMGS02   : origin = 0x00C000, length = 0x002FF0
     RETAINED  : origin = 0x00EFF0, length = 0x000010    /* of GS2; outlives a reset */
     RAMGS311  : origin = 0x00F000, length = 0x008FF8
@@ -46,9 +48,9 @@ SECTIONS
     .TI.ramfunc : { *(.TI.ramfunc)
                     -l F021_API_F2837xS_FPU32.lib (.text)
                     -l F021_API_F2837xS_FPU32.lib (.econst) }
-                  LOAD = FLASH, RUN = LS05SARAM, table(BINIT), PAGE = 0, ALIGN(8)
+                  LOAD = FLASH, RUN = LS03SARAM, table(BINIT), PAGE = 0, ALIGN(8)
 
-    .stack      : > M01SARAM,   PAGE = 1
+    .stack      : > LS45SARAM,  PAGE = 1
     .ebss:taskStackSection : > RAMGS02, PAGE = 1
     .ebss       : > RAMGS311,   PAGE = 1, START(_ebss_start), SIZE(_ebss_size)
     .data       : > RAMGS311,   PAGE = 1

@@ -27,7 +27,7 @@
 #define TASK_SEND_COMM_DEADLINE_MS 200U
 #define TASK_RECEIVE_COMM_DEADLINE_MS 300U
 
-#define TASK_STACK_CELLS 512U
+#define TASK_STACK_CELLS 1024U      /* what each needs: docs/memory.md */
 
 #if CONTROL_PERIOD_MS >= 65535U || CONTROL_TIMEOUT_MS >= 65535U
 #error "SYS/BIOS takes 65535 ticks for ever on a C28x"

@@ -1456,9 +1456,9 @@ static void assert_countdown(size_t known)
         const size_t left = wire.length - i;
 
         if (i >= known) {
-            TEST_ASSERT_EQUAL_UINT64(left, scip_parser_expected(&parser));
+            TEST_ASSERT_EQUAL_size_t(left, scip_parser_expected(&parser));
         } else {
-            TEST_ASSERT_LESS_OR_EQUAL_UINT64(left, scip_parser_expected(&parser));
+            TEST_ASSERT_LESS_OR_EQUAL_size_t(left, scip_parser_expected(&parser));
         }
         (void)feed(wire.octets[i]);
     }
@@ -1478,7 +1478,7 @@ void test_in_a_stream_the_octets_of_the_next_scan_are_known_from_its_first_to_it
         for (unsigned frame = 0; frame < 3; frame++) {
             wire.length = 0;
             put_numbered_frame(&wire, &orders[o], frame);
-            TEST_ASSERT_EQUAL_UINT64(request.scan_octets, wire.length);
+            TEST_ASSERT_EQUAL_size_t(request.scan_octets, wire.length);
             assert_countdown(0);
         }
         TEST_ASSERT_EQUAL_UINT(3, seen.events[SCIP_SCAN]);
@@ -1507,6 +1507,21 @@ void test_text_replies_have_no_known_length(void)
     expect_plain(SCIP_VERSION);
     (void)feed_text("VV\n00P\nVEND:Hokuyo;0\n");
     TEST_ASSERT_EQUAL_UINT16(0, scip_parser_expected(&parser));
+}
+
+/* "GS0384038401", "00P", "m2@0?", "CB5" and an empty line. */
+void test_a_single_scan_is_counted_down_from_its_data_on(void)
+{
+    const order_t one = {"GS", 384, 384, 1, 0, 0};
+
+    expect_order(&one);
+    (void)feed_text("GS0384038401\n");
+    TEST_ASSERT_EQUAL_UINT16(0, scip_parser_expected(&parser));
+    (void)feed_text("00P\n");
+    TEST_ASSERT_EQUAL_UINT16(0, scip_parser_expected(&parser));
+    (void)feed_text("m2@0?\n");
+    TEST_ASSERT_EQUAL_UINT16(5, scip_parser_expected(&parser));
+    TEST_ASSERT_EQUAL(SCIP_SCAN, feed_text("CB5\n\n"));
 }
 
 void test_the_end_of_a_plain_reply_is_one_octet_away(void)

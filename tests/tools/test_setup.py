@@ -105,6 +105,19 @@ class Setup(unittest.TestCase):
         self.assertTrue(self.calls[-1].endswith("install --no-install-recommends valgrind clang-19 libclang-rt-19-dev"),
                         self.calls)
 
+    def test_cross_compilers_come_with_their_libraries(self):
+        self.stand_in("id", "echo 0")
+        self.stand_in("gcc", "exit 1")
+        self.assertEqual(self.run_setup("port", "size").returncode, 0)
+        wanted = self.calls[-1].split("--no-install-recommends ")[1].split()
+        self.assertEqual(set(wanted), {"gcc-avr", "avr-libc", "libsimavr-dev", "gcc-m68k-linux-gnu", "libc6-dev-m68k-cross"})
+
+    def test_cross_compilers_that_are_there_are_enough(self):
+        for name in ("avr-gcc", "m68k-linux-gnu-gcc"):
+            self.stand_in(name, "exit 0")
+        done = self.run_setup("port", "size")
+        self.assertEqual((done.returncode, done.stderr, self.calls), (0, "", []))
+
     def test_an_unknown_job_is_refused(self):
         for jobs in ((), ("biuld",), ("build", "")):
             self.assertEqual(self.run_setup(*jobs).returncode, 2, jobs)

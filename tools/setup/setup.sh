@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
-# setup.sh build|test|coverage|bench|fuzz|plot|campaign ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
+# setup.sh build|test|port|size|coverage|bench|fuzz|plot|campaign ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
 #
 #   build     C compiler, CMake
 #   test      Ruby and CMock, which generates the mocks; Python 3 for the checks of the house rules
+#   port      avr-gcc, its C library, and simavr to run what it makes
+#   size      m68k-linux-gnu-gcc and avr-gcc, which measure; their C libraries
 #   coverage  gcovr
 #   bench     valgrind
 #   fuzz      clang and its libFuzzer
 #   plot      Python virtual environment build/venv with the pinned packages of tools/plot/requirements.txt
-#   campaign  the same, and in it those of tools/campaign/requirements.txt
+#   campaign  the same, and in it those of tools/campaign/requirements.txt; for tuning too
 #
 # Non-interactive and idempotent: silent, and no call of apt or pip, when nothing is missing. Packages are installed
 # as root, or by sudo where the user may use it; otherwise one line says what to install, and the status is 1.
@@ -64,6 +66,14 @@ fuzzer_packages() {
     echo "clang-${version:-14} libclang-rt-${version:-14}-dev"
 }
 
+# Whether a compiler finds a header.
+finds() { "$1" -E -x c -include "$2" /dev/null >/dev/null 2>&1; }
+
+avr_packages() {
+    has avr-gcc || echo gcc-avr
+    finds avr-gcc stdio.h || echo avr-libc
+}
+
 # Debian packages that the job lacks; cmock is treated apart.
 missing_packages() {
     case $1 in
@@ -74,6 +84,15 @@ missing_packages() {
         test)
             has ruby || echo ruby
             has python3 || echo python3 ;;
+        port)
+            has python3 || echo python3
+            avr_packages
+            finds gcc simavr/sim_avr.h || echo libsimavr-dev ;;
+        size)
+            has python3 || echo python3
+            avr_packages
+            has m68k-linux-gnu-gcc || echo gcc-m68k-linux-gnu
+            finds m68k-linux-gnu-gcc math.h || echo libc6-dev-m68k-cross ;;
         coverage)
             has gcovr || echo gcovr ;;
         bench)
@@ -84,7 +103,7 @@ missing_packages() {
         plot|campaign)
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
         *)
-            say "unknown job '$1'; know build, test, coverage, bench, fuzz, plot, campaign"
+            say "unknown job '$1'; know build, test, port, size, coverage, bench, fuzz, plot, campaign"
             exit 2 ;;
     esac
 }
@@ -162,7 +181,7 @@ add_campaign() {
     cp "$campaign_requirements" "$venv/campaign.txt"
 }
 
-[ $# -gt 0 ] || { say "usage: setup.sh build|test|coverage|bench|fuzz|plot|campaign ..."; exit 2; }
+[ $# -gt 0 ] || { say "usage: setup.sh build|test|port|size|coverage|bench|fuzz|plot|campaign ..."; exit 2; }
 
 packages=()
 want_cmock=

@@ -5,7 +5,7 @@ constant becomes wide (a cell per character), and sizeof counts cells.
 """
 import re
 
-KEPT = r"//[^\n]*|/\*.*?\*/|^[ \t]*\#[ \t]*(?:include|error|pragma|line|warning)[^\n]*"
+KEPT = r"//[^\n]*|/\*.*?\*/|^[ \t]*\#[ \t]*(?:include|error|pragma|line|warning)[^\n]*|\bsection\s*\([^)]*\)"
 CONSTANT = r"\b(?:L|u8|u|U)?(?:\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*')|(?:\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*')"
 TOKEN = re.compile(rf"(?P<kept>{KEPT})|(?P<constant>{CONSTANT})|(?P<sizeof>\bsizeof\b)|(?P<file>\b__FILE__\b)", re.DOTALL | re.MULTILINE)
 OPERAND = re.compile(r"\s*[*&]*\s*\w+(?:\s*(?:\.|->)\s*\w+|\[[^\]]*\])*")

@@ -1,8 +1,10 @@
 /* Runs the image of a test for a machine with 16-bit int: an ATmega1284P of simavr, with its data space widened to 64 KB,
- * whose spare I/O registers lead to this program (registers.h). usage: machine IMAGE, the flash as avr-objcopy -O binary
- * writes it. Exit status: the image's own, or 2 when the machine crashed, overflowed its stack or is not there. */
+ * whose spare I/O registers lead to this program (registers.h). usage: machine IMAGE [CYCLES], the flash as avr-objcopy -O
+ * binary writes it, and how long it may take. Exit status: the image's own, or 2 when the machine crashed, overflowed its
+ * stack, did not end or is not there. */
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include <simavr/sim_avr.h>
 #include <simavr/sim_io.h>
@@ -11,6 +13,7 @@
 
 #define MCU "atmega1284p"
 #define RAM_LAST 0xFFFFU
+#define CYCLES_MAX 4000000000ULL   /* four minutes of its time */
 #define SP_LOW 0x5DU
 #define SP_HIGH 0x5EU
 
@@ -104,7 +107,7 @@ static void set_floor_high(struct avr_t *avr, avr_io_addr_t address, uint8_t val
     stack_floor = (stack_floor & 0xFFU) | (unsigned)value << 8;
 }
 
-static void run(avr_t *avr)
+static void run(avr_t *avr, unsigned long long cycles_max)
 {
     while (!ended) {
         const int state = avr_run(avr);
@@ -117,14 +120,18 @@ static void run(avr_t *avr)
             printf("machine: the stack at %x reached the variables, code at %lx\n", stack, (unsigned long)avr->pc);
             return;
         }
+        if (avr->cycle > cycles_max) {
+            printf("machine: no end after %llu cycles, code at %lx\n", cycles_max, (unsigned long)avr->pc);
+            return;
+        }
     }
 }
 
 int main(int argc, char **argv)
 {
     avr_t *avr = avr_make_mcu_by_name(MCU);
-    if (argc != 2 || avr == NULL) {
-        fprintf(stderr, "usage: machine IMAGE\n");
+    if (argc < 2 || argc > 3 || avr == NULL) {
+        fprintf(stderr, "usage: machine IMAGE [CYCLES]\n");
         return 2;
     }
     avr->ramend = RAM_LAST;
@@ -145,6 +152,6 @@ int main(int argc, char **argv)
         fprintf(stderr, "machine: cannot read %s\n", argv[1]);
         return 2;
     }
-    run(avr);
+    run(avr, argc == 3 ? strtoull(argv[2], NULL, 10) : CYCLES_MAX);
     return status;
 }

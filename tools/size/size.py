@@ -1,0 +1,403 @@
+"""Memory of the product: flash, static RAM and stacks, against the limits of the TMS320F28377S; docs/memory.md says how.
+
+The exit status is 1 when a limit is exceeded, when something on a stack is not known (tools/size/stacks.txt), when an
+interrupt may block, or when the tables of docs/memory.md are not those printed here (--write puts them there); it is 77
+when a cross compiler is missing.
+"""
+import argparse
+import concurrent.futures
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+HERE = ROOT / "tools/size"
+DOCUMENT = ROOT / "docs/memory.md"
+sys.path[:0] = [str(ROOT / "tests/port/avr"), str(ROOT / "tests/rules")]
+import cells  # noqa: E402
+import house  # noqa: E402
+import sources  # noqa: E402
+
+M68K = ("m68k-linux-gnu-gcc", "-std=gnu99", "-m68040", "-malign-int", "-fno-math-errno", "-fshort-wchar", "-w", "-include",
+        HERE / "cells.h")
+AVR = ("avr-gcc", "-mmcu=atmega2560", "-std=gnu99", "-Os", "-w")
+GRAPH = ("-fstack-usage", "-fcallgraph-info=su")
+RELEASE = ("-O2", "-fno-inline", *GRAPH)    # inlined or not, the frames of a path add up; apart they have names
+DEBUG = ("-O0", *GRAPH)
+NOT_AVR = ("bsp/storage.c",)    # two flash sectors of 64 KB are beyond its 16-bit size_t
+TI = ["sim/ti/sysbios", "sim/ti/driverlib", "sim/ti/f021/include", "."]
+
+# Cells on a stack that no compiler here can measure; docs/memory.md has their sources.
+CALL = 4            # return address and frame pointer or alignment: gcc's figures hold neither
+CONTEXT = 44        # of an interrupt: 14 pushed by the C28x, 26 by the dispatcher with FPU32, return address, alignment
+DISPATCH = 40       # Hwi_dispatchC(), Hwi_switchAndDispatch(), Hwi_dispatchCore()
+SWI = 40            # Swi_restoreHwi(), Swi_run()
+SWITCH = 64         # Task_restoreHwi(), Task_schedule(), the load's hook, the swap of tasks
+TASK = 2 * (CONTEXT + DISPATCH) + SWITCH    # an interrupt, and one more while the switch that it ended in calls the hook
+IDLE = 64           # the idle loop and the load's idle function
+HWI_GROUPS = 3      # PIE groups 1 (tick), 8 and 9: a Hwi masks its own group
+TICK = 96           # the tick's own Hwi, which posts the Clock Swi
+SPILL = 1.25        # what TI's compiler may need more than the one measured
+CLONE = re.compile(r"\.(?:constprop|isra|part|cold)\b.*")
+BLOCKING = re.compile(r"(?:Semaphore_pend|Event_pend|GateMutexPri_enter|Task_sleep|Task_yield|\w+_create)$")
+CHIP_RAM = 82 * 1024        # cells: 164 KB
+CHIP_FLASH = 512 * 1024     # cells: 1 MB
+
+
+def run(command):
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}\n{done.stderr}")
+    return done.stdout
+
+
+def product():
+    return [path for paths in sources.listed(house.House(ROOT)).values() for path in paths]
+
+
+def to_cells(out):
+    """Copies of the product's files, converted; the tree is as in the repository."""
+    for room in house.PRODUCT:
+        for file in (ROOT / room).glob("*.[ch]"):
+            target = out / room / file.name
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(cells.convert(file.read_text(encoding="utf-8"), file), encoding="utf-8")
+
+
+def compile_all(compiler, base, out, without=()):
+    """{source: object}, each compiled apart."""
+    include = [f"-I{base / room}" for room in house.PRODUCT] + [f"-I{ROOT / path}" for path in TI]
+    objects = {path: out / path.replace("/", "-").replace(".c", ".o") for path in product() if path not in without}
+    out.mkdir(parents=True, exist_ok=True)
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(lambda item: run([*compiler, *include, "-c", base / item[0], "-o", item[1]]), objects.items()))
+    return objects
+
+
+def section_bytes(tool, objects):
+    """{source: {"code", "constant", "data", "bss"}} in bytes; what is placed by name counts as its kind."""
+    found = {}
+    for path, file in objects.items():
+        kinds = dict.fromkeys(("code", "constant", "data", "bss"), 0)
+        for name, size in re.findall(r"^(\.\S+)\s+(\d+)", run([tool, "-A", file]), re.MULTILINE):
+            kind = next((kind for start, kind in ((".text", "code"), (".rodata", "constant"), (".data", "data"), (".bss", "bss"),
+                                                 (".retained", "bss")) if name.startswith(start)), None)
+            if kind:
+                kinds[kind] += int(size)
+        found[path] = kinds
+    return found
+
+
+class Stacks:
+    """The call graph of the product, and what is on the stack along its paths, in cells."""
+
+    def __init__(self, objects):
+        self.own, self.callees, self.problems = {}, {}, []
+        self.read_table()
+        for path, file in objects.items():
+            self.read_graph(path, file.with_suffix(".ci").read_text(encoding="utf-8"))
+        self.deepest = {}
+
+    def read_table(self):
+        self.roots, self.calls, self.allowed = [], {}, []
+        for line in (HERE / "stacks.txt").read_text(encoding="utf-8").splitlines():
+            if not line.strip() or line.startswith("#"):
+                continue
+            kind, *rest = re.split(r"\s{2,}", line.strip())
+            if kind == "root":
+                self.roots.append(tuple(rest[:3]))
+            elif kind == "calls":
+                self.calls[rest[0]] = self.targets(rest[1])
+            elif kind == "cells":
+                self.allowed += [(name, int(rest[0])) for name in rest[1].split()]
+            else:
+                raise ValueError(f"tools/size/stacks.txt: {line}")
+
+    @staticmethod
+    def targets(text):
+        """The names of a row: given, the last argument of every call of a function, or what a table holds."""
+        if text.endswith("()"):
+            code = "".join(house.code_only((ROOT / path).read_text(encoding="utf-8")) for path in product())
+            return re.findall(rf"\b{text[:-2]}\([^;{{]*?(\w+)\);", code)
+        if ":" not in text:
+            return text.split()
+        path, table = text.split(":")
+        code = house.code_only((ROOT / path).read_text(encoding="utf-8"))
+        held = re.search(rf"\b{table}\[\]\)?(?:\([^)]*\))?\s*=\s*\{{(.*?)\}};", code, re.DOTALL).group(1)
+        return re.findall(r"[A-Za-z_]\w*", re.sub(r"\[\w+\]", "", held))
+
+    def read_graph(self, path, text):
+        for title, label, outside in re.findall(r'node: \{ title: "([^"]+)" label: "([^"]*)"( shape : ellipse)?', text):
+            if not outside:
+                size, kind = re.search(r"\\n(\d+) bytes \(([^)]*)\)", label).groups()
+                key = self.key(path, title)
+                self.own[key] = max((int(size) + 1) // 2 + CALL, self.own.get(key, 0))
+                if kind not in ("static", "dynamic,bounded"):
+                    self.problems.append(f"{path}: {title.split(':')[-1]}: a stack frame without bound")
+        for source, target in re.findall(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"', text):
+            self.callees.setdefault(self.key(path, source), set()).add(self.key(path, target))
+
+    @staticmethod
+    def key(path, title):
+        """A function with its file if it is static; what gcc made of it for certain arguments goes by its name."""
+        name = CLONE.sub("", title.split(":")[-1])
+        return f"{path}:{name}" if ":" in title else name
+
+    def named(self, name):
+        return [key for key in self.own if key.split(":")[-1] == name]
+
+    def allowance(self, name):
+        for known, size in self.allowed:
+            if name == known or (known.endswith("*") and name.startswith(known[:-1])):
+                return size
+        self.problems.append(f"{name}: nobody knows its stack")
+        return 0
+
+    def below(self, key):
+        found = set()
+        for callee in self.callees.get(key, ()):
+            if callee != "__indirect_call":
+                found.add(callee)
+                continue
+            function = key.split(":")[-1]
+            if function not in self.calls:
+                self.problems.append(f"{function}(): calls through a pointer, nobody knows whom")
+            for target in self.calls.get(function, ()):
+                found.update(self.known(target))
+        return found
+
+    def known(self, function):
+        keys = self.named(function)
+        if not keys:
+            self.problems.append(f"{function}(): no such function")
+        return keys
+
+    def path(self, key, above=()):
+        """(cells, functions) of the deepest path from a function on; a recursion is a problem."""
+        if key in above:
+            self.problems.append(f"{key}: recursion")
+            return 0, ()
+        if key not in self.deepest:
+            if key not in self.own:
+                self.deepest[key] = self.allowance(key), (key,)
+            else:
+                size, way = max((self.path(callee, (*above, key)) for callee in self.below(key)), default=(0, ()))
+                self.deepest[key] = self.own[key] + size, (key.split(":")[-1], *way)
+        return self.deepest[key]
+
+    def reachable(self, key, seen):
+        if key not in seen:
+            seen.add(key)
+            for callee in self.below(key):
+                self.reachable(callee, seen)
+        return seen
+
+    def root(self, function):
+        return max((self.path(key) for key in self.known(function)), default=(0, ()))
+
+    def check_roots(self):
+        """Every function that is handed to the kernel is a root; what runs in interrupts never blocks; no row is stale."""
+        handed = re.compile(r"\b(?:Task_create|Swi_create|Clock_create)\(\s*(\w+)|\bhwi_create\([^;]*?,\s*(\w+),")
+        for path in product():
+            text = house.code_only((ROOT / path).read_text(encoding="utf-8"))
+            for names in handed.findall(text):
+                for name in filter(None, names):
+                    if self.named(name) and name not in [function for _, _, function in self.roots]:
+                        self.problems.append(f"{path}: {name}: no root in tools/size/stacks.txt")
+        for kind, _, function in self.roots:
+            if kind in ("swi", "clock", "hwi"):
+                for key in self.named(function):
+                    self.problems += [f"{function} ({kind}) may reach {callee}(), which blocks"
+                                      for callee in sorted(self.reachable(key, set())) if BLOCKING.match(callee)]
+
+        pointers = {key.split(":")[-1] for key, callees in self.callees.items() if "__indirect_call" in callees}
+        self.problems += [f"tools/size/stacks.txt: {function}() calls through no pointer"
+                          for function in sorted(set(self.calls) - pointers)]
+
+    def worst(self, kind):
+        """[(name, cells, path)] of the roots of a kind."""
+        return [(name, *self.root(function)) for root, name, function in self.roots if root == kind]
+
+
+def defined(path, name):
+    value = re.search(rf"{name}\s*=?\s*(0x[\dA-Fa-f]+|\d+)", (ROOT / path).read_text(encoding="utf-8"))
+    return int(value.group(1), 0)
+
+
+def region(name):
+    return int(re.search(rf"^\s*{name}\s*:.*length = (0x[\dA-F]+)", (ROOT / "ccs_project/plomada.cmd").read_text(encoding="utf-8"),
+                         re.MULTILINE).group(1), 16)
+
+
+def table(head, rows):
+    return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in (head, ["---"] + ["--:"] * (len(head) - 1), *rows))
+
+
+def limit(problems, what, used, available):
+    if used > available:
+        problems.append(f"{what}: {used} of {available} cells")
+    return used, available
+
+
+def spilled(size):
+    return -int(-size * SPILL // 1)
+
+
+def stack_row(problems, name, sizes, reserve, available, path=""):
+    """A row for the sizes measured as Release and as Debug: the larger one counts."""
+    needed = spilled(max(sizes)) + reserve
+    limit(problems, f"stack of {name}", needed, available)
+    return name, *sizes, needed, available, available - needed, path
+
+
+def arrows(way):
+    return " → ".join(f"`{step}`" for step in way)
+
+
+def nested(stacks):
+    """Cells of the Hwis and Swis: every Swi, each preempting the one before, and on them a Hwi of every group."""
+    swis = stacks.worst("swi") + [max(stacks.worst("clock"), key=lambda item: item[1])]
+    hwi = max(size for _, size, _ in stacks.worst("hwi"))
+    return len(swis), sum(size for _, size, _ in swis) + (HWI_GROUPS - 1) * hwi + TICK
+
+
+def stack_table(release, debug, problems):
+    tasks = defined("firmware/schedule.h", "TASK_STACK_CELLS")
+    program = defined("ccs_project/app.cfg", "Program.stack")
+    rows = []
+    for (name, size, way), (_, debug_size, debug_way) in zip(release.worst("task"), debug.worst("task")):
+        rows.append(stack_row(problems, name, (size, debug_size), TASK, tasks, arrows(way if size > debug_size else debug_way)))
+    rows.append(stack_row(problems, "idle task", (IDLE, IDLE), TASK, defined("ccs_project/app.cfg", "Task.idleTaskStackSize")))
+    (levels, size), (_, debug_size) = nested(release), nested(debug)
+    contexts = DISPATCH + SWI + (levels - 1) * (CONTEXT + DISPATCH + SWI) + HWI_GROUPS * (CONTEXT + DISPATCH)
+    rows.append(stack_row(problems, "Hwis and Swis", (size, debug_size), contexts, program,
+                          f"{levels} Swis on one another, {HWI_GROUPS} Hwis on them"))
+    (_, size, way), = release.worst("main")
+    (_, debug_size, debug_way), = debug.worst("main")
+    rows.append(stack_row(problems, "main()", (size, debug_size), 0, program, arrows(way if size > debug_size else debug_way)))
+    singles = [(f"{name} ({kind})", size, debug_size) for kind in ("swi", "clock", "hwi")
+               for (name, size, _), (_, debug_size, _) in zip(release.worst(kind), debug.worst(kind))]
+    return (table(("stack", "Release", "Debug", "needed", "size", "free", "deepest path"), rows)
+            + "\n\n" + table(("on the stack of the Hwis and Swis", "Release", "Debug"), singles))
+
+
+def ram_table(sizes, problems):
+    def static(kinds):
+        return (kinds["data"] + kinds["bss"] + 1) // 2
+
+    modules = sorted(((path, static(kinds)) for path, kinds in sizes.items() if static(kinds)), key=lambda item: -item[1])
+    rows = [(f"`{path}`", size) for path, size in modules if size >= 64]
+    small = [size for _, size in modules if size < 64]
+    rows.append((f"{len(small)} others, each under 64", sum(small)))
+    everything = sum(size for _, size in modules)
+    ring = static(sizes["firmware/flight_recorder.c"])
+    kept = static(sizes["bsp/retained.c"])
+    heap, stack = defined("ccs_project/app.cfg", "BIOS.heapSize"), defined("ccs_project/app.cfg", "Program.stack")
+    idle = defined("ccs_project/app.cfg", "Task.idleTaskStackSize")
+    tasks = 6 * defined("firmware/schedule.h", "TASK_STACK_CELLS")
+    limits = [("variables (`.ebss`)", *limit(problems, ".ebss", everything - ring - kept, region("RAMGS311"))),
+              ("flight recorder (`.flight_log`)", *limit(problems, ".flight_log", ring, region("RAMGS1215"))),
+              ("kept over a reset (`.retained`)", *limit(problems, ".retained", kept, region("RETAINED"))),
+              ("six task stacks, of the heap", *limit(problems, "heap", tasks, heap)),
+              ("heap and idle task, below 10000H", *limit(problems, ".ebss:taskStackSection", heap + idle, region("RAMGS02"))),
+              ("stack of Hwis, Swis and main()", *limit(problems, ".stack", stack, region("LS45SARAM"))),
+              ("all of it, of the chip's RAM", *limit(problems, "RAM", everything + heap + idle + stack, CHIP_RAM))]
+    return (table(("module", "cells"), rows + [("**all**", everything)])
+            + "\n\n" + table(("region", "used", "of"), limits))
+
+
+def flash_table(m68k, avr, problems):
+    def flash(kinds):
+        return kinds["code"] + kinds["constant"] + kinds["data"]
+
+    rows = []
+    for room in house.PRODUCT:
+        row = [sum(flash(kinds) for path, kinds in sizes.items() if path.startswith(room + "/")) for sizes in (m68k, avr)]
+        rows.append((f"`{room}/`", *row, max(row) // 2))
+    both = [sum(row[column] for row in rows) for column in (1, 2, 3)]
+    rows.append(("**all**", *both))
+    available = region("FLASH")
+    limit(problems, "flash", 2 * both[2], available)
+    limit(problems, "flash of the chip", 2 * both[2], CHIP_FLASH)
+    return table(("room", "m68k, bytes", "AVR, bytes", "the larger, as cells"), rows)
+
+
+def document(tables, write):
+    """Whether docs/memory.md holds the tables; other compilers than those it names measure something else."""
+    text = DOCUMENT.read_text(encoding="utf-8")
+    put = text
+    for name, content in tables.items():
+        put, count = re.subn(rf"(<!-- {name} -->\n).*?(?=\n<!-- end -->)", lambda match: match.group(1) + content, put,
+                             flags=re.DOTALL)
+        if count != 1:
+            sys.exit(f"docs/memory.md has no place for {name}")
+    if write:
+        DOCUMENT.write_text(put, encoding="utf-8")
+    elif tables["compilers"] not in text:
+        print("docs/memory.md was written with other compilers: not compared\n")
+        return True
+    return write or put == text
+
+
+def version(compiler):
+    return f"{compiler} {run([compiler, '-dumpfullversion', '-dumpversion']).strip()}"
+
+
+def allowance_table(stacks):
+    known = (("each call: return address, and frame pointer or alignment", CALL),
+             ("context of an interrupt", CONTEXT),
+             ("the dispatcher's functions in C", DISPATCH),
+             ("the scheduler that runs a Swi behind an interrupt", SWI),
+             ("the switch of tasks behind an interrupt, with the load's hook", SWITCH),
+             ("two interrupts and a switch, on every task's stack", TASK),
+             ("idle loop", IDLE),
+             ("the tick's own Hwi", TICK))
+    names = {}
+    for name, cells_n in stacks.allowed:
+        names.setdefault(cells_n, []).append(f"`{name}`")
+    return table(("what", "cells"), [*known, *((", ".join(group), cells_n) for cells_n, group in sorted(names.items()))])
+
+
+def measure(out, problems):
+    """{name: table}"""
+    copy = out / "cells"
+    to_cells(copy)
+    sizes = section_bytes("m68k-linux-gnu-size", compile_all((*M68K, "-O2"), copy, out / "m68k"))
+    avr = section_bytes("avr-size", compile_all(AVR, ROOT, out / "avr", without=NOT_AVR))
+    graphs = [Stacks(compile_all((*M68K, *options), copy, out / name))
+              for name, options in (("release", RELEASE), ("debug", DEBUG))]
+    tables = {"compilers": f"Measured with {version(M68K[0])} and {version(AVR[0])}.",
+              "flash": flash_table(sizes, avr, problems), "ram": ram_table(sizes, problems),
+              "stacks": stack_table(*graphs, problems), "allowances": allowance_table(graphs[0])}
+    for graph in graphs:
+        graph.check_roots()
+        problems += graph.problems
+    return tables
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", type=Path, default=ROOT / "build/size", help="where to compile")
+    parser.add_argument("--write", action="store_true", help="put the tables into docs/memory.md")
+    parser.add_argument("--limits", action="store_true", help="do not compare with docs/memory.md")
+    options = parser.parse_args()
+    missing = [tool for tool in (M68K[0], AVR[0]) if not shutil.which(tool)]
+    if missing:
+        print(f"no {' and no '.join(missing)}: tools/setup/setup.sh size")
+        sys.exit(77)
+    problems = []
+    tables = measure(options.out.resolve(), problems)
+    for content in tables.values():
+        print(content, end="\n\n")
+    if not options.limits and not document(tables, options.write):
+        problems.append("docs/memory.md says otherwise: tools/size/size.py --write")
+    for problem in dict.fromkeys(problems):
+        print(problem)
+    sys.exit(1 if problems else 0)
+
+
+if __name__ == "__main__":
+    main()
