@@ -1,4 +1,5 @@
-/* What the firmware's jobs cost: execution times of the seed's Annex IV, measured there on the chip. */
+/* What the firmware's jobs cost: execution times of the seed's Annex IV, measured there on the chip; of the tick's Swi,
+ * which the seed had not, by analogy. */
 #ifndef SIM_COSTS_H
 #define SIM_COSTS_H
 

@@ -32,23 +32,41 @@ static void note_write(latency_t *latency)
     }
 }
 
-static void answer(latency_t *latency, sim_time_t when)
+static void count(latency_figures_t *figures, sim_time_t scan_end, sim_time_t taken)
 {
-    latency_figures_t *figures = &latency->by_release[latency->read.release];
-    sim_time_t taken = when - latency->read.scan_end;
-
-    latency->answered = true;
-    latency->answer_to = latency->read.scan_end;
-    latency->answered_sequence = latency->read.sequence;
     if (figures->answers == 0 || taken < figures->shortest) {
         figures->shortest = taken;
     }
     if (taken > figures->longest) {
         figures->longest = taken;
-        figures->longest_since = latency->read.scan_end;
+        figures->longest_since = scan_end;
     }
     figures->answers++;
     figures->total += taken;
+}
+
+static void answer(latency_t *latency, sim_time_t when)
+{
+    latency->answered = true;
+    latency->answer_to = latency->read.scan_end;
+    latency->answered_sequence = latency->read.sequence;
+    if (latency->read.release != LATENCY_UNKNOWN) {
+        count(&latency->by_release[latency->read.release], latency->read.scan_end, when - latency->read.scan_end);
+    }
+}
+
+static int release_in_force(void)
+{
+    const control_law_t law = (control_law_t)watch_parameters->value[PARAMETER_LAW];
+    const flight_state_t state = watch_flight->state;
+
+    if (law == LAW_EST) {
+        return LATENCY_FRAME;
+    }
+    if (state == FLIGHT_LANDING || state == FLIGHT_LOWERING || state == FLIGHT_DESCENDING) {
+        return LATENCY_UNKNOWN;
+    }
+    return law == LAW_PIDT ? (int)RELEASE_SCAN : (int)watch_parameters->value[PARAMETER_RELEASE];
 }
 
 static void follow_control(latency_t *latency, sim_time_t when, kernel_event_t event, int detail)
@@ -63,7 +81,7 @@ static void follow_control(latency_t *latency, sim_time_t when, kernel_event_t e
     if (left(event, detail, "Altitude_server")) {
         latency->read = latency->written;
     } else if (left(event, detail, "Parameter_server")) {
-        latency->release = (int)watch_parameters->value[PARAMETER_RELEASE];
+        latency->release = release_in_force();
     }
 }
 

@@ -11,6 +11,10 @@
 #include "control/parameters.h"
 #include "sim/ti/sysbios/kernel.h"
 
+/* What releases TaskControl: the parameter RELEASE of laws PD and PID, each height for PIDT, each height and IMU frame for
+ * EST. A descent of the supervisor is flown by frames or not, as the estimator has it: unknown, and not counted. */
+enum { LATENCY_UNKNOWN = -1, LATENCY_FRAME = RELEASE_COUNT, LATENCY_RELEASES };
+
 typedef struct {
     long answers;
     sim_time_t shortest, longest, total;
@@ -18,7 +22,7 @@ typedef struct {
 } latency_figures_t;
 
 typedef struct {
-    latency_figures_t by_release[RELEASE_COUNT];    /* the release in force when the altitude was written */
+    latency_figures_t by_release[LATENCY_RELEASES]; /* the release in force when the altitude was written */
     bool answered;          /* since latency_observe() was last called: an answer */
     sim_time_t answer_to;   /* last octet of its scan */
 

@@ -16,6 +16,7 @@
 
 static pid_t pid;
 static FILE *program;
+static const char storage[] = SCRATCH "/realtime-storage.bin";
 
 void setUp(void) {}
 
@@ -28,7 +29,7 @@ void tearDown(void)
     }
 }
 
-static void start(const char *duration)
+static void start_with(const char *duration, const char *option, const char *value)
 {
     int ends[2];
 
@@ -36,11 +37,17 @@ static void start(const char *duration)
     pid = fork();
     if (pid == 0) {
         dup2(ends[1], 1);
-        execl(PLOMADA, "plomada", "fly", "hover-60s", "--realtime", "--xbee", "pty", "--duration", duration, (char *)NULL);
+        execl(PLOMADA, "plomada", "fly", "hover-60s", "--realtime", "--xbee", "pty", "--duration", duration,
+              option, value, (char *)NULL);
         _exit(127);
     }
     close(ends[1]);
     program = fdopen(ends[0], "r");
+}
+
+static void start(const char *duration)
+{
+    start_with(duration, NULL, NULL);
 }
 
 static int open_radio(void)
@@ -119,4 +126,71 @@ void test_ctrl_c_ends_it_in_good_order(void)
     close(fd);
     TEST_ASSERT_TRUE(WIFEXITED(status));
     TEST_ASSERT_EQUAL_INT(0, WEXITSTATUS(status));
+}
+
+static bool answers(int fd, const char *line, const char *answer)
+{
+    return write(fd, line, strlen(line)) == (ssize_t)strlen(line) && hears(fd, answer, 3000);
+}
+
+static void end_by(int signal_number)
+{
+    int status;
+
+    kill(pid, signal_number);
+    waitpid(pid, &status, 0);
+    pid = 0;
+    TEST_ASSERT_TRUE(WIFEXITED(status));
+    TEST_ASSERT_EQUAL_INT(0, WEXITSTATUS(status));
+}
+
+static void save_kp(const char *line, int signal_number)
+{
+    int fd;
+
+    start_with("60", "--storage", storage);
+    fd = open_radio();
+    TEST_ASSERT_TRUE(answers(fd, line, "OK KP"));
+    TEST_ASSERT_TRUE(answers(fd, "#SAVE\n", "OK SAVE generation:"));
+    end_by(signal_number);
+    close(fd);
+}
+
+static bool has_kp(const char *option, const char *value, const char *answer)
+{
+    bool has;
+    int fd;
+
+    start_with("60", option, value);
+    fd = open_radio();
+    has = answers(fd, "#GET KP\n", answer);
+    end_by(SIGINT);
+    close(fd);
+    return has;
+}
+
+void test_what_one_run_saves_the_next_one_flies_with_however_it_was_ended(void)
+{
+    (void)remove(storage);
+    save_kp("#KP 0.021\n", SIGINT);
+    TEST_ASSERT_TRUE(has_kp("--storage", storage, "OK KP 0.021\r\n"));
+    save_kp("#KP 0.022\n", SIGTERM);
+    TEST_ASSERT_TRUE(has_kp("--storage", storage, "OK KP 0.022\r\n"));
+    save_kp("#KP 0.023\n", SIGHUP);
+    TEST_ASSERT_TRUE(has_kp("--storage", storage, "OK KP 0.023\r\n"));
+    (void)remove(storage);
+}
+
+void test_what_is_not_saved_and_what_has_no_file_is_forgotten(void)
+{
+    (void)remove(storage);
+    save_kp("#KP 0.021\n", SIGINT);
+    start_with("60", "--storage", storage);
+    int fd = open_radio();
+    TEST_ASSERT_TRUE(answers(fd, "#KP 0.03\n", "OK KP 0.03\r\n"));
+    end_by(SIGINT);
+    close(fd);
+    TEST_ASSERT_TRUE(has_kp("--storage", storage, "OK KP 0.021\r\n"));
+    TEST_ASSERT_TRUE(has_kp(NULL, NULL, "OK KP 0.015\r\n"));
+    (void)remove(storage);
 }

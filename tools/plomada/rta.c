@@ -9,8 +9,9 @@
 #include "tools/rta/table.h"
 
 static const char usage[] =
-    "usage: plomada rta [seed|plomada|FILE] [OPTION]...\n\n"
-    "Response-time analysis of a table of tasks, Swis and interrupts: the seed's (default), this firmware's, or a CSV file.\n"
+    "usage: plomada rta [seed|plomada|plomada-est|FILE] [OPTION]...\n\n"
+    "Response-time analysis of a table of tasks, Swis and interrupts: the seed's (default), this firmware's, the\n"
+    "same with the releases of law EST, or a CSV file.\n"
     "Per task, times in ms: the demand W(D) up to its deadline as the seed computed it, with its horizons corrected, with\n"
     "the context switches of every job; the true worst response time, and the slack it leaves before the deadline.\n"
     "The first three look at the table alone; the options below change the response, load and growth.\n\n"
@@ -18,13 +19,14 @@ static const char usage[] =
     "  --access-ms MS      one server access, for the column accesses (default 0.0093; the first three as well)\n"
     "  --jitter MS         every release may come this late (default 0)\n"
     "  --bursts            rows with burst_n come in frames of burst_n every burst_period_ms, not as endless streams\n"
-    "  --chain A,B,...,Z   also the worst time from what releases A to the end of task Z, when each releases the next\n"
+    "  --chain A,B,...,Z   also the worst time from what releases A to the end of task Z, when each releases the next; with\n"
+    "                      --bursts A may be an interrupt with burst_n: the last one of its frame\n"
     "  --set ROW.COLUMN=VALUE\n"
     "                      changes a number of the table; may be repeated\n"
     "  --json FILE         the same figures\n"
     "  --print             prints the table itself, as CSV, and does nothing else\n\n"
     "A FILE begins with name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings and may add\n"
-    "accesses,burst_n,burst_period_ms; kind is hwi, swi or task. --print shows an example.\n\n"
+    "accesses,burst_n,burst_period_ms,jitter_ms,blocked_by; kind is hwi, swi or task. --print shows an example.\n\n"
     "Exit status: 0 all deadlines hold, 1 one does not, 2 usage or not a table.\n";
 
 enum { OPT_SWITCH = 1, OPT_ACCESS, OPT_JITTER, OPT_BURSTS, OPT_CHAIN, OPT_SET, OPT_JSON, OPT_PRINT, OPT_HELP };
@@ -123,7 +125,7 @@ static const char *load_text(const char *name)
     }
     file = fopen(name, "r");
     if (file == NULL) {
-        complain(name, "neither seed nor plomada, nor a file that can be read");
+        complain(name, "no table of that name, and no file that can be read");
         return NULL;
     }
     count = fread(text, 1, sizeof text, file);

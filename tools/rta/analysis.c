@@ -1,6 +1,7 @@
 #include "tools/rta/analysis.h"
 
 #include <math.h>
+#include <string.h>
 
 /* A response is given up beyond so many of the longest periods or deadlines, jobs of a busy window, or steps of one. */
 #define SEARCH_PERIODS 16
@@ -110,18 +111,29 @@ static bool comes_in_frames(const rta_row_t *row, const rta_options_t *options)
     return options->bursts && row->burst_period > 0.0;
 }
 
-/* Octets of a frame keep their distance on the wire; whole frames may come late. */
+/* Octets of a frame keep their distance on the wire, and wait before they interrupt for the row's jitter at most; whole
+ * frames may come late. */
 static double arrivals(const rta_row_t *row, const rta_options_t *options, rta_ps_t window)
 {
-    rta_ps_t wide = window + options->jitter;
+    rta_ps_t waited = window + row->jitter;
+    rta_ps_t wide = waited + options->jitter;
     double frames;
 
     if (!comes_in_frames(row, options)) {
         return ceil(wide / row->period);
     }
     frames = floor(wide / row->burst_period);
-    return fmin(ceil(window / row->period),
+    return fmin(ceil(waited / row->period),
                 frames * row->burst_n + fmin(row->burst_n, ceil((wide - frames * row->burst_period) / row->period)));
+}
+
+/* The same for a stream whose frame ends as the window begins: what waited of it, then nothing until the next frame. */
+static double arrivals_after_frame(const rta_row_t *row, const rta_options_t *options, rta_ps_t window)
+{
+    double last = fmin(row->burst_n, 1.0 + floor(row->jitter / row->period));
+    rta_ps_t gap = row->burst_period - row->burst_n * row->period - row->jitter - options->jitter;
+
+    return window <= gap ? last : last + arrivals(row, options, window - gap);
 }
 
 static double rate(const rta_row_t *row, const rta_options_t *options)
@@ -129,8 +141,15 @@ static double rate(const rta_row_t *row, const rta_options_t *options)
     return comes_in_frames(row, options) ? fmin(1.0 / row->period, row->burst_n / row->burst_period) : 1.0 / row->period;
 }
 
+/* A task's job, or a chain that ends with it. */
+typedef struct {
+    const rta_row_t *self;
+    const rta_row_t *frame;     /* stream whose frame ends at the release; NULL: none */
+    rta_ps_t blocked;
+} job_t;
+
 /* The smallest window with window = own + interference(window); INFINITY beyond the limit. */
-static rta_ps_t completion(const rta_table_t *table, const rta_options_t *options, const rta_row_t *self, rta_ps_t own,
+static rta_ps_t completion(const rta_table_t *table, const rta_options_t *options, const job_t *job, rta_ps_t own,
                            rta_ps_t limit)
 {
     rta_ps_t window = own;
@@ -141,8 +160,10 @@ static rta_ps_t completion(const rta_table_t *table, const rta_options_t *option
         for (int i = 0; i < table->rows; i++) {
             const rta_row_t *row = &table->row[i];
 
-            if (goes_before(row, self)) {
-                sum += arrivals(row, options, window) * (job_cost(row, options) + job_switches(row, options));
+            if (goes_before(row, job->self)) {
+                double count = row == job->frame ? arrivals_after_frame(row, options, window) : arrivals(row, options, window);
+
+                sum += count * (job_cost(row, options) + job_switches(row, options));
             }
         }
         if (sum <= window) {
@@ -164,21 +185,22 @@ static rta_ps_t search_limit(const rta_table_t *table)
 }
 
 /* The response if it is at most `limit`, else INFINITY. */
-static rta_ps_t response(const rta_table_t *table, const rta_options_t *options, const rta_row_t *self, rta_ps_t blocked,
-                         rta_ps_t limit)
+static rta_ps_t response(const rta_table_t *table, const rta_options_t *options, const job_t *job, rta_ps_t limit)
 {
-    rta_ps_t job = job_cost(self, options) + options->switches;
+    const rta_row_t *self = job->self;
+    rta_ps_t cost = job_cost(self, options) + options->switches;
+    rta_ps_t late = options->jitter + self->jitter;
     rta_ps_t worst = 0.0;
 
     for (int q = 0; q < SEARCH_JOBS; q++) {
         rta_ps_t release = q * self->period;
-        rta_ps_t done = completion(table, options, self, blocked + (q + 1) * job, release + limit);
+        rta_ps_t done = completion(table, options, job, job->blocked + (q + 1) * cost, release + limit);
 
-        worst = fmax(worst, options->jitter + done - release);
+        worst = fmax(worst, late + done - release);
         if (worst > limit) {
             return INFINITY;
         }
-        if (options->jitter + done <= release + self->period) {
+        if (late + done <= release + self->period) {
             return worst;
         }
     }
@@ -193,18 +215,80 @@ static rta_ps_t blocking(const rta_row_t *task, const rta_options_t *options)
 rta_ps_t rta_response(const rta_table_t *table, const rta_options_t *options, int task)
 {
     const rta_row_t *self = &table->row[task];
+    const job_t job = {self, NULL, blocking(self, options)};
 
-    return response(table, options, self, blocking(self, options), search_limit(table));
+    return response(table, options, &job, search_limit(table));
+}
+
+/* Are the first `length` characters one of the names in "A+B+C"? */
+static bool names(const char *list, const char *name, size_t length)
+{
+    while (*list != '\0') {
+        size_t next = strcspn(list, "+");
+
+        if (next == length && strncmp(list, name, length) == 0) {
+            return true;
+        }
+        list += next + (list[next] == '+' ? 1U : 0U);
+    }
+    return false;
+}
+
+static bool named_before(const rta_table_t *table, const int *member, int index, const char *name, size_t length)
+{
+    for (int i = 0; i < index; i++) {
+        if (names(table->row[member[i]].blocked_by, name, length)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Different tasks that may block a member. */
+static int blockers(const rta_table_t *table, const int *member, int members)
+{
+    int count = 0;
+
+    for (int i = 0; i < members; i++) {
+        const char *at = table->row[member[i]].blocked_by;
+
+        while (*at != '\0') {
+            size_t length = strcspn(at, "+");
+
+            count += named_before(table, member, i, at, length) ? 0 : 1;
+            at += length + (at[length] == '+' ? 1U : 0U);
+        }
+    }
+    return count;
+}
+
+static rta_ps_t chain_blocking(const rta_table_t *table, const rta_options_t *options, const int *member, int members)
+{
+    rta_ps_t sum = 0.0, longest = 0.0;
+    bool told = true;
+
+    for (int i = 0; i < members; i++) {
+        const rta_row_t *row = &table->row[member[i]];
+
+        sum += blocking(row, options);
+        if (row->blockings > 0) {
+            longest = fmax(longest, row->blocking / row->blockings + options->switches);
+        }
+        told = told && (row->blocked_by[0] != '\0' || blocking(row, options) == 0.0);
+    }
+    return told ? fmin(sum, blockers(table, member, members) * longest) : sum;
 }
 
 rta_ps_t rta_chain(const rta_table_t *table, const rta_options_t *options, const int *member, int members)
 {
-    rta_ps_t blocked = 0.0;
+    const rta_row_t *first = &table->row[member[0]];
+    const job_t job = {
+        .self = &table->row[member[members - 1]],
+        .frame = first->kind == RTA_HWI && comes_in_frames(first, options) ? first : NULL,
+        .blocked = chain_blocking(table, options, member, members),
+    };
 
-    for (int i = 0; i < members; i++) {
-        blocked += blocking(&table->row[member[i]], options);
-    }
-    return response(table, options, &table->row[member[members - 1]], blocked, search_limit(table));
+    return response(table, options, &job, search_limit(table));
 }
 
 /* ---- load and growth ---- */
@@ -228,9 +312,9 @@ static int late_task(const rta_table_t *table, const rta_options_t *options)
 {
     for (int i = 0; i < table->rows; i++) {
         const rta_row_t *row = &table->row[i];
+        const job_t job = {row, NULL, blocking(row, options)};
 
-        if (row->kind == RTA_TASK &&
-            response(table, options, row, blocking(row, options), row->deadline) > row->deadline) {
+        if (row->kind == RTA_TASK && response(table, options, &job, row->deadline) > row->deadline) {
             return i;
         }
     }

@@ -9,6 +9,7 @@
 
 #define RTA_ROWS_MAX 64
 #define RTA_NAME_MAX 31
+#define RTA_NAMES_MAX 47
 #define RTA_PS_PER_MS 1e9
 
 typedef double rta_ps_t;
@@ -24,7 +25,9 @@ typedef struct {
     rta_ps_t cost;          /* > 0, worst execution time */
     rta_ps_t blocking;      /* tasks: sum of the lower tasks' critical sections that may come first */
     int blockings;          /* tasks: their number, each worth two context switches */
+    char blocked_by[RTA_NAMES_MAX + 1]; /* tasks: names of the lower tasks, with + between; "": not told */
     int accesses;           /* server accesses per job that cost does not contain */
+    rta_ps_t jitter;        /* every release may come this late, beside that of the options */
     int burst_n;            /* a stream that comes in frames: releases per frame (without frames: any), */
     rta_ps_t burst_period;  /* one frame per so long; 0 = endless */
 } rta_row_t;
@@ -55,7 +58,8 @@ rta_ps_t rta_demand_switching(const rta_table_t *table, const rta_options_t *opt
 rta_ps_t rta_response(const rta_table_t *table, const rta_options_t *options, int task);
 
 /* Worst time from the event that releases member[0] to the end of the last member, a task, each member releasing the
- * next. All members before the last go before it. */
+ * next. All members before the last go before it. A lower task blocks the chain once at most, where the members say by
+ * whom they are blocked. If member[0] is an interrupt of a stream in frames, it is the last one of a frame. */
 rta_ps_t rta_chain(const rta_table_t *table, const rta_options_t *options, const int *member, int members);
 
 /* Share of the processor. */

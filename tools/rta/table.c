@@ -10,7 +10,7 @@
 #define HEADER_NEEDED                                                                                                       \
     "the first line must be name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings"
 #define CELLS_MAX 16
-#define CELL_SIZE 48
+#define CELL_SIZE (RTA_NAMES_MAX + 1)
 #define LINE_SIZE 512
 #define TIME_MAX_MS 100000.0
 #define COUNT_MAX 100000
@@ -123,6 +123,17 @@ static const char *set_blockings(rta_row_t *row, const char *text)
     return is_blank(text) ? NULL : read_count(text, &row->blockings);
 }
 
+static const char *set_blocked_by(rta_row_t *row, const char *text)
+{
+    snprintf(row->blocked_by, sizeof row->blocked_by, "%s", is_blank(text) ? "" : text);
+    return NULL;
+}
+
+static const char *set_jitter(rta_row_t *row, const char *text)
+{
+    return is_blank(text) ? NULL : read_time(text, &row->jitter);
+}
+
 static const char *set_accesses(rta_row_t *row, const char *text)
 {
     return is_blank(text) ? NULL : read_count(text, &row->accesses);
@@ -156,6 +167,8 @@ static const column_t columns[] = {
     {"accesses", set_accesses, false},
     {"burst_n", set_burst_n, false},
     {"burst_period_ms", set_burst_period, false},
+    {"jitter_ms", set_jitter, false},
+    {"blocked_by", set_blocked_by, true},
 };
 #define COLUMN_COUNT ((int)(sizeof columns / sizeof columns[0]))
 #define FIXED_COLUMNS 8
@@ -287,6 +300,23 @@ static bool read_line(rta_table_t *table, header_t *header, const char *line, rt
     return header->columns == 0 ? read_header(header, cells, count, error) : read_row(table, header, cells, count, error);
 }
 
+static bool check_names(const rta_table_t *table, rta_error_t *error)
+{
+    for (int i = 0; i < table->rows; i++) {
+        const char *at = table->row[i].blocked_by;
+
+        while (*at != '\0') {
+            size_t length = strcspn(at, "+");
+
+            if (rta_table_find(table, at, (int)length) < 0) {
+                return fail(error, table->row[i].name, "blocked_by: no such row");
+            }
+            at += length + (at[length] == '+' ? 1U : 0U);
+        }
+    }
+    return true;
+}
+
 bool rta_table_read(rta_table_t *table, const char *text, rta_error_t *error)
 {
     header_t header = {.columns = 0};
@@ -313,7 +343,7 @@ bool rta_table_read(rta_table_t *table, const char *text, rta_error_t *error)
     if (header.columns == 0) {
         return fail(error, "", HEADER_NEEDED);
     }
-    return rta_tasks(table, index) > 0 || fail(error, "", "no task in the table");
+    return (rta_tasks(table, index) > 0 || fail(error, "", "no task in the table")) && check_names(table, error);
 }
 
 int rta_table_find(const rta_table_t *table, const char *name, int length)
@@ -345,7 +375,7 @@ static bool set_number(rta_table_t *table, const char *assignment, rta_error_t *
     if (row < 0) {
         return fail(error, assignment, "no such row");
     }
-    if (column == NULL || column < &columns[FIRST_NUMBER] ||
+    if (column == NULL || column < &columns[FIRST_NUMBER] || column->set == set_blocked_by ||
         (column->tasks_only && table->row[row].kind != RTA_TASK)) {
         return fail(error, assignment, "no such number in that row");
     }

@@ -9,9 +9,11 @@
 /* The firmware's servers, the gates' names and the chip's compare register, as the test wants them. */
 static altitude_sample_t altitude;
 static parameters_t parameters;
+static flight_status_t flight;
 static uint32_t compare;
 const altitude_sample_t *const watch_altitude = &altitude;
 const parameters_t *const watch_parameters = &parameters;
+const flight_status_t *const watch_flight = &flight;
 
 enum { ALTITUDE, PARAMETER, OTHER };
 
@@ -39,6 +41,8 @@ void setUp(void)
     timeline_reset();
     memset(&altitude, 0, sizeof altitude);
     memset(&parameters, 0, sizeof parameters);
+    memset(&flight, 0, sizeof flight);
+    parameters.value[PARAMETER_LAW] = (float)LAW_PID;
     compare = 4166;
     latency_init(&latency);
 }
@@ -221,4 +225,33 @@ void test_the_observer_says_when_there_is_an_answer_and_to_what(void)
     TEST_ASSERT_EQUAL_INT64(1000 * SIM_US, latency.answer_to);
     at_us(2950, KERNEL_RELEASED, &rx, 96);
     TEST_ASSERT_FALSE(latency.answered);
+}
+
+static void scan_answered(sim_time_t from_us)
+{
+    scan_ends_at_us(from_us);
+    control_reads_at_us(from_us + 500); /* what is in force is known from here on */
+    height_written_at_us(from_us + 1000);
+    control_reads_at_us(from_us + 1900);
+    compare_written_at_us(from_us + 1950, compare + 1U);
+}
+
+void test_law_and_state_tell_what_releases_the_control_task(void)
+{
+    static const struct { control_law_t law; flight_state_t state; int release; } cases[] = {
+        {LAW_PD, FLIGHT_FLYING, RELEASE_FREE},      {LAW_PID, FLIGHT_GROUND, RELEASE_FREE},
+        {LAW_PIDT, FLIGHT_FLYING, RELEASE_SCAN},    {LAW_EST, FLIGHT_FLYING, LATENCY_FRAME},
+        {LAW_EST, FLIGHT_GROUND, LATENCY_FRAME},    {LAW_PID, FLIGHT_LANDING, LATENCY_UNKNOWN},
+        {LAW_PIDT, FLIGHT_LOWERING, LATENCY_UNKNOWN}, {LAW_PD, FLIGHT_DESCENDING, LATENCY_UNKNOWN},
+    };
+
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        setUp();
+        parameters.value[PARAMETER_LAW] = (float)cases[i].law;
+        flight.state = cases[i].state;
+        scan_answered(1000);
+        for (int release = 0; release < LATENCY_RELEASES; release++) {
+            TEST_ASSERT_EQUAL_INT(release == cases[i].release, of(release)->answers);
+        }
+    }
 }

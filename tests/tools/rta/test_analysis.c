@@ -188,6 +188,73 @@ void test_a_chain_bears_the_blocking_of_all_its_members(void)
     TEST_ASSERT_EQUAL_DOUBLE(MS(3.6), rta_chain(&table, &options, &chain[2], 1));
 }
 
+/* By hand: own 3 and the Swi's 0.5, then 0.1 and a switch of 0.01 for each blocking, 0.01 for each of the two jobs. */
+void test_a_task_blocks_a_chain_once_at_most(void)
+{
+    const int chain[] = {0, 1, 2};
+
+    add(RTA_SWI, 0, 100, 0, 0.5);
+    for (int i = 1; i <= 2; i++) {
+        rta_row_t *row = add(RTA_TASK, 5 - i, 100, 100, 3 - i);
+
+        row->blockings = 2;
+        row->blocking = MS(0.2);
+    }
+    options.switches = MS(0.01);
+    TEST_ASSERT_EQUAL_DOUBLE(MS(3.96), rta_chain(&table, &options, chain, 3));
+    snprintf(table.row[1].blocked_by, sizeof table.row[1].blocked_by, "low+lower");
+    TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(MS(3.96), rta_chain(&table, &options, chain, 3), "the last one's blockers are not told");
+    snprintf(table.row[2].blocked_by, sizeof table.row[2].blocked_by, "lower+lowest");
+    TEST_ASSERT_EQUAL_DOUBLE(MS(3.85), rta_chain(&table, &options, chain, 3));
+    snprintf(table.row[2].blocked_by, sizeof table.row[2].blocked_by, "low+lower");
+    TEST_ASSERT_EQUAL_DOUBLE(MS(3.74), rta_chain(&table, &options, chain, 3));
+    table.row[1].blockings = table.row[2].blockings = 0;
+    table.row[1].blocking = table.row[2].blocking = 0.0;
+    TEST_ASSERT_EQUAL_DOUBLE(MS(3.52), rta_chain(&table, &options, chain, 3));
+}
+
+/* By hand: up to 3 octets wait for the fourth, so a window of 2 ms sees 5: 2 + 0.05 x 5 = 2.25, which ends within the same
+ * octet's time; the wait of the task itself adds to its response. */
+void test_what_waits_comes_at_once(void)
+{
+    rta_row_t *stream = add(RTA_HWI, 0, 1, 0, 0.05);
+    rta_row_t *task = add(RTA_TASK, 1, 100, 100, 1.7);
+
+    expect_response(1.8, 1);
+    stream->jitter = MS(3);
+    expect_response(1.95, 1);
+    task->jitter = MS(0.5);
+    expect_response(2.45, 1);
+    stream->burst_n = 4;
+    stream->burst_period = MS(50);
+    options.bursts = true;
+    expect_response(0.5 + 1.7 + 0.2, 1);
+}
+
+/* By hand, frames of 10 octets, 1 ms each, in 50 ms: a chain that begins with a frame's last octet sees that one and no
+ * other before 40 ms have gone; one that does not sees all 10. */
+void test_a_frame_that_has_ended_does_not_come_again_at_once(void)
+{
+    const int chain[] = {0, 1, 2};
+    rta_row_t *stream = add(RTA_HWI, 0, 1, 0, 0.5);
+
+    add(RTA_SWI, 0, 1000, 0, 2);
+    add(RTA_TASK, 1, 1000, 1000, 3);
+    stream->burst_n = 10;
+    stream->burst_period = MS(50);
+    TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(MS(10), rta_chain(&table, &options, chain, 3), "an endless stream");
+    options.bursts = true;
+    TEST_ASSERT_EQUAL_DOUBLE(MS(5.5), rta_chain(&table, &options, chain, 3));
+    TEST_ASSERT_EQUAL_DOUBLE(MS(10), rta_chain(&table, &options, &chain[1], 2));
+    table.row[2].cost = MS(30);
+    TEST_ASSERT_EQUAL_DOUBLE(MS(32.5), rta_chain(&table, &options, chain, 3));
+    TEST_ASSERT_EQUAL_DOUBLE(MS(37), rta_chain(&table, &options, &chain[1], 2));
+    stream->jitter = MS(2);
+    TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(MS(33.5), rta_chain(&table, &options, chain, 3), "two had waited for the last");
+    table.row[2].cost = MS(37.6);
+    TEST_ASSERT_TRUE_MESSAGE(rta_chain(&table, &options, chain, 3) > MS(41.1), "the next frame");
+}
+
 void test_tasks_are_listed_by_priority_and_equals_in_their_order(void)
 {
     int index[RTA_ROWS_MAX];
@@ -267,6 +334,7 @@ static void random_table(unsigned long seed)
             row->burst_n = random_int(0, 5);
             row->burst_period = MS(random_of(5, 50));
         }
+        row->jitter = MS(random_of(0, 1) * random_int(0, 1));
     }
     for (int i = random_int(0, 2); i > 0; i--) {
         add(RTA_SWI, 0, random_of(10, 100), 0, random_of(0.1, 1));

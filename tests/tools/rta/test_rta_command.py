@@ -50,7 +50,7 @@ class Command(unittest.TestCase):
         self.assertEqual((status, self.column(out, 6)), (1, ["2.0000", "-"]))
 
     def test_print_gives_back_a_table_that_reads_the_same(self):
-        for name in ("seed", "plomada"):
+        for name in ("seed", "plomada", "plomada-est"):
             status, text, _ = self.rta(name, "--print")
             self.assertEqual(status, 0)
             copy = self.write(text)

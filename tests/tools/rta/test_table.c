@@ -27,6 +27,11 @@ static void expect_bad(int line, const char *reason, const char *text)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.reason, reason), error.reason);
 }
 
+static bool set(const char *assignment)
+{
+    return rta_table_set(&table, &assignment, 1, &error);
+}
+
 void test_a_row_is_read_to_the_picosecond(void)
 {
     expect_good(HEADER TASK);
@@ -69,6 +74,20 @@ void test_further_columns_are_found_by_name(void)
     TEST_ASSERT_EQUAL_DOUBLE(100e9, table.row[0].burst_period);
     TEST_ASSERT_EQUAL_INT(3, table.row[1].accesses);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, table.row[1].burst_period);
+}
+
+void test_jitter_and_who_blocks_are_further_columns_too(void)
+{
+    expect_good("name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings,jitter_ms,blocked_by\n"
+                "I,hwi,,1,,0.1,,,0.25,\nA,task,2,10,10,1,0.1,1,,B+C\nB,task,1,10,10,1,0,0,,-\nC,task,1,10,10,1,0,0,,\n");
+    TEST_ASSERT_EQUAL_DOUBLE(0.25e9, table.row[0].jitter);
+    TEST_ASSERT_EQUAL_STRING("B+C", table.row[1].blocked_by);
+    TEST_ASSERT_EQUAL_STRING("", table.row[2].blocked_by);
+    TEST_ASSERT_TRUE(set("I.jitter_ms=0.5"));
+    TEST_ASSERT_EQUAL_DOUBLE(0.5e9, table.row[0].jitter);
+    TEST_ASSERT_FALSE(set("A.blocked_by=B"));
+    expect_bad(2, "A: blocked_by: no such row",
+               "name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings,blocked_by\nA,task,2,10,10,1,0.1,1,A+D\n");
 }
 
 void test_a_wrong_header_is_refused(void)
@@ -152,11 +171,6 @@ void test_any_cut_of_a_table_is_read_or_refused(void)
             TEST_ASSERT_NOT_EQUAL('\0', error.reason[0]);
         }
     }
-}
-
-static bool set(const char *assignment)
-{
-    return rta_table_set(&table, &assignment, 1, &error);
 }
 
 void test_one_number_of_one_row_can_be_set(void)
