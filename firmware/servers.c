@@ -1,5 +1,6 @@
 #include "servers.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <ti/sysbios/gates/GateMutexPri.h>
 #include <xdc/std.h>
@@ -22,7 +23,7 @@ static uint16_t imu_next;
 static laser_sample_t laser;
 static reference_sample_t reference;
 static parameters_t parameters;
-static flight_status_t flight;
+static flight_status_t flight = {.estimate_mm = NAN, .innovation_mm = NAN};
 
 const altitude_sample_t *const watch_altitude = &altitude;
 const imu_sample_t *const watch_imu = &imu;

@@ -81,6 +81,8 @@ void parameter_server_read(parameters_t *parameters);
 typedef struct {
     float thrust_n;
     float reference_m;          /* in force */
+    float estimate_mm;          /* height that the law acts on; NAN: none is known */
+    float innovation_mm;        /* latest height less its prediction; NAN where nothing is predicted */
     flight_state_t state;
     uint16_t flags;
 } flight_status_t;

@@ -40,6 +40,7 @@ static void on_signals(void (*handler)(int))
 {
     struct sigaction action = {.sa_handler = handler};
 
+    sigaction(SIGHUP, &action, NULL);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
 }

@@ -8,12 +8,12 @@
 #include "sim/host/port.h"
 #include "sim/timeline.h"
 
-/* From now on virtual time goes with the wall clock, both being what they are now. SIGINT and SIGTERM are caught until
- * pace_end(). No port is watched yet. */
+/* From now on virtual time goes with the wall clock, both being what they are now. SIGINT, SIGTERM and SIGHUP are caught
+ * until pace_end(). No port is watched yet. */
 void pace_begin(void);
 void pace_end(void);
 
-/* True after SIGINT or SIGTERM: come to an end. */
+/* True after one of them: come to an end. */
 bool pace_interrupted(void);
 
 /* Octets that come in at the port are given to `take` by an event of the timeline. At most PACE_PORTS ports. A port that

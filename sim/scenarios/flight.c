@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "drivers/flight_log.h"
 #include "firmware/watch.h"
 #include "sim/devices/xbee.h"
 #include "sim/host/pace.h"
@@ -48,6 +49,11 @@ static const figure_t figures[] = {
     {"turbulence_tau", "s", "correlation time", &flight.config.quadrotor.turbulence_tau_s},
     {"attitude_rms", "rad", "roll and pitch motion", &flight.config.quadrotor.attitude_rms_rad},
     {"tdelay", "s", "autopilot delay behind the pulse", &flight.config.quadrotor.actuator_delay_s},
+    {"climb_rate", "m/s/N", "climb rate that the throttle commands; 0: thrust", &flight.config.quadrotor.climb_rate_mps_per_n},
+    {"climb_neutral", "N", "throttle that commands no climb", &flight.config.quadrotor.climb_neutral_n},
+    {"climb_deadband", "N", "to either side of it", &flight.config.quadrotor.climb_deadband_n},
+    {"climb_lag", "s", "of the autopilot's speed loop", &flight.config.quadrotor.climb_lag_s},
+    {"climb_ceiling", "m/s", "fastest climb and descent of the autopilot", &flight.config.quadrotor.climb_ceiling_mps},
     {"tug_rate", "1/s", "rope tugs", &flight.config.quadrotor.tug_rate_per_s},
     {"tug", "m/s2", "of one rope tug", &flight.config.quadrotor.tug_mps2},
     {"platform", "m", "height of the ramp's platform", &flight.config.terrain.height_m},
@@ -258,11 +264,46 @@ static void plan(const scenario_t *scenario, const flight_options_t *options)
     snprintf(reference, sizeof reference, "%g", flight.record.reference_m);
     type_settings(scenario, options);
     type_complete_at(METRICS_REFERENCE_S, "SETR", reference);
+    for (const later_line_t *line = scenario->later; line->name != NULL; line++) {
+        type_complete_at(line->t_s, line->name, line->value);
+    }
     type_complete_at(scenario->land_s, "SETR", "0");
     timeline_at(at(scenario->land_s), landing, NULL);
 }
 
 /* The flight ----------------------------------------------------------------------------------------------------- */
+
+/* The flight recorder's columns, then those that only the PC board can know. */
+static void write_titles(FILE *csv)
+{
+    static telemetry_line_t line;
+    int length;
+
+    flight_log_titles(&line);
+    length = (int)(line.length - strlen("OK LOG ") - strlen("\r\n"));
+    fprintf(csv, "%.*s,height_m,abs_m,terrain_m,pulse_us\n", length, line.text + strlen("OK LOG "));
+}
+
+static void write_column(FILE *csv, bool there, double value)
+{
+    fputc(',', csv);
+    if (there && !isnan(value)) {
+        fprintf(csv, "%.4f", value);
+    }
+}
+
+static void write_row(FILE *csv, double t_s, const quadrotor_state_t *truth)
+{
+    fprintf(csv, "%.2f", t_s);
+    write_column(csv, watch_altitude->scan_valid, (double)watch_altitude->altitude.height_mm * 1e-3);
+    write_column(csv, true, (double)watch_flight->estimate_mm * 1e-3);
+    write_column(csv, true, (double)watch_flight->innovation_mm * 1e-3);
+    fprintf(csv, ",%.3f,%.4f", (double)watch_flight->reference_m, (double)watch_flight->thrust_n);
+    write_column(csv, watch_imu->ready, (double)watch_imu->median.roll_rad);
+    write_column(csv, watch_imu->ready, (double)watch_imu->median.pitch_rad);
+    fprintf(csv, ",%s,%u,%.4f,%.4f,%.4f,%.2f\n", flight_state_name(watch_flight->state), (unsigned)watch_flight->flags,
+            truth->height_m, truth->altitude_m, truth->terrain_m, board_pulse_us());
+}
 
 static void sample(FILE *csv)
 {
@@ -275,15 +316,9 @@ static void sample(FILE *csv)
             (metrics_sample_t){t_s, state->height_m, state->speed_mps, (double)watch_flight->thrust_n,
                                phase == FLIGHT_LOWERING || phase == FLIGHT_DESCENDING};
     }
-    if (csv == NULL) {
-        return;
+    if (csv != NULL) {
+        write_row(csv, t_s, state);
     }
-    fprintf(csv, "%.2f,%.4f,%.4f,%.4f,", t_s, state->height_m, state->altitude_m, state->terrain_m);
-    if (watch_altitude->sequence > 0U) {
-        fprintf(csv, "%.4f", (double)watch_altitude->altitude.height_mm * 1e-3);
-    }
-    fprintf(csv, ",%.3f,%.4f,%.2f,%s,%u\n", (double)watch_flight->reference_m, (double)watch_flight->thrust_n,
-            board_pulse_us(), flight_state_name(phase), (unsigned)watch_flight->flags);
 }
 
 static void configure(const scenario_t *scenario, const flight_options_t *options)
@@ -292,6 +327,7 @@ static void configure(const scenario_t *scenario, const flight_options_t *option
     flight.ray_instant_s = (double)flight.config.laser.ray_instant * 1e-9;
     flight.config.terrain = scenario->platform ? terrain_platform : terrain_flat;
     flight.config.quadrotor.tug_rate_per_s = scenario->tug_rate_per_s;
+    flight.config.quadrotor.climb_rate_mps_per_n = scenario->climb_rate_mps_per_n;
     for (int i = 0; i < options->override_count; i++) {
         const figure_t *figure = figure_find(options->overrides[i].name);
 
@@ -472,7 +508,7 @@ bool flight_run(const scenario_t *scenario, const flight_options_t *options, fli
     }
     power_on(options);
     if (options->csv != NULL) {
-        fprintf(options->csv, "t_s,height_m,abs_m,terrain_m,est_m,ref_m,thrust_n,pulse_us,state,flags\n");
+        write_titles(options->csv);
     }
     run(scenario, options, result);
     conclude(result);

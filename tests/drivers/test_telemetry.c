@@ -65,6 +65,24 @@ void test_a_height_below_zero_keeps_its_sign_and_a_rounded_zero_has_none(void)
     TEST_ASSERT_EQUAL_STRING_LEN("alt:0.000 ref", line.text, 13);
 }
 
+void test_the_cause_of_a_reset_is_one_field_more(void)
+{
+    telemetry_t telemetry = flying();
+    telemetry.reset = "WATCHDOG";
+    telemetry_status(&line, &telemetry);
+    assert_line("alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0 reset:WATCHDOG\r\n");
+}
+
+void test_with_the_longest_names_the_cause_of_a_reset_fits_the_packet_too(void)
+{
+    telemetry_t telemetry = {.height_valid = true, .height_mm = -4000.0F, .reference_m = 3.0F, .laser = "EIGHT_CH",
+                             .thrust_n = 11.76F, .state = "DESCENDING", .flags = 63U, .reset = "WATCHDOG"};
+    telemetry_status(&line, &telemetry);
+    TEST_ASSERT_FALSE(line.overflowed);
+    TEST_ASSERT_LESS_OR_EQUAL(TELEMETRY_LINE_MAX, line.length);
+    TEST_ASSERT_EQUAL_STRING_LEN(" reset:WATCHDOG\r\n", &line.text[line.length - 17U], 17);
+}
+
 void test_values_that_cannot_be_written_become_dashes(void)
 {
     telemetry_t telemetry = flying();

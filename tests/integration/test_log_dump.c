@@ -1,9 +1,12 @@
 /* `#LOG` of the running firmware after a flight, over the radio and beside everything else that is sent there. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "child.h"
+#include "drivers/flight_log.h"
+#include "firmware/flight_recorder.h"
 #include "firmware/watch.h"
 #include "unity.h"
 
@@ -14,16 +17,20 @@ typedef struct {
     char text[TERMINAL_MAX];
     size_t length;
     double asked_s, first_ping_s, end_s;
-} flight_t;
+} dump_t;
 
-static flight_t flight;
+typedef struct {
+    const char *law, *question;
+} order_t;
+
+static dump_t flight;
 
 void setUp(void) {}
 void tearDown(void) {}
 
 static void take(void *terminal, unsigned octet)
 {
-    flight_t *f = terminal;
+    dump_t *f = terminal;
 
     if (f->length < sizeof f->text - 1) {
         f->text[f->length++] = (char)octet;
@@ -45,7 +52,7 @@ static double now_s(void)
     return (double)timeline_now() * 1e-9;
 }
 
-static void run_until_told(flight_t *f, const char *text, double *when)
+static void run_until_told(dump_t *f, const char *text, double *when)
 {
     size_t from = f->length;
 
@@ -58,20 +65,21 @@ static void run_until_told(flight_t *f, const char *text, double *when)
 /* A flight of 60 s, then everything from the ground; pings meanwhile. */
 static void fly_and_ask(void *argument, void *result)
 {
-    flight_t *f = result;
+    const order_t *order = argument;
+    dump_t *f = result;
     board_config_t config = board_config(1);
     double dummy;
 
     board_power_on(&config, take, f);
     run_for(14.0);
-    type("#LAW PID\n");
+    type(order->law);
     type("#SETR 0.6\n");
     run_for(60.0);
     type("#SETR 0\n");
     run_for(10.0);
     f->length = 0;
     memset(f->text, 0, sizeof f->text);
-    type(argument);
+    type(order->question);
     f->asked_s = now_s();
     run_for(5.0);
     type("#PING here\n");
@@ -85,10 +93,12 @@ static void fly_and_ask(void *argument, void *result)
     }
 }
 
-static void ask(const char *line)
+static void ask(const char *law, const char *question)
 {
+    order_t order = {law, question};
+
     memset(&flight, 0, sizeof flight);
-    child_run(fly_and_ask, (void *)(size_t)line, &flight, sizeof flight);
+    child_run(fly_and_ask, &order, &flight, sizeof flight);
 }
 
 typedef struct {
@@ -129,7 +139,7 @@ void test_a_whole_flight_comes_down_in_order_beside_telemetry_and_commands(void)
     int rows = 0, flying = 0, telemetry = 0, expected = 0;
     double first_s = 0.0;
 
-    ask("#LOG\n");
+    ask("#LAW PID\n", "#LOG\n");
     TEST_ASSERT_EQUAL_INT(1, sscanf(strstr(flight.text, "OK LOG records:"), "OK LOG records:%d", &expected));
     TEST_ASSERT_NOT_NULL(strstr(flight.text, "OK LOG t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags"));
     while (next_row(&at, &row)) {
@@ -162,7 +172,7 @@ void test_the_last_seconds_alone_come_quickly(void)
     row_t row, first = {.t_s = 0.0}, last = {.t_s = 0.0};
     int rows = 0;
 
-    ask("#LOG 8\n");
+    ask("#LAW PID\n", "#LOG 8\n");
     while (next_row(&at, &row)) {
         if (rows == 0) {
             first = row;
@@ -170,7 +180,154 @@ void test_the_last_seconds_alone_come_quickly(void)
         last = row;
         rows++;
     }
-    TEST_ASSERT_TRUE(rows > 60 && rows < 90);
+    TEST_ASSERT_TRUE(rows > 60 && rows < 170); /* a landing by the estimate has twice as many */
     TEST_ASSERT_FLOAT_WITHIN(0.2F, 8.0F, (float)(last.t_s - first.t_s));
-    TEST_ASSERT_TRUE(flight.end_s - flight.asked_s < 12.0);
+    TEST_ASSERT_TRUE(flight.end_s - flight.asked_s < 20.0);
+}
+
+void test_law_est_leaves_its_estimate_and_its_innovation(void)
+{
+    const char *at = flight.text;
+    row_t row;
+    int rows = 0, flying = 0;
+    double meas_m, est_m, innov_m, apart_m = 0.0;
+    char state[16];
+
+    ask("#LAW EST\n", "#LOG 30\n");
+    while (next_row(&at, &row)) {
+        rows++;
+        if (sscanf(at, "%*f,%lf,%lf,%lf,%*f,%*f,%*[^,],%*[^,],%15[^,]", &meas_m, &est_m, &innov_m, state) == 4 &&
+            strcmp(state, "FLYING") == 0) {
+            TEST_ASSERT_DOUBLE_WITHIN(0.1, 0.0, innov_m);
+            apart_m = fmax(apart_m, fabs(est_m - meas_m));
+            flying++;
+        }
+    }
+    TEST_ASSERT_TRUE(rows > 200 && flying > 150);
+    TEST_ASSERT_TRUE_MESSAGE(apart_m > 0.004, "the estimate is no copy of the measurement");
+}
+
+/* ---- the log of the PC board */
+
+#define ROWS_MAX 4000
+
+typedef struct {
+    double est_m, innov_m, ref_m, thrust_n;
+    char state[16];
+    unsigned flags;
+} sample_t;
+
+typedef struct {
+    char titles[200];
+    sample_t pc[ROWS_MAX], ring[ROWS_MAX];
+    int pc_rows, ring_rows;
+} logs_t;
+
+static logs_t logs;
+
+/* A row's columns: NaN where there is nothing. */
+static void read_sample(char *line, sample_t *sample)
+{
+    double values[8];
+    char *at = line;
+
+    for (int column = 0; column < 8; column++) {
+        values[column] = *at == ',' ? NAN : strtod(at, &at);
+        at++;
+    }
+    *sample = (sample_t){.est_m = values[2], .innov_m = values[3], .ref_m = values[4], .thrust_n = values[5]};
+    (void)sscanf(at, "%15[^,],%u", sample->state, &sample->flags);
+}
+
+static void read_csv(FILE *csv, logs_t *l)
+{
+    char line[300];
+
+    rewind(csv);
+    if (fgets(l->titles, sizeof l->titles, csv) == NULL) {
+        abort();
+    }
+    while (l->pc_rows < ROWS_MAX && fgets(line, sizeof line, csv) != NULL) {
+        read_sample(line, &l->pc[l->pc_rows++]);
+    }
+}
+
+static void read_ring(logs_t *l)
+{
+    const flight_recorder_span_t span = flight_recorder_span();
+    telemetry_line_t line;
+    flight_log_t record;
+
+    for (uint32_t number = span.oldest; number != span.next && flight_recorder_read(number, &record); number++) {
+        flight_log_row(&line, &record, flight_state_name((flight_state_t)record.state));
+        line.text[line.length] = '\0';
+        read_sample(line.text + strlen("OK LOG "), &l->ring[l->ring_rows++]);
+    }
+}
+
+static void fly_with_both_logs(void *scenario, void *result)
+{
+    static flight_options_t options;
+    static flight_result_t flown;
+    const char *error;
+
+    options.seed = 3;
+    options.csv = tmpfile();
+    if (options.csv == NULL || !flight_run(scenario_find(scenario), &options, &flown, &error)) {
+        abort();
+    }
+    read_csv(options.csv, result);
+    read_ring(result);
+}
+
+static bool near(double left, double right, double tolerance)
+{
+    return isnan(left) ? isnan(right) : fabs(left - right) <= tolerance;
+}
+
+static bool same(const sample_t *pc, const sample_t *ring)
+{
+    return near(pc->est_m, ring->est_m, 0.00056) && near(pc->innov_m, ring->innov_m, 0.00056) &&
+           near(pc->ref_m, ring->ref_m, 0.0005) && near(pc->thrust_n, ring->thrust_n, 0.00056) &&
+           strcmp(pc->state, ring->state) == 0 && pc->flags == ring->flags;
+}
+
+static void compare_logs(const char *scenario)
+{
+    int at = 0, found = 0;
+
+    memset(&logs, 0, sizeof logs);
+    child_run(fly_with_both_logs, (void *)(size_t)scenario, &logs, sizeof logs);
+    for (int row = 0; row < logs.ring_rows; row++) {
+        int next = at;
+
+        while (next < logs.pc_rows && !same(&logs.pc[next], &logs.ring[row])) {
+            next++;
+        }
+        if (next < logs.pc_rows) {
+            at = next;
+            found++;
+        }
+    }
+    printf("%s: %d of %d records of the flight recorder are rows of the PC's log\n", scenario, found, logs.ring_rows);
+    TEST_ASSERT_TRUE(logs.ring_rows > 150);
+    TEST_ASSERT_TRUE(found <= logs.ring_rows && 100 * found >= 98 * logs.ring_rows);
+}
+
+/* But for a cycle that another one follows before the PC board looks, 10 ms later. */
+void test_the_flight_recorder_holds_rows_of_the_pc_boards_log(void)
+{
+    compare_logs("est-60cm-ramp");
+    compare_logs("pid-60cm-ramp");
+}
+
+void test_both_logs_have_the_same_columns_and_the_pc_boards_some_more(void)
+{
+    telemetry_line_t line;
+    char expected[200];
+
+    flight_log_titles(&line);
+    snprintf(expected, sizeof expected, "%.*s,height_m,abs_m,terrain_m,pulse_us\n", (int)(line.length - 9U), line.text + 7);
+    child_run(fly_with_both_logs, (void *)(size_t)"pid-40cm", &logs, sizeof logs);
+    TEST_ASSERT_EQUAL_STRING(expected, logs.titles);
 }

@@ -42,7 +42,7 @@ static void power_on(void *argument, void *result)
     board_config_t config = board_config(1);
     const char *next = session->lines;
 
-    if (!flash_load(image)) {
+    if (flash_load(image) != NULL) {
         abort();
     }
     flash_cut_power_after(session->cut_after);
@@ -57,7 +57,7 @@ static void power_on(void *argument, void *result)
         kernel_run_until(timeline_now() + wait);
     }
     out->parameters = *watch_parameters;
-    if (kernel_halt_reason() != NULL || !flash_store(image)) {
+    if (kernel_halt_reason() != NULL || flash_store(image) != NULL) {
         abort();
     }
 }

@@ -14,10 +14,11 @@ sys.path.insert(0, str(ROOT / "tools/plot"))
 import plot  # noqa: E402
 import recording  # noqa: E402
 
-HEADER = "t_s,height_m,abs_m,terrain_m,est_m,ref_m,thrust_n,pulse_us,state,flags\n"
+HEADER = "t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags,height_m,abs_m,terrain_m,pulse_us\n"
 FLIGHT = HEADER + "".join(
-    f"{0.01 * k:.2f},{0.002 * k:.3f},{0.002 * k + 0.1:.3f},0.100,{'' if k < 5 else 0.4},{0 if k < 50 else 0.6},7.00,1400.0,"
-    f"{'GROUND' if k < 100 else 'FLYING'},{5 if 120 < k < 130 else 0}\n" for k in range(200))
+    f"{0.01 * k:.2f},{'' if k < 5 else 0.4},{'' if k < 5 else 0.41},{0.01 if k > 9 else ''},{0 if k < 50 else 0.6},7.00,0.01,,"
+    f"{'GROUND' if k < 100 else 'FLYING'},{5 if 120 < k < 130 else 0},{0.002 * k:.3f},{0.002 * k + 0.1:.3f},0.100,1400.0\n"
+    for k in range(200))
 LINE = "alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0"
 RECORDER = "t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags\n" + "".join(
     f"{70 + 0.108 * k:.3f},{'' if k == 3 else 0.59},0.598,,0.600,7.123,-0.0123,0.0345,FLYING,{k % 2}\n" for k in range(50))
@@ -56,7 +57,7 @@ class Reading(Case):
         rec = recording.read(self.write("flight.csv", FLIGHT))
         self.assertEqual((rec.kind, rec.name, len(rec.t)), ("flight", "flight", 200))
         self.assertTrue(math.isnan(rec.columns["est_m"][4]))
-        self.assertEqual(rec.columns["est_m"][5], 0.4)
+        self.assertEqual((rec.columns["meas_m"][5], rec.columns["est_m"][5], rec.columns["innov_m"][10]), (0.4, 0.41, 0.01))
         self.assertEqual(rec.columns["state"][99:101], ["GROUND", "FLYING"])
         self.assertAlmostEqual(rec.t[-1], 1.99)
 
@@ -68,7 +69,7 @@ class Reading(Case):
 
     def test_a_damaged_flight_names_its_line(self):
         with self.assertRaisesRegex(recording.Unreadable, ":3: .*zero"):
-            recording.read(self.write("f.csv", HEADER + "0,0,0,0,0,0,0,0,GROUND,0\nzero,0,0,0,0,0,0,0,GROUND,0\n"))
+            recording.read(self.write("f.csv", HEADER + "0,0,0,0,0,0,0,0,GROUND,0,0,0,0,0\nzero,0,0,0,0,0,0,0,GROUND,0,0,0,0,0\n"))
         with self.assertRaisesRegex(recording.Unreadable, "no samples"):
             recording.read(self.write("f.csv", HEADER))
 
@@ -77,7 +78,7 @@ class Reading(Case):
         self.assertEqual(rec.kind, "telemetry")
         self.assertEqual([round(t, 6) for t in rec.t], [0.0, 0.2, 0.6])
         self.assertEqual(rec.damaged, 1)
-        self.assertTrue(math.isnan(rec.columns["est_m"][1]))
+        self.assertTrue(math.isnan(rec.columns["meas_m"][1]))
         self.assertEqual(rec.columns["laser"], ["OK", "LOST", "OK"])
         self.assertEqual(rec.columns["thrust_n"], [7.12, 6.9, 7.12])
 

@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "measure.h"
 #include "sim/scenarios/flight.h"
+#include "sim/ti/f021/flash.h"
 
 #define HEIGHT_MAX_M 5.0
 
@@ -14,8 +15,11 @@ static const char usage[] =
     "usage: plomada fly SCENARIO [OPTION]...\n\n"
     "Flies one scenario with the unmodified firmware on the PC board, in virtual time.\n\n"
     "  --seed N            noise, phases and turbulence (default 1)\n"
-    "  --csv FILE          log at 100 Hz: t_s,height_m,abs_m,terrain_m,est_m,ref_m,thrust_n,pulse_us,state,flags\n"
+    "  --csv FILE          log at 100 Hz: the columns of #LOG (docs/operator.md), then the truth: height_m above the ground,\n"
+    "                      abs_m, terrain_m, and the throttle pulse_us\n"
     "  --json FILE         metrics\n"
+    "  --storage FILE      the chip's flash: what #SAVE has stored there in one run is in force in the next. Without it the\n"
+    "                      storage is blank at power-on. The file is made when there is none\n"
     "  --set NAME=VALUE    a telecommand parameter (see `plomada params`) or a plant figure; may be repeated\n"
     "  --timing            observed response times, blocking, inversions and latency next to the bounds of the analysis\n"
     "                      (see `plomada rta plomada`); beyond a bound or a deadline the flight is not met\n"
@@ -33,17 +37,17 @@ static const char usage[] =
     "bench has no flight: the vehicle stands still, the telemetry goes to stdout, and the last line is the answer to\n"
     "#LASER. It needs no commands; those of --set are typed soon after power-up.\n\n"
     "Exit status: 0 the flight met the scenario's expectations (real time and bench: it came to its end), 1 it did not,\n"
-    "2 usage.\n\n"
+    "2 usage, or a file that cannot be read or written.\n\n"
     "Plant figures:\n";
 
-enum { OPT_SEED = 1, OPT_CSV, OPT_JSON, OPT_SET, OPT_TIMING, OPT_TRACE, OPT_COST_SCALE, OPT_REALTIME, OPT_LASER, OPT_IMU, OPT_XBEE,
-       OPT_DURATION, OPT_HEIGHT, OPT_HELP };
+enum { OPT_SEED = 1, OPT_CSV, OPT_JSON, OPT_STORAGE, OPT_SET, OPT_TIMING, OPT_TRACE, OPT_COST_SCALE, OPT_REALTIME,
+       OPT_LASER, OPT_IMU, OPT_XBEE, OPT_DURATION, OPT_HEIGHT, OPT_HELP };
 
 static const struct option long_options[] = {
     {"seed", required_argument, NULL, OPT_SEED},         {"csv", required_argument, NULL, OPT_CSV},
-    {"json", required_argument, NULL, OPT_JSON},         {"set", required_argument, NULL, OPT_SET},
-    {"timing", no_argument, NULL, OPT_TIMING},           {"trace", required_argument, NULL, OPT_TRACE},
-    {"cost-scale", required_argument, NULL, OPT_COST_SCALE},
+    {"json", required_argument, NULL, OPT_JSON},         {"storage", required_argument, NULL, OPT_STORAGE},
+    {"set", required_argument, NULL, OPT_SET},           {"timing", no_argument, NULL, OPT_TIMING},
+    {"trace", required_argument, NULL, OPT_TRACE},       {"cost-scale", required_argument, NULL, OPT_COST_SCALE},
     {"realtime", no_argument, NULL, OPT_REALTIME},       {"laser", required_argument, NULL, OPT_LASER},
     {"imu", required_argument, NULL, OPT_IMU},           {"xbee", required_argument, NULL, OPT_XBEE},
     {"duration", required_argument, NULL, OPT_DURATION}, {"height", required_argument, NULL, OPT_HEIGHT},
@@ -53,7 +57,7 @@ static const struct option long_options[] = {
 typedef struct {
     flight_options_t flight;
     const scenario_t *scenario;
-    const char *csv_path, *json_path, *trace_path;
+    const char *csv_path, *json_path, *trace_path, *storage_path;
     double cost_scale;
     bool help, height, timing;
 } request_t;
@@ -115,6 +119,7 @@ static bool read_option(request_t *request, int option, const char *argument)
     case OPT_SEED: return read_seed(request, argument);
     case OPT_CSV: request->csv_path = argument; return true;
     case OPT_JSON: request->json_path = argument; return true;
+    case OPT_STORAGE: request->storage_path = argument; return true;
     case OPT_SET:
         error = flight_override(&request->flight, argument);
         return error == NULL || complain(error, argument);
@@ -276,13 +281,34 @@ static FILE *open_output(const char *path)
     return file;
 }
 
+/* Stored at once as well: a file that cannot be written is better known before the flight than after it. */
+static bool load_storage(const char *path)
+{
+    const char *error = path == NULL ? NULL : flash_load(path);
+
+    if (path != NULL && error == NULL) {
+        error = flash_store(path);
+    }
+    return error == NULL || complain(error, path);
+}
+
+static bool keep_storage(const char *path)
+{
+    const char *error = path == NULL ? NULL : flash_store(path);
+
+    return error == NULL || complain(error, path);
+}
+
 static int run(request_t *request)
 {
     static flight_result_t result;
     FILE *json = NULL, *trace = NULL;
     const char *error;
-    bool met;
+    bool met, kept;
 
+    if (!load_storage(request->storage_path)) {
+        return 2;
+    }
     if ((request->csv_path != NULL && (request->flight.csv = open_output(request->csv_path)) == NULL) ||
         (request->json_path != NULL && (json = open_output(request->json_path)) == NULL) ||
         (request->trace_path != NULL && (trace = open_output(request->trace_path)) == NULL)) {
@@ -296,6 +322,7 @@ static int run(request_t *request)
         fprintf(stderr, "plomada fly: %s\n", error);
         return 2;
     }
+    kept = keep_storage(request->storage_path);
     measure_end();
     met = request->scenario->bench ? bench_ended(&result) : print_result(request, &result);
     if (request->timing) {
@@ -311,7 +338,7 @@ static int run(request_t *request)
     if (request->flight.csv != NULL) {
         fclose(request->flight.csv);
     }
-    return met ? 0 : 1;
+    return !kept ? 2 : met ? 0 : 1;
 }
 
 int command_fly(int argc, char **argv)

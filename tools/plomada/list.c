@@ -13,6 +13,9 @@ static void print_scenario(const scenario_t *scenario)
     for (int i = 0; i < SCENARIO_SETTINGS_MAX && scenario->settings[i] != NULL; i++) {
         printf(" #%s", scenario->settings[i]);
     }
+    for (const later_line_t *line = scenario->later; line->name != NULL; line++) {
+        printf("; at %g s #%s %s", line->t_s, line->name, line->value);
+    }
     printf("\n    expects");
     if (scenario->fate == FATE_FAILS) {
         printf(" never to reach 90 %% of the reference;");

@@ -2,8 +2,8 @@
 """plot.py FILE... [-o PNG]: draws a flight.
 
 FILE is a flight CSV of `plomada fly --csv`, the flight recorder's (`#LOG`, docs/operator.md), a console log saved by
-XCTU, or telemetry text as a terminal captured it; the kind is found from the content. Several flight CSVs are drawn over one another. PNG may be a directory; by default
-the picture lies beside the first FILE. Where FILE.json of `plomada fly --json` lies beside a CSV, its metrics are quoted.
+XCTU, or telemetry text as a terminal captured it; the kind is found from the content. Several flight CSVs are drawn over
+one another. PNG may be a directory; by default the picture lies beside the first FILE. Where FILE.json of `plomada fly --json` lies beside a CSV, its metrics are quoted.
 The path of the picture is printed. Exit 2 when a FILE cannot be read.
 """
 import argparse
@@ -32,7 +32,7 @@ LASER_COLOURS = {"OK": "#7bc47f", "WAIT": "#c9c9c9"}
 OTHER_COLOURS = ("#5fa8a8", "#b08968", "#a3b18a", "#cdb4db", "#6d8fb3")
 FLAG_NAMES = {1: "height", 2: "attitude", 4: "disagree", 8: "too high", 16: "link", 32: "tilt"}
 
-HEIGHT, ESTIMATE, REFERENCE, TERRAIN, THRUST = "#1f5fa8", "#e07a1f", "#333333", "#b79268", "#a0303f"
+HEIGHT, MEASURED, ESTIMATE, REFERENCE, TERRAIN, THRUST = "#1f5fa8", "#e07a1f", "#2a8f4f", "#333333", "#b79268", "#a0303f"
 FLIGHT_COLOURS = ("#1f5fa8", "#e07a1f", "#2a8f4f", "#a0303f", "#7550a8", "#5a5a5a", "#1a9aa0", "#b3589a")
 QUOTED = (
     ("rise_time_s", "rise", "{:.2f} s"),
@@ -143,9 +143,11 @@ def draw_height(axis, recordings, overlay):
         colour = FLIGHT_COLOURS[index % len(FLIGHT_COLOURS)] if overlay else HEIGHT
         if rec.has("height_m"):
             axis.plot(rec.t, columns["height_m"], color=colour, linewidth=1.8, label=rec.name if overlay else "height")
-        if not overlay and rec.has("est_m"):
-            style = {"marker": ".", "markersize": 3} if rec.kind != "flight" else {}
-            axis.plot(rec.t, columns["est_m"], color=ESTIMATE, linewidth=1.0, label="height as measured", **style)
+        style = {"marker": ".", "markersize": 3} if rec.kind != "flight" else {}
+        if not overlay and rec.has("meas_m"):
+            axis.plot(rec.t, columns["meas_m"], color=MEASURED, linewidth=1.0, label="height as measured", **style)
+        if not overlay and rec.has("innov_m"):
+            axis.plot(rec.t, columns["est_m"], color=ESTIMATE, linewidth=1.0, label="estimate", **style)
         if not overlay and rec.has("ref_m"):
             axis.plot(rec.t, without_zero(columns["ref_m"]), color=REFERENCE, linestyle="--", linewidth=1.3,
                       label="reference", drawstyle="steps-post")

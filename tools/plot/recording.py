@@ -8,8 +8,8 @@ import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
-FLIGHT_COLUMNS = ("t_s", "height_m", "abs_m", "terrain_m", "est_m", "ref_m", "thrust_n", "pulse_us", "state", "flags")
-RECORDER_COLUMNS = ("t_s", "meas_m", "est_m", "ref_m", "thrust_n", "state", "flags")
+RECORDER_COLUMNS = ("t_s", "meas_m", "est_m", "innov_m", "ref_m", "thrust_n", "roll_rad", "pitch_rad", "state", "flags")
+FLIGHT_COLUMNS = RECORDER_COLUMNS + ("height_m", "abs_m", "terrain_m", "pulse_us")     # and what only the PC board knows
 TEXT_COLUMNS = ("state", "laser")
 TELEMETRY_PERIOD_S = 0.2
 
@@ -53,8 +53,8 @@ def read(path):
     lines = raw.decode("utf-8-sig", errors="replace").replace("\r\n", "\n").replace("\r", "\n").split("\n")
     first = next((line for line in lines if line.strip()), "")
     if first.startswith("t_s,"):
-        recorder = "meas_m" in first.split(",")
-        return read_csv(path, lines, "recorder" if recorder else "flight", RECORDER_COLUMNS if recorder else FLIGHT_COLUMNS)
+        flight = "height_m" in first.split(",")
+        return read_csv(path, lines, "flight" if flight else "recorder", FLIGHT_COLUMNS if flight else RECORDER_COLUMNS)
     if CONSOLE_START.match(first):
         return read_console(path, lines)
     recording = Recording(path.stem, "telemetry")
@@ -125,7 +125,7 @@ class Assembler:
 
 
 def read_telemetry(recording, timed_lines):
-    columns = {name: [] for name in ("t_s", "est_m", "ref_m", "thrust_n", "state", "laser", "flags")}
+    columns = {name: [] for name in ("t_s", "meas_m", "ref_m", "thrust_n", "state", "laser", "flags")}
     for t, line in timed_lines:
         if ANSWER.match(line.strip()):
             continue
@@ -133,7 +133,7 @@ def read_telemetry(recording, timed_lines):
         try:
             row = {
                 "t_s": t,
-                "est_m": number(fields["alt"]),
+                "meas_m": number(fields["alt"]),
                 "ref_m": number(fields["ref"]),
                 "thrust_n": number(fields["thr"]),
                 "state": fields["state"],

@@ -1,9 +1,12 @@
 #include "sim/ti/f021/flash.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stddef.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "sim/ti/driverlib/flash.h"
 #include "sim/ti/f021/include/F021_F2837xS_C28x.h"
@@ -48,41 +51,95 @@ static void find_programmed(void)
     }
 }
 
-bool flash_load(const char *path)
+/* The octets of a file, or what is wrong. */
+static const char *read_octets(FILE *file, unsigned char octets[FILE_OCTETS])
 {
-    static unsigned char octets[FILE_OCTETS + 1];
+    const size_t count = fread(octets, 1, FILE_OCTETS, file);
+    const bool longer = count == FILE_OCTETS && fgetc(file) != EOF;
+
+    if (ferror(file)) {
+        return strerror(errno);
+    }
+    return count != FILE_OCTETS || longer ? "no image of the storage: its length is not 32768 octets" : NULL;
+}
+
+const char *flash_load(const char *path)
+{
+    static unsigned char octets[FILE_OCTETS];
     uint16_t *cells = flash_sectors_m_n[0];
     FILE *file = fopen(path, "rb");
-    size_t count;
+    const char *error;
 
     if (file == NULL) {
-        if (errno == ENOENT) {
-            flash_blank();
+        if (errno != ENOENT) {
+            return strerror(errno);
         }
-        return errno == ENOENT;
+        flash_blank();
+        return NULL;
     }
-    count = fread(octets, 1, sizeof octets, file);
+    error = read_octets(file, octets);
     fclose(file);
-    if (count != FILE_OCTETS) {
-        return false;
+    if (error != NULL) {
+        return error;
     }
     for (size_t i = 0; i < FILE_OCTETS / 2; i++) {
         cells[i] = (uint16_t)(octets[2 * i] | octets[2 * i + 1] << 8);
     }
     find_programmed();
-    return true;
+    return NULL;
 }
 
-bool flash_store(const char *path)
+static bool write_cells(FILE *file)
 {
     const uint16_t *cells = flash_sectors_m_n[0];
-    FILE *file = fopen(path, "wb");
-    bool stored = file != NULL;
 
-    for (size_t i = 0; stored && i < FILE_OCTETS / 2; i++) {
-        stored = fputc(cells[i] & 0xFF, file) != EOF && fputc(cells[i] >> 8, file) != EOF;
+    for (size_t i = 0; i < FILE_OCTETS / 2; i++) {
+        if (fputc(cells[i] & 0xFF, file) == EOF || fputc(cells[i] >> 8, file) == EOF) {
+            return false;
+        }
     }
-    return file != NULL && fclose(file) == 0 && stored;
+    return fflush(file) == 0 && fsync(fileno(file)) == 0;
+}
+
+/* A new file, whole and on the disk, or what failed; then there is none. */
+static const char *write_new(const char *path)
+{
+    FILE *file = fopen(path, "wb");
+    const char *error = NULL;
+
+    if (file == NULL) {
+        return strerror(errno);
+    }
+    if (!write_cells(file)) {
+        error = strerror(errno);
+    }
+    if (fclose(file) != 0 && error == NULL) {
+        error = strerror(errno);
+    }
+    if (error != NULL) {
+        (void)remove(path);
+    }
+    return error;
+}
+
+const char *flash_store(const char *path)
+{
+    char target[PATH_MAX], fresh[PATH_MAX + 32];
+    const char *error;
+
+    if (realpath(path, target) == NULL) { /* a link is kept, and what it names replaced */
+        if (errno != ENOENT || strlen(path) >= sizeof target) {
+            return strerror(errno);
+        }
+        strcpy(target, path);
+    }
+    snprintf(fresh, sizeof fresh, "%s.%ld.new", target, (long)getpid());
+    error = write_new(fresh);
+    if (error == NULL && rename(fresh, target) != 0) {
+        error = strerror(errno);
+        (void)remove(fresh);
+    }
+    return error;
 }
 
 void flash_cut_power_after(long cells)

@@ -15,9 +15,10 @@
 void flash_blank(void);
 
 /* The cells from and to a file of FLASH_SECTORS * FLASH_SECTOR_CELLS cells of two octets, the low one first. A file that
- * does not exist loads as blank. False: another length, or not readable or writable; then the cells stay. */
-bool flash_load(const char *path);
-bool flash_store(const char *path);
+ * does not exist loads as blank. A store replaces the file in one step: whenever it is interrupted, the file is the old one
+ * or the new one. NULL when fine; else what failed, and cells and file stay as they were. */
+const char *flash_load(const char *path);
+const char *flash_store(const char *path);
 
 /* Power fails after so many more cells have been erased or programmed: the next one is left half done, and nothing
  * changes any more. Negative: never. Power is back with the next call of this function or of flash_blank(). */

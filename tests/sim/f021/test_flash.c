@@ -1,8 +1,12 @@
 #include "sim/ti/f021/flash.h"
 
+#include <dirent.h>
+#include <errno.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "sim/ti/driverlib/flash.h"
 #include "sim/ti/f021/include/F021_F2837xS_C28x.h"
@@ -112,9 +116,9 @@ void test_a_file_keeps_the_cells_and_what_is_programmed(void)
     start();
     (void)program_words(&flash_sectors_m_n[1][8], block, 8);
     wait();
-    TEST_ASSERT_TRUE(flash_store(path));
+    TEST_ASSERT_NULL(flash_store(path));
     flash_blank();
-    TEST_ASSERT_TRUE(flash_load(path));
+    TEST_ASSERT_NULL(flash_load(path));
     TEST_ASSERT_EQUAL_HEX16_ARRAY(block, &flash_sectors_m_n[1][8], 8);
     TEST_ASSERT_EACH_EQUAL_HEX16(0xFFFF, flash_sectors_m_n[1], 8);
     start();
@@ -128,14 +132,106 @@ void test_no_file_is_blank_and_a_short_one_is_refused(void)
     FILE *file;
 
     flash_sectors_m_n[0][0] = 0;
-    TEST_ASSERT_TRUE(flash_load(path));
+    TEST_ASSERT_NULL(flash_load(path));
     TEST_ASSERT_EQUAL_HEX16(0xFFFF, flash_sectors_m_n[0][0]);
     file = fopen(path, "wb");
     TEST_ASSERT_NOT_NULL(file);
     fputs("short", file);
     fclose(file);
     flash_sectors_m_n[0][0] = 0x77;
-    TEST_ASSERT_FALSE(flash_load(path));
+    TEST_ASSERT_EQUAL_STRING("no image of the storage: its length is not 32768 octets", flash_load(path));
     TEST_ASSERT_EQUAL_HEX16(0x77, flash_sectors_m_n[0][0]);
-    TEST_ASSERT_FALSE(flash_store(SCRATCH "/no such directory/flash.bin"));
+    TEST_ASSERT_EQUAL_STRING(strerror(ENOENT), flash_store(SCRATCH "/no such directory/flash.bin"));
+}
+
+static long size_of(const char *name)
+{
+    struct stat status;
+
+    return stat(name, &status) == 0 ? (long)status.st_size : -1;
+}
+
+void test_a_longer_file_is_refused_too_and_so_is_what_is_no_file(void)
+{
+    FILE *file;
+
+    TEST_ASSERT_NULL(flash_store(path));
+    file = fopen(path, "ab");
+    TEST_ASSERT_NOT_NULL(file);
+    fputc(0, file);
+    fclose(file);
+    TEST_ASSERT_NOT_NULL(flash_load(path));
+    TEST_ASSERT_EQUAL_STRING(strerror(EISDIR), flash_load(SCRATCH));
+    TEST_ASSERT_NOT_NULL(flash_store(SCRATCH));
+    TEST_ASSERT_EQUAL_STRING(strerror(ENOTDIR), flash_load("/dev/null/x"));
+}
+
+static int fresh_files(void)
+{
+    DIR *directory = opendir(SCRATCH);
+    int count = 0;
+
+    for (struct dirent *entry; (entry = readdir(directory)) != NULL;) {
+        count += strstr(entry->d_name, "flash.bin") != NULL && strstr(entry->d_name, ".new") != NULL;
+    }
+    closedir(directory);
+    return count;
+}
+
+/* A reader that has the old file open goes on reading the old one: it was replaced, not overwritten. */
+void test_a_store_replaces_the_file_in_one_step_and_leaves_nothing_else(void)
+{
+    static unsigned char octets[FLASH_SECTORS * FLASH_SECTOR_CELLS * 2];
+    FILE *before;
+
+    flash_sectors_m_n[0][0] = 0x1234;
+    TEST_ASSERT_NULL(flash_store(path));
+    before = fopen(path, "rb");
+    flash_sectors_m_n[0][0] = 0x4321;
+    TEST_ASSERT_NULL(flash_store(path));
+    TEST_ASSERT_EQUAL_size_t(sizeof octets, fread(octets, 1, sizeof octets, before));
+    fclose(before);
+    TEST_ASSERT_EQUAL_HEX16(0x1234, octets[0] | octets[1] << 8);
+    flash_blank();
+    TEST_ASSERT_NULL(flash_load(path));
+    TEST_ASSERT_EQUAL_HEX16(0x4321, flash_sectors_m_n[0][0]);
+    TEST_ASSERT_EQUAL_INT(0, fresh_files());
+}
+
+void test_a_full_disk_leaves_the_old_file(void)
+{
+    struct stat status;
+
+    if (stat("/dev/full", &status) != 0) {
+        TEST_IGNORE_MESSAGE("no /dev/full");
+    }
+    flash_sectors_m_n[0][0] = 0x1234;
+    TEST_ASSERT_NULL(flash_store(path));
+    char fresh[300];
+    snprintf(fresh, sizeof fresh, "%s.%ld.new", path, (long)getpid());
+    TEST_ASSERT_EQUAL_INT(0, symlink("/dev/full", fresh));
+    flash_sectors_m_n[0][0] = 0x4321;
+    TEST_ASSERT_EQUAL_STRING(strerror(ENOSPC), flash_store(path));
+    TEST_ASSERT_EQUAL_INT(0, fresh_files());
+    TEST_ASSERT_NULL(flash_load(path));
+    TEST_ASSERT_EQUAL_HEX16(0x1234, flash_sectors_m_n[0][0]);
+}
+
+void test_a_link_is_kept_and_what_it_names_is_replaced(void)
+{
+    static const char link_path[] = SCRATCH "/flash.link";
+    struct stat status;
+
+    (void)remove(link_path);
+    TEST_ASSERT_NULL(flash_store(path));
+    TEST_ASSERT_EQUAL_INT(0, symlink(path, link_path));
+    flash_sectors_m_n[0][0] = 0x4321;
+    TEST_ASSERT_NULL(flash_store(link_path));
+    TEST_ASSERT_EQUAL_INT(0, lstat(link_path, &status));
+    TEST_ASSERT_TRUE(S_ISLNK(status.st_mode));
+    TEST_ASSERT_EQUAL(32768, size_of(path));
+    (void)remove(link_path);
+    flash_blank();
+    TEST_ASSERT_NULL(flash_load(path));
+    TEST_ASSERT_EQUAL_HEX16(0x4321, flash_sectors_m_n[0][0]);
 }
