@@ -7,11 +7,10 @@
 #define TERRAIN_SHARE 1.0F
 #define FAR_M 0.20F
 #define FAR_SHARE 0.30F
-#define ACCELERATION_MAX_MPS2 3.96F
+#define RISE_MAX_MPS2 3.96F
 #define DRAG_SPEED_MPS 0.8F /* beyond it the drag helps to brake */
 #define LEAD 1.3F
 #define ABOVE_HOVER_N 3.5F
-#define BELOW_HOVER_N 3.0F
 #define LEAST_SHARE 0.25F
 #define UPRIGHT_MIN 0.8F
 #define SLEW_N_PER_S 60.0F
@@ -54,11 +53,11 @@ float cascade_step(cascade_t *cascade, const cascade_gains_t *gains, const casca
 {
     const float gain_per_s = gains->speed_per_s * calm(cascade, dt_s);
     const float acceleration_mps2 =
-        between(-ACCELERATION_MAX_MPS2, gain_per_s * (speed_mps - state->speed_mps), ACCELERATION_MAX_MPS2);
+        between(-gains->fall_mps2, gain_per_s * (speed_mps - state->speed_mps), RISE_MAX_MPS2);
     const float drag_mps2 = vehicle->damping_per_s * between(-DRAG_SPEED_MPS, state->speed_mps, DRAG_SPEED_MPS);
     const float force_n = (acceleration_mps2 + drag_mps2) / vehicle->authority_mps2_per_n;
     const float steady_n = (vehicle->need_n + force_n) / fmaxf(vehicle->upright, UPRIGHT_MIN);
-    const float least_n = fmaxf(vehicle->hover_n - BELOW_HOVER_N, LEAST_SHARE * vehicle->hover_n);
+    const float least_n = fmaxf(vehicle->hover_n - gains->below_hover_n, LEAST_SHARE * vehicle->hover_n);
     const float led_n =
         between(least_n, state->thrust_n + LEAD * (steady_n - state->thrust_n), vehicle->hover_n + ABOVE_HOVER_N);
     const float slew_n = SLEW_N_PER_S * dt_s;

@@ -17,6 +17,8 @@ typedef struct {
     float height_per_s;     /* metres off the reference -> metres per second */
     float speed_per_s;      /* metres per second off -> metres per second squared */
     float up_mps, down_mps; /* limits of the speed, > 0 */
+    float fall_mps2;        /* limit of the acceleration downwards, > 0 */
+    float below_hover_n;    /* and of the thrust that it is got by */
 } cascade_gains_t;
 
 /* The vehicle at the instant when the next command takes effect. */

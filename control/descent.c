@@ -1,6 +1,7 @@
 #include "descent.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 /* At terminal speed v, damping D: thrust deficit / hover thrust = D v / g. */
 #define SINK_SHARE 0.073F
@@ -17,6 +18,10 @@
 #define TRIM_MAX_N 2.0F
 #define LEAST_SHARE 0.25F
 #define FADE_N_PER_S2 0.004F
+#define LOW_MM 40.0F
+#define LOW_NO_MORE_MM 100.0F
+#define LOW_ABOVE_HOVER_N 0.5F
+#define LOW_FADE_N_PER_S 4.0F
 
 static float between(float lowest, float value, float highest)
 {
@@ -32,6 +37,7 @@ void descent_start(descent_t *descent, float rate_mm_s)
 {
     descent->sink_mm_s = between(0.0F, -rate_mm_s, DESCENT_RATE_MM_S);
     descent->trim_n = 0.0F;
+    descent->low_s = 0.0F;
 }
 
 static float rate_action_n(float error_mm_s)
@@ -39,6 +45,15 @@ static float rate_action_n(float error_mm_s)
     const float climb_mm_s = fminf(error_mm_s + BRAKE_BEYOND_MM_S, 0.0F);
     const float action_n = RATE_GAIN_N_PER_MM_S * error_mm_s + BRAKE_GAIN_N_PER_MM_S * climb_mm_s;
     return between(RATE_ACTION_LEAST_N, action_n, RATE_ACTION_MOST_N);
+}
+
+/* At the ground: hover_n as it was learned, and less and less. */
+static float most_n(descent_t *descent, float hover_n, float height_mm, float dt_s)
+{
+    const bool low = height_mm < LOW_MM || (descent->low_s > 0.0F && height_mm < LOW_NO_MORE_MM);
+
+    descent->low_s = low ? descent->low_s + dt_s : 0.0F;
+    return (descent->low_s > 0.0F) ? fmaxf(hover_n + LOW_ABOVE_HOVER_N - LOW_FADE_N_PER_S * descent->low_s, 0.0F) : INFINITY;
 }
 
 float descent_step(descent_t *descent, float hover_n, float height_mm, float rate_mm_s, float dt_s)
@@ -50,7 +65,9 @@ float descent_step(descent_t *descent, float hover_n, float height_mm, float rat
     const float trim_gain = (rate_mm_s > 0.0F) ? CLIMB_TRIM_GAIN_N_PER_MM : TRIM_GAIN_N_PER_MM;
 
     descent->trim_n = between(-TRIM_MAX_N, descent->trim_n + trim_gain * error_mm_s * dt_s, TRIM_MAX_N);
-    return fmaxf(hover_n - sink_n + descent->trim_n + rate_action_n(error_mm_s), LEAST_SHARE * hover_n);
+    const float wanted_n =
+        fmaxf(hover_n - sink_n + descent->trim_n + rate_action_n(error_mm_s), LEAST_SHARE * hover_n);
+    return fminf(wanted_n, most_n(descent, hover_n + descent->trim_n, height_mm, dt_s));
 }
 
 float descent_blind(float hover_n, float elapsed_s)

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "thrust.h"
+
 #define GRAVITY_MPS2 9.80665F
 #define DAMPING_PER_S 2.5F
 #define CLIMB_PER_S 4.0F /* how fast an autopilot that commands the climb rate attains it */
@@ -10,6 +12,7 @@
 
 #define HOVER_BOUND_N 2.0F
 #define HOVER_SIGMA_START_N 0.7F
+#define NEUTRAL_SIGMA_N 0.07F
 #define HOVER_SIGMA_TAKE_OVER_N 0.5F
 #define SPEED_DOUBT_N_PER_MPS 0.5F
 #define IN_THE_AIR_M 0.04F
@@ -28,6 +31,11 @@
 #define LIFTED_SHARE 0.7F
 #define KICK_TIME_S 0.08F
 
+#define FALL_MPS2 3.96F
+#define BELOW_HOVER_N 3.0F
+#define BRAKE_MPS2 8.0F /* a climb that shall become a descent */
+#define BRAKE_BELOW_HOVER_N 6.0F
+
 #define LAND_MPS 0.15F
 #define LAND_PER_S 0.25F
 #define LAND_MAX_MPS 0.40F
@@ -36,6 +44,11 @@
 #define SINK_MAX_MPS 0.6F
 #define SINK_ABOVE_HOVER_N 0.5F
 #define SINK_FADE_N_PER_S 0.2F
+#define LOW_M 0.04F
+#define LOW_NO_MORE_M 0.10F
+#define LOW_ABOVE_HOVER_N 0.5F
+#define LOW_FADE_N_PER_S 4.0F
+#define STOP_N_PER_S 2.0F
 #define TERRAIN_KEEP_S 30.0F
 #define LOWEST_OVER_TERRAIN_M 0.15F
 
@@ -56,9 +69,13 @@ void est_law_init(est_law_t *law)
     ray_clock_init(&law->ray_clock);
 }
 
+static bool is_climb(const parameters_t *parameters)
+{
+    return parameters->value[PARAMETER_PLANT] == (float)PLANT_CLIMB;
+}
+
 static cascade_vehicle_t vehicle_of(const est_law_t *law, const parameters_t *parameters)
 {
-    const bool climb = parameters->value[PARAMETER_PLANT] == (float)PLANT_CLIMB;
     const estimator_t *e = &law->estimator;
     cascade_vehicle_t vehicle = {
         .authority_mps2_per_n = GRAVITY_MPS2 / fmaxf(law->hover.thrust_n, 1.0F),
@@ -67,7 +84,7 @@ static cascade_vehicle_t vehicle_of(const est_law_t *law, const parameters_t *pa
         .need_n = law->hover.thrust_n + law->hover.gust_n,
         .upright = cosf(e->latest.roll_rad) * cosf(e->latest.pitch_rad),
     };
-    if (climb) {
+    if (is_climb(parameters)) {
         vehicle.damping_per_s = CLIMB_PER_S;
         vehicle.authority_mps2_per_n = CLIMB_PER_S * parameters->value[PARAMETER_CRATE];
         vehicle.upright = 1.0F;
@@ -87,6 +104,9 @@ static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt
 
     if (e->now.height_m > IN_THE_AIR_M || seen_n > law->hover.thrust_n) {
         hover_step(&law->hover, seen_n, e->noise_mps2 / vehicle.authority_mps2_per_n + doubt_n, dt_s);
+    }
+    if (is_climb(parameters) && e->now.height_m > IN_THE_AIR_M) {
+        deadband_learn(&law->deadband, law->actuator.thrust_n - law->hover.thrust_n, seen_n - law->hover.thrust_n, dt_s);
     }
 }
 
@@ -134,6 +154,9 @@ void est_law_listen(est_law_t *law, const parameters_t *parameters, const motion
         law->listening = true;
         law->now_us = now_us;
         actuator_init(&law->actuator, now_us);
+    }
+    if (!is_climb(parameters)) {
+        deadband_init(&law->deadband);
     }
     law->step_s = between(0.0F, seconds(law->now_us, now_us), STEP_MAX_S);
     law->now_us = now_us;
@@ -183,6 +206,7 @@ void est_law_stand(est_law_t *law, const parameters_t *parameters)
     law->ramp_n = RAMP_START * parameters->value[PARAMETER_GRAV];
     law->terrain_m = law->estimator.stepped_m;
     law->sunk_s = 0.0F;
+    law->low_s = 0.0F;
     start_hover(law, parameters, parameters->value[PARAMETER_GRAV], HOVER_SIGMA_START_N);
     cascade_init(&law->cascade, law->ramp_n);
 }
@@ -192,6 +216,7 @@ void est_law_take_over(est_law_t *law, float thrust_n, float hover_n)
     law->lifted = true;
     law->terrain_m = law->estimator.stepped_m;
     law->sunk_s = 0.0F;
+    law->low_s = 0.0F;
     law->hover.thrust_n = between(law->hover.least_n, hover_n, law->hover.most_n);
     law->hover.variance_n2 = HOVER_SIGMA_TAKE_OVER_N * HOVER_SIGMA_TAKE_OVER_N;
     law->hover.gust_n = 0.0F;
@@ -222,13 +247,15 @@ static bool lift(est_law_t *law, const parameters_t *parameters)
 {
     const float gravity_n = parameters->value[PARAMETER_GRAV];
     const float taken_n = law->kick_mps2 / vehicle_of(law, parameters).authority_mps2_per_n;
+    const float carries_n = law->actuator.thrust_n - taken_n;
     const bool strong = law->actuator.thrust_n > LIFTED_SHARE * gravity_n;
 
     law->ramping = true;
     law->lifted = law->estimator.now.height_m > HIGH_M
                || (strong && (law->estimator.now.height_m > LIFTED_M || law->kick_mps2 > kick_of_lift_mps2(law)));
     if (law->lifted) {
-        start_hover(law, parameters, law->actuator.thrust_n - taken_n, HOVER_SIGMA_START_N);
+        start_hover(law, parameters, is_climb(parameters) ? gravity_n : carries_n,
+                    is_climb(parameters) ? NEUTRAL_SIGMA_N : HOVER_SIGMA_START_N);
         cascade_init(&law->cascade, law->ramp_n);
     } else {
         law->ramp_n = fminf(law->ramp_n + RAMP_N_PER_S * law->step_s, RAMP_MOST * gravity_n);
@@ -246,10 +273,30 @@ static float sinking_mps(float height_m)
     return -fminf(SINK_MPS + SINK_PER_S * fmaxf(height_m, 0.0F), SINK_MAX_MPS);
 }
 
-/* Whatever the estimate, which nothing corrects now: more and more certainly down, and off on the ground. */
-static float sinking_most_n(const est_law_t *law)
+static void keep_times(est_law_t *law, est_wish_t wish, float height_m)
 {
-    return fmaxf(law->hover.thrust_n + SINK_ABOVE_HOVER_N - SINK_FADE_N_PER_S * law->sunk_s, 0.0F);
+    const bool low = height_m < LOW_M || (law->low_s > 0.0F && height_m < LOW_NO_MORE_M);
+
+    law->sunk_s = (wish == EST_SINK) ? law->sunk_s + law->step_s : 0.0F;
+    law->low_s = (wish == EST_LAND && low) ? law->low_s + law->step_s : 0.0F;
+}
+
+/* More and more certainly down: without heights whatever the estimate says, and with them once the ground is there, so
+ * that no gust and no wrong hover thrust lifts the vehicle again. */
+static float most_n(const est_law_t *law, est_wish_t wish)
+{
+    const float hover_n = law->hover.thrust_n;
+
+    switch (wish) {
+    case EST_LAND:
+        return (law->low_s > 0.0F) ? fmaxf(hover_n + LOW_ABOVE_HOVER_N - LOW_FADE_N_PER_S * law->low_s, 0.0F)
+                                   : THRUST_MAX_N;
+    case EST_SINK:
+        return fmaxf(hover_n + SINK_ABOVE_HOVER_N - SINK_FADE_N_PER_S * law->sunk_s, 0.0F);
+    case EST_HOLD:
+    default:
+        return THRUST_MAX_N;
+    }
 }
 
 static float target_m(est_law_t *law, const parameters_t *parameters, float reference_m)
@@ -282,9 +329,20 @@ static float wanted_mps(est_law_t *law, const parameters_t *parameters, const ca
 float est_law_step(est_law_t *law, const parameters_t *parameters, est_wish_t wish, float reference_m)
 {
     const float *value = parameters->value;
-    const cascade_gains_t gains = {value[PARAMETER_POSK], value[PARAMETER_VELK], value[PARAMETER_VUP],
-                                   value[PARAMETER_VDN]};
+    const bool brakes = wish == EST_LAND;
+    const cascade_gains_t gains = {
+        .height_per_s = value[PARAMETER_POSK],
+        .speed_per_s = value[PARAMETER_VELK],
+        .up_mps = value[PARAMETER_VUP],
+        .down_mps = value[PARAMETER_VDN],
+        .fall_mps2 = brakes ? BRAKE_MPS2 : FALL_MPS2,
+        .below_hover_n = brakes ? BRAKE_BELOW_HOVER_N : BELOW_HOVER_N,
+    };
 
+    if (!law->lifted && wish != EST_HOLD) {
+        law->ramp_n = fmaxf(law->ramp_n - STOP_N_PER_S * law->step_s, 0.0F);
+        return law->ramp_n;
+    }
     if (!law->lifted && !lift(law, parameters)) {
         return law->ramp_n;
     }
@@ -293,11 +351,11 @@ float est_law_step(est_law_t *law, const parameters_t *parameters, est_wish_t wi
     const float speed_mps = wanted_mps(law, parameters, &gains, &state, wish, reference_m);
     const float thrust_n = cascade_step(&law->cascade, &gains, &vehicle, &state, speed_mps, law->step_s);
 
-    law->sunk_s = (wish == EST_SINK) ? law->sunk_s + law->step_s : 0.0F;
-    return (wish == EST_SINK) ? fminf(thrust_n, sinking_most_n(law)) : thrust_n;
+    keep_times(law, wish, state.height_m);
+    return deadband_cross(&law->deadband, law->hover.thrust_n, fminf(thrust_n, most_n(law, wish)));
 }
 
 void est_law_commanded(est_law_t *law, float thrust_n)
 {
-    actuator_command(&law->actuator, thrust_n, law->now_us);
+    actuator_command(&law->actuator, deadband_left(&law->deadband, law->hover.thrust_n, thrust_n), law->now_us);
 }

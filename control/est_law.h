@@ -9,6 +9,7 @@
 #include "actuator.h"
 #include "altitude.h"
 #include "cascade.h"
+#include "deadband.h"
 #include "estimator.h"
 #include "hover.h"
 #include "parameters.h"
@@ -25,6 +26,7 @@ typedef struct {
     ray_clock_t ray_clock;
     actuator_t actuator;
     hover_t hover;
+    deadband_t deadband;    /* none with PLANT THRUST */
     cascade_t cascade;
     bool listening;         /* now_us holds */
     uint32_t now_us;
@@ -37,6 +39,7 @@ typedef struct {
     float reference_m;
     float terrain_m;        /* estimator.stepped_m where reference_m was given */
     float sunk_s;           /* for how long it has been sinking without a height */
+    float low_s;            /* for how long it has been at the ground while landing */
 } est_law_t;
 
 void est_law_init(est_law_t *law);

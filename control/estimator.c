@@ -346,6 +346,7 @@ static height_outcome_t refuse(estimator_t *e, float height_m, float innovation_
     if (agrees) {
         e->stepped_m -= innovation_m;
         height_is(e, height_m);
+        e->confirmed = true;
         return HEIGHT_STEP;
     }
     if (e->refused == REFUSALS_MAX) {
@@ -358,7 +359,8 @@ static height_outcome_t refuse(estimator_t *e, float height_m, float innovation_
 static height_outcome_t judge(estimator_t *e, float height_m)
 {
     e->innovation_m = height_m - e->past.height_m;
-    if (e->unseen == 0U && !expected(e, e->innovation_m)) {
+    e->confirmed = e->unseen == 0U && expected(e, e->innovation_m);
+    if (e->unseen == 0U && !e->confirmed) {
         return refuse(e, height_m, e->innovation_m);
     }
     e->unseen = (uint16_t)(e->unseen - (e->unseen > 0U));

@@ -73,6 +73,7 @@ typedef struct {
     float expected_noise_mps2;
     uint16_t refused;       /* heights in a row */
     uint16_t unseen;        /* heights still to be fused whatever they say */
+    bool confirmed;         /* the latest height was as expected, or the second of a step */
     float refused_m;        /* innovation of the latest refused height */
     float innovation_m;     /* latest */
     float stepped_m;        /* sum of the terrain's steps and of its rate: terrain height since the start */

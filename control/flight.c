@@ -14,16 +14,16 @@
 
 #define PIDT_WINDOW_N 3.0F
 
+/* Without an estimate, or by a law that needs none. */
 static const flight_charge_t charges[FLIGHT_STATE_COUNT] = {
     [FLIGHT_GROUND] = CHARGE_IDLE,      [FLIGHT_TAKEOFF] = CHARGE_LAW,      [FLIGHT_FLYING] = CHARGE_LAW,
     [FLIGHT_FLOATING] = CHARGE_HOVER,   [FLIGHT_COASTING] = CHARGE_HOVER,   [FLIGHT_DESCENDING] = CHARGE_BLIND,
     [FLIGHT_LANDING] = CHARGE_DESCENT,  [FLIGHT_LOWERING] = CHARGE_DESCENT, [FLIGHT_CUT] = CHARGE_IDLE,
 };
-/* The same with law EST. */
 static const flight_charge_t charges_est[FLIGHT_STATE_COUNT] = {
     [FLIGHT_GROUND] = CHARGE_IDLE,      [FLIGHT_TAKEOFF] = CHARGE_HOLD,     [FLIGHT_FLYING] = CHARGE_HOLD,
     [FLIGHT_FLOATING] = CHARGE_HOVER,   [FLIGHT_COASTING] = CHARGE_HOLD,    [FLIGHT_DESCENDING] = CHARGE_SINK,
-    [FLIGHT_LANDING] = CHARGE_LAND,     [FLIGHT_LOWERING] = CHARGE_DESCENT, [FLIGHT_CUT] = CHARGE_IDLE,
+    [FLIGHT_LANDING] = CHARGE_LAND,     [FLIGHT_LOWERING] = CHARGE_LAND,    [FLIGHT_CUT] = CHARGE_IDLE,
 };
 
 void flight_init(flight_t *flight)
@@ -54,7 +54,7 @@ static void keep_hover(flight_t *flight, float gravity_n)
 
     if (state == FLIGHT_GROUND || state == FLIGHT_TAKEOFF || state == FLIGHT_FLOATING) {
         flight->hover_n = gravity_n;
-    } else if (is_est(flight->charge)) {
+    } else if (est_law_ready(&flight->est) && flight->est.lifted) {
         flight->hover_n = flight->est.hover.thrust_n;
     } else if (state == FLIGHT_FLYING) {
         const float share = seconds(flight->supervisor.step_us, STEP_MAX_S) / HOVER_TIME_S;
@@ -76,7 +76,7 @@ static void hand_over(flight_t *flight, flight_charge_t before, flight_charge_t 
     if (now == CHARGE_LAW) {
         pid_resume(&flight->law);
         pidt_resume(&flight->pidt);
-    } else if (now != CHARGE_HOVER) {
+    } else if (flight->supervisor.state != FLIGHT_COASTING) {
         pid_reset(&flight->law);
         pidt_reset(&flight->pidt);
     }
@@ -190,7 +190,7 @@ static void bridge(flight_t *flight, flight_charge_t before, bool law_changed)
     const float hover_n = flight->hover_n;
     const bool other = before != now && !(is_est(before) && is_est(now));
 
-    if (other && (before == CHARGE_IDLE || now == CHARGE_IDLE || now == CHARGE_DESCENT)) {
+    if (other && (before == CHARGE_IDLE || now == CHARGE_IDLE || now == CHARGE_DESCENT || now == CHARGE_LAND)) {
         flight->bridge_n = 0.0F;
     } else if (law_changed) {
         flight->bridge_n = flight->thrust_n - flight->wanted_n;
@@ -202,16 +202,32 @@ static void bridge(flight_t *flight, flight_charge_t before, bool law_changed)
     }
 }
 
-static void listen(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)
+static void supervise(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)
 {
-    const bool at_rest = flight->supervisor.state == FLIGHT_GROUND && flight->supervisor.rest.on;
+    const estimator_t *estimator = &flight->est.estimator;
+    const estimate_t *now = &estimator->now;
 
     est_law_listen(&flight->est, parameters, in->frames, in->frame_count, in->now_us);
+    const vertical_estimate_t estimate = {
+        .known = est_law_ready(&flight->est) && estimator->confirmed,
+        .height_mm = now->height_m * 1000.0F,
+        .climb_mm_s = (now->speed_mps - now->terrain_mps) * 1000.0F,
+    };
+    supervisor_step(&flight->supervisor, parameters->value[PARAMETER_LINK], in, &estimate);
+}
+
+static void see(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)
+{
+    const flight_state_t state = flight->supervisor.state;
+    const bool at_rest = state == FLIGHT_GROUND && flight->supervisor.rest.on;
+
     if (flight->supervisor.height.is_new) {
         est_law_see(&flight->est, &in->altitude, in->height_stamp_ms, in->height_time_us, at_rest);
     }
-    if (flight->supervisor.state == FLIGHT_GROUND) {
+    if (state == FLIGHT_GROUND) {
         est_law_stand(&flight->est, parameters);
+    } else if (state == FLIGHT_FLYING && flight->charge == CHARGE_LAW && !flight->est.lifted) {
+        est_law_take_over(&flight->est, flight->thrust_n, flight->hover_n);
     }
 }
 
@@ -225,13 +241,31 @@ static bool choose_law(flight_t *flight, const parameters_t *parameters)
     return flight->flown != before;
 }
 
+/* Whether the state is flown by the estimate: a law as it was chosen, what the supervisor does by itself whenever there
+ * is an estimate that heights, if there are any, do not contradict. */
+static bool by_estimate(const flight_t *flight)
+{
+    switch (flight->supervisor.state) {
+    case FLIGHT_TAKEOFF:
+    case FLIGHT_FLYING:
+        return flight->flown == LAW_EST;
+    case FLIGHT_COASTING:
+        return flight->flown == LAW_EST || (flight->est.lifted && est_law_ready(&flight->est));
+    case FLIGHT_LANDING:
+    case FLIGHT_LOWERING:
+        return est_law_ready(&flight->est) && supervisor_estimated(&flight->supervisor);
+    default:
+        return est_law_ready(&flight->est);
+    }
+}
+
 static void tell(const flight_t *flight, const parameters_t *parameters, flight_outputs_t *out)
 {
     const supervisor_t *supervisor = &flight->supervisor;
     const estimator_t *estimator = &flight->est.estimator;
-    const bool estimated = flight->flown == LAW_EST;
+    const bool estimated = flight->flown == LAW_EST || is_est(flight->charge);
     const bool in_its_place =
-        flight->charge == CHARGE_LAW && !estimated && parameters->value[PARAMETER_LAW] == (float)LAW_EST;
+        flight->charge == CHARGE_LAW && flight->flown != LAW_EST && parameters->value[PARAMETER_LAW] == (float)LAW_EST;
     const float measured_mm = (supervisor->height.sequence != 0U) ? supervisor->height.height_mm : NAN;
 
     out->thrust_n = flight->thrust_n;
@@ -241,17 +275,17 @@ static void tell(const flight_t *flight, const parameters_t *parameters, flight_
     out->reference_m = supervisor->reference_m;
     out->estimate_mm = estimated ? estimator->now.height_m * 1000.0F : measured_mm;
     out->innovation_mm = estimated ? estimator->innovation_m * 1000.0F : NAN;
+    out->frame_releases = is_est(flight->charge);
 }
 
 void flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in, flight_outputs_t *out)
 {
-    const supervisor_t *supervisor = &flight->supervisor;
     const flight_charge_t before = flight->charge;
 
-    supervisor_step(&flight->supervisor, parameters->value[PARAMETER_LINK], in);
-    listen(flight, parameters, in);
+    supervise(flight, parameters, in);
+    see(flight, parameters, in);
     const bool other_law = choose_law(flight, parameters);
-    flight->charge = (flight->flown == LAW_EST) ? charges_est[supervisor->state] : charges[supervisor->state];
+    flight->charge = by_estimate(flight) ? charges_est[flight->supervisor.state] : charges[flight->supervisor.state];
     if (before != flight->charge) {
         hand_over(flight, before, flight->charge);
     }

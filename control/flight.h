@@ -21,6 +21,8 @@ typedef struct {
     float reference_m;              /* reference in force, 0 = none */
     float estimate_mm;              /* height that the law acts on; NAN: none is known */
     float innovation_mm;            /* latest height less its prediction; NAN where nothing is predicted */
+    bool frame_releases;            /* the estimator flies: the next cycle is due at the next IMU frame or height,
+                                     * whatever the law's release */
 } flight_outputs_t;
 
 /* Who decides the thrust. */
@@ -31,7 +33,7 @@ typedef enum {
     CHARGE_DESCENT,
     CHARGE_BLIND,
     CHARGE_HOLD,                    /* law EST, also while it coasts */
-    CHARGE_LAND,
+    CHARGE_LAND,                    /* by the estimate, as all that follows */
     CHARGE_SINK
 } flight_charge_t;
 
@@ -45,7 +47,8 @@ typedef struct {
     est_law_t est;
     control_law_t flown;            /* the law that acts, or would: PIDT in place of EST without a fresh estimate */
     descent_t descent;
-    float hover_n;                  /* best known hover thrust: slow mean of the thrust while FLYING, GRAV +-1.5 N */
+    float hover_n;                  /* best known hover thrust: the estimator's, or else the slow mean of the thrust while
+                                     * FLYING; GRAV +-1.5 N */
     float wanted_n;                 /* what the state in charge wants */
     float bridge_n;                 /* added to it, fades out: no jump where the one in charge changes */
     float thrust_n;                 /* the previous command */
@@ -56,7 +59,8 @@ void flight_init(flight_t *flight);
 /* One release of the control task. With RELEASE FREE the law takes a sample in each call, as the seed's did, be the
  * height new or not; with SCAN only when a new height has come, and holds its thrust otherwise. What takes over in the
  * air starts from the thrust of before, at most 0.5 N from hover, and the difference fades with 0.4 s; but a descent
- * with a height acts at once, and so does the law on the ground. A change of law alone starts exactly from the thrust
+ * with a height acts at once, and so does the law on the ground. Descents fly by law EST's estimate whenever it is
+ * fresh, whatever the law; without it by the heights alone, or by none. A change of law alone starts exactly from the thrust
  * of before. parameters: a set kept by parameters_set(). */
 void flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in, flight_outputs_t *out);
 

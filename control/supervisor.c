@@ -8,7 +8,7 @@
 #define HEIGHT_LOST_US UINT32_C(1000000)
 #define ATTITUDE_FRESH_US UINT32_C(250000)
 #define ALOFT_HELD_US UINT32_C(1000000)
-#define REST_HELD_US UINT32_C(500000)
+#define REST_HELD_US UINT32_C(800000)
 #define LINK_HOLD_US UINT32_C(5000000)
 #define SPENT_US UINT32_C(45000000)
 #define AGE_MAX_US UINT32_C(3600000000)
@@ -24,8 +24,13 @@
 #define RATE_MAX_MM_S 3000.0F
 #define RATE_CHANGE_MAX_MM_S2 10000.0F
 #define CLIMB_AHEAD_S 0.40F
+#define CLIMB_AHEAD_ESTIMATED_S 0.15F
+#define ESTIMATE_AHEAD_S 0.25F
+#define ESTIMATE_HELD_US UINT32_C(350000)
 #define BRAKE_MPS2 4.0F
 #define TILTED_ATTITUDES 3U
+#define LOWERINGS_MAX 3U
+#define LOWERINGS_FORGOTTEN_US UINT32_C(20000000)
 #define TILTED_COS 0.70710678F
 #define LEVEL_COS 0.93969262F
 
@@ -69,6 +74,7 @@ const flight_transition_t flight_transitions[FLIGHT_TRANSITION_COUNT] = {
     {FLIGHT_LOWERING, FLIGHT_IF_TILTED, 0U, FLIGHT_CUT},
     {FLIGHT_LOWERING, 0U, FLIGHT_IF_HEIGHT, FLIGHT_COASTING},
     {FLIGHT_LOWERING, 0U, FLIGHT_IF_REFERENCE, FLIGHT_LANDING},
+    {FLIGHT_LOWERING, FLIGHT_IF_AGAIN, 0U, FLIGHT_LANDING},
     {FLIGHT_LOWERING, FLIGHT_IF_BACK, 0U, FLIGHT_FLYING},
 
     {FLIGHT_CUT, FLIGHT_IF_AT_REST | FLIGHT_IF_LEVEL, 0U, FLIGHT_GROUND},
@@ -103,6 +109,8 @@ void supervisor_init(supervisor_t *supervisor)
         .height.age_us = AGE_MAX_US,
         .attitude_age_us = AGE_MAX_US,
         .link_age_us = AGE_MAX_US,
+        .estimated_peak_mm = NAN,
+        .estimate_age_us = AGE_MAX_US,
     };
 }
 
@@ -204,6 +212,7 @@ static void observe_reference(supervisor_t *s, float link_s, const flight_inputs
     }
     if (is_new && plausible) {
         s->reference_m = in->reference_m;
+        s->lowerings = 0U;
     }
     if (link_silent(s, link_s, LINK_HOLD_US)) {
         s->reference_m = 0.0F;
@@ -220,16 +229,23 @@ static bool attitude_fresh(const supervisor_t *s)
     return s->attitude_age_us <= ATTITUDE_FRESH_US;
 }
 
-static float above_reference_mm(const supervisor_t *s)
+bool supervisor_estimated(const supervisor_t *supervisor)
 {
-    return s->height.height_mm - s->reference_m * 1000.0F;
+    return supervisor->estimate_age_us <= ESTIMATE_HELD_US;
 }
 
-/* Where the present climb ends once it is braked; a descent does not count. */
-static float peak_above_reference_mm(const supervisor_t *s)
+/* Where a climb ends, above the reference, once it is braked after ahead_s; a descent does not count. */
+static float peak_mm(const supervisor_t *s, float height_mm, float rate_mm_s, float ahead_s)
 {
-    const float climb_mm_s = fmaxf(s->height.rate_mm_s, 0.0F);
-    return above_reference_mm(s) + climb_mm_s * (CLIMB_AHEAD_S + climb_mm_s * (0.0005F / BRAKE_MPS2));
+    const float climb_mm_s = fmaxf(rate_mm_s, 0.0F);
+    return height_mm - s->reference_m * 1000.0F + climb_mm_s * (ahead_s + climb_mm_s * (0.0005F / BRAKE_MPS2));
+}
+
+/* A step of the terrain looks like a climb, but not to an estimate: heights have less to say where there is one. */
+static float measured_peak_mm(const supervisor_t *s)
+{
+    const float ahead_s = supervisor_estimated(s) ? CLIMB_AHEAD_ESTIMATED_S : CLIMB_AHEAD_S;
+    return peak_mm(s, s->height.height_mm, s->height.rate_mm_s, ahead_s);
 }
 
 static void observe_ground(supervisor_t *s)
@@ -242,9 +258,26 @@ static void observe_ground(supervisor_t *s)
     hold(&s->rest, resting, s->step_us);
     s->rest_from_mm = resting ? s->rest_from_mm : height_mm;
     if (s->height.is_new) {
-        const bool above = peak_above_reference_mm(s) > TOO_HIGH_MM;
+        const bool above = measured_peak_mm(s) > TOO_HIGH_MM;
         s->too_high_count = above ? (uint16_t)(s->too_high_count + (s->too_high_count < TOO_HIGH_HEIGHTS)) : 0U;
     }
+}
+
+static void observe_estimate(supervisor_t *s, const vertical_estimate_t *estimate)
+{
+    s->estimated_peak_mm =
+        estimate->known ? peak_mm(s, estimate->height_mm, estimate->climb_mm_s, ESTIMATE_AHEAD_S) : NAN;
+    s->estimate_age_us = estimate->known ? 0U : grown(s->estimate_age_us, s->step_us);
+}
+
+static bool too_high(const supervisor_t *s)
+{
+    return s->too_high_count == TOO_HIGH_HEIGHTS || s->estimated_peak_mm > TOO_HIGH_MM;
+}
+
+static bool back(const supervisor_t *s)
+{
+    return measured_peak_mm(s) < BACK_MM && !(s->estimated_peak_mm >= BACK_MM);
 }
 
 static uint16_t bit(bool condition, uint16_t mask)
@@ -256,7 +289,6 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
 {
     const bool fresh = height_fresh(s);
     const bool reference = s->reference_m > 0.0F;
-    const bool too_high = s->too_high_count == TOO_HIGH_HEIGHTS;
 
     return (uint16_t)(bit(reference, FLIGHT_IF_REFERENCE)
                       | bit(in->attitude_ready, FLIGHT_IF_READY)
@@ -265,10 +297,11 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
                       | bit(fresh && s->height.height_mm > OFF_GROUND_MM, FLIGHT_IF_OFF_GROUND)
                       | bit(s->aloft.for_us >= ALOFT_HELD_US, FLIGHT_IF_ALOFT)
                       | bit(s->rest.for_us >= REST_HELD_US, FLIGHT_IF_AT_REST)
-                      | bit(too_high && reference, FLIGHT_IF_TOO_HIGH)
-                      | bit(fresh && peak_above_reference_mm(s) < BACK_MM, FLIGHT_IF_BACK)
+                      | bit(fresh && reference && too_high(s), FLIGHT_IF_TOO_HIGH)
+                      | bit(fresh && back(s), FLIGHT_IF_BACK)
                       | bit(s->land, FLIGHT_IF_LAND)
                       | bit(s->state == FLIGHT_DESCENDING && s->state_us >= SPENT_US, FLIGHT_IF_SPENT)
+                      | bit(s->state == FLIGHT_LOWERING && s->lowerings == LOWERINGS_MAX, FLIGHT_IF_AGAIN)
                       | bit(s->tilted_count == TILTED_ATTITUDES, FLIGHT_IF_TILTED)
                       | bit(s->level && attitude_fresh(s), FLIGHT_IF_LEVEL));
 }
@@ -277,33 +310,50 @@ static uint16_t flags(const supervisor_t *s, uint16_t met, float link_s, const f
 {
     const bool fresh = height_fresh(s);
     const bool level = in->attitude_ready && attitude_fresh(s);
-    const bool too_high = s->state == FLIGHT_LOWERING || (met & FLIGHT_IF_TOO_HIGH) != 0U;
+    const bool lowering = s->state == FLIGHT_LOWERING || (met & FLIGHT_IF_TOO_HIGH) != 0U;
     const bool tilted = s->state == FLIGHT_CUT || (met & FLIGHT_IF_TILTED) != 0U;
 
     return (uint16_t)(bit(!fresh, FLIGHT_FLAG_HEIGHT)
                       | bit(!level, FLIGHT_FLAG_ATTITUDE)
                       | bit(fresh && in->disagree, FLIGHT_FLAG_DISAGREE)
-                      | bit(too_high, FLIGHT_FLAG_TOO_HIGH)
+                      | bit(lowering, FLIGHT_FLAG_TOO_HIGH)
                       | bit(link_silent(s, link_s, 0U), FLIGHT_FLAG_LINK)
                       | bit(tilted, FLIGHT_FLAG_TILT));
 }
 
-static void enter(supervisor_t *s, flight_state_t state)
+static void count_lowerings(supervisor_t *s, flight_state_t next)
 {
-    s->state = state;
-    s->state_us = 0U;
-    if (state == FLIGHT_GROUND || state == FLIGHT_DESCENDING || state == FLIGHT_CUT) {
-        s->reference_m = 0.0F;
+    if (s->state == FLIGHT_FLYING && s->state_us >= LOWERINGS_FORGOTTEN_US) {
+        s->lowerings = 0U;
+    }
+    if (next == FLIGHT_LOWERING) {
+        ++s->lowerings;
     }
 }
 
-void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs_t *in)
+static void enter(supervisor_t *s, flight_state_t state)
+{
+    const bool given_up = s->lowerings == LOWERINGS_MAX && state != FLIGHT_LOWERING;
+
+    count_lowerings(s, state);
+    s->state = state;
+    s->state_us = 0U;
+    s->rest.on = false;
+    if (state == FLIGHT_GROUND || state == FLIGHT_DESCENDING || state == FLIGHT_CUT || given_up) {
+        s->reference_m = 0.0F;
+        s->lowerings = 0U;
+    }
+}
+
+void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs_t *in,
+                     const vertical_estimate_t *estimate)
 {
     observe_time(supervisor, in);
     observe_height(supervisor, in);
     observe_attitude(supervisor, in);
     observe_link(supervisor, in);
     observe_reference(supervisor, link_s, in);
+    observe_estimate(supervisor, estimate);
     observe_ground(supervisor);
 
     const uint16_t met = conditions(supervisor, in);

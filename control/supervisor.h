@@ -54,6 +54,13 @@ typedef struct {
     uint32_t link_sequence;         /* +1 per such line; 0 = never one */
 } flight_inputs_t;
 
+/* What an estimator knows of the height above the terrain, now. */
+typedef struct {
+    bool known;                     /* false: the rest is not looked at */
+    float height_mm;
+    float climb_mm_s;               /* upwards, against the terrain */
+} vertical_estimate_t;
+
 /* Conditions, as bits of one word. */
 #define FLIGHT_IF_REFERENCE 1U      /* a reference above 0 is in force */
 #define FLIGHT_IF_READY 2U          /* the IMU's offset is known */
@@ -61,15 +68,19 @@ typedef struct {
 #define FLIGHT_IF_LOST 8U           /* the latest valid height is more than 1.0 s old, or there never was one */
 #define FLIGHT_IF_OFF_GROUND 16U    /* fresh height above 0.15 m */
 #define FLIGHT_IF_ALOFT 32U         /* fresh heights above 0.15 m for 1 s */
-#define FLIGHT_IF_AT_REST 64U       /* fresh heights below 0.05 m that did not fall by 0.02 m for 0.5 s */
-#define FLIGHT_IF_TOO_HIGH 128U     /* two heights in a row from where the present climb, 0.4 s long and then braked by
-                                     * 4 m/s2, ends above reference + 0.8 m */
-#define FLIGHT_IF_BACK 256U         /* fresh height from where it ends below reference + 0.3 m */
+#define FLIGHT_IF_AT_REST 64U       /* fresh heights below 0.05 m that did not fall by 0.02 m for 0.5 s in the present
+                                     * state */
+#define FLIGHT_IF_TOO_HIGH 128U     /* an estimate from where the present climb, 0.25 s long and then braked by 4 m/s2, ends
+                                     * above reference + 0.8 m; or two heights in a row, their own climb 0.15 s long, or
+                                     * 0.4 s when there has been no estimate for 0.35 s */
+#define FLIGHT_IF_BACK 256U         /* fresh height, and estimate if known, from where it ends below reference + 0.3 m */
 #define FLIGHT_IF_LAND 512U         /* #SETR 0 arrived in this cycle */
 #define FLIGHT_IF_SPENT 1024U       /* 45 s in DESCENDING: its thrust has faded out */
 #define FLIGHT_IF_TILTED 2048U      /* three fresh attitudes in a row over 45 degrees */
 #define FLIGHT_IF_LEVEL 4096U       /* fresh attitude within 20 degrees */
-#define FLIGHT_IF_ALL 8191U
+#define FLIGHT_IF_AGAIN 8192U       /* the third LOWERING since the reference was set or 20 s of FLYING: the law cannot fly
+                                     * this vehicle */
+#define FLIGHT_IF_ALL 16383U
 
 typedef struct {
     flight_state_t from;
@@ -78,7 +89,7 @@ typedef struct {
     flight_state_t to;
 } flight_transition_t;
 
-#define FLIGHT_TRANSITION_COUNT 32U
+#define FLIGHT_TRANSITION_COUNT 33U
 extern const flight_transition_t flight_transitions[FLIGHT_TRANSITION_COUNT];
 
 /* The first row of the table that applies, else the same state. */
@@ -121,6 +132,9 @@ typedef struct {
     hold_t rest;
     float rest_from_mm;
     uint16_t too_high_count;
+    uint16_t lowerings;             /* see FLIGHT_IF_AGAIN */
+    float estimated_peak_mm;        /* above the reference; NAN: no estimate */
+    uint32_t estimate_age_us;
     uint16_t tilted_count;
     bool level;
 } supervisor_t;
@@ -129,9 +143,14 @@ typedef struct {
 void supervisor_init(supervisor_t *supervisor);
 
 /* One cycle: observes, then makes at most one transition. A #SETR puts its reference in force; a lost link withdraws
- * it, and so does entering GROUND, DESCENDING or CUT, so that nothing but a new #SETR flies again.
+ * it, and so does entering GROUND, DESCENDING or CUT, and a landing after the third LOWERING, so that nothing but a new
+ * #SETR flies again.
  * link_s: longest silence of the link, 0 = not armed. */
-void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs_t *in);
+void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs_t *in,
+                     const vertical_estimate_t *estimate);
+
+/* An estimate was known within the last 0.35 s. */
+bool supervisor_estimated(const supervisor_t *supervisor);
 
 /* "GROUND", ... as shown by the telemetry. */
 const char *flight_state_name(flight_state_t state);

@@ -50,8 +50,11 @@ void task_control_imu_arrived(void)
     post(EVENT_IMU);
 }
 
-static UInt releases(const parameters_t *parameters)
+static UInt releases(const parameters_t *parameters, const flight_outputs_t *out)
 {
+    if (out->frame_releases) {
+        return EVENT_ALTITUDE | EVENT_IMU;
+    }
     switch ((control_law_t)(uint16_t)parameters->value[PARAMETER_LAW]) {
     case LAW_EST:
         return EVENT_ALTITUDE | EVENT_IMU;
@@ -62,9 +65,9 @@ static UInt releases(const parameters_t *parameters)
     }
 }
 
-static void wait(const parameters_t *parameters)
+static void wait(const parameters_t *parameters, const flight_outputs_t *out)
 {
-    in_force = releases(parameters);
+    in_force = releases(parameters, out);
     (void)Event_pend(event, Event_Id_NONE, in_force, CONTROL_TIMEOUT_MS);
     monitor_begin(MONITOR_CONTROL);
 }
@@ -127,6 +130,8 @@ static void publish(const flight_outputs_t *out)
 
     status.thrust_n = out->thrust_n;
     status.reference_m = out->reference_m;
+    status.estimate_mm = out->estimate_mm;
+    status.innovation_mm = out->innovation_mm;
     status.state = out->state;
     status.flags = out->flags;
     flight_status_server_write(&status);
@@ -142,7 +147,7 @@ static Void task_control(UArg unused0, UArg unused1)
     (void)unused1;
     parameter_server_read(&parameters);
     for (;;) {
-        wait(&parameters);
+        wait(&parameters, &out);
         parameter_server_read(&parameters);
         look(&in);
         flight_step(&flight, &parameters, &in, &out);

@@ -18,6 +18,9 @@
 #define PULSE_COUNTS_PER_N 177.21
 #define SIGNAL_LOST (100 * SIM_MS)
 #define PULSES 32U              /* on their way through the autopilot */
+#define THROTTLE_FULL_N 11.76
+#define CLIMB_INTEGRAL_S 0.4    /* of the autopilot's speed controller: about the drag's time constant */
+#define SPIN_UP_MPS2 (-3.0)     /* its integral on the ground: 70 % of the weight */
 
 #define MOTORS_TURN_N 1.0       /* no lift up to here */
 #define ROTOR_RADIUS_M 0.127
@@ -40,7 +43,10 @@
 const quadrotor_config_t quadrotor_default = {
     .gain = 1.0, .tau_s = 0.12, .damping_per_s = 2.4, .hover_thrust_n = 7.4, .sag_per_s = 0.001,
     .turbulence_mps2 = 0.2, .turbulence_tau_s = 0.5, .attitude_rms_rad = 2.0 * DEGREE_RAD,
-    .actuator_delay_s = 0.010, .tug_rate_per_s = 0.0, .tug_mps2 = -1.5,
+    .actuator_delay_s = 0.010,
+    .climb_rate_mps_per_n = 0.0, .climb_neutral_n = THROTTLE_FULL_N / 2.0, .climb_deadband_n = 0.47, .climb_lag_s = 0.25,
+    .climb_ceiling_mps = 6.0,
+    .tug_rate_per_s = 0.0, .tug_mps2 = -1.5,
     .anchored = false, .bench_height_m = 0.0};
 
 typedef struct {
@@ -63,6 +69,7 @@ struct quadrotor {
     size_t head, waiting;
     sim_time_t last_pulse;
     double demand_n, lag;
+    double climb_integral_mps2; /* of the autopilot's speed controller */
 
     double turbulence_mps2, turbulence_keep, turbulence_drive;
     double tug_mps2, tug_keep, tug_probability;
@@ -137,6 +144,36 @@ static void hear_throttle(quadrotor_t *q)
     if (q->clock - q->last_pulse > SIGNAL_LOST) {
         q->demand_n = 0.0;
     }
+}
+
+static double climb_wanted_mps(const quadrotor_t *q)
+{
+    const quadrotor_config_t *c = &q->config;
+    const double off_n = q->demand_n - c->climb_neutral_n;
+    const double beyond_n = copysign(fmax(fabs(off_n) - c->climb_deadband_n, 0.0), off_n);
+    return fmin(fmax(c->climb_rate_mps_per_n * beyond_n, -c->climb_ceiling_mps), c->climb_ceiling_mps);
+}
+
+/* What the autopilot demands of the motors. */
+static double autopilot_n(quadrotor_t *q)
+{
+    const quadrotor_config_t *c = &q->config;
+    if (c->climb_rate_mps_per_n <= 0.0) {
+        return q->demand_n;
+    }
+    const double wanted_mps = climb_wanted_mps(q);
+    if (q->state.on_ground && wanted_mps <= 0.0) {
+        q->climb_integral_mps2 = SPIN_UP_MPS2;
+        return MOTORS_TURN_N;
+    }
+    const double push_mps2 = (wanted_mps - q->state.speed_mps) / c->climb_lag_s;
+    const double thrust_n =
+        c->hover_thrust_n * (1.0 + (push_mps2 + q->climb_integral_mps2) / GRAVITY_MPS2);
+    const double given_n = fmin(fmax(thrust_n, MOTORS_TURN_N), THROTTLE_FULL_N);
+    if (given_n == thrust_n) {
+        q->climb_integral_mps2 += STEP_S * push_mps2 / CLIMB_INTEGRAL_S;
+    }
+    return given_n;
 }
 
 /* White, deviation 1. Uniform draws are cheap, and what they drive adds up hundreds of them: it is Gaussian all the
@@ -246,7 +283,7 @@ static void step(quadrotor_t *q)
     q->clock += STEP;
     const double t_s = scenario_s(q);
     const double terrain_m = terrain_height_m(&q->terrain, t_s);
-    s->thrust_n += q->lag * (q->demand_n - s->thrust_n);
+    s->thrust_n += q->lag * (autopilot_n(q) - s->thrust_n);
     if (!q->config.anchored) {
         rotate(q, t_s);
         const double acceleration_mps2 =

@@ -1,6 +1,12 @@
 /* The airframe with its autopilot, motors, attitude motion, turbulence, rope tugs and the ground under it. Integrated
  * with a fixed step of 0.5 ms, lazily: every query first brings the state up to timeline_now().
  *
+ * The throttle commands thrust; or, with climb_rate_mps_per_n above 0, a climb rate, as in an autopilot's altitude
+ * hold: none within climb_deadband_n of climb_neutral_n, beyond it in proportion, up to climb_ceiling_mps. A PI
+ * controller of the vertical speed, whose closed loop lags by climb_lag_s, then gives the thrust; its integral carries
+ * weight, drag and battery. On the ground the motors idle until the throttle asks for a climb. Signals lost count as
+ * the lowest throttle: a descent.
+ *
  * SI units; thrust in the seed's newtons per motor. The seed's angles: roll > 0 raises the mirror's side (right),
  * pitch > 0 raises the nose. Heights: `height` of the landing gear above the terrain below it, `altitude` above the
  * floor. */
@@ -22,6 +28,11 @@ typedef struct {
     double turbulence_tau_s;    /* 0.5 */
     double attitude_rms_rad;    /* 2 deg */
     double actuator_delay_s;    /* 0.010 behind the end of the pulse */
+    double climb_rate_mps_per_n;    /* 0: the throttle commands thrust */
+    double climb_neutral_n;     /* 5.88, the middle of the stick, 1.5 ms */
+    double climb_deadband_n;    /* 0.47 to either side: 40 us, the default of Cleanflight; the NAZA's is not known */
+    double climb_lag_s;         /* 0.25, assumed */
+    double climb_ceiling_mps;   /* 6, up and down, assumed */
     double tug_rate_per_s;      /* 0; 0.4 in tug runs */
     double tug_mps2;            /* -1.5 */
     bool anchored;              /* bench: stands still at bench_height_m, whatever the thrust */

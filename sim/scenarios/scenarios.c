@@ -5,6 +5,7 @@
 #include <string.h>
 
 #define FLOWN_PID "LAW PID", "RELEASE FREE", "KP 0.015", "KD 0.008", "KI 0.01", "USAT 1", "DSAT 0", "GRAV 7"
+#define STEP_TEST "LAW EST", "PLANT THRUST", "GRAV 7", "USAT 0", "DSAT 0"
 #define UNSATURATED "USAT 11.76", "DSAT 11.76"
 
 /* Expectations stand for one flight with any seed; the means over many seeds are pinned in tests/integration. */
@@ -48,6 +49,60 @@ const scenario_t scenarios[] = {
                          {METRIC_UNDERSHOOT_MM, 0, 50},
                          {METRIC_GROUND_CONTACTS, 0, 0},
                          {METRIC_THRUST_STD_N, 0.25, 0.55}},
+    },
+    {
+        .name = "climb-rate",
+        .summary = "the same course with an autopilot whose throttle commands a climb rate",
+        .settings = {"LAW EST", "TERRAIN FOLLOW", "PLANT CLIMB", "CRATE 1", "GRAV 5.88", "POSK 2.25", "VELK 7.2", "VUP 0.5",
+                     "VDN 1.3"},
+        .reference_m = 0.6,
+        .platform = true,
+        .climb_rate_mps_per_n = 1.0,
+        .land_s = 20.0,
+        .end_s = 26.0,
+        .fate = FATE_SUCCEEDS,
+        .expectation_count = 10,
+        .expectations = {{METRIC_RISE_TIME_S, 0.75, 1.25},
+                         {METRIC_OVERSHOOT_MM, 5, 60},
+                         {METRIC_HOVER_RMS_MM, 5, 18},
+                         {METRIC_HOVER_MEAN_ERROR_MM, -6, 10},
+                         {METRIC_TERRAIN_RMS_MM, 60, 85},
+                         {METRIC_RECOVERY_S, 0.5, 1.6},
+                         {METRIC_UNDERSHOOT_MM, 2, 45},
+                         {METRIC_GROUND_CONTACTS, 0, 0},
+                         {METRIC_TOUCH_SPEED_MPS, 0.1, 0.4},
+                         {METRIC_TAKEOVERS, 0, 0}},
+    },
+    {
+        .name = "step-thrust",
+        .summary = "step test: law PD without a window gives GRAV alone, for 2 s 1 N less; then EST catches the vehicle",
+        .settings = {STEP_TEST},
+        .later = {{11.5, "GRAV", "7.4"}, {12.0, "LAW", "PD"}, {14.0, "GRAV", "6.4"}, {16.0, "LAW", "EST"}},
+        .reference_m = 2.5,
+        .land_s = 20.0,
+        .end_s = 34.0,
+        .fate = FATE_EITHER,
+        .expectation_count = 4,
+        .expectations = {{METRIC_MAX_ERROR_MM, 600, 1800},
+                         {METRIC_GROUND_CONTACTS, 0, 0},
+                         {METRIC_TAKEOVERS, 0, 0},
+                         {METRIC_CUTS, 0, 0}},
+    },
+    {
+        .name = "step-climb",
+        .summary = "the same step with an autopilot whose throttle commands a climb rate",
+        .settings = {STEP_TEST},
+        .later = {{11.5, "GRAV", "5.88"}, {12.0, "LAW", "PD"}, {14.0, "GRAV", "4.88"}, {16.0, "LAW", "EST"}},
+        .reference_m = 2.5,
+        .climb_rate_mps_per_n = 1.0,
+        .land_s = 20.0,
+        .end_s = 34.0,
+        .fate = FATE_EITHER,
+        .expectation_count = 4,
+        .expectations = {{METRIC_MAX_ERROR_MM, 850, 1300},
+                         {METRIC_GROUND_CONTACTS, 0, 0},
+                         {METRIC_TAKEOVERS, 0, 0},
+                         {METRIC_CUTS, 0, 0}},
     },
     {
         .name = "pd-35cm",

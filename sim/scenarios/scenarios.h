@@ -9,6 +9,12 @@
 
 #define SCENARIO_SETTINGS_MAX 16
 #define SCENARIO_EXPECTATIONS_MAX 10
+#define SCENARIO_LATER_MAX 8
+
+typedef struct {
+    double t_s;                 /* complete at the receiver */
+    const char *name, *value;   /* NULL: no line */
+} later_line_t;
 
 typedef struct {
     metric_t metric;
@@ -22,10 +28,12 @@ typedef struct {
     const char *name;
     const char *summary;
     const char *settings[SCENARIO_SETTINGS_MAX];    /* "LAW PID", ... NULL ends */
+    later_line_t later[SCENARIO_LATER_MAX];         /* typed in flight; --set does not reach them; no name ends */
     bool bench;                 /* the vehicle stands still: no flight, no commands; ends at end_s */
     double reference_m;
     bool platform;              /* the seed's ramp and platform; else flat */
     double tug_rate_per_s;      /* rope tugs; 0 = none */
+    double climb_rate_mps_per_n;    /* that the throttle commands; 0 = it commands thrust */
     double land_s;              /* #SETR 0 */
     double end_s;
     scenario_fate_t fate;

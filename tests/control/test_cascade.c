@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-static const cascade_gains_t gains = {2.25F, 7.2F, 0.5F, 1.3F};
+static const cascade_gains_t gains = {2.25F, 7.2F, 0.5F, 1.3F, 3.96F, 3.0F};
 static cascade_vehicle_t vehicle;
 static cascade_state_t state;
 static cascade_t cascade;

@@ -425,6 +425,105 @@ void test_landing_touches_softly(void)
     }
 }
 
+/* Gusts and a hover thrust that is thought too high lift it off again; then it would be cut in the air. */
+void test_a_landing_never_leaves_the_ground_again(void)
+{
+    for (uint32_t seed = 1U; seed <= 60U; seed++) {
+        board(seed);
+        world.body.hover_n = 5.6 + 0.047 * seed;
+        world.turbulence_m_s2 = 0.35;
+        world.height_noise_mm *= 2.0;
+        hover_at(0.6F);
+        setr(0.0F);
+        double hop_m = 0.0;
+        for (long i = 0; i < 20000 && out.state != FLIGHT_GROUND; i++) {
+            advance();
+            hop_m = world.body.contacts > 0 ? fmax(hop_m, height_m()) : 0.0;
+        }
+        TEST_ASSERT_EQUAL(FLIGHT_GROUND, out.state);
+        TEST_ASSERT_TRUE(hop_m < 0.03);
+        TEST_ASSERT_TRUE(world.body.hardest_m_s < 0.45);
+    }
+}
+
+void test_setr_0_before_the_lift_off_takes_the_thrust_away(void)
+{
+    run(1.5);
+    setr(0.6F);
+    run(0.3);
+    TEST_ASSERT_EQUAL(FLIGHT_TAKEOFF, out.state);
+    setr(0.0F);
+    run(0.06);
+    const float before_n = out.thrust_n;
+    TEST_ASSERT_TRUE(before_n > 3.0F);
+    run(0.3);
+    TEST_ASSERT_TRUE(out.thrust_n < before_n - 0.4F && out.thrust_n > before_n - 0.8F);
+    run_until(FLIGHT_GROUND, 1.5);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, (float)highest_m);
+}
+
+/* ---- under the other laws */
+
+/* The seed's window begins at GRAV: a vehicle that needs less cannot come down by that law. */
+void test_a_law_that_cannot_come_down_is_caught_by_the_estimate_and_landed_at_the_third_time(void)
+{
+    for (uint32_t seed = 1U; seed <= 20U; seed++) {
+        board(seed);
+        set(PARAMETER_LAW, LAW_PID);
+        world.body.hover_n = 5.6;
+        run(1.5);
+        setr(0.6F);
+        run_until(FLIGHT_LOWERING, 5.0);
+        TEST_ASSERT_TRUE(out.frame_releases);
+        run_until(FLIGHT_FLYING, 5.0);
+        TEST_ASSERT_FALSE(out.frame_releases);
+        run_until(FLIGHT_LANDING, 20.0);
+        run_until(FLIGHT_GROUND, 15.0);
+        TEST_ASSERT_TRUE(highest_m > 0.6 + 0.5 && highest_m < 0.6 + 1.1);
+        TEST_ASSERT_TRUE(world.body.hardest_m_s > 0.02 && world.body.hardest_m_s < 0.4);
+    }
+}
+
+void test_every_law_lands_by_the_estimate_and_coasts_by_it(void)
+{
+    for (int law = LAW_PD; law <= LAW_PIDT; law++) {
+        board(3U);
+        set(PARAMETER_LAW, (float)law);
+        set(PARAMETER_RELEASE, RELEASE_SCAN);
+        hover_at(0.6F);
+        TEST_ASSERT_EQUAL(CHARGE_LAW, flight.charge);
+        world.body.mute = true;
+        run_until(FLIGHT_COASTING, 0.6);
+        TEST_ASSERT_EQUAL(CHARGE_HOLD, flight.charge);
+        run_until(FLIGHT_DESCENDING, 1.0);
+        TEST_ASSERT_EQUAL(CHARGE_SINK, flight.charge);
+        world.body.mute = false;
+        run_until(FLIGHT_LANDING, 0.5);
+        TEST_ASSERT_EQUAL(CHARGE_LAND, flight.charge);
+        run_until(FLIGHT_GROUND, 8.0);
+        TEST_ASSERT_TRUE(world.body.hardest_m_s > 0.02 && world.body.hardest_m_s < 0.4);
+    }
+}
+
+void test_a_landing_whose_estimate_is_contradicted_goes_on_by_the_heights(void)
+{
+    set(PARAMETER_LAW, LAW_PID);
+    hover_at(1.5F);
+    setr(0.0F);
+    run(0.2);
+    TEST_ASSERT_EQUAL(CHARGE_LAND, flight.charge);
+    static const double chasms_m[] = {-0.3, -0.6, -0.2, -0.9, -0.4, -0.7};
+    for (size_t i = 0; i < sizeof chasms_m / sizeof chasms_m[0]; i++) {
+        world.body.terrain_m = chasms_m[i];
+        run(0.1);
+    }
+    TEST_ASSERT_EQUAL(CHARGE_DESCENT, flight.charge);
+    world.body.terrain_m = 0.0;
+    run(1.0);
+    TEST_ASSERT_EQUAL(CHARGE_LAND, flight.charge);
+    run_until(FLIGHT_GROUND, 8.0);
+}
+
 void test_it_flies_again_after_a_landing(void)
 {
     hover_at(0.6F);

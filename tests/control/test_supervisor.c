@@ -10,21 +10,38 @@
 static supervisor_t s;
 static flight_inputs_t in;
 static float link_s;
+static vertical_estimate_t estimate;
+static struct {
+    flight_state_t from, to;
+} change; /* the latest */
 
 void setUp(void)
 {
     supervisor_init(&s);
+    estimate.known = false;
+    change.from = change.to = FLIGHT_GROUND;
     in = (flight_inputs_t){.now_us = 0xFFF00000U, .attitude_ready = true}; /* the clock wraps a second later */
     link_s = 0.0F;
 }
 
 void tearDown(void) {}
 
+static void step(void)
+{
+    const flight_state_t from = s.state;
+
+    supervisor_step(&s, link_s, &in, &estimate);
+    if (s.state != from) {
+        change.from = from;
+        change.to = s.state;
+    }
+}
+
 static void cycle(uint32_t ms)
 {
     in.now_us += ms * 1000U;
     in.attitude_time_us = in.now_us;
-    supervisor_step(&s, link_s, &in);
+    step();
 }
 
 static void see(float height_mm)
@@ -121,7 +138,8 @@ static void floating(void)
 /* ---- the table */
 
 static const char *const condition_names[] = {"REFERENCE", "READY", "HEIGHT",   "LOST", "OFF_GROUND", "ALOFT",
-                                              "AT_REST",   "TOO_HIGH", "BACK",   "LAND", "SPENT",      "TILTED", "LEVEL"};
+                                              "AT_REST",   "TOO_HIGH", "BACK",   "LAND", "SPENT",      "TILTED", "LEVEL",
+                                              "AGAIN"};
 #define CONDITION_COUNT (sizeof condition_names / sizeof condition_names[0])
 
 static void row_text(const flight_transition_t *row, char *text, size_t size)
@@ -209,7 +227,7 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
         if (!height) {
             return FLIGHT_COASTING;
         }
-        return !reference ? FLIGHT_LANDING : (c & FLIGHT_IF_BACK) ? FLIGHT_FLYING : from;
+        return (!reference || (c & FLIGHT_IF_AGAIN)) ? FLIGHT_LANDING : (c & FLIGHT_IF_BACK) ? FLIGHT_FLYING : from;
     }
 }
 
@@ -377,7 +395,7 @@ void test_floating_to_descending_by_setr_0_without_height(void)
 void test_floating_to_ground_at_rest(void)
 {
     floating();
-    watch(10.0F, 6); /* the first only starts the comparison */
+    watch(10.0F, 9); /* the first only starts the comparison */
     state_is(FLIGHT_FLOATING);
     watch(10.0F, 1);
     state_is(FLIGHT_GROUND);
@@ -460,7 +478,7 @@ void test_landing_to_descending_without_height(void)
 void test_landing_to_ground_at_rest(void)
 {
     land();
-    watch(49.0F, 6);
+    watch(49.0F, 9);
     state_is(FLIGHT_LANDING);
     watch(49.0F, 1);
     state_is(FLIGHT_GROUND);
@@ -500,6 +518,62 @@ void test_lowering_to_flying_below_reference_and_300_mm(void)
     watch(799.0F, 1);
     state_is(FLIGHT_FLYING);
     TEST_ASSERT_EQUAL_UINT16(0, s.flags);
+}
+
+static void lower_again(void)
+{
+    watch(700.0F, 3);
+    state_is(FLIGHT_FLYING);
+    watch(1310.0F, 2);
+}
+
+void test_the_third_lowering_lands_and_withdraws_the_reference(void)
+{
+    lower();
+    lower_again();
+    state_is(FLIGHT_LOWERING);
+    lower_again();
+    watch(1310.0F, 1);
+    state_is(FLIGHT_LANDING);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, s.reference_m);
+    watch(500.0F, 20);
+    state_is(FLIGHT_LANDING);
+}
+
+void test_a_new_reference_forgets_the_lowerings(void)
+{
+    lower();
+    lower_again();
+    setr(0.5F);
+    for (int times = 1; times <= 2; times++) {
+        lower_again();
+        watch(1310.0F, 5);
+        state_is(FLIGHT_LOWERING);
+    }
+    lower_again();
+    watch(1310.0F, 1);
+    state_is(FLIGHT_LANDING);
+}
+
+void test_twenty_seconds_of_flight_forget_the_lowerings(void)
+{
+    lower();
+    for (int times = 2; times <= 6; times++) {
+        watch(700.0F, 203);
+        state_is(FLIGHT_FLYING);
+        watch(1310.0F, 5);
+        state_is(FLIGHT_LOWERING);
+    }
+}
+
+void test_nineteen_seconds_of_flight_do_not(void)
+{
+    lower();
+    for (int times = 2; times <= 3; times++) {
+        watch(700.0F, 190);
+        watch(1310.0F, 3);
+    }
+    state_is(FLIGHT_LANDING);
 }
 
 /* ---- tilt */
@@ -627,7 +701,7 @@ void test_spikes_and_attitudes_that_stand_still_do_not_cut(void)
     for (int i = 0; i < 30; i++) { /* one frame, seen again and again */
         see(500.0F);
         in.now_us += 100000U;
-        supervisor_step(&s, link_s, &in);
+        step();
     }
     state_is(FLIGHT_FLYING);
 }
@@ -652,6 +726,308 @@ void test_a_tilted_vehicle_does_not_take_off_and_a_pilots_is_not_cut(void)
     tilt(80.0F);
     watch(400.0F, 30);
     state_is(FLIGHT_FLOATING);
+}
+
+/* ---- every row of the table is taken by inputs */
+
+static void aloft(void)
+{
+    watch(400.0F, 11);
+}
+
+static void withdraw_on_take_off(void)
+{
+    take_off();
+    setr(0.0F);
+    watch(0.0F, 1);
+}
+
+static void lose_height_on_take_off(void)
+{
+    take_off();
+    blind(300);
+}
+
+static void rise_too_high_on_take_off(void)
+{
+    take_off();
+    estimate = (vertical_estimate_t){true, 1310.0F, 0.0F};
+    watch(140.0F, 1);
+}
+
+static void leave_the_ground(void)
+{
+    take_off();
+    watch(151.0F, 1);
+}
+
+static void tilt_on(void (*enter)(void), float height_mm)
+{
+    enter();
+    tilt(60.0F);
+    watch(height_mm, 3);
+}
+
+static void tilt_on_take_off(void) { tilt_on(take_off, 30.0F); }
+static void tilt_in_flight(void) { tilt_on(fly, 500.0F); }
+static void tilt_on_landing(void) { tilt_on(land, 500.0F); }
+static void tilt_on_lowering(void) { tilt_on(lower, 1310.0F); }
+
+static void tilt_blind(void (*enter)(void))
+{
+    enter();
+    tilt(60.0F);
+    blind(300);
+}
+
+static void tilt_on_coasting(void) { tilt_blind(coast); }
+static void tilt_on_descending(void) { tilt_blind(descend); }
+
+static void take_over_from_the_pilot(void)
+{
+    floating();
+    setr(0.6F);
+    watch(400.0F, 1);
+}
+
+static void land_for_the_pilot(void)
+{
+    floating();
+    setr(0.0F);
+    watch(400.0F, 1);
+}
+
+static void descend_for_the_pilot(void)
+{
+    floating();
+    blind(2000);
+    setr(0.0F);
+    blind(100);
+}
+
+static void be_put_down_by_the_pilot(void)
+{
+    floating();
+    watch(10.0F, 20);
+}
+
+/* At most 0.5 s old: not LOST. */
+static void withdraw_on_coasting(void)
+{
+    coast();
+    setr(0.0F);
+    blind(100);
+    TEST_ASSERT_LESS_THAN_UINT32(1000000, s.height.age_us);
+}
+
+static void see_again_on_coasting(void)
+{
+    coast();
+    watch(480.0F, 1);
+}
+
+static void new_reference_on_descending(void)
+{
+    descend();
+    setr(0.4F);
+    watch(480.0F, 1);
+}
+
+static void see_again_on_descending(void)
+{
+    descend();
+    watch(480.0F, 1);
+}
+
+static void descend_to_the_end(void)
+{
+    descend();
+    blind(45000);
+}
+
+static void new_reference_on_landing(void)
+{
+    land();
+    setr(0.7F);
+    watch(480.0F, 1);
+}
+
+static void lose_height_on_landing(void)
+{
+    land();
+    blind(300);
+}
+
+static void touch_down(void)
+{
+    land();
+    watch(20.0F, 20);
+}
+
+static void lose_height_on_lowering(void)
+{
+    lower();
+    blind(300);
+}
+
+static void withdraw_on_lowering(void)
+{
+    lower();
+    setr(0.0F);
+    watch(1310.0F, 1);
+}
+
+static void be_lowered(void)
+{
+    lower();
+    watch(700.0F, 3);
+}
+
+static void be_lowered_thrice(void)
+{
+    lower();
+    for (int times = 2; times <= 3; times++) {
+        watch(700.0F, 3);
+        watch(1310.0F, 3);
+    }
+}
+
+static void lie_level_after_a_cut(void)
+{
+    tilt_in_flight();
+    tilt(0.0F);
+    watch(20.0F, 20);
+}
+
+/* The row from one state to the other which has that condition, or its absence. */
+static const struct {
+    flight_state_t from;
+    uint16_t condition;
+    flight_state_t to;
+    void (*way)(void);
+} ways[] = {
+    {FLIGHT_GROUND, FLIGHT_IF_ALOFT, FLIGHT_FLOATING, aloft},
+    {FLIGHT_GROUND, FLIGHT_IF_REFERENCE, FLIGHT_TAKEOFF, take_off},
+    {FLIGHT_TAKEOFF, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_take_off},
+    {FLIGHT_TAKEOFF, FLIGHT_IF_HEIGHT, FLIGHT_COASTING, lose_height_on_take_off},
+    {FLIGHT_TAKEOFF, FLIGHT_IF_REFERENCE, FLIGHT_LANDING, withdraw_on_take_off},
+    {FLIGHT_TAKEOFF, FLIGHT_IF_TOO_HIGH, FLIGHT_LOWERING, rise_too_high_on_take_off},
+    {FLIGHT_TAKEOFF, FLIGHT_IF_OFF_GROUND, FLIGHT_FLYING, leave_the_ground},
+    {FLIGHT_FLYING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_in_flight},
+    {FLIGHT_FLYING, FLIGHT_IF_HEIGHT, FLIGHT_COASTING, coast},
+    {FLIGHT_FLYING, FLIGHT_IF_REFERENCE, FLIGHT_LANDING, land},
+    {FLIGHT_FLYING, FLIGHT_IF_TOO_HIGH, FLIGHT_LOWERING, lower},
+    {FLIGHT_FLOATING, FLIGHT_IF_REFERENCE, FLIGHT_FLYING, take_over_from_the_pilot},
+    {FLIGHT_FLOATING, FLIGHT_IF_LAND, FLIGHT_LANDING, land_for_the_pilot},
+    {FLIGHT_FLOATING, FLIGHT_IF_LAND, FLIGHT_DESCENDING, descend_for_the_pilot},
+    {FLIGHT_FLOATING, FLIGHT_IF_AT_REST, FLIGHT_GROUND, be_put_down_by_the_pilot},
+    {FLIGHT_COASTING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_coasting},
+    {FLIGHT_COASTING, FLIGHT_IF_REFERENCE, FLIGHT_DESCENDING, withdraw_on_coasting},
+    {FLIGHT_COASTING, FLIGHT_IF_HEIGHT, FLIGHT_FLYING, see_again_on_coasting},
+    {FLIGHT_COASTING, FLIGHT_IF_LOST, FLIGHT_DESCENDING, descend},
+    {FLIGHT_DESCENDING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_descending},
+    {FLIGHT_DESCENDING, FLIGHT_IF_REFERENCE, FLIGHT_FLYING, new_reference_on_descending},
+    {FLIGHT_DESCENDING, FLIGHT_IF_HEIGHT, FLIGHT_LANDING, see_again_on_descending},
+    {FLIGHT_DESCENDING, FLIGHT_IF_SPENT, FLIGHT_GROUND, descend_to_the_end},
+    {FLIGHT_LANDING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_landing},
+    {FLIGHT_LANDING, FLIGHT_IF_REFERENCE, FLIGHT_FLYING, new_reference_on_landing},
+    {FLIGHT_LANDING, FLIGHT_IF_HEIGHT, FLIGHT_DESCENDING, lose_height_on_landing},
+    {FLIGHT_LANDING, FLIGHT_IF_AT_REST, FLIGHT_GROUND, touch_down},
+    {FLIGHT_LOWERING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_lowering},
+    {FLIGHT_LOWERING, FLIGHT_IF_HEIGHT, FLIGHT_COASTING, lose_height_on_lowering},
+    {FLIGHT_LOWERING, FLIGHT_IF_REFERENCE, FLIGHT_LANDING, withdraw_on_lowering},
+    {FLIGHT_LOWERING, FLIGHT_IF_AGAIN, FLIGHT_LANDING, be_lowered_thrice},
+    {FLIGHT_LOWERING, FLIGHT_IF_BACK, FLIGHT_FLYING, be_lowered},
+    {FLIGHT_CUT, FLIGHT_IF_AT_REST, FLIGHT_GROUND, lie_level_after_a_cut},
+};
+#define WAY_COUNT (sizeof ways / sizeof ways[0])
+
+static bool leads_through(size_t way, const flight_transition_t *row)
+{
+    return ways[way].from == row->from && ways[way].to == row->to &&
+           ((row->all_of | row->none_of) & ways[way].condition) != 0U;
+}
+
+static int ways_through(const flight_transition_t *row, size_t *way)
+{
+    int found = 0;
+
+    for (size_t i = 0; i < WAY_COUNT; i++) {
+        if (leads_through(i, row)) {
+            *way = i;
+            found++;
+        }
+    }
+    return found;
+}
+
+/* A row without a way, a way without a row, and a way that ends elsewhere all fail. */
+void test_every_row_is_taken_by_inputs_alone(void)
+{
+    char text[160];
+    size_t way = 0;
+
+    for (unsigned k = 0; k < FLIGHT_TRANSITION_COUNT; k++) {
+        const flight_transition_t *row = &flight_transitions[k];
+
+        row_text(row, text, sizeof text);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(1, ways_through(row, &way), text);
+        setUp();
+        ways[way].way();
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(flight_state_name(row->from), flight_state_name(change.from), text);
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(flight_state_name(row->to), flight_state_name(change.to), text);
+    }
+    TEST_ASSERT_EQUAL_INT(FLIGHT_TRANSITION_COUNT, WAY_COUNT);
+}
+
+/* ---- the estimate */
+
+static void estimate_is(float height_mm, float climb_mm_s)
+{
+    estimate = (vertical_estimate_t){true, height_mm, climb_mm_s};
+}
+
+void test_one_estimate_is_enough_to_lower(void)
+{
+    fly();
+    estimate_is(1299.0F, 0.0F);
+    watch(500.0F, 3);
+    state_is(FLIGHT_FLYING);
+    estimate_is(1301.0F, 0.0F);
+    watch(500.0F, 1);
+    state_is(FLIGHT_LOWERING);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_TOO_HIGH, s.flags);
+}
+
+void test_an_estimate_that_is_not_known_is_not_looked_at(void)
+{
+    fly();
+    estimate_is(5000.0F, 3000.0F);
+    estimate.known = false;
+    watch(500.0F, 3);
+    state_is(FLIGHT_FLYING);
+}
+
+void test_lowering_goes_on_while_the_estimate_is_too_high(void)
+{
+    lower();
+    estimate_is(801.0F, 0.0F);
+    watch(500.0F, 5);
+    state_is(FLIGHT_LOWERING);
+    estimate_is(799.0F, 0.0F);
+    watch(500.0F, 1);
+    state_is(FLIGHT_FLYING);
+}
+
+void test_an_estimated_climb_counts_and_an_estimated_descent_does_not(void)
+{
+    fly();
+    estimate_is(1299.0F, -3000.0F);
+    watch(500.0F, 1);
+    state_is(FLIGHT_FLYING);
+    estimate_is(800.0F, 1500.0F); /* the brake alone takes 281 mm, and 500 mm are left */
+    watch(500.0F, 1);
+    state_is(FLIGHT_LOWERING);
 }
 
 /* ---- what holds a take-off back */
@@ -786,7 +1162,7 @@ void test_a_descent_through_50_mm_is_not_rest(void)
 void test_noise_of_the_sensor_does_not_hide_the_ground(void)
 {
     land();
-    for (int i = 0; i < 8; i++) {
+    for (int i = 0; i < 11; i++) {
         watch((i % 2 != 0) ? 8.0F : -8.0F, 1);
     }
     state_is(FLIGHT_GROUND);
@@ -956,7 +1332,7 @@ void test_a_silent_imu_is_a_flag_and_nothing_else(void)
     for (int i = 0; i < 30; i++) {
         see(500.0F);
         in.now_us += 100000U;
-        supervisor_step(&s, link_s, &in);
+        step();
         TEST_ASSERT_EQUAL_UINT16(i < 2 ? 0 : FLIGHT_FLAG_ATTITUDE, s.flags);
         state_is(FLIGHT_FLYING);
     }
@@ -1089,7 +1465,7 @@ void test_a_link_silent_for_longer_than_the_clock_wraps_stays_silent(void)
 void test_the_start_is_the_ground_with_every_doubt_shown(void)
 {
     in.attitude_ready = false;
-    supervisor_step(&s, 0.0F, &in);
+    step();
     state_is(FLIGHT_GROUND);
     TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_HEIGHT | FLIGHT_FLAG_ATTITUDE, s.flags);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, s.reference_m);
@@ -1146,7 +1522,7 @@ void test_random_inputs_never_leave_the_table(void)
         TEST_ASSERT_TRUE(s.reference_m >= 0.0F && s.reference_m <= 3.0F);
         TEST_ASSERT_TRUE(isfinite(s.height.height_mm) && isfinite(s.height.rate_mm_s));
         if (s.state == FLIGHT_GROUND && from != FLIGHT_GROUND && from != FLIGHT_DESCENDING) {
-            TEST_ASSERT_TRUE(s.height.height_mm < 50.0F && s.rest.for_us >= 500000U);
+            TEST_ASSERT_TRUE(s.height.height_mm < 50.0F && s.rest.for_us >= 800000U);
         }
         seen |= 1U << s.state;
     }

@@ -202,7 +202,7 @@ void test_create_makes_an_event_a_clock_of_108_ms_and_one_task_of_priority_4(voi
     TEST_ASSERT_EQUAL_UINT16(1, kernel.task.created);
     TEST_ASSERT_EQUAL_STRING("TaskControl", kernel.task.name);
     TEST_ASSERT_EQUAL_INT(4, kernel.task.params.priority);
-    TEST_ASSERT_EQUAL_UINT64(512, kernel.task.params.stackSize);
+    TEST_ASSERT_EQUAL_UINT64(1024, kernel.task.params.stackSize);
 }
 
 void test_the_clock_an_altitude_and_an_imu_frame_post_one_event_each(void)
@@ -432,6 +432,8 @@ void test_in_flight_pulse_and_status_are_what_the_cycle_decided(void)
         TEST_ASSERT_EQUAL_FLOAT(outputs[n].reference_m, published[n].reference_m);
         TEST_ASSERT_EQUAL(outputs[n].state, published[n].state);
         TEST_ASSERT_EQUAL_HEX16(outputs[n].flags, published[n].flags);
+        TEST_ASSERT_EQUAL_MEMORY(&outputs[n].estimate_mm, &published[n].estimate_mm, sizeof(float)); /* NaN too */
+        TEST_ASSERT_EQUAL_MEMORY(&outputs[n].innovation_mm, &published[n].innovation_mm, sizeof(float));
     }
     TEST_ASSERT_TRUE(flew);
     TEST_ASSERT_EQUAL_FLOAT(0.6F, published[99].reference_m);

@@ -87,6 +87,11 @@ void test_defaults_are_the_plant_of_the_study(void)
     NEAR(1e-12, 0.5, d->turbulence_tau_s);
     NEAR(1e-7, 0.0349066, d->attitude_rms_rad);
     NEAR(1e-12, 0.010, d->actuator_delay_s);
+    NEAR(1e-12, 0.0, d->climb_rate_mps_per_n);
+    NEAR(1e-12, 5.88, d->climb_neutral_n);
+    NEAR(1e-12, 0.47, d->climb_deadband_n);
+    NEAR(1e-12, 0.25, d->climb_lag_s);
+    NEAR(1e-12, 6.0, d->climb_ceiling_mps);
     NEAR(1e-12, 0.0, d->tug_rate_per_s);
     NEAR(1e-12, -1.5, d->tug_mps2);
     TEST_ASSERT_FALSE(d->anchored);
@@ -822,4 +827,139 @@ void test_tugs_leave_the_other_noises_alone(void)
     TEST_ASSERT_EQUAL_DOUBLE(a.roll_rad, b.roll_rad);
     TEST_ASSERT_EQUAL_DOUBLE(a.pitch_rad, b.pitch_rad);
     TEST_ASSERT_TRUE(a.altitude_m != b.altitude_m);
+}
+
+/* ---- an autopilot whose throttle commands a climb rate */
+
+static void start_climb(double rate_mps_per_n)
+{
+    calm.climb_rate_mps_per_n = rate_mps_per_n;
+    start(&calm, &terrain_flat, 1);
+}
+
+TEST_CASE(1.0, 6.88, 0.53)
+TEST_CASE(1.0, 4.88, -0.53)
+TEST_CASE(0.5, 6.88, 0.265)
+TEST_CASE(2.0, 7.35, 2.0)
+TEST_CASE(1.0, 6.45, 0.10)
+void test_the_throttle_beyond_its_deadband_commands_the_climb_rate(double rate, double throttle_n, double climb_mps)
+{
+    start_climb(rate);
+    fly(30.0, 8.0);
+    fly(4.0, throttle_n);
+    NEAR(0.002, climb_mps, now().speed_mps);
+}
+
+TEST_CASE(0.8, 2.4, 7.4, 1.0)
+TEST_CASE(1.2, 1.5, 5.6, 1.0)
+TEST_CASE(1.0, 3.0, 8.8, 1.0)
+void test_the_climb_rate_knows_no_weight_drag_and_motors(double gain, double damping, double hover, double climb_mps)
+{
+    calm.gain = gain;
+    calm.damping_per_s = damping;
+    calm.hover_thrust_n = hover;
+    start_climb(1.0);
+    fly(20.0, 5.88 + 0.47 + 1.0);
+    NEAR(0.005, climb_mps, now().speed_mps);
+    fly(6.0, 5.88);
+    NEAR(0.005, 0.0, now().speed_mps);
+}
+
+void test_within_the_deadband_it_stays_where_it_is(void)
+{
+    start_climb(1.0);
+    fly(6.0, 7.0);
+    fly(4.0, 5.88);
+    const double height_m = now().height_m;
+    for (int k = 0; k < 50; k++) {
+        fly(0.3, k % 2 == 0 ? 5.88 + 0.46 : 5.88 - 0.46);
+        NEAR(0.002, height_m, now().height_m);
+    }
+    fly(2.0, 5.88 + 0.50);
+    TEST_ASSERT_TRUE(now().height_m > height_m + 0.03);
+    fly(4.0, 5.88 - 0.50);
+    TEST_ASSERT_TRUE(now().height_m < height_m);
+}
+
+/* 63 % of the rate comes after the lag and what the motors and the delay add, 90 % soon after; it hardly overshoots. */
+TEST_CASE(0.25, 0.30, 0.40)
+TEST_CASE(0.40, 0.44, 0.58)
+TEST_CASE(0.15, 0.22, 0.31)
+void test_the_climb_rate_is_attained_with_the_lag(double lag, double earliest, double latest)
+{
+    double attained = NAN, fastest = 0.0;
+
+    calm.climb_lag_s = lag;
+    start_climb(1.0);
+    fly(6.0, 7.0);
+    fly(4.0, 5.88);
+    for (int k = 1; k <= 300; k++) {
+        fly(0.0136, 6.85);
+        const double share = now().speed_mps / 0.5;
+        attained = isnan(attained) && share >= 0.632 ? k * 0.0136 : attained;
+        fastest = fmax(fastest, share);
+    }
+    TEST_ASSERT_TRUE_MESSAGE(attained >= earliest && attained <= latest, "63 % too early or too late");
+    TEST_ASSERT_TRUE(fastest >= 1.0 && fastest <= 1.2);
+}
+
+void test_climb_and_descent_end_at_the_ceiling(void)
+{
+    calm.climb_ceiling_mps = 0.8;
+    start_climb(1.0);
+    fly(30.0, 11.0);
+    NEAR(0.003, 0.8, now().speed_mps);
+    fly(4.0, 0.0);
+    NEAR(0.003, -0.8, now().speed_mps);
+}
+
+TEST_CASE(0.0)
+TEST_CASE(5.88)
+TEST_CASE(6.34)
+void test_on_the_ground_the_motors_idle_until_a_climb_is_wanted(double throttle_n)
+{
+    calm.turbulence_mps2 = 0.2;
+    start_climb(1.0);
+    for (int k = 0; k < 100; k++) {
+        fly(0.1, throttle_n);
+        TEST_ASSERT_TRUE(now().on_ground);
+        TEST_ASSERT_TRUE(now().thrust_n <= 1.0);
+    }
+    NEAR(0.01, 1.0, now().thrust_n);
+    fly(3.0, 6.85);
+    TEST_ASSERT_FALSE(now().on_ground);
+    TEST_ASSERT_TRUE(now().height_m > 0.5 && now().height_m < 1.5);
+}
+
+void test_the_motors_spin_up_before_they_lift(void)
+{
+    double lifted_s = 0.0;
+
+    start_climb(1.0);
+    fly(2.0, 5.88);
+    for (; now().on_ground && lifted_s < 5.0; lifted_s += 0.0136) {
+        fly(0.0136, 5.88 + 0.47 + 0.3);
+    }
+    TEST_ASSERT_TRUE(lifted_s > 0.5 && lifted_s < 1.2);
+}
+
+void test_a_descent_to_the_ground_ends_with_idle_motors(void)
+{
+    start_climb(1.0);
+    fly(4.0, 6.85);
+    fly(15.0, 5.88 - 0.47 - 0.2);
+    TEST_ASSERT_TRUE(now().on_ground);
+    NEAR(0.01, 1.0, now().thrust_n);
+    TEST_ASSERT_EQUAL_UINT(1, now().contacts);
+}
+
+/* An autopilot does not drop its vehicle. */
+void test_lost_signals_are_a_descent_at_the_ceiling(void)
+{
+    calm.climb_ceiling_mps = 1.0;
+    start_climb(1.0);
+    fly(12.0, 7.35);
+    wait(5 * SIM_S);
+    NEAR(0.01, -1.0, now().speed_mps);
+    TEST_ASSERT_TRUE(now().height_m > 1.0);
 }

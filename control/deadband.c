@@ -1,0 +1,34 @@
+#include "deadband.h"
+
+#include <math.h>
+
+#define BAND_MAX_N 1.5F
+#define STEEP_N 0.10F
+#define CLEAR_N 0.20F
+#define LEARN_PER_S 3.0F
+
+static float between(float lowest, float value, float highest)
+{
+    return fminf(fmaxf(value, lowest), highest);
+}
+
+void deadband_init(deadband_t *deadband)
+{
+    *deadband = (deadband_t){.band_n = 0.0F};
+}
+
+float deadband_cross(const deadband_t *deadband, float neutral_n, float effect_n)
+{
+    return effect_n + deadband->band_n * between(-1.0F, (effect_n - neutral_n) / STEEP_N, 1.0F);
+}
+
+float deadband_left(const deadband_t *deadband, float neutral_n, float command_n)
+{
+    return command_n - between(-deadband->band_n, command_n - neutral_n, deadband->band_n);
+}
+
+void deadband_learn(deadband_t *deadband, float off_n, float missing_n, float dt_s)
+{
+    const float side = between(-1.0F, off_n / CLEAR_N, 1.0F);
+    deadband->band_n = between(0.0F, deadband->band_n + LEARN_PER_S * dt_s * side * missing_n, BAND_MAX_N);
+}
