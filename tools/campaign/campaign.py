@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""campaign.py [--law L,L] [--set S,S] [--runs N] [--seed N] [--scheduler ADDRESS] ...: flies each law on many vehicles.
+"""campaign.py [--law L,L] [--set S,S] [--runs N] [--page] ...: flies each law on many vehicles.
 
-The vehicle of a run depends on the campaign's seed and the run's number alone, so all laws fly the same vehicles. Flights
-run in processes of their own through Dask, on this machine or on the cluster of --scheduler. Each result is kept at
-once in DIR/flights.jsonl; a rerun flies only what is missing there, and what another program or other draws would fly
-anew. Then come the table on stdout, and in DIR campaign.csv, campaign.json and campaign.png. docs/campaign.md tells more.
-Exit status: 0; 2 usage or a program that does not fly; 130 interrupted.
+The vehicle of a run depends on the campaign's seed and the run's number alone, so all laws fly the same vehicles.
+Flights run in processes of their own through Dask, on this machine or on the cluster of --scheduler. Each result is
+kept at once in DIR/flights.jsonl; a rerun flies only what is missing there, and what another program or other draws
+would fly anew. Then come the table and the verdicts on stdout, and in DIR campaign.csv, campaign.json and campaign.png.
+The campaign without options is the one in docs/control.md: its tables must be these, or --page writes them.
+docs/campaign.md tells more. Exit status: 0; 1 a law does not reach what it must, or docs/control.md says otherwise;
+2 usage or a program that does not fly; 130 interrupted.
 """
 import argparse
 import json
@@ -13,8 +15,10 @@ import sys
 from pathlib import Path
 
 import fleet
+import page
 import plan
 import table
+import verdict
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -37,33 +41,24 @@ def positive(text):
 
 
 def read_arguments(argv):
+    sets = "; ".join(f"{name} ({s.runs}): {s.summary}" for name, s in plan.SETS.items()).replace("%", "%%")
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--law", type=names(plan.LAWS), help="default: all that the program offers; "
-                        + ", ".join(plan.LAWS))
-    parser.add_argument("--set", type=names(plan.SETS), default=["nominal", "untrimmed"], dest="sets",
-                        help="or all (default: nominal,untrimmed); "
-                        + "; ".join(f"{name}: {s.summary}" for name, s in plan.SETS.items()).replace("%", "%%"))
-    parser.add_argument("--runs", type=positive, default=200, help="flights per law and set (200)")
+    parser.add_argument("--law", type=names(plan.LAWS), default=list(plan.LAWS), dest="laws",
+                        help="default: " + ", ".join(plan.LAWS))
+    parser.add_argument("--set", type=names(plan.SETS), default=plan.DEFAULT_SETS, dest="sets",
+                        help=f"or all (default: {','.join(plan.DEFAULT_SETS)}); {sets}")
+    parser.add_argument("--runs", type=positive, help="flights per law in each set (default: in brackets above)")
     parser.add_argument("--seed", type=positive, default=1, help="of the draws (1)")
+    parser.add_argument("--page", action="store_true", help="writes the tables and the picture of docs/control.md")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster (default: this machine's processors)")
     parser.add_argument("--program", type=Path, default=ROOT / "build/plomada", help="default: build/plomada")
-    parser.add_argument("--out", type=Path, default=ROOT / "build/campaign", metavar="DIR", help="default: build/campaign")
-    return parser.parse_args(argv)
-
-
-def offered(program):
-    """The laws that this program can fly, by trying each for once."""
-    laws = {}
-    reason = None
-    for name, law in plan.LAWS.items():
-        try:
-            fleet.fly(program, plan.arguments(law, "nominal", 1, 1))
-            laws[name] = law
-        except fleet.Broken as error:
-            reason = error
-    if not laws:
-        raise reason
-    return laws
+    parser.add_argument("--out", type=Path, default=ROOT / "build/campaign", metavar="DIR",
+                        help="default: build/campaign")
+    arguments = parser.parse_args(argv)
+    if arguments.page and (set(arguments.laws), set(arguments.sets), arguments.runs, arguments.seed) != (
+            set(plan.LAWS), set(plan.DEFAULT_SETS), None, 1):
+        parser.error("--page goes with the default laws, sets, runs and seed")
+    return arguments
 
 
 def flights(program, laws, sets, seed, runs):
@@ -72,7 +67,7 @@ def flights(program, laws, sets, seed, runs):
     planned = {}
     for set_name in sets:
         for law_name, law in laws.items():
-            for run in range(1, runs + 1):
+            for run in range(1, (runs or plan.SETS[set_name].runs) + 1):
                 words = plan.arguments(law, set_name, seed, run)
                 label = {"law": law_name, "set": set_name, "run": run}
                 planned[fleet.key(digest, [law_name, set_name, *words])] = (label, words)
@@ -99,44 +94,66 @@ def grouped(planned, known):
     return groups
 
 
-def report(out, arguments, groups):
+def rows_of(groups):
+    return [table.row(law, set_name, flown, plan.SETS[set_name].lands)
+            for set_name, laws in groups.items() for law, flown in laws.items()]
+
+
+def write(arguments, groups, rows):
     import picture
 
-    lands = {name: plan.SETS[name].lands for name in groups}
-    rows = [table.row(law, set_name, of_law, lands[set_name])
-            for set_name, laws in groups.items() for law, of_law in laws.items()]
+    out = arguments.out
     table.write_csv(out / "campaign.csv", rows)
-    (out / "campaign.json").write_text(json.dumps({"seed": arguments.seed, "runs": arguments.runs,
-                                                   "rows": table.plain(rows)}, indent=1) + "\n", encoding="utf-8")
+    (out / "campaign.json").write_text(json.dumps({"seed": arguments.seed, "rows": table.plain(rows)}, indent=1) + "\n",
+                                       encoding="utf-8")
+    lands = {name: plan.SETS[name].lands for name in groups}
     picture.draw(out / "campaign.png", groups, lands)
-    print(f"median [p95] of the flights that did not fail; {arguments.runs} flights per row, seed {arguments.seed}\n")
-    print(table.text(rows))
-    print()
+    if arguments.page:
+        picture.draw(page.PICTURE, {name: groups[name] for name in page.PICTURED}, lands)
     for name in ("campaign.csv", "campaign.json", "campaign.png"):
         print(out / name)
 
 
+def compare_page(rows, rewrite):
+    """What docs/control.md has otherwise, once it is written if it is to be."""
+    import bound
+
+    rendered = page.render(rows, list(zip(bound.ACTIVITIES_N, bound.bounds(bound.ACTIVITIES_N), strict=True)))
+    if rewrite:
+        page.write(rendered)
+    return page.compare(rendered, page.PAGE.read_text(encoding="utf-8"))
+
+
 def run(arguments):
+    """The exit status."""
     program = str(arguments.program.resolve())
-    laws = {name: plan.LAWS[name] for name in arguments.law} if arguments.law else offered(program)
+    laws = {name: plan.LAWS[name] for name in arguments.laws}
     planned = flights(program, laws, arguments.sets, arguments.seed, arguments.runs)
     with fleet.Store(arguments.out / "flights.jsonl") as store:
         flown = fly_missing(program, planned, store, arguments.scheduler)
     print(f"{flown} flights flown, {len(planned) - flown} known", file=sys.stderr)
-    report(arguments.out, arguments, grouped(planned, store.known))
+    groups = grouped(planned, store.known)
+    rows = rows_of(groups)
+    print(f"median [p95] of the flights that did not fail; seed {arguments.seed}\n\n{table.text(rows)}\n")
+    found = verdict.verdicts(rows)
+    print(verdict.text(found), end="\n\n")
+    write(arguments, groups, rows)
+    otherwise = compare_page(rows, arguments.page) if page.complete(rows, arguments.seed) else []
+    if otherwise:
+        print("docs/control.md is otherwise; --page writes it:", *otherwise, sep="\n")
+    return 1 if otherwise or any(one.missed for one in found) else 0
 
 
 def main(argv=None):
     arguments = read_arguments(argv)
     try:
-        run(arguments)
+        return run(arguments)
     except (fleet.Broken, OSError) as error:
         print(f"campaign: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("campaign: interrupted; what was flown is kept, run it again to go on", file=sys.stderr)
         return 130
-    return 0
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ from pathlib import Path
 
 BATCH = 10
 FLIGHT_LIMIT_S = 120
+WORKERS_LIMIT_S = 30
 
 
 class Broken(Exception):
@@ -51,16 +52,16 @@ def key(program_digest, arguments):
 def fleet(scheduler=None):
     """A Dask client: of the cluster at that address, else of this machine with a thread per processor, each of which
     waits for the process of its flight. A cluster's workers need the program at the same path."""
-    import cloudpickle
     from distributed import Client, LocalCluster
 
-    cloudpickle.register_pickle_by_value(sys.modules[__name__])
     if scheduler:
         with Client(scheduler) as client:
+            client.wait_for_workers(1, timeout=WORKERS_LIMIT_S)
+            client.upload_file(__file__)
             yield client
         return
     with LocalCluster(n_workers=1, threads_per_worker=len(os.sched_getaffinity(0)), processes=False,
-                      dashboard_address=None, silence_logs="ERROR") as cluster, Client(cluster) as client:
+                      dashboard_address="127.0.0.1:0", silence_logs="ERROR") as cluster, Client(cluster) as client:
         yield client
 
 

@@ -14,15 +14,18 @@ class Law:
     scenario: str = SCENARIO
 
 
-# GRAV stays at 7 N, as the scenario pins it: what a vehicle really needs is drawn.
+# GRAV stays at 7 N, as the scenario pins it: what a vehicle really needs is drawn. The gains of the rows TUNED come
+# from tools/tune with --set trimmed, those of ROBUST from the same with --set untrimmed.
 LAWS = {
     "PD": Law({"LAW": "PD", "KP": "0.01", "KD": "0.004", "KI": "0"}),
     "PID": Law({"LAW": "PID"}),
     "PID-SCAN": Law({"LAW": "PID", "RELEASE": "SCAN"}),
-    "PID-TUNED": Law({"LAW": "PID", "KP": "0.005", "KD": "0.0282", "KI": "0.00016", "USAT": "1.5", "DSAT": "4"}),
-    "PID-TUNED-SCAN": Law({"LAW": "PID", "RELEASE": "SCAN", "KP": "0.0063", "KD": "0.0349", "KI": "0.00018",
-                           "USAT": "1.5", "DSAT": "4"}),
-    "PIDT": Law({"LAW": "PIDT", "RELEASE": "SCAN", "USAT": "1.5", "DSAT": "4"}),
+    "PID-TUNED": Law({"LAW": "PID", "KP": "0.00563", "KD": "0.027", "KI": "0.000175", "USAT": "1.23", "DSAT": "4"}),
+    "PID-TUNED-SCAN": Law({"LAW": "PID", "RELEASE": "SCAN", "KP": "0.00745", "KD": "0.0332", "KI": "0.000187",
+                           "USAT": "1.52", "DSAT": "3.87"}),
+    "PID-ROBUST-SCAN": Law({"LAW": "PID", "RELEASE": "SCAN", "KP": "0.006", "KD": "0.0267", "KI": "0.000336",
+                            "USAT": "1.72", "DSAT": "3.97"}),
+    "PIDT": Law({"LAW": "PIDT"}),
     "EST": Law({}, "est-60cm-ramp"),
 }
 
@@ -30,23 +33,26 @@ LAWS = {
 @dataclass(frozen=True)
 class Set:
     summary: str
+    runs: int               # flights per law, unless told otherwise
     figures: tuple          # names of draws() that the vehicle takes; the others stay nominal
     fixed: dict             # plant figures of every run
     lands: bool = False     # the supervisor is to land the vehicle: it fails when it never touches the ground
 
 
-VEHICLE = ("gain", "tau", "damping", "ray_noise", "common_noise", "ray_instant", "acc_bias", "acc_noise", "attitude_rms",
-           "imu_noise", "turbulence", "tdelay")
+VEHICLE = ("gain", "tau", "damping", "ray_noise", "common_noise", "ray_instant", "acc_bias", "acc_noise",
+           "attitude_rms", "imu_noise", "turbulence", "tdelay")
 SETS = {
-    "nominal": Set("the nominal vehicle", (), {}),
-    "trimmed": Set("drawn vehicles, GRAV trimmed by hand", VEHICLE + ("hover_trimmed",), {}),
-    "untrimmed": Set("drawn vehicles, mass +-20 %, not trimmed", VEHICLE + ("hover_untrimmed",), {}),
-    "glitches": Set("nominal, 3 % of the scans broken", (), {"glitches": 0.03}),
-    "vibration": Set("nominal, four times the accelerometer noise", (), {"acc_noise": 1.6}),
-    "outages": Set("nominal, flat ground, scanner silent for 0.5 s", ("outage_start",), {"outage": 0.5, "platform": 0.0}),
-    "blind": Set("nominal, flat ground, scanner silent for 3 s: must land", ("outage_start",),
+    "nominal": Set("the nominal vehicle", 20, (), {}),
+    "trimmed": Set("drawn vehicles, GRAV trimmed by hand", 200, VEHICLE + ("hover_trimmed",), {}),
+    "untrimmed": Set("drawn vehicles, mass +-20 %, not trimmed", 200, VEHICLE + ("hover_untrimmed",), {}),
+    "glitches": Set("nominal, 3 % of the scans broken", 20, (), {"glitches": 0.03}),
+    "vibration": Set("nominal, four times the accelerometer noise", 20, (), {"acc_noise": 1.6}),
+    "outages": Set("nominal, flat ground, scanner silent for 0.5 s", 100, ("outage_start",),
+                   {"outage": 0.5, "platform": 0.0}),
+    "blind": Set("nominal, flat ground, scanner silent for 3 s: must land", 50, ("outage_start",),
                  {"outage": 3.0, "platform": 0.0}, lands=True),
 }
+DEFAULT_SETS = [name for name in SETS if name != "trimmed"]
 HOVER = {"hover_trimmed", "hover_untrimmed"}
 
 

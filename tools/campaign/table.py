@@ -1,10 +1,11 @@
 """What a campaign says: one row per set and law."""
 import csv
 import math
+import statistics
 
-DISTRIBUTIONS = (("hover_rms_mm", "hover RMS mm"), ("overshoot_mm", "overshoot mm"), ("terrain_rms_mm", "terrain RMS mm"),
-                 ("recovery_s", "recovery s"), ("undershoot_mm", "undershoot mm"), ("max_error_mm", "largest error mm"),
-                 ("touch_speed_mps", "touch m/s"), ("thrust_std_n", "activity N"))
+DISTRIBUTIONS = (("rise_time_s", "rise s"), ("hover_rms_mm", "hover RMS mm"), ("overshoot_mm", "overshoot mm"),
+                 ("terrain_rms_mm", "terrain RMS mm"), ("recovery_s", "recovery s"), ("undershoot_mm", "undershoot mm"),
+                 ("max_error_mm", "largest error mm"), ("touch_speed_mps", "touch m/s"), ("thrust_std_n", "activity N"))
 PRINTED = ("hover_rms_mm", "overshoot_mm", "terrain_rms_mm", "recovery_s", "max_error_mm", "touch_speed_mps",
            "thrust_std_n")
 
@@ -30,7 +31,7 @@ def percentile(values, share):
 
 
 def row(law, set_name, flights, lands=False):
-    """One row of [figures]. Medians and 95 % quantiles are of the flights that did not fail."""
+    """One row of [figures]. Medians, 95 % quantiles, means and largest values are of the flights that did not fail."""
     good = [figures for figures in flights if not failed(figures, lands)]
     result = {"set": set_name, "law": law, "flights": len(flights), "failures": len(flights) - len(good),
               "contacts": sum(figures["ground_contacts"] > 0 for figures in flights),
@@ -42,6 +43,8 @@ def row(law, set_name, flights, lands=False):
         values = [figures[name] for figures in good if figures[name] is not None]
         result[f"{name}_median"] = percentile(values, 0.5)
         result[f"{name}_p95"] = percentile(values, 0.95)
+        result[f"{name}_mean"] = statistics.fmean(values) if values else math.nan
+        result[f"{name}_max"] = max(values, default=math.nan)
     return result
 
 
@@ -51,19 +54,23 @@ def number(value):
     return f"{value:.2f}" if abs(value) < 10 else f"{value:.1f}" if abs(value) < 100 else f"{value:.0f}"
 
 
+def columns(lines, left):
+    """Lines of cells as text; the first `left` columns are flush left, the others flush right."""
+    widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))]
+    return "\n".join("  ".join(cell.ljust(width) if k < left else cell.rjust(width)
+                               for k, (cell, width) in enumerate(zip(line, widths, strict=True))).rstrip()
+                     for line in lines)
+
+
 def text(rows):
     """The table as it is printed: median [p95]; the counts are of flights."""
     titles = dict(DISTRIBUTIONS)
-    head = ["set", "law", "flights", "failures", "contacts", "take-overs", "cuts", "highest mm"]
-    lines = [head + [titles[name] for name in PRINTED]]
+    counts = ("flights", "failures", "contacts", "takeovers", "cuts")
+    lines = [["set", "law", *counts, "highest mm", *(titles[name] for name in PRINTED)]]
     for r in rows:
-        lines.append([r["set"], r["law"], *(str(r[name]) for name in ("flights", "failures", "contacts", "takeovers", "cuts")),
-                      number(r["highest_mm"]),
+        lines.append([r["set"], r["law"], *(str(r[name]) for name in counts), number(r["highest_mm"]),
                       *(f"{number(r[name + '_median'])} [{number(r[name + '_p95'])}]" for name in PRINTED)])
-    widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))]
-    return "\n".join("  ".join(cell.ljust(width) if k < 2 else cell.rjust(width)
-                               for k, (cell, width) in enumerate(zip(line, widths, strict=True))).rstrip()
-                     for line in lines)
+    return columns(lines, left=2)
 
 
 def write_csv(path, rows):
