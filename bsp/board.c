@@ -13,6 +13,7 @@
 
 #include "device.h"
 #include "led.h"
+#include "selector.h"
 #include "throttle.h"
 #include "timebase.h"
 
@@ -80,6 +81,7 @@ void bsp_board_init(void)
     for (i = 0U; i < UART_COUNT; i++) {
         open_uart_pins(&UARTS[i]);
     }
+    bsp_selector_init();
     SysCtl_enablePeripheral(SYSCTL_PERIPH_CLK_TIMER1);
     bsp_time_init();
 }

@@ -8,7 +8,8 @@ set(DRIVERS_SOURCES
     drivers/scip_layout.c drivers/scip_parser.c drivers/scip_request.c drivers/scip_time.c drivers/telecommand.c
     drivers/telemetry.c drivers/urg_link.c)
 set(BSP_SOURCES
-    bsp/board.c bsp/led.c bsp/retained.c bsp/start.c bsp/storage.c bsp/throttle.c bsp/timebase.c bsp/uart.c bsp/watchdog.c)
+    bsp/board.c bsp/led.c bsp/retained.c bsp/selector.c bsp/start.c bsp/storage.c bsp/throttle.c bsp/timebase.c bsp/uart.c
+    bsp/watchdog.c)
 set(FIRMWARE_SOURCES
     firmware/alive.c firmware/answer.c firmware/boot.c firmware/calibrator.c firmware/commands.c firmware/fault.c
     firmware/flight_recorder.c firmware/ground.c firmware/imu_port.c firmware/laser_port.c firmware/main.c

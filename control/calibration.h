@@ -1,5 +1,5 @@
 /* Hover calibration on the bench: with the vehicle tied down, the throttle's compare value is lowered step by step, so
- * that the thrust at which the ropes go slack can be read off (seed document, found so: 6.4 to 7 N with the battery). An
+ * that the thrust at which the ropes go tight can be read off (seed document, found so: 6.4 to 7 N with the battery). An
  * overlay on the control cycle: it acts in GROUND alone, never on what flies. Pure; the caller owns the state, which starts
  * as all zero. Task context, TaskControl only. */
 #ifndef CONTROL_CALIBRATION_H

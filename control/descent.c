@@ -21,7 +21,7 @@
 #define LOW_MM 40.0F
 #define LOW_NO_MORE_MM 100.0F
 #define LOW_ABOVE_HOVER_N 0.5F
-#define LOW_FADE_N_PER_S 4.0F
+#define LOW_FADE_N_PER_S 2.0F
 
 static float between(float lowest, float value, float highest)
 {

@@ -15,7 +15,7 @@ typedef struct {
 void descent_start(descent_t *descent, float rate_mm_s);
 
 /* One new height, dt_s after the one before; rate_mm_s > 0 is up. A climb of 0.7 m/s or more is braked harder than the
- * rest is controlled. Within 40 mm of the ground the most thrust falls by 4 N/s, so that nothing lifts the vehicle again.
+ * rest is controlled. Within 40 mm of the ground the most thrust falls by 2 N/s, so that nothing lifts the vehicle again.
  * Returns newtons per motor, at least a quarter of hover_n but there, upwards not clipped. */
 float descent_step(descent_t *descent, float hover_n, float height_mm, float rate_mm_s, float dt_s);
 

@@ -17,8 +17,8 @@
 #define SPEED_DOUBT_N_PER_MPS 0.5F
 #define IN_THE_AIR_M 0.04F
 #define EXPECTED_NOISE_MPS2 0.84F
-#define BLIND_S 0.4F
-#define BLIND_NOISE_MPS2 0.35F
+#define BLIND_S 0.2F
+#define BLIND_NOISE_MPS2 0.15F
 #define GUST_N_PER_M 28.0F
 
 #define RAMP_START 0.68F
@@ -47,7 +47,7 @@
 #define LOW_M 0.04F
 #define LOW_NO_MORE_M 0.10F
 #define LOW_ABOVE_HOVER_N 0.5F
-#define LOW_FADE_N_PER_S 4.0F
+#define LOW_FADE_N_PER_S 2.0F
 #define STOP_N_PER_S 2.0F
 #define TERRAIN_KEEP_S 30.0F
 #define LOWEST_OVER_TERRAIN_M 0.15F
@@ -187,10 +187,14 @@ void est_law_see(est_law_t *law, const altitude_t *altitude, uint32_t stamp_ms, 
     }
 }
 
+bool est_law_hears(const est_law_t *law)
+{
+    return law->estimator.moving && law->now_us - law->estimator.latest.time_us <= ESTIMATOR_FRESH_US;
+}
+
 bool est_law_ready(const est_law_t *law)
 {
-    const estimator_t *e = &law->estimator;
-    return e->started && law->now_us - e->latest.time_us <= ESTIMATOR_FRESH_US;
+    return law->estimator.started && est_law_hears(law);
 }
 
 static void start_hover(est_law_t *law, const parameters_t *parameters, float thrust_n, float sigma_n)
@@ -221,6 +225,12 @@ void est_law_take_over(est_law_t *law, float thrust_n, float hover_n)
     law->hover.variance_n2 = HOVER_SIGMA_TAKE_OVER_N * HOVER_SIGMA_TAKE_OVER_N;
     law->hover.gust_n = 0.0F;
     cascade_init(&law->cascade, thrust_n);
+}
+
+void est_law_let_go(est_law_t *law)
+{
+    law->lifted = false;
+    law->ramping = false;
 }
 
 /* Estimate and thrust at the instant when a command given now takes effect. */

@@ -51,13 +51,19 @@ void est_law_listen(est_law_t *law, const parameters_t *parameters, const motion
 /* A new height: its scan's 24-bit stamp and arrival. at_rest: the vehicle is known to stand on the ground. */
 void est_law_see(est_law_t *law, const altitude_t *altitude, uint32_t stamp_ms, uint32_t arrival_us, bool at_rest);
 
-/* Frames with accelerations are fresh and a height has been seen. */
+/* Frames with accelerations are fresh. */
+bool est_law_hears(const est_law_t *law);
+/* They are, and a height has been seen. */
 bool est_law_ready(const est_law_t *law);
 
 /* On the ground, each cycle: the next est_law_step() begins a take-off. */
 void est_law_stand(est_law_t *law, const parameters_t *parameters);
 /* In the air, taking over: hover_n is the best known hover thrust, thrust_n the previous command. */
 void est_law_take_over(est_law_t *law, float thrust_n, float hover_n);
+
+/* Somebody else's thrust moves the vehicle: nothing is learned or expected from the commands until
+ * est_law_take_over(). */
+void est_law_let_go(est_law_t *law);
 
 /* Newtons per motor. reference_m: for EST_HOLD. */
 float est_law_step(est_law_t *law, const parameters_t *parameters, est_wish_t wish, float reference_m);

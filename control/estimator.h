@@ -1,6 +1,6 @@
 /* Height above the terrain, vertical speed, accelerometer bias and terrain rate: a Kalman filter of four states,
  *
- *   height' = speed - terrain rate,   speed' = upward acceleration - bias,   bias' = 0,   rate' = -rate / 0.7 s,
+ *   height' = speed - terrain rate,   speed' = upward acceleration - bias,   bias' = 0,   rate' = -rate / 1.0 s,
  *
  * driven by the accelerations of the IMU frames, mixed with what the thrust lets expect, and corrected by heights at the instant of their rays. The filter with
  * its covariance lives at the instant of the latest rays; the frames since then are kept, and the estimate of now is the

@@ -52,7 +52,10 @@ static void keep_hover(flight_t *flight, float gravity_n)
 {
     const flight_state_t state = flight->supervisor.state;
 
-    if (state == FLIGHT_GROUND || state == FLIGHT_TAKEOFF || state == FLIGHT_FLOATING) {
+    const bool grounded = state == FLIGHT_GROUND || state == FLIGHT_TAKEOFF;
+
+    flight->weighed = !grounded && (flight->weighed || state == FLIGHT_FLYING);
+    if (!flight->weighed && (grounded || state == FLIGHT_FLOATING)) {
         flight->hover_n = gravity_n;
     } else if (est_law_ready(&flight->est) && flight->est.lifted) {
         flight->hover_n = flight->est.hover.thrust_n;
@@ -226,6 +229,8 @@ static void see(flight_t *flight, const parameters_t *parameters, const flight_i
     }
     if (state == FLIGHT_GROUND) {
         est_law_stand(&flight->est, parameters);
+    } else if (state == FLIGHT_FLOATING) {
+        est_law_let_go(&flight->est);
     } else if (state == FLIGHT_FLYING && flight->charge == CHARGE_LAW && !flight->est.lifted) {
         est_law_take_over(&flight->est, flight->thrust_n, flight->hover_n);
     }
@@ -264,14 +269,13 @@ static void tell(const flight_t *flight, const parameters_t *parameters, flight_
     const supervisor_t *supervisor = &flight->supervisor;
     const estimator_t *estimator = &flight->est.estimator;
     const bool estimated = flight->flown == LAW_EST || is_est(flight->charge);
-    const bool in_its_place =
-        flight->charge == CHARGE_LAW && flight->flown != LAW_EST && parameters->value[PARAMETER_LAW] == (float)LAW_EST;
+    const bool deaf = parameters->value[PARAMETER_LAW] == (float)LAW_EST && !est_law_hears(&flight->est);
     const float measured_mm = (supervisor->height.sequence != 0U) ? supervisor->height.height_mm : NAN;
 
     out->thrust_n = flight->thrust_n;
     out->pulse_us = thrust_to_pulse_us(flight->thrust_n);
     out->state = supervisor->state;
-    out->flags = (uint16_t)(supervisor->flags | (in_its_place ? FLIGHT_FLAG_ATTITUDE : 0U));
+    out->flags = (uint16_t)(supervisor->flags | (deaf ? FLIGHT_FLAG_ATTITUDE : 0U));
     out->reference_m = supervisor->reference_m;
     out->estimate_mm = estimated ? estimator->now.height_m * 1000.0F : measured_mm;
     out->innovation_mm = estimated ? estimator->innovation_m * 1000.0F : NAN;

@@ -49,6 +49,7 @@ typedef struct {
     descent_t descent;
     float hover_n;                  /* best known hover thrust: the estimator's, or else the slow mean of the thrust while
                                      * FLYING; GRAV +-1.5 N */
+    bool weighed;                   /* in the present flight: hover_n outlasts a pilot's turn */
     float wanted_n;                 /* what the state in charge wants */
     float bridge_n;                 /* added to it, fades out: no jump where the one in charge changes */
     float thrust_n;                 /* the previous command */

@@ -8,6 +8,7 @@ static const char *const law_names[LAW_COUNT] = {"PD", "PID", "PIDT", "EST"};
 static const char *const release_names[RELEASE_COUNT] = {[RELEASE_FREE] = "FREE", [RELEASE_SCAN] = "SCAN"};
 static const char *const terrain_names[TERRAIN_COUNT] = {[TERRAIN_FOLLOW] = "FOLLOW", [TERRAIN_IGNORE] = "IGNORE"};
 static const char *const plant_names[PLANT_COUNT] = {[PLANT_THRUST] = "THRUST", [PLANT_CLIMB] = "CLIMB"};
+static const char *const sel_names[SEL_COUNT] = {[SEL_NONE] = "NONE", [SEL_PIN] = "PIN"};
 
 /* SETR ends at 3 m so that the take-over at 0.8 m above the reference is still within the sensor's 4.095 m. */
 const parameter_row_t parameter_table[PARAMETER_COUNT] = {
@@ -21,19 +22,21 @@ const parameter_row_t parameter_table[PARAMETER_COUNT] = {
     [PARAMETER_LAW] = {"LAW", "-", 0.0F, (float)(LAW_COUNT - 1), (float)LAW_EST, law_names, "Control law."},
     [PARAMETER_RELEASE] = {"RELEASE", "-", 0.0F, (float)(RELEASE_COUNT - 1), (float)RELEASE_FREE, release_names,
                             "PD and PID run every 108 ms or with each scan."},
-    [PARAMETER_PKP] = {"PKP", "N/m", 0.0F, 50.0F, 6.3F, NULL, "Proportional gain of PIDT."},
-    [PARAMETER_PKI] = {"PKI", "N/m/s", 0.0F, 50.0F, 0.95F, NULL, "Integral gain of PIDT."},
-    [PARAMETER_PKD] = {"PKD", "N*s/m", 0.0F, 50.0F, 3.1F, NULL, "Derivative gain of PIDT."},
-    [PARAMETER_POSK] = {"POSK", "1/s", 0.25F, 6.0F, 2.25F, NULL, "EST: speed per metre off the reference."},
-    [PARAMETER_VELK] = {"VELK", "1/s", 0.5F, 12.0F, 7.2F, NULL, "EST: acceleration per metre per second off."},
-    [PARAMETER_VUP] = {"VUP", "m/s", 0.125F, 1.5F, 0.5F, NULL, "EST: fastest climb."},
-    [PARAMETER_VDN] = {"VDN", "m/s", 0.125F, 1.5F, 1.3F, NULL, "EST: fastest descent to a reference."},
+    [PARAMETER_PKP] = {"PKP", "N/m", 0.0F, 50.0F, 6.0F, NULL, "Proportional gain of PIDT."},
+    [PARAMETER_PKI] = {"PKI", "N/m/s", 0.0F, 50.0F, 1.4F, NULL, "Integral gain of PIDT."},
+    [PARAMETER_PKD] = {"PKD", "N*s/m", 0.0F, 50.0F, 2.6F, NULL, "Derivative gain of PIDT."},
+    [PARAMETER_POSK] = {"POSK", "1/s", 0.25F, 6.0F, 2.3F, NULL, "EST: speed per metre off the reference."},
+    [PARAMETER_VELK] = {"VELK", "1/s", 0.5F, 12.0F, 8.0F, NULL, "EST: acceleration per metre per second off."},
+    [PARAMETER_VUP] = {"VUP", "m/s", 0.125F, 1.5F, 0.7F, NULL, "EST: fastest climb."},
+    [PARAMETER_VDN] = {"VDN", "m/s", 0.125F, 1.5F, 1.1F, NULL, "EST: fastest descent to a reference."},
     [PARAMETER_TERRAIN] = {"TERRAIN", "-", 0.0F, (float)(TERRAIN_COUNT - 1), (float)TERRAIN_FOLLOW, terrain_names,
                             "EST: keeps the height above the terrain, or passes over its steps."},
     [PARAMETER_PLANT] = {"PLANT", "-", 0.0F, (float)(PLANT_COUNT - 1), (float)PLANT_THRUST, plant_names,
                           "EST: what the autopilot's throttle commands."},
     [PARAMETER_CRATE] = {"CRATE", "m/s/N", 0.125F, 5.0F, 1.0F, NULL, "EST: climb rate per newton with PLANT CLIMB."},
     [PARAMETER_LINK] = {"LINK", "s", 0.0F, 60.0F, 0.0F, NULL, "Longest silence of the link; 0 disarms."},
+    [PARAMETER_SEL] = {"SEL", "-", 0.0F, (float)(SEL_COUNT - 1), (float)SEL_NONE, sel_names,
+                        "Whether a pin tells that the pilot has the throttle."},
 };
 
 void parameters_init(parameters_t *parameters)

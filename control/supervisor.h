@@ -14,7 +14,7 @@ typedef enum {
     FLIGHT_GROUND,      /* on the ground: no thrust */
     FLIGHT_TAKEOFF,     /* reference set, still on the ground or just leaving it: the law acts */
     FLIGHT_FLYING,      /* the law acts */
-    FLIGHT_FLOATING,    /* airborne without a reference (a pilot has it): gravity feed-forward */
+    FLIGHT_FLOATING,    /* airborne, without a reference or with a pilot who has the throttle: feed-forward */
     FLIGHT_COASTING,    /* height stale for a short time: last thrust settles to the hover thrust */
     FLIGHT_DESCENDING,  /* height stale for long: bounded descent without a height, latched */
     FLIGHT_LANDING,     /* #SETR 0 in flight, or link lost: bounded descent to the ground */
@@ -29,6 +29,7 @@ typedef enum {
 #define FLIGHT_FLAG_TOO_HIGH 8U     /* above reference + 0.8 m, or LOWERING */
 #define FLIGHT_FLAG_LINK 16U        /* armed link is silent */
 #define FLIGHT_FLAG_TILT 32U        /* tilted over 45 degrees, or CUT */
+#define FLIGHT_FLAG_PILOT 64U       /* the pilot has the throttle */
 
 /* What the cycle knows, copied from the servers. Times in microseconds on one wrapping 32-bit clock; a time slightly
  * later than now_us counts as now. Steps may not be more than 71 minutes apart. */
@@ -52,6 +53,7 @@ typedef struct {
     uint32_t reference_sequence;    /* +1 per accepted #SETR, 0 m included */
     uint32_t link_time_us;          /* arrival of the latest complete valid command line */
     uint32_t link_sequence;         /* +1 per such line; 0 = never one */
+    bool throttle_ours;             /* false: the pilot has it, as a pin says; true when nothing says it */
 } flight_inputs_t;
 
 /* What an estimator knows of the height above the terrain, now. */
@@ -68,7 +70,7 @@ typedef struct {
 #define FLIGHT_IF_LOST 8U           /* the latest valid height is more than 1.0 s old, or there never was one */
 #define FLIGHT_IF_OFF_GROUND 16U    /* fresh height above 0.15 m */
 #define FLIGHT_IF_ALOFT 32U         /* fresh heights above 0.15 m for 1 s */
-#define FLIGHT_IF_AT_REST 64U       /* fresh heights below 0.05 m that did not fall by 0.02 m for 0.5 s in the present
+#define FLIGHT_IF_AT_REST 64U       /* fresh heights below 0.05 m that did not fall by 0.02 m for 0.8 s in the present
                                      * state */
 #define FLIGHT_IF_TOO_HIGH 128U     /* an estimate from where the present climb, 0.25 s long and then braked by 4 m/s2, ends
                                      * above reference + 0.8 m; or two heights in a row, their own climb 0.15 s long, or
@@ -80,7 +82,8 @@ typedef struct {
 #define FLIGHT_IF_LEVEL 4096U       /* fresh attitude within 20 degrees */
 #define FLIGHT_IF_AGAIN 8192U       /* the third LOWERING since the reference was set or 20 s of FLYING: the law cannot fly
                                      * this vehicle */
-#define FLIGHT_IF_ALL 16383U
+#define FLIGHT_IF_OURS 16384U       /* the pilot does not have the throttle */
+#define FLIGHT_IF_ALL 32767U
 
 typedef struct {
     flight_state_t from;
@@ -89,7 +92,7 @@ typedef struct {
     flight_state_t to;
 } flight_transition_t;
 
-#define FLIGHT_TRANSITION_COUNT 33U
+#define FLIGHT_TRANSITION_COUNT 40U
 extern const flight_transition_t flight_transitions[FLIGHT_TRANSITION_COUNT];
 
 /* The first row of the table that applies, else the same state. */

@@ -10,6 +10,7 @@
 #include "flight_recorder.h"
 #include "monitor.h"
 #include "schedule.h"
+#include "selector.h"
 #include "servers.h"
 #include "tasks.h"
 #include "throttle.h"
@@ -97,7 +98,7 @@ static const imu_sample_t *look_back(flight_inputs_t *in)
     return &history[0];
 }
 
-static void look(flight_inputs_t *in)
+static void look(const parameters_t *parameters, flight_inputs_t *in)
 {
     altitude_sample_t altitude;
     const imu_sample_t *imu;
@@ -122,6 +123,7 @@ static void look(flight_inputs_t *in)
     in->reference_sequence = reference.sequence;
     in->link_time_us = reference.link_time_us;
     in->link_sequence = reference.link_sequence;
+    in->throttle_ours = parameters->value[PARAMETER_SEL] == (float)SEL_NONE || bsp_selector_ours();
 }
 
 static void publish(const flight_outputs_t *out)
@@ -149,7 +151,7 @@ static Void task_control(UArg unused0, UArg unused1)
     for (;;) {
         wait(&parameters, &out);
         parameter_server_read(&parameters);
-        look(&in);
+        look(&parameters, &in);
         flight_step(&flight, &parameters, &in, &out);
         calibrator_overlay(parameters.value[PARAMETER_LINK], &in, &out);
         bsp_throttle_set_pulse_us(out.pulse_us);

@@ -11,6 +11,8 @@
 #include "sim/ti/driverlib/driverlib.h"
 #include "sim/variables.h"
 
+#define SELECTOR_PIN 3U
+
 int firmware_main(void);
 
 /* One UART of the firmware and the real device on it, if any. */
@@ -165,6 +167,7 @@ void board_power_on(const board_config_t *config, board_terminal_t terminal, voi
     board.imu = razor9dof_create(&config->imu, motion, NULL, config->seed, to_firmware, (void *)(uintptr_t)SCIB_BASE);
     board.xbee = xbee_create(to_firmware, (void *)(uintptr_t)SCIC_BASE, to_terminal, NULL);
     rc_mux_init(&board.mux, autopilot_pulse, NULL);
+    chip_drive_pin(SELECTOR_PIN, true);
     lay_wires();
     chip_pwm_connect(throttle_pulse, NULL);
     urg04lx_power(board.laser, true);
@@ -242,6 +245,17 @@ const urg04lx_t *board_laser(void)
 const line_fault_t *board_laser_faults(void)
 {
     return board.laser_faults;
+}
+
+void board_select(bool firmware)
+{
+    rc_mux_select(&board.mux, firmware);
+    chip_drive_pin(SELECTOR_PIN, firmware);
+}
+
+void board_stick(sim_time_t high_ns)
+{
+    rc_mux_receiver_pulse(&board.mux, high_ns);
 }
 
 double board_pulse_us(void)

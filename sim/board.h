@@ -3,6 +3,7 @@
 #ifndef SIM_BOARD_H
 #define SIM_BOARD_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "sim/devices/line_fault.h"
@@ -55,6 +56,12 @@ typedef struct {
     void (*pulse)(sim_time_t high_ns);
 } board_probes_t;
 void board_probe(const board_probes_t *probes);
+
+/* The pilot's switch: whose throttle the multiplexer lets through, and the level on the firmware's selector pin. After
+ * power-on it is the firmware's. */
+void board_select(bool firmware);
+/* A pulse of the receiver's throttle channel; reaches the autopilot while the pilot has the throttle. */
+void board_stick(sim_time_t high_ns);
 
 quadrotor_t *board_quadrotor(void);
 const urg04lx_t *board_laser(void);

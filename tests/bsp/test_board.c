@@ -96,6 +96,14 @@ void test_pins_of_the_three_uarts(void)
     TEST_ASSERT_EQUAL_UINT32(0, chip_register("GPIO72.MUX"));
 }
 
+void test_the_selector_is_an_input(void)
+{
+    bsp_board_init();
+    TEST_ASSERT_EQUAL_UINT32(0, chip_register("GPIO3.PUD"));
+    TEST_ASSERT_EQUAL_UINT32(0, chip_register("GPIO3.DIR"));
+    TEST_ASSERT_EQUAL_UINT32(GPIO_QUAL_6SAMPLE, chip_register("GPIO3.QSEL"));
+}
+
 void test_uarts_are_closed_and_quiet(void)
 {
     bsp_board_init();

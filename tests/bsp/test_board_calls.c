@@ -3,6 +3,7 @@
 #include "device.h"
 #include "mock_gpio.h"
 #include "mock_led.h"
+#include "mock_selector.h"
 #include "mock_sysctl.h"
 #include "mock_throttle.h"
 #include "mock_timebase.h"
@@ -49,6 +50,7 @@ void test_the_whole_start_up_in_its_order(void)
     expect_uart(SYSCTL_PERIPH_CLK_SCIA, 65, GPIO_65_SCITXDA, 64, GPIO_64_SCIRXDA);
     expect_uart(SYSCTL_PERIPH_CLK_SCIB, 86, GPIO_86_SCITXDB, 87, GPIO_87_SCIRXDB);
     expect_uart(SYSCTL_PERIPH_CLK_SCIC, 89, GPIO_89_SCITXDC, 90, GPIO_90_SCIRXDC);
+    bsp_selector_init_Expect();
     SysCtl_enablePeripheral_Expect(SYSCTL_PERIPH_CLK_TIMER1);
     bsp_time_init_Expect();
     bsp_board_init();

@@ -30,6 +30,7 @@ static void board(uint32_t seed)
     memset(&in, 0, sizeof in);
     memset(&out, 0, sizeof out);
     in.attitude_ready = true;
+    in.throttle_ours = true;
     clock_us = 0xFFC00000U; /* wraps 4 s later */
     highest_m = 0.0;
     least_n = 99.0;
@@ -125,6 +126,46 @@ static double p95(double *values, unsigned count)
 {
     qsort(values, count, sizeof *values, ascending);
     return values[(unsigned)(0.95 * count)];
+}
+
+/* ---- a pilot's turn */
+
+/* He has the throttle and flies up and down, 0.3 m to either side, whatever is commanded. */
+static void flown_by_a_pilot(double seconds)
+{
+    in.throttle_ours = false;
+    run_until(FLIGHT_FLOATING, 0.1);
+    const float learned_n = flight.est.hover.thrust_n;
+    for (long i = 0; i < lround(seconds * 2000.0); i++) {
+        advance();
+        const double ahead = 6.2832 * (double)i * 0.0005 / 4.0;
+        world.body.height_m = 0.8 + 0.3 * sin(ahead);
+        world.body.speed_m_s = 0.3 * 1.5708 * cos(ahead);
+        world.body.thrust_n = world.body.hover_n;
+    }
+    TEST_ASSERT_EQUAL_STRING("FLOATING", flight_state_name(out.state));
+    TEST_ASSERT_EQUAL_FLOAT(learned_n, flight.est.hover.thrust_n);
+    TEST_ASSERT_FALSE(flight.est.lifted);
+    in.throttle_ours = true;
+}
+
+void test_a_pilots_turn_teaches_no_hover_thrust_and_ends_within_half_a_newton_of_it(void)
+{
+    for (double hover_n = 5.6; hover_n < 8.45; hover_n += 0.7) {
+        for (uint32_t seed = 1U; seed <= 4U; seed++) {
+            board(seed);
+            world.body.hover_n = hover_n;
+            hover_at(0.6F);
+            flown_by_a_pilot(3.0 + seed);
+            TEST_ASSERT_FLOAT_WITHIN(0.35F, (float)hover_n, out.thrust_n);
+            run_until(FLIGHT_FLYING, 0.1);
+            TEST_ASSERT_FLOAT_WITHIN(0.5F, (float)hover_n, out.thrust_n);
+            run(4.0);
+            measure(4.0, 0.6);
+            TEST_ASSERT_TRUE(rms_mm() <= 30.0);
+            TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
+        }
+    }
 }
 
 /* ---- holding */

@@ -29,7 +29,7 @@ static void board(double hover_n, double damping_per_s)
     flight_init(&flight);
     parameters_init(&parameters);
     set(PARAMETER_LAW, LAW_PID);
-    in = (flight_inputs_t){.attitude_ready = true};
+    in = (flight_inputs_t){.attitude_ready = true, .throttle_ours = true};
     memset(&out, 0, sizeof out);
     clock_us = 0U;
     highest_m = 0.0;
@@ -451,6 +451,68 @@ void test_floating_is_the_gravity_feed_forward_and_follows_it(void)
 }
 
 /* ---- hover thrust */
+
+/* He holds it 0.2 m too high for ten seconds: a law that went on would have wound up. */
+void test_a_flight_handed_to_a_pilot_and_back_starts_near_hover_with_a_fresh_law(void)
+{
+    for (double hover_n = 6.0; hover_n < 8.3; hover_n += 0.7) {
+        board(hover_n, 2.4);
+        calm_law();
+        hover_at(0.8F);
+        in.throttle_ours = false;
+        held_by_a_pilot(1.0, 0.2);
+        TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
+        TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_PILOT, out.flags);
+        held_by_a_pilot(1.0, 10.0);
+        TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, flight.law.integral_n);
+        TEST_ASSERT_FALSE(flight.law.primed);
+        const float before_n = out.thrust_n;
+        TEST_ASSERT_FLOAT_WITHIN(0.3F, (float)hover_n, before_n);
+        in.throttle_ours = true;
+        run_until(FLIGHT_FLYING, 0.2);
+        TEST_ASSERT_FLOAT_WITHIN(0.001F, before_n, out.thrust_n);
+        TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.0F, flight.law.integral_n);
+        TEST_ASSERT_EQUAL_FLOAT(0.8F, out.reference_m);
+        run(12.0);
+        measure(2.0, 0.8);
+        TEST_ASSERT_TRUE(rms_mm() < 60.0);
+    }
+}
+
+void test_every_law_hands_over_within_half_a_newton_of_hover(void)
+{
+    static const float laws[] = {LAW_PD, LAW_PID, LAW_PIDT};
+    for (unsigned i = 0; i < sizeof laws / sizeof laws[0]; i++) {
+        for (double height_m = 0.3; height_m < 1.5; height_m += 0.25) {
+            board(7.4, 2.4);
+            set(PARAMETER_LAW, laws[i]);
+            hover_at(0.8F);
+            in.throttle_ours = false;
+            held_by_a_pilot(height_m, 1.0 + height_m);
+            TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
+            in.throttle_ours = true;
+            run_until(FLIGHT_FLYING, 0.2);
+            TEST_ASSERT_FLOAT_WITHIN(0.5F, 7.4F, out.thrust_n);
+        }
+    }
+}
+
+void test_a_pilots_landing_gives_the_hover_thrust_of_the_flight_up(void)
+{
+    board(8.0, 2.4);
+    calm_law();
+    hover_at(0.8F);
+    in.throttle_ours = false;
+    held_by_a_pilot(0.5, 1.0);
+    TEST_ASSERT_FLOAT_WITHIN(0.3F, 8.0F, out.thrust_n);
+    held_by_a_pilot(0.0, 2.0);
+    TEST_ASSERT_EQUAL(FLIGHT_GROUND, out.state);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, out.thrust_n);
+    held_by_a_pilot(0.5, 2.0);
+    TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
+    TEST_ASSERT_EQUAL_FLOAT(7.0F, out.thrust_n);
+}
 
 void test_the_hover_thrust_is_found_in_flight_and_given_up_on_the_ground(void)
 {

@@ -46,6 +46,7 @@ void test_the_defaults_are_the_seeds_best_values_but_for_the_law(void)
     TEST_ASSERT_EQUAL_FLOAT((float)LAW_EST, parameters.value[PARAMETER_LAW]);
     TEST_ASSERT_EQUAL_FLOAT((float)RELEASE_FREE, parameters.value[PARAMETER_RELEASE]);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, parameters.value[PARAMETER_LINK]);
+    TEST_ASSERT_EQUAL_FLOAT((float)SEL_NONE, parameters.value[PARAMETER_SEL]);
     TEST_ASSERT_EQUAL_UINT32(0, parameters.generation);
 }
 
@@ -72,7 +73,7 @@ void test_every_choice_is_found_by_its_name(void)
             choices++;
         }
     }
-    TEST_ASSERT_EQUAL_INT(LAW_COUNT + RELEASE_COUNT + TERRAIN_COUNT + PLANT_COUNT, choices);
+    TEST_ASSERT_EQUAL_INT(LAW_COUNT + RELEASE_COUNT + TERRAIN_COUNT + PLANT_COUNT + SEL_COUNT, choices);
 }
 
 void test_names_are_found_in_any_case_and_only_whole(void)

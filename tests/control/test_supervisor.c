@@ -20,7 +20,8 @@ void setUp(void)
     supervisor_init(&s);
     estimate.known = false;
     change.from = change.to = FLIGHT_GROUND;
-    in = (flight_inputs_t){.now_us = 0xFFF00000U, .attitude_ready = true}; /* the clock wraps a second later */
+    in = (flight_inputs_t){.now_us = 0xFFF00000U, /* the clock wraps a second later */
+                           .attitude_ready = true, .throttle_ours = true};
     link_s = 0.0F;
 }
 
@@ -139,7 +140,7 @@ static void floating(void)
 
 static const char *const condition_names[] = {"REFERENCE", "READY", "HEIGHT",   "LOST", "OFF_GROUND", "ALOFT",
                                               "AT_REST",   "TOO_HIGH", "BACK",   "LAND", "SPENT",      "TILTED", "LEVEL",
-                                              "AGAIN"};
+                                              "AGAIN",     "OURS"};
 #define CONDITION_COUNT (sizeof condition_names / sizeof condition_names[0])
 
 static void row_text(const flight_transition_t *row, char *text, size_t size)
@@ -185,13 +186,17 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
 {
     const bool reference = c & FLIGHT_IF_REFERENCE, height = c & FLIGHT_IF_HEIGHT;
     const bool tilted = c & FLIGHT_IF_TILTED;
+    const bool ours = c & FLIGHT_IF_OURS;
     const bool go = reference && height && (c & FLIGHT_IF_READY);
+    if (!ours && from != FLIGHT_GROUND && from != FLIGHT_FLOATING && from != FLIGHT_CUT) {
+        return FLIGHT_FLOATING;
+    }
     if (tilted && from != FLIGHT_GROUND && from != FLIGHT_FLOATING && from != FLIGHT_CUT) {
         return FLIGHT_CUT;
     }
     switch (from) {
     case FLIGHT_GROUND:
-        return (c & FLIGHT_IF_ALOFT) ? FLIGHT_FLOATING : (go && !tilted) ? FLIGHT_TAKEOFF : from;
+        return (c & FLIGHT_IF_ALOFT) ? FLIGHT_FLOATING : (go && ours && !tilted) ? FLIGHT_TAKEOFF : from;
     case FLIGHT_TAKEOFF:
     case FLIGHT_FLYING:
         if (!height) {
@@ -205,10 +210,10 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
         }
         return (c & FLIGHT_IF_OFF_GROUND) ? FLIGHT_FLYING : from;
     case FLIGHT_FLOATING:
-        if (go && !tilted) {
+        if (go && ours && !tilted) {
             return FLIGHT_FLYING;
         }
-        if (c & FLIGHT_IF_LAND) {
+        if (ours && (c & FLIGHT_IF_LAND)) {
             return height ? FLIGHT_LANDING : FLIGHT_DESCENDING;
         }
         return (c & FLIGHT_IF_AT_REST) ? FLIGHT_GROUND : from;
@@ -222,6 +227,9 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
     case FLIGHT_LANDING:
         return go ? FLIGHT_FLYING : !height ? FLIGHT_DESCENDING : (c & FLIGHT_IF_AT_REST) ? FLIGHT_GROUND : from;
     case FLIGHT_CUT:
+        if ((c & FLIGHT_IF_ALOFT) && !ours && !tilted) {
+            return FLIGHT_FLOATING;
+        }
         return ((c & FLIGHT_IF_AT_REST) && (c & FLIGHT_IF_LEVEL)) ? FLIGHT_GROUND : from;
     default:
         if (!height) {
@@ -576,6 +584,175 @@ void test_nineteen_seconds_of_flight_do_not(void)
     state_is(FLIGHT_LANDING);
 }
 
+/* ---- the pilot has the throttle */
+
+static void pilot_takes_it(float height_mm)
+{
+    in.throttle_ours = false;
+    watch(height_mm, 1);
+    state_is(FLIGHT_FLOATING);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_PILOT, s.flags & FLIGHT_FLAG_PILOT);
+}
+
+static void pilot_takes_it_blind(void)
+{
+    in.throttle_ours = false;
+    blind(100);
+    state_is(FLIGHT_FLOATING);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_PILOT | FLIGHT_FLAG_HEIGHT, s.flags);
+}
+
+static void pilot_gives_it_back(float height_mm)
+{
+    in.throttle_ours = true;
+    watch(height_mm, 1);
+    TEST_ASSERT_EQUAL_UINT16(0, s.flags);
+}
+
+void test_takeoff_to_floating_by_the_pilots_switch(void)
+{
+    take_off();
+    pilot_takes_it(30.0F);
+}
+
+void test_flying_to_floating_and_back_by_the_pilots_switch_with_the_reference_of_before(void)
+{
+    fly();
+    pilot_takes_it(500.0F);
+    watch(900.0F, 100);
+    state_is(FLIGHT_FLOATING);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_PILOT, s.flags);
+    TEST_ASSERT_EQUAL_FLOAT(0.5F, s.reference_m);
+    pilot_gives_it_back(900.0F);
+    state_is(FLIGHT_FLYING);
+    TEST_ASSERT_EQUAL_FLOAT(0.5F, s.reference_m);
+}
+
+void test_landing_to_floating_by_the_pilots_switch_and_it_does_not_land_again(void)
+{
+    land();
+    pilot_takes_it(400.0F);
+    pilot_gives_it_back(400.0F);
+    watch(400.0F, 20);
+    state_is(FLIGHT_FLOATING);
+    setr(0.0F);
+    watch(400.0F, 1);
+    state_is(FLIGHT_LANDING);
+}
+
+void test_lowering_to_floating_by_the_pilots_switch(void)
+{
+    lower();
+    pilot_takes_it(1310.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.5F, s.reference_m);
+}
+
+void test_the_third_lowering_withdraws_the_reference_from_the_pilots_turn_too(void)
+{
+    lower();
+    for (int times = 2; times <= 3; times++) {
+        watch(700.0F, 3);
+        state_is(FLIGHT_FLYING);
+        watch(1310.0F, 2);
+        state_is(FLIGHT_LOWERING);
+    }
+    pilot_takes_it(1310.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, s.reference_m);
+}
+
+void test_coasting_to_floating_by_the_pilots_switch(void)
+{
+    coast();
+    pilot_takes_it_blind();
+    TEST_ASSERT_EQUAL_FLOAT(0.5F, s.reference_m);
+}
+
+void test_descending_to_floating_by_the_pilots_switch_without_a_reference(void)
+{
+    descend();
+    pilot_takes_it_blind();
+    watch(480.0F, 5);
+    pilot_gives_it_back(480.0F);
+    state_is(FLIGHT_FLOATING);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, s.reference_m);
+}
+
+void test_the_pilots_switch_counts_more_than_a_tilt_and_a_lost_height(void)
+{
+    fly();
+    blind(200);
+    in.throttle_ours = false;
+    in.roll_rad = 1.0F;
+    blind(3000);
+    state_is(FLIGHT_FLOATING);
+    in.throttle_ours = true;
+    watch(500.0F, 20);
+    state_is(FLIGHT_FLOATING);
+    in.roll_rad = 0.0F;
+    watch(500.0F, 1);
+    state_is(FLIGHT_FLYING);
+}
+
+void test_cut_to_floating_only_by_a_pilot_who_holds_it_aloft_and_upright(void)
+{
+    fly();
+    in.roll_rad = 1.0F;
+    watch(500.0F, 3);
+    state_is(FLIGHT_CUT);
+    in.throttle_ours = false;
+    watch(500.0F, 20);
+    state_is(FLIGHT_CUT);
+    in.roll_rad = 0.0F;
+    watch(140.0F, 2);
+    watch(500.0F, 10);
+    state_is(FLIGHT_CUT);
+    watch(500.0F, 1);
+    state_is(FLIGHT_FLOATING);
+    pilot_gives_it_back(500.0F);
+    state_is(FLIGHT_FLOATING);
+}
+
+void test_a_reference_waits_on_the_ground_for_the_pilots_switch(void)
+{
+    in.throttle_ours = false;
+    watch(0.0F, 3);
+    setr(0.5F);
+    watch(0.0F, 100);
+    state_is(FLIGHT_GROUND);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_PILOT, s.flags);
+    pilot_gives_it_back(0.0F);
+    state_is(FLIGHT_TAKEOFF);
+}
+
+void test_a_reference_or_setr_0_leaves_a_pilots_vehicle_floating(void)
+{
+    floating();
+    in.throttle_ours = false;
+    setr(0.6F);
+    watch(400.0F, 20);
+    state_is(FLIGHT_FLOATING);
+    TEST_ASSERT_EQUAL_FLOAT(0.6F, s.reference_m);
+    setr(0.0F);
+    watch(400.0F, 1);
+    blind(3000);
+    setr(0.0F);
+    blind(100);
+    state_is(FLIGHT_FLOATING);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, s.reference_m);
+}
+
+void test_a_pilot_who_lands_withdraws_the_reference(void)
+{
+    fly();
+    pilot_takes_it(500.0F);
+    watch(10.0F, 11);
+    state_is(FLIGHT_GROUND);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, s.reference_m);
+    pilot_gives_it_back(10.0F);
+    watch(10.0F, 50);
+    state_is(FLIGHT_GROUND);
+}
+
 /* ---- tilt */
 
 static void tilt(float degrees)
@@ -899,6 +1076,28 @@ static void lie_level_after_a_cut(void)
     watch(20.0F, 20);
 }
 
+static void hand_over(void (*enter)(void), float height_mm)
+{
+    enter();
+    in.throttle_ours = false;
+    watch(height_mm, 1);
+}
+
+static void hand_over_on_take_off(void) { hand_over(take_off, 30.0F); }
+static void hand_over_in_flight(void) { hand_over(fly, 500.0F); }
+static void hand_over_on_landing(void) { hand_over(land, 500.0F); }
+static void hand_over_on_lowering(void) { hand_over(lower, 1310.0F); }
+static void hand_over_on_coasting(void) { hand_over(coast, 480.0F); }
+static void hand_over_on_descending(void) { hand_over(descend, 480.0F); }
+
+static void recover_from_a_cut(void)
+{
+    tilt_in_flight();
+    tilt(0.0F);
+    in.throttle_ours = false;
+    watch(500.0F, 20);
+}
+
 /* The row from one state to the other which has that condition, or its absence. */
 static const struct {
     flight_state_t from;
@@ -908,11 +1107,13 @@ static const struct {
 } ways[] = {
     {FLIGHT_GROUND, FLIGHT_IF_ALOFT, FLIGHT_FLOATING, aloft},
     {FLIGHT_GROUND, FLIGHT_IF_REFERENCE, FLIGHT_TAKEOFF, take_off},
+    {FLIGHT_TAKEOFF, FLIGHT_IF_OURS, FLIGHT_FLOATING, hand_over_on_take_off},
     {FLIGHT_TAKEOFF, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_take_off},
     {FLIGHT_TAKEOFF, FLIGHT_IF_HEIGHT, FLIGHT_COASTING, lose_height_on_take_off},
     {FLIGHT_TAKEOFF, FLIGHT_IF_REFERENCE, FLIGHT_LANDING, withdraw_on_take_off},
     {FLIGHT_TAKEOFF, FLIGHT_IF_TOO_HIGH, FLIGHT_LOWERING, rise_too_high_on_take_off},
     {FLIGHT_TAKEOFF, FLIGHT_IF_OFF_GROUND, FLIGHT_FLYING, leave_the_ground},
+    {FLIGHT_FLYING, FLIGHT_IF_OURS, FLIGHT_FLOATING, hand_over_in_flight},
     {FLIGHT_FLYING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_in_flight},
     {FLIGHT_FLYING, FLIGHT_IF_HEIGHT, FLIGHT_COASTING, coast},
     {FLIGHT_FLYING, FLIGHT_IF_REFERENCE, FLIGHT_LANDING, land},
@@ -921,23 +1122,28 @@ static const struct {
     {FLIGHT_FLOATING, FLIGHT_IF_LAND, FLIGHT_LANDING, land_for_the_pilot},
     {FLIGHT_FLOATING, FLIGHT_IF_LAND, FLIGHT_DESCENDING, descend_for_the_pilot},
     {FLIGHT_FLOATING, FLIGHT_IF_AT_REST, FLIGHT_GROUND, be_put_down_by_the_pilot},
+    {FLIGHT_COASTING, FLIGHT_IF_OURS, FLIGHT_FLOATING, hand_over_on_coasting},
     {FLIGHT_COASTING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_coasting},
     {FLIGHT_COASTING, FLIGHT_IF_REFERENCE, FLIGHT_DESCENDING, withdraw_on_coasting},
     {FLIGHT_COASTING, FLIGHT_IF_HEIGHT, FLIGHT_FLYING, see_again_on_coasting},
     {FLIGHT_COASTING, FLIGHT_IF_LOST, FLIGHT_DESCENDING, descend},
+    {FLIGHT_DESCENDING, FLIGHT_IF_OURS, FLIGHT_FLOATING, hand_over_on_descending},
     {FLIGHT_DESCENDING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_descending},
     {FLIGHT_DESCENDING, FLIGHT_IF_REFERENCE, FLIGHT_FLYING, new_reference_on_descending},
     {FLIGHT_DESCENDING, FLIGHT_IF_HEIGHT, FLIGHT_LANDING, see_again_on_descending},
     {FLIGHT_DESCENDING, FLIGHT_IF_SPENT, FLIGHT_GROUND, descend_to_the_end},
+    {FLIGHT_LANDING, FLIGHT_IF_OURS, FLIGHT_FLOATING, hand_over_on_landing},
     {FLIGHT_LANDING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_landing},
     {FLIGHT_LANDING, FLIGHT_IF_REFERENCE, FLIGHT_FLYING, new_reference_on_landing},
     {FLIGHT_LANDING, FLIGHT_IF_HEIGHT, FLIGHT_DESCENDING, lose_height_on_landing},
     {FLIGHT_LANDING, FLIGHT_IF_AT_REST, FLIGHT_GROUND, touch_down},
+    {FLIGHT_LOWERING, FLIGHT_IF_OURS, FLIGHT_FLOATING, hand_over_on_lowering},
     {FLIGHT_LOWERING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_lowering},
     {FLIGHT_LOWERING, FLIGHT_IF_HEIGHT, FLIGHT_COASTING, lose_height_on_lowering},
     {FLIGHT_LOWERING, FLIGHT_IF_REFERENCE, FLIGHT_LANDING, withdraw_on_lowering},
     {FLIGHT_LOWERING, FLIGHT_IF_AGAIN, FLIGHT_LANDING, be_lowered_thrice},
     {FLIGHT_LOWERING, FLIGHT_IF_BACK, FLIGHT_FLYING, be_lowered},
+    {FLIGHT_CUT, FLIGHT_IF_OURS, FLIGHT_FLOATING, recover_from_a_cut},
     {FLIGHT_CUT, FLIGHT_IF_AT_REST, FLIGHT_GROUND, lie_level_after_a_cut},
 };
 #define WAY_COUNT (sizeof ways / sizeof ways[0])
@@ -1513,6 +1719,7 @@ void test_random_inputs_never_leave_the_table(void)
         link_s = (i / 5000) % 2 == 0 ? 0.0F : 1.0F;
         in.attitude_ready = any(50) != 0;
         in.pitch_rad = (i / 700) % 9 == 8 ? 1.0F : 0.1F;
+        in.throttle_ours = any(300) == 0 ? !in.throttle_ours : in.throttle_ours || any(20) == 0;
         cycle(50 + any(100));
         bool row = from == s.state;
         for (unsigned k = 0; k < FLIGHT_TRANSITION_COUNT; k++) {

@@ -341,7 +341,7 @@ void test_every_answer_of_get_can_be_typed_back_as_a_command(void)
     type("#GET");
     (void)memcpy(told, answers, sizeof told);
     for (uint16_t id = 0; id < PARAMETER_COUNT; id++) {
-        char line[TELEMETRY_LINE_MAX + 2U];
+        char line[TELEMETRY_ANSWER_MAX + 2U];
 
         (void)snprintf(line, sizeof line, "#%s", &told[id][3]);
         assert_answer(told[id], line);

@@ -10,6 +10,7 @@
 #include "mock_alive.h"
 #include "mock_calibrator.h"
 #include "mock_flight_recorder.h"
+#include "mock_selector.h"
 #include "mock_servers.h"
 #include "mock_throttle.h"
 #include "mock_timebase.h"
@@ -355,6 +356,37 @@ void test_every_value_of_the_servers_reaches_its_own_place_in_the_inputs(void)
     TEST_ASSERT_EQUAL_FLOAT(9.8F, in->frames[1].down_mps2);
     TEST_ASSERT_EQUAL_FLOAT(0.08F, in->frames[1].roll_rad);
     TEST_ASSERT_EQUAL_FLOAT(-0.09F, in->frames[1].pitch_rad);
+}
+
+static bool pin;
+static uint16_t pin_reads;
+
+static bool read_pin(int calls)
+{
+    (void)calls;
+    pin_reads++;
+    return pin;
+}
+
+static void switch_the_pin(uint16_t wait)
+{
+    pin = wait % 2U == 1U;
+    parameters.value[PARAMETER_SEL] = (wait < 2U) ? (float)SEL_NONE : (float)SEL_PIN;
+}
+
+void test_the_pin_tells_who_has_the_throttle_when_sel_says_so(void)
+{
+    pin_reads = 0U;
+    bsp_selector_ours_Stub(read_pin);
+    between = switch_the_pin;
+    run(4U);
+    TEST_ASSERT_TRUE(inputs[0].throttle_ours);
+    TEST_ASSERT_TRUE(inputs[1].throttle_ours);
+    TEST_ASSERT_FALSE(inputs[2].throttle_ours);
+    TEST_ASSERT_TRUE(inputs[3].throttle_ours);
+    TEST_ASSERT_EQUAL_UINT16(2, pin_reads);
+    TEST_ASSERT_EQUAL_HEX16(FLIGHT_FLAG_PILOT, published[2].flags & FLIGHT_FLAG_PILOT);
+    TEST_ASSERT_EQUAL_HEX16(0, published[3].flags & FLIGHT_FLAG_PILOT);
 }
 
 static void set_one_flag(uint16_t wait)

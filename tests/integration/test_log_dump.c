@@ -166,6 +166,25 @@ void test_a_whole_flight_comes_down_in_order_beside_telemetry_and_commands(void)
     TEST_ASSERT_TRUE_MESSAGE(flight.end_s - flight.asked_s < 90.0, "slower than the radio");
 }
 
+/* The figures of docs/operator.md. */
+void test_under_law_est_the_recorder_holds_79_s_and_a_minute_takes_a_little_over_two(void)
+{
+    const char *at = flight.text;
+    row_t row = {.t_s = 0.0};
+    double first_s = 0.0;
+    int rows = 0;
+
+    ask("#LAW EST\n", "#LOG\n");
+    while (next_row(&at, &row)) {
+        first_s = rows == 0 ? row.t_s : first_s;
+        rows++;
+    }
+    const double flown_s = row.t_s - first_s;
+    TEST_ASSERT_TRUE_MESSAGE(flown_s > 60.0, "a minute of flight at least");
+    TEST_ASSERT_FLOAT_WITHIN(1.5F, 79.0F, (float)(FLIGHT_RECORDER_RECORDS * flown_s / (rows - 1)));
+    TEST_ASSERT_FLOAT_WITHIN(0.15F, 2.15F, (float)((flight.end_s - flight.asked_s) / flown_s));
+}
+
 void test_the_last_seconds_alone_come_quickly(void)
 {
     const char *at = flight.text;

@@ -255,7 +255,8 @@ static void prepare_control(void)
     parameters_init(&parameters);
     parameters.value[PARAMETER_LAW] = (float)LAW_PID;
     flight_init(&flight);
-    in = (flight_inputs_t){ .height_valid = true, .height_mm = 10.0F, .attitude_ready = true };
+    in = (flight_inputs_t){ .height_valid = true, .height_mm = 10.0F, .attitude_ready = true,
+                            .throttle_ours = true };
     for (unsigned i = 0; i < 200; i++) {
         in.reference_m = 0.6F;
         in.reference_sequence = i < 20 ? 0 : 1;

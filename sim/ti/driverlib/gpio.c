@@ -10,6 +10,8 @@
 #define PIN_COUNT 169U
 #define THROTTLE_PIN 2U
 #define MUX_VALUE 0xFU
+#define GROUP 8U
+#define SAMPLE_DIVIDER_MAX 510U
 
 typedef struct {
     uint32_t mux;
@@ -21,6 +23,7 @@ typedef struct {
 } pin_t;
 
 static pin_t pins[PIN_COUNT];
+static uint32_t sample_dividers[PIN_COUNT / GROUP + 1];
 
 static struct {
     chip_pulse_t pulse;
@@ -35,6 +38,7 @@ void gpio_reset(void)
     for (unsigned i = 0; i < PIN_COUNT; i++) {
         pins[i] = (pin_t){.pud = 1, .held_low = pins[i].held_low};
     }
+    memset(sample_dividers, 0, sizeof sample_dividers);
     throttle.level = false;
 }
 
@@ -137,6 +141,20 @@ void GPIO_setQualificationMode(uint32_t pin, GPIO_QualificationMode qualificatio
     at(pin)->qualification = qualification;
 }
 
+void GPIO_setQualificationPeriod(uint32_t pin, uint32_t divider)
+{
+    if (divider == 0 || divider > SAMPLE_DIVIDER_MAX || (divider % 2U != 0 && divider != 1)) {
+        chip_unmodelled("such a qualification period");
+    }
+    (void)at(pin);
+    sample_dividers[pin / GROUP] = divider / 2U;
+}
+
+uint32_t GPIO_readPin(uint32_t pin)
+{
+    return chip_pin(pin) ? 1U : 0U;
+}
+
 void GPIO_writePin(uint32_t pin, uint32_t outVal)
 {
     at(pin)->latch = outVal != 0;
@@ -155,7 +173,7 @@ bool gpio_register(const char *name, uint32_t *value)
         uint32_t value;
     } fields[] = {
         {"MUX", pins[pin].mux}, {"DIR", pins[pin].direction}, {"PUD", pins[pin].pud},
-        {"QSEL", pins[pin].qualification}, {"DAT", chip_pin(pin)},
+        {"QSEL", pins[pin].qualification}, {"QUALPRD", sample_dividers[pin / GROUP]}, {"DAT", chip_pin(pin)},
     };
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
         if (strcmp(field, fields[i].name) == 0) {

@@ -18,6 +18,10 @@ void GPIO_setDirectionMode(uint32_t pin, GPIO_Direction pinIO);
 /* GPIO_PIN_TYPE_INVERT and _OD are not modelled: abort. */
 void GPIO_setPadConfig(uint32_t pin, uint32_t pinType);
 void GPIO_setQualificationMode(uint32_t pin, GPIO_QualificationMode qualification);
+/* divider: 1, or even up to 510, of SYSCLK, for the eight pins of the group (0-7, 8-15, ...). */
+void GPIO_setQualificationPeriod(uint32_t pin, uint32_t divider);
+/* The level on the pin; the time that the qualification takes is not modelled. */
+uint32_t GPIO_readPin(uint32_t pin);
 void GPIO_writePin(uint32_t pin, uint32_t outVal);
 
 #endif

@@ -587,13 +587,40 @@ void test_output_pins_follow_the_latch_and_inputs_the_outside(void)
     TEST_ASSERT_TRUE(chip_pin(12));
 }
 
+void test_a_pin_is_read_as_it_is_driven(void)
+{
+    chip_drive_pin(3, false);
+    TEST_ASSERT_EQUAL_UINT32(0, GPIO_readPin(3));
+    chip_drive_pin(3, true);
+    TEST_ASSERT_EQUAL_UINT32(1, GPIO_readPin(3));
+    GPIO_setDirectionMode(3, GPIO_DIR_MODE_OUT);
+    TEST_ASSERT_EQUAL_UINT32(0, GPIO_readPin(3));
+    GPIO_writePin(3, 7);
+    TEST_ASSERT_EQUAL_UINT32(1, GPIO_readPin(3));
+}
+
+void test_a_qualification_period_is_its_groups(void)
+{
+    GPIO_setQualificationPeriod(3, 510);
+    GPIO_setQualificationPeriod(168, 2);
+    TEST_ASSERT_EQUAL_UINT32(255, chip_register("GPIO0.QUALPRD"));
+    TEST_ASSERT_EQUAL_UINT32(255, chip_register("GPIO7.QUALPRD"));
+    TEST_ASSERT_EQUAL_UINT32(0, chip_register("GPIO8.QUALPRD"));
+    TEST_ASSERT_EQUAL_UINT32(1, chip_register("GPIO168.QUALPRD"));
+    GPIO_setQualificationPeriod(0, 1);
+    TEST_ASSERT_EQUAL_UINT32(0, chip_register("GPIO3.QUALPRD"));
+    GPIO_setQualificationPeriod(0, 4);
+    chip_reset(raise_line);
+    TEST_ASSERT_EQUAL_UINT32(0, chip_register("GPIO3.QUALPRD"));
+}
+
 void test_pin_words_decode_to_pin_and_mux(void)
 {
     static const struct {
         uint32_t word;
         const char *name;
         uint32_t mux;
-    } PINS[] = {{GPIO_2_EPWM2A, "GPIO2.MUX", 1},    {GPIO_42_SCITXDA, "GPIO42.MUX", 15},
+    } PINS[] = {{GPIO_2_EPWM2A, "GPIO2.MUX", 1},    {GPIO_3_GPIO3, "GPIO3.MUX", 0},     {GPIO_42_SCITXDA, "GPIO42.MUX", 15},
                 {GPIO_64_SCIRXDA, "GPIO64.MUX", 6}, {GPIO_65_SCITXDA, "GPIO65.MUX", 6},
                 {GPIO_84_SCITXDA, "GPIO84.MUX", 5}, {GPIO_86_SCITXDB, "GPIO86.MUX", 5},
                 {GPIO_87_SCIRXDB, "GPIO87.MUX", 5}, {GPIO_89_SCITXDC, "GPIO89.MUX", 6},
