@@ -70,7 +70,7 @@ typedef struct {
 #define FLIGHT_IF_LOST 8U           /* the latest valid height is more than 1.0 s old, or there never was one */
 #define FLIGHT_IF_OFF_GROUND 16U    /* fresh height above 0.15 m */
 #define FLIGHT_IF_ALOFT 32U         /* fresh heights above 0.15 m for 1 s */
-#define FLIGHT_IF_AT_REST 64U       /* fresh heights below 0.05 m that did not fall by 0.02 m for 0.8 s in the present
+#define FLIGHT_IF_AT_REST 64U       /* fresh heights below 0.05 m that did not fall by 0.02 m for 1.2 s in the present
                                      * state */
 #define FLIGHT_IF_TOO_HIGH 128U     /* an estimate from where the present climb, 0.25 s long and then braked by 4 m/s2, ends
                                      * above reference + 0.8 m; or two heights in a row, their own climb 0.15 s long, or

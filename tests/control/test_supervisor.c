@@ -403,7 +403,7 @@ void test_floating_to_descending_by_setr_0_without_height(void)
 void test_floating_to_ground_at_rest(void)
 {
     floating();
-    watch(10.0F, 9); /* the first only starts the comparison */
+    watch(10.0F, 13); /* the first only starts the comparison */
     state_is(FLIGHT_FLOATING);
     watch(10.0F, 1);
     state_is(FLIGHT_GROUND);
@@ -486,7 +486,7 @@ void test_landing_to_descending_without_height(void)
 void test_landing_to_ground_at_rest(void)
 {
     land();
-    watch(49.0F, 9);
+    watch(49.0F, 13);
     state_is(FLIGHT_LANDING);
     watch(49.0F, 1);
     state_is(FLIGHT_GROUND);
@@ -745,7 +745,7 @@ void test_a_pilot_who_lands_withdraws_the_reference(void)
 {
     fly();
     pilot_takes_it(500.0F);
-    watch(10.0F, 11);
+    watch(10.0F, 15);
     state_is(FLIGHT_GROUND);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, s.reference_m);
     pilot_gives_it_back(10.0F);
@@ -1368,7 +1368,7 @@ void test_a_descent_through_50_mm_is_not_rest(void)
 void test_noise_of_the_sensor_does_not_hide_the_ground(void)
 {
     land();
-    for (int i = 0; i < 11; i++) {
+    for (int i = 0; i < 15; i++) {
         watch((i % 2 != 0) ? 8.0F : -8.0F, 1);
     }
     state_is(FLIGHT_GROUND);
@@ -1395,7 +1395,7 @@ void test_after_a_failure_the_ground_is_not_left_without_a_new_reference(void)
 {
     descend();
     watch(480.0F, 5);
-    watch(0.0F, 10);
+    watch(0.0F, 14);
     state_is(FLIGHT_GROUND);
     watch(0.0F, 100);
     state_is(FLIGHT_GROUND);

@@ -1,6 +1,7 @@
 /* What each task and interrupt of the firmware does with one message, as it does it. `steps NAME` runs the step NAME, first
  * twice for practice (caches of the dynamic linker), then once inside measured(), which is what callgrind counts.
  * `steps` alone lists the names; `steps --memory` prints the driver's RAM. */
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -229,7 +230,7 @@ static void prepare_imu_octets(void)
     razor_collector_init(&collector);
 }
 
-/* ---- TaskControl: one cycle in flight, under the law of the defaults ---- */
+/* ---- TaskControl: one cycle in flight with a new height, under the seed's law and under the default's ---- */
 
 static parameters_t parameters;
 static flight_t flight;
@@ -265,6 +266,46 @@ static void prepare_control(void)
         control();
     }
     REQUIRE(out.state == FLIGHT_FLYING && out.flags == 0);
+}
+
+#define FRAMES 16U
+static motion_frame_t frames[FRAMES];
+
+/* Frames every 25 ms; those of the 15 before come again, as from the IMU's history. */
+static void next_motion(void)
+{
+    memmove(frames, frames + 1, (FRAMES - 1U) * sizeof frames[0]);
+    in.now_us += 25000U;
+    frames[FRAMES - 1U] = (motion_frame_t){ .sequence = frames[FRAMES - 2U].sequence + 1U, .arrival_us = in.now_us,
+                                            .usable = true, .down_mps2 = 9.81F };
+    in.attitude_time_us = in.now_us;
+}
+
+static void next_est_cycle(void)
+{
+    for (unsigned i = 0; i < 3U; i++) {
+        next_motion();
+        control();
+    }
+    next_motion();
+    in.height_time_us = in.now_us - 1000U;
+    in.height_stamp_ms += 100U;
+    in.height_sequence++;
+    in.height_mm = fminf(in.height_mm + 10.0F, 600.0F);
+    in.altitude = (altitude_t){ .height_mm = in.height_mm, .slant_mm = in.height_mm };
+}
+
+static void prepare_est_control(void)
+{
+    prepare_control();
+    parameters.value[PARAMETER_LAW] = (float)LAW_EST;
+    in.frames = frames;
+    in.frame_count = FRAMES;
+    for (unsigned i = 0; i < 200U; i++) {
+        next_est_cycle();
+        control();
+    }
+    REQUIRE(flight.charge == CHARGE_HOLD && out.flags == 0);
 }
 
 /* ---- TaskSendComm, TaskReceiveComm: a telemetry line; a command, and the answer to it ---- */
@@ -326,6 +367,7 @@ static const struct {
     { "TaskIMU", prepare_imu, imu, nothing },
     { "TaskReceiveLaser", prepare_altitude, receive_laser, nothing },
     { "TaskControl", prepare_control, control, next_cycle },
+    { "TaskControl_EST", prepare_est_control, control, next_est_cycle },
     { "TaskSendLaser", prepare_link, send_laser, next_tick },
     { "TaskSendComm", nothing, send_comm, nothing },
     { "TaskReceiveComm", prepare_command, receive_comm, nothing },
