@@ -68,9 +68,9 @@ class Cost(unittest.TestCase):
         self.assertAlmostEqual(self.cost(drawn=[figures(failed=True, ground_contacts=1)]),
                                self.cost(drawn=[figures(failed=True)]) + 100.0 / 20)
 
-    def test_activity_of_the_nominal_vehicle_is_free_up_to_half_a_newton(self):
-        self.assertAlmostEqual(self.cost(nominal=[figures(thrust_std_n=0.5)] * 4), self.cost())
-        self.assertAlmostEqual(self.cost(nominal=[figures(thrust_std_n=0.6)] * 4), self.cost() + 20.0)
+    def test_activity_of_the_nominal_vehicle_is_free_up_to_450_millinewtons(self):
+        self.assertAlmostEqual(self.cost(nominal=[figures(thrust_std_n=0.45)] * 4), self.cost())
+        self.assertAlmostEqual(self.cost(nominal=[figures(thrust_std_n=0.55)] * 4), self.cost() + 20.0)
         self.assertAlmostEqual(self.cost(drawn=[figures(thrust_std_n=3.0)] * 20), self.cost())
 
     def test_drawn_vehicles_count_by_mean_and_quantile(self):
