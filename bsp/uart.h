@@ -29,8 +29,8 @@ void bsp_uart_open(bsp_uart_t uart, uint32_t bit_rate);
  * time-out of its own. Caller excludes both Hwis. */
 void bsp_uart_set_receive_level(bsp_uart_t uart, uint16_t octets);
 
-/* From the receive Hwi, or while it is excluded: takes what the FIFO holds, clears error and overflow conditions so that reception goes on, and
- * last the interrupt flag. */
+/* From the receive Hwi, or while it is excluded: takes what the FIFO holds, clears error and overflow conditions so that
+ * reception goes on, and last the interrupt flag. */
 void bsp_uart_receive(bsp_uart_t uart, bsp_uart_burst_t *burst);
 
 /* Puts as many of `count` octets (low eight bits) into the transmit FIFO as fit and returns how many. Caller excludes

@@ -144,8 +144,8 @@ static inline scip_event_t scip_parser_feed(scip_parser_t *parser, octet_t octet
     return SCIP_NOTHING;
 }
 
-/* The same for octets that come in bursts (FIFO, DMA, read()), at about half the cost: takes them up to and including the
- * one that makes an event, or all. Returns how many were taken; *event is SCIP_NOTHING when no event came. Call again
+/* The same for octets that come in bursts (FIFO, DMA, read()), at less cost: takes them up to and including the one that
+ * makes an event, or all. Returns how many were taken; *event is SCIP_NOTHING when no event came. Call again
  * with the rest. */
 size_t scip_parser_feed_run(scip_parser_t *parser, const octet_t *octets, size_t count, scip_event_t *event);
 

@@ -72,17 +72,31 @@ static void note_errors(const bsp_uart_burst_t *burst)
     }
 }
 
+static void feed(const bsp_uart_burst_t *burst)
+{
+    octet_t run[BSP_UART_FIFO_DEPTH];
+    size_t taken = 0U;
+    uint16_t i;
+
+    for (i = 0U; i < burst->count; i++) {
+        run[i] = octet_of(burst->octets[i]);
+    }
+    while (taken < burst->count) {
+        scip_event_t event;
+
+        taken += scip_parser_feed_run(&parser, &run[taken], burst->count - taken, &event);
+        note(event);
+    }
+}
+
 /* The last octet of a scan makes an interrupt; where the end is not known, the tick is soon enough. */
 static uint16_t received(const bsp_uart_burst_t *burst)
 {
     uint16_t expected;
-    uint16_t i;
 
     note_errors(burst);
     seen.octet_count += burst->count;
-    for (i = 0U; i < burst->count; i++) {
-        note(scip_parser_feed(&parser, octet_of(burst->octets[i])));
-    }
+    feed(burst);
     expected = scip_parser_expected(&parser);
     return (expected > 0U) ? expected : (uint16_t)UART_PORT_BURST;
 }
