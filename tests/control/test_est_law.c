@@ -466,25 +466,28 @@ void test_landing_touches_softly(void)
     }
 }
 
-/* Gusts and a hover thrust that is thought too high lift it off again; then it would be cut in the air. */
+/* Near the ground a tenth less thrust carries it: it would lift off again, and be cut in the air. */
 void test_a_landing_never_leaves_the_ground_again(void)
 {
+    double hop_m = 0.0, hardest_m_s = 0.0;
     for (uint32_t seed = 1U; seed <= 60U; seed++) {
+        const double hover_n = 5.6 + 0.047 * seed;
         board(seed);
-        world.body.hover_n = 5.6 + 0.047 * seed;
+        world.body.hover_n = hover_n;
         world.turbulence_m_s2 = 0.35;
         world.height_noise_mm *= 2.0;
         hover_at(0.6F);
         setr(0.0F);
-        double hop_m = 0.0;
         for (long i = 0; i < 20000 && out.state != FLIGHT_GROUND; i++) {
             advance();
-            hop_m = world.body.contacts > 0 ? fmax(hop_m, height_m()) : 0.0;
+            world.body.hover_n = (world.body.contacts > 0 || height_m() < 0.05) ? 0.9 * hover_n : hover_n;
+            hop_m = world.body.contacts > 0 ? fmax(hop_m, height_m()) : hop_m;
         }
         TEST_ASSERT_EQUAL(FLIGHT_GROUND, out.state);
-        TEST_ASSERT_TRUE(hop_m < 0.03);
-        TEST_ASSERT_TRUE(world.body.hardest_m_s < 0.45);
+        hardest_m_s = fmax(hardest_m_s, world.body.hardest_m_s);
     }
+    TEST_ASSERT_TRUE(hop_m > 0.0 && hop_m < 0.03);
+    TEST_ASSERT_TRUE(hardest_m_s > 0.1 && hardest_m_s < 0.45);
 }
 
 void test_setr_0_before_the_lift_off_takes_the_thrust_away(void)

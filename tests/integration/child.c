@@ -1,5 +1,6 @@
 #include "child.h"
 
+#include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -44,6 +45,38 @@ void child_run(child_work_t work, void *argument, void *result, size_t size)
     close(ends[0]);
     waitpid(pid, &status, 0);
     TEST_ASSERT_TRUE_MESSAGE(WIFEXITED(status) && WEXITSTATUS(status) == 0 && have == size, "the child crashed");
+}
+
+int child_plomada(const char *arguments, char *output, size_t size)
+{
+    char command[2048];
+    FILE *pipe;
+    size_t count;
+    int status;
+
+    snprintf(command, sizeof command, "cd '" SCRATCH "' && '" PLOMADA "' %s", arguments);
+    pipe = popen(command, "r");
+    TEST_ASSERT_NOT_NULL(pipe);
+    count = fread(output, 1, size - 1, pipe);
+    output[count] = '\0';
+    status = pclose(pipe);
+    TEST_ASSERT_TRUE(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+size_t child_read_file(const char *name, char *text, size_t size)
+{
+    char path[512];
+    FILE *file;
+    size_t count;
+
+    snprintf(path, sizeof path, SCRATCH "/%s", name);
+    file = fopen(path, "rb");
+    TEST_ASSERT_NOT_NULL_MESSAGE(file, path);
+    count = fread(text, 1, size - 1, file);
+    text[count] = '\0';
+    fclose(file);
+    return count;
 }
 
 typedef struct {

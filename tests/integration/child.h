@@ -15,6 +15,13 @@ void child_run(child_work_t work, void *argument, void *result, size_t size);
 /* One flight; assignments are --set texts, NULL ends. */
 void child_fly(const char *scenario, unsigned long seed, const char *const *assignments, flight_result_t *result);
 
+/* The program as its users call it, in the directory SCRATCH: `plomada ARGUMENTS`, which a shell reads. What it prints is
+ * put into output, cut at size - 1 characters and terminated. Returns its exit status. */
+int child_plomada(const char *arguments, char *output, size_t size);
+
+/* The file SCRATCH/name, cut at size - 1 octets and terminated. Returns how many there are; fails the test without it. */
+size_t child_read_file(const char *name, char *text, size_t size);
+
 /* Everything that the operator's terminal received. */
 #define CHILD_TERMINAL_MAX 100000
 typedef struct {

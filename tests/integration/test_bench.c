@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 
 #include "child.h"
 #include "firmware/watch.h"
@@ -21,19 +20,10 @@ static char output[200000];
 
 static int run(const char *arguments)
 {
-    char command[512];
-    FILE *pipe;
-    size_t count;
-    int status;
+    char line[1024];
 
-    snprintf(command, sizeof command, "cd '" SCRATCH "' && '" PLOMADA "' fly bench %s", arguments);
-    pipe = popen(command, "r");
-    TEST_ASSERT_NOT_NULL(pipe);
-    count = fread(output, 1, sizeof output - 1, pipe);
-    output[count] = '\0';
-    status = pclose(pipe);
-    TEST_ASSERT_TRUE(WIFEXITED(status));
-    return WEXITSTATUS(status);
+    snprintf(line, sizeof line, "fly bench %s", arguments);
+    return child_plomada(line, output, sizeof output);
 }
 
 static const char *last_line(void)

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 
 #include "child.h"
 #include "parameters.h"
@@ -16,34 +15,10 @@ static char output[200000];
 
 static int run(const char *arguments)
 {
-    char command[1024];
-    FILE *pipe;
-    size_t count;
-    int status;
+    char line[1024];
 
-    snprintf(command, sizeof command, "cd '" SCRATCH "' && '" PLOMADA "' %s 2>&1", arguments);
-    pipe = popen(command, "r");
-    TEST_ASSERT_NOT_NULL(pipe);
-    count = fread(output, 1, sizeof output - 1, pipe);
-    output[count] = '\0';
-    status = pclose(pipe);
-    TEST_ASSERT_TRUE(WIFEXITED(status));
-    return WEXITSTATUS(status);
-}
-
-static size_t read_file(const char *name, char *text, size_t size)
-{
-    char path[512];
-    FILE *file;
-    size_t count;
-
-    snprintf(path, sizeof path, SCRATCH "/%s", name);
-    file = fopen(path, "rb");
-    TEST_ASSERT_NOT_NULL_MESSAGE(file, path);
-    count = fread(text, 1, size - 1, file);
-    text[count] = '\0';
-    fclose(file);
-    return count;
+    snprintf(line, sizeof line, "%s 2>&1", arguments);
+    return child_plomada(line, output, sizeof output);
 }
 
 void test_usage_errors_exit_2_and_help_exits_0(void)
@@ -88,10 +63,10 @@ void test_the_same_seed_gives_the_same_csv_and_another_seed_another(void)
     TEST_ASSERT_EQUAL_INT(0, run("fly pid-40cm --seed 7 --csv a.csv"));
     TEST_ASSERT_EQUAL_INT(0, run("fly pid-40cm --seed 7 --csv b.csv"));
     TEST_ASSERT_EQUAL_INT(0, run("fly pid-40cm --seed 8 --csv c.csv"));
-    count = read_file("a.csv", first, sizeof first);
-    TEST_ASSERT_EQUAL_size_t(count, read_file("b.csv", second, sizeof second));
+    count = child_read_file("a.csv", first, sizeof first);
+    TEST_ASSERT_EQUAL_size_t(count, child_read_file("b.csv", second, sizeof second));
     TEST_ASSERT_EQUAL_INT(0, memcmp(first, second, count));
-    read_file("c.csv", second, sizeof second);
+    child_read_file("c.csv", second, sizeof second);
     TEST_ASSERT_NOT_EQUAL(0, strcmp(first, second));
     TEST_ASSERT_EQUAL_INT(0, strncmp(first, "t_s,", 4));
 }
@@ -104,8 +79,8 @@ void test_a_broken_expectation_exits_1_and_still_writes_both_files(void)
     remove(SCRATCH "/low.json");
     TEST_ASSERT_EQUAL_INT(1, run("fly pid-40cm --set GRAV=1 --csv low.csv --json low.json"));
     TEST_ASSERT_NOT_NULL(strstr(output, "NOT MET"));
-    TEST_ASSERT_TRUE(read_file("low.csv", text, sizeof text) > 100000);
-    read_file("low.json", text, sizeof text);
+    TEST_ASSERT_TRUE(child_read_file("low.csv", text, sizeof text) > 100000);
+    child_read_file("low.json", text, sizeof text);
     TEST_ASSERT_NOT_NULL(strstr(text, "\"rise_time_s\": null"));
     TEST_ASSERT_NOT_NULL(strstr(text, "\"met\": false"));
     for (int i = 0; i < METRIC_COUNT; i++) {
@@ -118,12 +93,12 @@ void test_overrides_reach_the_firmware_and_the_plant(void)
     static char text[4000];
 
     TEST_ASSERT_EQUAL_INT(0, run("fly pid-40cm --json plain.json"));
-    read_file("plain.json", text, sizeof text);
+    child_read_file("plain.json", text, sizeof text);
     TEST_ASSERT_NOT_NULL(strstr(text, "\"commands_err\": 0"));
     TEST_ASSERT_NOT_NULL(strstr(text, "\"terrain_rms_mm\": null"));
     run("fly pid-40cm --set SETR=0.8 --set plant.turbulence=0 --json other.json --csv other.csv");
     static char csv[2000000];
-    read_file("other.csv", csv, sizeof csv);
+    child_read_file("other.csv", csv, sizeof csv);
     TEST_ASSERT_NOT_NULL(strstr(csv, ",0.800,"));
 }
 
@@ -148,10 +123,10 @@ void test_a_storage_that_is_none_is_refused_by_name_and_left_as_it_is(void)
     make_file("short.bin", 32767, 0xFF);
     TEST_ASSERT_EQUAL_INT(2, run("fly bench --storage short.bin"));
     TEST_ASSERT_EQUAL_STRING("plomada fly: short.bin: no image of the storage: its length is not 32768 octets\n", output);
-    TEST_ASSERT_EQUAL_size_t(32767, read_file("short.bin", text, sizeof text));
+    TEST_ASSERT_EQUAL_size_t(32767, child_read_file("short.bin", text, sizeof text));
     make_file("long.bin", 32769, 0xFF);
     TEST_ASSERT_EQUAL_INT(2, run("fly bench --storage long.bin"));
-    TEST_ASSERT_EQUAL_size_t(32769, read_file("long.bin", text, sizeof text));
+    TEST_ASSERT_EQUAL_size_t(32769, child_read_file("long.bin", text, sizeof text));
     TEST_ASSERT_EQUAL_INT(2, run("fly bench --storage ."));
     TEST_ASSERT_EQUAL_STRING("plomada fly: .: Is a directory\n", output);
 }
@@ -170,12 +145,12 @@ void test_a_damaged_storage_is_told_at_power_on_and_the_defaults_fly(void)
     make_file("zero.bin", 32768, 0);
     TEST_ASSERT_EQUAL_INT(0, run("fly bench --duration 2 --storage zero.bin"));
     TEST_ASSERT_NOT_NULL(strstr(output, "ERR LOAD stored set damaged\n"));
-    TEST_ASSERT_EQUAL_size_t(32768, read_file("zero.bin", text, sizeof text));
+    TEST_ASSERT_EQUAL_size_t(32768, child_read_file("zero.bin", text, sizeof text));
     TEST_ASSERT_EACH_EQUAL_CHAR(0, text, 32768);
     remove(SCRATCH "/none.bin");
     TEST_ASSERT_EQUAL_INT(0, run("fly bench --duration 2 --storage none.bin"));
     TEST_ASSERT_NULL(strstr(output, "LOAD"));
-    TEST_ASSERT_EQUAL_size_t(32768, read_file("none.bin", text, sizeof text));
+    TEST_ASSERT_EQUAL_size_t(32768, child_read_file("none.bin", text, sizeof text));
     TEST_ASSERT_EACH_EQUAL_CHAR((char)0xFF, text, 32768);
 }
 

@@ -12,6 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "child.h"
 #include "sim/host/port.h"
 #include "unity.h"
 
@@ -125,38 +126,6 @@ static void answers(const char *command, const char *reply)
     TEST_ASSERT_EQUAL_STRING(reply, heard);
 }
 
-static int run(const char *arguments, char *output, size_t size)
-{
-    char command[1024];
-    FILE *pipe;
-    size_t count;
-    int status;
-
-    snprintf(command, sizeof command, "cd '" SCRATCH "' && '" PLOMADA "' %s", arguments);
-    pipe = popen(command, "r");
-    TEST_ASSERT_NOT_NULL(pipe);
-    count = fread(output, 1, size - 1, pipe);
-    output[count] = '\0';
-    status = pclose(pipe);
-    TEST_ASSERT_TRUE(WIFEXITED(status));
-    return WEXITSTATUS(status);
-}
-
-static size_t read_file(const char *name, char *text, size_t size)
-{
-    char path[512];
-    FILE *file;
-    size_t count;
-
-    snprintf(path, sizeof path, SCRATCH "/%s", name);
-    file = fopen(path, "rb");
-    TEST_ASSERT_NOT_NULL_MESSAGE(file, path);
-    count = fread(text, 1, size - 1, file);
-    text[count] = '\0';
-    fclose(file);
-    return count;
-}
-
 /* ---- a bare client ---- */
 
 void test_a_client_talks_both_protocols_and_is_corrected(void)
@@ -199,7 +168,7 @@ void test_the_rate_follows_ss_and_a_client_that_does_not_follow_hears_nonsense(v
     listen_ms(2000, "99b\n");
     TEST_ASSERT_NOT_NULL(strstr(heard, "99b\n"));
     TEST_ASSERT_EQUAL_INT(0, end_server(SIGINT));
-    read_file("laser.out", report, sizeof report);
+    child_read_file("laser.out", report, sizeof report);
     TEST_ASSERT_NOT_NULL(strstr(report, "at another rate: 3 octets ignored"));
     TEST_ASSERT_NULL(strstr(report, " 0 sent as nonsense"));
 }
@@ -241,7 +210,7 @@ void test_the_link_leads_to_the_terminal_and_both_signals_remove_it(void)
         TEST_ASSERT_EQUAL_STRING_LEN("/dev/pts/", target, 9);
         TEST_ASSERT_EQUAL_INT(0, end_server(signals[i]));
         TEST_ASSERT_FALSE(is_link());
-        read_file("laser.out", line, sizeof line);
+        child_read_file("laser.out", line, sizeof line);
         TEST_ASSERT_EQUAL_STRING_LEN("laser: /dev/pts/", line, 16);
     }
 }
@@ -269,12 +238,12 @@ void test_anything_else_in_the_links_place_is_left_alone(void)
 
     fputs("precious", file);
     fclose(file);
-    TEST_ASSERT_EQUAL_INT(2, run("laser --link '" LINK "' 2>&1", output, sizeof output));
+    TEST_ASSERT_EQUAL_INT(2, child_plomada("laser --link '" LINK "' 2>&1", output, sizeof output));
     TEST_ASSERT_NOT_NULL(strstr(output, "File exists"));
-    TEST_ASSERT_EQUAL_size_t(8, read_file("urg", output, sizeof output));
+    TEST_ASSERT_EQUAL_size_t(8, child_read_file("urg", output, sizeof output));
     unlink(LINK);
     TEST_ASSERT_EQUAL_INT(0, symlink("/dev/null", LINK));
-    TEST_ASSERT_EQUAL_INT(2, run("laser --link '" LINK "' 2>&1", output, sizeof output));
+    TEST_ASSERT_EQUAL_INT(2, child_plomada("laser --link '" LINK "' 2>&1", output, sizeof output));
     TEST_ASSERT_TRUE(is_link());
 }
 
@@ -289,10 +258,10 @@ void test_usage_errors_exit_2_and_help_tells_of_every_fault(void)
 
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         snprintf(command, sizeof command, "%s 2>&1", bad[i]);
-        TEST_ASSERT_EQUAL_INT_MESSAGE(2, run(command, output, sizeof output), bad[i]);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(2, child_plomada(command, output, sizeof output), bad[i]);
         TEST_ASSERT_FALSE(is_link());
     }
-    TEST_ASSERT_EQUAL_INT(0, run("laser --help", output, sizeof output));
+    TEST_ASSERT_EQUAL_INT(0, child_plomada("laser --help", output, sizeof output));
     TEST_ASSERT_NOT_NULL(strstr(output, "status@N:CODE"));
     TEST_ASSERT_NOT_NULL(strstr(output, "TCSETS2"));
 }
@@ -330,25 +299,25 @@ void test_a_recording_is_whole_and_has_its_birth_certificate(void)
     size_t rx, tx;
 
     begin("--height", "0.4", "--rate", "57600");
-    TEST_ASSERT_EQUAL_INT(0, run("scip record '" LINK "' live.bin --seconds 2 --rate 250000 2>&1", text, sizeof text));
+    TEST_ASSERT_EQUAL_INT(0, child_plomada("scip record '" LINK "' live.bin --seconds 2 --rate 250000 2>&1", text, sizeof text));
     TEST_ASSERT_NOT_NULL(strstr(text, "damaged: 0\n"));
-    rx = read_file("live.bin", octets, sizeof octets);
+    rx = child_read_file("live.bin", octets, sizeof octets);
     TEST_ASSERT_TRUE(rx > 15 * 1435);
     TEST_ASSERT_NOT_NULL(strstr(octets, "MS0044072501000\n00P\n\n"));
-    tx = read_file("live.bin.tx", octets, sizeof octets);
+    tx = child_read_file("live.bin.tx", octets, sizeof octets);
     TEST_ASSERT_NOT_NULL(strstr(octets, "SS250000\n"));
-    read_file("live.bin.csv", text, sizeof text);
+    child_read_file("live.bin.csv", text, sizeof text);
     check_time_table(text, (long)rx, (long)tx);
-    read_file("live.bin.md", text, sizeof text);
+    child_read_file("live.bin.md", text, sizeof text);
     TEST_ASSERT_NOT_NULL(strstr(text, "# live.bin: birth certificate\n"));
     TEST_ASSERT_NOT_NULL(strstr(text, "FIRM:3.1.04(02/Aug./2007)\n"));
     TEST_ASSERT_NOT_NULL(strstr(text, "SERI:H0706400\n"));
     TEST_ASSERT_NOT_NULL(strstr(text, "DMAX:5600\n"));
     TEST_ASSERT_NOT_NULL(strstr(text, "| rate of the stream | 250000 bit/s |"));
     TEST_ASSERT_NOT_NULL(strstr(text, " UTC, from `" LINK "` |"));
-    TEST_ASSERT_EQUAL_INT(0, run("scip decode live.bin 2>/dev/null | grep -c '^[0-9]'", text, sizeof text));
+    TEST_ASSERT_EQUAL_INT(0, child_plomada("scip decode live.bin 2>/dev/null | grep -c '^[0-9]'", text, sizeof text));
     TEST_ASSERT_TRUE(atoi(text) >= 18);
-    TEST_ASSERT_EQUAL_INT(0, run("scip mirrors live.bin --height 0.4 2>/dev/null", text, sizeof text));
+    TEST_ASSERT_EQUAL_INT(0, child_plomada("scip mirrors live.bin --height 0.4 2>/dev/null", text, sizeof text));
     TEST_ASSERT_NOT_NULL(strstr(text, "{ { 111U, 145U }, { 372U, 406U }, { 623U, 657U } }"));
 }
 
@@ -369,7 +338,7 @@ void test_ctrl_c_ends_a_recording_in_good_order(void)
     kill(recorder, SIGINT);
     waitpid(recorder, &status, 0);
     TEST_ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-    read_file("cut.bin.md", text, sizeof text);
+    child_read_file("cut.bin.md", text, sizeof text);
     TEST_ASSERT_NOT_NULL(strstr(text, "SERI:H0706400\n"));
 }
 
@@ -378,7 +347,7 @@ void test_mirrors_are_found_on_a_live_sensor(void)
     static char text[10000];
 
     begin("--height", "1.2", NULL, NULL);
-    TEST_ASSERT_EQUAL_INT(0, run("scip mirrors '" LINK "' --height 1.2 2>/dev/null", text, sizeof text));
+    TEST_ASSERT_EQUAL_INT(0, child_plomada("scip mirrors '" LINK "' --height 1.2 2>/dev/null", text, sizeof text));
     TEST_ASSERT_NOT_NULL(strstr(text, "{ { 111U, 145U }, { 372U, 406U }, { 623U, 657U } }"));
 }
 
@@ -414,7 +383,7 @@ void test_the_firmware_flies_on_a_sensor_behind_a_port_and_finds_it_again_after_
     const char *answer;
 
     begin("--height", "0.4", NULL, NULL);
-    TEST_ASSERT_EQUAL_INT(0, run("fly bench --realtime --laser '" LINK "' --duration 13", text, sizeof text));
+    TEST_ASSERT_EQUAL_INT(0, child_plomada("fly bench --realtime --laser '" LINK "' --duration 13", text, sizeof text));
     TEST_ASSERT_NOT_NULL(strstr(text, "laser:WAIT"));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "laser:OK"), text);
     heights_are(text, 0.4, 5);
@@ -424,7 +393,7 @@ void test_the_firmware_flies_on_a_sensor_behind_a_port_and_finds_it_again_after_
     TEST_ASSERT_EQUAL_INT(250000, number_after(answer, "rate:"));
     TEST_ASSERT_TRUE(number_after(answer, "frames:") > 10);
     TEST_ASSERT_EQUAL_INT(0, number_after(answer, "sum:"));
-    TEST_ASSERT_EQUAL_INT(0, run("fly bench --laser '" LINK "' --duration 9", text, sizeof text));
+    TEST_ASSERT_EQUAL_INT(0, child_plomada("fly bench --laser '" LINK "' --duration 9", text, sizeof text));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "laser:OK"), text);
     heights_are(text, 0.4, 5);
 }

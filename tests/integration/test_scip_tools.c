@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 
+#include "child.h"
 #include "sim/devices/scene.h"
 #include "sim/devices/urg04lx.h"
 #include "sim/noise.h"
@@ -452,19 +452,10 @@ static char output[400000];
 
 static int run(const char *arguments)
 {
-    char command[1024];
-    FILE *pipe;
-    size_t count;
-    int status;
+    char line[1024];
 
-    snprintf(command, sizeof command, "cd '" SCRATCH "' && '" PLOMADA "' scip %s", arguments);
-    pipe = popen(command, "r");
-    TEST_ASSERT_NOT_NULL(pipe);
-    count = fread(output, 1, sizeof output - 1, pipe);
-    output[count] = '\0';
-    status = pclose(pipe);
-    TEST_ASSERT_TRUE(WIFEXITED(status));
-    return WEXITSTATUS(status);
+    snprintf(line, sizeof line, "scip %s", arguments);
+    return child_plomada(line, output, sizeof output);
 }
 
 static void write_stream(const char *name)

@@ -134,7 +134,7 @@ class Words(Sample):
     def test_only_whole_words_are_meant(self):
         self.write("control/a.c", "doubled, sine, printing, free_fall_m, blocked, asin_table, x = 0.5F;\n")
         self.write("firmware/d.c", "x = 0.0F; height_mm = altitude.height_mm; Swi_post(laser_swi);\n")
-        self.write("docs/x.md", "the net/work/home page, ~/home/x, https://x.org/root/\n")
+        self.write("docs/x.md", "the net/{0}/{1} page, ~/{1}/x, https://x.org/{2}/\n".format("work", "home", "root"))
         self.assertEqual([text for text in self.complaints(words) if "docs" not in text], [])
 
     def test_a_row_that_cannot_be_read_is_an_error(self):

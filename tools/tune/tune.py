@@ -24,6 +24,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/campaign"))
+import campaign  # noqa: E402
 import fleet  # noqa: E402
 import plan  # noqa: E402
 import table  # noqa: E402
@@ -188,21 +189,14 @@ def search(candidates, units):
         pass
 
 
-def positive(word):
-    value = int(word)
-    if value < 1:
-        raise argparse.ArgumentTypeError("at least 1")
-    return value
-
-
 def read_arguments(argv):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("law", choices=plan.LAWS, metavar="LAW", help=", ".join(plan.LAWS))
     parser.add_argument("--set", choices=("trimmed", "untrimmed"), default="untrimmed",
                         help="drawn vehicles: GRAV trimmed by hand or not (untrimmed)")
-    parser.add_argument("--flights", type=positive, default=4000, help="budget (4000)")
-    parser.add_argument("--runs", type=positive, default=30, help="drawn vehicles that each candidate flies (30)")
-    parser.add_argument("--seed", type=positive, default=2, help="of the vehicles (2)")
+    parser.add_argument("--flights", type=campaign.positive, default=4000, help="budget (4000)")
+    parser.add_argument("--runs", type=campaign.positive, default=30, help="drawn vehicles that each candidate flies (30)")
+    parser.add_argument("--seed", type=campaign.positive, default=2, help="of the vehicles (2)")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster (default: this machine's processors)")
     parser.add_argument("--program", type=Path, default=ROOT / "build/plomada", help="default: build/plomada")
     options = parser.parse_args(argv)
