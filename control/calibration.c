@@ -14,7 +14,7 @@ static float thrust_of(uint16_t compare_counts)
 
 static calibration_end_t reason_to_end(float link_s, const flight_inputs_t *in, const flight_outputs_t *out)
 {
-    const bool low = in->height_valid && in->height_mm <= LIFTED_MM;
+    const bool low = in->height_valid && in->altitude.height_mm <= LIFTED_MM;
 
     if (out->state != FLIGHT_GROUND || out->reference_m > 0.0F) {
         return CALIBRATION_STATE;

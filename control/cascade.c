@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "between.h"
 #include "thrust.h"
 
 #define TERRAIN_SHARE 1.0F
@@ -17,11 +18,6 @@
 #define ACTIVITY_MAX_N 1.5F
 #define ACTIVITY_TIME_S 1.0F
 #define CALM_MIN 0.4F
-
-static float between(float lowest, float value, float highest)
-{
-    return fminf(fmaxf(value, lowest), highest);
-}
 
 void cascade_init(cascade_t *cascade, float thrust_n)
 {

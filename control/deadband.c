@@ -2,15 +2,12 @@
 
 #include <math.h>
 
+#include "between.h"
+
 #define BAND_MAX_N 1.5F
 #define STEEP_N 0.10F
 #define CLEAR_N 0.20F
 #define LEARN_PER_S 3.0F
-
-static float between(float lowest, float value, float highest)
-{
-    return fminf(fmaxf(value, lowest), highest);
-}
 
 void deadband_init(deadband_t *deadband)
 {

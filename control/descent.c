@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "between.h"
+
 /* At terminal speed v, damping D: thrust deficit / hover thrust = D v / g. */
 #define SINK_SHARE 0.073F
 #define FLARE_RATE_MM_S 150.0F
@@ -22,11 +24,6 @@
 #define LOW_NO_MORE_MM 100.0F
 #define LOW_ABOVE_HOVER_N 0.5F
 #define LOW_FADE_N_PER_S 2.0F
-
-static float between(float lowest, float value, float highest)
-{
-    return fminf(fmaxf(value, lowest), highest);
-}
 
 static float flare_mm_s(float height_mm)
 {

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "between.h"
 #include "thrust.h"
 
 #define GRAVITY_MPS2 9.80665F
@@ -51,11 +52,6 @@
 #define STOP_N_PER_S 2.0F
 #define TERRAIN_KEEP_S 30.0F
 #define LOWEST_OVER_TERRAIN_M 0.15F
-
-static float between(float lowest, float value, float highest)
-{
-    return fminf(fmaxf(value, lowest), highest);
-}
 
 static float seconds(uint32_t from_us, uint32_t to_us)
 {

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "between.h"
+
 #define GRAVITY_MPS2 9.80665F
 #define FRAME_AGE_US UINT32_C(23600)
 #define TILT_AGE_US UINT32_C(50000)
@@ -42,11 +44,6 @@ enum { HEIGHT, SPEED, BIAS, TERRAIN };
 static const float variance_max[ESTIMATOR_STATES] = {1.0F, 1.0F, 0.25F, 0.25F};
 static const float variance_min[ESTIMATOR_STATES] = {1.0e-7F, 1.0e-7F, 1.0e-7F, 1.0e-7F};
 static const float variance_start[ESTIMATOR_STATES] = {1.0e-4F, 0.04F, 0.09F, 0.0025F};
-
-static float between(float lowest, float value, float highest)
-{
-    return fminf(fmaxf(value, lowest), highest);
-}
 
 static float seconds(uint32_t from_us, uint32_t to_us)
 {

@@ -2,8 +2,8 @@
  *
  *   height' = speed - terrain rate,   speed' = upward acceleration - bias,   bias' = 0,   rate' = -rate / 1.0 s,
  *
- * driven by the accelerations of the IMU frames, mixed with what the thrust lets expect, and corrected by heights at the instant of their rays. The filter with
- * its covariance lives at the instant of the latest rays; the frames since then are kept, and the estimate of now is the
+ * driven by the accelerations of the IMU frames, mixed with what the thrust lets expect, and corrected by heights at the
+ * instant of their rays. The filter with its covariance lives at the instant of the latest rays; the frames since then are kept, and the estimate of now is the
  * filter's state carried through them. So a height of 70 ms ago is fused as exactly as one of now.
  *
  * A height further from the expectation than a bound of at most 80 mm is not fused. Two in a row that agree are a step of

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "between.h"
 #include "thrust.h"
 
 #define HOVER_MARGIN_N 1.5F
@@ -38,11 +39,6 @@ static bool is_est(flight_charge_t charge)
     return charge == CHARGE_HOLD || charge == CHARGE_LAND || charge == CHARGE_SINK;
 }
 
-static float between(float lowest, float value, float highest)
-{
-    return fminf(fmaxf(value, lowest), highest);
-}
-
 static float seconds(uint32_t time_us, float at_most_s)
 {
     return fminf((float)time_us * 1.0e-6F, at_most_s);
@@ -51,7 +47,6 @@ static float seconds(uint32_t time_us, float at_most_s)
 static void keep_hover(flight_t *flight, float gravity_n)
 {
     const flight_state_t state = flight->supervisor.state;
-
     const bool grounded = state == FLIGHT_GROUND || state == FLIGHT_TAKEOFF;
 
     flight->weighed = !grounded && (flight->weighed || state == FLIGHT_FLYING);

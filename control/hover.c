@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "between.h"
+
 #define DRIFT_N2_PER_S 0.00038F
 #define SLOW_SHARE 6.6F
 #define GUST_RATE_PER_S 2.1F
@@ -9,11 +11,6 @@
 #define GUST_TIME_S 0.76F
 #define GUST_MAX_N 1.0F
 #define SHARE_MAX 0.5F
-
-static float between(float lowest, float value, float highest)
-{
-    return fminf(fmaxf(value, lowest), highest);
-}
 
 void hover_init(hover_t *hover, float thrust_n, float sigma_n, float least_n, float most_n)
 {

@@ -37,7 +37,7 @@ typedef enum { LAW_PD, LAW_PID, LAW_PIDT, LAW_EST, LAW_COUNT } control_law_t;
 typedef enum { RELEASE_FREE, RELEASE_SCAN, RELEASE_COUNT } control_release_t;
 typedef enum { TERRAIN_FOLLOW, TERRAIN_IGNORE, TERRAIN_COUNT } control_terrain_t;
 typedef enum { PLANT_THRUST, PLANT_CLIMB, PLANT_COUNT } control_plant_t; /* what the autopilot's throttle commands */
-typedef enum { SEL_NONE, SEL_PIN, SEL_COUNT } control_sel_t;     /* what tells who has the throttle: nothing, or bsp/selector.h */
+typedef enum { SEL_NONE, SEL_PIN, SEL_COUNT } control_sel_t; /* what tells who has the throttle: nothing, or a pin */
 
 typedef struct {
     const char *name;               /* as typed after '#', upper case */

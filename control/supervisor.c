@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "between.h"
 #include "parameters.h"
 
 #define HEIGHT_FRESH_US UINT32_C(300000)
@@ -146,11 +147,6 @@ static void observe_time(supervisor_t *s, const flight_inputs_t *in)
     s->started = true;
 }
 
-static float between(float lowest, float value, float highest)
-{
-    return fminf(fmaxf(value, lowest), highest);
-}
-
 static float rate_after(const height_track_t *before, float height_mm, uint32_t gap_us)
 {
     if (before->age_us > HEIGHT_LOST_US || gap_us == 0U) {
@@ -165,7 +161,7 @@ static float rate_after(const height_track_t *before, float height_mm, uint32_t 
 static void observe_height(supervisor_t *s, const flight_inputs_t *in)
 {
     height_track_t *track = &s->height;
-    const bool plausible = in->height_mm >= HEIGHT_MIN_MM && in->height_mm <= HEIGHT_MAX_MM;
+    const bool plausible = in->altitude.height_mm >= HEIGHT_MIN_MM && in->altitude.height_mm <= HEIGHT_MAX_MM;
 
     track->age_us = grown(track->age_us, s->step_us);
     track->is_new = in->height_valid && in->height_sequence != track->sequence && plausible;
@@ -173,8 +169,8 @@ static void observe_height(supervisor_t *s, const flight_inputs_t *in)
         return;
     }
     track->gap_us = in->height_time_us - track->time_us;
-    track->rate_mm_s = rate_after(track, in->height_mm, track->gap_us);
-    track->height_mm = in->height_mm;
+    track->rate_mm_s = rate_after(track, in->altitude.height_mm, track->gap_us);
+    track->height_mm = in->altitude.height_mm;
     track->time_us = in->height_time_us;
     track->sequence = in->height_sequence;
     track->age_us = elapsed(in->now_us, in->height_time_us);
@@ -264,10 +260,6 @@ static void observe_ground(supervisor_t *s)
     hold(&s->aloft, fresh && height_mm > OFF_GROUND_MM, s->step_us);
     hold(&s->rest, resting, s->step_us);
     s->rest_from_mm = resting ? s->rest_from_mm : height_mm;
-    if (s->height.is_new) {
-        const bool above = measured_peak_mm(s) > TOO_HIGH_MM;
-        s->too_high_count = above ? (uint16_t)(s->too_high_count + (s->too_high_count < TOO_HIGH_HEIGHTS)) : 0U;
-    }
 }
 
 static void observe_estimate(supervisor_t *s, const vertical_estimate_t *estimate)
@@ -275,6 +267,14 @@ static void observe_estimate(supervisor_t *s, const vertical_estimate_t *estimat
     s->estimated_peak_mm =
         estimate->known ? peak_mm(s, estimate->height_mm, estimate->climb_mm_s, ESTIMATE_AHEAD_S) : NAN;
     s->estimate_age_us = estimate->known ? 0U : grown(s->estimate_age_us, s->step_us);
+}
+
+static void observe_climb(supervisor_t *s)
+{
+    if (s->height.is_new) {
+        const bool above = measured_peak_mm(s) > TOO_HIGH_MM;
+        s->too_high_count = above ? (uint16_t)(s->too_high_count + (s->too_high_count < TOO_HIGH_HEIGHTS)) : 0U;
+    }
 }
 
 static bool too_high(const supervisor_t *s)
@@ -323,7 +323,7 @@ static uint16_t flags(const supervisor_t *s, uint16_t met, float link_s, const f
 
     return (uint16_t)(bit(!fresh, FLIGHT_FLAG_HEIGHT)
                       | bit(!level, FLIGHT_FLAG_ATTITUDE)
-                      | bit(fresh && in->disagree, FLIGHT_FLAG_DISAGREE)
+                      | bit(fresh && in->altitude.disagree, FLIGHT_FLAG_DISAGREE)
                       | bit(lowering, FLIGHT_FLAG_TOO_HIGH)
                       | bit(link_silent(s, link_s, 0U), FLIGHT_FLAG_LINK)
                       | bit(tilted, FLIGHT_FLAG_TILT)
@@ -364,6 +364,7 @@ void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs
     observe_reference(supervisor, link_s, in);
     observe_estimate(supervisor, estimate);
     observe_ground(supervisor);
+    observe_climb(supervisor);
 
     const uint16_t met = conditions(supervisor, in);
     const flight_state_t next = flight_next_state(supervisor->state, met);

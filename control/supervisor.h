@@ -35,16 +35,14 @@ typedef enum {
  * later than now_us counts as now. Steps may not be more than 71 minutes apart. */
 typedef struct {
     uint32_t now_us;
-    bool height_valid;              /* the latest scan gave a height; false: height_mm is not looked at */
-    float height_mm;                /* outside -500 .. 5000 or NaN: treated as not valid */
+    bool height_valid;              /* the latest scan gave a height; false: altitude is not looked at */
+    altitude_t altitude;            /* a height outside -500 .. 5000 mm or NaN is treated as not valid */
     uint32_t height_time_us;        /* arrival of the latest valid height; meaningless before the first */
     uint32_t height_sequence;       /* +1 per valid height; 0 = never one */
-    bool disagree;                  /* mirrors disagree, see altitude.h */
     bool attitude_ready;            /* offset known */
     float roll_rad;                 /* median of the latest five frames; not used by laws PD and PID */
     float pitch_rad;                /* likewise */
     uint32_t attitude_time_us;      /* arrival of the latest IMU frame */
-    altitude_t altitude;            /* what height_mm was made of; for law EST */
     uint32_t height_stamp_ms;       /* 24-bit sensor time of that scan; for laws PIDT and EST */
     const motion_frame_t *frames;   /* the latest frames, oldest first, old ones again or not; for law EST; borrowed for
                                      * the call, NULL when frame_count is 0 */

@@ -109,12 +109,10 @@ static void look(const parameters_t *parameters, flight_inputs_t *in)
     reference_server_read(&reference);
     in->now_us = bsp_time_us();
     in->height_valid = altitude.scan_valid;
-    in->height_mm = altitude.altitude.height_mm;
     in->height_time_us = altitude.arrival_us;
     in->height_sequence = altitude.sequence;
     in->height_stamp_ms = altitude.sensor_time_ms;
     in->altitude = altitude.altitude;
-    in->disagree = altitude.altitude.disagree;
     in->attitude_ready = imu->ready;
     in->roll_rad = imu->median.roll_rad;
     in->pitch_rad = imu->median.pitch_rad;

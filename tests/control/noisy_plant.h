@@ -97,7 +97,6 @@ static inline void noisy_height(noisy_t *n, flight_inputs_t *in, uint32_t clock_
                              n->height_noise_mm * noisy_gauss(n));
     in->altitude = altitude_from_ranges(&range, 1, n->frames[NOISY_FRAMES - 1U].roll_rad, 0.0F);
     in->height_valid = true;
-    in->height_mm = in->altitude.height_mm;
     in->height_time_us = n->body.time_us - 2000U + clock_us; /* the plant's height comes 2 ms after its last octet */
     in->height_stamp_ms = ((n->body.time_us - 106500U) / 1000U + 77U) & 0xFFFFFFU;
     in->height_sequence++;

@@ -23,7 +23,7 @@ void setUp(void)
     memset(&flown, 0, sizeof flown);
     in.now_us = 4294000000U;        /* wraps within a second */
     in.height_valid = true;
-    in.height_mm = 4.0F;
+    in.altitude.height_mm = 4.0F;
     flown.state = FLIGHT_GROUND;
     flown.pulse_us = THRUST_IDLE_PULSE_US;
     link_s = LINK_S;
@@ -134,7 +134,7 @@ void test_each_reason_ends_it_at_once_and_for_good(void)
         switch (reason) {
         case 0: flown.flags = FLIGHT_FLAG_LINK; break;
         case 1: link_s = 0.0F; break;
-        case 2: in.height_mm = 101.0F; break;
+        case 2: in.altitude.height_mm = 101.0F; break;
         case 3: in.height_valid = false; break;
         case 4: flown.flags = FLIGHT_FLAG_HEIGHT; break;
         case 5: flown.state = FLIGHT_FLOATING; break;
@@ -147,7 +147,7 @@ void test_each_reason_ends_it_at_once_and_for_good(void)
         flown.state = FLIGHT_GROUND;
         flown.reference_m = 0.0F;
         link_s = LINK_S;
-        in.height_mm = 0.0F;
+        in.altitude.height_mm = 0.0F;
         in.height_valid = true;
         for (int i = 0; i < 100; i++) {
             cycle();

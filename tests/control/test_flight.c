@@ -73,7 +73,7 @@ static void advance(void)
     plant_step(&plant);
     if (plant.height_new) {
         in.height_valid = true;
-        in.height_mm = (float)plant.seen_mm;
+        in.altitude.height_mm = (float)plant.seen_mm;
         in.height_time_us = plant.seen_us + clock_us;
         in.height_sequence++;
     }
@@ -284,7 +284,7 @@ static void direct(float height_mm, bool is_new)
     plant.time_us += 100000U;
     if (is_new) {
         in.height_valid = true;
-        in.height_mm = height_mm;
+        in.altitude.height_mm = height_mm;
         in.height_time_us = plant.time_us + clock_us;
         in.height_sequence++;
     }
@@ -761,7 +761,7 @@ static void any_height(bool flown)
     if (any(10) < 9) {
         in.height_sequence++;
         in.height_time_us = in.now_us - any(120000);
-        in.height_mm = any(20) == 0 ? wrong[any(6)] : flown ? 300.0F + (float)any(900) : (float)any(4100) - 100.0F;
+        in.altitude.height_mm = any(20) == 0 ? wrong[any(6)] : flown ? 300.0F + (float)any(900) : (float)any(4100) - 100.0F;
     }
 }
 

@@ -48,7 +48,7 @@ static void cycle(uint32_t ms)
 static void see(float height_mm)
 {
     in.height_valid = true;
-    in.height_mm = height_mm;
+    in.altitude.height_mm = height_mm;
     in.height_time_us = in.now_us + 90000U; /* arrives 10 ms before the next cycle of 100 ms */
     in.height_sequence++;
 }
@@ -1435,7 +1435,7 @@ void test_scans_without_height_count_as_missing(void)
     fly();
     for (int i = 0; i < 3; i++) {
         in.height_valid = false;
-        in.height_mm = 0.0F;
+        in.altitude.height_mm = 0.0F;
         cycle(100);
     }
     state_is(FLIGHT_COASTING);
@@ -1524,7 +1524,7 @@ void test_two_heights_with_one_time_have_no_rate(void)
 {
     fly();
     in.height_sequence++;
-    in.height_mm = 520.0F;
+    in.altitude.height_mm = 520.0F;
     cycle(100);
     TEST_ASSERT_TRUE(s.height.is_new);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, s.height.rate_mm_s);
@@ -1549,7 +1549,7 @@ void test_a_silent_imu_is_a_flag_and_nothing_else(void)
 void test_disagreeing_mirrors_are_a_flag_as_long_as_there_is_a_height(void)
 {
     fly();
-    in.disagree = true;
+    in.altitude.disagree = true;
     watch(500.0F, 1);
     TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_DISAGREE, s.flags);
     blind(300);

@@ -62,7 +62,7 @@ void test_a_cycle_is_recorded_as_it_was(void)
     flight_log_t record;
 
     fly(7.01F);
-    in.height_mm = 601.0F;
+    in.altitude.height_mm = 601.0F;
     in.roll_rad = 0.05F;
     in.pitch_rad = -0.02F;
     out.reference_m = 0.6F;

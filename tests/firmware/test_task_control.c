@@ -331,10 +331,10 @@ void test_every_value_of_the_servers_reaches_its_own_place_in_the_inputs(void)
     run(1U);
     TEST_ASSERT_EQUAL_UINT32(0xFFFF0000U + 108000U, in->now_us);
     TEST_ASSERT_TRUE(in->height_valid);
-    TEST_ASSERT_EQUAL_FLOAT(601.0F, in->height_mm);
+    TEST_ASSERT_EQUAL_FLOAT(601.0F, in->altitude.height_mm);
     TEST_ASSERT_EQUAL_HEX32(0xFFFE0001U, in->height_time_us);
     TEST_ASSERT_EQUAL_UINT32(4, in->height_sequence);
-    TEST_ASSERT_TRUE(in->disagree);
+    TEST_ASSERT_TRUE(in->altitude.disagree);
     TEST_ASSERT_TRUE(in->attitude_ready);
     TEST_ASSERT_EQUAL_FLOAT(0.08F, in->roll_rad);
     TEST_ASSERT_EQUAL_FLOAT(-0.09F, in->pitch_rad);
@@ -402,7 +402,7 @@ void test_the_three_booleans_are_not_mixed_up(void)
     run(4U);
     for (uint16_t n = 0; n < 4U; n++) {
         TEST_ASSERT_EQUAL(n == 1U, inputs[n].height_valid);
-        TEST_ASSERT_EQUAL(n == 2U, inputs[n].disagree);
+        TEST_ASSERT_EQUAL(n == 2U, inputs[n].altitude.disagree);
         TEST_ASSERT_EQUAL(n == 3U, inputs[n].attitude_ready);
     }
 }

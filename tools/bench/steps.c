@@ -247,7 +247,7 @@ static void next_cycle(void)
     in.now_us += 108000U;
     in.height_time_us = in.now_us - 20000U;
     in.height_sequence++;
-    in.height_mm = in.height_mm < 600.0F ? in.height_mm + 10.0F : 595.0F;
+    in.altitude.height_mm = in.altitude.height_mm < 600.0F ? in.altitude.height_mm + 10.0F : 595.0F;
     in.attitude_time_us = in.now_us - 10000U;
 }
 
@@ -256,12 +256,12 @@ static void prepare_control(void)
     parameters_init(&parameters);
     parameters.value[PARAMETER_LAW] = (float)LAW_PID;
     flight_init(&flight);
-    in = (flight_inputs_t){ .height_valid = true, .height_mm = 10.0F, .attitude_ready = true,
+    in = (flight_inputs_t){ .height_valid = true, .altitude.height_mm = 10.0F, .attitude_ready = true,
                             .throttle_ours = true };
     for (unsigned i = 0; i < 200; i++) {
         in.reference_m = 0.6F;
         in.reference_sequence = i < 20 ? 0 : 1;
-        in.height_mm = i < 20 ? 10.0F : in.height_mm;
+        in.altitude.height_mm = i < 20 ? 10.0F : in.altitude.height_mm;
         next_cycle();
         control();
     }
@@ -291,8 +291,8 @@ static void next_est_cycle(void)
     in.height_time_us = in.now_us - 1000U;
     in.height_stamp_ms += 100U;
     in.height_sequence++;
-    in.height_mm = fminf(in.height_mm + 10.0F, 600.0F);
-    in.altitude = (altitude_t){ .height_mm = in.height_mm, .slant_mm = in.height_mm };
+    in.altitude.height_mm = fminf(in.altitude.height_mm + 10.0F, 600.0F);
+    in.altitude.slant_mm = in.altitude.height_mm;
 }
 
 static void prepare_est_control(void)
