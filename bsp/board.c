@@ -7,15 +7,15 @@
  *    its internal oscillator and the idle pulse is made from that;
  *  - the PWM starts as soon as the clocks are right, before UARTs and timers.
  * Interrupts are off throughout (before BIOS_start()), so nothing else can change a pulse. */
-#include "board.h"
+#include "bsp/board.h"
 
 #include <stddef.h>
 
 #include "device.h"
-#include "led.h"
-#include "selector.h"
-#include "throttle.h"
-#include "timebase.h"
+#include "bsp/led.h"
+#include "bsp/selector.h"
+#include "bsp/throttle.h"
+#include "bsp/timebase.h"
 
 #if DEVICE_OSCSRC_FREQ != 10000000U
 #error "device.h describes another board: define _LAUNCHXL_F28377S"

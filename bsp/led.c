@@ -1,4 +1,4 @@
-#include "led.h"
+#include "bsp/led.h"
 
 #include "device.h"
 

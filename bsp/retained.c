@@ -1,5 +1,5 @@
 /* Section .retained: the linker command file places it in RAM that neither the boot ROM nor the C start-up code touches. */
-#include "retained.h"
+#include "bsp/retained.h"
 
 #define MAGIC 0x506C6F6DUL      /* "Plom": changes with the layout */
 #define POLYNOMIAL 0xEDB88320UL /* CRC-32, IEEE 802.3 */

@@ -1,4 +1,4 @@
-#include "selector.h"
+#include "bsp/selector.h"
 
 #include "device.h"
 

@@ -1,4 +1,4 @@
-#include "start.h"
+#include "bsp/start.h"
 
 #include <stdint.h>
 

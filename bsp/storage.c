@@ -10,7 +10,7 @@
 #pragma CODE_SECTION(SysCtl_serviceWatchdog, ".TI.ramfunc")
 #endif
 
-#include "storage.h"
+#include "bsp/storage.h"
 
 #include "F021_F2837xS_C28x.h"
 #include "device.h"

@@ -1,7 +1,7 @@
 /* The first pulse must be a whole one: the time base is set up with its clock gated and the pin still a plain output
  * held low, the pin is handed over while the PWM output is low, and only then the clock starts, at count zero. Period
  * and compare are first written without their shadows, because a shadow is only loaded when the counter passes zero. */
-#include "throttle.h"
+#include "bsp/throttle.h"
 
 #include "device.h"
 

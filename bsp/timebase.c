@@ -1,4 +1,4 @@
-#include "timebase.h"
+#include "bsp/timebase.h"
 
 #include "device.h"
 

@@ -4,7 +4,7 @@
  * Only a software reset of the SCI clears a receive error or ends a break. It keeps the FIFOs, but cuts short the octet
  * that is on the transmit wire or just arriving. The receive-error interrupt is on beside the FIFO's, because a break
  * is detected after its last octet has been read, and reception would then stay stopped unseen. */
-#include "uart.h"
+#include "bsp/uart.h"
 
 #include "device.h"
 

@@ -1,4 +1,4 @@
-#include "watchdog.h"
+#include "bsp/watchdog.h"
 
 #include "device.h"
 

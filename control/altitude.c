@@ -1,4 +1,4 @@
-#include "altitude.h"
+#include "control/altitude.h"
 
 #include <math.h>
 

@@ -1,8 +1,8 @@
-#include "attitude.h"
+#include "control/attitude.h"
 
 #include <math.h>
 
-#include "median.h"
+#include "control/median.h"
 
 void attitude_init(attitude_filter_t *filter)
 {

@@ -1,6 +1,6 @@
-#include "calibration.h"
+#include "control/calibration.h"
 
-#include "thrust.h"
+#include "control/thrust.h"
 
 #define IDLE_COUNTS 4166U
 #define LIMIT_N 8.5F

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "flight.h"
+#include "control/flight.h"
 
 #define CALIBRATION_STEP_COUNTS 30U     /* the seed's, 0.17 N */
 #define CALIBRATION_STEP_COUNTS_MAX 200U

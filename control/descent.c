@@ -1,9 +1,9 @@
-#include "descent.h"
+#include "control/descent.h"
 
 #include <math.h>
 #include <stdbool.h>
 
-#include "between.h"
+#include "control/between.h"
 
 /* At terminal speed v, damping D: thrust deficit / hover thrust = D v / g. */
 #define SINK_SHARE 0.073F

@@ -1,9 +1,9 @@
-#include "flight.h"
+#include "control/flight.h"
 
 #include <math.h>
 
-#include "between.h"
-#include "thrust.h"
+#include "control/between.h"
+#include "control/thrust.h"
 
 #define HOVER_MARGIN_N 1.5F
 #define HOVER_TIME_S 2.5F

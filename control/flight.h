@@ -6,12 +6,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "descent.h"
-#include "est_law.h"
-#include "parameters.h"
-#include "pid.h"
-#include "pidt.h"
-#include "supervisor.h"
+#include "control/descent.h"
+#include "control/est/est_law.h"
+#include "control/parameters.h"
+#include "control/pid.h"
+#include "control/pidt.h"
+#include "control/supervisor.h"
 
 typedef struct {
     float thrust_n;                 /* commanded, newtons per motor, 0 .. THRUST_MAX_N */

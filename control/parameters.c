@@ -1,8 +1,8 @@
-#include "parameters.h"
+#include "control/parameters.h"
 
 #include <math.h>
 
-#include "thrust.h"
+#include "control/thrust.h"
 
 static const char *const law_names[LAW_COUNT] = {"PD", "PID", "PIDT", "EST"};
 static const char *const release_names[RELEASE_COUNT] = {[RELEASE_FREE] = "FREE", [RELEASE_SCAN] = "SCAN"};

@@ -1,8 +1,8 @@
-#include "pid.h"
+#include "control/pid.h"
 
 #include <math.h>
 
-#include "thrust.h"
+#include "control/thrust.h"
 
 void pid_reset(pid_state_t *state)
 {

@@ -1,4 +1,4 @@
-#include "ray_clock.h"
+#include "control/ray_clock.h"
 
 #define STAMP_MASK UINT32_C(0xFFFFFF)
 #define GAP_MAX_MS UINT32_C(5000)

@@ -1,9 +1,9 @@
-#include "supervisor.h"
+#include "control/supervisor.h"
 
 #include <math.h>
 
-#include "between.h"
-#include "parameters.h"
+#include "control/between.h"
+#include "control/parameters.h"
 
 #define HEIGHT_FRESH_US UINT32_C(300000)
 #define HEIGHT_LOST_US UINT32_C(1000000)

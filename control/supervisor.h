@@ -7,8 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "altitude.h"
-#include "estimator.h"
+#include "control/altitude.h"
+#include "control/est/estimator.h"
 
 typedef enum {
     FLIGHT_GROUND,      /* on the ground: no thrust */

@@ -1,4 +1,4 @@
-#include "thrust.h"
+#include "control/thrust.h"
 
 #define SLOPE_STEPS_PER_N 177.21F
 #define IDLE_STEPS 4166.0F

@@ -1,4 +1,4 @@
-#include "decimal.h"
+#include "drivers/decimal.h"
 
 #include <math.h>
 #include <string.h>

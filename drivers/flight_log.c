@@ -1,4 +1,4 @@
-#include "flight_log.h"
+#include "drivers/flight_log.h"
 
 #include <math.h>
 

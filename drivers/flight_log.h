@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "telemetry.h"
+#include "drivers/telemetry.h"
 
 #define FLIGHT_LOG_CELLS 10U
 

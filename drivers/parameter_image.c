@@ -1,4 +1,4 @@
-#include "parameter_image.h"
+#include "drivers/parameter_image.h"
 
 #include <stddef.h>
 

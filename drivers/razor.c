@@ -1,9 +1,9 @@
-#include "razor.h"
+#include "drivers/razor.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "decimal.h"
+#include "drivers/decimal.h"
 
 /* Axis signs of the sensor as mounted. */
 static const float imu_yaw_sign = 1.0F;

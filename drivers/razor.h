@@ -10,7 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "octet.h"
+#include "drivers/octet.h"
 
 #define RAZOR_FRAME_MAX 96U
 

@@ -1,4 +1,4 @@
-#include "scip_info.h"
+#include "drivers/scip_info.h"
 
 #include <stddef.h>
 

@@ -10,8 +10,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "octet.h"
-#include "scip_parser.h"
+#include "drivers/octet.h"
+#include "drivers/scip_parser.h"
 
 #define SCIP_INFO_TEXT 40U  /* characters of a text, its final 0 included; the rest is cut */
 

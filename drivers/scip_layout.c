@@ -1,4 +1,4 @@
-#include "scip_layout.h"
+#include "drivers/scip_layout.h"
 
 #include <stddef.h>
 

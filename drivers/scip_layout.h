@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "scip_info.h"
-#include "scip_parser.h"
+#include "drivers/scip_info.h"
+#include "drivers/scip_parser.h"
 
 #define SCIP_GROUPS_MAX 3U
 #define SCIP_CODE_LIMIT_MM 20U      /* smaller values are codes, not distances */

@@ -1,4 +1,4 @@
-#include "scip_parser.h"
+#include "drivers/scip_parser.h"
 
 #include <stddef.h>
 

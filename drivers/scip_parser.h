@@ -17,8 +17,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "octet.h"
-#include "scip_request.h"
+#include "drivers/octet.h"
+#include "drivers/scip_request.h"
 
 typedef enum {
     SCIP_NOTHING,       /* go on feeding */

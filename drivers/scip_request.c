@@ -1,4 +1,4 @@
-#include "scip_request.h"
+#include "drivers/scip_request.h"
 
 #include <stddef.h>
 

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "octet.h"
+#include "drivers/octet.h"
 
 /* A request is at most LF + symbol + parameters + LF (MS/MD: 16 + 1); no user string is ever sent. */
 #define SCIP_REQUEST_MAX 17U

@@ -1,4 +1,4 @@
-#include "scip_time.h"
+#include "drivers/scip_time.h"
 
 #define STAMP_MASK ((uint32_t)0xFFFFFFUL)
 #define STAMP_SIGN ((uint32_t)0x800000UL)

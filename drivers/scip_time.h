@@ -12,7 +12,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "scip_info.h"
+#include "drivers/scip_info.h"
 
 #define SCIP_TIME_SAMPLES 10U
 

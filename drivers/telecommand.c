@@ -1,4 +1,4 @@
-#include "telecommand.h"
+#include "drivers/telecommand.h"
 
 static void restart(telecommand_collector_t *collector)
 {

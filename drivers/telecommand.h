@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "octet.h"
+#include "drivers/octet.h"
 
 #define TELECOMMAND_LINE_MAX 32U    /* characters from '#' to before the line end */
 #define TELECOMMAND_NAME_MAX 12U

@@ -1,8 +1,8 @@
-#include "telemetry.h"
+#include "drivers/telemetry.h"
 
 #include <string.h>
 
-#include "decimal.h"
+#include "drivers/decimal.h"
 
 #define COUNT_DIGITS_MAX 10U
 

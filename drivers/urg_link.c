@@ -1,4 +1,4 @@
-#include "urg_link.h"
+#include "drivers/urg_link.h"
 
 #define REVOLUTION_US 100000U
 #define FIRST_REPLY_US 400000U     /* real sensors were seen to take 381 ms */

@@ -15,8 +15,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "scip_parser.h"
-#include "scip_request.h"
+#include "drivers/scip_parser.h"
+#include "drivers/scip_request.h"
 
 /* LASER_STATUS of the seed: guides the start-up and is shown in the telemetry. */
 typedef enum {

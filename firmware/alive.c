@@ -1,10 +1,10 @@
-#include "alive.h"
+#include "firmware/alive.h"
 
 #include <stdint.h>
 #include <ti/sysbios/family/c28/Hwi.h>
 #include <xdc/std.h>
 
-#include "watchdog.h"
+#include "bsp/watchdog.h"
 
 #define ALL ((uint16_t)((1U << ALIVE_COUNT) - 1U))
 

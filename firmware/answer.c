@@ -1,8 +1,8 @@
-#include "answer.h"
+#include "firmware/answer.h"
 
 #include <stddef.h>
 
-#include "xbee_port.h"
+#include "firmware/xbee_port.h"
 
 static void add_name(answer_t *answer)
 {

@@ -5,9 +5,9 @@
 
 #include <stdbool.h>
 
-#include "parameters.h"
-#include "telecommand.h"
-#include "telemetry.h"
+#include "control/parameters.h"
+#include "drivers/telecommand.h"
+#include "drivers/telemetry.h"
 
 typedef struct {
     const telecommand_t *command;

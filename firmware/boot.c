@@ -1,10 +1,10 @@
-#include "boot.h"
+#include "firmware/boot.h"
 
 #include <stdint.h>
 #include <string.h>
 
-#include "retained.h"
-#include "watchdog.h"
+#include "bsp/retained.h"
+#include "bsp/watchdog.h"
 
 static bsp_reset_t cause;
 

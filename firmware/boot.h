@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "attitude.h"
+#include "control/attitude.h"
 
 /* After bsp_board_init(). main(), once. */
 void boot_init(void);

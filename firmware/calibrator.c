@@ -1,6 +1,6 @@
 /* TaskControl preempts TaskReceiveComm and not the other way round: only TaskReceiveComm turns interrupts off for its
  * copies. */
-#include "calibrator.h"
+#include "firmware/calibrator.h"
 
 #include <ti/sysbios/family/c28/Hwi.h>
 #include <xdc/std.h>

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "calibration.h"
+#include "control/calibration.h"
 
 /* Limits as in calibration.h. Returns the sequence number of the request. TaskReceiveComm. */
 uint16_t calibrator_start(uint16_t step_counts, uint16_t period_s);

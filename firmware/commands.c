@@ -1,4 +1,4 @@
-#include "commands.h"
+#include "firmware/commands.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -6,13 +6,13 @@
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
-#include "answer.h"
-#include "calibrator.h"
-#include "decimal.h"
-#include "parameters.h"
-#include "servers.h"
-#include "verbs.h"
-#include "xbee_port.h"
+#include "firmware/answer.h"
+#include "firmware/calibrator.h"
+#include "drivers/decimal.h"
+#include "control/parameters.h"
+#include "firmware/servers.h"
+#include "firmware/verbs.h"
+#include "firmware/xbee_port.h"
 
 #define CONTINUE_POLL_MS 10U    /* ten characters leave meanwhile */
 

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "telecommand.h"
+#include "drivers/telecommand.h"
 
 /* Parses, checks, applies (whole or not at all) and answers: `OK NAME value` or `ERR NAME reason`. May block while the
  * radio takes the answers. arrival_us: when the line was complete. */

@@ -1,10 +1,10 @@
-#include "fault.h"
+#include "firmware/fault.h"
 
 #include <stdbool.h>
 #include <ti/sysbios/family/c28/Hwi.h>
 
-#include "led.h"
-#include "throttle.h"
+#include "bsp/led.h"
+#include "bsp/throttle.h"
 
 void fault_make_safe(void)
 {

@@ -1,6 +1,6 @@
 /* TaskControl preempts TaskReceiveComm and not the other way round: the writer needs no lock, the reader turns interrupts
  * off for the copy of one record. */
-#include "flight_recorder.h"
+#include "firmware/flight_recorder.h"
 
 #include <math.h>
 #include <string.h>

@@ -9,8 +9,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "flight.h"
-#include "flight_log.h"
+#include "control/flight.h"
+#include "drivers/flight_log.h"
 
 #define FLIGHT_RECORDER_RECORDS 1600U   /* 16000 cells */
 

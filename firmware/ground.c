@@ -1,6 +1,6 @@
-#include "ground.h"
+#include "firmware/ground.h"
 
-#include "servers.h"
+#include "firmware/servers.h"
 
 bool ground_idle(void)
 {

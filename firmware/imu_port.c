@@ -1,4 +1,4 @@
-#include "imu_port.h"
+#include "firmware/imu_port.h"
 
 #include <stddef.h>
 #include <ti/sysbios/BIOS.h>
@@ -6,10 +6,10 @@
 #include <ti/sysbios/knl/Swi.h>
 #include <xdc/std.h>
 
-#include "monitor.h"
-#include "schedule.h"
-#include "timebase.h"
-#include "uart_port.h"
+#include "firmware/monitor.h"
+#include "firmware/schedule.h"
+#include "bsp/timebase.h"
+#include "firmware/uart_port.h"
 
 #define IMU_BIT_RATE 57600UL
 

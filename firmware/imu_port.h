@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "razor.h"
+#include "drivers/razor.h"
 
 typedef struct {
     razor_text_t text;

@@ -1,4 +1,4 @@
-#include "laser_port.h"
+#include "firmware/laser_port.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -8,10 +8,10 @@
 #include <ti/sysbios/knl/Swi.h>
 #include <xdc/std.h>
 
-#include "monitor.h"
-#include "schedule.h"
-#include "timebase.h"
-#include "uart_port.h"
+#include "firmware/monitor.h"
+#include "firmware/schedule.h"
+#include "bsp/timebase.h"
+#include "firmware/uart_port.h"
 
 /* Written by the receive Hwi. The parser fills one of two scans while the other, complete, waits for Laser_SWI. */
 static scip_parser_t parser;

@@ -6,9 +6,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "scip_layout.h"
-#include "scip_parser.h"
-#include "urg_link.h"
+#include "drivers/scip_layout.h"
+#include "drivers/scip_parser.h"
+#include "drivers/urg_link.h"
 
 typedef struct {
     scip_scan_t scan;           /* its points are in distance_mm below */

@@ -1,14 +1,14 @@
 #include <ti/sysbios/BIOS.h>
 #include <xdc/std.h>
 
-#include "board.h"
-#include "boot.h"
-#include "mounting.h"
-#include "servers.h"
-#include "tasks.h"
-#include "uart_port.h"
-#include "verbs.h"
-#include "watchdog.h"
+#include "bsp/board.h"
+#include "firmware/boot.h"
+#include "firmware/mounting.h"
+#include "firmware/servers.h"
+#include "firmware/tasks.h"
+#include "firmware/uart_port.h"
+#include "firmware/verbs.h"
+#include "bsp/watchdog.h"
 
 int main(void);
 

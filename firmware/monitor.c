@@ -1,10 +1,10 @@
-#include "monitor.h"
+#include "firmware/monitor.h"
 
 #include <stdbool.h>
 #include <ti/sysbios/family/c28/Hwi.h>
 
-#include "schedule.h"
-#include "timebase.h"
+#include "firmware/schedule.h"
+#include "bsp/timebase.h"
 
 typedef struct {
     const char *name;

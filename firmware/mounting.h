@@ -2,8 +2,8 @@
 #ifndef FIRMWARE_MOUNTING_H
 #define FIRMWARE_MOUNTING_H
 
-#include "altitude.h"
-#include "scip_layout.h"
+#include "control/altitude.h"
+#include "drivers/scip_layout.h"
 
 #define LASER_LAYOUT SCIP_LAYOUT_FRONT
 #define LASER_FIRST_RATE 115200UL       /* the sensor's rate at power-up */

@@ -1,4 +1,4 @@
-#include "parameter_store.h"
+#include "firmware/parameter_store.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -6,8 +6,8 @@
 #include <ti/sysbios/family/c28/Hwi.h>
 #include <xdc/std.h>
 
-#include "parameter_image.h"
-#include "storage.h"
+#include "drivers/parameter_image.h"
+#include "bsp/storage.h"
 
 #define VALUES ((uint16_t)PARAMETER_COUNT - 1U)
 #define SLOTS BSP_STORAGE_SLOTS

@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-#include "parameters.h"
+#include "control/parameters.h"
 
 typedef enum {
     PARAMETER_STORE_DONE,

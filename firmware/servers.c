@@ -1,13 +1,13 @@
-#include "servers.h"
+#include "firmware/servers.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <ti/sysbios/gates/GateMutexPri.h>
 #include <xdc/std.h>
 
-#include "monitor.h"
-#include "timebase.h"
-#include "watch.h"
+#include "firmware/monitor.h"
+#include "bsp/timebase.h"
+#include "firmware/watch.h"
 
 static GateMutexPri_Handle altitude_gate;
 static GateMutexPri_Handle imu_gate;

@@ -8,11 +8,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "altitude.h"
-#include "attitude.h"
-#include "parameters.h"
-#include "supervisor.h"
-#include "urg_link.h"
+#include "control/altitude.h"
+#include "control/attitude.h"
+#include "control/parameters.h"
+#include "control/supervisor.h"
+#include "drivers/urg_link.h"
 
 /* All gates. Call once from main(). */
 void servers_create(void);

@@ -4,17 +4,17 @@
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
-#include "alive.h"
-#include "calibrator.h"
-#include "flight.h"
-#include "flight_recorder.h"
-#include "monitor.h"
-#include "schedule.h"
-#include "selector.h"
-#include "servers.h"
-#include "tasks.h"
-#include "throttle.h"
-#include "timebase.h"
+#include "firmware/alive.h"
+#include "firmware/calibrator.h"
+#include "control/flight.h"
+#include "firmware/flight_recorder.h"
+#include "firmware/monitor.h"
+#include "firmware/schedule.h"
+#include "bsp/selector.h"
+#include "firmware/servers.h"
+#include "firmware/tasks.h"
+#include "bsp/throttle.h"
+#include "bsp/timebase.h"
 
 #define EVENT_PERIOD Event_Id_00
 #define EVENT_ALTITUDE Event_Id_01

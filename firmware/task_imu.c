@@ -3,14 +3,14 @@
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
-#include "attitude.h"
-#include "boot.h"
-#include "imu_port.h"
-#include "monitor.h"
-#include "razor.h"
-#include "schedule.h"
-#include "servers.h"
-#include "tasks.h"
+#include "control/attitude.h"
+#include "firmware/boot.h"
+#include "firmware/imu_port.h"
+#include "firmware/monitor.h"
+#include "drivers/razor.h"
+#include "firmware/schedule.h"
+#include "firmware/servers.h"
+#include "firmware/tasks.h"
 
 static attitude_filter_t filter;
 

@@ -2,11 +2,11 @@
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
-#include "commands.h"
-#include "monitor.h"
-#include "schedule.h"
-#include "tasks.h"
-#include "xbee_port.h"
+#include "firmware/commands.h"
+#include "firmware/monitor.h"
+#include "firmware/schedule.h"
+#include "firmware/tasks.h"
+#include "firmware/xbee_port.h"
 
 static Void task_receive_comm(UArg unused0, UArg unused1)
 {

@@ -2,14 +2,14 @@
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
-#include "altitude.h"
-#include "laser_port.h"
-#include "monitor.h"
-#include "mounting.h"
-#include "schedule.h"
-#include "scip_layout.h"
-#include "servers.h"
-#include "tasks.h"
+#include "control/altitude.h"
+#include "firmware/laser_port.h"
+#include "firmware/monitor.h"
+#include "firmware/mounting.h"
+#include "firmware/schedule.h"
+#include "drivers/scip_layout.h"
+#include "firmware/servers.h"
+#include "firmware/tasks.h"
 
 static altitude_t height_of(const scip_scan_t *scan, const attitude_t *tilt)
 {

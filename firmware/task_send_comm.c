@@ -5,14 +5,14 @@
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
-#include "boot.h"
-#include "monitor.h"
-#include "schedule.h"
-#include "servers.h"
-#include "tasks.h"
-#include "telemetry.h"
-#include "timebase.h"
-#include "xbee_port.h"
+#include "firmware/boot.h"
+#include "firmware/monitor.h"
+#include "firmware/schedule.h"
+#include "firmware/servers.h"
+#include "firmware/tasks.h"
+#include "drivers/telemetry.h"
+#include "bsp/timebase.h"
+#include "firmware/xbee_port.h"
 
 static Semaphore_Handle tick;
 

@@ -5,15 +5,15 @@
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
-#include "alive.h"
-#include "laser_port.h"
-#include "led.h"
-#include "monitor.h"
-#include "schedule.h"
-#include "servers.h"
-#include "tasks.h"
-#include "timebase.h"
-#include "urg_link.h"
+#include "firmware/alive.h"
+#include "firmware/laser_port.h"
+#include "bsp/led.h"
+#include "firmware/monitor.h"
+#include "firmware/schedule.h"
+#include "firmware/servers.h"
+#include "firmware/tasks.h"
+#include "bsp/timebase.h"
+#include "drivers/urg_link.h"
 
 static urg_link_t urg;
 static Semaphore_Handle tick;

@@ -2,7 +2,7 @@
 #ifndef FIRMWARE_TASKS_H
 #define FIRMWARE_TASKS_H
 
-#include "urg_link.h"
+#include "drivers/urg_link.h"
 
 void task_imu_create(void);
 void task_receive_laser_create(void);

@@ -1,4 +1,4 @@
-#include "uart_port.h"
+#include "firmware/uart_port.h"
 
 #include <stddef.h>
 #include <ti/sysbios/family/c28/Hwi.h>

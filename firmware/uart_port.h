@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "uart.h"
+#include "bsp/uart.h"
 
 #define UART_PORT_TRANSMIT_CELLS 1024U
 

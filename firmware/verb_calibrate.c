@@ -1,9 +1,9 @@
-#include "calibrator.h"
-#include "decimal.h"
-#include "ground.h"
-#include "servers.h"
-#include "verbs.h"
-#include "xbee_port.h"
+#include "firmware/calibrator.h"
+#include "drivers/decimal.h"
+#include "firmware/ground.h"
+#include "firmware/servers.h"
+#include "firmware/verbs.h"
+#include "firmware/xbee_port.h"
 
 #define THRUST_DECIMALS 2U
 #define SEQUENCE_AHEAD_MAX 0x7FFFU   /* more is behind */

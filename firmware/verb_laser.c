@@ -1,6 +1,6 @@
-#include "laser_port.h"
-#include "servers.h"
-#include "verbs.h"
+#include "firmware/laser_port.h"
+#include "firmware/servers.h"
+#include "firmware/verbs.h"
 
 static const char *const causes[SCIP_DAMAGE_COUNT] = {
     [SCIP_DAMAGE_NONE] = "-",       [SCIP_DAMAGE_SUM] = "sum",        [SCIP_DAMAGE_LENGTH] = "length",

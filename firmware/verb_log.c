@@ -1,8 +1,8 @@
-#include "decimal.h"
-#include "flight_recorder.h"
-#include "servers.h"
-#include "verbs.h"
-#include "xbee_port.h"
+#include "drivers/decimal.h"
+#include "firmware/flight_recorder.h"
+#include "firmware/servers.h"
+#include "firmware/verbs.h"
+#include "firmware/xbee_port.h"
 
 #define SECONDS_MAX 3600U
 

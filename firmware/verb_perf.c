@@ -2,9 +2,9 @@
 #include <string.h>
 #include <ti/sysbios/utils/Load.h>
 
-#include "boot.h"
-#include "monitor.h"
-#include "verbs.h"
+#include "firmware/boot.h"
+#include "firmware/monitor.h"
+#include "firmware/verbs.h"
 
 static const char *const servers[MONITOR_SERVERS] = {
     [MONITOR_ALTITUDE] = "altitude",   [MONITOR_IMU_SAMPLE] = "imu",        [MONITOR_LASER_STATUS] = "laser",

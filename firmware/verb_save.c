@@ -1,9 +1,9 @@
 #include <stddef.h>
 
-#include "ground.h"
-#include "parameter_store.h"
-#include "servers.h"
-#include "verbs.h"
+#include "firmware/ground.h"
+#include "firmware/parameter_store.h"
+#include "firmware/servers.h"
+#include "firmware/verbs.h"
 
 static const char *const reasons[] = {
     [PARAMETER_STORE_EMPTY] = "nothing stored",

@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "answer.h"
+#include "firmware/answer.h"
 
 /* verb_laser.c: `#LASER`: one line of state, rate, frames and losses, one of damages by cause and the last cause. */
 bool verb_laser(answer_t *answer);

@@ -3,7 +3,7 @@
 #ifndef FIRMWARE_WATCH_H
 #define FIRMWARE_WATCH_H
 
-#include "servers.h"
+#include "firmware/servers.h"
 
 extern const altitude_sample_t *const watch_altitude;
 extern const imu_sample_t *const watch_imu; /* newest */

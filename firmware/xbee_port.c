@@ -1,4 +1,4 @@
-#include "xbee_port.h"
+#include "firmware/xbee_port.h"
 
 #include <stddef.h>
 #include <ti/sysbios/BIOS.h>
@@ -8,9 +8,9 @@
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
-#include "schedule.h"
-#include "timebase.h"
-#include "uart_port.h"
+#include "firmware/schedule.h"
+#include "bsp/timebase.h"
+#include "firmware/uart_port.h"
 
 #define XBEE_BIT_RATE 9600UL
 #define ROOM_POLL_MS 10U    /* ten characters leave meanwhile */

@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "telecommand.h"
-#include "telemetry.h"
+#include "drivers/telecommand.h"
+#include "drivers/telemetry.h"
 
 #define XBEE_PORT_LINES 32U     /* command lines that may wait */
 

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "octet.h"
+#include "drivers/octet.h"
 
 /* A microsecond counter that wraps at 2^32. */
 uint32_t board_time_us(void);

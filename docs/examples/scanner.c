@@ -3,9 +3,9 @@
  *
  * Needs of Plomada: drivers/octet.h, drivers/scip_*.h and .c, drivers/urg_link.h and .c; nothing else. */
 #include "board.h"
-#include "scip_layout.h"
-#include "scip_parser.h"
-#include "urg_link.h"
+#include "drivers/scip_layout.h"
+#include "drivers/scip_parser.h"
+#include "drivers/urg_link.h"
 
 #define FIRST_STEP 367U     /* 384 is straight ahead; 1024 steps make a turn */
 #define LAST_STEP 401U

@@ -1,5 +1,5 @@
 /* The board after start-up on the chip model, and the throttle pin from power-on. */
-#include "board.h"
+#include "bsp/board.h"
 
 #include <setjmp.h>
 #include <signal.h>
@@ -9,8 +9,8 @@
 #include "sim/ti/driverlib/chip.h"
 #include "sim/ti/driverlib/model.h"
 #include "sim/timeline.h"
-#include "throttle.h"
-#include "timebase.h"
+#include "bsp/throttle.h"
+#include "bsp/timebase.h"
 #include "unity.h"
 
 #define IDLE_NS 1999680

@@ -1,5 +1,5 @@
 /* The order of start-up: throttle pin low first, PWM after the clocks, nothing between the clocks and the PWM. */
-#include "board.h"
+#include "bsp/board.h"
 #include "device.h"
 #include "mock_gpio.h"
 #include "mock_led.h"

@@ -1,5 +1,5 @@
 /* LD9 red = GPIO12, LD10 blue = GPIO13, lit by a low level. */
-#include "led.h"
+#include "bsp/led.h"
 #include "sim/ti/driverlib/chip.h"
 #include "sim/timeline.h"
 #include "unity.h"

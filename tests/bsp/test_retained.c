@@ -1,13 +1,13 @@
 /* Memory that outlives a reset. Its section is looked at directly: a reset, a loss of power and a flipped bit are what
  * the test makes of it. */
-#include "retained.h"
+#include "bsp/retained.h"
 
 #include <string.h>
 
 #include "unity.h"
 
 /* The file itself: its block is what a reset leaves. */
-#include "retained.c"
+#include "bsp/retained.c"
 
 static uint32_t back[BSP_RETAINED_WORDS];
 static const uint32_t words[BSP_RETAINED_WORDS] = {0x3D4CCCCDUL, 0xBDCCCCCDUL, 0x80000001UL};

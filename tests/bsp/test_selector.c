@@ -1,5 +1,5 @@
 /* Who has the throttle: GPIO3, high or open = the firmware, low = the pilot. */
-#include "selector.h"
+#include "bsp/selector.h"
 
 #include "sim/ti/driverlib/chip.h"
 #include "sim/timeline.h"

@@ -1,7 +1,7 @@
 /* The selector's pin on mocks of driverlib: pull-up and qualification before it becomes an input. */
 #include "device.h"
 #include "mock_gpio.h"
-#include "selector.h"
+#include "bsp/selector.h"
 #include "unity.h"
 
 /* CMock's count of calls across all mocks: what makes their order strict. */

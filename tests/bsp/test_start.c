@@ -2,7 +2,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "start.h"
+#include "bsp/start.h"
 #include "unity.h"
 
 #define CELLS 37

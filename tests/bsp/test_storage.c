@@ -1,5 +1,5 @@
 /* storage.c on the model of the flash. */
-#include "storage.h"
+#include "bsp/storage.h"
 
 #include <string.h>
 

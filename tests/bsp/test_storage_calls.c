@@ -1,5 +1,5 @@
 /* storage.c on mocks of driverlib and of the flash library, every call in its order. */
-#include "storage.h"
+#include "bsp/storage.h"
 
 #include "mock_F021_F2837xS_C28x.h"
 #include "mock_flash.h"

@@ -1,5 +1,5 @@
 /* The throttle pulse as it leaves GPIO2. */
-#include "throttle.h"
+#include "bsp/throttle.h"
 
 #include <math.h>
 #include <string.h>

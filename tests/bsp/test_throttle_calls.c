@@ -3,7 +3,7 @@
 #include "mock_epwm.h"
 #include "mock_gpio.h"
 #include "mock_sysctl.h"
-#include "throttle.h"
+#include "bsp/throttle.h"
 #include "unity.h"
 
 /* CMock's count of calls across all mocks: what makes their order strict. */

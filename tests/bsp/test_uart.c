@@ -1,5 +1,5 @@
 /* The UARTs on the chip model: registers, octets, errors, interrupt lines. */
-#include "uart.h"
+#include "bsp/uart.h"
 
 #include <math.h>
 #include <stdio.h>

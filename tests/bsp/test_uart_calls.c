@@ -2,7 +2,7 @@
 #include "device.h"
 #include "mock_hw_types.h"
 #include "mock_sci.h"
-#include "uart.h"
+#include "bsp/uart.h"
 #include "unity.h"
 
 static bsp_uart_burst_t burst;

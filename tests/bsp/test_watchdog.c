@@ -1,5 +1,5 @@
 /* The watchdog and the cause of a reset, on the chip model. */
-#include "watchdog.h"
+#include "bsp/watchdog.h"
 
 #include "device.h"
 #include "sim/ti/driverlib/chip.h"

@@ -2,7 +2,7 @@
 #include "device.h"
 #include "mock_sysctl.h"
 #include "unity.h"
-#include "watchdog.h"
+#include "bsp/watchdog.h"
 
 /* CMock's count of calls across all mocks: what makes their order strict. */
 int GlobalExpectCount, GlobalVerifyOrder;

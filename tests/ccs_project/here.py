@@ -22,7 +22,7 @@ def code(path):
 
 
 def cmake_sources():
-    return re.findall(r"\b(?:" + "|".join(PRODUCT) + r")/\w+\.c\b", re.sub(r"#.*", "", text("cmake/sources.cmake")))
+    return re.findall(r"\b(?:" + "|".join(PRODUCT) + r")/[\w/]+\.c\b", re.sub(r"#.*", "", text("cmake/sources.cmake")))
 
 
 def product_files(*suffixes):

@@ -101,8 +101,7 @@ class Settings(unittest.TestCase):
     def test_headers_are_found_in_the_rooms_and_in_driverlib(self):
         for name in self.project.configurations:
             found = [word[2:] for word in self.options(name) if word.startswith("-I")]
-            rooms = [str(REPOSITORY / room) for room in ("firmware", "bsp", "drivers", "control")]
-            self.assertEqual(found, rooms + ["/ware/driverlib/f2837xs/driverlib", "/ware/device_support/f2837xs/common/include",
+            self.assertEqual(found, [str(REPOSITORY), "/ware/driverlib/f2837xs/driverlib", "/ware/device_support/f2837xs/common/include",
                                              "/ware/libraries/flash_api/f2837xs/include"])
 
 
@@ -178,7 +177,7 @@ class Sources(unittest.TestCase):
 
     def test_sources_are_c99_as_the_compiler_is_told(self):
         command = [os.environ.get("CC", "gcc"), "-std=c99", "-pedantic-errors", "-fsyntax-only",
-                   *(f"-I{REPOSITORY / room}" for room in ("firmware", "bsp", "drivers", "control")),
+                   f"-I{REPOSITORY}",
                    *(word for each in ("driverlib", "f021/include", "sysbios") for word in ("-isystem", str(REPOSITORY / "sim/ti" / each))),
                    *(str(path) for path in Project().files(".c"))]
         done = subprocess.run(command, capture_output=True, text=True, check=False)

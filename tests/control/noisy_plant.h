@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "altitude.h"
-#include "flight.h"
+#include "control/altitude.h"
+#include "control/flight.h"
 #include "vertical_plant.h"
 
 #define NOISY_FRAMES 8U

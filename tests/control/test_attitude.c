@@ -1,4 +1,4 @@
-#include "attitude.h"
+#include "control/attitude.h"
 #include "unity.h"
 
 #include <math.h>

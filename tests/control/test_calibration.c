@@ -1,8 +1,8 @@
-#include "calibration.h"
+#include "control/calibration.h"
 
 #include <string.h>
 
-#include "thrust.h"
+#include "control/thrust.h"
 #include "unity.h"
 
 #define LINK_S 5.0F

@@ -1,4 +1,4 @@
-#include "descent.h"
+#include "control/descent.h"
 #include "unity.h"
 
 #include <math.h>

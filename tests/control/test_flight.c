@@ -1,5 +1,5 @@
-#include "flight.h"
-#include "thrust.h"
+#include "control/flight.h"
+#include "control/thrust.h"
 #include "unity.h"
 #include "vertical_plant.h"
 

@@ -1,4 +1,4 @@
-#include "median.h"
+#include "control/median.h"
 #include "unity.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "parameters.h"
+#include "control/parameters.h"
 #include "unity.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-#include "pid.h"
-#include "thrust.h"
+#include "control/pid.h"
+#include "control/thrust.h"
 #include "unity.h"
 
 #include <math.h>

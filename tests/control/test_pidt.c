@@ -1,4 +1,4 @@
-#include "pidt.h"
+#include "control/pidt.h"
 #include "unity.h"
 
 #include <math.h>

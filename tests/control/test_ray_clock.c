@@ -1,4 +1,4 @@
-#include "ray_clock.h"
+#include "control/ray_clock.h"
 #include "unity.h"
 
 #include <stdio.h>

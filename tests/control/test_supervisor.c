@@ -1,4 +1,4 @@
-#include "supervisor.h"
+#include "control/supervisor.h"
 #include "unity.h"
 
 #include <math.h>

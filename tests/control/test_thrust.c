@@ -1,4 +1,4 @@
-#include "thrust.h"
+#include "control/thrust.h"
 #include "unity.h"
 
 #include <math.h>

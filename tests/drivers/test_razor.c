@@ -1,4 +1,4 @@
-#include "razor.h"
+#include "drivers/razor.h"
 
 #include <math.h>
 #include <stdio.h>

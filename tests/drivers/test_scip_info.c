@@ -4,8 +4,8 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "scip_info.h"
-#include "scip_parser.h"
+#include "drivers/scip_info.h"
+#include "drivers/scip_parser.h"
 
 static scip_parser_t parser;
 static scip_info_t info;

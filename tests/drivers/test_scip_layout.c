@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "scip_layout.h"
-#include "scip_request.h"
+#include "drivers/scip_layout.h"
+#include "drivers/scip_request.h"
 
 static uint16_t points[SCIP_POINTS_MAX];
 static scip_scan_t scan;

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scip_parser.h"
+#include "drivers/scip_parser.h"
 
 #define WIRE_MAX 2500
 #define SCANS_MAX 40

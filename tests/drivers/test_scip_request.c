@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "scip_request.h"
+#include "drivers/scip_request.h"
 
 static scip_request_t request;
 

@@ -4,7 +4,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "scip_time.h"
+#include "drivers/scip_time.h"
 
 #define STAMPS 0x1000000UL
 

@@ -1,4 +1,4 @@
-#include "telecommand.h"
+#include "drivers/telecommand.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "telemetry.h"
+#include "drivers/telemetry.h"
 
 #include <float.h>
 #include <math.h>

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scip_parser.h"
-#include "urg_link.h"
+#include "drivers/scip_parser.h"
+#include "drivers/urg_link.h"
 
 #define STEP_US 150000U
 #define STEP_MS 150U

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "escape.h"
-#include "scip_layout.h"
-#include "scip_parser.h"
+#include "drivers/scip_layout.h"
+#include "drivers/scip_parser.h"
 #include "wire.h"
 
 #define RUN_SCANS 99

@@ -6,11 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scip_parser.h"
+#include "drivers/scip_parser.h"
 #include "sim/devices/serial.h"
 #include "sim/devices/urg04lx.h"
 #include "sim/timeline.h"
-#include "urg_link.h"
+#include "drivers/urg_link.h"
 
 #define STEP (150 * SIM_MS)
 #define PATIENCE (60 * SIM_S)

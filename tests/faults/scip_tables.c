@@ -2,8 +2,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scip_request.h"
-#include "urg_link.h"
+#include "drivers/scip_request.h"
+#include "drivers/urg_link.h"
 
 static const uint32_t rates[] = { 19200, 57600, 115200, 250000 };
 #define RATES (sizeof rates / sizeof rates[0])

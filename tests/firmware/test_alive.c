@@ -1,5 +1,5 @@
 /* The watchdog is serviced when every watched task has completed a cycle, and not before. */
-#include "alive.h"
+#include "firmware/alive.h"
 
 #include "kernel.h"
 #include "mock_watchdog.h"

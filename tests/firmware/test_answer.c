@@ -1,5 +1,5 @@
 /* Answer lines with the real writer; the radio is mocked. */
-#include "answer.h"
+#include "firmware/answer.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* What the firmware makes of the cause of a reset and of the memory that outlives it. */
-#include "boot.h"
+#include "firmware/boot.h"
 
 #include <string.h>
 

@@ -1,10 +1,10 @@
 /* Between the two tasks; the calibration itself is real. */
-#include "calibrator.h"
+#include "firmware/calibrator.h"
 
 #include <string.h>
 
 #include "kernel.h"
-#include "thrust.h"
+#include "control/thrust.h"
 #include "unity.h"
 
 static flight_inputs_t in;

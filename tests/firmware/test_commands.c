@@ -1,12 +1,12 @@
 /* Operator's lines from their octets to the servers and the answers; parser, parameter table and texts are real, the
  * servers, the verbs of other files and the radio are mocked. */
-#include "commands.h"
+#include "firmware/commands.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "decimal.h"
+#include "drivers/decimal.h"
 #include "kernel.h"
 #include "mock_calibrator.h"
 #include "mock_servers.h"

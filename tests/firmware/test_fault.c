@@ -2,9 +2,9 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "fault.h"
-#include "led.h"
-#include "throttle.h"
+#include "firmware/fault.h"
+#include "bsp/led.h"
+#include "bsp/throttle.h"
 #include "unity.h"
 
 #include <ti/sysbios/family/c28/Hwi.h>

@@ -1,4 +1,4 @@
-#include "flight_recorder.h"
+#include "firmware/flight_recorder.h"
 
 #include <math.h>
 #include <string.h>

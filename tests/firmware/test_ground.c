@@ -1,4 +1,4 @@
-#include "ground.h"
+#include "firmware/ground.h"
 
 #include "mock_servers.h"
 #include "unity.h"

@@ -1,5 +1,5 @@
 /* From the octets of a receive interrupt to the message of TaskIMU. */
-#include "imu_port.h"
+#include "firmware/imu_port.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* The scanner's port with the real SCIP parser, fed as the receive Hwi is: the sensor's side is written here after its
  * protocol (Hokuyo C-42-03320B). */
-#include "laser_port.h"
+#include "firmware/laser_port.h"
 
 #include <string.h>
 

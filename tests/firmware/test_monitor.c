@@ -1,5 +1,5 @@
 /* The monitor on a clock that the test moves. Its figures outlive a test; monitor_reset() is the first thing each does. */
-#include "monitor.h"
+#include "firmware/monitor.h"
 
 #include "kernel.h"
 #include "mock_timebase.h"

@@ -1,14 +1,14 @@
 /* The store on the real storage.c and the model of the flash; only SYS/BIOS is mocked. */
-#include "parameter_store.h"
+#include "firmware/parameter_store.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "kernel.h"
-#include "parameter_image.h"
+#include "drivers/parameter_image.h"
 #include "sim/ti/f021/flash.h"
-#include "storage.h"
+#include "bsp/storage.h"
 #include "unity.h"
 
 extern uint16_t flash_sectors_m_n[FLASH_SECTORS][FLASH_SECTOR_CELLS];

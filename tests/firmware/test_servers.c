@@ -1,6 +1,6 @@
 /* The servers on mocked gates. The values outlive a test, as they outlive servers_create() in the product: the test of
  * the first values stands first. */
-#include "servers.h"
+#include "firmware/servers.h"
 
 #include <string.h>
 
@@ -8,7 +8,7 @@
 #include "mock_monitor.h"
 #include "mock_timebase.h"
 #include "unity.h"
-#include "watch.h"
+#include "firmware/watch.h"
 
 #define ALTITUDE "Altitude_server"
 #define IMU "IMU_server"

@@ -1,10 +1,10 @@
 /* TaskControl with the real flight cycle; the linker lets the test look at what goes into flight_step() and what comes
  * out (--wrap). A script changes the servers from wait to wait. */
-#include "tasks.h"
+#include "firmware/tasks.h"
 
 #include <string.h>
 
-#include "flight.h"
+#include "control/flight.h"
 #include "jobs.h"
 #include "kernel.h"
 #include "mock_alive.h"
@@ -14,7 +14,7 @@
 #include "mock_servers.h"
 #include "mock_throttle.h"
 #include "mock_timebase.h"
-#include "thrust.h"
+#include "control/thrust.h"
 #include "unity.h"
 
 #define CYCLES_MAX 200U

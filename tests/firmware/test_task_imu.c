@@ -1,6 +1,6 @@
 /* TaskIMU with the real parser and attitude filter, between a scripted port and a recording server. The task keeps its
  * sample from one test to the next, as it does from frame to frame: what counts up is compared with the first write. */
-#include "tasks.h"
+#include "firmware/tasks.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* TaskReceiveComm between a scripted radio and recording commands. */
-#include "tasks.h"
+#include "firmware/tasks.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* TaskSendComm: one telemetry line every 200 ms, from the servers to the radio. */
-#include "tasks.h"
+#include "firmware/tasks.h"
 
 #include <string.h>
 

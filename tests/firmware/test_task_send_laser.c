@@ -1,5 +1,5 @@
 /* TaskSendLaser with the real state machine, against a sensor that answers as the receiving side would report it. */
-#include "tasks.h"
+#include "firmware/tasks.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* The transmit ring, the receive levels, the six Hwis and the tick, on a mocked UART whose FIFO takes 16 octets. */
-#include "uart_port.h"
+#include "firmware/uart_port.h"
 
 #include <string.h>
 

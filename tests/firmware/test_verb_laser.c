@@ -1,5 +1,5 @@
 /* `#LASER` with the real answer writer; port, server and radio are mocked. */
-#include "verbs.h"
+#include "firmware/verbs.h"
 
 #include <stdio.h>
 #include <string.h>

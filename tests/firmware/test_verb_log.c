@@ -5,7 +5,7 @@
 #include "mock_flight_recorder.h"
 #include "mock_xbee_port.h"
 #include "unity.h"
-#include "verbs.h"
+#include "firmware/verbs.h"
 
 #define LINES_MAX 64U
 

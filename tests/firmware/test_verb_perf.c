@@ -1,5 +1,5 @@
 /* `#PERF` with the real answer writer; monitor, load and radio are mocked. */
-#include "verbs.h"
+#include "firmware/verbs.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -6,7 +6,7 @@
 #include "mock_servers.h"
 #include "mock_xbee_port.h"
 #include "unity.h"
-#include "verbs.h"
+#include "firmware/verbs.h"
 
 static parameters_t parameters;
 static parameters_t stored;

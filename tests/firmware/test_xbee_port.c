@@ -1,5 +1,5 @@
 /* From the octets of a receive interrupt to the queue of TaskReceiveComm, and lines out through a bounded buffer. */
-#include "xbee_port.h"
+#include "firmware/xbee_port.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -12,8 +12,8 @@ for clang in clang clang-19 clang-18 clang-17 clang-16 clang-15 clang-14 none; d
         "$clang" -x c -fsanitize=fuzzer,address - -o probe 2>/dev/null && break
 done
 [ "$clang" != none ] || { echo "no clang with libFuzzer: tools/setup/setup.sh fuzz" >&2; exit 77; }
-"$clang" -std=gnu99 -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined -I"$drivers" \
+"$clang" -std=gnu99 -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined -I"$drivers/.." \
     "$here"/fuzz_scip.c "$drivers"/scip_*.c -o fuzz_scip
-"${CC:-cc}" -std=gnu99 -O1 -I"$drivers" "$here"/fuzz_scip.c "$here"/corpus.c "$drivers"/scip_*.c -o corpus_scip
+"${CC:-cc}" -std=gnu99 -O1 -I"$drivers/.." "$here"/fuzz_scip.c "$here"/corpus.c "$drivers"/scip_*.c -o corpus_scip
 ./corpus_scip -w good
 ./fuzz_scip -max_total_time="$2" -max_len=1024 -use_value_profile=1 -print_final_stats=1 -verbosity=0 corpus good

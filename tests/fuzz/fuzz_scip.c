@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scip_info.h"
-#include "scip_layout.h"
-#include "scip_parser.h"
+#include "drivers/scip_info.h"
+#include "drivers/scip_layout.h"
+#include "drivers/scip_parser.h"
 
 #define POINTS_MAX 40       /* memory of a scan; one of the requests has more */
 #define SENT_MAX 41

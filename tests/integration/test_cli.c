@@ -5,7 +5,7 @@
 #include <sys/resource.h>
 
 #include "child.h"
-#include "parameters.h"
+#include "control/parameters.h"
 #include "unity.h"
 
 void setUp(void) {}

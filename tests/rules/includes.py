@@ -25,7 +25,7 @@ DEAF = ("sim/ti", "sim/devices")
 def check(the_house):
     complaints = []
     for room in house.PRODUCT:
-        own = {neighbour: {path.split("/", 1)[1] for path in the_house.sources(neighbour, ".h")}
+        own = {neighbour: set(the_house.sources(neighbour, ".h"))
                for neighbour in NEIGHBOURS[room]}
         for path in the_house.sources(room, ".c", ".h"):
             for line, mark, name in includes(the_house.text(path)):
@@ -44,7 +44,7 @@ def names_product_header(the_house, place, mark, name):
     """A quoted name without a directory that is a header of the product and none of its own."""
     return (mark == '"' and "/" not in name
             and not any(path.endswith("/" + name) for path in the_house.sources("sim", ".h"))
-            and any((the_house.root / room / name).is_file() for room in house.PRODUCT))
+            and any(path.endswith("/" + name) for room in house.PRODUCT for path in the_house.sources(room, ".h")))
 
 
 def includes(text):
@@ -59,6 +59,8 @@ def objection(room, path, mark, name, own):
         return f"include of a macro, {name}: write the header's name"
     if mark == '"' and any(name in headers for headers in own.values()):
         return None
+    if mark == '"' and any(path.endswith("/" + name) for headers in own.values() for path in headers):
+        return f"{name}: name the room too"
     if mark == "<" and name in STANDARD:
         return None
     if room == "bsp" and DRIVERLIB.match(name):

@@ -19,12 +19,12 @@ GOOD = {
     "cmake/sources.cmake": "set(CONTROL_SOURCES control/a.c)\nset(DRIVERS_SOURCES drivers/b.c)\n"
                            "set(BSP_SOURCES bsp/c.c)\nset(FIRMWARE_SOURCES\n    firmware/d.c) # all\n",
     "control/a.h": "#include <stdint.h>\n/* 8 ticks, no task, a double look */\n",
-    "control/a.c": '#include <math.h>\n#include "a.h"\nint16_t a(void)\n{\n    return 1;\n}\n',
+    "control/a.c": '#include <math.h>\n#include "control/a.h"\nint16_t a(void)\n{\n    return 1;\n}\n',
     "drivers/b.h": "#include <stdbool.h>\n",
-    "drivers/b.c": '#include "b.h"\nconst char *b = "no /* comment, \\" malloc(1)";\n',
+    "drivers/b.c": '#include "drivers/b.h"\nconst char *b = "no /* comment, \\" malloc(1)";\n',
     "bsp/c.h": "#include <stdint.h>\n",
-    "bsp/c.c": '#include "driverlib.h"\n#include "c.h"\n#include "inc/hw_memmap.h"\n',
-    "firmware/d.c": '#include <xdc/std.h>\n#include <ti/sysbios/knl/Task.h>\n#include "a.h"\n#include "b.h"\n#include "c.h"\n',
+    "bsp/c.c": '#include "driverlib.h"\n#include "bsp/c.h"\n#include "inc/hw_memmap.h"\n',
+    "firmware/d.c": '#include <xdc/std.h>\n#include <ti/sysbios/knl/Task.h>\n#include "control/a.h"\n#include "drivers/b.h"\n#include "bsp/c.h"\n',
     "sim/devices/e.h": "",
     "sim/devices/e.c": '#include "sim/devices/e.h"\n#include <stdio.h>\n',
     "tests/control/test_a.c": "", "tests/drivers/test_b.c": "", "tests/bsp/test_c.c": "", "tests/firmware/test_d.c": "",
@@ -66,6 +66,8 @@ class Includes(Sample):
     def test_each_room_refuses_what_is_not_its_own(self):
         for path, line in (
                 ("control/a.c", '#include "b.h"'),
+                ("control/a.c", '#include "drivers/b.h"'),
+                ("control/a.c", '#include "a.h"'),
                 ("control/a.c", "#include <stdio.h>"),
                 ("control/a.c", '#include "../drivers/b.h"'),
                 ("control/a.h", "#  include  <ti/sysbios/BIOS.h>"),
@@ -78,6 +80,7 @@ class Includes(Sample):
                 ("bsp/c.c", '#include "chip.h"'),
                 ("firmware/d.c", '#include "driverlib.h"'),
                 ("firmware/d.c", '#include "kernel.h"'),
+                ("firmware/d.c", '#include "a.h"'),
                 ("firmware/d.c", '#include "sim/devices/e.h"'),
                 ("firmware/d.c", "#include <pthread.h>"),
                 ("firmware/d.c", "#include HEADER"),

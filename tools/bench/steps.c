@@ -7,17 +7,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "altitude.h"
-#include "attitude.h"
-#include "decimal.h"
-#include "flight.h"
-#include "parameters.h"
-#include "razor.h"
-#include "scip_layout.h"
-#include "scip_parser.h"
-#include "telecommand.h"
-#include "telemetry.h"
-#include "urg_link.h"
+#include "control/altitude.h"
+#include "control/attitude.h"
+#include "drivers/decimal.h"
+#include "control/flight.h"
+#include "control/parameters.h"
+#include "drivers/razor.h"
+#include "drivers/scip_layout.h"
+#include "drivers/scip_parser.h"
+#include "drivers/telecommand.h"
+#include "drivers/telemetry.h"
+#include "drivers/urg_link.h"
 
 #define REQUIRE(condition)                                                \
     do {                                                                  \

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "commands.h"
-#include "parameters.h"
+#include "control/parameters.h"
 
 static void print_row(const parameter_row_t *row)
 {

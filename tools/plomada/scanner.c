@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "sim/host/pace.h"
-#include "urg_link.h"
+#include "drivers/urg_link.h"
 
 #define FIRST_RATE 115200UL
 #define STEP (150 * SIM_MS)

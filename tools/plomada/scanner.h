@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "scip_request.h"
+#include "drivers/scip_request.h"
 
 /* Everything that passes on the wire, when it is read or written; t_us since scanner_open(). */
 typedef void (*scanner_tap_t)(void *context, bool from_sensor, long long t_us, const unsigned char *octets, size_t count);

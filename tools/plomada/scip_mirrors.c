@@ -5,10 +5,10 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "altitude.h"
+#include "control/altitude.h"
 #include "scanner.h"
 #include "scip.h"
-#include "scip_layout.h"
+#include "drivers/scip_layout.h"
 #include "scip_reader.h"
 
 #define STEPS (SCIP_STEP_MAX + 1U)

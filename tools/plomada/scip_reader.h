@@ -7,8 +7,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include "scip_layout.h"
-#include "scip_parser.h"
+#include "drivers/scip_layout.h"
+#include "drivers/scip_parser.h"
 
 #define SCIP_READER_LINE 256U   /* of a longer line only the end is kept, where its echo may be */
 

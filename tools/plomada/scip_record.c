@@ -7,7 +7,7 @@
 
 #include "scanner.h"
 #include "scip.h"
-#include "scip_layout.h"
+#include "drivers/scip_layout.h"
 
 #define START_PATIENCE_S 30.0
 #define TEXT_MAX 1024

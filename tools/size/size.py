@@ -69,7 +69,7 @@ def to_cells(out):
 
 def compile_all(compiler, base, out, without=()):
     """{source: object}, each compiled apart."""
-    include = [f"-I{base / room}" for room in house.PRODUCT] + [f"-I{ROOT / path}" for path in TI]
+    include = [f"-I{base}"] + [f"-I{ROOT / path}" for path in TI]
     objects = {path: out / path.replace("/", "-").replace(".c", ".o") for path in product() if path not in without}
     out.mkdir(parents=True, exist_ok=True)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:

@@ -34,7 +34,7 @@ class Library:
         self.stand_in, self.headers = REPOSITORY / stand_in, headers
         self.includes = includes
         self.gcc = [*GCC, *HOST, "-include", str(PRELUDE), *defines,
-                    *(f"-I{REPOSITORY / each}" for each in ("firmware", "bsp", "drivers", "control")),
+                    f"-I{REPOSITORY}",
                     *(word for each in includes for word in ("-isystem", str(each)))]
 
 

@@ -4,11 +4,11 @@ import re
 from ccs_project import REPOSITORY, SPEC
 
 ROOMS = ("firmware", "bsp", "control", "drivers")
-ENTRY = re.compile(r' *<file action="link" path="\.\./\w+/\w+\.c"[^\n]*\n')
+ENTRY = re.compile(r' *<file action="link" path="\.\./[\w/]+\.c"[^\n]*\n')
 
 
 def main():
-    listed = re.findall(r"\b(?:" + "|".join(ROOMS) + r")/\w+\.c\b", (REPOSITORY / "cmake/sources.cmake").read_text(encoding="utf-8"))
+    listed = re.findall(r"\b(?:" + "|".join(ROOMS) + r")/[\w/]+\.c\b", (REPOSITORY / "cmake/sources.cmake").read_text(encoding="utf-8"))
     listed.sort(key=lambda path: (ROOMS.index(path.split("/")[0]), path))
     entries = "".join(f'    <file action="link" path="../{path}" targetDirectory="{path.split("/")[0]}"/>\n' for path in listed)
     content = SPEC.read_text(encoding="utf-8")

@@ -33,6 +33,11 @@ def without(runner, tests):
     return runner
 
 
+def flat(text):
+    """The cells stand in one directory: an include of theirs names the file alone."""
+    return re.sub(r'^(#include ")(?:control|drivers)/(?:\w+/)*(\w+\.h")', r"\1\2", text, flags=re.MULTILINE)
+
+
 def generate(generator, test, runner):
     if not runner.exists() or runner.stat().st_mtime <= max(test.stat().st_mtime, generator.stat().st_mtime):
         runner.parent.mkdir(parents=True, exist_ok=True)
@@ -56,7 +61,7 @@ def main():
         runners.append(options.out / "runners" / f"{test.stem}_runner.c")
         write(runners[-1], without(text, [name for program, name in rows if program == test.stem]))
     for source in options.sources + options.tests + runners:
-        write(options.out / "cells" / source.name, cells.convert(source.read_text(encoding="utf-8"), source))
+        write(options.out / "cells" / source.name, flat(cells.convert(source.read_text(encoding="utf-8"), source)))
 
 
 if __name__ == "__main__":

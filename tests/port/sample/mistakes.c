@@ -2,7 +2,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "octet.h"
+#include "drivers/octet.h"
 #include "unity.h"
 
 static volatile uint16_t one = 1;

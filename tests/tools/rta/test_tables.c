@@ -2,9 +2,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "parameters.h"
-#include "schedule.h"
-#include "uart_port.h"
+#include "control/parameters.h"
+#include "firmware/schedule.h"
+#include "firmware/uart_port.h"
 #include "tools/rta/analysis.h"
 #include "tools/rta/table.h"
 #include "unity.h"

@@ -1,8 +1,8 @@
-#include "deadband.h"
+#include "control/est/deadband.h"
 
 #include <math.h>
 
-#include "between.h"
+#include "control/between.h"
 
 #define BAND_MAX_N 1.5F
 #define STEEP_N 0.10F

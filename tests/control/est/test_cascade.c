@@ -1,5 +1,5 @@
-#include "cascade.h"
-#include "thrust.h"
+#include "control/est/cascade.h"
+#include "control/thrust.h"
 #include "unity.h"
 
 #include <math.h>

@@ -6,14 +6,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "actuator.h"
-#include "altitude.h"
-#include "cascade.h"
-#include "deadband.h"
-#include "estimator.h"
-#include "hover.h"
-#include "parameters.h"
-#include "ray_clock.h"
+#include "control/est/actuator.h"
+#include "control/altitude.h"
+#include "control/est/cascade.h"
+#include "control/est/deadband.h"
+#include "control/est/estimator.h"
+#include "control/est/hover.h"
+#include "control/parameters.h"
+#include "control/ray_clock.h"
 
 typedef enum {
     EST_HOLD,               /* keep reference_m */

@@ -1,8 +1,8 @@
-#include "hover.h"
+#include "control/est/hover.h"
 
 #include <math.h>
 
-#include "between.h"
+#include "control/between.h"
 
 #define DRIFT_N2_PER_S 0.00038F
 #define SLOW_SHARE 6.6F

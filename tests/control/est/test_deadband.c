@@ -1,4 +1,4 @@
-#include "deadband.h"
+#include "control/est/deadband.h"
 #include "unity.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "actuator.h"
+#include "control/est/actuator.h"
 
 #define STEP_MAX_S 1.0F
 

@@ -17,7 +17,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "altitude.h"
+#include "control/altitude.h"
 
 #define ESTIMATOR_FRAMES 16U
 #define ESTIMATOR_STATES 4U

@@ -1,5 +1,5 @@
 #include "noisy_plant.h"
-#include "thrust.h"
+#include "control/thrust.h"
 #include "unity.h"
 
 #include <stdio.h>

@@ -1,9 +1,9 @@
-#include "cascade.h"
+#include "control/est/cascade.h"
 
 #include <math.h>
 
-#include "between.h"
-#include "thrust.h"
+#include "control/between.h"
+#include "control/thrust.h"
 
 #define TERRAIN_SHARE 1.0F
 #define FAR_M 0.20F

@@ -1,4 +1,4 @@
-#include "hover.h"
+#include "control/est/hover.h"
 #include "unity.h"
 
 #include <math.h>

@@ -1,10 +1,10 @@
-#include "est_law.h"
+#include "control/est/est_law.h"
 
 #include <math.h>
 #include <stddef.h>
 
-#include "between.h"
-#include "thrust.h"
+#include "control/between.h"
+#include "control/thrust.h"
 
 #define GRAVITY_MPS2 9.80665F
 #define DAMPING_PER_S 2.5F

@@ -1,4 +1,4 @@
-#include "estimator.h"
+#include "control/est/estimator.h"
 #include "unity.h"
 
 #include <math.h>

@@ -1,9 +1,9 @@
-#include "estimator.h"
+#include "control/est/estimator.h"
 
 #include <math.h>
 #include <stddef.h>
 
-#include "between.h"
+#include "control/between.h"
 
 #define GRAVITY_MPS2 9.80665F
 #define FRAME_AGE_US UINT32_C(23600)

@@ -1,4 +1,4 @@
-#include "actuator.h"
+#include "control/est/actuator.h"
 #include "unity.h"
 
 #include <math.h>
