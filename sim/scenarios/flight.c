@@ -87,6 +87,27 @@ void flight_print_plant_figures(FILE *out)
     }
 }
 
+/* Both texts stand until the next call. */
+static const char *out_of_range(parameter_id_t id)
+{
+    static char text[64];
+
+    snprintf(text, sizeof text, "out of range %g..%g %s", (double)parameter_table[id].minimum,
+             (double)parameter_table[id].maximum, parameter_table[id].unit);
+    return text;
+}
+
+static const char *no_such_choice(parameter_id_t id)
+{
+    static char text[96];
+    size_t used = (size_t)snprintf(text, sizeof text, "no such choice; one of");
+
+    for (int i = 0; i <= (int)parameter_table[id].maximum; i++) {
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s %s", i == 0 ? "" : ",", parameter_table[id].choices[i]);
+    }
+    return text;
+}
+
 static const char *check_parameter(parameter_id_t id, const char *text)
 {
     parameters_t parameters;
@@ -95,13 +116,13 @@ static const char *check_parameter(parameter_id_t id, const char *text)
 
     parameters_init(&parameters);
     if (parameter_table[id].choices != NULL) {
-        return parameter_choice(id, text, strlen(text)) < 0 ? "no such choice" : NULL;
+        return parameter_choice(id, text, strlen(text)) < 0 ? no_such_choice(id) : NULL;
     }
     value = strtof(text, &end);
     if (*text == '\0' || *end != '\0') {
         return "not a number";
     }
-    return parameters_set(&parameters, id, value) == PARAMETER_ACCEPTED ? NULL : "out of range";
+    return parameters_set(&parameters, id, value) == PARAMETER_ACCEPTED ? NULL : out_of_range(id);
 }
 
 static const char *check_figure(const char *text)

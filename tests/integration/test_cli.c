@@ -154,6 +154,50 @@ void test_a_damaged_storage_is_told_at_power_on_and_the_defaults_fly(void)
     TEST_ASSERT_EACH_EQUAL_CHAR((char)0xFF, text, 32768);
 }
 
+void test_a_file_that_could_not_be_written_whole_is_named_and_ends_with_2(void)
+{
+    static const char *const options[] = {"--csv", "--json", "--trace"};
+
+    for (size_t i = 0; i < sizeof options / sizeof options[0]; i++) {
+        char words[64];
+
+        snprintf(words, sizeof words, "fly pid-40cm %s /dev/full", options[i]);
+        TEST_ASSERT_EQUAL_INT(2, run(words));
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "plomada: /dev/full: No space left on device"), output);
+    }
+}
+
+void test_a_dash_writes_the_log_to_stdout_alone_and_the_table_to_stderr(void)
+{
+    static char dash[2000000], file[2000000];
+
+    TEST_ASSERT_EQUAL_INT(0, child_plomada("fly pid-40cm --csv - 2>table.txt >dash.csv", output, sizeof output));
+    TEST_ASSERT_EQUAL_INT(0, run("fly pid-40cm --csv file.csv"));
+    const size_t count = child_read_file("file.csv", file, sizeof file);
+    TEST_ASSERT_EQUAL_size_t(count, child_read_file("dash.csv", dash, sizeof dash));
+    TEST_ASSERT_EQUAL_INT(0, memcmp(dash, file, count));
+    child_read_file("table.txt", dash, sizeof dash);
+    TEST_ASSERT_NOT_NULL(strstr(dash, "MET: all expectations of pid-40cm"));
+}
+
+void test_a_misspelt_scenario_is_answered_by_the_nearest(void)
+{
+    TEST_ASSERT_EQUAL_INT(2, run("fly PID40cm"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "PID40cm: no such scenario; did you mean pid-40cm?"), output);
+    TEST_ASSERT_EQUAL_INT(2, run("fly est-60cm-rmap"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "did you mean est-60cm-ramp?"), output);
+    TEST_ASSERT_EQUAL_INT(2, run("fly zzz"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "zzz: no such scenario, see `plomada list`"), output);
+}
+
+void test_what_is_out_of_range_is_told_with_its_limits(void)
+{
+    TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --set KP=5"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "KP=5: out of range 0..1 N/mm"), output);
+    TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --set LAW=X"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "LAW=X: no such choice; one of PD, PID, PIDT, EST"), output);
+}
+
 static double cpu_s(void)
 {
     struct rusage used;

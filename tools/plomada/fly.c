@@ -6,6 +6,8 @@
 
 #include "commands.h"
 #include "measure.h"
+#include "nearest.h"
+#include "output.h"
 #include "sim/scenarios/flight.h"
 #include "sim/ti/f021/flash.h"
 
@@ -17,7 +19,7 @@ static const char usage[] =
     "  --seed N            noise, phases and turbulence (default 1)\n"
     "  --csv FILE          log at 100 Hz: the columns of #LOG (docs/operator.md), then the truth: height_m above the ground,\n"
     "                      abs_m, terrain_m, and the throttle pulse_us\n"
-    "  --json FILE         metrics\n"
+    "  --json FILE         metrics. - as FILE of --csv or --json is stdout; the table then goes to stderr\n"
     "  --storage FILE      the chip's flash: what #SAVE has stored there in one run is in force in the next. Without it the\n"
     "                      storage is blank at power-on. The file is made when there is none\n"
     "  --set NAME=VALUE    a telecommand parameter (see `plomada params`) or a plant figure; may be repeated\n"
@@ -57,7 +59,8 @@ static const struct option long_options[] = {
 typedef struct {
     flight_options_t flight;
     const scenario_t *scenario;
-    const char *csv_path, *json_path, *trace_path, *storage_path;
+    output_t csv, json, trace;
+    const char *storage_path;
     double cost_scale;
     bool help, height, timing;
 } request_t;
@@ -117,14 +120,14 @@ static bool read_option(request_t *request, int option, const char *argument)
 
     switch (option) {
     case OPT_SEED: return read_seed(request, argument);
-    case OPT_CSV: request->csv_path = argument; return true;
-    case OPT_JSON: request->json_path = argument; return true;
+    case OPT_CSV: request->csv.path = argument; return true;
+    case OPT_JSON: request->json.path = argument; return true;
     case OPT_STORAGE: request->storage_path = argument; return true;
     case OPT_SET:
         error = flight_override(&request->flight, argument);
         return error == NULL || complain(error, argument);
     case OPT_TIMING: request->timing = true; return true;
-    case OPT_TRACE: request->trace_path = argument; return true;
+    case OPT_TRACE: request->trace.path = argument; return true;
     case OPT_COST_SCALE: return read_cost_scale(request, argument);
     case OPT_REALTIME: request->flight.realtime = true; return true;
     case OPT_LASER: return use_device(request, BOARD_LASER, argument);
@@ -164,6 +167,23 @@ static bool check_arguments(const request_t *request)
     return options->realtime || options->duration_s == 0.0 || complain("goes with --realtime or bench", "--duration");
 }
 
+static bool no_such_scenario(const char *name)
+{
+    const char *names[64];
+    size_t count = 0;
+
+    for (int i = 0; i < scenario_count && count < sizeof names / sizeof names[0]; i++) {
+        names[count++] = scenarios[i].name;
+    }
+    const char *meant = nearest(name, names, count);
+
+    if (meant == NULL) {
+        return complain("no such scenario, see `plomada list`", name);
+    }
+    fprintf(stderr, "plomada fly: %s: no such scenario; did you mean %s?\n", name, meant);
+    return false;
+}
+
 static bool read_arguments(request_t *request, int argc, char **argv)
 {
     int option;
@@ -182,7 +202,7 @@ static bool read_arguments(request_t *request, int argc, char **argv)
     }
     request->scenario = scenario_find(argv[optind]);
     if (request->scenario == NULL) {
-        return complain("no such scenario, see `plomada list`", argv[optind]);
+        return no_such_scenario(argv[optind]);
     }
     return check_arguments(request);
 }
@@ -201,31 +221,31 @@ static int decimals(metric_t metric)
     }
 }
 
-static void print_table(const request_t *request, const flight_result_t *result)
+static void print_table(FILE *out, const request_t *request, const flight_result_t *result)
 {
-    printf("%s, seed %lu\n", request->scenario->name, request->flight.seed);
+    fprintf(out, "%s, seed %lu\n", request->scenario->name, request->flight.seed);
     for (int i = 0; i < METRIC_COUNT; i++) {
         double value = result->metrics.value[i];
 
         if (isnan(value)) {
-            printf("  %-20s -\n", metric_names[i]);
+            fprintf(out, "  %-20s -\n", metric_names[i]);
         } else {
-            printf("  %-20s %.*f\n", metric_names[i], decimals((metric_t)i), value);
+            fprintf(out, "  %-20s %.*f\n", metric_names[i], decimals((metric_t)i), value);
         }
     }
 }
 
-static bool print_verdict(const request_t *request, const flight_result_t *result)
+static bool print_verdict(FILE *out, const request_t *request, const flight_result_t *result)
 {
     const expectation_t *broken;
     bool met;
 
     if (result->halt != NULL) {
-        printf("NOT MET: the firmware stopped: %s\n", result->halt);
+        fprintf(out, "NOT MET: the firmware stopped: %s\n", result->halt);
         return false;
     }
     if (!result->started) {
-        printf("NOT MET: the sensors did not come up within 60 s\n");
+        fprintf(out, "NOT MET: the sensors did not come up within 60 s\n");
         return false;
     }
     if (request->flight.realtime) {
@@ -233,19 +253,19 @@ static bool print_verdict(const request_t *request, const flight_result_t *resul
     }
     met = scenario_met(request->scenario, &result->metrics, &broken);
     if (met) {
-        printf("MET: all expectations of %s\n", request->scenario->name);
+        fprintf(out, "MET: all expectations of %s\n", request->scenario->name);
     } else if (broken != NULL) {
-        printf("NOT MET: %s is not within %g..%g\n", metric_names[broken->metric], broken->minimum, broken->maximum);
+        fprintf(out, "NOT MET: %s is not within %g..%g\n", metric_names[broken->metric], broken->minimum, broken->maximum);
     } else {
-        printf("NOT MET: %s\n", result->metrics.failed ? result->metrics.failure : "it was to fail, and did not");
+        fprintf(out, "NOT MET: %s\n", result->metrics.failed ? result->metrics.failure : "it was to fail, and did not");
     }
     return met;
 }
 
-static bool print_result(const request_t *request, const flight_result_t *result)
+static bool print_result(FILE *out, const request_t *request, const flight_result_t *result)
 {
-    print_table(request, result);
-    return print_verdict(request, result);
+    print_table(out, request, result);
+    return print_verdict(out, request, result);
 }
 
 static bool bench_ended(const flight_result_t *result)
@@ -271,16 +291,6 @@ static void write_json(FILE *out, const request_t *request, const flight_result_
             result->halt != NULL ? "true" : "false");
 }
 
-static FILE *open_output(const char *path)
-{
-    FILE *file = fopen(path, "w");
-
-    if (file == NULL) {
-        perror(path);
-    }
-    return file;
-}
-
 /* Stored at once as well: a file that cannot be written is better known before the flight than after it. */
 static bool load_storage(const char *path)
 {
@@ -299,45 +309,55 @@ static bool keep_storage(const char *path)
     return error == NULL || complain(error, path);
 }
 
+/* Where people read: stdout, or stderr where a file is written to stdout. */
+static FILE *reading_matter(const request_t *request)
+{
+    return output_is_stdout(&request->csv) || output_is_stdout(&request->json) ? stderr : stdout;
+}
+
+static bool open_outputs(request_t *request)
+{
+    const bool opened = output_open(&request->csv) && output_open(&request->json) && output_open(&request->trace);
+
+    request->flight.csv = request->csv.file;
+    if (request->scenario->bench || (request->flight.realtime && request->flight.device[BOARD_RADIO] == NULL)) {
+        request->flight.telemetry = reading_matter(request);
+    }
+    return opened;
+}
+
+static bool close_outputs(request_t *request)
+{
+    bool closed = output_close(&request->trace);
+
+    closed = output_close(&request->json) && closed;
+    return output_close(&request->csv) && closed;
+}
+
 static int run(request_t *request)
 {
     static flight_result_t result;
-    FILE *json = NULL, *trace = NULL;
     const char *error;
     bool met, kept;
 
-    if (!load_storage(request->storage_path)) {
+    if (!load_storage(request->storage_path) || !open_outputs(request)) {
         return 2;
     }
-    if ((request->csv_path != NULL && (request->flight.csv = open_output(request->csv_path)) == NULL) ||
-        (request->json_path != NULL && (json = open_output(request->json_path)) == NULL) ||
-        (request->trace_path != NULL && (trace = open_output(request->trace_path)) == NULL)) {
-        return 2;
-    }
-    if (request->scenario->bench || (request->flight.realtime && request->flight.device[BOARD_RADIO] == NULL)) {
-        request->flight.telemetry = stdout;
-    }
-    request->flight.costs = measure_begin(request->cost_scale, trace);
+    request->flight.costs = measure_begin(request->cost_scale, request->trace.file);
     if (!flight_run(request->scenario, &request->flight, &result, &error)) {
         fprintf(stderr, "plomada fly: %s\n", error);
         return 2;
     }
     kept = keep_storage(request->storage_path);
     measure_end();
-    met = request->scenario->bench ? bench_ended(&result) : print_result(request, &result);
+    met = request->scenario->bench ? bench_ended(&result) : print_result(reading_matter(request), request, &result);
     if (request->timing) {
-        met = measure_report(stdout) && met;
+        met = measure_report(reading_matter(request)) && met;
     }
-    if (trace != NULL) {
-        fclose(trace);
+    if (request->json.file != NULL) {
+        write_json(request->json.file, request, &result, met);
     }
-    if (json != NULL) {
-        write_json(json, request, &result, met);
-        fclose(json);
-    }
-    if (request->flight.csv != NULL) {
-        fclose(request->flight.csv);
-    }
+    kept = close_outputs(request) && kept;
     return !kept ? 2 : met ? 0 : 1;
 }
 
