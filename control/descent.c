@@ -45,7 +45,7 @@ static float rate_action_n(float error_mm_s)
 }
 
 /* At the ground: hover_n as it was learned, and less and less. */
-static float most_n(descent_t *descent, float hover_n, float height_mm, float dt_s)
+static float thrust_limit_n(descent_t *descent, float hover_n, float height_mm, float dt_s)
 {
     const bool low = height_mm < LOW_MM || (descent->low_s > 0.0F && height_mm < LOW_NO_MORE_MM);
 
@@ -62,9 +62,9 @@ float descent_step(descent_t *descent, float hover_n, float height_mm, float rat
     const float trim_gain = (rate_mm_s > 0.0F) ? CLIMB_TRIM_GAIN_N_PER_MM : TRIM_GAIN_N_PER_MM;
 
     descent->trim_n = between(-TRIM_MAX_N, descent->trim_n + trim_gain * error_mm_s * dt_s, TRIM_MAX_N);
-    const float wanted_n =
+    const float setpoint_n =
         fmaxf(hover_n - sink_n + descent->trim_n + rate_action_n(error_mm_s), LEAST_SHARE * hover_n);
-    return fminf(wanted_n, most_n(descent, hover_n + descent->trim_n, height_mm, dt_s));
+    return fminf(setpoint_n, thrust_limit_n(descent, hover_n + descent->trim_n, height_mm, dt_s));
 }
 
 float descent_blind(float hover_n, float elapsed_s)

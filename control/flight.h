@@ -25,33 +25,33 @@ typedef struct {
                                      * whatever the law's release */
 } flight_outputs_t;
 
-/* Who decides the thrust. */
+/* What the thrust is computed by. */
 typedef enum {
-    CHARGE_IDLE,                    /* nobody: none */
-    CHARGE_LAW,                     /* PD, PID, PIDT */
-    CHARGE_HOVER,
-    CHARGE_DESCENT,
-    CHARGE_BLIND,
-    CHARGE_HOLD,                    /* law EST, also while it coasts */
-    CHARGE_LAND,                    /* by the estimate, as all that follows */
-    CHARGE_SINK
-} flight_charge_t;
+    FLIGHT_MODE_IDLE,                    /* nobody: none */
+    FLIGHT_MODE_LAW,                     /* PD, PID, PIDT */
+    FLIGHT_MODE_HOVER,
+    FLIGHT_MODE_DESCENT,
+    FLIGHT_MODE_BLIND_DESCENT,
+    FLIGHT_MODE_EST_HOLD,                    /* law EST, also while it coasts */
+    FLIGHT_MODE_EST_LAND,                    /* by the estimate, as all that follows */
+    FLIGHT_MODE_EST_SINK
+} flight_mode_t;
 
 typedef struct {
     supervisor_t supervisor;
-    flight_charge_t charge;
-    pid_state_t law;
+    flight_mode_t mode;
+    pid_state_t pid;
     bool integral;                  /* the law had an integral action in the previous cycle */
     pidt_state_t pidt;
     uint32_t pidt_rays_us;          /* of its previous height */
     est_law_t est;
-    control_law_t flown;            /* the law that acts, or would: PIDT in place of EST without a fresh estimate */
+    control_law_t active_law;           /* PIDT in place of EST without a fresh estimate */
     descent_t descent;
     float hover_n;                  /* best known hover thrust: the estimator's, or else the slow mean of the thrust while
                                      * FLYING; GRAV +-1.5 N */
-    bool weighed;                   /* in the present flight: hover_n outlasts a pilot's turn */
-    float wanted_n;                 /* what the state in charge wants */
-    float bridge_n;                 /* added to it, fades out: no jump where the one in charge changes */
+    bool hover_learned;                  /* in the present flight: hover_n outlasts a pilot's turn */
+    float setpoint_n;                /* thrust that the mode asks for */
+    float transfer_n;                /* added to it, fades out: bumpless transfer between modes */
     float thrust_n;                 /* the previous command */
 } flight_t;
 

@@ -11,7 +11,7 @@
 #define ALOFT_HELD_US UINT32_C(1000000)
 #define REST_HELD_US UINT32_C(1200000)
 #define LINK_HOLD_US UINT32_C(5000000)
-#define SPENT_US UINT32_C(45000000)
+#define DESCENT_TIMEOUT_US UINT32_C(45000000)
 #define AGE_MAX_US UINT32_C(3600000000)
 
 #define HEIGHT_MIN_MM (-500.0F)
@@ -20,7 +20,7 @@
 #define REST_BELOW_MM 50.0F
 #define REST_FALL_MM 20.0F
 #define TOO_HIGH_MM 800.0F
-#define BACK_MM 300.0F
+#define RECOVERED_MM 300.0F
 #define TOO_HIGH_HEIGHTS 2U
 #define RATE_MAX_MM_S 3000.0F
 #define RATE_CHANGE_MAX_MM_S2 10000.0F
@@ -35,56 +35,56 @@
 #define TILTED_COS 0.70710678F
 #define LEVEL_COS 0.93969262F
 
-#define GO (FLIGHT_IF_REFERENCE | FLIGHT_IF_READY | FLIGHT_IF_HEIGHT)
+#define CAN_FLY (FLIGHT_IF_REFERENCE | FLIGHT_IF_READY | FLIGHT_IF_HEIGHT)
 
 const flight_transition_t flight_transitions[FLIGHT_TRANSITION_COUNT] = {
     {FLIGHT_GROUND, FLIGHT_IF_ALOFT, 0U, FLIGHT_FLOATING},
-    {FLIGHT_GROUND, GO | FLIGHT_IF_OURS, FLIGHT_IF_TILTED, FLIGHT_TAKEOFF},
+    {FLIGHT_GROUND, CAN_FLY | FLIGHT_IF_HAS_THROTTLE, FLIGHT_IF_TILTED, FLIGHT_TAKEOFF},
 
-    {FLIGHT_TAKEOFF, 0U, FLIGHT_IF_OURS, FLIGHT_FLOATING},
+    {FLIGHT_TAKEOFF, 0U, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING},
     {FLIGHT_TAKEOFF, FLIGHT_IF_TILTED, 0U, FLIGHT_CUT},
     {FLIGHT_TAKEOFF, 0U, FLIGHT_IF_HEIGHT, FLIGHT_COASTING},
     {FLIGHT_TAKEOFF, 0U, FLIGHT_IF_REFERENCE, FLIGHT_LANDING},
     {FLIGHT_TAKEOFF, FLIGHT_IF_TOO_HIGH, 0U, FLIGHT_LOWERING},
     {FLIGHT_TAKEOFF, FLIGHT_IF_OFF_GROUND, 0U, FLIGHT_FLYING},
 
-    {FLIGHT_FLYING, 0U, FLIGHT_IF_OURS, FLIGHT_FLOATING},
+    {FLIGHT_FLYING, 0U, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING},
     {FLIGHT_FLYING, FLIGHT_IF_TILTED, 0U, FLIGHT_CUT},
     {FLIGHT_FLYING, 0U, FLIGHT_IF_HEIGHT, FLIGHT_COASTING},
     {FLIGHT_FLYING, 0U, FLIGHT_IF_REFERENCE, FLIGHT_LANDING},
     {FLIGHT_FLYING, FLIGHT_IF_TOO_HIGH, 0U, FLIGHT_LOWERING},
 
-    {FLIGHT_FLOATING, GO | FLIGHT_IF_OURS, FLIGHT_IF_TILTED, FLIGHT_FLYING},
-    {FLIGHT_FLOATING, FLIGHT_IF_LAND | FLIGHT_IF_HEIGHT | FLIGHT_IF_OURS, 0U, FLIGHT_LANDING},
-    {FLIGHT_FLOATING, FLIGHT_IF_LAND | FLIGHT_IF_OURS, 0U, FLIGHT_DESCENDING},
+    {FLIGHT_FLOATING, CAN_FLY | FLIGHT_IF_HAS_THROTTLE, FLIGHT_IF_TILTED, FLIGHT_FLYING},
+    {FLIGHT_FLOATING, FLIGHT_IF_LAND | FLIGHT_IF_HEIGHT | FLIGHT_IF_HAS_THROTTLE, 0U, FLIGHT_LANDING},
+    {FLIGHT_FLOATING, FLIGHT_IF_LAND | FLIGHT_IF_HAS_THROTTLE, 0U, FLIGHT_DESCENDING},
     {FLIGHT_FLOATING, FLIGHT_IF_AT_REST, 0U, FLIGHT_GROUND},
 
-    {FLIGHT_COASTING, 0U, FLIGHT_IF_OURS, FLIGHT_FLOATING},
+    {FLIGHT_COASTING, 0U, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING},
     {FLIGHT_COASTING, FLIGHT_IF_TILTED, 0U, FLIGHT_CUT},
     {FLIGHT_COASTING, 0U, FLIGHT_IF_REFERENCE, FLIGHT_DESCENDING},
     {FLIGHT_COASTING, FLIGHT_IF_HEIGHT, 0U, FLIGHT_FLYING},
     {FLIGHT_COASTING, FLIGHT_IF_LOST, 0U, FLIGHT_DESCENDING},
 
-    {FLIGHT_DESCENDING, 0U, FLIGHT_IF_OURS, FLIGHT_FLOATING},
+    {FLIGHT_DESCENDING, 0U, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING},
     {FLIGHT_DESCENDING, FLIGHT_IF_TILTED, 0U, FLIGHT_CUT},
-    {FLIGHT_DESCENDING, GO, 0U, FLIGHT_FLYING},
+    {FLIGHT_DESCENDING, CAN_FLY, 0U, FLIGHT_FLYING},
     {FLIGHT_DESCENDING, FLIGHT_IF_HEIGHT, 0U, FLIGHT_LANDING},
-    {FLIGHT_DESCENDING, FLIGHT_IF_SPENT, 0U, FLIGHT_GROUND},
+    {FLIGHT_DESCENDING, FLIGHT_IF_DESCENT_TIMEOUT, 0U, FLIGHT_GROUND},
 
-    {FLIGHT_LANDING, 0U, FLIGHT_IF_OURS, FLIGHT_FLOATING},
+    {FLIGHT_LANDING, 0U, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING},
     {FLIGHT_LANDING, FLIGHT_IF_TILTED, 0U, FLIGHT_CUT},
-    {FLIGHT_LANDING, GO, 0U, FLIGHT_FLYING},
+    {FLIGHT_LANDING, CAN_FLY, 0U, FLIGHT_FLYING},
     {FLIGHT_LANDING, 0U, FLIGHT_IF_HEIGHT, FLIGHT_DESCENDING},
     {FLIGHT_LANDING, FLIGHT_IF_AT_REST, 0U, FLIGHT_GROUND},
 
-    {FLIGHT_LOWERING, 0U, FLIGHT_IF_OURS, FLIGHT_FLOATING},
+    {FLIGHT_LOWERING, 0U, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING},
     {FLIGHT_LOWERING, FLIGHT_IF_TILTED, 0U, FLIGHT_CUT},
     {FLIGHT_LOWERING, 0U, FLIGHT_IF_HEIGHT, FLIGHT_COASTING},
     {FLIGHT_LOWERING, 0U, FLIGHT_IF_REFERENCE, FLIGHT_LANDING},
-    {FLIGHT_LOWERING, FLIGHT_IF_AGAIN, 0U, FLIGHT_LANDING},
-    {FLIGHT_LOWERING, FLIGHT_IF_BACK, 0U, FLIGHT_FLYING},
+    {FLIGHT_LOWERING, FLIGHT_IF_LOWERING_LIMIT, 0U, FLIGHT_LANDING},
+    {FLIGHT_LOWERING, FLIGHT_IF_RECOVERED, 0U, FLIGHT_FLYING},
 
-    {FLIGHT_CUT, FLIGHT_IF_ALOFT, FLIGHT_IF_TILTED | FLIGHT_IF_OURS, FLIGHT_FLOATING},
+    {FLIGHT_CUT, FLIGHT_IF_ALOFT, FLIGHT_IF_TILTED | FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING},
     {FLIGHT_CUT, FLIGHT_IF_AT_REST | FLIGHT_IF_LEVEL, 0U, FLIGHT_GROUND},
 };
 
@@ -122,7 +122,7 @@ void supervisor_init(supervisor_t *supervisor)
     };
 }
 
-static uint32_t grown(uint32_t age_us, uint32_t by_us)
+static uint32_t add_time(uint32_t age_us, uint32_t by_us)
 {
     return (by_us < AGE_MAX_US - age_us) ? age_us + by_us : AGE_MAX_US;
 }
@@ -133,16 +133,16 @@ static uint32_t elapsed(uint32_t now_us, uint32_t then_us)
     return (ago_us <= AGE_MAX_US) ? ago_us : 0U;
 }
 
-static void hold(hold_t *held, bool condition, uint32_t step_us)
+static void update_hold(hold_t *held, bool condition, uint32_t step_us)
 {
-    held->for_us = (condition && held->on) ? grown(held->for_us, step_us) : 0U;
+    held->for_us = (condition && held->on) ? add_time(held->for_us, step_us) : 0U;
     held->on = condition;
 }
 
 static void observe_time(supervisor_t *s, const flight_inputs_t *in)
 {
     s->step_us = s->started ? in->now_us - s->now_us : 0U;
-    s->state_us = grown(s->state_us, s->step_us);
+    s->state_us = add_time(s->state_us, s->step_us);
     s->now_us = in->now_us;
     s->started = true;
 }
@@ -163,7 +163,7 @@ static void observe_height(supervisor_t *s, const flight_inputs_t *in)
     height_track_t *track = &s->height;
     const bool plausible = in->altitude.height_mm >= HEIGHT_MIN_MM && in->altitude.height_mm <= HEIGHT_MAX_MM;
 
-    track->age_us = grown(track->age_us, s->step_us);
+    track->age_us = add_time(track->age_us, s->step_us);
     track->is_new = in->height_valid && in->height_sequence != track->sequence && plausible;
     if (!track->is_new) {
         return;
@@ -180,7 +180,7 @@ static void observe_attitude(supervisor_t *s, const flight_inputs_t *in)
 {
     const bool is_new = in->attitude_time_us != s->attitude_time_us;
     s->attitude_age_us =
-        is_new ? elapsed(in->now_us, in->attitude_time_us) : grown(s->attitude_age_us, s->step_us);
+        is_new ? elapsed(in->now_us, in->attitude_time_us) : add_time(s->attitude_age_us, s->step_us);
     s->attitude_time_us = in->attitude_time_us;
     if (is_new && in->attitude_ready) {
         const float upright = cosf(in->roll_rad) * cosf(in->pitch_rad);
@@ -193,7 +193,7 @@ static void observe_attitude(supervisor_t *s, const flight_inputs_t *in)
 static void observe_link(supervisor_t *s, const flight_inputs_t *in)
 {
     const bool is_new = in->link_sequence != s->link_sequence;
-    s->link_age_us = is_new ? elapsed(in->now_us, in->link_time_us) : grown(s->link_age_us, s->step_us);
+    s->link_age_us = is_new ? elapsed(in->now_us, in->link_time_us) : add_time(s->link_age_us, s->step_us);
     s->link_sequence = in->link_sequence;
 }
 
@@ -232,7 +232,7 @@ static bool attitude_fresh(const supervisor_t *s)
     return s->attitude_age_us <= ATTITUDE_FRESH_US;
 }
 
-bool supervisor_estimated(const supervisor_t *supervisor)
+bool supervisor_has_estimate(const supervisor_t *supervisor)
 {
     return supervisor->estimate_age_us <= ESTIMATE_HELD_US;
 }
@@ -247,7 +247,7 @@ static float peak_mm(const supervisor_t *s, float height_mm, float rate_mm_s, fl
 /* A step of the terrain looks like a climb, but not to an estimate: heights have less to say where there is one. */
 static float measured_peak_mm(const supervisor_t *s)
 {
-    const float ahead_s = supervisor_estimated(s) ? CLIMB_AHEAD_ESTIMATED_S : CLIMB_AHEAD_S;
+    const float ahead_s = supervisor_has_estimate(s) ? CLIMB_AHEAD_ESTIMATED_S : CLIMB_AHEAD_S;
     return peak_mm(s, s->height.height_mm, s->height.rate_mm_s, ahead_s);
 }
 
@@ -257,8 +257,8 @@ static void observe_ground(supervisor_t *s)
     const bool fresh = height_fresh(s);
     const bool resting = fresh && height_mm < REST_BELOW_MM && height_mm >= s->rest_from_mm - REST_FALL_MM;
 
-    hold(&s->aloft, fresh && height_mm > OFF_GROUND_MM, s->step_us);
-    hold(&s->rest, resting, s->step_us);
+    update_hold(&s->aloft, fresh && height_mm > OFF_GROUND_MM, s->step_us);
+    update_hold(&s->rest, resting, s->step_us);
     s->rest_from_mm = resting ? s->rest_from_mm : height_mm;
 }
 
@@ -266,7 +266,7 @@ static void observe_estimate(supervisor_t *s, const vertical_estimate_t *estimat
 {
     s->estimated_peak_mm =
         estimate->known ? peak_mm(s, estimate->height_mm, estimate->climb_mm_s, ESTIMATE_AHEAD_S) : NAN;
-    s->estimate_age_us = estimate->known ? 0U : grown(s->estimate_age_us, s->step_us);
+    s->estimate_age_us = estimate->known ? 0U : add_time(s->estimate_age_us, s->step_us);
 }
 
 static void observe_climb(supervisor_t *s)
@@ -282,9 +282,9 @@ static bool too_high(const supervisor_t *s)
     return s->too_high_count == TOO_HIGH_HEIGHTS || s->estimated_peak_mm > TOO_HIGH_MM;
 }
 
-static bool back(const supervisor_t *s)
+static bool recovered(const supervisor_t *s)
 {
-    return measured_peak_mm(s) < BACK_MM && !(s->estimated_peak_mm >= BACK_MM);
+    return measured_peak_mm(s) < RECOVERED_MM && !(s->estimated_peak_mm >= RECOVERED_MM);
 }
 
 static uint16_t bit(bool condition, uint16_t mask)
@@ -296,6 +296,8 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
 {
     const bool fresh = height_fresh(s);
     const bool reference = s->reference_m > 0.0F;
+    const bool descent_timeout = s->state == FLIGHT_DESCENDING && s->state_us >= DESCENT_TIMEOUT_US;
+    const bool lowering_limit = s->state == FLIGHT_LOWERING && s->lowerings == LOWERINGS_MAX;
 
     return (uint16_t)(bit(reference, FLIGHT_IF_REFERENCE)
                       | bit(in->attitude_ready, FLIGHT_IF_READY)
@@ -305,13 +307,13 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
                       | bit(s->aloft.for_us >= ALOFT_HELD_US, FLIGHT_IF_ALOFT)
                       | bit(s->rest.for_us >= REST_HELD_US, FLIGHT_IF_AT_REST)
                       | bit(fresh && reference && too_high(s), FLIGHT_IF_TOO_HIGH)
-                      | bit(fresh && back(s), FLIGHT_IF_BACK)
+                      | bit(fresh && recovered(s), FLIGHT_IF_RECOVERED)
                       | bit(s->land, FLIGHT_IF_LAND)
-                      | bit(s->state == FLIGHT_DESCENDING && s->state_us >= SPENT_US, FLIGHT_IF_SPENT)
-                      | bit(s->state == FLIGHT_LOWERING && s->lowerings == LOWERINGS_MAX, FLIGHT_IF_AGAIN)
+                      | bit(descent_timeout, FLIGHT_IF_DESCENT_TIMEOUT)
+                      | bit(lowering_limit, FLIGHT_IF_LOWERING_LIMIT)
                       | bit(s->tilted_count == TILTED_ATTITUDES, FLIGHT_IF_TILTED)
                       | bit(s->level && attitude_fresh(s), FLIGHT_IF_LEVEL)
-                      | bit(in->throttle_ours, FLIGHT_IF_OURS));
+                      | bit(in->has_throttle, FLIGHT_IF_HAS_THROTTLE));
 }
 
 static uint16_t flags(const supervisor_t *s, uint16_t met, float link_s, const flight_inputs_t *in)
@@ -327,7 +329,7 @@ static uint16_t flags(const supervisor_t *s, uint16_t met, float link_s, const f
                       | bit(lowering, FLIGHT_FLAG_TOO_HIGH)
                       | bit(link_silent(s, link_s, 0U), FLIGHT_FLAG_LINK)
                       | bit(tilted, FLIGHT_FLAG_TILT)
-                      | bit(!in->throttle_ours, FLIGHT_FLAG_PILOT));
+                      | bit(!in->has_throttle, FLIGHT_FLAG_PILOT));
 }
 
 static void count_lowerings(supervisor_t *s, flight_state_t next)

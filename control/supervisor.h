@@ -51,7 +51,7 @@ typedef struct {
     uint32_t reference_sequence;    /* +1 per accepted #SETR, 0 m included */
     uint32_t link_time_us;          /* arrival of the latest complete valid command line */
     uint32_t link_sequence;         /* +1 per such line; 0 = never one */
-    bool throttle_ours;             /* false: the pilot has it, as a pin says; true when nothing says it */
+    bool has_throttle;             /* false: the pilot has it, as a pin says; true when nothing says it */
 } flight_inputs_t;
 
 /* What an estimator knows of the height above the terrain, now. */
@@ -73,14 +73,14 @@ typedef struct {
 #define FLIGHT_IF_TOO_HIGH 128U     /* an estimate from where the present climb, 0.25 s long and then braked by 4 m/s2, ends
                                      * above reference + 0.8 m; or two heights in a row, their own climb 0.15 s long, or
                                      * 0.4 s when there has been no estimate for 0.35 s */
-#define FLIGHT_IF_BACK 256U         /* fresh height, and estimate if known, from where it ends below reference + 0.3 m */
+#define FLIGHT_IF_RECOVERED 256U    /* fresh height, and estimate if known, from where it ends below reference + 0.3 m */
 #define FLIGHT_IF_LAND 512U         /* #SETR 0 arrived in this cycle */
-#define FLIGHT_IF_SPENT 1024U       /* 45 s in DESCENDING: its thrust has faded out */
+#define FLIGHT_IF_DESCENT_TIMEOUT 1024U       /* 45 s in DESCENDING: its thrust has faded out */
 #define FLIGHT_IF_TILTED 2048U      /* three fresh attitudes in a row over 45 degrees */
 #define FLIGHT_IF_LEVEL 4096U       /* fresh attitude within 20 degrees */
-#define FLIGHT_IF_AGAIN 8192U       /* the third LOWERING since the reference was set or 20 s of FLYING: the law cannot fly
+#define FLIGHT_IF_LOWERING_LIMIT 8192U       /* the third LOWERING since the reference was set or 20 s of FLYING: the law cannot fly
                                      * this vehicle */
-#define FLIGHT_IF_OURS 16384U       /* the pilot does not have the throttle */
+#define FLIGHT_IF_HAS_THROTTLE 16384U       /* the pilot does not have the throttle */
 #define FLIGHT_IF_ALL 32767U
 
 typedef struct {
@@ -133,7 +133,7 @@ typedef struct {
     hold_t rest;
     float rest_from_mm;
     uint16_t too_high_count;
-    uint16_t lowerings;             /* see FLIGHT_IF_AGAIN */
+    uint16_t lowerings;             /* see FLIGHT_IF_LOWERING_LIMIT */
     float estimated_peak_mm;        /* above the reference; NAN: no estimate */
     uint32_t estimate_age_us;
     uint16_t tilted_count;
@@ -151,7 +151,7 @@ void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs
                      const vertical_estimate_t *estimate);
 
 /* An estimate was known within the last 0.35 s. */
-bool supervisor_estimated(const supervisor_t *supervisor);
+bool supervisor_has_estimate(const supervisor_t *supervisor);
 
 /* "GROUND", ... as shown by the telemetry. */
 const char *flight_state_name(flight_state_t state);

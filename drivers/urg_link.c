@@ -16,7 +16,7 @@ typedef struct {
     urg_action_t *action;
 } turn_t;
 
-static const char *const status_names[LASER_STATUS_COUNT] = {
+static const char *const status_names[URG_STATUS_COUNT] = {
     "WAIT", "STOP1", "SWITCH", "RATE", "STOP2", "STREAM", "OK", "LOST",
 };
 
@@ -80,7 +80,7 @@ static uint32_t reply_timeout_us(const urg_link_t *link, const scip_request_t *r
     return timeout_us + wire_us(link, octets);
 }
 
-static void enter(const turn_t *turn, laser_status_t status)
+static void enter(const turn_t *turn, urg_status_t status)
 {
     if (turn->link->status != status) {
         turn->link->status = status;
@@ -116,7 +116,7 @@ static void put(const turn_t *turn, scip_kind_t kind)
     link->sent_framing = turn->seen->framing_count;
 }
 
-static void ask(const turn_t *turn, laser_status_t status, scip_kind_t kind)
+static void ask(const turn_t *turn, urg_status_t status, scip_kind_t kind)
 {
     enter(turn, status);
     turn->link->attempt = 1U;
@@ -143,7 +143,7 @@ static void probe(const turn_t *turn, uint16_t index)
 {
     turn->link->rate_refused = false;
     set_rate(turn, probe_rate(turn->link, index));
-    ask(turn, LASER_LOST, SCIP_STOP);
+    ask(turn, URG_LOST, SCIP_STOP);
 }
 
 static void probe_here(const turn_t *turn)
@@ -153,7 +153,7 @@ static void probe_here(const turn_t *turn)
 
 static void stop(const turn_t *turn)
 {
-    ask(turn, LASER_STOP2, SCIP_STOP);
+    ask(turn, URG_STOP2, SCIP_STOP);
 }
 
 static void rate_or_stop(const turn_t *turn)
@@ -161,7 +161,7 @@ static void rate_or_stop(const turn_t *turn)
     if (turn->link->rate == turn->link->config.stream_rate) {
         stop(turn);
     } else {
-        ask(turn, LASER_RATE, SCIP_BIT_RATE);
+        ask(turn, URG_RATE, SCIP_BIT_RATE);
     }
 }
 
@@ -175,14 +175,14 @@ static void climb(urg_link_t *link)
 static void leave_time_mode_or_reset(const turn_t *turn)
 {
     if (turn->link->failures < LADDER_TOP) {
-        ask(turn, LASER_STOP2, SCIP_TIME_LEAVE);
+        ask(turn, URG_STOP2, SCIP_TIME_LEAVE);
     } else {
-        ask(turn, LASER_LOST, SCIP_RESET);
+        ask(turn, URG_LOST, SCIP_RESET);
     }
 }
 
 /* The sensor answers, but scans do not come. */
-static void no_scans(const turn_t *turn, laser_status_t status)
+static void no_scans(const turn_t *turn, urg_status_t status)
 {
     climb(turn->link);
     turn->link->line_unknown = true;
@@ -240,9 +240,9 @@ static void on_stop_reply(const turn_t *turn)
     if (is_refusal(&turn->seen->reply)) {
         refused(turn);
     } else if (link->rate == link->config.stream_rate || link->rate_refused) {
-        ask(turn, LASER_STREAM, link->config.stream);
+        ask(turn, URG_STREAM, link->config.stream);
     } else {
-        ask(turn, LASER_RATE, SCIP_BIT_RATE);
+        ask(turn, URG_RATE, SCIP_BIT_RATE);
     }
 }
 
@@ -251,7 +251,7 @@ static void on_stream_reply(const turn_t *turn)
     if (is_refusal(&turn->seen->reply)) {
         refused(turn);
     } else if (!is_status(&turn->seen->reply, '0', '0')) {
-        no_scans(turn, LASER_STOP2);
+        no_scans(turn, URG_STOP2);
     }
 }
 
@@ -260,7 +260,7 @@ static void on_reply(const turn_t *turn)
     switch (turn->link->command) {
     case SCIP_LASER_OFF_1:
         if (turn->seen->reply.legacy) {
-            ask(turn, LASER_SWITCH, SCIP_SWITCH);
+            ask(turn, URG_SWITCH, SCIP_SWITCH);
         } else {
             stop(turn); /* in SCIP2.0 already, and perhaps streaming or in time mode */
         }
@@ -306,7 +306,7 @@ static uint16_t attempts_allowed(const turn_t *turn)
         if (heard_clean(turn)) {
             return 3U;
         }
-        return turn->link->status == LASER_STOP2 ? 2U : 1U;
+        return turn->link->status == URG_STOP2 ? 2U : 1U;
     case SCIP_SWITCH:
     case SCIP_TIME_LEAVE:
         return 2U;
@@ -339,7 +339,7 @@ static void on_silence(const turn_t *turn)
         probe_here(turn);
         break;
     default:
-        no_scans(turn, LASER_STOP2);
+        no_scans(turn, URG_STOP2);
         break;
     }
 }
@@ -348,14 +348,14 @@ static void on_silence(const turn_t *turn)
 static bool is_silent(const turn_t *turn)
 {
     const urg_link_t *link = turn->link;
-    const bool guessing = link->status == LASER_STOP1 || (link->status == LASER_LOST && link->command == SCIP_STOP);
+    const bool guessing = link->status == URG_STOP1 || (link->status == URG_LOST && link->command == SCIP_STOP);
     return turn->now_us - link->sent_us >= link->timeout_us || (guessing && wrong_rate(turn));
 }
 
 static void arrive(const turn_t *turn)
 {
     urg_link_t *link = turn->link;
-    enter(turn, LASER_OK);
+    enter(turn, URG_OK);
     link->failures = 0U;
     link->scan_us = turn->now_us;
     link->timeout_us = scan_timeout_us(link);
@@ -385,7 +385,7 @@ static void converse(const turn_t *turn)
     } else if (seen->reply_count != link->seen.reply_count && seen->reply_kind == link->command) {
         on_reply(turn);
     } else if (seen->legacy_count != link->seen.legacy_count && link->command != SCIP_SWITCH) {
-        ask(turn, LASER_SWITCH, SCIP_SWITCH);
+        ask(turn, URG_SWITCH, SCIP_SWITCH);
     } else if (is_silent(turn)) {
         on_silence(turn);
     }
@@ -400,7 +400,7 @@ static void wait_for_sensor(const turn_t *turn)
         probe(turn, wrong_rate(turn) ? (uint16_t)PROBE_STREAM : (uint16_t)PROBE_FIRST);
     } else if (turn->now_us - link->since_us >= link->config.wait_us) {
         link->line_unknown = true;
-        ask(turn, LASER_STOP1, SCIP_LASER_OFF_1);
+        ask(turn, URG_STOP1, SCIP_LASER_OFF_1);
     }
 }
 
@@ -427,11 +427,11 @@ static void watch(const turn_t *turn)
     }
     if (turn->now_us - link->scan_us >= link->timeout_us) {
         link->restarts++;
-        no_scans(turn, LASER_LOST);
+        no_scans(turn, URG_LOST);
     }
 }
 
-const char *laser_status_name(laser_status_t status)
+const char *urg_status_name(urg_status_t status)
 {
     return status_names[status];
 }
@@ -440,7 +440,7 @@ void urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us
 {
     scip_request_t stream = { .scan_octets = 0U };
     (void)scip_request_scan(&stream, config->stream, &config->range);
-    *link = (urg_link_t){ .config = *config, .status = LASER_WAIT, .since_us = now_us, .rate = config->first_rate };
+    *link = (urg_link_t){ .config = *config, .status = URG_WAIT, .since_us = now_us, .rate = config->first_rate };
     link->scan_octets = stream.scan_octets;
     link->scan_us = now_us;
 }
@@ -450,10 +450,10 @@ void urg_link_step(urg_link_t *link, const urg_seen_t *seen, uint32_t now_us, ur
     const turn_t turn = { link, seen, now_us, action };
     *action = (urg_action_t){ .send = false };
     switch (link->status) {
-    case LASER_WAIT:
+    case URG_WAIT:
         wait_for_sensor(&turn);
         break;
-    case LASER_OK:
+    case URG_OK:
         watch(&turn);
         break;
     default:

@@ -20,19 +20,19 @@
 
 /* LASER_STATUS of the seed: guides the start-up and is shown in the telemetry. */
 typedef enum {
-    LASER_WAIT,     /* the sensor's own power-up time */
-    LASER_STOP1,    /* L0 sent */
-    LASER_SWITCH,   /* SCIP2.0 sent */
-    LASER_RATE,     /* SS sent */
-    LASER_STOP2,    /* QT sent, or TM2: the sensor has answered at this rate */
-    LASER_STREAM,   /* MS sent */
-    LASER_OK,       /* scans arrive */
-    LASER_LOST,     /* no answer, or scans have stopped: looking for the sensor at every rate */
-    LASER_STATUS_COUNT
-} laser_status_t;
+    URG_WAIT,     /* the sensor's own power-up time */
+    URG_STOP1,    /* L0 sent */
+    URG_SWITCH,   /* SCIP2.0 sent */
+    URG_RATE,     /* SS sent */
+    URG_STOP2,    /* QT sent, or TM2: the sensor has answered at this rate */
+    URG_STREAM,   /* MS sent */
+    URG_OK,       /* scans arrive */
+    URG_LOST,     /* no answer, or scans have stopped: looking for the sensor at every rate */
+    URG_STATUS_COUNT
+} urg_status_t;
 
 /* "WAIT" "STOP1" "SWITCH" "RATE" "STOP2" "STREAM" "OK" "LOST". */
-const char *laser_status_name(laser_status_t status);
+const char *urg_status_name(urg_status_t status);
 
 /* What the receiving side has seen since power-up; counters only rise (and wrap). */
 typedef struct {
@@ -68,7 +68,7 @@ typedef struct {
 
 typedef struct {
     urg_config_t config;
-    laser_status_t status;
+    urg_status_t status;
     uint32_t since_us;          /* status entered */
     uint32_t sent_us;           /* latest command */
     uint32_t timeout_us;        /* of the latest command; in OK: of the next scan */

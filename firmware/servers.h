@@ -51,7 +51,7 @@ uint16_t imu_server_history(imu_sample_t history[IMU_HISTORY]);
 
 /* LaserStatus server, written by TaskSendLaser. */
 typedef struct {
-    laser_status_t status;
+    urg_status_t status;
     uint32_t rate;              /* bits per second */
     uint32_t restarts;          /* times that the stream was lost */
     uint32_t timeouts;          /* commands without an answer */

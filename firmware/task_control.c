@@ -121,7 +121,7 @@ static void look(const parameters_t *parameters, flight_inputs_t *in)
     in->reference_sequence = reference.sequence;
     in->link_time_us = reference.link_time_us;
     in->link_sequence = reference.link_sequence;
-    in->throttle_ours = parameters->value[PARAMETER_SEL] == (float)SEL_NONE || bsp_selector_ours();
+    in->has_throttle = parameters->value[PARAMETER_SEL] == (float)SEL_NONE || bsp_selector_ours();
 }
 
 static void publish(const flight_outputs_t *out)

@@ -36,7 +36,7 @@ static void report(telemetry_line_t *line, const char *reset)
     telemetry.height_valid = (flight.flags & FLIGHT_FLAG_HEIGHT) == 0U;
     telemetry.height_mm = altitude.altitude.height_mm;
     telemetry.reference_m = flight.reference_m;
-    telemetry.laser = laser_status_name(laser.status);
+    telemetry.laser = urg_status_name(laser.status);
     telemetry.thrust_n = flight.thrust_n;
     telemetry.state = flight_state_name(flight.state);
     telemetry.flags = flight.flags;

@@ -35,13 +35,13 @@ static void obey(const urg_action_t *action)
     }
 }
 
-static void show(laser_status_t status)
+static void show(urg_status_t status)
 {
     static bool on;
 
-    on = (status == LASER_OK) || !on;
+    on = (status == URG_OK) || !on;
     bsp_led_blue(on);
-    bsp_led_red(status == LASER_LOST);
+    bsp_led_red(status == URG_LOST);
 }
 
 static void publish(const urg_seen_t *seen)

@@ -13,7 +13,7 @@ static void add_stream(answer_t *answer, const laser_statistics_t *statistics)
 
     laser_server_read(&laser);
     telemetry_text(&answer->line, " state:");
-    telemetry_text(&answer->line, laser_status_name(laser.status));
+    telemetry_text(&answer->line, urg_status_name(laser.status));
     answer_count(answer, "rate", laser.rate);
     answer_count(answer, "frames", statistics->seen.scan_count);
     answer_count(answer, "timeout", laser.timeouts);

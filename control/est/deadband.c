@@ -14,12 +14,12 @@ void deadband_init(deadband_t *deadband)
     *deadband = (deadband_t){.band_n = 0.0F};
 }
 
-float deadband_cross(const deadband_t *deadband, float neutral_n, float effect_n)
+float deadband_compensate(const deadband_t *deadband, float neutral_n, float effect_n)
 {
     return effect_n + deadband->band_n * between(-1.0F, (effect_n - neutral_n) / STEEP_N, 1.0F);
 }
 
-float deadband_left(const deadband_t *deadband, float neutral_n, float command_n)
+float deadband_effect(const deadband_t *deadband, float neutral_n, float command_n)
 {
     return command_n - between(-deadband->band_n, command_n - neutral_n, deadband->band_n);
 }

@@ -11,9 +11,9 @@ typedef struct {
 void deadband_init(deadband_t *deadband);
 
 /* Command for the effect of one without a band. Near neutral it grows steeply instead of jumping. */
-float deadband_cross(const deadband_t *deadband, float neutral_n, float effect_n);
+float deadband_compensate(const deadband_t *deadband, float neutral_n, float effect_n);
 /* The command without a band that has the effect of command_n. */
-float deadband_left(const deadband_t *deadband, float neutral_n, float command_n);
+float deadband_effect(const deadband_t *deadband, float neutral_n, float command_n);
 
 /* One sample: while off_n from neutral should have an effect, missing_n (same sign) of it did not. */
 void deadband_learn(deadband_t *deadband, float off_n, float missing_n, float dt_s);

@@ -17,20 +17,20 @@
 #define HOVER_SIGMA_TAKE_OVER_N 0.5F
 #define SPEED_DOUBT_N_PER_MPS 0.5F
 #define IN_THE_AIR_M 0.04F
-#define EXPECTED_NOISE_MPS2 0.84F
-#define BLIND_S 0.2F
-#define BLIND_NOISE_MPS2 0.15F
+#define MODEL_NOISE_MPS2 0.84F
+#define HEIGHTS_MISSING_S 0.2F
+#define MODEL_NOISE_ALONE_MPS2 0.15F
 #define GUST_N_PER_M 28.0F
 
 #define RAMP_START 0.68F
 #define RAMP_N_PER_S 4.0F
 #define RAMP_MOST 1.35F
-#define LIFTED_M 0.030F
-#define HIGH_M 0.1F
-#define LIFTED_MPS2 0.9F
-#define LIFTED_SIGMAS 1.2F
-#define LIFTED_SHARE 0.7F
-#define KICK_TIME_S 0.08F
+#define LIFT_OFF_M 0.030F
+#define LIFT_OFF_SURE_M 0.1F
+#define LIFT_OFF_MPS2 0.9F
+#define LIFT_OFF_SIGMAS 1.2F
+#define LIFT_OFF_SHARE 0.7F
+#define LIFT_FILTER_S 0.08F
 
 #define FALL_MPS2 3.96F
 #define BELOW_HOVER_N 3.0F
@@ -70,7 +70,7 @@ static bool is_climb(const parameters_t *parameters)
     return parameters->value[PARAMETER_PLANT] == (float)PLANT_CLIMB;
 }
 
-static cascade_vehicle_t vehicle_of(const est_law_t *law, const parameters_t *parameters)
+static cascade_vehicle_t vehicle_model(const est_law_t *law, const parameters_t *parameters)
 {
     const estimator_t *e = &law->estimator;
     cascade_vehicle_t vehicle = {
@@ -92,7 +92,7 @@ static cascade_vehicle_t vehicle_of(const est_law_t *law, const parameters_t *pa
 static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt_s)
 {
     const estimator_t *e = &law->estimator;
-    const cascade_vehicle_t vehicle = vehicle_of(law, parameters);
+    const cascade_vehicle_t vehicle = vehicle_model(law, parameters);
     const float drag_mps2 = vehicle.damping_per_s * e->now.speed_mps;
     const float taken_n = (e->up_mps2 - e->now.bias_mps2 + drag_mps2) / vehicle.authority_mps2_per_n;
     const float seen_n = law->actuator.thrust_n * vehicle.upright - taken_n;
@@ -107,47 +107,47 @@ static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt
 }
 
 /* No height for long. */
-static bool blind(const est_law_t *law)
+static bool heights_missing(const est_law_t *law)
 {
-    return seconds(law->rays_us, law->now_us) > BLIND_S;
+    return seconds(law->rays_us, law->now_us) > HEIGHTS_MISSING_S;
 }
 
 /* Known once it flies. */
-static expected_motion_t expect(const est_law_t *law, const parameters_t *parameters)
+static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_t *parameters)
 {
-    const cascade_vehicle_t vehicle = vehicle_of(law, parameters);
+    const cascade_vehicle_t vehicle = vehicle_model(law, parameters);
     const estimate_t *now = &law->estimator.now;
 
-    return (expected_motion_t){
-        .known = law->lifted && law->estimator.started && now->height_m > IN_THE_AIR_M,
+    return (modelled_motion_t){
+        .known = law->airborne && law->estimator.initialised && now->height_m > IN_THE_AIR_M,
         .up_mps2 = vehicle.authority_mps2_per_n * (law->actuator.thrust_n * vehicle.upright - vehicle.need_n)
                  - vehicle.damping_per_s * now->speed_mps,
-        .noise_mps2 = blind(law) ? BLIND_NOISE_MPS2 : EXPECTED_NOISE_MPS2,
+        .noise_mps2 = heights_missing(law) ? MODEL_NOISE_ALONE_MPS2 : MODEL_NOISE_MPS2,
     };
 }
 
-static void follow(est_law_t *law, const parameters_t *parameters, const motion_frame_t *frame)
+static void predict_frame(est_law_t *law, const parameters_t *parameters, const motion_frame_t *frame)
 {
     const uint32_t before_us = law->estimator.now_us;
 
-    estimator_move(&law->estimator, frame, expect(law, parameters));
+    estimator_predict(&law->estimator, frame, modelled_motion(law, parameters));
     const float dt_s = seconds(before_us, law->estimator.now_us);
     if (dt_s <= 0.0F || dt_s > STEP_MAX_S) {
         return;
     }
     actuator_advance(&law->actuator, law->estimator.now_us);
-    law->kick_mps2 += fminf(dt_s / KICK_TIME_S, 1.0F)
-                    * (law->estimator.up_mps2 - law->estimator.now.bias_mps2 - law->kick_mps2);
-    if (law->lifted) {
+    law->lift_mps2 += fminf(dt_s / LIFT_FILTER_S, 1.0F)
+                    * (law->estimator.up_mps2 - law->estimator.now.bias_mps2 - law->lift_mps2);
+    if (law->airborne) {
         learn_hover(law, parameters, dt_s);
     }
 }
 
-void est_law_listen(est_law_t *law, const parameters_t *parameters, const motion_frame_t *frames, uint16_t count,
-                    uint32_t now_us)
+void est_law_predict(est_law_t *law, const parameters_t *parameters, const motion_frame_t *frames, uint16_t count,
+                     uint32_t now_us)
 {
-    if (!law->listening) {
-        law->listening = true;
+    if (!law->started) {
+        law->started = true;
         law->now_us = now_us;
         actuator_init(&law->actuator, now_us);
     }
@@ -157,40 +157,41 @@ void est_law_listen(est_law_t *law, const parameters_t *parameters, const motion
     law->step_s = between(0.0F, seconds(law->now_us, now_us), STEP_MAX_S);
     law->now_us = now_us;
     for (uint16_t i = 0U; i < count; ++i) {
-        follow(law, parameters, &frames[i]);
+        predict_frame(law, parameters, &frames[i]);
     }
 }
 
-static float kick_of_lift_mps2(const est_law_t *law)
+static float lift_off_threshold_mps2(const est_law_t *law)
 {
-    return fmaxf(LIFTED_MPS2, LIFTED_SIGMAS * law->estimator.noise_mps2);
+    return fmaxf(LIFT_OFF_MPS2, LIFT_OFF_SIGMAS * law->estimator.noise_mps2);
 }
 
-/* It has not been told to fly, or what it has been told does not lift it yet. */
-static bool stands(const est_law_t *law)
+/* The take-off ramp runs, and the vehicle does not yet accelerate upwards. */
+static bool on_ground(const est_law_t *law)
 {
-    return !law->lifted && law->ramping && law->kick_mps2 < 0.4F * kick_of_lift_mps2(law);
+    return !law->airborne && law->ramping && law->lift_mps2 < 0.4F * lift_off_threshold_mps2(law);
 }
 
-void est_law_see(est_law_t *law, const altitude_t *altitude, uint32_t stamp_ms, uint32_t arrival_us, bool at_rest)
+void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t stamp_ms, uint32_t arrival_us,
+                         bool at_rest)
 {
     law->rays_us = ray_clock_step(&law->ray_clock, stamp_ms, arrival_us);
     const height_outcome_t outcome =
-        estimator_see(&law->estimator, altitude, law->rays_us, at_rest || stands(law));
-    if (law->lifted && outcome == HEIGHT_FUSED) {
+        estimator_fuse_height(&law->estimator, altitude, law->rays_us, at_rest || on_ground(law));
+    if (law->airborne && outcome == HEIGHT_FUSED) {
         const float expected = 1.0F - law->estimator.latest.share;
         hover_nudge(&law->hover, -GUST_N_PER_M * expected * law->estimator.innovation_m);
     }
 }
 
-bool est_law_hears(const est_law_t *law)
+bool est_law_has_imu(const est_law_t *law)
 {
-    return law->estimator.moving && law->now_us - law->estimator.latest.time_us <= ESTIMATOR_FRESH_US;
+    return law->estimator.has_frames && law->now_us - law->estimator.latest.time_us <= ESTIMATOR_FRESH_US;
 }
 
 bool est_law_ready(const est_law_t *law)
 {
-    return law->estimator.started && est_law_hears(law);
+    return law->estimator.initialised && est_law_has_imu(law);
 }
 
 static void start_hover(est_law_t *law, const parameters_t *parameters, float thrust_n, float sigma_n)
@@ -199,38 +200,38 @@ static void start_hover(est_law_t *law, const parameters_t *parameters, float th
     hover_init(&law->hover, thrust_n, sigma_n, fmaxf(gravity_n - HOVER_BOUND_N, 0.0F), gravity_n + HOVER_BOUND_N);
 }
 
-void est_law_stand(est_law_t *law, const parameters_t *parameters)
+void est_law_reset(est_law_t *law, const parameters_t *parameters)
 {
-    law->lifted = false;
+    law->airborne = false;
     law->ramping = false;
     law->ramp_n = RAMP_START * parameters->value[PARAMETER_GRAV];
-    law->terrain_m = law->estimator.stepped_m;
-    law->sunk_s = 0.0F;
-    law->low_s = 0.0F;
+    law->reference_terrain_m = law->estimator.terrain_height_m;
+    law->sinking_s = 0.0F;
+    law->near_ground_s = 0.0F;
     start_hover(law, parameters, parameters->value[PARAMETER_GRAV], HOVER_SIGMA_START_N);
     cascade_init(&law->cascade, law->ramp_n);
 }
 
-void est_law_take_over(est_law_t *law, float thrust_n, float hover_n)
+void est_law_engage(est_law_t *law, float thrust_n, float hover_n)
 {
-    law->lifted = true;
-    law->terrain_m = law->estimator.stepped_m;
-    law->sunk_s = 0.0F;
-    law->low_s = 0.0F;
+    law->airborne = true;
+    law->reference_terrain_m = law->estimator.terrain_height_m;
+    law->sinking_s = 0.0F;
+    law->near_ground_s = 0.0F;
     law->hover.thrust_n = between(law->hover.least_n, hover_n, law->hover.most_n);
     law->hover.variance_n2 = HOVER_SIGMA_TAKE_OVER_N * HOVER_SIGMA_TAKE_OVER_N;
     law->hover.gust_n = 0.0F;
     cascade_init(&law->cascade, thrust_n);
 }
 
-void est_law_let_go(est_law_t *law)
+void est_law_disengage(est_law_t *law)
 {
-    law->lifted = false;
+    law->airborne = false;
     law->ramping = false;
 }
 
 /* Estimate and thrust at the instant when a command given now takes effect. */
-static cascade_state_t foresee(const est_law_t *law, const cascade_vehicle_t *vehicle)
+static cascade_state_t predict_ahead(const est_law_t *law, const cascade_vehicle_t *vehicle)
 {
     const estimate_t *now = &law->estimator.now;
     const float ahead_s = seconds(law->estimator.now_us, law->now_us + ACTUATOR_DELAY_US);
@@ -249,24 +250,25 @@ static cascade_state_t foresee(const est_law_t *law, const cascade_vehicle_t *ve
 }
 
 /* Thrust grows until the vehicle leaves the ground: what carries it is then known. */
-static bool lift(est_law_t *law, const parameters_t *parameters)
+static bool take_off(est_law_t *law, const parameters_t *parameters)
 {
     const float gravity_n = parameters->value[PARAMETER_GRAV];
-    const float taken_n = law->kick_mps2 / vehicle_of(law, parameters).authority_mps2_per_n;
-    const float carries_n = law->actuator.thrust_n - taken_n;
-    const bool strong = law->actuator.thrust_n > LIFTED_SHARE * gravity_n;
+    const float taken_n = law->lift_mps2 / vehicle_model(law, parameters).authority_mps2_per_n;
+    const float hover_n = law->actuator.thrust_n - taken_n;
+    const float height_m = law->estimator.now.height_m;
+    const bool strong = law->actuator.thrust_n > LIFT_OFF_SHARE * gravity_n;
 
     law->ramping = true;
-    law->lifted = law->estimator.now.height_m > HIGH_M
-               || (strong && (law->estimator.now.height_m > LIFTED_M || law->kick_mps2 > kick_of_lift_mps2(law)));
-    if (law->lifted) {
-        start_hover(law, parameters, is_climb(parameters) ? gravity_n : carries_n,
+    const bool lifting = height_m > LIFT_OFF_M || law->lift_mps2 > lift_off_threshold_mps2(law);
+    law->airborne = height_m > LIFT_OFF_SURE_M || (strong && lifting);
+    if (law->airborne) {
+        start_hover(law, parameters, is_climb(parameters) ? gravity_n : hover_n,
                     is_climb(parameters) ? NEUTRAL_SIGMA_N : HOVER_SIGMA_START_N);
         cascade_init(&law->cascade, law->ramp_n);
     } else {
         law->ramp_n = fminf(law->ramp_n + RAMP_N_PER_S * law->step_s, RAMP_MOST * gravity_n);
     }
-    return law->lifted;
+    return law->airborne;
 }
 
 static float landing_mps(float height_m)
@@ -279,89 +281,93 @@ static float sinking_mps(float height_m)
     return -fminf(SINK_MPS + SINK_PER_S * fmaxf(height_m, 0.0F), SINK_MAX_MPS);
 }
 
-static void keep_times(est_law_t *law, est_wish_t wish, float height_m)
+static void update_timers(est_law_t *law, est_mode_t mode, float height_m)
 {
-    const bool low = height_m < LOW_M || (law->low_s > 0.0F && height_m < LOW_NO_MORE_M);
+    const bool low = height_m < LOW_M || (law->near_ground_s > 0.0F && height_m < LOW_NO_MORE_M);
 
-    law->sunk_s = (wish == EST_SINK) ? law->sunk_s + law->step_s : 0.0F;
-    law->low_s = (wish == EST_LAND && low) ? law->low_s + law->step_s : 0.0F;
+    law->sinking_s = (mode == EST_MODE_SINK) ? law->sinking_s + law->step_s : 0.0F;
+    law->near_ground_s = (mode == EST_MODE_LAND && low) ? law->near_ground_s + law->step_s : 0.0F;
 }
 
 /* More and more certainly down: without heights whatever the estimate says, and with them once the ground is there, so
  * that no gust and no wrong hover thrust lifts the vehicle again. */
-static float most_n(const est_law_t *law, est_wish_t wish)
+static float thrust_limit_n(const est_law_t *law, est_mode_t mode)
 {
     const float hover_n = law->hover.thrust_n;
 
-    switch (wish) {
-    case EST_LAND:
-        return (law->low_s > 0.0F) ? fmaxf(hover_n + LOW_ABOVE_HOVER_N - LOW_FADE_N_PER_S * law->low_s, 0.0F)
-                                   : THRUST_MAX_N;
-    case EST_SINK:
-        return fmaxf(hover_n + SINK_ABOVE_HOVER_N - SINK_FADE_N_PER_S * law->sunk_s, 0.0F);
-    case EST_HOLD:
+    switch (mode) {
+    case EST_MODE_LAND:
+        if (law->near_ground_s > 0.0F) {
+            return fmaxf(hover_n + LOW_ABOVE_HOVER_N - LOW_FADE_N_PER_S * law->near_ground_s, 0.0F);
+        }
+        return THRUST_MAX_N;
+    case EST_MODE_SINK:
+        return fmaxf(hover_n + SINK_ABOVE_HOVER_N - SINK_FADE_N_PER_S * law->sinking_s, 0.0F);
+    case EST_MODE_HOLD:
     default:
         return THRUST_MAX_N;
     }
 }
 
-static float target_m(est_law_t *law, const parameters_t *parameters, float reference_m)
+static float height_setpoint_m(est_law_t *law, const parameters_t *parameters, float reference_m)
 {
-    const float ignored_m = law->estimator.stepped_m - law->terrain_m;
+    const float ignored_m = law->estimator.terrain_height_m - law->reference_terrain_m;
 
     if (parameters->value[PARAMETER_TERRAIN] == (float)TERRAIN_FOLLOW || reference_m != law->reference_m) {
-        law->terrain_m = law->estimator.stepped_m;
+        law->reference_terrain_m = law->estimator.terrain_height_m;
         law->reference_m = reference_m;
         return reference_m;
     }
-    law->terrain_m += ignored_m * law->step_s / TERRAIN_KEEP_S;
+    law->reference_terrain_m += ignored_m * law->step_s / TERRAIN_KEEP_S;
     return fmaxf(reference_m - ignored_m, LOWEST_OVER_TERRAIN_M);
 }
 
-static float wanted_mps(est_law_t *law, const parameters_t *parameters, const cascade_gains_t *gains,
-                        const cascade_state_t *state, est_wish_t wish, float reference_m)
+static float speed_setpoint_mps(est_law_t *law, const parameters_t *parameters, const cascade_gains_t *gains,
+                                const cascade_state_t *state, est_mode_t mode, float reference_m)
 {
-    switch (wish) {
-    case EST_LAND:
+    switch (mode) {
+    case EST_MODE_LAND:
         return landing_mps(state->height_m);
-    case EST_SINK:
+    case EST_MODE_SINK:
         return sinking_mps(state->height_m);
-    case EST_HOLD:
+    case EST_MODE_HOLD:
     default:
-        return cascade_speed_to(gains, state, target_m(law, parameters, reference_m));
+        return cascade_speed_to(gains, state, height_setpoint_m(law, parameters, reference_m));
     }
 }
 
-float est_law_step(est_law_t *law, const parameters_t *parameters, est_wish_t wish, float reference_m)
+float est_law_step(est_law_t *law, const parameters_t *parameters, est_mode_t mode, float reference_m)
 {
     const float *value = parameters->value;
-    const bool brakes = wish == EST_LAND;
+    const bool landing = mode == EST_MODE_LAND;
     const cascade_gains_t gains = {
         .height_per_s = value[PARAMETER_POSK],
         .speed_per_s = value[PARAMETER_VELK],
         .up_mps = value[PARAMETER_VUP],
         .down_mps = value[PARAMETER_VDN],
-        .fall_mps2 = brakes ? BRAKE_MPS2 : FALL_MPS2,
-        .below_hover_n = brakes ? BRAKE_BELOW_HOVER_N : BELOW_HOVER_N,
+        .fall_mps2 = landing ? BRAKE_MPS2 : FALL_MPS2,
+        .below_hover_n = landing ? BRAKE_BELOW_HOVER_N : BELOW_HOVER_N,
     };
 
-    if (!law->lifted && wish != EST_HOLD) {
+    if (!law->airborne && mode != EST_MODE_HOLD) {
         law->ramp_n = fmaxf(law->ramp_n - STOP_N_PER_S * law->step_s, 0.0F);
         return law->ramp_n;
     }
-    if (!law->lifted && !lift(law, parameters)) {
+    if (!law->airborne && !take_off(law, parameters)) {
         return law->ramp_n;
     }
-    const cascade_vehicle_t vehicle = vehicle_of(law, parameters);
-    const cascade_state_t state = foresee(law, &vehicle);
-    const float speed_mps = wanted_mps(law, parameters, &gains, &state, wish, reference_m);
+    const cascade_vehicle_t vehicle = vehicle_model(law, parameters);
+    const cascade_state_t state = predict_ahead(law, &vehicle);
+    const float speed_mps = speed_setpoint_mps(law, parameters, &gains, &state, mode, reference_m);
     const float thrust_n = cascade_step(&law->cascade, &gains, &vehicle, &state, speed_mps, law->step_s);
 
-    keep_times(law, wish, state.height_m);
-    return deadband_cross(&law->deadband, law->hover.thrust_n, fminf(thrust_n, most_n(law, wish)));
+    update_timers(law, mode, state.height_m);
+    const float limited_n = fminf(thrust_n, thrust_limit_n(law, mode));
+    return deadband_compensate(&law->deadband, law->hover.thrust_n, limited_n);
 }
 
-void est_law_commanded(est_law_t *law, float thrust_n)
+void est_law_record_command(est_law_t *law, float thrust_n)
 {
-    actuator_command(&law->actuator, deadband_left(&law->deadband, law->hover.thrust_n, thrust_n), law->now_us);
+    const float effect_n = deadband_effect(&law->deadband, law->hover.thrust_n, thrust_n);
+    actuator_command(&law->actuator, effect_n, law->now_us);
 }

@@ -16,10 +16,10 @@
 #include "control/ray_clock.h"
 
 typedef enum {
-    EST_HOLD,               /* keep reference_m */
-    EST_LAND,               /* sink towards the ground, gently at its end */
-    EST_SINK                /* the same without a height */
-} est_wish_t;
+    EST_MODE_HOLD,               /* keep reference_m */
+    EST_MODE_LAND,               /* sink towards the ground, gently at its end */
+    EST_MODE_SINK                /* the same without a height */
+} est_mode_t;
 
 typedef struct {
     estimator_t estimator;
@@ -28,47 +28,48 @@ typedef struct {
     hover_t hover;
     deadband_t deadband;    /* none with PLANT THRUST */
     cascade_t cascade;
-    bool listening;         /* now_us holds */
+    bool started;         /* now_us holds */
     uint32_t now_us;
-    float step_s;           /* of the latest est_law_listen() */
+    float step_s;           /* of the latest est_law_predict() */
     uint32_t rays_us;       /* of the latest height */
-    bool lifted;            /* it is off the ground */
+    bool airborne;            /* it is off the ground */
     bool ramping;           /* it shall leave the ground */
     float ramp_n;           /* take-off thrust until then */
-    float kick_mps2;        /* low-passed upward acceleration */
+    float lift_mps2;        /* low-passed upward acceleration */
     float reference_m;
-    float terrain_m;        /* estimator.stepped_m where reference_m was given */
-    float sunk_s;           /* for how long it has been sinking without a height */
-    float low_s;            /* for how long it has been at the ground while landing */
+    float reference_terrain_m;      /* estimator.terrain_height_m where reference_m was given */
+    float sinking_s;           /* for how long it has been sinking without a height */
+    float near_ground_s;            /* for how long it has been at the ground while landing */
 } est_law_t;
 
 void est_law_init(est_law_t *law);
 
 /* The frames of one cycle, oldest first; those that were seen before change nothing. Every cycle, at now_us. */
-void est_law_listen(est_law_t *law, const parameters_t *parameters, const motion_frame_t *frames, uint16_t count,
-                    uint32_t now_us);
+void est_law_predict(est_law_t *law, const parameters_t *parameters, const motion_frame_t *frames, uint16_t count,
+                     uint32_t now_us);
 
 /* A new height: its scan's 24-bit stamp and arrival. at_rest: the vehicle is known to stand on the ground. */
-void est_law_see(est_law_t *law, const altitude_t *altitude, uint32_t stamp_ms, uint32_t arrival_us, bool at_rest);
+void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t stamp_ms, uint32_t arrival_us,
+                         bool at_rest);
 
 /* Frames with accelerations are fresh. */
-bool est_law_hears(const est_law_t *law);
+bool est_law_has_imu(const est_law_t *law);
 /* They are, and a height has been seen. */
 bool est_law_ready(const est_law_t *law);
 
 /* On the ground, each cycle: the next est_law_step() begins a take-off. */
-void est_law_stand(est_law_t *law, const parameters_t *parameters);
+void est_law_reset(est_law_t *law, const parameters_t *parameters);
 /* In the air, taking over: hover_n is the best known hover thrust, thrust_n the previous command. */
-void est_law_take_over(est_law_t *law, float thrust_n, float hover_n);
+void est_law_engage(est_law_t *law, float thrust_n, float hover_n);
 
 /* Somebody else's thrust moves the vehicle: nothing is learned or expected from the commands until
- * est_law_take_over(). */
-void est_law_let_go(est_law_t *law);
+ * est_law_engage(). */
+void est_law_disengage(est_law_t *law);
 
-/* Newtons per motor. reference_m: for EST_HOLD. */
-float est_law_step(est_law_t *law, const parameters_t *parameters, est_wish_t wish, float reference_m);
+/* Newtons per motor. reference_m: for EST_MODE_HOLD. */
+float est_law_step(est_law_t *law, const parameters_t *parameters, est_mode_t mode, float reference_m);
 
 /* What was commanded in the end. */
-void est_law_commanded(est_law_t *law, float thrust_n);
+void est_law_record_command(est_law_t *law, float thrust_n);
 
 #endif

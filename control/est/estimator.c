@@ -14,7 +14,6 @@
 
 #define HEIGHT_NOISE_M 0.0013F
 #define HEIGHT_DRIFT_M 0.0047F
-#define SPEED_NOISE_SHARE 1.0F
 #define SPEED_NOISE_MPS2 0.53F
 #define FRAME_S 0.025F
 #define BIAS_DRIFT_MPS2 0.095F
@@ -26,18 +25,18 @@
 #define NOISE_SHARE 0.02F
 #define NOISE_CLIP 16.0F
 
-#define NEAR_M 0.053F
-#define NEAR_MAX_M 0.080F
-#define NEAR_SIGMAS 3.0F
-#define AGREE_M 0.050F
-#define REFUSALS_MAX 3U
-#define UNSEEN_AFTER 2U
-#define REST_MPS 0.02F
+#define INNOVATION_LIMIT_MIN_M 0.053F
+#define INNOVATION_LIMIT_MAX_M 0.080F
+#define INNOVATION_LIMIT_SIGMAS 3.0F
+#define STEP_AGREEMENT_M 0.050F
+#define REJECTIONS_MAX 3U
+#define UNCHECKED_AFTER_RESET 2U
+#define REST_SIGMA_MPS 0.02F
 
 #define SPEED_MAX_MPS 4.0F
 #define BIAS_MAX_MPS2 1.5F
 #define TERRAIN_MAX_MPS 0.5F
-#define SPEED_ANEW_MPS 1.0F
+#define SPEED_RESET_MAX_MPS 1.0F
 
 enum { HEIGHT, SPEED, BIAS, TERRAIN };
 
@@ -56,7 +55,7 @@ static bool before(uint32_t a_us, uint32_t b_us)
 }
 
 /* Forgets what was known of one state and of its ties to the others. */
-static void open_state(estimator_t *e, uint16_t state, float variance)
+static void reset_variance(estimator_t *e, uint16_t state, float variance)
 {
     for (uint16_t i = 0U; i < ESTIMATOR_STATES; ++i) {
         e->covariance[state][i] = 0.0F;
@@ -65,17 +64,17 @@ static void open_state(estimator_t *e, uint16_t state, float variance)
     e->covariance[state][state] = variance;
 }
 
-static void open_all(estimator_t *e)
+static void reset_covariance(estimator_t *e)
 {
     for (uint16_t i = 0U; i < ESTIMATOR_STATES; ++i) {
-        open_state(e, i, variance_start[i]);
+        reset_variance(e, i, variance_start[i]);
     }
 }
 
 void estimator_init(estimator_t *estimator)
 {
     *estimator = (estimator_t){.noise_mps2 = NOISE_START_MPS2};
-    open_all(estimator);
+    reset_covariance(estimator);
 }
 
 static void bound_states(estimate_t *x)
@@ -85,7 +84,7 @@ static void bound_states(estimate_t *x)
     x->terrain_mps = between(-TERRAIN_MAX_MPS, x->terrain_mps, TERRAIN_MAX_MPS);
 }
 
-static void carry(estimate_t *x, const estimator_frame_t *frame, float dt_s)
+static void propagate(estimate_t *x, const estimator_frame_t *frame, float dt_s)
 {
     const float acceleration_mps2 = frame->up_mps2 - frame->share * x->bias_mps2;
 
@@ -110,15 +109,15 @@ static void bound_covariance(float p[ESTIMATOR_STATES][ESTIMATOR_STATES])
     }
 }
 
-static void carry_covariance(estimator_t *e, float share, float dt_s)
+static void propagate_covariance(estimator_t *e, float share, float dt_s)
 {
     float (*const p)[ESTIMATOR_STATES] = e->covariance;
     const float decay = fmaxf(1.0F - dt_s / TERRAIN_TIME_S, 0.0F);
     const float half = 0.5F * share * dt_s * dt_s;
-    const float felt_mps2 = share * e->noise_mps2;
-    const float expected_mps2 = (1.0F - share) * e->expected_noise_mps2;
+    const float measured_mps2 = share * e->noise_mps2;
+    const float modelled_mps2 = (1.0F - share) * e->model_noise_mps2;
     const float variance = SPEED_NOISE_MPS2 * SPEED_NOISE_MPS2
-                         + SPEED_NOISE_SHARE * (felt_mps2 * felt_mps2 + expected_mps2 * expected_mps2);
+                         + (measured_mps2 * measured_mps2 + modelled_mps2 * modelled_mps2);
 
     for (uint16_t j = 0U; j < ESTIMATOR_STATES; ++j) {
         p[HEIGHT][j] += dt_s * (p[SPEED][j] - p[TERRAIN][j]) - half * p[BIAS][j];
@@ -137,43 +136,43 @@ static void carry_covariance(estimator_t *e, float share, float dt_s)
     bound_covariance(p);
 }
 
-static void advance(estimator_t *e, uint32_t to_us, const estimator_frame_t *frame)
+static void predict_to(estimator_t *e, uint32_t to_us, const estimator_frame_t *frame)
 {
-    const float dt_s = seconds(e->past_us, to_us);
+    const float dt_s = seconds(e->delayed_us, to_us);
 
-    e->stepped_m += e->past.terrain_mps * dt_s;
-    carry(&e->past, frame, dt_s);
-    carry_covariance(e, frame->share, dt_s);
-    e->past_us = to_us;
+    e->terrain_height_m += e->delayed.terrain_mps * dt_s;
+    propagate(&e->delayed, frame, dt_s);
+    propagate_covariance(e, frame->share, dt_s);
+    e->delayed_us = to_us;
 }
 
-static void drop_oldest(estimator_t *e)
+static void drop_oldest_frame(estimator_t *e)
 {
-    --e->held;
-    for (uint16_t i = 0U; i < e->held; ++i) {
+    --e->frame_count;
+    for (uint16_t i = 0U; i < e->frame_count; ++i) {
         e->frames[i] = e->frames[i + 1U];
     }
 }
 
 /* Takes the filter through the frames up to an instant. */
-static void advance_until(estimator_t *e, uint32_t to_us)
+static void predict_through(estimator_t *e, uint32_t to_us)
 {
-    while (e->held > 0U && !before(to_us, e->frames[0].time_us)) {
-        advance(e, e->frames[0].time_us, &e->frames[0]);
-        drop_oldest(e);
+    while (e->frame_count > 0U && !before(to_us, e->frames[0].time_us)) {
+        predict_to(e, e->frames[0].time_us, &e->frames[0]);
+        drop_oldest_frame(e);
     }
-    if (before(e->past_us, to_us)) {
-        advance(e, to_us, (e->held > 0U) ? &e->frames[0] : &e->latest);
+    if (before(e->delayed_us, to_us)) {
+        predict_to(e, to_us, (e->frame_count > 0U) ? &e->frames[0] : &e->latest);
     }
 }
 
-static void carry_to_now(estimator_t *e)
+static void predict_now(estimator_t *e)
 {
-    uint32_t time_us = e->past_us;
+    uint32_t time_us = e->delayed_us;
 
-    e->now = e->past;
-    for (uint16_t i = 0U; i < e->held; ++i) {
-        carry(&e->now, &e->frames[i], seconds(time_us, e->frames[i].time_us));
+    e->now = e->delayed;
+    for (uint16_t i = 0U; i < e->frame_count; ++i) {
+        propagate(&e->now, &e->frames[i], seconds(time_us, e->frames[i].time_us));
         time_us = e->frames[i].time_us;
     }
     e->now_us = time_us;
@@ -189,42 +188,42 @@ static float upward_mps2(const motion_frame_t *frame)
 /* The second difference of white noise has six times its variance; what the vehicle does adds little to it. */
 static void measure_noise(estimator_t *e, float up_mps2)
 {
-    const float difference_mps2 = up_mps2 - 2.0F * e->before_mps2[0] + e->before_mps2[1];
+    const float difference_mps2 = up_mps2 - 2.0F * e->previous_mps2[0] + e->previous_mps2[1];
     const float variance = e->noise_mps2 * e->noise_mps2;
     const float seen = fminf(difference_mps2 * difference_mps2 / 6.0F, NOISE_CLIP * variance);
 
     e->noise_mps2 = between(NOISE_MIN_MPS2, sqrtf(variance + NOISE_SHARE * (seen - variance)), NOISE_MAX_MPS2);
-    e->before_mps2[1] = e->before_mps2[0];
-    e->before_mps2[0] = up_mps2;
+    e->previous_mps2[1] = e->previous_mps2[0];
+    e->previous_mps2[0] = up_mps2;
 }
 
-static void start_moving(estimator_t *e, uint32_t time_us, float up_mps2)
+static void restart_at_frame(estimator_t *e, uint32_t time_us, float up_mps2)
 {
-    e->moving = true;
-    e->started = false;
-    e->held = 0U;
-    e->past_us = time_us;
+    e->has_frames = true;
+    e->initialised = false;
+    e->frame_count = 0U;
+    e->delayed_us = time_us;
     e->now_us = time_us;
-    e->before_mps2[0] = up_mps2;
-    e->before_mps2[1] = up_mps2;
+    e->previous_mps2[0] = up_mps2;
+    e->previous_mps2[1] = up_mps2;
 }
 
-static float share_of_accelerometer(const estimator_t *e, const expected_motion_t *expected)
+static float accelerometer_share(const estimator_t *e, const modelled_motion_t *model)
 {
-    const float felt = e->noise_mps2 * e->noise_mps2;
-    const float guessed = expected->noise_mps2 * expected->noise_mps2;
-    return expected->known ? guessed / (guessed + felt) : 1.0F;
+    const float measured = e->noise_mps2 * e->noise_mps2;
+    const float modelled = model->noise_mps2 * model->noise_mps2;
+    return model->known ? modelled / (modelled + measured) : 1.0F;
 }
 
-static void keep(estimator_t *e, const estimator_frame_t *frame)
+static void append_frame(estimator_t *e, const estimator_frame_t *frame)
 {
-    if (e->held == ESTIMATOR_FRAMES) {
-        advance_until(e, e->frames[0].time_us);
+    if (e->frame_count == ESTIMATOR_FRAMES) {
+        predict_through(e, e->frames[0].time_us);
     }
-    e->frames[e->held] = *frame;
-    ++e->held;
+    e->frames[e->frame_count] = *frame;
+    ++e->frame_count;
     if (before(e->now_us, frame->time_us)) {
-        carry(&e->now, frame, seconds(e->now_us, frame->time_us));
+        propagate(&e->now, frame, seconds(e->now_us, frame->time_us));
         e->now_us = frame->time_us;
     }
 }
@@ -235,7 +234,7 @@ static bool plausible(const motion_frame_t *frame, float up_mps2)
         && fabsf(frame->pitch_rad) < ANGLE_MAX_RAD;
 }
 
-void estimator_move(estimator_t *e, const motion_frame_t *frame, expected_motion_t expected)
+void estimator_predict(estimator_t *e, const motion_frame_t *frame, modelled_motion_t model)
 {
     const uint32_t time_us = frame->arrival_us - FRAME_AGE_US;
     const int32_t gap_us = (int32_t)(time_us - e->now_us);
@@ -244,22 +243,22 @@ void estimator_move(estimator_t *e, const motion_frame_t *frame, expected_motion
     if (!frame->usable || (int32_t)(frame->sequence - e->sequence) <= 0 || !plausible(frame, up_mps2)) {
         return;
     }
-    const float mean_mps2 = e->moving ? 0.5F * (up_mps2 + e->up_mps2) : up_mps2;
-    const float share = share_of_accelerometer(e, &expected);
+    const float mean_mps2 = e->has_frames ? 0.5F * (up_mps2 + e->up_mps2) : up_mps2;
+    const float share = accelerometer_share(e, &model);
     e->sequence = frame->sequence;
-    e->expected_noise_mps2 = expected.noise_mps2;
+    e->model_noise_mps2 = model.noise_mps2;
     e->up_mps2 = up_mps2;
     e->latest = (estimator_frame_t){
         .time_us = time_us,
-        .up_mps2 = share * mean_mps2 + (1.0F - share) * (expected.known ? expected.up_mps2 : 0.0F),
+        .up_mps2 = share * mean_mps2 + (1.0F - share) * (model.known ? model.up_mps2 : 0.0F),
         .share = share,
         .roll_rad = frame->roll_rad,
         .pitch_rad = frame->pitch_rad,
     };
-    if (!e->moving || gap_us > GAP_MAX_US || gap_us < -GAP_MAX_US) {
-        start_moving(e, time_us, up_mps2);
-    } else if (before(e->past_us, time_us)) {
-        keep(e, &e->latest);
+    if (!e->has_frames || gap_us > GAP_MAX_US || gap_us < -GAP_MAX_US) {
+        restart_at_frame(e, time_us, up_mps2);
+    } else if (before(e->delayed_us, time_us)) {
+        append_frame(e, &e->latest);
     }
     measure_noise(e, up_mps2);
 }
@@ -268,8 +267,8 @@ void estimator_move(estimator_t *e, const motion_frame_t *frame, expected_motion
 static void correct(estimator_t *e, uint16_t state, float innovation, float variance)
 {
     float (*const p)[ESTIMATOR_STATES] = e->covariance;
-    float *const x[ESTIMATOR_STATES] = {&e->past.height_m, &e->past.speed_mps, &e->past.bias_mps2,
-                                        &e->past.terrain_mps};
+    float *const x[ESTIMATOR_STATES] = {&e->delayed.height_m, &e->delayed.speed_mps, &e->delayed.bias_mps2,
+                                        &e->delayed.terrain_mps};
     const float sum = p[state][state] + variance;
     float row[ESTIMATOR_STATES];
     float gain[ESTIMATOR_STATES];
@@ -297,71 +296,73 @@ static void correct(estimator_t *e, uint16_t state, float innovation, float vari
             p[i][j] = p[j][i] = 0.5F * (p[i][j] + p[j][i]);
         }
     }
-    bound_states(&e->past);
+    bound_states(&e->delayed);
     bound_covariance(p);
 }
 
-static void height_is(estimator_t *e, float height_m)
+static void reset_height(estimator_t *e, float height_m)
 {
-    e->past.height_m = height_m;
-    e->past.terrain_mps = 0.0F;
-    open_state(e, HEIGHT, HEIGHT_NOISE_M * HEIGHT_NOISE_M);
-    open_state(e, TERRAIN, variance_start[TERRAIN]);
-    e->refused = 0U;
+    e->delayed.height_m = height_m;
+    e->delayed.terrain_mps = 0.0F;
+    reset_variance(e, HEIGHT, HEIGHT_NOISE_M * HEIGHT_NOISE_M);
+    reset_variance(e, TERRAIN, variance_start[TERRAIN]);
+    e->rejected_count = 0U;
 }
 
-static void start_at(estimator_t *e, float height_m)
+static void initialise_at(estimator_t *e, float height_m)
 {
-    open_all(e);
-    e->past.speed_mps = 0.0F;
-    height_is(e, height_m);
-    e->unseen = UNSEEN_AFTER;
-    e->started = true;
+    reset_covariance(e);
+    e->delayed.speed_mps = 0.0F;
+    reset_height(e, height_m);
+    e->unchecked_count = UNCHECKED_AFTER_RESET;
+    e->initialised = true;
 }
 
-static void start_anew(estimator_t *e, float height_m)
+static void reset_to_height(estimator_t *e, float height_m)
 {
-    open_state(e, SPEED, variance_max[SPEED]);
-    open_state(e, BIAS, variance_start[BIAS]);
-    e->past.speed_mps = between(-SPEED_ANEW_MPS, e->past.speed_mps, SPEED_ANEW_MPS);
-    height_is(e, height_m);
-    e->unseen = UNSEEN_AFTER;
+    reset_variance(e, SPEED, variance_max[SPEED]);
+    reset_variance(e, BIAS, variance_start[BIAS]);
+    e->delayed.speed_mps = between(-SPEED_RESET_MAX_MPS, e->delayed.speed_mps, SPEED_RESET_MAX_MPS);
+    reset_height(e, height_m);
+    e->unchecked_count = UNCHECKED_AFTER_RESET;
 }
 
-static bool expected(const estimator_t *e, float innovation_m)
+static bool innovation_accepted(const estimator_t *e, float innovation_m)
 {
     const float sigma_m = sqrtf(e->covariance[HEIGHT][HEIGHT] + HEIGHT_NOISE_M * HEIGHT_NOISE_M);
-    return fabsf(innovation_m) <= between(NEAR_M, NEAR_SIGMAS * sigma_m, NEAR_MAX_M);
+    const float limit_m = between(INNOVATION_LIMIT_MIN_M, INNOVATION_LIMIT_SIGMAS * sigma_m, INNOVATION_LIMIT_MAX_M);
+    return fabsf(innovation_m) <= limit_m;
 }
 
-static height_outcome_t refuse(estimator_t *e, float height_m, float innovation_m)
+static height_outcome_t reject(estimator_t *e, float height_m, float innovation_m)
 {
-    const bool agrees = e->refused > 0U && fabsf(innovation_m - e->refused_m) <= AGREE_M;
+    const float apart_m = fabsf(innovation_m - e->rejected_innovation_m);
+    const bool agrees = e->rejected_count > 0U && apart_m <= STEP_AGREEMENT_M;
 
-    ++e->refused;
-    e->refused_m = innovation_m;
+    ++e->rejected_count;
+    e->rejected_innovation_m = innovation_m;
     if (agrees) {
-        e->stepped_m -= innovation_m;
-        height_is(e, height_m);
+        e->terrain_height_m -= innovation_m;
+        reset_height(e, height_m);
         e->confirmed = true;
-        return HEIGHT_STEP;
+        return HEIGHT_TERRAIN_STEP;
     }
-    if (e->refused == REFUSALS_MAX) {
-        start_anew(e, height_m);
-        return HEIGHT_ANEW;
+    if (e->rejected_count == REJECTIONS_MAX) {
+        reset_to_height(e, height_m);
+        return HEIGHT_RESET;
     }
-    return HEIGHT_REFUSED;
+    return HEIGHT_REJECTED;
 }
 
-static height_outcome_t judge(estimator_t *e, float height_m)
+static height_outcome_t check_and_fuse(estimator_t *e, float height_m)
 {
-    e->innovation_m = height_m - e->past.height_m;
-    e->confirmed = e->unseen == 0U && expected(e, e->innovation_m);
-    if (e->unseen == 0U && !e->confirmed) {
-        return refuse(e, height_m, e->innovation_m);
+    e->innovation_m = height_m - e->delayed.height_m;
+    e->confirmed = e->unchecked_count == 0U && innovation_accepted(e, e->innovation_m);
+    if (e->unchecked_count == 0U && !e->confirmed) {
+        return reject(e, height_m, e->innovation_m);
     }
-    e->unseen = (uint16_t)(e->unseen - (e->unseen > 0U));
-    e->refused = 0U;
+    e->unchecked_count = (uint16_t)(e->unchecked_count - (e->unchecked_count > 0U));
+    e->rejected_count = 0U;
     correct(e, HEIGHT, e->innovation_m, HEIGHT_NOISE_M * HEIGHT_NOISE_M);
     return HEIGHT_FUSED;
 }
@@ -373,31 +374,32 @@ static float height_at_rays_m(const estimator_t *e, const altitude_t *altitude, 
     float roll_rad = e->latest.roll_rad;
     float pitch_rad = e->latest.pitch_rad;
 
-    for (uint16_t i = e->held; i > 0U && !before(e->frames[i - 1U].time_us, shown_us); --i) {
+    for (uint16_t i = e->frame_count; i > 0U && !before(e->frames[i - 1U].time_us, shown_us); --i) {
         roll_rad = e->frames[i - 1U].roll_rad;
         pitch_rad = e->frames[i - 1U].pitch_rad;
     }
     return altitude_at_tilt(altitude, roll_rad, pitch_rad) * 0.001F;
 }
 
-height_outcome_t estimator_see(estimator_t *e, const altitude_t *altitude, uint32_t rays_us, bool at_rest)
+height_outcome_t estimator_fuse_height(estimator_t *e, const altitude_t *altitude, uint32_t rays_us,
+                                       bool at_rest)
 {
-    height_outcome_t outcome = HEIGHT_ANEW;
+    height_outcome_t outcome = HEIGHT_RESET;
 
-    if (!e->moving) {
-        return HEIGHT_REFUSED;
+    if (!e->has_frames) {
+        return HEIGHT_REJECTED;
     }
     const float height_m = height_at_rays_m(e, altitude, rays_us);
-    advance_until(e, rays_us);
-    if (e->started) {
-        outcome = judge(e, height_m);
+    predict_through(e, rays_us);
+    if (e->initialised) {
+        outcome = check_and_fuse(e, height_m);
     } else {
-        start_at(e, height_m);
+        initialise_at(e, height_m);
     }
     if (at_rest) {
-        correct(e, SPEED, -e->past.speed_mps, REST_MPS * REST_MPS);
-        correct(e, TERRAIN, -e->past.terrain_mps, REST_MPS * REST_MPS);
+        correct(e, SPEED, -e->delayed.speed_mps, REST_SIGMA_MPS * REST_SIGMA_MPS);
+        correct(e, TERRAIN, -e->delayed.terrain_mps, REST_SIGMA_MPS * REST_SIGMA_MPS);
     }
-    carry_to_now(e);
+    predict_now(e);
     return outcome;
 }

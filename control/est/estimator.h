@@ -8,7 +8,7 @@
  *
  * A height further from the expectation than a bound of at most 80 mm is not fused. Two in a row that agree are a step of
  * the terrain; the third in a row, whatever it says, starts the height anew with an open covariance, and the two after
- * it are fused unseen: no state keeps the heights out.
+ * it are fused unchecked_count: no state keeps the heights out.
  *
  * Metres, seconds, 32-bit float. Times in microseconds on one wrapping 32-bit clock. Pure; the caller owns the state. */
 #ifndef CONTROL_ESTIMATOR_H
@@ -44,7 +44,7 @@ typedef struct {
     bool known;
     float up_mps2;
     float noise_mps2;       /* how wrong that may be, rms, > 0 */
-} expected_motion_t;
+} modelled_motion_t;
 
 typedef struct {
     uint32_t time_us;       /* of the content */
@@ -53,40 +53,41 @@ typedef struct {
     float roll_rad, pitch_rad;
 } estimator_frame_t;
 
-typedef enum { HEIGHT_FUSED, HEIGHT_REFUSED, HEIGHT_STEP, HEIGHT_ANEW } height_outcome_t;
+typedef enum { HEIGHT_FUSED, HEIGHT_REJECTED, HEIGHT_TERRAIN_STEP, HEIGHT_RESET } height_outcome_t;
 
 typedef struct {
-    bool started;           /* a frame has come, and a height with it */
-    estimate_t past;
+    bool initialised;           /* a frame has come, and a height with it */
+    estimate_t delayed;
     float covariance[ESTIMATOR_STATES][ESTIMATOR_STATES];
-    uint32_t past_us;
+    uint32_t delayed_us;
     estimate_t now;         /* at now_us, the latest frame's instant */
     uint32_t now_us;
-    float up_mps2;          /* felt in the latest frame, gravity removed, bias not */
+    float up_mps2;          /* measured in the latest frame, gravity removed, bias not */
     estimator_frame_t latest;
-    estimator_frame_t frames[ESTIMATOR_FRAMES];     /* since past_us, oldest first */
-    uint16_t held;
-    bool moving;            /* a frame has come */
+    estimator_frame_t frames[ESTIMATOR_FRAMES];     /* since delayed_us, oldest first */
+    uint16_t frame_count;
+    bool has_frames;            /* a frame has come */
     uint32_t sequence;
-    float before_mps2[2];   /* raw accelerations of the two frames before */
+    float previous_mps2[2];   /* raw accelerations of the two frames before */
     float noise_mps2;       /* measured rms of the accelerometer's noise */
-    float expected_noise_mps2;
-    uint16_t refused;       /* heights in a row */
-    uint16_t unseen;        /* heights still to be fused whatever they say */
+    float model_noise_mps2;
+    uint16_t rejected_count;       /* heights in a row */
+    uint16_t unchecked_count;        /* heights still to be fused whatever they say */
     bool confirmed;         /* the latest height was as expected, or the second of a step */
-    float refused_m;        /* innovation of the latest refused height */
+    float rejected_innovation_m;        /* innovation of the latest rejected_count height */
     float innovation_m;     /* latest */
-    float stepped_m;        /* sum of the terrain's steps and of its rate: terrain height since the start */
+    float terrain_height_m; /* above the terrain of the start: sum of its steps and of its rate */
 } estimator_t;
 
 void estimator_init(estimator_t *estimator);
 
 /* One frame, in order; one that was seen before changes nothing. The noisier the accelerometer is measured to be, the
  * more the expected motion counts. */
-void estimator_move(estimator_t *estimator, const motion_frame_t *frame, expected_motion_t expected);
+void estimator_predict(estimator_t *estimator, const motion_frame_t *frame, modelled_motion_t model);
 
 /* One valid height, its rays taken at rays_us. at_rest: the vehicle is known to stand on the ground, which tells speed
- * and bias. Without a frame before nothing happens (HEIGHT_REFUSED). */
-height_outcome_t estimator_see(estimator_t *estimator, const altitude_t *altitude, uint32_t rays_us, bool at_rest);
+ * and bias. Without a frame before nothing happens (HEIGHT_REJECTED). */
+height_outcome_t estimator_fuse_height(estimator_t *estimator, const altitude_t *altitude, uint32_t rays_us,
+                                       bool at_rest);
 
 #endif

@@ -29,7 +29,7 @@ static void board(double hover_n, double damping_per_s)
     flight_init(&flight);
     parameters_init(&parameters);
     set(PARAMETER_LAW, LAW_PID);
-    in = (flight_inputs_t){.attitude_ready = true, .throttle_ours = true};
+    in = (flight_inputs_t){.attitude_ready = true, .has_throttle = true};
     memset(&out, 0, sizeof out);
     clock_us = 0U;
     highest_m = 0.0;
@@ -346,13 +346,13 @@ void test_a_change_of_law_in_flight_does_not_move_the_thrust(void)
     for (int i = 0; i < 6; i++) {
         const float before_n = out.thrust_n;
         const float law = i % 2 == 0 ? LAW_PD : LAW_PID;
-        TEST_ASSERT_TRUE(i % 2 == 1 || fabsf(flight.law.integral_n) > 0.1F);
+        TEST_ASSERT_TRUE(i % 2 == 1 || fabsf(flight.pid.integral_n) > 0.1F);
         set(PARAMETER_LAW, law);
         run(0.108);
         TEST_ASSERT_FLOAT_WITHIN(0.03F, before_n, out.thrust_n);
         run(5.0);
         TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
-        TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F, flight.bridge_n);
+        TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F, flight.transfer_n);
     }
 }
 
@@ -395,7 +395,7 @@ void test_a_short_gap_coasts_at_hover_and_comes_back_without_a_jump(void)
     plant.mute = false;
     run_until(FLIGHT_FLYING, 0.3);
     TEST_ASSERT_FLOAT_WITHIN(0.05F, before_n, out.thrust_n);
-    TEST_ASSERT_TRUE(flight.law.integral_n > 0.2F);
+    TEST_ASSERT_TRUE(flight.pid.integral_n > 0.2F);
     measure(4.0, 0.8);
     TEST_ASSERT_TRUE(rms_mm() < 60.0);
 }
@@ -459,20 +459,20 @@ void test_a_flight_handed_to_a_pilot_and_back_starts_near_hover_with_a_fresh_law
         board(hover_n, 2.4);
         calm_law();
         hover_at(0.8F);
-        in.throttle_ours = false;
+        in.has_throttle = false;
         held_by_a_pilot(1.0, 0.2);
         TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
         TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_PILOT, out.flags);
         held_by_a_pilot(1.0, 10.0);
         TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
-        TEST_ASSERT_EQUAL_FLOAT(0.0F, flight.law.integral_n);
-        TEST_ASSERT_FALSE(flight.law.primed);
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, flight.pid.integral_n);
+        TEST_ASSERT_FALSE(flight.pid.primed);
         const float before_n = out.thrust_n;
         TEST_ASSERT_FLOAT_WITHIN(0.3F, (float)hover_n, before_n);
-        in.throttle_ours = true;
+        in.has_throttle = true;
         run_until(FLIGHT_FLYING, 0.2);
         TEST_ASSERT_FLOAT_WITHIN(0.001F, before_n, out.thrust_n);
-        TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.0F, flight.law.integral_n);
+        TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.0F, flight.pid.integral_n);
         TEST_ASSERT_EQUAL_FLOAT(0.8F, out.reference_m);
         run(12.0);
         measure(2.0, 0.8);
@@ -488,10 +488,10 @@ void test_every_law_hands_over_within_half_a_newton_of_hover(void)
             board(7.4, 2.4);
             set(PARAMETER_LAW, laws[i]);
             hover_at(0.8F);
-            in.throttle_ours = false;
+            in.has_throttle = false;
             held_by_a_pilot(height_m, 1.0 + height_m);
             TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
-            in.throttle_ours = true;
+            in.has_throttle = true;
             run_until(FLIGHT_FLYING, 0.2);
             TEST_ASSERT_FLOAT_WITHIN(0.5F, 7.4F, out.thrust_n);
         }
@@ -503,7 +503,7 @@ void test_a_pilots_landing_gives_the_hover_thrust_of_the_flight_up(void)
     board(8.0, 2.4);
     calm_law();
     hover_at(0.8F);
-    in.throttle_ours = false;
+    in.has_throttle = false;
     held_by_a_pilot(0.5, 1.0);
     TEST_ASSERT_FLOAT_WITHIN(0.3F, 8.0F, out.thrust_n);
     held_by_a_pilot(0.0, 2.0);
@@ -804,7 +804,7 @@ void test_random_inputs_never_leave_the_actuators_range(void)
         flight_step(&flight, &parameters, &in, &out);
         TEST_ASSERT_TRUE(out.thrust_n >= 0.0F && out.thrust_n <= THRUST_MAX_N);
         TEST_ASSERT_EQUAL_FLOAT(thrust_to_pulse_us(out.thrust_n), out.pulse_us);
-        TEST_ASSERT_TRUE(isfinite(flight.hover_n) && isfinite(flight.bridge_n) && isfinite(flight.law.integral_n));
+        TEST_ASSERT_TRUE(isfinite(flight.hover_n) && isfinite(flight.transfer_n) && isfinite(flight.pid.integral_n));
         TEST_ASSERT_TRUE(out.state != FLIGHT_GROUND || out.thrust_n == 0.0F);
         seen |= 1U << out.state;
     }

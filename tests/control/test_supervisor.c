@@ -21,7 +21,7 @@ void setUp(void)
     estimate.known = false;
     change.from = change.to = FLIGHT_GROUND;
     in = (flight_inputs_t){.now_us = 0xFFF00000U, /* the clock wraps a second later */
-                           .attitude_ready = true, .throttle_ours = true};
+                           .attitude_ready = true, .has_throttle = true};
     link_s = 0.0F;
 }
 
@@ -138,9 +138,10 @@ static void floating(void)
 
 /* ---- the table */
 
-static const char *const condition_names[] = {"REFERENCE", "READY", "HEIGHT",   "LOST", "OFF_GROUND", "ALOFT",
-                                              "AT_REST",   "TOO_HIGH", "BACK",   "LAND", "SPENT",      "TILTED", "LEVEL",
-                                              "AGAIN",     "OURS"};
+static const char *const condition_names[] = {
+    "REFERENCE", "READY", "HEIGHT", "LOST", "OFF_GROUND", "ALOFT", "AT_REST", "TOO_HIGH", "RECOVERED", "LAND",
+    "DESCENT_TIMEOUT", "TILTED", "LEVEL", "LOWERING_LIMIT", "HAS_THROTTLE",
+};
 #define CONDITION_COUNT (sizeof condition_names / sizeof condition_names[0])
 
 static void row_text(const flight_transition_t *row, char *text, size_t size)
@@ -186,7 +187,7 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
 {
     const bool reference = c & FLIGHT_IF_REFERENCE, height = c & FLIGHT_IF_HEIGHT;
     const bool tilted = c & FLIGHT_IF_TILTED;
-    const bool ours = c & FLIGHT_IF_OURS;
+    const bool ours = c & FLIGHT_IF_HAS_THROTTLE;
     const bool go = reference && height && (c & FLIGHT_IF_READY);
     if (!ours && from != FLIGHT_GROUND && from != FLIGHT_FLOATING && from != FLIGHT_CUT) {
         return FLIGHT_FLOATING;
@@ -223,7 +224,7 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
         }
         return height ? FLIGHT_FLYING : (c & FLIGHT_IF_LOST) ? FLIGHT_DESCENDING : from;
     case FLIGHT_DESCENDING:
-        return go ? FLIGHT_FLYING : height ? FLIGHT_LANDING : (c & FLIGHT_IF_SPENT) ? FLIGHT_GROUND : from;
+        return go ? FLIGHT_FLYING : height ? FLIGHT_LANDING : (c & FLIGHT_IF_DESCENT_TIMEOUT) ? FLIGHT_GROUND : from;
     case FLIGHT_LANDING:
         return go ? FLIGHT_FLYING : !height ? FLIGHT_DESCENDING : (c & FLIGHT_IF_AT_REST) ? FLIGHT_GROUND : from;
     case FLIGHT_CUT:
@@ -235,7 +236,7 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
         if (!height) {
             return FLIGHT_COASTING;
         }
-        return (!reference || (c & FLIGHT_IF_AGAIN)) ? FLIGHT_LANDING : (c & FLIGHT_IF_BACK) ? FLIGHT_FLYING : from;
+        return (!reference || (c & FLIGHT_IF_LOWERING_LIMIT)) ? FLIGHT_LANDING : (c & FLIGHT_IF_RECOVERED) ? FLIGHT_FLYING : from;
     }
 }
 
@@ -588,7 +589,7 @@ void test_nineteen_seconds_of_flight_do_not(void)
 
 static void pilot_takes_it(float height_mm)
 {
-    in.throttle_ours = false;
+    in.has_throttle = false;
     watch(height_mm, 1);
     state_is(FLIGHT_FLOATING);
     TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_PILOT, s.flags & FLIGHT_FLAG_PILOT);
@@ -596,7 +597,7 @@ static void pilot_takes_it(float height_mm)
 
 static void pilot_takes_it_blind(void)
 {
-    in.throttle_ours = false;
+    in.has_throttle = false;
     blind(100);
     state_is(FLIGHT_FLOATING);
     TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_PILOT | FLIGHT_FLAG_HEIGHT, s.flags);
@@ -604,7 +605,7 @@ static void pilot_takes_it_blind(void)
 
 static void pilot_gives_it_back(float height_mm)
 {
-    in.throttle_ours = true;
+    in.has_throttle = true;
     watch(height_mm, 1);
     TEST_ASSERT_EQUAL_UINT16(0, s.flags);
 }
@@ -681,11 +682,11 @@ void test_the_pilots_switch_counts_more_than_a_tilt_and_a_lost_height(void)
 {
     fly();
     blind(200);
-    in.throttle_ours = false;
+    in.has_throttle = false;
     in.roll_rad = 1.0F;
     blind(3000);
     state_is(FLIGHT_FLOATING);
-    in.throttle_ours = true;
+    in.has_throttle = true;
     watch(500.0F, 20);
     state_is(FLIGHT_FLOATING);
     in.roll_rad = 0.0F;
@@ -699,7 +700,7 @@ void test_cut_to_floating_only_by_a_pilot_who_holds_it_aloft_and_upright(void)
     in.roll_rad = 1.0F;
     watch(500.0F, 3);
     state_is(FLIGHT_CUT);
-    in.throttle_ours = false;
+    in.has_throttle = false;
     watch(500.0F, 20);
     state_is(FLIGHT_CUT);
     in.roll_rad = 0.0F;
@@ -714,7 +715,7 @@ void test_cut_to_floating_only_by_a_pilot_who_holds_it_aloft_and_upright(void)
 
 void test_a_reference_waits_on_the_ground_for_the_pilots_switch(void)
 {
-    in.throttle_ours = false;
+    in.has_throttle = false;
     watch(0.0F, 3);
     setr(0.5F);
     watch(0.0F, 100);
@@ -727,7 +728,7 @@ void test_a_reference_waits_on_the_ground_for_the_pilots_switch(void)
 void test_a_reference_or_setr_0_leaves_a_pilots_vehicle_floating(void)
 {
     floating();
-    in.throttle_ours = false;
+    in.has_throttle = false;
     setr(0.6F);
     watch(400.0F, 20);
     state_is(FLIGHT_FLOATING);
@@ -1079,7 +1080,7 @@ static void lie_level_after_a_cut(void)
 static void hand_over(void (*enter)(void), float height_mm)
 {
     enter();
-    in.throttle_ours = false;
+    in.has_throttle = false;
     watch(height_mm, 1);
 }
 
@@ -1094,7 +1095,7 @@ static void recover_from_a_cut(void)
 {
     tilt_in_flight();
     tilt(0.0F);
-    in.throttle_ours = false;
+    in.has_throttle = false;
     watch(500.0F, 20);
 }
 
@@ -1107,13 +1108,13 @@ static const struct {
 } ways[] = {
     {FLIGHT_GROUND, FLIGHT_IF_ALOFT, FLIGHT_FLOATING, aloft},
     {FLIGHT_GROUND, FLIGHT_IF_REFERENCE, FLIGHT_TAKEOFF, take_off},
-    {FLIGHT_TAKEOFF, FLIGHT_IF_OURS, FLIGHT_FLOATING, hand_over_on_take_off},
+    {FLIGHT_TAKEOFF, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING, hand_over_on_take_off},
     {FLIGHT_TAKEOFF, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_take_off},
     {FLIGHT_TAKEOFF, FLIGHT_IF_HEIGHT, FLIGHT_COASTING, lose_height_on_take_off},
     {FLIGHT_TAKEOFF, FLIGHT_IF_REFERENCE, FLIGHT_LANDING, withdraw_on_take_off},
     {FLIGHT_TAKEOFF, FLIGHT_IF_TOO_HIGH, FLIGHT_LOWERING, rise_too_high_on_take_off},
     {FLIGHT_TAKEOFF, FLIGHT_IF_OFF_GROUND, FLIGHT_FLYING, leave_the_ground},
-    {FLIGHT_FLYING, FLIGHT_IF_OURS, FLIGHT_FLOATING, hand_over_in_flight},
+    {FLIGHT_FLYING, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING, hand_over_in_flight},
     {FLIGHT_FLYING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_in_flight},
     {FLIGHT_FLYING, FLIGHT_IF_HEIGHT, FLIGHT_COASTING, coast},
     {FLIGHT_FLYING, FLIGHT_IF_REFERENCE, FLIGHT_LANDING, land},
@@ -1122,28 +1123,28 @@ static const struct {
     {FLIGHT_FLOATING, FLIGHT_IF_LAND, FLIGHT_LANDING, land_for_the_pilot},
     {FLIGHT_FLOATING, FLIGHT_IF_LAND, FLIGHT_DESCENDING, descend_for_the_pilot},
     {FLIGHT_FLOATING, FLIGHT_IF_AT_REST, FLIGHT_GROUND, be_put_down_by_the_pilot},
-    {FLIGHT_COASTING, FLIGHT_IF_OURS, FLIGHT_FLOATING, hand_over_on_coasting},
+    {FLIGHT_COASTING, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING, hand_over_on_coasting},
     {FLIGHT_COASTING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_coasting},
     {FLIGHT_COASTING, FLIGHT_IF_REFERENCE, FLIGHT_DESCENDING, withdraw_on_coasting},
     {FLIGHT_COASTING, FLIGHT_IF_HEIGHT, FLIGHT_FLYING, see_again_on_coasting},
     {FLIGHT_COASTING, FLIGHT_IF_LOST, FLIGHT_DESCENDING, descend},
-    {FLIGHT_DESCENDING, FLIGHT_IF_OURS, FLIGHT_FLOATING, hand_over_on_descending},
+    {FLIGHT_DESCENDING, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING, hand_over_on_descending},
     {FLIGHT_DESCENDING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_descending},
     {FLIGHT_DESCENDING, FLIGHT_IF_REFERENCE, FLIGHT_FLYING, new_reference_on_descending},
     {FLIGHT_DESCENDING, FLIGHT_IF_HEIGHT, FLIGHT_LANDING, see_again_on_descending},
-    {FLIGHT_DESCENDING, FLIGHT_IF_SPENT, FLIGHT_GROUND, descend_to_the_end},
-    {FLIGHT_LANDING, FLIGHT_IF_OURS, FLIGHT_FLOATING, hand_over_on_landing},
+    {FLIGHT_DESCENDING, FLIGHT_IF_DESCENT_TIMEOUT, FLIGHT_GROUND, descend_to_the_end},
+    {FLIGHT_LANDING, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING, hand_over_on_landing},
     {FLIGHT_LANDING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_landing},
     {FLIGHT_LANDING, FLIGHT_IF_REFERENCE, FLIGHT_FLYING, new_reference_on_landing},
     {FLIGHT_LANDING, FLIGHT_IF_HEIGHT, FLIGHT_DESCENDING, lose_height_on_landing},
     {FLIGHT_LANDING, FLIGHT_IF_AT_REST, FLIGHT_GROUND, touch_down},
-    {FLIGHT_LOWERING, FLIGHT_IF_OURS, FLIGHT_FLOATING, hand_over_on_lowering},
+    {FLIGHT_LOWERING, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING, hand_over_on_lowering},
     {FLIGHT_LOWERING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_lowering},
     {FLIGHT_LOWERING, FLIGHT_IF_HEIGHT, FLIGHT_COASTING, lose_height_on_lowering},
     {FLIGHT_LOWERING, FLIGHT_IF_REFERENCE, FLIGHT_LANDING, withdraw_on_lowering},
-    {FLIGHT_LOWERING, FLIGHT_IF_AGAIN, FLIGHT_LANDING, be_lowered_thrice},
-    {FLIGHT_LOWERING, FLIGHT_IF_BACK, FLIGHT_FLYING, be_lowered},
-    {FLIGHT_CUT, FLIGHT_IF_OURS, FLIGHT_FLOATING, recover_from_a_cut},
+    {FLIGHT_LOWERING, FLIGHT_IF_LOWERING_LIMIT, FLIGHT_LANDING, be_lowered_thrice},
+    {FLIGHT_LOWERING, FLIGHT_IF_RECOVERED, FLIGHT_FLYING, be_lowered},
+    {FLIGHT_CUT, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING, recover_from_a_cut},
     {FLIGHT_CUT, FLIGHT_IF_AT_REST, FLIGHT_GROUND, lie_level_after_a_cut},
 };
 #define WAY_COUNT (sizeof ways / sizeof ways[0])
@@ -1719,7 +1720,7 @@ void test_random_inputs_never_leave_the_table(void)
         link_s = (i / 5000) % 2 == 0 ? 0.0F : 1.0F;
         in.attitude_ready = any(50) != 0;
         in.pitch_rad = (i / 700) % 9 == 8 ? 1.0F : 0.1F;
-        in.throttle_ours = any(300) == 0 ? !in.throttle_ours : in.throttle_ours || any(20) == 0;
+        in.has_throttle = any(300) == 0 ? !in.has_throttle : in.has_throttle || any(20) == 0;
         cycle(50 + any(100));
         bool row = from == s.state;
         for (unsigned k = 0; k < FLIGHT_TRANSITION_COUNT; k++) {

@@ -201,7 +201,7 @@ static uint32_t power_cycles;
 static struct {
     char text[20];
     uint32_t step, rate;
-    laser_status_t status;
+    urg_status_t status;
 } asked[LOG_MAX];
 static uint32_t asked_count;
 
@@ -306,7 +306,7 @@ static uint32_t steps_to_ok(void)
 {
     for (uint32_t count = 1; count <= 400; count++) {
         step();
-        if (link_.status == LASER_OK) {
+        if (link_.status == URG_OK) {
             return count;
         }
     }
@@ -361,13 +361,13 @@ void tearDown(void)
 {
 }
 
-static void assert_asked(uint32_t index, const char *text, uint32_t at_step, uint32_t rate, laser_status_t status)
+static void assert_asked(uint32_t index, const char *text, uint32_t at_step, uint32_t rate, urg_status_t status)
 {
     TEST_ASSERT_LESS_THAN_UINT(asked_count, index);
     TEST_ASSERT_EQUAL_STRING(text, asked[index].text);
     TEST_ASSERT_EQUAL_UINT(at_step, asked[index].step);
     TEST_ASSERT_EQUAL_UINT(rate, asked[index].rate);
-    TEST_ASSERT_EQUAL_STRING(laser_status_name(status), laser_status_name(asked[index].status));
+    TEST_ASSERT_EQUAL_STRING(urg_status_name(status), urg_status_name(asked[index].status));
 }
 
 static uint32_t times_asked(const char *command)
@@ -385,8 +385,8 @@ static uint32_t times_asked(const char *command)
 void test_the_status_names_are_those_of_the_telemetry(void)
 {
     static const char *const names[] = { "WAIT", "STOP1", "SWITCH", "RATE", "STOP2", "STREAM", "OK", "LOST" };
-    for (int status = 0; status < LASER_STATUS_COUNT; status++) {
-        TEST_ASSERT_EQUAL_STRING(names[status], laser_status_name((laser_status_t)status));
+    for (int status = 0; status < URG_STATUS_COUNT; status++) {
+        TEST_ASSERT_EQUAL_STRING(names[status], urg_status_name((urg_status_t)status));
     }
 }
 
@@ -395,14 +395,14 @@ void test_a_sensor_after_power_up_is_started_in_the_order_of_the_seed(void)
 {
     steps(67);
     TEST_ASSERT_EQUAL_UINT(0, asked_count);
-    TEST_ASSERT_EQUAL(LASER_WAIT, link_.status);
+    TEST_ASSERT_EQUAL(URG_WAIT, link_.status);
     TEST_ASSERT_EQUAL_UINT(6, steps_to_ok() - 1);
     TEST_ASSERT_EQUAL_UINT(5, asked_count);
-    assert_asked(0, "\nL0\n", 67, 115200, LASER_STOP1);
-    assert_asked(1, "SCIP2.0\n", 68, 115200, LASER_SWITCH);
-    assert_asked(2, "SS250000\n", 69, 115200, LASER_RATE);
-    assert_asked(3, "\nQT\n", 71, 250000, LASER_STOP2);
-    assert_asked(4, "MS0372040601000\n", 72, 250000, LASER_STREAM);
+    assert_asked(0, "\nL0\n", 67, 115200, URG_STOP1);
+    assert_asked(1, "SCIP2.0\n", 68, 115200, URG_SWITCH);
+    assert_asked(2, "SS250000\n", 69, 115200, URG_RATE);
+    assert_asked(3, "\nQT\n", 71, 250000, URG_STOP2);
+    assert_asked(4, "MS0372040601000\n", 72, 250000, URG_STREAM);
     TEST_ASSERT_EQUAL_UINT32(0, link_.restarts);
     TEST_ASSERT_EQUAL_UINT32(0, link_.timeouts);
     TEST_ASSERT_EQUAL_UINT32(0, seen.damage_count);
@@ -413,7 +413,7 @@ void test_without_a_wait_the_start_begins_at_once(void)
 {
     reset(0);
     TEST_ASSERT_EQUAL_UINT(7, steps_to_ok());
-    assert_asked(0, "\nL0\n", 0, 115200, LASER_STOP1);
+    assert_asked(0, "\nL0\n", 0, 115200, URG_STOP1);
 }
 
 void test_nothing_is_sent_while_scans_arrive(void)
@@ -421,7 +421,7 @@ void test_nothing_is_sent_while_scans_arrive(void)
     steps_to_ok();
     uint32_t before = asked_count;
     steps(4000);
-    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
     TEST_ASSERT_EQUAL_UINT(before, asked_count);
     TEST_ASSERT_EQUAL_UINT32(0, link_.restarts);
     TEST_ASSERT_GREATER_THAN_UINT32(5900, seen.scan_count);
@@ -435,7 +435,7 @@ void test_time_may_wrap_at_any_moment(void)
         host_starts(10000000);
         TEST_ASSERT_EQUAL_UINT(67 + 7, steps_to_ok());
         steps(40);
-        TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+        TEST_ASSERT_EQUAL(URG_OK, link_.status);
     }
 }
 
@@ -504,7 +504,7 @@ void test_streaming_is_reached_from_every_state_at_every_rate_without_a_power_cy
             TEST_ASSERT_EQUAL_UINT(0, power_cycles);
             TEST_ASSERT_EQUAL_UINT32(0, link_.restarts);
             steps(10);
-            TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+            TEST_ASSERT_EQUAL(URG_OK, link_.status);
         }
     }
 }
@@ -557,7 +557,7 @@ static void assert_start_survives(const char *fault, uint32_t position)
     TEST_ASSERT_LESS_OR_EQUAL_UINT_MESSAGE(67 + 7 + 17, count, text);
     TEST_ASSERT_EQUAL_UINT(250000, host_rate);
     steps(10);
-    TEST_ASSERT_EQUAL_MESSAGE(LASER_OK, link_.status, text);
+    TEST_ASSERT_EQUAL_MESSAGE(URG_OK, link_.status, text);
     TEST_ASSERT_EQUAL_UINT32(0, link_.restarts);
 }
 
@@ -595,11 +595,11 @@ void test_the_sensor_may_restart_at_any_step_of_the_dialogue(void)
         steps(at);
         sensor_powers_up();
         steps(5);
-        if (link_.status != LASER_OK) {
+        if (link_.status != URG_OK) {
             TEST_ASSERT_LESS_OR_EQUAL_UINT(25, steps_to_ok());
         }
         steps(10);
-        TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+        TEST_ASSERT_EQUAL(URG_OK, link_.status);
     }
 }
 
@@ -612,14 +612,14 @@ void test_a_mute_sensor_is_noticed_within_600_ms_and_not_before_450(void)
     steps(20);
     sensor.on = false;
     uint32_t last = link_.scan_us;
-    while (link_.status == LASER_OK) {
+    while (link_.status == URG_OK) {
         step();
         last = link_.scan_us;
     }
     const uint32_t silent = now_us - STEP_US - last;
     TEST_ASSERT_GREATER_OR_EQUAL_UINT32(450000, silent);
     TEST_ASSERT_LESS_OR_EQUAL_UINT32(600000, silent);
-    TEST_ASSERT_EQUAL(LASER_LOST, link_.status);
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
     TEST_ASSERT_EQUAL_UINT32(1, link_.restarts);
 }
 
@@ -630,7 +630,7 @@ void test_a_stream_that_stopped_is_started_again_at_the_same_rate(void)
     sensor.streaming = false;
     uint32_t before = asked_count;
     steps(10);
-    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
     TEST_ASSERT_EQUAL_UINT(before + 2, asked_count);
     TEST_ASSERT_EQUAL_STRING("\nQT\n", asked[before].text);
     TEST_ASSERT_EQUAL_STRING("MS0372040601000\n", asked[before + 1].text);
@@ -648,10 +648,10 @@ void test_a_brown_out_of_the_sensor_is_overcome(void)
         steps(off);
         sensor_powers_up();
         steps(5);
-        uint32_t count = link_.status == LASER_OK ? 0 : steps_to_ok();
+        uint32_t count = link_.status == URG_OK ? 0 : steps_to_ok();
         TEST_ASSERT_LESS_OR_EQUAL_UINT(22, count);
         steps(10);
-        TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+        TEST_ASSERT_EQUAL(URG_OK, link_.status);
         TEST_ASSERT_EQUAL_UINT32(1, link_.restarts);
     }
 }
@@ -672,7 +672,7 @@ void test_a_sensor_in_time_mode_is_taken_out_of_it(void)
     sensor.streaming = false;
     sensor.time_mode = true;
     steps(12);
-    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
     TEST_ASSERT_EQUAL_UINT(1, times_asked("TM2"));
 }
 
@@ -688,7 +688,7 @@ void test_a_dead_sensor_is_looked_for_at_every_rate_for_ever(void)
     TEST_ASSERT_GREATER_THAN_UINT(200, asked_count);
     for (uint32_t i = 2; i < asked_count; i++) {
         TEST_ASSERT_EQUAL_UINT(rates[(i - 2) % 4], asked[i].rate);
-        TEST_ASSERT_EQUAL(LASER_LOST, asked[i].status);
+        TEST_ASSERT_EQUAL(URG_LOST, asked[i].status);
         TEST_ASSERT_EQUAL_UINT('\n', (uint32_t)asked[i].text[0]);
     }
     TEST_ASSERT_EQUAL_UINT(5, power_cycles);
@@ -772,7 +772,7 @@ void test_a_sensor_that_does_not_know_the_rate_streams_at_its_own(void)
         TEST_ASSERT_EQUAL_UINT(i == 2 ? 2 : 1, times_asked("SS"));
         sensor.streaming = false;
         steps(10);
-        TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+        TEST_ASSERT_EQUAL(URG_OK, link_.status);
         TEST_ASSERT_EQUAL_UINT(115200, host_rate);
     }
 }
@@ -781,9 +781,9 @@ void test_a_sensor_that_has_the_rate_already_is_taken_at_its_word(void)
 {
     reset(0);
     steps(2);
-    TEST_ASSERT_EQUAL(LASER_SWITCH, link_.status);
+    TEST_ASSERT_EQUAL(URG_SWITCH, link_.status);
     step();
-    TEST_ASSERT_EQUAL(LASER_RATE, link_.status);
+    TEST_ASSERT_EQUAL(URG_RATE, link_.status);
     queued = taken = 0;
     sensor.rate = 115200;
     send_text("SS250000\n03S\n\n");
@@ -827,9 +827,9 @@ void test_hardware_trouble_ends_the_stream_and_is_met_at_once(void)
     send_status("MS0372040601000", "50");
     sensor.streaming = false;
     steps(1);
-    TEST_ASSERT_EQUAL(LASER_LOST, link_.status);
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
     steps(6);
-    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
     TEST_ASSERT_EQUAL_UINT32(1, link_.restarts);
 }
 
@@ -839,9 +839,9 @@ void test_a_sensor_that_verifies_an_error_is_given_two_seconds(void)
     send_status("MS0372040601000", "21");
     sensor.streaming = false;
     steps(13);
-    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
     steps(2);
-    TEST_ASSERT_EQUAL(LASER_LOST, link_.status);
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
 }
 
 void test_the_all_clear_changes_nothing(void)
@@ -849,7 +849,7 @@ void test_the_all_clear_changes_nothing(void)
     reach_ok();
     send_status("MS0372040601000", "98");
     steps(20);
-    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
     TEST_ASSERT_EQUAL_UINT32(0, link_.restarts);
     TEST_ASSERT_EQUAL_UINT32(1, seen.notice_count);
 }
@@ -874,7 +874,7 @@ void test_a_counted_run_is_ordered_again_when_it_ends(void)
     urg_link_init(&link_, &config, now_us);
     steps_to_ok();
     steps(200);
-    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
     TEST_ASSERT_EQUAL_UINT32(0, link_.restarts);
     TEST_ASSERT_GREATER_THAN_UINT(15, times_asked("MS0372040601007"));
     TEST_ASSERT_GREATER_OR_EQUAL_UINT32(7 * 15, seen.scan_count);
@@ -889,7 +889,7 @@ void test_a_counted_run_whose_last_scan_is_lost_is_ordered_again_too(void)
     steps_to_ok();
     sensor.streaming = false;
     steps(8);
-    TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
     TEST_ASSERT_EQUAL_UINT32(1, link_.restarts);
 }
 
@@ -918,12 +918,12 @@ void test_longer_scans_are_waited_for_longer(void)
         some.reply_count = 2;
         some.reply_kind = SCIP_STOP;
         urg_link_step(&link_, &some, 2 * STEP_US, &action);
-        TEST_ASSERT_EQUAL(LASER_STREAM, link_.status);
+        TEST_ASSERT_EQUAL(URG_STREAM, link_.status);
         TEST_ASSERT_EQUAL(SCIP_STREAM_2, action.request.kind);
         TEST_ASSERT_GREATER_THAN_UINT32(rows[i].least_us - 50000, link_.timeout_us);
         some.scan_count = 1;
         urg_link_step(&link_, &some, 3 * STEP_US, &action);
-        TEST_ASSERT_EQUAL(LASER_OK, link_.status);
+        TEST_ASSERT_EQUAL(URG_OK, link_.status);
         TEST_ASSERT_GREATER_OR_EQUAL_UINT32(rows[i].least_us, link_.timeout_us);
         TEST_ASSERT_LESS_OR_EQUAL_UINT32(rows[i].most_us, link_.timeout_us);
     }
@@ -937,7 +937,7 @@ void test_a_reply_of_another_kind_confirms_nothing(void)
     some.reply_count = 1;
     some.reply_kind = SCIP_STOP;
     urg_link_step(&link_, &some, STEP_US, &action);
-    TEST_ASSERT_EQUAL(LASER_STOP1, link_.status);
+    TEST_ASSERT_EQUAL(URG_STOP1, link_.status);
     TEST_ASSERT_FALSE(action.send);
 }
 
@@ -948,7 +948,7 @@ void test_late_scans_of_an_older_order_do_not_end_the_start(void)
     urg_link_step(&link_, &some, 0, &action);
     some.scan_count = 5;
     urg_link_step(&link_, &some, STEP_US, &action);
-    TEST_ASSERT_EQUAL(LASER_STOP1, link_.status);
+    TEST_ASSERT_EQUAL(URG_STOP1, link_.status);
 }
 
 static void probe_hears(uint32_t octets, uint32_t framing)
@@ -986,7 +986,7 @@ void test_a_burst_of_framing_errors_ends_a_probe_early_and_a_few_do_not(void)
         urg_link_step(&link_, &some, 0, &action);
         some.framing_count = framing;
         urg_link_step(&link_, &some, STEP_US, &action);
-        TEST_ASSERT_EQUAL(framing >= 8 ? LASER_LOST : LASER_STOP1, link_.status);
+        TEST_ASSERT_EQUAL(framing >= 8 ? URG_LOST : URG_STOP1, link_.status);
         TEST_ASSERT_EQUAL(framing >= 8, action.set_rate);
     }
 }
@@ -1006,7 +1006,7 @@ void test_a_noisy_cable_never_ends_it(void)
             sensor_powers_up();
         }
         step();
-        ok += link_.status == LASER_OK;
+        ok += link_.status == URG_OK;
     }
     TEST_ASSERT_GREATER_THAN_UINT(19000, ok);
     TEST_ASSERT_GREATER_OR_EQUAL_UINT32(20, link_.restarts);

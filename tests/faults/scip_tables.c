@@ -89,10 +89,10 @@ static double scan_timeout_ms(uint32_t rate)
     line_t line;
 
     open_line(&line, rate, rate);
-    while (line.link.status != LASER_OK) {
+    while (line.link.status != URG_OK) {
         tick(&line);
         answer(&line, "00");
-        line.seen.scan_count += line.link.status == LASER_STREAM;
+        line.seen.scan_count += line.link.status == URG_STREAM;
     }
     return line.link.timeout_us / 1000.0;
 }

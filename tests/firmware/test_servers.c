@@ -97,7 +97,7 @@ void test_before_anything_is_written_nothing_is_known_and_the_vehicle_is_on_the_
     TEST_ASSERT_FALSE(altitude.scan_valid);
     TEST_ASSERT_EQUAL_UINT32(0, imu.sequence);
     TEST_ASSERT_FALSE(imu.ready);
-    TEST_ASSERT_EQUAL(LASER_WAIT, laser.status);
+    TEST_ASSERT_EQUAL(URG_WAIT, laser.status);
     TEST_ASSERT_EQUAL_UINT32(0, laser.seen.reply_count);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, reference.reference_m);
     TEST_ASSERT_EQUAL_UINT32(0, reference.sequence);

@@ -380,10 +380,10 @@ void test_the_pin_tells_who_has_the_throttle_when_sel_says_so(void)
     bsp_selector_ours_Stub(read_pin);
     between = switch_the_pin;
     run(4U);
-    TEST_ASSERT_TRUE(inputs[0].throttle_ours);
-    TEST_ASSERT_TRUE(inputs[1].throttle_ours);
-    TEST_ASSERT_FALSE(inputs[2].throttle_ours);
-    TEST_ASSERT_TRUE(inputs[3].throttle_ours);
+    TEST_ASSERT_TRUE(inputs[0].has_throttle);
+    TEST_ASSERT_TRUE(inputs[1].has_throttle);
+    TEST_ASSERT_FALSE(inputs[2].has_throttle);
+    TEST_ASSERT_TRUE(inputs[3].has_throttle);
     TEST_ASSERT_EQUAL_UINT16(2, pin_reads);
     TEST_ASSERT_EQUAL_HEX16(FLIGHT_FLAG_PILOT, published[2].flags & FLIGHT_FLAG_PILOT);
     TEST_ASSERT_EQUAL_HEX16(0, published[3].flags & FLIGHT_FLAG_PILOT);

@@ -65,7 +65,7 @@ void setUp(void)
     altitude.altitude.valid = true;
     altitude.altitude.height_mm = 598.4F;
     altitude.altitude.slant_mm = 803.0F;
-    laser.status = LASER_OK;
+    laser.status = URG_OK;
     flight.thrust_n = 7.123F;
     flight.reference_m = 0.6F;
     flight.state = FLIGHT_FLYING;
@@ -145,7 +145,7 @@ void test_without_a_fresh_height_the_altitude_is_a_dash(void)
 {
     flight.flags = FLIGHT_FLAG_HEIGHT | FLIGHT_FLAG_LINK;
     flight.state = FLIGHT_COASTING;
-    laser.status = LASER_LOST;
+    laser.status = URG_LOST;
     assert_line("alt:- ref:0.600 laser:LOST thr:7.12 state:COASTING flags:17\r\n");
 }
 
@@ -162,13 +162,13 @@ void test_every_laser_status_and_every_state_is_told_by_its_name_and_fits_the_pa
     flight.reference_m = 3.0F;
     flight.thrust_n = 11.76F;
     flight.flags = 30U;
-    for (uint16_t status = 0; status < LASER_STATUS_COUNT; status++) {
+    for (uint16_t status = 0; status < URG_STATUS_COUNT; status++) {
         for (uint16_t state = 0; state < FLIGHT_STATE_COUNT; state++) {
             char expected[TELEMETRY_LINE_MAX + 1U] = "alt:-4.999 ref:3.000 laser:";
 
-            laser.status = (laser_status_t)status;
+            laser.status = (urg_status_t)status;
             flight.state = (flight_state_t)state;
-            (void)strcat(strcat(expected, laser_status_name(laser.status)), " thr:11.76 state:");
+            (void)strcat(strcat(expected, urg_status_name(laser.status)), " thr:11.76 state:");
             (void)strcat(strcat(expected, flight_state_name(flight.state)), " flags:30\r\n");
             assert_line(expected);
         }

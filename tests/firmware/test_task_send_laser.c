@@ -51,7 +51,7 @@ static void look(laser_statistics_t *statistics, int calls)
 static void publish(const laser_sample_t *sample, int calls)
 {
     (void)calls;
-    kernel_note(laser_status_name(sample->status));
+    kernel_note(urg_status_name(sample->status));
     laser = *sample;
     writes++;
 }
@@ -158,10 +158,10 @@ static void ticks(uint16_t count)
     }
 }
 
-static void until(laser_status_t status, uint16_t at_most)
+static void until(urg_status_t status, uint16_t at_most)
 {
     while (laser.status != status) {
-        TEST_ASSERT_GREATER_THAN_MESSAGE(0, at_most--, laser_status_name(laser.status));
+        TEST_ASSERT_GREATER_THAN_MESSAGE(0, at_most--, urg_status_name(laser.status));
         tick();
     }
 }
@@ -250,7 +250,7 @@ void test_the_blue_light_blinks_until_scans_arrive_and_then_stays_on(void)
         TEST_ASSERT_NOT_EQUAL(last, blue);
         TEST_ASSERT_FALSE(red);
     }
-    until(LASER_OK, TICKS_OF_WAIT + 20U);
+    until(URG_OK, TICKS_OF_WAIT + 20U);
     for (uint16_t n = 0; n < 20U; n++) {
         TEST_ASSERT_TRUE(blue);
         TEST_ASSERT_FALSE(red);
@@ -262,10 +262,10 @@ void test_the_red_light_tells_that_the_sensor_is_lost_and_goes_out_when_it_is_ba
 {
     uint16_t lit = 0;
 
-    until(LASER_OK, TICKS_OF_WAIT + 20U);
+    until(URG_OK, TICKS_OF_WAIT + 20U);
     streaming = false;
     sensor_answers = false;
-    until(LASER_LOST, 10U);
+    until(URG_LOST, 10U);
     for (uint16_t n = 0; n < 10U; n++) {
         TEST_ASSERT_TRUE(red);
         lit = (uint16_t)(lit + (blue ? 1U : 0U));
@@ -273,21 +273,21 @@ void test_the_red_light_tells_that_the_sensor_is_lost_and_goes_out_when_it_is_ba
     }
     TEST_ASSERT_EQUAL_UINT16(5, lit);
     sensor_answers = true;
-    until(LASER_OK, 60U);
+    until(URG_OK, 60U);
     TEST_ASSERT_FALSE(red);
     TEST_ASSERT_TRUE(blue);
 }
 
 void test_what_is_published_is_the_links_state_and_what_was_seen_at_that_tick(void)
 {
-    until(LASER_OK, TICKS_OF_WAIT + 20U);
+    until(URG_OK, TICKS_OF_WAIT + 20U);
     TEST_ASSERT_EQUAL_UINT32(250000, laser.rate);
     TEST_ASSERT_EQUAL_UINT32(0, laser.restarts);
     TEST_ASSERT_EQUAL_UINT32(0, laser.timeouts);
     TEST_ASSERT_EQUAL_MEMORY(&receiving.seen, &laser.seen, sizeof laser.seen);
     streaming = false;
     sensor_answers = false;
-    until(LASER_LOST, 10U);
+    until(URG_LOST, 10U);
     ticks(10U);
     TEST_ASSERT_EQUAL_UINT32(1, laser.restarts);
     TEST_ASSERT_GREATER_THAN_UINT32(0, laser.timeouts);

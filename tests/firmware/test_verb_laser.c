@@ -71,7 +71,7 @@ void test_before_the_first_octet_all_is_zero(void)
 
 void test_every_number_stands_in_its_own_field(void)
 {
-    laser.status = LASER_OK;
+    laser.status = URG_OK;
     laser.rate = 250000U;
     laser.timeouts = 3U;
     laser.restarts = 4U;
@@ -106,11 +106,11 @@ void test_every_cause_has_a_name_of_its_own(void)
 
 void test_every_state_is_told_by_its_name(void)
 {
-    for (uint16_t status = 0; status < LASER_STATUS_COUNT; status++) {
+    for (uint16_t status = 0; status < URG_STATUS_COUNT; status++) {
         char begin[32];
 
-        (void)snprintf(begin, sizeof begin, "OK LASER state:%s rate:", laser_status_name((laser_status_t)status));
-        laser.status = (laser_status_t)status;
+        (void)snprintf(begin, sizeof begin, "OK LASER state:%s rate:", urg_status_name((urg_status_t)status));
+        laser.status = (urg_status_t)status;
         ask();
         TEST_ASSERT_EQUAL_STRING_LEN(begin, sent[0], strlen(begin));
     }
@@ -121,7 +121,7 @@ void test_the_largest_counts_fit(void)
 {
     (void)memset(&statistics, 0xFF, sizeof statistics);
     (void)memset(&laser, 0xFF, sizeof laser);
-    laser.status = LASER_SWITCH;
+    laser.status = URG_SWITCH;
     statistics.last_damage = SCIP_DAMAGE_LENGTH;
     ask();
     TEST_ASSERT_EQUAL_STRING("OK LASER state:SWITCH rate:4294967295 frames:4294967295 timeout:4294967295 "

@@ -172,7 +172,7 @@ static void stand(void *argument, void *result)
     for (int i = 0; i < LINE_FAULT_KIND_COUNT; i++) {
         v->strikes += line_fault_strikes(board_laser_faults(), (line_fault_kind_t)i);
     }
-    v->ok = watch_laser->status == LASER_OK;
+    v->ok = watch_laser->status == URG_OK;
     v->halt = kernel_halt_reason();
 }
 

@@ -175,15 +175,15 @@ static void next_tick(void)
 static void prepare_link(void)
 {
     urg_link_init(&link_, &(urg_config_t){ 0, 115200, 115200, SCIP_STREAM_2, { 372, 406, 1, 0, 0 } }, 0);
-    for (unsigned i = 0; i < 100 && link_.status != LASER_OK; i++) {
+    for (unsigned i = 0; i < 100 && link_.status != URG_OK; i++) {
         now_us += 150000U;
         send_laser();
         seen.reply_count++;
         seen.reply_kind = link_.command;
         seen.reply = (scip_reply_t){ .status = { '0', '0' }, .legacy = link_.command == SCIP_SWITCH };
-        seen.scan_count += link_.status == LASER_STREAM;
+        seen.scan_count += link_.status == URG_STREAM;
     }
-    REQUIRE(link_.status == LASER_OK);
+    REQUIRE(link_.status == URG_OK);
     next_tick();
 }
 
@@ -257,7 +257,7 @@ static void prepare_control(void)
     parameters.value[PARAMETER_LAW] = (float)LAW_PID;
     flight_init(&flight);
     in = (flight_inputs_t){ .height_valid = true, .altitude.height_mm = 10.0F, .attitude_ready = true,
-                            .throttle_ours = true };
+                            .has_throttle = true };
     for (unsigned i = 0; i < 200; i++) {
         in.reference_m = 0.6F;
         in.reference_sequence = i < 20 ? 0 : 1;
@@ -305,7 +305,7 @@ static void prepare_est_control(void)
         next_est_cycle();
         control();
     }
-    REQUIRE(flight.charge == CHARGE_HOLD && out.flags == 0);
+    REQUIRE(flight.mode == FLIGHT_MODE_EST_HOLD && out.flags == 0);
 }
 
 /* ---- TaskSendComm, TaskReceiveComm: a telemetry line; a command, and the answer to it ---- */

@@ -141,7 +141,7 @@ static bool run_until(bool (*done)(void), double seconds)
 
 static bool streaming(void)
 {
-    return scanner.link.status == LASER_OK;
+    return scanner.link.status == URG_OK;
 }
 
 static bool never(void)

@@ -23,8 +23,8 @@ static float effect(float command_n, float band_n)
 void test_without_a_band_commands_pass_bit_by_bit(void)
 {
     for (float n = 0.0F; n < 11.76F; n += 0.0137F) {
-        TEST_ASSERT_TRUE(deadband_cross(&deadband, NEUTRAL, n) == n);
-        TEST_ASSERT_TRUE(deadband_left(&deadband, NEUTRAL, n) == n);
+        TEST_ASSERT_TRUE(deadband_compensate(&deadband, NEUTRAL, n) == n);
+        TEST_ASSERT_TRUE(deadband_effect(&deadband, NEUTRAL, n) == n);
     }
 }
 
@@ -32,28 +32,28 @@ void test_beyond_its_steep_middle_a_command_loses_nothing(void)
 {
     deadband.band_n = 0.47F;
     for (float off_n = 0.1F; off_n < 4.0F; off_n += 0.05F) {
-        TEST_ASSERT_FLOAT_WITHIN(1e-5F, off_n, effect(deadband_cross(&deadband, NEUTRAL, NEUTRAL + off_n), 0.47F));
-        TEST_ASSERT_FLOAT_WITHIN(1e-5F, -off_n, effect(deadband_cross(&deadband, NEUTRAL, NEUTRAL - off_n), 0.47F));
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, off_n, effect(deadband_compensate(&deadband, NEUTRAL, NEUTRAL + off_n), 0.47F));
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, -off_n, effect(deadband_compensate(&deadband, NEUTRAL, NEUTRAL - off_n), 0.47F));
     }
 }
 
 void test_in_its_middle_a_command_grows_without_a_jump(void)
 {
     deadband.band_n = 0.47F;
-    float before_n = deadband_cross(&deadband, NEUTRAL, NEUTRAL - 0.2F);
+    float before_n = deadband_compensate(&deadband, NEUTRAL, NEUTRAL - 0.2F);
     for (float off_n = -0.199F; off_n < 0.2F; off_n += 0.001F) {
-        const float n = deadband_cross(&deadband, NEUTRAL, NEUTRAL + off_n);
+        const float n = deadband_compensate(&deadband, NEUTRAL, NEUTRAL + off_n);
         TEST_ASSERT_TRUE(n > before_n && n < before_n + 0.007F);
         before_n = n;
     }
-    TEST_ASSERT_FLOAT_WITHIN(1e-5F, NEUTRAL, deadband_cross(&deadband, NEUTRAL, NEUTRAL));
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, NEUTRAL, deadband_compensate(&deadband, NEUTRAL, NEUTRAL));
 }
 
 void test_what_is_left_of_a_command_is_its_effect(void)
 {
     deadband.band_n = 0.47F;
     for (float n = 2.0F; n < 10.0F; n += 0.013F) {
-        TEST_ASSERT_FLOAT_WITHIN(2e-6F, effect(n, 0.47F), deadband_left(&deadband, NEUTRAL, n) - NEUTRAL);
+        TEST_ASSERT_FLOAT_WITHIN(2e-6F, effect(n, 0.47F), deadband_effect(&deadband, NEUTRAL, n) - NEUTRAL);
     }
 }
 
@@ -62,8 +62,8 @@ static void fly(float band_n, float off_n, float seconds)
 {
     for (int i = 0; i < (int)(seconds / 0.025F); i++) {
         const float wish_n = ((i / 40) % 2 == 0) ? off_n : -off_n;
-        const float command_n = deadband_cross(&deadband, NEUTRAL, NEUTRAL + wish_n);
-        const float expected_n = deadband_left(&deadband, NEUTRAL, command_n) - NEUTRAL;
+        const float command_n = deadband_compensate(&deadband, NEUTRAL, NEUTRAL + wish_n);
+        const float expected_n = deadband_effect(&deadband, NEUTRAL, command_n) - NEUTRAL;
         deadband_learn(&deadband, expected_n, expected_n - effect(command_n, band_n), 0.025F);
     }
 }

@@ -30,7 +30,7 @@ static void board(uint32_t seed)
     memset(&in, 0, sizeof in);
     memset(&out, 0, sizeof out);
     in.attitude_ready = true;
-    in.throttle_ours = true;
+    in.has_throttle = true;
     clock_us = 0xFFC00000U; /* wraps 4 s later */
     highest_m = 0.0;
     least_n = 99.0;
@@ -133,7 +133,7 @@ static double p95(double *values, unsigned count)
 /* He has the throttle and flies up and down, 0.3 m to either side, whatever is commanded. */
 static void flown_by_a_pilot(double seconds)
 {
-    in.throttle_ours = false;
+    in.has_throttle = false;
     run_until(FLIGHT_FLOATING, 0.1);
     const float learned_n = flight.est.hover.thrust_n;
     for (long i = 0; i < lround(seconds * 2000.0); i++) {
@@ -145,8 +145,8 @@ static void flown_by_a_pilot(double seconds)
     }
     TEST_ASSERT_EQUAL_STRING("FLOATING", flight_state_name(out.state));
     TEST_ASSERT_EQUAL_FLOAT(learned_n, flight.est.hover.thrust_n);
-    TEST_ASSERT_FALSE(flight.est.lifted);
-    in.throttle_ours = true;
+    TEST_ASSERT_FALSE(flight.est.airborne);
+    in.has_throttle = true;
 }
 
 void test_a_pilots_turn_teaches_no_hover_thrust_and_ends_within_half_a_newton_of_it(void)
@@ -381,14 +381,14 @@ void test_without_frames_pidt_takes_over_and_says_so(void)
     hover_at(0.6F);
     world.imu_mute = true;
     run(0.5);
-    TEST_ASSERT_EQUAL(LAW_PIDT, flight.flown);
+    TEST_ASSERT_EQUAL(LAW_PIDT, flight.active_law);
     TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_ATTITUDE, out.flags);
     measure(15.0, 0.6);
     TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
     TEST_ASSERT_TRUE(largest_error_m < 0.3);
     world.imu_mute = false;
     run(0.2);
-    TEST_ASSERT_EQUAL(LAW_EST, flight.flown);
+    TEST_ASSERT_EQUAL(LAW_EST, flight.active_law);
     run(3.0);
     measure(6.0, 0.6);
     TEST_ASSERT_EQUAL_UINT16(0, out.flags);
@@ -399,7 +399,7 @@ void test_frames_without_accelerations_do_not_fly_it(void)
 {
     world.no_acceleration = true;
     hover_at(0.6F);
-    TEST_ASSERT_EQUAL(LAW_PIDT, flight.flown);
+    TEST_ASSERT_EQUAL(LAW_PIDT, flight.active_law);
     TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_ATTITUDE, out.flags);
     TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.6F, (float)height_m());
 }
@@ -535,15 +535,15 @@ void test_every_law_lands_by_the_estimate_and_coasts_by_it(void)
         set(PARAMETER_LAW, (float)law);
         set(PARAMETER_RELEASE, RELEASE_SCAN);
         hover_at(0.6F);
-        TEST_ASSERT_EQUAL(CHARGE_LAW, flight.charge);
+        TEST_ASSERT_EQUAL(FLIGHT_MODE_LAW, flight.mode);
         world.body.mute = true;
         run_until(FLIGHT_COASTING, 0.6);
-        TEST_ASSERT_EQUAL(CHARGE_HOLD, flight.charge);
+        TEST_ASSERT_EQUAL(FLIGHT_MODE_EST_HOLD, flight.mode);
         run_until(FLIGHT_DESCENDING, 1.0);
-        TEST_ASSERT_EQUAL(CHARGE_SINK, flight.charge);
+        TEST_ASSERT_EQUAL(FLIGHT_MODE_EST_SINK, flight.mode);
         world.body.mute = false;
         run_until(FLIGHT_LANDING, 0.5);
-        TEST_ASSERT_EQUAL(CHARGE_LAND, flight.charge);
+        TEST_ASSERT_EQUAL(FLIGHT_MODE_EST_LAND, flight.mode);
         run_until(FLIGHT_GROUND, 8.0);
         TEST_ASSERT_TRUE(world.body.hardest_m_s > 0.02 && world.body.hardest_m_s < 0.4);
     }
@@ -555,16 +555,16 @@ void test_a_landing_whose_estimate_is_contradicted_goes_on_by_the_heights(void)
     hover_at(1.5F);
     setr(0.0F);
     run(0.2);
-    TEST_ASSERT_EQUAL(CHARGE_LAND, flight.charge);
+    TEST_ASSERT_EQUAL(FLIGHT_MODE_EST_LAND, flight.mode);
     static const double chasms_m[] = {-0.3, -0.6, -0.2, -0.9, -0.4, -0.7};
     for (size_t i = 0; i < sizeof chasms_m / sizeof chasms_m[0]; i++) {
         world.body.terrain_m = chasms_m[i];
         run(0.1);
     }
-    TEST_ASSERT_EQUAL(CHARGE_DESCENT, flight.charge);
+    TEST_ASSERT_EQUAL(FLIGHT_MODE_DESCENT, flight.mode);
     world.body.terrain_m = 0.0;
     run(1.0);
-    TEST_ASSERT_EQUAL(CHARGE_LAND, flight.charge);
+    TEST_ASSERT_EQUAL(FLIGHT_MODE_EST_LAND, flight.mode);
     run_until(FLIGHT_GROUND, 8.0);
 }
 
@@ -608,7 +608,7 @@ void test_scans_that_disagree_never_make_it_fly_away(void)
 void test_a_law_that_starts_with_a_wrong_speed_recovers(void)
 {
     hover_at(0.6F);
-    flight.est.estimator.past.speed_mps = 3.0F;
+    flight.est.estimator.delayed.speed_mps = 3.0F;
     flight.est.estimator.now.speed_mps = 3.0F;
     run(3.0);
     measure(3.0, 0.6);

@@ -59,7 +59,7 @@ static motion_frame_t frame(void)
     };
 }
 
-static const expected_motion_t nothing_expected;
+static const modelled_motion_t no_model;
 
 /* 5 ms of the world; frames every 25 ms. */
 static void move(void)
@@ -70,7 +70,7 @@ static void move(void)
     past_m[++steps % 400U] = height_m;
     if (steps % 5U == 0U) {
         const motion_frame_t f = frame();
-        estimator_move(&e, &f, nothing_expected);
+        estimator_predict(&e, &f, no_model);
     }
 }
 
@@ -87,14 +87,14 @@ static void fly(double seconds, double sigma_m)
         move();
         if (steps % 20U == 17U && steps > 40U) {
             const altitude_t a = altitude(seen_m(15U) + sigma_m * gauss());
-            (void)estimator_see(&e, &a, time_us - 75000U, false);
+            (void)estimator_fuse_height(&e, &a, time_us - 75000U, false);
         }
     }
 }
 
 static void assert_sound(void)
 {
-    const float *x = &e.past.height_m;
+    const float *x = &e.delayed.height_m;
     for (int i = 0; i < 4; i++) {
         TEST_ASSERT_TRUE(isfinite(x[i]));
         TEST_ASSERT_TRUE(e.covariance[i][i] > 0.0F && e.covariance[i][i] <= 1.0001F);
@@ -110,7 +110,7 @@ static void assert_sound(void)
 void test_height_speed_and_bias_are_found(void)
 {
     fly(10.0, 0.003);
-    TEST_ASSERT_TRUE(e.started);
+    TEST_ASSERT_TRUE(e.initialised);
     TEST_ASSERT_FLOAT_WITHIN(0.012F, (float)past_m[(steps - steps % 5U) % 400U], e.now.height_m);
     TEST_ASSERT_FLOAT_WITHIN(0.08F, (float)speed_mps, e.now.speed_mps);
     TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.15F, e.now.bias_mps2);
@@ -128,7 +128,7 @@ void test_an_old_height_is_fused_where_it_belongs(void)
         move();
         if (steps % 20U == 17U && steps > 40U) {
             const altitude_t a = altitude(seen_m(15U));
-            (void)estimator_see(&e, &a, time_us - 75000U, false);
+            (void)estimator_fuse_height(&e, &a, time_us - 75000U, false);
         }
     }
     TEST_ASSERT_FLOAT_WITHIN(0.01F, (float)height_m, e.now.height_m);
@@ -140,17 +140,17 @@ void test_no_height_no_estimate(void)
     for (int i = 0; i < 100; i++) {
         move();
     }
-    TEST_ASSERT_FALSE(e.started);
+    TEST_ASSERT_FALSE(e.initialised);
     const altitude_t a = altitude(0.4);
-    TEST_ASSERT_EQUAL(HEIGHT_ANEW, estimator_see(&e, &a, time_us - 75000U, false));
-    TEST_ASSERT_TRUE(e.started);
+    TEST_ASSERT_EQUAL(HEIGHT_RESET, estimator_fuse_height(&e, &a, time_us - 75000U, false));
+    TEST_ASSERT_TRUE(e.initialised);
 }
 
 void test_no_frame_no_estimate(void)
 {
     const altitude_t a = altitude(0.4);
-    TEST_ASSERT_EQUAL(HEIGHT_REFUSED, estimator_see(&e, &a, time_us, false));
-    TEST_ASSERT_FALSE(e.started);
+    TEST_ASSERT_EQUAL(HEIGHT_REJECTED, estimator_fuse_height(&e, &a, time_us, false));
+    TEST_ASSERT_FALSE(e.initialised);
 }
 
 void test_a_frame_seen_twice_or_out_of_order_counts_once(void)
@@ -159,9 +159,9 @@ void test_a_frame_seen_twice_or_out_of_order_counts_once(void)
     const estimator_t before = e;
     motion_frame_t f = frame();
     f.sequence = sequence - 1U;
-    estimator_move(&e, &f, nothing_expected);
+    estimator_predict(&e, &f, no_model);
     f.sequence = sequence - 7U;
-    estimator_move(&e, &f, nothing_expected);
+    estimator_predict(&e, &f, no_model);
     TEST_ASSERT_EQUAL_MEMORY(&before, &e, sizeof e);
 }
 
@@ -174,11 +174,11 @@ void test_a_useless_frame_changes_nothing(void)
         motion_frame_t f = frame();
         f.usable = i != 3U;
         f.down_mps2 = i < 3U ? wrong[i] : 9.8F;
-        estimator_move(&e, &f, nothing_expected);
+        estimator_predict(&e, &f, no_model);
         f = frame();
         f.roll_rad = i < 3U ? wrong[i] : 0.0F;
         f.usable = i != 3U;
-        estimator_move(&e, &f, nothing_expected);
+        estimator_predict(&e, &f, no_model);
     }
     TEST_ASSERT_EQUAL_MEMORY(&before, &e, sizeof e);
 }
@@ -192,7 +192,7 @@ void test_gravity_is_taken_out_of_a_tilted_frame(void)
     f.down_mps2 = felt * cosf(pitch) * cosf(roll);
     f.roll_rad = roll;
     f.pitch_rad = pitch;
-    estimator_move(&e, &f, nothing_expected);
+    estimator_predict(&e, &f, no_model);
     TEST_ASSERT_FLOAT_WITHIN(1e-4F, 1.5F, e.up_mps2);
 }
 
@@ -203,12 +203,12 @@ void test_the_tilt_at_the_rays_corrects_the_height(void)
         motion_frame_t f = frame();
         time_us += 25000U;
         f.roll_rad = i < 15 ? 0.0F : 0.1F; /* medians show 50 ms before: rolled since 75 ms ago at the newest */
-        estimator_move(&e, &f, nothing_expected);
+        estimator_predict(&e, &f, no_model);
     }
-    (void)estimator_see(&e, &a, time_us - 300000U, false);
-    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.6F, e.past.height_m);
-    (void)estimator_see(&e, &a, time_us - 50000U, false);
-    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.7F * cosf(0.1F) - 0.22F * sinf(0.1F) - 0.1F, e.past.height_m + 0.0F * e.innovation_m + 0.0F);
+    (void)estimator_fuse_height(&e, &a, time_us - 300000U, false);
+    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.6F, e.delayed.height_m);
+    (void)estimator_fuse_height(&e, &a, time_us - 50000U, false);
+    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.7F * cosf(0.1F) - 0.22F * sinf(0.1F) - 0.1F, e.delayed.height_m + 0.0F * e.innovation_m + 0.0F);
 }
 
 void test_the_accelerometers_noise_is_measured(void)
@@ -224,18 +224,18 @@ void test_the_accelerometers_noise_is_measured(void)
 
 void test_noise_gives_the_expectation_its_share(void)
 {
-    const expected_motion_t expected = {true, 0.0F, 0.84F};
+    const modelled_motion_t expected = {true, 0.0F, 0.84F};
     for (int i = 0; i < 300; i++) {
         motion_frame_t f = frame();
         time_us += 25000U;
-        estimator_move(&e, &f, expected);
+        estimator_predict(&e, &f, expected);
     }
     TEST_ASSERT_TRUE(e.latest.share > 0.95F);
     noise_rms = 1.6;
     for (int i = 0; i < 300; i++) {
         motion_frame_t f = frame();
         time_us += 25000U;
-        estimator_move(&e, &f, expected);
+        estimator_predict(&e, &f, expected);
     }
     TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.84F * 0.84F / (0.84F * 0.84F + 1.6F * 1.6F), e.latest.share);
 }
@@ -246,7 +246,7 @@ void test_rest_tells_the_bias(void)
         move();
         if (steps % 20U == 17U && steps > 40U) {
             const altitude_t a = altitude(0.0);
-            (void)estimator_see(&e, &a, time_us - 75000U, true);
+            (void)estimator_fuse_height(&e, &a, time_us - 75000U, true);
         }
     }
     TEST_ASSERT_FLOAT_WITHIN(0.03F, 0.15F, e.now.bias_mps2);
@@ -263,7 +263,7 @@ static height_outcome_t see(double metres)
         move();
     }
     const altitude_t a = altitude(metres);
-    return estimator_see(&e, &a, time_us - 75000U, false);
+    return estimator_fuse_height(&e, &a, time_us - 75000U, false);
 }
 
 static void hover(void)
@@ -277,33 +277,33 @@ static void hover(void)
 void test_one_glitch_is_not_fused(void)
 {
     hover();
-    TEST_ASSERT_EQUAL(HEIGHT_REFUSED, see(0.85));
+    TEST_ASSERT_EQUAL(HEIGHT_REJECTED, see(0.85));
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.5F, e.now.height_m);
     TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.5));
-    TEST_ASSERT_EQUAL(HEIGHT_REFUSED, see(0.15));
+    TEST_ASSERT_EQUAL(HEIGHT_REJECTED, see(0.15));
     TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.5));
 }
 
 void test_two_that_agree_are_a_step_of_the_terrain(void)
 {
     hover();
-    const float terrain_m = e.stepped_m;
-    TEST_ASSERT_EQUAL(HEIGHT_REFUSED, see(0.75));
-    TEST_ASSERT_EQUAL(HEIGHT_STEP, see(0.76));
+    const float terrain_m = e.terrain_height_m;
+    TEST_ASSERT_EQUAL(HEIGHT_REJECTED, see(0.75));
+    TEST_ASSERT_EQUAL(HEIGHT_TERRAIN_STEP, see(0.76));
     TEST_ASSERT_FLOAT_WITHIN(0.015F, 0.76F, e.now.height_m);
     TEST_ASSERT_FLOAT_WITHIN(0.05F, 0.0F, e.now.speed_mps);
-    TEST_ASSERT_FLOAT_WITHIN(0.02F, terrain_m - 0.26F, e.stepped_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, terrain_m - 0.26F, e.terrain_height_m);
     TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.75));
 }
 
 void test_the_third_in_a_row_starts_anew_whatever_it_says(void)
 {
     hover();
-    TEST_ASSERT_EQUAL(HEIGHT_REFUSED, see(0.9));
-    TEST_ASSERT_EQUAL(HEIGHT_REFUSED, see(0.1));
-    TEST_ASSERT_EQUAL(HEIGHT_ANEW, see(1.4));
-    TEST_ASSERT_FLOAT_WITHIN(0.05F, 1.4F, e.past.height_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, e.past.terrain_mps);
+    TEST_ASSERT_EQUAL(HEIGHT_REJECTED, see(0.9));
+    TEST_ASSERT_EQUAL(HEIGHT_REJECTED, see(0.1));
+    TEST_ASSERT_EQUAL(HEIGHT_RESET, see(1.4));
+    TEST_ASSERT_FLOAT_WITHIN(0.05F, 1.4F, e.delayed.height_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, e.delayed.terrain_mps);
     TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.5));
     TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.5));
     for (int i = 0; i < 12; i++) {
@@ -323,7 +323,7 @@ void test_the_bound_is_never_more_than_80_mm(void)
             move();
         }
         const float before_m = e.now.height_m;
-        TEST_ASSERT_EQUAL(HEIGHT_REFUSED, see((double)before_m + 0.5 + 0.2 * silence));
+        TEST_ASSERT_EQUAL(HEIGHT_REJECTED, see((double)before_m + 0.5 + 0.2 * silence));
     }
     setUp();
     hover();
@@ -337,10 +337,10 @@ void test_from_any_wrong_state_it_recovers_within_two_seconds(void)
         setUp();
         bits = SEED + (uint32_t)i;
         hover();
-        e.past.height_m += (float)(4.0 * uniform() - 2.0);
-        e.past.speed_mps = (float)(8.0 * uniform() - 4.0);
-        e.past.bias_mps2 = (float)(3.0 * uniform() - 1.5);
-        e.past.terrain_mps = (float)(uniform() - 0.5);
+        e.delayed.height_m += (float)(4.0 * uniform() - 2.0);
+        e.delayed.speed_mps = (float)(8.0 * uniform() - 4.0);
+        e.delayed.bias_mps2 = (float)(3.0 * uniform() - 1.5);
+        e.delayed.terrain_mps = (float)(uniform() - 0.5);
         for (int k = 0; k < 20; k++) {
             (void)see(0.5);
         }
@@ -385,7 +385,7 @@ void test_the_covariance_stays_positive_through_anything(void)
         move();
         if (uniform() < 0.04 && (i / 3000) % 4 != 3) {
             const altitude_t a = altitude(uniform() < 0.8 ? height_m : 4.0 * uniform());
-            (void)estimator_see(&e, &a, time_us - (uint32_t)(uniform() * 400000.0), uniform() < 0.1);
+            (void)estimator_fuse_height(&e, &a, time_us - (uint32_t)(uniform() * 400000.0), uniform() < 0.1);
         }
         time_us += uniform() < 0.001 ? (uint32_t)(uniform() * 2e6) : 0U;
         assert_sound();
@@ -402,7 +402,7 @@ void test_a_million_quiet_steps_do_not_wear_the_covariance_down(void)
     }
     assert_sound();
     TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.52));
-    TEST_ASSERT_TRUE(e.past.height_m > 0.503F);
+    TEST_ASSERT_TRUE(e.delayed.height_m > 0.503F);
 }
 
 void test_after_a_gap_of_the_frames_it_starts_anew(void)
@@ -410,9 +410,9 @@ void test_after_a_gap_of_the_frames_it_starts_anew(void)
     hover();
     time_us += 400000U;
     motion_frame_t f = frame();
-    estimator_move(&e, &f, nothing_expected);
-    TEST_ASSERT_FALSE(e.started);
+    estimator_predict(&e, &f, no_model);
+    TEST_ASSERT_FALSE(e.initialised);
     const altitude_t a = altitude(0.7);
-    TEST_ASSERT_EQUAL(HEIGHT_ANEW, estimator_see(&e, &a, time_us - 75000U, false));
+    TEST_ASSERT_EQUAL(HEIGHT_RESET, estimator_fuse_height(&e, &a, time_us - 75000U, false));
     TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.7F, e.now.height_m);
 }
