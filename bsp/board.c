@@ -36,6 +36,13 @@ static const uart_pins_t UARTS[] = {
 };
 #define UART_COUNT (sizeof UARTS / sizeof UARTS[0])
 
+/* Pins without a leg on the 100-pin package: an input that floats costs current. The ranges of TI's device.c. */
+static const struct {
+    uint16_t first, last;
+} UNBONDED[] = {{0U, 1U}, {5U, 9U}, {22U, 40U}, {44U, 57U}, {67U, 68U}, {74U, 77U}, {79U, 83U}, {88U, 88U}, {93U, 98U},
+                {100U, 168U}};
+#define UNBONDED_COUNT (sizeof UNBONDED / sizeof UNBONDED[0])
+
 static void hold_throttle_low(void)
 {
     GPIO_writePin(THROTTLE_PIN, 0U);
@@ -58,6 +65,7 @@ static void set_clocks(void)
 static void open_uart_pins(const uart_pins_t *pins)
 {
     SysCtl_enablePeripheral(pins->clock);
+    GPIO_writePin(pins->transmit_pin, 1U);  /* mark: an output that is low, however shortly, is a start bit */
     GPIO_setPadConfig(pins->transmit_pin, GPIO_PIN_TYPE_STD);
     GPIO_setDirectionMode(pins->transmit_pin, GPIO_DIR_MODE_OUT);
     GPIO_setPinConfig(pins->transmit_config);
@@ -65,6 +73,18 @@ static void open_uart_pins(const uart_pins_t *pins)
     GPIO_setQualificationMode(pins->receive_pin, GPIO_QUAL_ASYNC);
     GPIO_setDirectionMode(pins->receive_pin, GPIO_DIR_MODE_IN);
     GPIO_setPinConfig(pins->receive_config);
+}
+
+static void pull_up_unbonded(void)
+{
+    size_t i;
+    uint16_t pin;
+
+    for (i = 0U; i < UNBONDED_COUNT; i++) {
+        for (pin = UNBONDED[i].first; pin <= UNBONDED[i].last; pin++) {
+            GPIO_setPadConfig(pin, GPIO_PIN_TYPE_PULLUP);
+        }
+    }
 }
 
 void bsp_board_init(void)
@@ -82,6 +102,7 @@ void bsp_board_init(void)
         open_uart_pins(&UARTS[i]);
     }
     bsp_selector_init();
+    pull_up_unbonded();
     SysCtl_enablePeripheral(SYSCTL_PERIPH_CLK_TIMER1);
     bsp_time_init();
 }

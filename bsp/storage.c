@@ -21,12 +21,14 @@
 /* The linker command file says where: 0BC000H. */
 extern uint16_t flash_sectors_m_n[BSP_STORAGE_SLOTS][BSP_STORAGE_CELLS];
 
-/* Called back by the flash library too. An erasure may take longer than the watchdog. */
 Fapi_StatusType Fapi_serviceWatchdogTimer(void);
 
+/* Called back by the flash library too, six times while it stores pulse widths and pump voltages: driverlib's function ends
+ * with EDIS, and every store of the library behind it would be lost. An erasure may take longer than the watchdog. */
 Fapi_StatusType Fapi_serviceWatchdogTimer(void)
 {
     SysCtl_serviceWatchdog();
+    EALLOW;
     return Fapi_Status_Success;
 }
 

@@ -39,7 +39,8 @@ static Void receive_hwi(UArg uart)
     take((bsp_uart_t)uart);
 }
 
-/* Where every octet makes an interrupt there is nothing to fetch. */
+/* Also where every octet makes an interrupt: an error that rises between the look at the receive status and the clearing of
+ * the interrupt flag holds the interrupt line up, and without a new edge no interrupt comes any more. */
 static Void poll(UArg unused)
 {
     uint16_t uart;
@@ -48,9 +49,7 @@ static Void poll(UArg unused)
     for (uart = 0U; uart < (uint16_t)BSP_UART_COUNT; uart++) {
         UInt key = Hwi_disable();
 
-        if (ports[uart].level > 1U) {
-            take((bsp_uart_t)uart);
-        }
+        take((bsp_uart_t)uart);
         Hwi_restore(key);
     }
 }

@@ -1,7 +1,7 @@
 /* Octets in and out of the three UARTs: the receive and transmit Hwis, and a bounded transmit buffer per UART.
  *
  * The receive Hwi comes when as many octets are in the FIFO as the receiver has asked for. Fewer are taken by the 1 ms
- * tick, so that none is older than that. */
+ * tick, so that none is older than that; and a receiver that an error has stopped hears again after one tick. */
 #ifndef FIRMWARE_UART_PORT_H
 #define FIRMWARE_UART_PORT_H
 

@@ -114,6 +114,28 @@ void test_uarts_are_closed_and_quiet(void)
     TEST_ASSERT_EQUAL_INT(0, raised_count);
 }
 
+/* Whoever listens there takes a start bit, and a wrong octet, from the shortest low. */
+void test_no_transmit_pin_is_low_for_an_instant(void)
+{
+    bsp_board_init();
+    TEST_ASSERT_EQUAL_UINT(0, chip_pin_falls(65));
+    TEST_ASSERT_EQUAL_UINT(0, chip_pin_falls(86));
+    TEST_ASSERT_EQUAL_UINT(0, chip_pin_falls(89));
+    TEST_ASSERT_EQUAL_UINT_MESSAGE(1, chip_pin_falls(2), "the throttle pin is held low at first");
+}
+
+void test_pins_without_a_leg_are_pulled_up_and_the_others_are_as_they_were(void)
+{
+    bsp_board_init();
+    TEST_ASSERT_EQUAL_UINT32(0, chip_register("GPIO0.PUD"));
+    TEST_ASSERT_EQUAL_UINT32(0, chip_register("GPIO88.PUD"));
+    TEST_ASSERT_EQUAL_UINT32(0, chip_register("GPIO168.PUD"));
+    TEST_ASSERT_EQUAL_UINT32(1, chip_register("GPIO2.PUD"));
+    TEST_ASSERT_EQUAL_UINT32(1, chip_register("GPIO4.PUD"));
+    TEST_ASSERT_EQUAL_UINT32(1, chip_register("GPIO84.PUD"));
+    TEST_ASSERT_EQUAL_UINT32(1, chip_register("GPIO99.PUD"));
+}
+
 void test_leds_are_dark(void)
 {
     bsp_board_init();

@@ -25,6 +25,7 @@ static void expect_uart(SysCtl_PeripheralPCLOCKCR clock, uint32_t tx, uint32_t t
                         uint32_t rx_config)
 {
     SysCtl_enablePeripheral_Expect(clock);
+    GPIO_writePin_Expect(tx, 1);
     GPIO_setPadConfig_Expect(tx, GPIO_PIN_TYPE_STD);
     GPIO_setDirectionMode_Expect(tx, GPIO_DIR_MODE_OUT);
     GPIO_setPinConfig_Expect(tx_config);
@@ -32,6 +33,18 @@ static void expect_uart(SysCtl_PeripheralPCLOCKCR clock, uint32_t tx, uint32_t t
     GPIO_setQualificationMode_Expect(rx, GPIO_QUAL_ASYNC);
     GPIO_setDirectionMode_Expect(rx, GPIO_DIR_MODE_IN);
     GPIO_setPinConfig_Expect(rx_config);
+}
+
+/* TI's masks, device.c of C2000Ware 26.01.00.00, Device_enableUnbondedGPIOPullupsFor100Pin(). */
+static void expect_pull_ups(void)
+{
+    static const uint32_t masks[] = {0xFFC003E3U, 0x03FFF1FFU, 0xE10FBC18U, 0xFFFFFFF7U, 0xFFFFFFFFU, 0x000001FFU};
+
+    for (uint32_t pin = 0; pin < 6 * 32; pin++) {
+        if ((masks[pin / 32] >> pin % 32 & 1U) != 0) {
+            GPIO_setPadConfig_Expect(pin, GPIO_PIN_TYPE_PULLUP);
+        }
+    }
 }
 
 void test_the_whole_start_up_in_its_order(void)
@@ -51,6 +64,7 @@ void test_the_whole_start_up_in_its_order(void)
     expect_uart(SYSCTL_PERIPH_CLK_SCIB, 86, GPIO_86_SCITXDB, 87, GPIO_87_SCIRXDB);
     expect_uart(SYSCTL_PERIPH_CLK_SCIC, 89, GPIO_89_SCITXDC, 90, GPIO_90_SCIRXDC);
     bsp_selector_init_Expect();
+    expect_pull_ups();
     SysCtl_enablePeripheral_Expect(SYSCTL_PERIPH_CLK_TIMER1);
     bsp_time_init_Expect();
     bsp_board_init();

@@ -3,7 +3,10 @@
 
 #include <string.h>
 
+#include "sim/ti/driverlib/chip.h"
+#include "sim/ti/driverlib/sysctl.h"
 #include "sim/ti/f021/flash.h"
+#include "sim/ti/f021/include/F021_F2837xS_C28x.h"
 #include "unity.h"
 
 static uint16_t cells[BSP_STORAGE_CELLS];
@@ -87,4 +90,26 @@ void test_a_read_takes_no_more_than_asked(void)
     bsp_storage_read(0U, cells, 3U);
     TEST_ASSERT_EQUAL_HEX16(0xFFFFU, cells[2]);
     TEST_ASSERT_EQUAL_HEX16(0xABCDU, cells[3]);
+}
+
+/* driverlib's function ends with the registers closed, and the library that calls back goes on storing. */
+void test_the_watchdog_is_serviced_and_the_registers_stay_open_when_the_library_calls_back(void)
+{
+    SysCtl_serviceWatchdog();
+    TEST_ASSERT_FALSE(chip_protected_writable());
+    TEST_ASSERT_EQUAL(Fapi_Status_Success, Fapi_serviceWatchdogTimer());
+    TEST_ASSERT_TRUE(chip_protected_writable());
+}
+
+void test_the_registers_are_closed_again_when_the_flash_is_done_or_has_failed(void)
+{
+    uint16_t block[BSP_STORAGE_BLOCK];
+
+    fill(block, 3U);
+    TEST_ASSERT_TRUE(bsp_storage_erase(0U));
+    TEST_ASSERT_FALSE(chip_protected_writable());
+    TEST_ASSERT_TRUE(bsp_storage_program(0U, 0U, block));
+    TEST_ASSERT_FALSE(chip_protected_writable());
+    TEST_ASSERT_FALSE(bsp_storage_program(0U, 4U, block));
+    TEST_ASSERT_FALSE(chip_protected_writable());
 }

@@ -2,6 +2,7 @@
 #include "bsp/storage.h"
 
 #include "mock_F021_F2837xS_C28x.h"
+#include "mock_cpu.h"
 #include "mock_flash.h"
 #include "mock_sysctl.h"
 #include "unity.h"
@@ -22,6 +23,7 @@ void tearDown(void)
 static void expect_open(void)
 {
     Flash_claimPumpSemaphore_Expect(0x00050024U, FLASH_BANK0_WRAPPER);
+    driverlib_eallow_Expect();
     Fapi_initializeAPI_ExpectAndReturn(&f021_registers, 200U, Fapi_Status_Success);
     Fapi_setActiveFlashBank_ExpectAndReturn(Fapi_FlashBank0, Fapi_Status_Success);
 }
@@ -29,6 +31,7 @@ static void expect_open(void)
 static void expect_close(void)
 {
     Fapi_flushPipeline_Expect();
+    driverlib_edis_Expect();
     Flash_releasePumpSemaphore_Expect(0x00050024U);
 }
 
@@ -37,6 +40,7 @@ static void expect_wait(unsigned busy)
     for (; busy > 0U; busy--) {
         Fapi_checkFsmForReady_ExpectAndReturn(Fapi_Status_FsmBusy);
         SysCtl_serviceWatchdog_Expect();
+        driverlib_eallow_Expect();
     }
     Fapi_checkFsmForReady_ExpectAndReturn(Fapi_Status_FsmReady);
 }
@@ -91,6 +95,7 @@ void test_a_block_is_programmed_with_its_error_correction(void)
 void test_a_library_that_refuses_to_start_is_a_fault_and_the_pump_is_given_back(void)
 {
     Flash_claimPumpSemaphore_Expect(0x00050024U, FLASH_BANK0_WRAPPER);
+    driverlib_eallow_Expect();
     Fapi_initializeAPI_ExpectAndReturn(&f021_registers, 200U, Fapi_Error_InvalidHclkValue);
     expect_close();
     TEST_ASSERT_FALSE(bsp_storage_erase(0U));

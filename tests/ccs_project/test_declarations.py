@@ -25,6 +25,7 @@ class Compared(unittest.TestCase):
         (self.top / "device_support/f2837xs/common/include").mkdir(parents=True)
         for part in ("ti", "xdc"):
             shutil.copytree(REPOSITORY / "sim/ti/sysbios" / part, self.top / "packages" / part)
+        shutil.copytree(REPOSITORY / "sim/ti/f021/include", self.top / check_ti.FLASH_API)
 
     def change(self, header, before, after):
         path = self.top / (header if header.startswith("packages") else f"{WARE}/{header}")
@@ -79,6 +80,20 @@ class Compared(unittest.TestCase):
         self.change("packages/ti/sysbios/knl/Event.h", r"Event_Id_15 \(0x8000U\)", "Event_Id_15 (0x4000U)")
         found = self.complaints(kernel=True)
         self.assertEqual(found, ["Bool", "Event_Id_15", "Semaphore_pend", "Swi_Params.priority", "Task_FuncPtr"])
+
+
+    def test_differences_of_the_flash_library_are_named(self):
+        library = check_ti.flash_library(self.top)
+        self.assertEqual(check_ti.compared(library), [])
+        path = self.top / check_ti.FLASH_API / "F021_F2837xS_C28x.h"
+        content = path.read_text(encoding="utf-8")
+        for before, after in (("Fapi_EraseSector = 0x0006", "Fapi_EraseSector = 0x0008"), ("void Fapi_flushPipeline(void)", "int Fapi_flushPipeline(void)"),
+                              ("Fapi_StatusType Fapi_serviceWatchdogTimer(void);", ""), ("typedef uint16_t uint16", "typedef uint32_t uint16")):
+            self.assertIn(before, content)
+            content = content.replace(before, after)
+        path.write_text(content, encoding="utf-8")
+        found = [each.split(": ")[1] for each in check_ti.compared(library)]
+        self.assertEqual(found, ["Fapi_EraseSector", "Fapi_flushPipeline", "Fapi_serviceWatchdogTimer", "uint16"])
 
 
 class Read(unittest.TestCase):

@@ -94,7 +94,7 @@ class Settings(unittest.TestCase):
     def test_the_board_the_core_and_the_processor_are_defined(self):
         # Without _LAUNCHXL_F28377S device.h describes another board: half the clock and a dead UART.
         for name in self.project.configurations:
-            for word in ("-v28", "-ml", "--float_support=fpu32", "--c99", "--define=CPU1", "--define=_LAUNCHXL_F28377S",
+            for word in ("-v28", "-ml", "--float_support=fpu32", "--tmu_support=tmu0", "--c99", "--define=CPU1", "--define=_LAUNCHXL_F28377S",
                          "--define=xdc__strict"):
                 self.assertIn(word, self.options(name))
 
@@ -142,6 +142,10 @@ class Kernel(unittest.TestCase):
         self.assertIn("CPUTIMER1_BASE", code("bsp/timebase.c"))
         self.assertNotIn("CPUTIMER2_BASE", code("bsp/timebase.c"))
         self.assertEqual(int(self.value("Timer.anyMask"), 16) & 0x2, 0)
+
+    def test_the_load_is_measured_by_the_timer_of_the_tick(self):
+        self.assertEqual(self.modules["TickStamp"], "ti.sysbios.family.c28.TimestampProvider")
+        self.assertEqual((self.value("TickStamp.useClockTimer"), self.value("Timestamp.SupportProxy")), ("true", "TickStamp"))
 
     def test_stacks_are_checked_and_the_heap_holds_what_main_creates(self):
         for setting in ("Task.checkStackFlag", "Task.initStackFlag", "HalHwi.checkStackFlag", "HalHwi.initStackFlag"):

@@ -23,14 +23,16 @@ GCC = [os.environ.get("CC", "gcc"), "-x", "c", "-std=gnu99", "-fsyntax-only", "-
 # TI's addresses are 32 bits wide, the host's pointers 64; its pragmas are its own.
 HOST = ["-Wno-int-to-pointer-cast", "-Wno-pointer-to-int-cast", "-Wno-unknown-pragmas"]
 STAND_IN_ONLY = {"chip.h", "model.h"}
+# Its types: those of C28x compilers, twice as wide on the host, or the host's own.
+HOST_TYPES = "#undef __TMS320C28XX__\n"
 FLASH_API = "libraries/flash_api/f2837xs/include"
 
 
 class Library:
-    """One of TI's two libraries: its include directories, its stand-in, the rooms that use it."""
+    """One of TI's libraries: its include directories, its stand-in, the room that uses it, what C text comes first."""
 
-    def __init__(self, name, stand_in, headers, includes, defines, room):
-        self.name, self.room = name, room
+    def __init__(self, name, stand_in, headers, includes, defines, room, first=""):
+        self.name, self.room, self.first = name, room, first
         self.stand_in, self.headers = REPOSITORY / stand_in, headers
         self.includes = includes
         self.gcc = [*GCC, *HOST, "-include", str(PRELUDE), *defines,
@@ -45,10 +47,16 @@ def headers_of(stand_in):
 
 def driverlib(ware):
     includes = [Path(ware) / "driverlib/f2837xs/driverlib", Path(ware) / "device_support/f2837xs/common/include"]
-    # The public copy of C2000Ware has no flash library: then bsp/storage.c is read with sim/'s declarations of it.
+    # TI's repository of C2000Ware has no flash library (the installer has): then bsp/storage.c is read with sim/'s declarations of it.
     flash_api = Path(ware) / FLASH_API if (Path(ware) / FLASH_API).is_dir() else REPOSITORY / "sim/ti/f021/include"
     return Library("driverlib", "sim/ti/driverlib", headers_of("sim/ti/driverlib"), [*includes, flash_api],
                    ["-DCPU1", "-D_LAUNCHXL_F28377S"], "bsp")
+
+
+def flash_library(ware):
+    """The rest of bsp/ is read with driverlib: here only the declarations are compared."""
+    here = "sim/ti/f021/include"
+    return Library("F021 flash library", here, headers_of(here), [Path(ware) / FLASH_API], [], "bsp", HOST_TYPES)
 
 
 def sysbios(bios, xdc):
@@ -75,7 +83,7 @@ def sources(library):
 
 
 def included(library):
-    return "".join(f"#include <{header}>\n" for header in library.headers)
+    return library.first + "".join(f"#include <{header}>\n" for header in library.headers)
 
 
 def failing(library, checks):
@@ -150,7 +158,9 @@ def main():
     complaints = []
     for library in ([driverlib(*ware)] if ware else []) + ([sysbios(*kernel)] if kernel else []):
         complaints += sources(library) + compared(library)
-    if ware and not (ware[0] / FLASH_API).is_dir():
+    if ware and (ware[0] / FLASH_API).is_dir():
+        complaints += compared(flash_library(*ware))
+    elif ware:
         print(f"{ware[0]} has no {FLASH_API}: bsp/storage.c was read with sim/'s declarations of the flash library")
     complaints += hooks(*ware, *kernel) if ware and kernel else []
     complaints = [each for each in complaints if each]

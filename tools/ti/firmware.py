@@ -32,7 +32,7 @@ def compile_one(project, configuration, at, source):
 
 def link(project, configuration, at):
     options = project.options(configuration, "linkerBuildOptions", COM_TI_C2000WARE_INSTALL_DIR=at["C2000WARE_ROOT"])
-    return [at["CGT_ROOT"] / "bin" / "cl2000", "-v28", "-ml", "-mt", "--float_support=fpu32", "--abi=coffabi", "--run_linker",
+    return [at["CGT_ROOT"] / "bin" / "cl2000", "-v28", "-ml", "-mt", "--float_support=fpu32", "--tmu_support=tmu0", "--abi=coffabi", "--run_linker",
             f"--map_file={project.name}.map", f"--output_file={project.name}.out",
             f"--search_path={at['CGT_ROOT'] / 'lib'}", f"--search_path={at['CGT_ROOT'] / 'include'}",
             *(f"{source.stem}.obj" for source in project.files(".c")),

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "cpu.h"
 #include "sim/ti/driverlib/model.h"
 
 _Noreturn void chip_unmodelled(const char *what)
@@ -12,9 +13,26 @@ _Noreturn void chip_unmodelled(const char *what)
 }
 
 static void (*raise_interrupt)(int interrupt);
+static bool protected_writable;
+
+void driverlib_eallow(void)
+{
+    protected_writable = true;
+}
+
+void driverlib_edis(void)
+{
+    protected_writable = false;
+}
+
+bool chip_protected_writable(void)
+{
+    return protected_writable;
+}
 
 static void reset_registers(void)
 {
+    protected_writable = false;
     sysctl_reset();
     cputimer_reset();
     gpio_reset();

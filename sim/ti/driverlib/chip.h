@@ -37,8 +37,14 @@ void chip_pwm_connect(chip_pulse_t pulse, void *context);
 
 /* Level on an output pin. */
 bool chip_pin(uint32_t pin);
+/* How often a pin has gone from high to low by a GPIO function since the latest reset, for however short a time. */
+unsigned chip_pin_falls(uint32_t pin);
 /* Level that the outside world puts on an input pin. */
 void chip_drive_pin(uint32_t pin, bool level);
+
+/* Whether a store to a protected register takes effect now: between EALLOW and EDIS. Without it the chip ignores the store,
+ * and says nothing. */
+bool chip_protected_writable(void);
 
 /* Raw register values for tests: "SCIA.BRR", "LOSPCP", "PERCLKDIVSEL", "EPWM2.TBPRD", "EPWM2.TBCTL", "EPWM2.CMPA",
  * "EPWM2.AQCTLA", "GPIO64.MUX", ... Aborts on an unknown name. */

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cpu.h"
 #include "pin_map.h"
 #include "sim/ti/driverlib/chip.h"
 #include "sim/ti/driverlib/model.h"
@@ -20,6 +21,8 @@ typedef struct {
     GPIO_QualificationMode qualification;
     bool latch;
     bool held_low; /* from outside */
+    bool low;      /* as the latest change by a GPIO function left it */
+    unsigned falls;
 } pin_t;
 
 static pin_t pins[PIN_COUNT];
@@ -114,40 +117,64 @@ void chip_drive_pin(uint32_t pin, bool level)
     sci_lines_changed();
 }
 
+unsigned chip_pin_falls(uint32_t pin)
+{
+    return at(pin)->falls;
+}
+
+static void changed(uint32_t pin)
+{
+    const bool low = !chip_pin(pin);
+    pins[pin].falls += low && !pins[pin].low;
+    pins[pin].low = low;
+}
+
 void GPIO_setPinConfig(uint32_t pinConfig)
 {
+    EALLOW;
     epwm_catch_up();
     at(gpio_pin(pinConfig))->mux = pinConfig & MUX_VALUE;
     gpio_throttle_changed(timeline_now());
     sci_lines_changed();
+    changed(gpio_pin(pinConfig));
+    EDIS;
 }
 
 void GPIO_setDirectionMode(uint32_t pin, GPIO_Direction pinIO)
 {
+    EALLOW;
     at(pin)->direction = pinIO;
     gpio_throttle_changed(timeline_now());
+    changed(pin);
+    EDIS;
 }
 
 void GPIO_setPadConfig(uint32_t pin, uint32_t pinType)
 {
+    EALLOW;
     if ((pinType & (GPIO_PIN_TYPE_INVERT | GPIO_PIN_TYPE_OD)) != 0) {
         chip_unmodelled("inverted and open-drain pins");
     }
     at(pin)->pud = (pinType & GPIO_PIN_TYPE_PULLUP) == 0;
+    EDIS;
 }
 
 void GPIO_setQualificationMode(uint32_t pin, GPIO_QualificationMode qualification)
 {
+    EALLOW;
     at(pin)->qualification = qualification;
+    EDIS;
 }
 
 void GPIO_setQualificationPeriod(uint32_t pin, uint32_t divider)
 {
+    EALLOW;
     if (divider == 0 || divider > SAMPLE_DIVIDER_MAX || (divider % 2U != 0 && divider != 1)) {
         chip_unmodelled("such a qualification period");
     }
     (void)at(pin);
     sample_dividers[pin / GROUP] = divider / 2U;
+    EDIS;
 }
 
 uint32_t GPIO_readPin(uint32_t pin)
@@ -159,6 +186,7 @@ void GPIO_writePin(uint32_t pin, uint32_t outVal)
 {
     at(pin)->latch = outVal != 0;
     gpio_throttle_changed(timeline_now());
+    changed(pin);
 }
 
 bool gpio_register(const char *name, uint32_t *value)

@@ -31,7 +31,7 @@ typedef struct {
 typedef struct {
     uint16_t ccr, ctl1, brr, rxst, fftx, ffrx; /* without the FIFO levels */
     fifo_t receive, transmit;
-    bool lines[3];          /* RXFF, receive error, TXFF as the interrupt controller sees them */
+    bool receive_line, transmit_line;   /* to the interrupt controller, which takes edges */
     double listening_from;  /* a start bit counts from then on */
     bool line_low;          /* held low from outside */
     timeline_id_t low_event;
@@ -129,15 +129,21 @@ static void fifo_put(fifo_t *fifo, unsigned word)
 
 /* ---- interrupts ---- */
 
-static void line(sci_t *sci, unsigned index, bool level, int interrupt)
+static void line(bool *line, bool level, int interrupt)
 {
-    const bool rises = level && !sci->r.lines[index];
-    sci->r.lines[index] = level;
+    const bool rises = level && !*line;
+    *line = level;
     if (rises && raise_interrupt != NULL) {
         raise_interrupt(interrupt);
     }
 }
 
+static bool error_pending(const registers_t *r)
+{
+    return (r->rxst & SCI_RXST_RXERROR) != 0 && (r->ctl1 & SCI_CTL1_RXERRINTENA) != 0;
+}
+
+/* The FIFO's receive interrupt and the receive errors share one line: while one holds it up, the other makes no edge. */
 static void update_interrupts(sci_t *sci)
 {
     registers_t *r = &sci->r;
@@ -150,10 +156,8 @@ static void update_interrupts(sci_t *sci)
     }
     const uint16_t rxff = SCI_FFRX_RXFFINT | SCI_FFRX_RXFFIENA;
     const uint16_t txff = SCI_FFTX_TXFFINT | SCI_FFTX_TXFFIENA;
-    line(sci, 0, (r->ffrx & (rxff | SCI_FFRX_RXFFOVF)) == rxff, sci->wiring->receive_interrupt);
-    line(sci, 1, (r->rxst & SCI_RXST_RXERROR) != 0 && (r->ctl1 & SCI_CTL1_RXERRINTENA) != 0,
-         sci->wiring->receive_interrupt);
-    line(sci, 2, (r->fftx & txff) == txff, sci->wiring->transmit_interrupt);
+    line(&r->receive_line, (r->ffrx & (rxff | SCI_FFRX_RXFFOVF)) == rxff || error_pending(r), sci->wiring->receive_interrupt);
+    line(&r->transmit_line, (r->fftx & txff) == txff, sci->wiring->transmit_interrupt);
 }
 
 /* ---- transmitter ---- */
@@ -613,11 +617,11 @@ void SCI_clearInterruptStatus(uint32_t base, uint32_t intFlags)
     }
     if ((intFlags & SCI_INT_TXFF) != 0) {
         sci->r.fftx &= (uint16_t)~SCI_FFTX_TXFFINT;
-        sci->r.lines[2] = false;
+        sci->r.transmit_line = false;
     }
     if ((intFlags & SCI_INT_RXFF) != 0) {
         sci->r.ffrx &= (uint16_t)~SCI_FFRX_RXFFINT;
-        sci->r.lines[0] = false;
+        sci->r.receive_line = error_pending(&sci->r);
     }
     update(sci);
 }

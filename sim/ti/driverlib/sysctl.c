@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "cpu.h"
 #include "sim/ti/driverlib/model.h"
 
 #define CRYSTAL_HZ 10000000U
@@ -68,7 +69,9 @@ uint32_t sysctl_epwmclk_hz(void)
 
 bool SysCtl_setClock(uint32_t config)
 {
+    EALLOW;
     if (sys.crystal_failed) {
+        EDIS;
         return false;
     }
     change(&sys.clksrcctl1, (uint32_t)((config & SYSCTL_OSCSRC_M) >> SYSCTL_OSCSRC_S));
@@ -81,34 +84,45 @@ bool SysCtl_setClock(uint32_t config)
     }
     cputimer_disturb(1, TIMER1_AFTER);
     cputimer_disturb(2, TIMER2_AFTER);
+    EDIS;
     return true;
 }
 
 void SysCtl_setPLLSysClk(uint16_t divider)
 {
+    EALLOW;
     change(&sys.sysclkdivsel, divider);
+    EDIS;
 }
 
 void SysCtl_setLowSpeedClock(SysCtl_LSPCLKPrescaler prescaler)
 {
+    EALLOW;
     sys.lospcp = prescaler;
+    EDIS;
 }
 
 void SysCtl_setEPWMClockDivider(SysCtl_EPWMCLKDivider divider)
 {
+    EALLOW;
     change(&sys.perclkdivsel, (sys.perclkdivsel & ~3U) | divider);
+    EDIS;
 }
 
 void SysCtl_enablePeripheral(SysCtl_PeripheralPCLOCKCR peripheral)
 {
+    EALLOW;
     uint32_t *word = &sys.pclkcr[peripheral & 0x1F];
     change(word, *word | 1U << (peripheral >> 8));
+    EDIS;
 }
 
 void SysCtl_disablePeripheral(SysCtl_PeripheralPCLOCKCR peripheral)
 {
+    EALLOW;
     uint32_t *word = &sys.pclkcr[peripheral & 0x1F];
     change(word, *word & ~(1U << (peripheral >> 8)));
+    EDIS;
 }
 
 bool sysctl_clocked(uint32_t peripheral)

@@ -1,5 +1,6 @@
 #include <string.h>
 
+#include "cpu.h"
 #include "sim/ti/driverlib/chip.h"
 #include "sim/ti/driverlib/model.h"
 #include "sysctl.h"
@@ -80,29 +81,39 @@ bool watchdog_register(const char *name, uint32_t *value)
 
 void SysCtl_setWatchdogMode(SysCtl_WDMode mode)
 {
+    EALLOW;
     if (mode != SYSCTL_WD_MODE_RESET) {
         chip_unmodelled("the watchdog's interrupt");
     }
+    EDIS;
 }
 
 void SysCtl_setWatchdogPrescaler(SysCtl_WDPrescaler prescaler)
 {
+    EALLOW;
     change((watchdog.wdcr & ~WDPS) | prescaler, false);
+    EDIS;
 }
 
 void SysCtl_enableWatchdog(void)
 {
+    EALLOW;
     change(watchdog.wdcr & ~WDDIS, false);
+    EDIS;
 }
 
 void SysCtl_disableWatchdog(void)
 {
+    EALLOW;
     change(watchdog.wdcr | WDDIS, false);
+    EDIS;
 }
 
 void SysCtl_serviceWatchdog(void)
 {
+    EALLOW;
     change(watchdog.wdcr, true);
+    EDIS;
 }
 
 uint32_t SysCtl_getResetCause(void)

@@ -8,6 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "sim/ti/driverlib/chip.h"
+#include "sim/ti/driverlib/cpu.h"
 #include "sim/ti/driverlib/flash.h"
 #include "sim/ti/f021/include/F021_F2837xS_C28x.h"
 
@@ -16,6 +18,10 @@
 #define HALF_DONE 0x5A5AU
 #define FILE_OCTETS ((size_t)FLASH_SECTORS * FLASH_SECTOR_CELLS * 2)
 #define FSM_FAILED 0x30U
+/* Of the library's code that sets up the flash state machine (F021 1.55): it turns six times in OTP into pulse widths,
+ * calls back within each, and stores 39 values in protected registers after the first call. */
+#define CALLS_BACK 6
+#define SETUP_STORES 39
 
 /* The linker command file of the target gives it its address. */
 extern uint16_t flash_sectors_m_n[FLASH_SECTORS][FLASH_SECTOR_CELLS];
@@ -28,6 +34,7 @@ Fapi_FmcRegistersType f021_registers;
 static struct {
     bool programmed[FLASH_SECTORS][FLASH_SECTOR_CELLS / BLOCK];
     bool pump, initialised, active, busy;
+    int set_up;     /* of the stores that set up the state machine: those that took effect */
     Fapi_FlashStatusType status;
     bool cut;
     long left;      /* cells until the power fails, when cut */
@@ -169,9 +176,38 @@ static bool change(uint16_t *cell, uint16_t value)
     return true;
 }
 
+/* A store of the library to one of the flash's protected registers: does it take effect? */
+static bool stored(void)
+{
+    return chip_protected_writable();
+}
+
+static void set_up_state_machine(void)
+{
+    EALLOW;
+    flash.set_up = 0;
+    for (int call = 0; call < CALLS_BACK; call++) {
+        EALLOW;
+        (void)Fapi_serviceWatchdogTimer();
+        flash.set_up += stored();
+    }
+    for (int store = CALLS_BACK; store < SETUP_STORES; store++) {
+        flash.set_up += stored();
+    }
+}
+
 static bool ready(void)
 {
     return flash.pump && flash.initialised && flash.active && !flash.busy;
+}
+
+/* A state machine with some of its pulse widths and voltages as after reset: that it then fails is the model's choice, TI
+ * does not say what it does. */
+static Fapi_FlashStatusType begin_operation(void)
+{
+    EALLOW;
+    flash.busy = true;
+    return flash.set_up == SETUP_STORES ? 0U : FSM_FAILED;
 }
 
 /* The sector of an address and the cell in it; -1: not in these sectors. */
@@ -185,34 +221,47 @@ static int sector_of(const void *address, int *cell)
 
 void Flash_claimPumpSemaphore(uint32_t pumpSemBase, Flash_PumpOwnership wrapper)
 {
+    EALLOW;
     flash.pump = pumpSemBase == FLASHPUMPSEMAPHORE_BASE && wrapper == FLASH_BANK0_WRAPPER;
+    EDIS;
 }
 
 void Flash_releasePumpSemaphore(uint32_t pumpSemBase)
 {
+    EALLOW;
     (void)pumpSemBase;
     flash.pump = false;
+    EDIS;
 }
 
 void Flash_enableECC(uint32_t eccBase)
 {
+    EALLOW;
     (void)eccBase;
+    EDIS;
 }
 
 void Flash_disableECC(uint32_t eccBase)
 {
+    EALLOW;
     (void)eccBase;
+    EDIS;
 }
 
 Fapi_StatusType Fapi_initializeAPI(Fapi_FmcRegistersType *poFlashControlRegister, uint32 u32HclkFrequency)
 {
+    EALLOW;
     flash.initialised = poFlashControlRegister == F021_CPU0_W0_BASE_ADDRESS && u32HclkFrequency == 200U;
     return flash.initialised ? Fapi_Status_Success : Fapi_Error_InvalidHclkValue;
 }
 
 Fapi_StatusType Fapi_setActiveFlashBank(Fapi_FlashBankType oNewFlashBank)
 {
+    EALLOW;
     flash.active = oNewFlashBank == Fapi_FlashBank0;
+    if (flash.active) {
+        set_up_state_machine();
+    }
     return flash.active ? Fapi_Status_Success : Fapi_Error_InvalidBank;
 }
 
@@ -226,9 +275,8 @@ Fapi_StatusType Fapi_issueAsyncCommandWithAddress(Fapi_FlashStateCommandsType oC
     if (sector < 0) {
         return Fapi_Error_InvalidAddress;
     }
-    flash.busy = true;
-    flash.status = 0;
-    for (cell = 0; cell < FLASH_SECTOR_CELLS && change(&flash_sectors_m_n[sector][cell], BLANK); cell++) {
+    flash.status = begin_operation();
+    for (cell = 0; flash.status == 0 && cell < FLASH_SECTOR_CELLS && change(&flash_sectors_m_n[sector][cell], BLANK); cell++) {
     }
     if (cell < FLASH_SECTOR_CELLS) {
         flash.status = FSM_FAILED;
@@ -254,8 +302,7 @@ Fapi_StatusType Fapi_issueProgrammingCommand(uint32 *pu32StartAddress, uint16 *p
         return Fapi_Error_AsyncIncorrectDataBufferLength;
     }
     programmed = &flash.programmed[sector][cell / BLOCK];
-    flash.busy = true;
-    flash.status = *programmed ? FSM_FAILED : 0U;
+    flash.status = begin_operation() != 0U || *programmed ? FSM_FAILED : 0U;
     *programmed = true;
     for (int i = 0; i < BLOCK && flash.status == 0U; i++) {
         uint16_t *at = &flash_sectors_m_n[sector][cell + i];

@@ -873,3 +873,59 @@ void test_what_the_model_does_not_know_aborts(void)
     (void)signal(SIGABRT, before);
     TEST_ASSERT_EQUAL_UINT(sizeof CASES / sizeof CASES[0], count);
 }
+
+/* The error rises after the status was read and before the flag is cleared: no edge is left to tell of it. */
+void test_an_error_that_rises_before_the_flag_is_cleared_leaves_the_receiver_deaf_until_somebody_looks(void)
+{
+    SCI_enableInterrupt(SCIC_BASE, SCI_INT_RXFF | SCI_INT_RXERR);
+    arrive('a');
+    TEST_ASSERT_EQUAL_INT(1, raised[RX_INT]);
+    (void)SCI_readCharNonBlocking(SCIC_BASE);
+    TEST_ASSERT_EQUAL_HEX16(0, SCI_getRxStatus(SCIC_BASE) & SCI_RXSTATUS_ERROR);
+    chip_drive_pin(90, false);
+    run_for(3 * SIM_MS);
+    chip_drive_pin(90, true);
+    SCI_clearInterruptStatus(SCIC_BASE, SCI_INT_RXFF);
+    arrive('b');
+    arrive('b');
+    TEST_ASSERT_EQUAL_INT(1, raised[RX_INT]);
+    SCI_resetRxFIFO(SCIC_BASE);
+    SCI_performSoftwareReset(SCIC_BASE);
+    SCI_clearInterruptStatus(SCIC_BASE, SCI_INT_RXFF);
+    arrive('c');
+    TEST_ASSERT_EQUAL_INT(2, raised[RX_INT]);
+    TEST_ASSERT_EQUAL_HEX16('c', SCI_readCharNonBlocking(SCIC_BASE));
+}
+
+void test_protected_registers_are_open_between_eallow_and_edis_and_that_does_not_nest(void)
+{
+    TEST_ASSERT_FALSE(chip_protected_writable());
+    EALLOW;
+    EALLOW;
+    TEST_ASSERT_TRUE(chip_protected_writable());
+    EDIS;
+    TEST_ASSERT_FALSE(chip_protected_writable());
+    EALLOW;
+    chip_restart();
+    TEST_ASSERT_FALSE(chip_protected_writable());
+}
+
+void test_driverlibs_functions_that_store_in_protected_registers_leave_them_closed(void)
+{
+    static void (*const functions[])(void) = {SysCtl_serviceWatchdog, SysCtl_enableWatchdog, SysCtl_disableWatchdog};
+
+    for (size_t i = 0; i < sizeof functions / sizeof functions[0]; i++) {
+        EALLOW;
+        functions[i]();
+        TEST_ASSERT_FALSE(chip_protected_writable());
+    }
+    EALLOW;
+    GPIO_setPinConfig(GPIO_2_GPIO2);
+    TEST_ASSERT_FALSE(chip_protected_writable());
+    EALLOW;
+    SysCtl_enablePeripheral(SYSCTL_PERIPH_CLK_SCIA);
+    TEST_ASSERT_FALSE(chip_protected_writable());
+    EALLOW;
+    SCI_performSoftwareReset(SCIA_BASE);
+    TEST_ASSERT_TRUE_MESSAGE(chip_protected_writable(), "the SCI's registers are not protected, TI's function leaves the bit");
+}

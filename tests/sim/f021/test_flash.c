@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "sim/ti/driverlib/chip.h"
+#include "sim/ti/driverlib/cpu.h"
 #include "sim/ti/driverlib/flash.h"
 #include "sim/ti/f021/include/F021_F2837xS_C28x.h"
 #include "unity.h"
@@ -17,8 +19,21 @@ extern uint16_t flash_sectors_m_n[FLASH_SECTORS][FLASH_SECTOR_CELLS];
 static const char path[] = SCRATCH "/flash.bin";
 static uint16_t block[8] = {1, 2, 3, 4, 5, 6, 7, 8};
 
+static int called_back;
+static int closes_at;   /* the call that ends with EDIS, 0: none does */
+
+Fapi_StatusType Fapi_serviceWatchdogTimer(void)
+{
+    called_back++;
+    if (called_back == closes_at) {
+        EDIS;
+    }
+    return Fapi_Status_Success;
+}
+
 void setUp(void)
 {
+    called_back = closes_at = 0;
     flash_blank();
     (void)remove(path);
 }
@@ -234,4 +249,29 @@ void test_a_link_is_kept_and_what_it_names_is_replaced(void)
     flash_blank();
     TEST_ASSERT_NULL(flash_load(path));
     TEST_ASSERT_EQUAL_HEX16(0x4321, flash_sectors_m_n[0][0]);
+}
+
+void test_the_user_is_called_back_six_times_while_the_bank_is_made_active(void)
+{
+    start();
+    TEST_ASSERT_EQUAL_INT(6, called_back);
+    TEST_ASSERT_TRUE_MESSAGE(chip_protected_writable(), "the library leaves the registers open");
+}
+
+void test_stores_of_the_set_up_are_lost_behind_a_call_that_closes_the_registers(void)
+{
+    for (int call = 1; call <= 6; call++) {
+        called_back = 0;
+        closes_at = call;
+        start();
+        TEST_ASSERT_EQUAL(Fapi_Status_Success, erase(flash_sectors_m_n[0]));
+        wait();
+        TEST_ASSERT_NOT_EQUAL(0, Fapi_getFsmStatus());
+        TEST_ASSERT_EQUAL(0, flash_cells_changed());
+    }
+    closes_at = 0;
+    start();
+    TEST_ASSERT_EQUAL(Fapi_Status_Success, erase(flash_sectors_m_n[0]));
+    wait();
+    TEST_ASSERT_EQUAL(0, Fapi_getFsmStatus());
 }

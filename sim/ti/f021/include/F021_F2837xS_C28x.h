@@ -1,4 +1,6 @@
-/* Stand-in for TI's F021 flash API (F2837xS): the subset that this firmware uses, same names and types. */
+/* Stand-in for TI's F021 flash API (F2837xS), version 1.55: the subset that this firmware uses, same names and types. As in
+ * TI's library each function turns EALLOW on where it begins, and none turns it off; a store after an EDIS of the
+ * function that it calls back is lost. */
 #ifndef F021_F2837XS_C28X_H
 #define F021_F2837XS_C28X_H
 
@@ -28,7 +30,7 @@ typedef enum {
 typedef uint32 Fapi_FlashStatusType;
 
 typedef struct {
-    uint32 unused;
+    uint32 stand__in;
 } Fapi_FmcRegistersType;
 
 extern Fapi_FmcRegistersType f021_registers;
@@ -44,5 +46,8 @@ Fapi_StatusType Fapi_issueProgrammingCommand(uint32 *pu32StartAddress, uint16 *p
 Fapi_StatusType Fapi_checkFsmForReady(void);
 Fapi_FlashStatusType Fapi_getFsmStatus(void);
 void Fapi_flushPipeline(void);
+
+/* The user's, called back while the library works: six times by Fapi_setActiveFlashBank(). */
+Fapi_StatusType Fapi_serviceWatchdogTimer(void);
 
 #endif
