@@ -32,6 +32,7 @@ static struct {
     razor9dof_t *imu;
     xbee_t *xbee;
     rc_mux_t mux;
+    pilot_t *pilot;
     board_terminal_t terminal;
     void *terminal_context;
     const kernel_costs_t *costs;
@@ -48,6 +49,7 @@ board_config_t board_config(unsigned long seed)
         .scene = scene_default,
         .laser = urg04lx_default,
         .imu = razor_default,
+        .pilot = PILOT_DEFAULT,
         .costs = &costs_annex_iv,
     };
     noise_t phases;
@@ -120,10 +122,39 @@ static void autopilot_pulse(void *context, sim_time_t high_ns)
 static razor_truth_t motion(void *context)
 {
     const quadrotor_state_t *state = quadrotor_state(board.quadrotor);
-    razor_truth_t truth = {state->roll_rad, state->pitch_rad, state->yaw_rad, state->acceleration_mps2};
+    razor_truth_t truth = {state->roll_rad, state->pitch_rad, state->yaw_rad, state->acceleration_mps2,
+                           quadrotor_scenario_s(board.quadrotor)};
 
     (void)context;
     return truth;
+}
+
+static pilot_view_t pilots_view(void *context)
+{
+    const quadrotor_state_t *state = quadrotor_state(board.quadrotor);
+    pilot_view_t view = {quadrotor_scenario_s(board.quadrotor), state->height_m, state->speed_mps};
+
+    (void)context;
+    return view;
+}
+
+static void pilot_takes(void *context, bool take)
+{
+    (void)context;
+    board_select(!take);
+}
+
+static void pilot_moves(void *context, sim_time_t high_ns)
+{
+    (void)context;
+    board_stick(high_ns);
+}
+
+static pilot_t *seat_pilot(const board_config_t *config)
+{
+    const pilot_hands_t hands = {pilots_view, pilot_takes, pilot_moves, NULL};
+
+    return pilot_create(&config->pilot, &hands, config->seed);
 }
 
 static void lay_wires(void)
@@ -167,6 +198,7 @@ void board_power_on(const board_config_t *config, board_terminal_t terminal, voi
     board.imu = razor9dof_create(&config->imu, motion, NULL, config->seed, to_firmware, (void *)(uintptr_t)SCIB_BASE);
     board.xbee = xbee_create(to_firmware, (void *)(uintptr_t)SCIC_BASE, to_terminal, NULL);
     rc_mux_init(&board.mux, autopilot_pulse, NULL);
+    board.pilot = seat_pilot(config);
     chip_drive_pin(SELECTOR_PIN, true);
     lay_wires();
     chip_pwm_connect(throttle_pulse, NULL);
@@ -188,6 +220,7 @@ void board_power_off(void)
     line_fault_destroy(board.laser_faults);
     razor9dof_destroy(board.imu);
     xbee_destroy(board.xbee);
+    pilot_destroy(board.pilot);
     quadrotor_destroy(board.quadrotor);
     memset(&board, 0, sizeof board);
 }

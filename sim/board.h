@@ -7,6 +7,7 @@
 #include <stddef.h>
 
 #include "sim/devices/line_fault.h"
+#include "sim/devices/pilot.h"
 #include "sim/devices/quadrotor.h"
 #include "sim/devices/razor9dof.h"
 #include "sim/devices/scene.h"
@@ -22,6 +23,7 @@ typedef struct {
     const line_fault_spec_t *laser_faults;   /* between the scanner model and the firmware */
     int laser_fault_count;
     razor_config_t imu;
+    pilot_config_t pilot;
     const kernel_costs_t *costs;
 } board_config_t;
 

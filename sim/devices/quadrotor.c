@@ -47,6 +47,11 @@ const quadrotor_config_t quadrotor_default = {
     .climb_rate_mps_per_n = 0.0, .climb_neutral_n = THROTTLE_FULL_N / 2.0, .climb_deadband_n = 0.47, .climb_lag_s = 0.25,
     .climb_ceiling_mps = 6.0,
     .tug_rate_per_s = 0.0, .tug_mps2 = -1.5,
+    .airframe = 0.0,
+    .rotors = ROTORS_DEFAULT,
+    .lag2_s = 0.0, .ground_effect = 1.0, .sag_limit = 0.1,
+    .gust_mps2 = 0.0, .gust = {10.0, 1.0}, .tumble_radps = 0.0, .tumble_start_s = 10.0,
+    .floor = FLOOR_DEFAULT,
     .anchored = false, .bench_height_m = 0.0};
 
 typedef struct {
@@ -69,6 +74,11 @@ struct quadrotor {
     size_t head, waiting;
     sim_time_t last_pulse;
     double demand_n, lag;
+    double followed_n, lag2;    /* the demand behind the autopilot's second lag */
+    rotors_t rotors;
+    floor_t floor;
+    double ramp_m;              /* the terrain without the floor's unevenness */
+    double tumble_rad;
     double climb_integral_mps2; /* of the autopilot's speed controller */
 
     double turbulence_mps2, turbulence_keep, turbulence_drive;
@@ -97,6 +107,7 @@ static void prepare_steps(quadrotor_t *q)
 {
     const quadrotor_config_t *c = &q->config;
     q->lag = 1.0 - exp(-STEP_S / c->tau_s);
+    q->lag2 = c->lag2_s > 0.0 ? 1.0 - exp(-STEP_S / c->lag2_s) : 1.0;
     q->turbulence_keep = exp(-STEP_S / c->turbulence_tau_s);
     q->turbulence_drive = c->turbulence_mps2 * sqrt(1.0 - q->turbulence_keep * q->turbulence_keep);
     q->tug_keep = exp(-STEP_S / TUG_TAU_S);
@@ -119,6 +130,8 @@ quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const terrain_t 
     q->state.altitude_m = q->state.height_m = config->anchored ? config->bench_height_m : 0.0;
     q->state.on_ground = !config->anchored;
     q->state.yaw_rad = config->anchored ? 0.0 : HEADING_RAD;
+    rotors_init(&q->rotors, &config->rotors);
+    floor_init(&q->floor, &config->floor, STEP_S, seed);
     prepare_noise(q, seed);
     prepare_steps(q);
     return q;
@@ -132,6 +145,11 @@ void quadrotor_destroy(quadrotor_t *quadrotor)
 static double scenario_s(const quadrotor_t *q)
 {
     return (double)(q->clock - q->origin) / 1e9;
+}
+
+double quadrotor_scenario_s(const quadrotor_t *quadrotor)
+{
+    return (double)(timeline_now() - quadrotor->origin) / 1e9;
 }
 
 static void hear_throttle(quadrotor_t *q)
@@ -183,6 +201,11 @@ static double white(noise_t *noise)
     return noise_uniform(noise, -SQRT_3, SQRT_3);
 }
 
+static double gust_mps2(const quadrotor_t *q)
+{
+    return q->config.gust_mps2 != 0.0 && span_holds(&q->config.gust, scenario_s(q)) ? q->config.gust_mps2 : 0.0;
+}
+
 static double disturbance_mps2(quadrotor_t *q)
 {
     q->turbulence_mps2 = q->turbulence_mps2 * q->turbulence_keep + q->turbulence_drive * white(&q->turbulence_noise);
@@ -216,7 +239,11 @@ static void rotate(quadrotor_t *q, double t_s)
     const double share = q->state.on_ground ? GROUND_DRIVE : 1.0;
     swing(&q->roll, share * q->attitude_drive, 0.0);
     swing(&q->pitch, share * q->attitude_drive, advance_pitch_rad(q, t_s));
-    q->state.roll_rad = q->roll.angle_rad;
+    if (q->config.tumble_radps != 0.0 && t_s >= q->config.tumble_start_s && !q->state.on_ground &&
+        fabs(q->tumble_rad) < M_PI) {
+        q->tumble_rad += STEP_S * q->config.tumble_radps;
+    }
+    q->state.roll_rad = q->roll.angle_rad + q->tumble_rad;
     q->state.pitch_rad = q->pitch.angle_rad;
 
     const double wander = q->yaw_drift_rad + share * noise_uniform(&q->yaw_noise, -YAW_STEP_RAD, YAW_STEP_RAD);
@@ -224,10 +251,15 @@ static void rotate(quadrotor_t *q, double t_s)
     q->state.yaw_rad = remainder(HEADING_RAD + q->yaw_drift_rad, 2.0 * M_PI);
 }
 
-static double ground_effect(double height_m)
+static double ground_effect(const quadrotor_t *q)
 {
-    const double ratio = ROTOR_RADIUS_M / (4.0 * (height_m + ROTOR_ABOVE_GEAR_M));
-    return 1.0 / (1.0 - 2.0 * ratio * ratio);
+    const double ratio = ROTOR_RADIUS_M / (4.0 * (q->state.height_m + ROTOR_ABOVE_GEAR_M));
+    return 1.0 / (1.0 - 2.0 * q->config.ground_effect * ratio * ratio);
+}
+
+static double hover_n(const quadrotor_t *q, double t_s)
+{
+    return q->config.hover_thrust_n * (1.0 + fmin(q->config.sag_per_s * fmax(t_s, 0.0), q->config.sag_limit));
 }
 
 static double lift_mps2(const quadrotor_t *q, double t_s)
@@ -236,9 +268,34 @@ static double lift_mps2(const quadrotor_t *q, double t_s)
     if (s->thrust_n <= MOTORS_TURN_N) {
         return 0.0;
     }
-    const double hover_n = q->config.hover_thrust_n * (1.0 + q->config.sag_per_s * fmax(t_s, 0.0));
-    const double excess = q->config.gain * (s->thrust_n - hover_n) / q->config.hover_thrust_n;
-    return GRAVITY_MPS2 * (1.0 + excess) * ground_effect(s->height_m) * cos(s->roll_rad) * cos(s->pitch_rad);
+    const double excess = q->config.gain * (s->thrust_n - hover_n(q, t_s)) / q->config.hover_thrust_n;
+    return GRAVITY_MPS2 * (1.0 + excess) * ground_effect(q) * cos(s->roll_rad) * cos(s->pitch_rad);
+}
+
+/* Lift less drag. */
+static double air_mps2(quadrotor_t *q, double t_s)
+{
+    const quadrotor_state_t *s = &q->state;
+    if (q->config.airframe < 0.5) {
+        return lift_mps2(q, t_s) - GRAVITY_MPS2 - q->config.damping_per_s * s->speed_mps;
+    }
+    const double upright = cos(s->roll_rad) * cos(s->pitch_rad);
+    return GRAVITY_MPS2 * (rotors_thrust(&q->rotors, s->speed_mps) * ground_effect(q) * upright - 1.0) -
+           rotors_drag_mps2(&q->rotors, s->speed_mps, upright);
+}
+
+/* The motors one step later. */
+static void spin(quadrotor_t *q, double t_s)
+{
+    quadrotor_state_t *s = &q->state;
+    const double given_n = autopilot_n(q);
+    q->followed_n = q->lag2 < 1.0 ? q->followed_n + q->lag2 * (given_n - q->followed_n) : given_n;
+    if (q->config.airframe < 0.5) {
+        s->thrust_n += q->lag * (q->followed_n - s->thrust_n);
+        return;
+    }
+    rotors_step(&q->rotors, STEP_S, q->followed_n <= MOTORS_TURN_N ? 0.0 : q->followed_n / hover_n(q, t_s), s->speed_mps);
+    s->thrust_n = q->config.hover_thrust_n * rotors_thrust(&q->rotors, s->speed_mps);
 }
 
 static void touch(quadrotor_t *q, double terrain_m, double terrain_mps)
@@ -255,10 +312,9 @@ static void touch(quadrotor_t *q, double terrain_m, double terrain_mps)
     s->on_ground = !impact;
 }
 
-static void rise_or_rest(quadrotor_t *q, double acceleration_mps2, double terrain_m)
+static void rise_or_rest(quadrotor_t *q, double acceleration_mps2, double terrain_m, double terrain_mps)
 {
     quadrotor_state_t *s = &q->state;
-    const double terrain_mps = (terrain_m - s->terrain_m) / STEP_S;
     if (s->on_ground && acceleration_mps2 <= 0.0 && terrain_mps >= 0.0) {
         s->altitude_m = terrain_m;
         s->acceleration_mps2 = 0.0;
@@ -276,19 +332,31 @@ static void rise_or_rest(quadrotor_t *q, double acceleration_mps2, double terrai
     }
 }
 
+/* The ground one step later, and how fast it rises. A bar's edge has no speed: it is not what throws a vehicle up. */
+static double pass_terrain(quadrotor_t *q, double t_s, double *terrain_mps)
+{
+    const double ramp_m = terrain_height_m(&q->terrain, t_s);
+    if (!q->state.on_ground) {
+        floor_pass(&q->floor);
+    }
+    *terrain_mps = (ramp_m - q->ramp_m) / STEP_S + (q->state.on_ground ? 0.0 : q->floor.rate_mps);
+    q->ramp_m = ramp_m;
+    return ramp_m + floor_height_m(&q->floor);
+}
+
 static void step(quadrotor_t *q)
 {
     quadrotor_state_t *s = &q->state;
     hear_throttle(q);
     q->clock += STEP;
     const double t_s = scenario_s(q);
-    const double terrain_m = terrain_height_m(&q->terrain, t_s);
-    s->thrust_n += q->lag * (autopilot_n(q) - s->thrust_n);
+    double terrain_mps;
+    const double terrain_m = pass_terrain(q, t_s, &terrain_mps);
+    spin(q, t_s);
     if (!q->config.anchored) {
         rotate(q, t_s);
-        const double acceleration_mps2 =
-            lift_mps2(q, t_s) - GRAVITY_MPS2 - q->config.damping_per_s * s->speed_mps + disturbance_mps2(q);
-        rise_or_rest(q, acceleration_mps2, terrain_m);
+        const double acceleration_mps2 = air_mps2(q, t_s) + disturbance_mps2(q) + gust_mps2(q);
+        rise_or_rest(q, acceleration_mps2, terrain_m, terrain_mps);
     }
     s->terrain_m = terrain_m;
     s->height_m = s->altitude_m - terrain_m;

@@ -7,6 +7,9 @@
  * weight, drag and battery. On the ground the motors idle until the throttle asks for a climb. Signals lost count as
  * the lowest throttle: a descent.
  *
+ * Two airframes: one whose thrust is in proportion to the throttle, with one lag and a damping that is always the same
+ * (what a simple estimator assumes); and that of rotors.h.
+ *
  * SI units; thrust in the seed's newtons per motor. The seed's angles: roll > 0 raises the mirror's side (right),
  * pitch > 0 raises the nose. Heights: `height` of the landing gear above the terrain below it, `altitude` above the
  * floor. */
@@ -15,6 +18,9 @@
 
 #include <stdbool.h>
 
+#include "sim/devices/floor.h"
+#include "sim/devices/rotors.h"
+#include "sim/devices/span.h"
 #include "sim/devices/terrain.h"
 #include "sim/timeline.h"
 
@@ -35,6 +41,16 @@ typedef struct {
     double climb_ceiling_mps;   /* 6, up and down, assumed */
     double tug_rate_per_s;      /* 0; 0.4 in tug runs */
     double tug_mps2;            /* -1.5 */
+    double airframe;            /* 0: the simple one; 1: rotors.h, which does without gain, tau and damping */
+    rotors_config_t rotors;
+    double lag2_s;              /* 0: of the autopilot, before the motors */
+    double ground_effect;       /* 1, times that of Cheeseman and Bennett */
+    double sag_limit;           /* 0.1: the sag grows no further, as with a supply on a cable */
+    double gust_mps2;           /* 0 */
+    span_t gust;                /* from 10 s, for 1 s */
+    double tumble_radps;        /* 0: roll rate that the autopilot does not stop before the vehicle lies on its back */
+    double tumble_start_s;      /* 10 */
+    floor_config_t floor;
     bool anchored;              /* bench: stands still at bench_height_m, whatever the thrust */
     double bench_height_m;
 } quadrotor_config_t;
@@ -58,6 +74,8 @@ void quadrotor_set_origin(quadrotor_t *quadrotor, sim_time_t origin);
 /* The throttle pulse that reached the autopilot, at its falling edge. No pulse yet: no thrust. */
 void quadrotor_pulse(quadrotor_t *quadrotor, sim_time_t high_ns);
 const quadrotor_state_t *quadrotor_state(quadrotor_t *quadrotor);
+/* Scenario time now; far below 0 before its origin is known. */
+double quadrotor_scenario_s(const quadrotor_t *quadrotor);
 /* Resets the contact counter's "was above 30 mm" memory and stops counting, as at the landing command. */
 void quadrotor_stop_counting_contacts(quadrotor_t *quadrotor);
 

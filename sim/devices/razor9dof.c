@@ -17,7 +17,11 @@ const razor_config_t razor_default = {
     .period = 25 * SIM_MS, .age = 15 * SIM_MS, .phase = 25 * SIM_MS,
     .angle_noise_rad = 0.25 * DEGREE_RAD, .spike_probability = 0.005, .spike_rad = 0.35,
     .acceleration_noise_mps2 = 0.4, .acceleration_bias_mps2 = 0.15,
-    .mount_roll_rad = 0.0, .mount_pitch_rad = 0.0, .joined = false};
+    .mount_roll_rad = 0.0, .mount_pitch_rad = 0.0, .joined = false,
+    .acceleration_scale = 1.0, .acceleration_sign = 1.0, .acceleration_jump_mps2 = 0.0, .acceleration_jump_start_s = 10.0,
+    .acceleration_alias_mps2 = 0.0, .acceleration_alias_hz = 2.0,
+    .attitude_burst_rad = 0.0, .attitude_burst = {10.0, 0.075},
+    .mute = {10.0, 0.0}, .frozen = {10.0, 0.0}, .garbled = {10.0, 0.0}, .garbled_share = 0.05};
 
 typedef struct {
     char text[TEXT_MAX];
@@ -29,12 +33,14 @@ struct razor9dof {
     razor_config_t config;
     razor_world_t world;
     void *world_context;
-    noise_t angle_noise, spike_noise, acceleration_noise;
+    noise_t angle_noise, spike_noise, acceleration_noise, garble_noise;
     serial_t line;
     bool powered;
     timeline_id_t sampling;
     frame_t frames[FRAMES];
     unsigned sampled, sent;
+    char latest[TEXT_MAX];      /* the frame composed last */
+    size_t latest_length;
 };
 
 static void put_text(frame_t *frame, const char *text)
@@ -94,28 +100,40 @@ static double printed_angle_deg(razor9dof_t *razor, double angle_rad)
 }
 
 /* The axes of the Razor_AHRS firmware: what a scale would feel, along nose, side and belly. */
-static void put_acceleration(razor9dof_t *razor, frame_t *frame, double up_mps2, double roll_rad, double pitch_rad)
+static double acceleration_error_mps2(const razor_config_t *config, double t_s)
 {
-    const double felt_mps2 = GRAVITY_MPS2 + up_mps2 + razor->config.acceleration_bias_mps2 +
-                             razor->config.acceleration_noise_mps2 * noise_gauss(&razor->acceleration_noise);
-    const double counts = COUNTS_PER_G * felt_mps2 / GRAVITY_MPS2;
+    const double jump_mps2 = t_s >= config->acceleration_jump_start_s ? config->acceleration_jump_mps2 : 0.0;
+
+    return config->acceleration_bias_mps2 + jump_mps2 +
+           config->acceleration_alias_mps2 * sin(2.0 * M_PI * config->acceleration_alias_hz * fmod(t_s, 1000.0));
+}
+
+static void put_acceleration(razor9dof_t *razor, frame_t *frame, const razor_truth_t *truth, double roll_rad,
+                             double pitch_rad)
+{
+    const razor_config_t *config = &razor->config;
+    const double felt_mps2 = GRAVITY_MPS2 + truth->up_mps2 + acceleration_error_mps2(config, truth->t_s) +
+                             config->acceleration_noise_mps2 * noise_gauss(&razor->acceleration_noise);
+    const double counts =
+        config->acceleration_sign * config->acceleration_scale * COUNTS_PER_G * felt_mps2 / GRAVITY_MPS2;
     put_triple(frame, "#A-C=", counts * -sin(pitch_rad), counts * cos(pitch_rad) * sin(roll_rad),
                counts * cos(pitch_rad) * cos(roll_rad));
 }
 
-static void compose(razor9dof_t *razor, frame_t *frame)
+static void compose(razor9dof_t *razor, frame_t *frame, const razor_truth_t *seen)
 {
-    const razor_truth_t truth = razor->world(razor->world_context);
+    const razor_truth_t truth = *seen;
     const double roll_rad = truth.roll_rad + razor->config.mount_roll_rad;
     const double pitch_rad = truth.pitch_rad + razor->config.mount_pitch_rad;
     frame->length = 0;
-    put_acceleration(razor, frame, truth.up_mps2, roll_rad, pitch_rad);
+    put_acceleration(razor, frame, &truth, roll_rad, pitch_rad);
     if (!razor->config.joined) {
         put_text(frame, "\r\n");
     }
     const double yaw_deg = printed_angle_deg(razor, truth.yaw_rad);
     const double pitch_deg = printed_angle_deg(razor, pitch_rad);
-    const double roll_deg = printed_angle_deg(razor, roll_rad);
+    const double burst_rad = span_holds(&razor->config.attitude_burst, truth.t_s) ? razor->config.attitude_burst_rad : 0.0;
+    const double roll_deg = printed_angle_deg(razor, roll_rad + burst_rad);
     put_triple(frame, "#YPR=", yaw_deg, pitch_deg, roll_deg);
     put_text(frame, "\r\n");
 }
@@ -127,11 +145,41 @@ static void send(void *context)
     serial_send(&razor->line, frame->text, frame->length);
 }
 
+/* The processor in the sensor hangs, its output goes on. */
+static void compose_or_repeat(razor9dof_t *razor, frame_t *frame, const razor_truth_t *truth)
+{
+    if (span_holds(&razor->config.frozen, truth->t_s) && razor->latest_length > 0) {
+        memcpy(frame->text, razor->latest, razor->latest_length);
+        frame->length = razor->latest_length;
+        return;
+    }
+    compose(razor, frame, truth);
+    memcpy(razor->latest, frame->text, frame->length);
+    razor->latest_length = frame->length;
+}
+
+static void garble(razor9dof_t *razor, frame_t *frame)
+{
+    for (size_t i = 0; i < frame->length; i++) {
+        if (noise_uniform(&razor->garble_noise, 0.0, 1.0) < razor->config.garbled_share) {
+            frame->text[i] = (char)((unsigned char)frame->text[i] ^ 1U << (noise_bits(&razor->garble_noise) & 7U));
+        }
+    }
+}
+
 static void sample(void *context)
 {
     razor9dof_t *razor = context;
     frame_t *frame = &razor->frames[razor->sampled++ % FRAMES];
-    compose(razor, frame);
+    const razor_truth_t truth = razor->world(razor->world_context);
+
+    compose_or_repeat(razor, frame, &truth);
+    if (span_holds(&razor->config.garbled, truth.t_s)) {
+        garble(razor, frame);
+    }
+    if (span_holds(&razor->config.mute, truth.t_s)) {
+        frame->length = 0;
+    }
     frame->departure = timeline_after(razor->config.age, send, razor);
     razor->sampling = timeline_after(razor->config.period, sample, razor);
 }
@@ -149,6 +197,7 @@ razor9dof_t *razor9dof_create(const razor_config_t *config, razor_world_t world,
     noise_init(&razor->angle_noise, seed, "razor angle");
     noise_init(&razor->spike_noise, seed, "razor spike");
     noise_init(&razor->acceleration_noise, seed, "razor acceleration");
+    noise_init(&razor->garble_noise, seed, "razor garble");
     serial_init(&razor->line, RATE, sink, sink_context);
     return razor;
 }

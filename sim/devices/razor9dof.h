@@ -6,10 +6,12 @@
 #include <stdbool.h>
 
 #include "sim/devices/serial.h"
+#include "sim/devices/span.h"
 
 typedef struct {
     double roll_rad, pitch_rad, yaw_rad;
     double up_mps2;         /* acceleration of the body along the earth's vertical, without g */
+    double t_s;             /* scenario time, for what goes wrong at its time */
 } razor_truth_t;
 
 typedef razor_truth_t (*razor_world_t)(void *context);
@@ -25,6 +27,17 @@ typedef struct {
     double acceleration_bias_mps2;  /* 0.15 */
     double mount_roll_rad, mount_pitch_rad; /* constant misalignment, what the offset must remove */
     bool joined;                    /* both parts on one line */
+    double acceleration_scale;      /* 1: another unit than counts of 1/256 g */
+    double acceleration_sign;       /* 1; -1: upside down to the sensor, or a firmware with the other sign */
+    double acceleration_jump_mps2;  /* 0: bias that comes at ... */
+    double acceleration_jump_start_s;   /* 10 */
+    double acceleration_alias_mps2; /* 0: amplitude of a vibration that the sampling has brought down to ... */
+    double acceleration_alias_hz;   /* 2 */
+    double attitude_burst_rad;      /* 0: added to roll ... */
+    span_t attitude_burst;          /* 10 s, for three frames */
+    span_t mute, frozen, garbled;   /* 10 s, for 0 s: nothing is sent; the latest frame again and again; octets with a
+                                     * wrong bit */
+    double garbled_share;           /* 0.05 of the octets */
 } razor_config_t;
 
 extern const razor_config_t razor_default;

@@ -9,6 +9,7 @@
 #include "firmware/watch.h"
 #include "sim/devices/xbee.h"
 #include "sim/host/pace.h"
+#include "sim/scenarios/plant.h"
 #include "sim/scenarios/wires.h"
 
 #define START_LIMIT (60 * SIM_S)
@@ -19,7 +20,7 @@
 #define ANSWER_END (300 * SIM_MS)   /* of silence */
 
 static struct {
-    board_config_t config;
+    plant_t plant;
     metrics_record_t record;
     sim_time_t origin;
     FILE *telemetry;
@@ -29,63 +30,8 @@ static struct {
     bool asked;             /* #LASER has been typed */
     char answer[1024];      /* to it */
     sim_time_t answered;    /* its latest line; 0: none */
-    double ray_instant_s, outage_start_s, outage_s;
     line_fault_spec_t outage;
 } flight;
-
-/* Plant figures that --set plant.NAME=VALUE reaches. */
-typedef struct {
-    const char *name, *unit, *meaning;
-    double *field;
-} figure_t;
-
-static const figure_t figures[] = {
-    {"gain", "-", "thrust effectiveness", &flight.config.quadrotor.gain},
-    {"tau", "s", "motor time constant", &flight.config.quadrotor.tau_s},
-    {"damping", "1/s", "vertical damping D", &flight.config.quadrotor.damping_per_s},
-    {"hover_thrust", "N", "hover thrust per motor TH0", &flight.config.quadrotor.hover_thrust_n},
-    {"sag", "1/s", "battery sag", &flight.config.quadrotor.sag_per_s},
-    {"turbulence", "m/s2", "rms", &flight.config.quadrotor.turbulence_mps2},
-    {"turbulence_tau", "s", "correlation time", &flight.config.quadrotor.turbulence_tau_s},
-    {"attitude_rms", "rad", "roll and pitch motion", &flight.config.quadrotor.attitude_rms_rad},
-    {"tdelay", "s", "autopilot delay behind the pulse", &flight.config.quadrotor.actuator_delay_s},
-    {"climb_rate", "m/s/N", "climb rate that the throttle commands; 0: thrust", &flight.config.quadrotor.climb_rate_mps_per_n},
-    {"climb_neutral", "N", "throttle that commands no climb", &flight.config.quadrotor.climb_neutral_n},
-    {"climb_deadband", "N", "to either side of it", &flight.config.quadrotor.climb_deadband_n},
-    {"climb_lag", "s", "of the autopilot's speed loop", &flight.config.quadrotor.climb_lag_s},
-    {"climb_ceiling", "m/s", "fastest climb and descent of the autopilot", &flight.config.quadrotor.climb_ceiling_mps},
-    {"tug_rate", "1/s", "rope tugs", &flight.config.quadrotor.tug_rate_per_s},
-    {"tug", "m/s2", "of one rope tug", &flight.config.quadrotor.tug_mps2},
-    {"platform", "m", "height of the ramp's platform", &flight.config.terrain.height_m},
-    {"ray_noise", "mm", "of each ray, rms", &flight.config.scene.ray_sigma_mm},
-    {"common_noise", "mm", "of all rays of a scan, rms", &flight.config.scene.common_sigma_mm},
-    {"glitches", "-", "probability of a broken scan", &flight.config.scene.glitch_probability},
-    {"ray_instant", "s", "sampling instant after the start of a revolution", &flight.ray_instant_s},
-    {"outage_start", "s", "scenario time from which the scanner's line is mute", &flight.outage_start_s},
-    {"outage", "s", "for how long, from the first octet lost; 0: not at all", &flight.outage_s},
-    {"imu_noise", "rad", "of roll and pitch, rms", &flight.config.imu.angle_noise_rad},
-    {"imu_spikes", "-", "probability of a spike per angle", &flight.config.imu.spike_probability},
-    {"acc_noise", "m/s2", "accelerometer, rms", &flight.config.imu.acceleration_noise_mps2},
-    {"acc_bias", "m/s2", "accelerometer", &flight.config.imu.acceleration_bias_mps2},
-};
-#define FIGURE_COUNT (sizeof figures / sizeof figures[0])
-
-static const figure_t *figure_find(const char *name)
-{
-    for (size_t i = 0; i < FIGURE_COUNT; i++) {
-        if (strncmp(name, "plant.", 6) == 0 && strcmp(figures[i].name, name + 6) == 0) {
-            return &figures[i];
-        }
-    }
-    return NULL;
-}
-
-void flight_print_plant_figures(FILE *out)
-{
-    for (size_t i = 0; i < FIGURE_COUNT; i++) {
-        fprintf(out, "  plant.%-16s %-6s %s\n", figures[i].name, figures[i].unit, figures[i].meaning);
-    }
-}
 
 /* Both texts stand until the next call. */
 static const char *out_of_range(parameter_id_t id)
@@ -125,14 +71,6 @@ static const char *check_parameter(parameter_id_t id, const char *text)
     return parameters_set(&parameters, id, value) == PARAMETER_ACCEPTED ? NULL : out_of_range(id);
 }
 
-static const char *check_figure(const char *text)
-{
-    char *end;
-    double value = strtod(text, &end);
-
-    return *text == '\0' || *end != '\0' || !isfinite(value) ? "not a number" : NULL;
-}
-
 const char *flight_override(flight_options_t *options, const char *assignment)
 {
     const char *equals = strchr(assignment, '=');
@@ -149,10 +87,10 @@ const char *flight_override(flight_options_t *options, const char *assignment)
     snprintf(o->name, sizeof o->name, "%.*s", (int)(equals - assignment), assignment);
     snprintf(o->value, sizeof o->value, "%s", equals + 1);
     id = parameter_find(o->name, strlen(o->name));
-    if (id == PARAMETER_COUNT && figure_find(o->name) == NULL) {
+    if (id == PARAMETER_COUNT && !plant_known(o->name)) {
         return "unknown name";
     }
-    error = id == PARAMETER_COUNT ? check_figure(o->value) : check_parameter(id, o->value);
+    error = id == PARAMETER_COUNT ? plant_check(o->name, o->value) : check_parameter(id, o->value);
     options->override_count += error == NULL;
     return error;
 }
@@ -344,29 +282,28 @@ static void sample(FILE *csv)
 
 static void configure(const scenario_t *scenario, const flight_options_t *options)
 {
-    flight.config = board_config(options->seed);
-    flight.ray_instant_s = (double)flight.config.laser.ray_instant * 1e-9;
-    flight.config.terrain = scenario->platform ? terrain_platform : terrain_flat;
-    flight.config.quadrotor.tug_rate_per_s = scenario->tug_rate_per_s;
-    flight.config.quadrotor.climb_rate_mps_per_n = scenario->climb_rate_mps_per_n;
-    for (int i = 0; i < options->override_count; i++) {
-        const figure_t *figure = figure_find(options->overrides[i].name);
+    board_config_t *board = &flight.plant.board;
 
-        if (figure != NULL) {
-            *figure->field = strtod(options->overrides[i].value, NULL);
+    plant_init(&flight.plant, options->seed);
+    board->terrain = scenario->platform ? terrain_platform : terrain_flat;
+    board->quadrotor.tug_rate_per_s = scenario->tug_rate_per_s;
+    board->quadrotor.climb_rate_mps_per_n = scenario->climb_rate_mps_per_n;
+    for (int i = 0; i < options->override_count; i++) {
+        if (plant_known(options->overrides[i].name)) {
+            plant_set(&flight.plant, options->overrides[i].name, strtod(options->overrides[i].value, NULL));
         }
     }
+    plant_complete(&flight.plant);
     if (options->costs != NULL) {
-        flight.config.costs = options->costs;
+        board->costs = options->costs;
     }
-    flight.config.laser.ray_instant = (sim_time_t)llround(flight.ray_instant_s * 1e9);
-    flight.config.quadrotor.anchored = scenario->bench;
-    flight.config.quadrotor.bench_height_m = options->height_m;
+    board->quadrotor.anchored = scenario->bench;
+    board->quadrotor.bench_height_m = options->height_m;
 }
 
 static void power_on(const flight_options_t *options)
 {
-    board_power_on(&flight.config, terminal, NULL);
+    board_power_on(&flight.plant.board, terminal, NULL);
     if (options->realtime) {
         pace_begin();
         wires_connect(hear, NULL);
@@ -405,15 +342,15 @@ static bool start_up(const flight_options_t *options)
  * the scanner's octets are as many whatever the vehicle does. */
 static void prepare_outage(const flight_options_t *options)
 {
-    board_power_on(&flight.config, NULL, NULL);
+    board_power_on(&flight.plant.board, NULL, NULL);
     if (start_up(options)) {
-        kernel_run_until(at(flight.outage_start_s));
+        kernel_run_until(at(flight.plant.outage_start_s));
     }
     flight.outage = (line_fault_spec_t){.kind = LINE_FAULT_MUTE,
                                         .position = line_fault_octets(board_laser_faults()),
-                                        .argument = (unsigned)lround(flight.outage_s * 1e3)};
-    flight.config.laser_faults = &flight.outage;
-    flight.config.laser_fault_count = 1;
+                                        .argument = (unsigned)lround(flight.plant.outage_s * 1e3)};
+    flight.plant.board.laser_faults = &flight.outage;
+    flight.plant.board.laser_fault_count = 1;
     board_power_off();
 }
 
@@ -524,7 +461,7 @@ bool flight_run(const scenario_t *scenario, const flight_options_t *options, fli
         return false;
     }
     configure(scenario, options);
-    if (flight.outage_s > 0.0 && !scenario->bench && !options->realtime) {
+    if (flight.plant.outage_s > 0.0 && !scenario->bench && !options->realtime) {
         prepare_outage(options);
     }
     power_on(options);

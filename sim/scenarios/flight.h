@@ -41,9 +41,6 @@ typedef struct {
 /* Checks and stores one NAME=VALUE. NULL when fine, else what is wrong with it. */
 const char *flight_override(flight_options_t *options, const char *assignment);
 
-/* Names, units and meanings of the plant figures for --help. */
-void flight_print_plant_figures(FILE *out);
-
 /* False: the flight could not begin; *error says which device could not be opened, and why. */
 bool flight_run(const scenario_t *scenario, const flight_options_t *options, flight_result_t *result,
                 const char **error);

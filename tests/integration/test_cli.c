@@ -32,6 +32,9 @@ void test_usage_errors_exit_2_and_help_exits_0(void)
     TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --set KP=nan"));
     TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --set KP=1e9"));
     TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --set plant.tau=fast"));
+    TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --set plant.rays_lost=1.2"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "out of range, see `plomada list --plant`"));
+    TEST_ASSERT_EQUAL_INT(2, run("list --world"));
     TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --seed x"));
     TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --bogus"));
     TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --realtime"));
@@ -53,6 +56,21 @@ void test_list_and_params_name_everything(void)
     for (int i = 0; i < PARAMETER_COUNT; i++) {
         TEST_ASSERT_NOT_NULL(strstr(output, parameter_table[i].name));
     }
+}
+
+void test_the_plant_figures_are_listed_with_their_values_as_in_the_help_of_fly(void)
+{
+    static char listed[40000];
+    const char *figures;
+
+    TEST_ASSERT_EQUAL_INT(0, run("list --plant"));
+    figures = strstr(output, "  plant.airframe");
+    TEST_ASSERT_NOT_NULL(figures);
+    snprintf(listed, sizeof listed, "%s", figures);
+    TEST_ASSERT_NOT_NULL(strstr(listed, "  plant.hover_thrust          N           7.4  hover thrust per motor TH0\n"));
+    TEST_ASSERT_NOT_NULL(strstr(listed, "  plant.scan_frozen_start     s         never"));
+    TEST_ASSERT_EQUAL_INT(0, run("fly --help"));
+    TEST_ASSERT_NOT_NULL(strstr(output, listed));
 }
 
 void test_the_same_seed_gives_the_same_csv_and_another_seed_another(void)

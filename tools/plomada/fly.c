@@ -9,6 +9,7 @@
 #include "nearest.h"
 #include "output.h"
 #include "sim/scenarios/flight.h"
+#include "sim/scenarios/plant.h"
 #include "sim/ti/f021/flash.h"
 
 #define HEIGHT_MAX_M 5.0
@@ -40,7 +41,7 @@ static const char usage[] =
     "#LASER. It needs no commands; those of --set are typed soon after power-up.\n\n"
     "Exit status: 0 the flight met the scenario's expectations (real time and bench: it came to its end), 1 it did not,\n"
     "2 usage, or a file that cannot be read or written.\n\n"
-    "Plant figures:\n";
+    "Plant figures (as `plomada list --plant`): name, unit, value unless set, meaning\n";
 
 enum { OPT_SEED = 1, OPT_CSV, OPT_JSON, OPT_STORAGE, OPT_SET, OPT_TIMING, OPT_TRACE, OPT_COST_SCALE, OPT_REALTIME,
        OPT_LASER, OPT_IMU, OPT_XBEE, OPT_DURATION, OPT_HEIGHT, OPT_HELP };
@@ -373,7 +374,7 @@ int command_fly(int argc, char **argv)
     }
     if (request.help) {
         fputs(usage, stdout);
-        flight_print_plant_figures(stdout);
+        plant_print(stdout);
         return 0;
     }
     return run(&request);

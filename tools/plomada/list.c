@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "sim/scenarios/plant.h"
 #include "sim/scenarios/scenarios.h"
 
 static void print_scenario(const scenario_t *scenario)
@@ -28,12 +29,25 @@ static void print_scenario(const scenario_t *scenario)
     printf("\n");
 }
 
+static int print_plant(void)
+{
+    printf("The plant figures of --set plant.NAME=VALUE: name, unit, value unless set, meaning. Times are scenario time:\n"
+           "the reference comes at 1 s. Several at once combine.\n\n");
+    plant_print(stdout);
+    return 0;
+}
+
 int command_list(int argc, char **argv)
 {
+    if (argc == 2 && strcmp(argv[1], "--plant") == 0) {
+        return print_plant();
+    }
     if (argc > 1) {
-        int help = strcmp(argv[1], "--help") == 0;
+        int help = argc == 2 && strcmp(argv[1], "--help") == 0;
 
-        fprintf(help ? stdout : stderr, "usage: plomada list\nThe scenarios, what they type and what each must look like.\n");
+        fprintf(help ? stdout : stderr,
+                "usage: plomada list [--plant]\nThe scenarios, what they type and what each must look like; or, by --plant, "
+                "the figures of the\nvehicle, its sensors and the world that --set changes.\n");
         return help ? 0 : 2;
     }
     for (int i = 0; i < scenario_count; i++) {

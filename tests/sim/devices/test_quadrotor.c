@@ -963,3 +963,146 @@ void test_lost_signals_are_a_descent_at_the_ceiling(void)
     NEAR(0.01, -1.0, now().speed_mps);
     TEST_ASSERT_TRUE(now().height_m > 1.0);
 }
+
+/* ---- the second airframe, and what else may be told ---- */
+
+void test_the_second_airframe_hovers_at_the_hover_thrust_and_climbs_above_it(void)
+{
+    calm.airframe = 1.0;
+    calm.ground_effect = 0.0;
+    calm.sag_per_s = 0.0;
+    start(&calm, &terrain_flat, 1);
+    fly(1.0, 7.4 * 1.2);
+    TEST_ASSERT_TRUE(now().height_m > 0.3);
+    fly(8.0, 7.4);
+    NEAR(0.02, 0.0, now().speed_mps);
+    NEAR(0.03, 7.4, now().thrust_n);
+    fly(2.0, 7.4 * 1.1);
+    TEST_ASSERT_TRUE(now().speed_mps > 0.5 && now().speed_mps < 2.5);
+    fly(0.7, 0.0);
+    TEST_ASSERT_TRUE(now().speed_mps < -2.0 && !now().on_ground);
+}
+
+/* In ratios: a tenth more throttle is 1.1 to the power of 1.5, not a tenth more thrust; and its damping is another one. */
+void test_the_second_airframe_is_not_the_first(void)
+{
+    double speed[2];
+
+    for (int airframe = 0; airframe < 2; airframe++) {
+        calm.airframe = airframe;
+        start(&calm, &terrain_flat, 1);
+        fly(6.0, 7.4 * 1.1);
+        speed[airframe] = now().speed_mps;
+    }
+    TEST_ASSERT_TRUE(speed[1] > 1.5 * speed[0]);
+}
+
+void test_a_second_lag_comes_before_the_motors(void)
+{
+    calm.anchored = true;
+    calm.tau_s = 0.12;
+    calm.lag2_s = 0.12;
+    start(&calm, &terrain_flat, 1);
+    fly(2.0, 4.0);
+    wait(PWM);
+    quadrotor_pulse(quad, width(8.0));
+    /* Two equal lags t after the step: 1 - (1 + t / tau) exp(-t / tau); the pulses go on. */
+    fly(0.24 + 0.010, 8.0);
+    NEAR(0.06, 4.0 + 4.0 * (1.0 - 3.0 * exp(-2.0)), now().thrust_n);
+}
+
+void test_ground_effect_can_be_taken_away_and_strengthened(void)
+{
+    double height_m[3];
+
+    for (int i = 0; i < 3; i++) {
+        calm.ground_effect = (double[]){0.0, 1.0, 4.0}[i];
+        start(&calm, &terrain_flat, 1);
+        fly(3.0, 7.5);
+        height_m[i] = now().height_m;
+    }
+    TEST_ASSERT_TRUE(height_m[1] > height_m[0] + 0.01);
+    TEST_ASSERT_TRUE(height_m[2] > height_m[1] + 0.03);
+}
+
+void test_a_gust_lifts_in_its_time_alone(void)
+{
+    calm.gust_mps2 = 3.0;
+    calm.gust = (span_t){4.0, 0.5};
+    calm.ground_effect = 0.0;
+    calm.sag_per_s = 0.0;
+    start(&calm, &terrain_flat, 1);
+    quadrotor_set_origin(quad, 0);
+    fly(1.0, 8.5);
+    fly(2.9, 7.4);
+    NEAR(0.05, 0.0, now().speed_mps);
+    fly(0.6, 7.4);
+    /* 3 / D (1 - exp(-D t)) */
+    NEAR(0.08, 3.0 / 2.4 * (1.0 - exp(-2.4 * 0.5)) * exp(-2.4 * 0.02), now().speed_mps);
+    fly(3.0, 7.4);
+    NEAR(0.05, 0.0, now().speed_mps);
+}
+
+void test_a_tumbling_vehicle_turns_at_its_rate_until_it_lies_on_its_back(void)
+{
+    calm.tumble_radps = 400.0 * DEG;
+    calm.tumble_start_s = 3.0;
+    start(&calm, &terrain_flat, 1);
+    quadrotor_set_origin(quad, 0);
+    fly(2.9, 9.0);
+    NEAR(0.001, 0.0, now().roll_rad);
+    wait((sim_time_t)(3.1e9) - timeline_now());
+    NEAR(0.01, 40.0 * DEG, now().roll_rad);
+    fly(0.5, 9.0);
+    NEAR(0.02, M_PI, now().roll_rad);
+    TEST_ASSERT_TRUE(now().speed_mps < -2.0);
+}
+
+void test_the_floor_stands_still_under_a_standing_vehicle_and_passes_under_a_flying_one(void)
+{
+    double lowest_m = 9.0, highest_m = -9.0;
+
+    calm.floor.rms_m = 0.03;
+    start(&calm, &terrain_flat, 1);
+    fly(5.0, 3.0);
+    TEST_ASSERT_TRUE(now().on_ground);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, now().terrain_m);
+    fly(1.0, 8.5);
+    for (int i = 0; i < 2000; i++) {
+        fly(0.0136, 7.45);
+        lowest_m = fmin(lowest_m, now().terrain_m);
+        highest_m = fmax(highest_m, now().terrain_m);
+        NEAR(1e-9, now().altitude_m - now().terrain_m, now().height_m);
+    }
+    TEST_ASSERT_TRUE(lowest_m > -0.15 && lowest_m < -0.03);
+    TEST_ASSERT_TRUE(highest_m < 0.15 && highest_m > 0.03);
+}
+
+/* A step of the ground is not a speed of it. */
+void test_a_bar_lifts_a_low_vehicle_and_does_not_throw_it(void)
+{
+    double highest_m = 0.0;
+
+    calm.floor.bars_m = 0.06;
+    start(&calm, &terrain_flat, 1);
+    fly(0.6, 7.6);
+    for (int i = 0; i < 400; i++) {
+        fly(0.0136, 7.0);
+        highest_m = fmax(highest_m, now().altitude_m);
+    }
+    TEST_ASSERT_TRUE(highest_m < 0.12);
+    TEST_ASSERT_TRUE(now().on_ground);
+}
+
+void test_the_sag_ends_at_its_limit(void)
+{
+    calm.sag_limit = 0.05;
+    calm.sag_per_s = 0.001;
+    calm.ground_effect = 0.0;
+    start(&calm, &terrain_flat, 1);
+    quadrotor_set_origin(quad, 0);
+    fly(50.0, 8.0);
+    const double climb_mps = now().speed_mps;
+    fly(200.0, 8.0);
+    NEAR(0.005, climb_mps, now().speed_mps);
+}

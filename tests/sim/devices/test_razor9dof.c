@@ -76,7 +76,7 @@ void setUp(void)
     exact.spike_probability = 0.0;
     exact.acceleration_noise_mps2 = 0.0;
     exact.acceleration_bias_mps2 = 0.0;
-    truth = (razor_truth_t){0.0, 0.0, 0.0, 0.0};
+    truth = (razor_truth_t){0.0, 0.0, 0.0, 0.0, 0.0};
     samples = frames = octets = 0;
     length = 0;
     on_frame = NULL;
@@ -344,6 +344,140 @@ void test_a_crooked_mount_shows_in_the_angles_and_in_the_felt_gravity(void)
     NEAR(0.006, 256.0 * 0.9993908 * 0.9986295, decoded.z);
 }
 
+/* ---- what goes wrong ---- */
+
+/* 1 g of 256 counts told in g; upside down. */
+void test_another_unit_and_the_other_sign_are_on_all_axes(void)
+{
+    truth = (razor_truth_t){.roll_rad = 60.0 * DEG, .pitch_rad = 30.0 * DEG};
+    exact.acceleration_scale = 1.0 / 64.0;
+    exact.acceleration_sign = -1.0;
+    expect_text("#A-C=2.00,-3.00,-1.73\r\n#YPR=0.00,30.00,60.00\r\n");
+}
+
+void test_a_bias_jumps_at_its_time(void)
+{
+    exact.acceleration_jump_mps2 = -G / 2.0;
+    exact.acceleration_jump_start_s = 2.0;
+    truth.t_s = 1.999;
+    start(1);
+    run_frames(2);
+    NEAR(0.006, 256.0, decoded.z);
+    truth.t_s = 2.0;
+    run_frames(2);
+    NEAR(0.006, 128.0, decoded.z);
+}
+
+void test_an_aliased_vibration_oscillates_with_its_amplitude(void)
+{
+    exact.acceleration_alias_mps2 = G / 4.0;
+    exact.acceleration_alias_hz = 0.5;
+    start(1);
+    for (int k = 0; k < 8; k++) {
+        static const double sine[] = {0.0, 0.70711, 1.0, 0.70711, 0.0, -0.70711, -1.0, -0.70711};
+
+        truth.t_s = 12.0 + k * 0.25;
+        run_frames(2);
+        NEAR(0.01, 256.0 + 64.0 * sine[k], decoded.z);
+    }
+}
+
+void test_a_burst_of_bad_attitudes_is_in_the_roll_alone_and_ends(void)
+{
+    exact.attitude_burst_rad = 60.0 * DEG;
+    exact.attitude_burst = (span_t){5.0, 0.075};
+    truth.roll_rad = 2.0 * DEG;
+    truth.t_s = 5.05;
+    start(1);
+    run_frames(1);
+    NEAR(0.006, 62.0, decoded.roll);
+    NEAR(0.006, 0.0, decoded.pitch);
+    NEAR(0.006, 256.0 * sin(2.0 * DEG), decoded.y);
+    truth.t_s = 5.08;
+    run_frames(2);
+    NEAR(0.006, 2.0, decoded.roll);
+}
+
+void test_a_mute_sensor_sends_nothing_and_comes_back_with_whole_frames(void)
+{
+    exact.mute = (span_t){1.0, 0.5};
+    truth.t_s = 0.5;
+    start(1);
+    run_until(1 * SIM_S);
+    const unsigned before = frames;
+    TEST_ASSERT_UINT_WITHIN(1, 39, before);
+    truth.t_s = 1.0;
+    run_until(1100 * SIM_MS);
+    const unsigned silent = octets;
+    run_until(3 * SIM_S);
+    TEST_ASSERT_EQUAL_UINT(silent, octets);
+    truth.t_s = 1.5;
+    run_until(4 * SIM_S);
+    TEST_ASSERT_UINT_WITHIN(2, before + 40, frames);
+}
+
+/* Noise and all, to the last character, at the same pace. */
+void test_a_frozen_sensor_repeats_its_latest_frame(void)
+{
+    char latest[sizeof kept];
+
+    exact = razor_default;
+    exact.frozen = (span_t){1.0, 10.0};
+    on_frame = keep_text;
+    start(1);
+    run_frames(3);
+    truth = (razor_truth_t){.roll_rad = 1.0, .t_s = 1.0};
+    run_frames(2);
+    memcpy(latest, kept, sizeof latest);
+    for (int k = 0; k < 20; k++) {
+        const sim_time_t from = timeline_now();
+
+        run_frames(1);
+        TEST_ASSERT_EQUAL_STRING(latest, kept);
+        TEST_ASSERT_INT64_WITHIN(SIM_MS, 25 * SIM_MS, timeline_now() - from);
+    }
+    truth.t_s = 11.0;
+    run_frames(2);
+    TEST_ASSERT_TRUE(strcmp(latest, kept) != 0);
+    NEAR(1.5, 1.0 / DEG, decoded.roll);
+}
+
+static char garbled[20000];
+static size_t garbled_count;
+
+static void gather(void *context, unsigned octet, double bit_ns)
+{
+    (void)context;
+    (void)bit_ns;
+    if (garbled_count < sizeof garbled) {
+        garbled[garbled_count++] = (char)octet;
+    }
+}
+
+/* The level frame, octet by octet: of a struck one exactly one bit is wrong, be it a digit, a comma or the line's end. */
+void test_a_garbled_sensor_flips_one_bit_of_some_octets(void)
+{
+    static const char clean[] = "#A-C=0.00,0.00,256.00\r\n#YPR=0.00,0.00,0.00\r\n";
+    const size_t length_of_clean = sizeof clean - 1;
+    unsigned struck = 0, above = 0;
+
+    exact.garbled = (span_t){0.0, 1000.0};
+    garbled_count = 0;
+    razor = razor9dof_create(&exact, world, &truth, 1, gather, NULL);
+    razor9dof_power(razor, true);
+    run_until(8 * SIM_S);
+    TEST_ASSERT_TRUE(garbled_count > 13000);
+    for (size_t i = 0; i < garbled_count; i++) {
+        const unsigned wrong = ((unsigned char)garbled[i] ^ (unsigned char)clean[i % length_of_clean]) & 0xFFU;
+
+        TEST_ASSERT_TRUE_MESSAGE((wrong & (wrong - 1U)) == 0U, "one bit at most");
+        struck += wrong != 0U;
+        above += wrong == 128U;
+    }
+    NEAR(0.01, 0.05, (double)struck / (double)garbled_count);
+    NEAR(0.04, 0.125, (double)above / struck);
+}
+
 typedef struct {
     double sum, square;
     unsigned n;
@@ -495,7 +629,7 @@ void test_a_seed_repeats_its_octets_and_another_seed_does_not(void)
 
 void test_the_longest_frame_fits_the_period(void)
 {
-    truth = (razor_truth_t){-179.99 * DEG, -80.5 * DEG, -170.25 * DEG, 8.0 * G};
+    truth = (razor_truth_t){-179.99 * DEG, -80.5 * DEG, -170.25 * DEG, 8.0 * G, 0.0};
     on_frame = keep_text;
     start(1);
     run_frames(3);

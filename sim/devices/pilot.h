@@ -1,0 +1,41 @@
+/* The pilot on the ground with the remote control: at given times takes the throttle through the multiplexer and holds a
+ * height by eye. Sees the vehicle late, wants a climb in proportion to what is missing, and moves the stick with some
+ * inertia and unrest. The receiver repeats the stick every 20 ms. */
+#ifndef SIM_DEVICES_PILOT_H
+#define SIM_DEVICES_PILOT_H
+
+#include <stdbool.h>
+
+#include "sim/devices/rc_mux.h"
+#include "sim/devices/span.h"
+
+typedef struct {
+    double t_s;             /* scenario time */
+    double height_m, climb_mps;
+} pilot_view_t;
+
+typedef struct {
+    span_t turn;            /* 10 s, for 0 s: never takes it */
+    double every_s;         /* 0: once; else again, so long after the start of the turn before */
+    double height_m;        /* 0.6; 0: lands it and leaves the throttle down */
+    double trim_n;          /* 7: where the stick is when the turn begins */
+    double delay_s;         /* 0.2, eye to hand */
+    double unrest_n;        /* 0.05 rms */
+} pilot_config_t;
+
+#define PILOT_DEFAULT \
+    {.turn = {10.0, 0.0}, .every_s = 0.0, .height_m = 0.6, .trim_n = 7.0, .delay_s = 0.2, .unrest_n = 0.05}
+
+typedef struct {
+    pilot_view_t (*look)(void *context);
+    void (*take)(void *context, bool take);     /* the switch: true: the throttle is the pilot's */
+    rc_pulse_t stick;                           /* a pulse of the receiver */
+    void *context;
+} pilot_hands_t;
+
+typedef struct pilot pilot_t;
+
+pilot_t *pilot_create(const pilot_config_t *config, const pilot_hands_t *hands, unsigned long seed);
+void pilot_destroy(pilot_t *pilot);     /* NULL: nothing */
+
+#endif

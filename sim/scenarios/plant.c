@@ -1,0 +1,176 @@
+#include "sim/scenarios/plant.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LARGE 1e9
+#define DEG (M_PI / 180.0)
+
+typedef struct {
+    const char *name, *unit;
+    double least, most;
+    size_t field;           /* a double in a plant_t */
+    double scale;           /* the field's unit in the figure's */
+    const char *meaning;
+} figure_t;
+
+#define AT(field) offsetof(plant_t, field)
+#define QUAD(field) offsetof(plant_t, board.quadrotor.field)
+#define SCENE(field) offsetof(plant_t, board.scene.field)
+#define IMU(field) offsetof(plant_t, board.imu.field)
+#define PILOT(field) offsetof(plant_t, board.pilot.field)
+
+static const figure_t figures[] = {
+    {"airframe", "-", 0, 1, QUAD(airframe), 1, "0: thrust in proportion, one lag; 1: by momentum theory, two lags"},
+    {"gain", "-", 0, 100, QUAD(gain), 1, "thrust effectiveness (airframe 0)"},
+    {"tau", "s", 1e-4, 100, QUAD(tau_s), 1, "motor time constant (airframe 0)"},
+    {"damping", "1/s", 0, 100, QUAD(damping_per_s), 1, "vertical damping D (airframe 0)"},
+    {"exponent", "-", 0.2, 5, QUAD(rotors.exponent), 1, "thrust goes with the throttle to the power of it (airframe 1)"},
+    {"spin_up", "s", 1e-3, 100, QUAD(rotors.spin_up_s), 1, "the rotors' lag upwards (airframe 1)"},
+    {"slow_down", "s", 1e-3, 100, QUAD(rotors.slow_down_s), 1, "and downwards (airframe 1)"},
+    {"inflow_lag", "s", 1e-2, 100, QUAD(rotors.inflow_lag_s), 1, "of the air through the rotors (airframe 1)"},
+    {"drag", "1/m", 0, 100, QUAD(rotors.drag_per_m), 1, "deceleration by the square of the climb (airframe 1)"},
+    {"tilt_drag", "-", 0, 100, QUAD(rotors.tilt_drag), 1, "that much more by the square of the tilt's sine (airframe 1)"},
+    {"hover_thrust", "N", 0.1, 100, QUAD(hover_thrust_n), 1, "hover thrust per motor TH0"},
+    {"sag", "1/s", -1, 1, QUAD(sag_per_s), 1, "battery sag: growth of the hover thrust's command"},
+    {"sag_limit", "-", 0, 10, QUAD(sag_limit), 1, "and as a share of it where that growth ends"},
+    {"turbulence", "m/s2", 0, 100, QUAD(turbulence_mps2), 1, "rms"},
+    {"turbulence_tau", "s", 1e-3, 1000, QUAD(turbulence_tau_s), 1, "correlation time"},
+    {"gust", "m/s2", -100, 100, QUAD(gust_mps2), 1, "one gust, upwards"},
+    {"gust_start", "s", -LARGE, LARGE, QUAD(gust.start_s), 1, "scenario time at which it begins"},
+    {"gust_length", "s", 0, LARGE, QUAD(gust.length_s), 1, "and how long it blows"},
+    {"ground_effect", "-", 0, 10, QUAD(ground_effect), 1, "times that of Cheeseman and Bennett"},
+    {"attitude_rms", "rad", 0, 1, QUAD(attitude_rms_rad), 1, "roll and pitch motion"},
+    {"tumble", "deg/s", -10000, 10000, QUAD(tumble_radps), DEG, "roll rate of a vehicle that turns on its back"},
+    {"tumble_start", "s", -LARGE, LARGE, QUAD(tumble_start_s), 1, "scenario time at which it begins"},
+    {"tdelay", "s", 0, 0.3, QUAD(actuator_delay_s), 1, "autopilot delay behind the pulse"},
+    {"lag2", "s", 0, 100, QUAD(lag2_s), 1, "a second lag, of the autopilot; 0: none"},
+    {"climb_rate", "m/s/N", 0, 100, QUAD(climb_rate_mps_per_n), 1, "climb rate that the throttle commands; 0: thrust"},
+    {"climb_neutral", "N", 0, 100, QUAD(climb_neutral_n), 1, "throttle that commands no climb"},
+    {"climb_deadband", "N", 0, 100, QUAD(climb_deadband_n), 1, "to either side of it"},
+    {"climb_lag", "s", 1e-3, 100, QUAD(climb_lag_s), 1, "of the autopilot's speed loop"},
+    {"climb_ceiling", "m/s", 0, 100, QUAD(climb_ceiling_mps), 1, "fastest climb and descent of the autopilot"},
+    {"tug_rate", "1/s", 0, 1000, QUAD(tug_rate_per_s), 1, "rope tugs"},
+    {"tug", "m/s2", -100, 100, QUAD(tug_mps2), 1, "of one rope tug"},
+    {"platform", "m", -10, 10, AT(board.terrain.height_m), 1, "height of the ramp's platform"},
+    {"floor_rms_mm", "mm", 0, 10000, QUAD(floor.rms_m), 1e-3, "uneven floor under the flight"},
+    {"floor_tau", "s", 1e-2, 1000, QUAD(floor.tau_s), 1, "its correlation time at the speed flown"},
+    {"bars_mm", "mm", -1000, 1000, QUAD(floor.bars_m), 1e-3, "bars on the floor"},
+    {"bars_period", "s", 1e-2, 1000, QUAD(floor.bars_period_s), 1, "from bar to bar"},
+    {"bars_share", "-", 0, 1, QUAD(floor.bars_share), 1, "of that is a bar"},
+    {"edge_m", "m", -10, 10, SCENE(edge_m), 1, "the beam's ground lies that much higher than the gear's; < 0: lower"},
+    {"edge_start", "s", -LARGE, LARGE, SCENE(edge_start_s), 1, "scenario time from which on"},
+    {"ray_noise", "mm", 0, 1000, SCENE(ray_sigma_mm), 1, "of each ray, rms"},
+    {"common_noise", "mm", 0, 1000, SCENE(common_sigma_mm), 1, "of all rays of a scan, rms"},
+    {"glitches", "-", 0, 1, SCENE(glitch_probability), 1, "probability of a broken scan"},
+    {"rays_lost", "-", 0, 1, SCENE(rays_lost), 1, "share of the rays, each scan others, that are codes below 20"},
+    {"rays_lost_start", "s", -LARGE, LARGE, SCENE(rays_lost_span.start_s), 1, "scenario time from which on; -1000: from power-on"},
+    {"rays_lost_length", "s", 0, LARGE, SCENE(rays_lost_span.length_s), 1, "for how long"},
+    {"sight_blocked", "-", 0, 1, SCENE(sight_blocked), 1, "share of the rays that see a thing in front of the mirror"},
+    {"block_mm", "mm", 20, 4000, SCENE(block_mm), 1, "at that distance, with ray_noise"},
+    {"sight_blocked_start", "s", -LARGE, LARGE, SCENE(sight_blocked_span.start_s), 1, "scenario time from which on; -1000: from power-on"},
+    {"sight_blocked_length", "s", 0, LARGE, SCENE(sight_blocked_span.length_s), 1, "for how long"},
+    {"scan_frozen_start", "s", -LARGE, LARGE, SCENE(frozen.start_s), 1, "scenario time from which scans repeat, with new time stamps"},
+    {"scan_frozen_length", "s", 0, LARGE, SCENE(frozen.length_s), 1, "for how long"},
+    {"ray_instant", "s", 0, 0.1, AT(ray_instant_s), 1, "sampling instant after the start of a revolution"},
+    {"clock_ppm", "ppm", -10000, 10000, AT(clock_ppm), 1, "the scanner's clock against true time"},
+    {"outage_start", "s", -LARGE, LARGE, AT(outage_start_s), 1, "scenario time from which the scanner's line is mute"},
+    {"outage", "s", 0, 600, AT(outage_s), 1, "for how long, from the first octet lost; 0: not at all"},
+    {"imu_noise", "rad", 0, 1, IMU(angle_noise_rad), 1, "of roll and pitch, rms"},
+    {"imu_spikes", "-", 0, 1, IMU(spike_probability), 1, "probability of a spike per angle"},
+    {"attitude_burst_deg", "deg", -180, 180, IMU(attitude_burst_rad), DEG, "added to the roll that the IMU tells"},
+    {"attitude_burst_start", "s", -LARGE, LARGE, IMU(attitude_burst.start_s), 1, "scenario time from which on"},
+    {"attitude_burst_length", "s", 0, LARGE, IMU(attitude_burst.length_s), 1, "for how long; a frame is 0.025"},
+    {"acc_noise", "m/s2", 0, 100, IMU(acceleration_noise_mps2), 1, "accelerometer, rms"},
+    {"acc_bias", "m/s2", -100, 100, IMU(acceleration_bias_mps2), 1, "accelerometer"},
+    {"acc_scale", "-", 0, 1000, IMU(acceleration_scale), 1, "counts for each 1/256 g; 0.00390625: it tells g"},
+    {"acc_sign", "-", -1, 1, IMU(acceleration_sign), 1, "-1: all its axes the other way round"},
+    {"acc_jump", "m/s2", -100, 100, IMU(acceleration_jump_mps2), 1, "bias that comes in flight"},
+    {"acc_jump_start", "s", -LARGE, LARGE, IMU(acceleration_jump_start_s), 1, "scenario time at which"},
+    {"acc_alias", "m/s2", 0, 100, IMU(acceleration_alias_mps2), 1, "amplitude of a vibration that sampling makes a slow one"},
+    {"acc_alias_hz", "Hz", 0, 1000, IMU(acceleration_alias_hz), 1, "of so many oscillations"},
+    {"imu_mute_start", "s", -LARGE, LARGE, IMU(mute.start_s), 1, "scenario time from which the IMU sends nothing"},
+    {"imu_mute", "s", 0, LARGE, IMU(mute.length_s), 1, "for how long; 0: not at all"},
+    {"imu_frozen_start", "s", -LARGE, LARGE, IMU(frozen.start_s), 1, "scenario time from which it repeats its latest frame"},
+    {"imu_frozen", "s", 0, LARGE, IMU(frozen.length_s), 1, "for how long; 0: not at all"},
+    {"imu_garbled_start", "s", -LARGE, LARGE, IMU(garbled.start_s), 1, "scenario time from which octets of it have a wrong bit"},
+    {"imu_garbled", "s", 0, LARGE, IMU(garbled.length_s), 1, "for how long; 0: not at all"},
+    {"imu_garbled_share", "-", 0, 1, IMU(garbled_share), 1, "share of those octets"},
+    {"pilot_start", "s", -LARGE, LARGE, PILOT(turn.start_s), 1, "scenario time at which the pilot takes the throttle"},
+    {"pilot", "s", 0, LARGE, PILOT(turn.length_s), 1, "for how long; 0: never (see also parameter SEL)"},
+    {"pilot_every", "s", 0, LARGE, PILOT(every_s), 1, "and again, so long after the start of the turn before; 0: once"},
+    {"pilot_height", "m", 0, 10, PILOT(height_m), 1, "height that the pilot holds; 0: lands it"},
+    {"pilot_trim", "N", 0, 12, PILOT(trim_n), 1, "where the stick is when the turn begins"},
+    {"pilot_delay", "s", 0, 1.2, PILOT(delay_s), 1, "from the pilot's eye to the hand"},
+};
+#define FIGURE_COUNT (sizeof figures / sizeof figures[0])
+
+static const figure_t *find(const char *name)
+{
+    for (size_t i = 0; i < FIGURE_COUNT; i++) {
+        if (strncmp(name, "plant.", 6) == 0 && strcmp(figures[i].name, name + 6) == 0) {
+            return &figures[i];
+        }
+    }
+    return NULL;
+}
+
+static double *field_of(plant_t *plant, const figure_t *figure)
+{
+    return (double *)(void *)((char *)plant + figure->field);
+}
+
+void plant_init(plant_t *plant, unsigned long seed)
+{
+    *plant = (plant_t){.board = board_config(seed)};
+    plant->ray_instant_s = (double)plant->board.laser.ray_instant * 1e-9;
+    plant->outage_start_s = 10.0;
+}
+
+bool plant_known(const char *name)
+{
+    return find(name) != NULL;
+}
+
+const char *plant_check(const char *name, const char *text)
+{
+    const figure_t *figure = find(name);
+    char *end;
+    const double value = strtod(text, &end);
+
+    if (*text == '\0' || *end != '\0' || !isfinite(value)) {
+        return "not a number";
+    }
+    return value < figure->least || value > figure->most ? "out of range, see `plomada list --plant`" : NULL;
+}
+
+void plant_set(plant_t *plant, const char *name, double value)
+{
+    const figure_t *figure = find(name);
+
+    *field_of(plant, figure) = value * figure->scale;
+}
+
+void plant_complete(plant_t *plant)
+{
+    plant->board.laser.ray_instant = (sim_time_t)llround(plant->ray_instant_s * 1e9);
+    plant->board.laser.clock_ratio = 1.0 + plant->clock_ppm * 1e-6;
+}
+
+void plant_print(FILE *out)
+{
+    plant_t plant;
+
+    plant_init(&plant, 1);
+    plant.board.terrain = terrain_platform;
+    for (size_t i = 0; i < FIGURE_COUNT; i++) {
+        const figure_t *figure = &figures[i];
+        char value[32];
+
+        snprintf(value, sizeof value, "%.4g", *field_of(&plant, figure) / figure->scale);
+        fprintf(out, "  plant.%-21s %-6s %8s  %s\n", figure->name, figure->unit,
+                strcmp(value, "1e+09") == 0 ? "never" : value, figure->meaning);
+    }
+}

@@ -1,0 +1,293 @@
+#include "sim/devices/scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sim/devices/urg04lx.h"
+#include "unity.h"
+
+#define FIRST 372
+#define LAST 406
+#define RAYS (LAST - FIRST + 1)
+#define NEAR(tolerance, expected, actual) TEST_ASSERT_DOUBLE_WITHIN(tolerance, expected, actual)
+
+static quadrotor_t *quad;
+static quadrotor_config_t still;        /* anchored at height_m */
+static scene_config_t calm;             /* no noise */
+static scene_t scene;
+static int ray_mm[RAYS];
+
+void setUp(void)
+{
+    timeline_reset();
+    quad = NULL;
+    still = quadrotor_default;
+    still.anchored = true;
+    still.bench_height_m = 0.6;
+    calm = scene_default;
+    calm.ray_sigma_mm = calm.common_sigma_mm = 0.0;
+}
+
+void tearDown(void)
+{
+    quadrotor_destroy(quad);
+}
+
+/* At scenario time 0. */
+static void start(unsigned long seed)
+{
+    quadrotor_destroy(quad);
+    timeline_reset();
+    quad = quadrotor_create(&still, &terrain_flat, seed);
+    quadrotor_set_origin(quad, 0);
+    scene_init(&scene, &calm, quad, seed);
+}
+
+static void at(double t_s)
+{
+    timeline_move_to((sim_time_t)llround(t_s * 1e9));
+}
+
+static void scan(void)
+{
+    scene_scan(&scene, FIRST, LAST, ray_mm);
+}
+
+static int rays_at(int mm)
+{
+    int count = 0;
+
+    for (int i = 0; i < RAYS; i++) {
+        count += ray_mm[i] == mm;
+    }
+    return count;
+}
+
+/* Sensor to mirror 105 mm, mirror to gear 100 mm. */
+void test_every_ray_of_the_front_mirror_sees_the_ground_below(void)
+{
+    start(1);
+    scan();
+    TEST_ASSERT_EQUAL_INT(RAYS, rays_at(805));
+}
+
+void test_lost_rays_come_as_codes_that_the_sensor_knows_in_their_share(void)
+{
+    const double shares[] = {0.2, 0.62, 0.9};
+
+    for (int k = 0; k < 3; k++) {
+        int lost = 0;
+        bool moved = false;
+        int first[RAYS];
+
+        calm.rays_lost = shares[k];
+        start(1);
+        for (int n = 0; n < 400; n++) {
+            scan();
+            for (int i = 0; i < RAYS; i++) {
+                const int mm = ray_mm[i];
+
+                TEST_ASSERT_TRUE(mm == 805 || mm == 0 || mm == 1 || mm == 7 || mm == 9);
+                lost += mm < 20;
+                moved = moved || (n > 0 && (mm < 20) != (first[i] < 20));
+            }
+            memcpy(first, ray_mm, sizeof first);
+        }
+        NEAR(0.02, shares[k], lost / (400.0 * RAYS));
+        TEST_ASSERT_TRUE(moved);
+    }
+}
+
+void test_rays_are_lost_in_their_time_alone(void)
+{
+    calm.rays_lost = 1.0;
+    calm.rays_lost_span = (span_t){5.0, 2.0};
+    start(1);
+    at(4.99);
+    scan();
+    TEST_ASSERT_EQUAL_INT(RAYS, rays_at(805));
+    at(5.0);
+    scan();
+    TEST_ASSERT_EQUAL_INT(0, rays_at(805));
+    at(7.0);
+    scan();
+    TEST_ASSERT_EQUAL_INT(RAYS, rays_at(805));
+}
+
+/* The same rays in each scan, next to each other: a leg stands still on the vehicle. */
+void test_a_blocked_share_of_the_rays_asked_for_sees_the_thing_in_front(void)
+{
+    calm.sight_blocked = 0.45;
+    start(1);
+    for (int n = 0; n < 3; n++) {
+        scan();
+        for (int i = 0; i < RAYS; i++) {
+            TEST_ASSERT_EQUAL_INT(i < 16 ? 150 : 805, ray_mm[i]);
+        }
+    }
+}
+
+void test_a_blocked_ray_has_the_noise_of_a_ray_and_knows_no_height(void)
+{
+    double sum = 0.0, squares = 0.0;
+
+    calm.sight_blocked = 1.0;
+    calm.block_mm = 205.0;
+    calm.ray_sigma_mm = 5.0;
+    start(1);
+    for (int n = 0; n < 200; n++) {
+        scan();
+        for (int i = 0; i < RAYS; i++) {
+            sum += ray_mm[i] - 205.0;
+            squares += (ray_mm[i] - 205.0) * (ray_mm[i] - 205.0);
+        }
+    }
+    NEAR(0.3, 0.0, sum / (200 * RAYS));
+    NEAR(0.3, 5.0, sqrt(squares / (200 * RAYS)));
+}
+
+void test_sight_is_blocked_in_its_time_alone(void)
+{
+    calm.sight_blocked = 1.0;
+    calm.sight_blocked_span = (span_t){5.0, 2.0};
+    start(1);
+    at(4.99);
+    scan();
+    TEST_ASSERT_EQUAL_INT(0, rays_at(150));
+    at(6.99);
+    scan();
+    TEST_ASSERT_EQUAL_INT(RAYS, rays_at(150));
+    at(7.0);
+    scan();
+    TEST_ASSERT_EQUAL_INT(0, rays_at(150));
+}
+
+void test_behind_an_edge_the_beam_sees_a_lower_ground(void)
+{
+    calm.edge_m = -0.5;
+    calm.edge_start_s = 2.0;
+    start(1);
+    at(1.99);
+    scan();
+    TEST_ASSERT_EQUAL_INT(RAYS, rays_at(805));
+    at(2.0);
+    scan();
+    TEST_ASSERT_EQUAL_INT(RAYS, rays_at(1305));
+}
+
+void test_lost_and_blocked_rays_combine(void)
+{
+    int codes = 0, blocked = 0, ground = 0;
+
+    calm.rays_lost = 0.5;
+    calm.sight_blocked = 0.5;
+    start(1);
+    for (int n = 0; n < 200; n++) {
+        scan();
+        blocked += rays_at(150);
+        ground += rays_at(805);
+    }
+    codes = 200 * RAYS - blocked - ground;
+    NEAR(0.03, 0.5, codes / (200.0 * RAYS));
+    NEAR(0.03, 0.25, blocked / (200.0 * RAYS));
+}
+
+/* 4 characters of 6 bits, offset 30h, behind the echo's LF and the status line: the stamp of a reply to MS. */
+static long stamp_of(const char *reply)
+{
+    const char *at_status = strchr(reply, '\n') + 1;
+    const char *text = strchr(at_status, '\n') + 1;
+    long value = 0;
+
+    for (int i = 0; i < 4; i++) {
+        value = value * 64 + (text[i] - '0');
+    }
+    return value;
+}
+
+static char reply[4000], frames[8][200];
+static size_t reply_length;
+static int frame_count;
+
+static void listen(void *context, unsigned octet, double bit_ns)
+{
+    (void)context;
+    (void)bit_ns;
+    reply[reply_length++] = (char)octet;
+    reply[reply_length] = '\0';
+    if (reply_length > 2 && strcmp(&reply[reply_length - 2], "\n\n") == 0) {
+        if (strncmp(reply, "MS", 2) == 0 && reply_length > 90 && frame_count < 8) {
+            strcpy(frames[frame_count++], reply);
+        }
+        reply_length = 0;
+    }
+}
+
+static void run_for(double seconds)
+{
+    const sim_time_t end = timeline_now() + (sim_time_t)(seconds * 1e9);
+
+    while (timeline_next() <= end) {
+        timeline_move_to(timeline_next());
+        timeline_run_due();
+    }
+    timeline_move_to(end);
+}
+
+static void tell(urg04lx_t *urg, const char *command)
+{
+    for (; *command != '\0'; command++) {
+        run_for(0.0001);
+        urg04lx_receive(urg, (unsigned char)*command, 1e9 / 115200.0);
+    }
+    run_for(0.3);
+}
+
+/* On the wire: from the frozen scan on the rays repeat to the last character, and the stamps go on by a revolution. */
+void test_a_frozen_scan_has_running_time_stamps(void)
+{
+    calm.ray_sigma_mm = 5.0;
+    calm.frozen = (span_t){9.5, 1000.0};
+    start(1);
+    urg04lx_t *urg = urg04lx_create(&urg04lx_default, scene_scan, &scene, listen, NULL);
+    urg04lx_power(urg, true);
+    run_for(8.2);
+    tell(urg, "SCIP2.0\n");
+    tell(urg, "BM\n");
+    reply_length = 0;
+    frame_count = 0;
+    tell(urg, "MS0372040601000\n");
+    run_for(0.9);
+    urg04lx_destroy(urg);
+    TEST_ASSERT_EQUAL_INT(8, frame_count);
+    const char *rays[8];
+    int repeated = 0;
+    for (int i = 0; i < 8; i++) {
+        rays[i] = strchr(strchr(strchr(frames[i], '\n') + 1, '\n') + 1, '\n') + 1;
+        if (i > 0) {
+            TEST_ASSERT_EQUAL_INT(100, stamp_of(frames[i]) - stamp_of(frames[i - 1]));
+            repeated += strcmp(rays[i], rays[i - 1]) == 0;
+        }
+    }
+    TEST_ASSERT_TRUE(repeated >= 2 && repeated <= 6);
+    TEST_ASSERT_EQUAL_STRING(rays[6], rays[7]);
+    TEST_ASSERT_TRUE(strcmp(rays[0], rays[1]) != 0);
+}
+
+void test_a_scan_that_thaws_measures_again(void)
+{
+    calm.frozen = (span_t){1.0, 1.0};
+    still.anchored = true;
+    start(1);
+    at(0.5);
+    scan();
+    at(1.5);
+    calm.edge_m = -1.0;
+    scene.config.edge_m = -1.0;
+    scan();
+    TEST_ASSERT_EQUAL_INT(RAYS, rays_at(805));
+    at(2.0);
+    scan();
+    TEST_ASSERT_EQUAL_INT(RAYS, rays_at(1805));
+}
