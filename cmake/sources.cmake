@@ -2,9 +2,9 @@
 set(CONTROL_SOURCES
     control/est/actuator.c control/altitude.c control/attitude.c control/calibration.c control/est/cascade.c control/est/deadband.c
     control/descent.c control/est/est_law.c control/est/estimator.c control/flight.c control/est/hover.c control/median.c
-    control/parameters.c control/pid.c control/pidt.c control/ray_clock.c control/supervisor.c control/thrust.c)
+    control/parameters.c control/pid.c control/pidt.c control/ray_clock.c control/reach.c control/supervisor.c control/thrust.c)
 set(DRIVERS_SOURCES
-    drivers/decimal.c drivers/flight_log.c drivers/parameter_image.c drivers/razor.c drivers/scip_info.c
+    drivers/decimal.c drivers/flight_log.c drivers/line_sum.c drivers/parameter_image.c drivers/razor.c drivers/scip_info.c
     drivers/scip_layout.c drivers/scip_parser.c drivers/scip_request.c drivers/scip_time.c drivers/telecommand.c
     drivers/telemetry.c drivers/urg_link.c)
 set(BSP_SOURCES
@@ -12,7 +12,7 @@ set(BSP_SOURCES
     bsp/watchdog.c)
 set(FIRMWARE_SOURCES
     firmware/alive.c firmware/answer.c firmware/boot.c firmware/calibrator.c firmware/commands.c firmware/fault.c
-    firmware/flight_recorder.c firmware/ground.c firmware/imu_port.c firmware/laser_port.c firmware/main.c
+    firmware/flight_recorder.c firmware/ground.c firmware/imu_port.c firmware/laser_port.c firmware/listing.c firmware/main.c
     firmware/monitor.c firmware/parameter_store.c firmware/servers.c firmware/task_control.c firmware/task_imu.c
     firmware/task_receive_comm.c firmware/task_receive_laser.c firmware/task_send_comm.c firmware/task_send_laser.c
     firmware/uart_port.c firmware/verb_calibrate.c firmware/verb_laser.c firmware/verb_log.c firmware/verb_perf.c

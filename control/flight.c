@@ -272,6 +272,20 @@ static bool uses_estimate(const flight_t *flight)
     }
 }
 
+/* Judged where the law acts: what the supervisor does by itself goes elsewhere. */
+static void judge_reach(flight_t *flight)
+{
+    const supervisor_t *supervisor = &flight->supervisor;
+    const bool acts = supervisor->state == FLIGHT_TAKEOFF || supervisor->state == FLIGHT_FLYING;
+
+    if (!acts || supervisor->reference_m != flight->reach_m) {
+        reach_reset(&flight->reach);
+    }
+    flight->reach_m = supervisor->reference_m;
+    flight->out_of_reach =
+        acts && reach_step(&flight->reach, supervisor->height.height_mm - reference_mm(flight), supervisor->step_us);
+}
+
 static void write_outputs(const flight_t *flight, const parameters_t *parameters, flight_outputs_t *out)
 {
     const supervisor_t *supervisor = &flight->supervisor;
@@ -283,7 +297,8 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
     out->thrust_n = flight->thrust_n;
     out->pulse_us = thrust_to_pulse_us(flight->thrust_n);
     out->state = supervisor->state;
-    out->flags = (uint16_t)(supervisor->flags | (imu_missing ? FLIGHT_FLAG_ATTITUDE : 0U));
+    out->flags = (uint16_t)(supervisor->flags | (imu_missing ? FLIGHT_FLAG_ATTITUDE : 0U)
+                            | (flight->out_of_reach ? FLIGHT_FLAG_REACH : 0U));
     out->reference_m = supervisor->reference_m;
     out->estimate_mm = estimated ? estimator->now.height_m * 1000.0F : measured_mm;
     out->innovation_mm = estimated ? estimator->innovation_m * 1000.0F : NAN;
@@ -306,5 +321,6 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
     bumpless_transfer(flight, before, law_changed || action_changed);
     flight->thrust_n = between(0.0F, flight->setpoint_n + flight->transfer_n, THRUST_MAX_N);
     est_law_record_command(&flight->est, flight->thrust_n);
+    judge_reach(flight);
     write_outputs(flight, parameters, out);
 }

@@ -11,6 +11,7 @@
 #include "control/parameters.h"
 #include "control/pid.h"
 #include "control/pidt.h"
+#include "control/reach.h"
 #include "control/supervisor.h"
 
 typedef struct {
@@ -47,6 +48,9 @@ typedef struct {
     est_law_t est;
     control_law_t active_law;           /* PIDT in place of EST without a fresh estimate */
     descent_t descent;
+    reach_t reach;
+    float reach_m;                  /* the reference that it is about */
+    bool out_of_reach;              /* the reference in force, as it seems */
     float hover_n;                  /* best known hover thrust: the estimator's, or else the slow mean of the thrust while
                                      * FLYING; GRAV +-1.5 N */
     bool hover_learned;                  /* in the present flight: hover_n outlasts a pilot's turn */

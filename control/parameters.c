@@ -13,18 +13,18 @@ static const char *const sel_names[SEL_COUNT] = {[SEL_NONE] = "NONE", [SEL_PIN] 
 /* SETR ends at 3 m so that the take-over at 0.8 m above the reference is still within the sensor's 4.095 m. */
 const parameter_row_t parameter_table[PARAMETER_COUNT] = {
     [PARAMETER_SETR] = {"SETR", "m", 0.0F, 3.0F, 0.0F, NULL, "Height reference; 0 lands."},
-    [PARAMETER_KP] = {"KP", "N/mm", 0.0F, 1.0F, 0.015F, NULL, "Proportional gain."},
-    [PARAMETER_KD] = {"KD", "N/mm", 0.0F, 1.0F, 0.008F, NULL, "Derivative gain per sample."},
-    [PARAMETER_KI] = {"KI", "N/mm", 0.0F, 1.0F, 0.01F, NULL, "Integral gain per sample."},
-    [PARAMETER_USAT] = {"USAT", "N", 0.0F, THRUST_MAX_N, 1.0F, NULL, "Most thrust above GRAV."},
-    [PARAMETER_DSAT] = {"DSAT", "N", 0.0F, THRUST_MAX_N, 0.0F, NULL, "Most thrust below GRAV."},
+    [PARAMETER_KP] = {"KP", "N/mm", 0.0F, 1.0F, 0.015F, NULL, "PD, PID: proportional gain."},
+    [PARAMETER_KD] = {"KD", "N/mm", 0.0F, 1.0F, 0.008F, NULL, "PD, PID: derivative gain per sample."},
+    [PARAMETER_KI] = {"KI", "N/mm", 0.0F, 1.0F, 0.01F, NULL, "PID: integral gain per sample."},
+    [PARAMETER_USAT] = {"USAT", "N", 0.0F, THRUST_MAX_N, 1.0F, NULL, "PD, PID: most thrust above GRAV."},
+    [PARAMETER_DSAT] = {"DSAT", "N", 0.0F, THRUST_MAX_N, 0.0F, NULL, "PD, PID: most thrust below GRAV."},
     [PARAMETER_GRAV] = {"GRAV", "N", 0.0F, THRUST_MAX_N, 7.0F, NULL, "Gravity feed-forward per motor."},
     [PARAMETER_LAW] = {"LAW", "-", 0.0F, (float)(LAW_COUNT - 1), (float)LAW_EST, law_names, "Control law."},
     [PARAMETER_RELEASE] = {"RELEASE", "-", 0.0F, (float)(RELEASE_COUNT - 1), (float)RELEASE_FREE, release_names,
-                            "PD and PID run every 108 ms or with each scan."},
-    [PARAMETER_PKP] = {"PKP", "N/m", 0.0F, 50.0F, 6.0F, NULL, "Proportional gain of PIDT."},
-    [PARAMETER_PKI] = {"PKI", "N/m/s", 0.0F, 50.0F, 1.4F, NULL, "Integral gain of PIDT."},
-    [PARAMETER_PKD] = {"PKD", "N*s/m", 0.0F, 50.0F, 2.6F, NULL, "Derivative gain of PIDT."},
+                            "PD, PID: every 108 ms or with each scan."},
+    [PARAMETER_PKP] = {"PKP", "N/m", 0.0F, 50.0F, 6.0F, NULL, "PIDT: proportional gain."},
+    [PARAMETER_PKI] = {"PKI", "N/m/s", 0.0F, 50.0F, 1.4F, NULL, "PIDT: integral gain."},
+    [PARAMETER_PKD] = {"PKD", "N*s/m", 0.0F, 50.0F, 2.6F, NULL, "PIDT: derivative gain."},
     [PARAMETER_POSK] = {"POSK", "1/s", 0.25F, 6.0F, 2.3F, NULL, "EST: speed per metre off the reference."},
     [PARAMETER_VELK] = {"VELK", "1/s", 0.5F, 12.0F, 8.0F, NULL, "EST: acceleration per metre per second off."},
     [PARAMETER_VUP] = {"VUP", "m/s", 0.125F, 1.5F, 0.7F, NULL, "EST: fastest climb."},
@@ -45,6 +45,38 @@ void parameters_init(parameters_t *parameters)
         parameters->value[i] = parameter_table[i].initial;
     }
     parameters->generation = 0U;
+}
+
+void parameters_set_seed(parameters_t *parameters)
+{
+    static const parameter_id_t seed[] = {PARAMETER_KP,   PARAMETER_KD,   PARAMETER_KI,     PARAMETER_USAT,
+                                          PARAMETER_DSAT, PARAMETER_GRAV, PARAMETER_RELEASE};
+
+    for (uint16_t i = 0U; i < sizeof seed / sizeof seed[0]; ++i) {
+        parameters->value[seed[i]] = parameter_table[seed[i]].initial;
+    }
+    parameters->value[PARAMETER_LAW] = (float)LAW_PID;
+    ++parameters->generation;
+}
+
+bool parameter_is_used(parameter_id_t id, control_law_t law)
+{
+    switch (id) {
+    case PARAMETER_KP:
+    case PARAMETER_KD:
+    case PARAMETER_USAT:
+    case PARAMETER_DSAT:
+    case PARAMETER_RELEASE:
+        return law == LAW_PD || law == LAW_PID;
+    case PARAMETER_KI:
+        return law == LAW_PID;
+    case PARAMETER_PKP:
+    case PARAMETER_PKI:
+    case PARAMETER_PKD:
+        return law == LAW_PIDT || law == LAW_EST;
+    default:
+        return true;
+    }
 }
 
 static char upper(char c)

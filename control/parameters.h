@@ -60,6 +60,12 @@ typedef enum { PARAMETER_ACCEPTED, PARAMETER_OUT_OF_RANGE } parameter_status_t;
 
 void parameters_init(parameters_t *parameters);
 
+/* The seed's law PID as it flew: LAW, RELEASE, KP, KD, KI, USAT, DSAT and GRAV. The rest stays. */
+void parameters_set_seed(parameters_t *parameters);
+
+/* False for a gain of another law. What PIDT flies by counts for EST too: it stands in for it. */
+bool parameter_is_used(parameter_id_t id, control_law_t law);
+
 /* Case-insensitive look-up of `length` characters. Returns PARAMETER_COUNT when there is no such name. */
 parameter_id_t parameter_find(const char *name, size_t length);
 

@@ -30,6 +30,7 @@ typedef enum {
 #define FLIGHT_FLAG_LINK 16U        /* armed link is silent */
 #define FLIGHT_FLAG_TILT 32U        /* tilted over 45 degrees, or CUT */
 #define FLIGHT_FLAG_PILOT 64U       /* the pilot has the throttle */
+#define FLIGHT_FLAG_REACH 128U      /* the reference is not reached: over 0.1 m off for 3 s and no nearer; from flight.h */
 
 /* What the cycle knows, copied from the servers. Times in microseconds on one wrapping 32-bit clock; a time slightly
  * later than now_us counts as now. Steps may not be more than 71 minutes apart. */

@@ -66,9 +66,7 @@ void flight_log_unpack(flight_log_t *record, const uint16_t cells[FLIGHT_LOG_CEL
 
 void flight_log_titles(telemetry_line_t *line)
 {
-    telemetry_begin(line);
-    telemetry_text(line, "OK LOG t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags");
-    telemetry_end(line);
+    telemetry_text(line, "t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags");
 }
 
 static void add_column(telemetry_line_t *line, float value, uint16_t decimals)
@@ -90,8 +88,6 @@ static void add_time(telemetry_line_t *line, uint32_t time_ms)
 
 void flight_log_row(telemetry_line_t *line, const flight_log_t *record, const char *state)
 {
-    telemetry_begin(line);
-    telemetry_text(line, "OK LOG ");
     add_time(line, record->time_ms);
     add_column(line, record->height_mm / MM_PER_M, 3U);
     add_column(line, record->estimate_mm / MM_PER_M, 3U);
@@ -104,5 +100,4 @@ void flight_log_row(telemetry_line_t *line, const flight_log_t *record, const ch
     telemetry_text(line, state);
     telemetry_text(line, ",");
     telemetry_count(line, record->flags);
-    telemetry_end(line);
 }

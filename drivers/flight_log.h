@@ -1,5 +1,5 @@
-/* The flight recorder's languages: one record in 16-bit cells, and one record as a line of text, `OK LOG ` and a row of
- * CSV. docs/operator.md has the columns. Pure. */
+/* The flight recorder's languages: one record in 16-bit cells, and one record as a row of CSV. docs/operator.md has the
+ * columns. Pure. */
 #ifndef DRIVERS_FLIGHT_LOG_H
 #define DRIVERS_FLIGHT_LOG_H
 
@@ -26,8 +26,8 @@ typedef struct {
 void flight_log_pack(uint16_t cells[FLIGHT_LOG_CELLS], const flight_log_t *record);
 void flight_log_unpack(flight_log_t *record, const uint16_t cells[FLIGHT_LOG_CELLS]);
 
-/* The line with the names of the columns, and the line of one record, from begin to end. state: its name, up to 10
- * characters. A value that is not there leaves its column empty. Every line fits one radio packet. */
+/* The names of the columns, and one record: added to a line, without its beginning and its end. state: its name, up to 10
+ * characters. A value that is not there leaves its column empty. */
 void flight_log_titles(telemetry_line_t *line);
 void flight_log_row(telemetry_line_t *line, const flight_log_t *record, const char *state);
 

@@ -1,16 +1,24 @@
 #include "drivers/telecommand.h"
 
+#include <string.h>
+
+#define CTRL_C '\x03'
+#define BACKSPACE '\x08'
+#define DELETE '\x7F'
+
 static void restart(telecommand_collector_t *collector)
 {
     collector->line.length = 0U;
     collector->line.overlong = false;
     collector->line.damaged = false;
+    collector->line.bare = false;
 }
 
 void telecommand_collector_init(telecommand_collector_t *collector)
 {
     restart(collector);
     collector->started = false;
+    collector->previous = '\0';
     collector->strays = 0U;
 }
 
@@ -19,12 +27,35 @@ static bool is_blank(char character)
     return character == ' ' || character == '\t';
 }
 
-static bool end_line(telecommand_collector_t *collector)
+static bool is_end(char character)
 {
-    bool complete = collector->started;
+    return character == '\r' || character == '\n' || character == CTRL_C;
+}
 
+/* False for the second character of a line end of two. */
+static bool end_line(telecommand_collector_t *collector, char character, char previous)
+{
+    const bool second = (character == '\n' && previous == '\r') || (character == '\r' && previous == '\n');
+
+    if (second) {
+        collector->previous = '\0';
+        return false;
+    }
+    if (!collector->started || character == CTRL_C) {
+        restart(collector);
+        collector->line.bare = true;
+    }
     collector->started = false;
-    return complete;
+    return true;
+}
+
+/* One that did not fit cannot be taken back. */
+static void take_back(telecommand_collector_t *collector)
+{
+    if (collector->started && !collector->line.overlong) {
+        collector->line.length--;
+        collector->started = collector->line.length > 0U;
+    }
 }
 
 static void gather(telecommand_collector_t *collector, char character)
@@ -42,13 +73,19 @@ static void gather(telecommand_collector_t *collector, char character)
 
 bool telecommand_collect(telecommand_collector_t *collector, octet_t octet)
 {
-    char character = (char)octet;
+    const char character = (char)octet;
+    const char previous = collector->previous;
 
     if (character == '\0') {
         return false;
     }
-    if (character == '\r' || character == '\n') {
-        return end_line(collector);
+    collector->previous = character;
+    if (is_end(character)) {
+        return end_line(collector, character, previous);
+    }
+    if (character == BACKSPACE || character == DELETE) {
+        take_back(collector);
+        return false;
     }
     if (character == '#') {
         restart(collector);
@@ -122,6 +159,9 @@ telecommand_status_t telecommand_parse(const telecommand_line_t *line, telecomma
     if (line->damaged) {
         return TELECOMMAND_DAMAGED;
     }
+    if (line->bare) {
+        return TELECOMMAND_BARE;
+    }
     if (line->overlong) {
         return TELECOMMAND_OVERLONG;
     }
@@ -139,4 +179,37 @@ telecommand_status_t telecommand_parse(const telecommand_line_t *line, telecomma
         }
     }
     return status;
+}
+
+static bool is_named(const telecommand_t *command, const char *name)
+{
+    return strlen(name) == command->name_length && strncmp(name, command->name, command->name_length) == 0;
+}
+
+/* Zeros, at most one point among them, a sign before them. */
+static bool is_zero(const char *text, uint16_t length)
+{
+    uint16_t at = (length > 0U && (text[0] == '-' || text[0] == '+')) ? 1U : 0U;
+    uint16_t zeros = 0U;
+    uint16_t points = 0U;
+
+    for (; at < length && (text[at] == '0' || text[at] == '.'); at++) {
+        if (text[at] == '0') {
+            zeros++;
+        } else {
+            points++;
+        }
+    }
+    return at == length && zeros > 0U && points <= 1U;
+}
+
+bool telecommand_is_urgent(const telecommand_line_t *line)
+{
+    telecommand_t command;
+
+    if (telecommand_parse(line, &command) != TELECOMMAND_OK) {
+        return false;
+    }
+    return is_named(&command, "STOP") || is_named(&command, "LAND")
+           || (is_named(&command, "SETR") && is_zero(command.argument, command.argument_length));
 }

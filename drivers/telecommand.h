@@ -1,4 +1,5 @@
-/* Operator's lines: `#NAME value` LF (CR LF, blanks and lower case accepted). A '#' restarts the line. Pure.
+/* Operator's lines: `#NAME value` LF (CR LF, blanks and lower case accepted). A '#' restarts the line, backspace and delete
+ * take back a character, Ctrl-C the line. Pure.
  *
  * The collector runs in the receive interrupt; parsing is the task's. */
 #ifndef DRIVERS_TELECOMMAND_H
@@ -18,17 +19,19 @@ typedef struct {
     uint16_t length;
     bool overlong;                      /* more came than fit; the text is the beginning */
     bool damaged;                       /* the UART lost or mangled some of it */
+    bool bare;                          /* without a '#', perhaps empty: there is no text */
 } telecommand_line_t;
 
 typedef struct {
     telecommand_line_t line;
     bool started;           /* a '#' has come */
+    char previous;          /* character, NUL not counted */
     uint32_t strays;        /* octets outside a line, except blank, tab, line ends and NUL */
 } telecommand_collector_t;
 
 void telecommand_collector_init(telecommand_collector_t *collector);
-/* True at a LF or CR that ends a line begun with '#': collector->line is complete and valid until the next call. (The LF
- * of CR LF begins nothing.) NUL is ignored. */
+/* True at a LF, CR or Ctrl-C: collector->line is complete and valid until the next call. CR LF and LF CR end one line. NUL
+ * is ignored. */
 bool telecommand_collect(telecommand_collector_t *collector, octet_t octet);
 
 /* The UART lost or mangled octets: the line in reception is not to be believed. */
@@ -37,6 +40,7 @@ void telecommand_collector_broken(telecommand_collector_t *collector);
 typedef enum {
     TELECOMMAND_OK,
     TELECOMMAND_DAMAGED,
+    TELECOMMAND_BARE,
     TELECOMMAND_EMPTY,      /* '#' alone, or blanks behind it */
     TELECOMMAND_OVERLONG,
     TELECOMMAND_CHARACTER   /* a control character (other than a tab) or one above 7EH, or a name with other than A-Z 0-9 _ */
@@ -51,5 +55,8 @@ typedef struct {
 
 /* A line as collected. Always writes *command; name and argument are empty unless the result is OK. */
 telecommand_status_t telecommand_parse(const telecommand_line_t *line, telecommand_t *command);
+
+/* An undamaged `#STOP`, `#LAND` or `#SETR 0` (however the zero is written), which nothing may hold up. Any context. */
+bool telecommand_is_urgent(const telecommand_line_t *line);
 
 #endif

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "drivers/decimal.h"
+#include "drivers/line_sum.h"
 
 #define COUNT_DIGITS_MAX 10U
 
@@ -67,6 +68,15 @@ void telemetry_count(telemetry_line_t *line, uint32_t value)
         value /= 10U;
     } while (value > 0U);
     telemetry_characters(line, &text[at], COUNT_DIGITS_MAX - at);
+}
+
+void telemetry_sum(telemetry_line_t *line)
+{
+    char digits[LINE_SUM_DIGITS];
+
+    line_sum_write(digits, line_sum(line->text, line->length));
+    telemetry_text(line, "*");
+    telemetry_characters(line, digits, LINE_SUM_DIGITS);
 }
 
 void telemetry_end(telemetry_line_t *line)

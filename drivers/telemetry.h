@@ -26,6 +26,9 @@ void telemetry_characters(telemetry_line_t *line, const char *text, size_t lengt
 void telemetry_fixed(telemetry_line_t *line, float value, uint16_t decimals);
 void telemetry_number(telemetry_line_t *line, float value);                 /* shortest, decimal.h */
 void telemetry_count(telemetry_line_t *line, uint32_t value);
+/* '*' and the sum of the line so far: CRC-16 (polynomial 1021H, from FFFFH, no reflection, "CCITT-FALSE") of its
+ * characters, four hexadecimal digits in upper case. */
+void telemetry_sum(telemetry_line_t *line);
 void telemetry_end(telemetry_line_t *line);                                 /* CR LF */
 
 /* The periodic line: "alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0" CR LF; "alt:-" without a valid

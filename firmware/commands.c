@@ -10,11 +10,13 @@
 #include "firmware/calibrator.h"
 #include "drivers/decimal.h"
 #include "control/parameters.h"
+#include "firmware/listing.h"
 #include "firmware/servers.h"
 #include "firmware/verbs.h"
 #include "firmware/xbee_port.h"
 
 #define CONTINUE_POLL_MS 10U    /* ten characters leave meanwhile */
+#define BARE_ANSWER_US 1000000UL
 
 typedef struct {
     const char *name;
@@ -33,7 +35,8 @@ static float value_of(parameter_id_t id, const parameters_t *parameters)
     return reference.reference_m;
 }
 
-static void report_value(answer_t *answer, parameter_id_t id)
+/* Between begin and end; on the way of `#GET` the name of the command differs from that of the row. */
+static void write_value(answer_t *answer, parameter_id_t id)
 {
     const parameter_row_t *row = &parameter_table[id];
     parameters_t parameters;
@@ -50,7 +53,31 @@ static void report_value(answer_t *answer, parameter_id_t id)
     } else {
         telemetry_number(&answer->line, value);
     }
+}
+
+/* A gain that the law in force has no use for is set all the same, but its answer says so. */
+static void report_set(answer_t *answer, parameter_id_t id)
+{
+    parameters_t parameters;
+    control_law_t law;
+
+    parameter_server_read(&parameters);
+    law = (control_law_t)(uint16_t)parameters.value[PARAMETER_LAW];
+    write_value(answer, id);
+    if (!parameter_is_used(id, law)) {
+        telemetry_text(&answer->line, " (LAW ");
+        telemetry_text(&answer->line, parameter_table[PARAMETER_LAW].choices[law]);
+        telemetry_text(&answer->line, " does not use it)");
+    }
     answer_send(answer);
+}
+
+static bool write_parameter(answer_t *answer, uint16_t number)
+{
+    if (number < (uint16_t)PARAMETER_COUNT) {
+        write_value(answer, (parameter_id_t)number);
+    }
+    return number < (uint16_t)PARAMETER_COUNT;
 }
 
 static bool execute_get(answer_t *answer)
@@ -58,17 +85,15 @@ static bool execute_get(answer_t *answer)
     const telecommand_t *command = answer->command;
     uint16_t id;
 
-    if (command->argument_length > 0U) {
-        id = (uint16_t)parameter_find(command->argument, command->argument_length);
-        if (id == (uint16_t)PARAMETER_COUNT) {
-            return answer_refuse(answer, "unknown parameter");
-        }
-        report_value(answer, (parameter_id_t)id);
-        return true;
+    if (command->argument_length == 0U) {
+        return listing_start(answer, write_parameter);
     }
-    for (id = 0U; id < (uint16_t)PARAMETER_COUNT; id++) {
-        report_value(answer, (parameter_id_t)id);
+    id = (uint16_t)parameter_find(command->argument, command->argument_length);
+    if (id == (uint16_t)PARAMETER_COUNT) {
+        return answer_refuse(answer, "unknown parameter");
     }
+    write_value(answer, (parameter_id_t)id);
+    answer_send(answer);
     return true;
 }
 
@@ -83,13 +108,34 @@ static bool execute_ping(answer_t *answer)
     return true;
 }
 
+static void set_reference(float reference_m)
+{
+    reference_sample_t reference;
+
+    reference_server_read(&reference);
+    reference.reference_m = reference_m;
+    reference.sequence++;
+    reference_server_write(&reference);
+}
+
+/* `#STOP` and `#LAND`: whatever stands behind the name. */
+static bool execute_land(answer_t *answer)
+{
+    set_reference(0.0F);
+    answer_begin(answer);
+    answer_send(answer);
+    return true;
+}
+
 static bool execute_help(answer_t *answer);
 
 static const verb_t verbs[] = {
+    {"STOP", execute_land, "- on the ground the motors idle, in the air it lands; goes before all that waits"},
+    {"LAND", execute_land, "- lands, as #SETR 0; goes before all that waits"},
     {"GET", execute_get, "[NAME] - one parameter, or all"},
     {"SAVE", verb_save, "- stores the parameters, all but SETR"},
     {"LOAD", verb_load, "- the stored parameters"},
-    {"DEFAULTS", verb_defaults, "- the parameters as delivered; the stored ones stay"},
+    {"DEFAULTS", verb_defaults, "[SEED] - the parameters as delivered, or the seed's law and gains; the stored ones stay"},
     {"LOG", verb_log, "[SECONDS|CLEAR|STOP] - the flight recorder as CSV"},
     {"CALIBRATE", verb_calibrate, "[COUNTS [SECONDS]] - thrust step by step, tied down; any line but #PING ends it"},
     {"LASER", verb_laser, "- the scanner's state, rate, frames and errors by cause"},
@@ -107,33 +153,27 @@ static void begin_help(answer_t *answer, const char *name)
     telemetry_text(&answer->line, " ");
 }
 
-static bool execute_help(answer_t *answer)
+static bool write_help(answer_t *answer, uint16_t number)
 {
-    uint16_t i;
+    const uint16_t verb = (uint16_t)(number - (uint16_t)PARAMETER_COUNT);
 
-    for (i = 0U; i < (uint16_t)PARAMETER_COUNT; i++) {
-        begin_help(answer, parameter_table[i].name);
-        answer_limits(answer, &parameter_table[i]);
+    if (number < (uint16_t)PARAMETER_COUNT) {
+        begin_help(answer, parameter_table[number].name);
+        answer_limits(answer, &parameter_table[number]);
         telemetry_text(&answer->line, " - ");
-        telemetry_text(&answer->line, parameter_table[i].meaning);
-        answer_send(answer);
+        telemetry_text(&answer->line, parameter_table[number].meaning);
+        return true;
     }
-    for (i = 0U; i < VERB_COUNT; i++) {
-        begin_help(answer, verbs[i].name);
-        telemetry_text(&answer->line, verbs[i].meaning);
-        answer_send(answer);
+    if (verb < VERB_COUNT) {
+        begin_help(answer, verbs[verb].name);
+        telemetry_text(&answer->line, verbs[verb].meaning);
     }
-    return true;
+    return verb < VERB_COUNT;
 }
 
-static void set_reference(float reference_m)
+static bool execute_help(answer_t *answer)
 {
-    reference_sample_t reference;
-
-    reference_server_read(&reference);
-    reference.reference_m = reference_m;
-    reference.sequence++;
-    reference_server_write(&reference);
+    return listing_start(answer, write_help);
 }
 
 static bool execute_set(answer_t *answer, parameter_id_t id)
@@ -158,7 +198,7 @@ static bool execute_set(answer_t *answer, parameter_id_t id)
     } else {
         parameter_server_write(&parameters);
     }
-    report_value(answer, id);
+    report_set(answer, id);
     return true;
 }
 
@@ -190,46 +230,88 @@ static void link_alive(uint32_t arrival_us)
     reference_server_write(&reference);
 }
 
-static bool is_ping(const telecommand_t *command)
+static bool is_named(const telecommand_t *command, const char *name)
 {
-    return command->name_length == strlen("PING") && strncmp(command->name, "PING", command->name_length) == 0;
+    return strlen(name) == command->name_length && strncmp(name, command->name, command->name_length) == 0;
 }
 
-void commands_execute(const telecommand_line_t *line, uint32_t arrival_us)
+/* A stop that was typed later has been obeyed already. */
+static bool refuse_overtaken(answer_t *answer, const xbee_message_t *message)
+{
+    if (!message->overtaken || !(is_named(answer->command, "SETR") || is_named(answer->command, "CALIBRATE"))) {
+        return false;
+    }
+    (void)answer_refuse(answer, "overtaken by a stop");
+    return true;
+}
+
+static void refuse_line(answer_t *answer, telecommand_status_t status, uint32_t arrival_us)
 {
     static const char *const reasons[] = {
         [TELECOMMAND_OK] = "",
         [TELECOMMAND_DAMAGED] = "line damaged",
+        [TELECOMMAND_BARE] = "commands begin with #",
         [TELECOMMAND_EMPTY] = "empty command",
         [TELECOMMAND_OVERLONG] = "line too long",
         [TELECOMMAND_CHARACTER] = "bad character",
     };
+    static uint32_t bare_us;
+    static bool bare;
+
+    if (status == TELECOMMAND_BARE) {
+        if (bare && arrival_us - bare_us < BARE_ANSWER_US) {
+            return;
+        }
+        bare = true;
+        bare_us = arrival_us;
+    }
+    (void)answer_refuse(answer, reasons[status]);
+}
+
+void commands_execute(const xbee_message_t *message)
+{
     static telecommand_t command;
     static answer_t answer;
-    telecommand_status_t status = telecommand_parse(line, &command);
+    const telecommand_status_t status = telecommand_parse(&message->line, &command);
 
-    if (status != TELECOMMAND_OK || !is_ping(&command)) {
+    if (status != TELECOMMAND_OK || !is_named(&command, "PING")) {
         calibrator_stop();
     }
     answer.command = &command;
     if (status != TELECOMMAND_OK) {
-        (void)answer_refuse(&answer, reasons[status]);
-    } else if (execute(&answer)) {
-        link_alive(arrival_us);
+        refuse_line(&answer, status, message->arrival_us);
+    } else if (!refuse_overtaken(&answer, message) && execute(&answer)) {
+        link_alive(message->arrival_us);
     }
 }
 
-void commands_continue(void)
+/* Sends what there is room for. False: it is time to take a line, or to wait for one. */
+static bool go_on(void)
 {
-    bool more = true;
+    bool more;
 
-    while (more && !xbee_port_waiting()) {
-        more = verb_log_more();
-        more = verb_calibrate_more() || more;
-        if (more) {
-            Task_sleep(CONTINUE_POLL_MS);
-        }
+    if (xbee_port_pressing()) {
+        return false;
     }
+    if (listing_more()) {
+        return true;
+    }
+    if (xbee_port_waiting()) {
+        return !xbee_port_clear();
+    }
+    more = verb_log_more();
+    return verb_calibrate_more() || more;
+}
+
+bool commands_continue(void)
+{
+    bool waited = false;
+
+    while (go_on()) {
+        waited = true;
+        Task_sleep(CONTINUE_POLL_MS);
+    }
+    return waited && xbee_port_waiting();
 }
 
 void commands_report_lost(uint16_t count)

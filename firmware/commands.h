@@ -2,16 +2,19 @@
 #ifndef FIRMWARE_COMMANDS_H
 #define FIRMWARE_COMMANDS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
-#include "drivers/telecommand.h"
+#include "firmware/xbee_port.h"
 
-/* Parses, checks, applies (whole or not at all) and answers: `OK NAME value` or `ERR NAME reason`. May block while the
- * radio takes the answers. arrival_us: when the line was complete. */
-void commands_execute(const telecommand_line_t *line, uint32_t arrival_us);
+/* Parses, checks, applies (whole or not at all) and answers: `OK NAME value` or `ERR NAME reason`; a bare line only when
+ * none was answered for a second. One that was overtaken by a stop starts nothing any more. */
+void commands_execute(const xbee_message_t *message);
 
-/* Goes on with the answers that take long, until they are complete or a line waits. Blocks between their lines. */
-void commands_continue(void);
+/* Goes on with the answers that take long, until they are complete or a line can be taken: one that presses at once, any
+ * other when no list is being sent and the radio has room for its answer. Blocks between lines. True: it had to wait for
+ * the radio. */
+bool commands_continue(void);
 
 /* Tells the operator that `count` lines came faster than they could be queued. */
 void commands_report_lost(uint16_t count);

@@ -6,18 +6,22 @@
 #include "firmware/schedule.h"
 #include "bsp/timebase.h"
 
-typedef struct {
-    const char *name;
-    uint32_t deadline_us;
-} limit_t;
+static const char *const names[MONITOR_TASKS] = {
+    [MONITOR_IMU] = "TaskIMU",
+    [MONITOR_RECEIVE_LASER] = "TaskReceiveLaser",
+    [MONITOR_CONTROL] = "TaskControl",
+    [MONITOR_SEND_LASER] = "TaskSendLaser",
+    [MONITOR_SEND_COMM] = "TaskSendComm",
+    [MONITOR_RECEIVE_COMM] = "TaskReceiveComm",
+};
 
-static const limit_t limits[MONITOR_TASKS] = {
-    [MONITOR_IMU] = {"TaskIMU", TASK_IMU_DEADLINE_MS * 1000UL},
-    [MONITOR_RECEIVE_LASER] = {"TaskReceiveLaser", TASK_RECEIVE_LASER_DEADLINE_MS * 1000UL},
-    [MONITOR_CONTROL] = {"TaskControl", TASK_CONTROL_DEADLINE_MS * 1000UL},
-    [MONITOR_SEND_LASER] = {"TaskSendLaser", TASK_SEND_LASER_DEADLINE_MS * 1000UL},
-    [MONITOR_SEND_COMM] = {"TaskSendComm", TASK_SEND_COMM_DEADLINE_MS * 1000UL},
-    [MONITOR_RECEIVE_COMM] = {"TaskReceiveComm", TASK_RECEIVE_COMM_DEADLINE_MS * 1000UL},
+static uint32_t deadlines_us[MONITOR_TASKS] = {
+    [MONITOR_IMU] = TASK_IMU_DEADLINE_MS * 1000UL,
+    [MONITOR_RECEIVE_LASER] = TASK_RECEIVE_LASER_DEADLINE_MS * 1000UL,
+    [MONITOR_CONTROL] = TASK_CONTROL_DEADLINE_MS * 1000UL,
+    [MONITOR_SEND_LASER] = TASK_SEND_LASER_DEADLINE_MS * 1000UL,
+    [MONITOR_SEND_COMM] = TASK_SEND_COMM_DEADLINE_MS * 1000UL,
+    [MONITOR_RECEIVE_COMM] = TASK_RECEIVE_COMM_DEADLINE_MS * 1000UL,
 };
 
 typedef struct {
@@ -47,6 +51,11 @@ void monitor_released(monitor_task_t task, uint32_t when_us)
     }
 }
 
+void monitor_set_deadline(monitor_task_t task, uint32_t deadline_us)
+{
+    deadlines_us[task] = deadline_us;
+}
+
 void monitor_begin(monitor_task_t task)
 {
     record_t *record = &records[task];
@@ -63,7 +72,7 @@ void monitor_done(monitor_task_t task)
     if (response_us > record->longest_us) {
         record->longest_us = response_us;
     }
-    if (response_us > limits[task].deadline_us) {
+    if (response_us > deadlines_us[task]) {
         record->late++;
     }
 }
@@ -83,7 +92,7 @@ void monitor_report(monitor_task_t task, monitor_report_t *report)
     UInt key;
 
     Task_stat(records[task].handle, &stat);
-    report->name = limits[task].name;
+    report->name = names[task];
     report->stack_used = (uint32_t)stat.used;
     report->stack_size = (uint32_t)stat.stackSize;
     key = Hwi_disable();

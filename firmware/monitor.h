@@ -32,6 +32,8 @@ void monitor_watch(monitor_task_t task, Task_Handle handle);
 
 /* Released at that time. A release before the task's next monitor_begin() changes nothing. Any context, one per task. */
 void monitor_released(monitor_task_t task, uint32_t when_us);
+/* From now on that task has this deadline, from its release. By the task itself. */
+void monitor_set_deadline(monitor_task_t task, uint32_t deadline_us);
 /* By the task itself: after its wait (without a release before it, the job counts from here); at the end of its job. */
 void monitor_begin(monitor_task_t task);
 void monitor_done(monitor_task_t task);

@@ -22,7 +22,9 @@
 /* From the release; of a sporadic task its shortest distance. */
 #define TASK_IMU_DEADLINE_MS 25U
 #define TASK_RECEIVE_LASER_DEADLINE_MS 100U
-#define TASK_CONTROL_DEADLINE_MS 108U
+#define TASK_CONTROL_DEADLINE_MS 108U          /* release FREE */
+#define TASK_CONTROL_SCAN_DEADLINE_MS 100U     /* with each scan */
+#define TASK_CONTROL_FRAME_DEADLINE_MS 25U     /* with each IMU frame */
 #define TASK_SEND_LASER_DEADLINE_MS 150U
 #define TASK_SEND_COMM_DEADLINE_MS 200U
 #define TASK_RECEIVE_COMM_DEADLINE_MS 300U

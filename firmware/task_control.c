@@ -66,9 +66,18 @@ static UInt releases(const parameters_t *parameters, const flight_outputs_t *out
     }
 }
 
+static uint32_t deadline_ms(UInt release)
+{
+    if ((release & EVENT_IMU) != 0U) {
+        return TASK_CONTROL_FRAME_DEADLINE_MS;
+    }
+    return ((release & EVENT_ALTITUDE) != 0U) ? TASK_CONTROL_SCAN_DEADLINE_MS : TASK_CONTROL_DEADLINE_MS;
+}
+
 static void wait(const parameters_t *parameters, const flight_outputs_t *out)
 {
     in_force = releases(parameters, out);
+    monitor_set_deadline(MONITOR_CONTROL, deadline_ms(in_force) * UINT32_C(1000));
     (void)Event_pend(event, Event_Id_NONE, in_force, CONTROL_TIMEOUT_MS);
     monitor_begin(MONITOR_CONTROL);
 }

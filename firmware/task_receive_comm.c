@@ -15,16 +15,17 @@ static Void task_receive_comm(UArg unused0, UArg unused1)
     (void)unused0;
     (void)unused1;
     for (;;) {
-        uint16_t lost;
+        const bool waited = commands_continue();
+        const uint16_t lost = xbee_port_wait(&message);
 
-        commands_continue();
-        lost = xbee_port_wait(&message);
-        monitor_released(MONITOR_RECEIVE_COMM, message.arrival_us);
+        if (!waited) {
+            monitor_released(MONITOR_RECEIVE_COMM, message.arrival_us);
+        }
         monitor_begin(MONITOR_RECEIVE_COMM);
         if (lost > 0U) {
             commands_report_lost(lost);
         }
-        commands_execute(&message.line, message.arrival_us);
+        commands_execute(&message);
         monitor_done(MONITOR_RECEIVE_COMM);
     }
 }

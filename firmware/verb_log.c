@@ -9,23 +9,10 @@
 static struct {
     uint32_t number;    /* next to send */
     uint32_t end;       /* first not to send */
+    uint32_t sent;      /* lines, the titles not counted */
     bool titles;        /* still to send */
     bool active;
 } dump;
-
-static bool same(const telecommand_t *command, const char *text)
-{
-    uint16_t i;
-
-    for (i = 0U; i < command->argument_length; i++) {
-        const char c = command->argument[i];
-
-        if (text[i] == '\0' || (c != text[i] && (char)(c - 'a' + 'A') != text[i])) {
-            return false;
-        }
-    }
-    return text[i] == '\0';
-}
 
 static bool say(answer_t *answer, const char *text)
 {
@@ -39,6 +26,7 @@ static bool start(answer_t *answer, uint32_t first)
 {
     dump.number = first;
     dump.end = flight_recorder_span().next;
+    dump.sent = 0U;
     dump.titles = true;
     dump.active = true;
     answer_begin(answer);
@@ -55,11 +43,11 @@ bool verb_log(answer_t *answer)
     if (command->argument_length == 0U) {
         return start(answer, flight_recorder_span().oldest);
     }
-    if (same(command, "STOP")) {
+    if (answer_argument_is(answer, "STOP")) {
         dump.active = false;
         return say(answer, " STOP");
     }
-    if (same(command, "CLEAR")) {
+    if (answer_argument_is(answer, "CLEAR")) {
         dump.active = false;
         flight_recorder_clear();
         return say(answer, " CLEAR");
@@ -84,29 +72,55 @@ static bool next_record(flight_log_t *record)
     return dump.number != dump.end && flight_recorder_read(dump.number, record);
 }
 
+/* "OK LOG 17 ", and at the end of the line its sum: what was cut or mangled on the way is told from what is whole. */
+static void begin_numbered(telemetry_line_t *line, uint32_t number)
+{
+    telemetry_begin_answer(line);
+    telemetry_text(line, "OK LOG ");
+    telemetry_count(line, number);
+    telemetry_text(line, " ");
+}
+
+static bool send_numbered(telemetry_line_t *line)
+{
+    telemetry_sum(line);
+    telemetry_end(line);
+    return xbee_port_spare(line);
+}
+
 static bool send_titles(telemetry_line_t *line)
 {
+    begin_numbered(line, 0U);
     flight_log_titles(line);
-    dump.titles = !xbee_port_spare(line);
+    dump.titles = !send_numbered(line);
     return !dump.titles;
+}
+
+static bool send_end(telemetry_line_t *line)
+{
+    telemetry_begin(line);
+    telemetry_text(line, "OK LOG END lines:");
+    telemetry_count(line, dump.sent);
+    telemetry_end(line);
+    dump.active = !xbee_port_spare(line);
+    return false;
 }
 
 static bool send_row(telemetry_line_t *line)
 {
     flight_log_t record;
-    bool sent;
 
     if (!next_record(&record)) {
-        telemetry_begin(line);
-        telemetry_text(line, "OK LOG END");
-        telemetry_end(line);
-        dump.active = !xbee_port_spare(line);
+        return send_end(line);
+    }
+    begin_numbered(line, dump.sent + 1U);
+    flight_log_row(line, &record, flight_state_name((flight_state_t)record.state));
+    if (!send_numbered(line)) {
         return false;
     }
-    flight_log_row(line, &record, flight_state_name((flight_state_t)record.state));
-    sent = xbee_port_spare(line);
-    dump.number += sent ? 1U : 0U;
-    return sent;
+    dump.number++;
+    dump.sent++;
+    return true;
 }
 
 bool verb_log_more(void)

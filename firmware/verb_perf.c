@@ -3,6 +3,7 @@
 #include <ti/sysbios/utils/Load.h>
 
 #include "firmware/boot.h"
+#include "firmware/listing.h"
 #include "firmware/monitor.h"
 #include "firmware/verbs.h"
 
@@ -11,21 +12,18 @@ static const char *const servers[MONITOR_SERVERS] = {
     [MONITOR_REFERENCE] = "reference", [MONITOR_PARAMETERS] = "parameters", [MONITOR_FLIGHT_STATUS] = "flight",
 };
 
-static void answer_run(answer_t *answer)
+static void write_run(answer_t *answer)
 {
-    answer_begin(answer);
     telemetry_text(&answer->line, " reset:");
     telemetry_text(&answer->line, boot_cause());
     answer_count(answer, "load", (uint32_t)Load_getCPULoad());
-    answer_send(answer);
 }
 
-static void answer_task(answer_t *answer, monitor_task_t task)
+static void write_task(answer_t *answer, monitor_task_t task)
 {
     monitor_report_t report;
 
     monitor_report(task, &report);
-    answer_begin(answer);
     telemetry_text(&answer->line, " ");
     telemetry_text(&answer->line, report.name);
     answer_count(answer, "worst_us", report.longest_us);
@@ -33,19 +31,32 @@ static void answer_task(answer_t *answer, monitor_task_t task)
     answer_count(answer, "stack", report.stack_used);
     telemetry_text(&answer->line, "/");
     telemetry_count(&answer->line, report.stack_size);
-    answer_send(answer);
 }
 
-static void answer_waits(answer_t *answer)
+static void write_waits(answer_t *answer)
 {
     uint16_t i;
 
-    answer_begin(answer);
     telemetry_text(&answer->line, " wait_us");
     for (i = 0U; i < (uint16_t)MONITOR_SERVERS; i++) {
         answer_count(answer, servers[i], monitor_longest_wait_us((monitor_server_t)i));
     }
-    answer_send(answer);
+}
+
+/* The run, each task, the servers' waits. */
+static bool write_line(answer_t *answer, uint16_t number)
+{
+    const uint16_t last = (uint16_t)MONITOR_TASKS + 1U;
+
+    answer_begin(answer);
+    if (number == 0U) {
+        write_run(answer);
+    } else if (number < last) {
+        write_task(answer, (monitor_task_t)(number - 1U));
+    } else if (number == last) {
+        write_waits(answer);
+    }
+    return number <= last;
 }
 
 static bool reset(answer_t *answer)
@@ -59,18 +70,11 @@ static bool reset(answer_t *answer)
 
 bool verb_perf(answer_t *answer)
 {
-    uint16_t task;
-
     if (answer_argument_is(answer, "RESET")) {
         return reset(answer);
     }
     if (answer->command->argument_length > 0U) {
         return answer_refuse(answer, "one of RESET");
     }
-    answer_run(answer);
-    for (task = 0U; task < (uint16_t)MONITOR_TASKS; task++) {
-        answer_task(answer, (monitor_task_t)task);
-    }
-    answer_waits(answer);
-    return true;
+    return listing_start(answer, write_line);
 }

@@ -85,14 +85,25 @@ bool verb_load(answer_t *answer)
     return report(answer, &result);
 }
 
-bool verb_defaults(answer_t *answer)
+/* `#DEFAULTS SEED`: the law and the gains of the seed, nothing else. */
+static bool set_seed(answer_t *answer)
+{
+    static parameters_t parameters;
+
+    parameter_server_read(&parameters);
+    parameters_set_seed(&parameters);
+    parameter_server_write(&parameters);
+    answer_begin(answer);
+    telemetry_text(&answer->line, " SEED");
+    answer_send(answer);
+    return true;
+}
+
+static bool set_defaults(answer_t *answer)
 {
     static parameters_t parameters;
     uint32_t generation;
 
-    if (!allowed(answer)) {
-        return false;
-    }
     parameter_server_read(&parameters);
     generation = parameters.generation;
     parameters_init(&parameters);
@@ -101,6 +112,19 @@ bool verb_defaults(answer_t *answer)
     answer_begin(answer);
     answer_send(answer);
     return true;
+}
+
+bool verb_defaults(answer_t *answer)
+{
+    const bool seed = answer_argument_is(answer, "SEED");
+
+    if (!seed && answer->command->argument_length > 0U) {
+        return answer_refuse(answer, "one of SEED");
+    }
+    if (!ground_idle()) {
+        return answer_refuse(answer, "not on the ground");
+    }
+    return seed ? set_seed(answer) : set_defaults(answer);
 }
 
 void verb_load_at_start(void)

@@ -17,29 +17,72 @@
 #define REPORT_ROOM (UART_PORT_TRANSMIT_CELLS / 2U)
 #define SPARE_ROOM (UART_PORT_TRANSMIT_CELLS - 192U)    /* 192 characters leave in 0.2 s */
 
-/* Written by the receive Hwi; the queue is emptied by TaskReceiveComm with Hwis off. */
+typedef struct {
+    xbee_message_t *lines;
+    uint16_t places;
+    uint16_t oldest;
+    uint16_t waiting;
+} queue_t;
+
+/* Written by the receive Hwi; the queues are emptied by TaskReceiveComm with Hwis off. */
 static telecommand_collector_t collector;
 static xbee_message_t lines[XBEE_PORT_LINES];
-static uint16_t oldest;
-static uint16_t waiting;
+static xbee_message_t urgent_lines[XBEE_PORT_URGENT];
+static xbee_message_t bare_line[1];
+static queue_t ordinary = {.lines = lines, .places = XBEE_PORT_LINES};
+static queue_t urgent = {.lines = urgent_lines, .places = XBEE_PORT_URGENT};
+static queue_t bare = {.lines = bare_line, .places = 1U};
 static uint16_t unannounced;    /* lines since XBee_SWI ran last */
 static uint16_t lost;
 static Swi_Handle xbee_swi;
 static Semaphore_Handle line_ready;
 
-static void queue_line(void)
+static xbee_message_t *place(const queue_t *queue, uint16_t at)
 {
-    xbee_message_t *message = &lines[(uint16_t)(oldest + waiting) % XBEE_PORT_LINES];
+    return &queue->lines[(uint16_t)(queue->oldest + at) % queue->places];
+}
 
-    if (waiting == XBEE_PORT_LINES) {
-        lost++;
-        return;
-    }
+static void put(xbee_message_t *message)
+{
     message->line = collector.line;
     message->arrival_us = bsp_time_us();
-    waiting++;
+    message->overtaken = false;
+}
+
+/* False when the queue is full. */
+static bool append(queue_t *queue)
+{
+    if (queue->waiting == queue->places) {
+        return false;
+    }
+    put(place(queue, queue->waiting));
+    queue->waiting++;
     unannounced++;
     Swi_post(xbee_swi);
+    return true;
+}
+
+static void queue_urgent(void)
+{
+    uint16_t i;
+
+    for (i = 0U; i < ordinary.waiting; i++) {
+        place(&ordinary, i)->overtaken = true;
+    }
+    if (!append(&urgent)) {
+        put(place(&urgent, XBEE_PORT_URGENT - 1U));
+    }
+}
+
+static void queue_line(void)
+{
+    if (collector.line.bare) {
+        (void)append(&bare);
+    } else if (telecommand_is_urgent(&collector.line)) {
+        queue_urgent();
+    } else if (!append(&ordinary)) {
+        lost++;
+    }
 }
 
 /* Which octet of a burst was hit is not known, nor whether some were lost before or behind it. */
@@ -92,16 +135,26 @@ void xbee_port_create(void)
     uart_port_create(BSP_UART_XBEE, XBEE_BIT_RATE, received);
 }
 
+static queue_t *next_queue(void)
+{
+    if (urgent.waiting > 0U) {
+        return &urgent;
+    }
+    return (bare.waiting > 0U) ? &bare : &ordinary;
+}
+
 uint16_t xbee_port_wait(xbee_message_t *message)
 {
+    queue_t *queue;
     UInt key;
     uint16_t missed;
 
     (void)Semaphore_pend(line_ready, BIOS_WAIT_FOREVER);
     key = Hwi_disable();
-    *message = lines[oldest];
-    oldest = (uint16_t)((oldest + 1U) % XBEE_PORT_LINES);
-    waiting--;
+    queue = next_queue();
+    *message = *place(queue, 0U);
+    queue->oldest = (uint16_t)((queue->oldest + 1U) % queue->places);
+    queue->waiting--;
     missed = lost;
     lost = 0U;
     Hwi_restore(key);
@@ -117,12 +170,24 @@ void xbee_port_answer(const telemetry_line_t *line)
 
 bool xbee_port_waiting(void)
 {
-    return waiting > 0U;
+    return ordinary.waiting > 0U || xbee_port_pressing();
+}
+
+bool xbee_port_pressing(void)
+{
+    return urgent.waiting > 0U || bare.waiting > 0U;
+}
+
+bool xbee_port_clear(void)
+{
+    return uart_port_room(BSP_UART_XBEE) >= SPARE_ROOM;
 }
 
 bool xbee_port_spare(const telemetry_line_t *line)
 {
-    return uart_port_room(BSP_UART_XBEE) >= SPARE_ROOM + line->length
+    const uint16_t room = uart_port_room(BSP_UART_XBEE);
+
+    return (room >= SPARE_ROOM + line->length || room == UART_PORT_TRANSMIT_CELLS)
            && uart_port_send(BSP_UART_XBEE, line->text, line->length);
 }
 

@@ -236,11 +236,10 @@ static void plan(const scenario_t *scenario, const flight_options_t *options)
 static void write_titles(FILE *csv)
 {
     static telemetry_line_t line;
-    int length;
 
+    telemetry_begin(&line);
     flight_log_titles(&line);
-    length = (int)(line.length - strlen("OK LOG ") - strlen("\r\n"));
-    fprintf(csv, "%.*s,height_m,abs_m,terrain_m,pulse_us\n", length, line.text + strlen("OK LOG "));
+    fprintf(csv, "%.*s,height_m,abs_m,terrain_m,pulse_us\n", (int)line.length, line.text);
 }
 
 static void write_column(FILE *csv, bool there, double value)

@@ -175,7 +175,10 @@ void test_without_feed_forward_it_does_not_lift_and_stays_in_takeoff(void)
     set(PARAMETER_KI, 0.0F);
     run(1.0);
     setr(0.3F);
-    run(20.0);
+    run(2.5);
+    TEST_ASSERT_EQUAL_HEX16(0U, out.flags);
+    run(17.5);
+    TEST_ASSERT_EQUAL_HEX16(FLIGHT_FLAG_REACH, out.flags);
     TEST_ASSERT_EQUAL(FLIGHT_TAKEOFF, out.state);
     TEST_ASSERT_FLOAT_WITHIN(0.001F, 4.5F, out.thrust_n);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, (float)highest_m);
@@ -205,6 +208,7 @@ void test_the_seeds_pid_at_40_cm_is_a_limit_cycle(void)
         TEST_ASSERT_FLOAT_WITHIN(25.0F, 75.0F, (float)rms_mm());
         TEST_ASSERT_EQUAL_INT(0, plant.contacts);
         TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
+        TEST_ASSERT_EQUAL_HEX16(0U, out.flags);
     }
 }
 

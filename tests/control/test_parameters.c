@@ -164,3 +164,40 @@ void test_the_take_over_above_the_highest_reference_is_still_in_range_of_the_sen
 {
     TEST_ASSERT_TRUE(parameter_table[PARAMETER_SETR].maximum + 0.8F < 4.095F - 0.205F);
 }
+
+void test_the_seeds_set_is_its_law_and_gains_and_nothing_else(void)
+{
+    parameters_t expected;
+
+    for (int i = 0; i < PARAMETER_COUNT; i++) {
+        parameters.value[i] = parameter_table[i].maximum;
+    }
+    expected = parameters;
+    expected.generation++;
+    expected.value[PARAMETER_LAW] = (float)LAW_PID;
+    expected.value[PARAMETER_RELEASE] = (float)RELEASE_FREE;
+    expected.value[PARAMETER_KP] = 0.015F;
+    expected.value[PARAMETER_KD] = 0.008F;
+    expected.value[PARAMETER_KI] = 0.01F;
+    expected.value[PARAMETER_USAT] = 1.0F;
+    expected.value[PARAMETER_DSAT] = 0.0F;
+    expected.value[PARAMETER_GRAV] = 7.0F;
+    parameters_set_seed(&parameters);
+    TEST_ASSERT_EQUAL_MEMORY(&expected, &parameters, sizeof expected);
+}
+
+/* Each row's meaning begins with the laws that it is for. */
+void test_a_gain_is_used_by_the_laws_that_its_meaning_names(void)
+{
+    TEST_ASSERT_TRUE(parameter_is_used(PARAMETER_KP, LAW_PD) && parameter_is_used(PARAMETER_KP, LAW_PID));
+    TEST_ASSERT_FALSE(parameter_is_used(PARAMETER_KP, LAW_PIDT) || parameter_is_used(PARAMETER_KP, LAW_EST));
+    TEST_ASSERT_FALSE(parameter_is_used(PARAMETER_KI, LAW_PD));
+    TEST_ASSERT_TRUE_MESSAGE(parameter_is_used(PARAMETER_PKP, LAW_EST), "PIDT stands in for EST");
+    TEST_ASSERT_FALSE(parameter_is_used(PARAMETER_PKP, LAW_PID));
+    for (int i = 0; i < PARAMETER_COUNT; i++) {
+        const bool of_the_seed = strncmp(parameter_table[i].meaning, "PD, PID: ", 9) == 0
+                                 || strncmp(parameter_table[i].meaning, "PID: ", 5) == 0;
+
+        TEST_ASSERT_EQUAL_MESSAGE(!of_the_seed, parameter_is_used((parameter_id_t)i, LAW_EST), parameter_table[i].name);
+    }
+}

@@ -98,8 +98,38 @@ void test_lf_cr_and_cr_lf_end_one_line_each(void)
 {
     TEST_ASSERT_EQUAL(3U, feed("#A 1\n#B 2\r#C 3\r\n"));
     TEST_ASSERT_EQUAL(1U, feed("#D 4\n\r"));
-    TEST_ASSERT_EQUAL(1U, feed("\r\n\r\n\n\r#E 5\r\r\n\n"));
+    TEST_ASSERT_EQUAL(1U, feed_octets("#E 5\r\0\n", 7U));
     TEST_ASSERT_EQUAL(0U, collector.strays);
+}
+
+void test_a_line_without_a_sharp_is_bare_an_empty_one_too(void)
+{
+    static const char *const lines[] = {"KP 0.015\r\n", "stop\n", "\n", "\r\n", " \t \r", "x\x08\n"};
+
+    for (uint16_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        assert_error(TELECOMMAND_BARE, lines[i]);
+        TEST_ASSERT_EQUAL(0U, collector.line.length);
+    }
+    TEST_ASSERT_EQUAL(6U, feed("\r\n\r\n\n\r#E 5\r\r\n\n"));
+    assert_parses("#KP 0.015\n", "KP", "0.015");
+    TEST_ASSERT_FALSE(collector.line.bare);
+}
+
+void test_ctrl_c_drops_what_was_typed_and_is_a_bare_line_of_its_own(void)
+{
+    assert_error(TELECOMMAND_BARE, "\x03");
+    assert_error(TELECOMMAND_BARE, "#SETR 0.6\x03");
+    assert_error(TELECOMMAND_BARE, "#SETR 0.60000000000000000000000000000000000\x03");
+    assert_parses("#GET\n", "GET", "");
+}
+
+void test_backspace_and_delete_take_back_one_character_each(void)
+{
+    assert_parses("#SETR 0.8\x08" "6\n", "SETR", "0.6");
+    assert_parses("#KD\x7FP 0.2\x08\x08\x08" "0.1\n", "KP", "0.1");
+    assert_error(TELECOMMAND_BARE, "#KP\x08\x08\x08\n");
+    assert_error(TELECOMMAND_BARE, "\x08\x7F#\x08\x08KP 1\n");
+    assert_error(TELECOMMAND_OVERLONG, "#KP 0.015000000000000000000000000\x08\x08\x08\n");
 }
 
 void test_the_line_is_complete_at_the_cr_and_still_there_after_the_lf(void)
@@ -195,11 +225,11 @@ void test_nul_is_as_if_it_had_not_come(void)
     TEST_ASSERT_EQUAL(0U, collector.strays);
 }
 
-void test_what_is_outside_a_line_is_counted_and_answers_nothing(void)
+void test_what_is_outside_a_line_is_counted(void)
 {
-    TEST_ASSERT_EQUAL(0U, feed("KP 0.015\r\n")); /* 7 without the blank */
+    TEST_ASSERT_EQUAL(1U, feed("KP 0.015\r\n")); /* 7 without the blank */
     TEST_ASSERT_EQUAL(7U, collector.strays);
-    TEST_ASSERT_EQUAL(1U, feed("+++#GET\nx\x80\xFF\x01\t \r\n"));
+    TEST_ASSERT_EQUAL(2U, feed("+++#GET\nx\x80\xFF\x01\t \r\n"));
     TEST_ASSERT_EQUAL(14U, collector.strays);
 }
 
@@ -215,7 +245,7 @@ void test_control_and_high_characters_are_refused_wherever_they_stand(void)
         bool legible = code == '\t' || (code >= 0x20 && code <= 0x7E);
         for (uint16_t place = 1; place < 8; place++) {
             char text[] = "#KP 0.1 \n";
-            if (code == '\n' || code == '\r' || code == '#') {
+            if (strchr("\n\r#\x03\x08\x7F", (int)code) != NULL) {
                 continue;
             }
             text[place] = (char)code;
@@ -233,7 +263,7 @@ void test_control_and_high_characters_are_refused_wherever_they_stand(void)
 
 void test_names_are_letters_digits_and_underscore_only(void)
 {
-    for (uint16_t code = 0x21; code < 0x7F; code++) {
+    for (uint16_t code = 0x21; code <= 0x7E; code++) {
         char text[] = "#K?P 1\n";
         bool name = (code >= 'A' && code <= 'Z') || (code >= 'a' && code <= 'z') || (code >= '0' && code <= '9') || code == '_';
         if (code == '#') {
@@ -309,7 +339,7 @@ void test_what_is_lost_between_lines_harms_none(void)
     telecommand_collector_broken(&collector);
     assert_parses("#KP 0.1\n", "KP", "0.1");
     telecommand_collector_broken(&collector);
-    TEST_ASSERT_FALSE(telecommand_collect(&collector, '\n'));
+    assert_error(TELECOMMAND_BARE, "\n");
     TEST_ASSERT_EQUAL(0U, feed("noise"));
     telecommand_collector_broken(&collector);
     assert_parses(" #KP 0.1\n", "KP", "0.1");
@@ -320,7 +350,7 @@ void test_a_new_collector_holds_no_damage(void)
     TEST_ASSERT_EQUAL(0U, feed("#KP 0."));
     telecommand_collector_broken(&collector);
     telecommand_collector_init(&collector);
-    TEST_ASSERT_EQUAL(0U, feed("1\n"));
+    TEST_ASSERT_EQUAL(1U, feed("1\n"));
     assert_parses("#KP 0.1\n", "KP", "0.1");
 }
 
@@ -346,7 +376,7 @@ void test_ten_thousand_random_octets_lose_no_later_command(void)
     printf("random octets: seed %lu\n", SEED);
     for (uint32_t i = 0; i < 10000UL; i++) {
         if (telecommand_collect(&collector, octet_of((uint16_t)random_bits()))) {
-            TEST_ASSERT_EQUAL_INT16('#', collector.line.text[0]);
+            TEST_ASSERT_TRUE(collector.line.bare || collector.line.text[0] == '#');
             TEST_ASSERT_LESS_OR_EQUAL(TELECOMMAND_LINE_MAX, collector.line.length);
             (void)telecommand_parse(&collector.line, &command);
         }
@@ -360,7 +390,7 @@ void test_ten_thousand_random_octets_lose_no_later_command(void)
 /* Lines of the command alphabet: whatever is accepted is a clean name and a trimmed value that stand in the line. */
 void test_every_accepted_line_has_a_clean_name_and_a_trimmed_value(void)
 {
-    static const char alphabet[] = "# \tKpz_9.-e@=\x7F";
+    static const char alphabet[] = "# \tKpz_9.-e@=\x08";
     uint16_t accepted = 0;
 
     printf("random lines: seed %lu\n", SEED);
@@ -386,4 +416,30 @@ void test_every_accepted_line_has_a_clean_name_and_a_trimmed_value(void)
         }
     }
     TEST_ASSERT_GREATER_THAN(100U, accepted);
+}
+
+void test_a_stop_a_landing_and_a_reference_of_zero_are_urgent_however_written(void)
+{
+    static const char *const urgent[] = {"#STOP\n", "# stop now \n", "#LAND\r", "#land\n", "#SETR 0\n", "#setr 0.0\n",
+                                         "#SETR -0\n", "#SETR +.000\n", "#SETR 00.\n", "noise #STOP\n", "#SETR 0.#LAND\n"};
+    static const char *const others[] = {"#SETR 0.6\n", "#SETR\n", "#SETR .\n", "#SETR -\n", "#SETR 0.0.0\n", "#SETR 0 1\n",
+                                         "#STOPS\n", "#STO\n", "#LANDING\n", "#SETRX 0\n", "#KP 0\n", "STOP\n", "\n",
+                                         "#LOG STOP\n", "#STOP\x01\n", "#STOP 1234567890123456789012345678\n"};
+
+    for (uint16_t i = 0; i < sizeof urgent / sizeof urgent[0]; i++) {
+        TEST_ASSERT_EQUAL(1U, feed(urgent[i]));
+        TEST_ASSERT_TRUE_MESSAGE(telecommand_is_urgent(&collector.line), urgent[i]);
+    }
+    for (uint16_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        TEST_ASSERT_EQUAL(1U, feed(others[i]));
+        TEST_ASSERT_FALSE_MESSAGE(telecommand_is_urgent(&collector.line), others[i]);
+    }
+}
+
+void test_a_damaged_line_is_never_urgent(void)
+{
+    TEST_ASSERT_EQUAL(0U, feed("#SETR "));
+    telecommand_collector_broken(&collector);
+    TEST_ASSERT_EQUAL(1U, feed("0\n"));
+    TEST_ASSERT_FALSE(telecommand_is_urgent(&collector.line));
 }

@@ -35,11 +35,18 @@ static void done(monitor_task_t task, int calls)
     TEST_ASSERT_EQUAL_UINT16_MESSAGE(jobs[task].begun, jobs[task].done, "a job that was not begun");
 }
 
+static void set_deadline(monitor_task_t task, uint32_t deadline_us, int calls)
+{
+    (void)calls;
+    jobs[task].deadline_us = deadline_us;
+}
+
 void jobs_reset(void)
 {
     (void)memset(jobs, 0, sizeof jobs);
     monitor_watch_Stub(watch);
     monitor_released_Stub(released);
+    monitor_set_deadline_Stub(set_deadline);
     monitor_begin_Stub(begin);
     monitor_done_Stub(done);
 }

@@ -12,6 +12,7 @@ typedef struct {
     Task_Handle handle;
     uint16_t released;      /* releases told */
     uint32_t released_us;   /* the latest */
+    uint32_t deadline_us;   /* the latest told, 0: none */
     uint16_t begun;
     uint16_t done;
 } jobs_t;

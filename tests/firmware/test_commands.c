@@ -12,9 +12,10 @@
 #include "mock_servers.h"
 #include "mock_verbs.h"
 #include "mock_xbee_port.h"
+#include "firmware/listing.h"
 #include "unity.h"
 
-#define ANSWERS_MAX 40U
+#define ANSWERS_MAX 60U
 #define ARRIVAL_US 123456U
 
 static parameters_t parameters;
@@ -70,6 +71,12 @@ static void answer(const telemetry_line_t *line, int calls)
     answered++;
 }
 
+static bool spare(const telemetry_line_t *line, int calls)
+{
+    answer(line, calls);
+    return true;
+}
+
 static uint16_t stops;          /* of a hover calibration */
 
 static void stop(int calls)
@@ -77,6 +84,9 @@ static void stop(int calls)
     (void)calls;
     stops++;
 }
+
+static bool overtaken;
+static uint32_t arrival_us;
 
 void setUp(void)
 {
@@ -89,6 +99,9 @@ void setUp(void)
     reference_server_read_Stub(reference_read);
     reference_server_write_Stub(reference_write);
     xbee_port_answer_Stub(answer);
+    xbee_port_spare_Stub(spare);
+    overtaken = false;
+    arrival_us = ARRIVAL_US;
     calibrator_stop_Stub(stop);
     stops = 0U;
 }
@@ -96,6 +109,14 @@ void setUp(void)
 void tearDown(void)
 {
     kernel_check();
+}
+
+static void execute(const telecommand_line_t *line)
+{
+    const xbee_message_t message = {.line = *line, .arrival_us = arrival_us, .overtaken = overtaken};
+
+    commands_execute(&message);
+    TEST_ASSERT_FALSE(listing_more());
 }
 
 /* The characters of one line, without its end, as they come from the radio. */
@@ -109,7 +130,7 @@ static void type_characters(const char *text, size_t length)
         TEST_ASSERT_FALSE(telecommand_collect(&collector, octet_of((uint16_t)text[i])));
     }
     TEST_ASSERT_TRUE(telecommand_collect(&collector, '\n'));
-    commands_execute(&collector.line, ARRIVAL_US);
+    execute(&collector.line);
 }
 
 static void type(const char *text)
@@ -140,7 +161,7 @@ static void assert_refused(const char *expected, const char *line)
 
 void test_a_parameter_is_set_written_once_and_answered_with_its_value(void)
 {
-    assert_answer("OK KP 0.02", "#KP 0.02");
+    assert_answer("OK KP 0.02 (LAW EST does not use it)", "#KP 0.02");
     TEST_ASSERT_EQUAL_FLOAT(0.02F, parameters.value[PARAMETER_KP]);
     TEST_ASSERT_EQUAL_UINT32(1, parameters.generation);
     TEST_ASSERT_EQUAL_UINT16(1, parameter_writes);
@@ -152,13 +173,14 @@ void test_only_the_named_parameter_changes(void)
 
     for (uint16_t id = PARAMETER_KP; id < PARAMETER_LAW; id++) {
         char line[40];
-        char text[40];
+        char text[80];
 
         expected = parameters;
         expected.value[id] = 0.5F;
         expected.generation++;
         (void)snprintf(line, sizeof line, "#%s 0.5", parameter_table[id].name);
-        (void)snprintf(text, sizeof text, "OK %s 0.5", parameter_table[id].name);
+        (void)snprintf(text, sizeof text, "OK %s 0.5%s", parameter_table[id].name,
+                       parameter_is_used((parameter_id_t)id, LAW_EST) ? "" : " (LAW EST does not use it)");
         assert_answer(text, line);
         TEST_ASSERT_EQUAL_MEMORY(&expected, &parameters, sizeof expected);
     }
@@ -231,13 +253,16 @@ void test_a_choice_is_set_by_its_name_in_either_case_and_answered_by_it(void)
 {
     assert_answer("OK LAW PD", "#LAW PD");
     TEST_ASSERT_EQUAL_FLOAT((float)LAW_PD, parameters.value[PARAMETER_LAW]);
+    assert_answer("OK KI 0.01 (LAW PD does not use it)", "#KI 0.01");
+    assert_answer("OK KP 0.015", "#KP 0.015");
+    assert_answer("OK PKI 1 (LAW PD does not use it)", "#PKI 1");
     assert_answer("OK LAW PID", "#law pid");
     TEST_ASSERT_EQUAL_FLOAT((float)LAW_PID, parameters.value[PARAMETER_LAW]);
     assert_answer("OK RELEASE SCAN", "#RELEASE scan");
     TEST_ASSERT_EQUAL_FLOAT((float)RELEASE_SCAN, parameters.value[PARAMETER_RELEASE]);
     assert_answer("OK RELEASE FREE", "#Release Free");
     TEST_ASSERT_EQUAL_FLOAT((float)RELEASE_FREE, parameters.value[PARAMETER_RELEASE]);
-    TEST_ASSERT_EQUAL_UINT16(4, parameter_writes);
+    TEST_ASSERT_EQUAL_UINT16(7, parameter_writes);
 }
 
 void test_a_choice_by_another_name_or_by_number_is_refused_with_the_list(void)
@@ -313,11 +338,20 @@ void test_get_of_an_unknown_parameter_is_refused(void)
     assert_refused("ERR GET unknown parameter", "#GET KP KD");
 }
 
-void test_get_alone_answers_one_line_per_parameter_in_the_tables_order(void)
+static void assert_end(const char *format, unsigned lines)
+{
+    char expected[64];
+
+    (void)snprintf(expected, sizeof expected, format, lines);
+    TEST_ASSERT_EQUAL_STRING(expected, answers[answered - 1U]);
+}
+
+void test_get_alone_answers_one_line_per_parameter_in_the_tables_order_and_their_number(void)
 {
     reference.reference_m = 1.25F;
     type("#GET");
-    TEST_ASSERT_EQUAL_UINT16(PARAMETER_COUNT, answered);
+    TEST_ASSERT_EQUAL_UINT16(PARAMETER_COUNT + 1U, answered);
+    assert_end("OK GET END lines:%u", PARAMETER_COUNT);
     TEST_ASSERT_EQUAL_STRING("OK SETR 1.25", answers[PARAMETER_SETR]);
     TEST_ASSERT_EQUAL_STRING("OK GRAV 7", answers[PARAMETER_GRAV]);
     TEST_ASSERT_EQUAL_STRING("OK LAW EST", answers[PARAMETER_LAW]);
@@ -344,7 +378,9 @@ void test_every_answer_of_get_can_be_typed_back_as_a_command(void)
         char line[TELEMETRY_ANSWER_MAX + 2U];
 
         (void)snprintf(line, sizeof line, "#%s", &told[id][3]);
-        assert_answer(told[id], line);
+        type(line);
+        TEST_ASSERT_EQUAL_UINT16(1, answered);
+        TEST_ASSERT_EQUAL_STRING_LEN(told[id], answers[0], strlen(told[id]));
     }
     TEST_ASSERT_EQUAL_MEMORY(before.value, parameters.value, sizeof before.value);
     TEST_ASSERT_EQUAL_FLOAT(0.333333F, reference.reference_m);
@@ -378,8 +414,9 @@ void test_help_tells_every_parameter_and_every_verb_with_limits_and_meaning(void
     TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #USAT 0..11.76 N - ", answers[PARAMETER_USAT], 27);
     TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #LAW PD|PID|PIDT|EST - ", answers[PARAMETER_LAW], 31);
     TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #RELEASE FREE|SCAN - ", answers[PARAMETER_RELEASE], 29);
-    TEST_ASSERT_EQUAL_STRING("OK HELP #GET [NAME] - one parameter, or all", answers[PARAMETER_COUNT]);
-    TEST_ASSERT_EQUAL_STRING("OK HELP #HELP - this list", answers[answered - 1U]);
+    TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #STOP - ", answers[PARAMETER_COUNT], 16);
+    TEST_ASSERT_EQUAL_STRING("OK HELP #HELP - this list", answers[answered - 2U]);
+    assert_end("OK HELP END lines:%u", answered - 1U);
 }
 
 static bool verb_took;
@@ -416,7 +453,7 @@ void test_every_command_that_help_tells_of_is_known(void)
     verb_log_Stub(verb);
     verb_calibrate_Stub(verb);
     type("#HELP");
-    count = answered;
+    count = (uint16_t)(answered - 1U);
     (void)memcpy(told, answers, sizeof told);
     for (uint16_t i = 0; i < count; i++) {
         char line[TELEMETRY_ANSWER_MAX + 1U];
@@ -475,7 +512,7 @@ void test_a_damaged_line_never_executes(void)
         answered = 0U;
         line.length = (uint16_t)strlen(lines[i]);
         (void)memcpy(line.text, lines[i], line.length);
-        commands_execute(&line, ARRIVAL_US);
+        execute(&line);
         TEST_ASSERT_EQUAL_UINT16(1, answered);
         TEST_ASSERT_EQUAL_STRING("ERR - line damaged", answers[0]);
     }
@@ -488,7 +525,7 @@ void test_a_damaged_line_never_executes(void)
 void test_a_command_after_a_refused_one_works(void)
 {
     assert_refused("ERR KP not a number", "#KP nan");
-    assert_answer("OK KP 0.02", "#KP 0.02");
+    assert_answer("OK KP 0.02 (LAW EST does not use it)", "#KP 0.02");
     assert_refused("ERR - line too long", "#PING 123456789 123456789 1234567");
     assert_answer("OK SETR 0.6", "#SETR 0.6");
     assert_refused("ERR - empty command", "#");
@@ -512,7 +549,7 @@ static size_t damaged_line(char *line)
             length++;
         } else if (at < length) {
             line[at] = (char)(1U + kernel_random(255U));
-            if (strchr("\r\n#", line[at]) != NULL) {
+            if (strchr("\r\n#\x03\x08\x7F", line[at]) != NULL) {
                 line[at] = '0';
             }
         }
@@ -569,9 +606,68 @@ void test_any_line_but_a_ping_ends_a_calibration(void)
     }
 }
 
+void test_stop_and_land_withdraw_the_reference_whatever_stands_behind_them(void)
+{
+    static const struct {
+        const char *line, *expected;
+    } rows[] = {{"#STOP", "OK STOP"}, {"#LAND", "OK LAND"}, {"#stop now!", "OK STOP"}, {"#land 0.3", "OK LAND"}};
+
+    for (uint16_t i = 0; i < 4U; i++) {
+        reference.reference_m = 0.6F;
+        assert_answer(rows[i].expected, rows[i].line);
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, reference.reference_m);
+        TEST_ASSERT_EQUAL_UINT32(8U + i, reference.sequence);
+        TEST_ASSERT_EQUAL_UINT32(41U + i, reference.link_sequence);
+    }
+    TEST_ASSERT_EQUAL_UINT16(4, stops);
+}
+
+void test_what_a_stop_has_overtaken_starts_nothing_any_more(void)
+{
+    overtaken = true;
+    assert_refused("ERR SETR overtaken by a stop", "#SETR 0.6");
+    assert_refused("ERR CALIBRATE overtaken by a stop", "#CALIBRATE 30 5");
+    assert_answer("OK PING 1", "#PING 1");
+    assert_answer("OK LAW PD", "#LAW PD");
+}
+
+void test_a_bare_line_is_answered_once_a_second_and_ends_a_calibration_each_time(void)
+{
+    arrival_us = 0xFFFF0000U;
+    assert_refused("ERR - commands begin with #", "stop");
+    arrival_us += 999999U;
+    type("");
+    TEST_ASSERT_EQUAL_UINT16(0, answered);
+    arrival_us += 1U;
+    assert_refused("ERR - commands begin with #", "SETR 0.6");
+    TEST_ASSERT_EQUAL_UINT16(3, stops);
+}
+
+/* Long answers. What they do is told by words: a list's line, the log, the calibration, a sleep. */
+static uint16_t list_lines;
 static uint16_t log_lines;
 static uint16_t calibration_lines;
 static bool line_waits;
+static bool line_presses;
+static bool clear;
+static bool room;
+
+static bool list_line(answer_t *answer, uint16_t number)
+{
+    answer_begin(answer);
+    return number < list_lines;
+}
+
+static bool one_a_time(const telemetry_line_t *line, int calls)
+{
+    (void)line;
+    (void)calls;
+    room = !room;
+    if (room) {
+        kernel_note("line");
+    }
+    return room;
+}
 
 static bool log_more(int calls)
 {
@@ -599,31 +695,55 @@ static bool waiting(int calls)
     return line_waits;
 }
 
+static bool pressing(int calls)
+{
+    (void)calls;
+    return line_presses;
+}
+
+static bool is_clear(int calls)
+{
+    (void)calls;
+    return clear;
+}
+
 static void meanwhile(void)
 {
     kernel_note("sleep");
 }
 
-static void long_answers(uint16_t log, uint16_t calibration)
+static void long_answers(uint16_t list, uint16_t log, uint16_t calibration)
 {
+    static const telecommand_t command = {.name = "GET", .name_length = 3U};
+    const answer_t ask = {.command = &command};
+
+    list_lines = list;
     log_lines = log;
     calibration_lines = calibration;
-    line_waits = false;
+    line_waits = line_presses = false;
+    clear = true;
+    room = false;
     verb_log_more_Stub(log_more);
     verb_calibrate_more_Stub(calibration_more);
     xbee_port_waiting_Stub(waiting);
+    xbee_port_pressing_Stub(pressing);
+    xbee_port_clear_Stub(is_clear);
+    xbee_port_spare_Stub(one_a_time);
     kernel.task.on_sleep = meanwhile;
     kernel.notes[0] = '\0';
+    if (list > 0U) {
+        (void)listing_start(&ask, list_line);
+    }
 }
 
 void test_long_answers_go_on_ten_milliseconds_apart_until_both_are_complete(void)
 {
-    long_answers(3U, 2U);
-    commands_continue();
+    long_answers(0U, 3U, 2U);
+    TEST_ASSERT_FALSE(commands_continue());
     TEST_ASSERT_EQUAL_STRING("log calibration sleep log calibration sleep log calibration ", kernel.notes);
     TEST_ASSERT_EQUAL_UINT32(10, kernel.task.slept_ticks);
-    long_answers(0U, 0U);
-    commands_continue();
+    long_answers(0U, 0U, 0U);
+    TEST_ASSERT_FALSE(commands_continue());
     TEST_ASSERT_EQUAL_STRING("log calibration ", kernel.notes);
 }
 
@@ -633,14 +753,60 @@ static void a_line_comes(void)
     line_waits = true;
 }
 
-void test_a_line_that_waits_goes_before_the_rest_of_a_long_answer(void)
+void test_a_line_that_waits_goes_before_the_rest_of_the_log(void)
 {
-    long_answers(100U, 0U);
+    long_answers(0U, 100U, 0U);
     kernel.task.on_sleep = a_line_comes;
-    commands_continue();
+    TEST_ASSERT_TRUE(commands_continue());
     TEST_ASSERT_EQUAL_STRING("log calibration sleep ", kernel.notes);
-    commands_continue();
+    TEST_ASSERT_FALSE(commands_continue());
     TEST_ASSERT_EQUAL_STRING("log calibration sleep ", kernel.notes);
+}
+
+void test_a_line_that_waits_lets_a_list_end_first(void)
+{
+    long_answers(2U, 100U, 0U);
+    line_waits = true;
+    TEST_ASSERT_TRUE(commands_continue());
+    TEST_ASSERT_EQUAL_STRING("line sleep line sleep line ", kernel.notes);
+}
+
+static void the_radio_clears(void)
+{
+    kernel_note("sleep");
+    clear = kernel.task.sleeps == 3U;
+}
+
+void test_a_line_waits_until_the_radio_has_room_for_its_answer(void)
+{
+    long_answers(0U, 100U, 0U);
+    line_waits = true;
+    clear = false;
+    kernel.task.on_sleep = the_radio_clears;
+    TEST_ASSERT_TRUE(commands_continue());
+    TEST_ASSERT_EQUAL_STRING("sleep sleep sleep ", kernel.notes);
+}
+
+static void a_stop_comes(void)
+{
+    kernel_note("sleep");
+    line_waits = line_presses = true;
+}
+
+/* The worst that a stop waits is one sleep. */
+void test_a_line_that_presses_interrupts_whatever_is_being_sent(void)
+{
+    long_answers(50U, 100U, 5U);
+    clear = false;
+    kernel.task.on_sleep = a_stop_comes;
+    TEST_ASSERT_TRUE(commands_continue());
+    TEST_ASSERT_EQUAL_STRING("line sleep ", kernel.notes);
+    TEST_ASSERT_FALSE(commands_continue());
+    TEST_ASSERT_EQUAL_STRING("line sleep ", kernel.notes);
+    line_waits = line_presses = false;
+    list_lines = 0U;
+    while (listing_more()) {
+    }
 }
 
 void test_lost_lines_are_told_with_their_number(void)

@@ -100,6 +100,18 @@ void test_a_response_equal_to_the_deadline_is_in_time_and_one_microsecond_more_i
     }
 }
 
+void test_a_deadline_may_change_from_job_to_job(void)
+{
+    monitor_set_deadline(MONITOR_CONTROL, 25000U);
+    job(MONITOR_CONTROL, 0U, 25000U);
+    assert_report(MONITOR_CONTROL, 25000U, 0U);
+    job(MONITOR_CONTROL, 0U, 25001U);
+    assert_report(MONITOR_CONTROL, 25001U, 1U);
+    monitor_set_deadline(MONITOR_CONTROL, 108000U);
+    job(MONITOR_CONTROL, 0U, 108000U);
+    assert_report(MONITOR_CONTROL, 108000U, 1U);
+}
+
 void test_of_releases_before_the_job_begins_the_first_counts(void)
 {
     monitor_released(MONITOR_SEND_COMM, now_us);

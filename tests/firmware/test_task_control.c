@@ -269,10 +269,12 @@ void test_the_later_laws_have_releases_of_their_own(void)
     parameters.value[PARAMETER_LAW] = (float)LAW_PIDT;
     run(1U);
     TEST_ASSERT_EQUAL_HEX16(Event_Id_01, masks[1]);
+    TEST_ASSERT_EQUAL_UINT32(100000, jobs[MONITOR_CONTROL].deadline_us);
     waits = steps = pulse_count = publications = alive_reports = 0U;
     parameters.value[PARAMETER_LAW] = (float)LAW_EST;
     run(1U);
     TEST_ASSERT_EQUAL_HEX16(Event_Id_01 | Event_Id_02, masks[1]);
+    TEST_ASSERT_EQUAL_UINT32(25000, jobs[MONITOR_CONTROL].deadline_us);
 }
 
 void test_released_by_scans_the_clock_does_not_run_a_cycle(void)
@@ -518,6 +520,7 @@ void test_a_job_is_measured_from_the_event_that_is_waited_for(void)
         now_us = 5000U;
         kernel.clock.function(kernel.clock.params.arg);
         TEST_ASSERT_EQUAL_UINT16(release == RELEASE_FREE ? 1U : 0U, jobs[MONITOR_CONTROL].released);
+        TEST_ASSERT_EQUAL_UINT32(release == RELEASE_FREE ? 108000U : 100000U, jobs[MONITOR_CONTROL].deadline_us);
         now_us = 6000U;
         task_control_altitude_arrived();
         TEST_ASSERT_EQUAL_UINT16(1, jobs[MONITOR_CONTROL].released);

@@ -42,20 +42,25 @@ static uint16_t port_wait(xbee_message_t *message, int calls)
     return script[taken++].lost;
 }
 
-static void execute(const telecommand_line_t *line, uint32_t arrival_us, int calls)
+static void execute(const xbee_message_t *message, int calls)
 {
+    const telecommand_line_t *line = &message->line;
+
     (void)calls;
     kernel_note("execute");
     TEST_ASSERT_EQUAL_UINT16(strlen(script[executed].text), line->length);
     TEST_ASSERT_EQUAL_STRING_LEN(script[executed].text, line->text, line->length);
-    TEST_ASSERT_EQUAL_UINT32(script[executed].arrival_us, arrival_us);
+    TEST_ASSERT_EQUAL_UINT32(script[executed].arrival_us, message->arrival_us);
     executed++;
 }
 
-static void go_on(int calls)
+static bool held_up;    /* by the radio */
+
+static bool go_on(int calls)
 {
     (void)calls;
     kernel_note("continue");
+    return held_up;
 }
 
 static void report_lost(uint16_t count, int calls)
@@ -70,6 +75,7 @@ void setUp(void)
 {
     kernel_reset();
     taken = executed = reports = 0U;
+    held_up = false;
     xbee_port_create_Stub(port_create);
     xbee_port_wait_Stub(port_wait);
     commands_execute_Stub(execute);
@@ -110,4 +116,12 @@ void test_every_line_is_one_job_released_when_it_was_complete(void)
     jobs_assert(MONITOR_RECEIVE_COMM, SCRIPT);
     TEST_ASSERT_EQUAL_UINT16(SCRIPT, jobs[MONITOR_RECEIVE_COMM].released);
     TEST_ASSERT_EQUAL_UINT32(0xFFFFFFF0U, jobs[MONITOR_RECEIVE_COMM].released_us);
+}
+
+void test_a_line_that_the_radio_held_up_counts_from_when_it_was_taken(void)
+{
+    held_up = true;
+    kernel_run_task();
+    jobs_assert(MONITOR_RECEIVE_COMM, SCRIPT);
+    TEST_ASSERT_EQUAL_UINT16(0, jobs[MONITOR_RECEIVE_COMM].released);
 }

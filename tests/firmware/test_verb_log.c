@@ -127,13 +127,22 @@ void test_all_records_come_between_a_title_and_an_end(void)
     TEST_ASSERT_EQUAL_UINT16(1, line_count);
     TEST_ASSERT_FALSE(verb_log_more());
     assert_line(0, "OK LOG records:3\r\n");
-    assert_line(1, "OK LOG t_s,");
-    assert_line(2, "OK LOG 100.000,");
-    assert_line(3, "OK LOG 101.000,");
-    assert_line(4, "OK LOG 102.000,");
-    assert_line(5, "OK LOG END\r\n");
+    assert_line(1, "OK LOG 0 t_s,");
+    assert_line(2, "OK LOG 1 100.000,");
+    assert_line(3, "OK LOG 2 101.000,");
+    assert_line(4, "OK LOG 3 102.000,");
+    assert_line(5, "OK LOG END lines:3\r\n");
     TEST_ASSERT_EQUAL_UINT16(6, line_count);
     TEST_ASSERT_NOT_NULL(strstr(lines[2], ",FLYING,"));
+}
+
+/* By Python: binascii.crc_hqx(line, 0xFFFF). */
+void test_titles_and_rows_end_with_the_sum_of_all_before_it(void)
+{
+    (void)type("");
+    TEST_ASSERT_FALSE(verb_log_more());
+    TEST_ASSERT_EQUAL_STRING("OK LOG 0 t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags*BDE1\r\n", lines[1]);
+    TEST_ASSERT_EQUAL_STRING("OK LOG 1 100.000,0.000,0.000,0.000,0.000,0.000,0.0000,0.0000,FLYING,0*9E46\r\n", lines[2]);
 }
 
 void test_an_empty_recorder_gives_title_and_end(void)
@@ -142,7 +151,7 @@ void test_an_empty_recorder_gives_title_and_end(void)
     (void)type("");
     TEST_ASSERT_FALSE(verb_log_more());
     assert_line(0, "OK LOG records:0\r\n");
-    assert_line(2, "OK LOG END\r\n");
+    assert_line(2, "OK LOG END lines:0\r\n");
 }
 
 void test_it_goes_on_line_by_line_as_the_radio_takes_them_and_none_twice(void)
@@ -155,9 +164,9 @@ void test_it_goes_on_line_by_line_as_the_radio_takes_them_and_none_twice(void)
         TEST_ASSERT_EQUAL(i < 4, verb_log_more());
         TEST_ASSERT_EQUAL_UINT16(2 + i, line_count);
     }
-    assert_line(2, "OK LOG 100.000,");
-    assert_line(3, "OK LOG 101.000,");
-    assert_line(5, "OK LOG END");
+    assert_line(2, "OK LOG 1 100.000,");
+    assert_line(3, "OK LOG 2 101.000,");
+    assert_line(5, "OK LOG END lines:3\r\n");
 }
 
 void test_a_command_that_waits_comes_first(void)
@@ -179,9 +188,9 @@ void test_records_that_come_later_are_not_waited_for_and_overwritten_ones_are_le
     span = (flight_recorder_span_t){102U, 120U};
     room = LINES_MAX;
     TEST_ASSERT_FALSE(verb_log_more());
-    assert_line(2, "OK LOG 100.000,");
-    assert_line(3, "OK LOG 102.000,");
-    assert_line(4, "OK LOG END");
+    assert_line(2, "OK LOG 1 100.000,");
+    assert_line(3, "OK LOG 2 102.000,");
+    assert_line(4, "OK LOG END lines:2\r\n");
     TEST_ASSERT_EQUAL_UINT16(5, line_count);
 }
 
@@ -201,7 +210,7 @@ void test_a_number_asks_for_the_latest_seconds(void)
     TEST_ASSERT_EQUAL_UINT16(10, asked_seconds);
     assert_line(0, "OK LOG records:1\r\n");
     TEST_ASSERT_FALSE(verb_log_more());
-    assert_line(2, "OK LOG 102.000,");
+    assert_line(2, "OK LOG 1 102.000,");
 }
 
 void test_clear_and_stop_end_a_dump(void)

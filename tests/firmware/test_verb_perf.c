@@ -1,4 +1,5 @@
 /* `#PERF` with the real answer writer; monitor, load and radio are mocked. */
+#include "firmware/listing.h"
 #include "firmware/verbs.h"
 
 #include <stdio.h>
@@ -26,6 +27,12 @@ static void radio(const telemetry_line_t *line, int calls)
     (void)memcpy(sent[sends], line->text, line->length);
     sent[sends][line->length] = '\0';
     sends++;
+}
+
+static bool spare(const telemetry_line_t *line, int calls)
+{
+    radio(line, calls);
+    return true;
 }
 
 static void report(monitor_task_t task, monitor_report_t *figure, int calls)
@@ -56,6 +63,7 @@ void setUp(void)
         waits[i] = 10U + i;
     }
     xbee_port_answer_Stub(radio);
+    xbee_port_spare_Stub(spare);
     monitor_report_Stub(report);
     monitor_longest_wait_us_Stub(longest_wait);
     monitor_reset_Stub(reset);
@@ -76,13 +84,17 @@ static bool ask(const char *argument)
     command.argument_length = (uint16_t)strlen(argument);
     (void)memcpy(command.argument, argument, command.argument_length);
     sends = 0U;
-    return verb_perf(&answer);
+    if (!verb_perf(&answer)) {
+        return false;
+    }
+    TEST_ASSERT_FALSE(listing_more());
+    return true;
 }
 
 void test_the_run_then_every_task_then_the_waits(void)
 {
     TEST_ASSERT_TRUE(ask(""));
-    TEST_ASSERT_EQUAL_UINT16(8, sends);
+    TEST_ASSERT_EQUAL_UINT16(9, sends);
     TEST_ASSERT_EQUAL_STRING("OK PERF reset:POWER load:7\r\n", sent[0]);
     for (unsigned i = 0; i < MONITOR_TASKS; i++) {
         char expected[96];
@@ -92,6 +104,7 @@ void test_the_run_then_every_task_then_the_waits(void)
         TEST_ASSERT_EQUAL_STRING(expected, sent[1U + i]);
     }
     TEST_ASSERT_EQUAL_STRING("OK PERF wait_us altitude:10 imu:11 laser:12 reference:13 parameters:14 flight:15\r\n", sent[7]);
+    TEST_ASSERT_EQUAL_STRING("OK PERF END lines:8\r\n", sent[8]);
     TEST_ASSERT_EQUAL_UINT16(0, resets);
 }
 
@@ -124,7 +137,7 @@ void test_the_largest_figures_fit(void)
     (void)memset(waits, 0xFF, sizeof waits);
     boot_cause_IgnoreAndReturn("WATCHDOG");
     TEST_ASSERT_TRUE(ask(""));
-    TEST_ASSERT_EQUAL_UINT16(8, sends);
+    TEST_ASSERT_EQUAL_UINT16(9, sends);
     for (uint16_t i = 0; i < 8U; i++) {
         TEST_ASSERT_EQUAL_STRING_LEN("OK PERF ", sent[i], 8);
     }

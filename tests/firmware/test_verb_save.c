@@ -135,6 +135,22 @@ void test_defaults_are_those_of_the_table_and_a_new_generation(void)
     assert_answer("OK DEFAULTS\r\n");
 }
 
+void test_defaults_seed_changes_the_law_and_its_gains_alone(void)
+{
+    parameters_t expected;
+
+    parameters.value[PARAMETER_SEL] = (float)SEL_PIN;
+    parameters.value[PARAMETER_KP] = 0.5F;
+    expected = parameters;
+    parameters_set_seed(&expected);
+    TEST_ASSERT_TRUE(type("DEFAULTS", "seed"));
+    TEST_ASSERT_EQUAL_MEMORY(&expected, &parameters, sizeof expected);
+    TEST_ASSERT_EQUAL_FLOAT((float)LAW_PID, parameters.value[PARAMETER_LAW]);
+    TEST_ASSERT_EQUAL_FLOAT((float)SEL_PIN, parameters.value[PARAMETER_SEL]);
+    TEST_ASSERT_EQUAL_UINT16(1, writes);
+    assert_answer("OK DEFAULTS SEED\r\n");
+}
+
 void test_off_the_ground_all_three_are_refused_and_touch_nothing(void)
 {
     static const char *const names[] = {"SAVE", "LOAD", "DEFAULTS"};
@@ -146,6 +162,8 @@ void test_off_the_ground_all_three_are_refused_and_touch_nothing(void)
         TEST_ASSERT_FALSE(type(names[i], ""));
         assert_answer(expected[i]);
     }
+    TEST_ASSERT_FALSE(type("DEFAULTS", "SEED"));
+    assert_answer("ERR DEFAULTS not on the ground\r\n");
     TEST_ASSERT_EQUAL_UINT16(0, saves + writes);
 }
 
@@ -153,6 +171,9 @@ void test_an_argument_is_refused(void)
 {
     TEST_ASSERT_FALSE(type("SAVE", "KP"));
     assert_answer("ERR SAVE takes no value\r\n");
+    TEST_ASSERT_FALSE(type("DEFAULTS", "EST"));
+    assert_answer("ERR DEFAULTS one of SEED\r\n");
+    TEST_ASSERT_EQUAL_UINT16(0, writes);
     TEST_ASSERT_EQUAL_UINT16(0, saves);
 }
 

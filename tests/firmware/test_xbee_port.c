@@ -477,6 +477,97 @@ void test_a_line_of_a_long_answer_leaves_at_most_a_fifth_of_a_second_to_go(void)
     TEST_ASSERT_EQUAL_UINT16(0, kernel.task.sleeps);
 }
 
+/* One of 240 characters never leaves so little behind it. */
+void test_a_line_longer_than_that_goes_when_nothing_else_is_to_go(void)
+{
+    telemetry_line_t line;
+
+    telemetry_begin_answer(&line);
+    while (line.length < 240U) {
+        telemetry_text(&line, "x");
+    }
+    room = UART_PORT_TRANSMIT_CELLS - 1U;
+    TEST_ASSERT_FALSE(xbee_port_spare(&line));
+    room = UART_PORT_TRANSMIT_CELLS;
+    TEST_ASSERT_TRUE(xbee_port_spare(&line));
+}
+
+/* What is let in then, 240 characters at most, leaves a report the half of the buffer that it needs. */
+void test_the_radio_is_clear_while_a_fifth_of_a_second_is_to_go(void)
+{
+    room = UART_PORT_TRANSMIT_CELLS - 193U;
+    TEST_ASSERT_FALSE(xbee_port_clear());
+    room++;
+    TEST_ASSERT_TRUE(xbee_port_clear());
+    TEST_ASSERT_GREATER_OR_EQUAL(UART_PORT_TRANSMIT_CELLS / 2U, room - TELEMETRY_ANSWER_MAX);
+}
+
+void test_an_urgent_line_goes_before_all_that_wait_and_marks_them_as_overtaken(void)
+{
+    feed("#SETR 0.6\n#GET\n");
+    TEST_ASSERT_FALSE(xbee_port_pressing());
+    feed("#SETR 0\n#PING 1\n");
+    TEST_ASSERT_TRUE(xbee_port_pressing());
+    wait();
+    assert_line("#SETR 0");
+    TEST_ASSERT_FALSE(message.overtaken);
+    TEST_ASSERT_FALSE(xbee_port_pressing());
+    wait();
+    assert_line("#SETR 0.6");
+    TEST_ASSERT_TRUE(message.overtaken);
+    wait();
+    assert_line("#GET");
+    TEST_ASSERT_TRUE(message.overtaken);
+    wait();
+    assert_line("#PING 1");
+    TEST_ASSERT_FALSE(message.overtaken);
+    feed("#SETR 0.6\n");
+    wait();
+    TEST_ASSERT_FALSE(message.overtaken);
+}
+
+void test_a_full_queue_keeps_no_stop_out(void)
+{
+    for (unsigned n = 0; n < 32U + 5U; n++) {
+        feed_numbered(n);
+    }
+    feed("#STOP\n#LAND\n");
+    wait();
+    assert_line("#STOP");
+    TEST_ASSERT_EQUAL_UINT16(5, missed);
+    wait();
+    assert_line("#LAND");
+    wait();
+    assert_numbered(0);
+}
+
+void test_of_many_urgent_lines_the_newest_is_never_lost_and_none_counts_as_lost(void)
+{
+    feed("#STOP 1\n#STOP 2\n#STOP 3\n#STOP 4\n#STOP 5\n#LAND\n");
+    wait();
+    TEST_ASSERT_EQUAL_UINT16(0, missed);
+    assert_line("#STOP 1");
+    wait();
+    assert_line("#STOP 2");
+    wait();
+    assert_line("#STOP 3");
+    wait();
+    assert_line("#LAND");
+    TEST_ASSERT_TRUE(kernel_blocks(wait));
+}
+
+void test_bare_lines_go_before_commands_and_are_one_however_many(void)
+{
+    feed("#PING 1\nstop\n\n\n");
+    TEST_ASSERT_TRUE(xbee_port_pressing());
+    wait();
+    TEST_ASSERT_TRUE(message.line.bare);
+    wait();
+    assert_line("#PING 1");
+    TEST_ASSERT_FALSE(message.line.bare);
+    TEST_ASSERT_TRUE(kernel_blocks(wait));
+}
+
 void test_a_complete_line_waits_until_it_is_taken(void)
 {
     TEST_ASSERT_FALSE(xbee_port_waiting());

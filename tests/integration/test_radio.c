@@ -13,12 +13,21 @@ void tearDown(void) {}
 
 typedef struct {
     child_terminal_t terminal;
+    float at_s[CHILD_TERMINAL_MAX];     /* when each character came */
     parameters_t parameters;
     float reference_m;
     double sent_s;
 } talk_t;
 
 static talk_t talk;
+
+static void take(void *terminal, unsigned octet)
+{
+    talk_t *t = terminal;
+
+    t->at_s[t->terminal.length] = (float)timeline_now() * 1e-9F;
+    child_terminal_take(&t->terminal, octet);
+}
 
 typedef struct {
     const char *text;
@@ -34,7 +43,7 @@ static void run_script(void *argument, void *result)
     board_config_t config = board_config(1);
     const char *next = script->text, *end = script->text + script->count;
 
-    board_power_on(&config, child_terminal_take, &t->terminal);
+    board_power_on(&config, take, t);
     kernel_run_until(500 * SIM_MS);
     while (next < end) {
         const char *lf = memchr(next, '\n', (size_t)(end - next));
@@ -115,7 +124,7 @@ void test_radio_and_telemetry_live_during_the_sensor_wait(void)
 
 void test_every_command_of_annex_ii_takes_effect_and_is_answered(void)
 {
-    type_line("#KP 0.02\n#KD 0.009\n#KI 0.00\n#USAT 1.5\n#DSAT 0.25\n#GRAV 6.4\n#SETR 0.5\n");
+    type_line("#LAW PID\n#KP 0.02\n#KD 0.009\n#KI 0.00\n#USAT 1.5\n#DSAT 0.25\n#GRAV 6.4\n#SETR 0.5\n");
     TEST_ASSERT_TRUE(answered("OK KP 0.02"));
     TEST_ASSERT_TRUE(answered("OK KD 0.009"));
     TEST_ASSERT_TRUE(answered("OK KI 0"));
@@ -153,12 +162,12 @@ void test_bad_values_are_refused_by_name_and_change_nothing(void)
 
 void test_a_half_line_is_restarted_and_an_overlong_one_costs_one_error(void)
 {
-    type_line("#KP 0.0#KP 0.01\n#KP 0.00000000000000000000000000000000001\n#KD 0.001\n");
+    type_line("#LAW PD\n#KP 0.0#KP 0.01\n#KP 0.00000000000000000000000000000000001\n#KD 0.001\n");
     TEST_ASSERT_TRUE(answered("OK KP 0.01"));
     TEST_ASSERT_TRUE(answered("ERR - line too long"));
     TEST_ASSERT_TRUE(answered("OK KD 0.001"));
     TEST_ASSERT_EQUAL_INT(1, count_of("ERR "));
-    TEST_ASSERT_EQUAL_INT(2, count_of("OK "));
+    TEST_ASSERT_EQUAL_INT(3, count_of("OK "));
 }
 
 void test_get_alone_lists_every_parameter_once(void)
@@ -166,7 +175,7 @@ void test_get_alone_lists_every_parameter_once(void)
     char line[64];
 
     type("#GET\n", 5, 0.0, 2.0);
-    TEST_ASSERT_EQUAL_INT(PARAMETER_COUNT, count_of("OK "));
+    TEST_ASSERT_EQUAL_INT(PARAMETER_COUNT + 1, count_of("OK "));
     TEST_ASSERT_TRUE(answered("OK KP 0.015"));
     for (int i = 0; i < PARAMETER_COUNT; i++) {
         snprintf(line, sizeof line, "OK %s ", parameter_table[i].name);
@@ -178,7 +187,7 @@ void test_help_names_every_parameter_and_verb(void)
 {
     char line[64];
 
-    type("#HELP\n", 6, 0.0, 3.0);
+    type("#HELP\n", 6, 0.0, 6.0);
     for (int i = 0; i < PARAMETER_COUNT; i++) {
         snprintf(line, sizeof line, "OK HELP #%s ", parameter_table[i].name);
         TEST_ASSERT_EQUAL_INT_MESSAGE(1, count_of(line), line);
@@ -236,4 +245,100 @@ void test_telemetry_comes_five_times_a_second_in_lines_of_at_most_95_octets(void
     }
     TEST_ASSERT_INT_WITHIN(2, 52, count_of("alt:"));
     TEST_ASSERT_TRUE(longest <= 95 && longest >= 50);
+}
+
+/* Thirty-two #GETs in one breath are half a minute of answers. */
+static void storm_then(const char *last, double listen_s)
+{
+    static char text[400];
+
+    text[0] = '\0';
+    for (int i = 0; i < 32; i++) {
+        strcat(text, "#GET\n");
+    }
+    strcat(text, last);
+    type(text, strlen(text), 0.0, listen_s);
+}
+
+/* Longest time between the ends of two telemetry lines. */
+static double longest_silence_s(void)
+{
+    double longest_s = 0.0, before_s = -1.0;
+    const char *at = talk.terminal.text;
+
+    while ((at = strstr(at, "\nalt:")) != NULL) {
+        const double now_s = (double)talk.at_s[at + 1 - talk.terminal.text];
+
+        longest_s = before_s >= 0.0 && now_s - before_s > longest_s ? now_s - before_s : longest_s;
+        before_s = now_s;
+        at++;
+    }
+    return longest_s;
+}
+
+void test_a_stop_is_obeyed_and_answered_within_half_a_second_of_a_storm_of_questions(void)
+{
+    static const struct {
+        const char *line, *answer;
+    } rows[] = {{"#STOP\n", "OK STOP"}, {"#LAND\n", "OK LAND"}, {"#SETR 0\n", "OK SETR 0"}};
+
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        storm_then(rows[i].line, 0.5);
+        TEST_ASSERT_TRUE_MESSAGE(answered(rows[i].answer), rows[i].line);
+    }
+}
+
+void test_a_reference_that_a_stop_overtakes_is_refused_and_not_flown_later(void)
+{
+    storm_then("#SETR 0.6\n#STOP\n", 60.0);
+    TEST_ASSERT_TRUE(answered("OK STOP"));
+    TEST_ASSERT_TRUE(answered("ERR SETR overtaken by a stop"));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, talk.reference_m);
+}
+
+void test_long_answers_leave_the_telemetry_its_turn(void)
+{
+    storm_then("#HELP\n#PERF\n#LASER\n", 20.0);
+    TEST_ASSERT_TRUE(count_of("OK GET END lines:") >= 20);
+    printf("longest silence %.3f s\n", longest_silence_s());
+    TEST_ASSERT_TRUE(longest_silence_s() > 0.19 && longest_silence_s() <= 0.4);
+}
+
+void test_lists_end_with_the_number_of_their_lines(void)
+{
+    static const char *const names[] = {"GET", "HELP", "PERF"};
+
+    for (int i = 0; i < 3; i++) {
+        char text[16], begin[16], end[40];
+
+        snprintf(text, sizeof text, "#%s\n", names[i]);
+        type(text, strlen(text), 0.0, 7.0);
+        snprintf(begin, sizeof begin, "OK %s", i == 0 ? "" : names[i]);
+        snprintf(end, sizeof end, "OK %s END lines:%d", names[i], count_of(begin) - 1);
+        TEST_ASSERT_TRUE_MESSAGE(answered(end), end);
+    }
+}
+
+void test_bare_lines_get_one_answer_a_second(void)
+{
+    type("stop\n\nhalt\r\n\x03SETR 0\n", 20, 0.0, 1.0);
+    TEST_ASSERT_EQUAL_INT(1, count_of("ERR - commands begin with #\r"));
+    type("a\nb\nc\nd\ne\n", 10, 0.5, 0.5);
+    TEST_ASSERT_EQUAL_INT(3, count_of("ERR - commands begin with #\r"));
+}
+
+void test_typing_mistakes_are_taken_back_by_backspace(void)
+{
+    type_line("#LAW PD\n#KQ\x08P 0.02\x7F" "3\n");
+    TEST_ASSERT_TRUE(answered("OK KP 0.03"));
+    TEST_ASSERT_EQUAL_INT(0, count_of("ERR "));
+}
+
+void test_defaults_seed_is_the_seeds_law_in_one_line(void)
+{
+    type_line("#KP 0.5\n#SEL PIN\n#DEFAULTS SEED\n");
+    TEST_ASSERT_TRUE(answered("OK DEFAULTS SEED"));
+    TEST_ASSERT_EQUAL_FLOAT((float)LAW_PID, talk.parameters.value[PARAMETER_LAW]);
+    TEST_ASSERT_EQUAL_FLOAT(0.015F, talk.parameters.value[PARAMETER_KP]);
+    TEST_ASSERT_EQUAL_FLOAT((float)SEL_PIN, talk.parameters.value[PARAMETER_SEL]);
 }

@@ -119,6 +119,20 @@ void test_any_line_ends_it_a_damaged_one_too(void)
     }
 }
 
+/* What somebody types who sees the ropes give way. */
+void test_enter_a_word_or_ctrl_c_end_it_too(void)
+{
+    static const char *const lines[] = {"#LINK 60\n#CALIBRATE 200 1\n@2\n\n@0.4\n", "#LINK 60\n#CALIBRATE 200 1\n@2\nstop\n@0.4\n",
+                                        "#LINK 60\n#CALIBRATE 200 1\n@2\n\x03\n@0.4\n", "#LINK 60\n#CALIBRATE 200 1\n@2\n#STOP\n@0.4\n"};
+
+    for (int i = 0; i < 4; i++) {
+        run(true, lines[i]);
+        TEST_ASSERT_TRUE(flown.shortest_us < IDLE_US - 150);
+        TEST_ASSERT_TRUE_MESSAGE(answered("OK CALIBRATE end:COMMAND"), lines[i]);
+        assert_idle();
+    }
+}
+
 void test_it_ends_by_itself_below_the_limit(void)
 {
     run(true, "#LINK 60\n#CALIBRATE 200 1\n@12\n");

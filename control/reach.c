@@ -1,0 +1,34 @@
+#include "control/reach.h"
+
+#include <math.h>
+
+#define REACHED_MM 100.0F
+#define NEARER_MM 50.0F
+#define STUCK_US UINT32_C(3000000)
+#define STUCK_MAX_US UINT32_C(60000000)
+
+void reach_reset(reach_t *reach)
+{
+    *reach = (reach_t){.on = false};
+}
+
+static void begin(reach_t *reach, float off_mm)
+{
+    reach->on = true;
+    reach->above = off_mm > 0.0F;
+    reach->nearest_mm = fabsf(off_mm);
+    reach->stuck_us = 0U;
+}
+
+bool reach_step(reach_t *reach, float off_mm, uint32_t step_us)
+{
+    const float distance_mm = fabsf(off_mm);
+    const bool nearer = distance_mm < reach->nearest_mm - NEARER_MM;
+
+    if (!reach->on || nearer || reach->above != (off_mm > 0.0F) || distance_mm <= REACHED_MM) {
+        begin(reach, off_mm);
+    } else if (reach->stuck_us < STUCK_MAX_US) {
+        reach->stuck_us += (step_us < STUCK_US) ? step_us : STUCK_US;
+    }
+    return reach->stuck_us >= STUCK_US;
+}
