@@ -23,8 +23,7 @@ static const command_t commands[SCIP_KIND_COUNT] = {
     [SCIP_SINGLE_2] = { "GS", 0U, 2U },      [SCIP_SINGLE_3] = { "GD", 0U, 3U },
 };
 
-static const uint32_t bit_rates[] = { 19200UL, 57600UL, 115200UL, 250000UL, 500000UL, 750000UL };
-#define BIT_RATES (sizeof bit_rates / sizeof bit_rates[0])
+const uint32_t scip_bit_rates[SCIP_BIT_RATES] = { 19200UL, 57600UL, 115200UL, 250000UL, 500000UL, 750000UL };
 
 static bool is_stream(scip_kind_t kind)
 {
@@ -89,8 +88,8 @@ bool scip_request(scip_request_t *request, scip_kind_t kind)
 
 bool scip_request_bit_rate(scip_request_t *request, uint32_t bit_rate)
 {
-    for (size_t i = 0U; i < BIT_RATES; i++) {
-        if (bit_rates[i] == bit_rate) {
+    for (size_t i = 0U; i < SCIP_BIT_RATES; i++) {
+        if (scip_bit_rates[i] == bit_rate) {
             begin(request, SCIP_BIT_RATE);
             request->bit_rate = bit_rate;
             append_number(request, bit_rate, 6U);

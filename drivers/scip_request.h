@@ -51,6 +51,10 @@ typedef struct {
     uint32_t bit_rate;              /* SCIP_BIT_RATE only */
 } scip_request_t;
 
+/* What a sensor can be set to, slowest first. */
+#define SCIP_BIT_RATES 6U
+extern const uint32_t scip_bit_rates[SCIP_BIT_RATES];
+
 /* Octets of one scan of n points, from echo to final LF: 27 + k n + 2 ceil(k n / 64) for MS/MD, 24 + ... for GS/GD.
  * points: 0..769. 0 for a kind without points. */
 uint16_t scip_scan_octets(scip_kind_t kind, uint16_t points);

@@ -1,3 +1,14 @@
+/* How the link thinks. Nothing is assumed of the sensor: each answer, and each silence, says which command comes next.
+ * Every command has a time-out, so no state is without a way out. The order of the first start is the seed document's.
+ *
+ * A stream that stops has three likely causes, and the way back from one must not prolong the others:
+ *   - The line is out and the sensor streams on. Its scans count again as soon as they are heard. So nothing is sent that
+ *     ends the stream (QT); the scan order itself is repeated, which a streaming sensor only begins anew.
+ *   - The sensor lost its power, boots for seconds, then listens in SCIP1.1 at its first rate. There SCIP2.0 is sent again
+ *     and again. A sensor that streams after all is noticed there: its octets come at a wrong rate.
+ *   - The sensor lost its stream but not its rate: the repeated scan order is what it needs.
+ * So both known rates have their turns, of one step each, for SEARCH_KNOWN_US. Only then every other rate is tried, with QT and longer
+ * time-outs. After a change here look at `scip_start --outages`: it prints the longest times without scans. */
 #include "drivers/urg_link.h"
 
 #define REVOLUTION_US 100000U
@@ -5,8 +16,13 @@
 #define SCAN_MARGIN_US 250000U
 #define VERIFY_US 2000000U         /* statuses 21..49: the sensor examines itself, scans may come again */
 #define POWER_CYCLE_US 20000000U   /* without a scan */
+#define KNOCK_US 130000U           /* one step of 150 ms, less what their distance varies */
+#define LISTEN_US 280000U          /* two */
+#define SEARCH_KNOWN_US 12000000U  /* a sensor boots for 8 s */
+#define KNOCKS_ROUND 6U            /* one of so many is at the stream's rate */
 #define HEARD_OCTETS 64U           /* during WAIT: the sensor is already sending */
-#define WRONG_RATE_FRAMING 8U      /* framing errors since a command that tell the wrong rate from noise */
+#define WRONG_RATE_SIGNS 8U        /* since a command: more than noise */
+#define STREAM_SIGNS 3U            /* the same between two knocks: a wrong guess costs one turn only */
 #define LADDER_TOP 3U
 
 typedef struct {
@@ -14,23 +30,22 @@ typedef struct {
     const urg_seen_t *seen;
     uint32_t now_us;
     urg_action_t *action;
-} turn_t;
+} step_t;
 
 static const char *const status_names[URG_STATUS_COUNT] = {
-    "WAIT", "STOP1", "SWITCH", "RATE", "STOP2", "STREAM", "OK", "LOST",
+    "WAIT", "STOP1", "SWITCH", "RATE", "STOP2", "STREAM", "OK", "LOST", "OLD",
 };
 
-static const uint32_t known_rates[] = { 19200U, 57600U, 115200U, 250000U };
 #define PROBE_STREAM 0U     /* the probe begins with the configured rates */
 #define PROBE_FIRST 1U
-#define PROBES (2U + sizeof known_rates / sizeof known_rates[0])
+#define PROBES (2U + SCIP_BIT_RATES)
 
 static uint32_t probe_rate(const urg_link_t *link, uint16_t index)
 {
     if (index == PROBE_STREAM) {
         return link->config.stream_rate;
     }
-    return index == PROBE_FIRST ? link->config.first_rate : known_rates[index - 2U];
+    return index == PROBE_FIRST ? link->config.first_rate : scip_bit_rates[index - 2U];
 }
 
 /* First position of a rate that is one of the probe's: the own UART never has another. */
@@ -43,12 +58,19 @@ static uint16_t probe_index(const urg_link_t *link, uint32_t rate)
     return index;
 }
 
-/* The position after this one, without those whose rate has already had its turn. */
+static bool is_possible(const urg_config_t *config, uint32_t rate)
+{
+    return config->fastest_rate == 0U || rate <= config->fastest_rate;
+}
+
+/* The position after this one, without rates that already had their turn or are too fast for the own UART. */
 static uint16_t next_probe(const urg_link_t *link, uint16_t index)
 {
+    uint32_t rate;
     do {
         index = (uint16_t)((index + 1U) % PROBES);
-    } while (probe_index(link, probe_rate(link, index)) != index);
+        rate = probe_rate(link, index);
+    } while (probe_index(link, rate) != index || !is_possible(&link->config, rate));
     return index;
 }
 
@@ -80,15 +102,15 @@ static uint32_t reply_timeout_us(const urg_link_t *link, const scip_request_t *r
     return timeout_us + wire_us(link, octets);
 }
 
-static void enter(const turn_t *turn, urg_status_t status)
+static void set_status(const step_t *step, urg_status_t status)
 {
-    if (turn->link->status != status) {
-        turn->link->status = status;
-        turn->link->since_us = turn->now_us;
+    if (step->link->status != status) {
+        step->link->status = status;
+        step->link->since_us = step->now_us;
     }
 }
 
-static bool build(const urg_link_t *link, scip_kind_t kind, scip_request_t *request)
+static bool build_request(const urg_link_t *link, scip_kind_t kind, scip_request_t *request)
 {
     if (kind == SCIP_BIT_RATE) {
         return scip_request_bit_rate(request, link->config.stream_rate);
@@ -99,107 +121,178 @@ static bool build(const urg_link_t *link, scip_kind_t kind, scip_request_t *requ
     return scip_request(request, kind);
 }
 
-static void put(const turn_t *turn, scip_kind_t kind)
+/* Octets that this UART cannot have received from a sensor at its own rate. */
+static uint32_t wrong_rate_signs(const urg_seen_t *seen)
 {
-    urg_link_t *link = turn->link;
-    urg_action_t *action = turn->action;
-    action->send = build(link, kind, &action->request);
-    if (link->line_unknown) {
-        scip_request_end_line_first(&action->request);
-    }
-    link->line_unknown = false;
+    return seen->framing_count + seen->strange_count;
+}
+
+static void expect_reply(const step_t *step, scip_kind_t kind)
+{
+    urg_link_t *link = step->link;
+    step->action->expect = build_request(link, kind, &step->action->request);
     link->waiting = true;
     link->command = kind;
-    link->sent_us = turn->now_us;
-    link->timeout_us = reply_timeout_us(link, &action->request);
-    link->sent_octets = turn->seen->octet_count;
-    link->sent_framing = turn->seen->framing_count;
+    link->sent_us = step->now_us;
+    link->timeout_us = reply_timeout_us(link, &step->action->request);
+    link->sent_octets = step->seen->octet_count;
+    link->sent_signs = wrong_rate_signs(step->seen);
 }
 
-static void ask(const turn_t *turn, urg_status_t status, scip_kind_t kind)
+static void send_command(const step_t *step, scip_kind_t kind)
 {
-    enter(turn, status);
-    turn->link->attempt = 1U;
-    put(turn, kind);
-}
-
-static void ask_again(const turn_t *turn)
-{
-    turn->link->attempt++;
-    turn->link->line_unknown = true;
-    put(turn, turn->link->command);
-}
-
-static void set_rate(const turn_t *turn, uint32_t rate)
-{
-    if (turn->link->rate != rate) {
-        turn->link->rate = rate;
-        turn->action->set_rate = true;
+    expect_reply(step, kind);
+    step->action->send = true;
+    if (step->link->line_unknown) {
+        scip_request_end_line_first(&step->action->request);
+        step->link->timeout_us = reply_timeout_us(step->link, &step->action->request);
     }
-    turn->link->line_unknown = true;
+    step->link->line_unknown = false;
 }
 
-static void probe(const turn_t *turn, uint16_t index)
+static void start_command(const step_t *step, urg_status_t status, scip_kind_t kind)
 {
-    turn->link->rate_refused = false;
-    set_rate(turn, probe_rate(turn->link, index));
-    ask(turn, URG_LOST, SCIP_STOP);
+    set_status(step, status);
+    step->link->attempt = 1U;
+    step->link->knocking = false;
+    send_command(step, kind);
 }
 
-static void probe_here(const turn_t *turn)
+static void repeat_command(const step_t *step)
 {
-    probe(turn, probe_index(turn->link, turn->link->rate));
+    step->link->attempt++;
+    step->link->line_unknown = true;
+    send_command(step, step->link->command);
 }
 
-static void stop(const turn_t *turn)
+static void set_rate(const step_t *step, uint32_t rate)
 {
-    ask(turn, URG_STOP2, SCIP_STOP);
+    if (step->link->rate != rate) {
+        step->link->rate = rate;
+        step->action->set_rate = true;
+    }
+    step->link->line_unknown = true;
 }
 
-static void rate_or_stop(const turn_t *turn)
+static void probe(const step_t *step, uint16_t index)
 {
-    if (turn->link->rate == turn->link->config.stream_rate) {
-        stop(turn);
+    step->link->rate_refused = false;
+    set_rate(step, probe_rate(step->link, index));
+    start_command(step, URG_LOST, SCIP_STOP);
+}
+
+/* ---- the search for a sensor that has streamed before ---- */
+
+/* A slow answer does not need the knock's time: it comes to the next knock, or the stream is heard. */
+static void knock(const step_t *step, uint32_t rate, scip_kind_t kind)
+{
+    set_rate(step, rate);
+    start_command(step, URG_LOST, kind);
+    step->link->timeout_us = KNOCK_US;
+    step->link->knocking = true;
+}
+
+static void knock_at_stream_rate(const step_t *step)
+{
+    knock(step, step->link->good_rate, step->link->config.stream);
+    step->link->timeout_us = LISTEN_US;
+}
+
+/* After the first one, which is at the stream's rate. */
+static void knock_next(const step_t *step)
+{
+    urg_link_t *link = step->link;
+    link->knocks++;
+    if (link->good_rate == link->config.first_rate) {
+        knock_at_stream_rate(step);
+    } else if (link->knocks % KNOCKS_ROUND == 0U) {
+        knock(step, link->good_rate, link->config.stream);
     } else {
-        ask(turn, URG_RATE, SCIP_BIT_RATE);
+        knock(step, link->config.first_rate, SCIP_SWITCH);
     }
 }
 
-static void climb(urg_link_t *link)
+/* Something that is no answer was heard at the first rate: the stream, most likely. It needs no command. */
+static void listen_to_stream(const step_t *step)
+{
+    set_rate(step, step->link->good_rate);
+    expect_reply(step, step->link->config.stream);
+    step->link->timeout_us = LISTEN_US;
+    step->link->knocking = true;
+}
+
+static void search_on(const step_t *step)
+{
+    urg_link_t *link = step->link;
+    if (link->good_rate != 0U && step->now_us - link->scan_us < SEARCH_KNOWN_US) {
+        knock_next(step);
+    } else {
+        probe(step, next_probe(link, probe_index(link, link->rate)));
+    }
+}
+
+static void stop_sensor(const step_t *step)
+{
+    start_command(step, URG_STOP2, SCIP_STOP);
+}
+
+/* A sensor that was in SCIP1.1 just now does not stream: after a loss there is no need to stop it first. */
+static void stop_or_stream(const step_t *step)
+{
+    if (step->link->is_idle && step->link->good_rate != 0U) {
+        start_command(step, URG_STREAM, step->link->config.stream);
+    } else {
+        stop_sensor(step);
+    }
+}
+
+static void rate_or_stop(const step_t *step)
+{
+    if (step->link->rate == step->link->config.stream_rate) {
+        stop_or_stream(step);
+    } else {
+        start_command(step, URG_RATE, SCIP_BIT_RATE);
+    }
+}
+
+/* ---- the ladder: what to try when the sensor answers but does not scan ---- */
+
+static void count_failure(urg_link_t *link)
 {
     if (link->failures < LADDER_TOP) {
         link->failures++;
     }
 }
 
-static void leave_time_mode_or_reset(const turn_t *turn)
+static void leave_time_mode_or_reset(const step_t *step)
 {
-    if (turn->link->failures < LADDER_TOP) {
-        ask(turn, URG_STOP2, SCIP_TIME_LEAVE);
+    if (step->link->failures < LADDER_TOP) {
+        start_command(step, URG_STOP2, SCIP_TIME_LEAVE);
     } else {
-        ask(turn, URG_LOST, SCIP_RESET);
+        start_command(step, URG_LOST, SCIP_RESET);
     }
 }
 
-/* The sensor answers, but scans do not come. */
-static void no_scans(const turn_t *turn, urg_status_t status)
+static void scans_missing(const step_t *step)
 {
-    climb(turn->link);
-    turn->link->line_unknown = true;
-    if (turn->link->failures == 1U) {
-        ask(turn, status, SCIP_STOP);
+    count_failure(step->link);
+    step->link->line_unknown = true;
+    if (step->link->failures == 1U) {
+        start_command(step, URG_STOP2, SCIP_STOP);
     } else {
-        leave_time_mode_or_reset(turn);
+        leave_time_mode_or_reset(step);
     }
 }
 
 /* The sensor answers, but refuses a command that it knows: time mode, or trouble. */
-static void refused(const turn_t *turn)
+static void command_refused(const step_t *step)
 {
-    climb(turn->link);
-    turn->link->rate_refused = false;
-    leave_time_mode_or_reset(turn);
+    count_failure(step->link);
+    step->link->rate_refused = false;
+    leave_time_mode_or_reset(step);
 }
+
+/* ---- answers ---- */
 
 static bool is_status(const scip_reply_t *reply, char first, char second)
 {
@@ -212,102 +305,130 @@ static bool is_refusal(const scip_reply_t *reply)
     return reply->status[0] == (octet_t)'0' && reply->status[1] >= (octet_t)'A';
 }
 
-static void on_switch_reply(const turn_t *turn)
+static void on_switch_reply(const step_t *step)
 {
-    const scip_reply_t *reply = &turn->seen->reply;
+    const scip_reply_t *reply = &step->seen->reply;
+    step->link->is_idle = reply->legacy;
     if (!reply->legacy || reply->status[0] == (octet_t)'0') {
-        rate_or_stop(turn);
+        rate_or_stop(step);
     }
 }
 
-static void on_rate_reply(const turn_t *turn)
+static void on_rate_reply(const step_t *step)
 {
-    urg_link_t *link = turn->link;
-    const scip_reply_t *reply = &turn->seen->reply;
+    urg_link_t *link = step->link;
+    const scip_reply_t *reply = &step->seen->reply;
     if (is_status(reply, '0', '0') || is_status(reply, '0', '3')) {
         link->waiting = false; /* the own UART follows at the next step */
     } else if (is_refusal(reply) && link->attempt == 1U) {
-        ask_again(turn);
+        repeat_command(step);
     } else {
         link->rate_refused = true;
-        stop(turn);
+        stop_sensor(step);
     }
 }
 
-static void on_stop_reply(const turn_t *turn)
+static void on_stop_reply(const step_t *step)
 {
-    urg_link_t *link = turn->link;
-    if (is_refusal(&turn->seen->reply)) {
-        refused(turn);
+    urg_link_t *link = step->link;
+    if (is_refusal(&step->seen->reply)) {
+        command_refused(step);
     } else if (link->rate == link->config.stream_rate || link->rate_refused) {
-        ask(turn, URG_STREAM, link->config.stream);
+        start_command(step, URG_STREAM, link->config.stream);
     } else {
-        ask(turn, URG_RATE, SCIP_BIT_RATE);
+        start_command(step, URG_RATE, SCIP_BIT_RATE);
     }
 }
 
-static void on_stream_reply(const turn_t *turn)
+/* A knock was heard. */
+static void await_first_scan(const step_t *step)
 {
-    if (is_refusal(&turn->seen->reply)) {
-        refused(turn);
-    } else if (!is_status(&turn->seen->reply, '0', '0')) {
-        no_scans(turn, URG_STOP2);
+    if (step->link->knocking) {
+        step->link->knocking = false;
+        set_status(step, URG_STREAM);
+        step->link->timeout_us = scan_timeout_us(step->link);
     }
 }
 
-static void on_reply(const turn_t *turn)
+static void on_stream_reply(const step_t *step)
 {
-    switch (turn->link->command) {
+    if (is_refusal(&step->seen->reply)) {
+        command_refused(step);
+    } else if (is_status(&step->seen->reply, '0', '0')) {
+        await_first_scan(step);
+    } else {
+        scans_missing(step);
+    }
+}
+
+static void on_reply(const step_t *step)
+{
+    switch (step->link->command) {
     case SCIP_LASER_OFF_1:
-        if (turn->seen->reply.legacy) {
-            ask(turn, URG_SWITCH, SCIP_SWITCH);
+        if (step->seen->reply.legacy) {
+            start_command(step, URG_SWITCH, SCIP_SWITCH);
         } else {
-            stop(turn); /* in SCIP2.0 already, and perhaps streaming or in time mode */
+            stop_sensor(step); /* in SCIP2.0 already, and perhaps streaming or in time mode */
         }
         break;
     case SCIP_SWITCH:
-        on_switch_reply(turn);
+        on_switch_reply(step);
         break;
     case SCIP_BIT_RATE:
-        on_rate_reply(turn);
+        on_rate_reply(step);
         break;
     case SCIP_STOP:
-        on_stop_reply(turn);
+        on_stop_reply(step);
         break;
     case SCIP_TIME_LEAVE:
-        stop(turn);
+        stop_sensor(step);
         break;
     case SCIP_RESET:
-        probe(turn, PROBE_FIRST);
+        probe(step, PROBE_FIRST);
         break;
     default:
-        on_stream_reply(turn);
+        on_stream_reply(step);
         break;
     }
 }
 
-static bool wrong_rate(const turn_t *turn)
+/* "E": the sensor is in SCIP1.1. If that is its answer to SCIP2.0, twice, it knows nothing else. */
+static void on_legacy(const step_t *step)
 {
-    return turn->seen->framing_count - turn->link->sent_framing >= WRONG_RATE_FRAMING;
+    urg_link_t *link = step->link;
+    if (link->command != SCIP_SWITCH) {
+        start_command(step, URG_SWITCH, SCIP_SWITCH);
+    } else if (link->attempt > 1U) {
+        set_status(step, URG_OLD);
+        link->attempt = 1U; /* asked for ever: the sensor may be replaced */
+    }
 }
 
-/* Octets without framing errors: the rate is right and only the answer was lost. */
-static bool heard_clean(const turn_t *turn)
+/* ---- silence ---- */
+
+static bool wrong_rate(const step_t *step, uint32_t signs)
 {
-    return turn->seen->octet_count != turn->link->sent_octets && turn->seen->framing_count == turn->link->sent_framing;
+    return wrong_rate_signs(step->seen) - step->link->sent_signs >= signs;
 }
 
-static uint16_t attempts_allowed(const turn_t *turn)
+/* Octets without signs of a wrong rate: the rate is right and only the answer was lost. */
+static bool heard_clean(const step_t *step)
 {
-    switch (turn->link->command) {
+    return step->seen->octet_count != step->link->sent_octets && !wrong_rate(step, 1U);
+}
+
+static uint16_t attempts_allowed(const step_t *step)
+{
+    switch (step->link->command) {
     case SCIP_LASER_OFF_1:
-        return wrong_rate(turn) ? 1U : 2U;
+        return wrong_rate(step, WRONG_RATE_SIGNS) ? 1U : 2U;
     case SCIP_STOP:
-        if (heard_clean(turn)) {
+        if (heard_clean(step)) {
             return 3U;
         }
-        return turn->link->status == URG_STOP2 ? 2U : 1U;
+        return step->link->status == URG_STOP2 ? 2U : 1U;
     case SCIP_SWITCH:
+        return step->link->knocking ? 1U : 2U;
     case SCIP_TIME_LEAVE:
         return 2U;
     default:
@@ -315,119 +436,140 @@ static uint16_t attempts_allowed(const turn_t *turn)
     }
 }
 
-static void on_silence(const turn_t *turn)
+static void give_up_command(const step_t *step)
 {
-    urg_link_t *link = turn->link;
-    link->timeouts++;
-    if (link->attempt < attempts_allowed(turn)) {
-        ask_again(turn);
-        return;
-    }
+    urg_link_t *link = step->link;
     switch (link->command) {
     case SCIP_LASER_OFF_1:
     case SCIP_BIT_RATE:
-        probe(turn, PROBE_STREAM);
-        break;
-    case SCIP_STOP:
-        probe(turn, next_probe(link, probe_index(link, link->rate)));
+        probe(step, PROBE_STREAM);
         break;
     case SCIP_RESET:
-        probe(turn, PROBE_FIRST);
+        probe(step, PROBE_FIRST);
+        break;
+    case SCIP_STOP:
+        search_on(step);
         break;
     case SCIP_SWITCH:
     case SCIP_TIME_LEAVE:
-        probe_here(turn);
+        probe(step, probe_index(link, link->rate));
         break;
     default:
-        no_scans(turn, URG_STOP2);
+        scans_missing(step);
         break;
     }
 }
 
-/* While the rate is only a guess, a burst of framing errors answers as well as a time-out. */
-static bool is_silent(const turn_t *turn)
+static void on_silence(const step_t *step)
 {
-    const urg_link_t *link = turn->link;
+    urg_link_t *link = step->link;
+    link->timeouts++;
+    if (link->attempt < attempts_allowed(step)) {
+        repeat_command(step);
+    } else if (link->knocking) {
+        search_on(step);
+    } else {
+        give_up_command(step);
+    }
+}
+
+/* While the rate is only a guess, signs of a wrong one answer as well as a time-out. */
+static bool is_silent(const step_t *step)
+{
+    const urg_link_t *link = step->link;
     const bool guessing = link->status == URG_STOP1 || (link->status == URG_LOST && link->command == SCIP_STOP);
-    return turn->now_us - link->sent_us >= link->timeout_us || (guessing && wrong_rate(turn));
+    return step->now_us - link->sent_us >= link->timeout_us || (guessing && wrong_rate(step, WRONG_RATE_SIGNS));
 }
 
-static void arrive(const turn_t *turn)
+static bool hears_stream(const step_t *step)
 {
-    urg_link_t *link = turn->link;
-    enter(turn, URG_OK);
+    const urg_link_t *link = step->link;
+    return link->knocking && link->command == SCIP_SWITCH && wrong_rate(step, STREAM_SIGNS);
+}
+
+/* ---- the states ---- */
+
+static void on_scan(const step_t *step)
+{
+    urg_link_t *link = step->link;
+    set_status(step, URG_OK);
     link->failures = 0U;
-    link->scan_us = turn->now_us;
+    link->knocks = 0U;
+    link->knocking = false;
+    link->good_rate = link->rate;
+    link->scan_us = step->now_us;
     link->timeout_us = scan_timeout_us(link);
-    if (link->config.range.scans != 0U && turn->seen->scan_remaining == 0U) {
-        put(turn, link->config.stream);
+    if (link->config.range.scans != 0U && step->seen->scan_remaining == 0U) {
+        send_command(step, link->config.stream);
     }
 }
 
-static void cycle_power_in_time(const turn_t *turn)
+static void cycle_power_in_time(const step_t *step)
 {
-    if (turn->now_us - turn->link->scan_us >= POWER_CYCLE_US) {
-        turn->link->scan_us = turn->now_us;
-        turn->action->cycle_power = true;
+    if (step->now_us - step->link->scan_us >= POWER_CYCLE_US) {
+        step->link->scan_us = step->now_us;
+        step->action->cycle_power = true;
     }
 }
 
-static void converse(const turn_t *turn)
+static void step_dialogue(const step_t *step)
 {
-    urg_link_t *link = turn->link;
-    const urg_seen_t *seen = turn->seen;
-    cycle_power_in_time(turn);
+    urg_link_t *link = step->link;
+    const urg_seen_t *seen = step->seen;
+    cycle_power_in_time(step);
     if (!link->waiting) {
-        set_rate(turn, link->config.stream_rate);
-        stop(turn);
+        set_rate(step, link->config.stream_rate);
+        stop_or_stream(step);
     } else if (seen->scan_count != link->seen.scan_count && link->command == link->config.stream) {
-        arrive(turn);
+        on_scan(step);
     } else if (seen->reply_count != link->seen.reply_count && seen->reply_kind == link->command) {
-        on_reply(turn);
-    } else if (seen->legacy_count != link->seen.legacy_count && link->command != SCIP_SWITCH) {
-        ask(turn, URG_SWITCH, SCIP_SWITCH);
-    } else if (is_silent(turn)) {
-        on_silence(turn);
+        on_reply(step);
+    } else if (seen->legacy_count != link->seen.legacy_count) {
+        on_legacy(step);
+    } else if (hears_stream(step)) {
+        listen_to_stream(step);
+    } else if (is_silent(step)) {
+        on_silence(step);
     }
 }
 
-static void wait_for_sensor(const turn_t *turn)
+static void step_wait(const step_t *step)
 {
-    urg_link_t *link = turn->link;
-    const uint32_t heard = turn->seen->octet_count + turn->seen->framing_count;
-    link->scan_us = turn->now_us;
+    urg_link_t *link = step->link;
+    const uint32_t heard = step->seen->octet_count + step->seen->framing_count;
+    link->scan_us = step->now_us;
     if (heard >= HEARD_OCTETS) {
-        probe(turn, wrong_rate(turn) ? (uint16_t)PROBE_STREAM : (uint16_t)PROBE_FIRST);
-    } else if (turn->now_us - link->since_us >= link->config.wait_us) {
+        probe(step, wrong_rate(step, WRONG_RATE_SIGNS) ? (uint16_t)PROBE_STREAM : (uint16_t)PROBE_FIRST);
+    } else if (step->now_us - link->since_us >= link->config.wait_us) {
         link->line_unknown = true;
-        ask(turn, URG_STOP1, SCIP_LASER_OFF_1);
+        start_command(step, URG_STOP1, SCIP_LASER_OFF_1);
     }
 }
 
-static void on_notice(const turn_t *turn)
+static void on_notice(const step_t *step)
 {
-    urg_link_t *link = turn->link;
-    const octet_t first = turn->seen->notice.status[0];
+    urg_link_t *link = step->link;
+    const octet_t first = step->seen->notice.status[0];
     if (first < (octet_t)'5') {
-        link->scan_us = turn->now_us;
+        link->scan_us = step->now_us;
         link->timeout_us = VERIFY_US;
-    } else if (!is_status(&turn->seen->notice, '9', '8')) {
+    } else if (!is_status(&step->seen->notice, '9', '8')) {
         link->timeout_us = 0U;
     }
 }
 
-static void watch(const turn_t *turn)
+static void step_stream(const step_t *step)
 {
-    urg_link_t *link = turn->link;
-    if (turn->seen->scan_count != link->seen.scan_count) {
-        arrive(turn);
+    urg_link_t *link = step->link;
+    if (step->seen->scan_count != link->seen.scan_count) {
+        on_scan(step);
     }
-    if (turn->seen->notice_count != link->seen.notice_count) {
-        on_notice(turn);
+    if (step->seen->notice_count != link->seen.notice_count) {
+        on_notice(step);
     }
-    if (turn->now_us - link->scan_us >= link->timeout_us) {
+    if (step->now_us - link->scan_us >= link->timeout_us) {
         link->restarts++;
-        no_scans(turn, URG_LOST);
+        knock_at_stream_rate(step);
     }
 }
 
@@ -436,28 +578,35 @@ const char *urg_status_name(urg_status_t status)
     return status_names[status];
 }
 
-void urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us)
+bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us)
 {
     scip_request_t stream = { .scan_octets = 0U };
-    (void)scip_request_scan(&stream, config->stream, &config->range);
+    scip_request_t rate;
+    if ((config->stream != SCIP_STREAM_2 && config->stream != SCIP_STREAM_3) ||
+        !scip_request_scan(&stream, config->stream, &config->range) ||
+        !scip_request_bit_rate(&rate, config->first_rate) || !scip_request_bit_rate(&rate, config->stream_rate) ||
+        !is_possible(config, config->first_rate) || !is_possible(config, config->stream_rate)) {
+        return false;
+    }
     *link = (urg_link_t){ .config = *config, .status = URG_WAIT, .since_us = now_us, .rate = config->first_rate };
     link->scan_octets = stream.scan_octets;
     link->scan_us = now_us;
+    return true;
 }
 
 void urg_link_step(urg_link_t *link, const urg_seen_t *seen, uint32_t now_us, urg_action_t *action)
 {
-    const turn_t turn = { link, seen, now_us, action };
+    const step_t step = { link, seen, now_us, action };
     *action = (urg_action_t){ .send = false };
     switch (link->status) {
     case URG_WAIT:
-        wait_for_sensor(&turn);
+        step_wait(&step);
         break;
     case URG_OK:
-        watch(&turn);
+        step_stream(&step);
         break;
     default:
-        converse(&turn);
+        step_dialogue(&step);
         break;
     }
     link->seen = *seen;

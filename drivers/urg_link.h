@@ -7,6 +7,7 @@
  * the sensor's reply. Nothing is assumed of the sensor's state. QT is what every state answers (SCIP2.0 "00", streaming
  * "00" after the frames under way, time mode "0E", SCIP1.1 "E"), so QT is asked at one rate after the other, for ever,
  * when the sensor is not where it should be. Found there, but without scans: QT and MS again, then TM2, then RS.
+ * A stream that stops is looked for with MS at its own rate and with SCIP2.0 at the first rate, every step.
  *
  * Pure; Task context (TaskSendLaser). Times in microseconds, wrapping; steps must be less than 35 minutes apart. */
 #ifndef DRIVERS_URG_LINK_H
@@ -27,11 +28,12 @@ typedef enum {
     URG_STOP2,    /* QT sent, or TM2: the sensor has answered at this rate */
     URG_STREAM,   /* MS sent */
     URG_OK,       /* scans arrive */
-    URG_LOST,     /* no answer, or scans have stopped: looking for the sensor at every rate */
+    URG_LOST,     /* no answer, or scans have stopped: looking for the sensor, first at the known rates */
+    URG_OLD,      /* the sensor speaks SCIP1.1 only: its firmware is older than 3.0. It is asked again for ever */
     URG_STATUS_COUNT
 } urg_status_t;
 
-/* "WAIT" "STOP1" "SWITCH" "RATE" "STOP2" "STREAM" "OK" "LOST". */
+/* "WAIT" "STOP1" "SWITCH" "RATE" "STOP2" "STREAM" "OK" "LOST" "OLD". */
 const char *urg_status_name(urg_status_t status);
 
 /* What the receiving side has seen since power-up; counters only rise (and wrap). */
@@ -46,14 +48,15 @@ typedef struct {
     scip_reply_t notice;        /* latest hardware notice */
     uint32_t octet_count;
     uint32_t framing_count;     /* UART framing errors: wrong rate, or cable */
+    uint32_t strange_count;     /* octets above 7F, which no sensor sends: the same, where the UART tells no errors */
     uint32_t damage_count;      /* all causes */
 } urg_seen_t;
 
-/* Rates and range must be such as scip_request_bit_rate() and scip_request_scan() accept. */
 typedef struct {
     uint32_t wait_us;           /* 10 s; 0 after a watchdog reset. Ends early when the sensor is heard */
     uint32_t first_rate;        /* the UART is opened at this rate: 115200 */
     uint32_t stream_rate;       /* 250000 */
+    uint32_t fastest_rate;      /* of the own UART and its line driver: no faster one is tried. 0: any */
     scip_kind_t stream;         /* SCIP_STREAM_2 or SCIP_STREAM_3 */
     scip_range_t range;         /* scans > 0: a counted run, ordered again when it ends */
 } urg_config_t;
@@ -61,7 +64,8 @@ typedef struct {
 typedef struct {
     bool set_rate;              /* reopen the own UART at `rate` before sending */
     uint32_t rate;              /* own UART from now on, changed or not */
-    bool send;                  /* hand `request` to the parser, then to the wire */
+    bool expect;                /* hand `request` to the parser ... */
+    bool send;                  /* ... then to the wire */
     bool cycle_power;           /* boards with a power pin for the sensor: off and on. Others do nothing */
     scip_request_t request;
 } urg_action_t;
@@ -81,14 +85,20 @@ typedef struct {
     scip_kind_t command;        /* the latest */
     bool waiting;               /* a command is out */
     bool rate_refused;          /* the sensor does not know stream_rate: stay at this one */
+    bool is_idle;               /* the sensor was in SCIP1.1 when it was switched to SCIP2.0 */
     bool line_unknown;          /* the sensor may hold part of a line: end it before the next command */
     uint16_t scan_octets;       /* one frame of the stream */
-    uint32_t sent_octets;       /* octet and framing counts when the latest command was sent */
-    uint32_t sent_framing;
+    uint32_t sent_octets;       /* octets and signs of a wrong rate when the latest command was sent */
+    uint32_t sent_signs;
+    uint32_t good_rate;         /* scans have come at this rate; 0: none yet */
+    bool knocking;              /* the present command is one of those */
+    uint16_t knocks;            /* commands of the search at the known rates, since the latest scan */
     urg_seen_t seen;            /* at the previous step */
 } urg_link_t;
 
-void urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us);
+/* False, and nothing is done, when the sensor or the own UART cannot do what the configuration says: another rate than
+ * SCIP's, one above fastest_rate, a range that scip_request_scan() refuses, or another kind than a stream. */
+bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us);
 
 /* `seen` is what was received up to now; its octet and framing counts too are those of this moment, whether or not
  * anything was complete since the last step. *action is written whole. */

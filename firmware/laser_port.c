@@ -80,6 +80,7 @@ static void feed(const bsp_uart_burst_t *burst)
 
     for (i = 0U; i < burst->count; i++) {
         run[i] = octet_of(burst->octets[i]);
+        seen.strange_count += (run[i] > 0x7FU) ? 1U : 0U;
     }
     while (taken < burst->count) {
         scip_event_t event;
@@ -168,17 +169,21 @@ void laser_port_set_rate(uint32_t bit_rate)
     uart_port_reopen(BSP_UART_LASER, bit_rate);
 }
 
+void laser_port_expect(const scip_request_t *request)
+{
+    UInt key = Hwi_disable();
+
+    scip_parser_expect(&parser, request);
+    Hwi_restore(key);
+}
+
 void laser_port_send(const scip_request_t *request)
 {
     char text[SCIP_REQUEST_MAX];
     uint16_t i;
-    UInt key;
 
     for (i = 0U; i < request->text_length; i++) {
         text[i] = (char)request->text[i];
     }
-    key = Hwi_disable();
-    scip_parser_expect(&parser, request);
-    Hwi_restore(key);
     (void)uart_port_send(BSP_UART_LASER, text, request->text_length);
 }

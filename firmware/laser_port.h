@@ -33,8 +33,9 @@ void laser_port_wait(laser_message_t *message);
 /* What the receiving side has seen up to now. Task. */
 void laser_port_statistics(laser_statistics_t *statistics);
 
-/* TaskSendLaser: the own UART's rate; and a request, whose reply is awaited from now on. */
+/* TaskSendLaser: the own UART's rate; a request whose reply is awaited from now on; and the request itself. */
 void laser_port_set_rate(uint32_t bit_rate);
+void laser_port_expect(const scip_request_t *request);
 void laser_port_send(const scip_request_t *request);
 
 #endif

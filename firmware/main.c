@@ -18,6 +18,7 @@ static void laser_config(urg_config_t *config)
 
     config->wait_us = boot_is_restart() ? 0U : LASER_WAIT_US;
     config->first_rate = LASER_FIRST_RATE;
+    config->fastest_rate = LASER_STREAM_RATE;
     config->stream_rate = LASER_STREAM_RATE;
     config->stream = SCIP_STREAM_2;
     config->range.first_step = layout->first_step;

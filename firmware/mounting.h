@@ -7,7 +7,7 @@
 
 #define LASER_LAYOUT SCIP_LAYOUT_FRONT
 #define LASER_FIRST_RATE 115200UL       /* the sensor's rate at power-up */
-#define LASER_STREAM_RATE 250000UL      /* the MAX3222's limit */
+#define LASER_STREAM_RATE 250000UL      /* the MAX3222's limit: none faster is tried */
 #define LASER_WAIT_US 10000000UL        /* sensor and RS232 adapter after power-up, seed document 5.2.1.3 */
 
 /* The mirror behind each group of each layout. */

@@ -30,6 +30,9 @@ static void obey(const urg_action_t *action)
     if (action->set_rate) {
         laser_port_set_rate(action->rate);
     }
+    if (action->expect) {
+        laser_port_expect(&action->request);
+    }
     if (action->send) {
         laser_port_send(&action->request);
     }
@@ -82,7 +85,7 @@ void task_send_laser_create(const urg_config_t *config)
     Clock_Params clock;
     Semaphore_Params semaphore;
 
-    urg_link_init(&urg, config, bsp_time_us());
+    (void)urg_link_init(&urg, config, bsp_time_us());
     Semaphore_Params_init(&semaphore);
     semaphore.mode = Semaphore_Mode_BINARY;
     tick = Semaphore_create(0, &semaphore, NULL);

@@ -95,8 +95,10 @@ static void supervise(void)
         scip_parser_line_broken(&parser);
         board_uart_open(action.rate);
     }
-    if (action.send) {
+    if (action.expect) {
         scip_parser_expect(&parser, &action.request);
+    }
+    if (action.send) {
         board_uart_write(action.request.text, action.request.text_length);
     }
 }
@@ -105,7 +107,7 @@ int main(void)
 {
     scip_parser_init(&parser);
     scip_parser_scan_into(&parser, &scan);
-    urg_link_init(&link, &config, board_time_us());
+    (void)urg_link_init(&link, &config, board_time_us());
     board_uart_open(config.first_rate);
     stepped_us = board_time_us();
     while (board_runs()) {

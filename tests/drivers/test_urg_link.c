@@ -285,8 +285,10 @@ static void step(void)
     if (action.cycle_power) {
         power_cycles++;
     }
-    if (action.send) {
+    if (action.expect) {
         scip_parser_expect(&parser, &action.request);
+    }
+    if (action.send) {
         host_sends();
     }
     sensor_runs(STEP_MS);
@@ -315,7 +317,7 @@ static uint32_t steps_to_ok(void)
 
 static void host_starts(uint32_t wait_us)
 {
-    config = (urg_config_t){ .wait_us = wait_us, .first_rate = 115200, .stream_rate = 250000, .stream = SCIP_STREAM_2,
+    config = (urg_config_t){ .wait_us = wait_us, .first_rate = 115200, .stream_rate = 250000, .fastest_rate = 250000, .stream = SCIP_STREAM_2,
                              .range = { 372, 406, 1, 0, 0 } };
     memset(&seen, 0, sizeof seen);
     asked_count = 0;
@@ -324,7 +326,7 @@ static void host_starts(uint32_t wait_us)
     scan = (scip_scan_t){ .distance_mm = points, .capacity = 35 };
     scip_parser_init(&parser);
     scip_parser_scan_into(&parser, &scan);
-    urg_link_init(&link_, &config, now_us);
+    (void)urg_link_init(&link_, &config, now_us);
 }
 
 static void fresh_sensor(uint32_t rate)
@@ -384,7 +386,7 @@ static uint32_t times_asked(const char *command)
 
 void test_the_status_names_are_those_of_the_telemetry(void)
 {
-    static const char *const names[] = { "WAIT", "STOP1", "SWITCH", "RATE", "STOP2", "STREAM", "OK", "LOST" };
+    static const char *const names[] = { "WAIT", "STOP1", "SWITCH", "RATE", "STOP2", "STREAM", "OK", "LOST", "OLD" };
     for (int status = 0; status < URG_STATUS_COUNT; status++) {
         TEST_ASSERT_EQUAL_STRING(names[status], urg_status_name((urg_status_t)status));
     }
@@ -631,9 +633,8 @@ void test_a_stream_that_stopped_is_started_again_at_the_same_rate(void)
     uint32_t before = asked_count;
     steps(10);
     TEST_ASSERT_EQUAL(URG_OK, link_.status);
-    TEST_ASSERT_EQUAL_UINT(before + 2, asked_count);
-    TEST_ASSERT_EQUAL_STRING("\nQT\n", asked[before].text);
-    TEST_ASSERT_EQUAL_STRING("MS0372040601000\n", asked[before + 1].text);
+    TEST_ASSERT_EQUAL_UINT(before + 1, asked_count);
+    TEST_ASSERT_EQUAL_STRING("\nMS0372040601000\n", asked[before].text);
     TEST_ASSERT_EQUAL_UINT16(0, link_.failures);
 }
 
@@ -676,6 +677,113 @@ void test_a_sensor_in_time_mode_is_taken_out_of_it(void)
     TEST_ASSERT_EQUAL_UINT(1, times_asked("TM2"));
 }
 
+/* A line that is out both ways: the sensor streams on, and no command may stop it when the line is back. */
+void test_a_stream_that_is_only_out_of_hearing_is_not_stopped(void)
+{
+    for (uint32_t out = 1; out < 60; out++) {
+        reset(0);
+        steps_to_ok();
+        steps(10);
+        const uint32_t before = asked_count;
+        for (uint32_t i = 0; i < out; i++) {
+            taken = queued;
+            step();
+        }
+        taken = queued;
+        TEST_ASSERT_LESS_OR_EQUAL_UINT(4, steps_to_ok());
+        TEST_ASSERT_TRUE(sensor.streaming);
+        steps(10);
+        TEST_ASSERT_EQUAL(URG_OK, link_.status);
+        for (uint32_t i = before; i < asked_count; i++) {
+            TEST_ASSERT_NULL(strstr(asked[i].text, "QT"));
+        }
+    }
+}
+
+/* Both known rates have their turns before any other has one. */
+void test_a_lost_sensor_is_first_looked_for_where_it_can_be(void)
+{
+    steps_to_ok();
+    steps(10);
+    sensor.on = false;
+    uint32_t begin = asked_count;
+    steps(75);
+    for (uint32_t i = begin; i < asked_count; i++) {
+        const bool at_stream_rate = (i - begin) % 6 == 0;
+        assert_asked(i, at_stream_rate ? "\nMS0372040601000\n" : "\nSCIP2.0\n", asked[i].step,
+                     at_stream_rate ? 250000 : 115200, URG_LOST);
+    }
+    TEST_ASSERT_GREATER_THAN_UINT(60, asked_count - begin);
+    begin = asked_count;
+    steps(30);
+    TEST_ASSERT_EQUAL_STRING("\nQT\n", asked[asked_count - 1].text);
+}
+
+void test_where_first_and_stream_rate_are_one_the_order_alone_finds_the_sensor(void)
+{
+    reset(0);
+    config.stream_rate = 115200;
+    TEST_ASSERT_TRUE(urg_link_init(&link_, &config, now_us));
+    steps_to_ok();
+    sensor.on = false;
+    steps(30);
+    sensor_powers_up();
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(6, steps_to_ok());
+    TEST_ASSERT_EQUAL_UINT(115200, host_rate);
+}
+
+void test_octets_above_7f_tell_the_wrong_rate_like_framing_errors(void)
+{
+    for (uint32_t strange = 0; strange < 20; strange++) {
+        urg_seen_t some = { .octet_count = 0 };
+        reset(0);
+        urg_link_step(&link_, &some, 0, &action);
+        some.octet_count = some.strange_count = strange;
+        urg_link_step(&link_, &some, STEP_US, &action);
+        TEST_ASSERT_EQUAL(strange >= 8 ? URG_LOST : URG_STOP1, link_.status);
+    }
+}
+
+void test_no_rate_is_tried_that_the_own_uart_cannot_do(void)
+{
+    reset(0);
+    sensor.on = false;
+    steps(400);
+    for (uint32_t i = 0; i < asked_count; i++) {
+        TEST_ASSERT_LESS_OR_EQUAL_UINT32(250000, asked[i].rate);
+    }
+    reset(0);
+    sensor.rate = sensor.power_up_rate = 750000;
+    config.fastest_rate = 0;
+    TEST_ASSERT_TRUE(urg_link_init(&link_, &config, now_us));
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(40, steps_to_ok());
+    TEST_ASSERT_EQUAL_UINT32(250000, host_rate);
+}
+
+void test_what_sensor_or_uart_cannot_do_is_refused_at_once(void)
+{
+    static const urg_config_t good = { 0, 115200, 250000, 250000, SCIP_STREAM_2, { 372, 406, 1, 0, 0 } };
+    urg_config_t bad[8];
+    const urg_link_t untouched = link_;
+    TEST_ASSERT_TRUE(urg_link_init(&link_, &good, 0));
+    for (uint32_t i = 0; i < 8; i++) {
+        bad[i] = good;
+    }
+    bad[0].first_rate = 38400;
+    bad[1].stream_rate = 250001;
+    bad[2].stream_rate = 500000;
+    bad[3].first_rate = 750000;
+    bad[4].stream = SCIP_SINGLE_2;
+    bad[5].range.last_step = 769;
+    bad[6].range.first_step = 407;
+    bad[7].range.cluster = 0;
+    link_ = untouched;
+    for (uint32_t i = 0; i < 8; i++) {
+        TEST_ASSERT_FALSE(urg_link_init(&link_, &bad[i], 5));
+        TEST_ASSERT_EQUAL_MEMORY(&untouched, &link_, sizeof link_);
+    }
+}
+
 /* Every rate has its turn, the configured ones once only, for ever; power is cycled every 20 s where it can be. */
 void test_a_dead_sensor_is_looked_for_at_every_rate_for_ever(void)
 {
@@ -701,10 +809,11 @@ void test_other_configured_rates_are_probed_first(void)
 {
     static const uint32_t rates[] = { 500000, 750000, 19200, 57600, 115200, 250000 };
     reset(0);
+    config.fastest_rate = 0;
     config.first_rate = 750000;
     config.stream_rate = 500000;
     host_rate = 750000;
-    urg_link_init(&link_, &config, now_us);
+    (void)urg_link_init(&link_, &config, now_us);
     sensor.on = false;
     steps(100);
     for (uint32_t i = 2; i < 20; i++) {
@@ -720,12 +829,12 @@ void test_a_sensor_that_answers_but_does_not_scan_climbs_the_ladder(void)
     sensor.streaming = false;
     uint32_t begin = asked_count;
     steps(30);
-    static const char *const ladder[] = { "\nQT\n", "MS0372040601000\n", "\nTM2\n", "QT\n",
+    static const char *const ladder[] = { "\nMS0372040601000\n", "\nQT\n", "MS0372040601000\n", "\nTM2\n", "QT\n",
                                           "MS0372040601000\n", "\nRS\n", "\nQT\n" };
-    for (uint32_t i = 0; i < 7; i++) {
+    for (uint32_t i = 0; i < 8; i++) {
         TEST_ASSERT_EQUAL_STRING(ladder[i], asked[begin + i].text);
     }
-    TEST_ASSERT_EQUAL_UINT(115200, asked[begin + 6].rate);
+    TEST_ASSERT_EQUAL_UINT(115200, asked[begin + 7].rate);
     steps(270);
     TEST_ASSERT_GREATER_THAN_UINT(3, times_asked("RS"));
     TEST_ASSERT_EQUAL_UINT(2, power_cycles);
@@ -796,20 +905,48 @@ void test_first_and_stream_rate_may_be_the_same(void)
 {
     reset(0);
     config.stream_rate = 115200;
-    urg_link_init(&link_, &config, now_us);
+    (void)urg_link_init(&link_, &config, now_us);
     TEST_ASSERT_LESS_OR_EQUAL_UINT(6, steps_to_ok());
     TEST_ASSERT_EQUAL_UINT(0, times_asked("SS"));
     TEST_ASSERT_EQUAL_UINT(115200, host_rate);
 }
 
-void test_firmware_without_scip_2_is_asked_for_ever_but_never_given_up(void)
+void test_firmware_without_scip_2_is_called_old_and_asked_for_ever(void)
 {
     reset(0);
     sensor.knows_switch = false;
-    steps(100);
+    steps(10);
+    for (uint32_t i = 0; i < 100; i++) {
+        step();
+        TEST_ASSERT_EQUAL_STRING("OLD", urg_status_name(link_.status));
+    }
     TEST_ASSERT_GREATER_THAN_UINT(10, times_asked("SCIP2.0"));
     sensor.knows_switch = true;
     TEST_ASSERT_LESS_OR_EQUAL_UINT(20, steps_to_ok());
+}
+
+void test_one_stray_refusal_does_not_make_a_sensor_old(void)
+{
+    reset(0);
+    steps(2);
+    TEST_ASSERT_EQUAL(URG_SWITCH, link_.status);
+    queued = taken = 0;
+    send_text("SCIP2.0\nE\n\n");
+    while (link_.status != URG_OK) {
+        step();
+        TEST_ASSERT_NOT_EQUAL(URG_OLD, link_.status);
+        TEST_ASSERT_LESS_THAN_UINT(20, step_number);
+    }
+}
+
+void test_an_old_sensor_that_falls_silent_is_looked_for(void)
+{
+    reset(0);
+    sensor.knows_switch = false;
+    steps(20);
+    sensor.on = false;
+    steps(20);
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
 }
 
 /* --- hardware notices --------------------------------------------------------------------------------------------- */
@@ -871,7 +1008,7 @@ void test_a_counted_run_is_ordered_again_when_it_ends(void)
 {
     reset(0);
     config.range.scans = 7;
-    urg_link_init(&link_, &config, now_us);
+    (void)urg_link_init(&link_, &config, now_us);
     steps_to_ok();
     steps(200);
     TEST_ASSERT_EQUAL(URG_OK, link_.status);
@@ -885,7 +1022,7 @@ void test_a_counted_run_whose_last_scan_is_lost_is_ordered_again_too(void)
 {
     reset(0);
     config.range.scans = 7;
-    urg_link_init(&link_, &config, now_us);
+    (void)urg_link_init(&link_, &config, now_us);
     steps_to_ok();
     sensor.streaming = false;
     steps(8);
@@ -909,7 +1046,7 @@ void test_longer_scans_are_waited_for_longer(void)
         reset(0);
         config.range = rows[i].range;
         config.first_rate = config.stream_rate;
-        urg_link_init(&link_, &config, 0);
+        (void)urg_link_init(&link_, &config, 0);
         urg_link_step(&link_, &some, 0, &action);
         some.reply_count = 1;
         some.reply_kind = SCIP_LASER_OFF_1;

@@ -23,6 +23,12 @@ typedef struct {
     unsigned host_restart_sent;                 /* at this octet to the sensor */
 } faults_t;
 
+/* What the line does to octets of either direction for a while. */
+typedef struct {
+    sim_time_t from, to;
+    bool from_sensor, from_host, noise;         /* which direction is out; noise in place of the sensor's octets */
+} outage_t;
+
 static struct {
     urg04lx_t *sensor;
     serial_t transmitter;
@@ -35,6 +41,8 @@ static struct {
     urg_config_t config;
     urg_seen_t seen;
     faults_t faults;
+    outage_t outage;
+    sim_time_t longest_gap;                     /* between two scans, since it was last set to 0 */
     unsigned to_host, to_sensor;                /* octets since the start */
     unsigned wrong, power_cycles;
     sim_time_t started, latest_scan;
@@ -64,6 +72,9 @@ static void check_scan(void)
 {
     host.seen.scan_count++;
     host.seen.scan_remaining = host.scan.remaining;
+    if (host.latest_scan != 0 && timeline_now() - host.latest_scan > host.longest_gap) {
+        host.longest_gap = timeline_now() - host.latest_scan;
+    }
     host.latest_scan = timeline_now();
     for (int i = 0; i < POINTS; i++) {
         host.wrong += host.points[i] != distance_at(372 + i);
@@ -110,8 +121,10 @@ static void step(void *context)
         serial_flush(&host.transmitter);
         serial_set_rate(&host.transmitter, action.rate);
     }
-    if (action.send) {
+    if (action.expect) {
         scip_parser_expect(&host.parser, &action.request);
+    }
+    if (action.send) {
         serial_send(&host.transmitter, action.request.text, action.request.text_length);
     }
 }
@@ -129,7 +142,7 @@ static void start_host(void *context)
     serial_set_rate(&host.transmitter, host.rate);
     scip_parser_init(&host.parser);
     scip_parser_scan_into(&host.parser, &host.scan);
-    urg_link_init(&host.link, &host.config, (uint32_t)(timeline_now() / SIM_US));
+    (void)urg_link_init(&host.link, &host.config, (uint32_t)(timeline_now() / SIM_US));
     host.step = timeline_after(STEP, step, NULL);
 }
 
@@ -169,16 +182,31 @@ static void hear_noise(unsigned octet)
     scip_parser_line_broken(&host.parser);
     if (octet % 4 == 0) {
         host.seen.octet_count++;
+        host.seen.strange_count += (octet ^ 0xA5U) > 0x7FU;
         note(scip_parser_feed(&host.parser, (octet_t)(octet ^ 0xA5U)));
     } else {
         host.seen.framing_count++;
     }
 }
 
+static bool in_outage(void)
+{
+    return timeline_now() >= host.outage.from && timeline_now() < host.outage.to;
+}
+
+static void make_noise(void *context)
+{
+    (void)context;
+    hear_noise((unsigned)(timeline_now() / SIM_MS * 37));
+    if (timeline_now() + 3 * SIM_MS < host.outage.to) {
+        timeline_after(3 * SIM_MS, make_noise, NULL);
+    }
+}
+
 static void to_host(void *context, unsigned octet, double bit_ns)
 {
     (void)context;
-    if (!host.listening) {
+    if (!host.listening || (in_outage() && host.outage.from_sensor)) {
         return;
     }
     host.to_host++;
@@ -201,7 +229,7 @@ static void to_sensor(void *context, unsigned octet, double bit_ns)
     if (host.to_sensor == host.faults.host_restart_sent) {
         restart_host();
     }
-    if (host.to_sensor != host.faults.lost_to_sensor) {
+    if (host.to_sensor != host.faults.lost_to_sensor && !(in_outage() && host.outage.from_host)) {
         urg04lx_receive(host.sensor, octet, bit_ns);
     }
 }
@@ -217,19 +245,25 @@ static void run_until(sim_time_t when)
     timeline_move_to(when);
 }
 
-static void power_up(double rate)
+static void power_up_with(double rate, sim_time_t boot)
 {
     urg04lx_config_t config = urg04lx_default;
 
     config.power_up_rate = rate;
+    config.boot = boot;
     config.phase = 13 * SIM_MS;
     timeline_reset();
     memset(&host, 0, sizeof host);
     host.sensor = urg04lx_create(&config, look, NULL, to_host, NULL);
     serial_init(&host.transmitter, rate, to_sensor, NULL);
     urg04lx_power(host.sensor, true);
-    host.config = (urg_config_t){ .first_rate = 115200, .stream_rate = 250000, .stream = SCIP_STREAM_2,
+    host.config = (urg_config_t){ .first_rate = 115200, .stream_rate = 250000, .fastest_rate = 250000, .stream = SCIP_STREAM_2,
                                   .range = { 372, 406, 1, 0, 0 } };
+}
+
+static void power_up(double rate)
+{
+    power_up_with(rate, urg04lx_default.boot);
 }
 
 static void power_down(void)
@@ -427,16 +461,106 @@ static void print_faults(void)
     try_every_octet("the host restarts while it sends it", host_restart_sent, true);
 }
 
+/* ---- time without scans ---- */
+
+#define OUTAGE_PHASES 24U       /* of the revolution and of the host's step, in steps that share no divisor with either */
+#define OUTAGE_PHASE (13 * SIM_MS)
+
+typedef struct {
+    const char *name;
+    outage_t kind;
+    bool restart;               /* the sensor's supply goes off for 100 ms; what lasts is its boot */
+    double most_s;              /* longer than the outage or the boot */
+} trouble_t;
+
+static const trouble_t troubles[] = {
+    { "the line is out, both ways", { .from_sensor = true, .from_host = true }, false, 0.5 },
+    { "from the sensor only", { .from_sensor = true }, false, 0.5 },
+    { "both ways, and noise", { .from_sensor = true, .from_host = true, .noise = true }, false, 0.5 },
+    { "the sensor restarts and boots", { .from_sensor = false }, true, 1.0 },
+};
+
+static void begin_outage(const trouble_t *trouble, sim_time_t length)
+{
+    host.outage = trouble->kind;
+    host.outage.from = timeline_now();
+    host.outage.to = timeline_now() + length;
+    if (trouble->kind.noise) {
+        make_noise(NULL);
+    }
+    if (trouble->restart) {
+        host.outage.to = host.outage.from;
+        urg04lx_power(host.sensor, false);
+        timeline_after(100 * SIM_MS, power_sensor, NULL);
+    }
+}
+
+/* The longest time between two scans from an outage at this phase until 3 s after it. */
+static double blind_s(const trouble_t *trouble, sim_time_t length, unsigned phase)
+{
+    double seconds;
+
+    power_up_with(115200, trouble->restart ? length - 100 * SIM_MS : urg04lx_default.boot);
+    run_until(9 * SIM_S);
+    start_host(NULL);
+    (void)check_run(trouble->name, phase);
+    run_until(timeline_now() + phase * OUTAGE_PHASE);
+    host.longest_gap = 0;
+    begin_outage(trouble, length);
+    run_until(timeline_now() + length + 8 * SIM_S);
+    seconds = (double)host.longest_gap / 1e9;
+    if (timeline_now() - host.latest_scan > 250 * SIM_MS || host.wrong != 0 || host.power_cycles != 0) {
+        complain("no scans, or wrong ones", trouble->name, phase);
+    }
+    power_down();
+    return seconds;
+}
+
+static const int lengths_ms[] = { 300, 500, 700, 1000, 1300, 1700, 2300, 2700, 3500, 5000, 6500, 8000 };
+#define BOOT_LEAST_MS 2000
+
+static double worst_blind_s(const trouble_t *trouble, sim_time_t length)
+{
+    double worst = 0.0;
+
+    for (unsigned phase = 0; phase < OUTAGE_PHASES; phase++) {
+        worst = fmax(worst, blind_s(trouble, length, phase));
+    }
+    holds = holds && worst <= (double)length / 1e9 + trouble->most_s;
+    return worst;
+}
+
+static void print_outages(void)
+{
+    printf("%-30s", "longest time without scans, s");
+    for (size_t i = 0; i < sizeof lengths_ms / sizeof lengths_ms[0]; i++) {
+        printf(" %5.1f", lengths_ms[i] / 1000.0);
+    }
+    for (size_t k = 0; k < sizeof troubles / sizeof troubles[0]; k++) {
+        printf("\n%-30s", troubles[k].name);
+        for (size_t i = 0; i < sizeof lengths_ms / sizeof lengths_ms[0]; i++) {
+            if (troubles[k].restart && lengths_ms[i] < BOOT_LEAST_MS) {
+                printf("     -");
+            } else {
+                printf(" %5.2f", worst_blind_s(&troubles[k], lengths_ms[i] * SIM_MS));
+            }
+        }
+    }
+    printf("\n");
+}
+
 int main(int argc, char **argv)
 {
     if (argc == 2 && strcmp(argv[1], "--faults") == 0) {
         print_faults();
+    } else if (argc == 2 && strcmp(argv[1], "--outages") == 0) {
+        print_outages();
     } else if (argc == 2 && strcmp(argv[1], "--wait") == 0) {
         print_table(10000000);
     } else if (argc == 1) {
         print_table(0);
     } else {
-        fprintf(stderr, "usage: scip_start [--wait|--faults]\n");
+        fprintf(stderr, "usage: scip_start [--wait|--faults|--outages]\n");
         return 2;
     }
     return holds ? 0 : 1;

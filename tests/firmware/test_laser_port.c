@@ -117,6 +117,7 @@ static void baseline(void)
 {
     feed_broken("", false, true);
     TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
+    laser_port_expect(&request);
     laser_port_send(&request);
     feed("QT\n00P\n\n");
     laser_port_statistics(&before);
@@ -185,6 +186,7 @@ static void start_stream(void)
     const scip_range_t range = {.first_step = 372U, .last_step = 406U, .cluster = 1U};
 
     TEST_ASSERT_TRUE(scip_request_scan(&request, SCIP_STREAM_2, &range));
+    laser_port_expect(&request);
     laser_port_send(&request);
     feed("MS0372040601000\n00P\n\n");
     look();
@@ -229,11 +231,13 @@ void test_send_writes_the_requests_octets_and_nothing_else(void)
     TEST_ASSERT_EQUAL_STRING("QT\n", sent);
     TEST_ASSERT_TRUE(scip_request_bit_rate(&request, 250000U));
     scip_request_end_line_first(&request);
+    laser_port_expect(&request);
     laser_port_send(&request);
     TEST_ASSERT_EQUAL_UINT16(10, sent_count);
     TEST_ASSERT_EQUAL_STRING("\nSS250000\n", sent);
     TEST_ASSERT_TRUE(scip_request_scan(&request, SCIP_STREAM_2, &range));
     scip_request_end_line_first(&request);
+    laser_port_expect(&request);
     laser_port_send(&request);
     TEST_ASSERT_EQUAL_UINT16(SCIP_REQUEST_MAX, sent_count);
     TEST_ASSERT_EQUAL_STRING("\nMS0372040601000\n", sent);
@@ -243,6 +247,7 @@ void test_a_reply_is_awaited_before_the_request_is_on_the_wire(void)
 {
     answer_while_sending = "SS250000\n00P\n\n";
     TEST_ASSERT_TRUE(scip_request_bit_rate(&request, 250000U));
+    laser_port_expect(&request);
     laser_port_send(&request);
     look();
     TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count + 1U, now.seen.reply_count);
@@ -252,6 +257,7 @@ void test_a_reply_is_awaited_before_the_request_is_on_the_wire(void)
 void test_a_reply_is_counted_with_its_kind_and_status(void)
 {
     TEST_ASSERT_TRUE(scip_request_bit_rate(&request, 250000U));
+    laser_port_expect(&request);
     laser_port_send(&request);
     feed("SS250000\n03S\n\n");
     look();
@@ -266,6 +272,7 @@ void test_a_reply_is_counted_with_its_kind_and_status(void)
 void test_the_reply_of_an_older_request_is_not_taken_for_the_present_one(void)
 {
     TEST_ASSERT_TRUE(scip_request_bit_rate(&request, 250000U));
+    laser_port_expect(&request);
     laser_port_send(&request);
     feed("QT\n00P\n\n");
     look();
@@ -278,6 +285,7 @@ void test_the_reply_of_an_older_request_is_not_taken_for_the_present_one(void)
 void test_the_lines_of_a_text_reply_count_for_nothing_but_the_reply_at_their_end(void)
 {
     TEST_ASSERT_TRUE(scip_request(&request, SCIP_VERSION));
+    laser_port_expect(&request);
     laser_port_send(&request);
     feed("VV\n00P\nVEND:Hokuyo;0\nPROD:URG-04LX;0\n");
     look();
@@ -292,6 +300,7 @@ void test_the_lines_of_a_text_reply_count_for_nothing_but_the_reply_at_their_end
 void test_a_scip11_refusal_is_counted(void)
 {
     TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
+    laser_port_expect(&request);
     laser_port_send(&request);
     feed("QT\nE\n\n");
     look();
@@ -396,6 +405,7 @@ void test_only_scans_wake_the_task(void)
     damaged[40] ^= 1;
     feed(damaged);
     TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
+    laser_port_expect(&request);
     laser_port_send(&request);
     feed("QT\n00P\n\n");
     look();
@@ -411,6 +421,7 @@ void test_a_scan_that_waits_survives_a_reply_that_follows(void)
     start_stream();
     feed(scan_text(1000U, 700U));
     TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
+    laser_port_expect(&request);
     laser_port_send(&request);
     feed("QT\n00P\n\n");
     wait();
@@ -459,6 +470,7 @@ void test_the_remaining_scans_of_a_counted_run_are_seen(void)
     char text[256];
 
     TEST_ASSERT_TRUE(scip_request_scan(&request, SCIP_STREAM_2, &range));
+    laser_port_expect(&request);
     laser_port_send(&request);
     feed("MS0372040601002\n00P\n\n");
     for (uint16_t left = 2U; left-- > 0U;) {
@@ -577,6 +589,7 @@ void test_a_new_rate_reopens_the_uart_and_drops_what_was_in_reception(void)
 void test_a_part_of_a_line_from_before_a_new_rate_is_forgotten(void)
 {
     TEST_ASSERT_TRUE(scip_request(&request, SCIP_VERSION));
+    laser_port_expect(&request);
     laser_port_send(&request);
     feed("V");
     laser_port_set_rate(57600U);
@@ -603,6 +616,7 @@ void test_the_copy_to_the_task_is_made_with_swis_off_and_the_parser_touched_with
     TEST_ASSERT_EQUAL_UINT16(1, kernel.swi.disabled);
     laser_port_set_rate(250000U);
     TEST_ASSERT_EQUAL_UINT16(2, kernel.hwi.disabled);
+    laser_port_expect(&request);
     laser_port_send(&request);
     TEST_ASSERT_EQUAL_UINT16(3, kernel.hwi.disabled);
 }
@@ -715,6 +729,7 @@ void test_a_reply_is_complete_with_the_tick_after_it(void)
 {
     fifo.count = 0U;
     TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
+    laser_port_expect(&request);
     laser_port_send(&request);
     (void)arrive("QT\n00P\n\n");
     tick();

@@ -21,6 +21,7 @@ static const urg_config_t config = {
     .wait_us = 10000000U,
     .first_rate = 115200U,
     .stream_rate = 250000U,
+    .fastest_rate = 250000U,
     .stream = SCIP_STREAM_2,
     .range = {.first_step = 372U, .last_step = 406U, .cluster = 1U},
 };
@@ -65,6 +66,15 @@ static void set_rate(uint32_t bit_rate, int calls)
     kernel_note(word);
 }
 
+static uint16_t awaited;
+
+static void expect(const scip_request_t *request, int calls)
+{
+    (void)request;
+    (void)calls;
+    awaited++;
+}
+
 /* The reply is in by the next tick. */
 static void send(const scip_request_t *request, int calls)
 {
@@ -79,6 +89,8 @@ static void send(const scip_request_t *request, int calls)
     }
     word[length] = '\0';
     kernel_note(word);
+    TEST_ASSERT_EQUAL_UINT16_MESSAGE(1, awaited, "sent before its reply is awaited");
+    awaited = 0;
     if (sensor_answers) {
         receiving.seen.reply_count++;
         receiving.seen.octet_count += 10U;
@@ -121,10 +133,12 @@ void setUp(void)
     blue = red = false;
     sensor_answers = sensor_streams = true;
     streaming = false;
+    awaited = 0;
     bsp_time_us_Stub(time_us);
     laser_port_statistics_Stub(look);
     laser_server_write_Stub(publish);
     laser_port_set_rate_Stub(set_rate);
+    laser_port_expect_Stub(expect);
     laser_port_send_Stub(send);
     bsp_led_blue_Stub(led_blue);
     bsp_led_red_Stub(led_red);

@@ -40,7 +40,6 @@ static void send(const scip_request_t *request)
     for (uint16_t i = 0; i < request->text_length; i++) {
         octets[i] = (unsigned char)request->text[i];
     }
-    scip_parser_expect(&scanner.parser, request);
     tap(false, octets, request->text_length);
     port_write(&scanner.port, octets, request->text_length);
 }
@@ -65,6 +64,9 @@ static void step(void *context)
     urg_link_step(&scanner.link, &scanner.seen, now_us(), &action);
     if (action.set_rate) {
         set_rate(action.rate);
+    }
+    if (action.expect) {
+        scip_parser_expect(&scanner.parser, &action.request);
     }
     if (action.send) {
         send(&action.request);
@@ -124,6 +126,7 @@ static void received(void *context, const unsigned char *octets, size_t count)
     tap(true, octets, count);
     scanner.seen.octet_count += (uint32_t)count;
     for (size_t i = 0; i < count; i++) {
+        scanner.seen.strange_count += octets[i] > 0x7F;
         note(scip_parser_feed(&scanner.parser, octets[i]));
     }
 }
@@ -159,7 +162,7 @@ static void begin_link(void)
         .range = {(uint16_t)scanner.config.first_step, (uint16_t)scanner.config.last_step, 1, 0, 0},
     };
 
-    urg_link_init(&scanner.link, &config, now_us());
+    (void)urg_link_init(&scanner.link, &config, now_us());
     scanner.linked = true;
     timeline_after(0, step, NULL);
 }
@@ -211,6 +214,7 @@ static bool converse(scip_kind_t kind)
 
     scanner.linked = false;
     (void)scip_request(&request, kind);
+    scip_parser_expect(&scanner.parser, &request);
     send(&request);
     while (scanner.seen.reply_count == replies && timeline_now() < end) {
         pace_run();
