@@ -113,7 +113,7 @@ static bool step_pid(flight_t *flight, const parameters_t *parameters)
         .ascension_n = value[PARAMETER_USAT],
         .descension_n = value[PARAMETER_DSAT],
     };
-    const bool every_release = value[PARAMETER_RELEASE] == (float)RELEASE_FREE;
+    const bool every_release = parameters_choice(parameters, PARAMETER_RELEASE) == RELEASE_FREE;
     const bool had_integral = flight->integral;
 
     if (!every_release && !height->is_new && flight->pid.primed) {
@@ -248,7 +248,7 @@ static void update_estimator(flight_t *flight, const parameters_t *parameters, c
 static bool select_law(flight_t *flight, const parameters_t *parameters)
 {
     const control_law_t before = flight->active_law;
-    const control_law_t wanted = (control_law_t)(uint16_t)parameters->value[PARAMETER_LAW];
+    const control_law_t wanted = (control_law_t)parameters_choice(parameters, PARAMETER_LAW);
 
     flight->active_law = (wanted == LAW_EST && !est_law_ready(&flight->est)) ? LAW_PIDT : wanted;
     return flight->active_law != before;
@@ -286,12 +286,26 @@ static void judge_reach(flight_t *flight)
         acts && reach_step(&flight->reach, supervisor->height.height_mm - reference_mm(flight), supervisor->step_us);
 }
 
+uint16_t flight_releases(const flight_t *flight, const parameters_t *parameters)
+{
+    const uint16_t law = parameters_choice(parameters, PARAMETER_LAW);
+
+    if (law == LAW_EST || is_est_mode(flight->mode)) {
+        return FLIGHT_RELEASE_HEIGHT | FLIGHT_RELEASE_FRAME;
+    }
+    if (law == LAW_PIDT || parameters_choice(parameters, PARAMETER_RELEASE) == RELEASE_SCAN) {
+        return FLIGHT_RELEASE_HEIGHT;
+    }
+    return FLIGHT_RELEASE_PERIOD;
+}
+
 static void write_outputs(const flight_t *flight, const parameters_t *parameters, flight_outputs_t *out)
 {
     const supervisor_t *supervisor = &flight->supervisor;
     const estimator_t *estimator = &flight->est.estimator;
     const bool estimated = flight->active_law == LAW_EST || is_est_mode(flight->mode);
-    const bool imu_missing = parameters->value[PARAMETER_LAW] == (float)LAW_EST && !est_law_has_imu(&flight->est);
+    const bool wants_imu = parameters_choice(parameters, PARAMETER_LAW) == LAW_EST;
+    const bool imu_missing = wants_imu && !est_law_has_imu(&flight->est);
     const float measured_mm = (supervisor->height.sequence != 0U) ? supervisor->height.height_mm : NAN;
 
     out->thrust_n = flight->thrust_n;
@@ -302,7 +316,7 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
     out->reference_m = supervisor->reference_m;
     out->estimate_mm = estimated ? estimator->now.height_m * 1000.0F : measured_mm;
     out->innovation_mm = estimated ? estimator->innovation_m * 1000.0F : NAN;
-    out->frame_releases = is_est_mode(flight->mode);
+    out->releases = flight_releases(flight, parameters);
 }
 
 void flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in, flight_outputs_t *out)

@@ -8,23 +8,12 @@
 
 #include "control/descent.h"
 #include "control/est/est_law.h"
+#include "control/flight_io.h"
 #include "control/parameters.h"
 #include "control/pid.h"
 #include "control/pidt.h"
 #include "control/reach.h"
 #include "control/supervisor.h"
-
-typedef struct {
-    float thrust_n;                 /* commanded, newtons per motor, 0 .. THRUST_MAX_N */
-    float pulse_us;                 /* throttle pulse, thrust.h */
-    flight_state_t state;
-    uint16_t flags;                 /* FLIGHT_FLAG_*, supervisor.h */
-    float reference_m;              /* reference in force, 0 = none */
-    float estimate_mm;              /* height that the law acts on; NAN: none is known */
-    float innovation_mm;            /* latest height less its prediction; NAN where nothing is predicted */
-    bool frame_releases;            /* the estimator flies: the next cycle is due at the next IMU frame or height,
-                                     * whatever the law's release */
-} flight_outputs_t;
 
 /* What the thrust is computed by. */
 typedef enum {
@@ -68,5 +57,9 @@ void flight_init(flight_t *flight);
  * fresh, whatever the law; without it by the heights alone, or by none. A change of law alone starts exactly from the thrust
  * of before. parameters: a set kept by parameters_set(). */
 void flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in, flight_outputs_t *out);
+
+/* What the next cycle waits for, FLIGHT_RELEASE_*: PD and PID follow the parameter RELEASE, PIDT each height; EST, and every
+ * other law while the estimator flies, each height and each IMU frame. flight_step() tells the same in its outputs. */
+uint16_t flight_releases(const flight_t *flight, const parameters_t *parameters);
 
 #endif

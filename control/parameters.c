@@ -102,7 +102,7 @@ parameter_id_t parameter_find(const char *name, size_t length)
     return (parameter_id_t)i;
 }
 
-int16_t parameter_choice(parameter_id_t id, const char *name, size_t length)
+int16_t parameter_find_choice(parameter_id_t id, const char *name, size_t length)
 {
     const parameter_row_t *row = &parameter_table[id];
     if (row->choices == NULL) {
@@ -114,6 +114,11 @@ int16_t parameter_choice(parameter_id_t id, const char *name, size_t length)
         }
     }
     return -1;
+}
+
+uint16_t parameters_choice(const parameters_t *parameters, parameter_id_t id)
+{
+    return (uint16_t)parameters->value[id];
 }
 
 parameter_status_t parameters_set(parameters_t *parameters, parameter_id_t id, float value)

@@ -70,7 +70,10 @@ bool parameter_is_used(parameter_id_t id, control_law_t law);
 parameter_id_t parameter_find(const char *name, size_t length);
 
 /* Case-insensitive look-up of a choice's name. Returns -1 when row is no choice or has no such name. */
-int16_t parameter_choice(parameter_id_t id, const char *name, size_t length);
+int16_t parameter_find_choice(parameter_id_t id, const char *name, size_t length);
+
+/* Value of a choice: the index of its name. */
+uint16_t parameters_choice(const parameters_t *parameters, parameter_id_t id);
 
 /* Stores value if it is finite and within the row's limits (a choice: also whole); otherwise nothing changes. -0 is
  * stored as 0. */

@@ -181,7 +181,7 @@ static bool execute_set(answer_t *answer, parameter_id_t id)
     const telecommand_t *command = answer->command;
     const parameter_row_t *row = &parameter_table[id];
     parameters_t parameters;
-    float value = (float)parameter_choice(id, command->argument, command->argument_length);
+    float value = (float)parameter_find_choice(id, command->argument, command->argument_length);
 
     if (command->argument_length == 0U) {
         return answer_refuse(answer, "value missing");

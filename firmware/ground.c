@@ -5,7 +5,7 @@
 bool ground_idle(void)
 {
     reference_sample_t reference;
-    flight_status_t flight;
+    flight_outputs_t flight;
 
     reference_server_read(&reference);
     flight_status_server_read(&flight);

@@ -5,8 +5,9 @@
 #include <ti/sysbios/gates/GateMutexPri.h>
 #include <xdc/std.h>
 
-#include "firmware/monitor.h"
 #include "bsp/timebase.h"
+#include "control/thrust.h"
+#include "firmware/monitor.h"
 #include "firmware/watch.h"
 
 static GateMutexPri_Handle altitude_gate;
@@ -23,14 +24,14 @@ static uint16_t imu_next;
 static laser_sample_t laser;
 static reference_sample_t reference;
 static parameters_t parameters;
-static flight_status_t flight = {.estimate_mm = NAN, .innovation_mm = NAN};
+static flight_outputs_t flight = {.pulse_us = THRUST_IDLE_PULSE_US, .estimate_mm = NAN, .innovation_mm = NAN};
 
 const altitude_sample_t *const watch_altitude = &altitude;
 const imu_sample_t *const watch_imu = &imu;
 const laser_sample_t *const watch_laser = &laser;
 const reference_sample_t *const watch_reference = &reference;
 const parameters_t *const watch_parameters = &parameters;
-const flight_status_t *const watch_flight = &flight;
+const flight_outputs_t *const watch_flight = &flight;
 
 static GateMutexPri_Handle gate_create(const char *name)
 {
@@ -106,7 +107,7 @@ uint16_t imu_server_history(imu_sample_t history[IMU_HISTORY])
     uint16_t i;
 
     for (i = 0U; i < held; i++) {
-        history[i] = imu_history[(imu_next + IMU_HISTORY - 1U - i) % IMU_HISTORY];
+        history[i] = imu_history[(imu_next + IMU_HISTORY - held + i) % IMU_HISTORY];
     }
     GateMutexPri_leave(imu_gate, key);
     return held;
@@ -160,7 +161,7 @@ void parameter_server_read(parameters_t *set)
     GateMutexPri_leave(parameter_gate, key);
 }
 
-void flight_status_server_write(const flight_status_t *status)
+void flight_status_server_write(const flight_outputs_t *status)
 {
     IArg key = enter(flight_gate, MONITOR_FLIGHT_STATUS);
 
@@ -168,7 +169,7 @@ void flight_status_server_write(const flight_status_t *status)
     GateMutexPri_leave(flight_gate, key);
 }
 
-void flight_status_server_read(flight_status_t *status)
+void flight_status_server_read(flight_outputs_t *status)
 {
     IArg key = enter(flight_gate, MONITOR_FLIGHT_STATUS);
 

@@ -9,9 +9,9 @@
 #include <stdint.h>
 
 #include "control/altitude.h"
-#include "control/attitude.h"
+#include "control/flight_io.h"
+#include "control/imu_sample.h"
 #include "control/parameters.h"
-#include "control/supervisor.h"
 #include "drivers/urg_link.h"
 
 /* All gates. Call once from main(). */
@@ -33,20 +33,9 @@ void altitude_server_read(altitude_sample_t *sample);
 /* IMU server, written by TaskIMU. */
 #define IMU_HISTORY 16U
 
-typedef struct {
-    bool ready;                 /* the offset is known */
-    attitude_t level;           /* offset removed */
-    attitude_t median;
-    bool has_acceleration;
-    float forward_mps2, right_mps2, down_mps2;
-    uint32_t arrival_us;
-    uint32_t sequence;          /* frames so far; 0 = never one */
-    uint32_t malformed;         /* frames refused */
-} imu_sample_t;
-
 void imu_server_write(const imu_sample_t *sample);
 void imu_server_read(imu_sample_t *sample);
-/* The latest samples, newest first; returns how many (0..IMU_HISTORY). */
+/* The latest samples, oldest first; returns how many (0..IMU_HISTORY). */
 uint16_t imu_server_history(imu_sample_t history[IMU_HISTORY]);
 
 /* LaserStatus server, written by TaskSendLaser. */
@@ -78,16 +67,7 @@ void parameter_server_write(const parameters_t *parameters);
 void parameter_server_read(parameters_t *parameters);
 
 /* FlightStatus server, written by TaskControl: what the latest control cycle decided. */
-typedef struct {
-    float thrust_n;
-    float reference_m;          /* in force */
-    float estimate_mm;          /* height that the law acts on; NAN: none is known */
-    float innovation_mm;        /* latest height less its prediction; NAN where nothing is predicted */
-    flight_state_t state;
-    uint16_t flags;
-} flight_status_t;
-
-void flight_status_server_write(const flight_status_t *status);
-void flight_status_server_read(flight_status_t *status);
+void flight_status_server_write(const flight_outputs_t *status);
+void flight_status_server_read(flight_outputs_t *status);
 
 #endif

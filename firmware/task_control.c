@@ -20,9 +20,6 @@
 #define EVENT_ALTITUDE Event_Id_01
 #define EVENT_IMU Event_Id_02
 
-/* Release is a property of the law; that of the seed's laws is set by the operator. */
-static const UInt seed_releases[RELEASE_COUNT] = {EVENT_PERIOD, EVENT_ALTITUDE};
-
 static Event_Handle event;
 static UInt in_force;
 static flight_t flight;
@@ -51,19 +48,11 @@ void task_control_imu_arrived(void)
     post(EVENT_IMU);
 }
 
-static UInt releases(const parameters_t *parameters, const flight_outputs_t *out)
+static UInt events_of(uint16_t releases)
 {
-    if (out->frame_releases) {
-        return EVENT_ALTITUDE | EVENT_IMU;
-    }
-    switch ((control_law_t)(uint16_t)parameters->value[PARAMETER_LAW]) {
-    case LAW_EST:
-        return EVENT_ALTITUDE | EVENT_IMU;
-    case LAW_PIDT:
-        return EVENT_ALTITUDE;
-    default:
-        return seed_releases[(uint16_t)parameters->value[PARAMETER_RELEASE]];
-    }
+    return (((releases & FLIGHT_RELEASE_PERIOD) != 0U) ? EVENT_PERIOD : 0U)
+           | (((releases & FLIGHT_RELEASE_HEIGHT) != 0U) ? EVENT_ALTITUDE : 0U)
+           | (((releases & FLIGHT_RELEASE_FRAME) != 0U) ? EVENT_IMU : 0U);
 }
 
 static uint32_t deadline_ms(UInt release)
@@ -74,47 +63,32 @@ static uint32_t deadline_ms(UInt release)
     return ((release & EVENT_ALTITUDE) != 0U) ? TASK_CONTROL_SCAN_DEADLINE_MS : TASK_CONTROL_DEADLINE_MS;
 }
 
-static void wait(const parameters_t *parameters, const flight_outputs_t *out)
+static void wait(uint16_t releases)
 {
-    in_force = releases(parameters, out);
+    in_force = events_of(releases);
     monitor_set_deadline(MONITOR_CONTROL, deadline_ms(in_force) * UINT32_C(1000));
     (void)Event_pend(event, Event_Id_NONE, in_force, CONTROL_TIMEOUT_MS);
     monitor_begin(MONITOR_CONTROL);
 }
 
-/* The IMU's history, oldest first, in the shape of the control room. Returns the latest sample. */
-static const imu_sample_t *look_back(flight_inputs_t *in)
+/* Returns the latest sample. */
+static const imu_sample_t *read_frames(flight_inputs_t *in)
 {
     static imu_sample_t history[IMU_HISTORY];
-    static motion_frame_t frames[IMU_HISTORY];
-    uint16_t held = imu_server_history(history);
-    uint16_t i;
 
-    for (i = 0U; i < held; i++) {
-        const imu_sample_t *sample = &history[held - 1U - i];
-
-        frames[i].sequence = sample->sequence;
-        frames[i].arrival_us = sample->arrival_us;
-        frames[i].usable = sample->ready && sample->has_acceleration;
-        frames[i].forward_mps2 = sample->forward_mps2;
-        frames[i].right_mps2 = sample->right_mps2;
-        frames[i].down_mps2 = sample->down_mps2;
-        frames[i].roll_rad = sample->median.roll_rad;
-        frames[i].pitch_rad = sample->median.pitch_rad;
-    }
-    in->frames = frames;
-    in->frame_count = held;
-    return &history[0];
+    in->frame_count = imu_server_history(history);
+    in->frames = history;
+    return &history[(in->frame_count > 0U) ? in->frame_count - 1U : 0U];
 }
 
-static void look(const parameters_t *parameters, flight_inputs_t *in)
+static void read_inputs(const parameters_t *parameters, flight_inputs_t *in)
 {
     altitude_sample_t altitude;
     const imu_sample_t *imu;
     reference_sample_t reference;
 
     altitude_server_read(&altitude);
-    imu = look_back(in);
+    imu = read_frames(in);
     reference_server_read(&reference);
     in->now_us = bsp_time_us();
     in->height_valid = altitude.scan_valid;
@@ -130,20 +104,7 @@ static void look(const parameters_t *parameters, flight_inputs_t *in)
     in->reference_sequence = reference.sequence;
     in->link_time_us = reference.link_time_us;
     in->link_sequence = reference.link_sequence;
-    in->has_throttle = parameters->value[PARAMETER_SEL] == (float)SEL_NONE || bsp_selector_ours();
-}
-
-static void publish(const flight_outputs_t *out)
-{
-    flight_status_t status;
-
-    status.thrust_n = out->thrust_n;
-    status.reference_m = out->reference_m;
-    status.estimate_mm = out->estimate_mm;
-    status.innovation_mm = out->innovation_mm;
-    status.state = out->state;
-    status.flags = out->flags;
-    flight_status_server_write(&status);
+    in->has_throttle = parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE || bsp_selector_ours();
 }
 
 static Void task_control(UArg unused0, UArg unused1)
@@ -155,14 +116,15 @@ static Void task_control(UArg unused0, UArg unused1)
     (void)unused0;
     (void)unused1;
     parameter_server_read(&parameters);
+    out.releases = flight_releases(&flight, &parameters);
     for (;;) {
-        wait(&parameters, &out);
+        wait(out.releases);
         parameter_server_read(&parameters);
-        look(&parameters, &in);
+        read_inputs(&parameters, &in);
         flight_step(&flight, &parameters, &in, &out);
         calibrator_overlay(parameters.value[PARAMETER_LINK], &in, &out);
         bsp_throttle_set_pulse_us(out.pulse_us);
-        publish(&out);
+        flight_status_server_write(&out);
         flight_recorder_take(&in, &out);
         monitor_done(MONITOR_CONTROL);
         alive_report(ALIVE_CONTROL);

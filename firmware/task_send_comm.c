@@ -27,7 +27,7 @@ static void report(telemetry_line_t *line, const char *reset)
 {
     altitude_sample_t altitude;
     laser_sample_t laser;
-    flight_status_t flight;
+    flight_outputs_t flight;
     telemetry_t telemetry;
 
     altitude_server_read(&altitude);

@@ -10,6 +10,6 @@ extern const imu_sample_t *const watch_imu; /* newest */
 extern const laser_sample_t *const watch_laser;
 extern const reference_sample_t *const watch_reference;
 extern const parameters_t *const watch_parameters;
-extern const flight_status_t *const watch_flight;
+extern const flight_outputs_t *const watch_flight;
 
 #endif

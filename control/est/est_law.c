@@ -67,7 +67,7 @@ void est_law_init(est_law_t *law)
 
 static bool is_climb(const parameters_t *parameters)
 {
-    return parameters->value[PARAMETER_PLANT] == (float)PLANT_CLIMB;
+    return parameters_choice(parameters, PARAMETER_PLANT) == PLANT_CLIMB;
 }
 
 static cascade_vehicle_t vehicle_model(const est_law_t *law, const parameters_t *parameters)
@@ -126,7 +126,7 @@ static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_
     };
 }
 
-static void predict_frame(est_law_t *law, const parameters_t *parameters, const motion_frame_t *frame)
+static void predict_frame(est_law_t *law, const parameters_t *parameters, const imu_sample_t *frame)
 {
     const uint32_t before_us = law->estimator.now_us;
 
@@ -143,7 +143,7 @@ static void predict_frame(est_law_t *law, const parameters_t *parameters, const 
     }
 }
 
-void est_law_predict(est_law_t *law, const parameters_t *parameters, const motion_frame_t *frames, uint16_t count,
+void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_sample_t *frames, uint16_t count,
                      uint32_t now_us)
 {
     if (!law->started) {
@@ -313,7 +313,7 @@ static float height_setpoint_m(est_law_t *law, const parameters_t *parameters, f
 {
     const float ignored_m = law->estimator.terrain_height_m - law->reference_terrain_m;
 
-    if (parameters->value[PARAMETER_TERRAIN] == (float)TERRAIN_FOLLOW || reference_m != law->reference_m) {
+    if (parameters_choice(parameters, PARAMETER_TERRAIN) == TERRAIN_FOLLOW || reference_m != law->reference_m) {
         law->reference_terrain_m = law->estimator.terrain_height_m;
         law->reference_m = reference_m;
         return reference_m;

@@ -45,7 +45,7 @@ typedef struct {
 void est_law_init(est_law_t *law);
 
 /* The frames of one cycle, oldest first; those that were seen before change nothing. Every cycle, at now_us. */
-void est_law_predict(est_law_t *law, const parameters_t *parameters, const motion_frame_t *frames, uint16_t count,
+void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_sample_t *frames, uint16_t count,
                      uint32_t now_us);
 
 /* A new height: its scan's 24-bit stamp and arrival. at_rest: the vehicle is known to stand on the ground. */

@@ -178,11 +178,11 @@ static void predict_now(estimator_t *e)
     e->now_us = time_us;
 }
 
-static float upward_mps2(const motion_frame_t *frame)
+static float upward_mps2(const imu_sample_t *frame)
 {
-    const float level = cosf(frame->pitch_rad);
-    return frame->down_mps2 * level * cosf(frame->roll_rad) + frame->right_mps2 * level * sinf(frame->roll_rad)
-         - frame->forward_mps2 * sinf(frame->pitch_rad) - GRAVITY_MPS2;
+    const float level = cosf(frame->median.pitch_rad);
+    return frame->down_mps2 * level * cosf(frame->median.roll_rad) + frame->right_mps2 * level * sinf(frame->median.roll_rad)
+         - frame->forward_mps2 * sinf(frame->median.pitch_rad) - GRAVITY_MPS2;
 }
 
 /* The second difference of white noise has six times its variance; what the vehicle does adds little to it. */
@@ -228,19 +228,19 @@ static void append_frame(estimator_t *e, const estimator_frame_t *frame)
     }
 }
 
-static bool plausible(const motion_frame_t *frame, float up_mps2)
+static bool usable(const imu_sample_t *frame, float up_mps2)
 {
-    return fabsf(up_mps2) < UP_MAX_MPS2 && fabsf(frame->roll_rad) < ANGLE_MAX_RAD
-        && fabsf(frame->pitch_rad) < ANGLE_MAX_RAD;
+    return frame->ready && frame->has_acceleration && fabsf(up_mps2) < UP_MAX_MPS2 && fabsf(frame->median.roll_rad) < ANGLE_MAX_RAD
+        && fabsf(frame->median.pitch_rad) < ANGLE_MAX_RAD;
 }
 
-void estimator_predict(estimator_t *e, const motion_frame_t *frame, modelled_motion_t model)
+void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motion_t model)
 {
     const uint32_t time_us = frame->arrival_us - FRAME_AGE_US;
     const int32_t gap_us = (int32_t)(time_us - e->now_us);
     const float up_mps2 = upward_mps2(frame);
 
-    if (!frame->usable || (int32_t)(frame->sequence - e->sequence) <= 0 || !plausible(frame, up_mps2)) {
+    if (!usable(frame, up_mps2) || (int32_t)(frame->sequence - e->sequence) <= 0) {
         return;
     }
     const float mean_mps2 = e->has_frames ? 0.5F * (up_mps2 + e->up_mps2) : up_mps2;
@@ -252,8 +252,8 @@ void estimator_predict(estimator_t *e, const motion_frame_t *frame, modelled_mot
         .time_us = time_us,
         .up_mps2 = share * mean_mps2 + (1.0F - share) * (model.known ? model.up_mps2 : 0.0F),
         .share = share,
-        .roll_rad = frame->roll_rad,
-        .pitch_rad = frame->pitch_rad,
+        .roll_rad = frame->median.roll_rad,
+        .pitch_rad = frame->median.pitch_rad,
     };
     if (!e->has_frames || gap_us > GAP_MAX_US || gap_us < -GAP_MAX_US) {
         restart_at_frame(e, time_us, up_mps2);

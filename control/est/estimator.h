@@ -18,19 +18,11 @@
 #include <stdint.h>
 
 #include "control/altitude.h"
+#include "control/imu_sample.h"
 
 #define ESTIMATOR_FRAMES 16U
 #define ESTIMATOR_STATES 4U
 #define ESTIMATOR_FRESH_US UINT32_C(250000)     /* older frames make the estimate useless */
-
-/* One IMU frame. Accelerations are what a scale would feel: at rest and level 0, 0, +9.81. */
-typedef struct {
-    uint32_t sequence;      /* +1 per frame; 0 = none yet */
-    uint32_t arrival_us;
-    bool usable;            /* has accelerations, and the offset of its angles is known */
-    float forward_mps2, right_mps2, down_mps2;
-    float roll_rad, pitch_rad;  /* median of the frame and the four before */
-} motion_frame_t;
 
 typedef struct {
     float height_m;         /* above the terrain */
@@ -81,9 +73,10 @@ typedef struct {
 
 void estimator_init(estimator_t *estimator);
 
-/* One frame, in order; one that was seen before changes nothing. The noisier the accelerometer is measured to be, the
+/* One frame, in order. A frame that was seen before changes nothing, nor does one without accelerations or before the
+ * offset of its angles is known. The noisier the accelerometer is measured to be, the
  * more the expected motion counts. */
-void estimator_predict(estimator_t *estimator, const motion_frame_t *frame, modelled_motion_t model);
+void estimator_predict(estimator_t *estimator, const imu_sample_t *frame, modelled_motion_t model);
 
 /* One valid height, its rays taken at rays_us. at_rest: the vehicle is known to stand on the ground, which tells speed
  * and bias. Without a frame before nothing happens (HEIGHT_REJECTED). */

@@ -62,7 +62,7 @@ static const char *check_parameter(parameter_id_t id, const char *text)
 
     parameters_init(&parameters);
     if (parameter_table[id].choices != NULL) {
-        return parameter_choice(id, text, strlen(text)) < 0 ? no_such_choice(id) : NULL;
+        return parameter_find_choice(id, text, strlen(text)) < 0 ? no_such_choice(id) : NULL;
     }
     value = strtof(text, &end);
     if (*text == '\0' || *end != '\0') {

@@ -28,7 +28,7 @@ typedef struct {
     double glitch;                  /* probability of a height 350 mm off */
     bool imu_mute;
     bool no_acceleration;
-    motion_frame_t frames[NOISY_FRAMES];
+    imu_sample_t frames[NOISY_FRAMES];
     uint16_t frame_count;
     double felt_m_s2[48];           /* accelerations of the latest steps, for the age of a frame */
     double before_m_s;
@@ -72,19 +72,20 @@ static inline double noisy_roll(const noisy_t *n, uint32_t ago_us)
 
 static inline void noisy_frame(noisy_t *n, uint32_t clock_us)
 {
-    motion_frame_t *f = &n->frames[NOISY_FRAMES - 1U];
+    imu_sample_t *f = &n->frames[NOISY_FRAMES - 1U];
     const double roll = noisy_roll(n, NOISY_FRAME_AGE_US);
     const double felt = 9.80665 + n->felt_m_s2[(n->steps - 1U - NOISY_FRAME_AGE_US / PLANT_STEP_US) % 48U] +
                         n->acceleration_bias_m_s2 + n->acceleration_noise_m_s2 * noisy_gauss(n);
     memmove(n->frames, n->frames + 1, sizeof n->frames - sizeof n->frames[0]);
     f->sequence++;
     f->arrival_us = n->body.time_us + clock_us;
-    f->usable = !n->no_acceleration;
+    f->ready = true;
+    f->has_acceleration = !n->no_acceleration;
     f->forward_mps2 = 0.0F;
     f->right_mps2 = (float)(felt * sin(roll));
     f->down_mps2 = (float)(felt * cos(roll));
-    f->roll_rad = (float)noisy_roll(n, NOISY_FRAME_AGE_US + 50000U);
-    f->pitch_rad = 0.0F;
+    f->median.roll_rad = (float)noisy_roll(n, NOISY_FRAME_AGE_US + 50000U);
+    f->median.pitch_rad = 0.0F;
 }
 
 static inline void noisy_height(noisy_t *n, flight_inputs_t *in, uint32_t clock_us)
@@ -95,7 +96,7 @@ static inline void noisy_height(noisy_t *n, flight_inputs_t *in, uint32_t clock_
 
     range.slant_mm = (float)(105.0 + (n->body.seen_mm + wrong_mm + 100.0 + 220.0 * sin(roll)) / cos(roll) +
                              n->height_noise_mm * noisy_gauss(n));
-    in->altitude = altitude_from_ranges(&range, 1, n->frames[NOISY_FRAMES - 1U].roll_rad, 0.0F);
+    in->altitude = altitude_from_ranges(&range, 1, n->frames[NOISY_FRAMES - 1U].median.roll_rad, 0.0F);
     in->height_valid = true;
     in->height_time_us = n->body.time_us - 2000U + clock_us; /* the plant's height comes 2 ms after its last octet */
     in->height_stamp_ms = ((n->body.time_us - 106500U) / 1000U + 77U) & 0xFFFFFFU;
@@ -119,7 +120,7 @@ static inline void noisy_step(noisy_t *n, flight_inputs_t *in, uint32_t clock_us
         noisy_frame(n, clock_us);
         n->released = true;
         in->attitude_time_us = n->body.time_us + clock_us;
-        in->roll_rad = n->frames[NOISY_FRAMES - 1U].roll_rad + (float)n->fallen_rad;
+        in->roll_rad = n->frames[NOISY_FRAMES - 1U].median.roll_rad + (float)n->fallen_rad;
     }
     if (n->body.height_new) {
         noisy_height(n, in, clock_us);

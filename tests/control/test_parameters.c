@@ -69,7 +69,7 @@ void test_every_choice_is_found_by_its_name(void)
     for (int i = 0; i < PARAMETER_COUNT; i++) {
         const parameter_row_t *row = &parameter_table[i];
         for (int k = 0; row->choices != NULL && k <= (int)row->maximum; k++) {
-            TEST_ASSERT_EQUAL_INT16(k, parameter_choice((parameter_id_t)i, row->choices[k], strlen(row->choices[k])));
+            TEST_ASSERT_EQUAL_INT16(k, parameter_find_choice((parameter_id_t)i, row->choices[k], strlen(row->choices[k])));
             choices++;
         }
     }
@@ -90,13 +90,13 @@ void test_names_are_found_in_any_case_and_only_whole(void)
 
 void test_choices_are_found_in_any_case_and_only_whole(void)
 {
-    TEST_ASSERT_EQUAL_INT16(LAW_PD, parameter_choice(PARAMETER_LAW, "pd", 2));
-    TEST_ASSERT_EQUAL_INT16(LAW_PID, parameter_choice(PARAMETER_LAW, "Pid", 3));
-    TEST_ASSERT_EQUAL_INT16(RELEASE_SCAN, parameter_choice(PARAMETER_RELEASE, "scan", 4));
-    TEST_ASSERT_EQUAL_INT16(-1, parameter_choice(PARAMETER_LAW, "P", 1));
-    TEST_ASSERT_EQUAL_INT16(-1, parameter_choice(PARAMETER_LAW, "PIDS", 4));
-    TEST_ASSERT_EQUAL_INT16(-1, parameter_choice(PARAMETER_LAW, "", 0));
-    TEST_ASSERT_EQUAL_INT16(-1, parameter_choice(PARAMETER_KP, "PD", 2));
+    TEST_ASSERT_EQUAL_INT16(LAW_PD, parameter_find_choice(PARAMETER_LAW, "pd", 2));
+    TEST_ASSERT_EQUAL_INT16(LAW_PID, parameter_find_choice(PARAMETER_LAW, "Pid", 3));
+    TEST_ASSERT_EQUAL_INT16(RELEASE_SCAN, parameter_find_choice(PARAMETER_RELEASE, "scan", 4));
+    TEST_ASSERT_EQUAL_INT16(-1, parameter_find_choice(PARAMETER_LAW, "P", 1));
+    TEST_ASSERT_EQUAL_INT16(-1, parameter_find_choice(PARAMETER_LAW, "PIDS", 4));
+    TEST_ASSERT_EQUAL_INT16(-1, parameter_find_choice(PARAMETER_LAW, "", 0));
+    TEST_ASSERT_EQUAL_INT16(-1, parameter_find_choice(PARAMETER_KP, "PD", 2));
 }
 
 void test_the_limits_themselves_are_accepted_and_what_lies_beyond_is_not(void)

@@ -3,10 +3,10 @@
 #include "mock_servers.h"
 #include "unity.h"
 
-static flight_status_t flight;
+static flight_outputs_t flight;
 static reference_sample_t reference;
 
-static void read_flight(flight_status_t *status, int calls)
+static void read_flight(flight_outputs_t *status, int calls)
 {
     (void)calls;
     *status = flight;
@@ -20,7 +20,7 @@ static void read_reference(reference_sample_t *sample, int calls)
 
 void setUp(void)
 {
-    flight = (flight_status_t){.state = FLIGHT_GROUND};
+    flight = (flight_outputs_t){.state = FLIGHT_GROUND};
     reference = (reference_sample_t){.reference_m = 0.0F};
     flight_status_server_read_Stub(read_flight);
     reference_server_read_Stub(read_reference);

@@ -23,7 +23,7 @@ static imu_sample_t history[IMU_HISTORY];
 static laser_sample_t laser;
 static reference_sample_t reference;
 static parameters_t parameters;
-static flight_status_t flight;
+static flight_outputs_t flight;
 
 static uint32_t now_us;
 static uint32_t entered_us[MONITOR_SERVERS];
@@ -126,7 +126,7 @@ void test_frames_refused_before_the_first_good_one_leave_the_history_empty(void)
     TEST_ASSERT_EQUAL_UINT16(0, imu_server_history(history));
 }
 
-void test_the_history_has_the_newest_first_and_holds_the_latest_sixteen(void)
+void test_the_history_has_the_oldest_first_and_holds_the_latest_sixteen(void)
 {
     for (uint32_t n = 1; n <= 3U * IMU_HISTORY + 5U; n++) {
         const imu_sample_t sample = frame(n);
@@ -135,9 +135,11 @@ void test_the_history_has_the_newest_first_and_holds_the_latest_sixteen(void)
         imu_server_write(&sample);
         TEST_ASSERT_EQUAL_UINT16(held, imu_server_history(history));
         for (uint32_t i = 0; i < held; i++) {
-            TEST_ASSERT_EQUAL_UINT32(n - i, history[i].sequence);
-            TEST_ASSERT_EQUAL_UINT32(25000U * (n - i), history[i].arrival_us);
-            TEST_ASSERT_EQUAL_FLOAT(0.001F * (float)(n - i), history[i].level.roll_rad);
+            const uint32_t number = n - held + 1U + i;
+
+            TEST_ASSERT_EQUAL_UINT32(number, history[i].sequence);
+            TEST_ASSERT_EQUAL_UINT32(25000U * number, history[i].arrival_us);
+            TEST_ASSERT_EQUAL_FLOAT(0.001F * (float)number, history[i].level.roll_rad);
         }
         imu_server_read(&imu);
         TEST_ASSERT_EQUAL_UINT32(n, imu.sequence);
@@ -164,7 +166,7 @@ void test_a_refused_frame_is_not_in_the_history(void)
         TEST_ASSERT_EQUAL_UINT32(sample.malformed, imu.malformed);
         TEST_ASSERT_EQUAL_UINT16(IMU_HISTORY, imu_server_history(history));
         for (uint32_t i = 0; i < IMU_HISTORY; i++) {
-            TEST_ASSERT_EQUAL_UINT32(n - i, history[i].sequence);
+            TEST_ASSERT_EQUAL_UINT32(n - IMU_HISTORY + 1U + i, history[i].sequence);
         }
     }
 }

@@ -36,7 +36,7 @@ static flight_inputs_t inputs[CYCLES_MAX];
 static flight_outputs_t outputs[CYCLES_MAX];
 static parameters_t used[CYCLES_MAX];
 static float pulses_us[CYCLES_MAX];
-static flight_status_t published[CYCLES_MAX];
+static flight_outputs_t published[CYCLES_MAX];
 static UInt masks[CYCLES_MAX + 1U];
 static uint16_t waits;
 static uint16_t cycles;         /* to run */
@@ -69,8 +69,8 @@ static uint16_t imu_history(imu_sample_t history[IMU_HISTORY], int calls)
 {
     (void)calls;
     kernel_note("imu");
-    history[0] = imu;
-    history[1] = imu_before;
+    history[0] = imu.sequence < 2U ? imu : imu_before;
+    history[1] = imu;
     return imu.sequence < 2U ? (uint16_t)imu.sequence : 2U;
 }
 
@@ -88,7 +88,7 @@ static void parameters_read(parameters_t *set, int calls)
     *set = parameters;
 }
 
-static void status_write(const flight_status_t *status, int calls)
+static void status_write(const flight_outputs_t *status, int calls)
 {
     (void)calls;
     kernel_note("publish");
@@ -349,15 +349,16 @@ void test_every_value_of_the_servers_reaches_its_own_place_in_the_inputs(void)
     TEST_ASSERT_EQUAL_FLOAT(1.0F, in->altitude.slant_mm);
     TEST_ASSERT_EQUAL_UINT16(2, in->frame_count);
     TEST_ASSERT_EQUAL_UINT32(11, in->frames[0].sequence);
-    TEST_ASSERT_FALSE(in->frames[0].usable);
+    TEST_ASSERT_FALSE(in->frames[0].has_acceleration);
     TEST_ASSERT_EQUAL_HEX32(0xFFFE0010U, in->frames[0].arrival_us);
     TEST_ASSERT_EQUAL_UINT32(12, in->frames[1].sequence);
-    TEST_ASSERT_TRUE(in->frames[1].usable);
+    TEST_ASSERT_TRUE(in->frames[1].ready);
+    TEST_ASSERT_TRUE(in->frames[1].has_acceleration);
     TEST_ASSERT_EQUAL_FLOAT(0.11F, in->frames[1].forward_mps2);
     TEST_ASSERT_EQUAL_FLOAT(0.12F, in->frames[1].right_mps2);
     TEST_ASSERT_EQUAL_FLOAT(9.8F, in->frames[1].down_mps2);
-    TEST_ASSERT_EQUAL_FLOAT(0.08F, in->frames[1].roll_rad);
-    TEST_ASSERT_EQUAL_FLOAT(-0.09F, in->frames[1].pitch_rad);
+    TEST_ASSERT_EQUAL_FLOAT(0.08F, in->frames[1].median.roll_rad);
+    TEST_ASSERT_EQUAL_FLOAT(-0.09F, in->frames[1].median.pitch_rad);
 }
 
 static bool pin;

@@ -13,7 +13,7 @@
 
 static altitude_sample_t altitude;
 static laser_sample_t laser;
-static flight_status_t flight;
+static flight_outputs_t flight;
 static telemetry_line_t line;
 static uint16_t lines;
 static const char *cause;          /* NULL: not told */
@@ -31,7 +31,7 @@ static void laser_read(laser_sample_t *sample, int calls)
     *sample = laser;
 }
 
-static void flight_read(flight_status_t *status, int calls)
+static void flight_read(flight_outputs_t *status, int calls)
 {
     (void)calls;
     *status = flight;

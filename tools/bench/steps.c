@@ -269,15 +269,15 @@ static void prepare_control(void)
 }
 
 #define FRAMES 16U
-static motion_frame_t frames[FRAMES];
+static imu_sample_t frames[FRAMES];
 
 /* Frames every 25 ms; those of the 15 before come again, as from the IMU's history. */
 static void next_motion(void)
 {
     memmove(frames, frames + 1, (FRAMES - 1U) * sizeof frames[0]);
     in.now_us += 25000U;
-    frames[FRAMES - 1U] = (motion_frame_t){ .sequence = frames[FRAMES - 2U].sequence + 1U, .arrival_us = in.now_us,
-                                            .usable = true, .down_mps2 = 9.81F };
+    frames[FRAMES - 1U] = (imu_sample_t){ .sequence = frames[FRAMES - 2U].sequence + 1U, .arrival_us = in.now_us,
+                                            .ready = true, .has_acceleration = true, .down_mps2 = 9.81F };
     in.attitude_time_us = in.now_us;
 }
 

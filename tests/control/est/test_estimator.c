@@ -49,12 +49,13 @@ static altitude_t altitude(double metres)
     return (altitude_t){.valid = true, .height_mm = (float)(metres * 1000.0), .slant_mm = (float)(metres * 1000.0)};
 }
 
-static motion_frame_t frame(void)
+static imu_sample_t frame(void)
 {
-    return (motion_frame_t){
+    return (imu_sample_t){
         .sequence = ++sequence,
         .arrival_us = time_us + 23600U,
-        .usable = true,
+        .ready = true,
+        .has_acceleration = true,
         .down_mps2 = (float)(GRAVITY + acceleration + bias + noise_rms * gauss()),
     };
 }
@@ -69,7 +70,7 @@ static void move(void)
     time_us += 5000U;
     past_m[++steps % 400U] = height_m;
     if (steps % 5U == 0U) {
-        const motion_frame_t f = frame();
+        const imu_sample_t f = frame();
         estimator_predict(&e, &f, no_model);
     }
 }
@@ -157,7 +158,7 @@ void test_a_frame_seen_twice_or_out_of_order_counts_once(void)
 {
     fly(3.0, 0.003);
     const estimator_t before = e;
-    motion_frame_t f = frame();
+    imu_sample_t f = frame();
     f.sequence = sequence - 1U;
     estimator_predict(&e, &f, no_model);
     f.sequence = sequence - 7U;
@@ -171,13 +172,13 @@ void test_a_useless_frame_changes_nothing(void)
     fly(3.0, 0.003);
     const estimator_t before = e;
     for (unsigned i = 0; i < 4; i++) {
-        motion_frame_t f = frame();
-        f.usable = i != 3U;
+        imu_sample_t f = frame();
+        f.has_acceleration = i != 3U;
         f.down_mps2 = i < 3U ? wrong[i] : 9.8F;
         estimator_predict(&e, &f, no_model);
         f = frame();
-        f.roll_rad = i < 3U ? wrong[i] : 0.0F;
-        f.usable = i != 3U;
+        f.median.roll_rad = i < 3U ? wrong[i] : 0.0F;
+        f.has_acceleration = i != 3U;
         estimator_predict(&e, &f, no_model);
     }
     TEST_ASSERT_EQUAL_MEMORY(&before, &e, sizeof e);
@@ -185,13 +186,13 @@ void test_a_useless_frame_changes_nothing(void)
 
 void test_gravity_is_taken_out_of_a_tilted_frame(void)
 {
-    motion_frame_t f = frame();
+    imu_sample_t f = frame();
     const float roll = 0.3F, pitch = -0.2F, felt = 9.80665F + 1.5F;
     f.forward_mps2 = -felt * sinf(pitch);
     f.right_mps2 = felt * cosf(pitch) * sinf(roll);
     f.down_mps2 = felt * cosf(pitch) * cosf(roll);
-    f.roll_rad = roll;
-    f.pitch_rad = pitch;
+    f.median.roll_rad = roll;
+    f.median.pitch_rad = pitch;
     estimator_predict(&e, &f, no_model);
     TEST_ASSERT_FLOAT_WITHIN(1e-4F, 1.5F, e.up_mps2);
 }
@@ -200,9 +201,9 @@ void test_the_tilt_at_the_rays_corrects_the_height(void)
 {
     altitude_t a = {.valid = true, .slant_mm = 805.0F, .distance_mm = 105.0F, .leg_mm = 100.0F, .arm_mm = 220.0F};
     for (int i = 0; i < 20; i++) {
-        motion_frame_t f = frame();
+        imu_sample_t f = frame();
         time_us += 25000U;
-        f.roll_rad = i < 15 ? 0.0F : 0.1F; /* medians show 50 ms before: rolled since 75 ms ago at the newest */
+        f.median.roll_rad = i < 15 ? 0.0F : 0.1F; /* medians show 50 ms before: rolled since 75 ms ago at the newest */
         estimator_predict(&e, &f, no_model);
     }
     (void)estimator_fuse_height(&e, &a, time_us - 300000U, false);
@@ -226,14 +227,14 @@ void test_noise_gives_the_expectation_its_share(void)
 {
     const modelled_motion_t expected = {true, 0.0F, 0.84F};
     for (int i = 0; i < 300; i++) {
-        motion_frame_t f = frame();
+        imu_sample_t f = frame();
         time_us += 25000U;
         estimator_predict(&e, &f, expected);
     }
     TEST_ASSERT_TRUE(e.latest.share > 0.95F);
     noise_rms = 1.6;
     for (int i = 0; i < 300; i++) {
-        motion_frame_t f = frame();
+        imu_sample_t f = frame();
         time_us += 25000U;
         estimator_predict(&e, &f, expected);
     }
@@ -409,7 +410,7 @@ void test_after_a_gap_of_the_frames_it_starts_anew(void)
 {
     hover();
     time_us += 400000U;
-    motion_frame_t f = frame();
+    imu_sample_t f = frame();
     estimator_predict(&e, &f, no_model);
     TEST_ASSERT_FALSE(e.initialised);
     const altitude_t a = altitude(0.7);

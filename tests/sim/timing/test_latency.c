@@ -9,11 +9,11 @@
 /* The firmware's servers, the gates' names and the chip's compare register, as the test wants them. */
 static altitude_sample_t altitude;
 static parameters_t parameters;
-static flight_status_t flight;
+static flight_outputs_t flight;
 static uint32_t compare;
 const altitude_sample_t *const watch_altitude = &altitude;
 const parameters_t *const watch_parameters = &parameters;
-const flight_status_t *const watch_flight = &flight;
+const flight_outputs_t *const watch_flight = &flight;
 
 enum { ALTITUDE, PARAMETER, OTHER };
 

@@ -1,0 +1,22 @@
+/* One IMU frame, its angles free of their offset. */
+#ifndef CONTROL_IMU_SAMPLE_H
+#define CONTROL_IMU_SAMPLE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "control/attitude.h"
+
+typedef struct {
+    uint32_t sequence;          /* frames so far; 0 = none yet */
+    uint32_t arrival_us;
+    bool ready;                 /* the offset of the angles is known */
+    attitude_t level;           /* offset removed */
+    attitude_t median;          /* of this frame and the four before */
+    bool has_acceleration;
+    /* What a scale would feel: at rest and level 0, 0, +9.81. */
+    float forward_mps2, right_mps2, down_mps2;
+    uint32_t malformed;         /* frames refused so far */
+} imu_sample_t;
+
+#endif
