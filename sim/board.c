@@ -38,7 +38,8 @@ static struct {
     const kernel_costs_t *costs;
     sim_time_t pulse;
 } board;
-static board_probes_t probes;
+static const uint32_t wire_bases[BOARD_WIRES] = {SCIA_BASE, SCIB_BASE, SCIC_BASE};
+static board_probes_t probes[BOARD_PROBES];
 
 board_config_t board_config(unsigned long seed)
 {
@@ -60,12 +61,19 @@ board_config_t board_config(unsigned long seed)
     return config;
 }
 
-static void to_firmware(void *base, unsigned octet, double bit_ns)
+static void deliver(board_wire_t wire, unsigned octet, double bit_ns)
 {
-    chip_sci_receive((uint32_t)(uintptr_t)base, octet, bit_ns);
-    if (probes.laser_octet != NULL && (uint32_t)(uintptr_t)base == SCIA_BASE) {
-        probes.laser_octet(octet, bit_ns);
+    chip_sci_receive(wire_bases[wire], octet, bit_ns);
+    for (int i = 0; i < BOARD_PROBES; i++) {
+        if (probes[i].octet != NULL) {
+            probes[i].octet(wire, octet, bit_ns);
+        }
     }
+}
+
+static void to_firmware(void *wire, unsigned octet, double bit_ns)
+{
+    deliver((board_wire_t)(uintptr_t)wire, octet, bit_ns);
 }
 
 static void from_firmware(void *context, unsigned octet, double bit_ns)
@@ -108,8 +116,10 @@ static void throttle_pulse(void *context, sim_time_t high_ns)
     (void)context;
     board.pulse = high_ns;
     rc_mux_firmware_pulse(&board.mux, high_ns);
-    if (probes.pulse != NULL) {
-        probes.pulse(high_ns);
+    for (int i = 0; i < BOARD_PROBES; i++) {
+        if (probes[i].pulse != NULL) {
+            probes[i].pulse(high_ns);
+        }
     }
 }
 
@@ -159,18 +169,16 @@ static pilot_t *seat_pilot(const board_config_t *config)
 
 static void lay_wires(void)
 {
-    static const uint32_t bases[BOARD_WIRES] = {SCIA_BASE, SCIB_BASE, SCIC_BASE};
-
     for (int i = 0; i < BOARD_WIRES; i++) {
-        board.wires[i].base = bases[i];
-        serial_init(&board.wires[i].far_end, 1.0, to_firmware, (void *)(uintptr_t)bases[i]);
-        chip_sci_connect(bases[i], from_firmware, &board.wires[i]);
+        board.wires[i].base = wire_bases[i];
+        serial_init(&board.wires[i].far_end, 1.0, to_firmware, (void *)(uintptr_t)i);
+        chip_sci_connect(wire_bases[i], from_firmware, &board.wires[i]);
     }
 }
 
 static void create_laser(const board_config_t *config)
 {
-    const line_fault_ends_t ends = {to_firmware, (void *)(uintptr_t)SCIA_BASE, restart_laser, trouble_laser, NULL};
+    const line_fault_ends_t ends = {to_firmware, (void *)(uintptr_t)BOARD_LASER, restart_laser, trouble_laser, NULL};
 
     board.laser_faults = line_fault_create(config->laser_faults, config->laser_fault_count, config->seed, &ends);
     board.laser = urg04lx_create(&config->laser, scene_scan, &board.scene, line_fault_octet, board.laser_faults);
@@ -195,8 +203,8 @@ void board_power_on(const board_config_t *config, board_terminal_t terminal, voi
     board.quadrotor = quadrotor_create(&config->quadrotor, &config->terrain, config->seed);
     scene_init(&board.scene, &config->scene, board.quadrotor, config->seed);
     create_laser(config);
-    board.imu = razor9dof_create(&config->imu, motion, NULL, config->seed, to_firmware, (void *)(uintptr_t)SCIB_BASE);
-    board.xbee = xbee_create(to_firmware, (void *)(uintptr_t)SCIC_BASE, to_terminal, NULL);
+    board.imu = razor9dof_create(&config->imu, motion, NULL, config->seed, to_firmware, (void *)(uintptr_t)BOARD_IMU);
+    board.xbee = xbee_create(to_firmware, (void *)(uintptr_t)BOARD_RADIO, to_terminal, NULL);
     rc_mux_init(&board.mux, autopilot_pulse, NULL);
     board.pilot = seat_pilot(config);
     chip_drive_pin(SELECTOR_PIN, true);
@@ -260,9 +268,14 @@ double board_rate(board_wire_t wire)
     return chip_sci_rate(board.wires[wire].base);
 }
 
-void board_probe(const board_probes_t *wanted)
+void board_octet(board_wire_t wire, unsigned octet, double bit_ns)
 {
-    probes = wanted != NULL ? *wanted : (board_probes_t){.pulse = NULL};
+    deliver(wire, octet, bit_ns);
+}
+
+void board_probe(board_probe_t which, const board_probes_t *wanted)
+{
+    probes[which] = wanted != NULL ? *wanted : (board_probes_t){.pulse = NULL};
 }
 
 quadrotor_t *board_quadrotor(void)
@@ -284,6 +297,11 @@ void board_select(bool firmware)
 {
     rc_mux_select(&board.mux, firmware);
     chip_drive_pin(SELECTOR_PIN, firmware);
+    for (int i = 0; i < BOARD_PROBES; i++) {
+        if (probes[i].selector != NULL) {
+            probes[i].selector(firmware);
+        }
+    }
 }
 
 void board_stick(sim_time_t high_ns)

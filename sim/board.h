@@ -51,13 +51,19 @@ void board_receive(board_wire_t wire, const void *octets, size_t count);
 /* Bits per second that the firmware has set for its UART, 0 while it is closed. */
 double board_rate(board_wire_t wire);
 
-/* Probes: an octet for the scanner's UART has come, at its stop bit; a throttle pulse has ended. NULL: none. They stay
- * through board_power_on() and _off(). */
+/* One octet straight onto the firmware's receive pin, its stop bit ending now. For a recording that is played again. */
+void board_octet(board_wire_t wire, unsigned octet, double bit_ns);
+
+/* Probes: an octet for one of the firmware's UARTs has come, at its stop bit; the selector pin has got a level; a throttle
+ * pulse has ended. NULL: none. They stay through board_power_on() and _off(). */
 typedef struct {
-    void (*laser_octet)(unsigned octet, double bit_ns);
+    void (*octet)(board_wire_t wire, unsigned octet, double bit_ns);
+    void (*selector)(bool firmware);
     void (*pulse)(sim_time_t high_ns);
 } board_probes_t;
-void board_probe(const board_probes_t *probes);
+/* Two at most: the timing's and the recording's. */
+typedef enum { BOARD_PROBE_TIMING, BOARD_PROBE_TAPE, BOARD_PROBES } board_probe_t;
+void board_probe(board_probe_t which, const board_probes_t *probes);
 
 /* The pilot's switch: whose throttle the multiplexer lets through, and the level on the firmware's selector pin. After
  * power-on it is the firmware's. */

@@ -11,6 +11,7 @@
 #include "sim/host/pace.h"
 #include "sim/scenarios/plant.h"
 #include "sim/scenarios/wires.h"
+#include "sim/tape.h"
 
 #define START_LIMIT (60 * SIM_S)
 #define STEP (10 * SIM_MS)
@@ -31,6 +32,7 @@ static struct {
     char answer[1024];      /* to it */
     sim_time_t answered;    /* its latest line; 0: none */
     line_fault_spec_t outage;
+    bool recording, first_row_recorded;
 } flight;
 
 /* Both texts stand until the next call. */
@@ -250,7 +252,12 @@ static void write_column(FILE *csv, bool there, double value)
     }
 }
 
-static void write_row(FILE *csv, double t_s, const quadrotor_state_t *truth)
+/* What only the world knows. */
+typedef struct {
+    double height_m, altitude_m, terrain_m;
+} truth_t;
+
+static void write_row(FILE *csv, double t_s, const truth_t *truth)
 {
     fprintf(csv, "%.2f", t_s);
     write_column(csv, watch_altitude->scan_valid, (double)watch_altitude->altitude.height_mm * 1e-3);
@@ -261,6 +268,25 @@ static void write_row(FILE *csv, double t_s, const quadrotor_state_t *truth)
     write_column(csv, watch_imu->ready, (double)watch_imu->median.pitch_rad);
     fprintf(csv, ",%s,%u,%.4f,%.4f,%.4f,%.2f\n", flight_state_name(watch_flight->state), (unsigned)watch_flight->flags,
             truth->height_m, truth->altitude_m, truth->terrain_m, board_pulse_us());
+}
+
+static void record_number(const char *key, sim_time_t value)
+{
+    char text[24];
+
+    snprintf(text, sizeof text, "%lld", (long long)value);
+    tape_key(key, text);
+}
+
+/* The first row tells when the log begins, and what its time is counted from. */
+static void record_row(const truth_t *truth)
+{
+    if (!flight.first_row_recorded) {
+        flight.first_row_recorded = true;
+        record_number("origin_ns", flight.origin);
+        record_number("first_row_ns", timeline_now());
+    }
+    tape_truth(truth->height_m, truth->altitude_m, truth->terrain_m);
 }
 
 static void sample(FILE *csv)
@@ -274,8 +300,13 @@ static void sample(FILE *csv)
             (metrics_sample_t){t_s, state->height_m, state->speed_mps, (double)watch_flight->thrust_n,
                                phase == FLIGHT_LOWERING || phase == FLIGHT_DESCENDING};
     }
+    const truth_t truth = {state->height_m, state->altitude_m, state->terrain_m};
+
+    if (flight.recording) {
+        record_row(&truth);
+    }
     if (csv != NULL) {
-        write_row(csv, t_s, state);
+        write_row(csv, t_s, &truth);
     }
 }
 
@@ -300,9 +331,27 @@ static void configure(const scenario_t *scenario, const flight_options_t *option
     board->quadrotor.bench_height_m = options->height_m;
 }
 
-static void power_on(const flight_options_t *options)
+/* Everything that a reader needs to know how the recording came about. */
+static void record_origin(const scenario_t *scenario, const flight_options_t *options)
+{
+    char text[80];
+
+    tape_record(options->record);
+    tape_key("scenario", scenario->name);
+    record_number("seed", (sim_time_t)options->seed);
+    for (int i = 0; i < options->override_count; i++) {
+        snprintf(text, sizeof text, "%s=%s", options->overrides[i].name, options->overrides[i].value);
+        tape_key("set", text);
+    }
+}
+
+static void power_on(const scenario_t *scenario, const flight_options_t *options)
 {
     board_power_on(&flight.plant.board, terminal, NULL);
+    flight.recording = options->record != NULL;
+    if (flight.recording) {
+        record_origin(scenario, options);
+    }
     if (options->realtime) {
         pace_begin();
         wires_connect(hear, NULL);
@@ -312,6 +361,9 @@ static void power_on(const flight_options_t *options)
 
 static void power_off(const flight_options_t *options)
 {
+    if (flight.recording) {
+        tape_stop();
+    }
     board_power_off();
     if (options->realtime) {
         kernel_set_pacer(NULL);
@@ -463,7 +515,7 @@ bool flight_run(const scenario_t *scenario, const flight_options_t *options, fli
     if (flight.plant.outage_s > 0.0 && !scenario->bench && !options->realtime) {
         prepare_outage(options);
     }
-    power_on(options);
+    power_on(scenario, options);
     if (options->csv != NULL) {
         write_titles(options->csv);
     }
@@ -471,4 +523,47 @@ bool flight_run(const scenario_t *scenario, const flight_options_t *options, fli
     conclude(result);
     power_off(options);
     return true;
+}
+
+/* Again ---------------------------------------------------------------------------------------------------------- */
+
+static sim_time_t number_of(const tape_t *tape, const char *key)
+{
+    const char *text = tape_value(tape, key, 0);
+
+    return text == NULL ? -1 : (sim_time_t)strtoll(text, NULL, 10);
+}
+
+static void replay_rows(const tape_t *tape, sim_time_t first, FILE *csv, size_t *rows)
+{
+    double row[3];
+
+    for (*rows = 0; tape_truth_row(tape, *rows, row) && kernel_run_until(first + (sim_time_t)*rows * STEP); (*rows)++) {
+        const truth_t truth = {row[0], row[1], row[2]};
+
+        write_row(csv, (double)(timeline_now() - flight.origin) * 1e-9, &truth);
+    }
+}
+
+const char *flight_replay(const tape_t *tape, FILE *csv, FILE *telemetry, flight_replay_t *result)
+{
+    const sim_time_t first = number_of(tape, "first_row_ns");
+    board_config_t config = board_config(1);
+
+    memset(&flight, 0, sizeof flight);
+    memset(result, 0, sizeof *result);
+    if (first < 0) {
+        return "the recording ends before its first row";
+    }
+    flight.origin = number_of(tape, "origin_ns");
+    flight.telemetry = telemetry;
+    tape_restore_flash(tape);
+    board_power_on(&config, NULL, NULL);
+    tape_play(tape, hear, NULL);
+    write_titles(csv);
+    replay_rows(tape, first, csv, &result->rows);
+    result->halt = kernel_halt_reason();
+    result->end_s = (double)timeline_now() * 1e-9;
+    board_power_off();
+    return NULL;
 }

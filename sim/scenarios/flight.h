@@ -9,6 +9,7 @@
 #include "sim/board.h"
 #include "sim/scenarios/metrics.h"
 #include "sim/scenarios/scenarios.h"
+#include "sim/tape.h"
 
 #define FLIGHT_OVERRIDES_MAX 64
 
@@ -21,6 +22,7 @@ typedef struct {
 typedef struct {
     unsigned long seed;
     FILE *csv;                  /* NULL: no log */
+    FILE *record;               /* everything at the firmware's pins, sim/tape.h; NULL: no recording */
     flight_override_t overrides[FLIGHT_OVERRIDES_MAX];
     int override_count;
     bool realtime;              /* paced by the wall clock; of a flight then: no commands of its own */
@@ -44,5 +46,15 @@ const char *flight_override(flight_options_t *options, const char *assignment);
 /* False: the flight could not begin; *error says which device could not be opened, and why. */
 bool flight_run(const scenario_t *scenario, const flight_options_t *options, flight_result_t *result,
                 const char **error);
+
+typedef struct {
+    size_t rows;
+    double end_s;               /* since power-on */
+    const char *halt;           /* why the firmware stopped, or NULL */
+} flight_replay_t;
+
+/* The firmware again, fed with a recording: its log to csv, the lines that it sends by radio to telemetry (NULL: nowhere).
+ * The columns that only the world knows come from the recording. NULL when it could begin, else why not. */
+const char *flight_replay(const tape_t *tape, FILE *csv, FILE *telemetry, flight_replay_t *result);
 
 #endif

@@ -24,8 +24,11 @@ static void observe(void *unused, sim_time_t when, kernel_event_t event, const k
     }
 }
 
-static void laser_octet(unsigned octet, double bit_ns)
+static void octet_arrived(board_wire_t wire, unsigned octet, double bit_ns)
 {
+    if (wire != BOARD_LASER) {
+        return;
+    }
     latency_octet(&instruments.latency, octet);
     if (instruments.tracing) {
         trace_laser_octet(&instruments.trace, octet, bit_ns);
@@ -48,13 +51,13 @@ void instruments_connect(const timing_limits_t *limits, int limit_count, FILE *t
         trace_open(&instruments.trace, trace);
     }
     kernel_observe(observe, NULL);
-    board_probe(&(board_probes_t){laser_octet, pulse});
+    board_probe(BOARD_PROBE_TIMING, &(board_probes_t){.octet = octet_arrived, .pulse = pulse});
 }
 
 void instruments_disconnect(void)
 {
     kernel_observe(NULL, NULL);
-    board_probe(NULL);
+    board_probe(BOARD_PROBE_TIMING, NULL);
     timing_conclude(&instruments.timing);
     if (instruments.tracing) {
         trace_close(&instruments.trace);

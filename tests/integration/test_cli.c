@@ -216,6 +216,35 @@ void test_what_is_out_of_range_is_told_with_its_limits(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "LAW=X: no such choice; one of PD, PID, PIDT, EST"), output);
 }
 
+void test_a_replay_gives_the_log_of_every_scenario_octet_for_octet(void)
+{
+    static char flown[2000000], again[2000000];
+
+    for (int i = 0; i < scenario_count; i++) {
+        char words[160];
+
+        snprintf(words, sizeof words, "fly %s --seed 3 --csv flown.csv --record recording >metrics.txt", scenarios[i].name);
+        TEST_ASSERT_LESS_THAN_INT_MESSAGE(2, run(words), output);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, run("replay recording --csv again.csv"), output);
+        const size_t count = child_read_file("flown.csv", flown, sizeof flown);
+        TEST_ASSERT_GREATER_THAN_size_t_MESSAGE(100000, count, scenarios[i].name);
+        TEST_ASSERT_EQUAL_size_t_MESSAGE(count, child_read_file("again.csv", again, sizeof again), scenarios[i].name);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, memcmp(flown, again, count), scenarios[i].name);
+    }
+}
+
+void test_a_replay_with_another_law_says_that_nothing_answers_to_it(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, run("fly est-60cm-ramp --record recording"));
+    TEST_ASSERT_EQUAL_INT(0, run("replay recording --set LAW=PID --csv again.csv"));
+    TEST_ASSERT_EQUAL_STRING("replayed est-60cm-ramp, seed 1: 2601 rows; open loop with LAW=PID\n", output);
+    TEST_ASSERT_EQUAL_INT(2, run("replay recording --set plant.tau=1"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "no vehicle flies in a replay"), output);
+    TEST_ASSERT_EQUAL_INT(2, run("replay no-such-recording"));
+    TEST_ASSERT_EQUAL_INT(2, run("replay again.csv"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "line 1: not a recording of plomada"), output);
+}
+
 static double cpu_s(void)
 {
     struct rusage used;

@@ -3,10 +3,14 @@
 #ifndef TOOLS_PLOMADA_COMMANDS_H
 #define TOOLS_PLOMADA_COMMANDS_H
 
+/* In the directory of `fly --record`. */
+#define RECORDING_NAME "flight.plomada"
+
 int command_fly(int argc, char **argv);
 int command_laser(int argc, char **argv);
 int command_list(int argc, char **argv);
 int command_params(int argc, char **argv);
+int command_replay(int argc, char **argv);
 int command_rta(int argc, char **argv);
 int command_scip(int argc, char **argv);
 

@@ -1,8 +1,11 @@
+#include <errno.h>
 #include <getopt.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "commands.h"
 #include "measure.h"
@@ -23,6 +26,8 @@ static const char usage[] =
     "  --json FILE         metrics. - as FILE of --csv or --json is stdout; the table then goes to stderr\n"
     "  --storage FILE      the chip's flash: what #SAVE has stored there in one run is in force in the next. Without it the\n"
     "                      storage is blank at power-on. The file is made when there is none\n"
+    "  --record DIR        everything at the firmware's pins, in DIR/flight.plomada: `plomada replay DIR` gives the same run\n"
+    "                      again. DIR is made when there is none\n"
     "  --set NAME=VALUE    a telecommand parameter (see `plomada params`) or a plant figure; may be repeated\n"
     "  --timing            observed response times, blocking, inversions and latency next to the bounds of the analysis\n"
     "                      (see `plomada rta plomada`); beyond a bound or a deadline the flight is not met\n"
@@ -43,12 +48,13 @@ static const char usage[] =
     "2 usage, or a file that cannot be read or written.\n\n"
     "Plant figures (as `plomada list --plant`): name, unit, value unless set, meaning\n";
 
-enum { OPT_SEED = 1, OPT_CSV, OPT_JSON, OPT_STORAGE, OPT_SET, OPT_TIMING, OPT_TRACE, OPT_COST_SCALE, OPT_REALTIME,
+enum { OPT_SEED = 1, OPT_CSV, OPT_JSON, OPT_STORAGE, OPT_RECORD, OPT_SET, OPT_TIMING, OPT_TRACE, OPT_COST_SCALE, OPT_REALTIME,
        OPT_LASER, OPT_IMU, OPT_XBEE, OPT_DURATION, OPT_HEIGHT, OPT_HELP };
 
 static const struct option long_options[] = {
     {"seed", required_argument, NULL, OPT_SEED},         {"csv", required_argument, NULL, OPT_CSV},
     {"json", required_argument, NULL, OPT_JSON},         {"storage", required_argument, NULL, OPT_STORAGE},
+    {"record", required_argument, NULL, OPT_RECORD},
     {"set", required_argument, NULL, OPT_SET},           {"timing", no_argument, NULL, OPT_TIMING},
     {"trace", required_argument, NULL, OPT_TRACE},       {"cost-scale", required_argument, NULL, OPT_COST_SCALE},
     {"realtime", no_argument, NULL, OPT_REALTIME},       {"laser", required_argument, NULL, OPT_LASER},
@@ -60,8 +66,8 @@ static const struct option long_options[] = {
 typedef struct {
     flight_options_t flight;
     const scenario_t *scenario;
-    output_t csv, json, trace;
-    const char *storage_path;
+    output_t csv, json, trace, record;
+    const char *storage_path, *record_dir;
     double cost_scale;
     bool help, height, timing;
 } request_t;
@@ -124,6 +130,7 @@ static bool read_option(request_t *request, int option, const char *argument)
     case OPT_CSV: request->csv.path = argument; return true;
     case OPT_JSON: request->json.path = argument; return true;
     case OPT_STORAGE: request->storage_path = argument; return true;
+    case OPT_RECORD: request->record_dir = argument; return true;
     case OPT_SET:
         error = flight_override(&request->flight, argument);
         return error == NULL || complain(error, argument);
@@ -316,11 +323,28 @@ static FILE *reading_matter(const request_t *request)
     return output_is_stdout(&request->csv) || output_is_stdout(&request->json) ? stderr : stdout;
 }
 
+static bool open_record(request_t *request)
+{
+    static char path[PATH_MAX];
+
+    if (request->record_dir == NULL) {
+        return true;
+    }
+    if (mkdir(request->record_dir, 0777) != 0 && errno != EEXIST) {
+        return complain(strerror(errno), request->record_dir);
+    }
+    snprintf(path, sizeof path, "%s/%s", request->record_dir, RECORDING_NAME);
+    request->record.path = path;
+    return output_open(&request->record);
+}
+
 static bool open_outputs(request_t *request)
 {
-    const bool opened = output_open(&request->csv) && output_open(&request->json) && output_open(&request->trace);
+    const bool opened = output_open(&request->csv) && output_open(&request->json) && output_open(&request->trace) &&
+                        open_record(request);
 
     request->flight.csv = request->csv.file;
+    request->flight.record = request->record.file;
     if (request->scenario->bench || (request->flight.realtime && request->flight.device[BOARD_RADIO] == NULL)) {
         request->flight.telemetry = reading_matter(request);
     }
@@ -331,6 +355,7 @@ static bool close_outputs(request_t *request)
 {
     bool closed = output_close(&request->trace);
 
+    closed = output_close(&request->record) && closed;
     closed = output_close(&request->json) && closed;
     return output_close(&request->csv) && closed;
 }

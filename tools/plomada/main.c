@@ -14,6 +14,7 @@ static const subcommand_t subcommands[] = {
     {"laser", command_laser, "serve the scanner model on a pseudo-terminal"},
     {"list", command_list, "the scenarios and what each must look like"},
     {"params", command_params, "the parameters an operator may set"},
+    {"replay", command_replay, "run the firmware again on what a flight recorded at its pins"},
     {"rta", command_rta, "response-time analysis: does every task meet its deadline?"},
     {"scip", command_scip, "scanner recordings and real scanners: decode, mirrors, record"},
 };

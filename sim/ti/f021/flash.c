@@ -96,6 +96,17 @@ const char *flash_load(const char *path)
     return NULL;
 }
 
+void flash_read_all(unsigned short cells[FLASH_SECTORS * FLASH_SECTOR_CELLS])
+{
+    memcpy(cells, flash_sectors_m_n[0], FILE_OCTETS);
+}
+
+void flash_write_all(const unsigned short cells[FLASH_SECTORS * FLASH_SECTOR_CELLS])
+{
+    memcpy(flash_sectors_m_n[0], cells, FILE_OCTETS);
+    find_programmed();
+}
+
 static bool write_cells(FILE *file)
 {
     const uint16_t *cells = flash_sectors_m_n[0];

@@ -20,6 +20,10 @@ void flash_blank(void);
 const char *flash_load(const char *path);
 const char *flash_store(const char *path);
 
+/* All cells at once, the lower sector first, as flash_load() and flash_store() see them. */
+void flash_read_all(unsigned short cells[FLASH_SECTORS * FLASH_SECTOR_CELLS]);
+void flash_write_all(const unsigned short cells[FLASH_SECTORS * FLASH_SECTOR_CELLS]);
+
 /* Power fails after so many more cells have been erased or programmed: the next one is left half done, and nothing
  * changes any more. Negative: never. Power is back with the next call of this function or of flash_blank(). */
 void flash_cut_power_after(long cells);

@@ -1,0 +1,176 @@
+/* A flight's recording through the unmodified firmware once more. */
+#include <errno.h>
+#include <getopt.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+#include "commands.h"
+#include "control/parameters.h"
+#include "output.h"
+#include "sim/scenarios/flight.h"
+
+static const char usage[] =
+    "usage: plomada replay RECORDING [OPTION]...\n\n"
+    "Gives the firmware what a flight recorded at its pins, to the nanosecond, and writes the log that it makes of that.\n"
+    "RECORDING is the DIR of `plomada fly --record DIR`, or the file in it. The log is the one of the flight itself,\n"
+    "octet for octet, as long as the firmware is the same.\n\n"
+    "  --csv FILE          the log (default: stdout)\n"
+    "  --set NAME=VALUE    a telecommand parameter in place of what was typed for it. The vehicle does not answer to what\n"
+    "                      the firmware commands then (open loop): the log shows what it would have commanded, until the\n"
+    "                      heights that it sees are no longer those that it would have flown\n"
+    "  --telemetry         the lines that the firmware sent by radio, on stderr\n\n"
+    "Exit status: 0 replayed to its end, 1 the firmware stopped, 2 usage, or a file that cannot be read or written.\n";
+
+enum { OPT_CSV = 1, OPT_SET, OPT_TELEMETRY, OPT_HELP };
+
+static const struct option long_options[] = {
+    {"csv", required_argument, NULL, OPT_CSV},
+    {"set", required_argument, NULL, OPT_SET},
+    {"telemetry", no_argument, NULL, OPT_TELEMETRY},
+    {"help", no_argument, NULL, OPT_HELP},
+    {NULL, 0, NULL, 0},
+};
+
+typedef struct {
+    const char *path;
+    output_t csv;
+    flight_options_t sets;      /* its overrides alone are used: they were checked */
+    bool telemetry, help;
+} request_t;
+
+static bool complain(const char *what, const char *subject)
+{
+    fprintf(stderr, "plomada replay: %s: %s\n", subject, what);
+    return false;
+}
+
+static bool read_set(request_t *request, const char *argument)
+{
+    const char *error = flight_override(&request->sets, argument);
+
+    if (error == NULL && strncasecmp(argument, "plant.", 6) == 0) {
+        error = "no vehicle flies in a replay";
+    }
+    return error == NULL || complain(error, argument);
+}
+
+static bool read_arguments(request_t *request, int argc, char **argv)
+{
+    int option;
+
+    optind = 1;
+    while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {
+        switch (option) {
+        case OPT_CSV: request->csv.path = optarg; break;
+        case OPT_SET:
+            if (!read_set(request, optarg)) {
+                return false;
+            }
+            break;
+        case OPT_TELEMETRY: request->telemetry = true; break;
+        case OPT_HELP: request->help = true; return true;
+        default: return false;
+        }
+    }
+    if (optind + 1 != argc) {
+        return complain("one RECORDING is needed", "replay");
+    }
+    request->path = argv[optind];
+    return true;
+}
+
+static tape_t *load(const char *given)
+{
+    char path[PATH_MAX];
+    struct stat what;
+    const char *error = NULL;
+    tape_t *tape;
+    FILE *in;
+
+    snprintf(path, sizeof path, "%s", given);
+    if (stat(given, &what) == 0 && S_ISDIR(what.st_mode)) {
+        snprintf(path, sizeof path, "%s/%s", given, RECORDING_NAME);
+    }
+    in = fopen(path, "r");
+    if (in == NULL) {
+        complain(strerror(errno), path);
+        return NULL;
+    }
+    tape = tape_read(in, &error);
+    fclose(in);
+    if (tape == NULL) {
+        complain(error, path);
+    }
+    return tape;
+}
+
+static bool retype(const request_t *request, tape_t *tape)
+{
+    for (int i = 0; i < request->sets.override_count; i++) {
+        const flight_override_t *set = &request->sets.overrides[i];
+
+        if (!tape_retype(tape, set->name, set->value)) {
+            return complain("no room for the line on the recorded radio", set->name);
+        }
+    }
+    return true;
+}
+
+static const char *value_or(const tape_t *tape, const char *key, const char *otherwise)
+{
+    const char *value = tape_value(tape, key, 0);
+
+    return value != NULL ? value : otherwise;
+}
+
+static void tell(const request_t *request, const tape_t *tape, const flight_replay_t *result)
+{
+    fprintf(stderr, "replayed %s, seed %s: %zu rows", value_or(tape, "scenario", "?"), value_or(tape, "seed", "?"),
+            result->rows);
+    for (int i = 0; i < request->sets.override_count; i++) {
+        fprintf(stderr, "%s %s=%s", i == 0 ? "; open loop with" : ",", request->sets.overrides[i].name,
+                request->sets.overrides[i].value);
+    }
+    fputc('\n', stderr);
+    if (result->halt != NULL) {
+        fprintf(stderr, "plomada replay: the firmware stopped after %.2f s: %s\n", result->end_s, result->halt);
+    }
+}
+
+static int run(request_t *request)
+{
+    flight_replay_t result;
+    const char *error;
+    tape_t *tape = load(request->path);
+
+    if (tape == NULL || !retype(request, tape) || !output_open(&request->csv)) {
+        return 2;
+    }
+    error = flight_replay(tape, request->csv.file, request->telemetry ? stderr : NULL, &result);
+    if (error != NULL) {
+        complain(error, request->path);
+        return 2;
+    }
+    tell(request, tape, &result);
+    tape_free(tape);
+    return !output_close(&request->csv) ? 2 : result.halt != NULL ? 1 : 0;
+}
+
+int command_replay(int argc, char **argv)
+{
+    static request_t request;
+
+    request.csv.path = "-";
+    if (!read_arguments(&request, argc, argv)) {
+        fputs("`plomada replay --help` tells more.\n", stderr);
+        return 2;
+    }
+    if (request.help) {
+        fputs(usage, stdout);
+        return 0;
+    }
+    return run(&request);
+}
