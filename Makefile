@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot campaign tune test port size faults fuzz bench coverage firmware flash check-ti clean
+.PHONY: help build fly plot campaign tune seed-study test port size faults fuzz bench coverage firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -46,6 +46,12 @@ tune: ## Search the gains of LAW=EST on drawn vehicles; prints the commands that
 	@$(setup) build campaign
 	@$(MAKE) build
 	@$(python) tools/tune/tune.py $(LAW) $(ARGS)
+
+seed-study: ## Which autopilot did the seed fly? And its simulations of chapter 4.1; tables, CSV, picture in build/ (ARGS=--help)
+	@$(setup) build campaign
+	@$(MAKE) build
+	@$(python) tools/seed_study/chapter_4_1.py -o build/chapter-4-1.png
+	@$(python) tools/seed_study/seed_study.py $(ARGS)
 
 test: ## Every test: under ASan and UBSan, then as released
 	@$(setup) build test campaign

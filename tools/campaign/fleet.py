@@ -110,10 +110,11 @@ class Store:
 
 
 class Progress:
-    """Flights done and the time that remains, on stderr: in place on a terminal, else a line every 5 s."""
+    """Flights (or whatever is counted) done and the time that remains, on stderr: in place on a terminal, else a line every 5 s."""
 
-    def __init__(self, total, out=None):
+    def __init__(self, total, out=None, what="flights"):
         self.out = sys.stderr if out is None else out
+        self.what = what
         self.total, self.done = total, 0
         self.start = self.shown = time.monotonic()
         self.every_s = 0.2 if self.out.isatty() else 5.0
@@ -128,5 +129,5 @@ class Progress:
     def show(self, now):
         left = (now - self.start) / self.done * (self.total - self.done)
         end = "\r" if self.out.isatty() else "\n"
-        self.out.write(f"{self.done} of {self.total} flights, {left:.0f} s remain   {end}")
+        self.out.write(f"{self.done} of {self.total} {self.what}, {left:.0f} s remain   {end}")
         self.out.flush()
