@@ -288,9 +288,24 @@ const urg04lx_t *board_laser(void)
     return board.laser;
 }
 
-const line_fault_t *board_laser_faults(void)
+line_fault_t *board_laser_faults(void)
 {
     return board.laser_faults;
+}
+
+double board_seen_m(void)
+{
+    return scene_height_m(&board.scene);
+}
+
+bool board_selected(void)
+{
+    return board.mux.firmware_selected;
+}
+
+void board_radio_reach(bool in_reach)
+{
+    xbee_reach(board.xbee, in_reach);
 }
 
 void board_select(bool firmware)

@@ -71,9 +71,15 @@ void board_select(bool firmware);
 /* A pulse of the receiver's throttle channel; reaches the autopilot while the pilot has the throttle. */
 void board_stick(sim_time_t high_ns);
 
+bool board_selected(void);  /* the firmware has the throttle */
+
+/* The radio pair in or out of each other's reach: what is on air out of it is lost. */
+void board_radio_reach(bool in_reach);
+
 quadrotor_t *board_quadrotor(void);
 const urg04lx_t *board_laser(void);
-const line_fault_t *board_laser_faults(void);
+line_fault_t *board_laser_faults(void);
+double board_seen_m(void);      /* true height above what the scanner's beam sees */
 double board_pulse_us(void);    /* latest throttle pulse, 0 before the first */
 
 #endif

@@ -40,6 +40,7 @@ struct fault {
     entry_t *entries;
     int entry_count;
     noise_t content;
+    unsigned long seed;
     uint64_t position;
     unsigned strikes[LINE_FAULT_KIND_COUNT];
     sim_time_t line_free;       /* end of the latest stop bit on the wire */
@@ -285,23 +286,38 @@ uint64_t line_fault_octets(const line_fault_t *fault)
 
 /* ---- life ---- */
 
+static void append(line_fault_t *fault, const line_fault_spec_t *spec, unsigned long seed)
+{
+    char name[32];
+
+    fault->entries = grown(fault->entries, ((size_t)fault->entry_count + 1) * sizeof fault->entries[0]);
+    fault->entries[fault->entry_count].spec = *spec;
+    snprintf(name, sizeof name, "fault %d", fault->entry_count);
+    noise_init(&fault->entries[fault->entry_count].chance, seed, name);
+    fault->entry_count++;
+}
+
 line_fault_t *line_fault_create(const line_fault_spec_t *specs, int count, unsigned long seed, const line_fault_ends_t *ends)
 {
     line_fault_t *fault = grown(NULL, sizeof *fault);
-    char name[32];
 
     memset(fault, 0, sizeof *fault);
     fault->ends = *ends;
-    fault->entry_count = count;
-    fault->entries = grown(NULL, ((size_t)count + 1) * sizeof fault->entries[0]);
+    fault->seed = seed;
     fault->line_free = -SIM_S;
     noise_init(&fault->content, seed, "fault content");
     for (int i = 0; i < count; i++) {
-        fault->entries[i].spec = specs[i];
-        snprintf(name, sizeof name, "fault %d", i);
-        noise_init(&fault->entries[i].chance, seed, name);
+        append(fault, &specs[i], seed);
     }
     return fault;
+}
+
+void line_fault_add(line_fault_t *fault, const line_fault_spec_t *spec)
+{
+    line_fault_spec_t next = *spec;
+
+    next.position = fault->position;
+    append(fault, &next, fault->seed);
 }
 
 void line_fault_destroy(line_fault_t *fault)

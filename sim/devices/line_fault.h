@@ -51,6 +51,8 @@ typedef struct fault line_fault_t;
 /* Copies the specifications. */
 line_fault_t *line_fault_create(const line_fault_spec_t *specs, int count, unsigned long seed, const line_fault_ends_t *ends);
 void line_fault_destroy(line_fault_t *fault);
+/* Strikes the next octet, whatever its position; a kind with a probability strikes from now on. */
+void line_fault_add(line_fault_t *fault, const line_fault_spec_t *spec);
 
 /* serial_sink_t shape; context is a line_fault_t: an octet of the device at its stop bit. */
 void line_fault_octet(void *fault, unsigned octet, double bit_ns);

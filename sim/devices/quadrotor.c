@@ -49,7 +49,7 @@ const quadrotor_config_t quadrotor_default = {
     .tug_rate_per_s = 0.0, .tug_mps2 = -1.5,
     .airframe = 0.0,
     .rotors = ROTORS_DEFAULT,
-    .lag2_s = 0.0, .ground_effect = 1.0, .sag_limit = 0.1,
+    .lag2_s = 0.0, .ground_effect = 1.0,
     .gust_mps2 = 0.0, .gust = {10.0, 1.0}, .tumble_radps = 0.0, .tumble_start_s = 10.0,
     .floor = FLOOR_DEFAULT,
     .anchored = false, .bench_height_m = 0.0};
@@ -259,7 +259,7 @@ static double ground_effect(const quadrotor_t *q)
 
 static double hover_n(const quadrotor_t *q, double t_s)
 {
-    return q->config.hover_thrust_n * (1.0 + fmin(q->config.sag_per_s * fmax(t_s, 0.0), q->config.sag_limit));
+    return q->config.hover_thrust_n * (1.0 + q->config.sag_per_s * fmax(t_s, 0.0));
 }
 
 static double lift_mps2(const quadrotor_t *q, double t_s)

@@ -45,7 +45,6 @@ typedef struct {
     rotors_config_t rotors;
     double lag2_s;              /* 0: of the autopilot, before the motors */
     double ground_effect;       /* 1, times that of Cheeseman and Bennett */
-    double sag_limit;           /* 0.1: the sag grows no further, as with a supply on a cable */
     double gust_mps2;           /* 0 */
     span_t gust;                /* from 10 s, for 1 s */
     double tumble_radps;        /* 0: roll rate that the autopilot does not stop before the vehicle lies on its back */

@@ -91,10 +91,19 @@ static int blocked_steps(const scene_t *scene, const scene_mirror_t *mirror, int
                ? first - mirror->first_step + (int)lround(c->sight_blocked * (last - first + 1)) : 0;
 }
 
+static double edge_m(const scene_t *scene, double t_s)
+{
+    return t_s >= scene->config.edge_start_s ? scene->config.edge_m : 0.0;
+}
+
+double scene_height_m(const scene_t *scene)
+{
+    return quadrotor_state(scene->quadrotor)->height_m - edge_m(scene, quadrotor_scenario_s(scene->quadrotor));
+}
+
 static double ground_mm(const scene_t *scene, const scene_mirror_t *mirror, const quadrotor_state_t *state, double t_s)
 {
-    const scene_config_t *c = &scene->config;
-    const double higher_mm = t_s >= c->edge_start_s ? 1000.0 * c->edge_m : 0.0;
+    const double higher_mm = 1000.0 * edge_m(scene, t_s);
 
     return slant_mm(mirror, state) - higher_mm / (cos(state->roll_rad) * cos(state->pitch_rad));
 }

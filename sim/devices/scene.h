@@ -38,6 +38,9 @@ typedef struct {
 
 void scene_init(scene_t *scene, const scene_config_t *config, quadrotor_t *quadrotor, unsigned long seed);
 
+/* True height of the gear above what the beam sees. */
+double scene_height_m(const scene_t *scene);
+
 /* urg_world_t shape; context is a scene_t. */
 void scene_scan(void *context, int first_step, int last_step, int *distance_mm);
 

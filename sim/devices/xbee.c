@@ -27,6 +27,7 @@ typedef struct {
     timeline_id_t landing;
     serial_t uart;
     size_t overflowed, mismatched;
+    bool out_of_reach;
 } leg_t;
 
 struct xbee {
@@ -57,7 +58,9 @@ static void fly_when_ripe(leg_t *leg)
 static void landed(void *context)
 {
     leg_t *leg = context;
-    serial_send(&leg->uart, leg->packet, leg->on_air);
+    if (!leg->out_of_reach) {
+        serial_send(&leg->uart, leg->packet, leg->on_air);
+    }
     leg->on_air = 0;
     leg->landing = 0;
     fly_when_ripe(leg);
@@ -114,6 +117,11 @@ void xbee_destroy(xbee_t *xbee)
     ground(&xbee->up);
     ground(&xbee->down);
     free(xbee);
+}
+
+void xbee_reach(xbee_t *xbee, bool in_reach)
+{
+    xbee->up.out_of_reach = xbee->down.out_of_reach = !in_reach;
 }
 
 void xbee_from_firmware(xbee_t *xbee, unsigned octet, double bit_ns)

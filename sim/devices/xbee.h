@@ -6,6 +6,8 @@
 
 #include <stddef.h>
 
+#include <stdbool.h>
+
 #include "sim/devices/serial.h"
 
 typedef struct xbee xbee_t;
@@ -13,6 +15,8 @@ typedef struct xbee xbee_t;
 /* to_firmware: UART of the module on the vehicle. to_operator: octets for the terminal (bit_ns of the ground module). */
 xbee_t *xbee_create(serial_sink_t to_firmware, void *firmware_context, serial_sink_t to_operator, void *operator_context);
 void xbee_destroy(xbee_t *xbee);
+/* Out of reach, packets on air are lost in both directions. In reach at first. */
+void xbee_reach(xbee_t *xbee, bool in_reach);
 void xbee_from_firmware(xbee_t *xbee, unsigned octet, double bit_ns);
 /* The operator's terminal writes; octets enter the ground module at 9600. */
 void xbee_from_operator(xbee_t *xbee, const void *octets, size_t count);

@@ -15,6 +15,9 @@
 
 #define START_LIMIT (60 * SIM_S)
 #define STEP (10 * SIM_MS)
+#define UPRIGHT 0.70710678  /* cosine of the tilt from which on the firmware may cut */
+#define PINGS_PER_LINK 3.0  /* of the link's time-out */
+#define PINGS_START_S 0.5   /* past the settings */
 #define LINE_SPACING_S 0.05
 #define BENCH_SETTINGS_S 0.5
 #define ANSWER_PATIENCE (3 * SIM_S)
@@ -31,8 +34,9 @@ static struct {
     bool asked;             /* #LASER has been typed */
     char answer[1024];      /* to it */
     sim_time_t answered;    /* its latest line; 0: none */
-    line_fault_spec_t outage;
     bool recording, first_row_recorded;
+    unsigned pings;
+    double ping_every_s;
 } flight;
 
 /* Both texts stand until the next call. */
@@ -218,6 +222,55 @@ static void landing(void *context)
     quadrotor_stop_counting_contacts(board_quadrotor());
 }
 
+static void lose_radio(void *context)
+{
+    (void)context;
+    board_radio_reach(false);
+}
+
+/* An operator's terminal that keeps an armed link alive. */
+static void ping(void *context)
+{
+    char number[16];
+
+    (void)context;
+    snprintf(number, sizeof number, "%u", ++flight.pings % 1000U);
+    type_at(timeline_now(), "PING", number);
+    timeline_after((sim_time_t)llround(flight.ping_every_s * 1e9), ping, NULL);
+}
+
+static void plan_radio(const flight_options_t *options)
+{
+    const char *link_s = overridden(options, "LINK");
+
+    if (flight.plant.radio_lost_start_s < SPAN_FOR_GOOD_S) {
+        timeline_at(at(fmax(flight.plant.radio_lost_start_s, 0.0)), lose_radio, NULL);
+    }
+    if (link_s != NULL && strtod(link_s, NULL) > 0.0) {
+        flight.ping_every_s = strtod(link_s, NULL) / PINGS_PER_LINK;
+        timeline_at(at(PINGS_START_S), ping, NULL);
+    }
+}
+
+static void strike_scanner(void *fault)
+{
+    line_fault_add(board_laser_faults(), fault);
+}
+
+static void plan_faults(const plant_t *plant)
+{
+    static line_fault_spec_t restart = {.kind = LINE_FAULT_RESTART};
+    static line_fault_spec_t outage;
+
+    if (plant->outage_s > 0.0) {
+        outage = (line_fault_spec_t){.kind = LINE_FAULT_MUTE, .argument = (unsigned)lround(plant->outage_s * 1e3)};
+        timeline_at(at(fmax(plant->outage_start_s, 0.0)), strike_scanner, &outage);
+    }
+    if (plant->restart_start_s < SPAN_FOR_GOOD_S) {
+        timeline_at(at(fmax(plant->restart_start_s, 0.0)), strike_scanner, &restart);
+    }
+}
+
 static void plan(const scenario_t *scenario, const flight_options_t *options)
 {
     char reference[32];
@@ -228,8 +281,10 @@ static void plan(const scenario_t *scenario, const flight_options_t *options)
     for (const later_line_t *line = scenario->later; line->name != NULL; line++) {
         type_complete_at(line->t_s, line->name, line->value);
     }
-    type_complete_at(scenario->land_s, "SETR", "0");
-    timeline_at(at(scenario->land_s), landing, NULL);
+    type_complete_at(flight.record.land_s, "SETR", "0");
+    timeline_at(at(flight.record.land_s), landing, NULL);
+    plan_radio(options);
+    plan_faults(&flight.plant);
 }
 
 /* The flight ----------------------------------------------------------------------------------------------------- */
@@ -289,17 +344,29 @@ static void record_row(const truth_t *truth)
     tape_truth(truth->height_m, truth->altitude_m, truth->terrain_m);
 }
 
+static metrics_sample_t look(double t_s, const quadrotor_state_t *truth)
+{
+    const flight_state_t phase = watch_flight->state;
+
+    return (metrics_sample_t){
+        .t_s = t_s, .height_m = truth->height_m, .speed_mps = truth->speed_mps,
+        .thrust_n = (double)watch_flight->thrust_n,
+        .taken_over = phase == FLIGHT_LOWERING || phase == FLIGHT_DESCENDING,
+        .coming_down = phase == FLIGHT_DESCENDING || phase == FLIGHT_LANDING,
+        .on_ground = truth->on_ground,
+        .may_cut = board_selected() && cos(truth->roll_rad) * cos(truth->pitch_rad) > UPRIGHT,
+        .flagged = watch_flight->flags != 0U,
+        .estimate_m = (double)watch_flight->estimate_mm * 1e-3,
+        .seen_m = board_seen_m()};
+}
+
 static void sample(FILE *csv)
 {
     const quadrotor_state_t *state = quadrotor_state(board_quadrotor());
     double t_s = (double)(timeline_now() - flight.origin) * 1e-9;
-    const flight_state_t phase = watch_flight->state;
+    const metrics_sample_t seen = look(t_s, state);
 
-    if (flight.record.count < METRICS_MAX_SAMPLES) {
-        flight.record.samples[flight.record.count++] =
-            (metrics_sample_t){t_s, state->height_m, state->speed_mps, (double)watch_flight->thrust_n,
-                               phase == FLIGHT_LOWERING || phase == FLIGHT_DESCENDING};
-    }
+    metrics_add(&flight.record, &seen);
     const truth_t truth = {state->height_m, state->altitude_m, state->terrain_m};
 
     if (flight.recording) {
@@ -318,6 +385,9 @@ static void configure(const scenario_t *scenario, const flight_options_t *option
     board->terrain = scenario->platform ? terrain_platform : terrain_flat;
     board->quadrotor.tug_rate_per_s = scenario->tug_rate_per_s;
     board->quadrotor.climb_rate_mps_per_n = scenario->climb_rate_mps_per_n;
+    if (flight.record.land_s > scenario->land_s) { /* the battery lasts as long */
+        board->quadrotor.sag_per_s *= scenario->land_s / flight.record.land_s;
+    }
     for (int i = 0; i < options->override_count; i++) {
         if (plant_known(options->overrides[i].name)) {
             plant_set(&flight.plant, options->overrides[i].name, strtod(options->overrides[i].value, NULL));
@@ -327,6 +397,8 @@ static void configure(const scenario_t *scenario, const flight_options_t *option
     if (options->costs != NULL) {
         board->costs = options->costs;
     }
+    board->laser_faults = options->faults;
+    board->laser_fault_count = options->fault_count;
     board->quadrotor.anchored = scenario->bench;
     board->quadrotor.bench_height_m = options->height_m;
 }
@@ -389,28 +461,16 @@ static bool start_up(const flight_options_t *options)
     return kernel_run_until(flight.origin);
 }
 
-/* Which octet of the scanner begins the outage is found by a start without it: up to there both are the same, because
- * the scanner's octets are as many whatever the vehicle does. */
-static void prepare_outage(const flight_options_t *options)
-{
-    board_power_on(&flight.plant.board, NULL, NULL);
-    if (start_up(options)) {
-        kernel_run_until(at(flight.plant.outage_start_s));
-    }
-    flight.outage = (line_fault_spec_t){.kind = LINE_FAULT_MUTE,
-                                        .position = line_fault_octets(board_laser_faults()),
-                                        .argument = (unsigned)lround(flight.plant.outage_s * 1e3)};
-    flight.plant.board.laser_faults = &flight.outage;
-    flight.plant.board.laser_fault_count = 1;
-    board_power_off();
-}
-
 static void fly(const scenario_t *scenario, const flight_options_t *options)
 {
-    long steps = lround(scenario->end_s * 100.0);
+    const double rest_s = options->patience_s > 0.0 ? options->patience_s : scenario->end_s - scenario->land_s;
+    long steps = lround((flight.record.land_s + rest_s) * 100.0);
 
     for (long i = 0; i <= steps && kernel_run_until(flight.origin + (sim_time_t)i * STEP); i++) {
         sample(options->csv);
+        if (options->patience_s > 0.0 && metrics_over(&flight.record)) {
+            return;
+        }
     }
 }
 
@@ -504,17 +564,13 @@ bool flight_run(const scenario_t *scenario, const flight_options_t *options, fli
     memset(&flight, 0, sizeof flight);
     memset(result, 0, sizeof *result);
     flight.telemetry = options->telemetry;
-    flight.record.reference_m = reference != NULL ? strtod(reference, NULL) : scenario->reference_m;
-    flight.record.terrain = scenario->platform;
-    flight.record.land_s = scenario->land_s;
+    metrics_begin(&flight.record, reference != NULL ? strtod(reference, NULL) : scenario->reference_m, scenario->platform,
+                  !options->realtime && options->duration_s > 0.0 ? options->duration_s : scenario->land_s);
     *error = open_devices(options);
     if (*error != NULL) {
         return false;
     }
     configure(scenario, options);
-    if (flight.plant.outage_s > 0.0 && !scenario->bench && !options->realtime) {
-        prepare_outage(options);
-    }
     power_on(scenario, options);
     if (options->csv != NULL) {
         write_titles(options->csv);

@@ -12,6 +12,7 @@
 #include "sim/tape.h"
 
 #define FLIGHT_OVERRIDES_MAX 64
+#define FLIGHT_FAULTS_MAX 16
 
 /* A --set of the command line: a telecommand parameter with its text, or a plant figure. */
 typedef struct {
@@ -27,7 +28,12 @@ typedef struct {
     int override_count;
     bool realtime;              /* paced by the wall clock; of a flight then: no commands of its own */
     const char *device[BOARD_WIRES];    /* realtime: real devices as for wires_open(); NULL: the model */
-    double duration_s;          /* realtime and bench; 0 = realtime: until interrupted, bench: the scenario's end */
+    double duration_s;          /* realtime and bench: how long; else scenario time of the landing command. 0 = realtime:
+                                 * until interrupted, else: the scenario's */
+    double patience_s;          /* above 0: ends when the vehicle is down with its motors off, at the latest so long after
+                                 * the landing command */
+    line_fault_spec_t faults[FLIGHT_FAULTS_MAX];    /* of the scanner's line */
+    int fault_count;
     const kernel_costs_t *costs;    /* NULL: Annex IV's */
     double height_m;            /* bench: of the landing gear above the floor */
     FILE *telemetry;            /* lines that the operator's terminal receives; NULL: none. Bench: the answer to #LASER

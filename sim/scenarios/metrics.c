@@ -9,36 +9,38 @@
 #define MAX_ERROR_START_S 6.0
 #define AIRBORNE_M 0.03
 #define TOUCHED_M 0.003
+#define ALOFT_M 0.3
+#define MOTORS_TURN_N 1.2       /* a tenth of the throttle: under it the autopilot stops its motors or lets them idle */
+#define OFF_S 0.2
+#define WRONG_M 0.3
+#define OVER_S 1.0
 
 const char *const metric_names[METRIC_COUNT] = {
     "rise_time_s", "overshoot_mm", "hover_rms_mm", "hover_mean_error_mm", "terrain_rms_mm",
     "recovery_s", "undershoot_mm", "ground_contacts", "thrust_std_n", "scans",
     "scans_rejected", "commands_ok", "commands_err", "max_error_mm", "highest_mm",
-    "touch_speed_mps", "takeovers", "cuts",
+    "touch_speed_mps", "takeovers", "cuts", "off_aloft", "down_s",
+    "stopped_s", "deceived_s", "flagged_s",
 };
 
-typedef struct {
-    double n, sum, squares;
-} moments_t;
-
-static void add(moments_t *moments, double x)
+static void add(metrics_moments_t *moments, double x)
 {
     moments->n += 1.0;
     moments->sum += x;
     moments->squares += x * x;
 }
 
-static double mean(const moments_t *m)
+static double mean(const metrics_moments_t *m)
 {
     return m->n > 0.0 ? m->sum / m->n : NAN;
 }
 
-static double rms(const moments_t *m)
+static double rms(const metrics_moments_t *m)
 {
     return m->n > 0.0 ? sqrt(m->squares / m->n) : NAN;
 }
 
-static double deviation(const moments_t *m)
+static double deviation(const metrics_moments_t *m)
 {
     return m->n > 0.0 ? sqrt(fmax(0.0, m->squares / m->n - mean(m) * mean(m))) : NAN;
 }
@@ -51,74 +53,59 @@ static bool hovering(const metrics_record_t *record, double t_s)
     return t_s >= 6.0 && t_s <= record->land_s;
 }
 
-static double first_time_at(const metrics_record_t *record, double height_m)
+static double error_mm(const metrics_record_t *record, const metrics_sample_t *s)
 {
-    for (size_t i = 0; i < record->count; i++) {
-        const metrics_sample_t *s = &record->samples[i];
-
-        if (s->t_s >= METRICS_REFERENCE_S && s->t_s <= record->land_s && s->height_m >= height_m) {
-            return s->t_s;
-        }
-    }
-    return NAN;
+    return (s->height_m - record->reference_m) * 1000.0;
 }
 
-static void judge(const metrics_record_t *record, metrics_t *metrics)
+static void judge_course(metrics_record_t *record, const metrics_sample_t *s)
 {
-    if (isnan(first_time_at(record, 0.9 * record->reference_m))) {
-        metrics->failure = "never reached 90 % of the reference";
-    }
-    for (size_t i = 0; i < record->count && metrics->failure == NULL; i++) {
-        const metrics_sample_t *s = &record->samples[i];
-        double error_m = s->height_m - record->reference_m;
+    const double error_m = s->height_m - record->reference_m;
 
-        if (error_m > 1.0) {
-            metrics->failure = "rose above the reference + 1 m";
-        } else if (s->t_s > SETTLED_S && s->t_s < record->land_s && fabs(error_m) > 0.55) {
-            metrics->failure = "more than 0.55 m off after 5 s";
-        }
+    if (!record->off_course && error_m > 1.0) {
+        record->too_high = true;
     }
-    metrics->failed = metrics->failure != NULL;
+    if (!record->too_high && s->t_s > SETTLED_S && s->t_s < record->land_s && fabs(error_m) > 0.55) {
+        record->off_course = true;
+    }
 }
 
-static void find_extremes(const metrics_record_t *record, double *value)
+static void time_rise(metrics_record_t *record, const metrics_sample_t *s)
 {
-    double largest = 0.0, highest = -INFINITY;
-
-    for (size_t i = 0; i < record->count; i++) {
-        const metrics_sample_t *s = &record->samples[i];
-        double error_mm = (s->height_m - record->reference_m) * 1000.0;
-
-        if (s->t_s >= METRICS_REFERENCE_S) {
-            highest = fmax(highest, error_mm);
-        }
-        if (s->t_s >= MAX_ERROR_START_S && s->t_s <= record->land_s) {
-            largest = fmax(largest, fabs(error_mm));
-        }
+    if (s->t_s < METRICS_REFERENCE_S || s->t_s > record->land_s) {
+        return;
     }
-    value[METRIC_HIGHEST_MM] = isfinite(highest) ? highest : NAN;
-    value[METRIC_MAX_ERROR_MM] = largest;
+    if (isnan(record->tenth_s) && s->height_m >= 0.1 * record->reference_m) {
+        record->tenth_s = s->t_s;
+    }
+    if (isnan(record->ninety_s) && s->height_m >= 0.9 * record->reference_m) {
+        record->ninety_s = s->t_s;
+    }
 }
 
-static double hardest_touch(const metrics_record_t *record)
+static void find_extremes(metrics_record_t *record, const metrics_sample_t *s)
 {
-    double hardest = NAN, fall = 0.0;
-    bool airborne = false;
+    const double off_mm = error_mm(record, s);
 
-    for (size_t i = 0; i < record->count; i++) {
-        const metrics_sample_t *s = &record->samples[i];
-
-        if (s->height_m > AIRBORNE_M) {
-            airborne = true;
-            fall = 0.0;
-        }
-        fall = fmax(fall, -s->speed_mps);
-        if (airborne && s->height_m <= TOUCHED_M) {
-            airborne = false;
-            hardest = fmax(hardest, fall);
-        }
+    if (s->t_s >= METRICS_REFERENCE_S) {
+        record->highest_mm = fmax(record->highest_mm, off_mm);
     }
-    return hardest;
+    if (s->t_s >= MAX_ERROR_START_S && s->t_s <= record->land_s) {
+        record->largest_mm = fmax(record->largest_mm, fabs(off_mm));
+    }
+}
+
+static void watch_touch(metrics_record_t *record, const metrics_sample_t *s)
+{
+    if (s->height_m > AIRBORNE_M) {
+        record->airborne = true;
+        record->fall_mps = 0.0;
+    }
+    record->fall_mps = fmax(record->fall_mps, -s->speed_mps);
+    if (record->airborne && s->height_m <= TOUCHED_M) {
+        record->airborne = false;
+        record->hardest_mps = fmax(record->hardest_mps, record->fall_mps);
+    }
 }
 
 static bool cut(const metrics_sample_t *s)
@@ -126,57 +113,150 @@ static bool cut(const metrics_sample_t *s)
     return s->height_m > AIRBORNE_M && s->thrust_n <= 0.0;
 }
 
-static void count_incidents(const metrics_record_t *record, double *value)
+static void count_incidents(metrics_record_t *record, const metrics_sample_t *s)
 {
-    double takeovers = 0.0, cuts = 0.0;
+    const metrics_sample_t *before = &record->before;
 
-    for (size_t i = 1; i < record->count; i++) {
-        const metrics_sample_t *before = &record->samples[i - 1], *s = &record->samples[i];
-
-        takeovers += s->taken_over && !before->taken_over && s->t_s < record->land_s;
-        cuts += cut(s) && !cut(before);
+    if (record->count > 0) {
+        record->takeovers += s->taken_over && !before->taken_over && s->t_s < record->land_s;
+        record->cuts += cut(s) && !cut(before);
     }
-    value[METRIC_TAKEOVERS] = takeovers;
-    value[METRIC_CUTS] = cuts;
+}
+
+static void watch_motors(metrics_record_t *record, const metrics_sample_t *s)
+{
+    if (s->height_m <= ALOFT_M || s->thrust_n > MOTORS_TURN_N || !s->may_cut) {
+        record->off_since_s = NAN;
+    } else if (isnan(record->off_since_s)) {
+        record->off_since_s = s->t_s;
+    } else if (s->t_s >= record->off_since_s + OFF_S) {
+        record->off_aloft++;
+        record->off_since_s = INFINITY; /* counted; until they turn again */
+    }
+}
+
+static void watch_descent(metrics_record_t *record, const metrics_sample_t *s)
+{
+    if (!s->on_ground || s->height_m > AIRBORNE_M) {
+        record->aloft_s = s->t_s;
+    }
+    if (s->thrust_n > MOTORS_TURN_N) {
+        record->running_s = s->t_s;
+    }
+    if (s->t_s >= record->land_s) {
+        record->order_s = fmin(record->order_s, record->land_s);
+    } else if (s->coming_down) {
+        record->order_s = fmin(record->order_s, s->t_s);
+    } else if (s->thrust_n > MOTORS_TURN_N) {
+        record->order_s = INFINITY; /* it flies again */
+    }
+}
+
+static void watch_estimate(metrics_record_t *record, const metrics_sample_t *s)
+{
+    const bool aloft = s->height_m > AIRBORNE_M && s->t_s >= METRICS_REFERENCE_S;
+
+    if (aloft && s->flagged && s->t_s < record->land_s && record->count > 0) {
+        record->flagged_s += s->t_s - record->before.t_s;
+    }
+    if (!aloft || s->flagged || !(fabs(s->estimate_m - s->seen_m) > WRONG_M)) {
+        record->wrong_since_s = NAN;
+    } else if (isnan(record->wrong_since_s)) {
+        record->wrong_since_s = s->t_s;
+    } else {
+        record->deceived_s = fmax(record->deceived_s, s->t_s - record->wrong_since_s);
+    }
+}
+
+static void gather(metrics_record_t *record, const metrics_sample_t *s)
+{
+    const double t = s->t_s, off_mm = error_mm(record, s);
+
+    if (hovering(record, t)) {
+        add(&record->hover, off_mm);
+        add(&record->thrust, s->thrust_n);
+    }
+    if (t >= METRICS_REFERENCE_S && t <= OVERSHOOT_END_S) {
+        record->overshoot_mm = fmax(record->overshoot_mm, off_mm);
+    }
+    if (t >= 7.2 && t <= METRICS_RECOVERY_END_S) {
+        add(&record->ramp, off_mm);
+    }
+    if (t >= METRICS_EDGE_S && t <= METRICS_RECOVERY_END_S) {
+        record->undershoot_mm = fmax(record->undershoot_mm, -off_mm);
+        record->last_off_s = fabs(off_mm) > WITHIN_MM ? t : record->last_off_s;
+    }
+}
+
+void metrics_begin(metrics_record_t *record, double reference_m, bool terrain, double land_s)
+{
+    *record = (metrics_record_t){
+        .reference_m = reference_m, .terrain = terrain, .land_s = land_s,
+        .tenth_s = NAN, .ninety_s = NAN, .last_off_s = METRICS_EDGE_S, .highest_mm = -INFINITY, .hardest_mps = NAN,
+        .off_since_s = NAN, .wrong_since_s = NAN, .order_s = INFINITY, .aloft_s = -INFINITY, .running_s = -INFINITY};
+}
+
+void metrics_add(metrics_record_t *record, const metrics_sample_t *sample)
+{
+    gather(record, sample);
+    judge_course(record, sample);
+    time_rise(record, sample);
+    find_extremes(record, sample);
+    watch_touch(record, sample);
+    count_incidents(record, sample);
+    watch_motors(record, sample);
+    watch_descent(record, sample);
+    watch_estimate(record, sample);
+    record->before = *sample;
+    record->count++;
+}
+
+bool metrics_over(const metrics_record_t *record)
+{
+    const double since_s = fmax(fmax(record->aloft_s, record->running_s), record->order_s);
+
+    return record->count > 0 && record->before.t_s > since_s + OVER_S;
+}
+
+static void judge(const metrics_record_t *record, metrics_t *metrics)
+{
+    metrics->failure = isnan(record->ninety_s) ? "never reached 90 % of the reference"
+                       : record->too_high      ? "rose above the reference + 1 m"
+                       : record->off_course    ? "more than 0.55 m off after 5 s"
+                                               : NULL;
+    metrics->failed = metrics->failure != NULL;
+}
+
+/* From the order to come down until `last_s` was over; NAN when it was not over by the end. */
+static double after_order(const metrics_record_t *record, double last_s)
+{
+    const bool over = isfinite(record->order_s) && last_s < record->before.t_s;
+
+    return over ? fmax(last_s - record->order_s, 0.0) : NAN;
 }
 
 void metrics_compute(const metrics_record_t *record, metrics_t *metrics)
 {
-    moments_t hover = {0}, thrust = {0}, terrain = {0};
-    double overshoot = 0.0, undershoot = 0.0, last_off_s = METRICS_EDGE_S;
     double *value = metrics->value;
 
     memset(metrics, 0, sizeof *metrics);
-    for (size_t i = 0; i < record->count; i++) {
-        double t = record->samples[i].t_s;
-        double error_mm = (record->samples[i].height_m - record->reference_m) * 1000.0;
-
-        if (hovering(record, t)) {
-            add(&hover, error_mm);
-            add(&thrust, record->samples[i].thrust_n);
-        }
-        if (t >= METRICS_REFERENCE_S && t <= OVERSHOOT_END_S) {
-            overshoot = fmax(overshoot, error_mm);
-        }
-        if (t >= 7.2 && t <= METRICS_RECOVERY_END_S) {
-            add(&terrain, error_mm);
-        }
-        if (t >= METRICS_EDGE_S && t <= METRICS_RECOVERY_END_S) {
-            undershoot = fmax(undershoot, -error_mm);
-            last_off_s = fabs(error_mm) > WITHIN_MM ? t : last_off_s;
-        }
-    }
-    value[METRIC_RISE_TIME_S] =
-        first_time_at(record, 0.9 * record->reference_m) - first_time_at(record, 0.1 * record->reference_m);
-    value[METRIC_OVERSHOOT_MM] = overshoot;
-    value[METRIC_HOVER_RMS_MM] = rms(&hover);
-    value[METRIC_HOVER_MEAN_ERROR_MM] = mean(&hover);
-    value[METRIC_THRUST_STD_N] = deviation(&thrust);
-    value[METRIC_TERRAIN_RMS_MM] = record->terrain ? rms(&terrain) : NAN;
-    value[METRIC_RECOVERY_S] = record->terrain ? last_off_s - METRICS_EDGE_S : NAN;
-    value[METRIC_UNDERSHOOT_MM] = record->terrain ? undershoot : NAN;
-    value[METRIC_TOUCH_SPEED_MPS] = hardest_touch(record);
-    find_extremes(record, value);
-    count_incidents(record, value);
+    value[METRIC_RISE_TIME_S] = record->ninety_s - record->tenth_s;
+    value[METRIC_OVERSHOOT_MM] = record->overshoot_mm;
+    value[METRIC_HOVER_RMS_MM] = rms(&record->hover);
+    value[METRIC_HOVER_MEAN_ERROR_MM] = mean(&record->hover);
+    value[METRIC_THRUST_STD_N] = deviation(&record->thrust);
+    value[METRIC_TERRAIN_RMS_MM] = record->terrain ? rms(&record->ramp) : NAN;
+    value[METRIC_RECOVERY_S] = record->terrain ? record->last_off_s - METRICS_EDGE_S : NAN;
+    value[METRIC_UNDERSHOOT_MM] = record->terrain ? record->undershoot_mm : NAN;
+    value[METRIC_TOUCH_SPEED_MPS] = record->hardest_mps;
+    value[METRIC_HIGHEST_MM] = isfinite(record->highest_mm) ? record->highest_mm : NAN;
+    value[METRIC_MAX_ERROR_MM] = record->largest_mm;
+    value[METRIC_TAKEOVERS] = record->takeovers;
+    value[METRIC_CUTS] = record->cuts;
+    value[METRIC_OFF_ALOFT] = record->off_aloft;
+    value[METRIC_DOWN_S] = after_order(record, record->aloft_s);
+    value[METRIC_STOPPED_S] = after_order(record, fmax(record->aloft_s, record->running_s));
+    value[METRIC_DECEIVED_S] = record->deceived_s;
+    value[METRIC_FLAGGED_S] = record->flagged_s;
     judge(record, metrics);
 }

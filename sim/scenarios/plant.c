@@ -35,7 +35,6 @@ static const figure_t figures[] = {
     {"tilt_drag", "-", 0, 100, QUAD(rotors.tilt_drag), 1, "that much more by the square of the tilt's sine (airframe 1)"},
     {"hover_thrust", "N", 0.1, 100, QUAD(hover_thrust_n), 1, "hover thrust per motor TH0"},
     {"sag", "1/s", -1, 1, QUAD(sag_per_s), 1, "battery sag: growth of the hover thrust's command"},
-    {"sag_limit", "-", 0, 10, QUAD(sag_limit), 1, "and as a share of it where that growth ends"},
     {"turbulence", "m/s2", 0, 100, QUAD(turbulence_mps2), 1, "rms"},
     {"turbulence_tau", "s", 1e-3, 1000, QUAD(turbulence_tau_s), 1, "correlation time"},
     {"gust", "m/s2", -100, 100, QUAD(gust_mps2), 1, "one gust, upwards"},
@@ -78,6 +77,8 @@ static const figure_t figures[] = {
     {"clock_ppm", "ppm", -10000, 10000, AT(clock_ppm), 1, "the scanner's clock against true time"},
     {"outage_start", "s", -LARGE, LARGE, AT(outage_start_s), 1, "scenario time from which the scanner's line is mute"},
     {"outage", "s", 0, 600, AT(outage_s), 1, "for how long, from the first octet lost; 0: not at all"},
+    {"scanner_restart_start", "s", -LARGE, LARGE, AT(restart_start_s), 1, "scenario time at which the scanner loses its power for a moment"},
+    {"radio_lost_start", "s", -LARGE, LARGE, AT(radio_lost_start_s), 1, "scenario time from which the radio is out of reach"},
     {"imu_noise", "rad", 0, 1, IMU(angle_noise_rad), 1, "of roll and pitch, rms"},
     {"imu_spikes", "-", 0, 1, IMU(spike_probability), 1, "probability of a spike per angle"},
     {"attitude_burst_deg", "deg", -180, 180, IMU(attitude_burst_rad), DEG, "added to the roll that the IMU tells"},
@@ -127,6 +128,8 @@ void plant_init(plant_t *plant, unsigned long seed)
     *plant = (plant_t){.board = board_config(seed)};
     plant->ray_instant_s = (double)plant->board.laser.ray_instant * 1e-9;
     plant->outage_start_s = 10.0;
+    plant->restart_start_s = SPAN_FOR_GOOD_S;
+    plant->radio_lost_start_s = SPAN_FOR_GOOD_S;
 }
 
 bool plant_known(const char *name)
@@ -170,7 +173,7 @@ void plant_print(FILE *out)
         char value[32];
 
         snprintf(value, sizeof value, "%.4g", *field_of(&plant, figure) / figure->scale);
-        fprintf(out, "  plant.%-21s %-6s %8s  %s\n", figure->name, figure->unit,
+        fprintf(out, "  plant.%-22s %-6s %8s  %s\n", figure->name, figure->unit,
                 strcmp(value, "1e+09") == 0 ? "never" : value, figure->meaning);
     }
 }

@@ -13,6 +13,8 @@ typedef struct {
     double ray_instant_s;
     double clock_ppm;                   /* of the scanner */
     double outage_start_s, outage_s;
+    double restart_start_s;             /* of the scanner */
+    double radio_lost_start_s;
 } plant_t;
 
 void plant_init(plant_t *plant, unsigned long seed);

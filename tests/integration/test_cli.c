@@ -35,6 +35,10 @@ void test_usage_errors_exit_2_and_help_exits_0(void)
     TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --set plant.rays_lost=1.2"));
     TEST_ASSERT_NOT_NULL(strstr(output, "out of range, see `plomada list --plant`"));
     TEST_ASSERT_EQUAL_INT(2, run("list --world"));
+    TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --duration 0.5"));
+    TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --until-down 0"));
+    TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --fault melt@7"));
+    TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --laser pty --until-down 9"));
     TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --seed x"));
     TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --bogus"));
     TEST_ASSERT_EQUAL_INT(2, run("fly pid-40cm --realtime"));
@@ -67,10 +71,41 @@ void test_the_plant_figures_are_listed_with_their_values_as_in_the_help_of_fly(v
     figures = strstr(output, "  plant.airframe");
     TEST_ASSERT_NOT_NULL(figures);
     snprintf(listed, sizeof listed, "%s", figures);
-    TEST_ASSERT_NOT_NULL(strstr(listed, "  plant.hover_thrust          N           7.4  hover thrust per motor TH0\n"));
-    TEST_ASSERT_NOT_NULL(strstr(listed, "  plant.scan_frozen_start     s         never"));
+    TEST_ASSERT_NOT_NULL(strstr(listed, "  plant.hover_thrust           N           7.4  hover thrust per motor TH0\n"));
+    TEST_ASSERT_NOT_NULL(strstr(listed, "  plant.scan_frozen_start      s         never"));
     TEST_ASSERT_EQUAL_INT(0, run("fly --help"));
     TEST_ASSERT_NOT_NULL(strstr(output, listed));
+}
+
+static double column(const char *line, int number)
+{
+    while (number-- > 0) {
+        line = strchr(line, ',') + 1;
+    }
+    return strtod(line, NULL);
+}
+
+/* The landing command moves with --duration, and --until-down ends the log one second after the motors have stopped. */
+void test_a_flight_can_be_made_shorter_and_ends_when_it_is_down(void)
+{
+    static char csv[2000000];
+    const char *last;
+
+    TEST_ASSERT_EQUAL_INT(0, run("fly est-60cm-ramp --set plant.platform=0 --duration 8 --until-down 60 --csv short.csv") & 2);
+    child_read_file("short.csv", csv, sizeof csv);
+    csv[strlen(csv) - 1] = '\0';
+    last = strrchr(csv, '\n') + 1;
+    TEST_ASSERT_DOUBLE_WITHIN(1.5, 8.0 + 4.5 + 1.0, column(last, 0));
+    TEST_ASSERT_DOUBLE_WITHIN(0.001, 0.0, column(last, 10));
+    TEST_ASSERT_NOT_NULL(strstr(last, "GROUND"));
+}
+
+void test_faults_of_the_scanners_line_strike_in_flight(void)
+{
+    run("fly est-60cm-ramp");
+    TEST_ASSERT_NOT_NULL(strstr(output, "  scans_rejected       0\n"));
+    run("fly est-60cm-ramp --fault drop@15000 --fault flip@17000");
+    TEST_ASSERT_NOT_NULL(strstr(output, "  scans_rejected       2\n"));
 }
 
 void test_the_same_seed_gives_the_same_csv_and_another_seed_another(void)

@@ -39,8 +39,13 @@ static const char usage[] =
     "                      ground end is a pseudo-terminal whose name is the first line of the output. Without --xbee\n"
     "                      the telemetry goes to stdout\n"
     "  --realtime          paced by the wall clock; needs one of the three above, but for bench\n"
-    "  --duration S        with --realtime or bench: ends after S seconds (default: Ctrl-C ends it; bench in virtual\n"
-    "                      time: 30)\n"
+    "  --duration S        the landing command comes after S seconds instead of at the scenario's time, and the battery\n"
+    "                      lasts longer in proportion. With --realtime or bench: ends after S seconds (default: Ctrl-C ends it; bench in virtual time: 30)\n"
+    "  --until-down S      ends as soon as the vehicle is down and its motors are off for a second, at the latest S seconds\n"
+    "                      after the landing command\n"
+    "  --fault SPEC        on the scanner's line, as in `plomada laser --help`; octets count from power-on, some 1000 a\n"
+    "                      second once it scans; may be repeated. With --set LINK=S above 0 the operator keeps sending\n"
+    "                      #PING\n"
     "  --height M          bench: the landing gear is at M metres above the floor, 0..5 (default 0)\n\n"
     "bench has no flight: the vehicle stands still, the telemetry goes to stdout, and the last line is the answer to\n"
     "#LASER. It needs no commands; those of --set are typed soon after power-up.\n\n"
@@ -48,8 +53,8 @@ static const char usage[] =
     "2 usage, or a file that cannot be read or written.\n\n"
     "Plant figures (as `plomada list --plant`): name, unit, value unless set, meaning\n";
 
-enum { OPT_SEED = 1, OPT_CSV, OPT_JSON, OPT_STORAGE, OPT_RECORD, OPT_SET, OPT_TIMING, OPT_TRACE, OPT_COST_SCALE, OPT_REALTIME,
-       OPT_LASER, OPT_IMU, OPT_XBEE, OPT_DURATION, OPT_HEIGHT, OPT_HELP };
+enum { OPT_SEED = 1, OPT_CSV, OPT_JSON, OPT_STORAGE, OPT_RECORD, OPT_SET, OPT_TIMING, OPT_TRACE, OPT_COST_SCALE,
+       OPT_REALTIME, OPT_LASER, OPT_IMU, OPT_XBEE, OPT_DURATION, OPT_UNTIL_DOWN, OPT_FAULT, OPT_HEIGHT, OPT_HELP };
 
 static const struct option long_options[] = {
     {"seed", required_argument, NULL, OPT_SEED},         {"csv", required_argument, NULL, OPT_CSV},
@@ -60,6 +65,7 @@ static const struct option long_options[] = {
     {"realtime", no_argument, NULL, OPT_REALTIME},       {"laser", required_argument, NULL, OPT_LASER},
     {"imu", required_argument, NULL, OPT_IMU},           {"xbee", required_argument, NULL, OPT_XBEE},
     {"duration", required_argument, NULL, OPT_DURATION}, {"height", required_argument, NULL, OPT_HEIGHT},
+    {"until-down", required_argument, NULL, OPT_UNTIL_DOWN}, {"fault", required_argument, NULL, OPT_FAULT},
     {"help", no_argument, NULL, OPT_HELP},               {NULL, 0, NULL, 0},
 };
 
@@ -86,13 +92,24 @@ static bool read_seed(request_t *request, const char *text)
     return (*text >= '0' && *text <= '9' && *end == '\0') || complain("not a seed (0, 1, 2 ...)", text);
 }
 
-static bool read_duration(request_t *request, const char *text)
+static bool read_seconds(double *seconds, const char *text)
 {
     char *end;
 
-    request->flight.duration_s = strtod(text, &end);
-    return (*text != '\0' && *end == '\0' && request->flight.duration_s > 0.0 && isfinite(request->flight.duration_s)) ||
+    *seconds = strtod(text, &end);
+    return (*text != '\0' && *end == '\0' && *seconds > 0.0 && isfinite(*seconds)) ||
            complain("not a number of seconds", text);
+}
+
+static bool read_fault(flight_options_t *flight, const char *text)
+{
+    const char *error;
+
+    if (flight->fault_count == FLIGHT_FAULTS_MAX) {
+        return complain("too many", "--fault");
+    }
+    error = line_fault_parse(&flight->faults[flight->fault_count++], text);
+    return error == NULL || complain(error, text);
 }
 
 static bool read_height(request_t *request, const char *text)
@@ -141,7 +158,9 @@ static bool read_option(request_t *request, int option, const char *argument)
     case OPT_LASER: return use_device(request, BOARD_LASER, argument);
     case OPT_IMU: return use_device(request, BOARD_IMU, argument);
     case OPT_XBEE: return use_device(request, BOARD_RADIO, argument);
-    case OPT_DURATION: return read_duration(request, argument);
+    case OPT_DURATION: return read_seconds(&request->flight.duration_s, argument);
+    case OPT_UNTIL_DOWN: return read_seconds(&request->flight.patience_s, argument);
+    case OPT_FAULT: return read_fault(&request->flight, argument);
     case OPT_HEIGHT: return read_height(request, argument);
     case OPT_HELP: request->help = true; return true;
     default: return false;
@@ -172,7 +191,11 @@ static bool check_arguments(const request_t *request)
     if (options->realtime && !anything_real(options)) {
         return complain("needs one of --laser, --imu, --xbee", "--realtime");
     }
-    return options->realtime || options->duration_s == 0.0 || complain("goes with --realtime or bench", "--duration");
+    if (options->realtime && options->patience_s > 0.0) {
+        return complain("goes with virtual time", "--until-down");
+    }
+    return options->realtime || options->duration_s == 0.0 || options->duration_s > METRICS_REFERENCE_S ||
+           complain("not more than 1 s", "--duration");
 }
 
 static bool no_such_scenario(const char *name)
@@ -224,7 +247,8 @@ static int decimals(metric_t metric)
     case METRIC_COMMANDS_OK:
     case METRIC_COMMANDS_ERR:
     case METRIC_TAKEOVERS:
-    case METRIC_CUTS: return 0;
+    case METRIC_CUTS:
+    case METRIC_OFF_ALOFT: return 0;
     default: return 3;
     }
 }

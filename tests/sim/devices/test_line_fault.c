@@ -317,6 +317,28 @@ void test_a_device_that_cannot_restart_is_left_alone(void)
     TEST_ASSERT_EQUAL_size_t(4, wire.count);
 }
 
+void test_a_fault_that_is_added_strikes_the_next_octet_alone(void)
+{
+    const char *const none[] = {NULL};
+    line_fault_spec_t drop;
+
+    TEST_ASSERT_NULL(line_fault_parse(&drop, "drop@0"));
+    create(none, 1);
+    for (unsigned k = 0; k < 30; k++) {
+        run_until((sim_time_t)(k + 1) * OCTET);
+        if (k == 10 || k == 20) {
+            line_fault_add(fault, &drop);
+        }
+        line_fault_octet(fault, k, BIT_NS);
+    }
+    TEST_ASSERT_EQUAL_size_t(28, wire.count);
+    TEST_ASSERT_EQUAL_UINT(9, wire.octet[9]);
+    TEST_ASSERT_EQUAL_UINT(11, wire.octet[10]);
+    TEST_ASSERT_EQUAL_UINT(19, wire.octet[18]);
+    TEST_ASSERT_EQUAL_UINT(21, wire.octet[19]);
+    TEST_ASSERT_EQUAL_UINT(2, line_fault_strikes(fault, LINE_FAULT_DROP));
+}
+
 void test_probabilities_strike_as_often_as_they_say(void)
 {
     static const double probabilities[] = {0.001, 0.01, 0.2, 0.9};

@@ -1093,16 +1093,3 @@ void test_a_bar_lifts_a_low_vehicle_and_does_not_throw_it(void)
     TEST_ASSERT_TRUE(highest_m < 0.12);
     TEST_ASSERT_TRUE(now().on_ground);
 }
-
-void test_the_sag_ends_at_its_limit(void)
-{
-    calm.sag_limit = 0.05;
-    calm.sag_per_s = 0.001;
-    calm.ground_effect = 0.0;
-    start(&calm, &terrain_flat, 1);
-    quadrotor_set_origin(quad, 0);
-    fly(50.0, 8.0);
-    const double climb_mps = now().speed_mps;
-    fly(200.0, 8.0);
-    NEAR(0.005, climb_mps, now().speed_mps);
-}

@@ -171,9 +171,11 @@ void test_behind_an_edge_the_beam_sees_a_lower_ground(void)
     at(1.99);
     scan();
     TEST_ASSERT_EQUAL_INT(RAYS, rays_at(805));
+    NEAR(1e-9, 0.6, scene_height_m(&scene));
     at(2.0);
     scan();
     TEST_ASSERT_EQUAL_INT(RAYS, rays_at(1305));
+    NEAR(1e-9, 1.1, scene_height_m(&scene));
 }
 
 void test_lost_and_blocked_rays_combine(void)

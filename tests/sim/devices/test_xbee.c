@@ -268,6 +268,22 @@ void test_a_full_buffer_loses_what_comes_after(void)
     expect_pattern(&terminal, 20);
 }
 
+void test_out_of_reach_packets_are_lost_both_ways_and_in_reach_they_come_again(void)
+{
+    xbee_reach(xbee, false);
+    operator_writes(20);
+    for (unsigned k = 0; k < 20; k++) {
+        xbee_from_firmware(xbee, k, BIT_NS);
+    }
+    run_out();
+    TEST_ASSERT_EQUAL_size_t(0, firmware.count);
+    TEST_ASSERT_EQUAL_size_t(0, terminal.count);
+    xbee_reach(xbee, true);
+    operator_writes(20);
+    run_out();
+    expect_pattern(&firmware, 20);
+}
+
 void test_a_destroyed_pair_leaves_nothing_behind(void)
 {
     for (sim_time_t when = 0; when < 60 * SIM_MS; when += 700 * SIM_US) {

@@ -1,0 +1,251 @@
+#include "sim/scenarios/metrics.h"
+
+#include <math.h>
+
+#include "unity.h"
+
+#define NEAR(tolerance, expected, actual) TEST_ASSERT_DOUBLE_WITHIN(tolerance, expected, actual)
+#define LAND_S 20.0
+#define HERTZ 100
+
+static metrics_record_t record;
+static metrics_t found;
+static long ticks;
+static metrics_sample_t now;    /* what the next samples are */
+
+void setUp(void)
+{
+    metrics_begin(&record, 0.6, false, LAND_S);
+    ticks = 0;
+    now = (metrics_sample_t){.thrust_n = 7.4, .may_cut = true};
+    now.on_ground = true;
+}
+
+void tearDown(void) {}
+
+static double time_s(void)
+{
+    return (double)ticks / HERTZ;
+}
+
+/* Samples up to t_s, while the height goes evenly to height_m. The firmware knows it. */
+static void go(double t_s, double height_m)
+{
+    const long steps = lround(t_s * HERTZ) - ticks;
+    const double from_m = now.height_m;
+
+    now.speed_mps = (height_m - from_m) * HERTZ / (double)steps;
+    for (long i = 1; i <= steps; i++) {
+        now.t_s = time_s();
+        now.height_m = now.seen_m = from_m + (height_m - from_m) * (double)i / (double)steps;
+        now.estimate_m = now.estimate_m + now.seen_m - (i == 1 ? from_m : from_m + (height_m - from_m) * (double)(i - 1) / (double)steps);
+        now.on_ground = now.height_m <= 0.0;
+        metrics_add(&record, &now);
+        ticks++;
+    }
+    now.speed_mps = 0.0;
+}
+
+static double value(metric_t metric)
+{
+    metrics_compute(&record, &found);
+    return found.value[metric];
+}
+
+static void hover(void)
+{
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    go(LAND_S, 0.6);
+}
+
+void test_a_good_flight_is_one(void)
+{
+    hover();
+    go(23.0, 0.0);
+    now.thrust_n = 0.0;
+    go(26.0, 0.0);
+    NEAR(0.011, 0.8, value(METRIC_RISE_TIME_S));
+    NEAR(0.1, 0.0, value(METRIC_HOVER_RMS_MM));
+    NEAR(1e-6, 0.0, value(METRIC_HIGHEST_MM));
+    NEAR(1e-6, 0.2, value(METRIC_TOUCH_SPEED_MPS));
+    NEAR(0.025, 3.0, value(METRIC_DOWN_S));
+    NEAR(0.025, 3.0, value(METRIC_STOPPED_S));
+    NEAR(1e-9, 0.0, value(METRIC_OFF_ALOFT));
+    NEAR(1e-9, 0.0, value(METRIC_CUTS));
+    NEAR(1e-9, 0.0, value(METRIC_DECEIVED_S));
+    NEAR(1e-9, 0.0, value(METRIC_FLAGGED_S));
+    TEST_ASSERT_FALSE(found.failed);
+    TEST_ASSERT_TRUE(metrics_over(&record));
+}
+
+void test_motors_off_in_the_air_count_after_a_fifth_of_a_second_once_each_time(void)
+{
+    hover();
+    now.thrust_n = 0.0;
+    go(20.15, 0.6);
+    now.thrust_n = 7.0;
+    go(21.0, 0.6);
+    NEAR(1e-9, 0.0, value(METRIC_OFF_ALOFT));
+    now.thrust_n = 1.1; /* under a tenth of the throttle they stop as well */
+    go(22.0, 0.6);
+    NEAR(1e-9, 1.0, value(METRIC_OFF_ALOFT));
+    now.thrust_n = 7.0;
+    go(23.0, 0.6);
+    now.thrust_n = 0.0;
+    go(24.0, 0.6);
+    NEAR(1e-9, 2.0, value(METRIC_OFF_ALOFT));
+}
+
+void test_motors_may_stop_low_or_when_the_vehicle_is_tilted_or_the_pilots(void)
+{
+    hover();
+    now.may_cut = false;
+    now.thrust_n = 0.0;
+    go(22.0, 0.6);
+    NEAR(1e-9, 0.0, value(METRIC_OFF_ALOFT));
+    now.thrust_n = 7.0;
+    now.may_cut = true;
+    go(23.0, 0.29);
+    now.thrust_n = 0.0;
+    go(24.0, 0.29);
+    NEAR(1e-9, 0.0, value(METRIC_OFF_ALOFT));
+}
+
+void test_who_never_comes_down_is_never_down(void)
+{
+    hover();
+    go(80.0, 0.4);
+    TEST_ASSERT_TRUE(isnan(value(METRIC_DOWN_S)));
+    TEST_ASSERT_TRUE(isnan(value(METRIC_STOPPED_S)));
+    TEST_ASSERT_TRUE(isnan(value(METRIC_TOUCH_SPEED_MPS)));
+    TEST_ASSERT_FALSE(metrics_over(&record));
+}
+
+void test_on_the_ground_with_running_motors_is_down_but_not_stopped(void)
+{
+    hover();
+    go(22.0, 0.0);
+    go(30.0, 0.0);
+    NEAR(0.025, 2.0, value(METRIC_DOWN_S));
+    TEST_ASSERT_TRUE(isnan(value(METRIC_STOPPED_S)));
+    TEST_ASSERT_FALSE(metrics_over(&record));
+}
+
+void test_a_descent_of_the_supervisor_starts_the_clock_before_the_command(void)
+{
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    go(10.0, 0.6);
+    now.coming_down = true;
+    go(14.0, 0.0);
+    now.coming_down = false;
+    now.thrust_n = 0.0;
+    go(14.8, 0.0);
+    TEST_ASSERT_FALSE(metrics_over(&record));
+    go(15.2, 0.0);
+    TEST_ASSERT_TRUE(metrics_over(&record));
+    go(26.0, 0.0);
+    NEAR(0.025, 4.0, value(METRIC_DOWN_S));
+}
+
+void test_a_descent_that_was_called_off_does_not_count(void)
+{
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    go(10.0, 0.6);
+    now.coming_down = true;
+    go(11.0, 0.4);
+    now.coming_down = false;
+    go(LAND_S, 0.6);
+    go(24.0, 0.0);
+    now.thrust_n = 0.0;
+    go(26.0, 0.0);
+    NEAR(0.025, 4.0, value(METRIC_DOWN_S));
+}
+
+void test_a_wrong_height_without_a_flag_deceives(void)
+{
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    go(5.0, 0.6);
+    now.estimate_m += 0.29;
+    go(8.0, 0.6);
+    NEAR(1e-9, 0.0, value(METRIC_DECEIVED_S));
+    now.estimate_m -= 0.60;
+    go(11.0, 0.6);
+    NEAR(0.011, 2.99, value(METRIC_DECEIVED_S));
+    now.estimate_m += 0.31;
+    go(12.0, 0.6);
+    now.estimate_m += 0.5;
+    go(14.0, 0.6);
+    NEAR(0.011, 2.99, value(METRIC_DECEIVED_S));
+}
+
+void test_a_flag_is_no_deceit_and_is_counted_until_the_command(void)
+{
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    now.flagged = true;
+    now.estimate_m += 1.0;
+    go(6.0, 0.6);
+    now.flagged = false;
+    now.estimate_m -= 1.0;
+    go(LAND_S, 0.6);
+    now.flagged = true;
+    go(24.0, 0.0);
+    NEAR(1e-9, 0.0, value(METRIC_DECEIVED_S));
+    NEAR(0.011, 4.0, value(METRIC_FLAGGED_S));
+}
+
+void test_without_an_estimate_nothing_deceives(void)
+{
+    go(1.0, 0.0);
+    now.estimate_m = NAN;
+    go(2.0, 0.6);
+    go(LAND_S, 0.6);
+    NEAR(1e-9, 0.0, value(METRIC_DECEIVED_S));
+}
+
+/* The beam beyond an edge: what it sees is what is flown at. */
+void test_the_height_above_what_the_beam_sees_is_the_right_one(void)
+{
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    for (int i = 0; i < 500; i++) {
+        now.t_s = time_s();
+        now.seen_m = now.estimate_m = 1.6;
+        metrics_add(&record, &now);
+        ticks++;
+    }
+    NEAR(1e-9, 0.0, value(METRIC_DECEIVED_S));
+}
+
+void test_a_flight_fails_by_what_happens_first(void)
+{
+    go(1.0, 0.0);
+    go(5.0, 0.3);
+    go(8.0, 0.3);
+    value(METRIC_RISE_TIME_S);
+    TEST_ASSERT_EQUAL_STRING("never reached 90 % of the reference", found.failure);
+    go(9.0, 1.59);
+    value(METRIC_RISE_TIME_S);
+    TEST_ASSERT_EQUAL_STRING("more than 0.55 m off after 5 s", found.failure);
+    setUp();
+    go(1.0, 0.0);
+    go(4.0, 1.7);
+    go(8.0, 1.7);
+    value(METRIC_RISE_TIME_S);
+    TEST_ASSERT_EQUAL_STRING("rose above the reference + 1 m", found.failure);
+}
+
+/* As many as a day has. */
+void test_a_day_of_samples_is_no_matter(void)
+{
+    metrics_begin(&record, 0.6, false, 90000.0);
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    go(86400.0, 0.6);
+    TEST_ASSERT_EQUAL_size_t(8640000, record.count);
+    NEAR(1e-3, 0.0, value(METRIC_HOVER_RMS_MM));
+}
