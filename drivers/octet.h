@@ -8,11 +8,19 @@
 
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef uint_least8_t octet_t;
 
 static inline octet_t octet_of(uint16_t cell)
 {
     return (octet_t)(cell & 0xFFU);
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

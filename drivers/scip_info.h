@@ -13,6 +13,10 @@
 #include "drivers/octet.h"
 #include "drivers/scip_parser.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define SCIP_INFO_TEXT 40U  /* characters of a text, its final 0 included; the rest is cut */
 
 /* PP. Steps are numbered from 0, `ares` of them to the turn; the front is `afrt`. */
@@ -67,5 +71,9 @@ int32_t scip_limits_mdeg(const scip_limits_t *limits, uint16_t step);
 
 /* The step nearest to a direction, kept within amin..amax. */
 uint16_t scip_limits_step(const scip_limits_t *limits, int32_t mdeg);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

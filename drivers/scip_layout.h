@@ -11,6 +11,10 @@
 #include "drivers/scip_info.h"
 #include "drivers/scip_parser.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define SCIP_GROUPS_MAX 3U
 #define SCIP_CODE_LIMIT_MM 20U      /* smaller values are codes, not distances */
 #define SCIP_FAR_2_MM 4095U         /* two characters end here: far or unknown */
@@ -73,5 +77,9 @@ uint16_t scip_step_at_degrees(float degrees);
 /* When a step is sampled, microseconds after the instant of the scan's time stamp (step 0), at 600 revolutions a minute.
  * step: 0..1023. */
 uint32_t scip_step_delay_us(uint16_t step);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -20,6 +20,10 @@
 #include "drivers/octet.h"
 #include "drivers/scip_request.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum {
     SCIP_NOTHING,       /* go on feeding */
     SCIP_REPLY,         /* the awaited request's reply is complete: parser->reply. Also a refused GS, GD, MS, MD */
@@ -152,5 +156,9 @@ size_t scip_parser_feed_run(scip_parser_t *parser, const octet_t *octets, size_t
 /* Sensor time without the wrap of 24 bits: the first time at or after unwrapped_ms (wrapping at 2^32) whose low 24 bits
  * are timestamp_ms. Start with the first stamp itself; right as long as less than 4 h 39 min lie between two calls. */
 uint32_t scip_unwrap_ms(uint32_t unwrapped_ms, uint32_t timestamp_ms);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -8,6 +8,10 @@
 
 #include "drivers/octet.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* A request is at most LF + symbol + parameters + LF (MS/MD: 16 + 1); no user string is ever sent. */
 #define SCIP_REQUEST_MAX 17U
 #define SCIP_STEP_MAX 768U      /* steps are numbered 0..768 */
@@ -77,5 +81,9 @@ static inline const octet_t *scip_request_echo(const scip_request_t *request)
 {
     return &request->text[request->text_length - 1U - request->echo_length];
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

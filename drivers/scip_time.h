@@ -14,6 +14,10 @@
 
 #include "drivers/scip_info.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define SCIP_TIME_SAMPLES 10U
 
 typedef struct {
@@ -49,5 +53,9 @@ uint32_t scip_time_host_us(const scip_time_t *time, uint32_t timestamp_ms);
 
 /* When a step is sampled after the instant of the scan's time stamp (step 0), microseconds. step: 0..ares. */
 uint32_t scip_time_step_us(const scip_limits_t *limits, uint16_t step);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -578,6 +578,41 @@ const char *urg_status_name(urg_status_t status)
     return status_names[status];
 }
 
+void urg_seen_octets(urg_seen_t *seen, const octet_t *octets, size_t count)
+{
+    seen->octet_count += (uint32_t)count;
+    for (size_t i = 0U; i < count; i++) {
+        seen->strange_count += octet_of(octets[i]) > 0x7FU ? 1U : 0U;
+    }
+}
+
+void urg_seen_event(urg_seen_t *seen, const scip_parser_t *parser, scip_event_t event)
+{
+    switch (event) {
+    case SCIP_REPLY:
+        seen->reply_count++;
+        seen->reply_kind = parser->awaited.kind;
+        seen->reply = parser->reply;
+        break;
+    case SCIP_SCAN:
+        seen->scan_count++;
+        seen->scan_remaining = parser->scan->remaining;
+        break;
+    case SCIP_NOTICE:
+        seen->notice_count++;
+        seen->notice = parser->reply;
+        break;
+    case SCIP_LEGACY:
+        seen->legacy_count++;
+        break;
+    case SCIP_DAMAGED:
+        seen->damage_count++;
+        break;
+    default:
+        break;
+    }
+}
+
 bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us)
 {
     scip_request_t stream = { .scan_octets = 0U };

@@ -19,6 +19,10 @@
 #include "drivers/scip_parser.h"
 #include "drivers/scip_request.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* LASER_STATUS of the seed: guides the start-up and is shown in the telemetry. */
 typedef enum {
     URG_WAIT,     /* the sensor's own power-up time */
@@ -100,8 +104,17 @@ typedef struct {
  * SCIP's, one above fastest_rate, a range that scip_request_scan() refuses, or another kind than a stream. */
 bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us);
 
+/* The bookkeeping of a receiving side that has parser and link apart: what came from the UART, before it is fed; and each
+ * event of the parser. urg.h does both. */
+void urg_seen_octets(urg_seen_t *seen, const octet_t *octets, size_t count);
+void urg_seen_event(urg_seen_t *seen, const scip_parser_t *parser, scip_event_t event);
+
 /* `seen` is what was received up to now; its octet and framing counts too are those of this moment, whether or not
  * anything was complete since the last step. *action is written whole. */
 void urg_link_step(urg_link_t *link, const urg_seen_t *seen, uint32_t now_us, urg_action_t *action);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

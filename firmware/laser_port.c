@@ -28,8 +28,6 @@ static Semaphore_Handle laser_ready;
 
 static void scan_done(void)
 {
-    seen.scan_count++;
-    seen.scan_remaining = scans[filling].remaining;
     scan_arrival_us = bsp_time_us();
     monitor_released(MONITOR_RECEIVE_LASER, scan_arrival_us);
     filling ^= 1U;
@@ -39,27 +37,9 @@ static void scan_done(void)
 
 static void note(scip_event_t event)
 {
-    switch (event) {
-    case SCIP_REPLY:
-        seen.reply_count++;
-        seen.reply_kind = parser.awaited.kind;
-        seen.reply = parser.reply;
-        break;
-    case SCIP_SCAN:
+    urg_seen_event(&seen, &parser, event);
+    if (event == SCIP_SCAN) {
         scan_done();
-        break;
-    case SCIP_NOTICE:
-        seen.notice_count++;
-        seen.notice = parser.reply;
-        break;
-    case SCIP_LEGACY:
-        seen.legacy_count++;
-        break;
-    case SCIP_DAMAGED:
-        seen.damage_count++;
-        break;
-    default:
-        break;
     }
 }
 
@@ -80,8 +60,8 @@ static void feed(const bsp_uart_burst_t *burst)
 
     for (i = 0U; i < burst->count; i++) {
         run[i] = octet_of(burst->octets[i]);
-        seen.strange_count += (run[i] > 0x7FU) ? 1U : 0U;
     }
+    urg_seen_octets(&seen, run, burst->count);
     while (taken < burst->count) {
         scip_event_t event;
 
@@ -96,7 +76,6 @@ static uint16_t received(const bsp_uart_burst_t *burst)
     uint16_t expected;
 
     note_errors(burst);
-    seen.octet_count += burst->count;
     feed(burst);
     expected = scip_parser_expected(&parser);
     return (expected > 0U) ? expected : (uint16_t)UART_PORT_BURST;

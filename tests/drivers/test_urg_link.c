@@ -205,32 +205,6 @@ static struct {
 } asked[LOG_MAX];
 static uint32_t asked_count;
 
-static void note_event(scip_event_t event)
-{
-    switch (event) {
-    case SCIP_REPLY:
-        seen.reply_count++;
-        seen.reply_kind = parser.awaited.kind;
-        seen.reply = parser.reply;
-        break;
-    case SCIP_SCAN:
-        seen.scan_count++;
-        seen.scan_remaining = scan.remaining;
-        break;
-    case SCIP_NOTICE:
-        seen.notice_count++;
-        seen.notice = parser.reply;
-        break;
-    case SCIP_LEGACY:
-        seen.legacy_count++;
-        break;
-    case SCIP_DAMAGED:
-        seen.damage_count++;
-        break;
-    default:
-        break;
-    }
-}
 
 static void host_hears(void)
 {
@@ -247,9 +221,10 @@ static void host_hears(void)
             continue;
         }
         octet ^= sent_to_host == flip_to_host ? 4U : 0U;
-        note_event(scip_parser_feed(&parser, (octet_t)octet));
+        const octet_t heard = (octet_t)octet;
+        urg_seen_octets(&seen, &heard, 1);
+        urg_seen_event(&seen, &parser, scip_parser_feed(&parser, heard));
     }
-    seen.octet_count = parser.counters.octets;
 }
 
 static void host_sends(void)

@@ -6,11 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "drivers/scip_parser.h"
+#include "drivers/urg.h"
 #include "sim/devices/serial.h"
 #include "sim/devices/urg04lx.h"
 #include "sim/timeline.h"
-#include "drivers/urg_link.h"
 
 #define STEP (150 * SIM_MS)
 #define PATIENCE (60 * SIM_S)
@@ -34,17 +33,14 @@ static struct {
     serial_t transmitter;
     double rate;
     bool listening;
-    scip_parser_t parser;
-    scip_scan_t scan;
-    uint16_t points[POINTS];
-    urg_link_t link;
+    urg_t urg;
+    uint16_t points[2 * POINTS];
     urg_config_t config;
-    urg_seen_t seen;
     faults_t faults;
     outage_t outage;
     sim_time_t longest_gap;                     /* between two scans, since it was last set to 0 */
     unsigned to_host, to_sensor;                /* octets since the start */
-    unsigned wrong, power_cycles;
+    unsigned scans, wrong, power_cycles;
     sim_time_t started, latest_scan;
     timeline_id_t step;
 } host;
@@ -70,63 +66,43 @@ static void look(void *context, int first_step, int last_step, int *distance_mm)
 
 static void check_scan(void)
 {
-    host.seen.scan_count++;
-    host.seen.scan_remaining = host.scan.remaining;
+    scip_scan_t scan;
+
+    host.wrong += !urg_take_scan(&host.urg, &scan);
+    host.scans++;
     if (host.latest_scan != 0 && timeline_now() - host.latest_scan > host.longest_gap) {
         host.longest_gap = timeline_now() - host.latest_scan;
     }
     host.latest_scan = timeline_now();
     for (int i = 0; i < POINTS; i++) {
-        host.wrong += host.points[i] != distance_at(372 + i);
+        host.wrong += scan.distance_mm[i] != distance_at(372 + i);
     }
 }
 
-static void note(scip_event_t event)
+static void hear(octet_t octet)
 {
-    switch (event) {
-    case SCIP_REPLY:
-        host.seen.reply_count++;
-        host.seen.reply_kind = host.parser.awaited.kind;
-        host.seen.reply = host.parser.reply;
-        break;
-    case SCIP_SCAN:
+    if (urg_feed(&host.urg, &octet, 1)) {
         check_scan();
-        break;
-    case SCIP_NOTICE:
-        host.seen.notice_count++;
-        host.seen.notice = host.parser.reply;
-        break;
-    case SCIP_LEGACY:
-        host.seen.legacy_count++;
-        break;
-    case SCIP_DAMAGED:
-        host.seen.damage_count++;
-        break;
-    default:
-        break;
     }
 }
 
 static void step(void *context)
 {
-    urg_action_t action;
+    urg_output_t output;
 
     (void)context;
     host.step = timeline_after(STEP, step, NULL);
-    urg_link_step(&host.link, &host.seen, (uint32_t)(timeline_now() / SIM_US), &action);
-    host.power_cycles += action.cycle_power;
-    if (action.set_rate) {
-        scip_parser_line_broken(&host.parser);
-        host.rate = action.rate;
+    urg_step(&host.urg, (uint32_t)(timeline_now() / SIM_US));
+    if (!urg_next_to_send(&host.urg, &output)) {
+        return;
+    }
+    host.power_cycles += output.cycle_power;
+    if (output.set_rate) {
+        host.rate = output.rate;
         serial_flush(&host.transmitter);
-        serial_set_rate(&host.transmitter, action.rate);
+        serial_set_rate(&host.transmitter, output.rate);
     }
-    if (action.expect) {
-        scip_parser_expect(&host.parser, &action.request);
-    }
-    if (action.send) {
-        serial_send(&host.transmitter, action.request.text, action.request.text_length);
-    }
+    serial_send(&host.transmitter, output.octets, output.count);
 }
 
 /* Everything forgotten, as after a reset; the wire and the sensor go on. */
@@ -134,15 +110,14 @@ static void start_host(void *context)
 {
     (void)context;
     host.listening = true;
-    host.seen = (urg_seen_t){ .reply_count = 0 };
-    host.scan = (scip_scan_t){ .distance_mm = host.points, .capacity = POINTS };
+    host.scans = 0;
     host.rate = host.config.first_rate;
     host.latest_scan = 0;
     host.started = timeline_now();
     serial_set_rate(&host.transmitter, host.rate);
-    scip_parser_init(&host.parser);
-    scip_parser_scan_into(&host.parser, &host.scan);
-    (void)urg_link_init(&host.link, &host.config, (uint32_t)(timeline_now() / SIM_US));
+    if (!urg_init(&host.urg, &host.config, host.points, 2 * POINTS, (uint32_t)(timeline_now() / SIM_US))) {
+        abort();
+    }
     host.step = timeline_after(STEP, step, NULL);
 }
 
@@ -179,13 +154,9 @@ static void break_in(void)
 /* Of an octet at another rate the UART makes a framing error, or now and then some octet. */
 static void hear_noise(unsigned octet)
 {
-    scip_parser_line_broken(&host.parser);
+    urg_line_broken(&host.urg, octet % 4 == 0 ? 0 : 1);
     if (octet % 4 == 0) {
-        host.seen.octet_count++;
-        host.seen.strange_count += (octet ^ 0xA5U) > 0x7FU;
-        note(scip_parser_feed(&host.parser, (octet_t)(octet ^ 0xA5U)));
-    } else {
-        host.seen.framing_count++;
+        hear((octet_t)(octet ^ 0xA5U));
     }
 }
 
@@ -218,8 +189,7 @@ static void to_host(void *context, unsigned octet, double bit_ns)
         hear_noise(octet);
         return;
     }
-    host.seen.octet_count++;
-    note(scip_parser_feed(&host.parser, (octet_t)octet));
+    hear((octet_t)octet);
 }
 
 static void to_sensor(void *context, unsigned octet, double bit_ns)
@@ -403,7 +373,7 @@ static void start_with(faults_t faults)
 static unsigned count_octets(bool towards_sensor)
 {
     start_with((faults_t){ .lost_to_host = NO_OCTET });
-    while (host.seen.scan_count < 2) {
+    while (host.scans < 2) {
         run_until(timeline_now() + SIM_MS);
     }
     const unsigned octets = towards_sensor ? host.to_sensor : host.to_host;

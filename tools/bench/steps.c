@@ -17,7 +17,7 @@
 #include "drivers/scip_parser.h"
 #include "drivers/telecommand.h"
 #include "drivers/telemetry.h"
-#include "drivers/urg_link.h"
+#include "drivers/urg.h"
 
 #define REQUIRE(condition)                                                \
     do {                                                                  \
@@ -382,10 +382,9 @@ __attribute__((noinline)) void measured(void (*step)(void))
 
 static void print_memory(void)
 {
-    const size_t whole = sizeof(scip_parser_t) + sizeof(scip_scan_t) + sizeof points + sizeof(urg_link_t);
+    const size_t two_scans = 2 * 35 * sizeof points[0];
 
-    printf("parser %zu, scan %zu, 271 points %zu, link %zu: %zu octets\n", sizeof(scip_parser_t), sizeof(scip_scan_t),
-           sizeof points, sizeof(urg_link_t), whole);
+    printf("urg_t %zu, two scans of 35 points %zu: %zu octets\n", sizeof(urg_t), two_scans, sizeof(urg_t) + two_scans);
 }
 
 int main(int argc, char **argv)

@@ -90,33 +90,9 @@ static void keep_text(void)
 
 static void note(scip_event_t event)
 {
-    urg_seen_t *seen = &scanner.seen;
-
-    switch (event) {
-    case SCIP_REPLY:
-        seen->reply_count++;
-        seen->reply_kind = scanner.parser.awaited.kind;
-        seen->reply = scanner.parser.reply;
-        break;
-    case SCIP_SCAN:
-        seen->scan_count++;
-        seen->scan_remaining = scanner.scan.remaining;
-        break;
-    case SCIP_NOTICE:
-        seen->notice_count++;
-        seen->notice = scanner.parser.reply;
-        break;
-    case SCIP_TEXT:
+    urg_seen_event(&scanner.seen, &scanner.parser, event);
+    if (event == SCIP_TEXT) {
         keep_text();
-        break;
-    case SCIP_LEGACY:
-        seen->legacy_count++;
-        break;
-    case SCIP_DAMAGED:
-        seen->damage_count++;
-        break;
-    default:
-        break;
     }
 }
 
@@ -124,9 +100,8 @@ static void received(void *context, const unsigned char *octets, size_t count)
 {
     (void)context;
     tap(true, octets, count);
-    scanner.seen.octet_count += (uint32_t)count;
     for (size_t i = 0; i < count; i++) {
-        scanner.seen.strange_count += octets[i] > 0x7F;
+        urg_seen_octets(&scanner.seen, &octets[i], 1);
         note(scip_parser_feed(&scanner.parser, octets[i]));
     }
 }

@@ -1,0 +1,103 @@
+#include "drivers/urg.h"
+
+bool urg_init(urg_t *urg, const urg_config_t *config, uint16_t *distance_mm, uint16_t values, uint32_t now_us)
+{
+    scip_request_t stream;
+    urg_link_t link;
+    if (!urg_link_init(&link, config, now_us) || !scip_request_scan(&stream, config->stream, &config->range) ||
+        values / 2U < stream.points) {
+        return false;
+    }
+    *urg = (urg_t){ .link = link };
+    for (uint16_t i = 0U; i < 2U; i++) {
+        urg->scans[i].distance_mm = &distance_mm[i * stream.points];
+        urg->scans[i].capacity = stream.points;
+    }
+    scip_parser_init(&urg->parser);
+    scip_parser_scan_into(&urg->parser, &urg->scans[0]);
+    return true;
+}
+
+static void change_scans(urg_t *urg)
+{
+    urg->fresh = true;
+    urg->filling ^= 1U;
+    scip_parser_scan_into(&urg->parser, &urg->scans[urg->filling]);
+}
+
+bool urg_feed(urg_t *urg, const octet_t *octets, size_t count)
+{
+    size_t taken = 0U;
+    bool complete = false;
+    urg_seen_octets(&urg->seen, octets, count);
+    while (taken < count) {
+        scip_event_t event;
+        taken += scip_parser_feed_run(&urg->parser, &octets[taken], count - taken, &event);
+        urg_seen_event(&urg->seen, &urg->parser, event);
+        if (event == SCIP_SCAN) {
+            change_scans(urg);
+            complete = true;
+        }
+    }
+    return complete;
+}
+
+void urg_line_broken(urg_t *urg, uint32_t framing_errors)
+{
+    scip_parser_line_broken(&urg->parser);
+    urg->seen.framing_count += framing_errors;
+}
+
+void urg_step(urg_t *urg, uint32_t now_us)
+{
+    urg_link_step(&urg->link, &urg->seen, now_us, &urg->action);
+    if (urg->action.set_rate) {
+        scip_parser_line_broken(&urg->parser);
+    }
+    if (urg->action.expect) {
+        scip_parser_expect(&urg->parser, &urg->action.request);
+    }
+}
+
+bool urg_next_to_send(urg_t *urg, urg_output_t *output)
+{
+    const urg_action_t *action = &urg->action;
+    const bool some = action->send || action->set_rate || action->cycle_power;
+    *output = (urg_output_t){ .cycle_power = action->cycle_power, .set_rate = action->set_rate, .rate = urg->link.rate };
+    if (action->send) {
+        output->count = action->request.text_length;
+    }
+    for (uint16_t i = 0U; i < output->count; i++) {
+        output->octets[i] = action->request.text[i];
+    }
+    urg->action = (urg_action_t){ .send = false };
+    return some;
+}
+
+bool urg_take_scan(urg_t *urg, scip_scan_t *scan)
+{
+    const bool fresh = urg->fresh;
+    if (fresh) {
+        *scan = urg->scans[urg->filling ^ 1U];
+        urg->fresh = false;
+    }
+    return fresh;
+}
+
+uint16_t urg_expected(const urg_t *urg)
+{
+    return scip_parser_expected(&urg->parser);
+}
+
+void urg_report(const urg_t *urg, urg_report_t *report)
+{
+    *report = (urg_report_t){
+        .status = urg->link.status,
+        .rate = urg->link.rate,
+        .restarts = urg->link.restarts,
+        .timeouts = urg->link.timeouts,
+        .seen = urg->seen,
+        .scip = urg->parser.counters,
+        .last_damage = urg->parser.last_damage,
+    };
+}

@@ -1,0 +1,262 @@
+#include "unity.h"
+
+#include <string.h>
+
+#include "drivers/urg.h"
+
+#define POINTS 35U
+#define STEP_US 150000U
+
+static urg_t urg;
+static uint16_t memory[2U * POINTS + 1U];
+static urg_output_t output;
+static urg_report_t report;
+static uint32_t now_us;
+
+static const urg_config_t config = {
+    .first_rate = 115200U, .stream_rate = 250000U, .fastest_rate = 250000U, .stream = SCIP_STREAM_2,
+    .range = { 372U, 406U, 1U, 0U, 0U },
+};
+
+void setUp(void)
+{
+    now_us = 0xFFFFF000U;
+    memset(memory, 0, sizeof memory);
+    TEST_ASSERT_TRUE(urg_init(&urg, &config, memory, 2U * POINTS, now_us));
+}
+
+void tearDown(void)
+{
+}
+
+static bool feed(const char *text)
+{
+    octet_t octets[256];
+    size_t count = 0U;
+
+    while (text[count] != '\0') {
+        octets[count] = (octet_t)text[count];
+        count++;
+    }
+    return urg_feed(&urg, octets, count);
+}
+
+static void append(char *text, char character)
+{
+    const size_t length = strlen(text);
+
+    text[length] = character;
+    text[length + 1U] = '\0';
+}
+
+/* The sensor's frame, from its specification; every distance the same: two characters. */
+static const char *frame(const char *stamp, const char *distance)
+{
+    static char text[200];
+    unsigned sum = 0U;
+
+    for (size_t i = 0U; i < 4U; i++) {
+        sum += (unsigned)stamp[i];
+    }
+    strcpy(text, "MS0372040601000\n99b\n");
+    strcat(text, stamp);
+    append(text, (char)((sum & 63U) + 48U));
+    strcat(text, "\n");
+    for (size_t i = 0U; i < 32U; i++) {
+        strcat(text, distance);
+    }
+    sum = (unsigned)(distance[0] + distance[1]);
+    append(text, (char)((32U * sum & 63U) + 48U));
+    strcat(text, "\n");
+    strcat(strcat(strcat(text, distance), distance), distance);
+    append(text, (char)((3U * sum & 63U) + 48U));
+    return strcat(text, "\n\n");
+}
+
+static const char *step(void)
+{
+    static char sent[SCIP_REQUEST_MAX + 1U];
+
+    now_us += STEP_US;
+    urg_step(&urg, now_us);
+    (void)urg_next_to_send(&urg, &output);
+    for (uint16_t i = 0U; i < output.count; i++) {
+        sent[i] = (char)output.octets[i];
+    }
+    sent[output.count] = '\0';
+    return sent;
+}
+
+static urg_status_t status(void)
+{
+    urg_report(&urg, &report);
+    return report.status;
+}
+
+static void reach_stream(void)
+{
+    TEST_ASSERT_EQUAL_STRING("\nL0\n", step());
+    TEST_ASSERT_FALSE(feed("L0\n0\n\n"));
+    TEST_ASSERT_EQUAL_STRING("SCIP2.0\n", step());
+    (void)feed("SCIP2.0\n0\n\n");
+    TEST_ASSERT_EQUAL_STRING("SS250000\n", step());
+    (void)feed("SS250000\n00P\n\n");
+    TEST_ASSERT_EQUAL_STRING("", step());
+    TEST_ASSERT_EQUAL_STRING("\nQT\n", step());
+    TEST_ASSERT_TRUE(output.set_rate);
+    TEST_ASSERT_EQUAL_UINT32(250000U, output.rate);
+    (void)feed("QT\n00P\n\n");
+    TEST_ASSERT_EQUAL_STRING("MS0372040601000\n", step());
+    TEST_ASSERT_FALSE(output.set_rate);
+    (void)feed("MS0372040601000\n00P\n\n");
+}
+
+static void assert_scan(uint32_t stamp_ms, uint16_t distance_mm)
+{
+    scip_scan_t scan;
+
+    TEST_ASSERT_TRUE(urg_take_scan(&urg, &scan));
+    TEST_ASSERT_EQUAL_UINT32(stamp_ms, scan.timestamp_ms);
+    TEST_ASSERT_EQUAL_UINT16(POINTS, scan.points);
+    TEST_ASSERT_EQUAL_UINT16(372U, scan.first_step);
+    for (uint16_t i = 0U; i < POINTS; i++) {
+        TEST_ASSERT_EQUAL_UINT16(distance_mm, scan.distance_mm[i]);
+    }
+    TEST_ASSERT_FALSE_MESSAGE(urg_take_scan(&urg, &scan), "a scan comes once");
+}
+
+void test_from_power_up_to_the_first_scan(void)
+{
+    scip_scan_t none;
+
+    reach_stream();
+    TEST_ASSERT_FALSE(urg_take_scan(&urg, &none));
+    TEST_ASSERT_TRUE(feed(frame("000P", "9H")));
+    (void)step();
+    TEST_ASSERT_EQUAL(URG_OK, status());
+    TEST_ASSERT_EQUAL_UINT32(250000U, report.rate);
+    TEST_ASSERT_EQUAL_UINT32(1U, report.seen.scan_count);
+    TEST_ASSERT_EQUAL_UINT32(1U, report.scip.scans);
+    TEST_ASSERT_EQUAL_UINT32(0U, report.restarts);
+    TEST_ASSERT_EQUAL_UINT32(0U, report.timeouts);
+    assert_scan(32U, 9U * 64U + 24U);
+}
+
+void test_a_scan_stays_while_the_next_one_comes_in(void)
+{
+    char half[64] = "";
+
+    reach_stream();
+    (void)feed(frame("000P", "9H"));
+    strncat(half, frame("0010", "0F"), 60U);
+    TEST_ASSERT_FALSE(feed(half));
+    assert_scan(32U, 600U);
+    TEST_ASSERT_TRUE(feed(&frame("0010", "0F")[60]));
+    assert_scan(64U, 22U);
+}
+
+void test_of_two_scans_that_nobody_took_the_later_one_counts(void)
+{
+    reach_stream();
+    (void)feed(frame("000P", "9H"));
+    TEST_ASSERT_TRUE(feed(frame("0010", "0F")));
+    assert_scan(64U, 22U);
+}
+
+void test_the_outputs_of_a_step_come_once(void)
+{
+    now_us += STEP_US;
+    urg_step(&urg, now_us);
+    TEST_ASSERT_TRUE(urg_next_to_send(&urg, &output));
+    TEST_ASSERT_EQUAL_UINT16(4U, output.count);
+    TEST_ASSERT_FALSE(output.cycle_power);
+    TEST_ASSERT_FALSE(urg_next_to_send(&urg, &output));
+    TEST_ASSERT_EQUAL_UINT16(0U, output.count);
+    TEST_ASSERT_EQUAL_UINT32(115200U, output.rate);
+}
+
+void test_line_errors_end_the_reply_under_way_and_tell_a_wrong_rate(void)
+{
+    (void)step();
+    (void)feed("L0\n");
+    urg_line_broken(&urg, 1U);
+    (void)feed("0\n\n");
+    TEST_ASSERT_EQUAL_STRING("", step());
+    TEST_ASSERT_EQUAL(URG_STOP1, status());
+    urg_line_broken(&urg, 0U);
+    TEST_ASSERT_EQUAL(URG_STOP1, status());
+    TEST_ASSERT_EQUAL_UINT32(1U, report.seen.framing_count);
+    urg_line_broken(&urg, 9U);
+    TEST_ASSERT_EQUAL_STRING("\nQT\n", step());
+    TEST_ASSERT_EQUAL_UINT32(250000U, output.rate);
+    TEST_ASSERT_EQUAL(URG_LOST, status());
+}
+
+void test_a_dead_sensor_is_powered_off_and_on_where_that_can_be(void)
+{
+    uint16_t cycles = 0U;
+
+    for (uint16_t i = 0U; i < 300U; i++) {
+        (void)step();
+        cycles = (uint16_t)(cycles + (output.cycle_power ? 1U : 0U));
+    }
+    TEST_ASSERT_EQUAL_UINT16(2U, cycles);
+    TEST_ASSERT_EQUAL(URG_LOST, status());
+}
+
+void test_the_octets_that_are_still_to_come_are_known_within_a_stream(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(0U, urg_expected(&urg));
+    reach_stream();
+    TEST_ASSERT_EQUAL_UINT16(101U, urg_expected(&urg));
+    (void)feed("MS03");
+    TEST_ASSERT_EQUAL_UINT16(97U, urg_expected(&urg));
+}
+
+void test_damage_notices_and_old_answers_are_counted(void)
+{
+    char damaged[200];
+
+    (void)step();
+    (void)feed("L0\nE\n\n");
+    urg_report(&urg, &report);
+    TEST_ASSERT_EQUAL_UINT32(1U, report.seen.legacy_count);
+    setUp();
+    reach_stream();
+    strcpy(damaged, frame("000P", "9H"));
+    damaged[30] = '1';
+    TEST_ASSERT_FALSE(feed(damaged));
+    TEST_ASSERT_FALSE(feed("MS0372040601000\n98a\n\n"));
+    urg_report(&urg, &report);
+    TEST_ASSERT_EQUAL_UINT32(1U, report.seen.damage_count);
+    TEST_ASSERT_EQUAL(SCIP_DAMAGE_SUM, report.last_damage);
+    TEST_ASSERT_EQUAL_UINT32(1U, report.seen.notice_count);
+}
+
+void test_octets_above_7f_are_counted(void)
+{
+    static const octet_t octets[] = { 0x80U, 0x7FU, 0xFFU };
+
+    TEST_ASSERT_FALSE(urg_feed(&urg, octets, 3U));
+    urg_report(&urg, &report);
+    TEST_ASSERT_EQUAL_UINT32(3U, report.seen.octet_count);
+    TEST_ASSERT_EQUAL_UINT32(2U, report.seen.strange_count);
+}
+
+void test_too_little_memory_and_impossible_orders_are_refused(void)
+{
+    urg_config_t bad = config;
+
+    TEST_ASSERT_FALSE(urg_init(&urg, &config, memory, 2U * POINTS - 1U, 0U));
+    TEST_ASSERT_TRUE(urg_init(&urg, &config, memory, 2U * POINTS + 1U, 0U));
+    bad.range.last_step = 769U;
+    TEST_ASSERT_FALSE(urg_init(&urg, &bad, memory, 2U * POINTS, 0U));
+    bad = config;
+    bad.stream_rate = 500000U;
+    TEST_ASSERT_FALSE(urg_init(&urg, &bad, memory, 2U * POINTS, 0U));
+}
+
+void test_all_that_a_user_keeps_for_35_points_fits_in_1_kib(void)
+{
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(1024U, sizeof(urg_t) + 2U * POINTS * sizeof(uint16_t));
+}
