@@ -50,25 +50,43 @@ static uint16_t points_before(const scip_scan_t *scan, uint16_t step)
     return smaller((uint16_t)(steps_into(scan, step) / steps_per_point(scan)), scan->points);
 }
 
-/* Distances are counted from dmin, so that one comparison tells both limits. */
-static tally_t tally(const scip_scan_t *scan, uint16_t begin, uint16_t end, const scip_limits_t *limits)
+static tally_t tally_all(const uint16_t *rays, size_t count)
 {
-    const uint16_t *rays = &scan->distance_mm[begin];
-    const uint32_t nearest = limits->dmin_mm;
-    const uint32_t span = largest_distance(scan, limits) - nearest;
     tally_t t = { 0U, UINT16_MAX, 0U, 0U };
-    for (size_t i = (size_t)end - begin; i > 0U; i--) {
-        const uint32_t beyond = rays[i - 1U] - nearest;
-        if (beyond > span) {
+    for (size_t i = 0U; i < count; i++) {
+        const uint32_t ray = rays[i];
+        t.sum += ray;
+        t.least = ray < t.least ? ray : t.least;
+        t.most = ray > t.most ? ray : t.most;
+    }
+    return t;
+}
+
+static tally_t tally_between(const uint16_t *rays, size_t count, uint32_t nearest, uint32_t furthest)
+{
+    tally_t t = { 0U, UINT16_MAX, 0U, 0U };
+    for (size_t i = 0U; i < count; i++) {
+        const uint32_t ray = rays[i];
+        if (ray < nearest || ray > furthest) {
             t.bad++;
             continue;
         }
-        t.sum += beyond;
-        t.least = beyond < t.least ? beyond : t.least;
-        t.most = beyond > t.most ? beyond : t.most;
+        t.sum += ray;
+        t.least = ray < t.least ? ray : t.least;
+        t.most = ray > t.most ? ray : t.most;
     }
-    t.sum += nearest * ((uint32_t)(end - begin) - t.bad);
     return t;
+}
+
+/* Mostly every ray is good, and asking each is not needed. */
+static tally_t tally(const scip_scan_t *scan, uint16_t begin, uint16_t end, const scip_limits_t *limits)
+{
+    const uint16_t *rays = &scan->distance_mm[begin];
+    const uint32_t furthest = largest_distance(scan, limits);
+    const tally_t t = tally_all(rays, (size_t)end - begin);
+    return t.least >= limits->dmin_mm && t.most <= furthest
+               ? t
+               : tally_between(rays, (size_t)end - begin, limits->dmin_mm, furthest);
 }
 
 scip_group_mean_t scip_group_mean_within(const scip_scan_t *scan, const scip_group_t *group,

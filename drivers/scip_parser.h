@@ -75,6 +75,13 @@ typedef struct {
     uint32_t octets;        /* counted at line ends */
 } scip_counters_t;
 
+/* private: how far a scan's points are decoded */
+typedef struct {
+    uint16_t points;
+    uint16_t partial_characters;
+    uint32_t partial;           /* first characters of a point that straddles two blocks */
+} scip_progress_t;
+
 /* Data lines have 65 characters; the information lines of some models are longer. */
 #define SCIP_LINE_MAX 80U
 
@@ -96,16 +103,14 @@ typedef struct {
     bool skipping;              /* the line before was skipped and not empty */
     scip_scan_t *scan;
     uint16_t characters_left;   /* of the scan's data */
-    uint16_t received;          /* points so far */
-    uint32_t partial;           /* first characters of a point that straddles two blocks */
-    uint16_t partial_characters;
+    scip_progress_t progress;
     uint32_t timestamp_ms;      /* of the frame in reception */
     uint16_t remaining;         /* of the frame in reception */
     bool flowing;               /* the stream's answer or a frame has come */
     bool gap;                   /* something was lost since the last good frame */
     bool doubted;               /* the last frame was dropped for its sequence */
     uint16_t latest_remaining;  /* of the latest good frame */
-    bool in_step;               /* which came without a loss after one with the counter above its own */
+    bool in_step;               /* the latest good frame followed its predecessor: no loss between, counter one lower */
     uint16_t stamps;            /* number of last_stamps_ms that count, 0..2 */
     uint32_t last_stamps_ms[2];
 } scip_parser_t;
