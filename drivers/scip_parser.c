@@ -76,7 +76,7 @@ static bool take_echo_at(scip_parser_t *parser, const octet_t *text)
     const octet_t *echo = scip_request_echo(&parser->awaited);
     const uint16_t fixed = parser->echo_fixed;
     uint16_t remaining = 0U;
-    if (memcmp(echo, text, fixed) != 0) {
+    if (memcmp(echo, text, fixed * sizeof echo[0]) != 0) {
         return false;
     }
     if (fixed < parser->awaited.echo_length && !read_count(&text[fixed], &remaining)) {

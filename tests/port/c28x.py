@@ -34,12 +34,13 @@ def at(path, text, offset, what):
 
 def sizes(the_house):
     """sizeof counts cells of 16 bits: of wire data it says nothing, so only elements are counted with it; what the firmware
-    copies whole may be measured for the copy."""
+    copies whole may be measured for the copy, and memcmp() counts in cells too."""
     for path, text in each(the_house, house.PRODUCT):
         bare = COUNT_OF.sub(house.blank, text)
         for match in re.finditer(r"\bsizeof\b", bare):
             statement = bare[bare.rfind(";", 0, match.start()) + 1:match.start()]
-            if not (path.startswith("firmware/") and re.search(r"\bmem(?:cpy|set|move)\(", statement)):
+            measured = r"\bmem(?:cpy|set|move|cmp)\(" if path.startswith("firmware/") else r"\bmemcmp\("
+            if not re.search(measured, statement):
                 yield at(path, text, match.start(), "sizeof counts cells, not octets")
 
 

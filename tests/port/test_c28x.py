@@ -47,6 +47,7 @@ static Void run(UArg unused0, UArg unused1)
 {
     (void)memcpy(cells, points, count * sizeof points[0]);
     (void)memcpy(&word, &value, sizeof word);
+    same = memcmp(echo, text, fixed * sizeof echo[0]) == 0;
     (void)feed(&parser, octet_of(burst->octets[i]));
     (void)Semaphore_pend(ready, BIOS_WAIT_FOREVER);
     (void)Event_pend(event, Event_Id_NONE, events[f(1, 2)], POLL_MS);
@@ -61,6 +62,7 @@ BAD = (
     (c28x.sizes, "drivers/wire.c", "n = sizeof(frame_t);"),
     (c28x.sizes, "drivers/wire.c", "memcpy(&frame, octets, sizeof frame);"),
     (c28x.sizes, "drivers/wire.c", "n = sizeof rows / 2U;"),
+    (c28x.sizes, "drivers/wire.c", "if (n > sizeof echo && memcmp(a, b, 3U) == 0) {"),
     (c28x.sizes, "firmware/task.c", "send(frame, sizeof *frame);"),
     (c28x.shifts, "drivers/wire.c", "v = octets[0] << 8;"),
     (c28x.shifts, "drivers/wire.c", "v = p[0] << 24;"),
