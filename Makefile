@@ -31,9 +31,10 @@ fly: ## Fly the seed's 60 cm flight, by its own law and by the estimator's; CSV,
 	@$(python) tools/plot/plot.py $(flights:%=build/%.csv) -o build/fly.png
 	@grep -L '"met": true' $(flights:%=build/%.json) | sed 's/$$/: not as it must be/' | (! grep .)
 
-plot: ## Draw LOG=FILE: a flight's CSV (or several), an XCTU console log or telemetry text
+plot: ## Draw LOG=FILE: a flight's CSV (or several), an XCTU console log or text, with or without dumps of #LOG
 	@test -n "$(LOG)" || { echo "usage: make plot LOG=FILE" >&2; exit 2; }
-	@$(setup) plot
+	@$(setup) build plot
+	@$(MAKE) build
 	@$(python) tools/plot/plot.py $(LOG) -o build/
 
 campaign: ## Fly every law on hundreds of vehicles; table, verdicts, CSV, JSON, picture in build/campaign/ (ARGS=--help)

@@ -132,7 +132,7 @@ class Drawing(Case):
         self.assert_picture(self.plot(flown), self.dir / "flown.png")
 
     def test_the_colours_of_states_and_the_names_of_flags_are_the_firmwares(self):
-        header = (ROOT / "control/supervisor.h").read_text(encoding="utf-8")
+        header = (ROOT / "control/flight_state.h").read_text(encoding="utf-8")
         states = {name for name in re.findall(r"\bFLIGHT_([A-Z]+),", header)}
         flags = {int(value) for value in re.findall(r"#define FLIGHT_FLAG_\w+ (\d+)U", header)}
         self.assertEqual(states, set(plot.STATE_COLOURS))

@@ -9,6 +9,7 @@
 int command_fly(int argc, char **argv);
 int command_laser(int argc, char **argv);
 int command_list(int argc, char **argv);
+int command_log(int argc, char **argv);
 int command_params(int argc, char **argv);
 int command_replay(int argc, char **argv);
 int command_rta(int argc, char **argv);

@@ -13,6 +13,7 @@ static const subcommand_t subcommands[] = {
     {"fly", command_fly, "fly a scenario with the unmodified firmware"},
     {"laser", command_laser, "serve the scanner model on a pseudo-terminal"},
     {"list", command_list, "the scenarios and what each must look like"},
+    {"log", command_log, "#LOG dumps in what a terminal or XCTU saved, as CSV"},
     {"params", command_params, "the parameters an operator may set"},
     {"replay", command_replay, "run the firmware again on what a flight recorded at its pins"},
     {"rta", command_rta, "response-time analysis: does every task meet its deadline?"},

@@ -10,13 +10,16 @@ import argparse
 import json
 import math
 import os
+import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import recording
 
 os.environ.setdefault("MPLCONFIGDIR", os.path.join(sys.prefix, "matplotlib"))
 
+PROGRAM = Path(__file__).resolve().parents[2] / "build/plomada"
 STATE_COLOURS = {
     "GROUND": "#c9c9c9",
     "TAKEOFF": "#f2c14e",
@@ -30,7 +33,7 @@ STATE_COLOURS = {
 }
 LASER_COLOURS = {"OK": "#7bc47f", "WAIT": "#c9c9c9"}
 OTHER_COLOURS = ("#5fa8a8", "#b08968", "#a3b18a", "#cdb4db", "#6d8fb3")
-FLAG_NAMES = {1: "height", 2: "attitude", 4: "disagree", 8: "too high", 16: "link", 32: "tilt", 64: "pilot"}
+FLAG_NAMES = {1: "height", 2: "attitude", 4: "disagree", 8: "too high", 16: "link", 32: "tilt", 64: "pilot", 128: "out of reach"}
 
 HEIGHT, MEASURED, ESTIMATE, REFERENCE, TERRAIN, THRUST = "#1f5fa8", "#e07a1f", "#2a8f4f", "#333333", "#b79268", "#a0303f"
 FLIGHT_COLOURS = ("#1f5fa8", "#e07a1f", "#2a8f4f", "#a0303f", "#7550a8", "#5a5a5a", "#1a9aa0", "#b3589a")
@@ -251,26 +254,59 @@ def picture_path(output, first):
     return Path(output)
 
 
+def with_dumps_converted(files, program, directory):
+    """files, those with dumps of #LOG in them replaced by the CSVs that `plomada log` makes of them in a directory."""
+    found = []
+    for file in files:
+        if not recording.has_dump(file):
+            found.append(file)
+            continue
+        if not Path(program).exists():
+            raise recording.Unreadable(f"{file}: has a dump of #LOG, which {program} reads: make build")
+        done = subprocess.run([program, "log", file, "-o", directory], stdout=subprocess.PIPE, text=True, check=False)
+        if done.returncode == 2:
+            raise recording.Unreadable(f"{file}: its dump of #LOG cannot be read")
+        found += [line.rsplit(": ", 1)[0] for line in done.stdout.splitlines()]
+    return found
+
+
+def draw_files(files, output):
+    """One picture; prints its path."""
+    recordings = [recording.read(path) for path in files]
+    path = picture_path(output, files[0])
+    path.parent.mkdir(parents=True, exist_ok=True)
+    draw(recordings, *describe(files, recordings), path)
+    print(path.resolve())
+
+
+def groups(files):
+    """Flights are drawn over one another, everything else by itself."""
+    kinds = [recording.read(path).kind for path in files]
+    return [files] if all(kind == "flight" for kind in kinds) else [[path] for path in files]
+
+
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", metavar="FILE", nargs="+")
     parser.add_argument("-o", "--output", metavar="PNG")
+    parser.add_argument("--program", metavar="PLOMADA", default=str(PROGRAM), help="default: build/plomada")
     options = parser.parse_args(arguments)
+    output = options.output or str(Path(options.files[0]).parent) + "/"
     try:
-        recordings = [recording.read(path) for path in options.files]
+        with tempfile.TemporaryDirectory(prefix="plomada-") as scratch:
+            pictures = groups(with_dumps_converted(options.files, options.program, scratch))
+            if len(pictures) > 1 and len(options.files) > 1:
+                raise recording.Unreadable("only flight CSVs can be drawn together")
+            if len(pictures) > 1 and not Path(output).is_dir():
+                raise recording.Unreadable(f"{options.files[0]}: {len(pictures)} dumps make as many pictures: -o DIRECTORY/")
+            for group in pictures:
+                draw_files(group, output)
     except recording.Unreadable as error:
         print(f"plot: {error}", file=sys.stderr)
         return 2
     except OSError as error:
         print(f"plot: {error.filename}: {error.strerror}", file=sys.stderr)
         return 2
-    if len(recordings) > 1 and any(rec.kind != "flight" for rec in recordings):
-        print("plot: only flight CSVs can be drawn together", file=sys.stderr)
-        return 2
-    path = picture_path(options.output, options.files[0])
-    path.parent.mkdir(parents=True, exist_ok=True)
-    draw(recordings, *describe(options.files, recordings), path)
-    print(path.resolve())
     return 0
 
 

@@ -46,6 +46,15 @@ def number(text):
     return math.nan if text in ("", "-", None) else float(text)
 
 
+DUMP_ROW = re.compile(rb"OK LOG [0-9]|4F4B204C4F47203[0-9]", re.IGNORECASE)     # text, or the same in a payload's hex
+
+
+def has_dump(path):
+    """Whether rows of a #LOG dump are in a file that is not CSV already."""
+    raw = Path(path).read_bytes()
+    return not raw.lstrip(b"\xef\xbb\xbf").startswith(b"t_s,") and DUMP_ROW.search(raw) is not None
+
+
 def read(path):
     """Reads a file; its kind is found from the content. Raises Unreadable or OSError."""
     path = Path(path)
