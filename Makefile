@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot campaign tune seed-study test port size faults fuzz bench coverage firmware flash check-ti clean
+.PHONY: help build fly plot campaign tune seed-study test test-long port size faults fuzz bench coverage firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -11,7 +11,17 @@ flights := pid-60cm-ramp est-60cm-ramp
 export CMOCK_ROOT ?= $(CURDIR)/build/cmock/usr/share/cmock
 # As many jobs as processors, unless make was told how many.
 jobs = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
-ctest = ctest --output-on-failure -j$(shell nproc) --test-dir
+ctest = python3 -B tests/run.py
+# The two build trees of the tests. Both build everything once: test and test-long share them.
+define build_tests
+	@$(setup) build test campaign
+	@printf '\n== build with ASan and UBSan ==\n'
+	@cmake -S . -B build-sanitize -DCMAKE_BUILD_TYPE=Debug -DSANITIZE=ON -DPLOMADA_TESTS=ON
+	+@cmake --build build-sanitize $(jobs)
+	@printf '\n== build as released ==\n'
+	@cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON
+	+@cmake --build build $(jobs)
+endef
 
 help: ## This list
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
@@ -54,18 +64,19 @@ seed-study: ## Which autopilot did the seed fly? And its simulations of chapter 
 	@$(python) tools/seed_study/chapter_4_1.py -o build/chapter-4-1.png
 	@$(python) tools/seed_study/seed_study.py $(ARGS)
 
-test: ## Every test: under ASan and UBSan, then as released
-	@$(setup) build test campaign
-	@printf '\n== build with ASan and UBSan ==\n'
-	@cmake -S . -B build-sanitize -DCMAKE_BUILD_TYPE=Debug -DSANITIZE=ON -DPLOMADA_TESTS=ON
-	+@cmake --build build-sanitize $(jobs)
-	@printf '\n== build as released ==\n'
-	@cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON
-	+@cmake --build build $(jobs)
+test: ## The tests, but for the long ones: under ASan and UBSan, then as released
+	$(build_tests)
 	@printf '\n== tests under ASan and UBSan ==\n'
-	@$(ctest) build-sanitize
+	@$(ctest) build-sanitize -LE long
 	@printf '\n== tests as released ==\n'
-	@$(ctest) build
+	@$(ctest) build -LE long
+
+test-long: ## The long ones: sweeps of many flights, campaigns, tuning, fuzzing
+	$(build_tests)
+	@printf '\n== long tests under ASan and UBSan ==\n'
+	@$(ctest) build-sanitize -L long
+	@printf '\n== long tests as released ==\n'
+	@$(ctest) build -L long
 
 port: ## The unit tests of drivers/ and control/ also with 16-bit octets, 16-bit int and CHAR_BIT 16 (simulated)
 	@$(setup) build test port
