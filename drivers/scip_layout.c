@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #define DEGREES_PER_STEP 0.3515625F
+#define NEAR_MEDIAN_MM 25U  /* five times the noise of one ray (5 mm), as a smooth ground shows it */
 
 const scip_layout_t scip_layouts[SCIP_LAYOUT_COUNT] = {
     [SCIP_LAYOUT_FRONT] = { "front", 372U, 406U, 1U, { { 372U, 406U } } },
@@ -89,6 +90,46 @@ static tally_t tally(const scip_scan_t *scan, uint16_t begin, uint16_t end, cons
                : tally_between(rays, (size_t)end - begin, limits->dmin_mm, furthest);
 }
 
+static uint16_t count_between(const uint16_t *rays, size_t count, uint32_t least, uint32_t most)
+{
+    const uint32_t span = most - least;
+    uint16_t inside = 0U;
+    for (size_t i = 0U; i < count; i++) {
+        inside = (uint16_t)(inside + (rays[i] - least <= span ? 1U : 0U));
+    }
+    return inside;
+}
+
+/* The lower median of the good rays, by bisection between the least and the most: no memory, and no ray moves. */
+static uint32_t median_of(const uint16_t *rays, size_t count, const tally_t *good)
+{
+    const uint32_t half = ((uint32_t)count - good->bad + 1U) / 2U;
+    uint32_t low = good->least;
+    uint32_t high = good->most;
+    while (low < high) {
+        const uint32_t middle = (low + high) / 2U;
+        if (count_between(rays, count, good->least, middle) >= half) {
+            high = middle;
+        } else {
+            low = middle + 1U;
+        }
+    }
+    return low;
+}
+
+/* Mean of the good rays within NEAR_MEDIAN_MM of their median. Mostly all are, and the median is not needed. */
+static float robust_mean(const uint16_t *rays, size_t count, const tally_t *good)
+{
+    tally_t near = *good;
+    if (good->most - good->least > NEAR_MEDIAN_MM) {
+        const uint32_t median = median_of(rays, count, good);
+        const uint32_t least = median - good->least > NEAR_MEDIAN_MM ? median - NEAR_MEDIAN_MM : good->least;
+        const uint32_t most = good->most - median > NEAR_MEDIAN_MM ? median + NEAR_MEDIAN_MM : good->most;
+        near = tally_between(rays, count, least, most);
+    }
+    return (float)near.sum / (float)(count - near.bad);
+}
+
 scip_group_mean_t scip_group_mean_within(const scip_scan_t *scan, const scip_group_t *group,
                                          const scip_limits_t *limits)
 {
@@ -97,9 +138,10 @@ scip_group_mean_t scip_group_mean_within(const scip_scan_t *scan, const scip_gro
     const uint16_t end = points_before(scan, behind);
     const uint16_t begin = smaller(point_from(scan, group->first_step), end);
     const tally_t t = tally(scan, begin, end, limits);
+    const uint16_t *const seen = &scan->distance_mm[begin];
     scip_group_mean_t mean = { .good_rays = (uint16_t)(end - begin - t.bad) };
     if (mean.good_rays > 0U) {
-        mean.mean_mm = (float)t.sum / (float)mean.good_rays;
+        mean.mean_mm = robust_mean(seen, (size_t)end - begin, &t);
         mean.spread_mm = (uint16_t)(t.most - t.least);
         mean.valid = 2U * mean.good_rays >= rays;
     }

@@ -50,12 +50,13 @@ extern const scip_layout_t scip_layouts[SCIP_LAYOUT_COUNT];
 
 typedef struct {
     bool valid;             /* at least half of the group's rays were good */
-    float mean_mm;          /* of the good rays; 0 when there is none */
+    float mean_mm;          /* of the good rays near their median; 0 when there is none */
     uint16_t spread_mm;     /* largest minus smallest good ray */
     uint16_t good_rays;
 } scip_group_mean_t;
 
-/* Mean over the good rays of one group: 20 mm or more, and below 4095 mm (two characters) or up to 5600 mm (three).
+/* Mean over those good rays of one group that lie within 25 mm of their median: a leg or a rope in front of some rays does
+ * not pull it. Good means 20 mm or more, and below 4095 mm (two characters) or up to 5600 mm (three).
  * Rays that the scan does not hold count as bad. With a cluster a ray is a point whose steps all lie in the group. */
 scip_group_mean_t scip_group_mean(const scip_scan_t *scan, const scip_group_t *group);
 

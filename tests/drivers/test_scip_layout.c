@@ -107,7 +107,7 @@ void test_codes_and_overrange_take_no_part(void)
     points[12] = 4094;
     scip_group_mean_t mean = mean_of(372, 406);
     TEST_ASSERT_EQUAL_UINT16(24, mean.good_rays);
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, (22 * 1000.0F + 20 + 4094) / 24, mean.mean_mm);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1000.0F, mean.mean_mm); /* 20 and 4094 are good, and far from the median */
     TEST_ASSERT_EQUAL_UINT16(4074, mean.spread_mm);
     TEST_ASSERT_TRUE(mean.valid);
 }
@@ -253,6 +253,64 @@ void test_directions_outside_the_field_of_view_end_at_its_edges(void)
     TEST_ASSERT_EQUAL_UINT16(725, scip_step_at_degrees(INFINITY));
 }
 
+/* --- something in front of some rays ------------------------------------------------------------------------------ */
+
+/* The plain mean would be wrong by up to 157 mm with a fifth of the rays on a leg at 215 mm. */
+void test_a_leg_in_front_of_fewer_than_half_of_the_rays_does_not_move_the_mean(void)
+{
+    for (uint16_t blocked = 0; blocked <= 17; blocked++) {
+        for (uint16_t first = 0; first + blocked <= 35; first++) {
+            fill(1000);
+            for (uint16_t i = 0; i < 35; i++) {
+                points[i] = (uint16_t)(990 + i * 13 % 21);
+            }
+            for (uint16_t i = first; i < first + blocked; i++) {
+                points[i] = (uint16_t)(215 + i);
+            }
+            const scip_group_mean_t mean = mean_of(372, 406);
+            TEST_ASSERT_FLOAT_WITHIN(6.0F, 1000.0F, mean.mean_mm);
+            TEST_ASSERT_EQUAL_UINT16(35, mean.good_rays);
+            TEST_ASSERT_TRUE(mean.valid);
+        }
+    }
+}
+
+/* A slow reference: sort, take the lower median, then the mean of what is near it. */
+static float reference_mean(void)
+{
+    uint16_t sorted[35];
+    uint32_t sum = 0, near = 0;
+    for (uint16_t i = 0; i < 35; i++) {
+        uint16_t at = i;
+        for (; at > 0 && sorted[at - 1] > points[i]; at--) {
+            sorted[at] = sorted[at - 1];
+        }
+        sorted[at] = points[i];
+    }
+    for (uint16_t i = 0; i < 35; i++) {
+        const int32_t off = (int32_t)sorted[i] - (int32_t)sorted[17];
+        if (off >= -25 && off <= 25) {
+            sum += sorted[i];
+            near++;
+        }
+    }
+    return (float)sum / (float)near;
+}
+
+void test_the_mean_is_that_of_the_rays_within_25_mm_of_the_median(void)
+{
+    uint32_t noise = 20261U;
+    for (uint32_t run = 0; run < 3000; run++) {
+        const uint32_t width = 1U + run % 300U;
+        fill(1000);
+        for (uint16_t i = 0; i < 35; i++) {
+            noise = noise * 1664525U + 1013904223U;
+            points[i] = (uint16_t)(400U + (noise >> 8) % width * ((noise >> 30) == 0U ? 3U : 1U));
+        }
+        TEST_ASSERT_FLOAT_WITHIN(0.001F, reference_mean(), mean_of(372, 406).mean_mm);
+    }
+}
+
 /* 97.66 us a step: step 384 at 37.5 ms, step 725 at 70.8 ms. */
 void test_steps_are_sampled_one_after_the_other(void)
 {
@@ -277,7 +335,7 @@ void test_the_limits_may_be_those_that_a_sensor_tells(void)
     points[4] = 4095;
     TEST_ASSERT_EQUAL_UINT16(32, scip_group_mean_within(&scan, &group, &near).good_rays);
     TEST_ASSERT_EQUAL_UINT16(2900, scip_group_mean_within(&scan, &group, &near).spread_mm);
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, (30 * 1000.0F + 3100) / 32, scip_group_mean_within(&scan, &group, &near).mean_mm);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1000.0F, scip_group_mean_within(&scan, &group, &near).mean_mm);
     TEST_ASSERT_EQUAL_UINT16(34, scip_group_mean_within(&scan, &group, &far).good_rays); /* 4095 is none of two characters */
     scan.characters = 3;
     points[5] = 30000;
