@@ -1,7 +1,8 @@
 # The product: the single list of files, read by CMakeLists.txt and by the check of ccs_project/.
 set(CONTROL_SOURCES
     control/est/actuator.c control/altitude.c control/attitude.c control/calibration.c control/est/cascade.c control/est/deadband.c
-    control/descent.c control/est/est_law.c control/est/estimator.c control/flight.c control/flight_state.c control/est/hover.c control/median.c
+    control/descent.c control/est/est_law.c control/est/estimator.c control/flight.c control/flight_state.c control/est/hover.c
+    control/integrity.c control/median.c
     control/parameters.c control/pid.c control/pidt.c control/ray_clock.c control/reach.c control/supervisor.c control/thrust.c)
 set(DRIVERS_SOURCES
     drivers/decimal.c drivers/flight_log.c drivers/line_sum.c drivers/parameter_image.c drivers/razor.c drivers/scip_info.c

@@ -14,13 +14,27 @@
 #define BLIND_MAX_S 60.0F
 
 #define PIDT_WINDOW_N 3.0F
+#define SETTLE_S 0.6F
+#define LIFTED_MPS 0.25F
+#define RAYS_AGE_S 0.0705F
+#define GAP_LONG_S 10.0F
+#define LOW_MM 80.0F
+#define POWERLESS_WINDOW_N 0.6F
+#define FLOATING_WINDOW_N 0.5F
+#define UNCONFIRMED_MPS 0.35F
+#define TAKEOFF_MPS 0.6F
+#define CLIMB_MARGIN_MPS 0.4F
+#define STOP_N_PER_S 2.0F
+#define HOP_MAX_US UINT32_C(3000000)
+#define DISPLACED_M 0.25F
+#define FLOAT_REACH_M 0.30F
 
 /* Without an estimate, or by a law that needs none. */
 static const flight_mode_t modes_without_estimate[FLIGHT_STATE_COUNT] = {
     [FLIGHT_GROUND] = FLIGHT_MODE_IDLE,
     [FLIGHT_TAKEOFF] = FLIGHT_MODE_LAW,
     [FLIGHT_FLYING] = FLIGHT_MODE_LAW,
-    [FLIGHT_FLOATING] = FLIGHT_MODE_HOVER,
+    [FLIGHT_FLOATING] = FLIGHT_MODE_FLOAT,
     [FLIGHT_COASTING] = FLIGHT_MODE_HOVER,
     [FLIGHT_DESCENDING] = FLIGHT_MODE_BLIND_DESCENT,
     [FLIGHT_LANDING] = FLIGHT_MODE_DESCENT,
@@ -31,7 +45,7 @@ static const flight_mode_t modes_with_estimate[FLIGHT_STATE_COUNT] = {
     [FLIGHT_GROUND] = FLIGHT_MODE_IDLE,
     [FLIGHT_TAKEOFF] = FLIGHT_MODE_EST_HOLD,
     [FLIGHT_FLYING] = FLIGHT_MODE_EST_HOLD,
-    [FLIGHT_FLOATING] = FLIGHT_MODE_HOVER,
+    [FLIGHT_FLOATING] = FLIGHT_MODE_EST_HOLD,
     [FLIGHT_COASTING] = FLIGHT_MODE_EST_HOLD,
     [FLIGHT_DESCENDING] = FLIGHT_MODE_EST_SINK,
     [FLIGHT_LANDING] = FLIGHT_MODE_EST_LAND,
@@ -43,6 +57,7 @@ void flight_init(flight_t *flight)
 {
     *flight = (flight_t){.hover_n = 0.0F};
     supervisor_init(&flight->supervisor);
+    integrity_init(&flight->integrity);
     est_law_init(&flight->est);
 }
 
@@ -56,22 +71,52 @@ static float seconds(uint32_t time_us, float at_most_s)
     return fminf((float)time_us * 1.0e-6F, at_most_s);
 }
 
+/* Frames and heights make an estimate that may be flown by. */
+static bool has_estimate(const flight_t *flight)
+{
+    return est_law_ready(&flight->est) && !integrity_doubts(&flight->integrity, DOUBT_IMU);
+}
+
+/* Slowly: what is wrong now must not have been learned already. Quicker while little is known. */
+static void follow_hover(flight_t *flight)
+{
+    const float step_s = seconds(flight->supervisor.step_us, STEP_MAX_S);
+    const bool estimated = has_estimate(flight) && flight->est.airborne;
+    if (!estimated && flight->supervisor.state != FLIGHT_FLYING) {
+        return;
+    }
+    if (flight->learned_s > 0.0F && integrity_unconfirmed(&flight->integrity)) {
+        return;
+    }
+    const float target_n = estimated ? flight->est.hover.thrust_n : flight->thrust_n;
+    const float time_s = !estimated ? HOVER_TIME_S : (flight->learned_s < SETTLE_S) ? step_s : flight->learned_s;
+
+    flight->hover_n += fminf(step_s / fmaxf(time_s, 0.001F), 1.0F) * (target_n - flight->hover_n);
+    flight->learned_s = fminf(flight->learned_s + step_s, HOVER_TIME_S);
+}
+
+static bool descends(flight_state_t state)
+{
+    return state == FLIGHT_DESCENDING || state == FLIGHT_LANDING || state == FLIGHT_LOWERING;
+}
+
 static void update_hover(flight_t *flight, float gravity_n)
 {
     const flight_state_t state = flight->supervisor.state;
-    const bool grounded = state == FLIGHT_GROUND || state == FLIGHT_TAKEOFF;
+    const bool grounded = state == FLIGHT_GROUND || (state == FLIGHT_TAKEOFF && !flight->est.airborne);
+    const bool flies = state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING;
+    const bool sees = (flight->supervisor.flags & FLIGHT_FLAG_HEIGHT) == 0U;
 
-    flight->hover_learned = !grounded && (flight->hover_learned || state == FLIGHT_FLYING);
-    if (!flight->hover_learned && (grounded || state == FLIGHT_FLOATING)) {
+    flight->hover_learned = !grounded && (flight->hover_learned || flies);
+    if (!flight->hover_learned) {
         flight->hover_n = gravity_n;
-    } else if (est_law_ready(&flight->est) && flight->est.airborne) {
-        flight->hover_n = flight->est.hover.thrust_n;
-    } else if (state == FLIGHT_FLYING) {
-        const float share = seconds(flight->supervisor.step_us, STEP_MAX_S) / HOVER_TIME_S;
-        flight->hover_n += share * (flight->thrust_n - flight->hover_n);
+        flight->learned_s = 0.0F;
+    } else if (flies && sees && !integrity_doubts(&flight->integrity, DOUBT_SIGHT | DOUBT_THRUST)) {
+        follow_hover(flight);
     }
     flight->hover_n = between(gravity_n - HOVER_MARGIN_N, flight->hover_n, gravity_n + HOVER_MARGIN_N);
     flight->hover_n = between(0.0F, flight->hover_n, THRUST_MAX_N);
+    est_law_set_sure_hover(&flight->est, flight->hover_n, descends(state));
 }
 
 /* The law keeps its integral action through COASTING alone. */
@@ -86,6 +131,8 @@ static void change_mode(flight_t *flight, flight_mode_t before, flight_mode_t no
     if (now == FLIGHT_MODE_LAW) {
         pid_resume(&flight->pid);
         pidt_resume(&flight->pidt);
+    } else if (now == FLIGHT_MODE_FLOAT) {
+        pidt_reset(&flight->pidt);
     } else if (flight->supervisor.state != FLIGHT_COASTING) {
         pid_reset(&flight->pid);
         pidt_reset(&flight->pidt);
@@ -124,7 +171,7 @@ static bool step_pid(flight_t *flight, const parameters_t *parameters)
     return flight->integral != had_integral;
 }
 
-static void step_pidt(flight_t *flight, const parameters_t *parameters)
+static void step_pidt(flight_t *flight, const parameters_t *parameters, float reference_m)
 {
     const height_track_t *height = &flight->supervisor.height;
     const float *value = parameters->value;
@@ -139,8 +186,8 @@ static void step_pidt(flight_t *flight, const parameters_t *parameters)
 
     if (height->is_new || !flight->pidt.primed) {
         const uint32_t rays_us = flight->est.rays_us;
-        flight->setpoint_n = pidt_step(&flight->pidt, &gains, flight->supervisor.reference_m,
-                                     height->height_mm * 0.001F, seconds(rays_us - flight->pidt_rays_us, GAP_MAX_S));
+        flight->setpoint_n = pidt_step(&flight->pidt, &gains, reference_m,
+                                       height->height_mm * 0.001F, seconds(rays_us - flight->pidt_rays_us, GAP_MAX_S));
         flight->pidt_rays_us = rays_us;
     }
 }
@@ -156,17 +203,37 @@ static void step_descent(flight_t *flight, bool started)
     }
 }
 
+/* The height that is held, above the terrain. */
+static float aim_m(const flight_t *flight)
+{
+    return (flight->supervisor.state == FLIGHT_FLOATING) ? flight->floating_m : flight->supervisor.reference_m;
+}
+
+/* Heights or the reference were lost before the vehicle left the ground: its motors stop gently. */
+static bool stops_on_ground(flight_t *flight)
+{
+    const flight_state_t state = flight->supervisor.state;
+    const bool gives_up = state == FLIGHT_COASTING || state == FLIGHT_DESCENDING || state == FLIGHT_LANDING;
+
+    flight->hopping = state == FLIGHT_TAKEOFF ? !flight->est.airborne && flight->supervisor.state_us < HOP_MAX_US
+                                              : flight->hopping && gives_up;
+    return flight->hopping && gives_up;
+}
+
 /* The thrust setpoint of the mode. Returns true when the law has gained or lost its integral action. */
 static bool run_mode(flight_t *flight, const parameters_t *parameters, bool mode_changed)
 {
-    const float reference_m = flight->supervisor.reference_m;
+    const float reference_m = aim_m(flight);
 
     switch (flight->mode) {
     case FLIGHT_MODE_LAW:
         if (flight->active_law != LAW_PIDT) {
             return step_pid(flight, parameters);
         }
-        step_pidt(flight, parameters);
+        step_pidt(flight, parameters, reference_m);
+        break;
+    case FLIGHT_MODE_FLOAT:
+        step_pidt(flight, parameters, reference_m);
         break;
     case FLIGHT_MODE_EST_HOLD:
         flight->setpoint_n = est_law_step(&flight->est, parameters, EST_MODE_HOLD, reference_m);
@@ -213,18 +280,148 @@ static void bumpless_transfer(flight_t *flight, flight_mode_t before, bool law_c
     }
 }
 
+/* How far the law wants to climb. */
+static float wanted_m(const flight_t *flight)
+{
+    const flight_state_t state = flight->supervisor.state;
+    const bool holds = state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING
+                    || (state == FLIGHT_FLOATING && flight->mode != FLIGHT_MODE_HOVER);
+    return holds ? aim_m(flight) - flight->supervisor.height.height_mm * 0.001F : NAN;
+}
+
+/* Its own thrust carries it, and nothing else. */
+static bool is_off_ground(const flight_t *flight, const flight_inputs_t *in)
+{
+    const flight_state_t state = flight->supervisor.state;
+    const bool low = flight->supervisor.height.height_mm < LOW_MM;
+
+    switch (state) {
+    case FLIGHT_GROUND:
+    case FLIGHT_CUT:
+        return false;
+    case FLIGHT_TAKEOFF:
+        return flight->est.airborne;
+    case FLIGHT_FLOATING:
+        return flight->mode != FLIGHT_MODE_HOVER;
+    case FLIGHT_LANDING:
+        return in->has_throttle && !low;
+    default:
+        return in->has_throttle;
+    }
+}
+
+static flown_t describe(const flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)
+{
+    const cascade_vehicle_t vehicle = est_law_vehicle(&flight->est, parameters);
+    const supervisor_t *supervisor = &flight->supervisor;
+
+    return (flown_t){
+        .step_s = supervisor->started ? seconds(in->now_us - supervisor->now_us, STEP_MAX_S) : 0.0F,
+        .grounded = supervisor->state == FLIGHT_GROUND,
+        .standing = supervisor->state == FLIGHT_TAKEOFF && !flight->est.airborne,
+        .off_ground = is_off_ground(flight, in),
+        .ours = in->has_throttle,
+        .ordered = in->reference_sequence != supervisor->reference_sequence,
+        .thrust_n = deadband_effect(&flight->est.deadband, flight->hover_n, flight->thrust_n),
+        .hover_n = flight->hover_n,
+        .authority_mps2_per_n = vehicle.authority_mps2_per_n,
+        .damping_per_s = vehicle.damping_per_s,
+        .wanted_m = wanted_m(flight),
+        .displaced = supervisor->state == FLIGHT_FLOATING && fabsf(wanted_m(flight)) > DISPLACED_M,
+        .noise_mps2 = flight->est.estimator.noise_mps2,
+        .bias_mps2 = flight->est.estimator.now.bias_mps2,
+    };
+}
+
+static void compare_height(flight_t *flight, const flown_t *flown, const flight_inputs_t *in)
+{
+    const bool is_new = in->height_valid && in->height_sequence != flight->scan_sequence;
+
+    if (is_new) {
+        flight->scan_sequence = in->height_sequence;
+        flight->scan_fit = integrity_scan(&flight->integrity, &in->altitude);
+    }
+    if (is_new && flight->scan_fit) {
+        integrity_height(&flight->integrity, flown, in->altitude.height_mm * 0.001F,
+                         seconds(in->height_time_us - flight->scan_time_us, GAP_LONG_S), RAYS_AGE_S);
+        flight->scan_time_us = in->height_time_us;
+    }
+}
+
+/* What the rest of the cycle is to know. */
+static void believe(flight_t *flight, const parameters_t *parameters, flight_inputs_t *in)
+{
+    integrity_t *integrity = &flight->integrity;
+    const flown_t flown = describe(flight, parameters, in);
+
+    integrity_tilt(integrity, in->frames, in->frame_count, in->roll_rad, in->pitch_rad, in->attitude_time_us);
+    if (integrity->jumped > 0U) {
+        in->altitude.height_mm = altitude_at_tilt(&in->altitude, integrity->roll_rad, integrity->pitch_rad);
+    }
+    in->roll_rad = integrity->roll_rad;
+    in->pitch_rad = integrity->pitch_rad;
+    in->tilted_frames = integrity->tilted;
+    integrity_frames(integrity, &flown, in->frames, in->frame_count);
+    integrity_thrust(integrity, &flown);
+    compare_height(flight, &flown, in);
+    in->height_valid = in->height_valid && flight->scan_fit && !integrity_doubts(integrity, DOUBT_SIGHT);
+    while (in->frame_count > 0U && (int32_t)(in->frames[0].sequence - integrity->unfit_sequence) <= 0) {
+        ++in->frames;
+        --in->frame_count;
+    }
+}
+
+/* A doubt has come or gone. */
+static void change_doubts(flight_t *flight)
+{
+    const integrity_t *integrity = &flight->integrity;
+    const uint16_t come = integrity->doubts & (uint16_t)~flight->doubts;
+    const uint16_t gone = flight->doubts & (uint16_t)~integrity->doubts;
+
+    if ((come & DOUBT_SIGHT) != 0U) {
+        estimator_amend(&flight->est.estimator, flight->est.estimator.now.height_m - integrity->lost_m,
+                        integrity_speed_mps(integrity), integrity->bias_mps2);
+    }
+    if (((come & DOUBT_SIGHT) != 0U || (gone & DOUBT_THRUST) != 0U) && flight->est.airborne) {
+        est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
+    }
+    est_law_set_powerless(&flight->est, integrity_doubts(integrity, DOUBT_THRUST));
+    flight->doubts = integrity->doubts;
+}
+
 static void supervise(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)
 {
     const estimator_t *estimator = &flight->est.estimator;
     const estimate_t *now = &estimator->now;
 
     est_law_predict(&flight->est, parameters, in->frames, in->frame_count, in->now_us);
+    change_doubts(flight);
     const vertical_estimate_t estimate = {
-        .known = est_law_ready(&flight->est) && estimator->confirmed,
+        .known = has_estimate(flight) && estimator->confirmed,
         .height_mm = now->height_m * 1000.0F,
         .climb_mm_s = (now->speed_mps - now->terrain_mps) * 1000.0F,
+        .stands = integrity_stands(&flight->integrity) || (flight->hopping && flight->thrust_n <= 0.0F),
+        .sways = integrity_sways(&flight->integrity),
     };
     supervisor_step(&flight->supervisor, parameters->value[PARAMETER_LINK], in, &estimate);
+}
+
+/* By one of the laws that do not know themselves when they leave the ground: the heights tell, or the accelerometer. */
+static bool flies(const flight_t *flight)
+{
+    return flight->supervisor.state == FLIGHT_FLYING
+        || (flight->supervisor.state == FLIGHT_TAKEOFF && flight->integrity.felt.speed_mps > LIFTED_MPS * flight->integrity.shaken);
+}
+
+/* The thrust that would carry it, by the acceleration and the speed that the present one makes of it. */
+static float lifting_n(const flight_t *flight, const parameters_t *parameters)
+{
+    const cascade_vehicle_t vehicle = est_law_vehicle(&flight->est, parameters);
+    const float taken_mps2 = flight->est.lift_mps2 + vehicle.damping_per_s * flight->integrity.felt.speed_mps;
+    const float gravity_n = parameters->value[PARAMETER_GRAV];
+    const float hover_n = flight->est.actuator.thrust_n - taken_mps2 / vehicle.authority_mps2_per_n;
+
+    return has_estimate(flight) ? between(gravity_n - HOVER_MARGIN_N, hover_n, gravity_n + HOVER_MARGIN_N) : flight->hover_n;
 }
 
 static void update_estimator(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)
@@ -237,10 +434,10 @@ static void update_estimator(flight_t *flight, const parameters_t *parameters, c
     }
     if (state == FLIGHT_GROUND) {
         est_law_reset(&flight->est, parameters);
-    } else if (state == FLIGHT_FLOATING) {
+    } else if (state == FLIGHT_FLOATING && !in->has_throttle) {
         est_law_disengage(&flight->est);
-    } else if (state == FLIGHT_FLYING && flight->mode == FLIGHT_MODE_LAW && !flight->est.airborne) {
-        est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
+    } else if (flight->mode == FLIGHT_MODE_LAW && !flight->est.airborne && flies(flight)) {
+        est_law_engage(&flight->est, flight->thrust_n, lifting_n(flight, parameters));
     }
 }
 
@@ -250,7 +447,7 @@ static bool select_law(flight_t *flight, const parameters_t *parameters)
     const control_law_t before = flight->active_law;
     const control_law_t wanted = (control_law_t)parameters_choice(parameters, PARAMETER_LAW);
 
-    flight->active_law = (wanted == LAW_EST && !est_law_ready(&flight->est)) ? LAW_PIDT : wanted;
+    flight->active_law = (wanted == LAW_EST && !has_estimate(flight)) ? LAW_PIDT : wanted;
     return flight->active_law != before;
 }
 
@@ -263,13 +460,70 @@ static bool uses_estimate(const flight_t *flight)
     case FLIGHT_FLYING:
         return flight->active_law == LAW_EST;
     case FLIGHT_COASTING:
-        return flight->active_law == LAW_EST || (flight->est.airborne && est_law_ready(&flight->est));
+        return flight->active_law == LAW_EST || (flight->est.airborne && has_estimate(flight));
     case FLIGHT_LANDING:
     case FLIGHT_LOWERING:
-        return est_law_ready(&flight->est) && supervisor_has_estimate(&flight->supervisor);
+        return has_estimate(flight) && supervisor_has_estimate(&flight->supervisor);
     default:
-        return est_law_ready(&flight->est);
+        return has_estimate(flight);
     }
+}
+
+/* A pilot's mode switch must not cut the motors: while he has the throttle the hover thrust stands by. */
+static flight_mode_t select_mode(const flight_t *flight, const flight_inputs_t *in)
+{
+    if (flight->supervisor.state == FLIGHT_FLOATING && !in->has_throttle) {
+        return FLIGHT_MODE_HOVER;
+    }
+    return (uses_estimate(flight) ? modes_with_estimate : modes_without_estimate)[flight->supervisor.state];
+}
+
+static bool is_hold_mode(flight_mode_t mode)
+{
+    return mode == FLIGHT_MODE_EST_HOLD || mode == FLIGHT_MODE_FLOAT;
+}
+
+/* FLOATING begins where the vehicle is, and goes with it if something else moves it. */
+static void float_along(flight_t *flight, bool entered)
+{
+    const float height_m = flight->supervisor.height.height_mm * 0.001F;
+    const bool holds = !entered && flight->supervisor.state == FLIGHT_FLOATING && flight->mode != FLIGHT_MODE_HOVER;
+
+    flight->floating_m = holds ? between(height_m - FLOAT_REACH_M, flight->floating_m, height_m + FLOAT_REACH_M) : height_m;
+}
+
+/* Climbs that no height confirms stay slow, and no climb is faster than the law wants it, whatever the estimate says of it:
+ * what a climb costs in thrust is known. */
+static float within_climb_n(const flight_t *flight, const parameters_t *parameters, float thrust_n)
+{
+    const cascade_vehicle_t vehicle = est_law_vehicle(&flight->est, parameters);
+    const bool est = flight->mode == FLIGHT_MODE_EST_HOLD;
+    const float unconfirmed_mps = flight->supervisor.state == FLIGHT_TAKEOFF ? TAKEOFF_MPS : UNCONFIRMED_MPS;
+    const float fastest_mps = integrity_unconfirmed(&flight->integrity) ? unconfirmed_mps
+                                                                        : parameters->value[PARAMETER_VUP] + CLIMB_MARGIN_MPS;
+    const float most_n = flight->hover_n + vehicle.damping_per_s * fastest_mps / vehicle.authority_mps2_per_n;
+    const float felt_mps = integrity_felt_mps(&flight->integrity);
+    const bool fast = flight->integrity.pushed.speed_mps > fastest_mps - 0.1F
+                   && (flight->supervisor.state != FLIGHT_TAKEOFF || felt_mps > fastest_mps - 0.1F);
+
+    return (fast && (est || (flight->mode == FLIGHT_MODE_LAW && flight->active_law == LAW_PIDT)))
+             ? fminf(thrust_n, most_n) : thrust_n;
+}
+
+/* Commands without an effect are not made stronger: whoever flies gives back a vehicle that this thrust carries. FLOATING
+ * does not know who flies. */
+static float within_power_n(const flight_t *flight, float thrust_n)
+{
+    const float held_n = flight->integrity.held_n;
+
+    if (flight->supervisor.state == FLIGHT_FLOATING) {
+        return between(flight->hover_n - FLOATING_WINDOW_N, thrust_n, flight->hover_n + FLOATING_WINDOW_N);
+    }
+    if (!integrity_doubts(&flight->integrity, DOUBT_THRUST)) {
+        return thrust_n;
+    }
+    return flight->integrity.held_down ? fmaxf(thrust_n, held_n - POWERLESS_WINDOW_N)
+                                       : fminf(thrust_n, held_n + POWERLESS_WINDOW_N);
 }
 
 /* Judged where the law acts: what the supervisor does by itself goes elsewhere. */
@@ -312,7 +566,9 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
     out->pulse_us = thrust_to_pulse_us(flight->thrust_n);
     out->state = supervisor->state;
     out->flags = (uint16_t)(supervisor->flags | (imu_missing ? FLIGHT_FLAG_ATTITUDE : 0U)
-                            | (flight->out_of_reach ? FLIGHT_FLAG_REACH : 0U));
+                            | (flight->out_of_reach ? FLIGHT_FLAG_REACH : 0U)
+                            | flight->integrity.doubts * FLIGHT_FLAG_SIGHT);
+    out->doubts = flight->integrity.doubts;
     out->reference_m = supervisor->reference_m;
     out->estimate_mm = estimated ? estimator->now.height_m * 1000.0F : measured_mm;
     out->innovation_mm = estimated ? estimator->innovation_m * 1000.0F : NAN;
@@ -322,18 +578,26 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
 void flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in, flight_outputs_t *out)
 {
     const flight_mode_t before = flight->mode;
+    flight_inputs_t believed = *in;
 
-    supervise(flight, parameters, in);
-    update_estimator(flight, parameters, in);
+    believe(flight, parameters, &believed);
+    supervise(flight, parameters, &believed);
+    update_estimator(flight, parameters, &believed);
     const bool law_changed = select_law(flight, parameters);
-    flight->mode = (uses_estimate(flight) ? modes_with_estimate : modes_without_estimate)[flight->supervisor.state];
+    flight->mode = select_mode(flight, in);
     if (before != flight->mode) {
         change_mode(flight, before, flight->mode);
     }
     update_hover(flight, parameters->value[PARAMETER_GRAV]);
-    const bool action_changed = run_mode(flight, parameters, before != flight->mode);
+    float_along(flight, !is_hold_mode(before));
+    const bool stops = stops_on_ground(flight);
+    const bool action_changed = !stops && run_mode(flight, parameters, before != flight->mode);
+    if (stops) {
+        flight->setpoint_n = flight->thrust_n - STOP_N_PER_S * seconds(flight->supervisor.step_us, STEP_MAX_S);
+        flight->transfer_n = 0.0F;
+    }
     bumpless_transfer(flight, before, law_changed || action_changed);
-    flight->thrust_n = between(0.0F, flight->setpoint_n + flight->transfer_n, THRUST_MAX_N);
+    flight->thrust_n = between(0.0F, within_power_n(flight, within_climb_n(flight, parameters, flight->setpoint_n + flight->transfer_n)), THRUST_MAX_N);
     est_law_record_command(&flight->est, flight->thrust_n);
     judge_reach(flight);
     write_outputs(flight, parameters, out);

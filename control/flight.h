@@ -9,6 +9,7 @@
 #include "control/descent.h"
 #include "control/est/est_law.h"
 #include "control/flight_io.h"
+#include "control/integrity.h"
 #include "control/parameters.h"
 #include "control/pid.h"
 #include "control/pidt.h"
@@ -20,6 +21,7 @@ typedef enum {
     FLIGHT_MODE_IDLE,                    /* nobody: none */
     FLIGHT_MODE_LAW,                     /* PD, PID, PIDT */
     FLIGHT_MODE_HOVER,
+    FLIGHT_MODE_FLOAT,                   /* the height of the moment, by the heights */
     FLIGHT_MODE_DESCENT,
     FLIGHT_MODE_BLIND_DESCENT,
     FLIGHT_MODE_EST_HOLD,                    /* law EST, also while it coasts */
@@ -29,6 +31,13 @@ typedef enum {
 
 typedef struct {
     supervisor_t supervisor;
+    integrity_t integrity;
+    uint32_t scan_sequence;         /* of the latest scan that was judged */
+    uint32_t scan_time_us;          /* of the latest height that was compared */
+    bool scan_fit;
+    uint16_t doubts;                /* of the cycle before */
+    bool hopping;                   /* TAKEOFF was left without leaving the ground */
+    float floating_m;               /* the height that FLOATING holds */
     flight_mode_t mode;
     pid_state_t pid;
     bool integral;                  /* the law had an integral action in the previous cycle */
@@ -40,9 +49,10 @@ typedef struct {
     reach_t reach;
     float reach_m;                  /* the reference that it is about */
     bool out_of_reach;              /* the reference in force, as it seems */
-    float hover_n;                  /* best known hover thrust: the estimator's, or else the slow mean of the thrust while
-                                     * FLYING; GRAV +-1.5 N */
+    float hover_n;                  /* hover thrust that is sure: the estimator's, or else the mean of the thrust, followed
+                                     * with 2.5 s in flight while nothing is doubted; GRAV +-1.5 N */
     bool hover_learned;                  /* in the present flight: hover_n outlasts a pilot's turn */
+    float learned_s;                /* for how long it has been learned, at most 2.5 s */
     float setpoint_n;                /* thrust that the mode asks for */
     float transfer_n;                /* added to it, fades out: bumpless transfer between modes */
     float thrust_n;                 /* the previous command */

@@ -15,12 +15,13 @@
 typedef struct {
     uint32_t now_us;
     bool height_valid;              /* the latest scan gave a height; false: altitude is not looked at */
-    altitude_t altitude;            /* a height outside -500 .. 5000 mm or NaN is treated as not valid */
+    altitude_t altitude;            /* a height outside -50 .. 5000 mm or NaN is treated as not valid */
     uint32_t height_time_us;        /* arrival of the latest valid height; meaningless before the first */
     uint32_t height_sequence;       /* +1 per valid height; 0 = never one */
     bool attitude_ready;            /* offset known */
     float roll_rad;                 /* median of the latest five frames; not used by laws PD and PID */
     float pitch_rad;                /* likewise */
+    uint16_t tilted_frames;         /* frames in a row over 45 degrees, where they come faster than cycles; or 0 */
     uint32_t attitude_time_us;      /* arrival of the latest IMU frame */
     uint32_t height_stamp_ms;       /* 24-bit sensor time of that scan; for laws PIDT and EST */
     const imu_sample_t *frames;   /* the latest frames, oldest first, old ones again or not; for law EST; borrowed for
@@ -43,6 +44,7 @@ typedef struct {
     float pulse_us;                 /* throttle pulse, thrust.h */
     flight_state_t state;
     uint16_t flags;                 /* FLIGHT_FLAG_* */
+    uint16_t doubts;                /* DOUBT_*, integrity.h */
     float reference_m;              /* reference in force, 0 = none */
     float estimate_mm;              /* height that the law acts on; NAN: none is known */
     float innovation_mm;            /* latest height less its prediction; NAN where nothing is predicted */

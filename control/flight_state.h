@@ -25,6 +25,9 @@ typedef enum {
 #define FLIGHT_FLAG_LINK 16U        /* armed link is silent */
 #define FLIGHT_FLAG_TILT 32U        /* tilted over 45 degrees, or CUT */
 #define FLIGHT_FLAG_PILOT 64U       /* the pilot has the throttle */
+#define FLIGHT_FLAG_SIGHT 256U      /* heights are in doubt, integrity.h */
+#define FLIGHT_FLAG_IMU 512U        /* accelerations are */
+#define FLIGHT_FLAG_THRUST 1024U    /* commands have no effect */
 #define FLIGHT_FLAG_REACH 128U      /* the reference is not reached: over 0.1 m off for 3 s and no nearer; from flight.h */
 
 /* "GROUND", ... as shown by the telemetry. */
@@ -34,11 +37,12 @@ const char *flight_state_name(flight_state_t state);
 #define FLIGHT_IF_REFERENCE 1U      /* a reference above 0 is in force */
 #define FLIGHT_IF_READY 2U          /* the IMU's offset is known */
 #define FLIGHT_IF_HEIGHT 4U         /* the latest valid height is at most 0.3 s old */
-#define FLIGHT_IF_LOST 8U           /* the latest valid height is more than 1.0 s old, or there never was one */
+#define FLIGHT_IF_LOST 8U           /* the latest valid height is more than 1.5 s old, or there never was one */
 #define FLIGHT_IF_OFF_GROUND 16U    /* fresh height above 0.15 m */
 #define FLIGHT_IF_ALOFT 32U         /* fresh heights above 0.15 m for 1 s */
 #define FLIGHT_IF_AT_REST 64U       /* fresh heights below 0.05 m that did not fall by 0.02 m for 1.2 s in the present
-                                     * state */
+                                     * state; or, in LANDING and DESCENDING, less thrust than flies for 0.6 s,
+                                     * and no fall is measured */
 #define FLIGHT_IF_TOO_HIGH 128U     /* an estimate from where the present climb, 0.25 s long and then braked by 4 m/s2, ends
                                      * above reference + 0.8 m; or two heights in a row, their own climb 0.15 s long, or
                                      * 0.4 s when there has been no estimate for 0.35 s */
@@ -50,7 +54,9 @@ const char *flight_state_name(flight_state_t state);
 #define FLIGHT_IF_LOWERING_LIMIT 8192U       /* the third LOWERING since the reference was set or 20 s of FLYING: the law cannot fly
                                      * this vehicle */
 #define FLIGHT_IF_HAS_THROTTLE 16384U       /* the pilot does not have the throttle */
-#define FLIGHT_IF_ALL 32767U
+#define FLIGHT_IF_HANDED_OVER 32768U         /* the pilot gave the throttle back in this cycle, there is no height, and
+                                     * the tilt sways as it does in the air */
+#define FLIGHT_IF_ALL 65535U
 
 typedef struct {
     flight_state_t from;
@@ -59,7 +65,7 @@ typedef struct {
     flight_state_t to;
 } flight_transition_t;
 
-#define FLIGHT_TRANSITION_COUNT 40U
+#define FLIGHT_TRANSITION_COUNT 43U
 extern const flight_transition_t flight_transitions[FLIGHT_TRANSITION_COUNT];
 
 /* The first row of the table that applies, else the same state. */

@@ -6,7 +6,7 @@
 #include "control/parameters.h"
 
 #define HEIGHT_FRESH_US UINT32_C(300000)
-#define HEIGHT_LOST_US UINT32_C(1000000)
+#define HEIGHT_LOST_US UINT32_C(1500000)
 #define ATTITUDE_FRESH_US UINT32_C(250000)
 #define ALOFT_HELD_US UINT32_C(1000000)
 #define REST_HELD_US UINT32_C(1200000)
@@ -14,7 +14,7 @@
 #define DESCENT_TIMEOUT_US UINT32_C(45000000)
 #define AGE_MAX_US UINT32_C(3600000000)
 
-#define HEIGHT_MIN_MM (-500.0F)
+#define HEIGHT_MIN_MM (-50.0F)
 #define HEIGHT_MAX_MM 5000.0F
 #define OFF_GROUND_MM 150.0F
 #define REST_BELOW_MM 50.0F
@@ -113,6 +113,9 @@ static void observe_attitude(supervisor_t *s, const flight_inputs_t *in)
         s->tilted_count = tilted ? (uint16_t)(s->tilted_count + (s->tilted_count < TILTED_ATTITUDES)) : 0U;
         s->level = upright > LEVEL_COS;
     }
+    if (in->tilted_frames >= TILTED_ATTITUDES) {
+        s->tilted_count = TILTED_ATTITUDES;
+    }
 }
 
 static void observe_link(supervisor_t *s, const flight_inputs_t *in)
@@ -191,7 +194,14 @@ static void observe_estimate(supervisor_t *s, const vertical_estimate_t *estimat
 {
     s->estimated_peak_mm =
         estimate->known ? peak_mm(s, estimate->height_mm, estimate->climb_mm_s, ESTIMATE_AHEAD_S) : NAN;
+    s->stands = estimate->stands && (s->state == FLIGHT_LANDING || s->state == FLIGHT_DESCENDING);
     s->estimate_age_us = estimate->known ? 0U : add_time(s->estimate_age_us, s->step_us);
+}
+
+static void observe_hand_over(supervisor_t *s, const flight_inputs_t *in, const vertical_estimate_t *estimate)
+{
+    s->handed_over = in->has_throttle && s->pilots && estimate->sways && s->height.age_us > HEIGHT_LOST_US;
+    s->pilots = !in->has_throttle;
 }
 
 static void observe_climb(supervisor_t *s)
@@ -230,7 +240,7 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
                       | bit(s->height.age_us > HEIGHT_LOST_US, FLIGHT_IF_LOST)
                       | bit(fresh && s->height.height_mm > OFF_GROUND_MM, FLIGHT_IF_OFF_GROUND)
                       | bit(s->aloft.for_us >= ALOFT_HELD_US, FLIGHT_IF_ALOFT)
-                      | bit(s->rest.for_us >= REST_HELD_US, FLIGHT_IF_AT_REST)
+                      | bit(s->stands || s->rest.for_us >= REST_HELD_US, FLIGHT_IF_AT_REST)
                       | bit(fresh && reference && too_high(s), FLIGHT_IF_TOO_HIGH)
                       | bit(fresh && recovered(s), FLIGHT_IF_RECOVERED)
                       | bit(s->land, FLIGHT_IF_LAND)
@@ -238,6 +248,7 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
                       | bit(lowering_limit, FLIGHT_IF_LOWERING_LIMIT)
                       | bit(s->tilted_count == TILTED_ATTITUDES, FLIGHT_IF_TILTED)
                       | bit(s->level && attitude_fresh(s), FLIGHT_IF_LEVEL)
+                      | bit(s->handed_over, FLIGHT_IF_HANDED_OVER)
                       | bit(in->has_throttle, FLIGHT_IF_HAS_THROTTLE));
 }
 
@@ -291,6 +302,7 @@ void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs
     observe_reference(supervisor, link_s, in);
     observe_estimate(supervisor, estimate);
     observe_ground(supervisor);
+    observe_hand_over(supervisor, in, estimate);
     observe_climb(supervisor);
 
     const uint16_t met = conditions(supervisor, in);

@@ -13,6 +13,8 @@ typedef struct {
     bool known;                     /* false: the rest is not looked at */
     float height_mm;
     float climb_mm_s;               /* upwards, against the terrain */
+    bool stands;                    /* known or not: too little thrust to fly, and no fall is measured */
+    bool sways;                     /* likewise: the tilt moves as it does in the air */
 } vertical_estimate_t;
 
 /* The latest valid height. */
@@ -56,6 +58,9 @@ typedef struct {
     float estimated_peak_mm;        /* above the reference; NAN: no estimate */
     uint32_t estimate_age_us;
     uint16_t tilted_count;
+    bool stands;
+    bool pilots;                    /* the pilot had the throttle in the cycle before */
+    bool handed_over;
     bool level;
 } supervisor_t;
 

@@ -19,6 +19,9 @@
 #define IN_THE_AIR_M 0.04F
 #define MODEL_NOISE_MPS2 0.84F
 #define HEIGHTS_MISSING_S 0.2F
+#define LEARN_WITHOUT_HEIGHTS_S 0.3F
+#define FRAMES_FRESH_S ((float)ESTIMATOR_FRESH_US * 1.0e-6F)
+#define AGE_MAX_S 3600.0F
 #define MODEL_NOISE_ALONE_MPS2 0.15F
 #define GUST_N_PER_M 28.0F
 
@@ -44,7 +47,10 @@
 #define SINK_PER_S 0.07F
 #define SINK_MAX_MPS 0.6F
 #define SINK_ABOVE_HOVER_N 0.5F
+#define SINK_BELOW_HOVER_N 1.3F
 #define SINK_FADE_N_PER_S 0.2F
+#define LAND_ABOVE_HOVER_N 1.5F
+#define LAND_FADE_N_PER_S 0.1F
 #define LOW_M 0.04F
 #define LOW_NO_MORE_M 0.10F
 #define LOW_ABOVE_HOVER_N 0.5F
@@ -98,6 +104,9 @@ static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt
     const float seen_n = law->actuator.thrust_n * vehicle.upright - taken_n;
     const float doubt_n = SPEED_DOUBT_N_PER_MPS * fabsf(e->now.speed_mps);
 
+    if (law->heightless_s > LEARN_WITHOUT_HEIGHTS_S || e->unchecked_count > 0U || law->powerless) {
+        return; /* nothing but itself says that the speed is right */
+    }
     if (e->now.height_m > IN_THE_AIR_M || seen_n > law->hover.thrust_n) {
         hover_step(&law->hover, seen_n, e->noise_mps2 / vehicle.authority_mps2_per_n + doubt_n, dt_s);
     }
@@ -109,7 +118,7 @@ static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt
 /* No height for long. */
 static bool heights_missing(const est_law_t *law)
 {
-    return seconds(law->rays_us, law->now_us) > HEIGHTS_MISSING_S;
+    return law->heightless_s > HEIGHTS_MISSING_S;
 }
 
 /* Known once it flies. */
@@ -119,7 +128,7 @@ static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_
     const estimate_t *now = &law->estimator.now;
 
     return (modelled_motion_t){
-        .known = law->airborne && law->estimator.initialised && now->height_m > IN_THE_AIR_M,
+        .known = law->airborne && !law->powerless && law->estimator.initialised && now->height_m > IN_THE_AIR_M,
         .up_mps2 = vehicle.authority_mps2_per_n * (law->actuator.thrust_n * vehicle.upright - vehicle.need_n)
                  - vehicle.damping_per_s * now->speed_mps,
         .noise_mps2 = heights_missing(law) ? MODEL_NOISE_ALONE_MPS2 : MODEL_NOISE_MPS2,
@@ -136,6 +145,7 @@ static void predict_frame(est_law_t *law, const parameters_t *parameters, const 
         return;
     }
     actuator_advance(&law->actuator, law->estimator.now_us);
+    law->frameless_s = seconds(law->estimator.now_us, law->now_us);
     law->lift_mps2 += fminf(dt_s / LIFT_FILTER_S, 1.0F)
                     * (law->estimator.up_mps2 - law->estimator.now.bias_mps2 - law->lift_mps2);
     if (law->airborne) {
@@ -156,8 +166,13 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_s
     }
     law->step_s = between(0.0F, seconds(law->now_us, now_us), STEP_MAX_S);
     law->now_us = now_us;
+    law->heightless_s = fminf(law->heightless_s + law->step_s, AGE_MAX_S);
+    law->frameless_s = fminf(law->frameless_s + law->step_s, AGE_MAX_S);
     for (uint16_t i = 0U; i < count; ++i) {
         predict_frame(law, parameters, &frames[i]);
+    }
+    if (law->frameless_s > FRAMES_FRESH_S) {
+        actuator_advance(&law->actuator, now_us - ESTIMATOR_FRESH_US); /* no frame does it, for however long */
     }
 }
 
@@ -176,6 +191,7 @@ void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t st
                          bool at_rest)
 {
     law->rays_us = ray_clock_step(&law->ray_clock, stamp_ms, arrival_us);
+    law->heightless_s = seconds(law->rays_us, law->now_us);
     const height_outcome_t outcome =
         estimator_fuse_height(&law->estimator, altitude, law->rays_us, at_rest || on_ground(law));
     if (law->airborne && outcome == HEIGHT_FUSED) {
@@ -186,7 +202,7 @@ void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t st
 
 bool est_law_has_imu(const est_law_t *law)
 {
-    return law->estimator.has_frames && law->now_us - law->estimator.latest.time_us <= ESTIMATOR_FRESH_US;
+    return law->estimator.has_frames && law->frameless_s <= FRAMES_FRESH_S;
 }
 
 bool est_law_ready(const est_law_t *law)
@@ -204,9 +220,10 @@ void est_law_reset(est_law_t *law, const parameters_t *parameters)
 {
     law->airborne = false;
     law->ramping = false;
+    law->powerless = false;
+    law->ceiling_n = THRUST_MAX_N;
     law->ramp_n = RAMP_START * parameters->value[PARAMETER_GRAV];
     law->reference_terrain_m = law->estimator.terrain_height_m;
-    law->sinking_s = 0.0F;
     law->near_ground_s = 0.0F;
     start_hover(law, parameters, parameters->value[PARAMETER_GRAV], HOVER_SIGMA_START_N);
     cascade_init(&law->cascade, law->ramp_n);
@@ -216,12 +233,34 @@ void est_law_engage(est_law_t *law, float thrust_n, float hover_n)
 {
     law->airborne = true;
     law->reference_terrain_m = law->estimator.terrain_height_m;
-    law->sinking_s = 0.0F;
     law->near_ground_s = 0.0F;
     law->hover.thrust_n = between(law->hover.least_n, hover_n, law->hover.most_n);
     law->hover.variance_n2 = HOVER_SIGMA_TAKE_OVER_N * HOVER_SIGMA_TAKE_OVER_N;
     law->hover.gust_n = 0.0F;
     cascade_init(&law->cascade, thrust_n);
+}
+
+void est_law_set_sure_hover(est_law_t *law, float hover_n, bool descending)
+{
+    law->sure_hover_n = hover_n;
+    if (!descending) {
+        law->ceiling_n = THRUST_MAX_N;
+        law->entry_hover_n = hover_n;
+    }
+}
+
+void est_law_set_powerless(est_law_t *law, bool powerless)
+{
+    law->powerless = powerless;
+    if (powerless) {
+        law->hover.thrust_n = between(law->hover.least_n, law->sure_hover_n, law->hover.most_n);
+        law->hover.gust_n = 0.0F;
+    }
+}
+
+cascade_vehicle_t est_law_vehicle(const est_law_t *law, const parameters_t *parameters)
+{
+    return vehicle_model(law, parameters);
 }
 
 void est_law_disengage(est_law_t *law)
@@ -285,28 +324,36 @@ static void update_timers(est_law_t *law, est_mode_t mode, float height_m)
 {
     const bool low = height_m < LOW_M || (law->near_ground_s > 0.0F && height_m < LOW_NO_MORE_M);
 
-    law->sinking_s = (mode == EST_MODE_SINK) ? law->sinking_s + law->step_s : 0.0F;
     law->near_ground_s = (mode == EST_MODE_LAND && low) ? law->near_ground_s + law->step_s : 0.0F;
 }
 
-/* More and more certainly down: without heights whatever the estimate says, and with them once the ground is there, so
- * that no gust and no wrong hover thrust lifts the vehicle again. */
-static float thrust_limit_n(const est_law_t *law, est_mode_t mode)
+/* More and more certainly down, from the hover thrust that was sure when the descent began: nothing that is learned on the
+ * way, and no turn from one kind of descent to the other, raises it again. */
+static void lower_ceiling(est_law_t *law, est_mode_t mode)
 {
-    const float hover_n = law->hover.thrust_n;
+    const bool sinks = mode == EST_MODE_SINK;
+    const float above_n = sinks ? SINK_ABOVE_HOVER_N : LAND_ABOVE_HOVER_N;
+    const float fade_n_per_s = sinks ? SINK_FADE_N_PER_S : LAND_FADE_N_PER_S;
 
-    switch (mode) {
-    case EST_MODE_LAND:
-        if (law->near_ground_s > 0.0F) {
-            return fmaxf(hover_n + LOW_ABOVE_HOVER_N - LOW_FADE_N_PER_S * law->near_ground_s, 0.0F);
-        }
-        return THRUST_MAX_N;
-    case EST_MODE_SINK:
-        return fmaxf(hover_n + SINK_ABOVE_HOVER_N - SINK_FADE_N_PER_S * law->sinking_s, 0.0F);
-    case EST_MODE_HOLD:
-    default:
-        return THRUST_MAX_N;
+    if (mode == EST_MODE_HOLD) {
+        return;
     }
+    law->ceiling_n = fminf(law->ceiling_n - fade_n_per_s * law->step_s, law->entry_hover_n + above_n);
+    law->ceiling_n = fmaxf(law->ceiling_n, 0.0F);
+}
+
+static float thrust_most_n(const est_law_t *law, est_mode_t mode)
+{
+    const float low_n = law->hover.thrust_n + LOW_ABOVE_HOVER_N - LOW_FADE_N_PER_S * law->near_ground_s;
+    const bool low = mode == EST_MODE_LAND && law->near_ground_s > 0.0F;
+
+    return low ? fminf(law->ceiling_n, fmaxf(low_n, 0.0F)) : law->ceiling_n;
+}
+
+/* Without heights a speed that is wrong must not drop the vehicle. */
+static float thrust_least_n(const est_law_t *law, est_mode_t mode)
+{
+    return (mode == EST_MODE_SINK) ? fmaxf(law->entry_hover_n - SINK_BELOW_HOVER_N, 0.0F) : 0.0F;
 }
 
 static float height_setpoint_m(est_law_t *law, const parameters_t *parameters, float reference_m)
@@ -362,7 +409,8 @@ float est_law_step(est_law_t *law, const parameters_t *parameters, est_mode_t mo
     const float thrust_n = cascade_step(&law->cascade, &gains, &vehicle, &state, speed_mps, law->step_s);
 
     update_timers(law, mode, state.height_m);
-    const float limited_n = fminf(thrust_n, thrust_limit_n(law, mode));
+    lower_ceiling(law, mode);
+    const float limited_n = fminf(fmaxf(thrust_n, thrust_least_n(law, mode)), thrust_most_n(law, mode));
     return deadband_compensate(&law->deadband, law->hover.thrust_n, limited_n);
 }
 

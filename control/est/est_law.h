@@ -38,7 +38,12 @@ typedef struct {
     float lift_mps2;        /* low-passed upward acceleration */
     float reference_m;
     float reference_terrain_m;      /* estimator.terrain_height_m where reference_m was given */
-    float sinking_s;           /* for how long it has been sinking without a height */
+    float sure_hover_n;     /* hover thrust as it has been known for some seconds */
+    float entry_hover_n;    /* the same when the present descent began */
+    float ceiling_n;        /* most thrust of a descent */
+    bool powerless;         /* commands have no effect */
+    float heightless_s;     /* since the rays of the latest height */
+    float frameless_s;      /* since the content of the latest frame */
     float near_ground_s;            /* for how long it has been at the ground while landing */
 } est_law_t;
 
@@ -61,6 +66,16 @@ bool est_law_ready(const est_law_t *law);
 void est_law_reset(est_law_t *law, const parameters_t *parameters);
 /* In the air, taking over: hover_n is the best known hover thrust, thrust_n the previous command. */
 void est_law_engage(est_law_t *law, float thrust_n, float hover_n);
+
+/* The hover thrust that is known from before what may now be in doubt, each cycle. A descent is bounded by the one that
+ * it began with. */
+void est_law_set_sure_hover(est_law_t *law, float hover_n, bool descending);
+
+/* Commands have no effect: nothing is learned or expected from them, and the hover thrust is the sure one. */
+void est_law_set_powerless(est_law_t *law, bool powerless);
+
+/* What thrust does to the vehicle, as it is known now. */
+cascade_vehicle_t est_law_vehicle(const est_law_t *law, const parameters_t *parameters);
 
 /* Somebody else's thrust moves the vehicle: nothing is learned or expected from the commands until
  * est_law_engage(). */

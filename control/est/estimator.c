@@ -178,7 +178,7 @@ static void predict_now(estimator_t *e)
     e->now_us = time_us;
 }
 
-static float upward_mps2(const imu_sample_t *frame)
+float motion_up_mps2(const imu_sample_t *frame)
 {
     const float level = cosf(frame->median.pitch_rad);
     return frame->down_mps2 * level * cosf(frame->median.roll_rad) + frame->right_mps2 * level * sinf(frame->median.roll_rad)
@@ -238,7 +238,7 @@ void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motio
 {
     const uint32_t time_us = frame->arrival_us - FRAME_AGE_US;
     const int32_t gap_us = (int32_t)(time_us - e->now_us);
-    const float up_mps2 = upward_mps2(frame);
+    const float up_mps2 = motion_up_mps2(frame);
 
     if (!usable(frame, up_mps2) || (int32_t)(frame->sequence - e->sequence) <= 0) {
         return;
@@ -402,4 +402,15 @@ height_outcome_t estimator_fuse_height(estimator_t *e, const altitude_t *altitud
     }
     predict_now(e);
     return outcome;
+}
+
+void estimator_amend(estimator_t *e, float height_m, float speed_mps, float bias_mps2)
+{
+    e->delayed.height_m += height_m - e->now.height_m;
+    e->delayed.speed_mps += speed_mps - e->now.speed_mps;
+    e->delayed.bias_mps2 = bias_mps2;
+    e->delayed.terrain_mps = 0.0F;
+    reset_covariance(e);
+    bound_states(&e->delayed);
+    predict_now(e);
 }

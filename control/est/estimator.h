@@ -83,4 +83,10 @@ void estimator_predict(estimator_t *estimator, const imu_sample_t *frame, modell
 height_outcome_t estimator_fuse_height(estimator_t *estimator, const altitude_t *altitude, uint32_t rays_us,
                                        bool at_rest);
 
+/* What the frame's accelerometer feels upwards, gravity removed. */
+float motion_up_mps2(const imu_sample_t *frame);
+
+/* The heights of late were wrong: height, speed and bias are these now. */
+void estimator_amend(estimator_t *estimator, float height_m, float speed_mps, float bias_mps2);
+
 #endif

@@ -24,7 +24,7 @@ typedef struct {
     double acceleration_bias_m_s2;
     double height_noise_mm;
     double tilt_rad;                /* amplitude of roll, 0.6 Hz */
-    double fallen_rad;              /* added to the roll that the supervisor sees */
+    double fallen_rad;              /* added to the roll that the IMU tells */
     double glitch;                  /* probability of a height 350 mm off */
     bool imu_mute;
     bool no_acceleration;
@@ -84,7 +84,7 @@ static inline void noisy_frame(noisy_t *n, uint32_t clock_us)
     f->forward_mps2 = 0.0F;
     f->right_mps2 = (float)(felt * sin(roll));
     f->down_mps2 = (float)(felt * cos(roll));
-    f->median.roll_rad = (float)noisy_roll(n, NOISY_FRAME_AGE_US + 50000U);
+    f->median.roll_rad = (float)noisy_roll(n, NOISY_FRAME_AGE_US + 50000U) + (float)n->fallen_rad;
     f->median.pitch_rad = 0.0F;
 }
 
@@ -120,7 +120,7 @@ static inline void noisy_step(noisy_t *n, flight_inputs_t *in, uint32_t clock_us
         noisy_frame(n, clock_us);
         n->released = true;
         in->attitude_time_us = n->body.time_us + clock_us;
-        in->roll_rad = n->frames[NOISY_FRAMES - 1U].median.roll_rad + (float)n->fallen_rad;
+        in->roll_rad = n->frames[NOISY_FRAMES - 1U].median.roll_rad;
     }
     if (n->body.height_new) {
         noisy_height(n, in, clock_us);

@@ -450,7 +450,9 @@ void test_floating_is_the_gravity_feed_forward_and_follows_it(void)
     held_by_a_pilot(0.5, 0.3);
     TEST_ASSERT_EQUAL_FLOAT(6.4F, out.thrust_n);
     plant.mute = true;
+    in.has_throttle = false;
     held_by_a_pilot(0.5, 30.0);
+    TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
     TEST_ASSERT_EQUAL_FLOAT(6.4F, out.thrust_n);
 }
 
@@ -639,7 +641,7 @@ void test_descending_comes_down_and_ends_on_the_ground_without_a_jump(void)
         run(4.0);
         plant.hardest_m_s = 0.0;
         plant.mute = true;
-        run_until(FLIGHT_DESCENDING, 1.3);
+        run_until(FLIGHT_DESCENDING, 1.8);
         float before_n = out.thrust_n;
         while (out.state == FLIGHT_DESCENDING) {
             run(0.108);

@@ -12,7 +12,7 @@ void tearDown(void) {}
 
 static const char *const condition_names[] = {
     "REFERENCE", "READY", "HEIGHT", "LOST", "OFF_GROUND", "ALOFT", "AT_REST", "TOO_HIGH", "RECOVERED", "LAND",
-    "DESCENT_TIMEOUT", "TILTED", "LEVEL", "LOWERING_LIMIT", "HAS_THROTTLE",
+    "DESCENT_TIMEOUT", "TILTED", "LEVEL", "LOWERING_LIMIT", "HAS_THROTTLE", "HANDED_OVER",
 };
 #define CONDITION_COUNT (sizeof condition_names / sizeof condition_names[0])
 
@@ -69,6 +69,9 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
     }
     switch (from) {
     case FLIGHT_GROUND:
+        if (!(c & FLIGHT_IF_ALOFT) && (c & FLIGHT_IF_HANDED_OVER)) {
+            return FLIGHT_DESCENDING;
+        }
         return (c & FLIGHT_IF_ALOFT) ? FLIGHT_FLOATING : (go && ours && !tilted) ? FLIGHT_TAKEOFF : from;
     case FLIGHT_TAKEOFF:
     case FLIGHT_FLYING:
@@ -89,6 +92,9 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
         if (ours && (c & FLIGHT_IF_LAND)) {
             return height ? FLIGHT_LANDING : FLIGHT_DESCENDING;
         }
+        if (ours && (c & FLIGHT_IF_LOST)) {
+            return FLIGHT_DESCENDING;
+        }
         return (c & FLIGHT_IF_AT_REST) ? FLIGHT_GROUND : from;
     case FLIGHT_COASTING:
         if (!reference) {
@@ -96,7 +102,7 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
         }
         return height ? FLIGHT_FLYING : (c & FLIGHT_IF_LOST) ? FLIGHT_DESCENDING : from;
     case FLIGHT_DESCENDING:
-        return go ? FLIGHT_FLYING : height ? FLIGHT_LANDING : (c & FLIGHT_IF_DESCENT_TIMEOUT) ? FLIGHT_GROUND : from;
+        return go ? FLIGHT_FLYING : height ? FLIGHT_LANDING : (c & (FLIGHT_IF_DESCENT_TIMEOUT | FLIGHT_IF_AT_REST)) ? FLIGHT_GROUND : from;
     case FLIGHT_LANDING:
         return go ? FLIGHT_FLYING : !height ? FLIGHT_DESCENDING : (c & FLIGHT_IF_AT_REST) ? FLIGHT_GROUND : from;
     case FLIGHT_CUT:

@@ -18,7 +18,7 @@ static struct {
 void setUp(void)
 {
     supervisor_init(&s);
-    estimate.known = false;
+    estimate = (vertical_estimate_t){.known = false};
     change.from = change.to = FLIGHT_GROUND;
     in = (flight_inputs_t){.now_us = 0xFFF00000U, /* the clock wraps a second later */
                            .attitude_ready = true, .has_throttle = true};
@@ -69,6 +69,8 @@ static void blind(uint32_t ms)
     }
 }
 
+static void pilot_takes_it(float height_mm);
+
 static void setr(float reference_m)
 {
     in.reference_m = reference_m;
@@ -111,7 +113,9 @@ static void coast(void)
 static void descend(void)
 {
     coast();
-    blind(1000);
+    blind(1100);
+    state_is(FLIGHT_COASTING);
+    blind(100);
     state_is(FLIGHT_DESCENDING);
 }
 
@@ -255,11 +259,73 @@ void test_floating_to_landing_by_setr_0(void)
 void test_floating_to_descending_by_setr_0_without_height(void)
 {
     floating();
-    blind(2000);
+    blind(1000);
     state_is(FLIGHT_FLOATING);
     setr(0.0F);
     blind(100);
     state_is(FLIGHT_DESCENDING);
+}
+
+void test_floating_to_descending_when_the_height_is_lost_and_no_pilot_flies(void)
+{
+    floating();
+    blind(1400);
+    state_is(FLIGHT_FLOATING);
+    blind(200);
+    state_is(FLIGHT_DESCENDING);
+    setUp();
+    floating();
+    in.has_throttle = false;
+    blind(20000);
+    state_is(FLIGHT_FLOATING);
+}
+
+/* Not on the ground, where nothing sways, and not while a height tells. */
+void test_ground_to_descending_by_a_flying_vehicle_handed_over_without_a_height(void)
+{
+    for (int sways = 0; sways < 2; sways++) {
+        for (int sees = 0; sees < 2; sees++) {
+            setUp();
+            estimate.sways = sways;
+            in.has_throttle = false;
+            blind(2000);
+            if (sees) {
+                watch(0.0F, 2);
+            }
+            state_is(FLIGHT_GROUND);
+            in.has_throttle = true;
+            blind(100);
+            state_is(sways && !sees ? FLIGHT_DESCENDING : FLIGHT_GROUND);
+        }
+    }
+}
+
+void test_a_throttle_that_was_never_the_pilots_is_not_handed_over(void)
+{
+    estimate.sways = true;
+    blind(5000);
+    state_is(FLIGHT_GROUND);
+}
+
+void test_a_descent_and_a_landing_end_where_the_vehicle_stands_and_a_flight_does_not(void)
+{
+    descend();
+    estimate.stands = true;
+    blind(100);
+    state_is(FLIGHT_GROUND);
+    setUp();
+    land();
+    estimate.stands = true;
+    watch(700.0F, 1);
+    state_is(FLIGHT_GROUND);
+    setUp();
+    fly();
+    estimate.stands = true;
+    watch(500.0F, 30);
+    state_is(FLIGHT_FLYING);
+    pilot_takes_it(500.0F);
+    watch(500.0F, 5);
+    state_is(FLIGHT_FLOATING);
 }
 
 void test_floating_to_ground_at_rest(void)
@@ -290,10 +356,10 @@ void test_coasting_to_flying_when_the_height_is_back(void)
 void test_coasting_to_descending_when_the_height_is_lost(void)
 {
     coast();
-    blind(600);
-    state_is(FLIGHT_COASTING); /* 910 ms */
+    blind(1100);
+    state_is(FLIGHT_COASTING); /* 1410 ms */
     blind(100);
-    state_is(FLIGHT_DESCENDING); /* 1010 ms */
+    state_is(FLIGHT_DESCENDING); /* 1510 ms */
     TEST_ASSERT_EQUAL_FLOAT(0.0F, s.reference_m);
 }
 
@@ -615,6 +681,17 @@ void test_a_pilot_who_lands_withdraws_the_reference(void)
     state_is(FLIGHT_GROUND);
 }
 
+void test_a_tilt_that_frames_have_shown_thrice_counts_in_a_slower_cycle_at_once(void)
+{
+    fly();
+    in.tilted_frames = 2U;
+    watch(500.0F, 5);
+    state_is(FLIGHT_FLYING);
+    in.tilted_frames = 3U;
+    watch(500.0F, 1);
+    state_is(FLIGHT_CUT);
+}
+
 /* ---- tilt */
 
 static void tilt(float degrees)
@@ -790,7 +867,7 @@ static void lose_height_on_take_off(void)
 static void rise_too_high_on_take_off(void)
 {
     take_off();
-    estimate = (vertical_estimate_t){true, 1310.0F, 0.0F};
+    estimate = (vertical_estimate_t){.known = true, .height_mm = 1310.0F};
     watch(140.0F, 1);
 }
 
@@ -839,8 +916,33 @@ static void land_for_the_pilot(void)
 static void descend_for_the_pilot(void)
 {
     floating();
-    blind(2000);
+    blind(1000);
     setr(0.0F);
+    blind(100);
+}
+
+static void float_blind(void)
+{
+    floating();
+    blind(1400);
+    state_is(FLIGHT_FLOATING);
+    blind(200);
+}
+
+static void stand_after_a_descent(void)
+{
+    descend();
+    estimate.stands = true;
+    blind(100);
+}
+
+static void be_handed_a_flying_vehicle(void)
+{
+    in.has_throttle = false;
+    blind(2000);
+    estimate.sways = true;
+    state_is(FLIGHT_GROUND);
+    in.has_throttle = true;
     blind(100);
 }
 
@@ -968,6 +1070,7 @@ static const struct {
     void (*way)(void);
 } ways[] = {
     {FLIGHT_GROUND, FLIGHT_IF_ALOFT, FLIGHT_FLOATING, aloft},
+    {FLIGHT_GROUND, FLIGHT_IF_HANDED_OVER, FLIGHT_DESCENDING, be_handed_a_flying_vehicle},
     {FLIGHT_GROUND, FLIGHT_IF_REFERENCE, FLIGHT_TAKEOFF, take_off},
     {FLIGHT_TAKEOFF, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING, hand_over_on_take_off},
     {FLIGHT_TAKEOFF, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_take_off},
@@ -983,6 +1086,7 @@ static const struct {
     {FLIGHT_FLOATING, FLIGHT_IF_REFERENCE, FLIGHT_FLYING, take_over_from_the_pilot},
     {FLIGHT_FLOATING, FLIGHT_IF_LAND, FLIGHT_LANDING, land_for_the_pilot},
     {FLIGHT_FLOATING, FLIGHT_IF_LAND, FLIGHT_DESCENDING, descend_for_the_pilot},
+    {FLIGHT_FLOATING, FLIGHT_IF_LOST, FLIGHT_DESCENDING, float_blind},
     {FLIGHT_FLOATING, FLIGHT_IF_AT_REST, FLIGHT_GROUND, be_put_down_by_the_pilot},
     {FLIGHT_COASTING, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING, hand_over_on_coasting},
     {FLIGHT_COASTING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_coasting},
@@ -993,6 +1097,7 @@ static const struct {
     {FLIGHT_DESCENDING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_descending},
     {FLIGHT_DESCENDING, FLIGHT_IF_REFERENCE, FLIGHT_FLYING, new_reference_on_descending},
     {FLIGHT_DESCENDING, FLIGHT_IF_HEIGHT, FLIGHT_LANDING, see_again_on_descending},
+    {FLIGHT_DESCENDING, FLIGHT_IF_AT_REST, FLIGHT_GROUND, stand_after_a_descent},
     {FLIGHT_DESCENDING, FLIGHT_IF_DESCENT_TIMEOUT, FLIGHT_GROUND, descend_to_the_end},
     {FLIGHT_LANDING, FLIGHT_IF_HAS_THROTTLE, FLIGHT_FLOATING, hand_over_on_landing},
     {FLIGHT_LANDING, FLIGHT_IF_TILTED, FLIGHT_CUT, tilt_on_landing},
@@ -1052,7 +1157,7 @@ void test_every_row_is_taken_by_inputs_alone(void)
 
 static void estimate_is(float height_mm, float climb_mm_s)
 {
-    estimate = (vertical_estimate_t){true, height_mm, climb_mm_s};
+    estimate = (vertical_estimate_t){.known = true, .height_mm = height_mm, .climb_mm_s = climb_mm_s};
 }
 
 void test_one_estimate_is_enough_to_lower(void)
@@ -1181,9 +1286,10 @@ void test_a_height_never_valid_is_the_ground(void)
 void test_after_being_aloft_an_unknown_height_is_airborne(void)
 {
     floating();
+    in.has_throttle = false;
     blind(120000);
     state_is(FLIGHT_FLOATING);
-    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_HEIGHT, s.flags);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_HEIGHT | FLIGHT_FLAG_PILOT, s.flags);
 }
 
 /* ---- the seed's flights are left alone */
@@ -1377,7 +1483,7 @@ void test_the_first_height_and_one_after_a_loss_have_no_rate(void)
     watch(400.0F, 1);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, s.height.rate_mm_s);
     watch(410.0F, 1);
-    blind(1000);
+    blind(1600);
     watch(900.0F, 1);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, s.height.rate_mm_s);
 }

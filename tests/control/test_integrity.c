@@ -1,0 +1,422 @@
+#include "control/integrity.h"
+#include "unity.h"
+
+#include <math.h>
+#include <string.h>
+
+#define HOVER_N 7.4F
+#define DEGREE_RAD 0.0174532925F
+
+/* A vehicle that moves as its thrust says, and what its sensors tell of it: a height every 0.1 s, a frame every 25 ms. */
+static integrity_t it;
+static flown_t flown;
+static imu_sample_t frame;
+static struct {
+    float height_m, speed_mps, lie_m, felt_lie_mps2, lagged_n;
+    bool frozen_height, powerless, deaf, steady;
+    uint32_t cycles;
+} world;
+
+void setUp(void)
+{
+    integrity_init(&it);
+    memset(&world, 0, sizeof world);
+    memset(&frame, 0, sizeof frame);
+    frame.ready = frame.has_acceleration = true;
+    world.lagged_n = HOVER_N;
+    flown = (flown_t){.step_s = 0.025F, .off_ground = true, .ours = true, .thrust_n = HOVER_N, .hover_n = HOVER_N,
+                      .authority_mps2_per_n = 9.80665F / HOVER_N, .damping_per_s = 2.5F, .noise_mps2 = 0.4F};
+}
+
+void tearDown(void) {}
+
+static void move(void)
+{
+    const float push_n = world.powerless ? 0.0F : world.lagged_n - HOVER_N;
+    const float mps2 = 9.80665F / HOVER_N * push_n - 2.5F * world.speed_mps;
+
+    world.lagged_n += 0.025F / 0.15F * (flown.thrust_n - world.lagged_n);
+    world.speed_mps += mps2 * 0.025F;
+    world.height_m += world.speed_mps * 0.025F;
+    frame.down_mps2 = 9.80665F + mps2 + world.felt_lie_mps2;
+}
+
+static void cycle(void)
+{
+    const float seen_m = world.frozen_height ? 0.3F : world.height_m + world.lie_m;
+
+    move();
+    frame.sequence++;
+    frame.arrival_us += 25000U;
+    frame.median.roll_rad = world.steady ? 0.0F : 0.05F * sinf((float)frame.sequence * 0.1F);
+    if (!world.deaf) {
+        integrity_frames(&it, &flown, &frame, 1U);
+    }
+    integrity_thrust(&it, &flown);
+    if (++world.cycles % 4U == 0U) {
+        integrity_height(&it, &flown, seen_m, 0.1F, 0.0F);
+    }
+}
+
+static void run(float seconds)
+{
+    for (int i = (int)lroundf(seconds * 40.0F); i > 0; i--) {
+        cycle();
+    }
+}
+
+/* From the ground: the climb proves heights and thrust. */
+static void fly(void)
+{
+    flown.grounded = true;
+    flown.off_ground = false;
+    flown.thrust_n = HOVER_N;
+    world.lagged_n = HOVER_N;
+    run(2.0F);
+    flown.grounded = false;
+    flown.off_ground = true;
+    flown.wanted_m = 0.5F;
+    flown.thrust_n = HOVER_N + 0.7F;
+    run(1.5F);
+    flown.wanted_m = 0.0F;
+    flown.thrust_n = HOVER_N;
+    run(3.0F);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+}
+
+static float until(uint16_t doubt, float at_most_s)
+{
+    float passed_s = 0.0F;
+    while (!integrity_doubts(&it, doubt) && passed_s < at_most_s) {
+        cycle();
+        passed_s += 0.025F;
+    }
+    TEST_ASSERT_EQUAL_UINT16(doubt, it.doubts);
+    return passed_s;
+}
+
+/* ---- nothing is doubted */
+
+void test_a_sound_flight_with_climbs_and_descents_is_believed(void)
+{
+    fly();
+    for (int i = 0; i < 20; i++) {
+        flown.thrust_n = HOVER_N + (i % 2 == 0 ? 1.0F : -1.0F);
+        flown.wanted_m = i % 2 == 0 ? 0.5F : -0.5F;
+        run(1.5F);
+        TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.15F, world.speed_mps, integrity_speed_mps(&it));
+}
+
+void test_steps_of_the_terrain_are_believed_be_they_as_high_as_they_like(void)
+{
+    fly();
+    for (int i = 0; i < 6; i++) {
+        world.lie_m = i % 2 == 0 ? 0.8F : 0.0F;
+        run(2.0F);
+        TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    }
+}
+
+void test_a_hover_thrust_a_quarter_of_a_newton_off_is_believed(void)
+{
+    flown.hover_n = HOVER_N - 0.25F;
+    fly();
+    run(20.0F);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+}
+
+/* ---- heights */
+
+void test_heights_that_do_not_show_a_climb_that_both_others_tell_are_doubted(void)
+{
+    fly();
+    world.frozen_height = true;
+    flown.wanted_m = 0.5F;
+    flown.thrust_n = HOVER_N + 1.5F;
+    const float after_s = until(DOUBT_SIGHT, 3.0F);
+    TEST_ASSERT_TRUE(after_s > 0.5F && after_s < 1.5F);
+    TEST_ASSERT_TRUE(it.lost_m < -0.2F && it.lost_m > -0.8F);
+    TEST_ASSERT_FLOAT_WITHIN(0.3F, world.speed_mps, integrity_speed_mps(&it));
+}
+
+void test_a_slow_climb_after_the_ground_came_nearer_at_once_is_doubted_too(void)
+{
+    fly();
+    world.frozen_height = true;
+    flown.wanted_m = 0.5F;
+    run(0.2F);
+    TEST_ASSERT_TRUE(integrity_unconfirmed(&it));
+    flown.thrust_n = HOVER_N + 0.66F;
+    TEST_ASSERT_TRUE(until(DOUBT_SIGHT, 4.0F) < 2.5F);
+}
+
+void test_a_climb_that_shows_after_a_step_confirms_it(void)
+{
+    fly();
+    world.lie_m = -0.3F;
+    flown.wanted_m = 0.3F;
+    run(0.2F);
+    TEST_ASSERT_TRUE(integrity_unconfirmed(&it));
+    flown.thrust_n = HOVER_N + 0.66F;
+    run(1.2F);
+    TEST_ASSERT_FALSE(integrity_unconfirmed(&it));
+    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+}
+
+void test_heights_that_follow_again_are_believed_again(void)
+{
+    fly();
+    world.frozen_height = true;
+    flown.wanted_m = 0.5F;
+    flown.thrust_n = HOVER_N + 1.5F;
+    (void)until(DOUBT_SIGHT, 3.0F);
+    flown.wanted_m = NAN;
+    flown.thrust_n = HOVER_N - 0.5F;
+    run(3.0F);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, it.doubts);
+    world.frozen_height = false;
+    run(4.0F);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+}
+
+void test_without_accelerations_a_push_in_vain_is_what_doubts_the_heights(void)
+{
+    fly();
+    world.deaf = true;
+    run(0.5F);
+    integrity_init(&it);
+    it.shaken = 1.0F;
+    world.frozen_height = true;
+    flown.wanted_m = 0.3F;
+    flown.thrust_n = HOVER_N + 1.0F;
+    const float after_s = until(DOUBT_SIGHT, 6.0F);
+    TEST_ASSERT_TRUE(after_s > 2.5F && after_s < 4.5F);
+}
+
+void test_the_ground_forgets_a_doubt_of_sight_by_a_new_order_alone(void)
+{
+    it.doubts = DOUBT_SIGHT | DOUBT_THRUST;
+    flown.grounded = true;
+    flown.off_ground = false;
+    run(3.0F);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT | DOUBT_THRUST, it.doubts);
+    flown.ordered = true;
+    cycle();
+    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+}
+
+void test_nothing_is_judged_while_a_pilot_flies(void)
+{
+    fly();
+    flown.ours = false;
+    world.frozen_height = true;
+    world.felt_lie_mps2 = 5.0F;
+    run(5.0F);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+}
+
+/* ---- scans */
+
+void test_the_third_scan_that_says_the_same_is_a_copy(void)
+{
+    altitude_t altitude = {.height_mm = 500.0F, .slant_mm = 705.3F, .spread_mm = 21.0F};
+    TEST_ASSERT_TRUE(integrity_scan(&it, &altitude));
+    TEST_ASSERT_TRUE(integrity_scan(&it, &altitude));
+    TEST_ASSERT_FALSE(integrity_scan(&it, &altitude));
+    TEST_ASSERT_FALSE(integrity_scan(&it, &altitude));
+    altitude.spread_mm = 22.0F;
+    TEST_ASSERT_TRUE(integrity_scan(&it, &altitude));
+    altitude.slant_mm = 705.4F;
+    TEST_ASSERT_TRUE(integrity_scan(&it, &altitude));
+}
+
+void test_heights_out_of_reach_are_none(void)
+{
+    static const float bad_mm[] = {-51.0F, 5001.0F, NAN, INFINITY};
+    static const float good_mm[] = {-49.0F, 0.0F, 4999.0F};
+    for (unsigned i = 0; i < 4; i++) {
+        TEST_ASSERT_FALSE(integrity_scan(&it, &(altitude_t){.height_mm = bad_mm[i], .slant_mm = (float)i}));
+    }
+    for (unsigned i = 0; i < 3; i++) {
+        TEST_ASSERT_TRUE(integrity_scan(&it, &(altitude_t){.height_mm = good_mm[i], .slant_mm = 9.0F + (float)i}));
+    }
+}
+
+/* ---- accelerometer */
+
+static void rest(float lie_mps2, float seconds)
+{
+    flown.grounded = true;
+    flown.off_ground = false;
+    world.felt_lie_mps2 = lie_mps2;
+    run(seconds);
+}
+
+void test_an_accelerometer_that_does_not_feel_g_at_rest_is_doubted(void)
+{
+    static const float lies_mps2[] = {-2.0F, 1.6F, -9.81F + 1.0F, -19.6F};
+    for (unsigned i = 0; i < 4; i++) {
+        setUp();
+        rest(lies_mps2[i], 2.0F);
+        TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, it.doubts);
+    }
+    setUp();
+    rest(1.4F, 5.0F);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.4F, it.bias_mps2);
+}
+
+void test_one_that_feels_g_again_is_believed_again_on_the_ground_alone(void)
+{
+    rest(3.0F, 2.0F);
+    flown.grounded = false;
+    flown.off_ground = true;
+    world.felt_lie_mps2 = 0.0F;
+    run(10.0F);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, it.doubts);
+    rest(0.0F, 8.0F);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+}
+
+void test_an_accelerometer_against_heights_and_thrust_is_doubted_within_a_second(void)
+{
+    for (float lie_mps2 = -4.0F; lie_mps2 < 5.0F; lie_mps2 += 8.0F) {
+        setUp();
+        fly();
+        world.felt_lie_mps2 = lie_mps2;
+        TEST_ASSERT_TRUE(until(DOUBT_IMU, 2.0F) < 1.0F);
+    }
+}
+
+void test_a_noisy_accelerometer_is_asked_less(void)
+{
+    fly();
+    flown.noise_mps2 = 1.8F;
+    run(0.1F);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 2.83F, it.shaken);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, it.felt.speed_mps / it.shaken, integrity_felt_mps(&it));
+}
+
+/* ---- thrust */
+
+void test_commands_without_an_effect_are_doubted_once_the_law_pushes(void)
+{
+    for (float side = -1.0F; side < 2.0F; side += 2.0F) {
+        setUp();
+        fly();
+        world.powerless = true;
+        run(5.0F);
+        TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+        flown.wanted_m = 0.5F * side;
+        flown.thrust_n = HOVER_N + 2.0F * side;
+        TEST_ASSERT_TRUE(until(DOUBT_THRUST, 4.0F) < 2.5F);
+        TEST_ASSERT_EQUAL(side < 0.0F, it.held_down);
+        TEST_ASSERT_EQUAL_FLOAT(HOVER_N, it.held_n);
+        flown.thrust_n = HOVER_N + 0.6F * side;
+        run(6.0F);
+        TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, it.doubts);
+        world.powerless = false;
+        run(5.0F);
+        TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    }
+}
+
+void test_a_floating_vehicle_that_is_carried_off_is_not_flown_by_its_commands(void)
+{
+    fly();
+    flown.displaced = true;
+    TEST_ASSERT_TRUE(until(DOUBT_THRUST, 0.3F) < 0.2F);
+}
+
+/* ---- standing */
+
+void test_it_stands_where_little_thrust_does_not_make_it_fall(void)
+{
+    fly();
+    world.steady = true;
+    world.powerless = true;
+    flown.wanted_m = NAN;
+    run(6.0F);
+    TEST_ASSERT_FALSE(integrity_stands(&it));
+    flown.thrust_n = 0.5F * HOVER_N;
+    run(2.5F);
+    TEST_ASSERT_TRUE(integrity_stands(&it));
+    TEST_ASSERT_FALSE(integrity_sways(&it));
+}
+
+void test_it_does_not_stand_while_it_falls_or_sways(void)
+{
+    fly();
+    world.steady = true;
+    flown.wanted_m = NAN;
+    flown.thrust_n = 0.5F * HOVER_N;
+    run(3.0F);
+    TEST_ASSERT_FALSE(integrity_stands(&it));
+    setUp();
+    fly();
+    world.powerless = true;
+    flown.wanted_m = NAN;
+    flown.thrust_n = 0.5F * HOVER_N;
+    run(3.0F);
+    TEST_ASSERT_FALSE(integrity_stands(&it));
+    TEST_ASSERT_TRUE(integrity_sways(&it));
+}
+
+/* ---- tilt */
+
+static void tilt(float degrees, int frames)
+{
+    for (int i = 0; i < frames; i++) {
+        frame.sequence++;
+        frame.arrival_us += 25000U;
+        frame.median.roll_rad = degrees * DEGREE_RAD;
+        integrity_tilt(&it, &frame, 1U, 0.0F, 0.0F, 0U);
+    }
+}
+
+void test_a_tilt_that_comes_in_one_jump_is_believed_after_six_frames(void)
+{
+    tilt(2.0F, 20);
+    tilt(70.0F, 6);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 2.0F * DEGREE_RAD, it.roll_rad);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.tilted);
+    TEST_ASSERT_EQUAL_UINT32(frame.sequence, it.unfit_sequence);
+    tilt(1.0F, 1);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 1.0F * DEGREE_RAD, it.roll_rad);
+    tilt(70.0F, 9);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 70.0F * DEGREE_RAD, it.roll_rad);
+    TEST_ASSERT_EQUAL_UINT16(3U, it.tilted);
+}
+
+void test_a_tilt_that_grows_is_believed_at_once(void)
+{
+    for (int i = 0; i <= 10; i++) {
+        tilt(10.0F * (float)i, 1); /* 400 degrees per second */
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 10.0F * (float)i * DEGREE_RAD, it.roll_rad);
+    }
+    TEST_ASSERT_EQUAL_UINT16(6U, it.tilted);
+}
+
+void test_a_tilt_after_a_silence_or_through_the_half_turn_is_no_jump(void)
+{
+    tilt(2.0F, 5);
+    frame.arrival_us += 300000U;
+    tilt(70.0F, 1);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 70.0F * DEGREE_RAD, it.roll_rad);
+    tilt(175.0F, 9);
+    tilt(-175.0F, 1);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -175.0F * DEGREE_RAD, it.roll_rad);
+}
+
+void test_one_sample_stands_for_the_frames_where_there_are_none(void)
+{
+    integrity_tilt(&it, NULL, 0U, 0.1F, -0.2F, 1000U);
+    TEST_ASSERT_EQUAL_FLOAT(0.1F, it.roll_rad);
+    TEST_ASSERT_EQUAL_FLOAT(-0.2F, it.pitch_rad);
+    integrity_tilt(&it, NULL, 0U, NAN, 0.0F, 2000U);
+    TEST_ASSERT_EQUAL_FLOAT(0.1F, it.roll_rad);
+    integrity_tilt(&it, NULL, 0U, 1.0F, 0.0F, 2000U);
+    TEST_ASSERT_EQUAL_FLOAT(0.1F, it.roll_rad);
+}
