@@ -109,3 +109,11 @@ void telemetry_status(telemetry_line_t *line, const telemetry_t *telemetry)
     }
     telemetry_end(line);
 }
+
+void telemetry_pulse(telemetry_line_t *line, float pulse_us)
+{
+    telemetry_begin(line);
+    telemetry_text(line, "P");
+    telemetry_count(line, (uint32_t)(pulse_us * 10.0F + 0.5F));
+    telemetry_end(line);
+}

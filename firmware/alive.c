@@ -1,18 +1,33 @@
 #include "firmware/alive.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <ti/sysbios/family/c28/Hwi.h>
+#include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
 #include "bsp/watchdog.h"
 
 #define ALL ((uint16_t)((1U << ALIVE_COUNT) - 1U))
 
+#define HANG_TICKS 1000U
+
 static uint16_t reported;
+static bool hangs;
+
+void alive_hang(void)
+{
+    hangs = true;
+}
 
 void alive_report(alive_t task)
 {
-    UInt key = Hwi_disable();
+    UInt key;
+
+    while (hangs && task == ALIVE_SEND_LASER) {
+        Task_sleep(HANG_TICKS);
+    }
+    key = Hwi_disable();
 
     reported = (uint16_t)(reported | (1U << task));
     if (reported == ALL) {

@@ -8,4 +8,7 @@ typedef enum { ALIVE_CONTROL, ALIVE_SEND_LASER, ALIVE_COUNT } alive_t;
 /* That task has completed a cycle. Task. */
 void alive_report(alive_t task);
 
+/* From now on TaskSendLaser never returns from its report: what the watchdog is for, on purpose. Any task. */
+void alive_hang(void);
+
 #endif

@@ -140,6 +140,8 @@ static const verb_t verbs[] = {
     {"CALIBRATE", verb_calibrate, "[COUNTS [SECONDS]] - thrust step by step, tied down; any line but #PING ends it"},
     {"LASER", verb_laser, "- the scanner's state, rate, frames and errors by cause"},
     {"PERF", verb_perf, "[RESET] - responses, deadlines, stacks, load, waits; RESET clears them"},
+    {"STREAM", verb_stream, "PULSE|OFF - the pulse of each control cycle in place of telemetry"},
+    {"HANG", verb_hang, "TASK - hangs a task, for a test of the watchdog; on the ground only"},
     {"PING", execute_ping, "[TEXT] - answers the same text"},
     {"HELP", execute_help, "- this list"},
 };

@@ -9,6 +9,7 @@
 #include "control/flight.h"
 #include "firmware/flight_recorder.h"
 #include "firmware/monitor.h"
+#include "firmware/pulse_stream.h"
 #include "firmware/schedule.h"
 #include "bsp/selector.h"
 #include "firmware/servers.h"
@@ -124,6 +125,7 @@ static Void task_control(UArg unused0, UArg unused1)
         flight_step(&flight, &parameters, &in, &out);
         calibrator_overlay(parameters.value[PARAMETER_LINK], &in, &out);
         bsp_throttle_set_pulse_us(out.pulse_us);
+        pulse_stream_take(out.pulse_us);
         flight_status_server_write(&out);
         flight_recorder_take(&in, &out);
         monitor_done(MONITOR_CONTROL);

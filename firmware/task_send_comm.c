@@ -7,6 +7,7 @@
 
 #include "firmware/boot.h"
 #include "firmware/monitor.h"
+#include "firmware/pulse_stream.h"
 #include "firmware/schedule.h"
 #include "firmware/servers.h"
 #include "firmware/tasks.h"
@@ -55,7 +56,9 @@ static Void task_send_comm(UArg unused0, UArg unused1)
         (void)Semaphore_pend(tick, BIOS_WAIT_FOREVER);
         monitor_begin(MONITOR_SEND_COMM);
         report(&line, reset);
-        xbee_port_report(&line);
+        if (!pulse_stream_on()) {
+            xbee_port_report(&line);
+        }
         reset = NULL;
         monitor_done(MONITOR_SEND_COMM);
     }

@@ -28,6 +28,12 @@ bool verb_log(answer_t *answer);
 /* verb_calibrate.c: `#CALIBRATE counts seconds`: hover calibration, to be called again until it ends. */
 bool verb_calibrate(answer_t *answer);
 
+/* verb_bench.c, for a board on the bench: `#STREAM PULSE|OFF`: the throttle pulse of every control cycle in place of the
+ * telemetry; `#HANG TASK`: TaskSendLaser never completes a cycle again, so that the watchdog must bite. On the ground
+ * without a reference only. */
+bool verb_stream(answer_t *answer);
+bool verb_hang(answer_t *answer);
+
 /* Long answers go on between the lines: each sends what fits now and returns whether there is more to come. */
 bool verb_log_more(void);
 bool verb_calibrate_more(void);

@@ -191,6 +191,13 @@ bool xbee_port_spare(const telemetry_line_t *line)
            && uart_port_send(BSP_UART_XBEE, line->text, line->length);
 }
 
+void xbee_port_stream(const telemetry_line_t *line)
+{
+    if (uart_port_room(BSP_UART_XBEE) >= UART_PORT_TRANSMIT_CELLS - 4U * line->length) {
+        (void)uart_port_send(BSP_UART_XBEE, line->text, line->length);
+    }
+}
+
 void xbee_port_report(const telemetry_line_t *line)
 {
     if (uart_port_room(BSP_UART_XBEE) >= REPORT_ROOM) {

@@ -43,6 +43,9 @@ bool xbee_port_clear(void);
  * telemetry and other answers are not held up. (One that is longer by itself goes when nothing else is.) Task. */
 bool xbee_port_spare(const telemetry_line_t *line);
 
+/* Sends a line that is old as soon as the next one is there, or drops it when four of its length wait before it. Task. */
+void xbee_port_stream(const telemetry_line_t *line);
+
 /* Sends a telemetry line, or drops it when answers fill the buffer. Task. */
 void xbee_port_report(const telemetry_line_t *line);
 

@@ -253,13 +253,18 @@ void board_connect(board_wire_t wire, void (*out)(void *context, unsigned octet)
     }
 }
 
+void board_receive_at(board_wire_t wire, double rate, const void *octets, size_t count)
+{
+    serial_set_rate(&board.wires[wire].far_end, rate);
+    serial_send(&board.wires[wire].far_end, octets, count);
+}
+
 void board_receive(board_wire_t wire, const void *octets, size_t count)
 {
     double rate = board_rate(wire);
 
     if (rate > 0.0) {
-        serial_set_rate(&board.wires[wire].far_end, rate);
-        serial_send(&board.wires[wire].far_end, octets, count);
+        board_receive_at(wire, rate, octets, count);
     }
 }
 

@@ -48,6 +48,8 @@ typedef enum { BOARD_LASER, BOARD_IMU, BOARD_RADIO, BOARD_WIRES } board_wire_t;
 void board_connect(board_wire_t wire, void (*out)(void *context, unsigned octet), void *context);
 /* The real device has sent: the octets arrive one after the other at the UART's present rate. */
 void board_receive(board_wire_t wire, const void *octets, size_t count);
+/* The same at the far end's own rate, bits per second: where the two differ by more than the UART bears, it hears nonsense. */
+void board_receive_at(board_wire_t wire, double rate, const void *octets, size_t count);
 /* Bits per second that the firmware has set for its UART, 0 while it is closed. */
 double board_rate(board_wire_t wire);
 

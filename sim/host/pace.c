@@ -74,6 +74,16 @@ void pace_watch(port_t *port, pace_take_t take, void *context)
     port_count++;
 }
 
+bool pace_lost(const port_t *port)
+{
+    for (nfds_t i = 0; i < port_count; i++) {
+        if (ports[i].port == port) {
+            return polled[i].fd < 0;
+        }
+    }
+    return false;
+}
+
 static sim_time_t wall_now(void)
 {
     struct timespec now;

@@ -22,6 +22,9 @@ bool pace_interrupted(void);
 typedef void (*pace_take_t)(void *context, const unsigned char *octets, size_t count);
 void pace_watch(port_t *port, pace_take_t take, void *context);
 
+/* True when a watched port was lost. */
+bool pace_lost(const port_t *port);
+
 /* Returns when the wall clock has reached `next`, when input has been posted (not later than `next`), or at a signal.
  * Shape of kernel_set_pacer(). */
 void pace_wait(sim_time_t next);

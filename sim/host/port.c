@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* A driver may make the nearest rate that its clock can; a receiver samples 4.5 % off. */
@@ -106,15 +107,46 @@ size_t port_read(port_t *port, unsigned char *octets, size_t capacity, bool *los
     return got > 0 ? (size_t)got : 0;
 }
 
-void port_write(port_t *port, const unsigned char *octets, size_t count)
+size_t port_write(port_t *port, const unsigned char *octets, size_t count)
 {
-    while (count > 0) {
-        ssize_t put = write(port->fd, octets, count);
+    size_t taken = 0;
+
+    while (taken < count) {
+        ssize_t put = write(port->fd, octets + taken, count - taken);
 
         if (put <= 0) {
-            return;
+            break;
         }
-        octets += put;
-        count -= (size_t)put;
+        taken += (size_t)put;
+    }
+    return taken;
+}
+
+/* A link that leads nowhere, or to a pseudo-terminal: left by a program that was killed. */
+static bool is_stale(const char *path)
+{
+    char target[16] = "";
+    struct stat status;
+
+    if (readlink(path, target, sizeof target - 1) < 0) {
+        return false;
+    }
+    return stat(path, &status) != 0 || strncmp(target, "/dev/pts/", 9) == 0;
+}
+
+const char *port_link(const port_t *port, const char *path)
+{
+    if (is_stale(path)) {
+        unlink(path);
+    }
+    return symlink(port->name, path) == 0 ? NULL : strerror(errno);
+}
+
+void port_unlink(const port_t *port, const char *path)
+{
+    char target[sizeof port->name] = "";
+
+    if (readlink(path, target, sizeof target - 1) > 0 && strcmp(target, port->name) == 0) {
+        unlink(path);
     }
 }

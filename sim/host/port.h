@@ -24,7 +24,13 @@ unsigned long port_rate(const port_t *port);
 
 /* Octets read now (0: none). Sets *lost when the port is gone: unplugged, or the far end's maker has closed it. */
 size_t port_read(port_t *port, unsigned char *octets, size_t capacity, bool *lost);
-/* Drops what the other side does not take. */
-void port_write(port_t *port, const unsigned char *octets, size_t count);
+/* Drops what the other side does not take; returns how many octets it took. */
+size_t port_write(port_t *port, const unsigned char *octets, size_t count);
+
+/* A pseudo-terminal of ours under a name of the user's choice, a symbolic link; one that an ended program has left there is
+ * replaced. NULL when fine (then port_unlink()), else what failed. */
+const char *port_link(const port_t *port, const char *path);
+/* Removes the link, unless another program has taken it over. */
+void port_unlink(const port_t *port, const char *path);
 
 #endif

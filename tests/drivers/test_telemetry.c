@@ -248,3 +248,13 @@ void test_the_status_line_keeps_to_one_packet_after_an_answer(void)
     telemetry_begin(&line);
     TEST_ASSERT_EQUAL(TELEMETRY_LINE_MAX, line.limit);
 }
+
+void test_a_pulse_is_a_line_of_at_most_eight_octets_in_tenths_of_a_microsecond(void)
+{
+    telemetry_pulse(&line, 1999.68F);
+    TEST_ASSERT_EQUAL_STRING_LEN("P19997\r\n", line.text, 8);
+    TEST_ASSERT_EQUAL_UINT16(8, line.length);
+    telemetry_pulse(&line, 999.36F);
+    TEST_ASSERT_EQUAL_STRING_LEN("P9994\r\n", line.text, 7);
+    TEST_ASSERT_EQUAL_UINT16(7, line.length);
+}

@@ -11,6 +11,7 @@
 #include "mock_calibrator.h"
 #include "mock_flight_recorder.h"
 #include "mock_selector.h"
+#include "mock_pulse_stream.h"
 #include "mock_servers.h"
 #include "mock_throttle.h"
 #include "mock_timebase.h"
@@ -149,6 +150,15 @@ static void alive(alive_t task, int calls)
     alive_reports++;
 }
 
+static uint16_t streamed;
+
+static void stream(float pulse_us, int calls)
+{
+    (void)calls;
+    TEST_ASSERT_EQUAL_FLOAT_MESSAGE(pulses_us[pulse_count - 1U], pulse_us, "not the pulse of this cycle");
+    streamed++;
+}
+
 void setUp(void)
 {
     kernel_reset();
@@ -173,6 +183,8 @@ void setUp(void)
     calibrator_overlay_Stub(overlay);
     flight_recorder_take_Stub(record);
     alive_report_Stub(alive);
+    pulse_stream_take_Stub(stream);
+    streamed = 0U;
     overlay_us = 0.0F;
     alive_reports = 0U;
     jobs_reset();

@@ -6,6 +6,7 @@
 #include "jobs.h"
 #include "kernel.h"
 #include "mock_boot.h"
+#include "mock_pulse_stream.h"
 #include "mock_servers.h"
 #include "mock_timebase.h"
 #include "mock_xbee_port.h"
@@ -55,6 +56,14 @@ static const char *boot(int calls)
     return cause;
 }
 
+static bool streaming;
+
+static bool stream_on(int calls)
+{
+    (void)calls;
+    return streaming;
+}
+
 void setUp(void)
 {
     kernel_reset();
@@ -74,6 +83,8 @@ void setUp(void)
     laser_server_read_Stub(laser_read);
     flight_status_server_read_Stub(flight_read);
     xbee_port_report_Stub(report);
+    pulse_stream_on_Stub(stream_on);
+    streaming = false;
     boot_cause_Stub(boot);
     bsp_time_us_IgnoreAndReturn(4711U);
     jobs_reset();
@@ -125,6 +136,18 @@ void test_each_tick_sends_one_line(void)
         TEST_ASSERT_EQUAL_UINT16(n, lines);
     }
     TEST_ASSERT_EQUAL_STRING("pend report pend pend report pend pend report pend ", kernel.notes);
+}
+
+void test_the_line_stays_away_while_the_pulses_are_streamed(void)
+{
+    streaming = true;
+    kernel.clock.function(kernel.clock.params.arg);
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_UINT16(0, lines);
+    streaming = false;
+    kernel.clock.function(kernel.clock.params.arg);
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_UINT16(1, lines);
 }
 
 void test_ticks_that_a_late_task_missed_are_not_made_up_for(void)

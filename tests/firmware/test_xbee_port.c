@@ -463,6 +463,19 @@ void test_a_report_needs_half_of_the_buffer_free(void)
     TEST_ASSERT_EQUAL_UINT16(0, kernel.task.sleeps);
 }
 
+void test_a_line_of_a_stream_is_dropped_when_four_of_its_length_wait(void)
+{
+    const telemetry_line_t line = line_of("P19997\r\n");
+
+    room = UART_PORT_TRANSMIT_CELLS - 33U;
+    xbee_port_stream(&line);
+    TEST_ASSERT_EQUAL_STRING("", sent);
+    room = UART_PORT_TRANSMIT_CELLS - 32U;
+    xbee_port_stream(&line);
+    TEST_ASSERT_EQUAL_STRING("P19997\r\n", sent);
+    TEST_ASSERT_EQUAL_UINT16(0, kernel.task.sleeps);
+}
+
 void test_a_line_of_a_long_answer_leaves_at_most_a_fifth_of_a_second_to_go(void)
 {
     const telemetry_line_t line = line_of("OK LOG 1\r\n");

@@ -1,10 +1,7 @@
-#include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "commands.h"
 #include "sim/devices/line_fault.h"
@@ -139,38 +136,6 @@ static bool read_arguments(int argc, char **argv)
     return order.link != NULL || complain("is needed", "--link");
 }
 
-/* ---- the link ---- */
-
-/* A link that leads nowhere, or to a pseudo-terminal: left by a server that was killed. */
-static bool is_stale(const char *path)
-{
-    char target[16] = "";
-    struct stat status;
-
-    if (readlink(path, target, sizeof target - 1) < 0) {
-        return false;
-    }
-    return stat(path, &status) != 0 || strncmp(target, "/dev/pts/", 9) == 0;
-}
-
-static bool make_link(void)
-{
-    if (is_stale(order.link)) {
-        unlink(order.link);
-    }
-    return symlink(server.port.name, order.link) == 0 || complain(strerror(errno), order.link);
-}
-
-/* Unless another server has taken it over. */
-static void remove_link(void)
-{
-    char target[sizeof server.port.name] = "";
-
-    if (readlink(order.link, target, sizeof target - 1) > 0 && strcmp(target, server.port.name) == 0) {
-        unlink(order.link);
-    }
-}
-
 /* ---- the line ---- */
 
 static bool client_follows(double bit_ns)
@@ -282,17 +247,17 @@ static void report(void)
 /* Signals are caught before the link is there, so that it never stays behind. */
 static int serve_link(void)
 {
-    bool linked;
+    const char *error;
 
     pace_begin();
-    linked = make_link();
-    if (linked) {
+    error = port_link(&server.port, order.link);
+    if (error == NULL) {
         serve();
-        remove_link();
+        port_unlink(&server.port, order.link);
         report();
     }
     pace_end();
-    return linked ? 0 : 2;
+    return error == NULL || complain(error, order.link) ? 0 : 2;
 }
 
 static int run(void)
