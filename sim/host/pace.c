@@ -2,6 +2,7 @@
 #include "sim/host/pace.h"
 
 #include <poll.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -45,10 +46,18 @@ static void on_signals(void (*handler)(int))
     sigaction(SIGTERM, &action, NULL);
 }
 
+/* Ahead of the PC's other programs, where its user may ask for that; else as fast as they let us. */
+static void ask_for_priority(int policy, int priority)
+{
+    const struct sched_param wanted = {.sched_priority = priority};
+
+    (void)sched_setscheduler(0, policy, &wanted);
+}
+
 void pace_begin(void)
 {
+    ask_for_priority(SCHED_RR, 1);
     port_count = 0;
-    interrupted = 0;
     virtual_start = timeline_now();
     clock_gettime(CLOCK_MONOTONIC, &wall_start);
     on_signals(interrupt);
@@ -56,7 +65,9 @@ void pace_begin(void)
 
 void pace_end(void)
 {
+    ask_for_priority(SCHED_OTHER, 0);
     on_signals(SIG_DFL);
+    interrupted = 0;
 }
 
 bool pace_interrupted(void)
@@ -72,6 +83,15 @@ void pace_watch(port_t *port, pace_take_t take, void *context)
     ports[port_count] = (watched_t){port, take, context};
     polled[port_count] = (struct pollfd){.fd = port->fd, .events = POLLIN};
     port_count++;
+}
+
+void pace_forget(const port_t *port)
+{
+    for (nfds_t i = 0; i < port_count; i++) {
+        if (ports[i].port == port) {
+            polled[i].fd = -1;
+        }
+    }
 }
 
 bool pace_lost(const port_t *port)
@@ -91,6 +111,13 @@ static sim_time_t wall_now(void)
     clock_gettime(CLOCK_MONOTONIC, &now);
     return virtual_start + (sim_time_t)(now.tv_sec - wall_start.tv_sec) * SIM_S +
            (sim_time_t)(now.tv_nsec - wall_start.tv_nsec);
+}
+
+sim_time_t pace_lag(void)
+{
+    const sim_time_t lag = wall_now() - timeline_now();
+
+    return lag > 0 ? lag : 0;
 }
 
 static void input_event(void *context)

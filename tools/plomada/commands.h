@@ -6,7 +6,10 @@
 /* In the directory of `fly --record`. */
 #define RECORDING_NAME "flight.plomada"
 
+int command_accept(int argc, char **argv);
+int command_board(int argc, char **argv);
 int command_fly(int argc, char **argv);
+int command_hil(int argc, char **argv);
 int command_laser(int argc, char **argv);
 int command_list(int argc, char **argv);
 int command_log(int argc, char **argv);

@@ -10,7 +10,10 @@ typedef struct {
 } subcommand_t;
 
 static const subcommand_t subcommands[] = {
+    {"accept", command_accept, "a fresh board, item by item, with a report"},
+    {"board", command_board, "the firmware in real time, its three lines outside, as a LaunchPad's"},
     {"fly", command_fly, "fly a scenario with the unmodified firmware"},
+    {"hil", command_hil, "fly a real board: the PC plays scanner, IMU, operator and airframe"},
     {"laser", command_laser, "serve the scanner model on a pseudo-terminal"},
     {"list", command_list, "the scenarios and what each must look like"},
     {"log", command_log, "#LOG dumps in what a terminal or XCTU saved, as CSV"},

@@ -1,0 +1,68 @@
+"""A board in real time on pseudo-terminals, and who talks to it. For test_hil.py and test_accept.py."""
+import json
+import os
+import signal
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+NO_VERDICT = 3      # this machine was too busy: real time was none
+TRIES = 4
+
+
+class Board:
+    """`plomada board` with its three links in a directory of its own."""
+
+    def __init__(self, program, *options):
+        self.directory = tempfile.TemporaryDirectory()
+        self.path = Path(self.directory.name)
+        self.wires = {name: str(self.path / name) for name in ("laser", "imu", "xbee")}
+        self.lines = [word for name, path in self.wires.items() for word in (f"--{name}", path)]
+        self.log = open(self.path / "board.log", "w+", encoding="utf-8")
+        self.process = subprocess.Popen([program, "board", *self.lines, *options], stdout=self.log, stderr=subprocess.STDOUT)
+        end = time.monotonic() + 20
+        while not all(os.path.islink(path) for path in self.wires.values()) and self.process.poll() is None and time.monotonic() < end:
+            time.sleep(0.02)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *unused):
+        self.process.terminate()
+        self.status = self.process.wait(timeout=30)
+        self.log.close()
+        self.directory.cleanup()
+
+    def power_cycle(self):
+        self.process.send_signal(signal.SIGUSR1)
+
+    def lagged(self):
+        """The board itself was not in real time; known once it has ended."""
+        self.process.terminate()
+        self.process.wait(timeout=30)
+        self.log.seek(0)
+        return "behind the wall clock" in self.log.read()
+
+
+def hil(program, scenario, defects=(), patience=60, tries=TRIES):
+    """(exit status, output) of `plomada hil` on a fresh board, again when this machine was too busy."""
+    for _ in range(tries):
+        with Board(program, *(word for defect in defects for word in ("--defect", defect))) as board:
+            done = subprocess.run([program, "hil", scenario, *board.lines, "--patience", str(patience)], capture_output=True,
+                                  text=True, timeout=400, check=False)
+            if done.returncode != NO_VERDICT and not board.lagged():
+                break
+    return done.returncode, done.stdout + done.stderr
+
+
+def metrics(output):
+    return {words[0]: float(words[1]) for words in map(str.split, output.splitlines()) if len(words) == 2 and words[0].islower()
+            and words[1].replace(".", "").replace("-", "").isdigit()}
+
+
+def virtual(program, scenario, seed=1):
+    with tempfile.TemporaryDirectory() as directory:
+        path = Path(directory) / "fly.json"
+        subprocess.run([program, "fly", scenario, "--seed", str(seed), "--json", str(path)], capture_output=True, check=True)
+        return json.loads(path.read_text(encoding="utf-8"))

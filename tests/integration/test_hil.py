@@ -1,0 +1,99 @@
+"""A board on three pseudo-terminals, flown by `plomada hil` in real time.
+
+Usage: test_hil.py PLOMADA short|long
+"""
+import os
+import signal
+import subprocess
+import sys
+import unittest
+
+import bench
+
+PROGRAM = sys.argv[1]
+
+
+class Short(unittest.TestCase):
+    def test_the_ramp_is_flown_as_in_virtual_time(self):
+        status, output = bench.hil(PROGRAM, "est-60cm-ramp")
+        self.assertEqual(status, 0, output)
+        self.assertIn("MET: all expectations of est-60cm-ramp", output)
+        self.assertRegex(output, r"the board ended safe: on the ground, pulse 1999\.\d us")
+        self.assertRegex(output, r"loop: \d+\.\d ms from a scan's last octet to its pulse")
+        hover_mm = bench.metrics(output)["hover_rms_mm"]
+        self.assertLess(hover_mm, 1.3 * bench.virtual(PROGRAM, "est-60cm-ramp")["hover_rms_mm"])
+
+    def test_a_radio_that_is_wired_the_wrong_way_round_is_named(self):
+        status, output = bench.hil(PROGRAM, "hover-60s", ["xbee-swapped"], patience=3)
+        self.assertEqual(status, 1)
+        self.assertIn("xbee: nothing comes from the board", output)
+        self.assertNotIn("laser:", output)
+        self.assertNotIn("imu:", output)
+
+    def test_ports_that_are_none_and_scenarios_that_are_none_are_refused(self):
+        for words in (["est-60cm-ramp", "--laser", "/nowhere", "--imu", "/nowhere", "--xbee", "/nowhere"], ["bench"], ["est-60cm-ramp"],
+                      ["no-such-flight", "--laser", "a", "--imu", "b", "--xbee", "c"]):
+            self.assertEqual(subprocess.run([PROGRAM, "hil", *words], capture_output=True, check=False).returncode, 2, words)
+
+    def test_the_boards_links_are_gone_when_it_ends_and_a_power_cycle_keeps_them(self):
+        with bench.Board(PROGRAM) as board:
+            self.assertTrue(all(os.path.islink(path) for path in board.wires.values()))
+            board.power_cycle()
+            self.assertIsNone(board.process.poll())
+            board.process.send_signal(signal.SIGINT)
+            self.assertEqual(board.process.wait(timeout=20), 0)
+            self.assertFalse(any(os.path.islink(path) for path in board.wires.values()))
+
+
+class Long(unittest.TestCase):
+    def fly(self, scenario):
+        status, output = bench.hil(PROGRAM, scenario)
+        self.assertEqual(status, 0, output)
+        return bench.metrics(output)
+
+    def test_a_minute_of_the_seeds_hover(self):
+        hover_mm = self.fly("hover-60s")["hover_rms_mm"]
+        # The flown figure spreads from seed to seed, and no two real-time flights are the same: against the widest of five.
+        widest_mm = max(bench.virtual(PROGRAM, "hover-60s", seed)["hover_rms_mm"] for seed in range(1, 6))
+        self.assertLess(hover_mm, 1.3 * widest_mm)
+
+    def test_the_seeds_ramp(self):
+        self.fly("pid-60cm-ramp")
+
+    def trouble(self, defect):
+        status, output = bench.hil(PROGRAM, "est-60cm-ramp", [defect])
+        return status, output
+
+    def test_a_scanner_that_is_unplugged_in_flight_is_named_and_the_board_lands(self):
+        status, output = self.trouble("laser-gone@25")
+        self.assertEqual(status, 1, output)
+        self.assertRegex(output, r"(?m)^laser: gone: the adapter was lost at t = 1\d\.\d s$")
+        self.assertIn("the board ended safe", output)
+
+    def test_an_imu_that_is_unplugged_in_flight_is_named_and_the_board_lands(self):
+        _, output = self.trouble("imu-gone@25")
+        self.assertRegex(output, r"(?m)^imu: gone: the adapter was lost at t = 1\d\.\d s$")
+        self.assertIn("the board ended safe", output)
+
+    def test_a_radio_that_is_unplugged_in_flight_is_named_and_nobody_claims_to_know_the_end(self):
+        status, output = self.trouble("xbee-gone@25")
+        self.assertEqual(status, 1, output)
+        self.assertRegex(output, r"(?m)^xbee: silent: no pulse for 0\.5 s at t = 1\d\.\d\d s$")
+        self.assertIn("how the board ended is not known", output)
+
+    def test_garbled_lines_are_named(self):
+        _, output = self.trouble("xbee-garbled@20")
+        self.assertRegex(output, r"(?m)^xbee: garbled: \d+ lines from the board mean nothing$")
+        _, output = self.trouble("laser-garbled@20")
+        self.assertRegex(output, r"(?m)^laser: garbled: ")
+        self.assertIn("the board ended safe", output)
+
+    def test_a_late_radio_is_named(self):
+        _, output = self.trouble("xbee-late@5")
+        self.assertRegex(output, r"(?m)^xbee: late: \d+ ms until #LAW EST was answered$")
+
+
+if __name__ == "__main__":
+    chosen = {"short": Short, "long": Long}[sys.argv[2]]
+    suite = unittest.defaultTestLoader.loadTestsFromTestCase(chosen)
+    sys.exit(0 if unittest.TextTestRunner(verbosity=2).run(suite).wasSuccessful() else 1)

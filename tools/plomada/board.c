@@ -1,0 +1,467 @@
+#include <errno.h>
+#include <fcntl.h>
+#include <getopt.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "commands.h"
+#include "sim/board.h"
+#include "sim/costs.h"
+#include "sim/host/pace.h"
+#include "sim/noise.h"
+#include "sim/scenarios/wires.h"
+#include "sim/ti/driverlib/chip.h"
+#include "sim/ti/f021/flash.h"
+
+#define STEP (10 * SIM_MS)
+#define LAG_MAX (150 * SIM_MS)
+#define MISMATCH 0.045
+#define WRONG_RATE 1.08
+#define SLOW 6.0
+#define LONG_PULSE 1.1
+#define LATE (400 * SIM_MS)
+#define GARBLED_ONE_IN 50U
+
+static const char usage[] =
+    "usage: plomada board --laser PATH --imu PATH --xbee PATH [OPTION]...\n\n"
+    "Runs the unmodified firmware in real time with all three serial lines outside, as a LaunchPad does. Each PATH becomes\n"
+    "a symbolic link to a pseudo-terminal, removed at the end (SIGINT, SIGTERM; exit status 0): what a serial adapter on\n"
+    "the board's pins would be. Its bit rate is that of whoever opens it; at another rate than the firmware's both hear\n"
+    "nonsense. SIGUSR1 takes the power away and gives it back.\n\n"
+    "  --storage FILE      the chip's flash, kept over a power cycle and in the file; without it kept until the end\n"
+    "  --pulses FILE       the throttle pin as a logic analyser records it, in sigrok-cli's format (csv:time=true:dedup=true);\n"
+    "                      FILE may be a FIFO\n"
+    "  --duration S        ends by itself\n"
+    "  --seed N            phases (default 1)\n"
+    "  --defect NAME[@S]   something is wrong, from S seconds after the first power-on on (default: always); may be repeated:\n";
+
+static const char defect_help[] =
+    "      laser-swapped imu-swapped xbee-swapped   transmit and receive wire of that line are crossed\n"
+    "      laser-gone imu-gone xbee-gone            the adapter of that line is unplugged\n"
+    "      laser-late imu-late xbee-late            its octets towards the board come 0.4 s late\n"
+    "      laser-garbled imu-garbled xbee-garbled   every fiftieth octet is another, both ways\n"
+    "      wrong-rate        the oscillator is 8 % fast: every line\n"
+    "      pulse-inverted pulse-long pulse-missing  the throttle pin: inverted, pulses 10 % long, dead\n"
+    "      no-storage        the flash cannot be written\n"
+    "      forgetful         the flash is blank after a power cycle\n"
+    "      slow              every piece of code takes six times its time\n"
+    "      no-watchdog       the watchdog never bites\n";
+
+typedef enum {
+    SWAPPED, GONE, LATELY, GARBLED, WIRE_DEFECTS,
+    WRONG_RATE_DEFECT = WIRE_DEFECTS * BOARD_WIRES,
+    PULSE_INVERTED, PULSE_LONG, PULSE_MISSING, NO_STORAGE, FORGETFUL, SLOW_CODE, NO_WATCHDOG, DEFECTS
+} defect_t;
+
+static const char *const wire_defects[WIRE_DEFECTS] = {"swapped", "gone", "late", "garbled"};
+static const char *const other_defects[] = {"wrong-rate", "pulse-inverted", "pulse-long", "pulse-missing", "no-storage",
+                                            "forgetful",  "slow",           "no-watchdog"};
+
+enum { OPT_LASER = 1, OPT_IMU, OPT_XBEE, OPT_STORAGE, OPT_PULSES, OPT_DURATION, OPT_SEED, OPT_DEFECT, OPT_HELP };
+
+static const struct option long_options[] = {
+    {"laser", required_argument, NULL, OPT_LASER},       {"imu", required_argument, NULL, OPT_IMU},
+    {"xbee", required_argument, NULL, OPT_XBEE},         {"storage", required_argument, NULL, OPT_STORAGE},
+    {"pulses", required_argument, NULL, OPT_PULSES},     {"duration", required_argument, NULL, OPT_DURATION},
+    {"seed", required_argument, NULL, OPT_SEED},         {"defect", required_argument, NULL, OPT_DEFECT},
+    {"help", no_argument, NULL, OPT_HELP},               {NULL, 0, NULL, 0},
+};
+
+static struct {
+    const char *link[BOARD_WIRES], *storage, *pulses;
+    double duration_s, defect_s[DEFECTS];   /* NAN: not this defect */
+    unsigned long seed;
+    bool help;
+} order;
+
+static struct {
+    port_t ports[BOARD_WIRES];
+    bool linked[BOARD_WIRES];
+    noise_t noise;
+    unsigned passed;            /* octets, for the garbled ones */
+    int pulses;                 /* file, -1: none */
+    sim_time_t before;          /* virtual time of earlier power-ons */
+    sim_time_t worst_lag;
+    costs_stretched_t costs;
+} bench = {.pulses = -1};
+
+static volatile sig_atomic_t power_cycle;
+
+static bool complain(const char *what, const char *subject)
+{
+    fprintf(stderr, "plomada board: %s: %s\n", subject, what);
+    return false;
+}
+
+/* ---- arguments ---- */
+
+static int defect_of(const char *name)
+{
+    char text[32];
+
+    for (int i = 0; i < WRONG_RATE_DEFECT; i++) {
+        snprintf(text, sizeof text, "%s-%s", wire_names[i / WIRE_DEFECTS], wire_defects[i % WIRE_DEFECTS]);
+        if (strcmp(name, text) == 0) {
+            return i;
+        }
+    }
+    for (int i = WRONG_RATE_DEFECT; i < DEFECTS; i++) {
+        if (strcmp(name, other_defects[i - WRONG_RATE_DEFECT]) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static bool read_number(const char *text, double *number)
+{
+    char *end;
+
+    *number = strtod(text, &end);
+    return *text != '\0' && *end == '\0' && isfinite(*number) && *number >= 0.0;
+}
+
+static bool read_defect(const char *text)
+{
+    char name[32];
+    const char *at = strchr(text, '@');
+    double from_s = 0.0;
+    int defect;
+
+    snprintf(name, sizeof name, "%.*s", at != NULL ? (int)(at - text) : (int)strlen(text), text);
+    defect = defect_of(name);
+    if (defect < 0 || (at != NULL && !read_number(at + 1, &from_s))) {
+        return complain("no such defect", text);
+    }
+    order.defect_s[defect] = from_s;
+    return true;
+}
+
+static bool read_option(int option, const char *argument)
+{
+    double number;
+
+    switch (option) {
+    case OPT_LASER: order.link[BOARD_LASER] = argument; return true;
+    case OPT_IMU: order.link[BOARD_IMU] = argument; return true;
+    case OPT_XBEE: order.link[BOARD_RADIO] = argument; return true;
+    case OPT_STORAGE: order.storage = argument; return true;
+    case OPT_PULSES: order.pulses = argument; return true;
+    case OPT_DURATION: return read_number(argument, &order.duration_s) || complain("not a number of seconds", argument);
+    case OPT_SEED:
+        order.seed = strtoul(argument, NULL, 10);
+        return read_number(argument, &number) || complain("not a seed (0, 1, 2 ...)", argument);
+    case OPT_DEFECT: return read_defect(argument);
+    case OPT_HELP: order.help = true; return true;
+    default: return false;
+    }
+}
+
+static bool read_arguments(int argc, char **argv)
+{
+    int option;
+
+    memset(&order, 0, sizeof order);
+    order.seed = 1;
+    for (int i = 0; i < DEFECTS; i++) {
+        order.defect_s[i] = NAN;
+    }
+    optind = 1;
+    while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {
+        if (!read_option(option, optarg)) {
+            return false;
+        }
+    }
+    for (int i = 0; i < BOARD_WIRES && !order.help; i++) {
+        if (order.link[i] == NULL) {
+            fprintf(stderr, "plomada board: --%s is needed\n", wire_names[i]);
+            return false;
+        }
+    }
+    return optind == argc || complain("not understood", argv[optind]);
+}
+
+/* ---- the wires ---- */
+
+static bool broken(int defect)
+{
+    return !isnan(order.defect_s[defect]) && (double)(bench.before + timeline_now()) * 1e-9 >= order.defect_s[defect];
+}
+
+static bool wire_broken(board_wire_t wire, int defect)
+{
+    return broken((int)wire * WIRE_DEFECTS + defect);
+}
+
+static double own_rate(board_wire_t wire)
+{
+    return board_rate(wire) * (broken(WRONG_RATE_DEFECT) ? WRONG_RATE : 1.0);
+}
+
+static unsigned char garbled(board_wire_t wire, unsigned char octet)
+{
+    if (wire_broken(wire, GARBLED) && ++bench.passed % GARBLED_ONE_IN == 0) {
+        return (unsigned char)(noise_bits(&bench.noise) & 0xFFU);
+    }
+    return octet;
+}
+
+static void out(void *context, unsigned octet)
+{
+    port_t *port = context;
+    const board_wire_t wire = (board_wire_t)(port - bench.ports);
+    const double ratio = (double)port_rate(port) / own_rate(wire);
+    unsigned char c = garbled(wire, (unsigned char)octet);
+
+    if (wire_broken(wire, SWAPPED) || port->fd < 0) {
+        return;
+    }
+    if (fabs(ratio - 1.0) > MISMATCH) {
+        c = (unsigned char)(noise_bits(&bench.noise) & 0xFFU);
+    }
+    (void)port_write(port, &c, 1);
+}
+
+typedef struct {
+    board_wire_t wire;
+    size_t count;
+    unsigned char octets[4096];
+} late_t;
+
+static void arrive(board_wire_t wire, const unsigned char *octets, size_t count)
+{
+    /* A fast oscillator samples as if the far end were slow. */
+    const double rate = (double)port_rate(&bench.ports[wire]) / (broken(WRONG_RATE_DEFECT) ? WRONG_RATE : 1.0);
+
+    if (rate > 0.0) {
+        board_receive_at(wire, rate, octets, count);
+    }
+}
+
+static void arrive_late(void *context)
+{
+    late_t *late = context;
+
+    arrive(late->wire, late->octets, late->count);
+    free(late);
+}
+
+static void in(void *context, const unsigned char *octets, size_t count)
+{
+    const port_t *port = context;
+    late_t *late = malloc(sizeof *late);
+
+    if (late == NULL) {
+        abort();
+    }
+    late->wire = (board_wire_t)(port - bench.ports);
+    late->count = count;
+    for (size_t i = 0; i < count; i++) {
+        late->octets[i] = garbled(late->wire, octets[i]);
+    }
+    if (wire_broken(late->wire, SWAPPED)) {
+        free(late);
+    } else if (wire_broken(late->wire, LATELY)) {
+        timeline_after(LATE, arrive_late, late);
+    } else {
+        arrive_late(late);
+    }
+}
+
+static void unplug(void)
+{
+    for (int i = 0; i < BOARD_WIRES; i++) {
+        if (wire_broken((board_wire_t)i, GONE) && bench.ports[i].fd >= 0) {
+            pace_forget(&bench.ports[i]);
+            port_close(&bench.ports[i]);
+        }
+    }
+}
+
+/* ---- the throttle pin ---- */
+
+static void record(sim_time_t when, bool level)
+{
+    char row[48];
+    const int length = snprintf(row, sizeof row, "%lld,%d\n", (long long)((bench.before + when) / SIM_US), level);
+
+    if (write(bench.pulses, row, (size_t)length) < 0 && errno != EAGAIN) {
+        perror(order.pulses);
+    }
+}
+
+static void pulse(sim_time_t high_ns)
+{
+    const sim_time_t now = timeline_now();
+    const bool inverted = broken(PULSE_INVERTED);
+
+    if (bench.pulses < 0 || broken(PULSE_MISSING)) {
+        return;
+    }
+    if (broken(PULSE_LONG)) {
+        high_ns = (sim_time_t)((double)high_ns * LONG_PULSE);
+    }
+    record(now - high_ns, !inverted);
+    record(now, inverted);
+}
+
+static bool open_pulses(void)
+{
+    static const char head[] = "; CSV generated by plomada board, as by libsigrok 0.5.2\n; Channels (1/1): D0\n"
+                               "; Samplerate: 1 MHz\nmicroseconds,logic\n0,0\n";
+
+    if (order.pulses == NULL) {
+        return true;
+    }
+    /* Read as well: a FIFO opens without waiting for its reader. */
+    bench.pulses = open(order.pulses, O_RDWR | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0644);
+    return (bench.pulses >= 0 && write(bench.pulses, head, sizeof head - 1) > 0) || complain(strerror(errno), order.pulses);
+}
+
+/* ---- life ---- */
+
+static void on_power_cycle(int signal_number)
+{
+    (void)signal_number;
+    power_cycle = 1;
+}
+
+static void keep_storage(void)
+{
+    const char *error = order.storage != NULL ? flash_store(order.storage) : NULL;
+
+    if (error != NULL) {
+        complain(error, order.storage);
+    }
+}
+
+static void power_on(void)
+{
+    static const board_probes_t probes = {.pulse = pulse};
+    board_config_t config = board_config(order.seed);
+
+    config.quadrotor.anchored = true;
+    if (!isnan(order.defect_s[SLOW_CODE])) {
+        config.costs = costs_stretch(&bench.costs, config.costs, SLOW);
+    }
+    flash_cut_power_after(isnan(order.defect_s[NO_STORAGE]) ? -1 : 0);
+    board_probe(BOARD_PROBE_TIMING, &probes);
+    board_power_on(&config, NULL, NULL);
+    if (!isnan(order.defect_s[NO_WATCHDOG])) {
+        chip_watchdog_connect(NULL, NULL);
+    }
+    pace_begin();
+    (void)signal(SIGUSR1, on_power_cycle);
+    kernel_set_pacer(pace_wait);
+    for (int i = 0; i < BOARD_WIRES; i++) {
+        board_connect((board_wire_t)i, out, &bench.ports[i]);
+        if (bench.ports[i].fd >= 0) {
+            pace_watch(&bench.ports[i], in, &bench.ports[i]);
+        }
+    }
+}
+
+static void power_off(void)
+{
+    bench.before += timeline_now();
+    kernel_set_pacer(NULL);
+    board_power_off();
+    keep_storage();
+    if (!isnan(order.defect_s[FORGETFUL])) {
+        flash_blank();
+    }
+}
+
+static void look_at_the_clock(void)
+{
+    const sim_time_t lag = pace_lag();
+
+    bench.worst_lag = lag > bench.worst_lag ? lag : bench.worst_lag;
+}
+
+static void live(void)
+{
+    const sim_time_t end = order.duration_s > 0.0 ? (sim_time_t)(order.duration_s * 1e9) : SIM_NEVER;
+
+    power_on();
+    while (!pace_interrupted() && bench.before + timeline_now() < end) {
+        (void)kernel_run_until(timeline_now() + STEP);   /* false: the firmware stopped, the watchdog will restart it */
+        look_at_the_clock();
+        unplug();
+        if (power_cycle) {
+            power_cycle = 0;
+            power_off();
+            power_on();
+        }
+    }
+    power_off();
+    pace_end();
+    if (bench.worst_lag > LAG_MAX) {
+        fprintf(stderr, "plomada board: this PC was %.0f ms behind the wall clock\n", (double)bench.worst_lag * 1e-6);
+    }
+}
+
+static bool open_wires(void)
+{
+    static const unsigned long rates[BOARD_WIRES] = {115200, 57600, 9600};
+
+    for (int i = 0; i < BOARD_WIRES; i++) {
+        const char *error = port_open_pty(&bench.ports[i], rates[i]);
+
+        if (error == NULL) {
+            error = port_link(&bench.ports[i], order.link[i]);
+            bench.linked[i] = error == NULL;
+        }
+        if (error != NULL) {
+            return complain(error, order.link[i]);
+        }
+    }
+    return true;
+}
+
+static void close_wires(void)
+{
+    for (int i = 0; i < BOARD_WIRES; i++) {
+        if (bench.linked[i]) {
+            port_unlink(&bench.ports[i], order.link[i]);
+        }
+        if (bench.ports[i].name[0] != '\0') {
+            port_close(&bench.ports[i]);
+        }
+    }
+}
+
+static bool load_storage(void)
+{
+    const char *error = order.storage != NULL ? flash_load(order.storage) : NULL;
+
+    return error == NULL || complain(error, order.storage);
+}
+
+int command_board(int argc, char **argv)
+{
+    bool begun;
+
+    if (!read_arguments(argc, argv)) {
+        fprintf(stderr, "`plomada board --help` tells more.\n");
+        return 2;
+    }
+    if (order.help) {
+        fputs(usage, stdout);
+        fputs(defect_help, stdout);
+        return 0;
+    }
+    noise_init(&bench.noise, order.seed, "nonsense");
+    begun = load_storage() && open_pulses() && open_wires();
+    if (begun) {
+        printf("board: %s %s %s\n", order.link[BOARD_LASER], order.link[BOARD_IMU], order.link[BOARD_RADIO]);
+        fflush(stdout);
+        live();
+    }
+    close_wires();
+    return begun ? 0 : 2;
+}
