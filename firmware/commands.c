@@ -13,6 +13,7 @@
 #include "firmware/listing.h"
 #include "firmware/servers.h"
 #include "firmware/verbs.h"
+#include "firmware/version.h"
 #include "firmware/xbee_port.h"
 
 #define CONTINUE_POLL_MS 10U    /* ten characters leave meanwhile */
@@ -108,6 +109,17 @@ static bool execute_ping(answer_t *answer)
     return true;
 }
 
+static bool execute_version(answer_t *answer)
+{
+    if (answer->command->argument_length > 0U) {
+        return answer_refuse(answer, "takes no value");
+    }
+    answer_begin(answer);
+    telemetry_text(&answer->line, " " PLOMADA_VERSION);
+    answer_send(answer);
+    return true;
+}
+
 static void set_reference(float reference_m)
 {
     reference_sample_t reference;
@@ -143,6 +155,7 @@ static const verb_t verbs[] = {
     {"STREAM", verb_stream, "PULSE|OFF - the pulse of each control cycle in place of telemetry"},
     {"HANG", verb_hang, "TASK - hangs a task, for a test of the watchdog; on the ground only"},
     {"PING", execute_ping, "[TEXT] - answers the same text"},
+    {"VERSION", execute_version, "- the firmware's version"},
     {"HELP", execute_help, "- this list"},
 };
 #define VERB_COUNT (sizeof verbs / sizeof verbs[0])

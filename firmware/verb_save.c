@@ -4,11 +4,12 @@
 #include "firmware/parameter_store.h"
 #include "firmware/servers.h"
 #include "firmware/verbs.h"
+#include "firmware/version.h"
 
 static const char *const reasons[] = {
     [PARAMETER_STORE_EMPTY] = "nothing stored",
     [PARAMETER_STORE_DAMAGED] = "stored set damaged",
-    [PARAMETER_STORE_FOREIGN] = "stored by another firmware",
+    [PARAMETER_STORE_FOREIGN] = "stored by another firmware, this is " PLOMADA_VERSION,
     [PARAMETER_STORE_FAULT] = "storage fault",
 };
 

@@ -13,6 +13,7 @@
 #include "mock_verbs.h"
 #include "mock_xbee_port.h"
 #include "firmware/listing.h"
+#include "firmware/version.h"
 #include "unity.h"
 
 #define ANSWERS_MAX 60U
@@ -229,7 +230,7 @@ void test_the_limits_themselves_are_accepted_and_the_next_number_is_not(void)
             type(line);
             TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE("OK ", answers[0], 3, line);
         }
-        (void)snprintf(text, sizeof text, "ERR %s out of range %.9g..%.4g %s", row->name, (double)row->minimum,
+        (void)snprintf(text, sizeof text, "ERR %s out of range %.4g..%.4g %s", row->name, (double)row->minimum,
                        (double)row->maximum, row->unit);
         (void)snprintf(line, sizeof line, "#%s %.9g", row->name, (double)nextafterf(row->maximum, INFINITY));
         assert_refused(text, line);
@@ -393,6 +394,18 @@ void test_ping_answers_its_own_text(void)
     assert_answer("OK PING Are you  there?", "#ping Are you  there? ");
     assert_answer("OK PING 12345678901234567890123456", "#PING 12345678901234567890123456"); /* 32 characters */
     TEST_ASSERT_EQUAL_UINT16(0, parameter_writes);
+}
+
+void test_version_answers_three_numbers(void)
+{
+    unsigned major, minor, patch;
+    int end = 0;
+
+    type("#VERSION");
+    TEST_ASSERT_EQUAL_INT(3, sscanf(answers[0], "OK VERSION %u.%u.%u%n", &major, &minor, &patch, &end));
+    TEST_ASSERT_EQUAL_STRING("", &answers[0][end]);
+    assert_answer("OK VERSION " PLOMADA_VERSION, "#version");
+    assert_refused("ERR VERSION takes no value", "#VERSION 2");
 }
 
 void test_help_tells_every_parameter_and_every_verb_with_limits_and_meaning(void)

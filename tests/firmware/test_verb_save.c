@@ -6,6 +6,7 @@
 #include "mock_servers.h"
 #include "mock_xbee_port.h"
 #include "unity.h"
+#include "firmware/version.h"
 #include "firmware/verbs.h"
 
 static parameters_t parameters;
@@ -184,7 +185,7 @@ void test_each_failure_of_the_store_has_its_reason_and_changes_nothing(void)
         const char *expected;
     } rows[] = {{PARAMETER_STORE_EMPTY, "ERR LOAD nothing stored\r\n"},
                 {PARAMETER_STORE_DAMAGED, "ERR LOAD stored set damaged\r\n"},
-                {PARAMETER_STORE_FOREIGN, "ERR LOAD stored by another firmware\r\n"},
+                {PARAMETER_STORE_FOREIGN, "ERR LOAD stored by another firmware, this is " PLOMADA_VERSION "\r\n"},
                 {PARAMETER_STORE_RANGE, "ERR LOAD stored KD out of range 0..1 N/mm\r\n"}};
 
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {

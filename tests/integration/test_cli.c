@@ -7,6 +7,7 @@
 #include "child.h"
 #include "control/parameters.h"
 #include "unity.h"
+#include "firmware/version.h"
 
 void setUp(void) {}
 void tearDown(void) {}
@@ -48,6 +49,8 @@ void test_usage_errors_exit_2_and_help_exits_0(void)
     TEST_ASSERT_NOT_NULL(strstr(output, "plant.hover_thrust"));
     TEST_ASSERT_EQUAL_INT(0, run("list --help"));
     TEST_ASSERT_EQUAL_INT(0, run("params --help"));
+    TEST_ASSERT_EQUAL_INT(0, run("--version"));
+    TEST_ASSERT_EQUAL_STRING("plomada " PLOMADA_VERSION "\n", output);
 }
 
 void test_list_and_params_name_everything(void)

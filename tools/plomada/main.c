@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "firmware/version.h"
 
 typedef struct {
     const char *name;
@@ -30,7 +31,7 @@ static void print_usage(FILE *out)
     for (size_t i = 0; i < SUBCOMMAND_COUNT; i++) {
         fprintf(out, "  %-8s %s\n", subcommands[i].name, subcommands[i].summary);
     }
-    fprintf(out, "\n`plomada SUBCOMMAND --help` tells more.\n");
+    fprintf(out, "\n`plomada SUBCOMMAND --help` tells more, `plomada --version` the version.\n");
 }
 
 int main(int argc, char **argv)
@@ -41,6 +42,10 @@ int main(int argc, char **argv)
     }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
         print_usage(stdout);
+        return 0;
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        printf("plomada " PLOMADA_VERSION "\n");
         return 0;
     }
     for (size_t i = 0; i < SUBCOMMAND_COUNT; i++) {
