@@ -1,3 +1,5 @@
+#undef _FORTIFY_SOURCE /* its longjmp() takes another stack for an error */
+
 #include "sim/ti/sysbios/fiber.h"
 
 #include <stdlib.h>
@@ -5,9 +7,10 @@
 
 #define PATTERN 0xBE
 
-static ucontext_t scheduler;
 static fiber_t *current;
 
+/* swapcontext() asks the kernel for the signal mask each time, which takes longer than all the rest; jumps do not. The
+ * sanitizer wants to be told of each change of the stack, and does not follow jumps. */
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/common_interface_defs.h>
 
@@ -30,28 +33,57 @@ static void arrived_in_fiber(void *fake_stack)
     __sanitizer_finish_switch_fiber(fake_stack, &scheduler_stack, &scheduler_stack_size);
 }
 
-static void arrived_in_scheduler(void)
+static ucontext_t scheduler;
+
+static void to_fiber(fiber_t *fiber)
 {
+    announce_fiber(fiber);
+    (void)swapcontext(&scheduler, &fiber->context);
     __sanitizer_finish_switch_fiber(scheduler_fake_stack, NULL, NULL);
 }
-#else
-static void announce_fiber(fiber_t *fiber)
+
+static void to_scheduler(fiber_t *fiber)
 {
-    (void)fiber;
+    announce_scheduler(&fiber->fake_stack);
+    (void)swapcontext(&fiber->context, &scheduler);
+    arrived_in_fiber(fiber->fake_stack);
 }
 
-static void announce_scheduler(void **fake_stack)
+static void leave(void)
 {
-    (void)fake_stack;
+    announce_scheduler(NULL);
+    (void)setcontext(&scheduler);
 }
+#else
+static jmp_buf scheduler;
 
 static void arrived_in_fiber(void *fake_stack)
 {
     (void)fake_stack;
 }
 
-static void arrived_in_scheduler(void)
+static void to_fiber(fiber_t *fiber)
 {
+    if (_setjmp(scheduler) != 0) {
+        return;
+    }
+    if (fiber->begun) {
+        _longjmp(fiber->jump, 1);
+    }
+    fiber->begun = true;
+    (void)setcontext(&fiber->context);
+}
+
+static void to_scheduler(fiber_t *fiber)
+{
+    if (_setjmp(fiber->jump) == 0) {
+        _longjmp(scheduler, 1);
+    }
+}
+
+static void leave(void)
+{
+    _longjmp(scheduler, 1);
 }
 #endif
 
@@ -99,25 +131,18 @@ __attribute__((no_sanitize("address"))) size_t fiber_stack_used(const fiber_t *f
 void fiber_resume(fiber_t *fiber)
 {
     current = fiber;
-    announce_fiber(fiber);
-    (void)swapcontext(&scheduler, &fiber->context);
-    arrived_in_scheduler();
+    to_fiber(fiber);
     current = NULL;
 }
 
 void fiber_pause(void)
 {
-    fiber_t *self = current;
-
-    announce_scheduler(&self->fake_stack);
-    (void)swapcontext(&self->context, &scheduler);
-    arrived_in_fiber(self->fake_stack);
+    to_scheduler(current);
 }
 
 void fiber_leave(void)
 {
-    announce_scheduler(NULL);
-    (void)setcontext(&scheduler);
+    leave();
     abort();
 }
 

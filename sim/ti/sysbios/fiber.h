@@ -3,6 +3,7 @@
 #ifndef SIM_TI_SYSBIOS_FIBER_H
 #define SIM_TI_SYSBIOS_FIBER_H
 
+#include <setjmp.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <ucontext.h>
@@ -10,7 +11,9 @@
 #define FIBER_STACK ((size_t)256 * 1024)
 
 typedef struct {
-    ucontext_t context;
+    ucontext_t context; /* where it begins; under AddressSanitizer also where it goes on */
+    jmp_buf jump;       /* where it goes on */
+    bool begun;
     void *stack;        /* NULL: no fiber */
     void *fake_stack;   /* AddressSanitizer's */
     void (*entry)(void *argument);
