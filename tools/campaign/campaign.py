@@ -1,26 +1,39 @@
 #!/usr/bin/env python3
 """campaign.py [--law L,L] [--set S,S] [--runs N] [--page] ...: flies each law on many vehicles.
+campaign.py --faults [N] [--law L,L] [--page] ...: flies them while the world lies to them.
 
 The vehicle of a run depends on the campaign's seed and the run's number alone, so all laws fly the same vehicles.
 Flights run in processes of their own through Dask, on this machine or on the cluster of --scheduler. Each result is
 kept at once in DIR/flights.jsonl; a rerun flies only what is missing there, and what another program or other draws
 would fly anew. Then come the table and the verdicts on stdout, and in DIR campaign.csv, campaign.json and campaign.png.
 The campaign without options is the one in docs/control.md: its tables must be these, or --page writes them.
-docs/campaign.md tells more. Exit status: 0; 1 a law does not reach what it must, or docs/control.md says otherwise;
-2 usage or a program that does not fly; 130 interrupted.
+With --faults, each of N flights has one to three random conditions, such as lost rays, a frozen IMU, a noisy line, and all
+laws fly the same ones. Then come, for each flight that did harm, the command that repeats it, and the rates;
+docs/reliability.md has those of the default campaign, which are compared, and those of a large one.
+docs/campaign.md tells more. Exit status: 0; 1 a law does not reach what it must, or the page says otherwise; 2 usage or a program that does not fly; 130 interrupted.
 """
 import argparse
 import json
 import sys
 from pathlib import Path
 
+import faults
 import fleet
+import harm
 import page
 import plan
 import table
 import verdict
 
 ROOT = Path(__file__).resolve().parents[2]
+
+
+FAULTS = 2000
+
+
+def of_page(arguments):
+    """Whether these flights with faults may stand in docs/reliability.md."""
+    return (set(arguments.laws), arguments.seed) == (set(plan.LAWS), 1) and arguments.faults >= FAULTS
 
 
 def names(known):
@@ -48,14 +61,22 @@ def read_arguments(argv):
     parser.add_argument("--set", type=names(plan.SETS), default=plan.DEFAULT_SETS, dest="sets",
                         help=f"or all (default: {','.join(plan.DEFAULT_SETS)}); {sets}")
     parser.add_argument("--runs", type=positive, help="flights per law in each set (default: in brackets above)")
+    parser.add_argument("--faults", type=positive, nargs="?", const=FAULTS, metavar="N",
+                        help=f"flights with faults ({FAULTS}) instead of the sets")
     parser.add_argument("--seed", type=positive, default=1, help="of the draws (1)")
-    parser.add_argument("--page", action="store_true", help="writes the tables and the picture of docs/control.md")
+    parser.add_argument("--page", action="store_true", help="writes the tables of docs/control.md and its picture; with --faults those of "
+                             "docs/reliability.md")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster (default: this machine's processors)")
     parser.add_argument("--program", type=Path, default=ROOT / "build/plomada", help="default: build/plomada")
     parser.add_argument("--out", type=Path, default=ROOT / "build/campaign", metavar="DIR",
                         help="default: build/campaign")
     arguments = parser.parse_args(argv)
-    if arguments.page and (set(arguments.laws), set(arguments.sets), arguments.runs, arguments.seed) != (
+    if arguments.faults and (arguments.sets != plan.DEFAULT_SETS or arguments.runs):
+        parser.error("--faults goes without --set and --runs")
+    if arguments.faults and arguments.page and not of_page(arguments):
+        parser.error(f"--page goes with the default laws and seed, and at least {FAULTS} flights")
+    of_control = (set(arguments.laws), set(arguments.sets), arguments.runs, arguments.seed)
+    if not arguments.faults and arguments.page and of_control != (
             set(plan.LAWS), set(plan.DEFAULT_SETS), None, 1):
         parser.error("--page goes with the default laws, sets, runs and seed")
     return arguments
@@ -124,6 +145,43 @@ def compare_page(rows, rewrite):
     return page.compare(rendered, page.PAGE.read_text(encoding="utf-8"))
 
 
+def flights_with_faults(program, laws, seed, count):
+    """{key: (label, arguments)}: the laws take turns, so that each number of a condition is flown by all of them."""
+    digest = fleet.digest(program)
+    planned = {}
+    for at in range(count):
+        name, number = list(laws)[at % len(laws)], at // len(laws) + 1
+        words = faults.arguments(laws[name], seed, number)
+        planned[fleet.key(digest, words)] = ({"law": name, "faults": number}, words)
+    return planned
+
+
+def run_faults(arguments):
+    """The exit status: 1 when docs/reliability.md says otherwise."""
+    program = str(arguments.program.resolve())
+    laws = {name: plan.LAWS[name] for name in arguments.laws}
+    planned = flights_with_faults(program, laws, arguments.seed, arguments.faults)
+    with fleet.Store(arguments.out / "faults.jsonl") as store:
+        new = fly_missing(program, planned, store, arguments.scheduler)
+    print(f"{new} flights flown, {len(planned) - new} known", file=sys.stderr)
+    flown = [harm.Flight(label["law"], label["faults"], tuple(faults.conditions(arguments.seed, label["faults"])),
+                         tuple(words), store.known[key]) for key, (label, words) in planned.items()]
+    failing = list(harm.failing(flown, str(arguments.program)))
+    (arguments.out / "harm.txt").write_text("".join(f"{line}\n" for line in failing), encoding="utf-8")
+    print(*failing, sep="\n", end="\n\n")
+    print(f"{harm.text(flown)}\n\n{arguments.out / 'harm.txt'}")
+    if not of_page(arguments):
+        return 0
+    block = "default" if arguments.faults == FAULTS else "large"
+    rendered = harm.render(flown, arguments.faults)
+    if arguments.page:
+        harm.write(block, rendered)
+    otherwise = harm.compare(block, rendered) if block == "default" else []
+    if otherwise:
+        print("docs/reliability.md is otherwise; --page writes it:", *otherwise, sep="\n")
+    return 1 if otherwise else 0
+
+
 def run(arguments):
     """The exit status."""
     program = str(arguments.program.resolve())
@@ -147,7 +205,7 @@ def run(arguments):
 def main(argv=None):
     arguments = read_arguments(argv)
     try:
-        return run(arguments)
+        return run_faults(arguments) if arguments.faults else run(arguments)
     except (fleet.Broken, OSError) as error:
         print(f"campaign: {error}", file=sys.stderr)
         return 2
