@@ -120,14 +120,14 @@ static uint32_t median_of(const uint16_t *rays, size_t count, const tally_t *goo
 /* Mean of the good rays within NEAR_MEDIAN_MM of their median. Mostly all are, and the median is not needed. */
 static float robust_mean(const uint16_t *rays, size_t count, const tally_t *good)
 {
-    tally_t near = *good;
+    tally_t kept = *good;
     if (good->most - good->least > NEAR_MEDIAN_MM) {
         const uint32_t median = median_of(rays, count, good);
         const uint32_t least = median - good->least > NEAR_MEDIAN_MM ? median - NEAR_MEDIAN_MM : good->least;
         const uint32_t most = good->most - median > NEAR_MEDIAN_MM ? median + NEAR_MEDIAN_MM : good->most;
-        near = tally_between(rays, count, least, most);
+        kept = tally_between(rays, count, least, most);
     }
-    return (float)near.sum / (float)(count - near.bad);
+    return (float)kept.sum / (float)(count - kept.bad);
 }
 
 scip_group_mean_t scip_group_mean_within(const scip_scan_t *scan, const scip_group_t *group,
