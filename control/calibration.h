@@ -19,6 +19,7 @@
 typedef struct {
     uint16_t sequence;      /* +1 with every start and every stop */
     bool run;
+    float idle_percent;     /* of the throttle's range: one step above it is the first */
     uint16_t step_counts;   /* 1..CALIBRATION_STEP_COUNTS_MAX, counts of THRUST_STEP_US */
     uint16_t period_s;      /* 1..CALIBRATION_PERIOD_MAX_S */
 } calibration_request_t;
@@ -43,10 +44,13 @@ typedef struct {
     uint32_t now_us;
 } calibration_t;
 
-/* One control cycle, after flight_step(): while it runs, the thrust and the pulse of *out are replaced. It starts at idle
- * with one step, makes another after each period, and ends, at once and with idle, for the reasons above. link_s: the
+/* One control cycle, after flight_step(): while it runs, the thrust and the pulse of *out are replaced. It starts one step
+ * above the idle that keeps motors turning, makes another after each period, and ends, at once and with idle, for the reasons above. link_s: the
  * armed silence of the link, 0 = not armed. */
 void calibration_step(calibration_t *calibration, const calibration_request_t *request, float link_s,
                       const flight_inputs_t *in, flight_outputs_t *out);
+
+/* What to set GRAV to when that thrust has just tightened the ropes. */
+float calibration_gravity_n(const parameters_t *parameters, float thrust_n);
 
 #endif

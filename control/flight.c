@@ -400,7 +400,7 @@ static void supervise(flight_t *flight, const parameters_t *parameters, const fl
         .known = has_estimate(flight) && estimator->confirmed,
         .height_mm = now->height_m * 1000.0F,
         .climb_mm_s = (now->speed_mps - now->terrain_mps) * 1000.0F,
-        .stands = integrity_stands(&flight->integrity) || (flight->hopping && flight->thrust_n <= 0.0F),
+        .stands = integrity_stands(&flight->integrity) || (flight->hopping && flight->thrust_n <= flight->idle_n),
         .sways = integrity_sways(&flight->integrity),
     };
     supervisor_step(&flight->supervisor, parameters->value[PARAMETER_LINK], in, &estimate);
@@ -563,6 +563,7 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
     const float measured_mm = (supervisor->height.sequence != 0U) ? supervisor->height.height_mm : NAN;
 
     out->thrust_n = flight->thrust_n;
+    out->idle_n = flight->idle_n;
     out->pulse_us = thrust_to_pulse_us(flight->thrust_n);
     out->state = supervisor->state;
     out->flags = (uint16_t)(supervisor->flags | (imu_missing ? FLIGHT_FLAG_ATTITUDE : 0U)
@@ -578,10 +579,13 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
 void flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in, flight_outputs_t *out)
 {
     const flight_mode_t before = flight->mode;
+    const flight_state_t state_before = flight->supervisor.state;
     flight_inputs_t believed = *in;
 
     believe(flight, parameters, &believed);
     supervise(flight, parameters, &believed);
+    arming_step(&flight->arming, &believed, state_before, &flight->supervisor);
+    flight->idle_n = arming_idle_n(&flight->arming, parameters->value[PARAMETER_IDLE], flight->supervisor.state);
     update_estimator(flight, parameters, &believed);
     const bool law_changed = select_law(flight, parameters);
     flight->mode = select_mode(flight, in);
@@ -597,7 +601,7 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
         flight->transfer_n = 0.0F;
     }
     bumpless_transfer(flight, before, law_changed || action_changed);
-    flight->thrust_n = between(0.0F, within_power_n(flight, within_climb_n(flight, parameters, flight->setpoint_n + flight->transfer_n)), THRUST_MAX_N);
+    flight->thrust_n = between(flight->idle_n, within_power_n(flight, within_climb_n(flight, parameters, flight->setpoint_n + flight->transfer_n)), THRUST_MAX_N);
     est_law_record_command(&flight->est, flight->thrust_n);
     judge_reach(flight);
     write_outputs(flight, parameters, out);

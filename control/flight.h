@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "control/arming.h"
 #include "control/descent.h"
 #include "control/est/est_law.h"
 #include "control/flight_io.h"
@@ -46,6 +47,8 @@ typedef struct {
     est_law_t est;
     control_law_t active_law;           /* PIDT in place of EST without a fresh estimate */
     descent_t descent;
+    arming_t arming;
+    float idle_n;                   /* least thrust: the armed idle, or 0 */
     reach_t reach;
     float reach_m;                  /* the reference that it is about */
     bool out_of_reach;              /* the reference in force, as it seems */

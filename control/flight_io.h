@@ -31,6 +31,8 @@ typedef struct {
     uint32_t reference_sequence;    /* +1 per accepted #SETR, 0 m included */
     uint32_t link_time_us;          /* arrival of the latest complete valid command line */
     uint32_t link_sequence;         /* +1 per such line; 0 = never one */
+    bool arm;                       /* the operator's latest wish; looked at when its sequence changes */
+    uint32_t arm_sequence;
     bool has_throttle;             /* false: the pilot has it, as a pin says; true when nothing says it */
 } flight_inputs_t;
 
@@ -42,6 +44,7 @@ typedef struct {
 typedef struct {
     float thrust_n;                 /* commanded, newtons per motor, 0 .. THRUST_MAX_N */
     float pulse_us;                 /* throttle pulse, thrust.h */
+    float idle_n;                   /* least thrust_n in force: the armed idle, or 0 */
     flight_state_t state;
     uint16_t flags;                 /* FLIGHT_FLAG_* */
     uint16_t doubts;                /* DOUBT_*, integrity.h */

@@ -37,6 +37,7 @@ const parameter_row_t parameter_table[PARAMETER_COUNT] = {
     [PARAMETER_LINK] = {"LINK", "s", 0.0F, 60.0F, 0.0F, NULL, "Longest silence of the link; 0 disarms."},
     [PARAMETER_SEL] = {"SEL", "-", 0.0F, (float)(SEL_COUNT - 1), (float)SEL_NONE, sel_names,
                         "Whether a pin tells that the pilot has the throttle."},
+    [PARAMETER_IDLE] = {"IDLE", "%", 0.0F, 25.0F, 15.0F, NULL, "Least throttle while armed: keeps the motors turning."},
 };
 
 void parameters_init(parameters_t *parameters)

@@ -30,6 +30,7 @@ typedef enum {
     PARAMETER_CRATE,    /* m/s per N, with PLANT CLIMB */
     PARAMETER_LINK,     /* s, 0 = link supervision off */
     PARAMETER_SEL,      /* choice, control_sel_t */
+    PARAMETER_IDLE,     /* % of the throttle's range, while armed */
     PARAMETER_COUNT
 } parameter_id_t;
 

@@ -20,3 +20,8 @@ float thrust_from_pulse_us(float pulse_us)
     }
     return (thrust_n > 0.0F) ? thrust_n : 0.0F;
 }
+
+float thrust_of_percent(float percent)
+{
+    return 0.01F * percent * THRUST_MAX_N;
+}

@@ -14,4 +14,7 @@ float thrust_to_pulse_us(float thrust_n);
 /* Inverse of the above, clipped to 0 .. THRUST_MAX_N. NaN gives 0. */
 float thrust_from_pulse_us(float pulse_us);
 
+/* Percent of the throttle's range, as the autopilot shows it, to newtons per motor. */
+float thrust_of_percent(float percent);
+
 #endif

@@ -8,25 +8,26 @@
 static calibration_request_t request;
 static calibration_t calibration;
 
-static uint16_t ask(bool run, uint16_t step_counts, uint16_t period_s)
+static uint16_t ask(calibration_request_t next)
 {
-    const calibration_request_t next = {(uint16_t)(request.sequence + 1U), run, step_counts, period_s};
     UInt key = Hwi_disable();
 
+    next.sequence = (uint16_t)(request.sequence + 1U);
     request = next;
     Hwi_restore(key);
     return next.sequence;
 }
 
-uint16_t calibrator_start(uint16_t step_counts, uint16_t period_s)
+uint16_t calibrator_start(float idle_percent, uint16_t step_counts, uint16_t period_s)
 {
-    return ask(true, step_counts, period_s);
+    return ask((calibration_request_t){
+        .run = true, .idle_percent = idle_percent, .step_counts = step_counts, .period_s = period_s});
 }
 
 void calibrator_stop(void)
 {
     if (request.run) {
-        (void)ask(false, request.step_counts, request.period_s);
+        (void)ask((calibration_request_t){.run = false, .step_counts = request.step_counts, .period_s = request.period_s});
     }
 }
 

@@ -7,7 +7,7 @@
 #include "control/calibration.h"
 
 /* Limits as in calibration.h. Returns the sequence number of the request. TaskReceiveComm. */
-uint16_t calibrator_start(uint16_t step_counts, uint16_t period_s);
+uint16_t calibrator_start(float idle_percent, uint16_t step_counts, uint16_t period_s);
 
 /* Ends it with TaskControl's next cycle; nothing when none runs. TaskReceiveComm. */
 void calibrator_stop(void);

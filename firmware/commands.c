@@ -8,6 +8,7 @@
 
 #include "firmware/answer.h"
 #include "firmware/calibrator.h"
+#include "firmware/ground.h"
 #include "drivers/decimal.h"
 #include "control/parameters.h"
 #include "firmware/listing.h"
@@ -130,7 +131,34 @@ static void set_reference(float reference_m)
     reference_server_write(&reference);
 }
 
-/* `#STOP` and `#LAND`: whatever stands behind the name. */
+static void set_arm(bool arm)
+{
+    reference_sample_t reference;
+
+    reference_server_read(&reference);
+    reference.arm = arm;
+    reference.arm_sequence++;
+    reference_server_write(&reference);
+}
+
+static bool execute_arm(answer_t *answer)
+{
+    parameters_t parameters;
+
+    if (!ground_waits()) {
+        return answer_refuse(answer, "not on the ground");
+    }
+    set_arm(true);
+    parameter_server_read(&parameters);
+    answer_begin(answer);
+    telemetry_text(&answer->line, " idle:");
+    telemetry_number(&answer->line, parameters.value[PARAMETER_IDLE]);
+    telemetry_text(&answer->line, "%");
+    answer_send(answer);
+    return true;
+}
+
+/* Whatever stands behind the name. */
 static bool execute_land(answer_t *answer)
 {
     set_reference(0.0F);
@@ -139,10 +167,17 @@ static bool execute_land(answer_t *answer)
     return true;
 }
 
+static bool execute_stop(answer_t *answer)
+{
+    set_arm(false);
+    return execute_land(answer);
+}
+
 static bool execute_help(answer_t *answer);
 
 static const verb_t verbs[] = {
-    {"STOP", execute_land, "- on the ground the motors idle, in the air it lands; goes before all that waits"},
+    {"ARM", execute_arm, "- on the ground: IDLE percent of throttle instead of none, which keeps started motors turning"},
+    {"STOP", execute_stop, "- disarms: no throttle on the ground, in the air it lands first; goes before all that waits"},
     {"LAND", execute_land, "- lands, as #SETR 0; goes before all that waits"},
     {"GET", execute_get, "[NAME] - one parameter, or all"},
     {"SAVE", verb_save, "- stores the parameters, all but SETR"},
@@ -250,10 +285,15 @@ static bool is_named(const telecommand_t *command, const char *name)
     return strlen(name) == command->name_length && strncmp(name, command->name, command->name_length) == 0;
 }
 
+static bool starts(const telecommand_t *command)
+{
+    return is_named(command, "SETR") || is_named(command, "CALIBRATE") || is_named(command, "ARM");
+}
+
 /* A stop that was typed later has been obeyed already. */
 static bool refuse_overtaken(answer_t *answer, const xbee_message_t *message)
 {
-    if (!message->overtaken || !(is_named(answer->command, "SETR") || is_named(answer->command, "CALIBRATE"))) {
+    if (!message->overtaken || !starts(answer->command)) {
         return false;
     }
     (void)answer_refuse(answer, "overtaken by a stop");

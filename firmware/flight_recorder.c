@@ -49,7 +49,7 @@ static void append(const flight_log_t *record)
 
 void flight_recorder_take(const flight_inputs_t *in, const flight_outputs_t *out)
 {
-    const bool active = out->state != FLIGHT_GROUND || out->thrust_n > 0.0F;
+    const bool active = out->state != FLIGHT_GROUND || out->thrust_n > out->idle_n;
     const bool wanted = active || clock.active;
     const float height_mm = in->height_valid ? in->altitude.height_mm : NAN;
     const flight_log_t record = {

@@ -2,13 +2,25 @@
 
 #include "firmware/servers.h"
 
-bool ground_idle(void)
+static bool waits(flight_outputs_t *flight)
 {
     reference_sample_t reference;
-    flight_outputs_t flight;
 
     reference_server_read(&reference);
-    flight_status_server_read(&flight);
-    return flight.state == FLIGHT_GROUND && flight.thrust_n <= 0.0F && flight.reference_m <= 0.0F
-           && reference.reference_m <= 0.0F;
+    flight_status_server_read(flight);
+    return flight->state == FLIGHT_GROUND && flight->reference_m <= 0.0F && reference.reference_m <= 0.0F;
+}
+
+bool ground_idle(void)
+{
+    flight_outputs_t flight;
+
+    return waits(&flight) && flight.thrust_n <= 0.0F;
+}
+
+bool ground_waits(void)
+{
+    flight_outputs_t flight;
+
+    return waits(&flight) && flight.thrust_n <= flight.idle_n;
 }

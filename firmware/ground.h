@@ -7,4 +7,7 @@
 /* In GROUND with no thrust, and no reference is set. Task. */
 bool ground_idle(void);
 
+/* On the ground with no reference, be it that the armed motors idle. Task. */
+bool ground_waits(void);
+
 #endif

@@ -54,6 +54,8 @@ void laser_server_read(laser_sample_t *sample);
 typedef struct {
     float reference_m;          /* 0 = none, or land */
     uint32_t sequence;          /* accepted #SETR so far */
+    bool arm;                   /* #ARM, until #STOP */
+    uint32_t arm_sequence;      /* both so far */
     uint32_t link_time_us;      /* arrival of the latest valid line */
     uint32_t link_sequence;     /* valid lines so far; 0 = never one */
 } reference_sample_t;

@@ -103,6 +103,8 @@ static void read_inputs(const parameters_t *parameters, flight_inputs_t *in)
     in->attitude_time_us = imu->arrival_us;
     in->reference_m = reference.reference_m;
     in->reference_sequence = reference.sequence;
+    in->arm = reference.arm;
+    in->arm_sequence = reference.arm_sequence;
     in->link_time_us = reference.link_time_us;
     in->link_sequence = reference.link_sequence;
     in->has_throttle = parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE || bsp_selector_ours();

@@ -44,10 +44,10 @@ static bool read_whole(const telecommand_t *command, uint16_t *at, uint16_t most
     return true;
 }
 
-static bool start(answer_t *answer, uint16_t step_counts, uint16_t period_s)
+static bool start(answer_t *answer, float idle_percent, uint16_t step_counts, uint16_t period_s)
 {
     report.open = true;
-    report.sequence = calibrator_start(step_counts, period_s);
+    report.sequence = calibrator_start(idle_percent, step_counts, period_s);
     report.steps = 0U;
     answer_begin(answer);
     answer_count(answer, "counts", step_counts);
@@ -68,14 +68,23 @@ bool verb_calibrate(answer_t *answer)
         || at != answer->command->argument_length) {
         return answer_refuse(answer, "1..200 counts, 1..60 s");
     }
-    if (!ground_idle()) {
+    if (!ground_waits()) {
         return answer_refuse(answer, "not on the ground");
     }
     parameter_server_read(&parameters);
     if (!(parameters.value[PARAMETER_LINK] > 0.0F)) {
         return answer_refuse(answer, "link not armed, see #LINK");
     }
-    return start(answer, step_counts, period_s);
+    return start(answer, parameters.value[PARAMETER_IDLE], step_counts, period_s);
+}
+
+static void add_advice(telemetry_line_t *line, float thrust_n)
+{
+    static parameters_t parameters;
+
+    parameter_server_read(&parameters);
+    telemetry_text(line, " grav:");
+    telemetry_fixed(line, calibration_gravity_n(&parameters, thrust_n), THRUST_DECIMALS);
 }
 
 static void send_progress(const calibration_t *progress, bool ended)
@@ -93,6 +102,9 @@ static void send_progress(const calibration_t *progress, bool ended)
     telemetry_fixed(&line, progress->thrust_n, THRUST_DECIMALS);
     telemetry_text(&line, " compare:");
     telemetry_count(&line, progress->compare_counts);
+    if (progress->end == CALIBRATION_STOPPED) {
+        add_advice(&line, progress->thrust_n);
+    }
     telemetry_end(&line);
     xbee_port_answer(&line);
 }

@@ -53,13 +53,18 @@ static parameter_store_result_t load(void)
     return result;
 }
 
+static bool grounded(answer_t *answer)
+{
+    return ground_idle() || answer_refuse(answer, ground_waits() ? "motors idle, see #STOP" : "not on the ground");
+}
+
 /* False after the refusal: the command takes no argument and needs the ground. */
 static bool allowed(answer_t *answer)
 {
     if (answer->command->argument_length > 0U) {
         return answer_refuse(answer, "takes no value");
     }
-    return ground_idle() || answer_refuse(answer, "not on the ground");
+    return grounded(answer);
 }
 
 bool verb_save(answer_t *answer)
@@ -122,8 +127,8 @@ bool verb_defaults(answer_t *answer)
     if (!seed && answer->command->argument_length > 0U) {
         return answer_refuse(answer, "one of SEED");
     }
-    if (!ground_idle()) {
-        return answer_refuse(answer, "not on the ground");
+    if (!grounded(answer)) {
+        return false;
     }
     return seed ? set_seed(answer) : set_defaults(answer);
 }

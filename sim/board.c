@@ -154,6 +154,12 @@ static void pilot_takes(void *context, bool take)
     board_select(!take);
 }
 
+static void pilot_corners(void *context, bool held)
+{
+    (void)context;
+    quadrotor_hold_corners(board.quadrotor, held);
+}
+
 static void pilot_moves(void *context, sim_time_t high_ns)
 {
     (void)context;
@@ -162,7 +168,7 @@ static void pilot_moves(void *context, sim_time_t high_ns)
 
 static pilot_t *seat_pilot(const board_config_t *config)
 {
-    const pilot_hands_t hands = {pilots_view, pilot_takes, pilot_moves, NULL};
+    const pilot_hands_t hands = {pilots_view, pilot_takes, pilot_moves, pilot_corners, NULL};
 
     return pilot_create(&config->pilot, &hands, config->seed);
 }
@@ -316,6 +322,7 @@ void board_radio_reach(bool in_reach)
 void board_select(bool firmware)
 {
     rc_mux_select(&board.mux, firmware);
+    quadrotor_set_manual(board.quadrotor, !firmware);
     chip_drive_pin(SELECTOR_PIN, firmware);
     for (int i = 0; i < BOARD_PROBES; i++) {
         if (probes[i].selector != NULL) {

@@ -15,6 +15,9 @@
 #define STICK_N_PER_MPS 2.0
 #define TRIM_N_PER_M 0.8        /* how fast the stick's middle is moved when the climb stays wrong */
 #define LANDED_M 0.05
+#define CORNERS_S 1.0
+#define OPENED_N 2.35           /* a fifth of the stick: over the 10 % that keep motors running */
+#define PREPARE_S 1.0
 #define FULL_N 11.76
 
 /* The autopilot's throttle channel. */
@@ -68,6 +71,44 @@ static void move_stick(pilot_t *pilot)
     pilot->hands.stick(pilot->hands.context, (sim_time_t)llround(NO_THRUST_NS - NS_PER_N * pilot->hand_n));
 }
 
+static double day_stick_n(pilot_t *pilot, const pilot_view_t *view, double t_s)
+{
+    if (t_s < PILOT_DAY_START_S + CORNERS_S || t_s >= PILOT_DAY_STOP_S) {
+        return 0.0;
+    }
+    if (t_s < PILOT_DAY_TAKE_S) {
+        pilot->trim_n = pilot->config.trim_n;
+        return t_s < PILOT_DAY_TAKE_S - PREPARE_S ? OPENED_N : pilot->config.trim_n;
+    }
+    pilot->config.height_m = t_s < PILOT_DAY_LAND_S ? pilot->config.height_m : 0.0;
+    return wanted_n(pilot, view);
+}
+
+static bool holds_corners(const pilot_t *pilot, double t_s)
+{
+    const double stop_s = PILOT_DAY_STOP_S + 1.0;
+    const bool starts = t_s >= PILOT_DAY_START_S && t_s < PILOT_DAY_START_S + CORNERS_S;
+
+    return starts || (pilot->config.stops_by_sticks && t_s >= stop_s && t_s < stop_s + CORNERS_S);
+}
+
+/* His stick goes on while the firmware has the throttle: the multiplexer drops it. */
+static void live_the_day(pilot_t *pilot, double t_s)
+{
+    const unsigned latest = pilot->seen - 1U;
+    const pilot_view_t *view = &pilot->views[(latest < pilot->late ? 0U : latest - pilot->late) % VIEWS];
+    const bool mine = t_s < PILOT_DAY_GIVE_S || t_s >= PILOT_DAY_TAKE_S;
+    const double wanted = day_stick_n(pilot, view, t_s);
+
+    if (pilot->seen == 1U || mine != pilot->flying) {
+        pilot->flying = mine;
+        pilot->hands.take(pilot->hands.context, mine);
+    }
+    pilot->hands.corners(pilot->hands.context, holds_corners(pilot, t_s));
+    pilot->hand_n = fmin(fmax(pilot->hand_n + FRAME_S / HAND_LAG_S * (wanted - pilot->hand_n), 0.0), FULL_N);
+    pilot->hands.stick(pilot->hands.context, (sim_time_t)llround(NO_THRUST_NS - NS_PER_N * pilot->hand_n));
+}
+
 static void frame(void *context)
 {
     pilot_t *pilot = context;
@@ -76,6 +117,10 @@ static void frame(void *context)
 
     pilot->event = timeline_after(FRAME, frame, pilot);
     pilot->views[pilot->seen++ % VIEWS] = view;
+    if (pilot->config.field_day) {
+        live_the_day(pilot, view.t_s);
+        return;
+    }
     if (mine && !pilot->flying) {
         take_over(pilot);
     } else if (!mine && pilot->flying) {
@@ -98,7 +143,7 @@ pilot_t *pilot_create(const pilot_config_t *config, const pilot_hands_t *hands, 
     pilot->hands = *hands;
     pilot->late = (unsigned)lround(fmin(config->delay_s / FRAME_S, VIEWS - 1U));
     noise_init(&pilot->unrest, seed, "pilot");
-    if (config->turn.length_s > 0.0) {
+    if (config->turn.length_s > 0.0 || config->field_day) {
         pilot->event = timeline_after(FRAME, frame, pilot);
     }
     return pilot;

@@ -21,7 +21,16 @@ typedef struct {
     double trim_n;          /* 7: where the stick is when the turn begins */
     double delay_s;         /* 0.2, eye to hand */
     double unrest_n;        /* 0.05 rms */
+    bool field_day;         /* the whole day instead of turns: see pilot_day_t */
+    bool stops_by_sticks;   /* field day: how he stops the motors, by the autopilot's Stop Type */
 } pilot_config_t;
+
+/* A field day, by scenario time: at first the throttle is the pilot's, and down. */
+#define PILOT_DAY_START_S (-8.0)    /* the stick command, for a second; then the stick at a fifth */
+#define PILOT_DAY_GIVE_S (-5.0)     /* he gives the throttle to the firmware */
+#define PILOT_DAY_TAKE_S 36.0       /* and takes it back in the air, with the stick at trim_n: holds height_m by eye */
+#define PILOT_DAY_LAND_S 41.0       /* lands by eye */
+#define PILOT_DAY_STOP_S 47.0       /* stops the motors */
 
 #define PILOT_DEFAULT \
     {.turn = {10.0, 0.0}, .every_s = 0.0, .height_m = 0.6, .trim_n = 7.0, .delay_s = 0.2, .unrest_n = 0.05}
@@ -30,6 +39,7 @@ typedef struct {
     pilot_view_t (*look)(void *context);
     void (*take)(void *context, bool take);     /* the switch: true: the throttle is the pilot's */
     rc_pulse_t stick;                           /* a pulse of the receiver */
+    void (*corners)(void *context, bool held);  /* both sticks in the lower corners; NULL: not connected */
     void *context;
 } pilot_hands_t;
 

@@ -20,6 +20,8 @@
 #define PULSES 32U              /* on their way through the autopilot */
 #define THROTTLE_FULL_N 11.76
 #define CLIMB_INTEGRAL_S 0.4    /* of the autopilot's speed controller: about the drag's time constant */
+#define BAROMETER_TAU_S 3.0
+#define BAROMETER_HIGH_M 1.0
 #define SPIN_UP_MPS2 (-3.0)     /* its integral on the ground: 70 % of the weight */
 
 #define MOTORS_TURN_N 1.0       /* no lift up to here */
@@ -36,6 +38,7 @@
 #define YAW_DRIFT_RAD (10.0 * DEGREE_RAD)
 #define YAW_STEP_RAD (0.06 * DEGREE_RAD)
 
+#define ALOFT_M 0.1
 #define CONTACT_ARMED_M 0.03
 #define CONTACT_MPS (-0.02)
 #define REBOUND 0.15
@@ -46,6 +49,8 @@ const quadrotor_config_t quadrotor_default = {
     .actuator_delay_s = 0.010,
     .climb_rate_mps_per_n = 0.0, .climb_neutral_n = THROTTLE_FULL_N / 2.0, .climb_deadband_n = 0.47, .climb_lag_s = 0.25,
     .climb_ceiling_mps = 6.0,
+    .neutral_drift_n_per_s = 0.0, .neutral_drift_max_n = 3.5, .barometer_mps = 0.0,
+    .naza = {NAZA_ALWAYS_ARMED},
     .tug_rate_per_s = 0.0, .tug_mps2 = -1.5,
     .airframe = 0.0,
     .rotors = ROTORS_DEFAULT,
@@ -80,6 +85,10 @@ struct quadrotor {
     double ramp_m;              /* the terrain without the floor's unevenness */
     double tumble_rad;
     double climb_integral_mps2; /* of the autopilot's speed controller */
+    naza_t naza;
+    bool manual, corners, pulses;
+    double barometer_mps, barometer_keep;   /* the climb that it makes up, for an rms of 1 */
+    noise_t barometer_noise;
 
     double turbulence_mps2, turbulence_keep, turbulence_drive;
     double tug_mps2, tug_keep, tug_probability;
@@ -99,6 +108,7 @@ static void prepare_noise(quadrotor_t *q, unsigned long seed)
     noise_init(&q->roll.noise, seed, "quadrotor roll");
     noise_init(&q->pitch.noise, seed, "quadrotor pitch");
     noise_init(&q->yaw_noise, seed, "quadrotor yaw");
+    noise_init(&q->barometer_noise, seed, "quadrotor barometer");
     q->turbulence_mps2 = q->config.turbulence_mps2 * noise_gauss(&q->turbulence_noise);
 }
 
@@ -110,6 +120,7 @@ static void prepare_steps(quadrotor_t *q)
     q->lag2 = c->lag2_s > 0.0 ? 1.0 - exp(-STEP_S / c->lag2_s) : 1.0;
     q->turbulence_keep = exp(-STEP_S / c->turbulence_tau_s);
     q->turbulence_drive = c->turbulence_mps2 * sqrt(1.0 - q->turbulence_keep * q->turbulence_keep);
+    q->barometer_keep = exp(-STEP_S / BAROMETER_TAU_S);
     q->tug_keep = exp(-STEP_S / TUG_TAU_S);
     q->tug_probability = 1.0 - exp(-c->tug_rate_per_s * STEP_S);
     q->attitude_drive = c->attitude_rms_rad * sqrt(4.0 * ATTITUDE_DAMPING * pow(ATTITUDE_RAD_PER_S, 3.0) * STEP_S);
@@ -130,6 +141,8 @@ quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const terrain_t 
     q->state.altitude_m = q->state.height_m = config->anchored ? config->bench_height_m : 0.0;
     q->state.on_ground = !config->anchored;
     q->state.yaw_rad = config->anchored ? 0.0 : HEADING_RAD;
+    naza_init(&q->naza, &config->naza);
+    q->state.motors = q->naza.running;
     rotors_init(&q->rotors, &config->rotors);
     floor_init(&q->floor, &config->floor, STEP_S, seed);
     prepare_noise(q, seed);
@@ -159,15 +172,42 @@ static void hear_throttle(quadrotor_t *q)
         q->head = (q->head + 1) % PULSES;
         q->waiting--;
     }
-    if (q->clock - q->last_pulse > SIGNAL_LOST) {
+    q->pulses = q->clock - q->last_pulse <= SIGNAL_LOST;
+    if (!q->pulses) {
         q->demand_n = 0.0;
     }
+}
+
+static void follow_rules(quadrotor_t *q)
+{
+    const quadrotor_state_t *s = &q->state;
+    const naza_inputs_t in = {.throttle = q->demand_n / THROTTLE_FULL_N, .pulses = q->pulses, .corners = q->corners,
+                              .manual = q->manual, .on_ground = s->on_ground,
+                              .tilt_rad = acos(cos(s->roll_rad) * cos(s->pitch_rad))};
+
+    naza_step(&q->naza, &in, STEP_S);
+    q->state.motor_stops += s->motors && !q->naza.running && s->height_m > ALOFT_M;
+    q->state.motors = q->naza.running;
+}
+
+/* The propellers' own air on the barometer: a wandering climb that is not there. */
+static double barometer_mps(quadrotor_t *q)
+{
+    const double near = fmax(1.0 - q->state.height_m / BAROMETER_HIGH_M, 0.0);
+
+    if (q->config.barometer_mps <= 0.0) {
+        return 0.0;
+    }
+    q->barometer_mps = q->barometer_mps * q->barometer_keep
+                       + sqrt(1.0 - q->barometer_keep * q->barometer_keep) * noise_gauss(&q->barometer_noise);
+    return q->config.barometer_mps * near * q->barometer_mps;
 }
 
 static double climb_wanted_mps(const quadrotor_t *q)
 {
     const quadrotor_config_t *c = &q->config;
-    const double off_n = q->demand_n - c->climb_neutral_n;
+    const double drift_n = c->neutral_drift_n_per_s * fmax(scenario_s(q), 0.0);
+    const double off_n = q->demand_n - c->climb_neutral_n - fmin(drift_n, c->neutral_drift_max_n);
     const double beyond_n = copysign(fmax(fabs(off_n) - c->climb_deadband_n, 0.0), off_n);
     return fmin(fmax(c->climb_rate_mps_per_n * beyond_n, -c->climb_ceiling_mps), c->climb_ceiling_mps);
 }
@@ -176,15 +216,22 @@ static double climb_wanted_mps(const quadrotor_t *q)
 static double autopilot_n(quadrotor_t *q)
 {
     const quadrotor_config_t *c = &q->config;
-    if (c->climb_rate_mps_per_n <= 0.0) {
+    double wanted_mps;
+    if (!q->naza.running) {
+        q->climb_integral_mps2 = SPIN_UP_MPS2;
+        return 0.0;
+    }
+    const bool failsafe = naza_failsafe(&q->naza, &wanted_mps);
+    if (!failsafe && (c->climb_rate_mps_per_n <= 0.0 || naza_is_manual(&q->naza, q->manual))) {
+        q->climb_integral_mps2 = GRAVITY_MPS2 * (q->demand_n / c->hover_thrust_n - 1.0);
         return q->demand_n;
     }
-    const double wanted_mps = climb_wanted_mps(q);
+    wanted_mps = failsafe ? wanted_mps : climb_wanted_mps(q);
     if (q->state.on_ground && wanted_mps <= 0.0) {
         q->climb_integral_mps2 = SPIN_UP_MPS2;
         return MOTORS_TURN_N;
     }
-    const double push_mps2 = (wanted_mps - q->state.speed_mps) / c->climb_lag_s;
+    const double push_mps2 = (wanted_mps - q->state.speed_mps - barometer_mps(q)) / c->climb_lag_s;
     const double thrust_n =
         c->hover_thrust_n * (1.0 + (push_mps2 + q->climb_integral_mps2) / GRAVITY_MPS2);
     const double given_n = fmin(fmax(thrust_n, MOTORS_TURN_N), THROTTLE_FULL_N);
@@ -348,6 +395,7 @@ static void step(quadrotor_t *q)
 {
     quadrotor_state_t *s = &q->state;
     hear_throttle(q);
+    follow_rules(q);
     q->clock += STEP;
     const double t_s = scenario_s(q);
     double terrain_mps;
@@ -387,6 +435,18 @@ void quadrotor_pulse(quadrotor_t *quadrotor, sim_time_t high_ns)
         .active = timeline_now() + (sim_time_t)llround(q->config.actuator_delay_s * 1e9),
         .thrust_n = fmax((PULSE_NO_THRUST_COUNTS - counts) / PULSE_COUNTS_PER_N, 0.0)};
     q->last_pulse = timeline_now();
+}
+
+void quadrotor_set_manual(quadrotor_t *quadrotor, bool manual)
+{
+    bring_up(quadrotor);
+    quadrotor->manual = manual;
+}
+
+void quadrotor_hold_corners(quadrotor_t *quadrotor, bool held)
+{
+    bring_up(quadrotor);
+    quadrotor->corners = held;
 }
 
 const quadrotor_state_t *quadrotor_state(quadrotor_t *quadrotor)

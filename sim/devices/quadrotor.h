@@ -19,6 +19,7 @@
 #include <stdbool.h>
 
 #include "sim/devices/floor.h"
+#include "sim/devices/naza.h"
 #include "sim/devices/rotors.h"
 #include "sim/devices/span.h"
 #include "sim/devices/terrain.h"
@@ -39,6 +40,10 @@ typedef struct {
     double climb_deadband_n;    /* 0.47 to either side: 40 us, the default of Cleanflight; the NAZA's is not known */
     double climb_lag_s;         /* 0.25, assumed */
     double climb_ceiling_mps;   /* 6, up and down, assumed */
+    double neutral_drift_n_per_s;   /* 0: the middle of the stick goes up so fast with a low battery */
+    double neutral_drift_max_n; /* 3.5, 30 % of the stick */
+    double barometer_mps;       /* 0: rms of the climb that the barometer makes up at the ground, none from 1 m up */
+    naza_config_t naza;         /* always armed */
     double tug_rate_per_s;      /* 0; 0.4 in tug runs */
     double tug_mps2;            /* -1.5 */
     double airframe;            /* 0: the simple one; 1: rotors.h, which does without gain, tau and damping */
@@ -61,6 +66,8 @@ typedef struct {
     double thrust_n;            /* what the motors deliver now */
     double roll_rad, pitch_rad, yaw_rad;
     bool on_ground;
+    bool motors;                /* running, by the autopilot's rules */
+    unsigned motor_stops;       /* times that they stopped over 0.1 m above the ground */
     unsigned contacts;          /* touches after the first 30 mm */
 } quadrotor_state_t;
 
@@ -75,6 +82,10 @@ void quadrotor_pulse(quadrotor_t *quadrotor, sim_time_t high_ns);
 const quadrotor_state_t *quadrotor_state(quadrotor_t *quadrotor);
 /* Scenario time now; far below 0 before its origin is known. */
 double quadrotor_scenario_s(const quadrotor_t *quadrotor);
+/* The autopilot's mode: Manual, or Attitude as it is at first. */
+void quadrotor_set_manual(quadrotor_t *quadrotor, bool manual);
+/* Both sticks of the remote control in the lower corners, or not any more. */
+void quadrotor_hold_corners(quadrotor_t *quadrotor, bool held);
 /* Resets the contact counter's "was above 30 mm" memory and stops counting, as at the landing command. */
 void quadrotor_stop_counting_contacts(quadrotor_t *quadrotor);
 

@@ -18,6 +18,7 @@
 #define UPRIGHT 0.70710678  /* cosine of the tilt from which on the firmware may cut */
 #define PINGS_PER_LINK 3.0  /* of the link's time-out */
 #define PINGS_START_S 0.5   /* past the settings */
+#define FIELD_DAY_LEAD_S 10.0
 #define LINE_SPACING_S 0.05
 #define BENCH_SETTINGS_S 0.5
 #define ANSWER_PATIENCE (3 * SIM_S)
@@ -198,13 +199,32 @@ static double type_overrides(const flight_options_t *options, parameter_id_t fir
     return t_s;
 }
 
+/* What must happen before t = 0. */
+static double lead_s(const scenario_t *scenario)
+{
+    return scenario->field_day ? FIELD_DAY_LEAD_S : 0.0;
+}
+
+/* The setting itself, or that of the same name for an autopilot whose throttle commands a climb. */
+static const char *suited(const scenario_t *scenario, const char *setting)
+{
+    const size_t name = strcspn(setting, " ") + 1U;
+
+    for (int i = 0; flight.plant.board.quadrotor.climb_rate_mps_per_n > 0.0 && scenario->climb_settings[i] != NULL; i++) {
+        if (strncmp(scenario->climb_settings[i], setting, name) == 0) {
+            return scenario->climb_settings[i];
+        }
+    }
+    return setting;
+}
+
 static void type_settings(const scenario_t *scenario, const flight_options_t *options)
 {
     char name[16];
-    double t_s = 0.0;
+    double t_s = -lead_s(scenario);
 
     for (int i = 0; i < SCENARIO_SETTINGS_MAX && scenario->settings[i] != NULL; i++) {
-        const char *setting = scenario->settings[i];
+        const char *setting = suited(scenario, scenario->settings[i]);
         const char *value = strchr(setting, ' ') + 1;
 
         snprintf(name, sizeof name, "%.*s", (int)(value - setting - 1), setting);
@@ -388,6 +408,12 @@ static void configure(const scenario_t *scenario, const flight_options_t *option
     if (flight.record.land_s > scenario->land_s) { /* the battery lasts as long */
         board->quadrotor.sag_per_s *= scenario->land_s / flight.record.land_s;
     }
+    board->pilot.field_day = scenario->field_day;
+    if (scenario->field_day) {
+        board->quadrotor.naza.stop_type = NAZA_IMMEDIATELY;
+        board->quadrotor.barometer_mps = 0.05;
+        board->pilot.trim_n = board->quadrotor.hover_thrust_n;
+    }
     for (int i = 0; i < options->override_count; i++) {
         if (plant_known(options->overrides[i].name)) {
             plant_set(&flight.plant, options->overrides[i].name, strtod(options->overrides[i].value, NULL));
@@ -446,8 +472,9 @@ static void power_off(const flight_options_t *options)
 
 /* Runs until scans arrive and the IMU's offset is known; then sets the origin of scenario time, at a phase against the
  * control loop that the seed draws. */
-static bool start_up(const flight_options_t *options)
+static bool start_up(const scenario_t *scenario, const flight_options_t *options)
 {
+    const sim_time_t lead = (sim_time_t)(lead_s(scenario) * 1e9);
     noise_t phase;
 
     while (!(watch_laser->seen.scan_count >= 3U && watch_imu->ready)) {
@@ -456,9 +483,9 @@ static bool start_up(const flight_options_t *options)
         }
     }
     noise_init(&phase, options->seed, "origin");
-    flight.origin = timeline_now() + 300 * SIM_MS + (sim_time_t)noise_uniform(&phase, 0.0, 108e6);
+    flight.origin = timeline_now() + 300 * SIM_MS + (sim_time_t)noise_uniform(&phase, 0.0, 108e6) + lead;
     quadrotor_set_origin(board_quadrotor(), flight.origin);
-    return kernel_run_until(flight.origin);
+    return kernel_run_until(flight.origin - lead);
 }
 
 static void fly(const scenario_t *scenario, const flight_options_t *options)
@@ -466,7 +493,7 @@ static void fly(const scenario_t *scenario, const flight_options_t *options)
     const double rest_s = options->patience_s > 0.0 ? options->patience_s : scenario->end_s - scenario->land_s;
     long steps = lround((flight.record.land_s + rest_s) * 100.0);
 
-    for (long i = 0; i <= steps && kernel_run_until(flight.origin + (sim_time_t)i * STEP); i++) {
+    for (long i = -lround(lead_s(scenario) * 100.0); i <= steps && kernel_run_until(flight.origin + (sim_time_t)i * STEP); i++) {
         sample(options->csv);
         if (options->patience_s > 0.0 && metrics_over(&flight.record)) {
             return;
@@ -521,6 +548,8 @@ static void conclude(flight_result_t *result)
     metrics_compute(&flight.record, &result->metrics);
     value = result->metrics.value;
     value[METRIC_GROUND_CONTACTS] = quadrotor_state(board_quadrotor())->contacts;
+    value[METRIC_MOTOR_STOPS] = quadrotor_state(board_quadrotor())->motor_stops;
+    value[METRIC_MOTORS_AT_END] = quadrotor_state(board_quadrotor())->motors;
     value[METRIC_SCANS] = watch_laser->seen.scan_count;
     value[METRIC_SCANS_REJECTED] = (double)watch_laser->seen.damage_count + watch_altitude->heightless;
     value[METRIC_COMMANDS_OK] = flight.ok;
@@ -548,7 +577,7 @@ static void run(const scenario_t *scenario, const flight_options_t *options, fli
         stand(scenario, options);
     } else if (options->realtime) {
         run_by_hand(options, options->duration_s);
-    } else if (start_up(options)) {
+    } else if (start_up(scenario, options)) {
         plan(scenario, options);
         fly(scenario, options);
     } else {
@@ -566,6 +595,7 @@ bool flight_run(const scenario_t *scenario, const flight_options_t *options, fli
     flight.telemetry = options->telemetry;
     metrics_begin(&flight.record, reference != NULL ? strtod(reference, NULL) : scenario->reference_m, scenario->platform,
                   !options->realtime && options->duration_s > 0.0 ? options->duration_s : scenario->land_s);
+    flight.record.field_day = scenario->field_day;
     *error = open_devices(options);
     if (*error != NULL) {
         return false;

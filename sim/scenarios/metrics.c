@@ -7,6 +7,10 @@
 #define SETTLED_S 5.0
 #define WITHIN_MM 50.0
 #define MAX_ERROR_START_S 6.0
+#define AGAIN_START_S 33.0
+#define AGAIN_END_S 36.0
+#define BY_EYE_START_S 38.0
+#define BY_EYE_END_S 41.0
 #define AIRBORNE_M 0.03
 #define TOUCHED_M 0.003
 #define ALOFT_M 0.3
@@ -20,7 +24,8 @@ const char *const metric_names[METRIC_COUNT] = {
     "recovery_s", "undershoot_mm", "ground_contacts", "thrust_std_n", "scans",
     "scans_rejected", "commands_ok", "commands_err", "max_error_mm", "highest_mm",
     "touch_speed_mps", "takeovers", "cuts", "off_aloft", "down_s",
-    "stopped_s", "deceived_s", "flagged_s",
+    "stopped_s", "deceived_s", "flagged_s", "again_rms_mm", "by_eye_rms_mm",
+    "motor_stops", "motors_at_end",
 };
 
 static void add(metrics_moments_t *moments, double x)
@@ -182,6 +187,12 @@ static void gather(metrics_record_t *record, const metrics_sample_t *s)
     if (t >= 7.2 && t <= METRICS_RECOVERY_END_S) {
         add(&record->ramp, off_mm);
     }
+    if (record->field_day && t >= AGAIN_START_S && t <= AGAIN_END_S) {
+        add(&record->again, off_mm);
+    }
+    if (record->field_day && t >= BY_EYE_START_S && t <= BY_EYE_END_S) {
+        add(&record->by_eye, off_mm);
+    }
     if (t >= METRICS_EDGE_S && t <= METRICS_RECOVERY_END_S) {
         record->undershoot_mm = fmax(record->undershoot_mm, -off_mm);
         record->last_off_s = fabs(off_mm) > WITHIN_MM ? t : record->last_off_s;
@@ -258,5 +269,7 @@ void metrics_compute(const metrics_record_t *record, metrics_t *metrics)
     value[METRIC_STOPPED_S] = after_order(record, fmax(record->aloft_s, record->running_s));
     value[METRIC_DECEIVED_S] = record->deceived_s;
     value[METRIC_FLAGGED_S] = record->flagged_s;
+    value[METRIC_AGAIN_RMS_MM] = rms(&record->again);
+    value[METRIC_BY_EYE_RMS_MM] = rms(&record->by_eye);
     judge(record, metrics);
 }

@@ -47,6 +47,10 @@ typedef enum {
     METRIC_DECEIVED_S,          /* longest time for which the height that the law acts on was wrong by more than 0.3 m in
                                  * the air without a flag */
     METRIC_FLAGGED_S,           /* time with a flag in the air, before the landing command */
+    METRIC_AGAIN_RMS_MM,        /* of height - reference, 5 to 8 s after the field day's second take-off */
+    METRIC_BY_EYE_RMS_MM,       /* likewise while its pilot holds the height */
+    METRIC_MOTOR_STOPS,         /* times that the autopilot stopped the motors in the air */
+    METRIC_MOTORS_AT_END,       /* 1: they still run */
     METRIC_COUNT
 } metric_t;
 
@@ -68,9 +72,10 @@ typedef struct {
     double reference_m;
     bool terrain;           /* ramp and platform: hover is 4.5-7.2 s and 15-20 s; flat ground: 6 s to the landing */
     double land_s;          /* the landing command */
+    bool field_day;         /* set behind metrics_begin() */
     size_t count;
     metrics_sample_t before;
-    metrics_moments_t hover, thrust, ramp;
+    metrics_moments_t hover, thrust, ramp, again, by_eye;
     double tenth_s, ninety_s;   /* first time at 10 and 90 % of the reference; NAN: not yet */
     double overshoot_mm, undershoot_mm, last_off_s;
     double largest_mm, highest_mm;

@@ -51,6 +51,10 @@ static const figure_t figures[] = {
     {"climb_deadband", "N", 0, 100, QUAD(climb_deadband_n), 1, "to either side of it"},
     {"climb_lag", "s", 1e-3, 100, QUAD(climb_lag_s), 1, "of the autopilot's speed loop"},
     {"climb_ceiling", "m/s", 0, 100, QUAD(climb_ceiling_mps), 1, "fastest climb and descent of the autopilot"},
+    {"stop_type", "-", -1, 1, QUAD(naza.stop_type), 1, "-1: motors always armed; 0: stop Immediately; 1: Intelligent"},
+    {"attitude_throttle", "-", 0, 1, AT(attitude_throttle), 1, "1: in Attitude the throttle commands a climb rate; 0: thrust"},
+    {"neutral_drift", "N/s", -1, 1, QUAD(neutral_drift_n_per_s), 1, "that fast the middle of the stick goes up, low battery"},
+    {"barometer", "m/s", 0, 10, QUAD(barometer_mps), 1, "climb that the barometer makes up at the ground, rms"},
     {"tug_rate", "1/s", 0, 1000, QUAD(tug_rate_per_s), 1, "rope tugs"},
     {"tug", "m/s2", -100, 100, QUAD(tug_mps2), 1, "of one rope tug"},
     {"platform", "m", -10, 10, AT(board.terrain.height_m), 1, "height of the ramp's platform"},
@@ -160,6 +164,10 @@ void plant_complete(plant_t *plant)
 {
     plant->board.laser.ray_instant = (sim_time_t)llround(plant->ray_instant_s * 1e9);
     plant->board.laser.clock_ratio = 1.0 + plant->clock_ppm * 1e-6;
+    if (plant->attitude_throttle >= 0.5 && plant->board.quadrotor.climb_rate_mps_per_n <= 0.0) {
+        plant->board.quadrotor.climb_rate_mps_per_n = 1.0;
+    }
+    plant->board.pilot.stops_by_sticks = plant->board.quadrotor.naza.stop_type == NAZA_INTELLIGENT;
 }
 
 void plant_print(FILE *out)

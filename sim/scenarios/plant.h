@@ -15,6 +15,7 @@ typedef struct {
     double outage_start_s, outage_s;
     double restart_start_s;             /* of the scanner */
     double radio_lost_start_s;
+    double attitude_throttle;
 } plant_t;
 
 void plant_init(plant_t *plant, unsigned long seed);

@@ -6,6 +6,8 @@
 
 #define FLOWN_PID "LAW PID", "RELEASE FREE", "KP 0.015", "KD 0.008", "KI 0.01", "USAT 1", "DSAT 0", "GRAV 7"
 #define STEP_TEST "LAW EST", "PLANT THRUST", "GRAV 7", "USAT 0", "DSAT 0"
+/* The operator arms before the pilot gives him the throttle. */
+#define FIELD_DAY_ARM "ARM "
 #define UNSATURATED "USAT 11.76", "DSAT 11.76"
 
 /* Expectations stand for one flight with any seed; the means over many seeds are pinned in tests/integration. */
@@ -257,6 +259,27 @@ const scenario_t scenarios[] = {
                          {METRIC_HOVER_MEAN_ERROR_MM, -80, 0},
                          {METRIC_GROUND_CONTACTS, 0, 0},
                          {METRIC_THRUST_STD_N, 0.37, 0.5}},
+    },
+    {
+        .name = "field-day",
+        .summary = "sticks start the motors, hand-over, take-off, landing, take-off again, hand-back in the air, pilot's landing",
+        .settings = {"SEL NONE", "LAW EST", "TERRAIN FOLLOW", "PLANT THRUST", "GRAV 7", "CRATE 1", FIELD_DAY_ARM},
+        .climb_settings = {"PLANT CLIMB", "GRAV 5.88"},
+        .later = {{28.0, "SETR", "0.6"}, {38.0, "STOP", "the pilot has it"}},
+        .field_day = true,
+        .reference_m = 0.6,
+        .land_s = 20.0,
+        .end_s = 52.0,
+        .fate = FATE_SUCCEEDS,
+        .expectation_count = 8,
+        .expectations = {{METRIC_RISE_TIME_S, 0.5, 1.2},
+                         {METRIC_OVERSHOOT_MM, 0, 80},
+                         {METRIC_HOVER_RMS_MM, 3, 30},
+                         {METRIC_GROUND_CONTACTS, 0, 0},
+                         {METRIC_AGAIN_RMS_MM, 3, 40},
+                         {METRIC_BY_EYE_RMS_MM, 3, 150},
+                         {METRIC_MOTOR_STOPS, 0, 0},
+                         {METRIC_MOTORS_AT_END, 0, 0}},
     },
     {
         .name = "bench",

@@ -34,6 +34,8 @@ typedef struct {
     bool platform;              /* the seed's ramp and platform; else flat */
     double tug_rate_per_s;      /* rope tugs; 0 = none */
     double climb_rate_mps_per_n;    /* that the throttle commands; 0 = it commands thrust */
+    bool field_day;             /* the autopilot's rules for motors, and a pilot who starts them and hands over */
+    const char *climb_settings[SCENARIO_SETTINGS_MAX];  /* instead of those of their names, where the throttle commands a climb */
     double land_s;              /* #SETR 0 */
     double end_s;
     scenario_fate_t fate;

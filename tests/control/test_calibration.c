@@ -163,6 +163,26 @@ void test_a_reason_that_is_there_from_the_start_gives_no_thrust_at_all(void)
     assert_idle(CALIBRATION_LINK);
 }
 
+/* 15 % are 312 counts, 1.76 N. */
+void test_it_begins_one_step_above_the_idle_that_keeps_motors_turning(void)
+{
+    request.idle_percent = 15.0F;
+    start();
+    TEST_ASSERT_EQUAL_UINT16(4166U - 312U - 30U, calibration.compare_counts);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 342.0F / 177.21F, out.thrust_n);
+}
+
+void test_at_its_end_the_armed_idle_is_there_again(void)
+{
+    flown.thrust_n = flown.idle_n = 1.764F;
+    flown.pulse_us = thrust_to_pulse_us(1.764F);
+    start();
+    TEST_ASSERT_TRUE(out.pulse_us < flown.pulse_us || request.idle_percent == 0.0F);
+    ask(false);
+    cycle();
+    TEST_ASSERT_EQUAL_MEMORY(&flown, &out, sizeof out);
+}
+
 void test_a_new_start_begins_with_the_first_step_again(void)
 {
     start();
@@ -198,4 +218,16 @@ void test_a_long_pause_of_the_control_cycle_makes_one_step_and_not_many(void)
     TEST_ASSERT_EQUAL_UINT16(2U, calibration.steps);
     cycle();
     TEST_ASSERT_EQUAL_UINT16(2U, calibration.steps);
+}
+
+void test_the_seeds_laws_get_less_than_the_thrust_that_lifts(void)
+{
+    parameters_t parameters;
+
+    parameters_init(&parameters);
+    for (int law = 0; law < LAW_COUNT; law++) {
+        parameters.value[PARAMETER_LAW] = (float)law;
+        TEST_ASSERT_FLOAT_WITHIN(0.0001F, (law == LAW_PD || law == LAW_PID) ? 6.6F : 7.0F,
+                                 calibration_gravity_n(&parameters, 7.0F));
+    }
 }

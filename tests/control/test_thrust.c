@@ -7,6 +7,13 @@ void setUp(void) {}
 void tearDown(void) {}
 
 /* Seed document eq. 4: compare 4166 at no thrust, 2082 at 11.76 N, one count 0.48 us. */
+void test_percent_are_of_the_whole_range(void)
+{
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, thrust_of_percent(0.0F));
+    TEST_ASSERT_FLOAT_WITHIN(0.0001F, 1.764F, thrust_of_percent(15.0F));
+    TEST_ASSERT_FLOAT_WITHIN(0.0001F, THRUST_MAX_N, thrust_of_percent(100.0F));
+}
+
 void test_the_ends_are_the_seeds_pulses(void)
 {
     TEST_ASSERT_FLOAT_WITHIN(0.001F, 1999.68F, thrust_to_pulse_us(0.0F));

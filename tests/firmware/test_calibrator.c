@@ -38,7 +38,7 @@ void test_what_one_task_starts_the_other_does(void)
 {
     cycle();
     TEST_ASSERT_EQUAL_FLOAT(0.0F, out.thrust_n);
-    (void)calibrator_start(40U, 2U);
+    (void)calibrator_start(0.0F, 40U, 2U);
     cycle();
     TEST_ASSERT_EQUAL(CALIBRATION_RUNNING, progress.end);
     TEST_ASSERT_EQUAL_UINT16(4126U, progress.compare_counts);
@@ -51,7 +51,7 @@ void test_what_one_task_starts_the_other_does(void)
 
 void test_the_progress_names_the_request_that_it_belongs_to(void)
 {
-    const uint16_t sequence = calibrator_start(30U, 5U);
+    const uint16_t sequence = calibrator_start(0.0F, 30U, 5U);
 
     calibrator_look(&progress);
     TEST_ASSERT_NOT_EQUAL(sequence, progress.sequence);
@@ -61,7 +61,7 @@ void test_the_progress_names_the_request_that_it_belongs_to(void)
 
 void test_a_stop_ends_it_with_the_next_cycle_and_counts_once(void)
 {
-    uint16_t sequence = calibrator_start(30U, 5U);
+    uint16_t sequence = calibrator_start(0.0F, 30U, 5U);
 
     cycle();
     calibrator_stop();
@@ -76,7 +76,7 @@ void test_the_lower_task_copies_with_interrupts_off_and_the_higher_one_without_a
 {
     const uint16_t before = kernel.hwi.disabled;
 
-    (void)calibrator_start(30U, 5U);
+    (void)calibrator_start(0.0F, 30U, 5U);
     TEST_ASSERT_EQUAL_UINT16(before + 1U, kernel.hwi.disabled);
     calibrator_overlay(5.0F, &in, &out);
     TEST_ASSERT_EQUAL_UINT16(before + 1U, kernel.hwi.disabled);

@@ -9,6 +9,7 @@
 #include "drivers/decimal.h"
 #include "kernel.h"
 #include "mock_calibrator.h"
+#include "mock_ground.h"
 #include "mock_servers.h"
 #include "mock_verbs.h"
 #include "mock_xbee_port.h"
@@ -78,6 +79,14 @@ static bool spare(const telemetry_line_t *line, int calls)
     return true;
 }
 
+static bool on_ground;
+
+static bool ground(int calls)
+{
+    (void)calls;
+    return on_ground;
+}
+
 static uint16_t stops;          /* of a hover calibration */
 
 static void stop(int calls)
@@ -104,6 +113,8 @@ void setUp(void)
     overtaken = false;
     arrival_us = ARRIVAL_US;
     calibrator_stop_Stub(stop);
+    ground_waits_Stub(ground);
+    on_ground = true;
     stops = 0U;
 }
 
@@ -427,7 +438,7 @@ void test_help_tells_every_parameter_and_every_verb_with_limits_and_meaning(void
     TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #USAT 0..11.76 N - ", answers[PARAMETER_USAT], 27);
     TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #LAW PD|PID|PIDT|EST - ", answers[PARAMETER_LAW], 31);
     TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #RELEASE FREE|SCAN - ", answers[PARAMETER_RELEASE], 29);
-    TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #STOP - ", answers[PARAMETER_COUNT], 16);
+    TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #ARM - ", answers[PARAMETER_COUNT], 15);
     TEST_ASSERT_EQUAL_STRING("OK HELP #HELP - this list", answers[answered - 2U]);
     assert_end("OK HELP END lines:%u", answered - 1U);
 }
@@ -637,11 +648,28 @@ void test_stop_and_land_withdraw_the_reference_whatever_stands_behind_them(void)
     TEST_ASSERT_EQUAL_UINT16(4, stops);
 }
 
+void test_arm_is_for_the_ground_and_stop_ends_it_but_a_landing_does_not(void)
+{
+    on_ground = false;
+    assert_refused("ERR ARM not on the ground", "#ARM");
+    on_ground = true;
+    assert_answer("OK ARM idle:15%", "#ARM");
+    TEST_ASSERT_TRUE(reference.arm);
+    TEST_ASSERT_EQUAL_UINT32(1, reference.arm_sequence);
+    TEST_ASSERT_EQUAL_UINT32(7, reference.sequence);
+    assert_answer("OK LAND", "#LAND");
+    TEST_ASSERT_EQUAL_UINT32(1, reference.arm_sequence);
+    assert_answer("OK STOP", "#STOP");
+    TEST_ASSERT_FALSE(reference.arm);
+    TEST_ASSERT_EQUAL_UINT32(2, reference.arm_sequence);
+}
+
 void test_what_a_stop_has_overtaken_starts_nothing_any_more(void)
 {
     overtaken = true;
     assert_refused("ERR SETR overtaken by a stop", "#SETR 0.6");
     assert_refused("ERR CALIBRATE overtaken by a stop", "#CALIBRATE 30 5");
+    assert_refused("ERR ARM overtaken by a stop", "#ARM");
     assert_answer("OK PING 1", "#PING 1");
     assert_answer("OK LAW PD", "#LAW PD");
 }

@@ -106,6 +106,20 @@ void test_on_the_ground_nothing_is_recorded_but_the_one_cycle_after_a_flight(voi
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(4, held(), "thrust on the ground is recorded: hover calibration");
 }
 
+/* An hour of armed motors must not overwrite the flight before it. */
+void test_the_armed_idle_on_the_ground_is_not_recorded(void)
+{
+    out.state = FLIGHT_GROUND;
+    out.thrust_n = out.idle_n = 1.764F;
+    for (int i = 0; i < 100; i++) {
+        take(CYCLE_US);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, held());
+    out.thrust_n = 1.9F;
+    take(CYCLE_US);
+    TEST_ASSERT_EQUAL_UINT32(1, held());
+}
+
 void test_fast_cycles_are_thinned_out_to_one_in_fifty_milliseconds(void)
 {
     fly(7.0F);

@@ -33,6 +33,7 @@ void tearDown(void)
 void test_on_the_ground_without_thrust_and_reference_it_is_idle(void)
 {
     TEST_ASSERT_TRUE(ground_idle());
+    TEST_ASSERT_TRUE(ground_waits());
 }
 
 void test_in_any_other_state_it_is_not(void)
@@ -47,6 +48,21 @@ void test_thrust_is_not_idle(void)
 {
     flight.thrust_n = 0.17F;
     TEST_ASSERT_FALSE(ground_idle());
+}
+
+void test_armed_motors_that_idle_wait_and_more_thrust_does_not(void)
+{
+    flight.idle_n = flight.thrust_n = 1.764F;
+    TEST_ASSERT_FALSE(ground_idle());
+    TEST_ASSERT_TRUE(ground_waits());
+    flight.thrust_n = 1.93F;
+    TEST_ASSERT_FALSE(ground_waits());
+    flight.thrust_n = flight.idle_n;
+    flight.state = FLIGHT_FLOATING;
+    TEST_ASSERT_FALSE(ground_waits());
+    flight.state = FLIGHT_GROUND;
+    reference.reference_m = 0.5F;
+    TEST_ASSERT_FALSE(ground_waits());
 }
 
 void test_a_reference_in_force_or_on_its_way_is_not_idle(void)

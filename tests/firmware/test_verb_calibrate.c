@@ -23,8 +23,9 @@ static void read_parameters(parameters_t *set, int calls)
     *set = parameters;
 }
 
-static uint16_t start(uint16_t step_counts, uint16_t period_s, int calls)
+static uint16_t start(float idle_percent, uint16_t step_counts, uint16_t period_s, int calls)
 {
+    TEST_ASSERT_EQUAL_FLOAT(15.0F, idle_percent);
     (void)calls;
     counts = step_counts;
     seconds = period_s;
@@ -64,7 +65,7 @@ void setUp(void)
     parameter_server_read_Stub(read_parameters);
     calibrator_start_Stub(start);
     calibrator_look_Stub(look);
-    ground_idle_Stub(on_ground);
+    ground_waits_Stub(on_ground);
     xbee_port_answer_Stub(radio);
 }
 
@@ -165,7 +166,7 @@ void test_the_end_is_reported_once_with_its_reason_and_the_last_thrust(void)
     static const struct {
         calibration_end_t end;
         const char *expected;
-    } rows[] = {{CALIBRATION_STOPPED, "OK CALIBRATE end:COMMAND thr:6.94 compare:2936\r\n"},
+    } rows[] = {{CALIBRATION_STOPPED, "OK CALIBRATE end:COMMAND thr:6.94 compare:2936 grav:6.94\r\n"},
                 {CALIBRATION_LIMIT, "OK CALIBRATE end:LIMIT thr:6.94 compare:2936\r\n"},
                 {CALIBRATION_LINK, "OK CALIBRATE end:LINK thr:6.94 compare:2936\r\n"},
                 {CALIBRATION_LIFTED, "OK CALIBRATE end:HEIGHT thr:6.94 compare:2936\r\n"},

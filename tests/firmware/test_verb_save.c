@@ -17,6 +17,7 @@ static uint16_t answers;
 static char answer_text[TELEMETRY_ANSWER_MAX + 1U];
 static parameter_store_result_t result;
 static bool idle;
+static bool armed;
 
 static void read_parameters(parameters_t *set, int calls)
 {
@@ -64,8 +65,15 @@ static bool on_ground(int calls)
     return idle;
 }
 
+static bool waits(int calls)
+{
+    (void)calls;
+    return idle || armed;
+}
+
 void setUp(void)
 {
+    armed = false;
     parameters_init(&parameters);
     parameters.generation = 5U;
     writes = saves = answers = 0U;
@@ -76,6 +84,7 @@ void setUp(void)
     parameter_store_load_Stub(load);
     parameter_store_save_Stub(save);
     ground_idle_Stub(on_ground);
+    ground_waits_Stub(waits);
     xbee_port_answer_Stub(radio);
 }
 
@@ -165,6 +174,22 @@ void test_off_the_ground_all_three_are_refused_and_touch_nothing(void)
     }
     TEST_ASSERT_FALSE(type("DEFAULTS", "SEED"));
     assert_answer("ERR DEFAULTS not on the ground\r\n");
+    TEST_ASSERT_EQUAL_UINT16(0, saves + writes);
+}
+
+void test_while_armed_motors_idle_all_three_are_refused_with_the_remedy(void)
+{
+    static const char *const names[] = {"SAVE", "LOAD", "DEFAULTS"};
+
+    idle = false;
+    armed = true;
+    for (int i = 0; i < 3; i++) {
+        char expected[64] = "ERR ";
+
+        TEST_ASSERT_FALSE(type(names[i], ""));
+        (void)strcat(strcat(expected, names[i]), " motors idle, see #STOP\r\n");
+        assert_answer(expected);
+    }
     TEST_ASSERT_EQUAL_UINT16(0, saves + writes);
 }
 

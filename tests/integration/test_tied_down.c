@@ -96,13 +96,13 @@ void test_every_step_is_reported_and_on_the_throttle_until_a_command_ends_it(voi
     for (int step = 1; step <= 10; step++) {
         char line[64];
 
-        snprintf(line, sizeof line, "OK CALIBRATE thr:%.2f compare:%d", 30 * step / 177.21, 4166 - 30 * step);
+        snprintf(line, sizeof line, "OK CALIBRATE thr:%.2f compare:%d", (312 + 30 * step) / 177.21, 4166 - 312 - 30 * step);
         TEST_ASSERT_TRUE_MESSAGE(answered(line), line);
     }
     TEST_ASSERT_TRUE(answered("OK PING 1"));
-    TEST_ASSERT_TRUE(answered("OK CALIBRATE end:COMMAND thr:1.86 compare:3836"));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(flown.terminal.text, " thr:1.69 state:GROUND"), "the telemetry shows it too");
-    TEST_ASSERT_FLOAT_WITHIN(0.5F, (float)((4166 - 330) * 0.48), (float)flown.shortest_us);
+    TEST_ASSERT_TRUE(answered("OK CALIBRATE end:COMMAND thr:3.62 compare:3524 grav:3.62"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(flown.terminal.text, " thr:3.45 state:GROUND"), "the telemetry shows it too");
+    TEST_ASSERT_FLOAT_WITHIN(0.5F, (float)((4166 - 312 - 330) * 0.48), (float)flown.shortest_us);
     assert_idle();
 }
 
@@ -136,8 +136,8 @@ void test_enter_a_word_or_ctrl_c_end_it_too(void)
 void test_it_ends_by_itself_below_the_limit(void)
 {
     run(true, "#LINK 60\n#CALIBRATE 200 1\n@12\n");
-    TEST_ASSERT_TRUE(answered("OK CALIBRATE end:LIMIT thr:7.90 compare:2766"));
-    TEST_ASSERT_FLOAT_WITHIN(0.5F, (float)(2766 * 0.48), (float)flown.shortest_us);
+    TEST_ASSERT_TRUE(answered("OK CALIBRATE end:LIMIT thr:7.40 compare:2854"));
+    TEST_ASSERT_FLOAT_WITHIN(0.5F, (float)(2854 * 0.48), (float)flown.shortest_us);
     assert_idle();
 }
 
@@ -171,4 +171,22 @@ void test_in_the_air_it_is_refused(void)
     run(false, "#LINK 60\n#SETR 0.5\n@4\n#CALIBRATE\n@0.5\n");
     TEST_ASSERT_TRUE(answered("ERR CALIBRATE not on the ground"));
     TEST_ASSERT_NOT_NULL(strstr(flown.terminal.text, "state:FLYING"));
+}
+
+void test_the_seeds_laws_are_advised_of_less_than_the_lift_off_thrust(void)
+{
+    run(true, "#LAW PID\n#LINK 60\n#CALIBRATE 200 1\n@2.5\n\n@0.5\n");
+    TEST_ASSERT_TRUE(answered("OK CALIBRATE end:COMMAND thr:5.15 compare:3254 grav:4.75"));
+}
+
+void test_armed_motors_idle_before_and_after_it_and_stop_with_stop(void)
+{
+    run(true, "#ARM\n#LINK 60\n@0.2\n");
+    TEST_ASSERT_TRUE(answered("OK ARM idle:15%"));
+    TEST_ASSERT_FLOAT_WITHIN(0.5F, (float)(IDLE_US - 312.6 * 0.48), (float)flown.last_us);
+    run(true, "#ARM\n#LINK 60\n#CALIBRATE 200 1\n@2.5\n\n@0.5\n");
+    TEST_ASSERT_TRUE(flown.shortest_us < IDLE_US - 500 * 0.48);
+    TEST_ASSERT_FLOAT_WITHIN(0.5F, (float)(IDLE_US - 312.6 * 0.48), (float)flown.last_us);
+    run(true, "#ARM\n@0.2\n#STOP\n@0.2\n");
+    assert_idle();
 }

@@ -10,7 +10,7 @@ from xml.sax.saxutils import quoteattr
 FILE = Path(__file__).resolve().parents[2] / "docs" / "xctu_packets.xml"
 LINE_END = b"\n"
 COMMANDS = (
-    "#STOP", "#LAND",
+    "#ARM", "#STOP", "#LAND",
     "#SETR 0.6", "#SETR 0.5", "#SETR 0",
     "#KP 0.015", "#KD 0.008", "#KI 0.01",
     "#USAT 1", "#DSAT 0", "#GRAV 7",
@@ -20,7 +20,7 @@ COMMANDS = (
     "#POSK 2.3", "#VELK 8", "#VUP 0.7", "#VDN 1.1",
     "#TERRAIN FOLLOW", "#TERRAIN IGNORE",
     "#PLANT THRUST", "#PLANT CLIMB", "#CRATE 1",
-    "#SEL NONE", "#SEL PIN",
+    "#SEL NONE", "#SEL PIN", "#IDLE 15",
     "#SAVE", "#LOAD", "#DEFAULTS", "#DEFAULTS SEED",
     "#LINK 60", "#CALIBRATE 30 5", "#LINK 2", "#LINK 0",
     "#PING 1", "#STREAM PULSE", "#STREAM OFF", "#HANG TASK",

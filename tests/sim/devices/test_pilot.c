@@ -66,7 +66,7 @@ void tearDown(void)
 
 static void start(void)
 {
-    const pilot_hands_t hands = {look, take, stick, &config};
+    const pilot_hands_t hands = {look, take, stick, NULL, &config};
 
     pilot = pilot_create(&config, &hands, 1);
 }

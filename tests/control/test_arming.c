@@ -1,0 +1,154 @@
+/* When the motors idle instead of standing still. */
+#include "control/arming.h"
+
+#include "unity.h"
+
+static arming_t arming;
+static flight_inputs_t in;
+static supervisor_t supervisor;
+
+void setUp(void)
+{
+    arming = (arming_t){.armed = false};
+    in = (flight_inputs_t){.now_us = 0U};
+    supervisor_init(&supervisor);
+}
+
+void tearDown(void) {}
+
+static void step_from(flight_state_t before)
+{
+    arming_step(&arming, &in, before, &supervisor);
+}
+
+static void step(void)
+{
+    step_from(supervisor.state);
+}
+
+static void wish(bool arm)
+{
+    in.arm = arm;
+    in.arm_sequence++;
+    step();
+}
+
+static void enter(flight_state_t state)
+{
+    const flight_state_t before = supervisor.state;
+
+    supervisor.state = state;
+    step_from(before);
+}
+
+void test_nothing_arms_but_the_wish_and_then_it_stays(void)
+{
+    for (int i = 0; i < 100; i++) {
+        step();
+        TEST_ASSERT_FALSE(arming.armed);
+    }
+    wish(true);
+    for (int i = 0; i < 100; i++) {
+        step();
+        TEST_ASSERT_TRUE(arming.armed);
+    }
+    wish(true);
+    TEST_ASSERT_TRUE(arming.armed);
+}
+
+void test_a_wish_in_the_air_comes_to_nothing(void)
+{
+    supervisor.state = FLIGHT_FLOATING;
+    wish(true);
+    TEST_ASSERT_FALSE(arming.armed);
+    enter(FLIGHT_GROUND);
+    TEST_ASSERT_FALSE(arming.armed);
+}
+
+void test_a_whole_flight_keeps_it_armed_for_the_next(void)
+{
+    static const flight_state_t flight[] = {FLIGHT_TAKEOFF, FLIGHT_FLYING, FLIGHT_COASTING, FLIGHT_LOWERING, FLIGHT_LANDING,
+                                            FLIGHT_GROUND, FLIGHT_TAKEOFF};
+
+    wish(true);
+    for (uint16_t i = 0; i < sizeof flight / sizeof flight[0]; i++) {
+        enter(flight[i]);
+        TEST_ASSERT_TRUE(arming.armed);
+    }
+}
+
+void test_a_stop_disarms_at_once_on_the_ground_and_in_the_air_after_the_landing(void)
+{
+    wish(true);
+    wish(false);
+    TEST_ASSERT_FALSE(arming.armed);
+    wish(true);
+    enter(FLIGHT_FLYING);
+    wish(false);
+    TEST_ASSERT_TRUE(arming.armed);
+    enter(FLIGHT_LANDING);
+    TEST_ASSERT_TRUE(arming.armed);
+    enter(FLIGHT_GROUND);
+    TEST_ASSERT_FALSE(arming.armed);
+}
+
+void test_a_new_reference_before_the_ground_calls_the_stop_off(void)
+{
+    wish(true);
+    enter(FLIGHT_FLYING);
+    wish(false);
+    enter(FLIGHT_LANDING);
+    supervisor.reference_m = 0.6F;
+    enter(FLIGHT_FLYING);
+    supervisor.reference_m = 0.0F;
+    enter(FLIGHT_LANDING);
+    enter(FLIGHT_GROUND);
+    TEST_ASSERT_TRUE(arming.armed);
+}
+
+void test_faults_disarm(void)
+{
+    wish(true);
+    enter(FLIGHT_CUT);
+    TEST_ASSERT_FALSE(arming.armed);
+    supervisor.state = FLIGHT_GROUND;
+    wish(true);
+    enter(FLIGHT_DESCENDING);
+    TEST_ASSERT_TRUE(arming.armed);
+    enter(FLIGHT_GROUND); /* nobody has seen the ground */
+    TEST_ASSERT_FALSE(arming.armed);
+    for (uint16_t i = 0; i < 2U; i++) {
+        supervisor.flags = 0U;
+        wish(true);
+        TEST_ASSERT_TRUE(arming.armed);
+        supervisor.flags = (i == 0U) ? FLIGHT_FLAG_LINK : FLIGHT_FLAG_TILT;
+        step();
+        TEST_ASSERT_FALSE(arming.armed);
+    }
+    supervisor.flags = 0U;
+    wish(true);
+    supervisor.flags = FLIGHT_FLAG_HEIGHT | FLIGHT_FLAG_ATTITUDE;
+    step();
+    TEST_ASSERT_TRUE_MESSAGE(arming.armed, "a sensor that is silent on the ground harms nobody");
+}
+
+void test_a_silent_link_in_the_air_lands_first(void)
+{
+    wish(true);
+    supervisor.state = FLIGHT_LANDING;
+    supervisor.flags = FLIGHT_FLAG_LINK;
+    step();
+    TEST_ASSERT_TRUE(arming.armed);
+    enter(FLIGHT_GROUND);
+    TEST_ASSERT_FALSE(arming.armed);
+}
+
+void test_the_idle_is_a_share_of_the_throttle_while_armed_and_none_in_cut(void)
+{
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, arming_idle_n(&arming, 15.0F, FLIGHT_GROUND));
+    wish(true);
+    TEST_ASSERT_FLOAT_WITHIN(0.0001F, 1.764F, arming_idle_n(&arming, 15.0F, FLIGHT_GROUND));
+    TEST_ASSERT_FLOAT_WITHIN(0.0001F, 1.764F, arming_idle_n(&arming, 15.0F, FLIGHT_FLYING));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, arming_idle_n(&arming, 0.0F, FLIGHT_GROUND));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, arming_idle_n(&arming, 15.0F, FLIGHT_CUT));
+}
