@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot campaign tune seed-study test test-long port size faults fuzz bench coverage firmware flash check-ti clean
+.PHONY: help build fly plot campaign tune seed-study ground ground-vehicle ground-open test test-long test-ground port size faults fuzz bench coverage firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -64,6 +64,24 @@ seed-study: ## Which autopilot did the seed fly? And its simulations of chapter 
 	@$(python) tools/seed_study/chapter_4_1.py -o build/chapter-4-1.png
 	@$(python) tools/seed_study/seed_study.py $(ARGS)
 
+ground: ground-vehicle ## The browser page, to be published or opened as it is: build-ground/index.html
+	@cd ground && npm run --silent build
+	@printf '%s\n' "$(CURDIR)/build-ground/index.html"
+
+ground-vehicle: ## The simulated vehicle as one WebAssembly module: build-ground/plomada.wasm, and vehicle.js for the page
+	@$(setup) build plot ground
+	@tools/ground/vehicle.sh >/dev/null
+	@mkdir -p build-ground && cp build-wasm/plomada.wasm build-ground/
+	@python3 -B tools/ground/vehicle_js.py build-ground/plomada.wasm build-ground/vehicle.js
+
+ground-open: ground ## The same, served on this machine: http://localhost:8123
+	@python3 -B tools/ground/serve.py build-ground 8123
+
+test-ground: ground ## The page's tests: units, then Chromium against the unmodified firmware; the vehicle in wasmtime
+	@$(MAKE) build
+	@$(python) -B tests/ground/test_vehicle.py build/plomada
+	@cd ground && npm test --silent
+
 test: ## The tests, but for the long ones: under ASan and UBSan, then as released
 	$(build_tests)
 	@printf '\n== tests under ASan and UBSan ==\n'
@@ -123,4 +141,4 @@ check-ti: ## The target sources and sim/'s stand-ins against TI's headers; error
 	@python3 -B tools/ti/check_ti.py
 
 clean: ## Remove everything that was built, the Python environment included
-	rm -rf build build-*
+	rm -rf build build-* ground/node_modules

@@ -289,6 +289,21 @@ void board_probe(board_probe_t which, const board_probes_t *wanted)
     probes[which] = wanted != NULL ? *wanted : (board_probes_t){.pulse = NULL};
 }
 
+void board_power_laser(bool on)
+{
+    urg04lx_power(board.laser, on);
+}
+
+void board_power_imu(bool on)
+{
+    razor9dof_power(board.imu, on);
+}
+
+void board_trouble_laser(unsigned code)
+{
+    urg04lx_trouble(board.laser, code);
+}
+
 quadrotor_t *board_quadrotor(void)
 {
     return board.quadrotor;

@@ -78,6 +78,11 @@ bool board_selected(void);  /* the firmware has the throttle */
 /* The radio pair in or out of each other's reach: what is on air out of it is lost. */
 void board_radio_reach(bool in_reach);
 
+/* Somebody pulls a plug or puts it back, or the scanner has trouble of its own (urg04lx_trouble()). */
+void board_power_laser(bool on);
+void board_power_imu(bool on);
+void board_trouble_laser(unsigned code);
+
 quadrotor_t *board_quadrotor(void);
 const urg04lx_t *board_laser(void);
 line_fault_t *board_laser_faults(void);

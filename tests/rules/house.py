@@ -10,7 +10,7 @@ from pathlib import Path
 PRODUCT = ("control", "drivers", "bsp", "firmware")
 COMMENT_OR_LITERAL = re.compile(
     r"//(?:\\\n|[^\n])*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'", re.DOTALL)
-LEFT_OUT = ("build", ".git", "__pycache__", ".vscode", ".idea")
+LEFT_OUT = ("build", ".git", "__pycache__", "node_modules", ".vscode", ".idea")
 
 
 class House:

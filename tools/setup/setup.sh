@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# setup.sh build|test|port|size|coverage|bench|fuzz|plot|campaign ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
+# setup.sh build|test|port|size|coverage|bench|fuzz|plot|campaign|ground ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
 #
 #   build     C compiler, CMake
 #   test      Ruby and CMock, which generates the mocks; Python 3 for the checks of the house rules
@@ -10,6 +10,8 @@
 #   fuzz      clang and its libFuzzer
 #   plot      Python virtual environment build/venv with the pinned packages of tools/plot/requirements.txt
 #   campaign  the same, and in it those of tools/campaign/requirements.txt; for tuning too
+#   ground    clang, lld, wasi-libc and binaryen for the vehicle in the browser; wasmtime in build/venv; node and the pinned
+#             packages of ground/package-lock.json; Chromium for its tests
 #
 # Non-interactive and idempotent: silent, and no call of apt or pip, when nothing is missing. Packages are installed
 # as root, or by sudo where the user may use it; otherwise one line says what to install, and the status is 1.
@@ -19,6 +21,7 @@ root=$(cd "$here/../.." && pwd)
 venv=$root/build/venv
 requirements=$root/tools/plot/requirements.txt
 campaign_requirements=$root/tools/campaign/requirements.txt
+ground_requirements=$root/ground/requirements.txt
 cmock_private=$root/build/cmock
 
 say() { printf 'setup: %s\n' "$*" >&2; }
@@ -48,6 +51,29 @@ venv_ready() {
 }
 
 campaign_ready() { venv_ready && cmp -s "$campaign_requirements" "$venv/campaign.txt"; }
+
+ground_ready() { venv_ready && cmp -s "$ground_requirements" "$venv/ground.txt"; }
+modules_ready() { cmp -s "$root/ground/package-lock.json" "$root/ground/node_modules/.installed-lock.json"; }
+
+# A clang that makes WebAssembly, with its linker and run-time library.
+wasm_ready() {
+    local clang
+    for clang in clang-{14..30} clang; do
+        if has "$clang" && has "${clang/clang/wasm-ld}" &&
+            [ -n "$(find "$("$clang" -print-resource-dir)/lib" -name 'libclang_rt.builtins*wasm32*' -print -quit 2>/dev/null)" ]; then
+            return 0
+        fi
+    done
+    return 1
+}
+
+wasm_packages() {
+    local version
+    version=$(apt-cache depends clang 2>/dev/null | sed -n 's/^ *Depends: clang-\([0-9]*\)$/\1/p') || true
+    echo "clang-${version:-14} lld-${version:-14} libclang-rt-${version:-14}-dev-wasm32"
+}
+
+node_ready() { has node && node -e 'process.exit(parseInt(process.versions.node) < 18 ? 1 : 0)' 2>/dev/null; }
 
 # A clang that has libFuzzer.
 fuzzer_ready() {
@@ -102,8 +128,16 @@ missing_packages() {
             fuzzer_ready || fuzzer_packages ;;
         plot|campaign)
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
+        ground)
+            wasm_ready || wasm_packages
+            [ -f /usr/include/wasm32-wasi/stdio.h ] || echo wasi-libc
+            has wasm-opt || echo binaryen
+            node_ready || echo nodejs
+            has npm || echo npm
+            has chromium || echo chromium
+            venv_ready || venv_maker >/dev/null || echo python3-venv ;;
         *)
-            say "unknown job '$1'; know build, test, port, size, coverage, bench, fuzz, plot, campaign"
+            say "unknown job '$1'; know build, test, port, size, coverage, bench, fuzz, plot, campaign, ground"
             exit 2 ;;
     esac
 }
@@ -181,12 +215,26 @@ add_campaign() {
     cp "$campaign_requirements" "$venv/campaign.txt"
 }
 
-[ $# -gt 0 ] || { say "usage: setup.sh build|test|port|size|coverage|bench|fuzz|plot|campaign ..."; exit 2; }
+add_ground() {
+    say "adding the packages of ground/requirements.txt to build/venv"
+    pip_install -r "$ground_requirements" || die "pip could not install ground/requirements.txt (see above)"
+    cp "$ground_requirements" "$venv/ground.txt"
+}
+
+add_modules() {
+    say "installing the packages of ground/package-lock.json in ground/node_modules"
+    (cd "$root/ground" && npm install --no-save --silent --no-audit --no-fund) >&2 || die "npm could not install them (see above)"
+    cp "$root/ground/package-lock.json" "$root/ground/node_modules/.installed-lock.json"
+}
+
+[ $# -gt 0 ] || { say "usage: setup.sh build|test|port|size|coverage|bench|fuzz|plot|campaign|ground ..."; exit 2; }
 
 packages=()
 want_cmock=
 want_venv=
 want_campaign=
+want_ground=
+want_modules=
 for job in "$@"; do
     list=$(missing_packages "$job")
     for package in $list; do packages+=("$package"); done
@@ -196,6 +244,10 @@ for job in "$@"; do
         campaign)
             venv_ready || want_venv=yes
             campaign_ready || want_campaign=yes ;;
+        ground)
+            venv_ready || want_venv=yes
+            ground_ready || want_ground=yes
+            modules_ready || want_modules=yes ;;
     esac
 done
 
@@ -214,3 +266,5 @@ if [ ${#packages[@]} -gt 0 ] || [ -n "$want_cmock" ]; then
 fi
 [ -z "$want_venv" ] || make_venv
 [ -z "$want_campaign" ] || add_campaign
+[ -z "$want_ground" ] || add_ground
+[ -z "$want_modules" ] || add_modules

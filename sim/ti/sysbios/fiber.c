@@ -2,12 +2,15 @@
 
 #include "sim/ti/sysbios/fiber.h"
 
+#include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define PATTERN 0xBE
 
 static fiber_t *current;
+static jmp_buf guard;
+static bool guarded;
 
 /* swapcontext() asks the kernel for the signal mask each time, which takes longer than all the rest; jumps do not. The
  * sanitizer wants to be told of each change of the stack, and does not follow jumps. */
@@ -149,4 +152,22 @@ void fiber_leave(void)
 bool fiber_inside(void)
 {
     return current != NULL;
+}
+
+void fiber_guard(void (*function)(void))
+{
+    guarded = true;
+    (void)setjmp(guard);
+    function();
+    guarded = false;
+}
+
+void fiber_escape(void)
+{
+    longjmp(guard, 1);
+}
+
+bool fiber_guarded(void)
+{
+    return guarded;
 }

@@ -6,10 +6,32 @@
 #include <setjmp.h>
 #include <stdbool.h>
 #include <stddef.h>
+
+#ifdef __wasm__
+
+#define FIBER_STACK ((size_t)64 * 1024)
+
+/* fiber_asyncify.c. A WebAssembly machine keeps return addresses and locals where no program reaches them: a fiber that
+ * pauses unwinds, and writes them to `frames` on the way. */
+typedef struct {
+    void *stack;        /* what C keeps in memory; NULL: no fiber */
+    void *stack_pointer;
+    struct {
+        void *next, *end;   /* layout of asyncify */
+    } frames;
+    void *frames_begin;
+    bool paused;
+    void (*entry)(void *argument);
+    void *argument;
+} fiber_t;
+
+#else
+
 #include <ucontext.h>
 
 #define FIBER_STACK ((size_t)256 * 1024)
 
+/* fiber.c */
 typedef struct {
     ucontext_t context; /* where it begins; under AddressSanitizer also where it goes on */
     jmp_buf jump;       /* where it goes on */
@@ -19,6 +41,8 @@ typedef struct {
     void (*entry)(void *argument);
     void *argument;
 } fiber_t;
+
+#endif
 
 /* False when there is no memory. entry must not return: it ends with fiber_leave(). */
 bool fiber_create(fiber_t *fiber, void (*entry)(void *argument), void *argument);
@@ -36,5 +60,12 @@ void fiber_leave(void) __attribute__((noreturn));
 
 /* True on a fiber, false on the scheduler's stack. */
 bool fiber_inside(void);
+
+/* On the scheduler's stack: calls `function`, and once more each time that it escapes, until it returns. */
+void fiber_guard(void (*function)(void));
+/* From `function` or what it calls, but not from a fiber: gives up what was begun. */
+void fiber_escape(void) __attribute__((noreturn));
+/* An escape is possible here: within a guard. */
+bool fiber_guarded(void);
 
 #endif

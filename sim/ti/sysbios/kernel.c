@@ -1,6 +1,5 @@
 #include "sim/ti/sysbios/kernel.h"
 
-#include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,8 +16,6 @@ static kernel_costs_t costs;
 static bool started;
 static bool halted;
 static char halt_reason[200];
-static jmp_buf halt_point;
-static bool scheduling;         /* halt_point is valid */
 static sim_time_t run_end;
 static job_t *holder;           /* has the processor */
 static job_t *hwi_in_hand;      /* Hwis are not nested */
@@ -110,8 +107,8 @@ void kernel_halt(const char *format, ...)
     if (fiber_inside()) {
         fiber_leave();
     }
-    if (scheduling) {
-        longjmp(halt_point, 1);
+    if (fiber_guarded()) {
+        fiber_escape();
     }
     (void)fprintf(stderr, "kernel: called from outside: %s\n", halt_reason);
     abort();
@@ -308,10 +305,7 @@ static void run(void)
 bool kernel_run_until(sim_time_t until)
 {
     run_end = until;
-    scheduling = true;
-    (void)setjmp(halt_point); /* kernel_halt() comes here from a Hwi: the world goes on */
-    run();
-    scheduling = false;
+    fiber_guard(run); /* kernel_halt() begins it anew from a Hwi: the world goes on */
     return !halted;
 }
 

@@ -1,0 +1,1 @@
+# CMake has no such system of its own; there is nothing to say about it beyond cmake/wasi.cmake.

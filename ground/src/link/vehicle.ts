@@ -1,0 +1,176 @@
+import { OpenError, type Link, type LinkEvents } from './link';
+import { Wasi } from './wasi';
+
+/** sim/wasm/vehicle.h, the names that the module exports. */
+interface Exports {
+  memory: WebAssembly.Memory;
+  _initialize(): void;
+  vehicle_room(): number;
+  vehicle_fly(size: number): number;
+  vehicle_power_on(seed: number): void;
+  vehicle_blank_storage(): void;
+  vehicle_step(milliseconds: number): number;
+  vehicle_type(size: number): void;
+  vehicle_heard(): number;
+  vehicle_truth(): number;
+  vehicle_power_laser(on: number): void;
+  vehicle_power_imu(on: number): void;
+  vehicle_trouble_laser(code: number): void;
+  vehicle_select(firmware: number): void;
+  vehicle_meet_ramp(): void;
+}
+
+export interface Truth {
+  time_s: number;
+  height_m: number;
+  altitude_m: number;
+  terrain_m: number;
+  speed_mps: number;
+  thrust_n: number;
+  roll_rad: number;
+  pitch_rad: number;
+  pulse_us: number;
+  contacts: number;
+}
+const TRUTH = ['time_s', 'height_m', 'altitude_m', 'terrain_m', 'speed_mps', 'thrust_n', 'roll_rad', 'pitch_rad', 'pulse_us', 'contacts'] as const;
+
+let compiled: Promise<WebAssembly.Module> | null = null;
+
+/** vehicle.js stands beside the page and holds plomada.wasm as text, because a page that was opened from a disk may fetch
+ * nothing else. */
+function loadModule(): Promise<WebAssembly.Module> {
+  compiled ??= new Promise((resolve, reject) => {
+    const script = document.createElement('script');
+    script.src = 'vehicle.js';
+    script.onerror = () => reject(new OpenError('noVehicle'));
+    script.onload = () => {
+      const text = (window as unknown as { plomadaVehicle?: string }).plomadaVehicle ?? '';
+      const octets = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+      WebAssembly.compile(octets).then(resolve, (error: Error) => reject(new OpenError('noVehicle', error.message)));
+    };
+    document.head.append(script);
+  });
+  compiled.catch(() => (compiled = null));
+  return compiled;
+}
+
+async function instantiate(module: WebAssembly.Module): Promise<{ exports: Exports; wasi: Wasi }> {
+  const wasi = new Wasi();
+  const instance = await WebAssembly.instantiate(module, { wasi_snapshot_preview1: wasi.imports() });
+  const exports = instance.exports as unknown as Exports;
+  wasi.memory = exports.memory;
+  exports._initialize();
+  return { exports, wasi };
+}
+
+/** `plomada fly` in the page: what it printed, and the files it wrote. */
+export async function flyScenario(args: string[]): Promise<{ status: number; output: string; files: Map<string, string> }> {
+  const { exports, wasi } = await instantiate(await loadModule());
+  const octets = new TextEncoder().encode(args.map((arg) => `${arg}\0`).join(''));
+  new Uint8Array(exports.memory.buffer).set(octets, exports.vehicle_room());
+  const status = exports.vehicle_fly(octets.length);
+  const files = new Map([...wasi.files].map(([name, file]) => [name, new TextDecoder().decode(file)]));
+  return { status, output: wasi.output, files };
+}
+
+const TICK = 20; // ms of the wall clock between two steps
+const CATCH_UP = 1500; // a page in the background is woken once a second
+
+export async function openVehicle(events: LinkEvents, seed: number): Promise<VehicleLink> {
+  const { exports } = await instantiate(await loadModule());
+  return new VehicleLink(exports, events, seed);
+}
+
+export class VehicleLink implements Link {
+  readonly kind = 'vehicle';
+  readonly label = 'simulated vehicle';
+  speed = 1;
+  radio = true;
+  laser = true;
+  imu = true;
+  pilot = false;
+  private readonly room: number;
+  private readonly origin = Date.now();
+  private elapsed = 0;
+  private owed = 0;
+  private wall = performance.now();
+  private timer: ReturnType<typeof setInterval>;
+
+  constructor(
+    private readonly machine: Exports,
+    private readonly events: LinkEvents,
+    private seed: number,
+  ) {
+    this.room = machine.vehicle_room();
+    machine.vehicle_power_on(seed);
+    this.timer = setInterval(() => this.tick(), TICK);
+  }
+
+  now(): number {
+    return this.origin + this.elapsed;
+  }
+
+  send(text: string): void {
+    if (!this.radio) return;
+    const octets = new TextEncoder().encode(`${text}\n`);
+    new Uint8Array(this.machine.memory.buffer).set(octets, this.room);
+    this.machine.vehicle_type(octets.length);
+  }
+
+  async close(): Promise<void> {
+    clearInterval(this.timer);
+  }
+
+  truth(): Truth {
+    const values = new Float64Array(this.machine.memory.buffer, this.machine.vehicle_truth(), TRUTH.length);
+    return Object.fromEntries(TRUTH.map((name, i) => [name, values[i]])) as unknown as Truth;
+  }
+
+  powerCycle(): void {
+    this.laser = this.imu = true;
+    this.pilot = false;
+    this.machine.vehicle_power_on(++this.seed);
+  }
+
+  setLaser(on: boolean): void {
+    this.laser = on;
+    this.machine.vehicle_power_laser(on ? 1 : 0);
+  }
+
+  setImu(on: boolean): void {
+    this.imu = on;
+    this.machine.vehicle_power_imu(on ? 1 : 0);
+  }
+
+  setPilot(on: boolean): void {
+    this.pilot = on;
+    this.machine.vehicle_select(on ? 0 : 1);
+  }
+
+  troubleLaser(): void {
+    this.machine.vehicle_trouble_laser(70);
+  }
+
+  meetRamp(): void {
+    this.machine.vehicle_meet_ramp();
+  }
+
+  /** Lets the time pass that the wall clock says, in small steps, so that answers come at their time. */
+  private tick(): void {
+    const wall = performance.now();
+    this.owed += Math.min(wall - this.wall, CATCH_UP) * this.speed;
+    this.wall = wall;
+    while (this.owed >= 10) {
+      const step = Math.min(Math.floor(this.owed), 50);
+      this.owed -= step;
+      this.elapsed += step;
+      if (this.machine.vehicle_step(step) === 0) {
+        clearInterval(this.timer);
+        this.events.lost('halted');
+        return;
+      }
+      const count = this.machine.vehicle_heard();
+      if (count > 0 && this.radio) this.events.octets(new Uint8Array(this.machine.memory.buffer, this.room, count).slice());
+    }
+  }
+}

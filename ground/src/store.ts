@@ -1,0 +1,317 @@
+import { batch, computed, signal } from '@preact/signals';
+import { OpenError, type Link, type LostReason, type OpenFailure } from './link/link';
+import { openSerial } from './link/serial';
+import { openSocket } from './link/socket';
+import { openVehicle, VehicleLink } from './link/vehicle';
+import { LineSplitter, parseLine, type Line, type Telemetry } from './protocol/lines';
+import { parseHelp, valueOf, type Parameter, type ParameterSet } from './protocol/parameters';
+import { CommandQueue, type Outcome } from './protocol/queue';
+import { LogCollector, logRest } from './protocol/recorder';
+import { Series } from './series';
+import { SessionLog, type Entry } from './session';
+
+export type Phase = 'idle' | 'opening' | 'open' | 'lost';
+export type StopState = 'none' | 'sent' | 'answered' | 'unanswered';
+export type View = 'fly' | 'parameters' | 'recorder' | 'wizards' | 'console' | 'replay';
+
+export const SILENCE_MS = 1500;
+const CONSOLE_LINES = 2000;
+
+export const phase = signal<Phase>('idle');
+export const failure = signal<{ why: OpenFailure; detail: string } | null>(null);
+export const lostReason = signal<LostReason | null>(null);
+export const link = signal<Link | null>(null);
+export const vehicle = computed(() => (link.value instanceof VehicleLink ? link.value : null));
+export const latest = signal<Telemetry | null>(null);
+export const latestAt = signal(0); // link's clock, ms
+export const clock = signal(0); // link's clock, some times a second
+export const heardAny = signal(false); // any line of this firmware
+export const foreign = signal(0); // lines that are not the firmware's
+export const garbage = signal(0); // octets that are no text
+export const openedAt = signal(0);
+export const stopState = signal<{ STOP: StopState; LAND: StopState }>({ STOP: 'none', LAND: 'none' });
+export const parameters = signal<Parameter[]>([]);
+export const stored = signal<ParameterSet | null>(null);
+export const loading = signal(false);
+export const storeLine = signal<string | null>(null); // what power-up said of the stored set
+export const consoleLines = signal<Entry[]>([]);
+export const view = signal<View>('fly');
+export const dialog = signal(true); // the connect sheet
+export const notice = signal<string | null>(null);
+export const series = new Series();
+export const session = new SessionLog();
+
+export const age = computed(() => (latest.value ? clock.value - latestAt.value : clock.value - openedAt.value));
+export const silent = computed(() => phase.value === 'open' && age.value > SILENCE_MS);
+/** What a link that is open and says nothing useful is up to. */
+export const diagnosis = computed<'silence' | 'wrongRate' | 'foreign' | null>(() => {
+  if (phase.value !== 'open' || heardAny.value) return null;
+  if (garbage.value > 20) return 'wrongRate';
+  if (foreign.value > 3) return 'foreign';
+  return clock.value - openedAt.value > 4000 ? 'silence' : null;
+});
+
+const splitter = new LineSplitter();
+let queue: CommandQueue | null = null;
+let pendingConsole: Entry[] = [];
+export const listeners = new Set<(line: Line) => void>();
+
+function record(out: boolean, text: string): void {
+  const entry: Entry = { t: link.value?.now() ?? Date.now(), out, text };
+  session.add(entry);
+  pendingConsole.push(entry);
+}
+
+function transmit(text: string): void {
+  record(true, text);
+  link.value?.send(text);
+}
+
+function heard(octets: Uint8Array): void {
+  for (const text of splitter.push(octets)) {
+    record(false, text);
+    const line = parseLine(text);
+    if (line.kind === 'other') {
+      const odd = (text.match(/\ufffd/g) ?? []).length;
+      garbage.value += odd;
+      foreign.value++;
+    } else {
+      heardAny.value = true;
+    }
+    if (line.kind === 'telemetry') onTelemetry(line.telemetry);
+    if (line.kind === 'answer') onAnswer(line);
+    queue?.heard(line);
+    for (const listener of listeners) listener(line);
+  }
+}
+
+function onTelemetry(telemetry: Telemetry): void {
+  const now = link.value!.now();
+  series.add(now / 1000, telemetry, vehicle.value ? vehicle.value.truth().height_m : NaN);
+  batch(() => {
+    latest.value = telemetry;
+    latestAt.value = now;
+    if (telemetry.reset) series.mark(now / 1000, `reset ${telemetry.reset}`).answered = true;
+  });
+}
+
+function onAnswer(line: Extract<Line, { kind: 'answer' }>): void {
+  if (line.name === 'LOAD' || line.name === 'SAVE') storeLine.value = line.text;
+  const value = line.ok ? valueOf(line.name, line.rest) : null;
+  if (value && parameters.value.some((p) => p.name === value.name)) {
+    parameters.value = parameters.value.map((p) => (p.name === value.name ? { ...p, value: value.value } : p));
+  }
+}
+
+const MARKED = /^#(SETR|STOP|LAND|LAW|CALIBRATE|SAVE|LOAD|DEFAULTS|GRAV)\b/i;
+
+/** Sends a command, again until it is answered, and gives up in time. */
+export async function command(text: string, options: { tries?: number } = {}): Promise<Outcome> {
+  if (!queue || phase.value !== 'open') return { ok: false, reason: 'not connected', silent: true, lines: [] };
+  const mark = MARKED.test(text) ? series.mark(link.value!.now() / 1000, text.replace(/^#/, '')) : null;
+  const outcome = await queue.command(text, options);
+  if (mark) mark.answered = outcome.ok;
+  return outcome;
+}
+
+/** Without a queue, as typed. */
+export function sendRaw(text: string): void {
+  if (phase.value === 'open') transmit(text);
+}
+
+export async function stop(name: 'STOP' | 'LAND'): Promise<void> {
+  if (!queue || phase.value !== 'open') return;
+  const mark = series.mark(link.value!.now() / 1000, name);
+  stopState.value = { ...stopState.value, [name]: 'sent' };
+  const answered = await queue.stop(name);
+  mark.answered = answered;
+  stopState.value = { ...stopState.value, [name]: answered ? 'answered' : 'unanswered' };
+  if (answered) setTimeout(() => (stopState.value = stopState.value[name] === 'answered' ? { ...stopState.value, [name]: 'none' } : stopState.value), 4000);
+}
+
+export async function readParameters(): Promise<void> {
+  if (loading.value) return;
+  loading.value = true;
+  const help = await command('#HELP');
+  const rows = help.lines.map((line) => parseHelp(line.rest)).filter((row): row is Parameter => row !== null);
+  const values = await command('#GET');
+  for (const line of values.lines) {
+    const row = rows.find((p) => p.name === line.name);
+    if (row) row.value = valueOf(line.name, line.rest)?.value ?? '';
+  }
+  batch(() => {
+    if (rows.length > 0) parameters.value = rows;
+    loading.value = false;
+  });
+}
+
+function opened(kind: Link): void {
+  batch(() => {
+    splitter.reset();
+    series.clear();
+    link.value = kind;
+    latest.value = null;
+    openedAt.value = clock.value = kind.now();
+    heardAny.value = false;
+    foreign.value = garbage.value = 0;
+    parameters.value = [];
+    stored.value = null;
+    storeLine.value = null;
+    stopState.value = { STOP: 'none', LAND: 'none' };
+    consoleLines.value = [];
+    phase.value = 'open';
+    lostReason.value = null;
+    dialog.value = false;
+  });
+  queue = new CommandQueue(transmit, () => link.value?.now() ?? 0);
+  void session.begin(kind.label);
+}
+
+const events = {
+  octets: heard,
+  lost(reason: LostReason): void {
+    queue?.clear('the link is gone');
+    batch(() => {
+      phase.value = 'lost';
+      lostReason.value = reason;
+      link.value = null;
+    });
+    void session.flush();
+  },
+};
+
+async function open(how: () => Promise<Link>): Promise<void> {
+  await disconnect();
+  phase.value = 'opening';
+  failure.value = null;
+  try {
+    opened(await how());
+  } catch (error) {
+    const open = error instanceof OpenError ? error : new OpenError('failed', String(error));
+    failure.value = { why: open.failure, detail: open.detail };
+    phase.value = 'idle';
+  }
+}
+
+export const connectSerial = (port: () => Promise<SerialPort>): Promise<void> => open(async () => openSerial(await port(), events));
+export const connectSocket = (url: string): Promise<void> => open(() => openSocket(url, events));
+export const connectVehicle = (): Promise<void> => open(() => openVehicle(events, 1));
+
+export async function disconnect(): Promise<void> {
+  queue?.clear('disconnected');
+  queue = null;
+  await link.value?.close();
+  link.value = null;
+  phase.value = 'idle';
+  await session.flush();
+}
+
+/** The vehicle begins anew: so does what is known of it. */
+export function powerCycle(): void {
+  vehicle.value?.powerCycle();
+  queue?.clear('power off');
+  parameters.value = [];
+  stored.value = null;
+  storeLine.value = null;
+}
+
+// ---- the flight recorder ----
+
+export interface Download {
+  state: 'running' | 'repairing' | 'done' | 'failed' | 'none';
+  received: number;
+  expected: number;
+  lost: number;
+  csv: string;
+}
+export const download = signal<Download>({ state: 'none', received: 0, expected: 0, lost: 0, csv: '' });
+const DUMP_SILENCE = 4000;
+const DUMP_ROUNDS = 5;
+
+function oneDump(collector: LogCollector, seconds: number | null): Promise<boolean> {
+  return new Promise((resolve) => {
+    let last = link.value?.now() ?? 0;
+    let tries = 3;
+    let begun = false;
+    const ask = (): void => transmit(seconds === null ? '#LOG' : `#LOG ${seconds}`);
+    const listener = (line: Line): void => {
+      if (line.kind !== 'answer' || line.name !== 'LOG') return;
+      last = link.value?.now() ?? 0;
+      const rest = logRest(line.text);
+      if (rest === null) {
+        collector.damaged++;
+        return;
+      }
+      begun ||= rest.startsWith('records:');
+      collector.heard(rest);
+      download.value = { ...download.value, received: Math.max(download.value.received, collector.size), expected: Math.max(download.value.expected, collector.expected) };
+      if (begun && collector.complete) end(true);
+    };
+    const timer = setInterval(() => {
+      const now = link.value?.now();
+      if (now === undefined || phase.value !== 'open' || download.value.state === 'failed') end(false);
+      else if (now - last > DUMP_SILENCE) {
+        last = now;
+        if (begun || --tries <= 0) end(begun);
+        else ask();
+      }
+    }, 200);
+    const end = (ok: boolean): void => {
+      clearInterval(timer);
+      listeners.delete(listener);
+      resolve(ok);
+    };
+    listeners.add(listener);
+    ask();
+  });
+}
+
+/** All records; rows that were lost on the way are asked for again. */
+export async function downloadRecorder(seconds: number | null): Promise<void> {
+  if (download.value.state === 'running' || download.value.state === 'repairing' || phase.value !== 'open') return;
+  const collector = new LogCollector();
+  download.value = { state: 'running', received: 0, expected: 0, lost: 0, csv: '' };
+  let ok = await oneDump(collector, seconds);
+  let missing = collector.missingSeconds();
+  for (let round = 0; ok && missing > 0 && round < DUMP_ROUNDS; round++) {
+    download.value = { ...download.value, state: 'repairing' };
+    ok = await oneDump(collector, missing);
+    missing = collector.missingSeconds();
+  }
+  if ((download.value.state as string) === 'failed') return;
+  download.value = { state: ok ? 'done' : 'failed', received: collector.size, expected: download.value.expected, lost: Math.max(0, download.value.expected - collector.size), csv: collector.size > 0 ? collector.csv() : '' };
+}
+
+export function cancelDownload(): void {
+  sendRaw('#LOG STOP');
+  download.value = { ...download.value, state: 'failed' };
+}
+
+// ---- the page's heart ----
+
+export function beat(): void {
+  queue?.tick();
+  batch(() => {
+    clock.value = link.value?.now() ?? clock.value;
+    if (pendingConsole.length > 0) {
+      consoleLines.value = [...consoleLines.value, ...pendingConsole].slice(-CONSOLE_LINES);
+      pendingConsole = [];
+    }
+  });
+}
+
+/** At the start of the page: what a reload interrupted. */
+export async function restore(): Promise<void> {
+  await session.start();
+  const [before] = await session.list();
+  if (!before || Date.now() - before.last > 15 * 60_000 || before.lines === 0) return;
+  const entries = await session.read(before.id);
+  for (const entry of entries) {
+    const line = parseLine(entry.text);
+    if (line.kind === 'telemetry') series.add(entry.t / 1000, line.telemetry, NaN);
+    else if (entry.out && MARKED.test(entry.text)) series.mark(entry.t / 1000, entry.text.slice(1)).answered = true;
+  }
+  consoleLines.value = entries.slice(-CONSOLE_LINES);
+  restored.value = { link: before.link, lines: entries.length, id: before.id };
+}
+export const restored = signal<{ link: string; lines: number; id: number } | null>(null);

@@ -1,0 +1,191 @@
+import { signal } from '@preact/signals';
+import { useRef } from 'preact/hooks';
+import { Plot, saveFile, savePng, stamp } from '../plot';
+import { age, clock, command, heardAny, latest, phase, powerCycle, series, silent, vehicle } from '../store';
+import { w } from '../words';
+
+const wanted = signal(localStorage.getItem('plomada.reference') ?? '0.6');
+const span = signal(60);
+const held = signal(false);
+const tick = signal(0); // what the simulation's buttons change
+
+function Number3({ label, value, unit, sub, tone }: { label: string; value: string; unit?: string; sub?: string; tone?: string }) {
+  return (
+    <div class={`big ${tone ?? ''}`}>
+      <span class="big-label">{label}</span>
+      <span class="big-value">{value}{unit && <small>{unit}</small>}</span>
+      <span class="big-sub">{sub ?? '\u00a0'}</span>
+    </div>
+  );
+}
+
+export function Numbers() {
+  const t = latest.value;
+  const words = w();
+  const off = silent.value || !t;
+  const text = (value: number | undefined, digits: number): string => (value === undefined || Number.isNaN(value) ? '–' : value.toFixed(digits));
+  const airborne = t && t.state !== 'GROUND';
+  return (
+    <section class={`numbers ${off ? 'stale' : ''}`} aria-label={words.fly}>
+      <Number3 label={words.height} value={text(t?.height, 2)} unit="m" sub={`${words.reference} ${t && t.reference > 0 ? `${t.reference.toFixed(2)} m` : words.none}`} tone="primary" />
+      <Number3 label={words.thrust} value={text(t?.thrust, 1)} unit="N" sub={words.perMotor} />
+      <Number3 label={words.state} value={t?.state ?? '–'} sub={t ? words.states[t.state] ?? '' : ''} tone={`word ${t && ['CUT', 'DESCENDING', 'LOWERING'].includes(t.state) ? 'bad' : airborne ? 'good' : ''}`} />
+      <Number3 label={words.laser} value={t?.laser ?? '–'} sub={t ? words.lasers[t.laser] ?? '' : ''} tone={`word ${t?.laser === 'OK' ? 'good' : t?.laser === 'LOST' ? 'bad' : ''}`} />
+      <Number3 label={words.link} value={phase.value === 'open' && heardAny.value ? Math.max(0, age.value / 1000).toFixed(1) : '–'} unit="s" sub={phase.value === 'open' ? words.open : words[phase.value === 'lost' ? 'lost' : 'idle']} tone={silent.value ? 'bad' : ''} />
+    </section>
+  );
+}
+
+export function Messages() {
+  const t = latest.value;
+  const words = w();
+  if (!t) return null;
+  const flags: [string, string][] = [];
+  for (let bit = 0; bit < 16; bit++) if (t.flags & (1 << bit)) flags.push(words.flags[bit] ?? words.unknownFlag(1 << bit));
+  return (
+    <ul class="messages" aria-live="polite">
+      {flags.map(([what, todo]) => (
+        <li class="warn" key={what}><strong>{what}</strong><span>{todo}</span></li>
+      ))}
+      {flags.length === 0 && (
+        <li class="fine"><strong>{words.allWell}</strong><span>{t.state === 'GROUND' ? words.allWellDo : words.states[t.state] ?? words.flyingWell}</span></li>
+      )}
+    </ul>
+  );
+}
+
+function Reference() {
+  const words = w();
+  const t = latest.value;
+  const open = phase.value === 'open' && t !== null;
+  const flying = open && t.reference > 0;
+  const send = (): void => {
+    localStorage.setItem('plomada.reference', wanted.value);
+    void command(`#SETR ${Number(wanted.value)}`);
+  };
+  return (
+    <section class="card reference" aria-labelledby="reference-title">
+      <h2 id="reference-title">{words.flyTo}</h2>
+      <div class="stepper">
+        <button aria-label="−0.1 m" onClick={() => (wanted.value = Math.max(0.1, Number(wanted.value) - 0.1).toFixed(1))}>−</button>
+        <output>{Number(wanted.value).toFixed(1)}<small> m</small></output>
+        <button aria-label="+0.1 m" onClick={() => (wanted.value = Math.min(3, Number(wanted.value) + 0.1).toFixed(1))}>+</button>
+      </div>
+      <div class="presets">
+        {['0.3', '0.6', '1.0', '1.5'].map((value) => (
+          <button key={value} class={value === wanted.value ? 'chosen' : ''} aria-pressed={value === wanted.value} onClick={() => (wanted.value = value)}>{value}</button>
+        ))}
+      </div>
+      <button class="go" disabled={!open} onClick={send}>{flying ? `${words.changeTo} ${Number(wanted.value).toFixed(1)} m` : words.takeOff}</button>
+    </section>
+  );
+}
+
+function Picture() {
+  const v = vehicle.value!;
+  void clock.value;
+  const truth = v.truth();
+  const scale = 70; // pixels per metre
+  const ground = 150;
+  const y = ground - 12 - truth.altitude_m * scale;
+  const shift = ((truth.time_s * 40) % 24);
+  const floor = ground - truth.terrain_m * scale;
+  const shift2 = Math.min(0, y - 30); // keep it in view
+  return (
+    <svg class="picture" viewBox={`0 ${shift2} 260 170`} role="img" aria-label={`${w().truth} ${truth.height_m.toFixed(2)} m`}>
+      <g class="grid-lines">{[0, 0.5, 1, 1.5, 2, 2.5, 3].map((m) => (<g key={m}><line x1="34" x2="256" y1={ground - m * scale} y2={ground - m * scale} /><text x="4" y={ground - m * scale + 4}>{m} m</text></g>))}</g>
+      <rect class="earth" x="34" y={floor} width="222" height={Math.max(4, 180 - floor)} />
+      <g class="hatch">{Array.from({ length: 11 }, (_, i) => (<line key={i} x1={44 + i * 24 - shift} x2={36 + i * 24 - shift} y1={floor + 2} y2={floor + 12} />))}</g>
+      {v.laser && <line class="beam" x1="145" x2="145" y1={y} y2={floor} />}
+      <g transform={`translate(145 ${y}) rotate(${(-truth.roll_rad * 180) / Math.PI})`}>
+        <rect class="body" x="-16" y="-9" width="32" height="12" rx="4" />
+        <path class="arm" d="M-46 -8H46M-20 3l-6 9M20 3l6 9" />
+        {[-46, 46].map((x) => (<g key={x}><line class="arm" x1={x} x2={x} y1="-8" y2="-14" /><ellipse class={truth.thrust_n > 0.5 ? 'rotor spin' : 'rotor'} cx={x} cy="-15" rx="20" ry="2.6" /></g>))}
+      </g>
+    </svg>
+  );
+}
+
+export function Simulation() {
+  const v = vehicle.value;
+  void tick.value;
+  const words = w();
+  if (!v) return null;
+  const act = (what: () => void) => () => {
+    what();
+    tick.value++;
+  };
+  return (
+    <section class="card simulation" aria-labelledby="simulation-title">
+      <h2 id="simulation-title">{words.simPanel}</h2>
+      <Picture />
+      {latest.value?.laser !== 'OK' && latest.value?.state === 'GROUND' && v.laser && <p class="hint">{words.firstSteps}</p>}
+      <div class="row" role="group" aria-label={words.speed}>
+        <span class="row-label">{words.speed}</span>
+        {[0.25, 1, 2, 5].map((speed) => (
+          <button key={speed} class={`chip ${v.speed === speed ? 'chosen' : ''}`} aria-pressed={v.speed === speed} onClick={act(() => (v.speed = speed))}>{speed}×</button>
+        ))}
+      </div>
+      <div class="faults" role="group" aria-label={words.faults}>
+        <button class={v.laser ? '' : 'broken'} onClick={act(() => v.setLaser(!v.laser))}>{v.laser ? words.unplugLaser : words.plugLaser}</button>
+        <button class={v.imu ? '' : 'broken'} onClick={act(() => v.setImu(!v.imu))}>{v.imu ? words.unplugImu : words.plugImu}</button>
+        <button class={v.radio ? '' : 'broken'} onClick={act(() => (v.radio = !v.radio))}>{v.radio ? words.cutRadio : words.mendRadio}</button>
+        <button onClick={act(() => v.troubleLaser())}>{words.laserTrouble}</button>
+        <button onClick={act(() => v.meetRamp())}>{words.ramp}</button>
+        <button class={v.pilot ? 'broken' : ''} onClick={act(() => v.setPilot(!v.pilot))}>{v.pilot ? words.pilotGives : words.pilotTakes}</button>
+      </div>
+      <button class="quiet" onClick={act(powerCycle)}>{words.powerCycle}</button>
+    </section>
+  );
+}
+
+export function FlyView() {
+  const words = w();
+  const plots = useRef<HTMLDivElement>(null);
+  const curves = [
+    { label: words.measured, colour: '--curve-height', axis: 'm' as const, width: 2.5, fill: true },
+    { label: words.reference, colour: '--curve-reference', axis: 'm' as const, dash: [6, 4] },
+    ...(vehicle.value ? [{ label: words.truth, colour: '--curve-truth', axis: 'm' as const, width: 1.5 }] : []),
+  ];
+  const range = (): [number, number] => {
+    const end = phase.value === 'open' ? clock.peek() / 1000 : series.end;
+    return span.peek() === 0 ? [Math.min(series.start, end - 1), end] : [end - span.peek(), end];
+  };
+  const heights = () => {
+    const [from, to] = range();
+    const { columns, states } = series.window(from, to);
+    return { columns: [columns[0]!, columns[1]!, columns[2]!, ...(vehicle.peek() ? [columns[4]!] : [])], states, marks: series.marks, from, to };
+  };
+  const thrusts = () => {
+    const [from, to] = range();
+    const { columns } = series.window(from, to);
+    return { columns: [columns[0]!, columns[3]!], from, to };
+  };
+  return (
+    <div class="fly">
+      <div class="fly-main">
+        <Numbers />
+        <Messages />
+        <section class="card plots" ref={plots} aria-label={words.fly}>
+          <div class="plot-tools">
+            <span class="row-label">{words.window}</span>
+            {([[20, '20 s'], [60, '1 min'], [300, '5 min'], [0, '∞']] as const).map(([seconds, label]) => (
+              <button key={label} class={`chip ${span.value === seconds ? 'chosen' : ''}`} aria-pressed={span.value === seconds} onClick={() => (span.value = seconds)}>{label}</button>
+            ))}
+            <button class={`chip ${held.value ? 'chosen' : ''}`} aria-pressed={held.value} onClick={() => (held.value = !held.value)}>{words.hold}</button>
+            <span class="spacer" />
+            <button class="quiet" onClick={() => saveFile(`plomada-${stamp()}.csv`, series.csv(), 'text/csv')}>{words.saveCsv}</button>
+            <button class="quiet" onClick={() => savePng(plots.current, `plomada-${stamp()}.png`)}>{words.savePng}</button>
+          </div>
+          <Plot key={`h${vehicle.value ? 1 : 0}`} curves={curves} data={heights} live={100} hold={held.value} height={300} label={words.height} clock />
+          <Plot curves={[{ label: words.thrust, colour: '--curve-thrust', axis: 'N', fill: true }]} data={thrusts} live={100} hold={held.value} height={150} label={words.thrust} clock />
+          <p class="hint">{words.zoomHint}</p>
+        </section>
+      </div>
+      <aside class="fly-side">
+        <Reference />
+        <Simulation />
+      </aside>
+    </div>
+  );
+}

@@ -1,0 +1,152 @@
+import { signal } from '@preact/signals';
+import { useEffect } from 'preact/hooks';
+import { age, command, latest, listeners, parameters, phase, readParameters, stop, storeLine } from '../store';
+import type { Line } from '../protocol/lines';
+import { w } from '../words';
+
+const volts = signal('');
+const byHand = signal<Record<string, boolean>>({});
+const tied = signal(false);
+const calibration = signal<{ running: boolean; thrust: string; steps: number; end: string }>({ running: false, thrust: '', steps: 0, end: '' });
+const imu = signal<{ step: string; text: string; bad: boolean }[]>([]);
+
+/** The link is armed for so long: a page that dies ends the calibration in that time. */
+const LINK_S = 3;
+const ALIVE_MS = 1000;
+let linkBefore = '0';
+const CELLS_LOW_V = 11.1;
+
+export function checks(): Record<string, boolean> {
+  const t = latest.value;
+  const has = (bit: number): boolean => t !== null && (t.flags & bit) === 0;
+  return {
+    link: phase.value === 'open' && t !== null && age.value < 600,
+    laser: t?.laser === 'OK',
+    height: t !== null && !Number.isNaN(t.height) && t.height < 0.1,
+    imu: has(2),
+    upright: has(32),
+    ground: t?.state === 'GROUND' && t.reference === 0,
+    flags: t?.flags === 0,
+    settings: parameters.value.length > 0 && !(storeLine.value ?? '').startsWith('ERR'),
+    tilt: byHand.value.tilt === true,
+    battery: Number(volts.value.replace(',', '.')) >= CELLS_LOW_V,
+  };
+}
+
+function Checklist() {
+  const words = w();
+  const state = checks();
+  const open = Object.values(state).filter((ok) => !ok).length;
+  useEffect(() => {
+    if (phase.value === 'open' && parameters.value.length === 0) void readParameters();
+  }, [phase.value]);
+  return (
+    <section class="card" aria-labelledby="checks-title">
+      <div class="head"><h2 id="checks-title">{words.checklist}</h2><span class="spacer" /><span class={`tag ${open === 0 ? 'good' : 'accent'}`} role="status">{open === 0 ? words.ready : words.notReady(open)}</span></div>
+      <p class="hint">{words.checkText}</p>
+      <ul class="checks">
+        {Object.entries(words.checks).map(([name, [title, text]]) => (
+          <li key={name} class={state[name] ? 'done' : ''}>
+            <span class="tick" aria-hidden="true">{state[name] ? '✓' : ''}</span>
+            <div><strong>{title}</strong><small>{text}</small></div>
+            <span class="visually-hidden">{state[name] ? '✓' : '–'}</span>
+            {name === 'tilt' && <label class="check"><input type="checkbox" checked={byHand.value.tilt === true} onChange={(event) => (byHand.value = { ...byHand.value, tilt: event.currentTarget.checked })} /> {words.doneByHand}</label>}
+            {name === 'battery' && <input class="short" inputMode="decimal" aria-label={title} placeholder="V" value={volts.value} onInput={(event) => (volts.value = event.currentTarget.value)} />}
+          </li>
+        ))}
+      </ul>
+    </section>
+  );
+}
+
+function heardCalibration(line: Line): void {
+  if (line.kind !== 'answer' || line.name !== 'CALIBRATE') return;
+  const thrust = /thr:([\d.]+)/.exec(line.rest)?.[1] ?? calibration.value.thrust;
+  const end = /end:(\w+)/.exec(line.rest)?.[1] ?? (line.ok ? '' : line.rest);
+  calibration.value = { running: end === '' && calibration.value.running, thrust, steps: calibration.value.steps + 1, end };
+}
+
+function Calibration() {
+  const words = w();
+  const c = calibration.value;
+  useEffect(() => {
+    if (!c.running) return undefined;
+    const halt = (): void => {
+      if (!calibration.value.running) return;
+      calibration.value = { ...calibration.value, running: false };
+      void stop('STOP');
+    };
+    const alive = setInterval(() => void command('#PING', { tries: 1 }), ALIVE_MS);
+    listeners.add(heardCalibration);
+    window.addEventListener('keydown', halt, true);
+    window.addEventListener('pointerdown', halt, true);
+    window.addEventListener('blur', halt);
+    document.addEventListener('visibilitychange', halt);
+    return () => {
+      clearInterval(alive);
+      void command(`#LINK ${linkBefore}`);
+      setTimeout(() => listeners.delete(heardCalibration), 1500); // the last word comes behind the stop
+      window.removeEventListener('keydown', halt, true);
+      window.removeEventListener('pointerdown', halt, true);
+      window.removeEventListener('blur', halt);
+      document.removeEventListener('visibilitychange', halt);
+    };
+  }, [c.running]);
+  const begin = async (): Promise<void> => {
+    calibration.value = { running: false, thrust: '', steps: 0, end: '' };
+    const asked = await command('#GET LINK');
+    linkBefore = asked.lines[0]?.rest.split(' ')[0] ?? '0';
+    const armed = await command(`#LINK ${LINK_S}`);
+    if (!armed.ok) {
+      calibration.value = { ...calibration.value, end: armed.reason };
+      return;
+    }
+    const begun = await command('#CALIBRATE', { tries: 1 });
+    calibration.value = begun.ok ? { running: true, thrust: '0', steps: 0, end: '' } : { ...calibration.value, end: begun.reason };
+  };
+  return (
+    <section class={`card ${c.running ? 'alarm' : ''}`} aria-labelledby="calibration-title">
+      <h2 id="calibration-title">{words.calibration}</h2>
+      <p>{words.calibrationText}</p>
+      {c.running ? (
+        <div role="alert"><p class="shout">{words.calibrationRunning}</p><p class="big-value">{c.thrust}<small> N</small></p></div>
+      ) : (
+        <>
+          <label class="check"><input type="checkbox" checked={tied.value} onChange={(event) => (tied.value = event.currentTarget.checked)} /> {words.calibrationBound}</label>
+          <button class="primary" disabled={!tied.value || phase.value !== 'open' || latest.value?.state !== 'GROUND'} onClick={() => void begin()}>{words.calibrationGo}</button>
+          {c.end && <p class="banner" role="status">{words.calibrationEnd(c.end, c.thrust || '–')}</p>}
+          {c.end && Number(c.thrust) > 3 && <button onClick={() => void command(`#GRAV ${c.thrust}`)}>{words.setGrav(c.thrust)}</button>}
+        </>
+      )}
+    </section>
+  );
+}
+
+function ImuSigns() {
+  const words = w();
+  const ask = async (argument: string): Promise<void> => {
+    const outcome = await command(argument ? `#IMU ${argument}` : '#IMU');
+    const text = outcome.ok ? outcome.lines.map((line) => line.text).join('\n') : outcome.reason.startsWith('unknown command') ? words.imuNone : outcome.reason;
+    imu.value = [...imu.value, { step: argument || '#IMU', text, bad: !outcome.ok }].slice(-6);
+  };
+  return (
+    <section class="card" aria-labelledby="imu-title">
+      <h2 id="imu-title">{words.imuSigns}</h2>
+      <p>{words.imuText}</p>
+      <div class="row">
+        {Object.entries(words.imuSteps).map(([name, text]) => (<button key={name} disabled={phase.value !== 'open'} onClick={() => void ask(name)}>{text}</button>))}
+        <button class="quiet" disabled={phase.value !== 'open'} onClick={() => void ask('')}>{words.imuAsk}</button>
+      </div>
+      <ul class="answers" aria-live="polite">{imu.value.map((line, i) => (<li key={i} class={line.bad ? 'bad' : ''}><strong>{line.step}</strong> <code>{line.text}</code></li>))}</ul>
+    </section>
+  );
+}
+
+export function WizardsView() {
+  return (
+    <div class="two even">
+      <Checklist />
+      <div class="stack"><Calibration /><ImuSigns /></div>
+    </div>
+  );
+}

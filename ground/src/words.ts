@@ -1,0 +1,12 @@
+import { signal } from '@preact/signals';
+import { en, es, type Words } from './texts';
+
+export const language = signal<'en' | 'es'>((localStorage.getItem('plomada.language') as 'en' | 'es' | null) ?? (navigator.language.startsWith('es') ? 'es' : 'en'));
+export function w(): Words {
+  return language.value === 'es' ? es : en;
+}
+export function switchLanguage(): void {
+  language.value = language.value === 'es' ? 'en' : 'es';
+  localStorage.setItem('plomada.language', language.value);
+  document.documentElement.lang = language.value;
+}

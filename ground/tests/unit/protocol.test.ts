@@ -1,0 +1,247 @@
+import { execFileSync } from 'node:child_process';
+import { existsSync } from 'node:fs';
+import { describe, expect, it } from 'vitest';
+import { delivered, presets } from '../../src/presets';
+import { LineSplitter, parseLine, type Line } from '../../src/protocol/lines';
+import { dumpsIn, fromXctu, readLog } from '../../src/protocol/logs';
+import { differences, objection, parseHelp, parseSet, same, writeSet } from '../../src/protocol/parameters';
+import { CommandQueue, LIST_PATIENCE, PATIENCE, TRIES, URGENT_PATIENCE, URGENT_PERIOD, type Outcome } from '../../src/protocol/queue';
+import { LogCollector, logRest } from '../../src/protocol/recorder';
+import { lineSum, splitSum } from '../../src/protocol/sum';
+import { Series } from '../../src/series';
+import { en, es } from '../../src/texts';
+
+const octets = (text: string): Uint8Array => new TextEncoder().encode(text);
+const answer = (text: string): Line => parseLine(text);
+
+describe('lines', () => {
+  it('reads the telemetry line of the operator’s guide', () => {
+    const line = parseLine('alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0');
+    expect(line).toMatchObject({ kind: 'telemetry', telemetry: { height: 0.598, reference: 0.6, laser: 'OK', thrust: 7.12, state: 'FLYING', flags: 0 } });
+  });
+  it('takes a missing height for no number, and keeps the cause of a reset', () => {
+    const line = parseLine('alt:- ref:0.000 laser:WAIT thr:0.00 state:GROUND flags:3 reset:POWER');
+    expect(line.kind === 'telemetry' && Number.isNaN(line.telemetry.height) && line.telemetry.reset).toBe('POWER');
+  });
+  it('takes half a telemetry line for none', () => {
+    expect(parseLine('alt:0.5 ref:0.6 laser:OK').kind).toBe('other');
+    expect(parseLine('alt:0.5x ref:0.600 laser:OK thr:7.12 state:FLYING flags:0').kind).toBe('other');
+  });
+  it('tells an answer from text that only contains one', () => {
+    expect(parseLine('OK KP 0.015')).toMatchObject({ kind: 'answer', ok: true, name: 'KP', rest: '0.015' });
+    expect(parseLine('ERR - commands begin with #')).toMatchObject({ kind: 'answer', ok: false, name: '-' });
+    expect(parseLine(' OK KP 0.015').kind).toBe('other');
+  });
+  it('ends lines at LF, CR LF and CR wherever packets are cut', () => {
+    const splitter = new LineSplitter();
+    expect(splitter.push(octets('OK A\r'))).toEqual(['OK A']);
+    expect(splitter.push(octets('\nOK B\nOK'))).toEqual(['OK B']);
+    expect(splitter.push(octets(' C\r'))).toEqual(['OK C']);
+  });
+  it('cuts a line that never ends', () => {
+    expect(new LineSplitter().push(octets('x'.repeat(2500)))).toHaveLength(2);
+  });
+});
+
+describe('the sum of a line', () => {
+  it('is CRC-16/CCITT-FALSE', () => expect(lineSum('123456789')).toBe(0x29b1));
+  it('agrees with the firmware’s example and finds a changed character', () => {
+    const line = 'OK LOG 0 t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags*BDE1';
+    expect(splitSum(line).right).toBe(true);
+    expect(splitSum(line.replace('meas', 'meaz')).right).toBe(false);
+    expect(parseLine(line.replace('meas', 'meaz'))).toMatchObject({ damaged: true });
+  });
+});
+
+describe('the command queue', () => {
+  function rig() {
+    let now = 0;
+    const sent: string[] = [];
+    const queue = new CommandQueue((text) => sent.push(text), () => now);
+    const pass = (ms: number): void => {
+      for (let i = 0; i < ms; i += 50) {
+        now += 50;
+        queue.tick();
+      }
+    };
+    return { queue, sent, pass };
+  }
+  it('sends one command at a time', async () => {
+    const { queue, sent } = rig();
+    const first = queue.command('#KP 0.02');
+    const second = queue.command('#KD 0.01');
+    expect(sent).toEqual(['#KP 0.02']);
+    queue.heard(answer('OK KP 0.02'));
+    expect(sent).toEqual(['#KP 0.02', '#KD 0.01']);
+    queue.heard(answer('ERR KD out of range 0..1 N/mm'));
+    expect(await first).toMatchObject({ ok: true });
+    expect(await second).toMatchObject({ ok: false, reason: 'out of range 0..1 N/mm', silent: false });
+  });
+  it('sends again until answered, and awaits no answer for ever', async () => {
+    const { queue, sent, pass } = rig();
+    const done = queue.command('#KP 0.02');
+    pass(PATIENCE * TRIES + 200);
+    expect(sent).toHaveLength(TRIES);
+    expect(await done).toMatchObject({ ok: false, silent: true });
+  });
+  it('sends a command again soon when the firmware found its line damaged', () => {
+    const { queue, sent, pass } = rig();
+    void queue.command('#KP 0.02');
+    queue.heard(answer('ERR - line damaged'));
+    pass(100);
+    expect(sent).toHaveLength(2);
+  });
+  it('takes no foreign answer for its own', () => {
+    const { queue } = rig();
+    let over = false;
+    void queue.command('#KP 0.02').then(() => (over = true));
+    queue.heard(answer('OK KD 0.02'));
+    expect(over || !queue.busy).toBe(false);
+  });
+  it('collects a listing up to its count, and asks again when a line is missing', async () => {
+    const { queue, sent } = rig();
+    const done = queue.command('#GET');
+    queue.heard(answer('OK SETR 0'));
+    queue.heard(answer('OK GET END lines:2'));
+    expect(sent).toEqual(['#GET', '#GET']);
+    for (const text of ['OK SETR 0', 'OK KP 0.015', 'OK GET END lines:2']) queue.heard(answer(text));
+    expect((await done).lines.map((line) => line.name)).toEqual(['SETR', 'KP']);
+  });
+  it('gives up on a listing that breaks off', async () => {
+    const { queue, pass } = rig();
+    const done = queue.command('#HELP');
+    queue.heard(answer('OK HELP #SETR 0..3 m - Height reference; 0 lands.'));
+    pass((LIST_PATIENCE + 100) * (TRIES + 1));
+    expect(await done).toMatchObject({ ok: false, silent: true });
+  });
+  it('lets a value be answered by its own name', async () => {
+    const { queue } = rig();
+    const done = queue.command('#GET KP');
+    queue.heard(answer('OK KP 0.015'));
+    expect(await done).toMatchObject({ ok: true });
+  });
+  it('sends STOP before all that waits, repeats it until answered, and drops what waited', async () => {
+    const { queue, sent, pass } = rig();
+    void queue.command('#HELP');
+    const dropped: Promise<Outcome> = queue.command('#SETR 0.6');
+    const stopped = queue.stop('STOP');
+    expect(sent).toEqual(['#HELP', '#STOP']);
+    expect(await dropped).toMatchObject({ ok: false, reason: 'overtaken by a stop' });
+    pass(URGENT_PERIOD * 2 + 50);
+    expect(sent.filter((text) => text === '#STOP')).toHaveLength(3);
+    queue.heard(answer('OK STOP'));
+    expect(await stopped).toBe(true);
+    pass(URGENT_PERIOD * 3);
+    expect(sent.filter((text) => text === '#STOP')).toHaveLength(3);
+  });
+  it('says at last that STOP was not answered', async () => {
+    const { queue, pass } = rig();
+    const stopped = queue.stop('STOP');
+    pass(URGENT_PATIENCE + 100);
+    expect(await stopped).toBe(false);
+  });
+  it('ends everything when the link goes', async () => {
+    const { queue } = rig();
+    const command = queue.command('#KP 1');
+    const stopped = queue.stop('LAND');
+    queue.clear('gone');
+    expect(await command).toMatchObject({ ok: false, reason: 'gone' });
+    expect(await stopped).toBe(false);
+  });
+});
+
+describe('parameters', () => {
+  const kp = parseHelp('#KP 0..1 N/mm - PD, PID: proportional gain.')!;
+  const law = parseHelp('#LAW PD|PID|PIDT|EST - Control law.')!;
+  it('are read from the answers to #HELP', () => {
+    expect(kp).toMatchObject({ name: 'KP', unit: 'N/mm', minimum: 0, maximum: 1, meaning: 'PD, PID: proportional gain.' });
+    expect(law.choices).toEqual(['PD', 'PID', 'PIDT', 'EST']);
+    expect(parseHelp('#GET [NAME] - one parameter, or all')).toBeNull();
+  });
+  it('are refused before they are sent', () => {
+    expect(['0.02', '1', ' 0 '].map((text) => objection(kp, text))).toEqual([null, null, null]);
+    expect(['', '1.01', '-0.1', '1e-3', 'nan', '0,5'].map((text) => objection(kp, text))).toEqual(['empty', 'range', 'range', 'number', 'number', 'number']);
+    expect([objection(law, 'est'), objection(law, 'LQR')]).toEqual([null, 'choice']);
+  });
+  it('survive a file', () => expect(parseSet(writeSet({ KP: '0.02', LAW: 'PID' }))).toEqual({ KP: '0.02', LAW: 'PID' }));
+  it('show what a file would change, and never set a reference', () => {
+    expect(differences({ SETR: '0', KP: '0.015', KI: '0.010' }, { SETR: '0.6', KP: '0.02', KI: '0.01', OLD: '1' })).toEqual([{ name: 'KP', from: '0.015', to: '0.02' }]);
+  });
+  it('compare as numbers', () => expect([same('7', '7.0'), same('7', '7.1'), same('PD', 'PID')]).toEqual([true, false, false]));
+  it.skipIf(!existsSync('../build/plomada'))('as delivered are those of this firmware', () => {
+    const rows = execFileSync('../build/plomada', ['params'], { encoding: 'utf8' }).split('\n').slice(1).filter((row) => row !== '');
+    const table = Object.fromEntries(rows.map((row) => { const cells = row.trim().split(/\s+/); return [cells[0]!, cells[4]!]; }));
+    expect(delivered).toEqual(table);
+    for (const set of Object.values(presets)) expect(Object.keys(set).filter((name) => !(name in table))).toEqual([]);
+  });
+});
+
+describe('the flight recorder', () => {
+  const row = (n: number): string => `${n} ${(70 + n / 10).toFixed(3)},0.6,0.6,,0.6,7.1,0,0,FLYING,0`;
+  it('knows how far back a lost row lies, and is whole after a second dump', () => {
+    const collector = new LogCollector();
+    collector.heard('records:50');
+    collector.heard('0 t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags');
+    for (let n = 1; n <= 50; n++) if (n !== 31) collector.heard(row(n));
+    collector.heard('END lines:50');
+    expect([collector.complete, collector.size]).toEqual([true, 49]);
+    expect(collector.missingSeconds()).toBe(4); // 2.0 s behind the newest, and two to spare
+    collector.heard('records:40');
+    for (let n = 11; n <= 50; n++) collector.heard(row(n).replace(/^\d+/, String(n - 10)));
+    collector.heard('END lines:40');
+    expect([collector.missingSeconds(), collector.size]).toEqual([0, 50]);
+    expect(collector.csv().split('\n')[31]).toMatch(/^73\.100,/);
+  });
+  it('leaves a damaged row out', () => {
+    const good = 'OK LOG 1 70.100,0.6,0.6,,0.6,7.1,0,0,FLYING,0';
+    const sum = lineSum(good).toString(16).toUpperCase().padStart(4, '0');
+    expect(logRest(`${good}*${sum}`)).toMatch(/^1 70\.100/);
+    expect(logRest(`${good.replace('7.1', '7.9')}*${sum}`)).toBeNull();
+  });
+});
+
+describe('logs', () => {
+  const dump = 'OK LOG records:2\r\nOK LOG 0 t_s,meas_m,ref_m,state,flags\r\nOK LOG 1 1.000,0.5,0.6,FLYING,0\r\nalt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0\r\nOK LOG 2 1.100,,0.6,FLYING,1\r\nOK LOG END lines:2\r\n';
+  it('may be a flight CSV', () => {
+    const [flight] = readLog('t_s,meas_m,state,flags\n0.00,,GROUND,3\n0.01,0.5,FLYING,0\n0.02,0.', 'flight.csv');
+    expect([flight!.time, flight!.columns.meas_m![1], flight!.notes.length]).toEqual([[0, 0.01], 0.5, 1]);
+  });
+  it('may be a console text with two dumps and telemetry', () => {
+    expect(readLog(dump + dump, 'console.txt').map((r) => [r.kind, r.time.length])).toEqual([['console', 2], ['console', 2], ['telemetry', 2]]);
+  });
+  it('may be XCTU’s console log in hexadecimal, cut anywhere', () => {
+    const hex = [...dump].map((c) => c.charCodeAt(0).toString(16).padStart(2, '0')).join('').toUpperCase();
+    const text = `02-05-2015 11:44:56.017,-,RECV,${hex.slice(0, 64)}\n02-05-2015 11:44:56.020,-,SENT,234C4F470A\n02-05-2015 11:44:56.117,-,RECV,${hex.slice(64)}\n`;
+    expect(fromXctu(text)).toBe(dump);
+    expect(dumpsIn(fromXctu(text)!)[0]!.csv.split('\n')).toHaveLength(4);
+  });
+  it('may be a saved session', () => {
+    const [flight] = readLog('1000 > #SETR 0.6\n1200 < alt:0.1 ref:0.600 laser:OK thr:7.12 state:TAKEOFF flags:0\n2200 < alt:0.2 ref:0.600 laser:OK thr:7.12 state:TAKEOFF flags:0\n', 's.txt');
+    expect(flight!.time).toEqual([0, 1]);
+  });
+  it('that are nothing of the kind are refused', () => expect(() => readLog('hello', 'x')).toThrow());
+});
+
+describe('the series of the plots', () => {
+  const line = { height: 0.6, reference: 0.6, laser: 'OK', thrust: 7, state: 'FLYING', flags: 0 };
+  it('keeps a fixed number of rows', () => {
+    const series = new Series();
+    for (let i = 0; i < 40_000; i++) series.add(i / 5, line, NaN);
+    expect([series.count, series.start, series.end]).toEqual([36_000, 800, 7999.8]);
+    expect(series.window(7990, 7999.8).states).toHaveLength(50);
+  });
+  it('shows a gap where lines are missing', () => {
+    const series = new Series();
+    for (const t of [0, 0.2, 0.4, 3, 3.2]) series.add(t, line, NaN);
+    expect(series.window(0, 10).columns[1]).toEqual([expect.closeTo(0.6), expect.closeTo(0.6), expect.closeTo(0.6), null, expect.closeTo(0.6), expect.closeTo(0.6)]);
+  });
+});
+
+describe('both languages', () => {
+  it('say everything, and not the same', () => {
+    const same = Object.keys(en).filter((key) => typeof en[key as keyof typeof en] === 'string' && en[key as keyof typeof en] === es[key as keyof typeof es]);
+    expect(same.sort()).toEqual(['error', 'stop', 'stopHint', 'landHint', 'metres'].sort());
+    for (const key of ['failures', 'lostReasons', 'diagnoses', 'states', 'lasers', 'checks', 'stopStates', 'presetNames', 'imuSteps', 'objections'] as const) expect(Object.keys(es[key])).toEqual(Object.keys(en[key]));
+    expect(es.flags).toHaveLength(en.flags.length);
+  });
+});
