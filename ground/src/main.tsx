@@ -100,21 +100,21 @@ function ConnectDialog() {
   useEffect(() => void knownPorts().then((ports) => (known.value = ports.length > 0)), []);
   return (
     <dialog ref={sheet} class="sheet" aria-labelledby="connect-title" onClose={() => (dialog.value = false)}>
-      <header><Logo /><div><h1 id="connect-title">Plomada Ground</h1><p>{words.tagline}</p></div><button class="quiet" onClick={() => (dialog.value = false)} aria-label={words.close}>×</button></header>
-      <h2>{words.chooseLink}</h2>
+      <header><Logo /><div><h2 id="connect-title">Plomada Ground</h2><p>{words.tagline}</p></div><button class="quiet" onClick={() => (dialog.value = false)} aria-label={words.close}>×</button></header>
+      <h3>{words.chooseLink}</h3>
       {failure.value && <p class="banner bad" role="alert">{words.failures[failure.value.why]} {failure.value.why === 'failed' ? failure.value.detail : ''}</p>}
       <div class="links">
         <section class="featured">
-          <h3>{words.simTitle}</h3><p>{words.simText}</p>
+          <h4>{words.simTitle}</h4><p>{words.simText}</p>
           <button class="primary" autofocus onClick={() => void connectVehicle()}>{words.simGo}</button>
         </section>
         <section>
-          <h3>{words.serialTitle}</h3><p>{words.serialText}</p>
+          <h4>{words.serialTitle}</h4><p>{words.serialText}</p>
           {known.value && <button class="primary" onClick={() => void openSerial(false)}>{words.serialAgain}</button>}
           <button onClick={() => void openSerial(true)}>{words.serialGo}</button>
         </section>
         <section>
-          <h3>{words.socketTitle}</h3><p>{words.socketText} <code>build/plomada fly hover-60s --realtime --xbee ws:8124</code></p>
+          <h4>{words.socketTitle}</h4><p>{words.socketText} <code>build/plomada fly hover-60s --realtime --xbee ws:8124</code></p>
           <label class="address">{words.socketAddress}<input value={address.value} onInput={(event) => (address.value = event.currentTarget.value)} /></label>
           <button onClick={() => { localStorage.setItem('plomada.address', address.value); void connectSocket(address.value); }}>{words.socketGo}</button>
         </section>
@@ -131,7 +131,7 @@ function App() {
   return (
     <>
       <header class="top">
-        <span class="brand"><Logo /><strong>Plomada<span>Ground</span></strong></span>
+        <h1 class="brand"><Logo /><strong>Plomada<span>Ground</span></strong></h1>
         <Status />
         <span class="state-chip" data-state={latest.value?.state ?? ''}>{latest.value?.state ?? '–'}</span>
         <span class="spacer" />

@@ -162,7 +162,7 @@ export function Plot(props: { curves: Curve[]; data: () => PlotData; live?: numb
   }, [props.height, props.curves.map((c) => c.label).join(), props.live === undefined ? props.data : null]);
 
   return (
-    <figure class="plot" role="img" aria-label={props.label}>
+    <figure class="plot">
       <figcaption class="legend">
         {props.curves.map((curve) => (
           <span key={curve.label}>
@@ -171,7 +171,7 @@ export function Plot(props: { curves: Curve[]; data: () => PlotData; live?: numb
           </span>
         ))}
       </figcaption>
-      <div ref={host} class="plot-host" />
+      <div ref={host} class="plot-host" role="img" aria-label={props.label} />
     </figure>
   );
 }

@@ -1,5 +1,5 @@
 import { signal } from '@preact/signals';
-import { useEffect, useRef } from 'preact/hooks';
+import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import { saveFile } from '../plot';
 import { consoleLines, phase, sendRaw, session } from '../store';
 import { writeSession, type SessionInfo } from '../session';
@@ -39,6 +39,7 @@ export function ConsoleView() {
   const words = w();
   const end = useRef<HTMLDivElement>(null);
   const shown = consoleLines.value.filter((line) => telemetry.value || line.out || !line.text.startsWith('alt:')).slice(-500);
+  useLayoutEffect(() => void (end.current!.scrollTop = end.current!.scrollHeight), []);
   useEffect(() => {
     const list = end.current!;
     if (list.scrollHeight - list.scrollTop - list.clientHeight < 200) list.scrollTop = list.scrollHeight;

@@ -26,7 +26,7 @@ export function Numbers() {
   const text = (value: number | undefined, digits: number): string => (value === undefined || Number.isNaN(value) ? '–' : value.toFixed(digits));
   const airborne = t && t.state !== 'GROUND';
   return (
-    <section class={`numbers ${off ? 'stale' : ''}`} aria-label={words.fly}>
+    <section class={`numbers ${off ? 'stale' : ''}`} aria-label={words.live}>
       <Number3 label={words.height} value={text(t?.height, 2)} unit="m" sub={`${words.reference} ${t && t.reference > 0 ? `${t.reference.toFixed(2)} m` : words.none}`} tone="primary" />
       <Number3 label={words.thrust} value={text(t?.thrust, 1)} unit="N" sub={words.perMotor} />
       <Number3 label={words.state} value={t?.state ?? '–'} sub={t ? words.states[t.state] ?? '' : ''} tone={`word ${t && ['CUT', 'DESCENDING', 'LOWERING'].includes(t.state) ? 'bad' : airborne ? 'good' : ''}`} />
@@ -166,7 +166,7 @@ export function FlyView() {
       <div class="fly-main">
         <Numbers />
         <Messages />
-        <section class="card plots" ref={plots} aria-label={words.fly}>
+        <section class="card plots" ref={plots} aria-label={`${words.height}, ${words.thrust}`}>
           <div class="plot-tools">
             <span class="row-label">{words.window}</span>
             {([[20, '20 s'], [60, '1 min'], [300, '5 min'], [0, '∞']] as const).map(([seconds, label]) => (

@@ -101,7 +101,7 @@ export function ParametersView() {
       {rows.length === 0 ? <p class="empty">{loading.value ? words.reading : words.notRead}</p> : (
         <div class="scroll">
           <table class="parameters">
-            <thead><tr><th>{words.name}</th><th>{words.value}</th><th>{words.unit}</th><th>{words.limits}</th><th>{words.delivered}</th><th>{words.meaning}</th><th /></tr></thead>
+            <thead><tr><th>{words.name}</th><th>{words.value}</th><th>{words.unit}</th><th>{words.limits}</th><th>{words.delivered}</th><th>{words.meaning}</th><td /></tr></thead>
             <tbody>
               {rows.map((p) => {
                 const text = edits.value[p.name] ?? p.value;

@@ -1,6 +1,6 @@
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import { age, command, latest, listeners, parameters, phase, readParameters, stop, storeLine } from '../store';
+import { age, command, latest, link, listeners, parameters, phase, readParameters, stop, storeLine } from '../store';
 import type { Line } from '../protocol/lines';
 import { w } from '../words';
 
@@ -76,7 +76,13 @@ function Calibration() {
       calibration.value = { ...calibration.value, running: false };
       void stop('STOP');
     };
-    const alive = setInterval(() => void command('#PING', { tries: 1 }), ALIVE_MS);
+    let spoken = link.value?.now() ?? 0;
+    const alive = setInterval(() => {
+      const now = link.value?.now() ?? 0;
+      if (now - spoken < ALIVE_MS) return;
+      spoken = now;
+      void command('#PING', { tries: 1 });
+    }, 50);
     listeners.add(heardCalibration);
     window.addEventListener('keydown', halt, true);
     window.addEventListener('pointerdown', halt, true);

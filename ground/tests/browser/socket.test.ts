@@ -1,0 +1,66 @@
+import type { Browser, Page } from 'playwright-core';
+import { afterAll, beforeAll, describe, expect, it } from 'vitest';
+import { button, openBrowser, openPage, serveSite, startBoard, tab, untilLaserIsOk, type Board, type Site } from './rig';
+
+const ADDRESS = 'ws://localhost:18125';
+let browser: Browser;
+let site: Site;
+let page: Page;
+let board: Board;
+
+beforeAll(async () => {
+  site = await serveSite();
+  browser = await openBrowser();
+  board = await startBoard('ws:18125');
+});
+afterAll(async () => {
+  await browser?.close();
+  await board?.stop();
+  site?.close();
+});
+
+async function connect(on: Page): Promise<void> {
+  await on.getByLabel('Address').fill(ADDRESS);
+  await button(on, 'Connect').click();
+}
+
+describe('by WebSocket, the unmodified firmware in a program of its own', () => {
+  it('gives a late client nothing stale, its answers, and its laser after the wait', async () => {
+    await new Promise((done) => setTimeout(done, 4000)); // twenty lines that nobody reads
+    page = await openPage(browser, site.url);
+    await connect(page);
+    await page.waitForFunction(() => document.querySelectorAll('.big-value')[2]?.textContent === 'GROUND');
+    await tab(page, 'Console').click();
+    await page.getByLabel('Show telemetry').check();
+    expect(await page.locator('.lines div').count()).toBeLessThan(6);
+    await page.locator('#command').fill('#LASER');
+    await page.keyboard.press('Enter');
+    await page.waitForFunction(() => document.querySelector('.lines')!.textContent!.includes('OK LASER state:'));
+    await tab(page, 'Fly').click();
+    await untilLaserIsOk(page);
+  });
+
+  it('refuses a second tab in plain words', async () => {
+    const other = await openPage(browser, site.url);
+    await connect(other);
+    await other.waitForFunction(() => document.body.innerText.includes('or another tab has it'));
+    await other.close();
+  });
+
+  it('comes back after a reload, and says so when the program ends', async () => {
+    await page.reload();
+    expect(await page.innerText('body')).toContain('The page was reloaded.');
+    await connect(page);
+    await page.waitForFunction(() => document.querySelectorAll('.big-value')[2]?.textContent === 'GROUND');
+    await board.stop();
+    await page.waitForFunction(() => document.body.innerText.includes('The simulation has ended or the connection broke.'));
+    expect(await page.locator('.status').innerText()).toContain('Link lost');
+    expect(await page.locator('.stop').isDisabled()).toBe(true);
+  });
+
+  it('says in plain words that nobody answers', async () => {
+    await button(page, 'Connect again').click();
+    await connect(page);
+    await page.waitForFunction(() => document.body.innerText.includes('Nobody answers at this address'));
+  });
+});
