@@ -15,6 +15,7 @@
 
 #define LOOK (100 * SIM_MS)
 #define ATTITUDE_FLAG 2U    /* docs/operator.md */
+#define LOAD_MAX 40UL       /* percent; 6 on the PC board */
 #define STEPS 10
 #define STEP_COUNTS 100
 #define COUNT_US 0.48
@@ -423,6 +424,9 @@ static accept_verdict_t pulse(const accept_means_t *means, char *detail)
     char answer[160];
     int reached;
 
+    if (!await(has_height, 3, 40.0)) {
+        return say(detail, false, "no heights: without them #CALIBRATE does not run");
+    }
     world_hold(true);
     if (!terminal_ask("LINK 60", answer, sizeof answer) || !terminal_ask("STREAM PULSE", answer, sizeof answer) ||
         told_steps(0, 0) < 0 || !terminal_ask("CALIBRATE 100 1", answer, sizeof answer)) {
@@ -510,7 +514,7 @@ static accept_verdict_t flight(const accept_means_t *means, char *detail)
 static accept_verdict_t perf(const accept_means_t *means, char *detail)
 {
     char answer[160];
-    const char *lines;
+    const char *lines, *load;
     int tasks = 0;
 
     (void)means;
@@ -518,6 +522,11 @@ static accept_verdict_t perf(const accept_means_t *means, char *detail)
         return say(detail, false, "#PERF: %s", answer[0] != '\0' ? answer : "no answer");
     }
     lines = terminal_rest(3 * SIM_S);
+    load = strstr(lines, "load:");
+    if (load == NULL || strtoul(load + strlen("load:"), NULL, 10) > LOAD_MAX) {
+        return say(detail, false, "the processor's %.*s percent (0..%lu)", load != NULL ? (int)strcspn(load, "\n") : 4,
+                   load != NULL ? load : "load", LOAD_MAX);
+    }
     for (const char *at = strstr(lines, "late:"); at != NULL; at = strstr(at + 1, "late:")) {
         const char *name = at;
 

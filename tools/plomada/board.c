@@ -21,7 +21,7 @@
 #define LAG_MAX (150 * SIM_MS)
 #define MISMATCH 0.045
 #define WRONG_RATE 1.08
-#define SLOW 6.0
+#define SLOW 12.0
 #define LONG_PULSE 1.1
 #define LATE (400 * SIM_MS)
 #define GARBLED_ONE_IN 50U
@@ -48,7 +48,7 @@ static const char defect_help[] =
     "      pulse-inverted pulse-long pulse-missing  the throttle pin: inverted, pulses 10 % long, dead\n"
     "      no-storage        the flash cannot be written\n"
     "      forgetful         the flash is blank after a power cycle\n"
-    "      slow              every piece of code takes six times its time\n"
+    "      slow              every piece of code takes twelve times its time\n"
     "      no-watchdog       the watchdog never bites\n";
 
 typedef enum {

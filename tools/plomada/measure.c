@@ -25,7 +25,7 @@ static struct {
 
 static sim_time_t ns(rta_ps_t time)
 {
-    return isinf(time) ? SIM_NEVER : (sim_time_t)ceil(time / PS_PER_NS);
+    return isfinite(time) ? (sim_time_t)ceil(time / PS_PER_NS) : SIM_NEVER;
 }
 
 /* As costs_stretch() does, in whole nanoseconds; a blocking may be half a nanosecond longer by that. */
@@ -123,9 +123,14 @@ static bool report_latency(FILE *out, int release)
     if (figures->answers == 0) {
         return true;
     }
-    fprintf(out, "scan's last octet to compare value, release %s: %ld, %.4f to %.4f ms, mean %.4f, bound %.4f\n",
+    fprintf(out, "scan's last octet to compare value, release %s: %ld, %.4f to %.4f ms, mean %.4f, bound ",
             release_names[release], figures->answers, (double)figures->shortest / 1e6, (double)figures->longest / 1e6,
-            (double)figures->total / (double)figures->answers / 1e6, (double)measure.latency[release] / 1e6);
+            (double)figures->total / (double)figures->answers / 1e6);
+    if (measure.latency[release] == SIM_NEVER) {
+        fprintf(out, "none: the costs are beyond what can be scheduled\n");
+    } else {
+        fprintf(out, "%.4f\n", (double)measure.latency[release] / 1e6);
+    }
     if (figures->longest > measure.latency[release]) {
         fprintf(out, "BROKEN: latency of %.4f ms, at most %.4f\n", (double)figures->longest / 1e6,
                 (double)measure.latency[release] / 1e6);

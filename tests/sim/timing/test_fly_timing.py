@@ -73,6 +73,11 @@ class FlyTiming(unittest.TestCase):
         for (name, _, before, *_), (_, _, after, *_) in zip(one, two):
             self.assertGreater(float(after), 1.7 * float(before), name)
 
+    def test_without_a_bound_a_word_is_printed_and_no_number(self):
+        output = fly("pid-60cm-ramp", "--cost-scale", "8").stdout
+        self.assertRegex(output, r"release FREE: .* bound none: the costs are beyond what can be scheduled")
+        self.assertNotIn("9223372036854", output)
+
     def test_a_flight_that_misses_deadlines_fails_and_says_which(self):
         result = fly("pid-60cm-ramp", "--cost-scale", "32")
         self.assertEqual(result.returncode, 1)
