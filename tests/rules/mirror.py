@@ -1,9 +1,10 @@
-"""tests/ mirrors the rooms: every .c file of the product has its test file, and ctest runs every test file.
+"""tests/ mirrors the rooms: every .c file of the product has its test file, none is empty, and ctest runs them all.
 
 Usage: mirror.py [--build DIR] [ROOT]; only with a build directory is ctest asked.
 """
 import argparse
 import json
+import re
 import subprocess
 from pathlib import Path
 
@@ -25,7 +26,18 @@ def check(the_house):
             if tested and source in excused:
                 complaints.append(f"{EXCUSES}: {source} has a test and needs no excuse")
     complaints += [f"{EXCUSES}: {path} does not exist" for path in excused if path not in sources]
-    return complaints
+    return complaints + list(check_empty(the_house))
+
+
+def check_empty(the_house):
+    """Every test file in C holds a test, and asks something."""
+    for path in the_house.sources("tests", ".c"):
+        code = house.code_only(the_house.text(path))
+        if Path(path).name.startswith("test_") and not (re.search(r"\bvoid test_\w+\(", code) and re.search(r"\bTEST_[A-Z]|_Expect\w*\(", code)):
+            yield f"{path}: tests nothing"
+    for path in the_house.sources("tests", ".py"):
+        if Path(path).name.startswith("test_") and not re.search(r"^\s+def test_\w+\(", the_house.text(path), re.MULTILINE):
+            yield f"{path}: tests nothing"
 
 
 def check_registered(the_house, listing):

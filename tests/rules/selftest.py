@@ -11,6 +11,7 @@ import includes
 import length
 import mirror
 import sources
+import state
 import words
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -21,13 +22,14 @@ GOOD = {
     "control/a.h": "#include <stdint.h>\n/* 8 ticks, no task, a double look */\n",
     "control/a.c": '#include <math.h>\n#include "control/a.h"\nint16_t a(void)\n{\n    return 1;\n}\n',
     "drivers/b.h": "#include <stdbool.h>\n",
-    "drivers/b.c": '#include "drivers/b.h"\nconst char *b = "no /* comment, \\" malloc(1)";\n',
+    "drivers/b.c": '#include "drivers/b.h"\nconst char *const b = "no /* comment, \\" malloc(1)";\n',
     "bsp/c.h": "#include <stdint.h>\n",
     "bsp/c.c": '#include "driverlib.h"\n#include "bsp/c.h"\n#include "inc/hw_memmap.h"\n',
     "firmware/d.c": '#include <xdc/std.h>\n#include <ti/sysbios/knl/Task.h>\n#include "control/a.h"\n#include "drivers/b.h"\n#include "bsp/c.h"\n',
     "sim/devices/e.h": "",
     "sim/devices/e.c": '#include "sim/devices/e.h"\n#include <stdio.h>\n',
-    "tests/control/test_a.c": "", "tests/drivers/test_b.c": "", "tests/bsp/test_c.c": "", "tests/firmware/test_d.c": "",
+    **{f"tests/{name}.c": "void test_it_works(void)\n{\n    TEST_ASSERT_TRUE(works());\n}\n"
+       for name in ("control/test_a", "drivers/test_b", "bsp/test_c", "firmware/test_d")},
     "tests/rules/excuses.txt": "# none\n",
     "tests/fixtures/stream.txt": "as recorded \n",
 }
@@ -58,7 +60,7 @@ class Sample(unittest.TestCase):
 
 class GoodHouse(Sample):
     def test_no_rule_complains(self):
-        for rule in (includes, words, sources, mirror, length):
+        for rule in (includes, words, sources, mirror, length, state):
             self.assertEqual(self.complaints(rule), [], rule.__name__)
 
 
@@ -194,6 +196,15 @@ class Mirror(Sample):
         self.write("tests/rules/excuses.txt", "mirror drivers/z.c trivial\n")
         self.assert_one(mirror, "tests/rules/excuses.txt: drivers/z.c does not exist")
 
+    def test_an_empty_test_file(self):
+        for text in ("", "void setUp(void) {}\n", "/* void test_x(void) { TEST_PASS(); } */\n", "void test_x(void)\n{\n}\n"):
+            with self.subTest(text=text):
+                self.write("tests/bsp/test_c.c", text)
+                self.assert_one(mirror, "tests/bsp/test_c.c: tests nothing")
+        self.write("tests/bsp/test_c.c", GOOD["tests/bsp/test_c.c"])
+        self.write("tests/tools/test_x.py", "import unittest\n")
+        self.assert_one(mirror, "tests/tools/test_x.py: tests nothing")
+
     def test_a_test_that_ctest_does_not_run(self):
         listing = {"tests": [{"name": f"test_{stem}"} for stem in "abc"]}
         self.assertEqual(mirror.check_registered(house.House(self.root), json.dumps(listing)),
@@ -218,6 +229,47 @@ class Length(Sample):
         self.assert_one(length, "tests/rules/excuses.txt: control/a.c:long_one")
         self.write("control/a.c", self.function(41))
         self.assertEqual(self.complaints(length), [])
+
+
+class State(Sample):
+    def test_each_room_refuses_what_hides_or_remembers(self):
+        for path, line, word in (
+                ("control/a.c", "#ifdef PLOMADA_FAST", "PLOMADA_FAST"),
+                ("control/a.c", "#if FAST", "FAST"),
+                ("drivers/b.h", "#ifndef LARGE", "LARGE"),
+                ("control/a.c", "static int16_t count;", "count"),
+                ("control/a.c", "static uint16_t seen[3] = {1U, 2U};", "seen"),
+                ("control/a.c", "void f(void) { static bool first = true; }", "first"),
+                ("control/a.c", "static const char *name;", "name"),
+                ("drivers/b.c", "static int16_t (*handler)(void);", "static int16_t"),
+                ("drivers/b.c", "int16_t count;", "count"),
+                ("drivers/b.c", "struct s state = {0};", "state"),
+                ("control/a.c", "extern int16_t b;", "b: declared"),
+                ("control/a.c", "void f(void) { extern const int16_t b; }", "b: declared"),
+                ("control/a.c", "int16_t b_read(void);", "b_read: declared"),
+                ("firmware/d.c", "extern void bsp_c(uint16_t n);", "bsp_c: declared"),
+                ("control/a.h", "extern const int16_t b[3];", "b: control/ does not define it"),
+        ):
+            with self.subTest(path=path, line=line):
+                self.write(path, "\n" + line + "\n")
+                self.assert_one(state, f"{path}:2:", word)
+                self.write(path, GOOD[path])
+
+    def test_what_is_constant_or_the_rooms_own_is_allowed(self):
+        self.write("control/a.h", "#ifndef A_H\n#define A_H\nextern const int16_t table[2];\nint16_t a(void);\n#endif\n")
+        self.write("control/a.c", "static const char *const names[] = {\"static int x;\"};\nconst int16_t table[2] = {1, 2};\n"
+                   "static int16_t (*const steps[])(void) = {a};\n"
+                   "static int16_t sum(const int16_t *x)\n{\n    static const int16_t by[] = {1};\n    int16_t y = 0;\n\n"
+                   "    return (int16_t)(y + x[0] * by[0]);\n}\n\nint16_t a(void)\n{\n    return sum(table);\n}\n"
+                   "typedef struct {\n    int16_t x;\n} point_t;\nstruct pair {\n    int16_t x;\n};\n")
+        self.write("firmware/d.c", "#ifdef FAST\nstatic int16_t count;\n#endif\n")
+        self.assertEqual(self.complaints(state), [])
+
+    def test_an_excuse_and_a_stale_one(self):
+        self.write("tests/rules/excuses.txt", "state bsp/c.c:edge the linker's\n")
+        self.assert_one(state, "tests/rules/excuses.txt: bsp/c.c:edge")
+        self.write("bsp/c.c", "extern uint16_t edge[];\n")
+        self.assertEqual(self.complaints(state), [])
 
 
 class Commands(unittest.TestCase):
