@@ -3,7 +3,6 @@
 #ifndef SIM_TI_SYSBIOS_FIBER_H
 #define SIM_TI_SYSBIOS_FIBER_H
 
-#include <setjmp.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -27,6 +26,7 @@ typedef struct {
 
 #else
 
+#include <setjmp.h>
 #include <ucontext.h>
 
 #define FIBER_STACK ((size_t)256 * 1024)
