@@ -4,7 +4,7 @@ import { createServer, type Server } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { tmpdir } from 'node:os';
 import { extname, join, resolve } from 'node:path';
-import { chromium, type Browser, type BrowserContext, type Page } from 'playwright-core';
+import { chromium, type Browser, type Page } from 'playwright-core';
 
 export const ROOT = resolve(import.meta.dirname, '../../..');
 export const PLOMADA = join(ROOT, 'build/plomada');
@@ -36,8 +36,9 @@ export async function openBrowser(executable = CHROMIUM): Promise<Browser> {
   return chromium.launch({ executablePath: executable, args: ['--no-sandbox', '--disable-gpu', '--js-flags=--expose-gc'] });
 }
 
-export async function openPage(browser: Browser | BrowserContext, url: string, options: { width?: number; height?: number } = {}): Promise<Page> {
-  const page = await browser.newPage({ viewport: { width: options.width ?? 1280, height: options.height ?? 800 }, locale: 'en-GB', deviceScaleFactor: 1 } as never);
+export async function openPage(browser: Browser, url: string, options: { width?: number; height?: number } = {}): Promise<Page> {
+  const context = await browser.newContext({ viewport: { width: options.width ?? 1280, height: options.height ?? 800 }, locale: 'en-GB' });
+  const page = await context.newPage();
   page.on('pageerror', (error) => { throw error; });
   await page.goto(url);
   return page;

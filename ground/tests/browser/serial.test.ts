@@ -21,7 +21,7 @@ describe.skipIf(why !== null)(`by Web Serial, the unmodified firmware on a pseud
   });
 
   it('opens the port that it may use without asking, and the firmware answers', async () => {
-    page = await openPage(browser.contexts()[0] ?? browser, site.url);
+    page = await openPage(browser, site.url);
     await button(page, 'Open the port used last').click();
     await page.waitForFunction(() => document.querySelectorAll('.big-value')[2]?.textContent === 'GROUND', undefined, { timeout: 10_000 });
     await tab(page, 'Console').click();

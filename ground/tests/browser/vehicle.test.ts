@@ -19,7 +19,7 @@ afterAll(async () => {
   site?.close();
 });
 afterEach(async () => {
-  await page?.close({ runBeforeUnload: false });
+  await page?.context().close();
 });
 
 const body = (): Promise<string> => page.innerText('body');
