@@ -2,9 +2,12 @@
 
 #include <string.h>
 
+#include "drivers/line_sum.h"
+
 #define CTRL_C '\x03'
 #define BACKSPACE '\x08'
 #define DELETE '\x7F'
+#define SUM_MARK '*'
 
 static void restart(telecommand_collector_t *collector)
 {
@@ -148,39 +151,6 @@ static telecommand_status_t take_name(const telecommand_line_t *line, uint16_t *
     return length > 0U ? TELECOMMAND_OK : TELECOMMAND_EMPTY;
 }
 
-telecommand_status_t telecommand_parse(const telecommand_line_t *line, telecommand_t *command)
-{
-    uint16_t end = line->length;
-    uint16_t at;
-    telecommand_status_t status;
-
-    command->name_length = 0U;
-    command->argument_length = 0U;
-    if (line->damaged) {
-        return TELECOMMAND_DAMAGED;
-    }
-    if (line->bare) {
-        return TELECOMMAND_BARE;
-    }
-    if (line->overlong) {
-        return TELECOMMAND_OVERLONG;
-    }
-    if (!is_legible(line)) {
-        return TELECOMMAND_CHARACTER;
-    }
-    while (end > 1U && is_blank(line->text[end - 1U])) {
-        end--;
-    }
-    at = skip_blanks(line, 1U, end);
-    status = take_name(line, &at, end, command);
-    if (status == TELECOMMAND_OK) {
-        for (at = skip_blanks(line, at, end); at < end; at++) {
-            command->argument[command->argument_length++] = line->text[at];
-        }
-    }
-    return status;
-}
-
 static bool is_named(const telecommand_t *command, const char *name)
 {
     return strlen(name) == command->name_length && strncmp(name, command->name, command->name_length) == 0;
@@ -203,13 +173,107 @@ static bool is_zero(const char *text, uint16_t length)
     return at == length && zeros > 0U && points <= 1U;
 }
 
+/* Which nothing may hold up. */
+static bool stops(const telecommand_t *command)
+{
+    return is_named(command, "STOP") || is_named(command, "LAND")
+           || (is_named(command, "SETR") && is_zero(command->argument, command->argument_length));
+}
+
+/* Where `*` and the sum begin; end when the line carries none. */
+static uint16_t find_sum(const telecommand_line_t *line, uint16_t end)
+{
+    const uint16_t length = LINE_SUM_DIGITS + 1U;
+    uint16_t at = (end > length) ? (uint16_t)(end - length) : end;
+
+    if (at == end || line->text[at] != SUM_MARK) {
+        return end;
+    }
+    for (uint16_t i = (uint16_t)(at + 1U); i < end; i++) {
+        const char digit = upper(line->text[i]);
+
+        if (!((digit >= '0' && digit <= '9') || (digit >= 'A' && digit <= 'F'))) {
+            return end;
+        }
+    }
+    return at;
+}
+
+static bool sum_is_right(const telecommand_line_t *line, uint16_t sum_at)
+{
+    char digits[LINE_SUM_DIGITS];
+
+    line_sum_write(digits, line_sum(line->text, sum_at));
+    for (uint16_t i = 0U; i < LINE_SUM_DIGITS; i++) {
+        if (upper(line->text[sum_at + 1U + i]) != digits[i]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Name and argument out of the first `end` characters. */
+static telecommand_status_t split(const telecommand_line_t *line, uint16_t end, telecommand_t *command)
+{
+    telecommand_status_t status;
+    uint16_t at;
+
+    while (end > 1U && is_blank(line->text[end - 1U])) {
+        end--;
+    }
+    at = skip_blanks(line, 1U, end);
+    status = take_name(line, &at, end, command);
+    if (status == TELECOMMAND_OK) {
+        for (at = skip_blanks(line, at, end); at < end; at++) {
+            command->argument[command->argument_length++] = line->text[at];
+        }
+    }
+    return status;
+}
+
+static telecommand_status_t reject(telecommand_t *command, telecommand_status_t status)
+{
+    command->name_length = 0U;
+    command->argument_length = 0U;
+    return status;
+}
+
+telecommand_status_t telecommand_parse(const telecommand_line_t *line, bool sum_required, telecommand_t *command)
+{
+    uint16_t end = line->length;
+    telecommand_status_t status;
+
+    (void)reject(command, TELECOMMAND_OK);
+    if (line->damaged) {
+        return TELECOMMAND_DAMAGED;
+    }
+    if (line->bare) {
+        return TELECOMMAND_BARE;
+    }
+    if (line->overlong) {
+        return TELECOMMAND_OVERLONG;
+    }
+    if (!is_legible(line)) {
+        return TELECOMMAND_CHARACTER;
+    }
+    while (end > 1U && is_blank(line->text[end - 1U])) {
+        end--;
+    }
+    const uint16_t sum_at = find_sum(line, end);
+
+    status = split(line, sum_at, command);
+    if (status != TELECOMMAND_OK || stops(command)) {
+        return status;
+    }
+    if (sum_at == end) {
+        return sum_required ? reject(command, TELECOMMAND_SUM_MISSING) : TELECOMMAND_OK;
+    }
+    return sum_is_right(line, sum_at) ? TELECOMMAND_OK : reject(command, TELECOMMAND_SUM_WRONG);
+}
+
 bool telecommand_is_urgent(const telecommand_line_t *line)
 {
     telecommand_t command;
 
-    if (telecommand_parse(line, &command) != TELECOMMAND_OK) {
-        return false;
-    }
-    return is_named(&command, "STOP") || is_named(&command, "LAND")
-           || (is_named(&command, "SETR") && is_zero(command.argument, command.argument_length));
+    return telecommand_parse(line, false, &command) == TELECOMMAND_OK && stops(&command);
 }

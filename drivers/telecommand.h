@@ -1,5 +1,6 @@
 /* Operator's lines: `#NAME value` LF (CR LF, blanks and lower case accepted). A '#' restarts the line, backspace and delete
- * take back a character, Ctrl-C the line. Pure.
+ * take back a character, Ctrl-C the line. A line may end with the sum of all characters before it, `#SETR 0.6*9383`
+ * (drivers/line_sum.h; upper or lower case). Pure.
  *
  * The collector runs in the receive interrupt; parsing is the task's. */
 #ifndef DRIVERS_TELECOMMAND_H
@@ -43,6 +44,8 @@ typedef enum {
     TELECOMMAND_BARE,
     TELECOMMAND_EMPTY,      /* '#' alone, or blanks behind it */
     TELECOMMAND_OVERLONG,
+    TELECOMMAND_SUM_WRONG,  /* `*` and four hexadecimal digits at the end, which are not the sum */
+    TELECOMMAND_SUM_MISSING,
     TELECOMMAND_CHARACTER   /* a control character (other than a tab) or one above 7EH, or a name with other than A-Z 0-9 _ */
 } telecommand_status_t;
 
@@ -53,10 +56,12 @@ typedef struct {
     uint16_t argument_length;           /* 0 = none */
 } telecommand_t;
 
-/* A line as collected. Always writes *command; name and argument are empty unless the result is OK. */
-telecommand_status_t telecommand_parse(const telecommand_line_t *line, telecommand_t *command);
+/* A line as collected. Always writes *command; name and argument are empty unless the result is OK. A sum that is there
+ * must be right. sum_required: and it must be there, but for what telecommand_is_urgent() names. */
+telecommand_status_t telecommand_parse(const telecommand_line_t *line, bool sum_required, telecommand_t *command);
 
-/* An undamaged `#STOP`, `#LAND` or `#SETR 0` (however the zero is written), which nothing may hold up. Any context. */
+/* An undamaged `#STOP`, `#LAND` or `#SETR 0` (however the zero is written), which nothing may hold up: neither does its
+ * sum, be it wrong or missing. Any context. */
 bool telecommand_is_urgent(const telecommand_line_t *line);
 
 #endif

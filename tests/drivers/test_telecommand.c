@@ -52,7 +52,7 @@ static uint16_t feed(const char *text)
 static telecommand_status_t parse_line(const char *text)
 {
     TEST_ASSERT_EQUAL_MESSAGE(1U, feed(text), text);
-    return telecommand_parse(&collector.line, &command);
+    return telecommand_parse(&collector.line, false, &command);
 }
 
 static void assert_command(const char *name, const char *argument)
@@ -137,7 +137,7 @@ void test_the_line_is_complete_at_the_cr_and_still_there_after_the_lf(void)
     TEST_ASSERT_EQUAL(0U, feed("#SETR 0.6"));
     TEST_ASSERT_TRUE(telecommand_collect(&collector, '\r'));
     TEST_ASSERT_FALSE(telecommand_collect(&collector, '\n'));
-    TEST_ASSERT_EQUAL(TELECOMMAND_OK, telecommand_parse(&collector.line, &command));
+    TEST_ASSERT_EQUAL(TELECOMMAND_OK, telecommand_parse(&collector.line, false, &command));
     assert_command("SETR", "0.6");
 }
 
@@ -186,7 +186,7 @@ void test_a_lone_sharp_is_empty(void)
 void test_a_line_of_no_character_is_empty(void)
 {
     telecommand_line_t line = {.length = 0U};
-    TEST_ASSERT_EQUAL(TELECOMMAND_EMPTY, telecommand_parse(&line, &command));
+    TEST_ASSERT_EQUAL(TELECOMMAND_EMPTY, telecommand_parse(&line, false, &command));
 }
 
 void test_32_characters_are_a_line_and_33_are_too_many(void)
@@ -207,7 +207,7 @@ void test_an_overlong_line_gives_one_error_and_the_next_line_is_whole(void)
     memcpy(text, "#KP ", 4);
     TEST_ASSERT_EQUAL(0U, feed_octets(text, sizeof text));
     TEST_ASSERT_EQUAL(1U, feed("\r\n"));
-    TEST_ASSERT_EQUAL(TELECOMMAND_OVERLONG, telecommand_parse(&collector.line, &command));
+    TEST_ASSERT_EQUAL(TELECOMMAND_OVERLONG, telecommand_parse(&collector.line, false, &command));
     TEST_ASSERT_EQUAL(0U, collector.strays);
     assert_parses("#KD 0.008\n", "KD", "0.008");
 }
@@ -220,7 +220,7 @@ void test_trailing_blanks_count_towards_the_length(void)
 void test_nul_is_as_if_it_had_not_come(void)
 {
     TEST_ASSERT_EQUAL(1U, feed_octets("\0#\0K\0P \0000.1\0\n\0", 14U));
-    TEST_ASSERT_EQUAL(TELECOMMAND_OK, telecommand_parse(&collector.line, &command));
+    TEST_ASSERT_EQUAL(TELECOMMAND_OK, telecommand_parse(&collector.line, false, &command));
     assert_command("KP", "0.1");
     TEST_ASSERT_EQUAL(0U, collector.strays);
 }
@@ -251,11 +251,11 @@ void test_control_and_high_characters_are_refused_wherever_they_stand(void)
             text[place] = (char)code;
             (void)feed(text);
             if (!legible) {
-                TEST_ASSERT_EQUAL(TELECOMMAND_CHARACTER, telecommand_parse(&collector.line, &command));
+                TEST_ASSERT_EQUAL(TELECOMMAND_CHARACTER, telecommand_parse(&collector.line, false, &command));
                 TEST_ASSERT_EQUAL(0U, command.name_length);
                 TEST_ASSERT_EQUAL(0U, command.argument_length);
             } else if (place > 3U) {
-                TEST_ASSERT_EQUAL(TELECOMMAND_OK, telecommand_parse(&collector.line, &command));
+                TEST_ASSERT_EQUAL(TELECOMMAND_OK, telecommand_parse(&collector.line, false, &command));
             }
         }
     }
@@ -296,7 +296,7 @@ void test_lines_in_one_breath_are_all_kept(void)
 
     for (; *text != '\0'; text++) {
         if (telecommand_collect(&collector, (octet_t)*text)) {
-            TEST_ASSERT_EQUAL(TELECOMMAND_OK, telecommand_parse(&collector.line, &command));
+            TEST_ASSERT_EQUAL(TELECOMMAND_OK, telecommand_parse(&collector.line, false, &command));
             assert_command(names[lines], "1");
             lines++;
         }
@@ -310,7 +310,7 @@ void test_a_broken_line_is_damaged_and_parses_to_nothing(void)
     telecommand_collector_broken(&collector);
     TEST_ASSERT_EQUAL(1U, feed("3\n"));
     TEST_ASSERT_TRUE(collector.line.damaged);
-    TEST_ASSERT_EQUAL(TELECOMMAND_DAMAGED, telecommand_parse(&collector.line, &command));
+    TEST_ASSERT_EQUAL(TELECOMMAND_DAMAGED, telecommand_parse(&collector.line, false, &command));
     TEST_ASSERT_EQUAL(0U, command.name_length);
     TEST_ASSERT_EQUAL(0U, command.argument_length);
     assert_parses("#SETR 0.3\n", "SETR", "0.3");
@@ -366,7 +366,7 @@ void test_a_line_that_lost_any_run_of_octets_never_parses(void)
             telecommand_collector_broken(&collector);
             TEST_ASSERT_EQUAL(0U, feed_octets(&text[to], (size_t)(length - to)));
             TEST_ASSERT_TRUE(telecommand_collect(&collector, '\n'));
-            TEST_ASSERT_EQUAL(TELECOMMAND_DAMAGED, telecommand_parse(&collector.line, &command));
+            TEST_ASSERT_EQUAL(TELECOMMAND_DAMAGED, telecommand_parse(&collector.line, false, &command));
         }
     }
 }
@@ -378,7 +378,7 @@ void test_ten_thousand_random_octets_lose_no_later_command(void)
         if (telecommand_collect(&collector, octet_of((uint16_t)random_bits()))) {
             TEST_ASSERT_TRUE(collector.line.bare || collector.line.text[0] == '#');
             TEST_ASSERT_LESS_OR_EQUAL(TELECOMMAND_LINE_MAX, collector.line.length);
-            (void)telecommand_parse(&collector.line, &command);
+            (void)telecommand_parse(&collector.line, false, &command);
         }
         if (i % 100U == 0U) {
             assert_parses("#KP 0.015\r\n", "KP", "0.015");
@@ -402,7 +402,7 @@ void test_every_accepted_line_has_a_clean_name_and_a_trimmed_value(void)
             (void)telecommand_collect(&collector, octet_of((uint16_t)alphabet[random_bits() % 14U]));
         }
         TEST_ASSERT_TRUE(telecommand_collect(&collector, '\n'));
-        if (telecommand_parse(&collector.line, &command) == TELECOMMAND_OK) {
+        if (telecommand_parse(&collector.line, false, &command) == TELECOMMAND_OK) {
             accepted++;
             TEST_ASSERT_FALSE(collector.line.overlong);
             TEST_ASSERT_TRUE(command.name_length >= 1U && command.name_length <= TELECOMMAND_NAME_MAX);
@@ -442,4 +442,71 @@ void test_a_damaged_line_is_never_urgent(void)
     telecommand_collector_broken(&collector);
     TEST_ASSERT_EQUAL(1U, feed("0\n"));
     TEST_ASSERT_FALSE(telecommand_is_urgent(&collector.line));
+}
+
+/* Sums by CRC-16/IBM-3740 of the CRC RevEng catalogue, whose check value is 29B1 for "123456789"; these by Python's
+ * binascii.crc_hqx(text, 0xFFFF). */
+static telecommand_status_t parse_with_sum(const char *text, bool required)
+{
+    telecommand_line_t line = {.length = (uint16_t)strlen(text)};
+
+    memcpy(line.text, text, line.length);
+    return telecommand_parse(&line, required, &command);
+}
+
+void test_a_line_with_its_sum_is_the_line_without_it(void)
+{
+    static const char *const lines[] = {"#SETR 0.6*9383", "#setr 0.6*BBA1", "#KP 0.015 *7FE5"};
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        TEST_ASSERT_EQUAL_INT_MESSAGE(TELECOMMAND_OK, parse_with_sum(lines[i], true), lines[i]);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(TELECOMMAND_OK, parse_with_sum(lines[i], false), lines[i]);
+    }
+    TEST_ASSERT_EQUAL_UINT16(5, command.argument_length);
+    TEST_ASSERT_EQUAL_CHAR_ARRAY("0.015", command.argument, 5);
+    TEST_ASSERT_EQUAL_UINT16(2, command.name_length);
+}
+
+void test_each_changed_character_of_a_line_with_a_sum_is_found(void)
+{
+    static const char good[] = "#GRAV 6.4*CD04";
+    TEST_ASSERT_EQUAL_INT(TELECOMMAND_OK, parse_with_sum(good, true));
+    for (size_t at = 1; at < strlen(good); at++) {
+        for (int bit = 0; bit < 7; bit++) {
+            char bad[] = "#GRAV 6.4*CD04";
+            telecommand_status_t status;
+
+            bad[at] = (char)(bad[at] ^ (1 << bit));
+            status = parse_with_sum(bad, true);
+            if (at > strlen("#GRAV 6.4*") - 1 && (bad[at] ^ 0x20) == good[at] && good[at] >= 'A') {
+                continue; /* the other case of a digit */
+            }
+            TEST_ASSERT_NOT_EQUAL_MESSAGE(TELECOMMAND_OK, status, bad);
+            TEST_ASSERT_EQUAL_UINT16(0, command.name_length);
+            TEST_ASSERT_EQUAL_UINT16(0, command.argument_length);
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(TELECOMMAND_SUM_WRONG, parse_with_sum("#GRAV 6.5*CD04", false));
+}
+
+void test_a_missing_sum_is_refused_only_where_one_is_required(void)
+{
+    TEST_ASSERT_EQUAL_INT(TELECOMMAND_SUM_MISSING, parse_with_sum("#GRAV 6.4", true));
+    TEST_ASSERT_EQUAL_INT(TELECOMMAND_SUM_MISSING, parse_with_sum("#PING *12", true));
+    TEST_ASSERT_EQUAL_INT(TELECOMMAND_SUM_MISSING, parse_with_sum("#PING *12G4", true));
+    TEST_ASSERT_EQUAL_INT(TELECOMMAND_OK, parse_with_sum("#PING *12G4", false));
+    TEST_ASSERT_EQUAL_UINT16(5, command.argument_length);
+    TEST_ASSERT_EQUAL_INT(TELECOMMAND_EMPTY, parse_with_sum("#*1234", true));
+}
+
+void test_a_stop_needs_no_sum_and_minds_no_wrong_one(void)
+{
+    static const char *const stops[] = {"#STOP", "#LAND", "#SETR 0", "#STOP*0000", "#LAND*FFFF", "#SETR 0*1234", "#SETR 0.0"};
+    for (size_t i = 0; i < sizeof stops / sizeof stops[0]; i++) {
+        telecommand_line_t line = {.length = (uint16_t)strlen(stops[i])};
+
+        memcpy(line.text, stops[i], line.length);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(TELECOMMAND_OK, telecommand_parse(&line, true, &command), stops[i]);
+        TEST_ASSERT_TRUE_MESSAGE(telecommand_is_urgent(&line), stops[i]);
+    }
+    TEST_ASSERT_EQUAL_INT(TELECOMMAND_SUM_MISSING, parse_with_sum("#SETR 0.6", true));
 }

@@ -340,7 +340,7 @@ static void receive_comm(void)
     telecommand_t command;
     float value = 0.0F;
 
-    (void)telecommand_parse(&commands.line, &command);
+    (void)telecommand_parse(&commands.line, false, &command);
     const parameter_id_t id = parameter_find(command.name, command.name_length);
     REQUIRE(id != PARAMETER_COUNT && decimal_read(command.argument, command.argument_length, &value));
     (void)parameters_set(&parameters, id, value);
