@@ -8,6 +8,7 @@ static const char *const law_names[LAW_COUNT] = {"PD", "PID", "PIDT", "EST"};
 static const char *const release_names[RELEASE_COUNT] = {[RELEASE_FREE] = "FREE", [RELEASE_SCAN] = "SCAN"};
 static const char *const terrain_names[TERRAIN_COUNT] = {[TERRAIN_FOLLOW] = "FOLLOW", [TERRAIN_IGNORE] = "IGNORE"};
 static const char *const plant_names[PLANT_COUNT] = {[PLANT_THRUST] = "THRUST", [PLANT_CLIMB] = "CLIMB"};
+static const char *const sum_names[SUM_COUNT] = {[SUM_OFF] = "OFF", [SUM_ON] = "ON"};
 static const char *const sel_names[SEL_COUNT] = {[SEL_NONE] = "NONE", [SEL_PIN] = "PIN"};
 
 /* SETR ends at 3 m so that the take-over at 0.8 m above the reference is still within the sensor's 4.095 m. */
@@ -35,6 +36,8 @@ const parameter_row_t parameter_table[PARAMETER_COUNT] = {
                           "EST: what the autopilot's throttle commands."},
     [PARAMETER_CRATE] = {"CRATE", "m/s/N", 0.125F, 5.0F, 1.0F, NULL, "EST: climb rate per newton with PLANT CLIMB."},
     [PARAMETER_LINK] = {"LINK", "s", 0.0F, 60.0F, 0.0F, NULL, "Longest silence of the link; 0 disarms."},
+    [PARAMETER_SUM] = {"SUM", "-", 0.0F, (float)(SUM_COUNT - 1), (float)SUM_OFF, sum_names,
+                        "Whether every command line must carry its sum."},
     [PARAMETER_SEL] = {"SEL", "-", 0.0F, (float)(SEL_COUNT - 1), (float)SEL_NONE, sel_names,
                         "Whether a pin tells that the pilot has the throttle."},
     [PARAMETER_IDLE] = {"IDLE", "%", 0.0F, 25.0F, 15.0F, NULL, "Least throttle while armed: keeps the motors turning."},
@@ -132,4 +135,18 @@ parameter_status_t parameters_set(parameters_t *parameters, parameter_id_t id, f
     parameters->value[id] = value + 0.0F;
     ++parameters->generation;
     return PARAMETER_ACCEPTED;
+}
+
+bool parameter_may_change_in_air(parameter_id_t id, float from, float to)
+{
+    switch (id) {
+    case PARAMETER_GRAV:
+    case PARAMETER_USAT:
+    case PARAMETER_DSAT:
+        return fabsf(to - from) <= PARAMETER_STEP_IN_AIR_N;
+    case PARAMETER_SEL:
+        return to == from;
+    default:
+        return true;
+    }
 }

@@ -30,6 +30,7 @@ typedef enum {
     PARAMETER_CRATE,    /* m/s per N, with PLANT CLIMB */
     PARAMETER_LINK,     /* s, 0 = link supervision off */
     PARAMETER_SEL,      /* choice, control_sel_t */
+    PARAMETER_SUM,      /* choice, control_sum_t */
     PARAMETER_IDLE,     /* % of the throttle's range, while armed */
     PARAMETER_COUNT
 } parameter_id_t;
@@ -38,6 +39,7 @@ typedef enum { LAW_PD, LAW_PID, LAW_PIDT, LAW_EST, LAW_COUNT } control_law_t;
 typedef enum { RELEASE_FREE, RELEASE_SCAN, RELEASE_COUNT } control_release_t;
 typedef enum { TERRAIN_FOLLOW, TERRAIN_IGNORE, TERRAIN_COUNT } control_terrain_t;
 typedef enum { PLANT_THRUST, PLANT_CLIMB, PLANT_COUNT } control_plant_t; /* what the autopilot's throttle commands */
+typedef enum { SUM_OFF, SUM_ON, SUM_COUNT } control_sum_t; /* whether every command line must carry its sum */
 typedef enum { SEL_NONE, SEL_PIN, SEL_COUNT } control_sel_t; /* what tells who has the throttle: nothing, or a pin */
 
 typedef struct {
@@ -79,5 +81,12 @@ uint16_t parameters_choice(const parameters_t *parameters, parameter_id_t id);
 /* Stores value if it is finite and within the row's limits (a choice: also whole); otherwise nothing changes. -0 is
  * stored as 0. */
 parameter_status_t parameters_set(parameters_t *parameters, parameter_id_t id, float value);
+
+/* Whether a value in force may change so in the air. GRAV, USAT and DSAT: by PARAMETER_STEP_IN_AIR_N at most, because the
+ * thrust of law PD and PID follows them at once; from hover so much less sinks at 0.8 m/s in the end (damping 2.4 1/s).
+ * SEL: not at all, because it decides who has the throttle. The others: yes; a change of LAW starts at the thrust of
+ * before (flight.h). */
+#define PARAMETER_STEP_IN_AIR_N 1.5F
+bool parameter_may_change_in_air(parameter_id_t id, float from, float to);
 
 #endif

@@ -226,11 +226,17 @@ static bool execute_help(answer_t *answer)
     return listing_start(answer, write_help);
 }
 
+static bool refuse_in_air(answer_t *answer, parameter_id_t id)
+{
+    return answer_refuse(answer, (id == PARAMETER_SEL) ? "not on the ground" : "in the air by 1.5 N at most");
+}
+
 static bool execute_set(answer_t *answer, parameter_id_t id)
 {
     const telecommand_t *command = answer->command;
     const parameter_row_t *row = &parameter_table[id];
     parameters_t parameters;
+    float before;
     float value = (float)parameter_find_choice(id, command->argument, command->argument_length);
 
     if (command->argument_length == 0U) {
@@ -240,8 +246,12 @@ static bool execute_set(answer_t *answer, parameter_id_t id)
         return answer_refuse(answer, "not a number");
     }
     parameter_server_read(&parameters);
+    before = parameters.value[id];
     if (parameters_set(&parameters, id, value) != PARAMETER_ACCEPTED) {
         return answer_refuse_range(answer, row);
+    }
+    if (!parameter_may_change_in_air(id, before, value) && ground_left()) {
+        return refuse_in_air(answer, id);
     }
     if (id == PARAMETER_SETR) {
         set_reference(value);
@@ -308,6 +318,8 @@ static void refuse_line(answer_t *answer, telecommand_status_t status, uint32_t 
         [TELECOMMAND_BARE] = "commands begin with #",
         [TELECOMMAND_EMPTY] = "empty command",
         [TELECOMMAND_OVERLONG] = "line too long",
+        [TELECOMMAND_SUM_WRONG] = "wrong sum",
+        [TELECOMMAND_SUM_MISSING] = "sum missing, see #SUM",
         [TELECOMMAND_CHARACTER] = "bad character",
     };
     static uint32_t bare_us;
@@ -323,11 +335,19 @@ static void refuse_line(answer_t *answer, telecommand_status_t status, uint32_t 
     (void)answer_refuse(answer, reasons[status]);
 }
 
+static bool sum_required(void)
+{
+    static parameters_t parameters;
+
+    parameter_server_read(&parameters);
+    return parameters_choice(&parameters, PARAMETER_SUM) == (uint16_t)SUM_ON;
+}
+
 void commands_execute(const xbee_message_t *message)
 {
     static telecommand_t command;
     static answer_t answer;
-    const telecommand_status_t status = telecommand_parse(&message->line, &command);
+    const telecommand_status_t status = telecommand_parse(&message->line, sum_required(), &command);
 
     if (status != TELECOMMAND_OK || !is_named(&command, "PING")) {
         calibrator_stop();

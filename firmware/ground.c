@@ -24,3 +24,11 @@ bool ground_waits(void)
 
     return waits(&flight) && flight.thrust_n <= flight.idle_n;
 }
+
+bool ground_left(void)
+{
+    flight_outputs_t flight;
+
+    flight_status_server_read(&flight);
+    return flight.state != FLIGHT_GROUND && flight.state != FLIGHT_CUT;
+}

@@ -10,4 +10,7 @@ bool ground_idle(void);
 /* On the ground with no reference, be it that the armed motors idle. Task. */
 bool ground_waits(void);
 
+/* In the air, as far as is known: a state other than GROUND and CUT. Task. */
+bool ground_left(void);
+
 #endif

@@ -73,7 +73,7 @@ void test_every_choice_is_found_by_its_name(void)
             choices++;
         }
     }
-    TEST_ASSERT_EQUAL_INT(LAW_COUNT + RELEASE_COUNT + TERRAIN_COUNT + PLANT_COUNT + SEL_COUNT, choices);
+    TEST_ASSERT_EQUAL_INT(LAW_COUNT + RELEASE_COUNT + TERRAIN_COUNT + PLANT_COUNT + SEL_COUNT + SUM_COUNT, choices);
 }
 
 void test_names_are_found_in_any_case_and_only_whole(void)
@@ -200,4 +200,21 @@ void test_a_gain_is_used_by_the_laws_that_its_meaning_names(void)
 
         TEST_ASSERT_EQUAL_MESSAGE(!of_the_seed, parameter_is_used((parameter_id_t)i, LAW_EST), parameter_table[i].name);
     }
+}
+
+void test_in_the_air_thrust_changes_by_bounded_steps_and_the_throttle_keeps_its_owner(void)
+{
+    static const parameter_id_t stepped[] = {PARAMETER_GRAV, PARAMETER_USAT, PARAMETER_DSAT};
+
+    for (size_t i = 0; i < sizeof stepped / sizeof stepped[0]; i++) {
+        TEST_ASSERT_TRUE(parameter_may_change_in_air(stepped[i], 7.0F, 5.5F));
+        TEST_ASSERT_TRUE(parameter_may_change_in_air(stepped[i], 7.0F, 8.5F));
+        TEST_ASSERT_FALSE(parameter_may_change_in_air(stepped[i], 7.0F, 5.49F));
+        TEST_ASSERT_FALSE(parameter_may_change_in_air(stepped[i], 7.0F, 8.51F));
+        TEST_ASSERT_FALSE(parameter_may_change_in_air(stepped[i], 7.0F, 0.0F));
+    }
+    TEST_ASSERT_FALSE(parameter_may_change_in_air(PARAMETER_SEL, (float)SEL_NONE, (float)SEL_PIN));
+    TEST_ASSERT_TRUE(parameter_may_change_in_air(PARAMETER_SEL, (float)SEL_PIN, (float)SEL_PIN));
+    TEST_ASSERT_TRUE(parameter_may_change_in_air(PARAMETER_LAW, (float)LAW_EST, (float)LAW_PD));
+    TEST_ASSERT_TRUE(parameter_may_change_in_air(PARAMETER_KP, 0.0F, 1.0F));
 }

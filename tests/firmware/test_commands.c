@@ -87,6 +87,14 @@ static bool ground(int calls)
     return on_ground;
 }
 
+static bool in_the_air;
+
+static bool left(int calls)
+{
+    (void)calls;
+    return in_the_air;
+}
+
 static uint16_t stops;          /* of a hover calibration */
 
 static void stop(int calls)
@@ -114,7 +122,9 @@ void setUp(void)
     arrival_us = ARRIVAL_US;
     calibrator_stop_Stub(stop);
     ground_waits_Stub(ground);
+    ground_left_Stub(left);
     on_ground = true;
+    in_the_air = false;
     stops = 0U;
 }
 
@@ -860,4 +870,38 @@ void test_lost_lines_are_told_with_their_number(void)
     TEST_ASSERT_EQUAL_STRING("ERR - 65535 lines lost: sent too fast", answers[1]);
     TEST_ASSERT_EQUAL_UINT16(2, answered);
     TEST_ASSERT_EQUAL_UINT16(0, reference_writes);
+}
+
+void test_in_the_air_thrust_changes_by_bounded_steps(void)
+{
+    in_the_air = true;
+    assert_refused("ERR GRAV in the air by 1.5 N at most", "#GRAV 0");
+    assert_refused("ERR USAT in the air by 1.5 N at most", "#USAT 11");
+    assert_refused("ERR DSAT in the air by 1.5 N at most", "#DSAT 7");
+    assert_refused("ERR SEL not on the ground", "#SEL PIN");
+    assert_answer("OK GRAV 6.5", "#GRAV 6.5");
+    assert_answer("OK GRAV 5", "#GRAV 5");
+    assert_answer("OK LAW PD", "#LAW PD");
+    assert_answer("OK SEL NONE", "#SEL NONE");
+    in_the_air = false;
+    assert_answer("OK GRAV 0", "#GRAV 0");
+    assert_answer("OK SEL PIN", "#SEL PIN");
+}
+
+void test_a_required_sum_is_required_of_everything_but_a_stop(void)
+{
+    const uint32_t alive = reference.link_sequence;
+
+    assert_answer("OK SETR 0.6", "#SETR 0.6*9383");
+    assert_refused("ERR - wrong sum", "#SETR 0.7*9383");
+    assert_answer("OK SUM ON", "#SUM ON");
+    assert_refused("ERR - sum missing, see #SUM", "#SETR 0.5");
+    assert_refused("ERR - sum missing, see #SUM", "#SUM OFF");
+    TEST_ASSERT_EQUAL_UINT32(alive + 2U, reference.link_sequence);
+    assert_answer("OK SETR 0.6", "#SETR 0.6*9383");
+    assert_answer("OK STOP", "#STOP");
+    assert_answer("OK LAND", "#LAND");
+    assert_answer("OK SETR 0", "#SETR 0");
+    assert_answer("OK SUM OFF", "#SUM OFF*3A0B");
+    assert_answer("OK SETR 0.5", "#SETR 0.5");
 }

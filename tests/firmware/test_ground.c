@@ -73,3 +73,11 @@ void test_a_reference_in_force_or_on_its_way_is_not_idle(void)
     reference.reference_m = 0.5F;
     TEST_ASSERT_FALSE(ground_idle());
 }
+
+void test_every_state_but_ground_and_cut_is_in_the_air(void)
+{
+    for (int state = 0; state < FLIGHT_STATE_COUNT; state++) {
+        flight.state = (flight_state_t)state;
+        TEST_ASSERT_EQUAL_INT(state != FLIGHT_GROUND && state != FLIGHT_CUT, ground_left());
+    }
+}

@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
-"""packets.py [--check]: writes docs/xctu_packets.xml, the list that XCTU's "Send packets" panel loads.
+"""packets.py [--check | --with-sums FILE | --sum LINE]: writes docs/xctu_packets.xml, the list that XCTU's "Send packets" panel
+loads.
 
-With --check nothing is written; the status is 1 when the file differs from what would be.
+With --check nothing is written; the status is 1 when the file differs from what would be. --with-sums writes the same list
+with a sum behind each command, for #SUM ON. --sum prints one line with its sum.
 """
+import binascii
 import sys
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
@@ -20,13 +23,19 @@ COMMANDS = (
     "#POSK 2.3", "#VELK 8", "#VUP 0.7", "#VDN 1.1",
     "#TERRAIN FOLLOW", "#TERRAIN IGNORE",
     "#PLANT THRUST", "#PLANT CLIMB", "#CRATE 1",
-    "#SEL NONE", "#SEL PIN", "#IDLE 15",
+    "#SEL NONE", "#SEL PIN", "#SUM ON", "#SUM OFF*3A0B", "#IDLE 15",
     "#SAVE", "#LOAD", "#DEFAULTS", "#DEFAULTS SEED",
     "#LINK 60", "#CALIBRATE 30 5", "#LINK 2", "#LINK 0",
     "#PING 1", "#STREAM PULSE", "#STREAM OFF", "#HANG TASK",
     "#LOG 10", "#LOG", "#LOG STOP", "#LOG CLEAR",
     "#GET", "#GET KP", "#LASER", "#PERF", "#PERF RESET", "#VERSION", "#HELP",
 )
+
+
+def with_sum(command):
+    """Behind a command the sum of its characters, as the firmware checks it: CRC-16/CCITT-FALSE."""
+    line = command.split("*", 1)[0]
+    return f"{line}*{binascii.crc_hqx(line.encode('ascii'), 0xFFFF):04X}"
 
 
 def document(commands=COMMANDS):
@@ -44,6 +53,12 @@ def main(arguments):
             return 0
         print(f"{FILE}: run {Path(__file__).name}", file=sys.stderr)
         return 1
+    if arguments[:1] == ["--with-sums"] and len(arguments) == 2:
+        Path(arguments[1]).write_text(document([with_sum(command) for command in COMMANDS]), encoding="utf-8")
+        return 0
+    if arguments[:1] == ["--sum"] and len(arguments) == 2:
+        print(with_sum(arguments[1]))
+        return 0
     if arguments:
         print(__doc__, file=sys.stderr)
         return 2
