@@ -104,6 +104,10 @@ void task_unblock(Task_Handle task);
 void task_queue_by_priority(link_t *queue, Task_Handle task);
 /* Computes priorities anew, along the chain of gates that the task waits for. */
 void task_inherit(Task_Handle task);
+/* The owner of a gate runs at least at the rank of who has begun to wait for it; so along the chain. */
+void task_donate(Task_Handle owner, int rank);
+/* Down to the rank that the task had when it entered the gate that it leaves. */
+void task_give_back(Task_Handle task, int rank);
 
 /* gate.c */
 

@@ -11,6 +11,7 @@ struct GateMutexPri_Object {
     const char *name;
     Task_Handle owner;  /* NULL: free */
     int depth;          /* enters of the owner */
+    int original;       /* the owner's rank when it entered */
     link_t held;        /* in the owner's list */
     link_t waiting;     /* tasks, highest priority first */
 };
@@ -74,6 +75,7 @@ static void give(GateMutexPri_Handle gate, Task_Handle task)
 {
     gate->owner = task;
     gate->depth = 1;
+    gate->original = task->job.rank;
     link_before(&task->held, &gate->held);
     kernel_observed(KERNEL_GATE_ENTERED, &task->job, gate->number);
 }
@@ -85,7 +87,7 @@ static void wait_for(GateMutexPri_Handle gate, Task_Handle self)
     self->blocked_on = gate;
     task_queue_by_priority(&gate->waiting, self);
     kernel_yield_processor(KERNEL_GATE_BLOCKED, &self->job, gate->number);
-    task_inherit(gate->owner);
+    task_donate(gate->owner, self->job.rank);
     fiber_pause();
 }
 
@@ -140,8 +142,9 @@ Void GateMutexPri_leave(GateMutexPri_Handle handle, IArg key)
     if (handle->depth == 0) {
         link_remove(&handle->held);
         kernel_observed(KERNEL_GATE_LEFT, &self->job, handle->number);
+        /* As TI's gate does: what the owner has inherited through another gate that it holds meanwhile is lost too. */
+        task_give_back(self, handle->original);
         hand_on(handle);
-        task_inherit(self);
         kernel_reschedule();
     }
 }

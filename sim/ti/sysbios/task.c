@@ -106,6 +106,21 @@ void task_inherit(Task_Handle task)
     }
 }
 
+void task_donate(Task_Handle owner, int rank)
+{
+    while (owner != NULL && rank > owner->job.rank) {
+        set_rank(owner, rank);
+        owner = owner->blocked_on != NULL ? gate_requeue(owner->blocked_on, owner) : NULL;
+    }
+}
+
+void task_give_back(Task_Handle task, int rank)
+{
+    if (rank < task->job.rank) {
+        set_rank(task, rank);
+    }
+}
+
 Int Task_setPri(Task_Handle handle, Int newpri)
 {
     Int old = handle->job.id.priority;

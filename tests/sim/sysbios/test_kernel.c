@@ -1584,10 +1584,11 @@ static int two_gates_main(void)
     return 0;
 }
 
-void test_leaving_an_inner_gate_keeps_what_is_inherited_through_the_outer_one(void)
+/* TI's gate restores the priority that its owner had on entering it, whoever waits for another gate of the owner's. */
+void test_leaving_an_inner_gate_loses_what_is_inherited_through_the_outer_one(void)
 {
     boot_and_run_ms(two_gates_main, 1);
-    TEST_ASSERT_EQUAL_STRING("wants@0 low@0 has@0 mid@0 low out@0 ", trace);
+    TEST_ASSERT_EQUAL_STRING("wants@0 mid@0 low@0 has@0 low out@0 ", trace);
 }
 
 /* ---- costs: virtual times computed by hand ---- */
