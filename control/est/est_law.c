@@ -139,6 +139,10 @@ static void predict_frame(est_law_t *law, const parameters_t *parameters, const 
 {
     const uint32_t before_us = law->estimator.now_us;
 
+    if ((int32_t)(frame->sequence - law->estimator.sequence) <= 0) {
+        return; /* taken before: of the sixteen of a cycle most are */
+    }
+
     estimator_predict(&law->estimator, frame, modelled_motion(law, parameters));
     const float dt_s = seconds(before_us, law->estimator.now_us);
     if (dt_s <= 0.0F || dt_s > STEP_MAX_S) {
