@@ -6,7 +6,7 @@
  * that hover is 1 at 1. With the disc of four 10 inch rotors (0.127 m) and 1.5 kg of air-borne mass, momentum theory
  * gives an induced speed in hover of sqrt(m g / (2 rho A)) = 5.4 m/s. */
 #define INDUCED_HOVER_MPS 5.4
-#define INFLOW_SHARE 0.45       /* of the blades' angle of attack that hover's inflow takes away */
+#define INFLOW_SHARE 0.60       /* of the blades' angle of attack that hover's inflow takes away */
 #define THRUST_MOST 4.0
 
 void rotors_init(rotors_t *rotors, const rotors_config_t *config)

@@ -113,7 +113,8 @@ def by_law(flown):
 
 
 def groups(flown):
-    """(title, flights): each kind alone, then how many at once, then by airframe."""
+    """(title, flights): nothing wrong, each kind alone, then how many at once, then by airframe."""
+    yield "nothing", [f for f in flown if not f.kinds]
     for kind in faults.KINDS:
         yield kind, [f for f in flown if f.kinds == (kind,)]
     for count, word in ((2, "two kinds"), (3, "three kinds")):
@@ -140,7 +141,7 @@ def failing(flown, program="build/plomada"):
         found = harms(flight.figures)
         if found:
             f = flight.figures
-            yield (f"{flight.law} {flight.number}: {', '.join(found)} ({' + '.join(flight.kinds)}; highest "
+            yield (f"{flight.law} {flight.number}: {', '.join(found)} ({' + '.join(flight.kinds) or 'nothing wrong'}; highest "
                    f"{table.number((f['highest_mm'] or math.nan) / 1000)} m, touch "
                    f"{table.number(f['touch_speed_mps'] if f['touch_speed_mps'] is not None else math.nan)} m/s)\n"
                    f"  {flight.command(program)}")

@@ -45,6 +45,7 @@ SETS = {
     "nominal": Set("the nominal vehicle", 20, (), {}),
     "trimmed": Set("drawn vehicles, GRAV trimmed by hand", 200, VEHICLE + ("hover_trimmed",), {}),
     "untrimmed": Set("drawn vehicles, mass +-20 %, not trimmed", 200, VEHICLE + ("hover_untrimmed",), {}),
+    "rotors": Set("the same, of the second airframe", 200, VEHICLE + ("hover_untrimmed",), {"airframe": 1.0}),
     "glitches": Set("nominal, 3 % of the scans broken", 20, (), {"glitches": 0.03}),
     "vibration": Set("nominal, four times the accelerometer noise", 20, (), {"acc_noise": 1.6}),
     "outages": Set("nominal, flat ground, scanner silent for 0.5 s", 100, ("outage_start",),
@@ -52,7 +53,7 @@ SETS = {
     "blind": Set("nominal, flat ground, scanner silent for 3 s: must land", 50, ("outage_start",),
                  {"outage": 3.0, "platform": 0.0}, lands=True),
 }
-DEFAULT_SETS = [name for name in SETS if name != "trimmed"]
+DEFAULT_SETS = [name for name in SETS if name not in ("trimmed", "rotors")]
 HOVER = {"hover_trimmed", "hover_untrimmed"}
 
 

@@ -46,14 +46,14 @@ void test_without_throttle_there_is_no_thrust(void)
     NEAR(1e-6, 0.0, thrust_at(0.0, 0.0));
 }
 
-/* Blades cut the air that comes from above at a smaller angle: at first 0.45 / 5.4 / 0.55 per m/s; then the inflow gives
+/* Blades cut the air that comes from above at a smaller angle: at first 0.6 / 5.4 / 0.4 per m/s; then the inflow gives
  * way, half of the climb for small ones. */
 void test_a_climb_takes_thrust_away_and_the_inflow_gives_half_of_it_back(void)
 {
     run(5.0, 1.0, 0.0);
-    NEAR(0.002, 1.0 - 0.1515 * 0.5, rotors_thrust(&rotors, 0.5));
+    NEAR(0.002, 1.0 - 0.2778 * 0.5, rotors_thrust(&rotors, 0.5));
     run(5.0, 1.0, 0.5);
-    TEST_ASSERT_TRUE(rotors_thrust(&rotors, 0.5) > 1.0 - 0.1515 * 0.5 + 0.015);
+    TEST_ASSERT_TRUE(rotors_thrust(&rotors, 0.5) > 1.0 - 0.2778 * 0.5 + 0.015);
     TEST_ASSERT_TRUE(rotors_thrust(&rotors, 0.5) < 1.0 - 0.02);
     TEST_ASSERT_TRUE(rotors_thrust(&rotors, -0.5) > 1.0);
 }
@@ -90,7 +90,7 @@ void test_a_quick_push_gives_more_than_it_keeps(void)
         most = fmax(most, rotors_thrust(&rotors, 0.0));
     }
     TEST_ASSERT_TRUE(most > 1.04 * thrust_at(1.3, 0.0));
-    TEST_ASSERT_TRUE(most < 1.20 * thrust_at(1.3, 0.0));
+    TEST_ASSERT_TRUE(most < 1.30 * thrust_at(1.3, 0.0));
 }
 
 void test_drag_is_against_the_motion_and_grows_with_its_square_and_with_tilt(void)
