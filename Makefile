@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot campaign tune seed-study ground ground-vehicle ground-open test test-long test-ground port size faults fuzz bench coverage firmware flash check-ti clean
+.PHONY: help build fly plot campaign tune seed-study ground ground-vehicle ground-open test test-long mutants test-ground port size faults fuzz bench coverage firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -95,6 +95,10 @@ test-long: ## The long ones: sweeps of many flights, campaigns, tuning, fuzzing
 	@$(ctest) build-sanitize -L long
 	@printf '\n== long tests as released ==\n'
 	@$(ctest) build -L long
+
+mutants: ## Do the unit tests notice small faults? ARGS="--room control --sample 300 --seed 1"; survivors as a diff
+	@$(setup) build test
+	@python3 -B tools/mutants/mutants.py $(ARGS)
 
 port: ## The unit tests of drivers/ and control/ also with 16-bit octets, 16-bit int and CHAR_BIT 16 (simulated)
 	@$(setup) build test port

@@ -256,8 +256,8 @@ static const char *read_key(tape_t *tape, const char *key, const char *value)
     if (strlen(key) >= sizeof kept->key || strlen(value) >= sizeof kept->value) {
         return "too long";
     }
-    snprintf(kept->key, sizeof kept->key, "%s", key);
-    snprintf(kept->value, sizeof kept->value, "%s", value);
+    strcpy(kept->key, key);
+    strcpy(kept->value, value);
     return NULL;
 }
 
