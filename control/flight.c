@@ -382,7 +382,8 @@ static void change_doubts(flight_t *flight)
         estimator_amend(&flight->est.estimator, flight->est.estimator.now.height_m - integrity->lost_m,
                         integrity_speed_mps(integrity), integrity->bias_mps2);
     }
-    if (((come & DOUBT_SIGHT) != 0U || (gone & DOUBT_THRUST) != 0U) && flight->est.airborne) {
+    const bool flies_unseen = (come & DOUBT_SIGHT) != 0U && integrity_sways(integrity);
+    if (((come & DOUBT_SIGHT) != 0U || (gone & DOUBT_THRUST) != 0U) && (flight->est.airborne || flies_unseen)) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
     est_law_set_powerless(&flight->est, integrity_doubts(integrity, DOUBT_THRUST));
@@ -474,6 +475,10 @@ static flight_mode_t select_mode(const flight_t *flight, const flight_inputs_t *
 {
     if (flight->supervisor.state == FLIGHT_FLOATING && !in->has_throttle) {
         return FLIGHT_MODE_HOVER;
+    }
+    if (flight->supervisor.state == FLIGHT_COASTING && has_estimate(flight) && flight->est.airborne
+        && integrity_doubts(&flight->integrity, DOUBT_SIGHT)) {
+        return FLIGHT_MODE_EST_SINK; /* what the heights said last is not the height to hold */
     }
     return (uses_estimate(flight) ? modes_with_estimate : modes_without_estimate)[flight->supervisor.state];
 }

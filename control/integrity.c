@@ -1,6 +1,7 @@
 #include "control/integrity.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #include "control/between.h"
 
@@ -19,6 +20,14 @@
 #define COUNT_MAX 1000U
 #define HEIGHT_MIN_MM (-50.0F)
 #define HEIGHT_MAX_MM 5000.0F
+
+/* A blocked beam: its length is as still as a sensor can tell it, 4 mm, and the height is not. Shares are of 0.1 s. */
+#define MEAN_SHARE 0.13F
+#define SWING_SHARE 0.08F
+#define SWING_MOST_MM 30.0F
+#define RIGID_MM2 16.0F
+#define RIGID_SHARE 1.8F
+#define RIGID_MORE_MM2 12.0F
 
 /* Accelerometer at rest. */
 #define REST_TIME_S 2.0F
@@ -58,17 +67,19 @@
 
 /* Verdicts. */
 #define AGAINST_M 0.50F
+#define BOTH_M 0.28F
 #define WITH_M 0.20F
 #define ALONE_M 0.60F
-#define POWERLESS_M 1.00F
+#define POWERLESS_M 1.30F
 #define MOVED_M 0.30F
 #define AGREED_S 1.5F
+#define ALOFT_M 0.08F
 #define PUSH_N 0.7F
 #define VAIN_S 3.0F
 #define VAIN_MPS 0.12F
 #define VAIN_M 0.15F
 #define RUN_AWAY_MPS 0.7F
-#define RUN_AWAY_M 0.20F
+#define RUN_AWAY_M 0.28F
 #define STILL_MPS 0.2F
 #define CONTENT_M 0.10F     /* a law that is where it wants to be has nothing that a lie could do */
 #define CONTENT_SHARE 1.8F
@@ -84,6 +95,17 @@ void integrity_init(integrity_t *integrity)
 bool integrity_doubts(const integrity_t *integrity, uint16_t doubt)
 {
     return (integrity->doubts & doubt) != 0U;
+}
+
+const char *integrity_doubt_name(uint16_t doubts)
+{
+    if ((doubts & DOUBT_SIGHT) != 0U) {
+        return "SIGHT";
+    }
+    if ((doubts & DOUBT_IMU) != 0U) {
+        return "IMU";
+    }
+    return ((doubts & DOUBT_THRUST) != 0U) ? "THRUST" : NULL;
 }
 
 static void set_doubt(integrity_t *i, uint16_t doubt, bool on)
@@ -151,6 +173,25 @@ void integrity_tilt(integrity_t *integrity, const imu_sample_t *frames, uint16_t
 
 /* ---- scans */
 
+/* A beam that is blocked has a length of its own: it does not grow and shrink as the mirror rises and falls with the tilt, and
+ * the height made of it does. */
+static void watch_slant(integrity_t *i, const altitude_t *altitude)
+{
+    const float seen_mm[2] = {altitude->slant_mm, altitude->height_mm};
+
+    for (uint16_t k = 0U; k < 2U; ++k) {
+        const float off_mm = between(-SWING_MOST_MM, seen_mm[k] - i->mean_mm[k], SWING_MOST_MM);
+        i->mean_mm[k] = (fabsf(seen_mm[k] - i->mean_mm[k]) > SWING_MOST_MM) ? seen_mm[k]
+                                                                             : i->mean_mm[k] + MEAN_SHARE * off_mm;
+        i->swing_mm2[k] += SWING_SHARE * (off_mm * off_mm - i->swing_mm2[k]);
+    }
+}
+
+static bool is_rigid(const integrity_t *i)
+{
+    return i->swing_mm2[0] < RIGID_MM2 && i->swing_mm2[1] > RIGID_SHARE * i->swing_mm2[0] + RIGID_MORE_MM2;
+}
+
 bool integrity_scan(integrity_t *integrity, const altitude_t *altitude)
 {
     const bool copy = altitude->spread_mm > 0.0F && altitude->slant_mm == integrity->slant_mm
@@ -162,6 +203,9 @@ bool integrity_scan(integrity_t *integrity, const altitude_t *altitude)
         integrity->copies = 0U;
     } else if (integrity->copies < COUNT_MAX) {
         ++integrity->copies;
+    }
+    if (altitude->spread_mm > 0.0F && fabsf(altitude->height_mm) <= HEIGHT_MAX_MM) {
+        watch_slant(integrity, altitude);
     }
     return integrity->copies < COPIES_MAX && altitude->height_mm >= HEIGHT_MIN_MM
         && altitude->height_mm <= HEIGHT_MAX_MM;
@@ -394,6 +438,12 @@ static bool both_run_away(const integrity_t *i)
         && fminf(fabsf(felt_off_m(i)), fabsf(i->pushed.seen_m)) > RUN_AWAY_M;
 }
 
+/* It should still stand, by the heights; but it sways, and has felt a climb. */
+static bool aloft_unseen(const integrity_t *i, const flown_t *flown)
+{
+    return flown->standing && i->unconfirmed && integrity_sways(i) && i->felt_least_m < -ALOFT_M;
+}
+
 static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
 {
     const float felt_m = felt_off_m(i);
@@ -401,7 +451,7 @@ static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
     const bool felt = feels(i);
     const bool pushes = counts(&i->pushed);
 
-    if (i->steps > STEPS_MAX) {
+    if (i->steps > STEPS_MAX || is_rigid(i) || aloft_unseen(i, flown)) {
         return true;
     }
     if (felt && pushes && both_run_away(i)) {
@@ -414,7 +464,7 @@ static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
     if (felt && pushes) {
         const float sure = (fabsf(flown->wanted_m) < CONTENT_M) ? CONTENT_SHARE : 1.0F;
         return felt_m * pushed_m > 0.0F && fmaxf(fabsf(felt_m), fabsf(pushed_m)) > sure * AGAINST_M
-            && fminf(fabsf(felt_m), fabsf(pushed_m)) > sure * WITH_M;
+            && fminf(fabsf(felt_m), fabsf(pushed_m)) > sure * BOTH_M;
     }
     if (pushes) {
         return i->vain_s > VAIN_S;
@@ -448,7 +498,7 @@ static bool agrees(const integrity_t *i)
 
 static void judge_again(integrity_t *i, float gap_s)
 {
-    i->agreed_s = agrees(i) ? i->agreed_s + gap_s : 0.0F;
+    i->agreed_s = (agrees(i) && !is_rigid(i)) ? i->agreed_s + gap_s : 0.0F;
     if (i->agreed_s > AGREED_S) {
         i->doubts &= (uint16_t)~(DOUBT_SIGHT | DOUBT_THRUST);
         forget(i);

@@ -64,6 +64,8 @@ typedef struct {
     /* scans */
     float slant_mm, spread_mm;
     uint16_t copies;                /* in a row */
+    float mean_mm[2];               /* slow, of slant and height */
+    float swing_mm2[2];             /* slow mean square of what they differ from it */
     /* heights */
     bool heard;                     /* height_m is the latest */
     float height_m;
@@ -127,6 +129,9 @@ bool integrity_sways(const integrity_t *integrity);
 
 /* It gives too little thrust to fly, and does not fall: something carries it. */
 bool integrity_stands(const integrity_t *integrity);
+
+/* "SIGHT", "IMU", "THRUST", the first that there is, as shown by the telemetry; NULL: none. */
+const char *integrity_doubt_name(uint16_t doubts);
 
 bool integrity_doubts(const integrity_t *integrity, uint16_t doubt);
 

@@ -103,6 +103,10 @@ void telemetry_status(telemetry_line_t *line, const telemetry_t *telemetry)
     telemetry_text(line, telemetry->state);
     telemetry_text(line, " flags:");
     telemetry_count(line, telemetry->flags);
+    if (telemetry->doubt != NULL && telemetry->reset == NULL) {
+        telemetry_text(line, " doubt:");
+        telemetry_text(line, telemetry->doubt);
+    }
     if (telemetry->reset != NULL) {
         telemetry_text(line, " reset:");
         telemetry_text(line, telemetry->reset);

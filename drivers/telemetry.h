@@ -41,10 +41,11 @@ typedef struct {
     float thrust_n;
     const char *state;      /* likewise */
     uint16_t flags;
+    const char *doubt;      /* likewise, or NULL: a field "doubt:..." more, but not beside a reset */
     const char *reset;      /* likewise, or NULL: a field "reset:..." more, for the first line after a reset */
 } telemetry_t;
 
-/* From begin to end. With names of up to 8 characters (laser, reset) and 10 (state) it fits whatever the numbers are, the
+/* From begin to end. With names of up to 8 characters (laser, doubt, reset) and 10 (state) it fits whatever the numbers are, the
  * reset within what numbers mean on this vehicle. */
 void telemetry_status(telemetry_line_t *line, const telemetry_t *telemetry);
 

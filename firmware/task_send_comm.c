@@ -6,6 +6,7 @@
 #include <xdc/std.h>
 
 #include "firmware/boot.h"
+#include "control/integrity.h"
 #include "firmware/monitor.h"
 #include "firmware/pulse_stream.h"
 #include "firmware/schedule.h"
@@ -41,6 +42,7 @@ static void report(telemetry_line_t *line, const char *reset)
     telemetry.thrust_n = flight.thrust_n;
     telemetry.state = flight_state_name(flight.state);
     telemetry.flags = flight.flags;
+    telemetry.doubt = integrity_doubt_name(flight.doubts);
     telemetry.reset = reset;
     telemetry_status(line, &telemetry);
 }

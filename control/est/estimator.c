@@ -13,6 +13,13 @@
 #define ANGLE_MAX_RAD 3.2F
 
 #define HEIGHT_NOISE_M 0.0013F
+#define FLOOR_START_M 0.004F
+#define FLOOR_SMOOTH_M 0.020F /* what edges and the vehicle's own motion make of the measure */
+#define FLOOR_MAX_M 0.080F
+#define FLOOR_SHARE 0.08F
+#define FLOOR_CLIP 9.0F
+#define FLOOR_SIGMAS 2.5F
+#define FLOOR_VARIANCE 1.0F
 #define HEIGHT_DRIFT_M 0.0047F
 #define SPEED_NOISE_MPS2 0.53F
 #define FRAME_S 0.025F
@@ -73,7 +80,7 @@ static void reset_covariance(estimator_t *e)
 
 void estimator_init(estimator_t *estimator)
 {
-    *estimator = (estimator_t){.noise_mps2 = NOISE_START_MPS2};
+    *estimator = (estimator_t){.noise_mps2 = NOISE_START_MPS2, .floor_m = FLOOR_START_M};
     reset_covariance(estimator);
 }
 
@@ -327,11 +334,32 @@ static void reset_to_height(estimator_t *e, float height_m)
     e->unchecked_count = UNCHECKED_AFTER_RESET;
 }
 
+/* The second difference of white noise has six times its variance. Innovations would tell the noise of the accelerometer, too:
+ * this is of the heights alone. */
+static void measure_floor(estimator_t *e, float height_m)
+{
+    const float difference_m = height_m - 2.0F * e->previous_m[0] + e->previous_m[1];
+    const float variance = e->floor_m * e->floor_m;
+    const float seen = fminf(difference_m * difference_m / 6.0F, FLOOR_CLIP * variance);
+
+    e->floor_m = between(FLOOR_START_M, sqrtf(variance + FLOOR_SHARE * (seen - variance)), FLOOR_MAX_M);
+    e->previous_m[1] = e->previous_m[0];
+    e->previous_m[0] = height_m;
+}
+
+/* How uneven the floor is, beyond what a step and a climb look like. */
+static float height_variance_m2(const estimator_t *e)
+{
+    const float rough_m2 = fmaxf(e->floor_m * e->floor_m - FLOOR_SMOOTH_M * FLOOR_SMOOTH_M, 0.0F);
+    return HEIGHT_NOISE_M * HEIGHT_NOISE_M + FLOOR_VARIANCE * rough_m2;
+}
+
 static bool innovation_accepted(const estimator_t *e, float innovation_m)
 {
     const float sigma_m = sqrtf(e->covariance[HEIGHT][HEIGHT] + HEIGHT_NOISE_M * HEIGHT_NOISE_M);
+    const float floor_m = (e->floor_m > FLOOR_SMOOTH_M) ? FLOOR_SIGMAS * e->floor_m : 0.0F;
     const float limit_m = between(INNOVATION_LIMIT_MIN_M, INNOVATION_LIMIT_SIGMAS * sigma_m, INNOVATION_LIMIT_MAX_M);
-    return fabsf(innovation_m) <= limit_m;
+    return fabsf(innovation_m) <= fmaxf(limit_m, floor_m);
 }
 
 static height_outcome_t reject(estimator_t *e, float height_m, float innovation_m)
@@ -356,6 +384,7 @@ static height_outcome_t reject(estimator_t *e, float height_m, float innovation_
 
 static height_outcome_t check_and_fuse(estimator_t *e, float height_m)
 {
+    measure_floor(e, height_m);
     e->innovation_m = height_m - e->delayed.height_m;
     e->confirmed = e->unchecked_count == 0U && innovation_accepted(e, e->innovation_m);
     if (e->unchecked_count == 0U && !e->confirmed) {
@@ -363,7 +392,7 @@ static height_outcome_t check_and_fuse(estimator_t *e, float height_m)
     }
     e->unchecked_count = (uint16_t)(e->unchecked_count - (e->unchecked_count > 0U));
     e->rejected_count = 0U;
-    correct(e, HEIGHT, e->innovation_m, HEIGHT_NOISE_M * HEIGHT_NOISE_M);
+    correct(e, HEIGHT, e->innovation_m, height_variance_m2(e));
     return HEIGHT_FUSED;
 }
 

@@ -217,7 +217,49 @@ void test_nothing_is_judged_while_a_pilot_flies(void)
     TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
 }
 
+void test_a_doubt_has_a_name_and_the_gravest_is_told(void)
+{
+    TEST_ASSERT_NULL(integrity_doubt_name(0U));
+    TEST_ASSERT_EQUAL_STRING("THRUST", integrity_doubt_name(DOUBT_THRUST));
+    TEST_ASSERT_EQUAL_STRING("IMU", integrity_doubt_name(DOUBT_IMU | DOUBT_THRUST));
+    TEST_ASSERT_EQUAL_STRING("SIGHT", integrity_doubt_name(DOUBT_SIGHT | DOUBT_IMU));
+}
+
 /* ---- scans */
+
+/* Roll swings the mirror by 8 mm, and the height is corrected for it: a beam with a length of its own is blocked. */
+void test_a_beam_that_does_not_swing_with_the_mirror_is_blocked(void)
+{
+    for (int blocked = 0; blocked < 2; blocked++) {
+        setUp();
+        fly();
+        for (int scan = 0; scan < 60; scan++) {
+            const float swing_mm = 11.0F * sinf((float)scan * 0.4F);
+            const float noise_mm = (scan % 2 == 0) ? 2.0F : -2.0F;
+            const altitude_t altitude = {.slant_mm = 705.0F + noise_mm + (blocked ? 0.0F : swing_mm),
+                                         .height_mm = 500.0F + noise_mm + (blocked ? swing_mm : 0.0F),
+                                         .spread_mm = 18.0F + (float)(scan % 3)};
+            TEST_ASSERT_TRUE(integrity_scan(&it, &altitude));
+        }
+        run(0.3F);
+        TEST_ASSERT_EQUAL_UINT16(blocked ? DOUBT_SIGHT : 0U, it.doubts);
+    }
+}
+
+/* On the ground by its heights; but the tilt sways as in the air, and a climb has been felt. */
+void test_a_take_off_that_no_height_shows_is_doubted(void)
+{
+    flown.grounded = true;
+    flown.off_ground = false;
+    run(2.0F);
+    flown.grounded = false;
+    flown.standing = true;
+    world.frozen_height = true;
+    flown.wanted_m = 0.5F;
+    flown.thrust_n = HOVER_N + 0.8F;
+    TEST_ASSERT_TRUE(until(DOUBT_SIGHT, 3.0F) > 0.3F);
+}
+
 
 void test_the_third_scan_that_says_the_same_is_a_copy(void)
 {

@@ -417,3 +417,21 @@ void test_after_a_gap_of_the_frames_it_starts_anew(void)
     TEST_ASSERT_EQUAL(HEIGHT_RESET, estimator_fuse_height(&e, &a, time_us - 75000U, false));
     TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.7F, e.now.height_m);
 }
+
+/* Bars of 60 mm, every other scan over one: no steps of the terrain, but a rough floor, and the way is between. */
+void test_bars_on_the_floor_are_noise_and_a_single_edge_is_not(void)
+{
+    hover();
+    TEST_ASSERT_TRUE(e.floor_m < 0.006F);
+    (void)see(0.5 + 0.25);
+    (void)see(0.5 + 0.25);
+    TEST_ASSERT_TRUE(e.floor_m < 0.02F);
+    for (int i = 0; i < 60; i++) {
+        (void)see(0.75 + (i % 2 == 0 ? 0.06 : 0.0));
+    }
+    TEST_ASSERT_TRUE(e.floor_m > 0.04F && e.floor_m < 0.08F);
+    for (int i = 0; i < 20; i++) {
+        TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.75 + (i % 2 == 0 ? 0.06 : 0.0)));
+        TEST_ASSERT_FLOAT_WITHIN(0.03F, 0.78F, e.now.height_m);
+    }
+}
