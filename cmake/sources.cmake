@@ -6,7 +6,7 @@ set(CONTROL_SOURCES
     control/parameters.c control/pid.c control/pidt.c control/ray_clock.c control/reach.c control/supervisor.c control/thrust.c)
 set(DRIVERS_SOURCES
     drivers/decimal.c drivers/flight_log.c drivers/line_sum.c drivers/parameter_image.c drivers/razor.c drivers/scip_info.c
-    drivers/scip_layout.c drivers/scip_parser.c drivers/scip_request.c drivers/scip_time.c drivers/telecommand.c
+    drivers/scip_layout.c drivers/scip_parser.c drivers/scip_request.c drivers/telecommand.c
     drivers/telemetry.c drivers/urg.c drivers/urg_link.c)
 set(BSP_SOURCES
     bsp/board.c bsp/led.c bsp/retained.c bsp/selector.c bsp/start.c bsp/storage.c bsp/throttle.c bsp/timebase.c bsp/uart.c

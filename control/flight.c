@@ -431,7 +431,8 @@ static void update_estimator(flight_t *flight, const parameters_t *parameters, c
     const bool at_rest = state == FLIGHT_GROUND && flight->supervisor.rest.on;
 
     if (flight->supervisor.height.is_new) {
-        est_law_fuse_height(&flight->est, &in->altitude, in->height_stamp_ms, in->height_time_us, at_rest);
+        est_law_fuse_height(&flight->est, &in->altitude, in->height_stamp_ms, in->height_time_us,
+                            in->height_age_us, at_rest);
     }
     if (state == FLIGHT_GROUND) {
         est_law_reset(&flight->est, parameters);

@@ -24,6 +24,7 @@ typedef struct {
     uint16_t tilted_frames;         /* frames in a row over 45 degrees, where they come faster than cycles; or 0 */
     uint32_t attitude_time_us;      /* arrival of the latest IMU frame */
     uint32_t height_stamp_ms;       /* 24-bit sensor time of that scan; for laws PIDT and EST */
+    uint32_t height_age_us;         /* its rays to its arrival, when nothing hinders it; for the same laws */
     const imu_sample_t *frames;   /* the latest frames, oldest first, old ones again or not; for law EST; borrowed for
                                      * the call, NULL when frame_count is 0 */
     uint16_t frame_count;

@@ -10,7 +10,7 @@ void ray_clock_init(ray_clock_t *ray_clock)
     *ray_clock = (ray_clock_t){.started = false};
 }
 
-uint32_t ray_clock_step(ray_clock_t *ray_clock, uint32_t stamp_ms, uint32_t arrival_us)
+uint32_t ray_clock_step(ray_clock_t *ray_clock, uint32_t stamp_ms, uint32_t arrival_us, uint32_t age_us)
 {
     const uint32_t gap_ms = (stamp_ms - ray_clock->stamp_ms) & STAMP_MASK;
     const uint32_t latest_us = ray_clock->earliest_us + gap_ms * (UINT32_C(1000) + DRIFT_US_PER_MS);
@@ -20,5 +20,5 @@ uint32_t ray_clock_step(ray_clock_t *ray_clock, uint32_t stamp_ms, uint32_t arri
     ray_clock->earliest_us = (follows && ahead_us < 0) ? latest_us : arrival_us;
     ray_clock->stamp_ms = stamp_ms & STAMP_MASK;
     ray_clock->started = true;
-    return ray_clock->earliest_us - (RAY_CLOCK_REPLY_US - RAY_CLOCK_RAYS_US);
+    return ray_clock->earliest_us - age_us;
 }

@@ -7,9 +7,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define RAY_CLOCK_REPLY_US UINT32_C(104500) /* step 0 to the last octet of an unhindered reply: revolution and line time */
-#define RAY_CLOCK_RAYS_US UINT32_C(34000)   /* step 0 to the rays that look down */
-
 typedef struct {
     bool started;
     uint32_t stamp_ms;
@@ -18,7 +15,8 @@ typedef struct {
 
 void ray_clock_init(ray_clock_t *ray_clock);
 
-/* One scan: its 24-bit stamp and its arrival on a wrapping 32-bit clock. Returns the instant of its rays. */
-uint32_t ray_clock_step(ray_clock_t *ray_clock, uint32_t stamp_ms, uint32_t arrival_us);
+/* One scan: its 24-bit stamp, its arrival on a wrapping 32-bit clock, and how long an unhindered scan of its kind arrives
+ * after its rays. Returns the instant of its rays. */
+uint32_t ray_clock_step(ray_clock_t *ray_clock, uint32_t stamp_ms, uint32_t arrival_us, uint32_t age_us);
 
 #endif

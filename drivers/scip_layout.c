@@ -12,6 +12,11 @@ const scip_layout_t scip_layouts[SCIP_LAYOUT_COUNT] = {
                                     { { 111U, 145U }, { 372U, 406U }, { 623U, 657U } } },
 };
 
+#define REVOLUTION_US 100000U
+#define STEP_FRONT_MIDDLE 389U
+#define RAYS_FRONT_US 34000U    /* that step after the instant of the time stamp: the model of the plant */
+#define HANDLING_US 460U        /* the sensor's begin and the receiver's interrupt; with it FRONT at 250000 has 70.5 ms */
+
 typedef struct {
     uint32_t sum, least, most;
     uint16_t bad;
@@ -183,6 +188,16 @@ uint16_t scip_step_at_degrees(float degrees)
         return SCIP_STEP_FIRST;
     }
     return step >= (float)SCIP_STEP_LAST ? SCIP_STEP_LAST : (uint16_t)step;
+}
+
+uint32_t scip_rays_age_us(const scip_scan_t *scan, uint32_t bit_rate)
+{
+    const scip_kind_t kind = scan->characters == 3U ? SCIP_STREAM_3 : SCIP_STREAM_2;
+    const uint32_t wire_us = (uint32_t)scip_scan_octets(kind, scan->points) * 100000U / (bit_rate / 100U);
+    const uint32_t steps = (uint32_t)scan->points * steps_per_point(scan);
+    const uint16_t middle = (uint16_t)(scan->first_step + (steps - 1U) / 2U);
+    const uint32_t rays_us = RAYS_FRONT_US + scip_step_delay_us(middle) - scip_step_delay_us(STEP_FRONT_MIDDLE);
+    return REVOLUTION_US - rays_us + wire_us + HANDLING_US;
 }
 
 uint32_t scip_step_delay_us(uint16_t step)

@@ -75,6 +75,11 @@ float scip_step_degrees(uint16_t step);
 /* The step nearest to a direction, kept within 44..725 (NaN: 44). */
 uint16_t scip_step_at_degrees(float degrees);
 
+/* How long after its rays' middle a stream's scan has arrived with its last octet, microseconds, when nothing hinders it:
+ * the rest of the revolution, the scan's octets at this bit rate, and what sensor and receiver add. The sensor sends at
+ * the end of the revolution; what it counts as step 0 is taken to be 34 ms before step 389, as in the model of the plant. bit_rate: one of SCIP's. */
+uint32_t scip_rays_age_us(const scip_scan_t *scan, uint32_t bit_rate);
+
 /* When a step is sampled, microseconds after the instant of the scan's time stamp (step 0), at 600 revolutions a minute.
  * step: 0..1023. */
 uint32_t scip_step_delay_us(uint16_t step);

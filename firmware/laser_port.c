@@ -21,6 +21,7 @@ static uint16_t filling;
 static uint32_t scan_arrival_us;
 static urg_seen_t seen;
 static uint32_t overruns;
+static uint32_t rate;
 
 static laser_message_t mailbox; /* written by Laser_SWI, read by TaskReceiveLaser with Swis off */
 static Swi_Handle laser_swi;
@@ -89,6 +90,7 @@ static Void laser_swi_run(UArg unused0, UArg unused1)
     (void)unused0;
     (void)unused1;
     mailbox.arrival_us = scan_arrival_us;
+    mailbox.bit_rate = rate;
     Hwi_restore(key);
     mailbox.scan = *done;
     (void)memcpy(mailbox.distance_mm, done->distance_mm, done->points * sizeof done->distance_mm[0]);
@@ -101,6 +103,7 @@ void laser_port_create(uint32_t bit_rate)
     Semaphore_Params semaphore;
     uint16_t i;
 
+    rate = bit_rate;
     scip_parser_init(&parser);
     for (i = 0U; i < 2U; i++) {
         scans[i].distance_mm = points[i];
@@ -144,6 +147,7 @@ void laser_port_set_rate(uint32_t bit_rate)
     UInt key = Hwi_disable();
 
     scip_parser_line_broken(&parser);
+    rate = bit_rate;
     Hwi_restore(key);
     uart_port_reopen(BSP_UART_LASER, bit_rate);
 }

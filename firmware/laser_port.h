@@ -14,6 +14,7 @@ typedef struct {
     scip_scan_t scan;           /* its points are in distance_mm below */
     uint16_t distance_mm[SCIP_LAYOUT_POINTS_MAX];
     uint32_t arrival_us;        /* last octet of that scan */
+    uint32_t bit_rate;          /* that it came at */
 } laser_message_t;
 
 /* What has gone well and wrong since power-up. */

@@ -23,6 +23,7 @@ typedef struct {
     bool scan_valid;            /* the very latest scan gave one */
     uint32_t sensor_time_ms;    /* of that height, 24-bit sensor clock */
     uint32_t arrival_us;        /* last octet of that scan, bsp_time_us() */
+    uint32_t age_us;            /* from its rays to that octet, when nothing hinders it */
     uint32_t sequence;          /* heights so far; 0 = never one */
     uint32_t heightless;        /* scans that gave none */
 } altitude_sample_t;

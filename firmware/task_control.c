@@ -96,6 +96,7 @@ static void read_inputs(const parameters_t *parameters, flight_inputs_t *in)
     in->height_time_us = altitude.arrival_us;
     in->height_sequence = altitude.sequence;
     in->height_stamp_ms = altitude.sensor_time_ms;
+    in->height_age_us = altitude.age_us;
     in->altitude = altitude.altitude;
     in->attitude_ready = imu->ready;
     in->roll_rad = imu->median.roll_rad;

@@ -41,6 +41,7 @@ static void take(altitude_sample_t *sample, const laser_message_t *message)
         sample->altitude = altitude;
         sample->sensor_time_ms = message->scan.timestamp_ms;
         sample->arrival_us = message->arrival_us;
+        sample->age_us = scip_rays_age_us(&message->scan, message->bit_rate);
         sample->sequence++;
     } else {
         sample->heightless++;

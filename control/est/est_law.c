@@ -192,9 +192,9 @@ static bool on_ground(const est_law_t *law)
 }
 
 void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t stamp_ms, uint32_t arrival_us,
-                         bool at_rest)
+                         uint32_t age_us, bool at_rest)
 {
-    law->rays_us = ray_clock_step(&law->ray_clock, stamp_ms, arrival_us);
+    law->rays_us = ray_clock_step(&law->ray_clock, stamp_ms, arrival_us, age_us);
     law->heightless_s = seconds(law->rays_us, law->now_us);
     const height_outcome_t outcome =
         estimator_fuse_height(&law->estimator, altitude, law->rays_us, at_rest || on_ground(law));

@@ -55,7 +55,7 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_s
 
 /* A new height: its scan's 24-bit stamp and arrival. at_rest: the vehicle is known to stand on the ground. */
 void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t stamp_ms, uint32_t arrival_us,
-                         bool at_rest);
+                         uint32_t age_us, bool at_rest);
 
 /* Frames with accelerations are fresh. */
 bool est_law_has_imu(const est_law_t *law);

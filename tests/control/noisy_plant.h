@@ -99,6 +99,7 @@ static inline void noisy_height(noisy_t *n, flight_inputs_t *in, uint32_t clock_
     in->altitude = altitude_from_ranges(&range, 1, n->frames[NOISY_FRAMES - 1U].median.roll_rad, 0.0F);
     in->height_valid = true;
     in->height_time_us = n->body.time_us - 2000U + clock_us; /* the plant's height comes 2 ms after its last octet */
+    in->height_age_us = 70500U;
     in->height_stamp_ms = ((n->body.time_us - 106500U) / 1000U + 77U) & 0xFFFFFFU;
     in->height_sequence++;
 }

@@ -320,6 +320,32 @@ void test_steps_are_sampled_one_after_the_other(void)
     TEST_ASSERT_EQUAL_UINT32(99902, scip_step_delay_us(1023));
 }
 
+/* Revolution, less the rays' instant, and the scan's octets: 101, 587, 1157 of them, 40 or 86.8 us each. */
+void test_the_age_of_the_rays_follows_from_layout_and_bit_rate(void)
+{
+    static const struct {
+        uint16_t first, last, characters;
+        uint32_t rate, age_us;
+    } rows[] = {
+        { 372, 406, 2, 250000, 70500 },  { 372, 406, 2, 115200, 75233 },  { 249, 519, 2, 250000, 90428 },
+        { 249, 519, 2, 115200, 117903 }, { 111, 657, 2, 250000, 113228 }, { 111, 657, 2, 115200, 167382 },
+        { 372, 406, 3, 250000, 71900 },
+    };
+    for (uint16_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        scan.first_step = rows[i].first;
+        scan.points = (uint16_t)(rows[i].last - rows[i].first + 1);
+        scan.characters = rows[i].characters;
+        TEST_ASSERT_UINT32_WITHIN(40, rows[i].age_us, scip_rays_age_us(&scan, rows[i].rate));
+    }
+    scan.first_step = 372;
+    scan.points = 35;
+    scan.characters = 2;
+    TEST_ASSERT_EQUAL_UINT32(70500, scip_rays_age_us(&scan, 250000));
+    scan.points = 12;
+    scan.cluster = 3;
+    TEST_ASSERT_UINT32_WITHIN(100, 70500 - 23 * 2 * 40, scip_rays_age_us(&scan, 250000));
+}
+
 /* --- a sensor's own limits ---------------------------------------------------------------------------------------- */
 
 void test_the_limits_may_be_those_that_a_sensor_tells(void)

@@ -341,6 +341,12 @@ void test_a_scan_is_handed_over_at_its_last_octet_with_the_time_of_that_octet(vo
     wait();
     assert_scan(123456U, 700U);
     TEST_ASSERT_EQUAL_UINT32(1000000U + OCTET_US, message.arrival_us);
+    TEST_ASSERT_EQUAL_UINT32(115200U, message.bit_rate);
+    laser_port_set_rate(250000U);
+    start_stream();
+    feed(scan_text(123556U, 700U));
+    wait();
+    TEST_ASSERT_EQUAL_UINT32(250000U, message.bit_rate);
     look();
     TEST_ASSERT_EQUAL_UINT32(before.seen.scan_count + 1U, now.seen.scan_count);
     TEST_ASSERT_EQUAL_UINT32(before.seen.octet_count + 101U, now.seen.octet_count); /* 27 + 2n + 2 ceil(2n / 64) */

@@ -328,6 +328,7 @@ void test_every_value_of_the_servers_reaches_its_own_place_in_the_inputs(void)
     altitude.altitude.disagree = true;
     altitude.sensor_time_ms = 2U;
     altitude.arrival_us = 0xFFFE0001U;
+    altitude.age_us = 12345U;
     altitude.sequence = 4U;
     altitude.heightless = 5U;
     imu.ready = true;
@@ -358,6 +359,7 @@ void test_every_value_of_the_servers_reaches_its_own_place_in_the_inputs(void)
     TEST_ASSERT_EQUAL_HEX32(0xFFFE0015U, in->link_time_us);
     TEST_ASSERT_EQUAL_UINT32(16, in->link_sequence);
     TEST_ASSERT_EQUAL_UINT32(2, in->height_stamp_ms);
+    TEST_ASSERT_EQUAL_UINT32(12345, in->height_age_us);
     TEST_ASSERT_EQUAL_FLOAT(1.0F, in->altitude.slant_mm);
     TEST_ASSERT_EQUAL_UINT16(2, in->frame_count);
     TEST_ASSERT_EQUAL_UINT32(11, in->frames[0].sequence);

@@ -302,6 +302,7 @@ static void next_est_cycle(void)
     }
     next_motion();
     in.height_time_us = in.now_us - 1000U;
+    in.height_age_us = 70500U;
     in.height_stamp_ms += 100U;
     in.height_sequence++;
     in.altitude.height_mm = fminf(in.altitude.height_mm + 10.0F, 600.0F);
