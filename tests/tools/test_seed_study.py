@@ -62,7 +62,7 @@ def flights(**changes):
     figures["PD, KP down"]["hover_mean_error_mm"] = -90.0
     figures["PD saturated"] |= {"hover_rms_mm": 80.0, "hover_mean_error_mm": -40.0}
     figures["PID"] |= {"hover_rms_mm": 50.0, "hover_mean_error_mm": 5.0}
-    figures["PID over the ramp"] |= {"dip_s": 7.6, "dip_mm": -90.0, "after_dip_mm": 60.0, "peak_s": 11.05,
+    figures["PID over the ramp"] |= {"dip_s": 7.6, "dip_mm": -90.0, "after_dip_mm": 60.0, "peak_s": 11.05, "before_mm": -20.0,
                                      "undershoot_mm": 90.0, "end_error_mm": 10.0}
     for name, change in changes.items():
         figures[name.replace("_", " ")] |= change
@@ -80,7 +80,7 @@ class Statements(unittest.TestCase):
             "no_feed-forward": {"highest_mm": 0.0}, "GRAV_alone": {"highest_mm": 0.0},
             "PD_saturated": {"hover_rms_mm": 10.0, "hover_mean_error_mm": 0.0}, "PD": level,
             "PID": {"hover_rms_mm": 120.0, "hover_mean_error_mm": -60.0}, "PID,_tugs": {"failed": 1.0},
-            "PID_over_the_ramp": {"dip_s": 8.9, "after_dip_mm": 0.0, "peak_s": 9.0, "undershoot_mm": 0.0},
+            "PID_over_the_ramp": {"before_mm": -180.0, "dip_s": 8.9, "after_dip_mm": 0.0, "peak_s": 9.0, "undershoot_mm": 0.0},
         }
         broken = {s.words for change in (same, worse, {"PD": level}, {"PD": {"hover_rms_mm": 200.0}})
                   for s in statements.STATEMENTS if not s.holds(flights(**change))}
@@ -96,6 +96,7 @@ class Statements(unittest.TestCase):
         self.assertAlmostEqual(found["dip_mm"], -150.0, places=6)
         self.assertAlmostEqual(found["after_dip_mm"], 50.0, places=6)
         self.assertAlmostEqual(found["peak_mm"], 250.0, places=6)
+        self.assertAlmostEqual(found["before_mm"], 0.0, places=6)
         self.assertAlmostEqual(found["end_error_mm"], 0.0, places=6)
 
     def test_the_page_judges_every_statement(self):

@@ -45,11 +45,25 @@ DISTURBED = ["law", "glitches: hover RMS mm", "failures", "vibration: hover RMS 
              "failures", "blind: not landed", "touch m/s"]
 
 
+DISTURBING = ("glitches", "vibration", "outages", "blind")
+
+
 def disturbed(of_set):
     return [mean(of_set["glitches"], "hover_rms_mm"), str(of_set["glitches"]["failures"]),
             mean(of_set["vibration"], "hover_rms_mm"), median(of_set["outages"], "max_error_mm"),
             str(of_set["outages"]["failures"]), str(of_set["blind"]["failures"]),
             median(of_set["blind"], "touch_speed_mps")]
+
+
+BOTH = ["law", "thrust: hover RMS mm", "terrain RMS mm", "recovery s", "climb rate: hover RMS mm", "terrain RMS mm",
+        "recovery s", "drawn climb rates: hover RMS mm", "failures"]
+
+
+def both(of_set):
+    """The same course on either kind of autopilot."""
+    shown = ("hover_rms_mm", "terrain_rms_mm", "recovery_s")
+    return [*(mean(of_set["nominal"], name) for name in shown), *(mean(of_set["climb"], name) for name in shown),
+            median(of_set["climb-drawn"], "hover_rms_mm"), str(of_set["climb-drawn"]["failures"])]
 
 
 def complete(rows, seed):
@@ -76,9 +90,12 @@ def render(rows, bounds):
         markdown(["activity", *limits[0]], [["bound", *limits[1]]]),
         f"Drawn vehicles, mass ± 20 % and not trimmed, {flights_of('untrimmed')}:\n",
         markdown(UNTRIMMED, [[law, *untrimmed(sets["untrimmed"])] for law, sets in of_law.items()]),
-        f"Disturbed nominal vehicle ({', '.join(f'{name} {plan.SETS[name].runs}' for name in plan.DEFAULT_SETS[2:])} "
+        f"Disturbed nominal vehicle ({', '.join(f'{name} {plan.SETS[name].runs}' for name in DISTURBING)} "
         "flights per law):\n",
         markdown(DISTURBED, [[law, *disturbed(sets)] for law, sets in of_law.items()]),
+        f"Both kinds of autopilot: the throttle commands thrust, or a climb rate ({flights_of('climb')}; drawn "
+        f"{plan.SETS['climb-drawn'].runs}):\n",
+        markdown(BOTH, [[law, *both(sets)] for law, sets in of_law.items()]),
         "What was demanded:\n",
         markdown(verdict.HEAD, [found.cells() for found in verdict.verdicts(rows)]),
     ]

@@ -41,6 +41,10 @@ class Set:
 
 VEHICLE = ("gain", "tau", "damping", "ray_noise", "common_noise", "ray_instant", "acc_bias", "acc_noise",
            "attitude_rms", "imu_noise", "turbulence", "tdelay")
+# The climb-rate autopilot that explains most of the seed's statements: tools/seed_study, docs/control.md.
+CLIMB = {"climb_rate": 0.644, "climb_neutral": 7.53, "climb_deadband": 0.195, "climb_lag": 0.463}
+CLIMB_VEHICLE = ("ray_noise", "common_noise", "ray_instant", "acc_bias", "acc_noise", "attitude_rms", "imu_noise",
+                 "turbulence", "tdelay", "climb_rate", "climb_neutral", "climb_deadband", "climb_lag")
 SETS = {
     "nominal": Set("the nominal vehicle", 20, (), {}),
     "trimmed": Set("drawn vehicles, GRAV trimmed by hand", 200, VEHICLE + ("hover_trimmed",), {}),
@@ -52,6 +56,8 @@ SETS = {
                    {"outage": 0.5, "platform": 0.0}),
     "blind": Set("nominal, flat ground, scanner silent for 3 s: must land", 50, ("outage_start",),
                  {"outage": 3.0, "platform": 0.0}, lands=True),
+    "climb": Set("an autopilot whose throttle commands a climb rate", 20, (), CLIMB),
+    "climb-drawn": Set("drawn ones, mid-point 7.25 to 7.8 N", 100, CLIMB_VEHICLE, {}),
 }
 DEFAULT_SETS = [name for name in SETS if name not in ("trimmed", "rotors")]
 HOVER = {"hover_trimmed", "hover_untrimmed"}
@@ -78,6 +84,10 @@ def draws(seed, run):
         "hover_trimmed": 7.0 + rng.uniform(0.25, 0.55),
         "hover_untrimmed": 7.0 * rng.uniform(0.8, 1.2),
         "outage_start": rng.uniform(8.0, 14.0),
+        "climb_rate": CLIMB["climb_rate"] * rng.uniform(0.75, 1.33),
+        "climb_neutral": 7.0 + rng.uniform(0.25, 0.8),
+        "climb_deadband": rng.uniform(0.0, 0.5),
+        "climb_lag": CLIMB["climb_lag"] * rng.uniform(0.5, 1.2),
     }
 
 

@@ -80,6 +80,8 @@ STATEMENTS = (
               lambda f: abs(f["PID"]["hover_mean_error_mm"]) < 0.5 * abs(f["PD saturated"]["hover_mean_error_mm"])),
     Statement("PID comes back after the ropes' tugs", "Annex I", "mean within 40 mm, does not fail",
               lambda f: abs(f["PID, tugs"]["hover_mean_error_mm"]) < 40.0 and f["PID, tugs"]["failed"] < 0.5),
+    Statement("it reaches 60 cm and holds it until the ramp comes", "6", "mean of 6 to 7.2 s within 100 mm of the reference",
+              lambda f: abs(f["PID over the ramp"]["before_mm"]) < 100.0),
     Statement("over the ramp: a dip at about 7.5 s", "6", "lowest of 7 to 9 s within 7.3 to 8.3 s, below - 30 mm",
               lambda f: 7.3 <= f["PID over the ramp"]["dip_s"] <= 8.3 and f["PID over the ramp"]["dip_mm"] < -30.0),
     Statement("then an overshoot", "6", "above + 20 mm before the edge",
@@ -99,8 +101,10 @@ def course(rows, reference_m):
 
     dip_m, dip_s = min(part(7.0, 9.0))
     peak_m, peak_s = max(part(7.0, 15.0))
+    before = [height_m for height_m, _ in part(6.0, 7.2)]
     end = [height_m for height_m, _ in part(15.0, 20.0)]
     return {
+        "before_mm": (sum(before) / len(before) - reference_m) * 1000.0,
         "dip_s": dip_s, "dip_mm": (dip_m - reference_m) * 1000.0,
         "after_dip_mm": (max(part(dip_s, 10.95))[0] - reference_m) * 1000.0,
         "peak_s": peak_s, "peak_mm": (peak_m - reference_m) * 1000.0,
