@@ -7,11 +7,10 @@ static const char *const causes[SCIP_DAMAGE_COUNT] = {
     [SCIP_DAMAGE_ECHO] = "echo",    [SCIP_DAMAGE_CHARACTER] = "char", [SCIP_DAMAGE_SEQUENCE] = "seq",
 };
 
+static laser_sample_t laser;
+
 static void add_stream(answer_t *answer, const laser_statistics_t *statistics)
 {
-    static laser_sample_t laser;
-
-    laser_server_read(&laser);
     telemetry_text(&answer->line, " state:");
     telemetry_text(&answer->line, urg_status_name(laser.status));
     answer_count(answer, "rate", laser.rate);
@@ -38,9 +37,14 @@ bool verb_laser(answer_t *answer)
     static laser_statistics_t statistics;
 
     laser_port_statistics(&statistics);
+    laser_server_read(&laser);
     answer_begin(answer);
     add_stream(answer, &statistics);
-    add_damages(answer, &statistics);
+    if (laser.status == URG_OLD) {
+        telemetry_text(&answer->line, " do:update the sensor's firmware to 3.0 or later");
+    } else {
+        add_damages(answer, &statistics);
+    }
     answer_send(answer);
     return true;
 }

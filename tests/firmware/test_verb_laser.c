@@ -116,6 +116,15 @@ void test_every_state_is_told_by_its_name(void)
     }
 }
 
+void test_of_a_sensor_that_is_too_old_it_says_what_to_do(void)
+{
+    laser.status = URG_OLD;
+    laser.rate = 115200U;
+    ask();
+    TEST_ASSERT_EQUAL_STRING("OK LASER state:OLD rate:115200 frames:0 timeout:0 restart:0 overrun:0 framing:0 "
+                             "do:update the sensor's firmware to 3.0 or later\r\n", sent[0]);
+}
+
 /* After the longest flight, on the worst cable. */
 void test_the_largest_counts_fit(void)
 {
