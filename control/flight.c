@@ -120,7 +120,7 @@ static void update_hover(flight_t *flight, float gravity_n)
 }
 
 /* The law keeps its integral action through COASTING alone. */
-static void change_mode(flight_t *flight, flight_mode_t before, flight_mode_t now)
+static void change_mode(flight_t *flight, flight_mode_t before, flight_mode_t now, float gravity_n)
 {
     if (before == FLIGHT_MODE_DESCENT) {
         flight->hover_n += flight->descent.trim_n;
@@ -131,6 +131,9 @@ static void change_mode(flight_t *flight, flight_mode_t before, flight_mode_t no
     if (now == FLIGHT_MODE_LAW) {
         pid_resume(&flight->pid);
         pidt_resume(&flight->pidt);
+        if (is_est_mode(before) && flight->supervisor.state == FLIGHT_FLYING) {
+            flight->pidt.integral_n = flight->hover_n - gravity_n; /* what EST has found */
+        }
     } else if (now == FLIGHT_MODE_FLOAT) {
         pidt_reset(&flight->pidt);
     } else if (flight->supervisor.state != FLIGHT_COASTING) {
@@ -596,7 +599,7 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
     const bool law_changed = select_law(flight, parameters);
     flight->mode = select_mode(flight, in);
     if (before != flight->mode) {
-        change_mode(flight, before, flight->mode);
+        change_mode(flight, before, flight->mode, parameters->value[PARAMETER_GRAV]);
     }
     update_hover(flight, parameters->value[PARAMETER_GRAV]);
     float_along(flight, !is_hold_mode(before));

@@ -13,6 +13,8 @@
 #define ANGLE_MAX_RAD 3.2F
 
 #define HEIGHT_NOISE_M 0.0013F
+#define OFF_MODEL_SHARE 0.4F
+#define OFF_MODEL_MPS2 2.0F
 #define FLOOR_START_M 0.004F
 #define FLOOR_SMOOTH_M 0.020F /* what edges and the vehicle's own motion make of the measure */
 #define FLOOR_MAX_M 0.080F
@@ -235,6 +237,16 @@ static void append_frame(estimator_t *e, const estimator_frame_t *frame)
     }
 }
 
+/* An accelerometer that is far from what the thrust makes of the motion, and stays there, counts less until it is judged. */
+static float credit(estimator_t *e, const modelled_motion_t *model, float up_mps2)
+{
+    const float off_mps2 = model->known ? up_mps2 - e->now.bias_mps2 - model->up_mps2 : 0.0F;
+
+    e->off_model_mps2 += OFF_MODEL_SHARE * (off_mps2 - e->off_model_mps2);
+    const float excess = OFF_MODEL_MPS2 / fmaxf(fabsf(e->off_model_mps2), OFF_MODEL_MPS2);
+    return excess * excess * excess * excess;
+}
+
 static bool usable(const imu_sample_t *frame, float up_mps2)
 {
     return frame->ready && frame->has_acceleration && fabsf(up_mps2) < UP_MAX_MPS2 && fabsf(frame->median.roll_rad) < ANGLE_MAX_RAD
@@ -251,7 +263,7 @@ void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motio
         return;
     }
     const float mean_mps2 = e->has_frames ? 0.5F * (up_mps2 + e->up_mps2) : up_mps2;
-    const float share = accelerometer_share(e, &model);
+    const float share = accelerometer_share(e, &model) * credit(e, &model, mean_mps2);
     e->sequence = frame->sequence;
     e->model_noise_mps2 = model.noise_mps2;
     e->up_mps2 = up_mps2;

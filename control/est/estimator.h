@@ -63,6 +63,7 @@ typedef struct {
     float previous_mps2[2];   /* raw accelerations of the two frames before */
     float noise_mps2;       /* measured rms of the accelerometer's noise */
     float model_noise_mps2;
+    float off_model_mps2;   /* felt less what the thrust makes, low-passed */
     float previous_m[2];    /* the two heights before */
     float floor_m;          /* measured rms noise of the heights, rough floor included */
     uint16_t rejected_count;       /* heights in a row */

@@ -435,3 +435,25 @@ void test_bars_on_the_floor_are_noise_and_a_single_edge_is_not(void)
         TEST_ASSERT_FLOAT_WITHIN(0.03F, 0.78F, e.now.height_m);
     }
 }
+
+/* 4 m/s2 that the thrust does not explain: the model's motion goes on until somebody judges. */
+void test_an_accelerometer_far_from_the_thrusts_motion_counts_less(void)
+{
+    const modelled_motion_t still = {.known = true, .up_mps2 = 0.0F, .noise_mps2 = 0.84F};
+
+    hover();
+    for (int i = 0; i < 12; i++) {
+        time_us += 25000U;
+        imu_sample_t f = frame();
+        f.down_mps2 += 4.0F;
+        estimator_predict(&e, &f, still);
+    }
+    TEST_ASSERT_TRUE(e.latest.share < 0.15F);
+    TEST_ASSERT_FLOAT_WITHIN(0.3F, 4.0F, e.off_model_mps2);
+    for (int i = 0; i < 20; i++) {
+        time_us += 25000U;
+        const imu_sample_t f = frame();
+        estimator_predict(&e, &f, still);
+    }
+    TEST_ASSERT_TRUE(e.latest.share > 0.6F);
+}

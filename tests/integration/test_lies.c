@@ -1,0 +1,116 @@
+/* One sensor lies, and the vehicle neither flies away nor falls: rows of conditions with the harm that they may do. LIES_SEEDS
+ * flights per row, 2 unless the environment says otherwise. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "child.h"
+#include "unity.h"
+
+#define FLAT "plant.platform=0"
+
+void setUp(void) {}
+void tearDown(void) {}
+
+/* Bounds: highest above the reference, hardest touch, hover rms; 0: not looked at. */
+typedef struct {
+    const char *const assignments[6];
+    double highest_mm, touch_mps, rms_mm;
+} lie_t;
+
+static unsigned long seeds(void)
+{
+    const char *text = getenv("LIES_SEEDS");
+    return text != NULL ? strtoul(text, NULL, 10) : 2UL;
+}
+
+static void at_most(double bound, double found, const char *what, const lie_t *lie, unsigned long seed)
+{
+    char message[200];
+
+    snprintf(message, sizeof message, "%s %.4g, at most %.4g: %s %s seed %lu", what, found, bound, lie->assignments[1],
+             lie->assignments[2] != NULL ? lie->assignments[2] : "", seed);
+    TEST_ASSERT_TRUE_MESSAGE(bound <= 0.0 || isnan(found) || found <= bound, message);
+}
+
+static void fly(const char *scenario, const lie_t *lie, bool lands)
+{
+    static flight_result_t result;
+
+    for (unsigned long seed = 301; seed < 301 + seeds(); seed++) {
+        child_fly(scenario, seed, lie->assignments, &result);
+        TEST_ASSERT_NULL(result.halt);
+        at_most(lie->highest_mm, result.metrics.value[METRIC_HIGHEST_MM], "highest", lie, seed);
+        at_most(lie->touch_mps, result.metrics.value[METRIC_TOUCH_SPEED_MPS], "touch", lie, seed);
+        at_most(lie->rms_mm, result.metrics.value[METRIC_HOVER_RMS_MM], "hover rms", lie, seed);
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, result.metrics.value[METRIC_CUTS]);
+        TEST_ASSERT_FALSE(lands && isnan(result.metrics.value[METRIC_TOUCH_SPEED_MPS]));
+    }
+}
+
+static const lie_t sights[] = {
+    {{FLAT, "plant.rays_lost=0.65", "plant.rays_lost_start=6"}, 800.0, 0.8, 0.0},
+    {{FLAT, "plant.rays_lost=0.6"}, 800.0, 0.8, 0.0},
+    {{FLAT, "plant.scan_frozen_start=5"}, 800.0, 0.8, 0.0},
+    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=7", "plant.block_mm=400"}, 1500.0, 1.0, 0.0},
+    {{FLAT, "plant.sight_blocked=1", "plant.block_mm=250"}, 1500.0, 1.5, 0.0},
+};
+
+void test_a_sight_that_lies_does_not_fly_the_vehicle_away(void)
+{
+    for (size_t i = 0; i < sizeof sights / sizeof sights[0]; i++) {
+        fly("est-60cm-ramp", &sights[i], false);
+    }
+}
+
+static const lie_t imus[] = {
+    {{FLAT, "plant.acc_bias=-2.5"}, 300.0, 0.6, 60.0},
+    {{FLAT, "plant.acc_bias=2.5"}, 300.0, 0.6, 60.0},
+    {{FLAT, "plant.acc_scale=0.00390625"}, 300.0, 0.6, 60.0},
+    {{FLAT, "plant.acc_sign=-1"}, 300.0, 0.6, 60.0},
+    {{FLAT, "plant.acc_jump=4", "plant.acc_jump_start=9"}, 400.0, 0.8, 100.0},
+    {{FLAT, "plant.acc_jump=-4", "plant.acc_jump_start=22"}, 400.0, 0.8, 0.0},
+    {{FLAT, "plant.attitude_burst_deg=80", "plant.attitude_burst_length=0.15"}, 100.0, 0.4, 20.0},
+};
+
+void test_an_imu_that_lies_is_flown_with_and_landed(void)
+{
+    for (size_t i = 0; i < sizeof imus / sizeof imus[0]; i++) {
+        fly("est-60cm-ramp", &imus[i], true);
+    }
+}
+
+static const lie_t gaps[] = {
+    {{FLAT, "plant.imu_mute_start=8", "plant.imu_mute=2", "plant.outage_start=10.2", "plant.outage=4"}, 1000.0, 1.0, 0.0},
+    {{FLAT, "plant.imu_mute_start=6", "plant.imu_mute=0.6", "plant.outage_start=6.5", "plant.outage=6"}, 1000.0, 1.0, 0.0},
+};
+
+void test_a_gap_of_the_imu_and_one_of_the_scanner_end_on_the_ground(void)
+{
+    for (size_t i = 0; i < sizeof gaps / sizeof gaps[0]; i++) {
+        fly("est-60cm-ramp", &gaps[i], true);
+    }
+}
+
+static const lie_t pilots[] = {
+    {{FLAT, "plant.pilot_start=7", "plant.pilot=8", "plant.pilot_height=1.0"}, 700.0, 0.5, 0.0},
+    {{FLAT, "plant.pilot_start=7", "plant.pilot=8", "plant.pilot_height=0.4"}, 300.0, 0.5, 0.0},
+};
+
+/* SEL is NONE: nothing tells who has the throttle. */
+void test_a_pilot_whom_no_pin_tells_of_gives_back_a_vehicle_that_flies(void)
+{
+    for (size_t i = 0; i < sizeof pilots / sizeof pilots[0]; i++) {
+        fly("est-60cm-ramp", &pilots[i], true);
+    }
+}
+
+/* The sight's rows again, by the seed's law. */
+void test_the_seeds_pid_is_not_flown_away_either(void)
+{
+    for (size_t i = 0; i < sizeof sights / sizeof sights[0]; i++) {
+        lie_t lie = {{sights[i].assignments[0], sights[i].assignments[1], sights[i].assignments[2],
+                      sights[i].assignments[3], NULL}, 2500.0, 1.2, 0.0};
+        fly("pid-60cm-ramp", &lie, false);
+    }
+}
