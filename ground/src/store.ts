@@ -103,7 +103,7 @@ function onAnswer(line: Extract<Line, { kind: 'answer' }>): void {
   }
 }
 
-const MARKED = /^#(SETR|STOP|LAND|LAW|CALIBRATE|SAVE|LOAD|DEFAULTS|GRAV)\b/i;
+const MARKED = /^#(SETR|STOP|LAND|ARM|LAW|CALIBRATE|SAVE|LOAD|DEFAULTS|GRAV)\b/i;
 
 /** Sends a command, again until it is answered, and gives up in time. */
 export async function command(text: string, options: { tries?: number } = {}): Promise<Outcome> {

@@ -54,6 +54,12 @@ export function Messages() {
   );
 }
 
+const armed = signal('');
+async function arm(): Promise<void> {
+  const outcome = await command('#ARM');
+  armed.value = outcome.ok ? outcome.lines[0]!.rest : outcome.silent ? w().noAnswer : outcome.reason;
+}
+
 function Reference() {
   const words = w();
   const t = latest.value;
@@ -77,6 +83,7 @@ function Reference() {
         ))}
       </div>
       <button class="go" disabled={!open} onClick={send}>{flying ? `${words.changeTo} ${Number(wanted.value).toFixed(1)} m` : words.takeOff}</button>
+      {!vehicle.value && <><button disabled={!open || t.state !== 'GROUND'} onClick={() => void arm()}>{words.arm}{armed.value && <small> · {armed.value}</small>}</button><p class="hint">{words.armHint}</p></>}
     </section>
   );
 }

@@ -94,8 +94,7 @@ export function ParametersView() {
           <h3>{words.confirmWrite}</h3>
           <table><thead><tr><th>{words.name}</th><th>{words.from}</th><th>{words.to}</th></tr></thead>
             <tbody>{confirming.value.map((d) => (<tr key={d.name}><th scope="row">{d.name}</th><td>{d.from}</td><td><strong>{d.to}</strong></td></tr>))}</tbody></table>
-          <button class="primary" onClick={() => void write(confirming.value!)}>{words.writeNow}</button>
-          <button onClick={() => (confirming.value = null)}>{words.cancel}</button>
+          <div class="row"><button class="primary" onClick={() => void write(confirming.value!)}>{words.writeNow}</button><button onClick={() => (confirming.value = null)}>{words.cancel}</button></div>
         </div>
       )}
       {rows.length === 0 ? <p class="empty">{loading.value ? words.reading : words.notRead}</p> : (

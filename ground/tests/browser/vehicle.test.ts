@@ -240,7 +240,7 @@ describe('the simulated vehicle, the unmodified firmware as WebAssembly', () => 
   });
 
   it('keeps its memory and its frames while it plots', async () => {
-    const minutes = Number(process.env.MINUTES ?? 3); // of flight, at five times the speed
+    const minutes = Number(process.env.MINUTES ?? 1); // of flight, at five times the speed
     await airborne('5×');
     const cdp = await page.context().newCDPSession(page);
     const heap = async (): Promise<number> => {

@@ -1,5 +1,5 @@
 import { execFileSync } from 'node:child_process';
-import { existsSync } from 'node:fs';
+import { existsSync, readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
 import { delivered, presets } from '../../src/presets';
 import { LineSplitter, parseLine, type Line } from '../../src/protocol/lines';
@@ -234,6 +234,20 @@ describe('the series of the plots', () => {
     const series = new Series();
     for (const t of [0, 0.2, 0.4, 3, 3.2]) series.add(t, line, NaN);
     expect(series.window(0, 10).columns[1]).toEqual([expect.closeTo(0.6), expect.closeTo(0.6), expect.closeTo(0.6), null, expect.closeTo(0.6), expect.closeTo(0.6)]);
+  });
+});
+
+describe('the words', () => {
+  const header = readFileSync('../control/flight_state.h', 'utf8');
+  it('know every flag of the firmware', () => {
+    const flags = [...header.matchAll(/#define FLIGHT_FLAG_\w+ (\d+)U/g)].map((match) => Number(match[1]));
+    expect(flags.length).toBeGreaterThan(7);
+    expect(flags.filter((flag) => en.flags[Math.log2(flag)] === undefined)).toEqual([]);
+    expect(en.flags).toHaveLength(flags.length);
+  });
+  it('know every state of the firmware', () => {
+    const states = [...header.matchAll(/^ {4}FLIGHT_([A-Z]+),/gm)].map((match) => match[1]!);
+    expect(Object.keys(en.states).sort()).toEqual(states.filter((state) => state !== 'STATE_COUNT').sort());
   });
 });
 
