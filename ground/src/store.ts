@@ -133,8 +133,9 @@ export async function readParameters(): Promise<void> {
   if (loading.value) return;
   loading.value = true;
   const help = await command('#HELP');
-  const rows = help.lines.map((line) => parseHelp(line.rest)).filter((row): row is Parameter => row !== null);
   const values = await command('#GET');
+  const named = new Set(values.lines.map((line) => line.name)); // a command's choices look like a parameter's in #HELP
+  const rows = help.lines.map((line) => parseHelp(line.rest)).filter((row): row is Parameter => row !== null && named.has(row.name));
   for (const line of values.lines) {
     const row = rows.find((p) => p.name === line.name);
     if (row) row.value = valueOf(line.name, line.rest)?.value ?? '';
