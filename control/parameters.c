@@ -11,6 +11,10 @@ static const char *const plant_names[PLANT_COUNT] = {[PLANT_THRUST] = "THRUST", 
 static const char *const sum_names[SUM_COUNT] = {[SUM_OFF] = "OFF", [SUM_ON] = "ON"};
 static const char *const sel_names[SEL_COUNT] = {[SEL_NONE] = "NONE", [SEL_PIN] = "PIN"};
 
+static const char *const axis_names[AXIS_COUNT] = {[AXIS_ROLL] = "ROLL", [AXIS_MINUS_ROLL] = "-ROLL",
+                                                   [AXIS_PITCH] = "PITCH", [AXIS_MINUS_PITCH] = "-PITCH"};
+static const char *const down_names[DOWN_COUNT] = {[DOWN_Z] = "Z", [DOWN_MINUS_Z] = "-Z"};
+
 /* SETR ends at 3 m so that the take-over at 0.8 m above the reference is still within the sensor's 4.095 m. */
 const parameter_row_t parameter_table[PARAMETER_COUNT] = {
     [PARAMETER_SETR] = {"SETR", "m", 0.0F, 3.0F, 0.0F, NULL, "Height reference; 0 lands."},
@@ -41,6 +45,13 @@ const parameter_row_t parameter_table[PARAMETER_COUNT] = {
     [PARAMETER_SEL] = {"SEL", "-", 0.0F, (float)(SEL_COUNT - 1), (float)SEL_NONE, sel_names,
                         "Whether a pin tells that the pilot has the throttle."},
     [PARAMETER_IDLE] = {"IDLE", "%", 0.0F, 25.0F, 15.0F, NULL, "Least throttle while armed: keeps the motors turning."},
+    [PARAMETER_IROLL] = {"IROLL", "-", 0.0F, (float)(AXIS_COUNT - 1), (float)AXIS_MINUS_ROLL, axis_names,
+                          "The IMU's angle that is the vehicle's roll, right side up."},
+    [PARAMETER_IPITCH] = {"IPITCH", "-", 0.0F, (float)(AXIS_COUNT - 1), (float)AXIS_PITCH, axis_names,
+                           "The IMU's angle that is the vehicle's pitch, nose up."},
+    [PARAMETER_IDOWN] = {"IDOWN", "-", 0.0F, (float)(DOWN_COUNT - 1), (float)DOWN_Z, down_names,
+                          "Where the IMU's accelerometer feels gravity."},
+    [PARAMETER_IUNIT] = {"IUNIT", "1/g", 0.5F, 5000.0F, 256.0F, NULL, "Counts of the IMU's accelerometer per g."},
 };
 
 void parameters_init(parameters_t *parameters)
@@ -145,6 +156,10 @@ bool parameter_may_change_in_air(parameter_id_t id, float from, float to)
     case PARAMETER_DSAT:
         return fabsf(to - from) <= PARAMETER_STEP_IN_AIR_N;
     case PARAMETER_SEL:
+    case PARAMETER_IROLL:
+    case PARAMETER_IPITCH:
+    case PARAMETER_IDOWN:
+    case PARAMETER_IUNIT:
         return to == from;
     default:
         return true;

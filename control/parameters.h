@@ -32,6 +32,10 @@ typedef enum {
     PARAMETER_SEL,      /* choice, control_sel_t */
     PARAMETER_SUM,      /* choice, control_sum_t */
     PARAMETER_IDLE,     /* % of the throttle's range, while armed */
+    PARAMETER_IROLL,    /* choice, control_axis_t */
+    PARAMETER_IPITCH,   /* likewise */
+    PARAMETER_IDOWN,    /* choice, control_down_t */
+    PARAMETER_IUNIT,    /* accelerometer counts per g */
     PARAMETER_COUNT
 } parameter_id_t;
 
@@ -41,6 +45,10 @@ typedef enum { TERRAIN_FOLLOW, TERRAIN_IGNORE, TERRAIN_COUNT } control_terrain_t
 typedef enum { PLANT_THRUST, PLANT_CLIMB, PLANT_COUNT } control_plant_t; /* what the autopilot's throttle commands */
 typedef enum { SUM_OFF, SUM_ON, SUM_COUNT } control_sum_t; /* whether every command line must carry its sum */
 typedef enum { SEL_NONE, SEL_PIN, SEL_COUNT } control_sel_t; /* what tells who has the throttle: nothing, or a pin */
+
+/* Which angle of the IMU, and which end of its z axis. */
+typedef enum { AXIS_ROLL, AXIS_MINUS_ROLL, AXIS_PITCH, AXIS_MINUS_PITCH, AXIS_COUNT } control_axis_t;
+typedef enum { DOWN_Z, DOWN_MINUS_Z, DOWN_COUNT } control_down_t;
 
 typedef struct {
     const char *name;               /* as typed after '#', upper case */
@@ -84,7 +92,7 @@ parameter_status_t parameters_set(parameters_t *parameters, parameter_id_t id, f
 
 /* Whether a value in force may change so in the air. GRAV, USAT and DSAT: by PARAMETER_STEP_IN_AIR_N at most, because the
  * thrust of law PD and PID follows them at once; from hover so much less sinks at 0.8 m/s in the end (damping 2.4 1/s).
- * SEL: not at all, because it decides who has the throttle. The others: yes; a change of LAW starts at the thrust of
+ * SEL: not at all, because it decides who has the throttle; nor what turns the IMU's axes round. The others: yes; a change of LAW starts at the thrust of
  * before (flight.h). */
 #define PARAMETER_STEP_IN_AIR_N 1.5F
 bool parameter_may_change_in_air(parameter_id_t id, float from, float to);

@@ -5,16 +5,7 @@
 
 #include "drivers/decimal.h"
 
-/* Axis signs of the sensor as mounted. */
-static const float imu_yaw_sign = 1.0F;
-static const float imu_pitch_sign = 1.0F;   /* pitch > 0 raises the nose */
-static const float imu_roll_sign = 1.0F;    /* roll > 0 raises the mirror's side */
-static const float imu_forward_sign = 1.0F; /* x of A-C */
-static const float imu_right_sign = 1.0F;   /* y of A-C */
-static const float imu_down_sign = 1.0F;    /* z of A-C: +1 g at rest */
-
 #define RAD_PER_DEGREE 0.017453293F
-#define MPS2_PER_COUNT (9.80665F / 256.0F)
 #define ANGLE_MAX_DEGREE 360.0F
 #define ACCELERATION_MAX_COUNT (16.0F * 256.0F)
 
@@ -192,12 +183,12 @@ razor_status_t razor_parse(const razor_text_t *text, razor_frame_t *frame)
     if (!within(ypr, ANGLE_MAX_DEGREE) || !within(xyz, ACCELERATION_MAX_COUNT)) {
         return RAZOR_OUT_OF_RANGE;
     }
-    frame->yaw_rad = imu_yaw_sign * RAD_PER_DEGREE * ypr[0];
-    frame->pitch_rad = imu_pitch_sign * RAD_PER_DEGREE * ypr[1];
-    frame->roll_rad = imu_roll_sign * RAD_PER_DEGREE * ypr[2];
+    frame->yaw_rad = RAD_PER_DEGREE * ypr[0];
+    frame->pitch_rad = RAD_PER_DEGREE * ypr[1];
+    frame->roll_rad = RAD_PER_DEGREE * ypr[2];
     frame->has_acceleration = has_acceleration;
-    frame->forward_mps2 = imu_forward_sign * MPS2_PER_COUNT * xyz[0];
-    frame->right_mps2 = imu_right_sign * MPS2_PER_COUNT * xyz[1];
-    frame->down_mps2 = imu_down_sign * MPS2_PER_COUNT * xyz[2];
+    frame->x_counts = xyz[0];
+    frame->y_counts = xyz[1];
+    frame->z_counts = xyz[2];
     return RAZOR_OK;
 }

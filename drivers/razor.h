@@ -1,6 +1,6 @@
 /* Razor 9DOF text frames: `#A-C=x,y,z` CR LF `#YPR=yaw,pitch,roll` CR LF, or both joined on one line, with nothing, one
- * comma or one blank between. A YPR line alone is a frame without acceleration. 256 counts are 1 g; degrees on the wire,
- * radians out. Axis signs stand in one table in razor.c. Pure.
+ * comma or one blank between. A YPR line alone is a frame without acceleration. Degrees on the wire,
+ * radians out; signs, axes and the accelerometer's counts are the sensor's own (docs/razor.md). Pure.
  *
  * The frame collector runs in the receive interrupt and only gathers characters; reading numbers is the task's. */
 #ifndef DRIVERS_RAZOR_H
@@ -40,15 +40,15 @@ bool razor_collect(razor_collector_t *collector, octet_t octet);
 void razor_collector_broken(razor_collector_t *collector);
 
 typedef struct {
-    float yaw_rad, pitch_rad, roll_rad;             /* vehicle signs, see razor.c */
-    bool has_acceleration;                          /* the A-C part was there */
-    float forward_mps2, right_mps2, down_mps2;      /* what A-C says: at rest and level 0, 0, +9.80665 */
+    float yaw_rad, pitch_rad, roll_rad;
+    bool has_acceleration;                          /* the A-C part was there; else its counts are 0 */
+    float x_counts, y_counts, z_counts;
 } razor_frame_t;
 
 typedef enum { RAZOR_OK, RAZOR_MALFORMED, RAZOR_OUT_OF_RANGE } razor_status_t;
 
 /* OK writes *frame; otherwise it is untouched. nan, inf, ovf, a wrong number of fields, |angle| > 360 deg and
- * |acceleration| > 16 g are refused. */
+ * an acceleration over 4096 counts are refused. */
 razor_status_t razor_parse(const razor_text_t *text, razor_frame_t *frame);
 
 #endif

@@ -186,6 +186,7 @@ static const verb_t verbs[] = {
     {"LOG", verb_log, "[SECONDS|CLEAR|STOP] - the flight recorder as CSV"},
     {"CALIBRATE", verb_calibrate, "[COUNTS [SECONDS]] - thrust step by step, tied down; any line but #PING ends it"},
     {"LASER", verb_laser, "- the scanner's state, rate, frames and errors by cause"},
+    {"IMU", verb_imu, "[LEVEL|RIGHT|NOSE] - what the IMU sends; finds its unit and axes from how the vehicle is held"},
     {"PERF", verb_perf, "[RESET] - responses, deadlines, stacks, load, waits; RESET clears them"},
     {"STREAM", verb_stream, "PULSE|OFF - the pulse of each control cycle in place of telemetry"},
     {"HANG", verb_hang, "TASK - hangs a task, for a test of the watchdog; on the ground only"},
@@ -226,9 +227,12 @@ static bool execute_help(answer_t *answer)
     return listing_start(answer, write_help);
 }
 
+/* What may change by steps in the air is of the newtons, the rest not at all. */
 static bool refuse_in_air(answer_t *answer, parameter_id_t id)
 {
-    return answer_refuse(answer, (id == PARAMETER_SEL) ? "not on the ground" : "in the air by 1.5 N at most");
+    const bool stepped = id == PARAMETER_GRAV || id == PARAMETER_USAT || id == PARAMETER_DSAT;
+
+    return answer_refuse(answer, stepped ? "in the air by 1.5 N at most" : "not on the ground");
 }
 
 static bool execute_set(answer_t *answer, parameter_id_t id)

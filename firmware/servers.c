@@ -7,6 +7,7 @@
 
 #include "bsp/timebase.h"
 #include "control/thrust.h"
+#include "firmware/imu_exchange.h"
 #include "firmware/monitor.h"
 #include "firmware/watch.h"
 
@@ -51,6 +52,7 @@ void servers_create(void)
     parameter_gate = gate_create("Parameter_server");
     flight_gate = gate_create("FlightStatus_server");
     parameters_init(&parameters);
+    imu_exchange_mount(&parameters);
     flight.state = FLIGHT_GROUND;
     flight.flags = FLIGHT_FLAG_HEIGHT | FLIGHT_FLAG_ATTITUDE;
 }
@@ -151,6 +153,7 @@ void parameter_server_write(const parameters_t *set)
 
     parameters = *set;
     GateMutexPri_leave(parameter_gate, key);
+    imu_exchange_mount(set);
 }
 
 void parameter_server_read(parameters_t *set)

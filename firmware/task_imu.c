@@ -4,7 +4,9 @@
 #include <xdc/std.h>
 
 #include "control/attitude.h"
+#include "control/imu_mapping.h"
 #include "firmware/boot.h"
+#include "firmware/imu_exchange.h"
 #include "firmware/imu_port.h"
 #include "firmware/monitor.h"
 #include "drivers/razor.h"
@@ -14,22 +16,37 @@
 
 static attitude_filter_t filter;
 
-static void take(imu_sample_t *sample, const razor_frame_t *frame, uint32_t arrival_us)
+static imu_raw_t raw_of(const razor_frame_t *frame)
 {
-    bool was_ready = filter.ready;
-    attitude_t raw;
+    return (imu_raw_t){
+        .yaw_rad = frame->yaw_rad,
+        .pitch_rad = frame->pitch_rad,
+        .roll_rad = frame->roll_rad,
+        .has_acceleration = frame->has_acceleration,
+        .x_counts = frame->x_counts,
+        .y_counts = frame->y_counts,
+        .z_counts = frame->z_counts,
+    };
+}
 
-    raw.roll_rad = frame->roll_rad;
-    raw.pitch_rad = frame->pitch_rad;
-    raw.yaw_rad = frame->yaw_rad;
-    sample->ready = attitude_step(&filter, &raw, &sample->level, &sample->median);
+/* The filter works in the IMU's axes, so that its offset outlasts a change of the mapping. */
+static void take(imu_sample_t *sample, const imu_raw_t *raw, uint32_t arrival_us)
+{
+    const bool was_ready = filter.ready;
+    const attitude_t angles = {.roll_rad = raw->roll_rad, .pitch_rad = raw->pitch_rad, .yaw_rad = raw->yaw_rad};
+    imu_mapping_t mapping;
+    attitude_t level;
+    attitude_t median;
+
+    imu_exchange_mounted(&mapping);
+    sample->ready = attitude_step(&filter, &angles, &level, &median);
     if (filter.ready && !was_ready) {
         boot_keep_offset(&filter.offset);
     }
-    sample->has_acceleration = frame->has_acceleration;
-    sample->forward_mps2 = frame->forward_mps2;
-    sample->right_mps2 = frame->right_mps2;
-    sample->down_mps2 = frame->down_mps2;
+    sample->level = imu_map_angles(&mapping, &level);
+    sample->median = imu_map_angles(&mapping, &median);
+    sample->has_acceleration = raw->has_acceleration;
+    imu_map_acceleration(&mapping, raw, &sample->forward_mps2, &sample->right_mps2, &sample->down_mps2);
     sample->arrival_us = arrival_us;
     sample->sequence++;
 }
@@ -50,6 +67,8 @@ static Void task_imu(UArg unused0, UArg unused1)
     static imu_message_t message;
     static imu_sample_t sample;
     razor_frame_t frame = {0};
+    razor_status_t status;
+    imu_raw_t raw;
 
     (void)unused0;
     (void)unused1;
@@ -57,8 +76,11 @@ static Void task_imu(UArg unused0, UArg unused1)
     for (;;) {
         imu_port_wait(&message);
         monitor_begin(MONITOR_IMU);
-        if (razor_parse(&message.text, &frame) == RAZOR_OK) {
-            take(&sample, &frame, message.arrival_us);
+        status = razor_parse(&message.text, &frame);
+        raw = raw_of(&frame);
+        imu_exchange_show(&message.text, status, &raw, message.arrival_us);
+        if (status == RAZOR_OK) {
+            take(&sample, &raw, message.arrival_us);
         } else {
             sample.malformed++;
         }

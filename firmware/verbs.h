@@ -10,6 +10,10 @@
 /* verb_laser.c: `#LASER`: one line of state, rate, frames and losses, one of damages by cause and the last cause. */
 bool verb_laser(answer_t *answer);
 
+/* verb_imu.c: `#IMU`: what comes from the IMU, as it is and as it is understood; `#IMU LEVEL`, `RIGHT`, `NOSE` find its
+ * unit and axes, on the ground without thrust. */
+bool verb_imu(answer_t *answer);
+
 /* verb_perf.c: `#PERF`: cause of the reset and processor load, per task response, missed deadlines and stack, per server
  * the longest wait. `#PERF RESET` clears what can be cleared. */
 bool verb_perf(answer_t *answer);

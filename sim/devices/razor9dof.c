@@ -17,7 +17,7 @@ const razor_config_t razor_default = {
     .period = 25 * SIM_MS, .age = 15 * SIM_MS, .phase = 25 * SIM_MS,
     .angle_noise_rad = 0.25 * DEGREE_RAD, .spike_probability = 0.005, .spike_rad = 0.35,
     .acceleration_noise_mps2 = 0.4, .acceleration_bias_mps2 = 0.15,
-    .mount_roll_rad = 0.0, .mount_pitch_rad = 0.0, .joined = false,
+    .mount_roll_rad = 0.0, .mount_pitch_rad = 0.0, .joined = false, .stock = 0.0,
     .acceleration_scale = 1.0, .acceleration_sign = 1.0, .acceleration_jump_mps2 = 0.0, .acceleration_jump_start_s = 10.0,
     .acceleration_alias_mps2 = 0.0, .acceleration_alias_hz = 2.0,
     .attitude_burst_rad = 0.0, .attitude_burst = {10.0, 0.075},
@@ -116,7 +116,7 @@ static void put_acceleration(razor9dof_t *razor, frame_t *frame, const razor_tru
                              config->acceleration_noise_mps2 * noise_gauss(&razor->acceleration_noise);
     const double counts =
         config->acceleration_sign * config->acceleration_scale * COUNTS_PER_G * felt_mps2 / GRAVITY_MPS2;
-    put_triple(frame, "#A-C=", counts * -sin(pitch_rad), counts * cos(pitch_rad) * sin(roll_rad),
+    put_triple(frame, "#A-C=", counts * -sin(pitch_rad), -counts * cos(pitch_rad) * sin(roll_rad),
                counts * cos(pitch_rad) * cos(roll_rad));
 }
 
@@ -126,15 +126,15 @@ static void compose(razor9dof_t *razor, frame_t *frame, const razor_truth_t *see
     const double roll_rad = truth.roll_rad + razor->config.mount_roll_rad;
     const double pitch_rad = truth.pitch_rad + razor->config.mount_pitch_rad;
     frame->length = 0;
-    put_acceleration(razor, frame, &truth, roll_rad, pitch_rad);
-    if (!razor->config.joined) {
-        put_text(frame, "\r\n");
+    if (razor->config.stock < 0.5) {
+        put_acceleration(razor, frame, &truth, roll_rad, pitch_rad);
+        put_text(frame, razor->config.joined ? "" : "\r\n");
     }
     const double yaw_deg = printed_angle_deg(razor, truth.yaw_rad);
     const double pitch_deg = printed_angle_deg(razor, pitch_rad);
     const double burst_rad = span_holds(&razor->config.attitude_burst, truth.t_s) ? razor->config.attitude_burst_rad : 0.0;
     const double roll_deg = printed_angle_deg(razor, roll_rad + burst_rad);
-    put_triple(frame, "#YPR=", yaw_deg, pitch_deg, roll_deg);
+    put_triple(frame, "#YPR=", yaw_deg, pitch_deg, -roll_deg);
     put_text(frame, "\r\n");
 }
 

@@ -1,5 +1,6 @@
 /* Model of the Razor 9DOF IMU with the vehicle's text format: every 25 ms `#A-C=x,y,z` CR LF `#YPR=yaw,pitch,roll` CR LF
- * at 57600, content 15 ms old, noise and spikes as in the plant description. Shares no writer with the product. */
+ * at 57600, content 15 ms old, noise and spikes as in the plant description. Axes and signs are Razor_AHRS's own: roll positive with the
+ * right wing down, +256 along z at rest. Shares no writer with the product. */
 #ifndef SIM_DEVICES_RAZOR9DOF_H
 #define SIM_DEVICES_RAZOR9DOF_H
 
@@ -9,7 +10,7 @@
 #include "sim/devices/span.h"
 
 typedef struct {
-    double roll_rad, pitch_rad, yaw_rad;
+    double roll_rad, pitch_rad, yaw_rad;    /* of the vehicle: roll > 0 raises its right side */
     double up_mps2;         /* acceleration of the body along the earth's vertical, without g */
     double t_s;             /* scenario time, for what goes wrong at its time */
 } razor_truth_t;
@@ -27,6 +28,7 @@ typedef struct {
     double acceleration_bias_mps2;  /* 0.15 */
     double mount_roll_rad, mount_pitch_rad; /* constant misalignment, what the offset must remove */
     bool joined;                    /* both parts on one line */
+    double stock;                   /* 1: Razor_AHRS as it comes, angles alone (at 20 ms: period) */
     double acceleration_scale;      /* 1: another unit than counts of 1/256 g */
     double acceleration_sign;       /* 1; -1: upside down to the sensor, or a firmware with the other sign */
     double acceleration_jump_mps2;  /* 0: bias that comes at ... */

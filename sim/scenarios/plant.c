@@ -96,6 +96,7 @@ static const figure_t figures[] = {
     {"acc_jump_start", "s", -LARGE, LARGE, IMU(acceleration_jump_start_s), 1, "scenario time at which"},
     {"acc_alias", "m/s2", 0, 100, IMU(acceleration_alias_mps2), 1, "amplitude of a vibration that sampling makes a slow one"},
     {"acc_alias_hz", "Hz", 0, 1000, IMU(acceleration_alias_hz), 1, "of so many oscillations"},
+    {"imu_stock", "-", 0, 1, IMU(stock), 1, "1: a Razor as it comes: angles alone, every 20 ms"},
     {"imu_mute_start", "s", -LARGE, LARGE, IMU(mute.start_s), 1, "scenario time from which the IMU sends nothing"},
     {"imu_mute", "s", 0, LARGE, IMU(mute.length_s), 1, "for how long; 0: not at all"},
     {"imu_frozen_start", "s", -LARGE, LARGE, IMU(frozen.start_s), 1, "scenario time from which it repeats its latest frame"},
@@ -164,6 +165,9 @@ void plant_complete(plant_t *plant)
 {
     plant->board.laser.ray_instant = (sim_time_t)llround(plant->ray_instant_s * 1e9);
     plant->board.laser.clock_ratio = 1.0 + plant->clock_ppm * 1e-6;
+    if (plant->board.imu.stock >= 0.5) {
+        plant->board.imu.period = 20 * SIM_MS;
+    }
     if (plant->attitude_throttle >= 0.5 && plant->board.quadrotor.climb_rate_mps_per_n <= 0.0) {
         plant->board.quadrotor.climb_rate_mps_per_n = 1.0;
     }

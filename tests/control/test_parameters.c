@@ -73,7 +73,8 @@ void test_every_choice_is_found_by_its_name(void)
             choices++;
         }
     }
-    TEST_ASSERT_EQUAL_INT(LAW_COUNT + RELEASE_COUNT + TERRAIN_COUNT + PLANT_COUNT + SEL_COUNT + SUM_COUNT, choices);
+    TEST_ASSERT_EQUAL_INT(LAW_COUNT + RELEASE_COUNT + TERRAIN_COUNT + PLANT_COUNT + SEL_COUNT + SUM_COUNT
+                              + 2 * AXIS_COUNT + DOWN_COUNT, choices);
 }
 
 void test_names_are_found_in_any_case_and_only_whole(void)
@@ -214,6 +215,10 @@ void test_in_the_air_thrust_changes_by_bounded_steps_and_the_throttle_keeps_its_
         TEST_ASSERT_FALSE(parameter_may_change_in_air(stepped[i], 7.0F, 0.0F));
     }
     TEST_ASSERT_FALSE(parameter_may_change_in_air(PARAMETER_SEL, (float)SEL_NONE, (float)SEL_PIN));
+    TEST_ASSERT_FALSE(parameter_may_change_in_air(PARAMETER_IROLL, (float)AXIS_MINUS_ROLL, (float)AXIS_ROLL));
+    TEST_ASSERT_FALSE(parameter_may_change_in_air(PARAMETER_IPITCH, (float)AXIS_PITCH, (float)AXIS_ROLL));
+    TEST_ASSERT_FALSE(parameter_may_change_in_air(PARAMETER_IDOWN, (float)DOWN_Z, (float)DOWN_MINUS_Z));
+    TEST_ASSERT_FALSE(parameter_may_change_in_air(PARAMETER_IUNIT, 256.0F, 255.0F));
     TEST_ASSERT_TRUE(parameter_may_change_in_air(PARAMETER_SEL, (float)SEL_PIN, (float)SEL_PIN));
     TEST_ASSERT_TRUE(parameter_may_change_in_air(PARAMETER_LAW, (float)LAW_EST, (float)LAW_PD));
     TEST_ASSERT_TRUE(parameter_may_change_in_air(PARAMETER_KP, 0.0F, 1.0F));

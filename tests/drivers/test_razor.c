@@ -112,9 +112,9 @@ static void assert_angles(double yaw, double pitch, double roll, const razor_fra
 static void assert_acceleration(double x, double y, double z, const razor_frame_t *frame)
 {
     TEST_ASSERT_TRUE(frame->has_acceleration);
-    TEST_ASSERT_FLOAT_WITHIN(1e-4F, (float)(x / 256.0 * G_MPS2), frame->forward_mps2);
-    TEST_ASSERT_FLOAT_WITHIN(1e-4F, (float)(y / 256.0 * G_MPS2), frame->right_mps2);
-    TEST_ASSERT_FLOAT_WITHIN(1e-4F, (float)(z / 256.0 * G_MPS2), frame->down_mps2);
+    TEST_ASSERT_FLOAT_WITHIN(1e-4F, (float)x, frame->x_counts);
+    TEST_ASSERT_FLOAT_WITHIN(1e-4F, (float)y, frame->y_counts);
+    TEST_ASSERT_FLOAT_WITHIN(1e-4F, (float)z, frame->z_counts);
 }
 
 static razor_text_t text_of(const char *text)
@@ -166,9 +166,9 @@ void test_at_rest_and_level_the_acceleration_is_one_g_down(void)
     razor_frame_t frame;
     TEST_ASSERT_EQUAL(RAZOR_OK, parse("#A-C=0.00,0.00,256.00\n#YPR=0.00,0.00,0.00", &frame));
     TEST_ASSERT_TRUE(frame.has_acceleration);
-    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.0F, frame.forward_mps2);
-    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.0F, frame.right_mps2);
-    TEST_ASSERT_FLOAT_WITHIN(2e-6F, 9.80665F, frame.down_mps2);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.0F, frame.x_counts);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.0F, frame.y_counts);
+    TEST_ASSERT_FLOAT_WITHIN(2e-6F, 256.0F, frame.z_counts);
 }
 
 void test_256_counts_are_one_g_on_every_axis(void)
@@ -185,9 +185,9 @@ void test_angles_alone_have_no_acceleration(void)
     memset(&frame, 0x3C, sizeof frame);
     TEST_ASSERT_EQUAL(RAZOR_OK, parse("#YPR=-103.49,2.74,4.74", &frame));
     TEST_ASSERT_FALSE(frame.has_acceleration);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, frame.forward_mps2);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, frame.right_mps2);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, frame.down_mps2);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, frame.x_counts);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, frame.y_counts);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, frame.z_counts);
 }
 
 void test_one_separator_may_stand_between_the_parts(void)
@@ -207,7 +207,7 @@ void test_minus_zero_is_zero(void)
     razor_frame_t frame;
     TEST_ASSERT_EQUAL(RAZOR_OK, parse("#A-C=-0.00,-0.00,256.00#YPR=-0.00,-0.00,-0.00", &frame));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, frame.roll_rad);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, frame.forward_mps2);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, frame.x_counts);
 }
 
 void test_malformed_texts_are_refused_and_the_frame_is_untouched(void)
@@ -451,10 +451,10 @@ static void assert_flight_values(uint16_t frames)
         TEST_ASSERT_FLOAT_WITHIN(1e-4F, (float)(roll * DEGREE), stream.frame[k].roll_rad);
         TEST_ASSERT_FLOAT_WITHIN(1e-4F, (float)(pitch * DEGREE), stream.frame[k].pitch_rad);
         if (stream.frame[k].has_acceleration) {
-            TEST_ASSERT_FLOAT_WITHIN(1e-3F, (float)(-G_MPS2 * sin(pitch * DEGREE)), stream.frame[k].forward_mps2);
-            TEST_ASSERT_FLOAT_WITHIN(1e-3F, (float)(G_MPS2 * sin(roll * DEGREE)), stream.frame[k].right_mps2);
-            TEST_ASSERT_FLOAT_WITHIN(1e-3F, (float)(G_MPS2 * cos(roll * DEGREE) * cos(pitch * DEGREE)),
-                                     stream.frame[k].down_mps2);
+            TEST_ASSERT_FLOAT_WITHIN(0.03F, (float)(-256.0 * sin(pitch * DEGREE)), stream.frame[k].x_counts);
+            TEST_ASSERT_FLOAT_WITHIN(0.03F, (float)(256.0 * sin(roll * DEGREE)), stream.frame[k].y_counts);
+            TEST_ASSERT_FLOAT_WITHIN(0.03F, (float)(256.0 * cos(roll * DEGREE) * cos(pitch * DEGREE)),
+                                     stream.frame[k].z_counts);
         }
     }
 }

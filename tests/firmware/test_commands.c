@@ -480,6 +480,7 @@ void test_every_command_that_help_tells_of_is_known(void)
     uint16_t count;
 
     verb_laser_Stub(verb);
+    verb_imu_Stub(verb);
     verb_perf_Stub(verb);
     verb_save_Stub(verb);
     verb_load_Stub(verb);
@@ -640,6 +641,18 @@ void test_any_line_but_a_ping_ends_a_calibration(void)
         type(others[i]);
         TEST_ASSERT_EQUAL_UINT16_MESSAGE(i + 1U, stops, others[i]);
     }
+}
+
+void test_what_turns_the_imus_axes_round_is_for_the_ground(void)
+{
+    in_the_air = true;
+    assert_refused("ERR IROLL not on the ground", "#IROLL ROLL");
+    assert_refused("ERR IPITCH not on the ground", "#IPITCH -PITCH");
+    assert_refused("ERR IDOWN not on the ground", "#IDOWN -Z");
+    assert_refused("ERR IUNIT not on the ground", "#IUNIT 1000");
+    in_the_air = false;
+    assert_answer("OK IROLL ROLL", "#IROLL roll");
+    assert_answer("OK IDOWN -Z", "#IDOWN -z");
 }
 
 void test_stop_and_land_withdraw_the_reference_whatever_stands_behind_them(void)

@@ -11,6 +11,7 @@
 #include "mock_boot.h"
 #include "mock_imu_port.h"
 #include "mock_servers.h"
+#include "firmware/imu_exchange.h"
 #include "unity.h"
 
 #define FRAMES_MAX 64U
@@ -73,6 +74,16 @@ static void keep_offset(const attitude_t *offset, int calls)
     kept_count++;
 }
 
+/* With which sign the vehicle's roll is the IMU's. */
+static void mount(control_axis_t roll)
+{
+    parameters_t parameters;
+
+    parameters_init(&parameters);
+    TEST_ASSERT_EQUAL(PARAMETER_ACCEPTED, parameters_set(&parameters, PARAMETER_IROLL, (float)roll));
+    imu_exchange_mount(&parameters);
+}
+
 void setUp(void)
 {
     kernel_reset();
@@ -85,6 +96,7 @@ void setUp(void)
     restart = false;
     kept_count = 0U;
     jobs_reset();
+    mount(AXIS_ROLL);
     task_imu_create();
 }
 
@@ -282,4 +294,37 @@ void test_after_a_watchdog_reset_the_kept_offset_is_in_force_from_the_first_fram
     TEST_ASSERT_EQUAL_FLOAT(expected.level.roll_rad, written[write_count - 1U].level.roll_rad);
     TEST_ASSERT_EQUAL_FLOAT(expected.level.pitch_rad, written[write_count - 1U].level.pitch_rad);
     TEST_ASSERT_EQUAL_UINT16(1, kept_count);
+}
+
+/* Right wing down is positive in the Razor; the vehicle's right side is then low. */
+void test_as_delivered_the_razors_roll_and_its_side_are_turned_round(void)
+{
+    mount(AXIS_MINUS_ROLL);
+    at_rest(0.0, 1.0);
+    frame("#A-C=0.00,64.00,256.00\n#YPR=0.00,2.00,11.00");
+    kernel_run_task();
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, -10.0F * RAD_PER_DEGREE, written[20].level.roll_rad);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 2.0F * RAD_PER_DEGREE, written[20].level.pitch_rad);
+    TEST_ASSERT_FLOAT_WITHIN(1e-4F, -2.4516625F, written[20].right_mps2);
+    TEST_ASSERT_FLOAT_WITHIN(1e-4F, 9.80665F, written[20].down_mps2);
+}
+
+/* The offset is one of the IMU, wherever its axes point. */
+void test_a_new_mapping_acts_from_the_next_frame_and_keeps_the_offset(void)
+{
+    imu_view_t view;
+
+    at_rest(0.0, 4.0);
+    angles(0.0, 0.0, 6.0);
+    kernel_run_task();
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 2.0F * RAD_PER_DEGREE, written[20].level.roll_rad);
+    restart = true;
+    mount(AXIS_MINUS_ROLL);
+    angles(0.0, 0.0, 6.0);
+    kernel_run_task();
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, -2.0F * RAD_PER_DEGREE, written[21].level.roll_rad);
+    imu_exchange_look(&view);
+    TEST_ASSERT_EQUAL(RAZOR_OK, view.status);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 6.0F * RAD_PER_DEGREE, view.raw.roll_rad);
+    TEST_ASSERT_EQUAL_STRING_LEN("#YPR=0.00,0.00,6.00", view.text.text, view.text.length);
 }

@@ -55,11 +55,20 @@ static void sink(void *context, unsigned octet, double bit_ns)
         return;
     }
     int end = 0;
+    if (exact.stock > 0.5) {
+        TEST_ASSERT_NULL(strstr(text, "#A-C="));
+        frames++;
+        on_frame();
+        length = 0;
+        return;
+    }
     const char *form = exact.joined ? "#A-C=%lf,%lf,%lf#YPR=%lf,%lf,%lf%n" : "#A-C=%lf,%lf,%lf\r\n#YPR=%lf,%lf,%lf%n";
     TEST_ASSERT_EQUAL_INT_MESSAGE(
         6, sscanf(text, form, &decoded.x, &decoded.y, &decoded.z, &decoded.yaw, &decoded.pitch, &decoded.roll, &end),
         text);
     TEST_ASSERT_EQUAL_STRING("\r\n", text + end);
+    decoded.roll = -decoded.roll; /* to the vehicle's signs, in which the tests think */
+    decoded.y = -decoded.y;
     frames++;
     if (on_frame != NULL) {
         on_frame();
@@ -148,24 +157,25 @@ void test_level_and_at_rest_it_prints_one_g_down(void)
     expect_text("#A-C=0.00,0.00,256.00\r\n#YPR=0.00,0.00,0.00\r\n");
 }
 
-/* 256 (-sin p, cos p sin r, cos p cos r) for p = 30, r = 60 deg: -128, 192, 110.851. */
+/* The vehicle's right side raised by 60 deg is the Razor's roll of -60: 256 (-sin p, cos p sin r, cos p cos r) for p = 30,
+ * r = -60 deg: -128, -192, 110.851. */
 void test_a_tilted_sensor_prints_the_turned_gravity(void)
 {
     truth = (razor_truth_t){.roll_rad = 60.0 * DEG, .pitch_rad = 30.0 * DEG, .yaw_rad = -120.5 * DEG};
-    expect_text("#A-C=-128.00,192.00,110.85\r\n#YPR=-120.50,30.00,60.00\r\n");
+    expect_text("#A-C=-128.00,-192.00,110.85\r\n#YPR=-120.50,30.00,-60.00\r\n");
 }
 
 void test_nose_down_and_left_the_signs_turn(void)
 {
     truth = (razor_truth_t){.roll_rad = -60.0 * DEG, .pitch_rad = -30.0 * DEG};
-    expect_text("#A-C=128.00,-192.00,110.85\r\n#YPR=0.00,-30.00,-60.00\r\n");
+    expect_text("#A-C=128.00,192.00,110.85\r\n#YPR=0.00,-30.00,60.00\r\n");
 }
 
 /* One g upwards doubles everything felt. */
 void test_climbing_faster_adds_weight_along_all_axes(void)
 {
     truth = (razor_truth_t){.roll_rad = 60.0 * DEG, .pitch_rad = 30.0 * DEG, .up_mps2 = G};
-    expect_text("#A-C=-256.00,384.00,221.70\r\n#YPR=0.00,30.00,60.00\r\n");
+    expect_text("#A-C=-256.00,-384.00,221.70\r\n#YPR=0.00,30.00,-60.00\r\n");
 }
 
 void test_in_free_fall_it_feels_nothing(void)
@@ -344,6 +354,14 @@ void test_a_crooked_mount_shows_in_the_angles_and_in_the_felt_gravity(void)
     NEAR(0.006, 256.0 * 0.9993908 * 0.9986295, decoded.z);
 }
 
+/* What P. Bartz' firmware prints as it comes. */
+void test_a_stock_one_prints_angles_alone(void)
+{
+    exact.stock = 1.0;
+    truth = (razor_truth_t){.roll_rad = 60.0 * DEG, .pitch_rad = 30.0 * DEG};
+    expect_text("#YPR=0.00,30.00,-60.00\r\n");
+}
+
 /* ---- what goes wrong ---- */
 
 /* 1 g of 256 counts told in g; upside down. */
@@ -352,7 +370,7 @@ void test_another_unit_and_the_other_sign_are_on_all_axes(void)
     truth = (razor_truth_t){.roll_rad = 60.0 * DEG, .pitch_rad = 30.0 * DEG};
     exact.acceleration_scale = 1.0 / 64.0;
     exact.acceleration_sign = -1.0;
-    expect_text("#A-C=2.00,-3.00,-1.73\r\n#YPR=0.00,30.00,60.00\r\n");
+    expect_text("#A-C=2.00,3.00,-1.73\r\n#YPR=0.00,30.00,-60.00\r\n");
 }
 
 void test_a_bias_jumps_at_its_time(void)

@@ -1,0 +1,172 @@
+/* `#IMU`, `#IMU LEVEL`, `RIGHT`, `NOSE`: from frames to answers and parameters. */
+#include <string.h>
+
+#include "kernel.h"
+#include "mock_servers.h"
+#include "mock_xbee_port.h"
+#include "firmware/imu_exchange.h"
+#include "firmware/listing.h"
+#include "firmware/verbs.h"
+#include "unity.h"
+
+#define DEG 0.017453293F
+
+static parameters_t parameters;
+static flight_outputs_t flight;
+static char lines[8][TELEMETRY_ANSWER_MAX + 1U];
+static uint16_t line_count, writes;
+
+static void read_parameters(parameters_t *set, int calls)
+{
+    (void)calls;
+    *set = parameters;
+}
+
+static void write_parameters(const parameters_t *set, int calls)
+{
+    (void)calls;
+    parameters = *set;
+    writes++;
+}
+
+static void read_flight(flight_outputs_t *status, int calls)
+{
+    (void)calls;
+    *status = flight;
+}
+
+static uint16_t history(imu_sample_t samples[IMU_HISTORY], int calls)
+{
+    (void)calls;
+    samples[0] = (imu_sample_t){.ready = true, .median = {.roll_rad = -1.5F * DEG, .pitch_rad = 2.0F * DEG},
+                                .has_acceleration = true, .forward_mps2 = 0.15F, .right_mps2 = -0.5F, .down_mps2 = 9.73F};
+    return 1U;
+}
+
+static void radio(const telemetry_line_t *line, int calls)
+{
+    (void)calls;
+    TEST_ASSERT_FALSE(line->overflowed);
+    TEST_ASSERT_LESS_THAN_UINT16(8U, line_count);
+    (void)memcpy(lines[line_count], line->text, line->length);
+    lines[line_count][line->length] = '\0';
+    line_count++;
+}
+
+static bool spare(const telemetry_line_t *line, int calls)
+{
+    radio(line, calls);
+    return true;
+}
+
+static void show(float roll_deg, float pitch_deg, bool accelerations, float z_counts)
+{
+    razor_text_t text = {.length = 0U};
+    const char *const sent = "#A-C=4.00,-12.00,254.00\n#YPR=178.50,-1.17,0.00";
+    const imu_raw_t raw = {.roll_rad = roll_deg * DEG, .pitch_rad = pitch_deg * DEG, .has_acceleration = accelerations,
+                           .z_counts = z_counts};
+
+    text.length = (uint16_t)strlen(sent);
+    (void)memcpy(text.text, sent, text.length);
+    imu_exchange_show(&text, RAZOR_OK, &raw, 1000000U);
+    imu_exchange_show(&text, RAZOR_OK, &raw, 1020000U);
+}
+
+static void frames_go_on(void)
+{
+    TEST_ASSERT_EQUAL_UINT32(60, kernel.task.slept_ticks);
+}
+
+void setUp(void)
+{
+    kernel_reset();
+    kernel.task.on_sleep = frames_go_on;
+    parameters_init(&parameters);
+    flight = (flight_outputs_t){.state = FLIGHT_GROUND};
+    line_count = writes = 0U;
+    parameter_server_read_Stub(read_parameters);
+    parameter_server_write_Stub(write_parameters);
+    flight_status_server_read_Stub(read_flight);
+    imu_server_history_Stub(history);
+    xbee_port_answer_Stub(radio);
+    xbee_port_spare_Stub(spare);
+    show(1.0F, -1.0F, true, 254.0F);
+}
+
+void tearDown(void)
+{
+    kernel_check();
+}
+
+static bool type(const char *argument)
+{
+    telecommand_t command = {.name = "IMU", .name_length = 3U};
+    answer_t answer = {.command = &command};
+
+    (void)memcpy(command.argument, argument, strlen(argument));
+    command.argument_length = (uint16_t)strlen(argument);
+    line_count = 0U;
+    return verb_imu(&answer);
+}
+
+static void assert_answer(const char *expected, const char *argument)
+{
+    (void)type(argument);
+    TEST_ASSERT_EQUAL_UINT16(1, line_count);
+    TEST_ASSERT_EQUAL_STRING(expected, lines[0]);
+}
+
+void test_without_a_word_it_shows_what_comes_and_what_is_made_of_it(void)
+{
+    TEST_ASSERT_TRUE(type(""));
+    TEST_ASSERT_FALSE(listing_more());
+    TEST_ASSERT_EQUAL_UINT16(4, line_count);
+    TEST_ASSERT_EQUAL_STRING("OK IMU raw:#A-C=4.00,-12.00,254.00|#YPR=178.50,-1.17,0.00\r\n", lines[0]);
+    TEST_ASSERT_EQUAL_STRING("OK IMU roll_deg:-1.5 pitch_deg:2.0 forward:0.15 right:-0.50 down:9.73\r\n", lines[1]);
+    TEST_ASSERT_EQUAL_STRING_LEN("OK IMU seen:accelerations+angles period_ms:20 frames:", lines[2], 53);
+    TEST_ASSERT_EQUAL_STRING("OK IMU END lines:3\r\n", lines[3]);
+}
+
+void test_level_right_and_nose_find_what_they_say(void)
+{
+    assert_answer("OK IMU LEVEL IUNIT:256.00 IDOWN:Z\r\n", "LEVEL");
+    show(21.0F, 0.0F, true, 240.0F);
+    assert_answer("OK IMU RIGHT IROLL:ROLL\r\n", "right");
+    TEST_ASSERT_EQUAL_UINT16(AXIS_ROLL, parameters_choice(&parameters, PARAMETER_IROLL));
+    show(2.0F, -21.0F, true, 240.0F);
+    assert_answer("OK IMU NOSE IPITCH:-PITCH\r\n", "NOSE");
+    TEST_ASSERT_EQUAL_UINT16(AXIS_MINUS_PITCH, parameters_choice(&parameters, PARAMETER_IPITCH));
+    TEST_ASSERT_EQUAL_UINT16(3, writes);
+}
+
+void test_level_says_when_there_are_no_accelerations_or_strange_ones(void)
+{
+    show(0.0F, 0.0F, false, 0.0F);
+    assert_answer("OK IMU LEVEL no accelerations\r\n", "LEVEL");
+    show(0.0F, 0.0F, true, 128.0F);
+    assert_answer("OK IMU LEVEL accelerations in no known unit\r\n", "LEVEL");
+    TEST_ASSERT_EQUAL_UINT16(0, writes);
+    show(0.0F, 0.0F, true, -9.5F);
+    assert_answer("OK IMU LEVEL IUNIT:9.81 IDOWN:-Z\r\n", "LEVEL");
+}
+
+void test_an_unclear_tilt_is_refused_and_sets_nothing(void)
+{
+    (void)type("LEVEL");
+    writes = 0U;
+    assert_answer("ERR IMU tilt by 8..60 deg about one axis\r\n", "RIGHT");
+    show(21.0F, 19.0F, true, 240.0F);
+    assert_answer("ERR IMU tilt by 8..60 deg about one axis\r\n", "NOSE");
+    TEST_ASSERT_EQUAL_UINT16(0, writes);
+}
+
+void test_with_thrust_or_a_reference_or_another_word_it_is_refused(void)
+{
+    assert_answer("ERR IMU one of LEVEL|RIGHT|NOSE\r\n", "LEFT");
+    flight.thrust_n = 1.764F;
+    assert_answer("ERR IMU needs thrust 0 and no reference\r\n", "RIGHT");
+    flight.thrust_n = 0.0F;
+    flight.reference_m = 0.5F;
+    assert_answer("ERR IMU needs thrust 0 and no reference\r\n", "LEVEL");
+    TEST_ASSERT_EQUAL_UINT16(0, writes);
+}
