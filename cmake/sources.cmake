@@ -9,7 +9,7 @@ set(DRIVERS_SOURCES
     drivers/scip_layout.c drivers/scip_parser.c drivers/scip_request.c drivers/telecommand.c
     drivers/telemetry.c drivers/urg.c drivers/urg_link.c)
 set(BSP_SOURCES
-    bsp/board.c bsp/led.c bsp/retained.c bsp/selector.c bsp/start.c bsp/storage.c bsp/throttle.c bsp/timebase.c bsp/uart.c
+    bsp/board.c bsp/led.c bsp/reset.c bsp/retained.c bsp/selector.c bsp/start.c bsp/storage.c bsp/throttle.c bsp/timebase.c bsp/uart.c
     bsp/watchdog.c)
 set(FIRMWARE_SOURCES
     firmware/alive.c firmware/answer.c firmware/boot.c firmware/calibrator.c firmware/commands.c firmware/fault.c
@@ -17,5 +17,5 @@ set(FIRMWARE_SOURCES
     firmware/monitor.c firmware/parameter_store.c firmware/pulse_stream.c firmware/servers.c firmware/task_control.c
     firmware/task_imu.c
     firmware/task_receive_comm.c firmware/task_receive_laser.c firmware/task_send_comm.c firmware/task_send_laser.c
-    firmware/uart_port.c firmware/verb_bench.c firmware/verb_calibrate.c firmware/verb_imu.c firmware/verb_laser.c firmware/verb_log.c firmware/verb_perf.c
+    firmware/uart_port.c firmware/verb_bench.c firmware/verb_calibrate.c firmware/verb_imu.c firmware/verb_laser.c firmware/verb_log.c firmware/verb_perf.c firmware/verb_reference.c
     firmware/verb_save.c firmware/xbee_port.c)

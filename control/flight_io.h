@@ -10,6 +10,9 @@
 #include "control/flight_state.h"
 #include "control/imu_sample.h"
 
+/* Highest reference: the take-over at 0.8 m above it is still within the scanner's 4.095 m. */
+#define FLIGHT_REFERENCE_MAX_M 3.0F
+
 /* What the cycle knows, copied from the servers. Times in microseconds on one wrapping 32-bit clock; a time slightly
  * later than now_us counts as now. Steps may not be more than 71 minutes apart. */
 typedef struct {
@@ -28,7 +31,7 @@ typedef struct {
     const imu_sample_t *frames;   /* the latest frames, oldest first, old ones again or not; for law EST; borrowed for
                                      * the call, NULL when frame_count is 0 */
     uint16_t frame_count;
-    float reference_m;              /* looked at when its sequence changes; outside the limits of SETR: ignored */
+    float reference_m;              /* looked at when its sequence changes; outside 0 .. FLIGHT_REFERENCE_MAX_M: ignored */
     uint32_t reference_sequence;    /* +1 per accepted #SETR, 0 m included */
     uint32_t link_time_us;          /* arrival of the latest complete valid command line */
     uint32_t link_sequence;         /* +1 per such line; 0 = never one */

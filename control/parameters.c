@@ -15,9 +15,7 @@ static const char *const axis_names[AXIS_COUNT] = {[AXIS_ROLL] = "ROLL", [AXIS_M
                                                    [AXIS_PITCH] = "PITCH", [AXIS_MINUS_PITCH] = "-PITCH"};
 static const char *const down_names[DOWN_COUNT] = {[DOWN_Z] = "Z", [DOWN_MINUS_Z] = "-Z"};
 
-/* SETR ends at 3 m so that the take-over at 0.8 m above the reference is still within the sensor's 4.095 m. */
 const parameter_row_t parameter_table[PARAMETER_COUNT] = {
-    [PARAMETER_SETR] = {"SETR", "m", 0.0F, 3.0F, 0.0F, NULL, "Height reference; 0 lands."},
     [PARAMETER_KP] = {"KP", "N/mm", 0.0F, 1.0F, 0.015F, NULL, "PD, PID: proportional gain."},
     [PARAMETER_KD] = {"KD", "N/mm", 0.0F, 1.0F, 0.008F, NULL, "PD, PID: derivative gain per sample."},
     [PARAMETER_KI] = {"KI", "N/mm", 0.0F, 1.0F, 0.01F, NULL, "PID: integral gain per sample."},

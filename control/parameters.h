@@ -9,7 +9,6 @@
 #include <stdint.h>
 
 typedef enum {
-    PARAMETER_SETR,     /* m, height reference; 0 = none (on the ground) or land */
     PARAMETER_KP,       /* N/mm */
     PARAMETER_KD,       /* N/mm per sample */
     PARAMETER_KI,       /* N/mm per sample */

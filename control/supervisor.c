@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "control/between.h"
-#include "control/parameters.h"
 
 #define HEIGHT_FRESH_US UINT32_C(300000)
 #define HEIGHT_LOST_US UINT32_C(1500000)
@@ -134,7 +133,7 @@ static bool link_silent(const supervisor_t *s, float link_s, uint32_t longer_us)
 static void observe_reference(supervisor_t *s, float link_s, const flight_inputs_t *in)
 {
     const bool is_new = in->reference_sequence != s->reference_sequence;
-    const bool plausible = in->reference_m >= 0.0F && in->reference_m <= parameter_table[PARAMETER_SETR].maximum;
+    const bool plausible = in->reference_m >= 0.0F && in->reference_m <= FLIGHT_REFERENCE_MAX_M;
 
     s->reference_sequence = in->reference_sequence;
     s->land = is_new && in->reference_m == 0.0F;

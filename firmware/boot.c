@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "bsp/retained.h"
-#include "bsp/watchdog.h"
+#include "bsp/reset.h"
 
 static bsp_reset_t cause;
 

@@ -13,6 +13,7 @@
 #include "control/parameters.h"
 #include "firmware/listing.h"
 #include "firmware/servers.h"
+#include "firmware/verb_reference.h"
 #include "firmware/verbs.h"
 #include "firmware/version.h"
 #include "firmware/xbee_port.h"
@@ -26,17 +27,6 @@ typedef struct {
     const char *meaning;
 } verb_t;
 
-static float value_of(parameter_id_t id, const parameters_t *parameters)
-{
-    reference_sample_t reference;
-
-    if (id != PARAMETER_SETR) {
-        return parameters->value[id];
-    }
-    reference_server_read(&reference);
-    return reference.reference_m;
-}
-
 /* Between begin and end; on the way of `#GET` the name of the command differs from that of the row. */
 static void write_value(answer_t *answer, parameter_id_t id)
 {
@@ -45,7 +35,7 @@ static void write_value(answer_t *answer, parameter_id_t id)
     float value;
 
     parameter_server_read(&parameters);
-    value = value_of(id, &parameters);
+    value = parameters.value[id];
     telemetry_begin(&answer->line);
     telemetry_text(&answer->line, "OK ");
     telemetry_text(&answer->line, row->name);
@@ -74,27 +64,32 @@ static void report_set(answer_t *answer, parameter_id_t id)
     answer_send(answer);
 }
 
-static bool write_parameter(answer_t *answer, uint16_t number)
+/* The reference first, then the parameters. */
+static bool write_setting(answer_t *answer, uint16_t number)
 {
-    if (number < (uint16_t)PARAMETER_COUNT) {
-        write_value(answer, (parameter_id_t)number);
+    if (number == 0U) {
+        verb_reference_write_value(answer);
+    } else if (number <= (uint16_t)PARAMETER_COUNT) {
+        write_value(answer, (parameter_id_t)(number - 1U));
     }
-    return number < (uint16_t)PARAMETER_COUNT;
+    return number <= (uint16_t)PARAMETER_COUNT;
 }
 
 static bool execute_get(answer_t *answer)
 {
     const telecommand_t *command = answer->command;
-    uint16_t id;
+    uint16_t id = (uint16_t)parameter_find(command->argument, command->argument_length);
 
     if (command->argument_length == 0U) {
-        return listing_start(answer, write_parameter);
+        return listing_start(answer, write_setting);
     }
-    id = (uint16_t)parameter_find(command->argument, command->argument_length);
-    if (id == (uint16_t)PARAMETER_COUNT) {
+    if (answer_argument_is(answer, "SETR")) {
+        verb_reference_write_value(answer);
+    } else if (id < (uint16_t)PARAMETER_COUNT) {
+        write_value(answer, (parameter_id_t)id);
+    } else {
         return answer_refuse(answer, "unknown parameter");
     }
-    write_value(answer, (parameter_id_t)id);
     answer_send(answer);
     return true;
 }
@@ -119,16 +114,6 @@ static bool execute_version(answer_t *answer)
     telemetry_text(&answer->line, " " PLOMADA_VERSION);
     answer_send(answer);
     return true;
-}
-
-static void set_reference(float reference_m)
-{
-    reference_sample_t reference;
-
-    reference_server_read(&reference);
-    reference.reference_m = reference_m;
-    reference.sequence++;
-    reference_server_write(&reference);
 }
 
 static void set_arm(bool arm)
@@ -158,29 +143,21 @@ static bool execute_arm(answer_t *answer)
     return true;
 }
 
-/* Whatever stands behind the name. */
-static bool execute_land(answer_t *answer)
-{
-    set_reference(0.0F);
-    answer_begin(answer);
-    answer_send(answer);
-    return true;
-}
-
 static bool execute_stop(answer_t *answer)
 {
     set_arm(false);
-    return execute_land(answer);
+    return verb_land(answer);
 }
 
 static bool execute_help(answer_t *answer);
 
 static const verb_t verbs[] = {
+    {"SETR", verb_setr, "0..3 m - height reference; 0 lands"},
     {"ARM", execute_arm, "- on the ground: IDLE percent of throttle instead of none, which keeps started motors turning"},
     {"STOP", execute_stop, "- disarms: no throttle on the ground, in the air it lands first; goes before all that waits"},
-    {"LAND", execute_land, "- lands, as #SETR 0; goes before all that waits"},
+    {"LAND", verb_land, "- lands, as #SETR 0; goes before all that waits"},
     {"GET", execute_get, "[NAME] - one parameter, or all"},
-    {"SAVE", verb_save, "- stores the parameters, all but SETR"},
+    {"SAVE", verb_save, "- stores the parameters"},
     {"LOAD", verb_load, "- the stored parameters"},
     {"DEFAULTS", verb_defaults, "[SEED] - the parameters as delivered, or the seed's law and gains; the stored ones stay"},
     {"LOG", verb_log, "[SECONDS|CLEAR|STOP] - the flight recorder as CSV"},
@@ -257,11 +234,7 @@ static bool execute_set(answer_t *answer, parameter_id_t id)
     if (!parameter_may_change_in_air(id, before, value) && ground_left()) {
         return refuse_in_air(answer, id);
     }
-    if (id == PARAMETER_SETR) {
-        set_reference(value);
-    } else {
-        parameter_server_write(&parameters);
-    }
+    parameter_server_write(&parameters);
     report_set(answer, id);
     return true;
 }

@@ -9,7 +9,7 @@
 #include "drivers/parameter_image.h"
 #include "bsp/storage.h"
 
-#define VALUES ((uint16_t)PARAMETER_COUNT - 1U)
+#define VALUES ((uint16_t)PARAMETER_COUNT)
 #define SLOTS BSP_STORAGE_SLOTS
 #define NO_SLOT SLOTS
 
@@ -38,10 +38,8 @@ static uint32_t names_of_all(void)
     uint16_t id;
 
     for (id = 0U; id < (uint16_t)PARAMETER_COUNT; id++) {
-        if (id != (uint16_t)PARAMETER_SETR) {
-            names = parameter_image_name(names, parameter_table[id].name);
-            names = names_of_choices(names, &parameter_table[id]);
-        }
+        names = parameter_image_name(names, parameter_table[id].name);
+        names = names_of_choices(names, &parameter_table[id]);
     }
     return names;
 }
@@ -98,13 +96,9 @@ static parameter_id_t take(parameters_t *parameters, const float *values)
     uint16_t id;
 
     for (id = 0U; id < (uint16_t)PARAMETER_COUNT; id++) {
-        if (id == (uint16_t)PARAMETER_SETR) {
-            continue;
-        }
-        if (parameters_set(parameters, (parameter_id_t)id, *values) != PARAMETER_ACCEPTED) {
+        if (parameters_set(parameters, (parameter_id_t)id, values[id]) != PARAMETER_ACCEPTED) {
             return (parameter_id_t)id;
         }
-        values++;
     }
     return PARAMETER_COUNT;
 }
@@ -136,12 +130,9 @@ static void fill(parameter_image_t *image, const parameters_t *parameters)
 {
     uint16_t id;
 
-    image->count = 0U;
+    image->count = VALUES;
     for (id = 0U; id < (uint16_t)PARAMETER_COUNT; id++) {
-        if (id != (uint16_t)PARAMETER_SETR) {
-            image->values[image->count] = parameters->value[id];
-            image->count++;
-        }
+        image->values[id] = parameters->value[id];
     }
 }
 

@@ -1,4 +1,4 @@
-/* The operator's parameters, all but SETR, in the board's storage: two copies, of which the newer good one counts. A copy
+/* The operator's parameters in the board's storage: two copies, of which the newer good one counts. A copy
  * is written over the other one and read back, so that one good copy is there whenever the power fails. main() or
  * TaskReceiveComm. docs/operator.md has what refuses a copy. */
 #ifndef FIRMWARE_PARAMETER_STORE_H

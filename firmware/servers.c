@@ -9,7 +9,7 @@
 #include "control/thrust.h"
 #include "firmware/imu_exchange.h"
 #include "firmware/monitor.h"
-#include "firmware/watch.h"
+#include "firmware/probe.h"
 
 static GateMutexPri_Handle altitude_gate;
 static GateMutexPri_Handle imu_gate;
@@ -27,12 +27,12 @@ static reference_sample_t reference;
 static parameters_t parameters;
 static flight_outputs_t flight = {.pulse_us = THRUST_IDLE_PULSE_US, .estimate_mm = NAN, .innovation_mm = NAN};
 
-const altitude_sample_t *const watch_altitude = &altitude;
-const imu_sample_t *const watch_imu = &imu;
-const laser_sample_t *const watch_laser = &laser;
-const reference_sample_t *const watch_reference = &reference;
-const parameters_t *const watch_parameters = &parameters;
-const flight_outputs_t *const watch_flight = &flight;
+const altitude_sample_t *const probe_altitude = &altitude;
+const imu_sample_t *const probe_imu = &imu;
+const laser_sample_t *const probe_laser = &laser;
+const reference_sample_t *const probe_reference = &reference;
+const parameters_t *const probe_parameters = &parameters;
+const flight_outputs_t *const probe_flight = &flight;
 
 static GateMutexPri_Handle gate_create(const char *name)
 {

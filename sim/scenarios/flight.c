@@ -6,7 +6,7 @@
 #include <strings.h>
 
 #include "drivers/flight_log.h"
-#include "firmware/watch.h"
+#include "sim/firmware_view.h"
 #include "sim/devices/xbee.h"
 #include "sim/host/pace.h"
 #include "sim/scenarios/plant.h"
@@ -78,11 +78,34 @@ static const char *check_parameter(parameter_id_t id, const char *text)
     return parameters_set(&parameters, id, value) == PARAMETER_ACCEPTED ? NULL : out_of_range(id);
 }
 
+static const char *check_reference(const char *text)
+{
+    char *end;
+    float reference_m = strtof(text, &end);
+
+    if (*text == '\0' || *end != '\0') {
+        return "not a number";
+    }
+    return reference_m >= 0.0F && reference_m <= FLIGHT_REFERENCE_MAX_M ? NULL : "out of range 0..3 m";
+}
+
+static const char *check_override(const char *name, const char *value)
+{
+    const parameter_id_t id = parameter_find(name, strlen(name));
+
+    if (strcasecmp(name, "SETR") == 0) {
+        return check_reference(value);
+    }
+    if (id == PARAMETER_COUNT) {
+        return plant_known(name) ? plant_check(name, value) : "unknown name";
+    }
+    return check_parameter(id, value);
+}
+
 const char *flight_override(flight_options_t *options, const char *assignment)
 {
     const char *equals = strchr(assignment, '=');
     flight_override_t *o = &options->overrides[options->override_count];
-    parameter_id_t id;
     const char *error;
 
     if (equals == NULL || (size_t)(equals - assignment) >= sizeof o->name || strlen(equals + 1) >= sizeof o->value) {
@@ -93,11 +116,7 @@ const char *flight_override(flight_options_t *options, const char *assignment)
     }
     snprintf(o->name, sizeof o->name, "%.*s", (int)(equals - assignment), assignment);
     snprintf(o->value, sizeof o->value, "%s", equals + 1);
-    id = parameter_find(o->name, strlen(o->name));
-    if (id == PARAMETER_COUNT && !plant_known(o->name)) {
-        return "unknown name";
-    }
-    error = id == PARAMETER_COUNT ? plant_check(o->name, o->value) : check_parameter(id, o->value);
+    error = check_override(o->name, o->value);
     options->override_count += error == NULL;
     return error;
 }
@@ -186,9 +205,9 @@ static void type_complete_at(double t_s, const char *name, const char *value)
     type_at(at(t_s) - xbee_latency(strlen(name) + strlen(value) + 3), name, value);
 }
 
-static double type_overrides(const flight_options_t *options, parameter_id_t first, double t_s)
+static void type_overrides(const flight_options_t *options, double t_s)
 {
-    for (parameter_id_t id = first; id < PARAMETER_COUNT; id++) {
+    for (parameter_id_t id = 0; id < PARAMETER_COUNT; id++) {
         const char *value = overridden(options, parameter_table[id].name);
 
         if (value != NULL) {
@@ -196,7 +215,6 @@ static double type_overrides(const flight_options_t *options, parameter_id_t fir
             t_s += LINE_SPACING_S;
         }
     }
-    return t_s;
 }
 
 /* What must happen before t = 0. */
@@ -233,7 +251,7 @@ static void type_settings(const scenario_t *scenario, const flight_options_t *op
             t_s += LINE_SPACING_S;
         }
     }
-    type_overrides(options, PARAMETER_KP, t_s);
+    type_overrides(options, t_s);
 }
 
 static void landing(void *context)
@@ -334,14 +352,17 @@ typedef struct {
 
 static void write_row(FILE *csv, double t_s, const truth_t *truth)
 {
+    const firmware_view_t firmware = firmware_view();
+    const flight_outputs_t *out = &firmware.flight;
+
     fprintf(csv, "%.2f", t_s);
-    write_column(csv, watch_altitude->scan_valid, (double)watch_altitude->altitude.height_mm * 1e-3);
-    write_column(csv, true, (double)watch_flight->estimate_mm * 1e-3);
-    write_column(csv, true, (double)watch_flight->innovation_mm * 1e-3);
-    fprintf(csv, ",%.3f,%.4f", (double)watch_flight->reference_m, (double)watch_flight->thrust_n);
-    write_column(csv, watch_imu->ready, (double)watch_imu->median.roll_rad);
-    write_column(csv, watch_imu->ready, (double)watch_imu->median.pitch_rad);
-    fprintf(csv, ",%s,%u,%.4f,%.4f,%.4f,%.2f\n", flight_state_name(watch_flight->state), (unsigned)watch_flight->flags,
+    write_column(csv, firmware.altitude.scan_valid, (double)firmware.altitude.altitude.height_mm * 1e-3);
+    write_column(csv, true, (double)out->estimate_mm * 1e-3);
+    write_column(csv, true, (double)out->innovation_mm * 1e-3);
+    fprintf(csv, ",%.3f,%.4f", (double)out->reference_m, (double)out->thrust_n);
+    write_column(csv, firmware.imu.ready, (double)firmware.imu.median.roll_rad);
+    write_column(csv, firmware.imu.ready, (double)firmware.imu.median.pitch_rad);
+    fprintf(csv, ",%s,%u,%.4f,%.4f,%.4f,%.2f\n", flight_state_name(out->state), (unsigned)out->flags,
             truth->height_m, truth->altitude_m, truth->terrain_m, board_pulse_us());
 }
 
@@ -366,17 +387,18 @@ static void record_row(const truth_t *truth)
 
 static metrics_sample_t look(double t_s, const quadrotor_state_t *truth)
 {
-    const flight_state_t phase = watch_flight->state;
+    const flight_outputs_t out = firmware_view().flight;
+    const flight_state_t phase = out.state;
 
     return (metrics_sample_t){
         .t_s = t_s, .height_m = truth->height_m, .speed_mps = truth->speed_mps,
-        .thrust_n = (double)watch_flight->thrust_n,
+        .thrust_n = (double)out.thrust_n,
         .taken_over = phase == FLIGHT_LOWERING || phase == FLIGHT_DESCENDING,
         .coming_down = phase == FLIGHT_DESCENDING || phase == FLIGHT_LANDING,
         .on_ground = truth->on_ground,
         .may_cut = board_selected() && cos(truth->roll_rad) * cos(truth->pitch_rad) > UPRIGHT,
-        .flagged = watch_flight->flags != 0U,
-        .estimate_m = (double)watch_flight->estimate_mm * 1e-3,
+        .flagged = out.flags != 0U,
+        .estimate_m = (double)out.estimate_mm * 1e-3,
         .seen_m = board_seen_m()};
 }
 
@@ -477,7 +499,7 @@ static bool start_up(const scenario_t *scenario, const flight_options_t *options
     const sim_time_t lead = (sim_time_t)(lead_s(scenario) * 1e9);
     noise_t phase;
 
-    while (!(watch_laser->seen.scan_count >= 3U && watch_imu->ready)) {
+    while (!(firmware_view().scans >= 3U && firmware_view().imu.ready)) {
         if (timeline_now() >= START_LIMIT || !kernel_run_until(timeline_now() + STEP)) {
             return false;
         }
@@ -536,7 +558,10 @@ static void stand(const scenario_t *scenario, const flight_options_t *options)
     if (duration_s == 0.0 && !options->realtime) {
         duration_s = scenario->end_s;
     }
-    type_overrides(options, PARAMETER_SETR, BENCH_SETTINGS_S);
+    if (overridden(options, "SETR") != NULL) {
+        type_at(at(BENCH_SETTINGS_S), "SETR", overridden(options, "SETR"));
+    }
+    type_overrides(options, BENCH_SETTINGS_S + LINE_SPACING_S);
     run_by_hand(options, duration_s);
     ask_laser();
 }
@@ -550,8 +575,8 @@ static void conclude(flight_result_t *result)
     value[METRIC_GROUND_CONTACTS] = quadrotor_state(board_quadrotor())->contacts;
     value[METRIC_MOTOR_STOPS] = quadrotor_state(board_quadrotor())->motor_stops;
     value[METRIC_MOTORS_AT_END] = quadrotor_state(board_quadrotor())->motors;
-    value[METRIC_SCANS] = watch_laser->seen.scan_count;
-    value[METRIC_SCANS_REJECTED] = (double)watch_laser->seen.damage_count + watch_altitude->heightless;
+    value[METRIC_SCANS] = firmware_view().scans;
+    value[METRIC_SCANS_REJECTED] = (double)firmware_view().damages + firmware_view().altitude.heightless;
     value[METRIC_COMMANDS_OK] = flight.ok;
     value[METRIC_COMMANDS_ERR] = flight.err;
     result->halt = kernel_halt_reason();

@@ -2,7 +2,8 @@
 
 #include <string.h>
 
-#include "firmware/watch.h"
+#include "control/flight_io.h"
+#include "sim/firmware_view.h"
 #include "sim/ti/driverlib/chip.h"
 
 void latency_init(latency_t *latency)
@@ -23,12 +24,24 @@ static bool left(kernel_event_t event, int gate, const char *name)
     return event == KERNEL_GATE_LEFT && strcmp(kernel_gate_name(gate), name) == 0;
 }
 
+static int release_in_force(void)
+{
+    const uint16_t releases = firmware_view_releases();
+
+    if ((releases & FLIGHT_RELEASE_FRAME) != 0U) {
+        return LATENCY_FRAME;
+    }
+    return (releases & FLIGHT_RELEASE_HEIGHT) != 0U ? (int)RELEASE_SCAN : (int)RELEASE_FREE;
+}
+
 static void note_write(latency_t *latency)
 {
-    if (watch_altitude->sequence != latency->written.sequence) {
-        latency->written.sequence = watch_altitude->sequence;
+    const uint32_t heights = firmware_view_heights();
+
+    if (heights != latency->written.sequence) {
+        latency->written.sequence = heights;
         latency->written.scan_end = latency->reply_end;
-        latency->written.release = latency->release;
+        latency->written.release = release_in_force();
     }
 }
 
@@ -50,23 +63,7 @@ static void answer(latency_t *latency, sim_time_t when)
     latency->answered = true;
     latency->answer_to = latency->read.scan_end;
     latency->answered_sequence = latency->read.sequence;
-    if (latency->read.release != LATENCY_UNKNOWN) {
-        count(&latency->by_release[latency->read.release], latency->read.scan_end, when - latency->read.scan_end);
-    }
-}
-
-static int release_in_force(void)
-{
-    const control_law_t law = (control_law_t)watch_parameters->value[PARAMETER_LAW];
-    const flight_state_t state = watch_flight->state;
-
-    if (law == LAW_EST) {
-        return LATENCY_FRAME;
-    }
-    if (state == FLIGHT_LANDING || state == FLIGHT_LOWERING || state == FLIGHT_DESCENDING) {
-        return LATENCY_UNKNOWN;
-    }
-    return law == LAW_PIDT ? (int)RELEASE_SCAN : (int)watch_parameters->value[PARAMETER_RELEASE];
+    count(&latency->by_release[latency->read.release], latency->read.scan_end, when - latency->read.scan_end);
 }
 
 static void follow_control(latency_t *latency, sim_time_t when, kernel_event_t event, int detail)
@@ -80,8 +77,6 @@ static void follow_control(latency_t *latency, sim_time_t when, kernel_event_t e
     latency->compare = compare;
     if (left(event, detail, "Altitude_server")) {
         latency->read = latency->written;
-    } else if (left(event, detail, "Parameter_server")) {
-        latency->release = release_in_force();
     }
 }
 

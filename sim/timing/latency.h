@@ -11,9 +11,8 @@
 #include "control/parameters.h"
 #include "sim/ti/sysbios/kernel.h"
 
-/* What releases TaskControl: the parameter RELEASE of laws PD and PID, each height for PIDT, each height and IMU frame for
- * EST. A descent of the supervisor is flown by frames or not, as the estimator has it: unknown, and not counted. */
-enum { LATENCY_UNKNOWN = -1, LATENCY_FRAME = RELEASE_COUNT, LATENCY_RELEASES };
+/* What TaskControl waits for: its period, each height, or each height and IMU frame. */
+enum { LATENCY_FRAME = RELEASE_COUNT, LATENCY_RELEASES };
 
 typedef struct {
     long answers;
@@ -28,7 +27,6 @@ typedef struct {
 
     unsigned previous_octet;
     sim_time_t reply_end;   /* latest LF LF on the wire */
-    int release;            /* as TaskControl knows it */
     struct {
         uint32_t sequence;
         sim_time_t scan_end;

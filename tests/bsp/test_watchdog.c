@@ -1,4 +1,4 @@
-/* The watchdog and the cause of a reset, on the chip model. */
+/* The watchdog, on the chip model. */
 #include "bsp/watchdog.h"
 
 #include "device.h"
@@ -83,26 +83,4 @@ void test_the_start_gives_a_whole_period_whatever_was_counted_before(void)
     bsp_watchdog_start();
     run_until(13 * SIM_MS + PERIOD - 1);
     TEST_ASSERT_EQUAL_INT(0, bites);
-}
-
-void test_after_power_on_the_cause_is_power(void)
-{
-    TEST_ASSERT_EQUAL(BSP_RESET_POWER, bsp_reset_cause());
-}
-
-void test_after_a_bite_the_cause_is_the_watchdog_though_the_boot_rom_remembers_the_power_on(void)
-{
-    TEST_ASSERT_EQUAL(BSP_RESET_POWER, bsp_reset_cause());
-    bsp_watchdog_start();
-    run_until(PERIOD);
-    TEST_ASSERT_EQUAL_INT(1, bites);
-    TEST_ASSERT_EQUAL(BSP_RESET_WATCHDOG, bsp_reset_cause());
-}
-
-void test_the_cause_is_forgotten_once_it_was_told(void)
-{
-    bsp_watchdog_start();
-    run_until(PERIOD);
-    TEST_ASSERT_EQUAL(BSP_RESET_WATCHDOG, bsp_reset_cause());
-    TEST_ASSERT_NOT_EQUAL(BSP_RESET_WATCHDOG, bsp_reset_cause());
 }

@@ -36,7 +36,6 @@ static void accepted(parameter_id_t id, float value)
 /* Best flown values, seed document, Annex III. */
 void test_the_defaults_are_the_seeds_best_values_but_for_the_law(void)
 {
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, parameters.value[PARAMETER_SETR]);
     TEST_ASSERT_EQUAL_FLOAT(0.015F, parameters.value[PARAMETER_KP]);
     TEST_ASSERT_EQUAL_FLOAT(0.008F, parameters.value[PARAMETER_KD]);
     TEST_ASSERT_EQUAL_FLOAT(0.01F, parameters.value[PARAMETER_KI]);
@@ -80,7 +79,7 @@ void test_every_choice_is_found_by_its_name(void)
 void test_names_are_found_in_any_case_and_only_whole(void)
 {
     TEST_ASSERT_EQUAL(PARAMETER_KP, find("kp"));
-    TEST_ASSERT_EQUAL(PARAMETER_SETR, find("SeTr"));
+    TEST_ASSERT_EQUAL(PARAMETER_GRAV, find("GrAv"));
     TEST_ASSERT_EQUAL(PARAMETER_KP, parameter_find("KPX", 2));
     TEST_ASSERT_EQUAL(PARAMETER_COUNT, find("K"));
     TEST_ASSERT_EQUAL(PARAMETER_COUNT, find("KPP"));
@@ -125,8 +124,6 @@ void test_what_is_no_finite_number_is_refused_everywhere(void)
 
 void test_the_operators_mistakes_are_refused(void)
 {
-    refused(PARAMETER_SETR, -1.0F);
-    refused(PARAMETER_SETR, 60.0F); /* centimetres */
     refused(PARAMETER_KP, 15.0F);   /* N/m */
     refused(PARAMETER_USAT, -0.5F);
     refused(PARAMETER_GRAV, 12.0F);
@@ -143,8 +140,8 @@ void test_a_choice_is_whole(void)
 
 void test_minus_zero_is_stored_as_zero(void)
 {
-    TEST_ASSERT_EQUAL(PARAMETER_ACCEPTED, parameters_set(&parameters, PARAMETER_SETR, -0.0F));
-    TEST_ASSERT_EQUAL_INT(0, signbit(parameters.value[PARAMETER_SETR]) != 0);
+    TEST_ASSERT_EQUAL(PARAMETER_ACCEPTED, parameters_set(&parameters, PARAMETER_KP, -0.0F));
+    TEST_ASSERT_EQUAL_INT(0, signbit(parameters.value[PARAMETER_KP]) != 0);
 }
 
 void test_a_value_changes_nothing_but_itself(void)
@@ -158,12 +155,6 @@ void test_a_value_changes_nothing_but_itself(void)
             }
         }
     }
-}
-
-/* The sensor's two-character distances end at 4095 mm; 205 mm of it lie above the gear. */
-void test_the_take_over_above_the_highest_reference_is_still_in_range_of_the_sensor(void)
-{
-    TEST_ASSERT_TRUE(parameter_table[PARAMETER_SETR].maximum + 0.8F < 4.095F - 0.205F);
 }
 
 void test_the_seeds_set_is_its_law_and_gains_and_nothing_else(void)

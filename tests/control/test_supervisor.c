@@ -140,6 +140,12 @@ static void floating(void)
     state_is(FLIGHT_FLOATING);
 }
 
+/* The sensor's two-character distances end at 4095 mm; 205 mm of it lie above the gear. */
+void test_the_take_over_above_the_highest_reference_is_still_in_range_of_the_sensor(void)
+{
+    TEST_ASSERT_TRUE(FLIGHT_REFERENCE_MAX_M + 0.8F < 4.095F - 0.205F);
+}
+
 /* ---- every transition once, through the inputs */
 
 void test_ground_to_floating_when_a_pilot_has_been_aloft_for_a_second(void)

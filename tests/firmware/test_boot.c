@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "mock_retained.h"
-#include "mock_watchdog.h"
+#include "mock_reset.h"
 #include "unity.h"
 
 static bool stored;

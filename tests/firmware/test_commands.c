@@ -372,16 +372,16 @@ void test_get_alone_answers_one_line_per_parameter_in_the_tables_order_and_their
 {
     reference.reference_m = 1.25F;
     type("#GET");
-    TEST_ASSERT_EQUAL_UINT16(PARAMETER_COUNT + 1U, answered);
-    assert_end("OK GET END lines:%u", PARAMETER_COUNT);
-    TEST_ASSERT_EQUAL_STRING("OK SETR 1.25", answers[PARAMETER_SETR]);
-    TEST_ASSERT_EQUAL_STRING("OK GRAV 7", answers[PARAMETER_GRAV]);
-    TEST_ASSERT_EQUAL_STRING("OK LAW EST", answers[PARAMETER_LAW]);
+    TEST_ASSERT_EQUAL_UINT16(PARAMETER_COUNT + 2U, answered);
+    assert_end("OK GET END lines:%u", PARAMETER_COUNT + 1U);
+    TEST_ASSERT_EQUAL_STRING("OK SETR 1.25", answers[0]);
+    TEST_ASSERT_EQUAL_STRING("OK GRAV 7", answers[1U + PARAMETER_GRAV]);
+    TEST_ASSERT_EQUAL_STRING("OK LAW EST", answers[1U + PARAMETER_LAW]);
     for (uint16_t id = 0; id < PARAMETER_COUNT; id++) {
         const size_t length = strlen(parameter_table[id].name);
 
-        TEST_ASSERT_EQUAL_STRING_LEN(parameter_table[id].name, &answers[id][3], length);
-        TEST_ASSERT_EQUAL_INT(' ', answers[id][3U + length]);
+        TEST_ASSERT_EQUAL_STRING_LEN(parameter_table[id].name, &answers[1U + id][3], length);
+        TEST_ASSERT_EQUAL_INT(' ', answers[1U + id][3U + length]);
     }
 }
 
@@ -396,13 +396,13 @@ void test_every_answer_of_get_can_be_typed_back_as_a_command(void)
     before = parameters;
     type("#GET");
     (void)memcpy(told, answers, sizeof told);
-    for (uint16_t id = 0; id < PARAMETER_COUNT; id++) {
+    for (uint16_t i = 0; i <= PARAMETER_COUNT; i++) {
         char line[TELEMETRY_ANSWER_MAX + 2U];
 
-        (void)snprintf(line, sizeof line, "#%s", &told[id][3]);
+        (void)snprintf(line, sizeof line, "#%s", &told[i][3]);
         type(line);
         TEST_ASSERT_EQUAL_UINT16(1, answered);
-        TEST_ASSERT_EQUAL_STRING_LEN(told[id], answers[0], strlen(told[id]));
+        TEST_ASSERT_EQUAL_STRING_LEN(told[i], answers[0], strlen(told[i]));
     }
     TEST_ASSERT_EQUAL_MEMORY(before.value, parameters.value, sizeof before.value);
     TEST_ASSERT_EQUAL_FLOAT(0.333333F, reference.reference_m);
@@ -444,11 +444,11 @@ void test_help_tells_every_parameter_and_every_verb_with_limits_and_meaning(void
         TEST_ASSERT_GREATER_THAN_UINT64(strlen(begin) + strlen(end), length);
         TEST_ASSERT_EQUAL_STRING(end, &answers[id][length - strlen(end)]);
     }
-    TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #SETR 0..3 m - ", answers[PARAMETER_SETR], 23);
+    TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #SETR 0..3 m - ", answers[PARAMETER_COUNT], 23);
     TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #USAT 0..11.76 N - ", answers[PARAMETER_USAT], 27);
     TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #LAW PD|PID|PIDT|EST - ", answers[PARAMETER_LAW], 31);
     TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #RELEASE FREE|SCAN - ", answers[PARAMETER_RELEASE], 29);
-    TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #ARM - ", answers[PARAMETER_COUNT], 15);
+    TEST_ASSERT_EQUAL_STRING_LEN("OK HELP #ARM - ", answers[PARAMETER_COUNT + 1U], 15);
     TEST_ASSERT_EQUAL_STRING("OK HELP #HELP - this list", answers[answered - 2U]);
     assert_end("OK HELP END lines:%u", answered - 1U);
 }

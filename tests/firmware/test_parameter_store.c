@@ -105,7 +105,7 @@ static void assert_nothing_loads(parameter_store_status_t why)
     TEST_ASSERT_EQUAL_MEMORY(&before, &parameters, sizeof before);
 }
 
-void test_every_value_comes_back_and_the_reference_stays(void)
+void test_every_value_comes_back(void)
 {
     parameters_t expected;
 
@@ -118,17 +118,15 @@ void test_every_value_comes_back_and_the_reference_stays(void)
     result = parameter_store_save(&parameters);
     TEST_ASSERT_EQUAL(PARAMETER_STORE_DONE, result.status);
     parameters_init(&parameters);
-    parameters.value[PARAMETER_SETR] = 0.25F;
     result = parameter_store_load(&parameters);
     TEST_ASSERT_EQUAL(PARAMETER_STORE_DONE, result.status);
-    expected.value[PARAMETER_SETR] = 0.25F;
     TEST_ASSERT_EQUAL_MEMORY(expected.value, parameters.value, sizeof expected.value);
     TEST_ASSERT_TRUE_MESSAGE(parameters.generation > 0U, "readers must see that something changed");
 }
 
 void test_the_set_has_room(void)
 {
-    TEST_ASSERT_TRUE(PARAMETER_COUNT - 1 <= PARAMETER_IMAGE_VALUES_MAX);
+    TEST_ASSERT_TRUE(PARAMETER_COUNT <= PARAMETER_IMAGE_VALUES_MAX);
 }
 
 void test_saves_take_the_two_slots_in_turn_and_the_newer_one_counts(void)
@@ -202,17 +200,17 @@ void test_another_layout_is_refused(void)
 
 static void too_much_kd(parameter_image_t *image)
 {
-    image->values[PARAMETER_KD - 1] = 1.5F;
+    image->values[PARAMETER_KD] = 1.5F;
 }
 
 static void no_number(parameter_image_t *image)
 {
-    image->values[PARAMETER_KP - 1] = NAN;
+    image->values[PARAMETER_KP] = NAN;
 }
 
 static void half_a_choice(parameter_image_t *image)
 {
-    image->values[PARAMETER_LAW - 1] = 0.5F;
+    image->values[PARAMETER_LAW] = 0.5F;
 }
 
 void test_a_value_outside_its_limits_refuses_the_whole_copy_and_is_named(void)

@@ -8,7 +8,7 @@
 #include "mock_monitor.h"
 #include "mock_timebase.h"
 #include "unity.h"
-#include "firmware/watch.h"
+#include "firmware/probe.h"
 
 #define ALTITUDE "Altitude_server"
 #define IMU "IMU_server"
@@ -233,8 +233,8 @@ static const struct {
 static const void *served(size_t access)
 {
     const void *const values[ACCESSES] = {
-        watch_altitude,  watch_altitude,  watch_imu,        watch_imu,        watch_imu,    watch_laser,  watch_laser,
-        watch_reference, watch_reference, watch_parameters, watch_parameters, watch_flight, watch_flight,
+        probe_altitude,  probe_altitude,  probe_imu,        probe_imu,        probe_imu,    probe_laser,  probe_laser,
+        probe_reference, probe_reference, probe_parameters, probe_parameters, probe_flight, probe_flight,
     };
 
     return values[access];
@@ -327,12 +327,12 @@ void test_what_is_written_is_what_is_read_and_what_the_debugger_sees(void)
         TEST_ASSERT_EQUAL_HEX32(value * 0x1010101, reference.link_sequence);
         TEST_ASSERT_EQUAL_HEX32(value * 0x1010101, parameters.generation);
         TEST_ASSERT_EQUAL_HEX16(value * 0x101, flight.flags);
-        TEST_ASSERT_EQUAL_MEMORY(watch_altitude, &altitude, sizeof altitude);
-        TEST_ASSERT_EQUAL_MEMORY(watch_imu, &imu, sizeof imu);
-        TEST_ASSERT_EQUAL_MEMORY(watch_laser, &laser, sizeof laser);
-        TEST_ASSERT_EQUAL_MEMORY(watch_reference, &reference, sizeof reference);
-        TEST_ASSERT_EQUAL_MEMORY(watch_parameters, &parameters, sizeof parameters);
-        TEST_ASSERT_EQUAL_MEMORY(watch_flight, &flight, sizeof flight);
+        TEST_ASSERT_EQUAL_MEMORY(probe_altitude, &altitude, sizeof altitude);
+        TEST_ASSERT_EQUAL_MEMORY(probe_imu, &imu, sizeof imu);
+        TEST_ASSERT_EQUAL_MEMORY(probe_laser, &laser, sizeof laser);
+        TEST_ASSERT_EQUAL_MEMORY(probe_reference, &reference, sizeof reference);
+        TEST_ASSERT_EQUAL_MEMORY(probe_parameters, &parameters, sizeof parameters);
+        TEST_ASSERT_EQUAL_MEMORY(probe_flight, &flight, sizeof flight);
     }
 }
 

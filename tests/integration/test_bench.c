@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "child.h"
-#include "firmware/watch.h"
+#include "firmware/probe.h"
 #include "unity.h"
 
 #define NOISE_MM 25.0   /* 3 mm common to a scan and what the attitude's noise makes of it, seven deviations */
@@ -139,11 +139,11 @@ static void judge_heights(verdict_t *v, const trial_t *trial)
 {
     static uint32_t sequence;
 
-    if (watch_altitude->sequence != sequence) {
-        const double height_mm = (double)watch_altitude->altitude.height_mm;
+    if (probe_altitude->sequence != sequence) {
+        const double height_mm = (double)probe_altitude->altitude.height_mm;
 
-        v->heights += watch_altitude->sequence - sequence;
-        sequence = watch_altitude->sequence;
+        v->heights += probe_altitude->sequence - sequence;
+        sequence = probe_altitude->sequence;
         v->worst_mm = fmax(v->worst_mm, fabs(height_mm - 1000.0 * trial->height_m));
         v->late_heights += (double)timeline_now() * 1e-9 > trial->until_s - 2.0;
     }
@@ -172,7 +172,7 @@ static void stand(void *argument, void *result)
     for (int i = 0; i < LINE_FAULT_KIND_COUNT; i++) {
         v->strikes += line_fault_strikes(board_laser_faults(), (line_fault_kind_t)i);
     }
-    v->ok = watch_laser->status == URG_OK;
+    v->ok = probe_laser->status == URG_OK;
     v->halt = kernel_halt_reason();
 }
 

@@ -4,7 +4,7 @@
 
 #include <xdc/runtime/System.h>
 
-#include "firmware/watch.h"
+#include "firmware/probe.h"
 #include "sim/board.h"
 #include "sim/ti/driverlib/chip.h"
 #include "sim/timeline.h"
@@ -143,13 +143,13 @@ void test_after_a_watchdog_reset_scanner_and_imu_are_back_at_once(void)
 
     run_until_s(14.0);
     TEST_ASSERT_GREATER_OR_EQUAL_INT(0, find("laser:OK", 11.0));
-    before = *watch_imu;
+    before = *probe_imu;
     starve(15.0, 1.0);
     run_until_s(16.2); /* 0.2 s hold 8 frames, an offset takes 20 */
-    TEST_ASSERT_TRUE(watch_imu->ready);
-    TEST_ASSERT_LESS_THAN_UINT32(before.sequence, watch_imu->sequence);
-    TEST_ASSERT_DOUBLE_WITHIN(0.02, (double)before.median.roll_rad, (double)watch_imu->median.roll_rad);
-    TEST_ASSERT_DOUBLE_WITHIN(0.02, (double)before.median.pitch_rad, (double)watch_imu->median.pitch_rad);
+    TEST_ASSERT_TRUE(probe_imu->ready);
+    TEST_ASSERT_LESS_THAN_UINT32(before.sequence, probe_imu->sequence);
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, (double)before.median.roll_rad, (double)probe_imu->median.roll_rad);
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, (double)before.median.pitch_rad, (double)probe_imu->median.pitch_rad);
     run_until_s(20.0);
     TEST_ASSERT_EQUAL_INT(-1, find("laser:WAIT", 16.3));
     TEST_ASSERT_TRUE(seconds_of(find("laser:OK", 16.0)) < 18.5);

@@ -7,7 +7,7 @@
 #include <xdc/runtime/System.h>
 
 #include "child.h"
-#include "firmware/watch.h"
+#include "firmware/probe.h"
 #include "sim/ti/driverlib/chip.h"
 #include "unity.h"
 

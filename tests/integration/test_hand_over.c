@@ -6,7 +6,7 @@
 
 #include "child.h"
 #include "control/thrust.h"
-#include "firmware/watch.h"
+#include "firmware/probe.h"
 #include "unity.h"
 
 #define REFERENCE_M 0.6
@@ -34,7 +34,7 @@ void tearDown(void) {}
 
 static double thrust_n(void)
 {
-    return (double)watch_flight->thrust_n;
+    return (double)probe_flight->thrust_n;
 }
 
 static void stick(const order_t *order)
@@ -47,8 +47,8 @@ static void stick(const order_t *order)
 
 static void pilots_turn(const order_t *order, seen_t *seen)
 {
-    seen->before = watch_flight->state;
-    seen->flags_before = watch_flight->flags;
+    seen->before = probe_flight->state;
+    seen->flags_before = probe_flight->flags;
     seen->stayed = true;
     board_select(false);
     for (int i = 0; i < 400; i++) {
@@ -57,10 +57,10 @@ static void pilots_turn(const order_t *order, seen_t *seen)
         }
         (void)kernel_run_until(timeline_now() + STEP);
         if (i == 20) {
-            seen->during = watch_flight->state;
-            seen->flags_during = watch_flight->flags;
+            seen->during = probe_flight->state;
+            seen->flags_during = probe_flight->flags;
         }
-        seen->stayed = seen->stayed && (i < 20 || watch_flight->state == seen->during);
+        seen->stayed = seen->stayed && (i < 20 || probe_flight->state == seen->during);
     }
     seen->pilot_thrust_n = thrust_n();
     seen->pilot_error_m = quadrotor_state(board_quadrotor())->height_m - order->pilot_m;
@@ -77,7 +77,7 @@ static void back_again(seen_t *seen)
         (void)kernel_run_until(timeline_now() + STEP);
         const double height_m = quadrotor_state(board_quadrotor())->height_m;
 
-        if (seen->first_n == 0.0 && watch_flight->state == FLIGHT_FLYING) {
+        if (seen->first_n == 0.0 && probe_flight->state == FLIGHT_FLYING) {
             seen->first_n = thrust_n();
         }
         if (i < 100) {
@@ -88,8 +88,8 @@ static void back_again(seen_t *seen)
         seen->lowest_m = fmin(seen->lowest_m, height_m);
     }
     seen->end_m = quadrotor_state(board_quadrotor())->height_m;
-    seen->after = watch_flight->state;
-    seen->flags_after = watch_flight->flags;
+    seen->after = probe_flight->state;
+    seen->flags_after = probe_flight->flags;
 }
 
 static void fly(void *argument, void *result)

@@ -7,7 +7,7 @@
 #include "child.h"
 #include "drivers/flight_log.h"
 #include "firmware/flight_recorder.h"
-#include "firmware/watch.h"
+#include "firmware/probe.h"
 #include "unity.h"
 
 #define TERMINAL_MAX 200000

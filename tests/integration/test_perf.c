@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "firmware/watch.h"
+#include "firmware/probe.h"
 #include "sim/board.h"
 #include "sim/costs.h"
 #include "unity.h"
@@ -199,8 +199,8 @@ void test_no_octet_is_lost_even_when_everything_takes_twelve_times_as_long(void)
         TEST_ASSERT_EQUAL_UINT64(0, field("OK LASER state:OK", "framing:"));
         TEST_ASSERT_EQUAL_UINT64(0, field("OK LASER state:OK", "length:"));
         TEST_ASSERT_UINT64_WITHIN(6, 297, field("OK LASER state:OK", "frames:")); /* from 11.7 s on, ten a second */
-        TEST_ASSERT_EQUAL_UINT32(0, watch_imu->malformed);
-        TEST_ASSERT_UINT32_WITHIN(4, 41 * 40 + 20, watch_imu->sequence);
+        TEST_ASSERT_EQUAL_UINT32(0, probe_imu->malformed);
+        TEST_ASSERT_UINT32_WITHIN(4, 41 * 40 + 20, probe_imu->sequence);
     }
 }
 
@@ -214,13 +214,13 @@ void test_no_frame_waits_longer_than_a_tick(void)
     run_until_s(15.0);
     for (int phase = 0; phase < 100; phase++) {
         const sim_time_t begin = 15 * SIM_S + phase * (50 * SIM_MS + 10 * SIM_US);
-        const uint32_t before = watch_imu->sequence;
+        const uint32_t before = probe_imu->sequence;
 
         TEST_ASSERT_TRUE(kernel_run_until(begin));
         board_receive(BOARD_IMU, frame, strlen(frame));
         TEST_ASSERT_TRUE(kernel_run_until(begin + 40 * SIM_MS));
-        TEST_ASSERT_EQUAL_UINT32(before + 1U, watch_imu->sequence);
-        const double late_us = (double)watch_imu->arrival_us - (double)(begin + (sim_time_t)strlen(frame) * octet) / 1000.0;
+        TEST_ASSERT_EQUAL_UINT32(before + 1U, probe_imu->sequence);
+        const double late_us = (double)probe_imu->arrival_us - (double)(begin + (sim_time_t)strlen(frame) * octet) / 1000.0;
 
         TEST_ASSERT_TRUE_MESSAGE(late_us > -5.0 && late_us < 1030.0, "a frame was older than a tick");
     }

@@ -6,7 +6,7 @@
 
 #include "child.h"
 #include "drivers/parameter_image.h"
-#include "firmware/watch.h"
+#include "firmware/probe.h"
 #include "sim/ti/f021/flash.h"
 #include "unity.h"
 
@@ -56,7 +56,7 @@ static void power_on(void *argument, void *result)
         }
         kernel_run_until(timeline_now() + wait);
     }
-    out->parameters = *watch_parameters;
+    out->parameters = *probe_parameters;
     if (kernel_halt_reason() != NULL || flash_store(image) != NULL) {
         abort();
     }

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "child.h"
-#include "firmware/watch.h"
+#include "firmware/probe.h"
 #include "sim/noise.h"
 #include "unity.h"
 
@@ -57,8 +57,8 @@ static void run_script(void *argument, void *result)
     }
     t->sent_s = (double)timeline_now() * 1e-9;
     kernel_run_until(timeline_now() + (sim_time_t)(script->listen_s * 1e9));
-    t->parameters = *watch_parameters;
-    t->reference_m = watch_reference->reference_m;
+    t->parameters = *probe_parameters;
+    t->reference_m = probe_reference->reference_m;
     if (kernel_halt_reason() != NULL) {
         abort();
     }

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "child.h"
-#include "firmware/watch.h"
+#include "firmware/probe.h"
 #include "sim/ti/driverlib/chip.h"
 #include "sim/ti/driverlib/driverlib.h"
 #include "unity.h"
@@ -32,13 +32,13 @@ static void start(void *argument, void *result)
         double now_s = (double)timeline_now() * 1e-9;
 
         s->streaming_s = s->streaming_s == 0.0 && urg04lx_state(board_laser()).streaming ? now_s : s->streaming_s;
-        s->ready_s = watch_altitude->sequence > 0U && watch_imu->ready ? now_s : 0.0;
+        s->ready_s = probe_altitude->sequence > 0U && probe_imu->ready ? now_s : 0.0;
     }
     kernel_run_until(timeline_now() + SIM_S);
     s->sensor_rate = urg04lx_state(board_laser()).rate;
     s->host_rate = chip_sci_rate(SCIA_BASE);
     s->commands = urg04lx_state(board_laser()).commands;
-    s->height_mm = watch_altitude->altitude.height_mm;
+    s->height_mm = probe_altitude->altitude.height_mm;
     s->pulse_us = board_pulse_us();
     s->halt = kernel_halt_reason();
 }

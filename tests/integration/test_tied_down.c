@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "child.h"
-#include "firmware/watch.h"
+#include "firmware/probe.h"
 #include "sim/devices/quadrotor.h"
 #include "unity.h"
 

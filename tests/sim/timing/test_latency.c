@@ -2,20 +2,27 @@
 
 #include <string.h>
 
-#include "firmware/watch.h"
+#include "control/flight_io.h"
+#include "sim/firmware_view.h"
 #include "sim/ti/driverlib/chip.h"
 #include "unity.h"
 
 /* The firmware's servers, the gates' names and the chip's compare register, as the test wants them. */
-static altitude_sample_t altitude;
-static parameters_t parameters;
-static flight_outputs_t flight;
+static uint32_t heights;
+static uint16_t releases;
 static uint32_t compare;
-const altitude_sample_t *const watch_altitude = &altitude;
-const parameters_t *const watch_parameters = &parameters;
-const flight_outputs_t *const watch_flight = &flight;
 
 enum { ALTITUDE, PARAMETER, OTHER };
+
+uint32_t firmware_view_heights(void)
+{
+    return heights;
+}
+
+uint16_t firmware_view_releases(void)
+{
+    return releases;
+}
 
 const char *kernel_gate_name(int number)
 {
@@ -39,10 +46,8 @@ static latency_t latency;
 void setUp(void)
 {
     timeline_reset();
-    memset(&altitude, 0, sizeof altitude);
-    memset(&parameters, 0, sizeof parameters);
-    memset(&flight, 0, sizeof flight);
-    parameters.value[PARAMETER_LAW] = (float)LAW_PID;
+    heights = 0;
+    releases = FLIGHT_RELEASE_PERIOD;
     compare = 4166;
     latency_init(&latency);
 }
@@ -67,7 +72,7 @@ static void at_us(sim_time_t when, kernel_event_t event, const kernel_job_t *job
 static void height_written_at_us(sim_time_t when)
 {
     at_us(when, KERNEL_GATE_ENTERED, &laser, ALTITUDE);
-    altitude.sequence++;
+    heights++;
     at_us(when, KERNEL_GATE_LEFT, &laser, ALTITUDE);
 }
 
@@ -166,12 +171,11 @@ void test_a_compare_value_written_before_the_read_is_not_the_answer(void)
     TEST_ASSERT_EQUAL_INT64(1950 * SIM_US, of(RELEASE_FREE)->longest);
 }
 
-void test_figures_are_kept_for_the_release_that_control_knew_when_the_height_came(void)
+void test_figures_are_kept_for_the_release_that_control_waited_for_when_the_height_came(void)
 {
-    control_reads_at_us(500);
-    parameters.value[PARAMETER_RELEASE] = RELEASE_SCAN; /* typed now, read with the next cycle */
     scan_ends_at_us(1000);
     height_written_at_us(2000);
+    releases = FLIGHT_RELEASE_HEIGHT; /* told by the cycle that answers */
     control_reads_at_us(90000);
     compare_written_at_us(90100, 3000);
     scan_ends_at_us(101000);
@@ -230,25 +234,22 @@ void test_the_observer_says_when_there_is_an_answer_and_to_what(void)
 static void scan_answered(sim_time_t from_us)
 {
     scan_ends_at_us(from_us);
-    control_reads_at_us(from_us + 500); /* what is in force is known from here on */
     height_written_at_us(from_us + 1000);
     control_reads_at_us(from_us + 1900);
     compare_written_at_us(from_us + 1950, compare + 1U);
 }
 
-void test_law_and_state_tell_what_releases_the_control_task(void)
+void test_the_events_waited_for_are_one_of_three_releases(void)
 {
-    static const struct { control_law_t law; flight_state_t state; int release; } cases[] = {
-        {LAW_PD, FLIGHT_FLYING, RELEASE_FREE},      {LAW_PID, FLIGHT_GROUND, RELEASE_FREE},
-        {LAW_PIDT, FLIGHT_FLYING, RELEASE_SCAN},    {LAW_EST, FLIGHT_FLYING, LATENCY_FRAME},
-        {LAW_EST, FLIGHT_GROUND, LATENCY_FRAME},    {LAW_PID, FLIGHT_LANDING, LATENCY_UNKNOWN},
-        {LAW_PIDT, FLIGHT_LOWERING, LATENCY_UNKNOWN}, {LAW_PD, FLIGHT_DESCENDING, LATENCY_UNKNOWN},
+    static const struct { uint16_t releases; int release; } cases[] = {
+        {FLIGHT_RELEASE_PERIOD, RELEASE_FREE},
+        {FLIGHT_RELEASE_HEIGHT, RELEASE_SCAN},
+        {FLIGHT_RELEASE_HEIGHT | FLIGHT_RELEASE_FRAME, LATENCY_FRAME},
     };
 
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         setUp();
-        parameters.value[PARAMETER_LAW] = (float)cases[i].law;
-        flight.state = cases[i].state;
+        releases = cases[i].releases;
         scan_answered(1000);
         for (int release = 0; release < LATENCY_RELEASES; release++) {
             TEST_ASSERT_EQUAL_INT(release == cases[i].release, of(release)->answers);

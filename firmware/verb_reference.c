@@ -1,0 +1,57 @@
+#include "firmware/verb_reference.h"
+
+#include <stddef.h>
+
+#include "control/flight_io.h"
+#include "drivers/decimal.h"
+#include "firmware/servers.h"
+
+static const parameter_row_t limits = {"SETR", "m", 0.0F, FLIGHT_REFERENCE_MAX_M, 0.0F, NULL, ""};
+
+static void set_reference(float reference_m)
+{
+    reference_sample_t reference;
+
+    reference_server_read(&reference);
+    reference.reference_m = reference_m;
+    reference.sequence++;
+    reference_server_write(&reference);
+}
+
+void verb_reference_write_value(answer_t *answer)
+{
+    reference_sample_t reference;
+
+    reference_server_read(&reference);
+    telemetry_begin(&answer->line);
+    telemetry_text(&answer->line, "OK SETR ");
+    telemetry_number(&answer->line, reference.reference_m);
+}
+
+bool verb_setr(answer_t *answer)
+{
+    const telecommand_t *command = answer->command;
+    float reference_m;
+
+    if (command->argument_length == 0U) {
+        return answer_refuse(answer, "value missing");
+    }
+    if (!decimal_read(command->argument, command->argument_length, &reference_m)) {
+        return answer_refuse(answer, "not a number");
+    }
+    if (!(reference_m >= limits.minimum && reference_m <= limits.maximum)) {
+        return answer_refuse_range(answer, &limits);
+    }
+    set_reference(reference_m + 0.0F); /* -0 becomes 0 */
+    verb_reference_write_value(answer);
+    answer_send(answer);
+    return true;
+}
+
+bool verb_land(answer_t *answer)
+{
+    set_reference(0.0F);
+    answer_begin(answer);
+    answer_send(answer);
+    return true;
+}
