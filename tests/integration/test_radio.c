@@ -175,7 +175,7 @@ void test_get_alone_lists_every_parameter_once(void)
     char line[64];
 
     type("#GET\n", 5, 0.0, 2.0);
-    TEST_ASSERT_EQUAL_INT(PARAMETER_COUNT + 1, count_of("OK "));
+    TEST_ASSERT_EQUAL_INT(PARAMETER_COUNT + 2, count_of("OK ")); /* the reference, the end */
     TEST_ASSERT_TRUE(answered("OK KP 0.015"));
     for (int i = 0; i < PARAMETER_COUNT; i++) {
         snprintf(line, sizeof line, "OK %s ", parameter_table[i].name);

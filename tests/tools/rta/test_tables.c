@@ -235,7 +235,7 @@ void test_octets_wait_as_the_fifo_levels_let_them(void)
 void test_the_firmware_table_counts_the_accesses_of_a_get_of_everything(void)
 {
     load("plomada");
-    /* one per parameter, the reference for SETR, and two to note that the link is alive */
+    /* one per parameter, one for the reference, and two to note that the link is alive */
     TEST_ASSERT_EQUAL_INT(PARAMETER_COUNT + 3, table.row[task[5]].accesses);
 }
 
