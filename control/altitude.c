@@ -2,11 +2,13 @@
 
 #include <math.h>
 
-const mirror_geometry_t mirror_geometry[MIRROR_COUNT] = {
+const mirror_geometry_t mirror_geometry[] = {
     [MIRROR_FRONT] = {.distance_mm = 105.0F, .leg_mm = 100.0F, .arm_mm = 220.0F, .fore_sign = 0.0F},
     [MIRROR_FORE] = {.distance_mm = 107.0F, .leg_mm = 105.0F, .arm_mm = 115.0F, .fore_sign = 1.0F},
     [MIRROR_AFT] = {.distance_mm = 115.0F, .leg_mm = 98.0F, .arm_mm = 115.0F, .fore_sign = -1.0F},
 };
+typedef char every_mirror_has_a_geometry[
+    (sizeof mirror_geometry / sizeof mirror_geometry[0] == MIRROR_COUNT) ? 1 : -1];
 
 float altitude_under_mirror(const mirror_geometry_t *mirror, float slant_mm, float roll_rad, float pitch_rad)
 {

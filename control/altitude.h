@@ -35,9 +35,9 @@ typedef struct {
     float fore_sign;    /* s */
 } mirror_geometry_t;
 
-extern const mirror_geometry_t mirror_geometry[MIRROR_COUNT];
+extern const mirror_geometry_t mirror_geometry[]; /* one for each mirror_t */
 
-#define ALTITUDE_DISAGREE_MM 50.0F
+#define ALTITUDE_DISAGREE_MM 50.0F /* chosen: ten times the noise of a group */
 
 /* Mean slant of one group of rays, all on the same mirror. */
 typedef struct {

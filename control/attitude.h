@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define ATTITUDE_OFFSET_FRAMES 20U
-#define ATTITUDE_MEDIAN_FRAMES 5U
+#define ATTITUDE_OFFSET_FRAMES 20U /* seed 5.2.1.1 */
+#define ATTITUDE_MEDIAN_FRAMES 5U /* seed 5.2.1.1 */
 #define ATTITUDE_OFFSET_MAX_RAD 0.17453293F /* 10 degrees: a larger offset is refused and taken anew */
 
 typedef struct {

@@ -3,12 +3,12 @@
 #include "control/thrust.h"
 
 #define COUNTS_PER_PERCENT 20.84F   /* 2084 counts from no thrust to full, thrust.h */
-#define IDLE_COUNTS 4166U
-#define LIMIT_N 8.5F
+#define IDLE_COUNTS 4166U /* 2 ms, seed eq. 4-5 */
+#define LIMIT_N 8.5F /* 1.5 N above the seed's largest hover thrust */
 /* With GRAV at the hover thrust itself the seed's laws cannot come down; 0.4 N below it they fly best on the model
  * (docs/operator.md). */
 #define SEED_MARGIN_N 0.4F
-#define LIFTED_MM 100.0F
+#define LIFTED_MM 100.0F /* chosen: no rope lets it rise so far */
 #define US_PER_S UINT32_C(1000000)
 
 static float thrust_of(uint16_t compare_counts)

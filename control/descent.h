@@ -8,7 +8,7 @@
 typedef struct {
     float sink_mm_s;    /* wanted now */
     float trim_n;       /* learned on the way down: true hover thrust less the given one, as far as the rate tells */
-    float low_s;        /* for how long it has been within 40 mm of the ground */
+    float near_ground_s;/* for how long it has been within 40 mm of the ground */
 } descent_t;
 
 /* Before the first step of a descent: the wanted sink rate grows from the present one. */

@@ -1,3 +1,10 @@
+/* One control cycle in a fixed order: predict, supervise, fuse, choose law and mode, compute, transfer,
+ * tell. The state (supervisor) and whether there is an estimate choose the mode, by two tables; the mode
+ * computes the thrust. Whatever changes in the air changes without a jump: bumpless transfer, as in any text
+ * on control.
+ * What breaks: the order. The supervisor must see the estimate of this cycle, and the estimator the command
+ * of the one before. A mode that is added without a row in both tables is IDLE, and that is a falling
+ * vehicle. */
 #include "control/flight.h"
 
 #include <math.h>
@@ -5,15 +12,15 @@
 #include "control/between.h"
 #include "control/thrust.h"
 
-#define HOVER_MARGIN_N 1.5F
-#define HOVER_TIME_S 2.5F
-#define TRANSFER_TIME_S 0.4F
-#define TRANSFER_START_N 0.5F
-#define STEP_MAX_S 0.5F
-#define GAP_MAX_S 0.3F
-#define BLIND_MAX_S 60.0F
+#define HOVER_MARGIN_N 1.5F /* mass 20 % off; narrower than law EST's 2 N: here nobody corrects an error */
+#define HOVER_TIME_S 2.5F /* chosen: a mean over the swings of the seed's law */
+#define TRANSFER_TIME_S 0.4F /* chosen: four scans */
+#define TRANSFER_START_N 0.5F /* chosen: 0.7 m/s2 */
+#define STEP_MAX_S 0.5F /* chosen: longer pauses count as this long */
+#define GAP_MAX_S 0.3F /* as HEIGHT_FRESH_US in supervisor.c */
+#define BLIND_MAX_S 60.0F /* above DESCENT_TIMEOUT_US in supervisor.c */
 
-#define PIDT_WINDOW_N 3.0F
+#define PIDT_WINDOW_N 3.0F /* chosen: 0.4 g to either side */
 #define SETTLE_S 0.6F
 #define LIFTED_MPS 0.25F
 #define RAYS_AGE_S 0.0705F

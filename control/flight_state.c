@@ -1,3 +1,4 @@
+/* The order of the rows counts: the first that applies is taken, so the pilot's switch and a tilt come first. */
 #include "control/flight_state.h"
 
 #define CAN_FLY (FLIGHT_IF_REFERENCE | FLIGHT_IF_READY | FLIGHT_IF_HEIGHT)

@@ -2,9 +2,9 @@
 
 #include <math.h>
 
-#define LOW_PASS_S 0.0199F
-#define STEP_MIN_S 0.02F
-#define STEP_MAX_S 0.5F
+#define LOW_PASS_S 0.0199F /* 8 Hz */
+#define STEP_MIN_S 0.02F /* chosen: a scan takes 0.1 s, a shorter gap is a repeated one */
+#define STEP_MAX_S 0.5F /* chosen: five scans; a derivative over more tells nothing */
 
 void pidt_reset(pidt_state_t *state)
 {

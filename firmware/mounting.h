@@ -11,10 +11,12 @@
 #define LASER_WAIT_US 10000000UL        /* sensor and RS232 adapter after power-up, seed document 5.2.1.3 */
 
 /* The mirror behind each group of each layout. */
-static const mirror_t laser_mirrors[SCIP_LAYOUT_COUNT][SCIP_GROUPS_MAX] = {
+static const mirror_t laser_mirrors[][SCIP_GROUPS_MAX] = {
     {MIRROR_FRONT, MIRROR_FRONT, MIRROR_FRONT},
     {MIRROR_AFT, MIRROR_FORE, MIRROR_FRONT},
     {MIRROR_AFT, MIRROR_FRONT, MIRROR_FORE},
 };
+typedef char every_layout_has_its_mirrors[
+    (sizeof laser_mirrors / sizeof laser_mirrors[0] == SCIP_LAYOUT_COUNT) ? 1 : -1];
 
 #endif

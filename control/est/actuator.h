@@ -6,9 +6,9 @@
 
 #include <stdint.h>
 
-#define ACTUATOR_DELAY_US UINT32_C(18500)   /* half a pulse period, the pulse itself, the autopilot */
-#define ACTUATOR_LAG_S 0.12F
-#define ACTUATOR_COMMANDS 12U
+#define ACTUATOR_DELAY_US UINT32_C(18500)   /* half a pulse period 6.8, the pulse 1.5, the autopilot 10 ms (assumed) */
+#define ACTUATOR_LAG_S 0.12F                /* assumed of motors and rotors of this size */
+#define ACTUATOR_COMMANDS 12U               /* more than come within the delay */
 
 typedef struct {
     uint32_t due_us;        /* takes effect */

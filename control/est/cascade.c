@@ -1,3 +1,9 @@
+/* Three proportional loops, one in the other (PX4, ArduPilot and Crazyflie are built so): height error to
+ * speed, speed error to acceleration, acceleration to thrust. No integral: the hover thrust is estimated
+ * (hover.c) and takes its place. The command leads the motors: it asks for more than is wanted by as much as
+ * their lag will withhold.
+ * What breaks: a VELK too high for delay and lag swings; the calm factor then lowers the gain, which hides
+ * it. Constants marked "fitted": docs/control.md, Where the gains come from. */
 #include "control/est/cascade.h"
 
 #include <math.h>
@@ -5,19 +11,18 @@
 #include "control/between.h"
 #include "control/thrust.h"
 
-#define TERRAIN_SHARE 1.0F
-#define FAR_M 0.20F
-#define FAR_SHARE 0.30F
-#define RISE_MAX_MPS2 3.96F
-#define DRAG_SPEED_MPS 0.8F /* beyond it the drag helps to brake */
-#define LEAD 1.3F
-#define ABOVE_HOVER_N 3.5F
-#define LEAST_SHARE 0.25F
-#define UPRIGHT_MIN 0.8F
-#define SLEW_N_PER_S 60.0F
-#define ACTIVITY_MAX_N 1.5F
-#define ACTIVITY_TIME_S 1.0F
-#define CALM_MIN 0.4F
+#define FAR_M 0.20F /* fitted: from here on the speed per metre grows no more */
+#define FAR_SHARE 0.30F /* fitted */
+#define RISE_MAX_MPS2 3.96F /* fitted: 0.4 g */
+#define DRAG_SPEED_MPS 0.8F /* chosen: beyond it the drag helps to brake */
+#define LEAD 1.3F /* fitted: overdrives the motors' lag of 0.12 s */
+#define ABOVE_HOVER_N 3.5F /* chosen: half of the hover thrust */
+#define LEAST_SHARE 0.25F /* chosen: the rotors keep turning */
+#define UPRIGHT_MIN 0.8F /* 37 degrees; more tilt is not compensated further */
+#define SLEW_N_PER_S 60.0F /* chosen: 1.5 N per IMU frame */
+#define ACTIVITY_MAX_N 1.5F /* chosen: three times the usual activity */
+#define ACTIVITY_TIME_S 1.0F /* chosen: ten scans */
+#define CALM_MIN 0.4F /* chosen: keeps two fifths of the gain */
 
 void cascade_init(cascade_t *cascade, float thrust_n)
 {
@@ -29,7 +34,7 @@ float cascade_speed_to(const cascade_gains_t *gains, const cascade_state_t *stat
     const float off_m = reference_m - state->height_m;
     const float distance = fminf(fabsf(off_m) / FAR_M, 1.0F);
     const float wanted_mps =
-        gains->height_per_s * (1.0F + FAR_SHARE * distance) * off_m + TERRAIN_SHARE * state->terrain_mps;
+        gains->height_per_s * (1.0F + FAR_SHARE * distance) * off_m + state->terrain_mps;
     return between(-gains->down_mps, wanted_mps, gains->up_mps);
 }
 

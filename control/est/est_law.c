@@ -1,3 +1,10 @@
+/* Law EST: estimator (where am I), hover thrust (what carries me), cascade (what now), put together. The
+ * cascade acts on the state at the instant when its command takes effect, 18.5 ms from now: a Smith
+ * predictor in state space. The same model tells the estimator which acceleration the thrust should give;
+ * the noisier the accelerometer, the more that counts.
+ * What breaks: the actuator's model must get every command that really went out (est_law_record_command), or
+ * hover thrust and prediction drift. While someone else flies the vehicle nothing may be learned
+ * (est_law_disengage). Constants marked "fitted": docs/control.md, Where the gains come from. */
 #include "control/est/est_law.h"
 
 #include <math.h>
@@ -5,59 +12,56 @@
 
 #include "control/between.h"
 #include "control/thrust.h"
+#include "control/touchdown.h"
 
-#define GRAVITY_MPS2 9.80665F
-#define DAMPING_PER_S 2.5F
-#define CLIMB_PER_S 4.0F /* how fast an autopilot that commands the climb rate attains it */
-#define STEP_MAX_S 0.5F
+#define GRAVITY_MPS2 9.80665F /* standard gravity */
+#define DAMPING_PER_S 2.5F /* the value by which a model repeats the seed's flights is 2 to 3 1/s */
+#define CLIMB_PER_S 4.0F /* assumed: an autopilot that commands the climb rate lags by 0.25 s */
+#define STEP_MAX_S 0.5F /* chosen: longer pauses count as this long */
 
-#define HOVER_BOUND_N 2.0F
-#define HOVER_SIGMA_START_N 0.7F
-#define NEUTRAL_SIGMA_N 0.07F
-#define HOVER_SIGMA_TAKE_OVER_N 0.5F
-#define SPEED_DOUBT_N_PER_MPS 0.5F
-#define IN_THE_AIR_M 0.04F
-#define MODEL_NOISE_MPS2 0.84F
-#define HEIGHTS_MISSING_S 0.2F
+#define HOVER_BOUND_N 2.0F /* mass 20 % off (1.4 N), battery and gusts; see HOVER_MARGIN_N in flight.c */
+#define HOVER_SIGMA_START_N 0.7F /* half of a mass 20 % off */
+#define NEUTRAL_SIGMA_N 0.07F /* chosen: the middle of the stick is known well */
+#define HOVER_SIGMA_TAKE_OVER_N 0.5F /* chosen: as TRANSFER_START_N in flight.c */
+#define SPEED_DOUBT_N_PER_MPS 0.5F /* chosen: a quarter of the damping may be wrong */
+#define IN_THE_AIR_M 0.04F /* chosen: ten times the noise of a height */
+#define MODEL_NOISE_MPS2 0.84F /* fitted */
+#define HEIGHTS_MISSING_S 0.2F /* two scans of 0.1 s */
 #define LEARN_WITHOUT_HEIGHTS_S 0.3F
 #define FRAMES_FRESH_S ((float)ESTIMATOR_FRESH_US * 1.0e-6F)
 #define AGE_MAX_S 3600.0F
-#define MODEL_NOISE_ALONE_MPS2 0.15F
-#define GUST_N_PER_M 28.0F
+#define MODEL_NOISE_ALONE_MPS2 0.15F /* chosen: a biased accelerometer drifts away, the model does not */
+#define GUST_N_PER_M 28.0F /* fitted */
 
-#define RAMP_START 0.68F
-#define RAMP_N_PER_S 4.0F
-#define RAMP_MOST 1.35F
-#define LIFT_OFF_M 0.030F
-#define LIFT_OFF_SURE_M 0.1F
-#define LIFT_OFF_MPS2 0.9F
-#define LIFT_OFF_SIGMAS 1.2F
-#define LIFT_OFF_SHARE 0.7F
-#define LIFT_FILTER_S 0.08F
+#define RAMP_START 0.68F /* below the lightest vehicle, 0.8 of GRAV */
+#define RAMP_N_PER_S 4.0F /* chosen: leaves the ground in 0.6 s */
+#define RAMP_MOST 1.35F /* above the heaviest vehicle, 1.2 of GRAV */
+#define LIFT_OFF_M 0.030F /* chosen: ten times the noise of a height */
+#define LIFT_OFF_SURE_M 0.1F /* chosen: a height that no noise makes */
+#define LIFT_OFF_MPS2 0.9F /* chosen: twice the accelerometer's usual noise */
+#define LIFT_OFF_SIGMAS 1.2F /* chosen: of the measured noise, on a mean of three frames */
+#define LIFT_OFF_SHARE 0.7F /* no vehicle flies by less of GRAV */
+#define LIFT_FILTER_S 0.08F /* chosen: three frames */
 
-#define FALL_MPS2 3.96F
-#define BELOW_HOVER_N 3.0F
-#define BRAKE_MPS2 8.0F /* a climb that shall become a descent */
-#define BRAKE_BELOW_HOVER_N 6.0F
+#define FALL_MPS2 3.96F /* fitted: 0.4 g */
+#define BELOW_HOVER_N 3.0F /* chosen: the rotors keep turning */
+#define BRAKE_MPS2 8.0F /* chosen: a climb that shall become a descent */
+#define BRAKE_BELOW_HOVER_N 6.0F /* chosen: may go down to a quarter of the hover thrust */
 
-#define LAND_MPS 0.15F
-#define LAND_PER_S 0.25F
-#define LAND_MAX_MPS 0.40F
-#define SINK_MPS 0.28F
-#define SINK_PER_S 0.07F
-#define SINK_MAX_MPS 0.6F
-#define SINK_ABOVE_HOVER_N 0.5F
+#define LAND_MPS 0.15F /* chosen: touches at 0.15 m/s, a drop from 1 mm */
+#define LAND_PER_S 0.25F /* chosen: with LAND_MPS 0.4 m/s from 1 m */
+#define LAND_MAX_MPS 0.40F /* chosen: from 1 m down within 5 s */
+#define SINK_MPS 0.28F /* chosen: without heights the ground comes unannounced */
+#define SINK_PER_S 0.07F /* chosen: 0.35 m/s at 1 m */
+#define SINK_MAX_MPS 0.6F /* chosen: from 3 m down within 10 s */
+#define SINK_ABOVE_HOVER_N 0.5F /* chosen: room for gusts at first */
 #define SINK_BELOW_HOVER_N 1.3F
-#define SINK_FADE_N_PER_S 0.2F
+#define SINK_FADE_N_PER_S 0.2F /* chosen: at the hover thrust after 2.5 s */
 #define LAND_ABOVE_HOVER_N 1.5F
 #define LAND_FADE_N_PER_S 0.1F
-#define LOW_M 0.04F
-#define LOW_NO_MORE_M 0.10F
-#define LOW_ABOVE_HOVER_N 0.5F
-#define LOW_FADE_N_PER_S 2.0F
-#define STOP_N_PER_S 2.0F
-#define TERRAIN_KEEP_S 30.0F
-#define LOWEST_OVER_TERRAIN_M 0.15F
+#define STOP_N_PER_S 2.0F /* as the end of a landing, LANDED_FADE_N_PER_S in touchdown.h */
+#define TERRAIN_KEEP_S 30.0F /* chosen: drifts of the terrain's sum are forgotten */
+#define LOWEST_OVER_TERRAIN_M 0.15F /* the height of OFF_GROUND in supervisor.c */
 
 static float seconds(uint32_t from_us, uint32_t to_us)
 {
@@ -326,9 +330,9 @@ static float sinking_mps(float height_m)
 
 static void update_timers(est_law_t *law, est_mode_t mode, float height_m)
 {
-    const bool low = height_m < LOW_M || (law->near_ground_s > 0.0F && height_m < LOW_NO_MORE_M);
+    const bool landing = mode == EST_MODE_LAND;
 
-    law->near_ground_s = (mode == EST_MODE_LAND && low) ? law->near_ground_s + law->step_s : 0.0F;
+    law->near_ground_s = landing ? touchdown_time_s(law->near_ground_s, height_m, law->step_s) : 0.0F;
 }
 
 /* More and more certainly down, from the hover thrust that was sure when the descent began: nothing that is learned on the
@@ -348,10 +352,9 @@ static void lower_ceiling(est_law_t *law, est_mode_t mode)
 
 static float thrust_most_n(const est_law_t *law, est_mode_t mode)
 {
-    const float low_n = law->hover.thrust_n + LOW_ABOVE_HOVER_N - LOW_FADE_N_PER_S * law->near_ground_s;
-    const bool low = mode == EST_MODE_LAND && law->near_ground_s > 0.0F;
+    const float low_n = touchdown_limit_n(law->near_ground_s, law->hover.thrust_n);
 
-    return low ? fminf(law->ceiling_n, fmaxf(low_n, 0.0F)) : law->ceiling_n;
+    return (mode == EST_MODE_LAND) ? fminf(law->ceiling_n, low_n) : law->ceiling_n;
 }
 
 /* Without heights a speed that is wrong must not drop the vehicle. */

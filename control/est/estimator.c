@@ -1,3 +1,11 @@
+/* A Kalman filter with a delayed time horizon, as in PX4's EKF2: heights are 70 ms old when they come, so
+ * the filter lives at the instant of the latest rays and keeps the IMU frames since then. A height is fused
+ * where it belongs, then the frames carry the state to now. Theory: any text on Kalman filters; the update
+ * is Joseph's form, because the short one loses its symmetry in 32-bit floats.
+ * What breaks: a covariance that is not symmetric or not bounded lets a state run away. A limit on the
+ * innovation without a way out keeps the heights out for ever once the state is wrong (a fly-away to 11 m in
+ * simulation): hence the reset after three rejections. Constants marked "fitted": docs/control.md, Where the
+ * gains come from. */
 #include "control/est/estimator.h"
 
 #include <math.h>
@@ -5,14 +13,14 @@
 
 #include "control/between.h"
 
-#define GRAVITY_MPS2 9.80665F
-#define FRAME_AGE_US UINT32_C(23600)
-#define TILT_AGE_US UINT32_C(50000)
-#define GAP_MAX_US INT32_C(300000)
-#define UP_MAX_MPS2 200.0F
-#define ANGLE_MAX_RAD 3.2F
+#define GRAVITY_MPS2 9.80665F /* standard gravity */
+#define FRAME_AGE_US UINT32_C(23600) /* 15 ms within the Razor (assumed), 8.6 ms on the wire */
+#define TILT_AGE_US UINT32_C(50000) /* the median of five frames is two frames of 25 ms old */
+#define GAP_MAX_US INT32_C(300000) /* chosen: 12 frames lost; the filter starts again */
+#define UP_MAX_MPS2 200.0F /* above what the Razor can say, 16 g */
+#define ANGLE_MAX_RAD 3.2F /* pi, rounded up */
 
-#define HEIGHT_NOISE_M 0.0013F
+#define HEIGHT_NOISE_M 0.0013F /* fitted */
 #define OFF_MODEL_SHARE 0.4F
 #define OFF_MODEL_MPS2 2.0F
 #define FLOOR_START_M 0.004F
@@ -22,30 +30,30 @@
 #define FLOOR_CLIP 9.0F
 #define FLOOR_SIGMAS 2.5F
 #define FLOOR_VARIANCE 1.0F
-#define HEIGHT_DRIFT_M 0.0047F
-#define SPEED_NOISE_MPS2 0.53F
-#define FRAME_S 0.025F
-#define BIAS_DRIFT_MPS2 0.095F
-#define TERRAIN_DRIFT_MPS 0.053F
-#define TERRAIN_TIME_S 1.0F
-#define NOISE_START_MPS2 0.4F
-#define NOISE_MIN_MPS2 0.05F
-#define NOISE_MAX_MPS2 5.0F
-#define NOISE_SHARE 0.02F
-#define NOISE_CLIP 16.0F
+#define HEIGHT_DRIFT_M 0.0047F /* fitted; m per root second */
+#define SPEED_NOISE_MPS2 0.53F /* fitted; what neither accelerometer nor model knows */
+#define FRAME_S 0.025F /* period of the IMU, seed 5.2.1.1 */
+#define BIAS_DRIFT_MPS2 0.095F /* fitted; m/s2 per root second */
+#define TERRAIN_DRIFT_MPS 0.053F /* fitted; m/s per root second */
+#define TERRAIN_TIME_S 1.0F /* chosen: a slope lasts about a second */
+#define NOISE_START_MPS2 0.4F /* assumed of a Razor on a flying frame */
+#define NOISE_MIN_MPS2 0.05F /* chosen: never trusted without limit */
+#define NOISE_MAX_MPS2 5.0F /* chosen: never quite ignored */
+#define NOISE_SHARE 0.02F /* chosen: mean over 50 frames */
+#define NOISE_CLIP 16.0F /* chosen: 4 sigma, so that one spike counts little */
 
-#define INNOVATION_LIMIT_MIN_M 0.053F
-#define INNOVATION_LIMIT_MAX_M 0.080F
-#define INNOVATION_LIMIT_SIGMAS 3.0F
-#define STEP_AGREEMENT_M 0.050F
-#define REJECTIONS_MAX 3U
-#define UNCHECKED_AFTER_RESET 2U
-#define REST_SIGMA_MPS 0.02F
+#define INNOVATION_LIMIT_MIN_M 0.053F /* fitted */
+#define INNOVATION_LIMIT_MAX_M 0.080F /* a wider one follows an edge that a scan saw half: it flew away */
+#define INNOVATION_LIMIT_SIGMAS 3.0F /* usual */
+#define STEP_AGREEMENT_M 0.050F /* chosen: noise of two heights and 0.1 s of climb */
+#define REJECTIONS_MAX 3U /* chosen: the third height counts whatever it says */
+#define UNCHECKED_AFTER_RESET 2U /* chosen: two heights make speed known again */
+#define REST_SIGMA_MPS 0.02F /* chosen: a vehicle on the ground may still shake */
 
-#define SPEED_MAX_MPS 4.0F
-#define BIAS_MAX_MPS2 1.5F
-#define TERRAIN_MAX_MPS 0.5F
-#define SPEED_RESET_MAX_MPS 1.0F
+#define SPEED_MAX_MPS 4.0F /* chosen: above what the vehicle reaches */
+#define BIAS_MAX_MPS2 1.5F /* chosen: 0.15 g, more than the sensor has */
+#define TERRAIN_MAX_MPS 0.5F /* chosen: the seed's ramp rises by 0.36 m/s */
+#define SPEED_RESET_MAX_MPS 1.0F /* chosen: after a reset no speed is believed above it */
 
 enum { HEIGHT, SPEED, BIAS, TERRAIN };
 

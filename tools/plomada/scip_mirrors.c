@@ -62,9 +62,11 @@ typedef struct {
     double median_mm;
 } row_t;
 
-static const char *const mirror_names[MIRROR_COUNT] = {"front", "fore", "aft"};
+static const char *const mirror_names[] = {"front", "fore", "aft"};
 /* In the order of their steps. */
-static const mirror_t ascending[MIRROR_COUNT] = {MIRROR_AFT, MIRROR_FRONT, MIRROR_FORE};
+static const mirror_t ascending[] = {MIRROR_AFT, MIRROR_FRONT, MIRROR_FORE};
+_Static_assert(sizeof mirror_names / sizeof mirror_names[0] == MIRROR_COUNT, "every mirror has a name");
+_Static_assert(sizeof ascending / sizeof ascending[0] == MIRROR_COUNT, "and a place in the order");
 
 /* ---- the survey ---- */
 
