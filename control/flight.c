@@ -1,5 +1,5 @@
-/* One control cycle in a fixed order: predict, supervise, fuse, choose law and mode, compute, transfer,
- * tell. The state (supervisor) and whether there is an estimate choose the mode, by two tables; the mode
+/* One control cycle in a fixed order: judge the sensors, predict, supervise, fuse, choose law and mode,
+ * compute, transfer, tell. The state (supervisor) and whether there is an estimate choose the mode, by two tables; the mode
  * computes the thrust. Whatever changes in the air changes without a jump: bumpless transfer, as in any text
  * on control.
  * What breaks: the order. The supervisor must see the estimate of this cycle, and the estimator the command
