@@ -55,6 +55,7 @@
 #define CONFIRMED_M 0.12F
 #define QUIET_S 0.5F
 #define QUIET_M 0.10F
+#define GLITCH_S 0.25F
 #define STEPS_TIME_S 2.0F
 #define STEPS_MAX 12.0F
 
@@ -367,6 +368,12 @@ static void confirm(integrity_t *i)
     forget(i);
 }
 
+/* Back where a glitch began: nothing came nearer. */
+static bool returns(const integrity_t *i, float height_m)
+{
+    return i->since_rise_s < GLITCH_S && fabsf(height_m - i->before_rise_m) < STEP_M;
+}
+
 /* A take-off is unconfirmed too. */
 static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
 {
@@ -377,7 +384,7 @@ static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
     const float age = i->felt.running_s / OLD_S;
 
     i->proved = i->proved && !i->standing;
-    if (i->standing || (step && rise_m < 0.0F)) {
+    if (i->standing || (step && rise_m < 0.0F && !returns(i, height_m))) {
         i->unconfirmed = true;
         i->near_m = height_m;
         i->quiet_s = 0.0F;
@@ -388,6 +395,8 @@ static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
         }
         i->unconfirmed = false;
     }
+    i->since_rise_s = (step && rise_m > 0.0F) ? 0.0F : fminf(i->since_rise_s + gap_s, GAP_MAX_S);
+    i->before_rise_m = (i->since_rise_s > 0.0F) ? i->before_rise_m : i->height_m;
     i->height_m = height_m;
     i->heard = true;
     i->rise_mps += gap_s / (RISE_TIME_S + gap_s) * ((step ? i->rise_mps : rise_m / fmaxf(gap_s, 0.01F)) - i->rise_mps);

@@ -74,6 +74,8 @@ typedef struct {
     bool standing;                  /* on the ground or about to leave it */
     bool proved;                    /* a climb has shown in the heights since the ground */
     float near_m;                   /* height after that step */
+    float before_rise_m;            /* height before the latest step away, so long ago: */
+    float since_rise_s;
     float felt_least_m;             /* how far the heights have stayed below the felt climb meanwhile, < 0 */
     float quiet_s;                  /* for how long no climb has been wanted */
     float vain_s;                   /* for how long the law has pushed and no height has moved */

@@ -225,6 +225,21 @@ void test_a_doubt_has_a_name_and_the_gravest_is_told(void)
     TEST_ASSERT_EQUAL_STRING("SIGHT", integrity_doubt_name(DOUBT_SIGHT | DOUBT_IMU));
 }
 
+void test_a_glitch_that_returns_to_where_it_began_is_no_ground_that_came_nearer(void)
+{
+    fly();
+    flown.wanted_m = 0.3F;
+    world.lie_m = 0.35F;
+    run(0.1F);
+    world.lie_m = 0.0F;
+    run(0.1F);
+    TEST_ASSERT_FALSE(integrity_unconfirmed(&it));
+    run(1.0F);
+    world.lie_m = -0.35F;
+    run(0.1F);
+    TEST_ASSERT_TRUE(integrity_unconfirmed(&it));
+}
+
 /* ---- scans */
 
 /* Roll swings the mirror by 8 mm, and the height is corrected for it: a beam with a length of its own is blocked. */
