@@ -247,13 +247,13 @@ static accept_verdict_t imu(const accept_means_t *means, char *detail)
 
 static accept_verdict_t scanner(const accept_means_t *means, char *detail)
 {
-    const bool heights = await(has_height, 25, 40.0);
+    const bool heights = await(has_height, 10, 60.0);
     const urg04lx_state_t state = urg04lx_state(world_laser());
     unsigned long before, damaged;
 
     (void)means;
     if (!heights) {
-        return say(detail, false, "no height for 5 s in a row: %u commands came, %u refused, %u octets at another rate, %u scans sent",
+        return say(detail, false, "no height for 2 s in a row: %u commands came, %u refused, %u octets at another rate, %u scans sent",
                    state.commands, state.refused, state.octets_mismatched, state.scans_sent);
     }
     before = damaged_frames();
