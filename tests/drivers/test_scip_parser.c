@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "drivers/scip_parser.h"
+#include "tests/support/scip_frames.h"
 
 #define WIRE_MAX 2500
 #define SCANS_MAX 40
@@ -29,24 +30,6 @@ static void put_text(wire_t *wire, const char *text)
     }
 }
 
-static void put_summed(wire_t *wire, const char *text, size_t length)
-{
-    unsigned sum = 0;
-    for (size_t i = 0; i < length; i++) {
-        sum += (unsigned)text[i];
-        put(wire, (unsigned)text[i]);
-    }
-    put(wire, (sum & 63) + 48);
-    put(wire, '\n');
-}
-
-static void encode(char *text, unsigned long value, unsigned width)
-{
-    for (unsigned i = width; i-- > 0; value >>= 6) {
-        text[i] = (char)(48 + (value & 63));
-    }
-}
-
 typedef struct {
     char symbol[3];     /* MS MD GS GD */
     unsigned first, last, cluster, interval, count;
@@ -63,43 +46,43 @@ static unsigned points_of(const order_t *order)
     return steps / order->cluster + (steps % order->cluster != 0);
 }
 
+static void write_echo(char *text, size_t size, const order_t *order, unsigned remaining)
+{
+    const int used = snprintf(text, size, "%s%04u%04u%02u", order->symbol, order->first, order->last, order->cluster);
+    if (order->symbol[0] == 'M') {
+        snprintf(text + used, size - (size_t)used, "%u%02u", order->interval, remaining);
+    }
+}
+
 static void put_echo(wire_t *wire, const order_t *order, unsigned remaining)
 {
     char text[40];
-    snprintf(text, sizeof text, "%s%04u%04u%02u", order->symbol, order->first, order->last, order->cluster);
+    write_echo(text, sizeof text, order, remaining);
     put_text(wire, text);
-    if (order->symbol[0] == 'M') {
-        snprintf(text, sizeof text, "%u%02u", order->interval, remaining);
-        put_text(wire, text);
-    }
     put(wire, '\n');
 }
 
 static void put_answer(wire_t *wire, const order_t *order, const char *status)
 {
+    char text[5];
     put_echo(wire, order, order->count);
-    put_summed(wire, status, 2);
+    scip_frames_summed(text, status, 2);
+    put_text(wire, text);
     put(wire, '\n');
 }
 
 static void put_frame(wire_t *wire, const order_t *order, unsigned remaining, unsigned long stamp,
                       const unsigned long *values)
 {
-    static char data[3 * 769];
+    static char data[3 * 769], text[WIRE_MAX + 1];
     const unsigned width = width_of(order);
-    const size_t length = (size_t)width * points_of(order);
-    char time[4];
+    char echo[40];
     for (unsigned i = 0; i < points_of(order); i++) {
-        encode(&data[width * i], values[i], width);
+        scip_frames_encode(&data[width * i], values[i], width);
     }
-    encode(time, stamp & 0xFFFFFF, 4);
-    put_echo(wire, order, remaining);
-    put_summed(wire, order->symbol[0] == 'M' ? "99" : "00", 2);
-    put_summed(wire, time, 4);
-    for (size_t i = 0; i < length; i += 64) {
-        put_summed(wire, &data[i], length - i < 64 ? length - i : 64);
-    }
-    put(wire, '\n');
+    write_echo(echo, sizeof echo, order, remaining);
+    scip_frames_frame(text, echo, stamp, data, (size_t)width * points_of(order));
+    put_text(wire, text);
 }
 
 /* --- the product's side ------------------------------------------------------------------------------------------- */

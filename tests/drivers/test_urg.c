@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "drivers/urg.h"
+#include "tests/support/scip_frames.h"
 
 #define POINTS 35U
 #define STEP_US 150000U
@@ -41,36 +42,17 @@ static bool feed(const char *text)
     return urg_feed(&urg, octets, count);
 }
 
-static void append(char *text, char character)
-{
-    const size_t length = strlen(text);
-
-    text[length] = character;
-    text[length + 1U] = '\0';
-}
-
-/* The sensor's frame, from its specification; every distance the same: two characters. */
-static const char *frame(const char *stamp, const char *distance)
+/* A frame of the stream; every distance the same: two characters. */
+static const char *frame(unsigned long stamp_ms, const char *distance)
 {
     static char text[200];
-    unsigned sum = 0U;
+    char data[2U * POINTS];
 
-    for (size_t i = 0U; i < 4U; i++) {
-        sum += (unsigned)stamp[i];
+    for (size_t i = 0U; i < sizeof data; i++) {
+        data[i] = distance[i % 2U];
     }
-    strcpy(text, "MS0372040601000\n99b\n");
-    strcat(text, stamp);
-    append(text, (char)((sum & 63U) + 48U));
-    strcat(text, "\n");
-    for (size_t i = 0U; i < 32U; i++) {
-        strcat(text, distance);
-    }
-    sum = (unsigned)(distance[0] + distance[1]);
-    append(text, (char)((32U * sum & 63U) + 48U));
-    strcat(text, "\n");
-    strcat(strcat(strcat(text, distance), distance), distance);
-    append(text, (char)((3U * sum & 63U) + 48U));
-    return strcat(text, "\n\n");
+    scip_frames_frame(text, "MS0372040601000", stamp_ms, data, sizeof data);
+    return text;
 }
 
 static const char *step(void)
@@ -131,7 +113,7 @@ void test_from_power_up_to_the_first_scan(void)
 
     reach_stream();
     TEST_ASSERT_FALSE(urg_take_scan(&urg, &none));
-    TEST_ASSERT_TRUE(feed(frame("000P", "9H")));
+    TEST_ASSERT_TRUE(feed(frame(32U, "9H")));
     (void)step();
     TEST_ASSERT_EQUAL(URG_OK, status());
     TEST_ASSERT_EQUAL_UINT32(250000U, report.rate);
@@ -147,19 +129,19 @@ void test_a_scan_stays_while_the_next_one_comes_in(void)
     char half[64] = "";
 
     reach_stream();
-    (void)feed(frame("000P", "9H"));
-    strncat(half, frame("0010", "0F"), 60U);
+    (void)feed(frame(32U, "9H"));
+    strncat(half, frame(64U, "0F"), 60U);
     TEST_ASSERT_FALSE(feed(half));
     assert_scan(32U, 600U);
-    TEST_ASSERT_TRUE(feed(&frame("0010", "0F")[60]));
+    TEST_ASSERT_TRUE(feed(&frame(64U, "0F")[60]));
     assert_scan(64U, 22U);
 }
 
 void test_of_two_scans_that_nobody_took_the_later_one_counts(void)
 {
     reach_stream();
-    (void)feed(frame("000P", "9H"));
-    TEST_ASSERT_TRUE(feed(frame("0010", "0F")));
+    (void)feed(frame(32U, "9H"));
+    TEST_ASSERT_TRUE(feed(frame(64U, "0F")));
     assert_scan(64U, 22U);
 }
 
@@ -223,7 +205,7 @@ void test_damage_notices_and_old_answers_are_counted(void)
     TEST_ASSERT_EQUAL_UINT32(1U, report.seen.legacy_count);
     setUp();
     reach_stream();
-    strcpy(damaged, frame("000P", "9H"));
+    strcpy(damaged, frame(32U, "9H"));
     damaged[30] = '1';
     TEST_ASSERT_FALSE(feed(damaged));
     TEST_ASSERT_FALSE(feed("MS0372040601000\n98a\n\n"));

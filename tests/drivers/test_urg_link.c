@@ -6,6 +6,7 @@
 
 #include "drivers/scip_parser.h"
 #include "drivers/urg_link.h"
+#include "tests/support/scip_frames.h"
 
 #define STEP_US 150000U
 #define STEP_MS 150U
@@ -63,10 +64,10 @@ static void send_status(const char *echo, const char *status)
     send_text("\n\n");
 }
 
+/* 35 points of 600 mm. */
 static void send_frame(void)
 {
-    char echo[40];
-    uint32_t sum = 0;
+    char echo[40], text[128];
     strcpy(echo, sensor.echo);
     if (sensor.scans_left > 0) {
         sensor.scans_left--;
@@ -74,19 +75,9 @@ static void send_frame(void)
         echo[14] = (char)(48 + sensor.scans_left % 10);
         sensor.streaming = sensor.scans_left > 0;
     }
-    send_text(echo);
-    send_text("\n99b\n");
-    for (uint32_t i = 0; i < 4; i++) {
-        uint32_t character = 48 + (sensor.clock_ms >> (18 - 6 * i) & 63);
-        sum += character;
-        send_octet(character);
-    }
-    send_octet((sum & 63) + 48);
-    send_text("\n9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H");
-    send_octet(((32 * (57 + 72)) & 63) + 48);
-    send_text("\n9H9H9H");
-    send_octet(((3 * (57 + 72)) & 63) + 48);
-    send_text("\n\n");
+    scip_frames_frame(text, echo, sensor.clock_ms,
+                      "9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H9H", 70);
+    send_text(text);
 }
 
 static void answer_1(const char *command)

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tests/support/scip_frames.h"
+
 const char *const fault_names[FAULT_COUNT] = { "flip", "drop", "insert", "duplicate", "truncation" };
 
 int wire_width(const wire_order_t *order)
@@ -30,44 +32,13 @@ static void put(wire_t *wire, unsigned octet)
     wire->octets[wire->length++] = (uint8_t)octet;
 }
 
-static void put_text(wire_t *wire, const char *text)
+static void write_echo(char *text, size_t size, const wire_order_t *order, int remaining)
 {
-    for (; *text != '\0'; text++) {
-        put(wire, (unsigned char)*text);
-    }
-}
+    const int used = snprintf(text, size, "%s%04d%04d%02d", order->symbol, order->first, order->last, order->cluster);
 
-static void put_summed(wire_t *wire, const char *text, size_t length)
-{
-    unsigned sum = 0;
-
-    for (size_t i = 0; i < length; i++) {
-        sum += (unsigned char)text[i];
-        put(wire, (unsigned char)text[i]);
-    }
-    put(wire, sum % 64 + '0');
-    put(wire, '\n');
-}
-
-static void encode(char *text, uint32_t value, int width)
-{
-    while (width-- > 0) {
-        text[width] = (char)(value % 64 + '0');
-        value /= 64;
-    }
-}
-
-static void put_echo(wire_t *wire, const wire_order_t *order, int remaining)
-{
-    char text[40];
-
-    snprintf(text, sizeof text, "%s%04d%04d%02d", order->symbol, order->first, order->last, order->cluster);
-    put_text(wire, text);
     if (wire_is_stream(order)) {
-        snprintf(text, sizeof text, "0%02d", remaining);
-        put_text(wire, text);
+        snprintf(text + used, size - (size_t)used, "0%02d", remaining);
     }
-    put(wire, '\n');
 }
 
 size_t wire_time_begins(const wire_order_t *order)
@@ -78,21 +49,14 @@ size_t wire_time_begins(const wire_order_t *order)
 void wire_frame(wire_t *wire, const wire_order_t *order, int remaining, uint32_t stamp_ms, const uint16_t *distance_mm)
 {
     const int width = wire_width(order), points = wire_points(order);
-    const size_t length = (size_t)(width * points);
-    char time[4], data[3 * WIRE_POINTS_MAX];
+    char echo[40], data[3 * WIRE_POINTS_MAX], text[WIRE_OCTETS_MAX + 1];
 
-    wire->length = 0;
-    put_echo(wire, order, remaining);
-    put_summed(wire, wire_is_stream(order) ? "99" : "00", 2);
-    encode(time, stamp_ms, 4);
-    put_summed(wire, time, 4);
     for (int i = 0; i < points; i++) {
-        encode(data + i * width, distance_mm[i], width);
+        scip_frames_encode(data + i * width, distance_mm[i], (unsigned)width);
     }
-    for (size_t at = 0; at < length; at += 64) {
-        put_summed(wire, data + at, length - at < 64 ? length - at : 64);
-    }
-    put(wire, '\n');
+    write_echo(echo, sizeof echo, order, remaining);
+    wire->length = scip_frames_frame(text, echo, stamp_ms, data, (size_t)(width * points));
+    memcpy(wire->octets, text, wire->length);
 }
 
 void wire_put(wire_t *wire, const uint8_t *octets, size_t count)

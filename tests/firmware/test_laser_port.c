@@ -8,6 +8,7 @@
 #include "kernel.h"
 #include "mock_timebase.h"
 #include "mock_uart_port.h"
+#include "tests/support/scip_frames.h"
 #include "unity.h"
 
 #define POINTS 35U          /* steps 372..406 */
@@ -145,40 +146,17 @@ void tearDown(void)
     kernel_check();
 }
 
-static void append_with_sum(char *text, const char *characters, size_t count)
-{
-    unsigned sum = 0;
-    size_t end = strlen(text);
-
-    for (size_t i = 0; i < count; i++) {
-        sum += (unsigned)characters[i];
-        text[end++] = characters[i];
-    }
-    text[end++] = (char)((sum & 0x3FU) + 0x30U);
-    text[end++] = '\n';
-    text[end] = '\0';
-}
-
 /* One frame of the stream 372..406: distances first_mm, first_mm + 1, ... */
 static const char *scan_text(uint32_t stamp_ms, uint16_t first_mm)
 {
     static char text[256];
-    char stamp[4];
     char data[2U * POINTS];
 
-    for (uint32_t i = 0; i < 4U; i++) {
-        stamp[i] = (char)(((stamp_ms >> (18U - 6U * i)) & 0x3FU) + 0x30U);
-    }
     for (uint16_t i = 0; i < POINTS; i++) {
-        data[2U * i] = (char)((((unsigned)first_mm + i) >> 6) + 0x30U);
-        data[2U * i + 1U] = (char)((((unsigned)first_mm + i) & 0x3FU) + 0x30U);
+        scip_frames_encode(&data[2U * i], (unsigned long)first_mm + i, 2U);
     }
-    (void)strcpy(text, "MS0372040601000\n");
-    append_with_sum(text, "99", 2U);
-    append_with_sum(text, stamp, 4U);
-    append_with_sum(text, data, 64U);
-    append_with_sum(text, &data[64], 2U * POINTS - 64U);
-    return strcat(text, "\n");
+    (void)scip_frames_frame(text, "MS0372040601000", stamp_ms, data, sizeof data);
+    return text;
 }
 
 static void start_stream(void)
@@ -313,7 +291,7 @@ void test_a_notice_of_the_stream_is_counted_with_its_status(void)
     char text[64] = "MS0372040601000\n";
 
     start_stream();
-    append_with_sum(text, "21", 2U);
+    (void)scip_frames_summed(text + strlen(text), "21", 2U);
     feed(strcat(text, "\n"));
     look();
     TEST_ASSERT_EQUAL_UINT32(before.seen.notice_count + 1U, now.seen.notice_count);
@@ -405,7 +383,7 @@ void test_only_scans_wake_the_task(void)
     char damaged[256];
 
     start_stream();
-    append_with_sum(notice, "21", 2U);
+    (void)scip_frames_summed(notice + strlen(notice), "21", 2U);
     feed(strcat(notice, "\n"));
     (void)strcpy(damaged, scan_text(1000U, 700U));
     damaged[40] ^= 1;

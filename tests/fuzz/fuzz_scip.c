@@ -11,6 +11,7 @@
 #include "drivers/scip_info.h"
 #include "drivers/scip_layout.h"
 #include "drivers/scip_parser.h"
+#include "tests/support/scip_frames.h"
 
 #define POINTS_MAX 40       /* memory of a scan; one of the requests has more */
 #define SENT_MAX 41
@@ -48,26 +49,6 @@ static unsigned counted_left;
 
 /* ---- what was sent, encoded anew from what was delivered ---- */
 
-static size_t put_number(uint8_t *text, uint32_t value, unsigned width)
-{
-    for (unsigned i = width; i-- > 0; value >>= 6) {
-        text[i] = (uint8_t)(48 + (value & 63));
-    }
-    return width;
-}
-
-static size_t put_sum(uint8_t *text, const uint8_t *from, size_t length)
-{
-    unsigned sum = 0;
-
-    for (size_t i = 0; i < length; i++) {
-        sum += from[i];
-    }
-    text[0] = (uint8_t)(48 + (sum & 63));
-    text[1] = '\n';
-    return 2;
-}
-
 static size_t put_echo(uint8_t *frame, const scip_request_t *request, unsigned remaining)
 {
     const octet_t *echo = scip_request_echo(request);
@@ -87,25 +68,16 @@ static size_t put_echo(uint8_t *frame, const scip_request_t *request, unsigned r
 static size_t put_frame(uint8_t *frame, const scip_request_t *request, unsigned remaining, uint32_t stamp_ms,
                         const uint16_t *distance_mm)
 {
-    uint8_t data[3 * SENT_MAX];
-    size_t length = put_echo(frame, request, remaining);
-    const size_t status = length, data_n = (size_t)request->characters * request->points;
+    char data[3 * SENT_MAX], echo[FRAME_MAX], text[FRAME_MAX];
 
-    memcpy(frame + length, request->scan_octets != 0 ? "99" : "00", 2);
-    length += 2 + put_sum(frame + length + 2, frame + status, 2);
-    length += put_number(frame + length, stamp_ms, 4);
-    length += put_sum(frame + length, frame + length - 4, 4);
     for (unsigned i = 0; i < request->points; i++) {
-        put_number(data + i * request->characters, distance_mm[i], request->characters);
+        scip_frames_encode(data + i * request->characters, distance_mm[i], request->characters);
     }
-    for (size_t at = 0; at < data_n; at += 64) {
-        const size_t block = data_n - at < 64 ? data_n - at : 64;
-        memcpy(frame + length, data + at, block);
-        length += block;
-        length += put_sum(frame + length, frame + length - block, block);
-    }
-    frame[length] = '\n';
-    return length + 1;
+    echo[put_echo((uint8_t *)echo, request, remaining) - 1] = '\0';
+    const size_t length = scip_frames_frame(text, echo, stamp_ms, data, (size_t)request->characters * request->points);
+
+    memcpy(frame, text, length);
+    return length;
 }
 
 static bool saturated(const scip_scan_t *scan)
