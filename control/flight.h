@@ -1,5 +1,7 @@
-/* One control cycle: supervisor (who decides), control law or descent (how much thrust), actuator map (which pulse).
- * Pure: time is an argument; the caller owns the state. Task context, TaskControl only. */
+/* One control cycle: supervisor (which state), control law or descent (how much thrust), actuator map
+ * (which pulse).
+ *
+ * Pure: time is an argument; the caller owns the state. Context: Task, TaskControl only. */
 #ifndef CONTROL_FLIGHT_H
 #define CONTROL_FLIGHT_H
 
@@ -17,62 +19,72 @@
 #include "control/reach.h"
 #include "control/supervisor.h"
 
-/* What the thrust is computed by. */
+/* What computes the thrust. */
 typedef enum {
-    FLIGHT_MODE_IDLE,                    /* nobody: none */
+    FLIGHT_MODE_IDLE,                    /* no thrust */
     FLIGHT_MODE_LAW,                     /* PD, PID, PIDT */
     FLIGHT_MODE_HOVER,
-    FLIGHT_MODE_FLOAT,                   /* the height of the moment, by the heights */
+    FLIGHT_MODE_FLOAT,                   /* holds the present height, from the heights alone */
     FLIGHT_MODE_DESCENT,
     FLIGHT_MODE_BLIND_DESCENT,
-    FLIGHT_MODE_EST_HOLD,                    /* law EST, also while it coasts */
-    FLIGHT_MODE_EST_LAND,                    /* by the estimate, as all that follows */
+    FLIGHT_MODE_EST_HOLD,                    /* law EST, also in COASTING */
+    FLIGHT_MODE_EST_LAND,                    /* landing by the estimate */
     FLIGHT_MODE_EST_SINK
 } flight_mode_t;
 
 typedef struct {
     supervisor_t supervisor;
     integrity_t integrity;
-    uint32_t scan_sequence;         /* of the latest scan that was judged */
-    uint32_t scan_time_us;          /* of the latest height that was compared */
+    uint32_t scan_sequence;         /* latest scan that integrity_scan() judged */
+    uint32_t scan_time_us;          /* latest height that was compared with the witnesses */
     bool scan_fit;
-    uint16_t doubts;                /* of the cycle before */
-    bool hopping;                   /* TAKEOFF was left without leaving the ground */
-    float floating_m;               /* the height that FLOATING holds */
+    uint16_t doubts;                /* DOUBT_* of the previous cycle */
+    bool hopping;                   /* TAKEOFF ended and the vehicle had not left the ground */
+    float floating_m;               /* height that FLOATING holds */
     flight_mode_t mode;
     pid_state_t pid;
     bool integral;                  /* the law had an integral action in the previous cycle */
     pidt_state_t pidt;
-    uint32_t pidt_rays_us;          /* of its previous height */
+    uint32_t pidt_rays_us;          /* rays of the height before, law PIDT */
     est_law_t est;
-    control_law_t active_law;           /* PIDT in place of EST without a fresh estimate */
+    control_law_t active_law;           /* law in force; PIDT replaces EST while no estimate is fresh */
     descent_t descent;
     arming_t arming;
-    float idle_n;                   /* least thrust: the armed idle, or 0 */
+    float idle_n;                   /* minimum thrust: the idle while armed, else 0 */
     reach_t reach;
-    float reach_m;                  /* the reference that it is about */
-    bool out_of_reach;              /* the reference in force, as it seems */
-    float hover_n;                  /* hover thrust that is sure: the estimator's, or else the mean of the thrust, followed
-                                     * with 2.5 s in flight while nothing is doubted; GRAV +-1.5 N */
-    bool hover_learned;                  /* in the present flight: hover_n outlasts a pilot's turn */
-    float learned_s;                /* for how long it has been learned, at most 2.5 s */
-    float setpoint_n;                /* thrust that the mode asks for */
-    float transfer_n;                /* added to it, fades out: bumpless transfer between modes */
-    float thrust_n;                 /* the previous command */
+    float reach_m;                  /* reference that `reach` watches */
+    bool out_of_reach;              /* the vehicle does not get to the reference in force */
+    float hover_n;                  /* sure hover thrust: from the estimator, or else the mean of the
+                                     * thrust with a time constant of 2.5 s, in flight and while nothing is
+                                     * doubted. Limits: GRAV +-1.5 N */
+    bool hover_learned;                  /* hover_n was learned in this flight; it stays valid while the
+                                          * pilot has the throttle */
+    float learned_s;                /* how long hover_n has been learned, at most 2.5 s */
+    float setpoint_n;                /* thrust that the mode computes */
+    float transfer_n;                /* added to setpoint_n; fades to 0: bumpless transfer between modes */
+    float thrust_n;                 /* previous command */
 } flight_t;
 
 void flight_init(flight_t *flight);
 
-/* One release of the control task. With RELEASE FREE the law takes a sample in each call, as the seed's did, be the
- * height new or not; with SCAN only when a new height has come, and holds its thrust otherwise. What takes over in the
- * air starts from the thrust of before, at most 0.5 N from hover, and the difference fades with 0.4 s; but a descent
- * with a height acts at once, and so does the law on the ground. Descents fly by law EST's estimate whenever it is
- * fresh, whatever the law; without it by the heights alone, or by none. A change of law alone starts exactly from the thrust
- * of before. parameters: a set kept by parameters_set(). */
+/* One cycle of the control task. parameters: a set that parameters_set() keeps within its limits. in:
+ * borrowed for the call. out: always written.
+ *
+ * Sampling. With RELEASE FREE the law takes one sample in each call, with or without a new height, as the
+ * seed's law did. With RELEASE SCAN it takes one sample per new height; between them it holds its thrust.
+ *
+ * Bumpless transfer. A mode that takes over in the air starts from the previous thrust, limited to 0.5 N
+ * from hover. The difference then fades with a time constant of 0.4 s. Two exceptions start at once: a
+ * descent with a height, and the law on the ground. A change of the law alone starts exactly from the
+ * previous thrust.
+ *
+ * Descents use law EST's estimate while it is fresh, whichever law is chosen. Without it they use the
+ * heights alone; without heights they are open loop. */
 void flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in, flight_outputs_t *out);
 
-/* What the next cycle waits for, FLIGHT_RELEASE_*: PD and PID follow the parameter RELEASE, PIDT each height; EST, and every
- * other law while the estimator flies, each height and each IMU frame. flight_step() tells the same in its outputs. */
+/* Events that release the next cycle, FLIGHT_RELEASE_*. PD and PID: as the parameter RELEASE says. PIDT:
+ * each height. EST, and every law while the estimator flies: each height and each IMU frame. flight_step()
+ * writes the same value to its outputs. */
 uint16_t flight_releases(const flight_t *flight, const parameters_t *parameters);
 
 #endif

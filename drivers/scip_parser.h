@@ -1,15 +1,17 @@
-/* SCIP push parser: octets in, one at a time, replies and scans out. No blocking call, no heap, no clock; RAM known at
- * compile time. Line oriented: octets are gathered up to a LF, then the line is checked and, when it holds points,
- * decoded. No octet costs more than the work on one line.
+/* SCIP push parser. The caller gives it octets, one at a time. It returns replies and scans. It does not
+ * block, uses no heap and no clock, and its RAM is known at compile time. It works line by line: it
+ * collects octets up to a LF, then checks the line, and decodes the points if there are any. So one octet
+ * never costs more than the work on one line.
  *
- * A reply is believed only whole: echo equal to the awaited one, every line of its exact length, every sum right, every
- * encoded character within 30H..6FH, the number of points exact, the closing empty line there. A damaged reply yields
- * nothing, costs only itself and is counted by cause. After damage, and whenever a line is not what was to come, the
- * awaited echo is looked for at the end of that line and of every later one, so the next reply is found even when the
- * line ends before it were lost or other octets stand in front of it.
+ * A reply is accepted only when all of it is right: the echo is the awaited one, every line has its exact
+ * length, every sum is right, every encoded character is within 30H..6FH, the number of points is exact,
+ * and the closing empty line is there. A damaged reply is dropped as a whole and counted by its cause. It
+ * does not damage the next reply: after damage, and after any unexpected line, the parser looks for the
+ * awaited echo at the end of each line. So it finds the next reply even when a line end was lost, or when
+ * other octets come before the echo.
  *
- * Calling context: one context per parser (the firmware: its receive Hwi); scip_parser_expect() and
- * scip_parser_scan_into() from another context only while that one is excluded. */
+ * Calling context: one context per parser (in the firmware: the receive Hwi). scip_parser_expect() and
+ * scip_parser_scan_into() may be called from another context, but only while the first one cannot run. */
 #ifndef DRIVERS_SCIP_PARSER_H
 #define DRIVERS_SCIP_PARSER_H
 
@@ -25,22 +27,26 @@ extern "C" {
 #endif
 
 typedef enum {
-    SCIP_NOTHING,       /* go on feeding */
-    SCIP_REPLY,         /* the awaited request's reply is complete: parser->reply. Also a refused GS, GD, MS, MD */
-    SCIP_SCAN,          /* a scan is complete in the scan given by scip_parser_scan_into() */
-    SCIP_NOTICE,        /* a stream frame without data: hardware trouble or its all-clear, parser->reply.status */
+    SCIP_NOTHING,       /* no event yet */
+    SCIP_REPLY,         /* parser->reply is complete: the reply to the awaited request, or a refused GS,
+                         * GD, MS, MD */
+    SCIP_SCAN,          /* a scan is complete, in the memory given by scip_parser_scan_into() */
+    SCIP_NOTICE,        /* a stream frame without data: hardware trouble, or its end; see
+                         * parser->reply.status */
     SCIP_TEXT,          /* one line of VV PP II: parser->line, parser->text_length, parser->text_proved */
-    SCIP_LEGACY,        /* a SCIP1.1 sensor answered "E": it is not (or no longer) in SCIP2.0 */
-    SCIP_DAMAGED        /* a reply or scan was lost just now: parser->last_damage */
+    SCIP_LEGACY,        /* the sensor answered "E" as in SCIP1.1: it is not in SCIP2.0 */
+    SCIP_DAMAGED        /* a reply or scan was dropped: parser->last_damage */
 } scip_event_t;
 
 typedef enum {
     SCIP_DAMAGE_NONE,
     SCIP_DAMAGE_SUM,        /* a sum does not match */
     SCIP_DAMAGE_LENGTH,     /* a line or the number of points is too short or too long */
-    SCIP_DAMAGE_ECHO,       /* between two frames: a line that is not the stream's echo; an answer with another count */
+    SCIP_DAMAGE_ECHO,       /* a line between two frames is not the stream's echo; or the answer has
+                             * another count */
     SCIP_DAMAGE_CHARACTER,  /* outside 30H..6FH in status, time stamp or data */
-    SCIP_DAMAGE_SEQUENCE,   /* remaining-scan counter or time stamp did not follow; the scan itself is dropped */
+    SCIP_DAMAGE_SEQUENCE,   /* remaining-scan counter or time stamp does not follow the one before; the
+                             * scan is dropped */
     SCIP_DAMAGE_COUNT
 } scip_damage_t;
 
@@ -50,28 +56,29 @@ typedef struct {
     uint32_t timestamp_ms;  /* TM1 only, 24 bits */
 } scip_reply_t;
 
-/* One scan. The owner gives the memory of the points. From scip_parser_scan_into() to SCIP_SCAN the parser writes to it
- * and its content means nothing. */
+/* One scan. The caller owns this structure and the memory of its points. The parser writes to it from
+ * scip_parser_scan_into() until SCIP_SCAN; during that time its content is not valid. */
 typedef struct {
-    uint16_t *distance_mm;  /* points in the order of their steps; codes < 20 are no distances, nor is 4095 with two
-                               characters; three characters saturate at 65535 */
+    uint16_t *distance_mm;  /* points in the order of their steps. Codes < 20 are error codes, not
+                             * distances, and so is 4095 with two characters. Three characters saturate at
+                             * 65535 */
     uint16_t capacity;
     uint16_t points;
     uint16_t characters;    /* per point: 2 or 3 */
     uint16_t first_step;
     uint16_t cluster;
-    uint16_t remaining;     /* scans still to come of a counted run; 0 also for endless */
+    uint16_t remaining;     /* scans that follow in a counted run; 0 in the last one and in an endless run */
     uint32_t timestamp_ms;  /* sensor clock at step 0, 24 bits as sent */
 } scip_scan_t;
 
 /* Counters wrap at 2^32. */
 typedef struct {
     uint32_t replies;
-    uint32_t scans;         /* good ones, delivered or not */
+    uint32_t scans;         /* good scans, delivered or not */
     uint32_t notices;
     uint32_t legacy;
     uint32_t damaged[SCIP_DAMAGE_COUNT]; /* by cause; [SCIP_DAMAGE_NONE] unused */
-    uint32_t skipped_lines; /* not empty, and neither the awaited echo nor part of its reply */
+    uint32_t skipped_lines; /* lines that are not empty, not the awaited echo and not part of its reply */
     uint32_t octets;        /* counted at line ends */
 } scip_counters_t;
 
@@ -96,49 +103,55 @@ typedef struct {
     scip_request_t awaited;     /* latest given to scip_parser_expect(); its kind is that of SCIP_REPLY */
     /* private */
     bool awaiting;
-    uint16_t echo_fixed;        /* octets of the awaited echo that never change: all but a counted run's counter */
+    uint16_t echo_fixed;        /* octets of the awaited echo that never change: all except the counter of
+                                 * a counted run */
     uint16_t state;
-    uint16_t gathered;          /* octets of the line in reception */
-    bool line_cut;              /* more came than fits: only the line's last octets are kept */
+    uint16_t gathered;          /* octets of the present line */
+    bool line_cut;              /* the line is longer than the buffer: only its last octets are kept */
     bool skipping;              /* the line before was skipped and not empty */
     scip_scan_t *scan;
     uint16_t characters_left;   /* of the scan's data */
     scip_progress_t progress;
     uint32_t timestamp_ms;      /* of the frame in reception */
     uint16_t remaining;         /* of the frame in reception */
-    bool flowing;               /* the stream's answer or a frame has come */
-    bool gap;                   /* something was lost since the last good frame */
-    bool doubted;               /* the last frame was dropped for its sequence */
+    bool flowing;               /* the answer to the stream request, or a frame of it, was received */
+    bool gap;                   /* data were lost since the latest good frame */
+    bool doubted;               /* the latest frame was dropped because of its sequence */
     uint16_t latest_remaining;  /* of the latest good frame */
-    bool in_step;               /* the latest good frame followed its predecessor: no loss between, counter one lower */
+    bool in_step;               /* no frame was lost between the latest good frame and the good frame
+                                 * before it: its counter is lower by one */
     uint16_t stamps;            /* number of last_stamps_ms that count, 0..2 */
     uint32_t last_stamps_ms[2];
 } scip_parser_t;
 
 void scip_parser_init(scip_parser_t *parser);
 
-/* From now on the reply to this request is awaited (copied). A reply to an earlier request is skipped. Partial input is
- * kept: the reply may already be in the line. */
+/* Awaits the reply to this request from now on. The request is copied. Replies to earlier requests are
+ * skipped. Octets of an incomplete line are kept, because the reply may already be in them. */
 void scip_parser_expect(scip_parser_t *parser, const scip_request_t *request);
 
-/* Where the next scan goes; NULL: scans are checked and counted but not stored and not delivered. A scan with more
- * points than capacity is damage by length. May be changed on SCIP_SCAN, so that two memories can take turns without
- * copying; at another time the scan in reception is given up. The scan must outlive its use here. */
+/* Sets the memory for the next scan. NULL: scans are checked and counted, but not stored and not
+ * delivered. A scan with more points than `capacity` counts as damage by length. On SCIP_SCAN the memory
+ * may be exchanged, so two memories can alternate without a copy. At any other time the scan under way is
+ * dropped. The memory must stay valid while the parser uses it. */
 void scip_parser_scan_into(scip_parser_t *parser, scip_scan_t *scan);
 
-/* The UART lost or mangled octets: what is being received is given up (the caller counts the cause). */
+/* Call this when the UART lost or damaged octets. The parser drops what it is receiving. The caller counts
+ * the cause. */
 void scip_parser_line_broken(scip_parser_t *parser);
 
-/* Octets still to come until the reply or scan under way is complete, as far as that is known by now; 0 when it is not.
- * Between the scans of a stream: of the next one. A notice or the stream's end is shorter. */
+/* Number of octets until the present reply or scan is complete, as far as it is known now; 0: not known.
+ * Between two scans of a stream it is that of the next scan. A notice, or the end of the stream, is
+ * shorter. */
 uint16_t scip_parser_expected(const scip_parser_t *parser);
 
-/* Private halves of scip_parser_feed(): a line is complete; a line is full and only its last octets are kept. */
+/* Private parts of scip_parser_feed(): a line is complete; or the buffer is full, and only the last octets
+ * are kept. */
 scip_event_t scip_parser_end_line(scip_parser_t *parser);
 void scip_parser_cut_line(scip_parser_t *parser);
 
-/* One octet; what is above its bit 7 is ignored. Events other than SCIP_NOTHING come at a LF. Inline, because an
- * interrupt calls it for every octet. */
+/* Processes one octet; bits above bit 7 are ignored. Events other than SCIP_NOTHING come with a LF only.
+ * The function is inline because an interrupt calls it for every octet. */
 static inline scip_event_t scip_parser_feed(scip_parser_t *parser, octet_t octet)
 {
     const octet_t clean = octet_of(octet);
@@ -153,13 +166,14 @@ static inline scip_event_t scip_parser_feed(scip_parser_t *parser, octet_t octet
     return SCIP_NOTHING;
 }
 
-/* The same for octets that come in bursts (FIFO, DMA, read()), at less cost: takes them up to and including the one that
- * makes an event, or all. Returns how many were taken; *event is SCIP_NOTHING when no event came. Call again
- * with the rest. */
+/* As scip_parser_feed(), for octets that come in blocks (FIFO, DMA, read()), at a lower cost. It stops
+ * after the octet that makes an event, or at the end. Returns the number of octets it has used; *event is
+ * SCIP_NOTHING when there was no event. Call it again with the octets that are left. */
 size_t scip_parser_feed_run(scip_parser_t *parser, const octet_t *octets, size_t count, scip_event_t *event);
 
-/* Sensor time without the wrap of 24 bits: the first time at or after unwrapped_ms (wrapping at 2^32) whose low 24 bits
- * are timestamp_ms. Start with the first stamp itself; right as long as less than 4 h 39 min lie between two calls. */
+/* Extends the sensor's 24-bit time stamp to 32 bits: returns the first time at or after unwrapped_ms whose
+ * low 24 bits are timestamp_ms. The result wraps at 2^32. For the first call, unwrapped_ms is the first
+ * stamp itself. Correct while there are less than 4 h 39 min between two calls. */
 uint32_t scip_unwrap_ms(uint32_t unwrapped_ms, uint32_t timestamp_ms);
 
 #ifdef __cplusplus

@@ -1,34 +1,38 @@
-/* The way of a commanded thrust to the rotors: a dead time (pulse, autopilot) and a first-order lag (motors). Keeps the
- * thrust that is delivered at one instant, and tells what the commands on their way will make of it. Pure; the caller
- * owns the state. */
+/* Model of the actuator, from the commanded thrust to the delivered thrust: a dead time (pulse and
+ * autopilot), then a first-order lag (motors and rotors). It keeps the commands that have been given but
+ * have no effect yet. The estimator and the Smith predictor use it.
+ *
+ * Newtons per motor. Times are in microseconds on one wrapping 32-bit clock. Pure; the caller owns the
+ * state. */
 #ifndef CONTROL_ACTUATOR_H
 #define CONTROL_ACTUATOR_H
 
 #include <stdint.h>
 
-#define ACTUATOR_DELAY_US UINT32_C(18500)   /* half a pulse period 6.8, the pulse 1.5, the autopilot 10 ms (assumed) */
+#define ACTUATOR_DELAY_US UINT32_C(18500)   /* half a pulse period 6.8, pulse 1.5, autopilot 10 ms (assumed) */
 #define ACTUATOR_LAG_S 0.12F                /* assumed of motors and rotors of this size */
-#define ACTUATOR_COMMANDS 12U               /* more than come within the delay */
+#define ACTUATOR_COMMANDS 12U               /* more commands than the dead time can hold */
 
 typedef struct {
-    uint32_t due_us;        /* takes effect */
+    uint32_t due_us;        /* when the command takes effect */
     float thrust_n;
 } actuator_command_t;
 
 typedef struct {
-    uint32_t time_us;       /* thrust_n and demand_n hold here */
-    float thrust_n;         /* delivered, newtons per motor */
-    float demand_n;         /* the command in effect */
+    uint32_t time_us;       /* instant of thrust_n and demand_n */
+    float thrust_n;         /* delivered thrust */
+    float demand_n;         /* command in effect; thrust_n approaches it with the lag */
     uint16_t count;
-    actuator_command_t coming[ACTUATOR_COMMANDS];   /* oldest first */
+    actuator_command_t coming[ACTUATOR_COMMANDS];   /* commands within the dead time, oldest first */
 } actuator_t;
 
 void actuator_init(actuator_t *actuator, uint32_t now_us);
 
-/* A command given now. Too many on their way: the oldest takes effect at once. */
+/* Records a command that is given at now_us. If too many commands are within the dead time, the oldest one
+ * takes effect at once. */
 void actuator_command(actuator_t *actuator, float thrust_n, uint32_t now_us);
 
-/* Brings thrust_n to a later instant; an earlier one changes nothing. */
+/* Moves the model forward to time_us. A time before actuator->time_us changes nothing. */
 void actuator_advance(actuator_t *actuator, uint32_t time_us);
 
 #endif

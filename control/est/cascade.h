@@ -1,46 +1,49 @@
-/* Height -> vertical speed -> acceleration -> thrust, and the take-off before it. Pure; the caller owns the state. */
+/* Cascade control: height error -> vertical speed -> acceleration -> thrust. Heights in metres, speeds in
+ * m/s, positive upwards. Thrust in newtons per motor. Pure; the caller owns the state. */
 #ifndef CONTROL_CASCADE_H
 #define CONTROL_CASCADE_H
 
 #include <stdbool.h>
 
-/* What thrust does to the vehicle: acceleration = authority (thrust - hover) - damping speed. */
+/* Model of the vehicle: acceleration = authority (thrust - hover) - damping speed. */
 typedef struct {
     float authority_mps2_per_n;
     float damping_per_s;
-    float hover_n;          /* without gusts */
-    float need_n;           /* to stay where it is now: hover and gusts */
-    float upright;          /* cos(roll) cos(pitch), or 1 where the autopilot sees to that itself */
+    float hover_n;          /* hover thrust in still air */
+    float need_n;           /* hover thrust plus gust thrust */
+    float upright;          /* cos(roll) cos(pitch); 1 where the autopilot compensates the tilt itself */
 } cascade_vehicle_t;
 
 typedef struct {
-    float height_per_s;     /* metres off the reference -> metres per second */
-    float speed_per_s;      /* metres per second off -> metres per second squared */
-    float up_mps, down_mps; /* limits of the speed, > 0 */
-    float fall_mps2;        /* limit of the acceleration downwards, > 0 */
-    float below_hover_n;    /* and of the thrust that it is got by */
+    float height_per_s;     /* height error (m) -> vertical speed (m/s) */
+    float speed_per_s;      /* speed error (m/s) -> acceleration (m/s2) */
+    float up_mps, down_mps; /* limits of climb and descent, both > 0 */
+    float fall_mps2;        /* limit of the downward acceleration, > 0 */
+    float below_hover_n;    /* limit of the thrust below the hover thrust, > 0 */
 } cascade_gains_t;
 
-/* The vehicle at the instant when the next command takes effect. */
+/* Predicted state of the vehicle at the instant when the next command takes effect. */
 typedef struct {
     float height_m;         /* above the terrain */
     float speed_mps;
     float terrain_mps;
-    float thrust_n;         /* delivered then, by the commands on their way */
+    float thrust_n;         /* delivered thrust at that instant, from the commands already given */
 } cascade_state_t;
 
 typedef struct {
     float thrust_n;         /* previous command */
-    float quick_n;          /* quick changes of the command: mean square */
+    float quick_n;          /* mean square of the quick changes of the command, N2 */
     float slow_n;           /* slow mean of the command */
 } cascade_t;
 
 void cascade_init(cascade_t *cascade, float thrust_n);
 
-/* Speed that brings the vehicle to reference_m, terrain included. */
+/* Vertical speed (m/s, against the earth) that brings the vehicle to reference_m above the terrain. It
+ * includes the speed of the terrain. */
 float cascade_speed_to(const cascade_gains_t *gains, const cascade_state_t *state, float reference_m);
 
-/* Thrust for a speed, newtons per motor, within the actuator's range. */
+/* Thrust for the wanted speed_mps, within the actuator's range 0 .. THRUST_MAX_N. dt_s > 0: time since the
+ * step before. */
 float cascade_step(cascade_t *cascade, const cascade_gains_t *gains, const cascade_vehicle_t *vehicle,
                    const cascade_state_t *state, float speed_mps, float dt_s);
 

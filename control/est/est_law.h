@@ -1,5 +1,11 @@
-/* Law EST: estimator, hover thrust and cascade put together. It listens all the time, whichever law flies, so that it
- * can take over at any instant. Pure; the caller owns the state. */
+/* Law EST: estimator, hover thrust and cascade together. The estimator runs in every cycle, also while
+ * another law flies, so EST can take over at any instant.
+ *
+ * Order in one cycle: est_law_predict(), est_law_fuse_height() if there is a new height, est_law_step() if
+ * EST flies, est_law_record_command() with the thrust that was really commanded.
+ *
+ * Metres, seconds, newtons per motor; positive is upwards. Times named _us are on one wrapping 32-bit
+ * clock. Pure; the caller owns the state. */
 #ifndef CONTROL_EST_LAW_H
 #define CONTROL_EST_LAW_H
 
@@ -16,9 +22,9 @@
 #include "control/ray_clock.h"
 
 typedef enum {
-    EST_MODE_HOLD,               /* keep reference_m */
-    EST_MODE_LAND,               /* sink towards the ground, gently at its end */
-    EST_MODE_SINK                /* the same without a height */
+    EST_MODE_HOLD,               /* hold reference_m */
+    EST_MODE_LAND,               /* descend; slow down near the ground, and fade the thrust out there */
+    EST_MODE_SINK                /* descend without a height */
 } est_mode_t;
 
 typedef struct {
@@ -26,65 +32,69 @@ typedef struct {
     ray_clock_t ray_clock;
     actuator_t actuator;
     hover_t hover;
-    deadband_t deadband;    /* none with PLANT THRUST */
+    deadband_t deadband;    /* used only with PLANT CLIMB */
     cascade_t cascade;
-    bool started;         /* now_us holds */
+    bool started;         /* now_us has a value */
     uint32_t now_us;
-    float step_s;           /* of the latest est_law_predict() */
-    uint32_t rays_us;       /* of the latest height */
-    bool airborne;            /* it is off the ground */
-    bool ramping;           /* it shall leave the ground */
-    float ramp_n;           /* take-off thrust until then */
+    float step_s;           /* duration of the latest cycle */
+    uint32_t rays_us;       /* when the rays of the latest height were taken */
+    bool airborne;            /* the vehicle is off the ground */
+    bool ramping;           /* take-off: the thrust ramps up until the vehicle leaves the ground */
+    float ramp_n;           /* thrust of that ramp */
     float lift_mps2;        /* low-passed upward acceleration */
     float reference_m;
-    float reference_terrain_m;      /* estimator.terrain_height_m where reference_m was given */
-    float sure_hover_n;     /* hover thrust as it has been known for some seconds */
-    float entry_hover_n;    /* the same when the present descent began */
-    float ceiling_n;        /* most thrust of a descent */
-    bool powerless;         /* commands have no effect */
-    float heightless_s;     /* since the rays of the latest height */
-    float frameless_s;      /* since the content of the latest frame */
-    float near_ground_s;            /* for how long it has been at the ground while landing */
+    float reference_terrain_m;      /* estimator.terrain_height_m at the time when reference_m was set */
+    float sure_hover_n;     /* hover thrust from before the present doubt */
+    float entry_hover_n;    /* sure_hover_n at the start of the present descent */
+    float ceiling_n;        /* upper limit of the thrust in a descent */
+    bool powerless;         /* doubt THRUST: commands have no effect */
+    float heightless_s;     /* time since the rays of the latest height */
+    float frameless_s;      /* time since the latest frame was measured */
+    float near_ground_s;            /* time near the ground while landing */
 } est_law_t;
 
 void est_law_init(est_law_t *law);
 
-/* The frames of one cycle, oldest first; those that were seen before change nothing. Every cycle, at now_us. */
+/* Prediction step, once in every cycle. frames: IMU frames, oldest first; borrowed for the call. Frames
+ * that were processed before change nothing. now_us: time of the cycle. */
 void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_sample_t *frames, uint16_t count,
                      uint32_t now_us);
 
-/* A new height: its scan's 24-bit stamp and arrival. at_rest: the vehicle is known to stand on the ground. */
+/* Correction step, once per valid new height. stamp_ms: 24-bit sensor time of its scan. arrival_us:
+ * arrival of its last octet. age_us: time from its rays to that octet, when nothing delays it. at_rest:
+ * the vehicle is known to stand on the ground. */
 void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t stamp_ms, uint32_t arrival_us,
                          uint32_t age_us, bool at_rest);
 
-/* Frames with accelerations are fresh. */
+/* True when the latest IMU frame with accelerations is at most ESTIMATOR_FRESH_US old. */
 bool est_law_has_imu(const est_law_t *law);
-/* They are, and a height has been seen. */
+/* True when est_law_has_imu() is true and the estimator has received at least one height. */
 bool est_law_ready(const est_law_t *law);
 
-/* On the ground, each cycle: the next est_law_step() begins a take-off. */
+/* Call in every cycle on the ground. The next est_law_step() then begins a take-off. */
 void est_law_reset(est_law_t *law, const parameters_t *parameters);
-/* In the air, taking over: hover_n is the best known hover thrust, thrust_n the previous command. */
+/* Call in the air, when EST takes over. hover_n: best known hover thrust. thrust_n: previous command. */
 void est_law_engage(est_law_t *law, float thrust_n, float hover_n);
 
-/* The hover thrust that is known from before what may now be in doubt, each cycle. A descent is bounded by the one that
- * it began with. */
+/* Call in every cycle. hover_n: the hover thrust as it was known before any present doubt. A descent
+ * limits its thrust by the value that hover_n had when the descent began. */
 void est_law_set_sure_hover(est_law_t *law, float hover_n, bool descending);
 
-/* Commands have no effect: nothing is learned or expected from them, and the hover thrust is the sure one. */
+/* powerless true: commands have no effect (doubt THRUST). Nothing is learned or predicted from them, and
+ * the hover thrust is the sure one. */
 void est_law_set_powerless(est_law_t *law, bool powerless);
 
-/* What thrust does to the vehicle, as it is known now. */
+/* Present model of the vehicle, with the estimated hover thrust. */
 cascade_vehicle_t est_law_vehicle(const est_law_t *law, const parameters_t *parameters);
 
-/* Somebody else's thrust moves the vehicle: nothing is learned or expected from the commands until
- * est_law_engage(). */
+/* The pilot has the throttle. Nothing is learned or predicted from the commands until est_law_engage(). */
 void est_law_disengage(est_law_t *law);
 
-/* Newtons per motor. reference_m: for EST_MODE_HOLD. */
+/* Thrust command in newtons per motor. reference_m (above the terrain) counts in EST_MODE_HOLD only. */
 float est_law_step(est_law_t *law, const parameters_t *parameters, est_mode_t mode, float reference_m);
 
-/* What was commanded in the end. */
+/* Records the thrust that was really commanded. Call in every cycle, also when another law flies: without
+ * it hover thrust and prediction drift. */
 void est_law_record_command(est_law_t *law, float thrust_n);
 
 #endif

@@ -1,16 +1,23 @@
-/* Height above the terrain, vertical speed, accelerometer bias and terrain rate: a Kalman filter of four states,
+/* Estimator of height above the terrain, vertical speed, accelerometer bias and terrain rate. It is a
+ * Kalman filter with four states:
  *
- *   height' = speed - terrain rate,   speed' = upward acceleration - bias,   bias' = 0,   rate' = -rate / 1.0 s,
+ *   height' = speed - terrain rate,   speed' = upward acceleration - bias,
+ *   bias' = 0,   rate' = -rate / 1 s.
  *
- * driven by the accelerations of the IMU frames, mixed with what the thrust lets expect, and corrected by heights at the
- * instant of their rays. The filter with its covariance lives at the instant of the latest rays; the frames since then are kept, and the estimate of now is the
- * filter's state carried through them. So a height of 70 ms ago is fused as exactly as one of now.
+ * Prediction uses the accelerations of the IMU frames. They are mixed with the acceleration that the
+ * thrust should cause. Heights correct the states at the instant when their rays were taken.
  *
- * A height further from the expectation than a bound of at most 80 mm is not fused. Two in a row that agree are a step of
- * the terrain; the third in a row, whatever it says, starts the height anew with an open covariance, and the two after
- * it are fused unchecked_count: no state keeps the heights out.
+ * A height arrives late. So the filter and its covariance stay at the instant of the latest rays
+ * (`delayed`). The frames since then are kept. The present estimate (`now`) is `delayed`, predicted
+ * through these frames. A height that is 70 ms old is therefore fused as exactly as a fresh one.
  *
- * Metres, seconds, 32-bit float. Times in microseconds on one wrapping 32-bit clock. Pure; the caller owns the state. */
+ * Innovation test: a height whose innovation exceeds a bound of at most 80 mm is rejected. Two rejected
+ * heights in a row that agree are a step of the terrain. The third rejected height in a row always resets
+ * the filter's height, with a large covariance. The next two heights are then fused without the test. So
+ * no state of the filter can reject heights for ever.
+ *
+ * Metres, seconds, 32-bit float; positive is upwards. Times are in microseconds on one wrapping 32-bit
+ * clock. Pure; the caller owns the state. */
 #ifndef CONTROL_ESTIMATOR_H
 #define CONTROL_ESTIMATOR_H
 
@@ -22,74 +29,77 @@
 
 #define ESTIMATOR_FRAMES 16U
 #define ESTIMATOR_STATES 4U
-#define ESTIMATOR_FRESH_US UINT32_C(250000)     /* older frames make the estimate useless */
+#define ESTIMATOR_FRESH_US UINT32_C(250000)     /* the estimate is not used when its frames are older */
 
 typedef struct {
     float height_m;         /* above the terrain */
-    float speed_mps;        /* upwards, against the earth */
-    float bias_mps2;        /* of the accelerometer, upwards */
-    float terrain_mps;      /* the terrain below rises */
+    float speed_mps;        /* upwards, relative to the earth */
+    float bias_mps2;        /* bias of the accelerometer; > 0: it reads too much upwards */
+    float terrain_mps;      /* rate of the terrain below; > 0: it rises */
 } estimate_t;
 
-/* What the acceleration should be, from the thrust. */
+/* Acceleration that the thrust should cause. */
 typedef struct {
     bool known;
     float up_mps2;
-    float noise_mps2;       /* how wrong that may be, rms, > 0 */
+    float noise_mps2;       /* rms error of up_mps2, > 0 */
 } modelled_motion_t;
 
 typedef struct {
-    uint32_t time_us;       /* of the content */
-    float up_mps2;          /* without gravity, from the frame before to this one */
-    float share;            /* of the accelerometer in it, and so of its bias; the rest is expectation */
+    uint32_t time_us;       /* when the frame was measured */
+    float up_mps2;          /* mean since the frame before, gravity removed */
+    float share;            /* share of the accelerometer in up_mps2, 0 .. 1 (its bias has the same share);
+                             * the rest is the model */
     float roll_rad, pitch_rad;
 } estimator_frame_t;
 
 typedef enum { HEIGHT_FUSED, HEIGHT_REJECTED, HEIGHT_TERRAIN_STEP, HEIGHT_RESET } height_outcome_t;
 
 typedef struct {
-    bool initialised;           /* a frame has come, and a height with it */
+    bool initialised;           /* at least one frame and, after it, one height were received */
     estimate_t delayed;
     float covariance[ESTIMATOR_STATES][ESTIMATOR_STATES];
     uint32_t delayed_us;
-    estimate_t now;         /* at now_us, the latest frame's instant */
+    estimate_t now;         /* estimate at now_us, the instant of the latest frame */
     uint32_t now_us;
-    float up_mps2;          /* measured in the latest frame, gravity removed, bias not */
+    float up_mps2;          /* measured in the latest frame, gravity removed, bias not removed */
     estimator_frame_t latest;
     estimator_frame_t frames[ESTIMATOR_FRAMES];     /* since delayed_us, oldest first */
     uint16_t frame_count;
-    bool has_frames;            /* a frame has come */
+    bool has_frames;            /* at least one frame was received */
     uint32_t sequence;
     float previous_mps2[2];   /* raw accelerations of the two frames before */
     float noise_mps2;       /* measured rms of the accelerometer's noise */
     float model_noise_mps2;
-    float off_model_mps2;   /* felt less what the thrust makes, low-passed */
-    float previous_m[2];    /* the two heights before */
-    float floor_m;          /* measured rms noise of the heights, rough floor included */
-    uint16_t rejected_count;       /* heights in a row */
-    uint16_t unchecked_count;        /* heights still to be fused whatever they say */
-    bool confirmed;         /* the latest height was as expected, or the second of a step */
-    float rejected_innovation_m;        /* innovation of the latest rejected_count height */
-    float innovation_m;     /* latest */
-    float terrain_height_m; /* above the terrain of the start: sum of its steps and of its rate */
+    float off_model_mps2;   /* measured less modelled acceleration, low-passed */
+    float previous_m[2];    /* the two previous heights */
+    float floor_m;          /* measured rms noise of the heights; includes the roughness of the floor */
+    uint16_t rejected_count;       /* rejected heights in a row */
+    uint16_t unchecked_count;        /* heights still to be fused without the innovation test */
+    bool confirmed;         /* the latest height passed the test, or was the second one of a terrain step */
+    float rejected_innovation_m;        /* innovation of the latest rejected height */
+    float innovation_m;     /* innovation of the latest height */
+    float terrain_height_m; /* terrain height above the terrain of the start: its steps plus its integrated
+                             * rate */
 } estimator_t;
 
 void estimator_init(estimator_t *estimator);
 
-/* One frame, in order. A frame that was seen before changes nothing, nor does one without accelerations or before the
- * offset of its angles is known. The noisier the accelerometer is measured to be, the
- * more the expected motion counts. */
+/* Prediction with one frame. Frames come in order of time. Nothing changes when the frame was processed
+ * before, when it has no accelerations, or when the offset of its angles is not known. The higher the
+ * measured noise of the accelerometer, the more weight `model` gets. */
 void estimator_predict(estimator_t *estimator, const imu_sample_t *frame, modelled_motion_t model);
 
-/* One valid height, its rays taken at rays_us. at_rest: the vehicle is known to stand on the ground, which tells speed
- * and bias. Without a frame before nothing happens (HEIGHT_REJECTED). */
+/* Correction with one valid height, whose rays were taken at rays_us. at_rest: the vehicle is known to
+ * stand on the ground; then the speed is 0 and the bias can be measured. Returns HEIGHT_REJECTED, and
+ * changes nothing, before the first frame. */
 height_outcome_t estimator_fuse_height(estimator_t *estimator, const altitude_t *altitude, uint32_t rays_us,
                                        bool at_rest);
 
-/* What the frame's accelerometer feels upwards, gravity removed. */
+/* Upward acceleration that the frame's accelerometer measures, gravity removed, m/s2. */
 float motion_up_mps2(const imu_sample_t *frame);
 
-/* The heights of late were wrong: height, speed and bias are these now. */
+/* Overwrites height, speed and bias. For use when the latest heights were wrong. */
 void estimator_amend(estimator_t *estimator, float height_m, float speed_mps, float bias_mps2);
 
 #endif
