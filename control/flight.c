@@ -10,6 +10,7 @@
 #include <math.h>
 
 #include "control/between.h"
+#include "control/seconds.h"
 #include "control/thrust.h"
 
 #define HOVER_MARGIN_N 1.5F /* mass 20 % off; narrower than law EST's 2 N: here nobody corrects an error */
@@ -73,11 +74,6 @@ static bool is_est_mode(flight_mode_t mode)
     return mode == FLIGHT_MODE_EST_HOLD || mode == FLIGHT_MODE_EST_LAND || mode == FLIGHT_MODE_EST_SINK;
 }
 
-static float seconds(uint32_t time_us, float at_most_s)
-{
-    return fminf((float)time_us * 1.0e-6F, at_most_s);
-}
-
 /* Frames and heights make an estimate that may be flown by. */
 static bool has_estimate(const flight_t *flight)
 {
@@ -87,7 +83,7 @@ static bool has_estimate(const flight_t *flight)
 /* Slowly: what is wrong now must not have been learned already. Quicker while little is known. */
 static void follow_hover(flight_t *flight)
 {
-    const float step_s = seconds(flight->supervisor.step_us, STEP_MAX_S);
+    const float step_s = seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
     const bool estimated = has_estimate(flight) && flight->est.airborne;
     if (!estimated && flight->supervisor.state != FLIGHT_FLYING) {
         return;
@@ -197,7 +193,7 @@ static void step_pidt(flight_t *flight, const parameters_t *parameters, float re
     if (height->is_new || !flight->pidt.primed) {
         const uint32_t rays_us = flight->est.rays_us;
         flight->setpoint_n = pidt_step(&flight->pidt, &gains, reference_m,
-                                       height->height_mm * 0.001F, seconds(rays_us - flight->pidt_rays_us, GAP_MAX_S));
+                                       height->height_mm * 0.001F, seconds_at_most(rays_us - flight->pidt_rays_us, GAP_MAX_S));
         flight->pidt_rays_us = rays_us;
     }
 }
@@ -205,7 +201,7 @@ static void step_pidt(flight_t *flight, const parameters_t *parameters, float re
 static void step_descent(flight_t *flight, bool started)
 {
     const height_track_t *height = &flight->supervisor.height;
-    const float gap_s = height->is_new ? seconds(height->gap_us, GAP_MAX_S) : 0.0F;
+    const float gap_s = height->is_new ? seconds_at_most(height->gap_us, GAP_MAX_S) : 0.0F;
 
     if (height->is_new || started) {
         flight->setpoint_n =
@@ -261,7 +257,7 @@ static bool run_mode(flight_t *flight, const parameters_t *parameters, bool mode
         step_descent(flight, mode_changed);
         break;
     case FLIGHT_MODE_BLIND_DESCENT:
-        flight->setpoint_n = descent_blind(flight->hover_n, seconds(flight->supervisor.state_us, BLIND_MAX_S));
+        flight->setpoint_n = descent_blind(flight->hover_n, seconds_at_most(flight->supervisor.state_us, BLIND_MAX_S));
         break;
     case FLIGHT_MODE_IDLE:
     default:
@@ -286,7 +282,7 @@ static void bumpless_transfer(flight_t *flight, flight_mode_t before, bool law_c
         flight->transfer_n =
             between(hover_n - TRANSFER_START_N, flight->thrust_n, hover_n + TRANSFER_START_N) - flight->setpoint_n;
     } else {
-        flight->transfer_n *= TRANSFER_TIME_S / (TRANSFER_TIME_S + seconds(flight->supervisor.step_us, STEP_MAX_S));
+        flight->transfer_n *= TRANSFER_TIME_S / (TRANSFER_TIME_S + seconds_at_most(flight->supervisor.step_us, STEP_MAX_S));
     }
 }
 
@@ -326,7 +322,7 @@ static flown_t describe(const flight_t *flight, const parameters_t *parameters, 
     const supervisor_t *supervisor = &flight->supervisor;
 
     return (flown_t){
-        .step_s = supervisor->started ? seconds(in->now_us - supervisor->now_us, STEP_MAX_S) : 0.0F,
+        .step_s = supervisor->started ? seconds_at_most(in->now_us - supervisor->now_us, STEP_MAX_S) : 0.0F,
         .grounded = supervisor->state == FLIGHT_GROUND,
         .standing = supervisor->state == FLIGHT_TAKEOFF && !flight->est.airborne,
         .off_ground = is_off_ground(flight, in),
@@ -353,7 +349,7 @@ static void compare_height(flight_t *flight, const flown_t *flown, const flight_
     }
     if (is_new && flight->scan_fit) {
         integrity_height(&flight->integrity, flown, in->altitude.height_mm * 0.001F,
-                         seconds(in->height_time_us - flight->scan_time_us, GAP_LONG_S), RAYS_AGE_S);
+                         seconds_at_most(in->height_time_us - flight->scan_time_us, GAP_LONG_S), RAYS_AGE_S);
         flight->scan_time_us = in->height_time_us;
     }
 }
@@ -613,7 +609,7 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
     const bool stops = stops_on_ground(flight);
     const bool action_changed = !stops && run_mode(flight, parameters, before != flight->mode);
     if (stops) {
-        flight->setpoint_n = flight->thrust_n - STOP_N_PER_S * seconds(flight->supervisor.step_us, STEP_MAX_S);
+        flight->setpoint_n = flight->thrust_n - STOP_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
         flight->transfer_n = 0.0F;
     }
     bumpless_transfer(flight, before, law_changed || action_changed);

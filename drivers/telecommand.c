@@ -108,7 +108,7 @@ static bool is_name(char character)
     return (character >= 'A' && character <= 'Z') || (character >= '0' && character <= '9') || character == '_';
 }
 
-static char upper(char character)
+char telecommand_upper(char character)
 {
     return character >= 'a' && character <= 'z' ? (char)(character - 'a' + 'A') : character;
 }
@@ -138,7 +138,7 @@ static telecommand_status_t take_name(const telecommand_line_t *line, uint16_t *
     uint16_t length = 0U;
 
     for (; *at < end && !is_blank(line->text[*at]); (*at)++) {
-        char character = upper(line->text[*at]);
+        char character = telecommand_upper(line->text[*at]);
 
         if (!is_name(character)) {
             return TELECOMMAND_CHARACTER;
@@ -190,7 +190,7 @@ static uint16_t find_sum(const telecommand_line_t *line, uint16_t end)
         return end;
     }
     for (uint16_t i = (uint16_t)(at + 1U); i < end; i++) {
-        const char digit = upper(line->text[i]);
+        const char digit = telecommand_upper(line->text[i]);
 
         if (!((digit >= '0' && digit <= '9') || (digit >= 'A' && digit <= 'F'))) {
             return end;
@@ -205,7 +205,7 @@ static bool sum_is_right(const telecommand_line_t *line, uint16_t sum_at)
 
     line_sum_write(digits, line_sum(line->text, sum_at));
     for (uint16_t i = 0U; i < LINE_SUM_DIGITS; i++) {
-        if (upper(line->text[sum_at + 1U + i]) != digits[i]) {
+        if (telecommand_upper(line->text[sum_at + 1U + i]) != digits[i]) {
             return false;
         }
     }

@@ -15,6 +15,9 @@
 #define TELECOMMAND_LINE_MAX 32U    /* characters from '#' to before the line end */
 #define TELECOMMAND_NAME_MAX 12U
 
+/* A letter in upper case; any other character as it is. */
+char telecommand_upper(char character);
+
 typedef struct {
     char text[TELECOMMAND_LINE_MAX];    /* from '#', without the line end */
     uint16_t length;

@@ -13,18 +13,14 @@ static void add_name(answer_t *answer)
     }
 }
 
-static char upper(char character)
-{
-    return (character >= 'a' && character <= 'z') ? (char)(character - 'a' + 'A') : character;
-}
-
 bool answer_argument_is(const answer_t *answer, const char *word)
 {
+    const telecommand_t *command = answer->command;
     uint16_t i;
 
-    for (i = 0U; i < answer->command->argument_length && word[i] == upper(answer->command->argument[i]); i++) {
+    for (i = 0U; i < command->argument_length && word[i] == telecommand_upper(command->argument[i]); i++) {
     }
-    return i == answer->command->argument_length && word[i] == '\0';
+    return i == command->argument_length && word[i] == '\0';
 }
 
 void answer_begin(answer_t *answer)

@@ -11,6 +11,7 @@
 #include <stddef.h>
 
 #include "control/between.h"
+#include "control/seconds.h"
 #include "control/thrust.h"
 #include "control/touchdown.h"
 
@@ -62,11 +63,6 @@
 #define STOP_N_PER_S 2.0F /* as the end of a landing, LANDED_FADE_N_PER_S in touchdown.h */
 #define TERRAIN_KEEP_S 30.0F /* chosen: drifts of the terrain's sum are forgotten */
 #define LOWEST_OVER_TERRAIN_M 0.15F /* the height of OFF_GROUND in supervisor.c */
-
-static float seconds(uint32_t from_us, uint32_t to_us)
-{
-    return (float)(int32_t)(to_us - from_us) * 1.0e-6F;
-}
 
 void est_law_init(est_law_t *law)
 {
@@ -148,12 +144,12 @@ static void predict_frame(est_law_t *law, const parameters_t *parameters, const 
     }
 
     estimator_predict(&law->estimator, frame, modelled_motion(law, parameters));
-    const float dt_s = seconds(before_us, law->estimator.now_us);
+    const float dt_s = seconds_between(before_us, law->estimator.now_us);
     if (dt_s <= 0.0F || dt_s > STEP_MAX_S) {
         return;
     }
     actuator_advance(&law->actuator, law->estimator.now_us);
-    law->frameless_s = seconds(law->estimator.now_us, law->now_us);
+    law->frameless_s = seconds_between(law->estimator.now_us, law->now_us);
     law->lift_mps2 += fminf(dt_s / LIFT_FILTER_S, 1.0F)
                     * (law->estimator.up_mps2 - law->estimator.now.bias_mps2 - law->lift_mps2);
     if (law->airborne) {
@@ -172,7 +168,7 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_s
     if (!is_climb(parameters)) {
         deadband_init(&law->deadband);
     }
-    law->step_s = between(0.0F, seconds(law->now_us, now_us), STEP_MAX_S);
+    law->step_s = between(0.0F, seconds_between(law->now_us, now_us), STEP_MAX_S);
     law->now_us = now_us;
     law->heightless_s = fminf(law->heightless_s + law->step_s, AGE_MAX_S);
     law->frameless_s = fminf(law->frameless_s + law->step_s, AGE_MAX_S);
@@ -199,7 +195,7 @@ void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t st
                          uint32_t age_us, bool at_rest)
 {
     law->rays_us = ray_clock_step(&law->ray_clock, stamp_ms, arrival_us, age_us);
-    law->heightless_s = seconds(law->rays_us, law->now_us);
+    law->heightless_s = seconds_between(law->rays_us, law->now_us);
     const height_outcome_t outcome =
         estimator_fuse_height(&law->estimator, altitude, law->rays_us, at_rest || on_ground(law));
     if (law->airborne && outcome == HEIGHT_FUSED) {
@@ -281,7 +277,7 @@ void est_law_disengage(est_law_t *law)
 static cascade_state_t predict_ahead(const est_law_t *law, const cascade_vehicle_t *vehicle)
 {
     const estimate_t *now = &law->estimator.now;
-    const float ahead_s = seconds(law->estimator.now_us, law->now_us + ACTUATOR_DELAY_US);
+    const float ahead_s = seconds_between(law->estimator.now_us, law->now_us + ACTUATOR_DELAY_US);
     actuator_t then = law->actuator;
 
     actuator_advance(&then, law->now_us + ACTUATOR_DELAY_US);

@@ -12,6 +12,7 @@
 #include <stddef.h>
 
 #include "control/between.h"
+#include "control/seconds.h"
 
 #define GRAVITY_MPS2 9.80665F /* standard gravity */
 #define FRAME_AGE_US UINT32_C(23600) /* 15 ms within the Razor (assumed), 8.6 ms on the wire */
@@ -60,11 +61,6 @@ enum { HEIGHT, SPEED, BIAS, TERRAIN };
 static const float variance_max[ESTIMATOR_STATES] = {1.0F, 1.0F, 0.25F, 0.25F};
 static const float variance_min[ESTIMATOR_STATES] = {1.0e-7F, 1.0e-7F, 1.0e-7F, 1.0e-7F};
 static const float variance_start[ESTIMATOR_STATES] = {1.0e-4F, 0.04F, 0.09F, 0.0025F};
-
-static float seconds(uint32_t from_us, uint32_t to_us)
-{
-    return (float)(int32_t)(to_us - from_us) * 1.0e-6F;
-}
 
 static bool before(uint32_t a_us, uint32_t b_us)
 {
@@ -155,7 +151,7 @@ static void propagate_covariance(estimator_t *e, float share, float dt_s)
 
 static void predict_to(estimator_t *e, uint32_t to_us, const estimator_frame_t *frame)
 {
-    const float dt_s = seconds(e->delayed_us, to_us);
+    const float dt_s = seconds_between(e->delayed_us, to_us);
 
     e->terrain_height_m += e->delayed.terrain_mps * dt_s;
     propagate(&e->delayed, frame, dt_s);
@@ -189,7 +185,7 @@ static void predict_now(estimator_t *e)
 
     e->now = e->delayed;
     for (uint16_t i = 0U; i < e->frame_count; ++i) {
-        propagate(&e->now, &e->frames[i], seconds(time_us, e->frames[i].time_us));
+        propagate(&e->now, &e->frames[i], seconds_between(time_us, e->frames[i].time_us));
         time_us = e->frames[i].time_us;
     }
     e->now_us = time_us;
@@ -240,7 +236,7 @@ static void append_frame(estimator_t *e, const estimator_frame_t *frame)
     e->frames[e->frame_count] = *frame;
     ++e->frame_count;
     if (before(e->now_us, frame->time_us)) {
-        propagate(&e->now, frame, seconds(e->now_us, frame->time_us));
+        propagate(&e->now, frame, seconds_between(e->now_us, frame->time_us));
         e->now_us = frame->time_us;
     }
 }

@@ -510,3 +510,15 @@ void test_a_stop_needs_no_sum_and_minds_no_wrong_one(void)
     }
     TEST_ASSERT_EQUAL_INT(TELECOMMAND_SUM_MISSING, parse_with_sum("#SETR 0.6", true));
 }
+
+void test_only_letters_a_to_z_have_an_upper_case(void)
+{
+    static const char other[] = "AZ09@[`{_- ~";
+
+    TEST_ASSERT_EQUAL_CHAR('A', telecommand_upper('a'));
+    TEST_ASSERT_EQUAL_CHAR('M', telecommand_upper('m'));
+    TEST_ASSERT_EQUAL_CHAR('Z', telecommand_upper('z'));
+    for (size_t i = 0U; other[i] != '\0'; i++) {
+        TEST_ASSERT_EQUAL_CHAR(other[i], telecommand_upper(other[i]));
+    }
+}
