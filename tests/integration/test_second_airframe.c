@@ -41,7 +41,7 @@ static void by_the_estimator(const char *exponent)
     fly("est-60cm-ramp", exponent);
     TEST_ASSERT_DOUBLE_WITHIN(3.5, 11.0, mean[METRIC_HOVER_RMS_MM]);
     TEST_ASSERT_DOUBLE_WITHIN(12.0, 76.0, mean[METRIC_TERRAIN_RMS_MM]);
-    TEST_ASSERT_DOUBLE_WITHIN(0.25, 0.8, mean[METRIC_RECOVERY_S]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.35, 0.95, mean[METRIC_RECOVERY_S]); /* 0.74 on the airframe that it assumes */
     TEST_ASSERT_EQUAL_DOUBLE(0.0, worst[METRIC_GROUND_CONTACTS]);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, worst[METRIC_TAKEOVERS]);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, worst[METRIC_FLAGGED_S]);

@@ -419,13 +419,29 @@ static accept_verdict_t judge_recording(const char *path, char *detail)
     return say(detail, pulses.high_us[0] > IDLE_US - 2.0, "measured: first %.1f us, ten widths within %.1f us", pulses.high_us[0], worst_us);
 }
 
-static accept_verdict_t pulse(const accept_means_t *means, char *detail)
+/* A calibration begins one step above the idle: with none it goes through every width from 2 ms on. The board's own idle is
+ * put back by the line that `restore` gets. */
+static bool without_idle(char *restore, size_t size)
 {
     char answer[160];
+
+    if (!terminal_ask("GET IDLE", answer, sizeof answer) || strncmp(answer, "OK IDLE ", 8) != 0) {
+        return false;
+    }
+    snprintf(restore, size, "%.32s", answer + 3);
+    return terminal_ask("IDLE 0", answer, sizeof answer);
+}
+
+static accept_verdict_t pulse(const accept_means_t *means, char *detail)
+{
+    char answer[160], idle[40];
     int reached;
 
     if (!await(has_height, 3, 40.0)) {
         return say(detail, false, "no heights: without them #CALIBRATE does not run");
+    }
+    if (!without_idle(idle, sizeof idle)) {
+        return say(detail, false, "#IDLE: no answer");
     }
     world_hold(true);
     if (!terminal_ask("LINK 60", answer, sizeof answer) || !terminal_ask("STREAM PULSE", answer, sizeof answer) ||
@@ -439,6 +455,7 @@ static accept_verdict_t pulse(const accept_means_t *means, char *detail)
     (void)world_run_until(timeline_now() + SIM_S / 2);
     (void)terminal_ask("STREAM OFF", answer, sizeof answer);
     (void)terminal_ask("LINK 0", answer, sizeof answer);
+    (void)terminal_ask(idle, answer, sizeof answer);
     world_hold(false);
     if (reached < STEPS) {
         return say(detail, false, "told: the width of command %d of %d did not come", reached + 1, STEPS);
