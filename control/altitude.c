@@ -2,13 +2,27 @@
 
 #include <math.h>
 
-const mirror_geometry_t mirror_geometry[] = {
-    [MIRROR_FRONT] = {.distance_mm = 105.0F, .leg_mm = 100.0F, .arm_mm = 220.0F, .fore_sign = 0.0F},
-    [MIRROR_FORE] = {.distance_mm = 107.0F, .leg_mm = 105.0F, .arm_mm = 115.0F, .fore_sign = 1.0F},
-    [MIRROR_AFT] = {.distance_mm = 115.0F, .leg_mm = 98.0F, .arm_mm = 115.0F, .fore_sign = -1.0F},
-};
-typedef char every_mirror_has_a_geometry[
-    (sizeof mirror_geometry / sizeof mirror_geometry[0] == MIRROR_COUNT) ? 1 : -1];
+typedef char every_mirror_has_its_place_below[(MIRROR_COUNT == 3) ? 1 : -1];
+
+altitude_geometry_t altitude_geometry_of(const parameters_t *parameters)
+{
+    const float *const mm = parameters->value;
+    const float abeam_mm = mm[PARAMETER_L] - mm[PARAMETER_DF];
+
+    return (altitude_geometry_t){.mirror = {
+        [MIRROR_FRONT] = {mm[PARAMETER_DF], mm[PARAMETER_LF], mm[PARAMETER_L], 0.0F},
+        [MIRROR_FORE] = {mm[PARAMETER_D2], mm[PARAMETER_L2], abeam_mm, 1.0F},
+        [MIRROR_AFT] = {mm[PARAMETER_D1], mm[PARAMETER_L1], abeam_mm, -1.0F},
+    }};
+}
+
+altitude_geometry_t altitude_geometry_default(void)
+{
+    parameters_t parameters;
+
+    parameters_init(&parameters);
+    return altitude_geometry_of(&parameters);
+}
 
 float altitude_under_mirror(const mirror_geometry_t *mirror, float slant_mm, float roll_rad, float pitch_rad)
 {
@@ -47,7 +61,8 @@ static void divide(altitude_t *altitude, float groups)
     altitude->fore_mm /= groups;
 }
 
-altitude_t altitude_from_ranges(const mirror_range_t *ranges, size_t count, float roll_rad, float pitch_rad)
+altitude_t altitude_from_ranges(const altitude_geometry_t *geometry, const mirror_range_t *ranges, size_t count,
+                                float roll_rad, float pitch_rad)
 {
     altitude_t altitude = {.valid = false};
     float groups = 0.0F;
@@ -59,7 +74,7 @@ altitude_t altitude_from_ranges(const mirror_range_t *ranges, size_t count, floa
         if (!range->valid) {
             continue;
         }
-        const mirror_geometry_t *mirror = &mirror_geometry[range->mirror];
+        const mirror_geometry_t *mirror = &geometry->mirror[range->mirror];
         const float height_mm = altitude_under_mirror(mirror, range->slant_mm, roll_rad, pitch_rad);
         lowest_mm = altitude.valid ? fminf(lowest_mm, height_mm) : height_mm;
         highest_mm = altitude.valid ? fmaxf(highest_mm, height_mm) : height_mm;

@@ -12,6 +12,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "control/parameters.h"
+
 typedef enum {
     MIRROR_FRONT,   /* step 384 */
     MIRROR_FORE,    /* step 640, the seed's mirror 2 */
@@ -19,12 +21,12 @@ typedef enum {
     MIRROR_COUNT
 } mirror_t;
 
-/* One mirror's place on the vehicle. The table holds the seed's Annex III.
+/* One mirror's place on the vehicle, from the parameters, whose defaults are the seed's Annex III.
  *
  * The sensor sits upright on the vehicle's right side and looks to the right, outwards, at the front mirror. Its steps
  * grow counter-clockwise seen from above, so a larger step lies to its left, and the left of one who looks to the
  * vehicle's right is fore: step 640 is the seed's mirror 2 and fore, step 128 its mirror 1 and aft. Both stand
- * abeam of the sensor's axis, which is L - d of the front mirror, 115 mm, from the vehicle's centre.
+ * abeam of the sensor's axis, which is L - DF, as delivered 115 mm, from the vehicle's centre.
  *
  * The formula is the seed's. Against exact geometry (the tests hold a ray model) it lacks cos(pitch) on L sin(roll)
  * and cos(pitch) cos(roll) on l: at 10 degrees of one angle 1.6 mm, of both 3.6 mm. */
@@ -35,7 +37,13 @@ typedef struct {
     float fore_sign;    /* s */
 } mirror_geometry_t;
 
-extern const mirror_geometry_t mirror_geometry[]; /* one for each mirror_t */
+typedef struct {
+    mirror_geometry_t mirror[MIRROR_COUNT];
+} altitude_geometry_t;
+
+altitude_geometry_t altitude_geometry_of(const parameters_t *parameters);
+/* Of the parameters as delivered. */
+altitude_geometry_t altitude_geometry_default(void);
 
 #define ALTITUDE_DISAGREE_MM 50.0F /* chosen: ten times the noise of a group */
 
@@ -68,7 +76,8 @@ float altitude_under_mirror(const mirror_geometry_t *mirror, float slant_mm, flo
  * linear in what it takes the mean of. */
 float altitude_at_tilt(const altitude_t *altitude, float roll_rad, float pitch_rad);
 
-/* Mean height of the valid groups among `count` ranges (borrowed for the call). */
-altitude_t altitude_from_ranges(const mirror_range_t *ranges, size_t count, float roll_rad, float pitch_rad);
+/* Mean height of the valid groups among `count` ranges (both borrowed for the call). */
+altitude_t altitude_from_ranges(const altitude_geometry_t *geometry, const mirror_range_t *ranges, size_t count,
+                                float roll_rad, float pitch_rad);
 
 #endif

@@ -50,6 +50,18 @@ const parameter_row_t parameter_table[PARAMETER_COUNT] = {
     [PARAMETER_IDOWN] = {"IDOWN", "-", 0.0F, (float)(DOWN_COUNT - 1), (float)DOWN_Z, down_names,
                           "Where the IMU's accelerometer feels gravity."},
     [PARAMETER_IUNIT] = {"IUNIT", "1/g", 0.5F, 5000.0F, 256.0F, NULL, "Counts of the IMU's accelerometer per g."},
+    /* The seed's Annex III. Up to 500 mm: longer than any arm of a vehicle of this size. */
+    [PARAMETER_DF] = {"DF", "mm", 0.0F, 500.0F, 105.0F, NULL, "Scanner to the front mirror."},
+    [PARAMETER_LF] = {"LF", "mm", 0.0F, 500.0F, 100.0F, NULL,
+                       "Front mirror to the lowest point of the landing gear."},
+    [PARAMETER_L] = {"L", "mm", 0.0F, 500.0F, 220.0F, NULL,
+                      "Vehicle's centre to the front mirror, to the right."},
+    [PARAMETER_D1] = {"D1", "mm", 0.0F, 500.0F, 115.0F, NULL, "Scanner to mirror 1, aft."},
+    [PARAMETER_L1] = {"L1", "mm", 0.0F, 500.0F, 98.0F, NULL,
+                       "Mirror 1 to the lowest point of the landing gear."},
+    [PARAMETER_D2] = {"D2", "mm", 0.0F, 500.0F, 107.0F, NULL, "Scanner to mirror 2, fore."},
+    [PARAMETER_L2] = {"L2", "mm", 0.0F, 500.0F, 105.0F, NULL,
+                       "Mirror 2 to the lowest point of the landing gear."},
 };
 
 void parameters_init(parameters_t *parameters)
@@ -158,6 +170,13 @@ bool parameter_may_change_in_air(parameter_id_t id, float from, float to)
     case PARAMETER_IPITCH:
     case PARAMETER_IDOWN:
     case PARAMETER_IUNIT:
+    case PARAMETER_DF:
+    case PARAMETER_LF:
+    case PARAMETER_L:
+    case PARAMETER_D1:
+    case PARAMETER_L1:
+    case PARAMETER_D2:
+    case PARAMETER_L2:
         return to == from;
     default:
         return true;

@@ -35,6 +35,13 @@ typedef enum {
     PARAMETER_IPITCH,   /* likewise */
     PARAMETER_IDOWN,    /* choice, control_down_t */
     PARAMETER_IUNIT,    /* accelerometer counts per g */
+    PARAMETER_DF,       /* mm, the mirrors' places, control/altitude.h: front, */
+    PARAMETER_LF,
+    PARAMETER_L,
+    PARAMETER_D1,       /* aft, the seed's mirror 1, */
+    PARAMETER_L1,
+    PARAMETER_D2,       /* fore, the seed's mirror 2 */
+    PARAMETER_L2,
     PARAMETER_COUNT
 } parameter_id_t;
 
@@ -91,8 +98,8 @@ parameter_status_t parameters_set(parameters_t *parameters, parameter_id_t id, f
 
 /* Whether a value in force may change so in the air. GRAV, USAT and DSAT: by PARAMETER_STEP_IN_AIR_N at most, because the
  * thrust of law PD and PID follows them at once; from hover so much less sinks at 0.8 m/s in the end (damping 2.4 1/s).
- * SEL: not at all, because it decides who has the throttle; nor what turns the IMU's axes round. The others: yes; a change of LAW starts at the thrust of
- * before (flight.h). */
+ * SEL: not at all, because it decides who has the throttle; nor what turns the IMU's axes round, nor the mirrors' places,
+ * because the height would jump. The others: yes; a change of LAW starts at the thrust of before (flight.h). */
 #define PARAMETER_STEP_IN_AIR_N 1.5F
 bool parameter_may_change_in_air(parameter_id_t id, float from, float to);
 

@@ -7,6 +7,7 @@
 
 #include "bsp/timebase.h"
 #include "control/thrust.h"
+#include "firmware/geometry.h"
 #include "firmware/imu_exchange.h"
 #include "firmware/monitor.h"
 #include "firmware/probe.h"
@@ -53,6 +54,7 @@ void servers_create(void)
     flight_gate = gate_create("FlightStatus_server");
     parameters_init(&parameters);
     imu_exchange_mount(&parameters);
+    geometry_mount(&parameters);
     flight.state = FLIGHT_GROUND;
     flight.flags = FLIGHT_FLAG_HEIGHT | FLIGHT_FLAG_ATTITUDE;
 }
@@ -154,6 +156,7 @@ void parameter_server_write(const parameters_t *set)
     parameters = *set;
     GateMutexPri_leave(parameter_gate, key);
     imu_exchange_mount(set);
+    geometry_mount(set);
 }
 
 void parameter_server_read(parameters_t *set)

@@ -3,6 +3,7 @@
 #include <xdc/std.h>
 
 #include "control/altitude.h"
+#include "firmware/geometry.h"
 #include "firmware/laser_port.h"
 #include "firmware/monitor.h"
 #include "firmware/mounting.h"
@@ -15,6 +16,7 @@ static altitude_t height_of(const scip_scan_t *scan, const attitude_t *tilt)
 {
     const scip_layout_t *layout = &scip_layouts[LASER_LAYOUT];
     mirror_range_t ranges[SCIP_GROUPS_MAX];
+    altitude_geometry_t geometry;
     uint16_t i;
 
     for (i = 0U; i < layout->group_count; i++) {
@@ -26,7 +28,8 @@ static altitude_t height_of(const scip_scan_t *scan, const attitude_t *tilt)
         ranges[i].spread_mm = mean.spread_mm;
         ranges[i].good_rays = mean.good_rays;
     }
-    return altitude_from_ranges(ranges, layout->group_count, tilt->roll_rad, tilt->pitch_rad);
+    geometry_mounted(&geometry);
+    return altitude_from_ranges(&geometry, ranges, layout->group_count, tilt->roll_rad, tilt->pitch_rad);
 }
 
 static void take(altitude_sample_t *sample, const laser_message_t *message)

@@ -57,7 +57,7 @@ const quadrotor_config_t quadrotor_default = {
     .lag2_s = 0.0, .ground_effect = 1.0,
     .gust_mps2 = 0.0, .gust = {10.0, 1.0}, .tumble_radps = 0.0, .tumble_start_s = 10.0,
     .floor = FLOOR_DEFAULT,
-    .anchored = false, .bench_height_m = 0.0};
+    .anchored = false, .bench_height_m = 0.0, .bench_roll_rad = 0.0, .bench_roll_start_s = 0.0};
 
 typedef struct {
     sim_time_t active;
@@ -405,6 +405,8 @@ static void step(quadrotor_t *q)
         rotate(q, t_s);
         const double acceleration_mps2 = air_mps2(q, t_s) + disturbance_mps2(q) + gust_mps2(q);
         rise_or_rest(q, acceleration_mps2, terrain_m, terrain_mps);
+    } else if (q->config.bench_roll_rad != 0.0 && (double)q->clock * 1e-9 >= q->config.bench_roll_start_s) {
+        s->roll_rad = q->config.bench_roll_rad;
     }
     s->terrain_m = terrain_m;
     s->height_m = s->altitude_m - terrain_m;

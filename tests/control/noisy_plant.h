@@ -92,11 +92,12 @@ static inline void noisy_height(noisy_t *n, flight_inputs_t *in, uint32_t clock_
 {
     const double roll = noisy_roll(n, 72500U);
     const double wrong_mm = noisy_uniform(n) < n->glitch ? 350.0 : 0.0;
+    const altitude_geometry_t geometry = altitude_geometry_default();
     mirror_range_t range = {.mirror = MIRROR_FRONT, .valid = true, .good_rays = 35U};
 
     range.slant_mm = (float)(105.0 + (n->body.seen_mm + wrong_mm + 100.0 + 220.0 * sin(roll)) / cos(roll) +
                              n->height_noise_mm * noisy_gauss(n));
-    in->altitude = altitude_from_ranges(&range, 1, n->frames[NOISY_FRAMES - 1U].median.roll_rad, 0.0F);
+    in->altitude = altitude_from_ranges(&geometry, &range, 1, n->frames[NOISY_FRAMES - 1U].median.roll_rad, 0.0F);
     in->height_valid = true;
     in->height_time_us = n->body.time_us - 2000U + clock_us; /* the plant's height comes 2 ms after its last octet */
     in->height_age_us = 70500U;

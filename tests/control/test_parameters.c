@@ -125,6 +125,8 @@ void test_what_is_no_finite_number_is_refused_everywhere(void)
 void test_the_operators_mistakes_are_refused(void)
 {
     refused(PARAMETER_KP, 15.0F);   /* N/m */
+    refused(PARAMETER_L, 501.0F);
+    refused(PARAMETER_L2, -1.0F);
     refused(PARAMETER_USAT, -0.5F);
     refused(PARAMETER_GRAV, 12.0F);
 }
@@ -210,6 +212,12 @@ void test_in_the_air_thrust_changes_by_bounded_steps_and_the_throttle_keeps_its_
     TEST_ASSERT_FALSE(parameter_may_change_in_air(PARAMETER_IPITCH, (float)AXIS_PITCH, (float)AXIS_ROLL));
     TEST_ASSERT_FALSE(parameter_may_change_in_air(PARAMETER_IDOWN, (float)DOWN_Z, (float)DOWN_MINUS_Z));
     TEST_ASSERT_FALSE(parameter_may_change_in_air(PARAMETER_IUNIT, 256.0F, 255.0F));
+    for (int id = PARAMETER_DF; id <= PARAMETER_L2; id++) {
+        const float value = parameter_table[id].initial;
+
+        TEST_ASSERT_FALSE_MESSAGE(parameter_may_change_in_air((parameter_id_t)id, value, value + 1.0F), parameter_table[id].name);
+        TEST_ASSERT_TRUE_MESSAGE(parameter_may_change_in_air((parameter_id_t)id, value, value), parameter_table[id].name);
+    }
     TEST_ASSERT_TRUE(parameter_may_change_in_air(PARAMETER_SEL, (float)SEL_PIN, (float)SEL_PIN));
     TEST_ASSERT_TRUE(parameter_may_change_in_air(PARAMETER_LAW, (float)LAW_EST, (float)LAW_PD));
     TEST_ASSERT_TRUE(parameter_may_change_in_air(PARAMETER_KP, 0.0F, 1.0F));

@@ -655,6 +655,17 @@ void test_what_turns_the_imus_axes_round_is_for_the_ground(void)
     assert_answer("OK IDOWN -Z", "#IDOWN -z");
 }
 
+void test_where_the_mirrors_are_is_for_the_ground(void)
+{
+    in_the_air = true;
+    assert_refused("ERR L not on the ground", "#L 325");
+    assert_refused("ERR D1 not on the ground", "#D1 120");
+    in_the_air = false;
+    assert_answer("OK L 325", "#L 325");
+    assert_answer("OK D1 120.5", "#d1 120.5");
+    assert_refused("ERR LF out of range 0..500 mm", "#LF 501");
+}
+
 void test_stop_and_land_withdraw_the_reference_whatever_stands_behind_them(void)
 {
     static const struct {

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "firmware/geometry.h"
 #include "jobs.h"
 #include "kernel.h"
 #include "mock_laser_port.h"
@@ -59,9 +60,20 @@ void task_control_altitude_arrived(void)
     kernel_note("arrived");
 }
 
+/* The vehicle's geometry as delivered, one value of it another. */
+static void mount(parameter_id_t id, float value)
+{
+    parameters_t parameters;
+
+    parameters_init(&parameters);
+    TEST_ASSERT_EQUAL(PARAMETER_ACCEPTED, parameters_set(&parameters, id, value));
+    geometry_mount(&parameters);
+}
+
 void setUp(void)
 {
     kernel_reset();
+    mount(PARAMETER_L, 220.0F);
     message_count = next_message = write_count = 0U;
     (void)memset(&imu, 0, sizeof imu);
     (void)memset(messages, 0, sizeof messages);
@@ -138,6 +150,21 @@ void test_the_tilt_is_the_imus_median_with_roll_and_pitch_in_their_places(void)
     kernel_run_task();
     /* 1000 cos(0.2) cos(0.1) - 220 sin(0.1) - 100 = 975.1703 - 21.9633 - 100 */
     TEST_ASSERT_FLOAT_WITHIN(0.05F, 853.2070F, written[0].altitude.height_mm);
+}
+
+void test_a_changed_measure_acts_from_the_next_scan(void)
+{
+    mount(PARAMETER_LF, 130.0F);
+    (void)scan(805U);
+    kernel_run_task();
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 570.0F, written[0].altitude.height_mm); /* 805 - 105 - 130 */
+    mount(PARAMETER_L, 325.0F);
+    imu.median.roll_rad = 0.1F;
+    imu.median.pitch_rad = 0.2F;
+    (void)scan(1105U);
+    kernel_run_task();
+    /* 1000 cos(0.2) cos(0.1) - 325 sin(0.1) - 100 = 975.1703 - 32.4459 - 100 */
+    TEST_ASSERT_FLOAT_WITHIN(0.05F, 842.7244F, written[1].altitude.height_mm);
 }
 
 void test_the_mean_is_of_the_good_rays_alone(void)

@@ -152,9 +152,11 @@ static void next_scip_frame(void)
 /* ---- TaskReceiveLaser: from a scan to a height ---- */
 
 static altitude_t altitude;
+static altitude_geometry_t geometry;
 
 static void prepare_altitude(void)
 {
+    geometry = altitude_geometry_default();
     begin_stream();
     scip_frame();
 }
@@ -164,7 +166,7 @@ static void receive_laser(void)
     const scip_group_mean_t mean = scip_group_mean(&scan, FRONT);
     const mirror_range_t range = { MIRROR_FRONT, mean.valid, mean.mean_mm, mean.spread_mm, mean.good_rays };
 
-    altitude = altitude_from_ranges(&range, 1, 0.05F, -0.03F);
+    altitude = altitude_from_ranges(&geometry, &range, 1, 0.05F, -0.03F);
 }
 
 /* ---- TaskSendLaser: supervision of a stream ---- */

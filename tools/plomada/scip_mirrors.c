@@ -28,7 +28,8 @@ static const char usage[] =
     "and its landing gear M metres above a flat floor (0..3). A step looks at a mirror when\n"
     "  - at least 10 scans hold it, and 90 % of them with a good distance,\n"
     "  - its distances are stable: at most 40 mm between their quartiles,\n"
-    "  - their median is within MM (default 40) of the mirror's d + height + l (see control/altitude.h).\n"
+    "  - their median is within MM (default 40) of the mirror's d + height + l: as delivered, of the\n"
+    "    parameters DF and LF, D1 and L1 (aft), D2 and L2 (fore).\n"
     "Steps up to 60 from the front (384) can only look at the front mirror, smaller ones at the aft, larger ones at the\n"
     "fore. The longest row of neighbouring steps is the mirror, its window 5 steps inside either end.\n\n"
     "Prints a table, and the row for drivers/scip_layout.c.\n"
@@ -121,7 +122,10 @@ static mirror_t mirror_at(unsigned step)
 
 static double expected_mm(mirror_t mirror, const order_t *order)
 {
-    return (double)mirror_geometry[mirror].distance_mm + 1000.0 * order->height_m + (double)mirror_geometry[mirror].leg_mm;
+    const altitude_geometry_t geometry = altitude_geometry_default();
+    const mirror_geometry_t *place = &geometry.mirror[mirror];
+
+    return (double)place->distance_mm + 1000.0 * order->height_m + (double)place->leg_mm;
 }
 
 static void keep_longest(row_t *longest, const row_t *row)

@@ -25,6 +25,7 @@ COMMANDS = (
     "#PLANT THRUST", "#PLANT CLIMB", "#CRATE 1",
     "#SEL NONE", "#SEL PIN", "#SUM ON", "#SUM OFF*3A0B", "#IDLE 15",
     "#IROLL -ROLL", "#IPITCH PITCH", "#IDOWN Z", "#IUNIT 256", "#IMU",
+    "#DF 105", "#LF 100", "#L 220", "#D1 115", "#L1 98", "#D2 107", "#L2 105",
     "#SAVE", "#LOAD", "#DEFAULTS", "#DEFAULTS SEED",
     "#LINK 60", "#CALIBRATE 30 5", "#LINK 2", "#LINK 0",
     "#PING 1", "#STREAM PULSE", "#STREAM OFF", "#HANG TASK",
