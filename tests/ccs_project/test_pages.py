@@ -21,9 +21,12 @@ def board_pins():
 
 
 def geometry():
-    """{mirror: (d, l, L)} in whole millimetres from control/altitude.c."""
-    return {name: tuple(int(float(each)) for each in found) for name, *found in re.findall(
-        r"\[MIRROR_(\w+)\] = \{\.distance_mm = ([\d.]+)F, \.leg_mm = ([\d.]+)F, \.arm_mm = ([\d.]+)F", code("control/altitude.c"))}
+    """{mirror: (d, l, L)} in whole millimetres: the defaults of the parameters that control/altitude.c puts there."""
+    defaults = {name: int(float(each)) for name, each in re.findall(
+        r"\[PARAMETER_(\w+)\] = \{\"\w+\", \"mm\", [\d.]+F, [\d.]+F, ([\d.]+)F", code("control/parameters.c"))}
+    places = re.findall(r"\[MIRROR_(\w+)\] = \{mm\[PARAMETER_(\w+)\], mm\[PARAMETER_(\w+)\], (\w+)", code("control/altitude.c"))
+    arms = {"mm": defaults["L"], "abeam_mm": defaults["L"] - defaults["DF"]}
+    return {mirror: (defaults[distance], defaults[leg], arms[arm]) for mirror, distance, leg, arm in places}
 
 
 class Wiring(unittest.TestCase):
