@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-/* The value within lowest .. highest; lowest when it is no number. highest < lowest: highest. */
+/* Limits value to lowest .. highest. NaN gives lowest. If highest < lowest, the result is highest. */
 static inline float between(float lowest, float value, float highest)
 {
     return fminf(fmaxf(value, lowest), highest);

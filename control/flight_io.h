@@ -1,5 +1,5 @@
-/* What goes into one control cycle and what comes out of it. TaskControl fills the inputs from the servers and publishes
- * the outputs as they are. */
+/* Inputs and outputs of one control cycle. TaskControl fills the inputs from the servers, and publishes
+ * the outputs unchanged. */
 #ifndef CONTROL_FLIGHT_IO_H
 #define CONTROL_FLIGHT_IO_H
 
@@ -10,37 +10,43 @@
 #include "control/flight_state.h"
 #include "control/imu_sample.h"
 
-/* Highest reference: the take-over at 0.8 m above it is still within the scanner's 4.095 m. */
+/* Highest reference. State LOWERING begins 0.8 m above the reference: that is still within the scanner's
+ * 4.095 m. */
 #define FLIGHT_REFERENCE_MAX_M 3.0F
 
-/* What the cycle knows, copied from the servers. Times in microseconds on one wrapping 32-bit clock; a time slightly
- * later than now_us counts as now. Steps may not be more than 71 minutes apart. */
+/* Inputs of one cycle, copied from the servers. Times are in microseconds on one wrapping 32-bit clock. A
+ * time slightly later than now_us counts as now_us. Two cycles must not be more than 71 minutes apart. */
 typedef struct {
     uint32_t now_us;
-    bool height_valid;              /* the latest scan gave a height; false: altitude is not looked at */
-    altitude_t altitude;            /* a height outside -50 .. 5000 mm or NaN is treated as not valid */
-    uint32_t height_time_us;        /* arrival of the latest valid height; meaningless before the first */
+    bool height_valid;              /* the latest scan gave a height; false: altitude is not read */
+    altitude_t altitude;            /* a height outside -50 .. 5000 mm, or NaN, counts as not valid */
+    uint32_t height_time_us;        /* arrival of the latest valid height; undefined before the first */
     uint32_t height_sequence;       /* +1 per valid height; 0 = never one */
-    bool attitude_ready;            /* offset known */
-    float roll_rad;                 /* median of the latest five frames; not used by laws PD and PID */
-    float pitch_rad;                /* likewise */
-    uint16_t tilted_frames;         /* frames in a row over 45 degrees, where they come faster than cycles; or 0 */
+    bool attitude_ready;            /* the offset of the angles is known */
+    float roll_rad;                 /* median of the latest five frames, > 0: mirror's side up; not used by
+                                     * laws PD and PID */
+    float pitch_rad;                /* as roll_rad, > 0: nose up */
+    uint16_t tilted_frames;         /* consecutive frames over 45 degrees, where frames come faster than
+                                     * cycles; else 0 */
     uint32_t attitude_time_us;      /* arrival of the latest IMU frame */
     uint32_t height_stamp_ms;       /* 24-bit sensor time of that scan; for laws PIDT and EST */
-    uint32_t height_age_us;         /* its rays to its arrival, when nothing hinders it; for the same laws */
-    const imu_sample_t *frames;   /* the latest frames, oldest first, old ones again or not; for law EST; borrowed for
-                                     * the call, NULL when frame_count is 0 */
+    uint32_t height_age_us;         /* from its rays to its arrival, when nothing delays it; for PIDT and
+                                     * EST */
+    const imu_sample_t *frames;   /* latest frames, oldest first, for law EST. May contain frames of
+                                   * earlier cycles. Borrowed for the call; NULL when frame_count is 0 */
     uint16_t frame_count;
-    float reference_m;              /* looked at when its sequence changes; outside 0 .. FLIGHT_REFERENCE_MAX_M: ignored */
+    float reference_m;              /* metres, read when reference_sequence changes; ignored outside 0 ..
+                                     * FLIGHT_REFERENCE_MAX_M */
     uint32_t reference_sequence;    /* +1 per accepted #SETR, 0 m included */
     uint32_t link_time_us;          /* arrival of the latest complete valid command line */
     uint32_t link_sequence;         /* +1 per such line; 0 = never one */
-    bool arm;                       /* the operator's latest wish; looked at when its sequence changes */
+    bool arm;                       /* latest request to arm (or disarm); read when arm_sequence changes */
     uint32_t arm_sequence;
-    bool has_throttle;             /* false: the pilot has it, as a pin says; true when nothing says it */
+    bool has_throttle;             /* false: the pilot has the throttle (from the pin); always true without
+                                    * the pin */
 } flight_inputs_t;
 
-/* Events that can release the next cycle, as bits of one word. It also runs after a time-out. */
+/* Events that can release the next cycle, as bits of one word. A cycle also runs after a time-out. */
 #define FLIGHT_RELEASE_PERIOD 1U    /* the control period */
 #define FLIGHT_RELEASE_HEIGHT 2U    /* a scan, with a height or without one */
 #define FLIGHT_RELEASE_FRAME 4U     /* an IMU frame */
@@ -48,14 +54,14 @@ typedef struct {
 typedef struct {
     float thrust_n;                 /* commanded, newtons per motor, 0 .. THRUST_MAX_N */
     float pulse_us;                 /* throttle pulse, thrust.h */
-    float idle_n;                   /* least thrust_n in force: the armed idle, or 0 */
+    float idle_n;                   /* minimum of thrust_n: the idle while armed, else 0 */
     flight_state_t state;
     uint16_t flags;                 /* FLIGHT_FLAG_* */
     uint16_t doubts;                /* DOUBT_*, integrity.h */
     float reference_m;              /* reference in force, 0 = none */
-    float estimate_mm;              /* height that the law acts on; NAN: none is known */
-    float innovation_mm;            /* latest height less its prediction; NAN where nothing is predicted */
-    uint16_t releases;              /* FLIGHT_RELEASE_*: what the next cycle waits for */
+    float estimate_mm;              /* height that the law uses; NAN: not known */
+    float innovation_mm;            /* latest height minus predicted height; NAN where nothing is predicted */
+    uint16_t releases;              /* FLIGHT_RELEASE_*: events that release the next cycle */
 } flight_outputs_t;
 
 #endif

@@ -1,4 +1,5 @@
-/* Finds the axes and the unit of an IMU from how the vehicle is held: level, its right side raised, its nose raised. Pure. */
+/* Finds the axes and the unit of an IMU. The operator holds the vehicle level, then raises its right side,
+ * then its nose. Pure; the caller owns the parameters. */
 #ifndef CONTROL_IMU_FINDING_H
 #define CONTROL_IMU_FINDING_H
 
@@ -6,12 +7,14 @@
 
 #include "control/imu_mapping.h"
 
-/* Level and at rest: the unit of the accelerometer (256, 1, 9.80665 or 1000 counts per g, within 15 %) and which way down is.
- * False: no accelerations, or they are none of these; nothing is set. */
+/* Vehicle level and at rest. Finds which way down is, and the unit of the accelerometer: 256, 1, 9.80665
+ * or 1000 counts per g, within 15 %. Returns false and sets nothing when there are no accelerations, or
+ * when they fit none of these units. */
 bool imu_find_level(parameters_t *parameters, const imu_raw_t *raw);
 
-/* One side of the vehicle raised since it was level: sets PARAMETER_IROLL or PARAMETER_IPITCH to the angle of the IMU that turned by 8 to
- * 60 degrees, the other one by less than half of it. False: it did not; nothing is set. */
+/* One side of the vehicle was raised since `level` was taken. id: PARAMETER_IROLL or PARAMETER_IPITCH,
+ * which is set to the IMU's angle that has turned by 8 to 60 degrees. The other angle must have turned by
+ * less than half of that. Returns false and sets nothing when this is not so. */
 bool imu_find_axis(parameters_t *parameters, parameter_id_t id, const imu_raw_t *level, const imu_raw_t *raw);
 
 #endif

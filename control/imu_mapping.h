@@ -1,6 +1,8 @@
-/* From the IMU's own axes and unit to the vehicle's: the one place for it, by parameters that the operator finds with `#IMU
- * LEVEL`, `RIGHT` and `NOSE`. A Razor with its own firmware, mounted as docs/hardware.md says, needs the delivered ones: it
- * counts roll positive with the right wing down, the vehicle with the mirror's side, which is the right, up. Pure. */
+/* Converts the IMU's axes and unit to the vehicle's. This is the only place where that happens. Parameters
+ * describe the mounting; the operator finds them with `#IMU LEVEL`, `RIGHT` and `NOSE`. The default
+ * parameters fit a Razor with its own firmware, mounted as in docs/hardware.md. That IMU counts roll
+ * positive with the right wing down. The vehicle counts roll positive with the mirror's side up, which is
+ * the right side. Pure. */
 #ifndef CONTROL_IMU_MAPPING_H
 #define CONTROL_IMU_MAPPING_H
 
@@ -10,7 +12,8 @@
 #include "control/attitude.h"
 #include "control/parameters.h"
 
-/* A frame as the IMU means it: x to its nose, y to its right, z down; gravity is felt along +z when it lies level. */
+/* One frame in the IMU's own axes: x to its nose, y to its right, z down. When it lies level, gravity is
+ * measured along +z. Angles in radians. */
 typedef struct {
     float yaw_rad, pitch_rad, roll_rad;
     bool has_acceleration;
@@ -18,20 +21,21 @@ typedef struct {
 } imu_raw_t;
 
 typedef struct {
-    uint16_t roll, pitch;   /* control_axis_t: which of the IMU's angles it is */
-    float counts_per_g;     /* of the accelerometer; below 0: it tells the opposite */
+    uint16_t roll, pitch;   /* control_axis_t: the IMU's angle that is the vehicle's roll or pitch */
+    float counts_per_g;     /* of the accelerometer; < 0: it measures with the opposite sign */
 } imu_mapping_t;
 
 imu_mapping_t imu_mapping_of(const parameters_t *parameters);
 
-/* Angles of the IMU, less their offset or not, to those of the vehicle: roll > 0 raises the mirror's side, pitch > 0 the
- * nose. */
+/* Converts angles of the IMU to angles of the vehicle, radians. Works with the offset removed or not.
+ * Vehicle: roll > 0 raises the mirror's side, pitch > 0 raises the nose. */
 attitude_t imu_map_angles(const imu_mapping_t *mapping, const attitude_t *imu);
-/* What a scale would feel along the axes that belong to those angles: at rest and level 0, 0, +9.81. */
+/* Converts an acceleration to the vehicle's axes, m/s2. The sign is that of the force that carries the
+ * vehicle's weight as a scale shows it: at rest and level 0, 0, +9.81. */
 void imu_map_acceleration(const imu_mapping_t *mapping, const imu_raw_t *raw, float *forward_mps2, float *right_mps2,
                           float *down_mps2);
 
-/* As the IMU writes angles. */
+/* Radians to degrees, the IMU's unit on the wire. */
 float imu_degrees(float rad);
 
 #endif

@@ -1,4 +1,5 @@
-/* One IMU frame, its angles free of their offset. */
+/* One IMU frame in the vehicle's axes, with the offset of its angles removed. Angles in radians; the times
+ * are on one wrapping 32-bit clock. */
 #ifndef CONTROL_IMU_SAMPLE_H
 #define CONTROL_IMU_SAMPLE_H
 
@@ -12,9 +13,9 @@ typedef struct {
     uint32_t arrival_us;
     bool ready;                 /* the offset of the angles is known */
     attitude_t level;           /* offset removed */
-    attitude_t median;          /* of this frame and the four before */
+    attitude_t median;          /* median of this frame and the four before it */
     bool has_acceleration;
-    /* What a scale would feel: at rest and level 0, 0, +9.81. */
+    /* As a scale would show it: at rest and level 0, 0, +9.81. */
     float forward_mps2, right_mps2, down_mps2;
     uint32_t malformed;         /* frames refused so far */
 } imu_sample_t;

@@ -1,6 +1,8 @@
-/* The parameter table: every number and choice that an operator may set, with its unit, limits, default and meaning.
- * One row feeds validation, the #GET answers, #HELP, `plomada params` and the command table of the README.
- * Pure; the caller owns the set. */
+/* Parameter table: every number and choice that the operator may set, with unit, limits, default and
+ * meaning. One row feeds the validation, the answers of #GET and #HELP, `plomada params`, and the command
+ * table of the README.
+ *
+ * Pure; the caller owns the set. In the firmware the parameter server owns it (firmware/servers.h). */
 #ifndef CONTROL_PARAMETERS_H
 #define CONTROL_PARAMETERS_H
 
@@ -48,11 +50,13 @@ typedef enum {
 typedef enum { LAW_PD, LAW_PID, LAW_PIDT, LAW_EST, LAW_COUNT } control_law_t;
 typedef enum { RELEASE_FREE, RELEASE_SCAN, RELEASE_COUNT } control_release_t;
 typedef enum { TERRAIN_FOLLOW, TERRAIN_IGNORE, TERRAIN_COUNT } control_terrain_t;
-typedef enum { PLANT_THRUST, PLANT_CLIMB, PLANT_COUNT } control_plant_t; /* what the autopilot's throttle commands */
-typedef enum { SUM_OFF, SUM_ON, SUM_COUNT } control_sum_t; /* whether every command line must carry its sum */
-typedef enum { SEL_NONE, SEL_PIN, SEL_COUNT } control_sel_t; /* what tells who has the throttle: nothing, or a pin */
+typedef enum { PLANT_THRUST, PLANT_CLIMB, PLANT_COUNT } control_plant_t; /* what the autopilot's throttle
+                                                                          * commands: thrust or climb rate */
+typedef enum { SUM_OFF, SUM_ON, SUM_COUNT } control_sum_t; /* whether every command line must have its sum */
+typedef enum { SEL_NONE, SEL_PIN, SEL_COUNT } control_sel_t; /* how the firmware knows whether the pilot
+                                                              * has the throttle: it does not, or by a pin */
 
-/* Which angle of the IMU, and which end of its z axis. */
+/* Which angle of the IMU is the vehicle's, and which end of its z axis points down. */
 typedef enum { AXIS_ROLL, AXIS_MINUS_ROLL, AXIS_PITCH, AXIS_MINUS_PITCH, AXIS_COUNT } control_axis_t;
 typedef enum { DOWN_Z, DOWN_MINUS_Z, DOWN_COUNT } control_down_t;
 
@@ -62,7 +66,7 @@ typedef struct {
     float minimum;
     float maximum;
     float initial;
-    const char *const *choices;     /* NULL for a number; else maximum + 1 names, the value is the index */
+    const char *const *choices;     /* NULL for a number; else maximum + 1 names, the value is an index */
     const char *meaning;            /* one sentence */
 } parameter_row_t;
 
@@ -70,36 +74,43 @@ extern const parameter_row_t parameter_table[PARAMETER_COUNT];
 
 typedef struct {
     float value[PARAMETER_COUNT];
-    uint32_t generation;            /* +1 with every accepted value, be it the old one */
+    uint32_t generation;            /* +1 with every accepted value, also an unchanged one */
 } parameters_t;
 
 typedef enum { PARAMETER_ACCEPTED, PARAMETER_OUT_OF_RANGE } parameter_status_t;
 
 void parameters_init(parameters_t *parameters);
 
-/* The seed's law PID as it flew: LAW, RELEASE, KP, KD, KI, USAT, DSAT and GRAV. The rest stays. */
+/* Sets the seed's law PID as it flew: LAW, RELEASE, KP, KD, KI, USAT, DSAT and GRAV. Other parameters do
+ * not change. */
 void parameters_set_seed(parameters_t *parameters);
 
-/* False for a gain of another law. What PIDT flies by counts for EST too: it stands in for it. */
+/* Whether this law uses the parameter. The gains of PIDT count as used by EST too, because PIDT replaces
+ * EST without an estimate. */
 bool parameter_is_used(parameter_id_t id, control_law_t law);
 
-/* Case-insensitive look-up of `length` characters. Returns PARAMETER_COUNT when there is no such name. */
+/* Finds a parameter by the first `length` characters of name, upper or lower case. Returns PARAMETER_COUNT
+ * when there is none. */
 parameter_id_t parameter_find(const char *name, size_t length);
 
-/* Case-insensitive look-up of a choice's name. Returns -1 when row is no choice or has no such name. */
+/* Finds a choice by its name, upper or lower case. Returns its value, or -1 when the parameter is not a
+ * choice or has no such name. */
 int16_t parameter_find_choice(parameter_id_t id, const char *name, size_t length);
 
 /* Value of a choice: the index of its name. */
 uint16_t parameters_choice(const parameters_t *parameters, parameter_id_t id);
 
-/* Stores value if it is finite and within the row's limits (a choice: also whole); otherwise nothing changes. -0 is
- * stored as 0. */
+/* Stores value and returns PARAMETER_ACCEPTED when it is finite and within the row's limits; for a choice
+ * it must also be whole. Otherwise nothing changes. -0 is stored as 0. */
 parameter_status_t parameters_set(parameters_t *parameters, parameter_id_t id, float value);
 
-/* Whether a value in force may change so in the air. GRAV, USAT and DSAT: by PARAMETER_STEP_IN_AIR_N at most, because the
- * thrust of law PD and PID follows them at once; from hover so much less sinks at 0.8 m/s in the end (damping 2.4 1/s).
- * SEL: not at all, because it decides who has the throttle; nor what turns the IMU's axes round, nor the mirrors' places,
- * because the height would jump. The others: yes; a change of LAW starts at the thrust of before (flight.h). */
+/* Whether the value may change from `from` to `to` while the vehicle is in the air.
+ *
+ * GRAV, USAT and DSAT: by PARAMETER_STEP_IN_AIR_N at most, because the thrust of PD and PID follows them
+ * at once. From hover, that much less thrust ends in a sink rate of 0.8 m/s (damping 2.4 1/s).
+ * Not at all: SEL, because it decides who has the throttle; the IMU's axes and unit; the mirrors' places,
+ * because the height would jump. All others: yes. A change of LAW starts from the previous thrust
+ * (flight.h). */
 #define PARAMETER_STEP_IN_AIR_N 1.5F
 bool parameter_may_change_in_air(parameter_id_t id, float from, float to);
 

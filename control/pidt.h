@@ -1,6 +1,6 @@
-/* The PID law in SI units: real time steps, derivative of the measured height behind a low pass of 8 Hz, and an integral
- * that stands still while it would push the thrust further out of its window. Newtons per motor. Pure; the caller owns
- * the state. */
+/* PID law in SI units, with real time steps. The derivative is that of the measured height, behind a low
+ * pass of 8 Hz. Anti-windup: the integral stops while it would move the thrust further out of its window.
+ * Newtons per motor. Pure; the caller owns the state. */
 #ifndef CONTROL_PIDT_H
 #define CONTROL_PIDT_H
 
@@ -11,22 +11,24 @@ typedef struct {
     float ki_n_per_m_s;
     float kd_n_s_per_m;
     float gravity_n;
-    float most_n, least_n;  /* window of the thrust */
+    float most_n, least_n;  /* limits of the thrust */
 } pidt_gains_t;
 
 typedef struct {
     float integral_n;
-    float height_m;         /* previous */
-    float rate_mps;         /* low-passed */
-    bool primed;            /* height_m is known */
+    float height_m;         /* previous height */
+    float rate_mps;         /* vertical speed, low-passed, > 0 is up */
+    bool primed;            /* height_m has a value */
 } pidt_state_t;
 
 void pidt_reset(pidt_state_t *state);
 
-/* Forgets the previous height alone. */
+/* Clears the previous height only; the integral stays. */
 void pidt_resume(pidt_state_t *state);
 
-/* One height, dt_s after the one before; outside 0.02 .. 0.5 s, or not primed, it has neither derivative nor integral. */
+/* One sample with a new height, dt_s after the previous one. When dt_s is outside 0.02 .. 0.5 s, or not
+ * primed, this sample has no derivative and is not integrated. Returns newtons per motor, within least_n
+ * .. most_n. */
 float pidt_step(pidt_state_t *state, const pidt_gains_t *gains, float reference_m, float height_m, float dt_s);
 
 #endif

@@ -1,5 +1,6 @@
-/* Whether the vehicle gets to its reference: a battery that is too weak, a load that is too heavy, limits that are too
- * narrow leave it off for ever, and nothing else would tell. Pure; the caller owns the state, all zero at first. */
+/* Detects a reference that the vehicle does not reach. With a weak battery, a heavy load or narrow limits
+ * it stays away for ever, and nothing else would report it. Pure; the caller owns the state, all zero at
+ * first. */
 #ifndef CONTROL_REACH_H
 #define CONTROL_REACH_H
 
@@ -7,17 +8,17 @@
 #include <stdint.h>
 
 typedef struct {
-    float nearest_mm;       /* so far, on that side */
+    float nearest_mm;       /* smallest distance so far, on the present side */
     bool above;
-    bool on;                /* under way to a reference */
-    uint32_t stuck_us;      /* since it came nearer last, stops at a minute */
+    bool on;                /* a reference is watched */
+    uint32_t stuck_us;      /* time since it last came nearer, at most one minute */
 } reach_t;
 
-/* With no reference, or another one: the beginning. */
+/* Restarts. Call it when there is no reference, and when the reference changes. */
 void reach_reset(reach_t *reach);
 
-/* One control cycle, step_us after the one before, that far above (or, negative, below) the reference. True: for 3 s it has been
- * over 0.1 m off on one side without coming 50 mm nearer. */
+/* One control cycle, step_us after the previous one. off_mm: height minus reference, > 0 is above. Returns
+ * true when the vehicle has been more than 0.1 m off on one side for 3 s and has not come 50 mm nearer. */
 bool reach_step(reach_t *reach, float off_mm, uint32_t step_us);
 
 #endif

@@ -1,5 +1,6 @@
-/* Thrust per motor and throttle pulse: seed document eq. 4-5, in microseconds. The autopilot's throttle is inverted: a
- * shorter pulse is more thrust. "Newton" is the seed's actuator unit, not a calibrated force. Pure; any context. */
+/* Thrust per motor and throttle pulse: seed document eq. 4-5, in microseconds. The autopilot's throttle is
+ * inverted: a shorter pulse is more thrust. "Newton" here is the seed's actuator unit, not a calibrated
+ * force. Pure; any context. */
 #ifndef CONTROL_THRUST_H
 #define CONTROL_THRUST_H
 
@@ -8,13 +9,14 @@
 #define THRUST_IDLE_PULSE_US (4166.0F * THRUST_STEP_US) /* no thrust, "2 ms" */
 #define THRUST_FULL_PULSE_US (2082.0F * THRUST_STEP_US) /* full thrust, "1 ms" */
 
-/* Pulse for a thrust, clipped to the two ends: (4166 - 177.21 T) counts of 0.48 us. NaN gives the idle pulse. */
+/* Pulse length for a thrust: (4166 - 177.21 T) counts of 0.48 us, clipped to the two ends. NaN gives the
+ * idle pulse. */
 float thrust_to_pulse_us(float thrust_n);
 
-/* Inverse of the above, clipped to 0 .. THRUST_MAX_N. NaN gives 0. */
+/* Inverse of thrust_to_pulse_us(), clipped to 0 .. THRUST_MAX_N. NaN gives 0. */
 float thrust_from_pulse_us(float pulse_us);
 
-/* Percent of the throttle's range, as the autopilot shows it, to newtons per motor. */
+/* Converts percent of the throttle's range, as the autopilot shows it, to newtons per motor. */
 float thrust_of_percent(float percent);
 
 #endif
