@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot campaign tune seed-study ground ground-vehicle ground-open test test-long mutants test-ground port size faults fuzz bench coverage firmware flash check-ti clean
+.PHONY: help build fly plot campaign tune seed-study ground ground-vehicle ground-open test test-long mutants test-ground port size faults fuzz prove bench coverage firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -120,6 +120,10 @@ faults: ## The scanner's driver under FRAMES=10000000 damaged frames, and faults
 fuzz: ## The scanner's parser under libFuzzer for SECONDS=60; what breaks it stays in build/fuzz/
 	@$(setup) build fuzz
 	@tests/fuzz/fuzz.sh build/fuzz $(or $(SECONDS),60)
+
+prove: ## No octet breaks the drivers: proofs by CBMC, minutes; docs/portability.md says what is proved (ARGS="razor")
+	@$(setup) prove
+	@python3 -B tests/prove/prove.py $(ARGS)
 
 bench: ## Instructions of each step of the firmware (callgrind) against tools/bench/baseline.csv
 	@$(setup) build bench

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# setup.sh build|test|port|size|coverage|bench|fuzz|plot|campaign|ground ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
+# setup.sh build|test|port|size|coverage|bench|fuzz|prove|plot|campaign|ground ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
 #
 #   build     C compiler, CMake
 #   test      Ruby and CMock, which generates the mocks; Python 3 for the checks of the house rules
@@ -8,6 +8,7 @@
 #   coverage  gcovr
 #   bench     valgrind
 #   fuzz      clang and its libFuzzer
+#   prove     CBMC and a C preprocessor; build/cbmc where Debian's suite has no CBMC
 #   plot      Python virtual environment build/venv with the pinned packages of tools/plot/requirements.txt
 #   campaign  the same, and in it those of tools/campaign/requirements.txt; for tuning too
 #   ground    clang, lld, wasi-libc and binaryen for the vehicle in the browser; wasmtime in build/venv; node and the pinned
@@ -75,6 +76,8 @@ wasm_packages() {
 
 node_ready() { has node && node -e 'process.exit(parseInt(process.versions.node) < 18 ? 1 : 0)' 2>/dev/null; }
 
+cbmc_ready() { has cbmc || [ -x "$root/build/cbmc/cbmc" ]; }
+
 # A clang that has libFuzzer.
 fuzzer_ready() {
     local clang
@@ -126,6 +129,10 @@ missing_packages() {
             has valgrind || echo valgrind ;;
         fuzz)
             fuzzer_ready || fuzzer_packages ;;
+        prove)
+            has python3 || echo python3
+            has gcc || echo gcc
+            cbmc_ready || ! known cbmc || echo cbmc ;;
         plot|campaign)
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
         ground)
@@ -137,7 +144,7 @@ missing_packages() {
             has chromium || echo chromium
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
         *)
-            say "unknown job '$1'; know build, test, port, size, coverage, bench, fuzz, plot, campaign, ground"
+            say "unknown job '$1'; know build, test, port, size, coverage, bench, fuzz, prove, plot, campaign, ground"
             exit 2 ;;
     esac
 }
@@ -227,11 +234,12 @@ add_modules() {
     cp "$root/ground/package-lock.json" "$root/ground/node_modules/.installed-lock.json"
 }
 
-[ $# -gt 0 ] || { say "usage: setup.sh build|test|port|size|coverage|bench|fuzz|plot|campaign|ground ..."; exit 2; }
+[ $# -gt 0 ] || { say "usage: setup.sh build|test|port|size|coverage|bench|fuzz|prove|plot|campaign|ground ..."; exit 2; }
 
 packages=()
 want_cmock=
 want_venv=
+want_cbmc=
 want_campaign=
 want_ground=
 want_modules=
@@ -240,6 +248,7 @@ for job in "$@"; do
     for package in $list; do packages+=("$package"); done
     case $job in
         test) cmock_ready || want_cmock=yes ;;
+        prove) cbmc_ready || known cbmc || want_cbmc=yes ;;
         plot) venv_ready || want_venv=yes ;;
         campaign)
             venv_ready || want_venv=yes
@@ -264,6 +273,7 @@ if [ ${#packages[@]} -gt 0 ] || [ -n "$want_cmock" ]; then
         dpkg-deb -x "$package" "$cmock_private"
     fi
 fi
+[ -z "$want_cbmc" ] || "$here/fetch_cbmc.sh" "$root/build/cbmc"
 [ -z "$want_venv" ] || make_venv
 [ -z "$want_campaign" ] || add_campaign
 [ -z "$want_ground" ] || add_ground
