@@ -57,11 +57,12 @@ const flight_transition_t flight_transitions[FLIGHT_TRANSITION_COUNT] = {
     {FLIGHT_CUT, FLIGHT_IF_AT_REST | FLIGHT_IF_LEVEL, 0U, FLIGHT_GROUND},
 };
 
-static const char *const state_names[FLIGHT_STATE_COUNT] = {
+static const char *const state_names[] = {
     [FLIGHT_GROUND] = "GROUND",     [FLIGHT_TAKEOFF] = "TAKEOFF",       [FLIGHT_FLYING] = "FLYING",
     [FLIGHT_FLOATING] = "FLOATING", [FLIGHT_COASTING] = "COASTING",     [FLIGHT_DESCENDING] = "DESCENDING",
     [FLIGHT_LANDING] = "LANDING",   [FLIGHT_LOWERING] = "LOWERING", [FLIGHT_CUT] = "CUT",
 };
+typedef char every_state_has_a_name[(sizeof state_names / sizeof state_names[0] == FLIGHT_STATE_COUNT) ? 1 : -1];
 
 const char *flight_state_name(flight_state_t state)
 {

@@ -4,16 +4,28 @@
 
 #include "control/thrust.h"
 
-static const char *const law_names[LAW_COUNT] = {"PD", "PID", "PIDT", "EST"};
-static const char *const release_names[RELEASE_COUNT] = {[RELEASE_FREE] = "FREE", [RELEASE_SCAN] = "SCAN"};
-static const char *const terrain_names[TERRAIN_COUNT] = {[TERRAIN_FOLLOW] = "FOLLOW", [TERRAIN_IGNORE] = "IGNORE"};
-static const char *const plant_names[PLANT_COUNT] = {[PLANT_THRUST] = "THRUST", [PLANT_CLIMB] = "CLIMB"};
-static const char *const sum_names[SUM_COUNT] = {[SUM_OFF] = "OFF", [SUM_ON] = "ON"};
-static const char *const sel_names[SEL_COUNT] = {[SEL_NONE] = "NONE", [SEL_PIN] = "PIN"};
+/* Compiles when the table is as long as its enumeration. */
+#define EACH_HAS_A_NAME(names, count) \
+    typedef char each_of_##names[(sizeof names / sizeof names[0] == (count)) ? 1 : -1]
 
-static const char *const axis_names[AXIS_COUNT] = {[AXIS_ROLL] = "ROLL", [AXIS_MINUS_ROLL] = "-ROLL",
-                                                   [AXIS_PITCH] = "PITCH", [AXIS_MINUS_PITCH] = "-PITCH"};
-static const char *const down_names[DOWN_COUNT] = {[DOWN_Z] = "Z", [DOWN_MINUS_Z] = "-Z"};
+static const char *const law_names[] = {"PD", "PID", "PIDT", "EST"};
+EACH_HAS_A_NAME(law_names, LAW_COUNT);
+static const char *const release_names[] = {[RELEASE_FREE] = "FREE", [RELEASE_SCAN] = "SCAN"};
+EACH_HAS_A_NAME(release_names, RELEASE_COUNT);
+static const char *const terrain_names[] = {[TERRAIN_FOLLOW] = "FOLLOW", [TERRAIN_IGNORE] = "IGNORE"};
+EACH_HAS_A_NAME(terrain_names, TERRAIN_COUNT);
+static const char *const plant_names[] = {[PLANT_THRUST] = "THRUST", [PLANT_CLIMB] = "CLIMB"};
+EACH_HAS_A_NAME(plant_names, PLANT_COUNT);
+static const char *const sum_names[] = {[SUM_OFF] = "OFF", [SUM_ON] = "ON"};
+EACH_HAS_A_NAME(sum_names, SUM_COUNT);
+static const char *const sel_names[] = {[SEL_NONE] = "NONE", [SEL_PIN] = "PIN"};
+EACH_HAS_A_NAME(sel_names, SEL_COUNT);
+
+static const char *const axis_names[] = {[AXIS_ROLL] = "ROLL", [AXIS_MINUS_ROLL] = "-ROLL",
+                                         [AXIS_PITCH] = "PITCH", [AXIS_MINUS_PITCH] = "-PITCH"};
+EACH_HAS_A_NAME(axis_names, AXIS_COUNT);
+static const char *const down_names[] = {[DOWN_Z] = "Z", [DOWN_MINUS_Z] = "-Z"};
+EACH_HAS_A_NAME(down_names, DOWN_COUNT);
 
 const parameter_row_t parameter_table[PARAMETER_COUNT] = {
     [PARAMETER_KP] = {"KP", "N/mm", 0.0F, 1.0F, 0.015F, NULL, "PD, PID: proportional gain."},

@@ -32,9 +32,10 @@ typedef struct {
     urg_action_t *action;
 } step_t;
 
-static const char *const status_names[URG_STATUS_COUNT] = {
+static const char *const status_names[] = {
     "WAIT", "STOP1", "SWITCH", "RATE", "STOP2", "STREAM", "OK", "LOST", "OLD",
 };
+typedef char every_status_has_a_name[(sizeof status_names / sizeof status_names[0] == URG_STATUS_COUNT) ? 1 : -1];
 
 #define PROBE_STREAM 0U     /* the probe begins with the configured rates */
 #define PROBE_FIRST 1U

@@ -6,7 +6,7 @@
 #include "firmware/schedule.h"
 #include "bsp/timebase.h"
 
-static const char *const names[MONITOR_TASKS] = {
+static const char *const names[] = {
     [MONITOR_IMU] = "TaskIMU",
     [MONITOR_RECEIVE_LASER] = "TaskReceiveLaser",
     [MONITOR_CONTROL] = "TaskControl",
@@ -14,8 +14,9 @@ static const char *const names[MONITOR_TASKS] = {
     [MONITOR_SEND_COMM] = "TaskSendComm",
     [MONITOR_RECEIVE_COMM] = "TaskReceiveComm",
 };
+typedef char every_task_has_a_name[(sizeof names / sizeof names[0] == MONITOR_TASKS) ? 1 : -1];
 
-static uint32_t deadlines_us[MONITOR_TASKS] = {
+static uint32_t deadlines_us[] = {
     [MONITOR_IMU] = TASK_IMU_DEADLINE_MS * 1000UL,
     [MONITOR_RECEIVE_LASER] = TASK_RECEIVE_LASER_DEADLINE_MS * 1000UL,
     [MONITOR_CONTROL] = TASK_CONTROL_DEADLINE_MS * 1000UL,
@@ -23,6 +24,7 @@ static uint32_t deadlines_us[MONITOR_TASKS] = {
     [MONITOR_SEND_COMM] = TASK_SEND_COMM_DEADLINE_MS * 1000UL,
     [MONITOR_RECEIVE_COMM] = TASK_RECEIVE_COMM_DEADLINE_MS * 1000UL,
 };
+typedef char every_task_has_a_deadline[(sizeof deadlines_us / sizeof deadlines_us[0] == MONITOR_TASKS) ? 1 : -1];
 
 typedef struct {
     Task_Handle handle;

@@ -20,7 +20,8 @@
 #define RUN_MAX 48
 #define LINE_MAX_OCTETS 4096
 
-static const char *const wire_words[BOARD_WIRES] = {"laser", "imu", "radio"};
+static const char *const wire_words[] = {"laser", "imu", "radio"};
+_Static_assert(sizeof wire_words / sizeof wire_words[0] == BOARD_WIRES, "every wire has a word");
 
 /* Recording ------------------------------------------------------------------------------------------------------ */
 

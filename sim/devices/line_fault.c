@@ -11,7 +11,8 @@
 #define STATUS_FIRST 21UL
 #define STATUS_LAST 98UL
 
-const char *const line_fault_names[LINE_FAULT_KIND_COUNT] = {"drop", "flip", "dup", "stray", "delay", "mute", "restart", "status"};
+const char *const line_fault_names[] = {"drop", "flip", "dup", "stray", "delay", "mute", "restart", "status"};
+_Static_assert(sizeof line_fault_names / sizeof line_fault_names[0] == LINE_FAULT_KIND_COUNT, "every fault has a name");
 
 const char line_fault_help[] =
     "  KIND@N          strikes octet N that the sensor sends, counted from 0\n"

@@ -21,7 +21,7 @@ typedef enum {
     LINE_FAULT_KIND_COUNT
 } line_fault_kind_t;
 
-extern const char *const line_fault_names[LINE_FAULT_KIND_COUNT];
+extern const char *const line_fault_names[]; /* LINE_FAULT_KIND_COUNT */
 
 typedef struct {
     line_fault_kind_t kind;

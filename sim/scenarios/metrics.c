@@ -19,7 +19,7 @@
 #define WRONG_M 0.3
 #define OVER_S 1.0
 
-const char *const metric_names[METRIC_COUNT] = {
+const char *const metric_names[] = {
     "rise_time_s", "overshoot_mm", "hover_rms_mm", "hover_mean_error_mm", "terrain_rms_mm",
     "recovery_s", "undershoot_mm", "ground_contacts", "thrust_std_n", "scans",
     "scans_rejected", "commands_ok", "commands_err", "max_error_mm", "highest_mm",
@@ -27,6 +27,7 @@ const char *const metric_names[METRIC_COUNT] = {
     "stopped_s", "deceived_s", "flagged_s", "again_rms_mm", "by_eye_rms_mm",
     "motor_stops", "motors_at_end",
 };
+_Static_assert(sizeof metric_names / sizeof metric_names[0] == METRIC_COUNT, "every metric has a name");
 
 static void add(metrics_moments_t *moments, double x)
 {

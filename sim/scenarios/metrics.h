@@ -54,7 +54,7 @@ typedef enum {
     METRIC_COUNT
 } metric_t;
 
-extern const char *const metric_names[METRIC_COUNT];
+extern const char *const metric_names[]; /* METRIC_COUNT */
 
 /* A metric that does not apply (never rose, no terrain) is NAN, and null in JSON. */
 typedef struct {

@@ -10,7 +10,8 @@
 #include "sim/host/port.h"
 #include "sim/host/websocket.h"
 
-const char *const wire_names[BOARD_WIRES] = {"laser", "imu", "xbee"};
+const char *const wire_names[] = {"laser", "imu", "xbee"};
+_Static_assert(sizeof wire_names / sizeof wire_names[0] == BOARD_WIRES, "every wire has a name");
 
 static const unsigned long nominal_rates[BOARD_WIRES] = {115200UL, 57600UL, 9600UL};
 

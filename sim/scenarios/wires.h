@@ -6,7 +6,7 @@
 #include "sim/board.h"
 
 /* The option that names each wire, without its dashes. */
-extern const char *const wire_names[BOARD_WIRES];
+extern const char *const wire_names[]; /* BOARD_WIRES */
 
 #define WIRES_PTY "pty"
 #define WIRES_WEBSOCKET "ws:"   /* and a port's number */

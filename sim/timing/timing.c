@@ -175,6 +175,7 @@ void timing_conclude(timing_t *timing)
 /* ---- report ---- */
 
 static const char *const kind_names[] = {"Hwi", "Swi", "Task"};
+_Static_assert(sizeof kind_names / sizeof kind_names[0] == KERNEL_TASK + 1, "every kind has a name");
 
 /* Hwis by number, Swis and tasks by falling priority. */
 static int by_precedence(const void *left, const void *right)

@@ -8,7 +8,8 @@
 #include "sim/scenarios/wires.h"
 #include "sim/wasm/missing.h"
 
-const char *const wire_names[BOARD_WIRES] = {"laser", "imu", "xbee"};
+const char *const wire_names[] = {"laser", "imu", "xbee"};
+_Static_assert(sizeof wire_names / sizeof wire_names[0] == BOARD_WIRES, "every wire has a name");
 
 const char *wires_open(const char *const device[BOARD_WIRES], board_wire_t *failed)
 {

@@ -23,7 +23,8 @@
 #define PLANT_DELAY_S 0.010
 
 static metrics_record_t record;
-static const char *const wires[BOARD_WIRES] = {"laser", "imu", "xbee"};
+static const char *const wires[] = {"laser", "imu", "xbee"};
+_Static_assert(sizeof wires / sizeof wires[0] == BOARD_WIRES, "every wire has a name");
 
 static void trouble(bench_flight_t *flight, const char *format, ...) __attribute__((format(printf, 2, 3)));
 static void trouble(bench_flight_t *flight, const char *format, ...)

@@ -57,9 +57,11 @@ typedef enum {
     PULSE_INVERTED, PULSE_LONG, PULSE_MISSING, NO_STORAGE, FORGETFUL, SLOW_CODE, NO_WATCHDOG, DEFECTS
 } defect_t;
 
-static const char *const wire_defects[WIRE_DEFECTS] = {"swapped", "gone", "late", "garbled"};
+static const char *const wire_defects[] = {"swapped", "gone", "late", "garbled"};
+_Static_assert(sizeof wire_defects / sizeof wire_defects[0] == WIRE_DEFECTS, "every defect of a wire has a name");
 static const char *const other_defects[] = {"wrong-rate", "pulse-inverted", "pulse-long", "pulse-missing", "no-storage",
                                             "forgetful",  "slow",           "no-watchdog"};
+_Static_assert(sizeof other_defects / sizeof other_defects[0] == DEFECTS - WRONG_RATE_DEFECT, "every other defect has a name");
 
 enum { OPT_LASER = 1, OPT_IMU, OPT_XBEE, OPT_STORAGE, OPT_PULSES, OPT_DURATION, OPT_SEED, OPT_DEFECT, OPT_HELP };
 

@@ -11,7 +11,8 @@
 
 #define PS_PER_NS 1e3
 
-static const char *const release_names[LATENCY_RELEASES] = {"FREE", "SCAN", "FRAME"};
+static const char *const release_names[] = {"FREE", "SCAN", "FRAME"};
+_Static_assert(sizeof release_names / sizeof release_names[0] == LATENCY_RELEASES, "every release has a name");
 
 static struct {
     costs_stretched_t costs;

@@ -6,7 +6,8 @@
 #define STREAM_ECHO 15U
 #define SINGLE_ECHO 12U
 
-static const char *const damage_names[SCIP_DAMAGE_COUNT] = {"", "sum", "length", "echo", "character", "sequence"};
+static const char *const damage_names[] = {"", "sum", "length", "echo", "character", "sequence"};
+_Static_assert(sizeof damage_names / sizeof damage_names[0] == SCIP_DAMAGE_COUNT, "every cause has a name");
 
 /* ---- echo lines ---- */
 

@@ -20,7 +20,8 @@ typedef struct {
     char text[CELL_SIZE];
 } cell_t;
 
-static const char *const kind_names[RTA_KINDS] = {"hwi", "swi", "task"};
+static const char *const kind_names[] = {"hwi", "swi", "task"};
+_Static_assert(sizeof kind_names / sizeof kind_names[0] == RTA_KINDS, "every kind has a name");
 
 /* ---- one cell into one field: NULL, or what is wrong ---- */
 
