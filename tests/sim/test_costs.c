@@ -52,7 +52,7 @@ void test_stretched_costs_are_rounded_to_the_nearest_ns(void)
 {
     static costs_stretched_t stretched;
     static const kernel_cost_t jobs[] = {{"a", -1, 10}, {"b", -1, 0}};
-    static const kernel_costs_t costs = {jobs, 2, 14, 15};
+    static const kernel_costs_t costs = {jobs, sizeof jobs / sizeof jobs[0], 14, 15};
     const kernel_costs_t *result = costs_stretch(&stretched, &costs, 0.1);
 
     TEST_ASSERT_EQUAL_INT64(1, result->jobs[0].job);

@@ -101,7 +101,7 @@ static const kernel_cost_t busy_jobs[] = {
     {"4", -1, 51 * SIM_US}, {"low", -1, 21 * SIM_US}, {"mid", -1, 13 * SIM_US}, {"high", -1, 7 * SIM_US},
     {NULL, 38, 4 * SIM_US}, {NULL, 92, 11 * SIM_US}, {NULL, 96, 25 * SIM_US}, {NULL, 99, 3 * SIM_US},
 };
-static const kernel_costs_t busy_costs = {busy_jobs, 12, 9 * SIM_US, 5 * SIM_US};
+static const kernel_costs_t busy_costs = {busy_jobs, sizeof busy_jobs / sizeof busy_jobs[0], 9 * SIM_US, 5 * SIM_US};
 
 static int busy_main(void)
 {

@@ -41,7 +41,8 @@ static const kernel_cost_t preemption_jobs[] = {
     {NULL, 96, 20 * SIM_US},
     {NULL, 97, 10 * SIM_US},
 };
-static const kernel_costs_t preemption_costs = {preemption_jobs, 6, 0, 57 * SIM_US};
+static const kernel_costs_t preemption_costs = {preemption_jobs, sizeof preemption_jobs / sizeof preemption_jobs[0], 0,
+                                                57 * SIM_US};
 
 static int preemption_main(void)
 {
@@ -121,7 +122,7 @@ static const kernel_cost_t response_jobs[] = {
     {"t", -1, 400 * SIM_US}, {"s", -1, 100 * SIM_US}, {NULL, 96, 10 * SIM_US}, {NULL, 97, 20 * SIM_US},
     {NULL, 98, 30 * SIM_US},
 };
-static const kernel_costs_t response_costs = {response_jobs, 5, 0, 0};
+static const kernel_costs_t response_costs = {response_jobs, sizeof response_jobs / sizeof response_jobs[0], 0, 0};
 
 static Void pends_semaphore(UArg a0, UArg a1)
 {
@@ -265,7 +266,7 @@ void test_a_flag_that_nobody_waited_for_releases_when_it_is_asked_for(void)
 static const kernel_cost_t label_jobs[] = {
     {"label", 96, 5 * SIM_US}, {"other label", 97, 5 * SIM_US}, {"label", -1, 100 * SIM_US}, {NULL, 98, 5 * SIM_US},
 };
-static const kernel_costs_t label_costs = {label_jobs, 4, 0, 0};
+static const kernel_costs_t label_costs = {label_jobs, sizeof label_jobs / sizeof label_jobs[0], 0, 0};
 
 static Void tick_function(UArg unused)
 {
@@ -323,7 +324,7 @@ void test_hwis_do_not_nest_and_latch_one_deep(void)
 static const kernel_cost_t swi_jobs[] = {
     {"low", -1, 400 * SIM_US}, {"high", -1, 100 * SIM_US}, {NULL, 96, 10 * SIM_US}, {NULL, 97, 10 * SIM_US},
 };
-static const kernel_costs_t swi_costs = {swi_jobs, 4, 0, 0};
+static const kernel_costs_t swi_costs = {swi_jobs, sizeof swi_jobs / sizeof swi_jobs[0], 0, 0};
 
 static Void post_swi_high(UArg unused)
 {
@@ -478,7 +479,7 @@ void test_every_enter_costs_its_access_also_a_nested_one(void)
 }
 
 static const kernel_cost_t wait_jobs[] = {{"t", -1, 200 * SIM_US}};
-static const kernel_costs_t wait_costs = {wait_jobs, 1, 0, 50 * SIM_US};
+static const kernel_costs_t wait_costs = {wait_jobs, sizeof wait_jobs / sizeof wait_jobs[0], 0, 50 * SIM_US};
 
 static Void waits_of_all_kinds(UArg a0, UArg a1)
 {
@@ -583,7 +584,7 @@ void test_a_delayed_clock_swi_makes_up_for_every_tick_in_order(void)
 }
 
 static const kernel_cost_t slice_jobs[] = {{"one", -1, 5000 * SIM_US}, {"two", -1, 5000 * SIM_US}};
-static const kernel_costs_t slice_costs = {slice_jobs, 2, 0, 0};
+static const kernel_costs_t slice_costs = {slice_jobs, sizeof slice_jobs / sizeof slice_jobs[0], 0, 0};
 
 static Void yield_in_swi(UArg unused)
 {

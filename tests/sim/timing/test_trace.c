@@ -127,7 +127,7 @@ static int schedule_main(void)
 }
 
 static const kernel_cost_t jobs[] = {{"RX", 96, 10 * SIM_US}, {"TX", 97, 5 * SIM_US}, {"Swi", -1, 20 * SIM_US}};
-static const kernel_costs_t costs = {jobs, 3, 100 * SIM_US, 50 * SIM_US};
+static const kernel_costs_t costs = {jobs, sizeof jobs / sizeof jobs[0], 100 * SIM_US, 50 * SIM_US};
 
 static void raise_interrupt(void *number)
 {
@@ -284,7 +284,8 @@ static const kernel_cost_t crowd_jobs[] = {
     {"RX", 96, 10 * SIM_US},     {"TX", 97, 5 * SIM_US},       {NULL, 98, 30 * SIM_US},      {"Clock", 38, 15 * SIM_US},
     {"Swi", -1, 100 * SIM_US},   {"bottom", -1, 200 * SIM_US}, {"middle", -1, 150 * SIM_US}, {"top", -1, 80 * SIM_US},
 };
-static const kernel_costs_t crowd_costs = {crowd_jobs, 8, 90 * SIM_US, 20 * SIM_US};
+static const kernel_costs_t crowd_costs = {crowd_jobs, sizeof crowd_jobs / sizeof crowd_jobs[0], 90 * SIM_US,
+                                           20 * SIM_US};
 
 void test_a_crowd_is_written_for_the_checker(void)
 {
