@@ -1,5 +1,5 @@
-/* One answer line under construction, of up to TELEMETRY_ANSWER_MAX characters: `OK ...` or `ERR NAME reason`.
- * TaskReceiveComm only. */
+/* Builds and sends one answer line: `OK ...` or `ERR NAME reason`, up to TELEMETRY_ANSWER_MAX characters.
+ * The verb's caller owns the answer_t. Context: Task, TaskReceiveComm only. */
 #ifndef FIRMWARE_ANSWER_H
 #define FIRMWARE_ANSWER_H
 
@@ -14,19 +14,20 @@ typedef struct {
     telemetry_line_t line;
 } answer_t;
 
-/* The command's argument is that word (upper case here, either case typed). */
+/* True when the command's argument is that word. `word` is in upper case; the operator may type either
+ * case. */
 bool answer_argument_is(const answer_t *answer, const char *word);
-/* Begins a line with `OK ` and the command's name. */
+/* Begins the line with `OK ` and the name of the command. */
 void answer_begin(answer_t *answer);
-/* Sends the line; instead of one that did not fit, `ERR NAME answer too long`. */
+/* Sends the line. If it did not fit, sends `ERR NAME answer too long` instead. */
 void answer_send(answer_t *answer);
-/* `ERR NAME reason`; returns false, so that a verb can return it. */
+/* Sends `ERR NAME reason`. Returns false, so a verb can return this call. */
 bool answer_refuse(answer_t *answer, const char *reason);
-/* `ERR NAME out of range ...` or `ERR NAME one of ...`; returns false. */
+/* Sends `ERR NAME out of range ...` or, for a choice, `ERR NAME one of ...`. Returns false. */
 bool answer_refuse_range(answer_t *answer, const parameter_row_t *row);
-/* " name:count" */
+/* Appends " name:count". */
 void answer_count(answer_t *answer, const char *name, uint32_t count);
-/* The limits of a row: "0..1 N/mm" or "PD|PID". */
+/* Appends the limits of a parameter: "0..1 N/mm" or "PD|PID". */
 void answer_limits(answer_t *answer, const parameter_row_t *row);
 
 #endif

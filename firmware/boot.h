@@ -1,4 +1,4 @@
-/* How the firmware came to run, and what it remembers of the time before. */
+/* Why the firmware was reset, and the data that it keeps over a reset. */
 #ifndef FIRMWARE_BOOT_H
 #define FIRMWARE_BOOT_H
 
@@ -6,18 +6,20 @@
 
 #include "control/attitude.h"
 
-/* After bsp_board_init(). main(), once. */
+/* Call once in main(), after bsp_board_init(). */
 void boot_init(void);
 
-/* "POWER" "PIN" "WATCHDOG" "NMI" "OTHER". */
+/* Cause of the reset: "POWER", "PIN", "WATCHDOG", "NMI" or "OTHER". Zero-terminated, static. Any context. */
 const char *boot_cause(void);
 
-/* A watchdog has reset the chip, so the vehicle may be in the air: sensors are up, and nothing may wait. */
+/* True when the watchdog has reset the chip. Then the vehicle may be in the air, the sensors already run,
+ * and nothing may wait. */
 bool boot_is_restart(void);
 
-/* The attitude's offset, kept over a restart. TaskIMU. */
+/* Stores the offset of the angles, so that it survives a restart. TaskIMU. */
 void boot_keep_offset(const attitude_t *offset);
-/* False, and *offset untouched, unless this is a restart and one was kept. */
+/* Reads the stored offset. Returns false, and does not write *offset, when this is not a restart or no
+ * offset was stored. TaskIMU. */
 bool boot_kept_offset(attitude_t *offset);
 
 #endif

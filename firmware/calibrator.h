@@ -1,4 +1,5 @@
-/* Hover calibration between TaskReceiveComm, which starts, stops and reports it, and TaskControl, which does it. */
+/* Hover calibration: the exchange between two tasks. TaskReceiveComm starts, stops and reports it.
+ * TaskControl performs it (control/calibration.h). */
 #ifndef FIRMWARE_CALIBRATOR_H
 #define FIRMWARE_CALIBRATOR_H
 
@@ -6,16 +7,19 @@
 
 #include "control/calibration.h"
 
-/* Limits as in calibration.h. Returns the sequence number of the request. TaskReceiveComm. */
+/* Starts a calibration. idle_percent: of the throttle's range. step_counts, period_s: limits as in
+ * calibration.h, checked by the caller. Returns the sequence number of the request. TaskReceiveComm. */
 uint16_t calibrator_start(float idle_percent, uint16_t step_counts, uint16_t period_s);
 
-/* Ends it with TaskControl's next cycle; nothing when none runs. TaskReceiveComm. */
+/* Stops the calibration in TaskControl's next cycle. Does nothing when none runs. TaskReceiveComm. */
 void calibrator_stop(void);
 
-/* How far it is, with the sequence number of the request that TaskControl has seen. TaskReceiveComm. */
+/* Copies the progress to *progress. progress->sequence is the latest request that TaskControl has
+ * processed. TaskReceiveComm. */
 void calibrator_look(calibration_t *progress);
 
-/* TaskControl, between flight_step() and the throttle. */
+/* Replaces thrust and pulse in *out while a calibration runs. link_s: parameter LINK in seconds, 0 = off.
+ * TaskControl, after flight_step() and before the throttle is written. */
 void calibrator_overlay(float link_s, const flight_inputs_t *in, flight_outputs_t *out);
 
 #endif

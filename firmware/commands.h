@@ -1,4 +1,4 @@
-/* One operator's line from its text to its effect and its answers. TaskReceiveComm only. */
+/* Executes one line of the operator: text in, effect and answers out. Context: Task, TaskReceiveComm only. */
 #ifndef FIRMWARE_COMMANDS_H
 #define FIRMWARE_COMMANDS_H
 
@@ -7,16 +7,18 @@
 
 #include "firmware/xbee_port.h"
 
-/* Parses, checks, applies (whole or not at all) and answers: `OK NAME value` or `ERR NAME reason`; a bare line only when
- * none was answered for a second. One that was overtaken by a stop starts nothing any more. */
+/* Parses, checks and executes the line, as a whole or not at all. Answers `OK NAME value` or `ERR NAME
+ * reason`. A line without '#' is answered at most once a second. A line that was overtaken by an urgent
+ * stop does not start anything. */
 void commands_execute(const xbee_message_t *message);
 
-/* Goes on with the answers that take long, until they are complete or a line can be taken: one that presses at once, any
- * other when no list is being sent and the radio has room for its answer. Blocks between lines. True: it had to wait for
+/* Continues a long answer until it is complete, or until a new line can be processed. An urgent line or a
+ * line without '#' can be processed at once; any other line only when no list is being sent and the radio
+ * has room for its answer. Blocks between the lines of the answer. Returns true when it had to wait for
  * the radio. */
 bool commands_continue(void);
 
-/* Tells the operator that `count` lines came faster than they could be queued. */
+/* Tells the operator that `count` lines were lost because the queue was full. */
 void commands_report_lost(uint16_t count);
 
 #endif

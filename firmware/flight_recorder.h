@@ -1,8 +1,9 @@
-/* The flight recorder: a ring of the control cycles in RAM, written by TaskControl, read by TaskReceiveComm.
+/* Flight recorder: a ring buffer of control cycles in RAM. TaskControl writes it; TaskReceiveComm reads
+ * it.
  *
- * Records while the state is not GROUND or there is thrust, and one cycle more, so that a flight stays there after its
- * landing until the next one needs the room. At most one record in 45 ms, so that the ring holds 72 s or more: 170 s at
- * 108 ms, 160 s at 100 ms. */
+ * It records while the state is not GROUND or the thrust is not 0, and one cycle more. So a flight stays
+ * in the buffer after the landing, until the next flight needs the room. It makes at most one record in 45
+ * ms, so the ring holds at least 72 s; at a period of 108 ms it holds 170 s, at 100 ms 160 s. */
 #ifndef FIRMWARE_FLIGHT_RECORDER_H
 #define FIRMWARE_FLIGHT_RECORDER_H
 
@@ -14,10 +15,11 @@
 
 #define FLIGHT_RECORDER_RECORDS 1600U   /* 16000 cells */
 
-/* One control cycle. TaskControl. */
+/* Records one control cycle if it is due. The arguments are borrowed for the call. TaskControl. */
 void flight_recorder_take(const flight_inputs_t *in, const flight_outputs_t *out);
 
-/* Records are numbered from 0 on since power-up: oldest <= number < next are there. TaskReceiveComm. */
+/* Records are numbered from 0 since power-up. Those with oldest <= number < next are available.
+ * TaskReceiveComm. */
 typedef struct {
     uint32_t oldest;
     uint32_t next;
@@ -25,13 +27,13 @@ typedef struct {
 
 flight_recorder_span_t flight_recorder_span(void);
 
-/* False when it is overwritten, or not there yet. TaskReceiveComm. */
+/* Copies one record. Returns false when it was overwritten or does not exist yet. TaskReceiveComm. */
 bool flight_recorder_read(uint32_t number, flight_log_t *record);
 
-/* The oldest of the records of the latest `seconds`, counted back from the newest one. TaskReceiveComm. */
+/* Number of the oldest record within the last `seconds` before the newest record. TaskReceiveComm. */
 uint32_t flight_recorder_since(uint16_t seconds);
 
-/* Forgets all records. TaskReceiveComm. */
+/* Deletes all records. TaskReceiveComm. */
 void flight_recorder_clear(void);
 
 #endif

@@ -1,16 +1,17 @@
-/* When nothing flies and nothing is about to: the time for what stalls or bypasses control. */
+/* Tests whether the vehicle is on the ground. Some commands delay or bypass the control, so they are
+ * allowed there only. Context: Task. */
 #ifndef FIRMWARE_GROUND_H
 #define FIRMWARE_GROUND_H
 
 #include <stdbool.h>
 
-/* In GROUND with no thrust, and no reference is set. Task. */
+/* True in state GROUND with no thrust and no reference. */
 bool ground_idle(void);
 
-/* On the ground with no reference, be it that the armed motors idle. Task. */
+/* True in state GROUND with no reference and with at most the idle thrust of armed motors. */
 bool ground_waits(void);
 
-/* In the air, as far as is known: a state other than GROUND and CUT. Task. */
+/* True when the vehicle is probably in the air: in any state except GROUND and CUT. */
 bool ground_left(void);
 
 #endif

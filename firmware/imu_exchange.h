@@ -1,4 +1,4 @@
-/* Between TaskIMU and TaskReceiveComm: how the IMU is mounted, and what came from it last. */
+/* Exchange between TaskIMU and TaskReceiveComm: the mounting of the IMU, and its latest frame. */
 #ifndef FIRMWARE_IMU_EXCHANGE_H
 #define FIRMWARE_IMU_EXCHANGE_H
 
@@ -10,19 +10,20 @@
 typedef struct {
     razor_text_t text;
     razor_status_t status;
-    imu_raw_t raw;          /* of the latest frame that was OK */
-    uint32_t frames;        /* OK so far */
-    uint32_t period_us;     /* between the latest two of them */
+    imu_raw_t raw;          /* latest frame with status OK */
+    uint32_t frames;        /* frames with status OK so far */
+    uint32_t period_us;     /* time between the latest two of them */
 } imu_view_t;
 
-/* TaskReceiveComm, main(): from the next frame on. */
+/* Sets the mounting from the parameters; valid from the next frame on. TaskReceiveComm or main(). */
 void imu_exchange_mount(const parameters_t *parameters);
-/* TaskIMU. */
+/* Copies the present mounting. TaskIMU. */
 void imu_exchange_mounted(imu_mapping_t *mapping);
 
-/* TaskIMU, each frame: raw is looked at when the status is OK. */
+/* Call for each frame. raw is read only when status is RAZOR_OK. arrival_us: arrival of its last octet.
+ * TaskIMU. */
 void imu_exchange_show(const razor_text_t *text, razor_status_t status, const imu_raw_t *raw, uint32_t arrival_us);
-/* TaskReceiveComm. */
+/* Copies the latest frame and the counters. TaskReceiveComm. */
 void imu_exchange_look(imu_view_t *view);
 
 #endif

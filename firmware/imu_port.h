@@ -1,4 +1,4 @@
-/* The IMU's UART: the receive Hwi gathers a frame, IMU_SWI hands its text to TaskIMU. */
+/* UART of the IMU. The receive Hwi collects the characters of a frame. IMU_SWI passes the text to TaskIMU. */
 #ifndef FIRMWARE_IMU_PORT_H
 #define FIRMWARE_IMU_PORT_H
 
@@ -8,13 +8,13 @@
 
 typedef struct {
     razor_text_t text;
-    uint32_t arrival_us;    /* last octet */
+    uint32_t arrival_us;    /* arrival of the last octet */
 } imu_message_t;
 
-/* main() only. Also asks the sensor to stream, should it have been told not to. */
+/* Creates the port. It also asks the sensor to stream, in case streaming was switched off. main() only. */
 void imu_port_create(void);
 
-/* Blocks TaskIMU until a frame is complete; copies it out. */
+/* Blocks until a frame is complete, then copies it to *message. TaskIMU only. */
 void imu_port_wait(imu_message_t *message);
 
 #endif

@@ -1,5 +1,6 @@
-/* The scanner's UART: the receive Hwi feeds the SCIP parser, Laser_SWI hands complete scans to TaskReceiveLaser. Replies
- * to commands need no task of their own: TaskSendLaser looks at the statistics at its next tick. */
+/* UART of the scanner. The receive Hwi feeds the SCIP parser. Laser_SWI passes complete scans to
+ * TaskReceiveLaser. Replies to commands do not wake a task: TaskSendLaser reads the statistics at its next
+ * period. */
 #ifndef FIRMWARE_LASER_PORT_H
 #define FIRMWARE_LASER_PORT_H
 
@@ -11,30 +12,31 @@
 #include "drivers/urg_link.h"
 
 typedef struct {
-    scip_scan_t scan;           /* its points are in distance_mm below */
+    scip_scan_t scan;           /* its points are in distance_mm */
     uint16_t distance_mm[SCIP_LAYOUT_POINTS_MAX];
-    uint32_t arrival_us;        /* last octet of that scan */
-    uint32_t bit_rate;          /* that it came at */
+    uint32_t arrival_us;        /* arrival of the last octet of that scan */
+    uint32_t bit_rate;          /* bits per second at which it was received */
 } laser_message_t;
 
-/* What has gone well and wrong since power-up. */
+/* Statistics since power-up. */
 typedef struct {
     urg_seen_t seen;
     scip_counters_t scip;
     scip_damage_t last_damage;
-    uint32_t overruns;          /* times that the UART lost octets */
+    uint32_t overruns;          /* how often the UART lost octets */
 } laser_statistics_t;
 
-/* Creates the port at `bit_rate`. main() only. */
+/* Creates the port. bit_rate in bits per second. main() only. */
 void laser_port_create(uint32_t bit_rate);
 
-/* Blocks TaskReceiveLaser until a scan is complete; copies the latest out. */
+/* Blocks until a scan is complete, then copies the latest scan to *message. TaskReceiveLaser only. */
 void laser_port_wait(laser_message_t *message);
 
-/* What the receiving side has seen up to now. Task. */
+/* Copies the present statistics. Any task. */
 void laser_port_statistics(laser_statistics_t *statistics);
 
-/* TaskSendLaser: the own UART's rate; a request whose reply is awaited from now on; and the request itself. */
+/* TaskSendLaser only. Sets the bit rate of the board's UART; awaits the reply to a request from now on;
+ * sends a request. The request is copied. */
 void laser_port_set_rate(uint32_t bit_rate);
 void laser_port_expect(const scip_request_t *request);
 void laser_port_send(const scip_request_t *request);

@@ -1,5 +1,6 @@
-/* What the firmware measures of itself: per task the longest response and the deadlines missed, per server the longest
- * wait. A response goes from what releases the task to the end of its job. Times in microseconds. */
+/* Run-time measurements. Per task: the longest response time and the missed deadlines. Per server: the
+ * longest wait. A response time lasts from the release of the task to the end of its job. Times are in
+ * microseconds. */
 #ifndef FIRMWARE_MONITOR_H
 #define FIRMWARE_MONITOR_H
 
@@ -27,29 +28,31 @@ typedef enum {
     MONITOR_SERVERS
 } monitor_server_t;
 
-/* The task, for its stack. main(). */
+/* Registers the task, to measure its stack. main(). */
 void monitor_watch(monitor_task_t task, Task_Handle handle);
 
-/* Released at that time. A release before the task's next monitor_begin() changes nothing. Any context, one per task. */
+/* The task was released at when_us. A second release before the task's next monitor_begin() changes
+ * nothing. Any context, but only one context per task. */
 void monitor_released(monitor_task_t task, uint32_t when_us);
-/* From now on that task has this deadline, from its release. By the task itself. */
+/* Sets the task's deadline, counted from its release. Call from the task itself. */
 void monitor_set_deadline(monitor_task_t task, uint32_t deadline_us);
-/* By the task itself: after its wait (without a release before it, the job counts from here); at the end of its job. */
+/* Call from the task itself: monitor_begin() after its wait, monitor_done() at the end of its job. Without
+ * a release before, the response time counts from monitor_begin(). */
 void monitor_begin(monitor_task_t task);
 void monitor_done(monitor_task_t task);
 
-/* A server was entered, asked for at that time. By the task that has just entered it. */
+/* The calling task has just entered the server's gate, after it asked for it at asked_us. Any task. */
 void monitor_entered(monitor_server_t server, uint32_t asked_us);
 
 typedef struct {
     const char *name;
     uint32_t longest_us;
-    uint32_t late;              /* deadlines missed */
-    uint32_t stack_used;        /* most ever, in the kernel's units: 16-bit cells on the chip */
+    uint32_t late;              /* missed deadlines */
+    uint32_t stack_used;        /* maximum so far, in the kernel's units: 16-bit cells on the chip */
     uint32_t stack_size;
 } monitor_report_t;
 
-/* Since power-up or monitor_reset(); the stack's mark since power-up. Task. */
+/* Values since power-up or monitor_reset(); the stack's maximum always since power-up. Any task. */
 void monitor_report(monitor_task_t task, monitor_report_t *report);
 uint32_t monitor_longest_wait_us(monitor_server_t server);
 void monitor_reset(void);

@@ -1,4 +1,5 @@
-/* How the scanner is used on this vehicle: the one line to change for another ray layout or sensor rate. */
+/* How the scanner is used on this vehicle: ray layout and bit rate. For another layout or bit rate change
+ * the line here. */
 #ifndef FIRMWARE_MOUNTING_H
 #define FIRMWARE_MOUNTING_H
 
@@ -6,11 +7,11 @@
 #include "drivers/scip_layout.h"
 
 #define LASER_LAYOUT SCIP_LAYOUT_FRONT
-#define LASER_FIRST_RATE 115200UL       /* the sensor's rate at power-up */
-#define LASER_STREAM_RATE 250000UL      /* the MAX3222's limit: none faster is tried */
-#define LASER_WAIT_US 10000000UL        /* sensor and RS232 adapter after power-up, seed document 5.2.1.3 */
+#define LASER_FIRST_RATE 115200UL       /* bits per second of the sensor after power-up */
+#define LASER_STREAM_RATE 250000UL      /* bits per second; the MAX3222's limit, no higher rate is tried */
+#define LASER_WAIT_US 10000000UL        /* start-up time of sensor and RS232 adapter, seed document 5.2.1.3 */
 
-/* The mirror behind each group of each layout. */
+/* The mirror of each group of rays, for each layout. */
 static const mirror_t laser_mirrors[][SCIP_GROUPS_MAX] = {
     {MIRROR_FRONT, MIRROR_FRONT, MIRROR_FRONT},
     {MIRROR_AFT, MIRROR_FORE, MIRROR_FRONT},

@@ -1,6 +1,7 @@
-/* The operator's parameters in the board's storage: two copies, of which the newer good one counts. A copy
- * is written over the other one and read back, so that one good copy is there whenever the power fails. main() or
- * TaskReceiveComm. docs/operator.md has what refuses a copy. */
+/* Operator's parameters in the board's non-volatile storage. There are two copies; the newer good one is
+ * valid. A save overwrites the other copy and reads it back. So one good copy exists even when the power
+ * fails during a save. docs/operator.md tells why a copy can be refused. Context: main() or
+ * TaskReceiveComm. */
 #ifndef FIRMWARE_PARAMETER_STORE_H
 #define FIRMWARE_PARAMETER_STORE_H
 
@@ -10,23 +11,24 @@
 
 typedef enum {
     PARAMETER_STORE_DONE,
-    PARAMETER_STORE_EMPTY,      /* nothing was ever stored */
-    PARAMETER_STORE_DAMAGED,    /* no copy is whole */
-    PARAMETER_STORE_FOREIGN,    /* the only whole copies are of a firmware with other parameters */
+    PARAMETER_STORE_EMPTY,      /* nothing was stored yet */
+    PARAMETER_STORE_DAMAGED,    /* no copy is complete */
+    PARAMETER_STORE_FOREIGN,    /* the only complete copies are of a firmware with other parameters */
     PARAMETER_STORE_RANGE,      /* a stored value is outside today's limits */
-    PARAMETER_STORE_FAULT       /* what was written does not read back; the copy before is untouched */
+    PARAMETER_STORE_FAULT       /* the written copy does not read back; the previous copy is unchanged */
 } parameter_store_status_t;
 
 typedef struct {
     parameter_store_status_t status;
-    uint32_t generation;        /* DONE, RANGE: of the copy; the first is 1 */
-    parameter_id_t parameter;   /* RANGE: the first that is refused */
+    uint32_t generation;        /* DONE, RANGE: number of the copy; the first is 1 */
+    parameter_id_t parameter;   /* RANGE: the first parameter that was refused */
 } parameter_store_result_t;
 
-/* Puts the stored values into *parameters, which already holds a set: all of them, or none unless DONE. */
+/* Loads the stored values into *parameters, which must already hold a valid set. Changes all values when
+ * the status is DONE, else none. */
 parameter_store_result_t parameter_store_load(parameters_t *parameters);
 
-/* Stores the values. Interrupts are off while the flash is busy (storage.h): on the ground only. */
+/* Saves the values. On the ground only: interrupts are disabled while the flash is busy (storage.h). */
 parameter_store_result_t parameter_store_save(const parameters_t *parameters);
 
 #endif

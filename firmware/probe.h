@@ -1,6 +1,6 @@
-/* A probe: the servers' latest values, for a debugger's watch window and for the PC board, whose log and metrics read them
- * between two events of the simulated processor. They are read without the gates: on the chip a value may be half
- * written while the processor runs. No task reads them. */
+/* Pointers to the latest values of the servers, for a debugger's watch window. The PC board's log and
+ * metrics read them too, between two events of the simulated processor. They are read without the gates,
+ * so on the chip a value may be half written while the processor runs. No task reads them. */
 #ifndef FIRMWARE_PROBE_H
 #define FIRMWARE_PROBE_H
 

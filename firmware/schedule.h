@@ -1,5 +1,5 @@
-/* Who runs when: priorities, periods and stacks of the six tasks and three Swis (seed document, Annex IV).
- * Periods in Clock ticks of 1 ms; stacks in 16-bit cells. */
+/* Priorities, periods, deadlines and stacks of the six tasks and three Swis (seed document, Annex IV). A
+ * larger number is a higher priority. Periods are in Clock ticks of 1 ms, stacks in 16-bit cells. */
 #ifndef FIRMWARE_SCHEDULE_H
 #define FIRMWARE_SCHEDULE_H
 
@@ -15,11 +15,11 @@
 #define XBEE_SWI_PRIORITY 1U
 
 #define CONTROL_PERIOD_MS 108U          /* release FREE */
-#define CONTROL_TIMEOUT_MS 150U         /* control runs at least this often, whatever the release */
+#define CONTROL_TIMEOUT_MS 150U         /* TaskControl runs at least this often, with any RELEASE */
 #define SEND_LASER_PERIOD_MS 150U
 #define SEND_COMM_PERIOD_MS 200U
 
-/* From the release; of a sporadic task its shortest distance. */
+/* Deadlines, counted from the release. For a sporadic task: its shortest distance between two releases. */
 #define TASK_IMU_DEADLINE_MS 25U
 #define TASK_RECEIVE_LASER_DEADLINE_MS 100U
 #define TASK_CONTROL_DEADLINE_MS 108U          /* release FREE */
@@ -29,7 +29,7 @@
 #define TASK_SEND_COMM_DEADLINE_MS 200U
 #define TASK_RECEIVE_COMM_DEADLINE_MS 300U
 
-#define TASK_STACK_CELLS 1024U      /* what each needs: docs/memory.md */
+#define TASK_STACK_CELLS 1024U      /* docs/memory.md tells how much each task needs */
 
 #if CONTROL_PERIOD_MS >= 65535U || CONTROL_TIMEOUT_MS >= 65535U
 #error "SYS/BIOS takes 65535 ticks for ever on a C28x"

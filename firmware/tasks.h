@@ -1,4 +1,5 @@
-/* The six tasks. Each xxx_create() makes a task and what releases it; main() only. */
+/* The six tasks. Each function xxx_create() creates a task and its releases (semaphore, event or clock).
+ * main() only. */
 #ifndef FIRMWARE_TASKS_H
 #define FIRMWARE_TASKS_H
 
@@ -11,7 +12,7 @@ void task_send_laser_create(const urg_config_t *config);
 void task_send_comm_create(void);
 void task_receive_comm_create(void);
 
-/* TaskControl's releases by a new altitude and by a new IMU frame; any task. */
+/* Release TaskControl: a new altitude has arrived; a new IMU frame has arrived. Any task. */
 void task_control_altitude_arrived(void);
 void task_control_imu_arrived(void);
 
