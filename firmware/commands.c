@@ -31,7 +31,7 @@ typedef struct {
 static void write_value(answer_t *answer, parameter_id_t id)
 {
     const parameter_row_t *row = &parameter_table[id];
-    parameters_t parameters;
+    static parameters_t parameters;
     float value;
 
     parameter_server_read(&parameters);
@@ -50,7 +50,7 @@ static void write_value(answer_t *answer, parameter_id_t id)
 /* A gain that the law in force has no use for is set all the same, but its answer says so. */
 static void report_set(answer_t *answer, parameter_id_t id)
 {
-    parameters_t parameters;
+    static parameters_t parameters;
     control_law_t law;
 
     parameter_server_read(&parameters);
@@ -128,7 +128,7 @@ static void set_arm(bool arm)
 
 static bool execute_arm(answer_t *answer)
 {
-    parameters_t parameters;
+    static parameters_t parameters;
 
     if (!ground_waits()) {
         return answer_refuse(answer, "not on the ground");
@@ -216,7 +216,7 @@ static bool execute_set(answer_t *answer, parameter_id_t id)
 {
     const telecommand_t *command = answer->command;
     const parameter_row_t *row = &parameter_table[id];
-    parameters_t parameters;
+    static parameters_t parameters;
     float before;
     float value = (float)parameter_find_choice(id, command->argument, command->argument_length);
 
