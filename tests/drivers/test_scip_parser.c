@@ -697,6 +697,22 @@ void test_a_counted_run_tells_the_remaining_scans(void)
     TEST_ASSERT_EQUAL_UINT32(0, damages());
 }
 
+void test_both_digits_of_the_remaining_scans_count(void)
+{
+    order_t many = counted;
+    many.count = 35;
+    expect_order(&many);
+    put_answer(&wire, &many, "00");
+    for (unsigned k = 0; k < 35; k++) {
+        put_numbered_frame(&wire, &many, k);
+        feed_range(&wire, 0, wire.length);
+        wire.length = 0;
+        TEST_ASSERT_EQUAL_UINT(k + 1U, seen.scans);
+        TEST_ASSERT_EQUAL_UINT16(34 - k, seen.remaining[k]);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, damages());
+}
+
 void test_an_answer_with_another_count_is_damaged(void)
 {
     expect_order(&counted);

@@ -181,6 +181,27 @@ void test_copies_of_other_parameters_are_refused_and_kept_as_long_as_there_is_ro
     assert_loads(3.0F, 3U);
 }
 
+/* Folded here once more: a set under an old name, or with a choice under another, must not be read as this one. */
+void test_a_copy_is_signed_with_the_names_of_all_parameters_and_choices(void)
+{
+    uint16_t cells[PARAMETER_IMAGE_CELLS_MAX];
+    parameter_image_t image;
+    uint32_t names = 0U;
+
+    for (uint16_t id = 0U; id < PARAMETER_COUNT; id++) {
+        const parameter_row_t *row = &parameter_table[id];
+
+        names = parameter_image_name(names, row->name);
+        for (uint16_t i = 0U; row->choices != NULL && i <= (uint16_t)row->maximum; i++) {
+            names = parameter_image_name(names, row->choices[i]);
+        }
+    }
+    TEST_ASSERT_EQUAL(PARAMETER_STORE_DONE, save(1.0F));
+    bsp_storage_read(0U, cells, PARAMETER_IMAGE_CELLS_MAX);
+    TEST_ASSERT_EQUAL(PARAMETER_IMAGE_GOOD, parameter_image_read(&image, cells));
+    TEST_ASSERT_EQUAL_HEX32(names, image.names);
+}
+
 void test_a_foreign_newer_copy_does_not_hide_our_older_one(void)
 {
     (void)save(1.0F);
