@@ -4,28 +4,24 @@
 
 #include "control/thrust.h"
 
-/* Compiles when the table is as long as its enumeration. */
-#define EACH_HAS_A_NAME(names, count) \
-    typedef char each_of_##names[(sizeof names / sizeof names[0] == (count)) ? 1 : -1]
-
 static const char *const law_names[] = {"PD", "PID", "PIDT", "EST"};
-EACH_HAS_A_NAME(law_names, LAW_COUNT);
+typedef char every_law_has_a_name[(sizeof law_names / sizeof law_names[0] == LAW_COUNT) ? 1 : -1];
 static const char *const release_names[] = {[RELEASE_FREE] = "FREE", [RELEASE_SCAN] = "SCAN"};
-EACH_HAS_A_NAME(release_names, RELEASE_COUNT);
+typedef char every_release_has_a_name[(sizeof release_names / sizeof release_names[0] == RELEASE_COUNT) ? 1 : -1];
 static const char *const terrain_names[] = {[TERRAIN_FOLLOW] = "FOLLOW", [TERRAIN_IGNORE] = "IGNORE"};
-EACH_HAS_A_NAME(terrain_names, TERRAIN_COUNT);
+typedef char every_terrain_has_a_name[(sizeof terrain_names / sizeof terrain_names[0] == TERRAIN_COUNT) ? 1 : -1];
 static const char *const plant_names[] = {[PLANT_THRUST] = "THRUST", [PLANT_CLIMB] = "CLIMB"};
-EACH_HAS_A_NAME(plant_names, PLANT_COUNT);
+typedef char every_plant_has_a_name[(sizeof plant_names / sizeof plant_names[0] == PLANT_COUNT) ? 1 : -1];
 static const char *const sum_names[] = {[SUM_OFF] = "OFF", [SUM_ON] = "ON"};
-EACH_HAS_A_NAME(sum_names, SUM_COUNT);
+typedef char every_sum_has_a_name[(sizeof sum_names / sizeof sum_names[0] == SUM_COUNT) ? 1 : -1];
 static const char *const sel_names[] = {[SEL_NONE] = "NONE", [SEL_PIN] = "PIN"};
-EACH_HAS_A_NAME(sel_names, SEL_COUNT);
+typedef char every_sel_has_a_name[(sizeof sel_names / sizeof sel_names[0] == SEL_COUNT) ? 1 : -1];
 
 static const char *const axis_names[] = {[AXIS_ROLL] = "ROLL", [AXIS_MINUS_ROLL] = "-ROLL",
                                          [AXIS_PITCH] = "PITCH", [AXIS_MINUS_PITCH] = "-PITCH"};
-EACH_HAS_A_NAME(axis_names, AXIS_COUNT);
+typedef char every_axis_has_a_name[(sizeof axis_names / sizeof axis_names[0] == AXIS_COUNT) ? 1 : -1];
 static const char *const down_names[] = {[DOWN_Z] = "Z", [DOWN_MINUS_Z] = "-Z"};
-EACH_HAS_A_NAME(down_names, DOWN_COUNT);
+typedef char every_down_has_a_name[(sizeof down_names / sizeof down_names[0] == DOWN_COUNT) ? 1 : -1];
 
 const parameter_row_t parameter_table[PARAMETER_COUNT] = {
     [PARAMETER_KP] = {"KP", "N/mm", 0.0F, 1.0F, 0.015F, NULL, "PD, PID: proportional gain."},
