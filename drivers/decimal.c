@@ -1,3 +1,10 @@
+/* Exact conversion between decimal text and 32-bit float. The reader keeps the number as a large integer in limbs of
+ * 16 bits and scales it by powers of ten; `more` tells that a division left a remainder. It rounds once, at the end,
+ * to 24 bits, ties to even (exact integer arithmetic as in Clinger, "How to Read Floating Point Numbers Accurately",
+ * 1990). The writer scales the mantissa by 5^decimals in 64 bits and also rounds once.
+ * What breaks: with products of floats the number is rounded several times, so a parameter that is written and read
+ * back can differ in its last bit. DIGITS_KEPT, ORDER_MIN and LIMBS belong together: 120 digits at 10^-37 are
+ * divided by ten 157 times and need 36 limbs. tests/drivers/test_decimal.c compares with the PC's strtof(). */
 #include "drivers/decimal.h"
 
 #include <math.h>
