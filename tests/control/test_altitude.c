@@ -196,6 +196,19 @@ void test_three_mirrors_give_one_height_under_tilt(void)
     TEST_ASSERT_EQUAL_UINT16(105, altitude.good_rays);
 }
 
+void test_the_mean_of_three_mirrors_can_be_tilted_anew(void)
+{
+    mirror_range_t ranges[3];
+    for (unsigned i = 0; i < 3; i++) {
+        ranges[i] = range_at(&places[i], 700.0, 0.1, -0.08);
+    }
+    const altitude_t as_it_was = altitude_from_ranges(&geometry, ranges, 3, 0.1F, -0.08F);
+    const altitude_t tilted = altitude_from_ranges(&geometry, ranges, 3, -0.12F, 0.05F);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, as_it_was.height_mm, altitude_at_tilt(&as_it_was, 0.1F, -0.08F));
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, tilted.height_mm, altitude_at_tilt(&as_it_was, -0.12F, 0.05F));
+    TEST_ASSERT_TRUE(fabsf(tilted.height_mm - as_it_was.height_mm) > 1.0F);
+}
+
 void test_only_valid_groups_count(void)
 {
     const mirror_range_t ranges[] = {
