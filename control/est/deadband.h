@@ -19,9 +19,9 @@ float deadband_compensate(const deadband_t *deadband, float neutral_n, float eff
  * command_n without the band's width, or neutral_n inside the band. */
 float deadband_effect(const deadband_t *deadband, float neutral_n, float command_n);
 
-/* One sample, dt_s > 0 after the one before. off_n: the effect that was commanded, relative to neutral.
- * missing_n: the part of it that did not show in the motion, with the sign of off_n. A positive share
- * widens the band. */
+/* One sample, dt_s > 0 after the one before. off_n: the effect that was commanded, relative to neutral_n.
+ * missing_n: the part of it that the motion did not show. With the sign of off_n it widens the band, with
+ * the other sign it makes the band narrower. */
 void deadband_learn(deadband_t *deadband, float off_n, float missing_n, float dt_s);
 
 #endif
