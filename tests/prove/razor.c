@@ -1,4 +1,5 @@
-/* As in telecommand.c: every step from any sound state to a sound one. The numbers are decimal.c's own proof. */
+/* As in telecommand.c: every step from any sound state to a sound one. decimal.c is replaced by
+ * any answer. */
 #include "drivers/razor.h"
 
 #include "drivers/decimal.h"
