@@ -184,13 +184,24 @@ static float measured_peak_mm(const supervisor_t *s)
     return peak_mm(s, s->height.height_mm, s->height.rate_mm_s, ahead_s);
 }
 
+/* Ground that was found by stillness: the heights may see past an edge, and go on doing so. */
+static void follow_ground(supervisor_t *s)
+{
+    if (s->height.is_new) {
+        s->ground_mm = s->ground_sought ? s->height.height_mm : fminf(s->ground_mm, s->height.height_mm);
+        s->ground_mm = fmaxf(s->ground_mm, 0.0F);
+        s->ground_sought = false;
+    }
+}
+
 static void observe_ground(supervisor_t *s)
 {
     const float height_mm = s->height.height_mm;
     const bool fresh = height_fresh(s);
     const bool resting = fresh && height_mm < REST_BELOW_MM && height_mm >= s->rest_from_mm - REST_FALL_MM;
 
-    update_hold(&s->aloft, fresh && height_mm > OFF_GROUND_MM, s->step_us);
+    follow_ground(s);
+    update_hold(&s->aloft, fresh && height_mm > s->ground_mm + OFF_GROUND_MM, s->step_us);
     update_hold(&s->rest, resting, s->step_us);
     s->rest_from_mm = resting ? s->rest_from_mm : height_mm;
 }
@@ -291,6 +302,8 @@ static void enter(supervisor_t *s, flight_state_t state)
     s->state = state;
     s->state_us = 0U;
     s->rest.on = false;
+    s->ground_sought = state == FLIGHT_GROUND && s->stands;
+    s->ground_mm = (s->ground_sought && height_fresh(s)) ? s->height.height_mm : 0.0F;
     if (state == FLIGHT_GROUND || state == FLIGHT_DESCENDING || state == FLIGHT_CUT || given_up) {
         s->reference_m = 0.0F;
         s->lowerings = 0U;
