@@ -33,6 +33,7 @@
 #define TAKEOFF_MPS 0.6F
 #define CLIMB_MARGIN_MPS 0.4F
 #define STOP_N_PER_S 2.0F
+#define ASK_N_PER_S 1.0F /* chosen: the fall to tell is there 2 s later, and is felt before it is fast */
 #define HOP_MAX_US UINT32_C(3000000)
 #define DISPLACED_M 0.25F
 #define FLOAT_REACH_M 0.30F
@@ -538,6 +539,22 @@ static float within_power_n(const flight_t *flight, float thrust_n)
                                        : fminf(thrust_n, held_n + POWERLESS_WINDOW_N);
 }
 
+/* A descent that may have ended gives less and less, until a fall is felt, and it was in the air, or is not, and it stands. */
+static float asking_n(flight_t *flight, float thrust_n)
+{
+    const bool by_estimate = flight->mode == FLIGHT_MODE_EST_SINK || flight->mode == FLIGHT_MODE_EST_LAND;
+    const bool feels = !integrity_doubts(&flight->integrity, DOUBT_IMU);
+    const bool descent = by_estimate || (flight->mode == FLIGHT_MODE_BLIND_DESCENT && feels);
+    const float step_n = ASK_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
+
+    if (!descent || !integrity_may_stand(&flight->integrity)) {
+        flight->asking_n = THRUST_MAX_N;
+    } else {
+        flight->asking_n = fmaxf(fminf(flight->asking_n, flight->thrust_n) - step_n, 0.0F);
+    }
+    return fminf(thrust_n, flight->asking_n);
+}
+
 /* Judged where the law acts: what the supervisor does by itself goes elsewhere. */
 static void judge_reach(flight_t *flight)
 {
@@ -613,7 +630,8 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
         flight->transfer_n = 0.0F;
     }
     bumpless_transfer(flight, before, law_changed || action_changed);
-    flight->thrust_n = between(flight->idle_n, within_power_n(flight, within_climb_n(flight, parameters, flight->setpoint_n + flight->transfer_n)), THRUST_MAX_N);
+    const float wanted_n = within_climb_n(flight, parameters, flight->setpoint_n + flight->transfer_n);
+    flight->thrust_n = between(flight->idle_n, asking_n(flight, within_power_n(flight, wanted_n)), THRUST_MAX_N);
     est_law_record_command(&flight->est, flight->thrust_n);
     judge_reach(flight);
     write_outputs(flight, parameters, out);

@@ -40,6 +40,7 @@ typedef struct {
     bool scan_fit;
     uint16_t doubts;                /* DOUBT_* of the previous cycle */
     bool hopping;                   /* TAKEOFF ended and the vehicle had not left the ground */
+    float asking_n;                 /* most thrust of a descent that asks whether it stands */
     float floating_m;               /* height that FLOATING holds */
     flight_mode_t mode;
     pid_state_t pid;

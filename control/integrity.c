@@ -59,11 +59,16 @@
 #define STEPS_TIME_S 2.0F
 #define STEPS_MAX 12.0F
 
-/* Standing: the thrust tells a fall that nobody feels. 0.7 degrees, both angles together: in the air it sways more. */
+/* Standing: the thrust tells a fall that nobody feels. 0.9 degrees, both angles together: in the air it sways more. */
 #define FALL_MPS 0.8F
 #define STANDS_S 0.6F
 #define SWAY_TIME_S 1.5F
-#define SWAY_RAD2 1.5e-4F
+#define SWAY_RAD2 2.5e-4F
+#define STILL_S 1.0F /* chosen: two thirds of SWAY_TIME_S */
+#define STILL_TIME_S 2.0F /* chosen: an offset of 0.15 m/s2 makes 0.3 m/s of it */
+#define FELL_MPS 0.4F /* chosen: half of the fall that is asked for */
+#define FALL_STILL_MPS 0.5F /* chosen: above that half */
+#define UNHEARD_S 0.5F /* without heights the estimate's offset of the accelerometer follows what the thrust should do */
 #define SWAY_AIR_RAD2 4.0e-4F
 
 /* Verdicts. */
@@ -262,10 +267,31 @@ static void watch_sway(integrity_t *i, const imu_sample_t *frame, float dt_s)
     i->sway_rad2 += share * (roll_rad * roll_rad + pitch_rad * pitch_rad - i->sway_rad2);
 }
 
+/* Of the two speeds only what is new counts, as the felt one may be wrong from before, and drift. */
+static void watch_still(integrity_t *i, float dt_s)
+{
+    const bool fell = i->felt.speed_mps < i->still_mps[0] - FELL_MPS;
+
+    if (i->sway_rad2 >= SWAY_RAD2 || fell || i->still_s == 0.0F) {
+        i->still_mps[0] = i->felt.speed_mps;
+        i->still_mps[1] = i->pushed.speed_mps;
+        i->still_s = 0.0F;
+    }
+    const float share = fminf(dt_s / STILL_TIME_S, 1.0F);
+    i->still_mps[0] += share * (i->felt.speed_mps - i->still_mps[0]);
+    i->still_mps[1] += share * (i->pushed.speed_mps - i->still_mps[1]);
+    i->still_s = (i->sway_rad2 < SWAY_RAD2) ? i->still_s + dt_s : 0.0F;
+}
+
 static void watch_fall(integrity_t *i, float dt_s)
 {
-    const bool falls = counts(&i->pushed) && counts(&i->felt)
-                    && i->pushed.speed_mps < i->felt.speed_mps - FALL_MPS && i->pushed.speed_mps < -FALL_MPS;
+    watch_still(i, dt_s);
+    const float felt_mps = i->felt.speed_mps - i->still_mps[0];
+    const float pushed_mps = i->pushed.speed_mps - i->still_mps[1];
+    const bool apart = i->pushed.speed_mps < i->felt.speed_mps - FALL_MPS
+                    || (i->still_s > STILL_S && pushed_mps < felt_mps - FALL_STILL_MPS);
+    const bool falls = counts(&i->pushed) && counts(&i->felt) && apart && i->pushed.speed_mps < -FALL_MPS;
+
     i->stands_s = (falls && i->sway_rad2 < SWAY_RAD2) ? i->stands_s + dt_s : 0.0F;
 }
 
@@ -289,7 +315,9 @@ static void feel(integrity_t *i, const flown_t *flown, const imu_sample_t *frame
     } else {
         i->rested_s = 0.0F;
         watch_fall(i, dt_s);
-        i->bias_mps2 += dt_s / BIAS_TIME_S * (flown->bias_mps2 - i->bias_mps2);
+        if (i->unheard_s < UNHEARD_S) {
+            i->bias_mps2 += dt_s / BIAS_TIME_S * (flown->bias_mps2 - i->bias_mps2);
+        }
         move(&i->felt, 0.5F * (before_mps2 + i->up_mps2) - i->bias_mps2, dt_s);
         if (flown->standing) {
             i->felt.speed_mps *= 1.0F - dt_s / STANDING_TIME_S;
@@ -322,6 +350,7 @@ void integrity_thrust(integrity_t *integrity, const flown_t *flown)
     }
     const float shaken = fmaxf(flown->noise_mps2 / SHAKEN_MPS2, 1.0F);
     integrity->shaken = shaken * sqrtf(shaken);
+    integrity->unheard_s = fminf(integrity->unheard_s + dt_s, OLD_S);
     integrity->standing = flown->grounded || flown->standing;
     integrity->lagged_n += dt_s / (LAG_S + dt_s) * (flown->thrust_n - integrity->lagged_n);
     if (!flown->off_ground) {
@@ -546,6 +575,7 @@ static void judge(integrity_t *i, const flown_t *flown, float gap_s)
 void integrity_height(integrity_t *integrity, const flown_t *flown, float height_m, float gap_s, float age_s)
 {
     hear(integrity, height_m, gap_s, age_s);
+    integrity->unheard_s = integrity_doubts(integrity, DOUBT_SIGHT) ? integrity->unheard_s : 0.0F;
     integrity->felt_least_m = integrity->unconfirmed ? fminf(integrity->felt_least_m, felt_off_m(integrity)) : 0.0F;
     integrity->vain_s = (pushes_in_vain(integrity, flown, PUSH_N) && fabsf(integrity->rise_mps) < VAIN_MPS
                          && fabsf(flown->wanted_m) > VAIN_M) ? integrity->vain_s + gap_s : 0.0F;
@@ -571,6 +601,11 @@ bool integrity_unconfirmed(const integrity_t *integrity)
 bool integrity_sways(const integrity_t *integrity)
 {
     return integrity->sway_rad2 > SWAY_AIR_RAD2;
+}
+
+bool integrity_may_stand(const integrity_t *integrity)
+{
+    return integrity->still_s > STILL_S;
 }
 
 bool integrity_stands(const integrity_t *integrity)

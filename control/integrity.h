@@ -100,6 +100,9 @@ typedef struct {
     float mean_rad[2];              /* slow, of roll and pitch */
     float sway_rad2;                /* slow mean square of what roll and pitch differ from it */
     float stands_s;
+    float still_s;                  /* for how long the tilt has been stiller than in the air; no fall was felt meanwhile */
+    float still_mps[2];             /* speeds felt and foretold by the thrust, slow, from when that began */
+    float unheard_s;                /* since the latest height that is not in doubt, at most WITNESS_OLD_S */
 } integrity_t;
 
 void integrity_init(integrity_t *integrity);
@@ -128,6 +131,9 @@ bool integrity_unconfirmed(const integrity_t *integrity);
 
 /* The tilt moves as it does in the air. */
 bool integrity_sways(const integrity_t *integrity);
+
+/* It may stand: so still is nothing in the air. Less thrust would tell. */
+bool integrity_may_stand(const integrity_t *integrity);
 
 /* It gives too little thrust to fly, and does not fall: something carries it. */
 bool integrity_stands(const integrity_t *integrity);

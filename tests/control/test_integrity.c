@@ -403,6 +403,43 @@ void test_it_stands_where_little_thrust_does_not_make_it_fall(void)
     TEST_ASSERT_FALSE(integrity_sways(&it));
 }
 
+void test_a_speed_felt_wrongly_from_before_does_not_hide_that_it_stands(void)
+{
+    fly();
+    world.steady = true;
+    flown.wanted_m = NAN;
+    world.powerless = true;
+    world.felt_lie_mps2 = -0.8F; /* what a touch that was not felt leaves */
+    world.frozen_height = true;
+    run(1.0F);
+    world.felt_lie_mps2 = 0.0F;
+    it.doubts = DOUBT_SIGHT;
+    run(5.0F);
+    TEST_ASSERT_TRUE(it.felt.speed_mps < -0.4F);
+    TEST_ASSERT_TRUE(integrity_may_stand(&it));
+    flown.thrust_n = 0.9F * HOVER_N;
+    run(1.0F);
+    TEST_ASSERT_FALSE(integrity_stands(&it));
+    flown.thrust_n = 0.6F * HOVER_N;
+    run(2.5F);
+    TEST_ASSERT_TRUE(integrity_stands(&it));
+}
+
+void test_a_still_vehicle_may_stand_until_it_feels_a_fall(void)
+{
+    fly();
+    world.steady = true;
+    flown.wanted_m = NAN;
+    run(0.5F);
+    TEST_ASSERT_FALSE(integrity_may_stand(&it));
+    run(9.5F);
+    TEST_ASSERT_TRUE(integrity_may_stand(&it));
+    flown.thrust_n = 0.8F * HOVER_N;
+    run(1.0F);
+    TEST_ASSERT_FALSE(integrity_may_stand(&it));
+    TEST_ASSERT_FALSE(integrity_stands(&it));
+}
+
 void test_it_does_not_stand_while_it_falls_or_sways(void)
 {
     fly();

@@ -313,6 +313,34 @@ void test_a_throttle_that_was_never_the_pilots_is_not_handed_over(void)
     state_is(FLIGHT_GROUND);
 }
 
+void test_a_beam_past_an_edge_does_not_lift_a_vehicle_that_stands(void)
+{
+    land();
+    estimate.stands = true;
+    watch(700.0F, 1);
+    state_is(FLIGHT_GROUND);
+    watch(700.0F, 40);
+    watch(840.0F, 40);
+    state_is(FLIGHT_GROUND);
+    watch(860.0F, 12); /* somebody flies it */
+    state_is(FLIGHT_FLOATING);
+}
+
+void test_the_first_height_after_a_blind_descent_is_the_ground_and_so_is_any_lower_one(void)
+{
+    descend();
+    estimate.stands = true;
+    blind(100);
+    state_is(FLIGHT_GROUND);
+    watch(500.0F, 20);
+    state_is(FLIGHT_GROUND);
+    watch(10.0F, 3);
+    watch(151.0F, 20);
+    state_is(FLIGHT_GROUND);
+    watch(170.0F, 12);
+    state_is(FLIGHT_FLOATING);
+}
+
 void test_a_descent_and_a_landing_end_where_the_vehicle_stands_and_a_flight_does_not(void)
 {
     descend();
