@@ -94,7 +94,7 @@ static cascade_vehicle_t vehicle_model(const est_law_t *law, const parameters_t 
     return vehicle;
 }
 
-/* On the ground the acceleration tells nothing but that the hover thrust is not less than the present one. */
+/* On the ground the acceleration shows only that the hover thrust is at least the present thrust. */
 static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt_s)
 {
     const estimator_t *e = &law->estimator;
@@ -273,7 +273,7 @@ void est_law_disengage(est_law_t *law)
     law->ramping = false;
 }
 
-/* Estimate and thrust at the instant when a command given now takes effect. */
+/* Estimate and thrust, predicted to the instant when a command given now takes effect. */
 static cascade_state_t predict_ahead(const est_law_t *law, const cascade_vehicle_t *vehicle)
 {
     const estimate_t *now = &law->estimator.now;
@@ -292,7 +292,8 @@ static cascade_state_t predict_ahead(const est_law_t *law, const cascade_vehicle
     };
 }
 
-/* Thrust grows until the vehicle leaves the ground: what carries it is then known. */
+/* The thrust grows until the vehicle leaves the ground. The thrust at that moment is the first hover
+ * thrust. */
 static bool take_off(est_law_t *law, const parameters_t *parameters)
 {
     const float gravity_n = parameters->value[PARAMETER_GRAV];
@@ -331,8 +332,9 @@ static void update_timers(est_law_t *law, est_mode_t mode, float height_m)
     law->near_ground_s = landing ? touchdown_time_s(law->near_ground_s, height_m, law->step_s) : 0.0F;
 }
 
-/* More and more certainly down, from the hover thrust that was sure when the descent began: nothing that is learned on the
- * way, and no turn from one kind of descent to the other, raises it again. */
+/* Upper limit of the thrust in a descent. It starts from the hover thrust that was sure when the descent
+ * began, and it only falls. Neither learning during the descent nor a change of the kind of descent raises
+ * it again. */
 static void lower_ceiling(est_law_t *law, est_mode_t mode)
 {
     const bool sinks = mode == EST_MODE_SINK;
@@ -353,7 +355,8 @@ static float thrust_most_n(const est_law_t *law, est_mode_t mode)
     return (mode == EST_MODE_LAND) ? fminf(law->ceiling_n, low_n) : law->ceiling_n;
 }
 
-/* Without heights a speed that is wrong must not drop the vehicle. */
+/* Without heights the estimated speed may be wrong. It must not cut the thrust so far that the vehicle
+ * falls. */
 static float thrust_least_n(const est_law_t *law, est_mode_t mode)
 {
     return (mode == EST_MODE_SINK) ? fmaxf(law->entry_hover_n - SINK_BELOW_HOVER_N, 0.0F) : 0.0F;

@@ -67,7 +67,7 @@ static bool before(uint32_t a_us, uint32_t b_us)
     return (int32_t)(a_us - b_us) < 0;
 }
 
-/* Forgets what was known of one state and of its ties to the others. */
+/* Gives one state a new variance and removes its covariances with the other states. */
 static void reset_variance(estimator_t *e, uint16_t state, float variance)
 {
     for (uint16_t i = 0U; i < ESTIMATOR_STATES; ++i) {
@@ -167,7 +167,7 @@ static void drop_oldest_frame(estimator_t *e)
     }
 }
 
-/* Takes the filter through the frames up to an instant. */
+/* Predicts the filter through the kept frames up to an instant. */
 static void predict_through(estimator_t *e, uint32_t to_us)
 {
     while (e->frame_count > 0U && !before(to_us, e->frames[0].time_us)) {
@@ -241,7 +241,8 @@ static void append_frame(estimator_t *e, const estimator_frame_t *frame)
     }
 }
 
-/* An accelerometer that is far from what the thrust makes of the motion, and stays there, counts less until it is judged. */
+/* Weight of the accelerometer, 0 .. 1. It falls when the low-passed difference between the accelerometer
+ * and the modelled acceleration stays large, until doubt IMU decides. */
 static float credit(estimator_t *e, const modelled_motion_t *model, float up_mps2)
 {
     const float off_mps2 = model->known ? up_mps2 - e->now.bias_mps2 - model->up_mps2 : 0.0F;
@@ -350,8 +351,8 @@ static void reset_to_height(estimator_t *e, float height_m)
     e->unchecked_count = UNCHECKED_AFTER_RESET;
 }
 
-/* The second difference of white noise has six times its variance. Innovations would tell the noise of the accelerometer, too:
- * this is of the heights alone. */
+/* The second difference of white noise has six times its variance. This measures the noise of the heights
+ * alone; innovations would also contain the noise of the accelerometer. */
 static void measure_floor(estimator_t *e, float height_m)
 {
     const float difference_m = height_m - 2.0F * e->previous_m[0] + e->previous_m[1];
@@ -363,7 +364,8 @@ static void measure_floor(estimator_t *e, float height_m)
     e->previous_m[0] = height_m;
 }
 
-/* How uneven the floor is, beyond what a step and a climb look like. */
+/* Variance of a height: noise of the sensor plus roughness of the floor, without what a step or a climb
+ * adds. */
 static float height_variance_m2(const estimator_t *e)
 {
     const float rough_m2 = fmaxf(e->floor_m * e->floor_m - FLOOR_SMOOTH_M * FLOOR_SMOOTH_M, 0.0F);
@@ -412,7 +414,7 @@ static height_outcome_t check_and_fuse(estimator_t *e, float height_m)
     return HEIGHT_FUSED;
 }
 
-/* The median of five frames shows the angles of 50 ms before. */
+/* The median of five frames is the angle of 50 ms ago. */
 static float height_at_rays_m(const estimator_t *e, const altitude_t *altitude, uint32_t rays_us)
 {
     const uint32_t shown_us = rays_us + TILT_AGE_US - (uint32_t)(0.5e6F * FRAME_S);

@@ -2,10 +2,10 @@
  * events, chooses the job with the highest priority, lets its cost elapse (other jobs can preempt it
  * meanwhile), and then runs its code in no virtual time. Tasks and Swis run on fibers; Hwis run on the
  * loop's own stack. The rules are those of SYS/BIOS on a C28x; kernel.h states them.
- * What breaks: every simulated flight and every response time depends on the order of these steps. An event that is due now
- * must run before a job is chosen. A job that is preempted must keep its remaining cost. Only the kernel's
- * calls may give up the processor: otherwise a task could be interrupted at an instant that is not
- * repeatable. */
+ * What breaks: every simulated flight and every response time depends on the order of these steps. An event
+ * that is due now must run before a job is chosen. A preempted job must keep its remaining cost. Only
+ * the kernel's calls may give up the processor: otherwise a task could be interrupted at an instant that is
+ * not repeatable. */
 #include "sim/ti/sysbios/kernel.h"
 
 #include <stdarg.h>
