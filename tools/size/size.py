@@ -61,8 +61,8 @@ def product():
 def to_cells(out):
     """Copies of the product's files, converted; the tree is as in the repository."""
     for room in house.PRODUCT:
-        for file in (ROOT / room).glob("*.[ch]"):
-            target = out / room / file.name
+        for file in (ROOT / room).rglob("*.[ch]"):
+            target = out / file.relative_to(ROOT)
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_text(cells.convert(file.read_text(encoding="utf-8"), file), encoding="utf-8")
 
