@@ -23,14 +23,14 @@
 
 #define HEIGHT_NOISE_M 0.0013F /* fitted */
 #define OFF_MODEL_SHARE 0.4F
-#define OFF_MODEL_MPS2 2.0F
+#define OFF_MODEL_MPS2 1.2F
 #define FLOOR_START_M 0.004F
 #define FLOOR_SMOOTH_M 0.020F /* what edges and the vehicle's own motion make of the measure */
 #define FLOOR_MAX_M 0.080F
-#define FLOOR_SHARE 0.08F
+#define FLOOR_SHARE 0.20F /* tried: a take-off over bars of 60 mm is through before a slower one knows of them */
 #define FLOOR_CLIP 9.0F
-#define FLOOR_SIGMAS 2.5F
-#define FLOOR_VARIANCE 1.0F
+#define FLOOR_SIGMAS 4.5F /* tried: both edges of a bar are within */
+#define FLOOR_VARIANCE 4.0F /* tried: the heights of a bar follow each other, white noise does not */
 #define HEIGHT_DRIFT_M 0.0047F /* fitted; m per root second */
 #define SPEED_NOISE_MPS2 0.53F /* fitted; what neither accelerometer nor model knows */
 #define FRAME_S 0.025F /* period of the IMU, seed 5.2.1.1 */

@@ -63,6 +63,17 @@ void test_a_sight_that_lies_does_not_fly_the_vehicle_away(void)
     }
 }
 
+static const lie_t floors[] = {
+    {{FLAT, "plant.bars_mm=60", "plant.bars_period=0.4"}, 500.0, 0.5, 65.0},
+};
+
+void test_bars_on_the_floor_are_flown_over(void)
+{
+    for (size_t i = 0; i < sizeof floors / sizeof floors[0]; i++) {
+        fly("est-60cm-ramp", &floors[i], true);
+    }
+}
+
 static const lie_t imus[] = {
     {{FLAT, "plant.acc_bias=-2.5"}, 300.0, 0.6, 60.0},
     {{FLAT, "plant.acc_bias=2.5"}, 300.0, 0.6, 60.0},
