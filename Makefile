@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot campaign tune seed-study ground ground-vehicle ground-open test test-long mutants test-ground port size faults fuzz prove bench coverage firmware flash check-ti clean
+.PHONY: help build fly plot campaign tune seed-study ground ground-vehicle ground-open test test-long format mutants test-ground port size faults fuzz prove bench coverage firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -99,6 +99,10 @@ test-long: ## The long ones: sweeps of many flights, campaigns, tuning, fuzzing
 mutants: ## Do the unit tests notice small faults? ARGS="--room control --sample 300 --seed 1"; survivors as a diff
 	@$(setup) build test
 	@python3 -B tools/mutants/mutants.py $(ARGS)
+
+format: ## Every .c and .h file as .clang-format says; the test rule_format only looks
+	@$(setup) test
+	@python3 -B tests/rules/format.py --write
 
 port: ## The unit tests of drivers/ and control/ also with 16-bit octets, 16-bit int and CHAR_BIT 16 (simulated)
 	@$(setup) build test port

@@ -19,6 +19,11 @@ class Setup(unittest.TestCase):
         self.project = self.dir / "project"
         shutil.copytree(ROOT / "tools/setup", self.project / "tools/setup")
         shutil.copytree(ROOT / "tools/plot", self.project / "tools/plot")
+        shutil.copytree(ROOT / "tools/format", self.project / "tools/format")
+        ready = self.project / "build/format"
+        (ready / "bin").mkdir(parents=True)
+        (ready / "bin/clang-format").touch(0o755)
+        shutil.copy(ROOT / "tools/format/requirements.txt", ready)
         cmock = self.dir / "cmock"
         for file in ("lib/cmock.rb", "vendor/unity/src/unity.c"):
             (cmock / file).parent.mkdir(parents=True)

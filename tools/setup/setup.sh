@@ -2,7 +2,8 @@
 # setup.sh build|test|port|size|coverage|bench|fuzz|prove|plot|campaign|ground ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
 #
 #   build     C compiler, CMake
-#   test      Ruby and CMock, which generates the mocks; Python 3 for the checks of the house rules
+#   test      Ruby and CMock, which generates the mocks; Python 3 for the checks of the house rules; build/format with the
+#             pinned clang-format
 #   port      avr-gcc, its C library, and simavr to run what it makes
 #   size      m68k-linux-gnu-gcc and avr-gcc, which measure; their C libraries
 #   coverage  gcovr
@@ -24,6 +25,8 @@ requirements=$root/tools/plot/requirements.txt
 campaign_requirements=$root/tools/campaign/requirements.txt
 ground_requirements=$root/ground/requirements.txt
 cmock_private=$root/build/cmock
+format=$root/build/format
+format_requirements=$root/tools/format/requirements.txt
 
 say() { printf 'setup: %s\n' "$*" >&2; }
 die() { say "$*"; exit 1; }
@@ -50,6 +53,8 @@ venv_ready() {
     [ -x "$venv/bin/python" ] && cmp -s "$requirements" "$venv/requirements.txt" &&
         "$venv/bin/python" -c 'import sys, importlib.util as u; sys.exit(u.find_spec("matplotlib") is None)' 2>/dev/null
 }
+
+format_ready() { [ -x "$format/bin/clang-format" ] && cmp -s "$format_requirements" "$format/requirements.txt"; }
 
 campaign_ready() { venv_ready && cmp -s "$campaign_requirements" "$venv/campaign.txt"; }
 
@@ -112,7 +117,8 @@ missing_packages() {
             has cmake || echo cmake ;;
         test)
             has ruby || echo ruby
-            has python3 || echo python3 ;;
+            has python3 || echo python3
+            format_ready || venv_maker >/dev/null || echo python3-venv ;;
         port)
             has python3 || echo python3
             avr_packages
@@ -213,6 +219,18 @@ make_venv() {
     cp "$requirements" "$venv/requirements.txt"
 }
 
+add_format() {
+    local python
+    python=$(venv_maker) || die "no Python 3.11 or later that can make a virtual environment: apt-get install python3-venv"
+    say "making build/format with the packages of tools/format/requirements.txt"
+    rm -rf "$format"
+    mkdir -p "$root/build"
+    "$python" -m venv "$format"
+    "$format/bin/python" -m pip --quiet --disable-pip-version-check install --only-binary :all: -r "$format_requirements" ||
+        die "pip could not install tools/format/requirements.txt (see above)"
+    cp "$format_requirements" "$format/requirements.txt"
+}
+
 pip_install() { "$venv/bin/python" -m pip --quiet --disable-pip-version-check install --only-binary :all: "$@"; }
 
 add_campaign() {
@@ -243,11 +261,14 @@ want_cbmc=
 want_campaign=
 want_ground=
 want_modules=
+want_format=
 for job in "$@"; do
     list=$(missing_packages "$job")
     for package in $list; do packages+=("$package"); done
     case $job in
-        test) cmock_ready || want_cmock=yes ;;
+        test)
+            cmock_ready || want_cmock=yes
+            format_ready || want_format=yes ;;
         prove) cbmc_ready || known cbmc || want_cbmc=yes ;;
         plot) venv_ready || want_venv=yes ;;
         campaign)
@@ -278,3 +299,4 @@ fi
 [ -z "$want_campaign" ] || add_campaign
 [ -z "$want_ground" ] || add_ground
 [ -z "$want_modules" ] || add_modules
+[ -z "$want_format" ] || add_format
