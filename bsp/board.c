@@ -1,10 +1,10 @@
-/* Why in this order. A throttle pulse shorter than 2 ms is thrust, 1 ms is full thrust; no pulse at all is a lost
- * receiver to the autopilot. So a missing pulse is safe and a short one is not:
- *  - the throttle pin becomes a plain output, low, before anything else. The PWM does not have it while the clocks
- *    change: SYSCLK goes from 10 to 200 MHz, which would shrink a running 2 ms pulse to 0.1 ms;
- *  - the clocks are set next, some milliseconds. The red LED is lit meanwhile: driverlib waits for ever for a crystal
- *    that never starts, with the LED lit and the pin low. When it reports a failed crystal instead, the chip runs on
- *    its internal oscillator and the idle pulse is made from that;
+/* Why in this order. A throttle pulse shorter than 2 ms is thrust, 1 ms is full thrust; no pulse at all is a
+ * lost receiver to the autopilot. So a missing pulse is safe and a short one is not:
+ *  - the throttle pin becomes a plain output, low, before anything else. The PWM does not have it while the
+ * clocks change: SYSCLK goes from 10 to 200 MHz, which would shrink a running 2 ms pulse to 0.1 ms;
+ *  - the clocks are set next, some milliseconds. The red LED is lit meanwhile: driverlib waits for ever for a
+ * crystal that never starts, with the LED lit and the pin low. When it reports a failed crystal instead, the
+ * chip runs on its internal oscillator and the idle pulse is made from that;
  *  - the PWM starts as soon as the clocks are right, before UARTs and timers.
  * Interrupts are off throughout (before BIOS_start()), so nothing else can change a pulse. */
 #include "bsp/board.h"
@@ -36,11 +36,12 @@ static const uart_pins_t UARTS[] = {
 };
 #define UART_COUNT (sizeof UARTS / sizeof UARTS[0])
 
-/* Pins without a leg on the 100-pin package: an input that floats costs current. The ranges of TI's device.c. */
+/* Pins without a leg on the 100-pin package: an input that floats costs current. The ranges of TI's device.c.
+ */
 static const struct {
     uint16_t first, last;
-} UNBONDED[] = {{0U, 1U}, {5U, 9U}, {22U, 40U}, {44U, 57U}, {67U, 68U}, {74U, 77U}, {79U, 83U}, {88U, 88U}, {93U, 98U},
-                {100U, 168U}};
+} UNBONDED[] = {{0U, 1U},   {5U, 9U},   {22U, 40U}, {44U, 57U}, {67U, 68U},
+                {74U, 77U}, {79U, 83U}, {88U, 88U}, {93U, 98U}, {100U, 168U}};
 #define UNBONDED_COUNT (sizeof UNBONDED / sizeof UNBONDED[0])
 
 static void hold_throttle_low(void)
@@ -65,7 +66,7 @@ static void set_clocks(void)
 static void open_uart_pins(const uart_pins_t *pins)
 {
     SysCtl_enablePeripheral(pins->clock);
-    GPIO_writePin(pins->transmit_pin, 1U);  /* mark: an output that is low, however shortly, is a start bit */
+    GPIO_writePin(pins->transmit_pin, 1U); /* mark: an output that is low, however shortly, is a start bit */
     GPIO_setPadConfig(pins->transmit_pin, GPIO_PIN_TYPE_STD);
     GPIO_setDirectionMode(pins->transmit_pin, GPIO_DIR_MODE_OUT);
     GPIO_setPinConfig(pins->transmit_config);

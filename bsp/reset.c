@@ -2,9 +2,11 @@
 
 #include "device.h"
 
-#define ALL_CAUSES (SYSCTL_CAUSE_POR | SYSCTL_CAUSE_XRS | SYSCTL_CAUSE_WDRS | SYSCTL_CAUSE_NMIWDRS | SYSCTL_CAUSE_SCCRESET)
+#define ALL_CAUSES \
+    (SYSCTL_CAUSE_POR | SYSCTL_CAUSE_XRS | SYSCTL_CAUSE_WDRS | SYSCTL_CAUSE_NMIWDRS | SYSCTL_CAUSE_SCCRESET)
 
-/* Both watchdogs pull the reset pin too, and the boot ROM's note of an earlier power-on may still be there. */
+/* Both watchdogs pull the reset pin too, and the boot ROM's note of an earlier power-on may still be there.
+ */
 static bsp_reset_t cause_of(uint32_t causes)
 {
     if ((causes & SYSCTL_CAUSE_NMIWDRS) != 0U) {

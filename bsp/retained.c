@@ -1,4 +1,5 @@
-/* Section .retained: the linker command file places it in RAM that neither the boot ROM nor the C start-up code touches. */
+/* Section .retained: the linker command file places it in RAM that neither the boot ROM nor the C start-up
+ * code touches. */
 #include "bsp/retained.h"
 
 #define MAGIC 0x506C6F6DUL      /* "Plom": changes with the layout */

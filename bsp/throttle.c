@@ -1,6 +1,7 @@
-/* The first pulse must be a whole one: the time base is set up with its clock gated and the pin still a plain output
- * held low, the pin is handed over while the PWM output is low, and only then the clock starts, at count zero. Period
- * and compare are first written without their shadows, because a shadow is only loaded when the counter passes zero. */
+/* The first pulse must be a whole one: the time base is set up with its clock gated and the pin still a plain
+ * output held low, the pin is handed over while the PWM output is low, and only then the clock starts, at
+ * count zero. Period and compare are first written without their shadows, because a shadow is only loaded
+ * when the counter passes zero. */
 #include "bsp/throttle.h"
 
 #include "device.h"
@@ -19,7 +20,8 @@ typedef struct {
 static const time_base_t CRYSTAL = {SYSCTL_EPWMCLK_DIV_2, EPWM_HSCLOCK_DIVIDER_6, EPWM_CLOCK_DIVIDER_8,
                                     BSP_THROTTLE_PERIOD_COUNTS, BSP_THROTTLE_IDLE_COUNTS};
 
-/* Internal oscillator, 10 MHz within 3 %, / 4: counts of 0.4 us. 2.06 ms, so that the pulse is never under 2 ms. */
+/* Internal oscillator, 10 MHz within 3 %, / 4: counts of 0.4 us. 2.06 ms, so that the pulse is never under 2
+ * ms. */
 static const time_base_t NO_CRYSTAL = {SYSCTL_EPWMCLK_DIV_1, EPWM_HSCLOCK_DIVIDER_4, EPWM_CLOCK_DIVIDER_1,
                                        33999U, 5150U};
 
@@ -48,8 +50,10 @@ static void set_pulse(uint16_t counts)
     set_compare(counts);
     EPWM_setCounterCompareShadowLoadMode(EPWM2_BASE, EPWM_COUNTER_COMPARE_A, EPWM_COMP_LOAD_ON_CNTR_ZERO);
     set_compare(counts);
-    EPWM_setActionQualifierAction(EPWM2_BASE, EPWM_AQ_OUTPUT_A, EPWM_AQ_OUTPUT_HIGH, EPWM_AQ_OUTPUT_ON_TIMEBASE_ZERO);
-    EPWM_setActionQualifierAction(EPWM2_BASE, EPWM_AQ_OUTPUT_A, EPWM_AQ_OUTPUT_LOW, EPWM_AQ_OUTPUT_ON_TIMEBASE_UP_CMPA);
+    EPWM_setActionQualifierAction(EPWM2_BASE, EPWM_AQ_OUTPUT_A, EPWM_AQ_OUTPUT_HIGH,
+                                  EPWM_AQ_OUTPUT_ON_TIMEBASE_ZERO);
+    EPWM_setActionQualifierAction(EPWM2_BASE, EPWM_AQ_OUTPUT_A, EPWM_AQ_OUTPUT_LOW,
+                                  EPWM_AQ_OUTPUT_ON_TIMEBASE_UP_CMPA);
 }
 
 void bsp_throttle_init(void)

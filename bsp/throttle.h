@@ -4,9 +4,9 @@
 
 #include <stdint.h>
 
-#define BSP_THROTTLE_PERIOD_COUNTS 28332U   /* TBPRD, seed eq. 14: (28332 + 1) * 0.48 us = 13.60 ms */
-#define BSP_THROTTLE_IDLE_COUNTS 4166U      /* compare for no thrust, "2 ms", eq. 15 */
-#define BSP_THROTTLE_FULL_COUNTS 2082U      /* compare for full thrust, "1 ms", eq. 16 */
+#define BSP_THROTTLE_PERIOD_COUNTS 28332U /* TBPRD, seed eq. 14: (28332 + 1) * 0.48 us = 13.60 ms */
+#define BSP_THROTTLE_IDLE_COUNTS 4166U    /* compare for no thrust, "2 ms", eq. 15 */
+#define BSP_THROTTLE_FULL_COUNTS 2082U    /* compare for full thrust, "1 ms", eq. 16 */
 
 /* Time base, shadow loads at zero, action qualifiers, compare at idle. From bsp_board_init() only. */
 void bsp_throttle_init(void);

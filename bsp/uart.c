@@ -1,9 +1,11 @@
-/* 115200 is not reachable: SCI_setBaud() rounds to register 108 (-0.45 %), SCI_setConfig() alone would truncate to 107
+/* 115200 is not reachable: SCI_setBaud() rounds to register 108 (-0.45 %), SCI_setConfig() alone would
+ * truncate to 107
  * (+0.47 %). The nearer one is taken; 250000, 57600 and 9600 come out the same either way.
  *
- * Only a software reset of the SCI clears a receive error or ends a break. It keeps the FIFOs, but cuts short the octet
- * that is on the transmit wire or just arriving. The receive-error interrupt is on beside the FIFO's, because a break
- * is detected after its last octet has been read, and reception would then stay stopped unseen. */
+ * Only a software reset of the SCI clears a receive error or ends a break. It keeps the FIFOs, but cuts short
+ * the octet that is on the transmit wire or just arriving. The receive-error interrupt is on beside the
+ * FIFO's, because a break is detected after its last octet has been read, and reception would then stay
+ * stopped unseen. */
 #include "bsp/uart.h"
 
 #include "device.h"

@@ -9,11 +9,12 @@ altitude_geometry_t altitude_geometry_of(const parameters_t *parameters)
     const float *const mm = parameters->value;
     const float abeam_mm = mm[PARAMETER_L] - mm[PARAMETER_DF];
 
-    return (altitude_geometry_t){.mirror = {
-        [MIRROR_FRONT] = {mm[PARAMETER_DF], mm[PARAMETER_LF], mm[PARAMETER_L], 0.0F},
-        [MIRROR_FORE] = {mm[PARAMETER_D2], mm[PARAMETER_L2], abeam_mm, 1.0F},
-        [MIRROR_AFT] = {mm[PARAMETER_D1], mm[PARAMETER_L1], abeam_mm, -1.0F},
-    }};
+    return (altitude_geometry_t){
+        .mirror = {
+            [MIRROR_FRONT] = {mm[PARAMETER_DF], mm[PARAMETER_LF], mm[PARAMETER_L], 0.0F},
+            [MIRROR_FORE] = {mm[PARAMETER_D2], mm[PARAMETER_L2], abeam_mm, 1.0F},
+            [MIRROR_AFT] = {mm[PARAMETER_D1], mm[PARAMETER_L1], abeam_mm, -1.0F},
+        }};
 }
 
 altitude_geometry_t altitude_geometry_default(void)
@@ -26,18 +27,15 @@ altitude_geometry_t altitude_geometry_default(void)
 
 float altitude_under_mirror(const mirror_geometry_t *mirror, float slant_mm, float roll_rad, float pitch_rad)
 {
-    return (slant_mm - mirror->distance_mm) * cosf(pitch_rad) * cosf(roll_rad)
-         - mirror->arm_mm * sinf(roll_rad)
-         - mirror->fore_sign * mirror->distance_mm * sinf(pitch_rad)
-         - mirror->leg_mm;
+    return (slant_mm - mirror->distance_mm) * cosf(pitch_rad) * cosf(roll_rad) -
+           mirror->arm_mm * sinf(roll_rad) - mirror->fore_sign * mirror->distance_mm * sinf(pitch_rad) -
+           mirror->leg_mm;
 }
 
 float altitude_at_tilt(const altitude_t *altitude, float roll_rad, float pitch_rad)
 {
-    return (altitude->slant_mm - altitude->distance_mm) * cosf(pitch_rad) * cosf(roll_rad)
-         - altitude->arm_mm * sinf(roll_rad)
-         - altitude->fore_mm * sinf(pitch_rad)
-         - altitude->leg_mm;
+    return (altitude->slant_mm - altitude->distance_mm) * cosf(pitch_rad) * cosf(roll_rad) -
+           altitude->arm_mm * sinf(roll_rad) - altitude->fore_mm * sinf(pitch_rad) - altitude->leg_mm;
 }
 
 static void add_mirror(altitude_t *altitude, const mirror_geometry_t *mirror, const mirror_range_t *range)
@@ -61,8 +59,8 @@ static void divide(altitude_t *altitude, float groups)
     altitude->fore_mm /= groups;
 }
 
-altitude_t altitude_from_ranges(const altitude_geometry_t *geometry, const mirror_range_t *ranges, size_t count,
-                                float roll_rad, float pitch_rad)
+altitude_t altitude_from_ranges(const altitude_geometry_t *geometry, const mirror_range_t *ranges,
+                                size_t count, float roll_rad, float pitch_rad)
 {
     altitude_t altitude = {.valid = false};
     float groups = 0.0F;

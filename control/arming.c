@@ -21,7 +21,8 @@ static bool fault(flight_state_t before, const supervisor_t *supervisor)
     return state == FLIGHT_CUT || blind || (state == FLIGHT_GROUND && alarmed);
 }
 
-void arming_step(arming_t *arming, const flight_inputs_t *in, flight_state_t before, const supervisor_t *supervisor)
+void arming_step(arming_t *arming, const flight_inputs_t *in, flight_state_t before,
+                 const supervisor_t *supervisor)
 {
     const flight_state_t state = supervisor->state;
 

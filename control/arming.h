@@ -13,8 +13,8 @@
 
 typedef struct {
     bool armed;
-    bool ending;            /* will disarm when the vehicle is on the ground */
-    uint32_t sequence;      /* latest request that was processed */
+    bool ending;       /* will disarm when the vehicle is on the ground */
+    uint32_t sequence; /* latest request that was processed */
 } arming_t;
 
 /* One control cycle, after the supervisor's step. before: the flight state before that step.
@@ -22,7 +22,8 @@ typedef struct {
  * A request to arm counts on the ground only. A request to disarm counts on the ground; in the air it
  * waits for the ground, unless a new reference comes before. These also disarm: state CUT; on the ground,
  * a tilt or a silent link; a DESCENDING (without heights) that has reached the ground. */
-void arming_step(arming_t *arming, const flight_inputs_t *in, flight_state_t before, const supervisor_t *supervisor);
+void arming_step(arming_t *arming, const flight_inputs_t *in, flight_state_t before,
+                 const supervisor_t *supervisor);
 
 /* Minimum thrust in newtons per motor: the idle while armed; 0 when not armed, and in CUT. idle_percent:
  * of the throttle's range. */

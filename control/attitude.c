@@ -26,8 +26,8 @@ static void gather_offset(attitude_filter_t *filter, const attitude_t *raw)
         .roll_rad = filter->sum.roll_rad / (float)ATTITUDE_OFFSET_FRAMES,
         .pitch_rad = filter->sum.pitch_rad / (float)ATTITUDE_OFFSET_FRAMES,
     };
-    filter->ready = fabsf(mean.roll_rad) <= ATTITUDE_OFFSET_MAX_RAD
-                 && fabsf(mean.pitch_rad) <= ATTITUDE_OFFSET_MAX_RAD;
+    filter->ready = fabsf(mean.roll_rad) <= ATTITUDE_OFFSET_MAX_RAD &&
+                    fabsf(mean.pitch_rad) <= ATTITUDE_OFFSET_MAX_RAD;
     if (filter->ready) {
         filter->offset = mean;
         return;

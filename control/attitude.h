@@ -10,24 +10,24 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define ATTITUDE_OFFSET_FRAMES 20U /* seed 5.2.1.1 */
-#define ATTITUDE_MEDIAN_FRAMES 5U /* seed 5.2.1.1 */
+#define ATTITUDE_OFFSET_FRAMES 20U          /* seed 5.2.1.1 */
+#define ATTITUDE_MEDIAN_FRAMES 5U           /* seed 5.2.1.1 */
 #define ATTITUDE_OFFSET_MAX_RAD 0.17453293F /* 10 degrees; a larger offset is refused, and measured again */
 
 typedef struct {
     float roll_rad;
     float pitch_rad;
-    float yaw_rad;      /* -pi .. pi */
+    float yaw_rad; /* -pi .. pi */
 } attitude_t;
 
 typedef struct {
     attitude_t sum;
-    uint16_t summed;                                /* frames in sum */
-    bool ready;                                     /* the offset is known */
-    uint16_t refusals;                              /* offsets refused so far */
+    uint16_t summed;   /* frames in sum */
+    bool ready;        /* the offset is known */
+    uint16_t refusals; /* offsets refused so far */
     attitude_t offset;
-    attitude_t history[ATTITUDE_MEDIAN_FRAMES];     /* latest angles, offset removed */
-    uint16_t held;                                  /* valid entries of history */
+    attitude_t history[ATTITUDE_MEDIAN_FRAMES]; /* latest angles, offset removed */
+    uint16_t held;                              /* valid entries of history */
     uint16_t next;
 } attitude_filter_t;
 

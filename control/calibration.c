@@ -2,11 +2,11 @@
 
 #include "control/thrust.h"
 
-#define COUNTS_PER_PERCENT 20.84F   /* 2084 counts from no thrust to full, thrust.h */
-#define IDLE_COUNTS 4166U /* 2 ms, seed eq. 4-5 */
-#define LIMIT_N 8.5F /* 1.5 N above the seed's largest hover thrust */
-/* With GRAV at the hover thrust itself the seed's laws cannot come down; 0.4 N below it they fly best on the model
- * (docs/operator.md). */
+#define COUNTS_PER_PERCENT 20.84F /* 2084 counts from no thrust to full, thrust.h */
+#define IDLE_COUNTS 4166U         /* 2 ms, seed eq. 4-5 */
+#define LIMIT_N 8.5F              /* 1.5 N above the seed's largest hover thrust */
+/* With GRAV at the hover thrust itself the seed's laws cannot come down; 0.4 N below it they fly best on the
+ * model (docs/operator.md). */
 #define SEED_MARGIN_N 0.4F
 #define LIFTED_MM 100.0F /* chosen: no rope lets it rise so far */
 #define US_PER_S UINT32_C(1000000)
@@ -52,8 +52,8 @@ static void obey(calibration_t *calibration, const calibration_request_t *reques
         calibration->end = CALIBRATION_RUNNING;
         calibration->steps = 0U;
         calibration->step_us = 0U;
-        calibration->compare_counts =
-            (uint16_t)(IDLE_COUNTS - (uint16_t)(request->idle_percent * COUNTS_PER_PERCENT));
+        calibration->compare_counts = (uint16_t)(IDLE_COUNTS -
+                                                 (uint16_t)(request->idle_percent * COUNTS_PER_PERCENT));
         lower(calibration, request->step_counts);
     } else if (calibration->end == CALIBRATION_RUNNING) {
         calibration->end = CALIBRATION_STOPPED;

@@ -4,12 +4,12 @@
 #ifndef CONTROL_DESCENT_H
 #define CONTROL_DESCENT_H
 
-#define DESCENT_RATE_MM_S 300.0F        /* above 0.6 m; below it falls to 0.15 m/s at the ground */
+#define DESCENT_RATE_MM_S 300.0F /* above 0.6 m; below it falls to 0.15 m/s at the ground */
 
 typedef struct {
-    float sink_mm_s;    /* present wanted sink rate, > 0 is downwards */
-    float trim_n;       /* correction to hover_n, learned in this descent from the vertical speed */
-    float near_ground_s;/* time within 40 mm of the ground */
+    float sink_mm_s;     /* present wanted sink rate, > 0 is downwards */
+    float trim_n;        /* correction to hover_n, learned in this descent from the vertical speed */
+    float near_ground_s; /* time within 40 mm of the ground */
 } descent_t;
 
 /* Call before the first step of a descent. rate_mm_s: present vertical speed, > 0 is up. The wanted sink

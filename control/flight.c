@@ -1,10 +1,9 @@
 /* One control cycle in a fixed order: judge the sensors, predict, supervise, fuse, choose law and mode,
- * compute, transfer, tell. The state (supervisor) and whether there is an estimate choose the mode, by two tables; the mode
- * computes the thrust. Whatever changes in the air changes without a jump: bumpless transfer, as in any text
- * on control.
- * What breaks: the order. The supervisor must see the estimate of this cycle, and the estimator the command
- * of the one before. A mode that is added without a row in both tables is IDLE, and that is a falling
- * vehicle. */
+ * compute, transfer, tell. The state (supervisor) and whether there is an estimate choose the mode, by two
+ * tables; the mode computes the thrust. Whatever changes in the air changes without a jump: bumpless
+ * transfer, as in any text on control. What breaks: the order. The supervisor must see the estimate of this
+ * cycle, and the estimator the command of the one before. A mode that is added without a row in both tables
+ * is IDLE, and that is a falling vehicle. */
 #include "control/flight.h"
 
 #include <math.h>
@@ -13,13 +12,13 @@
 #include "control/seconds.h"
 #include "control/thrust.h"
 
-#define HOVER_MARGIN_N 1.5F /* mass 20 % off; narrower than law EST's 2 N: here nobody corrects an error */
-#define HOVER_TIME_S 2.5F /* chosen: a mean over the swings of the seed's law */
-#define TRANSFER_TIME_S 0.4F /* chosen: four scans */
+#define HOVER_MARGIN_N 1.5F   /* mass 20 % off; narrower than law EST's 2 N: here nobody corrects an error */
+#define HOVER_TIME_S 2.5F     /* chosen: a mean over the swings of the seed's law */
+#define TRANSFER_TIME_S 0.4F  /* chosen: four scans */
 #define TRANSFER_START_N 0.5F /* chosen: 0.7 m/s2 */
-#define STEP_MAX_S 0.5F /* chosen: longer pauses count as this long */
-#define GAP_MAX_S 0.3F /* as HEIGHT_FRESH_US in supervisor.c */
-#define BLIND_MAX_S 60.0F /* above DESCENT_TIMEOUT_US in supervisor.c */
+#define STEP_MAX_S 0.5F       /* chosen: longer pauses count as this long */
+#define GAP_MAX_S 0.3F        /* as HEIGHT_FRESH_US in supervisor.c */
+#define BLIND_MAX_S 60.0F     /* above DESCENT_TIMEOUT_US in supervisor.c */
 
 #define PIDT_WINDOW_N 3.0F /* chosen: 0.4 g to either side */
 #define SETTLE_S 0.6F
@@ -40,25 +39,17 @@
 
 /* Without an estimate, or by a law that needs none. */
 static const flight_mode_t modes_without_estimate[FLIGHT_STATE_COUNT] = {
-    [FLIGHT_GROUND] = FLIGHT_MODE_IDLE,
-    [FLIGHT_TAKEOFF] = FLIGHT_MODE_LAW,
-    [FLIGHT_FLYING] = FLIGHT_MODE_LAW,
-    [FLIGHT_FLOATING] = FLIGHT_MODE_FLOAT,
-    [FLIGHT_COASTING] = FLIGHT_MODE_HOVER,
-    [FLIGHT_DESCENDING] = FLIGHT_MODE_BLIND_DESCENT,
-    [FLIGHT_LANDING] = FLIGHT_MODE_DESCENT,
-    [FLIGHT_LOWERING] = FLIGHT_MODE_DESCENT,
+    [FLIGHT_GROUND] = FLIGHT_MODE_IDLE,     [FLIGHT_TAKEOFF] = FLIGHT_MODE_LAW,
+    [FLIGHT_FLYING] = FLIGHT_MODE_LAW,      [FLIGHT_FLOATING] = FLIGHT_MODE_FLOAT,
+    [FLIGHT_COASTING] = FLIGHT_MODE_HOVER,  [FLIGHT_DESCENDING] = FLIGHT_MODE_BLIND_DESCENT,
+    [FLIGHT_LANDING] = FLIGHT_MODE_DESCENT, [FLIGHT_LOWERING] = FLIGHT_MODE_DESCENT,
     [FLIGHT_CUT] = FLIGHT_MODE_IDLE,
 };
 static const flight_mode_t modes_with_estimate[FLIGHT_STATE_COUNT] = {
-    [FLIGHT_GROUND] = FLIGHT_MODE_IDLE,
-    [FLIGHT_TAKEOFF] = FLIGHT_MODE_EST_HOLD,
-    [FLIGHT_FLYING] = FLIGHT_MODE_EST_HOLD,
-    [FLIGHT_FLOATING] = FLIGHT_MODE_EST_HOLD,
-    [FLIGHT_COASTING] = FLIGHT_MODE_EST_HOLD,
-    [FLIGHT_DESCENDING] = FLIGHT_MODE_EST_SINK,
-    [FLIGHT_LANDING] = FLIGHT_MODE_EST_LAND,
-    [FLIGHT_LOWERING] = FLIGHT_MODE_EST_LAND,
+    [FLIGHT_GROUND] = FLIGHT_MODE_IDLE,       [FLIGHT_TAKEOFF] = FLIGHT_MODE_EST_HOLD,
+    [FLIGHT_FLYING] = FLIGHT_MODE_EST_HOLD,   [FLIGHT_FLOATING] = FLIGHT_MODE_EST_HOLD,
+    [FLIGHT_COASTING] = FLIGHT_MODE_EST_HOLD, [FLIGHT_DESCENDING] = FLIGHT_MODE_EST_SINK,
+    [FLIGHT_LANDING] = FLIGHT_MODE_EST_LAND,  [FLIGHT_LOWERING] = FLIGHT_MODE_EST_LAND,
     [FLIGHT_CUT] = FLIGHT_MODE_IDLE,
 };
 
@@ -93,7 +84,9 @@ static void follow_hover(flight_t *flight)
         return;
     }
     const float target_n = estimated ? flight->est.hover.thrust_n : flight->thrust_n;
-    const float time_s = !estimated ? HOVER_TIME_S : (flight->learned_s < SETTLE_S) ? step_s : flight->learned_s;
+    const float time_s = !estimated                       ? HOVER_TIME_S
+                         : (flight->learned_s < SETTLE_S) ? step_s
+                                                          : flight->learned_s;
 
     flight->hover_n += fminf(step_s / fmaxf(time_s, 0.001F), 1.0F) * (target_n - flight->hover_n);
     flight->learned_s = fminf(flight->learned_s + step_s, HOVER_TIME_S);
@@ -193,8 +186,8 @@ static void step_pidt(flight_t *flight, const parameters_t *parameters, float re
 
     if (height->is_new || !flight->pidt.primed) {
         const uint32_t rays_us = flight->est.rays_us;
-        flight->setpoint_n = pidt_step(&flight->pidt, &gains, reference_m,
-                                       height->height_mm * 0.001F, seconds_at_most(rays_us - flight->pidt_rays_us, GAP_MAX_S));
+        flight->setpoint_n = pidt_step(&flight->pidt, &gains, reference_m, height->height_mm * 0.001F,
+                                       seconds_at_most(rays_us - flight->pidt_rays_us, GAP_MAX_S));
         flight->pidt_rays_us = rays_us;
     }
 }
@@ -205,15 +198,16 @@ static void step_descent(flight_t *flight, bool started)
     const float gap_s = height->is_new ? seconds_at_most(height->gap_us, GAP_MAX_S) : 0.0F;
 
     if (height->is_new || started) {
-        flight->setpoint_n =
-            descent_step(&flight->descent, flight->hover_n, height->height_mm, height->rate_mm_s, gap_s);
+        flight->setpoint_n = descent_step(&flight->descent, flight->hover_n, height->height_mm,
+                                          height->rate_mm_s, gap_s);
     }
 }
 
 /* The height that is held, above the terrain. */
 static float aim_m(const flight_t *flight)
 {
-    return (flight->supervisor.state == FLIGHT_FLOATING) ? flight->floating_m : flight->supervisor.reference_m;
+    return (flight->supervisor.state == FLIGHT_FLOATING) ? flight->floating_m
+                                                         : flight->supervisor.reference_m;
 }
 
 /* Heights or the reference were lost before the vehicle left the ground: its motors stop gently. */
@@ -222,8 +216,9 @@ static bool stops_on_ground(flight_t *flight)
     const flight_state_t state = flight->supervisor.state;
     const bool gives_up = state == FLIGHT_COASTING || state == FLIGHT_DESCENDING || state == FLIGHT_LANDING;
 
-    flight->hopping = state == FLIGHT_TAKEOFF ? !flight->est.airborne && flight->supervisor.state_us < HOP_MAX_US
-                                              : flight->hopping && gives_up;
+    flight->hopping = state == FLIGHT_TAKEOFF
+                          ? !flight->est.airborne && flight->supervisor.state_us < HOP_MAX_US
+                          : flight->hopping && gives_up;
     return flight->hopping && gives_up;
 }
 
@@ -258,7 +253,8 @@ static bool run_mode(flight_t *flight, const parameters_t *parameters, bool mode
         step_descent(flight, mode_changed);
         break;
     case FLIGHT_MODE_BLIND_DESCENT:
-        flight->setpoint_n = descent_blind(flight->hover_n, seconds_at_most(flight->supervisor.state_us, BLIND_MAX_S));
+        flight->setpoint_n = descent_blind(flight->hover_n,
+                                           seconds_at_most(flight->supervisor.state_us, BLIND_MAX_S));
         break;
     case FLIGHT_MODE_IDLE:
     default:
@@ -280,10 +276,12 @@ static void bumpless_transfer(flight_t *flight, flight_mode_t before, bool law_c
     } else if (law_changed) {
         flight->transfer_n = flight->thrust_n - flight->setpoint_n;
     } else if (changed) {
-        flight->transfer_n =
-            between(hover_n - TRANSFER_START_N, flight->thrust_n, hover_n + TRANSFER_START_N) - flight->setpoint_n;
+        flight->transfer_n = between(hover_n - TRANSFER_START_N, flight->thrust_n,
+                                     hover_n + TRANSFER_START_N) -
+                             flight->setpoint_n;
     } else {
-        flight->transfer_n *= TRANSFER_TIME_S / (TRANSFER_TIME_S + seconds_at_most(flight->supervisor.step_us, STEP_MAX_S));
+        flight->transfer_n *= TRANSFER_TIME_S /
+                              (TRANSFER_TIME_S + seconds_at_most(flight->supervisor.step_us, STEP_MAX_S));
     }
 }
 
@@ -291,8 +289,8 @@ static void bumpless_transfer(flight_t *flight, flight_mode_t before, bool law_c
 static float wanted_m(const flight_t *flight)
 {
     const flight_state_t state = flight->supervisor.state;
-    const bool holds = state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING
-                    || (state == FLIGHT_FLOATING && flight->mode != FLIGHT_MODE_HOVER);
+    const bool holds = state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING ||
+                       (state == FLIGHT_FLOATING && flight->mode != FLIGHT_MODE_HOVER);
     return holds ? aim_m(flight) - flight->supervisor.height.height_mm * 0.001F : NAN;
 }
 
@@ -390,7 +388,8 @@ static void change_doubts(flight_t *flight)
                         integrity_speed_mps(integrity), integrity->bias_mps2);
     }
     const bool flies_unseen = (come & DOUBT_SIGHT) != 0U && integrity_sways(integrity);
-    if (((come & DOUBT_SIGHT) != 0U || (gone & DOUBT_THRUST) != 0U) && (flight->est.airborne || flies_unseen)) {
+    if (((come & DOUBT_SIGHT) != 0U || (gone & DOUBT_THRUST) != 0U) &&
+        (flight->est.airborne || flies_unseen)) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
     est_law_set_powerless(&flight->est, integrity_doubts(integrity, DOUBT_THRUST));
@@ -408,17 +407,20 @@ static void supervise(flight_t *flight, const parameters_t *parameters, const fl
         .known = has_estimate(flight) && estimator->confirmed,
         .height_mm = now->height_m * 1000.0F,
         .climb_mm_s = (now->speed_mps - now->terrain_mps) * 1000.0F,
-        .stands = integrity_stands(&flight->integrity) || (flight->hopping && flight->thrust_n <= flight->idle_n),
+        .stands = integrity_stands(&flight->integrity) ||
+                  (flight->hopping && flight->thrust_n <= flight->idle_n),
         .sways = integrity_sways(&flight->integrity),
     };
     supervisor_step(&flight->supervisor, parameters->value[PARAMETER_LINK], in, &estimate);
 }
 
-/* By one of the laws that do not know themselves when they leave the ground: the heights tell, or the accelerometer. */
+/* By one of the laws that do not know themselves when they leave the ground: the heights tell, or the
+ * accelerometer. */
 static bool flies(const flight_t *flight)
 {
-    return flight->supervisor.state == FLIGHT_FLYING
-        || (flight->supervisor.state == FLIGHT_TAKEOFF && flight->integrity.felt.speed_mps > LIFTED_MPS * flight->integrity.shaken);
+    return flight->supervisor.state == FLIGHT_FLYING ||
+           (flight->supervisor.state == FLIGHT_TAKEOFF &&
+            flight->integrity.felt.speed_mps > LIFTED_MPS * flight->integrity.shaken);
 }
 
 /* The thrust that would carry it, by the acceleration and the speed that the present one makes of it. */
@@ -429,7 +431,8 @@ static float lifting_n(const flight_t *flight, const parameters_t *parameters)
     const float gravity_n = parameters->value[PARAMETER_GRAV];
     const float hover_n = flight->est.actuator.thrust_n - taken_mps2 / vehicle.authority_mps2_per_n;
 
-    return has_estimate(flight) ? between(gravity_n - HOVER_MARGIN_N, hover_n, gravity_n + HOVER_MARGIN_N) : flight->hover_n;
+    return has_estimate(flight) ? between(gravity_n - HOVER_MARGIN_N, hover_n, gravity_n + HOVER_MARGIN_N)
+                                : flight->hover_n;
 }
 
 static void update_estimator(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)
@@ -460,8 +463,8 @@ static bool select_law(flight_t *flight, const parameters_t *parameters)
     return flight->active_law != before;
 }
 
-/* Whether the state is flown by the estimate: a law as it was chosen, what the supervisor does by itself whenever there
- * is an estimate that heights, if there are any, do not contradict. */
+/* Whether the state is flown by the estimate: a law as it was chosen, what the supervisor does by itself
+ * whenever there is an estimate that heights, if there are any, do not contradict. */
 static bool uses_estimate(const flight_t *flight)
 {
     switch (flight->supervisor.state) {
@@ -484,8 +487,8 @@ static flight_mode_t select_mode(const flight_t *flight, const flight_inputs_t *
     if (flight->supervisor.state == FLIGHT_FLOATING && !in->has_throttle) {
         return FLIGHT_MODE_HOVER;
     }
-    if (flight->supervisor.state == FLIGHT_COASTING && has_estimate(flight) && flight->est.airborne
-        && integrity_doubts(&flight->integrity, DOUBT_SIGHT)) {
+    if (flight->supervisor.state == FLIGHT_COASTING && has_estimate(flight) && flight->est.airborne &&
+        integrity_doubts(&flight->integrity, DOUBT_SIGHT)) {
         return FLIGHT_MODE_EST_SINK; /* what the heights said last is not the height to hold */
     }
     return (uses_estimate(flight) ? modes_with_estimate : modes_without_estimate)[flight->supervisor.state];
@@ -500,31 +503,36 @@ static bool is_hold_mode(flight_mode_t mode)
 static void float_along(flight_t *flight, bool entered)
 {
     const float height_m = flight->supervisor.height.height_mm * 0.001F;
-    const bool holds = !entered && flight->supervisor.state == FLIGHT_FLOATING && flight->mode != FLIGHT_MODE_HOVER;
+    const bool holds = !entered && flight->supervisor.state == FLIGHT_FLOATING &&
+                       flight->mode != FLIGHT_MODE_HOVER;
 
-    flight->floating_m = holds ? between(height_m - FLOAT_REACH_M, flight->floating_m, height_m + FLOAT_REACH_M) : height_m;
+    flight->floating_m = holds
+                             ? between(height_m - FLOAT_REACH_M, flight->floating_m, height_m + FLOAT_REACH_M)
+                             : height_m;
 }
 
-/* Climbs that no height confirms stay slow, and no climb is faster than the law wants it, whatever the estimate says of it:
- * what a climb costs in thrust is known. */
+/* Climbs that no height confirms stay slow, and no climb is faster than the law wants it, whatever the
+ * estimate says of it: what a climb costs in thrust is known. */
 static float within_climb_n(const flight_t *flight, const parameters_t *parameters, float thrust_n)
 {
     const cascade_vehicle_t vehicle = est_law_vehicle(&flight->est, parameters);
     const bool est = flight->mode == FLIGHT_MODE_EST_HOLD;
     const float unconfirmed_mps = flight->supervisor.state == FLIGHT_TAKEOFF ? TAKEOFF_MPS : UNCONFIRMED_MPS;
-    const float fastest_mps = integrity_unconfirmed(&flight->integrity) ? unconfirmed_mps
-                                                                        : parameters->value[PARAMETER_VUP] + CLIMB_MARGIN_MPS;
+    const float fastest_mps = integrity_unconfirmed(&flight->integrity)
+                                  ? unconfirmed_mps
+                                  : parameters->value[PARAMETER_VUP] + CLIMB_MARGIN_MPS;
     const float most_n = flight->hover_n + vehicle.damping_per_s * fastest_mps / vehicle.authority_mps2_per_n;
     const float felt_mps = integrity_felt_mps(&flight->integrity);
-    const bool fast = flight->integrity.pushed.speed_mps > fastest_mps - 0.1F
-                   && (flight->supervisor.state != FLIGHT_TAKEOFF || felt_mps > fastest_mps - 0.1F);
+    const bool fast = flight->integrity.pushed.speed_mps > fastest_mps - 0.1F &&
+                      (flight->supervisor.state != FLIGHT_TAKEOFF || felt_mps > fastest_mps - 0.1F);
 
     return (fast && (est || (flight->mode == FLIGHT_MODE_LAW && flight->active_law == LAW_PIDT)))
-             ? fminf(thrust_n, most_n) : thrust_n;
+               ? fminf(thrust_n, most_n)
+               : thrust_n;
 }
 
-/* Commands without an effect are not made stronger: whoever flies gives back a vehicle that this thrust carries. FLOATING
- * does not know who flies. */
+/* Commands without an effect are not made stronger: whoever flies gives back a vehicle that this thrust
+ * carries. FLOATING does not know who flies. */
 static float within_power_n(const flight_t *flight, float thrust_n)
 {
     const float held_n = flight->integrity.held_n;
@@ -539,7 +547,8 @@ static float within_power_n(const flight_t *flight, float thrust_n)
                                        : fminf(thrust_n, held_n + POWERLESS_WINDOW_N);
 }
 
-/* A descent that may have ended gives less and less, until a fall is felt, and it was in the air, or is not, and it stands. */
+/* A descent that may have ended gives less and less, until a fall is felt, and it was in the air, or is not,
+ * and it stands. */
 static float asking_n(flight_t *flight, float thrust_n)
 {
     const bool by_estimate = flight->mode == FLIGHT_MODE_EST_SINK || flight->mode == FLIGHT_MODE_EST_LAND;
@@ -565,8 +574,9 @@ static void judge_reach(flight_t *flight)
         reach_reset(&flight->reach);
     }
     flight->reach_m = supervisor->reference_m;
-    flight->out_of_reach =
-        acts && reach_step(&flight->reach, supervisor->height.height_mm - reference_mm(flight), supervisor->step_us);
+    flight->out_of_reach = acts &&
+                           reach_step(&flight->reach, supervisor->height.height_mm - reference_mm(flight),
+                                      supervisor->step_us);
 }
 
 uint16_t flight_releases(const flight_t *flight, const parameters_t *parameters)
@@ -595,9 +605,9 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
     out->idle_n = flight->idle_n;
     out->pulse_us = thrust_to_pulse_us(flight->thrust_n);
     out->state = supervisor->state;
-    out->flags = (uint16_t)(supervisor->flags | (imu_missing ? FLIGHT_FLAG_ATTITUDE : 0U)
-                            | (flight->out_of_reach ? FLIGHT_FLAG_REACH : 0U)
-                            | flight->integrity.doubts * FLIGHT_FLAG_SIGHT);
+    out->flags = (uint16_t)(supervisor->flags | (imu_missing ? FLIGHT_FLAG_ATTITUDE : 0U) |
+                            (flight->out_of_reach ? FLIGHT_FLAG_REACH : 0U) |
+                            flight->integrity.doubts * FLIGHT_FLAG_SIGHT);
     out->doubts = flight->integrity.doubts;
     out->reference_m = supervisor->reference_m;
     out->estimate_mm = estimated ? estimator->now.height_m * 1000.0F : measured_mm;
@@ -605,7 +615,8 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
     out->releases = flight_releases(flight, parameters);
 }
 
-void flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in, flight_outputs_t *out)
+void flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in,
+                 flight_outputs_t *out)
 {
     const flight_mode_t before = flight->mode;
     const flight_state_t state_before = flight->supervisor.state;
@@ -614,7 +625,8 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
     believe(flight, parameters, &believed);
     supervise(flight, parameters, &believed);
     arming_step(&flight->arming, &believed, state_before, &flight->supervisor);
-    flight->idle_n = arming_idle_n(&flight->arming, parameters->value[PARAMETER_IDLE], flight->supervisor.state);
+    flight->idle_n = arming_idle_n(&flight->arming, parameters->value[PARAMETER_IDLE],
+                                   flight->supervisor.state);
     update_estimator(flight, parameters, &believed);
     const bool law_changed = select_law(flight, parameters);
     flight->mode = select_mode(flight, in);
@@ -626,12 +638,14 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
     const bool stops = stops_on_ground(flight);
     const bool action_changed = !stops && run_mode(flight, parameters, before != flight->mode);
     if (stops) {
-        flight->setpoint_n = flight->thrust_n - STOP_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
+        flight->setpoint_n = flight->thrust_n -
+                             STOP_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
         flight->transfer_n = 0.0F;
     }
     bumpless_transfer(flight, before, law_changed || action_changed);
     const float wanted_n = within_climb_n(flight, parameters, flight->setpoint_n + flight->transfer_n);
-    flight->thrust_n = between(flight->idle_n, asking_n(flight, within_power_n(flight, wanted_n)), THRUST_MAX_N);
+    flight->thrust_n = between(flight->idle_n, asking_n(flight, within_power_n(flight, wanted_n)),
+                               THRUST_MAX_N);
     est_law_record_command(&flight->est, flight->thrust_n);
     judge_reach(flight);
     write_outputs(flight, parameters, out);

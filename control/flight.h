@@ -21,49 +21,49 @@
 
 /* What computes the thrust. */
 typedef enum {
-    FLIGHT_MODE_IDLE,                    /* no thrust */
-    FLIGHT_MODE_LAW,                     /* PD, PID, PIDT */
+    FLIGHT_MODE_IDLE, /* no thrust */
+    FLIGHT_MODE_LAW,  /* PD, PID, PIDT */
     FLIGHT_MODE_HOVER,
-    FLIGHT_MODE_FLOAT,                   /* holds the present height, from the heights alone */
+    FLIGHT_MODE_FLOAT, /* holds the present height, from the heights alone */
     FLIGHT_MODE_DESCENT,
     FLIGHT_MODE_BLIND_DESCENT,
-    FLIGHT_MODE_EST_HOLD,                    /* law EST, also in COASTING */
-    FLIGHT_MODE_EST_LAND,                    /* landing by the estimate */
+    FLIGHT_MODE_EST_HOLD, /* law EST, also in COASTING */
+    FLIGHT_MODE_EST_LAND, /* landing by the estimate */
     FLIGHT_MODE_EST_SINK
 } flight_mode_t;
 
 typedef struct {
     supervisor_t supervisor;
     integrity_t integrity;
-    uint32_t scan_sequence;         /* latest scan that integrity_scan() judged */
-    uint32_t scan_time_us;          /* latest height that was compared with the witnesses */
+    uint32_t scan_sequence; /* latest scan that integrity_scan() judged */
+    uint32_t scan_time_us;  /* latest height that was compared with the witnesses */
     bool scan_fit;
-    uint16_t doubts;                /* DOUBT_* of the previous cycle */
-    bool hopping;                   /* TAKEOFF ended and the vehicle had not left the ground */
-    float asking_n;                 /* most thrust of a descent that asks whether it stands */
-    float floating_m;               /* height that FLOATING holds */
+    uint16_t doubts;  /* DOUBT_* of the previous cycle */
+    bool hopping;     /* TAKEOFF ended and the vehicle had not left the ground */
+    float asking_n;   /* most thrust of a descent that asks whether it stands */
+    float floating_m; /* height that FLOATING holds */
     flight_mode_t mode;
     pid_state_t pid;
-    bool integral;                  /* the law had an integral action in the previous cycle */
+    bool integral; /* the law had an integral action in the previous cycle */
     pidt_state_t pidt;
-    uint32_t pidt_rays_us;          /* rays of the height before, law PIDT */
+    uint32_t pidt_rays_us; /* rays of the height before, law PIDT */
     est_law_t est;
-    control_law_t active_law;           /* law in force; PIDT replaces EST while no estimate is fresh */
+    control_law_t active_law; /* law in force; PIDT replaces EST while no estimate is fresh */
     descent_t descent;
     arming_t arming;
-    float idle_n;                   /* minimum thrust: the idle while armed, else 0 */
+    float idle_n; /* minimum thrust: the idle while armed, else 0 */
     reach_t reach;
-    float reach_m;                  /* reference that `reach` watches */
-    bool out_of_reach;              /* the vehicle does not get to the reference in force */
-    float hover_n;                  /* sure hover thrust: from the estimator, or else the mean of the
-                                     * thrust with a time constant of 2.5 s, in flight and while nothing is
-                                     * doubted. Limits: GRAV +-1.5 N */
-    bool hover_learned;                  /* hover_n was learned in this flight; it stays valid while the
-                                          * pilot has the throttle */
-    float learned_s;                /* how long hover_n has been learned, at most 2.5 s */
-    float setpoint_n;                /* thrust that the mode computes */
-    float transfer_n;                /* added to setpoint_n; fades to 0: bumpless transfer between modes */
-    float thrust_n;                 /* previous command */
+    float reach_m;      /* reference that `reach` watches */
+    bool out_of_reach;  /* the vehicle does not get to the reference in force */
+    float hover_n;      /* sure hover thrust: from the estimator, or else the mean of the
+                         * thrust with a time constant of 2.5 s, in flight and while nothing is
+                         * doubted. Limits: GRAV +-1.5 N */
+    bool hover_learned; /* hover_n was learned in this flight; it stays valid while the
+                         * pilot has the throttle */
+    float learned_s;    /* how long hover_n has been learned, at most 2.5 s */
+    float setpoint_n;   /* thrust that the mode computes */
+    float transfer_n;   /* added to setpoint_n; fades to 0: bumpless transfer between modes */
+    float thrust_n;     /* previous command */
 } flight_t;
 
 void flight_init(flight_t *flight);
@@ -81,7 +81,8 @@ void flight_init(flight_t *flight);
  *
  * Descents use law EST's estimate while it is fresh, whichever law is chosen. Without it they use the
  * heights alone; without heights they are open loop. */
-void flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in, flight_outputs_t *out);
+void flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in,
+                 flight_outputs_t *out);
 
 /* Events that release the next cycle, FLIGHT_RELEASE_*. PD and PID: as the parameter RELEASE says. PIDT:
  * each height. EST, and every law while the estimator flies: each height and each IMU frame. flight_step()

@@ -18,50 +18,50 @@
  * time slightly later than now_us counts as now_us. Two cycles must not be more than 71 minutes apart. */
 typedef struct {
     uint32_t now_us;
-    bool height_valid;              /* the latest scan gave a height; false: altitude is not read */
-    altitude_t altitude;            /* a height outside -50 .. 5000 mm, or NaN, counts as not valid */
-    uint32_t height_time_us;        /* arrival of the latest valid height; undefined before the first */
-    uint32_t height_sequence;       /* +1 per valid height; 0 = never one */
-    bool attitude_ready;            /* the offset of the angles is known */
-    float roll_rad;                 /* median of the latest five frames, > 0: mirror's side up; not used by
-                                     * laws PD and PID */
-    float pitch_rad;                /* as roll_rad, > 0: nose up */
-    uint16_t tilted_frames;         /* consecutive frames over 45 degrees, where frames come faster than
-                                     * cycles; else 0 */
-    uint32_t attitude_time_us;      /* arrival of the latest IMU frame */
-    uint32_t height_stamp_ms;       /* 24-bit sensor time of that scan; for laws PIDT and EST */
-    uint32_t height_age_us;         /* from its rays to its arrival, when nothing delays it; for PIDT and
-                                     * EST */
-    const imu_sample_t *frames;   /* latest frames, oldest first, for law EST. May contain frames of
-                                   * earlier cycles. Borrowed for the call; NULL when frame_count is 0 */
+    bool height_valid;          /* the latest scan gave a height; false: altitude is not read */
+    altitude_t altitude;        /* a height outside -50 .. 5000 mm, or NaN, counts as not valid */
+    uint32_t height_time_us;    /* arrival of the latest valid height; undefined before the first */
+    uint32_t height_sequence;   /* +1 per valid height; 0 = never one */
+    bool attitude_ready;        /* the offset of the angles is known */
+    float roll_rad;             /* median of the latest five frames, > 0: mirror's side up; not used by
+                                 * laws PD and PID */
+    float pitch_rad;            /* as roll_rad, > 0: nose up */
+    uint16_t tilted_frames;     /* consecutive frames over 45 degrees, where frames come faster than
+                                 * cycles; else 0 */
+    uint32_t attitude_time_us;  /* arrival of the latest IMU frame */
+    uint32_t height_stamp_ms;   /* 24-bit sensor time of that scan; for laws PIDT and EST */
+    uint32_t height_age_us;     /* from its rays to its arrival, when nothing delays it; for PIDT and
+                                 * EST */
+    const imu_sample_t *frames; /* latest frames, oldest first, for law EST. May contain frames of
+                                 * earlier cycles. Borrowed for the call; NULL when frame_count is 0 */
     uint16_t frame_count;
-    float reference_m;              /* metres, read when reference_sequence changes; ignored outside 0 ..
-                                     * FLIGHT_REFERENCE_MAX_M */
-    uint32_t reference_sequence;    /* +1 per accepted #SETR, 0 m included */
-    uint32_t link_time_us;          /* arrival of the latest complete valid command line */
-    uint32_t link_sequence;         /* +1 per such line; 0 = never one */
-    bool arm;                       /* latest request to arm (or disarm); read when arm_sequence changes */
+    float reference_m;           /* metres, read when reference_sequence changes; ignored outside 0 ..
+                                  * FLIGHT_REFERENCE_MAX_M */
+    uint32_t reference_sequence; /* +1 per accepted #SETR, 0 m included */
+    uint32_t link_time_us;       /* arrival of the latest complete valid command line */
+    uint32_t link_sequence;      /* +1 per such line; 0 = never one */
+    bool arm;                    /* latest request to arm (or disarm); read when arm_sequence changes */
     uint32_t arm_sequence;
-    bool has_throttle;             /* false: the pilot has the throttle (from the pin); always true without
-                                    * the pin */
+    bool has_throttle; /* false: the pilot has the throttle (from the pin); always true without
+                        * the pin */
 } flight_inputs_t;
 
 /* Events that can release the next cycle, as bits of one word. A cycle also runs after a time-out. */
-#define FLIGHT_RELEASE_PERIOD 1U    /* the control period */
-#define FLIGHT_RELEASE_HEIGHT 2U    /* a scan, with a height or without one */
-#define FLIGHT_RELEASE_FRAME 4U     /* an IMU frame */
+#define FLIGHT_RELEASE_PERIOD 1U /* the control period */
+#define FLIGHT_RELEASE_HEIGHT 2U /* a scan, with a height or without one */
+#define FLIGHT_RELEASE_FRAME 4U  /* an IMU frame */
 
 typedef struct {
-    float thrust_n;                 /* commanded, newtons per motor, 0 .. THRUST_MAX_N */
-    float pulse_us;                 /* throttle pulse, thrust.h */
-    float idle_n;                   /* minimum of thrust_n: the idle while armed, else 0 */
+    float thrust_n; /* commanded, newtons per motor, 0 .. THRUST_MAX_N */
+    float pulse_us; /* throttle pulse, thrust.h */
+    float idle_n;   /* minimum of thrust_n: the idle while armed, else 0 */
     flight_state_t state;
-    uint16_t flags;                 /* FLIGHT_FLAG_* */
-    uint16_t doubts;                /* DOUBT_*, integrity.h */
-    float reference_m;              /* reference in force, 0 = none */
-    float estimate_mm;              /* height that the law uses; NAN: not known */
-    float innovation_mm;            /* latest height minus predicted height; NAN where nothing is predicted */
-    uint16_t releases;              /* FLIGHT_RELEASE_*: events that release the next cycle */
+    uint16_t flags;      /* FLIGHT_FLAG_* */
+    uint16_t doubts;     /* DOUBT_*, integrity.h */
+    float reference_m;   /* reference in force, 0 = none */
+    float estimate_mm;   /* height that the law uses; NAN: not known */
+    float innovation_mm; /* latest height minus predicted height; NAN where nothing is predicted */
+    uint16_t releases;   /* FLIGHT_RELEASE_*: events that release the next cycle */
 } flight_outputs_t;
 
 #endif

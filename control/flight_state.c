@@ -1,4 +1,5 @@
-/* The order of the rows counts: the first that applies is taken, so the pilot's switch and a tilt come first. */
+/* The order of the rows counts: the first that applies is taken, so the pilot's switch and a tilt come first.
+ */
 #include "control/flight_state.h"
 
 #define CAN_FLY (FLIGHT_IF_REFERENCE | FLIGHT_IF_READY | FLIGHT_IF_HEIGHT)
@@ -58,11 +59,12 @@ const flight_transition_t flight_transitions[FLIGHT_TRANSITION_COUNT] = {
 };
 
 static const char *const state_names[] = {
-    [FLIGHT_GROUND] = "GROUND",     [FLIGHT_TAKEOFF] = "TAKEOFF",       [FLIGHT_FLYING] = "FLYING",
-    [FLIGHT_FLOATING] = "FLOATING", [FLIGHT_COASTING] = "COASTING",     [FLIGHT_DESCENDING] = "DESCENDING",
+    [FLIGHT_GROUND] = "GROUND",     [FLIGHT_TAKEOFF] = "TAKEOFF",   [FLIGHT_FLYING] = "FLYING",
+    [FLIGHT_FLOATING] = "FLOATING", [FLIGHT_COASTING] = "COASTING", [FLIGHT_DESCENDING] = "DESCENDING",
     [FLIGHT_LANDING] = "LANDING",   [FLIGHT_LOWERING] = "LOWERING", [FLIGHT_CUT] = "CUT",
 };
-typedef char every_state_has_a_name[(sizeof state_names / sizeof state_names[0] == FLIGHT_STATE_COUNT) ? 1 : -1];
+typedef char
+    every_state_has_a_name[(sizeof state_names / sizeof state_names[0] == FLIGHT_STATE_COUNT) ? 1 : -1];
 
 const char *flight_state_name(flight_state_t state)
 {
@@ -73,7 +75,8 @@ flight_state_t flight_next_state(flight_state_t from, uint16_t conditions)
 {
     for (uint16_t i = 0U; i < FLIGHT_TRANSITION_COUNT; ++i) {
         const flight_transition_t *row = &flight_transitions[i];
-        if (row->from == from && (conditions & row->all_of) == row->all_of && (conditions & row->none_of) == 0U) {
+        if (row->from == from && (conditions & row->all_of) == row->all_of &&
+            (conditions & row->none_of) == 0U) {
             return row->to;
         }
     }

@@ -3,8 +3,8 @@
 #include <math.h>
 
 #define UNIT_ERROR 0.15F
-#define TILT_LEAST_RAD 0.13962634F  /* 8 degrees */
-#define TILT_MOST_RAD 1.0471976F    /* 60 degrees */
+#define TILT_LEAST_RAD 0.13962634F /* 8 degrees */
+#define TILT_MOST_RAD 1.0471976F   /* 60 degrees */
 #define OTHER_SHARE 0.5F
 #define PI_F 3.14159265F
 
@@ -19,7 +19,8 @@ bool imu_find_level(parameters_t *parameters, const imu_raw_t *raw)
     for (uint16_t i = 0U; raw->has_acceleration && i < sizeof units / sizeof units[0]; ++i) {
         if (fabsf(down_counts - units[i]) <= UNIT_ERROR * units[i] && side_counts < 0.5F * down_counts) {
             (void)parameters_set(parameters, PARAMETER_IUNIT, units[i]);
-            (void)parameters_set(parameters, PARAMETER_IDOWN, (float)((raw->z_counts < 0.0F) ? DOWN_MINUS_Z : DOWN_Z));
+            (void)parameters_set(parameters, PARAMETER_IDOWN,
+                                 (float)((raw->z_counts < 0.0F) ? DOWN_MINUS_Z : DOWN_Z));
             return true;
         }
     }

@@ -39,8 +39,8 @@ attitude_t imu_map_angles(const imu_mapping_t *mapping, const attitude_t *imu)
 }
 
 /* Gravity along y grows with the IMU's roll, along x it falls with its pitch. */
-void imu_map_acceleration(const imu_mapping_t *mapping, const imu_raw_t *raw, float *forward_mps2, float *right_mps2,
-                          float *down_mps2)
+void imu_map_acceleration(const imu_mapping_t *mapping, const imu_raw_t *raw, float *forward_mps2,
+                          float *right_mps2, float *down_mps2)
 {
     const float scale = GRAVITY_MPS2 / mapping->counts_per_g;
     const float right = is_roll(mapping->roll) ? raw->y_counts : -raw->x_counts;

@@ -21,8 +21,8 @@ typedef struct {
 } imu_raw_t;
 
 typedef struct {
-    uint16_t roll, pitch;   /* control_axis_t: the IMU's angle that is the vehicle's roll or pitch */
-    float counts_per_g;     /* of the accelerometer; < 0: it measures with the opposite sign */
+    uint16_t roll, pitch; /* control_axis_t: the IMU's angle that is the vehicle's roll or pitch */
+    float counts_per_g;   /* of the accelerometer; < 0: it measures with the opposite sign */
 } imu_mapping_t;
 
 imu_mapping_t imu_mapping_of(const parameters_t *parameters);
@@ -32,8 +32,8 @@ imu_mapping_t imu_mapping_of(const parameters_t *parameters);
 attitude_t imu_map_angles(const imu_mapping_t *mapping, const attitude_t *imu);
 /* Converts an acceleration to the vehicle's axes, m/s2. The sign is that of the force that carries the
  * vehicle's weight as a scale shows it: at rest and level 0, 0, +9.81. */
-void imu_map_acceleration(const imu_mapping_t *mapping, const imu_raw_t *raw, float *forward_mps2, float *right_mps2,
-                          float *down_mps2);
+void imu_map_acceleration(const imu_mapping_t *mapping, const imu_raw_t *raw, float *forward_mps2,
+                          float *right_mps2, float *down_mps2);
 
 /* Radians to degrees, the IMU's unit on the wire. */
 float imu_degrees(float rad);

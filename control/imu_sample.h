@@ -9,15 +9,15 @@
 #include "control/attitude.h"
 
 typedef struct {
-    uint32_t sequence;          /* frames so far; 0 = none yet */
+    uint32_t sequence; /* frames so far; 0 = none yet */
     uint32_t arrival_us;
-    bool ready;                 /* the offset of the angles is known */
-    attitude_t level;           /* offset removed */
-    attitude_t median;          /* median of this frame and the four before it */
+    bool ready;        /* the offset of the angles is known */
+    attitude_t level;  /* offset removed */
+    attitude_t median; /* median of this frame and the four before it */
     bool has_acceleration;
     /* As a scale would show it: at rest and level 0, 0, +9.81. */
     float forward_mps2, right_mps2, down_mps2;
-    uint32_t malformed;         /* frames refused so far */
+    uint32_t malformed; /* frames refused so far */
 } imu_sample_t;
 
 #endif

@@ -7,7 +7,8 @@
 
 #define HALF_TURN_RAD 3.14159265F
 
-/* Tilt: 20 degrees within one frame are 800 degrees per second. A burst of six bad frames shows in six medians. */
+/* Tilt: 20 degrees within one frame are 800 degrees per second. A burst of six bad frames shows in six
+ * medians. */
 #define JUMP_RAD 0.35F
 #define JUMPS_HELD 6U
 #define ANGLE_MAX_RAD 7.0F
@@ -21,7 +22,8 @@
 #define HEIGHT_MIN_MM (-50.0F)
 #define HEIGHT_MAX_MM 5000.0F
 
-/* A blocked beam: its length is as still as a sensor can tell it, 4 mm, and the height is not. Shares are of 0.1 s. */
+/* A blocked beam: its length is as still as a sensor can tell it, 4 mm, and the height is not. Shares are of
+ * 0.1 s. */
 #define MEAN_SHARE 0.13F
 #define SWING_SHARE 0.08F
 #define SWING_MOST_MM 30.0F
@@ -43,8 +45,8 @@
 #define OLD_S 2.0F
 #define WARM_S 0.5F
 #define STANDING_TIME_S 1.0F
-#define LAG_S 0.15F         /* motors and delay, as one */
-#define FELT_LEAK_PER_S 1.8F    /* of a witness that is OLD_S old; in proportion before */
+#define LAG_S 0.15F          /* motors and delay, as one */
+#define FELT_LEAK_PER_S 1.8F /* of a witness that is OLD_S old; in proportion before */
 #define FELT_PULL_PER_S2 0.81F
 #define PUSHED_LEAK_PER_S 0.4F
 
@@ -59,16 +61,18 @@
 #define STEPS_TIME_S 2.0F
 #define STEPS_MAX 12.0F
 
-/* Standing: the thrust tells a fall that nobody feels. 0.9 degrees, both angles together: in the air it sways more. */
+/* Standing: the thrust tells a fall that nobody feels. 0.9 degrees, both angles together: in the air it sways
+ * more. */
 #define FALL_MPS 0.8F
 #define STANDS_S 0.6F
 #define SWAY_TIME_S 1.5F
 #define SWAY_RAD2 2.5e-4F
-#define STILL_S 1.0F /* chosen: two thirds of SWAY_TIME_S */
-#define STILL_TIME_S 2.0F /* chosen: an offset of 0.15 m/s2 makes 0.3 m/s of it */
-#define FELL_MPS 0.4F /* chosen: half of the fall that is asked for */
+#define STILL_S 1.0F        /* chosen: two thirds of SWAY_TIME_S */
+#define STILL_TIME_S 2.0F   /* chosen: an offset of 0.15 m/s2 makes 0.3 m/s of it */
+#define FELL_MPS 0.4F       /* chosen: half of the fall that is asked for */
 #define FALL_STILL_MPS 0.5F /* chosen: above that half */
-#define UNHEARD_S 0.5F /* without heights the estimate's offset of the accelerometer follows what the thrust should do */
+#define UNHEARD_S \
+    0.5F /* without heights the estimate's offset of the accelerometer follows what the thrust should do */
 #define SWAY_AIR_RAD2 4.0e-4F
 
 /* Verdicts. */
@@ -87,7 +91,7 @@
 #define RUN_AWAY_MPS 0.7F
 #define RUN_AWAY_M 0.28F
 #define STILL_MPS 0.2F
-#define CONTENT_M 0.10F     /* a law that is where it wants to be has nothing that a lie could do */
+#define CONTENT_M 0.10F /* a law that is where it wants to be has nothing that a lie could do */
 #define CONTENT_SHARE 1.8F
 #define UNCONFIRMED_M 0.35F
 #define UNCONFIRMED_N 0.2F
@@ -138,7 +142,8 @@ static bool believe_tilt(integrity_t *i, float roll_rad, float pitch_rad, uint32
 {
     const bool recent = i->levelled && time_us - i->tilt_time_us <= TILT_GAP_US;
     const bool told = fabsf(roll_rad) < ANGLE_MAX_RAD && fabsf(pitch_rad) < ANGLE_MAX_RAD; /* no NaN */
-    const bool jump = turn_rad(i->roll_rad, roll_rad) > JUMP_RAD || turn_rad(i->pitch_rad, pitch_rad) > JUMP_RAD;
+    const bool jump = turn_rad(i->roll_rad, roll_rad) > JUMP_RAD ||
+                      turn_rad(i->pitch_rad, pitch_rad) > JUMP_RAD;
 
     if (!told) {
         return false;
@@ -167,7 +172,8 @@ void integrity_tilt(integrity_t *integrity, const imu_sample_t *frames, uint16_t
         const imu_sample_t *frame = &frames[k];
         if ((int32_t)(frame->sequence - integrity->tilt_sequence) > 0) {
             integrity->tilt_sequence = frame->sequence;
-            if (!believe_tilt(integrity, frame->median.roll_rad, frame->median.pitch_rad, frame->arrival_us)) {
+            if (!believe_tilt(integrity, frame->median.roll_rad, frame->median.pitch_rad,
+                              frame->arrival_us)) {
                 integrity->unfit_sequence = frame->sequence;
             }
         }
@@ -179,16 +185,17 @@ void integrity_tilt(integrity_t *integrity, const imu_sample_t *frames, uint16_t
 
 /* ---- scans */
 
-/* A beam that is blocked has a length of its own: it does not grow and shrink as the mirror rises and falls with the tilt, and
- * the height made of it does. */
+/* A beam that is blocked has a length of its own: it does not grow and shrink as the mirror rises and falls
+ * with the tilt, and the height made of it does. */
 static void watch_slant(integrity_t *i, const altitude_t *altitude)
 {
     const float seen_mm[2] = {altitude->slant_mm, altitude->height_mm};
 
     for (uint16_t k = 0U; k < 2U; ++k) {
         const float off_mm = between(-SWING_MOST_MM, seen_mm[k] - i->mean_mm[k], SWING_MOST_MM);
-        i->mean_mm[k] = (fabsf(seen_mm[k] - i->mean_mm[k]) > SWING_MOST_MM) ? seen_mm[k]
-                                                                             : i->mean_mm[k] + MEAN_SHARE * off_mm;
+        i->mean_mm[k] = (fabsf(seen_mm[k] - i->mean_mm[k]) > SWING_MOST_MM)
+                            ? seen_mm[k]
+                            : i->mean_mm[k] + MEAN_SHARE * off_mm;
         i->swing_mm2[k] += SWING_SHARE * (off_mm * off_mm - i->swing_mm2[k]);
     }
 }
@@ -200,8 +207,8 @@ static bool is_rigid(const integrity_t *i)
 
 bool integrity_scan(integrity_t *integrity, const altitude_t *altitude)
 {
-    const bool copy = altitude->spread_mm > 0.0F && altitude->slant_mm == integrity->slant_mm
-                   && altitude->spread_mm == integrity->spread_mm;
+    const bool copy = altitude->spread_mm > 0.0F && altitude->slant_mm == integrity->slant_mm &&
+                      altitude->spread_mm == integrity->spread_mm;
 
     integrity->slant_mm = altitude->slant_mm;
     integrity->spread_mm = altitude->spread_mm;
@@ -213,8 +220,8 @@ bool integrity_scan(integrity_t *integrity, const altitude_t *altitude)
     if (altitude->spread_mm > 0.0F && fabsf(altitude->height_mm) <= HEIGHT_MAX_MM) {
         watch_slant(integrity, altitude);
     }
-    return integrity->copies < COPIES_MAX && altitude->height_mm >= HEIGHT_MIN_MM
-        && altitude->height_mm <= HEIGHT_MAX_MM;
+    return integrity->copies < COPIES_MAX && altitude->height_mm >= HEIGHT_MIN_MM &&
+           altitude->height_mm <= HEIGHT_MAX_MM;
 }
 
 /* ---- witnesses */
@@ -288,8 +295,8 @@ static void watch_fall(integrity_t *i, float dt_s)
     watch_still(i, dt_s);
     const float felt_mps = i->felt.speed_mps - i->still_mps[0];
     const float pushed_mps = i->pushed.speed_mps - i->still_mps[1];
-    const bool apart = i->pushed.speed_mps < i->felt.speed_mps - FALL_MPS
-                    || (i->still_s > STILL_S && pushed_mps < felt_mps - FALL_STILL_MPS);
+    const bool apart = i->pushed.speed_mps < i->felt.speed_mps - FALL_MPS ||
+                       (i->still_s > STILL_S && pushed_mps < felt_mps - FALL_STILL_MPS);
     const bool falls = counts(&i->pushed) && counts(&i->felt) && apart && i->pushed.speed_mps < -FALL_MPS;
 
     i->stands_s = (falls && i->sway_rad2 < SWAY_RAD2) ? i->stands_s + dt_s : 0.0F;
@@ -326,13 +333,15 @@ static void feel(integrity_t *i, const flown_t *flown, const imu_sample_t *frame
     }
 }
 
-void integrity_frames(integrity_t *integrity, const flown_t *flown, const imu_sample_t *frames, uint16_t count)
+void integrity_frames(integrity_t *integrity, const flown_t *flown, const imu_sample_t *frames,
+                      uint16_t count)
 {
     for (uint16_t k = 0U; k < count; ++k) {
         const imu_sample_t *frame = &frames[k];
         const bool is_new = (int32_t)(frame->sequence - integrity->frame_sequence) > 0;
         const bool fit = (int32_t)(frame->sequence - integrity->unfit_sequence) > 0;
-        if (is_new && fit && frame->ready && frame->has_acceleration && fabsf(motion_up_mps2(frame)) < UP_MAX_MPS2) {
+        if (is_new && fit && frame->ready && frame->has_acceleration &&
+            fabsf(motion_up_mps2(frame)) < UP_MAX_MPS2) {
             integrity->frame_sequence = frame->sequence;
             feel(integrity, flown, frame);
         }
@@ -358,8 +367,8 @@ void integrity_thrust(integrity_t *integrity, const flown_t *flown)
         return;
     }
     const float excess_mps2 = flown->authority_mps2_per_n * (integrity->lagged_n * upright - flown->hover_n);
-    const float mps2 = (excess_mps2 - flown->damping_per_s * integrity->pushed.speed_mps)
-                     / (1.0F + flown->damping_per_s * dt_s);
+    const float mps2 = (excess_mps2 - flown->damping_per_s * integrity->pushed.speed_mps) /
+                       (1.0F + flown->damping_per_s * dt_s);
     move(&integrity->pushed, mps2, dt_s);
 }
 
@@ -378,10 +387,12 @@ float integrity_speed_mps(const integrity_t *integrity)
 
 static bool follows(const witness_t *witness, float rise_m, float gap_s)
 {
-    return witness->running_s > 0.0F && fabsf(rise_m - witness->speed_mps * gap_s) <= STEP_M + GAP_ALLOWS_MPS * gap_s;
+    return witness->running_s > 0.0F &&
+           fabsf(rise_m - witness->speed_mps * gap_s) <= STEP_M + GAP_ALLOWS_MPS * gap_s;
 }
 
-static void compare(witness_t *witness, float rise_m, float gap_s, float age_s, float leak_per_s, float pull_per_s2)
+static void compare(witness_t *witness, float rise_m, float gap_s, float age_s, float leak_per_s,
+                    float pull_per_s2)
 {
     witness->off_m += rise_m;
     const float seen_m = witness->off_m + witness->speed_mps * age_s;
@@ -390,7 +401,8 @@ static void compare(witness_t *witness, float rise_m, float gap_s, float age_s, 
     witness->seen_m = seen_m;
 }
 
-/* The first climb that shows in the heights: what was foretold by a thrust that was not known yet is forgotten. */
+/* The first climb that shows in the heights: what was foretold by a thrust that was not known yet is
+ * forgotten. */
 static void confirm(integrity_t *i)
 {
     i->pushed.speed_mps = i->rise_mps;
@@ -409,7 +421,8 @@ static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
     const float rise_m = height_m - i->height_m;
     const bool fresh = i->heard && gap_s < GAP_MAX_S;
     const bool jumps = fabsf(rise_m) > STEP_M;
-    const bool step = fresh && jumps && !follows(&i->felt, rise_m, gap_s) && !follows(&i->pushed, rise_m, gap_s);
+    const bool step = fresh && jumps && !follows(&i->felt, rise_m, gap_s) &&
+                      !follows(&i->pushed, rise_m, gap_s);
     const float age = i->felt.running_s / OLD_S;
 
     i->proved = i->proved && !i->standing;
@@ -428,7 +441,8 @@ static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
     i->before_rise_m = (i->since_rise_s > 0.0F) ? i->before_rise_m : i->height_m;
     i->height_m = height_m;
     i->heard = true;
-    i->rise_mps += gap_s / (RISE_TIME_S + gap_s) * ((step ? i->rise_mps : rise_m / fmaxf(gap_s, 0.01F)) - i->rise_mps);
+    i->rise_mps += gap_s / (RISE_TIME_S + gap_s) *
+                   ((step ? i->rise_mps : rise_m / fmaxf(gap_s, 0.01F)) - i->rise_mps);
     i->steps = fmaxf(i->steps * (1.0F - fminf(gap_s / STEPS_TIME_S, 1.0F)), 0.0F) + (step ? 1.0F : 0.0F);
     if (!fresh) {
         i->felt.off_m = 0.0F;
@@ -471,9 +485,9 @@ static bool both_run_away(const integrity_t *i)
 {
     const float felt_mps = (i->felt.speed_mps - i->rise_mps) / i->shaken;
     const float pushed_mps = i->pushed.speed_mps - i->rise_mps;
-    return fabsf(i->rise_mps) < STILL_MPS && felt_mps * pushed_mps > 0.0F && felt_mps * i->felt.seen_m < 0.0F
-        && fminf(fabsf(felt_mps), fabsf(pushed_mps)) > RUN_AWAY_MPS
-        && fminf(fabsf(felt_off_m(i)), fabsf(i->pushed.seen_m)) > RUN_AWAY_M;
+    return fabsf(i->rise_mps) < STILL_MPS && felt_mps * pushed_mps > 0.0F &&
+           felt_mps * i->felt.seen_m < 0.0F && fminf(fabsf(felt_mps), fabsf(pushed_mps)) > RUN_AWAY_MPS &&
+           fminf(fabsf(felt_off_m(i)), fabsf(i->pushed.seen_m)) > RUN_AWAY_M;
 }
 
 /* It should still stand, by the heights; but it sways, and has felt a climb. */
@@ -495,14 +509,15 @@ static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
     if (felt && pushes && both_run_away(i)) {
         return true;
     }
-    if (i->unconfirmed && (i->proved || i->felt_least_m < -WITH_M) && i->pushed.running_s >= OLD_S && fabsf(pushed_m) > UNCONFIRMED_M && pushes_in_vain(i, flown, UNCONFIRMED_N)
-        && !(feels_against(i, WITH_M) && felt_m * pushed_m < 0.0F)) {
+    if (i->unconfirmed && (i->proved || i->felt_least_m < -WITH_M) && i->pushed.running_s >= OLD_S &&
+        fabsf(pushed_m) > UNCONFIRMED_M && pushes_in_vain(i, flown, UNCONFIRMED_N) &&
+        !(feels_against(i, WITH_M) && felt_m * pushed_m < 0.0F)) {
         return true;
     }
     if (felt && pushes) {
         const float sure = (fabsf(flown->wanted_m) < CONTENT_M) ? CONTENT_SHARE : 1.0F;
-        return felt_m * pushed_m > 0.0F && fmaxf(fabsf(felt_m), fabsf(pushed_m)) > sure * AGAINST_M
-            && fminf(fabsf(felt_m), fabsf(pushed_m)) > sure * BOTH_M;
+        return felt_m * pushed_m > 0.0F && fmaxf(fabsf(felt_m), fabsf(pushed_m)) > sure * AGAINST_M &&
+               fminf(fabsf(felt_m), fabsf(pushed_m)) > sure * BOTH_M;
     }
     if (pushes) {
         return i->vain_s > VAIN_S;
@@ -512,8 +527,8 @@ static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
 
 static bool imu_is_wrong(const integrity_t *i)
 {
-    return feels_against(i, ALONE_M) && counts(&i->pushed)
-        && (!against(&i->pushed, WITH_M) || i->felt.seen_m * i->pushed.seen_m < 0.0F);
+    return feels_against(i, ALONE_M) && counts(&i->pushed) &&
+           (!against(&i->pushed, WITH_M) || i->felt.seen_m * i->pushed.seen_m < 0.0F);
 }
 
 static bool thrust_is_wrong(const integrity_t *i, const flown_t *flown)
@@ -524,7 +539,8 @@ static bool thrust_is_wrong(const integrity_t *i, const flown_t *flown)
     if (flown->displaced) {
         return true;
     }
-    return fabsf(flown->wanted_m) > VAIN_M && against(&i->pushed, POWERLESS_M) && feels(i) && !feels_against(i, WITH_M) && pushes_in_vain(i, flown, PUSH_N);
+    return fabsf(flown->wanted_m) > VAIN_M && against(&i->pushed, POWERLESS_M) && feels(i) &&
+           !feels_against(i, WITH_M) && pushes_in_vain(i, flown, PUSH_N);
 }
 
 static bool agrees(const integrity_t *i)
@@ -538,7 +554,7 @@ static void judge_again(integrity_t *i, float gap_s)
 {
     i->agreed_s = (agrees(i) && !is_rigid(i)) ? i->agreed_s + gap_s : 0.0F;
     if (i->agreed_s > AGREED_S) {
-        i->doubts &= (uint16_t)~(DOUBT_SIGHT | DOUBT_THRUST);
+        i->doubts &= (uint16_t) ~(DOUBT_SIGHT | DOUBT_THRUST);
         forget(i);
     } else if (feels_against(i, AGAINST_M) || against(&i->pushed, AGAINST_M)) {
         forget(i);
@@ -576,9 +592,12 @@ void integrity_height(integrity_t *integrity, const flown_t *flown, float height
 {
     hear(integrity, height_m, gap_s, age_s);
     integrity->unheard_s = integrity_doubts(integrity, DOUBT_SIGHT) ? integrity->unheard_s : 0.0F;
-    integrity->felt_least_m = integrity->unconfirmed ? fminf(integrity->felt_least_m, felt_off_m(integrity)) : 0.0F;
-    integrity->vain_s = (pushes_in_vain(integrity, flown, PUSH_N) && fabsf(integrity->rise_mps) < VAIN_MPS
-                         && fabsf(flown->wanted_m) > VAIN_M) ? integrity->vain_s + gap_s : 0.0F;
+    integrity->felt_least_m = integrity->unconfirmed ? fminf(integrity->felt_least_m, felt_off_m(integrity))
+                                                     : 0.0F;
+    integrity->vain_s = (pushes_in_vain(integrity, flown, PUSH_N) && fabsf(integrity->rise_mps) < VAIN_MPS &&
+                         fabsf(flown->wanted_m) > VAIN_M)
+                            ? integrity->vain_s + gap_s
+                            : 0.0F;
     integrity->quiet_s = (flown->wanted_m < QUIET_M) ? integrity->quiet_s + gap_s : 0.0F;
     if (!flown->ours) {
         forget(integrity);

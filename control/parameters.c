@@ -7,9 +7,11 @@
 static const char *const law_names[] = {"PD", "PID", "PIDT", "EST"};
 typedef char every_law_has_a_name[(sizeof law_names / sizeof law_names[0] == LAW_COUNT) ? 1 : -1];
 static const char *const release_names[] = {[RELEASE_FREE] = "FREE", [RELEASE_SCAN] = "SCAN"};
-typedef char every_release_has_a_name[(sizeof release_names / sizeof release_names[0] == RELEASE_COUNT) ? 1 : -1];
+typedef char
+    every_release_has_a_name[(sizeof release_names / sizeof release_names[0] == RELEASE_COUNT) ? 1 : -1];
 static const char *const terrain_names[] = {[TERRAIN_FOLLOW] = "FOLLOW", [TERRAIN_IGNORE] = "IGNORE"};
-typedef char every_terrain_has_a_name[(sizeof terrain_names / sizeof terrain_names[0] == TERRAIN_COUNT) ? 1 : -1];
+typedef char
+    every_terrain_has_a_name[(sizeof terrain_names / sizeof terrain_names[0] == TERRAIN_COUNT) ? 1 : -1];
 static const char *const plant_names[] = {[PLANT_THRUST] = "THRUST", [PLANT_CLIMB] = "CLIMB"};
 typedef char every_plant_has_a_name[(sizeof plant_names / sizeof plant_names[0] == PLANT_COUNT) ? 1 : -1];
 static const char *const sum_names[] = {[SUM_OFF] = "OFF", [SUM_ON] = "ON"};
@@ -17,8 +19,8 @@ typedef char every_sum_has_a_name[(sizeof sum_names / sizeof sum_names[0] == SUM
 static const char *const sel_names[] = {[SEL_NONE] = "NONE", [SEL_PIN] = "PIN"};
 typedef char every_sel_has_a_name[(sizeof sel_names / sizeof sel_names[0] == SEL_COUNT) ? 1 : -1];
 
-static const char *const axis_names[] = {[AXIS_ROLL] = "ROLL", [AXIS_MINUS_ROLL] = "-ROLL",
-                                         [AXIS_PITCH] = "PITCH", [AXIS_MINUS_PITCH] = "-PITCH"};
+static const char *const axis_names[] = {
+    [AXIS_ROLL] = "ROLL", [AXIS_MINUS_ROLL] = "-ROLL", [AXIS_PITCH] = "PITCH", [AXIS_MINUS_PITCH] = "-PITCH"};
 typedef char every_axis_has_a_name[(sizeof axis_names / sizeof axis_names[0] == AXIS_COUNT) ? 1 : -1];
 static const char *const down_names[] = {[DOWN_Z] = "Z", [DOWN_MINUS_Z] = "-Z"};
 typedef char every_down_has_a_name[(sizeof down_names / sizeof down_names[0] == DOWN_COUNT) ? 1 : -1];
@@ -31,45 +33,50 @@ const parameter_row_t parameter_table[PARAMETER_COUNT] = {
     [PARAMETER_DSAT] = {"DSAT", "N", 0.0F, THRUST_MAX_N, 0.0F, NULL, "PD, PID: most thrust below GRAV."},
     [PARAMETER_GRAV] = {"GRAV", "N", 0.0F, THRUST_MAX_N, 7.0F, NULL, "Gravity feed-forward per motor."},
     [PARAMETER_LAW] = {"LAW", "-", 0.0F, (float)(LAW_COUNT - 1), (float)LAW_EST, law_names, "Control law."},
-    [PARAMETER_RELEASE] = {"RELEASE", "-", 0.0F, (float)(RELEASE_COUNT - 1), (float)RELEASE_FREE, release_names,
-                            "PD, PID: every 108 ms or with each scan."},
+    [PARAMETER_RELEASE] = {"RELEASE", "-", 0.0F, (float)(RELEASE_COUNT - 1), (float)RELEASE_FREE,
+                           release_names, "PD, PID: every 108 ms or with each scan."},
     [PARAMETER_PKP] = {"PKP", "N/m", 0.0F, 50.0F, 6.0F, NULL, "PIDT: proportional gain."},
     [PARAMETER_PKI] = {"PKI", "N/m/s", 0.0F, 50.0F, 1.4F, NULL, "PIDT: integral gain."},
     [PARAMETER_PKD] = {"PKD", "N*s/m", 0.0F, 50.0F, 2.6F, NULL, "PIDT: derivative gain."},
     [PARAMETER_POSK] = {"POSK", "1/s", 0.25F, 6.0F, 2.3F, NULL, "EST: speed per metre off the reference."},
-    [PARAMETER_VELK] = {"VELK", "1/s", 0.5F, 12.0F, 8.0F, NULL, "EST: acceleration per metre per second off."},
+    [PARAMETER_VELK] = {"VELK", "1/s", 0.5F, 12.0F, 8.0F, NULL,
+                        "EST: acceleration per metre per second off."},
     [PARAMETER_VUP] = {"VUP", "m/s", 0.125F, 1.5F, 0.7F, NULL, "EST: fastest climb."},
     [PARAMETER_VDN] = {"VDN", "m/s", 0.125F, 1.5F, 1.1F, NULL, "EST: fastest descent to a reference."},
-    [PARAMETER_TERRAIN] = {"TERRAIN", "-", 0.0F, (float)(TERRAIN_COUNT - 1), (float)TERRAIN_FOLLOW, terrain_names,
-                            "EST: keeps the height above the terrain, or passes over its steps."},
+    [PARAMETER_TERRAIN] = {"TERRAIN", "-", 0.0F, (float)(TERRAIN_COUNT - 1), (float)TERRAIN_FOLLOW,
+                           terrain_names,
+                           "EST: keeps the height above the terrain, or passes over its steps."},
     [PARAMETER_PLANT] = {"PLANT", "-", 0.0F, (float)(PLANT_COUNT - 1), (float)PLANT_THRUST, plant_names,
-                          "EST: what the autopilot's throttle commands."},
-    [PARAMETER_CRATE] = {"CRATE", "m/s/N", 0.125F, 5.0F, 1.0F, NULL, "EST: climb rate per newton with PLANT CLIMB."},
+                         "EST: what the autopilot's throttle commands."},
+    [PARAMETER_CRATE] = {"CRATE", "m/s/N", 0.125F, 5.0F, 1.0F, NULL,
+                         "EST: climb rate per newton with PLANT CLIMB."},
     [PARAMETER_LINK] = {"LINK", "s", 0.0F, 60.0F, 0.0F, NULL, "Longest silence of the link; 0 disarms."},
     [PARAMETER_SUM] = {"SUM", "-", 0.0F, (float)(SUM_COUNT - 1), (float)SUM_OFF, sum_names,
-                        "Whether every command line must carry its sum."},
+                       "Whether every command line must carry its sum."},
     [PARAMETER_SEL] = {"SEL", "-", 0.0F, (float)(SEL_COUNT - 1), (float)SEL_NONE, sel_names,
-                        "Whether a pin tells that the pilot has the throttle."},
-    [PARAMETER_IDLE] = {"IDLE", "%", 0.0F, 25.0F, 15.0F, NULL, "Least throttle while armed: keeps the motors turning."},
+                       "Whether a pin tells that the pilot has the throttle."},
+    [PARAMETER_IDLE] = {"IDLE", "%", 0.0F, 25.0F, 15.0F, NULL,
+                        "Least throttle while armed: keeps the motors turning."},
     [PARAMETER_IROLL] = {"IROLL", "-", 0.0F, (float)(AXIS_COUNT - 1), (float)AXIS_MINUS_ROLL, axis_names,
-                          "The IMU's angle that is the vehicle's roll, right side up."},
+                         "The IMU's angle that is the vehicle's roll, right side up."},
     [PARAMETER_IPITCH] = {"IPITCH", "-", 0.0F, (float)(AXIS_COUNT - 1), (float)AXIS_PITCH, axis_names,
-                           "The IMU's angle that is the vehicle's pitch, nose up."},
+                          "The IMU's angle that is the vehicle's pitch, nose up."},
     [PARAMETER_IDOWN] = {"IDOWN", "-", 0.0F, (float)(DOWN_COUNT - 1), (float)DOWN_Z, down_names,
-                          "Where the IMU's accelerometer feels gravity."},
-    [PARAMETER_IUNIT] = {"IUNIT", "1/g", 0.5F, 5000.0F, 256.0F, NULL, "Counts of the IMU's accelerometer per g."},
+                         "Where the IMU's accelerometer feels gravity."},
+    [PARAMETER_IUNIT] = {"IUNIT", "1/g", 0.5F, 5000.0F, 256.0F, NULL,
+                         "Counts of the IMU's accelerometer per g."},
     /* The seed's Annex III. Up to 500 mm: longer than any arm of a vehicle of this size. */
     [PARAMETER_DF] = {"DF", "mm", 0.0F, 500.0F, 105.0F, NULL, "Scanner to the front mirror."},
     [PARAMETER_LF] = {"LF", "mm", 0.0F, 500.0F, 100.0F, NULL,
-                       "Front mirror to the lowest point of the landing gear."},
+                      "Front mirror to the lowest point of the landing gear."},
     [PARAMETER_L] = {"L", "mm", 0.0F, 500.0F, 220.0F, NULL,
-                      "Vehicle's centre to the front mirror, to the right."},
+                     "Vehicle's centre to the front mirror, to the right."},
     [PARAMETER_D1] = {"D1", "mm", 0.0F, 500.0F, 115.0F, NULL, "Scanner to mirror 1, aft."},
     [PARAMETER_L1] = {"L1", "mm", 0.0F, 500.0F, 98.0F, NULL,
-                       "Mirror 1 to the lowest point of the landing gear."},
+                      "Mirror 1 to the lowest point of the landing gear."},
     [PARAMETER_D2] = {"D2", "mm", 0.0F, 500.0F, 107.0F, NULL, "Scanner to mirror 2, fore."},
     [PARAMETER_L2] = {"L2", "mm", 0.0F, 500.0F, 105.0F, NULL,
-                       "Mirror 2 to the lowest point of the landing gear."},
+                      "Mirror 2 to the lowest point of the landing gear."},
 };
 
 void parameters_init(parameters_t *parameters)

@@ -11,38 +11,38 @@
 #include <stdint.h>
 
 typedef enum {
-    PARAMETER_KP,       /* N/mm */
-    PARAMETER_KD,       /* N/mm per sample */
-    PARAMETER_KI,       /* N/mm per sample */
-    PARAMETER_USAT,     /* N above GRAV */
-    PARAMETER_DSAT,     /* N below GRAV */
-    PARAMETER_GRAV,     /* N per motor */
-    PARAMETER_LAW,      /* choice, control_law_t */
-    PARAMETER_RELEASE,  /* choice, control_release_t; of laws PD and PID */
-    PARAMETER_PKP,      /* N/m, law PIDT */
-    PARAMETER_PKI,      /* N/(m s) */
-    PARAMETER_PKD,      /* N s/m */
-    PARAMETER_POSK,     /* 1/s, law EST: height -> speed */
-    PARAMETER_VELK,     /* 1/s, law EST: speed -> acceleration */
-    PARAMETER_VUP,      /* m/s, law EST: fastest climb */
-    PARAMETER_VDN,      /* m/s, law EST: fastest descent */
-    PARAMETER_TERRAIN,  /* choice, control_terrain_t; law EST */
-    PARAMETER_PLANT,    /* choice, control_plant_t; law EST */
-    PARAMETER_CRATE,    /* m/s per N, with PLANT CLIMB */
-    PARAMETER_LINK,     /* s, 0 = link supervision off */
-    PARAMETER_SEL,      /* choice, control_sel_t */
-    PARAMETER_SUM,      /* choice, control_sum_t */
-    PARAMETER_IDLE,     /* % of the throttle's range, while armed */
-    PARAMETER_IROLL,    /* choice, control_axis_t */
-    PARAMETER_IPITCH,   /* likewise */
-    PARAMETER_IDOWN,    /* choice, control_down_t */
-    PARAMETER_IUNIT,    /* accelerometer counts per g */
-    PARAMETER_DF,       /* mm, the mirrors' places, control/altitude.h: front, */
+    PARAMETER_KP,      /* N/mm */
+    PARAMETER_KD,      /* N/mm per sample */
+    PARAMETER_KI,      /* N/mm per sample */
+    PARAMETER_USAT,    /* N above GRAV */
+    PARAMETER_DSAT,    /* N below GRAV */
+    PARAMETER_GRAV,    /* N per motor */
+    PARAMETER_LAW,     /* choice, control_law_t */
+    PARAMETER_RELEASE, /* choice, control_release_t; of laws PD and PID */
+    PARAMETER_PKP,     /* N/m, law PIDT */
+    PARAMETER_PKI,     /* N/(m s) */
+    PARAMETER_PKD,     /* N s/m */
+    PARAMETER_POSK,    /* 1/s, law EST: height -> speed */
+    PARAMETER_VELK,    /* 1/s, law EST: speed -> acceleration */
+    PARAMETER_VUP,     /* m/s, law EST: fastest climb */
+    PARAMETER_VDN,     /* m/s, law EST: fastest descent */
+    PARAMETER_TERRAIN, /* choice, control_terrain_t; law EST */
+    PARAMETER_PLANT,   /* choice, control_plant_t; law EST */
+    PARAMETER_CRATE,   /* m/s per N, with PLANT CLIMB */
+    PARAMETER_LINK,    /* s, 0 = link supervision off */
+    PARAMETER_SEL,     /* choice, control_sel_t */
+    PARAMETER_SUM,     /* choice, control_sum_t */
+    PARAMETER_IDLE,    /* % of the throttle's range, while armed */
+    PARAMETER_IROLL,   /* choice, control_axis_t */
+    PARAMETER_IPITCH,  /* likewise */
+    PARAMETER_IDOWN,   /* choice, control_down_t */
+    PARAMETER_IUNIT,   /* accelerometer counts per g */
+    PARAMETER_DF,      /* mm, the mirrors' places, control/altitude.h: front, */
     PARAMETER_LF,
     PARAMETER_L,
-    PARAMETER_D1,       /* aft, the seed's mirror 1, */
+    PARAMETER_D1, /* aft, the seed's mirror 1, */
     PARAMETER_L1,
-    PARAMETER_D2,       /* fore, the seed's mirror 2 */
+    PARAMETER_D2, /* fore, the seed's mirror 2 */
     PARAMETER_L2,
     PARAMETER_COUNT
 } parameter_id_t;
@@ -50,31 +50,39 @@ typedef enum {
 typedef enum { LAW_PD, LAW_PID, LAW_PIDT, LAW_EST, LAW_COUNT } control_law_t;
 typedef enum { RELEASE_FREE, RELEASE_SCAN, RELEASE_COUNT } control_release_t;
 typedef enum { TERRAIN_FOLLOW, TERRAIN_IGNORE, TERRAIN_COUNT } control_terrain_t;
-typedef enum { PLANT_THRUST, PLANT_CLIMB, PLANT_COUNT } control_plant_t; /* what the autopilot's throttle
-                                                                          * commands: thrust or climb rate */
+typedef enum {
+    PLANT_THRUST,
+    PLANT_CLIMB,
+    PLANT_COUNT
+} control_plant_t;                                         /* what the autopilot's throttle
+                                                            * commands: thrust or climb rate */
 typedef enum { SUM_OFF, SUM_ON, SUM_COUNT } control_sum_t; /* whether every command line must have its sum */
-typedef enum { SEL_NONE, SEL_PIN, SEL_COUNT } control_sel_t; /* how the firmware knows whether the pilot
-                                                              * has the throttle: it does not, or by a pin */
+typedef enum {
+    SEL_NONE,
+    SEL_PIN,
+    SEL_COUNT
+} control_sel_t; /* how the firmware knows whether the pilot
+                  * has the throttle: it does not, or by a pin */
 
 /* Which angle of the IMU is the vehicle's, and which end of its z axis points down. */
 typedef enum { AXIS_ROLL, AXIS_MINUS_ROLL, AXIS_PITCH, AXIS_MINUS_PITCH, AXIS_COUNT } control_axis_t;
 typedef enum { DOWN_Z, DOWN_MINUS_Z, DOWN_COUNT } control_down_t;
 
 typedef struct {
-    const char *name;               /* as typed after '#', upper case */
-    const char *unit;               /* "m", "N/mm", "N", "s", or "-" for a choice */
+    const char *name; /* as typed after '#', upper case */
+    const char *unit; /* "m", "N/mm", "N", "s", or "-" for a choice */
     float minimum;
     float maximum;
     float initial;
-    const char *const *choices;     /* NULL for a number; else maximum + 1 names, the value is an index */
-    const char *meaning;            /* one sentence */
+    const char *const *choices; /* NULL for a number; else maximum + 1 names, the value is an index */
+    const char *meaning;        /* one sentence */
 } parameter_row_t;
 
 extern const parameter_row_t parameter_table[PARAMETER_COUNT];
 
 typedef struct {
     float value[PARAMETER_COUNT];
-    uint32_t generation;            /* +1 with every accepted value, also an unchanged one */
+    uint32_t generation; /* +1 with every accepted value, also an unchanged one */
 } parameters_t;
 
 typedef enum { PARAMETER_ACCEPTED, PARAMETER_OUT_OF_RANGE } parameter_status_t;

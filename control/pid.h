@@ -18,18 +18,18 @@
 typedef struct {
     float kp_n_per_mm;
     float kd_n_per_mm;
-    float ki_n_per_mm;      /* 0 makes it the PD law */
+    float ki_n_per_mm; /* 0 makes it the PD law */
     float gravity_n;
-    float ascension_n;      /* >= 0 */
-    float descension_n;     /* >= 0 */
+    float ascension_n;  /* >= 0 */
+    float descension_n; /* >= 0 */
 } pid_gains_t;
 
 typedef struct {
     float integral_n;
     float last_error_mm;
-    bool primed;            /* last_error_mm is from the previous sample; false: the next sample has no
-                             * derivative */
-    bool saturated;         /* the latest sample was not integrated */
+    bool primed;    /* last_error_mm is from the previous sample; false: the next sample has no
+                     * derivative */
+    bool saturated; /* the latest sample was not integrated */
 } pid_state_t;
 
 /* Clears the integral action and the previous error. */

@@ -3,8 +3,8 @@
 #include <math.h>
 
 #define LOW_PASS_S 0.0199F /* 8 Hz */
-#define STEP_MIN_S 0.02F /* chosen: a scan takes 0.1 s, a shorter gap is a repeated one */
-#define STEP_MAX_S 0.5F /* chosen: five scans; a derivative over more tells nothing */
+#define STEP_MIN_S 0.02F   /* chosen: a scan takes 0.1 s, a shorter gap is a repeated one */
+#define STEP_MAX_S 0.5F    /* chosen: five scans; a derivative over more tells nothing */
 
 void pidt_reset(pidt_state_t *state)
 {
@@ -19,7 +19,8 @@ void pidt_resume(pidt_state_t *state)
 static void differentiate(pidt_state_t *state, float height_m, float dt_s)
 {
     if (dt_s > 0.0F) {
-        state->rate_mps += dt_s / (dt_s + LOW_PASS_S) * ((height_m - state->height_m) / dt_s - state->rate_mps);
+        state->rate_mps += dt_s / (dt_s + LOW_PASS_S) *
+                           ((height_m - state->height_m) / dt_s - state->rate_mps);
     } else {
         state->rate_mps = 0.0F;
     }
@@ -34,10 +35,12 @@ float pidt_step(pidt_state_t *state, const pidt_gains_t *gains, float reference_
     const float error_m = reference_m - height_m;
 
     differentiate(state, height_m, step_s);
-    const float other_n = gains->gravity_n + gains->kp_n_per_m * error_m - gains->kd_n_s_per_m * state->rate_mps;
+    const float other_n = gains->gravity_n + gains->kp_n_per_m * error_m -
+                          gains->kd_n_s_per_m * state->rate_mps;
     const float more_n = gains->ki_n_per_m_s * error_m * step_s;
     const float thrust_n = other_n + state->integral_n + more_n;
-    const bool further = (thrust_n > gains->most_n && more_n > 0.0F) || (thrust_n < gains->least_n && more_n < 0.0F);
+    const bool further = (thrust_n > gains->most_n && more_n > 0.0F) ||
+                         (thrust_n < gains->least_n && more_n < 0.0F);
 
     state->integral_n += further ? 0.0F : more_n;
     return fminf(fmaxf(other_n + state->integral_n, gains->least_n), gains->most_n);

@@ -11,14 +11,14 @@ typedef struct {
     float ki_n_per_m_s;
     float kd_n_s_per_m;
     float gravity_n;
-    float most_n, least_n;  /* limits of the thrust */
+    float most_n, least_n; /* limits of the thrust */
 } pidt_gains_t;
 
 typedef struct {
     float integral_n;
-    float height_m;         /* previous height */
-    float rate_mps;         /* vertical speed, low-passed, > 0 is up */
-    bool primed;            /* height_m has a value */
+    float height_m; /* previous height */
+    float rate_mps; /* vertical speed, low-passed, > 0 is up */
+    bool primed;    /* height_m has a value */
 } pidt_state_t;
 
 void pidt_reset(pidt_state_t *state);
@@ -29,6 +29,7 @@ void pidt_resume(pidt_state_t *state);
 /* One sample with a new height, dt_s after the previous one. When dt_s is outside 0.02 .. 0.5 s, or not
  * primed, this sample has no derivative and is not integrated. Returns newtons per motor, within least_n
  * .. most_n. */
-float pidt_step(pidt_state_t *state, const pidt_gains_t *gains, float reference_m, float height_m, float dt_s);
+float pidt_step(pidt_state_t *state, const pidt_gains_t *gains, float reference_m, float height_m,
+                float dt_s);
 
 #endif

@@ -15,7 +15,8 @@ uint32_t ray_clock_step(ray_clock_t *ray_clock, uint32_t stamp_ms, uint32_t arri
     const uint32_t gap_ms = (stamp_ms - ray_clock->stamp_ms) & STAMP_MASK;
     const uint32_t latest_us = ray_clock->earliest_us + gap_ms * (UINT32_C(1000) + DRIFT_US_PER_MS);
     const int32_t ahead_us = (int32_t)(latest_us - arrival_us);
-    const bool follows = ray_clock->started && gap_ms <= GAP_MAX_MS && ahead_us > -APART_MAX_US && ahead_us < APART_MAX_US;
+    const bool follows = ray_clock->started && gap_ms <= GAP_MAX_MS && ahead_us > -APART_MAX_US &&
+                         ahead_us < APART_MAX_US;
 
     ray_clock->earliest_us = (follows && ahead_us < 0) ? latest_us : arrival_us;
     ray_clock->stamp_ms = stamp_ms & STAMP_MASK;

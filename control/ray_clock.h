@@ -11,7 +11,7 @@
 typedef struct {
     bool started;
     uint32_t stamp_ms;
-    uint32_t earliest_us;   /* arrival that the latest reply would have had without delay */
+    uint32_t earliest_us; /* arrival that the latest reply would have had without delay */
 } ray_clock_t;
 
 void ray_clock_init(ray_clock_t *ray_clock);

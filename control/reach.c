@@ -2,9 +2,9 @@
 
 #include <math.h>
 
-#define REACHED_MM 100.0F /* chosen: ten times the hover error of law EST */
-#define NEARER_MM 50.0F /* chosen: half of that */
-#define STUCK_US UINT32_C(3000000) /* chosen: every law rises within 2.8 s */
+#define REACHED_MM 100.0F               /* chosen: ten times the hover error of law EST */
+#define NEARER_MM 50.0F                 /* chosen: half of that */
+#define STUCK_US UINT32_C(3000000)      /* chosen: every law rises within 2.8 s */
 #define STUCK_MAX_US UINT32_C(60000000) /* the counter stops, it need not wrap */
 
 void reach_reset(reach_t *reach)

@@ -8,10 +8,10 @@
 #include <stdint.h>
 
 typedef struct {
-    float nearest_mm;       /* smallest distance so far, on the present side */
+    float nearest_mm; /* smallest distance so far, on the present side */
     bool above;
-    bool on;                /* a reference is watched */
-    uint32_t stuck_us;      /* time since it last came nearer, at most one minute */
+    bool on;           /* a reference is watched */
+    uint32_t stuck_us; /* time since it last came nearer, at most one minute */
 } reach_t;
 
 /* Restarts. Call it when there is no reference, and when the reference changes. */

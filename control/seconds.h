@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stdint.h>
 
-/* From one instant to another, less than 35 minutes apart (half the range of the clock). Negative when `to` is the
- * earlier one. */
+/* From one instant to another, less than 35 minutes apart (half the range of the clock). Negative when `to`
+ * is the earlier one. */
 static inline float seconds_between(uint32_t from_us, uint32_t to_us)
 {
     return (float)(int32_t)(to_us - from_us) * 1.0e-6F;

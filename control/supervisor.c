@@ -10,35 +10,37 @@
 
 #include "control/between.h"
 
-#define HEIGHT_FRESH_US UINT32_C(300000) /* three scans of 0.1 s */
-#define HEIGHT_LOST_US UINT32_C(1500000) /* chosen: what coasts longer drifts too far */
+#define HEIGHT_FRESH_US UINT32_C(300000)   /* three scans of 0.1 s */
+#define HEIGHT_LOST_US UINT32_C(1500000)   /* chosen: what coasts longer drifts too far */
 #define ATTITUDE_FRESH_US UINT32_C(250000) /* ten frames of 25 ms */
-#define ALOFT_HELD_US UINT32_C(1000000) /* chosen: a pilot who flies, not one who lifts the vehicle by hand */
+#define ALOFT_HELD_US \
+    UINT32_C(1000000)                  /* chosen: a pilot who flies, not one who lifts the vehicle by hand \
+                                        */
 #define REST_HELD_US UINT32_C(1200000) /* chosen: a bounce is shorter */
 #define LINK_HOLD_US UINT32_C(5000000) /* chosen: warned by the flag for 5 s, then it lands */
 #define DESCENT_TIMEOUT_US UINT32_C(45000000) /* when the thrust of a blind descent is gone, descent.c */
-#define AGE_MAX_US UINT32_C(3600000000) /* one hour: below the wrap of 71 minutes */
+#define AGE_MAX_US UINT32_C(3600000000)       /* one hour: below the wrap of 71 minutes */
 
-#define HEIGHT_MIN_MM (-50.0F) /* chosen: half a metre under the ground is no noise */
-#define HEIGHT_MAX_MM 5000.0F /* above the scanner's 4095 mm */
-#define OFF_GROUND_MM 150.0F /* chosen: over the ground effect and any noise */
-#define REST_BELOW_MM 50.0F /* chosen: ten times the height's noise */
-#define REST_FALL_MM 20.0F /* chosen: four times the height's noise */
-#define TOO_HIGH_MM 800.0F /* above any overshoot, below the scanner's end at 3.9 m */
-#define RECOVERED_MM 300.0F /* chosen: below the seed's usual overshoot */
-#define TOO_HIGH_HEIGHTS 2U /* one height may be wrong */
-#define RATE_MAX_MM_S 3000.0F /* chosen: above what the vehicle reaches */
+#define HEIGHT_MIN_MM (-50.0F)         /* chosen: half a metre under the ground is no noise */
+#define HEIGHT_MAX_MM 5000.0F          /* above the scanner's 4095 mm */
+#define OFF_GROUND_MM 150.0F           /* chosen: over the ground effect and any noise */
+#define REST_BELOW_MM 50.0F            /* chosen: ten times the height's noise */
+#define REST_FALL_MM 20.0F             /* chosen: four times the height's noise */
+#define TOO_HIGH_MM 800.0F             /* above any overshoot, below the scanner's end at 3.9 m */
+#define RECOVERED_MM 300.0F            /* chosen: below the seed's usual overshoot */
+#define TOO_HIGH_HEIGHTS 2U            /* one height may be wrong */
+#define RATE_MAX_MM_S 3000.0F          /* chosen: above what the vehicle reaches */
 #define RATE_CHANGE_MAX_MM_S2 10000.0F /* 1 g: more the vehicle cannot do */
-#define CLIMB_AHEAD_S 0.40F /* age of a height, one more scan, lag of the motors */
-#define CLIMB_AHEAD_ESTIMATED_S 0.15F /* less: to heights alone a step of the terrain looks like a climb */
-#define ESTIMATE_AHEAD_S 0.25F /* chosen: delay and lag of the motors, and a margin */
+#define CLIMB_AHEAD_S 0.40F            /* age of a height, one more scan, lag of the motors */
+#define CLIMB_AHEAD_ESTIMATED_S 0.15F  /* less: to heights alone a step of the terrain looks like a climb */
+#define ESTIMATE_AHEAD_S 0.25F         /* chosen: delay and lag of the motors, and a margin */
 #define ESTIMATE_HELD_US UINT32_C(350000) /* three scans and a little */
-#define BRAKE_MPS2 4.0F /* what the vehicle does at a quarter of the hover thrust, less a margin */
+#define BRAKE_MPS2 4.0F     /* what the vehicle does at a quarter of the hover thrust, less a margin */
 #define TILTED_ATTITUDES 3U /* one or two may be spikes of the IMU */
-#define LOWERINGS_MAX 3U /* chosen: what fails three times will fail again */
+#define LOWERINGS_MAX 3U    /* chosen: what fails three times will fail again */
 #define LOWERINGS_FORGOTTEN_US UINT32_C(20000000) /* chosen: the length of the seed's flights */
-#define TILTED_COS 0.70710678F /* chosen: 45 degrees */
-#define LEVEL_COS 0.93969262F /* chosen: 20 degrees */
+#define TILTED_COS 0.70710678F                    /* chosen: 45 degrees */
+#define LEVEL_COS 0.93969262F                     /* chosen: 20 degrees */
 
 void supervisor_init(supervisor_t *supervisor)
 {
@@ -109,8 +111,8 @@ static void observe_height(supervisor_t *s, const flight_inputs_t *in)
 static void observe_attitude(supervisor_t *s, const flight_inputs_t *in)
 {
     const bool is_new = in->attitude_time_us != s->attitude_time_us;
-    s->attitude_age_us =
-        is_new ? elapsed(in->now_us, in->attitude_time_us) : add_time(s->attitude_age_us, s->step_us);
+    s->attitude_age_us = is_new ? elapsed(in->now_us, in->attitude_time_us)
+                                : add_time(s->attitude_age_us, s->step_us);
     s->attitude_time_us = in->attitude_time_us;
     if (is_new && in->attitude_ready) {
         const float upright = cosf(in->roll_rad) * cosf(in->pitch_rad);
@@ -174,10 +176,12 @@ bool supervisor_has_estimate(const supervisor_t *supervisor)
 static float peak_mm(const supervisor_t *s, float height_mm, float rate_mm_s, float ahead_s)
 {
     const float climb_mm_s = fmaxf(rate_mm_s, 0.0F);
-    return height_mm - s->reference_m * 1000.0F + climb_mm_s * (ahead_s + climb_mm_s * (0.0005F / BRAKE_MPS2));
+    return height_mm - s->reference_m * 1000.0F +
+           climb_mm_s * (ahead_s + climb_mm_s * (0.0005F / BRAKE_MPS2));
 }
 
-/* A step of the terrain looks like a climb, but not to an estimate: heights have less to say where there is one. */
+/* A step of the terrain looks like a climb, but not to an estimate: heights have less to say where there is
+ * one. */
 static float measured_peak_mm(const supervisor_t *s)
 {
     const float ahead_s = supervisor_has_estimate(s) ? CLIMB_AHEAD_ESTIMATED_S : CLIMB_AHEAD_S;
@@ -208,8 +212,9 @@ static void observe_ground(supervisor_t *s)
 
 static void observe_estimate(supervisor_t *s, const vertical_estimate_t *estimate)
 {
-    s->estimated_peak_mm =
-        estimate->known ? peak_mm(s, estimate->height_mm, estimate->climb_mm_s, ESTIMATE_AHEAD_S) : NAN;
+    s->estimated_peak_mm = estimate->known
+                               ? peak_mm(s, estimate->height_mm, estimate->climb_mm_s, ESTIMATE_AHEAD_S)
+                               : NAN;
     s->stands = estimate->stands && (s->state == FLIGHT_LANDING || s->state == FLIGHT_DESCENDING);
     s->estimate_age_us = estimate->known ? 0U : add_time(s->estimate_age_us, s->step_us);
 }
@@ -224,7 +229,8 @@ static void observe_climb(supervisor_t *s)
 {
     if (s->height.is_new) {
         const bool above = measured_peak_mm(s) > TOO_HIGH_MM;
-        s->too_high_count = above ? (uint16_t)(s->too_high_count + (s->too_high_count < TOO_HIGH_HEIGHTS)) : 0U;
+        s->too_high_count = above ? (uint16_t)(s->too_high_count + (s->too_high_count < TOO_HIGH_HEIGHTS))
+                                  : 0U;
     }
 }
 
@@ -250,22 +256,19 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
     const bool descent_timeout = s->state == FLIGHT_DESCENDING && s->state_us >= DESCENT_TIMEOUT_US;
     const bool lowering_limit = s->state == FLIGHT_LOWERING && s->lowerings == LOWERINGS_MAX;
 
-    return (uint16_t)(bit(reference, FLIGHT_IF_REFERENCE)
-                      | bit(in->attitude_ready, FLIGHT_IF_READY)
-                      | bit(fresh, FLIGHT_IF_HEIGHT)
-                      | bit(s->height.age_us > HEIGHT_LOST_US, FLIGHT_IF_LOST)
-                      | bit(fresh && s->height.height_mm > OFF_GROUND_MM, FLIGHT_IF_OFF_GROUND)
-                      | bit(s->aloft.for_us >= ALOFT_HELD_US, FLIGHT_IF_ALOFT)
-                      | bit(s->stands || s->rest.for_us >= REST_HELD_US, FLIGHT_IF_AT_REST)
-                      | bit(fresh && reference && too_high(s), FLIGHT_IF_TOO_HIGH)
-                      | bit(fresh && recovered(s), FLIGHT_IF_RECOVERED)
-                      | bit(s->land, FLIGHT_IF_LAND)
-                      | bit(descent_timeout, FLIGHT_IF_DESCENT_TIMEOUT)
-                      | bit(lowering_limit, FLIGHT_IF_LOWERING_LIMIT)
-                      | bit(s->tilted_count == TILTED_ATTITUDES, FLIGHT_IF_TILTED)
-                      | bit(s->level && attitude_fresh(s), FLIGHT_IF_LEVEL)
-                      | bit(s->handed_over, FLIGHT_IF_HANDED_OVER)
-                      | bit(in->has_throttle, FLIGHT_IF_HAS_THROTTLE));
+    return (uint16_t)(bit(reference, FLIGHT_IF_REFERENCE) | bit(in->attitude_ready, FLIGHT_IF_READY) |
+                      bit(fresh, FLIGHT_IF_HEIGHT) | bit(s->height.age_us > HEIGHT_LOST_US, FLIGHT_IF_LOST) |
+                      bit(fresh && s->height.height_mm > OFF_GROUND_MM, FLIGHT_IF_OFF_GROUND) |
+                      bit(s->aloft.for_us >= ALOFT_HELD_US, FLIGHT_IF_ALOFT) |
+                      bit(s->stands || s->rest.for_us >= REST_HELD_US, FLIGHT_IF_AT_REST) |
+                      bit(fresh && reference && too_high(s), FLIGHT_IF_TOO_HIGH) |
+                      bit(fresh && recovered(s), FLIGHT_IF_RECOVERED) | bit(s->land, FLIGHT_IF_LAND) |
+                      bit(descent_timeout, FLIGHT_IF_DESCENT_TIMEOUT) |
+                      bit(lowering_limit, FLIGHT_IF_LOWERING_LIMIT) |
+                      bit(s->tilted_count == TILTED_ATTITUDES, FLIGHT_IF_TILTED) |
+                      bit(s->level && attitude_fresh(s), FLIGHT_IF_LEVEL) |
+                      bit(s->handed_over, FLIGHT_IF_HANDED_OVER) |
+                      bit(in->has_throttle, FLIGHT_IF_HAS_THROTTLE));
 }
 
 static uint16_t flags(const supervisor_t *s, uint16_t met, float link_s, const flight_inputs_t *in)
@@ -275,13 +278,11 @@ static uint16_t flags(const supervisor_t *s, uint16_t met, float link_s, const f
     const bool lowering = s->state == FLIGHT_LOWERING || (met & FLIGHT_IF_TOO_HIGH) != 0U;
     const bool tilted = s->state == FLIGHT_CUT || (met & FLIGHT_IF_TILTED) != 0U;
 
-    return (uint16_t)(bit(!fresh, FLIGHT_FLAG_HEIGHT)
-                      | bit(!level, FLIGHT_FLAG_ATTITUDE)
-                      | bit(fresh && in->altitude.disagree, FLIGHT_FLAG_DISAGREE)
-                      | bit(lowering, FLIGHT_FLAG_TOO_HIGH)
-                      | bit(link_silent(s, link_s, 0U), FLIGHT_FLAG_LINK)
-                      | bit(tilted, FLIGHT_FLAG_TILT)
-                      | bit(!in->has_throttle, FLIGHT_FLAG_PILOT));
+    return (uint16_t)(bit(!fresh, FLIGHT_FLAG_HEIGHT) | bit(!level, FLIGHT_FLAG_ATTITUDE) |
+                      bit(fresh && in->altitude.disagree, FLIGHT_FLAG_DISAGREE) |
+                      bit(lowering, FLIGHT_FLAG_TOO_HIGH) |
+                      bit(link_silent(s, link_s, 0U), FLIGHT_FLAG_LINK) | bit(tilted, FLIGHT_FLAG_TILT) |
+                      bit(!in->has_throttle, FLIGHT_FLAG_PILOT));
 }
 
 static void count_lowerings(supervisor_t *s, flight_state_t next)

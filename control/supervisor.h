@@ -13,39 +13,39 @@
 
 /* Present estimate of the height above the terrain. */
 typedef struct {
-    bool known;                     /* false: height and climb are not read */
+    bool known; /* false: height and climb are not read */
     float height_mm;
-    float climb_mm_s;               /* > 0 is up, relative to the terrain */
-    bool stands;                    /* too little thrust to fly, and no fall is measured; valid also
-                                     * without `known` */
-    bool sways;                     /* the tilt moves as it does in flight; valid also without `known` */
+    float climb_mm_s; /* > 0 is up, relative to the terrain */
+    bool stands;      /* too little thrust to fly, and no fall is measured; valid also
+                       * without `known` */
+    bool sways;       /* the tilt moves as it does in flight; valid also without `known` */
 } vertical_estimate_t;
 
 /* The latest valid height. */
 typedef struct {
     float height_mm;
-    float rate_mm_s;                /* from the previous height to this one. Limited to +-3000, and to a
-                                     * change of 10 m/s2, so that a step of the terrain has little effect;
-                                     * 0 when the previous height was lost */
-    uint32_t gap_us;                /* time between these two heights */
+    float rate_mm_s; /* from the previous height to this one. Limited to +-3000, and to a
+                      * change of 10 m/s2, so that a step of the terrain has little effect;
+                      * 0 when the previous height was lost */
+    uint32_t gap_us; /* time between these two heights */
     uint32_t time_us;
     uint32_t sequence;
-    uint32_t age_us;                /* age of this height; at most one hour, so it does not wrap */
-    bool is_new;                    /* arrived after the previous step */
+    uint32_t age_us; /* age of this height; at most one hour, so it does not wrap */
+    bool is_new;     /* arrived after the previous step */
 } height_track_t;
 
 /* For how long a condition has been true without a break. */
 typedef struct {
     bool on;
-    uint32_t for_us;                /* at most one hour */
+    uint32_t for_us; /* at most one hour */
 } hold_t;
 
 typedef struct {
     flight_state_t state;
-    uint16_t flags;                 /* FLIGHT_FLAG_* */
-    float reference_m;              /* reference in force, 0 = none */
-    uint32_t step_us;               /* time since the previous step; 0 in the first one */
-    uint32_t state_us;              /* time in the present state, at most one hour */
+    uint16_t flags;    /* FLIGHT_FLAG_* */
+    float reference_m; /* reference in force, 0 = none */
+    uint32_t step_us;  /* time since the previous step; 0 in the first one */
+    uint32_t state_us; /* time in the present state, at most one hour */
     height_track_t height;
     bool started;
     uint32_t now_us;
@@ -58,15 +58,15 @@ typedef struct {
     hold_t aloft;
     hold_t rest;
     float rest_from_mm;
-    float ground_mm;                /* what the heights say of the ground that it was found to stand on; 0 elsewhere */
-    bool ground_sought;             /* it stands, and no height has been seen there */
+    float ground_mm;    /* what the heights say of the ground that it was found to stand on; 0 elsewhere */
+    bool ground_sought; /* it stands, and no height has been seen there */
     uint16_t too_high_count;
-    uint16_t lowerings;             /* see FLIGHT_IF_LOWERING_LIMIT */
-    float estimated_peak_mm;        /* predicted top of the motion, above the reference; NAN: no estimate */
+    uint16_t lowerings;      /* see FLIGHT_IF_LOWERING_LIMIT */
+    float estimated_peak_mm; /* predicted top of the motion, above the reference; NAN: no estimate */
     uint32_t estimate_age_us;
     uint16_t tilted_count;
     bool stands;
-    bool pilots;                    /* the pilot had the throttle in the previous cycle */
+    bool pilots; /* the pilot had the throttle in the previous cycle */
     bool handed_over;
     bool level;
 } supervisor_t;

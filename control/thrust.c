@@ -1,7 +1,7 @@
 #include "control/thrust.h"
 
 #define SLOPE_STEPS_PER_N 177.21F /* seed eq. 4-5 */
-#define IDLE_STEPS 4166.0F /* seed eq. 4-5 */
+#define IDLE_STEPS 4166.0F        /* seed eq. 4-5 */
 
 float thrust_to_pulse_us(float thrust_n)
 {

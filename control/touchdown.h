@@ -8,10 +8,10 @@
 #include <math.h>
 #include <stdbool.h>
 
-#define LANDED_M 0.04F                  /* chosen: ten times the height's noise */
-#define LANDED_NO_MORE_M 0.10F          /* chosen: above any bounce */
-#define LANDED_ABOVE_HOVER_N 0.5F       /* chosen: room to brake the last centimetres */
-#define LANDED_FADE_N_PER_S 2.0F        /* chosen: no thrust 4 s later */
+#define LANDED_M 0.04F            /* chosen: ten times the height's noise */
+#define LANDED_NO_MORE_M 0.10F    /* chosen: above any bounce */
+#define LANDED_ABOVE_HOVER_N 0.5F /* chosen: room to brake the last centimetres */
+#define LANDED_FADE_N_PER_S 2.0F  /* chosen: no thrust 4 s later */
 
 /* New time near the ground, from the time before (time_s) and one step of dt_s. Below LANDED_M it starts;
  * above LANDED_NO_MORE_M it is 0 again. */
@@ -25,7 +25,8 @@ static inline float touchdown_time_s(float time_s, float height_m, float dt_s)
  * time_s is 0. */
 static inline float touchdown_limit_n(float time_s, float hover_n)
 {
-    return (time_s > 0.0F) ? fmaxf(hover_n + LANDED_ABOVE_HOVER_N - LANDED_FADE_N_PER_S * time_s, 0.0F) : INFINITY;
+    return (time_s > 0.0F) ? fmaxf(hover_n + LANDED_ABOVE_HOVER_N - LANDED_FADE_N_PER_S * time_s, 0.0F)
+                           : INFINITY;
 }
 
 #endif

@@ -1,16 +1,18 @@
-/* Exact conversion between decimal text and 32-bit float. The reader keeps the number as a large integer in limbs of
- * 16 bits and scales it by powers of ten; `more` tells that a division left a remainder. It rounds once, at the end,
- * to 24 bits, ties to even (exact integer arithmetic as in Clinger, "How to Read Floating Point Numbers Accurately",
- * 1990). The writer scales the mantissa by 5^decimals in 64 bits and also rounds once.
- * What breaks: with products of floats the number is rounded several times, so a parameter that is written and read
- * back can differ in its last bit. DIGITS_KEPT, ORDER_MIN and LIMBS belong together: 120 digits at 10^-37 are
- * divided by ten 157 times and need 36 limbs. tests/drivers/test_decimal.c compares with the PC's strtof(). */
+/* Exact conversion between decimal text and 32-bit float. The reader keeps the number as a large integer in
+ * limbs of 16 bits and scales it by powers of ten; `more` tells that a division left a remainder. It rounds
+ * once, at the end, to 24 bits, ties to even (exact integer arithmetic as in Clinger, "How to Read Floating
+ * Point Numbers Accurately", 1990). The writer scales the mantissa by 5^decimals in 64 bits and also rounds
+ * once. What breaks: with products of floats the number is rounded several times, so a parameter that is
+ * written and read back can differ in its last bit. DIGITS_KEPT, ORDER_MIN and LIMBS belong together: 120
+ * digits at 10^-37 are divided by ten 157 times and need 36 limbs. tests/drivers/test_decimal.c compares with
+ * the PC's strtof(). */
 #include "drivers/decimal.h"
 
 #include <math.h>
 #include <string.h>
 
-/* A midpoint between two floats has at most 114 significant digits: behind this many only "is the rest zero" counts. */
+/* A midpoint between two floats has at most 114 significant digits: behind this many only "is the rest zero"
+ * counts. */
 #define DIGITS_KEPT 120
 
 #define ORDER_MAX 39    /* 10^39 is beyond the largest float */
@@ -37,9 +39,9 @@ typedef struct {
 
 typedef struct {
     wide_t digits;
-    int32_t digit_count;    /* of `digits` */
-    int32_t exponent;       /* the number is digits * 10^exponent */
-    bool more;              /* and something smaller than the last digit kept */
+    int32_t digit_count; /* of `digits` */
+    int32_t exponent;    /* the number is digits * 10^exponent */
+    bool more;           /* and something smaller than the last digit kept */
 } number_t;
 
 typedef struct {
@@ -101,8 +103,8 @@ static bool wide_has_below(const wide_t *wide, uint16_t limb)
     return false;
 }
 
-/* Replaces digits * 10^exponent by digits * 2^(returned), at least 33 bits long, with `more` telling of what is below.
- * 10^k < 2^(10 k / 3), which is 5 k / 24 limbs. */
+/* Replaces digits * 10^exponent by digits * 2^(returned), at least 33 bits long, with `more` telling of what
+ * is below. 10^k < 2^(10 k / 3), which is 5 k / 24 limbs. */
 static int32_t make_binary(number_t *number)
 {
     int32_t tens = -number->exponent;
@@ -121,11 +123,13 @@ static int32_t make_binary(number_t *number)
     return -(int32_t)raised * LIMB_BITS;
 }
 
-/* The nearest float to (wide and, if more, a little) * 2^exponent, ties to even. Wide has three limbs at least. */
+/* The nearest float to (wide and, if more, a little) * 2^exponent, ties to even. Wide has three limbs at
+ * least. */
 static bool round_to_float(const wide_t *wide, bool more, int32_t exponent, float *magnitude)
 {
     uint16_t low = (uint16_t)(wide->used - 3U);
-    uint64_t window = ((uint64_t)wide->limb[low + 2U] << 32) | ((uint64_t)wide->limb[low + 1U] << 16) | wide->limb[low];
+    uint64_t window = ((uint64_t)wide->limb[low + 2U] << 32) | ((uint64_t)wide->limb[low + 1U] << 16) |
+                      wide->limb[low];
     uint16_t drop = 0U;
     int32_t unit;
     uint32_t mantissa;
@@ -247,14 +251,16 @@ bool decimal_read(const char *text, size_t length, float *value)
         reader.at++;
         any = read_digits(&reader, &number, -1) || any;
     }
-    if (!any || !read_exponent(&reader, &number) || reader.at != reader.end || !to_float(&number, &magnitude)) {
+    if (!any || !read_exponent(&reader, &number) || reader.at != reader.end ||
+        !to_float(&number, &magnitude)) {
         return false;
     }
     *value = minus && magnitude > 0.0F ? -magnitude : magnitude;
     return true;
 }
 
-/* magnitude * 10^decimals, rounded half up: the mantissa times 5^decimals, shifted by what is left of the exponents. */
+/* magnitude * 10^decimals, rounded half up: the mantissa times 5^decimals, shifted by what is left of the
+ * exponents. */
 static uint64_t scaled(float magnitude, uint16_t decimals)
 {
     int exponent;
@@ -273,7 +279,8 @@ static uint64_t scaled(float magnitude, uint16_t decimals)
     return (product + ((uint64_t)1U << (shift - 1))) >> shift;
 }
 
-/* Writes `number` with its last `decimals` digits behind a point; returns where the text begins in the buffer. */
+/* Writes `number` with its last `decimals` digits behind a point; returns where the text begins in the
+ * buffer. */
 static size_t write_backwards(char buffer[DECIMAL_TEXT_MAX], uint64_t number, uint16_t decimals, bool minus)
 {
     size_t at = DECIMAL_TEXT_MAX;

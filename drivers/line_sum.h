@@ -1,5 +1,5 @@
-/* The sum at the end of a line, `*5A1F`: CRC-16 of the characters before the '*' (polynomial 1021H, from FFFFH, no
- * reflection; "CRC-16/CCITT-FALSE"), four hexadecimal digits. Pure. */
+/* The sum at the end of a line, `*5A1F`: CRC-16 of the characters before the '*' (polynomial 1021H, from
+ * FFFFH, no reflection; "CRC-16/CCITT-FALSE"), four hexadecimal digits. Pure. */
 #ifndef DRIVERS_LINE_SUM_H
 #define DRIVERS_LINE_SUM_H
 

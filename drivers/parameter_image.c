@@ -84,14 +84,17 @@ static parameter_image_status_t look(const uint16_t *cells)
     if (cells[CELL_MARK] == ERASED && cells[CELL_VERSION] == ERASED && count == ERASED) {
         return PARAMETER_IMAGE_NONE;
     }
-    if (cells[CELL_MARK] == MARK && cells[CELL_VERSION] != PARAMETER_IMAGE_VERSION && cells[CELL_VERSION] != ERASED) {
+    if (cells[CELL_MARK] == MARK && cells[CELL_VERSION] != PARAMETER_IMAGE_VERSION &&
+        cells[CELL_VERSION] != ERASED) {
         return PARAMETER_IMAGE_VERSION_UNKNOWN;
     }
-    if (cells[CELL_MARK] != MARK || cells[CELL_VERSION] == ERASED || count == 0U || count > PARAMETER_IMAGE_VALUES_MAX) {
+    if (cells[CELL_MARK] != MARK || cells[CELL_VERSION] == ERASED || count == 0U ||
+        count > PARAMETER_IMAGE_VALUES_MAX) {
         return PARAMETER_IMAGE_DAMAGED;
     }
-    return (get(&cells[checked_cells(count)]) == crc_of(cells, checked_cells(count))) ? PARAMETER_IMAGE_GOOD
-                                                                                       : PARAMETER_IMAGE_DAMAGED;
+    return (get(&cells[checked_cells(count)]) == crc_of(cells, checked_cells(count)))
+               ? PARAMETER_IMAGE_GOOD
+               : PARAMETER_IMAGE_DAMAGED;
 }
 
 parameter_image_status_t parameter_image_read(parameter_image_t *image,

@@ -177,7 +177,8 @@ razor_status_t razor_parse(const razor_text_t *text, razor_frame_t *frame)
     if (has_acceleration) {
         angles = read_acceleration(angles + TITLE_LENGTH, end, xyz);
     }
-    if (angles == NULL || !has_title(angles, end, angles_title) || !read_triple(angles + TITLE_LENGTH, end, ypr)) {
+    if (angles == NULL || !has_title(angles, end, angles_title) ||
+        !read_triple(angles + TITLE_LENGTH, end, ypr)) {
         return RAZOR_MALFORMED;
     }
     if (!within(ypr, ANGLE_MAX_DEGREE) || !within(xyz, ACCELERATION_MAX_COUNT)) {

@@ -25,10 +25,10 @@ typedef struct {
 
 typedef struct {
     razor_text_t gathered;
-    uint16_t state;         /* private */
-    uint16_t part_start;    /* private: index of the '#' of the present part */
-    uint32_t overlong;      /* dropped frames: no end within RAZOR_FRAME_MAX */
-    uint32_t cut;           /* dropped frames: a '#' came before the line end of YPR */
+    uint16_t state;      /* private */
+    uint16_t part_start; /* private: index of the '#' of the present part */
+    uint32_t overlong;   /* dropped frames: no end within RAZOR_FRAME_MAX */
+    uint32_t cut;        /* dropped frames: a '#' came before the line end of YPR */
 } razor_collector_t;
 
 /* The collector finds frames in any stream. It skips other lines (boot texts, "!ANG:", "#M-C=", "#G-C="
@@ -45,7 +45,7 @@ void razor_collector_broken(razor_collector_t *collector);
 
 typedef struct {
     float yaw_rad, pitch_rad, roll_rad;
-    bool has_acceleration;                          /* the A-C part was present; else the counts are 0 */
+    bool has_acceleration; /* the A-C part was present; else the counts are 0 */
     float x_counts, y_counts, z_counts;
 } razor_frame_t;
 

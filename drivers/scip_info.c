@@ -3,8 +3,8 @@
 #include <stddef.h>
 
 #define TURN_MDEG ((int32_t)360000L)
-#define STEP_MAX 4095U      /* a step times the turn stays within 31 bits */
-#define DMIN_MOST_MM 1000U  /* no sensor is blind further */
+#define STEP_MAX 4095U     /* a step times the turn stays within 31 bits */
+#define DMIN_MOST_MM 1000U /* no sensor is blind further */
 #define DIGITS_MAX 9U
 #define TIME_DIGITS_MAX 6U
 
@@ -13,11 +13,11 @@ typedef struct {
     uint16_t length;
 } slice_t;
 
-const scip_limits_t scip_limits_urg04lx = { 20U, 5600U, 1024U, 44U, 725U, 384U, 600U };
+const scip_limits_t scip_limits_urg04lx = {20U, 5600U, 1024U, 44U, 725U, 384U, 600U};
 
 static slice_t without_first(slice_t slice, uint16_t count)
 {
-    return (slice_t){ &slice.text[count], (uint16_t)(slice.length - count) };
+    return (slice_t){&slice.text[count], (uint16_t)(slice.length - count)};
 }
 
 static slice_t trimmed(slice_t slice)
@@ -115,10 +115,12 @@ static scip_health_t health_of(slice_t state)
         const char *words;
         scip_health_t health;
     } rows[] = {
-        { "abnormal", SCIP_HEALTH_TROUBLE }, { "unstable", SCIP_HEALTH_TROUBLE }, { "works well", SCIP_HEALTH_GOOD },
-        { "normal", SCIP_HEALTH_GOOD },      { "stable", SCIP_HEALTH_GOOD },      { "no error", SCIP_HEALTH_GOOD },
-        { "error", SCIP_HEALTH_TROUBLE },    { "trouble", SCIP_HEALTH_TROUBLE },  { "fault", SCIP_HEALTH_TROUBLE },
-        { "malfunction", SCIP_HEALTH_TROUBLE }, { "fail", SCIP_HEALTH_TROUBLE },
+        {"abnormal", SCIP_HEALTH_TROUBLE}, {"unstable", SCIP_HEALTH_TROUBLE},
+        {"works well", SCIP_HEALTH_GOOD},  {"normal", SCIP_HEALTH_GOOD},
+        {"stable", SCIP_HEALTH_GOOD},      {"no error", SCIP_HEALTH_GOOD},
+        {"error", SCIP_HEALTH_TROUBLE},    {"trouble", SCIP_HEALTH_TROUBLE},
+        {"fault", SCIP_HEALTH_TROUBLE},    {"malfunction", SCIP_HEALTH_TROUBLE},
+        {"fail", SCIP_HEALTH_TROUBLE},
     };
     for (size_t i = 0U; i < sizeof rows / sizeof rows[0]; i++) {
         if (contains(state, rows[i].words)) {
@@ -134,8 +136,8 @@ static bool take_text(scip_info_t *info, slice_t key, slice_t value)
         const char *key;
         char *text;
     } rows[] = {
-        { "VEND", info->vendor }, { "PROD", info->product }, { "FIRM", info->firmware }, { "PROT", info->protocol },
-        { "SERI", info->serial }, { "MODL", info->model },   { "MESM", info->mode },     { "STAT", info->state },
+        {"VEND", info->vendor}, {"PROD", info->product}, {"FIRM", info->firmware}, {"PROT", info->protocol},
+        {"SERI", info->serial}, {"MODL", info->model},   {"MESM", info->mode},     {"STAT", info->state},
     };
     for (size_t i = 0U; i < sizeof rows / sizeof rows[0]; i++) {
         if (begins_with(key, rows[i].key)) {
@@ -153,8 +155,9 @@ static bool take_small(scip_info_t *info, slice_t key, slice_t value, bool belie
         const char *key;
         uint16_t *number;
     } rows[] = {
-        { "DMIN", &told->dmin_mm }, { "DMAX", &told->dmax_mm }, { "ARES", &told->ares },     { "AMIN", &told->amin },
-        { "AMAX", &told->amax },    { "AFRT", &told->afrt },    { "SCAN", &told->scan_rpm }, { "SCSP", &info->speed_rpm },
+        {"DMIN", &told->dmin_mm},  {"DMAX", &told->dmax_mm},   {"ARES", &told->ares},
+        {"AMIN", &told->amin},     {"AMAX", &told->amax},      {"AFRT", &told->afrt},
+        {"SCAN", &told->scan_rpm}, {"SCSP", &info->speed_rpm},
     };
     for (size_t i = 0U; i < sizeof rows / sizeof rows[0]; i++) {
         if (begins_with(key, rows[i].key)) {
@@ -175,7 +178,8 @@ static bool take_other(scip_info_t *info, slice_t key, slice_t value, bool belie
     } else if (begins_with(key, "SBPS")) {
         info->bit_rate = believed && read_number(value, &number) ? number : info->bit_rate;
     } else if (begins_with(key, "TIME")) {
-        info->time_ms = believed && read_digits(value, 16U, TIME_DIGITS_MAX, &number) ? number : info->time_ms;
+        info->time_ms = believed && read_digits(value, 16U, TIME_DIGITS_MAX, &number) ? number
+                                                                                      : info->time_ms;
     } else {
         return false;
     }
@@ -184,12 +188,12 @@ static bool take_other(scip_info_t *info, slice_t key, slice_t value, bool belie
 
 void scip_info_init(scip_info_t *info)
 {
-    *info = (scip_info_t){ .health = SCIP_HEALTH_UNKNOWN };
+    *info = (scip_info_t){.health = SCIP_HEALTH_UNKNOWN};
 }
 
 void scip_info_take(scip_info_t *info, const scip_parser_t *parser)
 {
-    const slice_t line = { parser->line, parser->text_length };
+    const slice_t line = {parser->line, parser->text_length};
     const bool believed = parser->text_proved || parser->text_length == parser->line_length;
     slice_t key = line;
     key.length = 0U;
@@ -200,7 +204,8 @@ void scip_info_take(scip_info_t *info, const scip_parser_t *parser)
     const slice_t value = trimmed(without_first(line, (uint16_t)(key.length + (divided ? 1U : 0U))));
     key = trimmed(key);
     if (!divided || key.length != 4U ||
-        !(take_text(info, key, value) || take_small(info, key, value, believed) || take_other(info, key, value, believed))) {
+        !(take_text(info, key, value) || take_small(info, key, value, believed) ||
+          take_other(info, key, value, believed))) {
         info->unknown++;
         return;
     }
@@ -213,8 +218,10 @@ void scip_info_take(scip_info_t *info, const scip_parser_t *parser)
 
 static bool fit_together(const scip_limits_t *limits)
 {
-    const bool distances = limits->dmin_mm > 0U && limits->dmin_mm <= DMIN_MOST_MM && limits->dmin_mm < limits->dmax_mm;
-    const bool steps = limits->amin <= limits->afrt && limits->afrt <= limits->amax && limits->amax <= limits->ares;
+    const bool distances = limits->dmin_mm > 0U && limits->dmin_mm <= DMIN_MOST_MM &&
+                           limits->dmin_mm < limits->dmax_mm;
+    const bool steps = limits->amin <= limits->afrt && limits->afrt <= limits->amax &&
+                       limits->amax <= limits->ares;
     return distances && steps && limits->ares > 0U && limits->ares <= STEP_MAX && limits->scan_rpm > 0U;
 }
 

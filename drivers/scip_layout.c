@@ -3,19 +3,20 @@
 #include <stddef.h>
 
 #define DEGREES_PER_STEP 0.3515625F
-#define NEAR_MEDIAN_MM 25U  /* five times the noise of one ray (5 mm), as a smooth ground shows it */
+#define NEAR_MEDIAN_MM 25U /* five times the noise of one ray (5 mm), as a smooth ground shows it */
 
 const scip_layout_t scip_layouts[SCIP_LAYOUT_COUNT] = {
-    [SCIP_LAYOUT_FRONT] = { "front", 372U, 406U, 1U, { { 372U, 406U } } },
-    [SCIP_LAYOUT_TWO_BEAMS] = { "two-beams", 249U, 519U, 2U, { { 249U, 277U }, { 491U, 519U } } },
-    [SCIP_LAYOUT_THREE_MIRRORS] = { "three-mirrors", 111U, 657U, 3U,
-                                    { { 111U, 145U }, { 372U, 406U }, { 623U, 657U } } },
+    [SCIP_LAYOUT_FRONT] = {"front", 372U, 406U, 1U, {{372U, 406U}}},
+    [SCIP_LAYOUT_TWO_BEAMS] = {"two-beams", 249U, 519U, 2U, {{249U, 277U}, {491U, 519U}}},
+    [SCIP_LAYOUT_THREE_MIRRORS] =
+        {"three-mirrors", 111U, 657U, 3U, {{111U, 145U}, {372U, 406U}, {623U, 657U}}},
 };
 
 #define REVOLUTION_US 100000U
 #define STEP_FRONT_MIDDLE 389U
-#define RAYS_FRONT_US 34000U    /* that step after the instant of the time stamp: the model of the plant */
-#define HANDLING_US 460U        /* the sensor's begin and the receiver's interrupt; with it FRONT at 250000 has 70.5 ms */
+#define RAYS_FRONT_US 34000U /* that step after the instant of the time stamp: the model of the plant */
+#define HANDLING_US \
+    460U /* the sensor's begin and the receiver's interrupt; with it FRONT at 250000 has 70.5 ms */
 
 typedef struct {
     uint32_t sum, least, most;
@@ -58,7 +59,7 @@ static uint16_t points_before(const scip_scan_t *scan, uint16_t step)
 
 static tally_t tally_all(const uint16_t *rays, size_t count)
 {
-    tally_t t = { 0U, UINT16_MAX, 0U, 0U };
+    tally_t t = {0U, UINT16_MAX, 0U, 0U};
     for (size_t i = 0U; i < count; i++) {
         const uint32_t ray = rays[i];
         t.sum += ray;
@@ -70,7 +71,7 @@ static tally_t tally_all(const uint16_t *rays, size_t count)
 
 static tally_t tally_between(const uint16_t *rays, size_t count, uint32_t nearest, uint32_t furthest)
 {
-    tally_t t = { 0U, UINT16_MAX, 0U, 0U };
+    tally_t t = {0U, UINT16_MAX, 0U, 0U};
     for (size_t i = 0U; i < count; i++) {
         const uint32_t ray = rays[i];
         if (ray < nearest || ray > furthest) {
@@ -105,7 +106,8 @@ static uint16_t count_between(const uint16_t *rays, size_t count, uint32_t least
     return inside;
 }
 
-/* The lower median of the good rays, by bisection between the least and the most: no memory, and no ray moves. */
+/* The lower median of the good rays, by bisection between the least and the most: no memory, and no ray
+ * moves. */
 static uint32_t median_of(const uint16_t *rays, size_t count, const tally_t *good)
 {
     const uint32_t half = ((uint32_t)count - good->bad + 1U) / 2U;
@@ -122,7 +124,8 @@ static uint32_t median_of(const uint16_t *rays, size_t count, const tally_t *goo
     return low;
 }
 
-/* Mean of the good rays within NEAR_MEDIAN_MM of their median. Mostly all are, and the median is not needed. */
+/* Mean of the good rays within NEAR_MEDIAN_MM of their median. Mostly all are, and the median is not needed.
+ */
 static float robust_mean(const uint16_t *rays, size_t count, const tally_t *good)
 {
     tally_t kept = *good;
@@ -144,7 +147,7 @@ scip_group_mean_t scip_group_mean_within(const scip_scan_t *scan, const scip_gro
     const uint16_t begin = smaller(point_from(scan, group->first_step), end);
     const tally_t t = tally(scan, begin, end, limits);
     const uint16_t *const seen = &scan->distance_mm[begin];
-    scip_group_mean_t mean = { .good_rays = (uint16_t)(end - begin - t.bad) };
+    scip_group_mean_t mean = {.good_rays = (uint16_t)(end - begin - t.bad)};
     if (mean.good_rays > 0U) {
         mean.mean_mm = robust_mean(seen, (size_t)end - begin, &t);
         mean.spread_mm = (uint16_t)(t.most - t.least);
@@ -196,7 +199,8 @@ uint32_t scip_rays_age_us(const scip_scan_t *scan, uint32_t bit_rate)
     const uint32_t wire_us = (uint32_t)scip_scan_octets(kind, scan->points) * 100000U / (bit_rate / 100U);
     const uint32_t steps = (uint32_t)scan->points * steps_per_point(scan);
     const uint16_t middle = (uint16_t)(scan->first_step + (steps - 1U) / 2U);
-    const uint32_t rays_us = RAYS_FRONT_US + scip_step_delay_us(middle) - scip_step_delay_us(STEP_FRONT_MIDDLE);
+    const uint32_t rays_us = RAYS_FRONT_US + scip_step_delay_us(middle) -
+                             scip_step_delay_us(STEP_FRONT_MIDDLE);
     return REVOLUTION_US - rays_us + wire_us + HANDLING_US;
 }
 

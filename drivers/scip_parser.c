@@ -1,33 +1,35 @@
-/* How the parser thinks. It works line by line: the state says which line is to come, and a line is looked at when its LF
- * is there. A block of points that lies whole in the octets handed over is decoded where it lies, and so is the echo of
- * a stream; every other line, and every line in doubt, is first copied into parser->line. Both ways must give the same
- * result: the copy is the reference, the way in place only skips it.
+/* How the parser thinks. It works line by line: the state says which line is to come, and a line is looked at
+ * when its LF is there. A block of points that lies whole in the octets handed over is decoded where it lies,
+ * and so is the echo of a stream; every other line, and every line in doubt, is first copied into
+ * parser->line. Both ways must give the same result: the copy is the reference, the way in place only skips
+ * it.
  *
- * The 6-bit sums are weak: one frame of 64 with random content passes. So all else that is known is asked too: echo,
- * exact lengths, the range of every character, the order of time stamps. After damage the same line is searched for the
- * next echo, because it may hold the begin of the next frame. Leave out any of these checks and the fault programs in
- * tests/faults count wrong distances. */
+ * The 6-bit sums are weak: one frame of 64 with random content passes. So all else that is known is asked
+ * too: echo, exact lengths, the range of every character, the order of time stamps. After damage the same
+ * line is searched for the next echo, because it may hold the begin of the next frame. Leave out any of these
+ * checks and the fault programs in tests/faults count wrong distances. */
 #include "drivers/scip_parser.h"
 
 #include <string.h>
 
 #define STAMP_MASK ((uint32_t)0xFFFFFFUL)
-#define STATUS_OCTETS 4U    /* two characters, sum, LF */
-#define STAMP_STEP_MAX_MS ((uint32_t)10000UL)   /* two frames of one stream are never further apart */
+#define STATUS_OCTETS 4U                      /* two characters, sum, LF */
+#define STAMP_STEP_MAX_MS ((uint32_t)10000UL) /* two frames of one stream are never further apart */
 
 enum {
-    HUNT,           /* not in step: any line may end in the awaited echo */
-    ECHO,           /* in step with a stream: the next line is its echo */
+    HUNT, /* not in step: any line may end in the awaited echo */
+    ECHO, /* in step with a stream: the next line is its echo */
     STATUS,
     TIME,
     TEXT,
-    LEGACY_END,     /* the empty line after "E" */
-    REPLY_END,      /* the empty line after a reply without points */
+    LEGACY_END, /* the empty line after "E" */
+    REPLY_END,  /* the empty line after a reply without points */
     DATA,
-    SCAN_END        /* the empty line after the points */
+    SCAN_END /* the empty line after the points */
 };
 
-/* What is noted of a line's encoded characters: their sum, and bits above the sixth when one was outside 30H..6FH. */
+/* What is noted of a line's encoded characters: their sum, and bits above the sixth when one was outside
+ * 30H..6FH. */
 typedef struct {
     uint_fast16_t sum, outside;
 } check_t;
@@ -140,7 +142,7 @@ static bool line_has(const scip_parser_t *parser, uint16_t characters)
 
 static check_t check_of(uint16_t characters)
 {
-    return (check_t){ (uint_fast16_t)0x30U * characters, 0U };
+    return (check_t){(uint_fast16_t)0x30U * characters, 0U};
 }
 
 /* Six bits of an encoded value; the check notes the character. */
@@ -198,7 +200,7 @@ static scip_event_t end_of_status(scip_parser_t *parser)
         return SCIP_NOTHING;
     }
     if (parser->line_length == 1U && speaks_legacy(parser->awaited.kind)) {
-        parser->reply = (scip_reply_t){ .status = { line[0], 0U }, .legacy = true };
+        parser->reply = (scip_reply_t){.status = {line[0], 0U}, .legacy = true};
         parser->state = REPLY_END;
         return SCIP_NOTHING;
     }
@@ -211,7 +213,7 @@ static scip_event_t end_of_status(scip_parser_t *parser)
     if (cause != SCIP_DAMAGE_NONE) {
         return damage(parser, cause);
     }
-    parser->reply = (scip_reply_t){ .status = { line[0], line[1] } };
+    parser->reply = (scip_reply_t){.status = {line[0], line[1]}};
     if (is_counted(&parser->awaited) && has_status(parser, '0', '0') &&
         parser->remaining != parser->awaited.range.scans) {
         return damage(parser, SCIP_DAMAGE_ECHO);
@@ -227,7 +229,7 @@ static scip_event_t begin_data(scip_parser_t *parser, uint32_t stamp)
     }
     parser->timestamp_ms = stamp;
     parser->characters_left = (uint16_t)(parser->awaited.characters * parser->awaited.points);
-    parser->progress = (scip_progress_t){ .points = 0U };
+    parser->progress = (scip_progress_t){.points = 0U};
     parser->state = DATA;
     return SCIP_NOTHING;
 }
@@ -255,9 +257,10 @@ static scip_event_t end_of_time(scip_parser_t *parser)
     return begin_data(parser, stamp);
 }
 
-/* Two characters a point never straddle a block. Both are summed and checked at once, 16 bits apart: the sums of 32 pairs
- * stay below 2^16, and a character outside leaves bits above its six. */
-static check_t decode_pairs(scip_progress_t *progress, uint16_t *out, const octet_t *text, uint16_t characters)
+/* Two characters a point never straddle a block. Both are summed and checked at once, 16 bits apart: the sums
+ * of 32 pairs stay below 2^16, and a character outside leaves bits above its six. */
+static check_t decode_pairs(scip_progress_t *progress, uint16_t *out, const octet_t *text,
+                            uint16_t characters)
 {
     const size_t points = characters / 2U;
     check_t check = check_of(characters);
@@ -275,7 +278,8 @@ static check_t decode_pairs(scip_progress_t *progress, uint16_t *out, const octe
     return check;
 }
 
-static check_t decode_triples(scip_progress_t *progress, uint16_t *out, const octet_t *text, uint16_t characters)
+static check_t decode_triples(scip_progress_t *progress, uint16_t *out, const octet_t *text,
+                              uint16_t characters)
 {
     check_t check = check_of(characters);
     for (uint16_t i = 0U; i < characters; i++) {
@@ -301,8 +305,10 @@ static check_t pass(const octet_t *text, uint16_t characters)
     return check;
 }
 
-/* Of a block that is in doubt only the points behind progress->points have changed, and nobody has seen them. */
-static check_t decode(const scip_parser_t *parser, scip_progress_t *progress, const octet_t *text, uint16_t characters)
+/* Of a block that is in doubt only the points behind progress->points have changed, and nobody has seen them.
+ */
+static check_t decode(const scip_parser_t *parser, scip_progress_t *progress, const octet_t *text,
+                      uint16_t characters)
 {
     if (parser->scan == NULL) {
         return pass(text, characters);
@@ -333,8 +339,8 @@ static bool may_end_in_echo(const scip_parser_t *parser, const octet_t *line, si
     return line_length >= length && line[line_length - length] == *scip_request_echo(&parser->awaited);
 }
 
-/* What is left of a frame that was cut short may, with the next frame's echo behind it, have a block's length and a
- * right sum. */
+/* What is left of a frame that was cut short may, with the next frame's echo behind it, have a block's length
+ * and a right sum. */
 static scip_event_t end_of_data(scip_parser_t *parser)
 {
     const uint16_t characters = characters_of_block(parser);
@@ -343,7 +349,8 @@ static scip_event_t end_of_data(scip_parser_t *parser)
         return damage(parser, SCIP_DAMAGE_LENGTH);
     }
     const check_t check = decode(parser, &progress, parser->line, characters);
-    const scip_damage_t cause = may_end_in_echo(parser, parser->line, parser->line_length) && take_echo(parser)
+    const scip_damage_t cause = may_end_in_echo(parser, parser->line, parser->line_length) &&
+                                        take_echo(parser)
                                     ? SCIP_DAMAGE_LENGTH
                                     : verdict(&check, parser->line[characters]);
     if (cause != SCIP_DAMAGE_NONE) {
@@ -380,8 +387,9 @@ static bool counter_follows(const scip_parser_t *parser)
     return !is_counted(&parser->awaited) || parser->gap || !parser->in_step || has_fallen_by_one(parser);
 }
 
-/* A stamp follows when it is ahead of one of the last two seen, so a wrong one whose sum was right harms no later one.
- * No two frames in a row are dropped here, so a restarted clock or a wrong counter costs one scan. */
+/* A stamp follows when it is ahead of one of the last two seen, so a wrong one whose sum was right harms no
+ * later one. No two frames in a row are dropped here, so a restarted clock or a wrong counter costs one scan.
+ */
 static bool in_sequence(scip_parser_t *parser)
 {
     bool follows = parser->doubted || (stamp_follows(parser) && counter_follows(parser));
@@ -527,7 +535,7 @@ static scip_event_t at_line_end(scip_parser_t *parser)
 
 void scip_parser_init(scip_parser_t *parser)
 {
-    *parser = (scip_parser_t){ .state = HUNT };
+    *parser = (scip_parser_t){.state = HUNT};
 }
 
 void scip_parser_expect(scip_parser_t *parser, const scip_request_t *request)
@@ -587,7 +595,8 @@ scip_event_t scip_parser_end_line(scip_parser_t *parser)
     return end_line_of(parser, parser->gathered);
 }
 
-/* Copies behind what is gathered, up to the end of the line, of its memory or of the octets. Returns how many. */
+/* Copies behind what is gathered, up to the end of the line, of its memory or of the octets. Returns how
+ * many. */
 static size_t gather(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
     octet_t *line = &parser->line[parser->gathered];

@@ -27,54 +27,54 @@ extern "C" {
 #endif
 
 typedef enum {
-    SCIP_NOTHING,       /* no event yet */
-    SCIP_REPLY,         /* parser->reply is complete: the reply to the awaited request, or a refused GS,
-                         * GD, MS, MD */
-    SCIP_SCAN,          /* a scan is complete, in the memory given by scip_parser_scan_into() */
-    SCIP_NOTICE,        /* a stream frame without data: hardware trouble, or its end; see
-                         * parser->reply.status */
-    SCIP_TEXT,          /* one line of VV PP II: parser->line, parser->text_length, parser->text_proved */
-    SCIP_LEGACY,        /* the sensor answered "E" as in SCIP1.1: it is not in SCIP2.0 */
-    SCIP_DAMAGED        /* a reply or scan was dropped: parser->last_damage */
+    SCIP_NOTHING, /* no event yet */
+    SCIP_REPLY,   /* parser->reply is complete: the reply to the awaited request, or a refused GS,
+                   * GD, MS, MD */
+    SCIP_SCAN,    /* a scan is complete, in the memory given by scip_parser_scan_into() */
+    SCIP_NOTICE,  /* a stream frame without data: hardware trouble, or its end; see
+                   * parser->reply.status */
+    SCIP_TEXT,    /* one line of VV PP II: parser->line, parser->text_length, parser->text_proved */
+    SCIP_LEGACY,  /* the sensor answered "E" as in SCIP1.1: it is not in SCIP2.0 */
+    SCIP_DAMAGED  /* a reply or scan was dropped: parser->last_damage */
 } scip_event_t;
 
 typedef enum {
     SCIP_DAMAGE_NONE,
-    SCIP_DAMAGE_SUM,        /* a sum does not match */
-    SCIP_DAMAGE_LENGTH,     /* a line or the number of points is too short or too long */
-    SCIP_DAMAGE_ECHO,       /* a line between two frames is not the stream's echo; or the answer has
-                             * another count */
-    SCIP_DAMAGE_CHARACTER,  /* outside 30H..6FH in status, time stamp or data */
-    SCIP_DAMAGE_SEQUENCE,   /* remaining-scan counter or time stamp does not follow the one before; the
-                             * scan is dropped */
+    SCIP_DAMAGE_SUM,       /* a sum does not match */
+    SCIP_DAMAGE_LENGTH,    /* a line or the number of points is too short or too long */
+    SCIP_DAMAGE_ECHO,      /* a line between two frames is not the stream's echo; or the answer has
+                            * another count */
+    SCIP_DAMAGE_CHARACTER, /* outside 30H..6FH in status, time stamp or data */
+    SCIP_DAMAGE_SEQUENCE,  /* remaining-scan counter or time stamp does not follow the one before; the
+                            * scan is dropped */
     SCIP_DAMAGE_COUNT
 } scip_damage_t;
 
 typedef struct {
-    octet_t status[2];      /* two status characters; SCIP1.1: one, status[1] = 0 */
-    bool legacy;            /* SCIP1.1 shape: one status character, no sum */
-    uint32_t timestamp_ms;  /* TM1 only, 24 bits */
+    octet_t status[2];     /* two status characters; SCIP1.1: one, status[1] = 0 */
+    bool legacy;           /* SCIP1.1 shape: one status character, no sum */
+    uint32_t timestamp_ms; /* TM1 only, 24 bits */
 } scip_reply_t;
 
 /* One scan. The caller owns this structure and the memory of its points. The parser writes to it from
  * scip_parser_scan_into() until SCIP_SCAN; during that time its content is not valid. */
 typedef struct {
-    uint16_t *distance_mm;  /* points in the order of their steps. Codes < 20 are error codes, not
-                             * distances, and so is 4095 with two characters. Three characters saturate at
-                             * 65535 */
+    uint16_t *distance_mm; /* points in the order of their steps. Codes < 20 are error codes, not
+                            * distances, and so is 4095 with two characters. Three characters saturate at
+                            * 65535 */
     uint16_t capacity;
     uint16_t points;
-    uint16_t characters;    /* per point: 2 or 3 */
+    uint16_t characters; /* per point: 2 or 3 */
     uint16_t first_step;
     uint16_t cluster;
-    uint16_t remaining;     /* scans that follow in a counted run; 0 in the last one and in an endless run */
-    uint32_t timestamp_ms;  /* sensor clock at step 0, 24 bits as sent */
+    uint16_t remaining;    /* scans that follow in a counted run; 0 in the last one and in an endless run */
+    uint32_t timestamp_ms; /* sensor clock at step 0, 24 bits as sent */
 } scip_scan_t;
 
 /* Counters wrap at 2^32. */
 typedef struct {
     uint32_t replies;
-    uint32_t scans;         /* good scans, delivered or not */
+    uint32_t scans; /* good scans, delivered or not */
     uint32_t notices;
     uint32_t legacy;
     uint32_t damaged[SCIP_DAMAGE_COUNT]; /* by cause; [SCIP_DAMAGE_NONE] unused */
@@ -86,7 +86,7 @@ typedef struct {
 typedef struct {
     uint16_t points;
     uint16_t partial_characters;
-    uint32_t partial;           /* first characters of a point that straddles two blocks */
+    uint32_t partial; /* first characters of a point that straddles two blocks */
 } scip_progress_t;
 
 /* Data lines have 65 characters; the information lines of some models are longer. */
@@ -96,31 +96,31 @@ typedef struct {
     scip_reply_t reply;
     scip_damage_t last_damage;
     scip_counters_t counters;
-    octet_t line[SCIP_LINE_MAX];/* SCIP_TEXT: the line, until the next octet */
-    uint16_t line_length;       /* SCIP_TEXT: of the whole line, ';' and sum included */
-    uint16_t text_length;       /* SCIP_TEXT: characters before ';' and sum; line_length when it has none */
-    bool text_proved;           /* SCIP_TEXT: the line has a sum and it is right; some firmware sends wrong ones */
-    scip_request_t awaited;     /* latest given to scip_parser_expect(); its kind is that of SCIP_REPLY */
+    octet_t line[SCIP_LINE_MAX]; /* SCIP_TEXT: the line, until the next octet */
+    uint16_t line_length;        /* SCIP_TEXT: of the whole line, ';' and sum included */
+    uint16_t text_length;        /* SCIP_TEXT: characters before ';' and sum; line_length when it has none */
+    bool text_proved; /* SCIP_TEXT: the line has a sum and it is right; some firmware sends wrong ones */
+    scip_request_t awaited; /* latest given to scip_parser_expect(); its kind is that of SCIP_REPLY */
     /* private */
     bool awaiting;
-    uint16_t echo_fixed;        /* octets of the awaited echo that never change: all except the counter of
-                                 * a counted run */
+    uint16_t echo_fixed; /* octets of the awaited echo that never change: all except the counter of
+                          * a counted run */
     uint16_t state;
-    uint16_t gathered;          /* octets of the present line */
-    bool line_cut;              /* the line is longer than the buffer: only its last octets are kept */
-    bool skipping;              /* the line before was skipped and not empty */
+    uint16_t gathered; /* octets of the present line */
+    bool line_cut;     /* the line is longer than the buffer: only its last octets are kept */
+    bool skipping;     /* the line before was skipped and not empty */
     scip_scan_t *scan;
-    uint16_t characters_left;   /* of the scan's data */
+    uint16_t characters_left; /* of the scan's data */
     scip_progress_t progress;
-    uint32_t timestamp_ms;      /* of the frame in reception */
-    uint16_t remaining;         /* of the frame in reception */
-    bool flowing;               /* the answer to the stream request, or a frame of it, was received */
-    bool gap;                   /* data were lost since the latest good frame */
-    bool doubted;               /* the latest frame was dropped because of its sequence */
-    uint16_t latest_remaining;  /* of the latest good frame */
-    bool in_step;               /* no frame was lost between the latest good frame and the good frame
-                                 * before it: its counter is lower by one */
-    uint16_t stamps;            /* number of last_stamps_ms that count, 0..2 */
+    uint32_t timestamp_ms;     /* of the frame in reception */
+    uint16_t remaining;        /* of the frame in reception */
+    bool flowing;              /* the answer to the stream request, or a frame of it, was received */
+    bool gap;                  /* data were lost since the latest good frame */
+    bool doubted;              /* the latest frame was dropped because of its sequence */
+    uint16_t latest_remaining; /* of the latest good frame */
+    bool in_step;              /* no frame was lost between the latest good frame and the good frame
+                                * before it: its counter is lower by one */
+    uint16_t stamps;           /* number of last_stamps_ms that count, 0..2 */
     uint32_t last_stamps_ms[2];
 } scip_parser_t;
 

@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-#define STREAM_FRAME 27U    /* a frame's octets around its data blocks: echo, status, time stamp, line ends */
+#define STREAM_FRAME 27U /* a frame's octets around its data blocks: echo, status, time stamp, line ends */
 #define SINGLE_FRAME 24U
 #define STREAM_REPLY 21U
 
@@ -13,17 +13,17 @@ typedef struct {
 } command_t;
 
 static const command_t commands[SCIP_KIND_COUNT] = {
-    [SCIP_LASER_OFF_1] = { "L0", 6U, 0U },   [SCIP_SWITCH] = { "SCIP2.0", 11U, 0U },
-    [SCIP_BIT_RATE] = { "SS", 14U, 0U },     [SCIP_STOP] = { "QT", 8U, 0U },
-    [SCIP_LASER_ON] = { "BM", 8U, 0U },      [SCIP_RESET] = { "RS", 8U, 0U },
-    [SCIP_TIME_ENTER] = { "TM0", 9U, 0U },   [SCIP_TIME_READ] = { "TM1", 15U, 0U },
-    [SCIP_TIME_LEAVE] = { "TM2", 9U, 0U },   [SCIP_VERSION] = { "VV", 0U, 0U },
-    [SCIP_PARAMETERS] = { "PP", 0U, 0U },    [SCIP_STATE] = { "II", 0U, 0U },
-    [SCIP_STREAM_2] = { "MS", STREAM_REPLY, 2U }, [SCIP_STREAM_3] = { "MD", STREAM_REPLY, 3U },
-    [SCIP_SINGLE_2] = { "GS", 0U, 2U },      [SCIP_SINGLE_3] = { "GD", 0U, 3U },
+    [SCIP_LASER_OFF_1] = {"L0", 6U, 0U},        [SCIP_SWITCH] = {"SCIP2.0", 11U, 0U},
+    [SCIP_BIT_RATE] = {"SS", 14U, 0U},          [SCIP_STOP] = {"QT", 8U, 0U},
+    [SCIP_LASER_ON] = {"BM", 8U, 0U},           [SCIP_RESET] = {"RS", 8U, 0U},
+    [SCIP_TIME_ENTER] = {"TM0", 9U, 0U},        [SCIP_TIME_READ] = {"TM1", 15U, 0U},
+    [SCIP_TIME_LEAVE] = {"TM2", 9U, 0U},        [SCIP_VERSION] = {"VV", 0U, 0U},
+    [SCIP_PARAMETERS] = {"PP", 0U, 0U},         [SCIP_STATE] = {"II", 0U, 0U},
+    [SCIP_STREAM_2] = {"MS", STREAM_REPLY, 2U}, [SCIP_STREAM_3] = {"MD", STREAM_REPLY, 3U},
+    [SCIP_SINGLE_2] = {"GS", 0U, 2U},           [SCIP_SINGLE_3] = {"GD", 0U, 3U},
 };
 
-const uint32_t scip_bit_rates[SCIP_BIT_RATES] = { 19200UL, 57600UL, 115200UL, 250000UL, 500000UL, 750000UL };
+const uint32_t scip_bit_rates[SCIP_BIT_RATES] = {19200UL, 57600UL, 115200UL, 250000UL, 500000UL, 750000UL};
 
 static bool is_stream(scip_kind_t kind)
 {
@@ -53,7 +53,7 @@ static void append_number(scip_request_t *request, uint32_t number, uint16_t dig
 
 static void begin(scip_request_t *request, scip_kind_t kind)
 {
-    *request = (scip_request_t){ .kind = kind };
+    *request = (scip_request_t){.kind = kind};
     request->reply_octets = commands[kind].reply_octets;
     request->characters = commands[kind].characters;
     append_symbol(request, commands[kind].symbol);
@@ -102,8 +102,8 @@ bool scip_request_bit_rate(scip_request_t *request, uint32_t bit_rate)
 
 static bool in_range(const scip_range_t *range)
 {
-    return range->first_step <= range->last_step && range->last_step <= SCIP_STEP_MAX && range->cluster >= 1U &&
-           range->cluster <= 99U && range->interval <= 9U && range->scans <= 99U;
+    return range->first_step <= range->last_step && range->last_step <= SCIP_STEP_MAX &&
+           range->cluster >= 1U && range->cluster <= 99U && range->interval <= 9U && range->scans <= 99U;
 }
 
 bool scip_request_scan(scip_request_t *request, scip_kind_t kind, const scip_range_t *range)

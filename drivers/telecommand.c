@@ -105,7 +105,8 @@ void telecommand_collector_broken(telecommand_collector_t *collector)
 
 static bool is_name(char character)
 {
-    return (character >= 'A' && character <= 'Z') || (character >= '0' && character <= '9') || character == '_';
+    return (character >= 'A' && character <= 'Z') || (character >= '0' && character <= '9') ||
+           character == '_';
 }
 
 char telecommand_upper(char character)
@@ -133,7 +134,8 @@ static uint16_t skip_blanks(const telecommand_line_t *line, uint16_t at, uint16_
     return at;
 }
 
-static telecommand_status_t take_name(const telecommand_line_t *line, uint16_t *at, uint16_t end, telecommand_t *command)
+static telecommand_status_t take_name(const telecommand_line_t *line, uint16_t *at, uint16_t end,
+                                      telecommand_t *command)
 {
     uint16_t length = 0U;
 
@@ -176,8 +178,8 @@ static bool is_zero(const char *text, uint16_t length)
 /* Which nothing may hold up. */
 static bool stops(const telecommand_t *command)
 {
-    return is_named(command, "STOP") || is_named(command, "LAND")
-           || (is_named(command, "SETR") && is_zero(command->argument, command->argument_length));
+    return is_named(command, "STOP") || is_named(command, "LAND") ||
+           (is_named(command, "SETR") && is_zero(command->argument, command->argument_length));
 }
 
 /* Where `*` and the sum begin; end when the line carries none. */
@@ -238,7 +240,8 @@ static telecommand_status_t reject(telecommand_t *command, telecommand_status_t 
     return status;
 }
 
-telecommand_status_t telecommand_parse(const telecommand_line_t *line, bool sum_required, telecommand_t *command)
+telecommand_status_t telecommand_parse(const telecommand_line_t *line, bool sum_required,
+                                       telecommand_t *command)
 {
     uint16_t end = line->length;
     telecommand_status_t status;

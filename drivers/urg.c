@@ -4,11 +4,11 @@ bool urg_init(urg_t *urg, const urg_config_t *config, uint16_t *distance_mm, uin
 {
     scip_request_t stream;
     urg_link_t link;
-    if (!urg_link_init(&link, config, now_us) || !scip_request_scan(&stream, config->stream, &config->range) ||
-        values / 2U < stream.points) {
+    if (!urg_link_init(&link, config, now_us) ||
+        !scip_request_scan(&stream, config->stream, &config->range) || values / 2U < stream.points) {
         return false;
     }
-    *urg = (urg_t){ .link = link };
+    *urg = (urg_t){.link = link};
     for (uint16_t i = 0U; i < 2U; i++) {
         urg->scans[i].distance_mm = &distance_mm[i * stream.points];
         urg->scans[i].capacity = stream.points;
@@ -63,14 +63,15 @@ bool urg_next_to_send(urg_t *urg, urg_output_t *output)
 {
     const urg_action_t *action = &urg->action;
     const bool some = action->send || action->set_rate || action->cycle_power;
-    *output = (urg_output_t){ .cycle_power = action->cycle_power, .set_rate = action->set_rate, .rate = urg->link.rate };
+    *output = (urg_output_t){
+        .cycle_power = action->cycle_power, .set_rate = action->set_rate, .rate = urg->link.rate};
     if (action->send) {
         output->count = action->request.text_length;
     }
     for (uint16_t i = 0U; i < output->count; i++) {
         output->octets[i] = action->request.text[i];
     }
-    urg->action = (urg_action_t){ .send = false };
+    urg->action = (urg_action_t){.send = false};
     return some;
 }
 

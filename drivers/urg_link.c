@@ -1,28 +1,31 @@
-/* How the link thinks. Nothing is assumed of the sensor: each answer, and each silence, says which command comes next.
- * Every command has a time-out, so no state is without a way out. The order of the first start is the seed document's.
+/* How the link thinks. Nothing is assumed of the sensor: each answer, and each silence, says which command
+ * comes next. Every command has a time-out, so no state is without a way out. The order of the first start is
+ * the seed document's.
  *
  * A stream that stops has three likely causes, and the way back from one must not prolong the others:
- *   - The line is out and the sensor streams on. Its scans count again as soon as they are heard. So nothing is sent that
- *     ends the stream (QT); the scan order itself is repeated, which a streaming sensor only begins anew.
- *   - The sensor lost its power, boots for seconds, then listens in SCIP1.1 at its first rate. There SCIP2.0 is sent again
- *     and again. A sensor that streams after all is noticed there: its octets come at a wrong rate.
+ *   - The line is out and the sensor streams on. Its scans count again as soon as they are heard. So nothing
+ * is sent that ends the stream (QT); the scan order itself is repeated, which a streaming sensor only begins
+ * anew.
+ *   - The sensor lost its power, boots for seconds, then listens in SCIP1.1 at its first rate. There SCIP2.0
+ * is sent again and again. A sensor that streams after all is noticed there: its octets come at a wrong rate.
  *   - The sensor lost its stream but not its rate: the repeated scan order is what it needs.
- * So both known rates have their turns, of one step each, for SEARCH_KNOWN_US. Only then every other rate is tried, with QT and longer
- * time-outs. After a change here look at `scip_start --outages`: it prints the longest times without scans. */
+ * So both known rates have their turns, of one step each, for SEARCH_KNOWN_US. Only then every other rate is
+ * tried, with QT and longer time-outs. After a change here look at `scip_start --outages`: it prints the
+ * longest times without scans. */
 #include "drivers/urg_link.h"
 
 #define REVOLUTION_US 100000U
-#define FIRST_REPLY_US 400000U     /* real sensors were seen to take 381 ms */
+#define FIRST_REPLY_US 400000U /* real sensors were seen to take 381 ms */
 #define SCAN_MARGIN_US 250000U
-#define VERIFY_US 2000000U         /* statuses 21..49: the sensor examines itself, scans may come again */
-#define POWER_CYCLE_US 20000000U   /* without a scan */
-#define KNOCK_US 130000U           /* one step of 150 ms, less what their distance varies */
-#define LISTEN_US 280000U          /* two */
-#define SEARCH_KNOWN_US 12000000U  /* a sensor boots for 8 s */
-#define KNOCKS_ROUND 6U            /* one of so many is at the stream's rate */
-#define HEARD_OCTETS 64U           /* during WAIT: the sensor is already sending */
-#define WRONG_RATE_SIGNS 8U        /* since a command: more than noise */
-#define STREAM_SIGNS 3U            /* the same between two knocks: a wrong guess costs one turn only */
+#define VERIFY_US 2000000U        /* statuses 21..49: the sensor examines itself, scans may come again */
+#define POWER_CYCLE_US 20000000U  /* without a scan */
+#define KNOCK_US 130000U          /* one step of 150 ms, less what their distance varies */
+#define LISTEN_US 280000U         /* two */
+#define SEARCH_KNOWN_US 12000000U /* a sensor boots for 8 s */
+#define KNOCKS_ROUND 6U           /* one of so many is at the stream's rate */
+#define HEARD_OCTETS 64U          /* during WAIT: the sensor is already sending */
+#define WRONG_RATE_SIGNS 8U       /* since a command: more than noise */
+#define STREAM_SIGNS 3U           /* the same between two knocks: a wrong guess costs one turn only */
 #define LADDER_TOP 3U
 
 typedef struct {
@@ -35,9 +38,10 @@ typedef struct {
 static const char *const status_names[] = {
     "WAIT", "STOP1", "SWITCH", "RATE", "STOP2", "STREAM", "OK", "LOST", "OLD",
 };
-typedef char every_status_has_a_name[(sizeof status_names / sizeof status_names[0] == URG_STATUS_COUNT) ? 1 : -1];
+typedef char
+    every_status_has_a_name[(sizeof status_names / sizeof status_names[0] == URG_STATUS_COUNT) ? 1 : -1];
 
-#define PROBE_STREAM 0U     /* the probe begins with the configured rates */
+#define PROBE_STREAM 0U /* the probe begins with the configured rates */
 #define PROBE_FIRST 1U
 #define PROBES (2U + SCIP_BIT_RATES)
 
@@ -478,8 +482,10 @@ static void on_silence(const step_t *step)
 static bool is_silent(const step_t *step)
 {
     const urg_link_t *link = step->link;
-    const bool guessing = link->status == URG_STOP1 || (link->status == URG_LOST && link->command == SCIP_STOP);
-    return step->now_us - link->sent_us >= link->timeout_us || (guessing && wrong_rate(step, WRONG_RATE_SIGNS));
+    const bool guessing = link->status == URG_STOP1 ||
+                          (link->status == URG_LOST && link->command == SCIP_STOP);
+    return step->now_us - link->sent_us >= link->timeout_us ||
+           (guessing && wrong_rate(step, WRONG_RATE_SIGNS));
 }
 
 static bool hears_stream(const step_t *step)
@@ -616,15 +622,17 @@ void urg_seen_event(urg_seen_t *seen, const scip_parser_t *parser, scip_event_t 
 
 bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us)
 {
-    scip_request_t stream = { .scan_octets = 0U };
+    scip_request_t stream = {.scan_octets = 0U};
     scip_request_t rate;
     if ((config->stream != SCIP_STREAM_2 && config->stream != SCIP_STREAM_3) ||
         !scip_request_scan(&stream, config->stream, &config->range) ||
-        !scip_request_bit_rate(&rate, config->first_rate) || !scip_request_bit_rate(&rate, config->stream_rate) ||
-        !is_possible(config, config->first_rate) || !is_possible(config, config->stream_rate)) {
+        !scip_request_bit_rate(&rate, config->first_rate) ||
+        !scip_request_bit_rate(&rate, config->stream_rate) || !is_possible(config, config->first_rate) ||
+        !is_possible(config, config->stream_rate)) {
         return false;
     }
-    *link = (urg_link_t){ .config = *config, .status = URG_WAIT, .since_us = now_us, .rate = config->first_rate };
+    *link = (urg_link_t){
+        .config = *config, .status = URG_WAIT, .since_us = now_us, .rate = config->first_rate};
     link->scan_octets = stream.scan_octets;
     link->scan_us = now_us;
     return true;
@@ -632,8 +640,8 @@ bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us
 
 void urg_link_step(urg_link_t *link, const urg_seen_t *seen, uint32_t now_us, urg_action_t *action)
 {
-    const step_t step = { link, seen, now_us, action };
-    *action = (urg_action_t){ .send = false };
+    const step_t step = {link, seen, now_us, action};
+    *action = (urg_action_t){.send = false};
     switch (link->status) {
     case URG_WAIT:
         step_wait(&step);

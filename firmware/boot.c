@@ -46,7 +46,8 @@ static float value_of(uint32_t word)
 
 void boot_keep_offset(const attitude_t *offset)
 {
-    uint32_t words[BSP_RETAINED_WORDS] = {word_of(offset->roll_rad), word_of(offset->pitch_rad), word_of(offset->yaw_rad)};
+    uint32_t words[BSP_RETAINED_WORDS] = {word_of(offset->roll_rad), word_of(offset->pitch_rad),
+                                          word_of(offset->yaw_rad)};
 
     bsp_retained_store(words);
 }

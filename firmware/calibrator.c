@@ -1,5 +1,5 @@
-/* TaskControl preempts TaskReceiveComm and not the other way round: only TaskReceiveComm turns interrupts off for its
- * copies. */
+/* TaskControl preempts TaskReceiveComm and not the other way round: only TaskReceiveComm turns interrupts off
+ * for its copies. */
 #include "firmware/calibrator.h"
 
 #include <ti/sysbios/family/c28/Hwi.h>
@@ -27,7 +27,8 @@ uint16_t calibrator_start(float idle_percent, uint16_t step_counts, uint16_t per
 void calibrator_stop(void)
 {
     if (request.run) {
-        (void)ask((calibration_request_t){.run = false, .step_counts = request.step_counts, .period_s = request.period_s});
+        (void)ask((calibration_request_t){
+            .run = false, .step_counts = request.step_counts, .period_s = request.period_s});
     }
 }
 

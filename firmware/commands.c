@@ -18,7 +18,7 @@
 #include "firmware/version.h"
 #include "firmware/xbee_port.h"
 
-#define CONTINUE_POLL_MS 10U    /* ten characters leave meanwhile */
+#define CONTINUE_POLL_MS 10U /* ten characters leave meanwhile */
 #define BARE_ANSWER_US 1000000UL
 
 typedef struct {
@@ -153,17 +153,22 @@ static bool execute_help(answer_t *answer);
 
 static const verb_t verbs[] = {
     {"SETR", verb_setr, "0..3 m - height reference; 0 lands"},
-    {"ARM", execute_arm, "- on the ground: IDLE percent of throttle instead of none, which keeps started motors turning"},
-    {"STOP", execute_stop, "- disarms: no throttle on the ground, in the air it lands first; goes before all that waits"},
+    {"ARM", execute_arm,
+     "- on the ground: IDLE percent of throttle instead of none, which keeps started motors turning"},
+    {"STOP", execute_stop,
+     "- disarms: no throttle on the ground, in the air it lands first; goes before all that waits"},
     {"LAND", verb_land, "- lands, as #SETR 0; goes before all that waits"},
     {"GET", execute_get, "[NAME] - one parameter, or all"},
     {"SAVE", verb_save, "- stores the parameters"},
     {"LOAD", verb_load, "- the stored parameters"},
-    {"DEFAULTS", verb_defaults, "[SEED] - the parameters as delivered, or the seed's law and gains; the stored ones stay"},
+    {"DEFAULTS", verb_defaults,
+     "[SEED] - the parameters as delivered, or the seed's law and gains; the stored ones stay"},
     {"LOG", verb_log, "[SECONDS|CLEAR|STOP] - the flight recorder as CSV"},
-    {"CALIBRATE", verb_calibrate, "[COUNTS [SECONDS]] - thrust step by step, tied down; any line but #PING ends it"},
+    {"CALIBRATE", verb_calibrate,
+     "[COUNTS [SECONDS]] - thrust step by step, tied down; any line but #PING ends it"},
     {"LASER", verb_laser, "- the scanner's state, rate, frames and errors by cause"},
-    {"IMU", verb_imu, "[LEVEL|RIGHT|NOSE] - what the IMU sends; finds its unit and axes from how the vehicle is held"},
+    {"IMU", verb_imu,
+     "[LEVEL|RIGHT|NOSE] - what the IMU sends; finds its unit and axes from how the vehicle is held"},
     {"PERF", verb_perf, "[RESET] - responses, deadlines, stacks, load, waits; RESET clears them"},
     {"STREAM", verb_stream, "PULSE|OFF - the pulse of each control cycle in place of telemetry"},
     {"HANG", verb_hang, "TASK - hangs a task, for a test of the watchdog; on the ground only"},

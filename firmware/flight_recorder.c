@@ -1,5 +1,5 @@
-/* TaskControl preempts TaskReceiveComm and not the other way round: the writer needs no lock, the reader turns interrupts
- * off for the copy of one record. */
+/* TaskControl preempts TaskReceiveComm and not the other way round: the writer needs no lock, the reader
+ * turns interrupts off for the copy of one record. */
 #include "firmware/flight_recorder.h"
 
 #include <math.h>
@@ -17,15 +17,15 @@
 #pragma DATA_SECTION(ring, ".flight_log")
 #endif
 static uint16_t ring[RECORDS][FLIGHT_LOG_CELLS];
-static uint32_t oldest;     /* changed by both tasks */
+static uint32_t oldest; /* changed by both tasks */
 static uint32_t next;
 
 static struct {
     uint32_t now_us;
-    uint32_t rest_us;       /* not yet a millisecond */
+    uint32_t rest_us; /* not yet a millisecond */
     uint32_t now_ms;
     uint32_t taken_ms;
-    bool active;            /* the latest cycle was one to record */
+    bool active; /* the latest cycle was one to record */
 } clock;
 
 static uint32_t tell_ms(uint32_t now_us)

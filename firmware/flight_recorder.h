@@ -13,7 +13,7 @@
 #include "control/flight.h"
 #include "drivers/flight_log.h"
 
-#define FLIGHT_RECORDER_RECORDS 1600U   /* 16000 cells */
+#define FLIGHT_RECORDER_RECORDS 1600U /* 16000 cells */
 
 /* Records one control cycle if it is due. The arguments are borrowed for the call. TaskControl. */
 void flight_recorder_take(const flight_inputs_t *in, const flight_outputs_t *out);

@@ -1,5 +1,5 @@
-/* TaskReceiveLaser preempts TaskReceiveComm and not the other way round: only TaskReceiveComm turns interrupts off for
- * its copy. No gate, so that a scan waits for nobody's parameters. */
+/* TaskReceiveLaser preempts TaskReceiveComm and not the other way round: only TaskReceiveComm turns
+ * interrupts off for its copy. No gate, so that a scan waits for nobody's parameters. */
 #include "firmware/geometry.h"
 
 #include <ti/sysbios/family/c28/Hwi.h>

@@ -1,5 +1,5 @@
-/* TaskIMU preempts TaskReceiveComm and not the other way round: only TaskReceiveComm turns interrupts off for its
- * copies. */
+/* TaskIMU preempts TaskReceiveComm and not the other way round: only TaskReceiveComm turns interrupts off for
+ * its copies. */
 #include "firmware/imu_exchange.h"
 
 #include <stdbool.h>
@@ -24,7 +24,8 @@ void imu_exchange_mounted(imu_mapping_t *mapping)
     *mapping = mounted;
 }
 
-void imu_exchange_show(const razor_text_t *text, razor_status_t status, const imu_raw_t *raw, uint32_t arrival_us)
+void imu_exchange_show(const razor_text_t *text, razor_status_t status, const imu_raw_t *raw,
+                       uint32_t arrival_us)
 {
     shown.text = *text;
     shown.status = status;

@@ -10,9 +10,9 @@
 typedef struct {
     razor_text_t text;
     razor_status_t status;
-    imu_raw_t raw;          /* latest frame with status OK */
-    uint32_t frames;        /* frames with status OK so far */
-    uint32_t period_us;     /* time between the latest two of them */
+    imu_raw_t raw;      /* latest frame with status OK */
+    uint32_t frames;    /* frames with status OK so far */
+    uint32_t period_us; /* time between the latest two of them */
 } imu_view_t;
 
 /* Sets the mounting from the parameters; valid from the next frame on. TaskReceiveComm or main(). */
@@ -22,7 +22,8 @@ void imu_exchange_mounted(imu_mapping_t *mapping);
 
 /* Call for each frame. raw is read only when status is RAZOR_OK. arrival_us: arrival of its last octet.
  * TaskIMU. */
-void imu_exchange_show(const razor_text_t *text, razor_status_t status, const imu_raw_t *raw, uint32_t arrival_us);
+void imu_exchange_show(const razor_text_t *text, razor_status_t status, const imu_raw_t *raw,
+                       uint32_t arrival_us);
 /* Copies the latest frame and the counters. TaskReceiveComm. */
 void imu_exchange_look(imu_view_t *view);
 

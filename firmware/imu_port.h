@@ -8,7 +8,7 @@
 
 typedef struct {
     razor_text_t text;
-    uint32_t arrival_us;    /* arrival of the last octet */
+    uint32_t arrival_us; /* arrival of the last octet */
 } imu_message_t;
 
 /* Creates the port. It also asks the sensor to stream, in case streaming was switched off. main() only. */

@@ -13,7 +13,8 @@
 #include "bsp/timebase.h"
 #include "firmware/uart_port.h"
 
-/* Written by the receive Hwi. The parser fills one of two scans while the other, complete, waits for Laser_SWI. */
+/* Written by the receive Hwi. The parser fills one of two scans while the other, complete, waits for
+ * Laser_SWI. */
 static scip_parser_t parser;
 static uint16_t points[2][SCIP_LAYOUT_POINTS_MAX];
 static scip_scan_t scans[2];

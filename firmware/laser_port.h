@@ -12,10 +12,10 @@
 #include "drivers/urg_link.h"
 
 typedef struct {
-    scip_scan_t scan;           /* its points are in distance_mm */
+    scip_scan_t scan; /* its points are in distance_mm */
     uint16_t distance_mm[SCIP_LAYOUT_POINTS_MAX];
-    uint32_t arrival_us;        /* arrival of the last octet of that scan */
-    uint32_t bit_rate;          /* bits per second at which it was received */
+    uint32_t arrival_us; /* arrival of the last octet of that scan */
+    uint32_t bit_rate;   /* bits per second at which it was received */
 } laser_message_t;
 
 /* Statistics since power-up. */
@@ -23,7 +23,7 @@ typedef struct {
     urg_seen_t seen;
     scip_counters_t scip;
     scip_damage_t last_damage;
-    uint32_t overruns;          /* how often the UART lost octets */
+    uint32_t overruns; /* how often the UART lost octets */
 } laser_statistics_t;
 
 /* Creates the port. bit_rate in bits per second. main() only. */

@@ -5,7 +5,7 @@
 #include "firmware/xbee_port.h"
 
 static struct {
-    listing_line_t line;        /* NULL: nothing to send */
+    listing_line_t line; /* NULL: nothing to send */
     uint16_t number;
     telecommand_t command;
     answer_t answer;

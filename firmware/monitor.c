@@ -24,13 +24,14 @@ static uint32_t deadlines_us[] = {
     [MONITOR_SEND_COMM] = TASK_SEND_COMM_DEADLINE_MS * 1000UL,
     [MONITOR_RECEIVE_COMM] = TASK_RECEIVE_COMM_DEADLINE_MS * 1000UL,
 };
-typedef char every_task_has_a_deadline[(sizeof deadlines_us / sizeof deadlines_us[0] == MONITOR_TASKS) ? 1 : -1];
+typedef char
+    every_task_has_a_deadline[(sizeof deadlines_us / sizeof deadlines_us[0] == MONITOR_TASKS) ? 1 : -1];
 
 typedef struct {
     Task_Handle handle;
-    bool pending;           /* released and not yet begun */
+    bool pending; /* released and not yet begun */
     uint32_t released_us;
-    uint32_t begun_us;      /* release of the job in hand */
+    uint32_t begun_us; /* release of the job in hand */
     uint32_t longest_us;
     uint32_t late;
 } record_t;

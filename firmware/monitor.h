@@ -47,8 +47,8 @@ void monitor_entered(monitor_server_t server, uint32_t asked_us);
 typedef struct {
     const char *name;
     uint32_t longest_us;
-    uint32_t late;              /* missed deadlines */
-    uint32_t stack_used;        /* maximum so far, in the kernel's units: 16-bit cells on the chip */
+    uint32_t late;       /* missed deadlines */
+    uint32_t stack_used; /* maximum so far, in the kernel's units: 16-bit cells on the chip */
     uint32_t stack_size;
 } monitor_report_t;
 

@@ -11,17 +11,17 @@
 
 typedef enum {
     PARAMETER_STORE_DONE,
-    PARAMETER_STORE_EMPTY,      /* nothing was stored yet */
-    PARAMETER_STORE_DAMAGED,    /* no copy is complete */
-    PARAMETER_STORE_FOREIGN,    /* the only complete copies are of a firmware with other parameters */
-    PARAMETER_STORE_RANGE,      /* a stored value is outside today's limits */
-    PARAMETER_STORE_FAULT       /* the written copy does not read back; the previous copy is unchanged */
+    PARAMETER_STORE_EMPTY,   /* nothing was stored yet */
+    PARAMETER_STORE_DAMAGED, /* no copy is complete */
+    PARAMETER_STORE_FOREIGN, /* the only complete copies are of a firmware with other parameters */
+    PARAMETER_STORE_RANGE,   /* a stored value is outside today's limits */
+    PARAMETER_STORE_FAULT    /* the written copy does not read back; the previous copy is unchanged */
 } parameter_store_status_t;
 
 typedef struct {
     parameter_store_status_t status;
-    uint32_t generation;        /* DONE, RANGE: number of the copy; the first is 1 */
-    parameter_id_t parameter;   /* RANGE: the first parameter that was refused */
+    uint32_t generation;      /* DONE, RANGE: number of the copy; the first is 1 */
+    parameter_id_t parameter; /* RANGE: the first parameter that was refused */
 } parameter_store_result_t;
 
 /* Loads the stored values into *parameters, which must already hold a valid set. Changes all values when

@@ -3,7 +3,7 @@
 #include "drivers/telemetry.h"
 #include "firmware/xbee_port.h"
 
-static bool streaming;  /* one cell: read and written whole */
+static bool streaming; /* one cell: read and written whole */
 
 void pulse_stream_set(bool on)
 {

@@ -14,22 +14,22 @@
 #define LASER_SWI_PRIORITY 2U
 #define XBEE_SWI_PRIORITY 1U
 
-#define CONTROL_PERIOD_MS 108U          /* release FREE */
-#define CONTROL_TIMEOUT_MS 150U         /* TaskControl runs at least this often, with any RELEASE */
+#define CONTROL_PERIOD_MS 108U  /* release FREE */
+#define CONTROL_TIMEOUT_MS 150U /* TaskControl runs at least this often, with any RELEASE */
 #define SEND_LASER_PERIOD_MS 150U
 #define SEND_COMM_PERIOD_MS 200U
 
 /* Deadlines, counted from the release. For a sporadic task: its shortest distance between two releases. */
 #define TASK_IMU_DEADLINE_MS 25U
 #define TASK_RECEIVE_LASER_DEADLINE_MS 100U
-#define TASK_CONTROL_DEADLINE_MS 108U          /* release FREE */
-#define TASK_CONTROL_SCAN_DEADLINE_MS 100U     /* with each scan */
-#define TASK_CONTROL_FRAME_DEADLINE_MS 25U     /* with each IMU frame */
+#define TASK_CONTROL_DEADLINE_MS 108U      /* release FREE */
+#define TASK_CONTROL_SCAN_DEADLINE_MS 100U /* with each scan */
+#define TASK_CONTROL_FRAME_DEADLINE_MS 25U /* with each IMU frame */
 #define TASK_SEND_LASER_DEADLINE_MS 150U
 #define TASK_SEND_COMM_DEADLINE_MS 200U
 #define TASK_RECEIVE_COMM_DEADLINE_MS 300U
 
-#define TASK_STACK_CELLS 1024U      /* docs/memory.md tells how much each task needs */
+#define TASK_STACK_CELLS 1024U /* docs/memory.md tells how much each task needs */
 
 #if CONTROL_PERIOD_MS >= 65535U || CONTROL_TIMEOUT_MS >= 65535U
 #error "SYS/BIOS takes 65535 ticks for ever on a C28x"

@@ -20,13 +20,13 @@ void servers_create(void);
 
 /* Altitude server, written by TaskReceiveLaser. */
 typedef struct {
-    altitude_t altitude;        /* latest scan that gave a height */
-    bool scan_valid;            /* the latest scan gave a height */
-    uint32_t sensor_time_ms;    /* of that height: the sensor's 24-bit clock */
-    uint32_t arrival_us;        /* last octet of that scan, bsp_time_us() */
-    uint32_t age_us;            /* from its rays to that octet, when nothing delays it */
-    uint32_t sequence;          /* heights so far; 0 = none yet */
-    uint32_t heightless;        /* scans without a height */
+    altitude_t altitude;     /* latest scan that gave a height */
+    bool scan_valid;         /* the latest scan gave a height */
+    uint32_t sensor_time_ms; /* of that height: the sensor's 24-bit clock */
+    uint32_t arrival_us;     /* last octet of that scan, bsp_time_us() */
+    uint32_t age_us;         /* from its rays to that octet, when nothing delays it */
+    uint32_t sequence;       /* heights so far; 0 = none yet */
+    uint32_t heightless;     /* scans without a height */
 } altitude_sample_t;
 
 void altitude_server_write(const altitude_sample_t *sample);
@@ -43,10 +43,10 @@ uint16_t imu_server_history(imu_sample_t history[IMU_HISTORY]);
 /* LaserStatus server, written by TaskSendLaser. */
 typedef struct {
     urg_status_t status;
-    uint32_t rate;              /* bits per second */
-    uint32_t restarts;          /* how often the stream was lost */
-    uint32_t timeouts;          /* commands that got no answer */
-    urg_seen_t seen;            /* counters at that time */
+    uint32_t rate;     /* bits per second */
+    uint32_t restarts; /* how often the stream was lost */
+    uint32_t timeouts; /* commands that got no answer */
+    urg_seen_t seen;   /* counters at that time */
 } laser_sample_t;
 
 void laser_server_write(const laser_sample_t *sample);
@@ -54,12 +54,12 @@ void laser_server_read(laser_sample_t *sample);
 
 /* Reference server, written by TaskReceiveComm: the operator's requests. */
 typedef struct {
-    float reference_m;          /* 0 = none, or land */
-    uint32_t sequence;          /* accepted #SETR commands so far */
-    bool arm;                   /* true after #ARM, false after #STOP */
-    uint32_t arm_sequence;      /* #ARM and #STOP commands so far */
-    uint32_t link_time_us;      /* arrival of the latest valid line */
-    uint32_t link_sequence;     /* valid lines so far; 0 = none yet */
+    float reference_m;      /* 0 = none, or land */
+    uint32_t sequence;      /* accepted #SETR commands so far */
+    bool arm;               /* true after #ARM, false after #STOP */
+    uint32_t arm_sequence;  /* #ARM and #STOP commands so far */
+    uint32_t link_time_us;  /* arrival of the latest valid line */
+    uint32_t link_sequence; /* valid lines so far; 0 = none yet */
 } reference_sample_t;
 
 void reference_server_write(const reference_sample_t *sample);

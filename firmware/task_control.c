@@ -51,9 +51,9 @@ void task_control_imu_arrived(void)
 
 static UInt events_of(uint16_t releases)
 {
-    return (((releases & FLIGHT_RELEASE_PERIOD) != 0U) ? EVENT_PERIOD : 0U)
-           | (((releases & FLIGHT_RELEASE_HEIGHT) != 0U) ? EVENT_ALTITUDE : 0U)
-           | (((releases & FLIGHT_RELEASE_FRAME) != 0U) ? EVENT_IMU : 0U);
+    return (((releases & FLIGHT_RELEASE_PERIOD) != 0U) ? EVENT_PERIOD : 0U) |
+           (((releases & FLIGHT_RELEASE_HEIGHT) != 0U) ? EVENT_ALTITUDE : 0U) |
+           (((releases & FLIGHT_RELEASE_FRAME) != 0U) ? EVENT_IMU : 0U);
 }
 
 static uint32_t deadline_ms(UInt release)

@@ -33,7 +33,8 @@ static imu_raw_t raw_of(const razor_frame_t *frame)
 static void take(imu_sample_t *sample, const imu_raw_t *raw, uint32_t arrival_us)
 {
     const bool was_ready = filter.ready;
-    const attitude_t angles = {.roll_rad = raw->roll_rad, .pitch_rad = raw->pitch_rad, .yaw_rad = raw->yaw_rad};
+    const attitude_t angles = {
+        .roll_rad = raw->roll_rad, .pitch_rad = raw->pitch_rad, .yaw_rad = raw->yaw_rad};
     imu_mapping_t mapping;
     attitude_t level;
     attitude_t median;

@@ -9,9 +9,9 @@
 
 typedef struct {
     uart_port_received_t received;
-    uint16_t level;     /* octets that the receive interrupt waits for */
+    uint16_t level; /* octets that the receive interrupt waits for */
     uint16_t cells[UART_PORT_TRANSMIT_CELLS];
-    uint16_t head;      /* next to send */
+    uint16_t head; /* next to send */
     uint16_t count;
 } uart_port_t;
 
@@ -39,8 +39,9 @@ static Void receive_hwi(UArg uart)
     take((bsp_uart_t)uart);
 }
 
-/* Also where every octet makes an interrupt: an error that rises between the look at the receive status and the clearing of
- * the interrupt flag holds the interrupt line up, and without a new edge no interrupt comes any more. */
+/* Also where every octet makes an interrupt: an error that rises between the look at the receive status and
+ * the clearing of the interrupt flag holds the interrupt line up, and without a new edge no interrupt comes
+ * any more. */
 static Void poll(UArg unused)
 {
     uint16_t uart;
@@ -134,7 +135,8 @@ bool uart_port_send(bsp_uart_t uart, const char *text, uint16_t count)
     uint16_t i;
 
     for (i = 0U; fits && i < count; i++) {
-        port->cells[(uint16_t)(port->head + port->count) % UART_PORT_TRANSMIT_CELLS] = (uint16_t)text[i] & 0xFFU;
+        port->cells[(uint16_t)(port->head + port->count) % UART_PORT_TRANSMIT_CELLS] = (uint16_t)text[i] &
+                                                                                       0xFFU;
         port->count++;
     }
     feed_transmitter(uart);

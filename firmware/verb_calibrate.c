@@ -6,18 +6,18 @@
 #include "firmware/xbee_port.h"
 
 #define THRUST_DECIMALS 2U
-#define SEQUENCE_AHEAD_MAX 0x7FFFU   /* more is behind */
+#define SEQUENCE_AHEAD_MAX 0x7FFFU /* more is behind */
 
 static const char *const ends[] = {
-    [CALIBRATION_NONE] = "-",       [CALIBRATION_RUNNING] = "-",      [CALIBRATION_STOPPED] = "COMMAND",
-    [CALIBRATION_LIMIT] = "LIMIT",  [CALIBRATION_LINK] = "LINK",      [CALIBRATION_LIFTED] = "HEIGHT",
+    [CALIBRATION_NONE] = "-",      [CALIBRATION_RUNNING] = "-", [CALIBRATION_STOPPED] = "COMMAND",
+    [CALIBRATION_LIMIT] = "LIMIT", [CALIBRATION_LINK] = "LINK", [CALIBRATION_LIFTED] = "HEIGHT",
     [CALIBRATION_STATE] = "STATE",
 };
 
 static struct {
-    bool open;          /* started, and its end not reported */
-    uint16_t sequence;  /* of the request */
-    uint16_t steps;     /* reported */
+    bool open;         /* started, and its end not reported */
+    uint16_t sequence; /* of the request */
+    uint16_t steps;    /* reported */
 } report;
 
 /* Reads a whole number from 1 to `most` up to the next blank; none leaves *value. Moves *at behind it. */
@@ -36,8 +36,8 @@ static bool read_whole(const telecommand_t *command, uint16_t *at, uint16_t most
     if (from == *at) {
         return true;
     }
-    if (!decimal_read(&command->argument[from], (size_t)(*at - from), &number) || !(number > 0.0F)
-        || number > (float)most || number != (float)(uint16_t)number) {
+    if (!decimal_read(&command->argument[from], (size_t)(*at - from), &number) || !(number > 0.0F) ||
+        number > (float)most || number != (float)(uint16_t)number) {
         return false;
     }
     *value = (uint16_t)number;
@@ -63,9 +63,9 @@ bool verb_calibrate(answer_t *answer)
     uint16_t period_s = CALIBRATION_PERIOD_S;
     uint16_t at = 0U;
 
-    if (!read_whole(answer->command, &at, CALIBRATION_STEP_COUNTS_MAX, &step_counts)
-        || !read_whole(answer->command, &at, CALIBRATION_PERIOD_MAX_S, &period_s)
-        || at != answer->command->argument_length) {
+    if (!read_whole(answer->command, &at, CALIBRATION_STEP_COUNTS_MAX, &step_counts) ||
+        !read_whole(answer->command, &at, CALIBRATION_PERIOD_MAX_S, &period_s) ||
+        at != answer->command->argument_length) {
         return answer_refuse(answer, "1..200 counts, 1..60 s");
     }
     if (!ground_waits()) {

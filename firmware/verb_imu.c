@@ -10,7 +10,7 @@
 #include "firmware/verbs.h"
 
 #define LOOKS 3U
-#define LOOK_MS 60U             /* two frames later */
+#define LOOK_MS 60U /* two frames later */
 #define US_PER_MS 1000U
 
 static struct {
@@ -131,7 +131,8 @@ static bool find_level(answer_t *answer)
         add_value(answer, "IUNIT", parameters.value[PARAMETER_IUNIT], 2U);
         add_choice(answer, &parameters, PARAMETER_IDOWN);
     } else {
-        telemetry_text(&answer->line, level.raw.has_acceleration ? " accelerations in no known unit" : " no accelerations");
+        telemetry_text(&answer->line,
+                       level.raw.has_acceleration ? " accelerations in no known unit" : " no accelerations");
     }
     answer_send(answer);
     return true;

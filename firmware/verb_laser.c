@@ -3,8 +3,8 @@
 #include "firmware/verbs.h"
 
 static const char *const causes[] = {
-    [SCIP_DAMAGE_NONE] = "-",       [SCIP_DAMAGE_SUM] = "sum",        [SCIP_DAMAGE_LENGTH] = "length",
-    [SCIP_DAMAGE_ECHO] = "echo",    [SCIP_DAMAGE_CHARACTER] = "char", [SCIP_DAMAGE_SEQUENCE] = "seq",
+    [SCIP_DAMAGE_NONE] = "-",    [SCIP_DAMAGE_SUM] = "sum",        [SCIP_DAMAGE_LENGTH] = "length",
+    [SCIP_DAMAGE_ECHO] = "echo", [SCIP_DAMAGE_CHARACTER] = "char", [SCIP_DAMAGE_SEQUENCE] = "seq",
 };
 typedef char every_cause_has_a_name[(sizeof causes / sizeof causes[0] == SCIP_DAMAGE_COUNT) ? 1 : -1];
 

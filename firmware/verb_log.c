@@ -7,10 +7,10 @@
 #define SECONDS_MAX 3600U
 
 static struct {
-    uint32_t number;    /* next to send */
-    uint32_t end;       /* first not to send */
-    uint32_t sent;      /* lines, the titles not counted */
-    bool titles;        /* still to send */
+    uint32_t number; /* next to send */
+    uint32_t end;    /* first not to send */
+    uint32_t sent;   /* lines, the titles not counted */
+    bool titles;     /* still to send */
     bool active;
 } dump;
 
@@ -72,7 +72,8 @@ static bool next_record(flight_log_t *record)
     return dump.number != dump.end && flight_recorder_read(dump.number, record);
 }
 
-/* "OK LOG 17 ", and at the end of the line its sum: what was cut or mangled on the way is told from what is whole. */
+/* "OK LOG 17 ", and at the end of the line its sum: what was cut or mangled on the way is told from what is
+ * whole. */
 static void begin_numbered(telemetry_line_t *line, uint32_t number)
 {
     telemetry_begin_answer(line);

@@ -8,8 +8,9 @@
 #include "firmware/verbs.h"
 
 static const char *const servers[] = {
-    [MONITOR_ALTITUDE] = "altitude",   [MONITOR_IMU_SAMPLE] = "imu",        [MONITOR_LASER_STATUS] = "laser",
-    [MONITOR_REFERENCE] = "reference", [MONITOR_PARAMETERS] = "parameters", [MONITOR_FLIGHT_STATUS] = "flight",
+    [MONITOR_ALTITUDE] = "altitude",     [MONITOR_IMU_SAMPLE] = "imu",
+    [MONITOR_LASER_STATUS] = "laser",    [MONITOR_REFERENCE] = "reference",
+    [MONITOR_PARAMETERS] = "parameters", [MONITOR_FLIGHT_STATUS] = "flight",
 };
 typedef char every_server_has_a_name[(sizeof servers / sizeof servers[0] == MONITOR_SERVERS) ? 1 : -1];
 

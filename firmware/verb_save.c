@@ -55,7 +55,8 @@ static parameter_store_result_t load(void)
 
 static bool grounded(answer_t *answer)
 {
-    return ground_idle() || answer_refuse(answer, ground_waits() ? "motors idle, see #STOP" : "not on the ground");
+    return ground_idle() ||
+           answer_refuse(answer, ground_waits() ? "motors idle, see #STOP" : "not on the ground");
 }
 
 /* False after the refusal: the command takes no argument and needs the ground. */

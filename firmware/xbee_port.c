@@ -13,9 +13,9 @@
 #include "firmware/uart_port.h"
 
 #define XBEE_BIT_RATE 9600UL
-#define ROOM_POLL_MS 10U    /* ten characters leave meanwhile */
+#define ROOM_POLL_MS 10U /* ten characters leave meanwhile */
 #define REPORT_ROOM (UART_PORT_TRANSMIT_CELLS / 2U)
-#define SPARE_ROOM (UART_PORT_TRANSMIT_CELLS - 192U)    /* 192 characters leave in 0.2 s */
+#define SPARE_ROOM (UART_PORT_TRANSMIT_CELLS - 192U) /* 192 characters leave in 0.2 s */
 
 typedef struct {
     xbee_message_t *lines;
@@ -32,7 +32,7 @@ static xbee_message_t bare_line[1];
 static queue_t ordinary = {.lines = lines, .places = XBEE_PORT_LINES};
 static queue_t urgent = {.lines = urgent_lines, .places = XBEE_PORT_URGENT};
 static queue_t bare = {.lines = bare_line, .places = 1U};
-static uint16_t unannounced;    /* lines since XBee_SWI ran last */
+static uint16_t unannounced; /* lines since XBee_SWI ran last */
 static uint16_t lost;
 static Swi_Handle xbee_swi;
 static Semaphore_Handle line_ready;
@@ -187,8 +187,8 @@ bool xbee_port_spare(const telemetry_line_t *line)
 {
     const uint16_t room = uart_port_room(BSP_UART_XBEE);
 
-    return (room >= SPARE_ROOM + line->length || room == UART_PORT_TRANSMIT_CELLS)
-           && uart_port_send(BSP_UART_XBEE, line->text, line->length);
+    return (room >= SPARE_ROOM + line->length || room == UART_PORT_TRANSMIT_CELLS) &&
+           uart_port_send(BSP_UART_XBEE, line->text, line->length);
 }
 
 void xbee_port_stream(const telemetry_line_t *line)

@@ -9,13 +9,13 @@
 #include "drivers/telecommand.h"
 #include "drivers/telemetry.h"
 
-#define XBEE_PORT_LINES 32U     /* command lines that can wait */
-#define XBEE_PORT_URGENT 4U     /* urgent lines that can wait, in addition */
+#define XBEE_PORT_LINES 32U /* command lines that can wait */
+#define XBEE_PORT_URGENT 4U /* urgent lines that can wait, in addition */
 
 typedef struct {
     telecommand_line_t line;
-    uint32_t arrival_us;        /* arrival of its line end */
-    bool overtaken;             /* an urgent line arrived later and was taken first */
+    uint32_t arrival_us; /* arrival of its line end */
+    bool overtaken;      /* an urgent line arrived later and was taken first */
 } xbee_message_t;
 
 /* Creates the port. main() only. */

@@ -184,10 +184,13 @@ static void lay_wires(void)
 
 static void create_laser(const board_config_t *config)
 {
-    const line_fault_ends_t ends = {to_firmware, (void *)(uintptr_t)BOARD_LASER, restart_laser, trouble_laser, NULL};
+    const line_fault_ends_t ends = {to_firmware, (void *)(uintptr_t)BOARD_LASER, restart_laser, trouble_laser,
+                                    NULL};
 
-    board.laser_faults = line_fault_create(config->laser_faults, config->laser_fault_count, config->seed, &ends);
-    board.laser = urg04lx_create(&config->laser, scene_scan, &board.scene, line_fault_octet, board.laser_faults);
+    board.laser_faults = line_fault_create(config->laser_faults, config->laser_fault_count, config->seed,
+                                           &ends);
+    board.laser = urg04lx_create(&config->laser, scene_scan, &board.scene, line_fault_octet,
+                                 board.laser_faults);
 }
 
 /* The world goes on, and so does what is on the wires. */
@@ -209,7 +212,8 @@ void board_power_on(const board_config_t *config, board_terminal_t terminal, voi
     board.quadrotor = quadrotor_create(&config->quadrotor, &config->terrain, config->seed);
     scene_init(&board.scene, &config->scene, board.quadrotor, config->seed);
     create_laser(config);
-    board.imu = razor9dof_create(&config->imu, motion, NULL, config->seed, to_firmware, (void *)(uintptr_t)BOARD_IMU);
+    board.imu = razor9dof_create(&config->imu, motion, NULL, config->seed, to_firmware,
+                                 (void *)(uintptr_t)BOARD_IMU);
     board.xbee = xbee_create(to_firmware, (void *)(uintptr_t)BOARD_RADIO, to_terminal, NULL);
     rc_mux_init(&board.mux, autopilot_pulse, NULL);
     board.pilot = seat_pilot(config);

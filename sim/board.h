@@ -1,5 +1,5 @@
-/* The PC board: the chip, the kernel and every device wired together as on the vehicle, with the unmodified firmware
- * running on it. One board per process at a time. */
+/* The PC board: the chip, the kernel and every device wired together as on the vehicle, with the unmodified
+ * firmware running on it. One board per process at a time. */
 #ifndef SIM_BOARD_H
 #define SIM_BOARD_H
 
@@ -20,7 +20,7 @@ typedef struct {
     terrain_t terrain;
     scene_config_t scene;
     urg04lx_config_t laser;
-    const line_fault_spec_t *laser_faults;   /* between the scanner model and the firmware */
+    const line_fault_spec_t *laser_faults; /* between the scanner model and the firmware */
     int laser_fault_count;
     razor_config_t imu;
     pilot_config_t pilot;
@@ -30,34 +30,38 @@ typedef struct {
 /* The vehicle of the plant description; phases of scanner and IMU drawn from the seed. */
 board_config_t board_config(unsigned long seed);
 
-/* Octets that the firmware's radio puts out, after the radio link, as the operator's terminal receives them. */
+/* Octets that the firmware's radio puts out, after the radio link, as the operator's terminal receives them.
+ */
 typedef void (*board_terminal_t)(void *context, unsigned octet);
 
 /* Power on and boot the firmware up to BIOS_start(). */
 void board_power_on(const board_config_t *config, board_terminal_t terminal, void *terminal_context);
 void board_power_off(void);
 
-/* The operator's terminal sends; octets go through the radio pair. With a real radio they join those that it sends. */
+/* The operator's terminal sends; octets go through the radio pair. With a real radio they join those that it
+ * sends. */
 void board_type(const char *text, size_t count);
 
 /* The firmware's three UARTs. */
 typedef enum { BOARD_LASER, BOARD_IMU, BOARD_RADIO, BOARD_WIRES } board_wire_t;
 
-/* A real device in place of the model on that wire, which is switched off. `out` gets each octet that the firmware sends
- * there, at the end of its stop bit. Between board_power_on() and the first run. */
+/* A real device in place of the model on that wire, which is switched off. `out` gets each octet that the
+ * firmware sends there, at the end of its stop bit. Between board_power_on() and the first run. */
 void board_connect(board_wire_t wire, void (*out)(void *context, unsigned octet), void *context);
 /* The real device has sent: the octets arrive one after the other at the UART's present rate. */
 void board_receive(board_wire_t wire, const void *octets, size_t count);
-/* The same at the far end's own rate, bits per second: where the two differ by more than the UART bears, it hears nonsense. */
+/* The same at the far end's own rate, bits per second: where the two differ by more than the UART bears, it
+ * hears nonsense. */
 void board_receive_at(board_wire_t wire, double rate, const void *octets, size_t count);
 /* Bits per second that the firmware has set for its UART, 0 while it is closed. */
 double board_rate(board_wire_t wire);
 
-/* One octet straight onto the firmware's receive pin, its stop bit ending now. For a recording that is played again. */
+/* One octet straight onto the firmware's receive pin, its stop bit ending now. For a recording that is played
+ * again. */
 void board_octet(board_wire_t wire, unsigned octet, double bit_ns);
 
-/* Probes: an octet for one of the firmware's UARTs has come, at its stop bit; the selector pin has got a level; a throttle
- * pulse has ended. NULL: none. They stay through board_power_on() and _off(). */
+/* Probes: an octet for one of the firmware's UARTs has come, at its stop bit; the selector pin has got a
+ * level; a throttle pulse has ended. NULL: none. They stay through board_power_on() and _off(). */
 typedef struct {
     void (*octet)(board_wire_t wire, unsigned octet, double bit_ns);
     void (*selector)(bool firmware);
@@ -67,13 +71,13 @@ typedef struct {
 typedef enum { BOARD_PROBE_TIMING, BOARD_PROBE_TAPE, BOARD_PROBES } board_probe_t;
 void board_probe(board_probe_t which, const board_probes_t *probes);
 
-/* The pilot's switch: whose throttle the multiplexer lets through, and the level on the firmware's selector pin. After
- * power-on it is the firmware's. */
+/* The pilot's switch: whose throttle the multiplexer lets through, and the level on the firmware's selector
+ * pin. After power-on it is the firmware's. */
 void board_select(bool firmware);
 /* A pulse of the receiver's throttle channel; reaches the autopilot while the pilot has the throttle. */
 void board_stick(sim_time_t high_ns);
 
-bool board_selected(void);  /* the firmware has the throttle */
+bool board_selected(void); /* the firmware has the throttle */
 
 /* The radio pair in or out of each other's reach: what is on air out of it is lost. */
 void board_radio_reach(bool in_reach);
@@ -86,7 +90,7 @@ void board_trouble_laser(unsigned code);
 quadrotor_t *board_quadrotor(void);
 const urg04lx_t *board_laser(void);
 line_fault_t *board_laser_faults(void);
-double board_seen_m(void);      /* true height above what the scanner's beam sees */
-double board_pulse_us(void);    /* latest throttle pulse, 0 before the first */
+double board_seen_m(void);   /* true height above what the scanner's beam sees */
+double board_pulse_us(void); /* latest throttle pulse, 0 before the first */
 
 #endif

@@ -2,8 +2,8 @@
 
 #include <stdbool.h>
 
-/* Only integer arithmetic and IEEE additions, products and divisions: no library function whose last digit depends on
- * the machine. */
+/* Only integer arithmetic and IEEE additions, products and divisions: no library function whose last digit
+ * depends on the machine. */
 
 void noise_init(noise_t *noise, uint64_t seed, const char *name)
 {
@@ -37,7 +37,8 @@ double noise_uniform(noise_t *noise, double low, double high)
     return low + (high - low) * unit(noise);
 }
 
-/* True with probability exp(-p), 0 <= p <= 1: the run p > u1 > u2 > ... has even length (von Neumann 1951). */
+/* True with probability exp(-p), 0 <= p <= 1: the run p > u1 > u2 > ... has even length (von Neumann 1951).
+ */
 static bool chance_exp(noise_t *noise, double p)
 {
     bool even = true;

@@ -1,5 +1,5 @@
-/* Seeded random numbers, one independent stream per source of noise, so that a change in one model leaves the draws of
- * the others alone. Same seed, same numbers on every machine. */
+/* Seeded random numbers, one independent stream per source of noise, so that a change in one model leaves the
+ * draws of the others alone. Same seed, same numbers on every machine. */
 #ifndef SIM_NOISE_H
 #define SIM_NOISE_H
 

@@ -1,9 +1,9 @@
-/* Why a replay is the same run. The firmware sees nothing of the world but octets, the selector pin and its flash, and
- * time is virtual: with the same at the same instants it does the same. Two things must not differ by a nanosecond: the
- * instants, so they are kept as integers, and the order of what happens at one instant. The timeline runs things of one
- * instant in the order in which they were posted, so an octet is posted here when a device's transmitter would post it:
- * one octet's length before it arrives. Post them all at the beginning, and an octet that ends together with a clock tick
- * comes before it instead of after. */
+/* Why a replay is the same run. The firmware sees nothing of the world but octets, the selector pin and its
+ * flash, and time is virtual: with the same at the same instants it does the same. Two things must not differ
+ * by a nanosecond: the instants, so they are kept as integers, and the order of what happens at one instant.
+ * The timeline runs things of one instant in the order in which they were posted, so an octet is posted here
+ * when a device's transmitter would post it: one octet's length before it arrives. Post them all at the
+ * beginning, and an octet that ends together with a clock tick comes before it instead of after. */
 #include "sim/tape.h"
 
 #include <inttypes.h>
@@ -23,7 +23,8 @@
 static const char *const wire_words[] = {"laser", "imu", "radio"};
 _Static_assert(sizeof wire_words / sizeof wire_words[0] == BOARD_WIRES, "every wire has a word");
 
-/* Recording ------------------------------------------------------------------------------------------------------ */
+/* Recording
+ * ------------------------------------------------------------------------------------------------------ */
 
 /* Octets without a pause between them. */
 typedef struct {
@@ -123,10 +124,11 @@ void tape_stop(void)
     recorder.out = NULL;
 }
 
-/* Reading -------------------------------------------------------------------------------------------------------- */
+/* Reading
+ * -------------------------------------------------------------------------------------------------------- */
 
 typedef struct {
-    sim_time_t time;    /* end of the stop bit */
+    sim_time_t time; /* end of the stop bit */
     double length_ns;
     unsigned char octet;
 } moment_t;
@@ -191,7 +193,8 @@ static const char *read_octets(tape_t *tape, const char *rest)
     int wire = 0;
     unsigned octet;
 
-    if (sscanf(rest, "%7s %" SCNd64 " %lf %n", word, &time, &length_ns, &used) != 3 || !(length_ns > 0.0) || time < 0) {
+    if (sscanf(rest, "%7s %" SCNd64 " %lf %n", word, &time, &length_ns, &used) != 3 || !(length_ns > 0.0) ||
+        time < 0) {
         return "octets WIRE T_NS LENGTH_NS HEX";
     }
     while (wire < BOARD_WIRES && strcmp(word, wire_words[wire]) != 0) {
@@ -204,7 +207,8 @@ static const char *read_octets(tape_t *tape, const char *rest)
         if (!hex(rest, 2, &octet)) {
             return "not hex";
         }
-        *(moment_t *)append(&tape->octets[wire], sizeof(moment_t)) = (moment_t){time, length_ns, (unsigned char)octet};
+        *(moment_t *)append(&tape->octets[wire], sizeof(moment_t)) = (moment_t){time, length_ns,
+                                                                                (unsigned char)octet};
         time += (sim_time_t)llround(length_ns);
     }
     return NULL;
@@ -375,7 +379,8 @@ sim_time_t tape_end(const tape_t *tape)
     return end;
 }
 
-/* Playing -------------------------------------------------------------------------------------------------------- */
+/* Playing
+ * -------------------------------------------------------------------------------------------------------- */
 
 typedef struct {
     board_wire_t wire;
@@ -457,19 +462,21 @@ void tape_play(const tape_t *tape, board_terminal_t heard, void *heard_context)
         const moment_t *octets = tape->octets[i].items;
 
         board_connect((board_wire_t)i, i == BOARD_RADIO ? heard : nowhere, heard_context);
-        player.reels[i] = (reel_t){(board_wire_t)i, octets, octets == NULL ? NULL : octets + tape->octets[i].count};
+        player.reels[i] = (reel_t){(board_wire_t)i, octets,
+                                   octets == NULL ? NULL : octets + tape->octets[i].count};
         await_octet(&player.reels[i]);
     }
     await_level();
 }
 
-/* Typing otherwise ----------------------------------------------------------------------------------------------- */
+/* Typing otherwise
+ * ----------------------------------------------------------------------------------------------- */
 
 #define TYPED_MAX 96
 
 /* A line that the operator sent: where it is among the radio's octets. */
 typedef struct {
-    size_t first, end;  /* end: behind its line feed */
+    size_t first, end; /* end: behind its line feed */
 } typed_t;
 
 /* The next whole line from `from` on; false when there is none. */
@@ -503,8 +510,8 @@ static bool names(const tape_t *tape, const typed_t *line, const char *name)
     return true;
 }
 
-/* Puts text in place of the octets of a line, from the instant at which that began. False: it would run into what comes
- * next. */
+/* Puts text in place of the octets of a line, from the instant at which that began. False: it would run into
+ * what comes next. */
 static bool splice(tape_t *tape, const typed_t *line, const char *text, sim_time_t begin, double length_ns)
 {
     list_t *radio = &tape->octets[BOARD_RADIO];
@@ -521,7 +528,8 @@ static bool splice(tape_t *tape, const typed_t *line, const char *text, sim_time
     octets = radio->items;
     memmove(octets + line->first + length, octets + line->end, behind * sizeof *octets);
     for (size_t i = 0; i < length; i++) {
-        octets[line->first + i] = (moment_t){begin + (sim_time_t)(i + 1) * step, length_ns, (unsigned char)text[i]};
+        octets[line->first + i] = (moment_t){begin + (sim_time_t)(i + 1) * step, length_ns,
+                                             (unsigned char)text[i]};
     }
     radio->count = line->first + length + behind;
     return true;
@@ -560,7 +568,8 @@ bool tape_retype(tape_t *tape, const char *name, const char *value)
         if (names(tape, &line, name)) {
             const moment_t first = ((const moment_t *)tape->octets[BOARD_RADIO].items)[line.first];
 
-            if (!splice(tape, &line, text, first.time - (sim_time_t)llround(first.length_ns), first.length_ns)) {
+            if (!splice(tape, &line, text, first.time - (sim_time_t)llround(first.length_ns),
+                        first.length_ns)) {
                 return false;
             }
             line.end = line.first + strlen(text);

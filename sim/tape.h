@@ -1,16 +1,16 @@
-/* A recording of everything that reached the firmware's pins in one run, exact enough to give the same run again: each
- * octet on the three receive wires with the instant of its stop bit, the level of the selector pin, and the flash that it
- * woke up with. What the firmware makes of it is not recorded: a replay lets the firmware do it again.
+/* A recording of everything that reached the firmware's pins in one run, exact enough to give the same run
+ * again: each octet on the three receive wires with the instant of its stop bit, the level of the selector
+ * pin, and the flash that it woke up with. What the firmware makes of it is not recorded: a replay lets the
+ * firmware do it again.
  *
  * The file is text, one record a line, in the order of time:
  *
  *   plomada-recording 1
- *   KEY VALUE                      what the run was: scenario, seed, version, set NAME=VALUE, first_row_ns, rows
- *   flash SECTOR OFFSET CELLS      16-bit cells in hex, four digits each; what is not named is erased
- *   octets WIRE T_NS LENGTH_NS HEX the stop bit of the first octet ended at T_NS since power-on, and the others followed
- *                                  without a pause; each lasted LENGTH_NS, ten bits
- *   select T_NS 0|1                level of the selector pin
- *   truth HEIGHT ABS TERRAIN       of one row of the log, where a simulated vehicle flew
+ *   KEY VALUE                      what the run was: scenario, seed, version, set NAME=VALUE, first_row_ns,
+ * rows flash SECTOR OFFSET CELLS      16-bit cells in hex, four digits each; what is not named is erased
+ *   octets WIRE T_NS LENGTH_NS HEX the stop bit of the first octet ended at T_NS since power-on, and the
+ * others followed without a pause; each lasted LENGTH_NS, ten bits select T_NS 0|1                level of
+ * the selector pin truth HEIGHT ABS TERRAIN       of one row of the log, where a simulated vehicle flew
  *
  * A file that was cut off (a full disk, a pulled plug) is good up to its last whole line. */
 #ifndef SIM_TAPE_H
@@ -21,7 +21,8 @@
 
 #include "sim/board.h"
 
-/* Recording ------------------------------------------------------------------------------------------------------ */
+/* Recording
+ * ------------------------------------------------------------------------------------------------------ */
 
 /* After board_power_on(): from here on everything goes to `out`, the flash first. One recording at a time. */
 void tape_record(FILE *out);
@@ -30,7 +31,8 @@ void tape_truth(double height_m, double altitude_m, double terrain_m);
 /* The end, before board_power_off(). */
 void tape_stop(void);
 
-/* Replaying ------------------------------------------------------------------------------------------------------ */
+/* Replaying
+ * ------------------------------------------------------------------------------------------------------ */
 
 typedef struct tape tape_t;
 
@@ -47,12 +49,13 @@ sim_time_t tape_end(const tape_t *tape);
 
 /* Before board_power_on(): the flash as it was. */
 void tape_restore_flash(const tape_t *tape);
-/* After board_power_on(): the models are taken off the wires, and the recording comes in their place. `heard` gets what the
- * firmware sends by radio. The tape must outlive the run. */
+/* After board_power_on(): the models are taken off the wires, and the recording comes in their place. `heard`
+ * gets what the firmware sends by radio. The tape must outlive the run. */
 void tape_play(const tape_t *tape, board_terminal_t heard, void *heard_context);
 
-/* In place of what the operator typed for a parameter (`#NAME ...` lines) another line; where nothing was typed for it,
- * the line is typed just before the first #SETR. Changes the recording in memory. False: no room on the radio's wire. */
+/* In place of what the operator typed for a parameter (`#NAME ...` lines) another line; where nothing was
+ * typed for it, the line is typed just before the first #SETR. Changes the recording in memory. False: no
+ * room on the radio's wire. */
 bool tape_retype(tape_t *tape, const char *name, const char *value);
 
 #endif

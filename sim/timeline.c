@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* A binary heap of keys. An id is a running number and the slot that holds the action; ids only ever grow, also across
- * timeline_reset(), so that they order equal times and an old id never matches a new event. */
+/* A binary heap of keys. An id is a running number and the slot that holds the action; ids only ever grow,
+ * also across timeline_reset(), so that they order equal times and an old id never matches a new event. */
 #define SLOT_BITS 20
 #define SLOT_MASK (((timeline_id_t)1 << SLOT_BITS) - 1)
 

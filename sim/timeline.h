@@ -1,5 +1,5 @@
-/* Virtual time: one queue of things to happen, ordered by time, then by order of posting. Single thread, one timeline
- * per process. Nothing here is paced by the wall clock. */
+/* Virtual time: one queue of things to happen, ordered by time, then by order of posting. Single thread, one
+ * timeline per process. Nothing here is paced by the wall clock. */
 #ifndef SIM_TIMELINE_H
 #define SIM_TIMELINE_H
 

@@ -9,21 +9,23 @@
 
 #include <stdint.h>
 
-#define ACTUATOR_DELAY_US UINT32_C(18500)   /* half a pulse period 6.8, pulse 1.5, autopilot 10 ms (assumed) */
-#define ACTUATOR_LAG_S 0.12F                /* assumed of motors and rotors of this size */
-#define ACTUATOR_COMMANDS 12U               /* more commands than the dead time can hold */
+#define ACTUATOR_DELAY_US \
+    UINT32_C(18500)           /* half a pulse period 6.8, pulse 1.5, autopilot 10 ms (assumed) \
+                               */
+#define ACTUATOR_LAG_S 0.12F  /* assumed of motors and rotors of this size */
+#define ACTUATOR_COMMANDS 12U /* more commands than the dead time can hold */
 
 typedef struct {
-    uint32_t due_us;        /* when the command takes effect */
+    uint32_t due_us; /* when the command takes effect */
     float thrust_n;
 } actuator_command_t;
 
 typedef struct {
-    uint32_t time_us;       /* instant of thrust_n and demand_n */
-    float thrust_n;         /* delivered thrust */
-    float demand_n;         /* command in effect; thrust_n approaches it with the lag */
+    uint32_t time_us; /* instant of thrust_n and demand_n */
+    float thrust_n;   /* delivered thrust */
+    float demand_n;   /* command in effect; thrust_n approaches it with the lag */
     uint16_t count;
-    actuator_command_t coming[ACTUATOR_COMMANDS];   /* commands within the dead time, oldest first */
+    actuator_command_t coming[ACTUATOR_COMMANDS]; /* commands within the dead time, oldest first */
 } actuator_t;
 
 void actuator_init(actuator_t *actuator, uint32_t now_us);

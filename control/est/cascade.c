@@ -11,18 +11,18 @@
 #include "control/between.h"
 #include "control/thrust.h"
 
-#define FAR_M 0.20F /* fitted: from here on the speed per metre grows no more */
-#define FAR_SHARE 0.30F /* fitted */
-#define RISE_MAX_MPS2 3.96F /* fitted: 0.4 g */
-#define DRAG_SPEED_MPS 0.8F /* chosen: beyond it the drag helps to brake */
-#define LEAD 1.3F /* fitted: overdrives the motors' lag of 0.12 s */
-#define ABOVE_HOVER_N 3.5F /* chosen: half of the hover thrust */
-#define LEAST_SHARE 0.25F /* chosen: the rotors keep turning */
-#define UPRIGHT_MIN 0.8F /* 37 degrees; more tilt is not compensated further */
-#define SLEW_N_PER_S 60.0F /* chosen: 1.5 N per IMU frame */
-#define ACTIVITY_MAX_N 1.5F /* chosen: three times the usual activity */
+#define FAR_M 0.20F          /* fitted: from here on the speed per metre grows no more */
+#define FAR_SHARE 0.30F      /* fitted */
+#define RISE_MAX_MPS2 3.96F  /* fitted: 0.4 g */
+#define DRAG_SPEED_MPS 0.8F  /* chosen: beyond it the drag helps to brake */
+#define LEAD 1.3F            /* fitted: overdrives the motors' lag of 0.12 s */
+#define ABOVE_HOVER_N 3.5F   /* chosen: half of the hover thrust */
+#define LEAST_SHARE 0.25F    /* chosen: the rotors keep turning */
+#define UPRIGHT_MIN 0.8F     /* 37 degrees; more tilt is not compensated further */
+#define SLEW_N_PER_S 60.0F   /* chosen: 1.5 N per IMU frame */
+#define ACTIVITY_MAX_N 1.5F  /* chosen: three times the usual activity */
 #define ACTIVITY_TIME_S 1.0F /* chosen: ten scans */
-#define CALM_MIN 0.4F /* chosen: keeps two fifths of the gain */
+#define CALM_MIN 0.4F        /* chosen: keeps two fifths of the gain */
 
 void cascade_init(cascade_t *cascade, float thrust_n)
 {
@@ -33,8 +33,7 @@ float cascade_speed_to(const cascade_gains_t *gains, const cascade_state_t *stat
 {
     const float off_m = reference_m - state->height_m;
     const float distance = fminf(fabsf(off_m) / FAR_M, 1.0F);
-    const float wanted_mps =
-        gains->height_per_s * (1.0F + FAR_SHARE * distance) * off_m + state->terrain_mps;
+    const float wanted_mps = gains->height_per_s * (1.0F + FAR_SHARE * distance) * off_m + state->terrain_mps;
     return between(-gains->down_mps, wanted_mps, gains->up_mps);
 }
 
@@ -53,14 +52,15 @@ float cascade_step(cascade_t *cascade, const cascade_gains_t *gains, const casca
                    const cascade_state_t *state, float speed_mps, float dt_s)
 {
     const float gain_per_s = gains->speed_per_s * calm(cascade, dt_s);
-    const float acceleration_mps2 =
-        between(-gains->fall_mps2, gain_per_s * (speed_mps - state->speed_mps), RISE_MAX_MPS2);
-    const float drag_mps2 = vehicle->damping_per_s * between(-DRAG_SPEED_MPS, state->speed_mps, DRAG_SPEED_MPS);
+    const float acceleration_mps2 = between(-gains->fall_mps2, gain_per_s * (speed_mps - state->speed_mps),
+                                            RISE_MAX_MPS2);
+    const float drag_mps2 = vehicle->damping_per_s *
+                            between(-DRAG_SPEED_MPS, state->speed_mps, DRAG_SPEED_MPS);
     const float force_n = (acceleration_mps2 + drag_mps2) / vehicle->authority_mps2_per_n;
     const float steady_n = (vehicle->need_n + force_n) / fmaxf(vehicle->upright, UPRIGHT_MIN);
     const float least_n = fmaxf(vehicle->hover_n - gains->below_hover_n, LEAST_SHARE * vehicle->hover_n);
-    const float led_n =
-        between(least_n, state->thrust_n + LEAD * (steady_n - state->thrust_n), vehicle->hover_n + ABOVE_HOVER_N);
+    const float led_n = between(least_n, state->thrust_n + LEAD * (steady_n - state->thrust_n),
+                                vehicle->hover_n + ABOVE_HOVER_N);
     const float slew_n = SLEW_N_PER_S * dt_s;
 
     cascade->thrust_n = between(cascade->thrust_n - slew_n, led_n, cascade->thrust_n + slew_n);

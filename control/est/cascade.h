@@ -9,9 +9,9 @@
 typedef struct {
     float authority_mps2_per_n;
     float damping_per_s;
-    float hover_n;          /* hover thrust in still air */
-    float need_n;           /* hover thrust plus gust thrust */
-    float upright;          /* cos(roll) cos(pitch); 1 where the autopilot compensates the tilt itself */
+    float hover_n; /* hover thrust in still air */
+    float need_n;  /* hover thrust plus gust thrust */
+    float upright; /* cos(roll) cos(pitch); 1 where the autopilot compensates the tilt itself */
 } cascade_vehicle_t;
 
 typedef struct {
@@ -24,16 +24,16 @@ typedef struct {
 
 /* Predicted state of the vehicle at the instant when the next command takes effect. */
 typedef struct {
-    float height_m;         /* above the terrain */
+    float height_m; /* above the terrain */
     float speed_mps;
     float terrain_mps;
-    float thrust_n;         /* delivered thrust at that instant, from the commands already given */
+    float thrust_n; /* delivered thrust at that instant, from the commands already given */
 } cascade_state_t;
 
 typedef struct {
-    float thrust_n;         /* previous command */
-    float quick_n;          /* mean square of the quick changes of the command, N2 */
-    float slow_n;           /* slow mean of the command */
+    float thrust_n; /* previous command */
+    float quick_n;  /* mean square of the quick changes of the command, N2 */
+    float slow_n;   /* slow mean of the command */
 } cascade_t;
 
 void cascade_init(cascade_t *cascade, float thrust_n);

@@ -7,7 +7,7 @@
 #define CONTROL_DEADBAND_H
 
 typedef struct {
-    float band_n;           /* half the width of the band, >= 0 */
+    float band_n; /* half the width of the band, >= 0 */
 } deadband_t;
 
 void deadband_init(deadband_t *deadband);

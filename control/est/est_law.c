@@ -16,52 +16,52 @@
 #include "control/touchdown.h"
 
 #define GRAVITY_MPS2 9.80665F /* standard gravity */
-#define DAMPING_PER_S 2.5F /* the value by which a model repeats the seed's flights is 2 to 3 1/s */
-#define CLIMB_PER_S 4.0F /* assumed: an autopilot that commands the climb rate lags by 0.25 s */
-#define STEP_MAX_S 0.5F /* chosen: longer pauses count as this long */
+#define DAMPING_PER_S 2.5F    /* the value by which a model repeats the seed's flights is 2 to 3 1/s */
+#define CLIMB_PER_S 4.0F      /* assumed: an autopilot that commands the climb rate lags by 0.25 s */
+#define STEP_MAX_S 0.5F       /* chosen: longer pauses count as this long */
 
 #define HOVER_BOUND_N 2.0F /* mass 20 % off (1.4 N), battery and gusts; see HOVER_MARGIN_N in flight.c */
-#define HOVER_SIGMA_START_N 0.7F /* half of a mass 20 % off */
-#define NEUTRAL_SIGMA_N 0.07F /* chosen: the middle of the stick is known well */
+#define HOVER_SIGMA_START_N 0.7F     /* half of a mass 20 % off */
+#define NEUTRAL_SIGMA_N 0.07F        /* chosen: the middle of the stick is known well */
 #define HOVER_SIGMA_TAKE_OVER_N 0.5F /* chosen: as TRANSFER_START_N in flight.c */
-#define SPEED_DOUBT_N_PER_MPS 0.5F /* chosen: a quarter of the damping may be wrong */
-#define IN_THE_AIR_M 0.04F /* chosen: ten times the noise of a height */
-#define MODEL_NOISE_MPS2 0.84F /* fitted */
-#define HEIGHTS_MISSING_S 0.2F /* two scans of 0.1 s */
+#define SPEED_DOUBT_N_PER_MPS 0.5F   /* chosen: a quarter of the damping may be wrong */
+#define IN_THE_AIR_M 0.04F           /* chosen: ten times the noise of a height */
+#define MODEL_NOISE_MPS2 0.84F       /* fitted */
+#define HEIGHTS_MISSING_S 0.2F       /* two scans of 0.1 s */
 #define LEARN_WITHOUT_HEIGHTS_S 0.3F
 #define FRAMES_FRESH_S ((float)ESTIMATOR_FRESH_US * 1.0e-6F)
 #define AGE_MAX_S 3600.0F
 #define MODEL_NOISE_ALONE_MPS2 0.15F /* chosen: a biased accelerometer drifts away, the model does not */
-#define GUST_N_PER_M 28.0F /* fitted */
+#define GUST_N_PER_M 28.0F           /* fitted */
 
-#define RAMP_START 0.68F /* below the lightest vehicle, 0.8 of GRAV */
-#define RAMP_N_PER_S 4.0F /* chosen: leaves the ground in 0.6 s */
-#define RAMP_MOST 1.35F /* above the heaviest vehicle, 1.2 of GRAV */
-#define LIFT_OFF_M 0.030F /* chosen: ten times the noise of a height */
+#define RAMP_START 0.68F     /* below the lightest vehicle, 0.8 of GRAV */
+#define RAMP_N_PER_S 4.0F    /* chosen: leaves the ground in 0.6 s */
+#define RAMP_MOST 1.35F      /* above the heaviest vehicle, 1.2 of GRAV */
+#define LIFT_OFF_M 0.030F    /* chosen: ten times the noise of a height */
 #define LIFT_OFF_SURE_M 0.1F /* chosen: a height that no noise makes */
-#define LIFT_OFF_MPS2 0.9F /* chosen: twice the accelerometer's usual noise */
+#define LIFT_OFF_MPS2 0.9F   /* chosen: twice the accelerometer's usual noise */
 #define LIFT_OFF_SIGMAS 1.2F /* chosen: of the measured noise, on a mean of three frames */
-#define LIFT_OFF_SHARE 0.7F /* no vehicle flies by less of GRAV */
-#define LIFT_FILTER_S 0.08F /* chosen: three frames */
+#define LIFT_OFF_SHARE 0.7F  /* no vehicle flies by less of GRAV */
+#define LIFT_FILTER_S 0.08F  /* chosen: three frames */
 
-#define FALL_MPS2 3.96F /* fitted: 0.4 g */
-#define BELOW_HOVER_N 3.0F /* chosen: the rotors keep turning */
-#define BRAKE_MPS2 8.0F /* chosen: a climb that shall become a descent */
+#define FALL_MPS2 3.96F          /* fitted: 0.4 g */
+#define BELOW_HOVER_N 3.0F       /* chosen: the rotors keep turning */
+#define BRAKE_MPS2 8.0F          /* chosen: a climb that shall become a descent */
 #define BRAKE_BELOW_HOVER_N 6.0F /* chosen: may go down to a quarter of the hover thrust */
 
-#define LAND_MPS 0.15F /* chosen: touches at 0.15 m/s, a drop from 1 mm */
-#define LAND_PER_S 0.25F /* chosen: with LAND_MPS 0.4 m/s from 1 m */
-#define LAND_MAX_MPS 0.40F /* chosen: from 1 m down within 5 s */
-#define SINK_MPS 0.28F /* chosen: without heights the ground comes unannounced */
-#define SINK_PER_S 0.07F /* chosen: 0.35 m/s at 1 m */
-#define SINK_MAX_MPS 0.6F /* chosen: from 3 m down within 10 s */
+#define LAND_MPS 0.15F          /* chosen: touches at 0.15 m/s, a drop from 1 mm */
+#define LAND_PER_S 0.25F        /* chosen: with LAND_MPS 0.4 m/s from 1 m */
+#define LAND_MAX_MPS 0.40F      /* chosen: from 1 m down within 5 s */
+#define SINK_MPS 0.28F          /* chosen: without heights the ground comes unannounced */
+#define SINK_PER_S 0.07F        /* chosen: 0.35 m/s at 1 m */
+#define SINK_MAX_MPS 0.6F       /* chosen: from 3 m down within 10 s */
 #define SINK_ABOVE_HOVER_N 0.5F /* chosen: room for gusts at first */
 #define SINK_BELOW_HOVER_N 1.3F
 #define SINK_FADE_N_PER_S 0.2F /* chosen: at the hover thrust after 2.5 s */
 #define LAND_ABOVE_HOVER_N 1.5F
 #define LAND_FADE_N_PER_S 0.1F
-#define STOP_N_PER_S 2.0F /* as the end of a landing, LANDED_FADE_N_PER_S in touchdown.h */
-#define TERRAIN_KEEP_S 30.0F /* chosen: drifts of the terrain's sum are forgotten */
+#define STOP_N_PER_S 2.0F           /* as the end of a landing, LANDED_FADE_N_PER_S in touchdown.h */
+#define TERRAIN_KEEP_S 30.0F        /* chosen: drifts of the terrain's sum are forgotten */
 #define LOWEST_OVER_TERRAIN_M 0.15F /* the height of OFF_GROUND in supervisor.c */
 
 void est_law_init(est_law_t *law)
@@ -111,7 +111,8 @@ static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt
         hover_step(&law->hover, seen_n, e->noise_mps2 / vehicle.authority_mps2_per_n + doubt_n, dt_s);
     }
     if (is_climb(parameters) && e->now.height_m > IN_THE_AIR_M) {
-        deadband_learn(&law->deadband, law->actuator.thrust_n - law->hover.thrust_n, seen_n - law->hover.thrust_n, dt_s);
+        deadband_learn(&law->deadband, law->actuator.thrust_n - law->hover.thrust_n,
+                       seen_n - law->hover.thrust_n, dt_s);
     }
 }
 
@@ -128,9 +129,11 @@ static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_
     const estimate_t *now = &law->estimator.now;
 
     return (modelled_motion_t){
-        .known = law->airborne && !law->powerless && law->estimator.initialised && now->height_m > IN_THE_AIR_M,
-        .up_mps2 = vehicle.authority_mps2_per_n * (law->actuator.thrust_n * vehicle.upright - vehicle.need_n)
-                 - vehicle.damping_per_s * now->speed_mps,
+        .known = law->airborne && !law->powerless && law->estimator.initialised &&
+                 now->height_m > IN_THE_AIR_M,
+        .up_mps2 = vehicle.authority_mps2_per_n *
+                       (law->actuator.thrust_n * vehicle.upright - vehicle.need_n) -
+                   vehicle.damping_per_s * now->speed_mps,
         .noise_mps2 = heights_missing(law) ? MODEL_NOISE_ALONE_MPS2 : MODEL_NOISE_MPS2,
     };
 }
@@ -150,15 +153,15 @@ static void predict_frame(est_law_t *law, const parameters_t *parameters, const 
     }
     actuator_advance(&law->actuator, law->estimator.now_us);
     law->frameless_s = seconds_between(law->estimator.now_us, law->now_us);
-    law->lift_mps2 += fminf(dt_s / LIFT_FILTER_S, 1.0F)
-                    * (law->estimator.up_mps2 - law->estimator.now.bias_mps2 - law->lift_mps2);
+    law->lift_mps2 += fminf(dt_s / LIFT_FILTER_S, 1.0F) *
+                      (law->estimator.up_mps2 - law->estimator.now.bias_mps2 - law->lift_mps2);
     if (law->airborne) {
         learn_hover(law, parameters, dt_s);
     }
 }
 
-void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_sample_t *frames, uint16_t count,
-                     uint32_t now_us)
+void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_sample_t *frames,
+                     uint16_t count, uint32_t now_us)
 {
     if (!law->started) {
         law->started = true;
@@ -176,7 +179,8 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_s
         predict_frame(law, parameters, &frames[i]);
     }
     if (law->frameless_s > FRAMES_FRESH_S) {
-        actuator_advance(&law->actuator, now_us - ESTIMATOR_FRESH_US); /* no frame does it, for however long */
+        actuator_advance(&law->actuator,
+                         now_us - ESTIMATOR_FRESH_US); /* no frame does it, for however long */
     }
 }
 
@@ -196,8 +200,8 @@ void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t st
 {
     law->rays_us = ray_clock_step(&law->ray_clock, stamp_ms, arrival_us, age_us);
     law->heightless_s = seconds_between(law->rays_us, law->now_us);
-    const height_outcome_t outcome =
-        estimator_fuse_height(&law->estimator, altitude, law->rays_us, at_rest || on_ground(law));
+    const height_outcome_t outcome = estimator_fuse_height(&law->estimator, altitude, law->rays_us,
+                                                           at_rest || on_ground(law));
     if (law->airborne && outcome == HEIGHT_FUSED) {
         const float expected = 1.0F - law->estimator.latest.share;
         hover_nudge(&law->hover, -GUST_N_PER_M * expected * law->estimator.innovation_m);
@@ -217,7 +221,8 @@ bool est_law_ready(const est_law_t *law)
 static void start_hover(est_law_t *law, const parameters_t *parameters, float thrust_n, float sigma_n)
 {
     const float gravity_n = parameters->value[PARAMETER_GRAV];
-    hover_init(&law->hover, thrust_n, sigma_n, fmaxf(gravity_n - HOVER_BOUND_N, 0.0F), gravity_n + HOVER_BOUND_N);
+    hover_init(&law->hover, thrust_n, sigma_n, fmaxf(gravity_n - HOVER_BOUND_N, 0.0F),
+               gravity_n + HOVER_BOUND_N);
 }
 
 void est_law_reset(est_law_t *law, const parameters_t *parameters)
@@ -282,10 +287,11 @@ static cascade_state_t predict_ahead(const est_law_t *law, const cascade_vehicle
 
     actuator_advance(&then, law->now_us + ACTUATOR_DELAY_US);
     const float thrust_n = 0.5F * (law->actuator.thrust_n + then.thrust_n) * vehicle->upright;
-    const float acceleration_mps2 = vehicle->authority_mps2_per_n * (thrust_n - vehicle->need_n)
-                                  - vehicle->damping_per_s * now->speed_mps;
+    const float acceleration_mps2 = vehicle->authority_mps2_per_n * (thrust_n - vehicle->need_n) -
+                                    vehicle->damping_per_s * now->speed_mps;
     return (cascade_state_t){
-        .height_m = now->height_m + (now->speed_mps - now->terrain_mps + 0.5F * acceleration_mps2 * ahead_s) * ahead_s,
+        .height_m = now->height_m +
+                    (now->speed_mps - now->terrain_mps + 0.5F * acceleration_mps2 * ahead_s) * ahead_s,
         .speed_mps = now->speed_mps + acceleration_mps2 * ahead_s,
         .terrain_mps = now->terrain_mps,
         .thrust_n = then.thrust_n,
@@ -366,7 +372,8 @@ static float height_setpoint_m(est_law_t *law, const parameters_t *parameters, f
 {
     const float ignored_m = law->estimator.terrain_height_m - law->reference_terrain_m;
 
-    if (parameters_choice(parameters, PARAMETER_TERRAIN) == TERRAIN_FOLLOW || reference_m != law->reference_m) {
+    if (parameters_choice(parameters, PARAMETER_TERRAIN) == TERRAIN_FOLLOW ||
+        reference_m != law->reference_m) {
         law->reference_terrain_m = law->estimator.terrain_height_m;
         law->reference_m = reference_m;
         return reference_m;

@@ -22,9 +22,9 @@
 #include "control/ray_clock.h"
 
 typedef enum {
-    EST_MODE_HOLD,               /* hold reference_m */
-    EST_MODE_LAND,               /* descend; slow down near the ground, and fade the thrust out there */
-    EST_MODE_SINK                /* descend without a height */
+    EST_MODE_HOLD, /* hold reference_m */
+    EST_MODE_LAND, /* descend; slow down near the ground, and fade the thrust out there */
+    EST_MODE_SINK  /* descend without a height */
 } est_mode_t;
 
 typedef struct {
@@ -32,33 +32,33 @@ typedef struct {
     ray_clock_t ray_clock;
     actuator_t actuator;
     hover_t hover;
-    deadband_t deadband;    /* used only with PLANT CLIMB */
+    deadband_t deadband; /* used only with PLANT CLIMB */
     cascade_t cascade;
-    bool started;         /* now_us has a value */
+    bool started; /* now_us has a value */
     uint32_t now_us;
-    float step_s;           /* duration of the latest cycle */
-    uint32_t rays_us;       /* when the rays of the latest height were taken */
-    bool airborne;            /* the vehicle is off the ground */
-    bool ramping;           /* take-off: the thrust ramps up until the vehicle leaves the ground */
-    float ramp_n;           /* thrust of that ramp */
-    float lift_mps2;        /* low-passed upward acceleration */
+    float step_s;     /* duration of the latest cycle */
+    uint32_t rays_us; /* when the rays of the latest height were taken */
+    bool airborne;    /* the vehicle is off the ground */
+    bool ramping;     /* take-off: the thrust ramps up until the vehicle leaves the ground */
+    float ramp_n;     /* thrust of that ramp */
+    float lift_mps2;  /* low-passed upward acceleration */
     float reference_m;
-    float reference_terrain_m;      /* estimator.terrain_height_m at the time when reference_m was set */
-    float sure_hover_n;     /* hover thrust from before the present doubt */
-    float entry_hover_n;    /* sure_hover_n at the start of the present descent */
-    float ceiling_n;        /* upper limit of the thrust in a descent */
-    bool powerless;         /* doubt THRUST: commands have no effect */
-    float heightless_s;     /* time since the rays of the latest height */
-    float frameless_s;      /* time since the latest frame was measured */
-    float near_ground_s;            /* time near the ground while landing */
+    float reference_terrain_m; /* estimator.terrain_height_m at the time when reference_m was set */
+    float sure_hover_n;        /* hover thrust from before the present doubt */
+    float entry_hover_n;       /* sure_hover_n at the start of the present descent */
+    float ceiling_n;           /* upper limit of the thrust in a descent */
+    bool powerless;            /* doubt THRUST: commands have no effect */
+    float heightless_s;        /* time since the rays of the latest height */
+    float frameless_s;         /* time since the latest frame was measured */
+    float near_ground_s;       /* time near the ground while landing */
 } est_law_t;
 
 void est_law_init(est_law_t *law);
 
 /* Prediction step, once in every cycle. frames: IMU frames, oldest first; borrowed for the call. Frames
  * that were processed before change nothing. now_us: time of the cycle. */
-void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_sample_t *frames, uint16_t count,
-                     uint32_t now_us);
+void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_sample_t *frames,
+                     uint16_t count, uint32_t now_us);
 
 /* Correction step, once per valid new height. stamp_ms: 24-bit sensor time of its scan. arrival_us:
  * arrival of its last octet. age_us: time from its rays to that octet, when nothing delays it. at_rest:

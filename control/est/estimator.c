@@ -14,12 +14,12 @@
 #include "control/between.h"
 #include "control/seconds.h"
 
-#define GRAVITY_MPS2 9.80665F /* standard gravity */
+#define GRAVITY_MPS2 9.80665F        /* standard gravity */
 #define FRAME_AGE_US UINT32_C(23600) /* 15 ms within the Razor (assumed), 8.6 ms on the wire */
-#define TILT_AGE_US UINT32_C(50000) /* the median of five frames is two frames of 25 ms old */
-#define GAP_MAX_US INT32_C(300000) /* chosen: 12 frames lost; the filter starts again */
-#define UP_MAX_MPS2 200.0F /* above what the Razor can say, 16 g */
-#define ANGLE_MAX_RAD 3.2F /* pi, rounded up */
+#define TILT_AGE_US UINT32_C(50000)  /* the median of five frames is two frames of 25 ms old */
+#define GAP_MAX_US INT32_C(300000)   /* chosen: 12 frames lost; the filter starts again */
+#define UP_MAX_MPS2 200.0F           /* above what the Razor can say, 16 g */
+#define ANGLE_MAX_RAD 3.2F           /* pi, rounded up */
 
 #define HEIGHT_NOISE_M 0.0013F /* fitted */
 #define OFF_MODEL_SHARE 0.4F
@@ -27,33 +27,34 @@
 #define FLOOR_START_M 0.004F
 #define FLOOR_SMOOTH_M 0.020F /* what edges and the vehicle's own motion make of the measure */
 #define FLOOR_MAX_M 0.080F
-#define FLOOR_SHARE 0.20F /* tried: a take-off over bars of 60 mm is through before a slower one knows of them */
+#define FLOOR_SHARE \
+    0.20F /* tried: a take-off over bars of 60 mm is through before a slower one knows of them */
 #define FLOOR_CLIP 9.0F
-#define FLOOR_SIGMAS 4.5F /* tried: both edges of a bar are within */
-#define FLOOR_VARIANCE 4.0F /* tried: the heights of a bar follow each other, white noise does not */
-#define HEIGHT_DRIFT_M 0.0047F /* fitted; m per root second */
-#define SPEED_NOISE_MPS2 0.53F /* fitted; what neither accelerometer nor model knows */
-#define FRAME_S 0.025F /* period of the IMU, seed 5.2.1.1 */
-#define BIAS_DRIFT_MPS2 0.095F /* fitted; m/s2 per root second */
+#define FLOOR_SIGMAS 4.5F        /* tried: both edges of a bar are within */
+#define FLOOR_VARIANCE 4.0F      /* tried: the heights of a bar follow each other, white noise does not */
+#define HEIGHT_DRIFT_M 0.0047F   /* fitted; m per root second */
+#define SPEED_NOISE_MPS2 0.53F   /* fitted; what neither accelerometer nor model knows */
+#define FRAME_S 0.025F           /* period of the IMU, seed 5.2.1.1 */
+#define BIAS_DRIFT_MPS2 0.095F   /* fitted; m/s2 per root second */
 #define TERRAIN_DRIFT_MPS 0.053F /* fitted; m/s per root second */
-#define TERRAIN_TIME_S 1.0F /* chosen: a slope lasts about a second */
-#define NOISE_START_MPS2 0.4F /* assumed of a Razor on a flying frame */
-#define NOISE_MIN_MPS2 0.05F /* chosen: never trusted without limit */
-#define NOISE_MAX_MPS2 5.0F /* chosen: never quite ignored */
-#define NOISE_SHARE 0.02F /* chosen: mean over 50 frames */
-#define NOISE_CLIP 16.0F /* chosen: 4 sigma, so that one spike counts little */
+#define TERRAIN_TIME_S 1.0F      /* chosen: a slope lasts about a second */
+#define NOISE_START_MPS2 0.4F    /* assumed of a Razor on a flying frame */
+#define NOISE_MIN_MPS2 0.05F     /* chosen: never trusted without limit */
+#define NOISE_MAX_MPS2 5.0F      /* chosen: never quite ignored */
+#define NOISE_SHARE 0.02F        /* chosen: mean over 50 frames */
+#define NOISE_CLIP 16.0F         /* chosen: 4 sigma, so that one spike counts little */
 
 #define INNOVATION_LIMIT_MIN_M 0.053F /* fitted */
 #define INNOVATION_LIMIT_MAX_M 0.080F /* a wider one follows an edge that a scan saw half: it flew away */
-#define INNOVATION_LIMIT_SIGMAS 3.0F /* usual */
-#define STEP_AGREEMENT_M 0.050F /* chosen: noise of two heights and 0.1 s of climb */
-#define REJECTIONS_MAX 3U /* chosen: the third height counts whatever it says */
-#define UNCHECKED_AFTER_RESET 2U /* chosen: two heights make speed known again */
-#define REST_SIGMA_MPS 0.02F /* chosen: a vehicle on the ground may still shake */
+#define INNOVATION_LIMIT_SIGMAS 3.0F  /* usual */
+#define STEP_AGREEMENT_M 0.050F       /* chosen: noise of two heights and 0.1 s of climb */
+#define REJECTIONS_MAX 3U             /* chosen: the third height counts whatever it says */
+#define UNCHECKED_AFTER_RESET 2U      /* chosen: two heights make speed known again */
+#define REST_SIGMA_MPS 0.02F          /* chosen: a vehicle on the ground may still shake */
 
-#define SPEED_MAX_MPS 4.0F /* chosen: above what the vehicle reaches */
-#define BIAS_MAX_MPS2 1.5F /* chosen: 0.15 g, more than the sensor has */
-#define TERRAIN_MAX_MPS 0.5F /* chosen: the seed's ramp rises by 0.36 m/s */
+#define SPEED_MAX_MPS 4.0F       /* chosen: above what the vehicle reaches */
+#define BIAS_MAX_MPS2 1.5F       /* chosen: 0.15 g, more than the sensor has */
+#define TERRAIN_MAX_MPS 0.5F     /* chosen: the seed's ramp rises by 0.36 m/s */
 #define SPEED_RESET_MAX_MPS 1.0F /* chosen: after a reset no speed is believed above it */
 
 enum { HEIGHT, SPEED, BIAS, TERRAIN };
@@ -124,13 +125,13 @@ static void bound_covariance(float p[ESTIMATOR_STATES][ESTIMATOR_STATES])
 
 static void propagate_covariance(estimator_t *e, float share, float dt_s)
 {
-    float (*const p)[ESTIMATOR_STATES] = e->covariance;
+    float(*const p)[ESTIMATOR_STATES] = e->covariance;
     const float decay = fmaxf(1.0F - dt_s / TERRAIN_TIME_S, 0.0F);
     const float half = 0.5F * share * dt_s * dt_s;
     const float measured_mps2 = share * e->noise_mps2;
     const float modelled_mps2 = (1.0F - share) * e->model_noise_mps2;
-    const float variance = SPEED_NOISE_MPS2 * SPEED_NOISE_MPS2
-                         + (measured_mps2 * measured_mps2 + modelled_mps2 * modelled_mps2);
+    const float variance = SPEED_NOISE_MPS2 * SPEED_NOISE_MPS2 +
+                           (measured_mps2 * measured_mps2 + modelled_mps2 * modelled_mps2);
 
     for (uint16_t j = 0U; j < ESTIMATOR_STATES; ++j) {
         p[HEIGHT][j] += dt_s * (p[SPEED][j] - p[TERRAIN][j]) - half * p[BIAS][j];
@@ -194,18 +195,21 @@ static void predict_now(estimator_t *e)
 float motion_up_mps2(const imu_sample_t *frame)
 {
     const float level = cosf(frame->median.pitch_rad);
-    return frame->down_mps2 * level * cosf(frame->median.roll_rad) + frame->right_mps2 * level * sinf(frame->median.roll_rad)
-         - frame->forward_mps2 * sinf(frame->median.pitch_rad) - GRAVITY_MPS2;
+    return frame->down_mps2 * level * cosf(frame->median.roll_rad) +
+           frame->right_mps2 * level * sinf(frame->median.roll_rad) -
+           frame->forward_mps2 * sinf(frame->median.pitch_rad) - GRAVITY_MPS2;
 }
 
-/* The second difference of white noise has six times its variance; what the vehicle does adds little to it. */
+/* The second difference of white noise has six times its variance; what the vehicle does adds little to it.
+ */
 static void measure_noise(estimator_t *e, float up_mps2)
 {
     const float difference_mps2 = up_mps2 - 2.0F * e->previous_mps2[0] + e->previous_mps2[1];
     const float variance = e->noise_mps2 * e->noise_mps2;
     const float seen = fminf(difference_mps2 * difference_mps2 / 6.0F, NOISE_CLIP * variance);
 
-    e->noise_mps2 = between(NOISE_MIN_MPS2, sqrtf(variance + NOISE_SHARE * (seen - variance)), NOISE_MAX_MPS2);
+    e->noise_mps2 = between(NOISE_MIN_MPS2, sqrtf(variance + NOISE_SHARE * (seen - variance)),
+                            NOISE_MAX_MPS2);
     e->previous_mps2[1] = e->previous_mps2[0];
     e->previous_mps2[0] = up_mps2;
 }
@@ -254,8 +258,8 @@ static float credit(estimator_t *e, const modelled_motion_t *model, float up_mps
 
 static bool usable(const imu_sample_t *frame, float up_mps2)
 {
-    return frame->ready && frame->has_acceleration && fabsf(up_mps2) < UP_MAX_MPS2 && fabsf(frame->median.roll_rad) < ANGLE_MAX_RAD
-        && fabsf(frame->median.pitch_rad) < ANGLE_MAX_RAD;
+    return frame->ready && frame->has_acceleration && fabsf(up_mps2) < UP_MAX_MPS2 &&
+           fabsf(frame->median.roll_rad) < ANGLE_MAX_RAD && fabsf(frame->median.pitch_rad) < ANGLE_MAX_RAD;
 }
 
 void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motion_t model)
@@ -287,10 +291,11 @@ void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motio
     measure_noise(e, up_mps2);
 }
 
-/* A measurement of one state: Joseph's form, which keeps the covariance symmetric and positive in spite of rounding. */
+/* A measurement of one state: Joseph's form, which keeps the covariance symmetric and positive in spite of
+ * rounding. */
 static void correct(estimator_t *e, uint16_t state, float innovation, float variance)
 {
-    float (*const p)[ESTIMATOR_STATES] = e->covariance;
+    float(*const p)[ESTIMATOR_STATES] = e->covariance;
     float *const x[ESTIMATOR_STATES] = {&e->delayed.height_m, &e->delayed.speed_mps, &e->delayed.bias_mps2,
                                         &e->delayed.terrain_mps};
     const float sum = p[state][state] + variance;
@@ -376,7 +381,8 @@ static bool innovation_accepted(const estimator_t *e, float innovation_m)
 {
     const float sigma_m = sqrtf(e->covariance[HEIGHT][HEIGHT] + HEIGHT_NOISE_M * HEIGHT_NOISE_M);
     const float floor_m = (e->floor_m > FLOOR_SMOOTH_M) ? FLOOR_SIGMAS * e->floor_m : 0.0F;
-    const float limit_m = between(INNOVATION_LIMIT_MIN_M, INNOVATION_LIMIT_SIGMAS * sigma_m, INNOVATION_LIMIT_MAX_M);
+    const float limit_m = between(INNOVATION_LIMIT_MIN_M, INNOVATION_LIMIT_SIGMAS * sigma_m,
+                                  INNOVATION_LIMIT_MAX_M);
     return fabsf(innovation_m) <= fmaxf(limit_m, floor_m);
 }
 

@@ -29,56 +29,56 @@
 
 #define ESTIMATOR_FRAMES 16U
 #define ESTIMATOR_STATES 4U
-#define ESTIMATOR_FRESH_US UINT32_C(250000)     /* the estimate is not used when its frames are older */
+#define ESTIMATOR_FRESH_US UINT32_C(250000) /* the estimate is not used when its frames are older */
 
 typedef struct {
-    float height_m;         /* above the terrain */
-    float speed_mps;        /* upwards, relative to the earth */
-    float bias_mps2;        /* bias of the accelerometer; > 0: it reads too much upwards */
-    float terrain_mps;      /* rate of the terrain below; > 0: it rises */
+    float height_m;    /* above the terrain */
+    float speed_mps;   /* upwards, relative to the earth */
+    float bias_mps2;   /* bias of the accelerometer; > 0: it reads too much upwards */
+    float terrain_mps; /* rate of the terrain below; > 0: it rises */
 } estimate_t;
 
 /* Acceleration that the thrust should cause. */
 typedef struct {
     bool known;
     float up_mps2;
-    float noise_mps2;       /* rms error of up_mps2, > 0 */
+    float noise_mps2; /* rms error of up_mps2, > 0 */
 } modelled_motion_t;
 
 typedef struct {
-    uint32_t time_us;       /* when the frame was measured */
-    float up_mps2;          /* mean since the frame before, gravity removed */
-    float share;            /* share of the accelerometer in up_mps2, 0 .. 1 (its bias has the same share);
-                             * the rest is the model */
+    uint32_t time_us; /* when the frame was measured */
+    float up_mps2;    /* mean since the frame before, gravity removed */
+    float share;      /* share of the accelerometer in up_mps2, 0 .. 1 (its bias has the same share);
+                       * the rest is the model */
     float roll_rad, pitch_rad;
 } estimator_frame_t;
 
 typedef enum { HEIGHT_FUSED, HEIGHT_REJECTED, HEIGHT_TERRAIN_STEP, HEIGHT_RESET } height_outcome_t;
 
 typedef struct {
-    bool initialised;           /* at least one frame and, after it, one height were received */
+    bool initialised; /* at least one frame and, after it, one height were received */
     estimate_t delayed;
     float covariance[ESTIMATOR_STATES][ESTIMATOR_STATES];
     uint32_t delayed_us;
-    estimate_t now;         /* estimate at now_us, the instant of the latest frame */
+    estimate_t now; /* estimate at now_us, the instant of the latest frame */
     uint32_t now_us;
-    float up_mps2;          /* measured in the latest frame, gravity removed, bias not removed */
+    float up_mps2; /* measured in the latest frame, gravity removed, bias not removed */
     estimator_frame_t latest;
-    estimator_frame_t frames[ESTIMATOR_FRAMES];     /* since delayed_us, oldest first */
+    estimator_frame_t frames[ESTIMATOR_FRAMES]; /* since delayed_us, oldest first */
     uint16_t frame_count;
-    bool has_frames;            /* at least one frame was received */
+    bool has_frames; /* at least one frame was received */
     uint32_t sequence;
-    float previous_mps2[2];   /* raw accelerations of the two frames before */
+    float previous_mps2[2]; /* raw accelerations of the two frames before */
     float noise_mps2;       /* measured rms of the accelerometer's noise */
     float model_noise_mps2;
-    float off_model_mps2;   /* measured less modelled acceleration, low-passed */
-    float previous_m[2];    /* the two previous heights */
-    float floor_m;          /* measured rms noise of the heights; includes the roughness of the floor */
-    uint16_t rejected_count;       /* rejected heights in a row */
-    uint16_t unchecked_count;        /* heights still to be fused without the innovation test */
-    bool confirmed;         /* the latest height passed the test, or was the second one of a terrain step */
-    float rejected_innovation_m;        /* innovation of the latest rejected height */
-    float innovation_m;     /* innovation of the latest height */
+    float off_model_mps2;     /* measured less modelled acceleration, low-passed */
+    float previous_m[2];      /* the two previous heights */
+    float floor_m;            /* measured rms noise of the heights; includes the roughness of the floor */
+    uint16_t rejected_count;  /* rejected heights in a row */
+    uint16_t unchecked_count; /* heights still to be fused without the innovation test */
+    bool confirmed;           /* the latest height passed the test, or was the second one of a terrain step */
+    float rejected_innovation_m; /* innovation of the latest rejected height */
+    float innovation_m;          /* innovation of the latest height */
     float terrain_height_m; /* terrain height above the terrain of the start: its steps plus its integrated
                              * rate */
 } estimator_t;

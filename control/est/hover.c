@@ -11,12 +11,12 @@
 #include "control/between.h"
 
 #define DRIFT_N2_PER_S 0.00038F /* fitted: battery and mass, 20 mN per root second */
-#define SLOW_SHARE 6.6F /* fitted: noise counts more here than among gusts */
-#define GUST_RATE_PER_S 2.1F /* fitted */
-#define GUST_NOISE_N 0.48F /* fitted: above this noise gusts are followed less */
-#define GUST_TIME_S 0.76F /* fitted: how long a gust lasts */
-#define GUST_MAX_N 1.0F /* chosen: 1.4 m/s2 */
-#define SHARE_MAX 0.5F /* chosen: one sample never decides alone */
+#define SLOW_SHARE 6.6F         /* fitted: noise counts more here than among gusts */
+#define GUST_RATE_PER_S 2.1F    /* fitted */
+#define GUST_NOISE_N 0.48F      /* fitted: above this noise gusts are followed less */
+#define GUST_TIME_S 0.76F       /* fitted: how long a gust lasts */
+#define GUST_MAX_N 1.0F         /* chosen: 1.4 m/s2 */
+#define SHARE_MAX 0.5F          /* chosen: one sample never decides alone */
 
 void hover_init(hover_t *hover, float thrust_n, float sigma_n, float least_n, float most_n)
 {
@@ -37,7 +37,8 @@ void hover_step(hover_t *hover, float seen_n, float noise_n, float dt_s)
 
     hover->variance_n2 += DRIFT_N2_PER_S * dt_s;
     const float gain = hover->variance_n2 / (hover->variance_n2 + noise_n2);
-    hover->thrust_n = between(hover->least_n, hover->thrust_n + gain * (seen_n - hover->thrust_n), hover->most_n);
+    hover->thrust_n = between(hover->least_n, hover->thrust_n + gain * (seen_n - hover->thrust_n),
+                              hover->most_n);
     hover->variance_n2 *= 1.0F - gain;
     hover->gust_n = between(-GUST_MAX_N, hover->gust_n + gust_share * unexplained_n, GUST_MAX_N);
     hover->gust_n *= fmaxf(1.0F - dt_s / GUST_TIME_S, 0.0F);

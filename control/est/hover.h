@@ -10,8 +10,8 @@
 typedef struct {
     float thrust_n;
     float variance_n2;
-    float gust_n;           /* needed on top of thrust_n; > 0: more thrust. Its mean is 0 in the long run */
-    float least_n, most_n;  /* limits of thrust_n */
+    float gust_n;          /* needed on top of thrust_n; > 0: more thrust. Its mean is 0 in the long run */
+    float least_n, most_n; /* limits of thrust_n */
 } hover_t;
 
 /* Starts at thrust_n, limited to least_n .. most_n. sigma_n is its standard deviation, >= 0. */

@@ -11,8 +11,8 @@
 /* A microsecond counter that wraps at 2^32. */
 uint32_t board_time_us(void);
 
-/* The sensor's UART, 8N1: opened (or reopened) at a rate; up to `most` octets that have come; octets to be sent; and how
- * many framing errors and overruns there were since the last call. */
+/* The sensor's UART, 8N1: opened (or reopened) at a rate; up to `most` octets that have come; octets to be
+ * sent; and how many framing errors and overruns there were since the last call. */
 void board_uart_open(uint32_t bit_rate);
 size_t board_uart_read(octet_t *octets, size_t most);
 void board_uart_write(const octet_t *octets, size_t count);

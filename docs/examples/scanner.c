@@ -1,31 +1,32 @@
-/* The scanner's driver in an application of its own: no operating system, no heap, one loop. From whatever state the sensor
- * is in it is brought to stream, and after any loss again; each scan's mean distance straight ahead is shown.
+/* The scanner's driver in an application of its own: no operating system, no heap, one loop. From whatever
+ * state the sensor is in it is brought to stream, and after any loss again; each scan's mean distance
+ * straight ahead is shown.
  *
  * Needs of Plomada: drivers/octet.h, drivers/scip_*.h and .c, drivers/urg*.h and .c; nothing else. */
 #include "board.h"
 #include "drivers/scip_layout.h"
 #include "drivers/urg.h"
 
-#define FIRST_STEP 367U     /* 384 is straight ahead; 1024 steps make a turn */
+#define FIRST_STEP 367U /* 384 is straight ahead; 1024 steps make a turn */
 #define LAST_STEP 401U
 #define POINTS (LAST_STEP - FIRST_STEP + 1U)
-#define STEP_US 150000U     /* the driver is stepped every 150 ms */
+#define STEP_US 150000U /* the driver is stepped every 150 ms */
 
 static const urg_config_t config = {
-    .wait_us = 10000000U,   /* the sensor's own power-up; ends early when it is heard */
-    .first_rate = 19200U,   /* as delivered */
+    .wait_us = 10000000U, /* the sensor's own power-up; ends early when it is heard */
+    .first_rate = 19200U, /* as delivered */
     .stream_rate = 115200U,
     .stream = SCIP_STREAM_2,
-    .range = { .first_step = FIRST_STEP, .last_step = LAST_STEP, .cluster = 1U, .interval = 0U, .scans = 0U },
+    .range = {.first_step = FIRST_STEP, .last_step = LAST_STEP, .cluster = 1U, .interval = 0U, .scans = 0U},
 };
 
 static urg_t urg;
-static uint16_t points[2U * POINTS];    /* two scans: one is used while the next comes in */
+static uint16_t points[2U * POINTS]; /* two scans: one is used while the next comes in */
 static uint32_t stepped_us;
 
 static void use_scan(void)
 {
-    const scip_group_t ahead = { FIRST_STEP, LAST_STEP };
+    const scip_group_t ahead = {FIRST_STEP, LAST_STEP};
     scip_scan_t scan;
 
     if (urg_take_scan(&urg, &scan)) {

@@ -28,7 +28,8 @@ void floor_pass(floor_t *under)
 double floor_height_m(const floor_t *under)
 {
     const floor_config_t *c = &under->config;
-    const bool over_bar = c->bars_m != 0.0 && fmod(under->travel_s, c->bars_period_s) >= c->bars_period_s * (1.0 - c->bars_share);
+    const bool over_bar = c->bars_m != 0.0 &&
+                          fmod(under->travel_s, c->bars_period_s) >= c->bars_period_s * (1.0 - c->bars_share);
 
     return under->rough_m + (over_bar ? c->bars_m : 0.0);
 }

@@ -12,19 +12,20 @@
 #define STATUS_LAST 98UL
 
 const char *const line_fault_names[] = {"drop", "flip", "dup", "stray", "delay", "mute", "restart", "status"};
-_Static_assert(sizeof line_fault_names / sizeof line_fault_names[0] == LINE_FAULT_KIND_COUNT, "every fault has a name");
+_Static_assert(sizeof line_fault_names / sizeof line_fault_names[0] == LINE_FAULT_KIND_COUNT,
+               "every fault has a name");
 
-const char line_fault_help[] =
-    "  KIND@N          strikes octet N that the sensor sends, counted from 0\n"
-    "  KIND:P          strikes each octet with probability P, 0..1\n"
-    "    drop@1234     the octet is lost\n"
-    "    flip:1e-4     one of its bits is wrong\n"
-    "    dup@1234      it comes twice\n"
-    "    stray:1e-4    a foreign octet comes before it\n"
-    "    delay@N:MS    it and what follows is held back for MS milliseconds\n"
-    "    mute@N:MS     it and what follows for MS milliseconds is lost\n"
-    "    restart@N     the sensor loses its power for a moment and boots again\n"
-    "    status@N:CODE the sensor reports trouble: 50..97 ends the stream, 21..49 stops it for a second (98 resumes)\n";
+const char line_fault_help[] = "  KIND@N          strikes octet N that the sensor sends, counted from 0\n"
+                               "  KIND:P          strikes each octet with probability P, 0..1\n"
+                               "    drop@1234     the octet is lost\n"
+                               "    flip:1e-4     one of its bits is wrong\n"
+                               "    dup@1234      it comes twice\n"
+                               "    stray:1e-4    a foreign octet comes before it\n"
+                               "    delay@N:MS    it and what follows is held back for MS milliseconds\n"
+                               "    mute@N:MS     it and what follows for MS milliseconds is lost\n"
+                               "    restart@N     the sensor loses its power for a moment and boots again\n"
+                               "    status@N:CODE the sensor reports trouble: 50..97 ends the stream, 21..49 "
+                               "stops it for a second (98 resumes)\n";
 
 typedef struct {
     line_fault_spec_t spec;
@@ -44,9 +45,9 @@ struct fault {
     unsigned long seed;
     uint64_t position;
     unsigned strikes[LINE_FAULT_KIND_COUNT];
-    sim_time_t line_free;       /* end of the latest stop bit on the wire */
+    sim_time_t line_free; /* end of the latest stop bit on the wire */
     sim_time_t held_until, mute_until;
-    held_t *queue;              /* what waits for the line: from head up to tail */
+    held_t *queue; /* what waits for the line: from head up to tail */
     size_t head, tail, capacity;
     timeline_id_t event;
 };
@@ -83,7 +84,9 @@ static const char *parse_when(line_fault_spec_t *spec, const char **text)
     if (spec->by_probability) {
         spec->probability = strtod(from, &end);
         *text = end;
-        return end != from && spec->probability >= 0.0 && spec->probability <= 1.0 ? NULL : "not a probability, 0..1";
+        return end != from && spec->probability >= 0.0 && spec->probability <= 1.0
+                   ? NULL
+                   : "not a probability, 0..1";
     }
     spec->position = strtoull(from, &end, 10);
     *text = end;
@@ -298,7 +301,8 @@ static void append(line_fault_t *fault, const line_fault_spec_t *spec, unsigned 
     fault->entry_count++;
 }
 
-line_fault_t *line_fault_create(const line_fault_spec_t *specs, int count, unsigned long seed, const line_fault_ends_t *ends)
+line_fault_t *line_fault_create(const line_fault_spec_t *specs, int count, unsigned long seed,
+                                const line_fault_ends_t *ends)
 {
     line_fault_t *fault = grown(NULL, sizeof *fault);
 

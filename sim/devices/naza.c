@@ -8,8 +8,8 @@
 #define LANDED_S 3.0
 #define TURNED_OVER_RAD (70.0 * M_PI / 180.0)
 #define FAILSAFE_S 0.1
-#define FAILSAFE_HOLD_S 3.0         /* assumed */
-#define FAILSAFE_SINK_MPS (-0.5)    /* assumed */
+#define FAILSAFE_HOLD_S 3.0      /* assumed */
+#define FAILSAFE_SINK_MPS (-0.5) /* assumed */
 
 void naza_init(naza_t *naza, const naza_config_t *config)
 {
@@ -71,7 +71,8 @@ static void run(naza_t *naza, const naza_inputs_t *in, double dt_s)
     } else if (in->pulses) {
         close(naza, in, dt_s);
     }
-    if (naza->running && naza->config.stop_type == NAZA_INTELLIGENT && !in->manual && in->tilt_rad > TURNED_OVER_RAD) {
+    if (naza->running && naza->config.stop_type == NAZA_INTELLIGENT && !in->manual &&
+        in->tilt_rad > TURNED_OVER_RAD) {
         stop(naza, false);
     }
 }

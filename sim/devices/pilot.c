@@ -5,18 +5,18 @@
 
 #include "sim/noise.h"
 
-#define FRAME (20 * SIM_MS)     /* of the receiver */
+#define FRAME (20 * SIM_MS) /* of the receiver */
 #define FRAME_S 0.02
-#define VIEWS 64U               /* seen and not yet acted on: at most 1.28 s */
+#define VIEWS 64U /* seen and not yet acted on: at most 1.28 s */
 #define HAND_LAG_S 0.1
-#define CLIMB_PER_M 0.8         /* wanted, m/s for each metre that is missing */
+#define CLIMB_PER_M 0.8 /* wanted, m/s for each metre that is missing */
 #define CLIMB_MPS 0.7
 #define SINK_MPS (-0.5)
 #define STICK_N_PER_MPS 2.0
-#define TRIM_N_PER_M 0.8        /* how fast the stick's middle is moved when the climb stays wrong */
+#define TRIM_N_PER_M 0.8 /* how fast the stick's middle is moved when the climb stays wrong */
 #define LANDED_M 0.05
 #define CORNERS_S 1.0
-#define OPENED_N 2.35           /* a fifth of the stick: over the 10 % that keep motors running */
+#define OPENED_N 2.35 /* a fifth of the stick: over the 10 % that keep motors running */
 #define PREPARE_S 1.0
 #define FULL_N 11.76
 
@@ -30,7 +30,7 @@ struct pilot {
     noise_t unrest;
     timeline_id_t event;
     pilot_view_t views[VIEWS];
-    unsigned seen, late;        /* looks taken; frames between eye and hand */
+    unsigned seen, late; /* looks taken; frames between eye and hand */
     bool flying;
     double trim_n, hand_n;
 };
@@ -39,7 +39,8 @@ static bool my_turn(const pilot_config_t *config, double t_s)
 {
     const double since_s = t_s - config->turn.start_s;
 
-    return since_s >= 0.0 && (config->every_s > 0.0 ? fmod(since_s, config->every_s) : since_s) < config->turn.length_s;
+    return since_s >= 0.0 &&
+           (config->every_s > 0.0 ? fmod(since_s, config->every_s) : since_s) < config->turn.length_s;
 }
 
 static double wanted_n(pilot_t *pilot, const pilot_view_t *view)

@@ -17,14 +17,14 @@
 #define PULSE_NO_THRUST_COUNTS 4166.0
 #define PULSE_COUNTS_PER_N 177.21
 #define SIGNAL_LOST (100 * SIM_MS)
-#define PULSES 32U              /* on their way through the autopilot */
+#define PULSES 32U /* on their way through the autopilot */
 #define THROTTLE_FULL_N 11.76
-#define CLIMB_INTEGRAL_S 0.4    /* of the autopilot's speed controller: about the drag's time constant */
+#define CLIMB_INTEGRAL_S 0.4 /* of the autopilot's speed controller: about the drag's time constant */
 #define BAROMETER_TAU_S 3.0
 #define BAROMETER_HIGH_M 1.0
-#define SPIN_UP_MPS2 (-3.0)     /* its integral on the ground: 70 % of the weight */
+#define SPIN_UP_MPS2 (-3.0) /* its integral on the ground: 70 % of the weight */
 
-#define MOTORS_TURN_N 1.0       /* no lift up to here */
+#define MOTORS_TURN_N 1.0 /* no lift up to here */
 #define ROTOR_RADIUS_M 0.127
 #define ROTOR_ABOVE_GEAR_M 0.28
 #define TUG_TAU_S 0.12
@@ -34,7 +34,7 @@
 #define GROUND_DRIVE 0.15
 #define ADVANCE_PITCH_RAD (1.0 * DEGREE_RAD)
 #define ADVANCE_MARGIN_S 2.0
-#define HEADING_RAD M_PI        /* due south: the heading crosses the wrap all the time */
+#define HEADING_RAD M_PI /* due south: the heading crosses the wrap all the time */
 #define YAW_DRIFT_RAD (10.0 * DEGREE_RAD)
 #define YAW_STEP_RAD (0.06 * DEGREE_RAD)
 
@@ -43,21 +43,39 @@
 #define CONTACT_MPS (-0.02)
 #define REBOUND 0.15
 
-const quadrotor_config_t quadrotor_default = {
-    .gain = 1.0, .tau_s = 0.12, .damping_per_s = 2.4, .hover_thrust_n = 7.4, .sag_per_s = 0.001,
-    .turbulence_mps2 = 0.2, .turbulence_tau_s = 0.5, .attitude_rms_rad = 2.0 * DEGREE_RAD,
-    .actuator_delay_s = 0.010,
-    .climb_rate_mps_per_n = 0.0, .climb_neutral_n = THROTTLE_FULL_N / 2.0, .climb_deadband_n = 0.47, .climb_lag_s = 0.25,
-    .climb_ceiling_mps = 6.0,
-    .neutral_drift_n_per_s = 0.0, .neutral_drift_max_n = 3.5, .barometer_mps = 0.0,
-    .naza = {NAZA_ALWAYS_ARMED},
-    .tug_rate_per_s = 0.0, .tug_mps2 = -1.5,
-    .airframe = 0.0,
-    .rotors = ROTORS_DEFAULT,
-    .lag2_s = 0.0, .ground_effect = 1.0,
-    .gust_mps2 = 0.0, .gust = {10.0, 1.0}, .tumble_radps = 0.0, .tumble_start_s = 10.0,
-    .floor = FLOOR_DEFAULT,
-    .anchored = false, .bench_height_m = 0.0, .bench_roll_rad = 0.0, .bench_roll_start_s = 0.0};
+const quadrotor_config_t quadrotor_default = {.gain = 1.0,
+                                              .tau_s = 0.12,
+                                              .damping_per_s = 2.4,
+                                              .hover_thrust_n = 7.4,
+                                              .sag_per_s = 0.001,
+                                              .turbulence_mps2 = 0.2,
+                                              .turbulence_tau_s = 0.5,
+                                              .attitude_rms_rad = 2.0 * DEGREE_RAD,
+                                              .actuator_delay_s = 0.010,
+                                              .climb_rate_mps_per_n = 0.0,
+                                              .climb_neutral_n = THROTTLE_FULL_N / 2.0,
+                                              .climb_deadband_n = 0.47,
+                                              .climb_lag_s = 0.25,
+                                              .climb_ceiling_mps = 6.0,
+                                              .neutral_drift_n_per_s = 0.0,
+                                              .neutral_drift_max_n = 3.5,
+                                              .barometer_mps = 0.0,
+                                              .naza = {NAZA_ALWAYS_ARMED},
+                                              .tug_rate_per_s = 0.0,
+                                              .tug_mps2 = -1.5,
+                                              .airframe = 0.0,
+                                              .rotors = ROTORS_DEFAULT,
+                                              .lag2_s = 0.0,
+                                              .ground_effect = 1.0,
+                                              .gust_mps2 = 0.0,
+                                              .gust = {10.0, 1.0},
+                                              .tumble_radps = 0.0,
+                                              .tumble_start_s = 10.0,
+                                              .floor = FLOOR_DEFAULT,
+                                              .anchored = false,
+                                              .bench_height_m = 0.0,
+                                              .bench_roll_rad = 0.0,
+                                              .bench_roll_start_s = 0.0};
 
 typedef struct {
     sim_time_t active;
@@ -79,15 +97,15 @@ struct quadrotor {
     size_t head, waiting;
     sim_time_t last_pulse;
     double demand_n, lag;
-    double followed_n, lag2;    /* the demand behind the autopilot's second lag */
+    double followed_n, lag2; /* the demand behind the autopilot's second lag */
     rotors_t rotors;
     floor_t floor;
-    double ramp_m;              /* the terrain without the floor's unevenness */
+    double ramp_m; /* the terrain without the floor's unevenness */
     double tumble_rad;
     double climb_integral_mps2; /* of the autopilot's speed controller */
     naza_t naza;
     bool manual, corners, pulses;
-    double barometer_mps, barometer_keep;   /* the climb that it makes up, for an rms of 1 */
+    double barometer_mps, barometer_keep; /* the climb that it makes up, for an rms of 1 */
     noise_t barometer_noise;
 
     double turbulence_mps2, turbulence_keep, turbulence_drive;
@@ -123,7 +141,8 @@ static void prepare_steps(quadrotor_t *q)
     q->barometer_keep = exp(-STEP_S / BAROMETER_TAU_S);
     q->tug_keep = exp(-STEP_S / TUG_TAU_S);
     q->tug_probability = 1.0 - exp(-c->tug_rate_per_s * STEP_S);
-    q->attitude_drive = c->attitude_rms_rad * sqrt(4.0 * ATTITUDE_DAMPING * pow(ATTITUDE_RAD_PER_S, 3.0) * STEP_S);
+    q->attitude_drive = c->attitude_rms_rad *
+                        sqrt(4.0 * ATTITUDE_DAMPING * pow(ATTITUDE_RAD_PER_S, 3.0) * STEP_S);
 }
 
 quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const terrain_t *terrain, unsigned long seed)
@@ -181,8 +200,11 @@ static void hear_throttle(quadrotor_t *q)
 static void follow_rules(quadrotor_t *q)
 {
     const quadrotor_state_t *s = &q->state;
-    const naza_inputs_t in = {.throttle = q->demand_n / THROTTLE_FULL_N, .pulses = q->pulses, .corners = q->corners,
-                              .manual = q->manual, .on_ground = s->on_ground,
+    const naza_inputs_t in = {.throttle = q->demand_n / THROTTLE_FULL_N,
+                              .pulses = q->pulses,
+                              .corners = q->corners,
+                              .manual = q->manual,
+                              .on_ground = s->on_ground,
                               .tilt_rad = acos(cos(s->roll_rad) * cos(s->pitch_rad))};
 
     naza_step(&q->naza, &in, STEP_S);
@@ -198,8 +220,8 @@ static double barometer_mps(quadrotor_t *q)
     if (q->config.barometer_mps <= 0.0) {
         return 0.0;
     }
-    q->barometer_mps = q->barometer_mps * q->barometer_keep
-                       + sqrt(1.0 - q->barometer_keep * q->barometer_keep) * noise_gauss(&q->barometer_noise);
+    q->barometer_mps = q->barometer_mps * q->barometer_keep +
+                       sqrt(1.0 - q->barometer_keep * q->barometer_keep) * noise_gauss(&q->barometer_noise);
     return q->config.barometer_mps * near * q->barometer_mps;
 }
 
@@ -232,8 +254,7 @@ static double autopilot_n(quadrotor_t *q)
         return MOTORS_TURN_N;
     }
     const double push_mps2 = (wanted_mps - q->state.speed_mps - barometer_mps(q)) / c->climb_lag_s;
-    const double thrust_n =
-        c->hover_thrust_n * (1.0 + (push_mps2 + q->climb_integral_mps2) / GRAVITY_MPS2);
+    const double thrust_n = c->hover_thrust_n * (1.0 + (push_mps2 + q->climb_integral_mps2) / GRAVITY_MPS2);
     const double given_n = fmin(fmax(thrust_n, MOTORS_TURN_N), THROTTLE_FULL_N);
     if (given_n == thrust_n) {
         q->climb_integral_mps2 += STEP_S * push_mps2 / CLIMB_INTEGRAL_S;
@@ -241,8 +262,8 @@ static double autopilot_n(quadrotor_t *q)
     return given_n;
 }
 
-/* White, deviation 1. Uniform draws are cheap, and what they drive adds up hundreds of them: it is Gaussian all the
- * same. */
+/* White, deviation 1. Uniform draws are cheap, and what they drive adds up hundreds of them: it is Gaussian
+ * all the same. */
 static double white(noise_t *noise)
 {
     return noise_uniform(noise, -SQRT_3, SQRT_3);
@@ -250,12 +271,14 @@ static double white(noise_t *noise)
 
 static double gust_mps2(const quadrotor_t *q)
 {
-    return q->config.gust_mps2 != 0.0 && span_holds(&q->config.gust, scenario_s(q)) ? q->config.gust_mps2 : 0.0;
+    return q->config.gust_mps2 != 0.0 && span_holds(&q->config.gust, scenario_s(q)) ? q->config.gust_mps2
+                                                                                    : 0.0;
 }
 
 static double disturbance_mps2(quadrotor_t *q)
 {
-    q->turbulence_mps2 = q->turbulence_mps2 * q->turbulence_keep + q->turbulence_drive * white(&q->turbulence_noise);
+    q->turbulence_mps2 = q->turbulence_mps2 * q->turbulence_keep +
+                         q->turbulence_drive * white(&q->turbulence_noise);
     if (q->config.tug_rate_per_s <= 0.0) {
         return q->turbulence_mps2;
     }
@@ -269,7 +292,8 @@ static double disturbance_mps2(quadrotor_t *q)
 static void swing(axis_t *axis, double drive, double rest_rad)
 {
     const double w = ATTITUDE_RAD_PER_S;
-    axis->rate_radps += STEP_S * (w * w * (rest_rad - axis->angle_rad) - 2.0 * ATTITUDE_DAMPING * w * axis->rate_radps);
+    axis->rate_radps += STEP_S * (w * w * (rest_rad - axis->angle_rad) -
+                                  2.0 * ATTITUDE_DAMPING * w * axis->rate_radps);
     axis->rate_radps += drive * white(&axis->noise);
     axis->angle_rad += STEP_S * axis->rate_radps;
 }
@@ -293,7 +317,8 @@ static void rotate(quadrotor_t *q, double t_s)
     q->state.roll_rad = q->roll.angle_rad + q->tumble_rad;
     q->state.pitch_rad = q->pitch.angle_rad;
 
-    const double wander = q->yaw_drift_rad + share * noise_uniform(&q->yaw_noise, -YAW_STEP_RAD, YAW_STEP_RAD);
+    const double wander = q->yaw_drift_rad +
+                          share * noise_uniform(&q->yaw_noise, -YAW_STEP_RAD, YAW_STEP_RAD);
     q->yaw_drift_rad = fmin(fmax(wander, -YAW_DRIFT_RAD), YAW_DRIFT_RAD);
     q->state.yaw_rad = remainder(HEADING_RAD + q->yaw_drift_rad, 2.0 * M_PI);
 }
@@ -341,7 +366,8 @@ static void spin(quadrotor_t *q, double t_s)
         s->thrust_n += q->lag * (q->followed_n - s->thrust_n);
         return;
     }
-    rotors_step(&q->rotors, STEP_S, q->followed_n <= MOTORS_TURN_N ? 0.0 : q->followed_n / hover_n(q, t_s), s->speed_mps);
+    rotors_step(&q->rotors, STEP_S, q->followed_n <= MOTORS_TURN_N ? 0.0 : q->followed_n / hover_n(q, t_s),
+                s->speed_mps);
     s->thrust_n = q->config.hover_thrust_n * rotors_thrust(&q->rotors, s->speed_mps);
 }
 
@@ -379,7 +405,8 @@ static void rise_or_rest(quadrotor_t *q, double acceleration_mps2, double terrai
     }
 }
 
-/* The ground one step later, and how fast it rises. A bar's edge has no speed: it is not what throws a vehicle up. */
+/* The ground one step later, and how fast it rises. A bar's edge has no speed: it is not what throws a
+ * vehicle up. */
 static double pass_terrain(quadrotor_t *q, double t_s, double *terrain_mps)
 {
     const double ramp_m = terrain_height_m(&q->terrain, t_s);

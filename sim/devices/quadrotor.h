@@ -1,18 +1,18 @@
-/* The airframe with its autopilot, motors, attitude motion, turbulence, rope tugs and the ground under it. Integrated
- * with a fixed step of 0.5 ms, lazily: every query first brings the state up to timeline_now().
+/* The airframe with its autopilot, motors, attitude motion, turbulence, rope tugs and the ground under it.
+ * Integrated with a fixed step of 0.5 ms, lazily: every query first brings the state up to timeline_now().
  *
- * The throttle commands thrust; or, with climb_rate_mps_per_n above 0, a climb rate, as in an autopilot's altitude
- * hold: none within climb_deadband_n of climb_neutral_n, beyond it in proportion, up to climb_ceiling_mps. A PI
- * controller of the vertical speed, whose closed loop lags by climb_lag_s, then gives the thrust; its integral carries
- * weight, drag and battery. On the ground the motors idle until the throttle asks for a climb. Signals lost count as
- * the lowest throttle: a descent.
+ * The throttle commands thrust; or, with climb_rate_mps_per_n above 0, a climb rate, as in an autopilot's
+ * altitude hold: none within climb_deadband_n of climb_neutral_n, beyond it in proportion, up to
+ * climb_ceiling_mps. A PI controller of the vertical speed, whose closed loop lags by climb_lag_s, then gives
+ * the thrust; its integral carries weight, drag and battery. On the ground the motors idle until the throttle
+ * asks for a climb. Signals lost count as the lowest throttle: a descent.
  *
- * Two airframes: one whose thrust is in proportion to the throttle, with one lag and a damping that is always the same
- * (what a simple estimator assumes); and that of rotors.h.
+ * Two airframes: one whose thrust is in proportion to the throttle, with one lag and a damping that is always
+ * the same (what a simple estimator assumes); and that of rotors.h.
  *
- * SI units; thrust in the seed's newtons per motor. The seed's angles: roll > 0 raises the mirror's side (right),
- * pitch > 0 raises the nose. Heights: `height` of the landing gear above the terrain below it, `altitude` above the
- * floor. */
+ * SI units; thrust in the seed's newtons per motor. The seed's angles: roll > 0 raises the mirror's side
+ * (right), pitch > 0 raises the nose. Heights: `height` of the landing gear above the terrain below it,
+ * `altitude` above the floor. */
 #ifndef SIM_DEVICES_QUADROTOR_H
 #define SIM_DEVICES_QUADROTOR_H
 
@@ -26,56 +26,61 @@
 #include "sim/timeline.h"
 
 typedef struct {
-    double gain;                /* 1 */
-    double tau_s;               /* 0.12, motor lag */
-    double damping_per_s;       /* D 2.4 */
-    double hover_thrust_n;      /* TH0 7.4 */
-    double sag_per_s;           /* 0.001 */
-    double turbulence_mps2;     /* 0.2 rms */
-    double turbulence_tau_s;    /* 0.5 */
-    double attitude_rms_rad;    /* 2 deg */
-    double actuator_delay_s;    /* 0.010 behind the end of the pulse */
-    double climb_rate_mps_per_n;    /* 0: the throttle commands thrust */
-    double climb_neutral_n;     /* 5.88, the middle of the stick, 1.5 ms */
-    double climb_deadband_n;    /* 0.47 to either side: 40 us, the default of Cleanflight; the NAZA's is not known */
-    double climb_lag_s;         /* 0.25, assumed */
-    double climb_ceiling_mps;   /* 6, up and down, assumed */
-    double neutral_drift_n_per_s;   /* 0: the middle of the stick goes up so fast with a low battery */
-    double neutral_drift_max_n; /* 3.5, 30 % of the stick */
-    double barometer_mps;       /* 0: rms of the climb that the barometer makes up at the ground, none from 1 m up */
-    naza_config_t naza;         /* always armed */
-    double tug_rate_per_s;      /* 0; 0.4 in tug runs */
-    double tug_mps2;            /* -1.5 */
-    double airframe;            /* 0: the simple one; 1: rotors.h, which does without gain, tau and damping */
+    double gain;                  /* 1 */
+    double tau_s;                 /* 0.12, motor lag */
+    double damping_per_s;         /* D 2.4 */
+    double hover_thrust_n;        /* TH0 7.4 */
+    double sag_per_s;             /* 0.001 */
+    double turbulence_mps2;       /* 0.2 rms */
+    double turbulence_tau_s;      /* 0.5 */
+    double attitude_rms_rad;      /* 2 deg */
+    double actuator_delay_s;      /* 0.010 behind the end of the pulse */
+    double climb_rate_mps_per_n;  /* 0: the throttle commands thrust */
+    double climb_neutral_n;       /* 5.88, the middle of the stick, 1.5 ms */
+    double climb_deadband_n;      /* 0.47 to either side: 40 us, the default of Cleanflight; the NAZA's is not
+                                     known */
+    double climb_lag_s;           /* 0.25, assumed */
+    double climb_ceiling_mps;     /* 6, up and down, assumed */
+    double neutral_drift_n_per_s; /* 0: the middle of the stick goes up so fast with a low battery */
+    double neutral_drift_max_n;   /* 3.5, 30 % of the stick */
+    double
+        barometer_mps;  /* 0: rms of the climb that the barometer makes up at the ground, none from 1 m up */
+    naza_config_t naza; /* always armed */
+    double tug_rate_per_s; /* 0; 0.4 in tug runs */
+    double tug_mps2;       /* -1.5 */
+    double airframe;       /* 0: the simple one; 1: rotors.h, which does without gain, tau and damping */
     rotors_config_t rotors;
-    double lag2_s;              /* 0: of the autopilot, before the motors */
-    double ground_effect;       /* 1, times that of Cheeseman and Bennett */
-    double gust_mps2;           /* 0 */
-    span_t gust;                /* from 10 s, for 1 s */
-    double tumble_radps;        /* 0: roll rate that the autopilot does not stop before the vehicle lies on its back */
-    double tumble_start_s;      /* 10 */
+    double lag2_s;        /* 0: of the autopilot, before the motors */
+    double ground_effect; /* 1, times that of Cheeseman and Bennett */
+    double gust_mps2;     /* 0 */
+    span_t gust;          /* from 10 s, for 1 s */
+    double
+        tumble_radps; /* 0: roll rate that the autopilot does not stop before the vehicle lies on its back */
+    double tumble_start_s; /* 10 */
     floor_config_t floor;
-    bool anchored;              /* bench: stands still at bench_height_m, whatever the thrust */
+    bool anchored; /* bench: stands still at bench_height_m, whatever the thrust */
     double bench_height_m;
-    double bench_roll_rad;      /* 0; held so, about the gear's lowest level under the centre, right side up, */
-    double bench_roll_start_s;  /* since power-on from which on; level before, for the IMU's zero */
+    double bench_roll_rad; /* 0; held so, about the gear's lowest level under the centre, right side up, */
+    double bench_roll_start_s; /* since power-on from which on; level before, for the IMU's zero */
 } quadrotor_config_t;
 
 extern const quadrotor_config_t quadrotor_default;
 
 typedef struct {
-    double altitude_m, height_m, terrain_m, speed_mps, acceleration_mps2; /* acceleration of the body, upwards, without g */
-    double thrust_n;            /* what the motors deliver now */
+    double altitude_m, height_m, terrain_m, speed_mps,
+        acceleration_mps2; /* acceleration of the body, upwards, without g */
+    double thrust_n;       /* what the motors deliver now */
     double roll_rad, pitch_rad, yaw_rad;
     bool on_ground;
-    bool motors;                /* running, by the autopilot's rules */
-    unsigned motor_stops;       /* times that they stopped over 0.1 m above the ground */
-    unsigned contacts;          /* touches after the first 30 mm */
+    bool motors;          /* running, by the autopilot's rules */
+    unsigned motor_stops; /* times that they stopped over 0.1 m above the ground */
+    unsigned contacts;    /* touches after the first 30 mm */
 } quadrotor_state_t;
 
 typedef struct quadrotor quadrotor_t;
 
-/* origin: virtual time of scenario time t = 0 (terrain, sag and the pitch bias follow t); may be set later. */
+/* origin: virtual time of scenario time t = 0 (terrain, sag and the pitch bias follow t); may be set later.
+ */
 quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const terrain_t *terrain, unsigned long seed);
 void quadrotor_destroy(quadrotor_t *quadrotor);
 void quadrotor_set_origin(quadrotor_t *quadrotor, sim_time_t origin);

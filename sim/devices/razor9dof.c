@@ -10,18 +10,33 @@
 #define GRAVITY_MPS2 9.80665
 #define COUNTS_PER_G 256.0
 #define DEGREE_RAD (M_PI / 180.0)
-#define FRAMES 16U              /* sampled and not yet sent */
+#define FRAMES 16U /* sampled and not yet sent */
 #define TEXT_MAX 96U
 
-const razor_config_t razor_default = {
-    .period = 25 * SIM_MS, .age = 15 * SIM_MS, .phase = 25 * SIM_MS,
-    .angle_noise_rad = 0.25 * DEGREE_RAD, .spike_probability = 0.005, .spike_rad = 0.35,
-    .acceleration_noise_mps2 = 0.4, .acceleration_bias_mps2 = 0.15,
-    .mount_roll_rad = 0.0, .mount_pitch_rad = 0.0, .joined = false, .stock = 0.0,
-    .acceleration_scale = 1.0, .acceleration_sign = 1.0, .acceleration_jump_mps2 = 0.0, .acceleration_jump_start_s = 10.0,
-    .acceleration_alias_mps2 = 0.0, .acceleration_alias_hz = 2.0,
-    .attitude_burst_rad = 0.0, .attitude_burst = {10.0, 0.075},
-    .mute = {10.0, 0.0}, .frozen = {10.0, 0.0}, .garbled = {10.0, 0.0}, .garbled_share = 0.05};
+const razor_config_t razor_default = {.period = 25 * SIM_MS,
+                                      .age = 15 * SIM_MS,
+                                      .phase = 25 * SIM_MS,
+                                      .angle_noise_rad = 0.25 * DEGREE_RAD,
+                                      .spike_probability = 0.005,
+                                      .spike_rad = 0.35,
+                                      .acceleration_noise_mps2 = 0.4,
+                                      .acceleration_bias_mps2 = 0.15,
+                                      .mount_roll_rad = 0.0,
+                                      .mount_pitch_rad = 0.0,
+                                      .joined = false,
+                                      .stock = 0.0,
+                                      .acceleration_scale = 1.0,
+                                      .acceleration_sign = 1.0,
+                                      .acceleration_jump_mps2 = 0.0,
+                                      .acceleration_jump_start_s = 10.0,
+                                      .acceleration_alias_mps2 = 0.0,
+                                      .acceleration_alias_hz = 2.0,
+                                      .attitude_burst_rad = 0.0,
+                                      .attitude_burst = {10.0, 0.075},
+                                      .mute = {10.0, 0.0},
+                                      .frozen = {10.0, 0.0},
+                                      .garbled = {10.0, 0.0},
+                                      .garbled_share = 0.05};
 
 typedef struct {
     char text[TEXT_MAX];
@@ -39,7 +54,7 @@ struct razor9dof {
     timeline_id_t sampling;
     frame_t frames[FRAMES];
     unsigned sampled, sent;
-    char latest[TEXT_MAX];      /* the frame composed last */
+    char latest[TEXT_MAX]; /* the frame composed last */
     size_t latest_length;
 };
 
@@ -94,7 +109,7 @@ static double printed_angle_deg(razor9dof_t *razor, double angle_rad)
     double seen_rad = angle_rad + razor->config.angle_noise_rad * noise_gauss(&razor->angle_noise);
     if (noise_uniform(&razor->spike_noise, 0.0, 1.0) < razor->config.spike_probability) {
         seen_rad += noise_uniform(&razor->spike_noise, -1.0, 1.0) < 0.0 ? -razor->config.spike_rad
-                                                                         : razor->config.spike_rad;
+                                                                        : razor->config.spike_rad;
     }
     return remainder(seen_rad, 2.0 * M_PI) / DEGREE_RAD;
 }
@@ -105,7 +120,8 @@ static double acceleration_error_mps2(const razor_config_t *config, double t_s)
     const double jump_mps2 = t_s >= config->acceleration_jump_start_s ? config->acceleration_jump_mps2 : 0.0;
 
     return config->acceleration_bias_mps2 + jump_mps2 +
-           config->acceleration_alias_mps2 * sin(2.0 * M_PI * config->acceleration_alias_hz * fmod(t_s, 1000.0));
+           config->acceleration_alias_mps2 *
+               sin(2.0 * M_PI * config->acceleration_alias_hz * fmod(t_s, 1000.0));
 }
 
 static void put_acceleration(razor9dof_t *razor, frame_t *frame, const razor_truth_t *truth, double roll_rad,
@@ -114,8 +130,8 @@ static void put_acceleration(razor9dof_t *razor, frame_t *frame, const razor_tru
     const razor_config_t *config = &razor->config;
     const double felt_mps2 = GRAVITY_MPS2 + truth->up_mps2 + acceleration_error_mps2(config, truth->t_s) +
                              config->acceleration_noise_mps2 * noise_gauss(&razor->acceleration_noise);
-    const double counts =
-        config->acceleration_sign * config->acceleration_scale * COUNTS_PER_G * felt_mps2 / GRAVITY_MPS2;
+    const double counts = config->acceleration_sign * config->acceleration_scale * COUNTS_PER_G * felt_mps2 /
+                          GRAVITY_MPS2;
     put_triple(frame, "#A-C=", counts * -sin(pitch_rad), -counts * cos(pitch_rad) * sin(roll_rad),
                counts * cos(pitch_rad) * cos(roll_rad));
 }
@@ -132,7 +148,9 @@ static void compose(razor9dof_t *razor, frame_t *frame, const razor_truth_t *see
     }
     const double yaw_deg = printed_angle_deg(razor, truth.yaw_rad);
     const double pitch_deg = printed_angle_deg(razor, pitch_rad);
-    const double burst_rad = span_holds(&razor->config.attitude_burst, truth.t_s) ? razor->config.attitude_burst_rad : 0.0;
+    const double burst_rad = span_holds(&razor->config.attitude_burst, truth.t_s)
+                                 ? razor->config.attitude_burst_rad
+                                 : 0.0;
     const double roll_deg = printed_angle_deg(razor, roll_rad + burst_rad);
     put_triple(frame, "#YPR=", yaw_deg, pitch_deg, -roll_deg);
     put_text(frame, "\r\n");
@@ -162,7 +180,8 @@ static void garble(razor9dof_t *razor, frame_t *frame)
 {
     for (size_t i = 0; i < frame->length; i++) {
         if (noise_uniform(&razor->garble_noise, 0.0, 1.0) < razor->config.garbled_share) {
-            frame->text[i] = (char)((unsigned char)frame->text[i] ^ 1U << (noise_bits(&razor->garble_noise) & 7U));
+            frame->text[i] = (char)((unsigned char)frame->text[i] ^
+                                    1U << (noise_bits(&razor->garble_noise) & 7U));
         }
     }
 }
@@ -184,8 +203,8 @@ static void sample(void *context)
     razor->sampling = timeline_after(razor->config.period, sample, razor);
 }
 
-razor9dof_t *razor9dof_create(const razor_config_t *config, razor_world_t world, void *world_context, unsigned long seed,
-                              serial_sink_t sink, void *sink_context)
+razor9dof_t *razor9dof_create(const razor_config_t *config, razor_world_t world, void *world_context,
+                              unsigned long seed, serial_sink_t sink, void *sink_context)
 {
     razor9dof_t *razor = calloc(1, sizeof *razor);
     if (razor == NULL || config->age >= (sim_time_t)FRAMES * config->period) {

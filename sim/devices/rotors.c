@@ -2,11 +2,11 @@
 
 #include <math.h>
 
-/* Blade element theory at constant pitch: thrust = speed * (speed - share * (climb + inflow) / tip-ish speed), scaled so
- * that hover is 1 at 1. With the disc of four 10 inch rotors (0.127 m) and 1.5 kg of air-borne mass, momentum theory
- * gives an induced speed in hover of sqrt(m g / (2 rho A)) = 5.4 m/s. */
+/* Blade element theory at constant pitch: thrust = speed * (speed - share * (climb + inflow) / tip-ish
+ * speed), scaled so that hover is 1 at 1. With the disc of four 10 inch rotors (0.127 m) and 1.5 kg of
+ * air-borne mass, momentum theory gives an induced speed in hover of sqrt(m g / (2 rho A)) = 5.4 m/s. */
 #define INDUCED_HOVER_MPS 5.4
-#define INFLOW_SHARE 0.60       /* of the blades' angle of attack that hover's inflow takes away */
+#define INFLOW_SHARE 0.60 /* of the blades' angle of attack that hover's inflow takes away */
 #define THRUST_MOST 4.0
 
 void rotors_init(rotors_t *rotors, const rotors_config_t *config)
@@ -26,8 +26,8 @@ double rotors_thrust(const rotors_t *rotors, double climb_mps)
     return thrust_in(rotors->speed, rotors->inflow_mps + climb_mps);
 }
 
-/* The induced speed that momentum theory asks of a thrust in climb: v (v + climb) = thrust * hover's square. In a descent
- * faster than it holds for (vortex ring), as at hover. */
+/* The induced speed that momentum theory asks of a thrust in climb: v (v + climb) = thrust * hover's square.
+ * In a descent faster than it holds for (vortex ring), as at hover. */
 static double inflow_asked_mps(double thrust, double climb_mps)
 {
     const double half_mps = fmax(climb_mps, 0.0) / 2.0;
@@ -37,13 +37,15 @@ static double inflow_asked_mps(double thrust, double climb_mps)
 void rotors_step(rotors_t *rotors, double step_s, double throttle, double climb_mps)
 {
     const rotors_config_t *c = &rotors->config;
-    /* In steady hovering air the thrust goes with the square of the speed, as the inflow goes with the speed. */
+    /* In steady hovering air the thrust goes with the square of the speed, as the inflow goes with the speed.
+     */
     const double wanted = pow(throttle, c->exponent / 2.0);
     const double lag_s = wanted > rotors->speed ? c->spin_up_s : c->slow_down_s;
 
     rotors->speed += (1.0 - exp(-step_s / lag_s)) * (wanted - rotors->speed);
     rotors->inflow_mps += step_s / c->inflow_lag_s *
-                          (inflow_asked_mps(rotors_thrust(rotors, climb_mps), climb_mps) - rotors->inflow_mps);
+                          (inflow_asked_mps(rotors_thrust(rotors, climb_mps), climb_mps) -
+                           rotors->inflow_mps);
 }
 
 double rotors_drag_mps2(const rotors_t *rotors, double climb_mps, double tilt_cosine)

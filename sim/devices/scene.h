@@ -1,6 +1,6 @@
-/* What the scanner's rays hit: mirrors on their arms, the ground under the tilted vehicle, and between the mirrors
- * nothing in reach. Adds the sensor's noise. The geometry is written from the bracket's drawing (seed document, figures
- * 5.7 and 5.8, Annex III), independently of the product's correction. */
+/* What the scanner's rays hit: mirrors on their arms, the ground under the tilted vehicle, and between the
+ * mirrors nothing in reach. Adds the sensor's noise. The geometry is written from the bracket's drawing (seed
+ * document, figures 5.7 and 5.8, Annex III), independently of the product's correction. */
 #ifndef SIM_DEVICES_SCENE_H
 #define SIM_DEVICES_SCENE_H
 
@@ -11,20 +11,21 @@
 #define SCENE_STEPS 769
 
 typedef struct {
-    double ray_sigma_mm;        /* each ray, 5 */
-    double common_sigma_mm;     /* all rays of a scan, 3 */
-    double glitch_probability;  /* per scan, 0; half of them break every second ray, half lift all rays by 350 mm */
-    double rays_lost;           /* share of the rays, each scan others, that find too little light: a code below 20 */
-    span_t rays_lost_span;      /* since power-on */
-    double sight_blocked;       /* share of the rays asked for on a mirror, always the first ones, that see a thing in
-                                 * front of it (a leg, a rope, dirt) at block_mm, with the noise of a ray */
-    double block_mm;            /* 150 */
-    span_t sight_blocked_span;  /* since power-on */
-    span_t frozen;              /* the sensor gives the distances of its latest scan again and again; its clock runs on.
-                                 * Never */
-    double edge_m;              /* what the beam sees lies that much higher than what the gear will stand on; < 0: beyond
-                                 * the edge of a table */
-    double edge_start_s;        /* 0 */
+    double ray_sigma_mm;       /* each ray, 5 */
+    double common_sigma_mm;    /* all rays of a scan, 3 */
+    double glitch_probability; /* per scan, 0; half of them break every second ray, half lift all rays by 350
+                                  mm */
+    double rays_lost; /* share of the rays, each scan others, that find too little light: a code below 20 */
+    span_t rays_lost_span; /* since power-on */
+    double sight_blocked;  /* share of the rays asked for on a mirror, always the first ones, that see a thing
+                            * in  front of it (a leg, a rope, dirt) at block_mm, with the noise of a ray */
+    double block_mm;       /* 150 */
+    span_t sight_blocked_span; /* since power-on */
+    span_t frozen; /* the sensor gives the distances of its latest scan again and again; its clock runs on.
+                    * Never */
+    double edge_m; /* what the beam sees lies that much higher than what the gear will stand on; < 0: beyond
+                    * the edge of a table */
+    double edge_start_s; /* 0 */
 } scene_config_t;
 
 extern const scene_config_t scene_default;

@@ -5,8 +5,8 @@
 
 static void octet_left(void *context);
 
-/* While an octet is on the line, line_free is where it began: its own length gives its bit time, whatever the rate is
- * set to meanwhile. */
+/* While an octet is on the line, line_free is where it began: its own length gives its bit time, whatever the
+ * rate is set to meanwhile. */
 static void start_next(serial_t *serial)
 {
     if (serial->busy || serial->count == 0) {

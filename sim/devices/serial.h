@@ -1,5 +1,5 @@
-/* A device's transmitter: octets leave one after the other at its bit rate and reach the far end of the wire at the end
- * of their stop bits. */
+/* A device's transmitter: octets leave one after the other at its bit rate and reach the far end of the wire
+ * at the end of their stop bits. */
 #ifndef SIM_DEVICES_SERIAL_H
 #define SIM_DEVICES_SERIAL_H
 
@@ -13,14 +13,14 @@ typedef void (*serial_sink_t)(void *context, unsigned octet, double bit_ns);
 #define SERIAL_QUEUE 8192
 
 typedef struct {
-    double rate;            /* bits per second; 10 bits per octet */
+    double rate; /* bits per second; 10 bits per octet */
     serial_sink_t sink;
     void *context;
     unsigned char queue[SERIAL_QUEUE];
     size_t head, count;
     bool busy;
-    sim_time_t line_free;   /* end of the last stop bit */
-    size_t dropped;         /* octets that found the queue full */
+    sim_time_t line_free; /* end of the last stop bit */
+    size_t dropped;       /* octets that found the queue full */
     timeline_id_t event;
 } serial_t;
 

@@ -4,8 +4,8 @@
 
 #include <stdbool.h>
 
-#define SPAN_POWER_ON_S (-1000.0)   /* a start so early: from power-on */
-#define SPAN_FOR_GOOD_S 1e9         /* a length without an end; as a start: never */
+#define SPAN_POWER_ON_S (-1000.0) /* a start so early: from power-on */
+#define SPAN_FOR_GOOD_S 1e9       /* a length without an end; as a start: never */
 
 typedef struct {
     double start_s, length_s;

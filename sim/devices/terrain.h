@@ -5,11 +5,11 @@
 #include <stdbool.h>
 
 typedef struct {
-    bool ramp;              /* false: flat floor */
-    double ramp_start_s;    /* 7.3 */
-    double ramp_end_s;      /* 8.0 */
-    double height_m;        /* 0.25 */
-    double edge_s;          /* 11.0 */
+    bool ramp;           /* false: flat floor */
+    double ramp_start_s; /* 7.3 */
+    double ramp_end_s;   /* 8.0 */
+    double height_m;     /* 0.25 */
+    double edge_s;       /* 11.0 */
 } terrain_t;
 
 extern const terrain_t terrain_flat;

@@ -26,9 +26,9 @@
 
 typedef struct {
     char text[COMMAND_N + 1];
-    size_t length;              /* characters received; text keeps the first COMMAND_N */
-    bool foreign;               /* holds an octet that no command may have */
-    bool repeated;              /* same symbol as the one before, which is still unanswered */
+    size_t length; /* characters received; text keeps the first COMMAND_N */
+    bool foreign;  /* holds an octet that no command may have */
+    bool repeated; /* same symbol as the one before, which is still unanswered */
 } command_t;
 
 /* A measurement asked for: sampled in one revolution, sent at its end. */
@@ -37,7 +37,7 @@ typedef struct {
     timeline_action_t turn_over;
     command_t command;
     int first, last, cluster, width;
-    int beyond;                 /* what stands for a distance that the field cannot hold */
+    int beyond; /* what stands for a distance that the field cannot hold */
     bool active;
     int64_t turn;
     timeline_id_t event;
@@ -52,7 +52,7 @@ struct urg04lx {
     void *sink_context;
 
     serial_t line;
-    double next_rate;           /* takes over when the line falls silent; 0: none */
+    double next_rate; /* takes over when the line falls silent; 0: none */
     timeline_id_t boot_event;
     bool powered, ready, scip2, laser_on, time_mode;
     sim_time_t first_turn, clock_zero;
@@ -66,8 +66,8 @@ struct urg04lx {
     scan_t single, stream;
     bool endless;
     int remaining, interval;
-    unsigned trouble;           /* to be reported; 0: none */
-    bool verifying;             /* 98 is next */
+    unsigned trouble; /* to be reported; 0: none */
+    bool verifying;   /* 98 is next */
 
     unsigned scans_sent, revolutions_skipped, octets_mismatched, commands, refused;
 };
@@ -635,9 +635,11 @@ static void handle_ii(urg04lx_t *urg, const command_t *command)
 }
 
 static const verb_t verbs[] = {
-    {"BM", 0, handle_bm}, {"QT", 0, handle_qt}, {"RS", 0, handle_rs}, {"TM", 1, handle_tm}, {"SS", 6, handle_ss},
-    {"CR", 2, handle_cr}, {"HS", 1, handle_hs}, {"VV", 0, handle_vv}, {"PP", 0, handle_pp}, {"II", 0, handle_ii},
-    {"MD", 13, handle_stream}, {"MS", 13, handle_stream}, {"GD", 10, handle_single}, {"GS", 10, handle_single},
+    {"BM", 0, handle_bm},      {"QT", 0, handle_qt},      {"RS", 0, handle_rs},
+    {"TM", 1, handle_tm},      {"SS", 6, handle_ss},      {"CR", 2, handle_cr},
+    {"HS", 1, handle_hs},      {"VV", 0, handle_vv},      {"PP", 0, handle_pp},
+    {"II", 0, handle_ii},      {"MD", 13, handle_stream}, {"MS", 13, handle_stream},
+    {"GD", 10, handle_single}, {"GS", 10, handle_single},
 };
 
 static const verb_t *find_verb(const command_t *command)
@@ -783,7 +785,8 @@ static void scip1_scan(urg04lx_t *urg, const command_t *command)
 {
     range_t range;
     bool good = number(command->text + 1, 3, &range.first) && number(command->text + 4, 3, &range.last) &&
-                number(command->text + 7, 2, &range.cluster) && range.last <= LAST_STEP && range.first <= range.last;
+                number(command->text + 7, 2, &range.cluster) && range.last <= LAST_STEP &&
+                range.first <= range.last;
 
     if (!good || !urg->laser_on) {
         scip1_answer(urg, command, good ? '6' : 'E');
@@ -839,7 +842,8 @@ static void command_complete(urg04lx_t *urg)
     command_t *command = &urg->incoming;
 
     if (command->length > 0 && urg->queue_count < QUEUE_N) {
-        command->repeated = urg->scip2 && unanswered(urg) && memcmp(command->text, urg->latest_symbol, 2) == 0;
+        command->repeated = urg->scip2 && unanswered(urg) &&
+                            memcmp(command->text, urg->latest_symbol, 2) == 0;
         memcpy(urg->latest_symbol, command->text, 2);
         urg->queue[(urg->queue_head + urg->queue_count) % QUEUE_N] = *command;
         urg->queue_count++;
@@ -938,8 +942,8 @@ void urg04lx_power(urg04lx_t *urg, bool on)
     }
 }
 
-urg04lx_t *urg04lx_create(const urg04lx_config_t *config, urg_world_t world, void *world_context, serial_sink_t sink,
-                          void *sink_context)
+urg04lx_t *urg04lx_create(const urg04lx_config_t *config, urg_world_t world, void *world_context,
+                          serial_sink_t sink, void *sink_context)
 {
     urg04lx_t *urg = calloc(1, sizeof *urg);
 

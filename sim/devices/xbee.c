@@ -6,8 +6,8 @@
 #include <string.h>
 
 #define RATE 9600.0
-#define CHARACTER ((sim_time_t)1041667)     /* 10 bits at 9600 */
-#define SILENCE (3 * CHARACTER)             /* RO */
+#define CHARACTER ((sim_time_t)1041667) /* 10 bits at 9600 */
+#define SILENCE (3 * CHARACTER)         /* RO */
 #define PACKET_OCTETS 100U
 #define DI_OCTETS 202U
 #define RATE_TOLERANCE 0.045
@@ -20,7 +20,7 @@
 typedef struct {
     unsigned char di[DI_OCTETS];
     size_t gathered;
-    bool silent;                /* since RO: what is gathered may leave */
+    bool silent; /* since RO: what is gathered may leave */
     timeline_id_t silence;
     unsigned char packet[PACKET_OCTETS];
     size_t on_air;
@@ -32,7 +32,7 @@ typedef struct {
 
 struct xbee {
     serial_t terminal;
-    leg_t up, down;             /* to the vehicle, to the operator */
+    leg_t up, down; /* to the vehicle, to the operator */
 };
 
 static sim_time_t air_time(size_t count)
@@ -99,7 +99,8 @@ static void ground(leg_t *leg)
     serial_flush(&leg->uart);
 }
 
-xbee_t *xbee_create(serial_sink_t to_firmware, void *firmware_context, serial_sink_t to_operator, void *operator_context)
+xbee_t *xbee_create(serial_sink_t to_firmware, void *firmware_context, serial_sink_t to_operator,
+                    void *operator_context)
 {
     xbee_t *xbee = calloc(1, sizeof *xbee);
     if (xbee == NULL) {

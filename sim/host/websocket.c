@@ -19,7 +19,8 @@
 
 enum { OPCODE_BINARY = 2, OPCODE_CLOSE = 8, OPCODE_PING = 9, OPCODE_PONG = 10 };
 
-/* SHA-1 (RFC 3174), of up to 119 octets: two blocks ------------------------------------------------------------ */
+/* SHA-1 (RFC 3174), of up to 119 octets: two blocks
+ * ------------------------------------------------------------ */
 
 static uint32_t turn(uint32_t value, unsigned by)
 {
@@ -32,10 +33,12 @@ static void mix(uint32_t h[5], const unsigned char block[64])
     uint32_t w[80], a = h[0], b = h[1], c = h[2], d = h[3], e = h[4];
 
     for (int i = 0; i < 80; i++) {
-        w[i] = i < 16 ? (uint32_t)block[4 * i] << 24 | (uint32_t)block[4 * i + 1] << 16 | (uint32_t)block[4 * i + 2] << 8 |
-                            block[4 * i + 3]
+        w[i] = i < 16 ? (uint32_t)block[4 * i] << 24 | (uint32_t)block[4 * i + 1] << 16 |
+                            (uint32_t)block[4 * i + 2] << 8 | block[4 * i + 3]
                       : turn(w[i - 3] ^ w[i - 8] ^ w[i - 14] ^ w[i - 16], 1);
-        const uint32_t f = i < 20 ? (b & c) | (~b & d) : i >= 40 && i < 60 ? (b & c) | (b & d) | (c & d) : b ^ c ^ d;
+        const uint32_t f = i < 20              ? (b & c) | (~b & d)
+                           : i >= 40 && i < 60 ? (b & c) | (b & d) | (c & d)
+                                               : b ^ c ^ d;
         const uint32_t next = turn(a, 5) + f + e + constants[i / 20] + w[i];
 
         e = d;
@@ -88,12 +91,13 @@ void websocket_accept(const char *key, char answer[WEBSOCKET_ACCEPT])
     answer[28] = '\0';
 }
 
-/* The server: a process of its own, so that no client delays the flight ----------------------------------------- */
+/* The server: a process of its own, so that no client delays the flight
+ * ----------------------------------------- */
 
 static struct {
-    int listener, pair, client;     /* -1: none */
-    bool open;                      /* the handshake is done */
-    unsigned char room[ROOM];       /* of the client, not yet understood */
+    int listener, pair, client; /* -1: none */
+    bool open;                  /* the handshake is done */
+    unsigned char room[ROOM];   /* of the client, not yet understood */
     size_t count;
 } server;
 
@@ -147,8 +151,8 @@ static void take_frame(unsigned opcode, const unsigned char *payload, size_t cou
     }
 }
 
-/* Takes one frame from the room; false: it is not whole yet. A frame that is longer than the room, or not masked as a
- * client's must be, ends the connection. */
+/* Takes one frame from the room; false: it is not whole yet. A frame that is longer than the room, or not
+ * masked as a client's must be, ends the connection. */
 static bool one_frame(void)
 {
     unsigned char *at = server.room;
@@ -195,7 +199,8 @@ static bool handshake(void)
     }
     websocket_accept(key, accept_key);
     snprintf(answer, sizeof answer,
-             "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: %s\r\n\r\n",
+             "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: "
+             "Upgrade\r\nSec-WebSocket-Accept: %s\r\n\r\n",
              accept_key);
     send_all(server.client, answer, strlen(answer));
     server.open = true;
@@ -250,7 +255,8 @@ static void serve(void)
     signal(SIGINT, SIG_IGN);
     signal(SIGHUP, SIG_IGN);
     for (;;) {
-        struct pollfd polled[] = {{server.pair, POLLIN, 0}, {server.listener, POLLIN, 0}, {server.client, POLLIN, 0}};
+        struct pollfd polled[] = {
+            {server.pair, POLLIN, 0}, {server.listener, POLLIN, 0}, {server.client, POLLIN, 0}};
 
         if (poll(polled, 3, -1) < 0) {
             continue;
@@ -269,13 +275,15 @@ static void serve(void)
 
 static const char *listen_at(unsigned tcp_port)
 {
-    const struct sockaddr_in address = {
-        .sin_family = AF_INET, .sin_port = htons((uint16_t)tcp_port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    const struct sockaddr_in address = {.sin_family = AF_INET,
+                                        .sin_port = htons((uint16_t)tcp_port),
+                                        .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
     const int yes = 1;
 
     server.listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     if (server.listener < 0 || setsockopt(server.listener, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0 ||
-        bind(server.listener, (const struct sockaddr *)&address, sizeof address) != 0 || listen(server.listener, 4) != 0) {
+        bind(server.listener, (const struct sockaddr *)&address, sizeof address) != 0 ||
+        listen(server.listener, 4) != 0) {
         return strerror(errno);
     }
     return NULL;
@@ -303,7 +311,8 @@ const char *websocket_open(port_t *port, unsigned tcp_port)
     if (error != NULL) {
         return give_up(pair, error);
     }
-    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0 || fcntl(pair[0], F_SETFL, O_NONBLOCK) != 0) {
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0 ||
+        fcntl(pair[0], F_SETFL, O_NONBLOCK) != 0) {
         return give_up(pair, strerror(errno));
     }
     fflush(NULL);

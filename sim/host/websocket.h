@@ -1,11 +1,13 @@
-/* A port whose other side is a browser: a WebSocket server (RFC 6455) on this machine only, for one client at a time. */
+/* A port whose other side is a browser: a WebSocket server (RFC 6455) on this machine only, for one client at
+ * a time. */
 #ifndef SIM_HOST_WEBSOCKET_H
 #define SIM_HOST_WEBSOCKET_H
 
 #include "sim/host/port.h"
 
-/* Listens at 127.0.0.1:tcp_port from now on. What is written while nobody is connected is dropped, so that a late client
- * gets nothing stale; a second client is refused. NULL when fine (then port_close), else what failed. */
+/* Listens at 127.0.0.1:tcp_port from now on. What is written while nobody is connected is dropped, so that a
+ * late client gets nothing stale; a second client is refused. NULL when fine (then port_close), else what
+ * failed. */
 const char *websocket_open(port_t *port, unsigned tcp_port);
 
 /* The key that a server answers to Sec-WebSocket-Key, 28 characters and a zero. */

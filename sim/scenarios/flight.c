@@ -15,14 +15,14 @@
 
 #define START_LIMIT (60 * SIM_S)
 #define STEP (10 * SIM_MS)
-#define UPRIGHT 0.70710678  /* cosine of the tilt from which on the firmware may cut */
-#define PINGS_PER_LINK 3.0  /* of the link's time-out */
-#define PINGS_START_S 0.5   /* past the settings */
+#define UPRIGHT 0.70710678 /* cosine of the tilt from which on the firmware may cut */
+#define PINGS_PER_LINK 3.0 /* of the link's time-out */
+#define PINGS_START_S 0.5  /* past the settings */
 #define FIELD_DAY_LEAD_S 10.0
 #define LINE_SPACING_S 0.05
 #define BENCH_SETTINGS_S 0.5
 #define ANSWER_PATIENCE (3 * SIM_S)
-#define ANSWER_END (300 * SIM_MS)   /* of silence */
+#define ANSWER_END (300 * SIM_MS) /* of silence */
 
 static struct {
     plant_t plant;
@@ -32,9 +32,9 @@ static struct {
     char line[128]; /* of the operator's terminal */
     size_t line_length;
     unsigned ok, err;
-    bool asked;             /* #LASER has been typed */
-    char answer[1024];      /* to it */
-    sim_time_t answered;    /* its latest line; 0: none */
+    bool asked;          /* #LASER has been typed */
+    char answer[1024];   /* to it */
+    sim_time_t answered; /* its latest line; 0: none */
     bool recording, first_row_recorded;
     unsigned pings;
     double ping_every_s;
@@ -56,7 +56,8 @@ static const char *no_such_choice(parameter_id_t id)
     size_t used = (size_t)snprintf(text, sizeof text, "no such choice; one of");
 
     for (int i = 0; i <= (int)parameter_table[id].maximum; i++) {
-        used += (size_t)snprintf(text + used, sizeof text - used, "%s %s", i == 0 ? "" : ",", parameter_table[id].choices[i]);
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s %s", i == 0 ? "" : ",",
+                                 parameter_table[id].choices[i]);
     }
     return text;
 }
@@ -108,7 +109,8 @@ const char *flight_override(flight_options_t *options, const char *assignment)
     flight_override_t *o = &options->overrides[options->override_count];
     const char *error;
 
-    if (equals == NULL || (size_t)(equals - assignment) >= sizeof o->name || strlen(equals + 1) >= sizeof o->value) {
+    if (equals == NULL || (size_t)(equals - assignment) >= sizeof o->name ||
+        strlen(equals + 1) >= sizeof o->value) {
         return "not of the form NAME=VALUE";
     }
     if (options->override_count == FLIGHT_OVERRIDES_MAX) {
@@ -131,7 +133,8 @@ static const char *overridden(const flight_options_t *options, const char *name)
     return NULL;
 }
 
-/* The operator's terminal ---------------------------------------------------------------------------------------- */
+/* The operator's terminal
+ * ---------------------------------------------------------------------------------------- */
 
 static bool begins(const char *text)
 {
@@ -228,7 +231,9 @@ static const char *suited(const scenario_t *scenario, const char *setting)
 {
     const size_t name = strcspn(setting, " ") + 1U;
 
-    for (int i = 0; flight.plant.board.quadrotor.climb_rate_mps_per_n > 0.0 && scenario->climb_settings[i] != NULL; i++) {
+    for (int i = 0;
+         flight.plant.board.quadrotor.climb_rate_mps_per_n > 0.0 && scenario->climb_settings[i] != NULL;
+         i++) {
         if (strncmp(scenario->climb_settings[i], setting, name) == 0) {
             return scenario->climb_settings[i];
         }
@@ -301,7 +306,8 @@ static void plan_faults(const plant_t *plant)
     static line_fault_spec_t outage;
 
     if (plant->outage_s > 0.0) {
-        outage = (line_fault_spec_t){.kind = LINE_FAULT_MUTE, .argument = (unsigned)lround(plant->outage_s * 1e3)};
+        outage = (line_fault_spec_t){.kind = LINE_FAULT_MUTE,
+                                     .argument = (unsigned)lround(plant->outage_s * 1e3)};
         timeline_at(at(fmax(plant->outage_start_s, 0.0)), strike_scanner, &outage);
     }
     if (plant->restart_start_s < SPAN_FOR_GOOD_S) {
@@ -325,7 +331,8 @@ static void plan(const scenario_t *scenario, const flight_options_t *options)
     plan_faults(&flight.plant);
 }
 
-/* The flight ----------------------------------------------------------------------------------------------------- */
+/* The flight
+ * ----------------------------------------------------------------------------------------------------- */
 
 /* The flight recorder's columns, then those that only the PC board can know. */
 static void write_titles(FILE *csv)
@@ -390,16 +397,18 @@ static metrics_sample_t look(double t_s, const quadrotor_state_t *truth)
     const flight_outputs_t out = firmware_view().flight;
     const flight_state_t phase = out.state;
 
-    return (metrics_sample_t){
-        .t_s = t_s, .height_m = truth->height_m, .speed_mps = truth->speed_mps,
-        .thrust_n = (double)out.thrust_n,
-        .taken_over = phase == FLIGHT_LOWERING || phase == FLIGHT_DESCENDING,
-        .coming_down = phase == FLIGHT_DESCENDING || phase == FLIGHT_LANDING,
-        .on_ground = truth->on_ground,
-        .may_cut = board_selected() && cos(truth->roll_rad) * cos(truth->pitch_rad) > UPRIGHT,
-        .flagged = out.flags != 0U,
-        .estimate_m = (double)out.estimate_mm * 1e-3,
-        .seen_m = board_seen_m()};
+    return (metrics_sample_t){.t_s = t_s,
+                              .height_m = truth->height_m,
+                              .speed_mps = truth->speed_mps,
+                              .thrust_n = (double)out.thrust_n,
+                              .taken_over = phase == FLIGHT_LOWERING || phase == FLIGHT_DESCENDING,
+                              .coming_down = phase == FLIGHT_DESCENDING || phase == FLIGHT_LANDING,
+                              .on_ground = truth->on_ground,
+                              .may_cut = board_selected() &&
+                                         cos(truth->roll_rad) * cos(truth->pitch_rad) > UPRIGHT,
+                              .flagged = out.flags != 0U,
+                              .estimate_m = (double)out.estimate_mm * 1e-3,
+                              .seen_m = board_seen_m()};
 }
 
 static void sample(FILE *csv)
@@ -492,8 +501,8 @@ static void power_off(const flight_options_t *options)
     }
 }
 
-/* Runs until scans arrive and the IMU's offset is known; then sets the origin of scenario time, at a phase against the
- * control loop that the seed draws. */
+/* Runs until scans arrive and the IMU's offset is known; then sets the origin of scenario time, at a phase
+ * against the control loop that the seed draws. */
 static bool start_up(const scenario_t *scenario, const flight_options_t *options)
 {
     const sim_time_t lead = (sim_time_t)(lead_s(scenario) * 1e9);
@@ -512,10 +521,12 @@ static bool start_up(const scenario_t *scenario, const flight_options_t *options
 
 static void fly(const scenario_t *scenario, const flight_options_t *options)
 {
-    const double rest_s = options->patience_s > 0.0 ? options->patience_s : scenario->end_s - scenario->land_s;
+    const double rest_s = options->patience_s > 0.0 ? options->patience_s
+                                                    : scenario->end_s - scenario->land_s;
     long steps = lround((flight.record.land_s + rest_s) * 100.0);
 
-    for (long i = -lround(lead_s(scenario) * 100.0); i <= steps && kernel_run_until(flight.origin + (sim_time_t)i * STEP); i++) {
+    for (long i = -lround(lead_s(scenario) * 100.0);
+         i <= steps && kernel_run_until(flight.origin + (sim_time_t)i * STEP); i++) {
         sample(options->csv);
         if (options->patience_s > 0.0 && metrics_over(&flight.record)) {
             return;
@@ -618,7 +629,8 @@ bool flight_run(const scenario_t *scenario, const flight_options_t *options, fli
     memset(&flight, 0, sizeof flight);
     memset(result, 0, sizeof *result);
     flight.telemetry = options->telemetry;
-    metrics_begin(&flight.record, reference != NULL ? strtod(reference, NULL) : scenario->reference_m, scenario->platform,
+    metrics_begin(&flight.record, reference != NULL ? strtod(reference, NULL) : scenario->reference_m,
+                  scenario->platform,
                   !options->realtime && options->duration_s > 0.0 ? options->duration_s : scenario->land_s);
     flight.record.field_day = scenario->field_day;
     *error = open_devices(options);
@@ -636,7 +648,9 @@ bool flight_run(const scenario_t *scenario, const flight_options_t *options, fli
     return true;
 }
 
-/* Again ---------------------------------------------------------------------------------------------------------- */
+/* Again
+ * ----------------------------------------------------------------------------------------------------------
+ */
 
 static sim_time_t number_of(const tape_t *tape, const char *key)
 {
@@ -649,7 +663,8 @@ static void replay_rows(const tape_t *tape, sim_time_t first, FILE *csv, size_t 
 {
     double row[3];
 
-    for (*rows = 0; tape_truth_row(tape, *rows, row) && kernel_run_until(first + (sim_time_t)*rows * STEP); (*rows)++) {
+    for (*rows = 0; tape_truth_row(tape, *rows, row) && kernel_run_until(first + (sim_time_t)*rows * STEP);
+         (*rows)++) {
         const truth_t truth = {row[0], row[1], row[2]};
 
         write_row(csv, (double)(timeline_now() - flight.origin) * 1e-9, &truth);

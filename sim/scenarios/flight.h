@@ -1,5 +1,6 @@
-/* One flight of one scenario: power-up, start-up of the sensors, the operator's commands, take-off to landing, with the
- * log and the metrics. Or the bench: the vehicle stands still, and at the end the operator asks for #LASER. */
+/* One flight of one scenario: power-up, start-up of the sensors, the operator's commands, take-off to
+ * landing, with the log and the metrics. Or the bench: the vehicle stands still, and at the end the operator
+ * asks for #LASER. */
 #ifndef SIM_SCENARIOS_FLIGHT_H
 #define SIM_SCENARIOS_FLIGHT_H
 
@@ -22,28 +23,28 @@ typedef struct {
 
 typedef struct {
     unsigned long seed;
-    FILE *csv;                  /* NULL: no log */
-    FILE *record;               /* everything at the firmware's pins, sim/tape.h; NULL: no recording */
+    FILE *csv;    /* NULL: no log */
+    FILE *record; /* everything at the firmware's pins, sim/tape.h; NULL: no recording */
     flight_override_t overrides[FLIGHT_OVERRIDES_MAX];
     int override_count;
-    bool realtime;              /* paced by the wall clock; of a flight then: no commands of its own */
-    const char *device[BOARD_WIRES];    /* realtime: real devices as for wires_open(); NULL: the model */
-    double duration_s;          /* realtime and bench: how long; else scenario time of the landing command. 0 = realtime:
-                                 * until interrupted, else: the scenario's */
-    double patience_s;          /* above 0: ends when the vehicle is down with its motors off, at the latest so long after
-                                 * the landing command */
-    line_fault_spec_t faults[FLIGHT_FAULTS_MAX];    /* of the scanner's line */
+    bool realtime;                   /* paced by the wall clock; of a flight then: no commands of its own */
+    const char *device[BOARD_WIRES]; /* realtime: real devices as for wires_open(); NULL: the model */
+    double duration_s; /* realtime and bench: how long; else scenario time of the landing command. 0 =
+                        * realtime: until interrupted, else: the scenario's */
+    double patience_s; /* above 0: ends when the vehicle is down with its motors off, at the latest so long
+                        * after the landing command */
+    line_fault_spec_t faults[FLIGHT_FAULTS_MAX]; /* of the scanner's line */
     int fault_count;
-    const kernel_costs_t *costs;    /* NULL: Annex IV's */
-    double height_m;            /* bench: of the landing gear above the floor */
-    FILE *telemetry;            /* lines that the operator's terminal receives; NULL: none. Bench: the answer to #LASER
-                                 * last */
+    const kernel_costs_t *costs; /* NULL: Annex IV's */
+    double height_m;             /* bench: of the landing gear above the floor */
+    FILE *telemetry; /* lines that the operator's terminal receives; NULL: none. Bench: the answer to #LASER
+                      * last */
 } flight_options_t;
 
 typedef struct {
     metrics_t metrics;
-    const char *halt;           /* why the firmware stopped, or NULL */
-    bool started;               /* the scanner came up and the reference was sent */
+    const char *halt; /* why the firmware stopped, or NULL */
+    bool started;     /* the scanner came up and the reference was sent */
 } flight_result_t;
 
 /* Checks and stores one NAME=VALUE. NULL when fine, else what is wrong with it. */
@@ -55,12 +56,13 @@ bool flight_run(const scenario_t *scenario, const flight_options_t *options, fli
 
 typedef struct {
     size_t rows;
-    double end_s;               /* since power-on */
-    const char *halt;           /* why the firmware stopped, or NULL */
+    double end_s;     /* since power-on */
+    const char *halt; /* why the firmware stopped, or NULL */
 } flight_replay_t;
 
-/* The firmware again, fed with a recording: its log to csv, the lines that it sends by radio to telemetry (NULL: nowhere).
- * The columns that only the world knows come from the recording. NULL when it could begin, else why not. */
+/* The firmware again, fed with a recording: its log to csv, the lines that it sends by radio to telemetry
+ * (NULL: nowhere). The columns that only the world knows come from the recording. NULL when it could begin,
+ * else why not. */
 const char *flight_replay(const tape_t *tape, FILE *csv, FILE *telemetry, flight_replay_t *result);
 
 #endif

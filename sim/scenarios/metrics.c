@@ -14,18 +14,20 @@
 #define AIRBORNE_M 0.03
 #define TOUCHED_M 0.003
 #define ALOFT_M 0.3
-#define MOTORS_TURN_N 1.2       /* a tenth of the throttle: under it the autopilot stops its motors or lets them idle */
+#define MOTORS_TURN_N \
+    1.2 /* a tenth of the throttle: under it the autopilot stops its motors or lets them idle */
 #define OFF_S 0.2
 #define WRONG_M 0.3
 #define OVER_S 1.0
 
 const char *const metric_names[] = {
-    "rise_time_s", "overshoot_mm", "hover_rms_mm", "hover_mean_error_mm", "terrain_rms_mm",
-    "recovery_s", "undershoot_mm", "ground_contacts", "thrust_std_n", "scans",
-    "scans_rejected", "commands_ok", "commands_err", "max_error_mm", "highest_mm",
-    "touch_speed_mps", "takeovers", "cuts", "off_aloft", "down_s",
-    "stopped_s", "deceived_s", "flagged_s", "again_rms_mm", "by_eye_rms_mm",
-    "motor_stops", "motors_at_end",
+    "rise_time_s",    "overshoot_mm", "hover_rms_mm",   "hover_mean_error_mm",
+    "terrain_rms_mm", "recovery_s",   "undershoot_mm",  "ground_contacts",
+    "thrust_std_n",   "scans",        "scans_rejected", "commands_ok",
+    "commands_err",   "max_error_mm", "highest_mm",     "touch_speed_mps",
+    "takeovers",      "cuts",         "off_aloft",      "down_s",
+    "stopped_s",      "deceived_s",   "flagged_s",      "again_rms_mm",
+    "by_eye_rms_mm",  "motor_stops",  "motors_at_end",
 };
 _Static_assert(sizeof metric_names / sizeof metric_names[0] == METRIC_COUNT, "every metric has a name");
 
@@ -202,10 +204,19 @@ static void gather(metrics_record_t *record, const metrics_sample_t *s)
 
 void metrics_begin(metrics_record_t *record, double reference_m, bool terrain, double land_s)
 {
-    *record = (metrics_record_t){
-        .reference_m = reference_m, .terrain = terrain, .land_s = land_s,
-        .tenth_s = NAN, .ninety_s = NAN, .last_off_s = METRICS_EDGE_S, .highest_mm = -INFINITY, .hardest_mps = NAN,
-        .off_since_s = NAN, .wrong_since_s = NAN, .order_s = INFINITY, .aloft_s = -INFINITY, .running_s = -INFINITY};
+    *record = (metrics_record_t){.reference_m = reference_m,
+                                 .terrain = terrain,
+                                 .land_s = land_s,
+                                 .tenth_s = NAN,
+                                 .ninety_s = NAN,
+                                 .last_off_s = METRICS_EDGE_S,
+                                 .highest_mm = -INFINITY,
+                                 .hardest_mps = NAN,
+                                 .off_since_s = NAN,
+                                 .wrong_since_s = NAN,
+                                 .order_s = INFINITY,
+                                 .aloft_s = -INFINITY,
+                                 .running_s = -INFINITY};
 }
 
 void metrics_add(metrics_record_t *record, const metrics_sample_t *sample)

@@ -1,5 +1,6 @@
-/* The world's figures that `--set plant.NAME=VALUE` reaches: the vehicle, its sensors, the floor, and what goes wrong with
- * them. Left alone, they are the plant description's, and nothing goes wrong. Several at once combine. */
+/* The world's figures that `--set plant.NAME=VALUE` reaches: the vehicle, its sensors, the floor, and what
+ * goes wrong with them. Left alone, they are the plant description's, and nothing goes wrong. Several at once
+ * combine. */
 #ifndef SIM_SCENARIOS_PLANT_H
 #define SIM_SCENARIOS_PLANT_H
 
@@ -11,9 +12,9 @@
 typedef struct {
     board_config_t board;
     double ray_instant_s;
-    double clock_ppm;                   /* of the scanner */
+    double clock_ppm; /* of the scanner */
     double outage_start_s, outage_s;
-    double restart_start_s;             /* of the scanner */
+    double restart_start_s; /* of the scanner */
     double radio_lost_start_s;
     double attitude_throttle;
 } plant_t;

@@ -10,11 +10,13 @@
 #define FIELD_DAY_ARM "ARM "
 #define UNSATURATED "USAT 11.76", "DSAT 11.76"
 
-/* Expectations stand for one flight with any seed; the means over many seeds are pinned in tests/integration. */
+/* Expectations stand for one flight with any seed; the means over many seeds are pinned in tests/integration.
+ */
 const scenario_t scenarios[] = {
     {
         .name = "pid-60cm-ramp",
-        .summary = "seed chapter 6: PID at 60 cm over a ramp (7.3-8.0 s) and a 25 cm platform (edge at 11.0 s)",
+        .summary =
+            "seed chapter 6: PID at 60 cm over a ramp (7.3-8.0 s) and a 25 cm platform (edge at 11.0 s)",
         .settings = {FLOWN_PID},
         .reference_m = 0.6,
         .platform = true,
@@ -35,7 +37,8 @@ const scenario_t scenarios[] = {
     {
         .name = "est-60cm-ramp",
         .summary = "the same course by estimator and cascade",
-        .settings = {"LAW EST", "TERRAIN FOLLOW", "PLANT THRUST", "GRAV 7", "POSK 2.3", "VELK 8", "VUP 0.7", "VDN 1.1"},
+        .settings = {"LAW EST", "TERRAIN FOLLOW", "PLANT THRUST", "GRAV 7", "POSK 2.3", "VELK 8", "VUP 0.7",
+                     "VDN 1.1"},
         .reference_m = 0.6,
         .platform = true,
         .land_s = 20.0,
@@ -55,8 +58,8 @@ const scenario_t scenarios[] = {
     {
         .name = "climb-rate",
         .summary = "the same course with an autopilot whose throttle commands a climb rate",
-        .settings = {"LAW EST", "TERRAIN FOLLOW", "PLANT CLIMB", "CRATE 1", "GRAV 5.88", "POSK 2.3", "VELK 8", "VUP 0.7",
-                     "VDN 1.1"},
+        .settings = {"LAW EST", "TERRAIN FOLLOW", "PLANT CLIMB", "CRATE 1", "GRAV 5.88", "POSK 2.3", "VELK 8",
+                     "VUP 0.7", "VDN 1.1"},
         .reference_m = 0.6,
         .platform = true,
         .climb_rate_mps_per_n = 1.0,
@@ -77,7 +80,8 @@ const scenario_t scenarios[] = {
     },
     {
         .name = "step-thrust",
-        .summary = "step test: law PD without a window gives GRAV alone, for 2 s 1 N less; then EST catches the vehicle",
+        .summary = "step test: law PD without a window gives GRAV alone, for 2 s 1 N less; then EST catches "
+                   "the vehicle",
         .settings = {STEP_TEST},
         .later = {{11.5, "GRAV", "7.4"}, {12.0, "LAW", "PD"}, {14.0, "GRAV", "6.4"}, {16.0, "LAW", "EST"}},
         .reference_m = 2.5,
@@ -110,8 +114,16 @@ const scenario_t scenarios[] = {
         .name = "experiment",
         .summary = "small steps and doublets of the reference, from which make fit finds the vehicle",
         .settings = {"LAW EST", "PLANT THRUST", "GRAV 7"},
-        .later = {{5.0, "SETR", "0.8"}, {7.5, "SETR", "0.5"}, {10.0, "SETR", "0.75"}, {10.8, "SETR", "0.5"}, {11.6, "SETR", "0.65"},
-                  {14.0, "SETR", "0.9"}, {16.5, "SETR", "0.6"}, {19.0, "SETR", "0.75"}, {19.8, "SETR", "0.45"}, {20.6, "SETR", "0.6"}},
+        .later = {{5.0, "SETR", "0.8"},
+                  {7.5, "SETR", "0.5"},
+                  {10.0, "SETR", "0.75"},
+                  {10.8, "SETR", "0.5"},
+                  {11.6, "SETR", "0.65"},
+                  {14.0, "SETR", "0.9"},
+                  {16.5, "SETR", "0.6"},
+                  {19.0, "SETR", "0.75"},
+                  {19.8, "SETR", "0.45"},
+                  {20.6, "SETR", "0.6"}},
         .reference_m = 0.6,
         .land_s = 26.0,
         .end_s = 32.0,
@@ -217,7 +229,8 @@ const scenario_t scenarios[] = {
     {
         .name = "first-pid",
         .summary = "Annex I: the first PID, ki 0.001 on the saturated PD's gains",
-        .settings = {"LAW PID", "RELEASE FREE", "KP 0.01", "KD 0.004", "KI 0.001", "USAT 1", "DSAT 0", "GRAV 7"},
+        .settings = {"LAW PID", "RELEASE FREE", "KP 0.01", "KD 0.004", "KI 0.001", "USAT 1", "DSAT 0",
+                     "GRAV 7"},
         .reference_m = 0.4,
         .land_s = 20.0,
         .end_s = 25.0,
@@ -262,8 +275,10 @@ const scenario_t scenarios[] = {
     },
     {
         .name = "field-day",
-        .summary = "sticks start the motors, hand-over, take-off, landing, take-off again, hand-back in the air, pilot's landing",
-        .settings = {"SEL NONE", "LAW EST", "TERRAIN FOLLOW", "PLANT THRUST", "GRAV 7", "CRATE 1", FIELD_DAY_ARM},
+        .summary = "sticks start the motors, hand-over, take-off, landing, take-off again, hand-back in the "
+                   "air, pilot's landing",
+        .settings = {"SEL NONE", "LAW EST", "TERRAIN FOLLOW", "PLANT THRUST", "GRAV 7", "CRATE 1",
+                     FIELD_DAY_ARM},
         .climb_settings = {"PLANT CLIMB", "GRAV 5.88"},
         .later = {{28.0, "SETR", "0.6"}, {38.0, "STOP", "the pilot has it"}},
         .field_day = true,
@@ -283,7 +298,8 @@ const scenario_t scenarios[] = {
     },
     {
         .name = "bench",
-        .summary = "no flight: the vehicle stands still at --height; for real sensors, and for a look at the start-up",
+        .summary = "no flight: the vehicle stands still at --height; for real sensors, and for a look at the "
+                   "start-up",
         .bench = true,
         .end_s = 30.0,
         .fate = FATE_EITHER,

@@ -1,5 +1,5 @@
-/* The flights: the seed's, and what each must look like. A scenario pins law, gains, gravity and release; it types them
- * on the operator's terminal like anybody else. And the bench, without a flight. */
+/* The flights: the seed's, and what each must look like. A scenario pins law, gains, gravity and release; it
+ * types them on the operator's terminal like anybody else. And the bench, without a flight. */
 #ifndef SIM_SCENARIOS_SCENARIOS_H
 #define SIM_SCENARIOS_SCENARIOS_H
 
@@ -12,13 +12,13 @@
 #define SCENARIO_LATER_MAX 12
 
 typedef struct {
-    double t_s;                 /* complete at the receiver */
-    const char *name, *value;   /* NULL: no line */
+    double t_s;               /* complete at the receiver */
+    const char *name, *value; /* NULL: no line */
 } later_line_t;
 
 typedef struct {
     metric_t metric;
-    double minimum, maximum;    /* inclusive; a metric that does not apply breaks it */
+    double minimum, maximum; /* inclusive; a metric that does not apply breaks it */
 } expectation_t;
 
 /* What the judgement of metrics_t.failed must be. */
@@ -27,16 +27,17 @@ typedef enum { FATE_SUCCEEDS, FATE_FAILS, FATE_EITHER } scenario_fate_t;
 typedef struct {
     const char *name;
     const char *summary;
-    const char *settings[SCENARIO_SETTINGS_MAX];    /* "LAW PID", ... NULL ends */
-    later_line_t later[SCENARIO_LATER_MAX];         /* typed in flight; --set does not reach them; no name ends */
-    bool bench;                 /* the vehicle stands still: no flight, no commands; ends at end_s */
+    const char *settings[SCENARIO_SETTINGS_MAX]; /* "LAW PID", ... NULL ends */
+    later_line_t later[SCENARIO_LATER_MAX]; /* typed in flight; --set does not reach them; no name ends */
+    bool bench; /* the vehicle stands still: no flight, no commands; ends at end_s */
     double reference_m;
-    bool platform;              /* the seed's ramp and platform; else flat */
-    double tug_rate_per_s;      /* rope tugs; 0 = none */
-    double climb_rate_mps_per_n;    /* that the throttle commands; 0 = it commands thrust */
-    bool field_day;             /* the autopilot's rules for motors, and a pilot who starts them and hands over */
-    const char *climb_settings[SCENARIO_SETTINGS_MAX];  /* instead of those of their names, where the throttle commands a climb */
-    double land_s;              /* #SETR 0 */
+    bool platform;               /* the seed's ramp and platform; else flat */
+    double tug_rate_per_s;       /* rope tugs; 0 = none */
+    double climb_rate_mps_per_n; /* that the throttle commands; 0 = it commands thrust */
+    bool field_day; /* the autopilot's rules for motors, and a pilot who starts them and hands over */
+    const char *climb_settings[SCENARIO_SETTINGS_MAX]; /* instead of those of their names, where the throttle
+                                                          commands a climb */
+    double land_s;                                     /* #SETR 0 */
     double end_s;
     scenario_fate_t fate;
     expectation_t expectations[SCENARIO_EXPECTATIONS_MAX];

@@ -18,7 +18,7 @@ static const unsigned long nominal_rates[BOARD_WIRES] = {115200UL, 57600UL, 9600
 typedef struct {
     bool real;
     port_t port;
-    unsigned long rate;     /* last asked of the port */
+    unsigned long rate; /* last asked of the port */
 } end_t;
 
 static struct {
@@ -47,8 +47,9 @@ static const char *open_websocket(const char *number)
 
 static const char *open_terminal(const char *device)
 {
-    const char *error = strcmp(device, WIRES_PTY) == 0 ? port_open_pty(&wires.terminal, nominal_rates[BOARD_RADIO])
-                                                       : open_websocket(device + strlen(WIRES_WEBSOCKET));
+    const char *error = strcmp(device, WIRES_PTY) == 0
+                            ? port_open_pty(&wires.terminal, nominal_rates[BOARD_RADIO])
+                            : open_websocket(device + strlen(WIRES_WEBSOCKET));
 
     if (error == NULL) {
         wires.has_terminal = true;

@@ -1,5 +1,6 @@
-/* Real devices in place of models: serial ports of the PC on the board's wires, at the rates that the firmware sets, and
- * the operator's terminal on a pseudo-terminal. All of it is paced by the wall clock (sim/host/pace.h). */
+/* Real devices in place of models: serial ports of the PC on the board's wires, at the rates that the
+ * firmware sets, and the operator's terminal on a pseudo-terminal. All of it is paced by the wall clock
+ * (sim/host/pace.h). */
 #ifndef SIM_SCENARIOS_WIRES_H
 #define SIM_SCENARIOS_WIRES_H
 
@@ -9,10 +10,11 @@
 extern const char *const wire_names[]; /* BOARD_WIRES */
 
 #define WIRES_PTY "pty"
-#define WIRES_WEBSOCKET "ws:"   /* and a port's number */
+#define WIRES_WEBSOCKET "ws:" /* and a port's number */
 
-/* A device's path for each wire, NULL: its model. WIRES_PTY or WIRES_WEBSOCKET for the radio: the model's ground end is a
- * pseudo-terminal or a WebSocket, whose name is printed on stdout. NULL when fine (then wires_close()), else what failed, on wire *failed. */
+/* A device's path for each wire, NULL: its model. WIRES_PTY or WIRES_WEBSOCKET for the radio: the model's
+ * ground end is a pseudo-terminal or a WebSocket, whose name is printed on stdout. NULL when fine (then
+ * wires_close()), else what failed, on wire *failed. */
 const char *wires_open(const char *const device[BOARD_WIRES], board_wire_t *failed);
 
 /* After board_power_on() and pace_begin(). `heard` gets what the firmware gives to a real radio. */

@@ -1,5 +1,5 @@
-/* What is connected to the PC board to measure it: response times, latency, trace. One set per process, as there is one
- * board. */
+/* What is connected to the PC board to measure it: response times, latency, trace. One set per process, as
+ * there is one board. */
 #ifndef SIM_TIMING_INSTRUMENTS_H
 #define SIM_TIMING_INSTRUMENTS_H
 
@@ -8,8 +8,8 @@
 #include "sim/timing/latency.h"
 #include "sim/timing/timing.h"
 
-/* Before board_power_on(). The limits are kept by reference; trace NULL: none is written, else it stays open until
- * instruments_disconnect(). Takes the kernel's observer and the board's probes. */
+/* Before board_power_on(). The limits are kept by reference; trace NULL: none is written, else it stays open
+ * until instruments_disconnect(). Takes the kernel's observer and the board's probes. */
 void instruments_connect(const timing_limits_t *limits, int limit_count, FILE *trace);
 
 /* After the run, at its end in virtual time. Completes the trace. The figures stay until the next connect. */

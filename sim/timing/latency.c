@@ -80,7 +80,8 @@ static void follow_control(latency_t *latency, sim_time_t when, kernel_event_t e
     }
 }
 
-void latency_observe(void *context, sim_time_t when, kernel_event_t event, const kernel_job_t *job, int detail)
+void latency_observe(void *context, sim_time_t when, kernel_event_t event, const kernel_job_t *job,
+                     int detail)
 {
     latency_t *latency = context;
 

@@ -221,11 +221,12 @@ static void print_job(const timing_t *timing, const timing_job_t *job, FILE *out
     bool task = job->id.kind == KERNEL_TASK;
 
     (void)fprintf(out, "%-4s %-16s %8ld %9s %9s %9s %5ld", kind_names[job->id.kind], job->id.name, job->jobs,
-                  ms(text[0], job->longest_response), ms(text[1], job->limits.response), ms(text[2], job->limits.deadline),
-                  job->late);
+                  ms(text[0], job->longest_response), ms(text[1], job->limits.response),
+                  ms(text[2], job->limits.deadline), job->late);
     if (task) {
-        (void)fprintf(out, " %9s %9s %9s %5d %3s", ms(text[3], job->longest_wait), ms(text[4], job->longest_inversion),
-                      ms(text[5], job->limits.inversion), job->most_blockings, number(text[0], job->limits.blockings));
+        (void)fprintf(out, " %9s %9s %9s %5d %3s", ms(text[3], job->longest_wait),
+                      ms(text[4], job->longest_inversion), ms(text[5], job->limits.inversion),
+                      job->most_blockings, number(text[0], job->limits.blockings));
     } else {
         (void)fprintf(out, " %9s %9s %9s %5s %3s", "-", "-", "-", "-", "-");
     }
@@ -245,7 +246,8 @@ static void print_totals(const timing_t *timing, FILE *out)
     }
     (void)fprintf(out, "processor load: Hwis %.4f, Swis %.4f, tasks with their switches %.4f, total %.4f\n",
                   load[KERNEL_HWI], load[KERNEL_SWI], load[KERNEL_TASK], load[0] + load[1] + load[2]);
-    (void)fprintf(out, "interrupts per second: %.1f\n", timing->end > 0 ? interrupts * 1e9 / (double)timing->end : 0.0);
+    (void)fprintf(out, "interrupts per second: %.1f\n",
+                  timing->end > 0 ? interrupts * 1e9 / (double)timing->end : 0.0);
 }
 
 void timing_print(const timing_t *timing, FILE *out)
@@ -256,15 +258,17 @@ void timing_print(const timing_t *timing, FILE *out)
         sorted[i] = &timing->job[i];
     }
     qsort(sorted, (size_t)timing->jobs, sizeof sorted[0], by_precedence);
-    (void)fprintf(out, "%-4s %-16s %8s %9s %9s %9s %5s %9s %9s %9s %5s %3s %7s\n", "kind", "name", "jobs", "response",
-                  "bound", "deadline", "late", "gate wait", "inversion", "allowed", "waits", "max", "load");
+    (void)fprintf(out, "%-4s %-16s %8s %9s %9s %9s %5s %9s %9s %9s %5s %3s %7s\n", "kind", "name", "jobs",
+                  "response", "bound", "deadline", "late", "gate wait", "inversion", "allowed", "waits",
+                  "max", "load");
     for (int i = 0; i < timing->jobs; i++) {
         print_job(timing, sorted[i], out);
     }
     print_totals(timing, out);
 }
 
-static int print_time_over(FILE *out, const timing_job_t *job, const char *what, sim_time_t seen, sim_time_t limit)
+static int print_time_over(FILE *out, const timing_job_t *job, const char *what, sim_time_t seen,
+                           sim_time_t limit)
 {
     if (seen <= limit) {
         return 0;
@@ -291,8 +295,10 @@ int timing_print_broken(const timing_t *timing, FILE *out)
         const timing_job_t *job = &timing->job[i];
 
         broken += print_time_over(out, job, "response", job->longest_response, job->limits.response);
-        broken += print_time_over(out, job, "priority inversion", job->longest_inversion, job->limits.inversion);
-        broken += print_count_over(out, job, "waits at gates in one job", job->most_blockings, job->limits.blockings);
+        broken += print_time_over(out, job, "priority inversion", job->longest_inversion,
+                                  job->limits.inversion);
+        broken += print_count_over(out, job, "waits at gates in one job", job->most_blockings,
+                                   job->limits.blockings);
         broken += print_count_over(out, job, "missed deadlines", job->late, 0);
     }
     return broken;

@@ -9,8 +9,8 @@
 #define NOT_BLOCKED (-1)
 #define FREE (-1)
 
-enum { PROCESSOR = 1, JOBS, GATES, WIRES };             /* process ids of the groups */
-enum { FRAMES = 1, COMPARES, PULSES };                  /* thread ids of the wires */
+enum { PROCESSOR = 1, JOBS, GATES, WIRES }; /* process ids of the groups */
+enum { FRAMES = 1, COMPARES, PULSES };      /* thread ids of the wires */
 enum { TRACKS_PER_KIND = 1000 };
 
 /* ---- events ---- */
@@ -26,8 +26,8 @@ static void quote(trace_t *trace, const char *text)
 
 static void event(trace_t *trace, const char *phase, int group, int track, const char *name)
 {
-    (void)fprintf(trace->out, "%s\n{\"ph\":\"%s\",\"pid\":%d,\"tid\":%d,\"name\":", trace->any ? "," : "", phase, group,
-                  track);
+    (void)fprintf(trace->out, "%s\n{\"ph\":\"%s\",\"pid\":%d,\"tid\":%d,\"name\":", trace->any ? "," : "",
+                  phase, group, track);
     quote(trace, name);
     trace->any = true;
 }
@@ -59,9 +59,10 @@ static void span(trace_t *trace, int group, int track, const char *name, sim_tim
     va_end(values);
 }
 
-static void instant(trace_t *trace, int group, int track, const char *name, sim_time_t when, const char *format, ...)
-    __attribute__((format(printf, 6, 7)));
-static void instant(trace_t *trace, int group, int track, const char *name, sim_time_t when, const char *format, ...)
+static void instant(trace_t *trace, int group, int track, const char *name, sim_time_t when,
+                    const char *format, ...) __attribute__((format(printf, 6, 7)));
+static void instant(trace_t *trace, int group, int track, const char *name, sim_time_t when,
+                    const char *format, ...)
 {
     va_list values;
 
@@ -207,7 +208,8 @@ static void leave(trace_t *trace, const trace_job_t *job, int number, sim_time_t
 {
     trace_gate_t *gate = gate_of(trace, number);
 
-    span(trace, GATES, number + 1, job->id.name, gate->entered, when, "\"inherited_priority\":%d", gate->inherited);
+    span(trace, GATES, number + 1, job->id.name, gate->entered, when, "\"inherited_priority\":%d",
+         gate->inherited);
     gate->owner = FREE;
 }
 
@@ -226,7 +228,8 @@ static void change_priority(trace_t *trace, const kernel_job_t *id, int priority
     }
 }
 
-void trace_observe(void *context, sim_time_t when, kernel_event_t event_kind, const kernel_job_t *id, int detail)
+void trace_observe(void *context, sim_time_t when, kernel_event_t event_kind, const kernel_job_t *id,
+                   int detail)
 {
     trace_t *trace = context;
     trace_job_t *job = job_of(trace, id);
@@ -268,7 +271,8 @@ void trace_laser_octet(trace_t *trace, unsigned octet, double bit_ns)
     }
     trace->frame_octets++;
     if (octet == '\n' && trace->previous_octet == '\n') {
-        span(trace, WIRES, FRAMES, "frame", trace->frame_begin, timeline_now(), "\"octets\":%d", trace->frame_octets);
+        span(trace, WIRES, FRAMES, "frame", trace->frame_begin, timeline_now(), "\"octets\":%d",
+             trace->frame_octets);
         trace->frame_octets = 0;
     }
     trace->previous_octet = octet;
@@ -289,5 +293,6 @@ void trace_answer(trace_t *trace, sim_time_t scan_end, unsigned compare)
     char name[40];
 
     (void)snprintf(name, sizeof name, "compare %u", compare);
-    instant(trace, WIRES, COMPARES, name, timeline_now(), "\"after_scan_us\":%.3f", (double)(timeline_now() - scan_end) / 1e3);
+    instant(trace, WIRES, COMPARES, name, timeline_now(), "\"after_scan_us\":%.3f",
+            (double)(timeline_now() - scan_end) / 1e3);
 }

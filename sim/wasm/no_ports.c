@@ -1,4 +1,5 @@
-/* A WebAssembly machine has no ports and no signals: nothing real can be put on the wires, and nothing is paced. */
+/* A WebAssembly machine has no ports and no signals: nothing real can be put on the wires, and nothing is
+ * paced. */
 #include <fcntl.h>
 #include <limits.h>
 #include <string.h>

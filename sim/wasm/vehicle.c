@@ -12,7 +12,7 @@
 #define EXPORT(name) __attribute__((export_name(name)))
 #define ARGUMENTS_MAX 64
 #define HEARD_MAX 32768
-#define RAMP_AHEAD (6300 * SIM_MS)  /* the ramp of the seed's flight begins at 7.3 s */
+#define RAMP_AHEAD (6300 * SIM_MS) /* the ramp of the seed's flight begins at 7.3 s */
 #define STICK_MIDDLE (1500 * SIM_US)
 
 static char room[VEHICLE_ROOM];

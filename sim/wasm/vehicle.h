@@ -1,6 +1,7 @@
-/* The simulated vehicle as one WebAssembly module: what a page, or any machine that runs WebAssembly, may call. Strings
- * and results pass through one room in the module's memory. Two uses, not at the same time: vehicle_fly() flies a scenario
- * as `plomada fly` does; the others keep a vehicle alive step by step, with an operator at its radio. */
+/* The simulated vehicle as one WebAssembly module: what a page, or any machine that runs WebAssembly, may
+ * call. Strings and results pass through one room in the module's memory. Two uses, not at the same time:
+ * vehicle_fly() flies a scenario as `plomada fly` does; the others keep a vehicle alive step by step, with an
+ * operator at its radio. */
 #ifndef SIM_WASM_VEHICLE_H
 #define SIM_WASM_VEHICLE_H
 
@@ -9,8 +10,8 @@
 /* Where arguments and typed text are put, and what was heard is found. */
 char *vehicle_room(void);
 
-/* `plomada fly` with the arguments in the room, each ended by a zero, `size` octets in all; its exit status. Files and
- * standard output are the machine's, by WASI. */
+/* `plomada fly` with the arguments in the room, each ended by a zero, `size` octets in all; its exit status.
+ * Files and standard output are the machine's, by WASI. */
 int vehicle_fly(int size);
 
 /* Power on; a vehicle that is on is switched off first. What #SAVE has stored stays. */
@@ -28,9 +29,9 @@ int vehicle_heard(void);
 
 /* The truth, for pictures: valid until the next call. */
 typedef struct {
-    double time_s;          /* since power-up */
+    double time_s; /* since power-up */
     double height_m, altitude_m, terrain_m, speed_mps, thrust_n, roll_rad, pitch_rad, pulse_us;
-    double contacts;        /* with the ground, after take-off */
+    double contacts; /* with the ground, after take-off */
 } vehicle_truth_t;
 const vehicle_truth_t *vehicle_truth(void);
 

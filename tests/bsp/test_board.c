@@ -56,9 +56,7 @@ void setUp(void)
     run_until(3 * SIM_MS);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_clocks(void)
 {

@@ -1,4 +1,5 @@
-/* The order of start-up: throttle pin low first, PWM after the clocks, nothing between the clocks and the PWM. */
+/* The order of start-up: throttle pin low first, PWM after the clocks, nothing between the clocks and the
+ * PWM. */
 #include "bsp/board.h"
 #include "device.h"
 #include "mock_gpio.h"
@@ -17,9 +18,7 @@ void setUp(void)
     GlobalExpectCount = GlobalVerifyOrder = 0;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void expect_uart(SysCtl_PeripheralPCLOCKCR clock, uint32_t tx, uint32_t tx_config, uint32_t rx,
                         uint32_t rx_config)
@@ -38,7 +37,8 @@ static void expect_uart(SysCtl_PeripheralPCLOCKCR clock, uint32_t tx, uint32_t t
 /* TI's masks, device.c of C2000Ware 26.01.00.00, Device_enableUnbondedGPIOPullupsFor100Pin(). */
 static void expect_pull_ups(void)
 {
-    static const uint32_t masks[] = {0xFFC003E3U, 0x03FFF1FFU, 0xE10FBC18U, 0xFFFFFFF7U, 0xFFFFFFFFU, 0x000001FFU};
+    static const uint32_t masks[] = {0xFFC003E3U, 0x03FFF1FFU, 0xE10FBC18U,
+                                     0xFFFFFFF7U, 0xFFFFFFFFU, 0x000001FFU};
 
     for (uint32_t pin = 0; pin < 6 * 32; pin++) {
         if ((masks[pin / 32] >> pin % 32 & 1U) != 0) {

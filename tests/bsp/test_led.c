@@ -21,9 +21,7 @@ void setUp(void)
     bsp_led_init();
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_both_are_dark_after_init(void)
 {

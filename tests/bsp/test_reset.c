@@ -42,9 +42,7 @@ void setUp(void)
     bites = 0;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_after_power_on_the_cause_is_power(void)
 {

@@ -12,9 +12,7 @@ void setUp(void)
     GlobalExpectCount = GlobalVerifyOrder = 0;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void assert_cause(bsp_reset_t expected, uint32_t causes)
 {
@@ -23,7 +21,8 @@ static void assert_cause(bsp_reset_t expected, uint32_t causes)
     TEST_ASSERT_EQUAL(expected, bsp_reset_cause());
 }
 
-/* Bits of RESC: POR 1, XRS 2, WDRS 4, NMIWDRS 8, SCCRESET 100H. A watchdog sets XRS too; POR may be a note from before. */
+/* Bits of RESC: POR 1, XRS 2, WDRS 4, NMIWDRS 8, SCCRESET 100H. A watchdog sets XRS too; POR may be a note
+ * from before. */
 void test_the_most_particular_cause_is_told(void)
 {
     assert_cause(BSP_RESET_POWER, 0x3U);

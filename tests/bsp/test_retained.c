@@ -1,5 +1,5 @@
-/* Memory that outlives a reset. Its section is looked at directly: a reset, a loss of power and a flipped bit are what
- * the test makes of it. */
+/* Memory that outlives a reset. Its section is looked at directly: a reset, a loss of power and a flipped bit
+ * are what the test makes of it. */
 #include "bsp/retained.h"
 
 #include <string.h>
@@ -18,9 +18,7 @@ void setUp(void)
     (void)memset(back, 0x5A, sizeof back);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_what_is_stored_is_loaded(void)
 {
@@ -74,7 +72,8 @@ void test_a_store_that_the_reset_cut_short_is_refused(void)
     }
 }
 
-/* CRC-32 (IEEE 802.3) of the octets 6D 6F 6C 50 CD CC 4C 3D CD CC CC BD 01 00 00 80, by Python's zlib.crc32. */
+/* CRC-32 (IEEE 802.3) of the octets 6D 6F 6C 50 CD CC 4C 3D CD CC CC BD 01 00 00 80, by Python's zlib.crc32.
+ */
 void test_the_sum_is_the_crc_of_magic_and_words_from_the_lowest_octet_on(void)
 {
     bsp_retained_store(words);

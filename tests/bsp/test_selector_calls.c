@@ -12,9 +12,7 @@ void setUp(void)
     GlobalExpectCount = GlobalVerifyOrder = 0;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_init_in_its_order(void)
 {

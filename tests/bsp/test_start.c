@@ -30,9 +30,7 @@ void setUp(void)
     bsp_start();
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_every_cell_of_the_section_is_zero(void)
 {

@@ -16,9 +16,7 @@ void setUp(void)
     flash_blank();
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void fill(uint16_t *block, uint16_t from)
 {

@@ -16,9 +16,7 @@ void setUp(void)
     GlobalExpectCount = GlobalVerifyOrder = 0;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void expect_open(void)
 {
@@ -59,8 +57,8 @@ void test_cells_are_read_with_the_error_correction_off(void)
 void test_an_erasure_waits_for_the_flash_and_services_the_watchdog_meanwhile(void)
 {
     expect_open();
-    Fapi_issueAsyncCommandWithAddress_ExpectAndReturn(Fapi_EraseSector, (uint32 *)(void *)flash_sectors_m_n[1],
-                                                      Fapi_Status_Success);
+    Fapi_issueAsyncCommandWithAddress_ExpectAndReturn(
+        Fapi_EraseSector, (uint32 *)(void *)flash_sectors_m_n[1], Fapi_Status_Success);
     expect_wait(3U);
     Fapi_getFsmStatus_ExpectAndReturn(0U);
     expect_close();
@@ -70,8 +68,8 @@ void test_an_erasure_waits_for_the_flash_and_services_the_watchdog_meanwhile(voi
 void test_a_status_other_than_zero_is_a_fault(void)
 {
     expect_open();
-    Fapi_issueAsyncCommandWithAddress_ExpectAndReturn(Fapi_EraseSector, (uint32 *)(void *)flash_sectors_m_n[0],
-                                                      Fapi_Status_Success);
+    Fapi_issueAsyncCommandWithAddress_ExpectAndReturn(
+        Fapi_EraseSector, (uint32 *)(void *)flash_sectors_m_n[0], Fapi_Status_Success);
     expect_wait(1U);
     Fapi_getFsmStatus_ExpectAndReturn(0x10U);
     expect_close();
@@ -83,8 +81,9 @@ void test_a_block_is_programmed_with_its_error_correction(void)
     const uint16_t cells[BSP_STORAGE_BLOCK] = {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U};
 
     expect_open();
-    Fapi_issueProgrammingCommand_ExpectAndReturn((uint32 *)(void *)&flash_sectors_m_n[0][16], (uint16 *)(uintptr_t)cells, 8U,
-                                                 NULL, 0U, Fapi_AutoEccGeneration, Fapi_Status_Success);
+    Fapi_issueProgrammingCommand_ExpectAndReturn((uint32 *)(void *)&flash_sectors_m_n[0][16],
+                                                 (uint16 *)(uintptr_t)cells, 8U, NULL, 0U,
+                                                 Fapi_AutoEccGeneration, Fapi_Status_Success);
     Fapi_issueProgrammingCommand_IgnoreArg_pu16DataBuffer();
     expect_wait(2U);
     Fapi_getFsmStatus_ExpectAndReturn(0U);

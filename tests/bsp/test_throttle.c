@@ -58,15 +58,14 @@ void setUp(void)
     bsp_throttle_init();
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_registers_are_those_of_the_seed(void)
 {
     TEST_ASSERT_EQUAL_UINT32(28332, chip_register("EPWM2.TBPRD"));
     TEST_ASSERT_EQUAL_UINT32(4166, chip_register("EPWM2.CMPA"));
-    /* free run, CLKDIV /8, HSPCLKDIV /6, period shadowed, up-count: TI's code on simulated registers gives the same */
+    /* free run, CLKDIV /8, HSPCLKDIV /6, period shadowed, up-count: TI's code on simulated registers gives
+     * the same */
     TEST_ASSERT_EQUAL_HEX32(0x8D80, chip_register("EPWM2.TBCTL"));
     TEST_ASSERT_EQUAL_HEX32(0x0012, chip_register("EPWM2.AQCTLA"));
     TEST_ASSERT_EQUAL_HEX32(0x0000, chip_register("EPWM2.CMPCTL")); /* shadowed, loaded at zero */
@@ -139,8 +138,9 @@ void test_what_is_no_number_or_out_of_range_ends_at_the_ends(void)
     static const struct {
         float pulse_us;
         uint32_t compare;
-    } CASES[] = {{1999.68F, 4166}, {1999.45F, 4166}, {1999.43F, 4165}, {2000.0F, 4166}, {1e30F, 4166}, {INFINITY, 4166},
-                 {NAN, 4166}, {-NAN, 4166}, {999.36F, 2082}, {999.0F, 2082}, {0.0F, 2082}, {-1e30F, 2082}};
+    } CASES[] = {{1999.68F, 4166}, {1999.45F, 4166}, {1999.43F, 4165}, {2000.0F, 4166},
+                 {1e30F, 4166},    {INFINITY, 4166}, {NAN, 4166},      {-NAN, 4166},
+                 {999.36F, 2082},  {999.0F, 2082},   {0.0F, 2082},     {-1e30F, 2082}};
     for (unsigned i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         bsp_throttle_set_pulse_us(1500.0F);
         bsp_throttle_set_pulse_us(CASES[i].pulse_us);
@@ -156,7 +156,8 @@ void test_without_crystal_the_idle_pulse_is_never_under_two_milliseconds(void)
     run_until(100 * SIM_MS);
     TEST_ASSERT_EQUAL_UINT(8, pulse_count);
     for (unsigned i = 0; i < pulse_count; i++) {
-        TEST_ASSERT_EQUAL_INT64(2060 * SIM_US, pulses[i]); /* the oscillator is good for 3 %: 2.00 .. 2.12 ms */
+        TEST_ASSERT_EQUAL_INT64(2060 * SIM_US,
+                                pulses[i]); /* the oscillator is good for 3 %: 2.00 .. 2.12 ms */
         TEST_ASSERT_EQUAL_INT64(2060 * SIM_US + 13600 * SIM_US * (sim_time_t)i, ends[i]);
     }
 }

@@ -1,4 +1,5 @@
-/* Order of the calls: time base under a closed clock gate, values before the pin is handed over, the gate last. */
+/* Order of the calls: time base under a closed clock gate, values before the pin is handed over, the gate
+ * last. */
 #include "device.h"
 #include "mock_epwm.h"
 #include "mock_gpio.h"
@@ -14,9 +15,7 @@ void setUp(void)
     GlobalExpectCount = GlobalVerifyOrder = 0;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void expect_compare(uint16_t counts)
 {
@@ -41,7 +40,8 @@ static void expect_init(uint32_t sysclk_hz, SysCtl_EPWMCLKDivider clock, EPWM_Cl
     EPWM_setTimeBaseCounter_Expect(EPWM2_BASE, 0);
     EPWM_disableCounterCompareShadowLoadMode_Expect(EPWM2_BASE, EPWM_COUNTER_COMPARE_A);
     expect_compare(idle);
-    EPWM_setCounterCompareShadowLoadMode_Expect(EPWM2_BASE, EPWM_COUNTER_COMPARE_A, EPWM_COMP_LOAD_ON_CNTR_ZERO);
+    EPWM_setCounterCompareShadowLoadMode_Expect(EPWM2_BASE, EPWM_COUNTER_COMPARE_A,
+                                                EPWM_COMP_LOAD_ON_CNTR_ZERO);
     expect_compare(idle);
     EPWM_setActionQualifierAction_Expect(EPWM2_BASE, EPWM_AQ_OUTPUT_A, EPWM_AQ_OUTPUT_HIGH,
                                          EPWM_AQ_OUTPUT_ON_TIMEBASE_ZERO);

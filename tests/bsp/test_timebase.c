@@ -20,9 +20,7 @@ void setUp(void)
     bsp_time_init();
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void after(sim_time_t delay)
 {

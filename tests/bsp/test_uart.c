@@ -68,9 +68,7 @@ void setUp(void)
     }
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static double bit_of(uint32_t rate)
 {
@@ -110,9 +108,10 @@ void test_each_uart_is_its_own_sci(void)
     TEST_ASSERT_EQUAL_UINT32(108, chip_register("SCIA.BRR"));
     TEST_ASSERT_EQUAL_UINT32(216, chip_register("SCIB.BRR"));
     TEST_ASSERT_EQUAL_UINT32(1301, chip_register("SCIC.BRR"));
-    TEST_ASSERT_EQUAL_HEX32(0x07, chip_register("SCIA.CCR")); /* 8N1 */
+    TEST_ASSERT_EQUAL_HEX32(0x07, chip_register("SCIA.CCR"));  /* 8N1 */
     TEST_ASSERT_EQUAL_HEX32(0x63, chip_register("SCIA.CTL1")); /* running, receive-error interrupt on */
-    TEST_ASSERT_EQUAL_HEX32(0x2021, chip_register("SCIA.FFRX")); /* interrupt on at one octet, nothing pending */
+    TEST_ASSERT_EQUAL_HEX32(0x2021,
+                            chip_register("SCIA.FFRX")); /* interrupt on at one octet, nothing pending */
     TEST_ASSERT_EQUAL_HEX32(0xE080, chip_register("SCIA.FFTX")); /* FIFOs on, interrupt at empty but off */
 }
 
@@ -245,7 +244,8 @@ void test_a_framing_error_costs_no_good_octet(void)
     TEST_ASSERT_FALSE(burst.framing);
 }
 
-/* The break is detected 10 bits after its only octet was read: without the error interrupt nobody would look again. */
+/* The break is detected 10 bits after its only octet was read: without the error interrupt nobody would look
+ * again. */
 void test_a_break_is_noticed_after_its_octet_was_read_and_reception_goes_on(void)
 {
     bsp_uart_open(BSP_UART_LASER, 115200);
@@ -345,7 +345,8 @@ void test_what_fits_is_taken_and_leaves_in_order_with_eight_bits(void)
         octets[i] = (uint16_t)(0xAB00U + i * 7);
     }
     bsp_uart_open(BSP_UART_XBEE, 9600);
-    TEST_ASSERT_EQUAL_UINT16(17, bsp_uart_transmit(BSP_UART_XBEE, octets, 40)); /* one goes straight to the wire */
+    TEST_ASSERT_EQUAL_UINT16(
+        17, bsp_uart_transmit(BSP_UART_XBEE, octets, 40)); /* one goes straight to the wire */
     TEST_ASSERT_EQUAL_UINT16(0, bsp_uart_transmit(BSP_UART_XBEE, octets + 17, 23));
     run_for(SIM_S);
     TEST_ASSERT_EQUAL_UINT(17, sent_count);

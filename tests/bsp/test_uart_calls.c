@@ -15,9 +15,7 @@ void setUp(void)
     GlobalExpectCount = GlobalVerifyOrder = 0;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_open_sets_rate_then_fifos_then_resets_and_enables_interrupts_last(void)
 {

@@ -41,9 +41,7 @@ void setUp(void)
     bites = 0;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_before_the_start_it_never_bites(void)
 {

@@ -12,9 +12,7 @@ void setUp(void)
     GlobalExpectCount = GlobalVerifyOrder = 0;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 /* The prescaler before the start, and a service so that the first period is whole. */
 void test_the_start(void)

@@ -1,6 +1,6 @@
-/* The private plant with what makes it hard: turbulence, noise of scanner and accelerometer, attitude motion. Frames of
- * the IMU come every 25 ms, their content 23.6 ms old; heights come 70.5 ms after their rays. Everything that
- * flight_step() wants of them is filled into its inputs. */
+/* The private plant with what makes it hard: turbulence, noise of scanner and accelerometer, attitude motion.
+ * Frames of the IMU come every 25 ms, their content 23.6 ms old; heights come 70.5 ms after their rays.
+ * Everything that flight_step() wants of them is filled into its inputs. */
 #ifndef TESTS_CONTROL_NOISY_PLANT_H
 #define TESTS_CONTROL_NOISY_PLANT_H
 
@@ -18,22 +18,22 @@
 typedef struct {
     plant_t body;
     uint32_t random;
-    double turbulence_m_s2;         /* rms, correlation time 0.5 s */
+    double turbulence_m_s2; /* rms, correlation time 0.5 s */
     double gust_m_s2;
     double acceleration_noise_m_s2;
     double acceleration_bias_m_s2;
     double height_noise_mm;
-    double tilt_rad;                /* amplitude of roll, 0.6 Hz */
-    double fallen_rad;              /* added to the roll that the IMU tells */
-    double glitch;                  /* probability of a height 350 mm off */
+    double tilt_rad;   /* amplitude of roll, 0.6 Hz */
+    double fallen_rad; /* added to the roll that the IMU tells */
+    double glitch;     /* probability of a height 350 mm off */
     bool imu_mute;
     bool no_acceleration;
     imu_sample_t frames[NOISY_FRAMES];
     uint16_t frame_count;
-    double felt_m_s2[48];           /* accelerations of the latest steps, for the age of a frame */
+    double felt_m_s2[48]; /* accelerations of the latest steps, for the age of a frame */
     double before_m_s;
     uint32_t steps;
-    bool released;                  /* a frame or a height came in the latest step */
+    bool released; /* a frame or a height came in the latest step */
 } noisy_t;
 
 static inline double noisy_uniform(noisy_t *n)
@@ -97,9 +97,11 @@ static inline void noisy_height(noisy_t *n, flight_inputs_t *in, uint32_t clock_
 
     range.slant_mm = (float)(105.0 + (n->body.seen_mm + wrong_mm + 100.0 + 220.0 * sin(roll)) / cos(roll) +
                              n->height_noise_mm * noisy_gauss(n));
-    in->altitude = altitude_from_ranges(&geometry, &range, 1, n->frames[NOISY_FRAMES - 1U].median.roll_rad, 0.0F);
+    in->altitude = altitude_from_ranges(&geometry, &range, 1, n->frames[NOISY_FRAMES - 1U].median.roll_rad,
+                                        0.0F);
     in->height_valid = true;
-    in->height_time_us = n->body.time_us - 2000U + clock_us; /* the plant's height comes 2 ms after its last octet */
+    in->height_time_us = n->body.time_us - 2000U +
+                         clock_us; /* the plant's height comes 2 ms after its last octet */
     in->height_age_us = 70500U;
     in->height_stamp_ms = ((n->body.time_us - 106500U) / 1000U + 77U) & 0xFFFFFFU;
     in->height_sequence++;

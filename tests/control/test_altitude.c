@@ -16,7 +16,7 @@ void setUp(void)
 void tearDown(void) {}
 
 typedef struct {
-    double x, y, z;     /* fore, mirror's side, up */
+    double x, y, z; /* fore, mirror's side, up */
 } vector_t;
 
 /* Body to world: roll about the fore axis (mirror's side up), then pitch about the lateral one (nose up). */
@@ -29,8 +29,8 @@ static vector_t turned(vector_t b, double roll, double pitch)
 }
 
 /* Where the seed's Annex III puts the mirrors: the sensor on the lateral axis 115 mm from the centre, looking
- * outwards; the front mirror 105 mm further out, mirror 2 (d 107, l 105) to the sensor's left, which is fore, mirror 1
- * (d 115, l 98) to its right. Origin: gear's lowest level under the vehicle's centre. */
+ * outwards; the front mirror 105 mm further out, mirror 2 (d 107, l 105) to the sensor's left, which is fore,
+ * mirror 1 (d 115, l 98) to its right. Origin: gear's lowest level under the vehicle's centre. */
 typedef struct {
     mirror_t mirror;
     vector_t reflection;
@@ -42,7 +42,8 @@ static const place_t places[] = {
     {MIRROR_AFT, {-115.0, 115.0, 98.0}},
 };
 
-/* Length of the ray sensor - mirror - flat ground, with the origin of the vehicle height_mm above the ground. */
+/* Length of the ray sensor - mirror - flat ground, with the origin of the vehicle height_mm above the ground.
+ */
 static double ray_from_mm(double sensor_mm, const place_t *place, double height_mm, double roll, double pitch)
 {
     const vector_t sensor = {0.0, sensor_mm, place->reflection.z};
@@ -60,14 +61,18 @@ static double ray_mm(const place_t *place, double height_mm, double roll, double
 /* What the seed's formula leaves out: cos(pitch) on L sin(roll), cos(pitch) cos(roll) on l. */
 static double seeds_error_mm(const place_t *place, double roll, double pitch)
 {
-    return -place->reflection.y * sin(roll) * (1.0 - cos(pitch)) - place->reflection.z * (1.0 - cos(roll) * cos(pitch));
+    return -place->reflection.y * sin(roll) * (1.0 - cos(pitch)) -
+           place->reflection.z * (1.0 - cos(roll) * cos(pitch));
 }
 
 void test_level_heights_are_slant_less_distance_less_leg(void)
 {
-    TEST_ASSERT_FLOAT_WITHIN(0.001F, 600.0F, altitude_under_mirror(&geometry.mirror[MIRROR_FRONT], 805.0F, 0.0F, 0.0F));
-    TEST_ASSERT_FLOAT_WITHIN(0.001F, 600.0F, altitude_under_mirror(&geometry.mirror[MIRROR_FORE], 812.0F, 0.0F, 0.0F));
-    TEST_ASSERT_FLOAT_WITHIN(0.001F, 600.0F, altitude_under_mirror(&geometry.mirror[MIRROR_AFT], 813.0F, 0.0F, 0.0F));
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 600.0F,
+                             altitude_under_mirror(&geometry.mirror[MIRROR_FRONT], 805.0F, 0.0F, 0.0F));
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 600.0F,
+                             altitude_under_mirror(&geometry.mirror[MIRROR_FORE], 812.0F, 0.0F, 0.0F));
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 600.0F,
+                             altitude_under_mirror(&geometry.mirror[MIRROR_AFT], 813.0F, 0.0F, 0.0F));
 }
 
 /* Seed document eq. 31 by hand: 1000 mm, roll 10, pitch 5 degrees:
@@ -75,8 +80,8 @@ void test_level_heights_are_slant_less_distance_less_leg(void)
 void test_equation_31_by_hand(void)
 {
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 739.85F,
-                             altitude_under_mirror(&geometry.mirror[MIRROR_FRONT], 1000.0F, (float)(10.0 * DEGREE),
-                                                   (float)(5.0 * DEGREE)));
+                             altitude_under_mirror(&geometry.mirror[MIRROR_FRONT], 1000.0F,
+                                                   (float)(10.0 * DEGREE), (float)(5.0 * DEGREE)));
 }
 
 void test_every_mirror_agrees_with_a_ray_model_but_for_the_seeds_two_cosines(void)
@@ -87,10 +92,11 @@ void test_every_mirror_agrees_with_a_ray_model_but_for_the_seeds_two_cosines(voi
                 for (int height = 0; height <= 3000; height += 500) {
                     const double r = roll * DEGREE, p = pitch * DEGREE;
                     const float slant_mm = (float)ray_mm(&places[i], height, r, p);
-                    const float found_mm =
-                        altitude_under_mirror(&geometry.mirror[places[i].mirror], slant_mm, (float)r, (float)p);
+                    const float found_mm = altitude_under_mirror(&geometry.mirror[places[i].mirror], slant_mm,
+                                                                 (float)r, (float)p);
                     char where[64];
-                    snprintf(where, sizeof where, "mirror %u roll %d pitch %d height %d", i, roll, pitch, height);
+                    snprintf(where, sizeof where, "mirror %u roll %d pitch %d height %d", i, roll, pitch,
+                             height);
                     const float expected_mm = (float)(height + seeds_error_mm(&places[i], r, p));
                     TEST_ASSERT_FLOAT_WITHIN_MESSAGE(0.01F, expected_mm, found_mm, where);
                 }
@@ -99,13 +105,14 @@ void test_every_mirror_agrees_with_a_ray_model_but_for_the_seeds_two_cosines(voi
     }
 }
 
-/* A vehicle of other measures: each of the seven parameters is another, and acts where the ray model has it. */
+/* A vehicle of other measures: each of the seven parameters is another, and acts where the ray model has it.
+ */
 void test_another_bracket_agrees_with_its_ray_model_by_its_seven_parameters(void)
 {
     static const place_t other[] = {
-        {MIRROR_FRONT, {0.0, 310.0, 80.0}},     /* DF 90, LF 80, L 310; the sensor at 220 */
-        {MIRROR_FORE, {96.0, 220.0, 121.0}},    /* D2 96, L2 121 */
-        {MIRROR_AFT, {-131.0, 220.0, 70.0}},    /* D1 131, L1 70 */
+        {MIRROR_FRONT, {0.0, 310.0, 80.0}},  /* DF 90, LF 80, L 310; the sensor at 220 */
+        {MIRROR_FORE, {96.0, 220.0, 121.0}}, /* D2 96, L2 121 */
+        {MIRROR_AFT, {-131.0, 220.0, 70.0}}, /* D1 131, L1 70 */
     };
     parameters_t parameters;
 
@@ -142,8 +149,8 @@ void test_the_formula_is_within_the_documented_millimetres_up_to_ten_degrees(voi
             for (int pitch = -10; pitch <= 10; pitch++) {
                 const double r = roll * DEGREE, p = pitch * DEGREE;
                 const float slant_mm = (float)ray_mm(&places[i], 600.0, r, p);
-                const float found_mm =
-                    altitude_under_mirror(&geometry.mirror[places[i].mirror], slant_mm, (float)r, (float)p);
+                const float found_mm = altitude_under_mirror(&geometry.mirror[places[i].mirror], slant_mm,
+                                                             (float)r, (float)p);
                 const double off = fabs((double)found_mm - 600.0);
                 worst_both = fmax(worst_both, off);
                 worst_one = fmax(worst_one, (roll == 0 || pitch == 0) ? off : 0.0);
@@ -160,7 +167,8 @@ void test_a_missing_correction_would_show(void)
     for (unsigned i = 0; i < sizeof places / sizeof places[0]; i++) {
         const double pitch = (places[i].reflection.x < 0.0 ? -5.0 : 5.0) * DEGREE;
         const float slant_mm = (float)ray_mm(&places[i], 600.0, roll, pitch);
-        const float level_mm = altitude_under_mirror(&geometry.mirror[places[i].mirror], slant_mm, 0.0F, 0.0F);
+        const float level_mm = altitude_under_mirror(&geometry.mirror[places[i].mirror], slant_mm, 0.0F,
+                                                     0.0F);
         TEST_ASSERT_TRUE(fabsf(level_mm - 600.0F) > 5.0F);
     }
 }
@@ -168,7 +176,8 @@ void test_a_missing_correction_would_show(void)
 void test_roll_up_on_the_mirrors_side_lengthens_the_ray(void)
 {
     TEST_ASSERT_TRUE(ray_mm(&places[0], 600.0, 0.1, 0.0) > 805.0 + 15.0);
-    TEST_ASSERT_TRUE(altitude_under_mirror(&geometry.mirror[MIRROR_FRONT], 805.0F, 0.1F, 0.0F) < 600.0F - 15.0F);
+    TEST_ASSERT_TRUE(altitude_under_mirror(&geometry.mirror[MIRROR_FRONT], 805.0F, 0.1F, 0.0F) <
+                     600.0F - 15.0F);
 }
 
 void test_nose_up_lengthens_the_fore_ray_and_shortens_the_aft_one(void)
@@ -179,7 +188,8 @@ void test_nose_up_lengthens_the_fore_ray_and_shortens_the_aft_one(void)
 
 static mirror_range_t range_at(const place_t *place, double height_mm, double roll, double pitch)
 {
-    const mirror_range_t range = {place->mirror, true, (float)ray_mm(place, height_mm, roll, pitch), 4.0F, 35U};
+    const mirror_range_t range = {place->mirror, true, (float)ray_mm(place, height_mm, roll, pitch), 4.0F,
+                                  35U};
     return range;
 }
 
@@ -228,14 +238,14 @@ void test_only_valid_groups_count(void)
 void test_disagreement_is_more_than_50_mm_between_any_two(void)
 {
     mirror_range_t ranges[] = {
-        {MIRROR_FRONT, true, 505.0F, 1.0F, 35U},    /* 300 */
-        {MIRROR_FORE, true, 512.0F, 1.0F, 35U},     /* 300 */
-        {MIRROR_AFT, true, 562.5F, 1.0F, 35U},      /* 349.5 */
+        {MIRROR_FRONT, true, 505.0F, 1.0F, 35U}, /* 300 */
+        {MIRROR_FORE, true, 512.0F, 1.0F, 35U},  /* 300 */
+        {MIRROR_AFT, true, 562.5F, 1.0F, 35U},   /* 349.5 */
     };
     TEST_ASSERT_FALSE(altitude_from_ranges(&geometry, ranges, 3, 0.0F, 0.0F).disagree);
-    ranges[2].slant_mm = 563.5F;                    /* 350.5 */
+    ranges[2].slant_mm = 563.5F; /* 350.5 */
     TEST_ASSERT_TRUE(altitude_from_ranges(&geometry, ranges, 3, 0.0F, 0.0F).disagree);
-    ranges[2].slant_mm = 462.5F;                    /* 249.5 */
+    ranges[2].slant_mm = 462.5F; /* 249.5 */
     TEST_ASSERT_TRUE(altitude_from_ranges(&geometry, ranges, 3, 0.0F, 0.0F).disagree);
     ranges[2].valid = false;
     TEST_ASSERT_FALSE(altitude_from_ranges(&geometry, ranges, 3, 0.0F, 0.0F).disagree);
@@ -251,7 +261,8 @@ void test_one_group_never_disagrees_even_far_below_zero(void)
 
 void test_no_valid_group_is_no_height_and_zeros(void)
 {
-    const mirror_range_t ranges[] = {{MIRROR_FRONT, false, 805.0F, 4.0F, 35U}, {MIRROR_FORE, false, 805.0F, 4.0F, 35U}};
+    const mirror_range_t ranges[] = {{MIRROR_FRONT, false, 805.0F, 4.0F, 35U},
+                                     {MIRROR_FORE, false, 805.0F, 4.0F, 35U}};
     for (size_t count = 0; count <= 2; count++) {
         const altitude_t altitude = altitude_from_ranges(&geometry, ranges, count, 0.1F, 0.1F);
         TEST_ASSERT_FALSE(altitude.valid);

@@ -67,8 +67,8 @@ void test_a_wish_in_the_air_comes_to_nothing(void)
 
 void test_a_whole_flight_keeps_it_armed_for_the_next(void)
 {
-    static const flight_state_t flight[] = {FLIGHT_TAKEOFF, FLIGHT_FLYING, FLIGHT_COASTING, FLIGHT_LOWERING, FLIGHT_LANDING,
-                                            FLIGHT_GROUND, FLIGHT_TAKEOFF};
+    static const flight_state_t flight[] = {FLIGHT_TAKEOFF, FLIGHT_FLYING, FLIGHT_COASTING, FLIGHT_LOWERING,
+                                            FLIGHT_LANDING, FLIGHT_GROUND, FLIGHT_TAKEOFF};
 
     wish(true);
     for (uint16_t i = 0; i < sizeof flight / sizeof flight[0]; i++) {

@@ -12,7 +12,7 @@ static calibration_t calibration;
 static calibration_request_t request;
 static flight_inputs_t in;
 static flight_outputs_t out;
-static flight_outputs_t flown;      /* what the flight logic wants */
+static flight_outputs_t flown; /* what the flight logic wants */
 static float link_s;
 
 void setUp(void)
@@ -21,7 +21,7 @@ void setUp(void)
     memset(&request, 0, sizeof request);
     memset(&in, 0, sizeof in);
     memset(&flown, 0, sizeof flown);
-    in.now_us = 4294000000U;        /* wraps within a second */
+    in.now_us = 4294000000U; /* wraps within a second */
     in.height_valid = true;
     in.altitude.height_mm = 4.0F;
     flown.state = FLIGHT_GROUND;
@@ -29,9 +29,7 @@ void setUp(void)
     link_s = LINK_S;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void cycle(void)
 {
@@ -83,7 +81,7 @@ void test_every_five_seconds_the_compare_value_is_thirty_counts_lower(void)
         TEST_ASSERT_EQUAL_UINT16(4166U - 30U * k, calibration.compare_counts);
         TEST_ASSERT_FLOAT_WITHIN(0.001F, (float)(30U * k) / 177.21F, out.thrust_n);
         TEST_ASSERT_FLOAT_WITHIN(0.01F, (float)(4166U - 30U * k) * 0.48F, out.pulse_us);
-        for (int i = 0; i < 46; i++) {      /* 46 cycles of 108 ms are 4.97 s, the 47th is after 5.08 s */
+        for (int i = 0; i < 46; i++) { /* 46 cycles of 108 ms are 4.97 s, the 47th is after 5.08 s */
             TEST_ASSERT_EQUAL_UINT16(k, calibration.steps);
             cycle();
         }
@@ -124,21 +122,36 @@ void test_a_stop_ends_it_in_its_cycle_and_a_stop_without_a_run_is_nothing(void)
 void test_each_reason_ends_it_at_once_and_for_good(void)
 {
     for (int reason = 0; reason < 7; reason++) {
-        static const calibration_end_t ends[] = {CALIBRATION_LINK,   CALIBRATION_LINK,  CALIBRATION_LIFTED, CALIBRATION_LIFTED,
-                                                 CALIBRATION_LIFTED, CALIBRATION_STATE, CALIBRATION_STATE};
+        static const calibration_end_t ends[] = {CALIBRATION_LINK,   CALIBRATION_LINK,   CALIBRATION_LIFTED,
+                                                 CALIBRATION_LIFTED, CALIBRATION_LIFTED, CALIBRATION_STATE,
+                                                 CALIBRATION_STATE};
 
         setUp();
         start();
         cycle();
         TEST_ASSERT_TRUE(out.thrust_n > 0.0F);
         switch (reason) {
-        case 0: flown.flags = FLIGHT_FLAG_LINK; break;
-        case 1: link_s = 0.0F; break;
-        case 2: in.altitude.height_mm = 101.0F; break;
-        case 3: in.height_valid = false; break;
-        case 4: flown.flags = FLIGHT_FLAG_HEIGHT; break;
-        case 5: flown.state = FLIGHT_FLOATING; break;
-        default: flown.reference_m = 0.5F; break;
+        case 0:
+            flown.flags = FLIGHT_FLAG_LINK;
+            break;
+        case 1:
+            link_s = 0.0F;
+            break;
+        case 2:
+            in.altitude.height_mm = 101.0F;
+            break;
+        case 3:
+            in.height_valid = false;
+            break;
+        case 4:
+            flown.flags = FLIGHT_FLAG_HEIGHT;
+            break;
+        case 5:
+            flown.state = FLIGHT_FLOATING;
+            break;
+        default:
+            flown.reference_m = 0.5F;
+            break;
         }
         cycle();
         TEST_ASSERT_EQUAL(ends[reason], calibration.end);

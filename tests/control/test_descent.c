@@ -16,7 +16,8 @@ void tearDown(void) {}
 /* D v / g of the hover thrust: 2.4 * 0.3 / 9.81 = 7.3 %. */
 void test_at_the_wanted_rate_the_thrust_is_seven_per_cent_below_hover(void)
 {
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, 7.0F * (1.0F - 0.0734F), descent_step(&descent, 7.0F, 2000.0F, -300.0F, 0.1F));
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 7.0F * (1.0F - 0.0734F),
+                             descent_step(&descent, 7.0F, 2000.0F, -300.0F, 0.1F));
     TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.0F, descent.trim_n);
 }
 
@@ -81,7 +82,8 @@ void test_a_climb_is_braked_three_times_as_hard_beyond_a_metre_per_second_of_err
 {
     const float right_n = descent_step(&descent, 7.0F, 2000.0F, -300.0F, 0.0F);
     TEST_ASSERT_FLOAT_WITHIN(0.001F, right_n - 2.0F, descent_step(&descent, 7.0F, 2000.0F, 700.0F, 0.0F));
-    TEST_ASSERT_FLOAT_WITHIN(0.001F, right_n - 2.0F - 0.6F, descent_step(&descent, 7.0F, 2000.0F, 800.0F, 0.0F));
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, right_n - 2.0F - 0.6F,
+                             descent_step(&descent, 7.0F, 2000.0F, 800.0F, 0.0F));
     TEST_ASSERT_FLOAT_WITHIN(0.001F, 1.75F, descent_step(&descent, 7.0F, 2000.0F, 3000.0F, 0.0F));
     TEST_ASSERT_FLOAT_WITHIN(0.001F, 10.0F * (1.0F - 0.073F) - 5.0F,
                              descent_step(&descent, 10.0F, 2000.0F, 3000.0F, 0.0F));

@@ -186,7 +186,8 @@ void test_without_feed_forward_it_does_not_lift_and_stays_in_takeoff(void)
 
 /* ---- the seed's flights */
 
-/* The study of the seed's law on this plant with noise: RMS 73 mm, rise 1.03 s, overshoot 33 %, no contact. */
+/* The study of the seed's law on this plant with noise: RMS 73 mm, rise 1.03 s, overshoot 33 %, no contact.
+ */
 void test_the_seeds_pid_at_40_cm_is_a_limit_cycle(void)
 {
     for (uint32_t phase_us = 0; phase_us < 108000U; phase_us += 13500U) {
@@ -767,7 +768,9 @@ static void any_height(bool flown)
     if (any(10) < 9) {
         in.height_sequence++;
         in.height_time_us = in.now_us - any(120000);
-        in.altitude.height_mm = any(20) == 0 ? wrong[any(6)] : flown ? 300.0F + (float)any(900) : (float)any(4100) - 100.0F;
+        in.altitude.height_mm = any(20) == 0 ? wrong[any(6)]
+                                : flown      ? 300.0F + (float)any(900)
+                                             : (float)any(4100) - 100.0F;
     }
 }
 
@@ -781,7 +784,8 @@ static void any_command(void)
         const parameter_id_t id = (parameter_id_t)any(PARAMETER_COUNT);
         const parameter_row_t *row = &parameter_table[id];
         const float share = (float)any(1001) / 1000.0F;
-        const float value = row->choices != NULL ? (float)any((uint32_t)row->maximum + 1U) : share * row->maximum;
+        const float value = row->choices != NULL ? (float)any((uint32_t)row->maximum + 1U)
+                                                 : share * row->maximum;
         (void)parameters_set(&parameters, id, value);
     }
     if (any(30) == 0) {
@@ -810,15 +814,16 @@ void test_random_inputs_never_leave_the_actuators_range(void)
         flight_step(&flight, &parameters, &in, &out);
         TEST_ASSERT_TRUE(out.thrust_n >= 0.0F && out.thrust_n <= THRUST_MAX_N);
         TEST_ASSERT_EQUAL_FLOAT(thrust_to_pulse_us(out.thrust_n), out.pulse_us);
-        TEST_ASSERT_TRUE(isfinite(flight.hover_n) && isfinite(flight.transfer_n) && isfinite(flight.pid.integral_n));
+        TEST_ASSERT_TRUE(isfinite(flight.hover_n) && isfinite(flight.transfer_n) &&
+                         isfinite(flight.pid.integral_n));
         TEST_ASSERT_TRUE(out.state != FLIGHT_GROUND || out.thrust_n == 0.0F);
         seen |= 1U << out.state;
     }
     TEST_ASSERT_EQUAL_UINT32((1U << FLIGHT_STATE_COUNT) - 1U, seen);
 }
 
-/* With the seed's window the law itself never asks for less than GRAV; nothing else may cut the thrust either. Gaps are
- * too short here for the fade of a descent without a height to come near its end. */
+/* With the seed's window the law itself never asks for less than GRAV; nothing else may cut the thrust
+ * either. Gaps are too short here for the fade of a descent without a height to come near its end. */
 void test_with_the_seeds_parameters_the_thrust_is_never_cut_off_the_ground(void)
 {
     int landings = 0;

@@ -11,8 +11,9 @@ void setUp(void) {}
 void tearDown(void) {}
 
 static const char *const condition_names[] = {
-    "REFERENCE", "READY", "HEIGHT", "LOST", "OFF_GROUND", "ALOFT", "AT_REST", "TOO_HIGH", "RECOVERED", "LAND",
-    "DESCENT_TIMEOUT", "TILTED", "LEVEL", "LOWERING_LIMIT", "HAS_THROTTLE", "HANDED_OVER",
+    "REFERENCE", "READY",          "HEIGHT",       "LOST",        "OFF_GROUND",      "ALOFT",
+    "AT_REST",   "TOO_HIGH",       "RECOVERED",    "LAND",        "DESCENT_TIMEOUT", "TILTED",
+    "LEVEL",     "LOWERING_LIMIT", "HAS_THROTTLE", "HANDED_OVER",
 };
 #define CONDITION_COUNT (sizeof condition_names / sizeof condition_names[0])
 
@@ -22,8 +23,8 @@ static void row_text(const flight_transition_t *row, char *text, size_t size)
     for (unsigned i = 0; i < CONDITION_COUNT; i++) {
         const unsigned mask = 1U << i;
         if (((row->all_of | row->none_of) & mask) != 0U) {
-            used += (size_t)snprintf(text + used, size - used, " %s%s", (row->none_of & mask) != 0U ? "!" : "",
-                                     condition_names[i]);
+            used += (size_t)snprintf(text + used, size - used, " %s%s",
+                                     (row->none_of & mask) != 0U ? "!" : "", condition_names[i]);
         }
     }
     snprintf(text + used, size - used, " | %s |\n", flight_state_name(row->to));
@@ -102,9 +103,15 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
         }
         return height ? FLIGHT_FLYING : (c & FLIGHT_IF_LOST) ? FLIGHT_DESCENDING : from;
     case FLIGHT_DESCENDING:
-        return go ? FLIGHT_FLYING : height ? FLIGHT_LANDING : (c & (FLIGHT_IF_DESCENT_TIMEOUT | FLIGHT_IF_AT_REST)) ? FLIGHT_GROUND : from;
+        return go                                                      ? FLIGHT_FLYING
+               : height                                                ? FLIGHT_LANDING
+               : (c & (FLIGHT_IF_DESCENT_TIMEOUT | FLIGHT_IF_AT_REST)) ? FLIGHT_GROUND
+                                                                       : from;
     case FLIGHT_LANDING:
-        return go ? FLIGHT_FLYING : !height ? FLIGHT_DESCENDING : (c & FLIGHT_IF_AT_REST) ? FLIGHT_GROUND : from;
+        return go                        ? FLIGHT_FLYING
+               : !height                 ? FLIGHT_DESCENDING
+               : (c & FLIGHT_IF_AT_REST) ? FLIGHT_GROUND
+                                         : from;
     case FLIGHT_CUT:
         if ((c & FLIGHT_IF_ALOFT) && !ours && !tilted) {
             return FLIGHT_FLOATING;
@@ -114,7 +121,9 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
         if (!height) {
             return FLIGHT_COASTING;
         }
-        return (!reference || (c & FLIGHT_IF_LOWERING_LIMIT)) ? FLIGHT_LANDING : (c & FLIGHT_IF_RECOVERED) ? FLIGHT_FLYING : from;
+        return (!reference || (c & FLIGHT_IF_LOWERING_LIMIT)) ? FLIGHT_LANDING
+               : (c & FLIGHT_IF_RECOVERED)                    ? FLIGHT_FLYING
+                                                              : from;
     }
 }
 
@@ -134,7 +143,8 @@ static unsigned first_row(flight_state_t from, unsigned c)
 {
     unsigned i = 0;
     while (i < FLIGHT_TRANSITION_COUNT &&
-           (flight_transitions[i].from != from || (c & flight_transitions[i].all_of) != flight_transitions[i].all_of ||
+           (flight_transitions[i].from != from ||
+            (c & flight_transitions[i].all_of) != flight_transitions[i].all_of ||
             (c & flight_transitions[i].none_of) != 0U)) {
         i++;
     }

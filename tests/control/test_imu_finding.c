@@ -9,7 +9,11 @@ static imu_raw_t level;
 void setUp(void)
 {
     parameters_init(&parameters);
-    level = (imu_raw_t){.has_acceleration = true, .z_counts = 250.0F, .x_counts = 8.0F, .roll_rad = 0.02F, .pitch_rad = -0.03F};
+    level = (imu_raw_t){.has_acceleration = true,
+                        .z_counts = 250.0F,
+                        .x_counts = 8.0F,
+                        .roll_rad = 0.02F,
+                        .pitch_rad = -0.03F};
 }
 
 void tearDown(void) {}
@@ -53,7 +57,10 @@ void test_the_angle_that_turned_becomes_the_vehicles_with_its_sign(void)
     static const struct {
         float roll_rad, pitch_rad;
         control_axis_t found;
-    } rows[] = {{0.25F, 0.02F, AXIS_ROLL}, {-0.25F, 0.02F, AXIS_MINUS_ROLL}, {0.05F, 0.3F, AXIS_PITCH}, {0.05F, -0.3F, AXIS_MINUS_PITCH}};
+    } rows[] = {{0.25F, 0.02F, AXIS_ROLL},
+                {-0.25F, 0.02F, AXIS_MINUS_ROLL},
+                {0.05F, 0.3F, AXIS_PITCH},
+                {0.05F, -0.3F, AXIS_MINUS_PITCH}};
 
     for (uint16_t i = 0; i < 4U; i++) {
         imu_raw_t now = level;

@@ -1,4 +1,5 @@
-/* The IMU's axes and unit to the vehicle's: an IMU is turned in the test, and the vehicle must come out the same. */
+/* The IMU's axes and unit to the vehicle's: an IMU is turned in the test, and the vehicle must come out the
+ * same. */
 #include "control/imu_mapping.h"
 
 #include <math.h>
@@ -20,7 +21,10 @@ void tearDown(void) {}
 static imu_raw_t at_rest(float roll_rad, float pitch_rad)
 {
     return (imu_raw_t){
-        .yaw_rad = 1.0F, .pitch_rad = pitch_rad, .roll_rad = roll_rad, .has_acceleration = true,
+        .yaw_rad = 1.0F,
+        .pitch_rad = pitch_rad,
+        .roll_rad = roll_rad,
+        .has_acceleration = true,
         .x_counts = -256.0F * sinf(pitch_rad),
         .y_counts = 256.0F * cosf(pitch_rad) * sinf(roll_rad),
         .z_counts = 256.0F * cosf(pitch_rad) * cosf(roll_rad),

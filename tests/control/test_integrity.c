@@ -7,7 +7,8 @@
 #define HOVER_N 7.4F
 #define DEGREE_RAD 0.0174532925F
 
-/* A vehicle that moves as its thrust says, and what its sensors tell of it: a height every 0.1 s, a frame every 25 ms. */
+/* A vehicle that moves as its thrust says, and what its sensors tell of it: a height every 0.1 s, a frame
+ * every 25 ms. */
 static integrity_t it;
 static flown_t flown;
 static imu_sample_t frame;
@@ -24,8 +25,14 @@ void setUp(void)
     memset(&frame, 0, sizeof frame);
     frame.ready = frame.has_acceleration = true;
     world.lagged_n = HOVER_N;
-    flown = (flown_t){.step_s = 0.025F, .off_ground = true, .ours = true, .thrust_n = HOVER_N, .hover_n = HOVER_N,
-                      .authority_mps2_per_n = 9.80665F / HOVER_N, .damping_per_s = 2.5F, .noise_mps2 = 0.4F};
+    flown = (flown_t){.step_s = 0.025F,
+                      .off_ground = true,
+                      .ours = true,
+                      .thrust_n = HOVER_N,
+                      .hover_n = HOVER_N,
+                      .authority_mps2_per_n = 9.80665F / HOVER_N,
+                      .damping_per_s = 2.5F,
+                      .noise_mps2 = 0.4F};
 }
 
 void tearDown(void) {}
@@ -242,7 +249,8 @@ void test_a_glitch_that_returns_to_where_it_began_is_no_ground_that_came_nearer(
 
 /* ---- scans */
 
-/* Roll swings the mirror by 8 mm, and the height is corrected for it: a beam with a length of its own is blocked. */
+/* Roll swings the mirror by 8 mm, and the height is corrected for it: a beam with a length of its own is
+ * blocked. */
 void test_a_beam_that_does_not_swing_with_the_mirror_is_blocked(void)
 {
     for (int blocked = 0; blocked < 2; blocked++) {
@@ -275,7 +283,6 @@ void test_a_take_off_that_no_height_shows_is_doubted(void)
     TEST_ASSERT_TRUE(until(DOUBT_SIGHT, 3.0F) > 0.3F);
 }
 
-
 void test_the_third_scan_that_says_the_same_is_a_copy(void)
 {
     altitude_t altitude = {.height_mm = 500.0F, .slant_mm = 705.3F, .spread_mm = 21.0F};
@@ -297,7 +304,8 @@ void test_heights_out_of_reach_are_none(void)
         TEST_ASSERT_FALSE(integrity_scan(&it, &(altitude_t){.height_mm = bad_mm[i], .slant_mm = (float)i}));
     }
     for (unsigned i = 0; i < 3; i++) {
-        TEST_ASSERT_TRUE(integrity_scan(&it, &(altitude_t){.height_mm = good_mm[i], .slant_mm = 9.0F + (float)i}));
+        TEST_ASSERT_TRUE(
+            integrity_scan(&it, &(altitude_t){.height_mm = good_mm[i], .slant_mm = 9.0F + (float)i}));
     }
 }
 

@@ -68,12 +68,14 @@ void test_every_choice_is_found_by_its_name(void)
     for (int i = 0; i < PARAMETER_COUNT; i++) {
         const parameter_row_t *row = &parameter_table[i];
         for (int k = 0; row->choices != NULL && k <= (int)row->maximum; k++) {
-            TEST_ASSERT_EQUAL_INT16(k, parameter_find_choice((parameter_id_t)i, row->choices[k], strlen(row->choices[k])));
+            TEST_ASSERT_EQUAL_INT16(
+                k, parameter_find_choice((parameter_id_t)i, row->choices[k], strlen(row->choices[k])));
             choices++;
         }
     }
-    TEST_ASSERT_EQUAL_INT(LAW_COUNT + RELEASE_COUNT + TERRAIN_COUNT + PLANT_COUNT + SEL_COUNT + SUM_COUNT
-                              + 2 * AXIS_COUNT + DOWN_COUNT, choices);
+    TEST_ASSERT_EQUAL_INT(LAW_COUNT + RELEASE_COUNT + TERRAIN_COUNT + PLANT_COUNT + SEL_COUNT + SUM_COUNT +
+                              2 * AXIS_COUNT + DOWN_COUNT,
+                          choices);
 }
 
 void test_names_are_found_in_any_case_and_only_whole(void)
@@ -124,7 +126,7 @@ void test_what_is_no_finite_number_is_refused_everywhere(void)
 
 void test_the_operators_mistakes_are_refused(void)
 {
-    refused(PARAMETER_KP, 15.0F);   /* N/m */
+    refused(PARAMETER_KP, 15.0F); /* N/m */
     refused(PARAMETER_L, 501.0F);
     refused(PARAMETER_L2, -1.0F);
     refused(PARAMETER_USAT, -0.5F);
@@ -189,10 +191,11 @@ void test_a_gain_is_used_by_the_laws_that_its_meaning_names(void)
     TEST_ASSERT_TRUE_MESSAGE(parameter_is_used(PARAMETER_PKP, LAW_EST), "PIDT stands in for EST");
     TEST_ASSERT_FALSE(parameter_is_used(PARAMETER_PKP, LAW_PID));
     for (int i = 0; i < PARAMETER_COUNT; i++) {
-        const bool of_the_seed = strncmp(parameter_table[i].meaning, "PD, PID: ", 9) == 0
-                                 || strncmp(parameter_table[i].meaning, "PID: ", 5) == 0;
+        const bool of_the_seed = strncmp(parameter_table[i].meaning, "PD, PID: ", 9) == 0 ||
+                                 strncmp(parameter_table[i].meaning, "PID: ", 5) == 0;
 
-        TEST_ASSERT_EQUAL_MESSAGE(!of_the_seed, parameter_is_used((parameter_id_t)i, LAW_EST), parameter_table[i].name);
+        TEST_ASSERT_EQUAL_MESSAGE(!of_the_seed, parameter_is_used((parameter_id_t)i, LAW_EST),
+                                  parameter_table[i].name);
     }
 }
 
@@ -215,8 +218,10 @@ void test_in_the_air_thrust_changes_by_bounded_steps_and_the_throttle_keeps_its_
     for (int id = PARAMETER_DF; id <= PARAMETER_L2; id++) {
         const float value = parameter_table[id].initial;
 
-        TEST_ASSERT_FALSE_MESSAGE(parameter_may_change_in_air((parameter_id_t)id, value, value + 1.0F), parameter_table[id].name);
-        TEST_ASSERT_TRUE_MESSAGE(parameter_may_change_in_air((parameter_id_t)id, value, value), parameter_table[id].name);
+        TEST_ASSERT_FALSE_MESSAGE(parameter_may_change_in_air((parameter_id_t)id, value, value + 1.0F),
+                                  parameter_table[id].name);
+        TEST_ASSERT_TRUE_MESSAGE(parameter_may_change_in_air((parameter_id_t)id, value, value),
+                                 parameter_table[id].name);
     }
     TEST_ASSERT_TRUE(parameter_may_change_in_air(PARAMETER_SEL, (float)SEL_PIN, (float)SEL_PIN));
     TEST_ASSERT_TRUE(parameter_may_change_in_air(PARAMETER_LAW, (float)LAW_EST, (float)LAW_PD));

@@ -102,9 +102,9 @@ void test_while_clipped_the_integral_action_is_the_last_one_before(void)
     TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.5F, law.integral_n);
 }
 
-/* 39 mm: 7 + 0.585 + 0.39 = 7.975 fits and is integrated; 20 mm then 7 + 0.3 - 0.152 + 0.59 fits; 60 mm then would
- * be 8.2 + ...: made with the 0.59 N of before, 7 + 0.9 + 0.32 + 0.59, and clipped. 25 mm then: 7 + 0.375 - 0.28 +
- * 0.59 + 0.25 fits again. */
+/* 39 mm: 7 + 0.585 + 0.39 = 7.975 fits and is integrated; 20 mm then 7 + 0.3 - 0.152 + 0.59 fits; 60 mm then
+ * would be 8.2 + ...: made with the 0.59 N of before, 7 + 0.9 + 0.32 + 0.59, and clipped. 25 mm then: 7 +
+ * 0.375 - 0.28 + 0.59 + 0.25 fits again. */
 void test_integration_goes_on_as_soon_as_the_action_fits(void)
 {
     TEST_ASSERT_FLOAT_WITHIN(1e-5F, 7.975F, pid_step(&law, &best, 39.0F));
@@ -181,7 +181,7 @@ void test_it_is_the_seeds_law_for_any_errors(void)
 void test_any_gains_and_errors_stay_within_the_actuator(void)
 {
     for (int k = 0; k < 20000; k++) {
-        const pid_gains_t gains = {fabsf(any(1.0F)),  fabsf(any(1.0F)),  fabsf(any(1.0F)),
+        const pid_gains_t gains = {fabsf(any(1.0F)),   fabsf(any(1.0F)),   fabsf(any(1.0F)),
                                    fabsf(any(11.76F)), fabsf(any(11.76F)), fabsf(any(11.76F))};
         const float thrust_n = pid_step(&law, &gains, any(5500.0F));
         TEST_ASSERT_TRUE(thrust_n >= 0.0F && thrust_n <= THRUST_MAX_N);

@@ -41,7 +41,8 @@ void test_the_derivative_is_of_the_height_and_low_passed(void)
 {
     (void)step(0.6F, 0.5F, 0.1F);
     const float before_n = step(0.6F, 0.5F, 0.1F);
-    TEST_ASSERT_FLOAT_WITHIN(0.05F, before_n + 6.3F * 0.2F, step(0.8F, 0.5F, 0.1F)); /* a new reference: no kick */
+    TEST_ASSERT_FLOAT_WITHIN(0.05F, before_n + 6.3F * 0.2F,
+                             step(0.8F, 0.5F, 0.1F)); /* a new reference: no kick */
     const float risen_n = step(0.8F, 0.55F, 0.1F);
     const float share = 0.1F / 0.1199F;
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 7.0F + 6.3F * 0.25F + state.integral_n - 3.1F * 0.5F * share, risen_n);

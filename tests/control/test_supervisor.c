@@ -21,7 +21,8 @@ void setUp(void)
     estimate = (vertical_estimate_t){.known = false};
     change.from = change.to = FLIGHT_GROUND;
     in = (flight_inputs_t){.now_us = 0xFFF00000U, /* the clock wraps a second later */
-                           .attitude_ready = true, .has_throttle = true};
+                           .attitude_ready = true,
+                           .has_throttle = true};
     link_s = 0.0F;
 }
 
@@ -918,10 +919,22 @@ static void tilt_on(void (*enter)(void), float height_mm)
     watch(height_mm, 3);
 }
 
-static void tilt_on_take_off(void) { tilt_on(take_off, 30.0F); }
-static void tilt_in_flight(void) { tilt_on(fly, 500.0F); }
-static void tilt_on_landing(void) { tilt_on(land, 500.0F); }
-static void tilt_on_lowering(void) { tilt_on(lower, 1310.0F); }
+static void tilt_on_take_off(void)
+{
+    tilt_on(take_off, 30.0F);
+}
+static void tilt_in_flight(void)
+{
+    tilt_on(fly, 500.0F);
+}
+static void tilt_on_landing(void)
+{
+    tilt_on(land, 500.0F);
+}
+static void tilt_on_lowering(void)
+{
+    tilt_on(lower, 1310.0F);
+}
 
 static void tilt_blind(void (*enter)(void))
 {
@@ -930,8 +943,14 @@ static void tilt_blind(void (*enter)(void))
     blind(300);
 }
 
-static void tilt_on_coasting(void) { tilt_blind(coast); }
-static void tilt_on_descending(void) { tilt_blind(descend); }
+static void tilt_on_coasting(void)
+{
+    tilt_blind(coast);
+}
+static void tilt_on_descending(void)
+{
+    tilt_blind(descend);
+}
 
 static void take_over_from_the_pilot(void)
 {
@@ -1081,12 +1100,30 @@ static void hand_over(void (*enter)(void), float height_mm)
     watch(height_mm, 1);
 }
 
-static void hand_over_on_take_off(void) { hand_over(take_off, 30.0F); }
-static void hand_over_in_flight(void) { hand_over(fly, 500.0F); }
-static void hand_over_on_landing(void) { hand_over(land, 500.0F); }
-static void hand_over_on_lowering(void) { hand_over(lower, 1310.0F); }
-static void hand_over_on_coasting(void) { hand_over(coast, 480.0F); }
-static void hand_over_on_descending(void) { hand_over(descend, 480.0F); }
+static void hand_over_on_take_off(void)
+{
+    hand_over(take_off, 30.0F);
+}
+static void hand_over_in_flight(void)
+{
+    hand_over(fly, 500.0F);
+}
+static void hand_over_on_landing(void)
+{
+    hand_over(land, 500.0F);
+}
+static void hand_over_on_lowering(void)
+{
+    hand_over(lower, 1310.0F);
+}
+static void hand_over_on_coasting(void)
+{
+    hand_over(coast, 480.0F);
+}
+static void hand_over_on_descending(void)
+{
+    hand_over(descend, 480.0F);
+}
 
 static void recover_from_a_cut(void)
 {
@@ -1177,7 +1214,8 @@ void test_every_row_is_taken_by_inputs_alone(void)
     for (unsigned k = 0; k < FLIGHT_TRANSITION_COUNT; k++) {
         const flight_transition_t *row = &flight_transitions[k];
 
-        snprintf(text, sizeof text, "row %u: %s to %s", k, flight_state_name(row->from), flight_state_name(row->to));
+        snprintf(text, sizeof text, "row %u: %s to %s", k, flight_state_name(row->from),
+                 flight_state_name(row->to));
         TEST_ASSERT_EQUAL_INT_MESSAGE(1, ways_through(row, &way), text);
         setUp();
         ways[way].way();
@@ -1342,7 +1380,7 @@ void test_overshoots_platforms_and_edges_leave_flying_alone(void)
     take_off();
     setr(0.3F);
     watch(0.0F, 1);
-    watch(900.0F, 10);  /* P alone: 0.6 m over 0.3 m */
+    watch(900.0F, 10); /* P alone: 0.6 m over 0.3 m */
     watch(10.0F, 10);
     watch(1090.0F, 10);
     state_is(FLIGHT_FLYING);
@@ -1696,11 +1734,12 @@ static uint32_t any(uint32_t below)
     return (noise >> 8) % below;
 }
 
-/* Whatever comes in: the state is one of the table's, a transition is a row of it, the reference in force is within its
- * limits, and the ground is reached from the air only at rest or after a spent descent. */
+/* Whatever comes in: the state is one of the table's, a transition is a row of it, the reference in force is
+ * within its limits, and the ground is reached from the air only at rest or after a spent descent. */
 void test_random_inputs_never_leave_the_table(void)
 {
-    static const float heights[] = {NAN, INFINITY, -9e9F, 0.0F, 20.0F, 160.0F, 500.0F, 900.0F, 1900.0F, 4900.0F, 9e9F};
+    static const float heights[] = {NAN,    INFINITY, -9e9F,   0.0F,    20.0F, 160.0F,
+                                    500.0F, 900.0F,   1900.0F, 4900.0F, 9e9F};
     static const float references[] = {NAN, 0.0F, 0.3F, 1.0F, 3.0F, -1.0F, INFINITY};
     char seed[32];
     unsigned seen = 0;

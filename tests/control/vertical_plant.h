@@ -1,6 +1,7 @@
-/* A private plant for the tests of this directory: vertical motion alone, no noise, no tilt. Thrust follows the command
- * by a pulse every 13.6 ms, 10 ms of transport and a first-order lag; damping stands for the autopilot. The scanner's
- * rays are taken 34 ms into its 100 ms revolution and their height arrives 72.5 ms later. */
+/* A private plant for the tests of this directory: vertical motion alone, no noise, no tilt. Thrust follows
+ * the command by a pulse every 13.6 ms, 10 ms of transport and a first-order lag; damping stands for the
+ * autopilot. The scanner's rays are taken 34 ms into its 100 ms revolution and their height arrives 72.5 ms
+ * later. */
 #ifndef TESTS_CONTROL_VERTICAL_PLANT_H
 #define TESTS_CONTROL_VERTICAL_PLANT_H
 
@@ -10,35 +11,36 @@
 #define PLANT_STEP_US 500U
 
 typedef struct {
-    double hover_n;         /* thrust that carries the vehicle */
+    double hover_n; /* thrust that carries the vehicle */
     double damping_per_s;
     double climb_m_s_per_n; /* not 0: thrust commands the climb rate, attained with 0.25 s */
     double terrain_m;
-    uint32_t control_us;    /* period of flight_step() */
-    uint32_t phase_us;      /* of control against the scanner */
-    bool mute;              /* the scanner gives no height */
+    uint32_t control_us; /* period of flight_step() */
+    uint32_t phase_us;   /* of control against the scanner */
+    bool mute;           /* the scanner gives no height */
 
     uint32_t time_us;
-    double height_m;        /* absolute */
+    double height_m; /* absolute */
     double speed_m_s;
     double thrust_n;
-    double command_n;       /* set by the test */
-    double latched_n[2];    /* latest latched, the one before */
-    uint32_t latch_us;      /* time of the latest latch */
-    double touch_m_s;       /* downward speed at the latest touch from above 30 mm */
-    double hardest_m_s;     /* largest of them */
+    double command_n;    /* set by the test */
+    double latched_n[2]; /* latest latched, the one before */
+    uint32_t latch_us;   /* time of the latest latch */
+    double touch_m_s;    /* downward speed at the latest touch from above 30 mm */
+    double hardest_m_s;  /* largest of them */
     int contacts;
     bool was_up;
 
-    double ray_height_m;    /* of the revolution under way */
-    bool height_new;        /* a height arrived in the latest step */
+    double ray_height_m; /* of the revolution under way */
+    bool height_new;     /* a height arrived in the latest step */
     double seen_mm;
     uint32_t seen_us;
 } plant_t;
 
 static inline plant_t plant_on_ground(double hover_n, double damping_per_s)
 {
-    plant_t plant = {.hover_n = hover_n, .damping_per_s = damping_per_s, .control_us = 108000U, .phase_us = 20000U};
+    plant_t plant = {
+        .hover_n = hover_n, .damping_per_s = damping_per_s, .control_us = 108000U, .phase_us = 20000U};
     return plant;
 }
 

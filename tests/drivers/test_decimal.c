@@ -21,9 +21,7 @@ void setUp(void)
     random_state = SEED;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 /* xorshift32 (Marsaglia 2003) */
 static uint32_t random_bits(void)
@@ -136,9 +134,13 @@ void test_the_numbers_of_the_gains_read_as_the_compiler_reads_them(void)
 
 void test_every_form_of_one_number_reads_the_same(void)
 {
-    static const char *const forms[] = {"12.5", "+12.5", "012.5", "12.50", "12.5e0", "1.25e1", "1.25E+1", "125e-1",
-                                        "0.125e2", ".125e+02", "0000.00125E4", "1250000e-5", "12.5e-0",
-                                        "12.5000000000000000000000000000000000000000"};
+    static const char *const forms[] = {"12.5",         "+12.5",
+                                        "012.5",        "12.50",
+                                        "12.5e0",       "1.25e1",
+                                        "1.25E+1",      "125e-1",
+                                        "0.125e2",      ".125e+02",
+                                        "0000.00125E4", "1250000e-5",
+                                        "12.5e-0",      "12.5000000000000000000000000000000000000000"};
     for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
         assert_reads(12.5F, forms[i]);
     }
@@ -158,10 +160,11 @@ void test_zero_has_no_sign_and_any_exponent(void)
 
 void test_what_is_no_number_is_refused_and_the_value_untouched(void)
 {
-    static const char *const junk[] = {"", "+", "-", ".", "-.", "e5", ".e5", "1e", "1e+", "1e-", "1e5.", "1e5.0", "--1", "+-1",
-                                       "1-", "1..2", "1.2.3", " 1", "1 ", "1 2", "\t1", "1\n", "nan", "NAN", "-nan", "inf",
-                                       "-inf", "infinity", "ovf", "0x10", "1f", "1F", "1,5", "1e5e5", "1_000", "O.5", "l",
-                                       "/", ":", "1/", "1:"};
+    static const char *const junk[] = {
+        "",      "+",     "-",    ".",   "-.",   "e5",       ".e5", "1e",   "1e+", "1e-", "1e5.",
+        "1e5.0", "--1",   "+-1",  "1-",  "1..2", "1.2.3",    " 1",  "1 ",   "1 2", "\t1", "1\n",
+        "nan",   "NAN",   "-nan", "inf", "-inf", "infinity", "ovf", "0x10", "1f",  "1F",  "1,5",
+        "1e5e5", "1_000", "O.5",  "l",   "/",    ":",        "1/",  "1:"};
     for (size_t i = 0; i < sizeof junk / sizeof junk[0]; i++) {
         assert_refused(junk[i], strlen(junk[i]));
     }
@@ -192,7 +195,8 @@ void test_no_single_character_but_a_digit_is_a_number(void)
 
 void test_too_large_is_refused_from_the_midpoint_behind_the_largest_float_on(void)
 {
-    /* (2 - 2^-24) 2^127 = 340282356779733661637539395458142568448: the tie goes to the even side, which is beyond. */
+    /* (2 - 2^-24) 2^127 = 340282356779733661637539395458142568448: the tie goes to the even side, which is
+     * beyond. */
     assert_reads(FLT_MAX, "340282356779733661637539395458142568447");
     assert_reads(FLT_MAX, "340282356779733661637539395458142568447.9999999");
     assert_reads(-FLT_MAX, "-340282356779733661637539395458142568447");
@@ -225,11 +229,14 @@ void test_ties_go_to_even_and_one_digit_far_behind_decides(void)
     assert_reads(16777216.0F, "167772.17e2");
     assert_reads(16777218.0F, "16777217000000000000000000000000000000000000000000000001e-48");
     assert_reads(1.0F, "1.000000059604644775390625"); /* 1 + 2^-24 */
-    assert_reads(1.0F + FLT_EPSILON, "1.0000000596046447753906250000000000000000000000000000000000000000000000000000000"
-                                     "000000000000000000000000000000000000000000000000000000000000000000000000000000001");
+    assert_reads(1.0F + FLT_EPSILON,
+                 "1.0000000596046447753906250000000000000000000000000000000000000000000000000000000"
+                 "000000000000000000000000000000000000000000000000000000000000000000000000000000001");
     assert_reads(1.0F - FLT_EPSILON / 2.0F, "0.999999940395355224609375");
-    assert_reads(2.0F, "1.99999994039535522460937500000000000000000000000000000000000000000000000000000000000000000000000"
-                       "000000000000000000000000000000000000000000000001");
+    assert_reads(
+        2.0F,
+        "1.99999994039535522460937500000000000000000000000000000000000000000000000000000000000000000000000"
+        "000000000000000000000000000000000000000000000001");
 }
 
 void test_many_digits_before_the_point_are_counted(void)
@@ -275,7 +282,8 @@ void test_midpoints_between_neighbours_and_beside_them_read_as_strtof_reads_them
         float next = nextafterf(value, INFINITY);
         if (isfinite(value) && isfinite(next)) {
             double middle = ((double)value + (double)next) / 2.0;
-            (void)snprintf(text, sizeof text, "%.*e", i % 2U == 0U ? 120 : (int)(7U + random_bits() % 110U), middle);
+            (void)snprintf(text, sizeof text, "%.*e", i % 2U == 0U ? 120 : (int)(7U + random_bits() % 110U),
+                           middle);
             assert_reads_as_strtof(text);
         }
     }
@@ -329,7 +337,8 @@ void test_rounding_is_of_the_exact_binary_value_and_ties_go_away_from_zero(void)
     assert_writes("-3", -2.5F, 0U);
     assert_writes("1", 0.5F, 0U);
     assert_writes("4194303.8", 4194303.75F, 1U);
-    /* 0.0005F is 0.00050000002.., 0.0025F is 0.00249999994.., 1.005F is 1.00499999523.., 0.055F 0.05499999970.. */
+    /* 0.0005F is 0.00050000002.., 0.0025F is 0.00249999994.., 1.005F is 1.00499999523.., 0.055F
+     * 0.05499999970.. */
     assert_writes("0.001", 0.0005F, 3U);
     assert_writes("0.002", 0.0025F, 3U);
     assert_writes("1.00", 1.005F, 2U);
@@ -358,7 +367,8 @@ void test_a_result_of_zero_is_written_without_sign(void)
 
 void test_what_cannot_be_written_gives_no_character(void)
 {
-    static const float refused[] = {4294967.0F, -4294967.0F, 1e9F, FLT_MAX, -FLT_MAX, INFINITY, -INFINITY, NAN};
+    static const float refused[] = {4294967.0F, -4294967.0F, 1e9F,      FLT_MAX,
+                                    -FLT_MAX,   INFINITY,    -INFINITY, NAN};
     char text[DECIMAL_TEXT_MAX];
 
     for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
@@ -387,7 +397,8 @@ void test_nothing_is_written_beyond_the_capacity(void)
             TEST_ASSERT_EQUAL(capacity < fixed ? 0U : fixed, decimal_write(text, capacity, values[i], 3U));
             TEST_ASSERT_EQUAL_INT16('~', text[capacity]);
             memset(text, '~', sizeof text);
-            TEST_ASSERT_EQUAL(capacity < shortest ? 0U : shortest, decimal_write_shortest(text, capacity, values[i]));
+            TEST_ASSERT_EQUAL(capacity < shortest ? 0U : shortest,
+                              decimal_write_shortest(text, capacity, values[i]));
             TEST_ASSERT_EQUAL_INT16('~', text[capacity]);
         }
     }
@@ -407,7 +418,8 @@ void test_fixed_texts_of_random_floats_are_those_of_the_exact_arithmetic(void)
         /* 24 bits times 10^6 are 44 bits: exact in a double, and so is the half added */
         double number = floor(fabs((double)value) * power[decimals] + 0.5) / power[decimals];
 
-        (void)snprintf(expected, sizeof expected, "%s%.*f", value < 0.0F && number > 0.0 ? "-" : "", (int)decimals, number);
+        (void)snprintf(expected, sizeof expected, "%s%.*f", value < 0.0F && number > 0.0 ? "-" : "",
+                       (int)decimals, number);
         text[decimal_write(text, DECIMAL_TEXT_MAX, value, decimals)] = '\0';
         TEST_ASSERT_EQUAL_STRING(expected, text);
     }
@@ -493,7 +505,8 @@ void test_no_text_with_fewer_decimals_would_do(void)
     for (uint32_t i = 0; i < 20000UL; i++) {
         assert_no_shorter_text(random_writable());
     }
-    for (uint32_t exponent = 104U; exponent < 149U; exponent++) { /* the gap below a power of two is half the one above */
+    for (uint32_t exponent = 104U; exponent < 149U;
+         exponent++) { /* the gap below a power of two is half the one above */
         assert_no_shorter_text(float_of(exponent << 23));
     }
 }

@@ -10,13 +10,9 @@ static const flight_log_t flying = {123456U, 598.0F, 601.0F, -12.0F, 0.6F, 7.123
 
 static telemetry_line_t line;
 
-void setUp(void)
-{
-}
+void setUp(void) {}
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static const char *text(void)
 {
@@ -52,7 +48,8 @@ void test_the_title_line_names_as_many_columns_as_a_row_has(void)
 
     telemetry_begin(&line);
     flight_log_titles(&line);
-    TEST_ASSERT_EQUAL_STRING("t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags", text());
+    TEST_ASSERT_EQUAL_STRING("t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags",
+                             text());
     for (const char *p = text(); (p = strchr(p, ',')) != NULL; p++) {
         titles++;
     }
@@ -68,8 +65,15 @@ void test_packing_keeps_every_field_within_half_a_step(void)
 {
     for (int i = -320; i <= 320; i++) {
         const float x = (float)i;
-        const flight_log_t record = {(uint32_t)(i + 320) * UINT32_C(6700417), x * 101.3F, -x * 99.9F, x * 7.7F, x * 0.0101F,
-                                     fabsf(x) * 0.0367F, x * 0.0098F, -x * 0.0097F, (uint16_t)((i + 320) % 16),
+        const flight_log_t record = {(uint32_t)(i + 320) * UINT32_C(6700417),
+                                     x * 101.3F,
+                                     -x * 99.9F,
+                                     x * 7.7F,
+                                     x * 0.0101F,
+                                     fabsf(x) * 0.0367F,
+                                     x * 0.0098F,
+                                     -x * 0.0097F,
+                                     (uint16_t)((i + 320) % 16),
                                      (uint16_t)((i + 320) * 6)};
         const flight_log_t back = round_trip(&record);
 
@@ -92,7 +96,8 @@ void test_what_is_not_there_stays_so_and_leaves_its_column_empty(void)
     const flight_log_t back = round_trip(&nothing);
 
     TEST_ASSERT_TRUE(isnan(back.height_mm) && isnan(back.estimate_mm) && isnan(back.innovation_mm));
-    TEST_ASSERT_TRUE(isnan(back.reference_m) && isnan(back.thrust_n) && isnan(back.roll_rad) && isnan(back.pitch_rad));
+    TEST_ASSERT_TRUE(isnan(back.reference_m) && isnan(back.thrust_n) && isnan(back.roll_rad) &&
+                     isnan(back.pitch_rad));
     telemetry_begin(&line);
     flight_log_row(&line, &back, "GROUND");
     TEST_ASSERT_EQUAL_STRING("0.007,,,,,,,,GROUND,0", text());
@@ -120,8 +125,16 @@ void test_what_is_beyond_the_range_becomes_its_end(void)
 
 void test_the_longest_row_is_pinned(void)
 {
-    const flight_log_t longest = {UINT32_C(4294967295), -32767.0F, -32767.0F, -32767.0F, -32.767F, 65.534F, -3.2767F, -3.2767F,
-                                  15U, 4095U};
+    const flight_log_t longest = {UINT32_C(4294967295),
+                                  -32767.0F,
+                                  -32767.0F,
+                                  -32767.0F,
+                                  -32.767F,
+                                  65.534F,
+                                  -3.2767F,
+                                  -3.2767F,
+                                  15U,
+                                  4095U};
 
     telemetry_begin(&line);
     flight_log_row(&line, &longest, "DESCENDING");
@@ -134,8 +147,7 @@ void test_milliseconds_are_written_with_their_zeros(void)
     static const struct {
         uint32_t ms;
         const char *start;
-    } rows[] = {{0U, "0.000,"}, {9U, "0.009,"}, {90U, "0.090,"}, {1001U, "1.001,"},
-                {60100U, "60.100,"}};
+    } rows[] = {{0U, "0.000,"}, {9U, "0.009,"}, {90U, "0.090,"}, {1001U, "1.001,"}, {60100U, "60.100,"}};
 
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         flight_log_t record = flying;

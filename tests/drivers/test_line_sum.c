@@ -13,7 +13,8 @@ static uint16_t sum_of(const char *text)
     return line_sum(text, (uint16_t)strlen(text));
 }
 
-/* 29B1 is the check value of CRC-16/CCITT-FALSE in every catalogue of CRCs; the others by Python: binascii.crc_hqx(text, 0xFFFF). */
+/* 29B1 is the check value of CRC-16/CCITT-FALSE in every catalogue of CRCs; the others by Python:
+ * binascii.crc_hqx(text, 0xFFFF). */
 void test_the_sum_is_the_ccitt_one_from_ffff(void)
 {
     TEST_ASSERT_EQUAL_HEX16(0x29B1, sum_of("123456789"));

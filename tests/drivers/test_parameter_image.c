@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#define CELLS_OF_FIVE 19U   /* five values: 7 + 2 * 5 + 2, without the filling */
+#define CELLS_OF_FIVE 19U /* five values: 7 + 2 * 5 + 2, without the filling */
 
 static uint16_t cells[PARAMETER_IMAGE_CELLS_MAX];
 static parameter_image_t image;
@@ -34,9 +34,7 @@ void setUp(void)
     fill(5U);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 /* CRC-32/ISO-HDLC: its check value of "123456789" is CBF43926H; the cells below by Python's zlib.crc32. */
 void test_the_layout_is_pinned(void)
@@ -169,8 +167,9 @@ static uint32_t names_of(const char *const *names)
 
 void test_names_tell_lists_apart_by_content_order_and_borders(void)
 {
-    static const char *const lists[][4] = {{NULL}, {"KP", NULL}, {"KP", "KD", NULL}, {"KD", "KP", NULL}, {"KPKD", NULL},
-                                           {"K", "PKD", NULL}, {"KP", "KD", "KI", NULL}, {"KP", "", "KD", NULL}};
+    static const char *const lists[][4] = {
+        {NULL},         {"KP", NULL},       {"KP", "KD", NULL},       {"KD", "KP", NULL},
+        {"KPKD", NULL}, {"K", "PKD", NULL}, {"KP", "KD", "KI", NULL}, {"KP", "", "KD", NULL}};
     enum { LISTS = sizeof lists / sizeof lists[0] };
 
     for (int i = 0; i < LISTS; i++) {

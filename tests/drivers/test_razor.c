@@ -32,9 +32,7 @@ void setUp(void)
     random_state = SEED;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 /* xorshift32 (Marsaglia 2003) */
 static uint32_t random_bits(void)
@@ -192,8 +190,9 @@ void test_angles_alone_have_no_acceleration(void)
 
 void test_one_separator_may_stand_between_the_parts(void)
 {
-    static const char *const texts[] = {"#A-C=1.00,2.00,3.00#YPR=4.00,5.00,6.00", "#A-C=1.00,2.00,3.00,#YPR=4.00,5.00,6.00",
-                                        "#A-C=1.00,2.00,3.00 #YPR=4.00,5.00,6.00", "#A-C=1.00,2.00,3.00\n#YPR=4.00,5.00,6.00"};
+    static const char *const texts[] = {
+        "#A-C=1.00,2.00,3.00#YPR=4.00,5.00,6.00", "#A-C=1.00,2.00,3.00,#YPR=4.00,5.00,6.00",
+        "#A-C=1.00,2.00,3.00 #YPR=4.00,5.00,6.00", "#A-C=1.00,2.00,3.00\n#YPR=4.00,5.00,6.00"};
     for (uint16_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         razor_frame_t frame;
         TEST_ASSERT_EQUAL_MESSAGE(RAZOR_OK, parse(texts[i], &frame), texts[i]);
@@ -212,15 +211,58 @@ void test_minus_zero_is_zero(void)
 
 void test_malformed_texts_are_refused_and_the_frame_is_untouched(void)
 {
-    static const char *const texts[] = {
-        "", "#", "#YPR", "#YPR=", "#YPR=,", "#YPR=,,", "#YPR=1", "#YPR=1,2", "#YPR=1,2,", "#YPR=,2,3", "#YPR=1,,3",
-        "#YPR=1,2,3,", "#YPR=1,2,3,4", "#YPR=1,2,3 ", "#YPR= 1,2,3", "#YPR=1, 2,3", "#YPR=1;2;3", "#YPR=1,2,3\n",
-        "#YPR=nan,nan,nan", "#YPR=1,nan,3", "#YPR=1,2,inf", "#YPR=ovf,2,3", "#YPR=-inf,2,3", "#YPR=1,2,1e39", "#YPR=1.2.3,2,3",
-        "#YPR=1,2,0x3", "YPR=1,2,3", "#ypr=1,2,3", "#YPRAG=1,2,3", "!ANG:1,2,3", "#YPR=1,2,#YPR=1,2,3",
-        "#A-C=", "#A-C=1,2,3", "#A-C=1,2,3\n", "#A-C=1,2,3\n#", "#A-C=1,2,3\n#YPR", "#A-C=1,2,3\n#YPR=", "#A-C=#YPR=1,2,3",
-        "#A-C=,#YPR=1,2,3", "#A-C=1,2#YPR=1,2,3", "#A-C=1,2,#YPR=1,2,3", "#A-C=1,2,3,4#YPR=1,2,3", "#A-C=1,2,3,,#YPR=1,2,3",
-        "#A-C=1,2,3,\n#YPR=1,2,3", "#A-C=1,2,3\n\n#YPR=1,2,3", "#A-C=nan,2,3#YPR=1,2,3", "#A-C=1,2,ovf\n#YPR=1,2,3",
-        "#A-C=1,2,3#M-C=1,2,3", "#A-C=1,2,3#A-C=1,2,3", "#A-C=1,2,3;#YPR=1,2,3", "#A-R=1,2,3#YPR=1,2,3", "#YPR=1,2,3#A-C=1,2,3"};
+    static const char *const texts[] = {"",
+                                        "#",
+                                        "#YPR",
+                                        "#YPR=",
+                                        "#YPR=,",
+                                        "#YPR=,,",
+                                        "#YPR=1",
+                                        "#YPR=1,2",
+                                        "#YPR=1,2,",
+                                        "#YPR=,2,3",
+                                        "#YPR=1,,3",
+                                        "#YPR=1,2,3,",
+                                        "#YPR=1,2,3,4",
+                                        "#YPR=1,2,3 ",
+                                        "#YPR= 1,2,3",
+                                        "#YPR=1, 2,3",
+                                        "#YPR=1;2;3",
+                                        "#YPR=1,2,3\n",
+                                        "#YPR=nan,nan,nan",
+                                        "#YPR=1,nan,3",
+                                        "#YPR=1,2,inf",
+                                        "#YPR=ovf,2,3",
+                                        "#YPR=-inf,2,3",
+                                        "#YPR=1,2,1e39",
+                                        "#YPR=1.2.3,2,3",
+                                        "#YPR=1,2,0x3",
+                                        "YPR=1,2,3",
+                                        "#ypr=1,2,3",
+                                        "#YPRAG=1,2,3",
+                                        "!ANG:1,2,3",
+                                        "#YPR=1,2,#YPR=1,2,3",
+                                        "#A-C=",
+                                        "#A-C=1,2,3",
+                                        "#A-C=1,2,3\n",
+                                        "#A-C=1,2,3\n#",
+                                        "#A-C=1,2,3\n#YPR",
+                                        "#A-C=1,2,3\n#YPR=",
+                                        "#A-C=#YPR=1,2,3",
+                                        "#A-C=,#YPR=1,2,3",
+                                        "#A-C=1,2#YPR=1,2,3",
+                                        "#A-C=1,2,#YPR=1,2,3",
+                                        "#A-C=1,2,3,4#YPR=1,2,3",
+                                        "#A-C=1,2,3,,#YPR=1,2,3",
+                                        "#A-C=1,2,3,\n#YPR=1,2,3",
+                                        "#A-C=1,2,3\n\n#YPR=1,2,3",
+                                        "#A-C=nan,2,3#YPR=1,2,3",
+                                        "#A-C=1,2,ovf\n#YPR=1,2,3",
+                                        "#A-C=1,2,3#M-C=1,2,3",
+                                        "#A-C=1,2,3#A-C=1,2,3",
+                                        "#A-C=1,2,3;#YPR=1,2,3",
+                                        "#A-R=1,2,3#YPR=1,2,3",
+                                        "#YPR=1,2,3#A-C=1,2,3"};
     for (uint16_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         assert_refused(RAZOR_MALFORMED, texts[i]);
     }
@@ -428,7 +470,8 @@ void test_random_octets_never_overrun_and_never_hide_a_later_frame(void)
     printf("random octets: seed %lu\n", SEED);
     for (uint32_t i = 0; i < 200000UL; i++) {
         bool any = random_bits() % 8U == 0U;
-        feed_octet(any ? octet_of((uint16_t)random_bits()) : octet_of((uint16_t)alphabet[random_bits() % 23U]));
+        feed_octet(any ? octet_of((uint16_t)random_bits())
+                       : octet_of((uint16_t)alphabet[random_bits() % 23U]));
         TEST_ASSERT_LESS_OR_EQUAL(RAZOR_FRAME_MAX, collector.gathered.length);
         if (i % 1000U == 0U) {
             feed("\r\n#A-C=1,2,3\r\n#YPR=4,5,6\r\n");

@@ -16,9 +16,7 @@ void setUp(void)
     scip_info_init(&info);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void feed(const char *octets)
 {
@@ -60,7 +58,8 @@ static void begin_pp(void)
 
 static void tell_all_limits_but(const char *left_out)
 {
-    static const char *const lines[] = { "DMIN:21", "DMAX:4000", "ARES:1440", "AMIN:0", "AMAX:1080", "AFRT:540", "SCAN:2400" };
+    static const char *const lines[] = {"DMIN:21",   "DMAX:4000", "ARES:1440", "AMIN:0",
+                                        "AMAX:1080", "AFRT:540",  "SCAN:2400"};
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         if (strncmp(lines[i], left_out, 4) != 0) {
             tell(lines[i], true);
@@ -80,13 +79,15 @@ static bool limits_are_default(void)
     return same(&limits, &scip_limits_urg04lx);
 }
 
-/* --- what real sensors send --------------------------------------------------------------------------------------- */
+/* --- what real sensors send
+ * --------------------------------------------------------------------------------------- */
 
 /* The replies of a URG-04LX, firmware 3.1.04, as its owners published them; the sums are the sensor's. */
 void test_a_real_sensor_is_understood(void)
 {
     ask(SCIP_VERSION);
-    feed("VV\n00P\nVEND:Hokuyo Automatic Co.,Ltd.;[\nPROD:SOKUIKI Sensor URG-04LX;[\nFIRM:3.1.04(02/Aug./2007);a\n"
+    feed("VV\n00P\nVEND:Hokuyo Automatic Co.,Ltd.;[\nPROD:SOKUIKI Sensor "
+         "URG-04LX;[\nFIRM:3.1.04(02/Aug./2007);a\n"
          "PROT:SCIP 2.0;N\nSERI:H0706400;F\n\n");
     TEST_ASSERT_EQUAL_STRING("Hokuyo Automatic Co.,Ltd.", info.vendor);
     TEST_ASSERT_EQUAL_STRING("SOKUIKI Sensor URG-04LX", info.product);
@@ -94,13 +95,16 @@ void test_a_real_sensor_is_understood(void)
     TEST_ASSERT_EQUAL_STRING("SCIP 2.0", info.protocol);
     TEST_ASSERT_EQUAL_STRING("H0706400", info.serial);
     ask(SCIP_PARAMETERS);
-    feed("PP\n00P\nMODL:URG-04LX(Hokuyo Automatic Co.,Ltd.);N\nDMIN:20;4\nDMAX:5600;_\nARES:1024;\\\nAMIN:44;7\nAMAX:725;o\n"
+    feed("PP\n00P\nMODL:URG-04LX(Hokuyo Automatic "
+         "Co.,Ltd.);N\nDMIN:20;4\nDMAX:5600;_\nARES:1024;\\\nAMIN:44;7\nAMAX:725;o\n"
          "AFRT:384;6\nSCAN:600;e\n\n");
     TEST_ASSERT_EQUAL_STRING("URG-04LX(Hokuyo Automatic Co.,Ltd.)", info.model);
     TEST_ASSERT_TRUE(same(&info.told, &scip_limits_urg04lx));
     ask(SCIP_STATE);
-    feed("II\n00P\nMODL:URG-04LX(Hokuyo Automatic Co.,Ltd.);N\nLASR:ON;9\nSCSP:Initial(600[rpm])<-Default setting by user;A\n"
-         "MESM:CLASSIC;^\nSBPS:19200[bps]<-Default setting by user;A\nTIME:00173B;V\nSTAT:Sensor works well.;8\n\n");
+    feed("II\n00P\nMODL:URG-04LX(Hokuyo Automatic Co.,Ltd.);N\nLASR:ON;9\nSCSP:Initial(600[rpm])<-Default "
+         "setting by user;A\n"
+         "MESM:CLASSIC;^\nSBPS:19200[bps]<-Default setting by user;A\nTIME:00173B;V\nSTAT:Sensor works "
+         "well.;8\n\n");
     TEST_ASSERT_TRUE(info.laser_on);
     TEST_ASSERT_EQUAL_UINT16(600, info.speed_rpm);
     TEST_ASSERT_EQUAL_STRING("CLASSIC", info.mode);
@@ -137,7 +141,8 @@ void test_nothing_is_known_at_first(void)
     TEST_ASSERT_TRUE(limits_are_default());
 }
 
-/* --- tolerance ---------------------------------------------------------------------------------------------------- */
+/* --- tolerance
+ * ---------------------------------------------------------------------------------------------------- */
 
 void test_blanks_and_small_letters_do_not_matter(void)
 {
@@ -173,7 +178,8 @@ void test_a_line_without_a_sum_is_believed_and_one_with_a_wrong_sum_only_as_text
 
 void test_what_is_no_known_key_is_counted_and_left_alone(void)
 {
-    static const char *const lines[] = { "XXXX:1", "DMI:1", "DMINI:1", ":1", "DMIN", "LAS:ON", "UDST:0", "ZZZZ:", "[\\]^:1" };
+    static const char *const lines[] = {"XXXX:1", "DMI:1",  "DMINI:1", ":1",     "DMIN",
+                                        "LAS:ON", "UDST:0", "ZZZZ:",   "[\\]^:1"};
     begin_pp();
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         tell(lines[i], true);
@@ -185,7 +191,8 @@ void test_what_is_no_known_key_is_counted_and_left_alone(void)
 
 void test_a_number_that_is_none_or_too_large_changes_nothing(void)
 {
-    static const char *const lines[] = { "DMIN:", "DMIN:abc", "DMIN:65536", "DMIN:9999999999", "DMIN:123456789012345" };
+    static const char *const lines[] = {"DMIN:", "DMIN:abc", "DMIN:65536", "DMIN:9999999999",
+                                        "DMIN:123456789012345"};
     begin_pp();
     tell("DMIN:33", true);
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
@@ -239,19 +246,19 @@ void test_the_state_is_understood_by_words_within_it(void)
         const char *line;
         scip_health_t health;
     } rows[] = {
-        { "STAT:Sensor works well.", SCIP_HEALTH_GOOD },
-        { "STAT:FW Normal[FinalDist with shadow  ]", SCIP_HEALTH_GOOD },
-        { "STAT:Stable 000 no error.", SCIP_HEALTH_GOOD },
-        { "STAT:no error", SCIP_HEALTH_GOOD },
-        { "STAT:Unstable 011", SCIP_HEALTH_TROUBLE },
-        { "STAT:ABNORMAL", SCIP_HEALTH_TROUBLE },
-        { "STAT:Laser malfunction", SCIP_HEALTH_TROUBLE },
-        { "STAT:motor trouble", SCIP_HEALTH_TROUBLE },
-        { "STAT:internal Fault 3", SCIP_HEALTH_TROUBLE },
-        { "STAT:APD fail", SCIP_HEALTH_TROUBLE },
-        { "STAT:Error 50", SCIP_HEALTH_TROUBLE },
-        { "STAT:works", SCIP_HEALTH_UNKNOWN },
-        { "STAT:", SCIP_HEALTH_UNKNOWN },
+        {"STAT:Sensor works well.", SCIP_HEALTH_GOOD},
+        {"STAT:FW Normal[FinalDist with shadow  ]", SCIP_HEALTH_GOOD},
+        {"STAT:Stable 000 no error.", SCIP_HEALTH_GOOD},
+        {"STAT:no error", SCIP_HEALTH_GOOD},
+        {"STAT:Unstable 011", SCIP_HEALTH_TROUBLE},
+        {"STAT:ABNORMAL", SCIP_HEALTH_TROUBLE},
+        {"STAT:Laser malfunction", SCIP_HEALTH_TROUBLE},
+        {"STAT:motor trouble", SCIP_HEALTH_TROUBLE},
+        {"STAT:internal Fault 3", SCIP_HEALTH_TROUBLE},
+        {"STAT:APD fail", SCIP_HEALTH_TROUBLE},
+        {"STAT:Error 50", SCIP_HEALTH_TROUBLE},
+        {"STAT:works", SCIP_HEALTH_UNKNOWN},
+        {"STAT:", SCIP_HEALTH_UNKNOWN},
     };
     begin_pp();
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
@@ -260,11 +267,12 @@ void test_the_state_is_understood_by_words_within_it(void)
     }
 }
 
-/* --- limits ------------------------------------------------------------------------------------------------------- */
+/* --- limits
+ * ------------------------------------------------------------------------------------------------------- */
 
 void test_limits_come_from_the_sensor_when_it_told_them_all(void)
 {
-    static const scip_limits_t utm = { 21, 4000, 1440, 0, 1080, 540, 2400 };
+    static const scip_limits_t utm = {21, 4000, 1440, 0, 1080, 540, 2400};
     begin_pp();
     tell_all_limits_but("none");
     const scip_limits_t limits = scip_info_limits(&info);
@@ -274,7 +282,7 @@ void test_limits_come_from_the_sensor_when_it_told_them_all(void)
 /* AMIN 0 is a good value, so its absence does not show. */
 void test_one_missing_limit_makes_all_of_them_the_defaults(void)
 {
-    static const char *const keys[] = { "DMIN", "DMAX", "ARES", "AMAX", "AFRT", "SCAN" };
+    static const char *const keys[] = {"DMIN", "DMAX", "ARES", "AMAX", "AFRT", "SCAN"};
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
         setUp();
         begin_pp();
@@ -287,8 +295,8 @@ void test_one_missing_limit_makes_all_of_them_the_defaults(void)
 
 void test_limits_that_do_not_fit_together_are_not_used(void)
 {
-    static const char *const lines[] = { "DMIN:1001", "DMIN:0", "DMAX:21", "ARES:1079", "ARES:4096", "AMIN:541", "AMAX:539",
-                                         "AFRT:1081", "SCAN:0" };
+    static const char *const lines[] = {"DMIN:1001", "DMIN:0",   "DMAX:21",   "ARES:1079", "ARES:4096",
+                                        "AMIN:541",  "AMAX:539", "AFRT:1081", "SCAN:0"};
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         setUp();
         begin_pp();
@@ -313,7 +321,8 @@ void test_a_turn_of_no_steps_is_not_used(void)
 
 void test_limits_at_their_edges_are_used(void)
 {
-    static const char *const lines[] = { "DMIN:1000", "DMAX:22", "ARES:1080", "ARES:4095", "AMIN:540", "AMAX:540", "AMAX:1080" };
+    static const char *const lines[] = {"DMIN:1000", "DMAX:22",  "ARES:1080", "ARES:4095",
+                                        "AMIN:540",  "AMAX:540", "AMAX:1080"};
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         setUp();
         begin_pp();
@@ -323,16 +332,18 @@ void test_limits_at_their_edges_are_used(void)
     }
 }
 
-/* --- directions --------------------------------------------------------------------------------------------------- */
+/* --- directions
+ * --------------------------------------------------------------------------------------------------- */
 
-/* 360/1024 degrees a step; hand-worked: 372 -> -4.21875, 406 -> +7.734375, 44 -> -119.53125, 725 -> +119.8828125. */
+/* 360/1024 degrees a step; hand-worked: 372 -> -4.21875, 406 -> +7.734375, 44 -> -119.53125, 725 ->
+ * +119.8828125. */
 void test_steps_have_directions_in_thousandths_of_a_degree(void)
 {
     static const struct {
         uint16_t step;
         int32_t mdeg;
-    } rows[] = { { 384, 0 }, { 385, 352 }, { 383, -352 }, { 372, -4219 }, { 406, 7734 }, { 44, -119531 }, { 725, 119883 },
-                 { 128, -90000 }, { 640, 90000 }, { 0, -135000 }, { 768, 135000 } };
+    } rows[] = {{384, 0},      {385, 352},    {383, -352},  {372, -4219}, {406, 7734},  {44, -119531},
+                {725, 119883}, {128, -90000}, {640, 90000}, {0, -135000}, {768, 135000}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         TEST_ASSERT_EQUAL_INT32(rows[i].mdeg, scip_limits_mdeg(&scip_limits_urg04lx, rows[i].step));
     }
@@ -351,8 +362,8 @@ void test_every_step_comes_back_from_its_direction_and_from_a_third_of_a_step_be
 
 void test_directions_beyond_the_window_end_at_its_edges(void)
 {
-    static const int32_t left[] = { 119884, 180000, 360000, 360001, INT32_MAX };
-    static const int32_t right[] = { -119532, -180000, -360000, -360001, INT32_MIN };
+    static const int32_t left[] = {119884, 180000, 360000, 360001, INT32_MAX};
+    static const int32_t right[] = {-119532, -180000, -360000, -360001, INT32_MIN};
     for (size_t i = 0; i < sizeof left / sizeof left[0]; i++) {
         TEST_ASSERT_EQUAL_UINT16(725, scip_limits_step(&scip_limits_urg04lx, left[i]));
         TEST_ASSERT_EQUAL_UINT16(44, scip_limits_step(&scip_limits_urg04lx, right[i]));
@@ -361,8 +372,8 @@ void test_directions_beyond_the_window_end_at_its_edges(void)
 
 void test_another_sensor_has_other_directions(void)
 {
-    static const scip_limits_t utm = { 23, 30000, 1440, 0, 1080, 540, 2400 };
-    static const scip_limits_t finest = { 20, 5600, 4095, 0, 4095, 0, 600 };
+    static const scip_limits_t utm = {23, 30000, 1440, 0, 1080, 540, 2400};
+    static const scip_limits_t finest = {20, 5600, 4095, 0, 4095, 0, 600};
     TEST_ASSERT_EQUAL_INT32(135000, scip_limits_mdeg(&utm, 1080));
     TEST_ASSERT_EQUAL_INT32(-250, scip_limits_mdeg(&utm, 539));
     TEST_ASSERT_EQUAL_UINT16(1, scip_limits_step(&utm, -134750));

@@ -12,13 +12,15 @@ static scip_scan_t scan;
 void setUp(void)
 {
     memset(points, 0, sizeof points);
-    scan = (scip_scan_t){ .distance_mm = points, .capacity = SCIP_POINTS_MAX, .points = 35, .characters = 2,
-                          .first_step = 372, .cluster = 1 };
+    scan = (scip_scan_t){.distance_mm = points,
+                         .capacity = SCIP_POINTS_MAX,
+                         .points = 35,
+                         .characters = 2,
+                         .first_step = 372,
+                         .cluster = 1};
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void fill(uint16_t value)
 {
@@ -29,18 +31,19 @@ static void fill(uint16_t value)
 
 static scip_group_mean_t mean_of(uint16_t first, uint16_t last)
 {
-    const scip_group_t group = { first, last };
+    const scip_group_t group = {first, last};
     return scip_group_mean(&scan, &group);
 }
 
-/* --- the table ---------------------------------------------------------------------------------------------------- */
+/* --- the table
+ * ---------------------------------------------------------------------------------------------------- */
 
 void test_every_layout_can_be_asked_for_and_holds_its_groups(void)
 {
     uint16_t largest = 0;
     for (int id = 0; id < SCIP_LAYOUT_COUNT; id++) {
         const scip_layout_t *layout = &scip_layouts[id];
-        const scip_range_t range = { layout->first_step, layout->last_step, 1, 0, 0 };
+        const scip_range_t range = {layout->first_step, layout->last_step, 1, 0, 0};
         scip_request_t request;
         TEST_ASSERT_TRUE(scip_request_scan(&request, SCIP_STREAM_2, &range));
         largest = request.points > largest ? request.points : largest;
@@ -52,7 +55,8 @@ void test_every_layout_can_be_asked_for_and_holds_its_groups(void)
         for (uint16_t g = 0; g < layout->group_count; g++) {
             TEST_ASSERT_LESS_OR_EQUAL_UINT16(layout->groups[g].last_step, layout->groups[g].first_step);
             if (g > 0) {
-                TEST_ASSERT_GREATER_THAN_UINT16(layout->groups[g - 1].last_step, layout->groups[g].first_step);
+                TEST_ASSERT_GREATER_THAN_UINT16(layout->groups[g - 1].last_step,
+                                                layout->groups[g].first_step);
             }
         }
     }
@@ -71,8 +75,9 @@ void test_the_layouts_are_those_of_the_vehicle(void)
     TEST_ASSERT_EQUAL_UINT16(249, beams->first_step);
     TEST_ASSERT_EQUAL_UINT16(519, beams->last_step);
     for (uint16_t g = 0; g < 2; g++) { /* two beams of about 10 degrees */
-        TEST_ASSERT_FLOAT_WITHIN(0.3F, 10.0F, scip_step_degrees(beams->groups[g].last_step + 1) -
-                                                  scip_step_degrees(beams->groups[g].first_step));
+        TEST_ASSERT_FLOAT_WITHIN(0.3F, 10.0F,
+                                 scip_step_degrees(beams->groups[g].last_step + 1) -
+                                     scip_step_degrees(beams->groups[g].first_step));
     }
     TEST_ASSERT_EQUAL_STRING("three-mirrors", mirrors->name);
     for (uint16_t g = 0; g < 3; g++) { /* mirrors at 30, 120 and 210 degrees; the front is 120 */
@@ -84,7 +89,8 @@ void test_the_layouts_are_those_of_the_vehicle(void)
     }
 }
 
-/* --- the mean ----------------------------------------------------------------------------------------------------- */
+/* --- the mean
+ * ----------------------------------------------------------------------------------------------------- */
 
 void test_equal_rays_give_that_distance_and_no_spread(void)
 {
@@ -107,15 +113,16 @@ void test_codes_and_overrange_take_no_part(void)
     points[12] = 4094;
     scip_group_mean_t mean = mean_of(372, 406);
     TEST_ASSERT_EQUAL_UINT16(24, mean.good_rays);
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1000.0F, mean.mean_mm); /* 20 and 4094 are good, and far from the median */
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1000.0F,
+                             mean.mean_mm); /* 20 and 4094 are good, and far from the median */
     TEST_ASSERT_EQUAL_UINT16(4074, mean.spread_mm);
     TEST_ASSERT_TRUE(mean.valid);
 }
 
 void test_three_character_scans_reach_to_5600(void)
 {
-    static const uint16_t sent[] = { 4095, 5600, 5601, 65535 };
-    static const uint16_t good[] = { 1, 1, 0, 0 };
+    static const uint16_t sent[] = {4095, 5600, 5601, 65535};
+    static const uint16_t good[] = {1, 1, 0, 0};
     scan.characters = 3;
     for (unsigned i = 0; i < 4; i++) {
         points[0] = sent[i];
@@ -139,7 +146,7 @@ void test_half_of_the_rays_must_be_good(void)
     }
     fill(0);
     points[0] = points[1] = 700;
-    TEST_ASSERT_TRUE(mean_of(372, 375).valid); /* 2 of 4 */
+    TEST_ASSERT_TRUE(mean_of(372, 375).valid);  /* 2 of 4 */
     TEST_ASSERT_FALSE(mean_of(372, 376).valid); /* 2 of 5 */
 }
 
@@ -161,9 +168,9 @@ void test_only_the_group_counts(void)
 void test_rays_that_the_scan_does_not_hold_are_bad(void)
 {
     fill(800);
-    TEST_ASSERT_EQUAL_UINT16(9, mean_of(362, 380).good_rays);   /* of 19 */
+    TEST_ASSERT_EQUAL_UINT16(9, mean_of(362, 380).good_rays); /* of 19 */
     TEST_ASSERT_FALSE(mean_of(362, 380).valid);
-    TEST_ASSERT_TRUE(mean_of(363, 380).valid);                  /* 9 of 18 */
+    TEST_ASSERT_TRUE(mean_of(363, 380).valid); /* 9 of 18 */
     TEST_ASSERT_EQUAL_UINT16(7, mean_of(400, 413).good_rays);
     TEST_ASSERT_TRUE(mean_of(400, 413).valid);
     TEST_ASSERT_FALSE(mean_of(400, 414).valid);
@@ -217,7 +224,8 @@ void test_the_largest_group_of_the_largest_distances_does_not_overflow(void)
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 5600.0F, mean.mean_mm);
 }
 
-/* --- directions and times ----------------------------------------------------------------------------------------- */
+/* --- directions and times
+ * ----------------------------------------------------------------------------------------- */
 
 void test_steps_are_1024_to_the_turn_from_the_front_to_the_left(void)
 {
@@ -225,8 +233,8 @@ void test_steps_are_1024_to_the_turn_from_the_front_to_the_left(void)
         uint16_t step;
         float degrees;
     } rows[] = {
-        { 384, 0.0F },          { 372, -4.21875F },     { 406, 7.734375F },  { 249, -47.4609375F },
-        { 519, 47.4609375F },   { 44, -119.53125F },    { 725, 119.8828125F },
+        {384, 0.0F},        {372, -4.21875F},  {406, 7.734375F},    {249, -47.4609375F},
+        {519, 47.4609375F}, {44, -119.53125F}, {725, 119.8828125F},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         TEST_ASSERT_FLOAT_WITHIN(0.000001F, rows[i].degrees, scip_step_degrees(rows[i].step));
@@ -253,7 +261,8 @@ void test_directions_outside_the_field_of_view_end_at_its_edges(void)
     TEST_ASSERT_EQUAL_UINT16(725, scip_step_at_degrees(INFINITY));
 }
 
-/* --- something in front of some rays ------------------------------------------------------------------------------ */
+/* --- something in front of some rays
+ * ------------------------------------------------------------------------------ */
 
 /* The plain mean would be wrong by up to 157 mm with a fifth of the rays on a leg at 215 mm. */
 void test_a_leg_in_front_of_fewer_than_half_of_the_rays_does_not_move_the_mean(void)
@@ -327,9 +336,9 @@ void test_the_age_of_the_rays_follows_from_layout_and_bit_rate(void)
         uint16_t first, last, characters;
         uint32_t rate, age_us;
     } rows[] = {
-        { 372, 406, 2, 250000, 70500 },  { 372, 406, 2, 115200, 75233 },  { 249, 519, 2, 250000, 90428 },
-        { 249, 519, 2, 115200, 117903 }, { 111, 657, 2, 250000, 113228 }, { 111, 657, 2, 115200, 167382 },
-        { 372, 406, 3, 250000, 71900 },
+        {372, 406, 2, 250000, 70500},  {372, 406, 2, 115200, 75233},  {249, 519, 2, 250000, 90428},
+        {249, 519, 2, 115200, 117903}, {111, 657, 2, 250000, 113228}, {111, 657, 2, 115200, 167382},
+        {372, 406, 3, 250000, 71900},
     };
     for (uint16_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         scan.first_step = rows[i].first;
@@ -346,13 +355,14 @@ void test_the_age_of_the_rays_follows_from_layout_and_bit_rate(void)
     TEST_ASSERT_UINT32_WITHIN(100, 70500 - 23 * 2 * 40, scip_rays_age_us(&scan, 250000));
 }
 
-/* --- a sensor's own limits ---------------------------------------------------------------------------------------- */
+/* --- a sensor's own limits
+ * ---------------------------------------------------------------------------------------- */
 
 void test_the_limits_may_be_those_that_a_sensor_tells(void)
 {
-    static const scip_limits_t near = { 100, 3000, 1024, 44, 725, 384, 600 };
-    static const scip_limits_t far = { 20, 30000, 1024, 44, 725, 384, 600 };
-    const scip_group_t group = { 372, 406 };
+    static const scip_limits_t near = {100, 3000, 1024, 44, 725, 384, 600};
+    static const scip_limits_t far = {20, 30000, 1024, 44, 725, 384, 600};
+    const scip_group_t group = {372, 406};
     fill(1000);
     points[0] = 99;
     points[1] = 100;
@@ -362,7 +372,8 @@ void test_the_limits_may_be_those_that_a_sensor_tells(void)
     TEST_ASSERT_EQUAL_UINT16(32, scip_group_mean_within(&scan, &group, &near).good_rays);
     TEST_ASSERT_EQUAL_UINT16(2900, scip_group_mean_within(&scan, &group, &near).spread_mm);
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 1000.0F, scip_group_mean_within(&scan, &group, &near).mean_mm);
-    TEST_ASSERT_EQUAL_UINT16(34, scip_group_mean_within(&scan, &group, &far).good_rays); /* 4095 is none of two characters */
+    TEST_ASSERT_EQUAL_UINT16(
+        34, scip_group_mean_within(&scan, &group, &far).good_rays); /* 4095 is none of two characters */
     scan.characters = 3;
     points[5] = 30000;
     points[6] = 30001;
@@ -370,11 +381,12 @@ void test_the_limits_may_be_those_that_a_sensor_tells(void)
     TEST_ASSERT_EQUAL_UINT16(29901, scip_group_mean_within(&scan, &group, &far).spread_mm);
 }
 
-/* --- steps from ray to ray ---------------------------------------------------------------------------------------- */
+/* --- steps from ray to ray
+ * ---------------------------------------------------------------------------------------- */
 
 static uint16_t step_of(uint16_t first, uint16_t last)
 {
-    const scip_group_t group = { first, last };
+    const scip_group_t group = {first, last};
     return scip_group_step_mm(&scan, &group);
 }
 

@@ -10,7 +10,8 @@
 #define WIRE_MAX 2500
 #define SCANS_MAX 40
 
-/* --- the sensor's side, written apart from the product ------------------------------------------------------------ */
+/* --- the sensor's side, written apart from the product
+ * ------------------------------------------------------------ */
 
 typedef struct {
     unsigned octets[WIRE_MAX];
@@ -31,7 +32,7 @@ static void put_text(wire_t *wire, const char *text)
 }
 
 typedef struct {
-    char symbol[3];     /* MS MD GS GD */
+    char symbol[3]; /* MS MD GS GD */
     unsigned first, last, cluster, interval, count;
 } order_t;
 
@@ -48,7 +49,8 @@ static unsigned points_of(const order_t *order)
 
 static void write_echo(char *text, size_t size, const order_t *order, unsigned remaining)
 {
-    const int used = snprintf(text, size, "%s%04u%04u%02u", order->symbol, order->first, order->last, order->cluster);
+    const int used = snprintf(text, size, "%s%04u%04u%02u", order->symbol, order->first, order->last,
+                              order->cluster);
     if (order->symbol[0] == 'M') {
         snprintf(text + used, size - (size_t)used, "%u%02u", order->interval, remaining);
     }
@@ -85,11 +87,12 @@ static void put_frame(wire_t *wire, const order_t *order, unsigned remaining, un
     put_text(wire, text);
 }
 
-/* --- the product's side ------------------------------------------------------------------------------------------- */
+/* --- the product's side
+ * ------------------------------------------------------------------------------------------- */
 
-static const order_t front = { "MS", 372, 406, 1, 0, 0 };
-static const order_t wide = { "MD", 384, 405, 1, 0, 0 }; /* 22 points of 3: one straddles two blocks */
-static const order_t counted = { "MS", 372, 406, 1, 0, 5 };
+static const order_t front = {"MS", 372, 406, 1, 0, 0};
+static const order_t wide = {"MD", 384, 405, 1, 0, 0}; /* 22 points of 3: one straddles two blocks */
+static const order_t counted = {"MS", 372, 406, 1, 0, 5};
 
 static scip_parser_t parser;
 static scip_scan_t scan;
@@ -108,9 +111,9 @@ static struct {
 
 static void expect_order(const order_t *order)
 {
-    static const char *const symbols[] = { "MS", "MD", "GS", "GD" };
-    const scip_range_t range = { (uint16_t)order->first, (uint16_t)order->last, (uint16_t)order->cluster,
-                                 (uint16_t)order->interval, (uint16_t)order->count };
+    static const char *const symbols[] = {"MS", "MD", "GS", "GD"};
+    const scip_range_t range = {(uint16_t)order->first, (uint16_t)order->last, (uint16_t)order->cluster,
+                                (uint16_t)order->interval, (uint16_t)order->count};
     int kind = SCIP_STREAM_2;
     while (strcmp(symbols[kind - SCIP_STREAM_2], order->symbol) != 0) {
         kind++;
@@ -166,7 +169,7 @@ static void start(void)
     for (unsigned i = 0; i < 769; i++) {
         points[i] = 0xEEEE;
     }
-    scan = (scip_scan_t){ .distance_mm = points, .capacity = 769 };
+    scan = (scip_scan_t){.distance_mm = points, .capacity = 769};
     scip_parser_init(&parser);
     scip_parser_scan_into(&parser, &scan);
 }
@@ -177,9 +180,7 @@ void setUp(void)
     wire.length = 0;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static uint32_t damages(void)
 {
@@ -212,12 +213,13 @@ static void assert_numbered_scan(unsigned index, const order_t *order, unsigned 
     }
 }
 
-/* --- vectors ------------------------------------------------------------------------------------------------------ */
+/* --- vectors
+ * ------------------------------------------------------------------------------------------------------ */
 
 /* Hokuyo C-42-03320B, section "data encoding": CB = 1234, m2@0 = 16 000 000. */
 void test_two_character_values_and_time_stamps_decode_as_in_the_specification(void)
 {
-    const order_t one = { "GS", 384, 384, 1, 0, 0 };
+    const order_t one = {"GS", 384, 384, 1, 0, 0};
     expect_order(&one);
     TEST_ASSERT_EQUAL(SCIP_SCAN, feed_text("GS0384038401\n00P\nm2@0?\nCB5\n\n"));
     TEST_ASSERT_EQUAL_UINT16(1234, points[0]);
@@ -227,7 +229,7 @@ void test_two_character_values_and_time_stamps_decode_as_in_the_specification(vo
 /* Hokuyo C-42-03320B: 1Dh = 5432; oooo is the largest time stamp. */
 void test_three_character_values_decode_as_in_the_specification(void)
 {
-    const order_t one = { "GD", 384, 384, 1, 0, 0 };
+    const order_t one = {"GD", 384, 384, 1, 0, 0};
     expect_order(&one);
     TEST_ASSERT_EQUAL(SCIP_SCAN, feed_text("GD0384038401\n00P\nooool\n1DhM\n\n"));
     TEST_ASSERT_EQUAL_UINT16(5432, points[0]);
@@ -237,7 +239,7 @@ void test_three_character_values_decode_as_in_the_specification(void)
 /* Typed frame: 1 point of 1234 at 1 ms. Made from the specification. */
 void test_a_typed_frame_of_one_point(void)
 {
-    const order_t one = { "MS", 384, 384, 1, 0, 0 };
+    const order_t one = {"MS", 384, 384, 1, 0, 0};
     expect_order(&one);
     TEST_ASSERT_EQUAL(SCIP_SCAN, feed_text("MS0384038401000\n99b\n00011\nCB5\n\n"));
     TEST_ASSERT_EQUAL_UINT16(1234, points[0]);
@@ -251,34 +253,38 @@ void test_a_typed_frame_of_one_point(void)
 /* Typed frame: 32 points 1000..1031 fill one block of 64 characters exactly. Made from the specification. */
 void test_a_typed_frame_that_fills_its_block(void)
 {
-    const order_t block = { "MS", 369, 400, 1, 0, 0 };
+    const order_t block = {"MS", 369, 400, 1, 0, 0};
     expect_order(&block);
-    TEST_ASSERT_EQUAL(SCIP_SCAN, feed_text("MS0369040001000\n99b\nooool\n"
-                                           "?X?Y?Z?[?\\?]?^?_?`?a?b?c?d?e?f?g?h?i?j?k?l?m?n?o@0@1@2@3@4@5@6@7H\n\n"));
+    TEST_ASSERT_EQUAL(SCIP_SCAN,
+                      feed_text("MS0369040001000\n99b\nooool\n"
+                                "?X?Y?Z?[?\\?]?^?_?`?a?b?c?d?e?f?g?h?i?j?k?l?m?n?o@0@1@2@3@4@5@6@7H\n\n"));
     for (uint16_t i = 0; i < 32; i++) {
         TEST_ASSERT_EQUAL_UINT16(1000 + i, points[i]);
     }
 }
 
-/* Typed frame: 35 points 20, 120, .. 3420 at 16 000 000 ms, blocks of 64 and 6. Made from the specification. */
+/* Typed frame: 35 points 20, 120, .. 3420 at 16 000 000 ms, blocks of 64 and 6. Made from the specification.
+ */
 void test_a_typed_frame_of_two_blocks(void)
 {
     expect_order(&front);
-    TEST_ASSERT_EQUAL(SCIP_SCAN, feed_text("MS0372040601000\n99b\nm2@0?\n"
-                                           "0D1h3L506T889\\;@<d>H?lAPC4DXF<G`IDJhLLN0OTQ8R\\T@UdWHXlZP\\4]X_<``2\n"
-                                           "bDcheLR\n\n"));
+    TEST_ASSERT_EQUAL(SCIP_SCAN,
+                      feed_text("MS0372040601000\n99b\nm2@0?\n"
+                                "0D1h3L506T889\\;@<d>H?lAPC4DXF<G`IDJhLLN0OTQ8R\\T@UdWHXlZP\\4]X_<``2\n"
+                                "bDcheLR\n\n"));
     for (uint16_t i = 0; i < 35; i++) {
         TEST_ASSERT_EQUAL_UINT16(20 + 100 * i, points[i]);
     }
 }
 
-/* Typed frame: 22 points 5000..5021 of three characters, the last split 64 | 2. Made from the specification. */
+/* Typed frame: 22 points 5000..5021 of three characters, the last split 64 | 2. Made from the specification.
+ */
 void test_a_typed_frame_whose_last_value_straddles_two_blocks(void)
 {
     expect_order(&wide);
-    TEST_ASSERT_EQUAL(SCIP_SCAN,
-                      feed_text("MD0384040501000\n99b\n001TU\n"
-                                "1>81>91>:1>;1><1>=1>>1>?1>@1>A1>B1>C1>D1>E1>F1>G1>H1>I1>J1>K1>L1f\n>M;\n\n"));
+    TEST_ASSERT_EQUAL(
+        SCIP_SCAN, feed_text("MD0384040501000\n99b\n001TU\n"
+                             "1>81>91>:1>;1><1>=1>>1>?1>@1>A1>B1>C1>D1>E1>F1>G1>H1>I1>J1>K1>L1f\n>M;\n\n"));
     for (uint16_t i = 0; i < 22; i++) {
         TEST_ASSERT_EQUAL_UINT16(5000 + i, points[i]);
     }
@@ -288,7 +294,7 @@ void test_a_typed_frame_whose_last_value_straddles_two_blocks(void)
 /* Typed frame: codes 0..19 and the smallest distance 20. Made from the specification. */
 void test_codes_below_twenty_are_delivered_as_they_are(void)
 {
-    const order_t codes = { "GS", 384, 404, 1, 0, 0 };
+    const order_t codes = {"GS", 384, 404, 1, 0, 0};
     expect_order(&codes);
     TEST_ASSERT_EQUAL(SCIP_SCAN,
                       feed_text("GS0384040401\n00P\n00077\n000102030405060708090:0;0<0=0>0?0@0A0B0C0Db\n\n"));
@@ -299,8 +305,8 @@ void test_codes_below_twenty_are_delivered_as_they_are(void)
 
 void test_three_characters_saturate_at_what_sixteen_bits_hold(void)
 {
-    static const unsigned long sent[] = { 65534, 65535, 65536, 262143 };
-    const order_t four = { "GD", 10, 13, 1, 0, 0 };
+    static const unsigned long sent[] = {65534, 65535, 65536, 262143};
+    const order_t four = {"GD", 10, 13, 1, 0, 0};
     put_frame(&wire, &four, 0, 5, sent);
     expect_order(&four);
     TEST_ASSERT_EQUAL(SCIP_SCAN, feed_range(&wire, 0, wire.length));
@@ -310,7 +316,8 @@ void test_three_characters_saturate_at_what_sixteen_bits_hold(void)
     }
 }
 
-/* --- recordings, see tests/fixtures/scip/README.md ---------------------------------------------------------------- */
+/* --- recordings, see tests/fixtures/scip/README.md
+ * ---------------------------------------------------------------- */
 
 static unsigned replay(const char *name, const order_t *order)
 {
@@ -355,19 +362,20 @@ void test_a_recording_of_the_front_is_read_whole(void)
 
 void test_a_recording_of_three_characters_is_read_whole(void)
 {
-    const order_t beams = { "MD", 249, 519, 1, 0, 0 };
+    const order_t beams = {"MD", 249, 519, 1, 0, 0};
     TEST_ASSERT_EQUAL_UINT(8, replay("md_beams", &beams));
 }
 
 void test_a_recording_with_clusters_is_read_whole(void)
 {
-    const order_t cluster = { "MD", 44, 725, 5, 0, 0 };
+    const order_t cluster = {"MD", 44, 725, 5, 0, 0};
     TEST_ASSERT_EQUAL_UINT(8, replay("md_cluster", &cluster));
     TEST_ASSERT_EQUAL_UINT16(5, scan.cluster);
     TEST_ASSERT_EQUAL_UINT16(44, scan.first_step);
 }
 
-/* --- replies without points --------------------------------------------------------------------------------------- */
+/* --- replies without points
+ * --------------------------------------------------------------------------------------- */
 
 static void assert_reply(scip_kind_t kind, const char *text, const char *status, bool legacy)
 {
@@ -462,11 +470,11 @@ void test_each_fault_of_a_reply_is_counted_by_its_cause(void)
         const char *text;
         scip_damage_t cause;
     } rows[] = {
-        { "QT\n00Q\n\n", SCIP_DAMAGE_SUM },       { "QT\n00\n\n", SCIP_DAMAGE_LENGTH },
-        { "QT\n00PP\n\n", SCIP_DAMAGE_LENGTH },   { "QT\n\n", SCIP_DAMAGE_LENGTH },
-        { "QT\n0\n\n", SCIP_DAMAGE_LENGTH },      { "QT\n0pP\n\n", SCIP_DAMAGE_CHARACTER },
-        { "QT\n/0P\n\n", SCIP_DAMAGE_CHARACTER }, { "QT\n00P\nx\n", SCIP_DAMAGE_LENGTH },
-        { "QT\nE\nx\n", SCIP_DAMAGE_LENGTH },
+        {"QT\n00Q\n\n", SCIP_DAMAGE_SUM},       {"QT\n00\n\n", SCIP_DAMAGE_LENGTH},
+        {"QT\n00PP\n\n", SCIP_DAMAGE_LENGTH},   {"QT\n\n", SCIP_DAMAGE_LENGTH},
+        {"QT\n0\n\n", SCIP_DAMAGE_LENGTH},      {"QT\n0pP\n\n", SCIP_DAMAGE_CHARACTER},
+        {"QT\n/0P\n\n", SCIP_DAMAGE_CHARACTER}, {"QT\n00P\nx\n", SCIP_DAMAGE_LENGTH},
+        {"QT\nE\nx\n", SCIP_DAMAGE_LENGTH},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         start();
@@ -486,9 +494,9 @@ void test_the_clock_reply_checks_length_characters_and_sum(void)
         const char *text;
         scip_damage_t cause;
     } rows[] = {
-        { "TM1\n00P\nm2@0>\n\n", SCIP_DAMAGE_SUM },
-        { "TM1\n00P\nm2@0\n\n", SCIP_DAMAGE_LENGTH },
-        { "TM1\n00P\nm2@p?\n\n", SCIP_DAMAGE_CHARACTER },
+        {"TM1\n00P\nm2@0>\n\n", SCIP_DAMAGE_SUM},
+        {"TM1\n00P\nm2@0\n\n", SCIP_DAMAGE_LENGTH},
+        {"TM1\n00P\nm2@p?\n\n", SCIP_DAMAGE_CHARACTER},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         start();
@@ -498,7 +506,8 @@ void test_the_clock_reply_checks_length_characters_and_sum(void)
     }
 }
 
-/* --- VV PP II ----------------------------------------------------------------------------------------------------- */
+/* --- VV PP II
+ * ----------------------------------------------------------------------------------------------------- */
 
 static void assert_line(const char *octets, const char *text, bool proved)
 {
@@ -514,8 +523,8 @@ static void assert_line(const char *octets, const char *text, bool proved)
 /* Lines of VV and PP as a URG-04LX sends them; sums recomputed (the specification's print has wrong ones). */
 void test_information_lines_come_one_by_one(void)
 {
-    static const scip_kind_t kinds[] = { SCIP_VERSION, SCIP_PARAMETERS, SCIP_STATE };
-    static const char *const echoes[] = { "VV\n00P\n", "PP\n00P\n", "II\n00P\n" };
+    static const scip_kind_t kinds[] = {SCIP_VERSION, SCIP_PARAMETERS, SCIP_STATE};
+    static const char *const echoes[] = {"VV\n00P\n", "PP\n00P\n", "II\n00P\n"};
     for (unsigned i = 0; i < 3; i++) {
         start();
         expect_plain(kinds[i]);
@@ -523,7 +532,8 @@ void test_information_lines_come_one_by_one(void)
         assert_line("VEND:Hokuyo Automatic Co.,Ltd.;[\n", "VEND:Hokuyo Automatic Co.,Ltd.", true);
         assert_line("PROT:SCIP 2.0;N\n", "PROT:SCIP 2.0", true);
         assert_line("ARES:1024;\\\n", "ARES:1024", true);
-        assert_line("MODL:URG-04LX(Hokuyo Automatic Co.,Ltd.);N\n", "MODL:URG-04LX(Hokuyo Automatic Co.,Ltd.)", true);
+        assert_line("MODL:URG-04LX(Hokuyo Automatic Co.,Ltd.);N\n",
+                    "MODL:URG-04LX(Hokuyo Automatic Co.,Ltd.)", true);
         TEST_ASSERT_EQUAL(SCIP_REPLY, feed_text("\n"));
         TEST_ASSERT_EQUAL_UINT16('0', parser.reply.status[0]);
         TEST_ASSERT_EQUAL_UINT32(0, damages());
@@ -560,7 +570,8 @@ void test_a_refused_information_request_has_no_lines(void)
     assert_reply(SCIP_STATE, "II\n0Ee\n\n", "0E", false);
 }
 
-/* --- SCIP1.1 answers "E" ------------------------------------------------------------------------------------------ */
+/* --- SCIP1.1 answers "E"
+ * ------------------------------------------------------------------------------------------ */
 
 void test_an_e_under_the_awaited_echo_tells_scip_1_1(void)
 {
@@ -596,7 +607,7 @@ void test_an_e_without_echo_or_without_end_tells_nothing(void)
 /* Inserting one line end before the sum 'E' of the last block gives "...", "E", "". */
 void test_a_cut_block_of_a_running_stream_is_not_taken_for_scip_1_1(void)
 {
-    const order_t one = { "MS", 384, 384, 1, 0, 0 };
+    const order_t one = {"MS", 384, 384, 1, 0, 0};
     expect_order(&one);
     TEST_ASSERT_EQUAL(SCIP_SCAN, feed_text("MS0384038401000\n00P\n\nMS0384038401000\n99b\n00011\nDQE\n\n"));
     TEST_ASSERT_EQUAL(SCIP_DAMAGED, feed_text("MS0384038401000\n99b\n00022\nDQ\nE\n\n"));
@@ -604,7 +615,8 @@ void test_a_cut_block_of_a_running_stream_is_not_taken_for_scip_1_1(void)
     TEST_ASSERT_EQUAL(SCIP_SCAN, feed_text("MS0384038401000\n99b\n00033\nDQE\n\n"));
 }
 
-/* --- streams ------------------------------------------------------------------------------------------------------ */
+/* --- streams
+ * ------------------------------------------------------------------------------------------------------ */
 
 void test_a_stream_is_answered_and_then_delivers_scan_by_scan(void)
 {
@@ -635,7 +647,7 @@ void test_a_refused_stream_is_a_reply_and_nothing_follows(void)
 
 void test_a_refused_single_scan_is_a_reply(void)
 {
-    const order_t single = { "GS", 372, 406, 1, 0, 0 };
+    const order_t single = {"GS", 372, 406, 1, 0, 0};
     expect_order(&single);
     TEST_ASSERT_EQUAL(SCIP_REPLY, feed_text("GS0372040601\n10Q\n\n"));
     TEST_ASSERT_EQUAL_UINT16('1', parser.reply.status[0]);
@@ -643,7 +655,7 @@ void test_a_refused_single_scan_is_a_reply(void)
 
 void test_a_single_scan_comes_once(void)
 {
-    const order_t single = { "GS", 372, 406, 1, 0, 0 };
+    const order_t single = {"GS", 372, 406, 1, 0, 0};
     expect_order(&single);
     put_numbered_frame(&wire, &single, 0);
     TEST_ASSERT_EQUAL_size_t(98, wire.length);
@@ -743,7 +755,7 @@ static scip_event_t counted_frame(unsigned remaining, unsigned frame)
 
 void test_a_counter_that_does_not_fall_by_one_costs_its_own_scan(void)
 {
-    static const unsigned wrong[] = { 4, 5, 1, 99, 0 };
+    static const unsigned wrong[] = {4, 5, 1, 99, 0};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         start();
         expect_order(&counted);
@@ -772,7 +784,7 @@ void test_after_a_damaged_frame_the_counter_is_checked_again_once_two_agree(void
 
 void test_a_counter_that_is_wrong_after_a_loss_costs_no_later_scan(void)
 {
-    static const unsigned wrong[] = { 0, 1, 2, 4, 5, 99 };
+    static const unsigned wrong[] = {0, 1, 2, 4, 5, 99};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         start();
         expect_order(&counted);
@@ -795,7 +807,8 @@ void test_no_run_of_wrong_counters_silences_the_stream(void)
     TEST_ASSERT_EQUAL_UINT(9, seen.scans);
 }
 
-/* --- time stamps -------------------------------------------------------------------------------------------------- */
+/* --- time stamps
+ * -------------------------------------------------------------------------------------------------- */
 
 static scip_event_t stamped_frame(unsigned long stamp)
 {
@@ -840,8 +853,8 @@ void test_a_sensor_clock_that_restarts_costs_one_scan(void)
 /* Whatever a wrong stamp says, believed or not: the frames that follow it are delivered. */
 void test_a_wrong_stamp_harms_no_later_frame(void)
 {
-    static const unsigned long wrong[] = { 0,      499999, 500000, 500001, 500099, 500101, 500250, 505000,
-                                           510000, 510101, 600000, 8388608, 16777215 };
+    static const unsigned long wrong[] = {0,      499999, 500000, 500001, 500099,  500101,  500250,
+                                          505000, 510000, 510101, 600000, 8388608, 16777215};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         start();
         expect_order(&front);
@@ -897,7 +910,8 @@ void test_stamps_are_unwrapped(void)
     }
 }
 
-/* --- the owner of the scan ---------------------------------------------------------------------------------------- */
+/* --- the owner of the scan
+ * ---------------------------------------------------------------------------------------- */
 
 void test_a_scan_larger_than_its_memory_is_damage_and_writes_nothing(void)
 {
@@ -929,8 +943,8 @@ void test_without_memory_scans_are_checked_and_counted_only(void)
 void test_two_memories_take_turns_without_copying(void)
 {
     static uint16_t memory[2][35];
-    scip_scan_t scans[2] = { { .distance_mm = memory[0], .capacity = 35 },
-                             { .distance_mm = memory[1], .capacity = 35 } };
+    scip_scan_t scans[2] = {{.distance_mm = memory[0], .capacity = 35},
+                            {.distance_mm = memory[1], .capacity = 35}};
     unsigned filling = 0;
     scip_parser_scan_into(&parser, &scans[filling]);
     expect_order(&front);
@@ -970,10 +984,12 @@ void test_changing_the_memory_inside_a_scan_gives_that_scan_up(void)
 
 void test_a_parser_and_a_scan_of_271_points_fit_2_kib(void)
 {
-    TEST_ASSERT_LESS_OR_EQUAL_size_t(2048, sizeof(scip_parser_t) + sizeof(scip_scan_t) + 271 * sizeof(uint16_t));
+    TEST_ASSERT_LESS_OR_EQUAL_size_t(2048,
+                                     sizeof(scip_parser_t) + sizeof(scip_scan_t) + 271 * sizeof(uint16_t));
 }
 
-/* --- faults ------------------------------------------------------------------------------------------------------- */
+/* --- faults
+ * ------------------------------------------------------------------------------------------------------- */
 
 #define FRAMES 4
 
@@ -990,8 +1006,8 @@ static void put_run(const order_t *order)
     begins[FRAMES] = wire.length;
 }
 
-/* Feeds a run with a fault inside the octets [at, at + reach) of it: no wrong scan, and every frame that the fault does
- * not touch is delivered, in order. */
+/* Feeds a run with a fault inside the octets [at, at + reach) of it: no wrong scan, and every frame that the
+ * fault does not touch is delivered, in order. */
 static void assert_run_survives(const order_t *order, const wire_t *w, size_t at, size_t reach)
 {
     unsigned next = 0;
@@ -1014,11 +1030,11 @@ static void assert_run_survives(const order_t *order, const wire_t *w, size_t at
     TEST_ASSERT_EQUAL_UINT32(0, parser.counters.legacy);
 }
 
-static const order_t *const runs[] = { &front, &counted, &wide };
+static const order_t *const runs[] = {&front, &counted, &wide};
 #define RUNS (sizeof runs / sizeof runs[0])
 
-/* A single flipped bit never escapes: bits 0..5 change the six-bit sum, bits 6 and 7 leave 30H..6FH, and what has no
- * sum (echo, line ends) is compared. */
+/* A single flipped bit never escapes: bits 0..5 change the six-bit sum, bits 6 and 7 leave 30H..6FH, and what
+ * has no sum (echo, line ends) is compared. */
 void test_no_flipped_bit_yields_a_distance_or_costs_another_frame(void)
 {
     for (size_t r = 0; r < RUNS; r++) {
@@ -1066,7 +1082,7 @@ static void assert_insertion_survives(const order_t *order, size_t at, unsigned 
 
 void test_no_inserted_octet_yields_a_distance_or_costs_another_frame(void)
 {
-    static const unsigned inserted[] = { '\n', '\r', 0x00, 0xFF, '0', 'M', 'E', 'o', 0x8A, '9' };
+    static const unsigned inserted[] = {'\n', '\r', 0x00, 0xFF, '0', 'M', 'E', 'o', 0x8A, '9'};
     for (size_t r = 0; r < RUNS; r++) {
         put_run(runs[r]);
         for (size_t at = 0; at < wire.length; at++) {
@@ -1110,8 +1126,8 @@ void test_a_frame_cut_short_anywhere_costs_only_itself(void)
     }
 }
 
-/* What is left of a block, with the next frame's echo behind it, may have a block's length and, once in 64 times, a
- * right sum: the last octet of the echo. The next frame is not lost for that. */
+/* What is left of a block, with the next frame's echo behind it, may have a block's length and, once in 64
+ * times, a right sum: the last octet of the echo. The next frame is not lost for that. */
 void test_an_echo_that_makes_a_cut_block_whole_is_still_an_echo(void)
 {
     static const char echo[] = "MS0372040601000";
@@ -1134,7 +1150,8 @@ void test_an_echo_that_makes_a_cut_block_whole_is_still_an_echo(void)
         feed_range(&wire, begins[2], wire.length);
         TEST_ASSERT_EQUAL_UINT(3, seen.scans);
         assert_numbered_scan(1, &front, 2);
-        TEST_ASSERT_EQUAL_UINT32(1, parser.counters.damaged[SCIP_DAMAGE_LENGTH] + parser.counters.damaged[SCIP_DAMAGE_SUM]);
+        TEST_ASSERT_EQUAL_UINT32(1, parser.counters.damaged[SCIP_DAMAGE_LENGTH] +
+                                        parser.counters.damaged[SCIP_DAMAGE_SUM]);
     }
     TEST_ASSERT_EQUAL_UINT(1, found);
 }
@@ -1198,7 +1215,7 @@ void test_the_echo_is_found_at_the_end_of_a_line_of_any_length(void)
 /* 97 + 64 k octets: the cut line happens to have as many left as a block. */
 void test_a_line_that_was_cut_is_never_taken_for_a_block(void)
 {
-    const order_t block = { "MS", 369, 400, 1, 0, 0 };
+    const order_t block = {"MS", 369, 400, 1, 0, 0};
     for (unsigned extra = 1; extra < 200; extra++) {
         start();
         expect_order(&block);
@@ -1206,8 +1223,9 @@ void test_a_line_that_was_cut_is_never_taken_for_a_block(void)
         for (unsigned i = 0; i < extra; i++) {
             feed('0');
         }
-        TEST_ASSERT_EQUAL(SCIP_DAMAGED, feed_text("0000000000000000000000000000000000000000000000000000000000000000"
-                                                  "0\n"));
+        TEST_ASSERT_EQUAL(SCIP_DAMAGED,
+                          feed_text("0000000000000000000000000000000000000000000000000000000000000000"
+                                    "0\n"));
         TEST_ASSERT_EQUAL(SCIP_DAMAGE_LENGTH, parser.last_damage);
     }
 }
@@ -1218,23 +1236,23 @@ void test_each_fault_of_a_frame_is_counted_by_its_cause(void)
         const char *octets;
         scip_damage_t cause;
     } rows[] = {
-        { "MS0384038401000\n99c\n00022\nCB5\n\n", SCIP_DAMAGE_SUM },
-        { "MS0384038401000\n99b\n00023\nCB5\n\n", SCIP_DAMAGE_SUM },
-        { "MS0384038401000\n99b\n00022\nCB6\n\n", SCIP_DAMAGE_SUM },
-        { "MS0384038401000\n99b\n0002\nCB5\n\n", SCIP_DAMAGE_LENGTH },
-        { "MS0384038401000\n99b\n00022\nCB\n\n", SCIP_DAMAGE_LENGTH },
-        { "MS0384038401000\n99b\n00022\nCBC5\n\n", SCIP_DAMAGE_LENGTH },
-        { "MS0384038401000\n99b\n00022\n\n", SCIP_DAMAGE_LENGTH },
-        { "MS0384038401000\n99b\n00022\nCB5\nCB5\n\n", SCIP_DAMAGE_LENGTH },
-        { "MS0384038401001\n99b\n00022\nCB5\n\n", SCIP_DAMAGE_ECHO },
-        { "MD0384038401000\n99b\n00022\nCB5\n\n", SCIP_DAMAGE_ECHO },
-        { "S0384038401000\n99b\n00022\nCB5\n\n", SCIP_DAMAGE_ECHO },
-        { "MS0384038401000\n9yb\n00022\nCB5\n\n", SCIP_DAMAGE_CHARACTER },
-        { "MS0384038401000\n99b\np0022\nCB5\n\n", SCIP_DAMAGE_CHARACTER },
-        { "MS0384038401000\n99b\n00022\nC/5\n\n", SCIP_DAMAGE_CHARACTER },
-        { "MS0384038401000\n99b\n00011\nCB5\n\n", SCIP_DAMAGE_SEQUENCE },
+        {"MS0384038401000\n99c\n00022\nCB5\n\n", SCIP_DAMAGE_SUM},
+        {"MS0384038401000\n99b\n00023\nCB5\n\n", SCIP_DAMAGE_SUM},
+        {"MS0384038401000\n99b\n00022\nCB6\n\n", SCIP_DAMAGE_SUM},
+        {"MS0384038401000\n99b\n0002\nCB5\n\n", SCIP_DAMAGE_LENGTH},
+        {"MS0384038401000\n99b\n00022\nCB\n\n", SCIP_DAMAGE_LENGTH},
+        {"MS0384038401000\n99b\n00022\nCBC5\n\n", SCIP_DAMAGE_LENGTH},
+        {"MS0384038401000\n99b\n00022\n\n", SCIP_DAMAGE_LENGTH},
+        {"MS0384038401000\n99b\n00022\nCB5\nCB5\n\n", SCIP_DAMAGE_LENGTH},
+        {"MS0384038401001\n99b\n00022\nCB5\n\n", SCIP_DAMAGE_ECHO},
+        {"MD0384038401000\n99b\n00022\nCB5\n\n", SCIP_DAMAGE_ECHO},
+        {"S0384038401000\n99b\n00022\nCB5\n\n", SCIP_DAMAGE_ECHO},
+        {"MS0384038401000\n9yb\n00022\nCB5\n\n", SCIP_DAMAGE_CHARACTER},
+        {"MS0384038401000\n99b\np0022\nCB5\n\n", SCIP_DAMAGE_CHARACTER},
+        {"MS0384038401000\n99b\n00022\nC/5\n\n", SCIP_DAMAGE_CHARACTER},
+        {"MS0384038401000\n99b\n00011\nCB5\n\n", SCIP_DAMAGE_SEQUENCE},
     };
-    const order_t one = { "MS", 384, 384, 1, 0, 0 };
+    const order_t one = {"MS", 384, 384, 1, 0, 0};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         start();
         expect_order(&one);
@@ -1251,7 +1269,7 @@ void test_each_fault_of_a_frame_is_counted_by_its_cause(void)
 /* What a six-bit sum cannot see, stated exactly: two changes in one block that cancel out modulo 64. */
 void test_two_changes_that_cancel_out_in_one_sum_are_the_first_to_escape(void)
 {
-    const order_t one = { "MS", 384, 384, 1, 0, 0 };
+    const order_t one = {"MS", 384, 384, 1, 0, 0};
     expect_order(&one);
     TEST_ASSERT_EQUAL(SCIP_SCAN, feed_text("MS0384038401000\n99b\n00011\nDA5\n\n")); /* was CB5 */
     TEST_ASSERT_EQUAL_UINT16(1297, points[0]);
@@ -1270,7 +1288,8 @@ void test_a_frame_inside_a_frame_is_delivered(void)
     }
 }
 
-/* --- properties --------------------------------------------------------------------------------------------------- */
+/* --- properties
+ * --------------------------------------------------------------------------------------------------- */
 
 static unsigned long random_state;
 
@@ -1289,7 +1308,8 @@ static void assert_round_trip(const order_t *order, unsigned long stamp)
     wire.length = 0;
     put_frame(&wire, order, 0, stamp, values);
     expect_order(order);
-    TEST_ASSERT_EQUAL_size_t(wire.length, order->symbol[0] == 'M' ? request.scan_octets : request.reply_octets);
+    TEST_ASSERT_EQUAL_size_t(wire.length,
+                             order->symbol[0] == 'M' ? request.scan_octets : request.reply_octets);
     TEST_ASSERT_EQUAL(SCIP_SCAN, feed_range(&wire, 0, wire.length));
     seen.scans = 0;
     TEST_ASSERT_EQUAL_UINT16(points_of(order), scan.points);
@@ -1302,12 +1322,12 @@ static void assert_round_trip(const order_t *order, unsigned long stamp)
 
 void test_whatever_the_sensor_encodes_is_decoded(void)
 {
-    static const char *const symbols[] = { "MS", "MD", "GS", "GD" };
+    static const char *const symbols[] = {"MS", "MD", "GS", "GD"};
     random_state = 20260801UL;
     printf("random seed %lu\n", random_state);
     for (unsigned n = 1; n <= 300; n++) {
         for (unsigned s = 0; s < 4; s++) {
-            order_t order = { "", 0, 0, 1, 0, 0 };
+            order_t order = {"", 0, 0, 1, 0, 0};
             memcpy(order.symbol, symbols[s], 2);
             order.first = (unsigned)random_below(769 - n);
             order.last = order.first + n - 1;
@@ -1316,7 +1336,7 @@ void test_whatever_the_sensor_encodes_is_decoded(void)
             assert_round_trip(&order, random_below(16777216));
         }
     }
-    assert_round_trip(&(order_t){ "MD", 0, 768, 1, 0, 0 }, 1);
+    assert_round_trip(&(order_t){"MD", 0, 768, 1, 0, 0}, 1);
     TEST_ASSERT_EQUAL_UINT32(0, damages());
 }
 
@@ -1329,7 +1349,8 @@ void test_ten_times_ten_thousand_octets_of_noise_yield_nothing_and_stop_nothing(
         start();
         expect_order(&front);
         for (unsigned i = 0; i < 10000; i++) {
-            feed(round % 2 == 0 ? (unsigned)random_below(256) : (unsigned char)alphabet[random_below(sizeof alphabet)]);
+            feed(round % 2 == 0 ? (unsigned)random_below(256)
+                                : (unsigned char)alphabet[random_below(sizeof alphabet)]);
         }
         TEST_ASSERT_EQUAL_UINT(0, seen.scans);
         TEST_ASSERT_EQUAL_UINT(0, seen.events[SCIP_REPLY]);
@@ -1337,8 +1358,8 @@ void test_ten_times_ten_thousand_octets_of_noise_yield_nothing_and_stop_nothing(
     }
 }
 
-/* Every octet of a stream replaced by any other one with a chance of 1 in 50: hardly a frame is whole, and those are
- * delivered. */
+/* Every octet of a stream replaced by any other one with a chance of 1 in 50: hardly a frame is whole, and
+ * those are delivered. */
 void test_in_heavy_noise_every_untouched_frame_is_delivered(void)
 {
     unsigned whole = 0;
@@ -1380,7 +1401,8 @@ void test_dirty_high_bits_of_an_octet_do_not_matter(void)
     }
 }
 
-/* --- runs of octets ----------------------------------------------------------------------------------------------- */
+/* --- runs of octets
+ * ----------------------------------------------------------------------------------------------- */
 
 static scip_event_t feed_run_text(const octet_t *octets, size_t count, size_t burst, unsigned *events)
 {
@@ -1397,7 +1419,8 @@ static scip_event_t feed_run_text(const octet_t *octets, size_t count, size_t bu
     return last;
 }
 
-/* A run with a damaged frame, a line longer than the memory of a line and a refusal, in bursts of every size. */
+/* A run with a damaged frame, a line longer than the memory of a line and a refusal, in bursts of every size.
+ */
 void test_octets_in_bursts_make_the_same_events_as_one_by_one(void)
 {
     static octet_t octets[WIRE_MAX];
@@ -1416,7 +1439,7 @@ void test_octets_in_bursts_make_the_same_events_as_one_by_one(void)
         octets[i] = (octet_t)wire.octets[i];
     }
     for (size_t burst = 1; burst <= wire.length; burst += burst < 120 ? 1 : 97) {
-        unsigned events[SCIP_DAMAGED + 1] = { 0 };
+        unsigned events[SCIP_DAMAGED + 1] = {0};
         start();
         expect_order(&front);
         (void)feed_run_text(octets, wire.length, burst, events);
@@ -1446,7 +1469,8 @@ void test_a_burst_stops_behind_the_octet_that_makes_an_event(void)
     TEST_ASSERT_EQUAL(SCIP_NOTHING, event);
 }
 
-/* --- octets still to come ------------------------------------------------------------------------------------------ */
+/* --- octets still to come
+ * ------------------------------------------------------------------------------------------ */
 
 /* From octet `known` on the parser knows how many are left. */
 static void assert_countdown(size_t known)
@@ -1465,8 +1489,9 @@ static void assert_countdown(size_t known)
 
 void test_in_a_stream_the_octets_of_the_next_scan_are_known_from_its_first_to_its_last(void)
 {
-    static const order_t orders[] = {{"MS", 372, 406, 1, 0, 0}, {"MD", 384, 405, 1, 0, 0}, {"MS", 0, 31, 1, 0, 0},
-                                     {"MS", 0, 32, 1, 0, 0},    {"MS", 5, 5, 1, 0, 0},     {"MS", 0, 768, 2, 0, 0}};
+    static const order_t orders[] = {{"MS", 372, 406, 1, 0, 0}, {"MD", 384, 405, 1, 0, 0},
+                                     {"MS", 0, 31, 1, 0, 0},    {"MS", 0, 32, 1, 0, 0},
+                                     {"MS", 5, 5, 1, 0, 0},     {"MS", 0, 768, 2, 0, 0}};
 
     for (unsigned o = 0; o < sizeof orders / sizeof orders[0]; o++) {
         start();

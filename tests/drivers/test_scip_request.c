@@ -11,9 +11,7 @@ void setUp(void)
     memset(&request, 0xA5, sizeof request);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void assert_text(const char *expected)
 {
@@ -30,9 +28,10 @@ static void assert_untouched(void)
     TEST_ASSERT_EQUAL_MEMORY(&untouched, &request, sizeof untouched);
 }
 
-static scip_range_t range_of(uint16_t first, uint16_t last, uint16_t cluster, uint16_t interval, uint16_t scans)
+static scip_range_t range_of(uint16_t first, uint16_t last, uint16_t cluster, uint16_t interval,
+                             uint16_t scans)
 {
-    scip_range_t range = { first, last, cluster, interval, scans };
+    scip_range_t range = {first, last, cluster, interval, scans};
     return range;
 }
 
@@ -44,10 +43,10 @@ void test_plain_commands_have_the_text_and_reply_length_of_the_specification(voi
         const char *text;
         uint16_t reply_octets;
     } rows[] = {
-        { SCIP_LASER_OFF_1, "L0\n", 6 },  { SCIP_SWITCH, "SCIP2.0\n", 11 }, { SCIP_STOP, "QT\n", 8 },
-        { SCIP_LASER_ON, "BM\n", 8 },     { SCIP_RESET, "RS\n", 8 },        { SCIP_TIME_ENTER, "TM0\n", 9 },
-        { SCIP_TIME_READ, "TM1\n", 15 },  { SCIP_TIME_LEAVE, "TM2\n", 9 },  { SCIP_VERSION, "VV\n", 0 },
-        { SCIP_PARAMETERS, "PP\n", 0 },   { SCIP_STATE, "II\n", 0 },
+        {SCIP_LASER_OFF_1, "L0\n", 6}, {SCIP_SWITCH, "SCIP2.0\n", 11}, {SCIP_STOP, "QT\n", 8},
+        {SCIP_LASER_ON, "BM\n", 8},    {SCIP_RESET, "RS\n", 8},        {SCIP_TIME_ENTER, "TM0\n", 9},
+        {SCIP_TIME_READ, "TM1\n", 15}, {SCIP_TIME_LEAVE, "TM2\n", 9},  {SCIP_VERSION, "VV\n", 0},
+        {SCIP_PARAMETERS, "PP\n", 0},  {SCIP_STATE, "II\n", 0},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         TEST_ASSERT_TRUE(scip_request(&request, rows[i].kind));
@@ -64,8 +63,8 @@ void test_plain_commands_have_the_text_and_reply_length_of_the_specification(voi
 
 void test_commands_with_parameters_are_not_built_without_them(void)
 {
-    static const scip_kind_t kinds[] = { SCIP_BIT_RATE, SCIP_STREAM_2, SCIP_STREAM_3, SCIP_SINGLE_2, SCIP_SINGLE_3,
-                                         SCIP_KIND_COUNT };
+    static const scip_kind_t kinds[] = {SCIP_BIT_RATE, SCIP_STREAM_2, SCIP_STREAM_3,
+                                        SCIP_SINGLE_2, SCIP_SINGLE_3, SCIP_KIND_COUNT};
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
         TEST_ASSERT_FALSE(scip_request(&request, kinds[i]));
         assert_untouched();
@@ -74,10 +73,10 @@ void test_commands_with_parameters_are_not_built_without_them(void)
 
 void test_every_rate_of_the_command_table_is_built_and_no_other(void)
 {
-    static const uint32_t good[] = { 19200, 57600, 115200, 250000, 500000, 750000 };
-    static const char *const text[] = { "SS019200\n", "SS057600\n", "SS115200\n", "SS250000\n", "SS500000\n",
-                                        "SS750000\n" };
-    static const uint32_t bad[] = { 0, 9600, 38400, 115201, 256000, 1000000, 4294967295UL };
+    static const uint32_t good[] = {19200, 57600, 115200, 250000, 500000, 750000};
+    static const char *const text[] = {"SS019200\n", "SS057600\n", "SS115200\n",
+                                       "SS250000\n", "SS500000\n", "SS750000\n"};
+    static const uint32_t bad[] = {0, 9600, 38400, 115201, 256000, 1000000, 4294967295UL};
     for (size_t i = 0; i < 6; i++) {
         TEST_ASSERT_TRUE(scip_request_bit_rate(&request, good[i]));
         assert_text(text[i]);
@@ -129,17 +128,18 @@ void test_a_request_can_be_built_from_its_own_range(void)
     assert_text("MS0249051901005\n");
 }
 
-/* Lengths from the length table of SCIP2.0 replies: two and three characters a point, streams and single scans. */
+/* Lengths from the length table of SCIP2.0 replies: two and three characters a point, streams and single
+ * scans. */
 void test_scan_lengths_agree_with_the_table(void)
 {
     static const struct {
         uint16_t points, ms, md, gs, gd;
     } rows[] = {
-        { 1, 31, 32, 28, 29 },       { 21, 71, 92, 68, 89 },       { 22, 73, 97, 70, 94 },
-        { 31, 91, 124, 88, 121 },    { 32, 93, 127, 90, 124 },     { 33, 97, 130, 94, 127 },
-        { 35, 101, 136, 98, 133 },   { 64, 159, 225, 156, 222 },   { 65, 163, 230, 160, 227 },
-        { 271, 587, 866, 584, 863 }, { 677, 1425, 2122, 1422, 2119 }, { 682, 1435, 2137, 1432, 2134 },
-        { 769, 1615, 2408, 1612, 2405 },
+        {1, 31, 32, 28, 29},           {21, 71, 92, 68, 89},          {22, 73, 97, 70, 94},
+        {31, 91, 124, 88, 121},        {32, 93, 127, 90, 124},        {33, 97, 130, 94, 127},
+        {35, 101, 136, 98, 133},       {64, 159, 225, 156, 222},      {65, 163, 230, 160, 227},
+        {271, 587, 866, 584, 863},     {677, 1425, 2122, 1422, 2119}, {682, 1435, 2137, 1432, 2134},
+        {769, 1615, 2408, 1612, 2405},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         TEST_ASSERT_EQUAL_UINT16(rows[i].ms, scip_scan_octets(SCIP_STREAM_2, rows[i].points));
@@ -153,8 +153,8 @@ void test_scan_lengths_agree_with_the_table(void)
 void test_each_field_outside_its_range_is_refused(void)
 {
     const scip_range_t bad[] = {
-        range_of(400, 399, 1, 0, 0), range_of(0, 769, 1, 0, 0),    range_of(0, 65535, 1, 0, 0),
-        range_of(0, 768, 0, 0, 0),   range_of(0, 768, 100, 0, 0),  range_of(0, 768, 1, 10, 0),
+        range_of(400, 399, 1, 0, 0), range_of(0, 769, 1, 0, 0),   range_of(0, 65535, 1, 0, 0),
+        range_of(0, 768, 0, 0, 0),   range_of(0, 768, 100, 0, 0), range_of(0, 768, 1, 10, 0),
         range_of(0, 768, 1, 0, 100),
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -166,9 +166,12 @@ void test_each_field_outside_its_range_is_refused(void)
 void test_the_limits_of_each_field_are_accepted(void)
 {
     const scip_range_t good[] = {
-        range_of(0, 0, 1, 0, 0), range_of(768, 768, 99, 9, 99), range_of(0, 768, 99, 9, 99), range_of(0, 768, 1, 0, 1),
+        range_of(0, 0, 1, 0, 0),
+        range_of(768, 768, 99, 9, 99),
+        range_of(0, 768, 99, 9, 99),
+        range_of(0, 768, 1, 0, 1),
     };
-    static const uint16_t points[] = { 1, 1, 8, 769 };
+    static const uint16_t points[] = {1, 1, 8, 769};
     for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
         TEST_ASSERT_TRUE(scip_request_scan(&request, SCIP_STREAM_2, &good[i]));
         TEST_ASSERT_EQUAL_UINT16(points[i], request.points);

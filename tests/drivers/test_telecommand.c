@@ -21,9 +21,7 @@ void setUp(void)
     random_state = SEED;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 /* xorshift32 (Marsaglia 2003) */
 static uint32_t random_bits(void)
@@ -125,8 +123,12 @@ void test_ctrl_c_drops_what_was_typed_and_is_a_bare_line_of_its_own(void)
 
 void test_backspace_and_delete_take_back_one_character_each(void)
 {
-    assert_parses("#SETR 0.8\x08" "6\n", "SETR", "0.6");
-    assert_parses("#KD\x7FP 0.2\x08\x08\x08" "0.1\n", "KP", "0.1");
+    assert_parses("#SETR 0.8\x08"
+                  "6\n",
+                  "SETR", "0.6");
+    assert_parses("#KD\x7FP 0.2\x08\x08\x08"
+                  "0.1\n",
+                  "KP", "0.1");
     assert_error(TELECOMMAND_BARE, "#KP\x08\x08\x08\n");
     assert_error(TELECOMMAND_BARE, "\x08\x7F#\x08\x08KP 1\n");
     assert_error(TELECOMMAND_OVERLONG, "#KP 0.015000000000000000000000000\x08\x08\x08\n");
@@ -196,7 +198,8 @@ void test_32_characters_are_a_line_and_33_are_too_many(void)
     TEST_ASSERT_FALSE(collector.line.overlong);
     assert_error(TELECOMMAND_OVERLONG, "#KP 0.015000000000000000000000000\n");
     TEST_ASSERT_EQUAL(TELECOMMAND_LINE_MAX, collector.line.length);
-    TEST_ASSERT_EQUAL(0, memcmp("#KP 0.01500000000000000000000000", collector.line.text, TELECOMMAND_LINE_MAX));
+    TEST_ASSERT_EQUAL(0,
+                      memcmp("#KP 0.01500000000000000000000000", collector.line.text, TELECOMMAND_LINE_MAX));
 }
 
 void test_an_overlong_line_gives_one_error_and_the_next_line_is_whole(void)
@@ -265,7 +268,8 @@ void test_names_are_letters_digits_and_underscore_only(void)
 {
     for (uint16_t code = 0x21; code <= 0x7E; code++) {
         char text[] = "#K?P 1\n";
-        bool name = (code >= 'A' && code <= 'Z') || (code >= 'a' && code <= 'z') || (code >= '0' && code <= '9') || code == '_';
+        bool name = (code >= 'A' && code <= 'Z') || (code >= 'a' && code <= 'z') ||
+                    (code >= '0' && code <= '9') || code == '_';
         if (code == '#') {
             continue;
         }
@@ -387,7 +391,8 @@ void test_ten_thousand_random_octets_lose_no_later_command(void)
     TEST_ASSERT_GREATER_THAN(1000U, collector.strays);
 }
 
-/* Lines of the command alphabet: whatever is accepted is a clean name and a trimmed value that stand in the line. */
+/* Lines of the command alphabet: whatever is accepted is a clean name and a trimmed value that stand in the
+ * line. */
 void test_every_accepted_line_has_a_clean_name_and_a_trimmed_value(void)
 {
     static const char alphabet[] = "# \tKpz_9.-e@=\x08";
@@ -420,11 +425,25 @@ void test_every_accepted_line_has_a_clean_name_and_a_trimmed_value(void)
 
 void test_a_stop_a_landing_and_a_reference_of_zero_are_urgent_however_written(void)
 {
-    static const char *const urgent[] = {"#STOP\n", "# stop now \n", "#LAND\r", "#land\n", "#SETR 0\n", "#setr 0.0\n",
-                                         "#SETR -0\n", "#SETR +.000\n", "#SETR 00.\n", "noise #STOP\n", "#SETR 0.#LAND\n"};
-    static const char *const others[] = {"#SETR 0.6\n", "#SETR\n", "#SETR .\n", "#SETR -\n", "#SETR 0.0.0\n", "#SETR 0 1\n",
-                                         "#STOPS\n", "#STO\n", "#LANDING\n", "#SETRX 0\n", "#KP 0\n", "STOP\n", "\n",
-                                         "#LOG STOP\n", "#STOP\x01\n", "#STOP 1234567890123456789012345678\n"};
+    static const char *const urgent[] = {"#STOP\n",     "# stop now \n", "#LAND\r",        "#land\n",
+                                         "#SETR 0\n",   "#setr 0.0\n",   "#SETR -0\n",     "#SETR +.000\n",
+                                         "#SETR 00.\n", "noise #STOP\n", "#SETR 0.#LAND\n"};
+    static const char *const others[] = {"#SETR 0.6\n",
+                                         "#SETR\n",
+                                         "#SETR .\n",
+                                         "#SETR -\n",
+                                         "#SETR 0.0.0\n",
+                                         "#SETR 0 1\n",
+                                         "#STOPS\n",
+                                         "#STO\n",
+                                         "#LANDING\n",
+                                         "#SETRX 0\n",
+                                         "#KP 0\n",
+                                         "STOP\n",
+                                         "\n",
+                                         "#LOG STOP\n",
+                                         "#STOP\x01\n",
+                                         "#STOP 1234567890123456789012345678\n"};
 
     for (uint16_t i = 0; i < sizeof urgent / sizeof urgent[0]; i++) {
         TEST_ASSERT_EQUAL(1U, feed(urgent[i]));
@@ -444,8 +463,8 @@ void test_a_damaged_line_is_never_urgent(void)
     TEST_ASSERT_FALSE(telecommand_is_urgent(&collector.line));
 }
 
-/* Sums by CRC-16/IBM-3740 of the CRC RevEng catalogue, whose check value is 29B1 for "123456789"; these by Python's
- * binascii.crc_hqx(text, 0xFFFF). */
+/* Sums by CRC-16/IBM-3740 of the CRC RevEng catalogue, whose check value is 29B1 for "123456789"; these by
+ * Python's binascii.crc_hqx(text, 0xFFFF). */
 static telecommand_status_t parse_with_sum(const char *text, bool required)
 {
     telecommand_line_t line = {.length = (uint16_t)strlen(text)};
@@ -500,7 +519,8 @@ void test_a_missing_sum_is_refused_only_where_one_is_required(void)
 
 void test_a_stop_needs_no_sum_and_minds_no_wrong_one(void)
 {
-    static const char *const stops[] = {"#STOP", "#LAND", "#SETR 0", "#STOP*0000", "#LAND*FFFF", "#SETR 0*1234", "#SETR 0.0"};
+    static const char *const stops[] = {"#STOP",      "#LAND",        "#SETR 0",  "#STOP*0000",
+                                        "#LAND*FFFF", "#SETR 0*1234", "#SETR 0.0"};
     for (size_t i = 0; i < sizeof stops / sizeof stops[0]; i++) {
         telecommand_line_t line = {.length = (uint16_t)strlen(stops[i])};
 

@@ -16,9 +16,7 @@ void setUp(void)
     telemetry_begin(&line);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void assert_line(const char *expected)
 {
@@ -29,8 +27,13 @@ static void assert_line(const char *expected)
 
 static telemetry_t flying(void)
 {
-    telemetry_t telemetry = {.height_valid = true, .height_mm = 598.0F, .reference_m = 0.6F, .laser = "OK",
-                             .thrust_n = 7.12F, .state = "FLYING", .flags = 0U};
+    telemetry_t telemetry = {.height_valid = true,
+                             .height_mm = 598.0F,
+                             .reference_m = 0.6F,
+                             .laser = "OK",
+                             .thrust_n = 7.12F,
+                             .state = "FLYING",
+                             .flags = 0U};
     return telemetry;
 }
 
@@ -75,8 +78,14 @@ void test_the_cause_of_a_reset_is_one_field_more(void)
 
 void test_with_the_longest_names_the_cause_of_a_reset_fits_the_packet_too(void)
 {
-    telemetry_t telemetry = {.height_valid = true, .height_mm = -4000.0F, .reference_m = 3.0F, .laser = "EIGHT_CH",
-                             .thrust_n = 11.76F, .state = "DESCENDING", .flags = 63U, .reset = "WATCHDOG"};
+    telemetry_t telemetry = {.height_valid = true,
+                             .height_mm = -4000.0F,
+                             .reference_m = 3.0F,
+                             .laser = "EIGHT_CH",
+                             .thrust_n = 11.76F,
+                             .state = "DESCENDING",
+                             .flags = 63U,
+                             .reset = "WATCHDOG"};
     telemetry_status(&line, &telemetry);
     TEST_ASSERT_FALSE(line.overflowed);
     TEST_ASSERT_LESS_OR_EQUAL(TELEMETRY_LINE_MAX, line.length);
@@ -95,16 +104,20 @@ void test_values_that_cannot_be_written_become_dashes(void)
 
 void test_no_input_makes_the_line_longer_than_a_radio_packet(void)
 {
-    static const float values[] = {0.0F,          0.598F,   -4294966.5F, 4294966.5F, -1.0e6F,   4294967.0F, FLT_MAX,
-                                   -FLT_MAX,      INFINITY, -INFINITY,   NAN,        FLT_MIN,   1e-7F,      -0.0F,
-                                   -999999.9999F, 1e30F};
+    static const float values[] = {0.0F,    0.598F,   -4294966.5F,   4294966.5F, -1.0e6F, 4294967.0F,
+                                   FLT_MAX, -FLT_MAX, INFINITY,      -INFINITY,  NAN,     FLT_MIN,
+                                   1e-7F,   -0.0F,    -999999.9999F, 1e30F};
     static const uint16_t n = sizeof values / sizeof values[0];
 
     for (uint16_t i = 0; i < n; i++) {
         for (uint16_t j = 0; j < n; j++) {
             for (uint16_t k = 0; k < n; k++) {
-                telemetry_t telemetry = {.height_valid = true, .height_mm = values[i], .reference_m = values[j],
-                                         .laser = "EIGHT_CH", .thrust_n = values[k], .state = "DESCENDING",
+                telemetry_t telemetry = {.height_valid = true,
+                                         .height_mm = values[i],
+                                         .reference_m = values[j],
+                                         .laser = "EIGHT_CH",
+                                         .thrust_n = values[k],
+                                         .state = "DESCENDING",
                                          .flags = 65535U};
                 telemetry_status(&line, &telemetry);
                 TEST_ASSERT_FALSE(line.overflowed);
@@ -118,8 +131,13 @@ void test_no_input_makes_the_line_longer_than_a_radio_packet(void)
 
 void test_the_longest_line_that_fits_is_95_characters_and_one_more_is_not_to_be_sent(void)
 {
-    telemetry_t telemetry = {.height_valid = true, .height_mm = -4294966500.0F, .reference_m = -4294966.5F,
-                             .laser = "EIGHT_CH", .thrust_n = -4294966.5F, .state = "DESCENDING", .flags = 65535U};
+    telemetry_t telemetry = {.height_valid = true,
+                             .height_mm = -4294966500.0F,
+                             .reference_m = -4294966.5F,
+                             .laser = "EIGHT_CH",
+                             .thrust_n = -4294966.5F,
+                             .state = "DESCENDING",
+                             .flags = 65535U};
     telemetry_status(&line, &telemetry);
     TEST_ASSERT_EQUAL(95U, line.length);
     TEST_ASSERT_FALSE(line.overflowed);
@@ -157,8 +175,14 @@ void test_counts_are_written_over_their_whole_range(void)
     static const struct {
         uint32_t value;
         const char *text;
-    } rows[] = {{0UL, "0"}, {9UL, "9"}, {10UL, "10"}, {32768UL, "32768"}, {65535UL, "65535"}, {65536UL, "65536"},
-                {1000000000UL, "1000000000"}, {4294967295UL, "4294967295"}};
+    } rows[] = {{0UL, "0"},
+                {9UL, "9"},
+                {10UL, "10"},
+                {32768UL, "32768"},
+                {65535UL, "65535"},
+                {65536UL, "65536"},
+                {1000000000UL, "1000000000"},
+                {4294967295UL, "4294967295"}};
     for (uint16_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         telemetry_begin(&line);
         telemetry_count(&line, rows[i].value);

@@ -15,8 +15,11 @@ static urg_report_t report;
 static uint32_t now_us;
 
 static const urg_config_t config = {
-    .first_rate = 115200U, .stream_rate = 250000U, .fastest_rate = 250000U, .stream = SCIP_STREAM_2,
-    .range = { 372U, 406U, 1U, 0U, 0U },
+    .first_rate = 115200U,
+    .stream_rate = 250000U,
+    .fastest_rate = 250000U,
+    .stream = SCIP_STREAM_2,
+    .range = {372U, 406U, 1U, 0U, 0U},
 };
 
 void setUp(void)
@@ -26,9 +29,7 @@ void setUp(void)
     TEST_ASSERT_TRUE(urg_init(&urg, &config, memory, 2U * POINTS, now_us));
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static bool feed(const char *text)
 {
@@ -217,7 +218,7 @@ void test_damage_notices_and_old_answers_are_counted(void)
 
 void test_octets_above_7f_are_counted(void)
 {
-    static const octet_t octets[] = { 0x80U, 0x7FU, 0xFFU };
+    static const octet_t octets[] = {0x80U, 0x7FU, 0xFFU};
 
     TEST_ASSERT_FALSE(urg_feed(&urg, octets, 3U));
     urg_report(&urg, &report);

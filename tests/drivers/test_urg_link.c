@@ -14,7 +14,8 @@
 #define LOG_MAX 400
 #define QUEUE_MAX 400
 
-/* --- a small scripted sensor, written apart from the product ------------------------------------------------------ */
+/* --- a small scripted sensor, written apart from the product
+ * ------------------------------------------------------ */
 
 static struct {
     uint32_t rate, power_up_rate;
@@ -33,10 +34,10 @@ typedef struct {
     uint32_t octet, rate, due_step;
 } flying_t;
 
-static flying_t queue[QUEUE_MAX];    /* a ring */
+static flying_t queue[QUEUE_MAX]; /* a ring */
 static uint32_t queued, taken;
 static uint32_t step_number;
-static uint32_t sent_to_host, sent_to_sensor;           /* octets, for faults by position */
+static uint32_t sent_to_host, sent_to_sensor; /* octets, for faults by position */
 static uint32_t drop_to_host, flip_to_host, drop_to_sensor;
 
 static void send_octet(uint32_t octet)
@@ -44,7 +45,7 @@ static void send_octet(uint32_t octet)
     if (queued - taken == QUEUE_MAX) {
         TEST_FAIL_MESSAGE("queue full");
     }
-    queue[queued++ % QUEUE_MAX] = (flying_t){ octet, sensor.rate, step_number + sensor.latency_steps };
+    queue[queued++ % QUEUE_MAX] = (flying_t){octet, sensor.rate, step_number + sensor.latency_steps};
 }
 
 static void send_text(const char *text)
@@ -56,7 +57,7 @@ static void send_text(const char *text)
 
 static void send_status(const char *echo, const char *status)
 {
-    char sum[2] = { (char)(((status[0] + status[1]) & 63) + 48), '\0' };
+    char sum[2] = {(char)(((status[0] + status[1]) & 63) + 48), '\0'};
     send_text(echo);
     send_text("\n");
     send_text(status);
@@ -176,7 +177,8 @@ static void sensor_powers_up(void)
     sensor.clock_ms = 0;
 }
 
-/* --- the host ----------------------------------------------------------------------------------------------------- */
+/* --- the host
+ * ----------------------------------------------------------------------------------------------------- */
 
 static scip_parser_t parser;
 static scip_scan_t scan;
@@ -195,7 +197,6 @@ static struct {
     urg_status_t status;
 } asked[LOG_MAX];
 static uint32_t asked_count;
-
 
 static void host_hears(void)
 {
@@ -283,13 +284,17 @@ static uint32_t steps_to_ok(void)
 
 static void host_starts(uint32_t wait_us)
 {
-    config = (urg_config_t){ .wait_us = wait_us, .first_rate = 115200, .stream_rate = 250000, .fastest_rate = 250000, .stream = SCIP_STREAM_2,
-                             .range = { 372, 406, 1, 0, 0 } };
+    config = (urg_config_t){.wait_us = wait_us,
+                            .first_rate = 115200,
+                            .stream_rate = 250000,
+                            .fastest_rate = 250000,
+                            .stream = SCIP_STREAM_2,
+                            .range = {372, 406, 1, 0, 0}};
     memset(&seen, 0, sizeof seen);
     asked_count = 0;
     power_cycles = 0;
     host_rate = 115200;
-    scan = (scip_scan_t){ .distance_mm = points, .capacity = 35 };
+    scan = (scip_scan_t){.distance_mm = points, .capacity = 35};
     scip_parser_init(&parser);
     scip_parser_scan_into(&parser, &scan);
     (void)urg_link_init(&link_, &config, now_us);
@@ -325,11 +330,10 @@ void setUp(void)
     reset(10000000);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
-static void assert_asked(uint32_t index, const char *text, uint32_t at_step, uint32_t rate, urg_status_t status)
+static void assert_asked(uint32_t index, const char *text, uint32_t at_step, uint32_t rate,
+                         urg_status_t status)
 {
     TEST_ASSERT_LESS_THAN_UINT(asked_count, index);
     TEST_ASSERT_EQUAL_STRING(text, asked[index].text);
@@ -348,11 +352,13 @@ static uint32_t times_asked(const char *command)
     return count;
 }
 
-/* --- the start as the seed has it --------------------------------------------------------------------------------- */
+/* --- the start as the seed has it
+ * --------------------------------------------------------------------------------- */
 
 void test_the_status_names_are_those_of_the_telemetry(void)
 {
-    static const char *const names[] = { "WAIT", "STOP1", "SWITCH", "RATE", "STOP2", "STREAM", "OK", "LOST", "OLD" };
+    static const char *const names[] = {"WAIT",   "STOP1", "SWITCH", "RATE", "STOP2",
+                                        "STREAM", "OK",    "LOST",   "OLD"};
     for (int status = 0; status < URG_STATUS_COUNT; status++) {
         TEST_ASSERT_EQUAL_STRING(names[status], urg_status_name((urg_status_t)status));
     }
@@ -435,7 +441,8 @@ void test_every_command_is_repeated_only_after_400_ms(void)
     }
 }
 
-/* --- any state at the start --------------------------------------------------------------------------------------- */
+/* --- any state at the start
+ * --------------------------------------------------------------------------------------- */
 
 typedef enum { SCIP1, IDLE, STREAMING, TIMING } state_t;
 
@@ -454,14 +461,14 @@ static uint32_t start_from(state_t state, uint32_t rate, uint32_t wait_us)
 /* The longest time from the first command (or from reset, when the sensor is heard) to the first scan. */
 void test_streaming_is_reached_from_every_state_at_every_rate_without_a_power_cycle(void)
 {
-    static const char *const names[] = { "SCIP1.1", "SCIP2.0 idle", "streaming", "time mode" };
-    static const uint32_t rates[] = { 19200, 57600, 115200, 250000 };
+    static const char *const names[] = {"SCIP1.1", "SCIP2.0 idle", "streaming", "time mode"};
+    static const uint32_t rates[] = {19200, 57600, 115200, 250000};
     static const uint32_t limit_ms[4][4] = {
         /* 19200 57600 115200 250000 */
-        { 2850, 3450, 1050, 1650 },
-        { 2700, 3300, 1050, 1350 },
-        { 1350, 1500, 1050, 600 },
-        { 3000, 3600, 1350, 1650 },
+        {2850, 3450, 1050, 1650},
+        {2700, 3300, 1050, 1350},
+        {1350, 1500, 1050, 600},
+        {3000, 3600, 1350, 1650},
     };
     for (int state = SCIP1; state <= TIMING; state++) {
         for (uint32_t r = 0; r < 4; r++) {
@@ -488,7 +495,7 @@ void test_a_sensor_that_already_streams_cuts_the_wait_short(void)
 
 void test_half_a_command_at_the_sensor_and_half_a_reply_in_the_line_do_no_harm(void)
 {
-    static const char *const halves[] = { "M", "MS0372", "QT", "SCIP2.", "\x15\x80garbage" };
+    static const char *const halves[] = {"M", "MS0372", "QT", "SCIP2.", "\x15\x80garbage"};
     for (uint32_t i = 0; i < 5; i++) {
         for (int state = SCIP1; state <= TIMING; state++) {
             reset(0);
@@ -513,10 +520,11 @@ void test_a_sensor_that_boots_after_the_host_is_found(void)
     }
 }
 
-/* --- damage in the dialogue --------------------------------------------------------------------------------------- */
+/* --- damage in the dialogue
+ * --------------------------------------------------------------------------------------- */
 
-/* 67 steps of waiting and 7 of talk without a fault. The worst is the lost end of SS: the next command ends it, at the
- * wrong moment. */
+/* 67 steps of waiting and 7 of talk without a fault. The worst is the lost end of SS: the next command ends
+ * it, at the wrong moment. */
 static void assert_start_survives(const char *fault, uint32_t position)
 {
     char text[60];
@@ -571,7 +579,8 @@ void test_the_sensor_may_restart_at_any_step_of_the_dialogue(void)
     }
 }
 
-/* --- loss and recovery -------------------------------------------------------------------------------------------- */
+/* --- loss and recovery
+ * -------------------------------------------------------------------------------------------- */
 
 /* 450 ms for the front at 250000: two revolutions, a frame and a margin. */
 void test_a_mute_sensor_is_noticed_within_600_ms_and_not_before_450(void)
@@ -701,7 +710,7 @@ void test_where_first_and_stream_rate_are_one_the_order_alone_finds_the_sensor(v
 void test_octets_above_7f_tell_the_wrong_rate_like_framing_errors(void)
 {
     for (uint32_t strange = 0; strange < 20; strange++) {
-        urg_seen_t some = { .octet_count = 0 };
+        urg_seen_t some = {.octet_count = 0};
         reset(0);
         urg_link_step(&link_, &some, 0, &action);
         some.octet_count = some.strange_count = strange;
@@ -728,7 +737,7 @@ void test_no_rate_is_tried_that_the_own_uart_cannot_do(void)
 
 void test_what_sensor_or_uart_cannot_do_is_refused_at_once(void)
 {
-    static const urg_config_t good = { 0, 115200, 250000, 250000, SCIP_STREAM_2, { 372, 406, 1, 0, 0 } };
+    static const urg_config_t good = {0, 115200, 250000, 250000, SCIP_STREAM_2, {372, 406, 1, 0, 0}};
     urg_config_t bad[8];
     const urg_link_t untouched = link_;
     TEST_ASSERT_TRUE(urg_link_init(&link_, &good, 0));
@@ -750,10 +759,11 @@ void test_what_sensor_or_uart_cannot_do_is_refused_at_once(void)
     }
 }
 
-/* Every rate has its turn, the configured ones once only, for ever; power is cycled every 20 s where it can be. */
+/* Every rate has its turn, the configured ones once only, for ever; power is cycled every 20 s where it can
+ * be. */
 void test_a_dead_sensor_is_looked_for_at_every_rate_for_ever(void)
 {
-    static const uint32_t rates[] = { 250000, 115200, 19200, 57600 };
+    static const uint32_t rates[] = {250000, 115200, 19200, 57600};
     reset(0);
     sensor.on = false;
     steps(800);
@@ -773,7 +783,7 @@ void test_a_dead_sensor_is_looked_for_at_every_rate_for_ever(void)
 
 void test_other_configured_rates_are_probed_first(void)
 {
-    static const uint32_t rates[] = { 500000, 750000, 19200, 57600, 115200, 250000 };
+    static const uint32_t rates[] = {500000, 750000, 19200, 57600, 115200, 250000};
     reset(0);
     config.fastest_rate = 0;
     config.first_rate = 750000;
@@ -795,8 +805,14 @@ void test_a_sensor_that_answers_but_does_not_scan_climbs_the_ladder(void)
     sensor.streaming = false;
     uint32_t begin = asked_count;
     steps(30);
-    static const char *const ladder[] = { "\nMS0372040601000\n", "\nQT\n", "MS0372040601000\n", "\nTM2\n", "QT\n",
-                                          "MS0372040601000\n", "\nRS\n", "\nQT\n" };
+    static const char *const ladder[] = {"\nMS0372040601000\n",
+                                         "\nQT\n",
+                                         "MS0372040601000\n",
+                                         "\nTM2\n",
+                                         "QT\n",
+                                         "MS0372040601000\n",
+                                         "\nRS\n",
+                                         "\nQT\n"};
     for (uint32_t i = 0; i < 8; i++) {
         TEST_ASSERT_EQUAL_STRING(ladder[i], asked[begin + i].text);
     }
@@ -821,7 +837,7 @@ void test_a_sensor_that_refuses_everything_is_reset_again_and_again(void)
 
 void test_a_scan_order_that_is_refused_is_not_just_repeated(void)
 {
-    static const char *const refusals[] = { "04", "0E" };
+    static const char *const refusals[] = {"04", "0E"};
     for (uint32_t i = 0; i < 2; i++) {
         reset(0);
         sensor.knows_stream = false;
@@ -837,7 +853,7 @@ void test_a_scan_order_that_is_refused_is_not_just_repeated(void)
 
 void test_a_sensor_that_does_not_know_the_rate_streams_at_its_own(void)
 {
-    static const char *const refusals[] = { "02", "04", "0F" };
+    static const char *const refusals[] = {"02", "04", "0F"};
     for (uint32_t i = 0; i < 3; i++) {
         reset(0);
         sensor.knows_rate = false;
@@ -915,7 +931,8 @@ void test_an_old_sensor_that_falls_silent_is_looked_for(void)
     TEST_ASSERT_EQUAL(URG_LOST, link_.status);
 }
 
-/* --- hardware notices --------------------------------------------------------------------------------------------- */
+/* --- hardware notices
+ * --------------------------------------------------------------------------------------------- */
 
 static void reach_ok(void)
 {
@@ -968,7 +985,8 @@ void test_after_verifying_the_usual_time_out_holds_again(void)
     TEST_ASSERT_EQUAL_UINT32(1, link_.restarts);
 }
 
-/* --- other ranges ------------------------------------------------------------------------------------------------- */
+/* --- other ranges
+ * ------------------------------------------------------------------------------------------------- */
 
 void test_a_counted_run_is_ordered_again_when_it_ends(void)
 {
@@ -1003,12 +1021,12 @@ void test_longer_scans_are_waited_for_longer(void)
         scip_range_t range;
         uint32_t least_us, most_us;
     } rows[] = {
-        { { 372, 406, 1, 0, 0 }, 450000, 460000 },
-        { { 372, 406, 1, 9, 0 }, 2250000, 2260000 },
-        { { 111, 657, 1, 0, 0 }, 490000, 505000 },
+        {{372, 406, 1, 0, 0}, 450000, 460000},
+        {{372, 406, 1, 9, 0}, 2250000, 2260000},
+        {{111, 657, 1, 0, 0}, 490000, 505000},
     };
     for (uint32_t i = 0; i < 3; i++) {
-        urg_seen_t some = { .scan_count = 0 };
+        urg_seen_t some = {.scan_count = 0};
         reset(0);
         config.range = rows[i].range;
         config.first_rate = config.stream_rate;
@@ -1034,7 +1052,7 @@ void test_longer_scans_are_waited_for_longer(void)
 
 void test_a_reply_of_another_kind_confirms_nothing(void)
 {
-    urg_seen_t some = { .reply_count = 0 };
+    urg_seen_t some = {.reply_count = 0};
     reset(0);
     urg_link_step(&link_, &some, 0, &action);
     some.reply_count = 1;
@@ -1046,7 +1064,7 @@ void test_a_reply_of_another_kind_confirms_nothing(void)
 
 void test_late_scans_of_an_older_order_do_not_end_the_start(void)
 {
-    urg_seen_t some = { .reply_count = 0 };
+    urg_seen_t some = {.reply_count = 0};
     reset(0);
     urg_link_step(&link_, &some, 0, &action);
     some.scan_count = 5;
@@ -1056,7 +1074,7 @@ void test_late_scans_of_an_older_order_do_not_end_the_start(void)
 
 static void probe_hears(uint32_t octets, uint32_t framing)
 {
-    urg_seen_t some = { .octet_count = 0 };
+    urg_seen_t some = {.octet_count = 0};
     reset(0);
     urg_link_step(&link_, &some, 0, &action);
     urg_link_step(&link_, &some, 450000, &action);
@@ -1084,7 +1102,7 @@ void test_a_probe_that_hears_clean_octets_stays_at_its_rate(void)
 void test_a_burst_of_framing_errors_ends_a_probe_early_and_a_few_do_not(void)
 {
     for (uint32_t framing = 0; framing < 20; framing++) {
-        urg_seen_t some = { .octet_count = 0 };
+        urg_seen_t some = {.octet_count = 0};
         reset(0);
         urg_link_step(&link_, &some, 0, &action);
         some.framing_count = framing;

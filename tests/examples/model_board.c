@@ -1,5 +1,6 @@
-/* The board of docs/examples/scanner.c: the model of a URG-04LX as delivered (19200 bps, SCIP1.1) on a virtual UART, in
- * front of a wall that comes nearer; after 15 s the cable is out for two seconds. Ends after 20 s. */
+/* The board of docs/examples/scanner.c: the model of a URG-04LX as delivered (19200 bps, SCIP1.1) on a
+ * virtual UART, in front of a wall that comes nearer; after 15 s the cable is out for two seconds. Ends after
+ * 20 s. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -103,7 +104,7 @@ size_t board_uart_read(octet_t *octets, size_t most)
 void board_uart_write(const octet_t *octets, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        serial_send(&transmitter, &(unsigned char){ (unsigned char)octets[i] }, 1);
+        serial_send(&transmitter, &(unsigned char){(unsigned char)octets[i]}, 1);
     }
 }
 
@@ -115,9 +116,7 @@ uint32_t board_uart_errors(void)
     return seen;
 }
 
-void board_cycle_sensor_power(void)
-{
-}
+void board_cycle_sensor_power(void) {}
 
 void board_show(bool valid, uint16_t distance_mm)
 {

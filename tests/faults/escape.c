@@ -2,8 +2,9 @@
 
 #include <string.h>
 
-/* The receiver's memory: how many octets of the frame it has accepted, the sum of the line so far (mod 64), and whether
- * what it accepted differs from what was sent. Probabilities of all these states, octet after octet of what was sent. */
+/* The receiver's memory: how many octets of the frame it has accepted, the sum of the line so far (mod 64),
+ * and whether what it accepted differs from what was sent. Probabilities of all these states, octet after
+ * octet of what was sent. */
 enum { SAME, OTHER_STAMP, OTHER_DISTANCE, DIFFERENCES };
 
 typedef enum { LITERAL, CODE, SUM } place_t;
@@ -80,7 +81,7 @@ static bool accept(const receiver_t *receiver, state_t *state, unsigned octet)
 typedef struct {
     receiver_t *receiver;
     layer_t *next;
-    size_t sent;            /* octets of the frame sent, this one included */
+    size_t sent; /* octets of the frame sent, this one included */
 } step_t;
 
 static void arrive(const step_t *step, state_t state, double probability)
@@ -114,13 +115,13 @@ static void spread(const step_t *step, state_t state, double mass, double p)
 
     feed(step, state, mass * (1.0 - p), &octet, 1);
     for (unsigned bit = 0; bit < 8; bit++) {
-        feed(step, state, each / 8.0, &(unsigned){ octet ^ (1U << bit) }, 1);
+        feed(step, state, each / 8.0, &(unsigned){octet ^ (1U << bit)}, 1);
     }
     feed(step, state, each, NULL, 0);
     for (unsigned inserted = 0; inserted < 256; inserted++) {
-        feed(step, state, each / 256.0, (unsigned[]){ inserted, octet }, 2);
+        feed(step, state, each / 256.0, (unsigned[]){inserted, octet}, 2);
     }
-    feed(step, state, each, (unsigned[]){ octet, octet }, 2);
+    feed(step, state, each, (unsigned[]){octet, octet}, 2);
     /* truncation: nothing more comes of this frame */
 }
 
@@ -132,7 +133,7 @@ static void spread_layer(const step_t *step, layer_t *layer, double p)
             for (unsigned difference = 0; difference < DIFFERENCES; difference++) {
                 const double mass = (*layer)[slot][sum][difference];
                 if (mass > 1e-18) {
-                    spread(step, (state_t){ (size_t)accepted, sum, difference }, mass, p);
+                    spread(step, (state_t){(size_t)accepted, sum, difference}, mass, p);
                 }
             }
         }
@@ -145,14 +146,14 @@ escape_t escape_of(const wire_t *whole, const wire_order_t *order, double p)
     static layer_t layers[2];
 
     memset(layers, 0, sizeof layers);
-    receiver = (receiver_t){ .whole = whole };
+    receiver = (receiver_t){.whole = whole};
     mark(&receiver, order);
     layers[0][SHIFT_MAX][0][SAME] = 1.0;
     for (size_t i = 0; i < whole->length; i++) {
         layer_t *layer = &layers[i % 2], *next = &layers[(i + 1) % 2];
         memset(next, 0, sizeof *next);
-        spread_layer(&(step_t){ &receiver, next, i + 1 }, layer, p);
+        spread_layer(&(step_t){&receiver, next, i + 1}, layer, p);
     }
-    return (escape_t){ receiver.passed[OTHER_STAMP] + receiver.passed[OTHER_DISTANCE], receiver.passed[OTHER_STAMP],
-                       receiver.passed[SAME] };
+    return (escape_t){receiver.passed[OTHER_STAMP] + receiver.passed[OTHER_DISTANCE],
+                      receiver.passed[OTHER_STAMP], receiver.passed[SAME]};
 }

@@ -1,5 +1,5 @@
-/* The parser under faults by the million: one fault a frame, then independent faults an octet, against the rate of
- * escapes that escape.c computes. Exit status 1 when a claim does not hold. */
+/* The parser under faults by the million: one fault a frame, then independent faults an octet, against the
+ * rate of escapes that escape.c computes. Exit status 1 when a claim does not hold. */
 #include <getopt.h>
 #include <math.h>
 #include <stdio.h>
@@ -28,7 +28,7 @@ typedef struct {
     scip_scan_t scan;
     uint16_t points[WIRE_POINTS_MAX];
     scip_request_t request;
-    content_t content[2];   /* of the frame on the line and of the one before */
+    content_t content[2]; /* of the frame on the line and of the one before */
     unsigned long frames;
 } receiver_t;
 
@@ -53,9 +53,9 @@ static void await(receiver_t *receiver)
 
 static void open_receiver(receiver_t *receiver, const wire_order_t *order)
 {
-    static const char *const symbols[] = { "MS", "MD", "GS", "GD" };
-    const scip_range_t range = { (uint16_t)order->first, (uint16_t)order->last, (uint16_t)order->cluster, 0,
-                                 (uint16_t)order->count };
+    static const char *const symbols[] = {"MS", "MD", "GS", "GD"};
+    const scip_range_t range = {(uint16_t)order->first, (uint16_t)order->last, (uint16_t)order->cluster, 0,
+                                (uint16_t)order->count};
     int kind = 0;
 
     while (strcmp(symbols[kind], order->symbol) != 0) {
@@ -63,7 +63,7 @@ static void open_receiver(receiver_t *receiver, const wire_order_t *order)
     }
     memset(receiver, 0, sizeof *receiver);
     receiver->order = order;
-    receiver->scan = (scip_scan_t){ .distance_mm = receiver->points, .capacity = WIRE_POINTS_MAX };
+    receiver->scan = (scip_scan_t){.distance_mm = receiver->points, .capacity = WIRE_POINTS_MAX};
     if (!scip_request_scan(&receiver->request, (scip_kind_t)(SCIP_STREAM_2 + kind), &range)) {
         abort();
     }
@@ -76,7 +76,8 @@ static bool shows(const receiver_t *receiver, const content_t *content)
 {
     const size_t octets = receiver->scan.points * sizeof receiver->points[0];
 
-    return receiver->scan.timestamp_ms == content->stamp_ms && memcmp(receiver->points, content->distance_mm, octets) == 0;
+    return receiver->scan.timestamp_ms == content->stamp_ms &&
+           memcmp(receiver->points, content->distance_mm, octets) == 0;
 }
 
 /* A scan that completes late belongs to the frame before. */
@@ -89,7 +90,7 @@ static outcome_t receive(receiver_t *receiver, const wire_t *wire, void (*wrong)
 {
     const octet_t *octets = wire->octets;
     size_t left = wire->length;
-    outcome_t outcome = { 0, 0, 0 };
+    outcome_t outcome = {0, 0, 0};
 
     while (left > 0) {
         scip_event_t event;
@@ -156,7 +157,8 @@ static void ask_again(receiver_t *receiver, int *remaining)
 
 static void damage(wire_t *damaged, const wire_t *whole, fault_t fault, dice_t *dice)
 {
-    const size_t first = fault == FAULT_TRUNCATION ? 1 : 0; /* something is left of a frame that is cut short */
+    const size_t first = fault == FAULT_TRUNCATION ? 1
+                                                   : 0; /* something is left of a frame that is cut short */
     const size_t at = first + dice_below(dice, (uint32_t)(whole->length - first));
 
     damaged->length = 0;
@@ -205,12 +207,12 @@ static void single_faults(unsigned long frames, uint64_t seed)
         wire_order_t order;
         unsigned tenths;
     } shares[] = {
-        { { "MS", 372, 406, 1, 0 }, 4 },         { { "MD", 372, 406, 1, 0 }, 2 }, { { "MS", 249, 519, 1, 0 }, 1 },
-        { { "MS", 372, 406, 1, RUN_SCANS }, 1 }, { { "GS", 372, 406, 1, 0 }, 1 }, { { "GD", 372, 419, 2, 0 }, 1 },
+        {{"MS", 372, 406, 1, 0}, 4},         {{"MD", 372, 406, 1, 0}, 2}, {{"MS", 249, 519, 1, 0}, 1},
+        {{"MS", 372, 406, 1, RUN_SCANS}, 1}, {{"GS", 372, 406, 1, 0}, 1}, {{"GD", 372, 419, 2, 0}, 1},
     };
-    row_t rows[FAULT_COUNT + 1] = { { 0, 0, 0 } }, total = { 0, 0, 0 };
+    row_t rows[FAULT_COUNT + 1] = {{0, 0, 0}}, total = {0, 0, 0};
     unsigned long whole_frames = 0, lost = 0;
-    dice_t dice = { seed };
+    dice_t dice = {seed};
 
     for (size_t i = 0; i < sizeof shares / sizeof shares[0]; i++) {
         lost += run_single(&shares[i].order, frames / 10 * shares[i].tenths, &dice, rows, &whole_frames);
@@ -219,7 +221,8 @@ static void single_faults(unsigned long frames, uint64_t seed)
     printf("%-12s %10s %10s %10s\n", "fault", "frames", "unharmed", "wrong");
     for (int i = 0; i <= FAULT_COUNT; i++) {
         if (i < FAULT_COUNT) {
-            printf("%-12s %10lu %10lu %10lu\n", fault_names[i], rows[i].damaged, rows[i].unharmed, rows[i].wrong);
+            printf("%-12s %10lu %10lu %10lu\n", fault_names[i], rows[i].damaged, rows[i].unharmed,
+                   rows[i].wrong);
         }
         total.damaged += rows[i].damaged;
         total.unharmed += rows[i].unharmed;
@@ -234,15 +237,16 @@ static void single_faults(unsigned long frames, uint64_t seed)
 /* ---- independent faults ---- */
 
 static struct {
-    unsigned long spread, step;     /* wrong scans that the check lets pass, each after those before */
-    float worst_mm;                 /* of the mean, among the last */
+    unsigned long spread, step; /* wrong scans that the check lets pass, each after those before */
+    float worst_mm;             /* of the mean, among the last */
     float true_mean_mm[SURFACES];
     int surface;
 } wrongs;
 
 static void judge(receiver_t *receiver)
 {
-    const scip_group_mean_t mean = scip_group_mean(&receiver->scan, &scip_layouts[SCIP_LAYOUT_FRONT].groups[0]);
+    const scip_group_mean_t mean = scip_group_mean(&receiver->scan,
+                                                   &scip_layouts[SCIP_LAYOUT_FRONT].groups[0]);
 
     if (!mean.valid || mean.spread_mm > SPREAD_MOST_MM) {
         return;
@@ -258,14 +262,14 @@ static void judge(receiver_t *receiver)
 /* Ground 0.6 to 1.8 m away with 15 mm of noise either way. */
 static void fill_surface(content_t *content, const wire_order_t *order, int surface)
 {
-    dice_t dice = { 77U + (unsigned)surface };
+    dice_t dice = {77U + (unsigned)surface};
 
     for (int i = 0; i < wire_points(order); i++) {
         content->distance_mm[i] = (uint16_t)(600 + 400 * surface + i / 4 + (int)dice_below(&dice, 31) - 15);
     }
 }
 
-static const wire_order_t front = { "MS", 372, 406, 1, 0 };
+static const wire_order_t front = {"MS", 372, 406, 1, 0};
 
 static float mean_of(const content_t *content)
 {
@@ -279,11 +283,11 @@ static float mean_of(const content_t *content)
 
 static escape_t expected_escape(double p)
 {
-    escape_t mean = { 0.0, 0.0, 0.0 };
+    escape_t mean = {0.0, 0.0, 0.0};
 
     for (int i = 0; i < (int)SURFACES; i++) {
         wire_t wire;
-        content_t content = { .stamp_ms = 0x5A31C7U * (unsigned)(i + 1) & 0xFFFFFFU };
+        content_t content = {.stamp_ms = 0x5A31C7U * (unsigned)(i + 1) & 0xFFFFFFU};
         fill_surface(&content, &front, i);
         wrongs.true_mean_mm[i] = mean_of(&content);
         wire_frame(&wire, &front, 0, content.stamp_ms, content.distance_mm);
@@ -303,7 +307,8 @@ static void put_noisy(wire_t *noisy, const wire_t *whole, double p, dice_t *dice
     for (size_t at = 0; at < whole->length; at++) {
         if (dice_roll(dice) >= limit) {
             wire_put(noisy, whole->octets + at, 1);
-        } else if (!wire_put_faulty(noisy, whole->octets[at], (fault_t)dice_below(dice, FAULT_COUNT), dice_roll(dice))) {
+        } else if (!wire_put_faulty(noisy, whole->octets[at], (fault_t)dice_below(dice, FAULT_COUNT),
+                                    dice_roll(dice))) {
             return;
         }
     }
@@ -313,7 +318,7 @@ static outcome_t run_independent(unsigned long frames, double p, dice_t *dice)
 {
     static receiver_t receiver;
     content_t surfaces[SURFACES];
-    outcome_t total = { 0, 0, 0 };
+    outcome_t total = {0, 0, 0};
 
     memset(&wrongs.spread, 0, offsetof(typeof(wrongs), true_mean_mm));
     for (int i = 0; i < (int)SURFACES; i++) {
@@ -343,21 +348,21 @@ static double sigmas(double seen, double expected)
 static void independent_faults(unsigned long frames, double p, uint64_t seed)
 {
     const escape_t escape = expected_escape(p);
-    dice_t dice = { seed };
+    dice_t dice = {seed};
     const outcome_t seen = run_independent(frames, p, &dice);
     const double expected = escape.wrong * (double)frames, by_sums = (double)(seen.wrong + seen.doubted);
 
     printf("\nFaults with a chance of %g an octet (MS, 35 points, %lu frames, seed %llu)\n\n", p, frames,
            (unsigned long long)seed);
     printf("whole and delivered: %lu, computed %.0f\n", seen.right, escape.right * (double)frames);
-    printf("wrong, computed for the sums alone: %.1f = %.3g of all (%.1f in the time stamp only)\n", expected, escape.wrong,
-           escape.wrong_stamp * (double)frames);
+    printf("wrong, computed for the sums alone: %.1f = %.3g of all (%.1f in the time stamp only)\n", expected,
+           escape.wrong, escape.wrong_stamp * (double)frames);
     printf("wrong, seen:\n");
     printf("  past the sums                      %6.0f  (%+.2f sigma)\n", by_sums, sigmas(by_sums, expected));
     printf("  past the time stamp's check too    %6lu\n", seen.wrong);
     printf("  with a ray spread up to %3d mm     %6lu\n", SPREAD_MOST_MM, wrongs.spread);
-    printf("  with steps from ray to ray to %2d mm%6lu  (mean wrong by %.1f mm at most)\n", STEP_MOST_MM, wrongs.step,
-           (double)wrongs.worst_mm);
+    printf("  with steps from ray to ray to %2d mm%6lu  (mean wrong by %.1f mm at most)\n", STEP_MOST_MM,
+           wrongs.step, (double)wrongs.worst_mm);
     claim(fabs(sigmas(by_sums, expected)) <= 3.0, "the rate of escapes is the computed one within 3 sigma");
     claim(by_sums > 0.0 && (double)wrongs.step < by_sums, "plausibility lowers the rate of escapes");
 }

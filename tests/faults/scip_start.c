@@ -1,6 +1,7 @@
-/* The scanner link against the model of the sensor, octet by octet in virtual time: how long it takes from each start
- * state to the first scan, and the same with faults at every octet of the start and of a frame. Exit status 1 when
- * streaming is not reached, a wrong distance comes, or the power pin would have been needed. */
+/* The scanner link against the model of the sensor, octet by octet in virtual time: how long it takes from
+ * each start state to the first scan, and the same with faults at every octet of the start and of a frame.
+ * Exit status 1 when streaming is not reached, a wrong distance comes, or the power pin would have been
+ * needed. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,15 +18,15 @@
 #define NO_OCTET 0U
 
 typedef struct {
-    unsigned lost_to_host, lost_to_sensor;      /* number of the octet, from 1; NO_OCTET: none */
-    unsigned sensor_restart, host_restart;      /* at this octet to the host */
-    unsigned host_restart_sent;                 /* at this octet to the sensor */
+    unsigned lost_to_host, lost_to_sensor; /* number of the octet, from 1; NO_OCTET: none */
+    unsigned sensor_restart, host_restart; /* at this octet to the host */
+    unsigned host_restart_sent;            /* at this octet to the sensor */
 } faults_t;
 
 /* What the line does to octets of either direction for a while. */
 typedef struct {
     sim_time_t from, to;
-    bool from_sensor, from_host, noise;         /* which direction is out; noise in place of the sensor's octets */
+    bool from_sensor, from_host, noise; /* which direction is out; noise in place of the sensor's octets */
 } outage_t;
 
 static struct {
@@ -38,8 +39,8 @@ static struct {
     urg_config_t config;
     faults_t faults;
     outage_t outage;
-    sim_time_t longest_gap;                     /* between two scans, since it was last set to 0 */
-    unsigned to_host, to_sensor;                /* octets since the start */
+    sim_time_t longest_gap;      /* between two scans, since it was last set to 0 */
+    unsigned to_host, to_sensor; /* octets since the start */
     unsigned scans, wrong, power_cycles;
     sim_time_t started, latest_scan;
     timeline_id_t step;
@@ -227,8 +228,11 @@ static void power_up_with(double rate, sim_time_t boot)
     host.sensor = urg04lx_create(&config, look, NULL, to_host, NULL);
     serial_init(&host.transmitter, rate, to_sensor, NULL);
     urg04lx_power(host.sensor, true);
-    host.config = (urg_config_t){ .first_rate = 115200, .stream_rate = 250000, .fastest_rate = 250000, .stream = SCIP_STREAM_2,
-                                  .range = { 372, 406, 1, 0, 0 } };
+    host.config = (urg_config_t){.first_rate = 115200,
+                                 .stream_rate = 250000,
+                                 .fastest_rate = 250000,
+                                 .stream = SCIP_STREAM_2,
+                                 .range = {372, 406, 1, 0, 0}};
 }
 
 static void power_up(double rate)
@@ -242,8 +246,8 @@ static void power_down(void)
     urg04lx_destroy(host.sensor);
 }
 
-/* Runs until scans have come for a second without a pause. The time from the start to the first of them, or a negative
- * number. */
+/* Runs until scans have come for a second without a pause. The time from the start to the first of them, or a
+ * negative number. */
 static double seconds_to_stream(void)
 {
     const sim_time_t end = timeline_now() + PATIENCE;
@@ -303,16 +307,16 @@ typedef struct {
 } state_t;
 
 static const state_t states[] = {
-    { "SCIP1.1", false, "" },
-    { "SCIP1.1, half a command", false, "SCIP2" },
-    { "SCIP2.0, idle", true, "" },
-    { "SCIP2.0, laser on", true, "BM\n" },
-    { "SCIP2.0, half a command", true, "MS0372" },
-    { "streaming MS", true, "MS0372040601000\n" },
-    { "streaming MD, another range", true, "MD0044072501000\n" },
-    { "a counted run", true, "MS0372040601399\n" },
-    { "time mode", true, "TM0\n" },
-    { "time mode, half a command", true, "TM0\nT" },
+    {"SCIP1.1", false, ""},
+    {"SCIP1.1, half a command", false, "SCIP2"},
+    {"SCIP2.0, idle", true, ""},
+    {"SCIP2.0, laser on", true, "BM\n"},
+    {"SCIP2.0, half a command", true, "MS0372"},
+    {"streaming MS", true, "MS0372040601000\n"},
+    {"streaming MD, another range", true, "MD0044072501000\n"},
+    {"a counted run", true, "MS0372040601399\n"},
+    {"time mode", true, "TM0\n"},
+    {"time mode, half a command", true, "TM0\nT"},
 };
 
 static void prepare(const state_t *state, int rate)
@@ -347,7 +351,7 @@ static double slowest_start(const state_t *state, int rate, uint32_t wait_us)
 
 static void print_table(uint32_t wait_us)
 {
-    static const int rates[] = { 19200, 57600, 115200, 250000 };
+    static const int rates[] = {19200, 57600, 115200, 250000};
 
     printf("%-30s %8s %8s %8s %8s\n", "the sensor is in", "19200", "57600", "115200", "250000");
     for (size_t i = 0; i < sizeof states / sizeof states[0]; i++) {
@@ -372,7 +376,7 @@ static void start_with(faults_t faults)
 /* Octets in the dialogue and in the two frames that follow it. */
 static unsigned count_octets(bool towards_sensor)
 {
-    start_with((faults_t){ .lost_to_host = NO_OCTET });
+    start_with((faults_t){.lost_to_host = NO_OCTET});
     while (host.scans < 2) {
         run_until(timeline_now() + SIM_MS);
     }
@@ -385,27 +389,27 @@ typedef faults_t (*fault_at_t)(unsigned octet);
 
 static faults_t loss_to_host(unsigned octet)
 {
-    return (faults_t){ .lost_to_host = octet };
+    return (faults_t){.lost_to_host = octet};
 }
 
 static faults_t loss_to_sensor(unsigned octet)
 {
-    return (faults_t){ .lost_to_sensor = octet };
+    return (faults_t){.lost_to_sensor = octet};
 }
 
 static faults_t sensor_restart(unsigned octet)
 {
-    return (faults_t){ .sensor_restart = octet };
+    return (faults_t){.sensor_restart = octet};
 }
 
 static faults_t host_restart(unsigned octet)
 {
-    return (faults_t){ .host_restart = octet };
+    return (faults_t){.host_restart = octet};
 }
 
 static faults_t host_restart_sent(unsigned octet)
 {
-    return (faults_t){ .host_restart_sent = octet };
+    return (faults_t){.host_restart_sent = octet};
 }
 
 static void try_every_octet(const char *what, fault_at_t fault_at, bool towards_sensor)
@@ -433,21 +437,22 @@ static void print_faults(void)
 
 /* ---- time without scans ---- */
 
-#define OUTAGE_PHASES 24U       /* of the revolution and of the host's step, in steps that share no divisor with either */
+#define OUTAGE_PHASES \
+    24U /* of the revolution and of the host's step, in steps that share no divisor with either */
 #define OUTAGE_PHASE (13 * SIM_MS)
 
 typedef struct {
     const char *name;
     outage_t kind;
-    bool restart;               /* the sensor's supply goes off for 100 ms; what lasts is its boot */
-    double most_s;              /* longer than the outage or the boot */
+    bool restart;  /* the sensor's supply goes off for 100 ms; what lasts is its boot */
+    double most_s; /* longer than the outage or the boot */
 } trouble_t;
 
 static const trouble_t troubles[] = {
-    { "the line is out, both ways", { .from_sensor = true, .from_host = true }, false, 0.5 },
-    { "from the sensor only", { .from_sensor = true }, false, 0.5 },
-    { "both ways, and noise", { .from_sensor = true, .from_host = true, .noise = true }, false, 0.5 },
-    { "the sensor restarts and boots", { .from_sensor = false }, true, 1.0 },
+    {"the line is out, both ways", {.from_sensor = true, .from_host = true}, false, 0.5},
+    {"from the sensor only", {.from_sensor = true}, false, 0.5},
+    {"both ways, and noise", {.from_sensor = true, .from_host = true, .noise = true}, false, 0.5},
+    {"the sensor restarts and boots", {.from_sensor = false}, true, 1.0},
 };
 
 static void begin_outage(const trouble_t *trouble, sim_time_t length)
@@ -486,7 +491,7 @@ static double blind_s(const trouble_t *trouble, sim_time_t length, unsigned phas
     return seconds;
 }
 
-static const int lengths_ms[] = { 300, 500, 700, 1000, 1300, 1700, 2300, 2700, 3500, 5000, 6500, 8000 };
+static const int lengths_ms[] = {300, 500, 700, 1000, 1300, 1700, 2300, 2700, 3500, 5000, 6500, 8000};
 #define BOOT_LEAST_MS 2000
 
 static double worst_blind_s(const trouble_t *trouble, sim_time_t length)

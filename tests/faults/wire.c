@@ -6,7 +6,7 @@
 
 #include "tests/support/scip_frames.h"
 
-const char *const fault_names[FAULT_COUNT] = { "flip", "drop", "insert", "duplicate", "truncation" };
+const char *const fault_names[FAULT_COUNT] = {"flip", "drop", "insert", "duplicate", "truncation"};
 
 int wire_width(const wire_order_t *order)
 {
@@ -34,7 +34,8 @@ static void put(wire_t *wire, unsigned octet)
 
 static void write_echo(char *text, size_t size, const wire_order_t *order, int remaining)
 {
-    const int used = snprintf(text, size, "%s%04d%04d%02d", order->symbol, order->first, order->last, order->cluster);
+    const int used = snprintf(text, size, "%s%04d%04d%02d", order->symbol, order->first, order->last,
+                              order->cluster);
 
     if (wire_is_stream(order)) {
         snprintf(text + used, size - (size_t)used, "0%02d", remaining);
@@ -46,7 +47,8 @@ size_t wire_time_begins(const wire_order_t *order)
     return wire_is_stream(order) ? 20 : 17;
 }
 
-void wire_frame(wire_t *wire, const wire_order_t *order, int remaining, uint32_t stamp_ms, const uint16_t *distance_mm)
+void wire_frame(wire_t *wire, const wire_order_t *order, int remaining, uint32_t stamp_ms,
+                const uint16_t *distance_mm)
 {
     const int width = wire_width(order), points = wire_points(order);
     char echo[40], data[3 * WIRE_POINTS_MAX], text[WIRE_OCTETS_MAX + 1];

@@ -1,5 +1,5 @@
-/* The mocked monitor: keeps what a task says of its jobs, and fails the test when a job ends that was not begun or begins
- * in another one. */
+/* The mocked monitor: keeps what a task says of its jobs, and fails the test when a job ends that was not
+ * begun or begins in another one. */
 #ifndef TESTS_FIRMWARE_JOBS_H
 #define TESTS_FIRMWARE_JOBS_H
 
@@ -10,9 +10,9 @@
 
 typedef struct {
     Task_Handle handle;
-    uint16_t released;      /* releases told */
-    uint32_t released_us;   /* the latest */
-    uint32_t deadline_us;   /* the latest told, 0: none */
+    uint16_t released;    /* releases told */
+    uint32_t released_us; /* the latest */
+    uint32_t deadline_us; /* the latest told, 0: none */
     uint16_t begun;
     uint16_t done;
 } jobs_t;

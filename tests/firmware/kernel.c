@@ -6,13 +6,27 @@
 
 #include "unity.h"
 
-struct Task_Object { char unused; };
-struct Swi_Object { char unused; };
-struct Hwi_Object { char unused; };
-struct Clock_Object { char unused; };
-struct Semaphore_Object { char unused; };
-struct Event_Object { char unused; };
-struct GateMutexPri_Object { char unused; };
+struct Task_Object {
+    char unused;
+};
+struct Swi_Object {
+    char unused;
+};
+struct Hwi_Object {
+    char unused;
+};
+struct Clock_Object {
+    char unused;
+};
+struct Semaphore_Object {
+    char unused;
+};
+struct Event_Object {
+    char unused;
+};
+struct GateMutexPri_Object {
+    char unused;
+};
 
 static struct Task_Object task_object;
 static struct Swi_Object swi_object;
@@ -128,7 +142,8 @@ uint16_t kernel_random(uint32_t limit)
     return (uint16_t)(((random_state >> 16) * limit) >> 16);
 }
 
-static Task_Handle task_create(Task_FuncPtr function, const Task_Params *params, Error_Block *error, int calls)
+static Task_Handle task_create(Task_FuncPtr function, const Task_Params *params, Error_Block *error,
+                               int calls)
 {
     (void)calls;
     TEST_ASSERT_NULL_MESSAGE(error, "a failure must stop the system");
@@ -186,7 +201,8 @@ static Void swi_restore(UInt key, int calls)
     TEST_ASSERT_EQUAL_UINT(SWI_KEY + kernel.swi.depth, key);
 }
 
-static Hwi_Handle hwi_create(Int number, Hwi_FuncPtr function, const Hwi_Params *params, Error_Block *error, int calls)
+static Hwi_Handle hwi_create(Int number, Hwi_FuncPtr function, const Hwi_Params *params, Error_Block *error,
+                             int calls)
 {
     const uint16_t at = kernel.hwi.count;
 
@@ -219,8 +235,8 @@ static Void hwi_restore(UInt key, int calls)
     TEST_ASSERT_EQUAL_UINT(HWI_KEY + kernel.hwi.depth, key);
 }
 
-static Clock_Handle clock_create(Clock_FuncPtr function, UInt timeout, const Clock_Params *params, Error_Block *error,
-                                 int calls)
+static Clock_Handle clock_create(Clock_FuncPtr function, UInt timeout, const Clock_Params *params,
+                                 Error_Block *error, int calls)
 {
     (void)calls;
     TEST_ASSERT_NULL(error);
@@ -231,7 +247,8 @@ static Clock_Handle clock_create(Clock_FuncPtr function, UInt timeout, const Clo
     return &clock_object;
 }
 
-static Semaphore_Handle semaphore_create(Int count, const Semaphore_Params *params, Error_Block *error, int calls)
+static Semaphore_Handle semaphore_create(Int count, const Semaphore_Params *params, Error_Block *error,
+                                         int calls)
 {
     (void)calls;
     TEST_ASSERT_NULL(error);

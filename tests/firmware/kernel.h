@@ -1,6 +1,7 @@
-/* SYS/BIOS for the tests of firmware/: CMock's mocks, stubbed by a kernel that runs nothing by itself. It keeps what was
- * created, counts what was posted, runs an interrupt or a task when the test says so, and fails the test at once when a
- * lock is misused. One object of each kind per file under test, several Hwis and gates. */
+/* SYS/BIOS for the tests of firmware/: CMock's mocks, stubbed by a kernel that runs nothing by itself. It
+ * keeps what was created, counts what was posted, runs an interrupt or a task when the test says so, and
+ * fails the test at once when a lock is misused. One object of each kind per file under test, several Hwis
+ * and gates. */
 #ifndef TESTS_FIRMWARE_KERNEL_H
 #define TESTS_FIRMWARE_KERNEL_H
 
@@ -36,8 +37,8 @@ typedef struct {
         Task_Params params;
         const char *name;
         uint16_t sleeps;
-        UInt32 slept_ticks;             /* the latest */
-        void (*on_sleep)(void);         /* what happens meanwhile, or NULL */
+        UInt32 slept_ticks;     /* the latest */
+        void (*on_sleep)(void); /* what happens meanwhile, or NULL */
     } task;
     struct {
         uint16_t created;
@@ -46,12 +47,12 @@ typedef struct {
         const char *name;
         bool posted;
         uint16_t posts;
-        uint16_t disabled;              /* times Swi_disable was called */
+        uint16_t disabled; /* times Swi_disable was called */
         uint16_t depth;
     } swi;
     struct {
         uint16_t count;
-        uint16_t disabled;              /* times Hwi_disable was called */
+        uint16_t disabled; /* times Hwi_disable was called */
         uint16_t depth;
         struct {
             Int number;
@@ -74,17 +75,17 @@ typedef struct {
     struct {
         uint16_t created;
         UInt posted;
-        UInt and_mask, or_mask;         /* of the latest wait */
+        UInt and_mask, or_mask; /* of the latest wait */
         UInt32 timeout;
-        UInt (*on_pend)(UInt mask);     /* NULL: what is posted of the mask, or blocks */
+        UInt (*on_pend)(UInt mask); /* NULL: what is posted of the mask, or blocks */
     } event;
     struct {
         uint16_t count;
         kernel_gate_t made[KERNEL_GATES_MAX];
-        void (*on_enter)(void);         /* once the gate is held, or NULL */
-        void (*on_leave)(void);         /* while it is still held, or NULL */
+        void (*on_enter)(void); /* once the gate is held, or NULL */
+        void (*on_leave)(void); /* while it is still held, or NULL */
     } gates;
-    char notes[KERNEL_NOTES_MAX];       /* what happened, in its order, words with a blank behind each */
+    char notes[KERNEL_NOTES_MAX]; /* what happened, in its order, words with a blank behind each */
 } kernel_t;
 
 extern kernel_t kernel;
@@ -119,7 +120,8 @@ void kernel_no_lock(void);
 /* The gate of that name, NULL when there is none. */
 kernel_gate_t *kernel_gate(const char *name);
 
-/* A pseudorandom number below `limit` (1..65535), the same sequence in every run after kernel_random_seed(). */
+/* A pseudorandom number below `limit` (1..65535), the same sequence in every run after kernel_random_seed().
+ */
 void kernel_random_seed(uint32_t seed);
 uint16_t kernel_random(uint32_t limit);
 

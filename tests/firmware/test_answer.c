@@ -32,9 +32,7 @@ void setUp(void)
     xbee_port_answer_Stub(radio);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void assert_sent(const char *expected)
 {

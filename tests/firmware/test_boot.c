@@ -34,9 +34,7 @@ void setUp(void)
     bsp_retained_store_Stub(store);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void boot_after(bsp_reset_t cause)
 {
@@ -50,8 +48,11 @@ void test_every_cause_has_its_name_and_only_the_watchdogs_are_restarts(void)
         bsp_reset_t cause;
         const char *name;
         bool restart;
-    } rows[] = {{BSP_RESET_POWER, "POWER", false}, {BSP_RESET_PIN, "PIN", false}, {BSP_RESET_WATCHDOG, "WATCHDOG", true},
-                {BSP_RESET_NMI, "NMI", true}, {BSP_RESET_OTHER, "OTHER", false}};
+    } rows[] = {{BSP_RESET_POWER, "POWER", false},
+                {BSP_RESET_PIN, "PIN", false},
+                {BSP_RESET_WATCHDOG, "WATCHDOG", true},
+                {BSP_RESET_NMI, "NMI", true},
+                {BSP_RESET_OTHER, "OTHER", false}};
 
     for (uint16_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         boot_after(rows[i].cause);

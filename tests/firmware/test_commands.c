@@ -1,5 +1,5 @@
-/* Operator's lines from their octets to the servers and the answers; parser, parameter table and texts are real, the
- * servers, the verbs of other files and the radio are mocked. */
+/* Operator's lines from their octets to the servers and the answers; parser, parameter table and texts are
+ * real, the servers, the verbs of other files and the radio are mocked. */
 #include "firmware/commands.h"
 
 #include <math.h>
@@ -95,7 +95,7 @@ static bool left(int calls)
     return in_the_air;
 }
 
-static uint16_t stops;          /* of a hover calibration */
+static uint16_t stops; /* of a hover calibration */
 
 static void stop(int calls)
 {
@@ -110,7 +110,8 @@ void setUp(void)
 {
     kernel_reset();
     parameters_init(&parameters);
-    reference = (reference_sample_t){.reference_m = 0.0F, .sequence = 7U, .link_time_us = 11U, .link_sequence = 40U};
+    reference = (reference_sample_t){
+        .reference_m = 0.0F, .sequence = 7U, .link_time_us = 11U, .link_sequence = 40U};
     parameter_writes = reference_writes = answered = 0U;
     parameter_server_read_Stub(parameters_read);
     parameter_server_write_Stub(parameters_write);
@@ -251,11 +252,12 @@ void test_the_limits_themselves_are_accepted_and_the_next_number_is_not(void)
             type(line);
             TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE("OK ", answers[0], 3, line);
         }
-        (void)snprintf(text, sizeof text, "ERR %s out of range %.4g..%.4g %s", row->name, (double)row->minimum,
-                       (double)row->maximum, row->unit);
+        (void)snprintf(text, sizeof text, "ERR %s out of range %.4g..%.4g %s", row->name,
+                       (double)row->minimum, (double)row->maximum, row->unit);
         (void)snprintf(line, sizeof line, "#%s %.9g", row->name, (double)nextafterf(row->maximum, INFINITY));
         assert_refused(text, line);
-        (void)snprintf(line, sizeof line, "#%s %.9g", row->name, (double)nextafterf(row->minimum, -1.0F) - 1e-6);
+        (void)snprintf(line, sizeof line, "#%s %.9g", row->name,
+                       (double)nextafterf(row->minimum, -1.0F) - 1e-6);
         assert_refused(text, line);
         (void)snprintf(line, sizeof line, "#%s 1e9", row->name);
         assert_refused(text, line);
@@ -298,8 +300,8 @@ void test_a_choice_by_another_name_or_by_number_is_refused_with_the_list(void)
 
 void test_what_is_no_number_is_refused(void)
 {
-    static const char *const bad[] = {"nan", "inf", "-inf", "0x1", "1,5", "1.5m", "0.6 0.7", "--1", "1e", ".", "+", "1e99",
-                                      "six"};
+    static const char *const bad[] = {"nan", "inf", "-inf", "0x1", "1,5",  "1.5m", "0.6 0.7",
+                                      "--1", "1e",  ".",    "+",   "1e99", "six"};
 
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         char line[TELECOMMAND_LINE_MAX + 1U];
@@ -413,7 +415,8 @@ void test_ping_answers_its_own_text(void)
     assert_answer("OK PING 17", "#PING 17");
     assert_answer("OK PING", "#PING");
     assert_answer("OK PING Are you  there?", "#ping Are you  there? ");
-    assert_answer("OK PING 12345678901234567890123456", "#PING 12345678901234567890123456"); /* 32 characters */
+    assert_answer("OK PING 12345678901234567890123456",
+                  "#PING 12345678901234567890123456"); /* 32 characters */
     TEST_ASSERT_EQUAL_UINT16(0, parameter_writes);
 }
 
@@ -525,7 +528,8 @@ void test_a_verb_gets_the_command_and_its_verdict_is_the_links_life_sign(void)
 
 void test_every_valid_line_is_a_life_sign_of_the_link(void)
 {
-    static const char *const valid[] = {"#PING", "#GET", "#GET KP", "#HELP", "#KP 0.01", "#SETR 0.5", "#LAW PD", "#LINK 2"};
+    static const char *const valid[] = {"#PING",    "#GET",      "#GET KP", "#HELP",
+                                        "#KP 0.01", "#SETR 0.5", "#LAW PD", "#LINK 2"};
 
     for (uint32_t i = 0; i < sizeof valid / sizeof valid[0]; i++) {
         reference.link_time_us = 0U;
@@ -540,7 +544,8 @@ void test_every_valid_line_is_a_life_sign_of_the_link(void)
 /* As the radio's port marks it when the UART has lost octets: `#SETR 0.3` that comes as `#SETR 3`. */
 void test_a_damaged_line_never_executes(void)
 {
-    static const char *const lines[] = {"#SETR 3", "#KP 1", "#LAW PD", "#GET", "#PING 1", "#HELP", "#LASER", "#", "#?"};
+    static const char *const lines[] = {"#SETR 3", "#KP 1",  "#LAW PD", "#GET", "#PING 1",
+                                        "#HELP",   "#LASER", "#",       "#?"};
     const parameters_t parameters_before = parameters;
 
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
@@ -572,8 +577,8 @@ void test_a_command_after_a_refused_one_works(void)
 /* Commands with some characters changed, cut or doubled. */
 static size_t damaged_line(char *line)
 {
-    static const char *const seeds[] = {"#SETR 0.6", "#KP 0.015", "#LAW PID", "#GET USAT", "#RELEASE SCAN", "#PING 5",
-                                        "#LINK 10", "#HELP", "#GET"};
+    static const char *const seeds[] = {"#SETR 0.6", "#KP 0.015", "#LAW PID", "#GET USAT", "#RELEASE SCAN",
+                                        "#PING 5",   "#LINK 10",  "#HELP",    "#GET"};
     size_t length;
 
     (void)strcpy(line, seeds[kernel_random(sizeof seeds / sizeof seeds[0])]);
@@ -632,7 +637,8 @@ void test_whatever_comes_is_answered_and_changes_all_or_nothing(void)
 
 void test_any_line_but_a_ping_ends_a_calibration(void)
 {
-    static const char *const others[] = {"#GET KP", "#KP 0.01", "#KP nan", "#", "#?", "#PINGS", "#PIN", "#FLY"};
+    static const char *const others[] = {"#GET KP", "#KP 0.01", "#KP nan", "#",
+                                         "#?",      "#PINGS",   "#PIN",    "#FLY"};
 
     type("#PING");
     type("#ping 1");
@@ -670,7 +676,8 @@ void test_stop_and_land_withdraw_the_reference_whatever_stands_behind_them(void)
 {
     static const struct {
         const char *line, *expected;
-    } rows[] = {{"#STOP", "OK STOP"}, {"#LAND", "OK LAND"}, {"#stop now!", "OK STOP"}, {"#land 0.3", "OK LAND"}};
+    } rows[] = {
+        {"#STOP", "OK STOP"}, {"#LAND", "OK LAND"}, {"#stop now!", "OK STOP"}, {"#land 0.3", "OK LAND"}};
 
     for (uint16_t i = 0; i < 4U; i++) {
         reference.reference_m = 0.6F;

@@ -11,7 +11,8 @@
 
 #define ROUNDS 3U
 
-/* What the code under test called, one letter each: o interrupts off, I idle pulse, R and r red on and off, B and b blue. */
+/* What the code under test called, one letter each: o interrupts off, I idle pulse, R and r red on and off, B
+ * and b blue. */
 static char calls[64];
 static uint16_t idles;
 static jmp_buf left;
@@ -56,11 +57,10 @@ void setUp(void)
     idles = 0U;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
-#define ASSERT_STAYS_SAFE(call) do { \
+#define ASSERT_STAYS_SAFE(call) \
+    do { \
         if (setjmp(left) == 0) { \
             call; \
             TEST_FAIL_MESSAGE("it returned"); \

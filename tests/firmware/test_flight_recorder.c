@@ -19,7 +19,7 @@ void setUp(void)
     out.state = FLIGHT_GROUND;
     out.thrust_n = 0.0F;
     in.now_us += 1000000U;
-    flight_recorder_take(&in, &out);    /* ends what the test before began */
+    flight_recorder_take(&in, &out); /* ends what the test before began */
     in.now_us += 1000000U;
     flight_recorder_take(&in, &out);
     flight_recorder_clear();

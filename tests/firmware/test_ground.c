@@ -26,9 +26,7 @@ void setUp(void)
     reference_server_read_Stub(read_reference);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_on_the_ground_without_thrust_and_reference_it_is_idle(void)
 {

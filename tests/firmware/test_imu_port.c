@@ -66,7 +66,7 @@ static void octet(uint16_t cell)
 {
     bsp_uart_burst_t burst = {.count = 1U, .octets = {cell}};
 
-    now_us += 174U; /* ten bits at 57600 */
+    now_us += 174U;                                              /* ten bits at 57600 */
     TEST_ASSERT_EQUAL_UINT16(UART_PORT_BURST, receiver(&burst)); /* the tick brings the end of a frame */
     kernel_run_swi();
 }

@@ -1,5 +1,5 @@
-/* The scanner's port with the real SCIP parser, fed as the receive Hwi is: the sensor's side is written here after its
- * protocol (Hokuyo C-42-03320B). */
+/* The scanner's port with the real SCIP parser, fed as the receive Hwi is: the sensor's side is written here
+ * after its protocol (Hokuyo C-42-03320B). */
 #include "firmware/laser_port.h"
 
 #include <string.h>
@@ -11,16 +11,16 @@
 #include "tests/support/scip_frames.h"
 #include "unity.h"
 
-#define POINTS 35U          /* steps 372..406 */
-#define OCTET_US 40U        /* ten bits at 250000 */
+#define POINTS 35U   /* steps 372..406 */
+#define OCTET_US 40U /* ten bits at 250000 */
 
 static uart_port_received_t receiver;
 static uint32_t now_us;
 static uint32_t reopened_at;
 static char sent[64];
 static uint16_t sent_count;
-static const char *answer_while_sending;    /* comes before uart_port_send() returns, or NULL */
-static uint16_t level;              /* octets until the port wants to be called again */
+static const char *answer_while_sending; /* comes before uart_port_send() returns, or NULL */
+static uint16_t level;                   /* octets until the port wants to be called again */
 static laser_message_t message;
 static laser_statistics_t now;
 static laser_statistics_t before;
@@ -327,7 +327,8 @@ void test_a_scan_is_handed_over_at_its_last_octet_with_the_time_of_that_octet(vo
     TEST_ASSERT_EQUAL_UINT32(250000U, message.bit_rate);
     look();
     TEST_ASSERT_EQUAL_UINT32(before.seen.scan_count + 1U, now.seen.scan_count);
-    TEST_ASSERT_EQUAL_UINT32(before.seen.octet_count + 101U, now.seen.octet_count); /* 27 + 2n + 2 ceil(2n / 64) */
+    TEST_ASSERT_EQUAL_UINT32(before.seen.octet_count + 101U,
+                             now.seen.octet_count); /* 27 + 2n + 2 ceil(2n / 64) */
 }
 
 void test_scans_alternate_between_the_two_buffers_and_all_arrive(void)
@@ -350,7 +351,7 @@ void test_the_next_scan_in_reception_does_not_touch_the_complete_one(void)
     feed_only(scan_text(1000U, 700U));
     (void)memcpy(half, scan_text(1100U, 2000U), 79U);
     half[79] = '\0';
-    feed_only(half);            /* before Laser_SWI has run */
+    feed_only(half); /* before Laser_SWI has run */
     kernel_run_swi();
     wait();
     assert_scan(1000U, 700U);
@@ -595,7 +596,7 @@ void test_the_copy_to_the_task_is_made_with_swis_off_and_the_parser_touched_with
     kernel.swi.disabled = 0U;
     kernel.hwi.disabled = 0U;
     feed(scan_text(1000U, 700U));
-    TEST_ASSERT_EQUAL_UINT16(1, kernel.hwi.disabled);   /* Laser_SWI */
+    TEST_ASSERT_EQUAL_UINT16(1, kernel.hwi.disabled); /* Laser_SWI */
     wait();
     TEST_ASSERT_EQUAL_UINT16(1, kernel.swi.disabled);
     laser_port_set_rate(250000U);
@@ -613,7 +614,8 @@ void test_the_task_is_released_by_the_last_octet_of_a_scan(void)
     TEST_ASSERT_EQUAL_UINT32(now_us, jobs[MONITOR_RECEIVE_LASER].released_us);
 }
 
-/* The FIFO as the levels empty it: returns the interrupts for that text; what is left in the FIFO at its end stays. */
+/* The FIFO as the levels empty it: returns the interrupts for that text; what is left in the FIFO at its end
+ * stays. */
 static bsp_uart_burst_t fifo;
 
 static uint16_t arrive(const char *text)
@@ -645,7 +647,8 @@ void test_the_last_octet_of_every_scan_makes_its_interrupt(void)
     start_stream();
     fifo.count = 0U;
     for (uint16_t n = 0; n < 50U; n++) {
-        TEST_ASSERT_EQUAL_UINT16(13, arrive(scan_text(1000U + 100U * n, (uint16_t)(500U + n)))); /* 12 * 8 + 5 */
+        TEST_ASSERT_EQUAL_UINT16(13,
+                                 arrive(scan_text(1000U + 100U * n, (uint16_t)(500U + n)))); /* 12 * 8 + 5 */
         TEST_ASSERT_EQUAL_UINT16(0, fifo.count);
         wait();
         assert_scan(1000U + 100U * n, (uint16_t)(500U + n));
@@ -677,7 +680,8 @@ void test_ticks_anywhere_between_leave_the_last_octets_interrupt_where_it_is(voi
     }
 }
 
-/* Any number of octets lost anywhere costs that scan, with what is left of it fetched by the tick, and no other. */
+/* Any number of octets lost anywhere costs that scan, with what is left of it fetched by the tick, and no
+ * other. */
 void test_lost_octets_cost_their_scan_alone(void)
 {
     uint32_t stamp_ms = 1000U;

@@ -10,7 +10,7 @@
 
 static char lines[LINES_MAX][TELEMETRY_ANSWER_MAX + 1U];
 static uint16_t line_count;
-static uint16_t room;       /* lines that the radio takes until it is full */
+static uint16_t room; /* lines that the radio takes until it is full */
 static uint16_t to_tell;
 
 static bool spare(const telemetry_line_t *line, int calls)

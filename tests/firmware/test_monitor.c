@@ -1,4 +1,5 @@
-/* The monitor on a clock that the test moves. Its figures outlive a test; monitor_reset() is the first thing each does. */
+/* The monitor on a clock that the test moves. Its figures outlive a test; monitor_reset() is the first thing
+ * each does. */
 #include "firmware/monitor.h"
 
 #include "kernel.h"
@@ -71,8 +72,8 @@ void test_the_longest_response_stays(void)
 
 void test_every_task_has_its_own_figures_and_its_name(void)
 {
-    static const char *const names[MONITOR_TASKS] = {"TaskIMU", "TaskReceiveLaser", "TaskControl", "TaskSendLaser",
-                                                     "TaskSendComm", "TaskReceiveComm"};
+    static const char *const names[MONITOR_TASKS] = {"TaskIMU",       "TaskReceiveLaser", "TaskControl",
+                                                     "TaskSendLaser", "TaskSendComm",     "TaskReceiveComm"};
 
     for (uint32_t task = 0; task < MONITOR_TASKS; task++) {
         job((monitor_task_t)task, 0U, 100U + task);

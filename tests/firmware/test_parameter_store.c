@@ -55,9 +55,9 @@ static float marked(void)
 {
     const float number = parameters.value[PARAMETER_LINK];
 
-    TEST_ASSERT_TRUE_MESSAGE(parameters.value[PARAMETER_KP] == 0.001F * number
-                                 && parameters.value[PARAMETER_KD] == 0.002F * number
-                                 && parameters.value[PARAMETER_KI] == 0.003F * number,
+    TEST_ASSERT_TRUE_MESSAGE(parameters.value[PARAMETER_KP] == 0.001F * number &&
+                                 parameters.value[PARAMETER_KD] == 0.002F * number &&
+                                 parameters.value[PARAMETER_KI] == 0.003F * number,
                              "a mix of two sets");
     return number;
 }
@@ -112,7 +112,8 @@ void test_every_value_comes_back(void)
     for (uint16_t id = 0U; id < PARAMETER_COUNT; id++) {
         const parameter_row_t *row = &parameter_table[id];
 
-        parameters.value[id] = row->choices != NULL ? row->maximum : row->minimum * 0.7F + row->maximum * 0.3F;
+        parameters.value[id] = row->choices != NULL ? row->maximum
+                                                    : row->minimum * 0.7F + row->maximum * 0.3F;
     }
     expected = parameters;
     result = parameter_store_save(&parameters);
@@ -181,7 +182,8 @@ void test_copies_of_other_parameters_are_refused_and_kept_as_long_as_there_is_ro
     assert_loads(3.0F, 3U);
 }
 
-/* Folded here once more: a set under an old name, or with a choice under another, must not be read as this one. */
+/* Folded here once more: a set under an old name, or with a choice under another, must not be read as this
+ * one. */
 void test_a_copy_is_signed_with_the_names_of_all_parameters_and_choices(void)
 {
     uint16_t cells[PARAMETER_IMAGE_CELLS_MAX];
@@ -296,7 +298,7 @@ void test_power_may_fail_at_every_cell_of_a_save(void)
     static uint16_t before[FLASH_SECTORS * FLASH_SECTOR_CELLS];
     long cells;
 
-    for (uint16_t saves = 1U; saves <= 3U; saves++) {   /* one copy, two, the older one in either slot */
+    for (uint16_t saves = 1U; saves <= 3U; saves++) { /* one copy, two, the older one in either slot */
         setUp();
         for (uint16_t i = 1U; i <= saves; i++) {
             (void)save((float)i);
@@ -305,7 +307,8 @@ void test_power_may_fail_at_every_cell_of_a_save(void)
         cells = flash_cells_changed();
         (void)save(8.0F);
         cells = flash_cells_changed() - cells;
-        TEST_ASSERT_TRUE(cells > FLASH_SECTOR_CELLS + 16 && cells <= FLASH_SECTOR_CELLS + PARAMETER_IMAGE_CELLS_MAX);
+        TEST_ASSERT_TRUE(cells > FLASH_SECTOR_CELLS + 16 &&
+                         cells <= FLASH_SECTOR_CELLS + PARAMETER_IMAGE_CELLS_MAX);
         for (long cut = 0; cut <= cells; cut += (cut < 200 || cut >= FLASH_SECTOR_CELLS - 1) ? 1 : 13) {
             cut_and_check(cut, before, (float)saves, 8.0F);
         }

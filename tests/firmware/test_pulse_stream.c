@@ -25,9 +25,7 @@ void setUp(void)
     xbee_port_stream_Stub(radio);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_it_is_off_until_somebody_asks(void)
 {

@@ -1,5 +1,5 @@
-/* The servers on mocked gates. The values outlive a test, as they outlive servers_create() in the product: the test of
- * the first values stands first. */
+/* The servers on mocked gates. The values outlive a test, as they outlive servers_create() in the product:
+ * the test of the first values stands first. */
 #include "firmware/servers.h"
 
 #include <string.h>
@@ -192,25 +192,64 @@ void test_each_server_has_a_gate_of_its_own_with_its_name(void)
     }
 }
 
-static void write_altitude(void) { altitude_server_write(&altitude); }
-static void read_altitude(void) { altitude_server_read(&altitude); }
-static void write_imu(void) { imu_server_write(&imu); }
-static void read_imu(void) { imu_server_read(&imu); }
-static void read_history(void) { (void)imu_server_history(history); }
-static void write_laser(void) { laser_server_write(&laser); }
-static void read_laser(void) { laser_server_read(&laser); }
-static void write_reference(void) { reference_server_write(&reference); }
-static void read_reference(void) { reference_server_read(&reference); }
-static void write_parameters(void) { parameter_server_write(&parameters); }
-static void read_parameters(void) { parameter_server_read(&parameters); }
-static void write_flight(void) { flight_status_server_write(&flight); }
-static void read_flight(void) { flight_status_server_read(&flight); }
+static void write_altitude(void)
+{
+    altitude_server_write(&altitude);
+}
+static void read_altitude(void)
+{
+    altitude_server_read(&altitude);
+}
+static void write_imu(void)
+{
+    imu_server_write(&imu);
+}
+static void read_imu(void)
+{
+    imu_server_read(&imu);
+}
+static void read_history(void)
+{
+    (void)imu_server_history(history);
+}
+static void write_laser(void)
+{
+    laser_server_write(&laser);
+}
+static void read_laser(void)
+{
+    laser_server_read(&laser);
+}
+static void write_reference(void)
+{
+    reference_server_write(&reference);
+}
+static void read_reference(void)
+{
+    reference_server_read(&reference);
+}
+static void write_parameters(void)
+{
+    parameter_server_write(&parameters);
+}
+static void read_parameters(void)
+{
+    parameter_server_read(&parameters);
+}
+static void write_flight(void)
+{
+    flight_status_server_write(&flight);
+}
+static void read_flight(void)
+{
+    flight_status_server_read(&flight);
+}
 
 static const struct {
     void (*access)(void);
     const char *gate;
     bool writes;
-    void *copy;             /* the caller's side */
+    void *copy; /* the caller's side */
     size_t size;
 } accesses[] = {
     {write_altitude, ALTITUDE, true, &altitude, sizeof altitude},
@@ -233,8 +272,9 @@ static const struct {
 static const void *served(size_t access)
 {
     const void *const values[ACCESSES] = {
-        probe_altitude,  probe_altitude,  probe_imu,        probe_imu,        probe_imu,    probe_laser,  probe_laser,
-        probe_reference, probe_reference, probe_parameters, probe_parameters, probe_flight, probe_flight,
+        probe_altitude,   probe_altitude, probe_imu,       probe_imu,       probe_imu,
+        probe_laser,      probe_laser,    probe_reference, probe_reference, probe_parameters,
+        probe_parameters, probe_flight,   probe_flight,
     };
 
     return values[access];
@@ -344,9 +384,10 @@ static void wait_at_the_gate(void)
 void test_every_wait_is_told_with_its_server_and_the_time_it_was_asked_for(void)
 {
     static const monitor_server_t servers[ACCESSES] = {
-        MONITOR_ALTITUDE,     MONITOR_ALTITUDE,  MONITOR_IMU_SAMPLE, MONITOR_IMU_SAMPLE, MONITOR_IMU_SAMPLE,
-        MONITOR_LASER_STATUS, MONITOR_LASER_STATUS, MONITOR_REFERENCE, MONITOR_REFERENCE, MONITOR_PARAMETERS,
-        MONITOR_PARAMETERS,   MONITOR_FLIGHT_STATUS, MONITOR_FLIGHT_STATUS,
+        MONITOR_ALTITUDE,      MONITOR_ALTITUDE,     MONITOR_IMU_SAMPLE,   MONITOR_IMU_SAMPLE,
+        MONITOR_IMU_SAMPLE,    MONITOR_LASER_STATUS, MONITOR_LASER_STATUS, MONITOR_REFERENCE,
+        MONITOR_REFERENCE,     MONITOR_PARAMETERS,   MONITOR_PARAMETERS,   MONITOR_FLIGHT_STATUS,
+        MONITOR_FLIGHT_STATUS,
     };
 
     kernel.gates.on_enter = wait_at_the_gate;

@@ -1,5 +1,5 @@
-/* TaskControl with the real flight cycle; the linker lets the test look at what goes into flight_step() and what comes
- * out (--wrap). A script changes the servers from wait to wait. */
+/* TaskControl with the real flight cycle; the linker lets the test look at what goes into flight_step() and
+ * what comes out (--wrap). A script changes the servers from wait to wait. */
 #include "firmware/tasks.h"
 
 #include <string.h>
@@ -19,7 +19,7 @@
 #include "unity.h"
 
 #define CYCLES_MAX 200U
-#define IDLE_PULSE_US 1999.68F  /* 4166 counts of 0.48 us */
+#define IDLE_PULSE_US 1999.68F /* 4166 counts of 0.48 us */
 
 void __real_flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in,
                         flight_outputs_t *out);
@@ -40,16 +40,17 @@ static float pulses_us[CYCLES_MAX];
 static flight_outputs_t published[CYCLES_MAX];
 static UInt masks[CYCLES_MAX + 1U];
 static uint16_t waits;
-static uint16_t cycles;         /* to run */
+static uint16_t cycles; /* to run */
 static uint16_t steps;
 static uint16_t pulse_count;
 static uint16_t publications;
-static void (*between)(uint16_t wait);  /* changes the world while the task waits, or NULL */
-static UInt released_by;        /* what Event_pend() returns */
-static float overlay_us;        /* what the calibrator adds */
+static void (*between)(uint16_t wait); /* changes the world while the task waits, or NULL */
+static UInt released_by;               /* what Event_pend() returns */
+static float overlay_us;               /* what the calibrator adds */
 static uint16_t alive_reports;
 
-void __wrap_flight_step(flight_t *flight, const parameters_t *set, const flight_inputs_t *in, flight_outputs_t *out)
+void __wrap_flight_step(flight_t *flight, const parameters_t *set, const flight_inputs_t *in,
+                        flight_outputs_t *out)
 {
     kernel_note("step");
     kernel_no_lock();
@@ -236,7 +237,8 @@ void test_a_cycle_waits_looks_steps_drives_the_throttle_publishes_and_records(vo
     TEST_ASSERT_EQUAL_STRING("parameters "
                              "pend parameters altitude imu reference time step overlay pulse publish record "
                              "pend parameters altitude imu reference time step overlay pulse publish record "
-                             "pend ", kernel.notes);
+                             "pend ",
+                             kernel.notes);
 }
 
 void test_a_wait_is_for_any_of_its_events_and_at_most_150_ms(void)
@@ -254,7 +256,8 @@ void test_a_time_out_runs_a_cycle_like_any_release(void)
 
 static void change_the_release(uint16_t wait)
 {
-    parameters.value[PARAMETER_RELEASE] = (wait == 1U || wait == 2U) ? (float)RELEASE_SCAN : (float)RELEASE_FREE;
+    parameters.value[PARAMETER_RELEASE] = (wait == 1U || wait == 2U) ? (float)RELEASE_SCAN
+                                                                     : (float)RELEASE_FREE;
 }
 
 void test_the_next_wait_follows_the_release_parameter(void)
@@ -262,7 +265,7 @@ void test_the_next_wait_follows_the_release_parameter(void)
     between = change_the_release;
     run(5U);
     TEST_ASSERT_EQUAL_HEX16(Event_Id_00, masks[0]);
-    TEST_ASSERT_EQUAL_HEX16(Event_Id_00, masks[1]);     /* FREE in the cycle before */
+    TEST_ASSERT_EQUAL_HEX16(Event_Id_00, masks[1]); /* FREE in the cycle before */
     TEST_ASSERT_EQUAL_HEX16(Event_Id_01, masks[2]);
     TEST_ASSERT_EQUAL_HEX16(Event_Id_01, masks[3]);
     TEST_ASSERT_EQUAL_HEX16(Event_Id_00, masks[4]);
@@ -481,7 +484,8 @@ void test_in_flight_pulse_and_status_are_what_the_cycle_decided(void)
         TEST_ASSERT_EQUAL_FLOAT(outputs[n].reference_m, published[n].reference_m);
         TEST_ASSERT_EQUAL(outputs[n].state, published[n].state);
         TEST_ASSERT_EQUAL_HEX16(outputs[n].flags, published[n].flags);
-        TEST_ASSERT_EQUAL_MEMORY(&outputs[n].estimate_mm, &published[n].estimate_mm, sizeof(float)); /* NaN too */
+        TEST_ASSERT_EQUAL_MEMORY(&outputs[n].estimate_mm, &published[n].estimate_mm,
+                                 sizeof(float)); /* NaN too */
         TEST_ASSERT_EQUAL_MEMORY(&outputs[n].innovation_mm, &published[n].innovation_mm, sizeof(float));
     }
     TEST_ASSERT_TRUE(flew);
@@ -535,7 +539,8 @@ void test_a_job_is_measured_from_the_event_that_is_waited_for(void)
         now_us = 5000U;
         kernel.clock.function(kernel.clock.params.arg);
         TEST_ASSERT_EQUAL_UINT16(release == RELEASE_FREE ? 1U : 0U, jobs[MONITOR_CONTROL].released);
-        TEST_ASSERT_EQUAL_UINT32(release == RELEASE_FREE ? 108000U : 100000U, jobs[MONITOR_CONTROL].deadline_us);
+        TEST_ASSERT_EQUAL_UINT32(release == RELEASE_FREE ? 108000U : 100000U,
+                                 jobs[MONITOR_CONTROL].deadline_us);
         now_us = 6000U;
         task_control_altitude_arrived();
         TEST_ASSERT_EQUAL_UINT16(1, jobs[MONITOR_CONTROL].released);

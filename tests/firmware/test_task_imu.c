@@ -1,5 +1,6 @@
-/* TaskIMU with the real parser and attitude filter, between a scripted port and a recording server. The task keeps its
- * sample from one test to the next, as it does from frame to frame: what counts up is compared with the first write. */
+/* TaskIMU with the real parser and attitude filter, between a scripted port and a recording server. The task
+ * keeps its sample from one test to the next, as it does from frame to frame: what counts up is compared with
+ * the first write. */
 #include "firmware/tasks.h"
 
 #include <math.h>
@@ -207,8 +208,9 @@ void test_the_acceleration_is_published_when_the_frame_has_one(void)
 
 void test_a_malformed_frame_is_counted_and_changes_nothing_else(void)
 {
-    static const char *const bad[] = {"#YPR=nan,0.00,0.00", "#YPR=1.00,2.00", "#YPR=1.00,2.00,3.00,4.00", "#YPR=",
-                                      "#YPR=0.00,361.00,0.00", "#A-C=1.00,2.00\n#YPR=1.00,2.00,3.00"};
+    static const char *const bad[] = {"#YPR=nan,0.00,0.00",       "#YPR=1.00,2.00",
+                                      "#YPR=1.00,2.00,3.00,4.00", "#YPR=",
+                                      "#YPR=0.00,361.00,0.00",    "#A-C=1.00,2.00\n#YPR=1.00,2.00,3.00"};
     const uint16_t kinds = sizeof bad / sizeof bad[0];
 
     at_rest(0.0, 0.0);

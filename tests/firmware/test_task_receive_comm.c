@@ -54,7 +54,7 @@ static void execute(const xbee_message_t *message, int calls)
     executed++;
 }
 
-static bool held_up;    /* by the radio */
+static bool held_up; /* by the radio */
 
 static bool go_on(int calls)
 {
@@ -102,8 +102,10 @@ void test_create_makes_the_port_first_and_then_one_task_of_priority_1(void)
 void test_each_line_is_executed_once_in_its_order_losses_told_before_it_long_answers_between_lines(void)
 {
     kernel_run_task();
-    TEST_ASSERT_EQUAL_STRING("port continue wait execute continue wait lost execute continue wait lost execute "
-                             "continue wait ", kernel.notes);
+    TEST_ASSERT_EQUAL_STRING(
+        "port continue wait execute continue wait lost execute continue wait lost execute "
+        "continue wait ",
+        kernel.notes);
     TEST_ASSERT_EQUAL_UINT64(SCRIPT, executed);
     TEST_ASSERT_EQUAL_UINT64(2, reports);
     TEST_ASSERT_EQUAL_UINT16(3, reported[0]);

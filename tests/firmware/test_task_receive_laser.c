@@ -1,5 +1,6 @@
-/* TaskReceiveLaser with the real ray groups and altitude correction, between a scripted port and recording servers. The
- * task keeps its sample from one test to the next: what counts up is compared with the first write. */
+/* TaskReceiveLaser with the real ray groups and altitude correction, between a scripted port and recording
+ * servers. The task keeps its sample from one test to the next: what counts up is compared with the first
+ * write. */
 #include "firmware/tasks.h"
 
 #include <string.h>

@@ -17,8 +17,8 @@ static laser_sample_t laser;
 static flight_outputs_t flight;
 static telemetry_line_t line;
 static uint16_t lines;
-static const char *cause;          /* NULL: not told */
-static uint16_t more_ticks;        /* that come while the task runs */
+static const char *cause;   /* NULL: not told */
+static uint16_t more_ticks; /* that come while the task runs */
 
 static void altitude_read(altitude_sample_t *sample, int calls)
 {
@@ -210,14 +210,17 @@ void test_the_first_line_alone_tells_the_cause_of_the_reset(void)
 {
     cause = "WATCHDOG";
     run(1U);
-    TEST_ASSERT_EQUAL_STRING_LEN("alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0 reset:WATCHDOG\r\n", line.text,
-                                 line.length);
+    TEST_ASSERT_EQUAL_STRING_LEN(
+        "alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0 reset:WATCHDOG\r\n", line.text,
+        line.length);
     lines = 0U;
     run(2U);
-    TEST_ASSERT_EQUAL_STRING_LEN("alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0\r\n", line.text, line.length);
+    TEST_ASSERT_EQUAL_STRING_LEN("alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0\r\n", line.text,
+                                 line.length);
     lines = 0U;
     run(9U);
-    TEST_ASSERT_EQUAL_STRING_LEN("alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0\r\n", line.text, line.length);
+    TEST_ASSERT_EQUAL_STRING_LEN("alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0\r\n", line.text,
+                                 line.length);
 }
 
 void test_every_job_is_measured_from_the_tick_that_released_it(void)

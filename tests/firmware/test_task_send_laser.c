@@ -1,4 +1,5 @@
-/* TaskSendLaser with the real state machine, against a sensor that answers as the receiving side would report it. */
+/* TaskSendLaser with the real state machine, against a sensor that answers as the receiving side would report
+ * it. */
 #include "firmware/tasks.h"
 
 #include <stdio.h>
@@ -15,7 +16,7 @@
 #include "unity.h"
 
 #define PERIOD_US 150000U
-#define TICKS_OF_WAIT 67U   /* 10 s */
+#define TICKS_OF_WAIT 67U /* 10 s */
 
 static const urg_config_t config = {
     .wait_us = 10000000U,
@@ -28,7 +29,7 @@ static const urg_config_t config = {
 
 static uint32_t now_us;
 static laser_statistics_t receiving;
-static laser_sample_t laser;    /* as published */
+static laser_sample_t laser; /* as published */
 static bool blue, red;
 static uint16_t writes;
 static uint16_t alive_reports;

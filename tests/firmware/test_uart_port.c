@@ -1,4 +1,5 @@
-/* The transmit ring, the receive levels, the six Hwis and the tick, on a mocked UART whose FIFO takes 16 octets. */
+/* The transmit ring, the receive levels, the six Hwis and the tick, on a mocked UART whose FIFO takes 16
+ * octets. */
 #include "firmware/uart_port.h"
 
 #include <string.h>
@@ -13,17 +14,17 @@
 #define TRANSMIT_NUMBER 50
 
 static struct {
-    uint16_t fifo;              /* octets in it */
-    uint16_t wire[WIRE_MAX];    /* all that was put into the FIFO */
+    uint16_t fifo;           /* octets in it */
+    uint16_t wire[WIRE_MAX]; /* all that was put into the FIFO */
     uint32_t sent;
     bool interrupt_on;
     uint32_t rate;
     uint16_t opened;
-    bsp_uart_burst_t burst;     /* what the next receive interrupt finds */
+    bsp_uart_burst_t burst; /* what the next receive interrupt finds */
     bsp_uart_burst_t received;
     uint16_t receptions;
-    uint16_t asked;             /* by the receiver: octets until it wants to be called again */
-    uint16_t level;             /* of the receive interrupt */
+    uint16_t asked; /* by the receiver: octets until it wants to be called again */
+    uint16_t level; /* of the receive interrupt */
     uint16_t level_changes;
 } uarts[BSP_UART_COUNT];
 static bool in_hwi;
@@ -101,9 +102,18 @@ static uint16_t received(bsp_uart_t uart, const bsp_uart_burst_t *burst)
     return uarts[uart].asked;
 }
 
-static uint16_t laser_received(const bsp_uart_burst_t *burst) { return received(BSP_UART_LASER, burst); }
-static uint16_t imu_received(const bsp_uart_burst_t *burst) { return received(BSP_UART_IMU, burst); }
-static uint16_t xbee_received(const bsp_uart_burst_t *burst) { return received(BSP_UART_XBEE, burst); }
+static uint16_t laser_received(const bsp_uart_burst_t *burst)
+{
+    return received(BSP_UART_LASER, burst);
+}
+static uint16_t imu_received(const bsp_uart_burst_t *burst)
+{
+    return received(BSP_UART_IMU, burst);
+}
+static uint16_t xbee_received(const bsp_uart_burst_t *burst)
+{
+    return received(BSP_UART_XBEE, burst);
+}
 
 void setUp(void)
 {
@@ -316,11 +326,13 @@ void test_the_interrupt_is_on_exactly_while_something_waits_in_the_ring(void)
     kernel_random_seed(4U);
     for (uint16_t n = 0; n < 2000U; n++) {
         (void)uart_port_send(BSP_UART_IMU, "0123456789012345678901234567890", kernel_random(32U));
-        TEST_ASSERT_EQUAL(uart_port_room(BSP_UART_IMU) < UART_PORT_TRANSMIT_CELLS, uarts[BSP_UART_IMU].interrupt_on);
+        TEST_ASSERT_EQUAL(uart_port_room(BSP_UART_IMU) < UART_PORT_TRANSMIT_CELLS,
+                          uarts[BSP_UART_IMU].interrupt_on);
         if (uarts[BSP_UART_IMU].interrupt_on) {
             transmit_hwi(BSP_UART_IMU);
         }
-        TEST_ASSERT_EQUAL(uart_port_room(BSP_UART_IMU) < UART_PORT_TRANSMIT_CELLS, uarts[BSP_UART_IMU].interrupt_on);
+        TEST_ASSERT_EQUAL(uart_port_room(BSP_UART_IMU) < UART_PORT_TRANSMIT_CELLS,
+                          uarts[BSP_UART_IMU].interrupt_on);
     }
 }
 

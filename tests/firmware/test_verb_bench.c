@@ -24,16 +24,15 @@ void setUp(void)
     xbee_port_answer_Stub(radio);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static bool ask(bool (*verb)(answer_t *answer), const char *name, const char *argument)
 {
     static telecommand_t command;
     answer_t answer = {.command = &command};
 
-    command = (telecommand_t){.name_length = (uint16_t)strlen(name), .argument_length = (uint16_t)strlen(argument)};
+    command = (telecommand_t){.name_length = (uint16_t)strlen(name),
+                              .argument_length = (uint16_t)strlen(argument)};
     (void)memcpy(command.name, name, strlen(name));
     (void)memcpy(command.argument, argument, strlen(argument));
     return verb(&answer);

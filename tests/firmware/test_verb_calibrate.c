@@ -59,7 +59,7 @@ void setUp(void)
     parameters_init(&parameters);
     parameters.value[PARAMETER_LINK] = 5.0F;
     starts = answers = 0U;
-    sequence = 0xFFFEU;     /* wraps during the tests */
+    sequence = 0xFFFEU; /* wraps during the tests */
     progress = (calibration_t){.end = CALIBRATION_NONE, .sequence = 0xFFFEU};
     idle = true;
     parameter_server_read_Stub(read_parameters);
@@ -121,7 +121,8 @@ void test_counts_and_seconds_may_be_given(void)
 
 void test_numbers_that_are_none_or_too_large_are_refused(void)
 {
-    static const char *const wrong[] = {"0", "201", "-1", "30.5", "30 0", "30 61", "30 1.5", "x", "30 x", "30 5 1", "nan"};
+    static const char *const wrong[] = {"0",      "201", "-1",   "30.5",   "30 0", "30 61",
+                                        "30 1.5", "x",   "30 x", "30 5 1", "nan"};
 
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         TEST_ASSERT_FALSE_MESSAGE(type(wrong[i]), wrong[i]);

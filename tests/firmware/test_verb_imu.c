@@ -38,8 +38,12 @@ static void read_flight(flight_outputs_t *status, int calls)
 static uint16_t history(imu_sample_t samples[IMU_HISTORY], int calls)
 {
     (void)calls;
-    samples[0] = (imu_sample_t){.ready = true, .median = {.roll_rad = -1.5F * DEG, .pitch_rad = 2.0F * DEG},
-                                .has_acceleration = true, .forward_mps2 = 0.15F, .right_mps2 = -0.5F, .down_mps2 = 9.73F};
+    samples[0] = (imu_sample_t){.ready = true,
+                                .median = {.roll_rad = -1.5F * DEG, .pitch_rad = 2.0F * DEG},
+                                .has_acceleration = true,
+                                .forward_mps2 = 0.15F,
+                                .right_mps2 = -0.5F,
+                                .down_mps2 = 9.73F};
     return 1U;
 }
 
@@ -63,7 +67,9 @@ static void show(float roll_deg, float pitch_deg, bool accelerations, float z_co
 {
     razor_text_t text = {.length = 0U};
     const char *const sent = "#A-C=4.00,-12.00,254.00\n#YPR=178.50,-1.17,0.00";
-    const imu_raw_t raw = {.roll_rad = roll_deg * DEG, .pitch_rad = pitch_deg * DEG, .has_acceleration = accelerations,
+    const imu_raw_t raw = {.roll_rad = roll_deg * DEG,
+                           .pitch_rad = pitch_deg * DEG,
+                           .has_acceleration = accelerations,
                            .z_counts = z_counts};
 
     text.length = (uint16_t)strlen(sent);
@@ -122,7 +128,8 @@ void test_without_a_word_it_shows_what_comes_and_what_is_made_of_it(void)
     TEST_ASSERT_FALSE(listing_more());
     TEST_ASSERT_EQUAL_UINT16(4, line_count);
     TEST_ASSERT_EQUAL_STRING("OK IMU raw:#A-C=4.00,-12.00,254.00|#YPR=178.50,-1.17,0.00\r\n", lines[0]);
-    TEST_ASSERT_EQUAL_STRING("OK IMU roll_deg:-1.5 pitch_deg:2.0 forward:0.15 right:-0.50 down:9.73\r\n", lines[1]);
+    TEST_ASSERT_EQUAL_STRING("OK IMU roll_deg:-1.5 pitch_deg:2.0 forward:0.15 right:-0.50 down:9.73\r\n",
+                             lines[1]);
     TEST_ASSERT_EQUAL_STRING_LEN("OK IMU seen:accelerations+angles period_ms:20 frames:", lines[2], 53);
     TEST_ASSERT_EQUAL_STRING("OK IMU END lines:3\r\n", lines[3]);
 }

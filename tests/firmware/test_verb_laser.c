@@ -48,9 +48,7 @@ void setUp(void)
     xbee_port_answer_Stub(radio);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void ask(void)
 {
@@ -66,7 +64,9 @@ void test_before_the_first_octet_all_is_zero(void)
 {
     laser.rate = 115200U;
     ask();
-    TEST_ASSERT_EQUAL_STRING("OK LASER state:WAIT rate:115200 frames:0 timeout:0 restart:0 overrun:0 framing:0 sum:0 length:0 echo:0 char:0 seq:0 last:-\r\n", sent[0]);
+    TEST_ASSERT_EQUAL_STRING("OK LASER state:WAIT rate:115200 frames:0 timeout:0 restart:0 overrun:0 "
+                             "framing:0 sum:0 length:0 echo:0 char:0 seq:0 last:-\r\n",
+                             sent[0]);
 }
 
 void test_every_number_stands_in_its_own_field(void)
@@ -87,7 +87,9 @@ void test_every_number_stands_in_its_own_field(void)
     statistics.scip.damaged[SCIP_DAMAGE_SEQUENCE] = 11U;
     statistics.last_damage = SCIP_DAMAGE_ECHO;
     ask();
-    TEST_ASSERT_EQUAL_STRING("OK LASER state:OK rate:250000 frames:731 timeout:3 restart:4 overrun:5 framing:6 sum:7 length:8 echo:9 char:10 seq:11 last:echo\r\n", sent[0]);
+    TEST_ASSERT_EQUAL_STRING("OK LASER state:OK rate:250000 frames:731 timeout:3 restart:4 overrun:5 "
+                             "framing:6 sum:7 length:8 echo:9 char:10 seq:11 last:echo\r\n",
+                             sent[0]);
 }
 
 void test_every_cause_has_a_name_of_its_own(void)
@@ -121,8 +123,10 @@ void test_of_a_sensor_that_is_too_old_it_says_what_to_do(void)
     laser.status = URG_OLD;
     laser.rate = 115200U;
     ask();
-    TEST_ASSERT_EQUAL_STRING("OK LASER state:OLD rate:115200 frames:0 timeout:0 restart:0 overrun:0 framing:0 "
-                             "do:update the sensor's firmware to 3.0 or later\r\n", sent[0]);
+    TEST_ASSERT_EQUAL_STRING(
+        "OK LASER state:OLD rate:115200 frames:0 timeout:0 restart:0 overrun:0 framing:0 "
+        "do:update the sensor's firmware to 3.0 or later\r\n",
+        sent[0]);
 }
 
 /* After the longest flight, on the worst cable. */
@@ -133,7 +137,9 @@ void test_the_largest_counts_fit(void)
     laser.status = URG_SWITCH;
     statistics.last_damage = SCIP_DAMAGE_LENGTH;
     ask();
-    TEST_ASSERT_EQUAL_STRING("OK LASER state:SWITCH rate:4294967295 frames:4294967295 timeout:4294967295 "
-                             "restart:4294967295 overrun:4294967295 framing:4294967295 sum:4294967295 "
-                             "length:4294967295 echo:4294967295 char:4294967295 seq:4294967295 last:length\r\n", sent[0]);
+    TEST_ASSERT_EQUAL_STRING(
+        "OK LASER state:SWITCH rate:4294967295 frames:4294967295 timeout:4294967295 "
+        "restart:4294967295 overrun:4294967295 framing:4294967295 sum:4294967295 "
+        "length:4294967295 echo:4294967295 char:4294967295 seq:4294967295 last:length\r\n",
+        sent[0]);
 }

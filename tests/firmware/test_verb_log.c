@@ -14,7 +14,7 @@ static uint32_t since;
 static uint16_t asked_seconds;
 static bool cleared;
 static bool line_waits;
-static uint16_t room;       /* lines that the radio takes until it is full */
+static uint16_t room; /* lines that the radio takes until it is full */
 static char lines[LINES_MAX][TELEMETRY_ANSWER_MAX + 1U];
 static uint16_t line_count;
 
@@ -141,8 +141,10 @@ void test_titles_and_rows_end_with_the_sum_of_all_before_it(void)
 {
     (void)type("");
     TEST_ASSERT_FALSE(verb_log_more());
-    TEST_ASSERT_EQUAL_STRING("OK LOG 0 t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags*BDE1\r\n", lines[1]);
-    TEST_ASSERT_EQUAL_STRING("OK LOG 1 100.000,0.000,0.000,0.000,0.000,0.000,0.0000,0.0000,FLYING,0*9E46\r\n", lines[2]);
+    TEST_ASSERT_EQUAL_STRING(
+        "OK LOG 0 t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags*BDE1\r\n", lines[1]);
+    TEST_ASSERT_EQUAL_STRING("OK LOG 1 100.000,0.000,0.000,0.000,0.000,0.000,0.0000,0.0000,FLYING,0*9E46\r\n",
+                             lines[2]);
 }
 
 void test_an_empty_recorder_gives_title_and_end(void)

@@ -71,9 +71,7 @@ void setUp(void)
     Load_getCPULoad_IgnoreAndReturn(7U);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static bool ask(const char *argument)
 {
@@ -99,11 +97,13 @@ void test_the_run_then_every_task_then_the_waits(void)
     for (unsigned i = 0; i < MONITOR_TASKS; i++) {
         char expected[96];
 
-        (void)snprintf(expected, sizeof expected, "OK PERF TaskReceiveLaser worst_us:%u late:%u stack:%u/512\r\n", 1000U + i,
-                       20U + i, 300U + i);
+        (void)snprintf(expected, sizeof expected,
+                       "OK PERF TaskReceiveLaser worst_us:%u late:%u stack:%u/512\r\n", 1000U + i, 20U + i,
+                       300U + i);
         TEST_ASSERT_EQUAL_STRING(expected, sent[1U + i]);
     }
-    TEST_ASSERT_EQUAL_STRING("OK PERF wait_us altitude:10 imu:11 laser:12 reference:13 parameters:14 flight:15\r\n", sent[7]);
+    TEST_ASSERT_EQUAL_STRING(
+        "OK PERF wait_us altitude:10 imu:11 laser:12 reference:13 parameters:14 flight:15\r\n", sent[7]);
     TEST_ASSERT_EQUAL_STRING("OK PERF END lines:8\r\n", sent[8]);
     TEST_ASSERT_EQUAL_UINT16(0, resets);
 }
@@ -132,7 +132,8 @@ void test_any_other_word_is_refused_and_clears_nothing(void)
 void test_the_largest_figures_fit(void)
 {
     for (uint32_t i = 0; i < MONITOR_TASKS; i++) {
-        figures[i] = (monitor_report_t){"TaskReceiveLaser", 0xFFFFFFFFU, 0xFFFFFFFFU, 0xFFFFFFFFU, 0xFFFFFFFFU};
+        figures[i] = (monitor_report_t){"TaskReceiveLaser", 0xFFFFFFFFU, 0xFFFFFFFFU, 0xFFFFFFFFU,
+                                        0xFFFFFFFFU};
     }
     (void)memset(waits, 0xFF, sizeof waits);
     boot_cause_IgnoreAndReturn("WATCHDOG");

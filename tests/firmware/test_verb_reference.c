@@ -35,20 +35,20 @@ static void answer_sent(const telemetry_line_t *line, int calls)
 
 void setUp(void)
 {
-    reference = (reference_sample_t){.reference_m = 0.2F, .sequence = 7U, .link_time_us = 5U, .link_sequence = 3U};
+    reference = (reference_sample_t){
+        .reference_m = 0.2F, .sequence = 7U, .link_time_us = 5U, .link_sequence = 3U};
     writes = 0U;
     reference_server_read_Stub(read);
     reference_server_write_Stub(write);
     xbee_port_answer_Stub(answer_sent);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static bool type(bool (*verb)(answer_t *answer), const char *name, const char *argument)
 {
-    telecommand_t command = {.name_length = (uint16_t)strlen(name), .argument_length = (uint16_t)strlen(argument)};
+    telecommand_t command = {.name_length = (uint16_t)strlen(name),
+                             .argument_length = (uint16_t)strlen(argument)};
     answer_t answer = {.command = &command};
 
     (void)memcpy(command.name, name, strlen(name));

@@ -88,9 +88,7 @@ void setUp(void)
     xbee_port_answer_Stub(radio);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static bool type(const char *name, const char *argument)
 {
@@ -208,10 +206,11 @@ void test_each_failure_of_the_store_has_its_reason_and_changes_nothing(void)
     static const struct {
         parameter_store_status_t status;
         const char *expected;
-    } rows[] = {{PARAMETER_STORE_EMPTY, "ERR LOAD nothing stored\r\n"},
-                {PARAMETER_STORE_DAMAGED, "ERR LOAD stored set damaged\r\n"},
-                {PARAMETER_STORE_FOREIGN, "ERR LOAD stored by another firmware, this is " PLOMADA_VERSION "\r\n"},
-                {PARAMETER_STORE_RANGE, "ERR LOAD stored KD out of range 0..1 N/mm\r\n"}};
+    } rows[] = {
+        {PARAMETER_STORE_EMPTY, "ERR LOAD nothing stored\r\n"},
+        {PARAMETER_STORE_DAMAGED, "ERR LOAD stored set damaged\r\n"},
+        {PARAMETER_STORE_FOREIGN, "ERR LOAD stored by another firmware, this is " PLOMADA_VERSION "\r\n"},
+        {PARAMETER_STORE_RANGE, "ERR LOAD stored KD out of range 0..1 N/mm\r\n"}};
 
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         result = (parameter_store_result_t){rows[i].status, 2U, PARAMETER_KD};

@@ -1,4 +1,5 @@
-/* From the octets of a receive interrupt to the queue of TaskReceiveComm, and lines out through a bounded buffer. */
+/* From the octets of a receive interrupt to the queue of TaskReceiveComm, and lines out through a bounded
+ * buffer. */
 #include "firmware/xbee_port.h"
 
 #include <stdio.h>
@@ -86,7 +87,7 @@ static void octet(uint16_t cell)
 {
     bsp_uart_burst_t burst = {.count = 1U, .octets = {cell}};
 
-    now_us += 1042U; /* ten bits at 9600 */
+    now_us += 1042U;                               /* ten bits at 9600 */
     TEST_ASSERT_EQUAL_UINT16(1, receiver(&burst)); /* every octet interrupts */
     kernel_run_swi();
 }

@@ -17,20 +17,31 @@ static const struct {
     const char *octets;
     size_t length;
 } good[] = {
-#define INPUT(text) { text, sizeof text - 1 }
+#define INPUT(text) \
+    { \
+        text, sizeof text - 1 \
+    }
     INPUT("MS0372040601000\n00P\n\n\x87\x11\x87\x12\x88\x35\x87\x13MS0372040601000\n50U\n\n"),
-    INPUT("\x81\x08\x85" "00P\n\n\x87\x01\x87\x02\x88\x71\x87\x03"),
+    INPUT("\x81\x08\x85"
+          "00P\n\n\x87\x01\x87\x02\x88\x71\x87\x03"),
     INPUT("\x81\x05\x87\x21\x81\x06\x87\x31\x81\x07\x87\x41\x81\x0d\x87\x51\x82\x02\x87\x52\x82\x01\x87\x53"),
     INPUT("\x81\x80L0\n0\n\n\x81\x81SCIP2.0\n0\n\n\x81\x82QT\n00P\n\n\x81\x82QT\nE\n\n"),
     INPUT("\x81\x83TM1\n00P\n0001\x84\n\x81\x87RS\n00P\n\n"),
     INPUT("\x81\x84VV\n00P\nVEND:Hokuyo Automatic Co.,Ltd.;[\nSERI:H0706400;F\nI\n\n"),
-    INPUT("\x81\x85PP\n00P\nDMIN:20;4\nDMAX:5600;_\nARES:1024;\\\nAMIN:44;7\nAMAX:725;o\nAFRT:384;6\nSCAN:600;e\n\n"),
+    INPUT("\x81\x85PP\n00P\nDMIN:20;4\nDMAX:5600;_\nARES:1024;\\\nAMIN:44;7\nAMAX:725;o\nAFRT:384;6\nSCAN:"
+          "600;e\n\n"),
     INPUT("\x81\x86II\n00P\nLASR:ON;9\nSBPS:19200[bps]\nTIME:00173B;V\nSTAT:Sensor works well.;8\n\n"),
-    INPUT("\x81\x04\x85\x86\x83" "0001\x84" "CB\x84\n\x87\x09"),
+    INPUT("\x81\x04\x85\x86\x83"
+          "0001\x84"
+          "CB\x84\n\x87\x09"),
     INPUT("\x81\x14\x87\x01\x81\x17\x87\x02\x82\x02\x87\x03\x82\x01\x87\x04"),
-    INPUT("xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx\x87\x01"
+    INPUT("xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx"
+          "\x87\x01"
           "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx\x87\x02"),
-    INPUT("\x81\x01\x85\x86" "0001\x84" "1Dh9H09H09H09H09H09H09H0" "\x84\n\x83x\x80\xff\x87\x07"),
+    INPUT("\x81\x01\x85\x86"
+          "0001\x84"
+          "1Dh9H09H09H09H09H09H09H0"
+          "\x84\n\x83x\x80\xff\x87\x07"),
 };
 #define GOOD (sizeof good / sizeof good[0])
 

@@ -1,6 +1,6 @@
-/* Fuzz target of the SCIP parser. The input is octets from the line, with operations between them (80H..88H), because sums
- * and echoes are hard to guess. Two parsers hear the same, one octet by octet and one in bursts; every event is checked
- * against what was sent. A broken promise aborts. */
+/* Fuzz target of the SCIP parser. The input is octets from the line, with operations between them (80H..88H),
+ * because sums and echoes are hard to guess. Two parsers hear the same, one octet by octet and one in bursts;
+ * every event is checked against what was sent. A broken promise aborts. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -13,7 +13,7 @@
 #include "drivers/scip_parser.h"
 #include "tests/support/scip_frames.h"
 
-#define POINTS_MAX 40       /* memory of a scan; one of the requests has more */
+#define POINTS_MAX 40 /* memory of a scan; one of the requests has more */
 #define SENT_MAX 41
 #define CANARY 0xC0DEU
 #define LOG_MAX 4096
@@ -25,12 +25,12 @@ typedef struct {
     scip_scan_t scan[2];
     uint16_t points[2][POINTS_MAX + 1];
     unsigned events[SCIP_DAMAGED + 1];
-    unsigned stored;            /* scans seen complete while there was a memory for them */
+    unsigned stored; /* scans seen complete while there was a memory for them */
 } side_t;
 
 static side_t single, burst;
 static scip_info_t info;
-static uint8_t heard[LOG_MAX];  /* all octets since the line was last broken, the latest LOG_MAX of them */
+static uint8_t heard[LOG_MAX]; /* all octets since the line was last broken, the latest LOG_MAX of them */
 static size_t heard_n;
 static unsigned fed_n;
 static octet_t pending[PENDING_MAX];
@@ -39,12 +39,12 @@ static unsigned line_sum;
 static uint32_t clock_ms;
 static unsigned counted_left;
 
-#define REQUIRE(condition)                                                          \
-    do {                                                                            \
-        if (!(condition)) {                                                         \
+#define REQUIRE(condition) \
+    do { \
+        if (!(condition)) { \
             fprintf(stderr, "%s:%d: broken: %s\n", __FILE__, __LINE__, #condition); \
-            abort();                                                                \
-        }                                                                           \
+            abort(); \
+        } \
     } while (0)
 
 /* ---- what was sent, encoded anew from what was delivered ---- */
@@ -74,7 +74,8 @@ static size_t put_frame(uint8_t *frame, const scip_request_t *request, unsigned 
         scip_frames_encode(data + i * request->characters, distance_mm[i], request->characters);
     }
     echo[put_echo((uint8_t *)echo, request, remaining) - 1] = '\0';
-    const size_t length = scip_frames_frame(text, echo, stamp_ms, data, (size_t)request->characters * request->points);
+    const size_t length = scip_frames_frame(text, echo, stamp_ms, data,
+                                            (size_t)request->characters * request->points);
 
     memcpy(frame, text, length);
     return length;
@@ -103,7 +104,7 @@ static void check_scan(const side_t *side)
     REQUIRE(length == (asked->scan_octets != 0 ? asked->scan_octets : asked->reply_octets));
     REQUIRE(heard_n >= length && heard_n <= LOG_MAX);
     REQUIRE(saturated(scan) || memcmp(heard + heard_n - length, frame, length) == 0);
-    const scip_group_t group = { scan->first_step, asked->range.last_step };
+    const scip_group_t group = {scan->first_step, asked->range.last_step};
     const scip_group_mean_t mean = scip_group_mean(scan, &group);
     REQUIRE(mean.good_rays <= scan->points && mean.spread_mm <= 5580);
     REQUIRE(mean.good_rays == 0 || (mean.mean_mm >= 20.0F && mean.mean_mm <= 5600.0F));
@@ -219,10 +220,10 @@ static void hear_all(const uint8_t *octets, size_t count)
 
 static void expect(uint8_t choice)
 {
-    static const scip_kind_t plain[] = { SCIP_LASER_OFF_1, SCIP_SWITCH, SCIP_STOP, SCIP_TIME_READ, SCIP_VERSION,
-                                         SCIP_PARAMETERS, SCIP_STATE, SCIP_RESET };
-    static const scip_range_t ranges[] = { { 372, 406, 1, 0, 0 }, { 384, 384, 1, 0, 0 }, { 372, 403, 1, 0, 9 },
-                                           { 100, 199, 3, 1, 0 }, { 372, 406, 1, 0, 99 }, { 0, 40, 1, 0, 0 } };
+    static const scip_kind_t plain[] = {SCIP_LASER_OFF_1, SCIP_SWITCH,     SCIP_STOP,  SCIP_TIME_READ,
+                                        SCIP_VERSION,     SCIP_PARAMETERS, SCIP_STATE, SCIP_RESET};
+    static const scip_range_t ranges[] = {{372, 406, 1, 0, 0}, {384, 384, 1, 0, 0},  {372, 403, 1, 0, 9},
+                                          {100, 199, 3, 1, 0}, {372, 406, 1, 0, 99}, {0, 40, 1, 0, 0}};
     scip_request_t request;
     bool built;
 
@@ -321,7 +322,7 @@ static void start(side_t *side)
 {
     memset(side, 0, sizeof *side);
     for (int i = 0; i < 2; i++) {
-        side->scan[i] = (scip_scan_t){ .distance_mm = side->points[i], .capacity = POINTS_MAX };
+        side->scan[i] = (scip_scan_t){.distance_mm = side->points[i], .capacity = POINTS_MAX};
         side->points[i][POINTS_MAX] = CANARY;
     }
     scip_parser_init(&side->parser);

@@ -44,7 +44,8 @@ void child_run(child_work_t work, void *argument, void *result, size_t size)
     }
     close(ends[0]);
     waitpid(pid, &status, 0);
-    TEST_ASSERT_TRUE_MESSAGE(WIFEXITED(status) && WEXITSTATUS(status) == 0 && have == size, "the child crashed");
+    TEST_ASSERT_TRUE_MESSAGE(WIFEXITED(status) && WEXITSTATUS(status) == 0 && have == size,
+                             "the child crashed");
 }
 
 int child_plomada(const char *arguments, char *output, size_t size)
@@ -102,7 +103,8 @@ static void fly(void *argument, void *result)
     }
 }
 
-void child_fly(const char *scenario, unsigned long seed, const char *const *assignments, flight_result_t *result)
+void child_fly(const char *scenario, unsigned long seed, const char *const *assignments,
+               flight_result_t *result)
 {
     order_t order = {scenario, seed, assignments};
 

@@ -1,4 +1,5 @@
-/* Runs a piece of a test in a child process and brings its result back: one power-on of the board per process. */
+/* Runs a piece of a test in a child process and brings its result back: one power-on of the board per
+ * process. */
 #ifndef TESTS_INTEGRATION_CHILD_H
 #define TESTS_INTEGRATION_CHILD_H
 
@@ -8,18 +9,20 @@
 
 typedef void (*child_work_t)(void *argument, void *result);
 
-/* Runs work(argument, result) in a child; its result (size octets) replaces *result. Fails the test when the child
- * crashes. */
+/* Runs work(argument, result) in a child; its result (size octets) replaces *result. Fails the test when the
+ * child crashes. */
 void child_run(child_work_t work, void *argument, void *result, size_t size);
 
 /* One flight; assignments are --set texts, NULL ends. */
-void child_fly(const char *scenario, unsigned long seed, const char *const *assignments, flight_result_t *result);
+void child_fly(const char *scenario, unsigned long seed, const char *const *assignments,
+               flight_result_t *result);
 
-/* The program as its users call it, in the directory SCRATCH: `plomada ARGUMENTS`, which a shell reads. What it prints is
- * put into output, cut at size - 1 characters and terminated. Returns its exit status. */
+/* The program as its users call it, in the directory SCRATCH: `plomada ARGUMENTS`, which a shell reads. What
+ * it prints is put into output, cut at size - 1 characters and terminated. Returns its exit status. */
 int child_plomada(const char *arguments, char *output, size_t size);
 
-/* The file SCRATCH/name, cut at size - 1 octets and terminated. Returns how many there are; fails the test without it. */
+/* The file SCRATCH/name, cut at size - 1 octets and terminated. Returns how many there are; fails the test
+ * without it. */
 size_t child_read_file(const char *name, char *text, size_t size);
 
 /* Everything that the operator's terminal received. */
@@ -29,6 +32,6 @@ typedef struct {
     size_t length;
 } child_terminal_t;
 
-void child_terminal_take(void *terminal, unsigned octet);   /* board_terminal_t shape */
+void child_terminal_take(void *terminal, unsigned octet); /* board_terminal_t shape */
 
 #endif

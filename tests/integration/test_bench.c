@@ -1,5 +1,5 @@
-/* The bench: the vehicle stands still at a known height, so every height that the firmware publishes can be judged,
- * whatever happens on the scanner's line. */
+/* The bench: the vehicle stands still at a known height, so every height that the firmware publishes can be
+ * judged, whatever happens on the scanner's line. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +9,9 @@
 #include "firmware/probe.h"
 #include "unity.h"
 
-#define NOISE_MM 25.0   /* 3 mm common to a scan and what the attitude's noise makes of it, seven deviations */
+#define NOISE_MM \
+    25.0 /* 3 mm common to a scan and what the attitude's noise makes of it, seven deviations \
+          */
 
 void setUp(void) {}
 void tearDown(void) {}
@@ -86,7 +88,8 @@ void test_settings_are_typed_and_the_vehicle_still_stands(void)
 {
     double worst_m;
 
-    TEST_ASSERT_EQUAL_INT(0, run("--height 0.4 --set SETR=0.6 --set KP=0.02 --csv bench.csv --json bench.json"));
+    TEST_ASSERT_EQUAL_INT(0,
+                          run("--height 0.4 --set SETR=0.6 --set KP=0.02 --csv bench.csv --json bench.json"));
     TEST_ASSERT_NOT_NULL(strstr(output, "OK SETR 0.6"));
     TEST_ASSERT_NOT_NULL(strstr(output, "OK KP 0.02"));
     TEST_ASSERT_NOT_NULL(strstr(output, "ref:0.600"));
@@ -128,10 +131,10 @@ typedef struct {
 
 typedef struct {
     double worst_mm;
-    unsigned heights;           /* published */
-    unsigned late_heights;      /* of these in the last two seconds */
+    unsigned heights;      /* published */
+    unsigned late_heights; /* of these in the last two seconds */
     unsigned strikes;
-    bool ok;                    /* in the end */
+    bool ok; /* in the end */
     const char *halt;
 } verdict_t;
 
@@ -183,8 +186,8 @@ static verdict_t survives(const trial_t *trial)
     char message[160];
 
     child_run(stand, (void *)(uintptr_t)trial, &v, sizeof v);
-    snprintf(message, sizeof message, "%s: worst %.1f mm, %u heights, %u late, %u strikes", trial->faults[0], v.worst_mm,
-             v.heights, v.late_heights, v.strikes);
+    snprintf(message, sizeof message, "%s: worst %.1f mm, %u heights, %u late, %u strikes", trial->faults[0],
+             v.worst_mm, v.heights, v.late_heights, v.strikes);
     TEST_ASSERT_NULL_MESSAGE(v.halt, message);
     TEST_ASSERT_TRUE_MESSAGE(v.strikes > 0, message);
     TEST_ASSERT_TRUE_MESSAGE(v.worst_mm < NOISE_MM, message);
@@ -193,7 +196,8 @@ static verdict_t survives(const trial_t *trial)
     return v;
 }
 
-static void survives_each(const char *kind, const char *argument, const unsigned *positions, size_t count, double until_s)
+static void survives_each(const char *kind, const char *argument, const unsigned *positions, size_t count,
+                          double until_s)
 {
     for (size_t i = 0; i < count; i++) {
         char text[48];
@@ -205,7 +209,8 @@ static void survives_each(const char *kind, const char *argument, const unsigned
 }
 
 /* Start-up takes 60 octets: L0 6, SCIP2.0 11, SS 14, QT 8, MS 21; then come frames of 101. */
-static const unsigned positions[] = {0, 1, 5, 7, 16, 20, 30, 31, 38, 39, 50, 59, 60, 76, 79, 85, 90, 150, 160, 161, 1000, 5003};
+static const unsigned positions[] = {0,  1,  5,  7,  16, 20, 30,  31,  38,  39,   50,
+                                     59, 60, 76, 79, 85, 90, 150, 160, 161, 1000, 5003};
 #define POSITIONS (sizeof positions / sizeof positions[0])
 
 void test_one_octet_lost_anywhere_costs_no_wrong_height(void)
@@ -256,7 +261,10 @@ void test_hardware_trouble_is_overcome(void)
 void test_a_noisy_line_costs_frames_but_no_wrong_height(void)
 {
     static const trial_t trials[] = {
-        {{"flip:1e-3"}, 0.7, 60.0}, {{"drop:1e-3"}, 0.7, 60.0}, {{"dup:1e-3"}, 0.7, 60.0}, {{"stray:1e-3"}, 0.7, 60.0},
+        {{"flip:1e-3"}, 0.7, 60.0},
+        {{"drop:1e-3"}, 0.7, 60.0},
+        {{"dup:1e-3"}, 0.7, 60.0},
+        {{"stray:1e-3"}, 0.7, 60.0},
         {{"flip:1e-4", "drop:1e-4", "dup:1e-4", "stray:1e-4"}, 2.0, 120.0},
     };
 

@@ -1,4 +1,5 @@
-/* The whole firmware on the PC board, starved by an interrupt that never ceases, reset by the watchdog and flying on. */
+/* The whole firmware on the PC board, starved by an interrupt that never ceases, reset by the watchdog and
+ * flying on. */
 #include <stdio.h>
 #include <string.h>
 
@@ -10,7 +11,7 @@
 #include "sim/timeline.h"
 #include "unity.h"
 
-#define STORM_INTERRUPT 93  /* SCIC transmit: its Hwi finds nothing to do */
+#define STORM_INTERRUPT 93 /* SCIC transmit: its Hwi finds nothing to do */
 #define STORM_STEP (2 * SIM_US)
 #define LINES_MAX 4000
 
@@ -87,7 +88,8 @@ void tearDown(void)
 void test_the_first_telemetry_line_tells_the_cause_of_the_reset_and_no_other_does(void)
 {
     run_until_s(3.0);
-    TEST_ASSERT_EQUAL_STRING("alt:- ref:0.000 laser:WAIT thr:0.00 state:GROUND flags:3 reset:POWER", lines[0]);
+    TEST_ASSERT_EQUAL_STRING("alt:- ref:0.000 laser:WAIT thr:0.00 state:GROUND flags:3 reset:POWER",
+                             lines[0]);
     for (int i = 1; i < line_count; i++) {
         TEST_ASSERT_NULL(strstr(lines[i], "reset:"));
     }
@@ -173,7 +175,8 @@ static double height_m(void)
     return quadrotor_state(board_quadrotor())->height_m;
 }
 
-/* R11: a fault of the firmware itself may cost height, but it ends in a flight that the operator can command. */
+/* R11: a fault of the firmware itself may cost height, but it ends in a flight that the operator can command.
+ */
 void test_a_flight_goes_on_after_a_watchdog_reset(void)
 {
     run_until_s(13.0);

@@ -74,7 +74,8 @@ void test_the_plant_figures_are_listed_with_their_values_as_in_the_help_of_fly(v
     figures = strstr(output, "  plant.airframe");
     TEST_ASSERT_NOT_NULL(figures);
     snprintf(listed, sizeof listed, "%s", figures);
-    TEST_ASSERT_NOT_NULL(strstr(listed, "  plant.hover_thrust           N           7.4  hover thrust per motor TH0\n"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(listed, "  plant.hover_thrust           N           7.4  hover thrust per motor TH0\n"));
     TEST_ASSERT_NOT_NULL(strstr(listed, "  plant.scan_frozen_start      s         never"));
     TEST_ASSERT_EQUAL_INT(0, run("fly --help"));
     TEST_ASSERT_NOT_NULL(strstr(output, listed));
@@ -88,13 +89,15 @@ static double column(const char *line, int number)
     return strtod(line, NULL);
 }
 
-/* The landing command moves with --duration, and --until-down ends the log one second after the motors have stopped. */
+/* The landing command moves with --duration, and --until-down ends the log one second after the motors have
+ * stopped. */
 void test_a_flight_can_be_made_shorter_and_ends_when_it_is_down(void)
 {
     static char csv[2000000];
     const char *last;
 
-    TEST_ASSERT_EQUAL_INT(0, run("fly est-60cm-ramp --set plant.platform=0 --duration 8 --until-down 60 --csv short.csv") & 2);
+    TEST_ASSERT_EQUAL_INT(
+        0, run("fly est-60cm-ramp --set plant.platform=0 --duration 8 --until-down 60 --csv short.csv") & 2);
     child_read_file("short.csv", csv, sizeof csv);
     csv[strlen(csv) - 1] = '\0';
     last = strrchr(csv, '\n') + 1;
@@ -178,7 +181,8 @@ void test_a_storage_that_is_none_is_refused_by_name_and_left_as_it_is(void)
 
     make_file("short.bin", 32767, 0xFF);
     TEST_ASSERT_EQUAL_INT(2, run("fly bench --storage short.bin"));
-    TEST_ASSERT_EQUAL_STRING("plomada fly: short.bin: no image of the storage: its length is not 32768 octets\n", output);
+    TEST_ASSERT_EQUAL_STRING(
+        "plomada fly: short.bin: no image of the storage: its length is not 32768 octets\n", output);
     TEST_ASSERT_EQUAL_size_t(32767, child_read_file("short.bin", text, sizeof text));
     make_file("long.bin", 32769, 0xFF);
     TEST_ASSERT_EQUAL_INT(2, run("fly bench --storage long.bin"));
@@ -227,7 +231,8 @@ void test_a_dash_writes_the_log_to_stdout_alone_and_the_table_to_stderr(void)
 {
     static char dash[2000000], file[2000000];
 
-    TEST_ASSERT_EQUAL_INT(0, child_plomada("fly pid-40cm --csv - 2>table.txt >dash.csv", output, sizeof output));
+    TEST_ASSERT_EQUAL_INT(0,
+                          child_plomada("fly pid-40cm --csv - 2>table.txt >dash.csv", output, sizeof output));
     TEST_ASSERT_EQUAL_INT(0, run("fly pid-40cm --csv file.csv"));
     const size_t count = child_read_file("file.csv", file, sizeof file);
     TEST_ASSERT_EQUAL_size_t(count, child_read_file("dash.csv", dash, sizeof dash));
@@ -261,12 +266,14 @@ void test_a_replay_gives_the_log_of_every_scenario_octet_for_octet(void)
     for (int i = 0; i < scenario_count; i++) {
         char words[160];
 
-        snprintf(words, sizeof words, "fly %s --seed 3 --csv flown.csv --record recording >metrics.txt", scenarios[i].name);
+        snprintf(words, sizeof words, "fly %s --seed 3 --csv flown.csv --record recording >metrics.txt",
+                 scenarios[i].name);
         TEST_ASSERT_LESS_THAN_INT_MESSAGE(2, run(words), output);
         TEST_ASSERT_EQUAL_INT_MESSAGE(0, run("replay recording --csv again.csv"), output);
         const size_t count = child_read_file("flown.csv", flown, sizeof flown);
         TEST_ASSERT_GREATER_THAN_size_t_MESSAGE(100000, count, scenarios[i].name);
-        TEST_ASSERT_EQUAL_size_t_MESSAGE(count, child_read_file("again.csv", again, sizeof again), scenarios[i].name);
+        TEST_ASSERT_EQUAL_size_t_MESSAGE(count, child_read_file("again.csv", again, sizeof again),
+                                         scenarios[i].name);
         TEST_ASSERT_EQUAL_INT_MESSAGE(0, memcmp(flown, again, count), scenarios[i].name);
     }
 }
@@ -275,7 +282,8 @@ void test_a_replay_with_another_law_says_that_nothing_answers_to_it(void)
 {
     TEST_ASSERT_EQUAL_INT(0, run("fly est-60cm-ramp --record recording"));
     TEST_ASSERT_EQUAL_INT(0, run("replay recording --set LAW=PID --csv again.csv"));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "replayed est-60cm-ramp, seed 1: 2601 rows; open loop with LAW=PID\n"), output);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(output, "replayed est-60cm-ramp, seed 1: 2601 rows; open loop with LAW=PID\n"), output);
     TEST_ASSERT_EQUAL_INT(2, run("replay recording --set plant.tau=1"));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "no vehicle flies in a replay"), output);
     TEST_ASSERT_EQUAL_INT(2, run("replay no-such-recording"));

@@ -1,6 +1,6 @@
-/* An autopilot whose throttle commands a climb rate: how well law EST flies it, how wrong CRATE, GRAV and PLANT may be,
- * and the two tests that tell which autopilot one has. The figures of docs/control.md, "What does the throttle command?",
- * are the bounds of these tests. */
+/* An autopilot whose throttle commands a climb rate: how well law EST flies it, how wrong CRATE, GRAV and
+ * PLANT may be, and the two tests that tell which autopilot one has. The figures of docs/control.md, "What
+ * does the throttle command?", are the bounds of these tests. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -98,11 +98,16 @@ void test_twenty_flights_are_as_good_as_with_thrust(void)
 void test_wrong_figures_are_borne(void)
 {
     static const case_t cases[] = {
-        {"plant.climb_deadband=0", NULL, 6.0, 11.0}, {"plant.climb_deadband=1", NULL, 9.0, 18.0},
-        {"CRATE=1.6", NULL, 8.0, 14.0},              {"CRATE=0.625", NULL, 8.0, 14.0},
-        {"CRATE=0.53", NULL, 8.0, 14.0},             {"plant.tdelay=0.03", NULL, 8.0, 15.0},
-        {"plant.climb_lag=0.4", NULL, 8.0, 16.0},    {"plant.climb_lag=0.15", NULL, 8.0, 14.0},
-        {"plant.hover_thrust=8.8", NULL, 8.0, 15.0}, {"GRAV=6.2", NULL, 8.0, 19.0},
+        {"plant.climb_deadband=0", NULL, 6.0, 11.0},
+        {"plant.climb_deadband=1", NULL, 9.0, 18.0},
+        {"CRATE=1.6", NULL, 8.0, 14.0},
+        {"CRATE=0.625", NULL, 8.0, 14.0},
+        {"CRATE=0.53", NULL, 8.0, 14.0},
+        {"plant.tdelay=0.03", NULL, 8.0, 15.0},
+        {"plant.climb_lag=0.4", NULL, 8.0, 16.0},
+        {"plant.climb_lag=0.15", NULL, 8.0, 14.0},
+        {"plant.hover_thrust=8.8", NULL, 8.0, 15.0},
+        {"GRAV=6.2", NULL, 8.0, 19.0},
         {"GRAV=5.56", NULL, 8.0, 14.0},
     };
 
@@ -155,8 +160,8 @@ void test_climb_set_on_a_thrust_flies(void)
     }
 }
 
-/* Laws for thrust on a climb rate. Too much GRAV is a climb: the supervisor takes over, and lands it at the third
- * time. */
+/* Laws for thrust on a climb rate. Too much GRAV is a climb: the supervisor takes over, and lands it at the
+ * third time. */
 void test_the_other_laws_are_kept_within_bounds(void)
 {
     static const case_t cases[] = {
@@ -182,7 +187,7 @@ typedef struct {
     int count;
     struct {
         double measured_m, thrust_n;
-    } row[ROWS];            /* 100 Hz, from scenario time 0 */
+    } row[ROWS]; /* 100 Hz, from scenario time 0 */
 } log_t;
 
 typedef struct {
@@ -305,7 +310,8 @@ void test_the_step_test_hardly_tells_strong_damping_from_a_slow_autopilot(void)
     step_tests("step-climb", "plant.climb_lag=0.4", 1.6, 2.2);
 }
 
-/* The rate that the step test gives: that of its second second. A deadband makes it too small, and CRATE with it. */
+/* The rate that the step test gives: that of its second second. A deadband makes it too small, and CRATE with
+ * it. */
 void test_the_step_test_gives_the_rate(void)
 {
     static const case_t cases[] = {{"plant.climb_deadband=0", NULL, 0.93, 1.07},
@@ -317,7 +323,8 @@ void test_the_step_test_gives_the_rate(void)
         for (unsigned long seed = 1; seed <= 10; seed++) {
             const log_t *log = logged("step-climb", assignments, seed);
 
-            between(cases[i].least, cases[i].most, log->row[1510].measured_m - log->row[1610].measured_m, "rate");
+            between(cases[i].least, cases[i].most, log->row[1510].measured_m - log->row[1610].measured_m,
+                    "rate");
         }
     }
 }
@@ -336,7 +343,8 @@ static double hover_n(const char *autopilot, const char *weight, unsigned long s
 
 void test_a_tenth_more_weight_tells_which(void)
 {
-    static const case_t cases[] = {{"plant.climb_rate=0", NULL, 0.06, 0.14}, {"plant.climb_rate=1", NULL, -0.04, 0.04}};
+    static const case_t cases[] = {{"plant.climb_rate=0", NULL, 0.06, 0.14},
+                                   {"plant.climb_rate=1", NULL, -0.04, 0.04}};
 
     for (size_t i = 0; i < COUNT(cases); i++) {
         for (unsigned long seed = 1; seed <= 10; seed++) {

@@ -1,5 +1,5 @@
-/* Where the firmware stops for good, in flight: whatever stopped it, and wherever, the throttle is idle at once and
- * stays so until the watchdog resets the chip. */
+/* Where the firmware stops for good, in flight: whatever stopped it, and wherever, the throttle is idle at
+ * once and stays so until the watchdog resets the chip. */
 #include <stdio.h>
 #include <string.h>
 
@@ -14,7 +14,8 @@
 #define IDLE_COMPARE 4166U
 #define IDLE_PULSE_US 1999.68
 #define PULSE (14 * SIM_MS)
-#define WATCHDOG (600 * SIM_MS)     /* it bites 0.84 s after the last service, which may be a cycle of 150 ms ago */
+#define WATCHDOG \
+    (600 * SIM_MS) /* it bites 0.84 s after the last service, which may be a cycle of 150 ms ago */
 
 typedef void (*cause_t)(void);
 
@@ -96,7 +97,8 @@ static void fly_and_stop(void *argument, void *result)
     }
     while (kernel_run_until(timeline_now() + SIM_MS) && timeline_now() < 25 * SIM_S) {
     }
-    snprintf(seen->reason, sizeof seen->reason, "%s", kernel_halt_reason() != NULL ? kernel_halt_reason() : "it went on");
+    snprintf(seen->reason, sizeof seen->reason, "%s",
+             kernel_halt_reason() != NULL ? kernel_halt_reason() : "it went on");
     seen->compare_after = seen->least_compare = chip_register("EPWM2.CMPA");
     for (const sim_time_t end = timeline_now() + WATCHDOG; timeline_now() < end;) {
         (void)kernel_run_until(timeline_now() + PULSE);

@@ -1,5 +1,6 @@
-/* The field day, from the sticks that start the motors to the pilot's own landing: both Stop Types, with and without the
- * selector's pin, an autopilot whose throttle is thrust and one whose throttle is a climb rate. */
+/* The field day, from the sticks that start the motors to the pilot's own landing: both Stop Types, with and
+ * without the selector's pin, an autopilot whose throttle is thrust and one whose throttle is a climb rate.
+ */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +37,8 @@ static void explain(unsigned long seed)
     size_t used = (size_t)snprintf(text, sizeof text, "%s %s %s seed %lu:", set[0], set[1], set[2], seed);
 
     for (int i = 0; i < METRIC_COUNT && used < sizeof text; i++) {
-        used += (size_t)snprintf(text + used, sizeof text - used, " %s %.3g", metric_names[i], result.metrics.value[i]);
+        used += (size_t)snprintf(text + used, sizeof text - used, " %s %.3g", metric_names[i],
+                                 result.metrics.value[i]);
     }
     TEST_FAIL_MESSAGE(text);
 }
@@ -64,7 +66,8 @@ void test_with_an_idle_of_nothing_the_motors_stop_at_the_hand_over_in_every_one(
 {
     for (int combination = 0; combination < 8; combination++) {
         TEST_ASSERT_FALSE(fly(combination, 1, "IDLE=0"));
-        TEST_ASSERT_TRUE_MESSAGE(result.metrics.value[METRIC_HIGHEST_MM] < -599.0, "it never left the ground");
+        TEST_ASSERT_TRUE_MESSAGE(result.metrics.value[METRIC_HIGHEST_MM] < -599.0,
+                                 "it never left the ground");
     }
 }
 

@@ -1,5 +1,5 @@
-/* The seed's flights against the baseline of an independent implementation of the same plant: means of 20 seeds (study of
- * the seed's law: rise, overshoot, RMS after 6 s, mean error, ground contacts). */
+/* The seed's flights against the baseline of an independent implementation of the same plant: means of 20
+ * seeds (study of the seed's law: rise, overshoot, RMS after 6 s, mean error, ground contacts). */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -40,7 +40,8 @@ static void within(double part, double expected, double actual, const char *what
 {
     char message[96];
 
-    snprintf(message, sizeof message, "%s: %.4g, expected %.4g +-%.0f %%", what, actual, expected, part * 100.0);
+    snprintf(message, sizeof message, "%s: %.4g, expected %.4g +-%.0f %%", what, actual, expected,
+             part * 100.0);
     TEST_ASSERT_TRUE_MESSAGE(fabs(actual - expected) <= part * expected, message);
 }
 

@@ -1,5 +1,5 @@
-/* The pilot takes the throttle in the air, 8 s after the reference, flies at the same height or another one, and hands it
- * back 4 s later. */
+/* The pilot takes the throttle in the air, 8 s after the reference, flies at the same height or another one,
+ * and hands it back 4 s later. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -22,11 +22,12 @@ typedef struct {
 typedef struct {
     flight_state_t before, during, after;
     uint16_t flags_before, flags_during, flags_after;
-    bool stayed;                        /* the state never changed while the pilot flew */
-    double pilot_thrust_n;              /* commanded just before he hands back */
-    double first_n, largest_step_n;     /* first command after that; steps from sample to sample in the second after it */
-    double pilot_error_m, end_m;        /* of his height at the end of his turn; the height 6 s later */
-    double highest_m, lowest_m;         /* in those 6 s */
+    bool stayed;           /* the state never changed while the pilot flew */
+    double pilot_thrust_n; /* commanded just before he hands back */
+    double first_n,
+        largest_step_n; /* first command after that; steps from sample to sample in the second after it */
+    double pilot_error_m, end_m; /* of his height at the end of his turn; the height 6 s later */
+    double highest_m, lowest_m;  /* in those 6 s */
 } seen_t;
 
 void setUp(void) {}
@@ -40,7 +41,8 @@ static double thrust_n(void)
 static void stick(const order_t *order)
 {
     const quadrotor_state_t *state = quadrotor_state(board_quadrotor());
-    const double wanted_n = order->hover_n + 4.0 * (order->pilot_m - state->height_m) - 3.0 * state->speed_mps;
+    const double wanted_n = order->hover_n + 4.0 * (order->pilot_m - state->height_m) -
+                            3.0 * state->speed_mps;
 
     board_stick((sim_time_t)llround((double)thrust_to_pulse_us((float)wanted_n) * 1000.0));
 }
@@ -114,9 +116,10 @@ static seen_t flown(const char *commands, double hover_n, double pilot_m, unsign
     seen_t seen = {.stayed = false};
 
     child_run(fly, &order, &seen, sizeof seen);
-    printf("%.8s hover %.1f N: pilot's end %.2f N, first %.2f N, largest step %.2f N, height %.3f to %.3f m, end %.3f m\n",
-           commands, hover_n, seen.pilot_thrust_n, seen.first_n, seen.largest_step_n, seen.lowest_m, seen.highest_m,
-           seen.end_m);
+    printf("%.8s hover %.1f N: pilot's end %.2f N, first %.2f N, largest step %.2f N, height %.3f to %.3f m, "
+           "end %.3f m\n",
+           commands, hover_n, seen.pilot_thrust_n, seen.first_n, seen.largest_step_n, seen.lowest_m,
+           seen.highest_m, seen.end_m);
     TEST_ASSERT_EQUAL(FLIGHT_FLYING, seen.before);
     TEST_ASSERT_EQUAL_UINT16(0, seen.flags_before);
     TEST_ASSERT_EQUAL(FLIGHT_FLYING, seen.after);
@@ -167,8 +170,8 @@ void test_the_seeds_law_hands_over_too(void)
     }
 }
 
-/* It finds that its commands have no effect, and keeps them near what carries the vehicle: 0.6 N below a hover thrust that it
- * knows within 0.4 N. */
+/* It finds that its commands have no effect, and keeps them near what carries the vehicle: 0.6 N below a
+ * hover thrust that it knows within 0.4 N. */
 void test_without_the_pin_the_law_goes_on_against_the_pilot_but_gently(void)
 {
     const seen_t seen = flown("#LAW EST\n", 7.4, HIGHER_M, 1);

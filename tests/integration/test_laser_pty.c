@@ -1,5 +1,5 @@
-/* plomada laser: the scanner model on a pseudo-terminal, for a bare SCIP client, for plomada scip record, and for the
- * firmware itself. Paced by the wall clock. */
+/* plomada laser: the scanner model on a pseudo-terminal, for a bare SCIP client, for plomada scip record, and
+ * for the firmware itself. Paced by the wall clock. */
 #define _GNU_SOURCE
 #include <fcntl.h>
 #include <poll.h>
@@ -109,7 +109,8 @@ static void listen_ms(long patience_ms, const char *until)
         struct pollfd watched = {.fd = client.fd, .events = POLLIN};
 
         poll(&watched, 1, 20);
-        heard_count += port_read(&client, (unsigned char *)heard + heard_count, sizeof heard - 1 - heard_count, &lost);
+        heard_count += port_read(&client, (unsigned char *)heard + heard_count,
+                                 sizeof heard - 1 - heard_count, &lost);
         heard[heard_count] = '\0';
     }
 }
@@ -250,9 +251,17 @@ void test_anything_else_in_the_links_place_is_left_alone(void)
 void test_usage_errors_exit_2_and_help_tells_of_every_fault(void)
 {
     static const char *const bad[] = {
-        "laser", "laser x", "laser --link", "laser --link '" LINK "' --rate 38400", "laser --link '" LINK "' --rate x",
-        "laser --link '" LINK "' --height -1", "laser --link '" LINK "' --fault drop", "laser --link '" LINK "' --seed x",
-        "laser --link /no/such/directory/urg", "laser --link '" LINK "' more", "laser --bogus",
+        "laser",
+        "laser x",
+        "laser --link",
+        "laser --link '" LINK "' --rate 38400",
+        "laser --link '" LINK "' --rate x",
+        "laser --link '" LINK "' --height -1",
+        "laser --link '" LINK "' --fault drop",
+        "laser --link '" LINK "' --seed x",
+        "laser --link /no/such/directory/urg",
+        "laser --link '" LINK "' more",
+        "laser --bogus",
     };
     static char output[10000], command[256];
 
@@ -299,7 +308,8 @@ void test_a_recording_is_whole_and_has_its_birth_certificate(void)
     size_t rx, tx;
 
     begin("--height", "0.4", "--rate", "57600");
-    TEST_ASSERT_EQUAL_INT(0, child_plomada("scip record '" LINK "' live.bin --seconds 2 --rate 250000 2>&1", text, sizeof text));
+    TEST_ASSERT_EQUAL_INT(0, child_plomada("scip record '" LINK "' live.bin --seconds 2 --rate 250000 2>&1",
+                                           text, sizeof text));
     TEST_ASSERT_NOT_NULL(strstr(text, "damaged: 0\n"));
     rx = child_read_file("live.bin", octets, sizeof octets);
     TEST_ASSERT_TRUE(rx > 15 * 1435);
@@ -315,9 +325,11 @@ void test_a_recording_is_whole_and_has_its_birth_certificate(void)
     TEST_ASSERT_NOT_NULL(strstr(text, "DMAX:5600\n"));
     TEST_ASSERT_NOT_NULL(strstr(text, "| rate of the stream | 250000 bit/s |"));
     TEST_ASSERT_NOT_NULL(strstr(text, " UTC, from `" LINK "` |"));
-    TEST_ASSERT_EQUAL_INT(0, child_plomada("scip decode live.bin 2>/dev/null | grep -c '^[0-9]'", text, sizeof text));
+    TEST_ASSERT_EQUAL_INT(
+        0, child_plomada("scip decode live.bin 2>/dev/null | grep -c '^[0-9]'", text, sizeof text));
     TEST_ASSERT_TRUE(atoi(text) >= 18);
-    TEST_ASSERT_EQUAL_INT(0, child_plomada("scip mirrors live.bin --height 0.4 2>/dev/null", text, sizeof text));
+    TEST_ASSERT_EQUAL_INT(0,
+                          child_plomada("scip mirrors live.bin --height 0.4 2>/dev/null", text, sizeof text));
     TEST_ASSERT_NOT_NULL(strstr(text, "{ { 111U, 145U }, { 372U, 406U }, { 623U, 657U } }"));
 }
 
@@ -330,8 +342,8 @@ void test_ctrl_c_ends_a_recording_in_good_order(void)
     begin(NULL, NULL, NULL, NULL);
     recorder = fork();
     if (recorder == 0) {
-        execl(PLOMADA, "plomada", "scip", "record", LINK, SCRATCH "/cut.bin", "--seconds", "600", "--steps", "372..406",
-              (char *)NULL);
+        execl(PLOMADA, "plomada", "scip", "record", LINK, SCRATCH "/cut.bin", "--seconds", "600", "--steps",
+              "372..406", (char *)NULL);
         _exit(127);
     }
     usleep(1800000);
@@ -347,7 +359,8 @@ void test_mirrors_are_found_on_a_live_sensor(void)
     static char text[10000];
 
     begin("--height", "1.2", NULL, NULL);
-    TEST_ASSERT_EQUAL_INT(0, child_plomada("scip mirrors '" LINK "' --height 1.2 2>/dev/null", text, sizeof text));
+    TEST_ASSERT_EQUAL_INT(
+        0, child_plomada("scip mirrors '" LINK "' --height 1.2 2>/dev/null", text, sizeof text));
     TEST_ASSERT_NOT_NULL(strstr(text, "{ { 111U, 145U }, { 372U, 406U }, { 623U, 657U } }"));
 }
 
@@ -375,15 +388,16 @@ static long number_after(const char *text, const char *label)
     return strtol(at + strlen(label), NULL, 10);
 }
 
-/* The first run finds the sensor in SCIP1.1 after its ten seconds of patience; the second finds it streaming at 250000,
- * as after a reset of the host, and need not wait: it is heard. */
+/* The first run finds the sensor in SCIP1.1 after its ten seconds of patience; the second finds it streaming
+ * at 250000, as after a reset of the host, and need not wait: it is heard. */
 void test_the_firmware_flies_on_a_sensor_behind_a_port_and_finds_it_again_after_its_own_reset(void)
 {
     static char text[40000];
     const char *answer;
 
     begin("--height", "0.4", NULL, NULL);
-    TEST_ASSERT_EQUAL_INT(0, child_plomada("fly bench --realtime --laser '" LINK "' --duration 13", text, sizeof text));
+    TEST_ASSERT_EQUAL_INT(
+        0, child_plomada("fly bench --realtime --laser '" LINK "' --duration 13", text, sizeof text));
     TEST_ASSERT_NOT_NULL(strstr(text, "laser:WAIT"));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "laser:OK"), text);
     heights_are(text, 0.4, 5);

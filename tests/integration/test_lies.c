@@ -1,5 +1,5 @@
-/* One sensor lies, and the vehicle neither flies away nor falls: rows of conditions with the harm that they may do. LIES_SEEDS
- * flights per row, 2 unless the environment says otherwise. */
+/* One sensor lies, and the vehicle neither flies away nor falls: rows of conditions with the harm that they
+ * may do. LIES_SEEDS flights per row, 2 unless the environment says otherwise. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,8 +28,8 @@ static void at_most(double bound, double found, const char *what, const lie_t *l
 {
     char message[200];
 
-    snprintf(message, sizeof message, "%s %.4g, at most %.4g: %s %s seed %lu", what, found, bound, lie->assignments[1],
-             lie->assignments[2] != NULL ? lie->assignments[2] : "", seed);
+    snprintf(message, sizeof message, "%s %.4g, at most %.4g: %s %s seed %lu", what, found, bound,
+             lie->assignments[1], lie->assignments[2] != NULL ? lie->assignments[2] : "", seed);
     TEST_ASSERT_TRUE_MESSAGE(bound <= 0.0 || isnan(found) || found <= bound, message);
 }
 
@@ -92,8 +92,14 @@ void test_an_imu_that_lies_is_flown_with_and_landed(void)
 }
 
 static const lie_t gaps[] = {
-    {{FLAT, "plant.imu_mute_start=8", "plant.imu_mute=2", "plant.outage_start=10.2", "plant.outage=4"}, 1000.0, 1.0, 0.0},
-    {{FLAT, "plant.imu_mute_start=6", "plant.imu_mute=0.6", "plant.outage_start=6.5", "plant.outage=6"}, 1000.0, 1.0, 0.0},
+    {{FLAT, "plant.imu_mute_start=8", "plant.imu_mute=2", "plant.outage_start=10.2", "plant.outage=4"},
+     1000.0,
+     1.0,
+     0.0},
+    {{FLAT, "plant.imu_mute_start=6", "plant.imu_mute=0.6", "plant.outage_start=6.5", "plant.outage=6"},
+     1000.0,
+     1.0,
+     0.0},
 };
 
 void test_a_gap_of_the_imu_and_one_of_the_scanner_end_on_the_ground(void)
@@ -121,7 +127,10 @@ void test_the_seeds_pid_is_not_flown_away_either(void)
 {
     for (size_t i = 0; i < sizeof sights / sizeof sights[0]; i++) {
         lie_t lie = {{sights[i].assignments[0], sights[i].assignments[1], sights[i].assignments[2],
-                      sights[i].assignments[3], NULL}, 2500.0, 1.2, 0.0};
+                      sights[i].assignments[3], NULL},
+                     2500.0,
+                     1.2,
+                     0.0};
         fly("pid-60cm-ramp", &lie, false);
     }
 }

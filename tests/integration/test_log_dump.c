@@ -1,4 +1,5 @@
-/* `#LOG` of the running firmware after a flight, over the radio and beside everything else that is sent there. */
+/* `#LOG` of the running firmware after a flight, over the radio and beside everything else that is sent
+ * there. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -127,8 +128,8 @@ static bool next_row(const char **at, row_t *row)
     }
     TEST_ASSERT_EQUAL_INT_MESSAGE(COLUMNS - 1, commas, line);
     memset(row, 0, sizeof *row);
-    if (sscanf(line, "%lf,%lf,%lf,,%lf,%lf,%*[^,],%*[^,],%15[^,]", &row->t_s, &row->meas_m, &row->est_m, &row->ref_m,
-               &row->thrust_n, row->state) != 6) {
+    if (sscanf(line, "%lf,%lf,%lf,,%lf,%lf,%*[^,],%*[^,],%15[^,]", &row->t_s, &row->meas_m, &row->est_m,
+               &row->ref_m, &row->thrust_n, row->state) != 6) {
         (void)sscanf(line, "%lf", &row->t_s);
     }
     return true;
@@ -143,7 +144,8 @@ void test_a_whole_flight_comes_down_in_order_beside_telemetry_and_commands(void)
 
     ask("#LAW PID\n", "#LOG\n");
     TEST_ASSERT_EQUAL_INT(1, sscanf(strstr(flight.text, "OK LOG records:"), "OK LOG records:%d", &expected));
-    TEST_ASSERT_NOT_NULL(strstr(flight.text, "OK LOG 0 t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags*"));
+    TEST_ASSERT_NOT_NULL(strstr(
+        flight.text, "OK LOG 0 t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags*"));
     while (next_row(&at, &row)) {
         first_s = rows == 0 ? row.t_s : first_s;
         TEST_ASSERT_TRUE_MESSAGE(row.t_s > before.t_s, "not in order");
@@ -217,7 +219,8 @@ void test_law_est_leaves_its_estimate_and_its_innovation(void)
     ask("#LAW EST\n", "#LOG 30\n");
     while (next_row(&at, &row)) {
         rows++;
-        if (sscanf(at, "%*f,%lf,%lf,%lf,%*f,%*f,%*[^,],%*[^,],%15[^,]", &meas_m, &est_m, &innov_m, state) == 4 &&
+        if (sscanf(at, "%*f,%lf,%lf,%lf,%*f,%*f,%*[^,],%*[^,],%15[^,]", &meas_m, &est_m, &innov_m, state) ==
+                4 &&
             strcmp(state, "FLYING") == 0) {
             TEST_ASSERT_DOUBLE_WITHIN(0.1, 0.0, innov_m);
             apart_m = fmax(apart_m, fabs(est_m - meas_m));
@@ -279,7 +282,8 @@ static void read_ring(logs_t *l)
     telemetry_line_t line;
     flight_log_t record;
 
-    for (uint32_t number = span.oldest; number != span.next && flight_recorder_read(number, &record); number++) {
+    for (uint32_t number = span.oldest; number != span.next && flight_recorder_read(number, &record);
+         number++) {
         telemetry_begin(&line);
         flight_log_row(&line, &record, flight_state_name((flight_state_t)record.state));
         line.text[line.length] = '\0';
@@ -331,7 +335,8 @@ static void compare_logs(const char *scenario)
             found++;
         }
     }
-    printf("%s: %d of %d records of the flight recorder are rows of the PC's log\n", scenario, found, logs.ring_rows);
+    printf("%s: %d of %d records of the flight recorder are rows of the PC's log\n", scenario, found,
+           logs.ring_rows);
     TEST_ASSERT_TRUE(logs.ring_rows > 150);
     TEST_ASSERT_TRUE(found <= logs.ring_rows && 100 * found >= 98 * logs.ring_rows);
 }
@@ -350,7 +355,8 @@ void test_both_logs_have_the_same_columns_and_the_pc_boards_some_more(void)
 
     telemetry_begin(&line);
     flight_log_titles(&line);
-    snprintf(expected, sizeof expected, "%.*s,height_m,abs_m,terrain_m,pulse_us\n", (int)line.length, line.text);
-    child_run(fly_with_both_logs, (void *)(size_t)"pid-40cm", &logs, sizeof logs);
+    snprintf(expected, sizeof expected, "%.*s,height_m,abs_m,terrain_m,pulse_us\n", (int)line.length,
+             line.text);
+    child_run(fly_with_both_logs, (void *)(size_t) "pid-40cm", &logs, sizeof logs);
     TEST_ASSERT_EQUAL_STRING(expected, logs.titles);
 }

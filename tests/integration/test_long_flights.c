@@ -1,5 +1,5 @@
-/* Flights of hours, in virtual time. What wraps: the time in microseconds every 71.6 minutes, and negative as a signed
- * number after half of that; the scanner's stamps every 4 h 39 min. */
+/* Flights of hours, in virtual time. What wraps: the time in microseconds every 71.6 minutes, and negative as
+ * a signed number after half of that; the scanner's stamps every 4 h 39 min. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -92,11 +92,12 @@ static double rms_mm(const char *name, double from_s, double to_s)
     return sqrt(sum / (double)count);
 }
 
-/* Without frames for longer than half a wrap of the clock, flown by PIDT, and then again by the estimator, as well as
- * before. */
+/* Without frames for longer than half a wrap of the clock, flown by PIDT, and then again by the estimator, as
+ * well as before. */
 void test_an_imu_that_was_silent_for_40_minutes_is_flown_by_as_before(void)
 {
-    fly("--duration 3000 --set plant.sag=0 --set plant.imu_mute_start=60 --set plant.imu_mute=2400 --csv silent.csv");
+    fly("--duration 3000 --set plant.sag=0 --set plant.imu_mute_start=60 --set plant.imu_mute=2400 --csv "
+        "silent.csv");
     within("off_aloft", 0.0, 0.0);
     within("highest_mm", 0.0, 300.0);
     within("flagged_s", 2390.0, 2410.0);

@@ -1,5 +1,5 @@
-/* What the firmware says of itself (`#PERF`, `#LASER`) and how it takes its octets, against what the kernel's observer and
- * the wires have seen of the same run. */
+/* What the firmware says of itself (`#PERF`, `#LASER`) and how it takes its octets, against what the kernel's
+ * observer and the wires have seen of the same run. */
 #include <stdio.h>
 #include <string.h>
 
@@ -10,8 +10,8 @@
 
 #define TASKS 6
 
-static const char *const names[TASKS] = {"TaskIMU", "TaskReceiveLaser", "TaskControl", "TaskSendLaser", "TaskSendComm",
-                                         "TaskReceiveComm"};
+static const char *const names[TASKS] = {"TaskIMU",       "TaskReceiveLaser", "TaskControl",
+                                         "TaskSendLaser", "TaskSendComm",     "TaskReceiveComm"};
 static sim_time_t longest[TASKS];
 static long interrupts;
 static char text[20000];
@@ -94,15 +94,18 @@ void test_responses_are_those_that_the_kernel_saw(void)
     length = 0;
     for (int i = 0; i < TASKS; i++) {
         char begin[40];
-        /* What the kernel sees of TaskReceiveComm are also the turns of a long answer, which answer no line. */
-        const double before_us = strcmp(names[i], "TaskReceiveComm") == 0 ? 500.0 : (double)longest[i] / 1000.0;
+        /* What the kernel sees of TaskReceiveComm are also the turns of a long answer, which answer no line.
+         */
+        const double before_us = strcmp(names[i], "TaskReceiveComm") == 0 ? 500.0
+                                                                          : (double)longest[i] / 1000.0;
 
         type("#PERF\n");
         run_until_s(32.0 + 2.0 * i);
         (void)snprintf(begin, sizeof begin, "OK PERF %s ", names[i]);
         const double told_us = (double)field(begin, "worst_us:");
 
-        TEST_ASSERT_TRUE_MESSAGE(told_us >= before_us - 1.0 && told_us <= (double)longest[i] / 1000.0 + head_start_us[i] + 1.0,
+        TEST_ASSERT_TRUE_MESSAGE(told_us >= before_us - 1.0 &&
+                                     told_us <= (double)longest[i] / 1000.0 + head_start_us[i] + 1.0,
                                  begin);
         TEST_ASSERT_EQUAL_UINT64(0, field(begin, "late:"));
         length = 0;
@@ -158,7 +161,8 @@ void test_a_missed_deadline_is_counted(void)
     length = 0;
     type("#PERF\n");
     run_until_s(18.0);
-    TEST_ASSERT_EQUAL_UINT64(2, field("OK PERF TaskReceiveComm ", "late:")); /* the question itself is the second */
+    TEST_ASSERT_EQUAL_UINT64(
+        2, field("OK PERF TaskReceiveComm ", "late:")); /* the question itself is the second */
     TEST_ASSERT_UINT64_WITHIN(30000, 420000, field("OK PERF TaskReceiveComm ", "worst_us:"));
     TEST_ASSERT_EQUAL_UINT64(0, field("OK PERF TaskSendComm ", "late:"));
 }
@@ -198,7 +202,8 @@ void test_no_octet_is_lost_even_when_everything_takes_twelve_times_as_long(void)
         TEST_ASSERT_EQUAL_UINT64(0, field("OK LASER state:OK", "overrun:"));
         TEST_ASSERT_EQUAL_UINT64(0, field("OK LASER state:OK", "framing:"));
         TEST_ASSERT_EQUAL_UINT64(0, field("OK LASER state:OK", "length:"));
-        TEST_ASSERT_UINT64_WITHIN(6, 297, field("OK LASER state:OK", "frames:")); /* from 11.7 s on, ten a second */
+        TEST_ASSERT_UINT64_WITHIN(6, 297,
+                                  field("OK LASER state:OK", "frames:")); /* from 11.7 s on, ten a second */
         TEST_ASSERT_EQUAL_UINT32(0, probe_imu->malformed);
         TEST_ASSERT_UINT32_WITHIN(4, 41 * 40 + 20, probe_imu->sequence);
     }
@@ -220,7 +225,8 @@ void test_no_frame_waits_longer_than_a_tick(void)
         board_receive(BOARD_IMU, frame, strlen(frame));
         TEST_ASSERT_TRUE(kernel_run_until(begin + 40 * SIM_MS));
         TEST_ASSERT_EQUAL_UINT32(before + 1U, probe_imu->sequence);
-        const double late_us = (double)probe_imu->arrival_us - (double)(begin + (sim_time_t)strlen(frame) * octet) / 1000.0;
+        const double late_us = (double)probe_imu->arrival_us -
+                               (double)(begin + (sim_time_t)strlen(frame) * octet) / 1000.0;
 
         TEST_ASSERT_TRUE_MESSAGE(late_us > -5.0 && late_us < 1030.0, "a frame was older than a tick");
     }

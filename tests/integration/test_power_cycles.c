@@ -1,4 +1,5 @@
-/* `#SAVE`, `#LOAD` and `#DEFAULTS` of the running firmware, over power cycles of the board with the same flash. */
+/* `#SAVE`, `#LOAD` and `#DEFAULTS` of the running firmware, over power cycles of the board with the same
+ * flash. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,8 +19,8 @@ typedef struct {
 } power_on_t;
 
 typedef struct {
-    const char *lines;      /* "@s": waits so many seconds */
-    long cut_after;         /* cells; negative: never */
+    const char *lines; /* "@s": waits so many seconds */
+    long cut_after;    /* cells; negative: never */
 } session_t;
 
 static const char image[] = SCRATCH "/storage.bin";
@@ -138,8 +139,14 @@ void test_in_the_air_nothing_is_saved_loaded_or_reset(void)
 
 void test_power_that_fails_during_a_save_leaves_the_old_set_or_the_new_one(void)
 {
-    static const long cuts[] = {0, 1, FLASH_SECTOR_CELLS - 1, FLASH_SECTOR_CELLS, FLASH_SECTOR_CELLS + 1,
-                                FLASH_SECTOR_CELLS + 8, FLASH_SECTOR_CELLS + 20, SAVE_CELLS_MAX};
+    static const long cuts[] = {0,
+                                1,
+                                FLASH_SECTOR_CELLS - 1,
+                                FLASH_SECTOR_CELLS,
+                                FLASH_SECTOR_CELLS + 1,
+                                FLASH_SECTOR_CELLS + 8,
+                                FLASH_SECTOR_CELLS + 20,
+                                SAVE_CELLS_MAX};
 
     for (size_t i = 0; i < sizeof cuts / sizeof cuts[0]; i++) {
         (void)remove(image);
@@ -148,7 +155,8 @@ void test_power_that_fails_during_a_save_leaves_the_old_set_or_the_new_one(void)
         TEST_ASSERT_EQUAL(cuts[i] < SAVE_CELLS_MAX, answered("ERR SAVE storage fault"));
         type("");
         TEST_ASSERT_EQUAL_FLOAT(seen.parameters.value[PARAMETER_KP], seen.parameters.value[PARAMETER_KD]);
-        TEST_ASSERT_EQUAL_FLOAT(cuts[i] == SAVE_CELLS_MAX ? 0.013F : 0.012F, seen.parameters.value[PARAMETER_KP]);
+        TEST_ASSERT_EQUAL_FLOAT(cuts[i] == SAVE_CELLS_MAX ? 0.013F : 0.012F,
+                                seen.parameters.value[PARAMETER_KP]);
     }
 }
 

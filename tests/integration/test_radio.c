@@ -13,7 +13,7 @@ void tearDown(void) {}
 
 typedef struct {
     child_terminal_t terminal;
-    float at_s[CHILD_TERMINAL_MAX];     /* when each character came */
+    float at_s[CHILD_TERMINAL_MAX]; /* when each character came */
     parameters_t parameters;
     float reference_m;
     double sent_s;
@@ -32,7 +32,7 @@ static void take(void *terminal, unsigned octet)
 typedef struct {
     const char *text;
     size_t count;
-    double spacing_s;   /* between lines; 0: as fast as the link goes */
+    double spacing_s; /* between lines; 0: as fast as the link goes */
     double listen_s;
 } script_t;
 
@@ -52,8 +52,8 @@ static void run_script(void *argument, void *result)
         count = count > 64 && script->spacing_s <= 0.0 ? 64 : count;
         board_type(next, count);
         next += count;
-        kernel_run_until(timeline_now() +
-                         (sim_time_t)(script->spacing_s > 0.0 ? script->spacing_s * 1e9 : (double)count * 1.05e6));
+        kernel_run_until(timeline_now() + (sim_time_t)(script->spacing_s > 0.0 ? script->spacing_s * 1e9
+                                                                               : (double)count * 1.05e6));
     }
     t->sent_s = (double)timeline_now() * 1e-9;
     kernel_run_until(timeline_now() + (sim_time_t)(script->listen_s * 1e9));
@@ -82,7 +82,8 @@ static bool answered(const char *line)
     char needle[128];
 
     snprintf(needle, sizeof needle, "%s\r\n", line);
-    for (const char *found = strstr(talk.terminal.text, needle); found != NULL; found = strstr(found + 1, needle)) {
+    for (const char *found = strstr(talk.terminal.text, needle); found != NULL;
+         found = strstr(found + 1, needle)) {
         if (found == talk.terminal.text || found[-1] == '\n') {
             return true;
         }
@@ -96,7 +97,8 @@ static int count_of(const char *prefix)
     char needle[64];
 
     snprintf(needle, sizeof needle, "\n%s", prefix);
-    for (const char *found = strstr(talk.terminal.text, needle); found != NULL; found = strstr(found + 1, needle)) {
+    for (const char *found = strstr(talk.terminal.text, needle); found != NULL;
+         found = strstr(found + 1, needle)) {
         count++;
     }
     return count;
@@ -329,7 +331,8 @@ void test_bare_lines_get_one_answer_a_second(void)
 
 void test_typing_mistakes_are_taken_back_by_backspace(void)
 {
-    type_line("#LAW PD\n#KQ\x08P 0.02\x7F" "3\n");
+    type_line("#LAW PD\n#KQ\x08P 0.02\x7F"
+              "3\n");
     TEST_ASSERT_TRUE(answered("OK KP 0.03"));
     TEST_ASSERT_EQUAL_INT(0, count_of("ERR "));
 }

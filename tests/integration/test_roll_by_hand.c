@@ -1,5 +1,6 @@
-/* The roll test of docs/hardware.md: the vehicle held at 0.5 m, its right side up by 10 degrees, then its left side. What
- * the two heights differ by tells how far L is off, and only the true L keeps them the same. */
+/* The roll test of docs/hardware.md: the vehicle held at 0.5 m, its right side up by 10 degrees, then its
+ * left side. What the two heights differ by tells how far L is off, and only the true L keeps them the same.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,7 +11,7 @@
 
 #define ROLL_RAD 0.17453293 /* 10 degrees */
 #define HEIGHT_M 0.5
-#define HELD_S 12.0         /* the IMU's zero and the scanner's start are over */
+#define HELD_S 12.0 /* the IMU's zero and the scanner's start are over */
 #define LOOK_S 13.0
 #define END_S 23.0
 
@@ -43,7 +44,8 @@ static void hold(void *argument, void *result)
     kernel_run_until(500 * SIM_MS);
     board_type(order->command, strlen(order->command));
     while ((double)timeline_now() * 1e-9 < END_S && kernel_run_until(timeline_now() + SIM_MS)) {
-        if ((double)timeline_now() * 1e-9 > LOOK_S && probe_altitude->scan_valid && probe_altitude->sequence != sequence) {
+        if ((double)timeline_now() * 1e-9 > LOOK_S && probe_altitude->scan_valid &&
+            probe_altitude->sequence != sequence) {
             sequence = probe_altitude->sequence;
             seen->height_mm += (double)probe_altitude->altitude.height_mm;
             seen->slant_mm += (double)probe_altitude->altitude.slant_mm;

@@ -1,4 +1,5 @@
-/* plomada scip decode and mirrors, on streams that the scanner model makes and that are then damaged in every way. */
+/* plomada scip decode and mirrors, on streams that the scanner model makes and that are then damaged in every
+ * way. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,7 +23,7 @@ static size_t stream_length;
 
 typedef struct {
     long stamp_ms;
-    int distance_mm[769];   /* of the steps asked for */
+    int distance_mm[769]; /* of the steps asked for */
     int first, last;
 } truth_t;
 
@@ -54,7 +55,8 @@ static void world(void *context, int first_step, int last_step, int *distance_mm
     for (int i = 0; i <= last_step - first_step; i++) {
         const double kind = noise_uniform(&world_noise, 0.0, 1.0);
 
-        distance_mm[i] = (int)noise_uniform(&world_noise, kind < 0.1 ? 0.0 : 20.0, kind < 0.1 ? 20.0 : 5601.0);
+        distance_mm[i] = (int)noise_uniform(&world_noise, kind < 0.1 ? 0.0 : 20.0,
+                                            kind < 0.1 ? 20.0 : 5601.0);
         t->distance_mm[i] = distance_mm[i];
     }
 }
@@ -192,7 +194,7 @@ void test_every_kind_of_measurement_comes_out_as_it_went_in(void)
         const char *command;
         int cluster, largest;
     } kinds[] = {
-        {"MS0372040601000\n", 1, 4095},  {"MD0372040601000\n", 1, 262143}, {"MS0000076801000\n", 1, 4095},
+        {"MS0372040601000\n", 1, 4095},   {"MD0372040601000\n", 1, 262143}, {"MS0000076801000\n", 1, 4095},
         {"MD0000076801000\n", 1, 262143}, {"MD0044072505000\n", 5, 262143}, {"MS0044072599000\n", 99, 4095},
         {"MD0384038400000\n", 1, 262143}, {"MS0249051902000\n", 2, 4095},   {"MD0372040601200\n", 1, 262143},
         {"MS0372040601010\n", 1, 4095},   {"MD0372040601299\n", 1, 262143},
@@ -228,8 +230,8 @@ void test_single_scans_runs_and_endless_streams_may_follow_each_other(void)
     say("MS0372040601003\n", 0.8);
     say("MS0372040601005\n", 1.0);
     say("MD0372040601005\n", 1.0);
-    say("MD0040080001000\n", 0.4);  /* refused: 04 */
-    say("GS0400039901\n", 0.4);     /* refused: 05 */
+    say("MD0040080001000\n", 0.4); /* refused: 04 */
+    say("GS0400039901\n", 0.4);    /* refused: 05 */
     say("MD0372040601000\n", 0.5);
     say("MS0300040001000\n", 0.5);
     say("QT\n", 0.3);
@@ -237,12 +239,13 @@ void test_single_scans_runs_and_endless_streams_may_follow_each_other(void)
     read_stream(stream, stream_length);
     TEST_ASSERT_EQUAL_UINT32(0, damage());
     TEST_ASSERT_TRUE(line_count >= 3 + 3 + 5 + 5 + 3 + 3);
-    TEST_ASSERT_TRUE(line_count == truth_count || line_count == truth_count - 1); /* one may be given up by a new stream */
+    TEST_ASSERT_TRUE(line_count == truth_count ||
+                     line_count == truth_count - 1); /* one may be given up by a new stream */
     TEST_ASSERT_EQUAL_UINT32(5, reader.totals.answers);
     TEST_ASSERT_EQUAL_UINT32(10, reader.totals.skipped); /* V SCIP2.0 SS VV BM PP 04 05 QT II */
     for (int i = 0; i < 16; i++) {
-        static const int largest[16] = {4095, 262143, 262143, 4095, 4095, 4095, 4095, 4095, 4095, 4095, 4095,
-                                        262143, 262143, 262143, 262143, 262143};
+        static const int largest[16] = {4095, 262143, 262143, 4095,   4095,   4095,   4095,   4095,
+                                        4095, 4095,   4095,   262143, 262143, 262143, 262143, 262143};
         static char expected[LINE_MAX_N];
 
         truth_line(&truth[i], 1, largest[i], expected);
@@ -280,7 +283,8 @@ static void keep_good(void)
     memcpy(good, lines, (size_t)frame_count * sizeof good[0]);
 }
 
-/* Every line is one of the good ones, in their order, and only those of the frames lost_from..lost_to may be missing. */
+/* Every line is one of the good ones, in their order, and only those of the frames lost_from..lost_to may be
+ * missing. */
 static void only_lost(int lost_from, int lost_to, const char *how, size_t where)
 {
     char message[96];
@@ -295,7 +299,8 @@ static void only_lost(int lost_from, int lost_to, const char *how, size_t where)
         TEST_ASSERT_TRUE_MESSAGE(next < frame_count, message);
         next++;
     }
-    TEST_ASSERT_TRUE_MESSAGE(next == frame_count || (next >= lost_from && frame_count - 1 <= lost_to), message);
+    TEST_ASSERT_TRUE_MESSAGE(next == frame_count || (next >= lost_from && frame_count - 1 <= lost_to),
+                             message);
 }
 
 static int frame_at(size_t offset)
@@ -419,8 +424,9 @@ void test_noise_makes_no_scan_and_no_crash(void)
 void test_echoes_that_no_sensor_of_this_kind_answers_are_skipped(void)
 {
     static const char *const foreign[] = {
-        "MD0000108001000\n99b\nabcd?\nxxx\n\n", "MS0406037201000\n00P\n\n", "ME0000076801000\n99b\n00000\n00\n\n",
-        "GD00000768\n00P\n\n", "MS0372040601000;who\n99b\n\n",
+        "MD0000108001000\n99b\nabcd?\nxxx\n\n", "MS0406037201000\n00P\n\n",
+        "ME0000076801000\n99b\n00000\n00\n\n",  "GD00000768\n00P\n\n",
+        "MS0372040601000;who\n99b\n\n",
     };
 
     for (size_t i = 0; i < sizeof foreign / sizeof foreign[0]; i++) {
@@ -558,7 +564,8 @@ void test_part_of_the_circle_shows_the_front_mirror_alone(void)
 {
     record_scene(0.4, "MS0300050001000\n", 3.0, "front.bin");
     TEST_ASSERT_EQUAL_INT(0, run("mirrors front.bin --height 0.4 2>/dev/null"));
-    TEST_ASSERT_NOT_NULL(strstr(output, "[SCIP_LAYOUT_FRONT] = { \"front\", 372U, 406U, 1U, { { 372U, 406U } } },\n"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(output, "[SCIP_LAYOUT_FRONT] = { \"front\", 372U, 406U, 1U, { { 372U, 406U } } },\n"));
 }
 
 void test_the_side_mirrors_without_the_front_are_two_beams(void)
@@ -569,8 +576,9 @@ void test_the_side_mirrors_without_the_front_are_two_beams(void)
     record_scene(0.4, "MS0500072501030\n", 4.0, "fore.bin");
     TEST_ASSERT_EQUAL_INT(0, system("cd '" SCRATCH "' && cat aft.bin fore.bin >sides.bin"));
     TEST_ASSERT_EQUAL_INT(0, run("mirrors sides.bin --height 0.4 2>/dev/null"));
-    TEST_ASSERT_NOT_NULL(strstr(output, "[SCIP_LAYOUT_TWO_BEAMS] = { \"two-beams\", 111U, 657U, 2U, { { 111U, 145U }, "
-                                        "{ 623U, 657U } } },\n"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(output, "[SCIP_LAYOUT_TWO_BEAMS] = { \"two-beams\", 111U, 657U, 2U, { { 111U, 145U }, "
+                       "{ 623U, 657U } } },\n"));
 }
 
 void test_a_wrong_height_finds_no_mirror(void)

@@ -1,5 +1,6 @@
-/* The firmware's estimator assumes thrust in proportion to the throttle, one lag and one damping. Here it flies rotors by
- * momentum theory: thrust by a power of the throttle, quick up and slow down, inflow, drag by the square. */
+/* The firmware's estimator assumes thrust in proportion to the throttle, one lag and one damping. Here it
+ * flies rotors by momentum theory: thrust by a power of the throttle, quick up and slow down, inflow, drag by
+ * the square. */
 #include <stdio.h>
 #include <string.h>
 
@@ -30,8 +31,9 @@ static void fly(const char *scenario, const char *exponent)
             worst[i] = result.metrics.value[i] > worst[i] ? result.metrics.value[i] : worst[i];
         }
     }
-    printf("%s, %s: rms %.1f mm, terrain %.1f mm, recovery %.2f s, touch %.2f m/s at most\n", scenario, exponent,
-           mean[METRIC_HOVER_RMS_MM], mean[METRIC_TERRAIN_RMS_MM], mean[METRIC_RECOVERY_S], worst[METRIC_TOUCH_SPEED_MPS]);
+    printf("%s, %s: rms %.1f mm, terrain %.1f mm, recovery %.2f s, touch %.2f m/s at most\n", scenario,
+           exponent, mean[METRIC_HOVER_RMS_MM], mean[METRIC_TERRAIN_RMS_MM], mean[METRIC_RECOVERY_S],
+           worst[METRIC_TOUCH_SPEED_MPS]);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, worst[METRIC_OFF_ALOFT]);
     TEST_ASSERT_TRUE(worst[METRIC_TOUCH_SPEED_MPS] > 0.05 && worst[METRIC_TOUCH_SPEED_MPS] < 0.6);
 }
@@ -54,8 +56,8 @@ void test_the_estimator_flies_an_airframe_that_it_does_not_assume(void)
     by_the_estimator("plant.exponent=2");
 }
 
-/* Rotors that slow down slowly suit no law without a model: it oscillates more than on the simple airframe, now and then
- * down to the ground. */
+/* Rotors that slow down slowly suit no law without a model: it oscillates more than on the simple airframe,
+ * now and then down to the ground. */
 void test_the_seeds_law_oscillates_on_it_and_does_not_fly_away(void)
 {
     fly("pid-60cm-ramp", "plant.exponent=1.5");

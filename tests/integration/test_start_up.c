@@ -31,7 +31,8 @@ static void start(void *argument, void *result)
     while (timeline_now() < 40 * SIM_S && s->ready_s == 0.0 && kernel_run_until(timeline_now() + SIM_MS)) {
         double now_s = (double)timeline_now() * 1e-9;
 
-        s->streaming_s = s->streaming_s == 0.0 && urg04lx_state(board_laser()).streaming ? now_s : s->streaming_s;
+        s->streaming_s = s->streaming_s == 0.0 && urg04lx_state(board_laser()).streaming ? now_s
+                                                                                         : s->streaming_s;
         s->ready_s = probe_altitude->sequence > 0U && probe_imu->ready ? now_s : 0.0;
     }
     kernel_run_until(timeline_now() + SIM_S);

@@ -1,4 +1,5 @@
-/* A recording played again is the same run: the same pulses at the same nanoseconds and the same octets on the radio. */
+/* A recording played again is the same run: the same pulses at the same nanoseconds and the same octets on
+ * the radio. */
 #include "sim/tape.h"
 
 #include <inttypes.h>
@@ -22,7 +23,7 @@ typedef struct {
 typedef struct {
     unsigned long seed;
     double end_s;
-    const char *name, *value;   /* typed otherwise in the replay; NULL: nothing */
+    const char *name, *value; /* typed otherwise in the replay; NULL: nothing */
 } order_t;
 
 static outcome_t *seen;
@@ -60,7 +61,8 @@ static void type(const char *text)
     board_type(text, strlen(text));
 }
 
-/* What may come to the pins: stored parameters, a damaged and a mute scanner, the pilot's switch, a landing. */
+/* What may come to the pins: stored parameters, a damaged and a mute scanner, the pilot's switch, a landing.
+ */
 static void fly(void *argument, void *result)
 {
     static const line_fault_spec_t faults[] = {
@@ -75,7 +77,7 @@ static void fly(void *argument, void *result)
     config.laser_faults = faults;
     config.laser_fault_count = 2;
     flash_read_all(cells);
-    memset(cells, 0, 200);  /* no whole image: the firmware says so */
+    memset(cells, 0, 200); /* no whole image: the firmware says so */
     flash_write_all(cells);
     watch(result);
     board_power_on(&config, child_terminal_take, &((outcome_t *)result)->radio);
@@ -108,7 +110,7 @@ static void replay(void *argument, void *result)
     const char *error = "";
     FILE *in = fopen(TAPE, "r");
     tape_t *tape = tape_read(in, &error);
-    board_config_t config = board_config(order->seed + 1000);   /* the models are off: their noise is another */
+    board_config_t config = board_config(order->seed + 1000); /* the models are off: their noise is another */
 
     if (tape == NULL || (order->name != NULL && !tape_retype(tape, order->name, order->value))) {
         abort();
@@ -145,9 +147,9 @@ void test_a_replay_gives_the_same_pulses_and_the_same_words_to_the_nanosecond(vo
         TEST_ASSERT_EQUAL_size_t(flown.pulse_count, replayed.pulse_count);
         TEST_ASSERT_EQUAL_size_t(flown.pulse_count, first_difference());
         TEST_ASSERT_EQUAL_STRING(flown.radio.text, replayed.radio.text);
-        TEST_ASSERT_NOT_NULL(strstr(flown.radio.text, "ERR LOAD"));     /* the flash came along */
+        TEST_ASSERT_NOT_NULL(strstr(flown.radio.text, "ERR LOAD")); /* the flash came along */
         TEST_ASSERT_NOT_NULL(strstr(flown.radio.text, "state:FLYING"));
-        TEST_ASSERT_NOT_NULL(strstr(flown.radio.text, "state:FLOATING"));   /* and the pilot's switch */
+        TEST_ASSERT_NOT_NULL(strstr(flown.radio.text, "state:FLOATING")); /* and the pilot's switch */
     }
 }
 
@@ -161,7 +163,8 @@ void test_a_line_typed_otherwise_changes_what_follows_and_nothing_before(void)
     TEST_ASSERT_NOT_NULL(strstr(replayed.radio.text, "OK LAW PIDT"));
     TEST_ASSERT_NULL(strstr(replayed.radio.text, "OK LAW EST"));
     same = first_difference();
-    TEST_ASSERT_TRUE_MESSAGE(flown.pulse_ends[same] > 14 * SIM_S, "something was different before the take-off");
+    TEST_ASSERT_TRUE_MESSAGE(flown.pulse_ends[same] > 14 * SIM_S,
+                             "something was different before the take-off");
     TEST_ASSERT_TRUE_MESSAGE(flown.pulse_ends[same] < 16 * SIM_S, "another law gave the same thrust");
 }
 
@@ -221,10 +224,14 @@ void test_a_damaged_recording_is_refused_with_its_line_and_one_cut_off_is_read(v
     TEST_ASSERT_EQUAL_STRING("line 1: not a recording of plomada", read_text("t_s,meas_m\n"));
     TEST_ASSERT_EQUAL_STRING("line 2: not hex", read_text("plomada-recording 1\noctets imu 5 173611 4Z\n"));
     TEST_ASSERT_EQUAL_STRING("line 2: not hex", read_text("plomada-recording 1\noctets imu 5 173611 4\n"));
-    TEST_ASSERT_EQUAL_STRING("line 2: no such wire", read_text("plomada-recording 1\noctets gps 5 173611 41\n"));
-    TEST_ASSERT_EQUAL_STRING("line 2: octets WIRE T_NS LENGTH_NS HEX", read_text("plomada-recording 1\noctets imu 5 0 41\n"));
-    TEST_ASSERT_EQUAL_STRING("line 3: select T_NS 0|1", read_text("plomada-recording 1\nseed 1\nselect 7 2\n"));
-    TEST_ASSERT_EQUAL_STRING("line 2: flash OFFSET CELLS", read_text("plomada-recording 1\nflash 99999 0000\n"));
+    TEST_ASSERT_EQUAL_STRING("line 2: no such wire",
+                             read_text("plomada-recording 1\noctets gps 5 173611 41\n"));
+    TEST_ASSERT_EQUAL_STRING("line 2: octets WIRE T_NS LENGTH_NS HEX",
+                             read_text("plomada-recording 1\noctets imu 5 0 41\n"));
+    TEST_ASSERT_EQUAL_STRING("line 3: select T_NS 0|1",
+                             read_text("plomada-recording 1\nseed 1\nselect 7 2\n"));
+    TEST_ASSERT_EQUAL_STRING("line 2: flash OFFSET CELLS",
+                             read_text("plomada-recording 1\nflash 99999 0000\n"));
     TEST_ASSERT_EQUAL_STRING("line 2: no value", read_text("plomada-recording 1\nhello\n"));
     TEST_ASSERT_NULL(read_text("plomada-recording 1\noctets imu 5 173611 41\noctets imu 900000 173611 4"));
 }

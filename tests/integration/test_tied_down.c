@@ -8,19 +8,19 @@
 #include "sim/devices/quadrotor.h"
 #include "unity.h"
 
-#define READY_S 14.0    /* sensor wait and start-up are over */
+#define READY_S 14.0 /* sensor wait and start-up are over */
 #define IDLE_US (4166 * 0.48)
 
 typedef struct {
     child_terminal_t terminal;
-    double shortest_us;     /* throttle pulse */
+    double shortest_us; /* throttle pulse */
     double last_us;
     double highest_m;
 } flown_t;
 
 typedef struct {
     bool tied;
-    const char *lines;      /* "@s": waits so many seconds */
+    const char *lines; /* "@s": waits so many seconds */
 } session_t;
 
 static flown_t flown;
@@ -96,19 +96,22 @@ void test_every_step_is_reported_and_on_the_throttle_until_a_command_ends_it(voi
     for (int step = 1; step <= 10; step++) {
         char line[64];
 
-        snprintf(line, sizeof line, "OK CALIBRATE thr:%.2f compare:%d", (312 + 30 * step) / 177.21, 4166 - 312 - 30 * step);
+        snprintf(line, sizeof line, "OK CALIBRATE thr:%.2f compare:%d", (312 + 30 * step) / 177.21,
+                 4166 - 312 - 30 * step);
         TEST_ASSERT_TRUE_MESSAGE(answered(line), line);
     }
     TEST_ASSERT_TRUE(answered("OK PING 1"));
     TEST_ASSERT_TRUE(answered("OK CALIBRATE end:COMMAND thr:3.62 compare:3524 grav:3.62"));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(flown.terminal.text, " thr:3.45 state:GROUND"), "the telemetry shows it too");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(flown.terminal.text, " thr:3.45 state:GROUND"),
+                                 "the telemetry shows it too");
     TEST_ASSERT_FLOAT_WITHIN(0.5F, (float)((4166 - 312 - 330) * 0.48), (float)flown.shortest_us);
     assert_idle();
 }
 
 void test_any_line_ends_it_a_damaged_one_too(void)
 {
-    static const char *const lines[] = {"#LINK 60\n#CALIBRATE 200 1\n@2\n#FOO\n@0.4\n", "#LINK 60\n#CALIBRATE 200 1\n@2\n#\n@0.4\n",
+    static const char *const lines[] = {"#LINK 60\n#CALIBRATE 200 1\n@2\n#FOO\n@0.4\n",
+                                        "#LINK 60\n#CALIBRATE 200 1\n@2\n#\n@0.4\n",
                                         "#LINK 60\n#CALIBRATE 200 1\n@2\n#KP 99\n@0.4\n"};
 
     for (int i = 0; i < 3; i++) {
@@ -122,8 +125,9 @@ void test_any_line_ends_it_a_damaged_one_too(void)
 /* What somebody types who sees the ropes give way. */
 void test_enter_a_word_or_ctrl_c_end_it_too(void)
 {
-    static const char *const lines[] = {"#LINK 60\n#CALIBRATE 200 1\n@2\n\n@0.4\n", "#LINK 60\n#CALIBRATE 200 1\n@2\nstop\n@0.4\n",
-                                        "#LINK 60\n#CALIBRATE 200 1\n@2\n\x03\n@0.4\n", "#LINK 60\n#CALIBRATE 200 1\n@2\n#STOP\n@0.4\n"};
+    static const char *const lines[] = {
+        "#LINK 60\n#CALIBRATE 200 1\n@2\n\n@0.4\n", "#LINK 60\n#CALIBRATE 200 1\n@2\nstop\n@0.4\n",
+        "#LINK 60\n#CALIBRATE 200 1\n@2\n\x03\n@0.4\n", "#LINK 60\n#CALIBRATE 200 1\n@2\n#STOP\n@0.4\n"};
 
     for (int i = 0; i < 4; i++) {
         run(true, lines[i]);

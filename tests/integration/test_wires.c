@@ -1,4 +1,5 @@
-/* A real radio and a real IMU on the PC board: here the test is the device at the other end of a pseudo-terminal. */
+/* A real radio and a real IMU on the PC board: here the test is the device at the other end of a
+ * pseudo-terminal. */
 #define _GNU_SOURCE
 #include <poll.h>
 #include <signal.h>

@@ -5,14 +5,22 @@
 
 #include "prove.h"
 
-void telemetry_text(telemetry_line_t *line, const char *text) { (void)line; (void)text; }
+void telemetry_text(telemetry_line_t *line, const char *text)
+{
+    (void)line;
+    (void)text;
+}
 void telemetry_fixed(telemetry_line_t *line, float value, uint16_t decimals)
 {
     (void)line;
     (void)value;
     (void)decimals;
 }
-void telemetry_count(telemetry_line_t *line, uint32_t value) { (void)line; (void)value; }
+void telemetry_count(telemetry_line_t *line, uint32_t value)
+{
+    (void)line;
+    (void)value;
+}
 
 /* As the standard has them. */
 float floorf(float value)

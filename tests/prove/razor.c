@@ -5,7 +5,7 @@
 #include "drivers/decimal.h"
 #include "prove.h"
 
-#define TITLE_STATE 2U  /* the states of razor.c */
+#define TITLE_STATE 2U /* the states of razor.c */
 #define ACCELERATION_STATE 3U
 #define ANGLES_STATE 4U
 #define TITLE_LENGTH 5U
@@ -49,9 +49,9 @@ static bool is_sound(const razor_collector_t *collector)
     const uint16_t length = collector->gathered.length;
     const uint16_t part = collector->part_start;
 
-    return length <= RAZOR_FRAME_MAX && collector->state <= ANGLES_STATE
-           && (collector->state != TITLE_STATE || (part < length && length < part + TITLE_LENGTH))
-           && (collector->state != ACCELERATION_STATE || length >= TITLE_LENGTH);
+    return length <= RAZOR_FRAME_MAX && collector->state <= ANGLES_STATE &&
+           (collector->state != TITLE_STATE || (part < length && length < part + TITLE_LENGTH)) &&
+           (collector->state != ACCELERATION_STATE || length >= TITLE_LENGTH);
 }
 
 void collector_starts_sound(void)

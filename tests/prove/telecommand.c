@@ -1,12 +1,13 @@
-/* Of a line: it has room for what it says, and one that has begun has its '#'. Each step starts from any state that keeps
- * this and must end in one, so the proof holds after any number of octets. */
+/* Of a line: it has room for what it says, and one that has begun has its '#'. Each step starts from any
+ * state that keeps this and must end in one, so the proof holds after any number of octets. */
 #include "drivers/telecommand.h"
 
 #include "prove.h"
 
 static bool is_sound(const telecommand_collector_t *collector)
 {
-    return collector->line.length <= TELECOMMAND_LINE_MAX && (!collector->started || collector->line.length > 0U);
+    return collector->line.length <= TELECOMMAND_LINE_MAX &&
+           (!collector->started || collector->line.length > 0U);
 }
 
 void collector_starts_sound(void)
@@ -39,7 +40,8 @@ void any_line_is_parsed(void)
     status = telecommand_parse(&line, nondet_bool(), &command);
     PROVE(command.name_length <= TELECOMMAND_NAME_MAX, "the name fits");
     PROVE(command.argument_length <= TELECOMMAND_LINE_MAX, "the argument fits");
-    PROVE(status == TELECOMMAND_OK || command.argument_length == 0U || status == TELECOMMAND_CHARACTER, "refused is empty");
+    PROVE(status == TELECOMMAND_OK || command.argument_length == 0U || status == TELECOMMAND_CHARACTER,
+          "refused is empty");
 }
 
 void any_line_may_be_urgent(void)

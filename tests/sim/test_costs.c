@@ -8,17 +8,27 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-/* Annex IV, Figura A4.1, in ns; interrupt numbers are those of the chip (timer 0, SCIC, SCIA, SCIB). Clock_swi: two
- * receive interrupts. */
+/* Annex IV, Figura A4.1, in ns; interrupt numbers are those of the chip (timer 0, SCIC, SCIA, SCIB).
+ * Clock_swi: two receive interrupts. */
 void test_the_costs_are_annex_ivs(void)
 {
     static const kernel_cost_t annex[] = {
-        {"Clock", 38, 15000},          {"SCIA_RX", 96, 2400},         {"SCIA_TX", 97, 2000},
-        {"SCIB_RX", 98, 2400},         {"SCIB_TX", 99, 2000},         {"SCIC_RX", 92, 2400},
-        {"SCIC_TX", 93, 2000},         {"Clock_swi", -1, 4800},
-        {"IMU_SWI", -1, 81000},        {"Laser_SWI", -1, 302000},
-        {"XBee_SWI", -1, 124000},      {"TaskIMU", -1, 160000},       {"TaskReceiveLaser", -1, 1020000},
-        {"TaskControl", -1, 400000},   {"TaskSendLaser", -1, 6800},   {"TaskSendComm", -1, 1000000},
+        {"Clock", 38, 15000},
+        {"SCIA_RX", 96, 2400},
+        {"SCIA_TX", 97, 2000},
+        {"SCIB_RX", 98, 2400},
+        {"SCIB_TX", 99, 2000},
+        {"SCIC_RX", 92, 2400},
+        {"SCIC_TX", 93, 2000},
+        {"Clock_swi", -1, 4800},
+        {"IMU_SWI", -1, 81000},
+        {"Laser_SWI", -1, 302000},
+        {"XBee_SWI", -1, 124000},
+        {"TaskIMU", -1, 160000},
+        {"TaskReceiveLaser", -1, 1020000},
+        {"TaskControl", -1, 400000},
+        {"TaskSendLaser", -1, 6800},
+        {"TaskSendComm", -1, 1000000},
         {"TaskReceiveComm", -1, 830000},
     };
 

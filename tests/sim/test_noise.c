@@ -17,8 +17,8 @@ void setUp(void)
 
 void tearDown(void) {}
 
-/* First outputs of SplitMix64 for seed 1234567, as published with the reference code (Vigna, splitmix64.c; the vector of
- * Rosetta Code's "Pseudo-random numbers/Splitmix64"). */
+/* First outputs of SplitMix64 for seed 1234567, as published with the reference code (Vigna, splitmix64.c;
+ * the vector of Rosetta Code's "Pseudo-random numbers/Splitmix64"). */
 void test_bits_are_those_of_splitmix64(void)
 {
     noise_t raw = {1234567};

@@ -1,5 +1,6 @@
-/* The sensor's side of SCIP 2.0, written from its specification and apart from the product, so that a mistake in
- * the product is not made here too. A header alone: the tests of the other machines are made of one file each. */
+/* The sensor's side of SCIP 2.0, written from its specification and apart from the product, so that a mistake
+ * in the product is not made here too. A header alone: the tests of the other machines are made of one file
+ * each. */
 #ifndef TESTS_SUPPORT_SCIP_FRAMES_H
 #define TESTS_SUPPORT_SCIP_FRAMES_H
 
@@ -32,8 +33,8 @@ static inline size_t scip_frames_summed(char *to, const char *from, size_t lengt
     return length + 2;
 }
 
-/* A frame with data that is encoded already. echo: without the line's end; its first letter says whether the frame
- * is one of a stream (M) or a single one (G). Returns its length, without the text's end. */
+/* A frame with data that is encoded already. echo: without the line's end; its first letter says whether the
+ * frame is one of a stream (M) or a single one (G). Returns its length, without the text's end. */
 static inline size_t scip_frames_frame(char *to, const char *echo, unsigned long stamp_ms, const char *data,
                                        size_t length)
 {

@@ -1,6 +1,6 @@
-/* What each task and interrupt of the firmware does with one message, as it does it. `steps NAME` runs the step NAME, first
- * twice for practice (caches of the dynamic linker), then once inside measured(), which is what callgrind counts.
- * `steps` alone lists the names; `steps --memory` prints the driver's RAM. */
+/* What each task and interrupt of the firmware does with one message, as it does it. `steps NAME` runs the
+ * step NAME, first twice for practice (caches of the dynamic linker), then once inside measured(), which is
+ * what callgrind counts. `steps` alone lists the names; `steps --memory` prints the driver's RAM. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -19,12 +19,12 @@
 #include "drivers/telemetry.h"
 #include "drivers/urg.h"
 
-#define REQUIRE(condition)                                                \
-    do {                                                                  \
-        if (!(condition)) {                                               \
-            fprintf(stderr, "steps: %s does not hold\n", #condition);     \
-            exit(2);                                                      \
-        }                                                                 \
+#define REQUIRE(condition) \
+    do { \
+        if (!(condition)) { \
+            fprintf(stderr, "steps: %s does not hold\n", #condition); \
+            exit(2); \
+        } \
     } while (0)
 
 /* ---- the scanner: one MS frame of 35 points, 101 octets, from its first octet to the mean distance ---- */
@@ -34,7 +34,7 @@
 
 static octet_t frame[FRAME_N];
 static uint32_t stamp_ms;
-static bool leg;            /* in front of a fifth of the rays */
+static bool leg; /* in front of a fifth of the rays */
 static scip_parser_t parser;
 static scip_scan_t scan;
 static uint16_t points[271];
@@ -89,8 +89,8 @@ static void begin_stream(void)
 {
     scip_request_t request;
 
-    REQUIRE(scip_request_scan(&request, SCIP_STREAM_2, &(scip_range_t){ 372, 406, 1, 0, 0 }));
-    scan = (scip_scan_t){ .distance_mm = points, .capacity = 271 };
+    REQUIRE(scip_request_scan(&request, SCIP_STREAM_2, &(scip_range_t){372, 406, 1, 0, 0}));
+    scan = (scip_scan_t){.distance_mm = points, .capacity = 271};
     scip_parser_init(&parser);
     scip_parser_scan_into(&parser, &scan);
     scip_parser_expect(&parser, &request);
@@ -164,7 +164,7 @@ static void prepare_altitude(void)
 static void receive_laser(void)
 {
     const scip_group_mean_t mean = scip_group_mean(&scan, FRONT);
-    const mirror_range_t range = { MIRROR_FRONT, mean.valid, mean.mean_mm, mean.spread_mm, mean.good_rays };
+    const mirror_range_t range = {MIRROR_FRONT, mean.valid, mean.mean_mm, mean.spread_mm, mean.good_rays};
 
     altitude = altitude_from_ranges(&geometry, &range, 1, 0.05F, -0.03F);
 }
@@ -189,13 +189,13 @@ static void next_tick(void)
 
 static void prepare_link(void)
 {
-    (void)urg_link_init(&link_, &(urg_config_t){ 0, 115200, 115200, 0, SCIP_STREAM_2, { 372, 406, 1, 0, 0 } }, 0);
+    (void)urg_link_init(&link_, &(urg_config_t){0, 115200, 115200, 0, SCIP_STREAM_2, {372, 406, 1, 0, 0}}, 0);
     for (unsigned i = 0; i < 100 && link_.status != URG_OK; i++) {
         now_us += 150000U;
         send_laser();
         seen.reply_count++;
         seen.reply_kind = link_.command;
-        seen.reply = (scip_reply_t){ .status = { '0', '0' }, .legacy = link_.command == SCIP_SWITCH };
+        seen.reply = (scip_reply_t){.status = {'0', '0'}, .legacy = link_.command == SCIP_SWITCH};
         seen.scan_count += link_.status == URG_STREAM;
     }
     REQUIRE(link_.status == URG_OK);
@@ -216,7 +216,7 @@ static void imu(void)
     attitude_t raw;
 
     if (razor_parse(&razor_text, &razor) == RAZOR_OK) {
-        raw = (attitude_t){ razor.roll_rad, razor.pitch_rad, razor.yaw_rad };
+        raw = (attitude_t){razor.roll_rad, razor.pitch_rad, razor.yaw_rad};
         (void)attitude_step(&filter, &raw, &level, &median);
     }
 }
@@ -245,7 +245,8 @@ static void prepare_imu_octets(void)
     razor_collector_init(&collector);
 }
 
-/* ---- TaskControl: one cycle in flight with a new height, under the seed's law and under the default's ---- */
+/* ---- TaskControl: one cycle in flight with a new height, under the seed's law and under the default's ----
+ */
 
 static parameters_t parameters;
 static flight_t flight;
@@ -271,8 +272,8 @@ static void prepare_control(void)
     parameters_init(&parameters);
     parameters.value[PARAMETER_LAW] = (float)LAW_PID;
     flight_init(&flight);
-    in = (flight_inputs_t){ .height_valid = true, .altitude.height_mm = 10.0F, .attitude_ready = true,
-                            .has_throttle = true };
+    in = (flight_inputs_t){
+        .height_valid = true, .altitude.height_mm = 10.0F, .attitude_ready = true, .has_throttle = true};
     for (unsigned i = 0; i < 200; i++) {
         in.reference_m = 0.6F;
         in.reference_sequence = i < 20 ? 0 : 1;
@@ -291,8 +292,11 @@ static void next_motion(void)
 {
     memmove(frames, frames + 1, (FRAMES - 1U) * sizeof frames[0]);
     in.now_us += 25000U;
-    frames[FRAMES - 1U] = (imu_sample_t){ .sequence = frames[FRAMES - 2U].sequence + 1U, .arrival_us = in.now_us,
-                                            .ready = true, .has_acceleration = true, .down_mps2 = 9.81F };
+    frames[FRAMES - 1U] = (imu_sample_t){.sequence = frames[FRAMES - 2U].sequence + 1U,
+                                         .arrival_us = in.now_us,
+                                         .ready = true,
+                                         .has_acceleration = true,
+                                         .down_mps2 = 9.81F};
     in.attitude_time_us = in.now_us;
 }
 
@@ -330,8 +334,13 @@ static telemetry_line_t line;
 
 static void send_comm(void)
 {
-    const telemetry_t telemetry = { .height_valid = true, .height_mm = 598.43F, .reference_m = 0.6F, .laser = "OK",
-                                    .thrust_n = 7.1234F, .state = "FLYING", .flags = 0 };
+    const telemetry_t telemetry = {.height_valid = true,
+                                   .height_mm = 598.43F,
+                                   .reference_m = 0.6F,
+                                   .laser = "OK",
+                                   .thrust_n = 7.1234F,
+                                   .state = "FLYING",
+                                   .flags = 0};
 
     telemetry_status(&line, &telemetry);
 }
@@ -366,28 +375,26 @@ static void prepare_command(void)
     }
 }
 
-static void nothing(void)
-{
-}
+static void nothing(void) {}
 
 static const struct {
     const char *name;
     void (*prepare)(void);
     void (*step)(void);
-    void (*next)(void);         /* between two runs */
+    void (*next)(void); /* between two runs */
 } steps[] = {
-    { "scip_frame", begin_stream, scip_frame, next_scip_frame },
-    { "scip_frame_with_leg", begin_stream_with_leg, scip_frame, next_scip_frame },
-    { "scip_frame_by_16", begin_stream, scip_frame_by_16, next_scip_frame },
-    { "scip_frame_by_octet", begin_stream, scip_frame_by_octet, next_scip_frame },
-    { "imu_octets", prepare_imu_octets, imu_octets, nothing },
-    { "TaskIMU", prepare_imu, imu, nothing },
-    { "TaskReceiveLaser", prepare_altitude, receive_laser, nothing },
-    { "TaskControl", prepare_control, control, next_cycle },
-    { "TaskControl_EST", prepare_est_control, control, next_est_cycle },
-    { "TaskSendLaser", prepare_link, send_laser, next_tick },
-    { "TaskSendComm", nothing, send_comm, nothing },
-    { "TaskReceiveComm", prepare_command, receive_comm, nothing },
+    {"scip_frame", begin_stream, scip_frame, next_scip_frame},
+    {"scip_frame_with_leg", begin_stream_with_leg, scip_frame, next_scip_frame},
+    {"scip_frame_by_16", begin_stream, scip_frame_by_16, next_scip_frame},
+    {"scip_frame_by_octet", begin_stream, scip_frame_by_octet, next_scip_frame},
+    {"imu_octets", prepare_imu_octets, imu_octets, nothing},
+    {"TaskIMU", prepare_imu, imu, nothing},
+    {"TaskReceiveLaser", prepare_altitude, receive_laser, nothing},
+    {"TaskControl", prepare_control, control, next_cycle},
+    {"TaskControl_EST", prepare_est_control, control, next_est_cycle},
+    {"TaskSendLaser", prepare_link, send_laser, next_tick},
+    {"TaskSendComm", nothing, send_comm, nothing},
+    {"TaskReceiveComm", prepare_command, receive_comm, nothing},
 };
 
 void measured(void (*step)(void));
@@ -401,7 +408,8 @@ static void print_memory(void)
 {
     const size_t two_scans = 2 * 35 * sizeof points[0];
 
-    printf("urg_t %zu, two scans of 35 points %zu: %zu octets\n", sizeof(urg_t), two_scans, sizeof(urg_t) + two_scans);
+    printf("urg_t %zu, two scans of 35 points %zu: %zu octets\n", sizeof(urg_t), two_scans,
+           sizeof(urg_t) + two_scans);
 }
 
 int main(int argc, char **argv)

@@ -17,28 +17,49 @@
 
 static const char usage[] =
     "usage: plomada accept --laser DEVICE --imu DEVICE --xbee DEVICE [OPTION]...\n\n"
-    "A fresh board, item by item, without motors and propellers: the PC plays scanner, IMU, operator and airframe over three\n"
+    "A fresh board, item by item, without motors and propellers: the PC plays scanner, IMU, operator and "
+    "airframe over three\n"
     "serial adapters. docs/acceptance.md says how to wire it. `plomada board` is a board to try it on.\n\n"
     "  --report PREFIX     writes PREFIX.md and PREFIX.json (default acceptance)\n"
-    "  --pulses FILE       what a logic analyser records of the throttle pin meanwhile, by sigrok-cli -O csv\n"
+    "  --pulses FILE       what a logic analyser records of the throttle pin meanwhile, by sigrok-cli -O "
+    "csv\n"
     "  --power COMMAND     takes the board's power away and gives it back; without it you are asked to\n"
     "  --unattended        asks nobody: what needs somebody is skipped\n"
     "  --flight S          seconds in the air, 10..180 (default 180)\n"
     "  --items A,B,...     these only: ";
 static const char usage_end[] =
     "\n"
-    "  --afresh            begins anew; without it an interrupted acceptance goes on where it was (PREFIX.state)\n\n"
+    "  --afresh            begins anew; without it an interrupted acceptance goes on where it was "
+    "(PREFIX.state)\n\n"
     "Exit status: 0 no item failed, 1 one did, or it was interrupted, 2 usage or no such device.\n";
 
-enum { OPT_LASER = 1, OPT_IMU, OPT_XBEE, OPT_REPORT, OPT_PULSES, OPT_POWER, OPT_UNATTENDED, OPT_FLIGHT, OPT_ITEMS, OPT_AFRESH, OPT_HELP };
+enum {
+    OPT_LASER = 1,
+    OPT_IMU,
+    OPT_XBEE,
+    OPT_REPORT,
+    OPT_PULSES,
+    OPT_POWER,
+    OPT_UNATTENDED,
+    OPT_FLIGHT,
+    OPT_ITEMS,
+    OPT_AFRESH,
+    OPT_HELP
+};
 
 static const struct option long_options[] = {
-    {"laser", required_argument, NULL, OPT_LASER},    {"imu", required_argument, NULL, OPT_IMU},
-    {"xbee", required_argument, NULL, OPT_XBEE},      {"report", required_argument, NULL, OPT_REPORT},
-    {"pulses", required_argument, NULL, OPT_PULSES},  {"power", required_argument, NULL, OPT_POWER},
-    {"unattended", no_argument, NULL, OPT_UNATTENDED}, {"flight", required_argument, NULL, OPT_FLIGHT},
-    {"items", required_argument, NULL, OPT_ITEMS},    {"afresh", no_argument, NULL, OPT_AFRESH},
-    {"help", no_argument, NULL, OPT_HELP},            {NULL, 0, NULL, 0},
+    {"laser", required_argument, NULL, OPT_LASER},
+    {"imu", required_argument, NULL, OPT_IMU},
+    {"xbee", required_argument, NULL, OPT_XBEE},
+    {"report", required_argument, NULL, OPT_REPORT},
+    {"pulses", required_argument, NULL, OPT_PULSES},
+    {"power", required_argument, NULL, OPT_POWER},
+    {"unattended", no_argument, NULL, OPT_UNATTENDED},
+    {"flight", required_argument, NULL, OPT_FLIGHT},
+    {"items", required_argument, NULL, OPT_ITEMS},
+    {"afresh", no_argument, NULL, OPT_AFRESH},
+    {"help", no_argument, NULL, OPT_HELP},
+    {NULL, 0, NULL, 0},
 };
 
 static const char *const verdicts[] = {
@@ -67,7 +88,8 @@ static bool chosen(const char *name)
 {
     const size_t length = strlen(name);
 
-    for (const char *at = order.items; at != NULL; at = strchr(at, ',') != NULL ? strchr(at, ',') + 1 : NULL) {
+    for (const char *at = order.items; at != NULL;
+         at = strchr(at, ',') != NULL ? strchr(at, ',') + 1 : NULL) {
         if (strncmp(at, name, length) == 0 && (at[length] == ',' || at[length] == '\0')) {
             return true;
         }
@@ -84,7 +106,8 @@ static bool read_items(const char *text)
         for (int i = 0; i < accept_item_count; i++) {
             const size_t length = strlen(accept_items[i].name);
 
-            known = known || (strncmp(at, accept_items[i].name, length) == 0 && (at[length] == ',' || at[length] == '\0'));
+            known = known || (strncmp(at, accept_items[i].name, length) == 0 &&
+                              (at[length] == ',' || at[length] == '\0'));
         }
         if (!known) {
             return complain("no such item, see --help", at);
@@ -98,24 +121,46 @@ static bool read_flight(const char *text)
     char *end;
 
     order.means.flight_s = strtod(text, &end);
-    return (*end == '\0' && order.means.flight_s >= 10.0 && order.means.flight_s <= 180.0) || complain("not 10..180 s", text);
+    return (*end == '\0' && order.means.flight_s >= 10.0 && order.means.flight_s <= 180.0) ||
+           complain("not 10..180 s", text);
 }
 
 static bool read_option(int option, const char *argument)
 {
     switch (option) {
-    case OPT_LASER: order.device[BOARD_LASER] = argument; return true;
-    case OPT_IMU: order.device[BOARD_IMU] = argument; return true;
-    case OPT_XBEE: order.device[BOARD_RADIO] = argument; return true;
-    case OPT_REPORT: order.report = argument; return true;
-    case OPT_PULSES: order.means.pulses = argument; return true;
-    case OPT_POWER: order.means.power = argument; return true;
-    case OPT_UNATTENDED: order.means.ask = false; return true;
-    case OPT_FLIGHT: return read_flight(argument);
-    case OPT_ITEMS: return read_items(argument);
-    case OPT_AFRESH: order.afresh = true; return true;
-    case OPT_HELP: order.help = true; return true;
-    default: return false;
+    case OPT_LASER:
+        order.device[BOARD_LASER] = argument;
+        return true;
+    case OPT_IMU:
+        order.device[BOARD_IMU] = argument;
+        return true;
+    case OPT_XBEE:
+        order.device[BOARD_RADIO] = argument;
+        return true;
+    case OPT_REPORT:
+        order.report = argument;
+        return true;
+    case OPT_PULSES:
+        order.means.pulses = argument;
+        return true;
+    case OPT_POWER:
+        order.means.power = argument;
+        return true;
+    case OPT_UNATTENDED:
+        order.means.ask = false;
+        return true;
+    case OPT_FLIGHT:
+        return read_flight(argument);
+    case OPT_ITEMS:
+        return read_items(argument);
+    case OPT_AFRESH:
+        order.afresh = true;
+        return true;
+    case OPT_HELP:
+        order.help = true;
+        return true;
+    default:
+        return false;
     }
 }
 
@@ -221,7 +266,9 @@ static const char *firmware_version(void)
 
 static void write_json(FILE *out, const char *date, bool passed)
 {
-    fprintf(out, "{\n  \"passed\": %s,\n  \"date\": \"%s\",\n  \"chip\": \"TMS320F28377S (LAUNCHXL-F28377S)\",\n  \"firmware\": ",
+    fprintf(out,
+            "{\n  \"passed\": %s,\n  \"date\": \"%s\",\n  \"chip\": \"TMS320F28377S (LAUNCHXL-F28377S)\",\n  "
+            "\"firmware\": ",
             passed ? "true" : "false", date);
     write_string(out, firmware_version());
     fprintf(out, ",\n  \"adapters\": {");
@@ -233,8 +280,8 @@ static void write_json(FILE *out, const char *date, bool passed)
     write_string(out, order.means.pulses != NULL ? order.means.pulses : "told by the board");
     fprintf(out, ",\n  \"items\": [");
     for (int i = 0; i < accept_item_count; i++) {
-        fprintf(out, "%s\n    {\"item\": \"%s\", \"verdict\": \"%s\", \"detail\": ", i == 0 ? "" : ",", accept_items[i].name,
-                verdicts[found.verdict[i]]);
+        fprintf(out, "%s\n    {\"item\": \"%s\", \"verdict\": \"%s\", \"detail\": ", i == 0 ? "" : ",",
+                accept_items[i].name, verdicts[found.verdict[i]]);
         write_string(out, found.detail[i]);
         fputc('}', out);
     }
@@ -243,13 +290,16 @@ static void write_json(FILE *out, const char *date, bool passed)
 
 static void write_markdown(FILE *out, const char *date, bool passed)
 {
-    fprintf(out, "# Acceptance of a board: %s\n\n%s, TMS320F28377S on a LAUNCHXL-F28377S, firmware: %s.\n", passed ? "passed" : "NOT passed",
-            date, firmware_version());
-    fprintf(out, "Adapters: scanner %s, IMU %s, radio %s. Throttle pin: %s.\n\n| item | verdict | found |\n|---|---|---|\n",
+    fprintf(out, "# Acceptance of a board: %s\n\n%s, TMS320F28377S on a LAUNCHXL-F28377S, firmware: %s.\n",
+            passed ? "passed" : "NOT passed", date, firmware_version());
+    fprintf(out,
+            "Adapters: scanner %s, IMU %s, radio %s. Throttle pin: %s.\n\n| item | verdict | found "
+            "|\n|---|---|---|\n",
             order.device[BOARD_LASER], order.device[BOARD_IMU], order.device[BOARD_RADIO],
             order.means.pulses != NULL ? order.means.pulses : "told by the board, not measured");
     for (int i = 0; i < accept_item_count; i++) {
-        fprintf(out, "| %s | %s | %s |\n", accept_items[i].title, verdicts[found.verdict[i]], found.detail[i]);
+        fprintf(out, "| %s | %s | %s |\n", accept_items[i].title, verdicts[found.verdict[i]],
+                found.detail[i]);
     }
 }
 
@@ -341,7 +391,8 @@ static void forget_state(void)
 
 static int run(void)
 {
-    world_config_t config = {.seed = 1, .terrain = terrain_flat, .quadrotor = quadrotor_default, .line = terminal_line};
+    world_config_t config = {
+        .seed = 1, .terrain = terrain_flat, .quadrotor = quadrotor_default, .line = terminal_line};
     board_wire_t failed;
     const char *error;
     bool passed;

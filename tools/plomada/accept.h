@@ -8,9 +8,9 @@
 typedef enum { ACCEPT_OPEN, ACCEPT_PASS, ACCEPT_FAIL, ACCEPT_SKIP } accept_verdict_t;
 
 typedef struct {
-    const char *pulses;     /* recording of the throttle pin, NULL: none */
-    const char *power;      /* command that takes the board's power away and gives it back, NULL: asks */
-    bool ask;               /* somebody is there */
+    const char *pulses; /* recording of the throttle pin, NULL: none */
+    const char *power;  /* command that takes the board's power away and gives it back, NULL: asks */
+    bool ask;           /* somebody is there */
     double flight_s;
 } accept_means_t;
 

@@ -14,14 +14,15 @@
 #include "world.h"
 
 #define LOOK (100 * SIM_MS)
-#define ATTITUDE_FLAG 2U    /* docs/operator.md */
-#define LOAD_MAX 40UL       /* percent; 6 on the PC board */
+#define ATTITUDE_FLAG 2U /* docs/operator.md */
+#define LOAD_MAX 40UL    /* percent; 6 on the PC board */
 #define STEPS 10
 #define STEP_COUNTS 100
 #define COUNT_US 0.48
 #define IDLE_US (4166 * COUNT_US)
 
-static accept_verdict_t say(char *detail, bool pass, const char *format, ...) __attribute__((format(printf, 3, 4)));
+static accept_verdict_t say(char *detail, bool pass, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 static accept_verdict_t say(char *detail, bool pass, const char *format, ...)
 {
     va_list arguments;
@@ -70,7 +71,9 @@ static accept_verdict_t question(const accept_means_t *means, const char *text, 
 
 static accept_verdict_t supplies(const accept_means_t *means, char *detail)
 {
-    return question(means, "Propellers off, JP1 to JP3 as docs/hardware.md says, 3.3 V on J1.1 within 3.2 to 3.4 V?", detail);
+    return question(means,
+                    "Propellers off, JP1 to JP3 as docs/hardware.md says, 3.3 V on J1.1 within 3.2 to 3.4 V?",
+                    detail);
 }
 
 static accept_verdict_t leds(const accept_means_t *means, char *detail)
@@ -147,7 +150,8 @@ static bool await_reset(const char *cause, sim_time_t since, double seconds)
 {
     const sim_time_t end = timeline_now() + (sim_time_t)(seconds * 1e9);
 
-    while (strcmp(terminal_reset(since), cause) != 0 && timeline_now() < end && world_run_until(timeline_now() + LOOK)) {
+    while (strcmp(terminal_reset(since), cause) != 0 && timeline_now() < end &&
+           world_run_until(timeline_now() + LOOK)) {
     }
     return strcmp(terminal_reset(since), cause) == 0;
 }
@@ -190,10 +194,12 @@ static accept_verdict_t radio(const accept_means_t *means, char *detail)
     (void)world_run_until(timeline_now() + 4 * SIM_S);
     strange = world_wire(BOARD_RADIO).strange - before;
     if (world_wire(BOARD_RADIO).octets_in == 0) {
-        return say(detail, false, "nothing comes from the board: no power, or TX and RX of J1.4 and J1.3 swapped");
+        return say(detail, false,
+                   "nothing comes from the board: no power, or TX and RX of J1.4 and J1.3 swapped");
     }
     if (terminal_telemetry(&when)[0] == '\0' || strange > 1) {
-        return say(detail, false, "garbled: %lu lines mean nothing: not 9600 bit/s, or a bad contact", strange);
+        return say(detail, false, "garbled: %lu lines mean nothing: not 9600 bit/s, or a bad contact",
+                   strange);
     }
     return say(detail, true, "a telemetry line every 0.2 s");
 }
@@ -205,7 +211,8 @@ static accept_verdict_t boot(const accept_means_t *means, char *detail)
     if (!power_cycle(means)) {
         return skip(detail, "no way to take the power away");
     }
-    return await_reset("POWER", before, 5.0) ? say(detail, true, "reset:POWER") : say(detail, false, "no line with reset:POWER within 5 s");
+    return await_reset("POWER", before, 5.0) ? say(detail, true, "reset:POWER")
+                                             : say(detail, false, "no line with reset:POWER within 5 s");
 }
 
 static accept_verdict_t version(const accept_means_t *means, char *detail)
@@ -216,7 +223,8 @@ static accept_verdict_t version(const accept_means_t *means, char *detail)
     if (terminal_ask("VERSION", answer, sizeof answer)) {
         return say(detail, true, "%s", answer);
     }
-    return strstr(answer, "unknown") != NULL ? skip(detail, "this firmware does not tell it") : say(detail, false, "%s", answer);
+    return strstr(answer, "unknown") != NULL ? skip(detail, "this firmware does not tell it")
+                                             : say(detail, false, "%s", answer);
 }
 
 static accept_verdict_t ping(const accept_means_t *means, char *detail)
@@ -241,8 +249,9 @@ static accept_verdict_t ping(const accept_means_t *means, char *detail)
 static accept_verdict_t imu(const accept_means_t *means, char *detail)
 {
     (void)means;
-    return await(has_attitude, 25, 25.0) ? say(detail, true, "attitude known for 5 s")
-                                         : say(detail, false, "no attitude for 5 s in a row (flags:%lu): J5.43, 57600 bit/s", flags());
+    return await(has_attitude, 25, 25.0)
+               ? say(detail, true, "attitude known for 5 s")
+               : say(detail, false, "no attitude for 5 s in a row (flags:%lu): J5.43, 57600 bit/s", flags());
 }
 
 static accept_verdict_t scanner(const accept_means_t *means, char *detail)
@@ -253,13 +262,16 @@ static accept_verdict_t scanner(const accept_means_t *means, char *detail)
 
     (void)means;
     if (!heights) {
-        return say(detail, false, "no height for 2 s in a row: %u commands came, %u refused, %u octets at another rate, %u scans sent",
+        return say(detail, false,
+                   "no height for 2 s in a row: %u commands came, %u refused, %u octets at another rate, %u "
+                   "scans sent",
                    state.commands, state.refused, state.octets_mismatched, state.scans_sent);
     }
     before = damaged_frames();
     (void)world_run_until(timeline_now() + 5 * SIM_S);
     damaged = damaged_frames() - before;
-    return say(detail, damaged <= 1, "rate:%lu, %lu frames damaged in some 10 s (0..1)", laser_count("rate:"), damaged);
+    return say(detail, damaged <= 1, "rate:%lu, %lu frames damaged in some 10 s (0..1)", laser_count("rate:"),
+               damaged);
 }
 
 static accept_verdict_t rates(const accept_means_t *means, char *detail)
@@ -268,8 +280,10 @@ static accept_verdict_t rates(const accept_means_t *means, char *detail)
 
     (void)means;
     return say(detail, laser.strange <= 8 && terminal.strange <= 2,
-               "to the PC %lu octets at 115200 and 250000 (%lu meant nothing), %lu at 9600 (%lu lines meant nothing); bit times not "
-               "measured", laser.octets_in, laser.strange, terminal.octets_in, terminal.strange);
+               "to the PC %lu octets at 115200 and 250000 (%lu meant nothing), %lu at 9600 (%lu lines meant "
+               "nothing); bit times not "
+               "measured",
+               laser.octets_in, laser.strange, terminal.octets_in, terminal.strange);
 }
 
 static bool restart(void)
@@ -291,7 +305,7 @@ static accept_verdict_t watchdog(const accept_means_t *means, char *detail)
     if (await_reset("WATCHDOG", before, 4.0)) {
         return say(detail, true, "reset:WATCHDOG after a task hung");
     }
-    (void)power_cycle(means);   /* the rest is tried with a board that works */
+    (void)power_cycle(means); /* the rest is tried with a board that works */
     return say(detail, false, "a task hung, and no reset came within 4 s");
 }
 
@@ -330,7 +344,8 @@ static accept_verdict_t starts(const accept_means_t *means, char *detail)
             return say(detail, false, "scanner %s: no heights within 30 s of a restart", states[i].name);
         }
     }
-    return say(detail, true, "heights after a restart with the scanner just powered, streaming, at 19200, in time mode");
+    return say(detail, true,
+               "heights after a restart with the scanner just powered, streaming, at 19200, in time mode");
 }
 
 static const char *wire_fault(board_wire_t wire, bool (*gone)(void), bool (*back)(void))
@@ -366,7 +381,8 @@ static accept_verdict_t faults(const accept_means_t *means, char *detail)
         return say(detail, false, "laser: damaged octets are not found, or leave the board without heights");
     }
     world_type("\x01\x7F#KP abc");
-    return terminal_ask("PING faults", answer, sizeof answer) && strstr(terminal_rest(SIM_S / 2), "OK PING faults") != NULL
+    return terminal_ask("PING faults", answer, sizeof answer) &&
+                   strstr(terminal_rest(SIM_S / 2), "OK PING faults") != NULL
                ? say(detail, true, "silence and damage are noticed on each line, and end")
                : say(detail, false, "xbee: no answer after a line of nonsense");
 }
@@ -411,16 +427,19 @@ static accept_verdict_t judge_recording(const char *path, char *detail)
             }
         }
         if (!(fabs(nearest_us - expected_us(step)) <= 2.0)) {
-            return say(detail, false, "measured: no pulse of %.1f us (nearest %.1f) among %zu: inverted, wrong clock, or not connected",
+            return say(detail, false,
+                       "measured: no pulse of %.1f us (nearest %.1f) among %zu: inverted, wrong clock, or "
+                       "not connected",
                        expected_us(step), nearest_us, pulses.count);
         }
         worst_us = fmax(worst_us, fabs(nearest_us - expected_us(step)));
     }
-    return say(detail, pulses.high_us[0] > IDLE_US - 2.0, "measured: first %.1f us, ten widths within %.1f us", pulses.high_us[0], worst_us);
+    return say(detail, pulses.high_us[0] > IDLE_US - 2.0,
+               "measured: first %.1f us, ten widths within %.1f us", pulses.high_us[0], worst_us);
 }
 
-/* A calibration begins one step above the idle: with none it goes through every width from 2 ms on. The board's own idle is
- * put back by the line that `restore` gets. */
+/* A calibration begins one step above the idle: with none it goes through every width from 2 ms on. The
+ * board's own idle is put back by the line that `restore` gets. */
 static bool without_idle(char *restore, size_t size)
 {
     char answer[160];
@@ -444,12 +463,14 @@ static accept_verdict_t pulse(const accept_means_t *means, char *detail)
         return say(detail, false, "#IDLE: no answer");
     }
     world_hold(true);
-    if (!terminal_ask("LINK 60", answer, sizeof answer) || !terminal_ask("STREAM PULSE", answer, sizeof answer) ||
-        told_steps(0, 0) < 0 || !terminal_ask("CALIBRATE 100 1", answer, sizeof answer)) {
+    if (!terminal_ask("LINK 60", answer, sizeof answer) ||
+        !terminal_ask("STREAM PULSE", answer, sizeof answer) || told_steps(0, 0) < 0 ||
+        !terminal_ask("CALIBRATE 100 1", answer, sizeof answer)) {
         world_hold(false);
-        return say(detail, false, "%s", strncmp(answer, "OK ", 3) == 0 ? "told: no idle pulse on the ground"
-                                        : answer[0] != '\0'            ? answer
-                                                                       : "no answer");
+        return say(detail, false, "%s",
+                   strncmp(answer, "OK ", 3) == 0 ? "told: no idle pulse on the ground"
+                   : answer[0] != '\0'            ? answer
+                                                  : "no answer");
     }
     reached = told_steps(1, STEPS);
     (void)world_run_until(timeline_now() + SIM_S / 2);
@@ -461,7 +482,8 @@ static accept_verdict_t pulse(const accept_means_t *means, char *detail)
         return say(detail, false, "told: the width of command %d of %d did not come", reached + 1, STEPS);
     }
     if (means->pulses == NULL) {
-        return say(detail, true, "told: idle %.1f us, ten widths from %.1f to %.1f us; not measured", IDLE_US, expected_us(1), expected_us(STEPS));
+        return say(detail, true, "told: idle %.1f us, ten widths from %.1f to %.1f us; not measured", IDLE_US,
+                   expected_us(1), expected_us(STEPS));
     }
     return judge_recording(means->pulses, detail);
 }
@@ -483,13 +505,15 @@ static accept_verdict_t save(const accept_means_t *means, char *detail)
         return say(detail, false, "#SAVE: %s", answer[0] != '\0' ? answer : "no answer");
     }
     cut = timeline_now();
-    if (!power_cycle(means) || !await_reset("POWER", cut, 5.0) || !terminal_ask("GET KP", answer, sizeof answer)) {
+    if (!power_cycle(means) || !await_reset("POWER", cut, 5.0) ||
+        !terminal_ask("GET KP", answer, sizeof answer)) {
         return say(detail, false, "the board did not come back after the power cycle");
     }
     if (strncmp(answer, "OK KP 0.0123", 12) != 0) {
         return say(detail, false, "after the power cycle: %s, not 0.0123", answer);
     }
-    snprintf(answer, sizeof answer, "KP %.*s", (int)strcspn(before + strlen("OK KP "), " "), before + strlen("OK KP "));
+    snprintf(answer, sizeof answer, "KP %.*s", (int)strcspn(before + strlen("OK KP "), " "),
+             before + strlen("OK KP "));
     return terminal_ask(answer, before, sizeof before) && terminal_ask("SAVE", answer, sizeof answer)
                ? say(detail, true, "a parameter outlived a power cycle")
                : say(detail, false, "the old value could not be stored again: %s", answer);
@@ -519,13 +543,15 @@ static accept_verdict_t flight(const accept_means_t *means, char *detail)
         return skip(detail, "this PC did not keep up with the wall clock");
     }
     if (!flown.started || !flown.safe || !scenario_met(&widened, &flown.metrics, &broken)) {
-        return say(detail, false, "%s", flown.trouble_count > 0 ? flown.trouble[0]
-                                        : !flown.safe           ? "it did not end on the ground"
-                                        : broken != NULL        ? metric_names[broken->metric]
-                                                                : "failed");
+        return say(detail, false, "%s",
+                   flown.trouble_count > 0 ? flown.trouble[0]
+                   : !flown.safe           ? "it did not end on the ground"
+                   : broken != NULL        ? metric_names[broken->metric]
+                                           : "failed");
     }
-    return say(detail, true, "%.0f s at 0.6 m, hover rms %.1f mm, loop %.1f ms (95 %%: %.1f)", means->flight_s,
-               flown.metrics.value[METRIC_HOVER_RMS_MM], flown.delay_ms, flown.delay_most_ms);
+    return say(detail, true, "%.0f s at 0.6 m, hover rms %.1f mm, loop %.1f ms (95 %%: %.1f)",
+               means->flight_s, flown.metrics.value[METRIC_HOVER_RMS_MM], flown.delay_ms,
+               flown.delay_most_ms);
 }
 
 static accept_verdict_t perf(const accept_means_t *means, char *detail)
@@ -541,8 +567,8 @@ static accept_verdict_t perf(const accept_means_t *means, char *detail)
     lines = terminal_rest(3 * SIM_S);
     load = strstr(lines, "load:");
     if (load == NULL || strtoul(load + strlen("load:"), NULL, 10) > LOAD_MAX) {
-        return say(detail, false, "the processor's %.*s percent (0..%lu)", load != NULL ? (int)strcspn(load, "\n") : 4,
-                   load != NULL ? load : "load", LOAD_MAX);
+        return say(detail, false, "the processor's %.*s percent (0..%lu)",
+                   load != NULL ? (int)strcspn(load, "\n") : 4, load != NULL ? load : "load", LOAD_MAX);
     }
     for (const char *at = strstr(lines, "late:"); at != NULL; at = strstr(at + 1, "late:")) {
         const char *name = at;

@@ -14,11 +14,11 @@
 #define COUNTS_PER_US (1.0 / 0.48)
 #define IDLE_COUNTS 4166.0
 #define COUNTS_PER_N 177.21
-#define DOWN_N 6.9                      /* the model hovers at 7.4 N */
+#define DOWN_N 6.9 /* the model hovers at 7.4 N */
 #define DOWN_FOR (2 * SIM_S)
 #define LANDING_PATIENCE (20 * SIM_S)
 #define LATE_MS 100.0
-#define LATE_ANSWER (400 * SIM_MS)      /* two telemetry lines may go before it */
+#define LATE_ANSWER (400 * SIM_MS) /* two telemetry lines may go before it */
 #define SEEDS 5
 #define PLANT_DELAY_S 0.010
 
@@ -48,7 +48,8 @@ static bool has_height(void)
     (void)terminal_telemetry(&when);
     terminal_field("alt:", height, sizeof height);
     terminal_field("laser:", laser, sizeof laser);
-    return timeline_now() - when < SIM_S && height[0] != '\0' && strcmp(height, "-") != 0 && strcmp(laser, "OK") == 0;
+    return timeline_now() - when < SIM_S && height[0] != '\0' && strcmp(height, "-") != 0 &&
+           strcmp(laser, "OK") == 0;
 }
 
 static void say_what_is_missing(bench_flight_t *flight)
@@ -58,15 +59,17 @@ static void say_what_is_missing(bench_flight_t *flight)
     char flags[16], state[16];
 
     if (terminal_telemetry(&when)[0] == '\0') {
-        trouble(flight, "xbee: %s", world_wire(BOARD_RADIO).octets_in == 0 ? "nothing comes from the board"
-                                                                            : "garbled: what comes from the board means nothing");
+        trouble(flight, "xbee: %s",
+                world_wire(BOARD_RADIO).octets_in == 0 ? "nothing comes from the board"
+                                                       : "garbled: what comes from the board means nothing");
         return;
     }
     terminal_field("laser:", state, sizeof state);
     terminal_field("flags:", flags, sizeof flags);
     if (laser.commands == 0) {
-        trouble(flight, "laser: %s", world_wire(BOARD_LASER).octets_in == 0 ? "no command comes from the board"
-                                                                             : "garbled: what comes from the board is no command");
+        trouble(flight, "laser: %s",
+                world_wire(BOARD_LASER).octets_in == 0 ? "no command comes from the board"
+                                                       : "garbled: what comes from the board is no command");
     } else if (strcmp(state, "OK") != 0) {
         trouble(flight, "laser: the board says laser:%s; %u scans were sent", state, laser.scans_sent);
     } else if ((strtoul(flags, NULL, 10) & 2U) != 0) {
@@ -103,7 +106,8 @@ static bool command(bench_flight_t *flight, const char *text)
     const bool fine = terminal_ask(text, answer, sizeof answer);
 
     if (fine && timeline_now() - begun > LATE_ANSWER) {
-        trouble(flight, "xbee: late: %.0f ms until #%s was answered", (double)(timeline_now() - begun) * 1e-6, text);
+        trouble(flight, "xbee: late: %.0f ms until #%s was answered", (double)(timeline_now() - begun) * 1e-6,
+                text);
     }
     if (fine) {
         return true;
@@ -133,7 +137,8 @@ static void sample(sim_time_t origin)
     const metrics_sample_t seen = {.t_s = (double)(timeline_now() - origin) * 1e-9,
                                    .height_m = state->height_m,
                                    .speed_mps = state->speed_mps,
-                                   .thrust_n = counts > 0.0 ? fmax((IDLE_COUNTS - counts) / COUNTS_PER_N, 0.0) : 0.0,
+                                   .thrust_n = counts > 0.0 ? fmax((IDLE_COUNTS - counts) / COUNTS_PER_N, 0.0)
+                                                            : 0.0,
                                    .on_ground = state->on_ground,
                                    .may_cut = true,
                                    .estimate_m = NAN,
@@ -206,8 +211,8 @@ static bool fly(const scenario_t *scenario, sim_time_t origin, bench_flight_t *f
 
 /* ---- after it ---- */
 
-/* On the ground, and not about to leave it: without a scanner the board does not know that it has landed, and goes on with
- * the thrust of its descent. */
+/* On the ground, and not about to leave it: without a scanner the board does not know that it has landed, and
+ * goes on with the thrust of its descent. */
 static bool is_down(void)
 {
     sim_time_t when;
@@ -238,7 +243,8 @@ static void report_wires(sim_time_t origin, bench_flight_t *flight)
         const world_wire_t wire = world_wire((board_wire_t)i);
 
         if (wire.lost) {
-            trouble(flight, "%s: gone: the adapter was lost at t = %.1f s", wires[i], (double)(wire.lost_at - origin) * 1e-9);
+            trouble(flight, "%s: gone: the adapter was lost at t = %.1f s", wires[i],
+                    (double)(wire.lost_at - origin) * 1e-9);
         } else if (wire.refused > 0) {
             trouble(flight, "%s: late: the adapter did not take %lu octets", wires[i], wire.refused);
         }
@@ -262,7 +268,8 @@ static void ask_board(bench_flight_t *flight)
     }
     damaged = strstr(terminal_rest(500 * SIM_MS), "damaged:");
     if (damaged != NULL && strtoul(damaged + strlen("damaged:"), NULL, 10) > 3) {
-        trouble(flight, "laser: garbled: the board found %lu frames damaged", strtoul(damaged + strlen("damaged:"), NULL, 10));
+        trouble(flight, "laser: garbled: the board found %lu frames damaged",
+                strtoul(damaged + strlen("damaged:"), NULL, 10));
     }
 }
 
@@ -307,8 +314,10 @@ bool bench_can_judge(metric_t metric)
     case METRIC_DOWN_S:
     case METRIC_STOPPED_S:
     case METRIC_DECEIVED_S:
-    case METRIC_FLAGGED_S: return false;
-    default: return true;
+    case METRIC_FLAGGED_S:
+        return false;
+    default:
+        return true;
     }
 }
 
@@ -351,7 +360,8 @@ double bench_simulated_delay_ms(const scenario_t *scenario)
 
 double bench_widen(const scenario_t *scenario, const bench_flight_t *flight, scenario_t *widened)
 {
-    const double added_ms = flight->has_delay ? flight->delay_most_ms - bench_simulated_delay_ms(scenario) : 0.0;
+    const double added_ms = flight->has_delay ? flight->delay_most_ms - bench_simulated_delay_ms(scenario)
+                                              : 0.0;
     scenario_t widest = *scenario;
 
     *widened = *scenario;
@@ -359,13 +369,16 @@ double bench_widen(const scenario_t *scenario, const bench_flight_t *flight, sce
         scenario_t one = *scenario;
         metrics_t without, with;
 
-        if (!simulate(scenario, seed, PLANT_DELAY_S, &without) || !simulate(scenario, seed, PLANT_DELAY_S + added_ms * 1e-3, &with)) {
+        if (!simulate(scenario, seed, PLANT_DELAY_S, &without) ||
+            !simulate(scenario, seed, PLANT_DELAY_S + added_ms * 1e-3, &with)) {
             continue;
         }
         widen_by(&one, &without, &with);
         for (int i = 0; i < widest.expectation_count; i++) {
-            widest.expectations[i].maximum = fmax(widest.expectations[i].maximum, one.expectations[i].maximum);
-            widest.expectations[i].minimum = fmin(widest.expectations[i].minimum, one.expectations[i].minimum);
+            widest.expectations[i].maximum = fmax(widest.expectations[i].maximum,
+                                                  one.expectations[i].maximum);
+            widest.expectations[i].minimum = fmin(widest.expectations[i].minimum,
+                                                  one.expectations[i].minimum);
         }
     }
     *widened = widest;

@@ -26,18 +26,23 @@
 #define LATE (400 * SIM_MS)
 #define GARBLED_ONE_IN 50U
 
-static const char usage[] =
-    "usage: plomada board --laser PATH --imu PATH --xbee PATH [OPTION]...\n\n"
-    "Runs the unmodified firmware in real time with all three serial lines outside, as a LaunchPad does. Each PATH becomes\n"
-    "a symbolic link to a pseudo-terminal, removed at the end (SIGINT, SIGTERM; exit status 0): what a serial adapter on\n"
-    "the board's pins would be. Its bit rate is that of whoever opens it; at another rate than the firmware's both hear\n"
-    "nonsense. SIGUSR1 takes the power away and gives it back.\n\n"
-    "  --storage FILE      the chip's flash, kept over a power cycle and in the file; without it kept until the end\n"
-    "  --pulses FILE       the throttle pin as a logic analyser records it, in sigrok-cli's format (csv:time=true:dedup=true);\n"
-    "                      FILE may be a FIFO\n"
-    "  --duration S        ends by itself\n"
-    "  --seed N            phases (default 1)\n"
-    "  --defect NAME[@S]   something is wrong, from S seconds after the first power-on on (default: always); may be repeated:\n";
+static const char usage[] = "usage: plomada board --laser PATH --imu PATH --xbee PATH [OPTION]...\n\n"
+                            "Runs the unmodified firmware in real time with all three serial lines outside, "
+                            "as a LaunchPad does. Each PATH becomes\n"
+                            "a symbolic link to a pseudo-terminal, removed at the end (SIGINT, SIGTERM; exit "
+                            "status 0): what a serial adapter on\n"
+                            "the board's pins would be. Its bit rate is that of whoever opens it; at another "
+                            "rate than the firmware's both hear\n"
+                            "nonsense. SIGUSR1 takes the power away and gives it back.\n\n"
+                            "  --storage FILE      the chip's flash, kept over a power cycle and in the "
+                            "file; without it kept until the end\n"
+                            "  --pulses FILE       the throttle pin as a logic analyser records it, in "
+                            "sigrok-cli's format (csv:time=true:dedup=true);\n"
+                            "                      FILE may be a FIFO\n"
+                            "  --duration S        ends by itself\n"
+                            "  --seed N            phases (default 1)\n"
+                            "  --defect NAME[@S]   something is wrong, from S seconds after the first "
+                            "power-on on (default: always); may be repeated:\n";
 
 static const char defect_help[] =
     "      laser-swapped imu-swapped xbee-swapped   transmit and receive wire of that line are crossed\n"
@@ -52,30 +57,53 @@ static const char defect_help[] =
     "      no-watchdog       the watchdog never bites\n";
 
 typedef enum {
-    SWAPPED, GONE, LATELY, GARBLED, WIRE_DEFECTS,
+    SWAPPED,
+    GONE,
+    LATELY,
+    GARBLED,
+    WIRE_DEFECTS,
     WRONG_RATE_DEFECT = WIRE_DEFECTS * BOARD_WIRES,
-    PULSE_INVERTED, PULSE_LONG, PULSE_MISSING, NO_STORAGE, FORGETFUL, SLOW_CODE, NO_WATCHDOG, DEFECTS
+    PULSE_INVERTED,
+    PULSE_LONG,
+    PULSE_MISSING,
+    NO_STORAGE,
+    FORGETFUL,
+    SLOW_CODE,
+    NO_WATCHDOG,
+    DEFECTS
 } defect_t;
 
 static const char *const wire_defects[] = {"swapped", "gone", "late", "garbled"};
-_Static_assert(sizeof wire_defects / sizeof wire_defects[0] == WIRE_DEFECTS, "every defect of a wire has a name");
-static const char *const other_defects[] = {"wrong-rate", "pulse-inverted", "pulse-long", "pulse-missing", "no-storage",
-                                            "forgetful",  "slow",           "no-watchdog"};
-_Static_assert(sizeof other_defects / sizeof other_defects[0] == DEFECTS - WRONG_RATE_DEFECT, "every other defect has a name");
+_Static_assert(sizeof wire_defects / sizeof wire_defects[0] == WIRE_DEFECTS,
+               "every defect of a wire has a name");
+static const char *const other_defects[] = {"wrong-rate", "pulse-inverted", "pulse-long", "pulse-missing",
+                                            "no-storage", "forgetful",      "slow",       "no-watchdog"};
+_Static_assert(sizeof other_defects / sizeof other_defects[0] == DEFECTS - WRONG_RATE_DEFECT,
+               "every other defect has a name");
 
-enum { OPT_LASER = 1, OPT_IMU, OPT_XBEE, OPT_STORAGE, OPT_PULSES, OPT_DURATION, OPT_SEED, OPT_DEFECT, OPT_HELP };
+enum {
+    OPT_LASER = 1,
+    OPT_IMU,
+    OPT_XBEE,
+    OPT_STORAGE,
+    OPT_PULSES,
+    OPT_DURATION,
+    OPT_SEED,
+    OPT_DEFECT,
+    OPT_HELP
+};
 
 static const struct option long_options[] = {
-    {"laser", required_argument, NULL, OPT_LASER},       {"imu", required_argument, NULL, OPT_IMU},
-    {"xbee", required_argument, NULL, OPT_XBEE},         {"storage", required_argument, NULL, OPT_STORAGE},
-    {"pulses", required_argument, NULL, OPT_PULSES},     {"duration", required_argument, NULL, OPT_DURATION},
-    {"seed", required_argument, NULL, OPT_SEED},         {"defect", required_argument, NULL, OPT_DEFECT},
-    {"help", no_argument, NULL, OPT_HELP},               {NULL, 0, NULL, 0},
+    {"laser", required_argument, NULL, OPT_LASER},   {"imu", required_argument, NULL, OPT_IMU},
+    {"xbee", required_argument, NULL, OPT_XBEE},     {"storage", required_argument, NULL, OPT_STORAGE},
+    {"pulses", required_argument, NULL, OPT_PULSES}, {"duration", required_argument, NULL, OPT_DURATION},
+    {"seed", required_argument, NULL, OPT_SEED},     {"defect", required_argument, NULL, OPT_DEFECT},
+    {"help", no_argument, NULL, OPT_HELP},           {NULL, 0, NULL, 0},
 };
 
 static struct {
     const char *link[BOARD_WIRES], *storage, *pulses;
-    double duration_s, defect_s[DEFECTS];   /* NAN: not this defect */
+    double duration_s, defect_s[DEFECTS]; /* NAN: not this defect */
     unsigned long seed;
     bool help;
 } order;
@@ -84,9 +112,9 @@ static struct {
     port_t ports[BOARD_WIRES];
     bool linked[BOARD_WIRES];
     noise_t noise;
-    unsigned passed;            /* octets, for the garbled ones */
-    int pulses;                 /* file, -1: none */
-    sim_time_t before;          /* virtual time of earlier power-ons */
+    unsigned passed;   /* octets, for the garbled ones */
+    int pulses;        /* file, -1: none */
+    sim_time_t before; /* virtual time of earlier power-ons */
     sim_time_t worst_lag;
     costs_stretched_t costs;
 } bench = {.pulses = -1};
@@ -148,18 +176,33 @@ static bool read_option(int option, const char *argument)
     double number;
 
     switch (option) {
-    case OPT_LASER: order.link[BOARD_LASER] = argument; return true;
-    case OPT_IMU: order.link[BOARD_IMU] = argument; return true;
-    case OPT_XBEE: order.link[BOARD_RADIO] = argument; return true;
-    case OPT_STORAGE: order.storage = argument; return true;
-    case OPT_PULSES: order.pulses = argument; return true;
-    case OPT_DURATION: return read_number(argument, &order.duration_s) || complain("not a number of seconds", argument);
+    case OPT_LASER:
+        order.link[BOARD_LASER] = argument;
+        return true;
+    case OPT_IMU:
+        order.link[BOARD_IMU] = argument;
+        return true;
+    case OPT_XBEE:
+        order.link[BOARD_RADIO] = argument;
+        return true;
+    case OPT_STORAGE:
+        order.storage = argument;
+        return true;
+    case OPT_PULSES:
+        order.pulses = argument;
+        return true;
+    case OPT_DURATION:
+        return read_number(argument, &order.duration_s) || complain("not a number of seconds", argument);
     case OPT_SEED:
         order.seed = strtoul(argument, NULL, 10);
         return read_number(argument, &number) || complain("not a seed (0, 1, 2 ...)", argument);
-    case OPT_DEFECT: return read_defect(argument);
-    case OPT_HELP: order.help = true; return true;
-    default: return false;
+    case OPT_DEFECT:
+        return read_defect(argument);
+    case OPT_HELP:
+        order.help = true;
+        return true;
+    default:
+        return false;
     }
 }
 
@@ -191,7 +234,8 @@ static bool read_arguments(int argc, char **argv)
 
 static bool broken(int defect)
 {
-    return !isnan(order.defect_s[defect]) && (double)(bench.before + timeline_now()) * 1e-9 >= order.defect_s[defect];
+    return !isnan(order.defect_s[defect]) &&
+           (double)(bench.before + timeline_now()) * 1e-9 >= order.defect_s[defect];
 }
 
 static bool wire_broken(board_wire_t wire, int defect)
@@ -237,7 +281,8 @@ typedef struct {
 static void arrive(board_wire_t wire, const unsigned char *octets, size_t count)
 {
     /* A fast oscillator samples as if the far end were slow. */
-    const double rate = (double)port_rate(&bench.ports[wire]) / (broken(WRONG_RATE_DEFECT) ? WRONG_RATE : 1.0);
+    const double rate = (double)port_rate(&bench.ports[wire]) /
+                        (broken(WRONG_RATE_DEFECT) ? WRONG_RATE : 1.0);
 
     if (rate > 0.0) {
         board_receive_at(wire, rate, octets, count);
@@ -289,7 +334,8 @@ static void unplug(void)
 static void record(sim_time_t when, bool level)
 {
     char row[48];
-    const int length = snprintf(row, sizeof row, "%lld,%d\n", (long long)((bench.before + when) / SIM_US), level);
+    const int length = snprintf(row, sizeof row, "%lld,%d\n", (long long)((bench.before + when) / SIM_US),
+                                level);
 
     if (write(bench.pulses, row, (size_t)length) < 0 && errno != EAGAIN) {
         perror(order.pulses);
@@ -313,15 +359,17 @@ static void pulse(sim_time_t high_ns)
 
 static bool open_pulses(void)
 {
-    static const char head[] = "; CSV generated by plomada board, as by libsigrok 0.5.2\n; Channels (1/1): D0\n"
-                               "; Samplerate: 1 MHz\nmicroseconds,logic\n0,0\n";
+    static const char head[] =
+        "; CSV generated by plomada board, as by libsigrok 0.5.2\n; Channels (1/1): D0\n"
+        "; Samplerate: 1 MHz\nmicroseconds,logic\n0,0\n";
 
     if (order.pulses == NULL) {
         return true;
     }
     /* Read as well: a FIFO opens without waiting for its reader. */
     bench.pulses = open(order.pulses, O_RDWR | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0644);
-    return (bench.pulses >= 0 && write(bench.pulses, head, sizeof head - 1) > 0) || complain(strerror(errno), order.pulses);
+    return (bench.pulses >= 0 && write(bench.pulses, head, sizeof head - 1) > 0) ||
+           complain(strerror(errno), order.pulses);
 }
 
 /* ---- life ---- */
@@ -391,7 +439,8 @@ static void live(void)
 
     power_on();
     while (!pace_interrupted() && bench.before + timeline_now() < end) {
-        (void)kernel_run_until(timeline_now() + STEP);   /* false: the firmware stopped, the watchdog will restart it */
+        (void)kernel_run_until(timeline_now() +
+                               STEP); /* false: the firmware stopped, the watchdog will restart it */
         look_at_the_clock();
         unplug();
         if (power_cycle) {
@@ -403,7 +452,8 @@ static void live(void)
     power_off();
     pace_end();
     if (bench.worst_lag > LAG_MAX) {
-        fprintf(stderr, "plomada board: this PC was %.0f ms behind the wall clock\n", (double)bench.worst_lag * 1e-6);
+        fprintf(stderr, "plomada board: this PC was %.0f ms behind the wall clock\n",
+                (double)bench.worst_lag * 1e-6);
     }
 }
 

@@ -1,5 +1,5 @@
-/* The subcommands of the plomada program. Each takes its own argv (argv[0] is the subcommand's name) and returns the
- * program's exit status: 0 done, 1 expectations not met, 2 usage. */
+/* The subcommands of the plomada program. Each takes its own argv (argv[0] is the subcommand's name) and
+ * returns the program's exit status: 0 done, 1 expectations not met, 2 usage. */
 #ifndef TOOLS_PLOMADA_COMMANDS_H
 #define TOOLS_PLOMADA_COMMANDS_H
 

@@ -21,52 +21,97 @@ static const char usage[] =
     "usage: plomada fly SCENARIO [OPTION]...\n\n"
     "Flies one scenario with the unmodified firmware on the PC board, in virtual time.\n\n"
     "  --seed N            noise, phases and turbulence (default 1)\n"
-    "  --csv FILE          log at 100 Hz: the columns of #LOG (docs/operator.md), then the truth: height_m above the ground,\n"
+    "  --csv FILE          log at 100 Hz: the columns of #LOG (docs/operator.md), then the truth: height_m "
+    "above the ground,\n"
     "                      abs_m, terrain_m, and the throttle pulse_us\n"
     "  --json FILE         metrics. - as FILE of --csv or --json is stdout; the table then goes to stderr\n"
-    "  --storage FILE      the chip's flash: what #SAVE has stored there in one run is in force in the next. Without it the\n"
+    "  --storage FILE      the chip's flash: what #SAVE has stored there in one run is in force in the next. "
+    "Without it the\n"
     "                      storage is blank at power-on. The file is made when there is none\n"
-    "  --record DIR        everything at the firmware's pins, in DIR/flight.plomada: `plomada replay DIR` gives the same run\n"
+    "  --record DIR        everything at the firmware's pins, in DIR/flight.plomada: `plomada replay DIR` "
+    "gives the same run\n"
     "                      again. DIR is made when there is none\n"
-    "  --set NAME=VALUE    a telecommand parameter (see `plomada params`) or a plant figure; may be repeated\n"
-    "  --timing            observed response times, blocking, inversions and latency next to the bounds of the analysis\n"
+    "  --set NAME=VALUE    a telecommand parameter (see `plomada params`) or a plant figure; may be "
+    "repeated\n"
+    "  --timing            observed response times, blocking, inversions and latency next to the bounds of "
+    "the analysis\n"
     "                      (see `plomada rta plomada`); beyond a bound or a deadline the flight is not met\n"
-    "  --trace FILE        the schedule, for https://ui.perfetto.dev or chrome://tracing; about 2 MB per second\n"
+    "  --trace FILE        the schedule, for https://ui.perfetto.dev or chrome://tracing; about 2 MB per "
+    "second\n"
     "  --cost-scale X      every execution cost and context switch X times, 0.01..100 (default 1)\n"
-    "  --laser DEVICE      a real scanner, IMU or radio on a serial port (or a pseudo-terminal, see `plomada laser`) in\n"
-    "  --imu DEVICE        place of the model. The port follows the rates that the firmware sets. The flight is then\n"
-    "  --xbee DEVICE|pty   paced by the wall clock, and the scenario sends no commands. pty: the radio stays modelled, its\n"
-    "                      ground end is a pseudo-terminal whose name is the first line of the output. ws:PORT: it is a\n"
-    "                      WebSocket on this machine, for a browser. Without --xbee the telemetry goes to stdout\n"
+    "  --laser DEVICE      a real scanner, IMU or radio on a serial port (or a pseudo-terminal, see `plomada "
+    "laser`) in\n"
+    "  --imu DEVICE        place of the model. The port follows the rates that the firmware sets. The flight "
+    "is then\n"
+    "  --xbee DEVICE|pty   paced by the wall clock, and the scenario sends no commands. pty: the radio stays "
+    "modelled, its\n"
+    "                      ground end is a pseudo-terminal whose name is the first line of the output. "
+    "ws:PORT: it is a\n"
+    "                      WebSocket on this machine, for a browser. Without --xbee the telemetry goes to "
+    "stdout\n"
     "  --realtime          paced by the wall clock; needs one of the three above, but for bench\n"
-    "  --duration S        the landing command comes after S seconds instead of at the scenario's time, and the battery\n"
-    "                      lasts longer in proportion. With --realtime or bench: ends after S seconds (default: Ctrl-C ends it; bench in virtual time: 30)\n"
-    "  --until-down S      ends as soon as the vehicle is down and its motors are off for a second, at the latest S seconds\n"
+    "  --duration S        the landing command comes after S seconds instead of at the scenario's time, and "
+    "the battery\n"
+    "                      lasts longer in proportion. With --realtime or bench: ends after S seconds "
+    "(default: Ctrl-C ends it; bench in virtual time: 30)\n"
+    "  --until-down S      ends as soon as the vehicle is down and its motors are off for a second, at the "
+    "latest S seconds\n"
     "                      after the landing command\n"
-    "  --fault SPEC        on the scanner's line, as in `plomada laser --help`; octets count from power-on, some 1000 a\n"
-    "                      second once it scans; may be repeated. With --set LINK=S above 0 the operator keeps sending\n"
+    "  --fault SPEC        on the scanner's line, as in `plomada laser --help`; octets count from power-on, "
+    "some 1000 a\n"
+    "                      second once it scans; may be repeated. With --set LINK=S above 0 the operator "
+    "keeps sending\n"
     "                      #PING\n"
     "  --height M          bench: the landing gear is at M metres above the floor, 0..5 (default 0)\n\n"
-    "bench has no flight: the vehicle stands still, the telemetry goes to stdout, and the last line is the answer to\n"
+    "bench has no flight: the vehicle stands still, the telemetry goes to stdout, and the last line is the "
+    "answer to\n"
     "#LASER. It needs no commands; those of --set are typed soon after power-up.\n\n"
-    "Exit status: 0 the flight met the scenario's expectations (real time and bench: it came to its end), 1 it did not,\n"
+    "Exit status: 0 the flight met the scenario's expectations (real time and bench: it came to its end), 1 "
+    "it did not,\n"
     "2 usage, or a file that cannot be read or written.\n\n"
     "Plant figures (as `plomada list --plant`): name, unit, value unless set, meaning\n";
 
-enum { OPT_SEED = 1, OPT_CSV, OPT_JSON, OPT_STORAGE, OPT_RECORD, OPT_SET, OPT_TIMING, OPT_TRACE, OPT_COST_SCALE,
-       OPT_REALTIME, OPT_LASER, OPT_IMU, OPT_XBEE, OPT_DURATION, OPT_UNTIL_DOWN, OPT_FAULT, OPT_HEIGHT, OPT_HELP };
+enum {
+    OPT_SEED = 1,
+    OPT_CSV,
+    OPT_JSON,
+    OPT_STORAGE,
+    OPT_RECORD,
+    OPT_SET,
+    OPT_TIMING,
+    OPT_TRACE,
+    OPT_COST_SCALE,
+    OPT_REALTIME,
+    OPT_LASER,
+    OPT_IMU,
+    OPT_XBEE,
+    OPT_DURATION,
+    OPT_UNTIL_DOWN,
+    OPT_FAULT,
+    OPT_HEIGHT,
+    OPT_HELP
+};
 
 static const struct option long_options[] = {
-    {"seed", required_argument, NULL, OPT_SEED},         {"csv", required_argument, NULL, OPT_CSV},
-    {"json", required_argument, NULL, OPT_JSON},         {"storage", required_argument, NULL, OPT_STORAGE},
+    {"seed", required_argument, NULL, OPT_SEED},
+    {"csv", required_argument, NULL, OPT_CSV},
+    {"json", required_argument, NULL, OPT_JSON},
+    {"storage", required_argument, NULL, OPT_STORAGE},
     {"record", required_argument, NULL, OPT_RECORD},
-    {"set", required_argument, NULL, OPT_SET},           {"timing", no_argument, NULL, OPT_TIMING},
-    {"trace", required_argument, NULL, OPT_TRACE},       {"cost-scale", required_argument, NULL, OPT_COST_SCALE},
-    {"realtime", no_argument, NULL, OPT_REALTIME},       {"laser", required_argument, NULL, OPT_LASER},
-    {"imu", required_argument, NULL, OPT_IMU},           {"xbee", required_argument, NULL, OPT_XBEE},
-    {"duration", required_argument, NULL, OPT_DURATION}, {"height", required_argument, NULL, OPT_HEIGHT},
-    {"until-down", required_argument, NULL, OPT_UNTIL_DOWN}, {"fault", required_argument, NULL, OPT_FAULT},
-    {"help", no_argument, NULL, OPT_HELP},               {NULL, 0, NULL, 0},
+    {"set", required_argument, NULL, OPT_SET},
+    {"timing", no_argument, NULL, OPT_TIMING},
+    {"trace", required_argument, NULL, OPT_TRACE},
+    {"cost-scale", required_argument, NULL, OPT_COST_SCALE},
+    {"realtime", no_argument, NULL, OPT_REALTIME},
+    {"laser", required_argument, NULL, OPT_LASER},
+    {"imu", required_argument, NULL, OPT_IMU},
+    {"xbee", required_argument, NULL, OPT_XBEE},
+    {"duration", required_argument, NULL, OPT_DURATION},
+    {"height", required_argument, NULL, OPT_HEIGHT},
+    {"until-down", required_argument, NULL, OPT_UNTIL_DOWN},
+    {"fault", required_argument, NULL, OPT_FAULT},
+    {"help", no_argument, NULL, OPT_HELP},
+    {NULL, 0, NULL, 0},
 };
 
 typedef struct {
@@ -118,7 +163,8 @@ static bool read_height(request_t *request, const char *text)
 
     request->height = true;
     request->flight.height_m = strtod(text, &end);
-    return (*text != '\0' && *end == '\0' && request->flight.height_m >= 0.0 && request->flight.height_m <= HEIGHT_MAX_M) ||
+    return (*text != '\0' && *end == '\0' && request->flight.height_m >= 0.0 &&
+            request->flight.height_m <= HEIGHT_MAX_M) ||
            complain("not a height, 0..5 m", text);
 }
 
@@ -143,27 +189,53 @@ static bool read_option(request_t *request, int option, const char *argument)
     const char *error;
 
     switch (option) {
-    case OPT_SEED: return read_seed(request, argument);
-    case OPT_CSV: request->csv.path = argument; return true;
-    case OPT_JSON: request->json.path = argument; return true;
-    case OPT_STORAGE: request->storage_path = argument; return true;
-    case OPT_RECORD: request->record_dir = argument; return true;
+    case OPT_SEED:
+        return read_seed(request, argument);
+    case OPT_CSV:
+        request->csv.path = argument;
+        return true;
+    case OPT_JSON:
+        request->json.path = argument;
+        return true;
+    case OPT_STORAGE:
+        request->storage_path = argument;
+        return true;
+    case OPT_RECORD:
+        request->record_dir = argument;
+        return true;
     case OPT_SET:
         error = flight_override(&request->flight, argument);
         return error == NULL || complain(error, argument);
-    case OPT_TIMING: request->timing = true; return true;
-    case OPT_TRACE: request->trace.path = argument; return true;
-    case OPT_COST_SCALE: return read_cost_scale(request, argument);
-    case OPT_REALTIME: request->flight.realtime = true; return true;
-    case OPT_LASER: return use_device(request, BOARD_LASER, argument);
-    case OPT_IMU: return use_device(request, BOARD_IMU, argument);
-    case OPT_XBEE: return use_device(request, BOARD_RADIO, argument);
-    case OPT_DURATION: return read_seconds(&request->flight.duration_s, argument);
-    case OPT_UNTIL_DOWN: return read_seconds(&request->flight.patience_s, argument);
-    case OPT_FAULT: return read_fault(&request->flight, argument);
-    case OPT_HEIGHT: return read_height(request, argument);
-    case OPT_HELP: request->help = true; return true;
-    default: return false;
+    case OPT_TIMING:
+        request->timing = true;
+        return true;
+    case OPT_TRACE:
+        request->trace.path = argument;
+        return true;
+    case OPT_COST_SCALE:
+        return read_cost_scale(request, argument);
+    case OPT_REALTIME:
+        request->flight.realtime = true;
+        return true;
+    case OPT_LASER:
+        return use_device(request, BOARD_LASER, argument);
+    case OPT_IMU:
+        return use_device(request, BOARD_IMU, argument);
+    case OPT_XBEE:
+        return use_device(request, BOARD_RADIO, argument);
+    case OPT_DURATION:
+        return read_seconds(&request->flight.duration_s, argument);
+    case OPT_UNTIL_DOWN:
+        return read_seconds(&request->flight.patience_s, argument);
+    case OPT_FAULT:
+        return read_fault(&request->flight, argument);
+    case OPT_HEIGHT:
+        return read_height(request, argument);
+    case OPT_HELP:
+        request->help = true;
+        return true;
+    default:
+        return false;
     }
 }
 
@@ -229,7 +301,8 @@ static bool read_arguments(request_t *request, int argc, char **argv)
         return true;
     }
     if (optind + 1 != argc) {
-        return complain("one SCENARIO is needed, see `plomada list`", optind < argc ? argv[optind + 1] : "fly");
+        return complain("one SCENARIO is needed, see `plomada list`",
+                        optind < argc ? argv[optind + 1] : "fly");
     }
     request->scenario = scenario_find(argv[optind]);
     if (request->scenario == NULL) {
@@ -248,8 +321,10 @@ static int decimals(metric_t metric)
     case METRIC_COMMANDS_ERR:
     case METRIC_TAKEOVERS:
     case METRIC_CUTS:
-    case METRIC_OFF_ALOFT: return 0;
-    default: return 3;
+    case METRIC_OFF_ALOFT:
+        return 0;
+    default:
+        return 3;
     }
 }
 
@@ -287,9 +362,11 @@ static bool print_verdict(FILE *out, const request_t *request, const flight_resu
     if (met) {
         fprintf(out, "MET: all expectations of %s\n", request->scenario->name);
     } else if (broken != NULL) {
-        fprintf(out, "NOT MET: %s is not within %g..%g\n", metric_names[broken->metric], broken->minimum, broken->maximum);
+        fprintf(out, "NOT MET: %s is not within %g..%g\n", metric_names[broken->metric], broken->minimum,
+                broken->maximum);
     } else {
-        fprintf(out, "NOT MET: %s\n", result->metrics.failed ? result->metrics.failure : "it was to fail, and did not");
+        fprintf(out, "NOT MET: %s\n",
+                result->metrics.failed ? result->metrics.failure : "it was to fail, and did not");
     }
     return met;
 }
@@ -310,8 +387,9 @@ static bool bench_ended(const flight_result_t *result)
 
 static void write_json(FILE *out, const request_t *request, const flight_result_t *result, bool met)
 {
-    fprintf(out, "{\n  \"scenario\": \"%s\",\n  \"seed\": %lu,\n  \"met\": %s,\n  \"failed\": %s", request->scenario->name,
-            request->flight.seed, met ? "true" : "false", result->metrics.failed ? "true" : "false");
+    fprintf(out, "{\n  \"scenario\": \"%s\",\n  \"seed\": %lu,\n  \"met\": %s,\n  \"failed\": %s",
+            request->scenario->name, request->flight.seed, met ? "true" : "false",
+            result->metrics.failed ? "true" : "false");
     for (int i = 0; i < METRIC_COUNT; i++) {
         if (isnan(result->metrics.value[i])) {
             fprintf(out, ",\n  \"%s\": null", metric_names[i]);
@@ -364,12 +442,13 @@ static bool open_record(request_t *request)
 
 static bool open_outputs(request_t *request)
 {
-    const bool opened = output_open(&request->csv) && output_open(&request->json) && output_open(&request->trace) &&
-                        open_record(request);
+    const bool opened = output_open(&request->csv) && output_open(&request->json) &&
+                        output_open(&request->trace) && open_record(request);
 
     request->flight.csv = request->csv.file;
     request->flight.record = request->record.file;
-    if (request->scenario->bench || (request->flight.realtime && request->flight.device[BOARD_RADIO] == NULL)) {
+    if (request->scenario->bench ||
+        (request->flight.realtime && request->flight.device[BOARD_RADIO] == NULL)) {
         request->flight.telemetry = reading_matter(request);
     }
     return opened;
@@ -400,7 +479,8 @@ static int run(request_t *request)
     }
     kept = keep_storage(request->storage_path);
     measure_end();
-    met = request->scenario->bench ? bench_ended(&result) : print_result(reading_matter(request), request, &result);
+    met = request->scenario->bench ? bench_ended(&result)
+                                   : print_result(reading_matter(request), request, &result);
     if (request->timing) {
         met = measure_report(reading_matter(request)) && met;
     }

@@ -12,23 +12,33 @@
 
 static const char usage[] =
     "usage: plomada hil SCENARIO --laser DEVICE --imu DEVICE --xbee DEVICE [OPTION]...\n\n"
-    "Flies a scenario with a real board: the PC plays scanner, IMU, operator and airframe over three serial adapters, in real\n"
-    "time; the board runs its flight image unchanged and tells its throttle pulse by `#STREAM PULSE`. No motors, no propellers.\n"
+    "Flies a scenario with a real board: the PC plays scanner, IMU, operator and airframe over three serial "
+    "adapters, in real\n"
+    "time; the board runs its flight image unchanged and tells its throttle pulse by `#STREAM PULSE`. No "
+    "motors, no propellers.\n"
     "docs/acceptance.md says how to wire it. `plomada board` is a board to try it on.\n\n"
     "  --seed N            noise and phases (default 1)\n"
-    "  --patience S        how long the board may take until it has heights (default 40; the scanner waits 10 s)\n\n"
-    "Printed: the metrics, what the loop through the adapters takes, troubles by line, the verdict. The expectations are the\n"
-    "scenario's, widened by what the added delay costs in simulation: each to either side by the most that its metric changes\n"
-    "over five seeds when the autopilot's delay is longer by the 95 % value of the loop's less what it is in simulation.\n\n"
-    "Exit status: 0 the flight met the expectations and the board ended safe, 1 not, 2 usage or no such device, 3 this PC did not\n"
+    "  --patience S        how long the board may take until it has heights (default 40; the scanner waits "
+    "10 s)\n\n"
+    "Printed: the metrics, what the loop through the adapters takes, troubles by line, the verdict. The "
+    "expectations are the\n"
+    "scenario's, widened by what the added delay costs in simulation: each to either side by the most that "
+    "its metric changes\n"
+    "over five seeds when the autopilot's delay is longer by the 95 % value of the loop's less what it is in "
+    "simulation.\n\n"
+    "Exit status: 0 the flight met the expectations and the board ended safe, 1 not, 2 usage or no such "
+    "device, 3 this PC did not\n"
     "keep up with the wall clock (by more than 0.15 s): no verdict.\n";
 
 enum { OPT_LASER = 1, OPT_IMU, OPT_XBEE, OPT_SEED, OPT_PATIENCE, OPT_HELP };
 
 static const struct option long_options[] = {
-    {"laser", required_argument, NULL, OPT_LASER}, {"imu", required_argument, NULL, OPT_IMU},
-    {"xbee", required_argument, NULL, OPT_XBEE},   {"seed", required_argument, NULL, OPT_SEED},
-    {"patience", required_argument, NULL, OPT_PATIENCE}, {"help", no_argument, NULL, OPT_HELP},
+    {"laser", required_argument, NULL, OPT_LASER},
+    {"imu", required_argument, NULL, OPT_IMU},
+    {"xbee", required_argument, NULL, OPT_XBEE},
+    {"seed", required_argument, NULL, OPT_SEED},
+    {"patience", required_argument, NULL, OPT_PATIENCE},
+    {"help", no_argument, NULL, OPT_HELP},
     {NULL, 0, NULL, 0},
 };
 
@@ -66,20 +76,32 @@ static bool read_seed(const char *text)
 static bool read_option(int option, const char *argument)
 {
     switch (option) {
-    case OPT_LASER: order.device[BOARD_LASER] = argument; return true;
-    case OPT_IMU: order.device[BOARD_IMU] = argument; return true;
-    case OPT_XBEE: order.device[BOARD_RADIO] = argument; return true;
-    case OPT_SEED: return read_seed(argument);
-    case OPT_PATIENCE: return read_patience(argument);
-    case OPT_HELP: order.help = true; return true;
-    default: return false;
+    case OPT_LASER:
+        order.device[BOARD_LASER] = argument;
+        return true;
+    case OPT_IMU:
+        order.device[BOARD_IMU] = argument;
+        return true;
+    case OPT_XBEE:
+        order.device[BOARD_RADIO] = argument;
+        return true;
+    case OPT_SEED:
+        return read_seed(argument);
+    case OPT_PATIENCE:
+        return read_patience(argument);
+    case OPT_HELP:
+        order.help = true;
+        return true;
+    default:
+        return false;
     }
 }
 
 static bool read_scenario(int argc, char **argv)
 {
     if (optind + 1 != argc) {
-        return complain("one SCENARIO is needed, see `plomada list`", optind < argc ? argv[optind + 1] : "hil");
+        return complain("one SCENARIO is needed, see `plomada list`",
+                        optind < argc ? argv[optind + 1] : "hil");
     }
     order.scenario = scenario_find(argv[optind]);
     if (order.scenario == NULL || order.scenario->bench) {
@@ -118,8 +140,8 @@ static void print_metrics(const bench_flight_t *flight)
         }
     }
     if (flight->has_delay) {
-        printf("loop: %.1f ms from a scan's last octet to its pulse (95 %%: %.1f; in simulation %.1f)\n", flight->delay_ms,
-               flight->delay_most_ms, bench_simulated_delay_ms(order.scenario));
+        printf("loop: %.1f ms from a scan's last octet to its pulse (95 %%: %.1f; in simulation %.1f)\n",
+               flight->delay_ms, flight->delay_most_ms, bench_simulated_delay_ms(order.scenario));
     }
 }
 
@@ -148,9 +170,11 @@ static bool judge(const bench_flight_t *flight)
     leave_out(&widened);
     if (!scenario_met(&widened, &flight->metrics, &broken)) {
         if (broken != NULL) {
-            printf("NOT MET: %s is not within %g..%g\n", metric_names[broken->metric], broken->minimum, broken->maximum);
+            printf("NOT MET: %s is not within %g..%g\n", metric_names[broken->metric], broken->minimum,
+                   broken->maximum);
         } else {
-            printf("NOT MET: %s\n", flight->metrics.failed ? flight->metrics.failure : "it was to fail, and did not");
+            printf("NOT MET: %s\n",
+                   flight->metrics.failed ? flight->metrics.failure : "it was to fail, and did not");
         }
         return false;
     }
@@ -177,7 +201,8 @@ static int conclude(const bench_flight_t *flight)
     if (flight->radio_lost) {
         printf("how the board ended is not known: no pulse is told any more\n");
     } else {
-        printf("%s, pulse %.1f us\n", flight->safe ? "the board ended safe: on the ground" : "NOT SAFE: not down on the ground",
+        printf("%s, pulse %.1f us\n",
+               flight->safe ? "the board ended safe: on the ground" : "NOT SAFE: not down on the ground",
                flight->last_pulse_us);
     }
     if (met && flight->safe) {
@@ -189,7 +214,8 @@ static int conclude(const bench_flight_t *flight)
 static int run(void)
 {
     static bench_flight_t flight;
-    world_config_t config = {.seed = order.seed, .terrain = terrain_flat, .quadrotor = quadrotor_default, .line = terminal_line};
+    world_config_t config = {
+        .seed = order.seed, .terrain = terrain_flat, .quadrotor = quadrotor_default, .line = terminal_line};
     board_wire_t failed;
     const char *error;
 

@@ -15,23 +15,31 @@
 
 static const char usage[] =
     "usage: plomada laser --link PATH [OPTION]...\n\n"
-    "Serves the scanner model (URG-04LX, firmware 3.1.04) on a pseudo-terminal for any SCIP client, paced by the wall clock.\n"
+    "Serves the scanner model (URG-04LX, firmware 3.1.04) on a pseudo-terminal for any SCIP client, paced by "
+    "the wall clock.\n"
     "PATH becomes a symbolic link to it, and is removed at the end (SIGINT, SIGTERM; exit status 0).\n\n"
     "  --rate N        bit rate at power-up: 19200, 57600, 115200 (default), 250000, 500000, 750000\n"
-    "  --height M      the vehicle stands M metres above the floor, 0..5 (default 0), and the three mirrors look down\n"
+    "  --height M      the vehicle stands M metres above the floor, 0..5 (default 0), and the three mirrors "
+    "look down\n"
     "  --seed N        noise, phase and faults (default 1)\n"
     "  --fault SPEC    may be repeated\n\n"
-    "The sensor has been on for long: it listens, in SCIP1.1, at its power-up rate, which the pseudo-terminal is set to. As\n"
-    "on a real line, a client must follow SS and S with its own rate (tcsetattr, TCSETS2): while the rates differ, what it\n"
-    "sends is ignored and what it receives is nonsense. Malformed commands are refused (sim/devices/urg04lx.h says how).\n\n"
+    "The sensor has been on for long: it listens, in SCIP1.1, at its power-up rate, which the "
+    "pseudo-terminal is set to. As\n"
+    "on a real line, a client must follow SS and S with its own rate (tcsetattr, TCSETS2): while the rates "
+    "differ, what it\n"
+    "sends is ignored and what it receives is nonsense. Malformed commands are refused "
+    "(sim/devices/urg04lx.h says how).\n\n"
     "Faults, on what the sensor sends:\n";
 
 enum { OPT_LINK = 1, OPT_RATE, OPT_HEIGHT, OPT_SEED, OPT_FAULT, OPT_HELP };
 
 static const struct option long_options[] = {
-    {"link", required_argument, NULL, OPT_LINK}, {"rate", required_argument, NULL, OPT_RATE},
-    {"height", required_argument, NULL, OPT_HEIGHT}, {"seed", required_argument, NULL, OPT_SEED},
-    {"fault", required_argument, NULL, OPT_FAULT}, {"help", no_argument, NULL, OPT_HELP},
+    {"link", required_argument, NULL, OPT_LINK},
+    {"rate", required_argument, NULL, OPT_RATE},
+    {"height", required_argument, NULL, OPT_HEIGHT},
+    {"seed", required_argument, NULL, OPT_SEED},
+    {"fault", required_argument, NULL, OPT_FAULT},
+    {"help", no_argument, NULL, OPT_HELP},
     {NULL, 0, NULL, 0},
 };
 
@@ -51,7 +59,7 @@ static struct {
     urg04lx_t *urg;
     line_fault_t *fault;
     noise_t nonsense;
-    unsigned long mismatched;   /* octets to a client at another rate */
+    unsigned long mismatched; /* octets to a client at another rate */
 } server;
 
 static bool complain(const char *what, const char *subject)
@@ -107,13 +115,22 @@ static bool read_fault(const char *text)
 static bool read_option(int option, const char *argument)
 {
     switch (option) {
-    case OPT_LINK: order.link = argument; return true;
-    case OPT_RATE: return read_rate(argument);
-    case OPT_HEIGHT: return read_height(argument);
-    case OPT_SEED: return read_seed(argument);
-    case OPT_FAULT: return read_fault(argument);
-    case OPT_HELP: order.help = true; return true;
-    default: return false;
+    case OPT_LINK:
+        order.link = argument;
+        return true;
+    case OPT_RATE:
+        return read_rate(argument);
+    case OPT_HEIGHT:
+        return read_height(argument);
+    case OPT_SEED:
+        return read_seed(argument);
+    case OPT_FAULT:
+        return read_fault(argument);
+    case OPT_HELP:
+        order.help = true;
+        return true;
+    default:
+        return false;
     }
 }
 
@@ -234,12 +251,14 @@ static void report(void)
 {
     const urg04lx_state_t state = urg04lx_state(server.urg);
 
-    fprintf(stderr, "scans: %u\ncommands: %u refused: %u\noctets: %llu sent\n", state.scans_sent, state.commands,
-            state.refused, (unsigned long long)line_fault_octets(server.fault));
-    fprintf(stderr, "at another rate: %u octets ignored, %lu sent as nonsense\nfaults:", state.octets_mismatched,
+    fprintf(stderr, "scans: %u\ncommands: %u refused: %u\noctets: %llu sent\n", state.scans_sent,
+            state.commands, state.refused, (unsigned long long)line_fault_octets(server.fault));
+    fprintf(stderr,
+            "at another rate: %u octets ignored, %lu sent as nonsense\nfaults:", state.octets_mismatched,
             server.mismatched);
     for (int i = 0; i < LINE_FAULT_KIND_COUNT; i++) {
-        fprintf(stderr, " %s:%u", line_fault_names[i], line_fault_strikes(server.fault, (line_fault_kind_t)i));
+        fprintf(stderr, " %s:%u", line_fault_names[i],
+                line_fault_strikes(server.fault, (line_fault_kind_t)i));
     }
     fprintf(stderr, "\n");
 }

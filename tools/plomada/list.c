@@ -31,7 +31,8 @@ static void print_scenario(const scenario_t *scenario)
 
 static int print_plant(void)
 {
-    printf("The plant figures of --set plant.NAME=VALUE: name, unit, value unless set, meaning. Times are scenario time:\n"
+    printf("The plant figures of --set plant.NAME=VALUE: name, unit, value unless set, meaning. Times are "
+           "scenario time:\n"
            "the reference comes at 1 s. Several at once combine.\n\n");
     plant_print(stdout);
     return 0;
@@ -46,7 +47,8 @@ int command_list(int argc, char **argv)
         int help = argc == 2 && strcmp(argv[1], "--help") == 0;
 
         fprintf(help ? stdout : stderr,
-                "usage: plomada list [--plant]\nThe scenarios, what they type and what each must look like; or, by --plant, "
+                "usage: plomada list [--plant]\nThe scenarios, what they type and what each must look like; "
+                "or, by --plant, "
                 "the figures of the\nvehicle, its sensors and the world that --set changes.\n");
         return help ? 0 : 2;
     }

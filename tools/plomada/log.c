@@ -1,6 +1,7 @@
-/* What people save of a flight, as CSV: a terminal's text, or the console log of XCTU with its payloads in hex, with none,
- * one or several dumps of `#LOG` among telemetry and answers. Every row of a dump carries its number and a sum
- * (drivers/line_sum.h), so nothing is guessed: a damaged row is left out and named, and so is one that is missing. */
+/* What people save of a flight, as CSV: a terminal's text, or the console log of XCTU with its payloads in
+ * hex, with none, one or several dumps of `#LOG` among telemetry and answers. Every row of a dump carries its
+ * number and a sum (drivers/line_sum.h), so nothing is guessed: a damaged row is left out and named, and so
+ * is one that is missing. */
 #include <ctype.h>
 #include <errno.h>
 #include <getopt.h>
@@ -15,31 +16,34 @@
 
 #define MARK "OK LOG "
 #define LINE_LENGTH 4096
-#define NAMED_MAX 8     /* rows that a message names one by one */
+#define NAMED_MAX 8 /* rows that a message names one by one */
 
 static const char usage[] =
     "usage: plomada log FILE... [-o DIR|-]\n\n"
-    "Writes the #LOG dumps in what was saved of a flight as CSV: FILE.csv, and FILE-2.csv and so on for further dumps.\n"
-    "FILE is text as a terminal saved it, or a console log of XCTU (its payloads in hex); telemetry and other answers\n"
+    "Writes the #LOG dumps in what was saved of a flight as CSV: FILE.csv, and FILE-2.csv and so on for "
+    "further dumps.\n"
+    "FILE is text as a terminal saved it, or a console log of XCTU (its payloads in hex); telemetry and "
+    "other answers\n"
     "between the rows do not matter.\n\n"
     "  -o DIR              where to (default: beside FILE); - is stdout, for a single dump\n\n"
     "Each row is checked by its own sum. What is damaged or missing is left out and named on stderr.\n\n"
-    "Exit status: 0 every dump is whole, 1 something is missing, 2 usage, no dump, or a file that cannot be read or\n"
+    "Exit status: 0 every dump is whole, 1 something is missing, 2 usage, no dump, or a file that cannot be "
+    "read or\n"
     "written.\n";
 
 /* A dump: its rows by their number; row 0 is the titles. */
 typedef struct {
     char **rows;
     size_t count, room;
-    long announced;     /* records, as the firmware said before the first row; -1: not heard */
+    long announced; /* records, as the firmware said before the first row; -1: not heard */
     bool ended;
 } dump_t;
 
 typedef struct {
     dump_t *dumps;
     size_t count;
-    size_t damaged;     /* rows whose sum is wrong */
-    bool cut;           /* the file ends within a row */
+    size_t damaged; /* rows whose sum is wrong */
+    bool cut;       /* the file ends within a row */
 } harvest_t;
 
 static void *resized(void *memory, size_t octets)
@@ -147,7 +151,8 @@ static const char *received_hex(const char *line)
 {
     const char *first = strchr(line, ','), *second = first == NULL ? NULL : strchr(first + 1, ',');
 
-    return second != NULL && isdigit((unsigned char)line[0]) && strncmp(second, ",RECV,", 6) == 0 ? second + 6 : NULL;
+    return second != NULL && isdigit((unsigned char)line[0]) && strncmp(second, ",RECV,", 6) == 0 ? second + 6
+                                                                                                  : NULL;
 }
 
 static void take_hex(assembler_t *assembler, const char *hex)
@@ -190,12 +195,15 @@ static void read_file(FILE *in, harvest_t *harvest)
     harvest->cut = assembler.length >= strlen(MARK) && strncmp(assembler.text, MARK, strlen(MARK)) == 0;
 }
 
-/* Telling ---------------------------------------------------------------------------------------------------------- */
+/* Telling
+ * ----------------------------------------------------------------------------------------------------------
+ */
 
 /* Rows that should be there: up to the last one that came, or that was announced. */
 static size_t rows_due(const dump_t *dump)
 {
-    return dump->announced >= 0 && (size_t)dump->announced + 1 > dump->count ? (size_t)dump->announced + 1 : dump->count;
+    return dump->announced >= 0 && (size_t)dump->announced + 1 > dump->count ? (size_t)dump->announced + 1
+                                                                             : dump->count;
 }
 
 static size_t missing(const dump_t *dump)
@@ -258,12 +266,15 @@ static bool whole(const char *file, const harvest_t *harvest)
     return nothing_lost;
 }
 
-/* Writing ---------------------------------------------------------------------------------------------------------- */
+/* Writing
+ * ----------------------------------------------------------------------------------------------------------
+ */
 
 /* FILE without its directory and ending, in DIR; -2 and so on for a further dump. Never FILE itself. */
 static void name_output(char path[PATH_MAX], const char *file, const char *directory, size_t number)
 {
-    const char *slash = strrchr(file, '/'), *base = slash == NULL ? file : slash + 1, *dot = strrchr(base, '.');
+    const char *slash = strrchr(file, '/'), *base = slash == NULL ? file : slash + 1,
+               *dot = strrchr(base, '.');
     const int length = (int)(dot == NULL || dot == base ? strlen(base) : (size_t)(dot - base));
     char further[24] = "";
 

@@ -12,12 +12,13 @@
 #define PS_PER_NS 1e3
 
 static const char *const release_names[] = {"FREE", "SCAN", "FRAME"};
-_Static_assert(sizeof release_names / sizeof release_names[0] == LATENCY_RELEASES, "every release has a name");
+_Static_assert(sizeof release_names / sizeof release_names[0] == LATENCY_RELEASES,
+               "every release has a name");
 
 static struct {
     costs_stretched_t costs;
-    rta_table_t scan;       /* TaskControl released by the clock or by scans: for the latency then */
-    rta_table_t table;      /* released by every height and frame: the most that it may be, so for all else */
+    rta_table_t scan;  /* TaskControl released by the clock or by scans: for the latency then */
+    rta_table_t table; /* released by every height and frame: the most that it may be, so for all else */
     rta_options_t options;
     timing_limits_t limits[RTA_ROWS_MAX];
     int limit_count;
@@ -125,8 +126,8 @@ static bool report_latency(FILE *out, int release)
         return true;
     }
     fprintf(out, "scan's last octet to compare value, release %s: %ld, %.4f to %.4f ms, mean %.4f, bound ",
-            release_names[release], figures->answers, (double)figures->shortest / 1e6, (double)figures->longest / 1e6,
-            (double)figures->total / (double)figures->answers / 1e6);
+            release_names[release], figures->answers, (double)figures->shortest / 1e6,
+            (double)figures->longest / 1e6, (double)figures->total / (double)figures->answers / 1e6);
     if (measure.latency[release] == SIM_NEVER) {
         fprintf(out, "none: the costs are beyond what can be scheduled\n");
     } else {

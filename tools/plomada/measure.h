@@ -7,15 +7,15 @@
 
 #include "sim/ti/sysbios/kernel.h"
 
-/* Before the flight, which is to run with the costs returned: Annex IV's, cost_scale times. trace: NULL, or where the
- * schedule goes. */
+/* Before the flight, which is to run with the costs returned: Annex IV's, cost_scale times. trace: NULL, or
+ * where the schedule goes. */
 const kernel_costs_t *measure_begin(double cost_scale, FILE *trace);
 
 /* After the flight. The trace is complete. */
 void measure_end(void);
 
-/* After measure_end(): prints what was observed next to its bounds. False: a response, an inversion, a number of blockings
- * or a latency is beyond its bound, or a deadline was missed. */
+/* After measure_end(): prints what was observed next to its bounds. False: a response, an inversion, a number
+ * of blockings or a latency is beyond its bound, or a deadline was missed. */
 bool measure_report(FILE *out);
 
 #endif

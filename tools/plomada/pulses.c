@@ -9,11 +9,11 @@
 #include <string.h>
 
 typedef struct {
-    double sample_us;       /* from the head, 0: not told */
-    double unit_us;         /* of the time column, 0: there is none */
-    double row;             /* number of the sample */
+    double sample_us; /* from the head, 0: not told */
+    double unit_us;   /* of the time column, 0: there is none */
+    double row;       /* number of the sample */
     bool any, high;
-    double rose_us, first_us;   /* NAN: not seen to rise */
+    double rose_us, first_us; /* NAN: not seen to rise */
 } reader_t;
 
 /* "; Samplerate: 1 MHz" */

@@ -14,15 +14,20 @@
 
 static const char usage[] =
     "usage: plomada replay RECORDING [OPTION]...\n\n"
-    "Gives the firmware what a flight recorded at its pins, to the nanosecond, and writes the log that it makes of that.\n"
-    "RECORDING is the DIR of `plomada fly --record DIR`, or the file in it. The log is the one of the flight itself,\n"
+    "Gives the firmware what a flight recorded at its pins, to the nanosecond, and writes the log that it "
+    "makes of that.\n"
+    "RECORDING is the DIR of `plomada fly --record DIR`, or the file in it. The log is the one of the flight "
+    "itself,\n"
     "octet for octet, as long as the firmware is the same.\n\n"
     "  --csv FILE          the log (default: stdout)\n"
-    "  --set NAME=VALUE    a telecommand parameter in place of what was typed for it. The vehicle does not answer to what\n"
-    "                      the firmware commands then (open loop): the log shows what it would have commanded, until the\n"
+    "  --set NAME=VALUE    a telecommand parameter in place of what was typed for it. The vehicle does not "
+    "answer to what\n"
+    "                      the firmware commands then (open loop): the log shows what it would have "
+    "commanded, until the\n"
     "                      heights that it sees are no longer those that it would have flown\n"
     "  --telemetry         the lines that the firmware sent by radio, on stderr\n\n"
-    "Exit status: 0 replayed to its end, 1 the firmware stopped, 2 usage, or a file that cannot be read or written.\n";
+    "Exit status: 0 replayed to its end, 1 the firmware stopped, 2 usage, or a file that cannot be read or "
+    "written.\n";
 
 enum { OPT_CSV = 1, OPT_SET, OPT_TELEMETRY, OPT_HELP };
 
@@ -37,7 +42,7 @@ static const struct option long_options[] = {
 typedef struct {
     const char *path;
     output_t csv;
-    flight_options_t sets;      /* its overrides alone are used: they were checked */
+    flight_options_t sets; /* its overrides alone are used: they were checked */
     bool telemetry, help;
 } request_t;
 
@@ -64,15 +69,22 @@ static bool read_arguments(request_t *request, int argc, char **argv)
     optind = 1;
     while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {
         switch (option) {
-        case OPT_CSV: request->csv.path = optarg; break;
+        case OPT_CSV:
+            request->csv.path = optarg;
+            break;
         case OPT_SET:
             if (!read_set(request, optarg)) {
                 return false;
             }
             break;
-        case OPT_TELEMETRY: request->telemetry = true; break;
-        case OPT_HELP: request->help = true; return true;
-        default: return false;
+        case OPT_TELEMETRY:
+            request->telemetry = true;
+            break;
+        case OPT_HELP:
+            request->help = true;
+            return true;
+        default:
+            return false;
         }
     }
     if (optind + 1 != argc) {
@@ -128,15 +140,16 @@ static const char *value_or(const tape_t *tape, const char *key, const char *oth
 
 static void tell(const request_t *request, const tape_t *tape, const flight_replay_t *result)
 {
-    fprintf(stderr, "replayed %s, seed %s: %zu rows", value_or(tape, "scenario", "?"), value_or(tape, "seed", "?"),
-            result->rows);
+    fprintf(stderr, "replayed %s, seed %s: %zu rows", value_or(tape, "scenario", "?"),
+            value_or(tape, "seed", "?"), result->rows);
     for (int i = 0; i < request->sets.override_count; i++) {
         fprintf(stderr, "%s %s=%s", i == 0 ? "; open loop with" : ",", request->sets.overrides[i].name,
                 request->sets.overrides[i].value);
     }
     fputc('\n', stderr);
     if (result->halt != NULL) {
-        fprintf(stderr, "plomada replay: the firmware stopped after %.2f s: %s\n", result->end_s, result->halt);
+        fprintf(stderr, "plomada replay: the firmware stopped after %.2f s: %s\n", result->end_s,
+                result->halt);
     }
 }
 

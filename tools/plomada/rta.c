@@ -10,33 +10,56 @@
 
 static const char usage[] =
     "usage: plomada rta [seed|plomada|plomada-est|FILE] [OPTION]...\n\n"
-    "Response-time analysis of a table of tasks, Swis and interrupts: the seed's (default), this firmware's, the\n"
+    "Response-time analysis of a table of tasks, Swis and interrupts: the seed's (default), this firmware's, "
+    "the\n"
     "same with the releases of law EST, or a CSV file.\n"
-    "Per task, times in ms: the demand W(D) up to its deadline as the seed computed it, with its horizons corrected, with\n"
-    "the context switches of every job; the true worst response time, and the slack it leaves before the deadline.\n"
+    "Per task, times in ms: the demand W(D) up to its deadline as the seed computed it, with its horizons "
+    "corrected, with\n"
+    "the context switches of every job; the true worst response time, and the slack it leaves before the "
+    "deadline.\n"
     "The first three look at the table alone; the options below change the response, load and growth.\n\n"
-    "  --switch-ms MS      two context switches, per task job and per blocking (default 0.057; the first three as well)\n"
-    "  --access-ms MS      one server access, for the column accesses (default 0.0093; the first three as well)\n"
+    "  --switch-ms MS      two context switches, per task job and per blocking (default 0.057; the first "
+    "three as well)\n"
+    "  --access-ms MS      one server access, for the column accesses (default 0.0093; the first three as "
+    "well)\n"
     "  --jitter MS         every release may come this late (default 0)\n"
-    "  --bursts            rows with burst_n come in frames of burst_n every burst_period_ms, not as endless streams\n"
-    "  --chain A,B,...,Z   also the worst time from what releases A to the end of task Z, when each releases the next; with\n"
+    "  --bursts            rows with burst_n come in frames of burst_n every burst_period_ms, not as endless "
+    "streams\n"
+    "  --chain A,B,...,Z   also the worst time from what releases A to the end of task Z, when each releases "
+    "the next; with\n"
     "                      --bursts A may be an interrupt with burst_n: the last one of its frame\n"
     "  --set ROW.COLUMN=VALUE\n"
     "                      changes a number of the table; may be repeated\n"
     "  --json FILE         the same figures\n"
     "  --print             prints the table itself, as CSV, and does nothing else\n\n"
     "A FILE begins with name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings and may add\n"
-    "accesses,burst_n,burst_period_ms,jitter_ms,blocked_by; kind is hwi, swi or task. --print shows an example.\n\n"
+    "accesses,burst_n,burst_period_ms,jitter_ms,blocked_by; kind is hwi, swi or task. --print shows an "
+    "example.\n\n"
     "Exit status: 0 all deadlines hold, 1 one does not, 2 usage or not a table.\n";
 
-enum { OPT_SWITCH = 1, OPT_ACCESS, OPT_JITTER, OPT_BURSTS, OPT_CHAIN, OPT_SET, OPT_JSON, OPT_PRINT, OPT_HELP };
+enum {
+    OPT_SWITCH = 1,
+    OPT_ACCESS,
+    OPT_JITTER,
+    OPT_BURSTS,
+    OPT_CHAIN,
+    OPT_SET,
+    OPT_JSON,
+    OPT_PRINT,
+    OPT_HELP
+};
 
 static const struct option long_options[] = {
-    {"switch-ms", required_argument, NULL, OPT_SWITCH}, {"access-ms", required_argument, NULL, OPT_ACCESS},
-    {"jitter", required_argument, NULL, OPT_JITTER},    {"bursts", no_argument, NULL, OPT_BURSTS},
-    {"chain", required_argument, NULL, OPT_CHAIN},      {"set", required_argument, NULL, OPT_SET},
-    {"json", required_argument, NULL, OPT_JSON},        {"print", no_argument, NULL, OPT_PRINT},
-    {"help", no_argument, NULL, OPT_HELP},              {NULL, 0, NULL, 0},
+    {"switch-ms", required_argument, NULL, OPT_SWITCH},
+    {"access-ms", required_argument, NULL, OPT_ACCESS},
+    {"jitter", required_argument, NULL, OPT_JITTER},
+    {"bursts", no_argument, NULL, OPT_BURSTS},
+    {"chain", required_argument, NULL, OPT_CHAIN},
+    {"set", required_argument, NULL, OPT_SET},
+    {"json", required_argument, NULL, OPT_JSON},
+    {"print", no_argument, NULL, OPT_PRINT},
+    {"help", no_argument, NULL, OPT_HELP},
+    {NULL, 0, NULL, 0},
 };
 
 #define SETTINGS_MAX 64
@@ -66,7 +89,8 @@ static bool read_ms(const char *text, rta_ps_t *time)
     double ms = strtod(text, &end);
 
     *time = round(ms * RTA_PS_PER_MS);
-    return (strspn(text, "0123456789.") == strlen(text) && text[0] != '\0' && *end == '\0' && ms <= 100000.0) ||
+    return (strspn(text, "0123456789.") == strlen(text) && text[0] != '\0' && *end == '\0' &&
+            ms <= 100000.0) ||
            complain(text, "not a time in ms");
 }
 
@@ -82,16 +106,31 @@ static bool add_setting(request_t *request, const char *text)
 static bool read_option(request_t *request, int option, const char *argument)
 {
     switch (option) {
-    case OPT_SWITCH: return read_ms(argument, &request->options.switches);
-    case OPT_ACCESS: return read_ms(argument, &request->options.access);
-    case OPT_JITTER: return read_ms(argument, &request->options.jitter);
-    case OPT_BURSTS: request->options.bursts = true; return true;
-    case OPT_CHAIN: request->chain_text = argument; return true;
-    case OPT_SET: return add_setting(request, argument);
-    case OPT_JSON: request->json_path = argument; return true;
-    case OPT_PRINT: request->print = true; return true;
-    case OPT_HELP: request->help = true; return true;
-    default: return false;
+    case OPT_SWITCH:
+        return read_ms(argument, &request->options.switches);
+    case OPT_ACCESS:
+        return read_ms(argument, &request->options.access);
+    case OPT_JITTER:
+        return read_ms(argument, &request->options.jitter);
+    case OPT_BURSTS:
+        request->options.bursts = true;
+        return true;
+    case OPT_CHAIN:
+        request->chain_text = argument;
+        return true;
+    case OPT_SET:
+        return add_setting(request, argument);
+    case OPT_JSON:
+        request->json_path = argument;
+        return true;
+    case OPT_PRINT:
+        request->print = true;
+        return true;
+    case OPT_HELP:
+        request->help = true;
+        return true;
+    default:
+        return false;
     }
 }
 
@@ -147,7 +186,8 @@ static bool load_table(request_t *request, const char *text)
         fprintf(stderr, "plomada rta: %s:%d: %s\n", request->table_name, error.line, error.reason);
         return false;
     }
-    return rta_table_set(&request->table, request->setting, request->settings, &error) || complain("--set", error.reason);
+    return rta_table_set(&request->table, request->setting, request->settings, &error) ||
+           complain("--set", error.reason);
 }
 
 static bool goes_before_last(const rta_table_t *table, const int *chain, int members)
@@ -176,8 +216,10 @@ static bool read_chain(request_t *request)
         request->chain[request->chain_members++] = row;
         at = at[length] == ',' ? at + length + 1 : NULL;
     }
-    return request->chain_members == 0 || goes_before_last(&request->table, request->chain, request->chain_members) ||
-           complain(request->chain_text, "--chain: the last must be a task, and none before it of lower priority");
+    return request->chain_members == 0 ||
+           goes_before_last(&request->table, request->chain, request->chain_members) ||
+           complain(request->chain_text,
+                    "--chain: the last must be a task, and none before it of lower priority");
 }
 
 /* ---- report ---- */
@@ -198,11 +240,13 @@ static void print_task(const request_t *request, int task)
     rta_ps_t response = rta_response(&request->table, &request->options, task);
     char text[5][32];
 
-    printf("%-18s %4d %8g %10s %10s %10s %10s %10s%s\n", row->name, row->priority, row->deadline / RTA_PS_PER_MS,
+    printf("%-18s %4d %8g %10s %10s %10s %10s %10s%s\n", row->name, row->priority,
+           row->deadline / RTA_PS_PER_MS,
            ms(text[0], rta_demand_seed(&request->table, &request->options, task)),
            ms(text[1], rta_demand(&request->table, &request->options, task)),
            ms(text[2], rta_demand_switching(&request->table, &request->options, task)), ms(text[3], response),
-           isinf(response) ? "-" : ms(text[4], row->deadline - response), response > row->deadline ? "  LATE" : "");
+           isinf(response) ? "-" : ms(text[4], row->deadline - response),
+           response > row->deadline ? "  LATE" : "");
 }
 
 static void print_growth(const request_t *request)
@@ -219,8 +263,9 @@ static void print_chain(const request_t *request)
     char text[32];
 
     if (request->chain_members > 0) {
-        printf("%s: %s\n", request->chain_text,
-               ms(text, rta_chain(&request->table, &request->options, request->chain, request->chain_members)));
+        printf(
+            "%s: %s\n", request->chain_text,
+            ms(text, rta_chain(&request->table, &request->options, request->chain, request->chain_members)));
     }
 }
 
@@ -230,14 +275,14 @@ static void print_report(const request_t *request, bool holds)
     int task[RTA_ROWS_MAX];
     int tasks = rta_tasks(&request->table, task);
 
-    printf("%-18s %4s %8s %10s %10s %10s %10s %10s\n", request->table_name, "prio", "D", "seed W(D)", "W(D)", "switching",
-           "response", "slack");
+    printf("%-18s %4s %8s %10s %10s %10s %10s %10s\n", request->table_name, "prio", "D", "seed W(D)", "W(D)",
+           "switching", "response", "slack");
     for (int i = 0; i < tasks; i++) {
         print_task(request, task[i]);
     }
     print_chain(request);
-    printf("load: hwi %.4f, swi %.4f, tasks %.4f, switches %.4f, total %.4f\n", load.kind[RTA_HWI], load.kind[RTA_SWI],
-           load.kind[RTA_TASK], load.switches, load.total);
+    printf("load: hwi %.4f, swi %.4f, tasks %.4f, switches %.4f, total %.4f\n", load.kind[RTA_HWI],
+           load.kind[RTA_SWI], load.kind[RTA_TASK], load.switches, load.total);
     print_growth(request);
     printf("%s\n", holds ? "all deadlines hold" : "NOT all deadlines hold");
 }
@@ -278,7 +323,9 @@ static void write_json(FILE *out, const request_t *request, bool holds)
         fprintf(out, "%s\n    ", i > 0 ? "," : "");
         write_json_task(out, request, task[i]);
     }
-    fprintf(out, "\n  ],\n  \"load\": {\"hwi\": %.6f, \"swi\": %.6f, \"tasks\": %.6f, \"switches\": %.6f, \"total\": %.6f}",
+    fprintf(out,
+            "\n  ],\n  \"load\": {\"hwi\": %.6f, \"swi\": %.6f, \"tasks\": %.6f, \"switches\": %.6f, "
+            "\"total\": %.6f}",
             load.kind[RTA_HWI], load.kind[RTA_SWI], load.kind[RTA_TASK], load.switches, load.total);
     if (request->chain_members > 0) {
         fprintf(out, ",\n  \"chain\": {\"members\": \"%s\"", request->chain_text);

@@ -18,8 +18,8 @@ static struct {
     uint16_t distance_mm[SCIP_POINTS_MAX];
     urg_link_t link;
     urg_seen_t seen;
-    bool linked;                /* the link drives the conversation */
-    char *text;                 /* of the reply asked for */
+    bool linked; /* the link drives the conversation */
+    char *text;  /* of the reply asked for */
     size_t text_size;
 } scanner;
 
@@ -30,7 +30,8 @@ static uint32_t now_us(void)
 
 static void tap(bool from_sensor, const unsigned char *octets, size_t count)
 {
-    scanner.config.tap(scanner.config.context, from_sensor, (long long)(timeline_now() / SIM_US), octets, count);
+    scanner.config.tap(scanner.config.context, from_sensor, (long long)(timeline_now() / SIM_US), octets,
+                       count);
 }
 
 static void send(const scip_request_t *request)

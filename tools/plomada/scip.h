@@ -1,4 +1,5 @@
-/* The tools behind `plomada scip`. Each gets its own arguments, argv[0] being its name, and returns the exit status. */
+/* The tools behind `plomada scip`. Each gets its own arguments, argv[0] being its name, and returns the exit
+ * status. */
 #ifndef TOOLS_PLOMADA_SCIP_H
 #define TOOLS_PLOMADA_SCIP_H
 

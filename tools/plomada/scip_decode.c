@@ -6,8 +6,10 @@
 
 static const char usage[] =
     "usage: plomada scip decode FILE|-\n\n"
-    "Reads what a scanner sent (raw octets) and writes its scans as CSV: timestamp_ms,n,d0,d1,... one line per scan, time\n"
-    "stamps and values as sent (24 bits; mm, below 20 a code). Echo lines in the stream say what was asked for: MS, MD,\n"
+    "Reads what a scanner sent (raw octets) and writes its scans as CSV: timestamp_ms,n,d0,d1,... one line "
+    "per scan, time\n"
+    "stamps and values as sent (24 bits; mm, below 20 a code). Echo lines in the stream say what was asked "
+    "for: MS, MD,\n"
     "GS, GD. Other packets are skipped. A damaged frame gives no line. A summary goes to stderr.\n\n"
     "Exit status: 0 scans were found, 1 none, 2 usage or unreadable file.\n";
 

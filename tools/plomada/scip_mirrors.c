@@ -14,9 +14,9 @@
 #define STEPS (SCIP_STEP_MAX + 1U)
 #define SCANS_MIN 10
 #define SCANS_MAX 500
-#define GOOD_PART 0.9           /* of the scans, at each step */
-#define STABLE_MM 40.0          /* between the quartiles of a step's distances */
-#define FRONT_REACH 60U         /* steps to either side of the front that can look at the front mirror */
+#define GOOD_PART 0.9   /* of the scans, at each step */
+#define STABLE_MM 40.0  /* between the quartiles of a step's distances */
+#define FRONT_REACH 60U /* steps to either side of the front that can look at the front mirror */
 #define MARGIN 5U
 #define RUN_MIN (2U * MARGIN + 1U)
 #define LIVE_S 4.0
@@ -24,13 +24,15 @@
 
 static const char usage[] =
     "usage: plomada scip mirrors FILE|DEVICE --height M [--tolerance MM]\n\n"
-    "Finds the steps that look at each mirror, from a recording or from a scanner on a serial port, with the vehicle level\n"
+    "Finds the steps that look at each mirror, from a recording or from a scanner on a serial port, with the "
+    "vehicle level\n"
     "and its landing gear M metres above a flat floor (0..3). A step looks at a mirror when\n"
     "  - at least 10 scans hold it, and 90 % of them with a good distance,\n"
     "  - its distances are stable: at most 40 mm between their quartiles,\n"
     "  - their median is within MM (default 40) of the mirror's d + height + l: as delivered, of the\n"
     "    parameters DF and LF, D1 and L1 (aft), D2 and L2 (fore).\n"
-    "Steps up to 60 from the front (384) can only look at the front mirror, smaller ones at the aft, larger ones at the\n"
+    "Steps up to 60 from the front (384) can only look at the front mirror, smaller ones at the aft, larger "
+    "ones at the\n"
     "fore. The longest row of neighbouring steps is the mirror, its window 5 steps inside either end.\n\n"
     "Prints a table, and the row for drivers/scip_layout.c.\n"
     "Exit status: 0 every mirror of a known layout was found, 1 not, 2 usage or unreadable input.\n";
@@ -52,7 +54,7 @@ typedef struct {
 
 /* All good distances of each step. */
 typedef struct {
-    unsigned scans[STEPS];      /* that hold the step */
+    unsigned scans[STEPS]; /* that hold the step */
     unsigned good[STEPS];
     uint16_t distance_mm[STEPS][SCANS_MAX];
 } survey_t;
@@ -164,23 +166,27 @@ static bool found(const row_t *row)
 
 static void print_table(const row_t rows[MIRROR_COUNT], const order_t *order)
 {
-    printf("%-7s %-9s %-6s %-10s %-12s %s\n", "mirror", "steps", "count", "median_mm", "expected_mm", "window");
+    printf("%-7s %-9s %-6s %-10s %-12s %s\n", "mirror", "steps", "count", "median_mm", "expected_mm",
+           "window");
     for (int i = 0; i < MIRROR_COUNT; i++) {
         const mirror_t mirror = ascending[i];
         const row_t *row = &rows[mirror];
 
         if (found(row)) {
-            printf("%-7s %3u..%-4u %-6u %-10.1f %-12.1f %u..%u\n", mirror_names[mirror], row->first, row->last, row->steps,
-                   row->median_mm, expected_mm(mirror, order), row->first + MARGIN, row->last - MARGIN);
+            printf("%-7s %3u..%-4u %-6u %-10.1f %-12.1f %u..%u\n", mirror_names[mirror], row->first,
+                   row->last, row->steps, row->median_mm, expected_mm(mirror, order), row->first + MARGIN,
+                   row->last - MARGIN);
         } else {
-            printf("%-7s %-9s %-6s %-10s %-12.1f -\n", mirror_names[mirror], "-", "-", "-", expected_mm(mirror, order));
+            printf("%-7s %-9s %-6s %-10s %-12.1f -\n", mirror_names[mirror], "-", "-", "-",
+                   expected_mm(mirror, order));
         }
     }
 }
 
 static const char *layout_row(const row_t rows[MIRROR_COUNT])
 {
-    const bool front = found(&rows[MIRROR_FRONT]), fore = found(&rows[MIRROR_FORE]), aft = found(&rows[MIRROR_AFT]);
+    const bool front = found(&rows[MIRROR_FRONT]), fore = found(&rows[MIRROR_FORE]),
+               aft = found(&rows[MIRROR_AFT]);
 
     if (front && fore && aft) {
         return "[SCIP_LAYOUT_THREE_MIRRORS] = { \"three-mirrors\"";
@@ -205,7 +211,8 @@ static bool print_layout(const row_t rows[MIRROR_COUNT])
             groups[count++] = &rows[ascending[i]];
         }
     }
-    printf("\n%s, %uU, %uU, %uU, { ", layout_row(rows), groups[0]->first + MARGIN, groups[count - 1]->last - MARGIN, count);
+    printf("\n%s, %uU, %uU, %uU, { ", layout_row(rows), groups[0]->first + MARGIN,
+           groups[count - 1]->last - MARGIN, count);
     for (unsigned i = 0; i < count; i++) {
         printf("%s{ %uU, %uU }", i > 0 ? ", " : "", groups[i]->first + MARGIN, groups[i]->last - MARGIN);
     }
@@ -287,11 +294,16 @@ static bool read_number(const char *text, double largest, double *value)
 static bool read_option(order_t *order, int option, const char *argument)
 {
     switch (option) {
-    case OPT_HEIGHT: return read_number(argument, 3.0, &order->height_m) || complain("not a height, 0..3 m", argument);
+    case OPT_HEIGHT:
+        return read_number(argument, 3.0, &order->height_m) || complain("not a height, 0..3 m", argument);
     case OPT_TOLERANCE:
-        return read_number(argument, 1000.0, &order->tolerance_mm) || complain("not a tolerance, 0..1000 mm", argument);
-    case OPT_HELP: order->help = true; return true;
-    default: return false;
+        return read_number(argument, 1000.0, &order->tolerance_mm) ||
+               complain("not a tolerance, 0..1000 mm", argument);
+    case OPT_HELP:
+        order->help = true;
+        return true;
+    default:
+        return false;
     }
 }
 

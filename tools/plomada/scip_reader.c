@@ -56,8 +56,8 @@ static scip_kind_t kind_of(const octet_t *echo)
     return echo[1] == 'S' ? SCIP_SINGLE_2 : SCIP_SINGLE_3;
 }
 
-/* The request behind an echo. In an answer the count of a run is as asked for; in a frame it is what remains, so at least
- * one more was asked for. */
+/* The request behind an echo. In an answer the count of a run is as asked for; in a frame it is what remains,
+ * so at least one more was asked for. */
 static bool request_of(const octet_t *echo, size_t length, bool frame, scip_request_t *request)
 {
     const uint16_t cluster = number(echo + 10, 2);
@@ -71,11 +71,13 @@ static bool request_of(const octet_t *echo, size_t length, bool frame, scip_requ
     if (!scip_request_scan(request, kind_of(echo), &range)) {
         return false;
     }
-    memcpy(request->text, echo, length * sizeof echo[0]); /* cluster 00 means 01, and is echoed as it was sent */
+    memcpy(request->text, echo,
+           length * sizeof echo[0]); /* cluster 00 means 01, and is echoed as it was sent */
     return true;
 }
 
-/* A run's counter has fallen. That it has fallen to 00 at once rather says that the run was an endless one. */
+/* A run's counter has fallen. That it has fallen to 00 at once rather says that the run was an endless one.
+ */
 static bool count_follows(const scip_reader_t *reader, unsigned remaining)
 {
     return remaining + 1U == reader->remaining || (remaining > 0 && remaining < reader->remaining);
@@ -285,7 +287,8 @@ void scip_reader_print(const scip_reader_t *reader, FILE *out)
     for (int i = SCIP_DAMAGE_NONE + 1; i < SCIP_DAMAGE_COUNT; i++) {
         fprintf(out, " %s:%lu", damage_names[i], (unsigned long)reader->parser.counters.damaged[i]);
     }
-    fprintf(out, "\nanswers: %lu\nnotices: %lu\nskipped packets: %lu\n", totals->answers, totals->notices, totals->skipped);
+    fprintf(out, "\nanswers: %lu\nnotices: %lu\nskipped packets: %lu\n", totals->answers, totals->notices,
+            totals->skipped);
     if (totals->unfinished) {
         fprintf(out, "the last reply is unfinished\n");
     }

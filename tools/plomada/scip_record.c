@@ -15,30 +15,34 @@
 
 static const char usage[] =
     "usage: plomada scip record DEVICE FILE [OPTION]...\n\n"
-    "Brings the scanner on a serial port to SCIP2.0 and streaming (MS), from whatever state it is in, and records:\n"
+    "Brings the scanner on a serial port to SCIP2.0 and streaming (MS), from whatever state it is in, and "
+    "records:\n"
     "  FILE       what the sensor sent, raw\n"
     "  FILE.tx    what was sent to it\n"
     "  FILE.csv   when: dir,t_us,offset,length\n"
     "  FILE.md    the birth certificate: device, firmware, date, command\n\n"
     "  --seconds S    of scans (default 10); Ctrl-C ends it earlier\n"
-    "  --rate N       19200, 57600, 115200 or 250000 bit/s (default 115200; many RS232 adapters cannot do 250000)\n"
+    "  --rate N       19200, 57600, 115200 or 250000 bit/s (default 115200; many RS232 adapters cannot do "
+    "250000)\n"
     "  --steps A..B   0..768 (default 44..725)\n\n"
     "Exit status: 0 recorded, 1 no scans, 2 usage, the port or a file cannot be opened.\n";
 
 enum { OPT_SECONDS = 1, OPT_RATE, OPT_STEPS, OPT_HELP };
 
 static const struct option long_options[] = {
-    {"seconds", required_argument, NULL, OPT_SECONDS}, {"rate", required_argument, NULL, OPT_RATE},
-    {"steps", required_argument, NULL, OPT_STEPS},     {"help", no_argument, NULL, OPT_HELP},
+    {"seconds", required_argument, NULL, OPT_SECONDS},
+    {"rate", required_argument, NULL, OPT_RATE},
+    {"steps", required_argument, NULL, OPT_STEPS},
+    {"help", no_argument, NULL, OPT_HELP},
     {NULL, 0, NULL, 0},
 };
 
 /* Octets of one direction that came within a moment: one line of the time table. */
 typedef struct {
     bool from_sensor;
-    long long t_us;             /* of the first */
+    long long t_us; /* of the first */
     unsigned long offset;
-    size_t length;              /* 0: none */
+    size_t length; /* 0: none */
 } burst_t;
 
 typedef struct {
@@ -100,11 +104,17 @@ static bool read_steps(recording_t *recording, const char *text)
 static bool read_option(recording_t *recording, int option, const char *argument)
 {
     switch (option) {
-    case OPT_SECONDS: return read_seconds(recording, argument);
-    case OPT_RATE: return read_rate(recording, argument);
-    case OPT_STEPS: return read_steps(recording, argument);
-    case OPT_HELP: recording->help = true; return true;
-    default: return false;
+    case OPT_SECONDS:
+        return read_seconds(recording, argument);
+    case OPT_RATE:
+        return read_rate(recording, argument);
+    case OPT_STEPS:
+        return read_steps(recording, argument);
+    case OPT_HELP:
+        recording->help = true;
+        return true;
+    default:
+        return false;
     }
 }
 
@@ -150,7 +160,8 @@ static bool open_files(recording_t *recording)
     recording->tx = open_file(recording, ".tx");
     recording->csv = open_file(recording, ".csv");
     recording->certificate = open_file(recording, ".md");
-    return recording->rx != NULL && recording->tx != NULL && recording->csv != NULL && recording->certificate != NULL;
+    return recording->rx != NULL && recording->tx != NULL && recording->csv != NULL &&
+           recording->certificate != NULL;
 }
 
 static bool close_file(FILE *file)
@@ -162,9 +173,11 @@ static bool close_file(FILE *file)
 
 static bool close_files(recording_t *recording)
 {
-    const bool rx = close_file(recording->rx), tx = close_file(recording->tx), csv = close_file(recording->csv);
+    const bool rx = close_file(recording->rx), tx = close_file(recording->tx),
+               csv = close_file(recording->csv);
 
-    return (close_file(recording->certificate) && rx && tx && csv) || complain("not written whole", recording->path);
+    return (close_file(recording->certificate) && rx && tx && csv) ||
+           complain("not written whole", recording->path);
 }
 
 static void write_burst(recording_t *recording)
@@ -172,8 +185,8 @@ static void write_burst(recording_t *recording)
     const burst_t *burst = &recording->burst;
 
     if (burst->length > 0) {
-        fprintf(recording->csv, "%s,%lld,%lu,%zu\n", burst->from_sensor ? "rx" : "tx", burst->t_us, burst->offset,
-                burst->length);
+        fprintf(recording->csv, "%s,%lld,%lu,%zu\n", burst->from_sensor ? "rx" : "tx", burst->t_us,
+                burst->offset, burst->length);
     }
 }
 
@@ -207,14 +220,17 @@ static void write_certificate(const recording_t *recording, const char *date)
     fprintf(out, "# %s: birth certificate\n\n", name);
     fprintf(out, "| | |\n|---|---|\n");
     fprintf(out, "| recorded | %s, from `%s` |\n", date, scanner->device);
-    fprintf(out, "| by | `plomada scip record %s %s --seconds %g --rate %lu --steps %u..%u` |\n", scanner->device,
-            recording->path, recording->seconds, scanner->rate, scanner->first_step, scanner->last_step);
+    fprintf(out, "| by | `plomada scip record %s %s --seconds %g --rate %lu --steps %u..%u` |\n",
+            scanner->device, recording->path, recording->seconds, scanner->rate, scanner->first_step,
+            scanner->last_step);
     fprintf(out, "| rate of the stream | %lu bit/s |\n", scanner_rate());
     fprintf(out, "| octets | %lu from the sensor, %lu to it |\n", recording->rx_octets, recording->tx_octets);
     fprintf(out, "| scans | %lu good, %lu replies or scans damaged |\n", scanner_scans(), scanner_damaged());
     write_text(out, "The sensor says of itself (VV):", recording->version);
     write_text(out, "and of its limits (PP):", recording->parameters);
-    fprintf(out, "\nTo be filled in: what stood where, who held the sensor, under which licence this may be used.\n");
+    fprintf(
+        out,
+        "\nTo be filled in: what stood where, who held the sensor, under which licence this may be used.\n");
 }
 
 /* ---- the recording ---- */
@@ -257,7 +273,8 @@ static int run(recording_t *recording)
     if (!close_files(recording)) {
         return 2;
     }
-    fprintf(stderr, "scans: %lu\ndamaged: %lu\noctets: %lu\n", scanner_scans(), scanner_damaged(), recording->rx_octets);
+    fprintf(stderr, "scans: %lu\ndamaged: %lu\noctets: %lu\n", scanner_scans(), scanner_damaged(),
+            recording->rx_octets);
     return scanner_scans() > 0 ? 0 : 1;
 }
 

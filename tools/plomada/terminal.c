@@ -14,7 +14,7 @@ static struct {
     sim_time_t telemetry_at;
     char reset[16];
     sim_time_t reset_at;
-    char name[32];          /* of the command that waits for its answer */
+    char name[32]; /* of the command that waits for its answer */
     char answer[160];
     char rest[8192];
 } terminal;
@@ -28,7 +28,8 @@ static bool answers(const char *text, const char *verdict)
 {
     const size_t length = strlen(verdict);
 
-    return strncmp(text, verdict, length) == 0 && strncmp(text + length, terminal.name, strlen(terminal.name)) == 0 &&
+    return strncmp(text, verdict, length) == 0 &&
+           strncmp(text + length, terminal.name, strlen(terminal.name)) == 0 &&
            (text[length + strlen(terminal.name)] == ' ' || text[length + strlen(terminal.name)] == '\0');
 }
 
@@ -46,7 +47,8 @@ void terminal_line(const char *text)
     if (strlen(terminal.rest) + strlen(text) + 2 < sizeof terminal.rest) {
         strcat(strcat(terminal.rest, text), "\n");
     }
-    if (terminal.answer[0] == '\0' && terminal.name[0] != '\0' && (answers(text, "OK ") || answers(text, "ERR "))) {
+    if (terminal.answer[0] == '\0' && terminal.name[0] != '\0' &&
+        (answers(text, "OK ") || answers(text, "ERR "))) {
         snprintf(terminal.answer, sizeof terminal.answer, "%s", text);
     }
 }
@@ -69,7 +71,7 @@ bool terminal_ask(const char *command, char *answer, size_t size)
 
     snprintf(line, sizeof line, "#%s", command);
     if (strncmp(command, "GET ", 4) == 0) {
-        command += 4;   /* answered by the parameter's name */
+        command += 4; /* answered by the parameter's name */
     }
     snprintf(terminal.name, sizeof terminal.name, "%.*s", (int)strcspn(command, " "), command);
     terminal.answer[0] = terminal.rest[0] = '\0';

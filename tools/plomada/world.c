@@ -9,16 +9,17 @@
 
 #define IMU_RATE 57600UL
 #define RADIO_RATE 9600UL
-#define QUIET (3 * SIM_MS)          /* an adapter has sent what it took; then its rate may change */
+#define QUIET (3 * SIM_MS) /* an adapter has sent what it took; then its rate may change */
 #define PWM_PERIOD (13600 * SIM_US)
-#define SHORTEST_DELAY (8 * SIM_MS) /* a pulse's eight octets at 9600: a line before that belongs to another cycle */
+#define SHORTEST_DELAY \
+    (8 * SIM_MS) /* a pulse's eight octets at 9600: a line before that belongs to another cycle */
 #define DELAYS_MAX 4096
 #define PULSE_PATIENCE (500 * SIM_MS)
 #define LAG_THAT_COUNTS (30 * SIM_MS)
 
 typedef struct {
     port_t port;
-    unsigned long rate;         /* set at the adapter */
+    unsigned long rate; /* set at the adapter */
     sim_time_t written;
     bool muted;
     unsigned damage_one_in, damage_count;
@@ -36,11 +37,11 @@ static struct {
     char line[160];
     size_t length;
     bool overlong;
-    bool whole;                 /* a line has ended: what comes now was heard from its beginning */
+    bool whole; /* a line has ended: what comes now was heard from its beginning */
     bool held;
     double pulse_us;
     sim_time_t pulse_at;
-    bool scan_waits;            /* for the pulse that follows from it */
+    bool scan_waits; /* for the pulse that follows from it */
     unsigned last_octet;
     sim_time_t scan_end;
     sim_time_t lagged_at, worst_lag;
@@ -150,7 +151,8 @@ static bool means_something(const char *text)
 
     for (size_t i = 0; i < sizeof begins / sizeof begins[0]; i++) {
         if (strncmp(text, begins[i], strlen(begins[i])) == 0) {
-            return strspn(text, " !\"#$%&'()*+,-./0123456789:;<=>?@ABCDEFGHIJKLMNOPQRSTUVWXYZ[\\]^_`abcdefghijklmnopqrstuvwxyz"
+            return strspn(text, " !\"#$%&'()*+,-./"
+                                "0123456789:;<=>?@ABCDEFGHIJKLMNOPQRSTUVWXYZ[\\]^_`abcdefghijklmnopqrstuvwxyz"
                                 "{|}~") == strlen(text);
         }
     }
@@ -205,7 +207,8 @@ static razor_truth_t motion(void *context)
 /* The pin repeats its pulse until it is told another; who hears nothing more knows of no pin. */
 static void pwm_period(void *context)
 {
-    if (world.pulse_us > 0.0 && !world.held && !world_silent() && timeline_now() - world.pulse_at >= PWM_PERIOD) {
+    if (world.pulse_us > 0.0 && !world.held && !world_silent() &&
+        timeline_now() - world.pulse_at >= PWM_PERIOD) {
         quadrotor_pulse(world.quadrotor, (sim_time_t)(world.pulse_us * 1000.0));
     }
     timeline_after(PWM_PERIOD, pwm_period, context);

@@ -1,5 +1,6 @@
-/* The world of a real board: scanner, IMU and airframe as models, the operator's terminal, each behind a serial adapter of
- * the PC, in real time. The throttle pulse comes back as lines of `#STREAM PULSE`. One per process. */
+/* The world of a real board: scanner, IMU and airframe as models, the operator's terminal, each behind a
+ * serial adapter of the PC, in real time. The throttle pulse comes back as lines of `#STREAM PULSE`. One per
+ * process. */
 #ifndef TOOLS_PLOMADA_WORLD_H
 #define TOOLS_PLOMADA_WORLD_H
 
@@ -9,15 +10,15 @@
 #include "sim/board.h"
 
 typedef struct {
-    const char *device[BOARD_WIRES];    /* serial ports */
+    const char *device[BOARD_WIRES]; /* serial ports */
     unsigned long seed;
     terrain_t terrain;
     quadrotor_config_t quadrotor;
-    void (*line)(const char *text);     /* each line that the board sends, without its end; never a pulse's */
+    void (*line)(const char *text); /* each line that the board sends, without its end; never a pulse's */
 } world_config_t;
 
-/* NULL when all three ports are open (then world_close()), else what failed, on wire *failed. Scanner and IMU have power.
- * SIGINT and SIGTERM end every wait below. */
+/* NULL when all three ports are open (then world_close()), else what failed, on wire *failed. Scanner and IMU
+ * have power. SIGINT and SIGTERM end every wait below. */
 const char *world_open(const world_config_t *config, board_wire_t *failed);
 void world_close(void);
 
@@ -31,23 +32,23 @@ void world_type(const char *line);
 double world_pulse_us(sim_time_t *when);
 /* No pulse was told for half a second in which this PC kept up with the wall clock. */
 bool world_silent(void);
-/* The longest time that this PC was behind the wall clock since world_delay_reset(): beyond WORLD_LAG_MAX what was flown was
- * not flown in real time. */
+/* The longest time that this PC was behind the wall clock since world_delay_reset(): beyond WORLD_LAG_MAX
+ * what was flown was not flown in real time. */
 sim_time_t world_worst_lag(void);
 #define WORLD_LAG_MAX (150 * SIM_MS)
 
 /* What the wires looked like from here. */
 typedef struct {
-    bool lost;                  /* the port is gone */
+    bool lost; /* the port is gone */
     sim_time_t lost_at;
     unsigned long octets_in, octets_out;
-    unsigned long refused;      /* octets that the port did not take: it is too slow, or nobody is behind it */
-    unsigned long strange;      /* lines or octets from the board that mean nothing */
+    unsigned long refused; /* octets that the port did not take: it is too slow, or nobody is behind it */
+    unsigned long strange; /* lines or octets from the board that mean nothing */
 } world_wire_t;
 world_wire_t world_wire(board_wire_t wire);
 
-/* From the last octet of a scan on the wire to the line of the pulse that follows from it, ms, over the run: median and 95 %;
- * false when there were fewer than five. */
+/* From the last octet of a scan on the wire to the line of the pulse that follows from it, ms, over the run:
+ * median and 95 %; false when there were fewer than five. */
 bool world_delay_ms(double *median, double *most);
 void world_delay_reset(void);
 
@@ -57,7 +58,8 @@ void world_hold(bool on);
 quadrotor_t *world_quadrotor(void);
 urg04lx_t *world_laser(void);
 razor9dof_t *world_imu(void);
-/* Octets from the scanner or IMU are held back (nothing on that wire), or every so many-th is damaged; 0: none. */
+/* Octets from the scanner or IMU are held back (nothing on that wire), or every so many-th is damaged; 0:
+ * none. */
 void world_mute(board_wire_t wire, bool on);
 void world_damage(board_wire_t wire, unsigned one_in);
 

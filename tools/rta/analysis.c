@@ -3,7 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-/* A response is given up beyond so many of the longest periods or deadlines, jobs of a busy window, or steps of one. */
+/* A response is given up beyond so many of the longest periods or deadlines, jobs of a busy window, or steps
+ * of one. */
 #define SEARCH_PERIODS 16
 #define SEARCH_JOBS 10000
 #define SEARCH_STEPS 100000
@@ -55,8 +56,8 @@ static rta_ps_t own_horizon(const rta_table_t *table, int row, rta_ps_t deadline
     return deadline;
 }
 
-/* Annex IV counts its k-th interrupt up to the k-th task's deadline at most (the first up to the second's, those after
- * the last task's up to the last's). */
+/* Annex IV counts its k-th interrupt up to the k-th task's deadline at most (the first up to the second's,
+ * those after the last task's up to the last's). */
 static rta_ps_t frozen_horizon(const rta_table_t *table, int row, rta_ps_t deadline)
 {
     int task[RTA_ROWS_MAX];
@@ -73,7 +74,8 @@ static rta_ps_t frozen_horizon(const rta_table_t *table, int row, rta_ps_t deadl
     return fmin(deadline, table->row[task[k < last ? k : last]].deadline);
 }
 
-static rta_ps_t demand(const rta_table_t *table, const rta_options_t *options, int task, horizon_t horizon, bool switching)
+static rta_ps_t demand(const rta_table_t *table, const rta_options_t *options, int task, horizon_t horizon,
+                       bool switching)
 {
     const rta_row_t *self = &table->row[task];
     rta_ps_t sum = self->blocking + self->blockings * options->switches;
@@ -111,8 +113,8 @@ static bool comes_in_frames(const rta_row_t *row, const rta_options_t *options)
     return options->bursts && row->burst_period > 0.0;
 }
 
-/* Octets of a frame keep their distance on the wire, and wait before they interrupt for the row's jitter at most; whole
- * frames may come late. */
+/* Octets of a frame keep their distance on the wire, and wait before they interrupt for the row's jitter at
+ * most; whole frames may come late. */
 static double arrivals(const rta_row_t *row, const rta_options_t *options, rta_ps_t window)
 {
     rta_ps_t waited = window + row->jitter;
@@ -124,10 +126,12 @@ static double arrivals(const rta_row_t *row, const rta_options_t *options, rta_p
     }
     frames = floor(wide / row->burst_period);
     return fmin(ceil(waited / row->period),
-                frames * row->burst_n + fmin(row->burst_n, ceil((wide - frames * row->burst_period) / row->period)));
+                frames * row->burst_n +
+                    fmin(row->burst_n, ceil((wide - frames * row->burst_period) / row->period)));
 }
 
-/* The same for a stream whose frame ends as the window begins: what waited of it, then nothing until the next frame. */
+/* The same for a stream whose frame ends as the window begins: what waited of it, then nothing until the next
+ * frame. */
 static double arrivals_after_frame(const rta_row_t *row, const rta_options_t *options, rta_ps_t window)
 {
     double last = fmin(row->burst_n, 1.0 + floor(row->jitter / row->period));
@@ -138,19 +142,20 @@ static double arrivals_after_frame(const rta_row_t *row, const rta_options_t *op
 
 static double rate(const rta_row_t *row, const rta_options_t *options)
 {
-    return comes_in_frames(row, options) ? fmin(1.0 / row->period, row->burst_n / row->burst_period) : 1.0 / row->period;
+    return comes_in_frames(row, options) ? fmin(1.0 / row->period, row->burst_n / row->burst_period)
+                                         : 1.0 / row->period;
 }
 
 /* A task's job, or a chain that ends with it. */
 typedef struct {
     const rta_row_t *self;
-    const rta_row_t *frame;     /* stream whose frame ends at the release; NULL: none */
+    const rta_row_t *frame; /* stream whose frame ends at the release; NULL: none */
     rta_ps_t blocked;
 } job_t;
 
 /* The smallest window with window = own + interference(window); INFINITY beyond the limit. */
-static rta_ps_t completion(const rta_table_t *table, const rta_options_t *options, const job_t *job, rta_ps_t own,
-                           rta_ps_t limit)
+static rta_ps_t completion(const rta_table_t *table, const rta_options_t *options, const job_t *job,
+                           rta_ps_t own, rta_ps_t limit)
 {
     rta_ps_t window = own;
 
@@ -161,7 +166,8 @@ static rta_ps_t completion(const rta_table_t *table, const rta_options_t *option
             const rta_row_t *row = &table->row[i];
 
             if (goes_before(row, job->self)) {
-                double count = row == job->frame ? arrivals_after_frame(row, options, window) : arrivals(row, options, window);
+                double count = row == job->frame ? arrivals_after_frame(row, options, window)
+                                                 : arrivals(row, options, window);
 
                 sum += count * (job_cost(row, options) + job_switches(row, options));
             }
@@ -185,7 +191,8 @@ static rta_ps_t search_limit(const rta_table_t *table)
 }
 
 /* The response if it is at most `limit`, else INFINITY. */
-static rta_ps_t response(const rta_table_t *table, const rta_options_t *options, const job_t *job, rta_ps_t limit)
+static rta_ps_t response(const rta_table_t *table, const rta_options_t *options, const job_t *job,
+                         rta_ps_t limit)
 {
     const rta_row_t *self = job->self;
     rta_ps_t cost = job_cost(self, options) + options->switches;
@@ -234,7 +241,8 @@ static bool names(const char *list, const char *name, size_t length)
     return false;
 }
 
-static bool named_before(const rta_table_t *table, const int *member, int index, const char *name, size_t length)
+static bool named_before(const rta_table_t *table, const int *member, int index, const char *name,
+                         size_t length)
 {
     for (int i = 0; i < index; i++) {
         if (names(table->row[member[i]].blocked_by, name, length)) {
@@ -262,7 +270,8 @@ static int blockers(const rta_table_t *table, const int *member, int members)
     return count;
 }
 
-static rta_ps_t chain_blocking(const rta_table_t *table, const rta_options_t *options, const int *member, int members)
+static rta_ps_t chain_blocking(const rta_table_t *table, const rta_options_t *options, const int *member,
+                               int members)
 {
     rta_ps_t sum = 0.0, longest = 0.0;
     bool told = true;
@@ -326,7 +335,8 @@ bool rta_holds(const rta_table_t *table, const rta_options_t *options)
     return late_task(table, options) < 0;
 }
 
-static int late_task_scaled(const rta_table_t *table, const rta_options_t *options, double factor, bool switches_too)
+static int late_task_scaled(const rta_table_t *table, const rta_options_t *options, double factor,
+                            bool switches_too)
 {
     rta_table_t grown = *table;
     rta_options_t dearer = *options;
@@ -342,7 +352,8 @@ static int late_task_scaled(const rta_table_t *table, const rta_options_t *optio
     return late_task(&grown, &dearer);
 }
 
-bool rta_holds_scaled(const rta_table_t *table, const rta_options_t *options, double factor, bool switches_too)
+bool rta_holds_scaled(const rta_table_t *table, const rta_options_t *options, double factor,
+                      bool switches_too)
 {
     return late_task_scaled(table, options, factor, switches_too) < 0;
 }

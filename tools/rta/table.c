@@ -7,7 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
-#define HEADER_NEEDED                                                                                                       \
+#define HEADER_NEEDED \
     "the first line must be name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings"
 #define CELLS_MAX 16
 #define CELL_SIZE (RTA_NAMES_MAX + 1)
@@ -256,7 +256,8 @@ static bool check_row(const rta_row_t *row, rta_error_t *error)
            fail(error, row->name, "burst_n and burst_period_ms go together");
 }
 
-static bool read_row(rta_table_t *table, const header_t *header, const cell_t *cells, int count, rta_error_t *error)
+static bool read_row(rta_table_t *table, const header_t *header, const cell_t *cells, int count,
+                     rta_error_t *error)
 {
     rta_row_t row = {.kind = RTA_HWI, .burst_n = NO_BURST};
 
@@ -298,7 +299,8 @@ static bool read_line(rta_table_t *table, header_t *header, const char *line, rt
     if (count < 0) {
         return fail(error, "", "a cell is too long, or there are too many");
     }
-    return header->columns == 0 ? read_header(header, cells, count, error) : read_row(table, header, cells, count, error);
+    return header->columns == 0 ? read_header(header, cells, count, error)
+                                : read_row(table, header, cells, count, error);
 }
 
 static bool check_names(const rta_table_t *table, rta_error_t *error)
@@ -344,13 +346,15 @@ bool rta_table_read(rta_table_t *table, const char *text, rta_error_t *error)
     if (header.columns == 0) {
         return fail(error, "", HEADER_NEEDED);
     }
-    return (rta_tasks(table, index) > 0 || fail(error, "", "no task in the table")) && check_names(table, error);
+    return (rta_tasks(table, index) > 0 || fail(error, "", "no task in the table")) &&
+           check_names(table, error);
 }
 
 int rta_table_find(const rta_table_t *table, const char *name, int length)
 {
     for (int i = 0; i < table->rows; i++) {
-        if ((int)strlen(table->row[i].name) == length && strncmp(table->row[i].name, name, (size_t)length) == 0) {
+        if ((int)strlen(table->row[i].name) == length &&
+            strncmp(table->row[i].name, name, (size_t)length) == 0) {
             return i;
         }
     }

@@ -1,6 +1,6 @@
-/* -include this with a compiler for a machine of 32 bits, for sources that went through tests/port/avr/cells.py: what lives
- * in one cell of a C28x (char, an octet, bool) takes 16 bits here too, so that half the bytes of a variable or of a stack
- * frame are its cells. */
+/* -include this with a compiler for a machine of 32 bits, for sources that went through
+ * tests/port/avr/cells.py: what lives in one cell of a C28x (char, an octet, bool) takes 16 bits here too, so
+ * that half the bytes of a variable or of a stack frame are its cells. */
 #ifndef TOOLS_SIZE_CELLS_H
 #define TOOLS_SIZE_CELLS_H
 

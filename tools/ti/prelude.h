@@ -1,4 +1,5 @@
-/* Lets the host's gcc read TI's headers for the C28x, syntax and types only. Sizes stay the host's: this is no port. */
+/* Lets the host's gcc read TI's headers for the C28x, syntax and types only. Sizes stay the host's: this is
+ * no port. */
 #ifndef TOOLS_TI_PRELUDE_H
 #define TOOLS_TI_PRELUDE_H
 

@@ -56,8 +56,8 @@ void chip_restart(void)
 uint32_t chip_register(const char *name)
 {
     uint32_t value;
-    if (sysctl_register(name, &value) || gpio_register(name, &value) || sci_register(name, &value)
-        || epwm_register(name, &value) || watchdog_register(name, &value)) {
+    if (sysctl_register(name, &value) || gpio_register(name, &value) || sci_register(name, &value) ||
+        epwm_register(name, &value) || watchdog_register(name, &value)) {
         return value;
     }
     chip_unmodelled(name);

@@ -1,5 +1,5 @@
-/* The board, as TI's device.h describes it when _LAUNCHXL_F28377S is defined: 10 MHz crystal, SYSCLK 200 MHz, LEDs. The
- * chip model is this board always; on the target a build without the define is for another one. */
+/* The board, as TI's device.h describes it when _LAUNCHXL_F28377S is defined: 10 MHz crystal, SYSCLK 200 MHz,
+ * LEDs. The chip model is this board always; on the target a build without the define is for another one. */
 #ifndef DEVICE_H
 #define DEVICE_H
 

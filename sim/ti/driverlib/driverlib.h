@@ -1,5 +1,5 @@
-/* Stand-in for TI's C2000Ware driverlib (f2837xs): the subset that this firmware uses, same names, types and values, on
- * models of the peripherals in virtual time (chip.h). No call takes virtual time. */
+/* Stand-in for TI's C2000Ware driverlib (f2837xs): the subset that this firmware uses, same names, types and
+ * values, on models of the peripherals in virtual time (chip.h). No call takes virtual time. */
 #ifndef DRIVERLIB_H
 #define DRIVERLIB_H
 

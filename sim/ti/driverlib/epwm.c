@@ -23,7 +23,7 @@ typedef struct {
 static struct {
     uint32_t tbctl, tbphs, cmpctl, aqctla;
     shadowed_t tbprd, cmpa;
-    uint32_t counter;   /* at the anchor; the actions for this value are done */
+    uint32_t counter; /* at the anchor; the actions for this value are done */
     sim_time_t anchor;
     bool counting;
     bool level;
@@ -46,8 +46,8 @@ bool epwm_level(void)
 
 static bool may_count(void)
 {
-    return sysctl_clocked(SYSCTL_PERIPH_CLK_EPWM2) && sysctl_clocked(SYSCTL_PERIPH_CLK_TBCLKSYNC)
-        && (pwm.tbctl & TBCTL_CTRMODE) == EPWM_COUNTER_MODE_UP && pwm.tbprd.shadow > 0;
+    return sysctl_clocked(SYSCTL_PERIPH_CLK_EPWM2) && sysctl_clocked(SYSCTL_PERIPH_CLK_TBCLKSYNC) &&
+           (pwm.tbctl & TBCTL_CTRMODE) == EPWM_COUNTER_MODE_UP && pwm.tbprd.shadow > 0;
 }
 
 static int64_t clocks_per_tick(void)
@@ -75,10 +75,17 @@ static bool compare_shadowed(void)
 static void act(uint32_t event)
 {
     switch (pwm.aqctla >> event & 3U) {
-    case EPWM_AQ_OUTPUT_LOW: pwm.level = false; break;
-    case EPWM_AQ_OUTPUT_HIGH: pwm.level = true; break;
-    case EPWM_AQ_OUTPUT_TOGGLE: pwm.level = !pwm.level; break;
-    default: break;
+    case EPWM_AQ_OUTPUT_LOW:
+        pwm.level = false;
+        break;
+    case EPWM_AQ_OUTPUT_HIGH:
+        pwm.level = true;
+        break;
+    case EPWM_AQ_OUTPUT_TOGGLE:
+        pwm.level = !pwm.level;
+        break;
+    default:
+        break;
     }
 }
 
@@ -114,8 +121,8 @@ void epwm_catch_up(void)
 {
     while (pwm.counting) {
         const bool match = match_ahead();
-        const sim_time_t when =
-            match ? pwm.anchor + ticks_ns((int64_t)pwm.cmpa.active - pwm.counter) : next_zero();
+        const sim_time_t when = match ? pwm.anchor + ticks_ns((int64_t)pwm.cmpa.active - pwm.counter)
+                                      : next_zero();
         if (when > timeline_now()) {
             return;
         }
@@ -156,8 +163,8 @@ void epwm_clocks_change(void)
 {
     epwm_catch_up();
     if (pwm.counting) {
-        const int64_t ticks =
-            (timeline_now() - pwm.anchor) * (int64_t)sysctl_epwmclk_hz() / (clocks_per_tick() * 1000000000);
+        const int64_t ticks = (timeline_now() - pwm.anchor) * (int64_t)sysctl_epwmclk_hz() /
+                              (clocks_per_tick() * 1000000000);
         pwm.counter += (uint32_t)ticks;
         pwm.anchor += ticks_ns(ticks);
     }
@@ -191,7 +198,8 @@ static void write_tbctl(uint32_t base, uint32_t mask, uint32_t bits)
     }
 }
 
-void EPWM_setClockPrescaler(uint32_t base, EPWM_ClockDivider prescaler, EPWM_HSClockDivider highSpeedPrescaler)
+void EPWM_setClockPrescaler(uint32_t base, EPWM_ClockDivider prescaler,
+                            EPWM_HSClockDivider highSpeedPrescaler)
 {
     write_tbctl(base, TBCTL_DIVIDERS,
                 (uint32_t)prescaler << TBCTL_CLKDIV_S | (uint32_t)highSpeedPrescaler << TBCTL_HSPCLKDIV_S);
@@ -290,8 +298,8 @@ void EPWM_setCounterCompareValue(uint32_t base, EPWM_CounterCompareModule compMo
 void EPWM_setActionQualifierAction(uint32_t base, EPWM_ActionQualifierOutputModule epwmOutput,
                                    EPWM_ActionQualifierOutput output, EPWM_ActionQualifierOutputEvent event)
 {
-    if (epwmOutput != EPWM_AQ_OUTPUT_A
-        || (event != EPWM_AQ_OUTPUT_ON_TIMEBASE_ZERO && event != EPWM_AQ_OUTPUT_ON_TIMEBASE_UP_CMPA)) {
+    if (epwmOutput != EPWM_AQ_OUTPUT_A ||
+        (event != EPWM_AQ_OUTPUT_ON_TIMEBASE_ZERO && event != EPWM_AQ_OUTPUT_ON_TIMEBASE_UP_CMPA)) {
         chip_unmodelled("only output A, at zero and at compare A going up");
     }
     if (writable(base)) {
@@ -305,8 +313,8 @@ bool epwm_register(const char *name, uint32_t *value)
         const char *name;
         uint32_t value;
     } words[] = {
-        {"EPWM2.TBCTL", pwm.tbctl}, {"EPWM2.TBPRD", pwm.tbprd.shadow}, {"EPWM2.TBPHS", pwm.tbphs},
-        {"EPWM2.CMPA", pwm.cmpa.shadow}, {"EPWM2.CMPCTL", pwm.cmpctl}, {"EPWM2.AQCTLA", pwm.aqctla},
+        {"EPWM2.TBCTL", pwm.tbctl},      {"EPWM2.TBPRD", pwm.tbprd.shadow}, {"EPWM2.TBPHS", pwm.tbphs},
+        {"EPWM2.CMPA", pwm.cmpa.shadow}, {"EPWM2.CMPCTL", pwm.cmpctl},      {"EPWM2.AQCTLA", pwm.aqctla},
     };
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
         if (strcmp(name, words[i].name) == 0) {

@@ -1,5 +1,6 @@
-/* ePWM2: the used subset of TI's driverlib header of this name, plain functions. Modelled: up-count, shadow loads at
- * zero, compare A, output A, actions at zero and at compare A going up. Anything else aborts with a message. */
+/* ePWM2: the used subset of TI's driverlib header of this name, plain functions. Modelled: up-count, shadow
+ * loads at zero, compare A, output A, actions at zero and at compare A going up. Anything else aborts with a
+ * message. */
 #ifndef EPWM_H
 #define EPWM_H
 
@@ -76,7 +77,8 @@ typedef enum {
     EPWM_AQ_OUTPUT_ON_TIMEBASE_DOWN_CMPB = 10
 } EPWM_ActionQualifierOutputEvent;
 
-void EPWM_setClockPrescaler(uint32_t base, EPWM_ClockDivider prescaler, EPWM_HSClockDivider highSpeedPrescaler);
+void EPWM_setClockPrescaler(uint32_t base, EPWM_ClockDivider prescaler,
+                            EPWM_HSClockDivider highSpeedPrescaler);
 void EPWM_setEmulationMode(uint32_t base, EPWM_EmulationMode emulationMode);
 void EPWM_setTimeBasePeriod(uint32_t base, uint16_t periodCount);
 void EPWM_setTimeBaseCounter(uint32_t base, uint16_t count);

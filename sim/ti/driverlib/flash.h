@@ -7,10 +7,7 @@
 
 #include "inc/hw_memmap.h"
 
-typedef enum {
-    FLASH_BANK0_WRAPPER = 0x2,
-    FLASH_BANK1_WRAPPER = 0x1
-} Flash_PumpOwnership;
+typedef enum { FLASH_BANK0_WRAPPER = 0x2, FLASH_BANK1_WRAPPER = 0x1 } Flash_PumpOwnership;
 
 void Flash_claimPumpSemaphore(uint32_t pumpSemBase, Flash_PumpOwnership wrapper);
 void Flash_releasePumpSemaphore(uint32_t pumpSemBase);

@@ -200,8 +200,12 @@ bool gpio_register(const char *name, uint32_t *value)
         const char *name;
         uint32_t value;
     } fields[] = {
-        {"MUX", pins[pin].mux}, {"DIR", pins[pin].direction}, {"PUD", pins[pin].pud},
-        {"QSEL", pins[pin].qualification}, {"QUALPRD", sample_dividers[pin / GROUP]}, {"DAT", chip_pin(pin)},
+        {"MUX", pins[pin].mux},
+        {"DIR", pins[pin].direction},
+        {"PUD", pins[pin].pud},
+        {"QSEL", pins[pin].qualification},
+        {"QUALPRD", sample_dividers[pin / GROUP]},
+        {"DAT", chip_pin(pin)},
     };
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
         if (strcmp(field, fields[i].name) == 0) {

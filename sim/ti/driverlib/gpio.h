@@ -1,4 +1,5 @@
-/* GPIO pins: the used subset of TI's driverlib header of this name, plain functions. Pins are GPIO numbers. */
+/* GPIO pins: the used subset of TI's driverlib header of this name, plain functions. Pins are GPIO numbers.
+ */
 #ifndef GPIO_H
 #define GPIO_H
 

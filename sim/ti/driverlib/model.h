@@ -10,8 +10,8 @@
 /* Says what the model does not know, then aborts. */
 _Noreturn void chip_unmodelled(const char *what);
 
-/* Clocks. A failed crystal makes SysCtl_setClock() return false and SYSCLK the 10 MHz of the internal oscillator. Lasts
- * until chip_reset(). */
+/* Clocks. A failed crystal makes SysCtl_setClock() return false and SYSCLK the 10 MHz of the internal
+ * oscillator. Lasts until chip_reset(). */
 void sysctl_reset(void);
 void sysctl_fail_crystal(void);
 uint32_t sysctl_sysclk_hz(void);

@@ -1,5 +1,5 @@
-/* Pin functions, as in TI's header of this name: offset of the mux register << 16 | shift << 8 | mux value. Only the
- * pins of this project and the alternatives of its three UARTs on the LaunchPad. */
+/* Pin functions, as in TI's header of this name: offset of the mux register << 16 | shift << 8 | mux value.
+ * Only the pins of this project and the alternatives of its three UARTs on the LaunchPad. */
 #ifndef PIN_MAP_H
 #define PIN_MAP_H
 

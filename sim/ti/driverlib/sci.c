@@ -31,9 +31,9 @@ typedef struct {
 typedef struct {
     uint16_t ccr, ctl1, brr, rxst, fftx, ffrx; /* without the FIFO levels */
     fifo_t receive, transmit;
-    bool receive_line, transmit_line;   /* to the interrupt controller, which takes edges */
-    double listening_from;  /* a start bit counts from then on */
-    bool line_low;          /* held low from outside */
+    bool receive_line, transmit_line; /* to the interrupt controller, which takes edges */
+    double listening_from;            /* a start bit counts from then on */
+    bool line_low;                    /* held low from outside */
     timeline_id_t low_event;
     bool shifting;
     unsigned shift;
@@ -50,10 +50,24 @@ typedef struct {
 } sci_t;
 
 static const wiring_t WIRING[PORT_COUNT] = {
-    {SCIA_BASE, SYSCTL_PERIPH_CLK_SCIA, INT_SCIA_RX >> 16, INT_SCIA_TX >> 16,
-     {GPIO_64_SCIRXDA, GPIO_43_SCIRXDA, GPIO_85_SCIRXDA}, {GPIO_65_SCITXDA, GPIO_42_SCITXDA, GPIO_84_SCITXDA}},
-    {SCIB_BASE, SYSCTL_PERIPH_CLK_SCIB, INT_SCIB_RX >> 16, INT_SCIB_TX >> 16, {GPIO_87_SCIRXDB}, {GPIO_86_SCITXDB}},
-    {SCIC_BASE, SYSCTL_PERIPH_CLK_SCIC, INT_SCIC_RX >> 16, INT_SCIC_TX >> 16, {GPIO_90_SCIRXDC}, {GPIO_89_SCITXDC}},
+    {SCIA_BASE,
+     SYSCTL_PERIPH_CLK_SCIA,
+     INT_SCIA_RX >> 16,
+     INT_SCIA_TX >> 16,
+     {GPIO_64_SCIRXDA, GPIO_43_SCIRXDA, GPIO_85_SCIRXDA},
+     {GPIO_65_SCITXDA, GPIO_42_SCITXDA, GPIO_84_SCITXDA}},
+    {SCIB_BASE,
+     SYSCTL_PERIPH_CLK_SCIB,
+     INT_SCIB_RX >> 16,
+     INT_SCIB_TX >> 16,
+     {GPIO_87_SCIRXDB},
+     {GPIO_86_SCITXDB}},
+    {SCIC_BASE,
+     SYSCTL_PERIPH_CLK_SCIC,
+     INT_SCIC_RX >> 16,
+     INT_SCIC_TX >> 16,
+     {GPIO_90_SCIRXDC},
+     {GPIO_89_SCITXDC}},
 };
 
 static sci_t ports[PORT_COUNT];
@@ -85,14 +99,14 @@ static double bit_ns(const sci_t *sci)
 
 static bool running(const sci_t *sci, uint16_t enable)
 {
-    return clocked(sci) && (sci->r.ctl1 & SCI_CTL1_SWRESET) != 0 && (sci->r.ctl1 & enable) != 0
-        && (sci->r.fftx & SCI_FFTX_SCIFFENA) != 0 && (sci->r.fftx & SCI_FFTX_SCIRST) != 0;
+    return clocked(sci) && (sci->r.ctl1 & SCI_CTL1_SWRESET) != 0 && (sci->r.ctl1 & enable) != 0 &&
+           (sci->r.fftx & SCI_FFTX_SCIFFENA) != 0 && (sci->r.fftx & SCI_FFTX_SCIRST) != 0;
 }
 
 static bool receiving(const sci_t *sci)
 {
-    return running(sci, SCI_CTL1_RXENA) && (sci->r.ffrx & SCI_FFRX_RXFIFORESET) != 0
-        && (sci->r.rxst & SCI_RXST_BRKDT) == 0;
+    return running(sci, SCI_CTL1_RXENA) && (sci->r.ffrx & SCI_FFRX_RXFIFORESET) != 0 &&
+           (sci->r.rxst & SCI_RXST_BRKDT) == 0;
 }
 
 static bool transmitting(const sci_t *sci)
@@ -143,7 +157,8 @@ static bool error_pending(const registers_t *r)
     return (r->rxst & SCI_RXST_RXERROR) != 0 && (r->ctl1 & SCI_CTL1_RXERRINTENA) != 0;
 }
 
-/* The FIFO's receive interrupt and the receive errors share one line: while one holds it up, the other makes no edge. */
+/* The FIFO's receive interrupt and the receive errors share one line: while one holds it up, the other makes
+ * no edge. */
 static void update_interrupts(sci_t *sci)
 {
     registers_t *r = &sci->r;
@@ -156,7 +171,8 @@ static void update_interrupts(sci_t *sci)
     }
     const uint16_t rxff = SCI_FFRX_RXFFINT | SCI_FFRX_RXFFIENA;
     const uint16_t txff = SCI_FFTX_TXFFINT | SCI_FFTX_TXFFIENA;
-    line(&r->receive_line, (r->ffrx & (rxff | SCI_FFRX_RXFFOVF)) == rxff || error_pending(r), sci->wiring->receive_interrupt);
+    line(&r->receive_line, (r->ffrx & (rxff | SCI_FFRX_RXFFOVF)) == rxff || error_pending(r),
+         sci->wiring->receive_interrupt);
     line(&r->transmit_line, (r->fftx & txff) == txff, sci->wiring->transmit_interrupt);
 }
 
@@ -186,7 +202,8 @@ static void start_shifting(sci_t *sci)
     r->shift_event = timeline_after(llround(FRAME_BITS * r->shift_bit_ns), shifted_out, sci);
 }
 
-/* The line goes to mark at once: the far end reads ones for the rest, or nothing when no whole start bit was out. */
+/* The line goes to mark at once: the far end reads ones for the rest, or nothing when no whole start bit was
+ * out. */
 static void cut_short(sci_t *sci)
 {
     registers_t *r = &sci->r;
@@ -272,8 +289,8 @@ static double longest_low(const frame_t *frame)
     return longest * frame->bit;
 }
 
-/* Whether every sample of a frame falls into its own bit: then the receiver reads what was sent, and is not asked for each
- * of them. Up to the mismatch it tolerates, 9.5 bits are off by less than half a bit. */
+/* Whether every sample of a frame falls into its own bit: then the receiver reads what was sent, and is not
+ * asked for each of them. Up to the mismatch it tolerates, 9.5 bits are off by less than half a bit. */
 static bool clean(const sci_t *sci, const frame_t *frame)
 {
     return sci->r.listening_from <= frame->start && fabs(frame->bit / bit_ns(sci) - 1.0) <= MAX_MISMATCH;
@@ -423,17 +440,25 @@ static uint16_t read_register(const sci_t *sci, uint32_t offset)
 {
     const registers_t *r = &sci->r;
     switch (offset) {
-    case SCI_O_CCR: return r->ccr;
-    case SCI_O_CTL1: return r->ctl1;
-    case SCI_O_HBAUD: return r->brr >> 8;
-    case SCI_O_LBAUD: return r->brr & 0xFFU;
+    case SCI_O_CCR:
+        return r->ccr;
+    case SCI_O_CTL1:
+        return r->ctl1;
+    case SCI_O_HBAUD:
+        return r->brr >> 8;
+    case SCI_O_LBAUD:
+        return r->brr & 0xFFU;
     case SCI_O_CTL2:
-        return (uint16_t)((r->transmit.count == 0 && !r->shifting ? SCI_CTL2_TXEMPTY : 0U)
-                          | (r->transmit.count < FIFO_DEPTH ? SCI_CTL2_TXRDY : 0U));
-    case SCI_O_RXST: return (uint16_t)(r->rxst | (r->receive.count > 0 ? SCI_RXST_RXRDY : 0U));
-    case SCI_O_FFTX: return (uint16_t)(r->fftx | r->transmit.count << SCI_FFTX_TXFFST_S);
-    case SCI_O_FFRX: return (uint16_t)(r->ffrx | r->receive.count << SCI_FFRX_RXFFST_S);
-    default: chip_unmodelled("no such SCI register");
+        return (uint16_t)((r->transmit.count == 0 && !r->shifting ? SCI_CTL2_TXEMPTY : 0U) |
+                          (r->transmit.count < FIFO_DEPTH ? SCI_CTL2_TXRDY : 0U));
+    case SCI_O_RXST:
+        return (uint16_t)(r->rxst | (r->receive.count > 0 ? SCI_RXST_RXRDY : 0U));
+    case SCI_O_FFTX:
+        return (uint16_t)(r->fftx | r->transmit.count << SCI_FFTX_TXFFST_S);
+    case SCI_O_FFRX:
+        return (uint16_t)(r->ffrx | r->receive.count << SCI_FFRX_RXFFST_S);
+    default:
+        chip_unmodelled("no such SCI register");
     }
 }
 
@@ -450,7 +475,7 @@ bool sci_register(const char *name, uint32_t *value)
     static const struct {
         const char *name;
         uint32_t offset;
-    } words[] = {{"CCR", SCI_O_CCR}, {"CTL1", SCI_O_CTL1}, {"CTL2", SCI_O_CTL2},
+    } words[] = {{"CCR", SCI_O_CCR},   {"CTL1", SCI_O_CTL1}, {"CTL2", SCI_O_CTL2},
                  {"RXST", SCI_O_RXST}, {"FFTX", SCI_O_FFTX}, {"FFRX", SCI_O_FFRX}};
     if (strncmp(name, "SCI", 3) != 0 || name[3] < 'A' || name[3] > 'C' || name[4] != '.') {
         return false;

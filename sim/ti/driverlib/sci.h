@@ -1,5 +1,6 @@
-/* SCI (UART): the used subset of TI's driverlib header of this name, plain functions. Modelled: 8N1 with the FIFOs on;
- * with the FIFOs off nothing is sent or received. While the peripheral clock is off writes are lost, reads give 0. */
+/* SCI (UART): the used subset of TI's driverlib header of this name, plain functions. Modelled: 8N1 with the
+ * FIFOs on; with the FIFOs off nothing is sent or received. While the peripheral clock is off writes are
+ * lost, reads give 0. */
 #ifndef SCI_H
 #define SCI_H
 
@@ -38,26 +39,55 @@ typedef enum {
 #define SCI_RXSTATUS_ERROR 0x0080U
 
 typedef enum {
-    SCI_FIFO_TX0 = 0, SCI_FIFO_TX1 = 1, SCI_FIFO_TX2 = 2, SCI_FIFO_TX3 = 3, SCI_FIFO_TX4 = 4, SCI_FIFO_TX5 = 5,
-    SCI_FIFO_TX6 = 6, SCI_FIFO_TX7 = 7, SCI_FIFO_TX8 = 8, SCI_FIFO_TX9 = 9, SCI_FIFO_TX10 = 10, SCI_FIFO_TX11 = 11,
-    SCI_FIFO_TX12 = 12, SCI_FIFO_TX13 = 13, SCI_FIFO_TX14 = 14, SCI_FIFO_TX15 = 15, SCI_FIFO_TX16 = 16
+    SCI_FIFO_TX0 = 0,
+    SCI_FIFO_TX1 = 1,
+    SCI_FIFO_TX2 = 2,
+    SCI_FIFO_TX3 = 3,
+    SCI_FIFO_TX4 = 4,
+    SCI_FIFO_TX5 = 5,
+    SCI_FIFO_TX6 = 6,
+    SCI_FIFO_TX7 = 7,
+    SCI_FIFO_TX8 = 8,
+    SCI_FIFO_TX9 = 9,
+    SCI_FIFO_TX10 = 10,
+    SCI_FIFO_TX11 = 11,
+    SCI_FIFO_TX12 = 12,
+    SCI_FIFO_TX13 = 13,
+    SCI_FIFO_TX14 = 14,
+    SCI_FIFO_TX15 = 15,
+    SCI_FIFO_TX16 = 16
 } SCI_TxFIFOLevel;
 
 typedef enum {
-    SCI_FIFO_RX0 = 0, SCI_FIFO_RX1 = 1, SCI_FIFO_RX2 = 2, SCI_FIFO_RX3 = 3, SCI_FIFO_RX4 = 4, SCI_FIFO_RX5 = 5,
-    SCI_FIFO_RX6 = 6, SCI_FIFO_RX7 = 7, SCI_FIFO_RX8 = 8, SCI_FIFO_RX9 = 9, SCI_FIFO_RX10 = 10, SCI_FIFO_RX11 = 11,
-    SCI_FIFO_RX12 = 12, SCI_FIFO_RX13 = 13, SCI_FIFO_RX14 = 14, SCI_FIFO_RX15 = 15, SCI_FIFO_RX16 = 16
+    SCI_FIFO_RX0 = 0,
+    SCI_FIFO_RX1 = 1,
+    SCI_FIFO_RX2 = 2,
+    SCI_FIFO_RX3 = 3,
+    SCI_FIFO_RX4 = 4,
+    SCI_FIFO_RX5 = 5,
+    SCI_FIFO_RX6 = 6,
+    SCI_FIFO_RX7 = 7,
+    SCI_FIFO_RX8 = 8,
+    SCI_FIFO_RX9 = 9,
+    SCI_FIFO_RX10 = 10,
+    SCI_FIFO_RX11 = 11,
+    SCI_FIFO_RX12 = 12,
+    SCI_FIFO_RX13 = 13,
+    SCI_FIFO_RX14 = 14,
+    SCI_FIFO_RX15 = 15,
+    SCI_FIFO_RX16 = 16
 } SCI_RxFIFOLevel;
 
-/* Stops the SCI, turns the FIFOs off, sets format and baud rate register (quotient truncated), starts the SCI. */
+/* Stops the SCI, turns the FIFOs off, sets format and baud rate register (quotient truncated), starts the
+ * SCI. */
 void SCI_setConfig(uint32_t base, uint32_t lspclkHz, uint32_t baud, uint32_t config);
 /* Baud rate register alone, rounded to the nearest. */
 void SCI_setBaud(uint32_t base, uint32_t lspclkHz, uint32_t baud);
 
 void SCI_enableModule(uint32_t base);
 void SCI_disableModule(uint32_t base);
-/* Clears the receive errors, lets reception go on after a break, cuts short the octet on the transmit wire and the one
- * that is just arriving. Keeps the configuration and what is in the FIFOs. */
+/* Clears the receive errors, lets reception go on after a break, cuts short the octet on the transmit wire
+ * and the one that is just arriving. Keeps the configuration and what is in the FIFOs. */
 void SCI_performSoftwareReset(uint32_t base);
 void SCI_resetChannels(uint32_t base);
 
@@ -78,7 +108,8 @@ uint16_t SCI_readCharNonBlocking(uint32_t base);
 /* RXFF, TXFF and RXERR are modelled. */
 void SCI_enableInterrupt(uint32_t base, uint32_t intFlags);
 void SCI_disableInterrupt(uint32_t base, uint32_t intFlags);
-/* A flag comes back, as a new interrupt, while its condition holds. Clearing an error flag is a software reset. */
+/* A flag comes back, as a new interrupt, while its condition holds. Clearing an error flag is a software
+ * reset. */
 void SCI_clearInterruptStatus(uint32_t base, uint32_t intFlags);
 
 uint16_t SCI_getRxStatus(uint32_t base);

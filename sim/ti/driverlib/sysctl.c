@@ -42,7 +42,8 @@ static void change(uint32_t *word, uint32_t value)
 
 uint32_t SysCtl_getClock(uint32_t clockInHz)
 {
-    uint32_t hz = (sys.clksrcctl1 == SYSCTL_OSCSRC_XTAL >> SYSCTL_OSCSRC_S) ? clockInHz : SYSCTL_DEFAULT_OSC_FREQ;
+    uint32_t hz = (sys.clksrcctl1 == SYSCTL_OSCSRC_XTAL >> SYSCTL_OSCSRC_S) ? clockInHz
+                                                                            : SYSCTL_DEFAULT_OSC_FREQ;
     if (sys.crystal_failed) {
         return SYSCTL_DEFAULT_OSC_FREQ;
     }
@@ -136,9 +137,11 @@ bool sysctl_register(const char *name, uint32_t *value)
         const char *name;
         uint32_t value;
     } words[] = {
-        {"CLKSRCCTL1", sys.clksrcctl1}, {"SYSPLLMULT", sys.syspllmult}, {"SYSPLLCTL1", sys.syspllctl1},
-        {"SYSCLKDIVSEL", sys.sysclkdivsel}, {"LOSPCP", sys.lospcp}, {"PERCLKDIVSEL", sys.perclkdivsel},
-        {"PCLKCR0", sys.pclkcr[0]}, {"PCLKCR2", sys.pclkcr[2]}, {"PCLKCR7", sys.pclkcr[7]},
+        {"CLKSRCCTL1", sys.clksrcctl1}, {"SYSPLLMULT", sys.syspllmult},
+        {"SYSPLLCTL1", sys.syspllctl1}, {"SYSCLKDIVSEL", sys.sysclkdivsel},
+        {"LOSPCP", sys.lospcp},         {"PERCLKDIVSEL", sys.perclkdivsel},
+        {"PCLKCR0", sys.pclkcr[0]},     {"PCLKCR2", sys.pclkcr[2]},
+        {"PCLKCR7", sys.pclkcr[7]},
     };
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
         if (strcmp(name, words[i].name) == 0) {

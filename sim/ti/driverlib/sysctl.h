@@ -1,4 +1,5 @@
-/* Clocks, peripheral gates and watchdog: the used subset of TI's driverlib header of this name, plain functions. */
+/* Clocks, peripheral gates and watchdog: the used subset of TI's driverlib header of this name, plain
+ * functions. */
 #ifndef SYSCTL_H
 #define SYSCTL_H
 
@@ -67,8 +68,8 @@ typedef enum {
 typedef enum { SYSCTL_EPWMCLK_DIV_1, SYSCTL_EPWMCLK_DIV_2 } SysCtl_EPWMCLKDivider;
 
 /* Oscillator, PLL and divider from one word. False when the clock of the oscillator failed. TI's takes some
- * milliseconds and spins for ever on a crystal that never starts; this one takes no virtual time. It borrows CPU timers
- * 1 and 2: their settings are restored, their counts are not. */
+ * milliseconds and spins for ever on a crystal that never starts; this one takes no virtual time. It borrows
+ * CPU timers 1 and 2: their settings are restored, their counts are not. */
 bool SysCtl_setClock(uint32_t config);
 /* SYSCLK in Hz; the argument is the frequency of the crystal. */
 uint32_t SysCtl_getClock(uint32_t clockInHz);
@@ -79,8 +80,8 @@ void SysCtl_setEPWMClockDivider(SysCtl_EPWMCLKDivider divider);
 void SysCtl_enablePeripheral(SysCtl_PeripheralPCLOCKCR peripheral);
 void SysCtl_disablePeripheral(SysCtl_PeripheralPCLOCKCR peripheral);
 
-/* The watchdog: 8 bits, from reset on counting internal oscillator 1 (10 MHz) / 512 / prescaler, at first 1. When it
- * overflows the chip is reset; the interrupt in place of the reset is not modelled. */
+/* The watchdog: 8 bits, from reset on counting internal oscillator 1 (10 MHz) / 512 / prescaler, at first 1.
+ * When it overflows the chip is reset; the interrupt in place of the reset is not modelled. */
 void SysCtl_setWatchdogMode(SysCtl_WDMode mode);
 void SysCtl_setWatchdogPrescaler(SysCtl_WDPrescaler prescaler);
 void SysCtl_enableWatchdog(void);
@@ -89,8 +90,8 @@ void SysCtl_disableWatchdog(void);
 /* The count begins again at 0. */
 void SysCtl_serviceWatchdog(void);
 
-/* Sticky, so possibly several. A watchdog reset also pulls the reset pin. What the boot ROM noted of power-on and pin is
- * added, and stays after a clear. */
+/* Sticky, so possibly several. A watchdog reset also pulls the reset pin. What the boot ROM noted of power-on
+ * and pin is added, and stays after a clear. */
 uint32_t SysCtl_getResetCause(void);
 void SysCtl_clearResetCause(uint32_t rstCauses);
 

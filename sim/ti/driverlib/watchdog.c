@@ -12,7 +12,7 @@
 
 static struct {
     uint32_t wdcr;
-    sim_time_t counted;     /* ns since the count was 0, up to the anchor */
+    sim_time_t counted; /* ns since the count was 0, up to the anchor */
     sim_time_t anchor;
     timeline_id_t overflow;
 } watchdog;

@@ -18,8 +18,8 @@
 #define HALF_DONE 0x5A5AU
 #define FILE_OCTETS ((size_t)FLASH_SECTORS * FLASH_SECTOR_CELLS * 2)
 #define FSM_FAILED 0x30U
-/* Of the library's code that sets up the flash state machine (F021 1.55): it turns six times in OTP into pulse widths,
- * calls back within each, and stores 39 values in protected registers after the first call. */
+/* Of the library's code that sets up the flash state machine (F021 1.55): it turns six times in OTP into
+ * pulse widths, calls back within each, and stores 39 values in protected registers after the first call. */
 #define CALLS_BACK 6
 #define SETUP_STORES 39
 
@@ -34,10 +34,10 @@ Fapi_FmcRegistersType f021_registers;
 static struct {
     bool programmed[FLASH_SECTORS][FLASH_SECTOR_CELLS / BLOCK];
     bool pump, initialised, active, busy;
-    int set_up;     /* of the stores that set up the state machine: those that took effect */
+    int set_up; /* of the stores that set up the state machine: those that took effect */
     Fapi_FlashStatusType status;
     bool cut;
-    long left;      /* cells until the power fails, when cut */
+    long left; /* cells until the power fails, when cut */
     long changed;
 } flash;
 
@@ -212,8 +212,8 @@ static bool ready(void)
     return flash.pump && flash.initialised && flash.active && !flash.busy;
 }
 
-/* A state machine with some of its pulse widths and voltages as after reset: that it then fails is the model's choice, TI
- * does not say what it does. */
+/* A state machine with some of its pulse widths and voltages as after reset: that it then fails is the
+ * model's choice, TI does not say what it does. */
 static Fapi_FlashStatusType begin_operation(void)
 {
     EALLOW;
@@ -276,7 +276,8 @@ Fapi_StatusType Fapi_setActiveFlashBank(Fapi_FlashBankType oNewFlashBank)
     return flash.active ? Fapi_Status_Success : Fapi_Error_InvalidBank;
 }
 
-Fapi_StatusType Fapi_issueAsyncCommandWithAddress(Fapi_FlashStateCommandsType oCommand, uint32 *pu32StartAddress)
+Fapi_StatusType Fapi_issueAsyncCommandWithAddress(Fapi_FlashStateCommandsType oCommand,
+                                                  uint32 *pu32StartAddress)
 {
     int cell, sector = sector_of(pu32StartAddress, &cell);
 
@@ -287,7 +288,9 @@ Fapi_StatusType Fapi_issueAsyncCommandWithAddress(Fapi_FlashStateCommandsType oC
         return Fapi_Error_InvalidAddress;
     }
     flash.status = begin_operation();
-    for (cell = 0; flash.status == 0 && cell < FLASH_SECTOR_CELLS && change(&flash_sectors_m_n[sector][cell], BLANK); cell++) {
+    for (cell = 0;
+         flash.status == 0 && cell < FLASH_SECTOR_CELLS && change(&flash_sectors_m_n[sector][cell], BLANK);
+         cell++) {
     }
     if (cell < FLASH_SECTOR_CELLS) {
         flash.status = FSM_FAILED;
@@ -298,12 +301,14 @@ Fapi_StatusType Fapi_issueAsyncCommandWithAddress(Fapi_FlashStateCommandsType oC
 
 Fapi_StatusType Fapi_issueProgrammingCommand(uint32 *pu32StartAddress, uint16 *pu16DataBuffer,
                                              uint16 u16DataBufferSizeInWords, uint16 *pu16EccBuffer,
-                                             uint16 u16EccBufferSizeInBytes, Fapi_FlashProgrammingCommandsType oMode)
+                                             uint16 u16EccBufferSizeInBytes,
+                                             Fapi_FlashProgrammingCommandsType oMode)
 {
     int cell, sector = sector_of(pu32StartAddress, &cell);
     bool *programmed;
 
-    if (!ready() || oMode != Fapi_AutoEccGeneration || pu16EccBuffer != NULL || u16EccBufferSizeInBytes != 0) {
+    if (!ready() || oMode != Fapi_AutoEccGeneration || pu16EccBuffer != NULL ||
+        u16EccBufferSizeInBytes != 0) {
         return Fapi_Error_Fail;
     }
     if (sector < 0 || cell % BLOCK != 0) {

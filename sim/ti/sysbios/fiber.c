@@ -12,8 +12,8 @@ static fiber_t *current;
 static jmp_buf guard;
 static bool guarded;
 
-/* swapcontext() asks the kernel for the signal mask each time, which takes longer than all the rest; jumps do not. The
- * sanitizer wants to be told of each change of the stack, and does not follow jumps. */
+/* swapcontext() asks the kernel for the signal mask each time, which takes longer than all the rest; jumps do
+ * not. The sanitizer wants to be told of each change of the stack, and does not follow jumps. */
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/common_interface_defs.h>
 

@@ -1,5 +1,5 @@
-/* Code with a stack of its own that can be left and resumed. One scheduler, on the caller's stack, resumes fibers; a fiber
- * never resumes another one. */
+/* Code with a stack of its own that can be left and resumed. One scheduler, on the caller's stack, resumes
+ * fibers; a fiber never resumes another one. */
 #ifndef SIM_TI_SYSBIOS_FIBER_H
 #define SIM_TI_SYSBIOS_FIBER_H
 
@@ -10,13 +10,13 @@
 
 #define FIBER_STACK ((size_t)64 * 1024)
 
-/* fiber_asyncify.c. A WebAssembly machine keeps return addresses and locals where no program reaches them: a fiber that
- * pauses unwinds, and writes them to `frames` on the way. */
+/* fiber_asyncify.c. A WebAssembly machine keeps return addresses and locals where no program reaches them: a
+ * fiber that pauses unwinds, and writes them to `frames` on the way. */
 typedef struct {
-    void *stack;        /* what C keeps in memory; NULL: no fiber */
+    void *stack; /* what C keeps in memory; NULL: no fiber */
     void *stack_pointer;
     struct {
-        void *next, *end;   /* layout of asyncify */
+        void *next, *end; /* layout of asyncify */
     } frames;
     void *frames_begin;
     bool paused;
@@ -36,8 +36,8 @@ typedef struct {
     ucontext_t context; /* where it begins; under AddressSanitizer also where it goes on */
     jmp_buf jump;       /* where it goes on */
     bool begun;
-    void *stack;        /* NULL: no fiber */
-    void *fake_stack;   /* AddressSanitizer's */
+    void *stack;      /* NULL: no fiber */
+    void *fake_stack; /* AddressSanitizer's */
     void (*entry)(void *argument);
     void *argument;
 } fiber_t;
@@ -48,7 +48,8 @@ typedef struct {
 bool fiber_create(fiber_t *fiber, void (*entry)(void *argument), void *argument);
 void fiber_free(fiber_t *fiber); /* in any state but running */
 
-/* Most that it has ever had on its stack, in octets: what still has the pattern of fiber_create() was never used. */
+/* Most that it has ever had on its stack, in octets: what still has the pattern of fiber_create() was never
+ * used. */
 size_t fiber_stack_used(const fiber_t *fiber);
 
 /* Scheduler only: runs the fiber until it pauses or leaves. */

@@ -1,6 +1,7 @@
-/* Fibers of a WebAssembly build. wasm-opt --asyncify makes every function between one that starts an unwinding and one that
- * stops it (here: pause_here or unwind_for_good, and resume_entry or try_once) able to leave in the middle and to come
- * back. Those two ends are not so treated themselves, therefore none of them may be inlined. */
+/* Fibers of a WebAssembly build. wasm-opt --asyncify makes every function between one that starts an
+ * unwinding and one that stops it (here: pause_here or unwind_for_good, and resume_entry or try_once) able to
+ * leave in the middle and to come back. Those two ends are not so treated themselves, therefore none of them
+ * may be inlined. */
 #include "sim/ti/sysbios/fiber.h"
 
 #include <stdlib.h>
@@ -9,9 +10,11 @@
 #define PATTERN 0xBE
 #define FRAMES ((size_t)32 * 1024)
 
-__attribute__((import_module("asyncify"), import_name("start_unwind"))) void asyncify_start_unwind(void *frames);
+__attribute__((import_module("asyncify"), import_name("start_unwind"))) void asyncify_start_unwind(
+    void *frames);
 __attribute__((import_module("asyncify"), import_name("stop_unwind"))) void asyncify_stop_unwind(void);
-__attribute__((import_module("asyncify"), import_name("start_rewind"))) void asyncify_start_rewind(void *frames);
+__attribute__((import_module("asyncify"), import_name("start_rewind"))) void asyncify_start_rewind(
+    void *frames);
 __attribute__((import_module("asyncify"), import_name("stop_rewind"))) void asyncify_stop_rewind(void);
 
 static fiber_t *current;
@@ -44,7 +47,8 @@ static void set_stack_pointer(void *pointer)
 
 bool fiber_create(fiber_t *fiber, void (*entry)(void *argument), void *argument)
 {
-    *fiber = (fiber_t){.stack = malloc(FIBER_STACK), .frames_begin = malloc(FRAMES), .entry = entry, .argument = argument};
+    *fiber = (fiber_t){
+        .stack = malloc(FIBER_STACK), .frames_begin = malloc(FRAMES), .entry = entry, .argument = argument};
     if (fiber->stack == NULL || fiber->frames_begin == NULL) {
         fiber_free(fiber);
         return false;

@@ -7,13 +7,13 @@
 enum { KEY_FIRST, KEY_NESTED };
 
 struct GateMutexPri_Object {
-    int number;         /* in order of creation */
+    int number; /* in order of creation */
     const char *name;
-    Task_Handle owner;  /* NULL: free */
-    int depth;          /* enters of the owner */
-    int original;       /* the owner's rank when it entered */
-    link_t held;        /* in the owner's list */
-    link_t waiting;     /* tasks, highest priority first */
+    Task_Handle owner; /* NULL: free */
+    int depth;         /* enters of the owner */
+    int original;      /* the owner's rank when it entered */
+    link_t held;       /* in the owner's list */
+    link_t waiting;    /* tasks, highest priority first */
 };
 
 static struct GateMutexPri_Object gates[GATES];
@@ -142,7 +142,8 @@ Void GateMutexPri_leave(GateMutexPri_Handle handle, IArg key)
     if (handle->depth == 0) {
         link_remove(&handle->held);
         kernel_observed(KERNEL_GATE_LEFT, &self->job, handle->number);
-        /* As TI's gate does: what the owner has inherited through another gate that it holds meanwhile is lost too. */
+        /* As TI's gate does: what the owner has inherited through another gate that it holds meanwhile is
+         * lost too. */
         task_give_back(self, handle->original);
         hand_on(handle);
         kernel_reschedule();

@@ -91,11 +91,12 @@ static Hwi_Handle create(Int number, Hwi_FuncPtr function, UArg argument, const 
     const kernel_cost_t *cost = kernel_cost_of_interrupt(number);
     bool needs_name = name[0] == '\0' && cost != NULL && cost->name != NULL;
 
-    hwis[number] = (struct Hwi_Object){.job = {.id = {KERNEL_HWI, needs_name ? cost->name : name, number, number, 0},
-                                               .rank = number,
-                                               .cost = cost != NULL ? cost->job : 0},
-                                       .function = function,
-                                       .argument = argument};
+    hwis[number] = (struct Hwi_Object){
+        .job = {.id = {KERNEL_HWI, needs_name ? cost->name : name, number, number, 0},
+                .rank = number,
+                .cost = cost != NULL ? cost->job : 0},
+        .function = function,
+        .argument = argument};
     return &hwis[number];
 }
 
@@ -165,7 +166,8 @@ Void Hwi_restore(UInt key)
 
 UInt Hwi_enableInterrupt(UInt intNum)
 {
-    kernel_require(intNum <= INT_MAX && valid((Int)intNum), "Hwi_enableInterrupt: interrupt number out of range");
+    kernel_require(intNum <= INT_MAX && valid((Int)intNum),
+                   "Hwi_enableInterrupt: interrupt number out of range");
     kernel_require(hwis[intNum].function != NULL, "Hwi_enableInterrupt: no Hwi of this number");
     bool was_on = is_on(enabled, (int)intNum);
 

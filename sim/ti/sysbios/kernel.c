@@ -25,9 +25,9 @@ static bool started;
 static bool halted;
 static char halt_reason[200];
 static sim_time_t run_end;
-static job_t *holder;           /* has the processor */
-static job_t *hwi_in_hand;      /* Hwis are not nested */
-static job_t *resumed;          /* thread whose code runs */
+static job_t *holder;      /* has the processor */
+static job_t *hwi_in_hand; /* Hwis are not nested */
+static job_t *resumed;     /* thread whose code runs */
 
 static void (*fault_hook)(void);
 static void (*pacer)(sim_time_t next);

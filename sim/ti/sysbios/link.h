@@ -10,7 +10,7 @@ typedef struct link {
 } link_t;
 
 /* The object whose member `name` the element is. */
-#define LINK_OWNER(element, type, name) ((type *)(void *)((char *)(element) - offsetof(type, name)))
+#define LINK_OWNER(element, type, name) ((type *)(void *)((char *)(element)-offsetof(type, name)))
 
 static inline void link_init(link_t *element)
 {

@@ -5,7 +5,7 @@
 #define WINDOW (500 * SIM_MS)
 
 static sim_time_t window_start;
-static sim_time_t idle;     /* in this window */
+static sim_time_t idle; /* in this window */
 static UInt32 latest;
 
 void load_module_reset(void)

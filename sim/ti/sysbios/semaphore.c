@@ -10,7 +10,7 @@ struct Semaphore_Object {
     UInt count;
     Semaphore_Mode mode;
     sim_time_t since; /* the first of the posts that are counted has its turn */
-    link_t waiting; /* tasks */
+    link_t waiting;   /* tasks */
 };
 
 static struct Semaphore_Object semaphores[SEMAPHORES];
@@ -29,7 +29,8 @@ static bool is_binary(const struct Semaphore_Object *semaphore)
 
 static bool is_by_priority(const struct Semaphore_Object *semaphore)
 {
-    return semaphore->mode == Semaphore_Mode_COUNTING_PRIORITY || semaphore->mode == Semaphore_Mode_BINARY_PRIORITY;
+    return semaphore->mode == Semaphore_Mode_COUNTING_PRIORITY ||
+           semaphore->mode == Semaphore_Mode_BINARY_PRIORITY;
 }
 
 Semaphore_Handle Semaphore_create(Int count, const Semaphore_Params *params, Error_Block *eb)

@@ -8,11 +8,11 @@ struct Swi_Object {
     job_t job;
     Swi_FuncPtr function;
     UArg arguments[2];
-    bool posted;            /* and not begun */
+    bool posted; /* and not begun */
     bool begun;
     sim_time_t posted_at;
-    link_t link;            /* in posted[], while posted */
-    bool (*needed)(void);   /* kernel's own: false = nothing to do, the function need not be called; or NULL */
+    link_t link;          /* in posted[], while posted */
+    bool (*needed)(void); /* kernel's own: false = nothing to do, the function need not be called; or NULL */
 };
 
 static struct Swi_Object swis[SWIS];
@@ -150,7 +150,8 @@ Swi_Handle Swi_create(Swi_FuncPtr swiFxn, const Swi_Params *params, Error_Block 
         Swi_Params_init(&defaults);
         params = &defaults;
     }
-    kernel_require(params->priority < PRIORITIES || params->priority == ~(0U), "Swi_create: priority out of range");
+    kernel_require(params->priority < PRIORITIES || params->priority == ~(0U),
+                   "Swi_create: priority out of range");
     return create(swiFxn, params, kernel_name(params->instance), eb);
 }
 

@@ -226,7 +226,8 @@ Task_Handle Task_create(Task_FuncPtr fxn, const Task_Params *params, Error_Block
         Task_Params_init(&defaults);
         params = &defaults;
     }
-    kernel_require(params->priority >= 1 && params->priority < PRIORITIES, "Task_create: priority out of range");
+    kernel_require(params->priority >= 1 && params->priority < PRIORITIES,
+                   "Task_create: priority out of range");
     Task_Handle task = &tasks[task_count];
 
     if (task_count == TASKS || !fiber_create(&task->job.fiber, thread, task)) {

@@ -40,7 +40,8 @@ void test_near_the_reference_the_speed_is_proportional_and_far_it_is_more_within
     TEST_ASSERT_TRUE(cascade_speed_to(&gains, &state, 0.80F) > 2.25F * 0.2F);
     TEST_ASSERT_EQUAL_FLOAT(0.5F, cascade_speed_to(&gains, &state, 2.0F));
     TEST_ASSERT_EQUAL_FLOAT(-1.3F, cascade_speed_to(&gains, &state, -2.0F));
-    TEST_ASSERT_FLOAT_WITHIN(1e-6F, cascade_speed_to(&gains, &state, 0.65F), -cascade_speed_to(&gains, &state, 0.55F));
+    TEST_ASSERT_FLOAT_WITHIN(1e-6F, cascade_speed_to(&gains, &state, 0.65F),
+                             -cascade_speed_to(&gains, &state, 0.55F));
 }
 
 void test_a_rising_terrain_is_climbed_with(void)
@@ -81,7 +82,8 @@ void test_the_command_leads_the_thrust(void)
 void test_the_command_does_not_jump(void)
 {
     state.speed_mps = -3.0F;
-    TEST_ASSERT_FLOAT_WITHIN(1e-3F, 7.4F + 1.5F, cascade_step(&cascade, &gains, &vehicle, &state, 0.5F, 0.025F));
+    TEST_ASSERT_FLOAT_WITHIN(1e-3F, 7.4F + 1.5F,
+                             cascade_step(&cascade, &gains, &vehicle, &state, 0.5F, 0.025F));
     state.speed_mps = 3.0F;
     TEST_ASSERT_FLOAT_WITHIN(1e-3F, 7.4F, cascade_step(&cascade, &gains, &vehicle, &state, 0.5F, 0.025F));
 }
@@ -125,7 +127,8 @@ void test_the_command_stays_in_its_range_whatever_the_state(void)
         vehicle.upright = any[2];
         state = (cascade_state_t){5.0F * any[3], 4.0F * any[1], 0.5F * any[2], 6.0F + 5.0F * any[3]};
         const float speed_mps = cascade_speed_to(&gains, &state, 3.0F * any[0]);
-        const float thrust_n = cascade_step(&cascade, &gains, &vehicle, &state, speed_mps, 0.025F * (1.0F + any[0]));
+        const float thrust_n = cascade_step(&cascade, &gains, &vehicle, &state, speed_mps,
+                                            0.025F * (1.0F + any[0]));
         TEST_ASSERT_TRUE(thrust_n >= 0.0F && thrust_n <= THRUST_MAX_N);
         TEST_ASSERT_TRUE(thrust_n >= 0.25F * 3.0F - 0.01F || i < 100);
         TEST_ASSERT_TRUE(isfinite(cascade.quick_n) && isfinite(cascade.slow_n));

@@ -32,8 +32,10 @@ void test_beyond_its_steep_middle_a_command_loses_nothing(void)
 {
     deadband.band_n = 0.47F;
     for (float off_n = 0.1F; off_n < 4.0F; off_n += 0.05F) {
-        TEST_ASSERT_FLOAT_WITHIN(1e-5F, off_n, effect(deadband_compensate(&deadband, NEUTRAL, NEUTRAL + off_n), 0.47F));
-        TEST_ASSERT_FLOAT_WITHIN(1e-5F, -off_n, effect(deadband_compensate(&deadband, NEUTRAL, NEUTRAL - off_n), 0.47F));
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, off_n,
+                                 effect(deadband_compensate(&deadband, NEUTRAL, NEUTRAL + off_n), 0.47F));
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, -off_n,
+                                 effect(deadband_compensate(&deadband, NEUTRAL, NEUTRAL - off_n), 0.47F));
     }
 }
 

@@ -149,11 +149,13 @@ static void flown_by_a_pilot(double seconds)
     in.has_throttle = true;
 }
 
-/* A low-pass of 80 ms, four frames of 20 ms: three quarters of what is missing are still missing a frame later. */
+/* A low-pass of 80 ms, four frames of 20 ms: three quarters of what is missing are still missing a frame
+ * later. */
 void test_the_lift_off_acceleration_follows_the_accelerometer_with_80_ms(void)
 {
     est_law_t law;
-    imu_sample_t frame = {.arrival_us = 1000000UL, .ready = true, .has_acceleration = true, .down_mps2 = 9.81F + 2.0F};
+    imu_sample_t frame = {
+        .arrival_us = 1000000UL, .ready = true, .has_acceleration = true, .down_mps2 = 9.81F + 2.0F};
     float missing = 2.0F;
 
     parameters_init(&parameters);
@@ -603,7 +605,8 @@ void test_it_flies_again_after_a_landing(void)
 
 /* ---- what it must never do */
 
-/* The study's fly-away: a scan that catches the edge half-way, then the edge, then noise that agrees with nothing. */
+/* The study's fly-away: a scan that catches the edge half-way, then the edge, then noise that agrees with
+ * nothing. */
 void test_scans_that_disagree_never_make_it_fly_away(void)
 {
     for (uint32_t seed = 1U; seed <= 20U; seed++) {

@@ -46,7 +46,8 @@ void tearDown(void) {}
 
 static altitude_t altitude(double metres)
 {
-    return (altitude_t){.valid = true, .height_mm = (float)(metres * 1000.0), .slant_mm = (float)(metres * 1000.0)};
+    return (altitude_t){
+        .valid = true, .height_mm = (float)(metres * 1000.0), .slant_mm = (float)(metres * 1000.0)};
 }
 
 static imu_sample_t frame(void)
@@ -101,7 +102,8 @@ static void assert_sound(void)
         TEST_ASSERT_TRUE(e.covariance[i][i] > 0.0F && e.covariance[i][i] <= 1.0001F);
         for (int j = 0; j < 4; j++) {
             TEST_ASSERT_TRUE(isfinite(e.covariance[i][j]));
-            TEST_ASSERT_FLOAT_WITHIN(1e-6F + 1e-4F * fabsf(e.covariance[i][j]), e.covariance[j][i], e.covariance[i][j]);
+            TEST_ASSERT_FLOAT_WITHIN(1e-6F + 1e-4F * fabsf(e.covariance[i][j]), e.covariance[j][i],
+                                     e.covariance[i][j]);
             TEST_ASSERT_TRUE(e.covariance[i][j] * e.covariance[i][j] <=
                              1.01F * e.covariance[i][i] * e.covariance[j][j] + 1e-12F);
         }
@@ -199,17 +201,21 @@ void test_gravity_is_taken_out_of_a_tilted_frame(void)
 
 void test_the_tilt_at_the_rays_corrects_the_height(void)
 {
-    altitude_t a = {.valid = true, .slant_mm = 805.0F, .distance_mm = 105.0F, .leg_mm = 100.0F, .arm_mm = 220.0F};
+    altitude_t a = {
+        .valid = true, .slant_mm = 805.0F, .distance_mm = 105.0F, .leg_mm = 100.0F, .arm_mm = 220.0F};
     for (int i = 0; i < 20; i++) {
         imu_sample_t f = frame();
         time_us += 25000U;
-        f.median.roll_rad = i < 15 ? 0.0F : 0.1F; /* medians show 50 ms before: rolled since 75 ms ago at the newest */
+        f.median.roll_rad = i < 15
+                                ? 0.0F
+                                : 0.1F; /* medians show 50 ms before: rolled since 75 ms ago at the newest */
         estimator_predict(&e, &f, no_model);
     }
     (void)estimator_fuse_height(&e, &a, time_us - 300000U, false);
     TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.6F, e.delayed.height_m);
     (void)estimator_fuse_height(&e, &a, time_us - 50000U, false);
-    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.7F * cosf(0.1F) - 0.22F * sinf(0.1F) - 0.1F, e.delayed.height_m + 0.0F * e.innovation_m + 0.0F);
+    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.7F * cosf(0.1F) - 0.22F * sinf(0.1F) - 0.1F,
+                             e.delayed.height_m + 0.0F * e.innovation_m + 0.0F);
 }
 
 void test_the_accelerometers_noise_is_measured(void)
@@ -418,7 +424,8 @@ void test_after_a_gap_of_the_frames_it_starts_anew(void)
     TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.7F, e.now.height_m);
 }
 
-/* Bars of 60 mm, every other scan over one: no steps of the terrain, but a rough floor, and the way is between. */
+/* Bars of 60 mm, every other scan over one: no steps of the terrain, but a rough floor, and the way is
+ * between. */
 void test_bars_on_the_floor_are_noise_and_a_single_edge_is_not(void)
 {
     hover();

@@ -90,7 +90,8 @@ void test_nothing_leaves_the_bounds_whatever_is_seen(void)
     static const float seen[] = {-1e6F, 1e6F, 0.0F, 20.0F};
     for (int i = 0; i < 20000; i++) {
         random_bits = random_bits * 1664525U + 1013904223U;
-        hover_step(&hover, seen[random_bits >> 30], 0.05F + noise(0.01F), 0.001F * (float)((random_bits >> 20) % 500U));
+        hover_step(&hover, seen[random_bits >> 30], 0.05F + noise(0.01F),
+                   0.001F * (float)((random_bits >> 20) % 500U));
         TEST_ASSERT_TRUE(hover.thrust_n >= 5.0F && hover.thrust_n <= 9.0F);
         TEST_ASSERT_TRUE(fabsf(hover.gust_n) <= 1.0F);
         TEST_ASSERT_TRUE(hover.variance_n2 >= 0.0F && hover.variance_n2 < 1.0F);

@@ -1,4 +1,5 @@
-/* The machine below a test: console, exit, reading of files, and what avr-libc lacks of C99. See machine.c. */
+/* The machine below a test: console, exit, reading of files, and what avr-libc lacks of C99. See machine.c.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -9,7 +10,7 @@
 
 #define REGISTER(address) (*(volatile uint8_t *)(address))
 
-extern char _end;   /* of the linker: first address above the static variables */
+extern char _end; /* of the linker: first address above the static variables */
 
 int suite_main(void);
 void board_putc(int character);

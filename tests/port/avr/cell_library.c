@@ -137,9 +137,9 @@ int cell_atoi(const int *text)
 }
 
 typedef struct {
-    int *text;          /* NULL: to the console */
+    int *text; /* NULL: to the console */
     size_t capacity;
-    size_t length;      /* of the whole text, also of what did not fit */
+    size_t length; /* of the whole text, also of what did not fit */
 } sink_t;
 
 static void put(sink_t *sink, int character)
@@ -166,7 +166,8 @@ static const int *take_conversion(const int *format, char *conversion, va_list *
 
     do {
         if (*format == '*') {
-            length += (size_t)snprintf(&conversion[length], NUMBER_MAX - length, "%d", va_arg(*arguments, int));
+            length += (size_t)snprintf(&conversion[length], NUMBER_MAX - length, "%d",
+                                       va_arg(*arguments, int));
         } else {
             conversion[length++] = (char)*format;
         }
@@ -221,7 +222,7 @@ static void format_into(sink_t *sink, const int *format, va_list *arguments)
 
 int cell_snprintf(int *text, size_t capacity, const int *format, ...)
 {
-    sink_t sink = { text, capacity, 0U };
+    sink_t sink = {text, capacity, 0U};
     va_list arguments;
 
     va_start(arguments, format);
@@ -232,7 +233,7 @@ int cell_snprintf(int *text, size_t capacity, const int *format, ...)
 
 int cell_printf(const int *format, ...)
 {
-    sink_t sink = { NULL, 0U, 0U };
+    sink_t sink = {NULL, 0U, 0U};
     va_list arguments;
 
     va_start(arguments, format);

@@ -1,5 +1,5 @@
-/* The functions of the C library that take characters or sizes, for cells of 16 bits. A character is an int; sizes count
- * cells. As the functions whose names they carry, unless said otherwise. */
+/* The functions of the C library that take characters or sizes, for cells of 16 bits. A character is an int;
+ * sizes count cells. As the functions whose names they carry, unless said otherwise. */
 #ifndef PORT_AVR_CELL_LIBRARY_H
 #define PORT_AVR_CELL_LIBRARY_H
 

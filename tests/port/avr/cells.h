@@ -1,6 +1,6 @@
-/* -include this with avr-gcc, for sources that went through cells.py: a machine with CHAR_BIT 16, as the C28x is. A cell
- * has 16 bits; char and the 8-bit names are one cell; sizeof, and the sizes given to the functions of the library, count
- * cells. Pointers and size_t stay one cell (C28x: two), bool takes one. */
+/* -include this with avr-gcc, for sources that went through cells.py: a machine with CHAR_BIT 16, as the C28x
+ * is. A cell has 16 bits; char and the 8-bit names are one cell; sizeof, and the sizes given to the functions
+ * of the library, count cells. Pointers and size_t stay one cell (C28x: two), bool takes one. */
 #ifndef PORT_AVR_CELLS_H
 #define PORT_AVR_CELLS_H
 

@@ -1,7 +1,7 @@
-/* Runs the image of a test for a machine with 16-bit int: an ATmega1284P of simavr, with its data space widened to 64 KB,
- * whose spare I/O registers lead to this program (registers.h). usage: machine IMAGE [CYCLES], the flash as avr-objcopy -O
- * binary writes it, and how long it may take. Exit status: the image's own, or 2 when the machine crashed, overflowed its
- * stack, did not end or is not there. */
+/* Runs the image of a test for a machine with 16-bit int: an ATmega1284P of simavr, with its data space
+ * widened to 64 KB, whose spare I/O registers lead to this program (registers.h). usage: machine IMAGE
+ * [CYCLES], the flash as avr-objcopy -O binary writes it, and how long it may take. Exit status: the image's
+ * own, or 2 when the machine crashed, overflowed its stack, did not end or is not there. */
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@
 
 #define MCU "atmega1284p"
 #define RAM_LAST 0xFFFFU
-#define CYCLES_MAX 4000000000ULL   /* four minutes of its time */
+#define CYCLES_MAX 4000000000ULL /* four minutes of its time */
 #define SP_LOW 0x5DU
 #define SP_HIGH 0x5EU
 
@@ -117,7 +117,8 @@ static void run(avr_t *avr, unsigned long long cycles_max)
             return;
         }
         if (stack < stack_floor) {
-            printf("machine: the stack at %x reached the variables, code at %lx\n", stack, (unsigned long)avr->pc);
+            printf("machine: the stack at %x reached the variables, code at %lx\n", stack,
+                   (unsigned long)avr->pc);
             return;
         }
         if (avr->cycle > cycles_max) {

@@ -1,5 +1,5 @@
-/* -include this on a PC: octets in cells of 16 bits. Code that counts on an octet to wrap at 256, or to drop what does not
- * fit into 8 bits, fails its tests. */
+/* -include this on a PC: octets in cells of 16 bits. Code that counts on an octet to wrap at 256, or to drop
+ * what does not fit into 8 bits, fails its tests. */
 #ifndef PORT_HOST_WIDE_OCTETS_H
 #define PORT_HOST_WIDE_OCTETS_H
 

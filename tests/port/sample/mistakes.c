@@ -1,4 +1,5 @@
-/* What passes on a PC and is wrong on a C28x, a test each: test_machine.py sees which of the runs finds it. */
+/* What passes on a PC and is wrong on a C28x, a test each: test_machine.py sees which of the runs finds it.
+ */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -7,13 +8,9 @@
 
 static volatile uint16_t one = 1;
 
-void setUp(void)
-{
-}
+void setUp(void) {}
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_right_everywhere(void)
 {

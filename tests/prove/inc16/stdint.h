@@ -1,5 +1,5 @@
-/* The widths of a C28x for CBMC --LP32 (int 16 bits, long and pointers 32); its own header would make uint32_t 16 bits wide.
- * An octet's cell has 16 bits, so what stands above bit 7 is tried too. */
+/* The widths of a C28x for CBMC --LP32 (int 16 bits, long and pointers 32); its own header would make
+ * uint32_t 16 bits wide. An octet's cell has 16 bits, so what stands above bit 7 is tried too. */
 #ifndef PROVE_STDINT_H
 #define PROVE_STDINT_H
 typedef unsigned short uint16_t;

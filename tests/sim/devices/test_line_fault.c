@@ -8,7 +8,7 @@
 #include "unity.h"
 
 #define BIT_NS (1e9 / 250000.0)
-#define OCTET ((sim_time_t)40000)   /* 10 bits at 250000 */
+#define OCTET ((sim_time_t)40000) /* 10 bits at 250000 */
 #define MAX 40000
 
 static struct {
@@ -142,10 +142,38 @@ void test_good_specifications_are_understood(void)
 void test_bad_specifications_are_refused(void)
 {
     static const char *const bad[] = {
-        "", "drop", "@1", ":0.1", "drops@1", "dro@1", "drop@", "drop@x", "drop@-1", "drop@ 1", "drop@1x", "drop@1:5",
-        "drop:", "drop:x", "drop:1.1", "drop:-0.1", "drop:nan", "flip:0.1:3", "mute@1", "mute@1:", "mute@1:0",
-        "mute@1:600001", "mute@1:1.5", "mute@1:-1", "delay:0.1", "delay:0.1:x", "status@1", "status@1:20", "status@1:99",
-        "status@1:5x", "restart@1:1", "DROP@1",
+        "",
+        "drop",
+        "@1",
+        ":0.1",
+        "drops@1",
+        "dro@1",
+        "drop@",
+        "drop@x",
+        "drop@-1",
+        "drop@ 1",
+        "drop@1x",
+        "drop@1:5",
+        "drop:",
+        "drop:x",
+        "drop:1.1",
+        "drop:-0.1",
+        "drop:nan",
+        "flip:0.1:3",
+        "mute@1",
+        "mute@1:",
+        "mute@1:0",
+        "mute@1:600001",
+        "mute@1:1.5",
+        "mute@1:-1",
+        "delay:0.1",
+        "delay:0.1:x",
+        "status@1",
+        "status@1:20",
+        "status@1:99",
+        "status@1:5x",
+        "restart@1:1",
+        "DROP@1",
     };
     line_fault_spec_t spec;
 

@@ -9,11 +9,11 @@
 
 static pilot_config_t config;
 static pilot_t *pilot;
-static pilot_view_t view;               /* what there is to see */
+static pilot_view_t view; /* what there is to see */
 static bool mine;
 static unsigned takes, gives, pulses;
 static sim_time_t pulse_ns, pulsed_at;
-static quadrotor_t *quad;               /* NULL: the view is set by the test */
+static quadrotor_t *quad; /* NULL: the view is set by the test */
 
 static pilot_view_t look(void *context)
 {

@@ -5,13 +5,13 @@
 #include "unity.h"
 
 #define G 9.80665
-#define H 0.0005                        /* the model's step */
+#define H 0.0005 /* the model's step */
 #define PWM ((sim_time_t)13600000)
 #define DEG (M_PI / 180.0)
 #define NEAR(tolerance, expected, actual) TEST_ASSERT_DOUBLE_WITHIN(tolerance, expected, actual)
 
 static quadrotor_t *quad;
-static quadrotor_config_t calm;         /* nothing random */
+static quadrotor_config_t calm; /* nothing random */
 
 void setUp(void)
 {
@@ -142,7 +142,8 @@ TEST_CASE(1.0, 2.4, 7.4, 11.0)
 TEST_CASE(0.8, 2.4, 7.4, 9.0)
 TEST_CASE(1.2, 1.5, 5.6, 8.0)
 TEST_CASE(1.0, 3.0, 8.4, 8.8)
-void test_terminal_climb_is_excess_acceleration_over_damping(double gain, double damping, double hover, double thrust)
+void test_terminal_climb_is_excess_acceleration_over_damping(double gain, double damping, double hover,
+                                                             double thrust)
 {
     calm.gain = gain;
     calm.damping_per_s = damping;
@@ -321,7 +322,8 @@ void test_ground_effect_belongs_to_the_ground_below(void)
     NEAR(0.03, 0.25, s.height_m);
     const double z = s.height_m + 0.28;
     const double hover = 7.4 * 1.01;
-    NEAR(1e-3, 1.0 / (1.0 - 2.0 * pow(0.127 / (4.0 * z), 2.0)), lift(&s) / (G * (1.0 + (s.thrust_n - hover) / 7.4)));
+    NEAR(1e-3, 1.0 / (1.0 - 2.0 * pow(0.127 / (4.0 * z), 2.0)),
+         lift(&s) / (G * (1.0 + (s.thrust_n - hover) / 7.4)));
 }
 
 void test_lift_is_lost_to_the_tilt(void)
@@ -383,7 +385,7 @@ static double kurtosis(const double *x, size_t n)
     return sum / (double)n / (variance * variance);
 }
 
-#define SAMPLES 75000U                  /* 1020 s */
+#define SAMPLES 75000U /* 1020 s */
 static double record_a[SAMPLES], record_b[SAMPLES];
 
 TEST_CASE(0.2, 0.5)
@@ -434,8 +436,8 @@ static unsigned upward_crossings(const double *x, size_t n)
     return crossings;
 }
 
-/* A second order system driven by white noise: Rice's rate of upward crossings is its natural frequency, and its
- * autocorrelation is exp(-z w t) (cos(wd t) + z / sqrt(1 - z^2) sin(wd t)). */
+/* A second order system driven by white noise: Rice's rate of upward crossings is its natural frequency, and
+ * its autocorrelation is exp(-z w t) (cos(wd t) + z / sqrt(1 - z^2) sin(wd t)). */
 static void expect_swing(const double *x, double rms_rad)
 {
     const double w = 2.0 * M_PI * 0.6, z = 0.4, wd = w * sqrt(1.0 - z * z);
@@ -670,7 +672,8 @@ void test_the_rising_ramp_carries_a_resting_vehicle_and_the_edge_drops_it(void)
         TEST_ASSERT_EQUAL_DOUBLE(0.0, s.height_m);
         TEST_ASSERT_EQUAL_DOUBLE(0.0, s.speed_mps);
         TEST_ASSERT_EQUAL_DOUBLE(0.0, s.acceleration_mps2);
-        TEST_ASSERT_EQUAL_DOUBLE(terrain_height_m(&terrain_platform, (double)timeline_now() / 1e9), s.altitude_m);
+        TEST_ASSERT_EQUAL_DOUBLE(terrain_height_m(&terrain_platform, (double)timeline_now() / 1e9),
+                                 s.altitude_m);
     }
     TEST_ASSERT_EQUAL_UINT(0, now().contacts);
     wait(2 * SIM_MS);
@@ -842,7 +845,8 @@ TEST_CASE(1.0, 4.88, -0.53)
 TEST_CASE(0.5, 6.88, 0.265)
 TEST_CASE(2.0, 7.35, 2.0)
 TEST_CASE(1.0, 6.45, 0.10)
-void test_the_throttle_beyond_its_deadband_commands_the_climb_rate(double rate, double throttle_n, double climb_mps)
+void test_the_throttle_beyond_its_deadband_commands_the_climb_rate(double rate, double throttle_n,
+                                                                   double climb_mps)
 {
     start_climb(rate);
     fly(30.0, 8.0);
@@ -853,7 +857,8 @@ void test_the_throttle_beyond_its_deadband_commands_the_climb_rate(double rate, 
 TEST_CASE(0.8, 2.4, 7.4, 1.0)
 TEST_CASE(1.2, 1.5, 5.6, 1.0)
 TEST_CASE(1.0, 3.0, 8.8, 1.0)
-void test_the_climb_rate_knows_no_weight_drag_and_motors(double gain, double damping, double hover, double climb_mps)
+void test_the_climb_rate_knows_no_weight_drag_and_motors(double gain, double damping, double hover,
+                                                         double climb_mps)
 {
     calm.gain = gain;
     calm.damping_per_s = damping;
@@ -881,7 +886,8 @@ void test_within_the_deadband_it_stays_where_it_is(void)
     TEST_ASSERT_TRUE(now().height_m < height_m);
 }
 
-/* 63 % of the rate comes after the lag and what the motors and the delay add, 90 % soon after; it hardly overshoots. */
+/* 63 % of the rate comes after the lag and what the motors and the delay add, 90 % soon after; it hardly
+ * overshoots. */
 TEST_CASE(0.25, 0.30, 0.40)
 TEST_CASE(0.40, 0.44, 0.58)
 TEST_CASE(0.15, 0.22, 0.31)
@@ -983,7 +989,8 @@ void test_the_second_airframe_hovers_at_the_hover_thrust_and_climbs_above_it(voi
     TEST_ASSERT_TRUE(now().speed_mps < -2.0 && !now().on_ground);
 }
 
-/* In ratios: a tenth more throttle is 1.1 to the power of 1.5, not a tenth more thrust; and its damping is another one. */
+/* In ratios: a tenth more throttle is 1.1 to the power of 1.5, not a tenth more thrust; and its damping is
+ * another one. */
 void test_the_second_airframe_is_not_the_first(void)
 {
     double speed[2];

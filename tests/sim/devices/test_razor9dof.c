@@ -8,15 +8,15 @@
 #define NEAR(tolerance, expected, actual) TEST_ASSERT_DOUBLE_WITHIN(tolerance, expected, actual)
 #define DEG (M_PI / 180.0)
 #define G 9.80665
-#define OCTET_NS 173611                 /* 10 bits at 57600 */
+#define OCTET_NS 173611 /* 10 bits at 57600 */
 
 static razor9dof_t *razor;
-static razor_config_t exact;            /* nothing random */
+static razor_config_t exact; /* nothing random */
 static razor_truth_t truth;
 static unsigned samples;
 static sim_time_t sampled_at;
 
-static char text[256];                  /* the frame that arrives */
+static char text[256]; /* the frame that arrives */
 static size_t length;
 static sim_time_t first_octet_at;
 static unsigned frames, octets;
@@ -62,10 +62,12 @@ static void sink(void *context, unsigned octet, double bit_ns)
         length = 0;
         return;
     }
-    const char *form = exact.joined ? "#A-C=%lf,%lf,%lf#YPR=%lf,%lf,%lf%n" : "#A-C=%lf,%lf,%lf\r\n#YPR=%lf,%lf,%lf%n";
-    TEST_ASSERT_EQUAL_INT_MESSAGE(
-        6, sscanf(text, form, &decoded.x, &decoded.y, &decoded.z, &decoded.yaw, &decoded.pitch, &decoded.roll, &end),
-        text);
+    const char *form = exact.joined ? "#A-C=%lf,%lf,%lf#YPR=%lf,%lf,%lf%n"
+                                    : "#A-C=%lf,%lf,%lf\r\n#YPR=%lf,%lf,%lf%n";
+    TEST_ASSERT_EQUAL_INT_MESSAGE(6,
+                                  sscanf(text, form, &decoded.x, &decoded.y, &decoded.z, &decoded.yaw,
+                                         &decoded.pitch, &decoded.roll, &end),
+                                  text);
     TEST_ASSERT_EQUAL_STRING("\r\n", text + end);
     decoded.roll = -decoded.roll; /* to the vehicle's signs, in which the tests think */
     decoded.y = -decoded.y;
@@ -157,8 +159,8 @@ void test_level_and_at_rest_it_prints_one_g_down(void)
     expect_text("#A-C=0.00,0.00,256.00\r\n#YPR=0.00,0.00,0.00\r\n");
 }
 
-/* The vehicle's right side raised by 60 deg is the Razor's roll of -60: 256 (-sin p, cos p sin r, cos p cos r) for p = 30,
- * r = -60 deg: -128, -192, 110.851. */
+/* The vehicle's right side raised by 60 deg is the Razor's roll of -60: 256 (-sin p, cos p sin r, cos p cos
+ * r) for p = 30, r = -60 deg: -128, -192, 110.851. */
 void test_a_tilted_sensor_prints_the_turned_gravity(void)
 {
     truth = (razor_truth_t){.roll_rad = 60.0 * DEG, .pitch_rad = 30.0 * DEG, .yaw_rad = -120.5 * DEG};
@@ -202,8 +204,8 @@ void test_angles_are_printed_with_two_decimals_within_half_a_turn(void)
         double yaw_deg;
         const char *printed;
     } vector[] = {
-        {-0.001, "-0.00"}, {0.001, "0.00"}, {0.0051, "0.01"}, {-0.0051, "-0.01"},
-        {0.994, "0.99"}, {0.996, "1.00"}, {9.996, "10.00"}, {-179.244, "-179.24"},
+        {-0.001, "-0.00"},  {0.001, "0.00"},     {0.0051, "0.01"},   {-0.0051, "-0.01"},
+        {0.994, "0.99"},    {0.996, "1.00"},     {9.996, "10.00"},   {-179.244, "-179.24"},
         {100.05, "100.05"}, {179.999, "180.00"}, {190.0, "-170.00"}, {-190.25, "169.75"},
     };
     on_frame = keep_text;
@@ -472,7 +474,8 @@ static void gather(void *context, unsigned octet, double bit_ns)
     }
 }
 
-/* The level frame, octet by octet: of a struck one exactly one bit is wrong, be it a digit, a comma or the line's end. */
+/* The level frame, octet by octet: of a struck one exactly one bit is wrong, be it a digit, a comma or the
+ * line's end. */
 void test_a_garbled_sensor_flips_one_bit_of_some_octets(void)
 {
     static const char clean[] = "#A-C=0.00,0.00,256.00\r\n#YPR=0.00,0.00,0.00\r\n";
@@ -486,7 +489,8 @@ void test_a_garbled_sensor_flips_one_bit_of_some_octets(void)
     run_until(8 * SIM_S);
     TEST_ASSERT_TRUE(garbled_count > 13000);
     for (size_t i = 0; i < garbled_count; i++) {
-        const unsigned wrong = ((unsigned char)garbled[i] ^ (unsigned char)clean[i % length_of_clean]) & 0xFFU;
+        const unsigned wrong = ((unsigned char)garbled[i] ^ (unsigned char)clean[i % length_of_clean]) &
+                               0xFFU;
 
         TEST_ASSERT_TRUE_MESSAGE((wrong & (wrong - 1U)) == 0U, "one bit at most");
         struck += wrong != 0U;

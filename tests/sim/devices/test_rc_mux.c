@@ -19,9 +19,7 @@ void setUp(void)
     rc_mux_init(&mux, autopilot, &mux);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_the_firmware_has_the_throttle_at_first(void)
 {

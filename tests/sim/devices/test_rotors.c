@@ -46,8 +46,8 @@ void test_without_throttle_there_is_no_thrust(void)
     NEAR(1e-6, 0.0, thrust_at(0.0, 0.0));
 }
 
-/* Blades cut the air that comes from above at a smaller angle: at first 0.6 / 5.4 / 0.4 per m/s; then the inflow gives
- * way, half of the climb for small ones. */
+/* Blades cut the air that comes from above at a smaller angle: at first 0.6 / 5.4 / 0.4 per m/s; then the
+ * inflow gives way, half of the climb for small ones. */
 void test_a_climb_takes_thrust_away_and_the_inflow_gives_half_of_it_back(void)
 {
     run(5.0, 1.0, 0.0);

@@ -13,8 +13,8 @@
 #define NEAR(tolerance, expected, actual) TEST_ASSERT_DOUBLE_WITHIN(tolerance, expected, actual)
 
 static quadrotor_t *quad;
-static quadrotor_config_t still;        /* anchored at height_m */
-static scene_config_t calm;             /* no noise */
+static quadrotor_config_t still; /* anchored at height_m */
+static scene_config_t calm;      /* no noise */
 static scene_t scene;
 static int ray_mm[RAYS];
 
@@ -195,7 +195,8 @@ void test_lost_and_blocked_rays_combine(void)
     NEAR(0.03, 0.25, blocked / (200.0 * RAYS));
 }
 
-/* 4 characters of 6 bits, offset 30h, behind the echo's LF and the status line: the stamp of a reply to MS. */
+/* 4 characters of 6 bits, offset 30h, behind the echo's LF and the status line: the stamp of a reply to MS.
+ */
 static long stamp_of(const char *reply)
 {
     const char *at_status = strchr(reply, '\n') + 1;
@@ -246,7 +247,8 @@ static void tell(urg04lx_t *urg, const char *command)
     run_for(0.3);
 }
 
-/* On the wire: from the frozen scan on the rays repeat to the last character, and the stamps go on by a revolution. */
+/* On the wire: from the frozen scan on the rays repeat to the last character, and the stamps go on by a
+ * revolution. */
 void test_a_frozen_scan_has_running_time_stamps(void)
 {
     calm.ray_sigma_mm = 5.0;

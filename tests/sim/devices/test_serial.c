@@ -56,9 +56,7 @@ void setUp(void)
     serial_init(&line, 250000.0, sink, &heard_n);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_an_octet_arrives_at_its_stop_bit_and_not_before(void)
 {
@@ -76,7 +74,8 @@ void test_an_octet_arrives_at_its_stop_bit_and_not_before(void)
     TEST_ASSERT_TRUE(serial_idle(&line));
 }
 
-/* 10 bits: 1e10 / 115200 = 86805.56 ns, / 57600 = 173611.11 ns, / 19200 = 520833.33 ns, / 9600 = 1041666.67 ns. */
+/* 10 bits: 1e10 / 115200 = 86805.56 ns, / 57600 = 173611.11 ns, / 19200 = 520833.33 ns, / 9600 = 1041666.67
+ * ns. */
 static void check_spacing(double rate, sim_time_t octet_ns)
 {
     setUp();

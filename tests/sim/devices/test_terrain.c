@@ -1,20 +1,17 @@
 #include "sim/devices/terrain.h"
 #include "unity.h"
 
-void setUp(void)
-{
-}
+void setUp(void) {}
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_the_flat_floor_is_flat_for_ever(void)
 {
     for (double t = -20.0; t < 40.0; t += 0.01) {
         TEST_ASSERT_EQUAL_DOUBLE(0.0, terrain_height_m(&terrain_flat, t));
     }
-    const terrain_t unused = {.ramp = false, .ramp_start_s = 1.0, .ramp_end_s = 2.0, .height_m = 0.5, .edge_s = 3.0};
+    const terrain_t unused = {
+        .ramp = false, .ramp_start_s = 1.0, .ramp_end_s = 2.0, .height_m = 0.5, .edge_s = 3.0};
     TEST_ASSERT_EQUAL_DOUBLE(0.0, terrain_height_m(&unused, 2.5));
 }
 
@@ -58,7 +55,8 @@ void test_the_ramp_has_no_step_and_the_edge_is_one(void)
 
 void test_another_profile_is_followed(void)
 {
-    const terrain_t kerb = {.ramp = true, .ramp_start_s = 2.0, .ramp_end_s = 2.0, .height_m = 0.1, .edge_s = 3.0};
+    const terrain_t kerb = {
+        .ramp = true, .ramp_start_s = 2.0, .ramp_end_s = 2.0, .height_m = 0.1, .edge_s = 3.0};
     TEST_ASSERT_EQUAL_DOUBLE(0.0, terrain_height_m(&kerb, 2.0));
     TEST_ASSERT_EQUAL_DOUBLE(0.1, terrain_height_m(&kerb, 2.0001));
     TEST_ASSERT_EQUAL_DOUBLE(0.1, terrain_height_m(&kerb, 2.9999));

@@ -5,8 +5,8 @@
 #include <string.h>
 #include "unity.h"
 
-/* Replies and sums: the protocol's documents and what a URG-04LX of firmware 3.1.04 (H0706400) sent, typed in by
- * hand. */
+/* Replies and sums: the protocol's documents and what a URG-04LX of firmware 3.1.04 (H0706400) sent, typed in
+ * by hand. */
 
 #define HEARD_N 40000
 #define STEPS_N 769
@@ -295,9 +295,33 @@ void test_scip1_version(void)
 void test_scip1_refuses_what_it_does_not_know_with_an_E(void)
 {
     static const char *const unknown[] = {
-        "QT", "VV", "RS;", "RS", "BM", "SCIP2.1", "SCIP2.0 ", "scip2.0", "L2", "L", "L00", "V1", "S115200",
-        "S115201.......", "SABCDEF.......", "S115200......", "S038400.......", "G0000010", "G000769010", "G38403840",
-        "G00076901", "G38438300", "G0a038401", "G0000x001", "G0000000-", "X", "MS0372040601000",
+        "QT",
+        "VV",
+        "RS;",
+        "RS",
+        "BM",
+        "SCIP2.1",
+        "SCIP2.0 ",
+        "scip2.0",
+        "L2",
+        "L",
+        "L00",
+        "V1",
+        "S115200",
+        "S115201.......",
+        "SABCDEF.......",
+        "S115200......",
+        "S038400.......",
+        "G0000010",
+        "G000769010",
+        "G38403840",
+        "G00076901",
+        "G38438300",
+        "G0a038401",
+        "G0000x001",
+        "G0000000-",
+        "X",
+        "MS0372040601000",
     };
     unsigned refused_n = 0;
     char command[40], reply[48];
@@ -438,7 +462,8 @@ void test_vv_is_132_octets_as_the_sensor_sends_it(void)
 void test_pp_is_128_octets_as_the_sensor_sends_it(void)
 {
     create_scip2();
-    ask("PP\n", "PP\n00P\nMODL:URG-04LX(Hokuyo Automatic Co.,Ltd.);N\nDMIN:20;4\nDMAX:5600;_\nARES:1024;\\\nAMIN:44;7\n"
+    ask("PP\n", "PP\n00P\nMODL:URG-04LX(Hokuyo Automatic "
+                "Co.,Ltd.);N\nDMIN:20;4\nDMAX:5600;_\nARES:1024;\\\nAMIN:44;7\n"
                 "AMAX:725;o\nAFRT:384;6\nSCAN:600;e\n\n");
     TEST_ASSERT_EQUAL_UINT(128, heard.count);
 }
@@ -518,7 +543,8 @@ void test_every_status_of_ss(void)
 
 void test_every_rate_of_ss_from_every_other(void)
 {
-    static const int rates[] = {19200, 57600, 250000, 500000, 750000, 115200, 750000, 19200, 250000, 57600, 115200};
+    static const int rates[] = {19200,  57600, 250000, 500000, 750000, 115200,
+                                750000, 19200, 250000, 57600,  115200};
     char command[16], reply[24];
 
     create_scip2();
@@ -603,10 +629,12 @@ void test_tm1_tells_the_clock_at_the_answer_in_15_octets(void)
 void test_every_refusal_of_ms_and_md_has_21_octets_and_no_scan(void)
 {
     static const char *const bad[][2] = {
-        {"MSx372040601000", "01Q"}, {"MS037 040601000", "01Q"}, {"MS0372 40601000", "02R"}, {"MS0372040x01000", "02R"},
-        {"MS037204060x000", "03S"}, {"MS0372076901000", "04T"}, {"MS0372999901000", "04T"}, {"MS0406037201000", "05U"},
-        {"MS0800076801000", "05U"}, {"MS0372040601x00", "06V"}, {"MS03720406010x0", "07W"}, {"MS037204060100-", "07W"},
-        {"MDx372040601000", "01Q"}, {"MD0372076901000", "04T"}, {"MD0406040501000", "05U"}, {"MD03720406010 1", "07W"},
+        {"MSx372040601000", "01Q"}, {"MS037 040601000", "01Q"}, {"MS0372 40601000", "02R"},
+        {"MS0372040x01000", "02R"}, {"MS037204060x000", "03S"}, {"MS0372076901000", "04T"},
+        {"MS0372999901000", "04T"}, {"MS0406037201000", "05U"}, {"MS0800076801000", "05U"},
+        {"MS0372040601x00", "06V"}, {"MS03720406010x0", "07W"}, {"MS037204060100-", "07W"},
+        {"MDx372040601000", "01Q"}, {"MD0372076901000", "04T"}, {"MD0406040501000", "05U"},
+        {"MD03720406010 1", "07W"},
     };
     char command[24], reply[32];
 
@@ -648,13 +676,40 @@ void test_every_refusal_of_gs_and_gd_has_18_octets(void)
 void test_malformed_commands_are_told_apart(void)
 {
     static const char *const bad[][2] = {
-        {"X", "0Dd"}, {"Q", "0Dd"}, {";abc", "0Dd"}, {"XX", "0Ee"}, {"qt", "0Ee"}, {"DB00", "0Ee"}, {" QT", "0Ee"},
-        {"QT ", "0Dd"}, {"QT0", "0Dd"}, {"CR0", "0Cc"}, {"CR", "0Cc"}, {"CR000", "0Dd"}, {"MS037204060100", "0Cc"},
-        {"MS03720406010000", "0Dd"}, {"MS", "0Cc"}, {"GS037204060", "0Cc"}, {"GD03720406010", "0Dd"}, {"TM", "0Cc"},
-        {"TM00", "0Dd"}, {"HS", "0Cc"}, {"Q$", "0Hh"}, {"QT$", "0Hh"}, {"QT;a$", "0Hh"}, {"Q\t", "0Hh"},
-        {"QT\x7f", "0Hh"}, {"QT\x80", "0Hh"}, {"\xff\xffQT", "0Hh"}, {"QT;", "0Cc"}, {"QT;abc-def", "0Hh"},
-        {"QT;a;b", "0Hh"}, {"QT;12345678901234567", "0Gg"}, {"MS0372040601000;12345678901234567", "0Gg"},
-        {"MS0372040601000;a,b", "0Hh"}, {"QT012345678901234567890123456789012345678901234567890123456789", "0Dd"},
+        {"X", "0Dd"},
+        {"Q", "0Dd"},
+        {";abc", "0Dd"},
+        {"XX", "0Ee"},
+        {"qt", "0Ee"},
+        {"DB00", "0Ee"},
+        {" QT", "0Ee"},
+        {"QT ", "0Dd"},
+        {"QT0", "0Dd"},
+        {"CR0", "0Cc"},
+        {"CR", "0Cc"},
+        {"CR000", "0Dd"},
+        {"MS037204060100", "0Cc"},
+        {"MS03720406010000", "0Dd"},
+        {"MS", "0Cc"},
+        {"GS037204060", "0Cc"},
+        {"GD03720406010", "0Dd"},
+        {"TM", "0Cc"},
+        {"TM00", "0Dd"},
+        {"HS", "0Cc"},
+        {"Q$", "0Hh"},
+        {"QT$", "0Hh"},
+        {"QT;a$", "0Hh"},
+        {"Q\t", "0Hh"},
+        {"QT\x7f", "0Hh"},
+        {"QT\x80", "0Hh"},
+        {"\xff\xffQT", "0Hh"},
+        {"QT;", "0Cc"},
+        {"QT;abc-def", "0Hh"},
+        {"QT;a;b", "0Hh"},
+        {"QT;12345678901234567", "0Gg"},
+        {"MS0372040601000;12345678901234567", "0Gg"},
+        {"MS0372040601000;a,b", "0Hh"},
+        {"QT012345678901234567890123456789012345678901234567890123456789", "0Dd"},
     };
     char command[100], reply[110];
 
@@ -961,10 +1016,11 @@ void test_ss_during_a_stream_changes_the_rate_between_frames(void)
 void test_lengths_of_the_table_in_the_documents(void)
 {
     static const int table[][5] = {
-        {1, 31, 32, 28, 29},       {21, 71, 92, 68, 89},      {22, 73, 97, 70, 94},      {31, 91, 124, 88, 121},
-        {32, 93, 127, 90, 124},    {33, 97, 130, 94, 127},    {35, 101, 136, 98, 133},   {64, 159, 225, 156, 222},
-        {65, 163, 230, 160, 227},  {271, 587, 866, 584, 863}, {677, 1425, 2122, 1422, 2119},
-        {682, 1435, 2137, 1432, 2134}, {769, 1615, 2408, 1612, 2405},
+        {1, 31, 32, 28, 29},           {21, 71, 92, 68, 89},          {22, 73, 97, 70, 94},
+        {31, 91, 124, 88, 121},        {32, 93, 127, 90, 124},        {33, 97, 130, 94, 127},
+        {35, 101, 136, 98, 133},       {64, 159, 225, 156, 222},      {65, 163, 230, 160, 227},
+        {271, 587, 866, 584, 863},     {677, 1425, 2122, 1422, 2119}, {682, 1435, 2137, 1432, 2134},
+        {769, 1615, 2408, 1612, 2405},
     };
     static const char *const verbs[] = {"MS", "MD", "GS", "GD"};
     char command[24];
@@ -1029,7 +1085,8 @@ void test_distances_come_back_from_any_range_and_cluster(void)
         const char *at = single ? heard.text : heard.text + 21;
         frame_t frame = read_frame(at, single ? "00P\n" : "99b\n");
         int k = wide ? 3 : 2, n = (last - first) / used + 1;
-        TEST_ASSERT_EQUAL_INT_MESSAGE((single ? 24 : 27) + k * n + 2 * ((k * n + 63) / 64), frame.end - at, note);
+        TEST_ASSERT_EQUAL_INT_MESSAGE((single ? 24 : 27) + k * n + 2 * ((k * n + 63) / 64), frame.end - at,
+                                      note);
         check_values(&frame, first, last, used, wide ? 262143 : 4095);
         TEST_ASSERT_EQUAL_INT(first, world_first);
         TEST_ASSERT_EQUAL_INT(last, world_last);
@@ -1054,7 +1111,8 @@ static void check_pinned(sim_time_t phase_ms, sim_time_t turn_ms, const char *co
 void test_pinned_frame_of_one_point(void)
 {
     world_mm[384] = 1234;
-    check_pinned(17, 16777217, "MS0384038401000\n", "MS0384038401000\n99b\n00011\nCB5\n\n", "MS0384038401000\n00P\n\n");
+    check_pinned(17, 16777217, "MS0384038401000\n", "MS0384038401000\n99b\n00011\nCB5\n\n",
+                 "MS0384038401000\n00P\n\n");
 }
 
 void test_pinned_frame_of_exactly_one_block(void)
@@ -1062,9 +1120,10 @@ void test_pinned_frame_of_exactly_one_block(void)
     for (int i = 0; i < 32; i++) {
         world_mm[369 + i] = 1000 + i;
     }
-    check_pinned(15, 16777215, "MS0369040001000\n",
-                 "MS0369040001000\n99b\nooool\n?X?Y?Z?[?\\?]?^?_?`?a?b?c?d?e?f?g?h?i?j?k?l?m?n?o@0@1@2@3@4@5@6@7H\n\n",
-                 "MS0369040001000\n00P\n\n");
+    check_pinned(
+        15, 16777215, "MS0369040001000\n",
+        "MS0369040001000\n99b\nooool\n?X?Y?Z?[?\\?]?^?_?`?a?b?c?d?e?f?g?h?i?j?k?l?m?n?o@0@1@2@3@4@5@6@7H\n\n",
+        "MS0369040001000\n00P\n\n");
 }
 
 void test_pinned_frame_of_35_points_in_64_and_6_characters(void)
@@ -1072,10 +1131,11 @@ void test_pinned_frame_of_35_points_in_64_and_6_characters(void)
     for (int i = 0; i < 35; i++) {
         world_mm[372 + i] = 20 + 100 * i;
     }
-    check_pinned(0, 16000000, "MS0372040601000\n",
-                 "MS0372040601000\n99b\nm2@0?\n0D1h3L506T889\\;@<d>H?lAPC4DXF<G`IDJhLLN0OTQ8R\\T@UdWHXlZP\\4]X_<``2\n"
-                 "bDcheLR\n\n",
-                 "MS0372040601000\n00P\n\n");
+    check_pinned(
+        0, 16000000, "MS0372040601000\n",
+        "MS0372040601000\n99b\nm2@0?\n0D1h3L506T889\\;@<d>H?lAPC4DXF<G`IDJhLLN0OTQ8R\\T@UdWHXlZP\\4]X_<``2\n"
+        "bDcheLR\n\n",
+        "MS0372040601000\n00P\n\n");
 }
 
 void test_pinned_frame_with_a_value_split_over_two_blocks(void)
@@ -1212,7 +1272,8 @@ void test_a_stream_costs_one_event_per_octet_and_two_per_revolution(void)
 
 void test_a_counted_stream_counts_down_and_turns_the_laser_off(void)
 {
-    static const char *const echoes[] = {"MD0372040601003", "MD0372040601002", "MD0372040601001", "MD0372040601000"};
+    static const char *const echoes[] = {"MD0372040601003", "MD0372040601002", "MD0372040601001",
+                                         "MD0372040601000"};
 
     create_scip2();
     forget();
@@ -1266,7 +1327,8 @@ void test_the_interval_is_the_number_of_revolutions_left_out(void)
     }
 }
 
-/* On the wire: 1435 octets 124.6 ms at 115200 and 747 ms at 19200; 587 octets 51.0 ms at 115200, 101.9 ms at 57600. */
+/* On the wire: 1435 octets 124.6 ms at 115200 and 747 ms at 19200; 587 octets 51.0 ms at 115200, 101.9 ms at
+ * 57600. */
 static void check_spacing(double rate, const char *command, long expected_ms)
 {
     config.power_up_rate = rate;
@@ -1302,7 +1364,8 @@ void test_behind_a_skipped_revolution_the_very_next_one_is_tried(void)
     run_for(4 * SIM_S);
     frame_t first = read_frame(after_ack("MS0044072501203\n00P\n\n"), "99b\n");
     frame_t second = read_frame(first.end, "99b\n");
-    TEST_ASSERT_EQUAL_INT64(800, second.time_ms - first.time_ms); /* 300 when the line is fast, 900 in threes */
+    TEST_ASSERT_EQUAL_INT64(800,
+                            second.time_ms - first.time_ms); /* 300 when the line is fast, 900 in threes */
 }
 
 void test_a_skipped_revolution_does_not_count_as_sent(void)

@@ -5,8 +5,8 @@
 #include "unity.h"
 
 #define BIT_NS (1e9 / 9600.0)
-#define C ((sim_time_t)1041667)         /* one character at 9600 */
-#define AIR(n) ((sim_time_t)2000000 + (sim_time_t)(n) * 32000)
+#define C ((sim_time_t)1041667) /* one character at 9600 */
+#define AIR(n) ((sim_time_t)2000000 + (sim_time_t)(n)*32000)
 #define MAX 4096
 
 typedef struct {

@@ -1,4 +1,5 @@
-/* The chip model against data sheet figures and the traps of the real peripherals. SCIC on GPIO89/90 unless said. */
+/* The chip model against data sheet figures and the traps of the real peripherals. SCIC on GPIO89/90 unless
+ * said. */
 #include <math.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -96,9 +97,7 @@ void setUp(void)
     open_sci(SCIC_BASE, 9600);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void arrive(unsigned octet)
 {
@@ -153,7 +152,8 @@ void test_a_failed_crystal_is_reported_and_leaves_ten_megahertz(void)
 
 void test_low_speed_and_pwm_clocks_follow_their_dividers(void)
 {
-    static const uint32_t HZ[] = {200000000, 100000000, 50000000, 33333333, 25000000, 20000000, 16666666, 14285714};
+    static const uint32_t HZ[] = {200000000, 100000000, 50000000, 33333333,
+                                  25000000,  20000000,  16666666, 14285714};
     for (unsigned i = 0; i < 8; i++) {
         SysCtl_setLowSpeedClock((SysCtl_LSPCLKPrescaler)i);
         TEST_ASSERT_EQUAL_UINT32(HZ[i], sysctl_lspclk_hz());
@@ -170,7 +170,8 @@ void test_a_timer_counts_down_at_sysclk_over_prescaler_plus_one(void)
 {
     CPUTimer_setPeriod(CPUTIMER0_BASE, 0xFFFFFFFFU);
     CPUTimer_setPreScaler(CPUTIMER0_BASE, 199);
-    TEST_ASSERT_EQUAL_UINT32(0xFFFF, CPUTimer_getTimerCount(CPUTIMER0_BASE)); /* a period waits for the reload */
+    TEST_ASSERT_EQUAL_UINT32(0xFFFF,
+                             CPUTimer_getTimerCount(CPUTIMER0_BASE)); /* a period waits for the reload */
     CPUTimer_startTimer(CPUTIMER0_BASE);
     TEST_ASSERT_EQUAL_UINT32(0xFFFFFFFFU, CPUTimer_getTimerCount(CPUTIMER0_BASE));
     run_for(999);
@@ -222,7 +223,8 @@ void test_setting_the_clock_spoils_the_counts_of_timers_1_and_2_only(void)
 
 /* ---- baud rate ---- */
 
-/* TI's own code on simulated registers: truncated 107 49 216 1301, rounded 108 49 216 1301 at LSPCLK 100 MHz. */
+/* TI's own code on simulated registers: truncated 107 49 216 1301, rounded 108 49 216 1301 at LSPCLK 100 MHz.
+ */
 void test_set_config_truncates_and_set_baud_rounds(void)
 {
     static const uint32_t RATE[] = {115200, 250000, 57600, 9600};
@@ -414,7 +416,8 @@ void test_an_error_stays_latched_until_a_software_reset_and_costs_no_octet(void)
     arrive('c');
     TEST_ASSERT_EQUAL_INT(SCI_FIFO_RX3, SCI_getRxFIFOStatus(SCIC_BASE)); /* reception went on */
     SCI_clearInterruptStatus(SCIC_BASE, SCI_INT_RXFF);
-    TEST_ASSERT_EQUAL_HEX16(SCI_RXSTATUS_ERROR | SCI_RXSTATUS_FRAMING | SCI_RXSTATUS_READY, SCI_getRxStatus(SCIC_BASE));
+    TEST_ASSERT_EQUAL_HEX16(SCI_RXSTATUS_ERROR | SCI_RXSTATUS_FRAMING | SCI_RXSTATUS_READY,
+                            SCI_getRxStatus(SCIC_BASE));
     SCI_performSoftwareReset(SCIC_BASE);
     TEST_ASSERT_EQUAL_HEX16(SCI_RXSTATUS_READY, SCI_getRxStatus(SCIC_BASE));
     TEST_ASSERT_EQUAL_UINT32(1301, chip_register("SCIC.BRR"));
@@ -620,11 +623,11 @@ void test_pin_words_decode_to_pin_and_mux(void)
         uint32_t word;
         const char *name;
         uint32_t mux;
-    } PINS[] = {{GPIO_2_EPWM2A, "GPIO2.MUX", 1},    {GPIO_3_GPIO3, "GPIO3.MUX", 0},     {GPIO_42_SCITXDA, "GPIO42.MUX", 15},
-                {GPIO_64_SCIRXDA, "GPIO64.MUX", 6}, {GPIO_65_SCITXDA, "GPIO65.MUX", 6},
-                {GPIO_84_SCITXDA, "GPIO84.MUX", 5}, {GPIO_86_SCITXDB, "GPIO86.MUX", 5},
-                {GPIO_87_SCIRXDB, "GPIO87.MUX", 5}, {GPIO_89_SCITXDC, "GPIO89.MUX", 6},
-                {GPIO_90_SCIRXDC, "GPIO90.MUX", 6}};
+    } PINS[] = {{GPIO_2_EPWM2A, "GPIO2.MUX", 1},     {GPIO_3_GPIO3, "GPIO3.MUX", 0},
+                {GPIO_42_SCITXDA, "GPIO42.MUX", 15}, {GPIO_64_SCIRXDA, "GPIO64.MUX", 6},
+                {GPIO_65_SCITXDA, "GPIO65.MUX", 6},  {GPIO_84_SCITXDA, "GPIO84.MUX", 5},
+                {GPIO_86_SCITXDB, "GPIO86.MUX", 5},  {GPIO_87_SCIRXDB, "GPIO87.MUX", 5},
+                {GPIO_89_SCITXDC, "GPIO89.MUX", 6},  {GPIO_90_SCIRXDC, "GPIO90.MUX", 6}};
     chip_reset(raise_line);
     for (unsigned i = 0; i < sizeof PINS / sizeof PINS[0]; i++) {
         TEST_ASSERT_EQUAL_UINT32(0, chip_register(PINS[i].name));
@@ -652,8 +655,10 @@ static void start_pwm(uint16_t period, uint16_t compare)
     EPWM_setTimeBasePeriod(EPWM2_BASE, period);
     EPWM_setCounterCompareShadowLoadMode(EPWM2_BASE, EPWM_COUNTER_COMPARE_A, EPWM_COMP_LOAD_ON_CNTR_ZERO);
     EPWM_setCounterCompareValue(EPWM2_BASE, EPWM_COUNTER_COMPARE_A, compare);
-    EPWM_setActionQualifierAction(EPWM2_BASE, EPWM_AQ_OUTPUT_A, EPWM_AQ_OUTPUT_HIGH, EPWM_AQ_OUTPUT_ON_TIMEBASE_ZERO);
-    EPWM_setActionQualifierAction(EPWM2_BASE, EPWM_AQ_OUTPUT_A, EPWM_AQ_OUTPUT_LOW, EPWM_AQ_OUTPUT_ON_TIMEBASE_UP_CMPA);
+    EPWM_setActionQualifierAction(EPWM2_BASE, EPWM_AQ_OUTPUT_A, EPWM_AQ_OUTPUT_HIGH,
+                                  EPWM_AQ_OUTPUT_ON_TIMEBASE_ZERO);
+    EPWM_setActionQualifierAction(EPWM2_BASE, EPWM_AQ_OUTPUT_A, EPWM_AQ_OUTPUT_LOW,
+                                  EPWM_AQ_OUTPUT_ON_TIMEBASE_UP_CMPA);
     EPWM_setTimeBaseCounterMode(EPWM2_BASE, EPWM_COUNTER_MODE_UP);
     GPIO_setPinConfig(GPIO_2_EPWM2A);
     SysCtl_enablePeripheral(SYSCTL_PERIPH_CLK_TBCLKSYNC);
@@ -803,7 +808,8 @@ void test_the_period_is_shadowed_too(void)
 void test_toggling_at_both_events_is_a_pulse_too(void)
 {
     start_pwm(28332, 4166);
-    EPWM_setActionQualifierAction(EPWM2_BASE, EPWM_AQ_OUTPUT_A, EPWM_AQ_OUTPUT_TOGGLE, EPWM_AQ_OUTPUT_ON_TIMEBASE_ZERO);
+    EPWM_setActionQualifierAction(EPWM2_BASE, EPWM_AQ_OUTPUT_A, EPWM_AQ_OUTPUT_TOGGLE,
+                                  EPWM_AQ_OUTPUT_ON_TIMEBASE_ZERO);
     EPWM_setActionQualifierAction(EPWM2_BASE, EPWM_AQ_OUTPUT_A, EPWM_AQ_OUTPUT_TOGGLE,
                                   EPWM_AQ_OUTPUT_ON_TIMEBASE_UP_CMPA);
     run_until(20 * SIM_MS);
@@ -842,25 +848,66 @@ static void aborted(int signal_number)
     siglongjmp(out, 1);
 }
 
-static void unknown_register(void) { (void)chip_register("EPWM2.NONE"); }
-static void unknown_sci_register(void) { (void)chip_register("SCIA.NONE"); }
-static void unknown_pin_field(void) { (void)chip_register("GPIO2.NONE"); }
-static void unknown_pin(void) { (void)chip_pin(169); }
-static void unknown_sci(void) { SCI_enableFIFO(0x7230U); }
-static void unknown_epwm(void) { EPWM_setTimeBasePeriod(0x4000U, 1); }
-static void unknown_timer(void) { CPUTimer_stopTimer(0xC18U); }
-static void too_fast(void) { SCI_setConfig(SCIC_BASE, LSPCLK, 6250001U, FORMAT); }
-static void seven_bits(void) { SCI_setConfig(SCIC_BASE, LSPCLK, 9600U, 6U); }
-static void odd_interrupt(void) { SCI_enableInterrupt(SCIC_BASE, SCI_INT_TXRDY); }
-static void down_count(void) { EPWM_setTimeBaseCounterMode(EPWM2_BASE, EPWM_COUNTER_MODE_DOWN); }
-static void compare_b(void) { EPWM_setCounterCompareValue(EPWM2_BASE, EPWM_COUNTER_COMPARE_B, 1); }
-static void open_drain(void) { GPIO_setPadConfig(12, GPIO_PIN_TYPE_OD); }
+static void unknown_register(void)
+{
+    (void)chip_register("EPWM2.NONE");
+}
+static void unknown_sci_register(void)
+{
+    (void)chip_register("SCIA.NONE");
+}
+static void unknown_pin_field(void)
+{
+    (void)chip_register("GPIO2.NONE");
+}
+static void unknown_pin(void)
+{
+    (void)chip_pin(169);
+}
+static void unknown_sci(void)
+{
+    SCI_enableFIFO(0x7230U);
+}
+static void unknown_epwm(void)
+{
+    EPWM_setTimeBasePeriod(0x4000U, 1);
+}
+static void unknown_timer(void)
+{
+    CPUTimer_stopTimer(0xC18U);
+}
+static void too_fast(void)
+{
+    SCI_setConfig(SCIC_BASE, LSPCLK, 6250001U, FORMAT);
+}
+static void seven_bits(void)
+{
+    SCI_setConfig(SCIC_BASE, LSPCLK, 9600U, 6U);
+}
+static void odd_interrupt(void)
+{
+    SCI_enableInterrupt(SCIC_BASE, SCI_INT_TXRDY);
+}
+static void down_count(void)
+{
+    EPWM_setTimeBaseCounterMode(EPWM2_BASE, EPWM_COUNTER_MODE_DOWN);
+}
+static void compare_b(void)
+{
+    EPWM_setCounterCompareValue(EPWM2_BASE, EPWM_COUNTER_COMPARE_B, 1);
+}
+static void open_drain(void)
+{
+    GPIO_setPadConfig(12, GPIO_PIN_TYPE_OD);
+}
 
 void test_what_the_model_does_not_know_aborts(void)
 {
-    static void (*const CASES[])(void) = {unknown_register, unknown_sci_register, unknown_pin_field, unknown_pin,
-                                          unknown_sci, unknown_epwm, unknown_timer, too_fast, seven_bits,
-                                          odd_interrupt, down_count, compare_b, open_drain};
+    static void (*const CASES[])(void) = {
+        unknown_register, unknown_sci_register, unknown_pin_field, unknown_pin,
+        unknown_sci,      unknown_epwm,         unknown_timer,     too_fast,
+        seven_bits,       odd_interrupt,        down_count,        compare_b,
+        open_drain};
     void (*const before)(int) = signal(SIGABRT, aborted);
     volatile unsigned count = 0;
     for (volatile unsigned i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
@@ -912,7 +959,8 @@ void test_protected_registers_are_open_between_eallow_and_edis_and_that_does_not
 
 void test_driverlibs_functions_that_store_in_protected_registers_leave_them_closed(void)
 {
-    static void (*const functions[])(void) = {SysCtl_serviceWatchdog, SysCtl_enableWatchdog, SysCtl_disableWatchdog};
+    static void (*const functions[])(void) = {SysCtl_serviceWatchdog, SysCtl_enableWatchdog,
+                                              SysCtl_disableWatchdog};
 
     for (size_t i = 0; i < sizeof functions / sizeof functions[0]; i++) {
         EALLOW;
@@ -927,5 +975,6 @@ void test_driverlibs_functions_that_store_in_protected_registers_leave_them_clos
     TEST_ASSERT_FALSE(chip_protected_writable());
     EALLOW;
     SCI_performSoftwareReset(SCIA_BASE);
-    TEST_ASSERT_TRUE_MESSAGE(chip_protected_writable(), "the SCI's registers are not protected, TI's function leaves the bit");
+    TEST_ASSERT_TRUE_MESSAGE(chip_protected_writable(),
+                             "the SCI's registers are not protected, TI's function leaves the bit");
 }

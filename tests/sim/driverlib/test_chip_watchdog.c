@@ -1,4 +1,5 @@
-/* The chip model's watchdog and causes of reset: counts of 512 periods of 10 MHz (51.2 us), prescaler 1 to 64, 256 to go. */
+/* The chip model's watchdog and causes of reset: counts of 512 periods of 10 MHz (51.2 us), prescaler 1 to
+ * 64, 256 to go. */
 #include "device.h"
 #include "sim/ti/driverlib/chip.h"
 #include "sim/timeline.h"
@@ -39,9 +40,7 @@ void setUp(void)
     bites = 0;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_it_counts_from_reset_on_and_bites_after_13_ms(void)
 {
@@ -65,9 +64,9 @@ void test_disabled_it_rests_and_counts_on_from_there(void)
 
 void test_every_prescaler_has_its_period(void)
 {
-    static const SysCtl_WDPrescaler prescalers[] = {SYSCTL_WD_PRESCALE_1,  SYSCTL_WD_PRESCALE_2,  SYSCTL_WD_PRESCALE_4,
-                                                    SYSCTL_WD_PRESCALE_8,  SYSCTL_WD_PRESCALE_16, SYSCTL_WD_PRESCALE_32,
-                                                    SYSCTL_WD_PRESCALE_64};
+    static const SysCtl_WDPrescaler prescalers[] = {
+        SYSCTL_WD_PRESCALE_1,  SYSCTL_WD_PRESCALE_2,  SYSCTL_WD_PRESCALE_4, SYSCTL_WD_PRESCALE_8,
+        SYSCTL_WD_PRESCALE_16, SYSCTL_WD_PRESCALE_32, SYSCTL_WD_PRESCALE_64};
 
     for (int i = 0; i < 7; i++) {
         setUp();

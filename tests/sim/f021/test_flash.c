@@ -20,7 +20,7 @@ static const char path[] = SCRATCH "/flash.bin";
 static uint16_t block[8] = {1, 2, 3, 4, 5, 6, 7, 8};
 
 static int called_back;
-static int closes_at;   /* the call that ends with EDIS, 0: none does */
+static int closes_at; /* the call that ends with EDIS, 0: none does */
 
 Fapi_StatusType Fapi_serviceWatchdogTimer(void)
 {
@@ -93,7 +93,8 @@ void test_programming_only_clears_bits_and_only_whole_blocks_once(void)
 
     start();
     TEST_ASSERT_EQUAL(Fapi_Error_InvalidAddress, program_words(&flash_sectors_m_n[1][4], block, 8));
-    TEST_ASSERT_EQUAL(Fapi_Error_AsyncIncorrectDataBufferLength, program_words(flash_sectors_m_n[1], block, 4));
+    TEST_ASSERT_EQUAL(Fapi_Error_AsyncIncorrectDataBufferLength,
+                      program_words(flash_sectors_m_n[1], block, 4));
     TEST_ASSERT_EQUAL(Fapi_Error_InvalidAddress, program_words(ones, block, 8));
     TEST_ASSERT_EQUAL(Fapi_Status_Success, program_words(flash_sectors_m_n[1], block, 8));
     wait();

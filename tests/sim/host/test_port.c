@@ -67,7 +67,8 @@ void test_reading_an_empty_port_gives_nothing_and_does_not_wait(void)
 
 void test_a_pseudo_terminal_takes_any_rate_and_shows_it_to_the_other_side(void)
 {
-    static const unsigned long rates[] = {50, 9600, 19200, 57600, 115200, 123457, 250000, 500000, 750000, 3000000};
+    static const unsigned long rates[] = {50,     9600,   19200,  57600,  115200,
+                                          123457, 250000, 500000, 750000, 3000000};
 
     for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
         TEST_ASSERT_NULL(port_set_rate(&users, rates[i]));

@@ -53,8 +53,9 @@ static size_t received(int fd, char *text, size_t capacity)
 
 static int shaken(void)
 {
-    static const char request[] = "GET / HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-                                  "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n";
+    static const char request[] =
+        "GET / HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n";
     char answer[512] = "";
     const int fd = connected();
 
@@ -102,7 +103,9 @@ void test_a_late_client_gets_nothing_that_was_written_before_it_came(void)
     fd = shaken();
     port_write(&port, (const unsigned char *)"fresh", 5);
     TEST_ASSERT_EQUAL(7, received(fd, back, sizeof back));
-    TEST_ASSERT_EQUAL_MEMORY("\x82\x05" "fresh", back, 7);
+    TEST_ASSERT_EQUAL_MEMORY("\x82\x05"
+                             "fresh",
+                             back, 7);
     close(fd);
 }
 

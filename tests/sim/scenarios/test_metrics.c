@@ -11,7 +11,7 @@
 static metrics_record_t record;
 static metrics_t found;
 static long ticks;
-static metrics_sample_t now;    /* what the next samples are */
+static metrics_sample_t now; /* what the next samples are */
 
 void setUp(void)
 {
@@ -38,7 +38,8 @@ static void go(double t_s, double height_m)
     for (long i = 1; i <= steps; i++) {
         now.t_s = time_s();
         now.height_m = now.seen_m = from_m + (height_m - from_m) * (double)i / (double)steps;
-        now.estimate_m = now.estimate_m + now.seen_m - (i == 1 ? from_m : from_m + (height_m - from_m) * (double)(i - 1) / (double)steps);
+        now.estimate_m = now.estimate_m + now.seen_m -
+                         (i == 1 ? from_m : from_m + (height_m - from_m) * (double)(i - 1) / (double)steps);
         now.on_ground = now.height_m <= 0.0;
         metrics_add(&record, &now);
         ticks++;

@@ -177,7 +177,8 @@ Void clock_says(UArg name)
     say("%s", (const char *)name);
 }
 
-void observe_priorities(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail)
+void observe_priorities(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job,
+                        int detail)
 {
     (void)context;
     (void)when;
@@ -208,7 +209,10 @@ void observe_all(void *context, sim_time_t when, kernel_event_t what, const kern
 }
 
 static const kernel_cost_t hwi_jobs[] = {
-    {NULL, 38, 0}, {NULL, 96, 500 * SIM_US}, {NULL, 97, 100 * SIM_US}, {NULL, 98, 30 * SIM_US},
+    {NULL, 38, 0},
+    {NULL, 96, 500 * SIM_US},
+    {NULL, 97, 100 * SIM_US},
+    {NULL, 98, 30 * SIM_US},
 };
 const kernel_costs_t hwi_costs = {hwi_jobs, sizeof hwi_jobs / sizeof hwi_jobs[0], 0, 0};
 

@@ -1,8 +1,8 @@
 #ifndef TESTS_SIM_SYSBIOS_KERNEL_HELPER_H
 #define TESTS_SIM_SYSBIOS_KERNEL_HELPER_H
 
-/* What the tests of the simulated kernel share. Nothing is asserted inside the firmware of a test: it writes the trace with
- * say(), and the test compares the trace afterwards. */
+/* What the tests of the simulated kernel share. Nothing is asserted inside the firmware of a test: it writes
+ * the trace with say(), and the test compares the trace afterwards. */
 
 #include "sim/ti/sysbios/kernel.h"
 
@@ -30,7 +30,8 @@ extern Swi_Handle swi_low, swi_mid, swi_high;
 extern Clock_Handle clk;
 extern Task_Handle task_a, task_b;
 
-/* Create with the parameters given and defaults for the others. hwi(): the function's argument is the number. */
+/* Create with the parameters given and defaults for the others. hwi(): the function's argument is the number.
+ */
 Task_Handle task(const char *name, Int priority, Task_FuncPtr function);
 Swi_Handle swi(const char *name, UInt priority, Swi_FuncPtr function);
 void hwi(Int number, Hwi_FuncPtr function);
@@ -55,8 +56,10 @@ Void clock_says(UArg name);
 
 /* Observers. Letters of kernel_event_t in event_names. */
 extern const char *const event_names[];
-void observe_priorities(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail);
-void observe_changes(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail);
+void observe_priorities(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job,
+                        int detail);
+void observe_changes(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job,
+                     int detail);
 void observe_all(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail);
 
 /* A firmware of three Hwis: 96 costs 500 us, 97 costs 100 us, 98 costs 30 us. */

@@ -90,9 +90,7 @@ void setUp(void)
     depth = 0;
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 void test_an_idle_processor_has_no_load(void)
 {

@@ -20,7 +20,8 @@ static int inside[2], overlaps;
 static GateMutexPri_Handle busy_gates[2];
 static Semaphore_Handle busy_sems[3];
 
-static void observe_hash(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail)
+static void observe_hash(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job,
+                         int detail)
 {
     (void)context;
     hash = (hash ^ (uint64_t)when) * 0x100000001B3u;
@@ -97,11 +98,12 @@ static void busy_world(void *unused)
 }
 
 static const kernel_cost_t busy_jobs[] = {
-    {"0", -1, 91 * SIM_US}, {"1", -1, 83 * SIM_US}, {"2", -1, 77 * SIM_US}, {"3", -1, 65 * SIM_US},
+    {"0", -1, 91 * SIM_US}, {"1", -1, 83 * SIM_US},   {"2", -1, 77 * SIM_US},   {"3", -1, 65 * SIM_US},
     {"4", -1, 51 * SIM_US}, {"low", -1, 21 * SIM_US}, {"mid", -1, 13 * SIM_US}, {"high", -1, 7 * SIM_US},
-    {NULL, 38, 4 * SIM_US}, {NULL, 92, 11 * SIM_US}, {NULL, 96, 25 * SIM_US}, {NULL, 99, 3 * SIM_US},
+    {NULL, 38, 4 * SIM_US}, {NULL, 92, 11 * SIM_US},  {NULL, 96, 25 * SIM_US},  {NULL, 99, 3 * SIM_US},
 };
-static const kernel_costs_t busy_costs = {busy_jobs, sizeof busy_jobs / sizeof busy_jobs[0], 9 * SIM_US, 5 * SIM_US};
+static const kernel_costs_t busy_costs = {busy_jobs, sizeof busy_jobs / sizeof busy_jobs[0], 9 * SIM_US,
+                                          5 * SIM_US};
 
 static int busy_main(void)
 {
@@ -169,7 +171,7 @@ void test_a_busy_system_repeats_itself_and_does_not_depend_on_how_it_is_run(void
 
 static struct {
     char name[8];
-    sim_time_t used;    /* processor time */
+    sim_time_t used; /* processor time */
     long released, finished;
 } accounts[24];
 static int account_count;
@@ -191,7 +193,8 @@ static int account_of(const char *name, int detail, bool is_hwi)
     return account_count++;
 }
 
-static void observe_accounts(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail)
+static void observe_accounts(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job,
+                             int detail)
 {
     int account = account_of(job->name, job->number, strcmp(job->name, "hwi") == 0);
 
@@ -211,14 +214,15 @@ static void observe_accounts(void *context, sim_time_t when, kernel_event_t what
     }
 }
 
-/* At any time one job has the processor, and what Swis and Hwis used is their number of runs times their cost. */
+/* At any time one job has the processor, and what Swis and Hwis used is their number of runs times their
+ * cost. */
 void test_processor_time_is_accounted_for_to_the_nanosecond(void)
 {
     static const struct {
         const char *name;
         sim_time_t cost;
     } fixed[] = {{"low", 21 * SIM_US}, {"mid", 13 * SIM_US}, {"high", 7 * SIM_US}, {"h92", 11 * SIM_US},
-                 {"h96", 25 * SIM_US}, {"h99", 3 * SIM_US}, {"h97", 0}, {"Clock", 4 * SIM_US}};
+                 {"h96", 25 * SIM_US}, {"h99", 3 * SIM_US},  {"h97", 0},           {"Clock", 4 * SIM_US}};
 
     setUp();
     memset(accounts, 0, sizeof accounts);
@@ -238,6 +242,7 @@ void test_processor_time_is_accounted_for_to_the_nanosecond(void)
         TEST_ASSERT_GREATER_THAN_MESSAGE(100, accounts[account].finished, fixed[i].name);
         TEST_ASSERT_INT64_WITHIN_MESSAGE((uint64_t)fixed[i].cost, accounts[account].finished * fixed[i].cost,
                                          accounts[account].used, fixed[i].name); /* one may be under way */
-        TEST_ASSERT_INT_WITHIN_MESSAGE(1, accounts[account].released, accounts[account].finished, fixed[i].name);
+        TEST_ASSERT_INT_WITHIN_MESSAGE(1, accounts[account].released, accounts[account].finished,
+                                       fixed[i].name);
     }
 }

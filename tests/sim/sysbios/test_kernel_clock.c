@@ -37,7 +37,7 @@ static Void clock_driver(UArg a0, UArg a1)
     Clock_stop(clk);
     Clock_setTimeout(clk, 4);
     Clock_setPeriod(clk, 0);
-    Task_sleep(5); /* 20 */
+    Task_sleep(5);    /* 20 */
     Clock_start(clk); /* 24 */
 }
 
@@ -96,6 +96,6 @@ static int clock_self_main(void)
 void test_clock_functions_run_at_the_highest_swi_priority_and_may_stop_themselves(void)
 {
     boot_and_run_ms(clock_self_main, 10);
-    TEST_ASSERT_EQUAL_STRING("tick@2000 ticks 2@2000 high@2000 task@2000 tick@4000 ticks 4@4000 high@4000 task@4000 ",
-                             trace);
+    TEST_ASSERT_EQUAL_STRING(
+        "tick@2000 ticks 2@2000 high@2000 task@2000 tick@4000 ticks 4@4000 high@4000 task@4000 ", trace);
 }

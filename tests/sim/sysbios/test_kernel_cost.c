@@ -34,15 +34,11 @@ static Void post_swi_low(UArg unused)
 }
 
 static const kernel_cost_t preemption_jobs[] = {
-    {"Low", -1, 1000 * SIM_US},
-    {"High", -1, 300 * SIM_US},
-    {"Swi", -1, 50 * SIM_US},
-    {NULL, 38, 4 * SIM_US},
-    {NULL, 96, 20 * SIM_US},
-    {NULL, 97, 10 * SIM_US},
+    {"Low", -1, 1000 * SIM_US}, {"High", -1, 300 * SIM_US}, {"Swi", -1, 50 * SIM_US},
+    {NULL, 38, 4 * SIM_US},     {NULL, 96, 20 * SIM_US},    {NULL, 97, 10 * SIM_US},
 };
-static const kernel_costs_t preemption_costs = {preemption_jobs, sizeof preemption_jobs / sizeof preemption_jobs[0], 0,
-                                                57 * SIM_US};
+static const kernel_costs_t preemption_costs = {
+    preemption_jobs, sizeof preemption_jobs / sizeof preemption_jobs[0], 0, 57 * SIM_US};
 
 static int preemption_main(void)
 {
@@ -57,9 +53,9 @@ static int preemption_main(void)
     return 0;
 }
 
-/* 1500 Hwi 96 is raised, done 1520. Swi until 1570. Low needs 57 + 1000 = 1057; 430 done at 2000, when the tick takes 4.
- * 2004 Low; 96 more = 526 done at 2100. Hwi 97 until 2110. High needs 57 + 300 = 357: done at 2467. Low's last 531: done at
- * 2998, before the next tick. */
+/* 1500 Hwi 96 is raised, done 1520. Swi until 1570. Low needs 57 + 1000 = 1057; 430 done at 2000, when the
+ * tick takes 4. 2004 Low; 96 more = 526 done at 2100. Hwi 97 until 2110. High needs 57 + 300 = 357: done at
+ * 2467. Low's last 531: done at 2998, before the next tick. */
 void test_costs_are_consumed_preemptibly_before_the_code_runs(void)
 {
     raise_at_us(1500, 96);
@@ -78,10 +74,11 @@ void test_the_observer_sees_releases_dispatches_preemptions_and_ends(void)
     trace[0] = '\0';
     kernel_observe(observe_all, NULL);
     run_ms(4);
-    TEST_ASSERT_EQUAL_STRING("R:hwi@1500 D:hwi@1500 hwi@1520 R:Swi@1520 F:hwi@1520 D:Swi@1520 swi@1570 R:Low@1570 "
-                             "F:Swi@1570 D:Low@1570 P:Low@2000 D:Low@2004 R:hwi@2100 P:Low@2100 D:hwi@2100 hwi b@2110 "
-                             "R:High@2110 F:hwi@2110 D:High@2110 High@2467 F:High@2467 D:Low@2467 Low@2998 F:Low@2998 ",
-                             trace);
+    TEST_ASSERT_EQUAL_STRING(
+        "R:hwi@1500 D:hwi@1500 hwi@1520 R:Swi@1520 F:hwi@1520 D:Swi@1520 swi@1570 R:Low@1570 "
+        "F:Swi@1570 D:Low@1570 P:Low@2000 D:Low@2004 R:hwi@2100 P:Low@2100 D:hwi@2100 hwi b@2110 "
+        "R:High@2110 F:hwi@2110 D:High@2110 High@2467 F:High@2467 D:Low@2467 Low@2998 F:Low@2998 ",
+        trace);
 }
 
 static Void takes_what_is_there(UArg a0, UArg a1)
@@ -109,7 +106,8 @@ void test_the_observer_sees_a_job_for_every_wait_that_returns_at_once(void)
     TEST_ASSERT_EQUAL_STRING("R:t@0 D:t@0 F:t@0 R:t@0 D:t@0 one@0 F:t@0 R:t@0 D:t@0 two@0 F:t@0 ", trace);
 }
 
-static void observe_responses(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail)
+static void observe_responses(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job,
+                              int detail)
 {
     (void)context;
     (void)detail;
@@ -119,10 +117,11 @@ static void observe_responses(void *context, sim_time_t when, kernel_event_t wha
 }
 
 static const kernel_cost_t response_jobs[] = {
-    {"t", -1, 400 * SIM_US}, {"s", -1, 100 * SIM_US}, {NULL, 96, 10 * SIM_US}, {NULL, 97, 20 * SIM_US},
-    {NULL, 98, 30 * SIM_US},
+    {"t", -1, 400 * SIM_US}, {"s", -1, 100 * SIM_US}, {NULL, 96, 10 * SIM_US},
+    {NULL, 97, 20 * SIM_US}, {NULL, 98, 30 * SIM_US},
 };
-static const kernel_costs_t response_costs = {response_jobs, sizeof response_jobs / sizeof response_jobs[0], 0, 0};
+static const kernel_costs_t response_costs = {response_jobs, sizeof response_jobs / sizeof response_jobs[0],
+                                              0, 0};
 
 static Void pends_semaphore(UArg a0, UArg a1)
 {
@@ -183,8 +182,9 @@ static void observe_responses_from_100_us(void)
     run_ms(3);
 }
 
-/* 200 Hwi 96; the Swi has done 90 of 100 when Hwi 97 comes at 300 and posts it anew at 320; it ends at 330 and again at
- * 430. The task is released at 330 and, with nothing done, at 430: jobs of 400 end at 830 and 1230. */
+/* 200 Hwi 96; the Swi has done 90 of 100 when Hwi 97 comes at 300 and posts it anew at 320; it ends at 330
+ * and again at 430. The task is released at 330 and, with nothing done, at 430: jobs of 400 end at 830 and
+ * 1230. */
 TEST_CASE(0)
 TEST_CASE(1)
 TEST_CASE(2)
@@ -195,23 +195,26 @@ void test_a_response_counts_from_the_release_also_when_the_job_found_it_waiting(
     raise_at_us(200, 96);
     raise_at_us(300, 97);
     observe_responses_from_100_us();
-    TEST_ASSERT_EQUAL_STRING("hwi96 10@210 hwi97 20@320 s1 120@330 s1 110@430 t0 500@830 t0 800@1230 ", trace);
+    TEST_ASSERT_EQUAL_STRING("hwi96 10@210 hwi97 20@320 s1 120@330 s1 110@430 t0 500@830 t0 800@1230 ",
+                             trace);
 }
 
-/* Hwi 98 ends at 230 with three posts; the Swi until 330 brings a fourth. Jobs end at 730, 1130, 1530, 1930: released 230,
- * 230 (it waited), 730 (the job ahead of it began), 1130. */
+/* Hwi 98 ends at 230 with three posts; the Swi until 330 brings a fourth. Jobs end at 730, 1130, 1530, 1930:
+ * released 230, 230 (it waited), 730 (the job ahead of it began), 1130. */
 void test_posts_behind_one_another_are_released_when_the_job_ahead_begins(void)
 {
     response_mode = Semaphore_Mode_COUNTING;
     response_task = pends_semaphore;
     raise_at_us(200, 98);
     observe_responses_from_100_us();
-    TEST_ASSERT_EQUAL_STRING("hwi98 30@230 s1 100@330 t0 500@730 t0 900@1130 t0 800@1530 t0 800@1930 ", trace);
+    TEST_ASSERT_EQUAL_STRING("hwi98 30@230 s1 100@330 t0 500@730 t0 900@1130 t0 800@1530 t0 800@1930 ",
+                             trace);
 }
 
 static const char *const kind_names[] = {"hwi", "swi", "task"};
 
-static void observe_identities(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail)
+static void observe_identities(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job,
+                               int detail)
 {
     (void)context;
     (void)when;
@@ -230,17 +233,19 @@ static Void pends_in_turn(UArg a0, UArg a1)
     }
 }
 
-/* 200 Hwi 96, Swi until 310: flag 1 ends the wait, and flag 2 is there already, both posted at 310; jobs until 710 and
- * 1110 + 110, because at 800 Hwi 96 and the Swi come again, with both flags at 910. Jobs until 1620 and 2020 for them. */
+/* 200 Hwi 96, Swi until 310: flag 1 ends the wait, and flag 2 is there already, both posted at 310; jobs
+ * until 710 and 1110 + 110, because at 800 Hwi 96 and the Swi come again, with both flags at 910. Jobs until
+ * 1620 and 2020 for them. */
 void test_flags_posted_together_are_released_together(void)
 {
     response_task = pends_in_turn;
     raise_at_us(200, 96);
     raise_at_us(800, 96);
     observe_responses_from_100_us();
-    TEST_ASSERT_EQUAL_STRING("hwi96 10@210 s1 100@310 t0 400@710 hwi96 10@810 s1 100@910 t0 910@1220 t0 710@1620 "
-                             "t0 1110@2020 ",
-                             trace);
+    TEST_ASSERT_EQUAL_STRING(
+        "hwi96 10@210 s1 100@310 t0 400@710 hwi96 10@810 s1 100@910 t0 910@1220 t0 710@1620 "
+        "t0 1110@2020 ",
+        trace);
 }
 
 static Void pends_late(UArg a0, UArg a1)
@@ -254,7 +259,8 @@ static Void pends_late(UArg a0, UArg a1)
     }
 }
 
-/* Flags 1 and 2 at 310; job until 710; the sleep ends at 1000, job until 1400; flag 2 is older than the sleep's end. */
+/* Flags 1 and 2 at 310; job until 710; the sleep ends at 1000, job until 1400; flag 2 is older than the
+ * sleep's end. */
 void test_a_flag_that_nobody_waited_for_releases_when_it_is_asked_for(void)
 {
     response_task = pends_late;
@@ -264,7 +270,10 @@ void test_a_flag_that_nobody_waited_for_releases_when_it_is_asked_for(void)
 }
 
 static const kernel_cost_t label_jobs[] = {
-    {"label", 96, 5 * SIM_US}, {"other label", 97, 5 * SIM_US}, {"label", -1, 100 * SIM_US}, {NULL, 98, 5 * SIM_US},
+    {"label", 96, 5 * SIM_US},
+    {"other label", 97, 5 * SIM_US},
+    {"label", -1, 100 * SIM_US},
+    {NULL, 98, 5 * SIM_US},
 };
 static const kernel_costs_t label_costs = {label_jobs, sizeof label_jobs / sizeof label_jobs[0], 0, 0};
 
@@ -300,13 +309,14 @@ void test_a_hwi_without_a_name_is_known_by_that_of_its_cost(void)
     (void)kernel_run_until(400 * SIM_US);
     kernel_observe(observe_identities, NULL);
     run_ms(1);
-    TEST_ASSERT_EQUAL_STRING("hwi:label:96:96:96@500 task:label:1:7:7@505 hwi:own name:97:97:97@700 hwi 0@705 "
-                             "hwi::98:98:98@800 hwi 0@805 hwi:Clock:38:38:38@1000 swi:Clock_swi:0:15:15@1000 ",
-                             trace);
+    TEST_ASSERT_EQUAL_STRING(
+        "hwi:label:96:96:96@500 task:label:1:7:7@505 hwi:own name:97:97:97@700 hwi 0@705 "
+        "hwi::98:98:98@800 hwi 0@805 hwi:Clock:38:38:38@1000 swi:Clock_swi:0:15:15@1000 ",
+        trace);
 }
 
-/* 98 begins at 1400 and is not preempted: done 1430. 96 until 1930; in the meantime 97 and 98 rise, and 96 again, twice: one
- * is latched. 96 again until 2430 (its number goes first), 97 until 2530, 98 until 2560. */
+/* 98 begins at 1400 and is not preempted: done 1430. 96 until 1930; in the meantime 97 and 98 rise, and 96
+ * again, twice: one is latched. 96 again until 2430 (its number goes first), 97 until 2530, 98 until 2560. */
 void test_hwis_do_not_nest_and_latch_one_deep(void)
 {
     raise_at_us(1400, 98);
@@ -322,7 +332,10 @@ void test_hwis_do_not_nest_and_latch_one_deep(void)
 }
 
 static const kernel_cost_t swi_jobs[] = {
-    {"low", -1, 400 * SIM_US}, {"high", -1, 100 * SIM_US}, {NULL, 96, 10 * SIM_US}, {NULL, 97, 10 * SIM_US},
+    {"low", -1, 400 * SIM_US},
+    {"high", -1, 100 * SIM_US},
+    {NULL, 96, 10 * SIM_US},
+    {NULL, 97, 10 * SIM_US},
 };
 static const kernel_costs_t swi_costs = {swi_jobs, sizeof swi_jobs / sizeof swi_jobs[0], 0, 0};
 
@@ -343,8 +356,9 @@ static int swi_costs_main(void)
     return 0;
 }
 
-/* Hwi 96 until 110, low begins: 400. 200 Hwi 97, high 210 to 310. 320 Hwi 96 posts low again, which has begun, so that it
- * runs once more. low used 90 until 200, 10 from 310 to 320, the last 300 from 330 to 630; again until 1030. */
+/* Hwi 96 until 110, low begins: 400. 200 Hwi 97, high 210 to 310. 320 Hwi 96 posts low again, which has
+ * begun, so that it runs once more. low used 90 until 200, 10 from 310 to 320, the last 300 from 330 to 630;
+ * again until 1030. */
 void test_swi_costs_are_preempted_by_hwis_and_higher_swis(void)
 {
     raise_at_us(100, 96);
@@ -395,9 +409,9 @@ static int costly_gate_main(void)
     return 0;
 }
 
-/* Low is released at 1000, switches 10, enters at 1010 and pays 100 with the gate held; 40 of it at 1050. High switches 10
- * and finds the gate taken at 1060. Mid is ready at 1065. Low, at 9 now, pays its last 60: in at 1120, and leaves. High
- * switches again and pays its access: 1230. Mid 1240, then low. */
+/* Low is released at 1000, switches 10, enters at 1010 and pays 100 with the gate held; 40 of it at 1050.
+ * High switches 10 and finds the gate taken at 1060. Mid is ready at 1065. Low, at 9 now, pays its last 60:
+ * in at 1120, and leaves. High switches again and pays its access: 1230. Mid 1240, then low. */
 void test_gate_access_costs_time_while_the_gate_is_held_and_a_blocking_costs_two_switches(void)
 {
     raise_at_us(1050, 96);
@@ -405,10 +419,12 @@ void test_gate_access_costs_time_while_the_gate_is_held_and_a_blocking_costs_two
     kernel_boot(costly_gate_main, &gate_costs);
     kernel_observe(observe_priorities, NULL);
     run_ms(3);
-    TEST_ASSERT_EQUAL_STRING("high wants@1060 [low 9]@1060 hwi b@1065 low in@1120 high in@1230 mid@1240 low out@1240 ", trace);
+    TEST_ASSERT_EQUAL_STRING(
+        "high wants@1060 [low 9]@1060 hwi b@1065 low in@1120 high in@1230 mid@1240 low out@1240 ", trace);
 }
 
-static void observe_gates(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job, int detail)
+static void observe_gates(void *context, sim_time_t when, kernel_event_t what, const kernel_job_t *job,
+                          int detail)
 {
     (void)context;
     (void)when;
@@ -423,9 +439,10 @@ void test_the_observer_sees_gates_blocked_entered_and_left(void)
     kernel_observe(observe_gates, NULL);
     kernel_boot(costly_gate_main, &gate_costs);
     run_ms(3);
-    TEST_ASSERT_EQUAL_STRING("E:low:0@1010 high wants@1060 B:high:0@1060 low in@1120 L:low:0@1120 E:high:0@1120 "
-                             "high in@1230 L:high:0@1230 low out@1230 ",
-                             trace);
+    TEST_ASSERT_EQUAL_STRING(
+        "E:low:0@1010 high wants@1060 B:high:0@1060 low in@1120 L:low:0@1120 E:high:0@1120 "
+        "high in@1230 L:high:0@1230 low out@1230 ",
+        trace);
 }
 
 static int named_gates_main(void)
@@ -496,7 +513,7 @@ static Void waits_of_all_kinds(UArg a0, UArg a1)
     (void)Event_pend(event, 1, 0, BIOS_NO_WAIT);
     (void)Semaphore_pend(sem, BIOS_NO_WAIT);
     say("polled");
-    say("%d", Semaphore_pend(sem, 1)); /* until tick 2 */
+    say("%d", Semaphore_pend(sem, 1));          /* until tick 2 */
     say("%d", (int)Event_pend(event, 1, 0, 1)); /* until tick 3 */
 }
 
@@ -579,8 +596,8 @@ void test_a_delayed_clock_swi_makes_up_for_every_tick_in_order(void)
 
     kernel_boot(slow_locked_main, &slow);
     run_ms(6);
-    TEST_ASSERT_EQUAL_STRING("a@1000 ticks 5@5500 a@5500 b@5500 a@5500 a@5500 b@5500 a@5500 open@5500 a@6000 b@6000 ",
-                             trace);
+    TEST_ASSERT_EQUAL_STRING(
+        "a@1000 ticks 5@5500 a@5500 b@5500 a@5500 a@5500 b@5500 a@5500 open@5500 a@6000 b@6000 ", trace);
 }
 
 static const kernel_cost_t slice_jobs[] = {{"one", -1, 5000 * SIM_US}, {"two", -1, 5000 * SIM_US}};
@@ -603,7 +620,8 @@ static int slice_main(void)
     return 0;
 }
 
-/* Released at 1500 and 1600. one 1.5-2, two 2-4, one 4-6, two 6-8, one 8-10 (4.5 done), two 10-11 (5 done), one 11-11.5. */
+/* Released at 1500 and 1600. one 1.5-2, two 2-4, one 4-6, two 6-8, one 8-10 (4.5 done), two 10-11 (5 done),
+ * one 11-11.5. */
 void test_yield_from_a_clock_function_slices_time_between_equals(void)
 {
     raise_at_us(1500, 96);

@@ -48,9 +48,10 @@ static int gate_order_main(void)
 void test_a_gate_goes_to_the_highest_waiting_task_fifo_among_equals(void)
 {
     boot_and_run_ms(gate_order_main, 10);
-    TEST_ASSERT_EQUAL_STRING("holder in@0 high in@5000 high out@5000 mid in@5000 mid out@5000 low1 in@5000 low1 out@5000 "
-                             "low2 in@5000 low2 out@5000 holder out@5000 ",
-                             trace);
+    TEST_ASSERT_EQUAL_STRING(
+        "holder in@0 high in@5000 high out@5000 mid in@5000 mid out@5000 low1 in@5000 low1 out@5000 "
+        "low2 in@5000 low2 out@5000 holder out@5000 ",
+        trace);
 }
 
 static Void nested_user(UArg a0, UArg a1)
@@ -150,7 +151,8 @@ void test_the_observer_sees_a_priority_inherited_and_given_back(void)
 {
     kernel_observe(observe_changes, NULL);
     boot_and_run_ms(inherit_main, 5);
-    TEST_ASSERT_EQUAL_STRING("[low 9 of 1]@2000 low@3000 [low 1 of 1]@3000 high@3000 mid@3000 low again low@3000 ", trace);
+    TEST_ASSERT_EQUAL_STRING(
+        "[low 9 of 1]@2000 low@3000 [low 1 of 1]@3000 high@3000 mid@3000 low again low@3000 ", trace);
 }
 
 void test_the_owner_inherits_the_priority_of_the_waiting_task_until_it_leaves(void)
@@ -267,9 +269,10 @@ void test_priority_is_inherited_along_a_chain_of_three(void)
 {
     kernel_observe(observe_priorities, NULL);
     boot_and_run_ms(chain_main, 10);
-    TEST_ASSERT_EQUAL_STRING("[c 2]@1000 [b 9]@2000 [c 9]@2000 c@4000 b@4000 b left one@4000 a@4000 a out@4000 mid@4000 "
-                             "b out@4000 c out@4000 ",
-                             trace);
+    TEST_ASSERT_EQUAL_STRING(
+        "[c 2]@1000 [b 9]@2000 [c 9]@2000 c@4000 b@4000 b left one@4000 a@4000 a out@4000 mid@4000 "
+        "b out@4000 c out@4000 ",
+        trace);
 }
 
 static Void raise_waiter(UArg a0, UArg a1)
@@ -303,9 +306,10 @@ void test_a_change_of_a_waiting_tasks_priority_reaches_queue_and_owner(void)
 {
     kernel_observe(observe_priorities, NULL);
     boot_and_run_ms(requeue_main, 10);
-    TEST_ASSERT_EQUAL_STRING("holder in@0 [holder 3]@1000 [holder 12]@4000 set@4000 second in@5000 second out@5000 "
-                             "first in@5000 first out@5000 holder out@5000 ",
-                             trace);
+    TEST_ASSERT_EQUAL_STRING(
+        "holder in@0 [holder 3]@1000 [holder 12]@4000 set@4000 second in@5000 second out@5000 "
+        "first in@5000 first out@5000 holder out@5000 ",
+        trace);
 }
 
 static Void two_gates_low(UArg a0, UArg a1)
@@ -336,7 +340,8 @@ static int two_gates_main(void)
     return 0;
 }
 
-/* TI's gate restores the priority that its owner had on entering it, whoever waits for another gate of the owner's. */
+/* TI's gate restores the priority that its owner had on entering it, whoever waits for another gate of the
+ * owner's. */
 void test_leaving_an_inner_gate_loses_what_is_inherited_through_the_outer_one(void)
 {
     boot_and_run_ms(two_gates_main, 1);

@@ -1,4 +1,5 @@
-/* Rules broken: the system halts and says why. Then the fault hook, misuse by the board, and the next boot. */
+/* Rules broken: the system halts and says why. Then the fault hook, misuse by the board, and the next boot.
+ */
 #include "tests/sim/sysbios/kernel_helper.h"
 
 #include <signal.h>
@@ -96,57 +97,210 @@ static int offending_main(void)
     return 0;
 }
 
-static void pend_forever(void) { (void)Semaphore_pend(sem, BIOS_WAIT_FOREVER); }
-static void pend_available(void) { (void)Semaphore_pend(sem_b, 5); }
-static void pend_65535(void) { (void)Semaphore_pend(sem_b, 65535); }
-static void pend_too_long(void) { (void)Semaphore_pend(sem, 0xFFFFFFFEu); }
-static void event_forever(void) { (void)Event_pend(event, 2, 0, BIOS_WAIT_FOREVER); }
-static void event_65535(void) { (void)Event_pend(event, 2, 0, 65535); }
-static void event_in_use(void) { (void)Event_pend(event, 2, 0, 5); }
-static void event_no_mask(void) { (void)Event_pend(event, 0, 0, 5); }
-static void event_wide_mask(void) { (void)Event_pend(event, 0, 0x10000, BIOS_NO_WAIT); }
-static void event_post_none(void) { Event_post(event, Event_Id_NONE); }
-static void event_post_wide(void) { Event_post(event, 0x10000); }
-static void sleep_1(void) { Task_sleep(1); }
-static void sleep_65535(void) { Task_sleep(65535); }
-static void sleep_forever(void) { Task_sleep(BIOS_WAIT_FOREVER); }
-static void enter_gate(void) { (void)GateMutexPri_enter(gate); }
-static void leave_gate(void) { GateMutexPri_leave(gate, 0); }
-static void leave_foreign_gate(void) { GateMutexPri_leave(gate_b, 0); }
-static void start_zero_clock(void) { Clock_start(clk); }
-static void create_started_zero_clock(void) { (void)clock_object(clock_says, 0, 5, TRUE, 0); }
-static void create_long_clock(void) { (void)clock_object(clock_says, 65536, 0, FALSE, 0); }
-static void create_task(void) { (void)task("new", 1, idle_function); }
-static void create_task_0(void) { (void)task("new", 0, idle_function); }
-static void create_task_16(void) { (void)task("new", 16, idle_function); }
-static void create_swi(void) { (void)swi("new", 1, offend_swi); }
-static void create_swi_16(void) { (void)swi("new", 16, offend_swi); }
-static void create_hwi(void) { hwi(97, hwi_function); }
-static void create_hwi_0(void) { hwi(0, hwi_function); }
-static void create_hwi_16(void) { hwi(16, hwi_function); }
-static void create_hwi_31(void) { hwi(31, hwi_function); }
-static void create_hwi_224(void) { hwi(224, hwi_function); }
-static void create_hwi_negative(void) { hwi(-1, hwi_function); }
-static void create_hwi_again(void) { hwi(96, hwi_function); }
-static void create_hwi_tick(void) { hwi(38, hwi_function); }
-static void create_semaphore(void) { (void)semaphore(0, Semaphore_Mode_BINARY); }
-static void create_semaphore_negative(void) { (void)semaphore(-1, Semaphore_Mode_COUNTING); }
-static void create_semaphore_32768(void) { (void)semaphore(32768, Semaphore_Mode_COUNTING); }
-static void create_event(void) { (void)Event_create(NULL, NULL); }
-static void create_clock(void) { (void)clock_object(clock_says, 1, 0, FALSE, 0); }
-static void create_gate(void) { (void)GateMutexPri_create(NULL, NULL); }
-static void enable_nothing(void) { (void)Hwi_enableInterrupt(97); }
-static void enable_out_of_range(void) { (void)Hwi_enableInterrupt(0x600901); } /* INT_SCIA_RX without the shift */
-static void plug(void) { Hwi_plug(96, NULL); }
-static void enable_ier(void) { (void)Hwi_enableIER(1); }
-static void enable_pieier(void) { (void)Hwi_enablePIEIER(9, 1); }
-static void pri_0(void) { (void)Task_setPri(task_a, 0); }
-static void pri_16(void) { (void)Task_setPri(task_a, 16); }
-static void reset_negative(void) { Semaphore_reset(sem, -1); }
-static void start_again(void) { BIOS_start(); }
-static void raise_nonsense(void) { kernel_raise(224); }
-static void system_abort(void) { System_abort("the reason"); }
-static void system_exit(void) { System_exit(3); }
+static void pend_forever(void)
+{
+    (void)Semaphore_pend(sem, BIOS_WAIT_FOREVER);
+}
+static void pend_available(void)
+{
+    (void)Semaphore_pend(sem_b, 5);
+}
+static void pend_65535(void)
+{
+    (void)Semaphore_pend(sem_b, 65535);
+}
+static void pend_too_long(void)
+{
+    (void)Semaphore_pend(sem, 0xFFFFFFFEu);
+}
+static void event_forever(void)
+{
+    (void)Event_pend(event, 2, 0, BIOS_WAIT_FOREVER);
+}
+static void event_65535(void)
+{
+    (void)Event_pend(event, 2, 0, 65535);
+}
+static void event_in_use(void)
+{
+    (void)Event_pend(event, 2, 0, 5);
+}
+static void event_no_mask(void)
+{
+    (void)Event_pend(event, 0, 0, 5);
+}
+static void event_wide_mask(void)
+{
+    (void)Event_pend(event, 0, 0x10000, BIOS_NO_WAIT);
+}
+static void event_post_none(void)
+{
+    Event_post(event, Event_Id_NONE);
+}
+static void event_post_wide(void)
+{
+    Event_post(event, 0x10000);
+}
+static void sleep_1(void)
+{
+    Task_sleep(1);
+}
+static void sleep_65535(void)
+{
+    Task_sleep(65535);
+}
+static void sleep_forever(void)
+{
+    Task_sleep(BIOS_WAIT_FOREVER);
+}
+static void enter_gate(void)
+{
+    (void)GateMutexPri_enter(gate);
+}
+static void leave_gate(void)
+{
+    GateMutexPri_leave(gate, 0);
+}
+static void leave_foreign_gate(void)
+{
+    GateMutexPri_leave(gate_b, 0);
+}
+static void start_zero_clock(void)
+{
+    Clock_start(clk);
+}
+static void create_started_zero_clock(void)
+{
+    (void)clock_object(clock_says, 0, 5, TRUE, 0);
+}
+static void create_long_clock(void)
+{
+    (void)clock_object(clock_says, 65536, 0, FALSE, 0);
+}
+static void create_task(void)
+{
+    (void)task("new", 1, idle_function);
+}
+static void create_task_0(void)
+{
+    (void)task("new", 0, idle_function);
+}
+static void create_task_16(void)
+{
+    (void)task("new", 16, idle_function);
+}
+static void create_swi(void)
+{
+    (void)swi("new", 1, offend_swi);
+}
+static void create_swi_16(void)
+{
+    (void)swi("new", 16, offend_swi);
+}
+static void create_hwi(void)
+{
+    hwi(97, hwi_function);
+}
+static void create_hwi_0(void)
+{
+    hwi(0, hwi_function);
+}
+static void create_hwi_16(void)
+{
+    hwi(16, hwi_function);
+}
+static void create_hwi_31(void)
+{
+    hwi(31, hwi_function);
+}
+static void create_hwi_224(void)
+{
+    hwi(224, hwi_function);
+}
+static void create_hwi_negative(void)
+{
+    hwi(-1, hwi_function);
+}
+static void create_hwi_again(void)
+{
+    hwi(96, hwi_function);
+}
+static void create_hwi_tick(void)
+{
+    hwi(38, hwi_function);
+}
+static void create_semaphore(void)
+{
+    (void)semaphore(0, Semaphore_Mode_BINARY);
+}
+static void create_semaphore_negative(void)
+{
+    (void)semaphore(-1, Semaphore_Mode_COUNTING);
+}
+static void create_semaphore_32768(void)
+{
+    (void)semaphore(32768, Semaphore_Mode_COUNTING);
+}
+static void create_event(void)
+{
+    (void)Event_create(NULL, NULL);
+}
+static void create_clock(void)
+{
+    (void)clock_object(clock_says, 1, 0, FALSE, 0);
+}
+static void create_gate(void)
+{
+    (void)GateMutexPri_create(NULL, NULL);
+}
+static void enable_nothing(void)
+{
+    (void)Hwi_enableInterrupt(97);
+}
+static void enable_out_of_range(void)
+{
+    (void)Hwi_enableInterrupt(0x600901);
+} /* INT_SCIA_RX without the shift */
+static void plug(void)
+{
+    Hwi_plug(96, NULL);
+}
+static void enable_ier(void)
+{
+    (void)Hwi_enableIER(1);
+}
+static void enable_pieier(void)
+{
+    (void)Hwi_enablePIEIER(9, 1);
+}
+static void pri_0(void)
+{
+    (void)Task_setPri(task_a, 0);
+}
+static void pri_16(void)
+{
+    (void)Task_setPri(task_a, 16);
+}
+static void reset_negative(void)
+{
+    Semaphore_reset(sem, -1);
+}
+static void start_again(void)
+{
+    BIOS_start();
+}
+static void raise_nonsense(void)
+{
+    kernel_raise(224);
+}
+static void system_abort(void)
+{
+    System_abort("the reason");
+}
+static void system_exit(void)
+{
+    System_exit(3);
+}
 
 static void pend_task_disabled(void)
 {
@@ -312,8 +466,8 @@ void test_every_broken_rule_halts_the_system_and_says_why(void)
         TEST_ASSERT_FALSE_MESSAGE(kernel_run_until(10 * SIM_MS), message);
         TEST_ASSERT_EQUAL_INT64(10 * SIM_MS, timeline_now());
         TEST_ASSERT_NOT_NULL_MESSAGE(kernel_halt_reason(), message);
-        TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE(offences[i].reason, kernel_halt_reason(), strlen(offences[i].reason),
-                                             message);
+        TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE(offences[i].reason, kernel_halt_reason(),
+                                             strlen(offences[i].reason), message);
         TEST_ASSERT_EQUAL_STRING_MESSAGE("", trace, message);
     }
 }
@@ -339,7 +493,7 @@ static void legal_in_task(void)
     (void)Semaphore_pend(sem_b, 65534); /* available: does not wait */
     (void)GateMutexPri_enter(gate);     /* free */
     Task_restore(key);
-    Clock_setTimeout(clk, 65536);       /* UInt32 in this call */
+    Clock_setTimeout(clk, 65536); /* UInt32 in this call */
     create_task();
     create_swi();
     create_hwi();
@@ -369,7 +523,8 @@ void test_what_is_allowed_near_the_rules_does_not_halt(void)
     const struct {
         enum where where;
         void (*call)(void);
-    } calls[] = {{IN_HWI, legal_in_hwi}, {IN_SWI, legal_in_hwi}, {IN_CLOCK, legal_in_hwi}, {IN_TASK, legal_in_task}};
+    } calls[] = {
+        {IN_HWI, legal_in_hwi}, {IN_SWI, legal_in_hwi}, {IN_CLOCK, legal_in_hwi}, {IN_TASK, legal_in_task}};
 
     for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++) {
         setUp();
@@ -402,7 +557,8 @@ void test_main_may_prepare_everything_that_needs_no_scheduler(void)
     kernel_boot(offending_main, NULL);
     TEST_ASSERT_EQUAL_STRING("survived@0 ", trace);
     run_ms(3);
-    TEST_ASSERT_EQUAL_STRING("survived@0 survived@0 zero@1000 ", trace); /* the Swi posted in main(), then the clock */
+    TEST_ASSERT_EQUAL_STRING("survived@0 survived@0 zero@1000 ",
+                             trace); /* the Swi posted in main(), then the clock */
 }
 
 static int failing_main(void)
@@ -444,7 +600,8 @@ static int failing_main(void)
 void test_a_failing_create_returns_null_to_a_caller_that_gave_an_error_block(void)
 {
     boot_and_run_ms(failing_main, 2);
-    TEST_ASSERT_EQUAL_STRING("error 0@0 1@0 error 1@0 error 1@0 error 1@0 error 1@0 error 1@0 error 1@0 ", trace);
+    TEST_ASSERT_EQUAL_STRING("error 0@0 1@0 error 1@0 error 1@0 error 1@0 error 1@0 error 1@0 error 1@0 ",
+                             trace);
 }
 
 static int returning_main(void)

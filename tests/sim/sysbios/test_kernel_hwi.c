@@ -42,9 +42,10 @@ void test_waiting_hwis_go_by_number_then_swis_then_tasks(void)
         raise_at_us(500, numbers[i]); /* 97 and 92 twice: latched once */
     }
     boot_and_run_ms(hwi_order_main, 1);
-    TEST_ASSERT_EQUAL_STRING("hwi 1@500 hwi 15@500 hwi 32@500 hwi 92@500 hwi ends@500 hwi 97@500 hwi 98@500 hwi 223@500 "
-                             "high@500 equal@500 task@500 ",
-                             trace);
+    TEST_ASSERT_EQUAL_STRING(
+        "hwi 1@500 hwi 15@500 hwi 32@500 hwi 92@500 hwi ends@500 hwi 97@500 hwi 98@500 hwi 223@500 "
+        "high@500 equal@500 task@500 ",
+        trace);
 }
 
 static int early_main(void)

@@ -131,11 +131,11 @@ static int all_at_once_main(void)
     return 0;
 }
 
-/* Under Task_disable the posts go to the queues first (sem: low, high, then count 2), the tasks run afterwards by priority:
- * high was released before high_b; each finds the left counts. */
+/* Under Task_disable the posts go to the queues first (sem: low, high, then count 2), the tasks run
+ * afterwards by priority: high was released before high_b; each finds the left counts. */
 void test_posts_under_task_disable_release_first_and_run_afterwards(void)
 {
     boot_and_run_ms(all_at_once_main, 10);
-    TEST_ASSERT_EQUAL_STRING("high@5000 high@5000 high@5000 high_b@5000 high_b@5000 high_b@5000 high_b@5000 low@5000 ",
-                             trace);
+    TEST_ASSERT_EQUAL_STRING(
+        "high@5000 high@5000 high@5000 high_b@5000 high_b@5000 high_b@5000 high_b@5000 low@5000 ", trace);
 }

@@ -50,14 +50,15 @@ static int swi_main(void)
     return 0;
 }
 
-/* Twice posted before it begins is once run; the two posts of high are two runs, because the first had run already. A task
- * released by a Swi waits for all Swis. */
+/* Twice posted before it begins is once run; the two posts of high are two runs, because the first had run
+ * already. A task released by a Swi waits for all Swis. */
 void test_swis_preempt_tasks_and_lower_swis_and_run_once_per_post(void)
 {
     boot_and_run_ms(swi_main, 1);
-    TEST_ASSERT_EQUAL_STRING("task@0 mid begins@0 mid ends@0 low begins@0 high@0 high@0 low goes on@0 waiter@0 "
-                             "task goes on@0 ",
-                             trace);
+    TEST_ASSERT_EQUAL_STRING(
+        "task@0 mid begins@0 mid ends@0 low begins@0 high@0 high@0 low goes on@0 waiter@0 "
+        "task goes on@0 ",
+        trace);
 }
 
 static int runs;

@@ -201,5 +201,6 @@ void test_the_observer_sees_a_priority_set(void)
 {
     kernel_observe(observe_changes, NULL);
     boot_and_run_ms(pri_main, 1);
-    TEST_ASSERT_EQUAL_STRING("[b 9 of 9]@0 b@0 was 2@0 raised b@0 [a 1 of 1]@0 c@0 was 5@0 lowered a@0 d@0 ", trace);
+    TEST_ASSERT_EQUAL_STRING("[b 9 of 9]@0 b@0 was 2@0 raised b@0 [a 1 of 1]@0 c@0 was 5@0 lowered a@0 d@0 ",
+                             trace);
 }

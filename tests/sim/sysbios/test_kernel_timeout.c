@@ -62,8 +62,9 @@ static int pend_timeout_main(void)
     return 0;
 }
 
-/* Waits of 3 ticks: 0-3, 3-5.5 (posted), 5.5-8, 8-11. At 11.0 the tick (38) and the post (96) fall together: both Hwis run
- * before the Clock Swi, so the post comes first; the time-out must not strike a second time. 11-14. */
+/* Waits of 3 ticks: 0-3, 3-5.5 (posted), 5.5-8, 8-11. At 11.0 the tick (38) and the post (96) fall together:
+ * both Hwis run before the Clock Swi, so the post comes first; the time-out must not strike a second time.
+ * 11-14. */
 void test_a_pend_times_out_at_the_tick_unless_posted_before(void)
 {
     raise_at_us(5500, 96);

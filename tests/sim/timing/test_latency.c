@@ -241,7 +241,10 @@ static void scan_answered(sim_time_t from_us)
 
 void test_the_events_waited_for_are_one_of_three_releases(void)
 {
-    static const struct { uint16_t releases; int release; } cases[] = {
+    static const struct {
+        uint16_t releases;
+        int release;
+    } cases[] = {
         {FLIGHT_RELEASE_PERIOD, RELEASE_FREE},
         {FLIGHT_RELEASE_HEIGHT, RELEASE_SCAN},
         {FLIGHT_RELEASE_HEIGHT | FLIGHT_RELEASE_FRAME, LATENCY_FRAME},

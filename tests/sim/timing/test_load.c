@@ -1,5 +1,6 @@
-/* The simulated kernel and the response-time analysis are two models of one processor. Here each checks the other: a
- * program that does nothing but cost what a table says runs on the kernel, and the analysis bounds the same table. */
+/* The simulated kernel and the response-time analysis are two models of one processor. Here each checks the
+ * other: a program that does nothing but cost what a table says runs on the kernel, and the analysis bounds
+ * the same table. */
 #include "sim/timing/timing.h"
 
 #include <inttypes.h>
@@ -23,12 +24,14 @@
 #define CLOCK_HWI 38
 #define FIRST_HWI 90
 #define GATES 3
-#define LOAD_START (10 * SIM_MS)    /* a tick of the kernel: the Clock interrupt falls on the critical instant */
+#define LOAD_START \
+    (10 * SIM_MS) /* a tick of the kernel: the Clock interrupt falls on the critical instant \
+                   */
 
 /* What a row of the table is on the kernel. */
 typedef struct {
     int interrupt;
-    int waiting;            /* raised and not begun: the chip would lose what the analysis counts */
+    int waiting; /* raised and not begun: the chip would lose what the analysis counts */
     Swi_Handle swi;
     Semaphore_Handle due;
     sim_time_t period, offset;
@@ -43,8 +46,8 @@ static int limit_count;
 static timing_t timing;
 static GateMutexPri_Handle gates[GATES];
 
-/* Gates that a task enters, one after the other, at the end of its job: those of TaskIMU, TaskReceiveLaser, TaskControl,
- * TaskSendLaser, TaskSendComm and TaskReceiveComm. */
+/* Gates that a task enters, one after the other, at the end of its job: those of TaskIMU, TaskReceiveLaser,
+ * TaskControl, TaskSendLaser, TaskSendComm and TaskReceiveComm. */
 static const unsigned *gate_sets;
 
 void setUp(void)
@@ -114,7 +117,8 @@ static void create_swi(int row)
 
 static void create_task(int row)
 {
-    static const char order[] = "TaskIMU TaskReceiveLaser TaskControl TaskSendLaser TaskSendComm TaskReceiveComm";
+    static const char order[] =
+        "TaskIMU TaskReceiveLaser TaskControl TaskSendLaser TaskSendComm TaskReceiveComm";
     int before = 0;
     Task_Params params;
 
@@ -178,10 +182,14 @@ static kernel_costs_t price(double factor, bool switches_too, bool accesses_cont
         bool is_clock = strcmp(row->name, "Clock") == 0;
 
         TEST_ASSERT_TRUE(cost >= 0.0);
-        costs[i] = (kernel_cost_t){row->name, row->kind != RTA_HWI ? -1 : is_clock ? CLOCK_HWI : FIRST_HWI + i,
+        costs[i] = (kernel_cost_t){row->name,
+                                   row->kind != RTA_HWI ? -1
+                                   : is_clock           ? CLOCK_HWI
+                                                        : FIRST_HWI + i,
                                    ns(cost * factor)};
     }
-    return (kernel_costs_t){costs, table.rows, ns(options.access * factor), ns(options.switches * (switches_too ? factor : 1.0))};
+    return (kernel_costs_t){costs, table.rows, ns(options.access * factor),
+                            ns(options.switches * (switches_too ? factor : 1.0))};
 }
 
 static void limit(void)
@@ -193,8 +201,8 @@ static void limit(void)
         const rta_row_t *row = &table.row[task[i]];
         rta_ps_t response = rta_response(&table, &options, task[i]);
 
-        limits[i] = (timing_limits_t){row->name, isinf(response) ? SIM_NEVER : ns(response), ns(row->deadline),
-                                      ns(row->blocking), row->blockings};
+        limits[i] = (timing_limits_t){row->name, isinf(response) ? SIM_NEVER : ns(response),
+                                      ns(row->deadline), ns(row->blocking), row->blockings};
     }
 }
 
@@ -285,7 +293,8 @@ static double breaking_factor(bool switches_too)
     return breaks;
 }
 
-/* The factors, 5.1886 and 5.0953, are the analysis' of the seed's table; the first is the 5.19 of docs/realtime.md. */
+/* The factors, 5.1886 and 5.0953, are the analysis' of the seed's table; the first is the 5.19 of
+ * docs/realtime.md. */
 TEST_CASE(0)
 TEST_CASE(1)
 void test_the_seeds_load_at_the_critical_instant_breaks_where_the_analysis_says(int switches_too)
@@ -301,7 +310,8 @@ void test_the_seeds_load_at_the_critical_instant_breaks_where_the_analysis_says(
     TEST_ASSERT_GREATER_THAN(0, timing_find(&timing, "TaskReceiveComm")->jobs);
 }
 
-/* TaskReceiveComm, blocked by nobody, sees exactly the worst case; for the others nobody is in a gate at that instant. */
+/* TaskReceiveComm, blocked by nobody, sees exactly the worst case; for the others nobody is in a gate at that
+ * instant. */
 void test_the_seeds_load_at_the_critical_instant_responds_as_the_analysis_says(void)
 {
     TEST_ASSERT_EQUAL_INT(0, missed(1.0, false));
@@ -311,20 +321,23 @@ void test_the_seeds_load_at_the_critical_instant_responds_as_the_analysis_says(v
         sim_time_t blocking = limits[i].inversion + limits[i].blockings * ns(options.switches);
 
         TEST_ASSERT_LESS_OR_EQUAL_INT64_MESSAGE(limits[i].response, job->longest_response, limits[i].name);
-        TEST_ASSERT_GREATER_OR_EQUAL_INT64_MESSAGE(limits[i].response - 2 * blocking, job->longest_response,
-                                                   limits[i].name); /* less blocking, fewer interrupts come between */
+        TEST_ASSERT_GREATER_OR_EQUAL_INT64_MESSAGE(
+            limits[i].response - 2 * blocking, job->longest_response,
+            limits[i].name); /* less blocking, fewer interrupts come between */
     }
     TEST_ASSERT_EQUAL_INT(0, timing_print_broken(&timing, stdout));
 }
 
 /* ---- any phases, with gates that are held for long ---- */
 
-/* Each task below shares a gate with one above, so that all the blockings that the analysis allows are possible. */
+/* Each task below shares a gate with one above, so that all the blockings that the analysis allows are
+ * possible. */
 static const unsigned crowded_gates[] = {1, 3, 7, 2, 5, 6};
 
 static void crowded_load(rta_ps_t access)
 {
-    static const int blockings[] = {3, 4, 3, 2, 1, 0}; /* lower tasks, or gates if there are fewer: one each at most */
+    static const int blockings[] = {3, 4, 3,
+                                    2, 1, 0}; /* lower tasks, or gates if there are fewer: one each at most */
     int task[RTA_ROWS_MAX];
 
     options.access = access;
@@ -366,12 +379,15 @@ void test_nothing_exceeds_the_analysis_whatever_the_phases(void)
         run(&prices, LOAD_START + 600 * SIM_MS);
         TEST_ASSERT_EQUAL_INT_MESSAGE(0, timing_print_broken(&timing, stdout), message);
         for (int j = 0; j < timing.jobs; j++) {
-            longest_inversion = timing.job[j].longest_inversion > longest_inversion ? timing.job[j].longest_inversion
-                                                                                   : longest_inversion;
-            most_blockings = timing.job[j].most_blockings > most_blockings ? timing.job[j].most_blockings : most_blockings;
+            longest_inversion = timing.job[j].longest_inversion > longest_inversion
+                                    ? timing.job[j].longest_inversion
+                                    : longest_inversion;
+            most_blockings = timing.job[j].most_blockings > most_blockings ? timing.job[j].most_blockings
+                                                                           : most_blockings;
         }
     }
-    printf("longest inversion %" PRId64 " us, most waits at gates %d\n", longest_inversion / SIM_US, most_blockings);
+    printf("longest inversion %" PRId64 " us, most waits at gates %d\n", longest_inversion / SIM_US,
+           most_blockings);
     TEST_ASSERT_GREATER_THAN_INT64(250 * SIM_US, longest_inversion);
     TEST_ASSERT_GREATER_OR_EQUAL_INT(1, most_blockings);
 }

@@ -115,7 +115,8 @@ void test_lower_tasks_before_it_are_interference_and_not_inversion_until_release
     TEST_ASSERT_EQUAL_INT64(0, timing_find(&timing, "low")->longest_inversion);
 }
 
-/* high waits at a gate that low holds: 110-120 low runs, 120-150 a Hwi, 150-160 low again; then high, 57 for its switches. */
+/* high waits at a gate that low holds: 110-120 low runs, 120-150 a Hwi, 150-160 low again; then high, 57 for
+ * its switches. */
 static void one_blocking(void)
 {
     at_us(90, KERNEL_RELEASED, &low);
@@ -225,7 +226,8 @@ void test_a_job_that_never_ends_is_late_at_the_end(void)
     at_us(2000, KERNEL_RELEASED, &high);
     at_us(2000, KERNEL_DISPATCHED, &high);
     conclude_at_us(3001);
-    assert_broken("BROKEN: low: 1 missed deadlines, at most 0\nBROKEN: high: 1 missed deadlines, at most 0\n", 2);
+    assert_broken("BROKEN: low: 1 missed deadlines, at most 0\nBROKEN: high: 1 missed deadlines, at most 0\n",
+                  2);
     TEST_ASSERT_EQUAL_INT64(1001 * SIM_US, timing_find(&timing, "high")->used);
 }
 
@@ -270,11 +272,16 @@ void test_the_report_sorts_by_precedence_and_sums_the_load(void)
     conclude_at_us(1000);
     report(text, sizeof text);
     TEST_ASSERT_EQUAL_STRING(
-        "kind name                 jobs  response     bound  deadline  late gate wait inversion   allowed waits max    load\n"
-        "Hwi  SCIA_RX                 1    0.0300         -         -     0         -         -         -     -   -  0.0300\n"
-        "Swi  Laser_SWI               1    0.1000         -         -     0         -         -         -     -   -  0.1000\n"
-        "Task high                    1    0.1170    0.5000    1.0000     0    0.0500    0.0200    0.0200     1   1  0.0670\n"
-        "Task low                     1    0.3100         -    3.0000     0    0.0000    0.0000         -     0   -  0.1130\n"
+        "kind name                 jobs  response     bound  deadline  late gate wait inversion   allowed "
+        "waits max    load\n"
+        "Hwi  SCIA_RX                 1    0.0300         -         -     0         -         -         -    "
+        " -   -  0.0300\n"
+        "Swi  Laser_SWI               1    0.1000         -         -     0         -         -         -    "
+        " -   -  0.1000\n"
+        "Task high                    1    0.1170    0.5000    1.0000     0    0.0500    0.0200    0.0200    "
+        " 1   1  0.0670\n"
+        "Task low                     1    0.3100         -    3.0000     0    0.0000    0.0000         -    "
+        " 0   -  0.1130\n"
         "processor load: Hwis 0.0300, Swis 0.1000, tasks with their switches 0.1800, total 0.3100\n"
         "interrupts per second: 1000.0\n",
         text);
@@ -282,7 +289,8 @@ void test_the_report_sorts_by_precedence_and_sums_the_load(void)
 
 void test_jobs_of_one_name_are_told_apart_by_kind_and_number(void)
 {
-    kernel_job_t first = {KERNEL_HWI, "", 92, 92, 0}, second = {KERNEL_HWI, "", 93, 93, 0}, task = {KERNEL_TASK, "", 93, 1, 0};
+    kernel_job_t first = {KERNEL_HWI, "", 92, 92, 0}, second = {KERNEL_HWI, "", 93, 93, 0},
+                 task = {KERNEL_TASK, "", 93, 1, 0};
 
     at_us(1, KERNEL_RELEASED, &first);
     at_us(1, KERNEL_RELEASED, &second);

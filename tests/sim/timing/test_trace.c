@@ -126,7 +126,8 @@ static int schedule_main(void)
     return 0;
 }
 
-static const kernel_cost_t jobs[] = {{"RX", 96, 10 * SIM_US}, {"TX", 97, 5 * SIM_US}, {"Swi", -1, 20 * SIM_US}};
+static const kernel_cost_t jobs[] = {
+    {"RX", 96, 10 * SIM_US}, {"TX", 97, 5 * SIM_US}, {"Swi", -1, 20 * SIM_US}};
 static const kernel_costs_t costs = {jobs, sizeof jobs / sizeof jobs[0], 100 * SIM_US, 50 * SIM_US};
 
 static void raise_interrupt(void *number)
@@ -146,8 +147,9 @@ static void run_schedule(void)
     close_and_read();
 }
 
-/* 100 RX until 110; low switches until 160 and is in the gate, 40 of 100 done at 200. TX until 205, Swi until 225, high
- * switches until 275 and finds the gate held: low, at 9, 60 more until 335. High switches and enters until 485. */
+/* 100 RX until 110; low switches until 160 and is in the gate, 40 of 100 done at 200. TX until 205, Swi until
+ * 225, high switches until 275 and finds the gate held: low, at 9, 60 more until 335. High switches and
+ * enters until 485. */
 void test_the_schedule_is_written_as_it_happened(void)
 {
     run_schedule();
@@ -157,17 +159,22 @@ void test_the_schedule_is_written_as_it_happened(void)
                "\"args\":{\"response_us\":20.000,\"priority\":2}}");
     assert_has("{\"ph\":\"X\",\"pid\":2,\"tid\":2001,\"name\":\"high\",\"ts\":225.000,\"dur\":260.000,"
                "\"args\":{\"response_us\":260.000,\"priority\":9}}");
-    assert_has("{\"ph\":\"X\",\"pid\":2,\"tid\":2001,\"name\":\"runs\",\"ts\":225.000,\"dur\":50.000,\"args\":{}}");
-    assert_has("{\"ph\":\"X\",\"pid\":2,\"tid\":2001,\"name\":\"waits for server\",\"ts\":275.000,\"dur\":60.000,\"args\":{}}");
-    assert_has("{\"ph\":\"X\",\"pid\":2,\"tid\":2001,\"name\":\"runs\",\"ts\":335.000,\"dur\":150.000,\"args\":{}}");
+    assert_has(
+        "{\"ph\":\"X\",\"pid\":2,\"tid\":2001,\"name\":\"runs\",\"ts\":225.000,\"dur\":50.000,\"args\":{}}");
+    assert_has("{\"ph\":\"X\",\"pid\":2,\"tid\":2001,\"name\":\"waits for "
+               "server\",\"ts\":275.000,\"dur\":60.000,\"args\":{}}");
+    assert_has(
+        "{\"ph\":\"X\",\"pid\":2,\"tid\":2001,\"name\":\"runs\",\"ts\":335.000,\"dur\":150.000,\"args\":{}}");
     assert_has("{\"ph\":\"X\",\"pid\":1,\"tid\":1,\"name\":\"low \\\"1\\\"\",\"ts\":275.000,\"dur\":60.000,"
                "\"args\":{\"priority\":1}}");
     assert_has("{\"ph\":\"X\",\"pid\":3,\"tid\":1,\"name\":\"low \\\"1\\\"\",\"ts\":160.000,\"dur\":175.000,"
                "\"args\":{\"inherited_priority\":9}}");
     assert_has("{\"ph\":\"X\",\"pid\":3,\"tid\":1,\"name\":\"high\",\"ts\":335.000,\"dur\":150.000,"
                "\"args\":{\"inherited_priority\":0}}");
-    assert_has("{\"ph\":\"i\",\"pid\":2,\"tid\":2000,\"name\":\"priority 9\",\"ts\":275.000,\"s\":\"t\",\"args\":{}}");
-    assert_has("{\"ph\":\"i\",\"pid\":2,\"tid\":2000,\"name\":\"priority 1\",\"ts\":335.000,\"s\":\"t\",\"args\":{}}");
+    assert_has("{\"ph\":\"i\",\"pid\":2,\"tid\":2000,\"name\":\"priority "
+               "9\",\"ts\":275.000,\"s\":\"t\",\"args\":{}}");
+    assert_has("{\"ph\":\"i\",\"pid\":2,\"tid\":2000,\"name\":\"priority "
+               "1\",\"ts\":335.000,\"s\":\"t\",\"args\":{}}");
     TEST_ASSERT_EQUAL_INT(8, count("\"pid\":1,\"tid\":1,\"name\"") - 1); /* and its label */
 }
 
@@ -210,8 +217,10 @@ void test_frames_go_from_the_first_start_bit_to_the_last_stop_bit(void)
     send("Q\n\n");
     send("half");
     close_and_read();
-    assert_has("{\"ph\":\"X\",\"pid\":4,\"tid\":1,\"name\":\"frame\",\"ts\":1000.000,\"dur\":320.000,\"args\":{\"octets\":8}}");
-    assert_has("{\"ph\":\"X\",\"pid\":4,\"tid\":1,\"name\":\"frame\",\"ts\":5000.000,\"dur\":120.000,\"args\":{\"octets\":3}}");
+    assert_has("{\"ph\":\"X\",\"pid\":4,\"tid\":1,\"name\":\"frame\",\"ts\":1000.000,\"dur\":320.000,"
+               "\"args\":{\"octets\":8}}");
+    assert_has("{\"ph\":\"X\",\"pid\":4,\"tid\":1,\"name\":\"frame\",\"ts\":5000.000,\"dur\":120.000,"
+               "\"args\":{\"octets\":3}}");
     TEST_ASSERT_EQUAL_INT(2, count("\"name\":\"frame\""));
 }
 
@@ -234,7 +243,8 @@ void test_an_answer_is_an_instant_with_its_latency(void)
     timeline_move_to(3 * SIM_MS);
     trace_answer(&trace, 3 * SIM_MS - 1937400, 3042);
     close_and_read();
-    assert_has("{\"ph\":\"i\",\"pid\":4,\"tid\":2,\"name\":\"compare 3042\",\"ts\":3000.000,\"s\":\"t\",\"args\":{\"after_scan_us\":1937.400}}");
+    assert_has("{\"ph\":\"i\",\"pid\":4,\"tid\":2,\"name\":\"compare "
+               "3042\",\"ts\":3000.000,\"s\":\"t\",\"args\":{\"after_scan_us\":1937.400}}");
 }
 
 /* ---- a crowd, for check_trace.py ---- */
@@ -281,8 +291,9 @@ static void crowd_world(void *unused)
 }
 
 static const kernel_cost_t crowd_jobs[] = {
-    {"RX", 96, 10 * SIM_US},     {"TX", 97, 5 * SIM_US},       {NULL, 98, 30 * SIM_US},      {"Clock", 38, 15 * SIM_US},
-    {"Swi", -1, 100 * SIM_US},   {"bottom", -1, 200 * SIM_US}, {"middle", -1, 150 * SIM_US}, {"top", -1, 80 * SIM_US},
+    {"RX", 96, 10 * SIM_US},      {"TX", 97, 5 * SIM_US},    {NULL, 98, 30 * SIM_US},
+    {"Clock", 38, 15 * SIM_US},   {"Swi", -1, 100 * SIM_US}, {"bottom", -1, 200 * SIM_US},
+    {"middle", -1, 150 * SIM_US}, {"top", -1, 80 * SIM_US},
 };
 static const kernel_costs_t crowd_costs = {crowd_jobs, sizeof crowd_jobs / sizeof crowd_jobs[0], 90 * SIM_US,
                                            20 * SIM_US};

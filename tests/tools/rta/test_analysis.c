@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#define MS(x) round((x) * RTA_PS_PER_MS)
+#define MS(x) round((x)*RTA_PS_PER_MS)
 
 static rta_table_t table;
 static rta_options_t options;
@@ -23,7 +23,10 @@ static rta_row_t *add(rta_kind_t kind, int priority, double period_ms, double de
 {
     rta_row_t *row = &table.row[table.rows++];
 
-    *row = (rta_row_t){.kind = kind, .priority = priority, .period = MS(period_ms), .deadline = MS(deadline_ms),
+    *row = (rta_row_t){.kind = kind,
+                       .priority = priority,
+                       .period = MS(period_ms),
+                       .deadline = MS(deadline_ms),
                        .cost = MS(cost_ms)};
     snprintf(row->name, sizeof row->name, "row%d", table.rows);
     return row;
@@ -61,7 +64,8 @@ void test_a_full_processor_may_be_in_time(void)
     TEST_ASSERT_EQUAL_DOUBLE(1.0, round(rta_growth(&table, &options, false).factor * 1e5) / 1e5);
 }
 
-/* Lehoczky 1990, deadlines beyond the period: responses of the second task's jobs are 114, 102, 116, 104, 118, 106, 94. */
+/* Lehoczky 1990, deadlines beyond the period: responses of the second task's jobs are 114, 102, 116, 104,
+ * 118, 106, 94. */
 void test_the_worst_job_of_a_busy_window_need_not_be_its_first(void)
 {
     add(RTA_TASK, 2, 70, 70, 26);
@@ -92,7 +96,8 @@ void test_a_busy_window_without_end_has_no_bound(void)
     TEST_ASSERT_TRUE(isinf(rta_response(&table, &options, 0)));
 }
 
-/* By hand: w = 3 + ceil(w/4) gives 4; one ms of jitter makes it 3 + ceil((w+1)/4) = 5, seen 6 after the due time. */
+/* By hand: w = 3 + ceil(w/4) gives 4; one ms of jitter makes it 3 + ceil((w+1)/4) = 5, seen 6 after the due
+ * time. */
 void test_jitter_brings_releases_closer_and_adds_to_the_response(void)
 {
     add(RTA_TASK, 2, 4, 4, 1);
@@ -123,8 +128,8 @@ void test_a_frame_costs_no_more_than_its_octets(void)
     expect_response(9, 1);
 }
 
-/* A frame may come late and the next in time, but octets of a wire come no closer: by hand, w = 9 + 0.5 (3 + 3),
- * w = 2 + 0.5 x 3 and, with frames of 10, w = 2 + 0.5 ceil(w). */
+/* A frame may come late and the next in time, but octets of a wire come no closer: by hand, w = 9 + 0.5 (3 +
+ * 3), w = 2 + 0.5 x 3 and, with frames of 10, w = 2 + 0.5 ceil(w). */
 void test_late_frames_do_not_speed_up_the_wire(void)
 {
     rta_row_t *stream = add(RTA_HWI, 0, 1, 0, 0.5);
@@ -188,7 +193,8 @@ void test_a_chain_bears_the_blocking_of_all_its_members(void)
     TEST_ASSERT_EQUAL_DOUBLE(MS(3.6), rta_chain(&table, &options, &chain[2], 1));
 }
 
-/* By hand: own 3 and the Swi's 0.5, then 0.1 and a switch of 0.01 for each blocking, 0.01 for each of the two jobs. */
+/* By hand: own 3 and the Swi's 0.5, then 0.1 and a switch of 0.01 for each blocking, 0.01 for each of the two
+ * jobs. */
 void test_a_task_blocks_a_chain_once_at_most(void)
 {
     const int chain[] = {0, 1, 2};
@@ -203,7 +209,8 @@ void test_a_task_blocks_a_chain_once_at_most(void)
     options.switches = MS(0.01);
     TEST_ASSERT_EQUAL_DOUBLE(MS(3.96), rta_chain(&table, &options, chain, 3));
     snprintf(table.row[1].blocked_by, sizeof table.row[1].blocked_by, "low+lower");
-    TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(MS(3.96), rta_chain(&table, &options, chain, 3), "the last one's blockers are not told");
+    TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(MS(3.96), rta_chain(&table, &options, chain, 3),
+                                     "the last one's blockers are not told");
     snprintf(table.row[2].blocked_by, sizeof table.row[2].blocked_by, "lower+lowest");
     TEST_ASSERT_EQUAL_DOUBLE(MS(3.85), rta_chain(&table, &options, chain, 3));
     snprintf(table.row[2].blocked_by, sizeof table.row[2].blocked_by, "low+lower");
@@ -213,8 +220,8 @@ void test_a_task_blocks_a_chain_once_at_most(void)
     TEST_ASSERT_EQUAL_DOUBLE(MS(3.52), rta_chain(&table, &options, chain, 3));
 }
 
-/* By hand: up to 3 octets wait for the fourth, so a window of 2 ms sees 5: 2 + 0.05 x 5 = 2.25, which ends within the same
- * octet's time; the wait of the task itself adds to its response. */
+/* By hand: up to 3 octets wait for the fourth, so a window of 2 ms sees 5: 2 + 0.05 x 5 = 2.25, which ends
+ * within the same octet's time; the wait of the task itself adds to its response. */
 void test_what_waits_comes_at_once(void)
 {
     rta_row_t *stream = add(RTA_HWI, 0, 1, 0, 0.05);
@@ -231,8 +238,8 @@ void test_what_waits_comes_at_once(void)
     expect_response(0.5 + 1.7 + 0.2, 1);
 }
 
-/* By hand, frames of 10 octets, 1 ms each, in 50 ms: a chain that begins with a frame's last octet sees that one and no
- * other before 40 ms have gone; one that does not sees all 10. */
+/* By hand, frames of 10 octets, 1 ms each, in 50 ms: a chain that begins with a frame's last octet sees that
+ * one and no other before 40 ms have gone; one that does not sees all 10. */
 void test_a_frame_that_has_ended_does_not_come_again_at_once(void)
 {
     const int chain[] = {0, 1, 2};
@@ -250,7 +257,8 @@ void test_a_frame_that_has_ended_does_not_come_again_at_once(void)
     TEST_ASSERT_EQUAL_DOUBLE(MS(32.5), rta_chain(&table, &options, chain, 3));
     TEST_ASSERT_EQUAL_DOUBLE(MS(37), rta_chain(&table, &options, &chain[1], 2));
     stream->jitter = MS(2);
-    TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(MS(33.5), rta_chain(&table, &options, chain, 3), "two had waited for the last");
+    TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(MS(33.5), rta_chain(&table, &options, chain, 3),
+                                     "two had waited for the last");
     table.row[2].cost = MS(37.6);
     TEST_ASSERT_TRUE_MESSAGE(rta_chain(&table, &options, chain, 3) > MS(41.1), "the next frame");
 }
@@ -271,8 +279,8 @@ void test_tasks_are_listed_by_priority_and_equals_in_their_order(void)
     TEST_ASSERT_EQUAL_INT(3, index[3]);
 }
 
-/* By hand: interrupts of 0.1 per 1 ms; the first and second are counted up to the second deadline (20), the third up to
- * the third (30), where the last task's true demand has 30 of each. */
+/* By hand: interrupts of 0.1 per 1 ms; the first and second are counted up to the second deadline (20), the
+ * third up to the third (30), where the last task's true demand has 30 of each. */
 void test_the_seed_freezes_the_horizon_of_each_interrupt(void)
 {
     add(RTA_HWI, 0, 1, 0, 0.1);
@@ -341,21 +349,24 @@ static void random_table(unsigned long seed)
     }
     for (int i = random_int(1, 5); i > 0; i--) {
         double period_ms = random_of(10, 200);
-        rta_row_t *row = add(RTA_TASK, random_int(1, 6), period_ms, period_ms * random_of(0.3, 1.0), random_of(0.2, 8));
+        rta_row_t *row = add(RTA_TASK, random_int(1, 6), period_ms, period_ms * random_of(0.3, 1.0),
+                             random_of(0.2, 8));
 
         row->blockings = random_int(0, 3);
         row->blocking = MS(random_of(0, 0.3) * row->blockings);
         row->accesses = random_int(0, 4);
     }
-    options = (rta_options_t){.switches = MS(random_of(0, 0.1)), .access = MS(random_of(0, 0.05)), .jitter = 0.0,
+    options = (rta_options_t){.switches = MS(random_of(0, 0.1)),
+                              .access = MS(random_of(0, 0.05)),
+                              .jitter = 0.0,
                               .bursts = random_int(0, 1) == 1};
 }
 
 static char note[64];
-#define ASSERT_FOR(seed, condition)                                                                                         \
-    do {                                                                                                                    \
-        snprintf(note, sizeof note, "table of seed %lu", (seed));                                                           \
-        TEST_ASSERT_TRUE_MESSAGE((condition), note);                                                                        \
+#define ASSERT_FOR(seed, condition) \
+    do { \
+        snprintf(note, sizeof note, "table of seed %lu", (seed)); \
+        TEST_ASSERT_TRUE_MESSAGE((condition), note); \
     } while (0)
 
 static void responses(rta_ps_t response[RTA_ROWS_MAX])
@@ -417,7 +428,8 @@ void test_a_response_is_at_least_the_job_and_at_most_the_demand_that_fits(void)
             }
             ASSERT_FOR(seed, rta_demand_seed(&table, &options, i) <= rta_demand(&table, &options, i));
             ASSERT_FOR(seed, rta_demand(&table, &options, i) <= demand);
-            ASSERT_FOR(seed, rta_response(&table, &options, i) >= row->cost + options.switches + row->blocking);
+            ASSERT_FOR(seed,
+                       rta_response(&table, &options, i) >= row->cost + options.switches + row->blocking);
             if (demand <= row->deadline) {
                 fitting++;
                 ASSERT_FOR(seed, rta_response(&table, &options, i) <= demand);
@@ -455,8 +467,10 @@ void test_growth_is_the_edge(void)
 
             ASSERT_FOR(seed, growth.factor > 0.0 && table.row[growth.first_missed].kind == RTA_TASK);
             ASSERT_FOR(seed, rta_holds_scaled(&table, &options, growth.factor, switches_too == 1));
-            ASSERT_FOR(seed, !rta_holds_scaled(&table, &options, growth.factor * 1.000001, switches_too == 1));
-            ASSERT_FOR(seed, rta_holds(&table, &options) == rta_holds_scaled(&table, &options, 1.0, switches_too == 1));
+            ASSERT_FOR(seed,
+                       !rta_holds_scaled(&table, &options, growth.factor * 1.000001, switches_too == 1));
+            ASSERT_FOR(seed, rta_holds(&table, &options) ==
+                                 rta_holds_scaled(&table, &options, 1.0, switches_too == 1));
         }
     }
 }
@@ -484,7 +498,8 @@ void test_growth_is_zero_when_no_cost_is_to_blame(void)
 
 /* ---- against a schedule played tick by tick ---- */
 
-/* Longest response of each task when all are released together and the processor runs the first of those that wait. */
+/* Longest response of each task when all are released together and the processor runs the first of those that
+ * wait. */
 static void play(int ticks, int worst[RTA_ROWS_MAX])
 {
     int released[RTA_ROWS_MAX] = {0}, finished[RTA_ROWS_MAX] = {0}, left[RTA_ROWS_MAX] = {0};

@@ -6,7 +6,9 @@
 #include "unity.h"
 
 #define HEADER "name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings\n"
-#define LONG_HEADER "name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings,accesses,burst_n,burst_period_ms\n"
+#define LONG_HEADER \
+    "name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings,accesses,burst_n,burst_period_" \
+    "ms\n"
 #define TASK "A,task,2,10,9.5,0.0024,0.0093,1\n"
 
 static rta_table_t table;
@@ -60,7 +62,8 @@ void test_what_interrupts_do_not_have_is_not_looked_at(void)
 
 void test_blanks_comments_cr_lf_and_a_missing_last_line_end_are_fine(void)
 {
-    expect_good("# mine\r\n\r\n" "name, kind ,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings\r\n"
+    expect_good("# mine\r\n\r\n"
+                "name, kind ,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings\r\n"
                 "\t\n A , task , 1 , 10 , 10 , 1 , , - ");
     TEST_ASSERT_EQUAL_INT(1, table.rows);
     TEST_ASSERT_EQUAL_STRING("A", table.row[0].name);
@@ -68,7 +71,8 @@ void test_blanks_comments_cr_lf_and_a_missing_last_line_end_are_fine(void)
 
 void test_further_columns_are_found_by_name(void)
 {
-    expect_good("name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings,burst_period_ms,accesses,burst_n\n"
+    expect_good("name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings,burst_period_ms,"
+                "accesses,burst_n\n"
                 "I,hwi,,1,,0.1,,,100,,99\nA,task,1,10,10,1,0,0,,3,\n");
     TEST_ASSERT_EQUAL_INT(99, table.row[0].burst_n);
     TEST_ASSERT_EQUAL_DOUBLE(100e9, table.row[0].burst_period);
@@ -78,8 +82,10 @@ void test_further_columns_are_found_by_name(void)
 
 void test_jitter_and_who_blocks_are_further_columns_too(void)
 {
-    expect_good("name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings,jitter_ms,blocked_by\n"
-                "I,hwi,,1,,0.1,,,0.25,\nA,task,2,10,10,1,0.1,1,,B+C\nB,task,1,10,10,1,0,0,,-\nC,task,1,10,10,1,0,0,,\n");
+    expect_good(
+        "name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings,jitter_ms,blocked_by\n"
+        "I,hwi,,1,,0.1,,,0.25,\nA,task,2,10,10,1,0.1,1,,B+C\nB,task,1,10,10,1,0,0,,-\nC,task,1,10,10,1,0,0,,"
+        "\n");
     TEST_ASSERT_EQUAL_DOUBLE(0.25e9, table.row[0].jitter);
     TEST_ASSERT_EQUAL_STRING("B+C", table.row[1].blocked_by);
     TEST_ASSERT_EQUAL_STRING("", table.row[2].blocked_by);
@@ -87,7 +93,8 @@ void test_jitter_and_who_blocks_are_further_columns_too(void)
     TEST_ASSERT_EQUAL_DOUBLE(0.5e9, table.row[0].jitter);
     TEST_ASSERT_FALSE(set("A.blocked_by=B"));
     expect_bad(2, "A: blocked_by: no such row",
-               "name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings,blocked_by\nA,task,2,10,10,1,0.1,1,A+D\n");
+               "name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings,blocked_by\nA,task,2,"
+               "10,10,1,0.1,1,A+D\n");
 }
 
 void test_a_wrong_header_is_refused(void)
@@ -95,9 +102,12 @@ void test_a_wrong_header_is_refused(void)
     expect_bad(1, "first line must be name,kind", "");
     expect_bad(1, "first line must be", TASK);
     expect_bad(2, "first line must be", "\nname,kind,priority\n");
-    expect_bad(1, "first line must be", "kind,name,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings\n" TASK);
-    expect_bad(1, "colour: no such column", "name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings,colour\n");
-    expect_bad(1, "cost_ms: twice", "name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings,cost_ms\n");
+    expect_bad(1, "first line must be",
+               "kind,name,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings\n" TASK);
+    expect_bad(1, "colour: no such column",
+               "name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings,colour\n");
+    expect_bad(1, "cost_ms: twice",
+               "name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings,cost_ms\n");
 }
 
 void test_a_table_without_tasks_is_refused(void)
@@ -130,7 +140,8 @@ void test_bad_rows_name_their_line_and_column(void)
     expect_bad(3, "A: twice", HEADER TASK TASK);
     expect_bad(2, "7 cells, not 8", HEADER "B,task,1,10,10,1,0\n");
     expect_bad(2, "9 cells, not 8", HEADER "B,task,1,10,10,1,0,0,\n");
-    expect_bad(2, "too long", HEADER "B,task,1,10,10,1,0,000000000000000000000000000000000000000000000000000\n");
+    expect_bad(2, "too long",
+               HEADER "B,task,1,10,10,1,0,000000000000000000000000000000000000000000000000000\n");
     expect_bad(2, "go together", LONG_HEADER "I,hwi,,1,,0.1,,,,5,\n" TASK);
     expect_bad(2, "go together", LONG_HEADER "I,hwi,,1,,0.1,,,,,5\n" TASK);
     expect_bad(2, "burst_period_ms: must be over 0", LONG_HEADER "I,hwi,,1,,0.1,,,,5,0\n" TASK);
@@ -190,10 +201,10 @@ void test_one_number_of_one_row_can_be_set(void)
 void test_what_cannot_be_set_says_why(void)
 {
     const char *const bad[][2] = {
-        {"A", "ROW.COLUMN=VALUE"},      {"A=3", "ROW.COLUMN=VALUE"},       {"=", "ROW.COLUMN=VALUE"},
-        {"B.cost_ms=1", "no such row"}, {"A.colour=1", "no such number"},  {"A.name=C", "no such number"},
-        {"A.kind=hwi", "no such"},      {"I.deadline_ms=3", "no such"},    {"A.cost_ms=", "not a time"},
-        {"A.cost_ms=0", "over 0"},      {"A.priority=x", "whole number"},  {"A.burst_n=3", "go together"},
+        {"A", "ROW.COLUMN=VALUE"},      {"A=3", "ROW.COLUMN=VALUE"},      {"=", "ROW.COLUMN=VALUE"},
+        {"B.cost_ms=1", "no such row"}, {"A.colour=1", "no such number"}, {"A.name=C", "no such number"},
+        {"A.kind=hwi", "no such"},      {"I.deadline_ms=3", "no such"},   {"A.cost_ms=", "not a time"},
+        {"A.cost_ms=0", "over 0"},      {"A.priority=x", "whole number"}, {"A.burst_n=3", "go together"},
     };
 
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {

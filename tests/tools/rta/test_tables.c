@@ -26,7 +26,8 @@ static void load(const char *name)
 
 void setUp(void)
 {
-    options = (rta_options_t){.switches = round(0.057 * RTA_PS_PER_MS), .access = round(0.0093 * RTA_PS_PER_MS)};
+    options = (rta_options_t){.switches = round(0.057 * RTA_PS_PER_MS),
+                              .access = round(0.0093 * RTA_PS_PER_MS)};
     load("seed");
     TEST_ASSERT_EQUAL_INT(SEED_TASKS, tasks);
 }
@@ -46,7 +47,13 @@ static void expect_all(const double expected_ms[SEED_TASKS], figure_t figure)
 /* Figura A4.1 of the seed document. */
 void test_the_seed_table_is_figure_a4_1(void)
 {
-    static const struct { const char *name; rta_kind_t kind; int priority; double period, deadline, cost, blocking; int blockings; } rows[] = {
+    static const struct {
+        const char *name;
+        rta_kind_t kind;
+        int priority;
+        double period, deadline, cost, blocking;
+        int blockings;
+    } rows[] = {
         {"Clock", RTA_HWI, 0, 1, 0, 0.015, 0, 0},
         {"SCIA_RX", RTA_HWI, 0, 0.04, 0, 0.0024, 0, 0},
         {"SCIA_TX", RTA_HWI, 0, 0.04, 0, 0.002, 0, 0},
@@ -156,15 +163,18 @@ void test_from_a_scan_to_the_pulse(void)
     TEST_ASSERT_EQUAL_DOUBLE(2.9021, rta_chain(&table, &options, chain, 3) / RTA_PS_PER_MS);
 }
 
-/* By hand, in microseconds, for the frame's last octet: own 302 + 1020 + 400, 7 accesses, 2 jobs' switches, 3 blockings;
- * from above 226.3 + 81 + 124, in 2.7423 ms 3 ticks of 15 + 4.8, octets of 2.4: 8, 23, 3, and of 2: 17, 18. */
+/* By hand, in microseconds, for the frame's last octet: own 302 + 1020 + 400, 7 accesses, 2 jobs' switches, 3
+ * blockings; from above 226.3 + 81 + 124, in 2.7423 ms 3 ticks of 15 + 4.8, octets of 2.4: 8, 23, 3, and of
+ * 2: 17, 18. */
 void test_from_a_scan_to_the_pulse_of_this_firmware(void)
 {
     load("plomada");
-    const int chain[] = {rta_table_find(&table, "SCIA_RX", 7), rta_table_find(&table, "Laser_SWI", 9), task[1], task[2]};
+    const int chain[] = {rta_table_find(&table, "SCIA_RX", 7), rta_table_find(&table, "Laser_SWI", 9),
+                         task[1], task[2]};
 
     options.bursts = true;
-    TEST_ASSERT_EQUAL_DOUBLE(1722 + 7 * 9.3 + 2 * 57 + 3 * 66.3 + 226.3 + 81 + 124 + 3 * 19.8 + 34 * 2.4 + 35 * 2,
+    TEST_ASSERT_EQUAL_DOUBLE(1722 + 7 * 9.3 + 2 * 57 + 3 * 66.3 + 226.3 + 81 + 124 + 3 * 19.8 + 34 * 2.4 +
+                                 35 * 2,
                              round(rta_chain(&table, &options, chain, 4) / 1e5) / 10.0);
 }
 
@@ -219,8 +229,11 @@ void test_the_table_of_law_est_differs_in_the_control_task_alone(void)
 /* bsp/uart.h and firmware/uart_port.h: so many octets may wait for an interrupt, and come at once. */
 void test_octets_wait_as_the_fifo_levels_let_them(void)
 {
-    static const struct { const char *name; double waiting; } streams[] = {
-        {"SCIA_RX", UART_PORT_BURST - 1}, {"SCIB_RX", UART_PORT_BURST - 1}, {"SCIC_RX", 0},
+    static const struct {
+        const char *name;
+        double waiting;
+    } streams[] = {
+        {"SCIA_RX", UART_PORT_BURST - 1},     {"SCIB_RX", UART_PORT_BURST - 1},     {"SCIC_RX", 0},
         {"SCIA_TX", BSP_UART_FIFO_DEPTH - 1}, {"SCIC_TX", BSP_UART_FIFO_DEPTH - 1},
     };
 

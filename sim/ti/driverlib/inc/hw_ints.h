@@ -1,4 +1,5 @@
-/* Interrupt numbers, as in TI's header of this name: vector number << 16 | PIE group << 8 | place in the group. */
+/* Interrupt numbers, as in TI's header of this name: vector number << 16 | PIE group << 8 | place in the
+ * group. */
 #ifndef HW_INTS_H
 #define HW_INTS_H
 

@@ -4,7 +4,8 @@
 
 #include <stdint.h>
 
-/* The value of the 16-bit register at a word address, read afresh by each call. SCI registers only, others abort. */
+/* The value of the 16-bit register at a word address, read afresh by each call. SCI registers only, others
+ * abort. */
 const volatile uint16_t *driverlib_halfword(uint32_t address);
 
 #define HWREGH(x) (*driverlib_halfword(x))

@@ -1,6 +1,6 @@
-/* Stand-in for TI's F021 flash API (F2837xS), version 1.55: the subset that this firmware uses, same names and types. As in
- * TI's library each function turns EALLOW on where it begins, and none turns it off; a store after an EDIS of the
- * function that it calls back is lost. */
+/* Stand-in for TI's F021 flash API (F2837xS), version 1.55: the subset that this firmware uses, same names
+ * and types. As in TI's library each function turns EALLOW on where it begins, and none turns it off; a store
+ * after an EDIS of the function that it calls back is lost. */
 #ifndef F021_F2837XS_C28X_H
 #define F021_F2837XS_C28X_H
 
@@ -11,7 +11,12 @@ typedef uint32_t uint32;
 
 typedef enum { Fapi_FlashBank0, Fapi_FlashBank1 } Fapi_FlashBankType;
 
-typedef enum { Fapi_AutoEccGeneration, Fapi_DataOnly, Fapi_EccOnly, Fapi_DataAndEcc } Fapi_FlashProgrammingCommandsType;
+typedef enum {
+    Fapi_AutoEccGeneration,
+    Fapi_DataOnly,
+    Fapi_EccOnly,
+    Fapi_DataAndEcc
+} Fapi_FlashProgrammingCommandsType;
 
 typedef enum { Fapi_ProgramData = 0x0002, Fapi_EraseSector = 0x0006 } Fapi_FlashStateCommandsType;
 
@@ -39,10 +44,12 @@ extern Fapi_FmcRegistersType f021_registers;
 /* u32HclkFrequency: MHz. */
 Fapi_StatusType Fapi_initializeAPI(Fapi_FmcRegistersType *poFlashControlRegister, uint32 u32HclkFrequency);
 Fapi_StatusType Fapi_setActiveFlashBank(Fapi_FlashBankType oNewFlashBank);
-Fapi_StatusType Fapi_issueAsyncCommandWithAddress(Fapi_FlashStateCommandsType oCommand, uint32 *pu32StartAddress);
+Fapi_StatusType Fapi_issueAsyncCommandWithAddress(Fapi_FlashStateCommandsType oCommand,
+                                                  uint32 *pu32StartAddress);
 Fapi_StatusType Fapi_issueProgrammingCommand(uint32 *pu32StartAddress, uint16 *pu16DataBuffer,
                                              uint16 u16DataBufferSizeInWords, uint16 *pu16EccBuffer,
-                                             uint16 u16EccBufferSizeInBytes, Fapi_FlashProgrammingCommandsType oMode);
+                                             uint16 u16EccBufferSizeInBytes,
+                                             Fapi_FlashProgrammingCommandsType oMode);
 Fapi_StatusType Fapi_checkFsmForReady(void);
 Fapi_FlashStatusType Fapi_getFsmStatus(void);
 void Fapi_flushPipeline(void);

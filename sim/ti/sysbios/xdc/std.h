@@ -1,5 +1,5 @@
-/* The XDC types that the firmware uses, with the sizes of the machine it is compiled for (on a C28x Int and UInt have 16
- * bits, and code must not assume more). */
+/* The XDC types that the firmware uses, with the sizes of the machine it is compiled for (on a C28x Int and
+ * UInt have 16 bits, and code must not assume more). */
 #ifndef xdc_std__include
 #define xdc_std__include
 

@@ -39,9 +39,9 @@ static inline Void Event_Params_init(Event_Params *params)
 /* main() or Task. */
 Event_Handle Event_create(const Event_Params *params, Error_Block *eb);
 
-/* Returns and consumes what matched: all of andMask once all of it is posted, and whatever is posted of orMask; 0 when
- * `timeout` ticks passed first. Waits in a Task only, one task at a time, with the scheduler enabled; with BIOS_NO_WAIT
- * any context. Finite timeout < 65535; one mask at least is not 0. */
+/* Returns and consumes what matched: all of andMask once all of it is posted, and whatever is posted of
+ * orMask; 0 when `timeout` ticks passed first. Waits in a Task only, one task at a time, with the scheduler
+ * enabled; with BIOS_NO_WAIT any context. Finite timeout < 65535; one mask at least is not 0. */
 UInt Event_pend(Event_Handle handle, UInt andMask, UInt orMask, UInt32 timeout);
 Void Event_post(Event_Handle handle, UInt eventMask); /* any context; eventMask is not 0 */
 UInt Event_getPostedEvents(Event_Handle handle);

@@ -1,5 +1,5 @@
-/* Semaphores. Counting ones refuse to pass 65535, binary ones stay at 1; in the _PRIORITY modes the waiting task of
- * highest priority is served first, otherwise the one that waited longest. */
+/* Semaphores. Counting ones refuse to pass 65535, binary ones stay at 1; in the _PRIORITY modes the waiting
+ * task of highest priority is served first, otherwise the one that waited longest. */
 #ifndef ti_sysbios_knl_Semaphore__include
 #define ti_sysbios_knl_Semaphore__include
 
@@ -30,8 +30,8 @@ static inline Void Semaphore_Params_init(Semaphore_Params *params)
 /* main() or Task; count 0..32767. */
 Semaphore_Handle Semaphore_create(Int count, const Semaphore_Params *params, Error_Block *eb);
 
-/* FALSE when `timeout` ticks passed first. Waits in a Task only and with the scheduler enabled; with BIOS_NO_WAIT any
- * context. Finite timeout < 65535. */
+/* FALSE when `timeout` ticks passed first. Waits in a Task only and with the scheduler enabled; with
+ * BIOS_NO_WAIT any context. Finite timeout < 65535. */
 Bool Semaphore_pend(Semaphore_Handle handle, UInt32 timeout);
 Void Semaphore_post(Semaphore_Handle handle); /* any context */
 Int Semaphore_getCount(Semaphore_Handle handle);

@@ -1,5 +1,5 @@
-/* Hardware interrupts of the C28x with its PIE: intNum = driverlib's INT_xxx >> 16. Number 38 (CPU timer 0) is the
- * kernel's tick. The kernel acknowledges the PIE itself. */
+/* Hardware interrupts of the C28x with its PIE: intNum = driverlib's INT_xxx >> 16. Number 38 (CPU timer 0)
+ * is the kernel's tick. The kernel acknowledges the PIE itself. */
 #ifndef ti_sysbios_family_c28_Hwi__include
 #define ti_sysbios_family_c28_Hwi__include
 
