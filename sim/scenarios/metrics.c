@@ -116,18 +116,32 @@ static void watch_touch(metrics_record_t *record, const metrics_sample_t *s)
     }
 }
 
-static bool cut(const metrics_sample_t *s)
+/* The thrust went away in the air: for 0.1 s already, so that a vehicle that stands, and whose ground drops,
+ * is not cut. */
+static bool cut(const metrics_record_t *record, const metrics_sample_t *s)
 {
-    return s->height_m > AIRBORNE_M && s->thrust_n <= 0.0;
+    return s->thrust_n <= 0.0 && record->before.thrust_n > 0.0 && s->t_s - record->aloft_since_s > 0.095;
+}
+
+static void watch_ground(metrics_record_t *record, const metrics_sample_t *s)
+{
+    const bool was_aloft = record->count > 0 && record->before.height_m > AIRBORNE_M;
+
+    if (s->height_m <= AIRBORNE_M) {
+        record->aloft_since_s = NAN;
+    } else if (!was_aloft) {
+        record->aloft_since_s = s->t_s;
+    }
 }
 
 static void count_incidents(metrics_record_t *record, const metrics_sample_t *s)
 {
     const metrics_sample_t *before = &record->before;
 
+    watch_ground(record, s);
     if (record->count > 0) {
         record->takeovers += s->taken_over && !before->taken_over && s->t_s < record->land_s;
-        record->cuts += cut(s) && !cut(before);
+        record->cuts += cut(record, s);
     }
 }
 

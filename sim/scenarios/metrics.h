@@ -87,6 +87,7 @@ typedef struct {
     double fall_mps, hardest_mps;
     bool airborne;
     double takeovers, cuts, off_aloft;
+    double aloft_since_s; /* above 30 mm without a break; NAN: not */
     double off_since_s, wrong_since_s, deceived_s, flagged_s;
     double order_s, aloft_s,
         running_s; /* coming down since; last seen in the air; last seen with running motors */

@@ -118,7 +118,8 @@ class Vehicles(unittest.TestCase):
                   "acc_noise": (0.4, 0.8), "attitude_rms": (math.radians(1.6), math.radians(3.0)),
                   "imu_noise": (math.radians(0.25), math.radians(0.5)),
                   "turbulence": (0.16, 0.3), "tdelay": (0.005, 0.020), "hover_trimmed": (7.25, 7.55),
-                  "hover_untrimmed": (5.6, 8.4), "outage_start": (8, 14)}
+                  "hover_untrimmed": (5.6, 8.4), "outage_start": (8, 14), "climb_rate": (0.483, 0.85652),
+                  "climb_neutral": (7.25, 7.8), "climb_deadband": (0.0, 0.5), "climb_lag": (0.2315, 0.5556)}
         vehicles = [plan.draws(1, run) for run in range(1, 1001)]
         self.assertEqual(set(vehicles[0]), set(ranges))
         for name, (low, high) in ranges.items():
@@ -317,7 +318,7 @@ class Judging(Case):
 
     def test_good_flights_reach_every_aim(self):
         found = verdict.verdicts(campaign_of())
-        self.assertEqual(len(found), len(verdict.EST) + 2)
+        self.assertEqual(len(found), len(verdict.EST) + 3)
         self.assertEqual({one.word for one in found}, {"aim"})
 
     def test_each_must_can_be_missed_by_est_alone(self):

@@ -185,7 +185,7 @@ def run(arguments):
 
 def main(argv=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--vehicles", type=int, default=200, help="of each kind (200)")
+    parser.add_argument("--vehicles", type=int, default=80, help="of each kind (80)")
     parser.add_argument("--flights", type=int, default=4, help="of each test per vehicle (4)")
     parser.add_argument("--confirm", type=int, default=20, help="fresh flights of each test for the finalists (20)")
     parser.add_argument("--finalists", type=int, default=5, help="of each kind (5)")
