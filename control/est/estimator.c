@@ -23,7 +23,7 @@
 
 #define HEIGHT_NOISE_M 0.0013F /* fitted */
 #define OFF_MODEL_SHARE 0.4F
-#define OFF_MODEL_MPS2 1.2F
+#define OFF_MODEL_MPS2 2.0F
 #define FLOOR_START_M 0.004F
 #define FLOOR_SMOOTH_M 0.020F /* what edges and the vehicle's own motion make of the measure */
 #define FLOOR_MAX_M 0.080F

@@ -116,11 +116,11 @@ static void watch_touch(metrics_record_t *record, const metrics_sample_t *s)
     }
 }
 
-/* The thrust went away in the air: for 0.1 s already, so that a vehicle that stands, and whose ground drops,
- * is not cut. */
+/* The thrust went away in the air: for 0.3 s already, longer than the fall of a vehicle that stood on the
+ * platform until that went away. Such a vehicle is not cut. */
 static bool cut(const metrics_record_t *record, const metrics_sample_t *s)
 {
-    return s->thrust_n <= 0.0 && record->before.thrust_n > 0.0 && s->t_s - record->aloft_since_s > 0.095;
+    return s->thrust_n <= 0.0 && record->before.thrust_n > 0.0 && s->t_s - record->aloft_since_s > 0.295;
 }
 
 static void watch_ground(metrics_record_t *record, const metrics_sample_t *s)
