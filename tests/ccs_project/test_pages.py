@@ -42,7 +42,7 @@ class Wiring(unittest.TestCase):
         self.assertIn("GPIO_2_EPWM2A", code("bsp/throttle.c"))
         self.assertIn("ePWM2A (GPIO2, J8.80)", text("bsp/throttle.h"))
         self.assertIn("GPIO_setPinConfig(GPIO_3_GPIO3)", code("bsp/selector.c"))
-        self.assertIn("GPIO3 (J8.79), high = this firmware, low = the\n * pilot", text("bsp/selector.h"))
+        self.assertIn("GPIO3 (J8.79), high = this firmware, low = the pilot", text("bsp/selector.h").replace("\n * ", " "))
         self.assertIn("high = LaunchPad, low = pilot", self.rows["J8.79"][5])
 
     def test_rates_are_the_firmwares(self):
@@ -100,7 +100,7 @@ class Bracket(unittest.TestCase):
             self.assertEqual(round((float(degrees.rstrip("°")) - 120) / (360 / 1024)) + 384, step)
         layouts = code("drivers/scip_layout.c")
         groups = re.search(r"\"three-mirrors\".*", layouts, re.DOTALL).group()
-        aft, front, fore = re.findall(r"\{ (\d+)U, (\d+)U \}", groups)
+        aft, front, fore = re.findall(r"\{\s*(\d+)U, (\d+)U\s*\}", groups)
         self.assertEqual(self.row("steps in use")[1:], [" to ".join(group) for group in (front, aft, fore)])
 
     def test_the_drawing_has_the_same_numbers_and_is_well_formed(self):
