@@ -46,14 +46,14 @@ private_apt() {
 say "fetching cbmc from $suite"
 private_apt update || die "cannot read $suite of the configured Debian mirror"
 (cd "$state/packages" && private_apt download cbmc minisat libc6 libstdc++6 libgcc-s1 zlib1g) || die "no cbmc in $suite"
-for package in "$state"/packages/*.deb; do dpkg-deb -x "$package" "$out/root"; done
+for package in "$state"/packages/*.deb; do dpkg-deb -x "$package" "$out/tree"; done
 
 # Started by the loader and libraries of its own suite.
-loader=$(find "$out/root" -name 'ld-linux*.so.*' | head -n 1)
-libraries=$(dirname "$(find "$out/root" -name 'libstdc++.so.6' | head -n 1)")
-c_library=$(dirname "$(find "$out/root" -name 'libc.so.6' | head -n 1)")
+loader=$(find "$out/tree" -name 'ld-linux*.so.*' | head -n 1)
+libraries=$(dirname "$(find "$out/tree" -name 'libstdc++.so.6' | head -n 1)")
+c_library=$(dirname "$(find "$out/tree" -name 'libc.so.6' | head -n 1)")
 printf '#!/bin/sh\nexec "%s" --library-path "%s:%s:%s" "%s" "$@"\n' \
-    "$loader" "$libraries" "$c_library" "$out/root/usr/lib" "$out/root/usr/bin/cbmc" > "$out/cbmc.new"
+    "$loader" "$libraries" "$c_library" "$out/tree/usr/lib" "$out/tree/usr/bin/cbmc" > "$out/cbmc.new"
 chmod +x "$out/cbmc.new"
 "$out/cbmc.new" --version >/dev/null || die "cbmc of $suite does not run here"
 mv "$out/cbmc.new" "$out/cbmc"
