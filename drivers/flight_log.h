@@ -7,10 +7,11 @@
 
 #include "drivers/telemetry.h"
 
-#define FLIGHT_LOG_CELLS 10U
+#define FLIGHT_LOG_CELLS 13U
 
-/* One control cycle. NaN where there is no value. Packing keeps 1 mm up to +-32.7 m, 1 mN up to 65 N and 0.1
- * mrad up to +-3.27 rad; what is beyond becomes the end of the range. */
+/* One instant of a flight. NaN where there is no value. Packing keeps 1 mm up to +-32.7 m, 1 mN up to 65 N,
+ * 0.1 mrad up to +-3.27 rad, 1 mm/s2 up to +-32.7 m/s2, 0.1 us and 1 ms up to 65 s; what is beyond becomes
+ * the end of the range. */
 typedef struct {
     uint32_t time_ms;    /* since power-up */
     float height_mm;     /* as measured */
@@ -21,6 +22,10 @@ typedef struct {
     float roll_rad, pitch_rad;
     uint16_t state; /* 0..15 */
     uint16_t flags; /* 0..4095 */
+    float up_mps2; /* acceleration upwards as measured, without gravity; NaN: no frame since the record before
+                    */
+    float pulse_us; /* commanded */
+    float age_ms;   /* of the rays that height_mm was measured by */
 } flight_log_t;
 
 void flight_log_pack(uint16_t cells[FLIGHT_LOG_CELLS], const flight_log_t *record);

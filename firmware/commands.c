@@ -163,7 +163,7 @@ static const verb_t verbs[] = {
     {"LOAD", verb_load, "- the stored parameters"},
     {"DEFAULTS", verb_defaults,
      "[SEED] - the parameters as delivered, or the seed's law and gains; the stored ones stay"},
-    {"LOG", verb_log, "[SECONDS|CLEAR|STOP] - the flight recorder as CSV"},
+    {"LOG", verb_log, "[SECONDS|CLEAR|STOP|RATE FAST|RATE SLOW] - the flight recorder as CSV"},
     {"CALIBRATE", verb_calibrate,
      "[COUNTS [SECONDS]] - thrust step by step, tied down; any line but #PING ends it"},
     {"LASER", verb_laser, "- the scanner's state, rate, frames and errors by cause"},

@@ -7,9 +7,13 @@
 #include <ti/sysbios/family/c28/Hwi.h>
 #include <xdc/std.h>
 
+#include "control/est/estimator.h"
+
 #define RECORDS FLIGHT_RECORDER_RECORDS
 #define CYCLE_MIN_MS 45U
+#define SAME_INSTANT_US UINT32_C(3000) /* a frame that releases a cycle is not recorded apart from it */
 #define US_PER_MS 1000U
+#define MS_PER_US 1.0e-3F
 #define MS_PER_S 1000U
 
 /* Above 10000H there is memory that stacks cannot use. */
@@ -19,6 +23,7 @@
 static uint16_t ring[RECORDS][FLIGHT_LOG_CELLS];
 static uint32_t oldest; /* changed by both tasks */
 static uint32_t next;
+static flight_recorder_rate_t rate;
 
 static struct {
     uint32_t now_us;
@@ -27,6 +32,13 @@ static struct {
     uint32_t taken_ms;
     bool active; /* the latest cycle was one to record */
 } clock;
+
+static struct {
+    flight_log_t record;     /* of the latest cycle: what it commanded is in force until the next */
+    uint32_t height_time_us; /* arrival of its height */
+    uint32_t height_age_us;  /* that it had then */
+    uint32_t frame;          /* sequence of the latest frame that was recorded */
+} latest;
 
 static uint32_t tell_ms(uint32_t now_us)
 {
@@ -47,14 +59,16 @@ static void append(const flight_log_t *record)
     clock.taken_ms = record->time_ms;
 }
 
-void flight_recorder_take(const flight_inputs_t *in, const flight_outputs_t *out)
+static float age_ms(uint32_t instant_us)
 {
-    const bool active = out->state != FLIGHT_GROUND || out->thrust_n > out->idle_n;
-    const bool wanted = active || clock.active;
-    const float height_mm = in->height_valid ? in->altitude.height_mm : NAN;
-    const flight_log_t record = {
+    return (float)(instant_us - latest.height_time_us + latest.height_age_us) * MS_PER_US;
+}
+
+static flight_log_t record_of(const flight_inputs_t *in, const flight_outputs_t *out)
+{
+    return (flight_log_t){
         .time_ms = tell_ms(in->now_us),
-        .height_mm = height_mm,
+        .height_mm = in->height_valid ? in->altitude.height_mm : NAN,
         .estimate_mm = out->estimate_mm,
         .innovation_mm = out->innovation_mm,
         .reference_m = out->reference_m,
@@ -63,12 +77,83 @@ void flight_recorder_take(const flight_inputs_t *in, const flight_outputs_t *out
         .pitch_rad = in->attitude_ready ? in->pitch_rad : NAN,
         .state = (uint16_t)out->state,
         .flags = out->flags,
+        .up_mps2 = NAN,
+        .pulse_us = out->pulse_us,
+        .age_ms = NAN,
     };
+}
 
+static bool is_new(const imu_sample_t *frame)
+{
+    return frame->sequence - latest.frame < UINT32_C(0x80000000) && frame->sequence != latest.frame &&
+           frame->ready && frame->has_acceleration;
+}
+
+/* A frame between two cycles: what the cycle before it commanded is in force. */
+static void append_frame(const imu_sample_t *frame, uint32_t before_us)
+{
+    flight_log_t record = latest.record;
+
+    record.time_ms = clock.now_ms - before_us / US_PER_MS;
+    record.roll_rad = frame->median.roll_rad;
+    record.pitch_rad = frame->median.pitch_rad;
+    record.up_mps2 = motion_up_mps2(frame);
+    record.age_ms = isnan(record.height_mm) ? NAN : age_ms(frame->arrival_us);
+    append(&record);
+}
+
+/* Records the new frames that came before this cycle; gives the acceleration of the one that came with it. */
+static float take_frames(const flight_inputs_t *in, bool apart)
+{
+    float up_mps2 = NAN;
+
+    for (uint16_t i = 0U; i < in->frame_count; i++) {
+        const imu_sample_t *frame = &in->frames[i];
+        const uint32_t before_us = in->now_us - frame->arrival_us;
+
+        if (!is_new(frame)) {
+            continue;
+        }
+        latest.frame = frame->sequence;
+        up_mps2 = motion_up_mps2(frame);
+        if (apart && before_us > SAME_INSTANT_US &&
+            latest.record.time_ms <= clock.now_ms - before_us / US_PER_MS) {
+            append_frame(frame, before_us);
+            up_mps2 = NAN;
+        }
+    }
+    return up_mps2;
+}
+
+static void keep(const flight_inputs_t *in, flight_log_t *record)
+{
+    latest.height_time_us = in->height_time_us;
+    latest.height_age_us = in->height_age_us;
+    record->age_ms = isnan(record->height_mm) ? NAN : age_ms(in->now_us);
+    latest.record = *record;
+}
+
+void flight_recorder_take(const flight_inputs_t *in, const flight_outputs_t *out)
+{
+    const bool active = out->state != FLIGHT_GROUND || out->thrust_n > out->idle_n;
+    const bool wanted = active || clock.active;
+    const bool fast = rate == FLIGHT_RECORDER_FAST;
+    flight_log_t record = record_of(in, out);
+    const bool due = wanted && (fast || next == oldest || record.time_ms - clock.taken_ms >= CYCLE_MIN_MS);
+
+    if (due) {
+        record.up_mps2 = take_frames(in, fast && clock.active);
+    }
     clock.active = active;
-    if (wanted && (next == oldest || record.time_ms - clock.taken_ms >= CYCLE_MIN_MS)) {
+    keep(in, &record);
+    if (due) {
         append(&record);
     }
+}
+
+void flight_recorder_set_rate(flight_recorder_rate_t wanted)
+{
+    rate = wanted;
 }
 
 flight_recorder_span_t flight_recorder_span(void)

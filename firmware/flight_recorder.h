@@ -2,8 +2,11 @@
  * it.
  *
  * It records while the state is not GROUND or the thrust is not 0, and one cycle more. So a flight stays
- * in the buffer after the landing, until the next flight needs the room. It makes at most one record in 45
- * ms, so the ring holds at least 72 s; at a period of 108 ms it holds 170 s, at 100 ms 160 s. */
+ * in the buffer after the landing, until the next flight needs the room.
+ *
+ * SLOW, as at power-up: one record per control cycle, at most one in 45 ms. The ring holds at least 56 s; at
+ * a period of 108 ms it holds 135 s. FAST: every cycle and every IMU frame, so records are 25 ms apart or
+ * less, whatever the law. The ring holds at least 25 s. */
 #ifndef FIRMWARE_FLIGHT_RECORDER_H
 #define FIRMWARE_FLIGHT_RECORDER_H
 
@@ -13,9 +16,15 @@
 #include "control/flight.h"
 #include "drivers/flight_log.h"
 
-#define FLIGHT_RECORDER_RECORDS 1600U /* 16000 cells */
+#define FLIGHT_RECORDER_RECORDS 1250U /* 16250 cells */
 
-/* Records one control cycle if it is due. The arguments are borrowed for the call. TaskControl. */
+typedef enum { FLIGHT_RECORDER_SLOW, FLIGHT_RECORDER_FAST } flight_recorder_rate_t;
+
+/* From the next cycle on; what is recorded stays. TaskReceiveComm. */
+void flight_recorder_set_rate(flight_recorder_rate_t rate);
+
+/* Records one control cycle if it is due, and with FAST the frames since the cycle before. The arguments are
+ * borrowed for the call. TaskControl. */
 void flight_recorder_take(const flight_inputs_t *in, const flight_outputs_t *out);
 
 /* Records are numbered from 0 since power-up. Those with oldest <= number < next are available.

@@ -52,8 +52,14 @@ bool verb_log(answer_t *answer)
         flight_recorder_clear();
         return say(answer, " CLEAR");
     }
+    if (answer_argument_is(answer, "RATE FAST") || answer_argument_is(answer, "RATE SLOW")) {
+        const bool fast = answer_argument_is(answer, "RATE FAST");
+
+        flight_recorder_set_rate(fast ? FLIGHT_RECORDER_FAST : FLIGHT_RECORDER_SLOW);
+        return say(answer, fast ? " RATE FAST" : " RATE SLOW");
+    }
     if (!decimal_read(command->argument, command->argument_length, &seconds)) {
-        return answer_refuse(answer, "seconds, CLEAR or STOP");
+        return answer_refuse(answer, "seconds, CLEAR, STOP or RATE FAST|SLOW");
     }
     if (!(seconds > 0.0F && seconds <= (float)SECONDS_MAX)) {
         return answer_refuse(answer, "out of range 0..3600 s");

@@ -29,7 +29,8 @@ bool verb_defaults(answer_t *answer);
  * radio's port is created. */
 void verb_load_at_start(void);
 
-/* verb_log.c: `#LOG`, `#LOG seconds`, `#LOG CLEAR`, `#LOG STOP`: the flight recorder. */
+/* verb_log.c: `#LOG`, `#LOG seconds`, `#LOG CLEAR`, `#LOG STOP`, `#LOG RATE FAST|SLOW`: the flight
+ * recorder. */
 bool verb_log(answer_t *answer);
 
 /* verb_calibrate.c: `#CALIBRATE counts seconds`: hover calibration. */

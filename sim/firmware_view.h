@@ -14,6 +14,7 @@ typedef struct {
     imu_sample_t imu;
     flight_outputs_t flight;
     uint32_t scans, damages; /* since power-up */
+    uint32_t now_us;         /* the firmware's clock, the one of the arrivals */
 } firmware_view_t;
 
 firmware_view_t firmware_view(void);

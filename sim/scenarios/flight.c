@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "control/est/estimator.h"
 #include "drivers/flight_log.h"
 #include "sim/firmware_view.h"
 #include "sim/devices/xbee.h"
@@ -36,6 +37,7 @@ static struct {
     char answer[1024];   /* to it */
     sim_time_t answered; /* its latest line; 0: none */
     bool recording, first_row_recorded;
+    uint32_t shown_frame; /* sequence of the latest in the log */
     unsigned pings;
     double ping_every_s;
 } flight;
@@ -339,9 +341,9 @@ static void write_titles(FILE *csv)
 {
     static telemetry_line_t line;
 
-    telemetry_begin(&line);
+    telemetry_begin_answer(&line);
     flight_log_titles(&line);
-    fprintf(csv, "%.*s,height_m,abs_m,terrain_m,pulse_us\n", (int)line.length, line.text);
+    fprintf(csv, "%.*s,height_m,abs_m,terrain_m\n", (int)line.length, line.text);
 }
 
 static void write_column(FILE *csv, bool there, double value)
@@ -357,6 +359,20 @@ typedef struct {
     double height_m, altitude_m, terrain_m;
 } truth_t;
 
+/* An acceleration is shown once. */
+static bool new_frame(const imu_sample_t *frame)
+{
+    const bool unseen = frame->sequence != flight.shown_frame;
+
+    flight.shown_frame = frame->sequence;
+    return unseen && frame->ready && frame->has_acceleration;
+}
+
+static double height_age_s(const firmware_view_t *firmware)
+{
+    return (double)(firmware->now_us - firmware->altitude.arrival_us + firmware->altitude.age_us) * 1e-6;
+}
+
 static void write_row(FILE *csv, double t_s, const truth_t *truth)
 {
     const firmware_view_t firmware = firmware_view();
@@ -369,8 +385,11 @@ static void write_row(FILE *csv, double t_s, const truth_t *truth)
     fprintf(csv, ",%.3f,%.4f", (double)out->reference_m, (double)out->thrust_n);
     write_column(csv, firmware.imu.ready, (double)firmware.imu.median.roll_rad);
     write_column(csv, firmware.imu.ready, (double)firmware.imu.median.pitch_rad);
-    fprintf(csv, ",%s,%u,%.4f,%.4f,%.4f,%.2f\n", flight_state_name(out->state), (unsigned)out->flags,
-            truth->height_m, truth->altitude_m, truth->terrain_m, board_pulse_us());
+    fprintf(csv, ",%s,%u", flight_state_name(out->state), (unsigned)out->flags);
+    write_column(csv, new_frame(&firmware.imu), (double)motion_up_mps2(&firmware.imu));
+    fprintf(csv, ",%.2f", board_pulse_us());
+    write_column(csv, firmware.altitude.scan_valid, height_age_s(&firmware));
+    fprintf(csv, ",%.4f,%.4f,%.4f\n", truth->height_m, truth->altitude_m, truth->terrain_m);
 }
 
 static void record_number(const char *key, sim_time_t value)

@@ -10,10 +10,14 @@
 
 static flight_inputs_t in;
 static flight_outputs_t out;
+static imu_sample_t frames[4];
 
 void setUp(void)
 {
     kernel_reset();
+    flight_recorder_set_rate(FLIGHT_RECORDER_SLOW);
+    in.frame_count = 0U;
+    in.frames = frames;
     in.height_valid = true;
     in.attitude_ready = true;
     out.state = FLIGHT_GROUND;
@@ -127,6 +131,103 @@ void test_fast_cycles_are_thinned_out_to_one_in_fifty_milliseconds(void)
         take(25000U);
     }
     TEST_ASSERT_UINT32_WITHIN(1, 200, held());
+}
+
+/* So many new frames, 25 ms apart, the latest so long before the cycle. All but the latest four are lost. */
+static void frames_before(uint16_t count, uint32_t latest_us)
+{
+    static uint32_t sequence;
+
+    in.frame_count = count;
+    for (uint16_t i = 0U; i < count; i++) {
+        frames[i] = (imu_sample_t){.sequence = ++sequence,
+                                   .arrival_us = in.now_us - latest_us - 25000U * (uint32_t)(count - 1U - i),
+                                   .ready = true,
+                                   .has_acceleration = true,
+                                   .median = {.roll_rad = 0.001F * (float)i},
+                                   .down_mps2 = 9.80665F + (float)i};
+    }
+}
+
+static flight_log_t back(uint32_t records)
+{
+    flight_log_t record;
+
+    TEST_ASSERT_TRUE(flight_recorder_read(flight_recorder_span().next - 1U - records, &record));
+    return record;
+}
+
+void test_fast_records_each_frame_with_what_the_cycle_before_it_commanded(void)
+{
+    flight_recorder_set_rate(FLIGHT_RECORDER_FAST);
+    fly(7.0F);
+    out.pulse_us = 1400.0F;
+    in.altitude.height_mm = 600.0F;
+    in.height_time_us = in.now_us + 108000U - 10000U;
+    in.height_age_us = 72000U;
+    take(CYCLE_US);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 82.0F, newest().age_ms);
+    in.now_us += 100000U;
+    frames_before(4U, 20000U);
+    out.thrust_n = 8.0F;
+    out.pulse_us = 1315.3F;
+    const uint32_t before = held();
+
+    take(0U);
+    TEST_ASSERT_EQUAL_UINT32(before + 5U, held());
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 8.0F, newest().thrust_n);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 1315.3F, newest().pulse_us);
+    TEST_ASSERT_TRUE_MESSAGE(isnan(newest().up_mps2), "the latest frame has a record of its own");
+    for (uint32_t i = 1U; i <= 4U; i++) {
+        TEST_ASSERT_FLOAT_WITHIN(0.001F, 7.0F, back(i).thrust_n);
+        TEST_ASSERT_EQUAL_UINT32(newest().time_ms - 20U - 25U * (i - 1U), back(i).time_ms);
+        TEST_ASSERT_FLOAT_WITHIN(0.002F, 4.0F - (float)i, back(i).up_mps2);
+        TEST_ASSERT_FLOAT_WITHIN(0.0002F, 0.001F * (4.0F - (float)i), back(i).roll_rad);
+        TEST_ASSERT_FLOAT_WITHIN(1.1F, 182.0F - 20.0F - 25.0F * (float)(i - 1U), back(i).age_ms);
+    }
+}
+
+void test_a_frame_that_releases_the_cycle_is_one_record_with_it(void)
+{
+    flight_recorder_set_rate(FLIGHT_RECORDER_FAST);
+    fly(7.0F);
+    take(25000U);
+    for (int i = 0; i < 40; i++) {
+        in.now_us += 25000U;
+        frames_before(1U, 400U);
+        take(0U);
+        TEST_ASSERT_FLOAT_WITHIN(0.002F, 0.0F, newest().up_mps2);
+    }
+    TEST_ASSERT_EQUAL_UINT32(41, held());
+    take(25000U);
+    TEST_ASSERT_TRUE_MESSAGE(isnan(newest().up_mps2), "no frame is shown twice");
+}
+
+void test_fast_holds_over_twenty_seconds_of_every_frame_under_every_law(void)
+{
+    static const uint32_t cycles_us[] = {25000U, 100000U, 108000U};
+
+    for (size_t i = 0; i < sizeof cycles_us / sizeof cycles_us[0]; i++) {
+        flight_log_t oldest;
+        flight_log_t record;
+        uint32_t gap_ms = 0U;
+
+        setUp();
+        flight_recorder_set_rate(FLIGHT_RECORDER_FAST);
+        fly(7.0F);
+        for (uint32_t t = 0U; t < 100000000U; t += cycles_us[i]) {
+            in.now_us += cycles_us[i];
+            frames_before((uint16_t)(cycles_us[i] / 25000U), (i == 0U) ? 400U : 7000U);
+            take(0U);
+        }
+        TEST_ASSERT_TRUE(flight_recorder_read(flight_recorder_span().oldest, &oldest));
+        TEST_ASSERT_TRUE(newest().time_ms - oldest.time_ms >= 20000U);
+        for (uint32_t n = flight_recorder_span().oldest + 1U; flight_recorder_read(n, &record); n++) {
+            gap_ms = record.time_ms - oldest.time_ms > gap_ms ? record.time_ms - oldest.time_ms : gap_ms;
+            oldest = record;
+        }
+        TEST_ASSERT_UINT32_WITHIN(8, 26, gap_ms);
+    }
 }
 
 void test_sixty_seconds_are_held_at_every_rate_of_the_control_cycle(void)

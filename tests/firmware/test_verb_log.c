@@ -13,6 +13,7 @@ static flight_recorder_span_t span;
 static uint32_t since;
 static uint16_t asked_seconds;
 static bool cleared;
+static flight_recorder_rate_t rate;
 static bool line_waits;
 static uint16_t room; /* lines that the radio takes until it is full */
 static char lines[LINES_MAX][TELEMETRY_ANSWER_MAX + 1U];
@@ -77,8 +78,16 @@ static void clear(int calls)
     span.oldest = span.next;
 }
 
+static void set_rate(flight_recorder_rate_t wanted, int calls)
+{
+    (void)calls;
+    rate = wanted;
+}
+
 void setUp(void)
 {
+    rate = FLIGHT_RECORDER_SLOW;
+    flight_recorder_set_rate_Stub(set_rate);
     span = (flight_recorder_span_t){100U, 103U};
     line_count = asked_seconds = 0U;
     cleared = line_waits = false;
@@ -121,6 +130,19 @@ void test_before_any_log_there_is_nothing_to_go_on_with(void)
     TEST_ASSERT_EQUAL_UINT16(0, line_count);
 }
 
+void test_the_rate_is_fast_or_slow_and_nothing_else(void)
+{
+    TEST_ASSERT_TRUE(type("rate fast"));
+    assert_line(0, "OK LOG RATE FAST\r\n");
+    TEST_ASSERT_EQUAL_INT(FLIGHT_RECORDER_FAST, rate);
+    TEST_ASSERT_FALSE(type("RATE"));
+    TEST_ASSERT_FALSE(type("RATE 25"));
+    TEST_ASSERT_EQUAL_INT(FLIGHT_RECORDER_FAST, rate);
+    TEST_ASSERT_TRUE(type("RATE SLOW"));
+    assert_line(3, "OK LOG RATE SLOW\r\n");
+    TEST_ASSERT_EQUAL_INT(FLIGHT_RECORDER_SLOW, rate);
+}
+
 void test_all_records_come_between_a_title_and_an_end(void)
 {
     TEST_ASSERT_TRUE(type(""));
@@ -141,10 +163,13 @@ void test_titles_and_rows_end_with_the_sum_of_all_before_it(void)
 {
     (void)type("");
     TEST_ASSERT_FALSE(verb_log_more());
+    TEST_ASSERT_EQUAL_STRING("OK LOG 0 "
+                             "t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags,up_mps2,"
+                             "pulse_us,age_s*0299\r\n",
+                             lines[1]);
     TEST_ASSERT_EQUAL_STRING(
-        "OK LOG 0 t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags*BDE1\r\n", lines[1]);
-    TEST_ASSERT_EQUAL_STRING("OK LOG 1 100.000,0.000,0.000,0.000,0.000,0.000,0.0000,0.0000,FLYING,0*9E46\r\n",
-                             lines[2]);
+        "OK LOG 1 100.000,0.000,0.000,0.000,0.000,0.000,0.0000,0.0000,FLYING,0,0.000,0.0,0.000*25A5\r\n",
+        lines[2]);
 }
 
 void test_an_empty_recorder_gives_title_and_end(void)
