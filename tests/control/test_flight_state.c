@@ -130,7 +130,8 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
 void test_every_state_under_every_set_of_conditions_goes_where_it_must(void)
 {
     for (int from = 0; from < FLIGHT_STATE_COUNT; from++) {
-        /* A bit more than the conditions: with all 16 used, an unsigned of 16 bits would never pass the last. */
+        /* A bit more than the conditions: with all 16 used, an unsigned of 16 bits would never pass the last.
+         */
         for (uint32_t c = 0; c <= FLIGHT_IF_ALL; c++) {
             if (flight_next_state((flight_state_t)from, (uint16_t)c) !=
                 expected_next((flight_state_t)from, (unsigned)c)) {
