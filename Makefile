@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot campaign tune seed-study ground ground-vehicle ground-open test test-long format mutants test-ground port size faults fuzz prove bench coverage firmware flash check-ti clean
+.PHONY: help build fly plot scan campaign tune seed-study ground ground-vehicle ground-open test test-long format mutants test-ground port size faults fuzz prove bench coverage firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -46,6 +46,12 @@ plot: ## Draw LOG=FILE: a flight's CSV (or several), an XCTU console log or text
 	@$(setup) build plot
 	@$(MAKE) build
 	@$(python) tools/plot/plot.py $(LOG) -o build/
+
+scan: ## Draw what a scanner saw: LOG=FILE of `plomada scip record`, a .logr of flexiport, or a DEVICE (ARGS=--help)
+	@test -n "$(LOG)" || { echo "usage: make scan LOG=FILE|DEVICE" >&2; exit 2; }
+	@$(setup) build plot
+	@$(MAKE) build
+	@$(python) tools/plot/scan.py $(LOG) -o build/ $(ARGS)
 
 campaign: ## Fly every law on hundreds of vehicles; table, verdicts, CSV, JSON, picture in build/campaign/ (ARGS=--help)
 	@$(setup) build campaign

@@ -17,14 +17,14 @@ static bool near_enough(unsigned long made, unsigned long asked)
     return asked > 0 && made * 50 >= asked * 49 && made * 50 <= asked * 51;
 }
 
-static const char *configure(int fd, unsigned long bit_rate)
+static const char *configure(int fd, unsigned long bit_rate, bool marks)
 {
     struct termios2 settings;
 
     if (ioctl(fd, TCGETS2, &settings) != 0) {
         return "not a serial port";
     }
-    settings.c_iflag = 0;
+    settings.c_iflag = marks ? INPCK | PARMRK : 0; /* the drivers report nothing without INPCK */
     settings.c_oflag = 0;
     settings.c_lflag = 0;
     settings.c_cflag = CS8 | CREAD | CLOCAL | BOTHER | (BOTHER << IBSHIFT);
@@ -52,6 +52,9 @@ static const char *finish_open(port_t *port, const char *error)
 
 const char *port_open_pty(port_t *port, unsigned long bit_rate)
 {
+    port->framing_errors = 0;
+    port->marks = false;
+    port->marked = 0;
     port->fd = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     port->slave = -1;
     if (port->fd < 0 || grantpt(port->fd) != 0 || unlockpt(port->fd) != 0 ||
@@ -59,15 +62,18 @@ const char *port_open_pty(port_t *port, unsigned long bit_rate)
         return finish_open(port, "no pseudo-terminal to be had");
     }
     port->slave = open(port->name, O_RDWR | O_NOCTTY | O_CLOEXEC);
-    return finish_open(port, port->slave < 0 ? strerror(errno) : configure(port->slave, bit_rate));
+    return finish_open(port, port->slave < 0 ? strerror(errno) : configure(port->slave, bit_rate, false));
 }
 
 const char *port_open_device(port_t *port, const char *path, unsigned long bit_rate)
 {
     port->slave = -1;
+    port->framing_errors = 0;
+    port->marks = true;
+    port->marked = 0;
     snprintf(port->name, sizeof port->name, "%s", path);
     port->fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    return finish_open(port, port->fd < 0 ? strerror(errno) : configure(port->fd, bit_rate));
+    return finish_open(port, port->fd < 0 ? strerror(errno) : configure(port->fd, bit_rate, true));
 }
 
 void port_close(port_t *port)
@@ -84,10 +90,10 @@ void port_close(port_t *port)
 const char *port_set_rate(port_t *port, unsigned long bit_rate)
 {
     unsigned long before = port_rate(port);
-    const char *error = configure(port->fd, bit_rate);
+    const char *error = configure(port->fd, bit_rate, port->marks);
 
     if (error != NULL && before != 0) {
-        (void)configure(port->fd, before);
+        (void)configure(port->fd, before, port->marks);
     }
     return error;
 }
@@ -99,12 +105,49 @@ unsigned long port_rate(const port_t *port)
     return ioctl(port->fd, TCGETS2, &settings) == 0 ? settings.c_ospeed : 0;
 }
 
+/* The octet that `octet` completes, or -1 within a mark. */
+static int resolve(port_t *port, unsigned char octet)
+{
+    const int marked = port->marked;
+
+    port->marked = 0;
+    if (marked == 2) {
+        port->framing_errors++;
+        return PORT_BROKEN_OCTET;
+    }
+    if (marked == 1 && octet != 0) {
+        return octet;
+    }
+    if (marked == 1 || octet == 0xFF) {
+        port->marked = marked + 1;
+        return -1;
+    }
+    return octet;
+}
+
+size_t port_resolve_marks(port_t *port, unsigned char *octets, size_t count)
+{
+    size_t kept = 0;
+
+    for (size_t i = 0; i < count; i++) {
+        const int octet = resolve(port, octets[i]);
+
+        if (octet >= 0) {
+            octets[kept++] = (unsigned char)octet;
+        }
+    }
+    return kept;
+}
+
 size_t port_read(port_t *port, unsigned char *octets, size_t capacity, bool *lost)
 {
     ssize_t got = read(port->fd, octets, capacity);
 
     *lost = got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR);
-    return got > 0 ? (size_t)got : 0;
+    if (got <= 0) {
+        return 0;
+    }
+    return port->marks ? port_resolve_marks(port, octets, (size_t)got) : (size_t)got;
 }
 
 size_t port_write(port_t *port, const unsigned char *octets, size_t count)

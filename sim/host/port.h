@@ -9,6 +9,10 @@ typedef struct {
     int fd;         /* -1: closed */
     int slave;      /* pseudo-terminal: our own hold on the far end, so that users may come and go */
     char name[128]; /* what the other side opens */
+    unsigned long framing_errors;
+    /* private */
+    bool marks; /* the driver marks octets that came with a framing error */
+    int marked; /* octets of a mark so far */
 } port_t;
 
 /* Raw mode, 8N1, non-blocking; what is already in the port's buffers is dropped. Any bit rate that the port's
@@ -23,9 +27,16 @@ const char *port_set_rate(port_t *port, unsigned long bit_rate);
 /* Bits per second that are set now, on a pseudo-terminal by either side; 0 when there is none. */
 unsigned long port_rate(const port_t *port);
 
+/* An octet that came with a framing error, or a break, is read as this one and counted in framing_errors: a
+ * wrong rate is seen by both, where the port's driver tells (PARMRK). */
+#define PORT_BROKEN_OCTET 0xFFU
+
 /* Octets read now (0: none). Sets *lost when the port is gone: unplugged, or the far end's maker has closed
  * it. */
 size_t port_read(port_t *port, unsigned char *octets, size_t capacity, bool *lost);
+/* Resolves the marks of a driver in place (FF FF: one FF; FF 00 and any octet: a broken one), across calls.
+ * Returns how many octets there are then. */
+size_t port_resolve_marks(port_t *port, unsigned char *octets, size_t count);
 /* Drops what the other side does not take; returns how many octets it took. */
 size_t port_write(port_t *port, const unsigned char *octets, size_t count);
 

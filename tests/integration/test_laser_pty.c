@@ -198,6 +198,56 @@ void test_faults_strike_by_position(void)
     answers("QT\n", "QT\nEE\n\n");
 }
 
+/* The times at which read() finds something, until a quiet time. */
+static size_t reads_until_quiet(long quiet_ms, long at_ms[], size_t octets[], size_t room)
+{
+    size_t count = 0;
+    bool lost = false;
+    struct pollfd watched = {.fd = client.fd, .events = POLLIN};
+
+    while (count < room && poll(&watched, 1, (int)quiet_ms) > 0 && !lost) {
+        unsigned char part[4096];
+
+        at_ms[count] = now_ms();
+        octets[count++] = port_read(&client, part, sizeof part, &lost);
+    }
+    return count;
+}
+
+/* A frame of 1435 octets at 115200 takes 125 ms: 23 packets of 62, and a rest that the timer brings. */
+void test_a_usb_adapter_hands_over_packets_of_62_octets_and_the_rest_by_its_latency_timer(void)
+{
+    static long at_ms[3000];
+    static size_t octets[3000];
+    size_t count, full = 0, total = 0;
+
+    start("--burst", NULL, NULL, NULL, 115200);
+    answers("SCIP2.0\n", "SCIP2.0\n0\n\n");
+    say("MS0044072501001\n");
+    count = reads_until_quiet(500, at_ms, octets, 3000);
+    for (size_t i = 0; i < count; i++) {
+        full += octets[i] / 62U;
+        total += octets[i];
+        TEST_ASSERT_TRUE_MESSAGE(octets[i] % 62U == 0 || octets[i] > 62U || count - i <= 3 || i <= 1,
+                                 "a part of a packet in the middle of a frame");
+    }
+    TEST_ASSERT_EQUAL_size_t(21 + 1435, total);
+    TEST_ASSERT_TRUE(full >= 22 && full <= 23);
+    TEST_ASSERT_TRUE(count <= 27);
+    TEST_ASSERT_EQUAL_INT(0, end_server(SIGTERM));
+}
+
+void test_without_an_adapter_octets_come_as_they_leave_the_sensor(void)
+{
+    static long at_ms[3000];
+    static size_t octets[3000];
+
+    start("--rate", "19200", NULL, NULL, 19200);
+    answers("SCIP2.0\n", "SCIP2.0\n0\n\n");
+    say("MS0044072501001\n"); /* 0.5 ms an octet */
+    TEST_ASSERT_TRUE(reads_until_quiet(500, at_ms, octets, 3000) > 200);
+}
+
 /* ---- the link ---- */
 
 void test_the_link_leads_to_the_terminal_and_both_signals_remove_it(void)
@@ -308,7 +358,8 @@ void test_a_recording_is_whole_and_has_its_birth_certificate(void)
     size_t rx, tx;
 
     begin("--height", "0.4", "--rate", "57600");
-    TEST_ASSERT_EQUAL_INT(0, child_plomada("scip record '" LINK "' live.bin --seconds 2 --rate 250000 2>&1",
+    TEST_ASSERT_EQUAL_INT(0, child_plomada("scip record '" LINK
+                                           "' live.bin --force --seconds 2 --rate 250000 2>&1",
                                            text, sizeof text));
     TEST_ASSERT_NOT_NULL(strstr(text, "damaged: 0\n"));
     rx = child_read_file("live.bin", octets, sizeof octets);
@@ -323,7 +374,8 @@ void test_a_recording_is_whole_and_has_its_birth_certificate(void)
     TEST_ASSERT_NOT_NULL(strstr(text, "FIRM:3.1.04(02/Aug./2007)\n"));
     TEST_ASSERT_NOT_NULL(strstr(text, "SERI:H0706400\n"));
     TEST_ASSERT_NOT_NULL(strstr(text, "DMAX:5600\n"));
-    TEST_ASSERT_NOT_NULL(strstr(text, "| rate of the stream | 250000 bit/s |"));
+    TEST_ASSERT_NOT_NULL(strstr(text, "| rate of the stream | 250000 bit/s, 10.0"));
+    TEST_ASSERT_NULL(strstr(text, "Cut off"));
     TEST_ASSERT_NOT_NULL(strstr(text, " UTC, from `" LINK "` |"));
     TEST_ASSERT_EQUAL_INT(
         0, child_plomada("scip decode live.bin 2>/dev/null | grep -c '^[0-9]'", text, sizeof text));
@@ -333,25 +385,182 @@ void test_a_recording_is_whole_and_has_its_birth_certificate(void)
     TEST_ASSERT_NOT_NULL(strstr(text, "{ { 111U, 145U }, { 372U, 406U }, { 623U, 657U } }"));
 }
 
+static pid_t start_recorder(const char *name, const char *before)
+{
+    const pid_t recorder = fork();
+
+    if (recorder == 0) {
+        char command[1024];
+
+        snprintf(command, sizeof command,
+                 "%s exec '" PLOMADA "' scip record '" LINK "' '" SCRATCH
+                 "/%s' --seconds 600 --steps 372..406 --force 2>'" SCRATCH "/%s.err'",
+                 before, name, name);
+        execl("/bin/sh", "sh", "-c", command, (char *)NULL);
+        _exit(127);
+    }
+    return recorder;
+}
+
+static int end_recorder(pid_t recorder, int signal_number)
+{
+    int status = 0;
+
+    if (signal_number != 0) {
+        kill(recorder, signal_number);
+    }
+    waitpid(recorder, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
 void test_ctrl_c_ends_a_recording_in_good_order(void)
 {
     static char text[100000];
-    int status;
     pid_t recorder;
 
     begin(NULL, NULL, NULL, NULL);
-    recorder = fork();
-    if (recorder == 0) {
-        execl(PLOMADA, "plomada", "scip", "record", LINK, SCRATCH "/cut.bin", "--seconds", "600", "--steps",
-              "372..406", (char *)NULL);
-        _exit(127);
-    }
+    recorder = start_recorder("cut.bin", "");
     usleep(1800000);
-    kill(recorder, SIGINT);
-    waitpid(recorder, &status, 0);
-    TEST_ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    TEST_ASSERT_EQUAL_INT(0, end_recorder(recorder, SIGINT));
     child_read_file("cut.bin.md", text, sizeof text);
     TEST_ASSERT_NOT_NULL(strstr(text, "SERI:H0706400\n"));
+    TEST_ASSERT_NULL(strstr(text, "Cut off"));
+}
+
+/* Octets that the time table and the recording both hold are whole; it began at most a second before the end.
+ */
+static void is_cut_at_most(const char *name, double lasted_s, double lost_s)
+{
+    static char table[200000], octets[200000];
+    char path[64];
+    long rx;
+    double last_s = 0.0;
+
+    snprintf(path, sizeof path, "%s.csv", name);
+    child_read_file(path, table, sizeof table);
+    rx = (long)child_read_file(name, octets, sizeof octets);
+    for (const char *p = strchr(table, '\n') + 1; *p != '\0' && strchr(p, '\n') != NULL;
+         p = strchr(p, '\n') + 1) {
+        char dir[3];
+        long long t_us;
+        long offset, length;
+
+        TEST_ASSERT_EQUAL_INT(4, sscanf(p, "%2[rtx],%lld,%ld,%ld\n", dir, &t_us, &offset, &length));
+        last_s = (double)t_us * 1e-6;
+        TEST_ASSERT_TRUE(dir[0] == 't' || offset + length <= rx);
+    }
+    TEST_ASSERT_TRUE_MESSAGE(last_s > lasted_s - lost_s, table);
+}
+
+void test_a_killed_recorder_has_lost_its_last_second_at_most(void)
+{
+    static char text[4000];
+    pid_t recorder;
+    long begun_ms;
+
+    begin(NULL, NULL, NULL, NULL);
+    begun_ms = now_ms();
+    recorder = start_recorder("killed.bin", "");
+    usleep(3700000);
+    TEST_ASSERT_EQUAL_INT(-1, end_recorder(recorder, SIGKILL));
+    /* 0.4 s: the program's own start, the wait for the next octet, a busy machine */
+    is_cut_at_most("killed.bin", (double)(now_ms() - begun_ms) * 1e-3, 1.4);
+    child_read_file("killed.bin.md", text, sizeof text);
+    TEST_ASSERT_NOT_NULL(strstr(text, "Cut off"));
+    child_read_file("killed.bin.err", text, sizeof text);
+    TEST_ASSERT_NOT_NULL(strstr(text, " scans/s, "));
+    TEST_ASSERT_NOT_NULL(strstr(text, ": 10.0 scans/s, "));
+}
+
+/* A file may not grow beyond two blocks of 512 octets: as on a full disk, writing fails from there on. */
+void test_a_full_disk_ends_the_recording_with_what_there_was(void)
+{
+    static char text[4000];
+
+    begin(NULL, NULL, NULL, NULL);
+    TEST_ASSERT_EQUAL_INT(2, end_recorder(start_recorder("full.bin", "trap '' XFSZ; ulimit -f 2;"), 0));
+    child_read_file("full.bin.err", text, sizeof text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "File too large"), text);
+    TEST_ASSERT_NOT_NULL(strstr(text, "not written whole"));
+    TEST_ASSERT_TRUE(child_read_file("full.bin", text, sizeof text) >= 1000);
+}
+
+void test_a_port_that_goes_away_ends_the_recording_with_1(void)
+{
+    static char text[4000];
+    pid_t recorder;
+
+    begin(NULL, NULL, NULL, NULL);
+    recorder = start_recorder("gone.bin", "");
+    usleep(2500000);
+    end_server(SIGTERM);
+    TEST_ASSERT_EQUAL_INT(1, end_recorder(recorder, 0));
+    child_read_file("gone.bin.err", text, sizeof text);
+    TEST_ASSERT_NOT_NULL(strstr(text, "the port is gone"));
+    child_read_file("gone.bin.md", text, sizeof text);
+    TEST_ASSERT_NOT_NULL(strstr(text, "Cut off"));
+    TEST_ASSERT_NOT_NULL(strstr(text, "| rate of the stream | 115200 bit/s, 10.0"));
+}
+
+void test_a_recording_is_never_overwritten_unless_forced(void)
+{
+    static const char *const names[] = {"kept", "kept.tx", "kept.csv", "kept.md"};
+    static char text[4000];
+
+    begin(NULL, NULL, NULL, NULL);
+    for (int i = 0; i < 4; i++) {
+        char command[256];
+
+        snprintf(command, sizeof command, "true; cd '" SCRATCH "' && rm -f kept* && echo precious >%s",
+                 names[i]);
+        TEST_ASSERT_EQUAL_INT(0, system(command));
+        TEST_ASSERT_EQUAL_INT(
+            2, child_plomada("scip record '" LINK "' kept --seconds 0.3 2>&1", text, sizeof text));
+        TEST_ASSERT_NOT_NULL(strstr(text, names[i]));
+        TEST_ASSERT_NOT_NULL(strstr(text, "--force"));
+        child_read_file(names[i], text, sizeof text);
+        TEST_ASSERT_EQUAL_STRING("precious\n", text);
+        TEST_ASSERT_EQUAL_INT(0, system("test $(ls '" SCRATCH "' | grep -c '^kept') = 1"));
+    }
+    TEST_ASSERT_EQUAL_INT(
+        0, child_plomada("scip record '" LINK "' kept --seconds 0.3 --force 2>&1", text, sizeof text));
+    child_read_file("kept.md", text, sizeof text);
+    TEST_ASSERT_NOT_NULL(strstr(text, "# kept: birth certificate"));
+}
+
+/* A pseudo-terminal tells no framing errors: octets above 7FH must be enough. */
+void test_a_stream_at_250000_is_found_within_a_second_by_a_port_that_tells_no_framing_errors(void)
+{
+    static char text[200000];
+    double first_s = 1e9;
+    pid_t recorder;
+
+    begin(NULL, NULL, NULL, NULL);
+    TEST_ASSERT_EQUAL_INT(0, child_plomada("scip record '" LINK
+                                           "' a.bin --force --seconds 0.5 --rate 250000 --steps "
+                                           "372..406 2>&1; true",
+                                           text, sizeof text));
+    TEST_ASSERT_NULL(port_open_device(&client, LINK, 250000));
+    answers("QT\n", "QT\n00P\n\n");
+    say("MS0372040601000\n");
+    port_close(&client);
+    recorder = fork();
+    if (recorder == 0) {
+        freopen(SCRATCH "/found.err", "w", stderr);
+        execl(PLOMADA, "plomada", "scip", "record", LINK, SCRATCH "/found.bin", "--seconds", "1", "--rate",
+              "250000", "--steps", "372..406", "--force", (char *)NULL);
+        _exit(127);
+    }
+    TEST_ASSERT_EQUAL_INT(0, end_recorder(recorder, 0));
+    child_read_file("found.err", text, sizeof text);
+    for (const char *p = text; (p = strstr(p, " s: ")) != NULL && first_s > 1e8; p++) {
+        unsigned long scans = 0;
+
+        if (sscanf(strstr(p, "scans/s, "), "scans/s, %lu", &scans) == 1 && scans > 0) {
+            first_s = atof(p - 6);
+        }
+    }
+    TEST_ASSERT_TRUE_MESSAGE(first_s <= 1.2, text); /* shown at the first whole second */
 }
 
 void test_mirrors_are_found_on_a_live_sensor(void)

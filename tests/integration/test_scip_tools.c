@@ -476,10 +476,20 @@ static void write_stream(const char *name)
     fclose(file);
 }
 
+/* What decode prints of one scan of the whole circle: the time in seconds, then a cell for each step. */
+static void wide_line(const truth_t *t, int largest, char *line)
+{
+    line += sprintf(line, "%ld.%03ld", t->stamp_ms / 1000, t->stamp_ms % 1000);
+    for (int step = t->first; step <= t->last; step++) {
+        line += sprintf(line, ",%d", as_sent(t, step, largest));
+    }
+}
+
 void test_decode_prints_one_line_a_scan_and_a_summary(void)
 {
     static char expected[LINE_MAX_N];
     char *line;
+    int count = 0;
 
     power_on(world, NULL);
     to_scip2();
@@ -487,18 +497,165 @@ void test_decode_prints_one_line_a_scan_and_a_summary(void)
     write_stream("md.bin");
     TEST_ASSERT_EQUAL_INT(0, run("decode md.bin 2>md.err"));
     line = strtok(output, "\n");
-    for (int i = 0; line != NULL; line = strtok(NULL, "\n")) {
-        if (line[0] >= '0' && line[0] <= '9') {
-            truth_line(&truth[i++], 1, 262143, expected);
-            TEST_ASSERT_EQUAL_STRING(expected, line);
-            TEST_ASSERT_TRUE(i <= 7);
-        }
+    TEST_ASSERT_EQUAL_STRING_LEN("time,step_0,step_1,step_2,", line, 26);
+    TEST_ASSERT_EQUAL_STRING(",step_767,step_768", line + strlen(line) - 18);
+    while ((line = strtok(NULL, "\n")) != NULL) {
+        TEST_ASSERT_TRUE(count < 7);
+        wide_line(&truth[count++], 65535, expected);
+        TEST_ASSERT_EQUAL_STRING(expected, line);
     }
+    TEST_ASSERT_EQUAL_INT(7, count);
     TEST_ASSERT_EQUAL_INT(0, run("decode - <md.bin 2>/dev/null | grep -c '^[0-9]'"));
     TEST_ASSERT_EQUAL_STRING("7\n", output);
     TEST_ASSERT_EQUAL_INT(0, run("decode md.bin 2>&1 >/dev/null"));
     TEST_ASSERT_NOT_NULL(strstr(output, "scans: 7\n"));
-    TEST_ASSERT_NOT_NULL(strstr(output, "skipped packets: 2\n"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "skipped packets: 2\n  SCIP2.0      1  from SCIP1.1 to SCIP2.0\n"
+                                        "  SS           1  bit rate\n"));
+}
+
+void test_decode_long_has_one_line_a_point_with_its_angle(void)
+{
+    char *line;
+    int count = 0;
+
+    power_on(world, NULL);
+    to_scip2();
+    say("MS0300050004003\n", 1.0);
+    write_stream("points.bin");
+    TEST_ASSERT_EQUAL_INT(0, run("decode points.bin --long 2>/dev/null"));
+    line = strtok(output, "\n");
+    TEST_ASSERT_EQUAL_STRING("time,step,angle_deg,distance_mm", line);
+    for (; (line = strtok(NULL, "\n")) != NULL; count++) {
+        const truth_t *t = &truth[count / 51];
+        double time_s, angle_deg;
+        int step, mm;
+
+        TEST_ASSERT_EQUAL_INT(4, sscanf(line, "%lf,%d,%lf,%d", &time_s, &step, &angle_deg, &mm));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, (double)t->stamp_ms / 1e3, time_s);
+        TEST_ASSERT_EQUAL_INT(300 + 4 * (count % 51), step);
+        TEST_ASSERT_DOUBLE_WITHIN(5.1e-4, (step - 384) * 360.0 / 1024.0, angle_deg);
+        TEST_ASSERT_EQUAL_INT(cluster_as_sent(t, step, 4, 4095), mm);
+    }
+    TEST_ASSERT_EQUAL_INT(3 * 51, count);
+}
+
+void test_scans_of_other_steps_share_the_columns_and_leave_cells_empty(void)
+{
+    power_on(world, NULL);
+    to_scip2();
+    say("MS0372037301001\n", 0.5);
+    say("MS0373037401001\n", 0.5);
+    write_stream("two.bin");
+    TEST_ASSERT_EQUAL_INT(0, run("decode two.bin 2>/dev/null | head -n 1"));
+    TEST_ASSERT_EQUAL_STRING("time,step_372,step_373,step_374\n", output);
+    TEST_ASSERT_EQUAL_INT(0,
+                          run("decode two.bin 2>/dev/null | grep -cE '^[0-9]+[.][0-9]{3},[0-9]+,[0-9]+,$'"));
+    TEST_ASSERT_EQUAL_STRING("1\n", output);
+    TEST_ASSERT_EQUAL_INT(0,
+                          run("decode two.bin 2>/dev/null | grep -cE '^[0-9]+[.][0-9]{3},,[0-9]+,[0-9]+$'"));
+    TEST_ASSERT_EQUAL_STRING("1\n", output);
+}
+
+/* One frame of three points: 19, 20, 4095. */
+static const char three_points[] = "MS0383038501000\n99b\n00000\n0C0Doo5\n\n";
+
+void test_cells_without_a_distance_stay_empty_where_that_is_asked_for(void)
+{
+    memcpy(stream, three_points, sizeof three_points - 1);
+    stream_length = sizeof three_points - 1;
+    write_stream("codes.bin");
+    TEST_ASSERT_EQUAL_INT(0, run("decode codes.bin 2>/dev/null"));
+    TEST_ASSERT_EQUAL_STRING("time,step_383,step_384,step_385\n0.000,19,20,4095\n", output);
+    TEST_ASSERT_EQUAL_INT(0, run("decode codes.bin --no-codes 2>/dev/null"));
+    TEST_ASSERT_EQUAL_STRING("time,step_383,step_384,step_385\n0.000,,20,\n", output);
+    TEST_ASSERT_EQUAL_INT(0, run("decode codes.bin --no-codes --long 2>/dev/null"));
+    TEST_ASSERT_EQUAL_STRING("time,step,angle_deg,distance_mm\n0.000,383,-0.352,\n0.000,384,0.000,20\n"
+                             "0.000,385,0.352,\n",
+                             output);
+}
+
+/* The stream as flexiport writes it: chunks of 1 to 40 octets behind heads of three numbers. */
+static void as_flexiport_log(int width, int little)
+{
+    static unsigned char log[STREAM_MAX];
+    size_t length = 0, at = 0;
+    unsigned long us = 0;
+
+    for (unsigned chunk = 1; at < stream_length; chunk = chunk % 40 + 1) {
+        const size_t size = stream_length - at < chunk ? stream_length - at : chunk;
+        const unsigned long numbers[3] = {us / 1000000, us % 1000000, size};
+
+        for (int n = 0; n < 3; n++) {
+            for (int i = 0; i < width; i++) {
+                const int place = little ? i : width - 1 - i;
+
+                log[length++] = place > 3 ? 0 : (unsigned char)(numbers[n] >> (8 * place) & 0xFFU);
+            }
+        }
+        memcpy(log + length, stream + at, size);
+        length += size;
+        at += size;
+        us += 1234;
+        TEST_ASSERT_TRUE(length < STREAM_MAX - 100);
+    }
+    memcpy(stream, log, length);
+    stream_length = length;
+}
+
+void test_decode_reads_both_forms_of_flexiport_logs(void)
+{
+    static char raw[sizeof output];
+
+    for (int form = 0; form < 2; form++) {
+        power_on(world, NULL);
+        to_scip2();
+        say("MD0044072501005\n", 1.5);
+        write_stream("plain.bin");
+        TEST_ASSERT_EQUAL_INT(0, run("decode plain.bin 2>&1"));
+        strcpy(raw, output);
+        as_flexiport_log(form == 0 ? 4 : 8, form);
+        write_stream("log.logr");
+        TEST_ASSERT_EQUAL_INT(0, run("decode log.logr 2>&1"));
+        TEST_ASSERT_EQUAL_STRING(raw, output);
+        stream_length -= 20; /* the recorder was killed within a chunk */
+        write_stream("log.logr");
+        TEST_ASSERT_EQUAL_INT(0, run("decode log.logr 2>/dev/null | grep -c '^[0-9]'"));
+        TEST_ASSERT_EQUAL_STRING("4\n", output);
+        urg04lx_destroy(urg);
+        urg = NULL;
+    }
+}
+
+void test_a_flexiport_log_that_is_broken_in_the_middle_is_refused(void)
+{
+    power_on(world, NULL);
+    to_scip2();
+    say("MD0000076801099\n", 10.5);
+    as_flexiport_log(4, 0);
+    TEST_ASSERT_TRUE(stream_length > 100000);
+    memmove(stream + 90000, stream + 90001, stream_length - 90001);
+    write_stream("broken.logr");
+    TEST_ASSERT_EQUAL_INT(2, run("decode broken.logr 2>&1"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "broken.logr: a log of flexiport, broken in the middle"));
+}
+
+/* The answers of a UTM-30LX, shortened; the scan is one of intensities. */
+void test_what_is_skipped_is_named_with_the_sensor_and_the_reason(void)
+{
+    static const char foreign[] =
+        "PP\n00P\nMODL:UTM-30LX;Z\nARES:1440;?\nDMIN:23;1\n\nME0000108001000\n00P\n\n"
+        "ME0000108001000\n99b\n00000\nabcd?\n\nME0000108001000\n99b\n00000\nabcd?\n\n"
+        "MD0000108001000\n99b\n00000\nabcd?\n\n";
+
+    memcpy(stream, foreign, sizeof foreign - 1);
+    stream_length = sizeof foreign - 1;
+    write_stream("foreign.bin");
+    TEST_ASSERT_EQUAL_INT(1, run("decode foreign.bin 2>&1"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "sensor: UTM-30LX\n"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "skipped packets: 5\n  PP           1  its limits\n"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(output, "  ME           3  distances with intensities, which are not read\n"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "  MD           1  of steps that no URG-04LX has, or malformed\n"));
 }
 
 void test_decode_of_nothing_exits_1_and_of_an_unreadable_file_2(void)

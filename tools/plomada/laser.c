@@ -12,6 +12,8 @@
 
 #define FAULTS_MAX 32
 #define HEIGHT_MAX_M 5.0
+#define PACKET 62U            /* a USB packet of 64 octets, two of them the adapter's own status */
+#define LATENCY (16 * SIM_MS) /* FTDI, application note AN232B-04: the default of its latency timer */
 
 static const char usage[] =
     "usage: plomada laser --link PATH [OPTION]...\n\n"
@@ -22,6 +24,9 @@ static const char usage[] =
     "  --height M      the vehicle stands M metres above the floor, 0..5 (default 0), and the three mirrors "
     "look down\n"
     "  --seed N        noise, phase and faults (default 1)\n"
+    "  --burst         hands octets over as a USB adapter does (FTDI, application note AN232B-04): when 62 "
+    "are there, or\n"
+    "                  16 ms after the latest packet\n"
     "  --fault SPEC    may be repeated\n\n"
     "The sensor has been on for long: it listens, in SCIP1.1, at its power-up rate, which the "
     "pseudo-terminal is set to. As\n"
@@ -31,16 +36,13 @@ static const char usage[] =
     "(sim/devices/urg04lx.h says how).\n\n"
     "Faults, on what the sensor sends:\n";
 
-enum { OPT_LINK = 1, OPT_RATE, OPT_HEIGHT, OPT_SEED, OPT_FAULT, OPT_HELP };
+enum { OPT_LINK = 1, OPT_RATE, OPT_HEIGHT, OPT_SEED, OPT_BURST, OPT_FAULT, OPT_HELP };
 
 static const struct option long_options[] = {
-    {"link", required_argument, NULL, OPT_LINK},
-    {"rate", required_argument, NULL, OPT_RATE},
-    {"height", required_argument, NULL, OPT_HEIGHT},
-    {"seed", required_argument, NULL, OPT_SEED},
-    {"fault", required_argument, NULL, OPT_FAULT},
-    {"help", no_argument, NULL, OPT_HELP},
-    {NULL, 0, NULL, 0},
+    {"link", required_argument, NULL, OPT_LINK},     {"rate", required_argument, NULL, OPT_RATE},
+    {"height", required_argument, NULL, OPT_HEIGHT}, {"seed", required_argument, NULL, OPT_SEED},
+    {"burst", no_argument, NULL, OPT_BURST},         {"fault", required_argument, NULL, OPT_FAULT},
+    {"help", no_argument, NULL, OPT_HELP},           {NULL, 0, NULL, 0},
 };
 
 static struct {
@@ -49,7 +51,7 @@ static struct {
     double height_m;
     line_fault_spec_t faults[FAULTS_MAX];
     int fault_count;
-    bool help;
+    bool burst, help;
 } order = {.rate = 115200, .seed = 1};
 
 static struct {
@@ -60,6 +62,9 @@ static struct {
     line_fault_t *fault;
     noise_t nonsense;
     unsigned long mismatched; /* octets to a client at another rate */
+    unsigned char packet[PACKET];
+    size_t packed;
+    sim_time_t packet_left; /* the latest */
 } server;
 
 static bool complain(const char *what, const char *subject)
@@ -124,6 +129,9 @@ static bool read_option(int option, const char *argument)
         return read_height(argument);
     case OPT_SEED:
         return read_seed(argument);
+    case OPT_BURST:
+        order.burst = true;
+        return true;
     case OPT_FAULT:
         return read_fault(argument);
     case OPT_HELP:
@@ -153,14 +161,40 @@ static bool read_arguments(int argc, char **argv)
     return order.link != NULL || complain("is needed", "--link");
 }
 
-/* ---- the line ---- */
-
 static bool client_follows(double bit_ns)
 {
     const double ratio = (double)port_rate(&server.port) * bit_ns * 1e-9;
 
     return ratio > 0.955 && ratio < 1.045;
 }
+
+/* ---- the adapter ---- */
+
+static void hand_over(void)
+{
+    port_write(&server.port, server.packet, server.packed);
+    server.packed = 0;
+    server.packet_left = timeline_now();
+}
+
+/* The timer measures since the latest packet; each one starts it anew, also one without octets. */
+static void latency(void *context)
+{
+    if (timeline_now() - server.packet_left >= LATENCY) {
+        hand_over();
+    }
+    timeline_at(server.packet_left + LATENCY, latency, context);
+}
+
+static void pack(unsigned char octet)
+{
+    server.packet[server.packed++] = octet;
+    if (server.packed == (order.burst ? PACKET : 1U)) {
+        hand_over();
+    }
+}
+
+/* ---- the line ---- */
 
 static void to_client(void *context, unsigned octet, double bit_ns)
 {
@@ -171,7 +205,7 @@ static void to_client(void *context, unsigned octet, double bit_ns)
         server.mismatched++;
         c = (unsigned char)(noise_bits(&server.nonsense) & 0xFFU);
     }
-    port_write(&server.port, &c, 1);
+    pack(c);
 }
 
 static void from_client(void *context, const unsigned char *octets, size_t count)
@@ -239,6 +273,9 @@ static void destroy_sensor(void)
 
 static void serve(void)
 {
+    if (order.burst) {
+        latency(NULL);
+    }
     pace_watch(&server.port, from_client, NULL);
     printf("laser: %s\n", server.port.name);
     fflush(stdout);

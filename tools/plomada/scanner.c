@@ -4,22 +4,24 @@
 #include <string.h>
 
 #include "sim/host/pace.h"
-#include "drivers/urg_link.h"
+#include "drivers/urg.h"
 
 #define FIRST_RATE 115200UL
 #define STEP (150 * SIM_MS)
 #define ASK_PATIENCE SIM_S
+#define GAP_MS 1000U /* between two scans: the stream was lost */
 
 static struct {
     scanner_config_t config;
     port_t port;
-    scip_parser_t parser;
-    scip_scan_t scan;
-    uint16_t distance_mm[SCIP_POINTS_MAX];
-    urg_link_t link;
-    urg_seen_t seen;
-    bool linked; /* the link drives the conversation */
-    char *text;  /* of the reply asked for */
+    urg_t urg;
+    uint16_t distance_mm[2 * SCIP_POINTS_MAX];
+    unsigned long rate;                         /* of the latest scan */
+    uint32_t first_ms, latest_ms, stream_scans; /* of the scans since the latest gap */
+    bool asking;                                /* the dialogue is ours, not the link's */
+    scip_parser_t parser;                       /* of that dialogue */
+    bool answered;
+    char *text; /* of the reply asked for */
     size_t text_size;
 } scanner;
 
@@ -34,22 +36,21 @@ static void tap(bool from_sensor, const unsigned char *octets, size_t count)
                        count);
 }
 
-static void send(const scip_request_t *request)
+static void send(const octet_t *text, uint16_t length)
 {
     unsigned char octets[SCIP_REQUEST_MAX];
 
-    for (uint16_t i = 0; i < request->text_length; i++) {
-        octets[i] = (unsigned char)request->text[i];
+    for (uint16_t i = 0; i < length; i++) {
+        octets[i] = (unsigned char)text[i];
     }
-    tap(false, octets, request->text_length);
-    port_write(&scanner.port, octets, request->text_length);
+    tap(false, octets, length);
+    port_write(&scanner.port, octets, length);
 }
 
 static void set_rate(uint32_t rate)
 {
     const char *error = port_set_rate(&scanner.port, rate);
 
-    scip_parser_line_broken(&scanner.parser);
     if (error != NULL) {
         fprintf(stderr, "%s at %lu bit/s: %s\n", scanner.port.name, (unsigned long)rate, error);
     }
@@ -57,20 +58,19 @@ static void set_rate(uint32_t rate)
 
 static void step(void *context)
 {
-    urg_action_t action;
+    urg_output_t output;
 
-    if (!scanner.linked) {
+    if (scanner.asking) {
         return;
     }
-    urg_link_step(&scanner.link, &scanner.seen, now_us(), &action);
-    if (action.set_rate) {
-        set_rate(action.rate);
-    }
-    if (action.expect) {
-        scip_parser_expect(&scanner.parser, &action.request);
-    }
-    if (action.send) {
-        send(&action.request);
+    urg_step(&scanner.urg, now_us());
+    if (urg_next_to_send(&scanner.urg, &output)) {
+        if (output.set_rate) {
+            set_rate(output.rate);
+        }
+        if (output.count > 0) {
+            send(output.octets, output.count);
+        }
     }
     timeline_after(STEP, step, context);
 }
@@ -89,12 +89,28 @@ static void keep_text(void)
     memcpy(scanner.text + used + parser->text_length, "\n", 2);
 }
 
-static void note(scip_event_t event)
+static void take_scan(void)
 {
-    urg_seen_event(&scanner.seen, &scanner.parser, event);
+    scip_scan_t scan;
+
+    if (!urg_take_scan(&scanner.urg, &scan)) {
+        return;
+    }
+    scanner.rate = port_rate(&scanner.port);
+    if (scanner.stream_scans == 0 || ((scan.timestamp_ms - scanner.latest_ms) & 0xFFFFFFU) > GAP_MS) {
+        scanner.first_ms = scan.timestamp_ms;
+        scanner.stream_scans = 0;
+    }
+    scanner.latest_ms = scan.timestamp_ms;
+    scanner.stream_scans++;
+}
+
+static void take_answer(scip_event_t event)
+{
     if (event == SCIP_TEXT) {
         keep_text();
     }
+    scanner.answered = scanner.answered || event == SCIP_REPLY;
 }
 
 static void received(void *context, const unsigned char *octets, size_t count)
@@ -102,8 +118,11 @@ static void received(void *context, const unsigned char *octets, size_t count)
     (void)context;
     tap(true, octets, count);
     for (size_t i = 0; i < count; i++) {
-        urg_seen_octets(&scanner.seen, &octets[i], 1);
-        note(scip_parser_feed(&scanner.parser, octets[i]));
+        if (scanner.asking) {
+            take_answer(scip_parser_feed(&scanner.parser, octets[i]));
+        } else if (urg_feed(&scanner.urg, &octets[i], 1)) {
+            take_scan();
+        }
     }
 }
 
@@ -112,15 +131,23 @@ static bool run_until(bool (*done)(void), double seconds)
 {
     const sim_time_t end = timeline_now() + (sim_time_t)(seconds * 1e9);
 
-    while (!done() && timeline_now() < end && !pace_interrupted()) {
+    while (!done() && timeline_now() < end && !pace_interrupted() && !scanner_is_gone()) {
         pace_run();
     }
     return done();
 }
 
+static urg_report_t report(void)
+{
+    urg_report_t now;
+
+    urg_report(&scanner.urg, &now);
+    return now;
+}
+
 static bool streaming(void)
 {
-    return scanner.link.status == URG_OK;
+    return report().status == URG_OK;
 }
 
 static bool never(void)
@@ -128,19 +155,40 @@ static bool never(void)
     return false;
 }
 
-static void begin_link(void)
+/* The fastest of SCIP's rates that the port can do. */
+static uint32_t fastest_rate(void)
+{
+    uint32_t fastest = FIRST_RATE;
+
+    for (size_t i = 0; i < SCIP_BIT_RATES; i++) {
+        if (port_set_rate(&scanner.port, scip_bit_rates[i]) == NULL && scip_bit_rates[i] > fastest) {
+            fastest = scip_bit_rates[i];
+        }
+    }
+    return fastest;
+}
+
+static const char *begin_link(void)
 {
     const urg_config_t config = {
         .wait_us = 0,
         .first_rate = FIRST_RATE,
         .stream_rate = (uint32_t)scanner.config.rate,
+        .fastest_rate = fastest_rate(),
         .stream = SCIP_STREAM_2,
         .range = {(uint16_t)scanner.config.first_step, (uint16_t)scanner.config.last_step, 1, 0, 0},
     };
+    const char *error = port_set_rate(&scanner.port, scanner.config.rate);
 
-    (void)urg_link_init(&scanner.link, &config, now_us());
-    scanner.linked = true;
-    timeline_after(0, step, NULL);
+    if (error != NULL) {
+        return error;
+    }
+    error = port_set_rate(&scanner.port, FIRST_RATE);
+    if (error == NULL &&
+        !urg_init(&scanner.urg, &config, scanner.distance_mm, 2 * SCIP_POINTS_MAX, now_us())) {
+        return "no such stream";
+    }
+    return error;
 }
 
 const char *scanner_open(const scanner_config_t *config)
@@ -149,18 +197,18 @@ const char *scanner_open(const scanner_config_t *config)
 
     memset(&scanner, 0, sizeof scanner);
     scanner.config = *config;
+    timeline_reset();
     error = port_open_device(&scanner.port, config->device, FIRST_RATE);
+    if (error == NULL) {
+        error = begin_link();
+    }
     if (error != NULL) {
+        port_close(&scanner.port);
         return error;
     }
-    scip_parser_init(&scanner.parser);
-    scanner.scan.distance_mm = scanner.distance_mm;
-    scanner.scan.capacity = SCIP_POINTS_MAX;
-    scip_parser_scan_into(&scanner.parser, &scanner.scan);
-    timeline_reset();
     pace_begin();
     pace_watch(&scanner.port, received, NULL);
-    begin_link();
+    timeline_after(0, step, NULL);
     return NULL;
 }
 
@@ -181,21 +229,27 @@ bool scanner_run(double seconds)
     return !pace_interrupted();
 }
 
+bool scanner_is_gone(void)
+{
+    return pace_lost(&scanner.port);
+}
+
 /* Waits for the answer even when interrupted. */
 static bool converse(scip_kind_t kind)
 {
     const sim_time_t end = timeline_now() + ASK_PATIENCE;
-    const uint32_t replies = scanner.seen.reply_count;
     scip_request_t request;
 
-    scanner.linked = false;
+    scanner.asking = true;
+    scanner.answered = false;
+    scip_parser_init(&scanner.parser);
     (void)scip_request(&request, kind);
     scip_parser_expect(&scanner.parser, &request);
-    send(&request);
-    while (scanner.seen.reply_count == replies && timeline_now() < end) {
+    send(request.text, request.text_length);
+    while (!scanner.answered && timeline_now() < end && !scanner_is_gone()) {
         pace_run();
     }
-    return scanner.seen.reply_count != replies;
+    return scanner.answered;
 }
 
 bool scanner_stop(void)
@@ -212,20 +266,27 @@ bool scanner_ask(scip_kind_t kind, char *text, size_t size)
     scanner.text_size = size;
     answered = converse(kind);
     scanner.text = NULL;
-    return answered && scanner.seen.reply.status[0] == '0' && scanner.seen.reply.status[1] == '0';
+    return answered && scanner.parser.reply.status[0] == '0' && scanner.parser.reply.status[1] == '0';
 }
 
 unsigned long scanner_scans(void)
 {
-    return scanner.seen.scan_count;
+    return report().seen.scan_count;
 }
 
 unsigned long scanner_damaged(void)
 {
-    return scanner.seen.damage_count;
+    return report().seen.damage_count;
 }
 
 unsigned long scanner_rate(void)
 {
-    return scanner.link.rate;
+    return scanner.rate;
+}
+
+double scanner_scans_per_s(void)
+{
+    const uint32_t lasted_ms = (scanner.latest_ms - scanner.first_ms) & 0xFFFFFFU;
+
+    return scanner.stream_scans < 2 ? 0.0 : 1e3 * (scanner.stream_scans - 1) / lasted_ms;
 }

@@ -20,8 +20,8 @@ typedef struct {
     void *context;
 } scanner_config_t;
 
-/* NULL when the port is open (then scanner_close()), else what failed. SIGINT and SIGTERM end every wait
- * below. */
+/* NULL when the port is open (then scanner_close()), else what failed: also a rate that the port cannot do.
+ * SIGINT, SIGTERM and the loss of the port end every wait below. */
 const char *scanner_open(const scanner_config_t *config);
 void scanner_close(void);
 
@@ -29,6 +29,8 @@ void scanner_close(void);
 bool scanner_start(double patience_s);
 /* The stream goes on for so many seconds, recovering what is lost. False when interrupted. */
 bool scanner_run(double seconds);
+/* The port has gone away. */
+bool scanner_is_gone(void);
 /* Ends the stream. True when the sensor has confirmed it. */
 bool scanner_stop(void);
 /* VV or PP of a stopped sensor: its lines, without sums, each ended by LF. False when there was no whole
@@ -37,6 +39,8 @@ bool scanner_ask(scip_kind_t kind, char *text, size_t size);
 
 unsigned long scanner_scans(void);
 unsigned long scanner_damaged(void);
-unsigned long scanner_rate(void); /* that the stream has come at */
+unsigned long scanner_rate(void); /* that the latest scan has come at, as the port's driver says; 0: none */
+double scanner_scans_per_s(
+    void); /* of the latest stream without a gap, by the sensor's clock; 0: not known */
 
 #endif

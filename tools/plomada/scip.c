@@ -10,7 +10,7 @@ static const struct {
     int (*run)(int argc, char **argv);
     const char *summary;
 } tools[] = {
-    {"decode", scip_decode, "FILE|-                 scans of a recording as CSV"},
+    {"decode", scip_decode, "FILE|-                 scans of a recording, also of flexiport, as CSV"},
     {"mirrors", scip_mirrors, "FILE|DEVICE --height M which steps look at which mirror"},
     {"record", scip_record, "DEVICE FILE            records a real sensor"},
 };

@@ -3,6 +3,8 @@
 #include <errno.h>
 #include <string.h>
 
+#include "flexiport.h"
+
 #define STREAM_ECHO 15U
 #define SINGLE_ECHO 12U
 
@@ -140,6 +142,130 @@ static void take_event(scip_reader_t *reader, scip_event_t event)
     reader->within = false;
 }
 
+/* ---- packets that are no scans ---- */
+
+typedef struct {
+    const char *symbol, *what;
+} command_name_t;
+
+static const command_name_t command_names[] = {
+    {"ME", "distances with intensities, which are not read"},
+    {"GE", "single scans with intensities, which are not read"},
+    {"HE", "several echoes with intensities, which are not read"},
+    {"HD", "several echoes, which are not read"},
+    {"NE", "several echoes with intensities, which are not read"},
+    {"ND", "several echoes, which are not read"},
+    {"MS", "of steps that no URG-04LX has, or malformed"},
+    {"MD", "of steps that no URG-04LX has, or malformed"},
+    {"GS", "of steps that no URG-04LX has, or malformed"},
+    {"GD", "of steps that no URG-04LX has, or malformed"},
+    {"VV", "what the sensor is"},
+    {"PP", "its limits"},
+    {"II", "its state"},
+    {"BM", "laser on"},
+    {"QT", "laser off"},
+    {"RS", "reset"},
+    {"TM", "its clock"},
+    {"SS", "bit rate"},
+    {"CR", "motor speed"},
+    {"HS", "sensitivity"},
+    {"SCIP2.", "from SCIP1.1 to SCIP2.0"},
+    {"V", "what the sensor is, in SCIP1.1"},
+    {"L", "laser on or off, in SCIP1.1"},
+    {"G", "a scan in SCIP1.1, which is not read"},
+};
+
+static const char *meaning(const char *symbol)
+{
+    for (size_t i = 0; i < sizeof command_names / sizeof command_names[0]; i++) {
+        if (strncmp(symbol, command_names[i].symbol, strlen(command_names[i].symbol)) == 0) {
+            return command_names[i].what;
+        }
+    }
+    return "no command that is known here";
+}
+
+static bool is_letter(octet_t octet)
+{
+    return octet >= 'A' && octet <= 'Z';
+}
+
+/* The command that a line echoes: its first letters, "?" when there are none. */
+static void symbol_of(const octet_t *line, size_t length, char symbol[SCIP_READER_SYMBOL])
+{
+    static const char change[] = "SCIP2.0";
+    size_t letters = 0, same = 0;
+
+    while (letters < 2 && letters < length && is_letter(line[letters])) {
+        letters++;
+    }
+    while (same < strlen(change) && same < length && line[same] == (octet_t)change[same]) {
+        same++;
+    }
+    letters = same == strlen(change) ? same : letters;
+    for (size_t i = 0; i < letters; i++) {
+        symbol[i] = (char)line[i];
+    }
+    strcpy(symbol + letters, letters > 0 ? "" : "?");
+}
+
+static void count_skipped(scip_reader_t *reader)
+{
+    char symbol[SCIP_READER_SYMBOL];
+    size_t i = 0;
+
+    symbol_of(reader->line, reader->length, symbol);
+    while (i + 1 < SCIP_READER_SYMBOLS && reader->skipped[i].count > 0 &&
+           strcmp(reader->skipped[i].symbol, symbol) != 0) {
+        i++;
+    }
+    if (reader->skipped[i].count == 0) {
+        strcpy(reader->skipped[i].symbol, i + 1 < SCIP_READER_SYMBOLS ? symbol : "?");
+    }
+    reader->skipped[i].count++;
+}
+
+/* A packet's first line: when it is VV, PP or II the lines behind it tell of the sensor. */
+static void begin_skipped(scip_reader_t *reader)
+{
+    static const scip_kind_t kinds[] = {SCIP_VERSION, SCIP_PARAMETERS, SCIP_STATE};
+    scip_request_t request;
+
+    count_skipped(reader);
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        (void)scip_request(&request, kinds[i]);
+        if (reader->length == request.echo_length &&
+            memcmp(reader->line, scip_request_echo(&request), reader->length * sizeof reader->line[0]) == 0) {
+            scip_parser_line_broken(&reader->text);
+            scip_parser_expect(&reader->text, &request);
+        }
+    }
+}
+
+static void feed_text(scip_reader_t *reader)
+{
+    for (size_t i = 0; i < reader->length; i++) {
+        (void)scip_parser_feed(&reader->text, reader->line[i]);
+    }
+    if (scip_parser_feed(&reader->text, SCIP_LINE_FEED) == SCIP_TEXT) {
+        scip_info_take(&reader->info, &reader->text);
+    }
+}
+
+static void skip_held(scip_reader_t *reader, const octet_t *echo, size_t length)
+{
+    const size_t line_length = reader->length;
+    octet_t line[SCIP_READER_LINE];
+
+    memcpy(line, reader->line, line_length * sizeof line[0]);
+    memcpy(reader->line, echo, length * sizeof line[0]);
+    reader->length = length;
+    count_skipped(reader);
+    memcpy(reader->line, line, line_length * sizeof line[0]);
+    reader->length = line_length;
+    reader->skipping = true;
+}
+
 /* The held echo, now that the line behind it is there: its status. */
 static void begin_reply(scip_reader_t *reader)
 {
@@ -151,7 +277,7 @@ static void begin_reply(scip_reader_t *reader)
     reader->holding = false;
     if (!continues(reader, echo, length, frame)) {
         if (!request_of(echo, length, frame, &request)) {
-            reader->skipping = true;
+            skip_held(reader, echo, length);
             return;
         }
         scip_parser_expect(&reader->parser, &request);
@@ -176,9 +302,13 @@ static void skip(scip_reader_t *reader)
     if (reader->length == 0) {
         reader->totals.skipped += reader->skipping;
         reader->skipping = reader->in_rest = false;
-    } else {
-        reader->skipping = !reader->in_rest;
+    } else if (!reader->in_rest) {
+        if (!reader->skipping) {
+            begin_skipped(reader);
+        }
+        reader->skipping = true;
     }
+    feed_text(reader);
 }
 
 /* A line that does not belong to the reply: the echo of the next one, or what is left of this one. */
@@ -221,6 +351,8 @@ void scip_reader_init(scip_reader_t *reader, scip_reader_take_t take, void *cont
     reader->context = context;
     reader->scan.distance_mm = reader->distance_mm;
     reader->scan.capacity = SCIP_POINTS_MAX;
+    scip_info_init(&reader->info);
+    scip_parser_init(&reader->text);
     scip_parser_init(&reader->parser);
     scip_parser_scan_into(&reader->parser, &reader->scan);
 }
@@ -246,13 +378,24 @@ void scip_reader_end(scip_reader_t *reader)
     reader->totals.unfinished = reader->within || reader->holding;
 }
 
+static void take_octets(void *context, const unsigned char *octets, size_t count)
+{
+    scip_reader_feed(context, octets, count);
+}
+
 static const char *read_all(scip_reader_t *reader, FILE *file)
 {
     static unsigned char octets[65536];
-    size_t count;
+    size_t count = fread(octets, 1, sizeof octets, file);
+    flexiport_t log;
+    const bool is_log = flexiport_begin(&log, octets, count);
 
-    while ((count = fread(octets, 1, sizeof octets, file)) > 0) {
-        scip_reader_feed(reader, octets, count);
+    for (; count > 0; count = fread(octets, 1, sizeof octets, file)) {
+        if (!is_log) {
+            scip_reader_feed(reader, octets, count);
+        } else if (!flexiport_feed(&log, octets, count, take_octets, reader)) {
+            return "a log of flexiport, broken in the middle";
+        }
     }
     scip_reader_end(reader);
     return ferror(file) ? strerror(errno) : NULL;
@@ -275,6 +418,16 @@ const char *scip_reader_file(scip_reader_t *reader, const char *path)
     return error;
 }
 
+static const char *sensor_name(const scip_reader_t *reader)
+{
+    const scip_info_t *info = &reader->info;
+
+    if (info->model[0] != '\0') {
+        return info->model;
+    }
+    return info->product[0] != '\0' ? info->product : "not told in this recording";
+}
+
 void scip_reader_print(const scip_reader_t *reader, FILE *out)
 {
     const scip_reader_totals_t *totals = &reader->totals;
@@ -287,8 +440,12 @@ void scip_reader_print(const scip_reader_t *reader, FILE *out)
     for (int i = SCIP_DAMAGE_NONE + 1; i < SCIP_DAMAGE_COUNT; i++) {
         fprintf(out, " %s:%lu", damage_names[i], (unsigned long)reader->parser.counters.damaged[i]);
     }
-    fprintf(out, "\nanswers: %lu\nnotices: %lu\nskipped packets: %lu\n", totals->answers, totals->notices,
-            totals->skipped);
+    fprintf(out, "\nanswers: %lu\nnotices: %lu\nsensor: %s\nskipped packets: %lu\n", totals->answers,
+            totals->notices, sensor_name(reader), totals->skipped);
+    for (size_t i = 0; i < SCIP_READER_SYMBOLS && reader->skipped[i].count > 0; i++) {
+        fprintf(out, "  %-8s %5lu  %s\n", reader->skipped[i].symbol, reader->skipped[i].count,
+                meaning(reader->skipped[i].symbol));
+    }
     if (totals->unfinished) {
         fprintf(out, "the last reply is unfinished\n");
     }

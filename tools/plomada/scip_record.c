@@ -1,9 +1,11 @@
+#include <errno.h>
 #include <getopt.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "scanner.h"
 #include "scip.h"
@@ -12,6 +14,7 @@
 #define START_PATIENCE_S 30.0
 #define TEXT_MAX 1024
 #define BURST_US 2000
+#define FLUSH_US 1000000 /* what the end of this program or of the disk may cost */
 
 static const char usage[] =
     "usage: plomada scip record DEVICE FILE [OPTION]...\n\n"
@@ -24,15 +27,21 @@ static const char usage[] =
     "  --seconds S    of scans (default 10); Ctrl-C ends it earlier\n"
     "  --rate N       19200, 57600, 115200 or 250000 bit/s (default 115200; many RS232 adapters cannot do "
     "250000)\n"
-    "  --steps A..B   0..768 (default 44..725)\n\n"
-    "Exit status: 0 recorded, 1 no scans, 2 usage, the port or a file cannot be opened.\n";
+    "  --steps A..B   0..768 (default 44..725)\n"
+    "  --force        overwrites files that are there already\n\n"
+    "Once a second all files are brought up to date, and stderr shows the scans per second: a recording that "
+    "is cut off, by\n"
+    "a kill or a full disk, lacks its last second at most.\n\n"
+    "Exit status: 0 recorded, 1 no scans, or the port went away; 2 usage, the port or a file cannot be "
+    "opened or written.\n";
 
-enum { OPT_SECONDS = 1, OPT_RATE, OPT_STEPS, OPT_HELP };
+enum { OPT_SECONDS = 1, OPT_RATE, OPT_STEPS, OPT_FORCE, OPT_HELP };
 
 static const struct option long_options[] = {
     {"seconds", required_argument, NULL, OPT_SECONDS},
     {"rate", required_argument, NULL, OPT_RATE},
     {"steps", required_argument, NULL, OPT_STEPS},
+    {"force", no_argument, NULL, OPT_FORCE},
     {"help", no_argument, NULL, OPT_HELP},
     {NULL, 0, NULL, 0},
 };
@@ -49,10 +58,14 @@ typedef struct {
     scanner_config_t scanner;
     const char *path;
     double seconds;
-    bool help;
+    bool force, help;
     FILE *rx, *tx, *csv, *certificate;
+    char date[32];
     unsigned long rx_octets, tx_octets;
     burst_t burst;
+    long long flushed_us;
+    unsigned long flushed_scans;
+    bool failed; /* a file cannot be written */
     char version[TEXT_MAX], parameters[TEXT_MAX];
 } recording_t;
 
@@ -110,6 +123,9 @@ static bool read_option(recording_t *recording, int option, const char *argument
         return read_rate(recording, argument);
     case OPT_STEPS:
         return read_steps(recording, argument);
+    case OPT_FORCE:
+        recording->force = true;
+        return true;
     case OPT_HELP:
         recording->help = true;
         return true;
@@ -141,34 +157,52 @@ static bool read_arguments(recording_t *recording, int argc, char **argv)
 
 /* ---- files ---- */
 
+static void path_of(const recording_t *recording, const char *suffix, char *path, size_t size)
+{
+    snprintf(path, size, "%s%s", recording->path, suffix);
+}
+
 static FILE *open_file(const recording_t *recording, const char *suffix)
 {
     char path[4096];
     FILE *file;
 
-    snprintf(path, sizeof path, "%s%s", recording->path, suffix);
-    file = fopen(path, "wb");
+    path_of(recording, suffix, path, sizeof path);
+    file = fopen(path, recording->force ? "wb" : "wbx");
     if (file == NULL) {
-        perror(path);
+        complain(errno == EEXIST ? "is there already; --force overwrites it" : strerror(errno), path);
     }
     return file;
 }
 
+/* Nothing is created when one of the files is there. */
+static bool may_create(const recording_t *recording)
+{
+    static const char *const suffixes[] = {"", ".tx", ".csv", ".md"};
+    char path[4096];
+
+    for (size_t i = 0; i < sizeof suffixes / sizeof suffixes[0] && !recording->force; i++) {
+        path_of(recording, suffixes[i], path, sizeof path);
+        if (access(path, F_OK) == 0) {
+            return complain("is there already; --force overwrites it", path);
+        }
+    }
+    return true;
+}
+
 static bool open_files(recording_t *recording)
 {
-    recording->rx = open_file(recording, "");
-    recording->tx = open_file(recording, ".tx");
-    recording->csv = open_file(recording, ".csv");
-    recording->certificate = open_file(recording, ".md");
-    return recording->rx != NULL && recording->tx != NULL && recording->csv != NULL &&
-           recording->certificate != NULL;
+    return may_create(recording) && (recording->rx = open_file(recording, "")) != NULL &&
+           (recording->tx = open_file(recording, ".tx")) != NULL &&
+           (recording->csv = open_file(recording, ".csv")) != NULL &&
+           (recording->certificate = open_file(recording, ".md")) != NULL;
 }
 
 static bool close_file(FILE *file)
 {
-    const bool failed = ferror(file) != 0;
+    const bool failed = file == NULL || ferror(file) != 0;
 
-    return fclose(file) == 0 && !failed;
+    return file != NULL && fclose(file) == 0 && !failed;
 }
 
 static bool close_files(recording_t *recording)
@@ -176,18 +210,85 @@ static bool close_files(recording_t *recording)
     const bool rx = close_file(recording->rx), tx = close_file(recording->tx),
                csv = close_file(recording->csv);
 
-    return (close_file(recording->certificate) && rx && tx && csv) ||
-           complain("not written whole", recording->path);
+    return close_file(recording->certificate) && rx && tx && csv && !recording->failed;
 }
 
 static void write_burst(recording_t *recording)
 {
-    const burst_t *burst = &recording->burst;
+    burst_t *burst = &recording->burst;
 
     if (burst->length > 0) {
         fprintf(recording->csv, "%s,%lld,%lu,%zu\n", burst->from_sensor ? "rx" : "tx", burst->t_us,
                 burst->offset, burst->length);
     }
+    burst->length = 0;
+}
+
+static void write_text(FILE *out, const char *title, const char *text)
+{
+    fprintf(out, "\n%s\n\n```\n%s```\n", title, *text != '\0' ? text : "(no answer)\n");
+}
+
+static void write_head(const recording_t *recording, FILE *out)
+{
+    const scanner_config_t *scanner = &recording->scanner;
+    const char *name = strrchr(recording->path, '/');
+
+    name = name == NULL ? recording->path : name + 1;
+    fprintf(out, "# %s: birth certificate\n\n", name);
+    fprintf(out, "| | |\n|---|---|\n");
+    fprintf(out, "| recorded | %s, from `%s` |\n", recording->date, scanner->device);
+    fprintf(out, "| by | `plomada scip record %s %s --seconds %g --rate %lu --steps %u..%u` |\n",
+            scanner->device, recording->path, recording->seconds, scanner->rate, scanner->first_step,
+            scanner->last_step);
+    fprintf(out, "| rate of the stream | %lu bit/s, %.2f scans per second of the sensor's clock |\n",
+            scanner_rate(), scanner_scans_per_s());
+    fprintf(out, "| octets | %lu from the sensor, %lu to it |\n", recording->rx_octets, recording->tx_octets);
+    fprintf(out, "| scans | %lu good, %lu replies or scans damaged |\n", scanner_scans(), scanner_damaged());
+}
+
+/* Over what was written before. `whole`: the recording came to its end. */
+static void write_certificate(const recording_t *recording, bool whole)
+{
+    FILE *out = recording->certificate;
+
+    rewind(out);
+    write_head(recording, out);
+    if (!whole) {
+        fprintf(out, "\n**Cut off**: this recording did not come to its end.\n");
+    } else {
+        write_text(out, "The sensor says of itself (VV):", recording->version);
+        write_text(out, "and of its limits (PP):", recording->parameters);
+    }
+    fprintf(
+        out,
+        "\nTo be filled in: what stood where, who held the sensor, under which licence this may be used.\n");
+    if (fflush(out) == 0) {
+        (void)!ftruncate(fileno(out), ftell(out));
+    }
+}
+
+static void show_progress(recording_t *recording, long long t_us)
+{
+    const unsigned long scans = scanner_scans();
+    const double lasted_s = (double)(t_us - recording->flushed_us) * 1e-6;
+
+    fprintf(stderr, "%s%6.1f s: %.1f scans/s, %lu scans, %lu damaged%s", isatty(STDERR_FILENO) ? "\r" : "",
+            (double)t_us * 1e-6, (double)(scans - recording->flushed_scans) / lasted_s, scans,
+            scanner_damaged(), isatty(STDERR_FILENO) ? "" : "\n");
+    recording->flushed_scans = scans;
+}
+
+/* The table last: it never tells of octets that are not there. */
+static void bring_up_to_date(recording_t *recording)
+{
+    write_burst(recording);
+    if (fflush(recording->rx) != 0 || fflush(recording->tx) != 0 || fflush(recording->csv) != 0) {
+        complain(strerror(errno), recording->path);
+        recording->failed = true;
+        return;
+    }
+    write_certificate(recording, false);
 }
 
 static void keep(void *context, bool from_sensor, long long t_us, const unsigned char *octets, size_t count)
@@ -196,64 +297,72 @@ static void keep(void *context, bool from_sensor, long long t_us, const unsigned
     unsigned long *total = from_sensor ? &recording->rx_octets : &recording->tx_octets;
     burst_t *burst = &recording->burst;
 
-    fwrite(octets, 1, count, from_sensor ? recording->rx : recording->tx);
+    if (recording->failed) {
+        return;
+    }
     if (burst->length == 0 || burst->from_sensor != from_sensor || t_us - burst->t_us >= BURST_US) {
         write_burst(recording);
         *burst = (burst_t){from_sensor, t_us, *total, 0};
     }
+    fwrite(octets, 1, count, from_sensor ? recording->rx : recording->tx);
     burst->length += count;
     *total += count;
-}
-
-static void write_text(FILE *out, const char *title, const char *text)
-{
-    fprintf(out, "\n%s\n\n```\n%s```\n", title, *text != '\0' ? text : "(no answer)\n");
-}
-
-static void write_certificate(const recording_t *recording, const char *date)
-{
-    const scanner_config_t *scanner = &recording->scanner;
-    const char *name = strrchr(recording->path, '/');
-    FILE *out = recording->certificate;
-
-    name = name == NULL ? recording->path : name + 1;
-    fprintf(out, "# %s: birth certificate\n\n", name);
-    fprintf(out, "| | |\n|---|---|\n");
-    fprintf(out, "| recorded | %s, from `%s` |\n", date, scanner->device);
-    fprintf(out, "| by | `plomada scip record %s %s --seconds %g --rate %lu --steps %u..%u` |\n",
-            scanner->device, recording->path, recording->seconds, scanner->rate, scanner->first_step,
-            scanner->last_step);
-    fprintf(out, "| rate of the stream | %lu bit/s |\n", scanner_rate());
-    fprintf(out, "| octets | %lu from the sensor, %lu to it |\n", recording->rx_octets, recording->tx_octets);
-    fprintf(out, "| scans | %lu good, %lu replies or scans damaged |\n", scanner_scans(), scanner_damaged());
-    write_text(out, "The sensor says of itself (VV):", recording->version);
-    write_text(out, "and of its limits (PP):", recording->parameters);
-    fprintf(
-        out,
-        "\nTo be filled in: what stood where, who held the sensor, under which licence this may be used.\n");
+    if (t_us - recording->flushed_us >= FLUSH_US) {
+        bring_up_to_date(recording);
+        show_progress(recording, t_us);
+        recording->flushed_us = t_us;
+    }
 }
 
 /* ---- the recording ---- */
 
-static void record(recording_t *recording)
+static void run_to_the_end(recording_t *recording)
 {
-    char date[32];
-    const time_t now = time(NULL);
+    double left_s = recording->seconds;
 
-    strftime(date, sizeof date, "%Y-%m-%d %H:%M:%S UTC", gmtime(&now));
-    if (scanner_start(START_PATIENCE_S)) {
-        scanner_run(recording->seconds);
+    while (left_s > 0.0 && !recording->failed && !scanner_is_gone()) {
+        const double part_s = left_s < 0.2 ? left_s : 0.2;
+
+        if (!scanner_run(part_s)) {
+            return;
+        }
+        left_s -= part_s;
     }
-    if (scanner_scans() > 0 && scanner_stop()) {
+}
+
+static bool record(recording_t *recording)
+{
+    const time_t now = time(NULL);
+    bool whole;
+
+    strftime(recording->date, sizeof recording->date, "%Y-%m-%d %H:%M:%S UTC", gmtime(&now));
+    if (scanner_start(START_PATIENCE_S)) {
+        run_to_the_end(recording);
+    }
+    whole = !scanner_is_gone() && !recording->failed;
+    if (whole && scanner_scans() > 0 && scanner_stop()) {
         scanner_ask(SCIP_VERSION, recording->version, sizeof recording->version);
         scanner_ask(SCIP_PARAMETERS, recording->parameters, sizeof recording->parameters);
     }
-    write_certificate(recording, date);
+    if (!recording->failed) {
+        bring_up_to_date(recording);
+    }
+    if (!recording->failed) {
+        write_certificate(recording, whole);
+    }
+    return whole;
+}
+
+static void tell(const recording_t *recording)
+{
+    fprintf(stderr, "%sscans: %lu\ndamaged: %lu\noctets: %lu\n", isatty(STDERR_FILENO) ? "\n" : "",
+            scanner_scans(), scanner_damaged(), recording->rx_octets);
 }
 
 static int run(recording_t *recording)
 {
     const char *error;
+    bool whole, written;
 
     recording->scanner.tap = keep;
     recording->scanner.context = recording;
@@ -263,19 +372,20 @@ static int run(recording_t *recording)
         return 2;
     }
     if (!open_files(recording)) {
+        (void)close_files(recording);
         scanner_close();
         return 2;
     }
     fprintf(recording->csv, "dir,t_us,offset,length\n");
-    record(recording);
-    write_burst(recording);
+    whole = record(recording);
     scanner_close();
-    if (!close_files(recording)) {
+    written = close_files(recording);
+    tell(recording);
+    if (!written) {
+        complain("not written whole", recording->path);
         return 2;
     }
-    fprintf(stderr, "scans: %lu\ndamaged: %lu\noctets: %lu\n", scanner_scans(), scanner_damaged(),
-            recording->rx_octets);
-    return scanner_scans() > 0 ? 0 : 1;
+    return whole && scanner_scans() > 0 ? 0 : 1;
 }
 
 int scip_record(int argc, char **argv)

@@ -54,6 +54,41 @@ void test_every_octet_passes_unchanged_in_both_directions(void)
     TEST_ASSERT_EQUAL_MEMORY(sent, got, sizeof sent);
 }
 
+/* A pseudo-terminal has no framing errors, so the marks of a driver are written here as termios(3) has them.
+ */
+void test_a_framing_error_is_counted_and_read_as_an_octet_that_no_sensor_sends(void)
+{
+    static const unsigned char marked[] = {'a', 0xFF, 0xFF, 'b',  0xFF, 0,    'x', 0xFF,
+                                           0,   0,    0,    0xFF, 0,    0xFF, 'c'};
+    static const unsigned char meant[] = {
+        'a', 0xFF, 'b', PORT_BROKEN_OCTET, PORT_BROKEN_OCTET, 0, PORT_BROKEN_OCTET, 'c'};
+
+    for (size_t cut = 0; cut <= sizeof marked; cut++) {
+        unsigned char octets[sizeof marked];
+        size_t first, second;
+
+        memcpy(octets, marked, sizeof marked);
+        users.framing_errors = 0;
+        first = port_resolve_marks(&users, octets, cut);
+        second = port_resolve_marks(&users, octets + cut, sizeof marked - cut);
+        memmove(octets + first, octets + cut, second);
+        TEST_ASSERT_EQUAL_size_t(sizeof meant, first + second);
+        TEST_ASSERT_EQUAL_MEMORY(meant, octets, sizeof meant);
+        TEST_ASSERT_EQUAL_UINT32(3, users.framing_errors);
+    }
+}
+
+void test_the_driver_of_a_device_is_asked_to_mark_framing_errors(void)
+{
+    struct termios settings;
+
+    TEST_ASSERT_EQUAL_INT(0, tcgetattr(users.fd, &settings));
+    TEST_ASSERT_EQUAL_UINT32(INPCK | PARMRK, settings.c_iflag);
+    TEST_ASSERT_NULL(port_set_rate(&users, 250000));
+    TEST_ASSERT_EQUAL_INT(0, tcgetattr(users.fd, &settings));
+    TEST_ASSERT_EQUAL_UINT32(INPCK | PARMRK, settings.c_iflag);
+}
+
 void test_reading_an_empty_port_gives_nothing_and_does_not_wait(void)
 {
     unsigned char octet;
