@@ -431,8 +431,9 @@ static float lifting_n(const flight_t *flight, const parameters_t *parameters)
     const float gravity_n = parameters->value[PARAMETER_GRAV];
     const float hover_n = flight->est.actuator.thrust_n - taken_mps2 / vehicle.authority_mps2_per_n;
 
-    return has_estimate(flight) ? between(gravity_n - HOVER_MARGIN_N, hover_n, gravity_n + HOVER_MARGIN_N)
-                                : flight->hover_n;
+    return has_estimate(flight) && est_law_feels(&flight->est)
+               ? between(gravity_n - HOVER_MARGIN_N, hover_n, gravity_n + HOVER_MARGIN_N)
+               : flight->hover_n;
 }
 
 static void update_estimator(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)
@@ -599,6 +600,7 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
     const bool estimated = flight->active_law == LAW_EST || is_est_mode(flight->mode);
     const bool wants_imu = parameters_choice(parameters, PARAMETER_LAW) == LAW_EST;
     const bool imu_missing = wants_imu && !est_law_has_imu(&flight->est);
+    const bool unfelt = wants_imu && !imu_missing && !est_law_feels(&flight->est);
     const float measured_mm = (supervisor->height.sequence != 0U) ? supervisor->height.height_mm : NAN;
 
     out->thrust_n = flight->thrust_n;
@@ -607,7 +609,7 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
     out->state = supervisor->state;
     out->flags = (uint16_t)(supervisor->flags | (imu_missing ? FLIGHT_FLAG_ATTITUDE : 0U) |
                             (flight->out_of_reach ? FLIGHT_FLAG_REACH : 0U) |
-                            flight->integrity.doubts * FLIGHT_FLAG_SIGHT);
+                            (unfelt ? FLIGHT_FLAG_IMU : 0U) | flight->integrity.doubts * FLIGHT_FLAG_SIGHT);
     out->doubts = flight->integrity.doubts;
     out->reference_m = supervisor->reference_m;
     out->estimate_mm = estimated ? estimator->now.height_m * 1000.0F : measured_mm;

@@ -27,7 +27,8 @@ typedef enum {
 #define FLIGHT_FLAG_TILT 32U     /* tilted over 45 degrees, or CUT */
 #define FLIGHT_FLAG_PILOT 64U    /* the pilot has the throttle */
 #define FLIGHT_FLAG_SIGHT 256U   /* doubt SIGHT: heights are not believed, integrity.h */
-#define FLIGHT_FLAG_IMU 512U     /* doubt IMU: accelerations are not believed */
+#define FLIGHT_FLAG_IMU \
+    512U /* doubt IMU: accelerations are not believed; or law EST gets none and flies without them */
 #define FLIGHT_FLAG_THRUST 1024U /* doubt THRUST: commands have no effect */
 #define FLIGHT_FLAG_REACH \
     128U /* the reference is not reached: over 0.1 m off for 3 s, and no nearer; \

@@ -33,6 +33,11 @@
 #define AGE_MAX_S 3600.0F
 #define MODEL_NOISE_ALONE_MPS2 0.15F /* chosen: a biased accelerometer drifts away, the model does not */
 #define GUST_N_PER_M 28.0F           /* fitted */
+#define UNFELT_TIME_S 3.0F           /* tried 1.5 to 6: the model's bias becomes hover thrust */
+#define UNFELT_CLIMB_TIME_S 30.0F    /* tried 3 to 30: the middle of the stick is known well */
+#define UNFELT_DEADBAND 0.1F         /* tried 0 to 1: the model's bias tells the deadband late */
+#define UNFELT_HEIGHT_S 0.4F         /* chosen: rays of 70 ms, and three scans */
+#define UNFELT_LIFT_OFF_M 0.02F      /* chosen: five times the noise of a height */
 
 #define RAMP_START 0.68F     /* below the lightest vehicle, 0.8 of GRAV */
 #define RAMP_N_PER_S 4.0F    /* chosen: leaves the ground in 0.6 s */
@@ -83,7 +88,7 @@ static cascade_vehicle_t vehicle_model(const est_law_t *law, const parameters_t 
         .authority_mps2_per_n = GRAVITY_MPS2 / fmaxf(law->hover.thrust_n, 1.0F),
         .damping_per_s = DAMPING_PER_S,
         .hover_n = law->hover.thrust_n,
-        .need_n = law->hover.thrust_n + law->hover.gust_n,
+        .need_n = law->hover.thrust_n,
         .upright = cosf(e->latest.roll_rad) * cosf(e->latest.pitch_rad),
     };
     if (is_climb(parameters)) {
@@ -91,6 +96,7 @@ static cascade_vehicle_t vehicle_model(const est_law_t *law, const parameters_t 
         vehicle.authority_mps2_per_n = CLIMB_PER_S * parameters->value[PARAMETER_CRATE];
         vehicle.upright = 1.0F;
     }
+    vehicle.need_n += e->felt ? law->hover.gust_n : e->now.bias_mps2 / vehicle.authority_mps2_per_n;
     return vehicle;
 }
 
@@ -116,6 +122,27 @@ static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt
     }
 }
 
+/* Without accelerations the filter finds how much less the vehicle accelerates than the model says. What
+ * lasts of that becomes hover thrust, as much as the model then says less. */
+static void learn_unfelt(est_law_t *law, const parameters_t *parameters, float dt_s)
+{
+    const cascade_vehicle_t vehicle = vehicle_model(law, parameters);
+    const float time_s = is_climb(parameters) ? UNFELT_CLIMB_TIME_S : UNFELT_TIME_S;
+    const float moved_mps2 = dt_s / time_s * law->estimator.now.bias_mps2;
+    const float before_n = law->hover.thrust_n;
+
+    if (law->heightless_s > LEARN_WITHOUT_HEIGHTS_S || law->powerless) {
+        return;
+    }
+    if (is_climb(parameters) && law->estimator.now.height_m > IN_THE_AIR_M) {
+        deadband_learn(&law->deadband, law->actuator.thrust_n - before_n, vehicle.need_n - before_n,
+                       UNFELT_DEADBAND * dt_s);
+    }
+    law->hover.thrust_n = between(law->hover.least_n, before_n + moved_mps2 / vehicle.authority_mps2_per_n,
+                                  law->hover.most_n);
+    estimator_move_bias(&law->estimator, (before_n - law->hover.thrust_n) * vehicle.authority_mps2_per_n);
+}
+
 /* No height for long. */
 static bool heights_missing(const est_law_t *law)
 {
@@ -131,8 +158,8 @@ static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_
     return (modelled_motion_t){
         .known = law->airborne && !law->powerless && law->estimator.initialised &&
                  now->height_m > IN_THE_AIR_M,
-        .up_mps2 = vehicle.authority_mps2_per_n *
-                       (law->actuator.thrust_n * vehicle.upright - vehicle.need_n) -
+        .up_mps2 = vehicle.authority_mps2_per_n * (law->actuator.thrust_n * vehicle.upright -
+                                                   (law->estimator.felt ? vehicle.need_n : vehicle.hover_n)) -
                    vehicle.damping_per_s * now->speed_mps,
         .noise_mps2 = heights_missing(law) ? MODEL_NOISE_ALONE_MPS2 : MODEL_NOISE_MPS2,
     };
@@ -153,10 +180,12 @@ static void predict_frame(est_law_t *law, const parameters_t *parameters, const 
     }
     actuator_advance(&law->actuator, law->estimator.now_us);
     law->frameless_s = seconds_between(law->estimator.now_us, law->now_us);
-    law->lift_mps2 += fminf(dt_s / LIFT_FILTER_S, 1.0F) *
-                      (law->estimator.up_mps2 - law->estimator.now.bias_mps2 - law->lift_mps2);
-    if (law->airborne) {
+    const float felt_mps2 = est_law_feels(law) ? law->estimator.up_mps2 - law->estimator.now.bias_mps2 : 0.0F;
+    law->lift_mps2 += fminf(dt_s / LIFT_FILTER_S, 1.0F) * (felt_mps2 - law->lift_mps2);
+    if (law->airborne && est_law_feels(law)) {
         learn_hover(law, parameters, dt_s);
+    } else if (law->airborne) {
+        learn_unfelt(law, parameters, dt_s);
     }
 }
 
@@ -202,7 +231,7 @@ void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t st
     law->heightless_s = seconds_between(law->rays_us, law->now_us);
     const height_outcome_t outcome = estimator_fuse_height(&law->estimator, altitude, law->rays_us,
                                                            at_rest || on_ground(law));
-    if (law->airborne && outcome == HEIGHT_FUSED) {
+    if (law->airborne && outcome == HEIGHT_FUSED && law->estimator.felt) {
         const float expected = 1.0F - law->estimator.latest.share;
         hover_nudge(&law->hover, -GUST_N_PER_M * expected * law->estimator.innovation_m);
     }
@@ -215,7 +244,13 @@ bool est_law_has_imu(const est_law_t *law)
 
 bool est_law_ready(const est_law_t *law)
 {
-    return law->estimator.initialised && est_law_has_imu(law);
+    return law->estimator.initialised && est_law_has_imu(law) &&
+           (law->estimator.felt || law->heightless_s <= UNFELT_HEIGHT_S);
+}
+
+bool est_law_feels(const est_law_t *law)
+{
+    return law->estimator.felt;
 }
 
 static void start_hover(est_law_t *law, const parameters_t *parameters, float thrust_n, float sigma_n)
@@ -298,20 +333,35 @@ static cascade_state_t predict_ahead(const est_law_t *law, const cascade_vehicle
     };
 }
 
+/* Without accelerations the heights tell late that the vehicle has left the ground. Thrust that grows by r
+ * lifts it by a r t^3 / 6: so long ago it left, with r t less thrust, and so fast it is now. */
+static float leave_unfelt(est_law_t *law, const parameters_t *parameters)
+{
+    const float jerk_mps3 = RAMP_N_PER_S * vehicle_model(law, parameters).authority_mps2_per_n;
+    const float since_s = cbrtf(6.0F * fmaxf(law->estimator.now.height_m, 0.0F) / jerk_mps3) +
+                          law->heightless_s;
+
+    estimator_amend(&law->estimator, jerk_mps3 * since_s * since_s * since_s / 6.0F,
+                    0.5F * jerk_mps3 * since_s * since_s, 0.0F);
+    return law->actuator.thrust_n - RAMP_N_PER_S * since_s;
+}
+
 /* The thrust grows until the vehicle leaves the ground. The thrust at that moment is the first hover
  * thrust. */
 static bool take_off(est_law_t *law, const parameters_t *parameters)
 {
     const float gravity_n = parameters->value[PARAMETER_GRAV];
     const float taken_n = law->lift_mps2 / vehicle_model(law, parameters).authority_mps2_per_n;
-    const float hover_n = law->actuator.thrust_n - taken_n;
     const float height_m = law->estimator.now.height_m;
+    const float lift_off_m = est_law_feels(law) ? LIFT_OFF_M : UNFELT_LIFT_OFF_M;
     const bool strong = law->actuator.thrust_n > LIFT_OFF_SHARE * gravity_n;
 
     law->ramping = true;
-    const bool lifting = height_m > LIFT_OFF_M || law->lift_mps2 > lift_off_threshold_mps2(law);
+    const bool lifting = height_m > lift_off_m || law->lift_mps2 > lift_off_threshold_mps2(law);
     law->airborne = height_m > LIFT_OFF_SURE_M || (strong && lifting);
     if (law->airborne) {
+        const float hover_n = est_law_feels(law) ? law->actuator.thrust_n - taken_n
+                                                 : leave_unfelt(law, parameters);
         start_hover(law, parameters, is_climb(parameters) ? gravity_n : hover_n,
                     is_climb(parameters) ? NEUTRAL_SIGMA_N : HOVER_SIGMA_START_N);
         cascade_init(&law->cascade, law->ramp_n);

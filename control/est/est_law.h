@@ -66,9 +66,13 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_s
 void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t stamp_ms, uint32_t arrival_us,
                          uint32_t age_us, bool at_rest);
 
-/* True when the latest IMU frame with accelerations is at most ESTIMATOR_FRESH_US old. */
+/* True when the latest IMU frame is at most ESTIMATOR_FRESH_US old. */
 bool est_law_has_imu(const est_law_t *law);
-/* True when est_law_has_imu() is true and the estimator has received at least one height. */
+/* True when the estimator uses accelerations. False: no frame has had them lately, and the thrust model and
+ * the heights alone make the estimate. */
+bool est_law_feels(const est_law_t *law);
+/* True when est_law_has_imu() is true and the estimator has received at least one height; without
+ * accelerations only while heights are fresh. */
 bool est_law_ready(const est_law_t *law);
 
 /* Call in every cycle on the ground. The next est_law_step() then begins a take-off. */

@@ -36,6 +36,8 @@
 #define SPEED_NOISE_MPS2 0.53F   /* fitted; what neither accelerometer nor model knows */
 #define FRAME_S 0.025F           /* period of the IMU, seed 5.2.1.1 */
 #define BIAS_DRIFT_MPS2 0.095F   /* fitted; m/s2 per root second */
+#define UNFELT_DRIFT_MPS2 0.4F   /* tried 0.1 to 0.8: more follows gusts better and shakes the thrust more */
+#define UNFELT_NOISE_MPS2 0.4F   /* tried 0.1 to 1.5: hardly matters below 1 */
 #define TERRAIN_DRIFT_MPS 0.053F /* fitted; m/s per root second */
 #define TERRAIN_TIME_S 1.0F      /* chosen: a slope lasts about a second */
 #define NOISE_START_MPS2 0.4F    /* assumed of a Razor on a flying frame */
@@ -128,8 +130,9 @@ static void propagate_covariance(estimator_t *e, float share, float dt_s)
     float(*const p)[ESTIMATOR_STATES] = e->covariance;
     const float decay = fmaxf(1.0F - dt_s / TERRAIN_TIME_S, 0.0F);
     const float half = 0.5F * share * dt_s * dt_s;
-    const float measured_mps2 = share * e->noise_mps2;
-    const float modelled_mps2 = (1.0F - share) * e->model_noise_mps2;
+    const float measured_mps2 = e->felt ? share * e->noise_mps2 : 0.0F;
+    const float modelled_mps2 = e->felt ? (1.0F - share) * e->model_noise_mps2 : UNFELT_NOISE_MPS2;
+    const float drift_mps2 = e->felt ? BIAS_DRIFT_MPS2 : UNFELT_DRIFT_MPS2;
     const float variance = SPEED_NOISE_MPS2 * SPEED_NOISE_MPS2 +
                            (measured_mps2 * measured_mps2 + modelled_mps2 * modelled_mps2);
 
@@ -145,7 +148,7 @@ static void propagate_covariance(estimator_t *e, float share, float dt_s)
     }
     p[HEIGHT][HEIGHT] += HEIGHT_DRIFT_M * HEIGHT_DRIFT_M * dt_s;
     p[SPEED][SPEED] += variance * FRAME_S * dt_s;
-    p[BIAS][BIAS] += BIAS_DRIFT_MPS2 * BIAS_DRIFT_MPS2 * dt_s;
+    p[BIAS][BIAS] += drift_mps2 * drift_mps2 * dt_s;
     p[TERRAIN][TERRAIN] += TERRAIN_DRIFT_MPS * TERRAIN_DRIFT_MPS * dt_s;
     bound_covariance(p);
 }
@@ -256,39 +259,65 @@ static float credit(estimator_t *e, const modelled_motion_t *model, float up_mps
     return excess * excess * excess * excess;
 }
 
-static bool usable(const imu_sample_t *frame, float up_mps2)
+static bool has_tilt(const imu_sample_t *frame)
 {
-    return frame->ready && frame->has_acceleration && fabsf(up_mps2) < UP_MAX_MPS2 &&
-           fabsf(frame->median.roll_rad) < ANGLE_MAX_RAD && fabsf(frame->median.pitch_rad) < ANGLE_MAX_RAD;
+    return frame->ready && fabsf(frame->median.roll_rad) < ANGLE_MAX_RAD &&
+           fabsf(frame->median.pitch_rad) < ANGLE_MAX_RAD;
+}
+
+/* The bias is that of another source from now on. */
+static void change_source(estimator_t *e, bool felt)
+{
+    e->felt = felt;
+    e->delayed.bias_mps2 = 0.0F;
+    e->now.bias_mps2 = 0.0F;
+    e->off_model_mps2 = 0.0F;
+    reset_variance(e, BIAS, variance_start[BIAS]);
+}
+
+/* What moves the state in one frame: accelerometer and model, mixed, or the model alone. */
+static estimator_frame_t motion_of(estimator_t *e, const modelled_motion_t *model, float up_mps2)
+{
+    const float modelled_mps2 = model->known ? model->up_mps2 : 0.0F;
+
+    if (!e->felt) {
+        return (estimator_frame_t){.up_mps2 = modelled_mps2, .share = model->known ? 1.0F : 0.0F};
+    }
+    const float mean_mps2 = e->has_frames ? 0.5F * (up_mps2 + e->up_mps2) : up_mps2;
+    const float share = accelerometer_share(e, model) * credit(e, model, mean_mps2);
+    return (estimator_frame_t){.up_mps2 = share * mean_mps2 + (1.0F - share) * modelled_mps2, .share = share};
 }
 
 void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motion_t model)
 {
     const uint32_t time_us = frame->arrival_us - FRAME_AGE_US;
     const int32_t gap_us = (int32_t)(time_us - e->now_us);
-    const float up_mps2 = motion_up_mps2(frame);
+    const float up_mps2 = frame->has_acceleration ? motion_up_mps2(frame) : 0.0F;
+    const bool feels = frame->has_acceleration && fabsf(up_mps2) < UP_MAX_MPS2;
+    const bool lacks = !feels && e->felt && (uint32_t)(time_us - e->felt_us) <= ESTIMATOR_FRESH_US;
 
-    if (!usable(frame, up_mps2) || (int32_t)(frame->sequence - e->sequence) <= 0) {
+    if (!has_tilt(frame) || lacks || (int32_t)(frame->sequence - e->sequence) <= 0) {
         return;
     }
-    const float mean_mps2 = e->has_frames ? 0.5F * (up_mps2 + e->up_mps2) : up_mps2;
-    const float share = accelerometer_share(e, &model) * credit(e, &model, mean_mps2);
+    if (feels != e->felt) {
+        change_source(e, feels);
+    }
+    e->felt_us = time_us;
     e->sequence = frame->sequence;
     e->model_noise_mps2 = model.noise_mps2;
-    e->up_mps2 = up_mps2;
-    e->latest = (estimator_frame_t){
-        .time_us = time_us,
-        .up_mps2 = share * mean_mps2 + (1.0F - share) * (model.known ? model.up_mps2 : 0.0F),
-        .share = share,
-        .roll_rad = frame->median.roll_rad,
-        .pitch_rad = frame->median.pitch_rad,
-    };
+    e->latest = motion_of(e, &model, up_mps2);
+    e->latest.time_us = time_us;
+    e->latest.roll_rad = frame->median.roll_rad;
+    e->latest.pitch_rad = frame->median.pitch_rad;
+    e->up_mps2 = feels ? up_mps2 : 0.0F;
     if (!e->has_frames || gap_us > GAP_MAX_US || gap_us < -GAP_MAX_US) {
         restart_at_frame(e, time_us, up_mps2);
     } else if (before(e->delayed_us, time_us)) {
         append_frame(e, &e->latest);
     }
-    measure_noise(e, up_mps2);
+    if (feels) {
+        measure_noise(e, up_mps2);
+    }
 }
 
 /* A measurement of one state: Joseph's form, which keeps the covariance symmetric and positive in spite of
@@ -466,4 +495,10 @@ void estimator_amend(estimator_t *e, float height_m, float speed_mps, float bias
     reset_covariance(e);
     bound_states(&e->delayed);
     predict_now(e);
+}
+
+void estimator_move_bias(estimator_t *e, float by_mps2)
+{
+    e->delayed.bias_mps2 += by_mps2;
+    e->now.bias_mps2 += by_mps2;
 }

@@ -62,7 +62,9 @@ typedef struct {
     uint32_t delayed_us;
     estimate_t now; /* estimate at now_us, the instant of the latest frame */
     uint32_t now_us;
-    float up_mps2; /* measured in the latest frame, gravity removed, bias not removed */
+    bool felt;        /* the estimate rests on accelerations; false: on the model and the heights alone */
+    uint32_t felt_us; /* when the latest accelerations were measured */
+    float up_mps2;    /* measured in the latest frame, gravity removed, bias not removed; 0: not felt */
     estimator_frame_t latest;
     estimator_frame_t frames[ESTIMATOR_FRAMES]; /* since delayed_us, oldest first */
     uint16_t frame_count;
@@ -86,8 +88,9 @@ typedef struct {
 void estimator_init(estimator_t *estimator);
 
 /* Prediction with one frame. Frames come in order of time. Nothing changes when the frame was processed
- * before, when it has no accelerations, or when the offset of its angles is not known. The higher the
- * measured noise of the accelerometer, the more weight `model` gets. */
+ * before, or when the offset of its angles is not known. The higher the measured noise of the accelerometer,
+ * the more weight `model` gets. When no accelerations have come for ESTIMATOR_FRESH_US, the model alone
+ * predicts; a single frame without them changes nothing. */
 void estimator_predict(estimator_t *estimator, const imu_sample_t *frame, modelled_motion_t model);
 
 /* Correction with one valid height, whose rays were taken at rays_us. at_rest: the vehicle is known to
@@ -101,5 +104,8 @@ float motion_up_mps2(const imu_sample_t *frame);
 
 /* Overwrites height, speed and bias. For use when the latest heights were wrong. */
 void estimator_amend(estimator_t *estimator, float height_m, float speed_mps, float bias_mps2);
+
+/* Adds to the bias: the model has taken over a part of it. */
+void estimator_move_bias(estimator_t *estimator, float by_mps2);
 
 #endif

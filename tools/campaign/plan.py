@@ -58,8 +58,11 @@ SETS = {
                  {"outage": 3.0, "platform": 0.0}, lands=True),
     "climb": Set("an autopilot whose throttle commands a climb rate", 20, (), CLIMB),
     "climb-drawn": Set("drawn ones, mid-point 7.25 to 7.8 N", 100, CLIMB_VEHICLE, {}),
+    "stock": Set("nominal, a Razor as it comes: no accelerations", 20, (), {"imu_stock": 1.0}),
+    "stock-drawn": Set("untrimmed, a Razor as it comes", 200, VEHICLE + ("hover_untrimmed",), {"imu_stock": 1.0}),
+    "stock-climb": Set("climb, a Razor as it comes", 20, (), CLIMB | {"imu_stock": 1.0}),
 }
-DEFAULT_SETS = [name for name in SETS if name not in ("trimmed", "rotors")]
+DEFAULT_SETS = [name for name in SETS if name not in ("trimmed", "rotors") and not name.startswith("stock")]
 HOVER = {"hover_trimmed", "hover_untrimmed"}
 
 

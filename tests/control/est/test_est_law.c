@@ -416,13 +416,80 @@ void test_without_frames_pidt_takes_over_and_says_so(void)
     TEST_ASSERT_TRUE(rms_mm() < 30.0);
 }
 
-void test_frames_without_accelerations_do_not_fly_it(void)
+/* ---- frames without accelerations */
+
+void test_without_accelerations_it_flies_by_the_thrust_model_and_the_heights_and_says_so(void)
+{
+    double rms[SEEDS], activity[SEEDS], highest[SEEDS];
+    for (uint32_t seed = 1; seed <= SEEDS; seed++) {
+        board(seed);
+        world.no_acceleration = true;
+        hover_at(0.6F);
+        TEST_ASSERT_EQUAL(LAW_EST, flight.active_law);
+        TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_IMU, out.flags);
+        highest[seed - 1] = highest_m;
+        measure(10.0, 0.6);
+        rms[seed - 1] = rms_mm();
+        activity[seed - 1] = activity_n();
+        TEST_ASSERT_EQUAL(LAW_EST, flight.active_law);
+    }
+    qsort(rms, SEEDS, sizeof rms[0], ascending);
+    qsort(activity, SEEDS, sizeof activity[0], ascending);
+    qsort(highest, SEEDS, sizeof highest[0], ascending);
+    printf("hover rms median %.1f, largest %.1f mm; activity %.2f N; highest %.3f m\n", rms[SEEDS / 2U],
+           rms[SEEDS - 1U], activity[SEEDS / 2U], highest[SEEDS - 1U]);
+    TEST_ASSERT_TRUE(rms[SEEDS / 2U] > 6.0 && rms[SEEDS / 2U] < 17.0);
+    TEST_ASSERT_TRUE(rms[SEEDS - 1U] < 26.0);
+    TEST_ASSERT_TRUE(activity[SEEDS / 2U] > 0.3 && activity[SEEDS / 2U] < 0.75);
+    TEST_ASSERT_TRUE(highest[SEEDS - 1U] < 0.72);
+}
+
+void test_without_accelerations_a_vehicle_of_unknown_mass_is_found_by_the_heights(void)
+{
+    static const double masses[] = {0.8, 1.2};
+    for (unsigned i = 0; i < 2; i++) {
+        board(1U);
+        world.body.hover_n *= masses[i];
+        world.no_acceleration = true;
+        hover_at(0.6F);
+        TEST_ASSERT_TRUE_MESSAGE(highest_m < 0.75, "overshoot");
+        measure(10.0, 0.6);
+        TEST_ASSERT_TRUE_MESSAGE(rms_mm() < 26.0, "hover");
+        TEST_ASSERT_FLOAT_WITHIN(0.25F, (float)world.body.hover_n, flight.est.hover.thrust_n);
+    }
+}
+
+void test_accelerations_lost_in_flight_and_found_again_change_the_flag_and_not_the_height(void)
+{
+    hover_at(0.6F);
+    world.no_acceleration = true;
+    run(0.15);
+    TEST_ASSERT_EQUAL_UINT16_MESSAGE(0, out.flags, "some frames without them are nothing");
+    run(0.3);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_IMU, out.flags);
+    measure(10.0, 0.6);
+    TEST_ASSERT_TRUE(largest_error_m < 0.1);
+    world.no_acceleration = false;
+    run(0.2);
+    TEST_ASSERT_EQUAL_UINT16(0, out.flags);
+    measure(10.0, 0.6);
+    TEST_ASSERT_TRUE(largest_error_m < 0.1);
+    TEST_ASSERT_EQUAL(LAW_EST, flight.active_law);
+}
+
+void test_without_accelerations_and_without_heights_it_comes_down_by_the_thrust_alone(void)
 {
     world.no_acceleration = true;
     hover_at(0.6F);
-    TEST_ASSERT_EQUAL(LAW_PIDT, flight.active_law);
-    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_ATTITUDE, out.flags);
-    TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.6F, (float)height_m());
+    world.body.mute = true;
+    run(1.0);
+    TEST_ASSERT_EQUAL_STRING("COASTING", flight_state_name(out.state));
+    TEST_ASSERT_EQUAL(FLIGHT_MODE_HOVER, flight.mode);
+    run_until(FLIGHT_DESCENDING, 2.0);
+    TEST_ASSERT_EQUAL(FLIGHT_MODE_BLIND_DESCENT, flight.mode);
+    run(20.0);
+    TEST_ASSERT_TRUE(height_m() < 0.02);
+    TEST_ASSERT_TRUE(highest_m < 1.0);
 }
 
 /* ---- taking over and giving away */
