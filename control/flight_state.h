@@ -19,14 +19,14 @@ typedef enum {
     FLIGHT_STATE_COUNT
 } flight_state_t;
 
-#define FLIGHT_FLAG_HEIGHT 1U    /* no fresh height, or never one */
-#define FLIGHT_FLAG_ATTITUDE 2U  /* no fresh IMU frame, or its offset is not known */
-#define FLIGHT_FLAG_DISAGREE 4U  /* the mirrors' heights disagree */
-#define FLIGHT_FLAG_TOO_HIGH 8U  /* above reference + 0.8 m, or LOWERING */
-#define FLIGHT_FLAG_LINK 16U     /* link supervision is on and the link is silent */
-#define FLIGHT_FLAG_TILT 32U     /* tilted over 45 degrees, or CUT */
-#define FLIGHT_FLAG_PILOT 64U    /* the pilot has the throttle */
-#define FLIGHT_FLAG_SIGHT 256U   /* doubt SIGHT: heights are not believed, integrity.h */
+#define FLIGHT_FLAG_HEIGHT 1U   /* no fresh height, or never one */
+#define FLIGHT_FLAG_ATTITUDE 2U /* no fresh IMU frame, or its offset is not known */
+#define FLIGHT_FLAG_DISAGREE 4U /* the mirrors' heights disagree */
+#define FLIGHT_FLAG_TOO_HIGH 8U /* above reference + 0.8 m, or LOWERING */
+#define FLIGHT_FLAG_LINK 16U    /* link supervision is on and the link is silent */
+#define FLIGHT_FLAG_TILT 32U    /* tilted over 45 degrees, or CUT */
+#define FLIGHT_FLAG_PILOT 64U   /* the pilot has the throttle */
+#define FLIGHT_FLAG_SIGHT 256U  /* doubt SIGHT: heights are not believed, integrity.h */
 #define FLIGHT_FLAG_IMU \
     512U /* doubt IMU: accelerations are not believed; or law EST gets none and flies without them */
 #define FLIGHT_FLAG_THRUST 1024U /* doubt THRUST: commands have no effect */
