@@ -14,7 +14,7 @@ set(BSP_SOURCES
 set(FIRMWARE_SOURCES
     firmware/alive.c firmware/answer.c firmware/boot.c firmware/calibrator.c firmware/commands.c firmware/fault.c
     firmware/flight_recorder.c firmware/geometry.c firmware/ground.c firmware/imu_exchange.c firmware/imu_port.c firmware/laser_port.c firmware/listing.c firmware/main.c
-    firmware/monitor.c firmware/parameter_store.c firmware/pulse_stream.c firmware/servers.c firmware/task_control.c
+    firmware/monitor.c firmware/parameter_store.c firmware/published.c firmware/pulse_stream.c firmware/servers.c firmware/task_control.c
     firmware/task_imu.c
     firmware/task_receive_comm.c firmware/task_receive_laser.c firmware/task_send_comm.c firmware/task_send_laser.c
     firmware/uart_port.c firmware/verb_bench.c firmware/verb_calibrate.c firmware/verb_imu.c firmware/verb_laser.c firmware/verb_log.c firmware/verb_perf.c firmware/verb_reference.c

@@ -1,5 +1,5 @@
-/* The flight recorder's languages: one record in 16-bit cells, and one record as a row of CSV.
- * docs/operator.md has the columns. Pure. */
+/* The flight recorder's languages: a number in a cell of 16 bits, and the columns of a row of CSV. Which
+ * numbers they are is a table elsewhere. Pure. */
 #ifndef DRIVERS_FLIGHT_LOG_H
 #define DRIVERS_FLIGHT_LOG_H
 
@@ -7,33 +7,27 @@
 
 #include "drivers/telemetry.h"
 
-#define FLIGHT_LOG_CELLS 13U
+/* How a number is kept and shown. */
+typedef enum {
+    FLIGHT_LOG_MILLI, /* in thousandths of its column's unit, kept as whole ones: mm in a column of m */
+    FLIGHT_LOG_MICRO, /* in millionths of it, kept in thousandths: us in a column of s */
+    FLIGHT_LOG_1,     /* in its column's unit, kept with one decimal: +-3276.7 */
+    FLIGHT_LOG_3,     /* likewise with three: +-32.767 */
+    FLIGHT_LOG_4,     /* likewise with four: +-3.2767 */
+    FLIGHT_LOG_SCALE_COUNT
+} flight_log_scale_t;
 
-/* One instant of a flight. NaN where there is no value. Packing keeps 1 mm up to +-32.7 m, 1 mN up to 65 N,
- * 0.1 mrad up to +-3.27 rad, 1 mm/s2 up to +-32.7 m/s2, 0.1 us and 1 ms up to 65 s; what is beyond becomes
- * the end of the range. */
-typedef struct {
-    uint32_t time_ms;    /* since power-up */
-    float height_mm;     /* as measured */
-    float estimate_mm;   /* the height that the law acts on */
-    float innovation_mm; /* what a measurement was off from its prediction */
-    float reference_m;
-    float thrust_n;
-    float roll_rad, pitch_rad;
-    uint16_t state; /* 0..15 */
-    uint16_t flags; /* 0..4095 */
-    float up_mps2; /* acceleration upwards as measured, without gravity; NaN: no frame since the record before
-                    */
-    float pulse_us; /* commanded */
-    float age_ms;   /* of the rays that height_mm was measured by */
-} flight_log_t;
+/* A cell holds +-32767 steps, rounded; a value beyond becomes the end of the range. NAN stays NAN. */
+uint16_t flight_log_cell(float value, flight_log_scale_t scale);
+float flight_log_value(uint16_t cell, flight_log_scale_t scale);
+float flight_log_shown(float value, flight_log_scale_t scale); /* in the unit of its column */
 
-void flight_log_pack(uint16_t cells[FLIGHT_LOG_CELLS], const flight_log_t *record);
-void flight_log_unpack(flight_log_t *record, const uint16_t cells[FLIGHT_LOG_CELLS]);
+/* The first column: seconds with three decimals. */
+void flight_log_time(telemetry_line_t *line, uint32_t time_ms);
 
-/* The names of the columns, and one record: added to a line, without its beginning and its end. state: its
- * name, up to 10 characters. A value that is not there leaves its column empty. */
-void flight_log_titles(telemetry_line_t *line);
-void flight_log_row(telemetry_line_t *line, const flight_log_t *record, const char *state);
+/* A further column, with the comma before it. NAN leaves it empty. */
+void flight_log_number(telemetry_line_t *line, float value, uint16_t decimals);
+void flight_log_text(telemetry_line_t *line, const char *text); /* zero-terminated, without a comma */
+void flight_log_count(telemetry_line_t *line, uint32_t value);
 
 #endif

@@ -84,34 +84,35 @@ void telemetry_end(telemetry_line_t *line)
     telemetry_text(line, "\r\n");
 }
 
-void telemetry_status(telemetry_line_t *line, const telemetry_t *telemetry)
+static void begin_field(telemetry_line_t *line, const char *name)
 {
-    telemetry_begin(line);
-    telemetry_text(line, "alt:");
-    if (telemetry->height_valid) {
-        telemetry_fixed(line, telemetry->height_mm * 0.001F, 3U);
-    } else {
-        telemetry_text(line, "-");
+    telemetry_text(line, (line->length > 0U) ? " " : "");
+    telemetry_text(line, name);
+    telemetry_text(line, ":");
+}
+
+void telemetry_field_number(telemetry_line_t *line, const char *name, float value, uint16_t decimals)
+{
+    if (name != NULL) {
+        begin_field(line, name);
+        telemetry_fixed(line, value, decimals);
     }
-    telemetry_text(line, " ref:");
-    telemetry_fixed(line, telemetry->reference_m, 3U);
-    telemetry_text(line, " laser:");
-    telemetry_text(line, telemetry->laser);
-    telemetry_text(line, " thr:");
-    telemetry_fixed(line, telemetry->thrust_n, 2U);
-    telemetry_text(line, " state:");
-    telemetry_text(line, telemetry->state);
-    telemetry_text(line, " flags:");
-    telemetry_count(line, telemetry->flags);
-    if (telemetry->doubt != NULL && telemetry->reset == NULL) {
-        telemetry_text(line, " doubt:");
-        telemetry_text(line, telemetry->doubt);
+}
+
+void telemetry_field_text(telemetry_line_t *line, const char *name, const char *text)
+{
+    if (name != NULL && text != NULL) {
+        begin_field(line, name);
+        telemetry_text(line, text);
     }
-    if (telemetry->reset != NULL) {
-        telemetry_text(line, " reset:");
-        telemetry_text(line, telemetry->reset);
+}
+
+void telemetry_field_count(telemetry_line_t *line, const char *name, uint32_t value)
+{
+    if (name != NULL) {
+        begin_field(line, name);
+        telemetry_count(line, value);
     }
-    telemetry_end(line);
 }
 
 void telemetry_pulse(telemetry_line_t *line, float pulse_us)

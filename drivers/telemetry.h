@@ -32,23 +32,11 @@ void telemetry_count(telemetry_line_t *line, uint32_t value);
 void telemetry_sum(telemetry_line_t *line);
 void telemetry_end(telemetry_line_t *line); /* CR LF */
 
-/* The periodic line: "alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0" CR LF; "alt:-" without a
- * valid height. */
-typedef struct {
-    bool height_valid;
-    float height_mm;
-    float reference_m;
-    const char *laser; /* zero-terminated, borrowed for the call */
-    float thrust_n;
-    const char *state; /* likewise */
-    uint16_t flags;
-    const char *doubt; /* likewise, or NULL: a field "doubt:..." more, but not beside a reset */
-    const char *reset; /* likewise, or NULL: a field "reset:..." more, for the first line after a reset */
-} telemetry_t;
-
-/* From begin to end. With names of up to 8 characters (laser, doubt, reset) and 10 (state) it fits whatever
- * the numbers are, the reset within what numbers mean on this vehicle. */
-void telemetry_status(telemetry_line_t *line, const telemetry_t *telemetry);
+/* Fields of the periodic line, "name:value", with a blank before all but the first. name or text NULL: adds
+ * nothing. Which fields there are is a table elsewhere. */
+void telemetry_field_number(telemetry_line_t *line, const char *name, float value, uint16_t decimals);
+void telemetry_field_text(telemetry_line_t *line, const char *name, const char *text);
+void telemetry_field_count(telemetry_line_t *line, const char *name, uint32_t value);
 
 /* The line of a control cycle, for a test bench that plays the world: "P19997" CR LF, the throttle pulse in
  * tenths of a microsecond. Eight octets: at 9600 bit/s 50 cycles a second take 42 % of the line. From begin

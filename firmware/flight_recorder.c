@@ -13,14 +13,13 @@
 #define CYCLE_MIN_MS 45U
 #define SAME_INSTANT_US UINT32_C(3000) /* a frame that releases a cycle is not recorded apart from it */
 #define US_PER_MS 1000U
-#define MS_PER_US 1.0e-3F
 #define MS_PER_S 1000U
 
 /* Above 10000H there is memory that stacks cannot use. */
 #ifdef __TMS320C28XX__
 #pragma DATA_SECTION(ring, ".flight_log")
 #endif
-static uint16_t ring[RECORDS][FLIGHT_LOG_CELLS];
+static uint16_t ring[RECORDS][PUBLISHED_CELLS];
 static uint32_t oldest; /* changed by both tasks */
 static uint32_t next;
 static flight_recorder_rate_t rate;
@@ -34,7 +33,7 @@ static struct {
 } clock;
 
 static struct {
-    flight_log_t record;     /* of the latest cycle: what it commanded is in force until the next */
+    published_t record;      /* of the latest cycle: what it commanded is in force until the next */
     uint32_t height_time_us; /* arrival of its height */
     uint32_t height_age_us;  /* that it had then */
     uint32_t frame;          /* sequence of the latest frame that was recorded */
@@ -49,9 +48,9 @@ static uint32_t tell_ms(uint32_t now_us)
     return clock.now_ms;
 }
 
-static void append(const flight_log_t *record)
+static void append(const published_t *record)
 {
-    flight_log_pack(ring[next % RECORDS], record);
+    published_pack(ring[next % RECORDS], record);
     next++;
     if (next - oldest > RECORDS) {
         oldest = next - RECORDS;
@@ -59,27 +58,21 @@ static void append(const flight_log_t *record)
     clock.taken_ms = record->time_ms;
 }
 
-static float age_ms(uint32_t instant_us)
+static float age_us(uint32_t instant_us)
 {
-    return (float)(instant_us - latest.height_time_us + latest.height_age_us) * MS_PER_US;
+    return (float)(instant_us - latest.height_time_us + latest.height_age_us);
 }
 
-static flight_log_t record_of(const flight_inputs_t *in, const flight_outputs_t *out)
+static published_t record_of(const flight_inputs_t *in, const flight_outputs_t *out)
 {
-    return (flight_log_t){
+    return (published_t){
         .time_ms = tell_ms(in->now_us),
         .height_mm = in->height_valid ? in->altitude.height_mm : NAN,
-        .estimate_mm = out->estimate_mm,
-        .innovation_mm = out->innovation_mm,
-        .reference_m = out->reference_m,
-        .thrust_n = out->thrust_n,
+        .age_us = NAN,
         .roll_rad = in->attitude_ready ? in->roll_rad : NAN,
         .pitch_rad = in->attitude_ready ? in->pitch_rad : NAN,
-        .state = (uint16_t)out->state,
-        .flags = out->flags,
         .up_mps2 = NAN,
-        .pulse_us = out->pulse_us,
-        .age_ms = NAN,
+        .flight = *out,
     };
 }
 
@@ -92,13 +85,13 @@ static bool is_new(const imu_sample_t *frame)
 /* A frame between two cycles: what the cycle before it commanded is in force. */
 static void append_frame(const imu_sample_t *frame, uint32_t before_us)
 {
-    flight_log_t record = latest.record;
+    published_t record = latest.record;
 
     record.time_ms = clock.now_ms - before_us / US_PER_MS;
     record.roll_rad = frame->median.roll_rad;
     record.pitch_rad = frame->median.pitch_rad;
     record.up_mps2 = motion_up_mps2(frame);
-    record.age_ms = isnan(record.height_mm) ? NAN : age_ms(frame->arrival_us);
+    record.age_us = isnan(record.height_mm) ? NAN : age_us(frame->arrival_us);
     append(&record);
 }
 
@@ -125,11 +118,11 @@ static float take_frames(const flight_inputs_t *in, bool apart)
     return up_mps2;
 }
 
-static void keep(const flight_inputs_t *in, flight_log_t *record)
+static void keep(const flight_inputs_t *in, published_t *record)
 {
     latest.height_time_us = in->height_time_us;
     latest.height_age_us = in->height_age_us;
-    record->age_ms = isnan(record->height_mm) ? NAN : age_ms(in->now_us);
+    record->age_us = isnan(record->height_mm) ? NAN : age_us(in->now_us);
     latest.record = *record;
 }
 
@@ -138,7 +131,7 @@ void flight_recorder_take(const flight_inputs_t *in, const flight_outputs_t *out
     const bool active = out->state != FLIGHT_GROUND || out->thrust_n > out->idle_n;
     const bool wanted = active || clock.active;
     const bool fast = rate == FLIGHT_RECORDER_FAST;
-    flight_log_t record = record_of(in, out);
+    published_t record = record_of(in, out);
     const bool due = wanted && (fast || next == oldest || record.time_ms - clock.taken_ms >= CYCLE_MIN_MS);
 
     if (due) {
@@ -165,9 +158,9 @@ flight_recorder_span_t flight_recorder_span(void)
     return span;
 }
 
-bool flight_recorder_read(uint32_t number, flight_log_t *record)
+bool flight_recorder_read(uint32_t number, published_t *record)
 {
-    uint16_t cells[FLIGHT_LOG_CELLS];
+    uint16_t cells[PUBLISHED_CELLS];
     UInt key = Hwi_disable();
     const bool there = number - oldest < next - oldest;
 
@@ -176,7 +169,7 @@ bool flight_recorder_read(uint32_t number, flight_log_t *record)
     }
     Hwi_restore(key);
     if (there) {
-        flight_log_unpack(record, cells);
+        published_unpack(record, cells);
     }
     return there;
 }
@@ -186,8 +179,8 @@ uint32_t flight_recorder_since(uint16_t seconds)
     const flight_recorder_span_t span = flight_recorder_span();
     const uint32_t back_ms = (uint32_t)seconds * MS_PER_S;
     uint32_t first = span.next;
-    flight_log_t newest;
-    flight_log_t record;
+    published_t newest;
+    published_t record;
 
     if (!flight_recorder_read(span.next - 1U, &newest)) {
         return first;

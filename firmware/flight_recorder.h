@@ -13,10 +13,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "control/flight.h"
-#include "drivers/flight_log.h"
+#include "control/flight_io.h"
+#include "firmware/published.h"
 
-#define FLIGHT_RECORDER_RECORDS 1250U /* 16250 cells */
+/* The linker has room for so many cells (ccs_project/plomada.cmd): wider records are fewer. */
+#define FLIGHT_RECORDER_RECORDS (16250U / PUBLISHED_CELLS)
 
 typedef enum { FLIGHT_RECORDER_SLOW, FLIGHT_RECORDER_FAST } flight_recorder_rate_t;
 
@@ -36,8 +37,9 @@ typedef struct {
 
 flight_recorder_span_t flight_recorder_span(void);
 
-/* Copies one record. Returns false when it was overwritten or does not exist yet. TaskReceiveComm. */
-bool flight_recorder_read(uint32_t number, flight_log_t *record);
+/* Copies what is recorded of one instant. Returns false when it was overwritten or does not exist yet.
+ * TaskReceiveComm. */
+bool flight_recorder_read(uint32_t number, published_t *record);
 
 /* Number of the oldest record within the last `seconds` before the newest record. TaskReceiveComm. */
 uint32_t flight_recorder_since(uint16_t seconds);

@@ -1,3 +1,4 @@
+#include <math.h>
 #include <stddef.h>
 #include <ti/sysbios/BIOS.h>
 #include <ti/sysbios/knl/Clock.h>
@@ -12,7 +13,7 @@
 #include "firmware/schedule.h"
 #include "firmware/servers.h"
 #include "firmware/tasks.h"
-#include "drivers/telemetry.h"
+#include "firmware/published.h"
 #include "bsp/timebase.h"
 #include "firmware/xbee_port.h"
 
@@ -25,26 +26,21 @@ static Void release(UArg unused)
     Semaphore_post(tick);
 }
 
+/* The line of a reset tells no doubt: with both it might not fit one packet, and the flags tell it too. */
 static void report(telemetry_line_t *line, const char *reset)
 {
     altitude_sample_t altitude;
     laser_sample_t laser;
-    flight_outputs_t flight;
-    telemetry_t telemetry;
+    published_t now = {.age_us = NAN, .roll_rad = NAN, .pitch_rad = NAN, .up_mps2 = NAN};
 
     altitude_server_read(&altitude);
     laser_server_read(&laser);
-    flight_status_server_read(&flight);
-    telemetry.height_valid = (flight.flags & FLIGHT_FLAG_HEIGHT) == 0U;
-    telemetry.height_mm = altitude.altitude.height_mm;
-    telemetry.reference_m = flight.reference_m;
-    telemetry.laser = urg_status_name(laser.status);
-    telemetry.thrust_n = flight.thrust_n;
-    telemetry.state = flight_state_name(flight.state);
-    telemetry.flags = flight.flags;
-    telemetry.doubt = integrity_doubt_name(flight.doubts);
-    telemetry.reset = reset;
-    telemetry_status(line, &telemetry);
+    flight_status_server_read(&now.flight);
+    now.height_mm = ((now.flight.flags & FLIGHT_FLAG_HEIGHT) == 0U) ? altitude.altitude.height_mm : NAN;
+    now.laser = urg_status_name(laser.status);
+    now.doubt = (reset == NULL) ? integrity_doubt_name(now.flight.doubts) : NULL;
+    now.reset = reset;
+    published_telemetry(line, &now);
 }
 
 static Void task_send_comm(UArg unused0, UArg unused1)

@@ -68,7 +68,7 @@ bool verb_log(answer_t *answer)
 }
 
 /* Skips what was overwritten meanwhile. */
-static bool next_record(flight_log_t *record)
+static bool next_record(published_t *record)
 {
     const flight_recorder_span_t span = flight_recorder_span();
 
@@ -98,7 +98,7 @@ static bool send_numbered(telemetry_line_t *line)
 static bool send_titles(telemetry_line_t *line)
 {
     begin_numbered(line, 0U);
-    flight_log_titles(line);
+    published_titles(line);
     dump.titles = !send_numbered(line);
     return !dump.titles;
 }
@@ -115,13 +115,13 @@ static bool send_end(telemetry_line_t *line)
 
 static bool send_row(telemetry_line_t *line)
 {
-    flight_log_t record;
+    published_t record;
 
     if (!next_record(&record)) {
         return send_end(line);
     }
     begin_numbered(line, dump.sent + 1U);
-    flight_log_row(line, &record, flight_state_name((flight_state_t)record.state));
+    published_row(line, &record);
     if (!send_numbered(line)) {
         return false;
     }

@@ -6,7 +6,7 @@
 #include <strings.h>
 
 #include "control/est/estimator.h"
-#include "drivers/flight_log.h"
+#include "firmware/published.h"
 #include "sim/firmware_view.h"
 #include "sim/devices/xbee.h"
 #include "sim/host/pace.h"
@@ -342,15 +342,15 @@ static void write_titles(FILE *csv)
     static telemetry_line_t line;
 
     telemetry_begin_answer(&line);
-    flight_log_titles(&line);
+    published_titles(&line);
     fprintf(csv, "%.*s,height_m,abs_m,terrain_m\n", (int)line.length, line.text);
 }
 
-static void write_column(FILE *csv, bool there, double value)
+static void write_number(FILE *csv, double value, int decimals)
 {
     fputc(',', csv);
-    if (there && !isnan(value)) {
-        fprintf(csv, "%.4f", value);
+    if (!isnan(value)) {
+        fprintf(csv, "%.*f", decimals, value);
     }
 }
 
@@ -368,27 +368,45 @@ static bool new_frame(const imu_sample_t *frame)
     return unseen && frame->ready && frame->has_acceleration;
 }
 
-static double height_age_s(const firmware_view_t *firmware)
+static float height_age_us(const firmware_view_t *firmware)
 {
-    return (double)(firmware->now_us - firmware->altitude.arrival_us + firmware->altitude.age_us) * 1e-6;
+    return (float)(firmware->now_us - firmware->altitude.arrival_us + firmware->altitude.age_us);
 }
 
-static void write_row(FILE *csv, double t_s, const truth_t *truth)
+/* As the firmware knows it at this instant, between two of its cycles too; the pulse as it is at the pin. */
+static published_t published(void)
 {
     const firmware_view_t firmware = firmware_view();
-    const flight_outputs_t *out = &firmware.flight;
+    const bool height = firmware.altitude.scan_valid, attitude = firmware.imu.ready;
+    published_t now = {
+        .height_mm = height ? firmware.altitude.altitude.height_mm : NAN,
+        .age_us = height ? height_age_us(&firmware) : NAN,
+        .roll_rad = attitude ? firmware.imu.median.roll_rad : NAN,
+        .pitch_rad = attitude ? firmware.imu.median.pitch_rad : NAN,
+        .up_mps2 = new_frame(&firmware.imu) ? motion_up_mps2(&firmware.imu) : NAN,
+        .flight = firmware.flight,
+    };
+
+    now.flight.pulse_us = (float)board_pulse_us();
+    return now;
+}
+
+static double in_column(double value, flight_log_scale_t scale)
+{
+    return scale == FLIGHT_LOG_MILLI ? value * 1e-3 : scale == FLIGHT_LOG_MICRO ? value * 1e-6 : value;
+}
+
+#define NUMBER(telemetry, decimals, column, log_decimals, csv_decimals, source, scale) \
+    write_number(csv, in_column((double)now.source, scale), csv_decimals);
+#define STATE(telemetry, column) fprintf(csv, ",%s", flight_state_name(now.flight.state));
+#define FLAGS(telemetry, column) fprintf(csv, ",%u", (unsigned)now.flight.flags);
+#define TEXT(telemetry, source)
+static void write_row(FILE *csv, double t_s, const truth_t *truth)
+{
+    const published_t now = published();
 
     fprintf(csv, "%.2f", t_s);
-    write_column(csv, firmware.altitude.scan_valid, (double)firmware.altitude.altitude.height_mm * 1e-3);
-    write_column(csv, true, (double)out->estimate_mm * 1e-3);
-    write_column(csv, true, (double)out->innovation_mm * 1e-3);
-    fprintf(csv, ",%.3f,%.4f", (double)out->reference_m, (double)out->thrust_n);
-    write_column(csv, firmware.imu.ready, (double)firmware.imu.median.roll_rad);
-    write_column(csv, firmware.imu.ready, (double)firmware.imu.median.pitch_rad);
-    fprintf(csv, ",%s,%u", flight_state_name(out->state), (unsigned)out->flags);
-    write_column(csv, new_frame(&firmware.imu), (double)motion_up_mps2(&firmware.imu));
-    fprintf(csv, ",%.2f", board_pulse_us());
-    write_column(csv, firmware.altitude.scan_valid, height_age_s(&firmware));
+    PUBLISHED(NUMBER, STATE, FLAGS, TEXT)
     fprintf(csv, ",%.4f,%.4f,%.4f\n", truth->height_m, truth->altitude_m, truth->terrain_m);
 }
 

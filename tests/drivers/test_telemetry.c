@@ -25,126 +25,39 @@ static void assert_line(const char *expected)
     TEST_ASSERT_EQUAL_STRING_LEN(expected, line.text, line.length);
 }
 
-static telemetry_t flying(void)
+void test_fields_are_parted_by_a_blank(void)
 {
-    telemetry_t telemetry = {.height_valid = true,
-                             .height_mm = 598.0F,
-                             .reference_m = 0.6F,
-                             .laser = "OK",
-                             .thrust_n = 7.12F,
-                             .state = "FLYING",
-                             .flags = 0U};
-    return telemetry;
+    telemetry_field_number(&line, "alt", 0.598F, 3U);
+    telemetry_field_text(&line, "laser", "OK");
+    telemetry_field_count(&line, "flags", 257U);
+    telemetry_field_number(&line, "thr", 7.12F, 2U);
+    assert_line("alt:0.598 laser:OK flags:257 thr:7.12");
 }
 
-void test_the_status_line_is_the_documented_one(void)
+void test_a_field_without_a_name_or_a_text_is_not_in_the_line(void)
 {
-    telemetry_t telemetry = flying();
-    telemetry_status(&line, &telemetry);
-    assert_line("alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0\r\n");
+    telemetry_field_number(&line, NULL, 1.0F, 3U);
+    telemetry_field_text(&line, NULL, "OK");
+    telemetry_field_text(&line, "doubt", NULL);
+    telemetry_field_count(&line, NULL, 1U);
+    assert_line("");
+    telemetry_field_count(&line, "flags", 0U);
+    assert_line("flags:0");
 }
 
-void test_without_a_valid_height_the_altitude_is_a_dash(void)
+void test_a_field_keeps_its_sign_but_not_that_of_a_rounded_zero(void)
 {
-    telemetry_t telemetry = flying();
-    telemetry.height_valid = false;
-    telemetry.reference_m = 0.0F;
-    telemetry.laser = "WAIT";
-    telemetry.thrust_n = 0.0F;
-    telemetry.state = "GROUND";
-    telemetry.flags = 3U;
-    telemetry_status(&line, &telemetry);
-    assert_line("alt:- ref:0.000 laser:WAIT thr:0.00 state:GROUND flags:3\r\n");
+    telemetry_field_number(&line, "alt", -0.012F, 3U);
+    telemetry_field_number(&line, "ref", -0.0004F, 3U);
+    assert_line("alt:-0.012 ref:0.000");
 }
 
-void test_a_height_below_zero_keeps_its_sign_and_a_rounded_zero_has_none(void)
+void test_a_value_that_cannot_be_written_becomes_a_dash(void)
 {
-    telemetry_t telemetry = flying();
-    telemetry.height_mm = -12.0F;
-    telemetry_status(&line, &telemetry);
-    TEST_ASSERT_EQUAL_STRING_LEN("alt:-0.012 ref", line.text, 14);
-    telemetry.height_mm = -0.4F;
-    telemetry_status(&line, &telemetry);
-    TEST_ASSERT_EQUAL_STRING_LEN("alt:0.000 ref", line.text, 13);
-}
-
-void test_the_cause_of_a_reset_is_one_field_more(void)
-{
-    telemetry_t telemetry = flying();
-    telemetry.reset = "WATCHDOG";
-    telemetry_status(&line, &telemetry);
-    assert_line("alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0 reset:WATCHDOG\r\n");
-}
-
-void test_with_the_longest_names_the_cause_of_a_reset_fits_the_packet_too(void)
-{
-    telemetry_t telemetry = {.height_valid = true,
-                             .height_mm = -4000.0F,
-                             .reference_m = 3.0F,
-                             .laser = "EIGHT_CH",
-                             .thrust_n = 11.76F,
-                             .state = "DESCENDING",
-                             .flags = 63U,
-                             .reset = "WATCHDOG"};
-    telemetry_status(&line, &telemetry);
-    TEST_ASSERT_FALSE(line.overflowed);
-    TEST_ASSERT_LESS_OR_EQUAL(TELEMETRY_LINE_MAX, line.length);
-    TEST_ASSERT_EQUAL_STRING_LEN(" reset:WATCHDOG\r\n", &line.text[line.length - 17U], 17);
-}
-
-void test_values_that_cannot_be_written_become_dashes(void)
-{
-    telemetry_t telemetry = flying();
-    telemetry.height_mm = NAN;
-    telemetry.reference_m = INFINITY;
-    telemetry.thrust_n = -FLT_MAX;
-    telemetry_status(&line, &telemetry);
-    assert_line("alt:- ref:- laser:OK thr:- state:FLYING flags:0\r\n");
-}
-
-void test_no_input_makes_the_line_longer_than_a_radio_packet(void)
-{
-    static const float values[] = {0.0F,    0.598F,   -4294966.5F,   4294966.5F, -1.0e6F, 4294967.0F,
-                                   FLT_MAX, -FLT_MAX, INFINITY,      -INFINITY,  NAN,     FLT_MIN,
-                                   1e-7F,   -0.0F,    -999999.9999F, 1e30F};
-    static const uint16_t n = sizeof values / sizeof values[0];
-
-    for (uint16_t i = 0; i < n; i++) {
-        for (uint16_t j = 0; j < n; j++) {
-            for (uint16_t k = 0; k < n; k++) {
-                telemetry_t telemetry = {.height_valid = true,
-                                         .height_mm = values[i],
-                                         .reference_m = values[j],
-                                         .laser = "EIGHT_CH",
-                                         .thrust_n = values[k],
-                                         .state = "DESCENDING",
-                                         .flags = 65535U};
-                telemetry_status(&line, &telemetry);
-                TEST_ASSERT_FALSE(line.overflowed);
-                TEST_ASSERT_LESS_OR_EQUAL(TELEMETRY_LINE_MAX, line.length);
-                TEST_ASSERT_EQUAL_STRING_LEN("alt:", line.text, 4);
-                TEST_ASSERT_EQUAL_STRING_LEN(" flags:65535\r\n", &line.text[line.length - 14U], 14);
-            }
-        }
-    }
-}
-
-void test_the_longest_line_that_fits_is_95_characters_and_one_more_is_not_to_be_sent(void)
-{
-    telemetry_t telemetry = {.height_valid = true,
-                             .height_mm = -4294966500.0F,
-                             .reference_m = -4294966.5F,
-                             .laser = "EIGHT_CH",
-                             .thrust_n = -4294966.5F,
-                             .state = "DESCENDING",
-                             .flags = 65535U};
-    telemetry_status(&line, &telemetry);
-    TEST_ASSERT_EQUAL(95U, line.length);
-    TEST_ASSERT_FALSE(line.overflowed);
-    telemetry.laser = "NINE_CHAR";
-    telemetry_status(&line, &telemetry);
-    TEST_ASSERT_TRUE(line.overflowed);
-    TEST_ASSERT_LESS_OR_EQUAL(TELEMETRY_LINE_MAX, line.length);
+    telemetry_field_number(&line, "alt", NAN, 3U);
+    telemetry_field_number(&line, "ref", INFINITY, 3U);
+    telemetry_field_number(&line, "thr", -FLT_MAX, 2U);
+    assert_line("alt:- ref:- thr:-");
 }
 
 void test_an_answer_is_built_from_texts_numbers_and_counts(void)
@@ -260,13 +173,8 @@ void test_an_answer_may_have_240_characters_and_not_one_more(void)
     }
 }
 
-void test_the_status_line_keeps_to_one_packet_after_an_answer(void)
+void test_a_line_keeps_to_one_packet_after_an_answer(void)
 {
-    telemetry_t telemetry = flying();
-
-    telemetry_begin_answer(&line);
-    telemetry_status(&line, &telemetry);
-    TEST_ASSERT_EQUAL(TELEMETRY_LINE_MAX, line.limit);
     telemetry_begin_answer(&line);
     TEST_ASSERT_EQUAL(TELEMETRY_ANSWER_MAX, line.limit);
     telemetry_begin(&line);

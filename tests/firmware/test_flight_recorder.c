@@ -47,9 +47,9 @@ static uint32_t held(void)
     return span.next - span.oldest;
 }
 
-static flight_log_t newest(void)
+static published_t newest(void)
 {
-    flight_log_t record;
+    published_t record;
 
     TEST_ASSERT_TRUE(flight_recorder_read(flight_recorder_span().next - 1U, &record));
     return record;
@@ -63,7 +63,7 @@ static void fly(float thrust_n)
 
 void test_a_cycle_is_recorded_as_it_was(void)
 {
-    flight_log_t record;
+    published_t record;
 
     fly(7.01F);
     in.altitude.height_mm = 601.0F;
@@ -75,15 +75,15 @@ void test_a_cycle_is_recorded_as_it_was(void)
     out.innovation_mm = -4.0F;
     take(CYCLE_US);
     record = newest();
-    TEST_ASSERT_EQUAL_FLOAT(598.0F, record.estimate_mm);
-    TEST_ASSERT_EQUAL_FLOAT(-4.0F, record.innovation_mm);
+    TEST_ASSERT_EQUAL_FLOAT(598.0F, record.flight.estimate_mm);
+    TEST_ASSERT_EQUAL_FLOAT(-4.0F, record.flight.innovation_mm);
     TEST_ASSERT_EQUAL_FLOAT(601.0F, record.height_mm);
-    TEST_ASSERT_EQUAL_FLOAT(0.6F, record.reference_m);
-    TEST_ASSERT_EQUAL_FLOAT(7.01F, record.thrust_n);
+    TEST_ASSERT_EQUAL_FLOAT(0.6F, record.flight.reference_m);
+    TEST_ASSERT_EQUAL_FLOAT(7.01F, record.flight.thrust_n);
     TEST_ASSERT_FLOAT_WITHIN(0.0001F, 0.05F, record.roll_rad);
     TEST_ASSERT_FLOAT_WITHIN(0.0001F, -0.02F, record.pitch_rad);
-    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLYING, record.state);
-    TEST_ASSERT_EQUAL_UINT16(3U, record.flags);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLYING, record.flight.state);
+    TEST_ASSERT_EQUAL_UINT16(3U, record.flight.flags);
     in.height_valid = false;
     in.attitude_ready = false;
     take(CYCLE_US);
@@ -104,7 +104,7 @@ void test_on_the_ground_nothing_is_recorded_but_the_one_cycle_after_a_flight(voi
         take(CYCLE_US);
     }
     TEST_ASSERT_EQUAL_UINT32(3, held());
-    TEST_ASSERT_EQUAL_UINT16(FLIGHT_GROUND, newest().state);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_GROUND, newest().flight.state);
     out.thrust_n = 0.17F;
     take(CYCLE_US);
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(4, held(), "thrust on the ground is recorded: hover calibration");
@@ -149,9 +149,9 @@ static void frames_before(uint16_t count, uint32_t latest_us)
     }
 }
 
-static flight_log_t back(uint32_t records)
+static published_t back(uint32_t records)
 {
-    flight_log_t record;
+    published_t record;
 
     TEST_ASSERT_TRUE(flight_recorder_read(flight_recorder_span().next - 1U - records, &record));
     return record;
@@ -166,7 +166,7 @@ void test_fast_records_each_frame_with_what_the_cycle_before_it_commanded(void)
     in.height_time_us = in.now_us + 108000U - 10000U;
     in.height_age_us = 72000U;
     take(CYCLE_US);
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, 82.0F, newest().age_ms);
+    TEST_ASSERT_FLOAT_WITHIN(0.01e3F, 82.0e3F, newest().age_us);
     in.now_us += 100000U;
     frames_before(4U, 20000U);
     out.thrust_n = 8.0F;
@@ -175,15 +175,15 @@ void test_fast_records_each_frame_with_what_the_cycle_before_it_commanded(void)
 
     take(0U);
     TEST_ASSERT_EQUAL_UINT32(before + 5U, held());
-    TEST_ASSERT_FLOAT_WITHIN(0.001F, 8.0F, newest().thrust_n);
-    TEST_ASSERT_FLOAT_WITHIN(0.1F, 1315.3F, newest().pulse_us);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 8.0F, newest().flight.thrust_n);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 1315.3F, newest().flight.pulse_us);
     TEST_ASSERT_TRUE_MESSAGE(isnan(newest().up_mps2), "the latest frame has a record of its own");
     for (uint32_t i = 1U; i <= 4U; i++) {
-        TEST_ASSERT_FLOAT_WITHIN(0.001F, 7.0F, back(i).thrust_n);
+        TEST_ASSERT_FLOAT_WITHIN(0.001F, 7.0F, back(i).flight.thrust_n);
         TEST_ASSERT_EQUAL_UINT32(newest().time_ms - 20U - 25U * (i - 1U), back(i).time_ms);
         TEST_ASSERT_FLOAT_WITHIN(0.002F, 4.0F - (float)i, back(i).up_mps2);
         TEST_ASSERT_FLOAT_WITHIN(0.0002F, 0.001F * (4.0F - (float)i), back(i).roll_rad);
-        TEST_ASSERT_FLOAT_WITHIN(1.1F, 182.0F - 20.0F - 25.0F * (float)(i - 1U), back(i).age_ms);
+        TEST_ASSERT_FLOAT_WITHIN(1.1e3F, 182.0e3F - 20.0e3F - 25.0e3F * (float)(i - 1U), back(i).age_us);
     }
 }
 
@@ -208,8 +208,8 @@ void test_fast_holds_over_twenty_seconds_of_every_frame_under_every_law(void)
     static const uint32_t cycles_us[] = {25000U, 100000U, 108000U};
 
     for (size_t i = 0; i < sizeof cycles_us / sizeof cycles_us[0]; i++) {
-        flight_log_t oldest;
-        flight_log_t record;
+        published_t oldest;
+        published_t record;
         uint32_t gap_ms = 0U;
 
         setUp();
@@ -237,7 +237,7 @@ void test_sixty_seconds_are_held_at_every_rate_of_the_control_cycle(void)
     for (size_t i = 0; i < sizeof cycles_us / sizeof cycles_us[0]; i++) {
         const flight_recorder_span_t *span;
         flight_recorder_span_t now;
-        flight_log_t oldest;
+        published_t oldest;
 
         setUp();
         fly(7.0F);
@@ -281,7 +281,7 @@ void test_no_millisecond_is_lost_to_rounding(void)
 void test_overwritten_and_future_records_are_not_read(void)
 {
     flight_recorder_span_t span;
-    flight_log_t record;
+    published_t record;
 
     fly(7.0F);
     for (uint32_t i = 0U; i < FLIGHT_RECORDER_RECORDS + 10U; i++) {

@@ -57,10 +57,10 @@ static flight_recorder_span_t look(int calls)
     return span;
 }
 
-static bool read(uint32_t number, flight_log_t *record, int calls)
+static bool read(uint32_t number, published_t *record, int calls)
 {
     (void)calls;
-    *record = (flight_log_t){.time_ms = number * 1000U, .state = FLIGHT_FLYING};
+    *record = (published_t){.time_ms = number * 1000U, .flight.state = FLIGHT_FLYING};
     return number - span.oldest < span.next - span.oldest;
 }
 

@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "child.h"
-#include "drivers/flight_log.h"
 #include "firmware/flight_recorder.h"
 #include "firmware/probe.h"
+#include "firmware/published.h"
 #include "unity.h"
 
 #define TERMINAL_MAX 200000
@@ -308,12 +308,12 @@ static void read_ring(logs_t *l)
 {
     const flight_recorder_span_t span = flight_recorder_span();
     telemetry_line_t line;
-    flight_log_t record;
+    published_t record;
 
     for (uint32_t number = span.oldest; number != span.next && flight_recorder_read(number, &record);
          number++) {
         telemetry_begin_answer(&line);
-        flight_log_row(&line, &record, flight_state_name((flight_state_t)record.state));
+        published_row(&line, &record);
         line.text[line.length] = '\0';
         read_sample(line.text, &l->ring[l->ring_rows++]);
     }
@@ -382,7 +382,7 @@ void test_both_logs_have_the_same_columns_and_the_pc_boards_some_more(void)
     char expected[200];
 
     telemetry_begin_answer(&line);
-    flight_log_titles(&line);
+    published_titles(&line);
     snprintf(expected, sizeof expected, "%.*s,height_m,abs_m,terrain_m\n", (int)line.length, line.text);
     child_run(fly_with_both_logs, (void *)(size_t) "pid-40cm", &logs, sizeof logs);
     TEST_ASSERT_EQUAL_STRING(expected, logs.titles);

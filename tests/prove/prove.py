@@ -29,7 +29,7 @@ PROOFS = [
     ("line_sum", ["line_sum"], 65, ["any_text_has_a_sum"]),
     ("razor", ["razor"], 7, ["collector_starts_sound", "collector_stays_sound", "any_frame_is_parsed"]),
     ("parameter_image", ["parameter_image"], 136, ["any_cells_are_read", "any_set_is_written"]),
-    ("flight_log", ["flight_log"], 4, ["any_record_is_packed", "any_cells_are_unpacked"]),
+    ("flight_log", ["flight_log"], 4, ["any_number_has_a_cell", "any_cell_has_a_number"]),
 ]
 
 

@@ -10,6 +10,7 @@ import house
 import includes
 import length
 import mirror
+import published
 import sources
 import state
 import words
@@ -304,6 +305,51 @@ class Commands(unittest.TestCase):
         self.assertEqual(self.check(verbs=self.VERBS.replace("PING", "PONG")),
                          ["README: no row for #PONG", "README: #PING is no command", "packets: none for #PONG",
                           "packets: #PING is no command"])
+
+
+
+class Published(unittest.TestCase):
+    HEADER = ('#define PUBLISHED(NUMBER, STATE, FLAGS, TEXT) \\\n    NUMBER("alt", 3U, "meas_m", 3U, 4U, height_mm, FLIGHT_LOG_MILLI) \\\n'
+              '    NUMBER(NULL, 0U, "roll_rad", 4U, 4U, roll_rad, FLIGHT_LOG_4) \\\n    TEXT("laser", laser) \\\n'
+              '    STATE("state", "state")\n/* clang-format on */\n')
+    PAGE = ("| field | unit | decimals | meaning |\n|---|---|---|---|\n| `alt` | m | 3 | height |\n| `laser` | - | - | status |\n"
+            "| `state` | - | - | state |\n\n| column | unit | decimals | meaning |\n|---|---|---|---|\n| `t_s` | s | 3 | time |\n"
+            "| `meas_m` | m | 3 | height |\n| `roll_rad` | rad | 4 | roll |\n| `state` | - | - | state |\n")
+
+    def complaints(self, header=HEADER, page=PAGE):
+        with tempfile.TemporaryDirectory() as name:
+            root = Path(name)
+            for path, text in (("firmware/published.h", header), ("docs/operator.md", page)):
+                (root / path).parent.mkdir()
+                (root / path).write_text(text, encoding="utf-8")
+            return published.check(root)
+
+    def test_a_page_that_tells_the_table_is_good(self):
+        self.assertEqual(self.complaints(), [])
+
+    def assert_one(self, found, *mentioned):
+        self.assertEqual(len(found), 1, found)
+        for word in mentioned:
+            self.assertIn(word, found[0])
+
+    def test_a_field_or_a_column_without_a_row_is_named(self):
+        self.assert_one(self.complaints(page=self.PAGE.replace("| `laser` | - | - | status |\n", "")), "field", "laser")
+        self.assert_one(self.complaints(page=self.PAGE.replace("| `roll_rad` | rad | 4 | roll |\n", "")), "column", "roll_rad")
+
+    def test_another_unit_or_number_of_decimals_is_named(self):
+        self.assert_one(self.complaints(page=self.PAGE.replace("`alt` | m |", "`alt` | mm |")), "alt", "'m'")
+        self.assert_one(self.complaints(page=self.PAGE.replace("rad | 4", "rad | 3")), "roll_rad", "'4'")
+
+    def test_a_row_that_is_not_published_is_named(self):
+        self.assert_one(self.complaints(page=self.PAGE.replace("| `laser`", "| `vz` | m/s | 2 | climb |\n| `laser`")), "vz")
+
+    def test_another_order_is_named(self):
+        self.assert_one(self.complaints(page=self.PAGE.replace("| `laser` | - | - | status |\n| `state` | - | - | state |\n",
+                                                               "| `state` | - | - | state |\n| `laser` | - | - | status |\n", 1)), "order")
+
+    def test_a_row_that_is_none_ends_the_rule(self):
+        with self.assertRaises(ValueError):
+            self.complaints(header=self.HEADER.replace("TEXT(", "TEXTS("))
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@
 #include "drivers/scip_layout.h"
 #include "drivers/scip_parser.h"
 #include "drivers/telecommand.h"
-#include "drivers/telemetry.h"
+#include "firmware/published.h"
 #include "drivers/urg.h"
 
 #define REQUIRE(condition) \
@@ -334,15 +334,13 @@ static telemetry_line_t line;
 
 static void send_comm(void)
 {
-    const telemetry_t telemetry = {.height_valid = true,
-                                   .height_mm = 598.43F,
-                                   .reference_m = 0.6F,
-                                   .laser = "OK",
-                                   .thrust_n = 7.1234F,
-                                   .state = "FLYING",
-                                   .flags = 0};
+    const published_t now = {
+        .height_mm = 598.43F,
+        .laser = "OK",
+        .flight = {.reference_m = 0.6F, .thrust_n = 7.1234F, .state = FLIGHT_FLYING},
+    };
 
-    telemetry_status(&line, &telemetry);
+    published_telemetry(&line, &now);
 }
 
 static telecommand_collector_t commands;

@@ -1,0 +1,66 @@
+/* Each function walks the rows of PUBLISHED once: a macro for each kind of row says what is done with it. */
+#include "firmware/published.h"
+
+#define STATE_SHIFT 12
+#define FLAGS_MASK 0x0FFFU
+#define NOT_HERE(telemetry, source)
+
+#define NUMBER(telemetry, decimals, column, log_decimals, csv_decimals, source, scale) \
+    telemetry_field_number(line, telemetry, flight_log_shown(now->source, scale), decimals);
+#define STATE(telemetry, column) telemetry_field_text(line, telemetry, flight_state_name(now->flight.state));
+#define FLAGS(telemetry, column) telemetry_field_count(line, telemetry, now->flight.flags);
+#define TEXT(telemetry, source) telemetry_field_text(line, telemetry, now->source);
+void published_telemetry(telemetry_line_t *line, const published_t *now)
+{
+    telemetry_begin(line);
+    PUBLISHED(NUMBER, STATE, FLAGS, TEXT)
+    telemetry_end(line);
+}
+#undef NUMBER
+#undef STATE
+#undef FLAGS
+#undef TEXT
+
+#define NUMBER(telemetry, decimals, column, log_decimals, csv_decimals, source, scale) \
+    *cells++ = flight_log_cell(now->source, scale);
+void published_pack(uint16_t cells[PUBLISHED_CELLS], const published_t *now)
+{
+    *cells++ = (uint16_t)(now->time_ms & 0xFFFFU);
+    *cells++ = (uint16_t)(now->time_ms >> 16);
+    PUBLISHED(NUMBER, NOT_HERE, NOT_HERE, NOT_HERE)
+    *cells = (uint16_t)((uint32_t)now->flight.state << STATE_SHIFT) | (now->flight.flags & FLAGS_MASK);
+}
+#undef NUMBER
+
+#define NUMBER(telemetry, decimals, column, log_decimals, csv_decimals, source, scale) \
+    now->source = flight_log_value(*cells++, scale);
+void published_unpack(published_t *now, const uint16_t cells[PUBLISHED_CELLS])
+{
+    now->time_ms = (uint32_t)cells[0] | ((uint32_t)cells[1] << 16);
+    cells += 2;
+    PUBLISHED(NUMBER, NOT_HERE, NOT_HERE, NOT_HERE)
+    now->flight.state = (flight_state_t)(*cells >> STATE_SHIFT);
+    now->flight.flags = *cells & FLAGS_MASK;
+}
+#undef NUMBER
+
+#define NUMBER(telemetry, decimals, column, log_decimals, csv_decimals, source, scale) \
+    flight_log_text(line, column);
+#define NAMED(telemetry, column) flight_log_text(line, column);
+void published_titles(telemetry_line_t *line)
+{
+    telemetry_text(line, "t_s");
+    PUBLISHED(NUMBER, NAMED, NAMED, NOT_HERE)
+}
+#undef NUMBER
+#undef NAMED
+
+#define NUMBER(telemetry, decimals, column, log_decimals, csv_decimals, source, scale) \
+    flight_log_number(line, flight_log_shown(record->source, scale), log_decimals);
+#define STATE(telemetry, column) flight_log_text(line, flight_state_name(record->flight.state));
+#define FLAGS(telemetry, column) flight_log_count(line, record->flight.flags);
+void published_row(telemetry_line_t *line, const published_t *record)
+{
+    flight_log_time(line, record->time_ms);
+    PUBLISHED(NUMBER, STATE, FLAGS, NOT_HERE)
+}
