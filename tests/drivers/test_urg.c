@@ -131,7 +131,7 @@ void test_a_scan_stays_while_the_next_one_comes_in(void)
 
     reach_stream();
     (void)feed(frame(32U, "9H"));
-    strncat(half, frame(64U, "0F"), 60U);
+    memcpy(half, frame(64U, "0F"), 60U);
     TEST_ASSERT_FALSE(feed(half));
     assert_scan(32U, 600U);
     TEST_ASSERT_TRUE(feed(&frame(64U, "0F")[60]));

@@ -61,4 +61,8 @@ typedef _Bool bool __attribute__((aligned(2)));
 #define fgets cell_fgets
 #define qsort cell_qsort
 
+/* Of these there is none for cells; the machine's own would count octets. */
+#pragma GCC poison strcat strncat strncpy strrchr strspn strcspn strpbrk strtok strtol strtod sprintf vsprintf
+#pragma GCC poison sscanf fprintf fputs fputc fread fwrite
+
 #endif
