@@ -69,7 +69,7 @@ static bool is_est_mode(flight_mode_t mode)
 /* Frames and heights make an estimate that may be flown by. */
 static bool has_estimate(const flight_t *flight)
 {
-    return est_law_ready(&flight->est) && !integrity_doubts(&flight->integrity, DOUBT_IMU);
+    return est_law_ready(&flight->est);
 }
 
 /* Slowly: what is wrong now must not have been learned already. Quicker while little is known. */
@@ -393,6 +393,11 @@ static void change_doubts(flight_t *flight)
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
     est_law_set_powerless(&flight->est, integrity_doubts(integrity, DOUBT_THRUST));
+    est_law_set_accelerations_doubted(&flight->est, integrity_doubts(integrity, DOUBT_IMU));
+    if ((come & DOUBT_IMU) != 0U && flight->est.airborne) { /* the estimate followed them until now */
+        estimator_amend(&flight->est.estimator, integrity->height_m, integrity_speed_mps(integrity), 0.0F);
+        est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
+    }
     flight->doubts = integrity->doubts;
 }
 

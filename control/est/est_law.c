@@ -173,7 +173,9 @@ static void predict_frame(est_law_t *law, const parameters_t *parameters, const 
         return; /* taken before: of the sixteen of a cycle most are */
     }
 
-    estimator_predict(&law->estimator, frame, modelled_motion(law, parameters));
+    imu_sample_t used = *frame;
+    used.has_acceleration = frame->has_acceleration && !law->accelerations_doubted;
+    estimator_predict(&law->estimator, &used, modelled_motion(law, parameters));
     const float dt_s = seconds_between(before_us, law->estimator.now_us);
     if (dt_s <= 0.0F || dt_s > STEP_MAX_S) {
         return;
@@ -300,6 +302,14 @@ void est_law_set_powerless(est_law_t *law, bool powerless)
         law->hover.thrust_n = between(law->hover.least_n, law->sure_hover_n, law->hover.most_n);
         law->hover.gust_n = 0.0F;
     }
+}
+
+void est_law_set_accelerations_doubted(est_law_t *law, bool doubted)
+{
+    if (doubted && !law->accelerations_doubted) {
+        estimator_drop_accelerations(&law->estimator);
+    }
+    law->accelerations_doubted = doubted;
 }
 
 cascade_vehicle_t est_law_vehicle(const est_law_t *law, const parameters_t *parameters)

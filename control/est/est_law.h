@@ -47,10 +47,11 @@ typedef struct {
     float sure_hover_n;        /* hover thrust from before the present doubt */
     float entry_hover_n;       /* sure_hover_n at the start of the present descent */
     float ceiling_n;           /* upper limit of the thrust in a descent */
-    bool powerless;            /* doubt THRUST: commands have no effect */
-    float heightless_s;        /* time since the rays of the latest height */
-    float frameless_s;         /* time since the latest frame was measured */
-    float near_ground_s;       /* time near the ground while landing */
+    bool accelerations_doubted;
+    bool powerless;      /* doubt THRUST: commands have no effect */
+    float heightless_s;  /* time since the rays of the latest height */
+    float frameless_s;   /* time since the latest frame was measured */
+    float near_ground_s; /* time near the ground while landing */
 } est_law_t;
 
 void est_law_init(est_law_t *law);
@@ -87,6 +88,10 @@ void est_law_set_sure_hover(est_law_t *law, float hover_n, bool descending);
 /* powerless true: commands have no effect (doubt THRUST). Nothing is learned or predicted from them, and
  * the hover thrust is the sure one. */
 void est_law_set_powerless(est_law_t *law, bool powerless);
+
+/* doubted true: the accelerometer tells something wrong (doubt IMU). Accelerations in the frames are ignored.
+ */
+void est_law_set_accelerations_doubted(est_law_t *law, bool doubted);
 
 /* Present model of the vehicle, with the estimated hover thrust. */
 cascade_vehicle_t est_law_vehicle(const est_law_t *law, const parameters_t *parameters);

@@ -486,6 +486,13 @@ height_outcome_t estimator_fuse_height(estimator_t *e, const altitude_t *altitud
     return outcome;
 }
 
+void estimator_drop_accelerations(estimator_t *e)
+{
+    if (e->felt) {
+        change_source(e, false);
+    }
+}
+
 void estimator_amend(estimator_t *e, float height_m, float speed_mps, float bias_mps2)
 {
     e->delayed.height_m += height_m - e->now.height_m;

@@ -102,6 +102,9 @@ height_outcome_t estimator_fuse_height(estimator_t *estimator, const altitude_t 
 /* Upward acceleration that the frame's accelerometer measures, gravity removed, m/s2. */
 float motion_up_mps2(const imu_sample_t *frame);
 
+/* The model alone predicts from now on, until a frame with accelerations comes. */
+void estimator_drop_accelerations(estimator_t *estimator);
+
 /* Overwrites height, speed and bias. For use when the latest heights were wrong. */
 void estimator_amend(estimator_t *estimator, float height_m, float speed_mps, float bias_mps2);
 

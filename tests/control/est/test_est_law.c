@@ -477,6 +477,24 @@ void test_accelerations_lost_in_flight_and_found_again_change_the_flag_and_not_t
     TEST_ASSERT_EQUAL(LAW_EST, flight.active_law);
 }
 
+/* 4 m/s2 from one frame to the next: the estimate has followed them until they are in doubt. */
+void test_an_accelerometer_that_jumps_in_flight_is_doubted_and_the_thrust_model_flies_on(void)
+{
+    static const double jumps_mps2[] = {-4.0, -2.5, 2.5};
+    for (unsigned i = 0; i < 3; i++) {
+        board(1U + i);
+        hover_at(0.6F);
+        world.acceleration_bias_m_s2 += jumps_mps2[i];
+        measure(3.0, 0.6);
+        TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_IMU, out.flags);
+        TEST_ASSERT_TRUE(largest_error_m < 0.45);
+        measure(10.0, 0.6);
+        TEST_ASSERT_EQUAL(LAW_EST, flight.active_law);
+        TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
+        TEST_ASSERT_TRUE(rms_mm() > 5.0 && rms_mm() < 30.0);
+    }
+}
+
 void test_without_accelerations_and_without_heights_it_comes_down_by_the_thrust_alone(void)
 {
     world.no_acceleration = true;
