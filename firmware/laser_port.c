@@ -13,14 +13,10 @@
 #include "bsp/timebase.h"
 #include "firmware/uart_port.h"
 
-/* Written by the receive Hwi. The parser fills one of two scans while the other, complete, waits for
- * Laser_SWI. */
-static scip_parser_t parser;
-static uint16_t points[2][SCIP_LAYOUT_POINTS_MAX];
-static scip_scan_t scans[2];
-static uint16_t filling;
+/* Fed by the receive Hwi; all others use it with interrupts off. */
+static urg_t urg;
+static uint16_t points[2U * SCIP_LAYOUT_POINTS_MAX]; /* of two scans: one fills, one waits for Laser_SWI */
 static uint32_t scan_arrival_us;
-static urg_seen_t seen;
 static uint32_t overruns;
 static uint32_t rate;
 
@@ -32,24 +28,13 @@ static void scan_done(void)
 {
     scan_arrival_us = bsp_time_us();
     monitor_released(MONITOR_RECEIVE_LASER, scan_arrival_us);
-    filling ^= 1U;
-    scip_parser_scan_into(&parser, &scans[filling]);
     Swi_post(laser_swi);
-}
-
-static void note(scip_event_t event)
-{
-    urg_seen_event(&seen, &parser, event);
-    if (event == SCIP_SCAN) {
-        scan_done();
-    }
 }
 
 static void note_errors(const bsp_uart_burst_t *burst)
 {
     if (burst->framing || burst->overrun) {
-        scip_parser_line_broken(&parser);
-        seen.framing_count += burst->framing ? 1U : 0U;
+        urg_line_broken(&urg, burst->framing ? 1U : 0U);
         overruns += burst->overrun ? 1U : 0U;
     }
 }
@@ -57,18 +42,13 @@ static void note_errors(const bsp_uart_burst_t *burst)
 static void feed(const bsp_uart_burst_t *burst)
 {
     octet_t run[BSP_UART_FIFO_DEPTH];
-    size_t taken = 0U;
     uint16_t i;
 
     for (i = 0U; i < burst->count; i++) {
         run[i] = octet_of(burst->octets[i]);
     }
-    urg_seen_octets(&seen, run, burst->count);
-    while (taken < burst->count) {
-        scip_event_t event;
-
-        taken += scip_parser_feed_run(&parser, &run[taken], burst->count - taken, &event);
-        note(event);
+    if (urg_feed(&urg, run, burst->count)) {
+        scan_done();
     }
 }
 
@@ -79,38 +59,38 @@ static uint16_t received(const bsp_uart_burst_t *burst)
 
     note_errors(burst);
     feed(burst);
-    expected = scip_parser_expected(&parser);
+    expected = urg_expected(&urg);
     return (expected > 0U) ? expected : (uint16_t)UART_PORT_BURST;
 }
 
 static Void laser_swi_run(UArg unused0, UArg unused1)
 {
+    scip_scan_t scan;
     UInt key = Hwi_disable();
-    const scip_scan_t *done = &scans[filling ^ 1U];
+    bool fresh = urg_take_scan(&urg, &scan);
 
     (void)unused0;
     (void)unused1;
     mailbox.arrival_us = scan_arrival_us;
     mailbox.bit_rate = rate;
     Hwi_restore(key);
-    mailbox.scan = *done;
-    (void)memcpy(mailbox.distance_mm, done->distance_mm, done->points * sizeof done->distance_mm[0]);
+    if (!fresh) {
+        return;
+    }
+    mailbox.scan = scan;
+    (void)memcpy(mailbox.distance_mm, scan.distance_mm, scan.points * sizeof scan.distance_mm[0]);
     Semaphore_post(laser_ready);
 }
 
-void laser_port_create(uint32_t bit_rate)
+void laser_port_create(const urg_config_t *config)
 {
     Swi_Params swi;
     Semaphore_Params semaphore;
-    uint16_t i;
 
-    rate = bit_rate;
-    scip_parser_init(&parser);
-    for (i = 0U; i < 2U; i++) {
-        scans[i].distance_mm = points[i];
-        scans[i].capacity = SCIP_LAYOUT_POINTS_MAX;
-    }
-    scip_parser_scan_into(&parser, &scans[filling]);
+    /* A configuration of constants: one that is refused has never flown. */
+    (void)urg_init(&urg, config, points, (uint16_t)(sizeof points / sizeof points[0]), bsp_time_us());
+    rate = config->first_rate;
+    overruns = 0U;
     Semaphore_Params_init(&semaphore);
     semaphore.mode = Semaphore_Mode_BINARY;
     laser_ready = Semaphore_create(0, &semaphore, NULL);
@@ -118,7 +98,7 @@ void laser_port_create(uint32_t bit_rate)
     swi.instance->name = "Laser_SWI";
     swi.priority = LASER_SWI_PRIORITY;
     laser_swi = Swi_create(laser_swi_run, &swi, NULL);
-    uart_port_create(BSP_UART_LASER, bit_rate, received);
+    uart_port_create(BSP_UART_LASER, rate, received);
 }
 
 void laser_port_wait(laser_message_t *message)
@@ -132,42 +112,45 @@ void laser_port_wait(laser_message_t *message)
     message->scan.distance_mm = message->distance_mm;
 }
 
+static void copy_statistics(laser_statistics_t *statistics)
+{
+    urg_report(&urg, &statistics->urg);
+    statistics->overruns = overruns;
+}
+
 void laser_port_statistics(laser_statistics_t *statistics)
 {
     UInt key = Hwi_disable();
 
-    statistics->seen = seen;
-    statistics->scip = parser.counters;
-    statistics->last_damage = parser.last_damage;
-    statistics->overruns = overruns;
+    copy_statistics(statistics);
     Hwi_restore(key);
 }
 
-void laser_port_set_rate(uint32_t bit_rate)
-{
-    UInt key = Hwi_disable();
-
-    scip_parser_line_broken(&parser);
-    rate = bit_rate;
-    Hwi_restore(key);
-    uart_port_reopen(BSP_UART_LASER, bit_rate);
-}
-
-void laser_port_expect(const scip_request_t *request)
-{
-    UInt key = Hwi_disable();
-
-    scip_parser_expect(&parser, request);
-    Hwi_restore(key);
-}
-
-void laser_port_send(const scip_request_t *request)
+static void send(const urg_output_t *output)
 {
     char text[SCIP_REQUEST_MAX];
     uint16_t i;
 
-    for (i = 0U; i < request->text_length; i++) {
-        text[i] = (char)request->text[i];
+    for (i = 0U; i < output->count; i++) {
+        text[i] = (char)output->octets[i];
     }
-    (void)uart_port_send(BSP_UART_LASER, text, request->text_length);
+    if (output->count > 0U) {
+        (void)uart_port_send(BSP_UART_LASER, text, output->count);
+    }
+}
+
+void laser_port_step(laser_statistics_t *statistics)
+{
+    urg_output_t output;
+    UInt key = Hwi_disable();
+
+    urg_step(&urg, bsp_time_us());
+    (void)urg_next_to_send(&urg, &output);
+    rate = output.rate;
+    copy_statistics(statistics);
+    Hwi_restore(key);
+    if (output.set_rate) {
+        uart_port_reopen(BSP_UART_LASER, output.rate);
+    }
+    send(&output);
 }

@@ -1,6 +1,6 @@
-/* UART of the scanner. The receive Hwi feeds the SCIP parser. Laser_SWI passes complete scans to
- * TaskReceiveLaser. Replies to commands do not wake a task: TaskSendLaser reads the statistics at its next
- * period. */
+/* The scanner's driver on its UART: drivers/urg.h, one object. The receive Hwi feeds it, TaskSendLaser steps
+ * it, Laser_SWI passes complete scans to TaskReceiveLaser. Replies to commands do not wake a task: the next
+ * step sees them. */
 #ifndef FIRMWARE_LASER_PORT_H
 #define FIRMWARE_LASER_PORT_H
 
@@ -8,8 +8,7 @@
 #include <stdint.h>
 
 #include "drivers/scip_layout.h"
-#include "drivers/scip_parser.h"
-#include "drivers/urg_link.h"
+#include "drivers/urg.h"
 
 typedef struct {
     scip_scan_t scan; /* its points are in distance_mm */
@@ -18,27 +17,23 @@ typedef struct {
     uint32_t bit_rate;   /* bits per second at which it was received */
 } laser_message_t;
 
-/* Statistics since power-up. */
+/* Since power-up. */
 typedef struct {
-    urg_seen_t seen;
-    scip_counters_t scip;
-    scip_damage_t last_damage;
+    urg_report_t urg;
     uint32_t overruns; /* how often the UART lost octets */
 } laser_statistics_t;
 
-/* Creates the port. bit_rate in bits per second. main() only. */
-void laser_port_create(uint32_t bit_rate);
+/* Creates the port. main() only. */
+void laser_port_create(const urg_config_t *config);
 
 /* Blocks until a scan is complete, then copies the latest scan to *message. TaskReceiveLaser only. */
 void laser_port_wait(laser_message_t *message);
 
+/* One step of the driver: sets the rate of the board's UART and sends what the sensor is to be told. Copies
+ * the statistics as they are then. TaskSendLaser only. */
+void laser_port_step(laser_statistics_t *statistics);
+
 /* Copies the present statistics. Any task. */
 void laser_port_statistics(laser_statistics_t *statistics);
-
-/* TaskSendLaser only. Sets the bit rate of the board's UART; awaits the reply to a request from now on;
- * sends a request. The request is copied. */
-void laser_port_set_rate(uint32_t bit_rate);
-void laser_port_expect(const scip_request_t *request);
-void laser_port_send(const scip_request_t *request);
 
 #endif

@@ -37,9 +37,9 @@ int main(void)
     servers_create();
     laser_config(&config);
     task_imu_create();
-    task_receive_laser_create();
+    task_receive_laser_create(&config);
     task_control_create();
-    task_send_laser_create(&config);
+    task_send_laser_create();
     task_send_comm_create();
     task_receive_comm_create();
     uart_port_start();

@@ -68,11 +68,11 @@ static Void task_receive_laser(UArg unused0, UArg unused1)
     }
 }
 
-void task_receive_laser_create(void)
+void task_receive_laser_create(const urg_config_t *config)
 {
     Task_Params params;
 
-    laser_port_create(LASER_FIRST_RATE);
+    laser_port_create(config);
     Task_Params_init(&params);
     params.instance->name = "TaskReceiveLaser";
     params.priority = TASK_RECEIVE_LASER_PRIORITY;

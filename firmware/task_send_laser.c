@@ -13,9 +13,7 @@
 #include "firmware/servers.h"
 #include "firmware/tasks.h"
 #include "bsp/timebase.h"
-#include "drivers/urg_link.h"
 
-static urg_link_t urg;
 static Semaphore_Handle tick;
 
 static Void release(UArg unused)
@@ -23,19 +21,6 @@ static Void release(UArg unused)
     (void)unused;
     monitor_released(MONITOR_SEND_LASER, bsp_time_us());
     Semaphore_post(tick);
-}
-
-static void obey(const urg_action_t *action)
-{
-    if (action->set_rate) {
-        laser_port_set_rate(action->rate);
-    }
-    if (action->expect) {
-        laser_port_expect(&action->request);
-    }
-    if (action->send) {
-        laser_port_send(&action->request);
-    }
 }
 
 static void show(urg_status_t status)
@@ -47,45 +32,41 @@ static void show(urg_status_t status)
     bsp_led_red(status == URG_LOST);
 }
 
-static void publish(const urg_seen_t *seen)
+static void publish(const urg_report_t *urg)
 {
     static laser_sample_t sample;
 
-    sample.status = urg.status;
-    sample.rate = urg.rate;
-    sample.restarts = urg.restarts;
-    sample.timeouts = urg.timeouts;
-    sample.seen = *seen;
+    sample.status = urg->status;
+    sample.rate = urg->rate;
+    sample.restarts = urg->restarts;
+    sample.timeouts = urg->timeouts;
+    sample.seen = urg->seen;
     laser_server_write(&sample);
 }
 
 static Void task_send_laser(UArg unused0, UArg unused1)
 {
     static laser_statistics_t statistics;
-    static urg_action_t action;
 
     (void)unused0;
     (void)unused1;
     for (;;) {
         (void)Semaphore_pend(tick, BIOS_WAIT_FOREVER);
         monitor_begin(MONITOR_SEND_LASER);
-        laser_port_statistics(&statistics);
-        urg_link_step(&urg, &statistics.seen, bsp_time_us(), &action);
-        obey(&action);
-        publish(&statistics.seen);
-        show(urg.status);
+        laser_port_step(&statistics);
+        publish(&statistics.urg);
+        show(statistics.urg.status);
         monitor_done(MONITOR_SEND_LASER);
         alive_report(ALIVE_SEND_LASER);
     }
 }
 
-void task_send_laser_create(const urg_config_t *config)
+void task_send_laser_create(void)
 {
     Task_Params task;
     Clock_Params clock;
     Semaphore_Params semaphore;
 
-    (void)urg_link_init(&urg, config, bsp_time_us());
     Semaphore_Params_init(&semaphore);
     semaphore.mode = Semaphore_Mode_BINARY;
     tick = Semaphore_create(0, &semaphore, NULL);

@@ -6,9 +6,9 @@
 #include "drivers/urg_link.h"
 
 void task_imu_create(void);
-void task_receive_laser_create(void);
+void task_receive_laser_create(const urg_config_t *config);
 void task_control_create(void);
-void task_send_laser_create(const urg_config_t *config);
+void task_send_laser_create(void);
 void task_send_comm_create(void);
 void task_receive_comm_create(void);
 

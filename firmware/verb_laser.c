@@ -15,11 +15,11 @@ static void add_stream(answer_t *answer, const laser_statistics_t *statistics)
     telemetry_text(&answer->line, " state:");
     telemetry_text(&answer->line, urg_status_name(laser.status));
     answer_count(answer, "rate", laser.rate);
-    answer_count(answer, "frames", statistics->seen.scan_count);
+    answer_count(answer, "frames", statistics->urg.seen.scan_count);
     answer_count(answer, "timeout", laser.timeouts);
     answer_count(answer, "restart", laser.restarts);
     answer_count(answer, "overrun", statistics->overruns);
-    answer_count(answer, "framing", statistics->seen.framing_count);
+    answer_count(answer, "framing", statistics->urg.seen.framing_count);
 }
 
 static void add_damages(answer_t *answer, const laser_statistics_t *statistics)
@@ -27,10 +27,10 @@ static void add_damages(answer_t *answer, const laser_statistics_t *statistics)
     uint16_t i;
 
     for (i = (uint16_t)SCIP_DAMAGE_SUM; i < (uint16_t)SCIP_DAMAGE_COUNT; i++) {
-        answer_count(answer, causes[i], statistics->scip.damaged[i]);
+        answer_count(answer, causes[i], statistics->urg.scip.damaged[i]);
     }
     telemetry_text(&answer->line, " last:");
-    telemetry_text(&answer->line, causes[statistics->last_damage]);
+    telemetry_text(&answer->line, causes[statistics->urg.last_damage]);
 }
 
 bool verb_laser(answer_t *answer)

@@ -1,5 +1,5 @@
-/* The scanner's port with the real SCIP parser, fed as the receive Hwi is: the sensor's side is written here
- * after its protocol (Hokuyo C-42-03320B). */
+/* The scanner's port with the real driver, stepped as TaskSendLaser does it and fed as the receive Hwi is:
+ * the sensor's side is written here after its protocol (Hokuyo C-42-03320B). */
 #include "firmware/laser_port.h"
 
 #include <string.h>
@@ -24,7 +24,13 @@ static uint16_t level;                   /* octets until the port wants to be ca
 static laser_message_t message;
 static laser_statistics_t now;
 static laser_statistics_t before;
-static scip_request_t request;
+static const urg_config_t config = {
+    .first_rate = 115200U,
+    .stream_rate = 250000U,
+    .fastest_rate = 250000U,
+    .stream = SCIP_STREAM_2,
+    .range = {.first_step = 372U, .last_step = 406U, .cluster = 1U},
+};
 
 static void port_create(bsp_uart_t uart, uint32_t bit_rate, uart_port_received_t received, int calls)
 {
@@ -42,6 +48,7 @@ static void port_reopen(bsp_uart_t uart, uint32_t bit_rate, int calls)
     (void)calls;
     TEST_ASSERT_EQUAL(BSP_UART_LASER, uart);
     kernel_no_lock();
+    kernel_note("reopen");
     reopened_at = bit_rate;
 }
 
@@ -94,6 +101,7 @@ static bool port_send(bsp_uart_t uart, const char *text, uint16_t count, int cal
     TEST_ASSERT_EQUAL(BSP_UART_LASER, uart);
     TEST_ASSERT_LESS_THAN(sizeof sent, count);
     kernel_no_lock();
+    kernel_note("send");
     (void)memcpy(sent, text, count);
     sent[count] = '\0';
     sent_count = count;
@@ -113,17 +121,56 @@ static void look(void)
     laser_port_statistics(&now);
 }
 
-/* The counters outlive laser_port_create(): what a test sees is counted from here. */
-static void baseline(void)
+/* 150 ms later. What is sent is in `sent`; nothing is an empty text. */
+static void step(void)
 {
-    feed_broken("", false, true);
-    TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
-    laser_port_expect(&request);
-    laser_port_send(&request);
+    now_us += 150000U;
+    sent[0] = '\0';
+    sent_count = 0U;
+    laser_port_step(&now);
+}
+
+static void expect_sent(const char *text)
+{
+    step();
+    TEST_ASSERT_EQUAL_STRING(text, sent);
+    TEST_ASSERT_EQUAL_UINT16(strlen(text), sent_count);
+}
+
+/* The sensor has been asked for another rate. */
+static void until_rate(void)
+{
+    expect_sent("\nL0\n");
+    feed("L0\n0\n\n");
+    expect_sent("SCIP2.0\n");
+    feed("SCIP2.0\n0\n\n");
+    expect_sent("SS250000\n");
+    look();
+    before = now;
+}
+
+static void until_stop(void)
+{
+    until_rate();
+    feed("SS250000\n00P\n\n");
+    expect_sent("");
+    expect_sent("\nQT\n");
+    TEST_ASSERT_EQUAL_UINT32(250000, reopened_at);
+    look();
+    before = now;
+}
+
+static void start_stream(void)
+{
+    until_stop();
     feed("QT\n00P\n\n");
-    laser_port_statistics(&before);
-    kernel.swi.posts = 0U;
-    kernel.swi.disabled = 0U;
+    expect_sent("MS0372040601000\n");
+    feed("MS0372040601000\n00P\n\n");
+    look();
+    TEST_ASSERT_EQUAL_UINT32(5, now.urg.seen.reply_count);
+    TEST_ASSERT_EQUAL(URG_STREAM, now.urg.status);
+    TEST_ASSERT_EQUAL_UINT16(0, kernel.swi.posts);
+    before = now;
 }
 
 void setUp(void)
@@ -137,8 +184,7 @@ void setUp(void)
     uart_port_send_Stub(port_send);
     bsp_time_us_Stub(time_us);
     jobs_reset();
-    laser_port_create(115200U);
-    baseline();
+    laser_port_create(&config);
 }
 
 void tearDown(void)
@@ -157,20 +203,6 @@ static const char *scan_text(uint32_t stamp_ms, uint16_t first_mm)
     }
     (void)scip_frames_frame(text, "MS0372040601000", stamp_ms, data, sizeof data);
     return text;
-}
-
-static void start_stream(void)
-{
-    const scip_range_t range = {.first_step = 372U, .last_step = 406U, .cluster = 1U};
-
-    TEST_ASSERT_TRUE(scip_request_scan(&request, SCIP_STREAM_2, &range));
-    laser_port_expect(&request);
-    laser_port_send(&request);
-    feed("MS0372040601000\n00P\n\n");
-    look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count + 1U, now.seen.reply_count);
-    before = now;
-    kernel.swi.posts = 0U;
 }
 
 static void assert_scan(uint32_t stamp_ms, uint16_t first_mm)
@@ -201,89 +233,59 @@ void test_the_task_waits_while_nothing_is_complete(void)
     TEST_ASSERT_TRUE(kernel_blocks(wait));
 }
 
-void test_send_writes_the_requests_octets_and_nothing_else(void)
+void test_a_step_sends_what_the_link_asks_for_and_sets_the_rate_before(void)
 {
-    const scip_range_t range = {.first_step = 372U, .last_step = 406U, .cluster = 1U};
-
-    TEST_ASSERT_EQUAL_UINT16(3, sent_count);
-    TEST_ASSERT_EQUAL_STRING("QT\n", sent);
-    TEST_ASSERT_TRUE(scip_request_bit_rate(&request, 250000U));
-    scip_request_end_line_first(&request);
-    laser_port_expect(&request);
-    laser_port_send(&request);
-    TEST_ASSERT_EQUAL_UINT16(10, sent_count);
-    TEST_ASSERT_EQUAL_STRING("\nSS250000\n", sent);
-    TEST_ASSERT_TRUE(scip_request_scan(&request, SCIP_STREAM_2, &range));
-    scip_request_end_line_first(&request);
-    laser_port_expect(&request);
-    laser_port_send(&request);
-    TEST_ASSERT_EQUAL_UINT16(SCIP_REQUEST_MAX, sent_count);
-    TEST_ASSERT_EQUAL_STRING("\nMS0372040601000\n", sent);
+    until_rate();
+    feed("SS250000\n00P\n\n");
+    expect_sent("");
+    TEST_ASSERT_EQUAL_UINT32(0, reopened_at);
+    kernel.notes[0] = '\0';
+    expect_sent("\nQT\n");
+    TEST_ASSERT_EQUAL_UINT32(250000, reopened_at);
+    TEST_ASSERT_EQUAL_STRING("reopen send ", kernel.notes);
+    TEST_ASSERT_EQUAL_UINT32(250000, now.urg.rate);
 }
 
 void test_a_reply_is_awaited_before_the_request_is_on_the_wire(void)
 {
-    answer_while_sending = "SS250000\n00P\n\n";
-    TEST_ASSERT_TRUE(scip_request_bit_rate(&request, 250000U));
-    laser_port_expect(&request);
-    laser_port_send(&request);
+    answer_while_sending = "L0\n0\n\n";
+    expect_sent("\nL0\n");
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count + 1U, now.seen.reply_count);
-    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, now.seen.reply_kind);
+    TEST_ASSERT_EQUAL_UINT32(1, now.urg.seen.reply_count);
+    TEST_ASSERT_EQUAL(SCIP_LASER_OFF_1, now.urg.seen.reply_kind);
 }
 
 void test_a_reply_is_counted_with_its_kind_and_status(void)
 {
-    TEST_ASSERT_TRUE(scip_request_bit_rate(&request, 250000U));
-    laser_port_expect(&request);
-    laser_port_send(&request);
+    until_rate();
     feed("SS250000\n03S\n\n");
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count + 1U, now.seen.reply_count);
-    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, now.seen.reply_kind);
-    TEST_ASSERT_EQUAL_HEX16('0', now.seen.reply.status[0]);
-    TEST_ASSERT_EQUAL_HEX16('3', now.seen.reply.status[1]);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.reply_count + 1U, now.urg.seen.reply_count);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, now.urg.seen.reply_kind);
+    TEST_ASSERT_EQUAL_HEX16('0', now.urg.seen.reply.status[0]);
+    TEST_ASSERT_EQUAL_HEX16('3', now.urg.seen.reply.status[1]);
     TEST_ASSERT_EQUAL_UINT16(0, kernel.swi.posts);
-    TEST_ASSERT_EQUAL_UINT32(before.seen.octet_count + 14U, now.seen.octet_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.octet_count + 14U, now.urg.seen.octet_count);
 }
 
 void test_the_reply_of_an_older_request_is_not_taken_for_the_present_one(void)
 {
-    TEST_ASSERT_TRUE(scip_request_bit_rate(&request, 250000U));
-    laser_port_expect(&request);
-    laser_port_send(&request);
+    until_rate();
     feed("QT\n00P\n\n");
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count, now.seen.reply_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.reply_count, now.urg.seen.reply_count);
     feed("SS250000\n00P\n\n");
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count + 1U, now.seen.reply_count);
-}
-
-void test_the_lines_of_a_text_reply_count_for_nothing_but_the_reply_at_their_end(void)
-{
-    TEST_ASSERT_TRUE(scip_request(&request, SCIP_VERSION));
-    laser_port_expect(&request);
-    laser_port_send(&request);
-    feed("VV\n00P\nVEND:Hokuyo;0\nPROD:URG-04LX;0\n");
-    look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count, now.seen.reply_count);
-    feed("\n");
-    look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count + 1U, now.seen.reply_count);
-    TEST_ASSERT_EQUAL(SCIP_VERSION, now.seen.reply_kind);
-    TEST_ASSERT_EQUAL_UINT32(before.seen.damage_count, now.seen.damage_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.reply_count + 1U, now.urg.seen.reply_count);
 }
 
 void test_a_scip11_refusal_is_counted(void)
 {
-    TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
-    laser_port_expect(&request);
-    laser_port_send(&request);
+    until_stop();
     feed("QT\nE\n\n");
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.legacy_count + 1U, now.seen.legacy_count);
-    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count, now.seen.reply_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.legacy_count + 1U, now.urg.seen.legacy_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.reply_count, now.urg.seen.reply_count);
 }
 
 void test_a_notice_of_the_stream_is_counted_with_its_status(void)
@@ -294,10 +296,10 @@ void test_a_notice_of_the_stream_is_counted_with_its_status(void)
     (void)scip_frames_summed(text + strlen(text), "21", 2U);
     feed(strcat(text, "\n"));
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.notice_count + 1U, now.seen.notice_count);
-    TEST_ASSERT_EQUAL_HEX16('2', now.seen.notice.status[0]);
-    TEST_ASSERT_EQUAL_HEX16('1', now.seen.notice.status[1]);
-    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count, now.seen.reply_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.notice_count + 1U, now.urg.seen.notice_count);
+    TEST_ASSERT_EQUAL_HEX16('2', now.urg.seen.notice.status[0]);
+    TEST_ASSERT_EQUAL_HEX16('1', now.urg.seen.notice.status[1]);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.reply_count, now.urg.seen.reply_count);
     TEST_ASSERT_EQUAL_UINT16(0, kernel.swi.posts);
 }
 
@@ -319,16 +321,11 @@ void test_a_scan_is_handed_over_at_its_last_octet_with_the_time_of_that_octet(vo
     wait();
     assert_scan(123456U, 700U);
     TEST_ASSERT_EQUAL_UINT32(1000000U + OCTET_US, message.arrival_us);
-    TEST_ASSERT_EQUAL_UINT32(115200U, message.bit_rate);
-    laser_port_set_rate(250000U);
-    start_stream();
-    feed(scan_text(123556U, 700U));
-    wait();
     TEST_ASSERT_EQUAL_UINT32(250000U, message.bit_rate);
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.scan_count + 1U, now.seen.scan_count);
-    TEST_ASSERT_EQUAL_UINT32(before.seen.octet_count + 101U,
-                             now.seen.octet_count); /* 27 + 2n + 2 ceil(2n / 64) */
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.scan_count + 1U, now.urg.seen.scan_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.octet_count + 101U,
+                             now.urg.seen.octet_count); /* 27 + 2n + 2 ceil(2n / 64) */
 }
 
 void test_scans_alternate_between_the_two_buffers_and_all_arrive(void)
@@ -339,7 +336,7 @@ void test_scans_alternate_between_the_two_buffers_and_all_arrive(void)
         wait();
         assert_scan(1000U + 100U * n, (uint16_t)(500U + 100U * n));
         look();
-        TEST_ASSERT_EQUAL_UINT32(before.seen.scan_count + n + 1U, now.seen.scan_count);
+        TEST_ASSERT_EQUAL_UINT32(before.urg.seen.scan_count + n + 1U, now.urg.seen.scan_count);
     }
 }
 
@@ -389,14 +386,11 @@ void test_only_scans_wake_the_task(void)
     (void)strcpy(damaged, scan_text(1000U, 700U));
     damaged[40] ^= 1;
     feed(damaged);
-    TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
-    laser_port_expect(&request);
-    laser_port_send(&request);
-    feed("QT\n00P\n\n");
+    feed("MS0372040601000\n00P\n\n");
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.notice_count + 1U, now.seen.notice_count);
-    TEST_ASSERT_EQUAL_UINT32(before.seen.damage_count + 1U, now.seen.damage_count);
-    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count + 1U, now.seen.reply_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.notice_count + 1U, now.urg.seen.notice_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.damage_count + 1U, now.urg.seen.damage_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.reply_count + 1U, now.urg.seen.reply_count);
     TEST_ASSERT_EQUAL_UINT16(0, kernel.swi.posts);
     TEST_ASSERT_EQUAL_INT(0, kernel.semaphore.count);
 }
@@ -405,10 +399,7 @@ void test_a_scan_that_waits_survives_a_reply_that_follows(void)
 {
     start_stream();
     feed(scan_text(1000U, 700U));
-    TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
-    laser_port_expect(&request);
-    laser_port_send(&request);
-    feed("QT\n00P\n\n");
+    feed("MS0372040601000\n00P\n\n");
     wait();
     assert_scan(1000U, 700U);
     TEST_ASSERT_TRUE(kernel_blocks(wait));
@@ -423,7 +414,7 @@ void test_a_late_task_gets_the_newest_scan_while_all_are_counted(void)
     wait();
     assert_scan(1200U, 900U);
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.scan_count + 3U, now.seen.scan_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.scan_count + 3U, now.urg.seen.scan_count);
     TEST_ASSERT_TRUE(kernel_blocks(wait));
 }
 
@@ -437,26 +428,30 @@ void test_a_damaged_scan_is_counted_by_its_cause_gives_none_and_leaves_the_next_
     feed(text);
     TEST_ASSERT_TRUE(kernel_blocks(wait));
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.damage_count + 1U, now.seen.damage_count);
-    TEST_ASSERT_EQUAL_UINT32(before.scip.damaged[SCIP_DAMAGE_SUM] + 1U, now.scip.damaged[SCIP_DAMAGE_SUM]);
-    TEST_ASSERT_EQUAL(SCIP_DAMAGE_SUM, now.last_damage);
-    TEST_ASSERT_EQUAL_UINT32(before.seen.scan_count, now.seen.scan_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.damage_count + 1U, now.urg.seen.damage_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.scip.damaged[SCIP_DAMAGE_SUM] + 1U,
+                             now.urg.scip.damaged[SCIP_DAMAGE_SUM]);
+    TEST_ASSERT_EQUAL(SCIP_DAMAGE_SUM, now.urg.last_damage);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.scan_count, now.urg.seen.scan_count);
     feed(scan_text(1100U, 800U));
     wait();
     assert_scan(1100U, 800U);
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.scip.scans + 1U, now.scip.scans);
-    TEST_ASSERT_EQUAL(SCIP_DAMAGE_SUM, now.last_damage);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.scip.scans + 1U, now.urg.scip.scans);
+    TEST_ASSERT_EQUAL(SCIP_DAMAGE_SUM, now.urg.last_damage);
 }
 
-void test_the_remaining_scans_of_a_counted_run_are_seen(void)
+void test_the_remaining_scans_of_a_counted_run_are_seen_and_its_end_orders_the_next(void)
 {
-    const scip_range_t range = {.first_step = 372U, .last_step = 406U, .cluster = 1U, .scans = 2U};
+    urg_config_t counted = config;
     char text[256];
 
-    TEST_ASSERT_TRUE(scip_request_scan(&request, SCIP_STREAM_2, &range));
-    laser_port_expect(&request);
-    laser_port_send(&request);
+    counted.range.scans = 2U;
+    kernel_reset();
+    laser_port_create(&counted);
+    until_stop();
+    feed("QT\n00P\n\n");
+    expect_sent("MS0372040601002\n");
     feed("MS0372040601002\n00P\n\n");
     for (uint16_t left = 2U; left-- > 0U;) {
         (void)strcpy(text, scan_text(1000U + 100U * (2U - left), 700U));
@@ -464,8 +459,9 @@ void test_the_remaining_scans_of_a_counted_run_are_seen(void)
         feed(text);
         wait();
         look();
-        TEST_ASSERT_EQUAL_UINT16(left, now.seen.scan_remaining);
+        TEST_ASSERT_EQUAL_UINT16(left, now.urg.seen.scan_remaining);
     }
+    expect_sent("MS0372040601002\n");
 }
 
 /* A burst with an error in the middle of a scan. */
@@ -484,10 +480,10 @@ static void break_a_scan(bool overrun, bool framing)
     assert_scan(1100U, 800U);
     TEST_ASSERT_TRUE(kernel_blocks(wait));
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.scan_count + 1U, now.seen.scan_count);
-    TEST_ASSERT_EQUAL_UINT32(before.seen.framing_count + (framing ? 1U : 0U), now.seen.framing_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.scan_count + 1U, now.urg.seen.scan_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.framing_count + (framing ? 1U : 0U), now.urg.seen.framing_count);
     TEST_ASSERT_EQUAL_UINT32(before.overruns + (overrun ? 1U : 0U), now.overruns);
-    TEST_ASSERT_EQUAL_UINT32(before.seen.damage_count, now.seen.damage_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.damage_count, now.urg.seen.damage_count);
 }
 
 void test_a_framing_error_costs_the_scan_under_way_and_is_counted_as_framing(void)
@@ -507,9 +503,10 @@ void test_both_errors_in_one_burst_are_counted_each(void)
 
 void test_octets_are_counted_as_they_come_not_at_line_ends(void)
 {
+    until_rate();
     feed("abc");
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.octet_count + 3U, now.seen.octet_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.octet_count + 3U, now.urg.seen.octet_count);
 }
 
 void test_what_was_read_after_an_overrun_is_taken(void)
@@ -558,29 +555,19 @@ void test_scans_in_bursts_of_any_size_arrive_whole(void)
     }
 }
 
-void test_a_new_rate_reopens_the_uart_and_drops_what_was_in_reception(void)
+void test_what_was_in_reception_at_a_new_rate_is_forgotten(void)
 {
-    start_stream();
-    feed("MS0372040601000\n99b\n");
-    laser_port_set_rate(250000U);
+    until_rate();
+    feed("SS250000\n00P\n\nQT\n00");
+    step();
+    step();
     TEST_ASSERT_EQUAL_UINT32(250000, reopened_at);
-    feed(scan_text(1000U, 700U)); /* would be a damaged line, had the status been kept */
-    wait();
-    assert_scan(1000U, 700U);
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.damage_count, now.seen.damage_count);
-}
-
-void test_a_part_of_a_line_from_before_a_new_rate_is_forgotten(void)
-{
-    TEST_ASSERT_TRUE(scip_request(&request, SCIP_VERSION));
-    laser_port_expect(&request);
-    laser_port_send(&request);
-    feed("V");
-    laser_port_set_rate(57600U);
-    feed("V\n00P\n\n");
+    before = now;
+    feed("QT\n00P\n\n"); /* would be a damaged line, had the status been kept */
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count, now.seen.reply_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.reply_count + 1U, now.urg.seen.reply_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.damage_count, now.urg.seen.damage_count);
 }
 
 void test_statistics_are_copied_with_interrupts_off(void)
@@ -599,11 +586,8 @@ void test_the_copy_to_the_task_is_made_with_swis_off_and_the_parser_touched_with
     TEST_ASSERT_EQUAL_UINT16(1, kernel.hwi.disabled); /* Laser_SWI */
     wait();
     TEST_ASSERT_EQUAL_UINT16(1, kernel.swi.disabled);
-    laser_port_set_rate(250000U);
+    step();
     TEST_ASSERT_EQUAL_UINT16(2, kernel.hwi.disabled);
-    laser_port_expect(&request);
-    laser_port_send(&request);
-    TEST_ASSERT_EQUAL_UINT16(3, kernel.hwi.disabled);
 }
 
 void test_the_task_is_released_by_the_last_octet_of_a_scan(void)
@@ -715,12 +699,10 @@ void test_lost_octets_cost_their_scan_alone(void)
 
 void test_a_reply_is_complete_with_the_tick_after_it(void)
 {
+    until_stop();
     fifo.count = 0U;
-    TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
-    laser_port_expect(&request);
-    laser_port_send(&request);
     (void)arrive("QT\n00P\n\n");
     tick();
     look();
-    TEST_ASSERT_EQUAL_UINT32(before.seen.reply_count + 1U, now.seen.reply_count);
+    TEST_ASSERT_EQUAL_UINT32(before.urg.seen.reply_count + 1U, now.urg.seen.reply_count);
 }

@@ -22,10 +22,12 @@ static imu_sample_t imu;
 static altitude_sample_t written[MESSAGES_MAX];
 static uint16_t write_count;
 
-static void port_create(uint32_t bit_rate, int calls)
+static const urg_config_t config = {.first_rate = 115200U};
+
+static void port_create(const urg_config_t *order, int calls)
 {
     TEST_ASSERT_EQUAL_INT(0, calls);
-    TEST_ASSERT_EQUAL_UINT32(115200, bit_rate);
+    TEST_ASSERT_EQUAL_PTR(&config, order);
     TEST_ASSERT_EQUAL_UINT16(0, kernel.task.created);
     kernel_note("port");
 }
@@ -83,7 +85,7 @@ void setUp(void)
     imu_server_read_Stub(imu_read);
     altitude_server_write_Stub(altitude_write);
     jobs_reset();
-    task_receive_laser_create();
+    task_receive_laser_create(&config);
 }
 
 void tearDown(void)

@@ -76,16 +76,16 @@ void test_every_number_stands_in_its_own_field(void)
     laser.timeouts = 3U;
     laser.restarts = 4U;
     laser.seen.scan_count = 99U; /* older than the port's */
-    statistics.seen.scan_count = 731U;
+    statistics.urg.seen.scan_count = 731U;
     statistics.overruns = 5U;
-    statistics.seen.framing_count = 6U;
-    statistics.scip.damaged[SCIP_DAMAGE_NONE] = 77U;
-    statistics.scip.damaged[SCIP_DAMAGE_SUM] = 7U;
-    statistics.scip.damaged[SCIP_DAMAGE_LENGTH] = 8U;
-    statistics.scip.damaged[SCIP_DAMAGE_ECHO] = 9U;
-    statistics.scip.damaged[SCIP_DAMAGE_CHARACTER] = 10U;
-    statistics.scip.damaged[SCIP_DAMAGE_SEQUENCE] = 11U;
-    statistics.last_damage = SCIP_DAMAGE_ECHO;
+    statistics.urg.seen.framing_count = 6U;
+    statistics.urg.scip.damaged[SCIP_DAMAGE_NONE] = 77U;
+    statistics.urg.scip.damaged[SCIP_DAMAGE_SUM] = 7U;
+    statistics.urg.scip.damaged[SCIP_DAMAGE_LENGTH] = 8U;
+    statistics.urg.scip.damaged[SCIP_DAMAGE_ECHO] = 9U;
+    statistics.urg.scip.damaged[SCIP_DAMAGE_CHARACTER] = 10U;
+    statistics.urg.scip.damaged[SCIP_DAMAGE_SEQUENCE] = 11U;
+    statistics.urg.last_damage = SCIP_DAMAGE_ECHO;
     ask();
     TEST_ASSERT_EQUAL_STRING("OK LASER state:OK rate:250000 frames:731 timeout:3 restart:4 overrun:5 "
                              "framing:6 sum:7 length:8 echo:9 char:10 seq:11 last:echo\r\n",
@@ -100,7 +100,7 @@ void test_every_cause_has_a_name_of_its_own(void)
         char end[16];
 
         (void)snprintf(end, sizeof end, " last:%s\r\n", names[cause]);
-        statistics.last_damage = (scip_damage_t)cause;
+        statistics.urg.last_damage = (scip_damage_t)cause;
         ask();
         TEST_ASSERT_EQUAL_STRING(end, &sent[0][strlen(sent[0]) - strlen(end)]);
     }
@@ -135,7 +135,7 @@ void test_the_largest_counts_fit(void)
     (void)memset(&statistics, 0xFF, sizeof statistics);
     (void)memset(&laser, 0xFF, sizeof laser);
     laser.status = URG_SWITCH;
-    statistics.last_damage = SCIP_DAMAGE_LENGTH;
+    statistics.urg.last_damage = SCIP_DAMAGE_LENGTH;
     ask();
     TEST_ASSERT_EQUAL_STRING(
         "OK LASER state:SWITCH rate:4294967295 frames:4294967295 timeout:4294967295 "
