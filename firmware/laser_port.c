@@ -132,7 +132,7 @@ static void send(const urg_output_t *output)
     uint16_t i;
 
     for (i = 0U; i < output->count; i++) {
-        text[i] = (char)output->octets[i];
+        text[i] = (char)octet_of(output->octets[i]);
     }
     if (output->count > 0U) {
         (void)uart_port_send(BSP_UART_LASER, text, output->count);
