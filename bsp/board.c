@@ -105,5 +105,6 @@ void bsp_board_init(void)
     bsp_selector_init();
     pull_up_unbonded();
     SysCtl_enablePeripheral(SYSCTL_PERIPH_CLK_TIMER1);
+    SysCtl_enablePeripheral(SYSCTL_PERIPH_CLK_TIMER2);
     bsp_time_init();
 }

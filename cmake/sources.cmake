@@ -12,7 +12,7 @@ set(BSP_SOURCES
     bsp/board.c bsp/led.c bsp/reset.c bsp/retained.c bsp/selector.c bsp/start.c bsp/storage.c bsp/throttle.c bsp/timebase.c bsp/uart.c
     bsp/watchdog.c)
 set(FIRMWARE_SOURCES
-    firmware/alive.c firmware/answer.c firmware/boot.c firmware/calibrator.c firmware/commands.c firmware/fault.c
+    firmware/alive.c firmware/answer.c firmware/boot.c firmware/calibrator.c firmware/commands.c firmware/cpu_time.c firmware/fault.c
     firmware/flight_recorder.c firmware/geometry.c firmware/ground.c firmware/imu_exchange.c firmware/imu_port.c firmware/laser_port.c firmware/listing.c firmware/main.c
     firmware/monitor.c firmware/parameter_store.c firmware/published.c firmware/pulse_stream.c firmware/servers.c firmware/task_control.c
     firmware/task_imu.c

@@ -6,6 +6,7 @@
 #include <ti/sysbios/knl/Swi.h>
 #include <xdc/std.h>
 
+#include "firmware/cpu_time.h"
 #include "firmware/monitor.h"
 #include "firmware/schedule.h"
 #include "bsp/timebase.h"
@@ -60,6 +61,7 @@ void imu_port_create(void)
     swi.instance->name = "IMU_SWI";
     swi.priority = IMU_SWI_PRIORITY;
     imu_swi = Swi_create(imu_swi_run, &swi, NULL);
+    cpu_time_watch(CPU_TIME_IMU_SWI, imu_swi);
     uart_port_create(BSP_UART_IMU, IMU_BIT_RATE, received);
     (void)uart_port_send(BSP_UART_IMU, "#o1", 3U);
 }

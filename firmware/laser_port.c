@@ -8,6 +8,7 @@
 #include <ti/sysbios/knl/Swi.h>
 #include <xdc/std.h>
 
+#include "firmware/cpu_time.h"
 #include "firmware/monitor.h"
 #include "firmware/schedule.h"
 #include "bsp/timebase.h"
@@ -98,6 +99,7 @@ void laser_port_create(const urg_config_t *config)
     swi.instance->name = "Laser_SWI";
     swi.priority = LASER_SWI_PRIORITY;
     laser_swi = Swi_create(laser_swi_run, &swi, NULL);
+    cpu_time_watch(CPU_TIME_LASER_SWI, laser_swi);
     uart_port_create(BSP_UART_LASER, rate, received);
 }
 

@@ -1,10 +1,10 @@
 #include "firmware/monitor.h"
 
-#include <stdbool.h>
 #include <ti/sysbios/family/c28/Hwi.h>
 
-#include "firmware/schedule.h"
 #include "bsp/timebase.h"
+#include "firmware/cpu_time.h"
+#include "firmware/schedule.h"
 
 static const char *const names[] = {
     [MONITOR_IMU] = "TaskIMU",
@@ -24,6 +24,7 @@ static uint32_t deadlines_us[] = {
     [MONITOR_SEND_COMM] = TASK_SEND_COMM_DEADLINE_MS * 1000UL,
     [MONITOR_RECEIVE_COMM] = TASK_RECEIVE_COMM_DEADLINE_MS * 1000UL,
 };
+typedef char every_task_has_a_processor_time[(CPU_TIME_JOBS - CPU_TIME_TASK == MONITOR_TASKS) ? 1 : -1];
 typedef char
     every_task_has_a_deadline[(sizeof deadlines_us / sizeof deadlines_us[0] == MONITOR_TASKS) ? 1 : -1];
 
@@ -37,11 +38,20 @@ typedef struct {
 } record_t;
 
 static record_t records[MONITOR_TASKS];
-static uint32_t longest_wait_us[MONITOR_SERVERS];
+
+typedef struct {
+    bool held;
+    monitor_access_t access; /* in force while it is held */
+    uint32_t longest_wait_us;
+    uint32_t longest_hold;
+} gate_t;
+
+static gate_t gates[MONITOR_SERVERS];
 
 void monitor_watch(monitor_task_t task, Task_Handle handle)
 {
     records[task].handle = handle;
+    cpu_time_watch((cpu_time_job_t)(CPU_TIME_TASK + task), handle);
 }
 
 void monitor_released(monitor_task_t task, uint32_t when_us)
@@ -80,13 +90,44 @@ void monitor_done(monitor_task_t task)
     }
 }
 
-void monitor_entered(monitor_server_t server, uint32_t asked_us)
+void monitor_asking(monitor_server_t server, monitor_access_t *access)
 {
-    uint32_t wait_us = bsp_time_us() - asked_us;
+    access->asked_us = bsp_time_us();
+    access->used = cpu_time_used();
+    access->contended = gates[server].held;
+    cpu_time_gate_asked();
+}
 
-    if (wait_us > longest_wait_us[server]) {
-        longest_wait_us[server] = wait_us;
+void monitor_entered(monitor_server_t server, const monitor_access_t *access)
+{
+    gate_t *gate = &gates[server];
+    const uint32_t wait_us = bsp_time_us() - access->asked_us;
+
+    cpu_time_gate_entered();
+    gate->access = *access;
+    gate->held = true;
+    if (wait_us > gate->longest_wait_us) {
+        gate->longest_wait_us = wait_us;
     }
+}
+
+monitor_access_t monitor_leaving(monitor_server_t server)
+{
+    const monitor_access_t access = gates[server].access;
+
+    gates[server].held = false;
+    return access;
+}
+
+void monitor_left(monitor_server_t server, const monitor_access_t *access)
+{
+    const uint32_t hold = cpu_time_used() - access->used;
+    const UInt key = Hwi_disable();
+
+    if (!access->contended && hold > gates[server].longest_hold) {
+        gates[server].longest_hold = hold;
+    }
+    Hwi_restore(key);
 }
 
 void monitor_report(monitor_task_t task, monitor_report_t *report)
@@ -106,7 +147,12 @@ void monitor_report(monitor_task_t task, monitor_report_t *report)
 
 uint32_t monitor_longest_wait_us(monitor_server_t server)
 {
-    return longest_wait_us[server];
+    return gates[server].longest_wait_us;
+}
+
+uint32_t monitor_longest_hold(monitor_server_t server)
+{
+    return gates[server].longest_hold;
 }
 
 void monitor_reset(void)
@@ -119,7 +165,9 @@ void monitor_reset(void)
         records[i].late = 0U;
     }
     for (i = 0U; i < (uint16_t)MONITOR_SERVERS; i++) {
-        longest_wait_us[i] = 0U;
+        gates[i].longest_wait_us = 0U;
+        gates[i].longest_hold = 0U;
     }
     Hwi_restore(key);
+    cpu_time_reset();
 }

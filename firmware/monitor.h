@@ -1,9 +1,10 @@
 /* Run-time measurements. Per task: the longest response time and the missed deadlines. Per server: the
- * longest wait. A response time lasts from the release of the task to the end of its job. Times are in
- * microseconds. */
+ * longest wait and the longest hold. A response time lasts from the release of the task to the end of its
+ * job. Times are in microseconds. */
 #ifndef FIRMWARE_MONITOR_H
 #define FIRMWARE_MONITOR_H
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
@@ -41,8 +42,17 @@ void monitor_set_deadline(monitor_task_t task, uint32_t deadline_us);
 void monitor_begin(monitor_task_t task);
 void monitor_done(monitor_task_t task);
 
-/* The calling task has just entered the server's gate, after it asked for it at asked_us. Any task. */
-void monitor_entered(monitor_server_t server, uint32_t asked_us);
+/* Around the server's gate. Any task, and main() before the tasks run. Before the call that enters; after it;
+ * before the call that leaves; after it, with what monitor_leaving() returned. */
+typedef struct {
+    uint32_t asked_us;
+    uint32_t used; /* processor time of the job so far, firmware/cpu_time.h */
+    bool contended;
+} monitor_access_t;
+void monitor_asking(monitor_server_t server, monitor_access_t *access);
+void monitor_entered(monitor_server_t server, const monitor_access_t *access);
+monitor_access_t monitor_leaving(monitor_server_t server);
+void monitor_left(monitor_server_t server, const monitor_access_t *access);
 
 typedef struct {
     const char *name;
@@ -55,6 +65,9 @@ typedef struct {
 /* Values since power-up or monitor_reset(); the stack's maximum always since power-up. Any task. */
 void monitor_report(monitor_task_t task, monitor_report_t *report);
 uint32_t monitor_longest_wait_us(monitor_server_t server);
+/* Processor time from the call that enters the gate to the return of the one that leaves it, in cycles of
+ * BSP_CYCLE_NS. An access that found the gate taken does not count: it contains the switches of its wait. */
+uint32_t monitor_longest_hold(monitor_server_t server);
 void monitor_reset(void);
 
 #endif

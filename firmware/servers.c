@@ -5,7 +5,6 @@
 #include <ti/sysbios/gates/GateMutexPri.h>
 #include <xdc/std.h>
 
-#include "bsp/timebase.h"
 #include "control/thrust.h"
 #include "firmware/geometry.h"
 #include "firmware/imu_exchange.h"
@@ -61,11 +60,21 @@ void servers_create(void)
 
 static IArg enter(GateMutexPri_Handle gate, monitor_server_t server)
 {
-    uint32_t asked_us = bsp_time_us();
-    IArg key = GateMutexPri_enter(gate);
+    monitor_access_t access;
+    IArg key;
 
-    monitor_entered(server, asked_us);
+    monitor_asking(server, &access);
+    key = GateMutexPri_enter(gate);
+    monitor_entered(server, &access);
     return key;
+}
+
+static void leave(GateMutexPri_Handle gate, monitor_server_t server, IArg key)
+{
+    const monitor_access_t access = monitor_leaving(server);
+
+    GateMutexPri_leave(gate, key);
+    monitor_left(server, &access);
 }
 
 void altitude_server_write(const altitude_sample_t *sample)
@@ -73,7 +82,7 @@ void altitude_server_write(const altitude_sample_t *sample)
     IArg key = enter(altitude_gate, MONITOR_ALTITUDE);
 
     altitude = *sample;
-    GateMutexPri_leave(altitude_gate, key);
+    leave(altitude_gate, MONITOR_ALTITUDE, key);
 }
 
 void altitude_server_read(altitude_sample_t *sample)
@@ -81,7 +90,7 @@ void altitude_server_read(altitude_sample_t *sample)
     IArg key = enter(altitude_gate, MONITOR_ALTITUDE);
 
     *sample = altitude;
-    GateMutexPri_leave(altitude_gate, key);
+    leave(altitude_gate, MONITOR_ALTITUDE, key);
 }
 
 void imu_server_write(const imu_sample_t *sample)
@@ -93,7 +102,7 @@ void imu_server_write(const imu_sample_t *sample)
         imu_next = (uint16_t)((imu_next + 1U) % IMU_HISTORY);
     }
     imu = *sample;
-    GateMutexPri_leave(imu_gate, key);
+    leave(imu_gate, MONITOR_IMU_SAMPLE, key);
 }
 
 void imu_server_read(imu_sample_t *sample)
@@ -101,7 +110,7 @@ void imu_server_read(imu_sample_t *sample)
     IArg key = enter(imu_gate, MONITOR_IMU_SAMPLE);
 
     *sample = imu;
-    GateMutexPri_leave(imu_gate, key);
+    leave(imu_gate, MONITOR_IMU_SAMPLE, key);
 }
 
 uint16_t imu_server_history(imu_sample_t history[IMU_HISTORY])
@@ -113,7 +122,7 @@ uint16_t imu_server_history(imu_sample_t history[IMU_HISTORY])
     for (i = 0U; i < held; i++) {
         history[i] = imu_history[(imu_next + IMU_HISTORY - held + i) % IMU_HISTORY];
     }
-    GateMutexPri_leave(imu_gate, key);
+    leave(imu_gate, MONITOR_IMU_SAMPLE, key);
     return held;
 }
 
@@ -122,7 +131,7 @@ void laser_server_write(const laser_sample_t *sample)
     IArg key = enter(laser_gate, MONITOR_LASER_STATUS);
 
     laser = *sample;
-    GateMutexPri_leave(laser_gate, key);
+    leave(laser_gate, MONITOR_LASER_STATUS, key);
 }
 
 void laser_server_read(laser_sample_t *sample)
@@ -130,7 +139,7 @@ void laser_server_read(laser_sample_t *sample)
     IArg key = enter(laser_gate, MONITOR_LASER_STATUS);
 
     *sample = laser;
-    GateMutexPri_leave(laser_gate, key);
+    leave(laser_gate, MONITOR_LASER_STATUS, key);
 }
 
 void reference_server_write(const reference_sample_t *sample)
@@ -138,7 +147,7 @@ void reference_server_write(const reference_sample_t *sample)
     IArg key = enter(reference_gate, MONITOR_REFERENCE);
 
     reference = *sample;
-    GateMutexPri_leave(reference_gate, key);
+    leave(reference_gate, MONITOR_REFERENCE, key);
 }
 
 void reference_server_read(reference_sample_t *sample)
@@ -146,7 +155,7 @@ void reference_server_read(reference_sample_t *sample)
     IArg key = enter(reference_gate, MONITOR_REFERENCE);
 
     *sample = reference;
-    GateMutexPri_leave(reference_gate, key);
+    leave(reference_gate, MONITOR_REFERENCE, key);
 }
 
 void parameter_server_write(const parameters_t *set)
@@ -154,7 +163,7 @@ void parameter_server_write(const parameters_t *set)
     IArg key = enter(parameter_gate, MONITOR_PARAMETERS);
 
     parameters = *set;
-    GateMutexPri_leave(parameter_gate, key);
+    leave(parameter_gate, MONITOR_PARAMETERS, key);
     imu_exchange_mount(set);
     geometry_mount(set);
 }
@@ -164,7 +173,7 @@ void parameter_server_read(parameters_t *set)
     IArg key = enter(parameter_gate, MONITOR_PARAMETERS);
 
     *set = parameters;
-    GateMutexPri_leave(parameter_gate, key);
+    leave(parameter_gate, MONITOR_PARAMETERS, key);
 }
 
 void flight_status_server_write(const flight_outputs_t *status)
@@ -172,7 +181,7 @@ void flight_status_server_write(const flight_outputs_t *status)
     IArg key = enter(flight_gate, MONITOR_FLIGHT_STATUS);
 
     flight = *status;
-    GateMutexPri_leave(flight_gate, key);
+    leave(flight_gate, MONITOR_FLIGHT_STATUS, key);
 }
 
 void flight_status_server_read(flight_outputs_t *status)
@@ -180,5 +189,5 @@ void flight_status_server_read(flight_outputs_t *status)
     IArg key = enter(flight_gate, MONITOR_FLIGHT_STATUS);
 
     *status = flight;
-    GateMutexPri_leave(flight_gate, key);
+    leave(flight_gate, MONITOR_FLIGHT_STATUS, key);
 }

@@ -5,6 +5,8 @@
 #include <ti/sysbios/knl/Clock.h>
 #include <xdc/std.h>
 
+#include "firmware/cpu_time.h"
+
 #define POLL_TICKS 1U
 
 typedef struct {
@@ -84,13 +86,13 @@ static Void transmit_hwi(UArg uart)
     bsp_uart_transmit_acknowledge((bsp_uart_t)uart);
 }
 
-static void hwi_create(int16_t number, Hwi_FuncPtr function, bsp_uart_t uart)
+static Hwi_Handle hwi_create(int16_t number, Hwi_FuncPtr function, bsp_uart_t uart)
 {
     Hwi_Params params;
 
     Hwi_Params_init(&params);
     params.arg = (UArg)uart;
-    (void)Hwi_create((Int)number, function, &params, NULL);
+    return Hwi_create((Int)number, function, &params, NULL);
 }
 
 static void open(bsp_uart_t uart, uint32_t bit_rate)
@@ -103,8 +105,10 @@ void uart_port_create(bsp_uart_t uart, uint32_t bit_rate, uart_port_received_t r
 {
     ports[uart].received = received;
     open(uart, bit_rate);
-    hwi_create(bsp_uart_receive_interrupt(uart), receive_hwi, uart);
-    hwi_create(bsp_uart_transmit_interrupt(uart), transmit_hwi, uart);
+    cpu_time_watch((cpu_time_job_t)(CPU_TIME_LASER_RECEIVE + 2U * uart),
+                   hwi_create(bsp_uart_receive_interrupt(uart), receive_hwi, uart));
+    cpu_time_watch((cpu_time_job_t)(CPU_TIME_LASER_TRANSMIT + 2U * uart),
+                   hwi_create(bsp_uart_transmit_interrupt(uart), transmit_hwi, uart));
 }
 
 void uart_port_start(void)

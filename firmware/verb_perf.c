@@ -2,7 +2,9 @@
 #include <string.h>
 #include <ti/sysbios/utils/Load.h>
 
+#include "bsp/timebase.h"
 #include "firmware/boot.h"
+#include "firmware/cpu_time.h"
 #include "firmware/listing.h"
 #include "firmware/monitor.h"
 #include "firmware/verbs.h"
@@ -61,6 +63,30 @@ static bool write_line(answer_t *answer, uint16_t number)
     return number <= last;
 }
 
+/* Each job, then each gate, numbered from 1: `plomada rta --measured` reads them. */
+static bool write_cost(answer_t *answer, uint16_t number)
+{
+    answer_begin(answer);
+    if (number >= (uint16_t)CPU_TIME_JOBS + (uint16_t)MONITOR_SERVERS) {
+        return false;
+    }
+    telemetry_text(&answer->line, " COSTS ");
+    telemetry_count(&answer->line, (uint32_t)number + 1U);
+    telemetry_text(&answer->line, " ");
+    if (number < (uint16_t)CPU_TIME_JOBS) {
+        const cpu_time_job_t job = (cpu_time_job_t)number;
+
+        telemetry_text(&answer->line, cpu_time_name(job));
+        answer_count(answer, "longest_ns", cpu_time_longest(job) * BSP_CYCLE_NS);
+    } else {
+        const uint16_t server = (uint16_t)(number - (uint16_t)CPU_TIME_JOBS);
+
+        telemetry_text(&answer->line, servers[server]);
+        answer_count(answer, "hold_ns", monitor_longest_hold((monitor_server_t)server) * BSP_CYCLE_NS);
+    }
+    return true;
+}
+
 static bool reset(answer_t *answer)
 {
     monitor_reset();
@@ -75,8 +101,11 @@ bool verb_perf(answer_t *answer)
     if (answer_argument_is(answer, "RESET")) {
         return reset(answer);
     }
+    if (answer_argument_is(answer, "COSTS")) {
+        return listing_start(answer, write_cost);
+    }
     if (answer->command->argument_length > 0U) {
-        return answer_refuse(answer, "one of RESET");
+        return answer_refuse(answer, "one of COSTS|RESET");
     }
     return listing_start(answer, write_line);
 }

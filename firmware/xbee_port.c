@@ -8,6 +8,7 @@
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
+#include "firmware/cpu_time.h"
 #include "firmware/schedule.h"
 #include "bsp/timebase.h"
 #include "firmware/uart_port.h"
@@ -132,6 +133,7 @@ void xbee_port_create(void)
     swi.instance->name = "XBee_SWI";
     swi.priority = XBEE_SWI_PRIORITY;
     xbee_swi = Swi_create(xbee_swi_run, &swi, NULL);
+    cpu_time_watch(CPU_TIME_XBEE_SWI, xbee_swi);
     uart_port_create(BSP_UART_XBEE, XBEE_BIT_RATE, received);
 }
 

@@ -3,6 +3,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "firmware/cpu_time.h"
 #include "firmware/fault.h"
 #include "sim/costs.h"
 #include "sim/devices/rc_mux.h"
@@ -40,6 +41,9 @@ static struct {
 } board;
 static const uint32_t wire_bases[BOARD_WIRES] = {SCIA_BASE, SCIB_BASE, SCIC_BASE};
 static board_probes_t probes[BOARD_PROBES];
+/* As ccs_project/app.cfg names them. */
+static const kernel_hooks_t processor_time = {cpu_time_hwi_begin, cpu_time_hwi_end, cpu_time_swi_begin,
+                                              cpu_time_swi_end, cpu_time_task_switch};
 
 board_config_t board_config(unsigned long seed)
 {
@@ -226,6 +230,7 @@ void board_power_on(const board_config_t *config, board_terminal_t terminal, voi
     chip_watchdog_connect(restart, NULL);
     variables_reset();
     kernel_set_fault_hook(fault_make_safe);
+    kernel_set_hooks(&processor_time);
     kernel_boot(firmware_main, config->costs);
 }
 

@@ -12,8 +12,7 @@ static const kernel_cost_t jobs[] = {
     {"SCIB_TX", 99, US(2)},
     {"SCIC_RX", 92, US(2.4)},
     {"SCIC_TX", 93, US(2)},
-    {"Clock_swi", -1,
-     US(4.8)}, /* two UARTs looked at, each as by a receive interrupt; the third, 2.4 more, came later */
+    {"Clock_swi", -1, US(7.2)}, /* three UARTs looked at, each as by a receive interrupt */
     {"IMU_SWI", -1, US(81)},
     {"Laser_SWI", -1, US(302)},
     {"XBee_SWI", -1, US(124)},

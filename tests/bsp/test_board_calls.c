@@ -66,6 +66,7 @@ void test_the_whole_start_up_in_its_order(void)
     bsp_selector_init_Expect();
     expect_pull_ups();
     SysCtl_enablePeripheral_Expect(SYSCTL_PERIPH_CLK_TIMER1);
+    SysCtl_enablePeripheral_Expect(SYSCTL_PERIPH_CLK_TIMER2);
     bsp_time_init_Expect();
     bsp_board_init();
 }

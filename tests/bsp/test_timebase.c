@@ -60,3 +60,14 @@ void test_a_second_init_starts_over(void)
     after(SIM_S + 7 * SIM_US);
     TEST_ASSERT_EQUAL_UINT32(7, bsp_time_us());
 }
+
+void test_cycles_of_5_ns_are_counted_and_wrap(void)
+{
+    TEST_ASSERT_EQUAL_UINT32(0, bsp_time_cycles());
+    after(1 * SIM_MS + 4);
+    TEST_ASSERT_EQUAL_UINT32(SIM_MS / BSP_CYCLE_NS, bsp_time_cycles());
+    after(SIM_S + 5);
+    TEST_ASSERT_EQUAL_UINT32(200000001, bsp_time_cycles());
+    after(4294967296 * 5 + 35);
+    TEST_ASSERT_EQUAL_UINT32(7, bsp_time_cycles());
+}

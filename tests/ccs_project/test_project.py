@@ -127,7 +127,8 @@ class Kernel(unittest.TestCase):
 
     def test_nothing_but_assignments_use_module_and_the_reset_function(self):
         for line in filter(None, (line.strip() for line in self.cfg.splitlines())):
-            self.assertRegex(line, r"^(var \w+\s*= xdc\.useModule\('[\w.]+'\);|[A-Z]\w*(\.\w+)+\s*=\s*['&\w.]+;|Reset\.fxns\.\$add\('&\w+'\);)$")
+            self.assertRegex(line, r"^(var \w+\s*= xdc\.useModule\('[\w.]+'\);|[A-Z]\w*(\.\w+)+\s*=\s*['&\w.]+;|Reset\.fxns\.\$add\('&\w+'\);"
+                                   r"|\w+\.addHookSet\(\{( \w+: '&\w+',?)+ \}\);)$")
 
     def test_the_clock_is_left_to_driverlib_and_told_to_the_kernel(self):
         self.assertEqual(self.value("Boot.configureClocks"), "false")
@@ -137,11 +138,19 @@ class Kernel(unittest.TestCase):
         self.assertIn("SysCtl_setClock(DEVICE_SETCLOCK_CFG)", code("bsp/board.c"))
         self.assertIn("SysCtl_disableWatchdog();", code("bsp/board.c"))
 
-    def test_the_tick_is_a_millisecond_on_timer_0_and_timer_1_is_left_to_the_time_base(self):
+    def test_the_hooks_are_those_of_the_processor_time_and_all_of_them(self):
+        named = re.findall(r"addHookSet\(\{(.*?)\}\)", self.cfg)
+        self.assertEqual([" ".join(each.split()) for each in named],
+                         ["beginFxn: '&cpu_time_hwi_begin', endFxn: '&cpu_time_hwi_end'",
+                          "beginFxn: '&cpu_time_swi_begin', endFxn: '&cpu_time_swi_end'", "switchFxn: '&cpu_time_task_switch'"])
+        declared = set(re.findall(r"^Void (cpu_time_\w+)\(", code("firmware/cpu_time.h"), re.MULTILINE))
+        self.assertEqual(declared, set(re.findall(r"'&(cpu_time_\w+)'", self.cfg)))
+
+    def test_the_tick_is_a_millisecond_on_timer_0_and_timers_1_and_2_are_left_to_the_time_base(self):
         self.assertEqual((self.value("Clock.tickPeriod"), self.value("Clock.timerId")), ("1000", "0"))
         self.assertIn("CPUTIMER1_BASE", code("bsp/timebase.c"))
-        self.assertNotIn("CPUTIMER2_BASE", code("bsp/timebase.c"))
-        self.assertEqual(int(self.value("Timer.anyMask"), 16) & 0x2, 0)
+        self.assertIn("CPUTIMER2_BASE", code("bsp/timebase.c"))
+        self.assertEqual(int(self.value("Timer.anyMask"), 16), 0x1)
 
     def test_the_load_is_measured_by_the_timer_of_the_tick(self):
         self.assertEqual(self.modules["TickStamp"], "ti.sysbios.family.c28.TimestampProvider")

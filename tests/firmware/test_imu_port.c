@@ -5,6 +5,7 @@
 
 #include "jobs.h"
 #include "kernel.h"
+#include "mock_cpu_time.h"
 #include "mock_timebase.h"
 #include "mock_uart_port.h"
 #include "unity.h"
@@ -54,6 +55,8 @@ void setUp(void)
     uart_port_send_Stub(port_send);
     bsp_time_us_Stub(time_us);
     jobs_reset();
+    cpu_time_watch_Expect(CPU_TIME_IMU_SWI, NULL);
+    cpu_time_watch_IgnoreArg_handle();
     imu_port_create();
 }
 

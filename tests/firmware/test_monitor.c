@@ -3,16 +3,52 @@
 #include "firmware/monitor.h"
 
 #include "kernel.h"
+#include "mock_cpu_time.h"
 #include "mock_timebase.h"
 #include "unity.h"
 
 static uint32_t now_us;
+static uint32_t used; /* processor time of the task that calls */
+static uint16_t resets;
+static uint16_t watched;
+static int at_gate;
 static monitor_report_t report;
 
 static uint32_t time_us(int calls)
 {
     (void)calls;
     return now_us;
+}
+
+static uint32_t used_now(int calls)
+{
+    (void)calls;
+    return used;
+}
+
+static void cpu_time_forgets(int calls)
+{
+    (void)calls;
+    resets++;
+}
+
+static void watch(cpu_time_job_t job, const void *handle, int calls)
+{
+    (void)calls;
+    (void)handle;
+    watched |= (uint16_t)(1U << (job - CPU_TIME_TASK));
+}
+
+static void asked(int calls)
+{
+    (void)calls;
+    at_gate++;
+}
+
+static void got(int calls)
+{
+    (void)calls;
+    at_gate--;
 }
 
 /* A task's handle is only handed back. */
@@ -27,8 +63,15 @@ void setUp(void)
 {
     kernel_reset();
     now_us = 0xFFFFF000U; /* wraps on the way */
+    used = 0U;
     bsp_time_us_Stub(time_us);
     Task_stat_Stub(stat);
+    cpu_time_used_Stub(used_now);
+    cpu_time_reset_Stub(cpu_time_forgets);
+    cpu_time_watch_Stub(watch);
+    cpu_time_gate_asked_Stub(asked);
+    cpu_time_gate_entered_Stub(got);
+    at_gate = 0;
     for (uint16_t task = 0; task < MONITOR_TASKS; task++) {
         monitor_begin((monitor_task_t)task); /* takes a release that an earlier test has left */
     }
@@ -148,18 +191,63 @@ void test_a_job_without_a_release_counts_from_its_begin(void)
     assert_report(MONITOR_CONTROL, 400U, 0U);
 }
 
-void test_waits_are_kept_per_server(void)
+/* An access that waits for wait_us and works for hold cycles. */
+static void access(uint32_t server, uint32_t wait_us, uint32_t hold)
+{
+    monitor_access_t access;
+
+    monitor_asking((monitor_server_t)server, &access);
+    TEST_ASSERT_EQUAL_INT(1, at_gate);
+    now_us += wait_us;
+    used += hold / 2U;
+    monitor_entered((monitor_server_t)server, &access);
+    TEST_ASSERT_EQUAL_INT(0, at_gate);
+    access = monitor_leaving((monitor_server_t)server);
+    used += hold - hold / 2U;
+    monitor_left((monitor_server_t)server, &access);
+}
+
+void test_the_longest_wait_and_hold_are_kept_per_server(void)
 {
     for (uint32_t server = 0; server < MONITOR_SERVERS; server++) {
-        const uint32_t asked_us = now_us;
-
-        now_us += 10U + server;
-        monitor_entered((monitor_server_t)server, asked_us);
-        monitor_entered((monitor_server_t)server, now_us - 2U);
+        access(server, 10U + server, 100U);
+        access(server, 2U, 1000U + server);
+        access(server, 1U, 50U);
     }
     for (uint32_t server = 0; server < MONITOR_SERVERS; server++) {
         TEST_ASSERT_EQUAL_UINT32(10U + server, monitor_longest_wait_us((monitor_server_t)server));
+        TEST_ASSERT_EQUAL_UINT32(1000U + server, monitor_longest_hold((monitor_server_t)server));
     }
+}
+
+/* The lower task holds the gate; the higher one waits, and its processor time is that of its switches too. */
+void test_a_hold_behind_a_wait_does_not_count(void)
+{
+    monitor_access_t lower, higher;
+
+    monitor_asking(MONITOR_ALTITUDE, &lower);
+    monitor_entered(MONITOR_ALTITUDE, &lower);
+    used = 5000U;
+    monitor_asking(MONITOR_ALTITUDE, &higher);
+    used = 40U;
+    lower = monitor_leaving(MONITOR_ALTITUDE);
+    monitor_left(MONITOR_ALTITUDE, &lower);
+    used = 9000U;
+    monitor_entered(MONITOR_ALTITUDE, &higher);
+    higher = monitor_leaving(MONITOR_ALTITUDE);
+    monitor_left(MONITOR_ALTITUDE, &higher);
+    TEST_ASSERT_EQUAL_UINT32(40, monitor_longest_hold(MONITOR_ALTITUDE));
+    access(MONITOR_ALTITUDE, 0U, 60U);
+    TEST_ASSERT_EQUAL_UINT32(60, monitor_longest_hold(MONITOR_ALTITUDE));
+}
+
+void test_every_task_that_is_watched_is_measured(void)
+{
+    watched = 0U;
+    for (uint16_t i = 0; i < MONITOR_TASKS; i++) {
+        monitor_watch((monitor_task_t)i, NULL);
+    }
+    TEST_ASSERT_EQUAL_HEX16(0x3F, watched);
 }
 
 void test_reset_clears_responses_deadlines_and_waits(void)
@@ -168,14 +256,17 @@ void test_reset_clears_responses_deadlines_and_waits(void)
         job((monitor_task_t)task, 0U, 400000U);
     }
     for (uint16_t server = 0; server < MONITOR_SERVERS; server++) {
-        monitor_entered((monitor_server_t)server, now_us - 5U);
+        access(server, 5U, 5U);
     }
+    resets = 0U;
     monitor_reset();
+    TEST_ASSERT_EQUAL_UINT16(1, resets);
     for (uint16_t task = 0; task < MONITOR_TASKS; task++) {
         assert_report((monitor_task_t)task, 0U, 0U);
     }
     for (uint16_t server = 0; server < MONITOR_SERVERS; server++) {
         TEST_ASSERT_EQUAL_UINT32(0, monitor_longest_wait_us((monitor_server_t)server));
+        TEST_ASSERT_EQUAL_UINT32(0, monitor_longest_hold((monitor_server_t)server));
     }
     job(MONITOR_IMU, 1U, 2U);
     assert_report(MONITOR_IMU, 3U, 0U);

@@ -6,7 +6,6 @@
 
 #include "kernel.h"
 #include "mock_monitor.h"
-#include "mock_timebase.h"
 #include "unity.h"
 #include "firmware/probe.h"
 
@@ -25,30 +24,61 @@ static reference_sample_t reference;
 static parameters_t parameters;
 static flight_outputs_t flight;
 
-static uint32_t now_us;
-static uint32_t entered_us[MONITOR_SERVERS];
 static uint16_t entries[MONITOR_SERVERS];
+static uint32_t asks;
+static monitor_access_t told; /* to monitor_entered(), and given back by monitor_leaving() */
 
-static uint32_t time_us(int calls)
+static bool any_held(void)
 {
-    (void)calls;
-    return now_us;
+    for (uint16_t i = 0; i < kernel.gates.count; i++) {
+        if (kernel.gates.made[i].held) {
+            return true;
+        }
+    }
+    return false;
 }
 
-static void entered(monitor_server_t server, uint32_t asked_us, int calls)
+static void asking(monitor_server_t server, monitor_access_t *access, int calls)
 {
     (void)calls;
+    (void)server;
+    TEST_ASSERT_FALSE(any_held());
+    access->asked_us = ++asks;
+}
+
+static void entered(monitor_server_t server, const monitor_access_t *access, int calls)
+{
+    (void)calls;
+    TEST_ASSERT_TRUE(any_held());
+    TEST_ASSERT_EQUAL_UINT32(asks, access->asked_us);
     entries[server]++;
-    entered_us[server] = asked_us;
+    told = *access;
+}
+
+static monitor_access_t leaving(monitor_server_t server, int calls)
+{
+    (void)calls;
+    TEST_ASSERT_TRUE(any_held());
+    entries[server] = (uint16_t)(entries[server] + 10U);
+    return told;
+}
+
+static void left(monitor_server_t server, const monitor_access_t *access, int calls)
+{
+    (void)calls;
+    TEST_ASSERT_FALSE(any_held());
+    TEST_ASSERT_EQUAL_UINT32(asks, access->asked_us);
+    entries[server] = (uint16_t)(entries[server] + 100U);
 }
 
 void setUp(void)
 {
     kernel_reset();
-    now_us = 0U;
     (void)memset(entries, 0, sizeof entries);
-    bsp_time_us_Stub(time_us);
+    monitor_asking_Stub(asking);
     monitor_entered_Stub(entered);
+    monitor_leaving_Stub(leaving);
+    monitor_left_Stub(left);
     servers_create();
 }
 
@@ -376,12 +406,7 @@ void test_what_is_written_is_what_is_read_and_what_the_debugger_sees(void)
     }
 }
 
-static void wait_at_the_gate(void)
-{
-    now_us += 1000U;
-}
-
-void test_every_wait_is_told_with_its_server_and_the_time_it_was_asked_for(void)
+void test_every_access_is_told_with_its_server_before_and_after_it_enters_and_leaves(void)
 {
     static const monitor_server_t servers[ACCESSES] = {
         MONITOR_ALTITUDE,      MONITOR_ALTITUDE,     MONITOR_IMU_SAMPLE,   MONITOR_IMU_SAMPLE,
@@ -390,15 +415,12 @@ void test_every_wait_is_told_with_its_server_and_the_time_it_was_asked_for(void)
         MONITOR_FLIGHT_STATUS,
     };
 
-    kernel.gates.on_enter = wait_at_the_gate;
     read_all();
     (void)memset(entries, 0, sizeof entries);
     for (size_t a = 0; a < ACCESSES; a++) {
         const uint16_t before = entries[servers[a]];
-        const uint32_t asked_us = now_us;
 
         accesses[a].access();
-        TEST_ASSERT_EQUAL_UINT16(before + 1U, entries[servers[a]]);
-        TEST_ASSERT_EQUAL_UINT32(asked_us, entered_us[servers[a]]);
+        TEST_ASSERT_EQUAL_UINT16(before + 111U, entries[servers[a]]);
     }
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "kernel.h"
+#include "mock_cpu_time.h"
 #include "mock_uart.h"
 #include "unity.h"
 
@@ -128,6 +129,10 @@ void setUp(void)
     bsp_uart_transmit_Stub(transmit);
     bsp_uart_transmit_interrupt_enable_Stub(interrupt_enable);
     bsp_uart_transmit_acknowledge_Stub(acknowledge);
+    for (int job = CPU_TIME_LASER_RECEIVE; job <= CPU_TIME_XBEE_TRANSMIT; job++) {
+        cpu_time_watch_Expect((cpu_time_job_t)job, NULL);
+        cpu_time_watch_IgnoreArg_handle();
+    }
     uart_port_create(BSP_UART_LASER, 115200U, laser_received);
     uart_port_create(BSP_UART_IMU, 57600U, imu_received);
     uart_port_create(BSP_UART_XBEE, 9600U, xbee_received);

@@ -7,11 +7,12 @@
 
 #include "mock_Load.h"
 #include "mock_boot.h"
+#include "mock_cpu_time.h"
 #include "mock_monitor.h"
 #include "mock_xbee_port.h"
 #include "unity.h"
 
-#define LINES_MAX 10U
+#define LINES_MAX 30U
 
 static char sent[LINES_MAX][TELEMETRY_ANSWER_MAX + 1U];
 static uint16_t sends;
@@ -47,6 +48,29 @@ static uint32_t longest_wait(monitor_server_t server, int calls)
     return waits[server];
 }
 
+static uint32_t cycles_of_cost;
+
+static const char *name_of_cost(cpu_time_job_t job, int calls)
+{
+    static char name[20];
+
+    (void)calls;
+    (void)snprintf(name, sizeof name, "Job%d", (int)job);
+    return name;
+}
+
+static uint32_t cost(cpu_time_job_t job, int calls)
+{
+    (void)calls;
+    return cycles_of_cost + (uint32_t)job;
+}
+
+static uint32_t hold(monitor_server_t server, int calls)
+{
+    (void)calls;
+    return cycles_of_cost + 1000U * (uint32_t)server;
+}
+
 static void reset(int calls)
 {
     (void)calls;
@@ -67,6 +91,10 @@ void setUp(void)
     monitor_report_Stub(report);
     monitor_longest_wait_us_Stub(longest_wait);
     monitor_reset_Stub(reset);
+    cpu_time_name_Stub(name_of_cost);
+    cpu_time_longest_Stub(cost);
+    monitor_longest_hold_Stub(hold);
+    cycles_of_cost = 20U;
     boot_cause_IgnoreAndReturn("POWER");
     Load_getCPULoad_IgnoreAndReturn(7U);
 }
@@ -119,14 +147,25 @@ void test_reset_clears_in_either_case_and_answers_once(void)
 
 void test_any_other_word_is_refused_and_clears_nothing(void)
 {
-    static const char *const words[] = {"RESE", "RESETS", "1", "RESET RESET"};
+    static const char *const words[] = {"RESE", "RESETS", "1", "COST"};
 
     for (uint16_t i = 0; i < 4U; i++) {
         TEST_ASSERT_FALSE(ask(words[i]));
         TEST_ASSERT_EQUAL_UINT16(1, sends);
-        TEST_ASSERT_EQUAL_STRING("ERR PERF one of RESET\r\n", sent[0]);
+        TEST_ASSERT_EQUAL_STRING("ERR PERF one of COSTS|RESET\r\n", sent[0]);
     }
     TEST_ASSERT_EQUAL_UINT16(0, resets);
+}
+
+void test_costs_are_every_job_then_every_gate_numbered_in_nanoseconds(void)
+{
+    TEST_ASSERT_TRUE(ask("costs"));
+    TEST_ASSERT_EQUAL_UINT16(CPU_TIME_JOBS + MONITOR_SERVERS + 1, sends);
+    TEST_ASSERT_EQUAL_STRING("OK PERF COSTS 1 Job0 longest_ns:100\r\n", sent[0]);
+    TEST_ASSERT_EQUAL_STRING("OK PERF COSTS 17 Job16 longest_ns:180\r\n", sent[16]);
+    TEST_ASSERT_EQUAL_STRING("OK PERF COSTS 18 altitude hold_ns:100\r\n", sent[17]);
+    TEST_ASSERT_EQUAL_STRING("OK PERF COSTS 23 flight hold_ns:25100\r\n", sent[22]);
+    TEST_ASSERT_EQUAL_STRING("OK PERF END lines:23\r\n", sent[23]);
 }
 
 void test_the_largest_figures_fit(void)

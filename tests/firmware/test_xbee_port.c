@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "kernel.h"
+#include "mock_cpu_time.h"
 #include "mock_timebase.h"
 #include "mock_uart_port.h"
 #include "unity.h"
@@ -72,6 +73,8 @@ void setUp(void)
     uart_port_send_Stub(port_send);
     uart_port_room_Stub(port_room);
     bsp_time_us_Stub(time_us);
+    cpu_time_watch_Expect(CPU_TIME_XBEE_SWI, NULL);
+    cpu_time_watch_IgnoreArg_handle();
     xbee_port_create();
 }
 

@@ -23,6 +23,7 @@
 
 #define PRIORITIES 16
 #define TICK_INTERRUPT 38
+#define HWI_GROUPS 16 /* bits of the C28x's IER: 12 groups of the PIE, and 4 lines of the core */
 #define TICK_PERIOD (1 * SIM_MS)
 #define TIMEOUT_LIMIT 65535U /* BIOS_WAIT_FOREVER on a C28x */
 #define WORD_MAX 65535U      /* UInt of a C28x */
@@ -49,6 +50,7 @@ struct Task_Object {
     job_t job;
     Task_FuncPtr function;
     UArg arguments[2];
+    bool ended;
     link_t ready;
     link_t wait; /* in the queue of a semaphore or gate */
     struct Clock_Object timeout;
@@ -73,6 +75,7 @@ void kernel_observed(kernel_event_t event, const job_t *job, int detail);
 /* The same, and the job in hand gives up the processor: it is over or waits. */
 void kernel_yield_processor(kernel_event_t event, const job_t *job, int detail);
 const kernel_costs_t *kernel_costs(void);
+const kernel_hooks_t *kernel_hooks(void); /* every one is there */
 sim_time_t kernel_cost_of_name(const char *name);
 const kernel_cost_t *kernel_cost_of_interrupt(int number); /* NULL: none */
 void kernel_halt(const char *format, ...) __attribute__((noreturn, format(printf, 1, 2)));
@@ -87,8 +90,9 @@ const char *kernel_name(const xdc_runtime_IInstance_Params *instance);
 /* task.c */
 
 void task_module_reset(void);
-job_t *task_first(void);     /* the one that may run, NULL when none is ready */
-Task_Handle task_self(void); /* the calling task, NULL elsewhere */
+job_t *task_first(void);      /* the one that may run, NULL when none is ready */
+void task_switch(job_t *job); /* it has the processor from now on, NULL: the idle task; tells the hook */
+Task_Handle task_self(void);  /* the calling task, NULL elsewhere */
 /* Halts unless the calling context may wait; `function` for the message. */
 void task_require_timeout(const char *function, UInt32 timeout);
 void task_require_wait(const char *function);
@@ -128,8 +132,8 @@ Swi_Handle swi_create_internal(Swi_FuncPtr function, const char *name, bool (*ne
 /* hwi.c */
 
 void hwi_module_reset(void);
-bool hwi_waiting(void);
-job_t *hwi_take(void); /* one must wait */
+bool hwi_waiting(void); /* one that is enabled, and none of its group in hand */
+job_t *hwi_take(void);  /* one must wait; it is in hand until hwi_run() returns */
 void hwi_run(job_t *job);
 void hwi_create_internal(Int number, Hwi_FuncPtr function, const char *name);
 

@@ -4,6 +4,8 @@
 #include "sim/ti/sysbios/core.h"
 
 #define FIRST_PIE 32
+#define FIRST_UPPER 128
+#define GROUP 8
 #define NUMBERS 224
 #define WORDS ((NUMBERS + 63) / 64)
 
@@ -17,6 +19,7 @@ struct Hwi_Object {
 static struct Hwi_Object hwis[NUMBERS];
 static uint64_t raised[WORDS];
 static uint64_t enabled[WORDS];
+static unsigned masked; /* bits of the IER, whose Hwis are in hand */
 
 static bool is_on(const uint64_t *set, int number)
 {
@@ -33,6 +36,16 @@ void hwi_module_reset(void)
     memset(hwis, 0, sizeof hwis);
     memset(raised, 0, sizeof raised);
     memset(enabled, 0, sizeof enabled);
+    masked = 0;
+}
+
+/* The bit of the IER: a group of the PIE has the same for both halves of its numbers. */
+static unsigned mask_of(int number)
+{
+    if (number < FIRST_PIE) {
+        return 1u << (number - 1);
+    }
+    return 1u << ((number < FIRST_UPPER ? number - FIRST_PIE : number - FIRST_UPPER) / GROUP);
 }
 
 static void release(int number)
@@ -55,10 +68,12 @@ void kernel_raise(int interrupt)
 static int first_waiting(void)
 {
     for (int word = 0; word < WORDS; word++) {
-        uint64_t waiting = raised[word] & enabled[word];
+        for (uint64_t waiting = raised[word] & enabled[word]; waiting != 0; waiting &= waiting - 1) {
+            const int number = word * 64 + __builtin_ctzll(waiting);
 
-        if (waiting != 0) {
-            return word * 64 + __builtin_ctzll(waiting);
+            if ((masked & mask_of(number)) == 0) {
+                return number;
+            }
         }
     }
     return -1;
@@ -76,14 +91,18 @@ job_t *hwi_take(void)
     raised[number / 64] &= ~((uint64_t)1 << (number % 64));
     hwis[number].job.remaining = hwis[number].job.cost;
     hwis[number].job.id.released = hwis[number].raised_at;
+    masked |= mask_of(number);
+    kernel_hooks()->hwi_begin(&hwis[number]);
     return &hwis[number].job;
 }
 
 void hwi_run(job_t *job)
 {
-    const struct Hwi_Object *hwi = &hwis[job->rank];
+    struct Hwi_Object *hwi = &hwis[job->rank];
 
     hwi->function(hwi->argument);
+    kernel_hooks()->hwi_end(hwi);
+    masked &= ~mask_of(job->rank);
 }
 
 static Hwi_Handle create(Int number, Hwi_FuncPtr function, UArg argument, const char *name)

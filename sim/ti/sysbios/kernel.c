@@ -25,11 +25,13 @@ static bool started;
 static bool halted;
 static char halt_reason[200];
 static sim_time_t run_end;
-static job_t *holder;      /* has the processor */
-static job_t *hwi_in_hand; /* Hwis are not nested */
-static job_t *resumed;     /* thread whose code runs */
+static job_t *holder;                   /* has the processor */
+static job_t *hwis_in_hand[HWI_GROUPS]; /* each has interrupted the one before it */
+static int hwi_depth;
+static job_t *resumed; /* thread whose code runs */
 
 static void (*fault_hook)(void);
+static kernel_hooks_t hooks;
 static void (*pacer)(sim_time_t next);
 static kernel_observer_t observer;
 static void *observer_context;
@@ -91,6 +93,37 @@ const kernel_cost_t *kernel_cost_of_interrupt(int number)
 void kernel_set_fault_hook(void (*hook)(void))
 {
     fault_hook = hook;
+}
+
+static void no_hwi_hook(Hwi_Handle hwi)
+{
+    (void)hwi;
+}
+
+static void no_swi_hook(Swi_Handle swi)
+{
+    (void)swi;
+}
+
+static void no_task_hook(Task_Handle before, Task_Handle now)
+{
+    (void)before;
+    (void)now;
+}
+
+void kernel_set_hooks(const kernel_hooks_t *wanted)
+{
+    hooks = wanted != NULL ? *wanted : (kernel_hooks_t){.hwi_begin = NULL};
+}
+
+const kernel_hooks_t *kernel_hooks(void)
+{
+    hooks.hwi_begin = hooks.hwi_begin != NULL ? hooks.hwi_begin : no_hwi_hook;
+    hooks.hwi_end = hooks.hwi_end != NULL ? hooks.hwi_end : no_hwi_hook;
+    hooks.swi_begin = hooks.swi_begin != NULL ? hooks.swi_begin : no_swi_hook;
+    hooks.swi_end = hooks.swi_end != NULL ? hooks.swi_end : no_swi_hook;
+    hooks.task_switch = hooks.task_switch != NULL ? hooks.task_switch : no_task_hook;
+    return &hooks;
 }
 
 static void first_halt(const char *format, va_list arguments)
@@ -192,20 +225,23 @@ static job_t *first_job(void)
     if (!started || halted) {
         return NULL;
     }
-    if (hwi_in_hand == NULL) {
+    if (hwi_depth == 0) {
         job_t *thread = first_thread();
 
         if (!interrupt_goes_before(thread)) {
             return thread;
         }
-        hwi_in_hand = hwi_take();
     }
-    return hwi_in_hand;
+    /* TI's dispatcher masks a Hwi's own PIE group alone while its function runs: any other interrupts it. */
+    while (hwi_waiting()) {
+        hwis_in_hand[hwi_depth++] = hwi_take();
+    }
+    return hwis_in_hand[hwi_depth - 1];
 }
 
 static void hand_over(job_t *job)
 {
-    if (job == holder) {
+    if (job == holder && job != NULL) {
         return;
     }
     if (holder != NULL) {
@@ -217,6 +253,9 @@ static void hand_over(job_t *job)
             swi_begin(job);
         }
         kernel_observed(KERNEL_DISPATCHED, job, job->rank);
+    }
+    if (!halted && started && (job == NULL || job->id.kind == KERNEL_TASK)) {
+        task_switch(job);
     }
 }
 
@@ -230,7 +269,7 @@ void kernel_reschedule(void)
 {
     job_t *self = resumed;
 
-    if (self == NULL || halted) {
+    if (self == NULL || halted || !fiber_inside()) {
         return;
     }
     if (self->remaining > 0 || holder != self || first_thread() != self || interrupt_goes_before(self)) {
@@ -251,7 +290,7 @@ static void execute(job_t *job)
     switch (job->id.kind) {
     case KERNEL_HWI:
         hwi_run(job);
-        hwi_in_hand = NULL;
+        hwi_depth--;
         kernel_yield_processor(KERNEL_FINISHED, job, job->rank);
         break;
     case KERNEL_SWI:
@@ -261,6 +300,10 @@ static void execute(job_t *job)
     case KERNEL_TASK:
         resumed = job;
         fiber_resume(&job->fiber);
+        resumed = NULL;
+        if (!halted) { /* an interrupt that waits comes after the switch, as on the chip */
+            task_switch(task_first());
+        }
         break;
     }
     resumed = NULL;
@@ -337,7 +380,7 @@ void kernel_boot(int (*entry)(void), const kernel_costs_t *new_costs)
     started = false;
     halted = false;
     holder = NULL;
-    hwi_in_hand = NULL;
+    hwi_depth = 0;
     hwi_module_reset();
     swi_module_reset();
     task_module_reset();

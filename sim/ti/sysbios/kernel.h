@@ -1,11 +1,12 @@
 /* What the PC board asks of the kernel that stands in for SYS/BIOS: start it, run it in virtual time, raise
  * interrupts, and say what each job costs. The firmware never includes this.
  *
- * One processor. Runnable, highest first: pending Hwi (lowest PIE number first, not nested), posted Swi by
- * priority, ready Task by priority, FIFO among equals, idle. Every job has a cost that it consumes,
- * preemptibly, before its code runs: a Hwi or Swi before its function, a Task after the wait (pend, sleep)
- * that released it returns; a gate entry consumes its cost while the gate is held. Code itself takes no
- * virtual time. A task's first run, up to its first wait, costs its gate entries alone. */
+ * One processor. Runnable, highest first: pending Hwi (lowest PIE number first; it interrupts a Hwi of
+ * another PIE group, as TI's dispatcher lets it), posted Swi by priority, ready Task by priority, FIFO among
+ * equals, idle. Every job has a cost that it consumes, preemptibly, before its code runs: a Hwi or Swi before
+ * its function, a Task after the wait (pend, sleep) that released it returns; a gate entry consumes its cost
+ * while the gate is held. Code itself takes no virtual time. A task's first run, up to its first wait, costs
+ * its gate entries alone. */
 #ifndef SIM_TI_SYSBIOS_KERNEL_H
 #define SIM_TI_SYSBIOS_KERNEL_H
 
@@ -29,7 +30,7 @@ typedef struct {
 } kernel_costs_t;
 
 /* Runs entry (the firmware's main) on its own stack until it calls BIOS_start(). Resets any earlier state but
- * observer, pacer and fault hook. `costs` and what it points to must outlive the run; NULL = nothing costs
+ * observer, pacer and hooks. `costs` and what it points to must outlive the run; NULL = nothing costs
  * anything. */
 void kernel_boot(int (*entry)(void), const kernel_costs_t *costs);
 
@@ -48,6 +49,21 @@ const char *kernel_halt_reason(void);
  * at the first halt, where it happened (main(), Hwi, Swi or Task); must return, and not wait. No job runs any
  * more. NULL = none. */
 void kernel_set_fault_hook(void (*hook)(void));
+
+/* The application's hooks, what addHookSet() in its configuration names. Called as on the chip: around the
+ * function of a Hwi and of a Swi, and when another task gets the processor (the first time from NULL). They
+ * must not wait. NULL = none. Any of them may be NULL. */
+struct Hwi_Object;
+struct Swi_Object;
+struct Task_Object;
+typedef struct {
+    void (*hwi_begin)(struct Hwi_Object *hwi);
+    void (*hwi_end)(struct Hwi_Object *hwi);
+    void (*swi_begin)(struct Swi_Object *swi);
+    void (*swi_end)(struct Swi_Object *swi);
+    void (*task_switch)(struct Task_Object *before, struct Task_Object *now);
+} kernel_hooks_t;
+void kernel_set_hooks(const kernel_hooks_t *hooks);
 
 /* Called before virtual time moves to `next`; may wait for the wall clock and may post timeline events
  * earlier than `next` (the kernel then looks again). NULL = as fast as possible. */

@@ -77,11 +77,13 @@ void swi_begin(job_t *job)
         begun[job->rank] = swi;
         job->remaining = job->cost;
         job->id.released = swi->posted_at;
+        kernel_hooks()->swi_begin(swi);
     }
 }
 
 static void finish(struct Swi_Object *swi)
 {
+    kernel_hooks()->swi_end(swi);
     swi->begun = false;
     swi->job.interrupts_off = false;
     begun[swi->job.rank] = NULL;

@@ -11,6 +11,8 @@ static int task_count;
 static link_t ready[PRIORITIES];
 static unsigned ready_set; /* bit p: some task of priority p */
 static job_t *lock_holder;
+static struct Task_Object idle; /* SYS/BIOS's idle task: it has nothing to do here */
+static Task_Handle switched_to; /* has the processor, or will have it again; NULL before the first */
 
 void task_module_reset(void)
 {
@@ -24,6 +26,8 @@ void task_module_reset(void)
     task_count = 0;
     ready_set = 0;
     lock_holder = NULL;
+    switched_to = NULL;
+    link_init(&idle.ready);
 }
 
 static link_t *first_ready(void)
@@ -39,6 +43,28 @@ job_t *task_first(void)
     link_t *first = first_ready();
 
     return first == NULL ? NULL : &LINK_OWNER(first, struct Task_Object, ready)->job;
+}
+
+void task_switch(job_t *job)
+{
+    Task_Handle before = switched_to;
+    Task_Handle now = job == NULL ? &idle : LINK_OWNER(job, struct Task_Object, job);
+
+    if (now != before) {
+        switched_to = now;
+        kernel_hooks()->task_switch(before, now);
+    }
+}
+
+Task_Mode Task_getMode(Task_Handle handle)
+{
+    if (handle == task_self()) {
+        return Task_Mode_RUNNING;
+    }
+    if (handle->ended) {
+        return Task_Mode_TERMINATED;
+    }
+    return handle == &idle || !link_alone(&handle->ready) ? Task_Mode_READY : Task_Mode_BLOCKED;
 }
 
 Task_Handle task_self(void)
@@ -213,6 +239,7 @@ static void thread(void *argument)
         kernel_halt("Task \"%s\" ended with the scheduler disabled", task->job.id.name);
     }
     task_block(task);
+    task->ended = true;
     kernel_yield_processor(KERNEL_FINISHED, &task->job, task->job.rank);
     fiber_leave();
 }

@@ -34,7 +34,8 @@ static int hwi_order_main(void)
     return 0;
 }
 
-void test_waiting_hwis_go_by_number_then_swis_then_tasks(void)
+/* Each that is taken lets in the next of another group at once: so the last one taken ends first. */
+void test_waiting_hwis_are_taken_by_number_and_go_before_swis_and_tasks(void)
 {
     const int numbers[] = {98, 97, 223, 92, 15, 97, 1, 32, 92};
 
@@ -43,7 +44,7 @@ void test_waiting_hwis_go_by_number_then_swis_then_tasks(void)
     }
     boot_and_run_ms(hwi_order_main, 1);
     TEST_ASSERT_EQUAL_STRING(
-        "hwi 1@500 hwi 15@500 hwi 32@500 hwi 92@500 hwi ends@500 hwi 97@500 hwi 98@500 hwi 223@500 "
+        "hwi 223@500 hwi 97@500 hwi 98@500 hwi 92@500 hwi ends@500 hwi 15@500 hwi 1@500 hwi 32@500 "
         "high@500 equal@500 task@500 ",
         trace);
 }
@@ -235,4 +236,48 @@ void test_locks_taken_in_main_or_in_a_hwi_end_with_it(void)
     raise_at_us(300, 96);
     boot_and_run_ms(locks_in_hwi_main, 1);
     TEST_ASSERT_EQUAL_STRING("hwi 96@200 waiter@200 hwi 96@300 waiter@300 ", trace);
+}
+
+/* 40 is of PIE group 2, 92 of group 8, 96 and 98 of group 9. */
+static const kernel_cost_t nesting_jobs[] = {
+    {NULL, 40, 100 * SIM_US}, {NULL, 92, 100 * SIM_US}, {NULL, 96, 100 * SIM_US}, {NULL, 98, 100 * SIM_US}};
+static const kernel_costs_t nesting_costs = {.jobs = nesting_jobs, .job_count = 4};
+
+static int nesting_main(void)
+{
+    hwi(40, hwi_function);
+    hwi(92, hwi_function);
+    hwi(96, hwi_function);
+    hwi(98, hwi_function);
+    BIOS_start();
+    return 0;
+}
+
+void test_a_hwi_interrupts_one_of_another_pie_group_whatever_its_number(void)
+{
+    raise_at_us(200, 92);
+    raise_at_us(250, 96); /* group 9 in group 8 */
+    raise_at_us(260, 40); /* group 2 in both */
+    kernel_boot(nesting_main, &nesting_costs);
+    run_ms(1);
+    TEST_ASSERT_EQUAL_STRING("hwi 40@360 hwi 96@450 hwi 92@500 ", trace);
+}
+
+void test_a_hwi_waits_for_one_of_its_own_pie_group(void)
+{
+    raise_at_us(200, 98);
+    raise_at_us(250, 96);
+    kernel_boot(nesting_main, &nesting_costs);
+    run_ms(1);
+    TEST_ASSERT_EQUAL_STRING("hwi 98@300 hwi 96@400 ", trace);
+}
+
+void test_of_two_that_are_raised_at_once_the_lower_number_goes_first_and_is_interrupted(void)
+{
+    raise_at_us(200, 40);
+    raise_at_us(200, 96);
+    raise_at_us(200, 98);
+    kernel_boot(nesting_main, &nesting_costs);
+    run_ms(1);
+    TEST_ASSERT_EQUAL_STRING("hwi 96@300 hwi 98@400 hwi 40@500 ", trace);
 }

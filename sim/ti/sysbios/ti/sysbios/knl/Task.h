@@ -46,6 +46,16 @@ typedef struct {
 /* Any context. */
 Void Task_stat(Task_Handle handle, Task_Stat *statbuf);
 
+/* Any context. BLOCKED: in a wait. INACTIVE is of TI's kernel alone: a priority of -1. */
+typedef enum {
+    Task_Mode_RUNNING,
+    Task_Mode_READY,
+    Task_Mode_BLOCKED,
+    Task_Mode_TERMINATED,
+    Task_Mode_INACTIVE
+} Task_Mode;
+Task_Mode Task_getMode(Task_Handle handle);
+
 /* Returns the previous priority. newpri 1..15; what is inherited through a gate stays on top of it. */
 Int Task_setPri(Task_Handle handle, Int newpri);
 
