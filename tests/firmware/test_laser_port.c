@@ -451,6 +451,7 @@ void test_the_remaining_scans_of_a_counted_run_are_seen_and_its_end_orders_the_n
 
     counted.range.scans = 2U;
     kernel_reset();
+    cpu_time_watch_Ignore();
     laser_port_create(&counted);
     until_stop();
     feed("QT\n00P\n\n");

@@ -20,7 +20,7 @@ void test_the_costs_are_annex_ivs(void)
         {"SCIB_TX", 99, 2000},
         {"SCIC_RX", 92, 2400},
         {"SCIC_TX", 93, 2000},
-        {"Clock_swi", -1, 4800},
+        {"Clock_swi", -1, 7200},
         {"IMU_SWI", -1, 81000},
         {"Laser_SWI", -1, 302000},
         {"XBee_SWI", -1, 124000},
