@@ -1,7 +1,5 @@
 #include "control/descent.h"
 
-#include <math.h>
-
 #include "control/between.h"
 #include "control/touchdown.h"
 
@@ -23,7 +21,7 @@
 
 static float flare_mm_s(float height_mm)
 {
-    return fminf(FLARE_RATE_MM_S + FLARE_SLOPE_PER_S * fmaxf(height_mm, 0.0F), DESCENT_RATE_MM_S);
+    return at_most(FLARE_RATE_MM_S + FLARE_SLOPE_PER_S * at_least(height_mm, 0.0F), DESCENT_RATE_MM_S);
 }
 
 void descent_start(descent_t *descent, float rate_mm_s)
@@ -35,27 +33,27 @@ void descent_start(descent_t *descent, float rate_mm_s)
 
 static float rate_action_n(float error_mm_s)
 {
-    const float climb_mm_s = fminf(error_mm_s + BRAKE_BEYOND_MM_S, 0.0F);
+    const float climb_mm_s = at_most(error_mm_s + BRAKE_BEYOND_MM_S, 0.0F);
     const float action_n = RATE_GAIN_N_PER_MM_S * error_mm_s + BRAKE_GAIN_N_PER_MM_S * climb_mm_s;
     return between(RATE_ACTION_LEAST_N, action_n, RATE_ACTION_MOST_N);
 }
 
 float descent_step(descent_t *descent, float hover_n, float height_mm, float rate_mm_s, float dt_s)
 {
-    descent->sink_mm_s = fminf(descent->sink_mm_s + SINK_SLEW_MM_S2 * dt_s, flare_mm_s(height_mm));
+    descent->sink_mm_s = at_most(descent->sink_mm_s + SINK_SLEW_MM_S2 * dt_s, flare_mm_s(height_mm));
     const float error_mm_s = -descent->sink_mm_s - rate_mm_s;
     const float sink_n = SINK_SHARE * hover_n * descent->sink_mm_s / DESCENT_RATE_MM_S;
 
     const float trim_gain = (rate_mm_s > 0.0F) ? CLIMB_TRIM_GAIN_N_PER_MM : TRIM_GAIN_N_PER_MM;
 
     descent->trim_n = between(-TRIM_MAX_N, descent->trim_n + trim_gain * error_mm_s * dt_s, TRIM_MAX_N);
-    const float setpoint_n = fmaxf(hover_n - sink_n + descent->trim_n + rate_action_n(error_mm_s),
-                                   LEAST_SHARE * hover_n);
+    const float setpoint_n = at_least(hover_n - sink_n + descent->trim_n + rate_action_n(error_mm_s),
+                                      LEAST_SHARE * hover_n);
     descent->near_ground_s = touchdown_time_s(descent->near_ground_s, height_mm * 0.001F, dt_s);
-    return fminf(setpoint_n, touchdown_limit_n(descent->near_ground_s, hover_n + descent->trim_n));
+    return at_most(setpoint_n, touchdown_limit_n(descent->near_ground_s, hover_n + descent->trim_n));
 }
 
 float descent_blind(float hover_n, float elapsed_s)
 {
-    return fmaxf(hover_n * (1.0F - SINK_SHARE) - FADE_N_PER_S2 * elapsed_s * elapsed_s, 0.0F);
+    return at_least(hover_n * (1.0F - SINK_SHARE) - FADE_N_PER_S2 * elapsed_s * elapsed_s, 0.0F);
 }

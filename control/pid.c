@@ -1,7 +1,6 @@
 #include "control/pid.h"
 
-#include <math.h>
-
+#include "control/between.h"
 #include "control/thrust.h"
 
 void pid_reset(pid_state_t *state)
@@ -16,7 +15,7 @@ void pid_resume(pid_state_t *state)
 
 static float into_actuator(float thrust_n)
 {
-    return fminf(fmaxf(thrust_n, 0.0F), THRUST_MAX_N);
+    return at_most(at_least(thrust_n, 0.0F), THRUST_MAX_N);
 }
 
 float pid_step(pid_state_t *state, const pid_gains_t *gains, float error_mm)
@@ -32,5 +31,5 @@ float pid_step(pid_state_t *state, const pid_gains_t *gains, float error_mm)
     state->primed = true;
     state->saturated = other_n + integral_n < lowest_n || other_n + integral_n > highest_n;
     state->integral_n = state->saturated ? held_n : integral_n;
-    return fminf(fmaxf(other_n + state->integral_n, lowest_n), highest_n);
+    return at_most(at_least(other_n + state->integral_n, lowest_n), highest_n);
 }

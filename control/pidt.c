@@ -1,6 +1,6 @@
 #include "control/pidt.h"
 
-#include <math.h>
+#include "control/between.h"
 
 #define LOW_PASS_S 0.0199F /* 8 Hz */
 #define STEP_MIN_S 0.02F   /* chosen: a scan takes 0.1 s, a shorter gap is a repeated one */
@@ -43,5 +43,5 @@ float pidt_step(pidt_state_t *state, const pidt_gains_t *gains, float reference_
                          (thrust_n < gains->least_n && more_n < 0.0F);
 
     state->integral_n += further ? 0.0F : more_n;
-    return fminf(fmaxf(other_n + state->integral_n, gains->least_n), gains->most_n);
+    return at_most(at_least(other_n + state->integral_n, gains->least_n), gains->most_n);
 }

@@ -2,8 +2,9 @@
 #ifndef CONTROL_SECONDS_H
 #define CONTROL_SECONDS_H
 
-#include <math.h>
 #include <stdint.h>
+
+#include "control/between.h"
 
 /* From one instant to another, less than 35 minutes apart (half the range of the clock). Negative when `to`
  * is the earlier one. */
@@ -15,7 +16,7 @@ static inline float seconds_between(uint32_t from_us, uint32_t to_us)
 /* A duration, limited: a step or a gap may be as long as the clock's whole range. */
 static inline float seconds_at_most(uint32_t duration_us, float at_most_s)
 {
-    return fminf((float)duration_us * 1.0e-6F, at_most_s);
+    return at_most((float)duration_us * 1.0e-6F, at_most_s);
 }
 
 #endif

@@ -8,6 +8,8 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "control/between.h"
+
 #define LANDED_M 0.04F            /* chosen: ten times the height's noise */
 #define LANDED_NO_MORE_M 0.10F    /* chosen: above any bounce */
 #define LANDED_ABOVE_HOVER_N 0.5F /* chosen: room to brake the last centimetres */
@@ -25,7 +27,7 @@ static inline float touchdown_time_s(float time_s, float height_m, float dt_s)
  * time_s is 0. */
 static inline float touchdown_limit_n(float time_s, float hover_n)
 {
-    return (time_s > 0.0F) ? fmaxf(hover_n + LANDED_ABOVE_HOVER_N - LANDED_FADE_N_PER_S * time_s, 0.0F)
+    return (time_s > 0.0F) ? at_least(hover_n + LANDED_ABOVE_HOVER_N - LANDED_FADE_N_PER_S * time_s, 0.0F)
                            : INFINITY;
 }
 

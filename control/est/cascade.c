@@ -32,7 +32,7 @@ void cascade_init(cascade_t *cascade, float thrust_n)
 float cascade_speed_to(const cascade_gains_t *gains, const cascade_state_t *state, float reference_m)
 {
     const float off_m = reference_m - state->height_m;
-    const float distance = fminf(fabsf(off_m) / FAR_M, 1.0F);
+    const float distance = at_most(fabsf(off_m) / FAR_M, 1.0F);
     const float wanted_mps = gains->height_per_s * (1.0F + FAR_SHARE * distance) * off_m + state->terrain_mps;
     return between(-gains->down_mps, wanted_mps, gains->up_mps);
 }
@@ -40,12 +40,12 @@ float cascade_speed_to(const cascade_gains_t *gains, const cascade_state_t *stat
 /* Below 1 while the command shakes more than ACTIVITY_MAX_N: noise, or a loop that swings. */
 static float calm(cascade_t *cascade, float dt_s)
 {
-    const float share = fminf(dt_s / ACTIVITY_TIME_S, 1.0F);
+    const float share = at_most(dt_s / ACTIVITY_TIME_S, 1.0F);
     const float off_n = cascade->thrust_n - cascade->slow_n;
 
     cascade->slow_n += share * off_n;
     cascade->quick_n += share * (off_n * off_n - cascade->quick_n);
-    return between(CALM_MIN, ACTIVITY_MAX_N / sqrtf(fmaxf(cascade->quick_n, 0.01F)), 1.0F);
+    return between(CALM_MIN, ACTIVITY_MAX_N / sqrtf(at_least(cascade->quick_n, 0.01F)), 1.0F);
 }
 
 float cascade_step(cascade_t *cascade, const cascade_gains_t *gains, const cascade_vehicle_t *vehicle,
@@ -57,8 +57,8 @@ float cascade_step(cascade_t *cascade, const cascade_gains_t *gains, const casca
     const float drag_mps2 = vehicle->damping_per_s *
                             between(-DRAG_SPEED_MPS, state->speed_mps, DRAG_SPEED_MPS);
     const float force_n = (acceleration_mps2 + drag_mps2) / vehicle->authority_mps2_per_n;
-    const float steady_n = (vehicle->need_n + force_n) / fmaxf(vehicle->upright, UPRIGHT_MIN);
-    const float least_n = fmaxf(vehicle->hover_n - gains->below_hover_n, LEAST_SHARE * vehicle->hover_n);
+    const float steady_n = (vehicle->need_n + force_n) / at_least(vehicle->upright, UPRIGHT_MIN);
+    const float least_n = at_least(vehicle->hover_n - gains->below_hover_n, LEAST_SHARE * vehicle->hover_n);
     const float led_n = between(least_n, state->thrust_n + LEAD * (steady_n - state->thrust_n),
                                 vehicle->hover_n + ABOVE_HOVER_N);
     const float slew_n = SLEW_N_PER_S * dt_s;

@@ -85,11 +85,11 @@ static cascade_vehicle_t vehicle_model(const est_law_t *law, const parameters_t 
 {
     const estimator_t *e = &law->estimator;
     cascade_vehicle_t vehicle = {
-        .authority_mps2_per_n = GRAVITY_MPS2 / fmaxf(law->hover.thrust_n, 1.0F),
+        .authority_mps2_per_n = GRAVITY_MPS2 / at_least(law->hover.thrust_n, 1.0F),
         .damping_per_s = DAMPING_PER_S,
         .hover_n = law->hover.thrust_n,
         .need_n = law->hover.thrust_n,
-        .upright = cosf(e->latest.roll_rad) * cosf(e->latest.pitch_rad),
+        .upright = e->upright,
     };
     if (is_climb(parameters)) {
         vehicle.damping_per_s = CLIMB_PER_S;
@@ -183,7 +183,7 @@ static void predict_frame(est_law_t *law, const parameters_t *parameters, const 
     actuator_advance(&law->actuator, law->estimator.now_us);
     law->frameless_s = seconds_between(law->estimator.now_us, law->now_us);
     const float felt_mps2 = est_law_feels(law) ? law->estimator.up_mps2 - law->estimator.now.bias_mps2 : 0.0F;
-    law->lift_mps2 += fminf(dt_s / LIFT_FILTER_S, 1.0F) * (felt_mps2 - law->lift_mps2);
+    law->lift_mps2 += at_most(dt_s / LIFT_FILTER_S, 1.0F) * (felt_mps2 - law->lift_mps2);
     if (law->airborne && est_law_feels(law)) {
         learn_hover(law, parameters, dt_s);
     } else if (law->airborne) {
@@ -204,8 +204,8 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_s
     }
     law->step_s = between(0.0F, seconds_between(law->now_us, now_us), STEP_MAX_S);
     law->now_us = now_us;
-    law->heightless_s = fminf(law->heightless_s + law->step_s, AGE_MAX_S);
-    law->frameless_s = fminf(law->frameless_s + law->step_s, AGE_MAX_S);
+    law->heightless_s = at_most(law->heightless_s + law->step_s, AGE_MAX_S);
+    law->frameless_s = at_most(law->frameless_s + law->step_s, AGE_MAX_S);
     for (uint16_t i = 0U; i < count; ++i) {
         predict_frame(law, parameters, &frames[i]);
     }
@@ -217,7 +217,7 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_s
 
 static float lift_off_threshold_mps2(const est_law_t *law)
 {
-    return fmaxf(LIFT_OFF_MPS2, LIFT_OFF_SIGMAS * law->estimator.noise_mps2);
+    return at_least(LIFT_OFF_SIGMAS * law->estimator.noise_mps2, LIFT_OFF_MPS2);
 }
 
 /* The take-off ramp runs, and the vehicle does not yet accelerate upwards. */
@@ -258,7 +258,7 @@ bool est_law_feels(const est_law_t *law)
 static void start_hover(est_law_t *law, const parameters_t *parameters, float thrust_n, float sigma_n)
 {
     const float gravity_n = parameters->value[PARAMETER_GRAV];
-    hover_init(&law->hover, thrust_n, sigma_n, fmaxf(gravity_n - HOVER_BOUND_N, 0.0F),
+    hover_init(&law->hover, thrust_n, sigma_n, at_least(gravity_n - HOVER_BOUND_N, 0.0F),
                gravity_n + HOVER_BOUND_N);
 }
 
@@ -348,7 +348,7 @@ static cascade_state_t predict_ahead(const est_law_t *law, const cascade_vehicle
 static float leave_unfelt(est_law_t *law, const parameters_t *parameters)
 {
     const float jerk_mps3 = RAMP_N_PER_S * vehicle_model(law, parameters).authority_mps2_per_n;
-    const float since_s = cbrtf(6.0F * fmaxf(law->estimator.now.height_m, 0.0F) / jerk_mps3) +
+    const float since_s = cbrtf(6.0F * at_least(law->estimator.now.height_m, 0.0F) / jerk_mps3) +
                           law->heightless_s;
 
     estimator_amend(&law->estimator, jerk_mps3 * since_s * since_s * since_s / 6.0F,
@@ -376,19 +376,19 @@ static bool take_off(est_law_t *law, const parameters_t *parameters)
                     is_climb(parameters) ? NEUTRAL_SIGMA_N : HOVER_SIGMA_START_N);
         cascade_init(&law->cascade, law->ramp_n);
     } else {
-        law->ramp_n = fminf(law->ramp_n + RAMP_N_PER_S * law->step_s, RAMP_MOST * gravity_n);
+        law->ramp_n = at_most(law->ramp_n + RAMP_N_PER_S * law->step_s, RAMP_MOST * gravity_n);
     }
     return law->airborne;
 }
 
 static float landing_mps(float height_m)
 {
-    return -fminf(LAND_MPS + LAND_PER_S * fmaxf(height_m, 0.0F), LAND_MAX_MPS);
+    return -at_most(LAND_MPS + LAND_PER_S * at_least(height_m, 0.0F), LAND_MAX_MPS);
 }
 
 static float sinking_mps(float height_m)
 {
-    return -fminf(SINK_MPS + SINK_PER_S * fmaxf(height_m, 0.0F), SINK_MAX_MPS);
+    return -at_most(SINK_MPS + SINK_PER_S * at_least(height_m, 0.0F), SINK_MAX_MPS);
 }
 
 static void update_timers(est_law_t *law, est_mode_t mode, float height_m)
@@ -410,22 +410,22 @@ static void lower_ceiling(est_law_t *law, est_mode_t mode)
     if (mode == EST_MODE_HOLD) {
         return;
     }
-    law->ceiling_n = fminf(law->ceiling_n - fade_n_per_s * law->step_s, law->entry_hover_n + above_n);
-    law->ceiling_n = fmaxf(law->ceiling_n, 0.0F);
+    law->ceiling_n = at_most(law->ceiling_n - fade_n_per_s * law->step_s, law->entry_hover_n + above_n);
+    law->ceiling_n = at_least(law->ceiling_n, 0.0F);
 }
 
 static float thrust_most_n(const est_law_t *law, est_mode_t mode)
 {
     const float low_n = touchdown_limit_n(law->near_ground_s, law->hover.thrust_n);
 
-    return (mode == EST_MODE_LAND) ? fminf(law->ceiling_n, low_n) : law->ceiling_n;
+    return (mode == EST_MODE_LAND) ? at_most(law->ceiling_n, low_n) : law->ceiling_n;
 }
 
 /* Without heights the estimated speed may be wrong. It must not cut the thrust so far that the vehicle
  * falls. */
 static float thrust_least_n(const est_law_t *law, est_mode_t mode)
 {
-    return (mode == EST_MODE_SINK) ? fmaxf(law->entry_hover_n - SINK_BELOW_HOVER_N, 0.0F) : 0.0F;
+    return (mode == EST_MODE_SINK) ? at_least(law->entry_hover_n - SINK_BELOW_HOVER_N, 0.0F) : 0.0F;
 }
 
 static float height_setpoint_m(est_law_t *law, const parameters_t *parameters, float reference_m)
@@ -439,7 +439,7 @@ static float height_setpoint_m(est_law_t *law, const parameters_t *parameters, f
         return reference_m;
     }
     law->reference_terrain_m += ignored_m * law->step_s / TERRAIN_KEEP_S;
-    return fmaxf(reference_m - ignored_m, LOWEST_OVER_TERRAIN_M);
+    return at_least(reference_m - ignored_m, LOWEST_OVER_TERRAIN_M);
 }
 
 static float speed_setpoint_mps(est_law_t *law, const parameters_t *parameters, const cascade_gains_t *gains,
@@ -470,7 +470,7 @@ float est_law_step(est_law_t *law, const parameters_t *parameters, est_mode_t mo
     };
 
     if (!law->airborne && mode != EST_MODE_HOLD) {
-        law->ramp_n = fmaxf(law->ramp_n - STOP_N_PER_S * law->step_s, 0.0F);
+        law->ramp_n = at_least(law->ramp_n - STOP_N_PER_S * law->step_s, 0.0F);
         return law->ramp_n;
     }
     if (!law->airborne && !take_off(law, parameters)) {
@@ -483,7 +483,7 @@ float est_law_step(est_law_t *law, const parameters_t *parameters, est_mode_t mo
 
     update_timers(law, mode, state.height_m);
     lower_ceiling(law, mode);
-    const float limited_n = fminf(fmaxf(thrust_n, thrust_least_n(law, mode)), thrust_most_n(law, mode));
+    const float limited_n = at_most(at_least(thrust_n, thrust_least_n(law, mode)), thrust_most_n(law, mode));
     return deadband_compensate(&law->deadband, law->hover.thrust_n, limited_n);
 }
 

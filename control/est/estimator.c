@@ -89,7 +89,7 @@ static void reset_covariance(estimator_t *e)
 
 void estimator_init(estimator_t *estimator)
 {
-    *estimator = (estimator_t){.noise_mps2 = NOISE_START_MPS2, .floor_m = FLOOR_START_M};
+    *estimator = (estimator_t){.noise_mps2 = NOISE_START_MPS2, .floor_m = FLOOR_START_M, .upright = 1.0F};
     reset_covariance(estimator);
 }
 
@@ -106,7 +106,7 @@ static void propagate(estimate_t *x, const estimator_frame_t *frame, float dt_s)
 
     x->height_m += (x->speed_mps - x->terrain_mps + 0.5F * acceleration_mps2 * dt_s) * dt_s;
     x->speed_mps += acceleration_mps2 * dt_s;
-    x->terrain_mps *= fmaxf(1.0F - dt_s / TERRAIN_TIME_S, 0.0F);
+    x->terrain_mps *= at_least(1.0F - dt_s / TERRAIN_TIME_S, 0.0F);
     bound_states(x);
 }
 
@@ -121,14 +121,14 @@ static void bound_covariance(float p[ESTIMATOR_STATES][ESTIMATOR_STATES])
                 p[j][i] *= scale;
             }
         }
-        p[i][i] = fmaxf(p[i][i], variance_min[i]);
+        p[i][i] = at_least(p[i][i], variance_min[i]);
     }
 }
 
 static void propagate_covariance(estimator_t *e, float share, float dt_s)
 {
     float(*const p)[ESTIMATOR_STATES] = e->covariance;
-    const float decay = fmaxf(1.0F - dt_s / TERRAIN_TIME_S, 0.0F);
+    const float decay = at_least(1.0F - dt_s / TERRAIN_TIME_S, 0.0F);
     const float half = 0.5F * share * dt_s * dt_s;
     const float measured_mps2 = e->felt ? share * e->noise_mps2 : 0.0F;
     const float modelled_mps2 = e->felt ? (1.0F - share) * e->model_noise_mps2 : UNFELT_NOISE_MPS2;
@@ -209,7 +209,7 @@ static void measure_noise(estimator_t *e, float up_mps2)
 {
     const float difference_mps2 = up_mps2 - 2.0F * e->previous_mps2[0] + e->previous_mps2[1];
     const float variance = e->noise_mps2 * e->noise_mps2;
-    const float seen = fminf(difference_mps2 * difference_mps2 / 6.0F, NOISE_CLIP * variance);
+    const float seen = at_most(difference_mps2 * difference_mps2 / 6.0F, NOISE_CLIP * variance);
 
     e->noise_mps2 = between(NOISE_MIN_MPS2, sqrtf(variance + NOISE_SHARE * (seen - variance)),
                             NOISE_MAX_MPS2);
@@ -255,7 +255,7 @@ static float credit(estimator_t *e, const modelled_motion_t *model, float up_mps
     const float off_mps2 = model->known ? up_mps2 - e->now.bias_mps2 - model->up_mps2 : 0.0F;
 
     e->off_model_mps2 += OFF_MODEL_SHARE * (off_mps2 - e->off_model_mps2);
-    const float excess = OFF_MODEL_MPS2 / fmaxf(fabsf(e->off_model_mps2), OFF_MODEL_MPS2);
+    const float excess = OFF_MODEL_MPS2 / at_least(fabsf(e->off_model_mps2), OFF_MODEL_MPS2);
     return excess * excess * excess * excess;
 }
 
@@ -309,6 +309,7 @@ void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motio
     e->latest.time_us = time_us;
     e->latest.roll_rad = frame->median.roll_rad;
     e->latest.pitch_rad = frame->median.pitch_rad;
+    e->upright = cosf(frame->median.roll_rad) * cosf(frame->median.pitch_rad);
     e->up_mps2 = feels ? up_mps2 : 0.0F;
     if (!e->has_frames || gap_us > GAP_MAX_US || gap_us < -GAP_MAX_US) {
         restart_at_frame(e, time_us, up_mps2);
@@ -391,7 +392,7 @@ static void measure_floor(estimator_t *e, float height_m)
 {
     const float difference_m = height_m - 2.0F * e->previous_m[0] + e->previous_m[1];
     const float variance = e->floor_m * e->floor_m;
-    const float seen = fminf(difference_m * difference_m / 6.0F, FLOOR_CLIP * variance);
+    const float seen = at_most(difference_m * difference_m / 6.0F, FLOOR_CLIP * variance);
 
     e->floor_m = between(FLOOR_START_M, sqrtf(variance + FLOOR_SHARE * (seen - variance)), FLOOR_MAX_M);
     e->previous_m[1] = e->previous_m[0];
@@ -402,7 +403,7 @@ static void measure_floor(estimator_t *e, float height_m)
  * adds. */
 static float height_variance_m2(const estimator_t *e)
 {
-    const float rough_m2 = fmaxf(e->floor_m * e->floor_m - FLOOR_SMOOTH_M * FLOOR_SMOOTH_M, 0.0F);
+    const float rough_m2 = at_least(e->floor_m * e->floor_m - FLOOR_SMOOTH_M * FLOOR_SMOOTH_M, 0.0F);
     return HEIGHT_NOISE_M * HEIGHT_NOISE_M + FLOOR_VARIANCE * rough_m2;
 }
 
@@ -412,7 +413,7 @@ static bool innovation_accepted(const estimator_t *e, float innovation_m)
     const float floor_m = (e->floor_m > FLOOR_SMOOTH_M) ? FLOOR_SIGMAS * e->floor_m : 0.0F;
     const float limit_m = between(INNOVATION_LIMIT_MIN_M, INNOVATION_LIMIT_SIGMAS * sigma_m,
                                   INNOVATION_LIMIT_MAX_M);
-    return fabsf(innovation_m) <= fmaxf(limit_m, floor_m);
+    return fabsf(innovation_m) <= at_least(limit_m, floor_m);
 }
 
 static height_outcome_t reject(estimator_t *e, float height_m, float innovation_m)

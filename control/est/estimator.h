@@ -66,6 +66,7 @@ typedef struct {
     uint32_t felt_us; /* when the latest accelerations were measured */
     float up_mps2;    /* measured in the latest frame, gravity removed, bias not removed; 0: not felt */
     estimator_frame_t latest;
+    float upright;                              /* cosine of the latest frame's tilt */
     estimator_frame_t frames[ESTIMATOR_FRAMES]; /* since delayed_us, oldest first */
     uint16_t frame_count;
     bool has_frames; /* at least one frame was received */

@@ -6,8 +6,6 @@
  * come from. */
 #include "control/est/hover.h"
 
-#include <math.h>
-
 #include "control/between.h"
 
 #define DRIFT_N2_PER_S 0.00038F /* fitted: battery and mass, 20 mN per root second */
@@ -32,8 +30,8 @@ void hover_step(hover_t *hover, float seen_n, float noise_n, float dt_s)
 {
     const float noise_n2 = SLOW_SHARE * noise_n * noise_n;
     const float unexplained_n = seen_n - hover->thrust_n - hover->gust_n;
-    const float quiet = fminf(GUST_NOISE_N * GUST_NOISE_N / (noise_n * noise_n), 1.0F);
-    const float gust_share = fminf(GUST_RATE_PER_S * quiet * dt_s, SHARE_MAX);
+    const float quiet = at_most(GUST_NOISE_N * GUST_NOISE_N / (noise_n * noise_n), 1.0F);
+    const float gust_share = at_most(GUST_RATE_PER_S * quiet * dt_s, SHARE_MAX);
 
     hover->variance_n2 += DRIFT_N2_PER_S * dt_s;
     const float gain = hover->variance_n2 / (hover->variance_n2 + noise_n2);
@@ -41,7 +39,7 @@ void hover_step(hover_t *hover, float seen_n, float noise_n, float dt_s)
                               hover->most_n);
     hover->variance_n2 *= 1.0F - gain;
     hover->gust_n = between(-GUST_MAX_N, hover->gust_n + gust_share * unexplained_n, GUST_MAX_N);
-    hover->gust_n *= fmaxf(1.0F - dt_s / GUST_TIME_S, 0.0F);
+    hover->gust_n *= at_least(1.0F - dt_s / GUST_TIME_S, 0.0F);
 }
 
 void hover_nudge(hover_t *hover, float more_n)
