@@ -25,7 +25,7 @@ typedef char every_axis_has_a_name[(sizeof axis_names / sizeof axis_names[0] == 
 static const char *const down_names[] = {[DOWN_Z] = "Z", [DOWN_MINUS_Z] = "-Z"};
 typedef char every_down_has_a_name[(sizeof down_names / sizeof down_names[0] == DOWN_COUNT) ? 1 : -1];
 
-const parameter_row_t parameter_table[PARAMETER_COUNT] = {
+const parameter_row_t parameter_table[] = {
     [PARAMETER_KP] = {"KP", "N/mm", 0.0F, 1.0F, 0.015F, NULL, "PD, PID: proportional gain."},
     [PARAMETER_KD] = {"KD", "N/mm", 0.0F, 1.0F, 0.008F, NULL, "PD, PID: derivative gain per sample."},
     [PARAMETER_KI] = {"KI", "N/mm", 0.0F, 1.0F, 0.01F, NULL, "PID: integral gain per sample."},
@@ -78,6 +78,9 @@ const parameter_row_t parameter_table[PARAMETER_COUNT] = {
     [PARAMETER_L2] = {"L2", "mm", 0.0F, 500.0F, 105.0F, NULL,
                       "Mirror 2 to the lowest point of the landing gear."},
 };
+typedef char
+    every_parameter_has_its_row[(sizeof parameter_table / sizeof parameter_table[0] == PARAMETER_COUNT) ? 1
+                                                                                                        : -1];
 
 void parameters_init(parameters_t *parameters)
 {

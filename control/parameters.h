@@ -78,7 +78,7 @@ typedef struct {
     const char *meaning;        /* one sentence */
 } parameter_row_t;
 
-extern const parameter_row_t parameter_table[PARAMETER_COUNT];
+extern const parameter_row_t parameter_table[]; /* PARAMETER_COUNT */
 
 typedef struct {
     float value[PARAMETER_COUNT];

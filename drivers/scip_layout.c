@@ -5,12 +5,14 @@
 #define DEGREES_PER_STEP 0.3515625F
 #define NEAR_MEDIAN_MM 25U /* five times the noise of one ray (5 mm), as a smooth ground shows it */
 
-const scip_layout_t scip_layouts[SCIP_LAYOUT_COUNT] = {
+const scip_layout_t scip_layouts[] = {
     [SCIP_LAYOUT_FRONT] = {"front", 372U, 406U, 1U, {{372U, 406U}}},
     [SCIP_LAYOUT_TWO_BEAMS] = {"two-beams", 249U, 519U, 2U, {{249U, 277U}, {491U, 519U}}},
     [SCIP_LAYOUT_THREE_MIRRORS] =
         {"three-mirrors", 111U, 657U, 3U, {{111U, 145U}, {372U, 406U}, {623U, 657U}}},
 };
+typedef char
+    every_layout_has_its_row[(sizeof scip_layouts / sizeof scip_layouts[0] == SCIP_LAYOUT_COUNT) ? 1 : -1];
 
 #define REVOLUTION_US 100000U
 #define STEP_FRONT_MIDDLE 389U

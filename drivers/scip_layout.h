@@ -44,7 +44,7 @@ typedef enum {
     SCIP_LAYOUT_THREE_MIRRORS,
     SCIP_LAYOUT_COUNT
 } scip_layout_id_t;
-extern const scip_layout_t scip_layouts[SCIP_LAYOUT_COUNT];
+extern const scip_layout_t scip_layouts[]; /* SCIP_LAYOUT_COUNT */
 
 /* Largest number of points any layout asks for (three mirrors: 111..657), with a cluster of 1. */
 #define SCIP_LAYOUT_POINTS_MAX 547U
