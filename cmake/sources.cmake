@@ -2,7 +2,7 @@
 set(CONTROL_SOURCES
     control/est/actuator.c control/altitude.c control/arming.c control/attitude.c control/calibration.c control/est/cascade.c control/est/deadband.c
     control/descent.c control/est/est_law.c control/est/estimator.c control/flight.c control/flight_state.c control/est/hover.c
-    control/integrity.c control/imu_finding.c control/imu_mapping.c control/median.c
+    control/integrity.c control/imu_axes.c control/imu_finding.c control/imu_mapping.c control/median.c
     control/parameters.c control/pid.c control/pidt.c control/ray_clock.c control/reach.c control/supervisor.c control/thrust.c)
 set(DRIVERS_SOURCES
     drivers/decimal.c drivers/flight_log.c drivers/line_sum.c drivers/parameter_image.c drivers/razor.c drivers/scip_info.c
@@ -13,7 +13,7 @@ set(BSP_SOURCES
     bsp/watchdog.c)
 set(FIRMWARE_SOURCES
     firmware/alive.c firmware/answer.c firmware/boot.c firmware/calibrator.c firmware/commands.c firmware/cpu_time.c firmware/fault.c
-    firmware/flight_recorder.c firmware/geometry.c firmware/ground.c firmware/imu_exchange.c firmware/imu_port.c firmware/laser_port.c firmware/listing.c firmware/main.c
+    firmware/flight_recorder.c firmware/geometry.c firmware/ground.c firmware/imu_exchange.c firmware/imu_gate.c firmware/imu_port.c firmware/laser_port.c firmware/listing.c firmware/main.c
     firmware/monitor.c firmware/parameter_store.c firmware/published.c firmware/pulse_stream.c firmware/servers.c firmware/task_control.c
     firmware/task_imu.c
     firmware/task_receive_comm.c firmware/task_receive_laser.c firmware/task_send_comm.c firmware/task_send_laser.c

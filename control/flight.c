@@ -58,6 +58,7 @@ void flight_init(flight_t *flight)
     *flight = (flight_t){.hover_n = 0.0F};
     supervisor_init(&flight->supervisor);
     integrity_init(&flight->integrity);
+    imu_axes_init(&flight->axes);
     est_law_init(&flight->est);
 }
 
@@ -367,6 +368,7 @@ static void believe(flight_t *flight, const parameters_t *parameters, flight_inp
     in->pitch_rad = integrity->pitch_rad;
     in->tilted_frames = integrity->tilted;
     integrity_frames(integrity, &flown, in->frames, in->frame_count);
+    imu_axes_step(&flight->axes, in->frames, in->frame_count, flown.grounded, flown.noise_mps2);
     integrity_thrust(integrity, &flown);
     compare_height(flight, &flown, in);
     in->height_valid = in->height_valid && flight->scan_fit && !integrity_doubts(integrity, DOUBT_SIGHT);
@@ -616,6 +618,7 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
                             (flight->out_of_reach ? FLIGHT_FLAG_REACH : 0U) |
                             (unfelt ? FLIGHT_FLAG_IMU : 0U) | flight->integrity.doubts * FLIGHT_FLAG_SIGHT);
     out->doubts = flight->integrity.doubts;
+    out->imu_fault = flight->axes.fault;
     out->reference_m = supervisor->reference_m;
     out->estimate_mm = estimated ? estimator->now.height_m * 1000.0F : measured_mm;
     out->innovation_mm = estimated ? estimator->innovation_m * 1000.0F : NAN;

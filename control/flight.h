@@ -12,6 +12,7 @@
 #include "control/descent.h"
 #include "control/est/est_law.h"
 #include "control/flight_io.h"
+#include "control/imu_axes.h"
 #include "control/integrity.h"
 #include "control/parameters.h"
 #include "control/pid.h"
@@ -35,6 +36,7 @@ typedef enum {
 typedef struct {
     supervisor_t supervisor;
     integrity_t integrity;
+    imu_axes_t axes;
     uint32_t scan_sequence; /* latest scan that integrity_scan() judged */
     uint32_t scan_time_us;  /* latest height that was compared with the witnesses */
     bool scan_fit;

@@ -8,6 +8,7 @@
 
 #include "control/altitude.h"
 #include "control/flight_state.h"
+#include "control/imu_axes.h"
 #include "control/imu_sample.h"
 
 /* Highest reference. State LOWERING begins 0.8 m above the reference: that is still within the scanner's
@@ -56,8 +57,9 @@ typedef struct {
     float pulse_us; /* throttle pulse, thrust.h */
     float idle_n;   /* minimum of thrust_n: the idle while armed, else 0 */
     flight_state_t state;
-    uint16_t flags;      /* FLIGHT_FLAG_* */
-    uint16_t doubts;     /* DOUBT_*, integrity.h */
+    uint16_t flags;  /* FLIGHT_FLAG_* */
+    uint16_t doubts; /* DOUBT_*, integrity.h */
+    imu_fault_t imu_fault;
     float reference_m;   /* reference in force, 0 = none */
     float estimate_mm;   /* height that the law uses; NAN: not known */
     float innovation_mm; /* latest height minus predicted height; NAN where nothing is predicted */

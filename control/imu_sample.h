@@ -11,9 +11,10 @@
 typedef struct {
     uint32_t sequence; /* frames so far; 0 = none yet */
     uint32_t arrival_us;
-    bool ready;        /* the offset of the angles is known */
-    attitude_t level;  /* offset removed */
-    attitude_t median; /* median of this frame and the four before it */
+    bool ready;                          /* the offset of the angles is known */
+    attitude_t level;                    /* offset removed */
+    attitude_t median;                   /* median of this frame and the four before it */
+    float tilt_roll_rad, tilt_pitch_rad; /* the same median, offset not removed */
     bool has_acceleration;
     /* As a scale would show it: at rest and level 0, 0, +9.81. */
     float forward_mps2, right_mps2, down_mps2;

@@ -24,6 +24,8 @@ static const char *const axis_names[] = {
 typedef char every_axis_has_a_name[(sizeof axis_names / sizeof axis_names[0] == AXIS_COUNT) ? 1 : -1];
 static const char *const down_names[] = {[DOWN_Z] = "Z", [DOWN_MINUS_Z] = "-Z"};
 typedef char every_down_has_a_name[(sizeof down_names / sizeof down_names[0] == DOWN_COUNT) ? 1 : -1];
+static const char *const axes_names[] = {[AXES_ASSUMED] = "ASSUMED", [AXES_PROVED] = "PROVED"};
+typedef char every_axes_have_a_name[(sizeof axes_names / sizeof axes_names[0] == AXES_COUNT) ? 1 : -1];
 
 const parameter_row_t parameter_table[] = {
     [PARAMETER_KP] = {"KP", "N/mm", 0.0F, 1.0F, 0.015F, NULL, "PD, PID: proportional gain."},
@@ -65,6 +67,8 @@ const parameter_row_t parameter_table[] = {
                          "Where the IMU's accelerometer feels gravity."},
     [PARAMETER_IUNIT] = {"IUNIT", "1/g", 0.5F, 5000.0F, 256.0F, NULL,
                          "Counts of the IMU's accelerometer per g."},
+    [PARAMETER_IAXES] = {"IAXES", "-", 0.0F, (float)(AXES_COUNT - 1), (float)AXES_ASSUMED, axes_names,
+                         "Whether tilting by hand has proved IROLL and IPITCH."},
     /* The seed's Annex III. Up to 500 mm: longer than any arm of a vehicle of this size. */
     [PARAMETER_DF] = {"DF", "mm", 0.0F, 500.0F, 105.0F, NULL, "Scanner to the front mirror."},
     [PARAMETER_LF] = {"LF", "mm", 0.0F, 500.0F, 100.0F, NULL,

@@ -37,6 +37,7 @@ typedef enum {
     PARAMETER_IPITCH,  /* likewise */
     PARAMETER_IDOWN,   /* choice, control_down_t */
     PARAMETER_IUNIT,   /* accelerometer counts per g */
+    PARAMETER_IAXES,   /* choice, control_axes_t */
     PARAMETER_DF,      /* mm, the mirrors' places, control/altitude.h: front, */
     PARAMETER_LF,
     PARAMETER_L,
@@ -67,6 +68,8 @@ typedef enum {
 /* Which angle of the IMU is the vehicle's, and which end of its z axis points down. */
 typedef enum { AXIS_ROLL, AXIS_MINUS_ROLL, AXIS_PITCH, AXIS_MINUS_PITCH, AXIS_COUNT } control_axis_t;
 typedef enum { DOWN_Z, DOWN_MINUS_Z, DOWN_COUNT } control_down_t;
+/* What is known of IROLL and IPITCH: nothing, or tilting by hand has shown them. */
+typedef enum { AXES_ASSUMED, AXES_PROVED, AXES_COUNT } control_axes_t;
 
 typedef struct {
     const char *name; /* as typed after '#', upper case */

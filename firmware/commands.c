@@ -9,6 +9,7 @@
 #include "firmware/answer.h"
 #include "firmware/calibrator.h"
 #include "firmware/ground.h"
+#include "firmware/imu_gate.h"
 #include "drivers/decimal.h"
 #include "control/parameters.h"
 #include "firmware/listing.h"
@@ -133,12 +134,16 @@ static bool execute_arm(answer_t *answer)
     if (!ground_waits()) {
         return answer_refuse(answer, "not on the ground");
     }
+    if (imu_gate_refuses(answer)) {
+        return false;
+    }
     set_arm(true);
     parameter_server_read(&parameters);
     answer_begin(answer);
     telemetry_text(&answer->line, " idle:");
     telemetry_number(&answer->line, parameters.value[PARAMETER_IDLE]);
     telemetry_text(&answer->line, "%");
+    imu_gate_remark(answer, true);
     answer_send(answer);
     return true;
 }
@@ -239,6 +244,9 @@ static bool execute_set(answer_t *answer, parameter_id_t id)
     }
     if (!parameter_may_change_in_air(id, before, value) && ground_left()) {
         return refuse_in_air(answer, id);
+    }
+    if ((id == PARAMETER_IROLL || id == PARAMETER_IPITCH) && value != before) {
+        (void)parameters_set(&parameters, PARAMETER_IAXES, (float)AXES_ASSUMED);
     }
     parameter_server_write(&parameters);
     report_set(answer, id);

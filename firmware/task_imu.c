@@ -29,6 +29,15 @@ static imu_raw_t raw_of(const razor_frame_t *frame)
     };
 }
 
+/* The angles as gravity has them. */
+static attitude_t tilt_of(const imu_mapping_t *mapping, const attitude_t *median)
+{
+    const attitude_t tilt = {.roll_rad = median->roll_rad + filter.offset.roll_rad,
+                             .pitch_rad = median->pitch_rad + filter.offset.pitch_rad};
+
+    return imu_map_angles(mapping, &tilt);
+}
+
 /* The filter works in the IMU's axes, so that its offset outlasts a change of the mapping. */
 static void take(imu_sample_t *sample, const imu_raw_t *raw, uint32_t arrival_us)
 {
@@ -38,6 +47,7 @@ static void take(imu_sample_t *sample, const imu_raw_t *raw, uint32_t arrival_us
     imu_mapping_t mapping;
     attitude_t level;
     attitude_t median;
+    attitude_t tilt;
 
     imu_exchange_mounted(&mapping);
     sample->ready = attitude_step(&filter, &angles, &level, &median);
@@ -46,6 +56,9 @@ static void take(imu_sample_t *sample, const imu_raw_t *raw, uint32_t arrival_us
     }
     sample->level = imu_map_angles(&mapping, &level);
     sample->median = imu_map_angles(&mapping, &median);
+    tilt = tilt_of(&mapping, &median);
+    sample->tilt_roll_rad = tilt.roll_rad;
+    sample->tilt_pitch_rad = tilt.pitch_rad;
     sample->has_acceleration = raw->has_acceleration;
     imu_map_acceleration(&mapping, raw, &sample->forward_mps2, &sample->right_mps2, &sample->down_mps2);
     sample->arrival_us = arrival_us;

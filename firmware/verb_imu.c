@@ -1,6 +1,7 @@
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
+#include "control/imu_axes.h"
 #include "control/imu_finding.h"
 #include "control/median.h"
 #include "firmware/ground.h"
@@ -16,6 +17,8 @@
 static struct {
     bool known;
     imu_raw_t raw;
+    bool roll_found, pitch_found; /* since power-up, as roll and pitch say: */
+    float roll, pitch;
 } level;
 
 static void add_value(answer_t *answer, const char *name, float value, uint16_t decimals)
@@ -24,6 +27,14 @@ static void add_value(answer_t *answer, const char *name, float value, uint16_t 
     telemetry_text(&answer->line, name);
     telemetry_text(&answer->line, ":");
     telemetry_fixed(&answer->line, value, decimals);
+}
+
+static void add_choice(answer_t *answer, const parameters_t *parameters, parameter_id_t id)
+{
+    telemetry_text(&answer->line, " ");
+    telemetry_text(&answer->line, parameter_table[id].name);
+    telemetry_text(&answer->line, ":");
+    telemetry_text(&answer->line, parameter_table[id].choices[parameters_choice(parameters, id)]);
 }
 
 static void write_raw(answer_t *answer, const imu_view_t *view)
@@ -61,12 +72,19 @@ static void write_count(answer_t *answer, const imu_view_t *view)
 {
     static const char *const seen[] = {
         [RAZOR_OK] = "angles", [RAZOR_MALFORMED] = "malformed", [RAZOR_OUT_OF_RANGE] = "out-of-range"};
+    static parameters_t parameters;
+    flight_outputs_t flight;
     const bool both = view->status == RAZOR_OK && view->raw.has_acceleration;
 
     telemetry_text(&answer->line, " seen:");
     telemetry_text(&answer->line, both ? "accelerations+angles" : seen[view->status]);
     answer_count(answer, "period_ms", (view->period_us + US_PER_MS / 2U) / US_PER_MS);
     answer_count(answer, "frames", view->frames);
+    parameter_server_read(&parameters);
+    flight_status_server_read(&flight);
+    add_choice(answer, &parameters, PARAMETER_IAXES);
+    telemetry_text(&answer->line, " fault:");
+    telemetry_text(&answer->line, imu_fault_name(flight.imu_fault));
 }
 
 static bool write_line(answer_t *answer, uint16_t number)
@@ -109,14 +127,6 @@ static void look(imu_raw_t *raw)
     raw->z_counts = median_of(figures[4], LOOKS);
 }
 
-static void add_choice(answer_t *answer, const parameters_t *parameters, parameter_id_t id)
-{
-    telemetry_text(&answer->line, " ");
-    telemetry_text(&answer->line, parameter_table[id].name);
-    telemetry_text(&answer->line, ":");
-    telemetry_text(&answer->line, parameter_table[id].choices[parameters_choice(parameters, id)]);
-}
-
 static bool find_level(answer_t *answer)
 {
     static parameters_t parameters;
@@ -138,34 +148,59 @@ static bool find_level(answer_t *answer)
     return true;
 }
 
+/* Both sides raised, and what they showed is in force: proved. */
+static void remember(parameters_t *parameters, parameter_id_t id, float before)
+{
+    const float found = parameters->value[id];
+    const bool was_proved = parameters_choice(parameters, PARAMETER_IAXES) == AXES_PROVED;
+
+    if (id == PARAMETER_IROLL) {
+        level.roll_found = true;
+        level.roll = found;
+    } else {
+        level.pitch_found = true;
+        level.pitch = found;
+    }
+    const bool proved = level.roll_found && level.roll == parameters->value[PARAMETER_IROLL] &&
+                        level.pitch_found && level.pitch == parameters->value[PARAMETER_IPITCH];
+    (void)parameters_set(parameters, PARAMETER_IAXES,
+                         (float)((proved || (was_proved && found == before)) ? AXES_PROVED : AXES_ASSUMED));
+}
+
 static bool find_axis(answer_t *answer, parameter_id_t id, const char *word)
 {
     static parameters_t parameters;
     imu_raw_t raw;
+    float before;
 
     if (!level.known) {
         return answer_refuse(answer, "first #IMU LEVEL");
     }
     look(&raw);
     parameter_server_read(&parameters);
+    before = parameters.value[id];
     if (!imu_find_axis(&parameters, id, &level.raw, &raw)) {
         return answer_refuse(answer, "tilt by 8..60 deg about one axis");
     }
+    remember(&parameters, id, before);
     parameter_server_write(&parameters);
     answer_begin(answer);
     telemetry_text(&answer->line, word);
     add_choice(answer, &parameters, id);
+    add_choice(answer, &parameters, PARAMETER_IAXES);
     answer_send(answer);
     return true;
 }
 
-/* What changes the axes is for the ground, or for a vehicle in the hand, whose motors stand. */
+/* What changes the axes is for the ground, or for a vehicle in the hand: its height says FLOATING, nobody has
+ * armed it, and the autopilot's motors stand. */
 static bool find(answer_t *answer)
 {
     flight_outputs_t flight;
 
     flight_status_server_read(&flight);
-    if (flight.thrust_n > 0.0F || flight.reference_m > 0.0F) {
+    if (flight.reference_m > 0.0F || flight.idle_n > 0.0F ||
+        (flight.thrust_n > 0.0F && flight.state != FLIGHT_FLOATING)) {
         return answer_refuse(answer, "needs thrust 0 and no reference");
     }
     if (answer_argument_is(answer, "LEVEL")) {

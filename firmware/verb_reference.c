@@ -4,6 +4,7 @@
 
 #include "control/flight_io.h"
 #include "drivers/decimal.h"
+#include "firmware/imu_gate.h"
 #include "firmware/servers.h"
 
 static const parameter_row_t limits = {"SETR", "m", 0.0F, FLIGHT_REFERENCE_MAX_M, 0.0F, NULL, ""};
@@ -42,8 +43,14 @@ bool verb_setr(answer_t *answer)
     if (!(reference_m >= limits.minimum && reference_m <= limits.maximum)) {
         return answer_refuse_range(answer, &limits);
     }
+    if (reference_m > 0.0F && imu_gate_refuses(answer)) {
+        return false;
+    }
     set_reference(reference_m + 0.0F); /* -0 becomes 0 */
     verb_reference_write_value(answer);
+    if (reference_m > 0.0F) {
+        imu_gate_remark(answer, false);
+    }
     answer_send(answer);
     return true;
 }

@@ -27,6 +27,11 @@ const razor_config_t razor_default = {.period = 25 * SIM_MS,
                                       .stock = 0.0,
                                       .acceleration_scale = 1.0,
                                       .acceleration_sign = 1.0,
+                                      .roll_sign = 1.0,
+                                      .pitch_sign = 1.0,
+                                      .swapped = 0.0,
+                                      .angle_scale = 1.0,
+                                      .turned = 0.0,
                                       .acceleration_jump_mps2 = 0.0,
                                       .acceleration_jump_start_s = 10.0,
                                       .acceleration_alias_mps2 = 0.0,
@@ -139,20 +144,24 @@ static void put_acceleration(razor9dof_t *razor, frame_t *frame, const razor_tru
 static void compose(razor9dof_t *razor, frame_t *frame, const razor_truth_t *seen)
 {
     const razor_truth_t truth = *seen;
-    const double roll_rad = truth.roll_rad + razor->config.mount_roll_rad;
-    const double pitch_rad = truth.pitch_rad + razor->config.mount_pitch_rad;
+    const double way = razor->config.turned >= 0.5 ? -1.0 : 1.0;
+    const double roll_rad = way * truth.roll_rad + razor->config.mount_roll_rad;
+    const double pitch_rad = way * truth.pitch_rad + razor->config.mount_pitch_rad;
     frame->length = 0;
     if (razor->config.stock < 0.5) {
         put_acceleration(razor, frame, &truth, roll_rad, pitch_rad);
         put_text(frame, razor->config.joined ? "" : "\r\n");
     }
     const double yaw_deg = printed_angle_deg(razor, truth.yaw_rad);
-    const double pitch_deg = printed_angle_deg(razor, pitch_rad);
+    const double pitch_deg = razor->config.pitch_sign * printed_angle_deg(razor, pitch_rad);
     const double burst_rad = span_holds(&razor->config.attitude_burst, truth.t_s)
                                  ? razor->config.attitude_burst_rad
                                  : 0.0;
-    const double roll_deg = printed_angle_deg(razor, roll_rad + burst_rad);
-    put_triple(frame, "#YPR=", yaw_deg, pitch_deg, -roll_deg);
+    const double roll_deg = -razor->config.roll_sign * printed_angle_deg(razor, roll_rad + burst_rad);
+    const double scale = razor->config.angle_scale;
+    const bool swapped = razor->config.swapped >= 0.5;
+    put_triple(frame, "#YPR=", scale * yaw_deg, scale * (swapped ? roll_deg : pitch_deg),
+               scale * (swapped ? pitch_deg : roll_deg));
     put_text(frame, "\r\n");
 }
 

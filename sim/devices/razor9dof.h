@@ -31,7 +31,10 @@ typedef struct {
     bool joined;                            /* both parts on one line */
     double stock;                           /* 1: Razor_AHRS as it comes, angles alone (at 20 ms: period) */
     double acceleration_scale;              /* 1: another unit than counts of 1/256 g */
-    double acceleration_sign;      /* 1; -1: upside down to the sensor, or a firmware with the other sign */
+    double acceleration_sign; /* 1; -1: upside down to the sensor, or a firmware with the other sign */
+    /* What another firmware, unit or mounting does to the angles: 1, or -1; 1: exchanged; pi/180: radians. */
+    double roll_sign, pitch_sign, swapped, angle_scale;
+    double turned;                 /* 1: mounted with its nose to the tail: angles and accelerations agree */
     double acceleration_jump_mps2; /* 0: bias that comes at ... */
     double acceleration_jump_start_s; /* 10 */
     double

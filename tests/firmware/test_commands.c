@@ -103,6 +103,14 @@ static void stop(int calls)
     stops++;
 }
 
+static flight_outputs_t flight;
+
+static void flight_read(flight_outputs_t *outputs, int calls)
+{
+    (void)calls;
+    *outputs = flight;
+}
+
 static bool overtaken;
 static uint32_t arrival_us;
 
@@ -113,6 +121,9 @@ void setUp(void)
     reference = (reference_sample_t){
         .reference_m = 0.0F, .sequence = 7U, .link_time_us = 11U, .link_sequence = 40U};
     parameter_writes = reference_writes = answered = 0U;
+    parameters.value[PARAMETER_IAXES] = (float)AXES_PROVED;
+    flight = (flight_outputs_t){.state = FLIGHT_GROUND};
+    flight_status_server_read_Stub(flight_read);
     parameter_server_read_Stub(parameters_read);
     parameter_server_write_Stub(parameters_write);
     reference_server_read_Stub(reference_read);
@@ -703,6 +714,25 @@ void test_arm_is_for_the_ground_and_stop_ends_it_but_a_landing_does_not(void)
     assert_answer("OK STOP", "#STOP");
     TEST_ASSERT_FALSE(reference.arm);
     TEST_ASSERT_EQUAL_UINT32(2, reference.arm_sequence);
+}
+
+void test_arm_says_what_is_not_known_of_the_imu_and_refuses_what_is_wrong(void)
+{
+    on_ground = true;
+    parameters.value[PARAMETER_IAXES] = (float)AXES_ASSUMED;
+    assert_answer("OK ARM idle:15% (IMU axes assumed, see #IMU)", "#ARM");
+    flight.imu_fault = IMU_DOWN;
+    assert_answer("OK ARM idle:15% (IMU DOWN wrong, see #IMU)", "#ARM");
+    flight.imu_fault = IMU_SWAPPED;
+    assert_refused("ERR ARM IMU SWAPPED: roll is pitch, see #IMU", "#ARM");
+}
+
+void test_axes_that_are_typed_are_assumed_again(void)
+{
+    assert_answer("OK IROLL -ROLL", "#IROLL -ROLL");
+    TEST_ASSERT_EQUAL_UINT16(AXES_PROVED, parameters_choice(&parameters, PARAMETER_IAXES));
+    assert_answer("OK IPITCH -PITCH", "#IPITCH -PITCH");
+    TEST_ASSERT_EQUAL_UINT16(AXES_ASSUMED, parameters_choice(&parameters, PARAMETER_IAXES));
 }
 
 void test_what_a_stop_has_overtaken_starts_nothing_any_more(void)

@@ -138,12 +138,37 @@ void test_level_right_and_nose_find_what_they_say(void)
 {
     assert_answer("OK IMU LEVEL IUNIT:256.00 IDOWN:Z\r\n", "LEVEL");
     show(21.0F, 0.0F, true, 240.0F);
-    assert_answer("OK IMU RIGHT IROLL:ROLL\r\n", "right");
+    assert_answer("OK IMU RIGHT IROLL:ROLL IAXES:ASSUMED\r\n", "right");
     TEST_ASSERT_EQUAL_UINT16(AXIS_ROLL, parameters_choice(&parameters, PARAMETER_IROLL));
     show(2.0F, -21.0F, true, 240.0F);
-    assert_answer("OK IMU NOSE IPITCH:-PITCH\r\n", "NOSE");
+    assert_answer("OK IMU NOSE IPITCH:-PITCH IAXES:PROVED\r\n", "NOSE");
     TEST_ASSERT_EQUAL_UINT16(AXIS_MINUS_PITCH, parameters_choice(&parameters, PARAMETER_IPITCH));
     TEST_ASSERT_EQUAL_UINT16(3, writes);
+}
+
+void test_axes_once_proved_stay_proved_until_they_are_others(void)
+{
+    (void)type("LEVEL");
+    show(-21.0F, 0.0F, true, 240.0F);
+    (void)type("RIGHT");
+    show(2.0F, 21.0F, true, 240.0F);
+    assert_answer("OK IMU NOSE IPITCH:PITCH IAXES:PROVED\r\n", "NOSE");
+    assert_answer("OK IMU NOSE IPITCH:PITCH IAXES:PROVED\r\n", "NOSE");
+    parameters.value[PARAMETER_IROLL] = (float)AXIS_ROLL; /* as typed */
+    parameters.value[PARAMETER_IAXES] = (float)AXES_ASSUMED;
+    assert_answer("OK IMU NOSE IPITCH:PITCH IAXES:ASSUMED\r\n", "NOSE");
+    show(-21.0F, 0.0F, true, 240.0F);
+    assert_answer("OK IMU RIGHT IROLL:-ROLL IAXES:PROVED\r\n", "RIGHT");
+}
+
+void test_in_the_hand_it_floats_and_may_find_and_armed_it_may_not(void)
+{
+    flight = (flight_outputs_t){.state = FLIGHT_FLOATING, .thrust_n = 6.5F};
+    assert_answer("OK IMU LEVEL IUNIT:256.00 IDOWN:Z\r\n", "LEVEL");
+    flight.idle_n = 1.76F;
+    assert_answer("ERR IMU needs thrust 0 and no reference\r\n", "LEVEL");
+    flight = (flight_outputs_t){.state = FLIGHT_DESCENDING, .thrust_n = 6.5F};
+    assert_answer("ERR IMU needs thrust 0 and no reference\r\n", "LEVEL");
 }
 
 void test_level_says_when_there_are_no_accelerations_or_strange_ones(void)

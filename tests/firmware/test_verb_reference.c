@@ -33,8 +33,27 @@ static void answer_sent(const telemetry_line_t *line, int calls)
     sent[line->length - 2U] = '\0'; /* CR LF */
 }
 
+static flight_outputs_t flight;
+static parameters_t parameters;
+
+static void read_flight(flight_outputs_t *outputs, int calls)
+{
+    (void)calls;
+    *outputs = flight;
+}
+
+static void read_parameters(parameters_t *set, int calls)
+{
+    (void)calls;
+    *set = parameters;
+}
+
 void setUp(void)
 {
+    flight = (flight_outputs_t){.state = FLIGHT_GROUND};
+    parameters_init(&parameters);
+    flight_status_server_read_Stub(read_flight);
+    parameter_server_read_Stub(read_parameters);
     reference = (reference_sample_t){
         .reference_m = 0.2F, .sequence = 7U, .link_time_us = 5U, .link_sequence = 3U};
     writes = 0U;
@@ -93,4 +112,58 @@ void test_land_and_stop_withdraw_the_reference_whatever_stands_behind_them(void)
     TEST_ASSERT_EQUAL_STRING("OK STOP", sent);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, reference.reference_m);
     TEST_ASSERT_EQUAL_UINT32(8, reference.sequence);
+}
+
+/* ---- an IMU that must not be flown by */
+
+void test_a_take_off_by_wrong_angles_is_refused_by_the_name_of_what_is_wrong(void)
+{
+    static const struct {
+        imu_fault_t fault;
+        const char *answer;
+    } rows[] = {
+        {IMU_ROLL, "ERR SETR IMU ROLL against gravity, see #IMU"},
+        {IMU_PITCH, "ERR SETR IMU PITCH against gravity, see #IMU"},
+        {IMU_BOTH, "ERR SETR IMU ROLL+PITCH against gravity, see #IMU"},
+        {IMU_SWAPPED, "ERR SETR IMU SWAPPED: roll is pitch, see #IMU"},
+        {IMU_RADIANS, "ERR SETR IMU RADIANS: angles too small, see #IMU"},
+        {IMU_OTHER, "ERR SETR IMU ANGLES against gravity, see #IMU"},
+    };
+
+    for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        flight.imu_fault = rows[i].fault;
+        assert_refused(rows[i].answer, "0.5");
+    }
+}
+
+void test_a_landing_and_a_flight_that_flies_are_never_refused_for_it(void)
+{
+    flight.imu_fault = IMU_ROLL;
+    TEST_ASSERT_TRUE(type(verb_setr, "SETR", "0"));
+    TEST_ASSERT_EQUAL_STRING("OK SETR 0", sent);
+    flight.state = FLIGHT_FLYING;
+    TEST_ASSERT_TRUE(type(verb_setr, "SETR", "0.5"));
+    TEST_ASSERT_EQUAL_STRING("OK SETR 0.5", sent);
+}
+
+void test_axes_that_were_proved_by_hand_fly_against_gravity(void)
+{
+    flight.imu_fault = IMU_ROLL;
+    parameters.value[PARAMETER_IAXES] = (float)AXES_PROVED;
+    TEST_ASSERT_TRUE(type(verb_setr, "SETR", "0.5"));
+}
+
+void test_axes_that_were_typed_are_proved_first(void)
+{
+    parameters.value[PARAMETER_IPITCH] = (float)AXIS_MINUS_PITCH;
+    assert_refused("ERR SETR IMU axes set but not proved, see #IMU", "0.5");
+    parameters.value[PARAMETER_IAXES] = (float)AXES_PROVED;
+    TEST_ASSERT_TRUE(type(verb_setr, "SETR", "0.5"));
+}
+
+void test_accelerations_that_are_wrong_are_remarked_upon(void)
+{
+    flight.imu_fault = IMU_UNIT;
+    TEST_ASSERT_TRUE(type(verb_setr, "SETR", "0.5"));
+    TEST_ASSERT_EQUAL_STRING("OK SETR 0.5 (IMU UNIT wrong, see #IMU)", sent);
 }

@@ -1,0 +1,45 @@
+#include "firmware/imu_gate.h"
+
+#include "control/imu_axes.h"
+#include "firmware/servers.h"
+
+static const char *const reasons[] = {
+    [IMU_ROLL] = "IMU ROLL against gravity, see #IMU",
+    [IMU_PITCH] = "IMU PITCH against gravity, see #IMU",
+    [IMU_BOTH] = "IMU ROLL+PITCH against gravity, see #IMU",
+    [IMU_SWAPPED] = "IMU SWAPPED: roll is pitch, see #IMU",
+    [IMU_RADIANS] = "IMU RADIANS: angles too small, see #IMU",
+    [IMU_OTHER] = "IMU ANGLES against gravity, see #IMU",
+};
+typedef char every_fault_has_a_reason[(sizeof reasons / sizeof reasons[0] == IMU_FAULT_COUNT) ? 1 : -1];
+
+bool imu_gate_refuses(answer_t *answer)
+{
+    static parameters_t parameters;
+    flight_outputs_t flight;
+
+    flight_status_server_read(&flight);
+    parameter_server_read(&parameters);
+    if (flight.state != FLIGHT_GROUND || !imu_axes_forbid(flight.imu_fault, &parameters)) {
+        return false;
+    }
+    (void)answer_refuse(answer, (flight.imu_fault >= IMU_ROLL) ? reasons[flight.imu_fault]
+                                                               : "IMU axes set but not proved, see #IMU");
+    return true;
+}
+
+void imu_gate_remark(answer_t *answer, bool assumed_too)
+{
+    static parameters_t parameters;
+    flight_outputs_t flight;
+
+    flight_status_server_read(&flight);
+    parameter_server_read(&parameters);
+    if (flight.imu_fault == IMU_UNIT || flight.imu_fault == IMU_DOWN) {
+        telemetry_text(&answer->line, " (IMU ");
+        telemetry_text(&answer->line, imu_fault_name(flight.imu_fault));
+        telemetry_text(&answer->line, " wrong, see #IMU)");
+    } else if (assumed_too && parameters_choice(&parameters, PARAMETER_IAXES) == AXES_ASSUMED) {
+        telemetry_text(&answer->line, " (IMU axes assumed, see #IMU)");
+    }
+}
