@@ -1,5 +1,5 @@
-/* The order of the rows counts: the first that applies is taken, so the pilot's switch and a tilt come first.
- */
+/* The order of the rows counts: those of a state stand together, and the first that applies is taken, so the
+ * pilot's switch and a tilt come first. */
 #include "control/flight_state.h"
 
 #define CAN_FLY (FLIGHT_IF_REFERENCE | FLIGHT_IF_READY | FLIGHT_IF_HEIGHT)
@@ -73,10 +73,14 @@ const char *flight_state_name(flight_state_t state)
 
 flight_state_t flight_next_state(flight_state_t from, uint16_t conditions)
 {
-    for (uint16_t i = 0U; i < FLIGHT_TRANSITION_COUNT; ++i) {
+    uint16_t i = 0U;
+
+    while (i < FLIGHT_TRANSITION_COUNT && flight_transitions[i].from != from) {
+        ++i;
+    }
+    for (; i < FLIGHT_TRANSITION_COUNT && flight_transitions[i].from == from; ++i) {
         const flight_transition_t *row = &flight_transitions[i];
-        if (row->from == from && (conditions & row->all_of) == row->all_of &&
-            (conditions & row->none_of) == 0U) {
+        if ((conditions & row->all_of) == row->all_of && (conditions & row->none_of) == 0U) {
             return row->to;
         }
     }

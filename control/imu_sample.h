@@ -21,4 +21,16 @@ typedef struct {
     uint32_t malformed; /* frames refused so far */
 } imu_sample_t;
 
+/* Index of the first frame after `sequence`. The frames are in the order in which they came: looked for from
+ * the end, because of the sixteen that a cycle of control gets few are new. */
+static inline uint16_t imu_first_after(const imu_sample_t *frames, uint16_t count, uint32_t sequence)
+{
+    uint16_t first = count;
+
+    while (first > 0U && (int32_t)(frames[first - 1U].sequence - sequence) > 0) {
+        --first;
+    }
+    return first;
+}
+
 #endif

@@ -168,14 +168,12 @@ static bool believe_tilt(integrity_t *i, float roll_rad, float pitch_rad, uint32
 void integrity_tilt(integrity_t *integrity, const imu_sample_t *frames, uint16_t count, float roll_rad,
                     float pitch_rad, uint32_t time_us)
 {
-    for (uint16_t k = 0U; k < count; ++k) {
+    for (uint16_t k = imu_first_after(frames, count, integrity->tilt_sequence); k < count; ++k) {
         const imu_sample_t *frame = &frames[k];
-        if ((int32_t)(frame->sequence - integrity->tilt_sequence) > 0) {
-            integrity->tilt_sequence = frame->sequence;
-            if (!believe_tilt(integrity, frame->median.roll_rad, frame->median.pitch_rad,
-                              frame->arrival_us)) {
-                integrity->unfit_sequence = frame->sequence;
-            }
+
+        integrity->tilt_sequence = frame->sequence;
+        if (!believe_tilt(integrity, frame->median.roll_rad, frame->median.pitch_rad, frame->arrival_us)) {
+            integrity->unfit_sequence = frame->sequence;
         }
     }
     if (count == 0U && (!integrity->levelled || time_us != integrity->tilt_time_us)) {
@@ -336,12 +334,10 @@ static void feel(integrity_t *i, const flown_t *flown, const imu_sample_t *frame
 void integrity_frames(integrity_t *integrity, const flown_t *flown, const imu_sample_t *frames,
                       uint16_t count)
 {
-    for (uint16_t k = 0U; k < count; ++k) {
+    for (uint16_t k = imu_first_after(frames, count, integrity->frame_sequence); k < count; ++k) {
         const imu_sample_t *frame = &frames[k];
-        const bool is_new = (int32_t)(frame->sequence - integrity->frame_sequence) > 0;
         const bool fit = (int32_t)(frame->sequence - integrity->unfit_sequence) > 0;
-        if (is_new && fit && frame->ready && frame->has_acceleration &&
-            fabsf(motion_up_mps2(frame)) < UP_MAX_MPS2) {
+        if (fit && frame->ready && frame->has_acceleration && fabsf(motion_up_mps2(frame)) < UP_MAX_MPS2) {
             integrity->frame_sequence = frame->sequence;
             feel(integrity, flown, frame);
         }

@@ -168,12 +168,8 @@ static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_
 static void predict_frame(est_law_t *law, const parameters_t *parameters, const imu_sample_t *frame)
 {
     const uint32_t before_us = law->estimator.now_us;
-
-    if ((int32_t)(frame->sequence - law->estimator.sequence) <= 0) {
-        return; /* taken before: of the sixteen of a cycle most are */
-    }
-
     imu_sample_t used = *frame;
+
     used.has_acceleration = frame->has_acceleration && !law->accelerations_doubted;
     estimator_predict(&law->estimator, &used, modelled_motion(law, parameters));
     const float dt_s = seconds_between(before_us, law->estimator.now_us);
@@ -206,7 +202,7 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_s
     law->now_us = now_us;
     law->heightless_s = at_most(law->heightless_s + law->step_s, AGE_MAX_S);
     law->frameless_s = at_most(law->frameless_s + law->step_s, AGE_MAX_S);
-    for (uint16_t i = 0U; i < count; ++i) {
+    for (uint16_t i = imu_first_after(frames, count, law->estimator.sequence); i < count; ++i) {
         predict_frame(law, parameters, &frames[i]);
     }
     if (law->frameless_s > FRAMES_FRESH_S) {

@@ -114,8 +114,10 @@ static void propagate(estimate_t *x, const estimator_frame_t *frame, float dt_s)
 static void bound_covariance(float p[ESTIMATOR_STATES][ESTIMATOR_STATES])
 {
     for (uint16_t i = 0U; i < ESTIMATOR_STATES; ++i) {
-        if (p[i][i] > variance_max[i]) {
-            const float scale = sqrtf(variance_max[i] / p[i][i]);
+        const float variance = p[i][i];
+
+        if (variance > variance_max[i]) {
+            const float scale = sqrtf(variance_max[i] / variance);
             for (uint16_t j = 0U; j < ESTIMATOR_STATES; ++j) {
                 p[i][j] *= scale;
                 p[j][i] *= scale;

@@ -172,3 +172,17 @@ void test_every_row_of_the_table_is_the_first_for_some_conditions(void)
         TEST_ASSERT_TRUE(flight_transitions[i].to != flight_transitions[i].from);
     }
 }
+
+void test_the_rows_of_a_state_stand_together(void)
+{
+    unsigned seen = 0U;
+
+    for (uint16_t i = 0; i < FLIGHT_TRANSITION_COUNT; i++) {
+        const flight_state_t from = flight_transitions[i].from;
+
+        if (i == 0 || flight_transitions[i - 1].from != from) {
+            TEST_ASSERT_EQUAL_HEX32_MESSAGE(0, seen >> from & 1U, flight_state_name(from));
+            seen |= 1U << from;
+        }
+    }
+}
