@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot scan campaign tune seed-study ground ground-vehicle ground-open test test-long format mutants test-ground port size faults fuzz prove bench coverage firmware flash check-ti clean
+.PHONY: help build fly plot scan campaign fit tune seed-study ground ground-vehicle ground-open test test-long format mutants test-ground port size faults fuzz prove bench coverage firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -57,6 +57,11 @@ campaign: ## Fly every law on hundreds of vehicles; table, verdicts, CSV, JSON, 
 	@$(setup) build campaign
 	@$(MAKE) build
 	@$(python) tools/campaign/campaign.py $(ARGS)
+
+fit: ## Find the vehicle in LOG="a.csv b.csv", flights recorded by `#LOG RATE FAST` or fly --csv; build/vehicle.json (OUT=FILE)
+	@test -n "$(LOG)" || { echo 'usage: make fit LOG="a.csv b.csv" [OUT=FILE]' >&2; exit 2; }
+	@$(setup) build campaign
+	@$(python) tools/fit/fit.py $(LOG) --out $(or $(OUT),build/vehicle.json) $(ARGS)
 
 tune: ## Search the gains of LAW=EST on drawn vehicles; prints the commands that set the best (ARGS=--help)
 	@test -n "$(LAW)" || { echo "usage: make tune LAW=NAME [ARGS=--help]" >&2; exit 2; }

@@ -11,6 +11,7 @@
 #include "measure.h"
 #include "nearest.h"
 #include "output.h"
+#include "vehicle.h"
 #include "sim/scenarios/flight.h"
 #include "sim/scenarios/plant.h"
 #include "sim/ti/f021/flash.h"
@@ -31,6 +32,7 @@ static const char usage[] =
     "  --record DIR        everything at the firmware's pins, in DIR/flight.plomada: `plomada replay DIR` "
     "gives the same run\n"
     "                      again. DIR is made when there is none\n"
+    "  --vehicle FILE      the figures of the vehicle that `make fit` found; a --set behind it wins\n"
     "  --set NAME=VALUE    a telecommand parameter (see `plomada params`) or a plant figure; may be "
     "repeated\n"
     "  --timing            observed response times, blocking, inversions and latency next to the bounds of "
@@ -78,6 +80,7 @@ enum {
     OPT_STORAGE,
     OPT_RECORD,
     OPT_SET,
+    OPT_VEHICLE,
     OPT_TIMING,
     OPT_TRACE,
     OPT_COST_SCALE,
@@ -99,6 +102,7 @@ static const struct option long_options[] = {
     {"storage", required_argument, NULL, OPT_STORAGE},
     {"record", required_argument, NULL, OPT_RECORD},
     {"set", required_argument, NULL, OPT_SET},
+    {"vehicle", required_argument, NULL, OPT_VEHICLE},
     {"timing", no_argument, NULL, OPT_TIMING},
     {"trace", required_argument, NULL, OPT_TRACE},
     {"cost-scale", required_argument, NULL, OPT_COST_SCALE},
@@ -205,6 +209,9 @@ static bool read_option(request_t *request, int option, const char *argument)
         return true;
     case OPT_SET:
         error = flight_override(&request->flight, argument);
+        return error == NULL || complain(error, argument);
+    case OPT_VEHICLE:
+        error = vehicle_read(&request->flight, argument);
         return error == NULL || complain(error, argument);
     case OPT_TIMING:
         request->timing = true;

@@ -1,0 +1,84 @@
+"""tools/fit on flights of simulated vehicles. Usage: test_fit.py PLOMADA"""
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = None
+THRUST = {"hover_thrust": 8.1, "gain": 1.2, "tau": 0.08, "tdelay": 0.02}
+CLIMB = {"climb_rate": 0.65, "climb_neutral": 7.4, "climb_deadband": 0.2, "climb_lag": 0.4}
+
+
+class Fit(unittest.TestCase):
+    def setUp(self):
+        self.dir = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.dir)
+
+    def fly(self, seed, plant, scenario="experiment"):
+        path = self.dir / f"{seed}.csv"
+        words = [word for name, value in plant.items() for word in ("--set", f"plant.{name}={value}")]
+        subprocess.run([PROGRAM, "fly", scenario, "--seed", str(seed), *words, "--csv", path], check=False,
+                       stdout=subprocess.DEVNULL)
+        return path
+
+    def fit(self, *logs):
+        out = self.dir / "vehicle.json"
+        done = subprocess.run([sys.executable, "-B", ROOT / "tools/fit/fit.py", *logs, "--out", out], capture_output=True,
+                              text=True, check=False)
+        return done, json.loads(out.read_text()) if out.exists() else None
+
+    def assert_near(self, vehicle, key, true, share):
+        self.assertLess(abs(vehicle[key]["value"] - true), share * true, f"{key}: {vehicle[key]}, truth {true}")
+
+    def test_a_vehicle_whose_throttle_commands_thrust(self):
+        done, vehicle = self.fit(self.fly(4711, THRUST))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(vehicle["throttle"], "THRUST", done.stdout)
+        self.assert_near(vehicle, "plant.hover_thrust", 8.1, 0.02)
+        self.assert_near(vehicle, "authority", 9.80665 * 1.2 / 8.1, 0.12)
+        self.assertLess(abs(vehicle["response"]["value"] - 0.1), 0.02, vehicle["response"])
+        for key, true in (("plant.hover_thrust", 8.1), ("plant.gain", 1.2)):
+            self.assertLess(vehicle[key]["low"], vehicle[key]["value"])
+            self.assertLess(vehicle[key]["value"], vehicle[key]["high"])
+            self.assertLess(vehicle[key]["high"] - vehicle[key]["low"], 0.3 * true)
+        again = subprocess.run([PROGRAM, "fly", "est-60cm-ramp", "--vehicle", self.dir / "vehicle.json", "--json",
+                                self.dir / "again.json"], check=False, stdout=subprocess.DEVNULL)
+        self.assertIn(again.returncode, (0, 1))
+        self.assertFalse(json.loads((self.dir / "again.json").read_text())["failed"])
+
+    def test_a_vehicle_whose_throttle_commands_a_climb_rate(self):
+        done, vehicle = self.fit(self.fly(4712, CLIMB))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(vehicle["throttle"], "CLIMB", done.stdout)
+        self.assert_near(vehicle, "plant.climb_neutral", 7.4, 0.02)
+        self.assert_near(vehicle, "authority", 0.65, 0.15)
+
+    def test_a_log_without_accelerations_is_refused_and_the_reason_said(self):
+        path = self.fly(4713, {}, "pid-40cm")
+        rows = path.read_text().splitlines()
+        place = rows[0].split(",").index("up_mps2")
+        bare = [",".join("" if k == place and n else cell for k, cell in enumerate(row.split(",")))
+                for n, row in enumerate(rows)]
+        path.write_text("\n".join(bare) + "\n")
+        done, _ = self.fit(path)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no accelerations", done.stderr)
+
+    def test_a_vehicle_without_a_figure_of_the_plant_is_refused_before_the_flight(self):
+        for content, reason in (("{}", "no figure of the plant"), ('{"plant.gain": 1}', "without its value"),
+                                ('{"plant.gian": {"value": 1}}', "unknown name")):
+            path = self.dir / "wrong.json"
+            path.write_text(content)
+            done = subprocess.run([PROGRAM, "fly", "experiment", "--vehicle", path], capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(reason, done.stderr)
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv.pop(1)
+    unittest.main()

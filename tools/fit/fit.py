@@ -1,0 +1,185 @@
+#!/usr/bin/env python3
+"""fit.py LOG... [--out FILE] [--picture FILE]: finds the vehicle in its flights.
+
+LOG is a CSV of `plomada log` (of a flight behind #LOG RATE FAST) or of `plomada fly --csv`; several logs are of one vehicle.
+FILE (build/vehicle.json) has the plant's own names, each with a value and a 90 % interval, and whether the throttle commands
+THRUST or CLIMB; `plomada fly --vehicle FILE` flies it. A table on stdout says what was found, and what the flights say too
+little about. docs/fit.md tells more. Exit status: 0; 2 usage, or logs that do not hold what is needed.
+"""
+import argparse
+import json
+import math
+import os
+import sys
+from pathlib import Path
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")       # matrices of six rows
+
+import numpy
+
+import flight_log
+import model
+
+ROOT = Path(__file__).resolve().parents[2]
+TELLING = 6.0                   # twice a log-likelihood: a kind that is better by less is a guess
+SEEN_WELL, SEEN = 0.9, 0.6      # share of what is known that comes from the flight
+HOVER_STEPS = 6
+RAYS, RAY_NOISE_MM = 35, 5.0    # of the front window; the plant's own noise of each ray
+
+# What a figure means, and which manoeuvre shows it.
+MEANING = {
+    "hover_thrust": ("thrust per motor that hovers", "fly on for 10 s at one height"),
+    "gain": ("effect of the throttle, 1: as its own hover thrust says", "quick steps of the reference: experiment"),
+    "tau": ("lag of the motors", "quick doublets of the reference: experiment"),
+    "tdelay": ("dead time behind the pulse", "quick doublets of the reference: experiment"),
+    "damping": ("of a climb, by the air", "a climb of half a metre at full VUP, and down again"),
+    "sag": ("growth of the hover thrust, battery", "hover for a minute"),
+    "climb_neutral": ("throttle that commands no climb", "hover for 20 s"),
+    "climb_rate": ("climb that a newton commands", "steps of the reference of 0.3 m, held: experiment"),
+    "climb_deadband": ("to either side of the middle", "small steps of the reference, up and down: experiment"),
+    "climb_lag": ("of the autopilot's speed loop", "quick steps of the reference: experiment"),
+    "climb_wander": ("what the autopilot's own climb wanders", "hover for a minute"),
+    "turbulence": ("of the air, rms", "hover for 20 s"),
+    "turbulence_tau": ("its correlation time", "hover for a minute"),
+    "acc_noise": ("of the accelerometer, rms", "any flight"),
+    "acc_bias": ("of the accelerometer", "any flight"),
+    "height_noise": ("of a height, rms", "any flight"),
+    "authority": ("", ""),
+    "response": ("", ""),
+}
+NOT_OF_THE_PLANT = ("height_noise", "climb_wander")
+SIMULATED = {"THRUST": "thrust", "CLIMB": "a climb rate"}
+
+
+def quantiles(values):
+    return float(numpy.quantile(values, 0.05)), float(numpy.quantile(values, 0.95))
+
+
+def bounded(value, low, high, least=0.0):
+    return {"value": max(value, least), "low": max(low, least), "high": max(high, least)}
+
+
+def derived(found, rng):
+    """What users ask for, from draws of the figures: m/s2 (or m/s) per newton, and lag and dead time together."""
+    def authority(f):
+        return f["climb_rate"] if found.kind == "CLIMB" else model.GRAVITY_MPS2 * f["gain"] / f["hover_thrust"]
+
+    def response(f):
+        return f["tau"] + f["tdelay"]
+
+    drawn = [found.draw(rng) for _ in range(2000)]
+    return {name: bounded(of(found.figures), *quantiles([of(f) for f in drawn]))
+            for name, of in (("authority", authority), ("response", response))}
+
+
+def hover_over_time(found, stretches):
+    """[[seconds of the log, N]] of all flights."""
+    if found.kind == "CLIMB":
+        return []
+    rows = []
+    for stretch in stretches:
+        for t_s in numpy.linspace(stretch.grid_s[0], stretch.grid_s[-1], HOVER_STEPS):
+            hover_n = found.figures["hover_thrust"] * (1.0 + found.figures["sag"] * (t_s - stretch.begin_s))
+            rows.append([round(float(t_s), 2), round(float(hover_n), 3)])
+    return rows
+
+
+def told(found, name):
+    """A plain sentence: did the flight show this figure?"""
+    share = found.excited(name)
+    if share > SEEN_WELL:
+        return "seen well"
+    manoeuvre = MEANING[name][1]
+    return f"seen a little; {manoeuvre}" if share > SEEN else f"not seen, taken from other vehicles; {manoeuvre}"
+
+
+def common_noise_mm(height_noise_m):
+    return math.sqrt(max((1e3 * height_noise_m)**2 - RAY_NOISE_MM**2 / RAYS, 0.01))
+
+
+def vehicle_of(found, other, stretches, logs, rng):
+    heights = sum(len(stretch.ray_s) for stretch in stretches)
+    telling = other.loss - found.loss
+    result = {"throttle": found.kind, "throttle_told": telling > TELLING, "better_by": round(telling, 1)}
+    for name in found.table:
+        value, interval = found.figures[name], found.interval(name)
+        least = -math.inf if name in ("acc_bias", "sag") else 0.0
+        key = name if name in NOT_OF_THE_PLANT else f"plant.{name}"
+        result[key] = bounded(value, *interval, least) | {"told": told(found, name)}
+    noise = result["height_noise"]
+    result["plant.common_noise"] = {word: common_noise_mm(noise[word]) for word in ("value", "low", "high")}
+    if found.kind == "THRUST":
+        result["plant.climb_rate"] = {"value": 0.0, "low": 0.0, "high": 0.0}
+    result |= derived(found, rng)
+    result["outliers"] = {"value": found.outliers / heights, "of": heights}
+    result["hover_over_time"] = hover_over_time(found, stretches)
+    result["names"] = list(found.likelihood.names)
+    result["units"] = [float(unit) for unit in found.units]
+    result["covariance"] = [[float(cell) for cell in row] for row in found.covariance]
+    result["logs"] = [str(log) for log in logs]
+    return result
+
+
+def fit_logs(logs):
+    """(vehicle for JSON, the fit, stretches). Raises flight_log.Unfit."""
+    stretches = [stretch for log in logs for stretch in flight_log.stretches(log)]
+    fits = sorted((model.fit(kind, stretches) for kind in model.KINDS), key=lambda fit: fit.loss)
+    rng = numpy.random.default_rng(1)
+    return vehicle_of(fits[0], fits[1], stretches, logs, rng), fits[0], stretches
+
+
+def number(value):
+    return f"{value:.3g}"
+
+
+def text(vehicle):
+    kind = vehicle["throttle"]
+    sure = f"better by {vehicle['better_by']:.0f} than the other kind" if vehicle["throttle_told"] else \
+        "a guess: the flight does not tell; fly experiment"
+    lines = [f"The throttle commands {SIMULATED[kind]} ({sure})."]
+    unit = "m/s" if kind == "CLIMB" else "m/s2"
+    for name, words, of in (("authority", "authority", f"{unit} per N"), ("response", "lag and dead time", "s")):
+        f = vehicle[name]
+        lines.append(f"{words}: {number(f['value'])} [{number(f['low'])} .. {number(f['high'])}] {of}")
+    if vehicle["hover_over_time"]:
+        (t0, n0), (t1, n1) = vehicle["hover_over_time"][0], vehicle["hover_over_time"][-1]
+        lines.append(f"hover thrust: {n0:.2f} N at {t0:.0f} s, {n1:.2f} N at {t1:.0f} s of the log")
+    lines.append(f"heights that no noise explains: {100 * vehicle['outliers']['value']:.1f} % of {vehicle['outliers']['of']}")
+    lines.append("")
+    for key, f in vehicle.items():
+        name = key.removeprefix("plant.")
+        if isinstance(f, dict) and "told" in f:
+            unit = model.KINDS[kind][name].unit
+            lines.append(f"{key:22} {number(f['value']):>8} [{number(f['low'])} .. {number(f['high'])}] {unit:5} "
+                         f"{MEANING[name][0]}: {f['told']}")
+    return "\n".join(lines)
+
+
+def read_arguments(argv):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("logs", nargs="+", metavar="LOG", type=Path)
+    parser.add_argument("--out", type=Path, default=ROOT / "build/vehicle.json", metavar="FILE")
+    parser.add_argument("--picture", type=Path, metavar="FILE", help="what the model says of the flight, and what it leaves")
+    return parser.parse_args(argv)
+
+
+def main(argv=None):
+    arguments = read_arguments(argv)
+    try:
+        vehicle, found, stretches = fit_logs(arguments.logs)
+        arguments.out.parent.mkdir(parents=True, exist_ok=True)
+        arguments.out.write_text(json.dumps(vehicle, indent=1) + "\n", encoding="utf-8")
+        if arguments.picture:
+            import picture
+
+            picture.draw(arguments.picture, vehicle, found, stretches)
+    except (flight_log.Unfit, OSError) as error:
+        print(f"fit: {error}", file=sys.stderr)
+        return 2
+    print(text(vehicle))
+    print(f"\n{arguments.out}" + (f"\n{arguments.picture}" if arguments.picture else ""))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
