@@ -416,22 +416,25 @@ def search(kind, stretches, start, held=None):
     return likelihood, found.x, float(found.fun)
 
 
-def approach(kind, stretches):
-    """Figures near the best. First with disturbances that forgive much, so that a wrong start leaves no valley to be caught
-    in; a deadband has more than one."""
+def approach(kind, stretches, other):
+    """Figures near the best, from this start. First with disturbances that forgive much, so that a wrong start leaves no
+    valley to be caught in."""
     rough = {name: value for name, value in ROUGH.items() if name in KINDS[kind]}
-    found = []
-    for other in STARTS[kind]:
-        likelihood, units, loss = search(kind, stretches, start_of(kind, stretches) | other, rough)
-        found.append((loss, likelihood.figures(units)))
-    figures = min(found, key=lambda one: one[0])[1]
-    return figures | {name: KINDS[kind][name].median for name in rough}
+    likelihood, units, _ = search(kind, stretches, start_of(kind, stretches) | other, rough)
+    return likelihood.figures(units) | {name: KINDS[kind][name].median for name in rough}
+
+
+def best_of(kind, stretches):
+    """The most likely of what several starts lead to: there are valleys (a strong, slow vehicle in thick air looks much like
+    a weak, quick one), and a deadband has more than one."""
+    starts = [start_of(kind, stretches)] + [approach(kind, stretches, other) for other in STARTS[kind]]
+    return min((search(kind, stretches, start) for start in starts), key=lambda one: one[2])
 
 
 def fit(kind, stretches):
     for stretch in stretches:
         stretch.kept = None
-    likelihood, units, loss = search(kind, stretches, approach(kind, stretches))
+    likelihood, units, loss = best_of(kind, stretches)
     outliers = sum(mark_outliers(stretch, kind, likelihood.figures(units)) for stretch in stretches)
     if outliers > 0:
         likelihood, units, loss = search(kind, stretches, likelihood.figures(units))
