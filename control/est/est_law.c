@@ -255,11 +255,23 @@ static void start_hover(est_law_t *law, const parameters_t *parameters, float th
 {
     const float gravity_n = parameters->value[PARAMETER_GRAV];
     hover_init(&law->hover, thrust_n, sigma_n, at_least(gravity_n - HOVER_BOUND_N, 0.0F),
-               gravity_n + HOVER_BOUND_N);
+               at_least(gravity_n, law->flown_hover_n) + HOVER_BOUND_N);
+}
+
+/* A battery that has emptied in the flight before makes the next one need more. */
+static void remember_flight(est_law_t *law, float gravity_n)
+{
+    if (law->airborne) {
+        law->flown_hover_n = law->sure_hover_n;
+        law->flown_gravity_n = gravity_n;
+    } else if (gravity_n != law->flown_gravity_n) {
+        law->flown_hover_n = 0.0F;
+    }
 }
 
 void est_law_reset(est_law_t *law, const parameters_t *parameters)
 {
+    remember_flight(law, parameters->value[PARAMETER_GRAV]);
     law->airborne = false;
     law->ramping = false;
     law->powerless = false;
@@ -360,6 +372,7 @@ static bool take_off(est_law_t *law, const parameters_t *parameters)
     const float taken_n = law->lift_mps2 / vehicle_model(law, parameters).authority_mps2_per_n;
     const float height_m = law->estimator.now.height_m;
     const float lift_off_m = est_law_feels(law) ? LIFT_OFF_M : UNFELT_LIFT_OFF_M;
+    const float known_n = at_least(gravity_n, law->flown_hover_n);
     const bool strong = law->actuator.thrust_n > LIFT_OFF_SHARE * gravity_n;
 
     law->ramping = true;
@@ -368,11 +381,11 @@ static bool take_off(est_law_t *law, const parameters_t *parameters)
     if (law->airborne) {
         const float hover_n = est_law_feels(law) ? law->actuator.thrust_n - taken_n
                                                  : leave_unfelt(law, parameters);
-        start_hover(law, parameters, is_climb(parameters) ? gravity_n : hover_n,
-                    is_climb(parameters) ? NEUTRAL_SIGMA_N : HOVER_SIGMA_START_N);
+        start_hover(law, parameters, is_climb(parameters) ? known_n : hover_n,
+                    is_climb(parameters) && known_n == gravity_n ? NEUTRAL_SIGMA_N : HOVER_SIGMA_START_N);
         cascade_init(&law->cascade, law->ramp_n);
     } else {
-        law->ramp_n = at_most(law->ramp_n + RAMP_N_PER_S * law->step_s, RAMP_MOST * gravity_n);
+        law->ramp_n = at_most(law->ramp_n + RAMP_N_PER_S * law->step_s, RAMP_MOST * known_n);
     }
     return law->airborne;
 }

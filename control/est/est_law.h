@@ -45,6 +45,8 @@ typedef struct {
     float reference_m;
     float reference_terrain_m; /* estimator.terrain_height_m at the time when reference_m was set */
     float sure_hover_n;        /* hover thrust from before the present doubt */
+    float flown_hover_n;       /* sure_hover_n at the end of the flight before; 0: none with this GRAV */
+    float flown_gravity_n;     /* GRAV of that flight */
     float entry_hover_n;       /* sure_hover_n at the start of the present descent */
     float ceiling_n;           /* upper limit of the thrust in a descent */
     bool accelerations_doubted;

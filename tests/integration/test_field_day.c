@@ -78,3 +78,13 @@ void test_an_idle_of_nine_percent_is_not_enough_and_eleven_are(void)
     TEST_ASSERT_TRUE(fly(0, 1, "IDLE=11"));
     TEST_ASSERT_TRUE(fly(0, 1, "IDLE=20"));
 }
+
+/* A low battery moves the middle of the stick by up to 0.3 of its way in a minute, 0.0588 N/s. */
+void test_a_middle_of_the_stick_that_goes_up_does_not_keep_the_second_flight_on_the_ground(void)
+{
+    for (int combination = 4; combination < 8; combination++) {
+        if (!fly(combination, 1, "plant.neutral_drift=0.0588")) {
+            explain(1);
+        }
+    }
+}

@@ -416,6 +416,31 @@ void test_without_frames_pidt_takes_over_and_says_so(void)
     TEST_ASSERT_TRUE(rms_mm() < 30.0);
 }
 
+/* ---- the flight before */
+
+static bool flies_again_heavier(bool gravity_typed)
+{
+    board(1U);
+    set(PARAMETER_GRAV, 5.5F);
+    world.body.hover_n = 6.8;
+    hover_at(0.6F);
+    setr(0.0F);
+    run(6.0);
+    TEST_ASSERT_EQUAL_STRING("GROUND", flight_state_name(out.state));
+    world.body.hover_n = 7.7; /* above 1.35 of GRAV */
+    set(PARAMETER_GRAV, gravity_typed ? 5.51F : 5.5F);
+    run(0.5);
+    setr(0.6F);
+    run(6.0);
+    return height_m() > 0.4;
+}
+
+void test_what_carried_the_flight_before_bounds_the_next_take_off_until_grav_is_typed(void)
+{
+    TEST_ASSERT_TRUE(flies_again_heavier(false));
+    TEST_ASSERT_FALSE(flies_again_heavier(true));
+}
+
 /* ---- frames without accelerations */
 
 void test_without_accelerations_it_flies_by_the_thrust_model_and_the_heights_and_says_so(void)
