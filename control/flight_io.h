@@ -3,6 +3,7 @@
 #ifndef CONTROL_FLIGHT_IO_H
 #define CONTROL_FLIGHT_IO_H
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -10,6 +11,7 @@
 #include "control/flight_state.h"
 #include "control/imu_axes.h"
 #include "control/imu_sample.h"
+#include "control/thrust.h"
 
 /* Highest reference. State LOWERING begins 0.8 m above the reference: that is still within the scanner's
  * 4.095 m. */
@@ -65,5 +67,11 @@ typedef struct {
     float innovation_mm; /* latest height minus predicted height; NAN where nothing is predicted */
     uint16_t releases;   /* FLIGHT_RELEASE_*: events that release the next cycle */
 } flight_outputs_t;
+
+/* Before the first cycle. */
+#define FLIGHT_OUTPUTS_INITIAL \
+    { \
+        .pulse_us = THRUST_IDLE_PULSE_US, .estimate_mm = NAN, .innovation_mm = NAN \
+    }
 
 #endif

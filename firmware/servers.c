@@ -1,11 +1,9 @@
 #include "firmware/servers.h"
 
-#include <math.h>
 #include <stddef.h>
 #include <ti/sysbios/gates/GateMutexPri.h>
 #include <xdc/std.h>
 
-#include "control/thrust.h"
 #include "firmware/geometry.h"
 #include "firmware/imu_exchange.h"
 #include "firmware/monitor.h"
@@ -25,7 +23,7 @@ static uint16_t imu_next;
 static laser_sample_t laser;
 static reference_sample_t reference;
 static parameters_t parameters;
-static flight_outputs_t flight = {.pulse_us = THRUST_IDLE_PULSE_US, .estimate_mm = NAN, .innovation_mm = NAN};
+static flight_outputs_t flight = FLIGHT_OUTPUTS_INITIAL;
 
 const altitude_sample_t *const probe_altitude = &altitude;
 const imu_sample_t *const probe_imu = &imu;

@@ -10,6 +10,7 @@ import house
 import includes
 import length
 import mirror
+import places
 import published
 import sources
 import state
@@ -350,6 +351,33 @@ class Published(unittest.TestCase):
     def test_a_row_that_is_none_ends_the_rule(self):
         with self.assertRaises(ValueError):
             self.complaints(header=self.HEADER.replace("TEXT(", "TEXTS("))
+
+
+
+class Places(unittest.TestCase):
+    def complaints(self, **changed):
+        told = {"control/flight_io.h": "float innovation_mm;", "control/flight.c": "out->innovation_mm = 0;",
+                "firmware/published.h": "flight.innovation_mm", "control/parameters.c": '{"VUP", "m/s"}',
+                "sim/scenarios/scenarios.c": '.name = "climb-rate"', "firmware/b.c": "int b; /* innovation_mm */"}
+        with tempfile.TemporaryDirectory() as name:
+            root = Path(name)
+            for path, text in {**told, **changed}.items():
+                (root / path).parent.mkdir(parents=True, exist_ok=True)
+                (root / path).write_text(text, encoding="utf-8")
+            return list(places.check(root))
+
+    def test_the_places_of_the_recipes_are_good(self):
+        self.assertEqual(self.complaints(), [])
+
+    def test_a_place_more_is_named(self):
+        found = self.complaints(**{"firmware/b.c": "b = now.innovation_mm;"})
+        self.assertEqual(len(found), 1, found)
+        self.assertTrue(found[0].startswith("firmware/b.c: "), found)
+
+    def test_a_place_less_is_named(self):
+        found = self.complaints(**{"control/parameters.c": ""})
+        self.assertEqual(len(found), 1, found)
+        self.assertTrue(found[0].startswith("control/parameters.c: "), found)
 
 
 if __name__ == "__main__":
