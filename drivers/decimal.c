@@ -1,19 +1,20 @@
 /* Exact conversion between decimal text and 32-bit float. The reader keeps the number as a large integer in
- * limbs of 16 bits and scales it by powers of ten; `more` tells that a division left a remainder. It rounds
- * once, at the end, to 24 bits, ties to even (exact integer arithmetic as in Clinger, "How to Read Floating
- * Point Numbers Accurately", 1990). The writer scales the mantissa by 5^decimals in 64 bits and also rounds
- * once. What breaks: with products of floats the number is rounded several times, so a parameter that is
- * written and read back can differ in its last bit. DIGITS_KEPT, ORDER_MIN and LIMBS belong together: 120
- * digits at 10^-37 are divided by ten 157 times and need 36 limbs. tests/drivers/test_decimal.c compares with
- * the PC's strtof(). */
+ * limbs of 16 bits and scales it by powers of five, those of two being shifts; `more` tells that a division
+ * left a remainder. It rounds once, at the end, to 24 bits, ties to even (exact integer arithmetic as in
+ * Clinger, "How to Read Floating Point Numbers Accurately", 1990). The writer scales the mantissa by
+ * 5^decimals in 64 bits and also rounds once. What breaks: with products of floats the number is rounded
+ * several times, so a parameter that is written and read back can differ in its last bit. DIGITS_KEPT,
+ * ORDER_MIN and LIMBS belong together: 32 digits at 10^-37 are divided by five 69 times, and need 14 limbs.
+ * tests/drivers/test_decimal.c compares with the PC's strtof(), tests/prove/decimal.c proves the limbs. */
 #include "drivers/decimal.h"
 
 #include <math.h>
 #include <string.h>
 
-/* A midpoint between two floats has at most 114 significant digits: behind this many only "is the rest zero"
- * counts. */
-#define DIGITS_KEPT 120
+/* The longest line of a telecommand has 32 characters. Behind this many digits only "is the rest zero"
+ * counts: then a text is read exactly unless its first 32 digits are those of a longer midpoint between two
+ * floats. */
+#define DIGITS_KEPT 32
 
 #define ORDER_MAX 39    /* 10^39 is beyond the largest float */
 #define ORDER_MIN (-37) /* 10^-38 is below the smallest normal float */
@@ -29,7 +30,7 @@
 #define SHORTEST_DECIMALS_MAX 15U /* nine significant digits of the smallest value: always enough */
 
 #define LIMB_BITS 16
-#define LIMBS 40U
+#define LIMBS 14U
 
 /* A natural number, least significant limb first; the limb at used - 1 is not zero. */
 typedef struct {
@@ -49,7 +50,8 @@ typedef struct {
     const char *end;
 } reader_t;
 
-static const uint16_t power_of_ten[] = {1U, 10U, 100U, 1000U, 10000U};
+#define FIVES_MAX 6
+static const uint16_t power_of_five[] = {1U, 5U, 25U, 125U, 625U, 3125U, 15625U};
 
 static void wide_multiply_add(wide_t *wide, uint16_t factor, uint16_t addend)
 {
@@ -103,24 +105,35 @@ static bool wide_has_below(const wide_t *wide, uint16_t limb)
     return false;
 }
 
-/* Replaces digits * 10^exponent by digits * 2^(returned), at least 33 bits long, with `more` telling of what
- * is below. 10^k < 2^(10 k / 3), which is 5 k / 24 limbs. */
+/* The next step of scaling by 5^tens. */
+static uint16_t fives(int32_t tens)
+{
+    return tens < FIVES_MAX ? (uint16_t)tens : (uint16_t)FIVES_MAX;
+}
+
+/* Limbs from which a division by 5^tens leaves more than 32 bits: 5^k < 2^(7 k / 3), which is 7 k / 48 limbs.
+ */
+static uint16_t limbs_to_divide(int32_t tens)
+{
+    return (uint16_t)(tens * 7 / 48 + 4);
+}
+
+/* Replaces digits * 10^exponent by digits * 2^(returned), more than 32 bits long, with `more` telling of what
+ * is below. */
 static int32_t make_binary(number_t *number)
 {
-    int32_t tens = -number->exponent;
+    int32_t tens = number->exponent;
     uint16_t raised;
 
-    for (; tens < 0; tens++) {
-        wide_multiply_add(&number->digits, 10U, 0U);
+    for (; tens > 0; tens -= fives(tens)) {
+        wide_multiply_add(&number->digits, power_of_five[fives(tens)], 0U);
     }
-    raised = wide_raise_to(&number->digits, (uint16_t)(tens * 5 / 24 + 4));
-    while (tens > 0) {
-        uint16_t step = tens < 4 ? (uint16_t)tens : 4U;
-
-        number->more |= wide_divide(&number->digits, power_of_ten[step]);
-        tens -= step;
+    tens = number->exponent < 0 ? -number->exponent : 0;
+    raised = wide_raise_to(&number->digits, limbs_to_divide(tens));
+    for (; tens > 0; tens -= fives(tens)) {
+        number->more |= wide_divide(&number->digits, power_of_five[fives(tens)]);
     }
-    return -(int32_t)raised * LIMB_BITS;
+    return number->exponent - (int32_t)raised * LIMB_BITS;
 }
 
 /* The nearest float to (wide and, if more, a little) * 2^exponent, ties to even. Wide has three limbs at

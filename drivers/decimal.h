@@ -12,9 +12,10 @@
 
 /* Reads `length` characters as one decimal number: [+-] digits [. digits] [e|E [+-] digits]; at least one
  * digit in the mantissa; no blanks, no "nan", no "inf", no hexadecimal, nothing behind the number. The result
- * is the float nearest to the text (ties to even), however many digits it has. True: *value is written and
- * finite. False: *value is untouched (syntax, or magnitude beyond what a float holds). What, rounded to 24
- * bits, is less than the smallest normal float reads as zero; zero has no sign: "-0" reads as 0. */
+ * is the float nearest to the text (ties to even) when it has up to 32 digits, zeros in front not counted; of
+ * more, the rest only counts as "something behind". True: *value is written and finite. False: *value is
+ * untouched (syntax, or magnitude beyond what a float holds). What, rounded to 24 bits, is less than the
+ * smallest normal float reads as zero; zero has no sign: "-0" reads as 0. */
 bool decimal_read(const char *text, size_t length, float *value);
 
 /* Writes value with exactly `decimals` digits behind the point (0..6; none: no point either). What is rounded

@@ -200,7 +200,8 @@ void test_too_large_is_refused_from_the_midpoint_behind_the_largest_float_on(voi
     assert_reads(FLT_MAX, "340282356779733661637539395458142568447");
     assert_reads(FLT_MAX, "340282356779733661637539395458142568447.9999999");
     assert_reads(-FLT_MAX, "-340282356779733661637539395458142568447");
-    assert_refused("340282356779733661637539395458142568448", 39U);
+    assert_reads(FLT_MAX, "34028235677973366163753939545814e7");
+    assert_refused("34028235677973366163753939545815e7", 34U);
     assert_refused("3.5e38", 6U);
     assert_refused("-1e39", 5U);
     assert_refused("1e999999999999999999999", 23U);
@@ -282,9 +283,66 @@ void test_midpoints_between_neighbours_and_beside_them_read_as_strtof_reads_them
         float next = nextafterf(value, INFINITY);
         if (isfinite(value) && isfinite(next)) {
             double middle = ((double)value + (double)next) / 2.0;
-            (void)snprintf(text, sizeof text, "%.*e", i % 2U == 0U ? 120 : (int)(7U + random_bits() % 110U),
+            (void)snprintf(text, sizeof text, "%.*e", i % 2U == 0U ? 31 : (int)(7U + random_bits() % 25U),
                            middle);
             assert_reads_as_strtof(text);
+        }
+    }
+}
+
+/* Every place of the point, every number of digits that fits. */
+void test_any_line_of_32_characters_reads_as_strtof_reads_it(void)
+{
+    say_seed("lines");
+    for (uint32_t i = 0; i < 100000UL; i++) {
+        char text[33];
+        const size_t length = 1U + random_bits() % 32U;
+        const size_t point = random_bits() % 33U;
+        const size_t zeros = random_bits() % 4U == 0U ? random_bits() % length : 0U;
+
+        for (size_t k = 0; k < length; k++) {
+            text[k] = (char)(k < zeros ? '0' : '0' + (int)(random_bits() % 10U));
+        }
+        if (point < length && length > 1U) {
+            text[point] = '.';
+        }
+        if (length > 6U && random_bits() % 2U == 0U) {
+            (void)snprintf(&text[length - 4U], 5U, "e%+03d", (int)(random_bits() % 199U) - 99);
+            text[length] = '\0';
+        }
+        text[length] = '\0';
+        assert_reads_as_strtof(text);
+    }
+}
+
+/* The smallest and the largest numbers with as many digits as are kept. */
+void test_32_digits_at_the_ends_of_the_range_read_as_strtof_reads_them(void)
+{
+    static const char *const texts[] = {
+        "99999999999999999999999999999999e-69", "10000000000000000000000000000000e-69",
+        "11754943508222875079687365372222e-69", "34028235677973366163753939545814e7",
+        "34028235677973366163753939545815e7",   "99999999999999999999999999999999e6",
+        "10000000000000000000000000000000e7",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        assert_reads_as_strtof(texts[i]);
+    }
+}
+
+/* A midpoint of up to 114 digits that is cut at 32 is told from its neighbours by less than one unit. */
+void test_longer_texts_are_never_off_by_more_than_one_unit_in_the_last_place(void)
+{
+    char text[200];
+
+    say_seed("long midpoints");
+    for (uint32_t i = 0; i < 20000UL; i++) {
+        const float low = float_of(random_bits() & 0x7FFFFFFFU);
+        const float next = nextafterf(low, INFINITY);
+        if (low >= FLT_MIN && isfinite(next)) {
+            float value = UNTOUCHED;
+            (void)snprintf(text, sizeof text, "%.120e", ((double)low + (double)next) / 2.0);
+            TEST_ASSERT_TRUE(decimal_read(text, strlen(text), &value));
+            TEST_ASSERT_TRUE_MESSAGE(bits_of(value) == bits_of(low) || bits_of(value) == bits_of(next), text);
         }
     }
 }
