@@ -658,6 +658,17 @@ void test_what_is_skipped_is_named_with_the_sensor_and_the_reason(void)
     TEST_ASSERT_NOT_NULL(strstr(output, "  MD           1  of steps that no URG-04LX has, or malformed\n"));
 }
 
+/* Typed in as measurements, see tests/fixtures/scip/README.md; one has an echo with cluster 00. */
+void test_what_real_sensors_sent_decodes_to_what_was_measured(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, run("decode '" FIXTURES "/scip/real_md_0384.bin' 2>/dev/null"));
+    TEST_ASSERT_EQUAL_STRING("time,step_384\n6332.861,254\n", output);
+    TEST_ASSERT_EQUAL_INT(
+        0, run("decode '" FIXTURES "/scip/real_ms_0044_0725.bin' 2>/dev/null | tail -n 1 | cut -d, -f2- >got"
+               " && cut -d, -f3- '" FIXTURES "/scip/real_ms_0044_0725.csv' | cmp - got 2>&1"));
+    TEST_ASSERT_EQUAL_STRING("", output);
+}
+
 void test_decode_of_nothing_exits_1_and_of_an_unreadable_file_2(void)
 {
     TEST_ASSERT_EQUAL_INT(1, run("decode - </dev/null 2>&1"));
