@@ -13,9 +13,9 @@
 #include "commands.h"
 #include "drivers/line_sum.h"
 #include "output.h"
+#include "saved.h"
 
 #define MARK "OK LOG "
-#define LINE_LENGTH 4096
 #define NAMED_MAX 8 /* rows that a message names one by one */
 
 static const char usage[] =
@@ -123,76 +123,17 @@ static void read_line(harvest_t *harvest, const char *line)
     }
 }
 
-/* Octets joined to lines: a radio's packets end anywhere. */
-typedef struct {
-    harvest_t *harvest;
-    char text[LINE_LENGTH];
-    size_t length;
-} assembler_t;
-
-static void take_octet(assembler_t *assembler, int octet)
+static void take_line(void *harvest, const char *line)
 {
-    if (octet == '\n' || octet == '\r') {
-        assembler->text[assembler->length] = '\0';
-        read_line(assembler->harvest, assembler->text);
-        assembler->length = 0;
-    } else if (octet != '\0' && assembler->length < LINE_LENGTH - 1) { /* a radio that powers up sends NULs */
-        assembler->text[assembler->length++] = (char)octet;
-    }
-}
-
-static int hex_digit(int c)
-{
-    return isdigit(c) ? c - '0' : isxdigit(c) ? toupper(c) - 'A' + 10 : -1;
-}
-
-/* A line of XCTU's: date time,id,RECV,hex. Returns where the hex begins, NULL for another line. */
-static const char *received_hex(const char *line)
-{
-    const char *first = strchr(line, ','), *second = first == NULL ? NULL : strchr(first + 1, ',');
-
-    return second != NULL && isdigit((unsigned char)line[0]) && strncmp(second, ",RECV,", 6) == 0 ? second + 6
-                                                                                                  : NULL;
-}
-
-static void take_hex(assembler_t *assembler, const char *hex)
-{
-    while (hex_digit((unsigned char)hex[0]) >= 0 && hex_digit((unsigned char)hex[1]) >= 0) {
-        take_octet(assembler, 16 * hex_digit((unsigned char)hex[0]) + hex_digit((unsigned char)hex[1]));
-        hex += hex[2] == ' ' ? 3 : 2;
-    }
-}
-
-static bool is_console(const char *line)
-{
-    int day, month, year, hour, minute;
-
-    return sscanf(line, "%d-%d-%d %d:%d:", &day, &month, &year, &hour, &minute) == 5;
+    read_line(harvest, line);
 }
 
 static void read_file(FILE *in, harvest_t *harvest)
 {
-    assembler_t assembler = {.harvest = harvest};
-    char *line = NULL;
-    size_t room = 0;
-    ssize_t length;
-    bool console = false, first = true;
+    char rest[SAVED_LINE];
 
-    while ((length = getline(&line, &room, in)) > 0) {
-        if (first) {
-            console = is_console(line);
-            first = false;
-        }
-        if (!console) {
-            for (ssize_t i = 0; i < length; i++) {
-                take_octet(&assembler, (unsigned char)line[i]);
-            }
-        } else if (received_hex(line) != NULL) {
-            take_hex(&assembler, received_hex(line));
-        }
-    }
-    free(line);
-    harvest->cut = assembler.length >= strlen(MARK) && strncmp(assembler.text, MARK, strlen(MARK)) == 0;
+    saved_read(in, take_line, harvest, rest);
+    harvest->cut = strncmp(rest, MARK, strlen(MARK)) == 0;
 }
 
 /* Telling

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "measured.h"
 #include "tools/rta/analysis.h"
 #include "tools/rta/table.h"
 
@@ -30,6 +31,9 @@ static const char usage[] =
     "                      --bursts A may be an interrupt with burst_n: the last one of its frame\n"
     "  --set ROW.COLUMN=VALUE\n"
     "                      changes a number of the table; may be repeated\n"
+    "  --measured FILE     a saved answer to #PERF COSTS (text, or a console log of XCTU): costs, responses, "
+    "slack and growth\n"
+    "                      of that board beside the table's; the other figures are then the board's\n"
     "  --json FILE         the same figures\n"
     "  --print             prints the table itself, as CSV, and does nothing else\n\n"
     "A FILE begins with name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings and may add\n"
@@ -44,6 +48,7 @@ enum {
     OPT_BURSTS,
     OPT_CHAIN,
     OPT_SET,
+    OPT_MEASURED,
     OPT_JSON,
     OPT_PRINT,
     OPT_HELP
@@ -56,6 +61,7 @@ static const struct option long_options[] = {
     {"bursts", no_argument, NULL, OPT_BURSTS},
     {"chain", required_argument, NULL, OPT_CHAIN},
     {"set", required_argument, NULL, OPT_SET},
+    {"measured", required_argument, NULL, OPT_MEASURED},
     {"json", required_argument, NULL, OPT_JSON},
     {"print", no_argument, NULL, OPT_PRINT},
     {"help", no_argument, NULL, OPT_HELP},
@@ -65,12 +71,14 @@ static const struct option long_options[] = {
 #define SETTINGS_MAX 64
 
 typedef struct {
-    const char *table_name, *json_path, *chain_text;
+    const char *table_name, *json_path, *chain_text, *measured_path;
     const char *setting[SETTINGS_MAX];
     int settings;
     bool print, help;
     rta_options_t options;
-    rta_table_t table;
+    rta_table_t table; /* of the board, where one was measured */
+    rta_table_t assumed;
+    measured_t measured;
     int chain[RTA_ROWS_MAX];
     int chain_members;
 } request_t;
@@ -120,6 +128,9 @@ static bool read_option(request_t *request, int option, const char *argument)
         return true;
     case OPT_SET:
         return add_setting(request, argument);
+    case OPT_MEASURED:
+        request->measured_path = argument;
+        return true;
     case OPT_JSON:
         request->json_path = argument;
         return true;
@@ -269,6 +280,64 @@ static void print_chain(const request_t *request)
     }
 }
 
+/* ---- a board beside the table ---- */
+
+static void print_costs(const request_t *request)
+{
+    const char *gate;
+    const rta_ps_t hold = measured_hold(&request->measured, &gate);
+    char text[2][32];
+
+    printf("longest, with server accesses and switches\n%-18s %10s %10s\n", request->table_name, "table",
+           "board");
+    for (int i = 0; i < request->assumed.rows; i++) {
+        const rta_row_t *row = &request->assumed.row[i];
+        const rta_ps_t cost = measured_cost(&request->measured, row->name);
+        const rta_ps_t assumed = row->cost + row->accesses * request->options.access +
+                                 (row->kind == RTA_TASK ? request->options.switches : 0.0);
+
+        printf("%-18s %10s %10s\n", row->name, ms(text[0], assumed),
+               ms(text[1], cost > 0.0 ? cost : INFINITY));
+    }
+    printf("%-18s %10s %10s %s\n\n", "hold of a gate", ms(text[0], request->options.access),
+           ms(text[1], hold > 0.0 ? hold : INFINITY), gate);
+}
+
+static void print_responses(const request_t *request)
+{
+    int task[RTA_ROWS_MAX];
+    int tasks = rta_tasks(&request->table, task);
+
+    printf("%-18s %8s %10s %10s %10s %10s\n", "response", "D", "table", "board", "slack", "board");
+    for (int i = 0; i < tasks; i++) {
+        const rta_row_t *row = &request->table.row[task[i]];
+        const rta_ps_t assumed = rta_response(&request->assumed, &request->options, task[i]);
+        const rta_ps_t board = rta_response(&request->table, &request->options, task[i]);
+        char text[4][32];
+
+        printf("%-18s %8g %10s %10s %10s %10s%s\n", row->name, row->deadline / RTA_PS_PER_MS,
+               ms(text[0], assumed), ms(text[1], board), ms(text[2], row->deadline - assumed),
+               isinf(board) ? "-" : ms(text[3], row->deadline - board),
+               board > row->deadline ? "  LATE" : "");
+    }
+}
+
+static void print_board(const request_t *request, bool holds)
+{
+    const rta_growth_t assumed = rta_growth(&request->assumed, &request->options, false);
+    const rta_growth_t board = rta_growth(&request->table, &request->options, false);
+
+    print_costs(request);
+    print_responses(request);
+    print_chain(request);
+    printf("load: table %.4f, board %.4f\n", rta_load(&request->assumed, &request->options).total,
+           rta_load(&request->table, &request->options).total);
+    printf("growth: at %.2f times the table's costs %s is late, at %.2f times the board's %s\n",
+           assumed.factor, request->table.row[assumed.first_missed].name, board.factor,
+           request->table.row[board.first_missed].name);
+    printf("%s on this board\n", holds ? "all deadlines hold" : "NOT all deadlines hold");
+}
+
 static void print_report(const request_t *request, bool holds)
 {
     rta_load_t load = rta_load(&request->table, &request->options);
@@ -351,6 +420,13 @@ static int run(request_t *request)
         fputs(text, stdout);
         return 0;
     }
+    request->assumed = request->table;
+    if (request->measured_path != NULL) {
+        if (!measured_read(&request->measured, request->measured_path)) {
+            return 2;
+        }
+        measured_apply(&request->measured, &request->table);
+    }
     holds = rta_holds(&request->table, &request->options);
     if (request->json_path != NULL) {
         json = fopen(request->json_path, "w");
@@ -361,7 +437,11 @@ static int run(request_t *request)
         write_json(json, request, holds);
         fclose(json);
     }
-    print_report(request, holds);
+    if (request->measured_path != NULL) {
+        print_board(request, holds);
+    } else {
+        print_report(request, holds);
+    }
     return holds ? 0 : 1;
 }
 

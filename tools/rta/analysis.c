@@ -37,7 +37,7 @@ static rta_ps_t job_cost(const rta_row_t *row, const rta_options_t *options)
 
 static rta_ps_t job_switches(const rta_row_t *row, const rta_options_t *options)
 {
-    return row->kind == RTA_TASK ? options->switches : 0.0;
+    return row->kind == RTA_TASK && !row->whole ? options->switches : 0.0;
 }
 
 static bool goes_before(const rta_row_t *row, const rta_row_t *task)
@@ -195,7 +195,7 @@ static rta_ps_t response(const rta_table_t *table, const rta_options_t *options,
                          rta_ps_t limit)
 {
     const rta_row_t *self = job->self;
-    rta_ps_t cost = job_cost(self, options) + options->switches;
+    rta_ps_t cost = job_cost(self, options) + job_switches(self, options);
     rta_ps_t late = options->jitter + self->jitter;
     rta_ps_t worst = 0.0;
 

@@ -28,6 +28,7 @@ typedef struct {
     int blockings;     /* tasks: their number, each worth two context switches */
     char blocked_by[RTA_NAMES_MAX + 1]; /* tasks: names of the lower tasks, with + between; "": not told */
     int accesses;                       /* server accesses per job that cost does not contain */
+    bool whole;                         /* tasks: cost contains the job's context switches */
     rta_ps_t jitter;                    /* every release may come this late, beside that of the options */
     int burst_n;           /* a stream that comes in frames: releases per frame (without frames: any), */
     rta_ps_t burst_period; /* one frame per so long; 0 = endless */

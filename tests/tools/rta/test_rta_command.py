@@ -56,6 +56,59 @@ class Command(unittest.TestCase):
             copy = self.write(text)
             self.assertEqual(self.rta(copy)[1].splitlines()[1:], self.rta(name)[1].splitlines()[1:])
 
+    def measured(self, task_ns=900000, hold_ns=20000):
+        """An answer to #PERF COSTS of a board with one interrupt, two tasks and two gates."""
+        rows = [("tick", "longest", 15000), ("low", "longest", 2 * task_ns), ("high", "longest", task_ns), ("never", "longest", 0),
+                ("imu", "hold", hold_ns), ("laser", "hold", hold_ns // 2)]
+        return [f"OK PERF COSTS {i} {name} {kind}_ns:{ns}" for i, (name, kind, ns) in enumerate(rows, 1)] + [f"OK PERF END lines:{len(rows)}"]
+
+    TABLE = HEADER + "tick,hwi,,1,,0.010,,\nhigh,task,3,10,10,0.5,0.01,1\nhigh_too,task,3,20,20,0.5,0.01,1\nlow,task,1,50,50,1,0,0\n"
+
+    def test_what_a_board_measured_stands_beside_the_table(self):
+        table = self.write(self.TABLE)
+        saved = self.write("alt:0.60 ref:0.6\r\n" + "\r\nalt:0.60 ref:0.6\r\n".join(self.measured()) + "\r\n", "saved.txt")
+        status, out, error = self.rta(table, "--measured", saved)
+        self.assertEqual((status, error), (0, ""))
+        self.assertRegex(out, r"(?m)^tick +0\.0100 +0\.0150$")
+        self.assertRegex(out, r"(?m)^high +0\.5570 +0\.9000$")
+        self.assertRegex(out, r"(?m)^high_too +0\.5570 +0\.9000$")
+        self.assertRegex(out, r"(?m)^low +1\.0570 +1\.8000$")
+        self.assertRegex(out, r"(?m)^hold of a gate +0\.0093 +0\.0200 imu$")
+        # high: itself and its equal, the hold and the switches of its one blocking, two ticks; by hand.
+        self.assertRegex(out, r"(?m)^high +10 +1\.2010 +1\.9070 +8\.7990 +8\.0930$")
+        # the same by a table that has these costs: nothing else is in the measured ones
+        same = self.write(HEADER + "tick,hwi,,1,,0.015,,\nhigh,task,3,10,10,0.843,0.02,1\nhigh_too,task,3,20,20,0.843,0.02,1\n"
+                          "low,task,1,50,50,1.743,0,0\n", "same.csv")
+        responses = dict(zip(("high", "high_too", "low"), self.column(self.rta(same)[1], 6)))
+        for name, response in responses.items():
+            self.assertRegex(out, rf"(?m)^{name} +\d+ +\S+ +{response} ")
+
+    def test_a_slow_board_is_late_and_the_status_says_so(self):
+        saved = self.write("\n".join(self.measured(task_ns=6000000)) + "\n", "saved.txt")
+        status, out, _ = self.rta(self.write(self.TABLE), "--measured", saved)
+        self.assertEqual(status, 1)
+        self.assertRegex(out, r"(?m)^high .* LATE$")
+        self.assertIn("NOT all deadlines hold on this board", out)
+
+    def test_the_console_log_of_xctu_is_read_too(self):
+        text = "\r\n".join(self.measured()) + "\r\n"
+        packets = [text[i:i + 37].encode().hex(" ").upper() for i in range(0, len(text), 37)]
+        log = "".join(f"11-22-2026 10:00:{i % 60:02d}.123,{i},RECV,{hexed}\n" for i, hexed in enumerate(packets))
+        table = self.write(self.TABLE)
+        plain = self.rta(table, "--measured", self.write(text, "saved.txt"))
+        self.assertEqual(self.rta(table, "--measured", self.write(log, "xctu.log")), plain)
+
+    def test_of_two_answers_the_last_counts_and_a_broken_one_is_refused(self):
+        table, lines = self.write(self.TABLE), self.measured()
+        twice = self.write("\n".join(self.measured(task_ns=1) + lines) + "\n", "twice.txt")
+        once = self.write("\n".join(lines) + "\n", "once.txt")
+        self.assertEqual(self.rta(table, "--measured", twice), self.rta(table, "--measured", once))
+        for left_out in range(len(lines)):
+            broken = self.write("\n".join(lines[:left_out] + lines[left_out + 1:]) + "\n", "broken.txt")
+            status, _, error = self.rta(table, "--measured", broken)
+            self.assertEqual(status, 2, left_out)
+            self.assertIn("no whole answer to #PERF COSTS", error)
+
     def test_options_change_the_figures(self):
         plain = self.rta("plomada")[1]
         for options in (["--jitter", "1"], ["--bursts"], ["--switch-ms", "0.1"], ["--access-ms", "0.02"],

@@ -1,0 +1,79 @@
+#include "saved.h"
+
+#include <ctype.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Octets joined to lines: a radio's packets end anywhere. */
+typedef struct {
+    void (*take)(void *context, const char *line);
+    void *context;
+    char *text;
+    size_t length;
+} assembler_t;
+
+static void take_octet(assembler_t *assembler, int octet)
+{
+    if (octet == '\n' || octet == '\r') {
+        assembler->text[assembler->length] = '\0';
+        assembler->take(assembler->context, assembler->text);
+        assembler->length = 0;
+    } else if (octet != '\0' && assembler->length < SAVED_LINE - 1) { /* a radio that powers up sends NULs */
+        assembler->text[assembler->length++] = (char)octet;
+    }
+}
+
+static int hex_digit(int c)
+{
+    return isdigit(c) ? c - '0' : isxdigit(c) ? toupper(c) - 'A' + 10 : -1;
+}
+
+/* A line of XCTU's: date time,id,RECV,hex. Returns where the hex begins, NULL for another line. */
+static const char *received_hex(const char *line)
+{
+    const char *first = strchr(line, ','), *second = first == NULL ? NULL : strchr(first + 1, ',');
+
+    return second != NULL && isdigit((unsigned char)line[0]) && strncmp(second, ",RECV,", 6) == 0 ? second + 6
+                                                                                                  : NULL;
+}
+
+static void take_hex(assembler_t *assembler, const char *hex)
+{
+    while (hex_digit((unsigned char)hex[0]) >= 0 && hex_digit((unsigned char)hex[1]) >= 0) {
+        take_octet(assembler, 16 * hex_digit((unsigned char)hex[0]) + hex_digit((unsigned char)hex[1]));
+        hex += hex[2] == ' ' ? 3 : 2;
+    }
+}
+
+static bool is_console(const char *line)
+{
+    int day, month, year, hour, minute;
+
+    return sscanf(line, "%d-%d-%d %d:%d:", &day, &month, &year, &hour, &minute) == 5;
+}
+
+void saved_read(FILE *in, void (*take)(void *context, const char *line), void *context, char rest[SAVED_LINE])
+{
+    assembler_t assembler = {.take = take, .context = context, .text = rest};
+    char *line = NULL;
+    size_t room = 0;
+    ssize_t length;
+    bool console = false, first = true;
+
+    while ((length = getline(&line, &room, in)) > 0) {
+        if (first) {
+            console = is_console(line);
+            first = false;
+        }
+        if (!console) {
+            for (ssize_t i = 0; i < length; i++) {
+                take_octet(&assembler, (unsigned char)line[i]);
+            }
+        } else if (received_hex(line) != NULL) {
+            take_hex(&assembler, received_hex(line));
+        }
+    }
+    free(line);
+    rest[assembler.length] = '\0';
+}
