@@ -178,7 +178,7 @@ typedef struct {
 } planted_task_t;
 static const planted_task_t planted_tasks[TASKS] = {
     {"TaskIMU", 1, 1},       {"TaskReceiveLaser", 2, 2}, {"TaskControl", 5, 2},
-    {"TaskSendLaser", 1, 2}, {"TaskSendComm", 3, 1},     {"TaskReceiveComm", 36, 0},
+    {"TaskSendLaser", 1, 2}, {"TaskSendComm", 3, 1},     {"TaskReceiveComm", 37, 0},
 };
 
 static const planted_task_t *task_called(const char *name)
