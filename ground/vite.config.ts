@@ -1,4 +1,4 @@
-import { readFileSync } from 'node:fs';
+import { existsSync, readFileSync } from 'node:fs';
 import { defineConfig, type Plugin } from 'vite';
 
 // One classic script: a page that was opened from a disk may load no module.
@@ -29,8 +29,11 @@ function licences(): Plugin {
         const about = JSON.parse(readFileSync(`node_modules/${name}/package.json`, 'utf8')) as { version: string; license: string };
         return `${name} ${about.version} (${about.license})\n\n${readFileSync(`node_modules/${name}/LICENSE`, 'utf8')}`;
       });
-      texts.push(`wasi-libc, in vehicle.js only (MIT and others)\n\nhttps://github.com/WebAssembly/wasi-libc, see its LICENSE: musl (MIT), cloudlibc (BSD-2-Clause), dlmalloc (CC0).`);
-      this.emitFile({ type: 'asset', fileName: 'LICENCES.txt', source: `Plomada Ground: BSD-3-Clause, as Plomada itself. It contains:\n\n${texts.join('\n\n----\n\n')}\n` });
+      const libc = '/usr/share/doc/wasi-libc/copyright';
+      if (!existsSync(libc)) this.error(`${libc} is missing, and vehicle.js contains wasi-libc`);
+      texts.push(`wasi-libc, in vehicle.js only\n\n${readFileSync(libc, 'utf8')}`);
+      texts.push(`compiler-rt builtins of LLVM, in vehicle.js only (Apache-2.0 WITH LLVM-exception, which asks for no notice in what was compiled)`);
+      this.emitFile({ type: 'asset', fileName: 'LICENCES.txt', source: `Plomada Ground and the vehicle in vehicle.js:\n\n${readFileSync('../LICENSE', 'utf8')}\n\n----\n\n${texts.join('\n\n----\n\n')}\n` });
     },
   };
 }

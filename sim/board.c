@@ -338,6 +338,13 @@ bool board_selected(void)
     return board.mux.firmware_selected;
 }
 
+void board_change(const board_config_t *config)
+{
+    quadrotor_change(board.quadrotor, &config->quadrotor, &config->terrain);
+    board.scene.config = config->scene;
+    razor9dof_change(board.imu, &config->imu);
+}
+
 void board_radio_reach(bool in_reach)
 {
     xbee_reach(board.xbee, in_reach);

@@ -79,6 +79,10 @@ void board_stick(sim_time_t high_ns);
 
 bool board_selected(void); /* the firmware has the throttle */
 
+/* While it is on, vehicle, terrain, what the rays meet and the IMU's errors become those of config. The
+ * scanner itself, the pilot, phases and seeds are those of power-on. */
+void board_change(const board_config_t *config);
+
 /* The radio pair in or out of each other's reach: what is on air out of it is lost. */
 void board_radio_reach(bool in_reach);
 

@@ -2,7 +2,6 @@ import { render } from 'preact';
 import { useEffect, useRef } from 'preact/hooks';
 import { signal } from '@preact/signals';
 import './style.css';
-import { OpenError } from './link/link';
 import { choosePort, knownPorts } from './link/serial';
 import { age, beat, connectSerial, connectSocket, connectVehicle, diagnosis, dialog, disconnect, failure, heardAny, latest, link, lostReason, phase, restore, restored, session, silent, stop, stopState, view, type View } from './store';
 import { ConsoleView } from './views/console';
@@ -84,7 +83,6 @@ async function openSerial(ask: boolean): Promise<void> {
   await connectSerial(async () => {
     const [first] = ask ? [] : await knownPorts();
     if (first) return first;
-    if (!navigator.serial) throw new OpenError('noSerial');
     return choosePort();
   });
   known.value = (await knownPorts()).length > 0;

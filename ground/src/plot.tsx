@@ -183,15 +183,20 @@ export function saveFile(name: string, content: BlobPart, type = 'text/plain'): 
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
+/** All plots within the element, one below the other. */
 export function savePng(element: Element | null, name: string): void {
-  const canvas = element?.querySelector('canvas');
-  if (!canvas) return;
-  const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });
-  const ctx = copy.getContext('2d')!;
+  const plots = [...(element?.querySelectorAll('canvas') ?? [])];
+  if (plots.length === 0) return;
+  const picture = Object.assign(document.createElement('canvas'), { width: Math.max(...plots.map((plot) => plot.width)), height: plots.reduce((sum, plot) => sum + plot.height, 0) });
+  const ctx = picture.getContext('2d')!;
   ctx.fillStyle = css('--surface');
-  ctx.fillRect(0, 0, copy.width, copy.height);
-  ctx.drawImage(canvas, 0, 0);
-  copy.toBlob((blob) => blob && saveFile(name, blob, 'image/png'));
+  ctx.fillRect(0, 0, picture.width, picture.height);
+  let top = 0;
+  for (const plot of plots) {
+    ctx.drawImage(plot, 0, top);
+    top += plot.height;
+  }
+  picture.toBlob((blob) => blob && saveFile(name, blob, 'image/png'));
 }
 
 export async function pickFiles(multiple = false): Promise<File[]> {

@@ -13,6 +13,7 @@ export interface Mark {
 export class Series {
   private readonly data = { t: new Float64Array(CAPACITY), height: new Float32Array(CAPACITY), reference: new Float32Array(CAPACITY), thrust: new Float32Array(CAPACITY), truth: new Float32Array(CAPACITY) };
   private readonly state = new Uint8Array(CAPACITY);
+  private readonly flags = new Uint16Array(CAPACITY);
   private readonly states: string[] = [];
   private begin = 0;
   count = 0;
@@ -27,6 +28,7 @@ export class Series {
     this.data.reference[at] = line.reference;
     this.data.thrust[at] = line.thrust;
     this.data.truth[at] = truth;
+    this.flags[at] = line.flags;
     let state = this.states.indexOf(line.state);
     if (state < 0) state = this.states.push(line.state) - 1;
     this.state[at] = state;
@@ -87,13 +89,14 @@ export class Series {
     return { columns, states };
   }
 
+  /** All that is kept, with the flight recorder's names of columns. */
   csv(): string {
-    const rows = ['t_s,meas_m,ref_m,thrust_n,state'];
-    const { columns, states } = this.window(-Infinity, Infinity, CAPACITY);
-    for (let i = 0; i < states.length; i++) {
-      if (states[i] === '') continue;
-      const cell = (value: number | null | undefined, digits: number): string => (value == null ? '' : value.toFixed(digits));
-      rows.push(`${cell(columns[0]![i]! - this.start, 3)},${cell(columns[1]![i], 3)},${cell(columns[2]![i] ?? 0, 3)},${cell(columns[3]![i], 2)},${states[i]}`);
+    const rows = ['t_s,meas_m,ref_m,thrust_n,state,flags'];
+    const cell = (value: number, digits: number): string => (Number.isNaN(value) ? '' : value.toFixed(digits));
+    for (let i = 0; i < this.count; i++) {
+      const at = (this.begin + i) % CAPACITY;
+      const { t, height, reference, thrust } = this.data;
+      rows.push([cell(t[at]! - this.start, 3), cell(height[at]!, 3), cell(reference[at]!, 3), cell(thrust[at]!, 2), this.states[this.state[at]!]!, this.flags[at]!].join(','));
     }
     return `${rows.join('\n')}\n`;
   }

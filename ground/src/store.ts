@@ -7,6 +7,7 @@ import { LineSplitter, parseLine, type Line, type Telemetry } from './protocol/l
 import { parseHelp, valueOf, type Parameter, type ParameterSet } from './protocol/parameters';
 import { CommandQueue, type Outcome } from './protocol/queue';
 import { LogCollector, logRest } from './protocol/recorder';
+import { withSum } from './protocol/sum';
 import { Series } from './series';
 import { SessionLog, type Entry } from './session';
 
@@ -62,9 +63,23 @@ function record(out: boolean, text: string): void {
   pendingConsole.push(entry);
 }
 
+/** Whether every line that leaves carries its sum. A firmware with `#SUM ON` demands it, and the page notices by itself. */
+export const sums = signal(localStorage.getItem('plomada.sums') === '1');
+export function setSums(on: boolean): void {
+  sums.value = on;
+  localStorage.setItem('plomada.sums', on ? '1' : '0');
+}
+
+/** What LINK is, as far as it was heard; a link that is armed is kept alive, whatever else is sent. */
+let linkSeconds = 0;
+let lastSent = -Infinity;
+export const ALIVE = '#PING alive';
+
 function transmit(text: string): void {
-  record(true, text);
-  link.value?.send(text);
+  const line = sums.value ? withSum(text) : text;
+  record(true, line);
+  lastSent = link.value?.now() ?? 0;
+  link.value?.send(line);
 }
 
 function heard(octets: Uint8Array): void {
@@ -87,6 +102,7 @@ function heard(octets: Uint8Array): void {
 
 function onTelemetry(telemetry: Telemetry): void {
   const now = link.value!.now();
+  if (latest.value === null || telemetry.reset) void command('#GET LINK').then(giveBackLink);
   series.add(now / 1000, telemetry, vehicle.value ? vehicle.value.truth().height_m : NaN);
   batch(() => {
     latest.value = telemetry;
@@ -97,10 +113,27 @@ function onTelemetry(telemetry: Telemetry): void {
 
 function onAnswer(line: Extract<Line, { kind: 'answer' }>): void {
   if (line.name === 'LOAD' || line.name === 'SAVE') storeLine.value = line.text;
+  if (!line.ok && line.rest.startsWith('sum missing')) setSums(true);
+  if (line.ok && line.name === 'SUM' && /^(ON|OFF)$/.test(line.rest)) setSums(line.rest === 'ON');
   const value = line.ok ? valueOf(line.name, line.rest) : null;
-  if (value && parameters.value.some((p) => p.name === value.name)) {
-    parameters.value = parameters.value.map((p) => (p.name === value.name ? { ...p, value: value.value } : p));
-  }
+  if (value?.name === 'LINK') linkSeconds = Number(value.value);
+  if (value) known(value.name, value.value);
+  if (line.ok && line.name === 'IMU') for (const [, name, found] of line.rest.matchAll(/([A-Z]+):(\S+)/g)) known(name!, found!);
+}
+
+/** The firmware has said what a parameter is. */
+function known(name: string, value: string): void {
+  if (parameters.value.some((p) => p.name === name)) parameters.value = parameters.value.map((p) => (p.name === name ? { ...p, value } : p));
+}
+
+const BORROWED = 'plomada.link';
+/** A calibration sets LINK for a while. What it was is written down, so that also a page that died gives it back. */
+export function borrowLink(before: string): void {
+  localStorage.setItem(BORROWED, before);
+}
+export async function giveBackLink(): Promise<void> {
+  const before = localStorage.getItem(BORROWED);
+  if (before !== null && (await command(`#LINK ${before}`)).ok) localStorage.removeItem(BORROWED);
 }
 
 const MARKED = /^#(SETR|STOP|LAND|ARM|LAW|CALIBRATE|SAVE|LOAD|DEFAULTS|GRAV)\b/i;
@@ -166,6 +199,8 @@ function opened(kind: Link): void {
   });
   queue = new CommandQueue(transmit, () => link.value?.now() ?? 0);
   void session.begin(kind.label);
+  lastSent = -Infinity;
+  linkSeconds = 0;
 }
 
 const events = {
@@ -211,6 +246,7 @@ export async function disconnect(): Promise<void> {
 export function powerCycle(): void {
   vehicle.value?.powerCycle();
   queue?.clear('power off');
+  linkSeconds = 0;
   parameters.value = [];
   stored.value = null;
   storeLine.value = null;
@@ -280,7 +316,7 @@ export async function downloadRecorder(seconds: number | null): Promise<void> {
     missing = collector.missingSeconds();
   }
   if ((download.value.state as string) === 'failed') return;
-  download.value = { state: ok ? 'done' : 'failed', received: collector.size, expected: download.value.expected, lost: Math.max(0, download.value.expected - collector.size), csv: collector.size > 0 ? collector.csv() : '' };
+  download.value = { state: ok ? 'done' : 'failed', received: collector.size, expected: download.value.expected, lost: Math.max(0, download.value.expected - collector.size), csv: collector.size > 0 && collector.hasTitles ? collector.csv() : '' };
 }
 
 export function cancelDownload(): void {
@@ -292,6 +328,7 @@ export function cancelDownload(): void {
 
 export function beat(): void {
   queue?.tick();
+  if (phase.value === 'open' && linkSeconds > 0 && (link.value?.now() ?? 0) - lastSent > (linkSeconds * 1000) / 3) transmit(ALIVE);
   batch(() => {
     clock.value = link.value?.now() ?? clock.value;
     if (pendingConsole.length > 0) {
@@ -310,7 +347,7 @@ export async function restore(): Promise<void> {
   for (const entry of entries) {
     const line = parseLine(entry.text);
     if (line.kind === 'telemetry') series.add(entry.t / 1000, line.telemetry, NaN);
-    else if (entry.out && MARKED.test(entry.text)) series.mark(entry.t / 1000, entry.text.slice(1)).answered = true;
+    else if (entry.out && MARKED.test(entry.text)) series.mark(entry.t / 1000, entry.text.slice(1).replace(/\*[0-9A-F]{4}$/, '')).answered = true;
   }
   consoleLines.value = entries.slice(-CONSOLE_LINES);
   restored.value = { link: before.link, lines: entries.length, id: before.id };

@@ -5,6 +5,11 @@ export const language = signal<'en' | 'es'>((localStorage.getItem('plomada.langu
 export function w(): Words {
   return language.value === 'es' ? es : en;
 }
+/** The firmware's reason for a refusal, in the reader's language where its words are known. */
+export function told(reason: string): string {
+  const known = w().reasons.find(([pattern]) => pattern.test(reason));
+  return known ? reason.replace(known[0], known[1]) : reason;
+}
 export function switchLanguage(): void {
   language.value = language.value === 'es' ? 'en' : 'es';
   localStorage.setItem('plomada.language', language.value);

@@ -7,10 +7,16 @@
 /* x'' + 2 w x' + w^2 x = white noise of intensity S has the stationary variance S / (4 w^3). */
 void floor_init(floor_t *under, const floor_config_t *config, double step_s, unsigned long seed)
 {
-    *under = (floor_t){.config = *config, .step_s = step_s};
-    under->omega = 2.0 / config->tau_s;
-    under->drive = config->rms_m * sqrt(4.0 * pow(under->omega, 3.0) * step_s);
+    *under = (floor_t){.step_s = step_s};
+    floor_change(under, config);
     noise_init(&under->noise, seed, "floor");
+}
+
+void floor_change(floor_t *under, const floor_config_t *config)
+{
+    under->config = *config;
+    under->omega = 2.0 / config->tau_s;
+    under->drive = config->rms_m * sqrt(4.0 * pow(under->omega, 3.0) * under->step_s);
 }
 
 void floor_pass(floor_t *under)

@@ -33,6 +33,8 @@ typedef struct {
 } floor_t;
 
 void floor_init(floor_t *under, const floor_config_t *config, double step_s, unsigned long seed);
+/* Another floor from here on. */
+void floor_change(floor_t *under, const floor_config_t *config);
 /* The vehicle has flown on for one step. */
 void floor_pass(floor_t *under);
 double floor_height_m(const floor_t *under);

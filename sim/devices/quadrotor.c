@@ -452,6 +452,16 @@ void quadrotor_set_origin(quadrotor_t *quadrotor, sim_time_t origin)
     quadrotor->origin = origin;
 }
 
+void quadrotor_change(quadrotor_t *quadrotor, const quadrotor_config_t *config, const terrain_t *terrain)
+{
+    bring_up(quadrotor);
+    quadrotor->config = *config;
+    quadrotor->terrain = *terrain;
+    quadrotor->rotors.config = config->rotors;
+    floor_change(&quadrotor->floor, &config->floor);
+    prepare_steps(quadrotor);
+}
+
 void quadrotor_pulse(quadrotor_t *quadrotor, sim_time_t high_ns)
 {
     quadrotor_t *q = quadrotor;

@@ -83,6 +83,9 @@ typedef struct quadrotor quadrotor_t;
  */
 quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const terrain_t *terrain, unsigned long seed);
 void quadrotor_destroy(quadrotor_t *quadrotor);
+/* The vehicle, its air and the ground become others while it flies; motion, noise and the autopilot's stop
+ * type go on. */
+void quadrotor_change(quadrotor_t *quadrotor, const quadrotor_config_t *config, const terrain_t *terrain);
 void quadrotor_set_origin(quadrotor_t *quadrotor, sim_time_t origin);
 /* The throttle pulse that reached the autopilot, at its falling edge. No pulse yet: no thrust. */
 void quadrotor_pulse(quadrotor_t *quadrotor, sim_time_t high_ns);

@@ -230,6 +230,17 @@ razor9dof_t *razor9dof_create(const razor_config_t *config, razor_world_t world,
     return razor;
 }
 
+void razor9dof_change(razor9dof_t *razor, const razor_config_t *config)
+{
+    const razor_config_t before = razor->config;
+
+    razor->config = *config;
+    razor->config.period = before.period;
+    razor->config.phase = before.phase;
+    razor->config.age = before.age;
+    razor->config.stock = before.stock;
+}
+
 void razor9dof_destroy(razor9dof_t *razor)
 {
     razor9dof_power(razor, false);

@@ -52,6 +52,8 @@ extern const razor_config_t razor_default;
 typedef struct razor9dof razor9dof_t;
 razor9dof_t *razor9dof_create(const razor_config_t *config, razor_world_t world, void *world_context,
                               unsigned long seed, serial_sink_t sink, void *sink_context);
+/* Noise and faults become others while it sends; its period, phase, age and kind of firmware stay. */
+void razor9dof_change(razor9dof_t *razor, const razor_config_t *config);
 void razor9dof_destroy(razor9dof_t *razor);
 void razor9dof_power(razor9dof_t *razor, bool on);
 

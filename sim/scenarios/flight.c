@@ -267,12 +267,6 @@ static void landing(void *context)
     quadrotor_stop_counting_contacts(board_quadrotor());
 }
 
-static void lose_radio(void *context)
-{
-    (void)context;
-    board_radio_reach(false);
-}
-
 /* An operator's terminal that keeps an armed link alive. */
 static void ping(void *context)
 {
@@ -284,36 +278,13 @@ static void ping(void *context)
     timeline_after((sim_time_t)llround(flight.ping_every_s * 1e9), ping, NULL);
 }
 
-static void plan_radio(const flight_options_t *options)
+static void plan_pings(const flight_options_t *options)
 {
     const char *link_s = overridden(options, "LINK");
 
-    if (flight.plant.radio_lost_start_s < SPAN_FOR_GOOD_S) {
-        timeline_at(at(fmax(flight.plant.radio_lost_start_s, 0.0)), lose_radio, NULL);
-    }
     if (link_s != NULL && strtod(link_s, NULL) > 0.0) {
         flight.ping_every_s = strtod(link_s, NULL) / PINGS_PER_LINK;
         timeline_at(at(PINGS_START_S), ping, NULL);
-    }
-}
-
-static void strike_scanner(void *fault)
-{
-    line_fault_add(board_laser_faults(), fault);
-}
-
-static void plan_faults(const plant_t *plant)
-{
-    static line_fault_spec_t restart = {.kind = LINE_FAULT_RESTART};
-    static line_fault_spec_t outage;
-
-    if (plant->outage_s > 0.0) {
-        outage = (line_fault_spec_t){.kind = LINE_FAULT_MUTE,
-                                     .argument = (unsigned)lround(plant->outage_s * 1e3)};
-        timeline_at(at(fmax(plant->outage_start_s, 0.0)), strike_scanner, &outage);
-    }
-    if (plant->restart_start_s < SPAN_FOR_GOOD_S) {
-        timeline_at(at(fmax(plant->restart_start_s, 0.0)), strike_scanner, &restart);
     }
 }
 
@@ -329,8 +300,8 @@ static void plan(const scenario_t *scenario, const flight_options_t *options)
     }
     type_complete_at(flight.record.land_s, "SETR", "0");
     timeline_at(at(flight.record.land_s), landing, NULL);
-    plan_radio(options);
-    plan_faults(&flight.plant);
+    plant_plan(&flight.plant, NULL, flight.origin);
+    plan_pings(options);
 }
 
 /* The flight

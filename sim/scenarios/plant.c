@@ -212,6 +212,60 @@ void plant_complete(plant_t *plant)
     plant->board.pilot.stops_by_sticks = plant->board.quadrotor.naza.stop_type == NAZA_INTELLIGENT;
 }
 
+static void lose_radio(void *context)
+{
+    (void)context;
+    board_radio_reach(false);
+}
+
+static void strike_scanner(void *fault)
+{
+    line_fault_add(board_laser_faults(), fault);
+}
+
+static bool concerns(const char *name, const char *event)
+{
+    return name == NULL || strncmp(name + strlen("plant."), event, strlen(event)) == 0;
+}
+
+static sim_time_t at(sim_time_t origin, double t_s)
+{
+    const sim_time_t when = origin + (sim_time_t)llround(fmax(t_s, 0.0) * 1e9);
+
+    return when > timeline_now() ? when : timeline_now();
+}
+
+void plant_plan(const plant_t *plant, const char *name, sim_time_t origin)
+{
+    static line_fault_spec_t restart = {.kind = LINE_FAULT_RESTART};
+    static line_fault_spec_t outage;
+
+    if (concerns(name, "radio_lost") && plant->radio_lost_start_s < SPAN_FOR_GOOD_S) {
+        timeline_at(at(origin, plant->radio_lost_start_s), lose_radio, NULL);
+    }
+    if (concerns(name, "outage") && plant->outage_s > 0.0) {
+        outage = (line_fault_spec_t){.kind = LINE_FAULT_MUTE,
+                                     .argument = (unsigned)lround(plant->outage_s * 1e3)};
+        timeline_at(at(origin, plant->outage_start_s), strike_scanner, &outage);
+    }
+    if (concerns(name, "scanner_restart") && plant->restart_start_s < SPAN_FOR_GOOD_S) {
+        timeline_at(at(origin, plant->restart_start_s), strike_scanner, &restart);
+    }
+}
+
+bool plant_figure(const plant_t *plant, size_t row, plant_figure_t *figure)
+{
+    plant_t copy = *plant;
+
+    if (row >= FIGURE_COUNT) {
+        return false;
+    }
+    *figure = (plant_figure_t){figures[row].name,    figures[row].unit,
+                               figures[row].meaning, figures[row].least,
+                               figures[row].most,    *field_of(&copy, &figures[row]) / figures[row].scale};
+    return true;
+}
+
 void plant_print(FILE *out)
 {
     plant_t plant;

@@ -5,6 +5,7 @@
 #define SIM_SCENARIOS_PLANT_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 
 #include "sim/board.h"
@@ -29,7 +30,18 @@ void plant_set(plant_t *plant, const char *name, double value);
 /* What board's fields follow from the figures. */
 void plant_complete(plant_t *plant);
 
+/* Plans what goes wrong at its scenario time, counted from origin: the scanner's line mute, its power lost
+ * for a moment, the radio out of reach. Of these only the one whose figures `name` belongs to; NULL: all. */
+void plant_plan(const plant_t *plant, const char *name, sim_time_t origin);
+
 /* Names, units, what they are when nobody sets them, and meanings. */
 void plant_print(FILE *out);
+
+/* One row of that table, with the figure's limits and what it is now. false: behind the last row. */
+typedef struct {
+    const char *name, *unit, *meaning; /* the name without "plant." */
+    double least, most, value;
+} plant_figure_t;
+bool plant_figure(const plant_t *plant, size_t row, plant_figure_t *figure);
 
 #endif

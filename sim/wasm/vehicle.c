@@ -2,9 +2,11 @@
 
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "sim/board.h"
+#include "sim/scenarios/plant.h"
 #include "sim/ti/f021/flash.h"
 #include "sim/timeline.h"
 #include "tools/plomada/commands.h"
@@ -12,13 +14,14 @@
 #define EXPORT(name) __attribute__((export_name(name)))
 #define ARGUMENTS_MAX 64
 #define HEARD_MAX 32768
-#define RAMP_AHEAD (6300 * SIM_MS) /* the ramp of the seed's flight begins at 7.3 s */
+#define RAMP_AHEAD_S 1.0
 #define STICK_MIDDLE (1500 * SIM_US)
 
 static char room[VEHICLE_ROOM];
 static char heard[HEARD_MAX];
 static int heard_count;
 static bool on;
+static plant_t plant; /* its figures stay from one power-on to the next */
 static vehicle_truth_t truth;
 
 EXPORT("vehicle_room") char *vehicle_room(void)
@@ -50,19 +53,101 @@ static void terminal(void *context, unsigned octet)
     }
 }
 
+/* What plant_set() and plant_known() are called with. */
+static const char *full_name(const char *name)
+{
+    static char text[64];
+
+    snprintf(text, sizeof text, "plant.%s", name);
+    return text;
+}
+
+/* A plant with the phases of this seed and the figures of the one before. */
+static void prepare_plant(unsigned seed)
+{
+    plant_t fresh;
+    plant_figure_t figure;
+
+    plant_init(&fresh, seed);
+    fresh.board.terrain = terrain_platform;
+    fresh.board.quadrotor.sag_per_s = 0.0; /* a page has no battery to change */
+    for (size_t row = 0; plant.board.seed != 0 && plant_figure(&plant, row, &figure); row++) {
+        plant_set(&fresh, full_name(figure.name), figure.value);
+    }
+    fresh.board.terrain.ramp = false; /* until vehicle_meet_ramp() */
+    plant = fresh;
+}
+
+static const plant_t *completed(void)
+{
+    static plant_t now;
+
+    now = plant;
+    plant_complete(&now);
+    return &now;
+}
+
 EXPORT("vehicle_power_on") void vehicle_power_on(unsigned seed)
 {
-    board_config_t config = board_config(seed);
-
     if (on) {
         board_power_off();
     }
-    config.terrain = terrain_platform;
-    config.quadrotor.sag_per_s = 0.0; /* a page has no battery to change */
+    prepare_plant(seed);
     heard_count = 0;
-    board_power_on(&config, terminal, NULL);
+    board_power_on(&completed()->board, terminal, NULL);
+    quadrotor_set_origin(board_quadrotor(), timeline_now()); /* scenario time: since power-on */
+    plant_plan(&plant, NULL, 0);
     board_stick(STICK_MIDDLE);
     on = true;
+}
+
+/* The scanner, the pilot and the kind of autopilot and IMU are those of power-on. */
+static bool at_once(const char *name)
+{
+    static const char *const at_power_on[] = {"ray_instant", "clock_ppm",         "imu_stock",
+                                              "stop_type",   "attitude_throttle", "pilot"};
+
+    for (size_t i = 0; i < sizeof at_power_on / sizeof at_power_on[0]; i++) {
+        if (strncmp(name, at_power_on[i], strlen(at_power_on[i])) == 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+EXPORT("vehicle_plant") int vehicle_plant(void)
+{
+    plant_figure_t figure;
+    size_t used = 0;
+
+    for (size_t row = 0; plant_figure(&plant, row, &figure) && used < sizeof room; row++) {
+        used += (size_t)snprintf(&room[used], sizeof room - used, "%s\t%s\t%.9g\t%.9g\t%.9g\t%d\t%s\n",
+                                 figure.name, figure.unit, figure.least, figure.most, figure.value,
+                                 at_once(figure.name) ? 1 : 0, figure.meaning);
+    }
+    return (int)(used < sizeof room ? used : sizeof room - 1);
+}
+
+EXPORT("vehicle_set") int vehicle_set(int size)
+{
+    char *value = memchr(room, '=', (size_t)size);
+    const char *name;
+
+    if (value == NULL) {
+        return 0;
+    }
+    room[size] = '\0';
+    *value++ = '\0';
+    name = full_name(room);
+    if (!plant_known(name) || plant_check(name, value) != NULL) {
+        return 0;
+    }
+    plant_set(&plant, name, strtod(value, NULL));
+    if (on) {
+        board_change(&completed()->board);
+        plant_plan(&plant, name, 0);
+    }
+    return 1;
 }
 
 EXPORT("vehicle_blank_storage") void vehicle_blank_storage(void)
@@ -128,7 +213,20 @@ EXPORT("vehicle_select") void vehicle_select(int firmware)
     board_select(firmware != 0);
 }
 
+EXPORT("vehicle_reach") void vehicle_reach(int in_reach)
+{
+    board_radio_reach(in_reach != 0);
+}
+
 EXPORT("vehicle_meet_ramp") void vehicle_meet_ramp(void)
 {
-    quadrotor_set_origin(board_quadrotor(), timeline_now() - RAMP_AHEAD);
+    terrain_t *terrain = &plant.board.terrain;
+    const double later_s = quadrotor_scenario_s(board_quadrotor()) + RAMP_AHEAD_S -
+                           terrain_platform.ramp_start_s;
+
+    terrain->ramp = true;
+    terrain->ramp_start_s = terrain_platform.ramp_start_s + later_s;
+    terrain->ramp_end_s = terrain_platform.ramp_end_s + later_s;
+    terrain->edge_s = terrain_platform.edge_s + later_s;
+    board_change(&completed()->board);
 }

@@ -14,7 +14,8 @@ char *vehicle_room(void);
  * Files and standard output are the machine's, by WASI. */
 int vehicle_fly(int size);
 
-/* Power on; a vehicle that is on is switched off first. What #SAVE has stored stays. */
+/* Power on; a vehicle that is on is switched off first. What #SAVE has stored and vehicle_set() has set
+ * stays. Scenario time is the time since power-on. */
 void vehicle_power_on(unsigned seed);
 void vehicle_blank_storage(void);
 
@@ -35,12 +36,21 @@ typedef struct {
 } vehicle_truth_t;
 const vehicle_truth_t *vehicle_truth(void);
 
+/* The figures of `plomada list --plant`, moved to the room: how many octets. A line for each: name, unit,
+ * least, most, value, 1 or 0, meaning, with tabs between. 0: it counts from the next power-on. */
+int vehicle_plant(void);
+/* Sets one of them by `NAME=VALUE`, `size` octets in the room. 0: no such figure, or out of its limits. The
+ * scanner's outage and restart and the loss of the radio are planned anew with each call that names them. */
+int vehicle_set(int size);
+
 /* Things go wrong, and right again. */
 void vehicle_power_laser(int on);
 void vehicle_power_imu(int on);
 void vehicle_trouble_laser(int code);
 /* The pilot's switch: 1 the firmware has the throttle, 0 the pilot, whose stick is in the middle. */
 void vehicle_select(int firmware);
+/* The radio pair in or out of each other's reach. */
+void vehicle_reach(int in_reach);
 /* The ramp and platform of the seed come by, the ramp in a second. */
 void vehicle_meet_ramp(void);
 

@@ -47,6 +47,16 @@ class Machine:
     def type(self, text):
         self.call("vehicle_type", self.put(text.encode()))
 
+    def figures(self):
+        """The list of vehicle_plant(): name -> (unit, least, most, value, counts at once)"""
+        size = self.call("vehicle_plant")
+        text = bytes(self.exports["memory"].read(self.store, self.room, self.room + size)).decode()
+        rows = [line.split("\t") for line in text.splitlines()]
+        return {row[0]: (row[1], float(row[2]), float(row[3]), float(row[4]), row[5] == "1") for row in rows}
+
+    def set(self, **figures):
+        return [self.call("vehicle_set", self.put(f"{name}={value}".encode())) for name, value in figures.items()]
+
     def run(self, seconds):
         """What the operator's terminal receives meanwhile."""
         heard = ""

@@ -76,6 +76,68 @@ class Vehicle(unittest.TestCase):
         vehicle.call("vehicle_power_laser", 1)
         self.assertIn("laser:OK", vehicle.run(15))
 
+    def airborne(self):
+        vehicle = machine.Machine(WASM, self.directory)
+        vehicle.power_on(7)
+        vehicle.run(20)
+        vehicle.type("#SETR 0.6\n")
+        vehicle.run(6)
+        self.assertAlmostEqual(vehicle.truth()["height_m"], 0.6, delta=0.05)
+        return vehicle
+
+    def test_every_plant_figure_of_the_program_can_be_set_within_its_limits_and_not_beyond(self):
+        vehicle = machine.Machine(WASM, self.directory)
+        vehicle.power_on(1)
+        told = subprocess.run([PLOMADA, "list", "--plant"], capture_output=True, text=True, check=True).stdout
+        names = [line.split()[0].removeprefix("plant.") for line in told.splitlines() if line.startswith("  plant.")]
+        figures = vehicle.figures()
+        self.assertEqual(list(figures), names)
+        for name, (_, least, most, value, _) in figures.items():
+            with self.subTest(name=name):
+                self.assertEqual(vehicle.set(**{name: most * 2 + 1}), [0])
+                self.assertEqual(vehicle.set(**{name: least}), [1])
+                self.assertAlmostEqual(vehicle.figures()[name][3], least, delta=1e-6 * abs(least))
+                self.assertEqual(vehicle.set(**{name: value}), [1])
+        self.assertEqual(vehicle.set(nonsense=1), [0])
+
+    def test_figures_count_in_the_middle_of_a_flight(self):
+        for seen, figures in (("flags:2", {"imu_mute": 1e9, "imu_mute_start": 0}), ("flags:1\r", {"rays_lost": 1}),
+                              ("doubt:SIGHT", {"block_mm": 500, "sight_blocked": 1}), ("flags:512", {"acc_bias": 8}),
+                              ("laser:LOST", {"outage_start": 0, "outage": 3}), ("laser:LOST", {"scanner_restart_start": 0})):
+            with self.subTest(seen=seen):
+                vehicle = self.airborne()
+                self.assertNotIn(seen, vehicle.run(2))
+                self.assertNotIn(0, vehicle.set(**figures))
+                self.assertIn(seen, vehicle.run(4))
+
+    def test_a_gust_lifts_and_a_heavier_vehicle_sinks_and_both_come_back(self):
+        vehicle = self.airborne()
+        now = vehicle.truth()["time_s"]
+        vehicle.set(gust_start=now, gust_length=0.5, gust=4)
+        vehicle.run(0.6)
+        self.assertGreater(vehicle.truth()["height_m"], 0.65)
+        vehicle.run(5)
+        self.assertAlmostEqual(vehicle.truth()["height_m"], 0.6, delta=0.05)
+        vehicle.set(hover_thrust=8.6)
+        vehicle.run(0.4)
+        self.assertLess(vehicle.truth()["height_m"], 0.57)
+        vehicle.run(8)
+        self.assertAlmostEqual(vehicle.truth()["height_m"], 0.6, delta=0.06)
+
+    def test_a_figure_stays_through_the_next_power_on_and_then_takes_effect_if_it_could_not_at_once(self):
+        vehicle = machine.Machine(WASM, self.directory)
+        vehicle.power_on(3)
+        self.assertFalse(vehicle.figures()["imu_stock"][4])
+        vehicle.set(imu_stock=1)
+        vehicle.run(3)
+        vehicle.type("#IMU\n")
+        self.assertIn("seen:accelerations+angles", vehicle.run(2))
+        vehicle.power_on(3)
+        self.assertEqual(vehicle.figures()["imu_stock"][3], 1)
+        vehicle.run(3)
+        vehicle.type("#IMU\n")
+        self.assertIn("seen:angles ", vehicle.run(2))
+
 
 if __name__ == "__main__":
     missing = what_is_missing()

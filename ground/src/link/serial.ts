@@ -35,7 +35,7 @@ export async function knownPorts(): Promise<SerialPort[]> {
 
 /** The browser's own list; from a click only. */
 export async function choosePort(): Promise<SerialPort> {
-  if (!navigator.serial) throw new OpenError('noSerial');
+  if (!navigator.serial) throw new OpenError(isSecureContext ? 'noSerial' : 'denied');
   try {
     return await navigator.serial.requestPort();
   } catch (error) {

@@ -18,6 +18,9 @@ interface Exports {
   vehicle_trouble_laser(code: number): void;
   vehicle_select(firmware: number): void;
   vehicle_meet_ramp(): void;
+  vehicle_reach(inReach: number): void;
+  vehicle_plant(): number;
+  vehicle_set(size: number): number;
 }
 
 export interface Truth {
@@ -33,6 +36,18 @@ export interface Truth {
   contacts: number;
 }
 const TRUTH = ['time_s', 'height_m', 'altitude_m', 'terrain_m', 'speed_mps', 'thrust_n', 'roll_rad', 'pitch_rad', 'pulse_us', 'contacts'] as const;
+
+/** A figure of the simulated world (`plomada list --plant`). */
+export interface Figure {
+  name: string;
+  unit: string;
+  least: number;
+  most: number;
+  standard: number;
+  value: number;
+  atOnce: boolean; // else from the next power-on
+  meaning: string;
+}
 
 let compiled: Promise<WebAssembly.Module> | null = null;
 
@@ -89,6 +104,7 @@ export class VehicleLink implements Link {
   laser = true;
   imu = true;
   pilot = false;
+  readonly figures: Figure[];
   private readonly room: number;
   private readonly origin = Date.now();
   private elapsed = 0;
@@ -103,6 +119,7 @@ export class VehicleLink implements Link {
   ) {
     this.room = machine.vehicle_room();
     machine.vehicle_power_on(seed);
+    this.figures = this.readFigures();
     this.timer = setInterval(() => this.tick(), TICK);
   }
 
@@ -111,7 +128,6 @@ export class VehicleLink implements Link {
   }
 
   send(text: string): void {
-    if (!this.radio) return;
     const octets = new TextEncoder().encode(`${text}\n`);
     new Uint8Array(this.machine.memory.buffer).set(octets, this.room);
     this.machine.vehicle_type(octets.length);
@@ -127,7 +143,7 @@ export class VehicleLink implements Link {
   }
 
   powerCycle(): void {
-    this.laser = this.imu = true;
+    this.laser = this.imu = this.radio = true;
     this.pilot = false;
     this.machine.vehicle_power_on(++this.seed);
   }
@@ -140,6 +156,32 @@ export class VehicleLink implements Link {
   setImu(on: boolean): void {
     this.imu = on;
     this.machine.vehicle_power_imu(on ? 1 : 0);
+  }
+
+  setRadio(on: boolean): void {
+    this.radio = on;
+    this.machine.vehicle_reach(on ? 1 : 0);
+  }
+
+  /** From the module's own list, whatever it has. */
+  private readFigures(): Figure[] {
+    const size = this.machine.vehicle_plant();
+    const text = new TextDecoder().decode(new Uint8Array(this.machine.memory.buffer, this.room, size));
+    return text.trim().split('\n').map((row) => {
+      const [name = '', unit = '', least, most, value, atOnce, meaning = ''] = row.split('\t');
+      return { name, unit, least: Number(least), most: Number(most), standard: Number(value), value: Number(value), atOnce: atOnce === '1', meaning };
+    });
+  }
+
+  /** false: no such figure, or out of its limits. */
+  setFigure(name: string, value: number): boolean {
+    const figure = this.figures.find((one) => one.name === name);
+    const octets = new TextEncoder().encode(`${name}=${value}`);
+    if (!figure || !Number.isFinite(value)) return false;
+    new Uint8Array(this.machine.memory.buffer).set(octets, this.room);
+    if (this.machine.vehicle_set(octets.length) === 0) return false;
+    figure.value = value;
+    return true;
   }
 
   setPilot(on: boolean): void {
@@ -170,7 +212,7 @@ export class VehicleLink implements Link {
         return;
       }
       const count = this.machine.vehicle_heard();
-      if (count > 0 && this.radio) this.events.octets(new Uint8Array(this.machine.memory.buffer, this.room, count).slice());
+      if (count > 0) this.events.octets(new Uint8Array(this.machine.memory.buffer, this.room, count).slice());
     }
   }
 }

@@ -8,6 +8,7 @@ export interface Telemetry {
   thrust: number;
   state: string;
   flags: number;
+  doubt?: string;
   reset?: string;
 }
 
@@ -17,7 +18,7 @@ export type Line =
   | { kind: 'answer'; text: string; ok: boolean; name: string; rest: string; damaged: boolean }
   | { kind: 'other'; text: string };
 
-const TELEMETRY = /^alt:(\S+) ref:(\S+) laser:(\S+) thr:(\S+) state:(\S+) flags:(\d+)(?: reset:(\S+))?(?: \S+)*$/;
+const FIELDS = /^[a-z_0-9]+:\S+(?: [a-z_0-9]+:\S+)*$/;
 const ANSWER = /^(OK|ERR) (\S+)(?: (.*))?$/;
 const NUMBER = /^-?\d+(\.\d+)?$/;
 
@@ -25,24 +26,27 @@ function number(text: string): number {
   return NUMBER.test(text) ? Number(text) : NaN;
 }
 
-export function parseLine(line: string): Line {
-  const t = TELEMETRY.exec(line);
-  if (t && (t[1] === '-' || NUMBER.test(t[1]!)) && NUMBER.test(t[2]!)) {
-    const telemetry: Telemetry = { height: number(t[1]!), reference: number(t[2]!), laser: t[3]!, thrust: number(t[4]!), state: t[5]!, flags: Number(t[6]) };
-    if (t[7]) telemetry.reset = t[7];
-    return { kind: 'telemetry', text: line, telemetry };
-  }
-  const a = ANSWER.exec(line);
-  if (a) {
-    const { text, right } = splitSum(a[3] ?? '');
-    const whole = splitSum(line);
-    return { kind: 'answer', text: line, ok: a[1] === 'OK', name: a[2]!, rest: right === null ? text : splitRest(whole.text), damaged: whole.right === false };
-  }
-  return { kind: 'other', text: line };
+/** Fields by name, so that a firmware with more of them, or in another order, is understood as far as it is known. */
+function parseTelemetry(line: string): Telemetry | null {
+  if (!FIELDS.test(line)) return null;
+  const field = Object.fromEntries(line.split(' ').map((word) => [word.slice(0, word.indexOf(':')), word.slice(word.indexOf(':') + 1)]));
+  const { alt, ref, laser, thr, state, flags, doubt, reset } = field;
+  if (alt === undefined || (alt !== '-' && !NUMBER.test(alt)) || !NUMBER.test(ref ?? '') || thr === undefined || !laser || !state || !/^\d+$/.test(flags ?? '')) return null;
+  const telemetry: Telemetry = { height: number(alt), reference: number(ref!), laser, thrust: number(thr), state, flags: Number(flags) };
+  if (doubt) telemetry.doubt = doubt;
+  if (reset) telemetry.reset = reset;
+  return telemetry;
 }
 
-function splitRest(text: string): string {
-  return ANSWER.exec(text)?.[3] ?? '';
+export function parseLine(line: string): Line {
+  const telemetry = parseTelemetry(line);
+  if (telemetry) return { kind: 'telemetry', text: line, telemetry };
+  const a = ANSWER.exec(line);
+  if (a) {
+    const { text, right } = splitSum(line);
+    return { kind: 'answer', text: line, ok: a[1] === 'OK', name: a[2]!, rest: ANSWER.exec(text)?.[3] ?? '', damaged: right === false };
+  }
+  return { kind: 'other', text: line };
 }
 
 /** Octets to lines: CR LF, LF or CR end one. What is longer than any line of the firmware is cut there. */

@@ -1,6 +1,11 @@
 import { parseLine } from './lines';
 import { logRest } from './recorder';
 
+export interface Note {
+  kind: 'cut' | 'damaged' | 'missing';
+  count: number;
+}
+
 /** A recording as columns; NaN where a row has no value. `time` in seconds. */
 export interface Recording {
   name: string;
@@ -8,20 +13,18 @@ export interface Recording {
   time: number[];
   columns: Record<string, number[]>;
   states: string[];
-  notes: string[];
+  notes: Note[];
 }
-
-const NUMERIC = ['meas_m', 'est_m', 'innov_m', 'ref_m', 'thrust_n', 'roll_rad', 'pitch_rad', 'flags', 'height_m', 'abs_m', 'terrain_m', 'pulse_us'];
 
 export function readCsv(text: string, name: string, kind: Recording['kind'] = 'csv'): Recording {
   const lines = text.split(/\r?\n/).filter((line) => line !== '');
   const titles = (lines[0] ?? '').split(',');
   const recording: Recording = { name, kind, time: [], columns: {}, states: [], notes: [] };
-  const wanted = titles.map((title, i) => ({ title, i })).filter(({ title }) => NUMERIC.includes(title));
+  const wanted = titles.map((title, i) => ({ title, i })).filter(({ title }) => title !== 't_s' && title !== 'state');
   for (const { title } of wanted) recording.columns[title] = [];
   const t = titles.indexOf('t_s');
   const s = titles.indexOf('state');
-  if (t < 0) throw new Error('no column t_s');
+  if (t < 0) throw new NothingToRead('noTime');
   let cut = 0;
   for (const line of lines.slice(1)) {
     const cells = line.split(',');
@@ -33,7 +36,7 @@ export function readCsv(text: string, name: string, kind: Recording['kind'] = 'c
     recording.states.push(s >= 0 ? cells[s]! : '');
     for (const { title, i } of wanted) recording.columns[title]!.push(cells[i] === '' ? NaN : Number(cells[i]));
   }
-  if (cut > 0) recording.notes.push(`rows left out: ${cut}`);
+  if (cut > 0) recording.notes.push({ kind: 'cut', count: cut });
   return recording;
 }
 
@@ -75,39 +78,66 @@ function fromTelemetry(text: string, name: string): Recording | null {
   return recording.time.length > 0 ? recording : null;
 }
 
-/** Every dump of the flight recorder in a console text, each a CSV, and how many rows were damaged. */
-export function dumpsIn(text: string): { csv: string; damaged: number }[] {
-  const dumps: { titles: string; rows: string[]; damaged: number }[] = [];
-  for (const raw of text.split(/\r?\n|\r/)) {
-    const line = STAMP.exec(raw)?.[3] ?? raw;
-    if (!line.startsWith('OK LOG ')) continue;
-    const rest = logRest(line);
-    const current = dumps[dumps.length - 1];
-    if (rest === null) {
-      if (current) current.damaged++;
-      continue;
-    }
-    const row = rest.replace(/^\d+ /, '');
-    if (row.startsWith('t_s,')) dumps.push({ titles: row, rows: [], damaged: 0 });
-    else if (current && /^\d+(\.\d+)?,/.test(row)) {
-      if (row.split(',').length === current.titles.split(',').length) current.rows.push(row);
-      else current.damaged++;
-    }
-  }
-  return dumps.map((dump) => ({ csv: `${dump.titles}\n${dump.rows.join('\n')}\n`, damaged: dump.damaged }));
+export interface ConsoleDump {
+  csv: string | null; // null: the row with the titles is missing
+  rows: number;
+  missing: number;
+  damaged: number; // in the whole text, told with the first dump
 }
 
-/** Everything plottable in a file, whatever of the known forms it has. Throws with a plain word when there is nothing. */
+/** Every dump of the flight recorder in a console text, as CSV octet by octet what `plomada log` writes. */
+export function dumpsIn(text: string): ConsoleDump[] {
+  const dumps: { rows: Map<number, string>; announced: number; ended: boolean }[] = [];
+  let damaged = 0;
+  const begin = (announced: number): (typeof dumps)[number] => {
+    dumps.push({ rows: new Map(), announced, ended: false });
+    return dumps[dumps.length - 1]!;
+  };
+  for (const raw of text.replaceAll('\0', '').split(/[\r\n]/).slice(0, -1)) {
+    const line = STAMP.exec(raw)?.[3] ?? raw;
+    const rest = line.startsWith('OK LOG ') ? line.slice(7) : '';
+    if (rest.startsWith('records:')) begin(parseInt(rest.slice(8), 10));
+    else if (rest.startsWith('END') && dumps.length > 0) dumps[dumps.length - 1]!.ended = true;
+    else if (/^\d/.test(rest)) {
+      const row = /^(\d{1,7}) (.*)$/.exec(logRest(line) ?? '');
+      if (!row) {
+        damaged++;
+        continue;
+      }
+      // A number that is known already belongs to another dump, whose announcement was lost.
+      const last = dumps[dumps.length - 1];
+      const dump = !last || last.ended || last.rows.has(Number(row[1])) ? begin(-1) : last;
+      dump.rows.set(Number(row[1]), row[2]!);
+    }
+  }
+  return dumps.map(({ rows, announced }, i) => {
+    const numbers = [...rows.keys()].sort((x, y) => x - y);
+    const due = Math.max((numbers[numbers.length - 1] ?? -1) + 1, announced + 1);
+    return { csv: rows.has(0) ? `${numbers.map((number) => rows.get(number)).join('\n')}\n` : null, rows: rows.size - Number(rows.has(0)), missing: due - rows.size, damaged: i === 0 ? damaged : 0 };
+  });
+}
+
+/** Why a file shows nothing; a key of the texts. */
+export class NothingToRead extends Error {
+  constructor(readonly why: 'noTime' | 'nothing') {
+    super(why);
+  }
+}
+
+/** Everything plottable in a file, whatever of the known forms it has. */
 export function readLog(content: string, name: string): Recording[] {
   const text = fromXctu(content) ?? content;
   if (/^t_s,/.test(text)) return [readCsv(text, name)];
-  const recordings = dumpsIn(text).map((dump, i) => {
-    const recording = readCsv(dump.csv, `${name} · dump ${i + 1}`, 'console');
-    if (dump.damaged > 0) recording.notes.push(`damaged rows left out: ${dump.damaged}`);
-    return recording;
-  }).filter((recording) => recording.time.length > 0);
-  const telemetry = fromTelemetry(text, recordings.length > 0 ? `${name} · telemetry` : name);
+  const recordings: Recording[] = [];
+  dumpsIn(text).forEach((dump, i) => {
+    if (dump.csv === null || dump.rows === 0) return;
+    const recording = readCsv(dump.csv, `${name} · ${i + 1}`, 'console');
+    if (dump.damaged > 0) recording.notes.push({ kind: 'damaged', count: dump.damaged });
+    if (dump.missing > 0) recording.notes.push({ kind: 'missing', count: dump.missing });
+    recordings.push(recording);
+  });
+  const telemetry = fromTelemetry(text, recordings.length > 0 ? `${name} · alt:` : name);
   if (telemetry) recordings.push(telemetry);
-  if (recordings.length === 0) throw new Error('neither a flight CSV, nor telemetry, nor a dump of the flight recorder');
+  if (recordings.length === 0) throw new NothingToRead('nothing');
   return recordings;
 }

@@ -11,7 +11,7 @@ export interface Parameter {
 
 export type ParameterSet = Record<string, string>;
 
-const ROW = /^#(\S+) (?:(-?[\d.]+)\.\.(-?[\d.]+) (\S+)|([A-Z0-9]+(?:\|[A-Z0-9]+)+))(?: .*?)? - (.*)$/;
+const ROW = /^#(\S+) (?:(-?[\d.]+)\.\.(-?[\d.]+) (\S+)|(-?[A-Z0-9]+(?:\|-?[A-Z0-9]+)+))(?: .*?)? - (.*)$/;
 
 /** `#KP 0..1 N/mm - PID: proportional gain.`; null for a command that is no parameter. */
 export function parseHelp(rest: string): Parameter | null {
@@ -60,7 +60,7 @@ export function differences(now: ParameterSet, wanted: ParameterSet): Difference
 export function parseSet(text: string): ParameterSet {
   const set: ParameterSet = {};
   for (const line of text.split(/\r?\n/)) {
-    const match = /^\s*#?\s*([A-Z][A-Z0-9_]{1,11})[ =]+([A-Za-z0-9.+-]+)\s*(?:\/\/.*|;.*)?$/.exec(line);
+    const match = /^\s*#?\s*([A-Z][A-Z0-9_]{0,11})[ =]+([A-Za-z0-9.+-]+)\s*(?:\/\/.*|;.*)?$/.exec(line);
     if (match) set[match[1]!] = match[2]!.toUpperCase();
   }
   return set;

@@ -21,7 +21,7 @@ export const TRIES = 3;
 export const URGENT_PERIOD = 700;
 export const URGENT_PATIENCE = 20_000;
 
-const LISTS = new Set(['GET', 'HELP', 'PERF']);
+const LISTS = new Set(['GET', 'HELP', 'PERF', 'IMU']);
 
 /** Sends one command at a time, each again until it is answered; gives up and says so after TRIES. Stops go past the queue and
  * are repeated until answered. Time comes from outside (milliseconds of the link's clock). */
@@ -67,7 +67,7 @@ export class CommandQueue {
     const entry = this.current;
     if (!entry || entry.sent === 0) return;
     if (!line.ok && line.name === '-') {
-      if (/line damaged|too long|bad character|lost/.test(line.rest)) entry.deadline = Math.min(entry.deadline, this.now() + 50); // send it again soon
+      if (/line damaged|too long|bad character|lost|wrong sum|sum missing/.test(line.rest)) entry.deadline = Math.min(entry.deadline, this.now() + 50); // send it again soon
       return;
     }
     if (entry.name === 'GET' && line.ok && line.name !== 'GET') {

@@ -1,18 +1,13 @@
 import { splitSum } from './sum';
 
-export interface Dump {
-  titles: string;
-  rows: Map<string, string>; // by their time, in the order of time once written
-}
-
-/** Collects one `#LOG` dump, row by row, and what is missing of it. Rows of a later, shorter dump join by their time. */
+/** Collects one `#LOG` dump, row by row, and what is missing of it. Rows of a later, shorter dump that are the same are one. */
 export class LogCollector {
   expected = 0;
   received = 0;
   damaged = 0;
   complete = false;
   private titles = '';
-  private rows = new Map<number, string>(); // by time in ms
+  private rows = new Map<string, { ms: number; number: number }>(); // #LOG RATE FAST: several in one millisecond
   private numbers = new Map<number, number>(); // row number of the dump in hand -> ms
   private base = 0;
 
@@ -47,7 +42,7 @@ export class LogCollector {
     }
     this.received++;
     if (numbered) this.numbers.set(Number(numbered[1]), time);
-    this.rows.set(time, text);
+    this.rows.set(text, { ms: time, number: numbered ? Number(numbered[1]) : 0 });
     this.base = Math.max(this.base, time);
   }
 
@@ -61,7 +56,7 @@ export class LogCollector {
       const from = before > 0 ? this.numbers.get(before)! : Math.min(...this.numbers.values()) - 100 * number;
       return Math.min(3600, Math.ceil((this.base - from) / 1000) + 2);
     }
-    return 0;
+    return this.expected > 0 && !this.hasTitles ? 1 : 0;
   }
 
   get size(): number {
@@ -69,19 +64,18 @@ export class LogCollector {
   }
 
   csv(): string {
-    const titles = this.titles || 't_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags';
-    return `${titles}\n${[...this.rows.entries()].sort((a, b) => a[0] - b[0]).map(([, text]) => text).join('\n')}\n`;
+    const rows = [...this.rows.entries()].sort(([, a], [, b]) => a.ms - b.ms || a.number - b.number);
+    return `${[this.titles, ...rows.map(([text]) => text)].join('\n')}\n`;
+  }
+
+  get hasTitles(): boolean {
+    return this.titles !== '';
   }
 }
 
-/** A whole line of a dump whose sum is wrong must not be used. */
+/** A line of a dump without `OK LOG ` and its sum; null: the sum is wrong, or a row has none. */
 export function logRest(line: string): string | null {
-  const match = /^OK LOG (.*)$/.exec(line);
-  if (!match) return null;
-  // The firmware sums all characters before the '*', of the line or of the row: both are accepted.
-  const whole = splitSum(line);
-  if (whole.right === null) return match[1]!;
-  if (whole.right) return /^OK LOG (.*)$/.exec(whole.text)![1]!;
-  const part = splitSum(match[1]!);
-  return part.right ? part.text : null;
+  const { text, right } = splitSum(line);
+  const rest = /^OK LOG (.*)$/.exec(text)?.[1];
+  return rest === undefined || right === false || (right === null && /^\d/.test(rest)) ? null : rest;
 }

@@ -8,6 +8,11 @@ export function lineSum(text: string): number {
   return sum;
 }
 
+/** A command line with its sum at the end, unless it has one already. */
+export function withSum(text: string): string {
+  return splitSum(text.toUpperCase()).right === null ? `${text}*${lineSum(text).toString(16).toUpperCase().padStart(4, '0')}` : text;
+}
+
 /** Splits `text*5A1F`. `right` is null where there is no sum. */
 export function splitSum(line: string): { text: string; right: boolean | null } {
   const match = /^(.*)\*([0-9A-F]{4})$/.exec(line);

@@ -1,7 +1,7 @@
 import { signal } from '@preact/signals';
 import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import { saveFile } from '../plot';
-import { consoleLines, phase, sendRaw, session } from '../store';
+import { ALIVE, consoleLines, phase, sendRaw, session, setSums, sums } from '../store';
 import { writeSession, type SessionInfo } from '../session';
 import { w } from '../words';
 
@@ -38,7 +38,7 @@ async function save(info: SessionInfo): Promise<void> {
 export function ConsoleView() {
   const words = w();
   const end = useRef<HTMLDivElement>(null);
-  const shown = consoleLines.value.filter((line) => telemetry.value || line.out || !line.text.startsWith('alt:')).slice(-500);
+  const shown = consoleLines.value.filter((line) => telemetry.value || !(line.text.startsWith('alt:') || line.text.startsWith(ALIVE) || /^OK PING alive/i.test(line.text))).slice(-500);
   useLayoutEffect(() => void (end.current!.scrollTop = end.current!.scrollHeight), []);
   useEffect(() => {
     const list = end.current!;
@@ -55,6 +55,7 @@ export function ConsoleView() {
         <div class="head">
           <h2 id="console-title">{words.console}</h2>
           <span class="spacer" />
+          <label class="check" title={words.sumsHint}><input type="checkbox" checked={sums.value} onChange={(event) => setSums(event.currentTarget.checked)} /> {words.sums}</label>
           <label class="check"><input type="checkbox" checked={telemetry.value} onChange={(event) => (telemetry.value = event.currentTarget.checked)} /> {words.showTelemetry}</label>
         </div>
         <div class="lines" ref={end} role="log" tabIndex={0} aria-label={words.console}>
@@ -66,7 +67,7 @@ export function ConsoleView() {
         </div>
         <div class="prompt">
           <span aria-hidden="true">›</span>
-          <input id="command" aria-label={words.typeCommand} placeholder={words.typeCommand} value={typed.value} maxLength={32} autocomplete="off" spellcheck={false} autocapitalize="characters" onInput={(event) => (typed.value = event.currentTarget.value)} onKeyDown={onKey} disabled={phase.value !== 'open'} />
+          <input id="command" aria-label={words.typeCommand} placeholder={words.typeCommand} value={typed.value} maxLength={sums.value ? 27 : 32} autocomplete="off" spellcheck={false} autocapitalize="characters" onInput={(event) => (typed.value = event.currentTarget.value)} onKeyDown={onKey} disabled={phase.value !== 'open'} />
           <button class="primary" onClick={send} disabled={phase.value !== 'open'}>{words.send}</button>
         </div>
       </section>

@@ -2,7 +2,8 @@ import { signal } from '@preact/signals';
 import { useRef } from 'preact/hooks';
 import { Plot, saveFile, savePng, stamp } from '../plot';
 import { age, clock, command, heardAny, latest, phase, powerCycle, series, silent, vehicle } from '../store';
-import { w } from '../words';
+import { told, w } from '../words';
+import { Troubles } from './troubles';
 
 const wanted = signal(localStorage.getItem('plomada.reference') ?? '0.6');
 const span = signal(60);
@@ -57,7 +58,7 @@ export function Messages() {
 const armed = signal('');
 async function arm(): Promise<void> {
   const outcome = await command('#ARM');
-  armed.value = outcome.ok ? outcome.lines[0]!.rest : outcome.silent ? w().noAnswer : outcome.reason;
+  armed.value = outcome.ok ? outcome.lines[0]!.rest : outcome.silent ? w().noAnswer : told(outcome.reason);
 }
 
 function Reference() {
@@ -136,11 +137,12 @@ export function Simulation() {
       <div class="faults" role="group" aria-label={words.faults}>
         <button class={v.laser ? '' : 'broken'} onClick={act(() => v.setLaser(!v.laser))}>{v.laser ? words.unplugLaser : words.plugLaser}</button>
         <button class={v.imu ? '' : 'broken'} onClick={act(() => v.setImu(!v.imu))}>{v.imu ? words.unplugImu : words.plugImu}</button>
-        <button class={v.radio ? '' : 'broken'} onClick={act(() => (v.radio = !v.radio))}>{v.radio ? words.cutRadio : words.mendRadio}</button>
+        <button class={v.radio ? '' : 'broken'} onClick={act(() => v.setRadio(!v.radio))}>{v.radio ? words.cutRadio : words.mendRadio}</button>
         <button onClick={act(() => v.troubleLaser())}>{words.laserTrouble}</button>
         <button onClick={act(() => v.meetRamp())}>{words.ramp}</button>
         <button class={v.pilot ? 'broken' : ''} onClick={act(() => v.setPilot(!v.pilot))}>{v.pilot ? words.pilotGives : words.pilotTakes}</button>
       </div>
+      <Troubles vehicle={v} changed={() => tick.value++} />
       <button class="quiet" onClick={act(powerCycle)}>{words.powerCycle}</button>
     </section>
   );

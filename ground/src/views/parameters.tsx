@@ -4,7 +4,7 @@ import { pickFiles, saveFile, stamp } from '../plot';
 import { delivered, presets } from '../presets';
 import { differences, objection, parseSet, same, writeSet, type Difference, type ParameterSet } from '../protocol/parameters';
 import { command, heardAny, loading, parameters, phase, readParameters, stored } from '../store';
-import { w } from '../words';
+import { told, w } from '../words';
 
 const edits = signal<ParameterSet>({});
 const file = signal<{ name: string; set: ParameterSet } | null>(null);
@@ -27,7 +27,7 @@ async function write(list: Difference[]): Promise<void> {
   for (const { name, to } of list) {
     const outcome = await command(`#${name} ${to}`);
     if (!outcome.ok) {
-      message.value = { text: `${w().refused}: ${name} ${to}: ${outcome.silent ? w().noAnswer : outcome.reason}`, bad: true };
+      message.value = { text: `${w().refused}: ${name} ${to}: ${outcome.silent ? w().noAnswer : told(outcome.reason)}`, bad: true };
       return;
     }
     done++;
@@ -41,7 +41,7 @@ async function write(list: Difference[]): Promise<void> {
 async function storage(text: '#SAVE' | '#LOAD' | '#DEFAULTS'): Promise<void> {
   const outcome = await command(text);
   if (!outcome.ok) {
-    message.value = { text: `${text.slice(1)}: ${outcome.silent ? w().noAnswer : outcome.reason}`, bad: true };
+    message.value = { text: `${text.slice(1)}: ${outcome.silent ? w().noAnswer : told(outcome.reason)}`, bad: true };
     return;
   }
   if (text !== '#SAVE') await readParameters();
@@ -125,7 +125,7 @@ export function ParametersView() {
                     <td>{p.unit === '-' ? '' : p.unit}</td>
                     <td class="quiet-text">{p.choices ? '' : `${p.minimum} … ${p.maximum}`}</td>
                     <td class="quiet-text">{delivered[p.name] ?? ''}</td>
-                    <td class="meaning">{p.meaning}</td>
+                    <td class="meaning">{words.meanings[p.name] ?? <span lang="en">{p.meaning}</span>}</td>
                     <td class="tags">
                       {changed && <span class="tag accent">{words.tagChanged}</span>}
                       {stored.value && !same(stored.value[p.name], p.value) && <span class="tag">{words.tagUnstored}</span>}

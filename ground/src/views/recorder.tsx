@@ -1,13 +1,20 @@
 import { signal } from '@preact/signals';
 import { useMemo } from 'preact/hooks';
 import { pickFiles, saveFile, stamp } from '../plot';
-import { readCsv, readLog, type Recording } from '../protocol/logs';
+import { NothingToRead, readCsv, readLog, type Recording } from '../protocol/logs';
 import { cancelDownload, command, download, downloadRecorder, phase } from '../store';
 import { w } from '../words';
 import { RecordingPlots } from './recording';
 
 const compared = signal<Recording[]>([]);
 const problem = signal<string | null>(null);
+const fast = signal(false);
+
+async function setRate(every: boolean): Promise<void> {
+  fast.value = every;
+  const outcome = await command(`#LOG RATE ${every ? 'FAST' : 'SLOW'}`);
+  if (!outcome.ok) fast.value = !every;
+}
 
 async function compare(): Promise<void> {
   problem.value = null;
@@ -15,7 +22,7 @@ async function compare(): Promise<void> {
     try {
       compared.value = [...compared.value, ...readLog(await file.text(), file.name)];
     } catch (error) {
-      problem.value = `${file.name}: ${(error as Error).message}`;
+      problem.value = `${file.name}: ${error instanceof NothingToRead ? w().unreadable[error.why] : String(error)}`;
     }
   }
 }
@@ -32,6 +39,7 @@ export function RecorderView() {
         <button class="primary" disabled={phase.value !== 'open' || running} onClick={() => void downloadRecorder(null)}>{words.downloadAll}</button>
         <button disabled={phase.value !== 'open' || running} onClick={() => void downloadRecorder(20)}>{words.downloadLast}</button>
         {running && <button onClick={cancelDownload}>{words.cancel}</button>}
+        <label class="check"><input type="checkbox" disabled={phase.value !== 'open' || running} checked={fast.value} onChange={(event) => void setRate(event.currentTarget.checked)} /> {words.rateFast}</label>
         <span class="spacer" />
         <button disabled={!d.csv} onClick={() => saveFile(`plomada-log-${stamp()}.csv`, d.csv, 'text/csv')}>{words.saveCsv}</button>
         <button onClick={() => void compare()}>{words.compareWith}</button>

@@ -51,7 +51,7 @@ export function RecordingPlots({ recordings }: { recordings: Recording[] }) {
       {'roll_rad' in first.columns && (
         <Plot curves={[{ label: words.roll, colour: '--curve-other-1', axis: 'rad' }, { label: words.pitch, colour: '--curve-other-2', axis: 'rad' }]} data={() => ({ columns: [seconds, place(first, 'roll_rad'), place(first, 'pitch_rad')] })} height={130} label={words.attitude} />
       )}
-      {recordings.flatMap((r) => r.notes.map((note) => <p class="hint" key={r.name + note}>{r.name}: {note}</p>))}
+      {recordings.flatMap((r) => r.notes.map((note) => <p class="hint" key={r.name + note.kind}>{r.name}: {words.notes[note.kind]}: {note.count}</p>))}
     </div>
   );
 }

@@ -1,7 +1,7 @@
 import { signal } from '@preact/signals';
 import { flyScenario } from '../link/vehicle';
 import { pickFiles, saveFile } from '../plot';
-import { readCsv, readLog, type Recording } from '../protocol/logs';
+import { NothingToRead, readCsv, readLog, type Recording } from '../protocol/logs';
 import { w } from '../words';
 import { RecordingPlots } from './recording';
 
@@ -19,7 +19,7 @@ export async function openFiles(files: File[]): Promise<void> {
     try {
       replayed.value = [...replayed.value, ...readLog(await file.text(), file.name)];
     } catch (error) {
-      problem.value = `${file.name}: ${(error as Error).message}`;
+      problem.value = `${file.name}: ${error instanceof NothingToRead ? w().unreadable[error.why] : String(error)}`;
     }
   }
 }
@@ -55,7 +55,7 @@ export function ReplayView() {
         <label class="select">{words.flyScenario}
           <select value={scenario.value} onChange={(event) => (scenario.value = event.currentTarget.value)}>{SCENARIOS.map((name) => <option key={name}>{name}</option>)}</select>
         </label>
-        <label class="select">seed <input class="short" inputMode="numeric" value={seed.value} onInput={(event) => (seed.value = event.currentTarget.value.replace(/\D/g, '') || '1')} /></label>
+        <label class="select">{words.seed} <input class="short" inputMode="numeric" value={seed.value} onInput={(event) => (seed.value = event.currentTarget.value.replace(/\D/g, '') || '1')} /></label>
         <button disabled={busy.value} onClick={() => void fly()}>{busy.value ? words.flying : words.scenarioGo}</button>
       </div>
       <p class="hint">{words.replayText} {words.scenarioText}</p>

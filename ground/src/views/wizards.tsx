@@ -1,19 +1,17 @@
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import { age, command, latest, link, listeners, parameters, phase, readParameters, stop, storeLine } from '../store';
+import { age, borrowLink, command, giveBackLink, latest, listeners, parameters, phase, readParameters, stop, storeLine } from '../store';
 import type { Line } from '../protocol/lines';
-import { w } from '../words';
+import { told, w } from '../words';
 
 const volts = signal('');
 const byHand = signal<Record<string, boolean>>({});
 const tied = signal(false);
-const calibration = signal<{ running: boolean; thrust: string; steps: number; end: string }>({ running: false, thrust: '', steps: 0, end: '' });
+const calibration = signal<{ running: boolean; thrust: string; grav: string; end: string }>({ running: false, thrust: '', grav: '', end: '' });
 const imu = signal<{ step: string; text: string; bad: boolean }[]>([]);
 
 /** The link is armed for so long: a page that dies ends the calibration in that time. */
 const LINK_S = 3;
-const ALIVE_MS = 1000;
-let linkBefore = '0';
 const CELLS_LOW_V = 11.1;
 
 export function checks(): Record<string, boolean> {
@@ -63,7 +61,8 @@ function heardCalibration(line: Line): void {
   if (line.kind !== 'answer' || line.name !== 'CALIBRATE') return;
   const thrust = /thr:([\d.]+)/.exec(line.rest)?.[1] ?? calibration.value.thrust;
   const end = /end:(\w+)/.exec(line.rest)?.[1] ?? (line.ok ? '' : line.rest);
-  calibration.value = { running: end === '' && calibration.value.running, thrust, steps: calibration.value.steps + 1, end };
+  const grav = /grav:([\d.]+)/.exec(line.rest)?.[1] ?? calibration.value.grav;
+  calibration.value = { running: end === '' && calibration.value.running, thrust, grav, end };
 }
 
 function Calibration() {
@@ -76,21 +75,13 @@ function Calibration() {
       calibration.value = { ...calibration.value, running: false };
       void stop('STOP');
     };
-    let spoken = link.value?.now() ?? 0;
-    const alive = setInterval(() => {
-      const now = link.value?.now() ?? 0;
-      if (now - spoken < ALIVE_MS) return;
-      spoken = now;
-      void command('#PING', { tries: 1 });
-    }, 50);
     listeners.add(heardCalibration);
     window.addEventListener('keydown', halt, true);
     window.addEventListener('pointerdown', halt, true);
     window.addEventListener('blur', halt);
     document.addEventListener('visibilitychange', halt);
     return () => {
-      clearInterval(alive);
-      void command(`#LINK ${linkBefore}`);
+      void giveBackLink();
       setTimeout(() => listeners.delete(heardCalibration), 1500); // the last word comes behind the stop
       window.removeEventListener('keydown', halt, true);
       window.removeEventListener('pointerdown', halt, true);
@@ -99,16 +90,17 @@ function Calibration() {
     };
   }, [c.running]);
   const begin = async (): Promise<void> => {
-    calibration.value = { running: false, thrust: '', steps: 0, end: '' };
+    calibration.value = { running: false, thrust: '', grav: '', end: '' };
     const asked = await command('#GET LINK');
-    linkBefore = asked.lines[0]?.rest.split(' ')[0] ?? '0';
+    borrowLink(asked.lines[0]?.rest.split(' ')[0] ?? '0');
     const armed = await command(`#LINK ${LINK_S}`);
     if (!armed.ok) {
       calibration.value = { ...calibration.value, end: armed.reason };
       return;
     }
     const begun = await command('#CALIBRATE', { tries: 1 });
-    calibration.value = begun.ok ? { running: true, thrust: '0', steps: 0, end: '' } : { ...calibration.value, end: begun.reason };
+    if (!begun.ok) void giveBackLink();
+    calibration.value = begun.ok ? { running: true, thrust: '0', grav: '', end: '' } : { ...calibration.value, end: begun.reason };
   };
   return (
     <section class={`card ${c.running ? 'alarm' : ''}`} aria-labelledby="calibration-title">
@@ -120,8 +112,8 @@ function Calibration() {
         <>
           <label class="check"><input type="checkbox" checked={tied.value} onChange={(event) => (tied.value = event.currentTarget.checked)} /> {words.calibrationBound}</label>
           <button class="primary" disabled={!tied.value || phase.value !== 'open' || latest.value?.state !== 'GROUND'} onClick={() => void begin()}>{words.calibrationGo}</button>
-          {c.end && <p class="banner" role="status">{words.calibrationEnd(c.end, c.thrust || '–')}</p>}
-          {c.end && Number(c.thrust) > 3 && <button onClick={() => void command(`#GRAV ${c.thrust}`)}>{words.setGrav(c.thrust)}</button>}
+          {c.end && <p class="banner" role="status">{words.calibrationEnd(words.calibrationEnds[c.end] ?? told(c.end), c.thrust || '–')}</p>}
+          {c.end && Number(c.grav) > 0 && <button onClick={() => void command(`#GRAV ${c.grav}`)}>{words.setGrav(c.grav)}</button>}
         </>
       )}
     </section>
@@ -132,7 +124,7 @@ function ImuSigns() {
   const words = w();
   const ask = async (argument: string): Promise<void> => {
     const outcome = await command(argument ? `#IMU ${argument}` : '#IMU');
-    const text = outcome.ok ? outcome.lines.map((line) => line.text).join('\n') : outcome.reason.startsWith('unknown command') ? words.imuNone : outcome.reason;
+    const text = outcome.ok ? outcome.lines.map((line) => line.text).join('\n') : outcome.reason.startsWith('unknown command') ? words.imuNone : outcome.silent ? w().noAnswer : told(outcome.reason);
     imu.value = [...imu.value, { step: argument || '#IMU', text, bad: !outcome.ok }].slice(-6);
   };
   return (

@@ -1,15 +1,17 @@
 import { spawn, type ChildProcess } from 'node:child_process';
-import { accessSync, chmodSync, constants, mkdirSync, mkdtempSync, readFileSync, statSync, writeFileSync } from 'node:fs';
+import { accessSync, chmodSync, constants, existsSync, mkdirSync, mkdtempSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { createServer, type Server } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { tmpdir } from 'node:os';
 import { extname, join, resolve } from 'node:path';
-import { chromium, type Browser, type Page } from 'playwright-core';
+import { chromium, firefox, type Browser, type Page } from 'playwright-core';
 
 export const ROOT = resolve(import.meta.dirname, '../../..');
 export const PLOMADA = join(ROOT, 'build/plomada');
 const SITE = join(ROOT, 'build-ground');
 const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
+/** The system's own, by WebDriver BiDi; null: none here. */
+export const FIREFOX = [process.env.FIREFOX ?? '', '/usr/bin/firefox-esr', '/usr/bin/firefox'].find((path) => path !== '' && existsSync(path)) ?? null;
 /** Pictures for docs/ground.md: `PICTURES=1 make test-ground` renews them. */
 const PICTURES = process.env.PICTURES ? join(ROOT, 'docs/images') : join(ROOT, 'build-ground/pictures');
 
@@ -36,8 +38,12 @@ export async function openBrowser(executable = CHROMIUM): Promise<Browser> {
   return chromium.launch({ executablePath: executable, args: ['--no-sandbox', '--disable-gpu', '--js-flags=--expose-gc'] });
 }
 
-export async function openPage(browser: Browser, url: string, options: { width?: number; height?: number } = {}): Promise<Page> {
-  const context = await browser.newContext({ viewport: { width: options.width ?? 1280, height: options.height ?? 800 }, locale: 'en-GB' });
+export async function openFirefox(): Promise<Browser> {
+  return firefox.launch({ channel: 'moz-firefox', executablePath: FIREFOX! });
+}
+
+export async function openPage(browser: Browser, url: string, options: { width?: number; height?: number; locale?: string } = {}): Promise<Page> {
+  const context = await browser.newContext({ viewport: { width: options.width ?? 1280, height: options.height ?? 800 }, locale: options.locale ?? 'en-GB' });
   const page = await context.newPage();
   page.on('pageerror', (error) => { throw error; });
   await page.goto(url);
@@ -68,6 +74,15 @@ export async function untilLaserIsOk(page: Page): Promise<void> {
 export async function picture(page: Page, name: string): Promise<void> {
   mkdirSync(PICTURES, { recursive: true });
   await page.screenshot({ path: join(PICTURES, `ground-${name}.png`) });
+}
+
+/** A port that nobody listens on. */
+export function freePort(): Promise<number> {
+  const server = createServer();
+  return new Promise((done) => server.listen(0, '127.0.0.1', () => {
+    const { port } = server.address() as AddressInfo;
+    server.close(() => done(port));
+  }));
 }
 
 export interface Board {

@@ -1,8 +1,7 @@
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
-import { button, openBrowser, openPage, serveSite, startBoard, tab, untilLaserIsOk, type Board, type Site } from './rig';
+import { button, openBrowser, openPage, freePort, serveSite, startBoard, tab, untilLaserIsOk, type Board, type Site } from './rig';
 
-const ADDRESS = 'ws://localhost:18125';
 let browser: Browser;
 let site: Site;
 let page: Page;
@@ -11,7 +10,7 @@ let board: Board;
 beforeAll(async () => {
   site = await serveSite();
   browser = await openBrowser();
-  board = await startBoard('ws:18125');
+  board = await startBoard(`ws:${await freePort()}`);
 });
 afterAll(async () => {
   await browser?.close();
@@ -20,7 +19,7 @@ afterAll(async () => {
 });
 
 async function connect(on: Page): Promise<void> {
-  await on.getByLabel('Address').fill(ADDRESS);
+  await on.getByLabel('Address').fill(board.address);
   await button(on, 'Connect').click();
 }
 

@@ -1,5 +1,7 @@
 import { execFileSync } from 'node:child_process';
-import { existsSync, readFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { describe, expect, it } from 'vitest';
 import { delivered, presets } from '../../src/presets';
 import { LineSplitter, parseLine, type Line } from '../../src/protocol/lines';
@@ -7,7 +9,7 @@ import { dumpsIn, fromXctu, readLog } from '../../src/protocol/logs';
 import { differences, objection, parseHelp, parseSet, same, writeSet } from '../../src/protocol/parameters';
 import { CommandQueue, LIST_PATIENCE, PATIENCE, TRIES, URGENT_PATIENCE, URGENT_PERIOD, type Outcome } from '../../src/protocol/queue';
 import { LogCollector, logRest } from '../../src/protocol/recorder';
-import { lineSum, splitSum } from '../../src/protocol/sum';
+import { lineSum, splitSum, withSum } from '../../src/protocol/sum';
 import { Series } from '../../src/series';
 import { en, es } from '../../src/texts';
 
@@ -22,6 +24,10 @@ describe('lines', () => {
   it('takes a missing height for no number, and keeps the cause of a reset', () => {
     const line = parseLine('alt:- ref:0.000 laser:WAIT thr:0.00 state:GROUND flags:3 reset:POWER');
     expect(line.kind === 'telemetry' && Number.isNaN(line.telemetry.height) && line.telemetry.reset).toBe('POWER');
+  });
+  it('keeps what the firmware doubts, and is not confused by fields that it does not know', () => {
+    expect(parseLine('alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:512 doubt:IMU')).toMatchObject({ kind: 'telemetry', telemetry: { flags: 512, doubt: 'IMU' } });
+    expect(parseLine('alt:0.598 vz:-0.12 ref:0.600 laser:OK thr:7.12 state:FLYING flags:257 doubt:SIGHT bat:11.1')).toMatchObject({ telemetry: { height: 0.598, reference: 0.6, flags: 257, doubt: 'SIGHT' } });
   });
   it('takes half a telemetry line for none', () => {
     expect(parseLine('alt:0.5 ref:0.6 laser:OK').kind).toBe('other');
@@ -45,6 +51,10 @@ describe('lines', () => {
 
 describe('the sum of a line', () => {
   it('is CRC-16/CCITT-FALSE', () => expect(lineSum('123456789')).toBe(0x29b1));
+  it('is put behind a command as the operator’s guide shows it, and only once', () => {
+    expect(withSum('#SETR 0.6')).toBe('#SETR 0.6*9383');
+    expect([withSum('#SETR 0.6*9383'), withSum('#setr 0.6*f00d')]).toEqual(['#SETR 0.6*9383', '#setr 0.6*f00d']);
+  });
   it('agrees with the firmware’s example and finds a changed character', () => {
     const line = 'OK LOG 0 t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags*BDE1';
     expect(splitSum(line).right).toBe(true);
@@ -90,6 +100,15 @@ describe('the command queue', () => {
     queue.heard(answer('ERR - line damaged'));
     pass(100);
     expect(sent).toHaveLength(2);
+  });
+  it('sends a command again soon when the firmware wants a sum', () => {
+    for (const reason of ['sum missing, see #SUM', 'wrong sum']) {
+      const { queue, sent, pass } = rig();
+      void queue.command('#KP 0.02');
+      queue.heard(answer(`ERR - ${reason}`));
+      pass(100);
+      expect(sent).toHaveLength(2);
+    }
   });
   it('takes no foreign answer for its own', () => {
     const { queue } = rig();
@@ -156,6 +175,7 @@ describe('parameters', () => {
   it('are read from the answers to #HELP', () => {
     expect(kp).toMatchObject({ name: 'KP', unit: 'N/mm', minimum: 0, maximum: 1, meaning: 'PD, PID: proportional gain.' });
     expect(law.choices).toEqual(['PD', 'PID', 'PIDT', 'EST']);
+    expect(parseHelp('#IROLL ROLL|-ROLL|PITCH|-PITCH - The angle.')!.choices).toEqual(['ROLL', '-ROLL', 'PITCH', '-PITCH']);
     expect(parseHelp('#GET [NAME] - one parameter, or all')).toBeNull();
   });
   it('are refused before they are sent', () => {
@@ -163,7 +183,7 @@ describe('parameters', () => {
     expect(['', '1.01', '-0.1', '1e-3', 'nan', '0,5'].map((text) => objection(kp, text))).toEqual(['empty', 'range', 'range', 'number', 'number', 'number']);
     expect([objection(law, 'est'), objection(law, 'LQR')]).toEqual([null, 'choice']);
   });
-  it('survive a file', () => expect(parseSet(writeSet({ KP: '0.02', LAW: 'PID' }))).toEqual({ KP: '0.02', LAW: 'PID' }));
+  it('survive a file', () => expect(parseSet(writeSet({ KP: '0.02', LAW: 'PID', L: '220', IROLL: '-ROLL' }))).toEqual({ KP: '0.02', LAW: 'PID', L: '220', IROLL: '-ROLL' }));
   it('show what a file would change, and never set a reference', () => {
     expect(differences({ SETR: '0', KP: '0.015', KI: '0.010' }, { SETR: '0.6', KP: '0.02', KI: '0.01', OLD: '1' })).toEqual([{ name: 'KP', from: '0.015', to: '0.02' }]);
   });
@@ -172,6 +192,7 @@ describe('parameters', () => {
     const rows = execFileSync('../build/plomada', ['params'], { encoding: 'utf8' }).split('\n').slice(1).filter((row) => row !== '');
     const table = Object.fromEntries(rows.map((row) => { const cells = row.trim().split(/\s+/); return [cells[0]!, cells[4]!]; }));
     expect(delivered).toEqual(table);
+    expect(Object.keys(es.meanings)).toEqual(Object.keys(table)); // else a meaning would be English on a Spanish page
     for (const set of Object.values(presets)) expect(Object.keys(set).filter((name) => !(name in table))).toEqual([]);
   });
 });
@@ -193,15 +214,35 @@ describe('the flight recorder', () => {
     expect(collector.csv().split('\n')[31]).toMatch(/^73\.100,/);
   });
   it('leaves a damaged row out', () => {
-    const good = 'OK LOG 1 70.100,0.6,0.6,,0.6,7.1,0,0,FLYING,0';
-    const sum = lineSum(good).toString(16).toUpperCase().padStart(4, '0');
-    expect(logRest(`${good}*${sum}`)).toMatch(/^1 70\.100/);
-    expect(logRest(`${good.replace('7.1', '7.9')}*${sum}`)).toBeNull();
+    const good = withSum('OK LOG 1 70.100,0.6,0.6,,0.6,7.1,0,0,FLYING,0');
+    expect(logRest(good)).toMatch(/^1 70\.100.*FLYING,0$/);
+    expect([logRest(good.replace('7.1', '7.9')), logRest(good.slice(0, -5)), logRest(good.slice(0, -9))]).toEqual([null, null, null]);
+  });
+  it('keeps two rows of one millisecond, in their order (#LOG RATE FAST), and asks again for lost titles', () => {
+    const collector = new LogCollector();
+    collector.heard('records:2');
+    collector.heard('1 70.100,0.6,FLYING,0,');
+    collector.heard('2 70.100,0.6,FLYING,0,-0.2');
+    collector.heard('END lines:2');
+    expect([collector.size, collector.hasTitles, collector.missingSeconds()]).toEqual([2, false, 1]);
+    collector.heard('records:1');
+    collector.heard('0 t_s,meas_m,state,flags,up_mps2');
+    collector.heard('1 70.100,0.6,FLYING,0,-0.2');
+    collector.heard('END lines:1');
+    expect(collector.csv()).toBe('t_s,meas_m,state,flags,up_mps2\n70.100,0.6,FLYING,0,\n70.100,0.6,FLYING,0,-0.2\n');
   });
 });
 
 describe('logs', () => {
-  const dump = 'OK LOG records:2\r\nOK LOG 0 t_s,meas_m,ref_m,state,flags\r\nOK LOG 1 1.000,0.5,0.6,FLYING,0\r\nalt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0\r\nOK LOG 2 1.100,,0.6,FLYING,1\r\nOK LOG END lines:2\r\n';
+  const titles = withSum('OK LOG 0 t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags,up_mps2,pulse_us,age_s');
+  const rows = [withSum('OK LOG 1 74.312,0.598,0.598,,0.600,7.123,-0.0123,0.0345,FLYING,0,-0.214,1383.6,0.081'), withSum('OK LOG 2 74.337,,0.598,,0.600,7.123,-0.0123,0.0345,FLYING,1,,1383.6,')];
+  const telemetry = 'alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0';
+  const dump = ['OK LOG records:2', titles, rows[0], telemetry, rows[1], 'OK LOG END lines:2', ''].join('\r\n');
+  const xctu = (text: string): string => {
+    const hex = [...text].map((c) => c.charCodeAt(0).toString(16).padStart(2, '0')).join('').toUpperCase();
+    return `02-05-2015 11:44:56.017,-,RECV,${hex.slice(0, 64)}\n02-05-2015 11:44:56.020,-,SENT,234C4F470A\n02-05-2015 11:44:56.117,-,RECV,${hex.slice(64)}\n`;
+  };
+  it('are as firmware writes them', () => expect(titles).toMatch(/\*0299$/)); // docs/operator.md
   it('may be a flight CSV', () => {
     const [flight] = readLog('t_s,meas_m,state,flags\n0.00,,GROUND,3\n0.01,0.5,FLYING,0\n0.02,0.', 'flight.csv');
     expect([flight!.time, flight!.columns.meas_m![1], flight!.notes.length]).toEqual([[0, 0.01], 0.5, 1]);
@@ -210,10 +251,32 @@ describe('logs', () => {
     expect(readLog(dump + dump, 'console.txt').map((r) => [r.kind, r.time.length])).toEqual([['console', 2], ['console', 2], ['telemetry', 2]]);
   });
   it('may be XCTU’s console log in hexadecimal, cut anywhere', () => {
-    const hex = [...dump].map((c) => c.charCodeAt(0).toString(16).padStart(2, '0')).join('').toUpperCase();
-    const text = `02-05-2015 11:44:56.017,-,RECV,${hex.slice(0, 64)}\n02-05-2015 11:44:56.020,-,SENT,234C4F470A\n02-05-2015 11:44:56.117,-,RECV,${hex.slice(64)}\n`;
-    expect(fromXctu(text)).toBe(dump);
-    expect(dumpsIn(fromXctu(text)!)[0]!.csv.split('\n')).toHaveLength(4);
+    expect(fromXctu(xctu(dump))).toBe(dump);
+    expect(dumpsIn(fromXctu(xctu(dump))!)[0]!.csv!.split('\n')).toHaveLength(4);
+  });
+  it('show accelerations, pulse and the age of the rays, and gaps where there is none', () => {
+    const [recording] = readLog(dump, 'x');
+    expect([recording!.columns.up_mps2, recording!.columns.pulse_us, recording!.columns.age_s]).toEqual([[-0.214, NaN], [1383.6, 1383.6], [0.081, NaN]]);
+  });
+  it.skipIf(!existsSync('../build/plomada'))('become octet by octet the CSV that `plomada log` writes', () => {
+    const noTitles = dump.replace(`${titles}\r\n`, '');
+    const texts: Record<string, string> = {
+      whole: dump, two: dump + dump, damaged: dump.replace('7.123', '7.923'), 'missing row': dump.replace(`${rows[0]}\r\n`, ''), 'no titles': noTitles + dump, 'announcement lost': dump + dump.replace('OK LOG records:2\r\n', ''),
+      'cut in a row': dump.slice(0, dump.indexOf('OK LOG 2') + 30), 'NULs of a radio that powers up': `\0\0${dump}`, 'LF alone': dump.replaceAll('\r\n', '\n'), 'a row without a sum': dump.replace(/\*[0-9A-F]{4}\r\nOK LOG END/, '\r\nOK LOG END'), 'XCTU': xctu(dump),
+    };
+    for (const [name, text] of Object.entries(texts)) {
+      const folder = mkdtempSync(join(tmpdir(), 'plomada-log-'));
+      writeFileSync(join(folder, 'console.txt'), text, 'latin1');
+      try {
+        execFileSync('../build/plomada', ['log', join(folder, 'console.txt'), '-o', folder], { stdio: 'ignore' });
+      } catch (error) {
+        expect((error as { status: number }).status, name).toBe(1); // something is missing, and the rest is written
+      }
+      const file = (i: number): string => join(folder, `console${i > 0 ? `-${i + 1}` : ''}.csv`);
+      const ours = dumpsIn(fromXctu(text) ?? text);
+      expect(ours.map(({ csv }) => csv), name).toEqual(ours.map((_, i) => (existsSync(file(i)) ? readFileSync(file(i), 'utf8') : null)));
+      expect(readdirSync(folder).filter((one) => one.endsWith('.csv')).length, name).toBe(ours.filter(({ csv }) => csv !== null).length);
+    }
   });
   it('may be a saved session', () => {
     const [flight] = readLog('1000 > #SETR 0.6\n1200 < alt:0.1 ref:0.600 laser:OK thr:7.12 state:TAKEOFF flags:0\n2200 < alt:0.2 ref:0.600 laser:OK thr:7.12 state:TAKEOFF flags:0\n', 's.txt');
@@ -230,6 +293,13 @@ describe('the series of the plots', () => {
     expect([series.count, series.start, series.end]).toEqual([36_000, 800, 7999.8]);
     expect(series.window(7990, 7999.8).states).toHaveLength(50);
   });
+  it('become a CSV that this page reads again', () => {
+    const series = new Series();
+    series.add(100, { ...line, height: NaN, flags: 1025 }, NaN);
+    series.add(100.2, line, NaN);
+    expect(series.csv()).toBe('t_s,meas_m,ref_m,thrust_n,state,flags\n0.000,,0.600,7.00,FLYING,1025\n0.200,0.600,0.600,7.00,FLYING,0\n');
+    expect(readLog(series.csv(), 'x')[0]!.columns.flags).toEqual([1025, 0]);
+  });
   it('shows a gap where lines are missing', () => {
     const series = new Series();
     for (const t of [0, 0.2, 0.4, 3, 3.2]) series.add(t, line, NaN);
@@ -240,10 +310,14 @@ describe('the series of the plots', () => {
 describe('the words', () => {
   const header = readFileSync('../control/flight_state.h', 'utf8');
   it('know every flag of the firmware', () => {
-    const flags = [...header.matchAll(/#define FLIGHT_FLAG_\w+ (\d+)U/g)].map((match) => Number(match[1]));
+    const flags = [...header.matchAll(/#define FLIGHT_FLAG_\w+[ \\\n]+(\d+)U/g)].map((match) => Number(match[1]));
     expect(flags.length).toBeGreaterThan(7);
     expect(flags.filter((flag) => en.flags[Math.log2(flag)] === undefined)).toEqual([]);
     expect(en.flags).toHaveLength(flags.length);
+  });
+  it('know every state of the scanner', () => {
+    const names = /status_names\[\] = \{([^}]*)\}/.exec(readFileSync('../drivers/urg_link.c', 'utf8'))?.[1] ?? '';
+    expect(Object.keys(en.lasers).sort()).toEqual([...names.matchAll(/"([A-Z0-9]+)"/g)].map((match) => match[1]!).sort());
   });
   it('know every state of the firmware', () => {
     const states = [...header.matchAll(/^ {4}FLIGHT_([A-Z]+),/gm)].map((match) => match[1]!);
@@ -255,7 +329,7 @@ describe('both languages', () => {
   it('say everything, and not the same', () => {
     const same = Object.keys(en).filter((key) => typeof en[key as keyof typeof en] === 'string' && en[key as keyof typeof en] === es[key as keyof typeof es]);
     expect(same.sort()).toEqual(['error', 'stop', 'stopHint', 'landHint', 'metres'].sort());
-    for (const key of ['failures', 'lostReasons', 'diagnoses', 'states', 'lasers', 'checks', 'stopStates', 'presetNames', 'imuSteps', 'objections'] as const) expect(Object.keys(es[key])).toEqual(Object.keys(en[key]));
+    for (const key of ['failures', 'lostReasons', 'diagnoses', 'states', 'lasers', 'checks', 'stopStates', 'presetNames', 'imuSteps', 'objections', 'troubles', 'notes', 'unreadable', 'calibrationEnds'] as const) expect(Object.keys(es[key])).toEqual(Object.keys(en[key]));
     expect(es.flags).toHaveLength(en.flags.length);
   });
 });
