@@ -1,4 +1,5 @@
 import { signal } from '@preact/signals';
+import { useState } from 'preact/hooks';
 import type { Figure, VehicleLink } from '../link/vehicle';
 import { w } from '../words';
 
@@ -63,13 +64,17 @@ const plain = (value: number): string => (value >= FOR_GOOD ? '∞' : String(Num
 function FigureRow({ vehicle, figure, changed }: { vehicle: VehicleLink; figure: Figure; changed: () => void }) {
   const words = w();
   const { low, high, step } = reach(figure);
+  const [draft, setDraft] = useState<string | null>(null); // what is being typed
   const set = (value: number): void => {
     refused.value = vehicle.setFigure(figure.name, value) ? '' : `${figure.name}: ${plain(figure.least)} … ${plain(figure.most)}`;
     changed();
   };
   return (
     <li class={figure.value !== figure.standard ? 'changed' : ''}>
-      <label><code>{figure.name}</code><input class="short" inputMode="decimal" value={plain(figure.value)} onChange={(event) => set(Number(event.currentTarget.value.replace(',', '.').replace('∞', '1e9')))} /> {figure.unit === '-' ? '' : figure.unit}</label>
+      <label><code>{figure.name}</code><input class="short" inputMode="decimal" value={draft ?? plain(figure.value)} onInput={(event) => setDraft(event.currentTarget.value)} onChange={(event) => {
+        set(Number(event.currentTarget.value.replace(',', '.').replace('∞', '1e9')));
+        setDraft(null);
+      }} /> {figure.unit === '-' ? '' : figure.unit}</label>
       <input type="range" aria-label={figure.name} min={low} max={high} step={step} value={figure.value} onInput={(event) => set(Number(event.currentTarget.value))} />
       <small lang="en">{figure.meaning}</small>
       {!figure.atOnce && <small class="tag">{words.fromPowerOn}</small>}
