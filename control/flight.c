@@ -389,6 +389,9 @@ static void change_doubts(flight_t *flight)
         estimator_amend(&flight->est.estimator, flight->est.estimator.now.height_m - integrity->lost_m,
                         integrity_speed_mps(integrity), integrity->bias_mps2);
     }
+    if ((come & DOUBT_IMU) != 0U && flight->learned_s < HOVER_TIME_S) {
+        flight->hover_learned = false; /* what a wrong accelerometer has taught */
+    }
     const bool flies_unseen = (come & DOUBT_SIGHT) != 0U && integrity_sways(integrity);
     if (((come & DOUBT_SIGHT) != 0U || (gone & DOUBT_THRUST) != 0U) &&
         (flight->est.airborne || flies_unseen)) {

@@ -22,14 +22,9 @@
 #define HEIGHT_MIN_MM (-50.0F)
 #define HEIGHT_MAX_MM 5000.0F
 
-/* A blocked beam: its length is as still as a sensor can tell it, 4 mm, and the height is not. Shares are of
- * 0.1 s. */
-#define MEAN_SHARE 0.13F
-#define SWING_SHARE 0.08F
-#define SWING_MOST_MM 30.0F
-#define RIGID_MM2 16.0F
-#define RIGID_SHARE 1.8F
-#define RIGID_MORE_MM2 12.0F
+/* A beam that is blocked. Tried: none of 960 sound flights that the thrust contradicts is so still. */
+#define STILL_SHARE 0.6F
+#define STILL_SCANS 12U
 
 /* Accelerometer at rest. */
 #define REST_TIME_S 2.0F
@@ -52,6 +47,7 @@
 
 /* Heights. */
 #define STEP_M 0.10F
+#define LOW_M 0.08F
 #define GAP_ALLOWS_MPS 0.3F
 #define GAP_MAX_S 1.5F
 #define CONFIRMED_M 0.12F
@@ -80,6 +76,7 @@
 #define BOTH_M 0.28F
 #define WITH_M 0.20F
 #define ALONE_M 0.60F
+#define ALONE_SHARE 0.4F /* chosen: the thrust tells of a true motion by at least half, its damping is known so well */
 #define POWERLESS_M 1.30F
 #define MOVED_M 0.30F
 #define AGREED_S 1.5F
@@ -96,6 +93,8 @@
 #define UNCONFIRMED_M 0.35F
 #define UNCONFIRMED_N 0.2F
 #define RISE_TIME_S 0.2F
+#define WAY_TIME_S 1.0F
+#define MOVES_M 0.20F /* chosen: no thing in front of a mirror moves so far */
 
 void integrity_init(integrity_t *integrity)
 {
@@ -183,24 +182,43 @@ void integrity_tilt(integrity_t *integrity, const imu_sample_t *frames, uint16_t
 
 /* ---- scans */
 
-/* A beam that is blocked has a length of its own: it does not grow and shrink as the mirror rises and falls
- * with the tilt, and the height made of it does. */
-static void watch_slant(integrity_t *i, const altitude_t *altitude)
+static float variance(const float *value)
 {
-    const float seen_mm[2] = {altitude->slant_mm, altitude->height_mm};
+    float mean = 0.0F;
+    float square = 0.0F;
 
-    for (uint16_t k = 0U; k < 2U; ++k) {
-        const float off_mm = between(-SWING_MOST_MM, seen_mm[k] - i->mean_mm[k], SWING_MOST_MM);
-        i->mean_mm[k] = (fabsf(seen_mm[k] - i->mean_mm[k]) > SWING_MOST_MM)
-                            ? seen_mm[k]
-                            : i->mean_mm[k] + MEAN_SHARE * off_mm;
-        i->swing_mm2[k] += SWING_SHARE * (off_mm * off_mm - i->swing_mm2[k]);
+    for (uint16_t k = 0U; k < INTEGRITY_SCANS; ++k) {
+        mean += value[k] / (float)INTEGRITY_SCANS;
     }
+    for (uint16_t k = 0U; k < INTEGRITY_SCANS; ++k) {
+        square += (value[k] - mean) * (value[k] - mean);
+    }
+    return square / (float)(INTEGRITY_SCANS - 1U);
 }
 
-static bool is_rigid(const integrity_t *i)
+static float noise(const float *value)
 {
-    return i->swing_mm2[0] < RIGID_MM2 && i->swing_mm2[1] > RIGID_SHARE * i->swing_mm2[0] + RIGID_MORE_MM2;
+    float square = 0.0F;
+
+    for (uint16_t k = 2U; k < INTEGRITY_SCANS; ++k) {
+        const float bend = value[k] - 2.0F * value[k - 1U] + value[k - 2U];
+        square += bend * bend;
+    }
+    return square / (6.0F * (float)(INTEGRITY_SCANS - 2U));
+}
+
+/* A beam that is blocked has a length of its own: it does not grow and shrink as the mirror rises and falls
+ * with the tilt, and the height made of it does. What is left of the length is white noise. */
+static void watch_slant(integrity_t *i, const altitude_t *altitude)
+{
+    for (uint16_t k = 1U; k < INTEGRITY_SCANS; ++k) {
+        i->slants_mm[k - 1U] = i->slants_mm[k];
+    }
+    i->slants_mm[INTEGRITY_SCANS - 1U] = altitude->slant_mm;
+    i->scans = (uint16_t)(i->scans + (i->scans < INTEGRITY_SCANS));
+    const float slant_mm2 = variance(i->slants_mm);
+    const bool still = i->scans == INTEGRITY_SCANS && noise(i->slants_mm) > STILL_SHARE * slant_mm2;
+    i->still = still ? (uint16_t)(i->still + (i->still < STILL_SCANS)) : 0U;
 }
 
 bool integrity_scan(integrity_t *integrity, const altitude_t *altitude)
@@ -353,12 +371,13 @@ void integrity_thrust(integrity_t *integrity, const flown_t *flown)
         set_doubt(integrity, DOUBT_SIGHT | DOUBT_THRUST, false);
         forget(integrity);
     }
+    const bool stands = integrity->heard && integrity->height_m < LOW_M && !integrity_sways(integrity);
     const float shaken = fmaxf(flown->noise_mps2 / SHAKEN_MPS2, 1.0F);
     integrity->shaken = shaken * sqrtf(shaken);
     integrity->unheard_s = fminf(integrity->unheard_s + dt_s, OLD_S);
     integrity->standing = flown->grounded || flown->standing;
     integrity->lagged_n += dt_s / (LAG_S + dt_s) * (flown->thrust_n - integrity->lagged_n);
-    if (!flown->off_ground) {
+    if (!flown->off_ground || stands) {
         start(&integrity->pushed, flown->grounded || !feels(integrity) ? 0.0F : integrity->felt.speed_mps);
         return;
     }
@@ -433,6 +452,7 @@ static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
         }
         i->unconfirmed = false;
     }
+    i->way_m = (step || !fresh) ? 0.0F : i->way_m * (1.0F - fminf(gap_s / WAY_TIME_S, 1.0F)) + rise_m;
     i->since_rise_s = (step && rise_m > 0.0F) ? 0.0F : fminf(i->since_rise_s + gap_s, GAP_MAX_S);
     i->before_rise_m = (i->since_rise_s > 0.0F) ? i->before_rise_m : i->height_m;
     i->height_m = height_m;
@@ -492,39 +512,68 @@ static bool aloft_unseen(const integrity_t *i, const flown_t *flown)
     return flown->standing && i->unconfirmed && integrity_sways(i) && i->felt_least_m < -ALOFT_M;
 }
 
-static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
+/* A thing in front of a mirror stays where it is: heights that move on and on are not made by one. */
+static bool heights_move(const integrity_t *i)
+{
+    return fabsf(i->way_m) > MOVES_M;
+}
+
+/* The thrust tells of a motion, and the beam of none at all. */
+static bool still_against(const integrity_t *i)
+{
+    return i->still == STILL_SCANS && against(&i->pushed, BOTH_M);
+}
+
+/* Both tell of a motion that the heights do not show. */
+static bool both_against(const integrity_t *i, const flown_t *flown)
 {
     const float felt_m = felt_off_m(i);
     const float pushed_m = i->pushed.seen_m;
-    const bool felt = feels(i);
-    const bool pushes = counts(&i->pushed);
+    const float sure = (fabsf(flown->wanted_m) < CONTENT_M) ? CONTENT_SHARE : 1.0F;
 
-    if (i->steps > STEPS_MAX || is_rigid(i) || aloft_unseen(i, flown)) {
-        return true;
-    }
-    if (felt && pushes && both_run_away(i)) {
-        return true;
-    }
-    if (i->unconfirmed && (i->proved || i->felt_least_m < -WITH_M) && i->pushed.running_s >= OLD_S &&
-        fabsf(pushed_m) > UNCONFIRMED_M && pushes_in_vain(i, flown, UNCONFIRMED_N) &&
-        !(feels_against(i, WITH_M) && felt_m * pushed_m < 0.0F)) {
-        return true;
-    }
-    if (felt && pushes) {
-        const float sure = (fabsf(flown->wanted_m) < CONTENT_M) ? CONTENT_SHARE : 1.0F;
-        return felt_m * pushed_m > 0.0F && fmaxf(fabsf(felt_m), fabsf(pushed_m)) > sure * AGAINST_M &&
-               fminf(fabsf(felt_m), fabsf(pushed_m)) > sure * BOTH_M;
-    }
-    if (pushes) {
-        return i->vain_s > VAIN_S;
-    }
-    return felt && fabsf(felt_m) > ALONE_M;
+    return feels(i) && counts(&i->pushed) && felt_m * pushed_m > 0.0F &&
+           fmaxf(fabsf(felt_m), fabsf(pushed_m)) > sure * AGAINST_M &&
+           fminf(fabsf(felt_m), fabsf(pushed_m)) > sure * BOTH_M;
 }
 
-static bool imu_is_wrong(const integrity_t *i)
+static bool vain_since_step(const integrity_t *i, const flown_t *flown)
 {
-    return feels_against(i, ALONE_M) && counts(&i->pushed) &&
-           (!against(&i->pushed, WITH_M) || i->felt.seen_m * i->pushed.seen_m < 0.0F);
+    const float pushed_m = i->pushed.seen_m;
+
+    return i->unconfirmed && (i->proved || i->felt_least_m < -WITH_M) && i->pushed.running_s >= OLD_S &&
+           fabsf(pushed_m) > UNCONFIRMED_M && pushes_in_vain(i, flown, UNCONFIRMED_N) &&
+           !(feels_against(i, WITH_M) && felt_off_m(i) * pushed_m < 0.0F);
+}
+
+static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
+{
+    if (i->steps > STEPS_MAX || aloft_unseen(i, flown)) {
+        return true;
+    }
+    if (heights_move(i)) {
+        return false;
+    }
+    if (still_against(i)) {
+        return true;
+    }
+    if (feels(i) && counts(&i->pushed)) {
+        return both_run_away(i) || vain_since_step(i, flown) || both_against(i, flown);
+    }
+    if (counts(&i->pushed)) {
+        return vain_since_step(i, flown) || i->vain_s > VAIN_S;
+    }
+    return feels_against(i, ALONE_M);
+}
+
+/* The thrust that carries it may have been learned from the accelerometer: against heights that move the two
+ * are one. */
+static bool imu_is_wrong(const integrity_t *i, const flown_t *flown)
+{
+    const bool alone = !against(&i->pushed, fmaxf(WITH_M, ALONE_SHARE * fabsf(i->felt.seen_m))) ||
+                       i->felt.seen_m * i->pushed.seen_m < 0.0F;
+
+    return (feels_against(i, ALONE_M) && counts(&i->pushed) && alone) ||
+           (heights_move(i) && both_against(i, flown));
 }
 
 static bool thrust_is_wrong(const integrity_t *i, const flown_t *flown)
@@ -548,8 +597,10 @@ static bool agrees(const integrity_t *i)
 
 static void judge_again(integrity_t *i, float gap_s)
 {
-    i->agreed_s = (agrees(i) && !is_rigid(i)) ? i->agreed_s + gap_s : 0.0F;
-    if (i->agreed_s > AGREED_S) {
+    const bool seen = heights_move(i) && i->steps < STEPS_MAX;
+
+    i->agreed_s = (agrees(i) && i->still < STILL_SCANS) ? i->agreed_s + gap_s : 0.0F;
+    if (i->agreed_s > AGREED_S || (seen && integrity_doubts(i, DOUBT_SIGHT))) {
         i->doubts &= (uint16_t) ~(DOUBT_SIGHT | DOUBT_THRUST);
         forget(i);
     } else if (feels_against(i, AGAINST_M) || against(&i->pushed, AGAINST_M)) {
@@ -566,7 +617,7 @@ static float lost_m(const integrity_t *i)
 
 static void judge(integrity_t *i, const flown_t *flown, float gap_s)
 {
-    if (!integrity_doubts(i, DOUBT_IMU) && imu_is_wrong(i)) {
+    if (!integrity_doubts(i, DOUBT_IMU) && imu_is_wrong(i, flown)) {
         set_doubt(i, DOUBT_IMU, true);
         forget(i);
     }

@@ -23,6 +23,8 @@
 #include "control/altitude.h"
 #include "control/est/estimator.h"
 
+#define INTEGRITY_SCANS 12U
+
 #define DOUBT_SIGHT 1U
 #define DOUBT_IMU 2U
 #define DOUBT_THRUST 4U
@@ -67,12 +69,14 @@ typedef struct {
     /* scans */
     float slant_mm, spread_mm;
     uint16_t copies;    /* in a row */
-    float mean_mm[2];   /* slow, of slant and height */
-    float swing_mm2[2]; /* slow mean square of what they differ from it */
+    float slants_mm[INTEGRITY_SCANS]; /* the latest, oldest first */
+    uint16_t scans;   /* in them */
+    uint16_t still;   /* scans in a row with nothing but noise in the slants */
     /* heights */
     bool heard; /* height_m is the latest */
     float height_m;
     float rise_mps;   /* of the heights, low-passed, steps left out */
+    float way_m;      /* that the heights have gone since the latest step, leaks */
     bool unconfirmed; /* the terrain came nearer in one step, and no climb has shown in the heights since */
     bool standing;    /* on the ground or about to leave it */
     bool proved;      /* a climb has shown in the heights since the ground */

@@ -110,7 +110,8 @@ static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt
     const float seen_n = law->actuator.thrust_n * vehicle.upright - taken_n;
     const float doubt_n = SPEED_DOUBT_N_PER_MPS * fabsf(e->now.speed_mps);
 
-    if (law->heightless_s > LEARN_WITHOUT_HEIGHTS_S || e->unchecked_count > 0U || law->powerless) {
+    if (law->heightless_s > LEARN_WITHOUT_HEIGHTS_S || e->unchecked_count > 0U || law->powerless ||
+        estimator_accuses(e)) {
         return; /* nothing but itself says that the speed is right */
     }
     if (e->now.height_m > IN_THE_AIR_M || seen_n > law->hover.thrust_n) {

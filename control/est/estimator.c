@@ -24,6 +24,12 @@
 #define HEIGHT_NOISE_M 0.0013F /* fitted */
 #define OFF_MODEL_SHARE 0.4F
 #define OFF_MODEL_MPS2 2.0F
+#define ACCUSED_MPS2 1.2F    /* chosen: three times the usual noise */
+#define ACCUSED_SIGMAS 1.5F  /* chosen: of the noise, on a mean of three frames: 3 sigma */
+#define ACCUSED_NOISES 3.0F  /* chosen: of the heights' noise; chance is three times rarer on the mean */
+#define ACCUSED_SHARE 0.5F   /* chosen: mean over two heights */
+#define ACCUSED_CREDIT 0.02F /* chosen: as good as nothing */
+#define CLEARED_FRAMES 20U   /* chosen: half a second */
 #define FLOOR_START_M 0.004F
 #define FLOOR_SMOOTH_M 0.020F /* what edges and the vehicle's own motion make of the measure */
 #define FLOOR_MAX_M 0.080F
@@ -250,13 +256,33 @@ static void append_frame(estimator_t *e, const estimator_frame_t *frame)
     }
 }
 
+/* Thrust and heights both tell of the same error of the accelerometer. Thrust alone may have met a gust, and
+ * heights alone a slope of the terrain. */
+static void accuse(estimator_t *e)
+{
+    const float off_mps2 = fmaxf(ACCUSED_MPS2, ACCUSED_SIGMAS * e->noise_mps2);
+    const bool thrust_tells = fabsf(e->off_model_mps2) > off_mps2;
+    const bool heights_tell = fabsf(e->mean_innovation_m) > ACCUSED_NOISES * e->floor_m;
+
+    if (thrust_tells && heights_tell && e->mean_innovation_m * e->off_model_mps2 < 0.0F) {
+        e->accused_frames = CLEARED_FRAMES;
+    } else if (e->accused_frames > 0U && fabsf(e->off_model_mps2) < 0.5F * off_mps2) {
+        --e->accused_frames;
+    }
+}
+
 /* Weight of the accelerometer, 0 .. 1. It falls when the low-passed difference between the accelerometer
- * and the modelled acceleration stays large, until doubt IMU decides. */
+ * and the modelled acceleration stays large, and is gone when the heights tell of it too, until doubt IMU
+ * decides. */
 static float credit(estimator_t *e, const modelled_motion_t *model, float up_mps2)
 {
     const float off_mps2 = model->known ? up_mps2 - e->now.bias_mps2 - model->up_mps2 : 0.0F;
 
     e->off_model_mps2 += OFF_MODEL_SHARE * (off_mps2 - e->off_model_mps2);
+    accuse(e);
+    if (estimator_accuses(e) && model->known) {
+        return ACCUSED_CREDIT;
+    }
     const float excess = OFF_MODEL_MPS2 / at_least(fabsf(e->off_model_mps2), OFF_MODEL_MPS2);
     return excess * excess * excess * excess;
 }
@@ -442,6 +468,7 @@ static height_outcome_t check_and_fuse(estimator_t *e, float height_m)
 {
     measure_floor(e, height_m);
     e->innovation_m = height_m - e->delayed.height_m;
+    e->mean_innovation_m += ACCUSED_SHARE * (between(-INNOVATION_LIMIT_MAX_M, e->innovation_m, INNOVATION_LIMIT_MAX_M) - e->mean_innovation_m);
     e->confirmed = e->unchecked_count == 0U && innovation_accepted(e, e->innovation_m);
     if (e->unchecked_count == 0U && !e->confirmed) {
         return reject(e, height_m, e->innovation_m);
@@ -494,6 +521,11 @@ void estimator_drop_accelerations(estimator_t *e)
     if (e->felt) {
         change_source(e, false);
     }
+}
+
+bool estimator_accuses(const estimator_t *estimator)
+{
+    return estimator->accused_frames > 0U;
 }
 
 void estimator_amend(estimator_t *e, float height_m, float speed_mps, float bias_mps2)
