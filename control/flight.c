@@ -81,7 +81,8 @@ static void follow_hover(flight_t *flight)
     if (!estimated && flight->supervisor.state != FLIGHT_FLYING) {
         return;
     }
-    if (flight->learned_s > 0.0F && integrity_unconfirmed(&flight->integrity)) {
+    if (flight->learned_s > 0.0F &&
+        (integrity_unconfirmed(&flight->integrity) || integrity_still(&flight->integrity))) {
         return;
     }
     const float target_n = estimated ? flight->est.hover.thrust_n : flight->thrust_n;
@@ -89,8 +90,8 @@ static void follow_hover(flight_t *flight)
                          : (flight->learned_s < SETTLE_S) ? step_s
                                                           : flight->learned_s;
 
-    flight->hover_n += fminf(step_s / fmaxf(time_s, 0.001F), 1.0F) * (target_n - flight->hover_n);
-    flight->learned_s = fminf(flight->learned_s + step_s, HOVER_TIME_S);
+    flight->hover_n += at_most(step_s / at_least(time_s, 0.001F), 1.0F) * (target_n - flight->hover_n);
+    flight->learned_s = at_most(flight->learned_s + step_s, HOVER_TIME_S);
 }
 
 static bool descends(flight_state_t state)
@@ -98,10 +99,17 @@ static bool descends(flight_state_t state)
     return state == FLIGHT_DESCENDING || state == FLIGHT_LANDING || state == FLIGHT_LOWERING;
 }
 
+/* About to leave the ground, be its height what it likes. */
+static bool lifts(const flight_t *flight)
+{
+    const flight_state_t state = flight->supervisor.state;
+    return (state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING) && flight->lifting;
+}
+
 static void update_hover(flight_t *flight, float gravity_n)
 {
     const flight_state_t state = flight->supervisor.state;
-    const bool grounded = state == FLIGHT_GROUND || (state == FLIGHT_TAKEOFF && !flight->est.airborne);
+    const bool grounded = state == FLIGHT_GROUND || lifts(flight);
     const bool flies = state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING;
     const bool sees = (flight->supervisor.flags & FLIGHT_FLAG_HEIGHT) == 0U;
 
@@ -181,8 +189,8 @@ static void step_pidt(flight_t *flight, const parameters_t *parameters, float re
         .ki_n_per_m_s = value[PARAMETER_PKI],
         .kd_n_s_per_m = value[PARAMETER_PKD],
         .gravity_n = value[PARAMETER_GRAV],
-        .most_n = fminf(value[PARAMETER_GRAV] + PIDT_WINDOW_N, THRUST_MAX_N),
-        .least_n = fmaxf(value[PARAMETER_GRAV] - PIDT_WINDOW_N, 0.0F),
+        .most_n = at_most(value[PARAMETER_GRAV] + PIDT_WINDOW_N, THRUST_MAX_N),
+        .least_n = at_least(value[PARAMETER_GRAV] - PIDT_WINDOW_N, 0.0F),
     };
 
     if (height->is_new || !flight->pidt.primed) {
@@ -307,6 +315,8 @@ static bool is_off_ground(const flight_t *flight, const flight_inputs_t *in)
         return false;
     case FLIGHT_TAKEOFF:
         return flight->est.airborne;
+    case FLIGHT_FLYING:
+        return !flight->lifting && in->has_throttle;
     case FLIGHT_FLOATING:
         return flight->mode != FLIGHT_MODE_HOVER;
     case FLIGHT_LANDING:
@@ -324,7 +334,7 @@ static flown_t describe(const flight_t *flight, const parameters_t *parameters, 
     return (flown_t){
         .step_s = supervisor->started ? seconds_at_most(in->now_us - supervisor->now_us, STEP_MAX_S) : 0.0F,
         .grounded = supervisor->state == FLIGHT_GROUND,
-        .standing = supervisor->state == FLIGHT_TAKEOFF && !flight->est.airborne,
+        .standing = lifts(flight),
         .off_ground = is_off_ground(flight, in),
         .ours = in->has_throttle,
         .ordered = in->reference_sequence != supervisor->reference_sequence,
@@ -379,7 +389,7 @@ static void believe(flight_t *flight, const parameters_t *parameters, flight_inp
 }
 
 /* A doubt has come or gone. */
-static void change_doubts(flight_t *flight)
+static void change_doubts(flight_t *flight, float gravity_n)
 {
     const integrity_t *integrity = &flight->integrity;
     const uint16_t come = integrity->doubts & (uint16_t)~flight->doubts;
@@ -390,7 +400,8 @@ static void change_doubts(flight_t *flight)
                         integrity_speed_mps(integrity), integrity->bias_mps2);
     }
     if ((come & DOUBT_IMU) != 0U && flight->learned_s < HOVER_TIME_S) {
-        flight->hover_learned = false; /* what a wrong accelerometer has taught */
+        flight->hover_n = gravity_n; /* the rest a wrong accelerometer may have taught */
+        flight->learned_s = 0.0F;
     }
     const bool flies_unseen = (come & DOUBT_SIGHT) != 0U && integrity_sways(integrity);
     if (((come & DOUBT_SIGHT) != 0U || (gone & DOUBT_THRUST) != 0U) &&
@@ -400,7 +411,7 @@ static void change_doubts(flight_t *flight)
     est_law_set_powerless(&flight->est, integrity_doubts(integrity, DOUBT_THRUST));
     est_law_set_accelerations_doubted(&flight->est, integrity_doubts(integrity, DOUBT_IMU));
     if ((come & DOUBT_IMU) != 0U && flight->est.airborne) { /* the estimate followed them until now */
-        estimator_amend(&flight->est.estimator, integrity->height_m, integrity_speed_mps(integrity), 0.0F);
+        estimator_amend(&flight->est.estimator, integrity->height_m, integrity->rise_mps, 0.0F);
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
     flight->doubts = integrity->doubts;
@@ -412,7 +423,7 @@ static void supervise(flight_t *flight, const parameters_t *parameters, const fl
     const estimate_t *now = &estimator->now;
 
     est_law_predict(&flight->est, parameters, in->frames, in->frame_count, in->now_us);
-    change_doubts(flight);
+    change_doubts(flight, parameters->value[PARAMETER_GRAV]);
     const vertical_estimate_t estimate = {
         .known = has_estimate(flight) && estimator->confirmed,
         .height_mm = now->height_m * 1000.0F,
@@ -424,12 +435,28 @@ static void supervise(flight_t *flight, const parameters_t *parameters, const fl
     supervisor_step(&flight->supervisor, parameters->value[PARAMETER_LINK], in, &estimate);
 }
 
+/* Above the height that was told on the ground, be that what it likes. */
+static bool has_risen(const flight_t *flight)
+{
+    return flight->supervisor.height.height_mm * 0.001F - flight->est.ground_m > LOW_MM * 0.001F;
+}
+
+/* It has not left the ground since it stood there. A beam that is blocked may call that FLOATING. */
+static bool may_stand(const flight_t *flight)
+{
+    const flight_state_t state = flight->supervisor.state;
+
+    return lifts(flight)
+               ? !flight->est.airborne
+               : state == FLIGHT_FLOATING && !has_risen(flight) && !integrity_sways(&flight->integrity);
+}
+
 /* By one of the laws that do not know themselves when they leave the ground: the heights tell, or the
  * accelerometer. */
 static bool flies(const flight_t *flight)
 {
-    return flight->supervisor.state == FLIGHT_FLYING ||
-           (flight->supervisor.state == FLIGHT_TAKEOFF &&
+    return (flight->supervisor.state == FLIGHT_FLYING && (!flight->lifting || has_risen(flight))) ||
+           ((flight->supervisor.state == FLIGHT_FLYING || flight->supervisor.state == FLIGHT_TAKEOFF) &&
             flight->integrity.felt.speed_mps > LIFTED_MPS * flight->integrity.shaken);
 }
 
@@ -455,6 +482,7 @@ static void update_estimator(flight_t *flight, const parameters_t *parameters, c
         est_law_fuse_height(&flight->est, &in->altitude, in->height_stamp_ms, in->height_time_us,
                             in->height_age_us, at_rest);
     }
+    flight->lifting = state == FLIGHT_GROUND || (flight->lifting && may_stand(flight));
     if (state == FLIGHT_GROUND) {
         est_law_reset(&flight->est, parameters);
     } else if (state == FLIGHT_FLOATING && !in->has_throttle) {
@@ -538,7 +566,7 @@ static float within_climb_n(const flight_t *flight, const parameters_t *paramete
                       (flight->supervisor.state != FLIGHT_TAKEOFF || felt_mps > fastest_mps - 0.1F);
 
     return (fast && (est || (flight->mode == FLIGHT_MODE_LAW && flight->active_law == LAW_PIDT)))
-               ? fminf(thrust_n, most_n)
+               ? at_most(thrust_n, most_n)
                : thrust_n;
 }
 
@@ -554,8 +582,8 @@ static float within_power_n(const flight_t *flight, float thrust_n)
     if (!integrity_doubts(&flight->integrity, DOUBT_THRUST)) {
         return thrust_n;
     }
-    return flight->integrity.held_down ? fmaxf(thrust_n, held_n - POWERLESS_WINDOW_N)
-                                       : fminf(thrust_n, held_n + POWERLESS_WINDOW_N);
+    return flight->integrity.held_down ? at_least(thrust_n, held_n - POWERLESS_WINDOW_N)
+                                       : at_most(thrust_n, held_n + POWERLESS_WINDOW_N);
 }
 
 /* A descent that may have ended gives less and less, until a fall is felt, and it was in the air, or is not,
@@ -570,9 +598,9 @@ static float asking_n(flight_t *flight, float thrust_n)
     if (!descent || !integrity_may_stand(&flight->integrity)) {
         flight->asking_n = THRUST_MAX_N;
     } else {
-        flight->asking_n = fmaxf(fminf(flight->asking_n, flight->thrust_n) - step_n, 0.0F);
+        flight->asking_n = at_least(at_most(flight->asking_n, flight->thrust_n) - step_n, 0.0F);
     }
-    return fminf(thrust_n, flight->asking_n);
+    return at_most(thrust_n, flight->asking_n);
 }
 
 /* Judged where the law acts: what the supervisor does by itself goes elsewhere. */

@@ -41,6 +41,7 @@ typedef struct {
     uint32_t scan_time_us;  /* latest height that was compared with the witnesses */
     bool scan_fit;
     uint16_t doubts;  /* DOUBT_* of the previous cycle */
+    bool lifting;     /* since the ground the vehicle has not left it yet, as far as known */
     bool hopping;     /* TAKEOFF ended and the vehicle had not left the ground */
     float asking_n;   /* most thrust of a descent that asks whether it stands */
     float floating_m; /* height that FLOATING holds */

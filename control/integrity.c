@@ -23,8 +23,12 @@
 #define HEIGHT_MAX_MM 5000.0F
 
 /* A beam that is blocked. Tried: none of 960 sound flights that the thrust contradicts is so still. */
-#define STILL_SHARE 0.6F
-#define STILL_SCANS 12U
+#define STILL_MM2 4.0F
+#define RIGID_SCANS 2U
+#define STILL_SHARE 0.4F
+#define STILL_SCANS 16U
+#define STILL_BOTH_M 0.10F
+#define STILL_FELT_M 0.05F
 
 /* Accelerometer at rest. */
 #define REST_TIME_S 2.0F
@@ -76,7 +80,8 @@
 #define BOTH_M 0.28F
 #define WITH_M 0.20F
 #define ALONE_M 0.60F
-#define ALONE_SHARE 0.4F /* chosen: the thrust tells of a true motion by at least half, its damping is known so well */
+#define ALONE_SHARE \
+    0.4F /* chosen: the thrust tells of a true motion by at least half, its damping is known so well */
 #define POWERLESS_M 1.30F
 #define MOVED_M 0.30F
 #define AGREED_S 1.5F
@@ -86,15 +91,17 @@
 #define VAIN_MPS 0.12F
 #define VAIN_M 0.15F
 #define RUN_AWAY_MPS 0.7F
-#define RUN_AWAY_M 0.28F
+#define RUN_AWAY_M 0.38F
 #define STILL_MPS 0.2F
 #define CONTENT_M 0.10F /* a law that is where it wants to be has nothing that a lie could do */
 #define CONTENT_SHARE 1.8F
 #define UNCONFIRMED_M 0.35F
+#define UNPROVED_M 0.35F /* chosen: twice what the lift-off of a drawn vehicle shows */
 #define UNCONFIRMED_N 0.2F
 #define RISE_TIME_S 0.2F
 #define WAY_TIME_S 1.0F
-#define MOVES_M 0.20F /* chosen: no thing in front of a mirror moves so far */
+#define MOVED_S 1.0F  /* chosen: what the witnesses remember of that time is gone by half */
+#define MOVES_M 0.15F /* chosen: no thing in front of a mirror moves so far */
 
 void integrity_init(integrity_t *integrity)
 {
@@ -217,7 +224,10 @@ static void watch_slant(integrity_t *i, const altitude_t *altitude)
     i->slants_mm[INTEGRITY_SCANS - 1U] = altitude->slant_mm;
     i->scans = (uint16_t)(i->scans + (i->scans < INTEGRITY_SCANS));
     const float slant_mm2 = variance(i->slants_mm);
-    const bool still = i->scans == INTEGRITY_SCANS && noise(i->slants_mm) > STILL_SHARE * slant_mm2;
+    const bool still = i->scans == INTEGRITY_SCANS &&
+                       (slant_mm2 < STILL_MM2 || noise(i->slants_mm) > STILL_SHARE * slant_mm2);
+    const bool rigid = i->scans == INTEGRITY_SCANS && slant_mm2 < STILL_MM2;
+    i->rigid = rigid ? (uint16_t)(i->rigid + (i->rigid < STILL_SCANS)) : 0U;
     i->still = still ? (uint16_t)(i->still + (i->still < STILL_SCANS)) : 0U;
 }
 
@@ -252,7 +262,7 @@ static void move(witness_t *witness, float mps2, float dt_s)
     witness->off_m -= (witness->speed_mps + 0.5F * mps2 * dt_s) * dt_s;
     witness->speed_mps += mps2 * dt_s;
     witness->moved_m += fabsf(witness->speed_mps) * dt_s;
-    witness->running_s = fminf(witness->running_s + dt_s, OLD_S);
+    witness->running_s = at_most(witness->running_s + dt_s, OLD_S);
 }
 
 static bool counts(const witness_t *witness)
@@ -268,8 +278,8 @@ static bool feels(const integrity_t *i)
 
 static void feel_rest(integrity_t *i, float dt_s)
 {
-    i->rested_s = fminf(i->rested_s + dt_s, REST_TIME_S);
-    i->rest_mps2 += fminf(dt_s / i->rested_s, 1.0F) * (i->up_mps2 - i->rest_mps2);
+    i->rested_s = at_most(i->rested_s + dt_s, REST_TIME_S);
+    i->rest_mps2 += at_most(dt_s / i->rested_s, 1.0F) * (i->up_mps2 - i->rest_mps2);
     i->bias_mps2 = i->rest_mps2;
     start(&i->felt, 0.0F);
     if (i->rested_s > REST_HELD_S && fabsf(i->rest_mps2) > REST_UNFIT_MPS2) {
@@ -281,7 +291,7 @@ static void feel_rest(integrity_t *i, float dt_s)
 
 static void watch_sway(integrity_t *i, const imu_sample_t *frame, float dt_s)
 {
-    const float share = fminf(dt_s / SWAY_TIME_S, 1.0F);
+    const float share = at_most(dt_s / SWAY_TIME_S, 1.0F);
     const float roll_rad = frame->median.roll_rad - i->mean_rad[0];
     const float pitch_rad = frame->median.pitch_rad - i->mean_rad[1];
 
@@ -300,7 +310,7 @@ static void watch_still(integrity_t *i, float dt_s)
         i->still_mps[1] = i->pushed.speed_mps;
         i->still_s = 0.0F;
     }
-    const float share = fminf(dt_s / STILL_TIME_S, 1.0F);
+    const float share = at_most(dt_s / STILL_TIME_S, 1.0F);
     i->still_mps[0] += share * (i->felt.speed_mps - i->still_mps[0]);
     i->still_mps[1] += share * (i->pushed.speed_mps - i->still_mps[1]);
     i->still_s = (i->sway_rad2 < SWAY_RAD2) ? i->still_s + dt_s : 0.0F;
@@ -364,7 +374,7 @@ void integrity_frames(integrity_t *integrity, const flown_t *flown, const imu_sa
 
 void integrity_thrust(integrity_t *integrity, const flown_t *flown)
 {
-    const float dt_s = fminf(flown->step_s, STEP_MAX_S);
+    const float dt_s = at_most(flown->step_s, STEP_MAX_S);
     const float upright = cosf(integrity->roll_rad) * cosf(integrity->pitch_rad);
 
     if (flown->ordered && flown->grounded) {
@@ -372,9 +382,9 @@ void integrity_thrust(integrity_t *integrity, const flown_t *flown)
         forget(integrity);
     }
     const bool stands = integrity->heard && integrity->height_m < LOW_M && !integrity_sways(integrity);
-    const float shaken = fmaxf(flown->noise_mps2 / SHAKEN_MPS2, 1.0F);
+    const float shaken = at_least(flown->noise_mps2 / SHAKEN_MPS2, 1.0F);
     integrity->shaken = shaken * sqrtf(shaken);
-    integrity->unheard_s = fminf(integrity->unheard_s + dt_s, OLD_S);
+    integrity->unheard_s = at_most(integrity->unheard_s + dt_s, OLD_S);
     integrity->standing = flown->grounded || flown->standing;
     integrity->lagged_n += dt_s / (LAG_S + dt_s) * (flown->thrust_n - integrity->lagged_n);
     if (!flown->off_ground || stands) {
@@ -411,7 +421,7 @@ static void compare(witness_t *witness, float rise_m, float gap_s, float age_s, 
 {
     witness->off_m += rise_m;
     const float seen_m = witness->off_m + witness->speed_mps * age_s;
-    witness->off_m -= fminf(leak_per_s * gap_s, 1.0F) * seen_m;
+    witness->off_m -= at_most(leak_per_s * gap_s, 1.0F) * seen_m;
     witness->speed_mps += pull_per_s2 * gap_s * seen_m;
     witness->seen_m = seen_m;
 }
@@ -430,6 +440,17 @@ static bool returns(const integrity_t *i, float height_m)
     return i->since_rise_s < GLITCH_S && fabsf(height_m - i->before_rise_m) < STEP_M;
 }
 
+/* A thing in front of a mirror stays where it is: heights that move on and on are not made by one. */
+static bool heights_move(const integrity_t *i)
+{
+    return fabsf(i->way_m) > MOVES_M;
+}
+
+static bool heights_moved(const integrity_t *i)
+{
+    return i->unmoved_s < MOVED_S;
+}
+
 /* A take-off is unconfirmed too. */
 static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
 {
@@ -445,21 +466,23 @@ static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
         i->unconfirmed = true;
         i->near_m = height_m;
         i->quiet_s = 0.0F;
-    } else if (!fresh || rise_m > STEP_M || height_m > i->near_m + CONFIRMED_M || i->quiet_s > QUIET_S) {
+    } else if (!fresh || rise_m > STEP_M || height_m > i->near_m + CONFIRMED_M ||
+               (i->quiet_s > QUIET_S && !integrity_still(i))) {
         if (i->unconfirmed && !i->proved) {
             i->proved = true;
             confirm(i);
         }
         i->unconfirmed = false;
     }
-    i->way_m = (step || !fresh) ? 0.0F : i->way_m * (1.0F - fminf(gap_s / WAY_TIME_S, 1.0F)) + rise_m;
-    i->since_rise_s = (step && rise_m > 0.0F) ? 0.0F : fminf(i->since_rise_s + gap_s, GAP_MAX_S);
+    i->way_m = (step || !fresh) ? 0.0F : i->way_m * (1.0F - at_most(gap_s / WAY_TIME_S, 1.0F)) + rise_m;
+    i->unmoved_s = heights_move(i) ? 0.0F : (step || !fresh) ? MOVED_S : at_most(i->unmoved_s + gap_s, MOVED_S);
+    i->since_rise_s = (step && rise_m > 0.0F) ? 0.0F : at_most(i->since_rise_s + gap_s, GAP_MAX_S);
     i->before_rise_m = (i->since_rise_s > 0.0F) ? i->before_rise_m : i->height_m;
     i->height_m = height_m;
     i->heard = true;
     i->rise_mps += gap_s / (RISE_TIME_S + gap_s) *
-                   ((step ? i->rise_mps : rise_m / fmaxf(gap_s, 0.01F)) - i->rise_mps);
-    i->steps = fmaxf(i->steps * (1.0F - fminf(gap_s / STEPS_TIME_S, 1.0F)), 0.0F) + (step ? 1.0F : 0.0F);
+                   ((step ? i->rise_mps : rise_m / at_least(gap_s, 0.01F)) - i->rise_mps);
+    i->steps = at_least(i->steps * (1.0F - at_most(gap_s / STEPS_TIME_S, 1.0F)), 0.0F) + (step ? 1.0F : 0.0F);
     if (!fresh) {
         i->felt.off_m = 0.0F;
         i->pushed.off_m = 0.0F;
@@ -502,26 +525,29 @@ static bool both_run_away(const integrity_t *i)
     const float felt_mps = (i->felt.speed_mps - i->rise_mps) / i->shaken;
     const float pushed_mps = i->pushed.speed_mps - i->rise_mps;
     return fabsf(i->rise_mps) < STILL_MPS && felt_mps * pushed_mps > 0.0F &&
-           felt_mps * i->felt.seen_m < 0.0F && fminf(fabsf(felt_mps), fabsf(pushed_mps)) > RUN_AWAY_MPS &&
-           fminf(fabsf(felt_off_m(i)), fabsf(i->pushed.seen_m)) > RUN_AWAY_M;
+           felt_mps * i->felt.seen_m < 0.0F && at_most(fabsf(felt_mps), fabsf(pushed_mps)) > RUN_AWAY_MPS &&
+           at_most(fabsf(felt_off_m(i)), fabsf(i->pushed.seen_m)) > RUN_AWAY_M;
 }
 
-/* It should still stand, by the heights; but it sways, and has felt a climb. */
+/* It should still stand, by the law, and by a beam that is still or tells a height without a ground; but it
+ * sways, and has felt a climb. */
 static bool aloft_unseen(const integrity_t *i, const flown_t *flown)
 {
-    return flown->standing && i->unconfirmed && integrity_sways(i) && i->felt_least_m < -ALOFT_M;
-}
+    const bool odd = i->rigid >= RIGID_SCANS || (i->height_m > LOW_M && integrity_still(i));
 
-/* A thing in front of a mirror stays where it is: heights that move on and on are not made by one. */
-static bool heights_move(const integrity_t *i)
-{
-    return fabsf(i->way_m) > MOVES_M;
+    return flown->standing && i->unconfirmed && odd && integrity_sways(i) && i->felt_least_m < -ALOFT_M;
 }
 
 /* The thrust tells of a motion, and the beam of none at all. */
 static bool still_against(const integrity_t *i)
 {
-    return i->still == STILL_SCANS && against(&i->pushed, BOTH_M);
+    const bool felt = !feels(i) ||
+                      (i->felt.seen_m * i->pushed.seen_m > 0.0F && feels_against(i, STILL_FELT_M));
+    const bool rigid = i->rigid >= RIGID_SCANS;
+    const bool both = feels_against(i, STILL_BOTH_M) && against(&i->pushed, STILL_BOTH_M);
+
+    return (felt && both && rigid) ||
+           ((felt || rigid) && against(&i->pushed, BOTH_M) && i->still == STILL_SCANS);
 }
 
 /* Both tell of a motion that the heights do not show. */
@@ -532,8 +558,8 @@ static bool both_against(const integrity_t *i, const flown_t *flown)
     const float sure = (fabsf(flown->wanted_m) < CONTENT_M) ? CONTENT_SHARE : 1.0F;
 
     return feels(i) && counts(&i->pushed) && felt_m * pushed_m > 0.0F &&
-           fmaxf(fabsf(felt_m), fabsf(pushed_m)) > sure * AGAINST_M &&
-           fminf(fabsf(felt_m), fabsf(pushed_m)) > sure * BOTH_M;
+           at_least(fabsf(felt_m), fabsf(pushed_m)) > sure * AGAINST_M &&
+           at_most(fabsf(felt_m), fabsf(pushed_m)) > sure * BOTH_M;
 }
 
 static bool vain_since_step(const integrity_t *i, const flown_t *flown)
@@ -545,19 +571,30 @@ static bool vain_since_step(const integrity_t *i, const flown_t *flown)
            !(feels_against(i, WITH_M) && felt_off_m(i) * pushed_m < 0.0F);
 }
 
+/* The first climb is felt by an accelerometer that was right at rest a moment ago, while what thrust carries
+ * the vehicle is not known yet, and no height has moved since the ground. */
+static bool unproved_against(const integrity_t *i)
+{
+    return i->unconfirmed && !i->proved && !heights_move(i) && feels(i) && felt_off_m(i) < -UNPROVED_M;
+}
+
 static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
 {
-    if (i->steps > STEPS_MAX || aloft_unseen(i, flown)) {
+    const bool stiff = i->rigid == STILL_SCANS &&
+                       integrity_sways(i); /* the mirror swings, the beam does not */
+
+    if (i->steps > STEPS_MAX || stiff || aloft_unseen(i, flown)) {
         return true;
     }
-    if (heights_move(i)) {
+    if (heights_moved(i)) {
         return false;
     }
-    if (still_against(i)) {
+    if (still_against(i) || unproved_against(i)) {
         return true;
     }
     if (feels(i) && counts(&i->pushed)) {
-        return both_run_away(i) || vain_since_step(i, flown) || both_against(i, flown);
+        return both_run_away(i) || vain_since_step(i, flown) ||
+               (fabsf(i->rise_mps) < STILL_MPS && both_against(i, flown));
     }
     if (counts(&i->pushed)) {
         return vain_since_step(i, flown) || i->vain_s > VAIN_S;
@@ -569,11 +606,14 @@ static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
  * are one. */
 static bool imu_is_wrong(const integrity_t *i, const flown_t *flown)
 {
-    const bool alone = !against(&i->pushed, fmaxf(WITH_M, ALONE_SHARE * fabsf(i->felt.seen_m))) ||
+    const bool alone = !against(&i->pushed, at_least(WITH_M, ALONE_SHARE * fabsf(i->felt.seen_m))) ||
                        i->felt.seen_m * i->pushed.seen_m < 0.0F;
 
+    if (integrity_still(i) || unproved_against(i)) {
+        return false;
+    }
     return (feels_against(i, ALONE_M) && counts(&i->pushed) && alone) ||
-           (heights_move(i) && both_against(i, flown));
+           (heights_move(i) && feels_against(i, AGAINST_M) && both_against(i, flown));
 }
 
 static bool thrust_is_wrong(const integrity_t *i, const flown_t *flown)
@@ -639,7 +679,7 @@ void integrity_height(integrity_t *integrity, const flown_t *flown, float height
 {
     hear(integrity, height_m, gap_s, age_s);
     integrity->unheard_s = integrity_doubts(integrity, DOUBT_SIGHT) ? integrity->unheard_s : 0.0F;
-    integrity->felt_least_m = integrity->unconfirmed ? fminf(integrity->felt_least_m, felt_off_m(integrity))
+    integrity->felt_least_m = integrity->unconfirmed ? at_most(integrity->felt_least_m, felt_off_m(integrity))
                                                      : 0.0F;
     integrity->vain_s = (pushes_in_vain(integrity, flown, PUSH_N) && fabsf(integrity->rise_mps) < VAIN_MPS &&
                          fabsf(flown->wanted_m) > VAIN_M)
@@ -662,6 +702,11 @@ float integrity_felt_mps(const integrity_t *integrity)
 bool integrity_unconfirmed(const integrity_t *integrity)
 {
     return integrity->unconfirmed;
+}
+
+bool integrity_still(const integrity_t *integrity)
+{
+    return integrity->still > STILL_SCANS / 2U;
 }
 
 bool integrity_sways(const integrity_t *integrity)

@@ -68,15 +68,17 @@ typedef struct {
     uint32_t unfit_sequence; /* frames up to this one rest on tilts that are not believed */
     /* scans */
     float slant_mm, spread_mm;
-    uint16_t copies;    /* in a row */
+    uint16_t copies;                  /* in a row */
     float slants_mm[INTEGRITY_SCANS]; /* the latest, oldest first */
-    uint16_t scans;   /* in them */
-    uint16_t still;   /* scans in a row with nothing but noise in the slants */
+    uint16_t scans;                   /* in them */
+    uint16_t rigid;                   /* scans in a row with slants as still as no flying vehicle's */
+    uint16_t still;                   /* scans in a row with nothing but noise in the slants */
     /* heights */
     bool heard; /* height_m is the latest */
     float height_m;
     float rise_mps;   /* of the heights, low-passed, steps left out */
     float way_m;      /* that the heights have gone since the latest step, leaks */
+    float unmoved_s;  /* since they went on and on */
     bool unconfirmed; /* the terrain came nearer in one step, and no climb has shown in the heights since */
     bool standing;    /* on the ground or about to leave it */
     bool proved;      /* a climb has shown in the heights since the ground */
@@ -137,6 +139,9 @@ float integrity_felt_mps(const integrity_t *integrity);
 /* The heights came nearer at once, as they do where something blocks the beam, and no climb has shown in them
  * since. */
 bool integrity_unconfirmed(const integrity_t *integrity);
+
+/* For a second nothing but noise has been in the beam's length: it may be blocked. */
+bool integrity_still(const integrity_t *integrity);
 
 /* The tilt moves as it does in the air. */
 bool integrity_sways(const integrity_t *integrity);

@@ -276,6 +276,7 @@ void est_law_reset(est_law_t *law, const parameters_t *parameters)
     law->airborne = false;
     law->ramping = false;
     law->powerless = false;
+    law->ground_m = law->estimator.now.height_m;
     law->ceiling_n = THRUST_MAX_N;
     law->ramp_n = RAMP_START * parameters->value[PARAMETER_GRAV];
     law->reference_terrain_m = law->estimator.terrain_height_m;
@@ -357,10 +358,10 @@ static cascade_state_t predict_ahead(const est_law_t *law, const cascade_vehicle
 static float leave_unfelt(est_law_t *law, const parameters_t *parameters)
 {
     const float jerk_mps3 = RAMP_N_PER_S * vehicle_model(law, parameters).authority_mps2_per_n;
-    const float since_s = cbrtf(6.0F * at_least(law->estimator.now.height_m, 0.0F) / jerk_mps3) +
-                          law->heightless_s;
+    const float risen_m = at_least(law->estimator.now.height_m - law->ground_m, 0.0F);
+    const float since_s = cbrtf(6.0F * risen_m / jerk_mps3) + law->heightless_s;
 
-    estimator_amend(&law->estimator, jerk_mps3 * since_s * since_s * since_s / 6.0F,
+    estimator_amend(&law->estimator, law->ground_m + jerk_mps3 * since_s * since_s * since_s / 6.0F,
                     0.5F * jerk_mps3 * since_s * since_s, 0.0F);
     return law->actuator.thrust_n - RAMP_N_PER_S * since_s;
 }
@@ -371,7 +372,7 @@ static bool take_off(est_law_t *law, const parameters_t *parameters)
 {
     const float gravity_n = parameters->value[PARAMETER_GRAV];
     const float taken_n = law->lift_mps2 / vehicle_model(law, parameters).authority_mps2_per_n;
-    const float height_m = law->estimator.now.height_m;
+    const float height_m = law->estimator.now.height_m - law->ground_m;
     const float lift_off_m = est_law_feels(law) ? LIFT_OFF_M : UNFELT_LIFT_OFF_M;
     const float known_n = at_least(gravity_n, law->flown_hover_n);
     const bool strong = law->actuator.thrust_n > LIFT_OFF_SHARE * gravity_n;

@@ -49,6 +49,7 @@ typedef struct {
     float flown_gravity_n;     /* GRAV of that flight */
     float entry_hover_n;       /* sure_hover_n at the start of the present descent */
     float ceiling_n;           /* upper limit of the thrust in a descent */
+    float ground_m;            /* height where it stood last; not 0 when something blocks the beam */
     bool accelerations_doubted;
     bool powerless;      /* doubt THRUST: commands have no effect */
     float heightless_s;  /* time since the rays of the latest height */

@@ -260,7 +260,7 @@ static void append_frame(estimator_t *e, const estimator_frame_t *frame)
  * heights alone a slope of the terrain. */
 static void accuse(estimator_t *e)
 {
-    const float off_mps2 = fmaxf(ACCUSED_MPS2, ACCUSED_SIGMAS * e->noise_mps2);
+    const float off_mps2 = at_least(ACCUSED_MPS2, ACCUSED_SIGMAS * e->noise_mps2);
     const bool thrust_tells = fabsf(e->off_model_mps2) > off_mps2;
     const bool heights_tell = fabsf(e->mean_innovation_m) > ACCUSED_NOISES * e->floor_m;
 
@@ -468,7 +468,9 @@ static height_outcome_t check_and_fuse(estimator_t *e, float height_m)
 {
     measure_floor(e, height_m);
     e->innovation_m = height_m - e->delayed.height_m;
-    e->mean_innovation_m += ACCUSED_SHARE * (between(-INNOVATION_LIMIT_MAX_M, e->innovation_m, INNOVATION_LIMIT_MAX_M) - e->mean_innovation_m);
+    e->mean_innovation_m += ACCUSED_SHARE *
+                            (between(-INNOVATION_LIMIT_MAX_M, e->innovation_m, INNOVATION_LIMIT_MAX_M) -
+                             e->mean_innovation_m);
     e->confirmed = e->unchecked_count == 0U && innovation_accepted(e, e->innovation_m);
     if (e->unchecked_count == 0U && !e->confirmed) {
         return reject(e, height_m, e->innovation_m);

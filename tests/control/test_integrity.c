@@ -258,7 +258,7 @@ void test_a_beam_that_does_not_swing_with_the_mirror_is_blocked(void)
         fly();
         for (int scan = 0; scan < 60; scan++) {
             const float swing_mm = 11.0F * sinf((float)scan * 0.4F);
-            const float noise_mm = (scan % 2 == 0) ? 2.0F : -2.0F;
+            const float noise_mm = (scan % 2 == 0) ? 1.5F : -1.5F;
             const altitude_t altitude = {.slant_mm = 705.0F + noise_mm + (blocked ? 0.0F : swing_mm),
                                          .height_mm = 500.0F + noise_mm + (blocked ? swing_mm : 0.0F),
                                          .spread_mm = 18.0F + (float)(scan % 3)};
@@ -266,6 +266,17 @@ void test_a_beam_that_does_not_swing_with_the_mirror_is_blocked(void)
         }
         run(0.3F);
         TEST_ASSERT_EQUAL_UINT16(blocked ? DOUBT_SIGHT : 0U, it.doubts);
+    }
+}
+
+/* Beam of a blocked mirror: a length of its own, with noise. */
+static void scan_blocked(int scans)
+{
+    for (int scan = 0; scan < scans; scan++) {
+        const altitude_t altitude = {.slant_mm = 705.0F + ((scan % 2 == 0) ? 1.0F : -1.0F),
+                                     .height_mm = 300.0F,
+                                     .spread_mm = 18.0F + (float)(scan % 3)};
+        TEST_ASSERT_TRUE(integrity_scan(&it, &altitude));
     }
 }
 
@@ -280,7 +291,66 @@ void test_a_take_off_that_no_height_shows_is_doubted(void)
     world.frozen_height = true;
     flown.wanted_m = 0.5F;
     flown.thrust_n = HOVER_N + 0.8F;
+    scan_blocked(14);
     TEST_ASSERT_TRUE(until(DOUBT_SIGHT, 3.0F) > 0.3F);
+}
+
+/* The same hop, of a vehicle that hardly lifts: a beam that moves is not blocked. */
+void test_a_vehicle_that_hardly_lifts_is_not_doubted(void)
+{
+    flown.grounded = true;
+    flown.off_ground = false;
+    run(2.0F);
+    flown.grounded = false;
+    flown.standing = true;
+    flown.wanted_m = 0.5F;
+    flown.thrust_n = HOVER_N + 0.1F;
+    run(6.0F);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+}
+
+/* The thrust that carries it was learned from an accelerometer that is wrong: both tell the same, and the
+ * heights move. */
+void test_heights_that_move_on_and_on_are_believed_against_both(void)
+{
+    fly();
+    flown.hover_n = HOVER_N + 1.5F;
+    world.felt_lie_mps2 = -4.0F;
+    flown.thrust_n = HOVER_N + 0.7F;
+    flown.wanted_m = 0.5F;
+    TEST_ASSERT_TRUE(until(DOUBT_IMU, 2.0F) > 0.2F);
+    run(2.0F);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, it.doubts);
+}
+
+/* Heights near the wanted one leave the law content; the beam's stillness tells, and the thrust. */
+void test_a_beam_of_nothing_but_noise_is_doubted_as_soon_as_thrust_and_accelerometer_climb(void)
+{
+    for (int blocked = 0; blocked < 2; blocked++) {
+        setUp();
+        fly();
+        world.frozen_height = true;
+        flown.wanted_m = 0.05F;
+        flown.thrust_n = HOVER_N + 0.7F;
+        if (blocked != 0) {
+            scan_blocked(14);
+        }
+        run(1.4F);
+        TEST_ASSERT_EQUAL_UINT16(blocked != 0 ? DOUBT_SIGHT : 0U, it.doubts);
+    }
+}
+
+void test_an_accelerometer_is_not_blamed_by_a_beam_that_may_be_blocked(void)
+{
+    fly();
+    world.frozen_height = true;
+    scan_blocked(24);
+    TEST_ASSERT_TRUE(integrity_still(&it));
+    flown.hover_n = HOVER_N + 0.8F; /* and so the thrust tells of no climb */
+    flown.thrust_n = HOVER_N + 0.8F;
+    flown.wanted_m = 0.05F;
+    run(2.0F);
+    TEST_ASSERT_FALSE(integrity_doubts(&it, DOUBT_IMU));
 }
 
 void test_the_third_scan_that_says_the_same_is_a_copy(void)
