@@ -475,7 +475,9 @@ static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
         i->unconfirmed = false;
     }
     i->way_m = (step || !fresh) ? 0.0F : i->way_m * (1.0F - at_most(gap_s / WAY_TIME_S, 1.0F)) + rise_m;
-    i->unmoved_s = heights_move(i) ? 0.0F : (step || !fresh) ? MOVED_S : at_most(i->unmoved_s + gap_s, MOVED_S);
+    i->unmoved_s = heights_move(i)    ? 0.0F
+                   : (step || !fresh) ? MOVED_S
+                                      : at_most(i->unmoved_s + gap_s, MOVED_S);
     i->since_rise_s = (step && rise_m > 0.0F) ? 0.0F : at_most(i->since_rise_s + gap_s, GAP_MAX_S);
     i->before_rise_m = (i->since_rise_s > 0.0F) ? i->before_rise_m : i->height_m;
     i->height_m = height_m;
