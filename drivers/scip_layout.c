@@ -206,6 +206,23 @@ uint32_t scip_rays_age_us(const scip_scan_t *scan, uint32_t bit_rate)
     return REVOLUTION_US - rays_us + wire_us + HANDLING_US;
 }
 
+/* Ten bits an octet and ten revolutions a second: a scan's octets times 100 are its bits in a second. */
+static bool fits_the_revolution(uint32_t points, uint32_t bit_rate)
+{
+    return (uint32_t)scip_scan_octets(SCIP_STREAM_2, (uint16_t)points) * 1000U <= 9U * bit_rate;
+}
+
+uint16_t scip_layout_cluster(const scip_layout_t *layout, uint32_t bit_rate)
+{
+    const uint32_t steps = (uint32_t)layout->last_step - (uint32_t)layout->first_step + 1U;
+    uint32_t cluster = 1U;
+
+    while (cluster < steps && !fits_the_revolution((steps + cluster - 1U) / cluster, bit_rate)) {
+        cluster++;
+    }
+    return (uint16_t)cluster;
+}
+
 uint32_t scip_step_delay_us(uint16_t step)
 {
     return ((uint32_t)step * 3125U) >> 5;

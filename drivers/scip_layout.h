@@ -83,6 +83,11 @@ uint16_t scip_step_at_degrees(float degrees);
  * step 389, as in the model of the plant. bit_rate: one of SCIP's. */
 uint32_t scip_rays_age_us(const scip_scan_t *scan, uint32_t bit_rate);
 
+/* The least cluster with which a layout's stream leaves a tenth of each revolution free. Three mirrors at
+ * 115200 need 2: their 1157 octets of single steps take longer than the revolution, and the sensor falls
+ * behind. bit_rate: one of SCIP's. */
+uint16_t scip_layout_cluster(const scip_layout_t *layout, uint32_t bit_rate);
+
 /* When a step is sampled, microseconds after the instant of the scan's time stamp (step 0), at 600
  * revolutions a minute. step: 0..1023. */
 uint32_t scip_step_delay_us(uint16_t step);

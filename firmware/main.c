@@ -23,7 +23,7 @@ static void laser_config(urg_config_t *config)
     config->stream = SCIP_STREAM_2;
     config->range.first_step = layout->first_step;
     config->range.last_step = layout->last_step;
-    config->range.cluster = 1U;
+    config->range.cluster = scip_layout_cluster(layout, LASER_STREAM_RATE);
     config->range.interval = 0U;
     config->range.scans = 0U;
 }

@@ -35,6 +35,9 @@ static const scene_mirror_t mirrors[] = {
     {367, 411, 105.0, 220.0, 0.0, 100.0},
     {106, 150, 115.0, 115.0, -115.0, 98.0},
     {618, 662, 107.0, 115.0, 107.0, 105.0},
+    /* The bracket of two beams, 42.5 degrees to either side, with the same distances along the ray. */
+    {244, 282, 115.0, 199.8, -77.7, 98.0},
+    {486, 524, 107.0, 193.9, 72.3, 105.0},
 };
 
 void scene_init(scene_t *scene, const scene_config_t *config, quadrotor_t *quadrotor, unsigned long seed)

@@ -355,6 +355,17 @@ void test_the_age_of_the_rays_follows_from_layout_and_bit_rate(void)
     TEST_ASSERT_UINT32_WITHIN(100, 70500 - 23 * 2 * 40, scip_rays_age_us(&scan, 250000));
 }
 
+void test_three_mirrors_at_115200_are_asked_for_by_two_steps_a_point(void)
+{
+    static const uint16_t expected[SCIP_LAYOUT_COUNT][2] = {{1U, 1U}, {1U, 1U}, {2U, 1U}};
+
+    for (uint16_t i = 0U; i < SCIP_LAYOUT_COUNT; i++) {
+        TEST_ASSERT_EQUAL_UINT16(expected[i][0], scip_layout_cluster(&scip_layouts[i], 115200U));
+        TEST_ASSERT_EQUAL_UINT16(expected[i][1], scip_layout_cluster(&scip_layouts[i], 250000U));
+    }
+    TEST_ASSERT_EQUAL_UINT16(8U, scip_layout_cluster(&scip_layouts[SCIP_LAYOUT_THREE_MIRRORS], 19200U));
+}
+
 /* --- a sensor's own limits
  * ---------------------------------------------------------------------------------------- */
 

@@ -424,6 +424,48 @@ void test_after_a_gap_of_the_frames_it_starts_anew(void)
     TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.7F, e.now.height_m);
 }
 
+/* Kalman's equations: gain P[i][0] / (P[0][0] + R), and P[i][j] less gain times P[0][j]. R is told by the
+ * gain. */
+void test_a_height_corrects_states_and_covariance_by_one_gain(void)
+{
+    fly(8.0, 0.005);
+    const estimator_t before = e;
+    const float(*const p)[ESTIMATOR_STATES] = before.covariance;
+    const altitude_t a = altitude((double)e.delayed.height_m + 0.01);
+    TEST_ASSERT_EQUAL(HEIGHT_FUSED, estimator_fuse_height(&e, &a, e.delayed_us, false));
+    const float per_m = (e.delayed.height_m - before.delayed.height_m) / 0.01F / p[0][0];
+    TEST_ASSERT_TRUE(per_m > 0.0F && per_m * p[0][0] < 0.9F);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.01F * per_m * p[1][0], e.delayed.speed_mps - before.delayed.speed_mps);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.01F * per_m * p[2][0], e.delayed.bias_mps2 - before.delayed.bias_mps2);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.01F * per_m * p[3][0],
+                             e.delayed.terrain_mps - before.delayed.terrain_mps);
+    for (uint16_t i = 0U; i < ESTIMATOR_STATES; i++) {
+        for (uint16_t j = 0U; j < ESTIMATOR_STATES; j++) {
+            const float less = per_m * p[i][0] * p[0][j];
+            TEST_ASSERT_FLOAT_WITHIN(1e-8F + 0.02F * fabsf(less), p[i][j] - less, e.covariance[i][j]);
+        }
+    }
+}
+
+/* Nothing of before the gap may move the new state, nor look like noise of the accelerometer. */
+void test_after_a_gap_nothing_of_before_is_left(void)
+{
+    hover();
+    noise_rms = 0.0;
+    const float noise_mps2 = e.noise_mps2;
+    time_us += 400000U;
+    bias = 3.0;
+    const imu_sample_t f = frame();
+    estimator_predict(&e, &f, no_model);
+    TEST_ASSERT_EQUAL_UINT16(0U, e.frame_count);
+    TEST_ASSERT_EQUAL_UINT32(f.arrival_us - 23600U, e.now_us);
+    TEST_ASSERT_EQUAL_UINT32(e.now_us, e.delayed_us);
+    TEST_ASSERT_TRUE(e.noise_mps2 <= noise_mps2);
+    const imu_sample_t next = frame();
+    estimator_predict(&e, &next, no_model);
+    TEST_ASSERT_TRUE_MESSAGE(e.noise_mps2 <= noise_mps2, "two equal frames show no noise");
+}
+
 /* Bars of 60 mm, every other scan over one: no steps of the terrain, but a rough floor, and the way is
  * between. */
 void test_bars_on_the_floor_are_noise_and_a_single_edge_is_not(void)
