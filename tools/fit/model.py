@@ -29,13 +29,13 @@ PULSE_S = 0.0068 + 0.0014
 FRAME_AGE_S = 0.0236            # of an acceleration when its frame is complete: control/est/estimator.c
 COMMAND_NOISE_N = 0.01          # per root of a hertz: steps of 0.3 N, each 4 ms sooner or later, 40 a second
 WANDER_S = 10.0
+SOFT_LIMIT_MPS2 = 0.3           # beyond a limit the integral waits, little by little: the likelihood must not jump
 FIRST = {"height": 0.1, "speed": 0.5, "push": 2.0}     # what is not known at the start of a stretch, rms
 OUTLIER = 4.0                   # standard deviations of a height's prediction error
 DIFFERENCE = 1e-4
 BLOCK_S = 1.0                   # scores within it may be correlated
-AT_REST, IDLE_MAX = 0.05, 2
-ROUGH = {"turbulence": 0.6, "turbulence_tau": 0.5, "climb_wander": 0.1}
-STARTS = {"THRUST": ({},), "CLIMB": ({"climb_deadband": 0.1}, {"climb_deadband": 0.4})}
+AT_REST, IDLE_MAX, REFUSED_MAX = 0.05, 2, 7
+STARTS = {"THRUST": ({}, {"gain": 0.8, "tau": 0.06}), "CLIMB": ({}, {"climb_deadband": 0.08, "climb_rate": 0.6})}
 INTERVAL = 1.645                # standard deviations of 90 %
 
 
@@ -102,9 +102,9 @@ class Stretch:
 
 
 def lagged(signal, lag_s):
-    """First-order lag, at rest at its first value."""
+    """First-order lag, at rest at its first value: of a signal given by the means of the steps, at the steps' beginnings."""
     keep = math.exp(-STEP_S / lag_s)
-    return lfilter([1.0 - keep], [1.0, -keep], signal, zi=[keep * signal[0]])[0]
+    return lfilter([0.0, 1.0 - keep], [1.0, -keep], signal, zi=[signal[0]])[0]
 
 
 def delayed(grid_s, signal, delay_s):
@@ -134,7 +134,8 @@ def one_thrust_motion(stretch, f):
     share = 1.0 + f["gain"] * (thrust_n - hover_n) / f["hover_thrust"]
     push = GRAVITY_MPS2 * (share * ground_effect(stretch.height_m) * stretch.upright - 1.0)
     keep = math.exp(-STEP_S * f["damping"])
-    speed = lfilter([0.0, (1.0 - keep) / f["damping"]], [1.0, -keep], push)
+    half = (1.0 - keep) / f["damping"] / 2.0
+    speed = lfilter([half, half], [1.0, -keep], push)
     return speed, push - f["damping"] * speed
 
 
@@ -165,11 +166,11 @@ def climb_motion(stretch, batch):
         asked = (wanted_mps - speed) / lag
         free = asked + integral
         given = numpy.clip(free, least, most)
-        integral = integral + (given == free) * asked * (STEP_S / CLIMB_INTEGRAL_S)
+        waits = numpy.minimum(numpy.abs(free - given) / SOFT_LIMIT_MPS2, 1.0)
+        integral = integral + (1.0 - waits) * asked * (STEP_S / CLIMB_INTEGRAL_S)
         before, push = push, push + follow * (given - push)
-        felt[k] = 0.5 * (before + push) - damping * speed
-        speeds[k] = speed
-        speed = speed + STEP_S * felt[k]
+        felt[k], speeds[k] = before - damping * speed, speed
+        speed = speed + STEP_S * (0.5 * (before + push) - damping * speed)
     return speeds.T, felt.T
 
 
@@ -400,34 +401,28 @@ def mark_outliers(stretch, kind, figures):
 
 def search(kind, stretches, start, held=None):
     likelihood = Likelihood(kind, stretches, held)
-    best = [math.inf]
+    state = {"best": math.inf, "idle": 0, "refused": 0}
 
     def progress(units):
-        """Enough: the intervals are far wider than what is still to be gained."""
-        gained, best[0] = best[0] - likelihood.fun(units), min(best[0], likelihood.fun(units))
-        progress.idle = progress.idle + 1 if gained < AT_REST else 0
-        if progress.idle >= IDLE_MAX:
+        """Enough: the intervals are far wider than what is still to be gained. A step that was refused makes the next one
+        shorter; that is no rest yet."""
+        value = likelihood.fun(units)
+        gained, state["best"] = state["best"] - value, min(state["best"], value)
+        state["refused"] = state["refused"] + 1 if gained == 0.0 else 0
+        state["idle"] += 0.0 < gained < AT_REST
+        if state["idle"] >= IDLE_MAX or state["refused"] >= REFUSED_MAX:
             raise StopIteration
 
-    progress.idle = 0
     found = minimize(likelihood.fun, likelihood.units(start), jac=likelihood.jac, hess=likelihood.hess, method="trust-exact",
                      callback=progress, options={"gtol": 0.05, "maxiter": 60, "initial_trust_radius": 1.0,
                                                  "max_trust_radius": 4.0})
     return likelihood, found.x, float(found.fun)
 
 
-def approach(kind, stretches, other):
-    """Figures near the best, from this start. First with disturbances that forgive much, so that a wrong start leaves no
-    valley to be caught in."""
-    rough = {name: value for name, value in ROUGH.items() if name in KINDS[kind]}
-    likelihood, units, _ = search(kind, stretches, start_of(kind, stretches) | other, rough)
-    return likelihood.figures(units) | {name: KINDS[kind][name].median for name in rough}
-
-
 def best_of(kind, stretches):
-    """The most likely of what several starts lead to: there are valleys (a strong, slow vehicle in thick air looks much like
-    a weak, quick one), and a deadband has more than one."""
-    starts = [start_of(kind, stretches)] + [approach(kind, stretches, other) for other in STARTS[kind]]
+    """The most likely of what several starts lead to: there are valleys, and a strong, slow vehicle in thick air looks much
+    like a weak, quick one."""
+    starts = [start_of(kind, stretches) | other for other in STARTS[kind]]
     return min((search(kind, stretches, start) for start in starts), key=lambda one: one[2])
 
 

@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""acceptance.py [--vehicles N] [--seed N] [--law EST,PID] ...: does fit find vehicles that nobody told it?
+
+Draws vehicles: throttle THRUST or CLIMB in turn, mass +-20 %, motors' lag 60 to 150 ms, dead time 0 to 40 ms, gain (or climb
+rate) +-30 %, damping, turbulence, noises. Each flies `experiment` once with the stock gains; fit sees the log alone. Then come
+the errors, how often the 90 % intervals hold the truth, and what must be. With --law also: each vehicle is tuned for on its
+fit, and flies the true vehicle with stock and with tuned gains. Results are kept in DIR as they come; a rerun goes on.
+Exit status: 0; 1 something is not as it must be; 2 usage.
+"""
+import argparse
+import json
+import os
+import random
+import subprocess
+import sys
+from pathlib import Path
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import fit  # noqa: E402
+import flight_log  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[2]
+MIDDLE_S = 14.0                 # of the experiment: the hover thrust is compared there, the battery sags
+SEED_STEP = 1_000_000
+MUST = {"hover": 0.02, "authority": 0.10, "response": 0.015}
+KIND_MUST, HOLDS_MUST = 29 / 30, 24 / 30
+
+
+def vehicle(seed, number):
+    """Plant figures of a vehicle. Nothing but these two counts."""
+    rng = random.Random(f"vehicle {seed}/{number}")
+    figures = {"hover_thrust": 7.0 * rng.uniform(0.8, 1.2), "tau": rng.uniform(0.06, 0.15),
+               "tdelay": rng.uniform(0.0, 0.04), "damping": rng.uniform(1.5, 3.0), "sag": rng.uniform(0.0, 0.0015),
+               "turbulence": 0.2 * rng.uniform(0.8, 1.5), "acc_bias": rng.uniform(-0.25, 0.25),
+               "acc_noise": 0.4 * rng.uniform(1.0, 2.0), "common_noise": 3.0 * rng.uniform(1.0, 2.0),
+               "attitude_rms": 0.035 * rng.uniform(0.8, 1.5)}
+    strength = rng.uniform(0.7, 1.3)
+    if number % 2 == 1:
+        return figures | {"gain": strength}
+    return figures | {"climb_rate": 0.65 * strength, "climb_neutral": 7.0 + rng.uniform(-0.5, 0.8),
+                      "climb_deadband": rng.uniform(0.0, 0.4), "climb_lag": rng.uniform(0.2, 0.5)}
+
+
+def truth(figures):
+    if "climb_rate" in figures:
+        return {"hover": figures["climb_neutral"], "authority": figures["climb_rate"],
+                "response": figures["tau"] + figures["tdelay"]}
+    return {"hover": figures["hover_thrust"] * (1.0 + figures["sag"] * MIDDLE_S),
+            "authority": 9.80665 * figures["gain"] / figures["hover_thrust"], "response": figures["tau"] + figures["tdelay"]}
+
+
+def words(figures):
+    return [word for name, value in figures.items() for word in ("--set", f"plant.{name}={value:.9g}")]
+
+
+def experiment(program, figures, seed, path):
+    subprocess.run([program, "fly", "experiment", "--seed", str(seed), *words(figures), "--csv", str(path)], check=False,
+                   stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+
+
+def hover_interval(found):
+    """At MIDDLE_S, with what the sag adds."""
+    if found["throttle"] == "CLIMB":
+        return found["plant.climb_neutral"]
+    rng = fit.numpy.random.default_rng(1)
+    units = rng.multivariate_normal(found["units"], found["covariance"], 2000)
+    figures = fit.model.KINDS["THRUST"]
+    drawn = []
+    for unit in units:
+        f = {name: figures[name].back(figures[name].prior()[0] + u * figures[name].prior()[1])
+             for name, u in zip(found["names"], unit, strict=True)}
+        drawn.append(f["hover_thrust"] * (1.0 + f["sag"] * MIDDLE_S))
+    value = found["plant.hover_thrust"]["value"] * (1.0 + found["plant.sag"]["value"] * MIDDLE_S)
+    low, high = fit.quantiles(drawn)
+    return {"value": value, "low": low, "high": high}
+
+
+def one(program, seed, number, folder):
+    """A record of one vehicle, for the table."""
+    figures = vehicle(seed, number)
+    log, out = folder / f"{seed}-{number}.csv", folder / f"{seed}-{number}.json"
+    experiment(program, figures, seed * SEED_STEP + number, log)
+    try:
+        found, _, _ = fit.fit_logs([log])
+    except flight_log.Unfit as error:
+        return {"number": number, "unfit": str(error)}
+    out.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    log.unlink()
+    true = truth(figures)
+    kind = "CLIMB" if "climb_rate" in figures else "THRUST"
+    seen = {"hover": hover_interval(found), "authority": found["authority"], "response": found["response"]}
+    record = {"number": number, "kind": kind, "found": found["throttle"], "better_by": found["better_by"]}
+    for name, value in true.items():
+        f = seen[name]
+        off = f["value"] - value
+        record[name] = {"true": value, **f, "error": off if name == "response" else off / value,
+                        "holds": f["low"] <= value <= f["high"]}
+    return record
+
+
+def row(record):
+    if "unfit" in record:
+        return f"{record['number']:3} {record['unfit']}"
+    cells = [f"{record['number']:3} {record['kind']:6} {record['found']:6} {record['better_by']:6.0f}"]
+    for name in MUST:
+        f = record[name]
+        error = f"{1e3 * f['error']:+6.1f} ms" if name == "response" else f"{100 * f['error']:+6.1f} % "
+        cells.append(f"{name} {error} {'holds' if f['holds'] else 'MISSES'}")
+    return "  ".join(cells)
+
+
+def verdicts(records):
+    """[(what, reached, of, must)]"""
+    n = len(records)
+    good = [r for r in records if "unfit" not in r and r["kind"] == r["found"]]
+    yield "kind of throttle right", len(good), n, KIND_MUST * n
+    for name, limit in MUST.items():
+        yield f"{name} within {limit:g}", sum(abs(r[name]["error"]) <= limit for r in good), n, n
+        yield f"interval of {name} holds the truth", sum(r[name]["holds"] for r in good), n, HOLDS_MUST * n
+
+
+def known_records(path):
+    if not path.exists():
+        return {}
+    return {record["number"]: record for record in map(json.loads, path.read_text(encoding="utf-8").splitlines())}
+
+
+def read_arguments(argv):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--vehicles", type=int, default=30)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--program", type=Path, default=ROOT / "build/plomada")
+    parser.add_argument("--out", type=Path, default=ROOT / "build/fit-acceptance", metavar="DIR")
+    return parser.parse_args(argv)
+
+
+def main(argv=None):
+    arguments = read_arguments(argv)
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    kept = arguments.out / f"{arguments.seed}.jsonl"
+    records = known_records(kept)
+    for number in range(1, arguments.vehicles + 1):
+        if number not in records:
+            records[number] = one(str(arguments.program.resolve()), arguments.seed, number, arguments.out)
+            with kept.open("a", encoding="utf-8") as file:
+                file.write(json.dumps(records[number], default=float) + "\n")
+        print(row(records[number]), flush=True)
+    found = list(verdicts([records[number] for number in range(1, arguments.vehicles + 1)]))
+    for what, reached, of, must in found:
+        print(f"{what}: {reached} of {of}{'' if reached >= must else ' MISSED'}")
+    return 0 if all(reached >= must for _, reached, _, must in found) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
