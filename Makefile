@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot scan campaign fit tune seed-study ground ground-vehicle ground-open test test-long format mutants test-ground port size faults fuzz prove bench coverage firmware flash check-ti clean
+.PHONY: help build fly plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open test test-long format mutants test-ground port size faults fuzz prove bench coverage firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -63,11 +63,16 @@ fit: ## Find the vehicle in LOG="a.csv b.csv", flights recorded by `#LOG RATE FA
 	@$(setup) build campaign
 	@$(python) tools/fit/fit.py $(LOG) --out $(or $(OUT),build/vehicle.json) $(ARGS)
 
-tune: ## Search the gains of LAW=EST on drawn vehicles; prints the commands that set the best (ARGS=--help)
-	@test -n "$(LAW)" || { echo "usage: make tune LAW=NAME [ARGS=--help]" >&2; exit 2; }
+tune: ## Search the gains of LAW=EST on drawn vehicles, or on VEHICLE=build/vehicle.json with a forecast (ARGS=--help)
+	@test -n "$(LAW)$(VEHICLE)" || { echo "usage: make tune LAW=NAME [ARGS=--help], or make tune VEHICLE=FILE [LAW=EST|PID]" >&2; exit 2; }
 	@$(setup) build campaign
 	@$(MAKE) build
-	@$(python) tools/tune/tune.py $(LAW) $(ARGS)
+	@$(python) $(if $(VEHICLE),tools/fit/tune_vehicle.py $(VEHICLE) --law $(or $(LAW),EST),tools/tune/tune.py $(LAW)) $(ARGS)
+
+verdict: ## Did the forecast of `make tune VEHICLE=` hold in LOG=next.csv? And what in the model was wrong
+	@test -n "$(LOG)" || { echo "usage: make verdict LOG=next.csv" >&2; exit 2; }
+	@$(setup) build campaign
+	@$(python) tools/fit/verdict.py $(LOG) $(ARGS)
 
 seed-study: ## Which autopilot did the seed fly? And its simulations of chapter 4.1; tables, CSV, picture in build/ (ARGS=--help)
 	@$(setup) build campaign

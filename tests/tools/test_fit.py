@@ -11,6 +11,7 @@ sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = None
 THRUST = {"hover_thrust": 8.1, "gain": 1.2, "tau": 0.08, "tdelay": 0.02}
+UNTIL_S = 16.0                  # half an experiment: it takes half the time
 CLIMB = {"climb_rate": 0.65, "climb_neutral": 7.4, "climb_deadband": 0.2, "climb_lag": 0.4}
 
 
@@ -24,6 +25,8 @@ class Fit(unittest.TestCase):
         words = [word for name, value in plant.items() for word in ("--set", f"plant.{name}={value}")]
         subprocess.run([PROGRAM, "fly", scenario, "--seed", str(seed), *words, "--csv", path], check=False,
                        stdout=subprocess.DEVNULL)
+        rows = path.read_text().splitlines()
+        path.write_text("\n".join(row for row in rows if not row[0].isdigit() or float(row.split(",")[0]) < UNTIL_S) + "\n")
         return path
 
     def fit(self, *logs):
@@ -57,6 +60,25 @@ class Fit(unittest.TestCase):
         self.assertEqual(vehicle["throttle"], "CLIMB", done.stdout)
         self.assert_near(vehicle, "plant.climb_neutral", 7.4, 0.02)
         self.assert_near(vehicle, "authority", 0.65, 0.15)
+
+    def verdict(self, log, expected, vehicle):
+        (self.dir / "old.json").write_text(json.dumps(vehicle))
+        (self.dir / "forecast.json").write_text(json.dumps({"vehicle": str(self.dir / "old.json"), "expected": expected}))
+        return subprocess.run([sys.executable, "-B", ROOT / "tools/fit/verdict.py", log, "--forecast",
+                               self.dir / "forecast.json"], capture_output=True, text=True, check=False)
+
+    def test_a_forecast_that_holds_and_one_that_does_not(self):
+        log = self.fly(4714, {}, "est-60cm-ramp")
+        for low, high, status, words in ((4.0, 25.0, 0, "the forecast held"), (40.0, 60.0, 1, "NOT HELD")):
+            done = self.verdict(log, {"hover_rms_mm": {"value": low, "low": low, "high": high}}, {"throttle": "THRUST"})
+            self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+            self.assertIn(words, done.stdout)
+            self.assertIn("the ground steps", done.stdout)
+
+    def test_what_has_moved_since_is_named(self):
+        old = {"throttle": "THRUST", "plant.hover_thrust": {"value": 9.0, "low": 8.9, "high": 9.1}}
+        done = self.verdict(self.fly(4716, {"hover_thrust": 7.4}), {}, old)
+        self.assertRegex(done.stdout, r"plant.hover_thrust is 7\.\d+, not 9")
 
     def test_a_log_without_accelerations_is_refused_and_the_reason_said(self):
         path = self.fly(4713, {}, "pid-40cm")

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""acceptance.py [--vehicles N] [--seed N] [--law EST,PID] ...: does fit find vehicles that nobody told it?
+"""acceptance.py [--vehicles N] [--seed N] [--tune EST,PID] ...: does fit find vehicles that nobody told it?
 
 Draws vehicles: throttle THRUST or CLIMB in turn, mass +-20 %, motors' lag 60 to 150 ms, dead time 0 to 40 ms, gain (or climb
 rate) +-30 %, damping, turbulence, noises. Each flies `experiment` once with the stock gains; fit sees the log alone. Then come
-the errors, how often the 90 % intervals hold the truth, and what must be. With --law also: each vehicle is tuned for on its
+the errors, how often the 90 % intervals hold the truth, and what must be. With --tune also: each vehicle is tuned for on its
 fit, and flies the true vehicle with stock and with tuned gains. Results are kept in DIR as they come; a rerun goes on.
 Exit status: 0; 1 something is not as it must be; 2 usage.
 """
@@ -19,10 +19,13 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import fit  # noqa: E402
 import flight_log  # noqa: E402
+import forecast  # noqa: E402
+import tune_vehicle  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 MIDDLE_S = 14.0                 # of the experiment: the hover thrust is compared there, the battery sags
 SEED_STEP = 1_000_000
+DRAWS, BUDGET, FORECAST, JUDGED = 8, 30, 40, 5     # flights of a candidate, candidates, flights of a forecast, of a verdict
 MUST = {"hover": 0.02, "authority": 0.10, "response": 0.015}
 KIND_MUST, HOLDS_MUST = 29 / 30, 24 / 30
 
@@ -99,6 +102,24 @@ def one(program, seed, number, folder):
     return record
 
 
+def tuned(program, law, vehicle_file, figures, seed, number):
+    """The true vehicle with stock and with tuned gains, and whether the forecast held its next flight."""
+    found = json.loads(vehicle_file.read_text(encoding="utf-8"))
+    settings, _, _ = tune_vehicle.tune(program, found, law, DRAWS, BUDGET)
+    expected = tune_vehicle.predict(program, found, law, settings, FORECAST)
+    stock = ({"LAW": "PID"} if law == "PID" else {}) | tune_vehicle.STOCK[law]
+    scenario = tune_vehicle.SCENARIOS[law]
+    seeds = [900_000_000 + seed * 10_000 + number * 10 + k for k in range(JUDGED)]
+    hover = {}
+    for name, typed in (("stock", stock), ("tuned", settings)):
+        flown = forecast.fly_all(program, [forecast.words(scenario, s, typed, figures) for s in seeds])
+        bad = [f["failed"] or f["takeovers"] > 0 or f["hover_rms_mm"] is None for f in flown]
+        hover[name] = sum(tune_vehicle.FAILURE_MM if b else f["hover_rms_mm"] for b, f in zip(bad, flown, strict=True)) / JUDGED
+    seen = forecast.fly_logged(program, forecast.words(scenario, seeds[0], settings, figures))
+    return {"settings": settings, **hover, "expected": expected, "seen": seen,
+            "holds": {name: seen[name] is None or f["low"] <= seen[name] <= f["high"] for name, f in expected.items()}}
+
+
 def row(record):
     if "unfit" in record:
         return f"{record['number']:3} {record['unfit']}"
@@ -107,6 +128,10 @@ def row(record):
         f = record[name]
         error = f"{1e3 * f['error']:+6.1f} ms" if name == "response" else f"{100 * f['error']:+6.1f} % "
         cells.append(f"{name} {error} {'holds' if f['holds'] else 'MISSES'}")
+    for law in ("EST", "PID"):
+        if law in record:
+            cells.append(f"{law} hover {record[law]['stock']:.1f} -> {record[law]['tuned']:.1f} mm, missed: "
+                         f"{' '.join(name for name, good in record[law]['holds'].items() if not good) or '-'}")
     return "  ".join(cells)
 
 
@@ -120,6 +145,15 @@ def verdicts(records):
         yield f"interval of {name} holds the truth", sum(r[name]["holds"] for r in good), n, HOLDS_MUST * n
 
 
+def tuning_verdicts(records, law):
+    flown = [r[law] for r in records if law in r]
+    n = len(flown)
+    yield f"{law}: hover better than with stock gains", sum(r["tuned"] < r["stock"] for r in flown), n, HOLDS_MUST * n
+    yield f"{law}: never worse by more than 10 %", sum(r["tuned"] <= 1.1 * r["stock"] for r in flown), n, n
+    for name in ("hover_rms_mm", "recovery_s", "undershoot_mm"):
+        yield f"{law}: forecast of {name} holds", sum(r["holds"].get(name, False) for r in flown), n, HOLDS_MUST * n
+
+
 def known_records(path):
     if not path.exists():
         return {}
@@ -130,6 +164,7 @@ def read_arguments(argv):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--vehicles", type=int, default=30)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--tune", default="", metavar="LAW,LAW", help="also tune for each vehicle: EST, PID")
     parser.add_argument("--program", type=Path, default=ROOT / "build/plomada")
     parser.add_argument("--out", type=Path, default=ROOT / "build/fit-acceptance", metavar="DIR")
     return parser.parse_args(argv)
@@ -139,14 +174,24 @@ def main(argv=None):
     arguments = read_arguments(argv)
     arguments.out.mkdir(parents=True, exist_ok=True)
     kept = arguments.out / f"{arguments.seed}.jsonl"
-    records = known_records(kept)
+    known = known_records(kept)
+    records = dict(known)
+    program, laws = str(arguments.program.resolve()), [law for law in arguments.tune.split(",") if law]
     for number in range(1, arguments.vehicles + 1):
         if number not in records:
-            records[number] = one(str(arguments.program.resolve()), arguments.seed, number, arguments.out)
+            records[number] = one(program, arguments.seed, number, arguments.out)
+        missing = [law for law in laws if law not in records[number] and "unfit" not in records[number]]
+        for law in missing:
+            file = arguments.out / f"{arguments.seed}-{number}.json"
+            records[number][law] = tuned(program, law, file, vehicle(arguments.seed, number), arguments.seed, number)
+        if number not in known or missing:
             with kept.open("a", encoding="utf-8") as file:
                 file.write(json.dumps(records[number], default=float) + "\n")
         print(row(records[number]), flush=True)
-    found = list(verdicts([records[number] for number in range(1, arguments.vehicles + 1)]))
+    chosen = [records[number] for number in range(1, arguments.vehicles + 1)]
+    found = list(verdicts(chosen))
+    for law in laws:
+        found += tuning_verdicts(chosen, law)
     for what, reached, of, must in found:
         print(f"{what}: {reached} of {of}{'' if reached >= must else ' MISSED'}")
     return 0 if all(reached >= must for _, reached, _, must in found) else 1

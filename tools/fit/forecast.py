@@ -1,0 +1,138 @@
+"""A vehicle of fit, drawn from its uncertainty, in flights; and what a log says of a flight's quality."""
+import concurrent.futures
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy
+
+import flight_log
+import model
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools/campaign"))
+import fleet  # noqa: E402
+
+EDGE_M, EDGE_S = 0.12, 0.3      # a height that jumps so far within that time has passed an edge
+SETTLED_S = 3.5                 # after a change of the reference
+AFTER_EDGE_S = 3.98             # as the scenarios' metrics
+WITHIN_M = 0.05
+FIGURES = {"hover_rms_mm": "mm", "recovery_s": "s", "undershoot_mm": "mm", "thrust_std_n": "N"}
+
+
+def load(path):
+    return json.loads(Path(path).read_text(encoding="utf-8"))
+
+
+def plant_of(kind, figures):
+    """Plant figures for --set."""
+    plant = {name: value for name, value in figures.items() if name not in ("height_noise", "climb_wander")}
+    plant["common_noise"] = math.sqrt(max((1e3 * figures["height_noise"])**2 - 25.0 / 35.0, 0.01))
+    plant["tdelay"] = max(plant["tdelay"], 0.0)
+    if kind == "THRUST":
+        plant["climb_rate"] = 0.0
+    return plant
+
+
+def draws(vehicle, count, seed):
+    """[plant figures] of vehicles that the flights allow."""
+    rng = numpy.random.default_rng(seed)
+    table = model.KINDS[vehicle["throttle"]]
+    found = []
+    for units in rng.multivariate_normal(vehicle["units"], vehicle["covariance"], count):
+        figures = {name: table[name].back(table[name].prior()[0] + unit * table[name].prior()[1])
+                   for name, unit in zip(vehicle["names"], units, strict=True)}
+        found.append(plant_of(vehicle["throttle"], figures))
+    return found
+
+
+def words(scenario, seed, settings, plant):
+    result = [scenario, "--seed", str(seed)]
+    for name, value in settings.items():
+        result += ["--set", f"{name}={value}"]
+    for name, value in plant.items():
+        result += ["--set", f"plant.{name}={value:.9g}"]
+    return result
+
+
+def fly_all(program, flights):
+    """Figures of [arguments], in their order."""
+    with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        return list(pool.map(lambda arguments: fleet.fly(program, arguments), flights))
+
+
+def fly_logged(program, arguments):
+    with tempfile.TemporaryDirectory(prefix="plomada-") as scratch:
+        path = Path(scratch, "flight.csv")
+        subprocess.run([program, "fly", *arguments, "--csv", str(path)], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL, check=False)
+        return quality(path)
+
+
+def fly_all_logged(program, flights):
+    with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        return list(pool.map(lambda arguments: fly_logged(program, arguments), flights))
+
+
+def edges(t_s, height_m, reference_m):
+    """Instants at which the ground steps away under a steady reference."""
+    found = []
+    for k in range(1, len(t_s)):
+        before = numpy.searchsorted(t_s, t_s[k] - EDGE_S)
+        steady = reference_m[before] == reference_m[k] and t_s[k] - t_s[before] > 0.5 * EDGE_S
+        jumped = abs(height_m[k] - height_m[before]) > EDGE_M and abs(height_m[k] - height_m[k - 1]) > 0.5 * EDGE_M
+        if steady and jumped and (not found or t_s[k] - found[-1] > AFTER_EDGE_S):
+            found.append(t_s[k])
+    return found
+
+
+def held(path):
+    """Times, measured heights, references and thrusts while a reference is held."""
+    c = flight_log.columns(path)
+    good = numpy.array([state in flight_log.FLYING for state in c["state"]]) & (c["ref_m"] > 0.0) & ~numpy.isnan(c["meas_m"])
+    return [c[name][good] for name in ("t_s", "meas_m", "ref_m", "thrust_n")]
+
+
+def has_edges(path):
+    return bool(edges(*held(path)[:3]))
+
+
+def quality(path):
+    """{figure: value or None} of a log, by the measured heights: what a real flight can be compared by."""
+    t_s, height_m, reference_m, thrust_n = held(path)
+    if len(t_s) < 2:
+        return dict.fromkeys(FIGURES)
+    error_m = height_m - reference_m
+    changes = [t_s[0], *t_s[1:][numpy.diff(reference_m) != 0.0]]
+    passed = edges(t_s, height_m, reference_m)
+    steady = numpy.ones(len(t_s), bool)
+    for change in changes:
+        steady &= (t_s < change) | (t_s > change + SETTLED_S)
+    for edge in passed:
+        steady &= (t_s < edge - AFTER_EDGE_S) | (t_s > edge + AFTER_EDGE_S)
+    result = dict.fromkeys(FIGURES)
+    if steady.sum() > 50:
+        result["hover_rms_mm"] = 1e3 * float(numpy.sqrt(numpy.mean(error_m[steady]**2)))
+        result["thrust_std_n"] = float(numpy.std(thrust_n[steady]))
+    if passed:
+        after = (t_s >= passed[-1]) & (t_s <= passed[-1] + AFTER_EDGE_S)
+        off = numpy.abs(error_m[after]) > WITHIN_M
+        result["recovery_s"] = float(t_s[after][off][-1] - passed[-1]) if off.any() else 0.0
+        first = numpy.sign(error_m[after][0])
+        result["undershoot_mm"] = 1e3 * float(max(0.0, numpy.max(-first * error_m[after])))
+    return result
+
+
+def intervals(flown):
+    """{figure: {"value" (median), "low", "high"}} of 90 % of the flights."""
+    result = {}
+    for name in FIGURES:
+        values = [figures[name] for figures in flown if figures[name] is not None]
+        if len(values) > len(flown) / 2:
+            low, middle, high = numpy.quantile(values, (0.05, 0.5, 0.95))
+            result[name] = {"value": float(middle), "low": float(low), "high": float(high)}
+    return result
