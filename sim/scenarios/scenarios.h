@@ -9,7 +9,7 @@
 
 #define SCENARIO_SETTINGS_MAX 16
 #define SCENARIO_EXPECTATIONS_MAX 10
-#define SCENARIO_LATER_MAX 24
+#define SCENARIO_LATER_MAX 40
 
 typedef struct {
     double t_s;               /* complete at the receiver */

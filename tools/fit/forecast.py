@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/campaign"))
 import fleet  # noqa: E402
 
-EDGE_M, EDGE_S = 0.12, 0.3      # a height that jumps so far within that time has passed an edge
+EDGE_M, EDGE_S = 0.15, 0.3      # a height that jumps so far from scan to scan, the reference steady so long, has passed an edge
 SETTLED_S = 3.5                 # after a change of the reference
 AFTER_EDGE_S = 3.98             # as the scenarios' metrics
 WITHIN_M = 0.05
@@ -84,7 +84,7 @@ def edges(t_s, height_m, reference_m):
     for k in range(1, len(t_s)):
         before = numpy.searchsorted(t_s, t_s[k] - EDGE_S)
         steady = reference_m[before] == reference_m[k] and t_s[k] - t_s[before] > 0.5 * EDGE_S
-        jumped = abs(height_m[k] - height_m[before]) > EDGE_M and abs(height_m[k] - height_m[k - 1]) > 0.5 * EDGE_M
+        jumped = abs(height_m[k] - height_m[k - 1]) > EDGE_M
         if steady and jumped and (not found or t_s[k] - found[-1] > AFTER_EDGE_S):
             found.append(t_s[k])
     return found
