@@ -38,9 +38,8 @@ static bool is_end(char character)
 /* False for the second character of a line end of two. */
 static bool end_line(telecommand_collector_t *collector, char character, char previous)
 {
-    const bool second = (character == '\n' && previous == '\r') || (character == '\r' && previous == '\n');
-
-    if (second) {
+    /* Not LF CR: behind a line of a packet list, which ends with LF, Enter sends CR, and must be a line. */
+    if (character == '\n' && previous == '\r') {
         collector->previous = '\0';
         return false;
     }

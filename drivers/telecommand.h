@@ -36,7 +36,7 @@ typedef struct {
 
 void telecommand_collector_init(telecommand_collector_t *collector);
 /* Processes one octet. Returns true at a LF, CR or Ctrl-C: then collector->line is complete, and valid
- * until the next call. CR LF and LF CR end one line. NUL is ignored. */
+ * until the next call. CR LF ends one line, LF CR two. NUL is ignored. */
 bool telecommand_collect(telecommand_collector_t *collector, octet_t octet);
 
 /* Call this when the UART lost or damaged octets. The present line is then marked as damaged. */

@@ -108,7 +108,7 @@ void test_a_line_without_a_sharp_is_bare_an_empty_one_too(void)
         assert_error(TELECOMMAND_BARE, lines[i]);
         TEST_ASSERT_EQUAL(0U, collector.line.length);
     }
-    TEST_ASSERT_EQUAL(6U, feed("\r\n\r\n\n\r#E 5\r\r\n\n"));
+    TEST_ASSERT_EQUAL(7U, feed("\r\n\r\n\n\r#E 5\r\r\n\n"));
     assert_parses("#KP 0.015\n", "KP", "0.015");
     TEST_ASSERT_FALSE(collector.line.bare);
 }

@@ -58,6 +58,9 @@ static void run_session(void *argument, void *result)
     for (const char *next = session->lines; *next != '\0'; next = strchr(next, '\n') + 1) {
         if (*next == '@') {
             watch_for(f, atof(next + 1));
+        } else if (*next == '~') { /* the Enter key of XCTU's console */
+            board_type("\r", 1);
+            watch_for(f, 0.3);
         } else {
             board_type(next, strcspn(next, "\n") + 1);
             watch_for(f, 0.3);
@@ -126,10 +129,11 @@ void test_any_line_ends_it_a_damaged_one_too(void)
 void test_enter_a_word_or_ctrl_c_end_it_too(void)
 {
     static const char *const lines[] = {
-        "#LINK 60\n#CALIBRATE 200 1\n@2\n\n@0.4\n", "#LINK 60\n#CALIBRATE 200 1\n@2\nstop\n@0.4\n",
-        "#LINK 60\n#CALIBRATE 200 1\n@2\n\x03\n@0.4\n", "#LINK 60\n#CALIBRATE 200 1\n@2\n#STOP\n@0.4\n"};
+        "#LINK 60\n#CALIBRATE 200 1\n@2\n~\n@0.4\n", "#LINK 60\n#CALIBRATE 200 1\n@2\n\n@0.4\n",
+        "#LINK 60\n#CALIBRATE 200 1\n@2\nstop\n@0.4\n", "#LINK 60\n#CALIBRATE 200 1\n@2\n\x03\n@0.4\n",
+        "#LINK 60\n#CALIBRATE 200 1\n@2\n#STOP\n@0.4\n"};
 
-    for (int i = 0; i < 4; i++) {
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         run(true, lines[i]);
         TEST_ASSERT_TRUE(flown.shortest_us < IDLE_US - 150);
         TEST_ASSERT_TRUE_MESSAGE(answered("OK CALIBRATE end:COMMAND"), lines[i]);
