@@ -92,10 +92,11 @@ void test_the_collected_text_runs_from_the_sharp_to_before_the_line_end(void)
     TEST_ASSERT_FALSE(collector.line.overlong);
 }
 
-void test_lf_cr_and_cr_lf_end_one_line_each(void)
+void test_lf_cr_and_cr_lf_end_one_line_each_and_cr_behind_lf_another(void)
 {
     TEST_ASSERT_EQUAL(3U, feed("#A 1\n#B 2\r#C 3\r\n"));
-    TEST_ASSERT_EQUAL(1U, feed("#D 4\n\r"));
+    TEST_ASSERT_EQUAL(2U, feed("#D 4\n\r"));
+    TEST_ASSERT_TRUE(collector.line.bare);
     TEST_ASSERT_EQUAL(1U, feed_octets("#E 5\r\0\n", 7U));
     TEST_ASSERT_EQUAL(0U, collector.strays);
 }
