@@ -704,6 +704,17 @@ void test_a_reference_or_setr_0_leaves_a_pilots_vehicle_floating(void)
     TEST_ASSERT_EQUAL_FLOAT(0.0F, s.reference_m);
 }
 
+void test_an_order_to_land_in_the_pilots_turn_is_executed_when_he_gives_back(void)
+{
+    fly();
+    pilot_takes_it(600.0F);
+    setr(0.0F);
+    watch(600.0F, 20);
+    state_is(FLIGHT_FLOATING);
+    pilot_gives_it_back(600.0F);
+    state_is(FLIGHT_LANDING);
+}
+
 void test_a_pilot_who_lands_withdraws_the_reference(void)
 {
     fly();

@@ -50,8 +50,7 @@ void test_five_hours_of_hover_end_on_the_ground_though_radio_and_scanner_are_los
 {
     fly("--duration 18000 --set plant.clock_ppm=50 --set LINK=10 --set plant.radio_lost_start=17985 "
         "--set plant.scanner_restart_start=17997");
-    within("hover_rms_mm", 5.0,
-           20.0); /* 16.5; 10.6 before the floor's roughness was measured as fast as now */
+    within("hover_rms_mm", 5.0, 12.0);
     within("hover_mean_error_mm", -5.0, 5.0);
     within("max_error_mm", 20.0, 601.0);
     within("highest_mm", 0.0, 80.0);
