@@ -156,7 +156,7 @@ coverage: ## Lines of drivers/ and control/, at least 95 %; lines and branches o
 	@find build-coverage -name '*.gcda' -delete
 	@$(ctest) build-coverage
 	@gcovr --root . --object-directory build-coverage --filter control/ --filter drivers/ --fail-under-line 95
-	@gcovr --root . --object-directory build-coverage --filter drivers/scip_ --filter drivers/urg_link \
+	@gcovr --root . --object-directory build-coverage --filter drivers/scip_ --filter drivers/urg \
 	    --fail-under-line 100 --fail-under-branch 100 --branches
 
 firmware: ## The target image, by TI's tools without CCS: docs/flashing.md

@@ -1,8 +1,7 @@
 /* How the parser thinks. It works line by line: the state says which line is to come, and a line is looked at
- * when its LF is there. A block of points that lies whole in the octets handed over is decoded where it lies,
- * and so is the echo of a stream; every other line, and every line in doubt, is first copied into
- * parser->line. Both ways must give the same result: the copy is the reference, the way in place only skips
- * it.
+ * when its LF is there. A line of a scan that lies whole in the octets handed over is looked at where it
+ * lies; every other line, and every line in doubt, is first copied into parser->line. Both ways must give the
+ * same result: the copy is the reference, the way in place only skips it.
  *
  * The 6-bit sums are weak: one frame of 64 with random content passes. So all else that is known is asked
  * too: echo, exact lengths, the range of every character, the order of time stamps. After damage the same
@@ -14,6 +13,7 @@
 
 #define STAMP_MASK ((uint32_t)0xFFFFFFUL)
 #define STATUS_OCTETS 4U                      /* two characters, sum, LF */
+#define TIME_OCTETS 6U                        /* four characters, sum, LF */
 #define STAMP_STEP_MAX_MS ((uint32_t)10000UL) /* two frames of one stream are never further apart */
 
 enum {
@@ -222,29 +222,38 @@ static scip_event_t end_of_status(scip_parser_t *parser)
     return SCIP_NOTHING;
 }
 
-static scip_event_t begin_data(scip_parser_t *parser, uint32_t stamp)
+static bool has_room(const scip_parser_t *parser)
 {
-    if (parser->scan != NULL && parser->scan->capacity < parser->awaited.points) {
-        return damage(parser, SCIP_DAMAGE_LENGTH);
-    }
+    return parser->scan == NULL || parser->scan->capacity >= parser->awaited.points;
+}
+
+static void begin_data(scip_parser_t *parser, uint32_t stamp)
+{
     parser->timestamp_ms = stamp;
     parser->characters_left = (uint16_t)(parser->awaited.characters * parser->awaited.points);
     parser->progress = (scip_progress_t){.points = 0U};
     parser->state = DATA;
-    return SCIP_NOTHING;
+}
+
+static uint32_t read_stamp(const octet_t *text, check_t *check)
+{
+    uint32_t stamp = 0U;
+    *check = check_of(4U);
+    for (uint16_t i = 0U; i < 4U; i++) {
+        stamp = (stamp << 6) | (uint32_t)six_bits(check, text[i]);
+    }
+    return stamp;
 }
 
 static scip_event_t end_of_time(scip_parser_t *parser)
 {
-    check_t check = check_of(4U);
-    uint32_t stamp = 0U;
+    check_t check;
+    uint32_t stamp;
     scip_damage_t cause;
     if (!line_has(parser, 4U)) {
         return damage(parser, SCIP_DAMAGE_LENGTH);
     }
-    for (uint16_t i = 0U; i < 4U; i++) {
-        stamp = (stamp << 6) | (uint32_t)six_bits(&check, parser->line[i]);
-    }
+    stamp = read_stamp(parser->line, &check);
     cause = verdict(&check, parser->line[4]);
     if (cause != SCIP_DAMAGE_NONE) {
         return damage(parser, cause);
@@ -254,7 +263,11 @@ static scip_event_t end_of_time(scip_parser_t *parser)
         parser->state = REPLY_END;
         return SCIP_NOTHING;
     }
-    return begin_data(parser, stamp);
+    if (!has_room(parser)) {
+        return damage(parser, SCIP_DAMAGE_LENGTH);
+    }
+    begin_data(parser, stamp);
+    return SCIP_NOTHING;
 }
 
 /* Two characters a point never straddle a block. Both are summed and checked at once, 16 bits apart: the sums
@@ -631,21 +644,60 @@ static size_t block_in_place(scip_parser_t *parser, const octet_t *octets, size_
 static size_t echo_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
     const size_t length = parser->awaited.echo_length;
-    if (!parser->awaiting || count < length + 1U || octets[length] != SCIP_LINE_FEED ||
-        !take_echo_at(parser, octets)) {
+    if (count < length + 1U || octets[length] != SCIP_LINE_FEED || !take_echo_at(parser, octets)) {
         return 0U;
     }
     return length + 1U;
 }
 
+/* The status of a stream's scan, likewise: "99" and its sum. */
+static size_t status_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
+{
+    if (count < STATUS_OCTETS || octets[0] != (octet_t)'9' || octets[1] != (octet_t)'9' ||
+        octets[2] != (octet_t)'b' || octets[3] != SCIP_LINE_FEED || !is_stream(&parser->awaited)) {
+        return 0U;
+    }
+    parser->reply = (scip_reply_t){.status = {octets[0], octets[1]}};
+    parser->state = TIME;
+    return STATUS_OCTETS;
+}
+
+/* The time stamp of a scan that there is memory for. */
+static size_t time_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
+{
+    check_t check;
+    uint32_t stamp;
+    if (count < TIME_OCTETS || octets[5] != SCIP_LINE_FEED || parser->awaited.kind == SCIP_TIME_READ ||
+        !has_room(parser)) {
+        return 0U;
+    }
+    stamp = read_stamp(octets, &check);
+    if (verdict(&check, octets[4]) != SCIP_DAMAGE_NONE) {
+        return 0U;
+    }
+    begin_data(parser, stamp);
+    return TIME_OCTETS;
+}
+
+static size_t any_line_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
+{
+    switch (parser->state) {
+    case DATA:
+        return block_in_place(parser, octets, count);
+    case ECHO:
+        return echo_in_place(parser, octets, count);
+    case STATUS:
+        return status_in_place(parser, octets, count);
+    case TIME:
+        return time_in_place(parser, octets, count);
+    default:
+        return 0U;
+    }
+}
+
 static size_t line_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
-    size_t taken = 0U;
-    if (parser->gathered == 0U && parser->state == DATA) {
-        taken = block_in_place(parser, octets, count);
-    } else if (parser->gathered == 0U && parser->state == ECHO) {
-        taken = echo_in_place(parser, octets, count);
-    }
+    const size_t taken = parser->gathered == 0U ? any_line_in_place(parser, octets, count) : 0U;
     parser->counters.octets += (uint32_t)taken;
     return taken;
 }

@@ -4,8 +4,11 @@ bool urg_init(urg_t *urg, const urg_config_t *config, uint16_t *distance_mm, uin
 {
     scip_request_t stream;
     urg_link_t link;
-    if (!urg_link_init(&link, config, now_us) ||
-        !scip_request_scan(&stream, config->stream, &config->range) || values / 2U < stream.points) {
+    if (!urg_link_init(&link, config, now_us)) {
+        return false;
+    }
+    (void)scip_request_scan(&stream, config->stream, &config->range); /* which the link has asked for too */
+    if (values / 2U < stream.points) {
         return false;
     }
     *urg = (urg_t){.link = link};

@@ -1459,6 +1459,103 @@ void test_octets_in_bursts_make_the_same_events_as_one_by_one(void)
     }
 }
 
+/* Every octet of the second frame changed, lost or doubled: a burst that holds all of it, and one that ends
+ * behind the change, make what single octets make. */
+static void compare_ways(const wire_t *damaged, size_t burst)
+{
+    static octet_t octets[WIRE_MAX];
+    unsigned events[SCIP_DAMAGED + 1] = {0};
+    start();
+    expect_order(&front);
+    feed_range(damaged, 0, damaged->length);
+    const scip_counters_t counters = parser.counters;
+    for (size_t i = 0; i < damaged->length; i++) {
+        octets[i] = (octet_t)damaged->octets[i];
+    }
+    start();
+    expect_order(&front);
+    (void)feed_run_text(octets, damaged->length, burst, events);
+    TEST_ASSERT_EQUAL_MEMORY(&counters, &parser.counters, sizeof counters);
+}
+
+void test_a_damaged_frame_in_one_burst_makes_what_single_octets_make(void)
+{
+    static const unsigned replacements[] = {'\n', '9', 'b', '0', 'o', 'p', 0x00, 0xFF};
+    wire_t damaged;
+    put_run(&front);
+    const wire_t whole = wire;
+    for (size_t at = begins[1]; at < begins[2]; at++) {
+        for (size_t i = 0; i < sizeof replacements / sizeof replacements[0]; i++) {
+            damaged = whole;
+            damaged.octets[at] = replacements[i];
+            compare_ways(&damaged, damaged.length);
+            compare_ways(&damaged, at + 1);
+        }
+        damaged = whole;
+        memmove(&damaged.octets[at], &damaged.octets[at + 1],
+                (whole.length - at - 1) * sizeof damaged.octets[0]);
+        damaged.length--;
+        compare_ways(&damaged, damaged.length);
+        memmove(&damaged.octets[at + 1], &whole.octets[at], (whole.length - at) * sizeof damaged.octets[0]);
+        damaged.octets[at] = whole.octets[at];
+        damaged.length = whole.length + 1;
+        compare_ways(&damaged, damaged.length);
+    }
+}
+
+static scip_event_t feed_whole(const char *text)
+{
+    octet_t octets[400];
+    unsigned events[SCIP_DAMAGED + 1] = {0};
+    const size_t count = strlen(text);
+    for (size_t i = 0; i < count; i++) {
+        octets[i] = (octet_t)text[i];
+    }
+    return feed_run_text(octets, count, count, events);
+}
+
+void test_single_replies_in_one_burst_are_read_as_octet_by_octet(void)
+{
+    TEST_ASSERT_TRUE(scip_request(&request, SCIP_TIME_READ));
+    scip_parser_expect(&parser, &request);
+    TEST_ASSERT_EQUAL(SCIP_REPLY, feed_whole("TM1\n00P\n00101\n\n"));
+    TEST_ASSERT_EQUAL_UINT32(64, parser.reply.timestamp_ms);
+    scip_parser_expect(&parser, &request);
+    TEST_ASSERT_EQUAL(SCIP_REPLY, feed_whole("TM1\n99b\n\n"));
+    TEST_ASSERT_EQUAL_HEX16('9', parser.reply.status[0]);
+}
+
+/* Where its echo could begin, a block holds the echo's first letter. */
+void test_a_block_that_looks_like_an_echo_is_read_in_a_burst_too(void)
+{
+    for (unsigned i = 0; i < 35; i++) {
+        values[i] = i == 25 ? 1860 : 700; /* "M4" */
+    }
+    wire.length = 0;
+    put_answer(&wire, &front, "00");
+    put_frame(&wire, &front, 0, 1000, values);
+    compare_ways(&wire, wire.length);
+    TEST_ASSERT_EQUAL_UINT32(1, parser.counters.scans);
+    TEST_ASSERT_EQUAL_UINT16(1860, points[25]);
+}
+
+void test_a_scan_without_room_in_one_burst_is_damage_and_one_without_memory_is_counted(void)
+{
+    char text[256] = "";
+    put_run(&front);
+    for (size_t i = begins[0]; i < begins[1]; i++) {
+        text[i - begins[0]] = (char)wire.octets[i];
+    }
+    expect_order(&front);
+    scan.capacity = 34;
+    TEST_ASSERT_EQUAL(SCIP_DAMAGED, feed_whole(text));
+    TEST_ASSERT_EQUAL(SCIP_DAMAGE_LENGTH, parser.last_damage);
+    scip_parser_scan_into(&parser, NULL);
+    expect_order(&front);
+    TEST_ASSERT_EQUAL(SCIP_NOTHING, feed_whole(text));
+    TEST_ASSERT_EQUAL_UINT32(1, parser.counters.scans);
+}
+
 void test_a_burst_stops_behind_the_octet_that_makes_an_event(void)
 {
     static octet_t octets[2 * 101 + 5];

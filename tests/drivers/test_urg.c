@@ -226,6 +226,26 @@ void test_octets_above_7f_are_counted(void)
     TEST_ASSERT_EQUAL_UINT32(2U, report.seen.strange_count);
 }
 
+/* With nothing else to be done, as while a slow answer is waited for. */
+void test_a_power_cycle_alone_is_handed_over(void)
+{
+    urg.action = (urg_action_t){.cycle_power = true};
+    TEST_ASSERT_TRUE(urg_next_to_send(&urg, &output));
+    TEST_ASSERT_TRUE(output.cycle_power);
+    TEST_ASSERT_EQUAL_UINT16(0, output.count);
+    TEST_ASSERT_FALSE(output.set_rate);
+    TEST_ASSERT_FALSE(urg_next_to_send(&urg, &output));
+}
+
+/* As when a stream at another rate is listened to. */
+void test_a_rate_alone_is_handed_over(void)
+{
+    urg.action = (urg_action_t){.set_rate = true};
+    TEST_ASSERT_TRUE(urg_next_to_send(&urg, &output));
+    TEST_ASSERT_TRUE(output.set_rate);
+    TEST_ASSERT_EQUAL_UINT16(0, output.count);
+}
+
 void test_too_little_memory_and_impossible_orders_are_refused(void)
 {
     urg_config_t bad = config;

@@ -907,6 +907,59 @@ void test_firmware_without_scip_2_is_called_old_and_asked_for_ever(void)
     TEST_ASSERT_LESS_OR_EQUAL_UINT(20, steps_to_ok());
 }
 
+/* A sensor that answers everything but sends no scan, and falls silent at TM2 and RS. */
+void test_a_sensor_that_is_silent_at_tm2_or_rs_is_looked_for(void)
+{
+    scip_kind_t latest = SCIP_KIND_COUNT;
+    unsigned repeats[SCIP_KIND_COUNT] = {0}, then_stopped[SCIP_KIND_COUNT] = {0};
+    reset(0);
+    for (uint32_t i = 0; i < 400; i++) {
+        now_us += 150000U;
+        urg_link_step(&link_, &seen, now_us, &action);
+        if (!action.send) {
+            continue;
+        }
+        const scip_kind_t kind = action.request.kind;
+        if (latest < SCIP_KIND_COUNT) {
+            repeats[latest] += kind == latest;
+            then_stopped[latest] += kind == SCIP_STOP;
+        }
+        latest = kind;
+        if (kind != SCIP_TIME_LEAVE && kind != SCIP_RESET) {
+            const bool old = kind == SCIP_LASER_OFF_1 || kind == SCIP_SWITCH;
+            seen.reply_count++;
+            seen.reply_kind = kind;
+            seen.reply = (scip_reply_t){.status = {'0', old ? 0 : '0'}, .legacy = old};
+        }
+    }
+    TEST_ASSERT_GREATER_THAN_UINT(0, repeats[SCIP_TIME_LEAVE]);
+    TEST_ASSERT_GREATER_THAN_UINT(0, then_stopped[SCIP_TIME_LEAVE]);
+    TEST_ASSERT_EQUAL_UINT(0, repeats[SCIP_RESET]);
+    TEST_ASSERT_GREATER_THAN_UINT(0, then_stopped[SCIP_RESET]);
+}
+
+void test_no_other_rate_than_scips_is_taken(void)
+{
+    reset(0);
+    config.first_rate = 9600;
+    TEST_ASSERT_FALSE(urg_link_init(&link_, &config, now_us));
+    config.first_rate = 115200;
+    config.stream_rate = 38400;
+    TEST_ASSERT_FALSE(urg_link_init(&link_, &config, now_us));
+    config.stream_rate = 250000;
+    TEST_ASSERT_TRUE(urg_link_init(&link_, &config, now_us));
+}
+
+void test_only_streams_are_taken(void)
+{
+    reset(0);
+    config.stream = SCIP_SINGLE_3;
+    TEST_ASSERT_FALSE(urg_link_init(&link_, &config, now_us));
+    config.stream = SCIP_STREAM_3;
+    TEST_ASSERT_TRUE(urg_link_init(&link_, &config, now_us));
+    config.stream = SCIP_STREAM_2;
+}
+
 void test_one_stray_refusal_does_not_make_a_sensor_old(void)
 {
     reset(0);

@@ -36,7 +36,7 @@ PROOFS = [
      ["starts_sound", "orders_leave_it_sound", "octets_leave_it_sound", "line_ends_in_hunt", "line_ends_in_echo",
       "line_ends_in_status", "line_ends_in_time", "line_ends_in_text", "line_ends_in_reply", "line_ends_in_legacy",
       "line_ends_in_data", "line_ends_in_scan", "octets_are_gathered", "echo_in_place_leaves_it_sound",
-      "block_in_place_leaves_it_sound"]),
+      "status_in_place_leaves_it_sound", "time_in_place_leaves_it_sound", "block_in_place_leaves_it_sound"]),
 ]
 
 

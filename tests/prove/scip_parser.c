@@ -189,6 +189,16 @@ void echo_in_place_leaves_it_sound(void)
     take_in_place(ECHO);
 }
 
+void status_in_place_leaves_it_sound(void)
+{
+    take_in_place(STATUS);
+}
+
+void time_in_place_leaves_it_sound(void)
+{
+    take_in_place(TIME);
+}
+
 void block_in_place_leaves_it_sound(void)
 {
     take_in_place(DATA);
