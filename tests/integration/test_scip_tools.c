@@ -730,7 +730,7 @@ void test_the_three_mirrors_are_found_at_any_bench_height(void)
 
 void test_part_of_the_circle_shows_the_front_mirror_alone(void)
 {
-    record_scene(0.4, "MS0300050001000\n", 3.0, "front.bin");
+    record_scene(0.4, "MS0300048001000\n", 3.0, "front.bin");
     TEST_ASSERT_EQUAL_INT(0, run("mirrors front.bin --height 0.4 2>/dev/null"));
     TEST_ASSERT_NOT_NULL(
         strstr(output, "[SCIP_LAYOUT_FRONT] = { \"front\", 372U, 406U, 1U, { { 372U, 406U } } },\n"));
