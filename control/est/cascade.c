@@ -3,7 +3,8 @@
  * (hover.c) and takes its place. The command leads the motors: it asks for more than is wanted by as much as
  * their lag will withhold.
  * What breaks: a VELK too high for delay and lag swings; the calm factor then lowers the gain, which hides
- * it. Constants marked "fitted": docs/control.md, Where the gains come from. */
+ * it. Constants marked "fitted":
+ * docs/control.md; make tune LAW=EST ARGS="--constants est" searches them again. */
 #include "control/est/cascade.h"
 
 #include <math.h>

@@ -4,7 +4,8 @@
  * the noisier the accelerometer, the more that counts.
  * What breaks: the actuator's model must get every command that really went out (est_law_record_command), or
  * hover thrust and prediction drift. While someone else flies the vehicle nothing may be learned
- * (est_law_disengage). Constants marked "fitted": docs/control.md, Where the gains come from. */
+ * (est_law_disengage). Constants marked "fitted":
+ * docs/control.md; make tune LAW=EST ARGS="--constants est" searches them again. */
 #include "control/est/est_law.h"
 
 #include <math.h>

@@ -4,8 +4,8 @@
  * is Joseph's form, because the short one loses its symmetry in 32-bit floats.
  * What breaks: a covariance that is not symmetric or not bounded lets a state run away. A limit on the
  * innovation without a way out keeps the heights out for ever once the state is wrong (a fly-away to 11 m in
- * simulation): hence the reset after three rejections. Constants marked "fitted": docs/control.md, Where the
- * gains come from. */
+ * simulation): hence the reset after three rejections. Constants marked "fitted":
+ * docs/control.md; make tune LAW=EST ARGS="--constants est" searches them again. */
 #include "control/est/estimator.h"
 
 #include <math.h>

@@ -2,8 +2,8 @@
  * estimator is the same one-state Kalman filter) and a quick one with a fixed gain, which forgets itself in
  * 0.8 s.
  * What breaks: one estimate alone either follows gusts with the hover thrust, and drops the vehicle when
- * they end, or needs seconds to find the mass. Constants marked "fitted": docs/control.md, Where the gains
- * come from. */
+ * they end, or needs seconds to find the mass. Constants marked "fitted":
+ * docs/control.md; make tune LAW=EST ARGS="--constants est" searches them again. */
 #include "control/est/hover.h"
 
 #include "control/between.h"

@@ -125,6 +125,38 @@ class Gains(unittest.TestCase):
             self.assertTrue(0.0 <= corner[place] <= 1.0)
 
 
+class Constants(unittest.TestCase):
+    SOURCE = ("#define A 0.0013F /* fitted */\n#define B 28.0F           /* fitted; N per m */\n#define C 3.0F /* chosen */\n"
+              "#define D 4U /* fitted */\n")
+
+    def test_only_what_is_marked_as_fitted_is_found(self):
+        self.assertEqual(tune.FITTED.findall(self.SOURCE), [("A", "0.0013"), ("B", "28.0")])
+
+    def test_values_are_put_in_place_and_nothing_else_changes(self):
+        self.assertEqual(tune.replaced(self.SOURCE, {"A": "0.002", "B": "30"}),
+                         self.SOURCE.replace("0.0013F", "0.002F").replace("28.0F", "30.0F"))
+        self.assertEqual(tune.replaced(self.SOURCE, {}), self.SOURCE)
+
+    def test_the_estimators_law_has_its_constants_in_every_file_that_names_the_command(self):
+        for path in (ROOT / "control/est").glob("*.c"):
+            text = path.read_text(encoding="utf-8")
+            with self.subTest(path=path.name):
+                self.assertEqual("--constants" in text, bool(tune.FITTED.findall(text)))
+
+    def test_each_candidate_is_a_program_of_its_own(self):
+        done = subprocess.run([sys.executable, "-B", TUNE, "EST", "--constants", "est/cascade", "--runs", "1", "--flights", "8"],
+                              capture_output=True, text=True, check=False, timeout=280)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        names = tune.FITTED.findall((ROOT / "control/est/cascade.c").read_text(encoding="utf-8"))
+        self.assertEqual(re.findall(r"^#define (\w+) [\d.]+F$", done.stdout, re.M), [name for name, _ in names])
+        self.assertRegex(done.stderr, r"cost [\d.]+ after [2468] flights")
+
+    def test_a_place_without_fitted_constants_is_status_2(self):
+        done = subprocess.run([sys.executable, "-B", TUNE, "EST", "--constants", "no_such_file"], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("no_such_file", done.stderr)
+
+
 class Searching(unittest.TestCase):
     def setUp(self):
         self.dir = Path(tempfile.mkdtemp())

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""tune.py LAW [--set trimmed|untrimmed] [--flights N] [--runs N] [--seed N] ...: searches the gains of a law.
+"""tune.py LAW [--constants PART] [--set trimmed|untrimmed] [--flights N] [--runs N] [--seed N] ...: searches the gains of a
+law, or, with --constants, those constants of control/ that are marked "fitted" in files whose path contains PART (est: all).
 
 Each candidate flies the same vehicles: drawn ones and a third as many nominal ones, all of seed 2, so that
 `make campaign` judges the result on vehicles that the search has not seen. Its cost, in mm:
@@ -11,11 +12,15 @@ Each candidate flies the same vehicles: drawn ones and a third as many nominal o
 
 The search is Nelder and Mead's (SciPy), on the logarithm of a gain that cannot be 0. It starts at the present gains,
 starts anew around the best when it comes to rest, and ends with its budget of flights or when a new start finds nothing
-better. The commands that set the best gains are printed on stdout. Exit status: 0; 2 usage, a program that does not fly
+better. The commands that set the best gains are printed on stdout; of constants the lines, to be put in place by hand: each
+candidate is a program of its own, built in a copy of the tree (build/tune), where a constant may be a third to three times
+what it is. Exit status: 0; 2 usage, a program that does not fly
 or lacks a parameter of the law; 130 interrupted.
 """
 import argparse
 import math
+import re
+import shutil
 import statistics
 import subprocess
 import sys
@@ -117,6 +122,68 @@ def present(program, law):
     return values
 
 
+FITTED = re.compile(r"^#define (\w+) ([\d.]+(?:e-?\d+)?)F(?= +/\* fitted)", re.MULTILINE)
+REACH = 3.0
+
+
+class Tree:
+    """A copy of the sources whose constants can be changed."""
+
+    def __init__(self, part):
+        self.root, self.build = ROOT / "build/tune/tree", ROOT / "build/tune/build"
+        listing = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, check=True, capture_output=True, text=True)
+        for path in listing.stdout.splitlines():
+            source, target = ROOT / path, self.root / path
+            if source.is_file() and (not target.exists() or source.read_bytes() != target.read_bytes()):
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(source, target)
+                target.chmod(source.stat().st_mode)
+        self.texts = {path: (ROOT / path).read_text(encoding="utf-8") for path in sorted(listing.stdout.splitlines())
+                      if path.startswith("control/") and path.endswith(".c") and part in path and (ROOT / path).is_file()}
+        self.constants = {name: float(value) for text in self.texts.values() for name, value in FITTED.findall(text)}
+        if not self.constants:
+            raise fleet.Broken(f"no constant of control/*{part}*.c is marked as fitted")
+        self.run("cmake", "-S", self.root, "-B", self.build, "-DCMAKE_BUILD_TYPE=Release", "-DPLOMADA_TESTS=OFF")
+
+    @staticmethod
+    def run(*command):
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise fleet.Broken(done.stderr or done.stdout)
+
+    def program(self, values):
+        """The program with these constants, {name: value}."""
+        for path, text in self.texts.items():
+            changed = replaced(text, values)
+            if (self.root / path).read_text(encoding="utf-8") != changed:
+                (self.root / path).write_text(changed, encoding="utf-8")
+        self.run("cmake", "--build", self.build, "--target", "plomada", "-j")
+        return str(self.build / "plomada")
+
+
+def define(name, shown):
+    return f"#define {name} {shown if '.' in shown else shown + '.0'}F"
+
+
+def replaced(text, values):
+    """The source with other values of its fitted constants."""
+    def line(match):
+        return define(match.group(1), values[match.group(1)]) if match.group(1) in values else match.group()
+    return FITTED.sub(line, text)
+
+
+def cost_of_flights(candidates, law):
+    flights = candidates.flights(law)
+    if candidates.progress.done + len(flights) > candidates.options.flights:
+        raise Spent
+    flown = {"nominal": [], candidates.options.set: []}
+    batch = math.ceil(len(flights) / 8)
+    for (set_name, _), figures in fleet.fly_all(candidates.client, candidates.program, flights, batch):
+        flown[set_name].append(figures)
+        candidates.progress.step()
+    return cost(flown["nominal"], flown[candidates.options.set])
+
+
 class Candidates:
     """Flies candidates, whose gains are given by units 0..1, as long as the budget lasts; keeps the best."""
 
@@ -135,16 +202,7 @@ class Candidates:
                 for run in range(1, runs + 1)]
 
     def fly(self, values):
-        law = plan.Law(self.law.settings | self.settings(values), self.law.scenario)
-        flights = self.flights(law)
-        if self.progress.done + len(flights) > self.options.flights:
-            raise Spent
-        flown = {"nominal": [], self.options.set: []}
-        batch = math.ceil(len(flights) / 8)
-        for (set_name, _), figures in fleet.fly_all(self.client, self.program, flights, batch):
-            flown[set_name].append(figures)
-            self.progress.step()
-        return cost(flown["nominal"], flown[self.options.set])
+        return cost_of_flights(self, plan.Law(self.law.settings | self.settings(values), self.law.scenario))
 
     def settings(self, values):
         return {gain.name: text(value) for gain, value in zip(self.gains, values, strict=True)}
@@ -156,11 +214,31 @@ class Candidates:
             self.keep_best(values)
         return self.known[values]
 
+    def shown(self, values):
+        """What sets these values, for a user."""
+        return [f"#{name} {value}" for name, value in ({"LAW": "EST"} | self.law.settings | self.settings(values)).items()]
+
     def keep_best(self, values):
         if self.known[values] < self.best[0]:
             self.best = (self.known[values], values)
             shown = " ".join(f"{name} {value}" for name, value in self.settings(values).items())
             print(f"cost {self.best[0]:.1f} after {self.progress.done} flights: {shown}", file=sys.stderr)
+
+
+class Constants(Candidates):
+    """Candidates that differ in the fitted constants of control/."""
+
+    def __init__(self, client, tree, options):
+        super().__init__(client, None, options)
+        self.tree = tree
+        self.gains = [Gain(name, value / REACH, value * REACH) for name, value in tree.constants.items()]
+
+    def fly(self, values):
+        self.program = self.tree.program(self.settings(values))
+        return cost_of_flights(self, self.law)
+
+    def shown(self, values):
+        return [define(name, value) for name, value in self.settings(values).items()]
 
 
 def simplex(center, size):
@@ -192,6 +270,8 @@ def search(candidates, units):
 def read_arguments(argv):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("law", choices=plan.LAWS, metavar="LAW", help=", ".join(plan.LAWS))
+    parser.add_argument("--constants", metavar="PART", default="",
+                        help="not the gains but the fitted constants of control/*PART*.c: est, est/hover, ...")
     parser.add_argument("--set", choices=("trimmed", "untrimmed"), default="untrimmed",
                         help="drawn vehicles: GRAV trimmed by hand or not (untrimmed)")
     parser.add_argument("--flights", type=campaign.positive, default=4000, help="budget (4000)")
@@ -206,15 +286,15 @@ def read_arguments(argv):
 
 
 def tune(options):
-    program = str(options.program.resolve())
-    start = present(program, plan.LAWS[options.law])
+    program, law = str(options.program.resolve()), plan.LAWS[options.law]
+    tree = Tree(options.constants) if options.constants else None
+    start = list(tree.constants.values()) if tree else present(program, law)
     with fleet.fleet(options.scheduler) as client:
-        candidates = Candidates(client, program, options)
+        candidates = Constants(client, tree, options) if tree else Candidates(client, program, options)
         search(candidates, [gain.unit(value) for gain, value in zip(candidates.gains, start, strict=True)])
     best, values = candidates.best
     print(f"cost {best:.1f} mm, {candidates.progress.done} flights", file=sys.stderr)
-    for name, value in ({"LAW": "EST"} | candidates.law.settings | candidates.settings(values)).items():
-        print(f"#{name} {value}")
+    print("\n".join(candidates.shown(values)))
 
 
 def main(argv=None):
