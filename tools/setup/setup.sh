@@ -13,7 +13,7 @@
 #   plot      Python virtual environment build/venv with the pinned packages of tools/plot/requirements.txt
 #   campaign  the same, and in it those of tools/campaign/requirements.txt; for tuning too
 #   ground    clang, lld, wasi-libc and binaryen for the vehicle in the browser; wasmtime in build/venv; node and the pinned
-#             packages of ground/package-lock.json; Chromium for its tests
+#             packages of ground/package-lock.json; Chromium and Firefox for its tests
 #
 # Non-interactive and idempotent: silent, and no call of apt or pip, when nothing is missing. Packages are installed
 # as root, or by sudo where the user may use it; otherwise one line says what to install, and the status is 1.
@@ -148,6 +148,7 @@ missing_packages() {
             node_ready || echo nodejs
             has npm || echo npm
             has chromium || echo chromium
+            has firefox || has firefox-esr || ! grep -qs '^ID=debian' /etc/os-release || echo firefox-esr
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
         *)
             say "unknown job '$1'; know build, test, port, size, coverage, bench, fuzz, prove, plot, campaign, ground"

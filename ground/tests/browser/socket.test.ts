@@ -1,6 +1,6 @@
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
-import { button, openBrowser, openPage, freePort, serveSite, startBoard, tab, untilLaserIsOk, type Board, type Site } from './rig';
+import { button, openBrowser, openPage, freePort, serveSite, startBoard, tab, untilLaserIsOk, untilState, type Board, type Site } from './rig';
 
 let browser: Browser;
 let site: Site;
@@ -48,11 +48,37 @@ describe('by WebSocket, the unmodified firmware in a program of its own', () => 
     await other.close();
   });
 
-  it('comes back after a reload, and says so when the program ends', async () => {
+  it('is told by the firmware that it wants sums, also when another page has switched them on', async () => {
+    await tab(page, 'Console').click();
+    await page.locator('#command').fill('#SUM ON');
+    await page.keyboard.press('Enter');
+    await page.waitForFunction(() => document.querySelector('.lines')!.textContent!.includes('OK SUM ON'));
+    await page.evaluate(() => localStorage.clear()); // a browser that has never been here
     await page.reload();
-    expect(await page.innerText('body')).toContain('The page was reloaded.');
     await connect(page);
-    await page.waitForFunction(() => document.querySelectorAll('.big-value')[2]?.textContent === 'GROUND');
+    await tab(page, 'Console').click();
+    await page.waitForFunction(() => /#GET LINK\*[0-9A-F]{4}/.test(document.querySelector('.lines')!.textContent!) && document.querySelector('.lines')!.textContent!.includes('OK LINK 0'));
+    expect(await page.getByLabel('A sum on every line').isChecked()).toBe(true);
+    await page.locator('#command').fill('#SUM OFF');
+    await page.keyboard.press('Enter');
+    await page.waitForFunction(() => document.querySelector('.lines')!.textContent!.includes('OK SUM OFF'));
+    await tab(page, 'Fly').click();
+  });
+
+  it('comes back after a reload in flight, which it asks about first, and lands; says so when the program ends', async () => {
+    await untilLaserIsOk(page);
+    await page.locator('.go').click();
+    await untilState(page, 'FLYING');
+    const asked: string[] = [];
+    page.on('dialog', (dialog) => { asked.push(dialog.type()); void dialog.accept(); });
+    await page.reload();
+    expect(asked).toEqual(['beforeunload']);
+    await page.waitForFunction(() => document.body.innerText.includes('The page was reloaded.'));
+    await connect(page);
+    await untilState(page, 'FLYING');
+    await page.keyboard.press('l');
+    await page.waitForSelector('.land.answered');
+    await untilState(page, 'GROUND');
     await board.stop();
     await page.waitForFunction(() => document.body.innerText.includes('The simulation has ended or the connection broke.'));
     expect(await page.locator('.status').innerText()).toContain('Link lost');

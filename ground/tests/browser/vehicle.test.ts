@@ -194,7 +194,7 @@ describe('the simulated vehicle, the unmodified firmware as WebAssembly', () => 
     await page.waitForFunction(() => document.querySelector('.lines')!.textContent!.includes('OK PING LAST') || document.querySelector('.lines')!.textContent!.includes('OK PING last'));
     await page.reload();
     await button(page, 'Close').click();
-    expect(await body()).toContain('The page was reloaded.');
+    await page.waitForFunction(() => document.body.innerText.includes('The page was reloaded.'));
     await tab(page, 'Console').click();
     expect((await page.locator('.lines').innerText()).toLowerCase()).toContain('ok ping last');
     const download = page.waitForEvent('download');
