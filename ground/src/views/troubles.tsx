@@ -28,6 +28,7 @@ export const TROUBLES: { name: string; set: Setting[]; once?: boolean }[] = [
   { name: 'bars', set: [['bars_mm', 60]] },
 ];
 
+const offered = signal(matchMedia('(min-width: 641px)').matches); // on a phone the plots come first
 const shown = signal(false);
 const refused = signal('');
 
@@ -90,6 +91,8 @@ export function Troubles({ vehicle, changed }: { vehicle: VehicleLink; changed: 
   const away = vehicle.figures.filter((figure) => figure.value !== figure.standard);
   return (
     <>
+      <details class="figures" open={offered.value} onToggle={(event) => (offered.value = event.currentTarget.open)}>
+      <summary>{words.troublesTitle}</summary>
       <div class="faults" role="group" aria-label={words.troublesTitle}>
         {known.map(({ name, set, once }) => {
           const on = !once && isOn(vehicle, set);
@@ -102,6 +105,7 @@ export function Troubles({ vehicle, changed }: { vehicle: VehicleLink; changed: 
           );
         })}
       </div>
+      </details>
       <details class="figures" open={shown.value} onToggle={(event) => (shown.value = event.currentTarget.open)}>
         <summary>{words.allFigures(vehicle.figures.length, away.length)}</summary>
         {refused.value && <p class="banner bad" role="alert">{words.objections.range} {refused.value}</p>}

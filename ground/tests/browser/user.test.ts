@@ -297,7 +297,7 @@ describe('in Spanish', () => {
       await page.locator('.featured button').click();
       await page.locator('.chip', { hasText: /^5×$/ }).click();
       await untilLaserIsOk(page);
-      await page.locator('.figures summary').click();
+      await page.locator('.figures summary').last().click();
       await gather();
       await page.locator('.go').click();
       await untilHeight(page, 0.6, 0.06);

@@ -1100,3 +1100,21 @@ void test_a_bar_lifts_a_low_vehicle_and_does_not_throw_it(void)
     TEST_ASSERT_TRUE(highest_m < 0.12);
     TEST_ASSERT_TRUE(now().on_ground);
 }
+
+void test_a_vehicle_and_its_ground_change_in_flight_and_it_flies_on_from_where_it_is(void)
+{
+    start(&calm, &terrain_flat, 1);
+    hold(0.6, 10.0);
+    const quadrotor_state_t before = now();
+    terrain_t raised = terrain_platform;
+    raised.ramp_start_s = raised.ramp_end_s = -1.0;
+    raised.edge_s = 1000.0;
+    quadrotor_set_origin(quad, 0);
+    calm.hover_thrust_n = 8.4;
+    quadrotor_change(quad, &calm, &raised);
+    TEST_ASSERT_EQUAL_DOUBLE(before.altitude_m, now().altitude_m);
+    TEST_ASSERT_EQUAL_DOUBLE(before.speed_mps, now().speed_mps);
+    fly(0.1, 7.4);
+    NEAR(1e-9, raised.height_m, now().terrain_m);
+    NEAR(0.1, -G / 8.4 - 2.4 * now().speed_mps, now().acceleration_mps2);
+}

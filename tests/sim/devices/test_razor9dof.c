@@ -388,6 +388,24 @@ void test_a_bias_jumps_at_its_time(void)
     NEAR(0.006, 128.0, decoded.z);
 }
 
+void test_errors_change_while_it_sends_and_its_period_and_kind_do_not(void)
+{
+    razor_config_t wrong = exact;
+
+    start(1);
+    run_frames(2);
+    NEAR(0.006, 256.0, decoded.z);
+    wrong.acceleration_bias_mps2 = -G / 2.0;
+    wrong.period = 2 * exact.period;
+    wrong.stock = 1.0;
+    razor9dof_change(razor, &wrong);
+    run_frames(2);
+    NEAR(0.006, 128.0, decoded.z);
+    const sim_time_t at = sampled_at;
+    run_frames(1);
+    TEST_ASSERT_EQUAL_INT64(exact.period, sampled_at - at);
+}
+
 void test_an_aliased_vibration_oscillates_with_its_amplitude(void)
 {
     exact.acceleration_alias_mps2 = G / 4.0;

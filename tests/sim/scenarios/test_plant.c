@@ -74,3 +74,21 @@ void test_the_printed_table_names_each_figure_once_with_a_value_that_it_takes(vo
     fclose(file);
     TEST_ASSERT_TRUE(lines >= 80);
 }
+
+void test_each_row_tells_its_figure_in_the_figures_unit(void)
+{
+    plant_figure_t figure;
+    size_t rows = 0, found = 0;
+
+    plant_set(&plant, "plant.floor_rms_mm", 30.0);
+    for (; plant_figure(&plant, rows, &figure); rows++) {
+        TEST_ASSERT_TRUE_MESSAGE(figure.least <= figure.value && figure.value <= figure.most, figure.name);
+        if (strcmp(figure.name, "floor_rms_mm") == 0) {
+            NEAR(1e-9, 30.0, figure.value);
+            TEST_ASSERT_EQUAL_STRING("mm", figure.unit);
+            found++;
+        }
+    }
+    TEST_ASSERT_TRUE(rows >= 80);
+    TEST_ASSERT_EQUAL_UINT(1, found);
+}
