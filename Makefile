@@ -80,7 +80,7 @@ seed-study: ## Which autopilot did the seed fly? And its simulations of chapter 
 	@$(python) tools/seed_study/chapter_4_1.py -o build/chapter-4-1.png
 	@$(python) tools/seed_study/seed_study.py $(ARGS)
 
-ground: ground-vehicle ## The browser page, to be published or opened as it is: build-ground/index.html
+ground: build ground-vehicle ## The browser page, to be published or opened as it is: build-ground/index.html
 	@cd ground && npm run --silent build
 	@printf '%s\n' "$(CURDIR)/build-ground/index.html"
 
@@ -94,7 +94,6 @@ ground-open: ground ## The same, served on this machine: http://localhost:8123
 	@python3 -B tools/ground/serve.py build-ground 8123
 
 test-ground: ground ## The page's tests: units, then Chromium against the unmodified firmware; the vehicle in wasmtime
-	@$(MAKE) build
 	@$(python) -B tests/ground/test_vehicle.py build/plomada
 	@cd ground && npm test --silent
 

@@ -1,5 +1,6 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { defineConfig, type Plugin } from 'vite';
+import { firmware } from './firmware';
 
 // One classic script: a page that was opened from a disk may load no module.
 function classicScript(): Plugin {
@@ -40,6 +41,7 @@ function licences(): Plugin {
 
 export default defineConfig({
   base: './',
+  define: firmware(),
   esbuild: { jsx: 'automatic', jsxImportSource: 'preact' },
   build: {
     outDir: '../build-ground', emptyOutDir: false, target: 'es2022', modulePreload: false, assetsInlineLimit: 0,

@@ -1,3 +1,4 @@
 import { defineConfig } from 'vitest/config';
+import { firmware } from './firmware';
 
-export default defineConfig({ test: { include: ['tests/unit/**/*.test.ts'] } });
+export default defineConfig({ define: firmware(), test: { include: ['tests/unit/**/*.test.ts'] } });

@@ -26,7 +26,7 @@ export function checks(): Record<string, boolean> {
     ground: t?.state === 'GROUND' && t.reference === 0,
     flags: t?.flags === 0,
     settings: parameters.value.length > 0 && !(storeLine.value ?? '').startsWith('ERR'),
-    tilt: byHand.value.tilt === true,
+    tilt: byHand.value.tilt === true || parameters.value.some((p) => p.name === 'IAXES' && p.value === 'PROVED'),
     battery: Number(volts.value.replace(',', '.')) >= CELLS_LOW_V,
   };
 }
