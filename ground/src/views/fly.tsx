@@ -61,6 +61,8 @@ async function arm(): Promise<void> {
   armed.value = outcome.ok ? outcome.lines[0]!.rest : outcome.silent ? w().noAnswer : told(outcome.reason);
 }
 
+const replied = signal<{ text: string; bad: boolean } | null>(null); // to the latest reference
+
 function Reference() {
   const words = w();
   const t = latest.value;
@@ -68,7 +70,11 @@ function Reference() {
   const flying = open && t.reference > 0;
   const send = (): void => {
     localStorage.setItem('plomada.reference', wanted.value);
-    void command(`#SETR ${Number(wanted.value)}`);
+    replied.value = null;
+    void command(`#SETR ${Number(wanted.value)}`).then((outcome) => {
+      const remark = outcome.ok ? /\((.*)\)$/.exec(outcome.lines[0]?.rest ?? '')?.[1] ?? '' : outcome.reason;
+      replied.value = remark === '' ? null : { text: outcome.ok ? told(remark) : `${words.refused}: ${told(remark)}`, bad: !outcome.ok };
+    });
   };
   return (
     <section class="card reference" aria-labelledby="reference-title">
@@ -84,6 +90,7 @@ function Reference() {
         ))}
       </div>
       <button class="go" disabled={!open} onClick={send}>{flying ? `${words.changeTo} ${Number(wanted.value).toFixed(1)} m` : words.takeOff}</button>
+      {replied.value && <p class={`banner ${replied.value.bad ? 'bad' : ''}`} role="alert">{replied.value.text}</p>}
       {!vehicle.value && <><button disabled={!open || t.state !== 'GROUND'} onClick={() => void arm()}>{words.arm}{armed.value && <small> · {armed.value}</small>}</button><p class="hint">{words.armHint}</p></>}
     </section>
   );

@@ -117,6 +117,22 @@ describe('troubles of the simulated world', () => {
   });
 });
 
+describe('a reference that the firmware refuses', () => {
+  it('is answered where it was given, with the reason', async () => {
+    page = await openPage(browser, site.url);
+    await startVehicle(page, '5×');
+    await untilLaserIsOk(page);
+    await tab(page, 'Console').click();
+    await page.locator('#command').fill('#IROLL PITCH');
+    await page.keyboard.press('Enter');
+    await page.waitForFunction(() => document.querySelector('.lines')!.textContent!.includes('OK IROLL PITCH'));
+    await tab(page, 'Fly').click();
+    await button(page, 'Take off').click();
+    await page.waitForSelector('.reference [role=alert]');
+    expect(await page.locator('.reference [role=alert]').innerText()).toMatch(/^Refused: /);
+  });
+});
+
 describe('the plots', () => {
   it('are held, zoomed and let go, and saved as CSV and PNG', async () => {
     await airborne('5×');
