@@ -14,6 +14,7 @@ import places
 import published
 import sources
 import state
+import version
 import words
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -378,6 +379,27 @@ class Places(unittest.TestCase):
         found = self.complaints(**{"control/parameters.c": ""})
         self.assertEqual(len(found), 1, found)
         self.assertTrue(found[0].startswith("control/parameters.c: "), found)
+
+
+
+class Version(unittest.TestCase):
+    def complaints(self, told, entry):
+        with tempfile.TemporaryDirectory() as name:
+            root = Path(name)
+            (root / "firmware").mkdir()
+            (root / "firmware/version.h").write_text(f'#define PLOMADA_VERSION "{told}"\n', encoding="utf-8")
+            (root / "CHANGELOG.md").write_text(f"# Changes\n\n{entry}\n\n## 0.1.0\n", encoding="utf-8")
+            return list(version.check(root))
+
+    def test_the_newest_entry_is_the_version(self):
+        self.assertEqual(self.complaints("0.2.0", "## 0.2.0"), [])
+
+    def test_another_newest_entry_is_named(self):
+        self.assertEqual(len(self.complaints("0.2.0", "## 0.3.0")), 1)
+        self.assertEqual(len(self.complaints("0.2.0", "")), 1)
+
+    def test_a_version_that_is_none_is_named(self):
+        self.assertEqual(len(self.complaints("0.2", "## 0.2")), 1)
 
 
 if __name__ == "__main__":
