@@ -589,7 +589,7 @@ static void as_flexiport_log(int width, int little)
             for (int i = 0; i < width; i++) {
                 const int place = little ? i : width - 1 - i;
 
-                log[length++] = place > 3 ? 0 : (unsigned char)(numbers[n] >> (8 * place) & 0xFFU);
+                log[length++] = (unsigned char)(place > 3 ? 0U : numbers[n] >> (8 * place) & 0xFFU);
             }
         }
         memcpy(log + length, stream + at, size);
