@@ -29,6 +29,7 @@ DEFECTS = {
     "no-storage": ("save", set()),
     "forgetful": ("save", set()),
     "slow": ("perf", {"ping", "flight", "starts", "faults", "scanner", "imu", "pulse", "save", "watchdog", "boot", "rates"}),
+    "fast": ("rates", set()),
     "no-watchdog": ("watchdog", {"starts", "faults", "pulse", "flight"}),
 }
 
@@ -36,10 +37,10 @@ DEFECTS = {
 def run(defect=None, items=None, flight_s=12):
     """(exit status, output, report as JSON, report as Markdown) of an acceptance of a fresh board."""
     with tempfile.TemporaryDirectory() as directory:
-        pulses, storage, report = (os.path.join(directory, name) for name in ("pulses.csv", "flash", "report"))
-        options = ["--pulses", pulses, "--storage", storage, *(["--defect", defect] if defect else [])]
+        pulses, bits, storage, report = (os.path.join(directory, name) for name in ("pulses.csv", "bits.csv", "flash", "report"))
+        options = ["--pulses", pulses, "--bits", bits, "--storage", storage, *(["--defect", defect] if defect else [])]
         with bench.Board(PROGRAM, *options) as board:
-            words = ["--unattended", "--pulses", pulses, "--power", f"kill -USR1 {board.process.pid}", "--flight", str(flight_s),
+            words = ["--unattended", "--pulses", pulses, "--bits", bits, "--power", f"kill -USR1 {board.process.pid}", "--flight", str(flight_s),
                      "--report", report, *(["--items", items] if items else [])]
             done = subprocess.run([PROGRAM, "accept", *board.lines, *words], capture_output=True, text=True, timeout=900, check=False)
             with open(report + ".json", encoding="utf-8") as file:
@@ -60,6 +61,8 @@ class Short(unittest.TestCase):
         self.assertEqual(failed(found), set())
         self.assertEqual({item["item"]: item["verdict"] for item in found["items"]}["pulse"], "pass")
         self.assertIn("measured: first 1999", output)
+        # 9600 bit/s: the divider of 100 MHz gives 9601, 0.01 % more.
+        self.assertIn("measured 9601 bit/s, +0.01 % off", output)
         self.assertTrue(found["passed"] and found["date"].endswith("Z") and "F28377S" in found["chip"])
         self.assertEqual(set(found["adapters"]), {"laser", "imu", "xbee"})
         self.assertIn("# Acceptance of a board: passed", markdown)
@@ -69,6 +72,12 @@ class Short(unittest.TestCase):
         status, output, found, _ = run("pulse-inverted", items="radio,pulse")
         self.assertEqual(status, 1, output)
         self.assertEqual(failed(found), {"pulse"})
+
+    def test_a_bit_time_that_both_ends_just_bear_is_named(self):
+        status, output, found, _ = run("fast", items="radio,rates")
+        self.assertEqual(status, 1, output)
+        self.assertEqual(failed(found), {"rates"})
+        self.assertIn("measured 9889 bit/s, +3.01 % off", output)
 
     def test_interrupted_it_goes_on_where_it_was(self):
         with tempfile.TemporaryDirectory() as directory, bench.Board(PROGRAM) as board:

@@ -3,6 +3,7 @@
 Usage: test_hil.py PLOMADA short|long
 """
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -19,6 +20,7 @@ class Short(unittest.TestCase):
         self.assertEqual(status, 0, output)
         self.assertIn("MET: all expectations of est-60cm-ramp", output)
         self.assertRegex(output, r"the board ended safe: on the ground, pulse 1999\.\d us")
+        self.assertRegex(output, r"(?m)^damaged: laser [0-3] frames found by the board, 0 commands not understood here; xbee 0 lines")
         self.assertRegex(output, r"loop: \d+\.\d ms from a scan's last octet to its pulse")
         hover_mm = bench.metrics(output)["hover_rms_mm"]
         self.assertLess(hover_mm, 1.3 * bench.virtual(PROGRAM, "est-60cm-ramp")["hover_rms_mm"])
@@ -34,6 +36,13 @@ class Short(unittest.TestCase):
         for words in (["est-60cm-ramp", "--laser", "/nowhere", "--imu", "/nowhere", "--xbee", "/nowhere"], ["bench"], ["est-60cm-ramp"],
                       ["no-such-flight", "--laser", "a", "--imu", "b", "--xbee", "c"]):
             self.assertEqual(subprocess.run([PROGRAM, "hil", *words], capture_output=True, check=False).returncode, 2, words)
+
+    def test_a_recording_of_the_pin_that_cannot_be_read_is_refused(self):
+        with bench.Board(PROGRAM) as board:
+            done = subprocess.run([PROGRAM, "hil", "est-60cm-ramp", *board.lines, "--pulses", "/nowhere/pulses.csv"],
+                                  capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("/nowhere/pulses.csv", done.stderr)
 
     def test_the_boards_links_are_gone_when_it_ends_and_a_power_cycle_keeps_them(self):
         with bench.Board(PROGRAM) as board:
@@ -59,6 +68,21 @@ class Long(unittest.TestCase):
 
     def test_the_seeds_ramp(self):
         self.fly("pid-60cm-ramp")
+
+    def test_the_ramp_by_the_pulses_that_an_analyser_sees_on_the_pin(self):
+        status, output = bench.hil(PROGRAM, "est-60cm-ramp", pin=True)
+        self.assertEqual(status, 0, output)
+        told = float(re.search(r"loop: (\d+\.\d) ms", bench.hil(PROGRAM, "est-60cm-ramp")[1]).group(1))
+        seen = float(re.search(r"loop: (\d+\.\d) ms", output).group(1))
+        self.assertLess(seen, told, "the pin is faster than the radio")
+
+    def test_pulses_that_no_throttle_channel_has_are_named(self):
+        status, output = bench.hil(PROGRAM, "est-60cm-ramp", ["pulse-inverted"], pin=True)
+        self.assertEqual(status, 1, output)
+        self.assertRegex(output, r"(?m)^pin: \d+ pulses are not of 0.9 to 2.1 ms$")
+        status, output = bench.hil(PROGRAM, "est-60cm-ramp", ["pulse-missing"], pin=True)
+        self.assertEqual(status, 1, output)
+        self.assertRegex(output, r"(?m)^pin: no pulse$")
 
     def trouble(self, defect):
         status, output = bench.hil(PROGRAM, "est-60cm-ramp", [defect])

@@ -23,6 +23,7 @@ static const char usage[] =
     "  --report PREFIX     writes PREFIX.md and PREFIX.json (default acceptance)\n"
     "  --pulses FILE       what a logic analyser records of the throttle pin meanwhile, by sigrok-cli -O "
     "csv\n"
+    "  --bits FILE         the same of one of the board's transmit pins: its bit time is measured\n"
     "  --power COMMAND     takes the board's power away and gives it back; without it you are asked to\n"
     "  --unattended        asks nobody: what needs somebody is skipped\n"
     "  --flight S          seconds in the air, 10..180 (default 180)\n"
@@ -39,6 +40,7 @@ enum {
     OPT_XBEE,
     OPT_REPORT,
     OPT_PULSES,
+    OPT_BITS,
     OPT_POWER,
     OPT_UNATTENDED,
     OPT_FLIGHT,
@@ -53,6 +55,7 @@ static const struct option long_options[] = {
     {"xbee", required_argument, NULL, OPT_XBEE},
     {"report", required_argument, NULL, OPT_REPORT},
     {"pulses", required_argument, NULL, OPT_PULSES},
+    {"bits", required_argument, NULL, OPT_BITS},
     {"power", required_argument, NULL, OPT_POWER},
     {"unattended", no_argument, NULL, OPT_UNATTENDED},
     {"flight", required_argument, NULL, OPT_FLIGHT},
@@ -142,6 +145,9 @@ static bool read_option(int option, const char *argument)
         return true;
     case OPT_PULSES:
         order.means.pulses = argument;
+        return true;
+    case OPT_BITS:
+        order.means.bits = argument;
         return true;
     case OPT_POWER:
         order.means.power = argument;

@@ -9,6 +9,7 @@ typedef enum { ACCEPT_OPEN, ACCEPT_PASS, ACCEPT_FAIL, ACCEPT_SKIP } accept_verdi
 
 typedef struct {
     const char *pulses; /* recording of the throttle pin, NULL: none */
+    const char *bits;   /* recording of a transmit pin of the board, NULL: none */
     const char *power;  /* command that takes the board's power away and gives it back, NULL: asks */
     bool ask;           /* somebody is there */
     double flight_s;

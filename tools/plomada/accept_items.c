@@ -170,17 +170,6 @@ static unsigned long laser_count(const char *name)
     return strtoul(at != NULL ? at + strlen(name) : nothing, NULL, 10);
 }
 
-static unsigned long damaged_frames(void)
-{
-    static const char *const causes[] = {"sum:", "length:", "echo:", "char:", "seq:", "framing:"};
-    unsigned long sum = 0;
-
-    for (size_t i = 0; i < sizeof causes / sizeof causes[0]; i++) {
-        sum += laser_count(causes[i]);
-    }
-    return sum;
-}
-
 /* ---- the items ---- */
 
 static accept_verdict_t radio(const accept_means_t *means, char *detail)
@@ -267,23 +256,49 @@ static accept_verdict_t scanner(const accept_means_t *means, char *detail)
                    "scans sent",
                    state.commands, state.refused, state.octets_mismatched, state.scans_sent);
     }
-    before = damaged_frames();
+    before = bench_damaged_frames();
     (void)world_run_until(timeline_now() + 5 * SIM_S);
-    damaged = damaged_frames() - before;
+    damaged = bench_damaged_frames() - before;
     return say(detail, damaged <= 1, "rate:%lu, %lu frames damaged in some 10 s (0..1)", laser_count("rate:"),
                damaged);
+}
+
+/* What a UART of the other end takes: sampled in the middle of the tenth bit, 5 % off is half a bit; shared
+ * by two. */
+#define RATE_SHARE 0.02
+
+/* Appends what was measured. False: no rate of the board's is near it, or nothing could be measured. */
+static bool measure_bits(const char *path, char *measured, size_t size)
+{
+    static const double rates[] = {9600.0, 57600.0, 115200.0, 250000.0};
+    static pulses_t pulses;
+    const char *error = pulses_read(path, &pulses);
+    const double bit_us = error == NULL ? pulses_bit_us(&pulses) : 0.0;
+    double off = INFINITY;
+
+    if (bit_us <= 0.0) {
+        snprintf(measured, size, "bit time not measured: %s", error != NULL ? error : "too few bits");
+        return false;
+    }
+    for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
+        const double this_off = 1e6 / bit_us / rates[i] - 1.0;
+
+        off = fabs(this_off) < fabs(off) ? this_off : off;
+    }
+    snprintf(measured, size, "measured %.0f bit/s, %+.2f %% off (2 at most)", 1e6 / bit_us, 100.0 * off);
+    return fabs(off) <= RATE_SHARE;
 }
 
 static accept_verdict_t rates(const accept_means_t *means, char *detail)
 {
     const world_wire_t laser = world_wire(BOARD_LASER), terminal = world_wire(BOARD_RADIO);
+    char measured[80] = "bit time not measured";
+    const bool right = means->bits == NULL || measure_bits(means->bits, measured, sizeof measured);
 
-    (void)means;
-    return say(detail, laser.strange <= 8 && terminal.strange <= 2,
+    return say(detail, right && laser.strange <= 8 && terminal.strange <= 2,
                "to the PC %lu octets at 115200 and 250000 (%lu meant nothing), %lu at 9600 (%lu lines meant "
-               "nothing); bit times not "
-               "measured",
-               laser.octets_in, laser.strange, terminal.octets_in, terminal.strange);
+               "nothing); %s",
+               laser.octets_in, laser.strange, terminal.octets_in, terminal.strange, measured);
 }
 
 static bool restart(void)
@@ -373,11 +388,11 @@ static accept_verdict_t faults(const accept_means_t *means, char *detail)
     if (error != NULL) {
         return say(detail, false, "imu: %s", error);
     }
-    before = damaged_frames();
+    before = bench_damaged_frames();
     world_damage(BOARD_LASER, 350);
     (void)world_run_until(timeline_now() + 5 * SIM_S);
     world_damage(BOARD_LASER, 0);
-    if (damaged_frames() == before || !await(has_height, 5, 10.0)) {
+    if (bench_damaged_frames() == before || !await(has_height, 5, 10.0)) {
         return say(detail, false, "laser: damaged octets are not found, or leave the board without heights");
     }
     world_type("\x01\x7F#KP abc");

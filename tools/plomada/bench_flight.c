@@ -10,6 +10,7 @@
 #include "terminal.h"
 #include "world.h"
 
+#define DAMAGED_MOST 3 /* frames of a flight: a plug that was touched */
 #define SAMPLE (10 * SIM_MS)
 #define COUNTS_PER_US (1.0 / 0.48)
 #define IDLE_COUNTS 4166.0
@@ -258,18 +259,46 @@ static void report_wires(sim_time_t origin, bench_flight_t *flight)
     }
 }
 
-/* What the board counts itself: "damaged:3" and the like. */
-static void ask_board(bench_flight_t *flight)
+unsigned long bench_damaged_frames(void)
 {
-    const char *damaged;
+    static const char *const causes[] = {"sum:", "length:", "echo:", "char:", "seq:", "framing:"};
+    char answer[200];
+    unsigned long sum = 0;
 
-    if (!command(flight, "LASER")) {
-        return;
+    if (!terminal_ask("LASER", answer, sizeof answer)) {
+        return 0;
     }
-    damaged = strstr(terminal_rest(500 * SIM_MS), "damaged:");
-    if (damaged != NULL && strtoul(damaged + strlen("damaged:"), NULL, 10) > 3) {
-        trouble(flight, "laser: garbled: the board found %lu frames damaged",
-                strtoul(damaged + strlen("damaged:"), NULL, 10));
+    const char *rest = terminal_rest(SIM_S / 2);
+
+    for (size_t i = 0; i < sizeof causes / sizeof causes[0]; i++) {
+        const char *at = strstr(rest, causes[i]);
+
+        sum += at != NULL ? strtoul(at + strlen(causes[i]), NULL, 10) : 0;
+    }
+    return sum;
+}
+
+/* What the board has found damaged since `before`: a few frames are those of its start. */
+static void ask_board(unsigned long before, bench_flight_t *flight)
+{
+    const unsigned long damaged = bench_damaged_frames() - before;
+
+    printf(
+        "damaged: laser %lu frames found by the board, %lu commands not understood here; xbee %lu lines not "
+        "understood here\n",
+        damaged, world_wire(BOARD_LASER).strange, world_wire(BOARD_RADIO).strange);
+    if (damaged > DAMAGED_MOST) {
+        trouble(flight, "laser: garbled: the board found %lu frames damaged", damaged);
+    }
+}
+
+static void report_pin(bench_flight_t *flight)
+{
+    if (world_strange_pulses() > 0) {
+        trouble(flight, "pin: %lu pulses are not of 0.9 to 2.1 ms", world_strange_pulses());
+    }
+    if (world_pin_still()) {
+        trouble(flight, "pin: no pulse");
     }
 }
 
@@ -278,6 +307,8 @@ void bench_fly(const scenario_t *scenario, unsigned long seed, FILE *progress, b
     sim_time_t origin;
 
     metrics_begin(&record, scenario->reference_m, scenario->platform, scenario->land_s);
+    const unsigned long damaged = bench_damaged_frames();
+
     flight->started = settings(scenario, flight);
     if (!flight->started) {
         world_type("#STREAM OFF");
@@ -294,8 +325,9 @@ void bench_fly(const scenario_t *scenario, unsigned long seed, FILE *progress, b
     flight->lag_ms = (double)world_worst_lag() * 1e-6;
     end_safe(flight);
     report_wires(origin, flight);
+    report_pin(flight);
     if (!flight->interrupted && !flight->radio_lost) {
-        ask_board(flight);
+        ask_board(damaged, flight);
     }
     metrics_compute(&record, &flight->metrics);
     flight->metrics.value[METRIC_GROUND_CONTACTS] = quadrotor_state(world_quadrotor())->contacts;

@@ -20,7 +20,7 @@ typedef struct {
     bool has_delay;
     double delay_ms, delay_most_ms; /* of the loop: world_delay_ms() */
     int trouble_count;
-    char trouble[BENCH_TROUBLES_MAX][96]; /* each begins with its line: laser, imu or xbee */
+    char trouble[BENCH_TROUBLES_MAX][96]; /* each begins with its line: laser, imu, xbee or pin */
 } bench_flight_t;
 
 /* The 95 % value of the same way on the PC board in virtual time, ms: Laser_SWI 0.36, TaskReceiveLaser 1.1,
@@ -38,6 +38,9 @@ void bench_fly(const scenario_t *scenario, unsigned long seed, FILE *progress, b
  * virtual time, when the autopilot's delay was longer by what the loop took longer (95 % value), if that is 1
  * ms or more. Not while a world is open. Returns the added delay in ms. */
 double bench_widen(const scenario_t *scenario, const bench_flight_t *flight, scenario_t *widened);
+
+/* What the board counts of damaged frames of its scanner, in its answer to `#LASER`. */
+unsigned long bench_damaged_frames(void);
 
 /* Metrics that are known without the board's memory. */
 bool bench_can_judge(metric_t metric);

@@ -21,6 +21,7 @@
 #define LAG_MAX (150 * SIM_MS)
 #define MISMATCH 0.045
 #define WRONG_RATE 1.08
+#define FAST 1.03 /* beyond the 2 % that a UART should keep, and yet understood */
 #define SLOW 12.0
 #define LONG_PULSE 1.1
 #define LATE (400 * SIM_MS)
@@ -39,6 +40,7 @@ static const char usage[] = "usage: plomada board --laser PATH --imu PATH --xbee
                             "  --pulses FILE       the throttle pin as a logic analyser records it, in "
                             "sigrok-cli's format (csv:time=true:dedup=true);\n"
                             "                      FILE may be a FIFO\n"
+                            "  --bits FILE         the radio's transmit pin in the same way\n"
                             "  --duration S        ends by itself\n"
                             "  --seed N            phases (default 1)\n"
                             "  --defect NAME[@S]   something is wrong, from S seconds after the first "
@@ -49,7 +51,7 @@ static const char defect_help[] =
     "      laser-gone imu-gone xbee-gone            the adapter of that line is unplugged\n"
     "      laser-late imu-late xbee-late            its octets towards the board come 0.4 s late\n"
     "      laser-garbled imu-garbled xbee-garbled   every fiftieth octet is another, both ways\n"
-    "      wrong-rate        the oscillator is 8 % fast: every line\n"
+    "      wrong-rate fast   the oscillator is 8 % fast, 3 % fast: every line\n"
     "      pulse-inverted pulse-long pulse-missing  the throttle pin: inverted, pulses 10 % long, dead\n"
     "      no-storage        the flash cannot be written\n"
     "      forgetful         the flash is blank after a power cycle\n"
@@ -70,14 +72,16 @@ typedef enum {
     FORGETFUL,
     SLOW_CODE,
     NO_WATCHDOG,
+    FAST_DEFECT,
     DEFECTS
 } defect_t;
 
 static const char *const wire_defects[] = {"swapped", "gone", "late", "garbled"};
 _Static_assert(sizeof wire_defects / sizeof wire_defects[0] == WIRE_DEFECTS,
                "every defect of a wire has a name");
-static const char *const other_defects[] = {"wrong-rate", "pulse-inverted", "pulse-long", "pulse-missing",
-                                            "no-storage", "forgetful",      "slow",       "no-watchdog"};
+static const char *const other_defects[] = {"wrong-rate",    "pulse-inverted", "pulse-long",
+                                            "pulse-missing", "no-storage",     "forgetful",
+                                            "slow",          "no-watchdog",    "fast"};
 _Static_assert(sizeof other_defects / sizeof other_defects[0] == DEFECTS - WRONG_RATE_DEFECT,
                "every other defect has a name");
 
@@ -87,6 +91,7 @@ enum {
     OPT_XBEE,
     OPT_STORAGE,
     OPT_PULSES,
+    OPT_BITS,
     OPT_DURATION,
     OPT_SEED,
     OPT_DEFECT,
@@ -94,15 +99,21 @@ enum {
 };
 
 static const struct option long_options[] = {
-    {"laser", required_argument, NULL, OPT_LASER},   {"imu", required_argument, NULL, OPT_IMU},
-    {"xbee", required_argument, NULL, OPT_XBEE},     {"storage", required_argument, NULL, OPT_STORAGE},
-    {"pulses", required_argument, NULL, OPT_PULSES}, {"duration", required_argument, NULL, OPT_DURATION},
-    {"seed", required_argument, NULL, OPT_SEED},     {"defect", required_argument, NULL, OPT_DEFECT},
-    {"help", no_argument, NULL, OPT_HELP},           {NULL, 0, NULL, 0},
+    {"laser", required_argument, NULL, OPT_LASER},
+    {"imu", required_argument, NULL, OPT_IMU},
+    {"xbee", required_argument, NULL, OPT_XBEE},
+    {"storage", required_argument, NULL, OPT_STORAGE},
+    {"pulses", required_argument, NULL, OPT_PULSES},
+    {"duration", required_argument, NULL, OPT_DURATION},
+    {"bits", required_argument, NULL, OPT_BITS},
+    {"seed", required_argument, NULL, OPT_SEED},
+    {"defect", required_argument, NULL, OPT_DEFECT},
+    {"help", no_argument, NULL, OPT_HELP},
+    {NULL, 0, NULL, 0},
 };
 
 static struct {
-    const char *link[BOARD_WIRES], *storage, *pulses;
+    const char *link[BOARD_WIRES], *storage, *pulses, *bits;
     double duration_s, defect_s[DEFECTS]; /* NAN: not this defect */
     unsigned long seed;
     bool help;
@@ -114,10 +125,11 @@ static struct {
     noise_t noise;
     unsigned passed;   /* octets, for the garbled ones */
     int pulses;        /* file, -1: none */
+    int bits;          /* the same */
     sim_time_t before; /* virtual time of earlier power-ons */
     sim_time_t worst_lag;
     costs_stretched_t costs;
-} bench = {.pulses = -1};
+} bench = {.pulses = -1, .bits = -1};
 
 static volatile sig_atomic_t power_cycle;
 
@@ -191,6 +203,9 @@ static bool read_option(int option, const char *argument)
     case OPT_PULSES:
         order.pulses = argument;
         return true;
+    case OPT_BITS:
+        order.bits = argument;
+        return true;
     case OPT_DURATION:
         return read_number(argument, &order.duration_s) || complain("not a number of seconds", argument);
     case OPT_SEED:
@@ -243,9 +258,38 @@ static bool wire_broken(board_wire_t wire, int defect)
     return broken((int)wire * WIRE_DEFECTS + defect);
 }
 
+static double oscillator(void)
+{
+    return broken(WRONG_RATE_DEFECT) ? WRONG_RATE : broken(FAST_DEFECT) ? FAST : 1.0;
+}
+
 static double own_rate(board_wire_t wire)
 {
-    return board_rate(wire) * (broken(WRONG_RATE_DEFECT) ? WRONG_RATE : 1.0);
+    return board_rate(wire) * oscillator();
+}
+
+/* Start bit, eight of the octet, stop bit; it has just ended. Octets that follow each other do so on the pin
+ * too, whatever the oscillator. */
+static void record_bits(unsigned octet)
+{
+    static sim_time_t follows, ended; /* an octet's end on the pin, and when it was given */
+    const double bit_ns = 1e9 / own_rate(BOARD_RADIO);
+    const unsigned levels = octet << 1 | 1U << 9;
+    const sim_time_t now = bench.before + timeline_now();
+    const bool follows_on = (double)(now - ended) < 10.5 * 1e9 / board_rate(BOARD_RADIO);
+    const sim_time_t end = follows_on ? follows + llround(10.0 * bit_ns) : now;
+    char rows[10 * 40];
+    int length = 0;
+
+    for (int i = 0; i < 10 && bench.bits >= 0; i++) {
+        length += snprintf(rows + length, sizeof rows - (size_t)length, "%lld,%u\n",
+                           (long long)end - llround((10 - i) * bit_ns), levels >> i & 1U);
+    }
+    if (length > 0 && write(bench.bits, rows, (size_t)length) < 0) {
+        perror(order.bits);
+    }
+    follows = end;
+    ended = now;
 }
 
 static unsigned char garbled(board_wire_t wire, unsigned char octet)
@@ -263,6 +307,9 @@ static void out(void *context, unsigned octet)
     const double ratio = (double)port_rate(port) / own_rate(wire);
     unsigned char c = garbled(wire, (unsigned char)octet);
 
+    if (wire == BOARD_RADIO) {
+        record_bits(octet);
+    }
     if (wire_broken(wire, SWAPPED) || port->fd < 0) {
         return;
     }
@@ -281,8 +328,7 @@ typedef struct {
 static void arrive(board_wire_t wire, const unsigned char *octets, size_t count)
 {
     /* A fast oscillator samples as if the far end were slow. */
-    const double rate = (double)port_rate(&bench.ports[wire]) /
-                        (broken(WRONG_RATE_DEFECT) ? WRONG_RATE : 1.0);
+    const double rate = (double)port_rate(&bench.ports[wire]) / oscillator();
 
     if (rate > 0.0) {
         board_receive_at(wire, rate, octets, count);
@@ -357,19 +403,27 @@ static void pulse(sim_time_t high_ns)
     record(now, inverted);
 }
 
-static bool open_pulses(void)
+/* Read as well: a FIFO opens without waiting for its reader. */
+static bool open_recording(const char *path, const char *unit, const char *first, int *file)
 {
-    static const char head[] =
+    char head[160];
+    const int length = snprintf(
+        head, sizeof head,
         "; CSV generated by plomada board, as by libsigrok 0.5.2\n; Channels (1/1): D0\n"
-        "; Samplerate: 1 MHz\nmicroseconds,logic\n0,0\n";
+        "; Samplerate: 1 MHz\n%s,logic\n0,%s\n",
+        unit, first);
 
-    if (order.pulses == NULL) {
+    if (path == NULL) {
         return true;
     }
-    /* Read as well: a FIFO opens without waiting for its reader. */
-    bench.pulses = open(order.pulses, O_RDWR | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0644);
-    return (bench.pulses >= 0 && write(bench.pulses, head, sizeof head - 1) > 0) ||
-           complain(strerror(errno), order.pulses);
+    *file = open(path, O_RDWR | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0644);
+    return (*file >= 0 && write(*file, head, (size_t)length) > 0) || complain(strerror(errno), path);
+}
+
+static bool open_recordings(void)
+{
+    return open_recording(order.pulses, "microseconds", "0", &bench.pulses) &&
+           open_recording(order.bits, "nanoseconds", "1", &bench.bits);
 }
 
 /* ---- life ---- */
@@ -508,7 +562,7 @@ int command_board(int argc, char **argv)
         return 0;
     }
     noise_init(&bench.noise, order.seed, "nonsense");
-    begun = load_storage() && open_pulses() && open_wires();
+    begun = load_storage() && open_recordings() && open_wires();
     if (begun) {
         printf("board: %s %s %s\n", order.link[BOARD_LASER], order.link[BOARD_IMU], order.link[BOARD_RADIO]);
         fflush(stdout);

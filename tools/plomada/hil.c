@@ -18,6 +18,10 @@ static const char usage[] =
     "motors, no propellers.\n"
     "docs/acceptance.md says how to wire it. `plomada board` is a board to try it on.\n\n"
     "  --seed N            noise and phases (default 1)\n"
+    "  --pulses FILE       the pulse as a logic analyser sees it on the pin, by sigrok-cli -O csv into a "
+    "FIFO or a "
+    "growing file,\n"
+    "                      in place of what the board tells\n"
     "  --patience S        how long the board may take until it has heights (default 40; the scanner waits "
     "10 s)\n\n"
     "Printed: the metrics, what the loop through the adapters takes, troubles by line, the verdict. The "
@@ -30,7 +34,7 @@ static const char usage[] =
     "device, 3 this PC did not\n"
     "keep up with the wall clock (by more than 0.15 s): no verdict.\n";
 
-enum { OPT_LASER = 1, OPT_IMU, OPT_XBEE, OPT_SEED, OPT_PATIENCE, OPT_HELP };
+enum { OPT_LASER = 1, OPT_IMU, OPT_XBEE, OPT_SEED, OPT_PATIENCE, OPT_PULSES, OPT_HELP };
 
 static const struct option long_options[] = {
     {"laser", required_argument, NULL, OPT_LASER},
@@ -38,6 +42,7 @@ static const struct option long_options[] = {
     {"xbee", required_argument, NULL, OPT_XBEE},
     {"seed", required_argument, NULL, OPT_SEED},
     {"patience", required_argument, NULL, OPT_PATIENCE},
+    {"pulses", required_argument, NULL, OPT_PULSES},
     {"help", no_argument, NULL, OPT_HELP},
     {NULL, 0, NULL, 0},
 };
@@ -45,6 +50,7 @@ static const struct option long_options[] = {
 static struct {
     const char *device[BOARD_WIRES];
     const scenario_t *scenario;
+    const char *pulses;
     unsigned long seed;
     double patience_s;
     bool help;
@@ -89,6 +95,9 @@ static bool read_option(int option, const char *argument)
         return read_seed(argument);
     case OPT_PATIENCE:
         return read_patience(argument);
+    case OPT_PULSES:
+        order.pulses = argument;
+        return true;
     case OPT_HELP:
         order.help = true;
         return true;
@@ -220,6 +229,7 @@ static int run(void)
     const char *error;
 
     memcpy(config.device, order.device, sizeof config.device);
+    config.pulses = order.pulses;
     config.terrain = order.scenario->platform ? terrain_platform : terrain_flat;
     config.quadrotor.tug_rate_per_s = order.scenario->tug_rate_per_s;
     config.quadrotor.climb_rate_mps_per_n = order.scenario->climb_rate_mps_per_n;
@@ -227,6 +237,10 @@ static int run(void)
     error = world_open(&config, &failed);
     if (error != NULL) {
         fprintf(stderr, "plomada hil: --%s %s: %s\n", wire_names[failed], order.device[failed], error);
+        return 2;
+    }
+    if (!world_watch_pin()) {
+        world_close();
         return 2;
     }
     if (bench_await_heights(order.patience_s, &flight)) {

@@ -8,16 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct {
-    double sample_us; /* from the head, 0: not told */
-    double unit_us;   /* of the time column, 0: there is none */
-    double row;       /* number of the sample */
-    bool any, high;
-    double rose_us, first_us; /* NAN: not seen to rise */
-} reader_t;
-
 /* "; Samplerate: 1 MHz" */
-static void read_rate(reader_t *reader, const char *line)
+static void read_rate(pulse_reader_t *reader, const char *line)
 {
     double rate;
     char unit[8] = "";
@@ -29,7 +21,7 @@ static void read_rate(reader_t *reader, const char *line)
 }
 
 /* "microseconds,logic", or "logic" */
-static void read_titles(reader_t *reader, const char *line)
+static void read_titles(pulse_reader_t *reader, const char *line)
 {
     static const struct {
         const char *name;
@@ -49,7 +41,7 @@ static bool read_level(const char *text, bool *level)
     return (text[0] == '0' || text[0] == '1') && strchr(",\r\n", text[1]) != NULL;
 }
 
-static bool read_row(reader_t *reader, const char *line, double *when_us, bool *level)
+static bool read_row(pulse_reader_t *reader, const char *line, double *when_us, bool *level)
 {
     char *end;
 
@@ -62,38 +54,54 @@ static bool read_row(reader_t *reader, const char *line, double *when_us, bool *
     return end != line && *end == ',' && read_level(end + 1, level);
 }
 
-static void take(reader_t *reader, double when_us, bool level, pulses_t *pulses)
+static bool take(pulse_reader_t *reader, double when_us, bool level, double *high_us, double *end_s)
 {
+    const bool ended = reader->any && !level && reader->high && !isnan(reader->rose_us);
+
     if (!reader->any) {
         reader->first_us = when_us;
     } else if (level && !reader->high) {
         reader->rose_us = when_us;
-    } else if (!level && reader->high && !isnan(reader->rose_us) && pulses->count < PULSES_MAX) {
-        pulses->high_us[pulses->count] = when_us - reader->rose_us;
-        pulses->end_s[pulses->count++] = (when_us - reader->first_us) * 1e-6;
     }
+    *high_us = when_us - reader->rose_us;
+    *end_s = (when_us - reader->first_us) * 1e-6;
     reader->any = true;
     reader->high = level;
+    return ended;
+}
+
+pulse_line_t pulse_line(pulse_reader_t *reader, const char *line, double *high_us, double *end_s)
+{
+    double when_us;
+    bool level;
+
+    if (line[0] == ';') {
+        read_rate(reader, line);
+    } else if (isalpha((unsigned char)line[0])) {
+        read_titles(reader, line);
+    } else if (!read_row(reader, line, &when_us, &level)) {
+        return PULSE_NONSENSE;
+    } else if (take(reader, when_us, level, high_us, end_s)) {
+        return PULSE_ENDED;
+    }
+    return PULSE_NONE;
 }
 
 static const char *read_lines(FILE *file, pulses_t *pulses)
 {
-    reader_t reader = {.rose_us = NAN};
+    pulse_reader_t reader = PULSE_READER;
     char line[256];
-    double when_us;
-    bool level;
 
-    while (fgets(line, sizeof line, file) != NULL) {
-        if (line[0] == ';') {
-            read_rate(&reader, line);
-        } else if (isalpha((unsigned char)line[0])) {
-            read_titles(&reader, line);
-        } else if (strchr(line, '\n') == NULL) {
-            break; /* still being written */
-        } else if (!read_row(&reader, line, &when_us, &level)) {
+    while (fgets(line, sizeof line, file) != NULL && strchr(line, '\n') != NULL) { /* else: being written */
+        double high_us, end_s;
+        const pulse_line_t found = pulse_line(&reader, line, &high_us, &end_s);
+
+        if (found == PULSE_NONSENSE) {
             return "not a recording of sigrok-cli -O csv (no sample rate, or not 0 and 1)";
-        } else {
-            take(&reader, when_us, level, pulses);
+        }
+        if (found == PULSE_ENDED && pulses->count < PULSES_MAX) {
+            pulses->high_us[pulses->count] = high_us;
+            pulses->end_s[pulses->count++] = end_s;
         }
     }
     return reader.any ? NULL : "no samples";
@@ -111,4 +119,38 @@ const char *pulses_read(const char *path, pulses_t *pulses)
     error = read_lines(file, pulses);
     fclose(file);
     return error;
+}
+
+#define BITS_LEAST 100   /* runs of bits: some ten characters */
+#define RUN_MOST 9.5     /* bits; a longer one is a pause between characters */
+#define SHORTEST_OF 0.02 /* a lone bit is common in text, a spike is not */
+
+static int by_length(const void *a, const void *b)
+{
+    const double left = *(const double *)a, right = *(const double *)b;
+
+    return (left > right) - (left < right);
+}
+
+double pulses_bit_us(const pulses_t *pulses)
+{
+    static double sorted[PULSES_MAX];
+    double bit_us;
+
+    if (pulses->count < BITS_LEAST) {
+        return 0.0;
+    }
+    memcpy(sorted, pulses->high_us, pulses->count * sizeof sorted[0]);
+    qsort(sorted, pulses->count, sizeof sorted[0], by_length);
+    bit_us = sorted[(size_t)(SHORTEST_OF * (double)pulses->count)];
+    for (int round_trip = 0; round_trip < 3 && bit_us > 0.0; round_trip++) {
+        double time_us = 0.0, bits = 0.0;
+
+        for (size_t i = 0; i < pulses->count && sorted[i] < RUN_MOST * bit_us; i++) {
+            time_us += sorted[i];
+            bits += round(sorted[i] / bit_us);
+        }
+        bit_us = bits > 0.0 ? time_us / bits : 0.0;
+    }
+    return bit_us;
 }

@@ -3,6 +3,7 @@
 #ifndef TOOLS_PLOMADA_PULSES_H
 #define TOOLS_PLOMADA_PULSES_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #define PULSES_MAX 65536
@@ -15,5 +16,25 @@ typedef struct {
 
 /* Whole pulses only. NULL when fine, else what is wrong with the file. */
 const char *pulses_read(const char *path, pulses_t *pulses);
+
+/* Of a UART's transmit pin in place of the throttle's: the length of its bit in microseconds, found from the
+ * high times within characters; 0 when there are too few. Wants some samples a bit: at least 1 MHz for 57600
+ * bit/s. */
+double pulses_bit_us(const pulses_t *pulses);
+
+/* The same line by line, while it is being recorded. Begins as PULSE_READER. */
+typedef struct {
+    double sample_us; /* from the head, 0: not told */
+    double unit_us;   /* of the time column, 0: there is none */
+    double row;       /* number of the sample */
+    bool any, high;
+    double rose_us, first_us; /* NAN: not seen to rise */
+} pulse_reader_t;
+#define PULSE_READER ((pulse_reader_t){.rose_us = NAN})
+
+typedef enum { PULSE_NONE, PULSE_ENDED, PULSE_NONSENSE } pulse_line_t;
+
+/* PULSE_ENDED: a pulse ended with this line; how long it was, and when it ended since the first sample. */
+pulse_line_t pulse_line(pulse_reader_t *reader, const char *line, double *high_us, double *end_s);
 
 #endif

@@ -1,9 +1,15 @@
 #include "world.h"
 
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <unistd.h>
 
+#include "pulses.h"
 #include "sim/host/pace.h"
 #include "sim/noise.h"
 
@@ -16,6 +22,10 @@
 #define DELAYS_MAX 4096
 #define PULSE_PATIENCE (500 * SIM_MS)
 #define LAG_THAT_COUNTS (30 * SIM_MS)
+#define PIN_LOOK (2 * SIM_MS)
+#define CHANNEL_LEAST_US 900.0 /* a servo channel has 1 to 2 ms */
+#define CHANNEL_MOST_US 2100.0
+#define OTHER_PULSE_US 1.0 /* twice the count of the compare register */
 
 typedef struct {
     port_t port;
@@ -41,6 +51,14 @@ static struct {
     bool held;
     double pulse_us;
     sim_time_t pulse_at;
+    sim_time_t heard_at; /* the board told a pulse */
+    struct {
+        int file; /* -1: nobody looks at the pin */
+        pulse_reader_t reader;
+        char line[80];
+        size_t length;
+        unsigned long strange;
+    } pin;
     bool scan_waits; /* for the pulse that follows from it */
     unsigned last_octet;
     sim_time_t scan_end;
@@ -127,22 +145,100 @@ static bool is_pulse(const char *text)
     return text[0] == 'P' && text[1] != '\0' && strspn(text + 1, "0123456789") == strlen(text + 1);
 }
 
-static void take_pulse(const char *digits)
+/* answers: it may follow from the latest scan. */
+static void take_pulse(double pulse_us, bool answers)
 {
     const sim_time_t now = timeline_now();
-    const sim_time_t delay = now - world.scan_end;
 
-    world.pulse_us = strtod(digits, NULL) * 0.1;
+    world.pulse_us = pulse_us;
     world.pulse_at = now;
     if (!world.held) {
-        quadrotor_pulse(world.quadrotor, (sim_time_t)(world.pulse_us * 1000.0));
+        quadrotor_pulse(world.quadrotor, (sim_time_t)(pulse_us * 1000.0));
     }
-    if (world.scan_waits && delay >= SHORTEST_DELAY) {
+    if (world.scan_waits && answers) {
         world.scan_waits = false;
         if (world.delays < DELAYS_MAX) {
-            world.delays_ms[world.delays++] = (double)delay * 1e-6;
+            world.delays_ms[world.delays++] = (double)(now - world.scan_end) * 1e-6;
         }
     }
+}
+
+static void pulse_told(const char *digits)
+{
+    world.heard_at = timeline_now();
+    if (world.pin.file < 0) {
+        take_pulse(strtod(digits, NULL) * 0.1, timeline_now() - world.scan_end >= SHORTEST_DELAY);
+    }
+}
+
+/* The pin repeats its pulse: the first that is another one follows from the scan. */
+static void pulse_seen(double high_us)
+{
+    if (high_us < CHANNEL_LEAST_US || high_us > CHANNEL_MOST_US) {
+        world.pin.strange++;
+    } else {
+        take_pulse(high_us, fabs(high_us - world.pulse_us) > OTHER_PULSE_US);
+    }
+}
+
+static void pin_line(void)
+{
+    double high_us, end_s;
+
+    world.pin.line[world.pin.length] = '\0';
+    world.pin.length = 0;
+    switch (pulse_line(&world.pin.reader, world.pin.line, &high_us, &end_s)) {
+    case PULSE_ENDED:
+        pulse_seen(high_us);
+        break;
+    case PULSE_NONSENSE:
+        world.pin.strange++;
+        break;
+    case PULSE_NONE:
+        break;
+    }
+}
+
+static void look_at_pin(void *context)
+{
+    char text[4096];
+    ssize_t count;
+
+    while ((count = read(world.pin.file, text, sizeof text)) > 0) {
+        for (ssize_t i = 0; i < count; i++) {
+            if (world.pin.length < sizeof world.pin.line - 2) {
+                world.pin.line[world.pin.length++] = text[i];
+            }
+            if (text[i] == '\n') {
+                pin_line();
+            }
+        }
+    }
+    timeline_after(PIN_LOOK, look_at_pin, context);
+}
+
+bool world_watch_pin(void)
+{
+    if (world.config.pulses != NULL) {
+        world.pin.file = open(world.config.pulses, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+        if (world.pin.file < 0) {
+            perror(world.config.pulses);
+            return false;
+        }
+        world.pin.reader = PULSE_READER;
+        timeline_after(PIN_LOOK, look_at_pin, NULL);
+    }
+    return true;
+}
+
+unsigned long world_strange_pulses(void)
+{
+    return world.pin.strange;
+}
+
+bool world_pin_still(void)
+{
+    return world.pin.file >= 0 && timeline_now() - world.pulse_at > PULSE_PATIENCE;
 }
 
 static bool means_something(const char *text)
@@ -165,7 +261,7 @@ static void line_complete(void)
     if (!world.whole) {
         world.whole = true;
     } else if (is_pulse(world.line) && !world.overlong) {
-        take_pulse(world.line + 1);
+        pulse_told(world.line + 1);
     } else if (world.overlong || (world.length > 0 && !means_something(world.line))) {
         world.wires[BOARD_RADIO].seen.strange++;
     } else if (world.length > 0) {
@@ -207,7 +303,7 @@ static razor_truth_t motion(void *context)
 /* The pin repeats its pulse until it is told another; who hears nothing more knows of no pin. */
 static void pwm_period(void *context)
 {
-    if (world.pulse_us > 0.0 && !world.held && !world_silent() &&
+    if (world.pin.file < 0 && world.pulse_us > 0.0 && !world.held && !world_silent() &&
         timeline_now() - world.pulse_at >= PWM_PERIOD) {
         quadrotor_pulse(world.quadrotor, (sim_time_t)(world.pulse_us * 1000.0));
     }
@@ -257,6 +353,7 @@ const char *world_open(const world_config_t *config, board_wire_t *failed)
     const char *error;
 
     memset(&world, 0, sizeof world);
+    world.pin.file = -1;
     world.config = *config;
     error = open_ports(failed);
     if (error != NULL) {
@@ -273,6 +370,9 @@ const char *world_open(const world_config_t *config, board_wire_t *failed)
 void world_close(void)
 {
     pace_end();
+    if (world.pin.file >= 0) {
+        (void)close(world.pin.file);
+    }
     for (int i = 0; i < BOARD_WIRES; i++) {
         port_close(&world.wires[i].port);
     }
@@ -329,7 +429,7 @@ static void look_at_the_clock(void)
 
 bool world_silent(void)
 {
-    const sim_time_t since = world.pulse_at > world.lagged_at ? world.pulse_at : world.lagged_at;
+    const sim_time_t since = world.heard_at > world.lagged_at ? world.heard_at : world.lagged_at;
 
     return timeline_now() - since > PULSE_PATIENCE;
 }

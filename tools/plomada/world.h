@@ -1,6 +1,6 @@
 /* The world of a real board: scanner, IMU and airframe as models, the operator's terminal, each behind a
- * serial adapter of the PC, in real time. The throttle pulse comes back as lines of `#STREAM PULSE`. One per
- * process. */
+ * serial adapter of the PC, in real time. The throttle pulse comes back as lines of `#STREAM PULSE`, or as a
+ * logic analyser sees it on the pin. One per process. */
 #ifndef TOOLS_PLOMADA_WORLD_H
 #define TOOLS_PLOMADA_WORLD_H
 
@@ -14,6 +14,8 @@ typedef struct {
     unsigned long seed;
     terrain_t terrain;
     quadrotor_config_t quadrotor;
+    const char *pulses; /* what the analyser records, by sigrok-cli -O csv: a FIFO or a growing file. NULL:
+                           the pulse is what the board tells */
     void (*line)(const char *text); /* each line that the board sends, without its end; never a pulse's */
 } world_config_t;
 
@@ -27,6 +29,13 @@ bool world_run_until(sim_time_t end);
 
 /* The operator sends a line, its end added. */
 void world_type(const char *line);
+
+/* False, and why on stderr, when config->pulses cannot be read. After world_open(). */
+bool world_watch_pin(void);
+/* Pulses on the pin that no throttle channel has (0.9 to 2.1 ms), lines that are none of sigrok-cli's. */
+unsigned long world_strange_pulses(void);
+/* No pulse on the pin for half a second, though it is watched. */
+bool world_pin_still(void);
 
 /* The newest pulse, microseconds, 0: none yet; and when its line was complete. */
 double world_pulse_us(sim_time_t *when);
