@@ -19,7 +19,7 @@ FIGURE = re.compile(r"(?<![\w.])(\d+\.\d+|\d+(?=\s+(?:ms|µs|%)))(\s+µs)?")
 
 
 def shell(command):
-    return subprocess.run(command.replace("build/plomada", f"'{PROGRAM}'"), shell=True, check=False, capture_output=True,
+    return subprocess.run(command.replace("build/plomada", f"'{PROGRAM}'"), shell=True, cwd=ROOT, check=False, capture_output=True,
                           text=True).stdout
 
 
