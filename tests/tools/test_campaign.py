@@ -77,7 +77,8 @@ class Case(unittest.TestCase):
         return len((self.dir / "log").read_text().splitlines()) if (self.dir / "log").exists() else 0
 
     def stored(self):
-        return (self.out / "flights.jsonl").read_text(encoding="utf-8").splitlines()
+        kept = self.out / "flights.jsonl"
+        return kept.read_text(encoding="utf-8").splitlines() if kept.exists() else []
 
     def tell(self, name, text=""):
         (self.dir / name).write_text(str(text))
@@ -215,6 +216,76 @@ class Keeping(Case):
         self.assertIn("run it again", err)
         self.assertNotIn("Traceback", err)
         self.assertGreaterEqual(len([json.loads(line) for line in self.stored()]), fleet.BATCH)
+
+    def test_resume_takes_the_options_that_the_campaign_was_begun_with(self):
+        self.campaign("--law", "EST", "--set", "nominal", "--runs", "4")
+        lines = self.stored()
+        (self.out / "flights.jsonl").write_text("".join(line + "\n" for line in lines[:1]), encoding="utf-8")
+        status, out, _, flown = self.campaign("--resume")
+        self.assertEqual((status, flown), (0, 3))
+        self.assertIn("nominal", out)
+        self.assertEqual(len(self.stored()), 4)
+        shutil.rmtree(self.out)
+        with contextlib.redirect_stderr(io.StringIO()) as err, self.assertRaises(SystemExit) as stopped:
+            campaign.main(self.argv("--resume"))
+        self.assertEqual(stopped.exception.code, 2)
+        self.assertIn("no campaign was begun", err.getvalue())
+
+    def test_every_result_says_how_to_fly_it_again(self):
+        _, out, _, _ = self.campaign("--law", "EST", "--set", "nominal", "--runs", "2", "--set", "plant.gain=0.9")
+        for record in map(json.loads, self.stored()):
+            self.assertRegex(record["version"], r"\d+\.\d+")
+            self.assertEqual(record["program"], fleet.digest(self.program)[:12])
+            self.assertIn("plant.gain=0.9", record["command"])
+            again = subprocess.run(f"{record['command']} --json {self.dir}/again.json", shell=True, check=False,
+                                   capture_output=True)
+            self.assertEqual(again.returncode, 0)
+            self.assertEqual(json.loads((self.dir / "again.json").read_text()), record["figures"])
+            self.assertIn("the worst flight", out)
+
+    def test_own_laws_and_sets_come_from_a_file(self):
+        own = {"laws": {"MINE": {"settings": {"POSK": 2}, "scenario": "est-60cm-ramp"}},
+               "sets": {"heavy": {"runs": 3, "fixed": {"hover_thrust": 8.4}}}}
+        file = self.dir / "own.json"
+        self.addCleanup(plan.LAWS.pop, "MINE", None)
+        self.addCleanup(plan.SETS.pop, "heavy", None)
+        file.write_text(json.dumps(own))
+        status, out, _, flown = self.campaign("--plan", str(file), "--law", "MINE", "--set", "heavy")
+        self.assertEqual((status, flown), (0, 3), out)
+        for record in map(json.loads, self.stored()):
+            self.assertIn("--set POSK=2 --set plant.hover_thrust=8.4", record["command"])
+        with contextlib.redirect_stderr(io.StringIO()) as err, self.assertRaises(SystemExit):
+            campaign.main(self.argv("--plan", str(file)))
+        self.assertIn("is there already", err.getvalue())
+
+    def dask(self, *words):
+        process = subprocess.Popen([sys.executable, "-m", "dask", *words, "--no-dashboard", "--scheduler-file",
+                                    self.dir / "scheduler.json"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def test_a_worker_that_dies_loses_nothing(self):
+        self.tell("slow")
+        self.dask("scheduler", "--port", "0")
+        workers = [self.dask("worker", "--nthreads", "1", "--no-nanny") for _ in range(2)]
+        end = time.monotonic() + 60.0
+        while time.monotonic() < end and not (self.dir / "scheduler.json").exists():
+            time.sleep(0.05)
+        address = json.loads((self.dir / "scheduler.json").read_text())["address"]
+        campaigner = subprocess.Popen(
+            [sys.executable, "-B", CAMPAIGN, *self.argv("--law", "EST", "--set", "nominal", "--runs", "60", "--scheduler", address)],
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(campaigner.kill)
+        while time.monotonic() < end and len(self.stored()) < 5:
+            time.sleep(0.05)
+        kept = len(self.stored())
+        workers[0].kill()
+        err = campaigner.communicate(timeout=120)[1]
+        self.assertEqual(campaigner.returncode, 1, err)     # the stand-in's hover, its seed, is more than it must be
+        self.assertTrue(5 <= kept < 60, kept)
+        runs = [json.loads(line)["run"] for line in self.stored()]
+        self.assertEqual(sorted(runs), list(range(1, 61)))
 
     def test_a_dead_scheduler_is_an_error(self):
         argv = self.argv("--law", "EST", "--scheduler", "tcp://127.0.0.1:1")

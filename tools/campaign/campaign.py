@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """campaign.py [--law L,L] [--set S,S] [--runs N] [--page] ...: flies each law on many vehicles.
 campaign.py --faults [N] [--law L,L] [--page] ...: flies them while the world lies to them.
+campaign.py --resume [--out DIR]: goes on with the campaign in DIR, with the options it was begun with.
 
 The vehicle of a run depends on the campaign's seed and the run's number alone, so all laws fly the same vehicles.
 Flights run in processes of their own through Dask, on this machine or on the cluster of --scheduler. Each result is
-kept at once in DIR/flights.jsonl; a rerun flies only what is missing there, and what another program or other draws
+kept at once in DIR/flights.jsonl, with the command that flies it again, seed, program and vehicle; a rerun flies only what is missing there, and what another program or other draws
 would fly anew. Then come the table and the verdicts on stdout, and in DIR campaign.csv, campaign.json and campaign.png.
 The campaign without options is the one in docs/control.md: its tables must be these, or --page writes them.
 With --faults, each of N flights has one to three random conditions, such as lost rays, a frozen IMU, a noisy line, and all
@@ -29,6 +30,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 FAULTS = 2000
+BEGUN = "arguments.json"        # of --out
 
 
 def of_page(arguments):
@@ -53,13 +55,42 @@ def positive(text):
     return value
 
 
+def resumed(parser, arguments):
+    """The arguments that the campaign in --out was begun with."""
+    path = arguments.out / BEGUN
+    if not path.exists():
+        parser.error(f"--resume: no campaign was begun in {arguments.out}")
+    return parser.parse_args([*json.loads(path.read_text(encoding="utf-8")), "--out", str(arguments.out)])
+
+
+def choose(parser, arguments):
+    """Laws, sets and assignments; what --plan adds is known from here on."""
+    if arguments.plan:
+        try:
+            plan.extend(json.loads(arguments.plan.read_text(encoding="utf-8")))
+        except (OSError, ValueError, TypeError, KeyError) as error:
+            parser.error(f"--plan {arguments.plan}: {error}")
+    words = [word for word in arguments.set_words if "=" not in word]
+    arguments.typed = dict(word.split("=", 1) for word in arguments.set_words if "=" in word)
+    try:
+        arguments.laws = names(plan.LAWS)(arguments.law_words) if arguments.law_words else list(plan.LAWS)
+        arguments.sets = names(plan.SETS)(",".join(words)) if words else plan.DEFAULT_SETS
+    except argparse.ArgumentTypeError as error:
+        parser.error(str(error))
+    if arguments.faults and (arguments.typed or arguments.vehicle):
+        parser.error("--faults goes without --set and --vehicle")
+
+
 def read_arguments(argv):
     sets = "; ".join(f"{name} ({s.runs}): {s.summary}" for name, s in plan.SETS.items()).replace("%", "%%")
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--law", type=names(plan.LAWS), default=list(plan.LAWS), dest="laws",
-                        help="default: " + ", ".join(plan.LAWS))
-    parser.add_argument("--set", type=names(plan.SETS), default=plan.DEFAULT_SETS, dest="sets",
-                        help=f"or all (default: {','.join(plan.DEFAULT_SETS)}); {sets}")
+    parser.add_argument("--law", dest="law_words", help="default: " + ", ".join(plan.LAWS))
+    parser.add_argument("--set", action="append", default=[], dest="set_words",
+                        help=f"or all (default: {','.join(plan.DEFAULT_SETS)}); {sets}; or NAME=VALUE, a parameter or a "
+                             "figure of the plant in every flight; may be given again")
+    parser.add_argument("--plan", type=Path, metavar="FILE", help="own laws and sets, JSON; docs/campaign.md")
+    parser.add_argument("--vehicle", type=Path, metavar="FILE", help="of make fit: in place of the nominal vehicle")
+    parser.add_argument("--resume", action="store_true", help="with the options of the campaign in DIR")
     parser.add_argument("--runs", type=positive, help="flights per law in each set (default: in brackets above)")
     parser.add_argument("--faults", type=positive, nargs="?", const=FAULTS, metavar="N",
                         help=f"flights with faults ({FAULTS}) instead of the sets")
@@ -71,6 +102,9 @@ def read_arguments(argv):
     parser.add_argument("--out", type=Path, default=ROOT / "build/campaign", metavar="DIR",
                         help="default: build/campaign")
     arguments = parser.parse_args(argv)
+    if arguments.resume:
+        arguments = resumed(parser, arguments)
+    choose(parser, arguments)
     if arguments.faults and (arguments.sets != plan.DEFAULT_SETS or arguments.runs):
         parser.error("--faults goes without --set and --runs")
     if arguments.faults and arguments.page and not of_page(arguments):
@@ -82,14 +116,20 @@ def read_arguments(argv):
     return arguments
 
 
-def flights(program, laws, sets, seed, runs):
+def with_own(words, typed, vehicle):
+    """The same flight with the vehicle of a file, and with own assignments, which win."""
+    own = [word for name, value in typed.items() for word in ("--set", f"{name}={value}")]
+    return [words[0], *(["--vehicle", str(vehicle.resolve())] if vehicle else []), *words[1:], *own]
+
+
+def flights(program, laws, sets, seed, runs, typed=None, vehicle=None):
     """{key: (label, arguments)} of the whole campaign."""
-    digest = fleet.digest(program)
+    digest = fleet.digest(program) + (fleet.digest(vehicle) if vehicle else "")
     planned = {}
     for set_name in sets:
         for law_name, law in laws.items():
             for run in range(1, (runs or plan.SETS[set_name].runs) + 1):
-                words = plan.arguments(law, set_name, seed, run)
+                words = with_own(plan.arguments(law, set_name, seed, run), typed or {}, vehicle)
                 label = {"law": law_name, "set": set_name, "run": run}
                 planned[fleet.key(digest, [law_name, set_name, *words])] = (label, words)
     return planned
@@ -100,10 +140,11 @@ def fly_missing(program, planned, store, scheduler=None):
     missing = [(key, words) for key, (_, words) in planned.items() if key not in store.known]
     if not missing:
         return 0
-    progress = fleet.Progress(len(missing))
+    progress, provenance = fleet.Progress(len(missing)), fleet.provenance(program)
     with fleet.fleet(scheduler) as client:
         for key, figures in fleet.fly_all(client, program, missing):
-            store.add(key, planned[key][0], figures)
+            label, words = planned[key]
+            store.add(key, label | provenance | {"command": fleet.command(program, words)}, figures)
             progress.step()
     return len(missing)
 
@@ -113,6 +154,18 @@ def grouped(planned, known):
     for key, (label, _) in planned.items():
         groups.setdefault(label["set"], {}).setdefault(label["law"], []).append(known[key])
     return groups
+
+
+def worst(program, planned, known):
+    """The flight that one wants to see first, and what flies it again."""
+    def badness(key):
+        figures = known[key]
+        return table.failed(figures, plan.SETS[planned[key][0]["set"]].lands), figures["hover_rms_mm"] or 0.0
+
+    key = max(planned, key=badness)
+    label, words = planned[key]
+    return (f"the worst flight ({label['law']}, {label['set']}, run {label['run']}); flights.jsonl has the command of every other:\n"
+            f"{fleet.command(program, words)}")
 
 
 def rows_of(groups):
@@ -186,7 +239,7 @@ def run(arguments):
     """The exit status."""
     program = str(arguments.program.resolve())
     laws = {name: plan.LAWS[name] for name in arguments.laws}
-    planned = flights(program, laws, arguments.sets, arguments.seed, arguments.runs)
+    planned = flights(program, laws, arguments.sets, arguments.seed, arguments.runs, arguments.typed, arguments.vehicle)
     with fleet.Store(arguments.out / "flights.jsonl") as store:
         flown = fly_missing(program, planned, store, arguments.scheduler)
     print(f"{flown} flights flown, {len(planned) - flown} known", file=sys.stderr)
@@ -195,6 +248,7 @@ def run(arguments):
     print(f"median [p95] of the flights that did not fail; seed {arguments.seed}\n\n{table.text(rows)}\n")
     found = verdict.verdicts(rows)
     print(verdict.text(found), end="\n\n")
+    print(worst(program, planned, store.known), end="\n\n")
     write(arguments, groups, rows)
     otherwise = compare_page(rows, arguments.page) if page.complete(rows, arguments.seed) else []
     if otherwise:
@@ -202,9 +256,17 @@ def run(arguments):
     return 1 if otherwise or any(one.missed for one in found) else 0
 
 
+def remember(arguments, argv):
+    """For --resume."""
+    if not arguments.resume and "--resume" not in (sys.argv[1:] if argv is None else argv):
+        arguments.out.mkdir(parents=True, exist_ok=True)
+        (arguments.out / BEGUN).write_text(json.dumps(sys.argv[1:] if argv is None else list(argv)), encoding="utf-8")
+
+
 def main(argv=None):
     arguments = read_arguments(argv)
     try:
+        remember(arguments, argv)
         return run_faults(arguments) if arguments.faults else run(arguments)
     except (fleet.Broken, OSError) as error:
         print(f"campaign: {error}", file=sys.stderr)

@@ -1,15 +1,20 @@
 """Flights by the hundred: one process per flight, in batches, through Dask."""
 import contextlib
 import hashlib
+import itertools
 import json
 import os
+import re
+import shlex
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
-BATCH = 10
+ROOT = Path(__file__).resolve().parents[2]
+BATCH = 1                       # every flight is kept when it ends
+AHEAD = 8                       # tasks per processor that wait at the scheduler
 FLIGHT_LIMIT_S = 120
 WORKERS_LIMIT_S = 30
 
@@ -37,6 +42,18 @@ def fly(program, arguments):
 def fly_batch(program, flights):
     """One task. flights: [(key, arguments)]; gives [(key, figures)]."""
     return [(key, fly(program, arguments)) for key, arguments in flights]
+
+
+def provenance(program):
+    """What a result tells of its program: the version of the sources beside these tools, and the program's own sum."""
+    header = ROOT / "firmware/version.h"
+    found = re.search(r'VERSION\w*\s+"([^"]+)"', header.read_text(encoding="utf-8") if header.exists() else "")
+    return {"version": found.group(1) if found else "", "program": digest(program)[:12]}
+
+
+def command(program, arguments):
+    """What flies this flight again, for a shell."""
+    return shlex.join([program, "fly", *arguments])
 
 
 def digest(program):
@@ -71,13 +88,19 @@ def fly_all(client, program, flights, batch=BATCH):
     from distributed import as_completed
 
     flights = list(flights)
-    futures = [client.submit(fly_batch, program, flights[at:at + batch], pure=False)
-               for at in range(0, len(flights), batch)]
+    batches = (flights[at:at + batch] for at in range(0, len(flights), batch))
+    ahead = AHEAD * max(sum(client.nthreads().values()), 1)
+
+    def submit(few):
+        return [client.submit(fly_batch, program, some, pure=False) for some in few]
+
+    waiting = as_completed(submit(itertools.islice(batches, ahead)), with_results=True)
     try:
-        for _, results in as_completed(futures, with_results=True):
+        for _, results in waiting:
+            waiting.update(submit(itertools.islice(batches, 1)))
             yield from results
     finally:
-        client.cancel(futures)
+        client.cancel(list(waiting.futures))
 
 
 class Store:

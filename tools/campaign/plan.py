@@ -63,6 +63,25 @@ SETS = {
     "stock-climb": Set("climb, a Razor as it comes", 20, (), CLIMB | {"imu_stock": 1.0}),
 }
 DEFAULT_SETS = [name for name in SETS if name not in ("trimmed", "rotors") and not name.startswith("stock")]
+
+
+def extend(own):
+    """Adds laws and sets of a file: {"laws": {NAME: {"settings": {}, "scenario": ""}}, "sets": {NAME: {"summary": "",
+    "runs": 20, "figures": [], "fixed": {}, "lands": false}}}. A name that is known already is refused."""
+    for name, law in own.get("laws", {}).items():
+        if name in LAWS:
+            raise ValueError(f"law {name} is there already")
+        LAWS[name] = Law({key: str(value) for key, value in law.get("settings", {}).items()}, law.get("scenario", SCENARIO))
+    for name, words in own.get("sets", {}).items():
+        if name in SETS:
+            raise ValueError(f"set {name} is there already")
+        unknown = set(words.get("figures", ())) - set(draws(1, 1))
+        if unknown:
+            raise ValueError(f"set {name}: no draw of {', '.join(sorted(unknown))}")
+        SETS[name] = Set(words.get("summary", name), words.get("runs", 20), tuple(words.get("figures", ())),
+                         dict(words.get("fixed", {})), bool(words.get("lands", False)))
+
+
 HOVER = {"hover_trimmed", "hover_untrimmed"}
 
 

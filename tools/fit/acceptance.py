@@ -107,7 +107,7 @@ def tuned(program, law, vehicle_file, figures, seed, number):
     found = json.loads(vehicle_file.read_text(encoding="utf-8"))
     settings, _, _ = tune_vehicle.tune(program, found, law, DRAWS, BUDGET)
     expected = tune_vehicle.predict(program, found, law, settings, FORECAST)
-    stock = ({"LAW": "PID"} if law == "PID" else {}) | tune_vehicle.STOCK[law]
+    stock = tune_vehicle.stock_settings(law)
     scenario = tune_vehicle.SCENARIOS[law]
     seeds = [900_000_000 + seed * 10_000 + number * 10 + k for k in range(JUDGED)]
     hover = {}

@@ -21,7 +21,7 @@ EDGE_M, EDGE_S = 0.15, 0.3      # a height that jumps so far from scan to scan, 
 SETTLED_S = 3.5                 # after a change of the reference
 AFTER_EDGE_S = 3.98             # as the scenarios' metrics
 WITHIN_M = 0.05
-FIGURES = {"hover_rms_mm": "mm", "recovery_s": "s", "undershoot_mm": "mm", "thrust_std_n": "N"}
+FIGURES = {"hover_rms_mm": "mm", "recovery_s": "s", "undershoot_mm": "mm"}
 
 
 def load(path):
@@ -91,19 +91,19 @@ def edges(t_s, height_m, reference_m):
 
 
 def held(path):
-    """Times, measured heights, references and thrusts while a reference is held."""
+    """Times, measured heights and references while a reference is held."""
     c = flight_log.columns(path)
     good = numpy.array([state in flight_log.FLYING for state in c["state"]]) & (c["ref_m"] > 0.0) & ~numpy.isnan(c["meas_m"])
-    return [c[name][good] for name in ("t_s", "meas_m", "ref_m", "thrust_n")]
+    return [c[name][good] for name in ("t_s", "meas_m", "ref_m")]
 
 
 def has_edges(path):
-    return bool(edges(*held(path)[:3]))
+    return bool(edges(*held(path)))
 
 
 def quality(path):
     """{figure: value or None} of a log, by the measured heights: what a real flight can be compared by."""
-    t_s, height_m, reference_m, thrust_n = held(path)
+    t_s, height_m, reference_m = held(path)
     if len(t_s) < 2:
         return dict.fromkeys(FIGURES)
     error_m = height_m - reference_m
@@ -117,7 +117,6 @@ def quality(path):
     result = dict.fromkeys(FIGURES)
     if steady.sum() > 50:
         result["hover_rms_mm"] = 1e3 * float(numpy.sqrt(numpy.mean(error_m[steady]**2)))
-        result["thrust_std_n"] = float(numpy.std(thrust_n[steady]))
     if passed:
         after = (t_s >= passed[-1]) & (t_s <= passed[-1] + AFTER_EDGE_S)
         off = numpy.abs(error_m[after]) > WITHIN_M
