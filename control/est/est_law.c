@@ -38,7 +38,7 @@
 #define UNFELT_CLIMB_TIME_S 30.0F    /* tried 3 to 30: the middle of the stick is known well */
 #define UNFELT_DEADBAND 0.1F         /* tried 0 to 1: the model's bias tells the deadband late */
 #define UNFELT_HEIGHT_S 0.4F         /* chosen: rays of 70 ms, and three scans */
-#define UNFELT_LIFT_OFF_M 0.02F      /* chosen: five times the noise of a height */
+#define UNFELT_LIFT_OFF_M 0.035F     /* chosen: five times the noise of a height on a noisy vehicle, 7 mm */
 
 #define RAMP_START 0.68F     /* below the lightest vehicle, 0.8 of GRAV */
 #define RAMP_N_PER_S 4.0F    /* chosen: leaves the ground in 0.6 s */
