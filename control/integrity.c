@@ -25,6 +25,8 @@
 /* A beam that is blocked. Tried: none of 960 sound flights that the thrust contradicts is so still. */
 #define STILL_MM2 4.0F
 #define RIGID_SCANS 2U
+#define STILL_MOST_MM2 \
+    40.0F /* chosen: twice the sensor's noise of 3 mm; bars on the floor are white too, and more */
 #define STILL_SHARE 0.4F
 #define STILL_SCANS 16U
 #define STILL_BOTH_M 0.10F
@@ -224,7 +226,7 @@ static void watch_slant(integrity_t *i, const altitude_t *altitude)
     i->slants_mm[INTEGRITY_SCANS - 1U] = altitude->slant_mm;
     i->scans = (uint16_t)(i->scans + (i->scans < INTEGRITY_SCANS));
     const float slant_mm2 = variance(i->slants_mm);
-    const bool still = i->scans == INTEGRITY_SCANS &&
+    const bool still = i->scans == INTEGRITY_SCANS && slant_mm2 < STILL_MOST_MM2 &&
                        (slant_mm2 < STILL_MM2 || noise(i->slants_mm) > STILL_SHARE * slant_mm2);
     const bool rigid = i->scans == INTEGRITY_SCANS && slant_mm2 < STILL_MM2;
     i->rigid = rigid ? (uint16_t)(i->rigid + (i->rigid < STILL_SCANS)) : 0U;

@@ -24,12 +24,13 @@
 #define HEIGHT_NOISE_M 0.0013F /* fitted */
 #define OFF_MODEL_SHARE 0.4F
 #define OFF_MODEL_MPS2 2.0F
-#define ACCUSED_MPS2 1.2F    /* chosen: three times the usual noise */
+#define ACCUSED_MPS2 2.0F    /* chosen: as OFF_MODEL_MPS2; another airframe is off by 1.5 while it brakes */
 #define ACCUSED_SIGMAS 1.5F  /* chosen: of the noise, on a mean of three frames: 3 sigma */
 #define ACCUSED_NOISES 3.0F  /* chosen: of the heights' noise; chance is three times rarer on the mean */
+#define ACCUSED_HEIGHTS 8U   /* chosen: an edge is corrected within 0.8 s */
 #define ACCUSED_SHARE 0.5F   /* chosen: mean over two heights */
 #define ACCUSED_CREDIT 0.02F /* chosen: as good as nothing */
-#define CLEARED_FRAMES 20U   /* chosen: half a second */
+#define CLEARED_FRAMES 32U   /* chosen: 0.8 s, until then doubt IMU has decided */
 #define FLOOR_START_M 0.004F
 #define FLOOR_SMOOTH_M 0.020F /* what edges and the vehicle's own motion make of the measure */
 #define FLOOR_MAX_M 0.080F
@@ -266,7 +267,7 @@ static void accuse(estimator_t *e)
 
     if (thrust_tells && heights_tell && e->mean_innovation_m * e->off_model_mps2 < 0.0F) {
         e->accused_frames = CLEARED_FRAMES;
-    } else if (e->accused_frames > 0U && fabsf(e->off_model_mps2) < 0.5F * off_mps2) {
+    } else if (e->accused_frames > 0U) {
         --e->accused_frames;
     }
 }
@@ -450,6 +451,8 @@ static height_outcome_t reject(estimator_t *e, float height_m, float innovation_
     const bool agrees = e->rejected_count > 0U && apart_m <= STEP_AGREEMENT_M;
 
     ++e->rejected_count;
+    e->mean_innovation_m = 0.0F; /* an edge accuses nobody, nor how the vehicle brakes after it */
+    e->fused_count = 0U;
     e->rejected_innovation_m = innovation_m;
     if (agrees) {
         e->terrain_height_m -= innovation_m;
@@ -468,15 +471,16 @@ static height_outcome_t check_and_fuse(estimator_t *e, float height_m)
 {
     measure_floor(e, height_m);
     e->innovation_m = height_m - e->delayed.height_m;
-    e->mean_innovation_m += ACCUSED_SHARE *
-                            (between(-INNOVATION_LIMIT_MAX_M, e->innovation_m, INNOVATION_LIMIT_MAX_M) -
-                             e->mean_innovation_m);
     e->confirmed = e->unchecked_count == 0U && innovation_accepted(e, e->innovation_m);
     if (e->unchecked_count == 0U && !e->confirmed) {
         return reject(e, height_m, e->innovation_m);
     }
     e->unchecked_count = (uint16_t)(e->unchecked_count - (e->unchecked_count > 0U));
     e->rejected_count = 0U;
+    e->fused_count = (uint16_t)(e->fused_count + (e->fused_count < ACCUSED_HEIGHTS));
+    if (e->fused_count == ACCUSED_HEIGHTS) {
+        e->mean_innovation_m += ACCUSED_SHARE * (e->innovation_m - e->mean_innovation_m);
+    }
     correct(e, HEIGHT, e->innovation_m, height_variance_m2(e));
     return HEIGHT_FUSED;
 }

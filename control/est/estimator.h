@@ -76,6 +76,7 @@ typedef struct {
     float model_noise_mps2;
     float off_model_mps2;     /* measured less modelled acceleration, low-passed */
     float mean_innovation_m;  /* low-passed */
+    uint16_t fused_count;     /* heights in a row that were fused, at most ACCUSED_HEIGHTS */
     uint16_t accused_frames;  /* > 0: heights and model agree that the accelerometer is wrong */
     float previous_m[2];      /* the two previous heights */
     float floor_m;            /* measured rms noise of the heights; includes the roughness of the floor */
@@ -108,7 +109,7 @@ float motion_up_mps2(const imu_sample_t *frame);
 /* The model alone predicts from now on, until a frame with accelerations comes. */
 void estimator_drop_accelerations(estimator_t *estimator);
 
-/* Heights and the modelled acceleration agree, or did half a second ago, that the accelerometer is wrong. It
+/* Heights and the modelled acceleration agree, or did within 0.8 s, that the accelerometer is wrong. It
  * has next to no weight then. */
 bool estimator_accuses(const estimator_t *estimator);
 
