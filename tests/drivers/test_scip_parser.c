@@ -1413,6 +1413,8 @@ void test_dirty_high_bits_of_an_octet_do_not_matter(void)
 /* --- runs of octets
  * ----------------------------------------------------------------------------------------------- */
 
+static octet_t burst_octets[WIRE_MAX];
+
 static scip_event_t feed_run_text(const octet_t *octets, size_t count, size_t burst, unsigned *events)
 {
     scip_event_t event = SCIP_NOTHING, last = SCIP_NOTHING;
@@ -1432,7 +1434,6 @@ static scip_event_t feed_run_text(const octet_t *octets, size_t count, size_t bu
  */
 void test_octets_in_bursts_make_the_same_events_as_one_by_one(void)
 {
-    static octet_t octets[WIRE_MAX];
     put_run(&front);
     wire.octets[begins[1] + 30] ^= 1U;
     for (unsigned i = 0; i < 3 * SCIP_LINE_MAX + 5; i++) {
@@ -1445,13 +1446,13 @@ void test_octets_in_bursts_make_the_same_events_as_one_by_one(void)
     unsigned expected[SCIP_DAMAGED + 1];
     memcpy(expected, seen.events, sizeof expected);
     for (size_t i = 0; i < wire.length; i++) {
-        octets[i] = (octet_t)wire.octets[i];
+        burst_octets[i] = (octet_t)wire.octets[i];
     }
     for (size_t burst = 1; burst <= wire.length; burst += burst < 120 ? 1 : 97) {
         unsigned events[SCIP_DAMAGED + 1] = {0};
         start();
         expect_order(&front);
-        (void)feed_run_text(octets, wire.length, burst, events);
+        (void)feed_run_text(burst_octets, wire.length, burst, events);
         for (int event = SCIP_NOTHING + 1; event <= SCIP_DAMAGED; event++) {
             TEST_ASSERT_EQUAL_UINT(expected[event], events[event]);
         }
@@ -1463,18 +1464,17 @@ void test_octets_in_bursts_make_the_same_events_as_one_by_one(void)
  * behind the change, make what single octets make. */
 static void compare_ways(const wire_t *damaged, size_t burst)
 {
-    static octet_t octets[WIRE_MAX];
     unsigned events[SCIP_DAMAGED + 1] = {0};
     start();
     expect_order(&front);
     feed_range(damaged, 0, damaged->length);
     const scip_counters_t counters = parser.counters;
     for (size_t i = 0; i < damaged->length; i++) {
-        octets[i] = (octet_t)damaged->octets[i];
+        burst_octets[i] = (octet_t)damaged->octets[i];
     }
     start();
     expect_order(&front);
-    (void)feed_run_text(octets, damaged->length, burst, events);
+    (void)feed_run_text(burst_octets, damaged->length, burst, events);
     TEST_ASSERT_EQUAL_MEMORY(&counters, &parser.counters, sizeof counters);
 }
 
