@@ -118,7 +118,7 @@ export function Plot(props: { curves: Curve[]; data: () => PlotData; live?: numb
         rad: { range: (_u, low, high) => [Math.min(-0.2, low ?? 0), Math.max(0.2, high ?? 0)] },
       },
       axes: [
-        { ...axisBase, ...(props.clock ? {} : { size: 28, values: (_u: uPlot, ticks: number[]) => ticks.map((tick) => `${Number(tick.toFixed(2))} s`) }) },
+        { ...axisBase, size: 28, values: (_u: uPlot, ticks: number[]) => ticks.map((tick) => (props.clock ? new Date(tick * 1000).toTimeString().slice(0, 8) : `${Number(tick.toFixed(2))} s`)) },
         ...axes.map((axis, i): uPlot.Axis => ({ ...axisBase, scale: axis, side: i === 0 ? 3 : 1, grid: i === 0 ? axisBase.grid : { show: false }, size: 44, values: (_u, ticks) => ticks.map((tick) => `${Number(tick.toFixed(2))}${axis === 'rad' ? '' : ` ${axis}`}`) })),
       ],
       series: [
