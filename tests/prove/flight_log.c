@@ -50,7 +50,7 @@ void any_number_has_a_cell(void)
 {
     flight_log_scale_t scale;
 
-    ASSUME(scale < FLIGHT_LOG_SCALE_COUNT);
+    ASSUME((unsigned)scale < FLIGHT_LOG_SCALE_COUNT);
     (void)flight_log_cell(nondet_float(), scale);
 }
 
