@@ -197,7 +197,7 @@ install_packages() {
         else
             scratch=$(mktemp -d)
             trap 'rm -rf "$scratch"' EXIT
-            package=$("$here/fetch_cmock.sh" "$scratch")
+            package=$("$here/fetch_trixie.sh" "$scratch" cmock)
             wanted+=("$package")
         fi
     fi
@@ -291,11 +291,11 @@ if [ ${#packages[@]} -gt 0 ] || [ -n "$want_cmock" ]; then
     else
         say "not root: CMock goes to build/cmock"
         mkdir -p "$cmock_private"
-        package=$("$here/fetch_cmock.sh" "$cmock_private")
+        package=$("$here/fetch_trixie.sh" "$cmock_private" cmock)
         dpkg-deb -x "$package" "$cmock_private"
     fi
 fi
-[ -z "$want_cbmc" ] || "$here/fetch_cbmc.sh" "$root/build/cbmc"
+[ -z "$want_cbmc" ] || "$here/unpack_cbmc.sh" "$root/build/cbmc"
 [ -z "$want_venv" ] || make_venv
 [ -z "$want_campaign" ] || add_campaign
 [ -z "$want_ground" ] || add_ground
