@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "commands.h"
+#include "lines.h"
 #include "sim/scenarios/wires.h"
 #include "terminal.h"
 #include "world.h"
@@ -35,10 +36,7 @@ static const char usage_end[] =
     "Exit status: 0 no item failed, 1 one did, or it was interrupted, 2 usage or no such device.\n";
 
 enum {
-    OPT_LASER = 1,
-    OPT_IMU,
-    OPT_XBEE,
-    OPT_REPORT,
+    OPT_REPORT = 1,
     OPT_PULSES,
     OPT_BITS,
     OPT_POWER,
@@ -50,9 +48,7 @@ enum {
 };
 
 static const struct option long_options[] = {
-    {"laser", required_argument, NULL, OPT_LASER},
-    {"imu", required_argument, NULL, OPT_IMU},
-    {"xbee", required_argument, NULL, OPT_XBEE},
+    LINE_OPTIONS,
     {"report", required_argument, NULL, OPT_REPORT},
     {"pulses", required_argument, NULL, OPT_PULSES},
     {"bits", required_argument, NULL, OPT_BITS},
@@ -130,16 +126,10 @@ static bool read_flight(const char *text)
 
 static bool read_option(int option, const char *argument)
 {
+    if (lines_option(option, argument, order.device)) {
+        return true;
+    }
     switch (option) {
-    case OPT_LASER:
-        order.device[BOARD_LASER] = argument;
-        return true;
-    case OPT_IMU:
-        order.device[BOARD_IMU] = argument;
-        return true;
-    case OPT_XBEE:
-        order.device[BOARD_RADIO] = argument;
-        return true;
     case OPT_REPORT:
         order.report = argument;
         return true;
@@ -183,11 +173,8 @@ static bool read_arguments(int argc, char **argv)
             return false;
         }
     }
-    for (int i = 0; i < BOARD_WIRES && !order.help; i++) {
-        if (order.device[i] == NULL) {
-            fprintf(stderr, "plomada accept: --%s is needed\n", wire_names[i]);
-            return false;
-        }
+    if (!order.help && !lines_all_given("accept", order.device)) {
+        return false;
     }
     return optind == argc || complain("not understood", argv[optind]);
 }

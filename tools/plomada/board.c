@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "commands.h"
+#include "lines.h"
 #include "sim/board.h"
 #include "sim/costs.h"
 #include "sim/host/pace.h"
@@ -85,23 +86,10 @@ static const char *const other_defects[] = {"wrong-rate",    "pulse-inverted", "
 _Static_assert(sizeof other_defects / sizeof other_defects[0] == DEFECTS - WRONG_RATE_DEFECT,
                "every other defect has a name");
 
-enum {
-    OPT_LASER = 1,
-    OPT_IMU,
-    OPT_XBEE,
-    OPT_STORAGE,
-    OPT_PULSES,
-    OPT_BITS,
-    OPT_DURATION,
-    OPT_SEED,
-    OPT_DEFECT,
-    OPT_HELP
-};
+enum { OPT_STORAGE = 1, OPT_PULSES, OPT_BITS, OPT_DURATION, OPT_SEED, OPT_DEFECT, OPT_HELP };
 
 static const struct option long_options[] = {
-    {"laser", required_argument, NULL, OPT_LASER},
-    {"imu", required_argument, NULL, OPT_IMU},
-    {"xbee", required_argument, NULL, OPT_XBEE},
+    LINE_OPTIONS,
     {"storage", required_argument, NULL, OPT_STORAGE},
     {"pulses", required_argument, NULL, OPT_PULSES},
     {"duration", required_argument, NULL, OPT_DURATION},
@@ -187,16 +175,10 @@ static bool read_option(int option, const char *argument)
 {
     double number;
 
+    if (lines_option(option, argument, order.link)) {
+        return true;
+    }
     switch (option) {
-    case OPT_LASER:
-        order.link[BOARD_LASER] = argument;
-        return true;
-    case OPT_IMU:
-        order.link[BOARD_IMU] = argument;
-        return true;
-    case OPT_XBEE:
-        order.link[BOARD_RADIO] = argument;
-        return true;
     case OPT_STORAGE:
         order.storage = argument;
         return true;
@@ -236,11 +218,8 @@ static bool read_arguments(int argc, char **argv)
             return false;
         }
     }
-    for (int i = 0; i < BOARD_WIRES && !order.help; i++) {
-        if (order.link[i] == NULL) {
-            fprintf(stderr, "plomada board: --%s is needed\n", wire_names[i]);
-            return false;
-        }
+    if (!order.help && !lines_all_given("board", order.link)) {
+        return false;
     }
     return optind == argc || complain("not understood", argv[optind]);
 }

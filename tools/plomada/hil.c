@@ -6,6 +6,7 @@
 
 #include "bench_flight.h"
 #include "commands.h"
+#include "lines.h"
 #include "sim/scenarios/wires.h"
 #include "terminal.h"
 #include "world.h"
@@ -34,12 +35,10 @@ static const char usage[] =
     "device, 3 this PC did not\n"
     "keep up with the wall clock (by more than 0.15 s): no verdict.\n";
 
-enum { OPT_LASER = 1, OPT_IMU, OPT_XBEE, OPT_SEED, OPT_PATIENCE, OPT_PULSES, OPT_HELP };
+enum { OPT_SEED = 1, OPT_PATIENCE, OPT_PULSES, OPT_HELP };
 
 static const struct option long_options[] = {
-    {"laser", required_argument, NULL, OPT_LASER},
-    {"imu", required_argument, NULL, OPT_IMU},
-    {"xbee", required_argument, NULL, OPT_XBEE},
+    LINE_OPTIONS,
     {"seed", required_argument, NULL, OPT_SEED},
     {"patience", required_argument, NULL, OPT_PATIENCE},
     {"pulses", required_argument, NULL, OPT_PULSES},
@@ -81,16 +80,10 @@ static bool read_seed(const char *text)
 
 static bool read_option(int option, const char *argument)
 {
+    if (lines_option(option, argument, order.device)) {
+        return true;
+    }
     switch (option) {
-    case OPT_LASER:
-        order.device[BOARD_LASER] = argument;
-        return true;
-    case OPT_IMU:
-        order.device[BOARD_IMU] = argument;
-        return true;
-    case OPT_XBEE:
-        order.device[BOARD_RADIO] = argument;
-        return true;
     case OPT_SEED:
         return read_seed(argument);
     case OPT_PATIENCE:
@@ -116,13 +109,7 @@ static bool read_scenario(int argc, char **argv)
     if (order.scenario == NULL || order.scenario->bench) {
         return complain("no such flight, see `plomada list`", argv[optind]);
     }
-    for (int i = 0; i < BOARD_WIRES; i++) {
-        if (order.device[i] == NULL) {
-            fprintf(stderr, "plomada hil: --%s is needed\n", wire_names[i]);
-            return false;
-        }
-    }
-    return true;
+    return lines_all_given("hil", order.device);
 }
 
 static bool read_arguments(int argc, char **argv)
