@@ -91,6 +91,12 @@ class Fit(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
         self.assertIn("no accelerations", done.stderr)
 
+    def test_replay_of_a_log_says_what_is_in_it_and_what_is_not(self):
+        done = subprocess.run([PROGRAM, "replay", self.fly(4717, {}, "pid-40cm")], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 2)
+        for word in ("a log, not a recording", "accelerations", "octets of the scanner"):
+            self.assertIn(word, done.stderr)
+
     def test_a_vehicle_without_a_figure_of_the_plant_is_refused_before_the_flight(self):
         for content, reason in (("{}", "no figure of the plant"), ('{"plant.gain": 1}', "without its value"),
                                 ('{"plant.gian": {"value": 1}}', "unknown name")):

@@ -29,7 +29,7 @@ STOCK = {"EST": {}, "PID": {"KP": "0.015", "KD": "0.008", "KI": "0.01", "USAT": 
 FIXED = {"EST": {}, "PID": {"LAW": "PID", "USAT": "1.7", "DSAT": "4"}}
 FAILURE_MM, ACTIVITY_MM_PER_N, ACTIVITY_FREE_N, SHARE = 500.0, 200.0, 0.45, 0.05
 WORST = 0.5
-WORTH_MM = 0.3                  # less gained than that: the stock gains stay
+WORTH = 0.05                    # of the cost: less gained than that on further draws, and the stock gains stay
 SEED = 700_000_000              # of the flights; no campaign uses it
 
 
@@ -113,7 +113,7 @@ def search(course, base, gains, budget):
 
 def tune(program, vehicle, law, count, budget):
     """(settings, stock's cost, tuned cost), both on draws that the search has not seen."""
-    course, others = (Course(program, law, vehicle, count, seed) for seed in (1, 2))
+    course, others = Course(program, law, vehicle, count, 1), Course(program, law, vehicle, 2 * count, 2)
     kinds = ("THRUST", "CLIMB") if law == "EST" and vehicle["throttle"] == "CLIMB" else ("THRUST",)
     bases = [FIXED[law] | vehicle_settings(law, vehicle, kind) for kind in kinds]
     base = min(bases, key=course.cost) if len(bases) > 1 else bases[0]
@@ -122,7 +122,7 @@ def tune(program, vehicle, law, count, budget):
     candidates = {id(settings): (others.cost(settings), settings) for settings in (stock, base, found)}
     stock_cost = candidates[id(stock)][0]
     best_cost, best = min(candidates.values(), key=lambda one: one[0])
-    return (best if best_cost < stock_cost - WORTH_MM else stock), stock_cost, best_cost
+    return (best if best_cost < (1.0 - WORTH) * stock_cost else stock), stock_cost, best_cost
 
 
 def read_arguments(argv):

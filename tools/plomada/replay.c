@@ -94,6 +94,27 @@ static bool read_arguments(request_t *request, int argc, char **argv)
     return true;
 }
 
+/* What people have of a flight when nobody recorded its octets. */
+static bool is_log(FILE *in)
+{
+    char line[512];
+    bool found = false;
+
+    for (int i = 0; i < 1000 && !found && fgets(line, sizeof line, in) != NULL; i++) {
+        found = strncmp(line, "t_s,", 4) == 0 || strstr(line, "OK LOG ") != NULL ||
+                strstr(line, "alt:") != NULL;
+    }
+    rewind(in);
+    return found;
+}
+
+static const char log_alone[] =
+    "a log, not a recording. In it are heights, commands and, of #LOG RATE FAST, accelerations and tilt: "
+    "`make fit` "
+    "finds the\n  vehicle in them, `make plot` draws them. Not in it are the octets of the scanner, of the "
+    "IMU and of "
+    "the radio,\n  and when each came: without them the firmware cannot be run again";
+
 static tape_t *load(const char *given)
 {
     char path[PATH_MAX];
@@ -109,6 +130,11 @@ static tape_t *load(const char *given)
     in = fopen(path, "r");
     if (in == NULL) {
         complain(strerror(errno), path);
+        return NULL;
+    }
+    if (is_log(in)) {
+        fclose(in);
+        complain(log_alone, path);
         return NULL;
     }
     tape = tape_read(in, &error);
