@@ -288,7 +288,7 @@ void test_a_replay_with_another_law_says_that_nothing_answers_to_it(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "no vehicle flies in a replay"), output);
     TEST_ASSERT_EQUAL_INT(2, run("replay no-such-recording"));
     TEST_ASSERT_EQUAL_INT(2, run("replay again.csv"));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "line 1: not a recording of plomada"), output);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "again.csv: a log, not a recording"), output);
 }
 
 static double cpu_s(void)
