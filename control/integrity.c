@@ -1,3 +1,15 @@
+/* Consistency check of heights, accelerometer and thrust; integrity.h explains the idea and the word witness.
+ * The source is analytical redundancy, any text on fault detection; PX4's EKF2 has a simpler kinematic
+ * consistency check of its range finder.
+ *
+ * Each innovation goes into a leaky sum, because a wrong sensor contradicts the others for seconds and noise
+ * does not. The leak also forgets the slow errors of a witness: bias of the accelerometer, wrong hover thrust
+ * or damping. The witness of the accelerometer is a second-order observer, corrected slowly by the heights.
+ * The witness of the thrust needs no such correction, because the damping bounds its speed.
+ *
+ * What breaks: a limit that is too low doubts a healthy sensor in a gust, and the vehicle then descends. A
+ * limit that is too high lets a wrong sensor move the vehicle by that much. Unless a comment says otherwise
+ * the limits are chosen; `make campaign ARGS=--faults` flies them against faults. */
 #include "control/integrity.h"
 
 #include <math.h>
@@ -5,105 +17,103 @@
 
 #include "control/between.h"
 
-#define HALF_TURN_RAD 3.14159265F
+#define HALF_TURN_RAD 3.14159265F /* pi */
 
-/* Tilt: 20 degrees within one frame are 800 degrees per second. A burst of six bad frames shows in six
- * medians. */
-#define JUMP_RAD 0.35F
-#define JUMPS_HELD 6U
-#define ANGLE_MAX_RAD 7.0F
-#define UP_MAX_MPS2 200.0F
-#define TILTED_COS 0.70710678F
-#define TILT_GAP_US UINT32_C(250000)
+/* Tilt. */
+#define JUMP_RAD 0.35F               /* chosen: 20 degrees within a frame of 25 ms, 800 degrees a second */
+#define JUMPS_HELD 6U                /* chosen: a burst of six bad frames shows in six medians */
+#define ANGLE_MAX_RAD 7.0F           /* chosen: above 2 pi */
+#define UP_MAX_MPS2 200.0F           /* above the Razor's range, 16 g; as in estimator.c */
+#define TILTED_COS 0.70710678F       /* chosen: 45 degrees; as in supervisor.c */
+#define TILT_GAP_US UINT32_C(250000) /* ten frames of 25 ms: after such a gap any tilt is accepted */
 
-/* Scans: the third that says the same in all its digits. Noise of 3 mm: once in some millions. */
-#define COPIES_MAX 2U
-#define COUNT_MAX 1000U
-#define HEIGHT_MIN_MM (-50.0F)
-#define HEIGHT_MAX_MM 5000.0F
+/* Scans. With a sensor noise of 3 mm, chance makes three scans with the same digits once in some millions. */
+#define COPIES_MAX 2U          /* chosen: the third identical scan is rejected */
+#define COUNT_MAX 1000U        /* chosen: counters stop here and do not wrap */
+#define HEIGHT_MIN_MM (-50.0F) /* chosen: no noise reaches so far below the ground; as in supervisor.c */
+#define HEIGHT_MAX_MM 5000.0F  /* above the scanner's 4095 mm; as in supervisor.c */
 
-/* A beam that is blocked. Tried: none of 960 sound flights that the thrust contradicts is so still. */
-#define STILL_MM2 4.0F
-#define RIGID_SCANS 2U
-#define STILL_MOST_MM2 \
-    40.0F /* chosen: twice the sensor's noise of 3 mm; bars on the floor are white too, and more */
-#define STILL_SHARE 0.4F
-#define STILL_SCANS 16U
-#define STILL_BOTH_M 0.10F
-#define STILL_FELT_M 0.05F
+/* Blocked beam. Tried: 960 healthy flights; in none does the thrust contradict the heights while the slant is
+ * so still. */
+#define STILL_MM2 4.0F       /* tried, see above: 2 mm rms */
+#define RIGID_SCANS 2U       /* chosen: one scan alone may be chance */
+#define STILL_MOST_MM2 40.0F /* chosen: 6 mm rms, twice the sensor's noise; bars on a floor make more */
+#define STILL_SHARE 0.4F     /* chosen: white noise alone makes 1, a swinging slant next to 0 */
+#define STILL_SCANS 16U      /* chosen: 1.6 s of scans */
+#define STILL_BOTH_M 0.10F   /* chosen: low, because the still slant is evidence too */
+#define STILL_FELT_M 0.05F   /* chosen: half of that; the thrust must then show BOTH_M */
 
 /* Accelerometer at rest. */
-#define REST_TIME_S 2.0F
-#define REST_HELD_S 1.0F
-#define REST_UNFIT_MPS2 1.5F
-#define REST_FIT_MPS2 1.2F
+#define REST_TIME_S 2.0F     /* chosen: a mean of 80 frames */
+#define REST_HELD_S 1.0F     /* chosen: 40 frames */
+#define REST_UNFIT_MPS2 1.5F /* the largest bias that the estimator represents, BIAS_MAX_MPS2 there */
+#define REST_FIT_MPS2 1.2F   /* chosen: hysteresis of a fifth */
 
 /* Witnesses. */
-#define FRAME_GAP_US UINT32_C(300000)
-#define STEP_MAX_S 0.5F
-#define SHAKEN_MPS2 0.9F
-#define BIAS_TIME_S 5.0F
-#define OLD_S 2.0F
-#define WARM_S 0.5F
-#define STANDING_TIME_S 1.0F
-#define LAG_S 0.15F          /* motors and delay, as one */
-#define FELT_LEAK_PER_S 1.8F /* of a witness that is OLD_S old; in proportion before */
-#define FELT_PULL_PER_S2 0.81F
-#define PUSHED_LEAK_PER_S 0.4F
+#define FRAME_GAP_US UINT32_C(300000) /* 12 frames lost; as GAP_MAX_US in estimator.c */
+#define STEP_MAX_S 0.5F               /* chosen: longer pauses count as this long; as in flight.c */
+#define SHAKEN_MPS2 0.9F /* chosen: about twice the usual noise, NOISE_START_MPS2 in estimator.c */
+#define BIAS_TIME_S 5.0F /* chosen: slower than the verdicts, so that a wrong height teaches little bias */
+#define OLD_S 2.0F       /* chosen: full leak and correction after that time */
+#define WARM_S 0.5F      /* chosen: five scans before a witness counts */
+#define STANDING_TIME_S 1.0F   /* chosen: on the ground the felt speed decays, the bias must not add up */
+#define LAG_S 0.15F            /* lag of 0.12 s and dead time of 18.5 ms in actuator.h, as one lag */
+#define FELT_LEAK_PER_S 1.8F   /* chosen: critically damped observer, two poles at 0.9 1/s, 2 x 0.9 */
+#define FELT_PULL_PER_S2 0.81F /* 0.9 squared, see FELT_LEAK_PER_S */
+#define PUSHED_LEAK_PER_S 0.4F /* chosen: time constant of 2.5 s, as the sure hover thrust in flight.c */
 
 /* Heights. */
-#define STEP_M 0.10F
-#define LOW_M 0.08F
-#define GAP_ALLOWS_MPS 0.3F
-#define GAP_MAX_S 1.5F
-#define CONFIRMED_M 0.12F
-#define QUIET_S 0.5F
-#define QUIET_M 0.10F
-#define GLITCH_S 0.25F
-#define STEPS_TIME_S 2.0F
-#define STEPS_MAX 12.0F
+#define STEP_M 0.10F        /* chosen: above INNOVATION_LIMIT_MAX_M in estimator.c, 0.08 m */
+#define LOW_M 0.08F         /* chosen: as LOW_MM in flight.c */
+#define GAP_ALLOWS_MPS 0.3F /* chosen: the speed error of a witness that still counts as agreement */
+#define GAP_MAX_S 1.5F      /* after which heights count as lost, HEIGHT_LOST_US in supervisor.c */
+#define CONFIRMED_M 0.12F   /* chosen: just above STEP_M */
+#define QUIET_S 0.5F        /* chosen: five scans */
+#define QUIET_M 0.10F       /* chosen: as CONTENT_M */
+#define GLITCH_S 0.25F      /* chosen: two scans and a half */
+#define STEPS_TIME_S 2.0F   /* chosen: 20 scans */
+#define STEPS_MAX 12.0F     /* chosen: more than half of the scans of STEPS_TIME_S are steps */
 
-/* Standing: the thrust tells a fall that nobody feels. 0.9 degrees, both angles together: in the air it sways
- * more. */
-#define FALL_MPS 0.8F
-#define STANDS_S 0.6F
-#define SWAY_TIME_S 1.5F
-#define SWAY_RAD2 2.5e-4F
+/* Standing on the ground. The thrust predicts a fall, and the accelerometer does not measure one. */
+#define FALL_MPS 0.8F       /* chosen: above SINK_MAX_MPS in est_law.c, 0.6 m/s */
+#define STANDS_S 0.6F       /* chosen: 24 frames */
+#define SWAY_TIME_S 1.5F    /* chosen: 60 frames */
+#define SWAY_RAD2 2.5e-4F   /* chosen: 0.9 degrees rms, both angles together; in the air it sways more */
 #define STILL_S 1.0F        /* chosen: two thirds of SWAY_TIME_S */
-#define STILL_TIME_S 2.0F   /* chosen: an offset of 0.15 m/s2 makes 0.3 m/s of it */
-#define FELL_MPS 0.4F       /* chosen: half of the fall that is asked for */
-#define FALL_STILL_MPS 0.5F /* chosen: above that half */
-#define UNHEARD_S \
-    0.5F /* without heights the estimate's offset of the accelerometer follows what the thrust should do */
-#define SWAY_AIR_RAD2 4.0e-4F
+#define STILL_TIME_S 2.0F   /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in that time */
+#define FELL_MPS 0.4F       /* chosen: half of FALL_MPS */
+#define FALL_STILL_MPS 0.5F /* chosen: above FELL_MPS */
+/* Without heights the estimator takes errors of the thrust model for bias: do not follow its bias then. */
+#define UNHEARD_S 0.5F        /* chosen: five scans */
+#define SWAY_AIR_RAD2 4.0e-4F /* chosen: 1.1 degrees rms; between this and SWAY_RAD2 neither is certain */
 
-/* Verdicts. */
-#define AGAINST_M 0.50F
-#define BOTH_M 0.28F
-#define WITH_M 0.20F
-#define ALONE_M 0.60F
-#define ALONE_SHARE \
-    0.4F /* chosen: the thrust tells of a true motion by at least half, its damping is known so well */
-#define POWERLESS_M 1.30F
-#define MOVED_M 0.30F
-#define AGREED_S 1.5F
-#define ALOFT_M 0.08F
-#define PUSH_N 0.7F
-#define VAIN_S 3.0F
-#define VAIN_MPS 0.12F
-#define VAIN_M 0.15F
-#define RUN_AWAY_MPS 0.7F
-#define RUN_AWAY_M 0.38F
-#define STILL_MPS 0.2F
-#define CONTENT_M 0.10F /* a law that is where it wants to be has nothing that a lie could do */
-#define CONTENT_SHARE 1.8F
-#define UNCONFIRMED_M 0.35F
-#define UNPROVED_M 0.35F /* chosen: twice what the lift-off of a drawn vehicle shows */
-#define UNCONFIRMED_N 0.2F
-#define RISE_TIME_S 0.2F
-#define WAY_TIME_S 1.0F
-#define MOVED_S 1.0F  /* chosen: what the witnesses remember of that time is gone by half */
-#define MOVES_M 0.15F /* chosen: no thing in front of a mirror moves so far */
+/* Verdicts. These limits have to be above the drift of the witnesses in healthy flights. A wrong sensor may
+ * move the vehicle by about as much before it is doubted. */
+#define AGAINST_M 0.50F     /* chosen: five times STEP_M */
+#define BOTH_M 0.28F        /* chosen: about half of AGAINST_M, for the second witness */
+#define WITH_M 0.20F        /* chosen: less than that counts as agreement */
+#define ALONE_M 0.60F       /* chosen: above AGAINST_M, because only one witness contradicts */
+#define ALONE_SHARE 0.4F    /* chosen: with the damping wrong, the thrust still shows half of a motion */
+#define POWERLESS_M 1.30F   /* chosen: twice ALONE_M; wrong hover thrust alone makes this witness drift */
+#define MOVED_M 0.30F       /* chosen: above BOTH_M, so that the agreement is about a real motion */
+#define AGREED_S 1.5F       /* chosen: 15 scans */
+#define ALOFT_M 0.08F       /* chosen: as LOW_M */
+#define PUSH_N 0.7F         /* chosen: a tenth of GRAV as delivered, 7 N */
+#define VAIN_S 3.0F         /* chosen: twice AGREED_S, because only one witness is left */
+#define VAIN_MPS 0.12F      /* chosen: below LAND_MPS in est_law.c, 0.15 m/s */
+#define VAIN_M 0.15F        /* chosen: above CONTENT_M */
+#define RUN_AWAY_MPS 0.7F   /* chosen: above the speed of unconfirmed climbs, 0.35 and 0.6 m/s */
+#define RUN_AWAY_M 0.38F    /* chosen: between BOTH_M and AGAINST_M */
+#define STILL_MPS 0.2F      /* chosen: heights that change more slowly do not move */
+#define CONTENT_M 0.10F     /* chosen: a law so near its reference is not misled by a wrong height */
+#define CONTENT_SHARE 1.8F  /* chosen: near the reference the limits nearly double */
+#define UNCONFIRMED_M 0.35F /* chosen: above BOTH_M; the climb is slow meanwhile */
+#define UNPROVED_M 0.35F    /* chosen: twice what the lift-off of a drawn vehicle shows */
+#define UNCONFIRMED_N 0.2F  /* chosen: a small part of PUSH_N, because the climb is slow */
+#define RISE_TIME_S 0.2F    /* chosen: two scans */
+#define WAY_TIME_S 1.0F     /* chosen: ten scans */
+#define MOVED_S 1.0F        /* chosen: as WAY_TIME_S */
+#define MOVES_M 0.15F       /* chosen: nothing in front of a mirror moves so far */
 
 void integrity_init(integrity_t *integrity)
 {
@@ -131,6 +141,7 @@ static void set_doubt(integrity_t *i, uint16_t doubt, bool on)
     i->doubts = (uint16_t)(on ? (i->doubts | doubt) : (i->doubts & (uint16_t)~doubt));
 }
 
+/* Clears the sums of the innovations. */
 static void forget(integrity_t *i)
 {
     i->felt.off_m = i->felt.seen_m = i->felt.moved_m = 0.0F;
@@ -140,12 +151,14 @@ static void forget(integrity_t *i)
 
 /* ---- tilt */
 
+/* Angle between two directions, 0 .. pi. */
 static float turn_rad(float from_rad, float to_rad)
 {
     const float turn = fabsf(to_rad - from_rad);
     return (turn > HALF_TURN_RAD) ? fabsf(2.0F * HALF_TURN_RAD - turn) : turn;
 }
 
+/* Accepts or rejects one tilt. True: accepted. */
 static bool believe_tilt(integrity_t *i, float roll_rad, float pitch_rad, uint32_t time_us)
 {
     const bool recent = i->levelled && time_us - i->tilt_time_us <= TILT_GAP_US;
@@ -191,6 +204,7 @@ void integrity_tilt(integrity_t *integrity, const imu_sample_t *frames, uint16_t
 
 /* ---- scans */
 
+/* Sample variance of INTEGRITY_SCANS values. */
 static float variance(const float *value)
 {
     float mean = 0.0F;
@@ -205,6 +219,8 @@ static float variance(const float *value)
     return square / (float)(INTEGRITY_SCANS - 1U);
 }
 
+/* Variance of the white noise in the values: the second difference of white noise has six times its
+ * variance, and a smooth motion adds little. */
 static float noise(const float *value)
 {
     float square = 0.0F;
@@ -216,8 +232,8 @@ static float noise(const float *value)
     return square / (6.0F * (float)(INTEGRITY_SCANS - 2U));
 }
 
-/* A beam that is blocked has a length of its own: it does not grow and shrink as the mirror rises and falls
- * with the tilt, and the height made of it does. What is left of the length is white noise. */
+/* In the air the tilt raises and lowers the mirror, so the slant distance changes with it. The slant of a
+ * blocked beam does not change: only white noise is left in it. */
 static void watch_slant(integrity_t *i, const altitude_t *altitude)
 {
     for (uint16_t k = 1U; k < INTEGRITY_SCANS; ++k) {
@@ -254,11 +270,13 @@ bool integrity_scan(integrity_t *integrity, const altitude_t *altitude)
 
 /* ---- witnesses */
 
+/* Starts at a known speed, with empty sums. */
 static void start(witness_t *witness, float speed_mps)
 {
     *witness = (witness_t){.speed_mps = speed_mps};
 }
 
+/* Dead reckoning over one step of dt_s. */
 static void move(witness_t *witness, float mps2, float dt_s)
 {
     witness->off_m -= (witness->speed_mps + 0.5F * mps2 * dt_s) * dt_s;
@@ -267,17 +285,19 @@ static void move(witness_t *witness, float mps2, float dt_s)
     witness->running_s = at_most(witness->running_s + dt_s, OLD_S);
 }
 
+/* A witness is valid after its first WARM_S. */
 static bool counts(const witness_t *witness)
 {
     return witness->running_s > WARM_S;
 }
 
-/* The accelerometer's witness may be asked. */
+/* The accelerometer's witness is valid and its source is not in doubt. */
 static bool feels(const integrity_t *i)
 {
     return counts(&i->felt) && !integrity_doubts(i, DOUBT_IMU);
 }
 
+/* At rest the acceleration is the bias; a large one is a fault. */
 static void feel_rest(integrity_t *i, float dt_s)
 {
     i->rested_s = at_most(i->rested_s + dt_s, REST_TIME_S);
@@ -291,6 +311,7 @@ static void feel_rest(integrity_t *i, float dt_s)
     }
 }
 
+/* Measures how much roll and pitch sway. */
 static void watch_sway(integrity_t *i, const imu_sample_t *frame, float dt_s)
 {
     const float share = at_most(dt_s / SWAY_TIME_S, 1.0F);
@@ -302,7 +323,8 @@ static void watch_sway(integrity_t *i, const imu_sample_t *frame, float dt_s)
     i->sway_rad2 += share * (roll_rad * roll_rad + pitch_rad * pitch_rad - i->sway_rad2);
 }
 
-/* Of the two speeds only what is new counts, as the felt one may be wrong from before, and drift. */
+/* Measures how long the tilt has been still. Only changes of the two speeds since then are compared, because
+ * the speed of the accelerometer may be wrong from before, and may drift. */
 static void watch_still(integrity_t *i, float dt_s)
 {
     const bool fell = i->felt.speed_mps < i->still_mps[0] - FELL_MPS;
@@ -318,6 +340,7 @@ static void watch_still(integrity_t *i, float dt_s)
     i->still_s = (i->sway_rad2 < SWAY_RAD2) ? i->still_s + dt_s : 0.0F;
 }
 
+/* The thrust predicts a fall that the accelerometer does not measure: the ground carries the vehicle. */
 static void watch_fall(integrity_t *i, float dt_s)
 {
     watch_still(i, dt_s);
@@ -330,6 +353,7 @@ static void watch_fall(integrity_t *i, float dt_s)
     i->stands_s = (falls && i->sway_rad2 < SWAY_RAD2) ? i->stands_s + dt_s : 0.0F;
 }
 
+/* One accepted frame. */
 static void feel(integrity_t *i, const flown_t *flown, const imu_sample_t *frame)
 {
     const uint32_t gap_us = frame->arrival_us - i->frame_time_us;
@@ -412,12 +436,15 @@ float integrity_speed_mps(const integrity_t *integrity)
 
 /* ---- heights against the witnesses */
 
+/* True when this witness explains the change of the height: then the change is no step of the terrain. */
 static bool follows(const witness_t *witness, float rise_m, float gap_s)
 {
     return witness->running_s > 0.0F &&
            fabsf(rise_m - witness->speed_mps * gap_s) <= STEP_M + GAP_ALLOWS_MPS * gap_s;
 }
 
+/* Adds one innovation to the leaky sum. The height is age_s old and the prediction is not, so the sum at the
+ * instant of the rays leaves out the way predicted since then. */
 static void compare(witness_t *witness, float rise_m, float gap_s, float age_s, float leak_per_s,
                     float pull_per_s2)
 {
@@ -428,32 +455,35 @@ static void compare(witness_t *witness, float rise_m, float gap_s, float age_s, 
     witness->seen_m = seen_m;
 }
 
-/* The first climb that shows in the heights: what was foretold by a thrust that was not known yet is
- * forgotten. */
+/* The heights show the first climb. Until now the hover thrust was not known well, so the witness of the
+ * thrust restarts from the rate of the heights. */
 static void confirm(integrity_t *i)
 {
     i->pushed.speed_mps = i->rise_mps;
     forget(i);
 }
 
-/* Back where a glitch began: nothing came nearer. */
+/* The height is back at its value before a short upward step: that was a glitch, the terrain did not rise. */
 static bool returns(const integrity_t *i, float height_m)
 {
     return i->since_rise_s < GLITCH_S && fabsf(height_m - i->before_rise_m) < STEP_M;
 }
 
-/* A thing in front of a mirror stays where it is: heights that move on and on are not made by one. */
+/* A thing in front of a mirror stays where it is. So heights that keep moving do not come from a blocked
+ * beam. */
 static bool heights_move(const integrity_t *i)
 {
     return fabsf(i->way_m) > MOVES_M;
 }
 
+/* The same, now or within the last MOVED_S. */
 static bool heights_moved(const integrity_t *i)
 {
     return i->unmoved_s < MOVED_S;
 }
 
-/* A take-off is unconfirmed too. */
+/* Processes one height: step or not, confirmed or not, then the innovations of both witnesses. A take-off is
+ * unconfirmed, as is a step of the terrain towards the vehicle. */
 static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
 {
     const float rise_m = height_m - i->height_m;
@@ -499,31 +529,32 @@ static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
 
 /* ---- verdicts */
 
-/* Heights went one way, and this witness another. */
+/* The heights contradict this witness by more than at_least_m. */
 static bool against(const witness_t *witness, float at_least_m)
 {
     return counts(witness) && fabsf(witness->seen_m) > at_least_m;
 }
 
-/* In steps of the accelerometer's own noise, where that is large. */
+/* Sum of the felt innovations, made smaller when the accelerometer is noisy. */
 static float felt_off_m(const integrity_t *i)
 {
     return i->felt.seen_m / i->shaken;
 }
 
+/* The heights contradict the witness of the accelerometer by more than at_least_m. */
 static bool feels_against(const integrity_t *i, float at_least_m)
 {
     return feels(i) && fabsf(felt_off_m(i)) > at_least_m;
 }
 
-/* The law pushes where it wants to go, and the heights do not. */
+/* The thrust pushes towards the reference by more than least_n, and the heights do not follow. */
 static bool pushes_in_vain(const integrity_t *i, const flown_t *flown, float least_n)
 {
     const float push_n = i->lagged_n - flown->hover_n;
     return fabsf(push_n) > least_n && push_n * flown->wanted_m > 0.0F && i->pushed.seen_m * push_n < 0.0F;
 }
 
-/* Both tell a climb (or a fall) that the heights do not show. */
+/* Both witnesses have a fast climb (or fall), and the heights do not move. */
 static bool both_run_away(const integrity_t *i)
 {
     const float felt_mps = (i->felt.speed_mps - i->rise_mps) / i->shaken;
@@ -533,8 +564,8 @@ static bool both_run_away(const integrity_t *i)
            at_most(fabsf(felt_off_m(i)), fabsf(i->pushed.seen_m)) > RUN_AWAY_M;
 }
 
-/* It should still stand, by the law, and by a beam that is still or tells a height without a ground; but it
- * sways, and has felt a climb. */
+/* The law takes the vehicle to be on the ground still. The beam is still, or its height is above the ground.
+ * But the tilt sways as in the air, and the accelerometer has measured a climb. */
 static bool aloft_unseen(const integrity_t *i, const flown_t *flown)
 {
     const bool odd = i->rigid >= RIGID_SCANS || (i->height_m > LOW_M && integrity_still(i));
@@ -542,7 +573,7 @@ static bool aloft_unseen(const integrity_t *i, const flown_t *flown)
     return flown->standing && i->unconfirmed && odd && integrity_sways(i) && i->felt_least_m < -ALOFT_M;
 }
 
-/* The thrust tells of a motion, and the beam of none at all. */
+/* The witnesses predict a motion, and the slant is still. */
 static bool still_against(const integrity_t *i)
 {
     const bool felt = !feels(i) ||
@@ -554,7 +585,7 @@ static bool still_against(const integrity_t *i)
            ((felt || rigid) && against(&i->pushed, BOTH_M) && i->still == STILL_SCANS);
 }
 
-/* Both tell of a motion that the heights do not show. */
+/* Both witnesses contradict the heights in the same direction. */
 static bool both_against(const integrity_t *i, const flown_t *flown)
 {
     const float felt_m = felt_off_m(i);
@@ -566,6 +597,8 @@ static bool both_against(const integrity_t *i, const flown_t *flown)
            at_most(fabsf(felt_m), fabsf(pushed_m)) > sure * BOTH_M;
 }
 
+/* Since a step towards the vehicle the thrust has pushed, and no climb has shown in the heights. The
+ * accelerometer does not contradict that. */
 static bool vain_since_step(const integrity_t *i, const flown_t *flown)
 {
     const float pushed_m = i->pushed.seen_m;
@@ -575,17 +608,18 @@ static bool vain_since_step(const integrity_t *i, const flown_t *flown)
            !(feels_against(i, WITH_M) && felt_off_m(i) * pushed_m < 0.0F);
 }
 
-/* The first climb is felt by an accelerometer that was right at rest a moment ago, while what thrust carries
- * the vehicle is not known yet, and no height has moved since the ground. */
+/* The first climb after the ground shows in the accelerometer only. It is believed, because it measured g at
+ * rest a moment ago. The thrust does not help: the hover thrust is not known yet. */
 static bool unproved_against(const integrity_t *i)
 {
     return i->unconfirmed && !i->proved && !heights_move(i) && feels(i) && felt_off_m(i) < -UNPROVED_M;
 }
 
+/* Reasons for DOUBT_SIGHT. */
 static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
 {
     const bool stiff = i->rigid == STILL_SCANS &&
-                       integrity_sways(i); /* the mirror swings, the beam does not */
+                       integrity_sways(i); /* the tilt sways, and the slant does not change */
 
     if (i->steps > STEPS_MAX || stiff || aloft_unseen(i, flown)) {
         return true;
@@ -606,8 +640,8 @@ static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
     return feels_against(i, ALONE_M);
 }
 
-/* The thrust that carries it may have been learned from the accelerometer: against heights that move the two
- * are one. */
+/* Reasons for DOUBT_IMU. The hover thrust may have been learned from a wrong accelerometer. Then both
+ * witnesses have the same error, and heights that move are right against both. */
 static bool imu_is_wrong(const integrity_t *i, const flown_t *flown)
 {
     const bool alone = !against(&i->pushed, at_least(WITH_M, ALONE_SHARE * fabsf(i->felt.seen_m))) ||
@@ -620,6 +654,7 @@ static bool imu_is_wrong(const integrity_t *i, const flown_t *flown)
            (heights_move(i) && feels_against(i, AGAINST_M) && both_against(i, flown));
 }
 
+/* Reasons for DOUBT_THRUST. */
 static bool thrust_is_wrong(const integrity_t *i, const flown_t *flown)
 {
     if (!i->proved && !flown->displaced) {
@@ -632,6 +667,7 @@ static bool thrust_is_wrong(const integrity_t *i, const flown_t *flown)
            !feels_against(i, WITH_M) && pushes_in_vain(i, flown, PUSH_N);
 }
 
+/* Heights and witnesses agree, over a real motion. */
 static bool agrees(const integrity_t *i)
 {
     const witness_t *mover = counts(&i->pushed) ? &i->pushed : &i->felt;
@@ -639,6 +675,7 @@ static bool agrees(const integrity_t *i)
     return !feels_against(i, WITH_M) && !against(&i->pushed, WITH_M) && mover->moved_m > MOVED_M;
 }
 
+/* Clears a doubt after enough agreement. */
 static void judge_again(integrity_t *i, float gap_s)
 {
     const bool seen = heights_move(i) && i->steps < STEPS_MAX;
@@ -652,6 +689,7 @@ static void judge_again(integrity_t *i, float gap_s)
     }
 }
 
+/* Error of the height by the valid witnesses, mean of both when both are valid. */
 static float lost_m(const integrity_t *i)
 {
     const bool both = counts(&i->felt) && counts(&i->pushed) && !integrity_doubts(i, DOUBT_IMU);
@@ -659,6 +697,7 @@ static float lost_m(const integrity_t *i)
                 : (counts(&i->pushed) ? i->pushed.seen_m : i->felt.seen_m);
 }
 
+/* One verdict per height: a new doubt, or the end of one. */
 static void judge(integrity_t *i, const flown_t *flown, float gap_s)
 {
     if (!integrity_doubts(i, DOUBT_IMU) && imu_is_wrong(i, flown)) {

@@ -1,19 +1,28 @@
-/* Whom to believe. Three tell how the vehicle moves: its heights, its accelerometer, and the thrust that it
- * is given. Each may lie, and no one of them is believed against the other two:
+/* Consistency check of the sensors. Three sources tell how the vehicle moves vertically: the heights, the
+ * accelerometer, and the commanded thrust together with the vehicle's model. Each of them may be wrong. A
+ * source is doubted when it contradicts the two others:
  *
- *   heights against both of the others      doubt SIGHT: the heights count as lost
- *   accelerometer against both              doubt IMU: what needs accelerations is not flown
- *   thrust against both                     doubt THRUST: somebody else flies, or something holds the
- * vehicle: the thrust stays near the one that carries it
+ *   the heights contradict both others          DOUBT_SIGHT: treat the heights as lost
+ *   the accelerometer contradicts both others   DOUBT_IMU: fly without accelerations
+ *   the thrust contradicts both others          DOUBT_THRUST: a pilot flies, or something holds the vehicle;
+ *                                               the thrust stays near the last known hover thrust
  *
- * Accelerometer and thrust each have a witness here: a speed that they foretell, corrected slowly by the
- * heights, and how far the heights have gone away from it. A step from one height to the next is terrain and
- * counts for nothing, be it as high as it likes; a beam that is blocked looks like terrain that rises with
- * the vehicle, and goes on doing so.
+ * A witness is a vertical speed by dead reckoning, without the heights: from the accelerometer (`felt`) or
+ * from the thrust and the vehicle's model (`pushed`). Its innovation is the measured change of the height
+ * minus the change that this speed predicts. The innovation is summed up in a leaky integrator. A sum that
+ * grows large means that the heights and this witness contradict each other.
  *
- * Besides: a scan that repeats itself to the hundredth of a millimetre is a copy; an accelerometer that does
- * not feel g at rest is unfit; a tilt that comes in one jump is believed later than one that grows. Pure; the
- * caller owns the state. */
+ * A single step of the height, however high, is a step of the terrain and adds nothing to these sums. A
+ * blocked beam first looks like a step of the terrain too. But then the height stays constant while the
+ * vehicle moves, and that shows in the sums.
+ *
+ * Three more checks. Identical scans are copies and are rejected. An accelerometer that does not measure g at
+ * rest is doubted. A tilt that jumps is accepted only after it has lasted for some frames.
+ *
+ * Metres, seconds, newtons per motor, radians; positive is upwards. Times named _us are on one wrapping
+ * 32-bit clock. Pure: no clock and no static state; the caller owns the state. Context: one Task, in the
+ * order of flight_step(): tilt, frames, thrust, then scan and height when there is a new scan. No function
+ * waits or reports an error; inputs that are not finite are rejected where the contract says so. */
 #ifndef CONTROL_INTEGRITY_H
 #define CONTROL_INTEGRITY_H
 
@@ -23,141 +32,161 @@
 #include "control/altitude.h"
 #include "control/est/estimator.h"
 
-#define INTEGRITY_SCANS 12U
+#define INTEGRITY_SCANS 12U /* chosen: 1.2 s at ten scans a second */
 
+/* Bits of integrity_t.doubts. */
 #define DOUBT_SIGHT 1U
 #define DOUBT_IMU 2U
 #define DOUBT_THRUST 4U
 
-/* One of the two that foretell the motion. */
+/* Vertical motion by dead reckoning from one source. */
 typedef struct {
-    float speed_mps; /* upwards */
-    float off_m;     /* height measured less height foretold; leaks */
-    float seen_m;    /* the same at the rays of the latest height */
-    float moved_m;   /* way that it has foretold since the last disagreement, leaks */
-    float running_s; /* since its start, at most WITNESS_OLD_S */
+    float speed_mps; /* predicted vertical speed */
+    float off_m;     /* leaky sum of the innovations: measured minus predicted change of the height */
+    float seen_m;    /* off_m at the instant when the rays of the latest height were taken */
+    float moved_m;   /* length of the predicted path since the sums were last cleared, >= 0 */
+    float running_s; /* time since its start, at most 2 s */
 } witness_t;
 
-/* The flight as it is decided, and what it is decided from: of the cycle before, where it cannot be
- * otherwise. */
+/* State of the flight, as far as the checks need it. Some fields are from the previous cycle, because the
+ * present one is not yet decided. */
 typedef struct {
-    float step_s;    /* since the cycle before */
-    bool grounded;   /* stands, no thrust */
-    bool standing;   /* about to leave the ground, as far as one knows */
-    bool off_ground; /* flown by its own thrust: the witness of the thrust counts */
-    bool ours;       /* no pilot has the throttle */
-    bool ordered;    /* a #SETR arrived: what is doubted on the ground is tried again */
-    float thrust_n;  /* commanded */
-    float authority_mps2_per_n, damping_per_s; /* what thrust does, as in cascade.h */
-    float hover_n;    /* the thrust that carries it, as it has been known for some seconds */
-    float wanted_m;   /* how far the law wants to climb (or sink); NAN: nothing to tell */
-    bool displaced;   /* it holds a height, and is far from it */
-    float noise_mps2; /* of the accelerometer, rms, as the estimator measures it */
-    float bias_mps2;  /* of the accelerometer, as the estimator has found it */
+    float step_s;    /* time since the previous cycle */
+    bool grounded;   /* state GROUND: on the ground without thrust */
+    bool standing;   /* take-off commanded; the vehicle has not left the ground, as far as is known */
+    bool off_ground; /* only its own thrust carries the vehicle: the witness of the thrust is valid */
+    bool ours;       /* false: the pilot has the throttle */
+    bool ordered;    /* a new #SETR; on the ground it clears DOUBT_SIGHT and DOUBT_THRUST */
+    float thrust_n;  /* commanded thrust, less the dead band */
+    float authority_mps2_per_n, damping_per_s; /* vehicle model, as in cascade.h */
+    float hover_n;                             /* sure hover thrust, see flight.h */
+    float wanted_m;   /* reference minus height, > 0: the law wants to climb; NAN: no height is held */
+    bool displaced;   /* FLOATING holds a height and is more than 0.25 m away from it */
+    float noise_mps2; /* rms noise of the accelerometer, measured by the estimator */
+    float bias_mps2;  /* bias of the accelerometer, estimated by the estimator */
 } flown_t;
 
+/* Read doubts, tilt and the fields that flight.c uses; written only by the functions below. */
 typedef struct {
     uint16_t doubts; /* DOUBT_* */
     /* tilt */
-    bool levelled;             /* a tilt has been believed */
-    float roll_rad, pitch_rad; /* believed */
-    uint16_t jumped;           /* tilts in a row that came in one jump */
-    uint16_t tilted;           /* tilts over 45 degrees in a row */
-    uint32_t tilt_time_us;
-    uint32_t tilt_sequence;
-    uint32_t unfit_sequence; /* frames up to this one rest on tilts that are not believed */
+    bool levelled;             /* at least one tilt was accepted */
+    float roll_rad, pitch_rad; /* latest accepted tilt */
+    uint16_t jumped;           /* tilts in a row that were rejected because they jumped */
+    uint16_t tilted;           /* accepted tilts in a row above 45 degrees */
+    uint32_t tilt_time_us;     /* arrival of the latest tilt, accepted or not */
+    uint32_t tilt_sequence;    /* latest frame that integrity_tilt() processed */
+    uint32_t unfit_sequence;   /* frames up to this one must not be used: their tilt was rejected */
     /* scans */
-    float slant_mm, spread_mm;
-    uint16_t copies;                  /* in a row */
-    float slants_mm[INTEGRITY_SCANS]; /* the latest, oldest first */
-    uint16_t scans;                   /* in them */
-    uint16_t rigid;                   /* scans in a row with slants as still as no flying vehicle's */
-    uint16_t still;                   /* scans in a row with nothing but noise in the slants */
+    float slant_mm, spread_mm;        /* of the latest scan */
+    uint16_t copies;                  /* scans in a row that repeat the scan before */
+    float slants_mm[INTEGRITY_SCANS]; /* latest slant distances, oldest first */
+    uint16_t scans;                   /* number of valid entries in slants_mm */
+    uint16_t rigid; /* scans in a row whose slants vary less than those of any flying vehicle */
+    uint16_t still; /* scans in a row whose slants contain only white noise */
     /* heights */
-    bool heard; /* height_m is the latest */
-    float height_m;
-    float rise_mps;   /* of the heights, low-passed, steps left out */
-    float way_m;      /* that the heights have gone since the latest step, leaks */
-    float unmoved_s;  /* since they went on and on */
-    bool unconfirmed; /* the terrain came nearer in one step, and no climb has shown in the heights since */
-    bool standing;    /* on the ground or about to leave it */
-    bool proved;      /* a climb has shown in the heights since the ground */
-    float near_m;     /* height after that step */
-    float before_rise_m; /* height before the latest step away, so long ago: */
-    float since_rise_s;
-    float felt_least_m; /* how far the heights have stayed below the felt climb meanwhile, < 0 */
-    float quiet_s;      /* for how long no climb has been wanted */
-    float vain_s;       /* for how long the law has pushed and no height has moved */
-    float lost_m;       /* how far the heights had gone away when doubt SIGHT rose */
-    float steps;        /* recent, leaks */
-    float agreed_s;     /* heights have agreed for so long, while doubted */
+    bool heard;          /* at least one height was received */
+    float height_m;      /* latest height */
+    float rise_mps;      /* low-passed rate of the heights, without steps */
+    float way_m;         /* leaky sum of the height changes since the latest step */
+    float unmoved_s;     /* time since way_m was last large, at most 1 s; 1 s after a step */
+    bool unconfirmed;    /* after a take-off or a step of the terrain towards the vehicle: no climb has shown
+                          * in the heights since. The beam may be blocked */
+    bool standing;       /* on the ground, or take-off commanded and not yet off the ground */
+    bool proved;         /* the heights have confirmed a climb since the ground */
+    float near_m;        /* height after the step that made `unconfirmed` true */
+    float before_rise_m; /* height before the latest upward step of the height */
+    float since_rise_s;  /* time since that step, at most 1.5 s */
+    float felt_least_m;  /* smallest seen_m of the accelerometer's witness while `unconfirmed`, <= 0 */
+    float quiet_s;       /* how long the law has not wanted to climb */
+    float vain_s;        /* how long the law has pushed while no height moved */
+    float lost_m;        /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
+    float steps;         /* leaky count of the steps */
+    float agreed_s;      /* how long heights and witnesses have agreed during a doubt */
     /* accelerometer */
-    uint32_t frame_sequence;
+    uint32_t frame_sequence; /* latest frame that integrity_frames() processed */
     uint32_t frame_time_us;
-    float up_mps2;   /* of the latest frame, gravity removed */
-    float rest_mps2; /* slow mean of it at rest */
-    float rested_s;
-    float bias_mps2;
-    float shaken; /* the noise against the one that the limits are for, >= 1 */
+    float up_mps2;   /* upward acceleration in the latest frame, gravity removed */
+    float rest_mps2; /* its mean at rest */
+    float rested_s;  /* time at rest that this mean covers, at most 2 s */
+    float bias_mps2; /* bias that the witness subtracts */
+    float shaken;    /* >= 1: divides the witness's innovation when the accelerometer is noisy */
     witness_t felt;
     /* thrust */
-    float lagged_n;
+    float lagged_n; /* commanded thrust through the lag of the motors */
     witness_t pushed;
-    float held_n;   /* with doubt THRUST: the thrust that carried it when the doubt rose */
-    bool held_down; /* and the law wanted it lower */
-    /* stillness */
-    float mean_rad[2]; /* slow, of roll and pitch */
-    float sway_rad2;   /* slow mean square of what roll and pitch differ from it */
-    float stands_s;
-    float still_s; /* for how long the tilt has been stiller than in the air; no fall was felt meanwhile */
-    float still_mps[2]; /* speeds felt and foretold by the thrust, slow, from when that began */
-    float unheard_s;    /* since the latest height that is not in doubt, at most WITNESS_OLD_S */
+    float held_n;   /* hover thrust when DOUBT_THRUST rose */
+    bool held_down; /* the law wanted to descend at that instant */
+    /* standing on the ground */
+    float mean_rad[2];  /* low-passed roll and pitch */
+    float sway_rad2;    /* low-passed mean square of roll and pitch around mean_rad */
+    float stands_s;     /* how long the vehicle has shown the signs of integrity_stands() */
+    float still_s;      /* how long the tilt has swayed less than in the air, without a felt fall */
+    float still_mps[2]; /* low-passed speeds of the two witnesses (felt, pushed) since then */
+    float unheard_s;    /* time since the latest height that is not in doubt, at most 2 s */
 } integrity_t;
 
+/* Clears the state: no doubt, nothing known. Call once before the first cycle. */
 void integrity_init(integrity_t *integrity);
 
-/* The tilt that is believed, from the frames or, without any, from one sample. */
+/* Checks the tilt, once in each cycle. frames: oldest first, borrowed for the call; frames that were
+ * processed before change nothing. When count is 0, roll_rad, pitch_rad and time_us (arrival) are one sample
+ * instead. A tilt that jumps by more than 20 degrees is rejected until six in a row were rejected. Angles
+ * that are NaN or beyond 7 rad are rejected. Writes roll_rad, pitch_rad, tilted and unfit_sequence. */
 void integrity_tilt(integrity_t *integrity, const imu_sample_t *frames, uint16_t count, float roll_rad,
                     float pitch_rad, uint32_t time_us);
 
-/* A scan's height may be used at all: within reach, and not the copy of an earlier one. Once per scan. */
+/* Checks one scan. Call exactly once for each new scan, before integrity_height(). Returns true when its
+ * height may be used: height within -50 .. 5000 mm, and the scan is not the second copy in a row of an
+ * earlier one. */
 bool integrity_scan(integrity_t *integrity, const altitude_t *altitude);
 
-/* The frames of one cycle; those that were seen before change nothing. */
+/* Moves the accelerometer's witness, once in each cycle. frames: oldest first, borrowed for the call; frames
+ * that were processed before, or whose tilt was rejected, change nothing. On the ground it measures the bias,
+ * and sets or clears DOUBT_IMU: more than 1.5 m/s2 off g for 1 s sets it, less than 1.2 m/s2 clears it. */
 void integrity_frames(integrity_t *integrity, const flown_t *flown, const imu_sample_t *frames,
                       uint16_t count);
 
-/* One cycle of thrust. */
+/* Moves the thrust's witness, once in each cycle. flown->ordered on the ground clears DOUBT_SIGHT and
+ * DOUBT_THRUST. */
 void integrity_thrust(integrity_t *integrity, const flown_t *flown);
 
-/* A new height, gap_s after the one before, its rays taken age_s ago; what is doubted is decided. */
+/* Compares one accepted height with both witnesses, then sets or clears the doubts. height_m: the height.
+ * gap_s: time since the height before, > 0. age_s: time since its rays were taken. Nothing is judged while
+ * flown->grounded is true or the pilot has the throttle. */
 void integrity_height(integrity_t *integrity, const flown_t *flown, float height_m, float gap_s, float age_s);
 
-/* The accelerometer's speed, less of it the more it shakes; 0 where it is not asked. */
+/* Speed of the accelerometer's witness, divided by `shaken`. 0 in its first 0.5 s and while DOUBT_IMU is set.
+ */
 float integrity_felt_mps(const integrity_t *integrity);
 
-/* The heights came nearer at once, as they do where something blocks the beam, and no climb has shown in them
- * since. */
+/* True after a take-off or a step of the terrain towards the vehicle, until the heights show a climb. Until
+ * then the beam may be blocked: keep climbs slow. */
 bool integrity_unconfirmed(const integrity_t *integrity);
 
-/* For a second nothing but noise has been in the beam's length: it may be blocked. */
+/* True when the slant distance of more than eight scans in a row has contained only white noise: the beam
+ * may be blocked. */
 bool integrity_still(const integrity_t *integrity);
 
-/* The tilt moves as it does in the air. */
+/* True when roll and pitch sway as in the air: more than 1.1 degrees rms together. */
 bool integrity_sways(const integrity_t *integrity);
 
-/* It may stand: so still is nothing in the air. Less thrust would tell. */
+/* True when the tilt has swayed less than in the air for 1 s: the vehicle may stand on the ground. Lower the
+ * thrust to find out. */
 bool integrity_may_stand(const integrity_t *integrity);
 
-/* It gives too little thrust to fly, and does not fall: something carries it. */
+/* True when the vehicle stands: for 0.6 s the thrust has been too low to fly, the accelerometer has felt no
+ * fall, and the tilt has been still. */
 bool integrity_stands(const integrity_t *integrity);
 
-/* "SIGHT", "IMU", "THRUST", the first that there is, as shown by the telemetry; NULL: none. */
+/* Name for the telemetry: "SIGHT", "IMU" or "THRUST", of several the first in this order; NULL: no doubt. */
 const char *integrity_doubt_name(uint16_t doubts);
 
+/* True when at least one of the given DOUBT_* bits is set. */
 bool integrity_doubts(const integrity_t *integrity, uint16_t doubt);
 
-/* Fastest knowledge of the speed that does not rest on heights alone. */
+/* Vertical speed without the heights: the mean of both witnesses, or the one that is valid and not doubted; 0
+ * when there is none. */
 float integrity_speed_mps(const integrity_t *integrity);
 
 #endif
