@@ -1,9 +1,9 @@
-/* One control cycle in a fixed order: judge the sensors, predict, supervise, fuse, choose law and mode,
- * compute, transfer, tell. The state (supervisor) and whether there is an estimate choose the mode, by two
- * tables; the mode computes the thrust. Whatever changes in the air changes without a jump: bumpless
- * transfer, as in any text on control. What breaks: the order. The supervisor must see the estimate of this
- * cycle, and the estimator the command of the one before. A mode that is added without a row in both tables
- * is IDLE, and that is a falling vehicle. */
+/* One control cycle in a fixed order: check the sensors, predict, supervise, fuse, choose law and mode,
+ * compute the thrust, limit it, write the outputs. Two tables choose the mode from the supervisor's state:
+ * one with an estimate, one without. The mode computes the thrust. In the air every change of the mode is
+ * without a jump of the thrust: bumpless transfer, as in any text on control.
+ * What breaks: the order. The supervisor needs the estimate of this cycle. The estimator needs the command of
+ * the previous cycle. A state without a row in both tables is IDLE: no thrust, so the vehicle falls. */
 #include "control/flight.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "control/seconds.h"
 #include "control/thrust.h"
 
-#define HOVER_MARGIN_N 1.5F   /* mass 20 % off; narrower than law EST's 2 N: here nobody corrects an error */
+#define HOVER_MARGIN_N 1.5F   /* mass 20 % off; below the 2 N of law EST, because no law corrects it here */
 #define HOVER_TIME_S 2.5F     /* chosen: a mean over the swings of the seed's law */
 #define TRANSFER_TIME_S 0.4F  /* chosen: four scans */
 #define TRANSFER_START_N 0.5F /* chosen: 0.7 m/s2 */
@@ -20,24 +20,24 @@
 #define GAP_MAX_S 0.3F        /* as HEIGHT_FRESH_US in supervisor.c */
 #define BLIND_MAX_S 60.0F     /* above DESCENT_TIMEOUT_US in supervisor.c */
 
-#define PIDT_WINDOW_N 3.0F /* chosen: 0.4 g to either side */
-#define SETTLE_S 0.6F
-#define LIFTED_MPS 0.25F
-#define RAYS_AGE_S 0.0705F
-#define GAP_LONG_S 10.0F
-#define LOW_MM 80.0F
-#define POWERLESS_WINDOW_N 0.6F
-#define FLOATING_WINDOW_N 0.5F
-#define UNCONFIRMED_MPS 0.35F
-#define TAKEOFF_MPS 0.6F
-#define CLIMB_MARGIN_MPS 0.4F
-#define STOP_N_PER_S 2.0F
-#define ASK_N_PER_S 1.0F /* chosen: the fall to tell is there 2 s later, and is felt before it is fast */
-#define HOP_MAX_US UINT32_C(3000000)
-#define DISPLACED_M 0.25F
-#define FLOAT_REACH_M 0.30F
+#define PIDT_WINDOW_N 3.0F      /* chosen: 0.4 g to either side */
+#define SETTLE_S 0.6F           /* chosen: six scans; until then the estimate is copied */
+#define LIFTED_MPS 0.25F        /* chosen: above what a bias of 0.2 m/s2 makes on the ground */
+#define RAYS_AGE_S 0.0705F      /* scip_rays_age_us() in scip_layout.c, for layout FRONT at 250000 bit/s */
+#define GAP_LONG_S 10.0F        /* chosen: longer gaps count as this long; integrity.c restarts after 1.5 s */
+#define LOW_MM 80.0F            /* chosen: above REST_BELOW_MM in supervisor.c, 50 mm */
+#define POWERLESS_WINDOW_N 0.6F /* chosen: 0.8 m/s2 */
+#define FLOATING_WINDOW_N 0.5F  /* chosen: as TRANSFER_START_N */
+#define UNCONFIRMED_MPS 0.35F   /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
+#define TAKEOFF_MPS 0.6F        /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
+#define CLIMB_MARGIN_MPS 0.4F   /* chosen: room for an overshoot of the climb rate above VUP */
+#define STOP_N_PER_S 2.0F       /* as STOP_N_PER_S in est_law.c */
+#define ASK_N_PER_S 1.0F        /* chosen: in 2 s too low to fly; a fall is felt before it is fast */
+#define HOP_MAX_US UINT32_C(3000000) /* chosen: the take-off's ramp in est_law.c ends after 1.2 s */
+#define DISPLACED_M 0.25F            /* chosen: below FLOAT_REACH_M */
+#define FLOAT_REACH_M 0.30F          /* chosen: three times the distance that counts as reached, reach.c */
 
-/* Without an estimate, or by a law that needs none. */
+/* For states flown without an estimate. */
 static const flight_mode_t modes_without_estimate[FLIGHT_STATE_COUNT] = {
     [FLIGHT_GROUND] = FLIGHT_MODE_IDLE,     [FLIGHT_TAKEOFF] = FLIGHT_MODE_LAW,
     [FLIGHT_FLYING] = FLIGHT_MODE_LAW,      [FLIGHT_FLOATING] = FLIGHT_MODE_FLOAT,
@@ -67,13 +67,14 @@ static bool is_est_mode(flight_mode_t mode)
     return mode == FLIGHT_MODE_EST_HOLD || mode == FLIGHT_MODE_EST_LAND || mode == FLIGHT_MODE_EST_SINK;
 }
 
-/* Frames and heights make an estimate that may be flown by. */
+/* True when the estimate is good enough to fly by. */
 static bool has_estimate(const flight_t *flight)
 {
     return est_law_ready(&flight->est);
 }
 
-/* Slowly: what is wrong now must not have been learned already. Quicker while little is known. */
+/* Low-pass of the hover thrust. It is slow, so that a fault is doubted before its error is learned. It is
+ * faster at the start of a flight. */
 static void follow_hover(flight_t *flight)
 {
     const float step_s = seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
@@ -99,7 +100,7 @@ static bool descends(flight_state_t state)
     return state == FLIGHT_DESCENDING || state == FLIGHT_LANDING || state == FLIGHT_LOWERING;
 }
 
-/* About to leave the ground, be its height what it likes. */
+/* True when a take-off is commanded and the vehicle has not left the ground, whatever height is measured. */
 static bool lifts(const flight_t *flight)
 {
     const flight_state_t state = flight->supervisor.state;
@@ -125,7 +126,7 @@ static void update_hover(flight_t *flight, float gravity_n)
     est_law_set_sure_hover(&flight->est, flight->hover_n, descends(state));
 }
 
-/* The law keeps its integral action through COASTING alone. */
+/* Initial values of the new mode. The law keeps its integral action only during COASTING. */
 static void change_mode(flight_t *flight, flight_mode_t before, flight_mode_t now, float gravity_n)
 {
     if (before == FLIGHT_MODE_DESCENT) {
@@ -138,7 +139,7 @@ static void change_mode(flight_t *flight, flight_mode_t before, flight_mode_t no
         pid_resume(&flight->pid);
         pidt_resume(&flight->pidt);
         if (is_est_mode(before) && flight->supervisor.state == FLIGHT_FLYING) {
-            flight->pidt.integral_n = flight->hover_n - gravity_n; /* what EST has found */
+            flight->pidt.integral_n = flight->hover_n - gravity_n; /* as EST has estimated it */
         }
     } else if (now == FLIGHT_MODE_FLOAT) {
         pidt_reset(&flight->pidt);
@@ -212,14 +213,15 @@ static void step_descent(flight_t *flight, bool started)
     }
 }
 
-/* The height that is held, above the terrain. */
+/* Height to hold, above the terrain. */
 static float aim_m(const flight_t *flight)
 {
     return (flight->supervisor.state == FLIGHT_FLOATING) ? flight->floating_m
                                                          : flight->supervisor.reference_m;
 }
 
-/* Heights or the reference were lost before the vehicle left the ground: its motors stop gently. */
+/* True when heights or reference were lost before the vehicle left the ground. Then the thrust ramps down to
+ * 0. */
 static bool stops_on_ground(flight_t *flight)
 {
     const flight_state_t state = flight->supervisor.state;
@@ -294,7 +296,7 @@ static void bumpless_transfer(flight_t *flight, flight_mode_t before, bool law_c
     }
 }
 
-/* How far the law wants to climb. */
+/* Reference minus height; NAN when no height is held. */
 static float wanted_m(const flight_t *flight)
 {
     const flight_state_t state = flight->supervisor.state;
@@ -303,7 +305,7 @@ static float wanted_m(const flight_t *flight)
     return holds ? aim_m(flight) - flight->supervisor.height.height_mm * 0.001F : NAN;
 }
 
-/* Its own thrust carries it, and nothing else. */
+/* True when the vehicle is in the air, carried by the thrust that is commanded here. */
 static bool is_off_ground(const flight_t *flight, const flight_inputs_t *in)
 {
     const flight_state_t state = flight->supervisor.state;
@@ -364,7 +366,8 @@ static void compare_height(flight_t *flight, const flown_t *flown, const flight_
     }
 }
 
-/* What the rest of the cycle is to know. */
+/* Checks the inputs, and removes from *in what must not be used: heights in doubt, rejected tilts, frames
+ * with such a tilt. */
 static void believe(flight_t *flight, const parameters_t *parameters, flight_inputs_t *in)
 {
     integrity_t *integrity = &flight->integrity;
@@ -388,7 +391,7 @@ static void believe(flight_t *flight, const parameters_t *parameters, flight_inp
     }
 }
 
-/* A doubt has come or gone. */
+/* Reacts to doubts that were set or cleared in this cycle. */
 static void change_doubts(flight_t *flight, float gravity_n)
 {
     const integrity_t *integrity = &flight->integrity;
@@ -400,7 +403,7 @@ static void change_doubts(flight_t *flight, float gravity_n)
                         integrity_speed_mps(integrity), integrity->bias_mps2);
     }
     if ((come & DOUBT_IMU) != 0U && flight->learned_s < HOVER_TIME_S) {
-        flight->hover_n = gravity_n; /* the rest a wrong accelerometer may have taught */
+        flight->hover_n = gravity_n; /* it may have been learned from a wrong accelerometer */
         flight->learned_s = 0.0F;
     }
     const bool flies_unseen = (come & DOUBT_SIGHT) != 0U && integrity_sways(integrity);
@@ -410,7 +413,7 @@ static void change_doubts(flight_t *flight, float gravity_n)
     }
     est_law_set_powerless(&flight->est, integrity_doubts(integrity, DOUBT_THRUST));
     est_law_set_accelerations_doubted(&flight->est, integrity_doubts(integrity, DOUBT_IMU));
-    if ((come & DOUBT_IMU) != 0U && flight->est.airborne) { /* the estimate followed them until now */
+    if ((come & DOUBT_IMU) != 0U && flight->est.airborne) { /* the estimate used them until now */
         estimator_amend(&flight->est.estimator, integrity->height_m, integrity->rise_mps, 0.0F);
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
@@ -435,13 +438,14 @@ static void supervise(flight_t *flight, const parameters_t *parameters, const fl
     supervisor_step(&flight->supervisor, parameters->value[PARAMETER_LINK], in, &estimate);
 }
 
-/* Above the height that was told on the ground, be that what it likes. */
+/* True when the height is above the one that was measured on the ground, whatever that was. */
 static bool has_risen(const flight_t *flight)
 {
     return flight->supervisor.height.height_mm * 0.001F - flight->est.ground_m > LOW_MM * 0.001F;
 }
 
-/* It has not left the ground since it stood there. A beam that is blocked may call that FLOATING. */
+/* True when the vehicle may not have left the ground yet. With a blocked beam the state can be FLOATING on
+ * the ground. */
 static bool may_stand(const flight_t *flight)
 {
     const flight_state_t state = flight->supervisor.state;
@@ -451,8 +455,8 @@ static bool may_stand(const flight_t *flight)
                : state == FLIGHT_FLOATING && !has_risen(flight) && !integrity_sways(&flight->integrity);
 }
 
-/* By one of the laws that do not know themselves when they leave the ground: the heights tell, or the
- * accelerometer. */
+/* True when the vehicle has left the ground, by the heights or by the accelerometer. For the laws that do not
+ * detect their lift-off themselves. */
 static bool flies(const flight_t *flight)
 {
     return (flight->supervisor.state == FLIGHT_FLYING && (!flight->lifting || has_risen(flight))) ||
@@ -460,7 +464,7 @@ static bool flies(const flight_t *flight)
             flight->integrity.felt.speed_mps > LIFTED_MPS * flight->integrity.shaken);
 }
 
-/* The thrust that would carry it, by the acceleration and the speed that the present one makes of it. */
+/* First hover thrust after lift-off: the delivered thrust less what acceleration and drag need. */
 static float lifting_n(const flight_t *flight, const parameters_t *parameters)
 {
     const cascade_vehicle_t vehicle = est_law_vehicle(&flight->est, parameters);
@@ -492,7 +496,7 @@ static void update_estimator(flight_t *flight, const parameters_t *parameters, c
     }
 }
 
-/* The law that is flown. Returns true when it is another than before. */
+/* Chooses the law in force. Returns true when it has changed. */
 static bool select_law(flight_t *flight, const parameters_t *parameters)
 {
     const control_law_t before = flight->active_law;
@@ -502,8 +506,8 @@ static bool select_law(flight_t *flight, const parameters_t *parameters)
     return flight->active_law != before;
 }
 
-/* Whether the state is flown by the estimate: a law as it was chosen, what the supervisor does by itself
- * whenever there is an estimate that heights, if there are any, do not contradict. */
+/* True when the present state flies by the estimate. In TAKEOFF and FLYING the chosen law decides. In the
+ * other states the estimate is used whenever there is one that the heights do not contradict. */
 static bool uses_estimate(const flight_t *flight)
 {
     switch (flight->supervisor.state) {
@@ -520,7 +524,8 @@ static bool uses_estimate(const flight_t *flight)
     }
 }
 
-/* A pilot's mode switch must not cut the motors: while he has the throttle the hover thrust stands by. */
+/* While the pilot has the throttle the command is the hover thrust, so that the hand-back does not cut the
+ * motors. */
 static flight_mode_t select_mode(const flight_t *flight, const flight_inputs_t *in)
 {
     if (flight->supervisor.state == FLIGHT_FLOATING && !in->has_throttle) {
@@ -528,7 +533,7 @@ static flight_mode_t select_mode(const flight_t *flight, const flight_inputs_t *
     }
     if (flight->supervisor.state == FLIGHT_COASTING && has_estimate(flight) && flight->est.airborne &&
         integrity_doubts(&flight->integrity, DOUBT_SIGHT)) {
-        return FLIGHT_MODE_EST_SINK; /* what the heights said last is not the height to hold */
+        return FLIGHT_MODE_EST_SINK; /* the last heights were wrong: do not hold them */
     }
     return (uses_estimate(flight) ? modes_with_estimate : modes_without_estimate)[flight->supervisor.state];
 }
@@ -538,7 +543,7 @@ static bool is_hold_mode(flight_mode_t mode)
     return mode == FLIGHT_MODE_EST_HOLD || mode == FLIGHT_MODE_FLOAT;
 }
 
-/* FLOATING begins where the vehicle is, and goes with it if something else moves it. */
+/* FLOATING holds the height at its start. When something else moves the vehicle, the held height follows. */
 static void float_along(flight_t *flight, bool entered)
 {
     const float height_m = flight->supervisor.height.height_mm * 0.001F;
@@ -550,8 +555,9 @@ static void float_along(flight_t *flight, bool entered)
                              : height_m;
 }
 
-/* Climbs that no height confirms stay slow, and no climb is faster than the law wants it, whatever the
- * estimate says of it: what a climb costs in thrust is known. */
+/* Limits the thrust, and by it the climb, without use of the estimate: the vehicle's model gives the thrust
+ * of a climb rate. The limit is low while no height has confirmed the climb. Two speeds, 0.1 m/s (chosen)
+ * below that climb rate, switch the limit on. */
 static float within_climb_n(const flight_t *flight, const parameters_t *parameters, float thrust_n)
 {
     const cascade_vehicle_t vehicle = est_law_vehicle(&flight->est, parameters);
@@ -570,8 +576,8 @@ static float within_climb_n(const flight_t *flight, const parameters_t *paramete
                : thrust_n;
 }
 
-/* Commands without an effect are not made stronger: whoever flies gives back a vehicle that this thrust
- * carries. FLOATING does not know who flies. */
+/* While commands have no effect, the thrust stays near the hover thrust. So it fits when the commands get
+ * their effect back. In FLOATING too, because a pilot may fly there without a pin that reports it. */
 static float within_power_n(const flight_t *flight, float thrust_n)
 {
     const float held_n = flight->integrity.held_n;
@@ -586,8 +592,9 @@ static float within_power_n(const flight_t *flight, float thrust_n)
                                        : at_most(thrust_n, held_n + POWERLESS_WINDOW_N);
 }
 
-/* A descent that may have ended gives less and less, until a fall is felt, and it was in the air, or is not,
- * and it stands. */
+/* Finds the end of a descent. While the vehicle may stand on the ground, the thrust is lowered step by step.
+ * If the accelerometer measures a fall, the vehicle is in the air and the thrust returns. If it does not, the
+ * vehicle stands. */
 static float asking_n(flight_t *flight, float thrust_n)
 {
     const bool by_estimate = flight->mode == FLIGHT_MODE_EST_SINK || flight->mode == FLIGHT_MODE_EST_LAND;
@@ -603,7 +610,7 @@ static float asking_n(flight_t *flight, float thrust_n)
     return at_most(thrust_n, flight->asking_n);
 }
 
-/* Judged where the law acts: what the supervisor does by itself goes elsewhere. */
+/* Detects a reference that is not reached; only in the states in which the law acts. */
 static void judge_reach(flight_t *flight)
 {
     const supervisor_t *supervisor = &flight->supervisor;

@@ -1,21 +1,21 @@
-/* Slow means of the angles and of the gravity that is felt, compared once a frame. What disagrees for long
- * enough is a fault; which one, the change of sign or of place tells that would mend it best. The first that
- * mends it counts, so that a tilt about one axis alone names that axis.
- * What breaks: the angles here must have their offset: gravity has it too. */
+/* Compares two tilts once a frame: the mean of the IMU's angles, and the tilt by the mean of the measured
+ * gravity. A disagreement that lasts is a fault. Its name is the first change of sign or of axis that would
+ * remove it. So a tilt about one axis alone names that axis.
+ * What breaks: use the angles with their offset, because the measured gravity contains it too. */
 #include "control/imu_axes.h"
 
 #include <math.h>
 
-#define GRAVITY_MPS2 9.80665F    /* standard gravity */
-#define UNIT_SHARE 0.15F         /* an accelerometer's scale and offset are within it, units are not */
-#define MEAN_S 2.0F              /* chosen: 80 frames */
-#define GAP_S 0.3F               /* 12 frames lost */
-#define HELD_S 1.0F              /* chosen */
-#define LEAST_RAD 0.0175F        /* 1 degree; a vehicle must stand so far off level */
-#define SHARE_OF_TILT 0.2F       /* a sign makes 2, a change of place 1; a hand that moves makes less */
+#define GRAVITY_MPS2 9.80665F /* standard gravity */
+#define UNIT_SHARE 0.15F      /* chosen: above an accelerometer's errors, below a wrong unit's */
+#define MEAN_S 2.0F           /* chosen: 80 frames */
+#define GAP_S 0.3F            /* 12 frames lost; as GAP_MAX_US in estimator.c */
+#define HELD_S 1.0F           /* chosen: 40 frames */
+#define LEAST_RAD 0.0175F     /* chosen: 1 degree; the check needs a vehicle that stands so far off level */
+#define SHARE_OF_TILT 0.2F    /* chosen: a wrong sign makes 2, a wrong axis 1, a moving hand less than 0.2 */
 #define NOISE_RAD_PER_MPS2 0.04F /* five sigma of the mean: 5 sqrt(25 ms / 4 s) / g */
-#define MENDED_SHARE 0.5F        /* what a change must leave at most of the disagreement */
-#define STEEP_RAD 1.05F          /* 60 degrees */
+#define MENDED_SHARE 0.5F        /* chosen: the change must remove at least half of the disagreement */
+#define STEEP_RAD 1.05F          /* chosen: 60 degrees */
 
 typedef struct {
     float roll_rad, pitch_rad;
@@ -36,7 +36,8 @@ static float size_rad(tilt_t tilt)
     return fmaxf(fabsf(tilt.roll_rad), fabsf(tilt.pitch_rad));
 }
 
-/* Which change of the angles would make them agree with gravity. */
+/* Which change of the angles would make them agree with gravity. Angles below a tenth (chosen) of gravity's
+ * tilt are radians that were read as degrees: that makes 1/57. */
 static imu_fault_t name_of(tilt_t told, tilt_t felt, float left_rad)
 {
     const tilt_t changed[IMU_FAULT_COUNT] = {

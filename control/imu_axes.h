@@ -37,7 +37,7 @@ typedef struct {
     imu_fault_t fault; /* of the latest stay on the ground */
 } imu_axes_t;
 
-#define IMU_AXES_SEEN_S 3.0F
+#define IMU_AXES_SEEN_S 3.0F /* chosen: 120 frames */
 
 void imu_axes_init(imu_axes_t *axes);
 

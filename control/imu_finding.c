@@ -2,11 +2,11 @@
 
 #include <math.h>
 
-#define UNIT_ERROR 0.15F
-#define TILT_LEAST_RAD 0.13962634F /* 8 degrees */
-#define TILT_MOST_RAD 1.0471976F   /* 60 degrees */
-#define OTHER_SHARE 0.5F
-#define PI_F 3.14159265F
+#define UNIT_ERROR 0.15F           /* chosen: as UNIT_SHARE in imu_axes.c */
+#define TILT_LEAST_RAD 0.13962634F /* chosen: 8 degrees, a clear movement */
+#define TILT_MOST_RAD 1.0471976F   /* chosen: 60 degrees */
+#define OTHER_SHARE 0.5F           /* chosen: a hand never turns about one axis alone */
+#define PI_F 3.14159265F           /* pi */
 
 /* Razor_AHRS; g; m/s2; thousandths of g. */
 static const float units[] = {256.0F, 1.0F, 9.80665F, 1000.0F};

@@ -1,6 +1,6 @@
 #include "control/imu_mapping.h"
 
-#define GRAVITY_MPS2 9.80665F
+#define GRAVITY_MPS2 9.80665F /* standard gravity */
 
 imu_mapping_t imu_mapping_of(const parameters_t *parameters)
 {

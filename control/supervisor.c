@@ -21,7 +21,7 @@
 #define DESCENT_TIMEOUT_US UINT32_C(45000000) /* when the thrust of a blind descent is gone, descent.c */
 #define AGE_MAX_US UINT32_C(3600000000)       /* one hour: below the wrap of 71 minutes */
 
-#define HEIGHT_MIN_MM (-50.0F)         /* chosen: half a metre under the ground is no noise */
+#define HEIGHT_MIN_MM (-50.0F)         /* chosen: no noise reaches 50 mm below the ground */
 #define HEIGHT_MAX_MM 5000.0F          /* above the scanner's 4095 mm */
 #define OFF_GROUND_MM 150.0F           /* chosen: over the ground effect and any noise */
 #define REST_BELOW_MM 50.0F            /* chosen: ten times the height's noise */

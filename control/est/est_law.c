@@ -1,11 +1,10 @@
-/* Law EST: estimator (where am I), hover thrust (what carries me), cascade (what now), put together. The
- * cascade acts on the state at the instant when its command takes effect, 18.5 ms from now: a Smith
- * predictor in state space. The same model tells the estimator which acceleration the thrust should give;
- * the noisier the accelerometer, the more that counts.
- * What breaks: the actuator's model must get every command that really went out (est_law_record_command), or
- * hover thrust and prediction drift. While someone else flies the vehicle nothing may be learned
- * (est_law_disengage). Constants marked "fitted":
- * docs/control.md; make tune LAW=EST ARGS="--constants est" searches them again. */
+/* Law EST: estimator, hover thrust and cascade control together. The cascade acts on the predicted state at
+ * the instant when its command takes effect, 18.5 ms from now: a Smith predictor in state space. The same
+ * model gives the estimator the acceleration that the thrust should cause. The noisier the accelerometer, the
+ * more weight that acceleration gets.
+ * What breaks: the actuator's model needs every command that was really given (est_law_record_command), or
+ * hover thrust and prediction drift. While the pilot flies nothing may be learned (est_law_disengage).
+ * Constants marked "fitted": docs/control.md; make tune LAW=EST ARGS="--constants est" repeats the search. */
 #include "control/est/est_law.h"
 
 #include <math.h>
@@ -17,21 +16,21 @@
 #include "control/touchdown.h"
 
 #define GRAVITY_MPS2 9.80665F /* standard gravity */
-#define DAMPING_PER_S 2.5F    /* the value by which a model repeats the seed's flights is 2 to 3 1/s */
+#define DAMPING_PER_S 2.5F    /* with 2 to 3 1/s the vehicle model repeats the seed's flights */
 #define CLIMB_PER_S 4.0F      /* assumed: an autopilot that commands the climb rate lags by 0.25 s */
 #define STEP_MAX_S 0.5F       /* chosen: longer pauses count as this long */
 
 #define HOVER_BOUND_N 2.0F /* mass 20 % off (1.4 N), battery and gusts; see HOVER_MARGIN_N in flight.c */
 #define HOVER_SIGMA_START_N 0.7F     /* half of a mass 20 % off */
-#define NEUTRAL_SIGMA_N 0.07F        /* chosen: the middle of the stick is known well */
+#define NEUTRAL_SIGMA_N 0.07F        /* chosen: the thrust in the middle of the stick is known well */
 #define HOVER_SIGMA_TAKE_OVER_N 0.5F /* chosen: as TRANSFER_START_N in flight.c */
-#define SPEED_DOUBT_N_PER_MPS 0.5F   /* chosen: a quarter of the damping may be wrong */
+#define SPEED_DOUBT_N_PER_MPS 0.5F   /* chosen: the damping may be wrong by a quarter */
 #define IN_THE_AIR_M 0.04F           /* chosen: ten times the noise of a height */
 #define MODEL_NOISE_MPS2 0.84F       /* fitted */
 #define HEIGHTS_MISSING_S 0.2F       /* two scans of 0.1 s */
-#define LEARN_WITHOUT_HEIGHTS_S 0.3F
+#define LEARN_WITHOUT_HEIGHTS_S 0.3F /* three scans; as HEIGHT_FRESH_US in supervisor.c */
 #define FRAMES_FRESH_S ((float)ESTIMATOR_FRESH_US * 1.0e-6F)
-#define AGE_MAX_S 3600.0F
+#define AGE_MAX_S 3600.0F            /* chosen: one hour; the counters stop here */
 #define MODEL_NOISE_ALONE_MPS2 0.15F /* chosen: a biased accelerometer drifts away, the model does not */
 #define GUST_N_PER_M 28.0F           /* fitted */
 #define UNFELT_TIME_S 3.0F           /* tried 1.5 to 6: the model's bias becomes hover thrust */
@@ -47,27 +46,27 @@
 #define LIFT_OFF_SURE_M 0.1F /* chosen: a height that no noise makes */
 #define LIFT_OFF_MPS2 0.9F   /* chosen: twice the accelerometer's usual noise */
 #define LIFT_OFF_SIGMAS 1.2F /* chosen: of the measured noise, on a mean of three frames */
-#define LIFT_OFF_SHARE 0.7F  /* no vehicle flies by less of GRAV */
+#define LIFT_OFF_SHARE 0.7F  /* chosen: below the lightest vehicle, 0.8 of GRAV */
 #define LIFT_FILTER_S 0.08F  /* chosen: three frames */
 
 #define FALL_MPS2 3.96F          /* fitted: 0.4 g */
 #define BELOW_HOVER_N 3.0F       /* chosen: the rotors keep turning */
-#define BRAKE_MPS2 8.0F          /* chosen: a climb that shall become a descent */
+#define BRAKE_MPS2 8.0F          /* chosen: turns a climb into a descent */
 #define BRAKE_BELOW_HOVER_N 6.0F /* chosen: may go down to a quarter of the hover thrust */
 
-#define LAND_MPS 0.15F          /* chosen: touches at 0.15 m/s, a drop from 1 mm */
-#define LAND_PER_S 0.25F        /* chosen: with LAND_MPS 0.4 m/s from 1 m */
-#define LAND_MAX_MPS 0.40F      /* chosen: from 1 m down within 5 s */
-#define SINK_MPS 0.28F          /* chosen: without heights the ground comes unannounced */
-#define SINK_PER_S 0.07F        /* chosen: 0.35 m/s at 1 m */
-#define SINK_MAX_MPS 0.6F       /* chosen: from 3 m down within 10 s */
-#define SINK_ABOVE_HOVER_N 0.5F /* chosen: room for gusts at first */
-#define SINK_BELOW_HOVER_N 1.3F
-#define SINK_FADE_N_PER_S 0.2F /* chosen: at the hover thrust after 2.5 s */
-#define LAND_ABOVE_HOVER_N 1.5F
-#define LAND_FADE_N_PER_S 0.1F
+#define LAND_MPS 0.15F              /* chosen: touches at 0.15 m/s, a drop from 1 mm */
+#define LAND_PER_S 0.25F            /* chosen: with LAND_MPS 0.4 m/s from 1 m */
+#define LAND_MAX_MPS 0.40F          /* chosen: from 1 m down within 5 s */
+#define SINK_MPS 0.28F              /* chosen: without heights the touchdown comes without warning */
+#define SINK_PER_S 0.07F            /* chosen: 0.35 m/s at 1 m */
+#define SINK_MAX_MPS 0.6F           /* chosen: from 3 m down within 10 s */
+#define SINK_ABOVE_HOVER_N 0.5F     /* chosen: room for gusts at first */
+#define SINK_BELOW_HOVER_N 1.3F     /* chosen: by the vehicle model a sink rate of at most 0.7 m/s */
+#define SINK_FADE_N_PER_S 0.2F      /* chosen: at the hover thrust after 2.5 s */
+#define LAND_ABOVE_HOVER_N 1.5F     /* chosen: as HOVER_MARGIN_N in flight.c */
+#define LAND_FADE_N_PER_S 0.1F      /* chosen: at the hover thrust after 15 s */
 #define STOP_N_PER_S 2.0F           /* as the end of a landing, LANDED_FADE_N_PER_S in touchdown.h */
-#define TERRAIN_KEEP_S 30.0F        /* chosen: drifts of the terrain's sum are forgotten */
+#define TERRAIN_KEEP_S 30.0F        /* chosen: drift of the summed terrain height is forgotten */
 #define LOWEST_OVER_TERRAIN_M 0.15F /* the height of OFF_GROUND in supervisor.c */
 
 void est_law_init(est_law_t *law)
@@ -101,7 +100,8 @@ static cascade_vehicle_t vehicle_model(const est_law_t *law, const parameters_t 
     return vehicle;
 }
 
-/* On the ground the acceleration shows only that the hover thrust is at least the present thrust. */
+/* Hover thrust from accelerations. On the ground they only show that the hover thrust is at least the present
+ * thrust. */
 static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt_s)
 {
     const estimator_t *e = &law->estimator;
@@ -113,7 +113,7 @@ static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt
 
     if (law->heightless_s > LEARN_WITHOUT_HEIGHTS_S || e->unchecked_count > 0U || law->powerless ||
         estimator_accuses(e)) {
-        return; /* nothing but itself says that the speed is right */
+        return; /* no height confirms the estimated speed */
     }
     if (e->now.height_m > IN_THE_AIR_M || seen_n > law->hover.thrust_n) {
         hover_step(&law->hover, seen_n, e->noise_mps2 / vehicle.authority_mps2_per_n + doubt_n, dt_s);
@@ -124,8 +124,8 @@ static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt
     }
 }
 
-/* Without accelerations the filter finds how much less the vehicle accelerates than the model says. What
- * lasts of that becomes hover thrust, as much as the model then says less. */
+/* Hover thrust without accelerations. The filter's bias is then the error of the model: modelled minus true
+ * acceleration. Its constant part moves slowly into the hover thrust, out of the bias. */
 static void learn_unfelt(est_law_t *law, const parameters_t *parameters, float dt_s)
 {
     const cascade_vehicle_t vehicle = vehicle_model(law, parameters);
@@ -145,13 +145,13 @@ static void learn_unfelt(est_law_t *law, const parameters_t *parameters, float d
     estimator_move_bias(&law->estimator, (before_n - law->hover.thrust_n) * vehicle.authority_mps2_per_n);
 }
 
-/* No height for long. */
+/* True when heights have been missing for more than two scans. */
 static bool heights_missing(const est_law_t *law)
 {
     return law->heightless_s > HEIGHTS_MISSING_S;
 }
 
-/* Known once it flies. */
+/* Acceleration by the thrust model; known in the air only. */
 static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_t *parameters)
 {
     const cascade_vehicle_t vehicle = vehicle_model(law, parameters);
@@ -209,7 +209,7 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_s
     }
     if (law->frameless_s > FRAMES_FRESH_S) {
         actuator_advance(&law->actuator,
-                         now_us - ESTIMATOR_FRESH_US); /* no frame does it, for however long */
+                         now_us - ESTIMATOR_FRESH_US); /* without frames nothing else advances the model */
     }
 }
 
@@ -218,7 +218,8 @@ static float lift_off_threshold_mps2(const est_law_t *law)
     return at_least(LIFT_OFF_SIGMAS * law->estimator.noise_mps2, LIFT_OFF_MPS2);
 }
 
-/* The take-off ramp runs, and the vehicle does not yet accelerate upwards. */
+/* True during the take-off ramp, while the vehicle does not yet accelerate upwards: less than 0.4 (chosen) of
+ * the lift-off threshold. */
 static bool on_ground(const est_law_t *law)
 {
     return !law->airborne && law->ramping && law->lift_mps2 < 0.4F * lift_off_threshold_mps2(law);
@@ -260,7 +261,7 @@ static void start_hover(est_law_t *law, const parameters_t *parameters, float th
                at_least(gravity_n, law->flown_hover_n) + HOVER_BOUND_N);
 }
 
-/* A battery that has emptied in the flight before makes the next one need more. */
+/* Keeps the hover thrust for the next flight: a battery that has emptied needs more thrust then. */
 static void remember_flight(est_law_t *law, float gravity_n)
 {
     if (law->airborne) {
@@ -354,8 +355,9 @@ static cascade_state_t predict_ahead(const est_law_t *law, const cascade_vehicle
     };
 }
 
-/* Without accelerations the heights tell late that the vehicle has left the ground. Thrust that grows by r
- * lifts it by a r t^3 / 6: so long ago it left, with r t less thrust, and so fast it is now. */
+/* Without accelerations the heights show the lift-off late. The thrust ramps by r newtons a second, so after
+ * t seconds the vehicle has risen by a r t^3 / 6 (a: authority). The height gives t. Height, speed and the
+ * thrust at lift-off follow from t. */
 static float leave_unfelt(est_law_t *law, const parameters_t *parameters)
 {
     const float jerk_mps3 = RAMP_N_PER_S * vehicle_model(law, parameters).authority_mps2_per_n;

@@ -1,11 +1,11 @@
-/* A Kalman filter with a delayed time horizon, as in PX4's EKF2: heights are 70 ms old when they come, so
- * the filter lives at the instant of the latest rays and keeps the IMU frames since then. A height is fused
- * where it belongs, then the frames carry the state to now. Theory: any text on Kalman filters; the update
- * is Joseph's form, because the short one loses its symmetry in 32-bit floats.
- * What breaks: a covariance that is not symmetric or not bounded lets a state run away. A limit on the
- * innovation without a way out keeps the heights out for ever once the state is wrong (a fly-away to 11 m in
- * simulation): hence the reset after three rejections. Constants marked "fitted":
- * docs/control.md; make tune LAW=EST ARGS="--constants est" searches them again. */
+/* A Kalman filter with a delayed time horizon, as in PX4's EKF2. A height is 70 ms old when it arrives. So
+ * the filter stays at the instant of the latest rays, and keeps the IMU frames since then. A height is fused
+ * at its own instant; then the frames predict the state up to now. Theory: any text on Kalman filters. The
+ * update is Joseph's form, because the short form loses its symmetry in 32-bit floats.
+ * What breaks: a covariance that is not symmetric or not bounded lets a state diverge. An innovation test
+ * without a reset rejects heights for ever once the state is wrong (in simulation the vehicle flew away to
+ * 11 m). So three rejections reset the height. Constants marked "fitted": docs/control.md;
+ * make tune LAW=EST ARGS="--constants est" searches them again. */
 #include "control/est/estimator.h"
 
 #include <math.h>
@@ -22,52 +22,53 @@
 #define ANGLE_MAX_RAD 3.2F           /* pi, rounded up */
 
 #define HEIGHT_NOISE_M 0.0013F /* fitted */
-#define OFF_MODEL_SHARE 0.4F
-#define OFF_MODEL_MPS2 2.0F
-#define ACCUSED_MPS2 2.0F    /* chosen: as OFF_MODEL_MPS2; another airframe is off by 1.5 while it brakes */
-#define ACCUSED_SIGMAS 1.5F  /* chosen: of the noise, on a mean of three frames: 3 sigma */
-#define ACCUSED_NOISES 3.0F  /* chosen: of the heights' noise; chance is three times rarer on the mean */
-#define ACCUSED_HEIGHTS 8U   /* chosen: an edge is corrected within 0.8 s */
-#define ACCUSED_SHARE 0.5F   /* chosen: mean over two heights */
-#define ACCUSED_CREDIT 0.02F /* chosen: as good as nothing */
-#define CLEARED_FRAMES 32U   /* chosen: 0.8 s, until then doubt IMU has decided */
-#define FLOOR_START_M 0.004F
-#define FLOOR_SMOOTH_M 0.020F /* what edges and the vehicle's own motion make of the measure */
-#define FLOOR_MAX_M 0.080F
-#define FLOOR_SHARE \
-    0.20F /* tried: a take-off over bars of 60 mm is through before a slower one knows of them */
-#define FLOOR_CLIP 9.0F
-#define FLOOR_SIGMAS 4.5F        /* tried: both edges of a bar are within */
-#define FLOOR_VARIANCE 4.0F      /* tried: the heights of a bar follow each other, white noise does not */
-#define HEIGHT_DRIFT_M 0.0047F   /* fitted; m per root second */
-#define SPEED_NOISE_MPS2 0.53F   /* fitted; what neither accelerometer nor model knows */
-#define FRAME_S 0.025F           /* period of the IMU, seed 5.2.1.1 */
-#define BIAS_DRIFT_MPS2 0.095F   /* fitted; m/s2 per root second */
-#define UNFELT_DRIFT_MPS2 0.4F   /* tried 0.1 to 0.8: more follows gusts better and shakes the thrust more */
-#define UNFELT_NOISE_MPS2 0.4F   /* tried 0.1 to 1.5: hardly matters below 1 */
+#define OFF_MODEL_SHARE 0.4F   /* chosen: a mean over three frames */
+#define OFF_MODEL_MPS2 2.0F    /* chosen: as ACCUSED_MPS2; full weight below it */
+#define ACCUSED_MPS2 2.0F      /* chosen: as OFF_MODEL_MPS2; another airframe is off by 1.5 while it brakes */
+#define ACCUSED_SIGMAS 1.5F    /* chosen: of the noise, on a mean of three frames: 3 sigma */
+#define ACCUSED_NOISES 3.0F    /* chosen: of the heights' noise; rarer by chance on a mean */
+#define ACCUSED_HEIGHTS 8U     /* chosen: an edge is corrected within 0.8 s */
+#define ACCUSED_SHARE 0.5F     /* chosen: mean over two heights */
+#define ACCUSED_CREDIT 0.02F   /* chosen: next to nothing */
+#define CLEARED_FRAMES 32U     /* chosen: 0.8 s, until then doubt IMU has decided */
+#define FLOOR_START_M 0.004F   /* chosen: about the noise of a height over a smooth floor */
+#define FLOOR_SMOOTH_M 0.020F  /* chosen: edges and the vehicle's own motion measure less */
+#define FLOOR_MAX_M 0.080F     /* chosen: as INNOVATION_LIMIT_MAX_M */
+#define FLOOR_SHARE 0.20F      /* tried: a slower mean knows bars of 60 mm only after the take-off */
+#define FLOOR_CLIP 9.0F        /* chosen: 3 sigma, so that one edge counts little */
+#define FLOOR_SIGMAS 4.5F      /* tried: both edges of a bar pass the test */
+#define FLOOR_VARIANCE 4.0F    /* tried: heights over a bar are correlated, white noise is not */
+#define HEIGHT_DRIFT_M 0.0047F /* fitted; m per root second */
+#define SPEED_NOISE_MPS2 0.53F /* fitted; what neither accelerometer nor model knows */
+#define FRAME_S 0.025F         /* period of the IMU, seed 5.2.1.1 */
+#define BIAS_DRIFT_MPS2 0.095F /* fitted; m/s2 per root second */
+#define UNFELT_DRIFT_MPS2 0.4F /* tried 0.1 to 0.8: more follows gusts better and shakes the thrust more */
+#define UNFELT_NOISE_MPS2 0.4F /* tried 0.1 to 1.5: hardly matters below 1 */
 #define TERRAIN_DRIFT_MPS 0.053F /* fitted; m/s per root second */
 #define TERRAIN_TIME_S 1.0F      /* chosen: a slope lasts about a second */
 #define NOISE_START_MPS2 0.4F    /* assumed of a Razor on a flying frame */
-#define NOISE_MIN_MPS2 0.05F     /* chosen: never trusted without limit */
+#define NOISE_MIN_MPS2 0.05F     /* chosen: a limit to the trust in the accelerometer */
 #define NOISE_MAX_MPS2 5.0F      /* chosen: never quite ignored */
 #define NOISE_SHARE 0.02F        /* chosen: mean over 50 frames */
 #define NOISE_CLIP 16.0F         /* chosen: 4 sigma, so that one spike counts little */
 
 #define INNOVATION_LIMIT_MIN_M 0.053F /* fitted */
-#define INNOVATION_LIMIT_MAX_M 0.080F /* a wider one follows an edge that a scan saw half: it flew away */
+#define INNOVATION_LIMIT_MAX_M 0.080F /* tried: with a wider one a half-seen edge made it fly away */
 #define INNOVATION_LIMIT_SIGMAS 3.0F  /* usual */
 #define STEP_AGREEMENT_M 0.050F       /* chosen: noise of two heights and 0.1 s of climb */
-#define REJECTIONS_MAX 3U             /* chosen: the third height counts whatever it says */
-#define UNCHECKED_AFTER_RESET 2U      /* chosen: two heights make speed known again */
+#define REJECTIONS_MAX 3U             /* chosen: the third height is used whatever it is */
+#define UNCHECKED_AFTER_RESET 2U      /* chosen: two heights give the speed again */
 #define REST_SIGMA_MPS 0.02F          /* chosen: a vehicle on the ground may still shake */
 
 #define SPEED_MAX_MPS 4.0F       /* chosen: above what the vehicle reaches */
 #define BIAS_MAX_MPS2 1.5F       /* chosen: 0.15 g, more than the sensor has */
 #define TERRAIN_MAX_MPS 0.5F     /* chosen: the seed's ramp rises by 0.36 m/s */
-#define SPEED_RESET_MAX_MPS 1.0F /* chosen: after a reset no speed is believed above it */
+#define SPEED_RESET_MAX_MPS 1.0F /* chosen: limit of the speed that survives a reset */
 
 enum { HEIGHT, SPEED, BIAS, TERRAIN };
 
+/* Of height (m2), speed (m2/s2), bias (m2/s4), terrain rate (m2/s2). Chosen. Highest: 1 m, 1 m/s, 0.5 m/s2,
+ * 0.5 m/s. Lowest: above the rounding of 32-bit floats. At the start: 1 cm, 0.2 m/s, 0.3 m/s2, 0.05 m/s. */
 static const float variance_max[ESTIMATOR_STATES] = {1.0F, 1.0F, 0.25F, 0.25F};
 static const float variance_min[ESTIMATOR_STATES] = {1.0e-7F, 1.0e-7F, 1.0e-7F, 1.0e-7F};
 static const float variance_start[ESTIMATOR_STATES] = {1.0e-4F, 0.04F, 0.09F, 0.0025F};
@@ -257,8 +258,8 @@ static void append_frame(estimator_t *e, const estimator_frame_t *frame)
     }
 }
 
-/* Thrust and heights both tell of the same error of the accelerometer. Thrust alone may have met a gust, and
- * heights alone a slope of the terrain. */
+/* The accelerometer is wrong when thrust model and heights show the same error of it. The thrust model alone
+ * may be wrong in a gust, the heights alone over a slope of the terrain. */
 static void accuse(estimator_t *e)
 {
     const float off_mps2 = at_least(ACCUSED_MPS2, ACCUSED_SIGMAS * e->noise_mps2);
@@ -272,9 +273,8 @@ static void accuse(estimator_t *e)
     }
 }
 
-/* Weight of the accelerometer, 0 .. 1. It falls when the low-passed difference between the accelerometer
- * and the modelled acceleration stays large, and is gone when the heights tell of it too, until doubt IMU
- * decides. */
+/* Weight of the accelerometer, 0 .. 1. It falls when the low-passed difference between measured and modelled
+ * acceleration is large. When the heights show the error too, it is next to 0 until doubt IMU is decided. */
 static float credit(estimator_t *e, const modelled_motion_t *model, float up_mps2)
 {
     const float off_mps2 = model->known ? up_mps2 - e->now.bias_mps2 - model->up_mps2 : 0.0F;
@@ -294,7 +294,7 @@ static bool has_tilt(const imu_sample_t *frame)
            fabsf(frame->median.pitch_rad) < ANGLE_MAX_RAD;
 }
 
-/* The bias is that of another source from now on. */
+/* Changes the source of the acceleration. The bias belongs to the source, so it restarts at 0. */
 static void change_source(estimator_t *e, bool felt)
 {
     e->felt = felt;
@@ -304,7 +304,7 @@ static void change_source(estimator_t *e, bool felt)
     reset_variance(e, BIAS, variance_start[BIAS]);
 }
 
-/* What moves the state in one frame: accelerometer and model, mixed, or the model alone. */
+/* Acceleration for the prediction: a weighted mean of accelerometer and model, or the model alone. */
 static estimator_frame_t motion_of(estimator_t *e, const modelled_motion_t *model, float up_mps2)
 {
     const float modelled_mps2 = model->known ? model->up_mps2 : 0.0F;
@@ -451,7 +451,7 @@ static height_outcome_t reject(estimator_t *e, float height_m, float innovation_
     const bool agrees = e->rejected_count > 0U && apart_m <= STEP_AGREEMENT_M;
 
     ++e->rejected_count;
-    e->mean_innovation_m = 0.0F; /* an edge accuses nobody, nor how the vehicle brakes after it */
+    e->mean_innovation_m = 0.0F; /* an edge, and the braking after it, say nothing about the accelerometer */
     e->fused_count = 0U;
     e->rejected_innovation_m = innovation_m;
     if (agrees) {
@@ -485,7 +485,7 @@ static height_outcome_t check_and_fuse(estimator_t *e, float height_m)
     return HEIGHT_FUSED;
 }
 
-/* The median of five frames is the angle of 50 ms ago. */
+/* Height with the tilt at the instant of the rays. The median of five frames is 50 ms old. */
 static float height_at_rays_m(const estimator_t *e, const altitude_t *altitude, uint32_t rays_us)
 {
     const uint32_t shown_us = rays_us + TILT_AGE_US - (uint32_t)(0.5e6F * FRAME_S);
