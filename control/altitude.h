@@ -2,10 +2,15 @@
  *
  *   h = (y - d) cos(pitch) cos(roll) - L sin(roll) - s d sin(pitch) - l
  *
- * y slant distance sensor - mirror - ground, d sensor to mirror, l mirror to the lowest point of the landing
- * gear, L vehicle centre to the point of reflection along the lateral axis, s = +1 fore, -1 aft of that axis,
- * 0 on it. roll > 0 raises the mirror's side, pitch > 0 raises the fore side. Pure: no clock, no static
- * state; any task. */
+ *   h  height of the lowest point of the landing gear
+ *   y  slant distance: sensor to mirror to ground
+ *   d  sensor to mirror
+ *   l  mirror to the lowest point of the landing gear
+ *   L  vehicle centre to the point of reflection, along the lateral axis
+ *   s  +1: the mirror is fore of the lateral axis, -1: aft of it, 0: on it
+ *
+ * Millimetres and radians. roll > 0 raises the mirror's side, pitch > 0 raises the fore side. Pure: no clock,
+ * no static state. Context: any task. */
 #ifndef CONTROL_ALTITUDE_H
 #define CONTROL_ALTITUDE_H
 
@@ -22,16 +27,16 @@ typedef enum {
     MIRROR_COUNT
 } mirror_t;
 
-/* One mirror's place on the vehicle, from the parameters, whose defaults are the seed's Annex III.
+/* Place of one mirror on the vehicle, from the parameters. Their defaults are those of the seed's Annex III.
  *
- * The sensor sits upright on the vehicle's right side and looks to the right, outwards, at the front mirror.
- * Its steps grow counter-clockwise seen from above, so a larger step lies to its left, and the left of one
- * who looks to the vehicle's right is fore: step 640 is the seed's mirror 2 and fore, step 128 its mirror 1
- * and aft. Both stand abeam of the sensor's axis, which is L - DF, as delivered 115 mm, from the vehicle's
- * centre.
+ * The sensor stands upright on the right side of the vehicle. It looks to the right, at the front mirror. Its
+ * steps are counted counter-clockwise, seen from above. So larger steps look more to the fore side: step 640
+ * sees the fore mirror (the seed's mirror 2), step 128 the aft mirror (mirror 1). Both have the same
+ * lateral distance from the vehicle's centre as the sensor: L - DF, by default 115 mm.
  *
- * The formula is the seed's. Against exact geometry (the tests hold a ray model) it lacks cos(pitch) on L
- * sin(roll) and cos(pitch) cos(roll) on l: at 10 degrees of one angle 1.6 mm, of both 3.6 mm. */
+ * The formula is the seed's. Exact geometry (a ray model in the tests) has two more factors: cos(pitch) on L
+ * sin(roll), and cos(pitch) cos(roll) on l. The error is 1.6 mm at 10 degrees of one angle, 3.6 mm at 10
+ * degrees of both. */
 typedef struct {
     float distance_mm; /* d */
     float leg_mm;      /* l */
@@ -43,8 +48,9 @@ typedef struct {
     mirror_geometry_t mirror[MIRROR_COUNT];
 } altitude_geometry_t;
 
+/* Geometry from the parameters. */
 altitude_geometry_t altitude_geometry_of(const parameters_t *parameters);
-/* Of the parameters as delivered. */
+/* Geometry from the default parameters. */
 altitude_geometry_t altitude_geometry_default(void);
 
 #define ALTITUDE_DISAGREE_MM 50.0F /* chosen: ten times the noise of a group */
@@ -71,14 +77,15 @@ typedef struct {
     float fore_mm;      /* s d */
 } altitude_t;
 
-/* Height under one mirror. slant_mm finite, angles in radians, |angle| < pi/2. */
+/* Height measured with one mirror, mm. slant_mm: finite. Angles in radians, |angle| < pi/2. */
 float altitude_under_mirror(const mirror_geometry_t *mirror, float slant_mm, float roll_rad, float pitch_rad);
 
-/* The height that altitude_from_ranges() would have found in the same ranges under another tilt: exact, the
- * formula is linear in what it takes the mean of. */
+/* Height of the same scan, computed again with another tilt, mm. The result is exactly that of
+ * altitude_from_ranges(), because the formula is linear in the values whose means are kept. */
 float altitude_at_tilt(const altitude_t *altitude, float roll_rad, float pitch_rad);
 
-/* Mean height of the valid groups among `count` ranges (both borrowed for the call). */
+/* Mean height over the valid groups. ranges: `count` of them. Both pointers are borrowed for the call. Angles
+ * in radians, |angle| < pi/2. */
 altitude_t altitude_from_ranges(const altitude_geometry_t *geometry, const mirror_range_t *ranges,
                                 size_t count, float roll_rad, float pitch_rad);
 

@@ -2,8 +2,8 @@
 #ifndef CONTROL_BETWEEN_H
 #define CONTROL_BETWEEN_H
 
-/* fmaxf() and fminf() of the library are calls with a care for NaN that is not needed here: these are one
- * comparison, and there are a hundred of them in a cycle of law EST. A NaN in `value` gives the limit. */
+/* Used instead of fmaxf() and fminf(): those are calls that handle NaN with care, and law EST needs about a
+ * hundred limits in each cycle. These are one comparison each. A NaN in `value` gives the limit. */
 static inline float at_least(float value, float lowest)
 {
     return (value > lowest) ? value : lowest;

@@ -1,11 +1,12 @@
-/* Does the IMU speak the convention that the parameters describe? On the ground gravity tells: its direction
- * in the accelerometer and the angles must agree, and its size must be g. A vehicle that stands a degree or
- * two off level is enough, or one that is tilted in the hand.
+/* Checks on the ground whether the axes and units of the IMU are as the parameters describe them. The
+ * measured gravity must have the size g, and its direction must agree with the angles. The check needs a
+ * vehicle that is a degree or two off level, or one that is tilted by hand.
  *
- * An IMU that lies exactly level, one without accelerations, and one that is mounted the wrong way round
- * (its angles and accelerations then agree) cannot be judged so. Tilting by hand tells: `#IMU RIGHT`, `#IMU
- * NOSE`, and the parameter IAXES remembers that it did. In the air gravity is not felt: nothing is judged.
- * Pure; the caller owns the state. */
+ * Three cases cannot be found in this way: an IMU that is exactly level, an IMU without accelerations, and an
+ * IMU that is mounted the wrong way round (its angles and accelerations agree). For these the operator tilts
+ * the vehicle by hand (`#IMU RIGHT`, `#IMU NOSE`), and the parameter IAXES stores that it was done. In the
+ * air the accelerometer does not measure gravity alone, so nothing is checked there. Pure; the caller owns
+ * the state. */
 #ifndef CONTROL_IMU_AXES_H
 #define CONTROL_IMU_AXES_H
 
@@ -16,42 +17,42 @@
 #include "control/parameters.h"
 
 typedef enum {
-    IMU_SOUND,   /* nothing is known against it */
+    IMU_SOUND,   /* no fault found */
     IMU_UNIT,    /* |a| is more than 15 % off g */
-    IMU_DOWN,    /* gravity points up */
-    IMU_ROLL,    /* roll has the other sign than gravity */
-    IMU_PITCH,   /* pitch has */
-    IMU_BOTH,    /* both have */
-    IMU_SWAPPED, /* roll and pitch stand in each other's place */
-    IMU_RADIANS, /* the angles are far too small */
-    IMU_OTHER,   /* angles and gravity disagree in none of these ways */
+    IMU_DOWN,    /* gravity is measured upwards */
+    IMU_ROLL,    /* roll has the wrong sign */
+    IMU_PITCH,   /* pitch has the wrong sign */
+    IMU_BOTH,    /* both have the wrong sign */
+    IMU_SWAPPED, /* roll and pitch are exchanged */
+    IMU_RADIANS, /* the angles are far too small: radians instead of degrees */
+    IMU_OTHER,   /* angles and gravity disagree in another way */
     IMU_FAULT_COUNT
 } imu_fault_t;
 
 typedef struct {
     uint32_t sequence, time_us;
-    float seen_s; /* for how long without a gap, at most IMU_AXES_SEEN_S */
+    float seen_s; /* time without a gap, at most IMU_AXES_SEEN_S */
     float forward_mps2, right_mps2, down_mps2, roll_rad, pitch_rad; /* slow means */
     imu_fault_t suspected;
     float suspected_s;
-    imu_fault_t fault; /* of the latest stay on the ground */
+    imu_fault_t fault; /* result of the latest time on the ground */
 } imu_axes_t;
 
 #define IMU_AXES_SEEN_S 3.0F /* chosen: 120 frames */
 
 void imu_axes_init(imu_axes_t *axes);
 
-/* Frames of one cycle, oldest first; those that were seen before change nothing. grounded: it stands or is
- * held in the hand, without thrust. noise_mps2: of the accelerometer, rms; the more, the more must disagree.
- */
+/* Call once in each cycle. frames: oldest first, borrowed for the call; frames that were processed before
+ * change nothing. grounded: the vehicle has no thrust, on the ground or in the hand. noise_mps2: rms noise of
+ * the accelerometer; the higher it is, the larger a disagreement must be. */
 void imu_axes_step(imu_axes_t *axes, const imu_sample_t *frames, uint16_t count, bool grounded,
                    float noise_mps2);
 
 /* "UNIT", "DOWN", "ROLL" ...; IMU_SOUND: "-". */
 const char *imu_fault_name(imu_fault_t fault);
 
-/* The angles are wrong, and tilting by hand has not said otherwise; or their axes were set by hand and
- * nobody has tilted it since. The vehicle must not take off so. */
+/* True when the vehicle must not take off, because nobody has proved the axes by tilting (IAXES ASSUMED), and
+ * either a fault of the angles was found, or IROLL or IPITCH is not the default. */
 bool imu_axes_forbid(imu_fault_t fault, const parameters_t *parameters);
 
 #endif

@@ -16,13 +16,13 @@ typedef struct {
     attitude_t median;                   /* median of this frame and the four before it */
     float tilt_roll_rad, tilt_pitch_rad; /* the same median, offset not removed */
     bool has_acceleration;
-    /* As a scale would show it: at rest and level 0, 0, +9.81. */
+    /* Specific force in the vehicle's axes; at rest and level 0, 0, +9.81. */
     float forward_mps2, right_mps2, down_mps2;
     uint32_t malformed; /* frames refused so far */
 } imu_sample_t;
 
-/* Index of the first frame after `sequence`. The frames are in the order in which they came: looked for from
- * the end, because of the sixteen that a cycle of control gets few are new. */
+/* Index of the first frame after `sequence`; `count` when there is none. frames: oldest first. The search
+ * starts at the end, because only few of the frames that a control cycle gets are new. */
 static inline uint16_t imu_first_after(const imu_sample_t *frames, uint16_t count, uint32_t sequence)
 {
     uint16_t first = count;

@@ -38,12 +38,12 @@ typedef enum {
     PARAMETER_IDOWN,   /* choice, control_down_t */
     PARAMETER_IUNIT,   /* accelerometer counts per g */
     PARAMETER_IAXES,   /* choice, control_axes_t */
-    PARAMETER_DF,      /* mm, the mirrors' places, control/altitude.h: front, */
+    PARAMETER_DF,      /* mm; places of the mirrors, control/altitude.h: front mirror */
     PARAMETER_LF,
     PARAMETER_L,
-    PARAMETER_D1, /* aft, the seed's mirror 1, */
+    PARAMETER_D1, /* aft mirror, the seed's mirror 1 */
     PARAMETER_L1,
-    PARAMETER_D2, /* fore, the seed's mirror 2 */
+    PARAMETER_D2, /* fore mirror, the seed's mirror 2 */
     PARAMETER_L2,
     PARAMETER_COUNT
 } parameter_id_t;
@@ -63,12 +63,12 @@ typedef enum {
     SEL_PIN,
     SEL_COUNT
 } control_sel_t; /* how the firmware knows whether the pilot
-                  * has the throttle: it does not, or by a pin */
+                  * has the throttle: not at all, or by a pin */
 
-/* Which angle of the IMU is the vehicle's, and which end of its z axis points down. */
+/* Which angle of the IMU is the vehicle's roll (or pitch), and which end of the IMU's z axis points down. */
 typedef enum { AXIS_ROLL, AXIS_MINUS_ROLL, AXIS_PITCH, AXIS_MINUS_PITCH, AXIS_COUNT } control_axis_t;
 typedef enum { DOWN_Z, DOWN_MINUS_Z, DOWN_COUNT } control_down_t;
-/* What is known of IROLL and IPITCH: nothing, or tilting by hand has shown them. */
+/* Whether IROLL and IPITCH are assumed, or proved by tilting the vehicle by hand. */
 typedef enum { AXES_ASSUMED, AXES_PROVED, AXES_COUNT } control_axes_t;
 
 typedef struct {
