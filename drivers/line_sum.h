@@ -7,9 +7,10 @@
 
 #define LINE_SUM_DIGITS 4U
 
+/* CRC-16 of `length` characters. */
 uint16_t line_sum(const char *text, uint16_t length);
 
-/* Upper case, no terminator. */
+/* Writes the sum as hexadecimal digits in upper case, without terminator. */
 void line_sum_write(char digits[LINE_SUM_DIGITS], uint16_t sum);
 
 #endif

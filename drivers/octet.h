@@ -1,8 +1,8 @@
 /* One octet of wire data.
  *
- * A C28x cell has 16 bits, so an octet may live in a wider cell: every store of an octet goes through
- * octet_of(), which drops what is above bit 7 (an SCI FIFO word carries flag bits there). Arithmetic on
- * octets is done in uint16_t or uint32_t, never by wrapping. */
+ * A cell of the C28x has 16 bits, so an octet may be stored in a wider cell. Use octet_of() for every store:
+ * it clears the bits above bit 7, where a word of the SCI FIFO has flags. Calculate with octets in uint16_t
+ * or uint32_t; never rely on wrapping at 8 bits. */
 #ifndef DRIVERS_OCTET_H
 #define DRIVERS_OCTET_H
 

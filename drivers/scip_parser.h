@@ -99,7 +99,7 @@ typedef struct {
     octet_t line[SCIP_LINE_MAX]; /* SCIP_TEXT: the line, until the next octet */
     uint16_t line_length;        /* SCIP_TEXT: of the whole line, ';' and sum included */
     uint16_t text_length;        /* SCIP_TEXT: characters before ';' and sum; line_length when it has none */
-    bool text_proved; /* SCIP_TEXT: the line has a sum and it is right; some firmware sends wrong ones */
+    bool text_proved;       /* SCIP_TEXT: the line has a sum and it is right; some sensors send wrong sums */
     scip_request_t awaited; /* latest given to scip_parser_expect(); its kind is that of SCIP_REPLY */
     /* private */
     bool awaiting;

@@ -1,5 +1,5 @@
-/* What the operator reads: telemetry lines and answers, built into a bounded text. Documented in
- * docs/operator.md. Pure. */
+/* Builds the lines that the operator reads, telemetry and answers, in a text of limited length. Their format
+ * is in docs/operator.md. Pure; the caller owns the line. Context: one at a time per line. */
 #ifndef DRIVERS_TELEMETRY_H
 #define DRIVERS_TELEMETRY_H
 
@@ -7,40 +7,39 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define TELEMETRY_ANSWER_MAX 240U /* the longest line at all: answers may take several packets */
-#define TELEMETRY_LINE_MAX 95U    /* line end included: one XBee packet */
+#define TELEMETRY_ANSWER_MAX 240U /* longest line: an answer may take several packets */
+#define TELEMETRY_LINE_MAX 95U    /* one XBee packet, with the line end */
 
 typedef struct {
     char text[TELEMETRY_ANSWER_MAX];
     uint16_t limit; /* TELEMETRY_LINE_MAX or TELEMETRY_ANSWER_MAX */
     uint16_t length;
-    bool overflowed; /* something did not fit: the line is not to be sent */
+    bool overflowed; /* something did not fit: do not send the line */
 } telemetry_line_t;
 
-/* A line is built between telemetry_begin and telemetry_end. What does not fit is left out whole, sets
- * `overflowed`, and nothing more is added to the line. A number that decimal.h cannot write becomes "-". */
+/* Begins a line of at most TELEMETRY_LINE_MAX characters. The functions below append to it, until
+ * telemetry_end(). A part that does not fit is not appended at all: it sets `overflowed`, and later parts are
+ * not appended either. A number that decimal.h cannot write (NaN, infinite, too large) becomes "-". */
 void telemetry_begin(telemetry_line_t *line);
-/* A line that may take two packets: answers. */
+/* The same for an answer: at most TELEMETRY_ANSWER_MAX characters. */
 void telemetry_begin_answer(telemetry_line_t *line);
 void telemetry_text(telemetry_line_t *line, const char *text); /* zero-terminated */
 void telemetry_characters(telemetry_line_t *line, const char *text, size_t length);
 void telemetry_fixed(telemetry_line_t *line, float value, uint16_t decimals);
-void telemetry_number(telemetry_line_t *line, float value); /* shortest, decimal.h */
+void telemetry_number(telemetry_line_t *line, float value); /* as decimal_write_shortest() */
 void telemetry_count(telemetry_line_t *line, uint32_t value);
-/* '*' and the sum of the line so far: CRC-16 (polynomial 1021H, from FFFFH, no reflection, "CCITT-FALSE") of
- * its characters, four hexadecimal digits in upper case. */
+/* Appends '*' and the sum of the characters so far, four hexadecimal digits in upper case (line_sum.h). */
 void telemetry_sum(telemetry_line_t *line);
-void telemetry_end(telemetry_line_t *line); /* CR LF */
+void telemetry_end(telemetry_line_t *line); /* appends CR LF */
 
-/* Fields of the periodic line, "name:value", with a blank before all but the first. name or text NULL: adds
- * nothing. Which fields there are is a table elsewhere. */
+/* Append one field of the periodic line, "name:value", with a blank before every field but the first. Append
+ * nothing when name or text is NULL. firmware/published.h has the table of the fields. */
 void telemetry_field_number(telemetry_line_t *line, const char *name, float value, uint16_t decimals);
 void telemetry_field_text(telemetry_line_t *line, const char *name, const char *text);
 void telemetry_field_count(telemetry_line_t *line, const char *name, uint32_t value);
 
-/* The line of a control cycle, for a test bench that plays the world: "P19997" CR LF, the throttle pulse in
- * tenths of a microsecond. Eight octets: at 9600 bit/s 50 cycles a second take 42 % of the line. From begin
- * to end. */
+/* Builds a whole line with the throttle pulse in tenths of a microsecond: "P19997" CR LF. For a test bench
+ * that simulates the vehicle. The line has eight octets, so 50 lines a second take 42 % of 9600 bit/s. */
 void telemetry_pulse(telemetry_line_t *line, float pulse_us);
 
 #endif

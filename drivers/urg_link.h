@@ -57,19 +57,17 @@ typedef struct {
     scip_reply_t notice; /* latest hardware notice */
     uint32_t octet_count;
     uint32_t framing_count; /* framing errors of the UART: wrong rate, or a bad cable */
-    uint32_t
-        strange_count; /* octets above 7FH, which no sensor sends: a wrong rate, also without UART errors */
-    uint32_t damage_count; /* damaged replies and scans, all causes */
+    uint32_t strange_count; /* octets above 7FH: a wrong rate, also where the UART reports no errors */
+    uint32_t damage_count;  /* damaged replies and scans, all causes */
 } urg_seen_t;
 
 typedef struct {
     uint32_t wait_us;     /* time in WAIT: 10 s, or 0 after a watchdog reset. Ends early when octets arrive */
     uint32_t first_rate;  /* rate at which the UART is opened: 115200 */
     uint32_t stream_rate; /* rate of the stream: 250000 */
-    uint32_t
-        fastest_rate;   /* limit of the board's UART and line driver; no higher rate is tried. 0: no limit */
-    scip_kind_t stream; /* SCIP_STREAM_2 or SCIP_STREAM_3 */
-    scip_range_t range; /* scans > 0: a counted run, requested again when it ends */
+    uint32_t fastest_rate; /* limit of the board's UART and line driver; 0: no limit */
+    scip_kind_t stream;    /* SCIP_STREAM_2 or SCIP_STREAM_3 */
+    scip_range_t range;    /* scans > 0: a counted run, requested again when it ends */
 } urg_config_t;
 
 typedef struct {

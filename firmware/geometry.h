@@ -1,12 +1,13 @@
-/* Between TaskReceiveComm, which takes the parameters, and TaskReceiveLaser: where the mirrors are. */
+/* Places of the mirrors: exchange between TaskReceiveComm, which sets the parameters, and TaskReceiveLaser.
+ */
 #ifndef FIRMWARE_GEOMETRY_H
 #define FIRMWARE_GEOMETRY_H
 
 #include "control/altitude.h"
 
-/* TaskReceiveComm, main(): from the next scan on. */
+/* Sets the places from the parameters; valid from the next scan on. TaskReceiveComm or main(). */
 void geometry_mount(const parameters_t *parameters);
-/* TaskReceiveLaser. */
+/* Copies the present places. TaskReceiveLaser. */
 void geometry_mounted(altitude_geometry_t *geometry);
 
 #endif

@@ -1,5 +1,5 @@
-/* What stands between a take-off and an IMU that speaks another convention than the parameters say. Context:
- * Task, TaskReceiveComm only. */
+/* Refuses a take-off when the IMU's axes or units are not as the parameters describe them
+ * (control/imu_axes.h). Context: Task, TaskReceiveComm only. */
 #ifndef FIRMWARE_IMU_GATE_H
 #define FIRMWARE_IMU_GATE_H
 
@@ -7,12 +7,12 @@
 
 #include "firmware/answer.h"
 
-/* On the ground with angles that must not be flown by: sends `ERR NAME IMU ROLL against gravity, see #IMU`,
- * or `ERR NAME IMU axes set but not proved, see #IMU`, and returns true. */
+/* Returns true on the ground when imu_axes_forbid() is true. Then it has sent `ERR NAME IMU ROLL against
+ * gravity, see #IMU` or `ERR NAME IMU axes set but not proved, see #IMU`. Otherwise sends nothing. */
 bool imu_gate_refuses(answer_t *answer);
 
-/* Appends ` (IMU UNIT wrong, see #IMU)` (or DOWN) where that is so; else, when assumed_too is true, ` (IMU
- * axes assumed, see #IMU)` where nobody has proved them by tilting. */
+/* Appends ` (IMU UNIT wrong, see #IMU)`, or the same with DOWN, when that fault was found. Otherwise, when
+ * assumed_too is true and the axes are not proved, appends ` (IMU axes assumed, see #IMU)`. */
 void imu_gate_remark(answer_t *answer, bool assumed_too);
 
 #endif

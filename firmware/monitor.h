@@ -42,8 +42,9 @@ void monitor_set_deadline(monitor_task_t task, uint32_t deadline_us);
 void monitor_begin(monitor_task_t task);
 void monitor_done(monitor_task_t task);
 
-/* Around the server's gate. Any task, and main() before the tasks run. Before the call that enters; after it;
- * before the call that leaves; after it, with what monitor_leaving() returned. */
+/* Measure the access to a server's gate. Call in this order: monitor_asking() before entering the gate,
+ * monitor_entered() after it, monitor_leaving() before leaving, monitor_left() after it with the value that
+ * monitor_leaving() returned. Any task, and main() before the tasks run. */
 typedef struct {
     uint32_t asked_us;
     uint32_t used; /* processor time of the job so far, firmware/cpu_time.h */
@@ -65,8 +66,8 @@ typedef struct {
 /* Values since power-up or monitor_reset(); the stack's maximum always since power-up. Any task. */
 void monitor_report(monitor_task_t task, monitor_report_t *report);
 uint32_t monitor_longest_wait_us(monitor_server_t server);
-/* Processor time from the call that enters the gate to the return of the one that leaves it, in cycles of
- * BSP_CYCLE_NS. An access that found the gate taken does not count: it contains the switches of its wait. */
+/* Longest processor time from entering a gate to having left it, in cycles of BSP_CYCLE_NS. An access that
+ * had to wait does not count, because its time contains task switches. */
 uint32_t monitor_longest_hold(monitor_server_t server);
 void monitor_reset(void);
 

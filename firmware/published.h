@@ -1,7 +1,7 @@
-/* What the firmware publishes: the one table of fields. From it come the telemetry line, the records of the
- * flight recorder with their rows of #LOG, and the CSV of the PC board; the tables of docs/operator.md are
- * checked against it. A new field is a row here, and its source where its value is made: a member of
- * flight_outputs_t (control/flight_io.h) needs nothing else. */
+/* Table of the fields that the firmware publishes. The telemetry line, the records of the flight recorder,
+ * the rows of #LOG and the CSV of the PC board are made from it. The tables of docs/operator.md are checked
+ * against it. A new field needs a row here, and code that sets its source. A member of flight_outputs_t
+ * (control/flight_io.h) needs the row only. Pure; any context. */
 #ifndef FIRMWARE_PUBLISHED_H
 #define FIRMWARE_PUBLISHED_H
 
@@ -11,14 +11,14 @@
 #include "drivers/flight_log.h"
 #include "drivers/telemetry.h"
 
-/* One instant. Not every user knows every member: the recorder has no laser, the telemetry no angles. */
+/* Values of one instant. Some users set only a part: the recorder has no laser, the telemetry no angles. */
 typedef struct {
     uint32_t time_ms; /* since power-up */
     float height_mm;  /* NAN: none */
-    float age_us;     /* of the rays that it was measured by; NAN: none */
+    float age_us;     /* age of the rays of that height; NAN: none */
     float roll_rad;   /* NAN: not known */
     float pitch_rad;
-    float up_mps2;     /* acceleration upwards as measured, without gravity; NAN: no new one */
+    float up_mps2;     /* measured upward acceleration, gravity removed; NAN: no new one */
     const char *laser; /* zero-terminated names; the next two NULL: not in the line */
     const char *doubt;
     const char *reset;
@@ -58,19 +58,19 @@ typedef struct {
 #define PUBLISHED_CELLS \
     (3U PUBLISHED(PUBLISHED_ONE_CELL, PUBLISHED_NO_CELL, PUBLISHED_NO_CELL, PUBLISHED_NO_CELL))
 
-/* The periodic line, from begin to end: "alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0" CR LF. A
- * number that is not there is "-". With names of up to 8 characters (laser, doubt, reset; not two of the
- * last) and 10 (state) it fits a radio packet whatever the numbers are, the reset within what numbers mean
- * on this vehicle. */
+/* Builds the whole periodic line: "alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0" CR LF. A
+ * number that is NAN is "-". The line fits a radio packet for all numbers, when the names have at most 8
+ * characters (laser, doubt; 10 for state). With `reset` it fits for numbers in the range of this vehicle. Do
+ * not set `doubt` and `reset` together. */
 void published_telemetry(telemetry_line_t *line, const published_t *now);
 
-/* A record keeps time, numbers, state (0..15) and flags (0..4095). A number beyond its range becomes the end
- * of it; NAN stays NAN. Unpacking writes no other member. */
+/* Convert to a record and back. A record holds time, numbers, state (0..15) and flags (0..4095). A number
+ * beyond its range is limited; NAN is kept. published_unpack() writes only these members. */
 void published_pack(uint16_t cells[PUBLISHED_CELLS], const published_t *now);
 void published_unpack(published_t *now, const uint16_t cells[PUBLISHED_CELLS]);
 
-/* The names of the columns, t_s first, and a record: added to a line, without its beginning and its end. A
- * number that is not there leaves its column empty. */
+/* Append the names of the columns (t_s first), or the values of a record, to a line that was begun. NAN gives
+ * an empty column. */
 void published_titles(telemetry_line_t *line);
 void published_row(telemetry_line_t *line, const published_t *record);
 

@@ -92,8 +92,7 @@ void est_law_set_sure_hover(est_law_t *law, float hover_n, bool descending);
  * the hover thrust is the sure one. */
 void est_law_set_powerless(est_law_t *law, bool powerless);
 
-/* doubted true: the accelerometer tells something wrong (doubt IMU). Accelerations in the frames are ignored.
- */
+/* doubted true: the accelerometer is wrong (doubt IMU). Accelerations in the frames are ignored. */
 void est_law_set_accelerations_doubted(est_law_t *law, bool doubted);
 
 /* Present model of the vehicle, with the estimated hover thrust. */
