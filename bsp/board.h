@@ -3,14 +3,16 @@
 #ifndef BSP_BOARD_H
 #define BSP_BOARD_H
 
-/* Watchdog off; throttle pin held low first of all (no pulse: the autopilot sees a lost receiver), idle pulse
- * as soon as the clocks are right (before that a pulse could be too short, which is full thrust); SYSCLK 200
- * MHz from the crystal (the PLL is left to driverlib, not to SYS/BIOS), LSPCLK 100 MHz, the three UARTs'
- * pins, the selector's pin, LEDs off, microsecond time running.
+/* Initialises the board, in this order:
+ *   - The watchdog is off.
+ *   - The throttle pin is low: no pulse, so the autopilot sees a lost receiver.
+ *   - SYSCLK is 200 MHz from the crystal (driverlib sets the PLL, not SYS/BIOS), LSPCLK is 100 MHz.
+ *   - The throttle has its idle pulse. With wrong clocks a pulse could be too short, which is full thrust.
+ *   - The pins of the three UARTs and of the selector are set, the LEDs are off, the microsecond time runs.
  *
- * A crystal that never starts keeps driverlib waiting for ever: the pin stays low and the red LED lit. A
- * crystal that driverlib reports as failed: the idle pulse runs from the internal oscillator, red LED lit;
- * never returns. */
+ * When the crystal does not start, driverlib waits for ever: the throttle pin stays low, the red LED is on.
+ * When driverlib reports a failed crystal, the idle pulse runs from the internal oscillator, the red LED is
+ * on, and this function does not return. */
 void bsp_board_init(void);
 
 #endif

@@ -1,10 +1,10 @@
 /* The first C code after a reset: called by SYS/BIOS's start-up code (ccs_project/app.cfg, Reset.fxns), on
- * the main stack, before any variable has its initial value. Nobody else calls it.
+ * the main stack, before any variable has its initial value. Do not call it from elsewhere.
  *
- * Turns the watchdog off, which runs from reset and bites after 13 ms. Sets every variable without an
- * initialiser to zero: in the COFF format neither compiler nor linker nor TI's start-up code does
- * ("Initializing Static and Global Variables in COFF ABI Mode", SPRU514), and all of the firmware relies on
- * it. */
+ * Switches the watchdog off; it runs from reset and would reset the chip after 13 ms. Sets every variable
+ * without an initialiser to zero, because all of the firmware relies on that. In the COFF format neither
+ * compiler nor linker nor TI's start-up code does it ("Initializing Static and Global Variables in COFF ABI
+ * Mode", SPRU514). */
 #ifndef BSP_START_H
 #define BSP_START_H
 

@@ -8,14 +8,14 @@
 #define BSP_THROTTLE_IDLE_COUNTS 4166U    /* compare for no thrust, "2 ms", eq. 15 */
 #define BSP_THROTTLE_FULL_COUNTS 2082U    /* compare for full thrust, "1 ms", eq. 16 */
 
-/* Time base, shadow loads at zero, action qualifiers, compare at idle. From bsp_board_init() only. */
+/* Sets time base, shadow loads at zero and action qualifiers; the pulse is idle. bsp_board_init() only. */
 void bsp_throttle_init(void);
 
-/* High time from the next period on, microseconds; rounded to the nearest count of 0.48 us and clipped to
- * [full, idle]; NaN gives idle. Any context. */
+/* Sets the high time in microseconds, from the next period on. It is rounded to the nearest count of 0.48 us
+ * and limited to full .. idle; NaN gives idle. Any context. */
 void bsp_throttle_set_pulse_us(float pulse_us);
 
-/* No thrust from the next period on. Any context, interrupts on or off. */
+/* Sets the idle pulse (no thrust) from the next period on. Any context, interrupts on or off. */
 void bsp_throttle_idle(void);
 
 #endif

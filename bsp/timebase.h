@@ -1,5 +1,5 @@
-/* The one time source: CPU timer 1, free running, one count per microsecond. For what is too short for it,
- * CPU timer 2, one count per cycle of SYSCLK. */
+/* Time sources: CPU timer 1 counts microseconds, for all times of the firmware. CPU timer 2 counts cycles of
+ * SYSCLK, for short times. */
 #ifndef BSP_TIME_H
 #define BSP_TIME_H
 
@@ -7,13 +7,13 @@
 
 #define BSP_CYCLE_NS 5U
 
-/* From bsp_board_init() only, after the clocks are set: SysCtl_setClock() borrows both timers. */
+/* bsp_board_init() only, after the clocks are set, because SysCtl_setClock() uses both timers. */
 void bsp_time_init(void);
 
-/* Microseconds since bsp_time_init(), wraps after 71.6 min: compare by subtraction. Any context. */
+/* Microseconds since bsp_time_init(). Wraps after 71.6 min, so compare by subtraction. Any context. */
 uint32_t bsp_time_us(void);
 
-/* Cycles of BSP_CYCLE_NS, wraps after 21.5 s: for differences. Any context. */
+/* Cycles of BSP_CYCLE_NS. Wraps after 21.5 s: use differences only. Any context. */
 uint32_t bsp_time_cycles(void);
 
 #endif

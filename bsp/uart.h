@@ -13,34 +13,35 @@ typedef enum { BSP_UART_LASER, BSP_UART_IMU, BSP_UART_XBEE, BSP_UART_COUNT } bsp
 typedef struct {
     uint16_t count; /* octets read, 0..16 */
     uint16_t octets[BSP_UART_FIFO_DEPTH];
-    bool overrun; /* octets were lost before these were read; reception goes on */
-    bool framing; /* a framing, parity or break error was seen; reception goes on */
+    bool overrun; /* octets were lost before these; reception continues */
+    bool framing; /* a framing, parity or break error occurred; reception continues */
 } bsp_uart_burst_t;
 
 /* SYS/BIOS interrupt numbers of a UART's receive and transmit interrupt (for Hwi_create). */
 int16_t bsp_uart_receive_interrupt(bsp_uart_t uart);
 int16_t bsp_uart_transmit_interrupt(bsp_uart_t uart);
 
-/* Opens (or reopens at another rate) with empty FIFOs; receive interrupt on at one octet, transmit interrupt
- * off. main() or Task. rates: 9600 .. 250000. Reopening drops what is in the FIFOs. */
+/* Opens the UART, or reopens it at another rate. bit_rate: 9600 .. 250000. The FIFOs are empty afterwards;
+ * their old content is lost. The receive interrupt is on, from one octet; the transmit interrupt is off.
+ * main() or Task. */
 void bsp_uart_open(bsp_uart_t uart, uint32_t bit_rate);
 
-/* Receive interrupt from that many octets in the FIFO on, 1..16; 1 after bsp_uart_open(). Fewer wait there:
- * the chip has no time-out of its own. Caller excludes both Hwis. */
+/* Sets how many octets in the FIFO cause the receive interrupt, 1..16; 1 after bsp_uart_open(). Fewer octets
+ * cause none, because the chip has no time-out. The caller excludes both Hwis. */
 void bsp_uart_set_receive_level(bsp_uart_t uart, uint16_t octets);
 
-/* From the receive Hwi, or while it is excluded: takes what the FIFO holds, clears error and overflow
- * conditions so that reception goes on, and last the interrupt flag. */
+/* Reads all octets from the FIFO. Clears errors and overflow, so that reception continues, and at last the
+ * interrupt flag. Receive Hwi, or while it is excluded. */
 void bsp_uart_receive(bsp_uart_t uart, bsp_uart_burst_t *burst);
 
-/* Puts as many of `count` octets (low eight bits) into the transmit FIFO as fit and returns how many. Caller
- * excludes the transmit Hwi. */
+/* Writes octets (low eight bits) to the transmit FIFO, at most `count` and as many as fit. Returns their
+ * number. The caller excludes the transmit Hwi. */
 uint16_t bsp_uart_transmit(bsp_uart_t uart, const uint16_t *octets, uint16_t count);
 
-/* Transmit interrupt (FIFO empty) on or off. Off also clears its flag. */
+/* Switches the transmit interrupt (FIFO empty) on or off. Off also clears its flag. */
 void bsp_uart_transmit_interrupt_enable(bsp_uart_t uart, bool on);
 
-/* From the transmit Hwi, last: clears the interrupt flag. */
+/* Clears the interrupt flag. Transmit Hwi, as its last call. */
 void bsp_uart_transmit_acknowledge(bsp_uart_t uart);
 
 /* True while an octet is still in the FIFO or on the wire. */

@@ -2,9 +2,9 @@
 
 #include "control/between.h"
 
-#define LOW_PASS_S 0.0199F /* 8 Hz */
-#define STEP_MIN_S 0.02F   /* chosen: a scan takes 0.1 s, a shorter gap is a repeated one */
-#define STEP_MAX_S 0.5F    /* chosen: five scans; a derivative over more tells nothing */
+#define LOW_PASS_S 0.0199F /* chosen: 8 Hz */
+#define STEP_MIN_S 0.02F   /* chosen: scans are 0.1 s apart; a shorter gap is a repeated height */
+#define STEP_MAX_S 0.5F    /* chosen: five scans; a longer one gives no useful derivative */
 
 void pidt_reset(pidt_state_t *state)
 {

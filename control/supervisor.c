@@ -1,9 +1,8 @@
-/* A state machine as data: each cycle observes conditions as bits (what is fresh, high, tilted, typed) and
- * then takes at most one row of the table in flight_state.c. No state does anything here; flight.c has what
- * each does to the thrust.
- * What breaks: times. The microseconds wrap after 71 minutes, so ages are counted from step to step and stop
- * at an hour. Only AT_REST, DESCENT_TIMEOUT and LOWERING_LIMIT look at the state; a further one that does is
- * not covered by the table's test, which takes conditions and states as independent. */
+/* A state machine as data. Each cycle evaluates the conditions as bits, then makes at most one transition of
+ * the table in flight_state.c. The states have no action here; flight.c computes the thrust of each state.
+ * What breaks: times. The microseconds wrap after 71 minutes, so ages are summed from step to step and stop
+ * at an hour. Only the conditions AT_REST, DESCENT_TIMEOUT and LOWERING_LIMIT depend on the state. The test
+ * of the table takes all others as independent of the state, so it does not cover a further one. */
 #include "control/supervisor.h"
 
 #include <math.h>
@@ -11,14 +10,14 @@
 #include "control/between.h"
 
 #define HEIGHT_FRESH_US UINT32_C(300000)   /* three scans of 0.1 s */
-#define HEIGHT_LOST_US UINT32_C(1500000)   /* chosen: what coasts longer drifts too far */
+#define HEIGHT_LOST_US UINT32_C(1500000)   /* chosen: after a longer time it has drifted too far */
 #define ATTITUDE_FRESH_US UINT32_C(250000) /* ten frames of 25 ms */
 #define ALOFT_HELD_US \
     UINT32_C(1000000)                  /* chosen: a pilot who flies, not one who lifts the vehicle by hand \
                                         */
 #define REST_HELD_US UINT32_C(1200000) /* chosen: a bounce is shorter */
-#define LINK_HOLD_US UINT32_C(5000000) /* chosen: warned by the flag for 5 s, then it lands */
-#define DESCENT_TIMEOUT_US UINT32_C(45000000) /* when the thrust of a blind descent is gone, descent.c */
+#define LINK_HOLD_US UINT32_C(5000000) /* chosen: the flag warns for 5 s, then the vehicle lands */
+#define DESCENT_TIMEOUT_US UINT32_C(45000000) /* the thrust of a blind descent has fallen to 0, descent.c */
 #define AGE_MAX_US UINT32_C(3600000000)       /* one hour: below the wrap of 71 minutes */
 
 #define HEIGHT_MIN_MM (-50.0F)         /* chosen: no noise reaches 50 mm below the ground */
@@ -26,18 +25,18 @@
 #define OFF_GROUND_MM 150.0F           /* chosen: over the ground effect and any noise */
 #define REST_BELOW_MM 50.0F            /* chosen: ten times the height's noise */
 #define REST_FALL_MM 20.0F             /* chosen: four times the height's noise */
-#define TOO_HIGH_MM 800.0F             /* above any overshoot, below the scanner's end at 3.9 m */
+#define TOO_HIGH_MM 800.0F             /* chosen: above any overshoot, below the scanner's end at 3.9 m */
 #define RECOVERED_MM 300.0F            /* chosen: below the seed's usual overshoot */
-#define TOO_HIGH_HEIGHTS 2U            /* one height may be wrong */
+#define TOO_HIGH_HEIGHTS 2U            /* chosen: one height may be wrong */
 #define RATE_MAX_MM_S 3000.0F          /* chosen: above what the vehicle reaches */
-#define RATE_CHANGE_MAX_MM_S2 10000.0F /* 1 g: more the vehicle cannot do */
-#define CLIMB_AHEAD_S 0.40F            /* age of a height, one more scan, lag of the motors */
-#define CLIMB_AHEAD_ESTIMATED_S 0.15F  /* less: to heights alone a step of the terrain looks like a climb */
-#define ESTIMATE_AHEAD_S 0.25F         /* chosen: delay and lag of the motors, and a margin */
-#define ESTIMATE_HELD_US UINT32_C(350000) /* three scans and a little */
-#define BRAKE_MPS2 4.0F     /* what the vehicle does at a quarter of the hover thrust, less a margin */
-#define TILTED_ATTITUDES 3U /* one or two may be spikes of the IMU */
-#define LOWERINGS_MAX 3U    /* chosen: what fails three times will fail again */
+#define RATE_CHANGE_MAX_MM_S2 10000.0F /* 1 g: the vehicle cannot change its speed faster */
+#define CLIMB_AHEAD_S 0.40F /* sum of the age of a height, one more scan, and the lag of the motors */
+#define CLIMB_AHEAD_ESTIMATED_S 0.15F     /* chosen: less, as a step of the terrain looks like a climb */
+#define ESTIMATE_AHEAD_S 0.25F            /* chosen: delay and lag of the motors, and a margin */
+#define ESTIMATE_HELD_US UINT32_C(350000) /* chosen: three scans and a half */
+#define BRAKE_MPS2 4.0F     /* chosen: braking at a quarter of the hover thrust, less a margin */
+#define TILTED_ATTITUDES 3U /* chosen: one or two may be spikes of the IMU */
+#define LOWERINGS_MAX 3U    /* chosen: a third failure means that the law cannot fly the vehicle */
 #define LOWERINGS_FORGOTTEN_US UINT32_C(20000000) /* chosen: the length of the seed's flights */
 #define TILTED_COS 0.70710678F                    /* chosen: 45 degrees */
 #define LEVEL_COS 0.93969262F                     /* chosen: 20 degrees */

@@ -58,8 +58,8 @@ typedef struct {
     hold_t aloft;
     hold_t rest;
     float rest_from_mm;
-    float ground_mm;    /* what the heights say of the ground that it was found to stand on; 0 elsewhere */
-    bool ground_sought; /* it stands, and no height has been seen there */
+    float ground_mm;    /* measured height where it stands, when the height did not show that; else 0 */
+    bool ground_sought; /* the vehicle stands, and no height was measured there yet */
     uint16_t too_high_count;
     uint16_t lowerings;      /* see FLIGHT_IF_LOWERING_LIMIT */
     float estimated_peak_mm; /* predicted top of the motion, above the reference; NAN: no estimate */

@@ -1,7 +1,7 @@
 #include "drivers/line_sum.h"
 
-#define POLYNOMIAL 0x1021U
-#define START 0xFFFFU
+#define POLYNOMIAL 0x1021U /* CRC-16/CCITT-FALSE */
+#define START 0xFFFFU      /* of the same */
 #define TOP_BIT 0x8000U
 
 static uint16_t shifted(uint16_t sum)

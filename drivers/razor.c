@@ -5,9 +5,9 @@
 
 #include "drivers/decimal.h"
 
-#define RAD_PER_DEGREE 0.017453293F
-#define ANGLE_MAX_DEGREE 360.0F
-#define ACCELERATION_MAX_COUNT (16.0F * 256.0F)
+#define RAD_PER_DEGREE 0.017453293F             /* pi / 180 */
+#define ANGLE_MAX_DEGREE 360.0F                 /* one turn */
+#define ACCELERATION_MAX_COUNT (16.0F * 256.0F) /* range of the accelerometer: 16 g, 256 counts per g */
 
 #define TITLE_LENGTH 5U
 static const char acceleration_title[] = "#A-C=";

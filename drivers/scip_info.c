@@ -2,11 +2,11 @@
 
 #include <stddef.h>
 
-#define TURN_MDEG ((int32_t)360000L)
-#define STEP_MAX 4095U     /* a step times the turn stays within 31 bits */
-#define DMIN_MOST_MM 1000U /* no sensor is blind further */
-#define DIGITS_MAX 9U
-#define TIME_DIGITS_MAX 6U
+#define TURN_MDEG ((int32_t)360000L) /* 360 degrees */
+#define STEP_MAX 4095U               /* a step times the turn stays within 31 bits */
+#define DMIN_MOST_MM 1000U           /* chosen: no sensor has a larger blind zone */
+#define DIGITS_MAX 9U                /* chosen: fits 32 bits */
+#define TIME_DIGITS_MAX 6U           /* 24 bits in hexadecimal */
 
 typedef struct {
     const octet_t *text;

@@ -2,8 +2,8 @@
 
 #include <stddef.h>
 
-#define DEGREES_PER_STEP 0.3515625F
-#define NEAR_MEDIAN_MM 25U /* five times the noise of one ray (5 mm), as a smooth ground shows it */
+#define DEGREES_PER_STEP 0.3515625F /* 360 / 1024 */
+#define NEAR_MEDIAN_MM 25U          /* chosen: five times the noise of one ray over smooth ground, 5 mm */
 
 const scip_layout_t scip_layouts[] = {
     [SCIP_LAYOUT_FRONT] = {"front", 372U, 406U, 1U, {{372U, 406U}}},
@@ -14,11 +14,10 @@ const scip_layout_t scip_layouts[] = {
 typedef char
     every_layout_has_its_row[(sizeof scip_layouts / sizeof scip_layouts[0] == SCIP_LAYOUT_COUNT) ? 1 : -1];
 
-#define REVOLUTION_US 100000U
-#define STEP_FRONT_MIDDLE 389U
-#define RAYS_FRONT_US 34000U /* that step after the instant of the time stamp: the model of the plant */
-#define HANDLING_US \
-    460U /* the sensor's begin and the receiver's interrupt; with it FRONT at 250000 has 70.5 ms */
+#define REVOLUTION_US 100000U  /* data sheet, 600 rpm */
+#define STEP_FRONT_MIDDLE 389U /* middle of layout FRONT, 372..406 */
+#define RAYS_FRONT_US 34000U   /* assumed: from the time stamp to that step, as the plant's model */
+#define HANDLING_US 460U       /* assumed: sensor's start and receiver's interrupt; gives FRONT 70.5 ms */
 
 typedef struct {
     uint32_t sum, least, most;

@@ -1,24 +1,24 @@
-/* How the parser thinks. It works line by line: the state says which line is to come, and a line is looked at
- * when its LF is there. A line of a scan that lies whole in the octets handed over is looked at where it
- * lies; every other line, and every line in doubt, is first copied into parser->line. Both ways must give the
- * same result: the copy is the reference, the way in place only skips it.
+/* The parser works line by line. Its state is the kind of line that must come next. A line is checked when
+ * its LF has arrived. A line of a scan that is complete in the given octets is checked in place, without a
+ * copy. Every other line, and every line that fails a check, is first copied to parser->line. Both ways must
+ * give the same result; the copy is the reference.
  *
- * The 6-bit sums are weak: one frame of 64 with random content passes. So all else that is known is asked
- * too: echo, exact lengths, the range of every character, the order of time stamps. After damage the same
- * line is searched for the next echo, because it may hold the begin of the next frame. Leave out any of these
- * checks and the fault programs in tests/faults count wrong distances. */
+ * The 6-bit sums are weak: one in 64 lines with random content passes. So the parser also checks the echo,
+ * the exact lengths, the range of every character and the order of the time stamps. After damage it searches
+ * the same line for the next echo, because the line may contain the beginning of the next frame. What breaks:
+ * without any one of these checks the programs in tests/faults count wrong distances. */
 #include "drivers/scip_parser.h"
 
 #include <string.h>
 
-#define STAMP_MASK ((uint32_t)0xFFFFFFUL)
+#define STAMP_MASK ((uint32_t)0xFFFFFFUL)     /* 24 bits, SCIP2.0 */
 #define STATUS_OCTETS 4U                      /* two characters, sum, LF */
 #define TIME_OCTETS 6U                        /* four characters, sum, LF */
-#define STAMP_STEP_MAX_MS ((uint32_t)10000UL) /* two frames of one stream are never further apart */
+#define STAMP_STEP_MAX_MS ((uint32_t)10000UL) /* chosen: two frames of one stream are closer */
 
 enum {
-    HUNT, /* not in step: any line may end in the awaited echo */
-    ECHO, /* in step with a stream: the next line is its echo */
+    HUNT, /* not synchronised: any line may end with the awaited echo */
+    ECHO, /* synchronised with a stream: the next line is its echo */
     STATUS,
     TIME,
     TEXT,

@@ -3,8 +3,8 @@
 #include <stddef.h>
 
 #define STREAM_FRAME 27U /* a frame's octets around its data blocks: echo, status, time stamp, line ends */
-#define SINGLE_FRAME 24U
-#define STREAM_REPLY 21U
+#define SINGLE_FRAME 24U /* octets of GS and GD without points, scip_request.h */
+#define STREAM_REPLY 21U /* echo of 15 and LF, status of 3 and LF, LF */
 
 typedef struct {
     const char *symbol;

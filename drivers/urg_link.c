@@ -1,31 +1,34 @@
-/* How the link thinks. Nothing is assumed of the sensor: each answer, and each silence, says which command
- * comes next. Every command has a time-out, so no state is without a way out. The order of the first start is
- * the seed document's.
+/* State machine of the scanner's link. It assumes nothing about the sensor: each answer, or a time-out
+ * without an answer, decides the next command. Every command has a time-out, so the machine cannot stop in
+ * any state. The order of the first start is the seed document's.
  *
- * A stream that stops has three likely causes, and the way back from one must not prolong the others:
- *   - The line is out and the sensor streams on. Its scans count again as soon as they are heard. So nothing
- * is sent that ends the stream (QT); the scan order itself is repeated, which a streaming sensor only begins
- * anew.
- *   - The sensor lost its power, boots for seconds, then listens in SCIP1.1 at its first rate. There SCIP2.0
- * is sent again and again. A sensor that streams after all is noticed there: its octets come at a wrong rate.
- *   - The sensor lost its stream but not its rate: the repeated scan order is what it needs.
- * So both known rates have their turns, of one step each, for SEARCH_KNOWN_US. Only then every other rate is
- * tried, with QT and longer time-outs. After a change here look at `scip_start --outages`: it prints the
- * longest times without scans. */
+ * A stream stops for one of three likely causes. The recovery from one must not delay that from another:
+ *
+ *   1. The cable is interrupted, and the sensor still streams. Its scans count again as soon as they are
+ *      received. So the link sends no QT, which would end the stream. It repeats the scan request (MS), which
+ *      only restarts the stream of a streaming sensor.
+ *   2. The sensor has lost its power. It boots for seconds, then waits in SCIP1.1 at its first rate. There
+ * the link repeats SCIP2.0. If the sensor streams at the other rate, its octets arrive there as signs of a
+ *      wrong rate.
+ *   3. The sensor has lost its stream, but not its rate. It needs the repeated scan request.
+ *
+ * So for SEARCH_KNOWN_US the two known rates take turns of one step each. After that all rates are tried,
+ * with QT and longer time-outs. What breaks: the recovery times. `scip_start --outages` prints the longest
+ * times without scans. */
 #include "drivers/urg_link.h"
 
-#define REVOLUTION_US 100000U
-#define FIRST_REPLY_US 400000U /* real sensors were seen to take 381 ms */
-#define SCAN_MARGIN_US 250000U
-#define VERIFY_US 2000000U        /* statuses 21..49: the sensor examines itself, scans may come again */
-#define POWER_CYCLE_US 20000000U  /* without a scan */
-#define KNOCK_US 130000U          /* one step of 150 ms, less what their distance varies */
-#define LISTEN_US 280000U         /* two */
-#define SEARCH_KNOWN_US 12000000U /* a sensor boots for 8 s */
-#define KNOCKS_ROUND 6U           /* one of so many is at the stream's rate */
-#define HEARD_OCTETS 64U          /* during WAIT: the sensor is already sending */
-#define WRONG_RATE_SIGNS 8U       /* since a command: more than noise */
-#define STREAM_SIGNS 3U           /* the same between two knocks: a wrong guess costs one turn only */
+#define REVOLUTION_US 100000U     /* data sheet, 600 rpm */
+#define FIRST_REPLY_US 400000U    /* real sensors were seen to take 381 ms */
+#define SCAN_MARGIN_US 250000U    /* chosen: two and a half revolutions */
+#define VERIFY_US 2000000U        /* chosen: at statuses 21..49 the sensor tests itself */
+#define POWER_CYCLE_US 20000000U  /* chosen: time without a scan, well above the 8 s of a boot */
+#define KNOCK_US 130000U          /* one step of 150 ms, less its jitter */
+#define LISTEN_US 280000U         /* two steps of 150 ms, less their jitter */
+#define SEARCH_KNOWN_US 12000000U /* chosen: above the 8 s that a sensor boots */
+#define KNOCKS_ROUND 6U           /* chosen: one command in six is sent at the stream's rate */
+#define HEARD_OCTETS 64U          /* chosen: so many octets in WAIT mean that the sensor already streams */
+#define WRONG_RATE_SIGNS 8U       /* chosen: since a command; more than noise makes */
+#define STREAM_SIGNS 3U /* chosen: between two commands of the search; a wrong guess costs one turn only */
 #define LADDER_TOP 3U
 
 typedef struct {
@@ -53,7 +56,7 @@ static uint32_t probe_rate(const urg_link_t *link, uint16_t index)
     return index == PROBE_FIRST ? link->config.first_rate : scip_bit_rates[index - 2U];
 }
 
-/* First position of a rate that is one of the probe's: the own UART never has another. */
+/* Position of a rate in the search, the first one if there are several. The UART never has another rate. */
 static uint16_t probe_index(const urg_link_t *link, uint32_t rate)
 {
     uint16_t index = 0U;
@@ -68,7 +71,7 @@ static bool is_possible(const urg_config_t *config, uint32_t rate)
     return config->fastest_rate == 0U || rate <= config->fastest_rate;
 }
 
-/* The position after this one, without rates that already had their turn or are too fast for the own UART. */
+/* Next position of the search. Leaves out rates that come earlier in it, and rates too high for the UART. */
 static uint16_t next_probe(const urg_link_t *link, uint16_t index)
 {
     uint32_t rate;

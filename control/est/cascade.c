@@ -1,10 +1,9 @@
-/* Three proportional loops, one in the other (PX4, ArduPilot and Crazyflie are built so): height error to
- * speed, speed error to acceleration, acceleration to thrust. No integral: the hover thrust is estimated
- * (hover.c) and takes its place. The command leads the motors: it asks for more than is wanted by as much as
- * their lag will withhold.
- * What breaks: a VELK too high for delay and lag swings; the calm factor then lowers the gain, which hides
- * it. Constants marked "fitted":
- * docs/control.md; make tune LAW=EST ARGS="--constants est" searches them again. */
+/* Cascade of three proportional loops, as in PX4, ArduPilot and Crazyflie: height error to speed, speed error
+ * to acceleration, acceleration to thrust. There is no integral action: the estimated hover thrust (hover.c)
+ * takes its place. A lead compensates the lag of the motors: the command changes more than the thrust has to.
+ * What breaks: with a VELK too high for delay and lag the thrust oscillates. The calm factor then lowers the
+ * gain, which hides the cause. Constants marked "fitted": docs/control.md;
+ * make tune LAW=EST ARGS="--constants est" searches them again. */
 #include "control/est/cascade.h"
 
 #include <math.h>

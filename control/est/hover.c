@@ -1,9 +1,8 @@
-/* Two estimates of one thing, thrust that is needed: a slow one with a variance (PX4's hover thrust
- * estimator is the same one-state Kalman filter) and a quick one with a fixed gain, which forgets itself in
- * 0.8 s.
- * What breaks: one estimate alone either follows gusts with the hover thrust, and drops the vehicle when
- * they end, or needs seconds to find the mass. Constants marked "fitted":
- * docs/control.md; make tune LAW=EST ARGS="--constants est" searches them again. */
+/* Two estimates of the needed thrust. The hover thrust is a one-state Kalman filter, slow, with a variance,
+ * as PX4's hover thrust estimator. The gust thrust is quick, with a fixed gain, and decays in 0.8 s. What
+ * breaks: with one estimate alone, either the hover thrust follows gusts and the vehicle sinks when they end,
+ * or the filter needs seconds to find the mass. Constants marked "fitted": docs/control.md; make tune LAW=EST
+ * ARGS="--constants est" searches them again. */
 #include "control/est/hover.h"
 
 #include "control/between.h"
