@@ -8,8 +8,8 @@
 /* With GRAV at the hover thrust itself the seed's laws cannot come down; 0.4 N below it they fly best on the
  * model (docs/operator.md). */
 #define SEED_MARGIN_N 0.4F
-#define LIFTED_MM 100.0F /* chosen: no rope lets it rise so far */
-#define US_PER_S UINT32_C(1000000)
+#define LIFTED_MM 100.0F           /* chosen: no rope lets it rise so far */
+#define US_PER_S UINT32_C(1000000) /* microseconds */
 
 static float thrust_of(uint16_t compare_counts)
 {

@@ -7,10 +7,10 @@
  *   the thrust contradicts both others          DOUBT_THRUST: a pilot flies, or something holds the vehicle;
  *                                               the thrust stays near the last known hover thrust
  *
- * A witness is a vertical speed by dead reckoning, without the heights: from the accelerometer (`felt`) or
- * from the thrust and the vehicle's model (`pushed`). Its innovation is the measured change of the height
- * minus the change that this speed predicts. The innovation is summed up in a leaky integrator. A sum that
- * grows large means that the heights and this witness contradict each other.
+ * A witness is a vertical speed by dead reckoning, from the accelerometer (`felt`) or from the thrust and the
+ * vehicle's model (`pushed`). The heights only correct the first one, slowly. A witness's innovation is the
+ * measured change of the height minus the change that this speed predicts. The innovation is summed up in a
+ * leaky integrator. A sum that grows large means that the heights and this witness contradict each other.
  *
  * A single step of the height, however high, is a step of the terrain and adds nothing to these sums. A
  * blocked beam first looks like a step of the terrain too. But then the height stays constant while the

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#define PI_RAD 3.14159265F
+#define PI_RAD 3.14159265F /* pi */
 
 float median_of(const float *values, uint16_t count)
 {

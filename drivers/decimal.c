@@ -1,7 +1,7 @@
 /* Exact conversion between decimal text and 32-bit float. The reader keeps the number as a large integer in
- * limbs of 16 bits and scales it by powers of five, those of two being shifts; `more` tells that a division
- * left a remainder. It rounds once, at the end, to 24 bits, ties to even (exact integer arithmetic as in
- * Clinger, "How to Read Floating Point Numbers Accurately", 1990). The writer scales the mantissa by
+ * limbs of 16 bits. It scales the integer by powers of five; powers of two are shifts. `more` means that a
+ * division left a remainder. It rounds once, at the end, to 24 bits, ties to even (exact integer arithmetic
+ * as in Clinger, "How to Read Floating Point Numbers Accurately", 1990). The writer scales the mantissa by
  * 5^decimals in 64 bits and also rounds once. What breaks: with products of floats the number is rounded
  * several times, so a parameter that is written and read back can differ in its last bit. DIGITS_KEPT,
  * ORDER_MIN and LIMBS belong together: 32 digits at 10^-37 are divided by five 69 times, and need 14 limbs.
@@ -11,9 +11,8 @@
 #include <math.h>
 #include <string.h>
 
-/* The longest line of a telecommand has 32 characters. Behind this many digits only "is the rest zero"
- * counts: then a text is read exactly unless its first 32 digits are those of a longer midpoint between two
- * floats. */
+/* The longest line of a telecommand has 32 characters. Of later digits only counts whether one is not 0. So a
+ * text is read exactly, unless its first 32 digits are those of a longer midpoint between two floats. */
 #define DIGITS_KEPT 32
 
 #define ORDER_MAX 39    /* 10^39 is beyond the largest float */

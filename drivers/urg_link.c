@@ -7,14 +7,14 @@
  *   1. The cable is interrupted, and the sensor still streams. Its scans count again as soon as they are
  *      received. So the link sends no QT, which would end the stream. It repeats the scan request (MS), which
  *      only restarts the stream of a streaming sensor.
- *   2. The sensor has lost its power. It boots for seconds, then waits in SCIP1.1 at its first rate. There
- * the link repeats SCIP2.0. If the sensor streams at the other rate, its octets arrive there as signs of a
- *      wrong rate.
+ *   2. The sensor has lost its power. It boots for seconds, then waits in SCIP1.1 at its first rate. So the
+ *      link repeats SCIP2.0 at that rate. Octets of a sensor that still streams at the other rate are
+ *      received there as signs of a wrong rate.
  *   3. The sensor has lost its stream, but not its rate. It needs the repeated scan request.
  *
  * So for SEARCH_KNOWN_US the two known rates take turns of one step each. After that all rates are tried,
- * with QT and longer time-outs. What breaks: the recovery times. `scip_start --outages` prints the longest
- * times without scans. */
+ * with QT and longer time-outs.
+ * What breaks: the recovery times. `scip_start --outages` prints the longest times without scans. */
 #include "drivers/urg_link.h"
 
 #define REVOLUTION_US 100000U     /* data sheet, 600 rpm */
@@ -29,7 +29,7 @@
 #define HEARD_OCTETS 64U          /* chosen: so many octets in WAIT mean that the sensor already streams */
 #define WRONG_RATE_SIGNS 8U       /* chosen: since a command; more than noise makes */
 #define STREAM_SIGNS 3U /* chosen: between two commands of the search; a wrong guess costs one turn only */
-#define LADDER_TOP 3U
+#define LADDER_TOP 3U   /* steps of the recovery: QT and MS, TM2, RS */
 
 typedef struct {
     urg_link_t *link;
