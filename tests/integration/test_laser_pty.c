@@ -98,6 +98,12 @@ static void start(const char *a, const char *b, const char *c, const char *d, un
 static char heard[100000];
 static size_t heard_count;
 
+/* Octets at a wrong rate may be NUL, so this is no string. */
+static bool hears(const char *text)
+{
+    return memmem(heard, heard_count, text, strlen(text)) != NULL;
+}
+
 static void listen_ms(long patience_ms, const char *until)
 {
     const long end_ms = now_ms() + patience_ms;
@@ -105,7 +111,7 @@ static void listen_ms(long patience_ms, const char *until)
 
     heard_count = 0;
     heard[0] = '\0';
-    while (now_ms() < end_ms && !lost && (until == NULL || strstr(heard, until) == NULL)) {
+    while (now_ms() < end_ms && !lost && (until == NULL || !hears(until))) {
         struct pollfd watched = {.fd = client.fd, .events = POLLIN};
 
         poll(&watched, 1, 20);
@@ -159,15 +165,15 @@ void test_the_rate_follows_ss_and_a_client_that_does_not_follow_hears_nonsense(v
     answers("QT\n", "QT\n00P\n\n");
     say("MS0372040601000\n");
     listen_ms(3000, "99b\n");
-    TEST_ASSERT_NOT_NULL(strstr(heard, "99b\n"));
+    TEST_ASSERT_TRUE(hears("99b\n"));
     TEST_ASSERT_NULL(port_set_rate(&client, 115200));
     listen_ms(200, NULL);
     listen_ms(400, NULL);
     TEST_ASSERT_TRUE(heard_count > 150);
-    TEST_ASSERT_NULL(strstr(heard, "99b\n"));
+    TEST_ASSERT_FALSE(hears("99b\n"));
     TEST_ASSERT_NULL(port_set_rate(&client, 250000));
     listen_ms(2000, "99b\n");
-    TEST_ASSERT_NOT_NULL(strstr(heard, "99b\n"));
+    TEST_ASSERT_TRUE(hears("99b\n"));
     TEST_ASSERT_EQUAL_INT(0, end_server(SIGINT));
     child_read_file("laser.out", report, sizeof report);
     TEST_ASSERT_NOT_NULL(strstr(report, "at another rate: 3 octets ignored"));
