@@ -33,6 +33,8 @@ class Fit(unittest.TestCase):
         out = self.dir / "vehicle.json"
         done = subprocess.run([sys.executable, "-B", ROOT / "tools/fit/fit.py", *logs, "--out", out], capture_output=True,
                               text=True, check=False)
+        if done.returncode == 0:
+            self.assertEqual(out.with_suffix(".png").read_bytes()[:4], b"\x89PNG")
         return done, json.loads(out.read_text()) if out.exists() else None
 
     def assert_near(self, vehicle, key, true, share):

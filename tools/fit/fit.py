@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""fit.py LOG... [--out FILE] [--picture FILE]: finds the vehicle in its flights.
+"""fit.py LOG... [--out FILE]: finds the vehicle in its flights.
 
 LOG is a CSV of `plomada log` (of a flight behind #LOG RATE FAST) or of `plomada fly --csv`; several logs are of one vehicle.
 FILE (build/vehicle.json) has the plant's own names, each with a value and a 90 % interval, and whether the throttle commands
-THRUST or CLIMB; `plomada fly --vehicle FILE` flies it. A table on stdout says what was found, and what the flights say too
+THRUST or CLIMB; `plomada fly --vehicle FILE` flies it; a picture lies beside FILE. A table on stdout says what was found, and what the flights say too
 little about. docs/fit.md tells more. Exit status: 0; 2 usage, or logs that do not hold what is needed.
 """
 import argparse
@@ -19,6 +19,7 @@ import numpy
 
 import flight_log
 import model
+import picture
 
 ROOT = Path(__file__).resolve().parents[2]
 TELLING = 6.0                   # twice a log-likelihood: a kind that is better by less is a guess
@@ -159,25 +160,22 @@ def read_arguments(argv):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("logs", nargs="+", metavar="LOG", type=Path)
     parser.add_argument("--out", type=Path, default=ROOT / "build/vehicle.json", metavar="FILE")
-    parser.add_argument("--picture", type=Path, metavar="FILE", help="what the model says of the flight, and what it leaves")
     return parser.parse_args(argv)
 
 
 def main(argv=None):
     arguments = read_arguments(argv)
+    pictured = arguments.out.with_suffix(".png")
     try:
         vehicle, found, stretches = fit_logs(arguments.logs)
         arguments.out.parent.mkdir(parents=True, exist_ok=True)
         arguments.out.write_text(json.dumps(vehicle, indent=1) + "\n", encoding="utf-8")
-        if arguments.picture:
-            import picture
-
-            picture.draw(arguments.picture, vehicle, found, stretches)
+        picture.draw(pictured, vehicle, found, stretches)
     except (flight_log.Unfit, OSError) as error:
         print(f"fit: {error}", file=sys.stderr)
         return 2
     print(text(vehicle))
-    print(f"\n{arguments.out}" + (f"\n{arguments.picture}" if arguments.picture else ""))
+    print(f"\n{arguments.out}\n{pictured}")
     return 0
 
 
