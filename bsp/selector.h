@@ -1,6 +1,7 @@
-/* Reads who has the throttle, from SEL of the RC multiplexer on GPIO3 (J8.79): high = this firmware, low =
- * the pilot. An open pin is high (the chip has a pull-up, but no pull-down). So a wire that breaks in the air
- * does not end the height control. docs/hardware.md has the circuit. */
+/* Reads who has the throttle, from SEL of the RC multiplexer.
+ * GPIO3 (J8.79), high = this firmware, low = the pilot. An open pin is high (the chip has a pull-up, but no
+ * pull-down). So a wire that breaks in the air does not end the height control. docs/hardware.md has the
+ * circuit. */
 #ifndef BSP_SELECTOR_H
 #define BSP_SELECTOR_H
 
