@@ -23,7 +23,6 @@
 #define PIDT_WINDOW_N 3.0F      /* chosen: 0.4 g to either side */
 #define SETTLE_S 0.6F           /* chosen: six scans; until then the estimate is copied */
 #define LIFTED_MPS 0.25F        /* chosen: above what a bias of 0.2 m/s2 makes on the ground */
-#define RAYS_AGE_S 0.0705F      /* scip_rays_age_us() in scip_layout.c, for layout FRONT at 250000 bit/s */
 #define GAP_LONG_S 10.0F        /* chosen: longer gaps count as this long; integrity.c restarts after 1.5 s */
 #define LOW_MM 80.0F            /* chosen: above REST_BELOW_MM in supervisor.c, 50 mm */
 #define POWERLESS_WINDOW_N 0.6F /* chosen: 0.8 m/s2 */
@@ -361,7 +360,8 @@ static void compare_height(flight_t *flight, const flown_t *flown, const flight_
     }
     if (is_new && flight->scan_fit) {
         integrity_height(&flight->integrity, flown, in->altitude.height_mm * 0.001F,
-                         seconds_at_most(in->height_time_us - flight->scan_time_us, GAP_LONG_S), RAYS_AGE_S);
+                         seconds_at_most(in->height_time_us - flight->scan_time_us, GAP_LONG_S),
+                         seconds_at_most(in->height_age_us, GAP_LONG_S));
         flight->scan_time_us = in->height_time_us;
     }
 }
