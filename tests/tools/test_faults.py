@@ -140,6 +140,20 @@ class Saying(unittest.TestCase):
             self.assertIn("+other", harm.compare("default", "\nother\n\n"))
             self.assertNotIn("written", re.search(harm.BLOCK.format("large"), copy.read_text(), re.DOTALL).group())
 
+    def test_the_page_has_fewer_cells_than_the_command_prints(self):
+        flown = [flight(law, kinds=(kind,), off_aloft=int(law + kind == "PDbars"))
+                 for law in plan.LAWS for kind in ("bars", "gust")]
+        rendered = harm.render(flown, len(flown), with_kinds=True)
+        self.assertIn(f"| all | {harm.rate(1, 16)} | {harm.rate(0, 16)} | {harm.rate(0, 16)} | {harm.rate(1, 16)} |", rendered)
+        self.assertIn(f"| PD | {harm.rate(1, 2)} | 0 | 0 | 50 | 0 | 0 |", rendered)
+        self.assertIn(f"| bars | {harm.rate(0, 1)} | {harm.rate(1, 8)} | {harm.rate(0, 8)} |", rendered)
+        self.assertIn("deceived with: gust.", rendered)
+        self.assertNotIn("| gust |", rendered)
+        self.assertNotIn("| bars |", harm.render(flown, len(flown), with_kinds=False))
+        shown = harm.PAGE.read_text(encoding="utf-8")
+        self.assertEqual(shown.count("| law | harmed % | flew up % |"), 2)
+        self.assertIn(rendered.splitlines()[3], shown)
+
     def test_usage_errors_have_status_2(self):
         for words in (("--faults", "0"), ("--faults", "9", "--page"), ("--faults", "--set", "nominal"),
                       ("--faults", "--runs", "3"), ("--faults", "--page", "--law", "EST")):

@@ -226,7 +226,7 @@ def run_faults(arguments):
     if not of_page(arguments):
         return 0
     block = "default" if arguments.faults == FAULTS else "large"
-    rendered = harm.render(flown, arguments.faults)
+    rendered = harm.render(flown, arguments.faults, with_kinds=block == "large")
     if arguments.page:
         harm.write(block, rendered)
     otherwise = harm.compare(block, rendered) if block == "default" else []

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import faults
+import plan
 import table
 
 PAGE = Path(__file__).resolve().parents[2] / "docs/reliability.md"
@@ -149,20 +150,50 @@ def failing(flown, program="build/plomada"):
 
 def text(flown):
     head, lines = by_kind(flown)
-    return f"{table.columns([BY_LAW, *by_law(flown)], left=1)}\n\n{table.columns([head, *lines], left=1)}"
+    meanings = "\n".join(f"{name}: {meaning}" for name, (meaning, _) in HARMS.items())
+    return f"{meanings}\n\n{table.columns([BY_LAW, *by_law(flown)], left=1)}\n\n{table.columns([head, *lines], left=1)}"
 
 
 def markdown(head, lines):
     return "".join(f"| {' | '.join(cells)} |\n" for cells in (head, ["---"] * len(head), *lines))
 
 
-def render(flown, count):
-    """The text between the page's marks."""
+def plain(cell):
+    """A rate without its bounds."""
+    return cell.partition(" [")[0]
+
+
+def page_by_law(flown):
+    """Fewer columns than the command prints: no count, no halts, and bounds only of harmed and of all laws together."""
+    halted_at = BY_LAW.index("halted %")
+    for cells in by_law(flown):
+        others = [cell if cells[0] == "all" else plain(cell) for cell in cells[3:halted_at]]
+        yield [cells[0], cells[2], *others, *cells[halted_at + 1:]]
+
+
+def page_by_kind(flown):
+    """The rows with a harmed or deceived flight, for EST and all laws; and the names of the other rows."""
     head, lines = by_kind(flown)
-    meanings = "".join(f"- {name}: {meaning}\n" for name, (meaning, _) in HARMS.items())
-    return (f"\n`make campaign ARGS=\"--faults {count} --page\"`: in percent, with the bounds of 95 % confidence.\n\n"
-            f"{meanings}\n{markdown(BY_LAW, by_law(flown))}\n"
-            f"Harmed flights (every column above but deceived) by what was wrong:\n\n{markdown(head, lines)}\n")
+    columns = [0, head.index("EST"), head.index("all"), head.index("deceived")]
+    found = [line for line in lines if {plain(line[k]) for k in columns[2:]} - {"0", "-"}]
+    harmless = [line[0] for line in lines if line not in found and line[columns[2]] != "-"]
+    return [[line[k] for k in columns] for line in found], harmless
+
+
+def kinds_of_page(flown):
+    lines, harmless = page_by_kind(flown)
+    return (f"Harmed flights by what was wrong. Nothing was harmed or deceived with: {', '.join(harmless) or '-'}.\n\n"
+            f"{markdown(['alone', 'EST %', 'all laws %', 'deceived %'], lines)}\n")
+
+
+def render(flown, count, with_kinds):
+    """The text between the page's marks; the rates of each kind where there are flights enough for them."""
+    halts = rate(sum(halted(flight.figures) for flight in flown), len(flown))
+    titles = [f"{name} %" for name in HARMS if name != "halted"]
+    return (f"\n`make campaign ARGS=\"--faults {count} --page\"`, {count // len(plan.LAWS)} flights per law; firmware halted: "
+            f"{halts} %.\n\n"
+            f"{markdown(['law', 'harmed %', *titles, 'highest m', 'hardest m/s'], page_by_law(flown))}\n"
+            + (kinds_of_page(flown) if with_kinds else ""))
 
 
 def compare(block, rendered):
