@@ -434,9 +434,9 @@ class Bound(unittest.TestCase):
 
 
 def shape(text):
-    """The first cells of the tables, and how many others follow in their lines."""
-    return [(cells[1], len(cells)) for cells in (line.split("|") for line in text.splitlines() if line.startswith("|"))
-            if not cells[1].startswith(" any law")]
+    """The first cells of the tables, and how many others follow in their lines; without the demands that are not met."""
+    text = text.partition("\nOf ")[0]
+    return [(cells[1], len(cells)) for cells in (line.split("|") for line in text.splitlines() if line.startswith("|"))]
 
 
 def plain_number(cell):
@@ -452,6 +452,14 @@ class Page(unittest.TestCase):
         self.assertEqual(len(page.BLOCK.findall(self.text)), 1)
         rendered = page.render(campaign_of(), [(activity_n, 9.9) for activity_n in bound.ACTIVITIES_N])
         self.assertEqual(shape(self.shown), shape(rendered))
+
+    def test_demands_that_do_not_reach_their_aim_are_on_the_page(self):
+        for recovery_s, said, rows in ((0.7, f"{len(verdict.EST) + 3} reach their aim.", []),
+                                       (0.8, f"{len(verdict.EST) + 2} reach their aim, these do not:", ["must"]),
+                                       (0.95, f"{len(verdict.EST) + 2} reach their aim, these do not:", ["MISSED"])):
+            found = page.demanded(verdict.verdicts(campaign_of(est={"recovery_s": recovery_s})))
+            self.assertIn(said, found)
+            self.assertEqual(re.findall(r"^\| EST: within 50 mm after the edge .* (\w+) \|$", found, re.MULTILINE), rows)
 
     def test_a_figure_that_differs_is_noticed(self):
         self.assertEqual(page.compare(self.shown, self.text), [])

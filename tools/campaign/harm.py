@@ -155,7 +155,8 @@ def text(flown):
 
 
 def markdown(head, lines):
-    return "".join(f"| {' | '.join(cells)} |\n" for cells in (head, ["---"] * len(head), *lines))
+    first, *others = [f"| {' | '.join(cells)} |\n" for cells in (head, *lines)]
+    return "".join([first, f"|{'---|' * len(head)}\n", *others])
 
 
 def plain(cell):

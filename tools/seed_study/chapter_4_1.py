@@ -82,15 +82,19 @@ def respond(course):
 
 
 def table(responses):
-    """responses: {(output, gains): Response}."""
-    lines = ["| kp / kd | the seed says | output | rise s | overshoot % | within 5 % after s | error mm |",
-             "| --- | --- | --- | --- | --- | --- | --- |"]
-    for (output, (kp, kd)), r in responses.items():
-        settles = not math.isinf(r.settled_s)
-        settled = f"{r.settled_s:.1f}" if settles else "never"
-        error = f"{abs(r.error_mm):.0f}" if settles else "-"
-        lines.append(f"| {kp:.0f} / {kd:.0f} | {SAYS[kp, kd]} | {output} | {r.rise_s:.2f} | {max(r.overshoot_percent, 0):.1f} |"
-                     f" {settled} | {error} |")
+    """responses: {(output, gains): Response}; a cell has a value for each unit of the output."""
+    def cells(gains):
+        both = [responses[output, gains] for output in OUTPUTS]
+        never = [math.isinf(r.settled_s) for r in both]
+        yield [f"{r.rise_s:.2f}" for r in both]
+        yield [f"{max(r.overshoot_percent, 0):.1f}" for r in both]
+        yield ["never" if n else f"{r.settled_s:.1f}" for r, n in zip(both, never, strict=True)]
+        yield ["-" if n else f"{abs(r.error_mm):.0f}" for r, n in zip(both, never, strict=True)]
+
+    lines = [f"Values for an output in {', then in '.join(OUTPUTS)}:", "",
+             "| kp / kd | the seed says | rise s | overshoot % | within 5 % after s | error mm |", "|---|---|---|---|---|---|"]
+    for kp, kd in GAINS:
+        lines.append(f"| {kp:.0f} / {kd:.0f} | {SAYS[kp, kd]} | {' | '.join('; '.join(each) for each in cells((kp, kd)))} |")
     return "\n".join(lines)
 
 

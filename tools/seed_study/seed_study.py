@@ -6,7 +6,7 @@ throttle = THRUST and throttle = CLIMB rate (mid-point, deadband, lag free), fli
 statements (statements.py) that hold, searches on around the best, and flies the best of each kind again with seeds that
 the search did not use. A vehicle is the plant's figures, drawn from --seed; all else is the nominal vehicle.
 The table goes to stdout and DIR/seed_study.md, every vehicle with what holds to DIR/seed_study.csv; --page writes the
-table into docs/control.md. Exit status 0; 2 usage or a program that does not fly.
+table, without how each statement is judged, into docs/control.md. Exit status 0; 2 usage or a program that does not fly.
 """
 import argparse
 import csv
@@ -120,21 +120,22 @@ def described(vehicle):
     return ", ".join(f"{MEANT[name]} {value:.3g}" for name, value in vehicle.items())
 
 
-def table(best):
+def table(best, with_readings=True):
     """best: {column: (vehicle or None, means)}."""
     columns = list(best)
     judged = {column: judge(means) for column, (_, means) in best.items()}
-    lines = ["| the seed | judged by | " + " | ".join(columns) + " |", "| --- | --- |" + " --- |" * len(columns)]
+    second = (lambda cell: f" {cell} |") if with_readings else (lambda _: "")
+    lines = [f"| the seed |{second('judged by')} " + " | ".join(columns) + " |", "|---|" + ("---|" if with_readings else "") + "---|" * len(columns)]
     for at, statement in enumerate(statements.STATEMENTS):
         marks = " | ".join("yes" if judged[column][at] else "**no**" for column in columns)
-        lines.append(f"| {statement.words} ({statement.source}) | {statement.reading} | {marks} |")
+        lines.append(f"| {statement.words} ({statement.source}) |{second(statement.reading)} {marks} |")
     counts = " | ".join(f"{sum(judged[column])} of {len(statements.STATEMENTS)}" for column in columns)
-    lines.append(f"| **holds** | | {counts} |")
+    lines.append(f"| **holds** |{second('')} {counts} |")
     for name, pick in (("PD with a window: spread mm", lambda f: statements.spread_mm(f["PD saturated"])),
                        ("and mean error mm", lambda f: f["PD saturated"]["hover_mean_error_mm"]),
                        ("PID: spread mm", lambda f: statements.spread_mm(f["PID"])),
                        ("and mean error mm", lambda f: f["PID"]["hover_mean_error_mm"])):
-        lines.append(f"| {name} | | " + " | ".join(f"{pick(means):.0f}" for _, means in best.values()) + " |")
+        lines.append(f"| {name} |{second('')} " + " | ".join(f"{pick(means):.0f}" for _, means in best.values()) + " |")
     lines += ["", *(f"- {column}: {described(vehicle) if vehicle else 'the default plant'}."
                     for column, (vehicle, _) in best.items())]
     return "\n".join(lines)
@@ -179,7 +180,7 @@ def run(arguments):
     for kind, ranked in found.items():
         print(f"{kind}: {len(ranked)} vehicles, {ranked[0][0]} statements at most in the search")
     if arguments.page:
-        write_page(text)
+        write_page(table(best, with_readings=False))
     return 0
 
 
