@@ -560,20 +560,21 @@ static void float_along(flight_t *flight, bool entered)
  * below that climb rate, switch the limit on. */
 static float within_climb_n(const flight_t *flight, const parameters_t *parameters, float thrust_n)
 {
-    const cascade_vehicle_t vehicle = est_law_vehicle(&flight->est, parameters);
     const bool est = flight->mode == FLIGHT_MODE_EST_HOLD;
     const float unconfirmed_mps = flight->supervisor.state == FLIGHT_TAKEOFF ? TAKEOFF_MPS : UNCONFIRMED_MPS;
     const float fastest_mps = integrity_unconfirmed(&flight->integrity)
                                   ? unconfirmed_mps
                                   : parameters->value[PARAMETER_VUP] + CLIMB_MARGIN_MPS;
-    const float most_n = flight->hover_n + vehicle.damping_per_s * fastest_mps / vehicle.authority_mps2_per_n;
     const float felt_mps = integrity_felt_mps(&flight->integrity);
     const bool fast = flight->integrity.pushed.speed_mps > fastest_mps - 0.1F &&
                       (flight->supervisor.state != FLIGHT_TAKEOFF || felt_mps > fastest_mps - 0.1F);
 
-    return (fast && (est || (flight->mode == FLIGHT_MODE_LAW && flight->active_law == LAW_PIDT)))
-               ? at_most(thrust_n, most_n)
-               : thrust_n;
+    if (!fast || !(est || (flight->mode == FLIGHT_MODE_LAW && flight->active_law == LAW_PIDT))) {
+        return thrust_n;
+    }
+    const cascade_vehicle_t vehicle = est_law_vehicle(&flight->est, parameters);
+    return at_most(thrust_n,
+                   flight->hover_n + vehicle.damping_per_s * fastest_mps / vehicle.authority_mps2_per_n);
 }
 
 /* While commands have no effect, the thrust stays near the hover thrust. So it fits when the commands get

@@ -58,6 +58,13 @@ const flight_transition_t flight_transitions[FLIGHT_TRANSITION_COUNT] = {
     {FLIGHT_CUT, FLIGHT_IF_AT_REST | FLIGHT_IF_LEVEL, 0U, FLIGHT_GROUND},
 };
 
+/* Where the rows of each state begin. */
+static const uint16_t first_row[FLIGHT_STATE_COUNT] = {
+    [FLIGHT_GROUND] = 0U,    [FLIGHT_TAKEOFF] = 3U,   [FLIGHT_FLYING] = 9U,
+    [FLIGHT_FLOATING] = 14U, [FLIGHT_COASTING] = 19U, [FLIGHT_DESCENDING] = 24U,
+    [FLIGHT_LANDING] = 30U,  [FLIGHT_LOWERING] = 35U, [FLIGHT_CUT] = 41U,
+};
+
 static const char *const state_names[] = {
     [FLIGHT_GROUND] = "GROUND",     [FLIGHT_TAKEOFF] = "TAKEOFF",   [FLIGHT_FLYING] = "FLYING",
     [FLIGHT_FLOATING] = "FLOATING", [FLIGHT_COASTING] = "COASTING", [FLIGHT_DESCENDING] = "DESCENDING",
@@ -73,12 +80,8 @@ const char *flight_state_name(flight_state_t state)
 
 flight_state_t flight_next_state(flight_state_t from, uint16_t conditions)
 {
-    uint16_t i = 0U;
-
-    while (i < FLIGHT_TRANSITION_COUNT && flight_transitions[i].from != from) {
-        ++i;
-    }
-    for (; i < FLIGHT_TRANSITION_COUNT && flight_transitions[i].from == from; ++i) {
+    for (uint16_t i = first_row[from]; i < FLIGHT_TRANSITION_COUNT && flight_transitions[i].from == from;
+         ++i) {
         const flight_transition_t *row = &flight_transitions[i];
         if ((conditions & row->all_of) == row->all_of && (conditions & row->none_of) == 0U) {
             return row->to;

@@ -113,11 +113,9 @@ static void take(imu_axes_t *axes, const imu_sample_t *frame, float noise_mps2)
 void imu_axes_step(imu_axes_t *axes, const imu_sample_t *frames, uint16_t count, bool grounded,
                    float noise_mps2)
 {
-    for (uint16_t i = 0U; i < count; ++i) {
+    for (uint16_t i = imu_first_after(frames, count, axes->sequence); i < count; ++i) {
         const imu_sample_t *frame = &frames[i];
-        if ((int32_t)(frame->sequence - axes->sequence) <= 0) {
-            continue;
-        }
+
         axes->sequence = frame->sequence;
         if (grounded && frame->ready && frame->has_acceleration) {
             take(axes, frame, noise_mps2);

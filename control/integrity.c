@@ -353,15 +353,15 @@ static void watch_fall(integrity_t *i, float dt_s)
     i->stands_s = (falls && i->sway_rad2 < SWAY_RAD2) ? i->stands_s + dt_s : 0.0F;
 }
 
-/* One accepted frame. */
-static void feel(integrity_t *i, const flown_t *flown, const imu_sample_t *frame)
+/* One accepted frame. up_mps2: what its accelerometer measures. */
+static void feel(integrity_t *i, const flown_t *flown, const imu_sample_t *frame, float up_mps2)
 {
     const uint32_t gap_us = frame->arrival_us - i->frame_time_us;
     const float dt_s = (float)gap_us * 1.0e-6F;
     const float before_mps2 = i->up_mps2;
 
     i->frame_time_us = frame->arrival_us;
-    i->up_mps2 = motion_up_mps2(frame);
+    i->up_mps2 = up_mps2;
     if (gap_us > FRAME_GAP_US) {
         i->rested_s = 0.0F;
         i->rest_mps2 = i->up_mps2;
@@ -391,9 +391,13 @@ void integrity_frames(integrity_t *integrity, const flown_t *flown, const imu_sa
     for (uint16_t k = imu_first_after(frames, count, integrity->frame_sequence); k < count; ++k) {
         const imu_sample_t *frame = &frames[k];
         const bool fit = (int32_t)(frame->sequence - integrity->unfit_sequence) > 0;
-        if (fit && frame->ready && frame->has_acceleration && fabsf(motion_up_mps2(frame)) < UP_MAX_MPS2) {
+        if (!fit || !frame->ready || !frame->has_acceleration) {
+            continue;
+        }
+        const float up_mps2 = motion_up_mps2(frame);
+        if (fabsf(up_mps2) < UP_MAX_MPS2) {
             integrity->frame_sequence = frame->sequence;
-            feel(integrity, flown, frame);
+            feel(integrity, flown, frame, up_mps2);
         }
     }
 }

@@ -175,7 +175,7 @@ bool supervisor_has_estimate(const supervisor_t *supervisor)
 /* Where a climb ends, above the reference, once it is braked after ahead_s; a descent does not count. */
 static float peak_mm(const supervisor_t *s, float height_mm, float rate_mm_s, float ahead_s)
 {
-    const float climb_mm_s = fmaxf(rate_mm_s, 0.0F);
+    const float climb_mm_s = at_least(rate_mm_s, 0.0F);
     return height_mm - s->reference_m * 1000.0F +
            climb_mm_s * (ahead_s + climb_mm_s * (0.0005F / BRAKE_MPS2));
 }
@@ -192,8 +192,8 @@ static float measured_peak_mm(const supervisor_t *s)
 static void follow_ground(supervisor_t *s)
 {
     if (s->height.is_new) {
-        s->ground_mm = s->ground_sought ? s->height.height_mm : fminf(s->ground_mm, s->height.height_mm);
-        s->ground_mm = fmaxf(s->ground_mm, 0.0F);
+        s->ground_mm = s->ground_sought ? s->height.height_mm : at_most(s->ground_mm, s->height.height_mm);
+        s->ground_mm = at_least(s->ground_mm, 0.0F);
         s->ground_sought = false;
     }
 }

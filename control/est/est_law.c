@@ -81,7 +81,7 @@ static bool is_climb(const parameters_t *parameters)
     return parameters_choice(parameters, PARAMETER_PLANT) == PLANT_CLIMB;
 }
 
-static cascade_vehicle_t vehicle_model(const est_law_t *law, const parameters_t *parameters)
+static inline cascade_vehicle_t vehicle_model(const est_law_t *law, const parameters_t *parameters)
 {
     const estimator_t *e = &law->estimator;
     cascade_vehicle_t vehicle = {

@@ -67,10 +67,11 @@
 
 enum { HEIGHT, SPEED, BIAS, TERRAIN };
 
+#define VARIANCE_MIN 1.0e-7F /* of any state; chosen: above the rounding of 32-bit floats */
+
 /* Of height (m2), speed (m2/s2), bias (m2/s4), terrain rate (m2/s2). Chosen. Highest: 1 m, 1 m/s, 0.5 m/s2,
- * 0.5 m/s. Lowest: above the rounding of 32-bit floats. At the start: 1 cm, 0.2 m/s, 0.3 m/s2, 0.05 m/s. */
+ * 0.5 m/s. At the start: 1 cm, 0.2 m/s, 0.3 m/s2, 0.05 m/s. */
 static const float variance_max[ESTIMATOR_STATES] = {1.0F, 1.0F, 0.25F, 0.25F};
-static const float variance_min[ESTIMATOR_STATES] = {1.0e-7F, 1.0e-7F, 1.0e-7F, 1.0e-7F};
 static const float variance_start[ESTIMATOR_STATES] = {1.0e-4F, 0.04F, 0.09F, 0.0025F};
 
 static bool before(uint32_t a_us, uint32_t b_us)
@@ -118,20 +119,24 @@ static void propagate(estimate_t *x, const estimator_frame_t *frame, float dt_s)
     bound_states(x);
 }
 
-/* Rows and columns are scaled together, so that the matrix stays positive. */
-static void bound_covariance(float p[ESTIMATOR_STATES][ESTIMATOR_STATES])
+/* Row and column are scaled together, so that the matrix stays positive. */
+static void bound_variance(float p[ESTIMATOR_STATES][ESTIMATOR_STATES], uint16_t state)
+{
+    const float scale = sqrtf(variance_max[state] / p[state][state]);
+
+    for (uint16_t j = 0U; j < ESTIMATOR_STATES; ++j) {
+        p[state][j] *= scale;
+        p[j][state] *= scale;
+    }
+}
+
+static inline void bound_covariance(float p[ESTIMATOR_STATES][ESTIMATOR_STATES])
 {
     for (uint16_t i = 0U; i < ESTIMATOR_STATES; ++i) {
-        const float variance = p[i][i];
-
-        if (variance > variance_max[i]) {
-            const float scale = sqrtf(variance_max[i] / variance);
-            for (uint16_t j = 0U; j < ESTIMATOR_STATES; ++j) {
-                p[i][j] *= scale;
-                p[j][i] *= scale;
-            }
+        if (p[i][i] > variance_max[i]) {
+            bound_variance(p, i);
         }
-        p[i][i] = at_least(p[i][i], variance_min[i]);
+        p[i][i] = at_least(p[i][i], VARIANCE_MIN);
     }
 }
 
@@ -173,20 +178,25 @@ static void predict_to(estimator_t *e, uint32_t to_us, const estimator_frame_t *
     e->delayed_us = to_us;
 }
 
-static void drop_oldest_frame(estimator_t *e)
+static void drop_oldest_frames(estimator_t *e, uint16_t dropped)
 {
-    --e->frame_count;
+    e->frame_count = (uint16_t)(e->frame_count - dropped);
     for (uint16_t i = 0U; i < e->frame_count; ++i) {
-        e->frames[i] = e->frames[i + 1U];
+        e->frames[i] = e->frames[i + dropped];
     }
 }
 
 /* Predicts the filter through the kept frames up to an instant. */
 static void predict_through(estimator_t *e, uint32_t to_us)
 {
-    while (e->frame_count > 0U && !before(to_us, e->frames[0].time_us)) {
-        predict_to(e, e->frames[0].time_us, &e->frames[0]);
-        drop_oldest_frame(e);
+    uint16_t passed = 0U;
+
+    while (passed < e->frame_count && !before(to_us, e->frames[passed].time_us)) {
+        predict_to(e, e->frames[passed].time_us, &e->frames[passed]);
+        ++passed;
+    }
+    if (passed > 0U) {
+        drop_oldest_frames(e, passed);
     }
     if (before(e->delayed_us, to_us)) {
         predict_to(e, to_us, (e->frame_count > 0U) ? &e->frames[0] : &e->latest);
