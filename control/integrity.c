@@ -57,7 +57,7 @@
 #define OLD_S 2.0F       /* chosen: full leak and correction after that time */
 #define WARM_S 0.5F      /* chosen: five scans before a witness counts */
 #define STANDING_TIME_S 1.0F   /* chosen: on the ground the felt speed decays, the bias must not add up */
-#define LAG_S 0.15F            /* lag of 0.12 s and dead time of 18.5 ms in actuator.h, as one lag */
+#define LAG_S 0.15F            /* LAG of 0.12 s and DELAY of 18.5 ms, as one lag */
 #define FELT_LEAK_PER_S 1.8F   /* chosen: critically damped observer, two poles at 0.9 1/s, 2 x 0.9 */
 #define FELT_PULL_PER_S2 0.81F /* 0.9 squared, see FELT_LEAK_PER_S */
 #define PUSHED_LEAK_PER_S 0.4F /* chosen: time constant of 2.5 s, as the sure hover thrust in flight.c */

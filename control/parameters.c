@@ -52,6 +52,17 @@ const parameter_row_t parameter_table[] = {
                          "EST: what the autopilot's throttle commands."},
     [PARAMETER_CRATE] = {"CRATE", "m/s/N", 0.125F, 5.0F, 1.0F, NULL,
                          "EST: climb rate per newton with PLANT CLIMB."},
+    /* Model of the vehicle. Limits: what vehicles of this kind have, twice over. Defaults: lag assumed of
+     * motors and rotors of this size; delay half a pulse period 6.8, pulse 1.5, autopilot 10 ms (assumed);
+     * with a damping of 2 to 3 the model repeats the seed's flights; lag of an autopilot's climb rate
+     * assumed. `make fit` finds them. */
+    [PARAMETER_GAIN] = {"GAIN", "times", 0.4F, 2.5F, 1.0F, NULL,
+                        "EST: effect of a newton, 1 as the hover thrust tells."},
+    [PARAMETER_LAG] = {"LAG", "s", 0.03F, 0.5F, 0.12F, NULL, "EST: lag of the motors."},
+    [PARAMETER_DELAY] = {"DELAY", "s", 0.008F, 0.12F, 0.0185F, NULL, "EST: from a command to the motors."},
+    [PARAMETER_DAMP] = {"DAMP", "1/s", 0.5F, 6.0F, 2.5F, NULL, "EST: damping of a climb by the air."},
+    [PARAMETER_CLAG] = {"CLAG", "s", 0.1F, 1.0F, 0.25F, NULL,
+                        "EST: lag of the autopilot's climb rate with PLANT CLIMB."},
     [PARAMETER_LINK] = {"LINK", "s", 0.0F, 60.0F, 0.0F, NULL, "Longest silence of the link; 0 disarms."},
     [PARAMETER_SUM] = {"SUM", "-", 0.0F, (float)(SUM_COUNT - 1), (float)SUM_OFF, sum_names,
                        "Whether every command line must carry its sum."},

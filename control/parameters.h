@@ -29,6 +29,11 @@ typedef enum {
     PARAMETER_TERRAIN, /* choice, control_terrain_t; law EST */
     PARAMETER_PLANT,   /* choice, control_plant_t; law EST */
     PARAMETER_CRATE,   /* m/s per N, with PLANT CLIMB */
+    PARAMETER_GAIN,    /* factor; vehicle model of law EST: this and the next four */
+    PARAMETER_LAG,     /* s */
+    PARAMETER_DELAY,   /* s */
+    PARAMETER_DAMP,    /* 1/s */
+    PARAMETER_CLAG,    /* s, with PLANT CLIMB */
     PARAMETER_LINK,    /* s, 0 = link supervision off */
     PARAMETER_SEL,     /* choice, control_sel_t */
     PARAMETER_SUM,     /* choice, control_sum_t */

@@ -7,6 +7,12 @@ void actuator_init(actuator_t *actuator, uint32_t now_us)
     *actuator = (actuator_t){.time_us = now_us};
 }
 
+void actuator_describe(actuator_t *actuator, float delay_s, float lag_s)
+{
+    actuator->delay_us = (uint32_t)(delay_s * 1.0e6F + 0.5F);
+    actuator->lag_s = lag_s;
+}
+
 static void take_effect(actuator_t *actuator)
 {
     actuator->demand_n = actuator->coming[0].thrust_n;
@@ -21,7 +27,7 @@ void actuator_command(actuator_t *actuator, float thrust_n, uint32_t now_us)
     if (actuator->count == ACTUATOR_COMMANDS) {
         take_effect(actuator);
     }
-    actuator->coming[actuator->count] = (actuator_command_t){now_us + ACTUATOR_DELAY_US, thrust_n};
+    actuator->coming[actuator->count] = (actuator_command_t){now_us + actuator->delay_us, thrust_n};
     ++actuator->count;
 }
 
@@ -31,7 +37,7 @@ static void lag(actuator_t *actuator, uint32_t until_us)
 
     if (step_us > 0) {
         const float step_s = (float)step_us * 1.0e-6F;
-        const float share = (step_s < STEP_MAX_S) ? step_s / (ACTUATOR_LAG_S + 0.5F * step_s) : 1.0F;
+        const float share = (step_s < STEP_MAX_S) ? step_s / (actuator->lag_s + 0.5F * step_s) : 1.0F;
         actuator->thrust_n += ((share < 1.0F) ? share : 1.0F) * (actuator->demand_n - actuator->thrust_n);
         actuator->time_us = until_us;
     }

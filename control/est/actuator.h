@@ -9,10 +9,6 @@
 
 #include <stdint.h>
 
-#define ACTUATOR_DELAY_US \
-    UINT32_C(18500)           /* half a pulse period 6.8, pulse 1.5, autopilot 10 ms (assumed) \
-                               */
-#define ACTUATOR_LAG_S 0.12F  /* assumed of motors and rotors of this size */
 #define ACTUATOR_COMMANDS 12U /* more commands than the dead time can hold */
 
 typedef struct {
@@ -21,14 +17,20 @@ typedef struct {
 } actuator_command_t;
 
 typedef struct {
-    uint32_t time_us; /* instant of thrust_n and demand_n */
-    float thrust_n;   /* delivered thrust */
-    float demand_n;   /* command in effect; thrust_n approaches it with the lag */
+    uint32_t delay_us; /* dead time */
+    float lag_s;       /* > 0 */
+    uint32_t time_us;  /* instant of thrust_n and demand_n */
+    float thrust_n;    /* delivered thrust */
+    float demand_n;    /* command in effect; thrust_n approaches it with the lag */
     uint16_t count;
     actuator_command_t coming[ACTUATOR_COMMANDS]; /* commands within the dead time, oldest first */
 } actuator_t;
 
+/* No thrust, no command; delay_s and lag_s must be told by actuator_describe(). */
 void actuator_init(actuator_t *actuator, uint32_t now_us);
+
+/* Dead time and lag, > 0, from now on. Commands that have been given keep their dead time. */
+void actuator_describe(actuator_t *actuator, float delay_s, float lag_s);
 
 /* Records a command that is given at now_us. If too many commands are within the dead time, the oldest one
  * takes effect at once. */

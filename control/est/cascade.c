@@ -15,7 +15,7 @@
 #define FAR_SHARE 0.30F      /* fitted */
 #define RISE_MAX_MPS2 3.96F  /* fitted: 0.4 g */
 #define DRAG_SPEED_MPS 0.8F  /* chosen: beyond it the drag helps to brake */
-#define LEAD 1.3F            /* fitted: overdrives the motors' lag of 0.12 s */
+#define LEAD 1.3F            /* fitted: overdrives the motors' lag */
 #define ABOVE_HOVER_N 3.5F   /* chosen: half of the hover thrust */
 #define LEAST_SHARE 0.25F    /* chosen: the rotors keep turning */
 #define UPRIGHT_MIN 0.8F     /* 37 degrees; more tilt is not compensated further */

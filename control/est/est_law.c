@@ -1,5 +1,5 @@
 /* Law EST: estimator, hover thrust and cascade control together. The cascade acts on the predicted state at
- * the instant when its command takes effect, 18.5 ms from now: a Smith predictor in state space. The same
+ * the instant when its command takes effect, DELAY from now: a Smith predictor in state space. The same
  * model gives the estimator the acceleration that the thrust should cause. The noisier the accelerometer, the
  * more weight that acceleration gets.
  * What breaks: the actuator's model needs every command that was really given (est_law_record_command), or
@@ -16,8 +16,6 @@
 #include "control/touchdown.h"
 
 #define GRAVITY_MPS2 9.80665F /* standard gravity */
-#define DAMPING_PER_S 2.5F    /* with 2 to 3 1/s the vehicle model repeats the seed's flights */
-#define CLIMB_PER_S 4.0F      /* assumed: an autopilot that commands the climb rate lags by 0.25 s */
 #define STEP_MAX_S 0.5F       /* chosen: longer pauses count as this long */
 
 #define HOVER_BOUND_N 2.0F /* mass 20 % off (1.4 N), battery and gusts; see HOVER_MARGIN_N in flight.c */
@@ -84,16 +82,17 @@ static bool is_climb(const parameters_t *parameters)
 static inline cascade_vehicle_t vehicle_model(const est_law_t *law, const parameters_t *parameters)
 {
     const estimator_t *e = &law->estimator;
+    const float *value = parameters->value;
     cascade_vehicle_t vehicle = {
-        .authority_mps2_per_n = GRAVITY_MPS2 / at_least(law->hover.thrust_n, 1.0F),
-        .damping_per_s = DAMPING_PER_S,
+        .authority_mps2_per_n = value[PARAMETER_GAIN] * GRAVITY_MPS2 / at_least(law->hover.thrust_n, 1.0F),
+        .damping_per_s = value[PARAMETER_DAMP],
         .hover_n = law->hover.thrust_n,
         .need_n = law->hover.thrust_n,
         .upright = e->upright,
     };
     if (is_climb(parameters)) {
-        vehicle.damping_per_s = CLIMB_PER_S;
-        vehicle.authority_mps2_per_n = CLIMB_PER_S * parameters->value[PARAMETER_CRATE];
+        vehicle.damping_per_s = 1.0F / value[PARAMETER_CLAG];
+        vehicle.authority_mps2_per_n = value[PARAMETER_CRATE] / value[PARAMETER_CLAG];
         vehicle.upright = 1.0F;
     }
     vehicle.need_n += e->felt ? law->hover.gust_n : e->now.bias_mps2 / vehicle.authority_mps2_per_n;
@@ -197,6 +196,7 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_s
         law->now_us = now_us;
         actuator_init(&law->actuator, now_us);
     }
+    actuator_describe(&law->actuator, parameters->value[PARAMETER_DELAY], parameters->value[PARAMETER_LAG]);
     if (!is_climb(parameters)) {
         deadband_init(&law->deadband);
     }
@@ -339,10 +339,10 @@ void est_law_disengage(est_law_t *law)
 static cascade_state_t predict_ahead(const est_law_t *law, const cascade_vehicle_t *vehicle)
 {
     const estimate_t *now = &law->estimator.now;
-    const float ahead_s = seconds_between(law->estimator.now_us, law->now_us + ACTUATOR_DELAY_US);
+    const float ahead_s = seconds_between(law->estimator.now_us, law->now_us + law->actuator.delay_us);
     actuator_t then = law->actuator;
 
-    actuator_advance(&then, law->now_us + ACTUATOR_DELAY_US);
+    actuator_advance(&then, law->now_us + law->actuator.delay_us);
     const float thrust_n = 0.5F * (law->actuator.thrust_n + then.thrust_n) * vehicle->upright;
     const float acceleration_mps2 = vehicle->authority_mps2_per_n * (thrust_n - vehicle->need_n) -
                                     vehicle->damping_per_s * now->speed_mps;

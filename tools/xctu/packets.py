@@ -22,7 +22,7 @@ COMMANDS = (
     "#PKP 6", "#PKI 1.4", "#PKD 2.6",
     "#POSK 2.3", "#VELK 8", "#VUP 0.7", "#VDN 1.1",
     "#TERRAIN FOLLOW", "#TERRAIN IGNORE",
-    "#PLANT THRUST", "#PLANT CLIMB", "#CRATE 1",
+    "#PLANT THRUST", "#PLANT CLIMB", "#CRATE 1", "#GAIN 1", "#LAG 0.12", "#DELAY 0.0185", "#DAMP 2.5", "#CLAG 0.25",
     "#SEL NONE", "#SEL PIN", "#SUM ON", "#SUM OFF*3A0B", "#IDLE 15",
     "#IROLL -ROLL", "#IPITCH PITCH", "#IDOWN Z", "#IUNIT 256", "#IAXES ASSUMED", "#IMU",
     "#DF 105", "#LF 100", "#L 220", "#D1 115", "#L1 98", "#D2 107", "#L2 105",

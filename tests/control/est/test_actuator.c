@@ -3,11 +3,14 @@
 
 #include <math.h>
 
+#define DELAY_US 18500U
+
 static actuator_t actuator;
 
 void setUp(void)
 {
     actuator_init(&actuator, 0xFFFFFF00U); /* wraps at once */
+    actuator_describe(&actuator, 0.0185F, 0.12F);
 }
 
 void tearDown(void) {}
@@ -20,9 +23,9 @@ static uint32_t after(uint32_t us)
 void test_a_command_does_nothing_before_the_dead_time(void)
 {
     actuator_command(&actuator, 8.0F, after(0U));
-    actuator_advance(&actuator, after(ACTUATOR_DELAY_US));
+    actuator_advance(&actuator, after(DELAY_US));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, actuator.thrust_n);
-    actuator_advance(&actuator, after(ACTUATOR_DELAY_US + 5000U));
+    actuator_advance(&actuator, after(DELAY_US + 5000U));
     TEST_ASSERT_FLOAT_WITHIN(0.02F, 8.0F * (1.0F - expf(-5.0F / 120.0F)), actuator.thrust_n);
 }
 
@@ -31,10 +34,10 @@ void test_the_lag_is_120_ms_in_steps_of_any_length(void)
     for (uint32_t step_us = 500U; step_us < 60000U; step_us *= 3U) {
         setUp();
         actuator_command(&actuator, 5.0F, after(0U));
-        for (uint32_t us = 0U; us <= ACTUATOR_DELAY_US + 240000U; us += step_us) {
+        for (uint32_t us = 0U; us <= DELAY_US + 240000U; us += step_us) {
             actuator_advance(&actuator, after(us));
         }
-        actuator_advance(&actuator, after(ACTUATOR_DELAY_US + 240000U));
+        actuator_advance(&actuator, after(DELAY_US + 240000U));
         TEST_ASSERT_FLOAT_WITHIN(0.05F, 5.0F * (1.0F - expf(-2.0F)), actuator.thrust_n);
     }
 }
@@ -43,9 +46,9 @@ void test_commands_take_effect_in_their_order_and_at_their_time(void)
 {
     actuator_command(&actuator, 4.0F, after(0U));
     actuator_command(&actuator, 6.0F, after(25000U));
-    actuator_advance(&actuator, after(ACTUATOR_DELAY_US + 24000U));
+    actuator_advance(&actuator, after(DELAY_US + 24000U));
     TEST_ASSERT_EQUAL_FLOAT(4.0F, actuator.demand_n);
-    actuator_advance(&actuator, after(ACTUATOR_DELAY_US + 25000U));
+    actuator_advance(&actuator, after(DELAY_US + 25000U));
     TEST_ASSERT_EQUAL_FLOAT(6.0F, actuator.demand_n);
     TEST_ASSERT_EQUAL_UINT16(0, actuator.count);
 }
@@ -76,4 +79,14 @@ void test_a_long_pause_ends_at_the_demand(void)
     actuator_advance(&actuator, after(1000U));
     actuator_advance(&actuator, after(30000000U));
     TEST_ASSERT_FLOAT_WITHIN(1e-4F, 7.0F, actuator.thrust_n);
+}
+
+void test_lag_and_dead_time_are_those_that_are_told(void)
+{
+    actuator_describe(&actuator, 0.040F, 0.06F);
+    actuator_command(&actuator, 8.0F, after(0U));
+    actuator_advance(&actuator, after(40000U));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, actuator.thrust_n);
+    actuator_advance(&actuator, after(70000U));
+    TEST_ASSERT_FLOAT_WITHIN(0.2F, 8.0F * (1.0F - expf(-0.5F)), actuator.thrust_n);
 }

@@ -321,6 +321,31 @@ void test_a_new_reference_forgets_the_terrain_that_was_ignored(void)
     TEST_ASSERT_FLOAT_WITHIN(0.06F, 0.7F, (float)height_m());
 }
 
+/* ---- the vehicle that the parameters describe */
+
+void test_the_model_is_the_one_that_the_parameters_describe(void)
+{
+    board(1U);
+    hover_at(0.6F);
+    const float plain_mps2_per_n = est_law_vehicle(&flight.est, &parameters).authority_mps2_per_n;
+    set(PARAMETER_GAIN, 1.25F);
+    set(PARAMETER_DAMP, 1.5F);
+    cascade_vehicle_t vehicle = est_law_vehicle(&flight.est, &parameters);
+    TEST_ASSERT_FLOAT_WITHIN(1e-4F, 1.25F * plain_mps2_per_n, vehicle.authority_mps2_per_n);
+    TEST_ASSERT_EQUAL_FLOAT(1.5F, vehicle.damping_per_s);
+    set(PARAMETER_PLANT, PLANT_CLIMB);
+    set(PARAMETER_CRATE, 0.8F);
+    set(PARAMETER_CLAG, 0.4F);
+    vehicle = est_law_vehicle(&flight.est, &parameters);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 2.0F, vehicle.authority_mps2_per_n);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 2.5F, vehicle.damping_per_s);
+    set(PARAMETER_LAG, 0.08F);
+    set(PARAMETER_DELAY, 0.035F);
+    run(0.1);
+    TEST_ASSERT_EQUAL_FLOAT(0.08F, flight.est.actuator.lag_s);
+    TEST_ASSERT_EQUAL_UINT32(35000U, flight.est.actuator.delay_us);
+}
+
 /* ---- an autopilot whose throttle commands the climb rate */
 
 void test_plant_climb_flies_climb_rate_autopilots(void)
