@@ -2,6 +2,7 @@
 named, nothing else."""
 import os
 import re
+import re
 import shutil
 import subprocess
 import sys
@@ -94,6 +95,11 @@ class Compared(unittest.TestCase):
         path.write_text(content, encoding="utf-8")
         found = [each.split(": ")[1] for each in check_ti.compared(library)]
         self.assertEqual(found, ["Fapi_EraseSector", "Fapi_flushPipeline", "Fapi_serviceWatchdogTimer", "uint16"])
+
+    def test_the_headers_of_the_hooks_are_where_the_check_looks(self):
+        own = [each for each in re.findall(r'#include "(.+)"', check_ti.HOOKS) if each != "debug.h"]    # that one is driverlib's
+        self.assertEqual([each for each in own if not (REPOSITORY / each).is_file()], [])
+        self.assertEqual(len(own), 2)
 
 
 class Read(unittest.TestCase):

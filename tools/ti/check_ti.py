@@ -26,6 +26,13 @@ STAND_IN_ONLY = {"chip.h", "model.h"}
 # Its types: those of C28x compilers, twice as wide on the host, or the host's own.
 HOST_TYPES = "#undef __TMS320C28XX__\n"
 FLASH_API = "libraries/flash_api/f2837xs/include"
+HOOKS = ('#include <xdc/std.h>\n#include <xdc/runtime/Error.h>\n#include <xdc/runtime/System.h>\n#include "firmware/fault.h"\n'
+         '#include "debug.h"\nError_HookFxn fault_hook_1 = fault_error;\nSystem_AbortFxn fault_hook_2 = fault_abort;\n'
+         'System_ExitFxn fault_hook_3 = fault_exit;\n#include <ti/sysbios/interfaces/IHwi.h>\n#include "firmware/cpu_time.h"\n'
+         'Task_HookSet task_hooks = {.switchFxn = cpu_time_task_switch};\n'
+         'Swi_HookSet swi_hooks = {.beginFxn = cpu_time_swi_begin, .endFxn = cpu_time_swi_end};\n'
+         'typedef __typeof__(((Hwi_HookSet *)0)->beginFxn) hwi_hook_t;\n'
+         'Hwi_HookSet hwi_hooks = {.beginFxn = (hwi_hook_t)cpu_time_hwi_begin, .endFxn = (hwi_hook_t)cpu_time_hwi_end};\n')
 
 
 class Library:
@@ -135,14 +142,7 @@ def hooks(ware, bios, xdc):
     """Complaints of gcc when the functions of firmware/fault.h and firmware/cpu_time.h are given to whom TI calls them by.
     A Hwi's hooks get its handle as the one of the interface that it implements."""
     kernel, registers = sysbios(bios, xdc), driverlib(ware)
-    text = ('#include <xdc/std.h>\n#include <xdc/runtime/Error.h>\n#include <xdc/runtime/System.h>\n#include "fault.h"\n'
-            '#include "debug.h"\nError_HookFxn fault_hook_1 = fault_error;\nSystem_AbortFxn fault_hook_2 = fault_abort;\n'
-            'System_ExitFxn fault_hook_3 = fault_exit;\n#include <ti/sysbios/interfaces/IHwi.h>\n#include "cpu_time.h"\n'
-            'Task_HookSet task_hooks = {.switchFxn = cpu_time_task_switch};\n'
-            'Swi_HookSet swi_hooks = {.beginFxn = cpu_time_swi_begin, .endFxn = cpu_time_swi_end};\n'
-            'typedef __typeof__(((Hwi_HookSet *)0)->beginFxn) hwi_hook_t;\n'
-            'Hwi_HookSet hwi_hooks = {.beginFxn = (hwi_hook_t)cpu_time_hwi_begin, .endFxn = (hwi_hook_t)cpu_time_hwi_end};\n')
-    return [run([*kernel.gcc, "-DDEBUG", "-isystem", str(registers.includes[0])], text).stderr.strip()]
+    return [run([*kernel.gcc, "-DDEBUG", "-isystem", str(registers.includes[0])], HOOKS).stderr.strip()]
 
 
 def looked_up(project, *variables):
