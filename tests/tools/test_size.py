@@ -118,7 +118,7 @@ class Limits(unittest.TestCase):
 
     def ram(self, **changes):
         problems = []
-        size.ram_table({path: {"data": 0, "bss": 2 * cells} for path, cells in {**self.sizes, **changes}.items()}, problems)
+        size.ram_tables({path: {"data": 0, "bss": 2 * cells} for path, cells in {**self.sizes, **changes}.items()}, problems)
         return problems
 
     def flash(self, cells):

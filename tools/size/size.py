@@ -233,7 +233,8 @@ def region(name):
 
 
 def table(head, rows):
-    return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in (head, ["---"] + ["--:"] * (len(head) - 1), *rows))
+    first, *others = ["| " + " | ".join(map(str, row)) + " |" for row in (head, *rows)]
+    return "\n".join([first, "|---" + "|--:" * (len(head) - 1) + "|", *others])
 
 
 def limit(problems, what, used, available):
@@ -264,7 +265,8 @@ def nested(stacks):
     return len(swis), sum(size for _, size, _ in swis) + (HWI_GROUPS - 1) * hwi + TICK
 
 
-def stack_table(release, debug, problems):
+def stack_tables(release, debug, problems):
+    """The stacks as the page shows them; with their deepest paths, and what lies on the stack of the interrupts."""
     tasks = defined("firmware/schedule.h", "TASK_STACK_CELLS")
     program = defined("ccs_project/app.cfg", "Program.stack")
     rows = []
@@ -280,11 +282,13 @@ def stack_table(release, debug, problems):
     rows.append(stack_row(problems, "main()", (size, debug_size), 0, program, arrows(way if size > debug_size else debug_way)))
     singles = [(f"{name} ({kind})", size, debug_size) for kind in ("swi", "clock", "hwi")
                for (name, size, _), (_, debug_size, _) in zip(release.worst(kind), debug.worst(kind))]
-    return (table(("stack", "Release", "Debug", "needed", "size", "free", "deepest path"), rows)
-            + "\n\n" + table(("on the stack of the Hwis and Swis", "Release", "Debug"), singles))
+    return (table(("stack", "needed", "size", "free"), [(name, *cells_n) for name, _, _, *cells_n, _ in rows]),
+            table(("stack", "Release", "Debug", "needed", "size", "free", "deepest path"), rows),
+            table(("on the stack of the Hwis and Swis", "Release", "Debug"), singles))
 
 
-def ram_table(sizes, problems):
+def ram_tables(sizes, problems):
+    """The regions as the page shows them; the modules."""
     def static(kinds):
         return (kinds["data"] + kinds["bss"] + 1) // 2
 
@@ -305,8 +309,7 @@ def ram_table(sizes, problems):
               ("heap and idle task, below 10000H", *limit(problems, ".ebss:taskStackSection", heap + idle, region("RAMGS02"))),
               ("stack of Hwis, Swis and main()", *limit(problems, ".stack", stack, region("LS45SARAM"))),
               ("all of it, of the chip's RAM", *limit(problems, "RAM", everything + heap + idle + stack, CHIP_RAM))]
-    return (table(("module", "cells"), rows + [("**all**", everything)])
-            + "\n\n" + table(("region", "used", "of"), limits))
+    return table(("region", "used", "of"), limits), table(("module", "cells"), rows + [("**all**", everything)])
 
 
 def flash_table(m68k, avr, problems):
@@ -362,20 +365,21 @@ def allowance_table(stacks):
 
 
 def measure(out, problems):
-    """{name: table}"""
+    """({name: table of the page}, tables that are only printed)"""
     copy = out / "cells"
     to_cells(copy)
     sizes = section_bytes("m68k-linux-gnu-size", compile_all((*M68K, "-O2"), copy, out / "m68k"))
     avr = section_bytes("avr-size", compile_all(AVR, ROOT, out / "avr", without=NOT_AVR))
     graphs = [Stacks(compile_all((*M68K, *options), copy, out / name))
               for name, options in (("release", RELEASE), ("debug", DEBUG))]
+    stacks, *ways = stack_tables(*graphs, problems)
+    regions, modules = ram_tables(sizes, problems)
     tables = {"compilers": f"Measured with {version(M68K[0])} and {version(AVR[0])}.",
-              "flash": flash_table(sizes, avr, problems), "ram": ram_table(sizes, problems),
-              "stacks": stack_table(*graphs, problems), "allowances": allowance_table(graphs[0])}
+              "flash": flash_table(sizes, avr, problems), "ram": regions, "stacks": stacks}
     for graph in graphs:
         graph.check_roots()
         problems += graph.problems
-    return tables
+    return tables, [*ways, allowance_table(graphs[0]), modules]
 
 
 def main():
@@ -389,8 +393,8 @@ def main():
         print(f"no {' and no '.join(missing)}: tools/setup/setup.sh size")
         sys.exit(77)
     problems = []
-    tables = measure(options.out.resolve(), problems)
-    for content in tables.values():
+    tables, details = measure(options.out.resolve(), problems)
+    for content in (*tables.values(), *details):
         print(content, end="\n\n")
     if not options.limits and not document(tables, options.write):
         problems.append("docs/memory.md says otherwise: tools/size/size.py --write")
