@@ -30,7 +30,7 @@
 #define FRAMES_FRESH_S ((float)ESTIMATOR_FRESH_US * 1.0e-6F)
 #define AGE_MAX_S 3600.0F            /* chosen: one hour; the counters stop here */
 #define MODEL_NOISE_ALONE_MPS2 0.15F /* chosen: a biased accelerometer drifts away, the model does not */
-#define GUST_N_PER_M 28.0F           /* fitted */
+#define GUST_MPS2_PER_M 39.2F        /* fitted as 28 N/m on a vehicle that hovers at 7 N */
 #define UNFELT_TIME_S 3.0F           /* tried 1.5 to 6: the model's bias becomes hover thrust */
 #define UNFELT_CLIMB_TIME_S 30.0F    /* tried 3 to 30: the middle of the stick is known well */
 #define UNFELT_DEADBAND 0.1F         /* tried 0 to 1: the model's bias tells the deadband late */
@@ -200,6 +200,7 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_s
     if (!is_climb(parameters)) {
         deadband_init(&law->deadband);
     }
+    law->authority_mps2_per_n = vehicle_model(law, parameters).authority_mps2_per_n;
     law->step_s = between(0.0F, seconds_between(law->now_us, now_us), STEP_MAX_S);
     law->now_us = now_us;
     law->heightless_s = at_most(law->heightless_s + law->step_s, AGE_MAX_S);
@@ -234,7 +235,8 @@ void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t st
                                                            at_rest || on_ground(law));
     if (law->airborne && outcome == HEIGHT_FUSED && law->estimator.felt) {
         const float expected = 1.0F - law->estimator.latest.share;
-        hover_nudge(&law->hover, -GUST_N_PER_M * expected * law->estimator.innovation_m);
+        hover_nudge(&law->hover, -GUST_MPS2_PER_M * expected * law->estimator.innovation_m /
+                                     law->authority_mps2_per_n);
     }
 }
 

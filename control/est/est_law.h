@@ -38,6 +38,7 @@ typedef struct {
     uint32_t now_us;
     float step_s;     /* duration of the latest cycle */
     uint32_t rays_us; /* when the rays of the latest height were taken */
+    float authority_mps2_per_n; /* of the present model, see cascade.h; > 0 */
     bool airborne;    /* the vehicle is off the ground */
     bool ramping;     /* take-off: the thrust ramps up until the vehicle leaves the ground */
     float ramp_n;     /* thrust of that ramp */
