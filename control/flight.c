@@ -346,7 +346,6 @@ static flown_t describe(const flight_t *flight, const parameters_t *parameters, 
         .wanted_m = wanted_m(flight),
         .displaced = supervisor->state == FLIGHT_FLOATING && fabsf(wanted_m(flight)) > DISPLACED_M,
         .noise_mps2 = flight->est.estimator.noise_mps2,
-        .bias_mps2 = flight->est.estimator.now.bias_mps2,
     };
 }
 

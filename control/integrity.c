@@ -4,8 +4,10 @@
  *
  * Each innovation goes into a leaky sum, because a wrong sensor contradicts the others for seconds and noise
  * does not. The leak also forgets the slow errors of a witness: bias of the accelerometer, wrong hover thrust
- * or damping. The witness of the accelerometer is a second-order observer, corrected slowly by the heights.
- * The witness of the thrust needs no such correction, because the damping bounds its speed.
+ * or damping. The witness of the accelerometer is a third-order observer, corrected slowly by the heights. It
+ * has a bias of its own: the estimator's bias also contains errors of the thrust model, so with it a wrong
+ * thrust model would move both witnesses. The witness of the thrust needs no such correction, because the
+ * damping bounds its speed.
  *
  * What breaks: a limit that is too low doubts a healthy sensor in a gust, and the vehicle then descends. A
  * limit that is too high lets a wrong sensor move the vehicle by that much. Unless a comment says otherwise
@@ -52,14 +54,15 @@
 /* Witnesses. */
 #define FRAME_GAP_US UINT32_C(300000) /* 12 frames lost; as GAP_MAX_US in estimator.c */
 #define STEP_MAX_S 0.5F               /* chosen: longer pauses count as this long; as in flight.c */
-#define SHAKEN_MPS2 0.9F /* chosen: about twice the usual noise, NOISE_START_MPS2 in estimator.c */
-#define BIAS_TIME_S 5.0F /* chosen: slower than the verdicts, so that a wrong height teaches little bias */
-#define OLD_S 2.0F       /* chosen: full leak and correction after that time */
-#define WARM_S 0.5F      /* chosen: five scans before a witness counts */
+#define SHAKEN_MPS2 0.9F       /* chosen: about twice the usual noise, NOISE_START_MPS2 in estimator.c */
+#define OLD_S 2.0F             /* chosen: full leak and correction after that time */
+#define WARM_S 0.5F            /* chosen: five scans before a witness counts */
 #define STANDING_TIME_S 1.0F   /* chosen: on the ground the felt speed decays, the bias must not add up */
 #define LAG_S 0.15F            /* LAG of 0.12 s and DELAY of 18.5 ms, as one lag */
-#define FELT_LEAK_PER_S 1.8F   /* chosen: critically damped observer, two poles at 0.9 1/s, 2 x 0.9 */
+#define FELT_LEAK_PER_S 1.8F   /* chosen: 2 x 0.9, critically damped without the bias, poles at 0.9 1/s */
 #define FELT_PULL_PER_S2 0.81F /* 0.9 squared, see FELT_LEAK_PER_S */
+#define BIAS_PULL_PER_S3 0.1F  /* chosen: the bias follows in 8 s, 0.81 / 0.1; slower than the verdicts */
+#define BIAS_MAX_MPS2 1.5F     /* as in estimator.c */
 #define PUSHED_LEAK_PER_S 0.4F /* chosen: time constant of 2.5 s, as the sure hover thrust in flight.c */
 
 /* Heights. */
@@ -75,16 +78,14 @@
 #define STEPS_MAX 12.0F     /* chosen: more than half of the scans of STEPS_TIME_S are steps */
 
 /* Standing on the ground. The thrust predicts a fall, and the accelerometer does not measure one. */
-#define FALL_MPS 0.8F       /* chosen: above SINK_MAX_MPS in est_law.c, 0.6 m/s */
-#define STANDS_S 0.6F       /* chosen: 24 frames */
-#define SWAY_TIME_S 1.5F    /* chosen: 60 frames */
-#define SWAY_RAD2 2.5e-4F   /* chosen: 0.9 degrees rms, both angles together; in the air it sways more */
-#define STILL_S 1.0F        /* chosen: two thirds of SWAY_TIME_S */
-#define STILL_TIME_S 2.0F   /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in that time */
-#define FELL_MPS 0.4F       /* chosen: half of FALL_MPS */
-#define FALL_STILL_MPS 0.5F /* chosen: above FELL_MPS */
-/* Without heights the estimator takes errors of the thrust model for bias: do not follow its bias then. */
-#define UNHEARD_S 0.5F        /* chosen: five scans */
+#define FALL_MPS 0.8F         /* chosen: above SINK_MAX_MPS in est_law.c, 0.6 m/s */
+#define STANDS_S 0.6F         /* chosen: 24 frames */
+#define SWAY_TIME_S 1.5F      /* chosen: 60 frames */
+#define SWAY_RAD2 2.5e-4F     /* chosen: 0.9 degrees rms, both angles together; in the air it sways more */
+#define STILL_S 1.0F          /* chosen: two thirds of SWAY_TIME_S */
+#define STILL_TIME_S 2.0F     /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in that time */
+#define FELL_MPS 0.4F         /* chosen: half of FALL_MPS */
+#define FALL_STILL_MPS 0.5F   /* chosen: above FELL_MPS */
 #define SWAY_AIR_RAD2 4.0e-4F /* chosen: 1.1 degrees rms; between this and SWAY_RAD2 neither is certain */
 
 /* Verdicts. These limits have to be above the drift of the witnesses in healthy flights. A wrong sensor may
@@ -374,9 +375,6 @@ static void feel(integrity_t *i, const flown_t *flown, const imu_sample_t *frame
     } else {
         i->rested_s = 0.0F;
         watch_fall(i, dt_s);
-        if (i->unheard_s < UNHEARD_S) {
-            i->bias_mps2 += dt_s / BIAS_TIME_S * (flown->bias_mps2 - i->bias_mps2);
-        }
         move(&i->felt, 0.5F * (before_mps2 + i->up_mps2) - i->bias_mps2, dt_s);
         if (flown->standing) {
             i->felt.speed_mps *= 1.0F - dt_s / STANDING_TIME_S;
@@ -414,7 +412,6 @@ void integrity_thrust(integrity_t *integrity, const flown_t *flown)
     const bool stands = integrity->heard && integrity->height_m < LOW_M && !integrity_sways(integrity);
     const float shaken = at_least(flown->noise_mps2 / SHAKEN_MPS2, 1.0F);
     integrity->shaken = shaken * sqrtf(shaken);
-    integrity->unheard_s = at_most(integrity->unheard_s + dt_s, OLD_S);
     integrity->standing = flown->grounded || flown->standing;
     integrity->lagged_n += dt_s / (LAG_S + dt_s) * (flown->thrust_n - integrity->lagged_n);
     if (!flown->off_ground || stands) {
@@ -459,6 +456,17 @@ static void compare(witness_t *witness, float rise_m, float gap_s, float age_s, 
     witness->seen_m = seen_m;
 }
 
+/* The same for the accelerometer: while the heights are not doubted, they also correct its speed and bias. */
+static void compare_felt(integrity_t *i, float rise_m, float gap_s, float age_s)
+{
+    const float age = i->felt.running_s / OLD_S;
+    const float pull = integrity_doubts(i, DOUBT_SIGHT) ? 0.0F : age;
+
+    compare(&i->felt, rise_m, gap_s, age_s, FELT_LEAK_PER_S * age, FELT_PULL_PER_S2 * pull);
+    i->bias_mps2 -= BIAS_PULL_PER_S3 * pull * gap_s * i->felt.seen_m;
+    i->bias_mps2 = between(-BIAS_MAX_MPS2, i->bias_mps2, BIAS_MAX_MPS2);
+}
+
 /* The heights show the first climb. Until now the hover thrust was not known well, so the witness of the
  * thrust restarts from the rate of the heights. */
 static void confirm(integrity_t *i)
@@ -495,7 +503,6 @@ static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
     const bool jumps = fabsf(rise_m) > STEP_M;
     const bool step = fresh && jumps && !follows(&i->felt, rise_m, gap_s) &&
                       !follows(&i->pushed, rise_m, gap_s);
-    const float age = i->felt.running_s / OLD_S;
 
     i->proved = i->proved && !i->standing;
     if (i->standing || (step && rise_m < 0.0F && !returns(i, height_m))) {
@@ -526,8 +533,7 @@ static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
         i->pushed.off_m = 0.0F;
         return;
     }
-    compare(&i->felt, step ? i->felt.speed_mps * gap_s : rise_m, gap_s, age_s, FELT_LEAK_PER_S * age,
-            integrity_doubts(i, DOUBT_SIGHT) ? 0.0F : FELT_PULL_PER_S2 * age);
+    compare_felt(i, step ? i->felt.speed_mps * gap_s : rise_m, gap_s, age_s);
     compare(&i->pushed, step ? i->pushed.speed_mps * gap_s : rise_m, gap_s, age_s, PUSHED_LEAK_PER_S, 0.0F);
 }
 
@@ -725,7 +731,6 @@ static void judge(integrity_t *i, const flown_t *flown, float gap_s)
 void integrity_height(integrity_t *integrity, const flown_t *flown, float height_m, float gap_s, float age_s)
 {
     hear(integrity, height_m, gap_s, age_s);
-    integrity->unheard_s = integrity_doubts(integrity, DOUBT_SIGHT) ? integrity->unheard_s : 0.0F;
     integrity->felt_least_m = integrity->unconfirmed ? at_most(integrity->felt_least_m, felt_off_m(integrity))
                                                      : 0.0F;
     integrity->vain_s = (pushes_in_vain(integrity, flown, PUSH_N) && fabsf(integrity->rise_mps) < VAIN_MPS &&

@@ -63,7 +63,6 @@ typedef struct {
     float wanted_m;   /* reference minus height, > 0: the law wants to climb; NAN: no height is held */
     bool displaced;   /* FLOATING holds a height and is more than 0.25 m away from it */
     float noise_mps2; /* rms noise of the accelerometer, measured by the estimator */
-    float bias_mps2;  /* bias of the accelerometer, estimated by the estimator */
 } flown_t;
 
 /* Read doubts, tilt and the fields that flight.c uses; written only by the functions below. */
@@ -109,7 +108,7 @@ typedef struct {
     float up_mps2;   /* upward acceleration in the latest frame, gravity removed */
     float rest_mps2; /* its mean at rest */
     float rested_s;  /* time at rest that this mean covers, at most 2 s */
-    float bias_mps2; /* bias that the witness subtracts */
+    float bias_mps2; /* of the accelerometer: at rest its mean, in the air corrected by the heights */
     float shaken;    /* >= 1: divides the witness's innovation when the accelerometer is noisy */
     witness_t felt;
     /* thrust */
@@ -123,7 +122,6 @@ typedef struct {
     float stands_s;     /* how long the vehicle has shown the signs of integrity_stands() */
     float still_s;      /* how long the tilt has swayed less than in the air, without a felt fall */
     float still_mps[2]; /* low-passed speeds of the two witnesses (felt, pushed) since then */
-    float unheard_s;    /* time since the latest height that is not in doubt, at most 2 s */
 } integrity_t;
 
 /* Clears the state: no doubt, nothing known. Call once before the first cycle. */

@@ -235,8 +235,8 @@ void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t st
                                                            at_rest || on_ground(law));
     if (law->airborne && outcome == HEIGHT_FUSED && law->estimator.felt) {
         const float expected = 1.0F - law->estimator.latest.share;
-        hover_nudge(&law->hover, -GUST_MPS2_PER_M * expected * law->estimator.innovation_m /
-                                     law->authority_mps2_per_n);
+        hover_nudge(&law->hover,
+                    -GUST_MPS2_PER_M * expected * law->estimator.innovation_m / law->authority_mps2_per_n);
     }
 }
 

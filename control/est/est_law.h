@@ -36,13 +36,13 @@ typedef struct {
     cascade_t cascade;
     bool started; /* now_us has a value */
     uint32_t now_us;
-    float step_s;     /* duration of the latest cycle */
-    uint32_t rays_us; /* when the rays of the latest height were taken */
+    float step_s;               /* duration of the latest cycle */
+    uint32_t rays_us;           /* when the rays of the latest height were taken */
     float authority_mps2_per_n; /* of the present model, see cascade.h; > 0 */
-    bool airborne;    /* the vehicle is off the ground */
-    bool ramping;     /* take-off: the thrust ramps up until the vehicle leaves the ground */
-    float ramp_n;     /* thrust of that ramp */
-    float lift_mps2;  /* low-passed upward acceleration */
+    bool airborne;              /* the vehicle is off the ground */
+    bool ramping;               /* take-off: the thrust ramps up until the vehicle leaves the ground */
+    float ramp_n;               /* thrust of that ramp */
+    float lift_mps2;            /* low-passed upward acceleration */
     float reference_m;
     float reference_terrain_m; /* estimator.terrain_height_m at the time when reference_m was set */
     float sure_hover_n;        /* hover thrust from before the present doubt */

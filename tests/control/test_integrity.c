@@ -425,6 +425,18 @@ void test_an_accelerometer_against_heights_and_thrust_is_doubted_within_a_second
     }
 }
 
+void test_the_bias_follows_the_heights_whatever_the_thrust_model_says(void)
+{
+    flown.hover_n = HOVER_N - 0.2F;
+    fly();
+    world.felt_lie_mps2 = 0.4F;
+    run(5.0F);
+    TEST_ASSERT_FLOAT_WITHIN(0.12F, 0.22F, it.bias_mps2);
+    run(25.0F);
+    TEST_ASSERT_FLOAT_WITHIN(0.04F, 0.4F, it.bias_mps2);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+}
+
 void test_a_noisy_accelerometer_is_asked_less(void)
 {
     fly();
