@@ -79,12 +79,16 @@ static bool before(uint32_t a_us, uint32_t b_us)
     return (int32_t)(a_us - b_us) < 0;
 }
 
+static inline float *covariance_of(float p[ESTIMATOR_STATES][ESTIMATOR_STATES], uint16_t i, uint16_t j)
+{
+    return (i < j) ? &p[i][j] : &p[j][i];
+}
+
 /* Gives one state a new variance and removes its covariances with the other states. */
 static void reset_variance(estimator_t *e, uint16_t state, float variance)
 {
     for (uint16_t i = 0U; i < ESTIMATOR_STATES; ++i) {
-        e->covariance[state][i] = 0.0F;
-        e->covariance[i][state] = 0.0F;
+        *covariance_of(e->covariance, state, i) = 0.0F;
     }
     e->covariance[state][state] = variance;
 }
@@ -119,52 +123,75 @@ static void propagate(estimate_t *x, const estimator_frame_t *frame, float dt_s)
     bound_states(x);
 }
 
-/* Row and column are scaled together, so that the matrix stays positive. */
-static void bound_variance(float p[ESTIMATOR_STATES][ESTIMATOR_STATES], uint16_t state)
+static float limit_variance(float p[ESTIMATOR_STATES][ESTIMATOR_STATES], uint16_t state)
 {
     const float scale = sqrtf(variance_max[state] / p[state][state]);
 
     for (uint16_t j = 0U; j < ESTIMATOR_STATES; ++j) {
-        p[state][j] *= scale;
-        p[j][state] *= scale;
+        *covariance_of(p, state, j) *= scale;
     }
+    return p[state][state] * scale;
+}
+
+/* Row and column are scaled together, so that the matrix stays positive. */
+static inline void bound_variance(float p[ESTIMATOR_STATES][ESTIMATOR_STATES], uint16_t state)
+{
+    float variance = p[state][state];
+
+    if (variance > variance_max[state]) {
+        variance = limit_variance(p, state);
+    }
+    p[state][state] = at_least(variance, VARIANCE_MIN);
 }
 
 static inline void bound_covariance(float p[ESTIMATOR_STATES][ESTIMATOR_STATES])
 {
-    for (uint16_t i = 0U; i < ESTIMATOR_STATES; ++i) {
-        if (p[i][i] > variance_max[i]) {
-            bound_variance(p, i);
-        }
-        p[i][i] = at_least(p[i][i], VARIANCE_MIN);
-    }
+    bound_variance(p, HEIGHT);
+    bound_variance(p, SPEED);
+    bound_variance(p, BIAS);
+    bound_variance(p, TERRAIN);
 }
 
+/* Variance of the acceleration that the prediction uses, times the time it lasts. */
+static float speed_drift(const estimator_t *e, float share)
+{
+    const float measured_mps2 = e->felt ? share * e->noise_mps2 : 0.0F;
+    const float modelled_mps2 = e->felt ? (1.0F - share) * e->model_noise_mps2 : UNFELT_NOISE_MPS2;
+
+    return (SPEED_NOISE_MPS2 * SPEED_NOISE_MPS2 +
+            (measured_mps2 * measured_mps2 + modelled_mps2 * modelled_mps2)) *
+           FRAME_S;
+}
+
+/* P = F P F' + Q, on one half of the symmetric matrix. Row of F: height 1, dt, -half, -dt; speed 0, 1,
+ * -slope, 0; bias 0, 0, 1, 0; terrain 0, 0, 0, decay. */
 static void propagate_covariance(estimator_t *e, float share, float dt_s)
 {
     float(*const p)[ESTIMATOR_STATES] = e->covariance;
     const float decay = at_least(1.0F - dt_s / TERRAIN_TIME_S, 0.0F);
-    const float half = 0.5F * share * dt_s * dt_s;
-    const float measured_mps2 = e->felt ? share * e->noise_mps2 : 0.0F;
-    const float modelled_mps2 = e->felt ? (1.0F - share) * e->model_noise_mps2 : UNFELT_NOISE_MPS2;
+    const float slope = share * dt_s;
+    const float half = 0.5F * slope * dt_s;
     const float drift_mps2 = e->felt ? BIAS_DRIFT_MPS2 : UNFELT_DRIFT_MPS2;
-    const float variance = SPEED_NOISE_MPS2 * SPEED_NOISE_MPS2 +
-                           (measured_mps2 * measured_mps2 + modelled_mps2 * modelled_mps2);
+    const float speed_bias = p[SPEED][BIAS] - slope * p[BIAS][BIAS];
+    const float height_speed = p[HEIGHT][SPEED] + dt_s * (p[SPEED][SPEED] - p[SPEED][TERRAIN]) -
+                               half * p[SPEED][BIAS];
+    const float height_bias = p[HEIGHT][BIAS] + dt_s * (p[SPEED][BIAS] - p[BIAS][TERRAIN]) -
+                              half * p[BIAS][BIAS];
+    const float height_terrain = p[HEIGHT][TERRAIN] + dt_s * (p[SPEED][TERRAIN] - p[TERRAIN][TERRAIN]) -
+                                 half * p[BIAS][TERRAIN];
 
-    for (uint16_t j = 0U; j < ESTIMATOR_STATES; ++j) {
-        p[HEIGHT][j] += dt_s * (p[SPEED][j] - p[TERRAIN][j]) - half * p[BIAS][j];
-        p[SPEED][j] -= share * dt_s * p[BIAS][j];
-        p[TERRAIN][j] *= decay;
-    }
-    for (uint16_t i = 0U; i < ESTIMATOR_STATES; ++i) {
-        p[i][HEIGHT] += dt_s * (p[i][SPEED] - p[i][TERRAIN]) - half * p[i][BIAS];
-        p[i][SPEED] -= share * dt_s * p[i][BIAS];
-        p[i][TERRAIN] *= decay;
-    }
-    p[HEIGHT][HEIGHT] += HEIGHT_DRIFT_M * HEIGHT_DRIFT_M * dt_s;
-    p[SPEED][SPEED] += variance * FRAME_S * dt_s;
+    p[HEIGHT][HEIGHT] += dt_s * (p[HEIGHT][SPEED] - p[HEIGHT][TERRAIN]) - half * p[HEIGHT][BIAS] +
+                         dt_s * (height_speed - height_terrain) - half * height_bias +
+                         HEIGHT_DRIFT_M * HEIGHT_DRIFT_M * dt_s;
+    p[HEIGHT][SPEED] = height_speed - slope * height_bias;
+    p[HEIGHT][BIAS] = height_bias;
+    p[HEIGHT][TERRAIN] = height_terrain * decay;
+    p[SPEED][SPEED] += speed_drift(e, share) * dt_s - slope * (p[SPEED][BIAS] + speed_bias);
+    p[SPEED][TERRAIN] = (p[SPEED][TERRAIN] - slope * p[BIAS][TERRAIN]) * decay;
+    p[SPEED][BIAS] = speed_bias;
     p[BIAS][BIAS] += drift_mps2 * drift_mps2 * dt_s;
-    p[TERRAIN][TERRAIN] += TERRAIN_DRIFT_MPS * TERRAIN_DRIFT_MPS * dt_s;
+    p[BIAS][TERRAIN] *= decay;
+    p[TERRAIN][TERRAIN] = p[TERRAIN][TERRAIN] * decay * decay + TERRAIN_DRIFT_MPS * TERRAIN_DRIFT_MPS * dt_s;
     bound_covariance(p);
 }
 
@@ -360,38 +387,28 @@ void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motio
     }
 }
 
-/* A measurement of one state: Joseph's form, which keeps the covariance symmetric and positive in spite of
- * rounding. */
+/* A measurement of one state: Joseph's form, which keeps the covariance positive in spite of rounding. Only
+ * one half of the symmetric matrix is kept, so it stays symmetric. */
 static void correct(estimator_t *e, uint16_t state, float innovation, float variance)
 {
     float(*const p)[ESTIMATOR_STATES] = e->covariance;
-    float *const x[ESTIMATOR_STATES] = {&e->delayed.height_m, &e->delayed.speed_mps, &e->delayed.bias_mps2,
-                                        &e->delayed.terrain_mps};
-    const float sum = p[state][state] + variance;
+    const float per_sum = 1.0F / (p[state][state] + variance);
     float row[ESTIMATOR_STATES];
     float gain[ESTIMATOR_STATES];
 
     for (uint16_t i = 0U; i < ESTIMATOR_STATES; ++i) {
-        row[i] = p[state][i];
-        gain[i] = p[i][state] / sum;
-        *x[i] += gain[i] * innovation;
+        row[i] = *covariance_of(p, state, i);
+        gain[i] = row[i] * per_sum;
     }
+    e->delayed.height_m += gain[HEIGHT] * innovation;
+    e->delayed.speed_mps += gain[SPEED] * innovation;
+    e->delayed.bias_mps2 += gain[BIAS] * innovation;
+    e->delayed.terrain_mps += gain[TERRAIN] * innovation;
     for (uint16_t i = 0U; i < ESTIMATOR_STATES; ++i) {
-        for (uint16_t j = 0U; j < ESTIMATOR_STATES; ++j) {
-            p[i][j] -= gain[i] * row[j];
-        }
-    }
-    for (uint16_t i = 0U; i < ESTIMATOR_STATES; ++i) {
-        row[i] = p[i][state];
-    }
-    for (uint16_t i = 0U; i < ESTIMATOR_STATES; ++i) {
-        for (uint16_t j = 0U; j < ESTIMATOR_STATES; ++j) {
-            p[i][j] += gain[j] * (variance * gain[i] - row[i]);
-        }
-    }
-    for (uint16_t i = 0U; i < ESTIMATOR_STATES; ++i) {
-        for (uint16_t j = 0U; j < i; ++j) {
-            p[i][j] = p[j][i] = 0.5F * (p[i][j] + p[j][i]);
+        const float left = row[i] - gain[i] * row[state];
+        const float more = variance * gain[i] - left;
+        for (uint16_t j = i; j < ESTIMATOR_STATES; ++j) {
+            p[i][j] += gain[j] * more - gain[i] * row[j];
         }
     }
     bound_states(&e->delayed);

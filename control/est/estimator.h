@@ -58,7 +58,7 @@ typedef enum { HEIGHT_FUSED, HEIGHT_REJECTED, HEIGHT_TERRAIN_STEP, HEIGHT_RESET 
 typedef struct {
     bool initialised; /* at least one frame and, after it, one height were received */
     estimate_t delayed;
-    float covariance[ESTIMATOR_STATES][ESTIMATOR_STATES];
+    float covariance[ESTIMATOR_STATES][ESTIMATOR_STATES]; /* symmetric: [i][j] is kept for i <= j */
     uint32_t delayed_us;
     estimate_t now; /* estimate at now_us, the instant of the latest frame */
     uint32_t now_us;
