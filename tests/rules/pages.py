@@ -1,0 +1,120 @@
+"""The documents: nothing that they name is missing, and they stay short.
+
+Usage: pages.py ROOT [PROGRAM]
+  links and their anchors lead somewhere; files and folders in `...` exist
+  in a table with the columns function and file each function stands in one of the files of its row
+  each `make TARGET` is in the Makefile; with PROGRAM each option behind `plomada SUBCOMMAND` is in its --help
+  all pages together have fewer words than WORDS, as wc -w counts
+"""
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import house
+
+WORDS = 23800
+PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "drivers/README.md")
+ROOMS = "bsp|ccs_project|cmake|control|docs|drivers|firmware|ground|sim|tests|tools"
+LINK = re.compile(r"\]\(([^)\s]*)\)")
+NAMED = re.compile(rf"`((?:{ROOMS})/[\w./-]*\w)`")
+ROW = re.compile(r"^\|([^|\n]*)\|([^|\n]*)\|([^|\n]*)\|", re.MULTILINE)
+MAKE = re.compile(r"(?:`|^|\$ )make ([a-z][\w-]*)", re.MULTILINE)
+USED = re.compile(r"plomada (scip [a-z]+|[a-z]+)((?: +(?:--?)?[^`\s|#;&>]+)*)")
+
+
+def pages(root):
+    return [*sorted((root / "docs").glob("*.md")), *(root / name for name in PAGES if (root / name).is_file())]
+
+
+def anchor(title):
+    """As GitHub makes it of a heading."""
+    return re.sub(r"[^\w -]", "", re.sub(r"[`*]", "", title).strip().lower()).replace(" ", "-")
+
+
+def anchors(text):
+    return {anchor(title) for title in re.findall(r"^#+ (.*)$", re.sub(r"```.*?```", "", text, flags=re.DOTALL), re.MULTILINE)}
+
+
+def missing_links(page, text):
+    for target in LINK.findall(text):
+        if re.match(r"\w+:", target):
+            continue
+        path, _, name = target.partition("#")
+        file = (page.parent / path).resolve() if path else page
+        if not file.exists():
+            yield f"link to {target}: no such file"
+        elif name and name not in anchors(file.read_text(encoding="utf-8")):
+            yield f"link to {target}: no such heading"
+
+
+def missing_files(root, text):
+    for name in sorted(set(NAMED.findall(text))):
+        if "NAME" not in name and not (root / name).exists():
+            yield f"`{name}` does not exist"
+
+
+def defines(root, file, function):
+    text = (root / file).read_text(encoding="utf-8") if (root / file).is_file() else ""
+    return re.search(rf"^\w[^;\n]*\b{function}\(", text, re.MULTILINE)
+
+
+def missing_functions(root, text):
+    walk = False
+    for cells in ROW.findall(text):
+        first, second, third = (cell.strip() for cell in cells)
+        walk = (second, third) == ("function", "file") if first == "#" else walk and (first[:1].isdigit() or set(first) <= {"-"})
+        files = NAMED.findall(third)
+        if walk and files:
+            for function in re.findall(r"`(\w+)`", second):
+                if not any(defines(root, file, function) for file in files):
+                    yield f"hop {first}: {function}() is not in {', '.join(files)}"
+
+
+def missing_targets(root, text):
+    known = set(re.findall(r"^([\w-]+):", (root / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
+    for target in sorted(set(MAKE.findall(text)) - known):
+        yield f"make {target}: not in the Makefile"
+
+
+class Help:
+    def __init__(self, program):
+        self.program, self.known = program, {}
+
+    def of(self, subcommand):
+        if subcommand not in self.known:
+            done = subprocess.run([self.program, *subcommand.split(), "--help"], capture_output=True, text=True, check=False)
+            self.known[subcommand] = done.stdout if done.returncode == 0 else None
+        return self.known[subcommand]
+
+    def missing(self, text):
+        for subcommand, words in sorted(set(USED.findall(text))):
+            told = self.of(subcommand)
+            if told is None:
+                yield f"plomada {subcommand}: no such subcommand"
+                continue
+            for option in re.findall(r"(?<= )--[a-z][\w-]*", words):
+                if option != "--help" and not re.search(rf"{option}(?![\w-])", told):
+                    yield f"plomada {subcommand} {option}: not in its --help"
+
+
+def count(root):
+    return sum(len(page.read_text(encoding="utf-8").split()) for page in pages(root))
+
+
+def check(root, program=None):
+    helps = Help(program) if program else None
+    for page in pages(root):
+        text = page.read_text(encoding="utf-8")
+        for complaint in (*missing_links(page, text), *missing_files(root, text), *missing_functions(root, text),
+                          *missing_targets(root, text), *(helps.missing(text) if helps else ())):
+            yield f"{page.relative_to(root)}: {complaint}"
+    if count(root) >= WORDS:
+        yield f"{count(root)} words in all pages, fewer than {WORDS} are wanted"
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (2, 3):
+        sys.exit(__doc__)
+    print(f"{count(Path(sys.argv[1]).resolve())} words in all pages, fewer than {WORDS} are wanted")
+    house.report(list(check(Path(sys.argv[1]).resolve(), *sys.argv[2:])), "pages")
