@@ -12,14 +12,16 @@ export CMOCK_ROOT ?= $(CURDIR)/build/cmock/usr/share/cmock
 # As many jobs as processors, unless make was told how many.
 jobs = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 ctest = python3 -B tests/run.py
+# A new build tree is Ninja's where Ninja is installed; a tree that exists keeps what it was made with.
+cmake = CMAKE_GENERATOR="$$(command -v ninja >/dev/null && echo Ninja || echo Unix Makefiles)" cmake -S .
 # The two build trees of the tests. Both build everything once: test and test-long share them.
 define build_tests
 	@$(setup) build test campaign
 	@printf '\n== build with ASan and UBSan ==\n'
-	@cmake -S . -B build-sanitize -DCMAKE_BUILD_TYPE=Debug -DSANITIZE=ON -DPLOMADA_TESTS=ON
+	@$(cmake) -B build-sanitize -DCMAKE_BUILD_TYPE=Debug -DSANITIZE=ON -DPLOMADA_TESTS=ON
 	+@cmake --build build-sanitize $(jobs)
 	@printf '\n== build as released ==\n'
-	@cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON
+	@$(cmake) -B build -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON
 	+@cmake --build build $(jobs)
 endef
 
@@ -28,7 +30,7 @@ help: ## This list
 
 build: ## The program build/plomada
 	@$(setup) build
-	@cmake -S . -B build -DCMAKE_BUILD_TYPE=Release $(if $(wildcard build/CMakeCache.txt),,-DPLOMADA_TESTS=OFF)
+	@$(cmake) -B build -DCMAKE_BUILD_TYPE=Release $(if $(wildcard build/CMakeCache.txt),,-DPLOMADA_TESTS=OFF)
 	+@cmake --build build --target plomada $(jobs)
 
 fly: ## Fly the seed's 60 cm flight, by its own law and by the estimator's; CSV, JSON and pictures in build/
@@ -121,7 +123,7 @@ format: ## Every .c and .h file as .clang-format says; the test rule_format only
 
 port: ## The unit tests of drivers/ and control/ also with 16-bit octets, 16-bit int and CHAR_BIT 16 (simulated)
 	@$(setup) build test port
-	@cmake -S . -B build-port -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON -DPLOMADA_PORT=ON
+	@$(cmake) -B build-port -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON -DPLOMADA_PORT=ON
 	+@cmake --build build-port --target port $(jobs)
 	@$(ctest) build-port -L port; status=$$?; python3 -B tests/port/summary.py build-port && exit $$status
 
@@ -131,7 +133,7 @@ size: ## Flash, static RAM and stacks against the chip's limits, and docs/memory
 
 faults: ## The scanner's driver under FRAMES=10000000 damaged frames, and faults at every octet of its start
 	@$(setup) build test
-	@cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON
+	@$(cmake) -B build -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON
 	+@cmake --build build --target scip_faults scip_start $(jobs)
 	@build/tests/faults/scip_faults -n $(or $(FRAMES),10000000)
 	@build/tests/faults/scip_start --faults
@@ -150,7 +152,7 @@ bench: ## Instructions of each step of the firmware (callgrind) against tools/be
 
 coverage: ## Lines of drivers/ and control/, at least 95 %; lines and branches of the scanner's driver, all
 	@$(setup) build test coverage
-	@cmake -S . -B build-coverage -DCMAKE_BUILD_TYPE=Debug -DCOVERAGE=ON -DPLOMADA_TESTS=ON
+	@$(cmake) -B build-coverage -DCMAKE_BUILD_TYPE=Debug -DCOVERAGE=ON -DPLOMADA_TESTS=ON
 	+@cmake --build build-coverage $(jobs)
 	@find build-coverage -name '*.gcda' -delete
 	@$(ctest) build-coverage

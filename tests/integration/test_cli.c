@@ -262,8 +262,9 @@ void test_what_is_out_of_range_is_told_with_its_limits(void)
 void test_a_replay_gives_the_log_of_every_scenario_octet_for_octet(void)
 {
     static char flown[2000000], again[2000000];
+    const int step = FULL_SPEED ? 1 : 4; /* every scenario as released; under the sanitizers some of them */
 
-    for (int i = 0; i < scenario_count; i++) {
+    for (int i = 0; i < scenario_count; i += step) {
         char words[160];
 
         snprintf(words, sizeof words, "fly %s --seed 3 --csv flown.csv --record recording >metrics.txt",

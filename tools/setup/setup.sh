@@ -2,7 +2,7 @@
 # setup.sh build|test|port|size|coverage|bench|fuzz|prove|plot|campaign|ground ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
 #
 #   build     C compiler, CMake
-#   test      Ruby and CMock, which generates the mocks; Python 3 for the checks of the house rules; build/format with the
+#   test      Ninja (a third of make's processor time); Ruby and CMock, which generates the mocks; Python 3 for the checks of the house rules; build/format with the
 #             pinned clang-format
 #   port      avr-gcc, its C library, and simavr to run what it makes
 #   size      m68k-linux-gnu-gcc and avr-gcc, which measure; their C libraries
@@ -116,6 +116,7 @@ missing_packages() {
             [ -f /usr/include/stdio.h ] || echo libc6-dev
             has cmake || echo cmake ;;
         test)
+            has ninja || ! has apt-get || ! elevation >/dev/null || echo ninja-build # only faster than make: not worth a failure
             has ruby || echo ruby
             has python3 || echo python3
             format_ready || venv_maker >/dev/null || echo python3-venv ;;
