@@ -31,7 +31,7 @@ class Setup(unittest.TestCase):
         self.bin.mkdir()
         for name in BASICS:
             (self.bin / name).symlink_to(shutil.which(name))
-        for name in ("gcc", "cmake", "ruby", "python3", "gcovr"):
+        for name in ("gcc", "cmake", "ninja", "ruby", "python3", "gcovr"):
             self.stand_in(name, "exit 0")
         self.stand_in("id", '[ "$1" = -u ] && echo 1000 || echo joe')
         self.stand_in("apt-cache", 'echo "Package: $3"')
@@ -101,6 +101,14 @@ class Setup(unittest.TestCase):
         self.assertEqual((done.returncode, self.calls), (1, []))
         self.assertEqual(done.stderr, "setup: not root and no sudo; first run as root: "
                                       "apt-get install -y --no-install-recommends cmake ruby\n")
+
+    def test_ninja_is_installed_by_root_and_not_worth_a_failure_without(self):
+        self.lack("ninja")
+        done = self.run_setup("test")
+        self.assertEqual((done.returncode, done.stderr, self.calls), (0, "", []))
+        self.stand_in("id", "echo 0")
+        self.assertEqual(self.run_setup("test").returncode, 0)
+        self.assertTrue(self.calls[0].endswith("install --no-install-recommends ninja-build"), self.calls)
 
     def test_the_fuzzer_is_that_of_the_systems_clang(self):
         self.stand_in("id", "echo 0")
