@@ -7,7 +7,6 @@ import argparse
 import re
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import house
@@ -22,23 +21,14 @@ def files(the_house):
             yield from (path for path in the_house.sources(room, ".c", ".h") if not re.search(r"^tests/fixtures/|/node_modules/|/build", path))
 
 
-def formatted(program, the_house, path):
-    return subprocess.run([program, "--style=file", f"--assume-filename={path}"], input=the_house.text(path), cwd=the_house.root,
-                          check=True, capture_output=True, text=True).stdout
-
-
 def check(the_house, program, write=False):
-    paths = list(files(the_house))
-    complaints = []
-    with ThreadPoolExecutor(2) as pool:
-        for path, text in zip(paths, pool.map(lambda path: formatted(program, the_house, path), paths)):
-            before = the_house.text(path)
-            if text != before and write:
-                (the_house.root / path).write_text(text, encoding="utf-8")
-            elif text != before:
-                first = next((n for n, (a, b) in enumerate(zip(before.splitlines(), text.splitlines()), 1) if a != b), 1)
-                complaints.append(f"{path}:{first}: not as clang-format writes it: make format")
-    return complaints
+    paths = [str(path) for path in files(the_house)]
+    done = subprocess.run([program, "--style=file", *(["-i"] if write else ["--dry-run"]), *paths], cwd=the_house.root,
+                          check=True, capture_output=True, text=True)
+    first = {}
+    for path, line in re.findall(r"^(.+?):(\d+):\d+: warning: code should be clang-formatted", done.stderr, re.MULTILINE):
+        first.setdefault(path, line)
+    return [f"{path}:{line}: not as clang-format writes it: make format" for path, line in first.items()]
 
 
 if __name__ == "__main__":
