@@ -26,14 +26,14 @@
 #define GAP_LONG_S 10.0F        /* chosen: longer gaps count as this long; integrity.c restarts after 1.5 s */
 #define LOW_MM 80.0F            /* chosen: above REST_BELOW_MM in supervisor.c, 50 mm */
 #define POWERLESS_WINDOW_N 0.6F /* chosen: 0.8 m/s2 */
-#define FLOATING_WINDOW_N 0.5F  /* chosen: as TRANSFER_START_N */
+#define UNSURE_WINDOW_N 2.0F    /* chosen: as HOVER_BOUND_N in est_law.c */
+#define UNSURE_REACH_M 0.09F    /* chosen: asks for 1.2 N at the delivered POSK and VELK */
 #define UNCONFIRMED_MPS 0.35F   /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
 #define TAKEOFF_MPS 0.6F        /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
 #define CLIMB_MARGIN_MPS 0.4F   /* chosen: room for an overshoot of the climb rate above VUP */
 #define STOP_N_PER_S 2.0F       /* as STOP_N_PER_S in est_law.c */
 #define ASK_N_PER_S 1.0F        /* chosen: in 2 s too low to fly; a fall is felt before it is fast */
 #define HOP_MAX_US UINT32_C(3000000) /* chosen: the take-off's ramp in est_law.c ends after 1.2 s */
-#define DISPLACED_M 0.25F            /* chosen: below FLOAT_REACH_M */
 #define FLOAT_REACH_M 0.30F          /* chosen: three times the distance that counts as reached, reach.c */
 
 /* For states flown without an estimate. */
@@ -72,13 +72,20 @@ static bool has_estimate(const flight_t *flight)
     return est_law_ready(&flight->est);
 }
 
+/* FLOATING, and the vehicle certainly obeys. */
+static bool commands_floating(const flight_t *flight)
+{
+    return flight->supervisor.state == FLIGHT_FLOATING && flight->mode != FLIGHT_MODE_HOVER &&
+           !flight->unsure;
+}
+
 /* Low-pass of the hover thrust. It is slow, so that a fault is doubted before its error is learned. It is
  * faster at the start of a flight. */
 static void follow_hover(flight_t *flight)
 {
     const float step_s = seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
     const bool estimated = has_estimate(flight) && flight->est.airborne;
-    if (!estimated && flight->supervisor.state != FLIGHT_FLYING) {
+    if (!estimated && flight->supervisor.state != FLIGHT_FLYING && !commands_floating(flight)) {
         return;
     }
     if (flight->learned_s > 0.0F &&
@@ -110,7 +117,7 @@ static void update_hover(flight_t *flight, float gravity_n)
 {
     const flight_state_t state = flight->supervisor.state;
     const bool grounded = state == FLIGHT_GROUND || lifts(flight);
-    const bool flies = state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING;
+    const bool flies = state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING || commands_floating(flight);
     const bool sees = (flight->supervisor.flags & FLIGHT_FLAG_HEIGHT) == 0U;
 
     flight->hover_learned = !grounded && (flight->hover_learned || flies);
@@ -128,6 +135,8 @@ static void update_hover(flight_t *flight, float gravity_n)
 /* Initial values of the new mode. The law keeps its integral action only during COASTING. */
 static void change_mode(flight_t *flight, flight_mode_t before, flight_mode_t now, float gravity_n)
 {
+    const bool handed_over = flight->supervisor.state == FLIGHT_DESCENDING; /* by a pilot, without heights */
+
     if (before == FLIGHT_MODE_DESCENT) {
         flight->hover_n += flight->descent.trim_n;
     }
@@ -146,7 +155,7 @@ static void change_mode(flight_t *flight, flight_mode_t before, flight_mode_t no
         pid_reset(&flight->pid);
         pidt_reset(&flight->pidt);
     }
-    if (is_est_mode(now) && !is_est_mode(before) && before != FLIGHT_MODE_IDLE) {
+    if (is_est_mode(now) && !is_est_mode(before) && (before != FLIGHT_MODE_IDLE || handed_over)) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
 }
@@ -319,7 +328,7 @@ static bool is_off_ground(const flight_t *flight, const flight_inputs_t *in)
     case FLIGHT_FLYING:
         return !flight->lifting && in->has_throttle;
     case FLIGHT_FLOATING:
-        return flight->mode != FLIGHT_MODE_HOVER;
+        return commands_floating(flight);
     case FLIGHT_LANDING:
         return in->has_throttle && !low;
     default:
@@ -344,7 +353,6 @@ static flown_t describe(const flight_t *flight, const parameters_t *parameters, 
         .authority_mps2_per_n = vehicle.authority_mps2_per_n,
         .damping_per_s = vehicle.damping_per_s,
         .wanted_m = wanted_m(flight),
-        .displaced = supervisor->state == FLIGHT_FLOATING && fabsf(wanted_m(flight)) > DISPLACED_M,
         .noise_mps2 = flight->est.estimator.noise_mps2,
     };
 }
@@ -410,7 +418,7 @@ static void change_doubts(flight_t *flight, float gravity_n)
         (flight->est.airborne || flies_unseen)) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
-    est_law_set_powerless(&flight->est, integrity_doubts(integrity, DOUBT_THRUST));
+    est_law_set_powerless(&flight->est, integrity_doubts(integrity, DOUBT_THRUST) || flight->unsure);
     est_law_set_accelerations_doubted(&flight->est, integrity_doubts(integrity, DOUBT_IMU));
     if ((come & DOUBT_IMU) != 0U && flight->est.airborne) { /* the estimate used them until now */
         estimator_amend(&flight->est.estimator, integrity->height_m, integrity->rise_mps, 0.0F);
@@ -524,10 +532,10 @@ static bool uses_estimate(const flight_t *flight)
 }
 
 /* While the pilot has the throttle the command is the hover thrust, so that the hand-back does not cut the
- * motors. */
+ * motors. The same where the vehicle may stand and something blocks the beam. */
 static flight_mode_t select_mode(const flight_t *flight, const flight_inputs_t *in)
 {
-    if (flight->supervisor.state == FLIGHT_FLOATING && !in->has_throttle) {
+    if (flight->supervisor.state == FLIGHT_FLOATING && (!in->has_throttle || flight->lifting)) {
         return FLIGHT_MODE_HOVER;
     }
     if (flight->supervisor.state == FLIGHT_COASTING && has_estimate(flight) && flight->est.airborne &&
@@ -537,21 +545,34 @@ static flight_mode_t select_mode(const flight_t *flight, const flight_inputs_t *
     return (uses_estimate(flight) ? modes_with_estimate : modes_without_estimate)[flight->supervisor.state];
 }
 
+/* Without a pin nothing tells who has the throttle, and FLOATING then begins in a pilot's hands. */
+static void update_sureness(flight_t *flight, const parameters_t *parameters, bool has_throttle)
+{
+    const bool before = flight->unsure;
+
+    flight->unsure = flight->supervisor.state == FLIGHT_FLOATING && has_throttle &&
+                     parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE;
+    if (before && !flight->unsure && flight->supervisor.state != FLIGHT_GROUND) {
+        est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
+    }
+}
+
 static bool is_hold_mode(flight_mode_t mode)
 {
     return mode == FLIGHT_MODE_EST_HOLD || mode == FLIGHT_MODE_FLOAT;
 }
 
-/* FLOATING holds the height at its start. When something else moves the vehicle, the held height follows. */
+/* FLOATING holds the height at its start. When something else moves the vehicle, the held height follows; at
+ * once where a pilot may fly. */
 static void float_along(flight_t *flight, bool entered)
 {
     const float height_m = flight->supervisor.height.height_mm * 0.001F;
     const bool holds = !entered && flight->supervisor.state == FLIGHT_FLOATING &&
                        flight->mode != FLIGHT_MODE_HOVER;
+    const float reach_m = flight->unsure ? UNSURE_REACH_M : FLOAT_REACH_M;
 
-    flight->floating_m = holds
-                             ? between(height_m - FLOAT_REACH_M, flight->floating_m, height_m + FLOAT_REACH_M)
-                             : height_m;
+    flight->floating_m = holds ? between(height_m - reach_m, flight->floating_m, height_m + reach_m)
+                               : height_m;
 }
 
 /* Limits the thrust, and by it the climb, without use of the estimate: the vehicle's model gives the thrust
@@ -577,13 +598,13 @@ static float within_climb_n(const flight_t *flight, const parameters_t *paramete
 }
 
 /* While commands have no effect, the thrust stays near the hover thrust. So it fits when the commands get
- * their effect back. In FLOATING too, because a pilot may fly there without a pin that reports it. */
+ * their effect back. In FLOATING too, where a pilot may fly without a pin that reports it. */
 static float within_power_n(const flight_t *flight, float thrust_n)
 {
     const float held_n = flight->integrity.held_n;
 
-    if (flight->supervisor.state == FLIGHT_FLOATING) {
-        return between(flight->hover_n - FLOATING_WINDOW_N, thrust_n, flight->hover_n + FLOATING_WINDOW_N);
+    if (flight->unsure) {
+        return between(flight->hover_n - UNSURE_WINDOW_N, thrust_n, flight->hover_n + UNSURE_WINDOW_N);
     }
     if (!integrity_doubts(&flight->integrity, DOUBT_THRUST)) {
         return thrust_n;
@@ -677,6 +698,7 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
                                    flight->supervisor.state);
     update_estimator(flight, parameters, &believed);
     const bool law_changed = select_law(flight, parameters);
+    update_sureness(flight, parameters, in->has_throttle);
     flight->mode = select_mode(flight, in);
     if (before != flight->mode) {
         change_mode(flight, before, flight->mode, parameters->value[PARAMETER_GRAV]);

@@ -45,6 +45,7 @@ typedef struct {
     bool hopping;     /* TAKEOFF ended and the vehicle had not left the ground */
     float asking_n;   /* most thrust of a descent that asks whether it stands */
     float floating_m; /* height that FLOATING holds */
+    bool unsure;      /* FLOATING, and no pin tells who has the throttle: nothing is learned */
     flight_mode_t mode;
     pid_state_t pid;
     bool integral; /* the law had an integral action in the previous cycle */

@@ -373,6 +373,10 @@ static void feel(integrity_t *i, const flown_t *flown, const imu_sample_t *frame
     if (flown->grounded) {
         feel_rest(i, dt_s);
     } else {
+        if (i->rested_s > 0.0F && !flown->standing) { /* a pilot has lifted it: that was no rest */
+            i->bias_mps2 = 0.0F;
+            start(&i->felt, i->rise_mps);
+        }
         i->rested_s = 0.0F;
         watch_fall(i, dt_s);
         move(&i->felt, 0.5F * (before_mps2 + i->up_mps2) - i->bias_mps2, dt_s);
@@ -667,13 +671,7 @@ static bool imu_is_wrong(const integrity_t *i, const flown_t *flown)
 /* Reasons for DOUBT_THRUST. */
 static bool thrust_is_wrong(const integrity_t *i, const flown_t *flown)
 {
-    if (!i->proved && !flown->displaced) {
-        return false;
-    }
-    if (flown->displaced) {
-        return true;
-    }
-    return fabsf(flown->wanted_m) > VAIN_M && against(&i->pushed, POWERLESS_M) && feels(i) &&
+    return i->proved && fabsf(flown->wanted_m) > VAIN_M && against(&i->pushed, POWERLESS_M) && feels(i) &&
            !feels_against(i, WITH_M) && pushes_in_vain(i, flown, PUSH_N);
 }
 

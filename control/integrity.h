@@ -61,7 +61,6 @@ typedef struct {
     float authority_mps2_per_n, damping_per_s; /* vehicle model, as in cascade.h */
     float hover_n;                             /* sure hover thrust, see flight.h */
     float wanted_m;   /* reference minus height, > 0: the law wants to climb; NAN: no height is held */
-    bool displaced;   /* FLOATING holds a height and is more than 0.25 m away from it */
     float noise_mps2; /* rms noise of the accelerometer, measured by the estimator */
 } flown_t;
 

@@ -470,13 +470,6 @@ void test_commands_without_an_effect_are_doubted_once_the_law_pushes(void)
     }
 }
 
-void test_a_floating_vehicle_that_is_carried_off_is_not_flown_by_its_commands(void)
-{
-    fly();
-    flown.displaced = true;
-    TEST_ASSERT_TRUE(until(DOUBT_THRUST, 0.3F) < 0.2F);
-}
-
 /* ---- standing */
 
 void test_it_stands_where_little_thrust_does_not_make_it_fall(void)
