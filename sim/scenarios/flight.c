@@ -24,15 +24,17 @@
 #define BENCH_SETTINGS_S 0.5
 #define ANSWER_PATIENCE (3 * SIM_S)
 #define ANSWER_END (300 * SIM_MS) /* of silence */
+#define DUMP_PATIENCE (600 * SIM_S)
 
 static struct {
     plant_t plant;
     metrics_record_t record;
     sim_time_t origin;
     FILE *telemetry;
-    char line[128]; /* of the operator's terminal */
+    char line[256]; /* of the operator's terminal */
     size_t line_length;
     unsigned ok, err;
+    bool dumped;         /* #LOG has been answered to its end */
     bool asked;          /* #LASER has been typed */
     char answer[1024];   /* to it */
     sim_time_t answered; /* its latest line; 0: none */
@@ -92,7 +94,7 @@ static const char *check_reference(const char *text)
     return reference_m >= 0.0F && reference_m <= FLIGHT_REFERENCE_MAX_M ? NULL : "out of range 0..3 m";
 }
 
-static const char *check_override(const char *name, const char *value)
+const char *flight_check(const char *name, const char *value)
 {
     const parameter_id_t id = parameter_find(name, strlen(name));
 
@@ -103,6 +105,12 @@ static const char *check_override(const char *name, const char *value)
         return plant_known(name) ? plant_check(name, value) : "unknown name";
     }
     return check_parameter(id, value);
+}
+
+bool flight_knows(const char *name)
+{
+    return strcasecmp(name, "SETR") == 0 || parameter_find(name, strlen(name)) != PARAMETER_COUNT ||
+           plant_known(name);
 }
 
 const char *flight_override(flight_options_t *options, const char *assignment)
@@ -120,7 +128,7 @@ const char *flight_override(flight_options_t *options, const char *assignment)
     }
     snprintf(o->name, sizeof o->name, "%.*s", (int)(equals - assignment), assignment);
     snprintf(o->value, sizeof o->value, "%s", equals + 1);
-    error = check_override(o->name, o->value);
+    error = flight_check(o->name, o->value);
     options->override_count += error == NULL;
     return error;
 }
@@ -155,6 +163,7 @@ static void line_complete(void)
 {
     flight.ok += begins("OK ");
     flight.err += begins("ERR ");
+    flight.dumped = flight.dumped || begins("OK LOG END");
     if (flight.asked && (begins("OK LASER") || begins("ERR LASER"))) {
         keep_answer();
     } else if (flight.telemetry != NULL) {
@@ -248,6 +257,10 @@ static void type_settings(const scenario_t *scenario, const flight_options_t *op
     char name[16];
     double t_s = -lead_s(scenario);
 
+    if (options->dump) {
+        type_at(at(t_s), "LOG", "RATE FAST");
+        t_s += LINE_SPACING_S;
+    }
     for (int i = 0; i < SCENARIO_SETTINGS_MAX && scenario->settings[i] != NULL; i++) {
         const char *setting = suited(scenario, scenario->settings[i]);
         const char *value = strchr(setting, ' ') + 1;
@@ -436,6 +449,25 @@ static void sample(FILE *csv)
     }
 }
 
+/* The vehicle stands, and everything that its recorder holds comes by radio. */
+static void dump(void)
+{
+    const sim_time_t end = timeline_now() + DUMP_PATIENCE;
+
+    type_at(timeline_now(), "LOG", "");
+    while (!flight.dumped && timeline_now() < end && kernel_run_until(timeline_now() + STEP)) {
+    }
+}
+
+static void set_plant(const char *setting)
+{
+    char name[32];
+    const size_t length = strcspn(setting, " ");
+
+    snprintf(name, sizeof name, "%.*s", (int)length, setting);
+    plant_set(&flight.plant, name, strtod(setting + length, NULL));
+}
+
 static void configure(const scenario_t *scenario, const flight_options_t *options)
 {
     board_config_t *board = &flight.plant.board;
@@ -452,6 +484,9 @@ static void configure(const scenario_t *scenario, const flight_options_t *option
         board->quadrotor.naza.stop_type = NAZA_IMMEDIATELY;
         board->quadrotor.barometer_mps = 0.05;
         board->pilot.trim_n = board->quadrotor.hover_thrust_n;
+    }
+    for (int i = 0; scenario->plant[i] != NULL; i++) {
+        set_plant(scenario->plant[i]);
     }
     for (int i = 0; i < options->override_count; i++) {
         if (plant_known(options->overrides[i].name)) {
@@ -624,6 +659,9 @@ static void run(const scenario_t *scenario, const flight_options_t *options, fli
     } else if (start_up(scenario, options)) {
         plan(scenario, options);
         fly(scenario, options);
+        if (options->dump) {
+            dump();
+        }
     } else {
         result->started = false;
     }

@@ -36,6 +36,7 @@ typedef struct {
     line_fault_spec_t faults[FLIGHT_FAULTS_MAX]; /* of the scanner's line */
     int fault_count;
     const kernel_costs_t *costs; /* NULL: Annex IV's */
+    bool dump;                   /* #LOG RATE FAST before the flight, #LOG after it */
     double height_m;             /* bench: of the landing gear above the floor */
     FILE *telemetry; /* lines that the operator's terminal receives; NULL: none. Bench: the answer to #LASER
                       * last */
@@ -46,6 +47,13 @@ typedef struct {
     const char *halt; /* why the firmware stopped, or NULL */
     bool started;     /* the scanner came up and the reference was sent */
 } flight_result_t;
+
+/* What is wrong with this value of a telecommand parameter, of SETR or of a plant figure; NULL when nothing
+ * is. */
+const char *flight_check(const char *name, const char *value);
+
+/* Whether it is the name of one of them. */
+bool flight_knows(const char *name);
 
 /* Checks and stores one NAME=VALUE. NULL when fine, else what is wrong with it. */
 const char *flight_override(flight_options_t *options, const char *assignment);

@@ -9,7 +9,8 @@
 
 #define SCENARIO_SETTINGS_MAX 16
 #define SCENARIO_EXPECTATIONS_MAX 10
-#define SCENARIO_LATER_MAX 40
+#define SCENARIO_LATER_MAX 80
+#define SCENARIO_PLANT_MAX 32
 
 typedef struct {
     double t_s;               /* complete at the receiver */
@@ -29,6 +30,7 @@ typedef struct {
     const char *summary;
     const char *settings[SCENARIO_SETTINGS_MAX]; /* "LAW PID", ... NULL ends */
     later_line_t later[SCENARIO_LATER_MAX]; /* typed in flight; --set does not reach them; no name ends */
+    const char *plant[SCENARIO_PLANT_MAX];  /* "plant.tau 0.1", ... NULL ends; --set wins */
     bool bench; /* the vehicle stands still: no flight, no commands; ends at end_s */
     double reference_m;
     bool platform;               /* the seed's ramp and platform; else flat */

@@ -61,8 +61,9 @@ def digest(program):
 
 
 def key(program_digest, arguments):
-    """Names a flight: the same program with the same arguments gives the same figures."""
-    return hashlib.sha256(json.dumps([program_digest, *arguments]).encode()).hexdigest()[:24]
+    """Names a flight: the same program with the same arguments, and files of the same content, gives the same figures."""
+    files = [digest(word) for word in arguments if ("." in word or "/" in word) and Path(word).is_file()]
+    return hashlib.sha256(json.dumps([program_digest, *arguments, *files]).encode()).hexdigest()[:24]
 
 
 @contextlib.contextmanager

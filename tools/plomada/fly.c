@@ -11,6 +11,7 @@
 #include "measure.h"
 #include "nearest.h"
 #include "output.h"
+#include "scenario_file.h"
 #include "vehicle.h"
 #include "sim/scenarios/flight.h"
 #include "sim/scenarios/plant.h"
@@ -20,11 +21,16 @@
 
 static const char usage[] =
     "usage: plomada fly SCENARIO [OPTION]...\n\n"
-    "Flies one scenario with the unmodified firmware on the PC board, in virtual time.\n\n"
+    "Flies one scenario with the unmodified firmware on the PC board, in virtual time. SCENARIO: a name, or "
+    "a file of your\n"
+    "own (docs/campaign.md); a file's name has a dot or a slash in it.\n\n"
     "  --seed N            noise, phases and turbulence (default 1)\n"
     "  --csv FILE          log at 100 Hz: the columns of #LOG (docs/operator.md), then the truth: height_m "
     "above the ground,\n"
     "                      abs_m, terrain_m, and the throttle pulse_us\n"
+    "  --log FILE          what an operator saves who types #LOG RATE FAST before the flight and #LOG after "
+    "it: all lines\n"
+    "                      of the radio. `plomada log FILE` makes a CSV of it, for `make fit`\n"
     "  --json FILE         metrics. - as FILE of --csv or --json is stdout; the table then goes to stderr\n"
     "  --storage FILE      the chip's flash: what #SAVE has stored there in one run is in force in the next. "
     "Without it the\n"
@@ -77,6 +83,7 @@ enum {
     OPT_SEED = 1,
     OPT_CSV,
     OPT_JSON,
+    OPT_LOG,
     OPT_STORAGE,
     OPT_RECORD,
     OPT_SET,
@@ -99,6 +106,7 @@ static const struct option long_options[] = {
     {"seed", required_argument, NULL, OPT_SEED},
     {"csv", required_argument, NULL, OPT_CSV},
     {"json", required_argument, NULL, OPT_JSON},
+    {"log", required_argument, NULL, OPT_LOG},
     {"storage", required_argument, NULL, OPT_STORAGE},
     {"record", required_argument, NULL, OPT_RECORD},
     {"set", required_argument, NULL, OPT_SET},
@@ -121,7 +129,7 @@ static const struct option long_options[] = {
 typedef struct {
     flight_options_t flight;
     const scenario_t *scenario;
-    output_t csv, json, trace, record;
+    output_t csv, json, log, trace, record;
     const char *storage_path, *record_dir;
     double cost_scale;
     bool help, height, timing;
@@ -201,6 +209,10 @@ static bool read_option(request_t *request, int option, const char *argument)
     case OPT_JSON:
         request->json.path = argument;
         return true;
+    case OPT_LOG:
+        request->log.path = argument;
+        request->flight.dump = true;
+        return true;
     case OPT_STORAGE:
         request->storage_path = argument;
         return true;
@@ -261,6 +273,9 @@ static bool check_arguments(const request_t *request)
 {
     const flight_options_t *options = &request->flight;
 
+    if (request->flight.dump && (request->scenario->bench || options->realtime)) {
+        return complain("goes with a flight in virtual time", "--log");
+    }
     if (request->scenario->bench) {
         return true;
     }
@@ -294,6 +309,16 @@ static bool no_such_scenario(const char *name)
     return false;
 }
 
+static bool find_scenario(request_t *request, const char *name)
+{
+    if (strpbrk(name, "./") != NULL) {
+        request->scenario = scenario_file_read(name);
+        return request->scenario != NULL;
+    }
+    request->scenario = scenario_find(name);
+    return request->scenario != NULL || no_such_scenario(name);
+}
+
 static bool read_arguments(request_t *request, int argc, char **argv)
 {
     int option;
@@ -311,11 +336,7 @@ static bool read_arguments(request_t *request, int argc, char **argv)
         return complain("one SCENARIO is needed, see `plomada list`",
                         optind < argc ? argv[optind + 1] : "fly");
     }
-    request->scenario = scenario_find(argv[optind]);
-    if (request->scenario == NULL) {
-        return no_such_scenario(argv[optind]);
-    }
-    return check_arguments(request);
+    return find_scenario(request, argv[optind]) && check_arguments(request);
 }
 
 static int decimals(metric_t metric)
@@ -450,10 +471,11 @@ static bool open_record(request_t *request)
 static bool open_outputs(request_t *request)
 {
     const bool opened = output_open(&request->csv) && output_open(&request->json) &&
-                        output_open(&request->trace) && open_record(request);
+                        output_open(&request->log) && output_open(&request->trace) && open_record(request);
 
     request->flight.csv = request->csv.file;
     request->flight.record = request->record.file;
+    request->flight.telemetry = request->log.file;
     if (request->scenario->bench ||
         (request->flight.realtime && request->flight.device[BOARD_RADIO] == NULL)) {
         request->flight.telemetry = reading_matter(request);
@@ -467,6 +489,7 @@ static bool close_outputs(request_t *request)
 
     closed = output_close(&request->record) && closed;
     closed = output_close(&request->json) && closed;
+    closed = output_close(&request->log) && closed;
     return output_close(&request->csv) && closed;
 }
 

@@ -1,0 +1,120 @@
+/* Scenarios from a file, as their users write them. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "child.h"
+#include "unity.h"
+
+static char output[100000];
+static const char path[] = SCRATCH "/own.scenario";
+
+void setUp(void) {}
+
+void tearDown(void)
+{
+    remove(path);
+}
+
+static int fly(const char *text, const char *options)
+{
+    FILE *file = fopen(path, "w");
+    char line[512];
+
+    TEST_ASSERT_NOT_NULL(file);
+    fputs(text, file);
+    fclose(file);
+    snprintf(line, sizeof line, "fly %s %s 2>&1", path, options);
+    return child_plomada(line, output, sizeof output);
+}
+
+static double figure(const char *name)
+{
+    const char *at = strstr(output, name);
+
+    TEST_ASSERT_NOT_NULL_MESSAGE(at, output);
+    return atof(at + strlen(name));
+}
+
+static void refused(const char *text, const char *reason)
+{
+    TEST_ASSERT_EQUAL_INT_MESSAGE(2, fly(text, ""), text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, reason), output);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, path), output);
+}
+
+#define FLIGHT "reference 0.5\nland 12\nend 18\n"
+
+void test_a_flight_as_the_file_says(void)
+{
+    TEST_ASSERT_EQUAL_INT_MESSAGE(
+        0,
+        fly("# up, and higher\n" FLIGHT
+            "name mine\nset LAW EST\nset plant.turbulence 0\nat 6 SETR 0.9 # a step\n"
+            "expect highest_mm 380 500\nexpect ground_contacts 0 0\nfate succeeds\n",
+            "--seed 4"),
+        output);
+    TEST_ASSERT_NOT_NULL(strstr(output, "mine, seed 4"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "MET: all expectations of mine"));
+}
+
+void test_an_expectation_that_does_not_hold_is_named(void)
+{
+    TEST_ASSERT_EQUAL_INT(1, fly(FLIGHT "expect highest_mm 380 500\n", ""));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "NOT MET: highest_mm is not within 380..500"), output);
+}
+
+void test_a_file_that_is_like_a_scenario_flies_as_it_does(void)
+{
+    fly("like pid-60cm-ramp\n", "");
+    const double own_mm = figure("hover_rms_mm");
+    TEST_ASSERT_TRUE(child_plomada("fly pid-60cm-ramp 2>&1", output, sizeof output) == 0);
+    TEST_ASSERT_EQUAL_DOUBLE(figure("hover_rms_mm"), own_mm);
+    fly("like pid-60cm-ramp\nset LAW EST\n", "");
+    TEST_ASSERT_TRUE(figure("hover_rms_mm") < 0.5 * own_mm);
+}
+
+void test_a_set_of_the_command_line_wins(void)
+{
+    fly(FLIGHT "set LAW PD\nset plant.hover_thrust 9\n", "");
+    const double own_mm = figure("hover_rms_mm");
+    fly(FLIGHT "set LAW PD\nset plant.hover_thrust 9\n", "--set LAW=EST --set plant.hover_thrust=7");
+    TEST_ASSERT_TRUE(figure("hover_rms_mm") < 0.5 * own_mm);
+}
+
+void test_what_is_wrong_is_told_by_its_line(void)
+{
+    refused("land 12\nreferense 0.5\n", ":2: referense: no such word here; did you mean reference?");
+    refused("reference high\n", ":1: high: not a number");
+    refused("\n\nreference 9\n", ":3: 9: out of range 0..3 m");
+    refused("set KQ 1\n", ":1: KQ: unknown name");
+    refused("set KP 7\n", ":1: KP: out of range 0..1 N/mm");
+    refused("set plant.tau 1e9\n", ":1: plant.tau: out of range");
+    refused("set LAW\n", ":1: set NAME VALUE: that is its form");
+    refused("at 5 SETR 4\n", ":1: SETR: out of range 0..3 m");
+    refused("at soon SETR 1\n", ":1: soon: not a number");
+    refused("expect hover_mm 1 2\n", ":1: hover_mm: no such metric");
+    refused("expect hover_rms_mm 5 2\n", ":1: 2: out of range");
+    refused("like pid-60\n", ":1: pid-60: no such scenario");
+    refused("fate good\n", ":1: good: succeeds, fails or either");
+    refused("platform big\n", ":1: big: yes or no");
+    refused("reference 0.5\nend 9\n", "no land");
+    refused("land 9\nend 12\n", "no reference");
+    refused("reference 0.5\nland 9\nend 8\n", "end is not after land");
+    TEST_ASSERT_EQUAL_INT(2, child_plomada("fly ./no-such-file 2>&1", output, sizeof output));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "./no-such-file: No such file"), output);
+}
+
+void test_more_than_there_is_room_for_is_refused(void)
+{
+    static char text[8000];
+
+    strcpy(text, FLIGHT);
+    for (int i = 0; i < 100; i++) {
+        strcat(text, "at 5 SETR 0.6\n");
+    }
+    refused(text, "too many");
+    strcpy(text, FLIGHT "set KP ");
+    memset(text + strlen(text), '1', 400);
+    refused(text, ":4: line too long");
+}
