@@ -123,6 +123,9 @@ static const figure_t figures[] = {
      "amplitude of a vibration that sampling makes a slow one"},
     {"acc_alias_hz", "Hz", 0, 1000, IMU(acceleration_alias_hz), 1, "of so many oscillations"},
     {"imu_stock", "-", 0, 1, IMU(stock), 1, "1: a Razor as it comes: angles alone, every 20 ms"},
+    {"imu_period", "s", 0, 0.2, AT(imu_period_s), 1,
+     "from frame to frame; 0: 0.025, as it comes 0.02; the line's rate allows 0.011"},
+    {"imu_age", "s", 0, 0.15, AT(imu_age_s), 1, "of a frame's content as its first octet leaves"},
     {"imu_roll_sign", "-", -1, 1, IMU(roll_sign), 1, "-1: it tells roll the other way round"},
     {"imu_pitch_sign", "-", -1, 1, IMU(pitch_sign), 1, "-1: it tells pitch the other way round"},
     {"imu_swapped", "-", 0, 1, IMU(swapped), 1, "1: it tells roll and pitch in each other's place"},
@@ -170,6 +173,7 @@ void plant_init(plant_t *plant, unsigned long seed)
 {
     *plant = (plant_t){.board = board_config(seed)};
     plant->ray_instant_s = (double)plant->board.laser.ray_instant * 1e-9;
+    plant->imu_age_s = (double)plant->board.imu.age * 1e-9;
     plant->outage_start_s = 10.0;
     plant->restart_start_s = SPAN_FOR_GOOD_S;
     plant->radio_lost_start_s = SPAN_FOR_GOOD_S;
@@ -199,13 +203,23 @@ void plant_set(plant_t *plant, const char *name, double value)
     *field_of(plant, figure) = value * figure->scale;
 }
 
+static void complete_imu(plant_t *plant)
+{
+    razor_config_t *imu = &plant->board.imu;
+
+    imu->age = (sim_time_t)llround(plant->imu_age_s * 1e9);
+    if (plant->imu_period_s > 0.0) {
+        imu->period = (sim_time_t)llround(fmax(plant->imu_period_s, 0.011) * 1e9);
+    } else if (imu->stock >= 0.5) {
+        imu->period = 20 * SIM_MS;
+    }
+}
+
 void plant_complete(plant_t *plant)
 {
     plant->board.laser.ray_instant = (sim_time_t)llround(plant->ray_instant_s * 1e9);
     plant->board.laser.clock_ratio = 1.0 + plant->clock_ppm * 1e-6;
-    if (plant->board.imu.stock >= 0.5) {
-        plant->board.imu.period = 20 * SIM_MS;
-    }
+    complete_imu(plant);
     if (plant->attitude_throttle >= 0.5 && plant->board.quadrotor.climb_rate_mps_per_n <= 0.0) {
         plant->board.quadrotor.climb_rate_mps_per_n = 1.0;
     }

@@ -104,8 +104,8 @@ EXPORT("vehicle_power_on") void vehicle_power_on(unsigned seed)
 /* The scanner, the pilot and the kind of autopilot and IMU are those of power-on. */
 static bool at_once(const char *name)
 {
-    static const char *const at_power_on[] = {"ray_instant", "clock_ppm",         "imu_stock",
-                                              "stop_type",   "attitude_throttle", "pilot"};
+    static const char *const at_power_on[] = {"ray_instant", "clock_ppm", "imu_stock",         "imu_period",
+                                              "imu_age",     "stop_type", "attitude_throttle", "pilot"};
 
     for (size_t i = 0; i < sizeof at_power_on / sizeof at_power_on[0]; i++) {
         if (strncmp(name, at_power_on[i], strlen(at_power_on[i])) == 0) {

@@ -48,6 +48,35 @@ void child_run(child_work_t work, void *argument, void *result, size_t size)
                              "the child crashed");
 }
 
+child_flights_t child_fly_seeds(const char *scenario, unsigned long seeds, const char *const *assignments)
+{
+    child_flights_t flights = {{0.0}, {0.0}};
+
+    for (unsigned long seed = 1; seed <= seeds; seed++) {
+        flight_result_t result;
+
+        child_fly(scenario, seed, assignments, &result);
+        TEST_ASSERT_TRUE(result.started);
+        TEST_ASSERT_NULL(result.halt);
+        for (int i = 0; i < METRIC_COUNT; i++) {
+            const double value = result.metrics.value[i];
+
+            flights.mean[i] += value / (double)seeds;
+            flights.worst[i] = value > flights.worst[i] ? value : flights.worst[i];
+        }
+    }
+    printf("%s", scenario);
+    for (; *assignments != NULL; assignments++) {
+        printf(" --set %s", *assignments);
+    }
+    printf(", seeds 1 to %lu: rms %.1f mm, overshoot %.0f mm, terrain %.1f mm, recovery %.2f s, touch %.2f "
+           "m/s at most\n",
+           seeds, flights.mean[METRIC_HOVER_RMS_MM], flights.mean[METRIC_OVERSHOOT_MM],
+           flights.mean[METRIC_TERRAIN_RMS_MM], flights.mean[METRIC_RECOVERY_S],
+           flights.worst[METRIC_TOUCH_SPEED_MPS]);
+    return flights;
+}
+
 int child_plomada(const char *arguments, char *output, size_t size)
 {
     char command[2048];

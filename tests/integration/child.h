@@ -17,6 +17,13 @@ void child_run(child_work_t work, void *argument, void *result, size_t size);
 void child_fly(const char *scenario, unsigned long seed, const char *const *assignments,
                flight_result_t *result);
 
+/* Flights of seeds 1 to `seeds`; prints the means that a tuner reads. Fails the test when one did not start
+ * or halted. */
+typedef struct {
+    double mean[METRIC_COUNT], worst[METRIC_COUNT];
+} child_flights_t;
+child_flights_t child_fly_seeds(const char *scenario, unsigned long seeds, const char *const *assignments);
+
 /* The program as its users call it, in the directory SCRATCH: `plomada ARGUMENTS`, which a shell reads. What
  * it prints is put into output, cut at size - 1 characters and terminated. Returns its exit status. */
 int child_plomada(const char *arguments, char *output, size_t size);

@@ -1,15 +1,12 @@
 /* The firmware's estimator assumes thrust in proportion to the throttle, one lag and one damping. Here it
  * flies rotors by momentum theory: thrust by a power of the throttle, quick up and slow down, inflow, drag by
  * the square. */
-#include <stdio.h>
-#include <string.h>
-
 #include "child.h"
 #include "unity.h"
 
 #define SEEDS 10
 
-static double mean[METRIC_COUNT], worst[METRIC_COUNT];
+static child_flights_t flights;
 
 void setUp(void) {}
 void tearDown(void) {}
@@ -18,35 +15,22 @@ static void fly(const char *scenario, const char *exponent)
 {
     const char *assignments[] = {"plant.airframe=1", exponent, NULL};
 
-    memset(mean, 0, sizeof mean);
-    memset(worst, 0, sizeof worst);
-    for (unsigned long seed = 1; seed <= SEEDS; seed++) {
-        flight_result_t result;
-
-        child_fly(scenario, seed, assignments, &result);
-        TEST_ASSERT_TRUE(result.started);
-        TEST_ASSERT_NULL(result.halt);
-        for (int i = 0; i < METRIC_COUNT; i++) {
-            mean[i] += result.metrics.value[i] / SEEDS;
-            worst[i] = result.metrics.value[i] > worst[i] ? result.metrics.value[i] : worst[i];
-        }
-    }
-    printf("%s, %s: rms %.1f mm, terrain %.1f mm, recovery %.2f s, touch %.2f m/s at most\n", scenario,
-           exponent, mean[METRIC_HOVER_RMS_MM], mean[METRIC_TERRAIN_RMS_MM], mean[METRIC_RECOVERY_S],
-           worst[METRIC_TOUCH_SPEED_MPS]);
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, worst[METRIC_OFF_ALOFT]);
-    TEST_ASSERT_TRUE(worst[METRIC_TOUCH_SPEED_MPS] > 0.05 && worst[METRIC_TOUCH_SPEED_MPS] < 0.6);
+    flights = child_fly_seeds(scenario, SEEDS, assignments);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, flights.worst[METRIC_OFF_ALOFT]);
+    TEST_ASSERT_TRUE(flights.worst[METRIC_TOUCH_SPEED_MPS] > 0.05 &&
+                     flights.worst[METRIC_TOUCH_SPEED_MPS] < 0.6);
 }
 
 static void by_the_estimator(const char *exponent)
 {
     fly("est-60cm-ramp", exponent);
-    TEST_ASSERT_DOUBLE_WITHIN(3.5, 11.0, mean[METRIC_HOVER_RMS_MM]);
-    TEST_ASSERT_DOUBLE_WITHIN(12.0, 76.0, mean[METRIC_TERRAIN_RMS_MM]);
-    TEST_ASSERT_DOUBLE_WITHIN(0.35, 0.95, mean[METRIC_RECOVERY_S]); /* 0.74 on the airframe that it assumes */
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, worst[METRIC_GROUND_CONTACTS]);
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, worst[METRIC_TAKEOVERS]);
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, worst[METRIC_FLAGGED_S]);
+    TEST_ASSERT_DOUBLE_WITHIN(3.5, 11.0, flights.mean[METRIC_HOVER_RMS_MM]);
+    TEST_ASSERT_DOUBLE_WITHIN(12.0, 76.0, flights.mean[METRIC_TERRAIN_RMS_MM]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.35, 0.95,
+                              flights.mean[METRIC_RECOVERY_S]); /* 0.74 on the airframe that it assumes */
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, flights.worst[METRIC_GROUND_CONTACTS]);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, flights.worst[METRIC_TAKEOVERS]);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, flights.worst[METRIC_FLAGGED_S]);
 }
 
 void test_the_estimator_flies_an_airframe_that_it_does_not_assume(void)
@@ -61,6 +45,6 @@ void test_the_estimator_flies_an_airframe_that_it_does_not_assume(void)
 void test_the_seeds_law_oscillates_on_it_and_does_not_fly_away(void)
 {
     fly("pid-60cm-ramp", "plant.exponent=1.5");
-    TEST_ASSERT_DOUBLE_WITHIN(60.0, 200.0, mean[METRIC_HOVER_RMS_MM]);
-    TEST_ASSERT_TRUE(worst[METRIC_HIGHEST_MM] > 250.0 && worst[METRIC_HIGHEST_MM] < 1000.0);
+    TEST_ASSERT_DOUBLE_WITHIN(60.0, 200.0, flights.mean[METRIC_HOVER_RMS_MM]);
+    TEST_ASSERT_TRUE(flights.worst[METRIC_HIGHEST_MM] > 250.0 && flights.worst[METRIC_HIGHEST_MM] < 1000.0);
 }
