@@ -8,6 +8,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/seed_study"))
 import chapter_4_1  # noqa: E402
+import seed_study  # noqa: E402
 import statements  # noqa: E402
 
 PAGE = (ROOT / "docs/control.md").read_text(encoding="utf-8")
@@ -99,10 +100,28 @@ class Statements(unittest.TestCase):
         self.assertAlmostEqual(found["before_mm"], 0.0, places=6)
         self.assertAlmostEqual(found["end_error_mm"], 0.0, places=6)
 
-    def test_the_page_judges_every_statement(self):
-        table = re.search(r"<!-- by make seed-study.*?<!-- end of the seed study -->", PAGE, re.DOTALL).group()
-        self.assertEqual(re.findall(r"^\| (.+?) \((?:Annex I|4\.|6)", table, re.MULTILINE),
-                         [s.words for s in statements.STATEMENTS])
+    def test_the_page_shows_what_does_not_hold_and_counts_what_does(self):
+        block = re.search(r"<!-- by make seed-study.*?<!-- end of the seed study -->", PAGE, re.DOTALL).group()
+        rows = [line.strip("| ").split(" | ") for line in block.splitlines() if line.startswith("| ")]
+        shown = {re.sub(r" \((?:Annex I|4\.|6).*", "", row[0]): row[1:] for row in rows}
+        known = [s.words for s in statements.STATEMENTS]
+        unmet = [words for words in shown if words in known]
+        self.assertEqual(unmet, [words for words in known if words in unmet])
+        self.assertTrue(unmet and all("**no**" in shown[words] for words in unmet))
+        for at, cell in enumerate(shown["**holds**"]):
+            missing = sum(shown[words][at] == "**no**" for words in unmet)
+            self.assertEqual(cell, f"{len(known) - missing} of {len(known)}")
+
+    def test_the_command_judges_every_statement_and_the_page_has_what_differs(self):
+        best = {"good": (None, flights()), "bad": ({"damping": 2.0}, flights(PD_saturated={"hover_rms_mm": 10.0}))}
+        held = [s.holds(best["bad"][1]) for s in statements.STATEMENTS]
+        self.assertIn(False, held)
+        everything, page = seed_study.table(best), seed_study.table(best, for_page=True)
+        for s, holds in zip(statements.STATEMENTS, held, strict=True):
+            self.assertIn(f"| {s.words} ({s.source}) | {s.reading} | yes | {'yes' if holds else '**no**'} |", everything)
+            self.assertEqual(f"| {s.words} ({s.source}) | yes | **no** |" in page, not holds)
+        self.assertIn(f"| **holds** | {len(held)} of {len(held)} | {sum(held)} of {len(held)} |", page)
+        self.assertIn("- bad: damping 1/s 2.", page)
 
 
 if __name__ == "__main__":

@@ -5,8 +5,8 @@ The seed tells in words how its laws flew, and never what the throttle commands.
 throttle = THRUST and throttle = CLIMB rate (mid-point, deadband, lag free), flies the seed's tests on each, counts the
 statements (statements.py) that hold, searches on around the best, and flies the best of each kind again with seeds that
 the search did not use. A vehicle is the plant's figures, drawn from --seed; all else is the nominal vehicle.
-The table goes to stdout and DIR/seed_study.md, every vehicle with what holds to DIR/seed_study.csv; --page writes the
-table, without how each statement is judged, into docs/control.md. Exit status 0; 2 usage or a program that does not fly.
+The table goes to stdout and DIR/seed_study.md, every vehicle with what holds to DIR/seed_study.csv; --page writes
+the statements that do not hold for all into docs/control.md. Exit status 0; 2 usage or a program that does not fly.
 """
 import argparse
 import csv
@@ -120,25 +120,28 @@ def described(vehicle):
     return ", ".join(f"{MEANT[name]} {value:.3g}" for name, value in vehicle.items())
 
 
-def table(best, with_readings=True):
-    """best: {column: (vehicle or None, means)}."""
-    columns = list(best)
-    judged = {column: judge(means) for column, (_, means) in best.items()}
-    second = (lambda cell: f" {cell} |") if with_readings else (lambda _: "")
-    lines = [f"| the seed |{second('judged by')} " + " | ".join(columns) + " |", "|---|" + ("---|" if with_readings else "") + "---|" * len(columns)]
-    for at, statement in enumerate(statements.STATEMENTS):
-        marks = " | ".join("yes" if judged[column][at] else "**no**" for column in columns)
-        lines.append(f"| {statement.words} ({statement.source}) |{second(statement.reading)} {marks} |")
-    counts = " | ".join(f"{sum(judged[column])} of {len(statements.STATEMENTS)}" for column in columns)
-    lines.append(f"| **holds** |{second('')} {counts} |")
+def figures_of(best):
+    """Lines: what the two best laws of the seed do with each vehicle, in mm."""
     for name, pick in (("PD with a window: spread mm", lambda f: statements.spread_mm(f["PD saturated"])),
                        ("and mean error mm", lambda f: f["PD saturated"]["hover_mean_error_mm"]),
                        ("PID: spread mm", lambda f: statements.spread_mm(f["PID"])),
                        ("and mean error mm", lambda f: f["PID"]["hover_mean_error_mm"])):
-        lines.append(f"| {name} |{second('')} " + " | ".join(f"{pick(means):.0f}" for _, means in best.values()) + " |")
-    lines += ["", *(f"- {column}: {described(vehicle) if vehicle else 'the default plant'}."
-                    for column, (vehicle, _) in best.items())]
-    return "\n".join(lines)
+        yield name, [f"{pick(means):.0f}" for _, means in best.values()]
+
+
+def table(best, for_page=False):
+    """best: {column: (vehicle or None, means)}. The page has the statements that do not hold for all, without how they are judged."""
+    judged = [judge(means) for _, means in best.values()]
+    rows = [(["the seed", "judged by"], list(best))]
+    for statement, held in zip(statements.STATEMENTS, zip(*judged, strict=True), strict=True):
+        if not (for_page and all(held)):
+            rows.append(([f"{statement.words} ({statement.source})", statement.reading], ["yes" if one else "**no**" for one in held]))
+    rows.append((["**holds**", ""], [f"{sum(held)} of {len(statements.STATEMENTS)}" for held in judged]))
+    rows += [([name, ""], cells) for name, cells in figures_of(best)]
+    first, *others = ["| " + " | ".join([*(names[:1] if for_page else names), *cells]) + " |" for names, cells in rows]
+    columns = len(best) + (1 if for_page else 2)
+    return "\n".join([first, "|" + "---|" * columns, *others, "", *(
+        f"- {column}: {described(vehicle) if vehicle else 'the default plant'}." for column, (vehicle, _) in best.items())])
 
 
 def write_page(text):
@@ -180,7 +183,7 @@ def run(arguments):
     for kind, ranked in found.items():
         print(f"{kind}: {len(ranked)} vehicles, {ranked[0][0]} statements at most in the search")
     if arguments.page:
-        write_page(table(best, with_readings=False))
+        write_page(table(best, for_page=True))
     return 0
 
 
