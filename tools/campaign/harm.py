@@ -164,10 +164,12 @@ def plain(cell):
     return cell.partition(" [")[0]
 
 
-def page_by_law(flown):
+def page_by_law(flown, laws):
     """Fewer columns than the command prints: no count, no halts, and bounds only of harmed and of all laws together."""
     halted_at = BY_LAW.index("halted %")
     for cells in by_law(flown):
+        if cells[0] not in laws:
+            continue
         others = [cell if cells[0] == "all" else plain(cell) for cell in cells[3:halted_at]]
         yield [cells[0], cells[2], *others, *cells[halted_at + 1:]]
 
@@ -188,12 +190,13 @@ def kinds_of_page(flown):
 
 
 def render(flown, count, with_kinds):
-    """The text between the page's marks; the rates of each kind where there are flights enough for them."""
+    """The text between the page's marks; each law and each kind where there are flights enough for their rates."""
+    laws = [*plan.LAWS, "all"] if with_kinds else ["EST", "all"]
     halts = rate(sum(halted(flight.figures) for flight in flown), len(flown))
     titles = [f"{name} %" for name in HARMS if name != "halted"]
     return (f"\n`make campaign ARGS=\"--faults {count} --page\"`, {count // len(plan.LAWS)} flights per law; firmware halted: "
             f"{halts} %.\n\n"
-            f"{markdown(['law', 'harmed %', *titles, 'highest m', 'hardest m/s'], page_by_law(flown))}\n"
+            f"{markdown(['law', 'harmed %', *titles, 'highest m', 'hardest m/s'], page_by_law(flown, laws))}\n"
             + (kinds_of_page(flown) if with_kinds else ""))
 
 
