@@ -46,6 +46,7 @@
 #define LIFT_OFF_SIGMAS 1.2F /* chosen: of the measured noise, on a mean of three frames */
 #define LIFT_OFF_SHARE 0.7F  /* chosen: below the lightest vehicle, 0.8 of GRAV */
 #define LIFT_FILTER_S 0.08F  /* chosen: three frames */
+#define LIFT_TIME_S 1.0F     /* as STANDING_TIME_S in integrity.c */
 
 #define FALL_MPS2 3.96F          /* fitted: 0.4 g */
 #define BELOW_HOVER_N 3.0F       /* chosen: the rotors keep turning */
@@ -166,6 +167,17 @@ static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_
     };
 }
 
+/* Acceleration, speed and thrust around the lift-off. The speed is summed up from standstill; it decays within
+ * LIFT_TIME_S, so that an error of the bias does not add up while the vehicle still stands. */
+static void watch_lift(est_law_t *law, float felt_mps2, float dt_s)
+{
+    const float share = at_most(dt_s / LIFT_FILTER_S, 1.0F);
+
+    law->lift_mps2 += share * (felt_mps2 - law->lift_mps2);
+    law->lift_n += share * (law->actuator.thrust_n - law->lift_n);
+    law->lift_mps = law->ramping ? law->lift_mps * (1.0F - dt_s / LIFT_TIME_S) + felt_mps2 * dt_s : 0.0F;
+}
+
 static void predict_frame(est_law_t *law, const parameters_t *parameters, const imu_sample_t *frame)
 {
     const uint32_t before_us = law->estimator.now_us;
@@ -180,7 +192,7 @@ static void predict_frame(est_law_t *law, const parameters_t *parameters, const 
     actuator_advance(&law->actuator, law->estimator.now_us);
     law->frameless_s = seconds_between(law->estimator.now_us, law->now_us);
     const float felt_mps2 = est_law_feels(law) ? law->estimator.up_mps2 - law->estimator.now.bias_mps2 : 0.0F;
-    law->lift_mps2 += at_most(dt_s / LIFT_FILTER_S, 1.0F) * (felt_mps2 - law->lift_mps2);
+    watch_lift(law, felt_mps2, dt_s);
     if (law->airborne && est_law_feels(law)) {
         learn_hover(law, parameters, dt_s);
     } else if (law->airborne) {
@@ -376,7 +388,9 @@ static float leave_unfelt(est_law_t *law, const parameters_t *parameters)
 static bool take_off(est_law_t *law, const parameters_t *parameters)
 {
     const float gravity_n = parameters->value[PARAMETER_GRAV];
-    const float taken_n = law->lift_mps2 / vehicle_model(law, parameters).authority_mps2_per_n;
+    const cascade_vehicle_t vehicle = vehicle_model(law, parameters);
+    const float drag_mps2 = vehicle.damping_per_s * at_least(law->lift_mps, 0.0F);
+    const float taken_n = (law->lift_mps2 + drag_mps2) / vehicle.authority_mps2_per_n;
     const float height_m = law->estimator.now.height_m - law->ground_m;
     const float lift_off_m = est_law_feels(law) ? LIFT_OFF_M : UNFELT_LIFT_OFF_M;
     const float known_n = at_least(gravity_n, law->flown_hover_n);
@@ -386,7 +400,7 @@ static bool take_off(est_law_t *law, const parameters_t *parameters)
     const bool lifting = height_m > lift_off_m || law->lift_mps2 > lift_off_threshold_mps2(law);
     law->airborne = height_m > LIFT_OFF_SURE_M || (strong && lifting);
     if (law->airborne) {
-        const float hover_n = est_law_feels(law) ? law->actuator.thrust_n - taken_n
+        const float hover_n = est_law_feels(law) ? law->lift_n - taken_n
                                                  : leave_unfelt(law, parameters);
         start_hover(law, parameters, is_climb(parameters) ? known_n : hover_n,
                     is_climb(parameters) && known_n == gravity_n ? NEUTRAL_SIGMA_N : HOVER_SIGMA_START_N);

@@ -43,6 +43,8 @@ typedef struct {
     bool ramping;               /* take-off: the thrust ramps up until the vehicle leaves the ground */
     float ramp_n;               /* thrust of that ramp */
     float lift_mps2;            /* low-passed upward acceleration */
+    float lift_n;               /* delivered thrust through the same low-pass */
+    float lift_mps;             /* upward speed since the ramp began, from the accelerometer */
     float reference_m;
     float reference_terrain_m; /* estimator.terrain_height_m at the time when reference_m was set */
     float sure_hover_n;        /* hover thrust from before the present doubt */
