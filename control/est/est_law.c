@@ -167,8 +167,8 @@ static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_
     };
 }
 
-/* Acceleration, speed and thrust around the lift-off. The speed is summed up from standstill; it decays within
- * LIFT_TIME_S, so that an error of the bias does not add up while the vehicle still stands. */
+/* Acceleration, speed and thrust around the lift-off. The speed is summed up from standstill; it decays
+ * within LIFT_TIME_S, so that an error of the bias does not add up while the vehicle still stands. */
 static void watch_lift(est_law_t *law, float felt_mps2, float dt_s)
 {
     const float share = at_most(dt_s / LIFT_FILTER_S, 1.0F);
@@ -400,8 +400,7 @@ static bool take_off(est_law_t *law, const parameters_t *parameters)
     const bool lifting = height_m > lift_off_m || law->lift_mps2 > lift_off_threshold_mps2(law);
     law->airborne = height_m > LIFT_OFF_SURE_M || (strong && lifting);
     if (law->airborne) {
-        const float hover_n = est_law_feels(law) ? law->lift_n - taken_n
-                                                 : leave_unfelt(law, parameters);
+        const float hover_n = est_law_feels(law) ? law->lift_n - taken_n : leave_unfelt(law, parameters);
         start_hover(law, parameters, is_climb(parameters) ? known_n : hover_n,
                     is_climb(parameters) && known_n == gravity_n ? NEUTRAL_SIGMA_N : HOVER_SIGMA_START_N);
         cascade_init(&law->cascade, law->ramp_n);
