@@ -14,6 +14,7 @@ typedef struct {
 } slice_t;
 
 const scip_limits_t scip_limits_urg04lx = {20U, 5600U, 1024U, 44U, 725U, 384U, 600U};
+const scip_limits_t scip_limits_utm30lx = {23U, 60000U, 1440U, 0U, 1080U, 540U, 2400U};
 
 static slice_t without_first(slice_t slice, uint16_t count)
 {
@@ -80,6 +81,20 @@ static bool read_digits(slice_t slice, uint16_t base, uint16_t most, uint32_t *n
         i++;
     }
     return i > 0U;
+}
+
+/* "19200[bps]<-Default setting by user". Sensors on USB or Ethernet tell other things: "100 [Mbps]". */
+static uint32_t read_bit_rate(slice_t slice, uint32_t otherwise)
+{
+    uint32_t number;
+    uint16_t digits = 0U;
+    if (!read_digits(slice, 10U, DIGITS_MAX, &number)) {
+        return otherwise;
+    }
+    while (digits < slice.length && digit_of(slice.text[digits]) < 10U) {
+        digits++;
+    }
+    return begins_with(trimmed(without_first(slice, digits)), "[bps]") ? number : otherwise;
 }
 
 /* The first decimal number in the slice: "20", "19200[bps]<-Default", "Initial(600[rpm])". */
@@ -176,7 +191,7 @@ static bool take_other(scip_info_t *info, slice_t key, slice_t value, bool belie
     if (begins_with(key, "LASR")) {
         info->laser_on = believed ? begins_with(value, "ON") : info->laser_on;
     } else if (begins_with(key, "SBPS")) {
-        info->bit_rate = believed && read_number(value, &number) ? number : info->bit_rate;
+        info->bit_rate = believed ? read_bit_rate(value, info->bit_rate) : info->bit_rate;
     } else if (begins_with(key, "TIME")) {
         info->time_ms = believed && read_digits(value, 16U, TIME_DIGITS_MAX, &number) ? number
                                                                                       : info->time_ms;

@@ -31,6 +31,10 @@ typedef struct {
 /* Data sheet of the URG-04LX: 20..5600 mm, 1024 steps, steps 44..725 measured, front 384, 600 rpm. */
 extern const scip_limits_t scip_limits_urg04lx;
 
+/* The UTM-30LX's own PP: 23..60000 mm, 1440 steps, steps 0..1080 measured, front 540, 2400 rpm. The UST-10LX
+ * differs in its distances only: 20..30000 mm. */
+extern const scip_limits_t scip_limits_utm30lx;
+
 typedef enum {
     SCIP_HEALTH_UNKNOWN, /* no STAT was received, or an unknown one */
     SCIP_HEALTH_GOOD,    /* "Sensor works well." "FW Normal" "Stable 000 no error." */

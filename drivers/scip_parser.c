@@ -28,11 +28,15 @@ enum {
     SCAN_END /* the empty line after the points */
 };
 
-/* What is noted of a line's encoded characters: their sum, and bits above the sixth when one was outside
- * 30H..6FH. */
+/* What is noted of a line's encoded characters: their sum, in two halves of 16 bits, and all their bits, by
+ * which one outside 30H..6FH shows. */
 typedef struct {
-    uint_fast16_t sum, outside;
+    uint32_t sums, bits;
 } check_t;
+
+#define FOUR_ZEROS ((uint32_t)0x30303030UL)   /* characters of value 0 */
+#define OUTSIDE ((uint32_t)0xC0C0C0C0UL)      /* bits that no encoded character has, its 30H taken off */
+#define EVERY_SECOND ((uint32_t)0x00FF00FFUL) /* of four characters */
 
 static bool is_stream(const scip_request_t *request)
 {
@@ -129,7 +133,8 @@ static scip_event_t end_of_skipped(scip_parser_t *parser)
 
 static scip_event_t end_of_echo(scip_parser_t *parser)
 {
-    if (take_echo(parser) || line_is_empty(parser)) {
+    const bool may_be_echo = parser->line_length == parser->awaited.echo_length;
+    if ((may_be_echo && take_echo_at(parser, parser->line)) || take_echo(parser) || line_is_empty(parser)) {
         return SCIP_NOTHING;
     }
     return damage(parser, SCIP_DAMAGE_ECHO);
@@ -137,29 +142,39 @@ static scip_event_t end_of_echo(scip_parser_t *parser)
 
 static bool line_has(const scip_parser_t *parser, uint16_t characters)
 {
-    return parser->line_length == characters + 1U && !parser->line_cut;
-}
-
-static check_t check_of(uint16_t characters)
-{
-    return (check_t){(uint_fast16_t)0x30U * characters, 0U};
+    return parser->line_length == characters + 1U;
 }
 
 /* Six bits of an encoded value; the check notes the character. */
-static inline uint_fast16_t six_bits(check_t *check, octet_t character)
+static inline uint32_t six_bits(check_t *check, octet_t character)
 {
-    const uint_fast16_t bits = (uint_fast16_t)character - 0x30U;
-    check->sum += bits;
-    check->outside |= bits;
+    const uint32_t bits = (uint32_t)octet_of(character) - 0x30U;
+    check->sums += bits;
+    check->bits |= bits;
     return bits;
 }
 
-static scip_damage_t verdict(const check_t *check, octet_t sum)
+/* Two values of two characters each, the first in the lower half. A character below 30H borrows from the next
+ * one, and shows all the same. */
+static inline uint32_t two_values(check_t *check, const octet_t *text)
 {
-    if (check->outside > 0x3FU) {
+    const uint32_t four = (uint32_t)octet_of(text[0]) | ((uint32_t)octet_of(text[1]) << 8) |
+                          ((uint32_t)octet_of(text[2]) << 16) | ((uint32_t)octet_of(text[3]) << 24);
+    const uint32_t bits = four - FOUR_ZEROS;
+    const uint32_t upper = bits & EVERY_SECOND;
+    const uint32_t lower = (bits - upper) >> 8;
+    check->sums += upper + lower;
+    check->bits |= bits;
+    return (upper << 6) | lower;
+}
+
+static scip_damage_t verdict(const check_t *check, uint16_t characters, octet_t sum)
+{
+    const uint32_t total = (check->sums >> 16) + check->sums + (uint32_t)0x30U * characters;
+    if ((check->bits & OUTSIDE) != 0U) {
         return SCIP_DAMAGE_CHARACTER;
     }
-    return sum == sum_character((uint16_t)check->sum) ? SCIP_DAMAGE_NONE : SCIP_DAMAGE_SUM;
+    return sum == sum_character((uint16_t)total) ? SCIP_DAMAGE_NONE : SCIP_DAMAGE_SUM;
 }
 
 static bool speaks_legacy(scip_kind_t kind)
@@ -193,7 +208,7 @@ static uint16_t state_after_status(const scip_parser_t *parser)
 static scip_event_t end_of_status(scip_parser_t *parser)
 {
     const octet_t *line = parser->line;
-    check_t check = check_of(2U);
+    check_t check = {0U, 0U};
     scip_damage_t cause;
     if (line_is_refusal(parser)) {
         parser->state = LEGACY_END;
@@ -209,7 +224,7 @@ static scip_event_t end_of_status(scip_parser_t *parser)
     }
     (void)six_bits(&check, line[0]);
     (void)six_bits(&check, line[1]);
-    cause = verdict(&check, line[2]);
+    cause = verdict(&check, 2U, line[2]);
     if (cause != SCIP_DAMAGE_NONE) {
         return damage(parser, cause);
     }
@@ -231,104 +246,103 @@ static void begin_data(scip_parser_t *parser, uint32_t stamp)
 {
     parser->timestamp_ms = stamp;
     parser->characters_left = (uint16_t)(parser->awaited.characters * parser->awaited.points);
-    parser->progress = (scip_progress_t){.points = 0U};
+    parser->partial = 0U;
     parser->state = DATA;
 }
 
 static uint32_t read_stamp(const octet_t *text, check_t *check)
 {
-    uint32_t stamp = 0U;
-    *check = check_of(4U);
-    for (uint16_t i = 0U; i < 4U; i++) {
-        stamp = (stamp << 6) | (uint32_t)six_bits(check, text[i]);
-    }
-    return stamp;
+    const uint32_t halves = two_values(check, text);
+    return ((halves & 0xFFFFU) << 12) | (halves >> 16);
 }
 
-static scip_event_t end_of_time(scip_parser_t *parser)
+static scip_damage_t take_time(scip_parser_t *parser, const octet_t *text)
 {
-    check_t check;
-    uint32_t stamp;
-    scip_damage_t cause;
-    if (!line_has(parser, 4U)) {
-        return damage(parser, SCIP_DAMAGE_LENGTH);
-    }
-    stamp = read_stamp(parser->line, &check);
-    cause = verdict(&check, parser->line[4]);
+    check_t check = {0U, 0U};
+    const uint32_t stamp = read_stamp(text, &check);
+    const scip_damage_t cause = verdict(&check, 4U, text[4]);
     if (cause != SCIP_DAMAGE_NONE) {
-        return damage(parser, cause);
+        return cause;
     }
     if (parser->awaited.kind == SCIP_TIME_READ) {
         parser->reply.timestamp_ms = stamp;
         parser->state = REPLY_END;
-        return SCIP_NOTHING;
+        return SCIP_DAMAGE_NONE;
     }
     if (!has_room(parser)) {
-        return damage(parser, SCIP_DAMAGE_LENGTH);
+        return SCIP_DAMAGE_LENGTH;
     }
     begin_data(parser, stamp);
-    return SCIP_NOTHING;
+    return SCIP_DAMAGE_NONE;
 }
 
-/* Two characters a point never straddle a block. Both are summed and checked at once, 16 bits apart: the sums
- * of 32 pairs stay below 2^16, and a character outside leaves bits above its six. */
-static check_t decode_pairs(scip_progress_t *progress, uint16_t *out, const octet_t *text,
-                            uint16_t characters)
+static scip_event_t end_of_time(scip_parser_t *parser)
+{
+    const scip_damage_t cause = line_has(parser, 4U) ? take_time(parser, parser->line) : SCIP_DAMAGE_LENGTH;
+    return cause == SCIP_DAMAGE_NONE ? SCIP_NOTHING : damage(parser, cause);
+}
+
+/* Two characters a point never straddle a block. */
+static check_t decode_pairs(uint16_t *out, const octet_t *text, uint16_t characters)
 {
     const size_t points = characters / 2U;
-    check_t check = check_of(characters);
-    uint32_t sums = 0U;
-    uint32_t outside = 0U;
-    for (size_t i = 0U; i < points; i++) {
-        const uint32_t pair = ((uint32_t)text[2U * i] << 16) + text[2U * i + 1U] - (uint32_t)0x300030UL;
-        sums += pair;
-        outside |= pair;
-        out[i] = (uint16_t)((pair >> 10) | pair);
+    check_t check = {0U, 0U};
+    for (size_t i = points % 2U; i < points; i += 2U) {
+        const uint32_t two = two_values(&check, &text[2U * i]);
+        out[i] = (uint16_t)(two & 0xFFFFU);
+        out[i + 1U] = (uint16_t)(two >> 16);
     }
-    progress->points = (uint16_t)(progress->points + points);
-    check.sum += (uint_fast16_t)((sums >> 16) + sums);
-    check.outside = (uint_fast16_t)((outside >> 16) | (outside & 0xFFFFU));
+    if (points % 2U != 0U) {
+        const uint32_t upper = six_bits(&check, text[0]);
+        out[0] = (uint16_t)((upper << 6) | six_bits(&check, text[1]));
+    }
     return check;
 }
 
-static check_t decode_triples(scip_progress_t *progress, uint16_t *out, const octet_t *text,
+/* *partial: the `begun` characters of a point that straddles two blocks. */
+static check_t decode_triples(uint16_t *out, uint16_t begun, uint32_t *partial, const octet_t *text,
                               uint16_t characters)
 {
-    check_t check = check_of(characters);
+    check_t check = {0U, 0U};
+    uint32_t point = *partial;
     for (uint16_t i = 0U; i < characters; i++) {
-        progress->partial = (progress->partial << 6) | (uint32_t)six_bits(&check, text[i]);
-        progress->partial_characters++;
-        if (progress->partial_characters == 3U) {
-            *out = (uint16_t)(progress->partial > 0xFFFFU ? 0xFFFFU : progress->partial);
+        point = (point << 6) | six_bits(&check, text[i]);
+        begun++;
+        if (begun == 3U) {
+            *out = (uint16_t)(point > 0xFFFFU ? 0xFFFFU : point);
             out++;
-            progress->points++;
-            progress->partial = 0U;
-            progress->partial_characters = 0U;
+            point = 0U;
+            begun = 0U;
         }
     }
+    *partial = point;
     return check;
 }
 
 static check_t pass(const octet_t *text, uint16_t characters)
 {
-    check_t check = check_of(characters);
+    check_t check = {0U, 0U};
     for (uint16_t i = 0U; i < characters; i++) {
         (void)six_bits(&check, text[i]);
     }
     return check;
 }
 
-/* Of a block that is in doubt only the points behind progress->points have changed, and nobody has seen them.
- */
-static check_t decode(const scip_parser_t *parser, scip_progress_t *progress, const octet_t *text,
+/* The next characters of the scan. Of a block that is in doubt only points have changed that nobody has
+ * seen. */
+static check_t decode(const scip_parser_t *parser, uint32_t *partial, const octet_t *text,
                       uint16_t characters)
 {
+    const scip_request_t *request = &parser->awaited;
     if (parser->scan == NULL) {
         return pass(text, characters);
     }
-    uint16_t *out = &parser->scan->distance_mm[progress->points];
-    return parser->awaited.characters == 2U ? decode_pairs(progress, out, text, characters)
-                                            : decode_triples(progress, out, text, characters);
+    uint16_t *points = parser->scan->distance_mm;
+    if (request->characters == 2U) {
+        return decode_pairs(&points[request->points - parser->characters_left / 2U], text, characters);
+    }
+    const uint16_t done = (uint16_t)(3U * request->points - parser->characters_left);
+    return decode_triples(&points[done / 3U], done % 3U, partial, text, characters);
 }
 
 static uint16_t characters_of_block(const scip_parser_t *parser)
@@ -336,9 +350,9 @@ static uint16_t characters_of_block(const scip_parser_t *parser)
     return parser->characters_left < SCIP_BLOCK ? parser->characters_left : (uint16_t)SCIP_BLOCK;
 }
 
-static void end_block(scip_parser_t *parser, const scip_progress_t *progress, uint16_t characters)
+static void end_block(scip_parser_t *parser, uint16_t characters, uint32_t partial)
 {
-    parser->progress = *progress;
+    parser->partial = partial;
     parser->characters_left = (uint16_t)(parser->characters_left - characters);
     if (parser->characters_left == 0U) {
         parser->state = SCAN_END;
@@ -356,20 +370,20 @@ static bool may_end_in_echo(const scip_parser_t *parser, const octet_t *line, si
  * and a right sum. */
 static scip_event_t end_of_data(scip_parser_t *parser)
 {
+    const octet_t *line = parser->line;
     const uint16_t characters = characters_of_block(parser);
-    scip_progress_t progress = parser->progress;
+    uint32_t partial = parser->partial;
     if (!line_has(parser, characters)) {
         return damage(parser, SCIP_DAMAGE_LENGTH);
     }
-    const check_t check = decode(parser, &progress, parser->line, characters);
-    const scip_damage_t cause = may_end_in_echo(parser, parser->line, parser->line_length) &&
-                                        take_echo(parser)
+    const check_t check = decode(parser, &partial, line, characters);
+    const scip_damage_t cause = may_end_in_echo(parser, line, characters + 1U) && take_echo(parser)
                                     ? SCIP_DAMAGE_LENGTH
-                                    : verdict(&check, parser->line[characters]);
+                                    : verdict(&check, characters, line[characters]);
     if (cause != SCIP_DAMAGE_NONE) {
         return damage(parser, cause);
     }
-    end_block(parser, &progress, characters);
+    end_block(parser, characters, partial);
     return SCIP_NOTHING;
 }
 
@@ -506,10 +520,6 @@ static scip_event_t end_of_text(scip_parser_t *parser)
     if (length == 0U) {
         return end_of_reply(parser);
     }
-    if (parser->line_cut) {
-        parser->counters.skipped_lines++;
-        return SCIP_NOTHING;
-    }
     parser->text_length = length;
     parser->text_proved = false;
     if (length >= 2U && line[length - 2U] == (octet_t)';') {
@@ -546,9 +556,22 @@ static scip_event_t at_line_end(scip_parser_t *parser)
     }
 }
 
+/* No octet of a line is a LF, so one in the last cell tells that the line has not come so far. */
+static void begin_line(scip_parser_t *parser)
+{
+    parser->gathered = 0U;
+    parser->line[SCIP_LINE_MAX - 1U] = SCIP_LINE_FEED;
+}
+
+static bool has_filled_memory(const scip_parser_t *parser)
+{
+    return parser->line[SCIP_LINE_MAX - 1U] != SCIP_LINE_FEED;
+}
+
 void scip_parser_init(scip_parser_t *parser)
 {
     *parser = (scip_parser_t){.state = HUNT};
+    begin_line(parser);
 }
 
 void scip_parser_expect(scip_parser_t *parser, const scip_request_t *request)
@@ -578,48 +601,66 @@ void scip_parser_line_broken(scip_parser_t *parser)
     parser->state = HUNT;
     parser->skipping = false;
     parser->gap = true;
-    parser->counters.octets += parser->gathered;
-    parser->gathered = 0U;
-    parser->line_cut = false;
+    begin_line(parser);
 }
 
-void scip_parser_cut_line(scip_parser_t *parser)
+static bool is_within_line(const scip_parser_t *parser)
 {
+    return parser->gathered > 0U || has_filled_memory(parser);
+}
+
+static void keep_end_of_line(scip_parser_t *parser)
+{
+    const size_t first = parser->gathered + SCIP_LINE_MAX - SCIP_REQUEST_MAX;
+    octet_t end[SCIP_REQUEST_MAX];
     for (uint16_t i = 0U; i < SCIP_REQUEST_MAX; i++) {
-        parser->line[i] = parser->line[SCIP_LINE_MAX - SCIP_REQUEST_MAX + i];
+        end[i] = parser->line[(first + i) % SCIP_LINE_MAX];
     }
-    parser->counters.octets += SCIP_LINE_MAX - SCIP_REQUEST_MAX;
-    parser->gathered = SCIP_REQUEST_MAX;
-    parser->line_cut = true;
+    for (uint16_t i = 0U; i < SCIP_REQUEST_MAX; i++) {
+        parser->line[i] = end[i];
+    }
+    parser->line_length = SCIP_REQUEST_MAX;
 }
 
-static scip_event_t end_line_of(scip_parser_t *parser, size_t length)
+/* Of a line longer than its memory the end is looked at, where the awaited echo may be. */
+static scip_event_t end_long_line(scip_parser_t *parser)
 {
-    parser->line_length = (uint16_t)length;
-    parser->counters.octets += (uint32_t)length + 1U;
-    parser->gathered = 0U;
-    const scip_event_t event = at_line_end(parser);
-    parser->line_cut = false;
-    return event;
+    keep_end_of_line(parser);
+    begin_line(parser);
+    switch (parser->state) {
+    case HUNT:
+        return end_of_skipped(parser);
+    case ECHO:
+        return end_of_echo(parser);
+    case TEXT:
+        parser->counters.skipped_lines++;
+        return SCIP_NOTHING;
+    default:
+        return damage(parser, SCIP_DAMAGE_LENGTH);
+    }
 }
 
 scip_event_t scip_parser_end_line(scip_parser_t *parser)
 {
-    return end_line_of(parser, parser->gathered);
+    if (has_filled_memory(parser)) {
+        return end_long_line(parser);
+    }
+    parser->line_length = (uint16_t)parser->gathered;
+    parser->gathered = 0U;
+    return at_line_end(parser);
 }
 
-/* Copies behind what is gathered, up to the end of the line, of its memory or of the octets. Returns how
- * many. */
+/* Copies octets up to the end of the line. Returns how many. */
 static size_t gather(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
-    octet_t *line = &parser->line[parser->gathered];
-    const size_t room = (size_t)SCIP_LINE_MAX - parser->gathered;
-    const size_t most = count < room ? count : room;
+    uint_fast16_t at = parser->gathered;
     size_t i = 0U;
-    while (i < most && octet_of(octets[i]) != SCIP_LINE_FEED) {
-        line[i] = octet_of(octets[i]);
+    while (i < count && octet_of(octets[i]) != SCIP_LINE_FEED) {
+        parser->line[at] = octet_of(octets[i]);
+        at = (at + 1U) % SCIP_LINE_MAX;
         i++;
     }
+    parser->gathered = at;
     return i;
 }
 
@@ -627,16 +668,16 @@ static size_t gather(scip_parser_t *parser, const octet_t *octets, size_t count)
 static size_t block_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
     const uint16_t characters = characters_of_block(parser);
-    scip_progress_t progress = parser->progress;
+    uint32_t partial = parser->partial;
     if (count < characters + 2U || octets[characters + 1U] != SCIP_LINE_FEED ||
         may_end_in_echo(parser, octets, characters + 1U)) {
         return 0U;
     }
-    const check_t check = decode(parser, &progress, octets, characters);
-    if (verdict(&check, octets[characters]) != SCIP_DAMAGE_NONE) {
+    const check_t check = decode(parser, &partial, octets, characters);
+    if (verdict(&check, characters, octets[characters]) != SCIP_DAMAGE_NONE) {
         return 0U;
     }
-    end_block(parser, &progress, characters);
+    end_block(parser, characters, partial);
     return characters + 2U;
 }
 
@@ -662,24 +703,16 @@ static size_t status_in_place(scip_parser_t *parser, const octet_t *octets, size
     return STATUS_OCTETS;
 }
 
-/* The time stamp of a scan that there is memory for. */
 static size_t time_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
-    check_t check;
-    uint32_t stamp;
-    if (count < TIME_OCTETS || octets[5] != SCIP_LINE_FEED || parser->awaited.kind == SCIP_TIME_READ ||
-        !has_room(parser)) {
+    if (count < TIME_OCTETS || octets[5] != SCIP_LINE_FEED ||
+        take_time(parser, octets) != SCIP_DAMAGE_NONE) {
         return 0U;
     }
-    stamp = read_stamp(octets, &check);
-    if (verdict(&check, octets[4]) != SCIP_DAMAGE_NONE) {
-        return 0U;
-    }
-    begin_data(parser, stamp);
     return TIME_OCTETS;
 }
 
-static size_t any_line_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
+static size_t line_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
     switch (parser->state) {
     case DATA:
@@ -695,33 +728,24 @@ static size_t any_line_in_place(scip_parser_t *parser, const octet_t *octets, si
     }
 }
 
-static size_t line_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
-{
-    const size_t taken = parser->gathered == 0U ? any_line_in_place(parser, octets, count) : 0U;
-    parser->counters.octets += (uint32_t)taken;
-    return taken;
-}
-
 /* Copies octets of the present line; *event is what its end brings. Returns how many were taken. */
 static size_t line_by_copy(scip_parser_t *parser, const octet_t *octets, size_t count, scip_event_t *event)
 {
     const size_t more = gather(parser, octets, count);
-    const size_t length = parser->gathered + more;
-    if (length == SCIP_LINE_MAX) {
-        scip_parser_cut_line(parser);
-    } else if (more < count) {
-        *event = end_line_of(parser, length);
-        return more + 1U;
-    } else {
-        parser->gathered = (uint16_t)length;
+    if (more == count) {
+        return more;
     }
-    return more;
+    *event = scip_parser_end_line(parser);
+    return more + 1U;
 }
 
 size_t scip_parser_feed_run(scip_parser_t *parser, const octet_t *octets, size_t count, scip_event_t *event)
 {
     size_t taken = 0U;
     *event = SCIP_NOTHING;
+    if (is_within_line(parser)) {
+        taken = line_by_copy(parser, octets, count, event);
+    }
     while (*event == SCIP_NOTHING && taken < count) {
         const size_t in_place = line_in_place(parser, &octets[taken], count - taken);
         taken += in_place > 0U ? in_place : line_by_copy(parser, &octets[taken], count - taken, event);

@@ -79,18 +79,10 @@ typedef struct {
     uint32_t legacy;
     uint32_t damaged[SCIP_DAMAGE_COUNT]; /* by cause; [SCIP_DAMAGE_NONE] unused */
     uint32_t skipped_lines; /* lines that are not empty, not the awaited echo and not part of its reply */
-    uint32_t octets;        /* counted at line ends */
 } scip_counters_t;
 
-/* private: how far a scan's points are decoded */
-typedef struct {
-    uint16_t points;
-    uint16_t partial_characters;
-    uint32_t partial; /* first characters of a point that straddles two blocks */
-} scip_progress_t;
-
-/* Data lines have 65 characters; the information lines of some models are longer. */
-#define SCIP_LINE_MAX 80U
+/* Data lines have 65 characters; the information lines of some models are longer. A power of two. */
+#define SCIP_LINE_MAX 128U
 
 typedef struct {
     scip_reply_t reply;
@@ -106,12 +98,11 @@ typedef struct {
     uint16_t echo_fixed; /* octets of the awaited echo that never change: all except the counter of
                           * a counted run */
     uint16_t state;
-    uint16_t gathered; /* octets of the present line */
-    bool line_cut;     /* the line is longer than the buffer: only its last octets are kept */
+    uint_fast16_t gathered; /* cell of `line` for the next octet; behind the last one comes the first again */
     bool skipping;     /* the line before was skipped and not empty */
     scip_scan_t *scan;
     uint16_t characters_left; /* of the scan's data */
-    scip_progress_t progress;
+    uint32_t partial;          /* first characters of a point that straddles two blocks */
     uint32_t timestamp_ms;     /* of the frame in reception */
     uint16_t remaining;        /* of the frame in reception */
     bool flowing;              /* the answer to the stream request, or a frame of it, was received */
@@ -145,10 +136,8 @@ void scip_parser_line_broken(scip_parser_t *parser);
  * shorter. */
 uint16_t scip_parser_expected(const scip_parser_t *parser);
 
-/* Private parts of scip_parser_feed(): a line is complete; or the buffer is full, and only the last octets
- * are kept. */
+/* Private part of scip_parser_feed(): a line is complete. */
 scip_event_t scip_parser_end_line(scip_parser_t *parser);
-void scip_parser_cut_line(scip_parser_t *parser);
 
 /* Processes one octet; bits above bit 7 are ignored. Events other than SCIP_NOTHING come with a LF only.
  * The function is inline because an interrupt calls it for every octet. */
@@ -159,10 +148,7 @@ static inline scip_event_t scip_parser_feed(scip_parser_t *parser, octet_t octet
         return scip_parser_end_line(parser);
     }
     parser->line[parser->gathered] = clean;
-    parser->gathered++;
-    if (parser->gathered == SCIP_LINE_MAX) {
-        scip_parser_cut_line(parser);
-    }
+    parser->gathered = (parser->gathered + 1U) % SCIP_LINE_MAX;
     return SCIP_NOTHING;
 }
 

@@ -15,8 +15,9 @@ extern "C" {
 
 /* Longest request: LF, symbol, parameters, LF (MS and MD: 16 + 1). User strings are not sent. */
 #define SCIP_REQUEST_MAX 17U
-#define SCIP_STEP_MAX 768U /* steps are numbered 0..768 */
-#define SCIP_POINTS_MAX 769U
+#define SCIP_STEP_MAX 1080U        /* steps of UTM-30LX and UST-10LX are numbered 0..1080 */
+#define SCIP_STEP_MAX_URG04LX 768U /* of the URG-04LX 0..768: it refuses others */
+#define SCIP_POINTS_MAX 1081U
 #define SCIP_LINE_FEED 0x0AU /* ends every line of a reply */
 #define SCIP_BLOCK 64U       /* data characters in every block but the last */
 
@@ -42,8 +43,8 @@ typedef enum {
 
 /* Part of the revolution to report, and how often. */
 typedef struct {
-    uint16_t first_step; /* 0..768 */
-    uint16_t last_step;  /* first_step..768 */
+    uint16_t first_step; /* 0..1080 */
+    uint16_t last_step;  /* first_step..1080 */
     uint16_t cluster;    /* steps per point, 1..99 */
     uint16_t interval;   /* scans skipped between two reports, 0..9; streams only */
     uint16_t scans;      /* 1..99, 0 = endless; streams only */
@@ -68,7 +69,7 @@ typedef struct {
 extern const uint32_t scip_bit_rates[SCIP_BIT_RATES];
 
 /* Length of one scan in octets, from echo to final LF. For n points of k characters: 27 + k n + 2 ceil(k n /
- * 64) with MS and MD, 24 + ... with GS and GD. points: 0..769. Returns 0 for a kind without points. */
+ * 64) with MS and MD, 24 + ... with GS and GD. points: 0..1081. Returns 0 for a kind without points. */
 uint16_t scip_scan_octets(scip_kind_t kind, uint16_t points);
 
 /* Builds a request without parameters. Returns false, and does not write *request, when this kind needs some.

@@ -71,6 +71,13 @@ static bool is_possible(const urg_config_t *config, uint32_t rate)
     return config->fastest_rate == 0U || rate <= config->fastest_rate;
 }
 
+/* A sensor refuses a range beyond its last step for ever. */
+static bool is_within(const urg_config_t *config)
+{
+    const uint16_t last = config->last_step == 0U ? SCIP_STEP_MAX_URG04LX : config->last_step;
+    return config->range.last_step <= last;
+}
+
 /* Next position of the search. Leaves out rates that come earlier in it, and rates too high for the UART. */
 static uint16_t next_probe(const urg_link_t *link, uint16_t index)
 {
@@ -628,7 +635,7 @@ bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us
     scip_request_t stream = {.scan_octets = 0U};
     scip_request_t rate;
     if ((config->stream != SCIP_STREAM_2 && config->stream != SCIP_STREAM_3) ||
-        !scip_request_scan(&stream, config->stream, &config->range) ||
+        !is_within(config) || !scip_request_scan(&stream, config->stream, &config->range) ||
         !scip_request_bit_rate(&rate, config->first_rate) ||
         !scip_request_bit_rate(&rate, config->stream_rate) || !is_possible(config, config->first_rate) ||
         !is_possible(config, config->stream_rate)) {

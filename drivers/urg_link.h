@@ -68,6 +68,7 @@ typedef struct {
     uint32_t fastest_rate; /* limit of the board's UART and line driver; 0: no limit */
     scip_kind_t stream;    /* SCIP_STREAM_2 or SCIP_STREAM_3 */
     scip_range_t range;    /* scans > 0: a counted run, requested again when it ends */
+    uint16_t last_step;    /* of the sensor; 0: SCIP_STEP_MAX_URG04LX */
 } urg_config_t;
 
 typedef struct {
@@ -106,7 +107,8 @@ typedef struct {
 } urg_link_t;
 
 /* Starts in WAIT. Returns false, and does nothing, for an impossible configuration: a rate that is not SCIP's
- * or is above fastest_rate, a range that scip_request_scan() refuses, or a kind that is not a stream. */
+ * or is above fastest_rate, a range beyond last_step or that scip_request_scan() refuses, or a kind that is
+ * not a stream. */
 bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us);
 
 /* Count received octets and parser events in *seen, for callers that do not use urg.h (which does both). Call

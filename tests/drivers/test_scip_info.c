@@ -117,6 +117,41 @@ void test_a_real_sensor_is_understood(void)
     TEST_ASSERT_EQUAL_UINT16(0, info.unproved);
 }
 
+/* The replies of a UTM-30LX, firmware P.1.05, as its owners published them; the sums are the sensor's. */
+void test_a_real_sensor_of_1081_steps_is_understood(void)
+{
+    scip_limits_t limits;
+    ask(SCIP_PARAMETERS);
+    feed("PP\n00P\nMODL:UTM-30LX(Hokuyo Automatic Co.,Ltd.);U\nDMIN:23;7\nDMAX:60000;J\nARES:1440;^\n"
+         "AMIN:0;?\nAMAX:1080;Z\nAFRT:540;0\nSCAN:2400;U\n\n");
+    limits = scip_info_limits(&info);
+    TEST_ASSERT_TRUE(same(&limits, &scip_limits_utm30lx));
+    TEST_ASSERT_EQUAL_INT32(-135000, scip_limits_mdeg(&limits, 0));
+    TEST_ASSERT_EQUAL_INT32(135000, scip_limits_mdeg(&limits, 1080));
+    ask(SCIP_STATE);
+    feed("II\n00P\nMODL:UTM-30LX(Hokuyo Automatic Co.,Ltd.);U\nLASR:ON;9\n"
+         "SCSP:Initial(2400[rpm])<-Default setting by user;1\nMESM:CLASSIC;^\nSBPS:USB Full Speed;P\n"
+         "TIME:4991D0;d\nSTAT:Sensor works well.;8\n\n");
+    TEST_ASSERT_EQUAL_UINT16(2400, info.speed_rpm);
+    TEST_ASSERT_EQUAL_UINT32(0, info.bit_rate);
+    TEST_ASSERT_EQUAL_UINT32(0x4991D0, info.time_ms);
+    TEST_ASSERT_EQUAL_UINT16(0, info.unproved);
+}
+
+/* The UST-10LX is on Ethernet: its 100 are megabits, and no rate of a UART. */
+void test_a_rate_that_is_not_in_bits_per_second_is_none(void)
+{
+    ask(SCIP_STATE);
+    feed("II\n00P\n");
+    tell("SBPS:Ethernet 100 [Mbps]", true);
+    TEST_ASSERT_EQUAL_UINT32(0, info.bit_rate);
+    tell("SBPS:115200", true);
+    TEST_ASSERT_EQUAL_UINT32(0, info.bit_rate);
+    tell("SBPS:115200 [bps]", true);
+    TEST_ASSERT_EQUAL_UINT32(115200, info.bit_rate);
+    TEST_ASSERT_EQUAL_UINT16(3, info.known);
+}
+
 /* Some firmware adds a line to VV, sends a wrong sum behind SERI, or sums an II line only up to "<-". */
 void test_the_known_oddities_of_firmware_do_no_harm(void)
 {

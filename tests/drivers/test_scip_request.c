@@ -139,7 +139,7 @@ void test_scan_lengths_agree_with_the_table(void)
         {31, 91, 124, 88, 121},        {32, 93, 127, 90, 124},        {33, 97, 130, 94, 127},
         {35, 101, 136, 98, 133},       {64, 159, 225, 156, 222},      {65, 163, 230, 160, 227},
         {271, 587, 866, 584, 863},     {677, 1425, 2122, 1422, 2119}, {682, 1435, 2137, 1432, 2134},
-        {769, 1615, 2408, 1612, 2405},
+        {769, 1615, 2408, 1612, 2405}, {1081, 2257, 3372, 2254, 3369},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         TEST_ASSERT_EQUAL_UINT16(rows[i].ms, scip_scan_octets(SCIP_STREAM_2, rows[i].points));
@@ -153,7 +153,7 @@ void test_scan_lengths_agree_with_the_table(void)
 void test_each_field_outside_its_range_is_refused(void)
 {
     const scip_range_t bad[] = {
-        range_of(400, 399, 1, 0, 0), range_of(0, 769, 1, 0, 0),   range_of(0, 65535, 1, 0, 0),
+        range_of(400, 399, 1, 0, 0), range_of(0, 1081, 1, 0, 0),  range_of(0, 65535, 1, 0, 0),
         range_of(0, 768, 0, 0, 0),   range_of(0, 768, 100, 0, 0), range_of(0, 768, 1, 10, 0),
         range_of(0, 768, 1, 0, 100),
     };
@@ -167,11 +167,11 @@ void test_the_limits_of_each_field_are_accepted(void)
 {
     const scip_range_t good[] = {
         range_of(0, 0, 1, 0, 0),
-        range_of(768, 768, 99, 9, 99),
+        range_of(1080, 1080, 99, 9, 99),
         range_of(0, 768, 99, 9, 99),
-        range_of(0, 768, 1, 0, 1),
+        range_of(0, 1080, 1, 0, 1),
     };
-    static const uint16_t points[] = {1, 1, 8, 769};
+    static const uint16_t points[] = {1, 1, 8, 1081};
     for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
         TEST_ASSERT_TRUE(scip_request_scan(&request, SCIP_STREAM_2, &good[i]));
         TEST_ASSERT_EQUAL_UINT16(points[i], request.points);

@@ -33,7 +33,7 @@ void tearDown(void) {}
 
 static bool feed(const char *text)
 {
-    octet_t octets[256];
+    static octet_t octets[3500];
     size_t count = 0U;
 
     while (text[count] != '\0') {
@@ -244,6 +244,37 @@ void test_a_rate_alone_is_handed_over(void)
     TEST_ASSERT_TRUE(urg_next_to_send(&urg, &output));
     TEST_ASSERT_TRUE(output.set_rate);
     TEST_ASSERT_EQUAL_UINT16(0, output.count);
+}
+
+/* As a UTM-30LX on USB: it has no SCIP1.1, its rate is no matter, and it turns four times as fast. */
+void test_a_sensor_of_1081_steps_streams_them_all(void)
+{
+    static const urg_config_t far = {0U, 115200U, 115200U, 0U, SCIP_STREAM_3, {0U, 1080U, 1U, 0U, 0U}, 1080U};
+    static uint16_t points[2U * 1081U];
+    static char data[3U * 1081U], text[3500];
+    scip_scan_t scan;
+
+    TEST_ASSERT_TRUE(urg_init(&urg, &far, points, 2U * 1081U, now_us));
+    TEST_ASSERT_EQUAL_STRING("\nL0\n", step());
+    (void)feed("L0\n0Ee\n\n");
+    TEST_ASSERT_EQUAL_STRING("QT\n", step());
+    (void)feed("QT\n00P\n\n");
+    TEST_ASSERT_EQUAL_STRING("MD0000108001000\n", step());
+    (void)feed("MD0000108001000\n00P\n\n");
+    for (unsigned k = 0U; k < 6U; k++) {
+        for (unsigned i = 0U; i < 1081U; i++) {
+            scip_frames_encode(&data[3U * i], 23UL + 55UL * i + k, 3U);
+        }
+        scip_frames_frame(text, "MD0000108001000", 1000UL + 25UL * k, data, sizeof data);
+        TEST_ASSERT_TRUE(feed(text));
+    }
+    (void)step();
+    TEST_ASSERT_EQUAL(URG_OK, status());
+    TEST_ASSERT_EQUAL_UINT32(6U, report.seen.scan_count);
+    TEST_ASSERT_TRUE(urg_take_scan(&urg, &scan));
+    TEST_ASSERT_EQUAL_UINT16(1081U, scan.points);
+    TEST_ASSERT_EQUAL_UINT16(28U, scan.distance_mm[0]);
+    TEST_ASSERT_EQUAL_UINT16(59428U, scan.distance_mm[1080]);
 }
 
 void test_too_little_memory_and_impossible_orders_are_refused(void)

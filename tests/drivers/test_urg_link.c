@@ -737,11 +737,11 @@ void test_no_rate_is_tried_that_the_own_uart_cannot_do(void)
 
 void test_what_sensor_or_uart_cannot_do_is_refused_at_once(void)
 {
-    static const urg_config_t good = {0, 115200, 250000, 250000, SCIP_STREAM_2, {372, 406, 1, 0, 0}};
-    urg_config_t bad[8];
+    static const urg_config_t good = {0, 115200, 250000, 250000, SCIP_STREAM_2, {372, 406, 1, 0, 0}, 0};
+    urg_config_t bad[10];
     const urg_link_t untouched = link_;
     TEST_ASSERT_TRUE(urg_link_init(&link_, &good, 0));
-    for (uint32_t i = 0; i < 8; i++) {
+    for (uint32_t i = 0; i < 10; i++) {
         bad[i] = good;
     }
     bad[0].first_rate = 38400;
@@ -752,11 +752,23 @@ void test_what_sensor_or_uart_cannot_do_is_refused_at_once(void)
     bad[5].range.last_step = 769;
     bad[6].range.first_step = 407;
     bad[7].range.cluster = 0;
+    bad[8].last_step = 405;
+    bad[9].last_step = bad[9].range.last_step = 1081;
     link_ = untouched;
-    for (uint32_t i = 0; i < 8; i++) {
+    for (uint32_t i = 0; i < 10; i++) {
         TEST_ASSERT_FALSE(urg_link_init(&link_, &bad[i], 5));
         TEST_ASSERT_EQUAL_MEMORY(&untouched, &link_, sizeof link_);
     }
+}
+
+void test_a_range_may_reach_the_last_step_of_the_sensor(void)
+{
+    urg_config_t whole = {0, 115200, 250000, 250000, SCIP_STREAM_2, {0, 768, 1, 0, 0}, 0};
+    TEST_ASSERT_TRUE(urg_link_init(&link_, &whole, 0));
+    whole.range.last_step = whole.last_step = 1080;
+    TEST_ASSERT_TRUE(urg_link_init(&link_, &whole, 0));
+    whole.range.last_step = 1079;
+    TEST_ASSERT_TRUE(urg_link_init(&link_, &whole, 0));
 }
 
 /* Every rate has its turn, the configured ones once only, for ever; power is cycled every 20 s where it can

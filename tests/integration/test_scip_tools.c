@@ -9,6 +9,7 @@
 #include "sim/devices/scene.h"
 #include "sim/devices/urg04lx.h"
 #include "sim/noise.h"
+#include "tests/support/scip_frames.h"
 #include "tools/plomada/scip_reader.h"
 #include "unity.h"
 
@@ -241,8 +242,8 @@ void test_single_scans_runs_and_endless_streams_may_follow_each_other(void)
     TEST_ASSERT_TRUE(line_count >= 3 + 3 + 5 + 5 + 3 + 3);
     TEST_ASSERT_TRUE(line_count == truth_count ||
                      line_count == truth_count - 1); /* one may be given up by a new stream */
-    TEST_ASSERT_EQUAL_UINT32(5, reader.totals.answers);
-    TEST_ASSERT_EQUAL_UINT32(10, reader.totals.skipped); /* V SCIP2.0 SS VV BM PP 04 05 QT II */
+    TEST_ASSERT_EQUAL_UINT32(6, reader.totals.answers);
+    TEST_ASSERT_EQUAL_UINT32(9, reader.totals.skipped); /* V SCIP2.0 SS VV BM PP 05 QT II */
     for (int i = 0; i < 16; i++) {
         static const int largest[16] = {4095, 262143, 262143, 4095,   4095,   4095,   4095,   4095,
                                         4095, 4095,   4095,   262143, 262143, 262143, 262143, 262143};
@@ -424,7 +425,7 @@ void test_noise_makes_no_scan_and_no_crash(void)
 void test_echoes_that_no_sensor_of_this_kind_answers_are_skipped(void)
 {
     static const char *const foreign[] = {
-        "MD0000108001000\n99b\nabcd?\nxxx\n\n", "MS0406037201000\n00P\n\n",
+        "MD0000108101000\n99b\nabcd?\nxxx\n\n", "MS0406037201000\n00P\n\n",
         "ME0000076801000\n99b\n00000\n00\n\n",  "GD00000768\n00P\n\n",
         "MS0372040601000;who\n99b\n\n",
     };
@@ -539,6 +540,32 @@ void test_decode_long_has_one_line_a_point_with_its_angle(void)
     TEST_ASSERT_EQUAL_INT(3 * 51, count);
 }
 
+/* Without its PP the steps alone tell that it is no URG-04LX. */
+void test_a_scan_of_steps_0_to_1080_is_decoded_with_its_own_angles(void)
+{
+    static char data[3 * 1081], text[4000];
+    char *line;
+    int count = 0;
+
+    for (unsigned i = 0; i < 1081; i++) {
+        scip_frames_encode(&data[3 * i], 23 + 55 * i, 3);
+    }
+    stream_length = scip_frames_frame(text, "MD0000108001000", 25, data, sizeof data);
+    memcpy(stream, text, stream_length);
+    write_stream("far.bin");
+    TEST_ASSERT_EQUAL_INT(0, run("decode far.bin 2>/dev/null | tail -n 1 | cut -d, -f1,2,1082"));
+    TEST_ASSERT_EQUAL_STRING("0.025,23,59423\n", output);
+    TEST_ASSERT_EQUAL_INT(0, run("decode far.bin --long 2>/dev/null"));
+    line = strtok(output, "\n");
+    for (; (line = strtok(NULL, "\n")) != NULL; count++) {
+        char expected[60];
+
+        sprintf(expected, "0.025,%d,%.3f,%d", count, (count - 540) * 0.25, 23 + 55 * count);
+        TEST_ASSERT_EQUAL_STRING(expected, line);
+    }
+    TEST_ASSERT_EQUAL_INT(1081, count);
+}
+
 void test_scans_of_other_steps_share_the_columns_and_leave_cells_empty(void)
 {
     power_on(world, NULL);
@@ -645,7 +672,7 @@ void test_what_is_skipped_is_named_with_the_sensor_and_the_reason(void)
     static const char foreign[] =
         "PP\n00P\nMODL:UTM-30LX;Z\nARES:1440;?\nDMIN:23;1\n\nME0000108001000\n00P\n\n"
         "ME0000108001000\n99b\n00000\nabcd?\n\nME0000108001000\n99b\n00000\nabcd?\n\n"
-        "MD0000108001000\n99b\n00000\nabcd?\n\n";
+        "MD0000108101000\n99b\n00000\nabcd?\n\n";
 
     memcpy(stream, foreign, sizeof foreign - 1);
     stream_length = sizeof foreign - 1;
@@ -655,7 +682,7 @@ void test_what_is_skipped_is_named_with_the_sensor_and_the_reason(void)
     TEST_ASSERT_NOT_NULL(strstr(output, "skipped packets: 5\n  PP           1  its limits\n"));
     TEST_ASSERT_NOT_NULL(
         strstr(output, "  ME           3  distances with intensities, which are not read\n"));
-    TEST_ASSERT_NOT_NULL(strstr(output, "  MD           1  of steps that no URG-04LX has, or malformed\n"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "  MD           1  of steps beyond 1080, or malformed\n"));
 }
 
 /* Typed in as measurements, see tests/fixtures/scip/README.md; one has an echo with cluster 00. */

@@ -32,7 +32,7 @@ PROOFS = [
     ("flight_log", ["flight_log"], 4, ["any_number_has_a_cell", "any_cell_has_a_number"]),
     ("decimal", [], 71, ["a_digit_more_fits", "scaling_up_fits", "raising_fits", "dividing_fits", "division_leaves_enough",
                          "any_number_is_rounded", "any_text_is_read", "any_value_is_written"]),
-    ("scip_parser", ["scip_request"], 82,
+    ("scip_parser", ["scip_request"], 130,
      ["starts_sound", "orders_leave_it_sound", "octets_leave_it_sound", "line_ends_in_hunt", "line_ends_in_echo",
       "line_ends_in_status", "line_ends_in_time", "line_ends_in_text", "line_ends_in_reply", "line_ends_in_legacy",
       "line_ends_in_data", "line_ends_in_scan", "octets_are_gathered", "echo_in_place_leaves_it_sound",

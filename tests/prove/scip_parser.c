@@ -43,15 +43,11 @@ static bool is_sound_request(const scip_request_t *request)
 static bool is_sound_progress(void)
 {
     const scip_request_t *awaited = &parser.awaited;
-    const scip_progress_t *progress = &parser.progress;
-    const uint32_t taken = (uint32_t)awaited->characters * progress->points + progress->partial_characters;
 
-    return parser.characters_left > 0U && progress->partial_characters < 3U &&
-           (awaited->characters != 2U ||
-            (progress->partial_characters == 0U && parser.characters_left % 2U == 0U)) &&
-           (parser.scan == NULL ||
-            (scan.capacity >= awaited->points &&
-             taken + parser.characters_left == (uint32_t)awaited->characters * awaited->points));
+    return parser.characters_left > 0U &&
+           parser.characters_left <= (uint32_t)awaited->characters * awaited->points &&
+           (awaited->characters != 2U || parser.characters_left % 2U == 0U) &&
+           (parser.scan == NULL || scan.capacity >= awaited->points);
 }
 
 static bool is_sound(void)
@@ -210,6 +206,6 @@ void octets_are_gathered(void)
 
     any_burst(HUNT);
     more = gather(&parser, burst, burst_count);
-    PROVE(more <= burst_count && parser.gathered + more <= SCIP_LINE_MAX, "no more than there is, and fits");
+    PROVE(more <= burst_count, "no more than there is");
     PROVE(is_sound(), "sound while they are gathered");
 }

@@ -15,7 +15,9 @@ static const char usage[] =
     "A scan without that step leaves its cell empty. With a cluster a value stands at its first step.\n\n"
     "  --long        one line for each point instead: time,step,angle_deg,distance_mm (angle: positive to "
     "the left of the\n"
-    "                front, of the sensor's own PP where the recording has it, else of the URG-04LX)\n"
+    "                front, of the sensor's own PP where the recording has it, else of the URG-04LX; with "
+    "steps above\n"
+    "                768 of the UTM-30LX)\n"
     "  --no-codes    cells without a distance stay empty: codes, and 4095 of two characters (far or "
     "unknown)\n\n"
     "Echo lines in the stream say what was asked for: MS, MD, GS, GD. A damaged frame gives no line. The "
@@ -150,6 +152,17 @@ static void write_scans(const decode_t *decode)
     }
 }
 
+/* Without the sensor's own PP its steps tell which kind it is. */
+static scip_limits_t limits_of(const decode_t *decode, const scip_info_t *info)
+{
+    bool beyond = false;
+
+    for (unsigned step = SCIP_STEP_MAX_URG04LX + 1; step < STEPS; step++) {
+        beyond = beyond || decode->has_step[step];
+    }
+    return info->told.ares == 0 && beyond ? scip_limits_utm30lx : scip_info_limits(info);
+}
+
 static int run(decode_t *decode)
 {
     static scip_reader_t reader;
@@ -162,7 +175,7 @@ static int run(decode_t *decode)
         fprintf(stderr, "plomada scip decode: %s: %s\n", decode->path, error);
         return 2;
     }
-    limits = scip_info_limits(&reader.info);
+    limits = limits_of(decode, &reader.info);
     if (decode->points) {
         write_points(decode, &limits);
     } else {

@@ -106,7 +106,7 @@ static bool read_steps(recording_t *recording, const char *text)
     int used = -1;
 
     if (sscanf(text, "%4u..%4u%n", &first, &last, &used) != 2 || text[used] != '\0' || first > last ||
-        last > SCIP_STEP_MAX) {
+        last > SCIP_STEP_MAX_URG04LX) {
         return complain("not of the form A..B with 0 <= A <= B <= 768", text);
     }
     recording->scanner.first_step = first;
