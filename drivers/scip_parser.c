@@ -158,8 +158,11 @@ static inline uint32_t six_bits(check_t *check, octet_t character)
  * one, and shows all the same. */
 static inline uint32_t two_values(check_t *check, const octet_t *text)
 {
-    const uint32_t four = (uint32_t)octet_of(text[0]) | ((uint32_t)octet_of(text[1]) << 8) |
-                          ((uint32_t)octet_of(text[2]) << 16) | ((uint32_t)octet_of(text[3]) << 24);
+    const uint32_t first = octet_of(text[0]);
+    const uint32_t second = octet_of(text[1]);
+    const uint32_t third = octet_of(text[2]);
+    const uint32_t fourth = octet_of(text[3]);
+    const uint32_t four = first | (second << 8) | (third << 16) | (fourth << 24);
     const uint32_t bits = four - FOUR_ZEROS;
     const uint32_t upper = bits & EVERY_SECOND;
     const uint32_t lower = (bits - upper) >> 8;
@@ -253,7 +256,8 @@ static void begin_data(scip_parser_t *parser, uint32_t stamp)
 static uint32_t read_stamp(const octet_t *text, check_t *check)
 {
     const uint32_t halves = two_values(check, text);
-    return ((halves & 0xFFFFU) << 12) | (halves >> 16);
+    const uint32_t upper = halves & 0xFFFFU;
+    return (upper << 12) | (halves >> 16);
 }
 
 static scip_damage_t take_time(scip_parser_t *parser, const octet_t *text)
