@@ -2,7 +2,7 @@
 
 Usage: pages.py ROOT [PROGRAM]
   links and their anchors lead somewhere; files and folders in `...` exist
-  in a table with the columns function and file each function stands in one of the files of its row
+  a function with a file in parentheses behind it, `take` (`firmware/uart_port.c`), is defined there
   each `make TARGET` is in the Makefile; with PROGRAM each option behind `plomada SUBCOMMAND` is in its --help
   all pages together have fewer words than WORDS, as wc -w counts
 """
@@ -18,7 +18,7 @@ PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "drivers/README.md")
 ROOMS = "bsp|ccs_project|cmake|control|docs|drivers|firmware|ground|sim|tests|tools"
 LINK = re.compile(r"\]\(([^)\s]*)\)")
 NAMED = re.compile(rf"`((?:{ROOMS})/[\w./-]*\w)`")
-ROW = re.compile(r"^\|([^|\n]*)\|([^|\n]*)\|([^|\n]*)\|", re.MULTILINE)
+PLACED = re.compile(rf"((?:`\w+`(?:\(\))?(?:,\s+)?)+)\s+\(`((?:{ROOMS})/[\w/]+\.c)`\)")
 MAKE = re.compile(r"(?:`|^|\$ )make ([a-z][\w-]*)", re.MULTILINE)
 USED = re.compile(r"plomada (scip [a-z]+|[a-z]+)((?: +(?:--?)?[^`\s|#;&>]+)*)")
 
@@ -60,15 +60,10 @@ def defines(root, file, function):
 
 
 def missing_functions(root, text):
-    walk = False
-    for cells in ROW.findall(text):
-        first, second, third = (cell.strip() for cell in cells)
-        walk = (second, third) == ("function", "file") if first == "#" else walk and (first[:1].isdigit() or set(first) <= {"-"})
-        files = NAMED.findall(third)
-        if walk and files:
-            for function in re.findall(r"`(\w+)`", second):
-                if not any(defines(root, file, function) for file in files):
-                    yield f"hop {first}: {function}() is not in {', '.join(files)}"
+    for names, file in PLACED.findall(text):
+        for function in re.findall(r"`(\w+)`", names):
+            if not defines(root, file, function):
+                yield f"{function}() is not in {file}"
 
 
 def missing_targets(root, text):
