@@ -1,6 +1,20 @@
 /* Response-time analysis of one processor under fixed priorities: any interrupt before any Swi before any
- * task, tasks by priority, all preemptive. Pure functions of their arguments. Method and assumptions:
- * docs/realtime.md.
+ * task, tasks by priority, all preemptive. Pure functions of their arguments.
+ *
+ * For task i, with S two context switches (per job and per blocking), B_i and n_i time and number of
+ * blockings, the q-th job of a busy window (q = 0, 1, ...) ends at the least w with
+ *
+ *     w = (q + 1) (C_i + S) + B_i + n_i S + sum over interrupts and Swis N(w) C
+ *       + sum over tasks before i N_j(w) (C_j + S)
+ *
+ * and R_i is the largest J + w - q P_i, up to the first job that ends before the next is released (Joseph and
+ * Pandya 1986; Lehoczky 1990 for q > 0). N(w), the releases in a window, is ceil((w + J) / P), J the jitter
+ * of all rows and the row's own j. For a stream in frames of n, one per F, with f = floor((w + J) / F):
+ * min(ceil((w + j) / P), f n + min(n, ceil((w + J - f F) / P))).
+ *
+ * A chain, each member releasing the next, ends with its last task, with the blockings of all; each lower
+ * task blocks the whole chain once at most where the table says by whom; after the last octet of a frame
+ * nothing comes of that stream before the next frame. Growth is found by bisection.
  *
  * Times are whole picoseconds in a double: exact up to 2^53 ps (2.5 h), and without overflow above. */
 #ifndef TOOLS_RTA_ANALYSIS_H
