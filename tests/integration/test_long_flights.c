@@ -8,8 +8,6 @@
 #include "child.h"
 #include "unity.h"
 
-#define HEIGHT_COLUMN 10
-
 static char output[20000];
 
 void setUp(void) {}
@@ -63,6 +61,27 @@ void test_five_hours_of_hover_end_on_the_ground_though_radio_and_scanner_are_los
     within("flagged_s", 0.5, 20.0);
 }
 
+static const char *nth_field(const char *line, int column)
+{
+    for (; column > 0; column--) {
+        line = strchr(line, ',') + 1;
+    }
+    return line;
+}
+
+static int column_of(const char *header, const char *name)
+{
+    int column = 0;
+
+    for (const char *field = header; strncmp(field, name, strlen(name)) != 0 || field[strlen(name)] != ',';
+         column++) {
+        field = strchr(field, ',');
+        TEST_ASSERT_NOT_NULL_MESSAGE(field, name);
+        field++;
+    }
+    return column;
+}
+
 /* Of the height, in the log from one time to another. */
 static double rms_mm(const char *name, double from_s, double to_s)
 {
@@ -72,15 +91,12 @@ static double rms_mm(const char *name, double from_s, double to_s)
     FILE *log = fopen(name, "r");
 
     TEST_ASSERT_NOT_NULL_MESSAGE(log, name);
+    TEST_ASSERT_NOT_NULL(fgets(line, sizeof line, log));
+    const int height = column_of(line, "height_m");
     while (fgets(line, sizeof line, log) != NULL) {
         const double t_s = strtod(line, NULL);
-        const char *field = line;
-
-        for (int column = 0; column < HEIGHT_COLUMN; column++) {
-            field = strchr(field, ',') + 1;
-        }
         if (t_s > from_s && t_s < to_s) {
-            const double error_mm = 1000.0 * (strtod(field, NULL) - 0.6);
+            const double error_mm = 1000.0 * (strtod(nth_field(line, height), NULL) - 0.6);
 
             sum += error_mm * error_mm;
             count++;

@@ -181,6 +181,29 @@ describe('the wizards', () => {
     await shows('seen:accelerations+angles');
   });
 
+  it('prove the signs of an IMU that is tilted by hand, right side first, then the nose', async () => {
+    page = await openPage(browser, site.url);
+    await startVehicle(page, '5×');
+    const tilt = async (figure: string, degrees: number): Promise<void> => {
+      await tab(page, 'Fly').click();
+      await page.locator('details.figures').last().evaluate((all: HTMLDetailsElement) => (all.open = true));
+      await page.getByRole('slider', { name: figure, exact: true }).fill(String(degrees));
+      await tab(page, 'Checks').click();
+    };
+    await tab(page, 'Checks').click();
+    await button(page, '1 Level').click();
+    await shows('OK IMU LEVEL');
+    await tilt('imu_mount_roll_deg', 15);
+    await page.waitForTimeout(400);
+    await button(page, '2 Right side up').click();
+    await shows('OK IMU RIGHT IROLL:-ROLL IAXES:ASSUMED');
+    await tilt('imu_mount_roll_deg', 0);
+    await tilt('imu_mount_pitch_deg', 15);
+    await page.waitForTimeout(400);
+    await button(page, '3 Nose up').click();
+    await shows('OK IMU NOSE IPITCH:PITCH IAXES:PROVED');
+  });
+
   it('end a calibration when the window loses the focus, and LINK is then what it was', async () => {
     page = await openPage(browser, site.url);
     await startVehicle(page, '5×');
