@@ -709,8 +709,7 @@ static size_t status_in_place(scip_parser_t *parser, const octet_t *octets, size
 
 static size_t time_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
-    if (count < TIME_OCTETS || octets[5] != SCIP_LINE_FEED ||
-        take_time(parser, octets) != SCIP_DAMAGE_NONE) {
+    if (count < TIME_OCTETS || octets[5] != SCIP_LINE_FEED || take_time(parser, octets) != SCIP_DAMAGE_NONE) {
         return 0U;
     }
     return TIME_OCTETS;

@@ -99,9 +99,9 @@ typedef struct {
                           * a counted run */
     uint16_t state;
     uint_fast16_t gathered; /* cell of `line` for the next octet; behind the last one comes the first again */
-    bool skipping;     /* the line before was skipped and not empty */
+    bool skipping;          /* the line before was skipped and not empty */
     scip_scan_t *scan;
-    uint16_t characters_left; /* of the scan's data */
+    uint16_t characters_left;  /* of the scan's data */
     uint32_t partial;          /* first characters of a point that straddles two blocks */
     uint32_t timestamp_ms;     /* of the frame in reception */
     uint16_t remaining;        /* of the frame in reception */

@@ -634,8 +634,8 @@ bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us
 {
     scip_request_t stream = {.scan_octets = 0U};
     scip_request_t rate;
-    if ((config->stream != SCIP_STREAM_2 && config->stream != SCIP_STREAM_3) ||
-        !is_within(config) || !scip_request_scan(&stream, config->stream, &config->range) ||
+    if ((config->stream != SCIP_STREAM_2 && config->stream != SCIP_STREAM_3) || !is_within(config) ||
+        !scip_request_scan(&stream, config->stream, &config->range) ||
         !scip_request_bit_rate(&rate, config->first_rate) ||
         !scip_request_bit_rate(&rate, config->stream_rate) || !is_possible(config, config->first_rate) ||
         !is_possible(config, config->stream_rate)) {

@@ -189,7 +189,8 @@ static void next_tick(void)
 
 static void prepare_link(void)
 {
-    (void)urg_link_init(&link_, &(urg_config_t){0, 115200, 115200, 0, SCIP_STREAM_2, {372, 406, 1, 0, 0}, 0}, 0);
+    (void)urg_link_init(&link_, &(urg_config_t){0, 115200, 115200, 0, SCIP_STREAM_2, {372, 406, 1, 0, 0}, 0},
+                        0);
     for (unsigned i = 0; i < 100 && link_.status != URG_OK; i++) {
         now_us += 150000U;
         send_laser();
