@@ -118,7 +118,7 @@
 
 void integrity_init(integrity_t *integrity)
 {
-    *integrity = (integrity_t){.shaken = 1.0F};
+    *integrity = (integrity_t){.shaken = 1.0F, .upright = 1.0F};
 }
 
 bool integrity_doubts(const integrity_t *integrity, uint16_t doubt)
@@ -179,7 +179,8 @@ static bool believe_tilt(integrity_t *i, float roll_rad, float pitch_rad, uint32
     i->jumped = 0U;
     i->roll_rad = roll_rad;
     i->pitch_rad = pitch_rad;
-    if (cosf(roll_rad) * cosf(pitch_rad) >= TILTED_COS) {
+    i->upright = cosf(roll_rad) * cosf(pitch_rad);
+    if (i->upright >= TILTED_COS) {
         i->tilted = 0U;
     } else if (i->tilted < COUNT_MAX) {
         ++i->tilted;
@@ -407,7 +408,6 @@ void integrity_frames(integrity_t *integrity, const flown_t *flown, const imu_sa
 void integrity_thrust(integrity_t *integrity, const flown_t *flown)
 {
     const float dt_s = at_most(flown->step_s, STEP_MAX_S);
-    const float upright = cosf(integrity->roll_rad) * cosf(integrity->pitch_rad);
 
     if (flown->ordered && flown->grounded) {
         set_doubt(integrity, DOUBT_SIGHT | DOUBT_THRUST, false);
@@ -422,7 +422,8 @@ void integrity_thrust(integrity_t *integrity, const flown_t *flown)
         start(&integrity->pushed, flown->grounded || !feels(integrity) ? 0.0F : integrity->felt.speed_mps);
         return;
     }
-    const float excess_mps2 = flown->authority_mps2_per_n * (integrity->lagged_n * upright - flown->hover_n);
+    const float excess_mps2 = flown->authority_mps2_per_n *
+                              (integrity->lagged_n * integrity->upright - flown->hover_n);
     const float mps2 = (excess_mps2 - flown->damping_per_s * integrity->pushed.speed_mps) /
                        (1.0F + flown->damping_per_s * dt_s);
     move(&integrity->pushed, mps2, dt_s);

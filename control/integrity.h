@@ -70,6 +70,7 @@ typedef struct {
     /* tilt */
     bool levelled;             /* at least one tilt was accepted */
     float roll_rad, pitch_rad; /* latest accepted tilt */
+    float upright;             /* its cosine */
     uint16_t jumped;           /* tilts in a row that were rejected because they jumped */
     uint16_t tilted;           /* accepted tilts in a row above 45 degrees */
     uint32_t tilt_time_us;     /* arrival of the latest tilt, accepted or not */

@@ -174,11 +174,6 @@ int16_t parameter_find_choice(parameter_id_t id, const char *name, size_t length
     return -1;
 }
 
-uint16_t parameters_choice(const parameters_t *parameters, parameter_id_t id)
-{
-    return (uint16_t)parameters->value[id];
-}
-
 parameter_status_t parameters_set(parameters_t *parameters, parameter_id_t id, float value)
 {
     const parameter_row_t *row = &parameter_table[id];

@@ -114,7 +114,10 @@ parameter_id_t parameter_find(const char *name, size_t length);
 int16_t parameter_find_choice(parameter_id_t id, const char *name, size_t length);
 
 /* Value of a choice: the index of its name. */
-uint16_t parameters_choice(const parameters_t *parameters, parameter_id_t id);
+static inline uint16_t parameters_choice(const parameters_t *parameters, parameter_id_t id)
+{
+    return (uint16_t)parameters->value[id];
+}
 
 /* Stores value and returns PARAMETER_ACCEPTED when it is finite and within the row's limits; for a choice
  * it must also be whole. Otherwise nothing changes. -0 is stored as 0. */

@@ -17,6 +17,7 @@
 #define GRAVITY_MPS2 9.80665F        /* standard gravity */
 #define FRAME_AGE_US UINT32_C(23600) /* 15 ms within the Razor (assumed), 8.6 ms on the wire */
 #define TILT_AGE_US UINT32_C(50000)  /* the median of five frames is two frames of 25 ms old */
+#define NO_RAYS_US UINT32_C(75000)   /* after other rays: a scan of 0.1 s, less a margin of a frame */
 #define GAP_MAX_US INT32_C(300000)   /* chosen: 12 frames lost; the filter starts again */
 #define UP_MAX_MPS2 200.0F           /* above what the Razor can say, 16 g */
 #define ANGLE_MAX_RAD 3.2F           /* pi, rounded up */
@@ -113,7 +114,7 @@ static void bound_states(estimate_t *x)
     x->terrain_mps = between(-TERRAIN_MAX_MPS, x->terrain_mps, TERRAIN_MAX_MPS);
 }
 
-static void propagate(estimate_t *x, const estimator_frame_t *frame, float dt_s)
+static inline void propagate(estimate_t *x, const estimator_frame_t *frame, float dt_s)
 {
     const float acceleration_mps2 = frame->up_mps2 - frame->share * x->bias_mps2;
 
@@ -152,24 +153,13 @@ static inline void bound_covariance(float p[ESTIMATOR_STATES][ESTIMATOR_STATES])
     bound_variance(p, TERRAIN);
 }
 
-/* Variance of the acceleration that the prediction uses, times the time it lasts. */
-static float speed_drift(const estimator_t *e, float share)
-{
-    const float measured_mps2 = e->felt ? share * e->noise_mps2 : 0.0F;
-    const float modelled_mps2 = e->felt ? (1.0F - share) * e->model_noise_mps2 : UNFELT_NOISE_MPS2;
-
-    return (SPEED_NOISE_MPS2 * SPEED_NOISE_MPS2 +
-            (measured_mps2 * measured_mps2 + modelled_mps2 * modelled_mps2)) *
-           FRAME_S;
-}
-
 /* P = F P F' + Q, on one half of the symmetric matrix. Row of F: height 1, dt, -half, -dt; speed 0, 1,
  * -slope, 0; bias 0, 0, 1, 0; terrain 0, 0, 0, decay. */
-static void propagate_covariance(estimator_t *e, float share, float dt_s)
+static void propagate_covariance(estimator_t *e, const estimator_frame_t *frame, float dt_s)
 {
     float(*const p)[ESTIMATOR_STATES] = e->covariance;
     const float decay = at_least(1.0F - dt_s / TERRAIN_TIME_S, 0.0F);
-    const float slope = share * dt_s;
+    const float slope = frame->share * dt_s;
     const float half = 0.5F * slope * dt_s;
     const float drift_mps2 = e->felt ? BIAS_DRIFT_MPS2 : UNFELT_DRIFT_MPS2;
     const float speed_bias = p[SPEED][BIAS] - slope * p[BIAS][BIAS];
@@ -186,7 +176,7 @@ static void propagate_covariance(estimator_t *e, float share, float dt_s)
     p[HEIGHT][SPEED] = height_speed - slope * height_bias;
     p[HEIGHT][BIAS] = height_bias;
     p[HEIGHT][TERRAIN] = height_terrain * decay;
-    p[SPEED][SPEED] += speed_drift(e, share) * dt_s - slope * (p[SPEED][BIAS] + speed_bias);
+    p[SPEED][SPEED] += frame->drift * dt_s - slope * (p[SPEED][BIAS] + speed_bias);
     p[SPEED][TERRAIN] = (p[SPEED][TERRAIN] - slope * p[BIAS][TERRAIN]) * decay;
     p[SPEED][BIAS] = speed_bias;
     p[BIAS][BIAS] += drift_mps2 * drift_mps2 * dt_s;
@@ -201,7 +191,7 @@ static void predict_to(estimator_t *e, uint32_t to_us, const estimator_frame_t *
 
     e->terrain_height_m += e->delayed.terrain_mps * dt_s;
     propagate(&e->delayed, frame, dt_s);
-    propagate_covariance(e, frame->share, dt_s);
+    propagate_covariance(e, frame, dt_s);
     e->delayed_us = to_us;
 }
 
@@ -242,12 +232,22 @@ static void predict_now(estimator_t *e)
     e->now_us = time_us;
 }
 
-float motion_up_mps2(const imu_sample_t *frame)
+/* Also writes the cosine of the tilt. */
+static inline float up_and_upright(const imu_sample_t *frame, float *upright)
 {
     const float level = cosf(frame->median.pitch_rad);
-    return frame->down_mps2 * level * cosf(frame->median.roll_rad) +
-           frame->right_mps2 * level * sinf(frame->median.roll_rad) -
+    const float level_roll = cosf(frame->median.roll_rad);
+
+    *upright = level_roll * level;
+    return frame->down_mps2 * level * level_roll + frame->right_mps2 * level * sinf(frame->median.roll_rad) -
            frame->forward_mps2 * sinf(frame->median.pitch_rad) - GRAVITY_MPS2;
+}
+
+float motion_up_mps2(const imu_sample_t *frame)
+{
+    float upright;
+
+    return up_and_upright(frame, &upright);
 }
 
 /* The second difference of white noise has six times its variance; what the vehicle does adds little to it.
@@ -270,6 +270,7 @@ static void restart_at_frame(estimator_t *e, uint32_t time_us, float up_mps2)
     e->initialised = false;
     e->frame_count = 0U;
     e->delayed_us = time_us;
+    e->rays_us = time_us;
     e->now_us = time_us;
     e->previous_mps2[0] = up_mps2;
     e->previous_mps2[1] = up_mps2;
@@ -282,9 +283,13 @@ static float accelerometer_share(const estimator_t *e, const modelled_motion_t *
     return model->known ? modelled / (modelled + measured) : 1.0F;
 }
 
+/* The oldest frame is used up as soon as no rays can be older than it. So the work of a height is spread over
+ * the cycles before it. */
 static void append_frame(estimator_t *e, const estimator_frame_t *frame)
 {
-    if (e->frame_count == ESTIMATOR_FRAMES) {
+    const bool passed = before(e->frames[0].time_us, e->rays_us + NO_RAYS_US);
+
+    if (e->frame_count == ESTIMATOR_FRAMES || (e->frame_count > 0U && passed)) {
         predict_through(e, e->frames[0].time_us);
     }
     e->frames[e->frame_count] = *frame;
@@ -341,24 +346,40 @@ static void change_source(estimator_t *e, bool felt)
     reset_variance(e, BIAS, variance_start[BIAS]);
 }
 
+/* Drift of the speed, (m/s)2 a second, by the noise of an acceleration that lasts for one frame. */
+static float drift_of(float measured_mps2, float modelled_mps2)
+{
+    return (SPEED_NOISE_MPS2 * SPEED_NOISE_MPS2 +
+            (measured_mps2 * measured_mps2 + modelled_mps2 * modelled_mps2)) *
+           FRAME_S;
+}
+
 /* Acceleration for the prediction: a weighted mean of accelerometer and model, or the model alone. */
 static estimator_frame_t motion_of(estimator_t *e, const modelled_motion_t *model, float up_mps2)
 {
     const float modelled_mps2 = model->known ? model->up_mps2 : 0.0F;
 
     if (!e->felt) {
-        return (estimator_frame_t){.up_mps2 = modelled_mps2, .share = model->known ? 1.0F : 0.0F};
+        return (estimator_frame_t){.up_mps2 = modelled_mps2,
+                                   .share = model->known ? 1.0F : 0.0F,
+                                   .drift = drift_of(0.0F, UNFELT_NOISE_MPS2)};
     }
     const float mean_mps2 = e->has_frames ? 0.5F * (up_mps2 + e->up_mps2) : up_mps2;
     const float share = accelerometer_share(e, model) * credit(e, model, mean_mps2);
-    return (estimator_frame_t){.up_mps2 = share * mean_mps2 + (1.0F - share) * modelled_mps2, .share = share};
+    return (estimator_frame_t){
+        .up_mps2 = share * mean_mps2 + (1.0F - share) * modelled_mps2,
+        .share = share,
+        .drift = drift_of(share * e->noise_mps2, (1.0F - share) * model->noise_mps2),
+    };
 }
 
 void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motion_t model)
 {
     const uint32_t time_us = frame->arrival_us - FRAME_AGE_US;
     const int32_t gap_us = (int32_t)(time_us - e->now_us);
-    const float up_mps2 = frame->has_acceleration ? motion_up_mps2(frame) : 0.0F;
+    float upright;
+    const float told_mps2 = up_and_upright(frame, &upright);
+    const float up_mps2 = frame->has_acceleration ? told_mps2 : 0.0F;
     const bool feels = frame->has_acceleration && fabsf(up_mps2) < UP_MAX_MPS2;
     const bool lacks = !feels && e->felt && (uint32_t)(time_us - e->felt_us) <= ESTIMATOR_FRESH_US;
 
@@ -370,12 +391,11 @@ void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motio
     }
     e->felt_us = time_us;
     e->sequence = frame->sequence;
-    e->model_noise_mps2 = model.noise_mps2;
     e->latest = motion_of(e, &model, up_mps2);
     e->latest.time_us = time_us;
     e->latest.roll_rad = frame->median.roll_rad;
     e->latest.pitch_rad = frame->median.pitch_rad;
-    e->upright = cosf(frame->median.roll_rad) * cosf(frame->median.pitch_rad);
+    e->upright = upright;
     e->up_mps2 = feels ? up_mps2 : 0.0F;
     if (!e->has_frames || gap_us > GAP_MAX_US || gap_us < -GAP_MAX_US) {
         restart_at_frame(e, time_us, up_mps2);
@@ -384,6 +404,17 @@ void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motio
     }
     if (feels) {
         measure_noise(e, up_mps2);
+    }
+}
+
+/* One row of P - K row' + K (R K - (row - K row))'. */
+static inline void correct_row(float *p, uint16_t i, const float *row, const float *gain, uint16_t state,
+                               float variance)
+{
+    const float more = variance * gain[i] - (row[i] - gain[i] * row[state]);
+
+    for (uint16_t j = i; j < ESTIMATOR_STATES; ++j) {
+        p[j] += gain[j] * more - gain[i] * row[j];
     }
 }
 
@@ -404,13 +435,10 @@ static void correct(estimator_t *e, uint16_t state, float innovation, float vari
     e->delayed.speed_mps += gain[SPEED] * innovation;
     e->delayed.bias_mps2 += gain[BIAS] * innovation;
     e->delayed.terrain_mps += gain[TERRAIN] * innovation;
-    for (uint16_t i = 0U; i < ESTIMATOR_STATES; ++i) {
-        const float left = row[i] - gain[i] * row[state];
-        const float more = variance * gain[i] - left;
-        for (uint16_t j = i; j < ESTIMATOR_STATES; ++j) {
-            p[i][j] += gain[j] * more - gain[i] * row[j];
-        }
-    }
+    correct_row(p[HEIGHT], HEIGHT, row, gain, state, variance);
+    correct_row(p[SPEED], SPEED, row, gain, state, variance);
+    correct_row(p[BIAS], BIAS, row, gain, state, variance);
+    correct_row(p[TERRAIN], TERRAIN, row, gain, state, variance);
     bound_states(&e->delayed);
     bound_covariance(p);
 }
@@ -536,6 +564,7 @@ height_outcome_t estimator_fuse_height(estimator_t *e, const altitude_t *altitud
     }
     const float height_m = height_at_rays_m(e, altitude, rays_us);
     predict_through(e, rays_us);
+    e->rays_us = e->delayed_us;
     if (e->initialised) {
         outcome = check_and_fuse(e, height_m);
     } else {

@@ -50,6 +50,7 @@ typedef struct {
     float up_mps2;    /* mean since the frame before, gravity removed */
     float share;      /* share of the accelerometer in up_mps2, 0 .. 1 (its bias has the same share);
                        * the rest is the model */
+    float drift;      /* what its noise adds to the variance of the speed in a second */
     float roll_rad, pitch_rad;
 } estimator_frame_t;
 
@@ -60,7 +61,8 @@ typedef struct {
     estimate_t delayed;
     float covariance[ESTIMATOR_STATES][ESTIMATOR_STATES]; /* symmetric: [i][j] is kept for i <= j */
     uint32_t delayed_us;
-    estimate_t now; /* estimate at now_us, the instant of the latest frame */
+    uint32_t rays_us; /* delayed_us at the latest height */
+    estimate_t now;   /* estimate at now_us, the instant of the latest frame */
     uint32_t now_us;
     bool felt;        /* the estimate rests on accelerations; false: on the model and the heights alone */
     uint32_t felt_us; /* when the latest accelerations were measured */
@@ -71,9 +73,8 @@ typedef struct {
     uint16_t frame_count;
     bool has_frames; /* at least one frame was received */
     uint32_t sequence;
-    float previous_mps2[2]; /* raw accelerations of the two frames before */
-    float noise_mps2;       /* measured rms of the accelerometer's noise */
-    float model_noise_mps2;
+    float previous_mps2[2];   /* raw accelerations of the two frames before */
+    float noise_mps2;         /* measured rms of the accelerometer's noise */
     float off_model_mps2;     /* measured less modelled acceleration, low-passed */
     float mean_innovation_m;  /* low-passed */
     uint16_t fused_count;     /* heights in a row that were fused, at most ACCUSED_HEIGHTS */
