@@ -175,18 +175,18 @@ def page_by_law(flown, laws):
 
 
 def page_by_kind(flown):
-    """The rows with a harmed or deceived flight, for EST and all laws; and the names of the other rows."""
+    """The rows with a harmed flight, for EST and all laws; and the names of the other rows."""
     head, lines = by_kind(flown)
-    columns = [0, head.index("EST"), head.index("all"), head.index("deceived")]
-    found = [line for line in lines if {plain(line[k]) for k in columns[2:]} - {"0", "-"}]
+    columns = [0, head.index("EST"), head.index("all")]
+    found = [line for line in lines if plain(line[columns[2]]) not in ("0", "-")]
     harmless = [line[0] for line in lines if line not in found and line[columns[2]] != "-"]
     return [[line[k] for k in columns] for line in found], harmless
 
 
 def kinds_of_page(flown):
     lines, harmless = page_by_kind(flown)
-    return (f"Harmed flights by what was wrong. Nothing was harmed or deceived with: {', '.join(harmless) or '-'}.\n\n"
-            f"{markdown(['alone', 'EST %', 'all laws %', 'deceived %'], lines)}\n")
+    return (f"Harmed flights by what was wrong. No flight was harmed with: {', '.join(harmless) or '-'}.\n\n"
+            f"{markdown(['alone', 'EST %', 'all laws %'], lines)}\n")
 
 
 def render(flown, count, with_kinds):
