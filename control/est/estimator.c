@@ -39,12 +39,16 @@
 #define FLOOR_CLIP 9.0F        /* chosen: 3 sigma, so that one edge counts little */
 #define FLOOR_SIGMAS 4.5F      /* tried: both edges of a bar pass the test */
 #define FLOOR_VARIANCE 4.0F    /* tried: heights over a bar are correlated, white noise is not */
-#define HEIGHT_DRIFT_M 0.0047F /* fitted; m per root second */
-#define SPEED_NOISE_MPS2 0.53F /* fitted; what neither accelerometer nor model knows */
-#define FRAME_S 0.025F         /* period of the IMU, seed 5.2.1.1 */
-#define BIAS_DRIFT_MPS2 0.095F /* fitted; m/s2 per root second */
-#define UNFELT_DRIFT_MPS2 0.4F /* tried 0.1 to 0.8: more follows gusts better and shakes the thrust more */
-#define UNFELT_NOISE_MPS2 0.4F /* tried 0.1 to 1.5: hardly matters below 1 */
+#define BAR_US UINT32_C(1000000) /* chosen: two edges within that time are a bar, and more will follow */
+#define BAR_LEAST_M 0.040F       /* chosen: ten times the noise of a height */
+#define BAR_MOST_M 0.15F         /* chosen: higher ones are edges or wrong scans, which are rejected */
+#define BAR_SHARE 0.5F           /* rms of a height that is half of the time on the bar */
+#define HEIGHT_DRIFT_M 0.0047F   /* fitted; m per root second */
+#define SPEED_NOISE_MPS2 0.53F   /* fitted; what neither accelerometer nor model knows */
+#define FRAME_S 0.025F           /* period of the IMU, seed 5.2.1.1 */
+#define BIAS_DRIFT_MPS2 0.095F   /* fitted; m/s2 per root second */
+#define UNFELT_DRIFT_MPS2 0.4F   /* tried 0.1 to 0.8: more follows gusts better and shakes the thrust more */
+#define UNFELT_NOISE_MPS2 0.4F   /* tried 0.1 to 1.5: hardly matters below 1 */
 #define TERRAIN_DRIFT_MPS 0.053F /* fitted; m/s per root second */
 #define TERRAIN_TIME_S 1.0F      /* chosen: a slope lasts about a second */
 #define NOISE_START_MPS2 0.4F    /* assumed of a Razor on a flying frame */
@@ -500,6 +504,22 @@ static bool innovation_accepted(const estimator_t *e, float innovation_m)
     return fabsf(innovation_m) <= at_least(limit_m, floor_m);
 }
 
+/* An edge that comes and goes is a bar, and more will follow. The filter takes small edges for speed, and
+ * after a large one the next change of the height. So over bars the heights get the variance of a rough floor
+ * at once. */
+static void watch_bars(estimator_t *e, float innovation_m)
+{
+    if (fabsf(innovation_m) < BAR_LEAST_M || fabsf(innovation_m) > BAR_MOST_M) {
+        return;
+    }
+    if (innovation_m * e->edge_m < 0.0F && e->delayed_us - e->edge_us < BAR_US) {
+        const float bar_m = at_most(fabsf(innovation_m), fabsf(e->edge_m));
+        e->floor_m = between(e->floor_m, BAR_SHARE * bar_m, FLOOR_MAX_M);
+    }
+    e->edge_m = innovation_m;
+    e->edge_us = e->delayed_us;
+}
+
 static height_outcome_t reject(estimator_t *e, float height_m, float innovation_m)
 {
     const float apart_m = fabsf(innovation_m - e->rejected_innovation_m);
@@ -526,6 +546,7 @@ static height_outcome_t check_and_fuse(estimator_t *e, float height_m)
 {
     measure_floor(e, height_m);
     e->innovation_m = height_m - e->delayed.height_m;
+    watch_bars(e, e->innovation_m);
     e->confirmed = e->unchecked_count == 0U && innovation_accepted(e, e->innovation_m);
     if (e->unchecked_count == 0U && !e->confirmed) {
         return reject(e, height_m, e->innovation_m);

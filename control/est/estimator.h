@@ -84,6 +84,8 @@ typedef struct {
     uint16_t rejected_count;  /* rejected heights in a row */
     uint16_t unchecked_count; /* heights still to be fused without the innovation test */
     bool confirmed;           /* the latest height passed the test, or was the second one of a terrain step */
+    float edge_m;             /* latest innovation as high as a bar, see estimator.c */
+    uint32_t edge_us;         /* instant of its rays */
     float rejected_innovation_m; /* innovation of the latest rejected height */
     float innovation_m;          /* innovation of the latest height */
     float terrain_height_m; /* terrain height above the terrain of the start: its steps plus its integrated

@@ -464,6 +464,20 @@ void test_after_a_gap_nothing_of_before_is_left(void)
     TEST_ASSERT_TRUE_MESSAGE(e.noise_mps2 <= noise_mps2, "two equal frames show no noise");
 }
 
+void test_an_edge_that_comes_and_goes_is_a_bar_at_once(void)
+{
+    hover();
+    (void)see(0.56);
+    (void)see(0.56);
+    TEST_ASSERT_TRUE_MESSAGE(e.floor_m < 0.02F, "an edge");
+    (void)see(0.50);
+    TEST_ASSERT_FLOAT_WITHIN(0.006F, 0.03F, e.floor_m);
+    for (int i = 0; i < 4; i++) {
+        TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(i % 2 == 0 ? 0.56 : 0.50));
+        TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.0F, e.now.speed_mps);
+    }
+}
+
 /* Bars of 60 mm, every other scan over one: no steps of the terrain, but a rough floor, and the way is
  * between. */
 void test_bars_on_the_floor_are_noise_and_a_single_edge_is_not(void)
