@@ -606,7 +606,7 @@ static float within_power_n(const flight_t *flight, float thrust_n)
     if (flight->unsure) {
         return between(flight->hover_n - UNSURE_WINDOW_N, thrust_n, flight->hover_n + UNSURE_WINDOW_N);
     }
-    if (!integrity_doubts(&flight->integrity, DOUBT_THRUST)) {
+    if (!integrity_doubts(&flight->integrity, DOUBT_THRUST) || flight->mode == FLIGHT_MODE_IDLE) {
         return thrust_n;
     }
     return flight->integrity.held_down ? at_least(thrust_n, held_n - POWERLESS_WINDOW_N)
