@@ -12,8 +12,8 @@
 
 #define FAULTS_MAX 32
 #define HEIGHT_MAX_M 5.0
-#define PACKET 62U            /* a USB packet of 64 octets, two of them the adapter's own status */
-#define LATENCY (16 * SIM_MS) /* FTDI, application note AN232B-04: the default of its latency timer */
+#define PACKET 64U         /* of a full-speed USB port */
+#define PAUSE (2 * SIM_MS) /* chosen: three octets at the slowest rate */
 
 static const char usage[] =
     "usage: plomada laser --link PATH [OPTION]...\n\n"
@@ -24,9 +24,10 @@ static const char usage[] =
     "  --height M      the vehicle stands M metres above the floor, 0..5 (default 0), and the three mirrors "
     "look down\n"
     "  --seed N        noise, phase and faults (default 1)\n"
-    "  --burst         hands octets over as a USB adapter does (FTDI, application note AN232B-04): when 62 "
-    "are there, or\n"
-    "                  16 ms after the latest packet\n"
+    "  --burst         hands octets over in packets, as the sensor's own USB does: when 64 are there, or "
+    "when "
+    "the line\n"
+    "                  pauses for 2 ms\n"
     "  --fault SPEC    may be repeated\n\n"
     "The sensor has been on for long: it listens, in SCIP1.1, at its power-up rate, which the "
     "pseudo-terminal is set to. As\n"
@@ -64,7 +65,8 @@ static struct {
     unsigned long mismatched; /* octets to a client at another rate */
     unsigned char packet[PACKET];
     size_t packed;
-    sim_time_t packet_left; /* the latest */
+    sim_time_t octet_at; /* the latest */
+    bool watching;       /* for a pause */
 } server;
 
 static bool complain(const char *what, const char *subject)
@@ -168,29 +170,34 @@ static bool client_follows(double bit_ns)
     return ratio > 0.955 && ratio < 1.045;
 }
 
-/* ---- the adapter ---- */
+/* ---- packets ---- */
 
 static void hand_over(void)
 {
     port_write(&server.port, server.packet, server.packed);
     server.packed = 0;
-    server.packet_left = timeline_now();
 }
 
-/* The timer measures since the latest packet; each one starts it anew, also one without octets. */
-static void latency(void *context)
+static void watch_for_pause(void *context)
 {
-    if (timeline_now() - server.packet_left >= LATENCY) {
+    server.watching = timeline_now() - server.octet_at < PAUSE;
+    if (server.watching) {
+        timeline_at(server.octet_at + PAUSE, watch_for_pause, context);
+    } else {
         hand_over();
     }
-    timeline_at(server.packet_left + LATENCY, latency, context);
 }
 
 static void pack(unsigned char octet)
 {
     server.packet[server.packed++] = octet;
+    server.octet_at = timeline_now();
     if (server.packed == (order.burst ? PACKET : 1U)) {
         hand_over();
+    }
+    if (order.burst && !server.watching) {
+        server.watching = true;
+        timeline_after(PAUSE, watch_for_pause, NULL);
     }
 }
 
@@ -273,9 +280,6 @@ static void destroy_sensor(void)
 
 static void serve(void)
 {
-    if (order.burst) {
-        latency(NULL);
-    }
     pace_watch(&server.port, from_client, NULL);
     printf("laser: %s\n", server.port.name);
     fflush(stdout);
