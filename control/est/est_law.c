@@ -151,7 +151,8 @@ static bool heights_missing(const est_law_t *law)
     return law->heightless_s > HEIGHTS_MISSING_S;
 }
 
-/* Acceleration by the thrust model; known in the air only. */
+/* Acceleration by the thrust model; known in the air only. Without heights the estimated height is too
+ * uncertain to tell. */
 static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_t *parameters)
 {
     const cascade_vehicle_t vehicle = vehicle_model(law, parameters);
@@ -159,7 +160,7 @@ static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_
 
     return (modelled_motion_t){
         .known = law->airborne && !law->powerless && law->estimator.initialised &&
-                 now->height_m > IN_THE_AIR_M,
+                 (now->height_m > IN_THE_AIR_M || heights_missing(law)),
         .up_mps2 = vehicle.authority_mps2_per_n * (law->actuator.thrust_n * vehicle.upright -
                                                    (law->estimator.felt ? vehicle.need_n : vehicle.hover_n)) -
                    vehicle.damping_per_s * now->speed_mps,
