@@ -440,6 +440,7 @@ static void supervise(flight_t *flight, const parameters_t *parameters, const fl
         .climb_mm_s = (now->speed_mps - now->terrain_mps) * 1000.0F,
         .stands = integrity_stands(&flight->integrity) ||
                   (flight->hopping && flight->thrust_n <= flight->idle_n),
+        .upright = flight->integrity.upright,
         .sways = integrity_sways(&flight->integrity),
     };
     supervisor_step(&flight->supervisor, parameters->value[PARAMETER_LINK], in, &estimate);

@@ -107,14 +107,13 @@ static void observe_height(supervisor_t *s, const flight_inputs_t *in)
     track->age_us = elapsed(in->now_us, in->height_time_us);
 }
 
-static void observe_attitude(supervisor_t *s, const flight_inputs_t *in)
+static void observe_attitude(supervisor_t *s, const flight_inputs_t *in, float upright)
 {
     const bool is_new = in->attitude_time_us != s->attitude_time_us;
     s->attitude_age_us = is_new ? elapsed(in->now_us, in->attitude_time_us)
                                 : add_time(s->attitude_age_us, s->step_us);
     s->attitude_time_us = in->attitude_time_us;
     if (is_new && in->attitude_ready) {
-        const float upright = cosf(in->roll_rad) * cosf(in->pitch_rad);
         const bool tilted = upright < TILTED_COS;
         s->tilted_count = tilted ? (uint16_t)(s->tilted_count + (s->tilted_count < TILTED_ATTITUDES)) : 0U;
         s->level = upright > LEVEL_COS;
@@ -316,7 +315,7 @@ void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs
 {
     observe_time(supervisor, in);
     observe_height(supervisor, in);
-    observe_attitude(supervisor, in);
+    observe_attitude(supervisor, in, estimate->upright);
     observe_link(supervisor, in);
     observe_reference(supervisor, link_s, in);
     observe_estimate(supervisor, estimate);

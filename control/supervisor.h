@@ -18,6 +18,7 @@ typedef struct {
     float climb_mm_s; /* > 0 is up, relative to the terrain */
     bool stands;      /* too little thrust to fly, and no fall is measured; valid also
                        * without `known` */
+    float upright;    /* cosine of the tilt of *in; valid also without `known` */
     bool sways;       /* the tilt moves as it does in flight; valid also without `known` */
 } vertical_estimate_t;
 

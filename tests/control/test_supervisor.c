@@ -32,6 +32,7 @@ static void step(void)
 {
     const flight_state_t from = s.state;
 
+    estimate.upright = cosf(in.roll_rad) * cosf(in.pitch_rad);
     supervisor_step(&s, link_s, &in, &estimate);
     if (s.state != from) {
         change.from = from;
