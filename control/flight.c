@@ -598,6 +598,18 @@ static float within_climb_n(const flight_t *flight, const parameters_t *paramete
                    flight->hover_n + vehicle.damping_per_s * fastest_mps / vehicle.authority_mps2_per_n);
 }
 
+/* The same downwards, after a far step of the terrain that no descent has confirmed. */
+static float within_descent_n(const flight_t *flight, const parameters_t *parameters, float thrust_n)
+{
+    const cascade_vehicle_t vehicle = est_law_vehicle(&flight->est, parameters);
+    const float sinking_n = vehicle.damping_per_s * UNCONFIRMED_MPS / vehicle.authority_mps2_per_n;
+    const bool holds = flight->mode == FLIGHT_MODE_EST_HOLD ||
+                       (flight->mode == FLIGHT_MODE_LAW && flight->active_law == LAW_PIDT);
+
+    return (holds && integrity_deep(&flight->integrity)) ? at_least(thrust_n, flight->hover_n - sinking_n)
+                                                         : thrust_n;
+}
+
 /* While commands have no effect, the thrust stays near the hover thrust. So it fits when the commands get
  * their effect back. In FLOATING too, where a pilot may fly without a pin that reports it. */
 static float within_power_n(const flight_t *flight, float thrust_n)
@@ -714,7 +726,8 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
         flight->transfer_n = 0.0F;
     }
     bumpless_transfer(flight, before, law_changed || action_changed);
-    const float wanted_n = within_climb_n(flight, parameters, flight->setpoint_n + flight->transfer_n);
+    const float climbing_n = within_climb_n(flight, parameters, flight->setpoint_n + flight->transfer_n);
+    const float wanted_n = within_descent_n(flight, parameters, climbing_n);
     flight->thrust_n = between(flight->idle_n, asking_n(flight, within_power_n(flight, wanted_n)),
                                THRUST_MAX_N);
     est_law_record_command(&flight->est, flight->thrust_n);

@@ -71,6 +71,7 @@
 #define GAP_ALLOWS_MPS 0.3F /* chosen: the speed error of a witness that still counts as agreement */
 #define GAP_MAX_S 1.5F      /* after which heights count as lost, HEIGHT_LOST_US in supervisor.c */
 #define CONFIRMED_M 0.12F   /* chosen: just above STEP_M */
+#define DEEP_M 0.40F        /* chosen: above the edge of the seed's course, 0.25 m */
 #define QUIET_S 0.5F        /* chosen: five scans */
 #define QUIET_M 0.10F       /* chosen: as CONTENT_M */
 #define GLITCH_S 0.25F      /* chosen: two scans and a half */
@@ -499,6 +500,17 @@ static bool heights_moved(const integrity_t *i)
     return i->unmoved_s < MOVED_S;
 }
 
+/* After a far fall of the terrain the heights have to show that the vehicle follows it. */
+static void watch_depth(integrity_t *i, float height_m, float rise_m, bool step)
+{
+    if (step) {
+        i->deep = rise_m > DEEP_M;
+        i->deep_m = height_m;
+    } else if (i->standing || height_m < i->deep_m - CONFIRMED_M) {
+        i->deep = false;
+    }
+}
+
 /* Processes one height: step or not, confirmed or not, then the innovations of both witnesses. A take-off is
  * unconfirmed, as is a step of the terrain towards the vehicle. */
 static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
@@ -509,6 +521,7 @@ static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
     const bool step = fresh && jumps && !follows(&i->felt, rise_m, gap_s) &&
                       !follows(&i->pushed, rise_m, gap_s);
 
+    watch_depth(i, height_m, rise_m, step);
     i->proved = i->proved && !i->standing;
     if (i->standing || (step && rise_m < 0.0F && !returns(i, height_m))) {
         i->unconfirmed = true;
@@ -753,6 +766,11 @@ float integrity_felt_mps(const integrity_t *integrity)
 bool integrity_unconfirmed(const integrity_t *integrity)
 {
     return integrity->unconfirmed;
+}
+
+bool integrity_deep(const integrity_t *integrity)
+{
+    return integrity->deep;
 }
 
 bool integrity_still(const integrity_t *integrity)

@@ -126,6 +126,23 @@ void test_steps_of_the_terrain_are_believed_be_they_as_high_as_they_like(void)
     }
 }
 
+void test_a_far_fall_of_the_terrain_is_unconfirmed_until_a_descent_shows(void)
+{
+    fly();
+    world.lie_m = 0.3F;
+    run(0.3F);
+    TEST_ASSERT_FALSE(integrity_deep(&it));
+    world.lie_m = 0.8F;
+    run(0.3F);
+    TEST_ASSERT_TRUE(integrity_deep(&it));
+    flown.thrust_n = HOVER_N - 0.6F;
+    run(0.5F);
+    TEST_ASSERT_TRUE(integrity_deep(&it));
+    run(1.0F);
+    TEST_ASSERT_FALSE(integrity_deep(&it));
+    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+}
+
 void test_a_hover_thrust_a_quarter_of_a_newton_off_is_believed(void)
 {
     flown.hover_n = HOVER_N - 0.25F;
