@@ -546,14 +546,16 @@ static flight_mode_t select_mode(const flight_t *flight, const flight_inputs_t *
     return (uses_estimate(flight) ? modes_with_estimate : modes_without_estimate)[flight->supervisor.state];
 }
 
-/* Without a pin nothing tells who has the throttle, and FLOATING then begins in a pilot's hands. */
+/* Without a pin nothing tells who has the throttle, and FLOATING then begins in a pilot's hands. Something
+ * that blocks the beam since power-on makes FLOATING on the ground too; then the take-off is still to come.
+ */
 static void update_sureness(flight_t *flight, const parameters_t *parameters, bool has_throttle)
 {
     const bool before = flight->unsure;
 
     flight->unsure = flight->supervisor.state == FLIGHT_FLOATING && has_throttle &&
                      parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE;
-    if (before && !flight->unsure && flight->supervisor.state != FLIGHT_GROUND) {
+    if (before && !flight->unsure && !flight->lifting && flight->supervisor.state != FLIGHT_GROUND) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
 }
