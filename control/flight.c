@@ -155,7 +155,8 @@ static void change_mode(flight_t *flight, flight_mode_t before, flight_mode_t no
         pid_reset(&flight->pid);
         pidt_reset(&flight->pidt);
     }
-    if (is_est_mode(now) && !is_est_mode(before) && (before != FLIGHT_MODE_IDLE || handed_over)) {
+    if (is_est_mode(now) && !is_est_mode(before) &&
+        (handed_over || (before != FLIGHT_MODE_IDLE && !lifts(flight)))) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
 }
@@ -290,7 +291,9 @@ static void bumpless_transfer(flight_t *flight, flight_mode_t before, bool law_c
     const bool changed = before != now && !(is_est_mode(before) && is_est_mode(now));
     const bool at_once = now == FLIGHT_MODE_IDLE || now == FLIGHT_MODE_DESCENT || now == FLIGHT_MODE_EST_LAND;
 
-    if (changed && (at_once || before == FLIGHT_MODE_IDLE)) {
+    const bool takes_off = before == FLIGHT_MODE_IDLE || (before == FLIGHT_MODE_HOVER && lifts(flight));
+
+    if (changed && (at_once || takes_off)) {
         flight->transfer_n = 0.0F;
     } else if (law_changed) {
         flight->transfer_n = flight->thrust_n - flight->setpoint_n;
