@@ -73,6 +73,7 @@ static void write_count(answer_t *answer, const imu_view_t *view)
     static const char *const seen[] = {
         [RAZOR_OK] = "angles", [RAZOR_MALFORMED] = "malformed", [RAZOR_OUT_OF_RANGE] = "out-of-range"};
     static parameters_t parameters;
+    static imu_sample_t latest;
     flight_outputs_t flight;
     const bool both = view->status == RAZOR_OK && view->raw.has_acceleration;
 
@@ -80,6 +81,8 @@ static void write_count(answer_t *answer, const imu_view_t *view)
     telemetry_text(&answer->line, both ? "accelerations+angles" : seen[view->status]);
     answer_count(answer, "period_ms", (view->period_us + US_PER_MS / 2U) / US_PER_MS);
     answer_count(answer, "frames", view->frames);
+    imu_server_read(&latest);
+    answer_count(answer, "refused", latest.malformed);
     parameter_server_read(&parameters);
     flight_status_server_read(&flight);
     add_choice(answer, &parameters, PARAMETER_IAXES);

@@ -35,6 +35,12 @@ static void read_flight(flight_outputs_t *status, int calls)
     *status = flight;
 }
 
+static void latest(imu_sample_t *sample, int calls)
+{
+    (void)calls;
+    *sample = (imu_sample_t){.malformed = 7U};
+}
+
 static uint16_t history(imu_sample_t samples[IMU_HISTORY], int calls)
 {
     (void)calls;
@@ -94,6 +100,7 @@ void setUp(void)
     parameter_server_write_Stub(write_parameters);
     flight_status_server_read_Stub(read_flight);
     imu_server_history_Stub(history);
+    imu_server_read_Stub(latest);
     xbee_port_answer_Stub(radio);
     xbee_port_spare_Stub(spare);
     show(1.0F, -1.0F, true, 254.0F);
@@ -131,6 +138,7 @@ void test_without_a_word_it_shows_what_comes_and_what_is_made_of_it(void)
     TEST_ASSERT_EQUAL_STRING("OK IMU roll_deg:-1.5 pitch_deg:2.0 forward:0.15 right:-0.50 down:9.73\r\n",
                              lines[1]);
     TEST_ASSERT_EQUAL_STRING_LEN("OK IMU seen:accelerations+angles period_ms:20 frames:", lines[2], 53);
+    TEST_ASSERT_NOT_NULL(strstr(lines[2], " refused:7 IAXES:"));
     TEST_ASSERT_EQUAL_STRING("OK IMU END lines:3\r\n", lines[3]);
 }
 

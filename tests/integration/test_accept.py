@@ -37,10 +37,11 @@ DEFECTS = {
 def run(defect=None, items=None, flight_s=12):
     """(exit status, output, report as JSON, report as Markdown) of an acceptance of a fresh board."""
     with tempfile.TemporaryDirectory() as directory:
-        pulses, bits, storage, report = (os.path.join(directory, name) for name in ("pulses.csv", "bits.csv", "flash", "report"))
-        options = ["--pulses", pulses, "--bits", bits, "--storage", storage, *(["--defect", defect] if defect else [])]
+        pulses, storage, report = (os.path.join(directory, name) for name in ("pulses.csv", "flash", "report"))
+        bits = [word for line in ("laser", "imu", "xbee") for word in ("--bits", f"{line}={os.path.join(directory, line)}.csv")]
+        options = ["--pulses", pulses, *bits, "--storage", storage, *(["--defect", defect] if defect else [])]
         with bench.Board(PROGRAM, *options) as board:
-            words = ["--unattended", "--pulses", pulses, "--bits", bits, "--power", f"kill -USR1 {board.process.pid}", "--flight", str(flight_s),
+            words = ["--unattended", "--pulses", pulses, *bits, "--power", f"kill -USR1 {board.process.pid}", "--flight", str(flight_s),
                      "--report", report, *(["--items", items] if items else [])]
             done = subprocess.run([PROGRAM, "accept", *board.lines, *words], capture_output=True, text=True, timeout=900, check=False)
             with open(report + ".json", encoding="utf-8") as file:
@@ -56,13 +57,14 @@ def failed(found):
 
 class Short(unittest.TestCase):
     def test_a_board_that_is_right_passes_and_the_report_says_who_when_and_what(self):
-        status, output, found, markdown = run(items="radio,boot,ping,pulse,save,rates")
+        status, output, found, markdown = run(items="radio,boot,ping,scanner,rates,pulse,save")
         self.assertEqual(status, 0, output)
         self.assertEqual(failed(found), set())
         self.assertEqual({item["item"]: item["verdict"] for item in found["items"]}["pulse"], "pass")
         self.assertIn("measured: first 1999", output)
-        # 9600 bit/s: the divider of 100 MHz gives 9601, 0.01 % more.
-        self.assertIn("measured 9601 bit/s, +0.01 % off", output)
+        # The dividers of 100 MHz; the scanner's line began at 115200 and was raised.
+        for rate in ("laser 114679 bit/s (-0.45 %)", "laser 250000 bit/s (+0.00 %)", "imu 57604 bit/s (+0.01 %)", "xbee 9601 bit/s (+0.01 %)"):
+            self.assertIn(rate, output)
         self.assertTrue(found["passed"] and found["date"].endswith("Z") and "F28377S" in found["chip"])
         self.assertEqual(set(found["adapters"]), {"laser", "imu", "xbee"})
         self.assertIn("# Acceptance of a board: passed", markdown)
@@ -77,7 +79,7 @@ class Short(unittest.TestCase):
         status, output, found, _ = run("fast", items="radio,rates")
         self.assertEqual(status, 1, output)
         self.assertEqual(failed(found), {"rates"})
-        self.assertIn("measured 9889 bit/s, +3.01 % off", output)
+        self.assertIn("xbee 9889 bit/s (+3.01 %)", output)
 
     def test_interrupted_it_goes_on_where_it_was(self):
         with tempfile.TemporaryDirectory() as directory, bench.Board(PROGRAM) as board:

@@ -20,7 +20,8 @@ class Short(unittest.TestCase):
         self.assertEqual(status, 0, output)
         self.assertIn("MET: all expectations of est-60cm-ramp", output)
         self.assertRegex(output, r"the board ended safe: on the ground, pulse 1999\.\d us")
-        self.assertRegex(output, r"(?m)^damaged: laser [0-3] frames found by the board, 0 commands not understood here; xbee 0 lines")
+        self.assertRegex(output, r"(?m)^damaged: laser [0-3] and imu [0-3] frames found by the board; laser 0 commands and xbee 0 lines")
+        self.assertNotIn("late:", output)
         self.assertRegex(output, r"loop: \d+\.\d ms from a scan's last octet to its pulse")
         hover_mm = bench.metrics(output)["hover_rms_mm"]
         self.assertLess(hover_mm, 1.3 * bench.virtual(PROGRAM, "est-60cm-ramp")["hover_rms_mm"])
@@ -111,8 +112,15 @@ class Long(unittest.TestCase):
         _, output = self.trouble("laser-garbled@20")
         self.assertRegex(output, r"(?m)^laser: garbled: ")
         self.assertIn("the board ended safe", output)
+        _, output = self.trouble("imu-garbled@20")
+        self.assertRegex(output, r"(?m)^imu: garbled: the board found \d+ frames damaged$")
+        self.assertIn("the board ended safe", output)
 
-    def test_a_late_radio_is_named(self):
+    def test_late_lines_are_named(self):
+        for line in ("laser", "imu"):
+            _, output = self.trouble(f"{line}-late@5")
+            self.assertRegex(output, rf"(?m)^{line}: late: \d+ frames came more than 0\.2 s after they were sent$")
+            self.assertIn("the board ended safe", output)
         _, output = self.trouble("xbee-late@5")
         self.assertRegex(output, r"(?m)^xbee: late: \d+ ms until #LAW EST was answered$")
 

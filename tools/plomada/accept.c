@@ -24,7 +24,9 @@ static const char usage[] =
     "  --report PREFIX     writes PREFIX.md and PREFIX.json (default acceptance)\n"
     "  --pulses FILE       what a logic analyser records of the throttle pin meanwhile, by sigrok-cli -O "
     "csv\n"
-    "  --bits FILE         the same of one of the board's transmit pins: its bit time is measured\n"
+    "  --bits LINE=FILE    the same of the board's transmit pin of a line (laser, imu, xbee): its bit times "
+    "are measured; may be\n"
+    "                      repeated\n"
     "  --power COMMAND     takes the board's power away and gives it back; without it you are asked to\n"
     "  --unattended        asks nobody: what needs somebody is skipped\n"
     "  --flight S          seconds in the air, 10..180 (default 180)\n"
@@ -35,39 +37,26 @@ static const char usage_end[] =
     "(PREFIX.state)\n\n"
     "Exit status: 0 no item failed, 1 one did, or it was interrupted, 2 usage or no such device.\n";
 
-enum {
-    OPT_REPORT = 1,
-    OPT_PULSES,
-    OPT_BITS,
-    OPT_POWER,
-    OPT_UNATTENDED,
-    OPT_FLIGHT,
-    OPT_ITEMS,
-    OPT_AFRESH,
-    OPT_HELP
-};
+enum { OPT_REPORT = 1, OPT_POWER, OPT_UNATTENDED, OPT_FLIGHT, OPT_ITEMS, OPT_AFRESH };
 
 static const struct option long_options[] = {
-    LINE_OPTIONS,
     {"report", required_argument, NULL, OPT_REPORT},
-    {"pulses", required_argument, NULL, OPT_PULSES},
-    {"bits", required_argument, NULL, OPT_BITS},
     {"power", required_argument, NULL, OPT_POWER},
     {"unattended", no_argument, NULL, OPT_UNATTENDED},
     {"flight", required_argument, NULL, OPT_FLIGHT},
     {"items", required_argument, NULL, OPT_ITEMS},
     {"afresh", no_argument, NULL, OPT_AFRESH},
-    {"help", no_argument, NULL, OPT_HELP},
-    {NULL, 0, NULL, 0},
+    LINE_BITS_OPTION,
+    LINE_OPTIONS,
 };
 
 static const char *const verdicts[] = {
     [ACCEPT_OPEN] = "open", [ACCEPT_PASS] = "pass", [ACCEPT_FAIL] = "FAIL", [ACCEPT_SKIP] = "skipped"};
 
 static struct {
-    const char *device[BOARD_WIRES], *report, *items;
+    const char *report, *items;
     accept_means_t means;
-    bool afresh, help;
+    bool afresh;
 } order;
 
 static struct {
@@ -126,18 +115,9 @@ static bool read_flight(const char *text)
 
 static bool read_option(int option, const char *argument)
 {
-    if (lines_option(option, argument, order.device)) {
-        return true;
-    }
     switch (option) {
     case OPT_REPORT:
         order.report = argument;
-        return true;
-    case OPT_PULSES:
-        order.means.pulses = argument;
-        return true;
-    case OPT_BITS:
-        order.means.bits = argument;
         return true;
     case OPT_POWER:
         order.means.power = argument;
@@ -152,9 +132,6 @@ static bool read_option(int option, const char *argument)
     case OPT_AFRESH:
         order.afresh = true;
         return true;
-    case OPT_HELP:
-        order.help = true;
-        return true;
     default:
         return false;
     }
@@ -162,21 +139,11 @@ static bool read_option(int option, const char *argument)
 
 static bool read_arguments(int argc, char **argv)
 {
-    int option;
-
     memset(&order, 0, sizeof order);
     order.report = "acceptance";
     order.means = (accept_means_t){.ask = true, .flight_s = 180.0};
-    optind = 1;
-    while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {
-        if (!read_option(option, optarg)) {
-            return false;
-        }
-    }
-    if (!order.help && !lines_all_given("accept", order.device)) {
-        return false;
-    }
-    return optind == argc || complain("not understood", argv[optind]);
+    return lines_read("accept", argc, argv, long_options, read_option, &order.means.lines) &&
+           (optind == argc || complain("not understood", argv[optind]));
 }
 
 /* ---- what was found so far ---- */
@@ -267,10 +234,10 @@ static void write_json(FILE *out, const char *date, bool passed)
     fprintf(out, ",\n  \"adapters\": {");
     for (int i = 0; i < BOARD_WIRES; i++) {
         fprintf(out, "%s\"%s\": ", i == 0 ? "" : ", ", wire_names[i]);
-        write_string(out, order.device[i]);
+        write_string(out, order.means.lines.path[i]);
     }
     fprintf(out, "},\n  \"pulses\": ");
-    write_string(out, order.means.pulses != NULL ? order.means.pulses : "told by the board");
+    write_string(out, order.means.lines.pulses != NULL ? order.means.lines.pulses : "told by the board");
     fprintf(out, ",\n  \"items\": [");
     for (int i = 0; i < accept_item_count; i++) {
         fprintf(out, "%s\n    {\"item\": \"%s\", \"verdict\": \"%s\", \"detail\": ", i == 0 ? "" : ",",
@@ -288,8 +255,9 @@ static void write_markdown(FILE *out, const char *date, bool passed)
     fprintf(out,
             "Adapters: scanner %s, IMU %s, radio %s. Throttle pin: %s.\n\n| item | verdict | found "
             "|\n|---|---|---|\n",
-            order.device[BOARD_LASER], order.device[BOARD_IMU], order.device[BOARD_RADIO],
-            order.means.pulses != NULL ? order.means.pulses : "told by the board, not measured");
+            order.means.lines.path[BOARD_LASER], order.means.lines.path[BOARD_IMU],
+            order.means.lines.path[BOARD_RADIO],
+            order.means.lines.pulses != NULL ? order.means.lines.pulses : "told by the board, not measured");
     for (int i = 0; i < accept_item_count; i++) {
         fprintf(out, "| %s | %s | %s |\n", accept_items[i].title, verdicts[found.verdict[i]],
                 found.detail[i]);
@@ -390,11 +358,12 @@ static int run(void)
     const char *error;
     bool passed;
 
-    memcpy(config.device, order.device, sizeof config.device);
+    memcpy(config.device, order.means.lines.path, sizeof config.device);
     terminal_begin();
     error = world_open(&config, &failed);
     if (error != NULL) {
-        fprintf(stderr, "plomada accept: --%s %s: %s\n", wire_names[failed], order.device[failed], error);
+        fprintf(stderr, "plomada accept: --%s %s: %s\n", wire_names[failed], order.means.lines.path[failed],
+                error);
         return 2;
     }
     load_state();
@@ -417,7 +386,7 @@ int command_accept(int argc, char **argv)
         fprintf(stderr, "`plomada accept --help` tells more.\n");
         return 2;
     }
-    if (order.help) {
+    if (order.means.lines.help) {
         fputs(usage, stdout);
         for (int i = 0; i < accept_item_count; i++) {
             printf("%s%s", i == 0 ? "" : ",", accept_items[i].name);

@@ -5,17 +5,18 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "lines.h"
+
 typedef enum { ACCEPT_OPEN, ACCEPT_PASS, ACCEPT_FAIL, ACCEPT_SKIP } accept_verdict_t;
 
 typedef struct {
-    const char *pulses; /* recording of the throttle pin, NULL: none */
-    const char *bits;   /* recording of a transmit pin of the board, NULL: none */
-    const char *power;  /* command that takes the board's power away and gives it back, NULL: asks */
-    bool ask;           /* somebody is there */
+    lines_t lines;
+    const char *power; /* command that takes the board's power away and gives it back, NULL: asks */
+    bool ask;          /* somebody is there */
     double flight_s;
 } accept_means_t;
 
-#define ACCEPT_DETAIL_MAX 200
+#define ACCEPT_DETAIL_MAX 320
 
 typedef struct {
     const char *name, *title;

@@ -10,6 +10,7 @@
 
 #include "bench_flight.h"
 #include "pulses.h"
+#include "sim/scenarios/wires.h"
 #include "terminal.h"
 #include "world.h"
 
@@ -267,38 +268,57 @@ static accept_verdict_t scanner(const accept_means_t *means, char *detail)
  * by two. */
 #define RATE_SHARE 0.02
 
-/* Appends what was measured. False: no rate of the board's is near it, or nothing could be measured. */
-static bool measure_bits(const char *path, char *measured, size_t size)
+/* Rates that the board sends at on each line; the scanner's is changed by the dialogue. */
+static const double rates_of[BOARD_WIRES][PULSES_RATES] = {
+    [BOARD_LASER] = {19200.0, 115200.0, 250000.0}, [BOARD_IMU] = {57600.0}, [BOARD_RADIO] = {9600.0}};
+
+/* Appends what was measured on a line. False: a rate is off, or nothing could be measured. */
+static bool measure_bits(board_wire_t wire, const char *path, char *measured, size_t size)
 {
-    static const double rates[] = {9600.0, 57600.0, 115200.0, 250000.0};
     static pulses_t pulses;
+    double found[PULSES_RATES];
     const char *error = pulses_read(path, &pulses);
-    const double bit_us = error == NULL ? pulses_bit_us(&pulses) : 0.0;
-    double off = INFINITY;
+    bool any = false, right = true;
 
-    if (bit_us <= 0.0) {
-        snprintf(measured, size, "bit time not measured: %s", error != NULL ? error : "too few bits");
-        return false;
+    if (error == NULL) {
+        pulses_bit_rates(&pulses, rates_of[wire], found);
     }
-    for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
-        const double this_off = 1e6 / bit_us / rates[i] - 1.0;
+    for (int i = 0; i < PULSES_RATES && error == NULL; i++) {
+        if (found[i] > 0.0) {
+            const double off = found[i] / rates_of[wire][i] - 1.0;
+            const size_t length = strlen(measured);
 
-        off = fabs(this_off) < fabs(off) ? this_off : off;
+            snprintf(measured + length, size - length, ", %s %.0f bit/s (%+.2f %%)", wire_names[wire],
+                     found[i], 100.0 * off);
+            right = right && fabs(off) <= RATE_SHARE;
+            any = true;
+        }
     }
-    snprintf(measured, size, "measured %.0f bit/s, %+.2f %% off (2 at most)", 1e6 / bit_us, 100.0 * off);
-    return fabs(off) <= RATE_SHARE;
+    if (!any) {
+        const size_t length = strlen(measured);
+
+        snprintf(measured + length, size - length, ", %s: %s", wire_names[wire],
+                 error != NULL ? error : "too few bits");
+    }
+    return any && right;
 }
 
 static accept_verdict_t rates(const accept_means_t *means, char *detail)
 {
     const world_wire_t laser = world_wire(BOARD_LASER), terminal = world_wire(BOARD_RADIO);
-    char measured[80] = "bit time not measured";
-    const bool right = means->bits == NULL || measure_bits(means->bits, measured, sizeof measured);
+    char measured[200] = "";
+    bool right = true;
 
+    for (int i = 0; i < BOARD_WIRES; i++) {
+        const char *path = means->lines.bits[i];
+
+        right = (path == NULL || measure_bits((board_wire_t)i, path, measured, sizeof measured)) && right;
+    }
     return say(detail, right && laser.strange <= 8 && terminal.strange <= 2,
-               "to the PC %lu octets at 115200 and 250000 (%lu meant nothing), %lu at 9600 (%lu lines meant "
-               "nothing); %s",
-               laser.octets_in, laser.strange, terminal.octets_in, terminal.strange, measured);
+               "%lu octets of the scanner's line (%lu meant nothing), %lu of the radio's (%lu lines meant "
+               "nothing); bit times %s",
+               laser.octets_in, laser.strange, terminal.octets_in, terminal.strange,
+               measured[0] != '\0' ? measured + 2 : "not measured");
 }
 
 static bool restart(void)
@@ -394,6 +414,13 @@ static accept_verdict_t faults(const accept_means_t *means, char *detail)
     world_damage(BOARD_LASER, 0);
     if (bench_damaged_frames() == before || !await(has_height, 5, 10.0)) {
         return say(detail, false, "laser: damaged octets are not found, or leave the board without heights");
+    }
+    before = bench_refused_frames();
+    world_damage(BOARD_IMU, 350);
+    (void)world_run_until(timeline_now() + 5 * SIM_S);
+    world_damage(BOARD_IMU, 0);
+    if (bench_refused_frames() == before || !await(has_attitude, 5, 10.0)) {
+        return say(detail, false, "imu: damaged octets are not found, or leave the board without attitude");
     }
     world_type("\x01\x7F#KP abc");
     return terminal_ask("PING faults", answer, sizeof answer) &&
@@ -496,11 +523,11 @@ static accept_verdict_t pulse(const accept_means_t *means, char *detail)
     if (reached < STEPS) {
         return say(detail, false, "told: the width of command %d of %d did not come", reached + 1, STEPS);
     }
-    if (means->pulses == NULL) {
+    if (means->lines.pulses == NULL) {
         return say(detail, true, "told: idle %.1f us, ten widths from %.1f to %.1f us; not measured", IDLE_US,
                    expected_us(1), expected_us(STEPS));
     }
-    return judge_recording(means->pulses, detail);
+    return judge_recording(means->lines.pulses, detail);
 }
 
 /* ---- the rest ---- */

@@ -19,6 +19,9 @@
 #define DOWN_FOR (2 * SIM_S)
 #define LANDING_PATIENCE (20 * SIM_S)
 #define LATE_MS 100.0
+#define LATE_SCANS 1  /* that may be on their way when the scanner is silenced */
+#define LATE_FRAMES 3 /* the same of the IMU */
+#define SETTLE_S 20.0
 #define LATE_ANSWER (400 * SIM_MS) /* two telemetry lines may go before it */
 #define SEEDS 5
 #define PLANT_DELAY_S 0.010
@@ -115,6 +118,43 @@ static bool command(bench_flight_t *flight, const char *text)
     }
     trouble(flight, "xbee: #%s: %s", text, answer[0] != '\0' ? answer : "no answer");
     return false;
+}
+
+/* A figure of the board's answer to a command. */
+static unsigned long count_of(const char *command, const char *name)
+{
+    char answer[200];
+    const char *at;
+
+    if (!terminal_ask(command, answer, sizeof answer)) {
+        return 0;
+    }
+    at = strstr(terminal_rest(SIM_S / 2), name);
+    return at != NULL ? strtoul(at + strlen(name), NULL, 10) : 0;
+}
+
+/* A sensor is silenced: what the board still hears was late. The first count is asked for at once; the board
+ * takes it some 0.1 s later, the IMU's 0.2 s. */
+static void time_sensor(board_wire_t wire, const char *command, unsigned long few, bench_flight_t *flight)
+{
+    unsigned long frames;
+
+    world_mute(wire, true);
+    frames = count_of(command, "frames:");
+    (void)world_run_until(timeline_now() + SIM_S / 2);
+    frames = count_of(command, "frames:") - frames;
+    world_mute(wire, false);
+    if (frames > few) {
+        trouble(flight, "%s: late: %lu frames came more than 0.2 s after they were sent", wires[wire],
+                frames);
+    }
+}
+
+static void time_sensors(bench_flight_t *flight)
+{
+    time_sensor(BOARD_LASER, "LASER", LATE_SCANS, flight);
+    time_sensor(BOARD_IMU, "IMU", LATE_FRAMES, flight);
+    (void)bench_await_heights(SETTLE_S, flight);
 }
 
 static bool settings(const scenario_t *scenario, bench_flight_t *flight)
@@ -259,6 +299,11 @@ static void report_wires(sim_time_t origin, bench_flight_t *flight)
     }
 }
 
+unsigned long bench_refused_frames(void)
+{
+    return count_of("IMU", "refused:");
+}
+
 unsigned long bench_damaged_frames(void)
 {
     static const char *const causes[] = {"sum:", "length:", "echo:", "char:", "seq:", "framing:"};
@@ -278,17 +323,30 @@ unsigned long bench_damaged_frames(void)
     return sum;
 }
 
-/* What the board has found damaged since `before`: a few frames are those of its start. */
-static void ask_board(unsigned long before, bench_flight_t *flight)
+typedef struct {
+    unsigned long laser, imu;
+} damage_t;
+
+static damage_t damage(void)
 {
-    const unsigned long damaged = bench_damaged_frames() - before;
+    return (damage_t){.laser = bench_damaged_frames(), .imu = bench_refused_frames()};
+}
+
+/* What the board has found damaged since `before`: a few frames are those of its start. */
+static void ask_board(damage_t before, bench_flight_t *flight)
+{
+    const damage_t now = damage();
+    const damage_t found = {.laser = now.laser - before.laser, .imu = now.imu - before.imu};
 
     printf(
-        "damaged: laser %lu frames found by the board, %lu commands not understood here; xbee %lu lines not "
+        "damaged: laser %lu and imu %lu frames found by the board; laser %lu commands and xbee %lu lines not "
         "understood here\n",
-        damaged, world_wire(BOARD_LASER).strange, world_wire(BOARD_RADIO).strange);
-    if (damaged > DAMAGED_MOST) {
-        trouble(flight, "laser: garbled: the board found %lu frames damaged", damaged);
+        found.laser, found.imu, world_wire(BOARD_LASER).strange, world_wire(BOARD_RADIO).strange);
+    if (found.laser > DAMAGED_MOST) {
+        trouble(flight, "laser: garbled: the board found %lu frames damaged", found.laser);
+    }
+    if (found.imu > DAMAGED_MOST) {
+        trouble(flight, "imu: garbled: the board found %lu frames damaged", found.imu);
     }
 }
 
@@ -307,7 +365,8 @@ void bench_fly(const scenario_t *scenario, unsigned long seed, FILE *progress, b
     sim_time_t origin;
 
     metrics_begin(&record, scenario->reference_m, scenario->platform, scenario->land_s);
-    const unsigned long damaged = bench_damaged_frames();
+    time_sensors(flight);
+    const damage_t before = damage();
 
     flight->started = settings(scenario, flight);
     if (!flight->started) {
@@ -327,7 +386,7 @@ void bench_fly(const scenario_t *scenario, unsigned long seed, FILE *progress, b
     report_wires(origin, flight);
     report_pin(flight);
     if (!flight->interrupted && !flight->radio_lost) {
-        ask_board(damaged, flight);
+        ask_board(before, flight);
     }
     metrics_compute(&record, &flight->metrics);
     flight->metrics.value[METRIC_GROUND_CONTACTS] = quadrotor_state(world_quadrotor())->contacts;

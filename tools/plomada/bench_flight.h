@@ -42,6 +42,9 @@ double bench_widen(const scenario_t *scenario, const bench_flight_t *flight, sce
 /* What the board counts of damaged frames of its scanner, in its answer to `#LASER`. */
 unsigned long bench_damaged_frames(void);
 
+/* What it counts of damaged frames of its IMU, in its answer to `#IMU`. */
+unsigned long bench_refused_frames(void);
+
 /* Metrics that are known without the board's memory. */
 bool bench_can_judge(metric_t metric);
 

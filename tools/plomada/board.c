@@ -41,7 +41,8 @@ static const char usage[] = "usage: plomada board --laser PATH --imu PATH --xbee
                             "  --pulses FILE       the throttle pin as a logic analyser records it, in "
                             "sigrok-cli's format (csv:time=true:dedup=true);\n"
                             "                      FILE may be a FIFO\n"
-                            "  --bits FILE         the radio's transmit pin in the same way\n"
+                            "  --bits LINE=FILE    the transmit pin of a line (laser, imu, xbee) in the "
+                            "same way; may be repeated\n"
                             "  --duration S        ends by itself\n"
                             "  --seed N            phases (default 1)\n"
                             "  --defect NAME[@S]   something is wrong, from S seconds after the first "
@@ -86,38 +87,35 @@ static const char *const other_defects[] = {"wrong-rate",    "pulse-inverted", "
 _Static_assert(sizeof other_defects / sizeof other_defects[0] == DEFECTS - WRONG_RATE_DEFECT,
                "every other defect has a name");
 
-enum { OPT_STORAGE = 1, OPT_PULSES, OPT_BITS, OPT_DURATION, OPT_SEED, OPT_DEFECT, OPT_HELP };
+enum { OPT_STORAGE = 1, OPT_DURATION, OPT_SEED, OPT_DEFECT };
 
 static const struct option long_options[] = {
-    LINE_OPTIONS,
     {"storage", required_argument, NULL, OPT_STORAGE},
-    {"pulses", required_argument, NULL, OPT_PULSES},
     {"duration", required_argument, NULL, OPT_DURATION},
-    {"bits", required_argument, NULL, OPT_BITS},
     {"seed", required_argument, NULL, OPT_SEED},
     {"defect", required_argument, NULL, OPT_DEFECT},
-    {"help", no_argument, NULL, OPT_HELP},
-    {NULL, 0, NULL, 0},
+    LINE_BITS_OPTION,
+    LINE_OPTIONS,
 };
 
 static struct {
-    const char *link[BOARD_WIRES], *storage, *pulses, *bits;
+    lines_t lines;
+    const char *storage;
     double duration_s, defect_s[DEFECTS]; /* NAN: not this defect */
     unsigned long seed;
-    bool help;
 } order;
 
 static struct {
     port_t ports[BOARD_WIRES];
     bool linked[BOARD_WIRES];
     noise_t noise;
-    unsigned passed;   /* octets, for the garbled ones */
-    int pulses;        /* file, -1: none */
-    int bits;          /* the same */
-    sim_time_t before; /* virtual time of earlier power-ons */
+    unsigned passed;       /* octets, for the garbled ones */
+    int pulses;            /* file, -1: none */
+    int bits[BOARD_WIRES]; /* the same */
+    sim_time_t before;     /* virtual time of earlier power-ons */
     sim_time_t worst_lag;
     costs_stretched_t costs;
-} bench = {.pulses = -1, .bits = -1};
+} bench = {.pulses = -1, .bits = {-1, -1, -1}};
 
 static volatile sig_atomic_t power_cycle;
 
@@ -175,18 +173,9 @@ static bool read_option(int option, const char *argument)
 {
     double number;
 
-    if (lines_option(option, argument, order.link)) {
-        return true;
-    }
     switch (option) {
     case OPT_STORAGE:
         order.storage = argument;
-        return true;
-    case OPT_PULSES:
-        order.pulses = argument;
-        return true;
-    case OPT_BITS:
-        order.bits = argument;
         return true;
     case OPT_DURATION:
         return read_number(argument, &order.duration_s) || complain("not a number of seconds", argument);
@@ -195,9 +184,6 @@ static bool read_option(int option, const char *argument)
         return read_number(argument, &number) || complain("not a seed (0, 1, 2 ...)", argument);
     case OPT_DEFECT:
         return read_defect(argument);
-    case OPT_HELP:
-        order.help = true;
-        return true;
     default:
         return false;
     }
@@ -205,23 +191,13 @@ static bool read_option(int option, const char *argument)
 
 static bool read_arguments(int argc, char **argv)
 {
-    int option;
-
     memset(&order, 0, sizeof order);
     order.seed = 1;
     for (int i = 0; i < DEFECTS; i++) {
         order.defect_s[i] = NAN;
     }
-    optind = 1;
-    while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {
-        if (!read_option(option, optarg)) {
-            return false;
-        }
-    }
-    if (!order.help && !lines_all_given("board", order.link)) {
-        return false;
-    }
-    return optind == argc || complain("not understood", argv[optind]);
+    return lines_read("board", argc, argv, long_options, read_option, &order.lines) &&
+           (optind == argc || complain("not understood", argv[optind]));
 }
 
 /* ---- the wires ---- */
@@ -249,26 +225,28 @@ static double own_rate(board_wire_t wire)
 
 /* Start bit, eight of the octet, stop bit; it has just ended. Octets that follow each other do so on the pin
  * too, whatever the oscillator. */
-static void record_bits(unsigned octet)
+static void record_bits(board_wire_t wire, unsigned octet)
 {
-    static sim_time_t follows, ended; /* an octet's end on the pin, and when it was given */
-    const double bit_ns = 1e9 / own_rate(BOARD_RADIO);
+    static struct {
+        sim_time_t follows, ended; /* the octet before: its end on the pin, and when it was given */
+    } before[BOARD_WIRES];
+    const double bit_ns = 1e9 / own_rate(wire);
     const unsigned levels = octet << 1 | 1U << 9;
     const sim_time_t now = bench.before + timeline_now();
-    const bool follows_on = (double)(now - ended) < 10.5 * 1e9 / board_rate(BOARD_RADIO);
-    const sim_time_t end = follows_on ? follows + llround(10.0 * bit_ns) : now;
+    const bool follows_on = (double)(now - before[wire].ended) < 10.5 * 1e9 / board_rate(wire);
+    const sim_time_t end = follows_on ? before[wire].follows + llround(10.0 * bit_ns) : now;
     char rows[10 * 40];
     int length = 0;
 
-    for (int i = 0; i < 10 && bench.bits >= 0; i++) {
+    for (int i = 0; i < 10 && bench.bits[wire] >= 0; i++) {
         length += snprintf(rows + length, sizeof rows - (size_t)length, "%lld,%u\n",
                            (long long)end - llround((10 - i) * bit_ns), levels >> i & 1U);
     }
-    if (length > 0 && write(bench.bits, rows, (size_t)length) < 0) {
-        perror(order.bits);
+    if (length > 0 && write(bench.bits[wire], rows, (size_t)length) < 0) {
+        perror(order.lines.bits[wire]);
     }
-    follows = end;
-    ended = now;
+    before[wire].follows = end;
+    before[wire].ended = now;
 }
 
 static unsigned char garbled(board_wire_t wire, unsigned char octet)
@@ -286,9 +264,7 @@ static void out(void *context, unsigned octet)
     const double ratio = (double)port_rate(port) / own_rate(wire);
     unsigned char c = garbled(wire, (unsigned char)octet);
 
-    if (wire == BOARD_RADIO) {
-        record_bits(octet);
-    }
+    record_bits(wire, octet);
     if (wire_broken(wire, SWAPPED) || port->fd < 0) {
         return;
     }
@@ -363,7 +339,7 @@ static void record(sim_time_t when, bool level)
                                 level);
 
     if (write(bench.pulses, row, (size_t)length) < 0 && errno != EAGAIN) {
-        perror(order.pulses);
+        perror(order.lines.pulses);
     }
 }
 
@@ -401,8 +377,12 @@ static bool open_recording(const char *path, const char *unit, const char *first
 
 static bool open_recordings(void)
 {
-    return open_recording(order.pulses, "microseconds", "0", &bench.pulses) &&
-           open_recording(order.bits, "nanoseconds", "1", &bench.bits);
+    bool fine = open_recording(order.lines.pulses, "microseconds", "0", &bench.pulses);
+
+    for (int i = 0; i < BOARD_WIRES; i++) {
+        fine = fine && open_recording(order.lines.bits[i], "nanoseconds", "1", &bench.bits[i]);
+    }
+    return fine;
 }
 
 /* ---- life ---- */
@@ -498,11 +478,11 @@ static bool open_wires(void)
         const char *error = port_open_pty(&bench.ports[i], rates[i]);
 
         if (error == NULL) {
-            error = port_link(&bench.ports[i], order.link[i]);
+            error = port_link(&bench.ports[i], order.lines.path[i]);
             bench.linked[i] = error == NULL;
         }
         if (error != NULL) {
-            return complain(error, order.link[i]);
+            return complain(error, order.lines.path[i]);
         }
     }
     return true;
@@ -512,7 +492,7 @@ static void close_wires(void)
 {
     for (int i = 0; i < BOARD_WIRES; i++) {
         if (bench.linked[i]) {
-            port_unlink(&bench.ports[i], order.link[i]);
+            port_unlink(&bench.ports[i], order.lines.path[i]);
         }
         if (bench.ports[i].name[0] != '\0') {
             port_close(&bench.ports[i]);
@@ -535,7 +515,7 @@ int command_board(int argc, char **argv)
         fprintf(stderr, "`plomada board --help` tells more.\n");
         return 2;
     }
-    if (order.help) {
+    if (order.lines.help) {
         fputs(usage, stdout);
         fputs(defect_help, stdout);
         return 0;
@@ -543,7 +523,8 @@ int command_board(int argc, char **argv)
     noise_init(&bench.noise, order.seed, "nonsense");
     begun = load_storage() && open_recordings() && open_wires();
     if (begun) {
-        printf("board: %s %s %s\n", order.link[BOARD_LASER], order.link[BOARD_IMU], order.link[BOARD_RADIO]);
+        printf("board: %s %s %s\n", order.lines.path[BOARD_LASER], order.lines.path[BOARD_IMU],
+               order.lines.path[BOARD_RADIO]);
         fflush(stdout);
         live();
     }

@@ -35,24 +35,19 @@ static const char usage[] =
     "device, 3 this PC did not\n"
     "keep up with the wall clock (by more than 0.15 s): no verdict.\n";
 
-enum { OPT_SEED = 1, OPT_PATIENCE, OPT_PULSES, OPT_HELP };
+enum { OPT_SEED = 1, OPT_PATIENCE };
 
 static const struct option long_options[] = {
-    LINE_OPTIONS,
     {"seed", required_argument, NULL, OPT_SEED},
     {"patience", required_argument, NULL, OPT_PATIENCE},
-    {"pulses", required_argument, NULL, OPT_PULSES},
-    {"help", no_argument, NULL, OPT_HELP},
-    {NULL, 0, NULL, 0},
+    LINE_OPTIONS,
 };
 
 static struct {
-    const char *device[BOARD_WIRES];
+    lines_t lines;
     const scenario_t *scenario;
-    const char *pulses;
     unsigned long seed;
     double patience_s;
-    bool help;
 } order;
 
 static bool complain(const char *what, const char *subject)
@@ -80,20 +75,11 @@ static bool read_seed(const char *text)
 
 static bool read_option(int option, const char *argument)
 {
-    if (lines_option(option, argument, order.device)) {
-        return true;
-    }
     switch (option) {
     case OPT_SEED:
         return read_seed(argument);
     case OPT_PATIENCE:
         return read_patience(argument);
-    case OPT_PULSES:
-        order.pulses = argument;
-        return true;
-    case OPT_HELP:
-        order.help = true;
-        return true;
     default:
         return false;
     }
@@ -109,23 +95,16 @@ static bool read_scenario(int argc, char **argv)
     if (order.scenario == NULL || order.scenario->bench) {
         return complain("no such flight, see `plomada list`", argv[optind]);
     }
-    return lines_all_given("hil", order.device);
+    return true;
 }
 
 static bool read_arguments(int argc, char **argv)
 {
-    int option;
-
     memset(&order, 0, sizeof order);
     order.seed = 1;
     order.patience_s = 40.0;
-    optind = 1;
-    while ((option = getopt_long(argc, argv, "", long_options, NULL)) != -1) {
-        if (!read_option(option, optarg)) {
-            return false;
-        }
-    }
-    return order.help || read_scenario(argc, argv);
+    return lines_read("hil", argc, argv, long_options, read_option, &order.lines) &&
+           (order.lines.help || read_scenario(argc, argv));
 }
 
 static void print_metrics(const bench_flight_t *flight)
@@ -215,15 +194,15 @@ static int run(void)
     board_wire_t failed;
     const char *error;
 
-    memcpy(config.device, order.device, sizeof config.device);
-    config.pulses = order.pulses;
+    memcpy(config.device, order.lines.path, sizeof config.device);
+    config.pulses = order.lines.pulses;
     config.terrain = order.scenario->platform ? terrain_platform : terrain_flat;
     config.quadrotor.tug_rate_per_s = order.scenario->tug_rate_per_s;
     config.quadrotor.climb_rate_mps_per_n = order.scenario->climb_rate_mps_per_n;
     terminal_begin();
     error = world_open(&config, &failed);
     if (error != NULL) {
-        fprintf(stderr, "plomada hil: --%s %s: %s\n", wire_names[failed], order.device[failed], error);
+        fprintf(stderr, "plomada hil: --%s %s: %s\n", wire_names[failed], order.lines.path[failed], error);
         return 2;
     }
     if (!world_watch_pin()) {
@@ -243,7 +222,7 @@ int command_hil(int argc, char **argv)
         fprintf(stderr, "`plomada hil --help` tells more.\n");
         return 2;
     }
-    if (order.help) {
+    if (order.lines.help) {
         fputs(usage, stdout);
         return 0;
     }

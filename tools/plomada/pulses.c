@@ -121,36 +121,80 @@ const char *pulses_read(const char *path, pulses_t *pulses)
     return error;
 }
 
-#define BITS_LEAST 100   /* runs of bits: some ten characters */
-#define RUN_MOST 9.5     /* bits; a longer one is a pause between characters */
-#define SHORTEST_OF 0.02 /* a lone bit is common in text, a spike is not */
+#define RUNS_LEAST 6    /* of high bits: a command to the IMU has as many */
+#define RUN_MOST 9.5    /* bits; a longer one is a pause between characters */
+#define PAUSE_US 1100.0 /* more than a character at 9600 bit/s: the rate may change */
+#define NEAR 0.12       /* an oscillator that is 8 % off is told by its figure */
 
-static int by_length(const void *a, const void *b)
+typedef struct {
+    double bit_us, time_us, bits;
+    size_t runs;
+} rate_t;
+
+static double shortest_us(const pulses_t *pulses, size_t from, size_t end)
 {
-    const double left = *(const double *)a, right = *(const double *)b;
+    double least_us = INFINITY;
 
-    return (left > right) - (left < right);
+    for (size_t i = from; i < end; i++) {
+        least_us = fmin(least_us, pulses->high_us[i]);
+    }
+    return least_us;
 }
 
-double pulses_bit_us(const pulses_t *pulses)
+/* Which rate a stretch between two pauses has: its shortest high time is a bit. PULSES_RATES: none. */
+static int rate_of(const pulses_t *pulses, size_t from, size_t end, const double nominal[PULSES_RATES])
 {
-    static double sorted[PULSES_MAX];
-    double bit_us;
+    const double bit_us = shortest_us(pulses, from, end);
+    int rate = 0;
 
-    if (pulses->count < BITS_LEAST) {
-        return 0.0;
+    while (rate < PULSES_RATES && !(nominal[rate] > 0.0 && fabs(1e6 / bit_us / nominal[rate] - 1.0) < NEAR)) {
+        rate++;
     }
-    memcpy(sorted, pulses->high_us, pulses->count * sizeof sorted[0]);
-    qsort(sorted, pulses->count, sizeof sorted[0], by_length);
-    bit_us = sorted[(size_t)(SHORTEST_OF * (double)pulses->count)];
-    for (int round_trip = 0; round_trip < 3 && bit_us > 0.0; round_trip++) {
-        double time_us = 0.0, bits = 0.0;
+    return rate;
+}
 
-        for (size_t i = 0; i < pulses->count && sorted[i] < RUN_MOST * bit_us; i++) {
-            time_us += sorted[i];
-            bits += round(sorted[i] / bit_us);
+static void add_stretch(const pulses_t *pulses, size_t from, size_t end, double bit_us, rate_t *rate)
+{
+    for (size_t i = from; i < end; i++) {
+        if (pulses->high_us[i] < RUN_MOST * bit_us) {
+            rate->time_us += pulses->high_us[i];
+            rate->bits += round(pulses->high_us[i] / bit_us);
+            rate->runs++;
         }
-        bit_us = bits > 0.0 ? time_us / bits : 0.0;
     }
-    return bit_us;
+}
+
+/* Every stretch, with the bit times that are known so far. */
+static void add_all(const pulses_t *pulses, const double nominal[PULSES_RATES], rate_t rates[PULSES_RATES])
+{
+    size_t from = 0;
+
+    for (size_t end = 0; end <= pulses->count; end++) {
+        if (end == pulses->count || pulses->high_us[end] > PAUSE_US) {
+            const int rate = end > from ? rate_of(pulses, from, end, nominal) : PULSES_RATES;
+
+            if (rate < PULSES_RATES) {
+                const double known_us = rates[rate].bit_us;
+
+                add_stretch(pulses, from, end, known_us > 0.0 ? known_us : shortest_us(pulses, from, end),
+                            &rates[rate]);
+            }
+            from = end + 1;
+        }
+    }
+}
+
+void pulses_bit_rates(const pulses_t *pulses, const double nominal[PULSES_RATES], double found[PULSES_RATES])
+{
+    rate_t rates[PULSES_RATES] = {{.runs = 0}};
+
+    for (int round_trip = 0; round_trip < 3; round_trip++) {
+        for (int i = 0; i < PULSES_RATES; i++) {
+            rates[i] = (rate_t){.bit_us = rates[i].bits > 0.0 ? rates[i].time_us / rates[i].bits : 0.0};
+        }
+        add_all(pulses, nominal, rates);
+    }
+    for (int i = 0; i < PULSES_RATES; i++) {
+        found[i] = rates[i].runs >= RUNS_LEAST ? 1e6 * rates[i].bits / rates[i].time_us : 0.0;
+    }
 }

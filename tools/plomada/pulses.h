@@ -17,10 +17,12 @@ typedef struct {
 /* Whole pulses only. NULL when fine, else what is wrong with the file. */
 const char *pulses_read(const char *path, pulses_t *pulses);
 
-/* Of a UART's transmit pin in place of the throttle's: the length of its bit in microseconds, found from the
- * high times within characters; 0 when there are too few. Wants some samples a bit: at least 1 MHz for 57600
- * bit/s. */
-double pulses_bit_us(const pulses_t *pulses);
+#define PULSES_RATES 3
+
+/* Of a UART's transmit pin in place of the throttle's: the bit rates that it sent at, from the high times
+ * within characters. For each nominal rate (0: none) the one within 12 % of it, 0 where there are too few
+ * bits. Wants some samples a bit: at least 1 MHz for 57600 bit/s, 4 MHz for 250000. */
+void pulses_bit_rates(const pulses_t *pulses, const double nominal[PULSES_RATES], double found[PULSES_RATES]);
 
 /* The same line by line, while it is being recorded. Begins as PULSE_READER. */
 typedef struct {
