@@ -68,42 +68,35 @@ static uint16_t digit_of(octet_t character)
     return letter >= (octet_t)'0' && letter <= (octet_t)'9' ? (uint16_t)(letter - (octet_t)'0') : 16U;
 }
 
-/* The digits a slice begins with. False when there are none or more than most. */
-static bool read_digits(slice_t slice, uint16_t base, uint16_t most, uint32_t *number)
+/* Reads the digits a slice begins with. Returns how many; 0 when there are none or more than most. */
+static uint16_t read_digits(slice_t slice, uint16_t base, uint16_t most, uint32_t *number)
 {
     uint16_t i = 0U;
     *number = 0U;
     while (i < slice.length && digit_of(slice.text[i]) < base) {
         if (i == most) {
-            return false;
+            return 0U;
         }
         *number = *number * base + digit_of(slice.text[i]);
         i++;
     }
-    return i > 0U;
+    return i;
 }
 
 /* "19200[bps]<-Default setting by user". Sensors on USB or Ethernet tell other things: "100 [Mbps]". */
-static uint32_t read_bit_rate(slice_t slice, uint32_t otherwise)
+static bool read_bit_rate(slice_t slice, uint32_t *number)
 {
-    uint32_t number;
-    uint16_t digits = 0U;
-    if (!read_digits(slice, 10U, DIGITS_MAX, &number)) {
-        return otherwise;
-    }
-    while (digits < slice.length && digit_of(slice.text[digits]) < 10U) {
-        digits++;
-    }
-    return begins_with(trimmed(without_first(slice, digits)), "[bps]") ? number : otherwise;
+    const uint16_t digits = read_digits(slice, 10U, DIGITS_MAX, number);
+    return digits > 0U && begins_with(trimmed(without_first(slice, digits)), "[bps]");
 }
 
-/* The first decimal number in the slice: "20", "19200[bps]<-Default", "Initial(600[rpm])". */
+/* The first decimal number in the slice: "20", "Initial(600[rpm])". */
 static bool read_number(slice_t slice, uint32_t *number)
 {
     while (slice.length > 0U && digit_of(slice.text[0]) >= 10U) {
         slice = without_first(slice, 1U);
     }
-    return read_digits(slice, 10U, DIGITS_MAX, number);
+    return read_digits(slice, 10U, DIGITS_MAX, number) > 0U;
 }
 
 static void read_small(slice_t slice, uint16_t *number)
@@ -191,10 +184,10 @@ static bool take_other(scip_info_t *info, slice_t key, slice_t value, bool belie
     if (begins_with(key, "LASR")) {
         info->laser_on = believed ? begins_with(value, "ON") : info->laser_on;
     } else if (begins_with(key, "SBPS")) {
-        info->bit_rate = believed ? read_bit_rate(value, info->bit_rate) : info->bit_rate;
+        info->bit_rate = believed && read_bit_rate(value, &number) ? number : info->bit_rate;
     } else if (begins_with(key, "TIME")) {
-        info->time_ms = believed && read_digits(value, 16U, TIME_DIGITS_MAX, &number) ? number
-                                                                                      : info->time_ms;
+        info->time_ms = believed && read_digits(value, 16U, TIME_DIGITS_MAX, &number) > 0U ? number
+                                                                                           : info->time_ms;
     } else {
         return false;
     }

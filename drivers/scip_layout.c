@@ -24,14 +24,19 @@ typedef struct {
     uint16_t bad;
 } tally_t;
 
-static uint16_t smaller(uint16_t a, uint16_t b)
+static uint32_t smaller(uint32_t a, uint32_t b)
 {
     return a < b ? a : b;
 }
 
+static uint32_t larger(uint32_t a, uint32_t b)
+{
+    return a > b ? a : b;
+}
+
 static uint16_t largest_distance(const scip_scan_t *scan, const scip_limits_t *limits)
 {
-    return scan->characters == 3U ? limits->dmax_mm : smaller(limits->dmax_mm, SCIP_FAR_2_MM - 1U);
+    return scan->characters == 3U ? limits->dmax_mm : (uint16_t)smaller(limits->dmax_mm, SCIP_FAR_2_MM - 1U);
 }
 
 static uint16_t steps_per_point(const scip_scan_t *scan)
@@ -55,14 +60,14 @@ static uint16_t point_from(const scip_scan_t *scan, uint16_t step)
 /* Number of points that end before the step. */
 static uint16_t points_before(const scip_scan_t *scan, uint16_t step)
 {
-    return smaller((uint16_t)(steps_into(scan, step) / steps_per_point(scan)), scan->points);
+    return (uint16_t)smaller((uint32_t)steps_into(scan, step) / steps_per_point(scan), scan->points);
 }
 
 static void note_ray(tally_t *t, uint32_t ray)
 {
     t->sum += ray;
-    t->least = ray < t->least ? ray : t->least;
-    t->most = ray > t->most ? ray : t->most;
+    t->least = smaller(ray, t->least);
+    t->most = larger(ray, t->most);
 }
 
 static tally_t tally_all(const uint16_t *rays, size_t count)
@@ -141,8 +146,8 @@ static float robust_mean(const uint16_t *rays, size_t count, const tally_t *good
     tally_t kept = *good;
     if (good->most - good->least > NEAR_MEDIAN_MM) {
         const uint32_t median = median_of(rays, count, good);
-        const uint32_t least = median - good->least > NEAR_MEDIAN_MM ? median - NEAR_MEDIAN_MM : good->least;
-        const uint32_t most = good->most - median > NEAR_MEDIAN_MM ? median + NEAR_MEDIAN_MM : good->most;
+        const uint32_t least = larger(good->least + NEAR_MEDIAN_MM, median) - NEAR_MEDIAN_MM;
+        const uint32_t most = smaller(good->most, median + NEAR_MEDIAN_MM);
         kept = tally_between(rays, count, least, most);
     }
     return (float)kept.sum / (float)((uint32_t)count - kept.bad);
@@ -154,7 +159,7 @@ scip_group_mean_t scip_group_mean_within(const scip_scan_t *scan, const scip_gro
     const uint16_t behind = (uint16_t)(group->last_step + 1U);
     const uint16_t rays = (uint16_t)((behind - group->first_step) / steps_per_point(scan));
     const uint16_t end = points_before(scan, behind);
-    const uint16_t begin = smaller(point_from(scan, group->first_step), end);
+    const uint16_t begin = (uint16_t)smaller(point_from(scan, group->first_step), end);
     const tally_t t = tally(scan, begin, end, limits);
     const uint16_t *const seen = &scan->distance_mm[begin];
     scip_group_mean_t mean = {.good_rays = (uint16_t)(end - begin - t.bad)};

@@ -86,7 +86,7 @@ uint32_t scip_rays_age_us(const scip_scan_t *scan, uint32_t bit_rate);
 
 /* Smallest cluster with which the layout's stream leaves a tenth of each revolution free. THREE_MIRRORS at
  * 115200 bit/s needs 2: with 1 a scan has 1157 octets, which take longer than a revolution, so the sensor
- * cannot keep up. bit_rate: one of SCIP's. */
+ * cannot keep up. bit_rate: in bits per second. */
 uint16_t scip_layout_cluster(const scip_layout_t *layout, uint32_t bit_rate);
 
 /* Time from the scan's time stamp (step 0) to the sampling of a step, in microseconds, at 600 rpm. step:

@@ -34,6 +34,8 @@ typedef struct {
     uint32_t sums, bits;
 } check_t;
 
+static const check_t nothing_checked = {0U, 0U};
+
 #define FOUR_ZEROS ((uint32_t)0x30303030UL)   /* characters of value 0 */
 #define OUTSIDE ((uint32_t)0xC0C0C0C0UL)      /* bits that no encoded character has, its 30H taken off */
 #define EVERY_SECOND ((uint32_t)0x00FF00FFUL) /* of four characters */
@@ -211,7 +213,7 @@ static uint16_t state_after_status(const scip_parser_t *parser)
 static scip_event_t end_of_status(scip_parser_t *parser)
 {
     const octet_t *line = parser->line;
-    check_t check = {0U, 0U};
+    check_t check = nothing_checked;
     scip_damage_t cause;
     if (line_is_refusal(parser)) {
         parser->state = LEGACY_END;
@@ -262,7 +264,7 @@ static uint32_t read_stamp(const octet_t *text, check_t *check)
 
 static scip_damage_t take_time(scip_parser_t *parser, const octet_t *text)
 {
-    check_t check = {0U, 0U};
+    check_t check = nothing_checked;
     const uint32_t stamp = read_stamp(text, &check);
     const scip_damage_t cause = verdict(&check, 4U, text[4]);
     if (cause != SCIP_DAMAGE_NONE) {
@@ -290,7 +292,7 @@ static scip_event_t end_of_time(scip_parser_t *parser)
 static check_t decode_pairs(uint16_t *out, const octet_t *text, uint16_t characters)
 {
     const size_t points = characters / 2U;
-    check_t check = {0U, 0U};
+    check_t check = nothing_checked;
     for (size_t i = points % 2U; i < points; i += 2U) {
         const uint32_t two = two_values(&check, &text[2U * i]);
         out[i] = (uint16_t)(two & 0xFFFFU);
@@ -307,7 +309,7 @@ static check_t decode_pairs(uint16_t *out, const octet_t *text, uint16_t charact
 static check_t decode_triples(uint16_t *out, uint16_t begun, uint32_t *partial, const octet_t *text,
                               uint16_t characters)
 {
-    check_t check = {0U, 0U};
+    check_t check = nothing_checked;
     uint32_t point = *partial;
     for (uint16_t i = 0U; i < characters; i++) {
         point = (point << 6) | six_bits(&check, text[i]);
@@ -325,7 +327,7 @@ static check_t decode_triples(uint16_t *out, uint16_t begun, uint32_t *partial, 
 
 static check_t pass(const octet_t *text, uint16_t characters)
 {
-    check_t check = {0U, 0U};
+    check_t check = nothing_checked;
     for (uint16_t i = 0U; i < characters; i++) {
         (void)six_bits(&check, text[i]);
     }

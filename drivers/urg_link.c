@@ -644,7 +644,6 @@ bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us
     *link = (urg_link_t){
         .config = *config, .status = URG_WAIT, .since_us = now_us, .rate = config->first_rate};
     link->scan_octets = stream.scan_octets;
-    link->scan_us = now_us;
     return true;
 }
 

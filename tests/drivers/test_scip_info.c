@@ -147,9 +147,15 @@ void test_a_rate_that_is_not_in_bits_per_second_is_none(void)
     TEST_ASSERT_EQUAL_UINT32(0, info.bit_rate);
     tell("SBPS:115200", true);
     TEST_ASSERT_EQUAL_UINT32(0, info.bit_rate);
+    tell("SBPS:57600a[bps]", true);
+    TEST_ASSERT_EQUAL_UINT32(0, info.bit_rate);
+    tell("SBPS:4000000000[bps]", true);
+    TEST_ASSERT_EQUAL_UINT32(0, info.bit_rate);
+    tell("SBPS:999999999[BPS]", true);
+    TEST_ASSERT_EQUAL_UINT32(999999999, info.bit_rate);
     tell("SBPS:115200 [bps]", true);
     TEST_ASSERT_EQUAL_UINT32(115200, info.bit_rate);
-    TEST_ASSERT_EQUAL_UINT16(3, info.known);
+    TEST_ASSERT_EQUAL_UINT16(6, info.known);
 }
 
 /* Some firmware adds a line to VV, sends a wrong sum behind SERI, or sums an II line only up to "<-". */
@@ -357,7 +363,7 @@ void test_a_turn_of_no_steps_is_not_used(void)
 void test_limits_at_their_edges_are_used(void)
 {
     static const char *const lines[] = {"DMIN:1000", "DMAX:22",  "ARES:1080", "ARES:4095",
-                                        "AMIN:540",  "AMAX:540", "AMAX:1080"};
+                                        "AMIN:540",  "AMAX:540", "AMAX:1080", "SCAN:1"};
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         setUp();
         begin_pp();

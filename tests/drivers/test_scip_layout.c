@@ -205,6 +205,14 @@ void test_with_a_cluster_a_ray_is_a_point_wholly_inside_the_group(void)
     TEST_ASSERT_EQUAL_UINT16(20, mean_of(100, 199).good_rays);
 }
 
+void test_with_a_cluster_of_two_every_point_has_two_steps(void)
+{
+    scan.cluster = 2; /* 35 points: 372..441 */
+    fill(700);
+    TEST_ASSERT_EQUAL_UINT16(5, mean_of(372, 381).good_rays);
+    TEST_ASSERT_EQUAL_UINT16(35, mean_of(372, 441).good_rays);
+}
+
 void test_a_cluster_of_zero_is_one_as_on_the_wire(void)
 {
     fill(700);
@@ -284,39 +292,59 @@ void test_a_leg_in_front_of_fewer_than_half_of_the_rays_does_not_move_the_mean(v
     }
 }
 
-/* A slow reference: sort, take the lower median, then the mean of what is near it. */
-static float reference_mean(void)
+/* A slow reference: sort the good rays, take the lower median, then the mean of what is near it. */
+static scip_group_mean_t reference_mean(uint16_t begin, uint16_t end, uint16_t furthest)
 {
-    uint16_t sorted[35];
+    uint16_t sorted[35], count = 0;
     uint32_t sum = 0, near = 0;
-    for (uint16_t i = 0; i < 35; i++) {
-        uint16_t at = i;
+    scip_group_mean_t mean = {.good_rays = 0};
+    for (uint16_t i = begin; i < end; i++) {
+        uint16_t at = count;
+        if (points[i] < 20 || points[i] > furthest) {
+            continue;
+        }
         for (; at > 0 && sorted[at - 1] > points[i]; at--) {
             sorted[at] = sorted[at - 1];
         }
         sorted[at] = points[i];
+        count++;
     }
-    for (uint16_t i = 0; i < 35; i++) {
-        const int32_t off = (int32_t)sorted[i] - (int32_t)sorted[17];
+    for (uint16_t i = 0; i < count; i++) {
+        const int32_t off = (int32_t)sorted[i] - (int32_t)sorted[(count - 1) / 2];
         if (off >= -25 && off <= 25) {
             sum += sorted[i];
             near++;
         }
     }
-    return (float)sum / (float)near;
+    if (count > 0) {
+        mean.mean_mm = (float)sum / (float)near;
+        mean.spread_mm = (uint16_t)(sorted[count - 1] - sorted[0]);
+    }
+    mean.good_rays = count;
+    return mean;
 }
 
-void test_the_mean_is_that_of_the_rays_within_25_mm_of_the_median(void)
+/* Groups of any rays of the scan, some of them bad; in every second run distances about the furthest that
+ * count, in every third about the nearest. */
+void test_the_mean_is_that_of_the_good_rays_within_25_mm_of_their_median(void)
 {
     uint32_t noise = 20261U;
-    for (uint32_t run = 0; run < 3000; run++) {
+    for (uint32_t run = 0; run < 6000; run++) {
         const uint32_t width = 1U + run % 300U;
-        fill(1000);
+        const uint16_t base = run % 2U == 0U ? 4030U : (run % 3U == 0U ? 10U : 400U);
+        const uint16_t begin = (uint16_t)(run % 7U == 0U ? 0U : (noise >> 9) % 20U);
+        const uint16_t end = (uint16_t)(run % 7U == 0U ? 35U : begin + 1U + (noise >> 17) % (35U - begin));
         for (uint16_t i = 0; i < 35; i++) {
             noise = noise * 1664525U + 1013904223U;
-            points[i] = (uint16_t)(400U + (noise >> 8) % width * ((noise >> 30) == 0U ? 3U : 1U));
+            points[i] = (uint16_t)(base + (noise >> 8) % width * ((noise >> 30) == 0U ? 3U : 1U));
+            points[i] = (noise >> 25) % 5U == 0U && run % 5U == 0U ? 7U : points[i];
         }
-        TEST_ASSERT_FLOAT_WITHIN(0.001F, reference_mean(), mean_of(372, 406).mean_mm);
+        const scip_group_mean_t expected = reference_mean(begin, end, 4094);
+        const scip_group_mean_t mean = mean_of((uint16_t)(372 + begin), (uint16_t)(372 + end - 1));
+        TEST_ASSERT_EQUAL_UINT16(expected.good_rays, mean.good_rays);
+        TEST_ASSERT_EQUAL_UINT16(expected.spread_mm, mean.spread_mm);
+        TEST_ASSERT_FLOAT_WITHIN(0.001F, expected.mean_mm, mean.mean_mm);
+        TEST_ASSERT_EQUAL(2 * expected.good_rays >= end - begin, mean.valid);
     }
 }
 
@@ -350,6 +378,12 @@ void test_the_age_of_the_rays_follows_from_layout_and_bit_rate(void)
     scan.points = 35;
     scan.characters = 2;
     TEST_ASSERT_EQUAL_UINT32(70500, scip_rays_age_us(&scan, 250000));
+    scan.points = 547; /* 1157 octets */
+    scan.first_step = 111;
+    TEST_ASSERT_EQUAL_UINT32(100000 - (34000 + scip_step_delay_us(384) - scip_step_delay_us(389)) + 602604 +
+                                 460,
+                             scip_rays_age_us(&scan, 19200));
+    scan.first_step = 372;
     scan.points = 12;
     scan.cluster = 3;
     TEST_ASSERT_UINT32_WITHIN(100, 70500 - 23 * 2 * 40, scip_rays_age_us(&scan, 250000));
@@ -364,6 +398,23 @@ void test_three_mirrors_at_115200_are_asked_for_by_two_steps_a_point(void)
         TEST_ASSERT_EQUAL_UINT16(expected[i][1], scip_layout_cluster(&scip_layouts[i], 250000U));
     }
     TEST_ASSERT_EQUAL_UINT16(8U, scip_layout_cluster(&scip_layouts[SCIP_LAYOUT_THREE_MIRRORS], 19200U));
+}
+
+/* 488 points take 1035 octets, nine tenths of a revolution at 115000 bit/s; 489 take 1037. */
+void test_the_cluster_is_the_smallest_whose_scan_leaves_a_tenth_of_the_revolution(void)
+{
+    scip_layout_t layout = {.first_step = 100, .last_step = 587};
+
+    TEST_ASSERT_EQUAL_UINT16(1U, scip_layout_cluster(&layout, 115000U));
+    layout.last_step = 588;
+    TEST_ASSERT_EQUAL_UINT16(2U, scip_layout_cluster(&layout, 115000U));
+    layout.first_step = 0;
+    layout.last_step = 975; /* 976 steps: 488 points of two */
+    TEST_ASSERT_EQUAL_UINT16(2U, scip_layout_cluster(&layout, 115000U));
+    layout.last_step = 976;
+    TEST_ASSERT_EQUAL_UINT16(3U, scip_layout_cluster(&layout, 115000U));
+    layout.last_step = 9;
+    TEST_ASSERT_EQUAL_UINT16(10U, scip_layout_cluster(&layout, 100U)); /* not even one point fits */
 }
 
 /* --- a sensor's own limits

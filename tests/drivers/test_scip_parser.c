@@ -624,6 +624,28 @@ void test_a_cut_block_of_a_running_stream_is_not_taken_for_scip_1_1(void)
     TEST_ASSERT_EQUAL(SCIP_SCAN, feed_text("MS0384038401000\n99b\n00033\nDQE\n\n"));
 }
 
+void test_a_stream_whose_answer_was_lost_is_not_taken_for_scip_1_1_either(void)
+{
+    const order_t one = {"MS", 384, 384, 1, 0, 0};
+    expect_order(&one);
+    TEST_ASSERT_EQUAL(SCIP_SCAN, feed_text("MS0384038401000\n99b\n00011\nDQE\n\n"));
+    TEST_ASSERT_EQUAL(SCIP_DAMAGED, feed_text("MS0384038401000\n99b\n00022\nDQ\nE\n\n"));
+    TEST_ASSERT_EQUAL_UINT32(0, parser.counters.legacy);
+}
+
+/* The echo may have been among the octets that were lost. */
+void test_an_e_behind_a_broken_line_tells_nothing(void)
+{
+    expect_plain(SCIP_STOP);
+    feed_text("Q?\n");
+    scip_parser_line_broken(&parser);
+    TEST_ASSERT_EQUAL(SCIP_NOTHING, feed_text("E\n\n"));
+    feed_text("Q?\n");
+    expect_plain(SCIP_STOP);
+    TEST_ASSERT_EQUAL(SCIP_NOTHING, feed_text("E\n\n"));
+    TEST_ASSERT_EQUAL_UINT32(0, parser.counters.legacy);
+}
+
 /* --- streams
  * ------------------------------------------------------------------------------------------------------ */
 
@@ -638,6 +660,7 @@ void test_a_stream_is_answered_and_then_delivers_scan_by_scan(void)
         TEST_ASSERT_EQUAL_size_t(101, wire.length);
         TEST_ASSERT_EQUAL(SCIP_NOTHING, feed_range(&wire, 0, 100));
         TEST_ASSERT_EQUAL(SCIP_SCAN, feed(wire.octets[100]));
+        TEST_ASSERT_EQUAL_UINT16(0, scan.remaining);
         assert_numbered_scan(k, &front, k);
     }
     TEST_ASSERT_EQUAL_UINT32(10, parser.counters.scans);
@@ -715,6 +738,35 @@ void test_a_counted_run_tells_the_remaining_scans(void)
         TEST_ASSERT_EQUAL_UINT16(4 - k, seen.remaining[k]);
     }
     TEST_ASSERT_EQUAL_UINT32(0, damages());
+}
+
+void test_the_first_frame_behind_the_answer_must_be_the_first_of_the_run(void)
+{
+    expect_order(&counted);
+    put_answer(&wire, &counted, "00");
+    put_numbered_frame(&wire, &counted, 1);
+    TEST_ASSERT_EQUAL(SCIP_DAMAGED, feed_range(&wire, 0, wire.length));
+    TEST_ASSERT_EQUAL(SCIP_DAMAGE_SEQUENCE, parser.last_damage);
+}
+
+/* Its answer may be lost with frames behind it. */
+void test_a_run_that_is_ordered_anew_may_begin_with_any_of_its_frames(void)
+{
+    for (unsigned first = 0; first < 5; first++) {
+        start();
+        wire.length = 0;
+        put_answer(&wire, &counted, "00");
+        put_numbered_frame(&wire, &counted, 0);
+        put_numbered_frame(&wire, &counted, 1);
+        expect_order(&counted);
+        feed_range(&wire, 0, wire.length);
+        TEST_ASSERT_EQUAL_UINT(2, seen.scans);
+        expect_order(&counted);
+        wire.length = 0;
+        put_numbered_frame(&wire, &counted, first);
+        TEST_ASSERT_EQUAL(SCIP_SCAN, feed_range(&wire, 0, wire.length));
+        TEST_ASSERT_EQUAL_UINT16(4 - first, scan.remaining);
+    }
 }
 
 void test_both_digits_of_the_remaining_scans_count(void)
@@ -1416,8 +1468,10 @@ static scip_event_t feed_run_text(const octet_t *octets, size_t count, size_t bu
 {
     scip_event_t event = SCIP_NOTHING, last = SCIP_NOTHING;
     while (count > 0) {
-        size_t taken = scip_parser_feed_run(&parser, octets, count < burst ? count : burst, &event);
+        const size_t given = count < burst ? count : burst;
+        size_t taken = scip_parser_feed_run(&parser, octets, given, &event);
         TEST_ASSERT_GREATER_THAN_size_t(0, taken);
+        TEST_ASSERT_TRUE(taken <= given);
         TEST_ASSERT_TRUE(event == SCIP_NOTHING || (octets[taken - 1] & 0xFF) == '\n');
         octets += taken;
         count -= taken;
@@ -1494,6 +1548,7 @@ static void compare_ways(const wire_t *damaged, size_t burst)
     expect_order(&front);
     feed_range(damaged, 0, damaged->length);
     const scip_counters_t counters = parser.counters;
+    const scip_reply_t reply = parser.reply;
     for (size_t i = 0; i < damaged->length; i++) {
         burst_octets[i] = (octet_t)damaged->octets[i];
     }
@@ -1501,6 +1556,7 @@ static void compare_ways(const wire_t *damaged, size_t burst)
     expect_order(&front);
     (void)feed_run_text(burst_octets, damaged->length, burst, events);
     TEST_ASSERT_EQUAL_MEMORY(&counters, &parser.counters, sizeof counters);
+    TEST_ASSERT_EQUAL_MEMORY(reply.status, parser.reply.status, sizeof reply.status);
 }
 
 void test_a_damaged_frame_in_one_burst_makes_what_single_octets_make(void)

@@ -1197,3 +1197,158 @@ void test_a_noisy_cable_never_ends_it(void)
     TEST_ASSERT_GREATER_THAN_UINT(19000, ok);
     TEST_ASSERT_GREATER_OR_EQUAL_UINT32(20, link_.restarts);
 }
+
+/* ---- times to the microsecond, with answers made here ---- */
+
+static uint32_t reply_after(uint32_t us, scip_kind_t kind, const char *status, bool legacy)
+{
+    now_us += us;
+    seen.reply_count++;
+    seen.reply_kind = kind;
+    seen.reply = (scip_reply_t){{(octet_t)status[0], (octet_t)status[1]}, legacy, 0};
+    urg_link_step(&link_, &seen, now_us, &action);
+    return link_.timeout_us;
+}
+
+static void nothing_after(uint32_t us)
+{
+    now_us += us;
+    urg_link_step(&link_, &seen, now_us, &action);
+}
+
+static void scan_after(uint32_t us)
+{
+    seen.scan_count++;
+    nothing_after(us);
+}
+
+/* To a stream of every fourth revolution at 250000 bit/s. */
+static void stream_every_fourth(void)
+{
+    reset(0);
+    config.range.interval = 3;
+    (void)urg_link_init(&link_, &config, now_us);
+    nothing_after(0);
+    TEST_ASSERT_EQUAL_UINT32(400000 + 10 * 87, link_.timeout_us); /* LF, L0, LF; 6 octets */
+    TEST_ASSERT_EQUAL_UINT32(400000 + 19 * 87, reply_after(STEP_US, SCIP_LASER_OFF_1, "0", true));
+    TEST_ASSERT_EQUAL_UINT32(400000 + 23 * 87, reply_after(STEP_US, SCIP_SWITCH, "0", true));
+    (void)reply_after(STEP_US, SCIP_BIT_RATE, "00", false);
+    nothing_after(STEP_US);
+    TEST_ASSERT_EQUAL_UINT32(400000 + (12 + 101) * 41, link_.timeout_us); /* a frame may be under way */
+    TEST_ASSERT_EQUAL_UINT32(400000 + 2 * 400000 + (16 + 21 + 101) * 41,
+                             reply_after(STEP_US, SCIP_STOP, "00", false));
+    TEST_ASSERT_EQUAL(URG_STREAM, link_.status);
+    scan_after(STEP_US);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
+}
+
+#define NEXT_SCAN_US (2U * 400000U + 101U * 41U + 250000U)
+
+void test_every_time_out_is_what_the_octets_and_the_revolutions_take(void)
+{
+    stream_every_fourth();
+    TEST_ASSERT_EQUAL_UINT32(NEXT_SCAN_US, link_.timeout_us);
+    nothing_after(NEXT_SCAN_US - 1U);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
+    nothing_after(1U);
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
+    TEST_ASSERT_EQUAL_UINT32(280000, link_.timeout_us);
+    TEST_ASSERT_EQUAL_UINT32(NEXT_SCAN_US, reply_after(STEP_US, SCIP_STREAM_2, "00", false));
+    TEST_ASSERT_EQUAL(URG_STREAM, link_.status);
+    scan_after(STEP_US);
+    seen.notice = (scip_reply_t){{'2', '1'}, false, 0};
+    seen.notice_count++;
+    nothing_after(STEP_US);
+    TEST_ASSERT_EQUAL_UINT32(2000000, link_.timeout_us);
+}
+
+/* Of the search at the known rates: the next command of each of its turns, up to the stream's return. */
+static void lose_and_find(uint32_t rates[], uint32_t count)
+{
+    nothing_after(NEXT_SCAN_US);
+    for (uint32_t i = 0; i < count; i++) {
+        rates[i] = link_.rate;
+        nothing_after(STEP_US);
+        if (link_.rate == 250000) {
+            nothing_after(STEP_US); /* it listens for two steps there */
+        }
+    }
+    while (link_.rate != 250000) {
+        nothing_after(STEP_US);
+    }
+    scan_after(1000);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
+}
+
+void test_the_search_after_a_second_loss_is_that_after_the_first(void)
+{
+    uint32_t first[9], second[9];
+    stream_every_fourth();
+    lose_and_find(first, 9);
+    lose_and_find(second, 9);
+    TEST_ASSERT_EQUAL_UINT32(250000, first[0]);
+    TEST_ASSERT_EQUAL_UINT32(115200, first[1]);
+    TEST_ASSERT_EQUAL_UINT32_ARRAY(first, second, 9);
+}
+
+void test_power_is_cycled_20_s_after_the_latest_scan_and_not_before(void)
+{
+    stream_every_fourth();
+    nothing_after(NEXT_SCAN_US);
+    nothing_after(20000000U - NEXT_SCAN_US - 1U);
+    TEST_ASSERT_FALSE(action.cycle_power);
+    nothing_after(1U);
+    TEST_ASSERT_TRUE(action.cycle_power);
+}
+
+void test_64_octets_in_the_wait_are_a_stream_and_63_are_none(void)
+{
+    nothing_after(0);
+    seen.octet_count = 63;
+    nothing_after(STEP_US);
+    TEST_ASSERT_EQUAL(URG_WAIT, link_.status);
+    seen.octet_count = 64;
+    nothing_after(STEP_US);
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
+}
+
+void test_a_switch_that_scip_1_1_refuses_is_repeated_once_and_given_up(void)
+{
+    reset(0);
+    nothing_after(0);
+    (void)reply_after(STEP_US, SCIP_LASER_OFF_1, "0", true);
+    TEST_ASSERT_EQUAL(URG_SWITCH, link_.status);
+    (void)reply_after(STEP_US, SCIP_SWITCH, "2", true);
+    TEST_ASSERT_EQUAL(URG_SWITCH, link_.status);
+    nothing_after(500000);
+    TEST_ASSERT_EQUAL(URG_SWITCH, link_.status);
+    TEST_ASSERT_EQUAL_UINT16(2, link_.attempt);
+    nothing_after(500000);
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
+}
+
+/* The rate was proved by an answer just now. */
+void test_noise_does_not_end_the_wait_for_an_answer_at_a_proved_rate(void)
+{
+    reset(0);
+    nothing_after(0);
+    (void)reply_after(STEP_US, SCIP_LASER_OFF_1, "00", false);
+    TEST_ASSERT_EQUAL(URG_STOP2, link_.status);
+    seen.framing_count += 20;
+    nothing_after(STEP_US);
+    TEST_ASSERT_EQUAL(URG_STOP2, link_.status);
+    TEST_ASSERT_EQUAL_UINT16(1, link_.attempt);
+}
+
+void test_the_end_of_time_mode_is_asked_for_twice(void)
+{
+    reset(0);
+    nothing_after(0);
+    (void)reply_after(STEP_US, SCIP_LASER_OFF_1, "00", false);
+    (void)reply_after(STEP_US, SCIP_STOP, "0E", false);
+    TEST_ASSERT_EQUAL(SCIP_TIME_LEAVE, link_.command);
+    nothing_after(500000);
+    TEST_ASSERT_EQUAL(SCIP_TIME_LEAVE, link_.command);
+    nothing_after(500000);
+    TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
+}

@@ -1,8 +1,8 @@
 """mutants.py --room control|drivers|firmware|bsp [--file PART] [--sample N] [--seed S] [--least PERCENT]
 
 Do the unit tests notice a change of the product? Draws N small faults (another operator, another constant, a condition turned
-round, a statement left out) from the room's .c files, by seed; builds and runs the room's unit tests with each, in a copy of
-the tree (build/mutants), the file's own test first. A fault that makes the same object code, or none, is not counted.
+round, a statement left out) from the room's .c files, by seed; builds and runs the room's unit tests with each under ASan and
+UBSan, in a copy of the tree (build/mutants), the file's own test first. A fault that makes the same object code, or none, is not counted.
 Prints the survivors as lines of a diff, then the score. Exit status 1 when the score is below --least.
 """
 import argparse
@@ -62,7 +62,7 @@ class Copy:
                 shutil.copyfile(source, target)
                 target.chmod(source.stat().st_mode)
         generator = ["-G", "Ninja"] if shutil.which("ninja") else []
-        subprocess.run(["cmake", "-S", self.root, "-B", self.build, "-DCMAKE_BUILD_TYPE=Debug", "-DPLOMADA_TESTS=ON", *generator],
+        subprocess.run(["cmake", "-S", self.root, "-B", self.build, "-DCMAKE_BUILD_TYPE=Debug", "-DPLOMADA_TESTS=ON", "-DSANITIZE=ON", *generator],
                        check=True, stdout=subprocess.DEVNULL)
         self.tests = sorted(path.stem for path in (self.root / "tests" / room).rglob("test_*.c"))
         if not self.make(self.tests):
