@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include "child.h"
 #include "unity.h"
@@ -53,7 +54,7 @@ static const lie_t sights[] = {
     {{FLAT, "plant.rays_lost=0.6"}, 800.0, 0.8, 0.0},
     {{FLAT, "plant.scan_frozen_start=5"}, 800.0, 0.8, 0.0},
     {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=7", "plant.block_mm=400"}, 1500.0, 1.0, 0.0},
-    {{FLAT, "plant.sight_blocked=1", "plant.block_mm=250"}, 1500.0, 1.5, 0.0},
+    {{FLAT, "plant.sight_blocked=1", "plant.block_mm=250"}, 1500.0, 1.0, 0.0},
 };
 
 void test_a_sight_that_lies_does_not_fly_the_vehicle_away(void)
@@ -64,7 +65,7 @@ void test_a_sight_that_lies_does_not_fly_the_vehicle_away(void)
 }
 
 static const lie_t floors[] = {
-    {{FLAT, "plant.bars_mm=60", "plant.bars_period=0.4"}, 500.0, 0.5, 65.0},
+    {{FLAT, "plant.bars_mm=60", "plant.bars_period=0.4"}, 300.0, 0.5, 40.0},
 };
 
 void test_bars_on_the_floor_are_flown_over(void)
@@ -106,6 +107,57 @@ void test_a_gap_of_the_imu_and_one_of_the_scanner_end_on_the_ground(void)
 {
     for (size_t i = 0; i < sizeof gaps / sizeof gaps[0]; i++) {
         fly("est-60cm-ramp", &gaps[i], true);
+    }
+}
+
+typedef struct {
+    unsigned long seed;
+    const lie_t *lie;
+} order_t;
+
+/* Until the motors are off, at most 60 s after the order to land. */
+static void fly_to_the_end(void *argument, void *result)
+{
+    static flight_options_t options;
+    const order_t *order = argument;
+    const char *error = NULL;
+
+    options = (flight_options_t){.seed = order->seed, .patience_s = 60.0};
+    for (int i = 0; order->lie->assignments[i] != NULL; i++) {
+        if (flight_override(&options, order->lie->assignments[i]) != NULL) {
+            _exit(4);
+        }
+    }
+    if (!flight_run(scenario_find("est-60cm-ramp"), &options, result, &error)) {
+        _exit(5);
+    }
+}
+
+static const lie_t edges[] = {
+    {{FLAT, "plant.edge_m=-0.8", "plant.edge_start=19.5"}, 100.0, 0.8, 0.0},
+    {{FLAT, "plant.edge_m=-0.3", "plant.edge_start=20.8"}, 100.0, 0.6, 0.0},
+};
+
+/* The vehicle stands, and the beam sees a floor far below it. The third edge comes long before the landing.
+ */
+void test_motors_stop_within_12_s_on_the_ground_though_the_beam_looks_beyond_an_edge(void)
+{
+    static flight_result_t result;
+
+    for (size_t i = 0; i < sizeof edges / sizeof edges[0]; i++) {
+        for (unsigned long seed = 301; seed < 301 + seeds(); seed++) {
+            order_t order = {seed, &edges[i]};
+            const double *value = result.metrics.value;
+
+            child_run(fly_to_the_end, &order, &result, sizeof result);
+            TEST_ASSERT_NULL(result.halt);
+            TEST_ASSERT_FALSE(isnan(value[METRIC_STOPPED_S]));
+            at_most(12.0, value[METRIC_STOPPED_S] - fmax(value[METRIC_DOWN_S], 0.0), "motors stop after",
+                    &edges[i], seed);
+            at_most(edges[i].highest_mm, value[METRIC_HIGHEST_MM], "highest", &edges[i], seed);
+            at_most(edges[i].touch_mps, value[METRIC_TOUCH_SPEED_MPS], "touch", &edges[i], seed);
+            TEST_ASSERT_EQUAL_DOUBLE(0.0, value[METRIC_OFF_ALOFT]);
+        }
     }
 }
 
