@@ -278,7 +278,22 @@ static void end_safe(bench_flight_t *flight)
     world_type("#STREAM OFF");
 }
 
-static void report_wires(sim_time_t origin, bench_flight_t *flight)
+/* Frames that the board found damaged, and what from it meant nothing here. */
+typedef struct {
+    unsigned long laser, imu, strange[BOARD_WIRES];
+} damage_t;
+
+static damage_t damage(void)
+{
+    damage_t now = {.laser = bench_damaged_frames(), .imu = bench_refused_frames()};
+
+    for (int i = 0; i < BOARD_WIRES; i++) {
+        now.strange[i] = world_wire((board_wire_t)i).strange;
+    }
+    return now;
+}
+
+static void report_wires(sim_time_t origin, const damage_t *before, bench_flight_t *flight)
 {
     for (int i = 0; i < BOARD_WIRES; i++) {
         const world_wire_t wire = world_wire((board_wire_t)i);
@@ -289,9 +304,9 @@ static void report_wires(sim_time_t origin, bench_flight_t *flight)
         } else if (wire.refused > 0) {
             trouble(flight, "%s: late: the adapter did not take %lu octets", wires[i], wire.refused);
         }
-        if (wire.strange > 0) {
-            trouble(flight, "%s: garbled: %lu %s from the board mean nothing", wires[i], wire.strange,
-                    i == BOARD_RADIO ? "lines" : "commands or octets");
+        if (wire.strange > before->strange[i]) {
+            trouble(flight, "%s: garbled: %lu %s from the board mean nothing", wires[i],
+                    wire.strange - before->strange[i], i == BOARD_RADIO ? "lines" : "commands or octets");
         }
     }
     if (flight->has_delay && flight->delay_ms > LATE_MS) {
@@ -323,15 +338,6 @@ unsigned long bench_damaged_frames(void)
     return sum;
 }
 
-typedef struct {
-    unsigned long laser, imu;
-} damage_t;
-
-static damage_t damage(void)
-{
-    return (damage_t){.laser = bench_damaged_frames(), .imu = bench_refused_frames()};
-}
-
 /* What the board has found damaged since `before`: a few frames are those of its start. */
 static void ask_board(damage_t before, bench_flight_t *flight)
 {
@@ -341,7 +347,8 @@ static void ask_board(damage_t before, bench_flight_t *flight)
     printf(
         "damaged: laser %lu and imu %lu frames found by the board; laser %lu commands and xbee %lu lines not "
         "understood here\n",
-        found.laser, found.imu, world_wire(BOARD_LASER).strange, world_wire(BOARD_RADIO).strange);
+        found.laser, found.imu, now.strange[BOARD_LASER] - before.strange[BOARD_LASER],
+        now.strange[BOARD_RADIO] - before.strange[BOARD_RADIO]);
     if (found.laser > DAMAGED_MOST) {
         trouble(flight, "laser: garbled: the board found %lu frames damaged", found.laser);
     }
@@ -383,7 +390,7 @@ void bench_fly(const scenario_t *scenario, unsigned long seed, FILE *progress, b
     flight->has_delay = world_delay_ms(&flight->delay_ms, &flight->delay_most_ms);
     flight->lag_ms = (double)world_worst_lag() * 1e-6;
     end_safe(flight);
-    report_wires(origin, flight);
+    report_wires(origin, &before, flight);
     report_pin(flight);
     if (!flight->interrupted && !flight->radio_lost) {
         ask_board(before, flight);
