@@ -20,6 +20,7 @@
 #define REVOLUTION_US 100000U     /* data sheet, 600 rpm */
 #define FIRST_REPLY_US 400000U    /* real sensors were seen to take 381 ms */
 #define SCAN_MARGIN_US 250000U    /* chosen: two and a half revolutions */
+#define SETTLE_US 3000000U        /* chosen: what a laser or a motor may need before the first scan */
 #define VERIFY_US 2000000U        /* chosen: at statuses 21..49 the sensor tests itself */
 #define POWER_CYCLE_US 20000000U  /* chosen: time without a scan, well above the 8 s of a boot */
 #define KNOCK_US 130000U          /* one step of 150 ms, less its jitter */
@@ -112,7 +113,7 @@ static uint32_t reply_timeout_us(const urg_link_t *link, const scip_request_t *r
         octets += link->scan_octets;
     } else if (request->kind == link->config.stream) {
         octets += link->scan_octets;
-        timeout_us += 2U * scan_period_us(link);
+        timeout_us += 2U * scan_period_us(link) + (link->failures >= LADDER_TOP ? SETTLE_US : 0U);
     }
     return timeout_us + wire_us(link, octets);
 }

@@ -769,6 +769,38 @@ void test_a_run_that_is_ordered_anew_may_begin_with_any_of_its_frames(void)
     }
 }
 
+/* As of a sensor that rounds the number of points down where the cluster does not divide the steps. */
+void test_frames_with_another_number_of_points_are_never_scans(void)
+{
+    const order_t asked = {"MS", 100, 134, 2, 0, 0};
+    for (unsigned n = 1; n < 70; n++) {
+        const order_t sent = {"MS", 100, 99 + n, 1, 0, 0};
+        char text[200], data[140];
+        memset(data, '9', sizeof data);
+        start();
+        expect_order(&asked);
+        for (unsigned k = 0; k < 3; k++) {
+            scip_frames_frame(text, "MS0100013402000", 100 + 100 * k, data, 2U * points_of(&sent));
+            (void)feed_text(text);
+        }
+        TEST_ASSERT_EQUAL_UINT(n == 18 ? 3 : 0, seen.scans);
+        TEST_ASSERT_EQUAL_UINT32(n == 18 ? 0 : 3, damages());
+    }
+}
+
+/* 2^16 ms are no whole number of revolutions: one scan is lost at the wrap. */
+void test_a_clock_of_16_bits_costs_one_scan_at_its_wrap(void)
+{
+    expect_order(&front);
+    for (unsigned k = 0; k < 40; k++) {
+        wire.length = 0;
+        put_frame(&wire, &front, 0, (63000 + 100UL * k) & 0xFFFF, values);
+        (void)feed_range(&wire, 0, wire.length);
+    }
+    TEST_ASSERT_EQUAL_UINT32(39, parser.counters.scans);
+    TEST_ASSERT_EQUAL_UINT32(1, parser.counters.damaged[SCIP_DAMAGE_SEQUENCE]);
+}
+
 void test_both_digits_of_the_remaining_scans_count(void)
 {
     order_t many = counted;

@@ -27,6 +27,7 @@ static struct {
     uint32_t scans_left; /* of a counted run, 0 endless */
     uint32_t clock_ms, next_frame_ms;
     uint32_t latency_steps;
+    uint32_t settles_ms; /* from an order to its first frame, in place of a revolution */
     const char *rate_refusal, *stream_refusal;
 } sensor;
 
@@ -113,7 +114,7 @@ static void answer_stream(const char *command)
     strcpy(sensor.echo, command);
     sensor.scans_left = (uint32_t)atol(&command[13]);
     sensor.streaming = sensor.streams;
-    sensor.next_frame_ms = sensor.clock_ms + 100;
+    sensor.next_frame_ms = sensor.clock_ms + (sensor.settles_ms > 0 ? sensor.settles_ms : 100);
 }
 
 static void answer_2(const char *command)
@@ -1196,6 +1197,21 @@ void test_a_noisy_cable_never_ends_it(void)
     }
     TEST_ASSERT_GREATER_THAN_UINT(19000, ok);
     TEST_ASSERT_GREATER_OR_EQUAL_UINT32(20, link_.restarts);
+}
+
+/* A laser or a motor that each order starts anew: to ask again and again would be for ever. */
+void test_a_sensor_that_needs_seconds_before_its_first_scan_is_waited_for(void)
+{
+    static const uint32_t settles_ms[] = {500, 700, 1500, 2900};
+    for (uint32_t i = 0; i < 4; i++) {
+        reset(0);
+        sensor.settles_ms = settles_ms[i];
+        const uint32_t needed = steps_to_ok();
+        TEST_ASSERT_NOT_EQUAL_UINT32(NEVER, needed);
+        TEST_ASSERT_LESS_THAN_UINT32(8000 / STEP_MS, needed);
+        steps(100);
+        TEST_ASSERT_EQUAL(URG_OK, link_.status);
+    }
 }
 
 /* ---- times to the microsecond, with answers made here ---- */
