@@ -38,10 +38,10 @@ NOMINAL = ["law", "rise s", "overshoot mm", "hover RMS mm", "activity N", "terra
 
 def untrimmed(row):
     return [median(row, "hover_rms_mm"), median(row, "terrain_rms_mm"),
-            *(str(row[name]) for name in ("failures", "takeovers", "contacts")), table.number(row["highest_mm"])]
+            str(row["failures"]), table.number(row["highest_mm"])]
 
 
-UNTRIMMED = ["law", "hover RMS mm", "terrain RMS mm", "failures", "take-overs", "contacts", "highest mm"]
+UNTRIMMED = ["law", "hover RMS mm", "terrain RMS mm", "failures", "highest mm"]
 DISTURBING = ("glitches", "vibration", "outages", "blind")
 OTHERS = ["law", "glitches mm", "vibration mm", "outages: largest error mm", "blind: touch m/s", "climb rate mm", "recovery s",
           "climb rate, drawn mm", "failures"]

@@ -137,7 +137,7 @@ def table(best, for_page=False):
         if not (for_page and all(held)):
             rows.append(([f"{statement.words} ({statement.source})", statement.reading], ["yes" if one else "**no**" for one in held]))
     rows.append((["**holds**", ""], [f"{sum(held)} of {len(statements.STATEMENTS)}" for held in judged]))
-    rows += [([name, ""], cells) for name, cells in figures_of(best)]
+    rows += [] if for_page else [([name, ""], cells) for name, cells in figures_of(best)]
     first, *others = ["| " + " | ".join([*(names[:1] if for_page else names), *cells]) + " |" for names, cells in rows]
     columns = len(best) + (1 if for_page else 2)
     return "\n".join([first, "|" + "---|" * columns, *others, "", *(
