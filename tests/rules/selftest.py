@@ -10,6 +10,7 @@ import house
 import includes
 import length
 import mirror
+import pages
 import places
 import published
 import sources
@@ -353,6 +354,33 @@ class Published(unittest.TestCase):
         with self.assertRaises(ValueError):
             self.complaints(header=self.HEADER.replace("TEXT(", "TEXTS("))
 
+
+
+class Pages(unittest.TestCase):
+    GOOD = {"Makefile": "fly: ## flies\n", "firmware/a.c": "static void take(void)\n{\n}\n", "docs/other.md": "# Other\n\n## A part\n",
+            "README.md": "[x](docs/other.md#a-part) `firmware/a.c` `make fly` `take` (`firmware/a.c`)\n"}
+
+    def complaints(self, readme):
+        with tempfile.TemporaryDirectory() as name:
+            root = Path(name).resolve()
+            for path, text in (self.GOOD | {"README.md": readme}).items():
+                (root / path).parent.mkdir(exist_ok=True)
+                (root / path).write_text(text, encoding="utf-8")
+            return list(pages.check(root))
+
+    def test_a_page_that_names_what_exists_is_good(self):
+        self.assertEqual(self.complaints(self.GOOD["README.md"]), [])
+
+    def test_what_is_missing_is_named(self):
+        for old, new in (("other.md#", "none.md#"), ("#a-part", "#b-part"), ("`firmware/a.c` ", "`firmware/b.c` "), ("make fly", "make fry"),
+                         ("`take`", "`give`")):
+            found = self.complaints(self.GOOD["README.md"].replace(old, new))
+            self.assertEqual(len(found), 1, (new, found))
+            self.assertTrue(found[0].startswith("README.md: "), found)
+
+    def test_too_many_words_are_counted(self):
+        found = self.complaints("word " * (pages.WORDS - 5))
+        self.assertEqual(found, [f"{pages.WORDS} words in all pages, fewer than {pages.WORDS} are wanted"])
 
 
 class Places(unittest.TestCase):
