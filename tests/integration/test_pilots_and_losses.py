@@ -1,0 +1,219 @@
+"""test_pilots_and_losses.py PLOMADA [FLIGHTS]: flights with a pilot, and flights that lose a sensor at a bad moment.
+
+Vehicles: the nominal one of each airframe, and those that a campaign of faults draws (tools/campaign/faults.py), GRAV
+trimmed by hand. FLIGHTS of each kind; without it one of each, with fewer laws and vehicles. A failure prints the command
+that repeats its flight.
+"""
+import csv
+import io
+import random
+import shlex
+import subprocess
+import sys
+import unittest
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools/campaign"))
+import faults  # noqa: E402
+import plan  # noqa: E402
+
+PROGRAM, FLIGHTS = "", 1
+FIRST_SEED = 501
+VEHICLES = ("nominal", "drawn 1", "nominal 1", "drawn 0")   # the airframe behind the word; nominal: 0
+DOUBTS = 256 + 512 + 1024                                   # flags SIGHT, IMU, THRUST
+LAND_S, LASTS_FOREVER = 26.0, 500
+PERIOD_S = 0.01                                             # of the log
+UNTIL_DOWN = ["--until-down", "60"]
+
+
+def vehicle(kind, seed):
+    """Plant figures and parameters."""
+    airframe = float(kind[-1]) if kind[-1].isdigit() else 0.0
+    if kind.startswith("nominal"):
+        return {"airframe": airframe}, {}
+    figures, typed, _ = faults.vehicle(FIRST_SEED, seed)
+    return {**figures, "airframe": airframe}, {"GRAV": typed["GRAV"]}
+
+
+class Flight:
+    """One flight; rows: its log as numbers, with the state's name."""
+
+    def __init__(self, law, kind, seed, condition):
+        figures, typed, words = condition(random.Random(f"{seed}"))
+        of_vehicle, gravity = vehicle(kind, seed)
+        self.figures, self.kind = figures, kind
+        chosen = plan.LAWS[law]
+        arguments = [chosen.scenario, "--seed", str(seed), "--duration", str(LAND_S), *words]
+        for name, value in {**chosen.settings, **gravity, **typed}.items():
+            arguments += ["--set", f"{name}={value}"]
+        for name, value in {**of_vehicle, "platform": 0.0, **figures}.items():
+            arguments += ["--set", f"plant.{name}={value:.6g}"]
+        self.words = arguments
+        done = subprocess.run([PROGRAM, "fly", *arguments, "--csv", "-"], capture_output=True, text=True, check=False)
+        if done.returncode not in (0, 1):
+            raise AssertionError(f"{self}: {done.stderr}")
+        self.rows = [{name: text if name == "state" else float(text or "nan") for name, text in row.items()}
+                     for row in csv.DictReader(io.StringIO(done.stdout))]
+
+    def __str__(self):
+        return "plomada fly " + shlex.join(self.words)
+
+    def after(self, time_s):
+        return [row for row in self.rows if row["t_s"] >= time_s]
+
+    def given_back_s(self):
+        return self.figures["pilot_start"] + self.figures["pilot"]
+
+    def touch_mps(self):
+        """Hardest touch, from the last two heights above the ground."""
+        heights = [row["height_m"] for row in self.rows]
+        return max(((before - last) / PERIOD_S for before, last, now in zip(heights, heights[1:], heights[2:])
+                    if last > 0.0 and now == 0.0), default=0.0)
+
+    def doubts(self):
+        return sorted({int(row["flags"]) & DOUBTS for row in self.rows} - {0})
+
+
+def flights(laws, kinds, condition):
+    if FLIGHTS == 1:
+        laws, kinds = laws[:2], kinds[:2]
+    jobs = [(law, kind, FIRST_SEED + i, condition) for law in laws for kind in kinds for i in range(FLIGHTS)]
+    with ThreadPoolExecutor(2) as pool:
+        return list(pool.map(lambda job: Flight(*job), jobs))
+
+
+def lifted(pin):
+    """The pilot lifts it and gives it back; no reference was ever set."""
+    return lambda rng: ({"pilot_start": 2.0, "pilot": rng.uniform(5.0, 8.0), "pilot_height": rng.uniform(0.5, 1.2)},
+                        {"SETR": "0", "SEL": pin}, UNTIL_DOWN)
+
+
+def lifted_then(pin, condition):
+    def both(rng):
+        figures, typed, words = lifted(pin)(rng)
+        return {**figures, **condition(figures["pilot_start"] + figures["pilot"], rng)}, typed, words
+    return both
+
+
+def silent(start_s, length_s):
+    return {"outage_start": start_s, "outage": length_s}
+
+
+def pilot(pin, least_m, most_m):
+    """Takes the throttle for 8 s of a flight at 0.6 m, and holds another height."""
+    return lambda rng: ({"pilot_start": rng.uniform(6.0, 9.0), "pilot": 8.0, "pilot_height": rng.uniform(least_m, most_m)},
+                        {"SEL": pin}, UNTIL_DOWN)
+
+
+class Pilots(unittest.TestCase):
+    def at_most(self, bound, found, flight, what):
+        self.assertLessEqual(found, bound, f"{what}: {flight}")
+
+    def holds(self, pin, kinds, bound_m, drawn_m):
+        worst_m = 0.0
+        for flight in flights(("EST", "PID", "PIDT", "PD"), kinds, lifted(pin)):
+            rows = [row for row in flight.after(flight.given_back_s()) if row["t_s"] < LAND_S]
+            moved_m = max(abs(row["height_m"] - rows[0]["height_m"]) for row in rows)
+            worst_m = max(worst_m, moved_m)
+            most_m = bound_m if flight.kind.startswith("nominal") else drawn_m
+            self.at_most(most_m, moved_m, flight, "m away from the height of the hand-over")
+            self.assertEqual({row["state"] for row in rows[10:]}, {"FLOATING"}, str(flight))
+        print(f"FLOATING, SEL {pin}: at most {worst_m:.2f} m away")
+        self.assertGreater(worst_m, 0.01)
+
+    def test_with_the_pin_floating_holds_the_height_it_is_given(self):
+        """The pilots of some drawn vehicles swing as they give it back: it then goes on for a moment."""
+        self.holds("PIN", VEHICLES, 0.15, 0.20)
+
+    def test_without_the_pin_it_holds_it_as_well_as_grav_is_trimmed(self):
+        self.holds("NONE", ("nominal", "nominal 1"), 0.22, None)
+
+    def test_floating_without_heights_comes_down(self):
+        for pin in ("PIN", "NONE"):
+            for flight in flights(("EST", "PID"), VEHICLES,
+                                  lifted_then(pin, lambda s, rng: silent(s + rng.uniform(1.0, 4.0), LASTS_FOREVER))):
+                self.at_most(1.3, flight.touch_mps(), flight, "m/s at the touch")
+                self.assertLess(flight.rows[-1]["thrust_n"], 0.5, f"motors go on: {flight}")
+                self.at_most(0.6, max(row["height_m"] for row in flight.after(flight.given_back_s())) -
+                             flight.after(flight.given_back_s())[0]["height_m"], flight, "m of climb")
+
+    def test_floating_flies_on_after_a_short_loss_of_heights(self):
+        for flight in flights(("EST", "PID"), VEHICLES, lifted_then("PIN", lambda s, rng: silent(s + 2.0, 1.2))):
+            self.assertEqual([row["state"] for row in flight.rows if row["t_s"] < LAND_S][-1], "FLOATING", str(flight))
+
+    def test_handed_over_without_heights_it_comes_down(self):
+        for flight in flights(("EST", "PID"), VEHICLES, lifted_then("PIN", lambda s, rng: silent(-1000.0, LASTS_FOREVER))):
+            self.assertIn("DESCENDING", {row["state"] for row in flight.after(flight.given_back_s())}, str(flight))
+            self.at_most(1.5, flight.touch_mps(), flight, "m/s at the touch")
+            self.assertLess(flight.rows[-1]["thrust_n"], 0.5, f"motors go on: {flight}")
+
+    def test_whoever_gives_it_back_gives_back_a_vehicle_that_flies_and_stops(self):
+        for pin in ("PIN", "NONE"):
+            for flight in flights(("EST", "PID", "PIDT", "PD"), ("nominal", "drawn 0"), pilot(pin, 0.8, 1.4)):
+                back = [row for row in flight.after(flight.given_back_s()) if row["t_s"] < LAND_S]
+                self.assertGreater(min(row["height_m"] for row in back), 0.0, f"struck: {flight}")
+                self.at_most(0.8, flight.touch_mps(), flight, "m/s at the touch")
+                self.assertLess(flight.rows[-1]["thrust_n"], 0.5, f"motors go on: {flight}")
+
+
+class Losses(unittest.TestCase):
+    def test_a_laser_lost_at_lift_off_stops_the_motors_and_its_return_starts_none(self):
+        for flight in flights(("EST", "PID"), VEHICLES,
+                              lambda rng: (silent(1.0 + rng.uniform(0.3, 1.2), rng.uniform(4.0, 12.0)), {}, [])):
+            seen_s = flight.figures["outage_start"] + flight.figures["outage"]
+            stands = sum(PERIOD_S for row in flight.rows if row["height_m"] == 0.0 and row["thrust_n"] > 3.0)
+            self.assertLess(stands, 20.0, f"motors run on the ground: {flight}")
+            self.assertLess(max(row["height_m"] for row in flight.after(seen_s + 3.0)), 0.1, f"took off again: {flight}")
+
+    def test_six_bad_attitudes_cut_nothing(self):
+        def burst(rng):
+            return {"attitude_burst_deg": rng.choice((30.0, 60.0, 90.0, 120.0, -70.0)),
+                    "attitude_burst_start": rng.uniform(3.0, 16.0),
+                    "attitude_burst_length": rng.choice((0.075, 0.15))}, {}, UNTIL_DOWN
+        for flight in flights(("EST", "PID", "PIDT", "PD"), ("nominal", "drawn 0"), burst):
+            self.assertNotIn("CUT", {row["state"] for row in flight.rows}, str(flight))
+
+    def test_a_roll_of_400_degrees_a_second_is_cut(self):
+        """45 degrees are passed after 0.11 s. The median of five frames, three of them and the law's release follow; one
+        flight in twenty meets spikes of the IMU on its way."""
+        waits = []
+        for flight in flights(("EST",), ("nominal", "drawn 0"),
+                              lambda rng: ({"tumble": 400.0, "tumble_start": rng.uniform(4.0, 14.0)}, {}, UNTIL_DOWN)):
+            cut = next(row["t_s"] for row in flight.rows if row["state"] == "CUT")
+            waits.append(cut - flight.figures["tumble_start"] - 0.1125)
+            self.assertLess(waits[-1], 0.4, str(flight))
+        print(f"cut {sorted(waits)[len(waits) // 2]:.2f} s after 45 degrees, at most {max(waits):.2f} s")
+        self.assertLess(sorted(waits)[len(waits) // 2], 0.25)
+
+    def test_a_silent_imu_and_then_a_silent_scanner_do_not_fly_it_away(self):
+        def gaps(rng):
+            start_s, length_s = rng.uniform(3.0, 12.0), rng.uniform(0.3, 4.0)
+            return {"imu_mute_start": start_s, "imu_mute": length_s,
+                    **silent(start_s + length_s + rng.uniform(-0.5, 1.5), rng.uniform(0.5, 6.0))}, {}, UNTIL_DOWN
+        highest_m = 0.0
+        for flight in flights(("EST",), ("nominal",) * 2, gaps):
+            highest_m = max(highest_m, *(row["height_m"] - 0.6 for row in flight.rows))
+            self.assertLess(highest_m, 1.0, str(flight))
+        print(f"both silent: at most {highest_m:.2f} m above the reference")
+
+    def test_what_flies_well_is_not_doubted(self):
+        for flight in flights(("EST", "PIDT"), ("nominal", "drawn 0"), lambda rng: ({}, {}, UNTIL_DOWN)):
+            self.assertEqual(flight.doubts(), [], str(flight))
+
+    def test_the_wrong_kind_of_throttle_does_not_fly_it_away(self):
+        def climb(rng):
+            middle_n = rng.uniform(5.5, 7.3)
+            return {"climb_rate": rng.uniform(0.5, 1.5), "climb_neutral": middle_n, "climb_deadband": rng.uniform(0.0, 0.5),
+                    "climb_lag": rng.uniform(0.2, 0.5)}, {"PLANT": "THRUST", "GRAV": f"{middle_n:.2f}"}, UNTIL_DOWN
+        for laws, kinds, condition in ((("EST", "PIDT"), ("nominal",), climb), (("EST",), ("nominal 1",), climb),
+                                       (("EST",), VEHICLES, lambda rng: ({}, {"PLANT": "CLIMB", "CRATE": "1"}, UNTIL_DOWN))):
+            for flight in flights(laws, kinds, condition):
+                self.assertLess(max(row["height_m"] for row in flight.rows), 0.6 + 3.0, str(flight))
+                self.assertEqual(flight.rows[-1]["height_m"], 0.0, f"it stays up: {flight}")
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv[1]
+    FLIGHTS = int(sys.argv[2]) if len(sys.argv) > 2 else FLIGHTS
+    unittest.main(argv=sys.argv[:1], verbosity=2)
