@@ -95,7 +95,8 @@ static bool take_echo_at(scip_parser_t *parser, const octet_t *text)
     return true;
 }
 
-/* True when the line ends in the awaited echo. Octets in front of it may be what is left of a lost frame. */
+/* True when the line ends in the awaited echo. Octets in front of it may be what is left of a lost frame; the
+ * echo of a stream that is in step, with none, is taken without this. */
 static bool take_echo(scip_parser_t *parser)
 {
     const uint16_t length = parser->awaited.echo_length;
@@ -103,7 +104,7 @@ static bool take_echo(scip_parser_t *parser)
         !take_echo_at(parser, &parser->line[parser->line_length - length])) {
         return false;
     }
-    parser->gap = parser->gap || parser->line_length > length;
+    parser->gap = true;
     return true;
 }
 
