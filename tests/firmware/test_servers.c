@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "firmware/geometry.h"
 #include "kernel.h"
 #include "mock_monitor.h"
 #include "unity.h"
@@ -210,6 +211,19 @@ void test_the_parameters_begin_with_the_tables_values(void)
     TEST_ASSERT_EQUAL_UINT32(0, parameters.generation);
     TEST_ASSERT_EQUAL_FLOAT(0.015F, parameters.value[PARAMETER_KP]); /* the best flown ones */
     TEST_ASSERT_EQUAL_FLOAT(7.0F, parameters.value[PARAMETER_GRAV]);
+}
+
+void test_the_mirrors_have_their_places_from_the_start_and_from_every_writing(void)
+{
+    altitude_geometry_t geometry;
+
+    geometry_mounted(&geometry);
+    TEST_ASSERT_EQUAL_FLOAT(parameter_table[PARAMETER_LF].initial, geometry.mirror[MIRROR_FRONT].leg_mm);
+    parameters_init(&parameters);
+    parameters.value[PARAMETER_LF] = 77.0F;
+    parameter_server_write(&parameters);
+    geometry_mounted(&geometry);
+    TEST_ASSERT_EQUAL_FLOAT(77.0F, geometry.mirror[MIRROR_FRONT].leg_mm);
 }
 
 void test_each_server_has_a_gate_of_its_own_with_its_name(void)

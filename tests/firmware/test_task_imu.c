@@ -178,6 +178,11 @@ void test_after_twenty_frames_the_offset_is_known_and_removed(void)
     TEST_ASSERT_FLOAT_WITHIN(1e-5F, 1.0F * RAD_PER_DEGREE, written[20].level.pitch_rad);
     TEST_ASSERT_FLOAT_WITHIN(1e-5F, 30.0F * RAD_PER_DEGREE, written[20].level.yaw_rad);
     TEST_ASSERT_FLOAT_WITHIN(1e-5F, 4.0F * RAD_PER_DEGREE, written[20].median.roll_rad);
+    /* angles() takes pitch before roll: 1.5 and 2.5 degrees as the IMU shows them, offset and all */
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, written[20].median.roll_rad - 2.5F * RAD_PER_DEGREE,
+                             written[20].tilt_roll_rad);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, written[20].median.pitch_rad + 1.5F * RAD_PER_DEGREE,
+                             written[20].tilt_pitch_rad);
 }
 
 void test_a_spike_is_in_the_level_angles_but_not_in_the_median(void)

@@ -41,16 +41,19 @@ static void latest(imu_sample_t *sample, int calls)
     *sample = (imu_sample_t){.malformed = 7U};
 }
 
+static uint16_t history_count;
+static bool history_ready;
+
 static uint16_t history(imu_sample_t samples[IMU_HISTORY], int calls)
 {
     (void)calls;
-    samples[0] = (imu_sample_t){.ready = true,
+    samples[0] = (imu_sample_t){.ready = history_ready,
                                 .median = {.roll_rad = -1.5F * DEG, .pitch_rad = 2.0F * DEG},
                                 .has_acceleration = true,
                                 .forward_mps2 = 0.15F,
                                 .right_mps2 = -0.5F,
                                 .down_mps2 = 9.73F};
-    return 1U;
+    return history_count;
 }
 
 static void radio(const telemetry_line_t *line, int calls)
@@ -96,6 +99,8 @@ void setUp(void)
     parameters_init(&parameters);
     flight = (flight_outputs_t){.state = FLIGHT_GROUND};
     line_count = writes = 0U;
+    history_count = 1U;
+    history_ready = true;
     parameter_server_read_Stub(read_parameters);
     parameter_server_write_Stub(write_parameters);
     flight_status_server_read_Stub(read_flight);
@@ -140,6 +145,62 @@ void test_without_a_word_it_shows_what_comes_and_what_is_made_of_it(void)
     TEST_ASSERT_EQUAL_STRING_LEN("OK IMU seen:accelerations+angles period_ms:20 frames:", lines[2], 53);
     TEST_ASSERT_NOT_NULL(strstr(lines[2], " refused:7 IAXES:"));
     TEST_ASSERT_EQUAL_STRING("OK IMU END lines:3\r\n", lines[3]);
+}
+
+void test_before_the_offset_is_known_there_are_no_angles(void)
+{
+    history_ready = false;
+    TEST_ASSERT_TRUE(type(""));
+    TEST_ASSERT_FALSE(listing_more());
+    TEST_ASSERT_EQUAL_STRING("OK IMU not level yet\r\n", lines[1]);
+    history_ready = true;
+    history_count = 0U;
+    TEST_ASSERT_TRUE(type(""));
+    TEST_ASSERT_FALSE(listing_more());
+    TEST_ASSERT_EQUAL_STRING("OK IMU not level yet\r\n", lines[1]);
+}
+
+void test_what_is_no_letter_is_shown_as_a_bar_and_the_period_is_rounded(void)
+{
+    razor_text_t text = {.length = 4U, .text = " ~\x7f\x1f"};
+    const imu_raw_t raw = {.has_acceleration = false};
+
+    imu_exchange_show(&text, RAZOR_OK, &raw, 3000000U);
+    imu_exchange_show(&text, RAZOR_OK, &raw, 3020500U);
+    TEST_ASSERT_TRUE(type(""));
+    TEST_ASSERT_FALSE(listing_more());
+    TEST_ASSERT_EQUAL_STRING("OK IMU raw: ~||\r\n", lines[0]);
+    TEST_ASSERT_NOT_NULL(strstr(lines[2], " period_ms:21 "));
+}
+
+static void spike_in_the_last_frame(void)
+{
+    static uint16_t looks;
+
+    looks++;
+    if (looks % 3U == 2U) {
+        show(-45.0F, 40.0F, true, 10.0F);
+    }
+}
+
+void test_a_spike_among_three_frames_is_not_looked_at(void)
+{
+    kernel.task.on_sleep = spike_in_the_last_frame;
+    assert_answer("OK IMU LEVEL IUNIT:256.00 IDOWN:Z\r\n", "LEVEL");
+    show(21.0F, -1.0F, true, 240.0F);
+    assert_answer("OK IMU RIGHT IROLL:ROLL IAXES:ASSUMED\r\n", "RIGHT");
+}
+
+void test_axes_that_were_typed_as_proved_stay_so_while_a_side_shows_the_same(void)
+{
+    (void)type("LEVEL");
+    parameters.value[PARAMETER_IROLL] = (float)AXIS_ROLL;
+    parameters.value[PARAMETER_IPITCH] = (float)AXIS_MINUS_ROLL; /* never found by these tests */
+    parameters.value[PARAMETER_IAXES] = (float)AXES_PROVED;
+    show(21.0F, 0.0F, true, 240.0F);
+    assert_answer("OK IMU RIGHT IROLL:ROLL IAXES:PROVED\r\n", "RIGHT");
+    show(-21.0F, 0.0F, true, 240.0F);
+    assert_answer("OK IMU RIGHT IROLL:-ROLL IAXES:ASSUMED\r\n", "RIGHT");
 }
 
 void test_level_right_and_nose_find_what_they_say(void)
@@ -206,7 +267,11 @@ void test_with_thrust_or_a_reference_or_another_word_it_is_refused(void)
     flight.thrust_n = 1.764F;
     assert_answer("ERR IMU needs thrust 0 and no reference\r\n", "RIGHT");
     flight.thrust_n = 0.0F;
-    flight.reference_m = 0.5F;
+    flight.reference_m = 0.0005F;
+    assert_answer("ERR IMU needs thrust 0 and no reference\r\n", "LEVEL");
+    flight = (flight_outputs_t){.state = FLIGHT_GROUND, .idle_n = 0.0005F};
+    assert_answer("ERR IMU needs thrust 0 and no reference\r\n", "LEVEL");
+    flight = (flight_outputs_t){.state = FLIGHT_GROUND, .thrust_n = 0.0005F};
     assert_answer("ERR IMU needs thrust 0 and no reference\r\n", "LEVEL");
     TEST_ASSERT_EQUAL_UINT16(0, writes);
 }

@@ -133,6 +133,7 @@ void test_a_take_off_by_wrong_angles_is_refused_by_the_name_of_what_is_wrong(voi
     for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         flight.imu_fault = rows[i].fault;
         assert_refused(rows[i].answer, "0.5");
+        assert_refused(rows[i].answer, "0.0005");
     }
 }
 
