@@ -216,6 +216,7 @@ static void step_descent(flight_t *flight, bool started)
     const height_track_t *height = &flight->supervisor.height;
     const float gap_s = height->is_new ? seconds_at_most(height->gap_us, GAP_MAX_S) : 0.0F;
 
+    flight->descent.sways = integrity_rocks(&flight->integrity);
     if (height->is_new || started) {
         flight->setpoint_n = descent_step(&flight->descent, flight->hover_n, height->height_mm,
                                           height->rate_mm_s, gap_s);
@@ -423,6 +424,7 @@ static void change_doubts(flight_t *flight, float gravity_n)
     }
     est_law_set_powerless(&flight->est, integrity_doubts(integrity, DOUBT_THRUST) || flight->unsure);
     est_law_set_accelerations_doubted(&flight->est, integrity_doubts(integrity, DOUBT_IMU));
+    est_law_set_sways(&flight->est, integrity_rocks(integrity));
     if ((come & DOUBT_IMU) != 0U && flight->est.airborne) { /* the estimate used them until now */
         estimator_amend(&flight->est.estimator, integrity->height_m, integrity->rise_mps, 0.0F);
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
@@ -445,6 +447,7 @@ static void supervise(flight_t *flight, const parameters_t *parameters, const fl
                   (flight->hopping && flight->thrust_n <= flight->idle_n),
         .upright = flight->integrity.upright,
         .sways = integrity_sways(&flight->integrity),
+        .rocks = integrity_rocks(&flight->integrity),
     };
     supervisor_step(&flight->supervisor, parameters->value[PARAMETER_LINK], in, &estimate);
 }

@@ -30,10 +30,11 @@
 #define TILT_GAP_US UINT32_C(250000) /* ten frames of 25 ms: after such a gap any tilt is accepted */
 
 /* Scans. With a sensor noise of 3 mm, chance makes three scans with the same digits once in some millions. */
-#define COPIES_MAX 2U          /* chosen: the third identical scan is rejected */
-#define COUNT_MAX 1000U        /* chosen: counters stop here and do not wrap */
-#define HEIGHT_MIN_MM (-50.0F) /* chosen: no noise reaches so far below the ground; as in supervisor.c */
-#define HEIGHT_MAX_MM 5000.0F  /* above the scanner's 4095 mm; as in supervisor.c */
+#define COPIES_MAX 2U           /* chosen: the third identical scan is rejected */
+#define COUNT_MAX 1000U         /* chosen: counters stop here and do not wrap */
+#define HEIGHT_MIN_MM (-50.0F)  /* chosen: no noise reaches so far below the ground; as in supervisor.c */
+#define HEIGHT_BACK_MM (-30.0F) /* chosen: hysteresis of 20 mm, above five times the noise */
+#define HEIGHT_MAX_MM 5000.0F   /* above the scanner's 4095 mm; as in supervisor.c */
 
 /* Blocked beam. Tried: 960 healthy flights; in none does the thrust contradict the heights while the slant is
  * so still. */
@@ -87,6 +88,10 @@
 #define STILL_TIME_S 2.0F     /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in that time */
 #define FELL_MPS 0.4F         /* chosen: half of FALL_MPS */
 #define FALL_STILL_MPS 0.5F   /* chosen: above FELL_MPS */
+#define ROCKED_RAD 0.017F     /* chosen: 1 degree, four times the noise of an angle */
+#define ROCKED_S 0.8F         /* chosen: 32 frames; at 0.5 s 2 of 96 blocked flights rested in the air */
+#define SWAYING_S 1.5F        /* chosen: 15 scans; a lift-off that the heights see takes less than a second */
+#define SWAYING_M 0.05F       /* chosen: ten times the noise of a height */
 #define SWAY_AIR_RAD2 4.0e-4F /* chosen: 1.1 degrees rms; between this and SWAY_RAD2 neither is certain */
 
 /* Verdicts. These limits have to be above the drift of the witnesses in healthy flights. A wrong sensor may
@@ -267,8 +272,9 @@ bool integrity_scan(integrity_t *integrity, const altitude_t *altitude)
     if (altitude->spread_mm > 0.0F && fabsf(altitude->height_mm) <= HEIGHT_MAX_MM) {
         watch_slant(integrity, altitude);
     }
-    return integrity->copies < COPIES_MAX && altitude->height_mm >= HEIGHT_MIN_MM &&
-           altitude->height_mm <= HEIGHT_MAX_MM;
+    integrity->below_ground = !(altitude->height_mm >=
+                                (integrity->below_ground ? HEIGHT_BACK_MM : HEIGHT_MIN_MM));
+    return integrity->copies < COPIES_MAX && !integrity->below_ground && altitude->height_mm <= HEIGHT_MAX_MM;
 }
 
 /* ---- witnesses */
@@ -326,6 +332,20 @@ static void watch_sway(integrity_t *i, const imu_sample_t *frame, float dt_s)
     i->sway_rad2 += share * (roll_rad * roll_rad + pitch_rad * pitch_rad - i->sway_rad2);
 }
 
+/* Measures how long the tilt has stayed where it is. This ends within a second of a touchdown, where
+ * sway_rad2 takes three. */
+static void watch_rocking(integrity_t *i, const imu_sample_t *frame, float dt_s)
+{
+    const bool moved = fabsf(frame->median.roll_rad - i->anchor_rad[0]) > ROCKED_RAD ||
+                       fabsf(frame->median.pitch_rad - i->anchor_rad[1]) > ROCKED_RAD;
+
+    i->unrocked_s = moved ? 0.0F : at_most(i->unrocked_s + dt_s, ROCKED_S);
+    if (moved) {
+        i->anchor_rad[0] = frame->median.roll_rad;
+        i->anchor_rad[1] = frame->median.pitch_rad;
+    }
+}
+
 /* Measures how long the tilt has been still. Only changes of the two speeds since then are compared, because
  * the speed of the accelerometer may be wrong from before, and may drift. */
 static void watch_still(integrity_t *i, float dt_s)
@@ -372,6 +392,7 @@ static void feel(integrity_t *i, const flown_t *flown, const imu_sample_t *frame
         return;
     }
     watch_sway(i, frame, dt_s);
+    watch_rocking(i, frame, dt_s);
     if (flown->grounded) {
         feel_rest(i, dt_s);
     } else {
@@ -592,13 +613,14 @@ static bool both_run_away(const integrity_t *i)
            at_most(fabsf(felt_off_m(i)), fabsf(i->pushed.seen_m)) > RUN_AWAY_M;
 }
 
-/* The law takes the vehicle to be on the ground still. The beam is still, or its height is above the ground.
- * But the tilt sways as in the air, and the accelerometer has measured a climb. */
+/* The law takes the vehicle to be on the ground still. But the tilt sways as in the air, for long; or the
+ * beam is still or its height above the ground, and the accelerometer has measured a climb. */
 static bool aloft_unseen(const integrity_t *i, const flown_t *flown)
 {
     const bool odd = i->rigid >= RIGID_SCANS || (i->height_m > LOW_M && integrity_still(i));
 
-    return flown->standing && i->unconfirmed && odd && integrity_sways(i) && i->felt_least_m < -ALOFT_M;
+    return i->swaying_s > SWAYING_S ||
+           (flown->standing && i->unconfirmed && odd && integrity_sways(i) && i->felt_least_m < -ALOFT_M);
 }
 
 /* The witnesses predict a motion, and the slant is still. */
@@ -740,11 +762,25 @@ static void judge(integrity_t *i, const flown_t *flown, float gap_s)
     }
 }
 
+/* How long the tilt has swayed as in the air, and the beam has shown nothing of it. */
+static void watch_lift_off(integrity_t *i, const flown_t *flown, float gap_s)
+{
+    const bool sways = flown->standing && i->unconfirmed && integrity_sways(i) && integrity_still(i);
+
+    if (!sways || fabsf(i->height_m - i->swaying_from_m) > SWAYING_M) {
+        i->swaying_s = 0.0F;
+        i->swaying_from_m = i->height_m;
+    } else {
+        i->swaying_s += gap_s;
+    }
+}
+
 void integrity_height(integrity_t *integrity, const flown_t *flown, float height_m, float gap_s, float age_s)
 {
     hear(integrity, height_m, gap_s, age_s);
     integrity->felt_least_m = integrity->unconfirmed ? at_most(integrity->felt_least_m, felt_off_m(integrity))
                                                      : 0.0F;
+    watch_lift_off(integrity, flown, gap_s);
     integrity->vain_s = (pushes_in_vain(integrity, flown, PUSH_N) && fabsf(integrity->rise_mps) < VAIN_MPS &&
                          fabsf(flown->wanted_m) > VAIN_M)
                             ? integrity->vain_s + gap_s
@@ -781,6 +817,11 @@ bool integrity_still(const integrity_t *integrity)
 bool integrity_sways(const integrity_t *integrity)
 {
     return integrity->sway_rad2 > SWAY_AIR_RAD2;
+}
+
+bool integrity_rocks(const integrity_t *integrity)
+{
+    return integrity->unrocked_s < ROCKED_S && integrity->sway_rad2 > SWAY_RAD2;
 }
 
 bool integrity_may_stand(const integrity_t *integrity)

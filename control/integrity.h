@@ -78,32 +78,35 @@ typedef struct {
     uint32_t unfit_sequence;   /* frames up to this one must not be used: their tilt was rejected */
     /* scans */
     float slant_mm, spread_mm;        /* of the latest scan */
+    bool below_ground;                /* heights so low that no noise explains them: the beam is blocked */
     uint16_t copies;                  /* scans in a row that repeat the scan before */
     float slants_mm[INTEGRITY_SCANS]; /* latest slant distances, oldest first */
     uint16_t scans;                   /* number of valid entries in slants_mm */
     uint16_t rigid; /* scans in a row whose slants vary less than those of any flying vehicle */
     uint16_t still; /* scans in a row whose slants contain only white noise */
     /* heights */
-    bool heard;          /* at least one height was received */
-    float height_m;      /* latest height */
-    float rise_mps;      /* low-passed rate of the heights, without steps */
-    float way_m;         /* leaky sum of the height changes since the latest step */
-    float unmoved_s;     /* time since way_m was last large, at most 1 s; 1 s after a step */
-    bool unconfirmed;    /* after a take-off or a step of the terrain towards the vehicle: no climb has shown
-                          * in the heights since. The beam may be blocked */
-    bool standing;       /* on the ground, or take-off commanded and not yet off the ground */
-    bool proved;         /* the heights have confirmed a climb since the ground */
-    bool deep;           /* the terrain has fallen far, and no descent has shown in the heights since */
-    float deep_m;        /* height after that step */
-    float near_m;        /* height after the step that made `unconfirmed` true */
-    float before_rise_m; /* height before the latest upward step of the height */
-    float since_rise_s;  /* time since that step, at most 1.5 s */
-    float felt_least_m;  /* smallest seen_m of the accelerometer's witness while `unconfirmed`, <= 0 */
-    float quiet_s;       /* how long the law has not wanted to climb */
-    float vain_s;        /* how long the law has pushed while no height moved */
-    float lost_m;        /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
-    float steps;         /* leaky count of the steps */
-    float agreed_s;      /* how long heights and witnesses have agreed during a doubt */
+    bool heard;           /* at least one height was received */
+    float height_m;       /* latest height */
+    float rise_mps;       /* low-passed rate of the heights, without steps */
+    float way_m;          /* leaky sum of the height changes since the latest step */
+    float unmoved_s;      /* time since way_m was last large, at most 1 s; 1 s after a step */
+    bool unconfirmed;     /* after a take-off or a step of the terrain towards the vehicle: no climb has shown
+                           * in the heights since. The beam may be blocked */
+    bool standing;        /* on the ground, or take-off commanded and not yet off the ground */
+    bool proved;          /* the heights have confirmed a climb since the ground */
+    bool deep;            /* the terrain has fallen far, and no descent has shown in the heights since */
+    float deep_m;         /* height after that step */
+    float near_m;         /* height after the step that made `unconfirmed` true */
+    float before_rise_m;  /* height before the latest upward step of the height */
+    float since_rise_s;   /* time since that step, at most 1.5 s */
+    float felt_least_m;   /* smallest seen_m of the accelerometer's witness while `unconfirmed`, <= 0 */
+    float quiet_s;        /* how long the law has not wanted to climb */
+    float swaying_s;      /* how long the tilt has swayed and the slant not, while `standing` */
+    float swaying_from_m; /* height at its start */
+    float vain_s;         /* how long the law has pushed while no height moved */
+    float lost_m;         /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
+    float steps;          /* leaky count of the steps */
+    float agreed_s;       /* how long heights and witnesses have agreed during a doubt */
     /* accelerometer */
     uint32_t frame_sequence; /* latest frame that integrity_frames() processed */
     uint32_t frame_time_us;
@@ -119,11 +122,13 @@ typedef struct {
     float held_n;   /* hover thrust when DOUBT_THRUST rose */
     bool held_down; /* the law wanted to descend at that instant */
     /* standing on the ground */
-    float mean_rad[2];  /* low-passed roll and pitch */
-    float sway_rad2;    /* low-passed mean square of roll and pitch around mean_rad */
-    float stands_s;     /* how long the vehicle has shown the signs of integrity_stands() */
-    float still_s;      /* how long the tilt has swayed less than in the air, without a felt fall */
-    float still_mps[2]; /* low-passed speeds of the two witnesses (felt, pushed) since then */
+    float mean_rad[2];   /* low-passed roll and pitch */
+    float anchor_rad[2]; /* roll and pitch when they last moved */
+    float unrocked_s;    /* time since then */
+    float sway_rad2;     /* low-passed mean square of roll and pitch around mean_rad */
+    float stands_s;      /* how long the vehicle has shown the signs of integrity_stands() */
+    float still_s;       /* how long the tilt has swayed less than in the air, without a felt fall */
+    float still_mps[2];  /* low-passed speeds of the two witnesses (felt, pushed) since then */
 } integrity_t;
 
 /* Clears the state: no doubt, nothing known. Call once before the first cycle. */
@@ -174,6 +179,10 @@ bool integrity_still(const integrity_t *integrity);
 
 /* True when roll and pitch sway as in the air: more than 1.1 degrees rms together. */
 bool integrity_sways(const integrity_t *integrity);
+
+/* The same with less delay, for the end of a landing: the tilt has moved by a degree within the last half
+ * second. False without accelerations. */
+bool integrity_rocks(const integrity_t *integrity);
 
 /* True when the tilt has swayed less than in the air for 1 s: the vehicle may stand on the ground. Lower the
  * thrust to find out. */

@@ -16,7 +16,10 @@
     UINT32_C(1000000)                  /* chosen: a pilot who flies, not one who lifts the vehicle by hand \
                                         */
 #define REST_HELD_US UINT32_C(1200000) /* chosen: a bounce is shorter */
-#define LINK_HOLD_US UINT32_C(5000000) /* chosen: the flag warns for 5 s, then the vehicle lands */
+#define REST_ROCKS_MAX_US \
+    UINT32_C(20000000)                        /* chosen: a landing from 4 m, and nobody rocks it for so long \
+                                               */
+#define LINK_HOLD_US UINT32_C(5000000)        /* chosen: the flag warns for 5 s, then the vehicle lands */
 #define DESCENT_TIMEOUT_US UINT32_C(45000000) /* the thrust of a blind descent has fallen to 0, descent.c */
 #define AGE_MAX_US UINT32_C(3600000000)       /* one hour: below the wrap of 71 minutes */
 
@@ -215,6 +218,7 @@ static void observe_estimate(supervisor_t *s, const vertical_estimate_t *estimat
                                ? peak_mm(s, estimate->height_mm, estimate->climb_mm_s, ESTIMATE_AHEAD_S)
                                : NAN;
     s->stands = estimate->stands && (s->state == FLIGHT_LANDING || s->state == FLIGHT_DESCENDING);
+    s->rocks = estimate->rocks && (s->state == FLIGHT_LANDING || s->state == FLIGHT_DESCENDING);
     s->estimate_age_us = estimate->known ? 0U : add_time(s->estimate_age_us, s->step_us);
 }
 
@@ -248,6 +252,14 @@ static uint16_t bit(bool condition, uint16_t mask)
     return condition ? mask : 0U;
 }
 
+/* On the ground by its heights. While the tilt still moves, they may be those of a blocked beam. */
+static bool rests(const supervisor_t *s)
+{
+    const bool rocks = s->rocks && s->state_us < REST_ROCKS_MAX_US;
+
+    return s->rest.for_us >= REST_HELD_US && !rocks;
+}
+
 static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
 {
     const bool fresh = height_fresh(s);
@@ -259,7 +271,7 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
                       bit(fresh, FLIGHT_IF_HEIGHT) | bit(s->height.age_us > HEIGHT_LOST_US, FLIGHT_IF_LOST) |
                       bit(fresh && s->height.height_mm > OFF_GROUND_MM, FLIGHT_IF_OFF_GROUND) |
                       bit(s->aloft.for_us >= ALOFT_HELD_US, FLIGHT_IF_ALOFT) |
-                      bit(s->stands || s->rest.for_us >= REST_HELD_US, FLIGHT_IF_AT_REST) |
+                      bit(s->stands || rests(s), FLIGHT_IF_AT_REST) |
                       bit(fresh && reference && too_high(s), FLIGHT_IF_TOO_HIGH) |
                       bit(fresh && recovered(s), FLIGHT_IF_RECOVERED) | bit(s->land, FLIGHT_IF_LAND) |
                       bit(descent_timeout, FLIGHT_IF_DESCENT_TIMEOUT) |

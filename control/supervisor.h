@@ -20,6 +20,7 @@ typedef struct {
                        * without `known` */
     float upright;    /* cosine of the tilt of *in; valid also without `known` */
     bool sways;       /* the tilt moves as it does in flight; valid also without `known` */
+    bool rocks;       /* the same within the last 0.8 s */
 } vertical_estimate_t;
 
 /* The latest valid height. */
@@ -67,6 +68,7 @@ typedef struct {
     uint32_t estimate_age_us;
     uint16_t tilted_count;
     bool stands;
+    bool rocks;  /* landing or descending, and the tilt moves as it does in flight */
     bool pilots; /* the pilot had the throttle in the previous cycle */
     bool handed_over;
     bool level;

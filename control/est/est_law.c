@@ -331,6 +331,11 @@ void est_law_set_powerless(est_law_t *law, bool powerless)
     }
 }
 
+void est_law_set_sways(est_law_t *law, bool sways)
+{
+    law->sways = sways;
+}
+
 void est_law_set_accelerations_doubted(est_law_t *law, bool doubted)
 {
     if (doubted && !law->accelerations_doubted) {
@@ -425,7 +430,8 @@ static void update_timers(est_law_t *law, est_mode_t mode, float height_m)
 {
     const bool landing = mode == EST_MODE_LAND;
 
-    law->near_ground_s = landing ? touchdown_time_s(law->near_ground_s, height_m, law->step_s) : 0.0F;
+    law->near_ground_s = landing ? touchdown_time_s(law->near_ground_s, height_m, law->sways, law->step_s)
+                                 : 0.0F;
 }
 
 /* Upper limit of the thrust in a descent. It starts from the hover thrust that was sure when the descent

@@ -58,6 +58,7 @@ typedef struct {
     float heightless_s;  /* time since the rays of the latest height */
     float frameless_s;   /* time since the latest frame was measured */
     float near_ground_s; /* time near the ground while landing */
+    bool sways;          /* the tilt sways as in flight */
 } est_law_t;
 
 void est_law_init(est_law_t *law);
@@ -94,6 +95,9 @@ void est_law_set_sure_hover(est_law_t *law, float hover_n, bool descending);
 /* powerless true: commands have no effect (doubt THRUST). Nothing is learned or predicted from them, and
  * the hover thrust is the sure one. */
 void est_law_set_powerless(est_law_t *law, bool powerless);
+
+/* sways true: the tilt moves as it does in flight, see touchdown.h. */
+void est_law_set_sways(est_law_t *law, bool sways);
 
 /* doubted true: the accelerometer is wrong (doubt IMU). Accelerations in the frames are ignored. */
 void est_law_set_accelerations_doubted(est_law_t *law, bool doubted);

@@ -149,7 +149,7 @@ static void measure(scene_t *scene, int first_step, int last_step, double t_s)
                                  blocked_steps(scene, mirror, first_step, last_step, t_s);
 
             *distance = lost(scene, t_s) ? lost_code(scene)
-                        : blocked        ? (int)lround(scene->config.block_mm + ray_mm)
+                        : blocked        ? (int)lround(scene->config.block_mm + common + ray_mm)
                         : skyward        ? FAR_CODE
                                   : (int)lround(ground_mm(scene, mirror, state, t_s) + common + ray_mm);
         }

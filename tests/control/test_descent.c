@@ -127,6 +127,23 @@ void test_blind_it_starts_at_the_sinking_thrust(void)
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 7.0F * (1.0F - 0.0734F), descent_blind(7.0F, 0.0F));
 }
 
+/* 2 N/s from half a newton above the hover thrust; while the tilt moves as in flight, from 0.9 N below it on
+ * 0.2. */
+void test_on_the_ground_the_thrust_fades_and_slowly_while_the_tilt_moves(void)
+{
+    float thrust_n[2] = {0.0F, 0.0F};
+
+    for (int sways = 0; sways < 2; sways++) {
+        descent_start(&descent, 0.0F);
+        for (int i = 0; i < 20; i++) {
+            descent.sways = sways != 0;
+            thrust_n[sways] = descent_step(&descent, 7.0F, 0.0F, 0.0F, 0.1F);
+        }
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.3F, 7.0F + 0.5F - 4.0F, thrust_n[0] - descent.trim_n);
+    TEST_ASSERT_FLOAT_WITHIN(0.3F, 7.0F + 0.5F - 1.4F - 0.26F, thrust_n[1] - descent.trim_n);
+}
+
 void test_blind_it_only_decreases_and_never_jumps_until_nothing_is_left(void)
 {
     float before_n = descent_blind(8.5F, 0.0F);

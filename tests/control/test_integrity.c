@@ -487,6 +487,23 @@ void test_commands_without_an_effect_are_doubted_once_the_law_pushes(void)
     }
 }
 
+/* ---- heights below the ground */
+
+void test_heights_below_the_ground_count_again_only_when_well_above(void)
+{
+    static const struct {
+        float height_mm;
+        bool counts;
+    } rows[] = {{-49.0F, true},  {-51.0F, false}, {-49.0F, false},
+                {-31.0F, false}, {-29.0F, true},  {-49.0F, true}};
+
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const altitude_t altitude = {
+            .height_mm = rows[i].height_mm, .slant_mm = 150.0F + (float)i, .spread_mm = 20.0F};
+        TEST_ASSERT_EQUAL(rows[i].counts, integrity_scan(&it, &altitude));
+    }
+}
+
 /* ---- standing */
 
 void test_it_stands_where_little_thrust_does_not_make_it_fall(void)

@@ -456,6 +456,25 @@ void test_landing_to_ground_at_rest(void)
     state_is(FLIGHT_GROUND);
 }
 
+/* Heights of the ground, from a vehicle that still moves as in the air: the beam may be blocked. */
+void test_heights_alone_are_no_ground_while_the_tilt_moves(void)
+{
+    land();
+    estimate.rocks = true;
+    watch(20.0F, 40);
+    state_is(FLIGHT_LANDING);
+    estimate.rocks = false;
+    watch(20.0F, 1);
+    state_is(FLIGHT_GROUND);
+    setUp();
+    land();
+    estimate.rocks = true;
+    watch(20.0F, 190);
+    state_is(FLIGHT_LANDING);
+    watch(20.0F, 15);
+    state_is(FLIGHT_GROUND);
+}
+
 void test_lowering_to_coasting_without_height(void)
 {
     lower();

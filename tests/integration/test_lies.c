@@ -55,6 +55,9 @@ static const lie_t sights[] = {
     {{FLAT, "plant.scan_frozen_start=5"}, 800.0, 0.8, 0.0},
     {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=7", "plant.block_mm=400"}, 1500.0, 1.0, 0.0},
     {{FLAT, "plant.sight_blocked=1", "plant.block_mm=250"}, 1500.0, 1.0, 0.0},
+    /* heights about the least that counts, -50 mm, and about the ground */
+    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=10", "plant.block_mm=150"}, 1700.0, 1.0, 0.0},
+    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=10", "plant.block_mm=170"}, 1700.0, 1.0, 0.0},
 };
 
 void test_a_sight_that_lies_does_not_fly_the_vehicle_away(void)
