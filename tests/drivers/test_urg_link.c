@@ -1368,3 +1368,31 @@ void test_the_end_of_time_mode_is_asked_for_twice(void)
     nothing_after(500000);
     TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
 }
+
+void test_a_counted_run_is_ordered_again_at_its_last_scan_only(void)
+{
+    stream_every_fourth();
+    link_.config.range.scans = 3;
+    for (uint16_t remaining = 2; remaining > 0; remaining--) {
+        seen.scan_remaining = remaining;
+        scan_after(STEP_US);
+        TEST_ASSERT_FALSE(action.send);
+    }
+    seen.scan_remaining = 0;
+    scan_after(STEP_US);
+    TEST_ASSERT_TRUE(action.send);
+}
+
+void test_after_a_reset_the_sensor_is_looked_for_at_the_first_rate(void)
+{
+    stream_every_fourth();
+    nothing_after(NEXT_SCAN_US);
+    (void)reply_after(STEP_US, SCIP_STREAM_2, "0E", false);
+    for (uint32_t i = 0; i < 20 && link_.command != SCIP_RESET; i++) {
+        (void)reply_after(STEP_US, link_.command, "0E", false);
+    }
+    TEST_ASSERT_EQUAL(SCIP_RESET, link_.command);
+    (void)reply_after(STEP_US, SCIP_RESET, "00", false);
+    TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+}
