@@ -8,6 +8,7 @@ fit, and flies the true vehicle with stock and with tuned gains. Results are kep
 Exit status: 0; 1 something is not as it must be; 2 usage.
 """
 import argparse
+import concurrent.futures
 import json
 import os
 import random
@@ -23,9 +24,11 @@ import forecast  # noqa: E402
 import tune_vehicle  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
-MIDDLE_S = 14.0                 # of the experiment: the hover thrust is compared there, the battery sags
+MIDDLE_S, LANDED_S = 12.0, 22.0 # of the experiment: the hover thrust is compared there, the battery sags; the landing command
 SEED_STEP = 1_000_000
-DRAWS, BUDGET, FORECAST, JUDGED = 8, 30, 40, 5     # flights of a candidate, candidates, flights of a forecast, of a verdict
+FLIGHTS = 2                     # of the experiment: the recorder holds 25 s
+DRAWS, FORECAST, JUDGED = 6, 40, 16     # flights of a candidate, of a forecast, of a verdict
+BUDGET = {"EST": 14, "PID": 24}         # candidates
 MUST = {"hover": 0.02, "authority": 0.10, "response": 0.015}
 KIND_MUST, HOLDS_MUST = 29 / 30, 24 / 30
 
@@ -57,13 +60,24 @@ def words(figures):
     return [word for name, value in figures.items() for word in ("--set", f"plant.{name}={value:.9g}")]
 
 
-def experiment(program, figures, seed, path):
-    subprocess.run([program, "fly", "experiment", "--seed", str(seed), *words(figures), "--csv", str(path)], check=False,
+def experiment(program, figures, seed, path, scenario="experiment"):
+    """What the chip's recorder holds of it, as `plomada log` writes it."""
+    console = path.with_suffix(".log")
+    subprocess.run([program, "fly", scenario, "--seed", str(seed), *words(figures), "--log", str(console)], check=False,
                    stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+    subprocess.run([program, "log", str(console)], check=True, stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+    console.unlink()
 
 
-def hover_interval(found):
-    """At MIDDLE_S, with what the sag adds."""
+def middle_of(log):
+    """MIDDLE_S of the experiment in seconds since the log begins."""
+    c = flight_log.columns(log)
+    landing = fit.numpy.flatnonzero(c["ref_m"] > 0.0)[-1] + 1
+    return float(c["t_s"][landing] - c["t_s"][0]) - LANDED_S + MIDDLE_S
+
+
+def hover_interval(found, middle_s):
+    """With what the sag adds until then."""
     if found["throttle"] == "CLIMB":
         return found["plant.climb_neutral"]
     rng = fit.numpy.random.default_rng(1)
@@ -73,8 +87,8 @@ def hover_interval(found):
     for unit in units:
         f = {name: figures[name].back(figures[name].prior()[0] + u * figures[name].prior()[1])
              for name, u in zip(found["names"], unit, strict=True)}
-        drawn.append(f["hover_thrust"] * (1.0 + f["sag"] * MIDDLE_S))
-    value = found["plant.hover_thrust"]["value"] * (1.0 + found["plant.sag"]["value"] * MIDDLE_S)
+        drawn.append(f["hover_thrust"] * (1.0 + f["sag"] * middle_s))
+    value = found["plant.hover_thrust"]["value"] * (1.0 + found["plant.sag"]["value"] * middle_s)
     low, high = fit.quantiles(drawn)
     return {"value": value, "low": low, "high": high}
 
@@ -82,17 +96,21 @@ def hover_interval(found):
 def one(program, seed, number, folder):
     """A record of one vehicle, for the table."""
     figures = vehicle(seed, number)
-    log, out = folder / f"{seed}-{number}.csv", folder / f"{seed}-{number}.json"
-    experiment(program, figures, seed * SEED_STEP + number, log)
+    out = folder / f"{seed}-{number}.json"
+    logs = [folder / f"{seed}-{number}-{k}.csv" for k in range(1, FLIGHTS + 1)]
+    for k, log in enumerate(logs):
+        experiment(program, figures, seed * SEED_STEP + 100 * number + k, log)
     try:
-        found, _, _ = fit.fit_logs([log])
+        found, _, _ = fit.fit_logs(logs)
     except flight_log.Unfit as error:
         return {"number": number, "unfit": str(error)}
-    out.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-    log.unlink()
+    out.write_text(json.dumps(found, indent=1, default=float) + "\n", encoding="utf-8")
+    middle_s = middle_of(logs[0])
+    for log in logs:
+        log.unlink()
     true = truth(figures)
     kind = "CLIMB" if "climb_rate" in figures else "THRUST"
-    seen = {"hover": hover_interval(found), "authority": found["authority"], "response": found["response"]}
+    seen = {"hover": hover_interval(found, middle_s), "authority": found["authority"], "response": found["response"]}
     record = {"number": number, "kind": kind, "found": found["throttle"], "better_by": found["better_by"]}
     for name, value in true.items():
         f = seen[name]
@@ -105,7 +123,7 @@ def one(program, seed, number, folder):
 def tuned(program, law, vehicle_file, figures, seed, number):
     """The true vehicle with stock and with tuned gains, and whether the forecast held its next flight."""
     found = json.loads(vehicle_file.read_text(encoding="utf-8"))
-    settings, _, _ = tune_vehicle.tune(program, found, law, DRAWS, BUDGET)
+    settings, _, _ = tune_vehicle.tune(program, found, law, DRAWS, BUDGET[law])
     expected = tune_vehicle.predict(program, found, law, settings, FORECAST)
     stock = tune_vehicle.stock_settings(law)
     scenario = tune_vehicle.SCENARIOS[law]
@@ -160,6 +178,19 @@ def known_records(path):
     return {record["number"]: record for record in map(json.loads, path.read_text(encoding="utf-8").splitlines())}
 
 
+def complete(arguments, number, record, laws):
+    """(record of a vehicle with what it lacked, whether it lacked something)."""
+    program = str(arguments.program.resolve())
+    news = record is None
+    record = one(program, arguments.seed, number, arguments.out) if news else record
+    for law in laws:
+        if law not in record and "unfit" not in record:
+            file = arguments.out / f"{arguments.seed}-{number}.json"
+            record[law] = tuned(program, law, file, vehicle(arguments.seed, number), arguments.seed, number)
+            news = True
+    return record, news
+
+
 def read_arguments(argv):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--vehicles", type=int, default=30)
@@ -176,18 +207,18 @@ def main(argv=None):
     kept = arguments.out / f"{arguments.seed}.jsonl"
     known = known_records(kept)
     records = dict(known)
-    program, laws = str(arguments.program.resolve()), [law for law in arguments.tune.split(",") if law]
-    for number in range(1, arguments.vehicles + 1):
-        if number not in records:
-            records[number] = one(program, arguments.seed, number, arguments.out)
-        missing = [law for law in laws if law not in records[number] and "unfit" not in records[number]]
-        for law in missing:
-            file = arguments.out / f"{arguments.seed}-{number}.json"
-            records[number][law] = tuned(program, law, file, vehicle(arguments.seed, number), arguments.seed, number)
-        if number not in known or missing:
-            with kept.open("a", encoding="utf-8") as file:
-                file.write(json.dumps(records[number], default=float) + "\n")
-        print(row(records[number]), flush=True)
+    print(f"seed {arguments.seed}")
+    laws = [law for law in arguments.tune.split(",") if law]
+    with concurrent.futures.ProcessPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        work = [pool.submit(complete, arguments, number, known.get(number), laws)
+                for number in range(1, arguments.vehicles + 1)]
+        for done in concurrent.futures.as_completed(work):
+            record, news = done.result()
+            records[record["number"]] = record
+            if news:
+                with kept.open("a", encoding="utf-8") as file:
+                    file.write(json.dumps(record, default=float) + "\n")
+            print(row(record), flush=True)
     chosen = [records[number] for number in range(1, arguments.vehicles + 1)]
     found = list(verdicts(chosen))
     for law in laws:

@@ -98,17 +98,24 @@ def common_noise_mm(height_noise_m):
     return math.sqrt(max((1e3 * height_noise_m)**2 - RAY_NOISE_MM**2 / RAYS, 0.01))
 
 
+def attitude_of(stretches):
+    """Rms of roll and of pitch, from the cosine of the tilt; what the flights' seconds say differs by less than a tenth."""
+    value = math.sqrt(max(float(numpy.mean(numpy.concatenate([1.0 - stretch.upright for stretch in stretches]))), 0.0))
+    return {"value": value, "low": 0.9 * value, "high": 1.1 * value}
+
+
 def vehicle_of(found, other, stretches, logs, rng):
     heights = sum(len(stretch.ray_s) for stretch in stretches)
     telling = other.loss - found.loss
     result = {"throttle": found.kind, "throttle_told": telling > TELLING, "better_by": round(telling, 1)}
     for name in found.table:
         value, interval = found.figures[name], found.interval(name)
-        least = -math.inf if name in ("acc_bias", "sag") else 0.0
+        least = -math.inf if name in ("acc_bias", "sag") else 0.0  # a deadband, a dead time
         key = name if name in NOT_OF_THE_PLANT else f"plant.{name}"
         result[key] = bounded(value, *interval, least) | {"told": told(found, name)}
     noise = result["height_noise"]
     result["plant.common_noise"] = {word: common_noise_mm(noise[word]) for word in ("value", "low", "high")}
+    result["plant.attitude_rms"] = attitude_of(stretches)
     if found.kind == "THRUST":
         result["plant.climb_rate"] = {"value": 0.0, "low": 0.0, "high": 0.0}
     result |= derived(found, rng)

@@ -8,6 +8,7 @@ import model
 
 NEEDED = ("t_s", "meas_m", "thrust_n", "roll_rad", "pitch_rad", "state", "up_mps2", "age_s")
 FLYING = ("FLYING", "HOLDING")
+ALOFT = (*FLYING, "LANDING")
 SETTLED_S = 0.5                 # after the take-off
 LEAST_S = 5.0                   # of a stretch
 GAP_S = 0.3                     # between two heights: what is behind it is another stretch
@@ -76,7 +77,7 @@ def stretches(path):
     if numpy.median(numpy.diff(t_s[frames])) > 0.04:
         raise Unfit(f"{path}: accelerations {1e3 * numpy.median(numpy.diff(t_s[frames])):.0f} ms apart; type #LOG RATE FAST "
                     "before the flight")
-    flying = numpy.array([state in FLYING for state in c["state"]])
+    flying = numpy.array([state in ALOFT for state in c["state"]])
     aloft = flying & (filled(t_s, c["meas_m"]) > ALOFT_M)
     found = [stretch_of(c, t_s, late_s, instant, new, frames, span) for span in spans(t_s, aloft, new)]
     if not found:

@@ -35,6 +35,8 @@ def plant_of(kind, figures):
     plant["tdelay"] = max(plant["tdelay"], 0.0)
     if kind == "THRUST":
         plant["climb_rate"] = 0.0
+    else:
+        plant["climb_deadband"] = max(plant["climb_deadband"], 0.0)
     return plant
 
 
@@ -42,11 +44,12 @@ def draws(vehicle, count, seed):
     """[plant figures] of vehicles that the flights allow."""
     rng = numpy.random.default_rng(seed)
     table = model.KINDS[vehicle["throttle"]]
+    attitude = {"attitude_rms": vehicle["plant.attitude_rms"]["value"]} if "plant.attitude_rms" in vehicle else {}
     found = []
     for units in rng.multivariate_normal(vehicle["units"], vehicle["covariance"], count):
         figures = {name: table[name].back(table[name].prior()[0] + unit * table[name].prior()[1])
                    for name, unit in zip(vehicle["names"], units, strict=True)}
-        found.append(plant_of(vehicle["throttle"], figures))
+        found.append(plant_of(vehicle["throttle"], figures) | attitude)
     return found
 
 
@@ -127,11 +130,12 @@ def quality(path):
 
 
 def intervals(flown):
-    """{figure: {"value" (median), "low", "high"}} of 90 % of the flights."""
+    """{figure: {"value" (median), "low", "high"}}: the next flight is within in 90 % of all cases. So many flights rank evenly
+    among themselves, which is why the quantiles are Weibull's."""
     result = {}
     for name in FIGURES:
         values = [figures[name] for figures in flown if figures[name] is not None]
         if len(values) > len(flown) / 2:
-            low, middle, high = numpy.quantile(values, (0.05, 0.5, 0.95))
+            low, middle, high = numpy.quantile(values, (0.05, 0.5, 0.95), method="weibull")
             result[name] = {"value": float(middle), "low": float(low), "high": float(high)}
     return result

@@ -75,7 +75,7 @@ THRUST = {
 CLIMB = {
     "climb_neutral": Figure(7.0, 0.3, "N"),
     "climb_rate": Figure(0.8, 0.6, "m/s/N"),
-    "climb_deadband": Figure(0.25, 0.7, "N"),
+    "climb_deadband": Figure(0.3, 0.3, "N", logarithmic=False),
     "climb_lag": Figure(0.3, 0.6, "s"),
     "hover_thrust": Figure(7.0, 0.1, "N"),
     "tau": Figure(0.10, 0.3, "s"),

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """tune_vehicle.py VEHICLE [--law EST|PID] ...: gains for the vehicle that fit found, and a forecast.
 
-Flies vehicles drawn from the uncertainty of build/vehicle.json over the 60 cm course. Its cost is the mean hover RMS, a twentieth
-of the terrain RMS and of the overshoot, 200 mm per newton of thrust activity above that of the stock gains (0.45 N at least),
-and 500 mm for a failure, and half the worst vehicle's hover: the gains must suit all of them. The search is Nelder and Mead's, from the stock gains; gains
-that are not better on other draws are not proposed. Prints the commands, and what the next flight of that course will be like,
+The fit itself gives GRAV, and law EST's model of the vehicle: PLANT, GAIN, LAG, DELAY, DAMP, CRATE, CLAG. Gains are searched by
+flights of vehicles drawn from the uncertainty of build/vehicle.json over the 60 cm course. Their cost is the mean hover RMS, a
+twentieth of the terrain RMS and of the overshoot, 200 mm per newton of thrust activity beyond 1.25 times that of the stock gains
+(0.45 N at least), and 500 mm for a failure, and half the worst vehicle's hover: the gains must suit all of them. The search is
+Nelder and Mead's; gains that are not better on other draws are not proposed. Prints the commands, and what the next flight of that course will be like,
 with 90 % intervals, by its log; `verdict.py` compares. Exit status: 0; 2 usage, or a program that does not fly.
 """
 import argparse
@@ -17,6 +18,7 @@ from pathlib import Path
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import forecast  # noqa: E402
+import model  # noqa: E402
 import numpy  # noqa: E402
 
 SCENARIOS = {"EST": "est-60cm-ramp", "PID": "pid-60cm-ramp"}
@@ -27,9 +29,17 @@ GAINS = {
 }
 STOCK = {"EST": {}, "PID": {"KP": "0.015", "KD": "0.008", "KI": "0.01", "USAT": "1", "DSAT": "0"}}
 FIXED = {"EST": {}, "PID": {"LAW": "PID", "USAT": "1.7", "DSAT": "4"}}
-FAILURE_MM, ACTIVITY_MM_PER_N, ACTIVITY_FREE_N, SHARE = 500.0, 200.0, 0.45, 0.05
+FAILURE_MM, ACTIVITY_MM_PER_N, ACTIVITY_FREE_N, ACTIVITY_MORE, SHARE = 500.0, 200.0, 0.45, 1.25, 0.05
 WORST = 0.5
-WORTH = 0.05                    # of the cost: less gained than that on further draws, and the stock gains stay
+WORTH = 0.02                    # of the cost: less gained than that on further draws, and the stock gains stay
+USUAL_MPS2_PER_N = 1.4          # authority of the vehicle that the PID gains above suit
+# Parameters of law EST that the fit knows: name, least and most that the firmware takes, figure of the plant, what to add.
+MODELS = {
+    "THRUST": (("GAIN", 0.4, 2.5, "gain", 0.0), ("LAG", 0.03, 0.5, "tau", 0.0),
+               ("DELAY", 0.008, 0.12, "tdelay", model.PULSE_S), ("DAMP", 0.5, 6.0, "damping", 0.0)),
+    "CLIMB": (("CRATE", 0.125, 5.0, "climb_rate", 0.0), ("CLAG", 0.1, 1.0, "climb_lag", 0.0), ("LAG", 0.03, 0.5, "tau", 0.0),
+              ("DELAY", 0.008, 0.12, "tdelay", model.PULSE_S)),
+}
 SEED = 700_000_000              # of the flights; no campaign uses it
 
 
@@ -38,15 +48,24 @@ def text(value):
 
 
 def vehicle_settings(law, vehicle, plant_kind):
-    """What the fit itself says: feed-forward, kind of throttle."""
+    """What the fit itself says: feed-forward, kind of throttle, law EST's model of the vehicle."""
     thrust = vehicle["throttle"] == "THRUST"
     hover_n = vehicle["plant.hover_thrust" if thrust else "plant.climb_neutral"]["value"]
     settings = {"GRAV": f"{hover_n:.2f}"}
     if law == "EST":
         settings["PLANT"] = plant_kind
-        if plant_kind == "CLIMB":
-            settings["CRATE"] = f"{min(max(vehicle['plant.climb_rate']['value'], 0.125), 5.0):.2f}"
+    if law == "EST" and plant_kind == vehicle["throttle"]:
+        for name, least, most, figure, more in MODELS[plant_kind]:
+            settings[name] = f"{min(max(vehicle[f'plant.{figure}']['value'] + more, least), most):.3g}"
     return settings
+
+
+def gains_of(law, vehicle):
+    """GAINS, those of PID for the authority that was found."""
+    if law == "EST" or vehicle["throttle"] == "CLIMB":
+        return GAINS[law]
+    weaker = USUAL_MPS2_PER_N / vehicle["authority"]["value"]
+    return tuple((name, min(max(start * weaker, least), most), least, most) for name, start, least, most in GAINS[law])
 
 
 def cost(flown, free_n):
@@ -80,7 +99,7 @@ class Course:
 
     def activity(self, settings):
         flown = forecast.fly_all(self.program, self.arguments(settings))
-        return max(float(numpy.mean([figures["thrust_std_n"] or 0.0 for figures in flown])), ACTIVITY_FREE_N)
+        return max(ACTIVITY_MORE * float(numpy.mean([figures["thrust_std_n"] or 0.0 for figures in flown])), ACTIVITY_FREE_N)
 
     def cost(self, settings):
         return cost(forecast.fly_all(self.program, self.arguments(settings)), self.free_n)
@@ -117,11 +136,10 @@ def tune(program, vehicle, law, count, budget):
     kinds = ("THRUST", "CLIMB") if law == "EST" and vehicle["throttle"] == "CLIMB" else ("THRUST",)
     bases = [FIXED[law] | vehicle_settings(law, vehicle, kind) for kind in kinds]
     base = min(bases, key=course.cost) if len(bases) > 1 else bases[0]
-    found, _ = search(course, base, GAINS[law], budget)
+    found, _ = search(course, base, gains_of(law, vehicle), budget)
     stock = stock_settings(law)
-    candidates = {id(settings): (others.cost(settings), settings) for settings in (stock, base, found)}
-    stock_cost = candidates[id(stock)][0]
-    best_cost, best = min(candidates.values(), key=lambda one: one[0])
+    stock_cost, base_cost, found_cost = (others.cost(settings) for settings in (stock, base, found))
+    best_cost, best = (found_cost, found) if found_cost < base_cost else (base_cost, base)
     return (best if best_cost < (1.0 - WORTH) * stock_cost else stock), stock_cost, best_cost
 
 
@@ -129,8 +147,8 @@ def read_arguments(argv):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("vehicle", type=Path)
     parser.add_argument("--law", choices=GAINS, default="EST")
-    parser.add_argument("--draws", type=int, default=10, help="vehicles that each candidate flies (10)")
-    parser.add_argument("--budget", type=int, default=40, help="candidates (40)")
+    parser.add_argument("--draws", type=int, default=8, help="vehicles that each candidate flies (8)")
+    parser.add_argument("--budget", type=int, default=30, help="candidates (30)")
     parser.add_argument("--forecast", type=int, default=60, help="flights of the forecast (60)")
     parser.add_argument("--program", type=Path, default=forecast.ROOT / "build/plomada")
     parser.add_argument("--out", type=Path, default=forecast.ROOT / "build/forecast.json", metavar="FILE")
