@@ -27,8 +27,8 @@ ROOT = Path(__file__).resolve().parents[2]
 MIDDLE_S, LANDED_S = 12.0, 22.0 # of the experiment: the hover thrust is compared there, the battery sags; the landing command
 SEED_STEP = 1_000_000
 FLIGHTS = 2                     # of the experiment: the recorder holds 25 s
-DRAWS, FORECAST, JUDGED = 6, 40, 16     # flights of a candidate, of a forecast, of a verdict
-BUDGET = {"EST": 14, "PID": 24}         # candidates
+DRAWS, FORECAST, JUDGED = 6, 20, 12     # flights of a candidate, of a forecast, of a verdict
+BUDGET = {"EST": 10, "PID": 14}         # candidates
 MUST = {"hover": 0.02, "authority": 0.10, "response": 0.015}
 KIND_MUST, HOLDS_MUST = 29 / 30, 24 / 30
 
@@ -194,6 +194,7 @@ def complete(arguments, number, record, laws):
 def read_arguments(argv):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--vehicles", type=int, default=30)
+    parser.add_argument("--first", type=int, default=1, metavar="NUMBER", help="vehicle to begin with: a part of the work")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--tune", default="", metavar="LAW,LAW", help="also tune for each vehicle: EST, PID")
     parser.add_argument("--program", type=Path, default=ROOT / "build/plomada")
@@ -211,7 +212,7 @@ def main(argv=None):
     laws = [law for law in arguments.tune.split(",") if law]
     with concurrent.futures.ProcessPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         work = [pool.submit(complete, arguments, number, known.get(number), laws)
-                for number in range(1, arguments.vehicles + 1)]
+                for number in range(arguments.first, arguments.vehicles + 1)]
         for done in concurrent.futures.as_completed(work):
             record, news = done.result()
             records[record["number"]] = record
@@ -219,7 +220,7 @@ def main(argv=None):
                 with kept.open("a", encoding="utf-8") as file:
                     file.write(json.dumps(record, default=float) + "\n")
             print(row(record), flush=True)
-    chosen = [records[number] for number in range(1, arguments.vehicles + 1)]
+    chosen = [records[number] for number in range(arguments.first, arguments.vehicles + 1)]
     found = list(verdicts(chosen))
     for law in laws:
         found += tuning_verdicts(chosen, law)

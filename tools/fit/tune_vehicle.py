@@ -132,7 +132,7 @@ def search(course, base, gains, budget):
 
 def tune(program, vehicle, law, count, budget):
     """(settings, stock's cost, tuned cost), both on draws that the search has not seen."""
-    course, others = Course(program, law, vehicle, count, 1), Course(program, law, vehicle, 2 * count, 2)
+    course, others = Course(program, law, vehicle, count, 1), Course(program, law, vehicle, count + 2, 2)
     kinds = ("THRUST", "CLIMB") if law == "EST" and vehicle["throttle"] == "CLIMB" else ("THRUST",)
     bases = [FIXED[law] | vehicle_settings(law, vehicle, kind) for kind in kinds]
     base = min(bases, key=course.cost) if len(bases) > 1 else bases[0]

@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "control/parameters.h"
 #include "output.h"
+#include "replay_log.h"
 #include "sim/scenarios/flight.h"
 
 static const char usage[] =
@@ -19,6 +20,14 @@ static const char usage[] =
     "RECORDING is the DIR of `plomada fly --record DIR`, or the file in it. The log is the one of the flight "
     "itself,\n"
     "octet for octet, as long as the firmware is the same.\n\n"
+    "A RECORDING without octets, a CSV of `plomada log` or `fly --csv`, or telemetry as a terminal saved it, "
+    "is flown open\n"
+    "loop: the firmware's control, with the parameters as delivered and those of --set, is given the "
+    "heights, "
+    "tilts,\n"
+    "accelerations and references that are there. thrust_n is what it would command, flown_n what was; `make "
+    "plot` draws\n"
+    "both. What is not there is named on stderr.\n\n"
     "  --csv FILE          the log (default: stdout)\n"
     "  --set NAME=VALUE    a telecommand parameter in place of what was typed for it. The vehicle does not "
     "answer to what\n"
@@ -94,27 +103,6 @@ static bool read_arguments(request_t *request, int argc, char **argv)
     return true;
 }
 
-/* What people have of a flight when nobody recorded its octets. */
-static bool is_log(FILE *in)
-{
-    char line[512];
-    bool found = false;
-
-    for (int i = 0; i < 1000 && !found && fgets(line, sizeof line, in) != NULL; i++) {
-        found = strncmp(line, "t_s,", 4) == 0 || strstr(line, "OK LOG ") != NULL ||
-                strstr(line, "alt:") != NULL;
-    }
-    rewind(in);
-    return found;
-}
-
-static const char log_alone[] =
-    "a log, not a recording. In it are heights, commands and, of #LOG RATE FAST, accelerations and tilt: "
-    "`make fit` "
-    "finds the\n  vehicle in them, `make plot` draws them. Not in it are the octets of the scanner, of the "
-    "IMU and of "
-    "the radio,\n  and when each came: without them the firmware cannot be run again";
-
 static tape_t *load(const char *given)
 {
     char path[PATH_MAX];
@@ -130,11 +118,6 @@ static tape_t *load(const char *given)
     in = fopen(path, "r");
     if (in == NULL) {
         complain(strerror(errno), path);
-        return NULL;
-    }
-    if (is_log(in)) {
-        fclose(in);
-        complain(log_alone, path);
         return NULL;
     }
     tape = tape_read(in, &error);
@@ -179,10 +162,43 @@ static void tell(const request_t *request, const tape_t *tape, const flight_repl
     }
 }
 
+/* What people have of a flight when nobody recorded its octets. NULL: this is none. */
+static FILE *open_log(const char *path)
+{
+    struct stat what;
+    FILE *in = stat(path, &what) == 0 && S_ISREG(what.st_mode) ? fopen(path, "r") : NULL;
+
+    if (in != NULL && !replay_log_reads(in)) {
+        fclose(in);
+        in = NULL;
+    }
+    return in;
+}
+
+static int run_log(request_t *request, FILE *in)
+{
+    const char *error;
+
+    if (!output_open(&request->csv)) {
+        return 2;
+    }
+    error = replay_log(in, &request->sets, request->csv.file);
+    fclose(in);
+    if (error != NULL) {
+        complain(error, request->path);
+    }
+    return output_close(&request->csv) && error == NULL ? 0 : 2;
+}
+
 static int run(request_t *request)
 {
     flight_replay_t result;
     const char *error;
+    FILE *log = open_log(request->path);
+
+    if (log != NULL) {
+        return run_log(request, log);
+    }
     tape_t *tape = load(request->path);
 
     if (tape == NULL || !retype(request, tape) || !output_open(&request->csv)) {

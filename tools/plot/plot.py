@@ -187,7 +187,12 @@ def draw_absolute(axis, recordings, overlay):
 def draw_thrust(axis, recordings, overlay):
     for index, rec in enumerate(recordings):
         colour = FLIGHT_COLOURS[index % len(FLIGHT_COLOURS)] if overlay else THRUST
-        axis.plot(rec.t, rec.columns["thrust_n"], color=colour, linewidth=1.2, drawstyle="steps-post")
+        if rec.has("flown_n"):
+            axis.plot(rec.t, rec.columns["flown_n"], color="#999999", linewidth=1.0, drawstyle="steps-post", label="as flown")
+        axis.plot(rec.t, rec.columns["thrust_n"], color=colour, linewidth=1.2, drawstyle="steps-post",
+                  label="as this law would" if rec.has("flown_n") else None)
+        if rec.has("flown_n"):
+            axis.legend(loc="upper right", ncol=2)
     axis.set_ylabel("thrust per\nmotor (N)")
     axis.set_ylim(bottom=0)
     axis.margins(y=0.15)
@@ -242,6 +247,8 @@ def describe(paths, recordings):
     rec = recordings[0]
     if rec.kind == "flight":
         return rec.name, metrics_text(paths[0])
+    if rec.has("flown_n"):
+        return f"{rec.name}: open loop", "the vehicle did not answer to this law's thrust; its heights are those of the flight as flown"
     source = {"console": "XCTU console log", "recorder": "flight recorder"}.get(rec.kind, "telemetry text")
     damaged = f", {rec.damaged} damaged lines left out" if rec.damaged else ""
     return rec.name, f"{source}: {len(rec.t)} lines{damaged}"

@@ -10,6 +10,7 @@ from pathlib import Path
 
 RECORDER_COLUMNS = ("t_s", "meas_m", "est_m", "innov_m", "ref_m", "thrust_n", "roll_rad", "pitch_rad", "state", "flags")
 FLIGHT_COLUMNS = RECORDER_COLUMNS + ("height_m", "abs_m", "terrain_m", "pulse_us")     # and what only the PC board knows
+OPEN_LOOP_COLUMNS = ("flown_n",)       # of `plomada replay` on a log: the thrust that the vehicle answered to
 TEXT_COLUMNS = ("state", "laser")
 TELEMETRY_PERIOD_S = 0.2
 
@@ -79,6 +80,7 @@ def read_csv(path, lines, kind, names):
     missing = [name for name in names if name not in rows.fieldnames]
     if missing:
         raise Unreadable(f"{path}: no column {', '.join(missing)}")
+    names = (*names, *(name for name in OPEN_LOOP_COLUMNS if name in rows.fieldnames))
     columns = {name: [] for name in names}
     for row in rows:
         try:
