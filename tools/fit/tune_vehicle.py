@@ -3,7 +3,7 @@
 
 The fit itself gives GRAV, and law EST's model of the vehicle: PLANT, GAIN, LAG, DELAY, DAMP, CRATE, CLAG. Gains are searched by
 flights of vehicles drawn from the uncertainty of build/vehicle.json over the 60 cm course. Their cost is the mean hover RMS, a
-twentieth of the terrain RMS and of the overshoot, 200 mm per newton of thrust activity beyond 1.25 times that of the stock gains
+twentieth of the terrain RMS and of the overshoot, 200 mm per newton of thrust activity beyond 1.3 times that of the stock gains
 (0.45 N at least), and 500 mm for a failure, and half the worst vehicle's hover: the gains must suit all of them. The search is
 Nelder and Mead's; gains that are not better on other draws are not proposed. Prints the commands, and what the next flight of that course will be like,
 with 90 % intervals, by its log; `verdict.py` compares. Exit status: 0; 2 usage, or a program that does not fly.
@@ -29,9 +29,10 @@ GAINS = {
 }
 STOCK = {"EST": {}, "PID": {"KP": "0.015", "KD": "0.008", "KI": "0.01", "USAT": "1", "DSAT": "0"}}
 FIXED = {"EST": {}, "PID": {"LAW": "PID", "USAT": "1.7", "DSAT": "4"}}
-FAILURE_MM, ACTIVITY_MM_PER_N, ACTIVITY_FREE_N, ACTIVITY_MORE, SHARE = 500.0, 200.0, 0.45, 1.25, 0.05
+FAILURE_MM, ACTIVITY_MM_PER_N, ACTIVITY_FREE_N, ACTIVITY_MORE, SHARE = 500.0, 200.0, 0.45, 1.3, 0.05
 WORST = 0.5
-WORTH = 0.02                    # of the cost: less gained than that on further draws, and the stock gains stay
+FIRST_STEP = 0.25               # upwards: a law that knows its vehicle bears quicker gains
+WORTH = 0.01                    # of the cost: less gained than that on further draws, and the stock gains stay
 USUAL_MPS2_PER_N = 1.4          # authority of the vehicle that the PID gains above suit
 # Parameters of law EST that the fit knows: name, least and most that the firmware takes, figure of the plant, what to add.
 MODELS = {
@@ -123,7 +124,7 @@ def search(course, base, gains, budget):
         return known[key][0]
 
     start = numpy.log([stock for _, stock, _, _ in gains])
-    corners = [start, *(start + 0.35 * (-1 if k % 2 else 1) * row for k, row in enumerate(numpy.eye(len(start)), 1))]
+    corners = [start, *(start + FIRST_STEP * row for row in numpy.eye(len(start)))]
     minimize(evaluate, start, method="Nelder-Mead",
              options={"initial_simplex": numpy.array(corners), "maxfev": budget, "xatol": 0.03, "fatol": 0.1})
     best = min(known.values(), key=lambda one: one[0])

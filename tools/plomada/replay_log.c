@@ -211,7 +211,7 @@ static void write_row(FILE *csv, const row_t *row)
     fprintf(csv, "%.3f", row->value[T_S]);
     write_cell(csv, row->value[MEAS_M], 3);
     write_cell(csv, (double)replay.out.estimate_mm * 1e-3, 3);
-    write_cell(csv, (double)replay.out.innovation_mm * 1e-3, 3);
+    fputc(',', csv); /* no innovation */
     write_cell(csv, row->value[REF_M], 3);
     write_cell(csv, (double)replay.out.thrust_n, 3);
     write_cell(csv, row->value[ROLL_RAD], 4);
