@@ -594,9 +594,9 @@ static float within_climb_n(const flight_t *flight, const parameters_t *paramete
     const float fastest_mps = integrity_unconfirmed(&flight->integrity)
                                   ? unconfirmed_mps
                                   : parameters->value[PARAMETER_VUP] + CLIMB_MARGIN_MPS;
-    const float felt_mps = integrity_felt_mps(&flight->integrity);
     const bool fast = flight->integrity.pushed.speed_mps > fastest_mps - 0.1F &&
-                      (flight->supervisor.state != FLIGHT_TAKEOFF || felt_mps > fastest_mps - 0.1F);
+                      (flight->supervisor.state != FLIGHT_TAKEOFF ||
+                       integrity_felt_mps(&flight->integrity) > fastest_mps - 0.1F);
 
     if (!fast || !(est || (flight->mode == FLIGHT_MODE_LAW && flight->active_law == LAW_PIDT))) {
         return thrust_n;
@@ -609,13 +609,15 @@ static float within_climb_n(const flight_t *flight, const parameters_t *paramete
 /* The same downwards, after a far step of the terrain that no descent has confirmed. */
 static float within_descent_n(const flight_t *flight, const parameters_t *parameters, float thrust_n)
 {
-    const cascade_vehicle_t vehicle = est_law_vehicle(&flight->est, parameters);
-    const float sinking_n = vehicle.damping_per_s * UNCONFIRMED_MPS / vehicle.authority_mps2_per_n;
     const bool holds = flight->mode == FLIGHT_MODE_EST_HOLD ||
                        (flight->mode == FLIGHT_MODE_LAW && flight->active_law == LAW_PIDT);
 
-    return (holds && integrity_deep(&flight->integrity)) ? at_least(thrust_n, flight->hover_n - sinking_n)
-                                                         : thrust_n;
+    if (!holds || !integrity_deep(&flight->integrity)) {
+        return thrust_n;
+    }
+    const cascade_vehicle_t vehicle = est_law_vehicle(&flight->est, parameters);
+    const float sinking_n = vehicle.damping_per_s * UNCONFIRMED_MPS / vehicle.authority_mps2_per_n;
+    return at_least(thrust_n, flight->hover_n - sinking_n);
 }
 
 /* While commands have no effect, the thrust stays near the hover thrust. So it fits when the commands get

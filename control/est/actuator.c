@@ -31,7 +31,7 @@ void actuator_command(actuator_t *actuator, float thrust_n, uint32_t now_us)
     ++actuator->count;
 }
 
-static void lag(actuator_t *actuator, uint32_t until_us)
+static inline void lag(actuator_t *actuator, uint32_t until_us)
 {
     const int32_t step_us = (int32_t)(until_us - actuator->time_us);
 
