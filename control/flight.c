@@ -20,21 +20,21 @@
 #define GAP_MAX_S 0.3F        /* as HEIGHT_FRESH_US in supervisor.c */
 #define BLIND_MAX_S 60.0F     /* above DESCENT_TIMEOUT_US in supervisor.c */
 
-#define PIDT_WINDOW_N 3.0F      /* chosen: 0.4 g to either side */
-#define SETTLE_S 0.6F           /* chosen: six scans; until then the estimate is copied */
-#define LIFTED_MPS 0.25F        /* chosen: above what a bias of 0.2 m/s2 makes on the ground */
-#define GAP_LONG_S 10.0F        /* chosen: longer gaps count as this long; integrity.c restarts after 1.5 s */
-#define LOW_MM 80.0F            /* chosen: above REST_BELOW_MM in supervisor.c, 50 mm */
-#define POWERLESS_WINDOW_N 0.6F /* chosen: 0.8 m/s2 */
-#define UNSURE_WINDOW_N 2.0F    /* chosen: as HOVER_BOUND_N in est_law.c */
-#define UNSURE_REACH_M 0.09F    /* chosen: asks for 1.2 N at the delivered POSK and VELK */
-#define UNCONFIRMED_MPS 0.35F   /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
+#define PIDT_WINDOW_N 3.0F /* chosen: 0.4 g to either side */
+#define SETTLE_S 0.6F      /* chosen: six scans; until then the estimate is copied */
+#define LIFTED_MPS 0.25F   /* chosen: above what a bias of 0.2 m/s2 makes on the ground */
+#define GAP_LONG_S 10.0F   /* chosen: longer gaps count as this long; integrity.c restarts after 1.5 s */
+#define LOW_MM 80.0F       /* chosen: above REST_BELOW_MM in supervisor.c, 50 mm */
+#define NO_AUTHORITY_WINDOW_N 0.6F /* chosen: 0.8 m/s2 */
+#define UNSURE_WINDOW_N 2.0F       /* chosen: as HOVER_BOUND_N in est_law.c */
+#define UNSURE_REACH_M 0.09F       /* chosen: asks for 1.2 N at the delivered POSK and VELK */
+#define UNCONFIRMED_MPS 0.35F      /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
 #define TAKEOFF_MPS 0.6F        /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
 #define CLIMB_MARGIN_MPS 0.4F   /* chosen: room for an overshoot of the climb rate above VUP */
 #define STOP_N_PER_S 2.0F       /* as STOP_N_PER_S in est_law.c */
-#define ASK_N_PER_S 1.0F        /* chosen: in 2 s too low to fly; a fall is felt before it is fast */
-#define HOP_MAX_US UINT32_C(3000000) /* chosen: the take-off's ramp in est_law.c ends after 1.2 s */
-#define FLOAT_REACH_M 0.30F          /* chosen: three times the distance that counts as reached, reach.c */
+#define STAND_TEST_N_PER_S 1.0F /* chosen: in 2 s too low to fly; a fall is felt before it is fast */
+#define NOT_LIFTED_MAX_US UINT32_C(3000000) /* chosen: the take-off's ramp in est_law.c ends after 1.2 s */
+#define FLOAT_REACH_M 0.30F /* chosen: three times the distance that counts as reached, reach.c */
 
 /* For states flown without an estimate. */
 static const flight_mode_t modes_without_estimate[FLIGHT_STATE_COUNT] = {
@@ -237,10 +237,10 @@ static bool stops_on_ground(flight_t *flight)
     const flight_state_t state = flight->supervisor.state;
     const bool gives_up = state == FLIGHT_COASTING || state == FLIGHT_DESCENDING || state == FLIGHT_LANDING;
 
-    flight->hopping = state == FLIGHT_TAKEOFF
-                          ? !flight->est.airborne && flight->supervisor.state_us < HOP_MAX_US
-                          : flight->hopping && gives_up;
-    return flight->hopping && gives_up;
+    flight->not_lifted = state == FLIGHT_TAKEOFF
+                             ? !flight->est.airborne && flight->supervisor.state_us < NOT_LIFTED_MAX_US
+                             : flight->not_lifted && gives_up;
+    return flight->not_lifted && gives_up;
 }
 
 /* The thrust setpoint of the mode. Returns true when the law has gained or lost its integral action. */
@@ -379,7 +379,7 @@ static void compare_height(flight_t *flight, const flown_t *flown, const flight_
 
 /* Checks the inputs, and removes from *in what must not be used: heights in doubt, rejected tilts, frames
  * with such a tilt. */
-static void believe(flight_t *flight, const parameters_t *parameters, flight_inputs_t *in)
+static void check_inputs(flight_t *flight, const parameters_t *parameters, flight_inputs_t *in)
 {
     integrity_t *integrity = &flight->integrity;
     const flown_t flown = describe(flight, parameters, in);
@@ -422,7 +422,7 @@ static void change_doubts(flight_t *flight, float gravity_n)
         (flight->est.airborne || flies_unseen)) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
-    est_law_set_powerless(&flight->est, integrity_doubts(integrity, DOUBT_THRUST) || flight->unsure);
+    est_law_set_without_authority(&flight->est, integrity_doubts(integrity, DOUBT_THRUST) || flight->unsure);
     est_law_set_accelerations_doubted(&flight->est, integrity_doubts(integrity, DOUBT_IMU));
     est_law_set_sways(&flight->est, integrity_rocks(integrity));
     if ((come & DOUBT_IMU) != 0U && flight->est.airborne) { /* the estimate used them until now */
@@ -444,7 +444,7 @@ static void supervise(flight_t *flight, const parameters_t *parameters, const fl
         .height_mm = now->height_m * 1000.0F,
         .climb_mm_s = (now->speed_mps - now->terrain_mps) * 1000.0F,
         .stands = integrity_stands(&flight->integrity) ||
-                  (flight->hopping && flight->thrust_n <= flight->idle_n),
+                  (flight->not_lifted && flight->thrust_n <= flight->idle_n),
         .upright = flight->integrity.upright,
         .sways = integrity_sways(&flight->integrity),
         .rocks = integrity_rocks(&flight->integrity),
@@ -486,7 +486,7 @@ static float lifting_n(const flight_t *flight, const parameters_t *parameters)
     const float gravity_n = parameters->value[PARAMETER_GRAV];
     const float hover_n = flight->est.actuator.thrust_n - taken_mps2 / vehicle.authority_mps2_per_n;
 
-    return has_estimate(flight) && est_law_feels(&flight->est)
+    return has_estimate(flight) && est_law_has_acceleration(&flight->est)
                ? between(gravity_n - HOVER_MARGIN_N, hover_n, gravity_n + HOVER_MARGIN_N)
                : flight->hover_n;
 }
@@ -632,26 +632,26 @@ static float within_power_n(const flight_t *flight, float thrust_n)
     if (!integrity_doubts(&flight->integrity, DOUBT_THRUST) || flight->mode == FLIGHT_MODE_IDLE) {
         return thrust_n;
     }
-    return flight->integrity.held_down ? at_least(thrust_n, held_n - POWERLESS_WINDOW_N)
-                                       : at_most(thrust_n, held_n + POWERLESS_WINDOW_N);
+    return flight->integrity.held_down ? at_least(thrust_n, held_n - NO_AUTHORITY_WINDOW_N)
+                                       : at_most(thrust_n, held_n + NO_AUTHORITY_WINDOW_N);
 }
 
 /* Finds the end of a descent. While the vehicle may stand on the ground, the thrust is lowered step by step.
  * If the accelerometer measures a fall, the vehicle is in the air and the thrust returns. If it does not, the
  * vehicle stands. */
-static float asking_n(flight_t *flight, float thrust_n)
+static float stand_test_n(flight_t *flight, float thrust_n)
 {
     const bool by_estimate = flight->mode == FLIGHT_MODE_EST_SINK || flight->mode == FLIGHT_MODE_EST_LAND;
-    const bool feels = !integrity_doubts(&flight->integrity, DOUBT_IMU);
-    const bool descent = by_estimate || (flight->mode == FLIGHT_MODE_BLIND_DESCENT && feels);
-    const float step_n = ASK_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
+    const bool acceleration_valid = !integrity_doubts(&flight->integrity, DOUBT_IMU);
+    const bool descent = by_estimate || (flight->mode == FLIGHT_MODE_BLIND_DESCENT && acceleration_valid);
+    const float step_n = STAND_TEST_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
 
     if (!descent || !integrity_may_stand(&flight->integrity)) {
-        flight->asking_n = THRUST_MAX_N;
+        flight->stand_test_n = THRUST_MAX_N;
     } else {
-        flight->asking_n = at_least(at_most(flight->asking_n, flight->thrust_n) - step_n, 0.0F);
+        flight->stand_test_n = at_least(at_most(flight->stand_test_n, flight->thrust_n) - step_n, 0.0F);
     }
-    return at_most(thrust_n, flight->asking_n);
+    return at_most(thrust_n, flight->stand_test_n);
 }
 
 /* Detects a reference that is not reached; only in the states in which the law acts. */
@@ -689,7 +689,7 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
     const bool estimated = flight->active_law == LAW_EST || is_est_mode(flight->mode);
     const bool wants_imu = parameters_choice(parameters, PARAMETER_LAW) == LAW_EST;
     const bool imu_missing = wants_imu && !est_law_has_imu(&flight->est);
-    const bool unfelt = wants_imu && !imu_missing && !est_law_feels(&flight->est);
+    const bool without_acceleration = wants_imu && !imu_missing && !est_law_has_acceleration(&flight->est);
     const float measured_mm = (supervisor->height.sequence != 0U) ? supervisor->height.height_mm : NAN;
 
     out->thrust_n = flight->thrust_n;
@@ -698,7 +698,8 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
     out->state = supervisor->state;
     out->flags = (uint16_t)(supervisor->flags | (imu_missing ? FLIGHT_FLAG_ATTITUDE : 0U) |
                             (flight->out_of_reach ? FLIGHT_FLAG_REACH : 0U) |
-                            (unfelt ? FLIGHT_FLAG_IMU : 0U) | flight->integrity.doubts * FLIGHT_FLAG_SIGHT);
+                            (without_acceleration ? FLIGHT_FLAG_IMU : 0U) |
+                            flight->integrity.doubts * FLIGHT_FLAG_SIGHT);
     out->doubts = flight->integrity.doubts;
     out->imu_fault = flight->axes.fault;
     out->reference_m = supervisor->reference_m;
@@ -712,14 +713,14 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
 {
     const flight_mode_t before = flight->mode;
     const flight_state_t state_before = flight->supervisor.state;
-    flight_inputs_t believed = *in;
+    flight_inputs_t checked = *in;
 
-    believe(flight, parameters, &believed);
-    supervise(flight, parameters, &believed);
-    arming_step(&flight->arming, &believed, state_before, &flight->supervisor);
+    check_inputs(flight, parameters, &checked);
+    supervise(flight, parameters, &checked);
+    arming_step(&flight->arming, &checked, state_before, &flight->supervisor);
     flight->idle_n = arming_idle_n(&flight->arming, parameters->value[PARAMETER_IDLE],
                                    flight->supervisor.state);
-    update_estimator(flight, parameters, &believed);
+    update_estimator(flight, parameters, &checked);
     const bool law_changed = select_law(flight, parameters);
     update_sureness(flight, parameters, in->has_throttle);
     flight->mode = select_mode(flight, in);
@@ -738,7 +739,7 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
     bumpless_transfer(flight, before, law_changed || action_changed);
     const float climbing_n = within_climb_n(flight, parameters, flight->setpoint_n + flight->transfer_n);
     const float wanted_n = within_descent_n(flight, parameters, climbing_n);
-    flight->thrust_n = between(flight->idle_n, asking_n(flight, within_power_n(flight, wanted_n)),
+    flight->thrust_n = between(flight->idle_n, stand_test_n(flight, within_power_n(flight, wanted_n)),
                                THRUST_MAX_N);
     est_law_record_command(&flight->est, flight->thrust_n);
     judge_reach(flight);

@@ -96,31 +96,31 @@
 
 /* Verdicts. These limits have to be above the drift of the witnesses in healthy flights. A wrong sensor may
  * move the vehicle by about as much before it is doubted. */
-#define AGAINST_M 0.50F     /* chosen: five times STEP_M */
-#define BOTH_M 0.28F        /* chosen: about half of AGAINST_M, for the second witness */
-#define WITH_M 0.20F        /* chosen: less than that counts as agreement */
-#define ALONE_M 0.60F       /* chosen: above AGAINST_M, because only one witness contradicts */
-#define ALONE_SHARE 0.4F    /* chosen: with the damping wrong, the thrust still shows half of a motion */
-#define POWERLESS_M 1.30F   /* chosen: twice ALONE_M; wrong hover thrust alone makes this witness drift */
-#define MOVED_M 0.30F       /* chosen: above BOTH_M, so that the agreement is about a real motion */
-#define AGREED_S 1.5F       /* chosen: 15 scans */
-#define ALOFT_M 0.08F       /* chosen: as LOW_M */
-#define PUSH_N 0.7F         /* chosen: a tenth of GRAV as delivered, 7 N */
-#define VAIN_S 3.0F         /* chosen: twice AGREED_S, because only one witness is left */
-#define VAIN_MPS 0.12F      /* chosen: below LAND_MPS in est_law.c, 0.15 m/s */
-#define VAIN_M 0.15F        /* chosen: above CONTENT_M */
-#define RUN_AWAY_MPS 0.7F   /* chosen: above the speed of unconfirmed climbs, 0.35 and 0.6 m/s */
-#define RUN_AWAY_M 0.38F    /* chosen: between BOTH_M and AGAINST_M */
-#define STILL_MPS 0.2F      /* chosen: heights that change more slowly do not move */
-#define CONTENT_M 0.10F     /* chosen: a law so near its reference is not misled by a wrong height */
-#define CONTENT_SHARE 1.8F  /* chosen: near the reference the limits nearly double */
-#define UNCONFIRMED_M 0.35F /* chosen: above BOTH_M; the climb is slow meanwhile */
-#define UNPROVED_M 0.35F    /* chosen: twice what the lift-off of a drawn vehicle shows */
-#define UNCONFIRMED_N 0.2F  /* chosen: a small part of PUSH_N, because the climb is slow */
-#define RISE_TIME_S 0.2F    /* chosen: two scans */
-#define WAY_TIME_S 1.0F     /* chosen: ten scans */
-#define MOVED_S 1.0F        /* chosen: as WAY_TIME_S */
-#define MOVES_M 0.15F       /* chosen: nothing in front of a mirror moves so far */
+#define AGAINST_M 0.50F      /* chosen: five times STEP_M */
+#define BOTH_M 0.28F         /* chosen: about half of AGAINST_M, for the second witness */
+#define WITH_M 0.20F         /* chosen: less than that counts as agreement */
+#define ALONE_M 0.60F        /* chosen: above AGAINST_M, because only one witness contradicts */
+#define ALONE_SHARE 0.4F     /* chosen: with the damping wrong, the thrust still shows half of a motion */
+#define NO_AUTHORITY_M 1.30F /* chosen: twice ALONE_M; wrong hover thrust alone makes this witness drift */
+#define MOVED_M 0.30F        /* chosen: above BOTH_M, so that the agreement is about a real motion */
+#define AGREED_S 1.5F        /* chosen: 15 scans */
+#define ALOFT_M 0.08F        /* chosen: as LOW_M */
+#define PUSH_N 0.7F          /* chosen: a tenth of GRAV as delivered, 7 N */
+#define VAIN_S 3.0F          /* chosen: twice AGREED_S, because only one witness is left */
+#define VAIN_MPS 0.12F       /* chosen: below LAND_MPS in est_law.c, 0.15 m/s */
+#define VAIN_M 0.15F         /* chosen: above CONTENT_M */
+#define RUN_AWAY_MPS 0.7F    /* chosen: above the speed of unconfirmed climbs, 0.35 and 0.6 m/s */
+#define RUN_AWAY_M 0.38F     /* chosen: between BOTH_M and AGAINST_M */
+#define STILL_MPS 0.2F       /* chosen: heights that change more slowly do not move */
+#define CONTENT_M 0.10F      /* chosen: a law so near its reference is not misled by a wrong height */
+#define CONTENT_SHARE 1.8F   /* chosen: near the reference the limits nearly double */
+#define UNCONFIRMED_M 0.35F  /* chosen: above BOTH_M; the climb is slow meanwhile */
+#define UNPROVED_M 0.35F     /* chosen: twice what the lift-off of a drawn vehicle shows */
+#define UNCONFIRMED_N 0.2F   /* chosen: a small part of PUSH_N, because the climb is slow */
+#define RISE_TIME_S 0.2F     /* chosen: two scans */
+#define WAY_TIME_S 1.0F      /* chosen: ten scans */
+#define MOVED_S 1.0F         /* chosen: as WAY_TIME_S */
+#define MOVES_M 0.15F        /* chosen: nothing in front of a mirror moves so far */
 
 void integrity_init(integrity_t *integrity)
 {
@@ -166,7 +166,7 @@ static float turn_rad(float from_rad, float to_rad)
 }
 
 /* Accepts or rejects one tilt. True: accepted. */
-static bool believe_tilt(integrity_t *i, float roll_rad, float pitch_rad, uint32_t time_us)
+static bool accept_tilt(integrity_t *i, float roll_rad, float pitch_rad, uint32_t time_us)
 {
     const bool recent = i->levelled && time_us - i->tilt_time_us <= TILT_GAP_US;
     const bool told = fabsf(roll_rad) < ANGLE_MAX_RAD && fabsf(pitch_rad) < ANGLE_MAX_RAD; /* no NaN */
@@ -201,12 +201,12 @@ void integrity_tilt(integrity_t *integrity, const imu_sample_t *frames, uint16_t
         const imu_sample_t *frame = &frames[k];
 
         integrity->tilt_sequence = frame->sequence;
-        if (!believe_tilt(integrity, frame->median.roll_rad, frame->median.pitch_rad, frame->arrival_us)) {
+        if (!accept_tilt(integrity, frame->median.roll_rad, frame->median.pitch_rad, frame->arrival_us)) {
             integrity->unfit_sequence = frame->sequence;
         }
     }
     if (count == 0U && (!integrity->levelled || time_us != integrity->tilt_time_us)) {
-        (void)believe_tilt(integrity, roll_rad, pitch_rad, time_us);
+        (void)accept_tilt(integrity, roll_rad, pitch_rad, time_us);
     }
 }
 
@@ -301,13 +301,13 @@ static bool counts(const witness_t *witness)
 }
 
 /* The accelerometer's witness is valid and its source is not in doubt. */
-static bool feels(const integrity_t *i)
+static bool acceleration_valid(const integrity_t *i)
 {
     return counts(&i->felt) && !integrity_doubts(i, DOUBT_IMU);
 }
 
 /* At rest the acceleration is the bias; a large one is a fault. */
-static void feel_rest(integrity_t *i, float dt_s)
+static void measure_rest(integrity_t *i, float dt_s)
 {
     i->rested_s = at_most(i->rested_s + dt_s, REST_TIME_S);
     i->rest_mps2 += at_most(dt_s / i->rested_s, 1.0F) * (i->up_mps2 - i->rest_mps2);
@@ -377,7 +377,7 @@ static void watch_fall(integrity_t *i, float dt_s)
 }
 
 /* One accepted frame. up_mps2: what its accelerometer measures. */
-static void feel(integrity_t *i, const flown_t *flown, const imu_sample_t *frame, float up_mps2)
+static void integrate_frame(integrity_t *i, const flown_t *flown, const imu_sample_t *frame, float up_mps2)
 {
     const uint32_t gap_us = frame->arrival_us - i->frame_time_us;
     const float dt_s = (float)gap_us * 1.0e-6F;
@@ -394,7 +394,7 @@ static void feel(integrity_t *i, const flown_t *flown, const imu_sample_t *frame
     watch_sway(i, frame, dt_s);
     watch_rocking(i, frame, dt_s);
     if (flown->grounded) {
-        feel_rest(i, dt_s);
+        measure_rest(i, dt_s);
     } else {
         if (i->rested_s > 0.0F && !flown->standing) { /* a pilot has lifted it: that was no rest */
             i->bias_mps2 = 0.0F;
@@ -422,7 +422,7 @@ void integrity_frames(integrity_t *integrity, const flown_t *flown, const imu_sa
         const float up_mps2 = motion_up_mps2(frame);
         if (fabsf(up_mps2) < UP_MAX_MPS2) {
             integrity->frame_sequence = frame->sequence;
-            feel(integrity, flown, frame, up_mps2);
+            integrate_frame(integrity, flown, frame, up_mps2);
         }
     }
 }
@@ -435,13 +435,14 @@ void integrity_thrust(integrity_t *integrity, const flown_t *flown)
         set_doubt(integrity, DOUBT_SIGHT | DOUBT_THRUST, false);
         forget(integrity);
     }
-    const bool stands = integrity->heard && integrity->height_m < LOW_M && !integrity_sways(integrity);
+    const bool stands = integrity->has_height && integrity->height_m < LOW_M && !integrity_sways(integrity);
     const float shaken = at_least(flown->noise_mps2 / SHAKEN_MPS2, 1.0F);
     integrity->shaken = shaken * sqrtf(shaken);
     integrity->standing = flown->grounded || flown->standing;
     integrity->lagged_n += dt_s / (LAG_S + dt_s) * (flown->thrust_n - integrity->lagged_n);
     if (!flown->off_ground || stands) {
-        start(&integrity->pushed, flown->grounded || !feels(integrity) ? 0.0F : integrity->felt.speed_mps);
+        start(&integrity->pushed,
+              flown->grounded || !acceleration_valid(integrity) ? 0.0F : integrity->felt.speed_mps);
         return;
     }
     const float excess_mps2 = flown->authority_mps2_per_n *
@@ -534,10 +535,10 @@ static void watch_depth(integrity_t *i, float height_m, float rise_m, bool step)
 
 /* Processes one height: step or not, confirmed or not, then the innovations of both witnesses. A take-off is
  * unconfirmed, as is a step of the terrain towards the vehicle. */
-static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
+static void take_height(integrity_t *i, float height_m, float gap_s, float age_s)
 {
     const float rise_m = height_m - i->height_m;
-    const bool fresh = i->heard && gap_s < GAP_MAX_S;
+    const bool fresh = i->has_height && gap_s < GAP_MAX_S;
     const bool jumps = fabsf(rise_m) > STEP_M;
     const bool step = fresh && jumps && !follows(&i->felt, rise_m, gap_s) &&
                       !follows(&i->pushed, rise_m, gap_s);
@@ -563,7 +564,7 @@ static void hear(integrity_t *i, float height_m, float gap_s, float age_s)
     i->since_rise_s = (step && rise_m > 0.0F) ? 0.0F : at_most(i->since_rise_s + gap_s, GAP_MAX_S);
     i->before_rise_m = (i->since_rise_s > 0.0F) ? i->before_rise_m : i->height_m;
     i->height_m = height_m;
-    i->heard = true;
+    i->has_height = true;
     i->rise_mps += gap_s / (RISE_TIME_S + gap_s) *
                    ((step ? i->rise_mps : rise_m / at_least(gap_s, 0.01F)) - i->rise_mps);
     i->steps = at_least(i->steps * (1.0F - at_most(gap_s / STEPS_TIME_S, 1.0F)), 0.0F) + (step ? 1.0F : 0.0F);
@@ -591,9 +592,9 @@ static float felt_off_m(const integrity_t *i)
 }
 
 /* The heights contradict the witness of the accelerometer by more than at_least_m. */
-static bool feels_against(const integrity_t *i, float at_least_m)
+static bool acceleration_against(const integrity_t *i, float at_least_m)
 {
-    return feels(i) && fabsf(felt_off_m(i)) > at_least_m;
+    return acceleration_valid(i) && fabsf(felt_off_m(i)) > at_least_m;
 }
 
 /* The thrust pushes towards the reference by more than least_n, and the heights do not follow. */
@@ -626,10 +627,10 @@ static bool aloft_unseen(const integrity_t *i, const flown_t *flown)
 /* The witnesses predict a motion, and the slant is still. */
 static bool still_against(const integrity_t *i)
 {
-    const bool felt = !feels(i) ||
-                      (i->felt.seen_m * i->pushed.seen_m > 0.0F && feels_against(i, STILL_FELT_M));
+    const bool felt = !acceleration_valid(i) ||
+                      (i->felt.seen_m * i->pushed.seen_m > 0.0F && acceleration_against(i, STILL_FELT_M));
     const bool rigid = i->rigid >= RIGID_SCANS;
-    const bool both = feels_against(i, STILL_BOTH_M) && against(&i->pushed, STILL_BOTH_M);
+    const bool both = acceleration_against(i, STILL_BOTH_M) && against(&i->pushed, STILL_BOTH_M);
 
     return (felt && both && rigid) ||
            ((felt || rigid) && against(&i->pushed, BOTH_M) && i->still == STILL_SCANS);
@@ -642,7 +643,7 @@ static bool both_against(const integrity_t *i, const flown_t *flown)
     const float pushed_m = i->pushed.seen_m;
     const float sure = (fabsf(flown->wanted_m) < CONTENT_M) ? CONTENT_SHARE : 1.0F;
 
-    return feels(i) && counts(&i->pushed) && felt_m * pushed_m > 0.0F &&
+    return acceleration_valid(i) && counts(&i->pushed) && felt_m * pushed_m > 0.0F &&
            at_least(fabsf(felt_m), fabsf(pushed_m)) > sure * AGAINST_M &&
            at_most(fabsf(felt_m), fabsf(pushed_m)) > sure * BOTH_M;
 }
@@ -655,14 +656,15 @@ static bool vain_since_step(const integrity_t *i, const flown_t *flown)
 
     return i->unconfirmed && (i->proved || i->felt_least_m < -WITH_M) && i->pushed.running_s >= OLD_S &&
            fabsf(pushed_m) > UNCONFIRMED_M && pushes_in_vain(i, flown, UNCONFIRMED_N) &&
-           !(feels_against(i, WITH_M) && felt_off_m(i) * pushed_m < 0.0F);
+           !(acceleration_against(i, WITH_M) && felt_off_m(i) * pushed_m < 0.0F);
 }
 
 /* The first climb after the ground shows in the accelerometer only. It is believed, because it measured g at
  * rest a moment ago. The thrust does not help: the hover thrust is not known yet. */
 static bool unproved_against(const integrity_t *i)
 {
-    return i->unconfirmed && !i->proved && !heights_move(i) && feels(i) && felt_off_m(i) < -UNPROVED_M;
+    return i->unconfirmed && !i->proved && !heights_move(i) && acceleration_valid(i) &&
+           felt_off_m(i) < -UNPROVED_M;
 }
 
 /* Reasons for DOUBT_SIGHT. */
@@ -680,14 +682,14 @@ static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
     if (still_against(i) || unproved_against(i)) {
         return true;
     }
-    if (feels(i) && counts(&i->pushed)) {
+    if (acceleration_valid(i) && counts(&i->pushed)) {
         return both_run_away(i) || vain_since_step(i, flown) ||
                (fabsf(i->rise_mps) < STILL_MPS && both_against(i, flown));
     }
     if (counts(&i->pushed)) {
         return vain_since_step(i, flown) || i->vain_s > VAIN_S;
     }
-    return feels_against(i, ALONE_M);
+    return acceleration_against(i, ALONE_M);
 }
 
 /* Reasons for DOUBT_IMU. The hover thrust may have been learned from a wrong accelerometer. Then both
@@ -700,15 +702,15 @@ static bool imu_is_wrong(const integrity_t *i, const flown_t *flown)
     if (integrity_still(i) || unproved_against(i)) {
         return false;
     }
-    return (feels_against(i, ALONE_M) && counts(&i->pushed) && alone) ||
-           (heights_move(i) && feels_against(i, AGAINST_M) && both_against(i, flown));
+    return (acceleration_against(i, ALONE_M) && counts(&i->pushed) && alone) ||
+           (heights_move(i) && acceleration_against(i, AGAINST_M) && both_against(i, flown));
 }
 
 /* Reasons for DOUBT_THRUST. */
 static bool thrust_is_wrong(const integrity_t *i, const flown_t *flown)
 {
-    return i->proved && fabsf(flown->wanted_m) > VAIN_M && against(&i->pushed, POWERLESS_M) && feels(i) &&
-           !feels_against(i, WITH_M) && pushes_in_vain(i, flown, PUSH_N);
+    return i->proved && fabsf(flown->wanted_m) > VAIN_M && against(&i->pushed, NO_AUTHORITY_M) &&
+           acceleration_valid(i) && !acceleration_against(i, WITH_M) && pushes_in_vain(i, flown, PUSH_N);
 }
 
 /* Heights and witnesses agree, over a real motion. */
@@ -716,7 +718,7 @@ static bool agrees(const integrity_t *i)
 {
     const witness_t *mover = counts(&i->pushed) ? &i->pushed : &i->felt;
 
-    return !feels_against(i, WITH_M) && !against(&i->pushed, WITH_M) && mover->moved_m > MOVED_M;
+    return !acceleration_against(i, WITH_M) && !against(&i->pushed, WITH_M) && mover->moved_m > MOVED_M;
 }
 
 /* Clears a doubt after enough agreement. */
@@ -728,7 +730,7 @@ static void judge_again(integrity_t *i, float gap_s)
     if (i->agreed_s > AGREED_S || (seen && integrity_doubts(i, DOUBT_SIGHT))) {
         i->doubts &= (uint16_t) ~(DOUBT_SIGHT | DOUBT_THRUST);
         forget(i);
-    } else if (feels_against(i, AGAINST_M) || against(&i->pushed, AGAINST_M)) {
+    } else if (acceleration_against(i, AGAINST_M) || against(&i->pushed, AGAINST_M)) {
         forget(i);
     }
 }
@@ -777,7 +779,7 @@ static void watch_lift_off(integrity_t *i, const flown_t *flown, float gap_s)
 
 void integrity_height(integrity_t *integrity, const flown_t *flown, float height_m, float gap_s, float age_s)
 {
-    hear(integrity, height_m, gap_s, age_s);
+    take_height(integrity, height_m, gap_s, age_s);
     integrity->felt_least_m = integrity->unconfirmed ? at_most(integrity->felt_least_m, felt_off_m(integrity))
                                                      : 0.0F;
     watch_lift_off(integrity, flown, gap_s);
@@ -796,7 +798,7 @@ void integrity_height(integrity_t *integrity, const flown_t *flown, float height
 
 float integrity_felt_mps(const integrity_t *integrity)
 {
-    return feels(integrity) ? integrity->felt.speed_mps / integrity->shaken : 0.0F;
+    return acceleration_valid(integrity) ? integrity->felt.speed_mps / integrity->shaken : 0.0F;
 }
 
 bool integrity_unconfirmed(const integrity_t *integrity)

@@ -31,11 +31,11 @@
 #define AGE_MAX_S 3600.0F            /* chosen: one hour; the counters stop here */
 #define MODEL_NOISE_ALONE_MPS2 0.15F /* chosen: a biased accelerometer drifts away, the model does not */
 #define GUST_MPS2_PER_M 39.2F        /* fitted as 28 N/m on a vehicle that hovers at 7 N */
-#define UNFELT_TIME_S 3.0F           /* tried 1.5 to 6: the model's bias becomes hover thrust */
-#define UNFELT_CLIMB_TIME_S 30.0F    /* tried 3 to 30: the middle of the stick is known well */
-#define UNFELT_DEADBAND 0.1F         /* tried 0 to 1: the model's bias tells the deadband late */
-#define UNFELT_HEIGHT_S 0.4F         /* chosen: rays of 70 ms, and three scans */
-#define UNFELT_LIFT_OFF_M 0.035F     /* chosen: five times the noise of a height on a noisy vehicle, 7 mm */
+#define NO_ACC_TIME_S 3.0F           /* tried 1.5 to 6: the model's bias becomes hover thrust */
+#define NO_ACC_CLIMB_TIME_S 30.0F    /* tried 3 to 30: the middle of the stick is known well */
+#define NO_ACC_DEADBAND 0.1F         /* tried 0 to 1: the model's bias tells the deadband late */
+#define NO_ACC_HEIGHT_S 0.4F         /* chosen: rays of 70 ms, and three scans */
+#define NO_ACC_LIFT_OFF_M 0.035F     /* chosen: five times the noise of a height on a noisy vehicle, 7 mm */
 
 #define RAMP_START 0.68F     /* below the lightest vehicle, 0.8 of GRAV */
 #define RAMP_N_PER_S 4.0F    /* chosen: leaves the ground in 0.6 s */
@@ -111,7 +111,7 @@ static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt
     const float seen_n = law->actuator.thrust_n * vehicle.upright - taken_n;
     const float doubt_n = SPEED_DOUBT_N_PER_MPS * fabsf(e->now.speed_mps);
 
-    if (law->heightless_s > LEARN_WITHOUT_HEIGHTS_S || e->unchecked_count > 0U || law->powerless ||
+    if (law->heightless_s > LEARN_WITHOUT_HEIGHTS_S || e->unchecked_count > 0U || law->without_authority ||
         estimator_accuses(e)) {
         return; /* no height confirms the estimated speed */
     }
@@ -126,19 +126,19 @@ static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt
 
 /* Hover thrust without accelerations. The filter's bias is then the error of the model: modelled minus true
  * acceleration. Its constant part moves slowly into the hover thrust, out of the bias. */
-static void learn_unfelt(est_law_t *law, const parameters_t *parameters, float dt_s)
+static void learn_hover_by_model(est_law_t *law, const parameters_t *parameters, float dt_s)
 {
     const cascade_vehicle_t vehicle = vehicle_model(law, parameters);
-    const float time_s = is_climb(parameters) ? UNFELT_CLIMB_TIME_S : UNFELT_TIME_S;
+    const float time_s = is_climb(parameters) ? NO_ACC_CLIMB_TIME_S : NO_ACC_TIME_S;
     const float moved_mps2 = dt_s / time_s * law->estimator.now.bias_mps2;
     const float before_n = law->hover.thrust_n;
 
-    if (law->heightless_s > LEARN_WITHOUT_HEIGHTS_S || law->powerless) {
+    if (law->heightless_s > LEARN_WITHOUT_HEIGHTS_S || law->without_authority) {
         return;
     }
     if (is_climb(parameters) && law->estimator.now.height_m > IN_THE_AIR_M) {
         deadband_learn(&law->deadband, law->actuator.thrust_n - before_n, vehicle.need_n - before_n,
-                       UNFELT_DEADBAND * dt_s);
+                       NO_ACC_DEADBAND * dt_s);
     }
     law->hover.thrust_n = between(law->hover.least_n, before_n + moved_mps2 / vehicle.authority_mps2_per_n,
                                   law->hover.most_n);
@@ -159,7 +159,7 @@ static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_
     const estimate_t *now = &law->estimator.now;
 
     return (modelled_motion_t){
-        .known = law->airborne && !law->powerless && law->estimator.initialised &&
+        .known = law->airborne && !law->without_authority && law->estimator.initialised &&
                  (now->height_m > IN_THE_AIR_M || heights_missing(law)),
         .up_mps2 = vehicle.authority_mps2_per_n * (law->actuator.thrust_n * vehicle.upright -
                                                    (law->estimator.felt ? vehicle.need_n : vehicle.hover_n)) -
@@ -192,12 +192,14 @@ static void predict_frame(est_law_t *law, const parameters_t *parameters, const 
     }
     actuator_advance(&law->actuator, law->estimator.now_us);
     law->frameless_s = seconds_between(law->estimator.now_us, law->now_us);
-    const float felt_mps2 = est_law_feels(law) ? law->estimator.up_mps2 - law->estimator.now.bias_mps2 : 0.0F;
+    const float felt_mps2 = est_law_has_acceleration(law)
+                                ? law->estimator.up_mps2 - law->estimator.now.bias_mps2
+                                : 0.0F;
     watch_lift(law, felt_mps2, dt_s);
-    if (law->airborne && est_law_feels(law)) {
+    if (law->airborne && est_law_has_acceleration(law)) {
         learn_hover(law, parameters, dt_s);
     } else if (law->airborne) {
-        learn_unfelt(law, parameters, dt_s);
+        learn_hover_by_model(law, parameters, dt_s);
     }
 }
 
@@ -261,10 +263,10 @@ bool est_law_has_imu(const est_law_t *law)
 bool est_law_ready(const est_law_t *law)
 {
     return law->estimator.initialised && est_law_has_imu(law) &&
-           (law->estimator.felt || law->heightless_s <= UNFELT_HEIGHT_S);
+           (law->estimator.felt || law->heightless_s <= NO_ACC_HEIGHT_S);
 }
 
-bool est_law_feels(const est_law_t *law)
+bool est_law_has_acceleration(const est_law_t *law)
 {
     return law->estimator.felt;
 }
@@ -292,7 +294,7 @@ void est_law_reset(est_law_t *law, const parameters_t *parameters)
     remember_flight(law, parameters->value[PARAMETER_GRAV]);
     law->airborne = false;
     law->ramping = false;
-    law->powerless = false;
+    law->without_authority = false;
     law->ground_m = law->estimator.now.height_m;
     law->ceiling_n = THRUST_MAX_N;
     law->ramp_n = RAMP_START * parameters->value[PARAMETER_GRAV];
@@ -322,10 +324,10 @@ void est_law_set_sure_hover(est_law_t *law, float hover_n, bool descending)
     }
 }
 
-void est_law_set_powerless(est_law_t *law, bool powerless)
+void est_law_set_without_authority(est_law_t *law, bool without_authority)
 {
-    law->powerless = powerless;
-    if (powerless) {
+    law->without_authority = without_authority;
+    if (without_authority) {
         law->hover.thrust_n = between(law->hover.least_n, law->sure_hover_n, law->hover.most_n);
         law->hover.gust_n = 0.0F;
     }
@@ -378,7 +380,7 @@ static cascade_state_t predict_ahead(const est_law_t *law, const cascade_vehicle
 /* Without accelerations the heights show the lift-off late. The thrust ramps by r newtons a second, so after
  * t seconds the vehicle has risen by a r t^3 / 6 (a: authority). The height gives t. Height, speed and the
  * thrust at lift-off follow from t. */
-static float leave_unfelt(est_law_t *law, const parameters_t *parameters)
+static float leave_ground_by_height(est_law_t *law, const parameters_t *parameters)
 {
     const float jerk_mps3 = RAMP_N_PER_S * vehicle_model(law, parameters).authority_mps2_per_n;
     const float risen_m = at_least(law->estimator.now.height_m - law->ground_m, 0.0F);
@@ -398,7 +400,7 @@ static bool take_off(est_law_t *law, const parameters_t *parameters)
     const float drag_mps2 = vehicle.damping_per_s * at_least(law->lift_mps, 0.0F);
     const float taken_n = (law->lift_mps2 + drag_mps2) / vehicle.authority_mps2_per_n;
     const float height_m = law->estimator.now.height_m - law->ground_m;
-    const float lift_off_m = est_law_feels(law) ? LIFT_OFF_M : UNFELT_LIFT_OFF_M;
+    const float lift_off_m = est_law_has_acceleration(law) ? LIFT_OFF_M : NO_ACC_LIFT_OFF_M;
     const float known_n = at_least(gravity_n, law->flown_hover_n);
     const bool strong = law->actuator.thrust_n > LIFT_OFF_SHARE * gravity_n;
 
@@ -406,7 +408,8 @@ static bool take_off(est_law_t *law, const parameters_t *parameters)
     const bool lifting = height_m > lift_off_m || law->lift_mps2 > lift_off_threshold_mps2(law);
     law->airborne = height_m > LIFT_OFF_SURE_M || (strong && lifting);
     if (law->airborne) {
-        const float hover_n = est_law_feels(law) ? law->lift_n - taken_n : leave_unfelt(law, parameters);
+        const float hover_n = est_law_has_acceleration(law) ? law->lift_n - taken_n
+                                                            : leave_ground_by_height(law, parameters);
         start_hover(law, parameters, is_climb(parameters) ? known_n : hover_n,
                     is_climb(parameters) && known_n == gravity_n ? NEUTRAL_SIGMA_N : HOVER_SIGMA_START_N);
         cascade_init(&law->cascade, law->ramp_n);

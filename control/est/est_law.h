@@ -54,7 +54,7 @@ typedef struct {
     float ceiling_n;           /* upper limit of the thrust in a descent */
     float ground_m;            /* height where it stood last; not 0 when something blocks the beam */
     bool accelerations_doubted;
-    bool powerless;      /* doubt THRUST: commands have no effect */
+    bool without_authority;      /* doubt THRUST: commands have no effect */
     float heightless_s;  /* time since the rays of the latest height */
     float frameless_s;   /* time since the latest frame was measured */
     float near_ground_s; /* time near the ground while landing */
@@ -78,7 +78,7 @@ void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t st
 bool est_law_has_imu(const est_law_t *law);
 /* True when the estimator uses accelerations. False: no frame has had them lately, and the thrust model and
  * the heights alone make the estimate. */
-bool est_law_feels(const est_law_t *law);
+bool est_law_has_acceleration(const est_law_t *law);
 /* True when est_law_has_imu() is true and the estimator has received at least one height; without
  * accelerations only while heights are fresh. */
 bool est_law_ready(const est_law_t *law);
@@ -92,9 +92,9 @@ void est_law_engage(est_law_t *law, float thrust_n, float hover_n);
  * limits its thrust by the value that hover_n had when the descent began. */
 void est_law_set_sure_hover(est_law_t *law, float hover_n, bool descending);
 
-/* powerless true: commands have no effect (doubt THRUST). Nothing is learned or predicted from them, and
+/* without_authority true: commands have no effect (doubt THRUST). Nothing is learned or predicted from them, and
  * the hover thrust is the sure one. */
-void est_law_set_powerless(est_law_t *law, bool powerless);
+void est_law_set_without_authority(est_law_t *law, bool without_authority);
 
 /* sways true: the tilt moves as it does in flight, see touchdown.h. */
 void est_law_set_sways(est_law_t *law, bool sways);

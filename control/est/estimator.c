@@ -47,8 +47,8 @@
 #define SPEED_NOISE_MPS2 0.53F   /* fitted; what neither accelerometer nor model knows */
 #define FRAME_S 0.025F           /* period of the IMU, seed 5.2.1.1 */
 #define BIAS_DRIFT_MPS2 0.095F   /* fitted; m/s2 per root second */
-#define UNFELT_DRIFT_MPS2 0.4F   /* tried 0.1 to 0.8: more follows gusts better and shakes the thrust more */
-#define UNFELT_NOISE_MPS2 0.4F   /* tried 0.1 to 1.5: hardly matters below 1 */
+#define NO_ACC_DRIFT_MPS2 0.4F   /* tried 0.1 to 0.8: more follows gusts better and shakes the thrust more */
+#define NO_ACC_NOISE_MPS2 0.4F   /* tried 0.1 to 1.5: hardly matters below 1 */
 #define TERRAIN_DRIFT_MPS 0.053F /* fitted; m/s per root second */
 #define TERRAIN_TIME_S 1.0F      /* chosen: a slope lasts about a second */
 #define NOISE_START_MPS2 0.4F    /* assumed of a Razor on a flying frame */
@@ -165,7 +165,7 @@ static void propagate_covariance(estimator_t *e, const estimator_frame_t *frame,
     const float decay = at_least(1.0F - dt_s / TERRAIN_TIME_S, 0.0F);
     const float slope = frame->share * dt_s;
     const float half = 0.5F * slope * dt_s;
-    const float drift_mps2 = e->felt ? BIAS_DRIFT_MPS2 : UNFELT_DRIFT_MPS2;
+    const float drift_mps2 = e->felt ? BIAS_DRIFT_MPS2 : NO_ACC_DRIFT_MPS2;
     const float speed_bias = p[SPEED][BIAS] - slope * p[BIAS][BIAS];
     const float height_speed = p[HEIGHT][SPEED] + dt_s * (p[SPEED][SPEED] - p[SPEED][TERRAIN]) -
                                half * p[SPEED][BIAS];
@@ -366,7 +366,7 @@ static estimator_frame_t motion_of(estimator_t *e, const modelled_motion_t *mode
     if (!e->felt) {
         return (estimator_frame_t){.up_mps2 = modelled_mps2,
                                    .share = model->known ? 1.0F : 0.0F,
-                                   .drift = drift_of(0.0F, UNFELT_NOISE_MPS2)};
+                                   .drift = drift_of(0.0F, NO_ACC_NOISE_MPS2)};
     }
     const float mean_mps2 = e->has_frames ? 0.5F * (up_mps2 + e->up_mps2) : up_mps2;
     const float share = accelerometer_share(e, model) * credit(e, model, mean_mps2);
@@ -384,14 +384,14 @@ void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motio
     float upright;
     const float told_mps2 = up_and_upright(frame, &upright);
     const float up_mps2 = frame->has_acceleration ? told_mps2 : 0.0F;
-    const bool feels = frame->has_acceleration && fabsf(up_mps2) < UP_MAX_MPS2;
-    const bool lacks = !feels && e->felt && (uint32_t)(time_us - e->felt_us) <= ESTIMATOR_FRESH_US;
+    const bool usable = frame->has_acceleration && fabsf(up_mps2) < UP_MAX_MPS2;
+    const bool lacks = !usable && e->felt && (uint32_t)(time_us - e->felt_us) <= ESTIMATOR_FRESH_US;
 
     if (!has_tilt(frame) || lacks || (int32_t)(frame->sequence - e->sequence) <= 0) {
         return;
     }
-    if (feels != e->felt) {
-        change_source(e, feels);
+    if (usable != e->felt) {
+        change_source(e, usable);
     }
     e->felt_us = time_us;
     e->sequence = frame->sequence;
@@ -400,13 +400,13 @@ void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motio
     e->latest.roll_rad = frame->median.roll_rad;
     e->latest.pitch_rad = frame->median.pitch_rad;
     e->upright = upright;
-    e->up_mps2 = feels ? up_mps2 : 0.0F;
+    e->up_mps2 = usable ? up_mps2 : 0.0F;
     if (!e->has_frames || gap_us > GAP_MAX_US || gap_us < -GAP_MAX_US) {
         restart_at_frame(e, time_us, up_mps2);
     } else if (before(e->delayed_us, time_us)) {
         append_frame(e, &e->latest);
     }
-    if (feels) {
+    if (usable) {
         measure_noise(e, up_mps2);
     }
 }
