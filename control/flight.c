@@ -32,7 +32,7 @@
 #define TAKEOFF_MPS 0.6F        /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
 #define CLIMB_MARGIN_MPS 0.4F   /* chosen: room for an overshoot of the climb rate above VUP */
 #define STOP_N_PER_S 2.0F       /* as STOP_N_PER_S in est_law.c */
-#define STAND_TEST_N_PER_S 1.0F /* chosen: in 2 s too low to fly; a fall is felt before it is fast */
+#define STAND_TEST_N_PER_S 1.0F /* chosen: in 2 s too low to fly; the accelerometer shows a fall before it is fast */
 #define NOT_LIFTED_MAX_US UINT32_C(3000000) /* chosen: the take-off's ramp in est_law.c ends after 1.2 s */
 #define FLOAT_REACH_M 0.30F /* chosen: three times the distance that counts as reached, reach.c */
 

@@ -585,7 +585,7 @@ static bool against(const witness_t *witness, float at_least_m)
     return counts(witness) && fabsf(witness->seen_m) > at_least_m;
 }
 
-/* Sum of the felt innovations, made smaller when the accelerometer is noisy. */
+/* Sum of the accelerometer's innovations, made smaller when the accelerometer is noisy. */
 static float felt_off_m(const integrity_t *i)
 {
     return i->felt.seen_m / i->shaken;

@@ -323,6 +323,57 @@ void test_a_new_reference_forgets_the_terrain_that_was_ignored(void)
 
 /* ---- the vehicle that the parameters describe */
 
+/* Rather low, so that a vehicle without heights sinks. Without the drag, or with a thrust later than the
+ * acceleration, it comes out a third of a newton higher. */
+void test_the_lift_off_tells_the_hover_thrust_and_rather_low(void)
+{
+    for (double hover_n = 6.0; hover_n < 8.45; hover_n += 0.8) {
+        double off_n = 0.0;
+
+        for (uint32_t seed = 1U; seed <= 6U; seed++) {
+            board(seed);
+            world.body.hover_n = hover_n;
+            run(3.0);
+            setr(0.6F);
+            for (int i = 0; i < 8000 && !flight.est.airborne; i++) {
+                advance();
+            }
+            TEST_ASSERT_TRUE(flight.est.airborne);
+            off_n += ((double)flight.est.hover.thrust_n - hover_n) / 6.0;
+        }
+        printf("hover %.1f N: found at lift-off %+.2f N off\n", hover_n, off_n);
+        TEST_ASSERT_DOUBLE_WITHIN(0.22, -0.25, off_n);
+    }
+}
+
+static double lowest_thrust_over_an_edge_n(double edge_m)
+{
+    board(1U);
+    hover_at(0.6F);
+    world.body.terrain_m -= edge_m;
+    least_n = 99.0;
+    run(0.6);
+    return least_n - world.body.hover_n;
+}
+
+void test_a_far_fall_of_the_terrain_is_followed_slowly_at_first(void)
+{
+    TEST_ASSERT_DOUBLE_WITHIN(0.25, -0.62, lowest_thrust_over_an_edge_n(0.6));
+    TEST_ASSERT_TRUE(lowest_thrust_over_an_edge_n(0.25) < -2.0);
+}
+
+void test_a_doubt_of_the_thrust_gives_none_on_the_ground(void)
+{
+    hover_at(0.6F);
+    setr(0.0F);
+    run_until(FLIGHT_GROUND, 15.0);
+    flight.integrity.doubts = DOUBT_THRUST;
+    flight.integrity.held_n = 7.3F;
+    flight.integrity.held_down = true;
+    run(1.0);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, out.thrust_n);
+}
+
 void test_the_model_is_the_one_that_the_parameters_describe(void)
 {
     board(1U);
