@@ -29,10 +29,11 @@
 #define UNSURE_WINDOW_N 2.0F       /* chosen: as HOVER_BOUND_N in est_law.c */
 #define UNSURE_REACH_M 0.09F       /* chosen: asks for 1.2 N at the delivered POSK and VELK */
 #define UNCONFIRMED_MPS 0.35F      /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
-#define TAKEOFF_MPS 0.6F        /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
-#define CLIMB_MARGIN_MPS 0.4F   /* chosen: room for an overshoot of the climb rate above VUP */
-#define STOP_N_PER_S 2.0F       /* as STOP_N_PER_S in est_law.c */
-#define STAND_TEST_N_PER_S 1.0F /* chosen: in 2 s too low to fly; the accelerometer shows a fall before it is fast */
+#define TAKEOFF_MPS 0.6F      /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
+#define CLIMB_MARGIN_MPS 0.4F /* chosen: room for an overshoot of the climb rate above VUP */
+#define STOP_N_PER_S 2.0F     /* as STOP_N_PER_S in est_law.c */
+#define STAND_TEST_N_PER_S \
+    1.0F /* chosen: in 2 s too low to fly; the accelerometer shows a fall before it is fast */
 #define NOT_LIFTED_MAX_US UINT32_C(3000000) /* chosen: the take-off's ramp in est_law.c ends after 1.2 s */
 #define FLOAT_REACH_M 0.30F /* chosen: three times the distance that counts as reached, reach.c */
 
