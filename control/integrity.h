@@ -85,7 +85,7 @@ typedef struct {
     uint16_t rigid; /* scans in a row whose slants vary less than those of any flying vehicle */
     uint16_t still; /* scans in a row whose slants contain only white noise */
     /* heights */
-    bool has_height;           /* at least one height was received */
+    bool has_height;      /* at least one height was received */
     float height_m;       /* latest height */
     float rise_mps;       /* low-passed rate of the heights, without steps */
     float way_m;          /* leaky sum of the height changes since the latest step */

@@ -54,11 +54,11 @@ typedef struct {
     float ceiling_n;           /* upper limit of the thrust in a descent */
     float ground_m;            /* height where it stood last; not 0 when something blocks the beam */
     bool accelerations_doubted;
-    bool without_authority;      /* doubt THRUST: commands have no effect */
-    float heightless_s;  /* time since the rays of the latest height */
-    float frameless_s;   /* time since the latest frame was measured */
-    float near_ground_s; /* time near the ground while landing */
-    bool sways;          /* the tilt sways as in flight */
+    bool without_authority; /* doubt THRUST: commands have no effect */
+    float heightless_s;     /* time since the rays of the latest height */
+    float frameless_s;      /* time since the latest frame was measured */
+    float near_ground_s;    /* time near the ground while landing */
+    bool sways;             /* the tilt sways as in flight */
 } est_law_t;
 
 void est_law_init(est_law_t *law);
@@ -92,8 +92,8 @@ void est_law_engage(est_law_t *law, float thrust_n, float hover_n);
  * limits its thrust by the value that hover_n had when the descent began. */
 void est_law_set_sure_hover(est_law_t *law, float hover_n, bool descending);
 
-/* without_authority true: commands have no effect (doubt THRUST). Nothing is learned or predicted from them, and
- * the hover thrust is the sure one. */
+/* without_authority true: commands have no effect (doubt THRUST). Nothing is learned or predicted from them,
+ * and the hover thrust is the sure one. */
 void est_law_set_without_authority(est_law_t *law, bool without_authority);
 
 /* sways true: the tilt moves as it does in flight, see touchdown.h. */
