@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open test test-long format mutants test-ground port size faults fuzz prove bench coverage firmware flash check-ti clean
+.PHONY: help build fly plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open test test-long soak format mutants test-ground port size faults fuzz prove bench coverage firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -109,9 +109,13 @@ test: ## The tests, but for the long ones: under ASan and UBSan, then as release
 test-long: ## The long ones: sweeps of many flights, campaigns, tuning, fuzzing
 	$(build_tests)
 	@printf '\n== long tests under ASan and UBSan ==\n'
-	@$(ctest) build-sanitize -L long
+	@$(ctest) build-sanitize -L long -LE soak
 	@printf '\n== long tests as released ==\n'
-	@$(ctest) build -L long
+	@$(ctest) build -L long -LE soak
+
+soak: ## The longest: a board in real time, fits of 30 vehicles, proofs; most of an hour
+	$(build_tests)
+	@$(ctest) build -L soak
 
 mutants: ## Do the unit tests notice small faults? ARGS="--room control --sample 300 --seed 1"; survivors as a diff
 	@$(setup) build test
