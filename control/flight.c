@@ -313,7 +313,7 @@ static void bumpless_transfer(flight_t *flight, flight_mode_t before, bool law_c
 static float wanted_m(const flight_t *flight)
 {
     const flight_state_t state = flight->supervisor.state;
-    const bool holds = state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING ||
+    const bool holds = state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING || state == FLIGHT_LOWERING ||
                        (state == FLIGHT_FLOATING && flight->mode != FLIGHT_MODE_HOVER);
     return holds ? aim_m(flight) - flight->supervisor.height.height_mm * 0.001F : NAN;
 }

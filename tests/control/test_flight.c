@@ -457,6 +457,24 @@ void test_floating_is_the_gravity_feed_forward_and_follows_it(void)
     TEST_ASSERT_EQUAL_FLOAT(6.4F, out.thrust_n);
 }
 
+/* Thrust in doubt is held near the hover thrust, but not on the ground. */
+void test_no_doubt_keeps_motors_running_on_the_ground(void)
+{
+    board(7.4, 2.4);
+    calm_law();
+    hover_at(0.8F);
+    flight.integrity.doubts = DOUBT_THRUST;
+    flight.integrity.held_n = 7.4F;
+    flight.integrity.held_down = true;
+    setr(0.0F);
+    run_until(FLIGHT_GROUND, 12.0);
+    flight.integrity.doubts = DOUBT_THRUST;
+    run(0.3);
+    TEST_ASSERT_EQUAL(FLIGHT_GROUND, out.state);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, out.doubts);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, out.thrust_n);
+}
+
 /* ---- hover thrust */
 
 /* He holds it 0.2 m too high for ten seconds: a law that went on would have wound up. */
