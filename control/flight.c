@@ -26,6 +26,7 @@
 #define GAP_LONG_S 10.0F   /* chosen: longer gaps count as this long; integrity.c restarts after 1.5 s */
 #define LOW_MM 80.0F       /* chosen: above REST_BELOW_MM in supervisor.c, 50 mm */
 #define NO_AUTHORITY_WINDOW_N 0.6F /* chosen: 0.8 m/s2 */
+#define YIELD_N_PER_S 0.2F         /* chosen: as SINK_FADE_N_PER_S in est_law.c */
 #define UNSURE_WINDOW_N 2.0F       /* chosen: as HOVER_BOUND_N in est_law.c */
 #define UNSURE_REACH_M 0.09F       /* chosen: asks for 1.2 N at the delivered POSK and VELK */
 #define UNCONFIRMED_MPS 0.35F      /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
@@ -622,15 +623,20 @@ static float within_descent_n(const flight_t *flight, const parameters_t *parame
 }
 
 /* While commands have no effect, the thrust stays near the hover thrust. So it fits when the commands get
- * their effect back. In FLOATING too, where a pilot may fly without a pin that reports it. */
-static float within_power_n(const flight_t *flight, float thrust_n)
+ * their effect back. In a descent the window sinks: the thrust that was held may be one that climbs.
+ * In FLOATING too, where a pilot may fly without a pin that reports it. */
+static float within_power_n(flight_t *flight, float thrust_n)
 {
-    const float held_n = flight->integrity.held_n;
+    const float step_n = YIELD_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
+    const bool doubted = integrity_doubts(&flight->integrity, DOUBT_THRUST);
+
+    flight->yield_n = doubted && descends(flight->supervisor.state) ? flight->yield_n + step_n : 0.0F;
+    const float held_n = flight->integrity.held_n - flight->yield_n;
 
     if (flight->unsure) {
         return between(flight->hover_n - UNSURE_WINDOW_N, thrust_n, flight->hover_n + UNSURE_WINDOW_N);
     }
-    if (!integrity_doubts(&flight->integrity, DOUBT_THRUST) || flight->mode == FLIGHT_MODE_IDLE) {
+    if (!doubted || flight->mode == FLIGHT_MODE_IDLE) {
         return thrust_n;
     }
     return flight->integrity.held_down ? at_least(thrust_n, held_n - NO_AUTHORITY_WINDOW_N)

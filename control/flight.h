@@ -43,6 +43,7 @@ typedef struct {
     uint16_t doubts;    /* DOUBT_* of the previous cycle */
     bool lifting;       /* since the ground the vehicle has not left it yet, as far as known */
     bool not_lifted;    /* TAKEOFF ended and the vehicle had not left the ground */
+    float yield_n;      /* how far the window of doubt THRUST has sunk in the present descent */
     float stand_test_n; /* upper limit while a descent tests whether the vehicle stands */
     float floating_m;   /* height that FLOATING holds */
     bool unsure;        /* FLOATING, and no pin tells who has the throttle: nothing is learned */
