@@ -126,7 +126,7 @@ const scenario_t scenarios[] = {
              {20.40, "SETR", "0.8"}, {20.75, "SETR", "0.4"}, {21.10, "SETR", "0.8"}, {21.45, "SETR", "0.4"}},
         .reference_m = 0.6,
         .land_s = 22.0,
-        .end_s = 28.0,
+        .end_s = 33.0,
         .fate = FATE_EITHER,
         .expectation_count = 3,
         .expectations = {{METRIC_GROUND_CONTACTS, 0, 0}, {METRIC_TAKEOVERS, 0, 0}, {METRIC_CUTS, 0, 0}},
