@@ -124,7 +124,7 @@ static const figure_t figures[] = {
     {"acc_alias_hz", "Hz", 0, 1000, IMU(acceleration_alias_hz), 1, "of so many oscillations"},
     {"imu_stock", "-", 0, 1, IMU(stock), 1, "1: a Razor as it comes: angles alone, every 20 ms"},
     {"imu_period", "s", 0, 0.2, AT(imu_period_s), 1,
-     "from frame to frame; 0: 0.025, as it comes 0.02; the line's rate allows 0.011"},
+     "from frame to frame; 0: 0.025, stock 0.02; least 0.011"},
     {"imu_age", "s", 0, 0.15, AT(imu_age_s), 1, "of a frame's content as its first octet leaves"},
     {"imu_roll_sign", "-", -1, 1, IMU(roll_sign), 1, "-1: it tells roll the other way round"},
     {"imu_pitch_sign", "-", -1, 1, IMU(pitch_sign), 1, "-1: it tells pitch the other way round"},
