@@ -627,10 +627,13 @@ static float within_descent_n(const flight_t *flight, const parameters_t *parame
  * In FLOATING too, where a pilot may fly without a pin that reports it. */
 static float within_power_n(flight_t *flight, float thrust_n)
 {
-    const float step_n = YIELD_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
     const bool doubted = integrity_doubts(&flight->integrity, DOUBT_THRUST);
 
-    flight->yield_n = doubted && descends(flight->supervisor.state) ? flight->yield_n + step_n : 0.0F;
+    if (doubted && descends(flight->supervisor.state)) {
+        flight->yield_n += YIELD_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
+    } else {
+        flight->yield_n = 0.0F;
+    }
     const float held_n = flight->integrity.held_n - flight->yield_n;
 
     if (flight->unsure) {
@@ -651,11 +654,11 @@ static float stand_test_n(flight_t *flight, float thrust_n)
     const bool by_estimate = flight->mode == FLIGHT_MODE_EST_SINK || flight->mode == FLIGHT_MODE_EST_LAND;
     const bool acceleration_valid = !integrity_doubts(&flight->integrity, DOUBT_IMU);
     const bool descent = by_estimate || (flight->mode == FLIGHT_MODE_BLIND_DESCENT && acceleration_valid);
-    const float step_n = STAND_TEST_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
 
     if (!descent || !integrity_may_stand(&flight->integrity)) {
         flight->stand_test_n = THRUST_MAX_N;
     } else {
+        const float step_n = STAND_TEST_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
         flight->stand_test_n = at_least(at_most(flight->stand_test_n, flight->thrust_n) - step_n, 0.0F);
     }
     return at_most(thrust_n, flight->stand_test_n);

@@ -90,6 +90,7 @@
 #define FELL_MPS 0.4F         /* chosen: half of FALL_MPS */
 #define FALL_STILL_MPS 0.5F   /* chosen: above FELL_MPS */
 #define ROCKED_RAD 0.017F     /* chosen: 1 degree, four times the noise of an angle */
+#define ROCKED_BELOW_M 0.10F  /* as LANDED_NO_MORE_M in touchdown.h */
 #define ROCKED_S 0.8F         /* chosen: 32 frames; at 0.5 s 2 of 96 blocked flights rested in the air */
 #define SWAYING_S 1.5F        /* chosen: 15 scans; a lift-off that the heights see takes less than a second */
 #define SWAYING_M 0.05F       /* chosen: ten times the noise of a height */
@@ -333,8 +334,8 @@ static void watch_sway(integrity_t *i, const imu_sample_t *frame, float dt_s)
     i->sway_rad2 += share * (roll_rad * roll_rad + pitch_rad * pitch_rad - i->sway_rad2);
 }
 
-/* Measures how long the tilt has stayed where it is. This ends within a second of a touchdown, where
- * sway_rad2 takes three. */
+/* Measures how long the tilt has stayed where it is, near the ground. This ends within a second of a
+ * touchdown, where sway_rad2 takes three. */
 static void watch_rocking(integrity_t *i, const imu_sample_t *frame, float dt_s)
 {
     const bool moved = fabsf(frame->median.roll_rad - i->anchor_rad[0]) > ROCKED_RAD ||
@@ -393,7 +394,11 @@ static void integrate_frame(integrity_t *i, const flown_t *flown, const imu_samp
         return;
     }
     watch_sway(i, frame, dt_s);
-    watch_rocking(i, frame, dt_s);
+    if (i->height_m < ROCKED_BELOW_M) {
+        watch_rocking(i, frame, dt_s);
+    } else {
+        i->unrocked_s = 0.0F;
+    }
     if (flown->grounded) {
         measure_rest(i, dt_s);
     } else {
@@ -768,7 +773,11 @@ static void judge(integrity_t *i, const flown_t *flown, float gap_s)
 /* How long the tilt has swayed as in the air, and the beam has shown nothing of it. */
 static void watch_lift_off(integrity_t *i, const flown_t *flown, float gap_s)
 {
-    const bool sways = flown->standing && i->unconfirmed && integrity_sways(i) && integrity_still(i);
+    if (!flown->standing) {
+        i->swaying_s = 0.0F;
+        return;
+    }
+    const bool sways = i->unconfirmed && integrity_sways(i) && integrity_still(i);
 
     if (!sways || fabsf(i->height_m - i->swaying_from_m) > SWAYING_M) {
         i->swaying_s = 0.0F;

@@ -48,6 +48,7 @@ void supervisor_init(supervisor_t *supervisor)
 {
     *supervisor = (supervisor_t){
         .state = FLIGHT_GROUND,
+        .stays = FLIGHT_STATE_COUNT,
         .height.age_us = AGE_MAX_US,
         .attitude_age_us = AGE_MAX_US,
         .link_age_us = AGE_MAX_US,
@@ -336,9 +337,13 @@ void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs
     observe_climb(supervisor);
 
     const uint16_t met = conditions(supervisor, in);
-    const flight_state_t next = flight_next_state(supervisor->state, met);
-    if (next != supervisor->state) {
-        enter(supervisor, next);
+    if (supervisor->state != supervisor->stays || met != supervisor->stays_if) {
+        const flight_state_t next = flight_next_state(supervisor->state, met);
+        supervisor->stays = (next == supervisor->state) ? next : FLIGHT_STATE_COUNT;
+        supervisor->stays_if = met;
+        if (next != supervisor->state) {
+            enter(supervisor, next);
+        }
     }
     supervisor->flags = flags(supervisor, met, link_s, in);
 }

@@ -295,12 +295,14 @@ const scenario_t *scenario_file_read(const char *path)
     int number = 0;
 
     memset(&reading, 0, sizeof reading);
-    reading.scenario.name = kept(name_of(path));
     reading.scenario.summary = "";
     reading.scenario.fate = FATE_EITHER;
     while (error == NULL && fgets(text, sizeof text, in) != NULL) {
         number++;
         error = read_line(text);
+    }
+    if (reading.scenario.name == NULL) {
+        reading.scenario.name = kept(name_of(path));
     }
     if (in != NULL && fclose(in) == 0 && error == NULL) {
         number = 0;
