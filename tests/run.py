@@ -35,7 +35,7 @@ def summary(build, options, report):
     lines = [f"skipped: {name}: {reason}" for name, reason in rows] or ["skipped: nothing"]
     for at, option in enumerate(options):
         if option == "-LE":
-            left = len(names(build, [])) - len(names(build, options))
+            left = len(names(build, options[:at] + options[at + 2:])) - len(names(build, options))
             lines.append(f"not in this run: {left} tests with label {options[at + 1]}")
     return lines
 
