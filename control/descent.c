@@ -29,7 +29,7 @@ void descent_start(descent_t *descent, float rate_mm_s)
     descent->sink_mm_s = between(0.0F, -rate_mm_s, DESCENT_RATE_MM_S);
     descent->trim_n = 0.0F;
     descent->near_ground_s = 0.0F;
-    descent->sways = false;
+    descent->rocks = false;
 }
 
 static float rate_action_n(float error_mm_s)
@@ -50,7 +50,7 @@ float descent_step(descent_t *descent, float hover_n, float height_mm, float rat
     descent->trim_n = between(-TRIM_MAX_N, descent->trim_n + trim_gain * error_mm_s * dt_s, TRIM_MAX_N);
     const float setpoint_n = at_least(hover_n - sink_n + descent->trim_n + rate_action_n(error_mm_s),
                                       LEAST_SHARE * hover_n);
-    descent->near_ground_s = touchdown_time_s(descent->near_ground_s, height_mm * 0.001F, descent->sways,
+    descent->near_ground_s = touchdown_time_s(descent->near_ground_s, height_mm * 0.001F, descent->rocks,
                                               dt_s);
     return at_most(setpoint_n, touchdown_limit_n(descent->near_ground_s, hover_n + descent->trim_n));
 }

@@ -12,7 +12,7 @@ typedef struct {
     float sink_mm_s;     /* present wanted sink rate, > 0 is downwards */
     float trim_n;        /* correction to hover_n, learned in this descent from the vertical speed */
     float near_ground_s; /* time within 40 mm of the ground */
-    bool sways;          /* set before each step: the tilt sways as in flight */
+    bool rocks;          /* set before each step: the tilt sways as in flight */
 } descent_t;
 
 /* Call before the first step of a descent. rate_mm_s: present vertical speed, > 0 is up. The wanted sink

@@ -213,12 +213,18 @@ static void step_pidt(flight_t *flight, const parameters_t *parameters, float re
     }
 }
 
+/* The tilt moves as in flight. An IMU that has fallen silent does not say so any longer. */
+static bool rocks(const flight_t *flight)
+{
+    return integrity_rocks(&flight->integrity) && est_law_has_imu(&flight->est);
+}
+
 static void step_descent(flight_t *flight, bool started)
 {
     const height_track_t *height = &flight->supervisor.height;
     const float gap_s = height->is_new ? seconds_at_most(height->gap_us, GAP_MAX_S) : 0.0F;
 
-    flight->descent.sways = integrity_rocks(&flight->integrity);
+    flight->descent.rocks = rocks(flight);
     if (height->is_new || started) {
         flight->setpoint_n = descent_step(&flight->descent, flight->hover_n, height->height_mm,
                                           height->rate_mm_s, gap_s);
@@ -426,7 +432,7 @@ static void change_doubts(flight_t *flight, float gravity_n)
     }
     est_law_set_without_authority(&flight->est, integrity_doubts(integrity, DOUBT_THRUST) || flight->unsure);
     est_law_set_accelerations_doubted(&flight->est, integrity_doubts(integrity, DOUBT_IMU));
-    est_law_set_sways(&flight->est, integrity_rocks(integrity));
+    est_law_set_rocks(&flight->est, rocks(flight));
     if ((come & DOUBT_IMU) != 0U && flight->est.airborne) { /* the estimate used them until now */
         estimator_amend(&flight->est.estimator, integrity->height_m, integrity->rise_mps, 0.0F);
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
@@ -449,7 +455,7 @@ static void supervise(flight_t *flight, const parameters_t *parameters, const fl
                   (flight->not_lifted && flight->thrust_n <= flight->idle_n),
         .upright = flight->integrity.upright,
         .sways = integrity_sways(&flight->integrity),
-        .rocks = integrity_rocks(&flight->integrity),
+        .rocks = rocks(flight),
     };
     supervisor_step(&flight->supervisor, parameters->value[PARAMETER_LINK], in, &estimate);
 }
@@ -622,9 +628,9 @@ static float within_descent_n(const flight_t *flight, const parameters_t *parame
     return at_least(thrust_n, flight->hover_n - sinking_n);
 }
 
-/* While commands have no effect, the thrust stays near the hover thrust. So it fits when the commands get
- * their effect back. In a descent the window sinks: the thrust that was held may be one that climbs.
- * In FLOATING too, where a pilot may fly without a pin that reports it. */
+/* While commands have no effect, and in FLOATING, where a pilot may fly without a pin that reports it, the
+ * thrust stays near the hover thrust. So it fits when the commands get their effect back. In a descent the
+ * limit falls with time: the thrust that was held may be one that climbs. */
 static float within_power_n(flight_t *flight, float thrust_n)
 {
     const bool doubted = integrity_doubts(&flight->integrity, DOUBT_THRUST);

@@ -16,9 +16,7 @@
     UINT32_C(1000000)                  /* chosen: a pilot who flies, not one who lifts the vehicle by hand \
                                         */
 #define REST_HELD_US UINT32_C(1200000) /* chosen: a bounce is shorter */
-#define REST_ROCKS_MAX_US \
-    UINT32_C(20000000)                        /* chosen: a landing from 4 m, and nobody rocks it for so long \
-                                               */
+#define REST_ROCKS_MAX_US UINT32_C(20000000)  /* chosen: above the time of a landing from 4 m */
 #define LINK_HOLD_US UINT32_C(5000000)        /* chosen: the flag warns for 5 s, then the vehicle lands */
 #define DESCENT_TIMEOUT_US UINT32_C(45000000) /* the thrust of a blind descent has fallen to 0, descent.c */
 #define AGE_MAX_US UINT32_C(3600000000)       /* one hour: below the wrap of 71 minutes */
@@ -48,7 +46,7 @@ void supervisor_init(supervisor_t *supervisor)
 {
     *supervisor = (supervisor_t){
         .state = FLIGHT_GROUND,
-        .stays = FLIGHT_STATE_COUNT,
+        .kept_state = FLIGHT_STATE_COUNT,
         .height.age_us = AGE_MAX_US,
         .attitude_age_us = AGE_MAX_US,
         .link_age_us = AGE_MAX_US,
@@ -337,10 +335,10 @@ void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs
     observe_climb(supervisor);
 
     const uint16_t met = conditions(supervisor, in);
-    if (supervisor->state != supervisor->stays || met != supervisor->stays_if) {
+    if (supervisor->state != supervisor->kept_state || met != supervisor->kept_conditions) {
         const flight_state_t next = flight_next_state(supervisor->state, met);
-        supervisor->stays = (next == supervisor->state) ? next : FLIGHT_STATE_COUNT;
-        supervisor->stays_if = met;
+        supervisor->kept_state = (next == supervisor->state) ? next : FLIGHT_STATE_COUNT;
+        supervisor->kept_conditions = met;
         if (next != supervisor->state) {
             enter(supervisor, next);
         }

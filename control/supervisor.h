@@ -68,11 +68,11 @@ typedef struct {
     uint32_t estimate_age_us;
     uint16_t tilted_count;
     bool stands;
-    flight_state_t
-        stays; /* state that flight_next_state() kept in the previous cycle; FLIGHT_STATE_COUNT: none */
-    uint16_t stays_if; /* by these conditions */
-    bool rocks;        /* landing or descending, and the tilt moves as it does in flight */
-    bool pilots;       /* the pilot had the throttle in the previous cycle */
+    /* The latest state and conditions that made no transition; FLIGHT_STATE_COUNT: none. */
+    flight_state_t kept_state;
+    uint16_t kept_conditions;
+    bool rocks;  /* landing or descending, and the tilt moves as it does in flight */
+    bool pilots; /* the pilot had the throttle in the previous cycle */
     bool handed_over;
     bool level;
 } supervisor_t;

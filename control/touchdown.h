@@ -15,17 +15,17 @@
 #define LANDED_NO_MORE_M 0.10F    /* chosen: above any bounce */
 #define LANDED_ABOVE_HOVER_N 0.5F /* chosen: room to brake the last centimetres */
 #define LANDED_FADE_N_PER_S 2.0F  /* chosen: no thrust 4 s later */
-#define LANDED_SWAYS_S 0.7F /* chosen: 0.9 N below the hover thrust, more than the ground effect carries */
-#define LANDED_SWAYS_SHARE 0.1F /* chosen: then 0.2 N/s; it sinks at 0.5 m/s and slightly more */
+#define LANDED_ROCKS_S 0.7F /* chosen: 0.9 N below the hover thrust, more than the ground effect carries */
+#define LANDED_ROCKS_SHARE 0.1F /* chosen: then 0.2 N/s; it sinks at 0.5 m/s and slightly more */
 
 /* New time near the ground, from the time before (time_s) and one step of dt_s. Below LANDED_M it starts;
- * above LANDED_NO_MORE_M it is 0 again. From LANDED_SWAYS_S on it runs slowly while the tilt sways as in
- * flight (integrity_sways()). */
-static inline float touchdown_time_s(float time_s, float height_m, bool sways, float dt_s)
+ * above LANDED_NO_MORE_M it is 0 again. From LANDED_ROCKS_S on it runs slowly while the tilt sways as in
+ * flight (integrity_rocks()). */
+static inline float touchdown_time_s(float time_s, float height_m, bool rocks, float dt_s)
 {
     const bool low = height_m < LANDED_M || (time_s > 0.0F && height_m < LANDED_NO_MORE_M);
-    const bool slow = sways && time_s > LANDED_SWAYS_S;
-    return low ? time_s + (slow ? LANDED_SWAYS_SHARE : 1.0F) * dt_s : 0.0F;
+    const bool slow = rocks && time_s > LANDED_ROCKS_S;
+    return low ? time_s + (slow ? LANDED_ROCKS_SHARE : 1.0F) * dt_s : 0.0F;
 }
 
 /* Upper limit of the thrust after time_s near the ground, newtons per motor. No limit (INFINITY) while

@@ -333,9 +333,9 @@ void est_law_set_without_authority(est_law_t *law, bool without_authority)
     }
 }
 
-void est_law_set_sways(est_law_t *law, bool sways)
+void est_law_set_rocks(est_law_t *law, bool rocks)
 {
-    law->sways = sways;
+    law->rocks = rocks;
 }
 
 void est_law_set_accelerations_doubted(est_law_t *law, bool doubted)
@@ -433,7 +433,7 @@ static void update_timers(est_law_t *law, est_mode_t mode, float height_m)
 {
     const bool landing = mode == EST_MODE_LAND;
 
-    law->near_ground_s = landing ? touchdown_time_s(law->near_ground_s, height_m, law->sways, law->step_s)
+    law->near_ground_s = landing ? touchdown_time_s(law->near_ground_s, height_m, law->rocks, law->step_s)
                                  : 0.0F;
 }
 

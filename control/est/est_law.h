@@ -58,7 +58,7 @@ typedef struct {
     float heightless_s;     /* time since the rays of the latest height */
     float frameless_s;      /* time since the latest frame was measured */
     float near_ground_s;    /* time near the ground while landing */
-    bool sways;             /* the tilt sways as in flight */
+    bool rocks;             /* the tilt sways as in flight */
 } est_law_t;
 
 void est_law_init(est_law_t *law);
@@ -96,8 +96,8 @@ void est_law_set_sure_hover(est_law_t *law, float hover_n, bool descending);
  * and the hover thrust is the sure one. */
 void est_law_set_without_authority(est_law_t *law, bool without_authority);
 
-/* sways true: the tilt moves as it does in flight, see touchdown.h. */
-void est_law_set_sways(est_law_t *law, bool sways);
+/* rocks true: the tilt moves as it does in flight, see touchdown.h. */
+void est_law_set_rocks(est_law_t *law, bool rocks);
 
 /* doubted true: the accelerometer is wrong (doubt IMU). Accelerations in the frames are ignored. */
 void est_law_set_accelerations_doubted(est_law_t *law, bool doubted);

@@ -133,11 +133,11 @@ void test_on_the_ground_the_thrust_fades_and_slowly_while_the_tilt_moves(void)
 {
     float thrust_n[2] = {0.0F, 0.0F};
 
-    for (int sways = 0; sways < 2; sways++) {
+    for (int rocks = 0; rocks < 2; rocks++) {
         descent_start(&descent, 0.0F);
         for (int i = 0; i < 20; i++) {
-            descent.sways = sways != 0;
-            thrust_n[sways] = descent_step(&descent, 7.0F, 0.0F, 0.0F, 0.1F);
+            descent.rocks = rocks != 0;
+            thrust_n[rocks] = descent_step(&descent, 7.0F, 0.0F, 0.0F, 0.1F);
         }
     }
     TEST_ASSERT_FLOAT_WITHIN(0.3F, 7.0F + 0.5F - 4.0F, thrust_n[0] - descent.trim_n);

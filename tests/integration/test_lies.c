@@ -185,6 +185,22 @@ static const lie_t pilots[] = {
 };
 
 /* SEL is NONE: nothing tells who has the throttle. */
+/* The tilt moved as in flight in its last frame; that is no reason to keep the motors on. */
+void test_an_imu_that_falls_silent_in_the_landing_does_not_keep_the_motors_running(void)
+{
+    static const char *const mute[] = {"plant.imu_mute_start=20", "plant.imu_mute_start=21.5",
+                                       "plant.imu_mute_start=22.5"};
+
+    for (size_t i = 0; i < sizeof mute / sizeof mute[0]; i++) {
+        const char *assignments[] = {FLAT, mute[i], "plant.imu_mute=1000", NULL};
+        const child_flights_t flights = child_fly_seeds("est-60cm-ramp", 2, assignments);
+
+        TEST_ASSERT_TRUE(flights.worst[METRIC_STOPPED_S] > 2.0 && flights.worst[METRIC_STOPPED_S] < 9.0);
+        TEST_ASSERT_TRUE(flights.worst[METRIC_TOUCH_SPEED_MPS] > 0.05 &&
+                         flights.worst[METRIC_TOUCH_SPEED_MPS] < 0.5);
+    }
+}
+
 void test_a_pilot_whom_no_pin_tells_of_gives_back_a_vehicle_that_flies(void)
 {
     for (size_t i = 0; i < sizeof pilots / sizeof pilots[0]; i++) {
