@@ -14,7 +14,7 @@ TRIES = 4
 class Board:
     """`plomada board` with its three links in a directory of its own."""
 
-    def __init__(self, program, *options):
+    def __init__(self, program, *options, wait=0.02):
         self.directory = tempfile.TemporaryDirectory()
         self.path = Path(self.directory.name)
         self.wires = {name: str(self.path / name) for name in ("laser", "imu", "xbee")}
@@ -23,7 +23,7 @@ class Board:
         self.process = subprocess.Popen([program, "board", *self.lines, *options], stdout=self.log, stderr=subprocess.STDOUT)
         end = time.monotonic() + 20
         while not all(os.path.islink(path) for path in self.wires.values()) and self.process.poll() is None and time.monotonic() < end:
-            time.sleep(0.02)
+            time.sleep(wait)
 
     def __enter__(self):
         return self

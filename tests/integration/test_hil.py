@@ -59,6 +59,14 @@ class Short(unittest.TestCase):
             self.assertEqual(board.process.wait(timeout=20), 0)
             self.assertFalse(any(os.path.islink(path) for path in board.wires.values()))
 
+    def test_a_signal_at_the_moment_the_links_appear_is_obeyed(self):
+        for _ in range(10):
+            with bench.Board(PROGRAM, wait=0) as board:
+                board.power_cycle()
+                board.process.send_signal(signal.SIGINT)
+                self.assertEqual(board.process.wait(timeout=20), 0)
+                self.assertFalse(any(os.path.islink(path) for path in board.wires.values()))
+
 
 class Long(unittest.TestCase):
     def fly(self, scenario):

@@ -418,7 +418,6 @@ static void power_on(void)
         chip_watchdog_connect(NULL, NULL);
     }
     pace_begin();
-    (void)signal(SIGUSR1, on_power_cycle);
     kernel_set_pacer(pace_wait);
     for (int i = 0; i < BOARD_WIRES; i++) {
         board_connect((board_wire_t)i, out, &bench.ports[i]);
@@ -463,13 +462,13 @@ static void live(void)
         }
     }
     power_off();
-    pace_end();
     if (bench.worst_lag > LAG_MAX) {
         fprintf(stderr, "plomada board: this PC was %.0f ms behind the wall clock\n",
                 (double)bench.worst_lag * 1e-6);
     }
 }
 
+/* Signals are caught before the links are there: who finds a link may send one at once. */
 static bool open_wires(void)
 {
     static const unsigned long rates[BOARD_WIRES] = {115200, 57600, 9600};
@@ -521,6 +520,8 @@ int command_board(int argc, char **argv)
         return 0;
     }
     noise_init(&bench.noise, order.seed, "nonsense");
+    pace_begin();
+    (void)signal(SIGUSR1, on_power_cycle);
     begun = load_storage() && open_recordings() && open_wires();
     if (begun) {
         printf("board: %s %s %s\n", order.lines.path[BOARD_LASER], order.lines.path[BOARD_IMU],
@@ -529,5 +530,6 @@ int command_board(int argc, char **argv)
         live();
     }
     close_wires();
+    pace_end();
     return begun ? 0 : 2;
 }
