@@ -110,9 +110,9 @@ void tape_key(const char *key, const char *value)
     fprintf(recorder.out, "%s %s\n", key, value);
 }
 
-void tape_truth(double height_m, double altitude_m, double terrain_m)
+void tape_truth(double height_m, double altitude_m, double terrain_m, double thrust_n)
 {
-    fprintf(recorder.out, "truth %.17g %.17g %.17g\n", height_m, altitude_m, terrain_m);
+    fprintf(recorder.out, "truth %.17g %.17g %.17g %.9g\n", height_m, altitude_m, terrain_m, thrust_n);
 }
 
 void tape_stop(void)
@@ -144,7 +144,7 @@ typedef struct {
 } entry_t;
 
 typedef struct {
-    double column[3];
+    double column[TAPE_TRUTHS];
 } truth_t;
 
 typedef struct {
@@ -245,9 +245,9 @@ static const char *read_level(tape_t *tape, const char *rest)
 
 static const char *read_truth(tape_t *tape, const char *rest)
 {
-    truth_t row;
+    truth_t row = {.column = {[TAPE_TRUTHS - 1] = NAN}};
 
-    if (sscanf(rest, "%lf %lf %lf", &row.column[0], &row.column[1], &row.column[2]) != 3) {
+    if (sscanf(rest, "%lf %lf %lf %lf", &row.column[0], &row.column[1], &row.column[2], &row.column[3]) < 3) {
         return "truth HEIGHT ABS TERRAIN";
     }
     *(truth_t *)append(&tape->truth, sizeof row) = row;
@@ -355,7 +355,7 @@ const char *tape_value(const tape_t *tape, const char *key, size_t n)
     return NULL;
 }
 
-bool tape_truth_row(const tape_t *tape, size_t row, double truth[3])
+bool tape_truth_row(const tape_t *tape, size_t row, double truth[TAPE_TRUTHS])
 {
     if (row >= tape->truth.count) {
         return false;

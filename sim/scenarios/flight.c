@@ -39,6 +39,7 @@ static struct {
     char answer[1024];   /* to it */
     sim_time_t answered; /* its latest line; 0: none */
     bool recording, first_row_recorded;
+    bool open_loop;       /* the vehicle answers to the flight as flown */
     uint32_t shown_frame; /* sequence of the latest in the log */
     unsigned pings;
     double ping_every_s;
@@ -327,7 +328,8 @@ static void write_titles(FILE *csv)
 
     telemetry_begin_answer(&line);
     published_titles(&line);
-    fprintf(csv, "%.*s,height_m,abs_m,terrain_m\n", (int)line.length, line.text);
+    fprintf(csv, "%.*s,height_m,abs_m,terrain_m%s\n", (int)line.length, line.text,
+            flight.open_loop ? ",flown_n" : "");
 }
 
 static void write_number(FILE *csv, double value, int decimals)
@@ -338,9 +340,9 @@ static void write_number(FILE *csv, double value, int decimals)
     }
 }
 
-/* What only the world knows. */
+/* What only the world knows; in a replay also the thrust that the vehicle answered to. */
 typedef struct {
-    double height_m, altitude_m, terrain_m;
+    double height_m, altitude_m, terrain_m, flown_n;
 } truth_t;
 
 /* An acceleration is shown once. */
@@ -391,7 +393,11 @@ static void write_row(FILE *csv, double t_s, const truth_t *truth)
 
     fprintf(csv, "%.2f", t_s);
     PUBLISHED(NUMBER, STATE, FLAGS, TEXT)
-    fprintf(csv, ",%.4f,%.4f,%.4f\n", truth->height_m, truth->altitude_m, truth->terrain_m);
+    fprintf(csv, ",%.4f,%.4f,%.4f", truth->height_m, truth->altitude_m, truth->terrain_m);
+    if (flight.open_loop) {
+        write_number(csv, truth->flown_n, 3);
+    }
+    fputc('\n', csv);
 }
 
 static void record_number(const char *key, sim_time_t value)
@@ -410,7 +416,7 @@ static void record_row(const truth_t *truth)
         record_number("origin_ns", flight.origin);
         record_number("first_row_ns", timeline_now());
     }
-    tape_truth(truth->height_m, truth->altitude_m, truth->terrain_m);
+    tape_truth(truth->height_m, truth->altitude_m, truth->terrain_m, truth->flown_n);
 }
 
 static metrics_sample_t look(double t_s, const quadrotor_state_t *truth)
@@ -439,7 +445,7 @@ static void sample(FILE *csv)
     const metrics_sample_t seen = look(t_s, state);
 
     metrics_add(&flight.record, &seen);
-    const truth_t truth = {state->height_m, state->altitude_m, state->terrain_m};
+    const truth_t truth = {state->height_m, state->altitude_m, state->terrain_m, seen.thrust_n};
 
     if (flight.recording) {
         record_row(&truth);
@@ -707,17 +713,18 @@ static sim_time_t number_of(const tape_t *tape, const char *key)
 
 static void replay_rows(const tape_t *tape, sim_time_t first, FILE *csv, size_t *rows)
 {
-    double row[3];
+    double row[TAPE_TRUTHS];
 
     for (*rows = 0; tape_truth_row(tape, *rows, row) && kernel_run_until(first + (sim_time_t)*rows * STEP);
          (*rows)++) {
-        const truth_t truth = {row[0], row[1], row[2]};
+        const truth_t truth = {row[0], row[1], row[2], row[3]};
 
         write_row(csv, (double)(timeline_now() - flight.origin) * 1e-9, &truth);
     }
 }
 
-const char *flight_replay(const tape_t *tape, FILE *csv, FILE *telemetry, flight_replay_t *result)
+const char *flight_replay(const tape_t *tape, bool open_loop, FILE *csv, FILE *telemetry,
+                          flight_replay_t *result)
 {
     const sim_time_t first = number_of(tape, "first_row_ns");
     board_config_t config = board_config(1);
@@ -729,6 +736,7 @@ const char *flight_replay(const tape_t *tape, FILE *csv, FILE *telemetry, flight
     }
     flight.origin = number_of(tape, "origin_ns");
     flight.telemetry = telemetry;
+    flight.open_loop = open_loop;
     tape_restore_flash(tape);
     board_power_on(&config, NULL, NULL);
     tape_play(tape, hear, NULL);

@@ -69,8 +69,10 @@ typedef struct {
 } flight_replay_t;
 
 /* The firmware again, fed with a recording: its log to csv, the lines that it sends by radio to telemetry
- * (NULL: nowhere). The columns that only the world knows come from the recording. NULL when it could begin,
- * else why not. */
-const char *flight_replay(const tape_t *tape, FILE *csv, FILE *telemetry, flight_replay_t *result);
+ * (NULL: nowhere). The columns that only the world knows come from the recording. open_loop: the operator's
+ * lines were changed (tape_retype), and flown_n, what the vehicle answered to, is one more column. NULL when
+ * it could begin, else why not. */
+const char *flight_replay(const tape_t *tape, bool open_loop, FILE *csv, FILE *telemetry,
+                          flight_replay_t *result);
 
 #endif

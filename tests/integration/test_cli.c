@@ -281,10 +281,14 @@ void test_a_replay_gives_the_log_of_every_scenario_octet_for_octet(void)
 
 void test_a_replay_with_another_law_says_that_nothing_answers_to_it(void)
 {
+    static char again[2000000];
+
     TEST_ASSERT_EQUAL_INT(0, run("fly est-60cm-ramp --record recording"));
     TEST_ASSERT_EQUAL_INT(0, run("replay recording --set LAW=PID --csv again.csv"));
     TEST_ASSERT_NOT_NULL_MESSAGE(
         strstr(output, "replayed est-60cm-ramp, seed 1: 2601 rows; open loop with LAW=PID\n"), output);
+    TEST_ASSERT_GREATER_THAN_size_t(100000, child_read_file("again.csv", again, sizeof again));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(again, ",terrain_m,flown_n\n"), again);
     TEST_ASSERT_EQUAL_INT(2, run("replay recording --set plant.tau=1"));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "no vehicle flies in a replay"), output);
     TEST_ASSERT_EQUAL_INT(2, run("replay no-such-recording"));

@@ -97,7 +97,7 @@ static void fly(void *argument, void *result)
     board_select(true);
     until(24.0);
     type("#SETR 0\n");
-    tape_truth(0.1, 0.2, 0.1 + 0.2);
+    tape_truth(0.1, 0.2, 0.1 + 0.2, 6.5);
     until(order->end_s);
     tape_stop();
     fclose(out);
@@ -184,7 +184,7 @@ void test_keys_and_truth_come_back_as_they_were_written(void)
 {
     order_t order = {1, 25.0, NULL, NULL};
     const char *error = "";
-    double truth[3];
+    double truth[TAPE_TRUTHS];
     FILE *in;
     tape_t *tape;
 
@@ -197,6 +197,7 @@ void test_keys_and_truth_come_back_as_they_were_written(void)
     TEST_ASSERT_NULL(tape_value(tape, "scenario", 1));
     TEST_ASSERT_TRUE(tape_truth_row(tape, 0, truth));
     TEST_ASSERT_EQUAL_DOUBLE(0.1 + 0.2, truth[2]);
+    TEST_ASSERT_EQUAL_DOUBLE(6.5, truth[3]);
     TEST_ASSERT_FALSE(tape_truth_row(tape, 1, truth));
     TEST_ASSERT_INT64_WITHIN(SIM_S / 10, 25 * SIM_S, tape_end(tape));
     tape_free(tape);

@@ -131,6 +131,14 @@ class Drawing(Case):
         flown = self.write("flown.csv", RECORDER)
         self.assert_picture(self.plot(flown), self.dir / "flown.png")
 
+    def test_what_another_law_would_have_commanded_is_drawn_as_open_loop(self):
+        titles, *rows = FLIGHT.splitlines()
+        replayed = self.write("replayed.csv", "\n".join([titles + ",flown_n", *(row + ",6.9" for row in rows)]) + "\n")
+        title, words = plot.describe([replayed], [recording.read(replayed)])
+        self.assertEqual(title, "replayed: open loop")
+        self.assertIn("did not answer", words)
+        self.assert_picture(self.plot(replayed), self.dir / "replayed.png")
+
     def test_the_colours_of_states_and_the_names_of_flags_are_the_firmwares(self):
         header = (ROOT / "control/flight_state.h").read_text(encoding="utf-8")
         states = {name for name in re.findall(r"\bFLIGHT_([A-Z]+),", header)}

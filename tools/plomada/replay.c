@@ -31,9 +31,12 @@ static const char usage[] =
     "  --csv FILE          the log (default: stdout)\n"
     "  --set NAME=VALUE    a telecommand parameter in place of what was typed for it. The vehicle does not "
     "answer to what\n"
-    "                      the firmware commands then (open loop): the log shows what it would have "
-    "commanded, until the\n"
-    "                      heights that it sees are no longer those that it would have flown\n"
+    "                      the firmware commands then (open loop): the log shows in thrust_n what it would "
+    "have\n"
+    "                      commanded, beside flown_n, until the heights that it sees are no longer those "
+    "that it "
+    "would\n"
+    "                      have flown\n"
     "  --telemetry         the lines that the firmware sent by radio, on stderr\n\n"
     "Exit status: 0 replayed to its end, 1 the firmware stopped, 2 usage, or a file that cannot be read or "
     "written.\n";
@@ -204,7 +207,8 @@ static int run(request_t *request)
     if (tape == NULL || !retype(request, tape) || !output_open(&request->csv)) {
         return 2;
     }
-    error = flight_replay(tape, request->csv.file, request->telemetry ? stderr : NULL, &result);
+    error = flight_replay(tape, request->sets.override_count > 0, request->csv.file,
+                          request->telemetry ? stderr : NULL, &result);
     if (error != NULL) {
         complain(error, request->path);
         return 2;

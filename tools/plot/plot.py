@@ -245,10 +245,10 @@ def describe(paths, recordings):
     if len(recordings) > 1:
         return "Flights compared", ""
     rec = recordings[0]
-    if rec.kind == "flight":
-        return rec.name, metrics_text(paths[0])
     if rec.has("flown_n"):
         return f"{rec.name}: open loop", "the vehicle did not answer to this law's thrust; its heights are those of the flight as flown"
+    if rec.kind == "flight":
+        return rec.name, metrics_text(paths[0])
     source = {"console": "XCTU console log", "recorder": "flight recorder"}.get(rec.kind, "telemetry text")
     damaged = f", {rec.damaged} damaged lines left out" if rec.damaged else ""
     return rec.name, f"{source}: {len(rec.t)} lines{damaged}"
