@@ -26,9 +26,8 @@ import tune_vehicle  # noqa: E402
 ROOT = Path(__file__).resolve().parents[2]
 MIDDLE_S, LANDED_S = 12.0, 22.0 # of the experiment: the hover thrust is compared there, the battery sags; the landing command
 SEED_STEP = 1_000_000
-FLIGHTS = 2                     # of the experiment: the recorder holds 25 s
-DRAWS, FORECAST, JUDGED = 6, 20, 12     # flights of a candidate, of a forecast, of a verdict
-BUDGET = {"EST": 10, "PID": 14}         # candidates
+DRAWS, FORECAST, JUDGED = 8, 40, 24     # flights of a candidate, of a forecast, of a verdict
+BUDGET = {"EST": 13, "PID": 16}         # candidates
 MUST = {"hover": 0.02, "authority": 0.10, "response": 0.015}
 KIND_MUST, HOLDS_MUST = 29 / 30, 24 / 30
 
@@ -93,11 +92,11 @@ def hover_interval(found, middle_s):
     return {"value": value, "low": low, "high": high}
 
 
-def one(program, seed, number, folder):
+def one(program, seed, number, folder, dumps):
     """A record of one vehicle, for the table."""
     figures = vehicle(seed, number)
     out = folder / f"{seed}-{number}.json"
-    logs = [folder / f"{seed}-{number}-{k}.csv" for k in range(1, FLIGHTS + 1)]
+    logs = [folder / f"{seed}-{number}-{k}.csv" for k in range(1, dumps + 1)]
     for k, log in enumerate(logs):
         experiment(program, figures, seed * SEED_STEP + 100 * number + k, log)
     try:
@@ -182,7 +181,7 @@ def complete(arguments, number, record, laws):
     """(record of a vehicle with what it lacked, whether it lacked something)."""
     program = str(arguments.program.resolve())
     news = record is None
-    record = one(program, arguments.seed, number, arguments.out) if news else record
+    record = one(program, arguments.seed, number, arguments.out, arguments.dumps) if news else record
     for law in laws:
         if law not in record and "unfit" not in record:
             file = arguments.out / f"{arguments.seed}-{number}.json"
@@ -196,6 +195,7 @@ def read_arguments(argv):
     parser.add_argument("--vehicles", type=int, default=30)
     parser.add_argument("--first", type=int, default=1, metavar="NUMBER", help="vehicle to begin with: a part of the work")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--dumps", type=int, default=2, help="flights of the experiment; the recorder holds 25 s of each (2)")
     parser.add_argument("--tune", default="", metavar="LAW,LAW", help="also tune for each vehicle: EST, PID")
     parser.add_argument("--program", type=Path, default=ROOT / "build/plomada")
     parser.add_argument("--out", type=Path, default=ROOT / "build/fit-acceptance", metavar="DIR")

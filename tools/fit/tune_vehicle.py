@@ -2,10 +2,11 @@
 """tune_vehicle.py VEHICLE [--law EST|PID] ...: gains for the vehicle that fit found, and a forecast.
 
 The fit itself gives GRAV, and law EST's model of the vehicle: PLANT, GAIN, LAG, DELAY, DAMP, CRATE, CLAG. Gains are searched by
-flights of vehicles drawn from the uncertainty of build/vehicle.json over the 60 cm course. Their cost is the mean hover RMS, a
-twentieth of the terrain RMS and of the overshoot, 200 mm per newton of thrust activity beyond 1.3 times that of the stock gains
-(0.45 N at least), and 500 mm for a failure, and half the worst vehicle's hover: the gains must suit all of them. The search is
-Nelder and Mead's; gains that are not better on other draws are not proposed. Prints the commands, and what the next flight of that course will be like,
+flights of vehicles drawn from the uncertainty of build/vehicle.json over the 60 cm course; every candidate flies the same vehicles
+in the same noise. Their cost is the mean hover RMS, a twentieth of the terrain RMS and of the overshoot, 200 mm per newton of thrust
+activity beyond 1.3 times that of the stock gains (0.45 N at least), and 500 mm for a failure. The search is Nelder and Mead's, and
+a quadratic surface through what it flew says where the valley's bottom is. The best on further draws is proposed; where none is
+better there, the stock gains stay. Prints the commands, and what the next flight of that course will be like,
 with 90 % intervals, by its log; `verdict.py` compares. Exit status: 0; 2 usage, or a program that does not fly.
 """
 import argparse
@@ -24,15 +25,14 @@ import numpy  # noqa: E402
 SCENARIOS = {"EST": "est-60cm-ramp", "PID": "pid-60cm-ramp"}
 # Where to look: name, stock, least, most.
 GAINS = {
-    "EST": (("POSK", 2.3, 0.8, 5.0), ("VELK", 8.0, 1.5, 12.0)),
+    "EST": (("POSK", 2.6, 0.8, 5.0), ("VELK", 9.0, 1.5, 12.0)),
     "PID": (("KP", 0.006, 0.001, 0.03), ("KD", 0.0267, 0.004, 0.1), ("KI", 0.0003, 0.00002, 0.01)),
 }
 STOCK = {"EST": {}, "PID": {"KP": "0.015", "KD": "0.008", "KI": "0.01", "USAT": "1", "DSAT": "0"}}
 FIXED = {"EST": {}, "PID": {"LAW": "PID", "USAT": "1.7", "DSAT": "4"}}
 FAILURE_MM, ACTIVITY_MM_PER_N, ACTIVITY_FREE_N, ACTIVITY_MORE, SHARE = 500.0, 200.0, 0.45, 1.3, 0.05
-WORST = 0.5
 FIRST_STEP = 0.25               # upwards: a law that knows its vehicle bears quicker gains
-WORTH = 0.01                    # of the cost: less gained than that on further draws, and the stock gains stay
+NEAR = 0.3                      # of the least cost: candidates within make the quadratic surface
 USUAL_MPS2_PER_N = 1.4          # authority of the vehicle that the PID gains above suit
 # Parameters of law EST that the fit knows: name, least and most that the firmware takes, figure of the plant, what to add.
 MODELS = {
@@ -41,6 +41,7 @@ MODELS = {
     "CLIMB": (("CRATE", 0.125, 5.0, "climb_rate", 0.0), ("CLAG", 0.1, 1.0, "climb_lag", 0.0), ("LAG", 0.03, 0.5, "tau", 0.0),
               ("DELAY", 0.008, 0.12, "tdelay", model.PULSE_S)),
 }
+RAY_AGE_S, SAMPLE_S, AROUND_S = 0.0705, 0.108, 10.0     # of a height as it arrives; PID's period; of the integral
 SEED = 700_000_000              # of the flights; no campaign uses it
 
 
@@ -61,12 +62,26 @@ def vehicle_settings(law, vehicle, plant_kind):
     return settings
 
 
+def climb_starts(vehicle):
+    """Gains of a PID whose output is a climb rate, behind lags and a dead time (Skogestad's rules, J. Process Control 13,
+    2003): the closed loop as slow as the dead time is long, the derivative takes the lags. The integral only has to find the
+    middle of the stick, and a deadband makes it swing: it gets AROUND_S."""
+    dead_s = vehicle["plant.tdelay"]["value"] + model.PULSE_S + RAY_AGE_S + SAMPLE_S / 2.0
+    kp_n_per_m = 1.0 / (vehicle["authority"]["value"] * 2.0 * dead_s)
+    lag_s = vehicle["plant.climb_lag"]["value"] + vehicle["plant.tau"]["value"]
+    return {"KP": 1e-3 * kp_n_per_m, "KD": 1e-3 * kp_n_per_m * lag_s / SAMPLE_S, "KI": 1e-3 * kp_n_per_m * SAMPLE_S / AROUND_S}
+
+
 def gains_of(law, vehicle):
     """GAINS, those of PID for the authority that was found."""
-    if law == "EST" or vehicle["throttle"] == "CLIMB":
+    if law == "EST":
         return GAINS[law]
-    weaker = USUAL_MPS2_PER_N / vehicle["authority"]["value"]
-    return tuple((name, min(max(start * weaker, least), most), least, most) for name, start, least, most in GAINS[law])
+    if vehicle["throttle"] == "CLIMB":
+        starts = climb_starts(vehicle)
+    else:
+        weaker = USUAL_MPS2_PER_N / vehicle["authority"]["value"]
+        starts = {name: start * weaker for name, start, _, _ in GAINS[law]}
+    return tuple((name, min(max(starts[name], least), most), least, most) for name, _, least, most in GAINS[law])
 
 
 def cost(flown, free_n):
@@ -74,13 +89,12 @@ def cost(flown, free_n):
     each = []
     for figures in flown:
         if figures["failed"] or figures["takeovers"] or figures["halted"] or figures["hover_rms_mm"] is None:
-            each.append((FAILURE_MM, FAILURE_MM))
+            each.append(FAILURE_MM)
             continue
         activity = max(0.0, figures["thrust_std_n"] - free_n)
-        hover = figures["hover_rms_mm"]
-        each.append((hover + SHARE * ((figures["terrain_rms_mm"] or 0.0) + (figures["overshoot_mm"] or 0.0))
-                     + ACTIVITY_MM_PER_N * activity, hover))
-    return float(numpy.mean([one for one, _ in each]) + WORST * max(hover for _, hover in each))
+        each.append(figures["hover_rms_mm"] + ACTIVITY_MM_PER_N * activity
+                    + SHARE * ((figures["terrain_rms_mm"] or 0.0) + (figures["overshoot_mm"] or 0.0)))
+    return float(numpy.mean(each))
 
 
 def stock_settings(law):
@@ -88,29 +102,53 @@ def stock_settings(law):
 
 
 class Course:
+    """The same vehicles in the same noise for every candidate."""
+
     def __init__(self, program, law, vehicle, count, seed):
         self.program, self.law = program, law
         self.plants = forecast.draws(vehicle, count, seed)
         self.seeds = [SEED + 1000 * seed + k for k in range(count)]
-        self.free_n = self.activity(stock_settings(law))
+        self.free_n = ACTIVITY_FREE_N
 
     def arguments(self, settings):
         return [forecast.words(SCENARIOS[self.law], seed, settings, plant)
                 for seed, plant in zip(self.seeds, self.plants, strict=True)]
 
-    def activity(self, settings):
-        flown = forecast.fly_all(self.program, self.arguments(settings))
-        return max(ACTIVITY_MORE * float(numpy.mean([figures["thrust_std_n"] or 0.0 for figures in flown])), ACTIVITY_FREE_N)
+    def stock(self):
+        """Cost of the stock gains, by whose activity that of all others is judged."""
+        flown = forecast.fly_all(self.program, self.arguments(stock_settings(self.law)))
+        self.free_n = max(ACTIVITY_MORE * float(numpy.mean([figures["thrust_std_n"] or 0.0 for figures in flown])), ACTIVITY_FREE_N)
+        return cost(flown, self.free_n)
 
     def cost(self, settings):
         return cost(forecast.fly_all(self.program, self.arguments(settings)), self.free_n)
 
 
-def search(course, base, gains, budget):
-    """(best settings, cost) by Nelder and Mead on the logarithms of the gains."""
+def bottom(places, costs):
+    """Where a quadratic surface through the candidates that are nearly as good as the best is lowest, within what they span;
+    None where they are too few. It averages the chance that each candidate's flights had."""
     from scipy.optimize import minimize
 
-    known = {}
+    places, costs = numpy.array(places), numpy.array(costs)
+    near = costs < (1.0 + NEAR) * costs.min()
+    rows, columns = numpy.triu_indices(places.shape[1])
+
+    def terms(x):
+        return numpy.concatenate(([1.0], x, x[rows] * x[columns]))
+
+    if near.sum() <= len(terms(places[0])):
+        return None
+    center = places[numpy.argmin(costs)]
+    fitted = numpy.linalg.lstsq(numpy.array([terms(x) for x in places[near] - center]), costs[near], rcond=None)[0]
+    span = [(x.min(), x.max()) for x in (places[near] - center).T]
+    return center + minimize(lambda x: float(fitted @ terms(x)), numpy.zeros(len(center)), bounds=span).x
+
+
+def search(course, base, gains, budget):
+    """Settings that may be the best, by Nelder and Mead on the logarithms of the gains."""
+    from scipy.optimize import minimize
+
+    flown = {}
 
     def settings_at(place):
         values = [min(max(math.exp(x), low), high) for x, (_, _, low, high) in zip(place, gains, strict=True)]
@@ -119,37 +157,42 @@ def search(course, base, gains, budget):
     def evaluate(place):
         settings = settings_at(place)
         key = tuple(settings.values())
-        if key not in known:
-            known[key] = (course.cost(settings), settings)
-        return known[key][0]
+        if key not in flown:
+            flown[key] = (course.cost(settings), settings)
+        return flown[key][0]
 
-    start = numpy.log([stock for _, stock, _, _ in gains])
+    start = numpy.log([first for _, first, _, _ in gains])
     corners = [start, *(start + FIRST_STEP * row for row in numpy.eye(len(start)))]
     minimize(evaluate, start, method="Nelder-Mead",
-             options={"initial_simplex": numpy.array(corners), "maxfev": budget, "xatol": 0.03, "fatol": 0.1})
-    best = min(known.values(), key=lambda one: one[0])
-    return best[1], best[0]
+             options={"initial_simplex": numpy.array(corners), "maxfev": budget, "xatol": 0.03, "fatol": 0.02})
+    names = [name for name, *_ in gains]
+    places = [[math.log(float(settings[name])) for name in names] for _, settings in flown.values()]
+    lowest = bottom(places, [cost for cost, _ in flown.values()])
+    best = min(flown.values(), key=lambda one: one[0])[1]
+    return [best] if lowest is None else [best, settings_at(lowest)]
 
 
 def tune(program, vehicle, law, count, budget):
     """(settings, stock's cost, tuned cost), both on draws that the search has not seen."""
-    course, others = Course(program, law, vehicle, count, 1), Course(program, law, vehicle, count + 2, 2)
+    course, others = Course(program, law, vehicle, count, 1), Course(program, law, vehicle, 2 * count, 2)
+    stock_cost = others.stock()
+    course.free_n = others.free_n
+    gains = gains_of(law, vehicle)
     kinds = ("THRUST", "CLIMB") if law == "EST" and vehicle["throttle"] == "CLIMB" else ("THRUST",)
     bases = [FIXED[law] | vehicle_settings(law, vehicle, kind) for kind in kinds]
     base = min(bases, key=course.cost) if len(bases) > 1 else bases[0]
-    found, _ = search(course, base, gains_of(law, vehicle), budget)
-    stock = stock_settings(law)
-    stock_cost, base_cost, found_cost = (others.cost(settings) for settings in (stock, base, found))
-    best_cost, best = (found_cost, found) if found_cost < base_cost else (base_cost, base)
-    return (best if best_cost < (1.0 - WORTH) * stock_cost else stock), stock_cost, best_cost
+    tried = [base | {name: text(start) for name, start, _, _ in gains}, *search(course, base, gains, budget)]
+    costs = [others.cost(settings) for settings in tried]
+    best = int(numpy.argmin(costs))
+    return (tried[best] if costs[best] < stock_cost else stock_settings(law)), stock_cost, min(costs[best], stock_cost)
 
 
 def read_arguments(argv):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("vehicle", type=Path)
     parser.add_argument("--law", choices=GAINS, default="EST")
-    parser.add_argument("--draws", type=int, default=8, help="vehicles that each candidate flies (8)")
-    parser.add_argument("--budget", type=int, default=30, help="candidates (30)")
+    parser.add_argument("--draws", type=int, default=10, help="vehicles that each candidate flies (10)")
+    parser.add_argument("--budget", type=int, default=20, help="candidates (20)")
     parser.add_argument("--forecast", type=int, default=60, help="flights of the forecast (60)")
     parser.add_argument("--program", type=Path, default=forecast.ROOT / "build/plomada")
     parser.add_argument("--out", type=Path, default=forecast.ROOT / "build/forecast.json", metavar="FILE")
