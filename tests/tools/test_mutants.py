@@ -40,6 +40,12 @@ class Mutants(unittest.TestCase):
         self.assertNotIn((6, ";"), self.found)
         self.assertNotIn((10, ";"), self.found)
 
+    def test_where_the_smaller_of_two_is_taken_their_equality_is_no_fault(self):
+        line = "    return (x < LIMIT_N) ? x : LIMIT_N;"
+        self.assertFalse(list(mutants.mutants("int f(int x)\n{\n" + line + "\n}\n")))
+        other = [fault for _, fault in mutants.mutants("int f(int x)\n{\n" + line.replace("? x", "? y") + "\n}\n")]
+        self.assertEqual(other, ["    return (x <= LIMIT_N) ? y : LIMIT_N;"])
+
     def test_a_fault_changes_its_line_only(self):
         for number, line in mutants.mutants(SOURCE):
             before = SOURCE.splitlines()[number]
