@@ -1,0 +1,665 @@
+/* Every limit of the verdicts, from both sides: the evidence is written into the state, one height is judged. A limit that
+ * moves, or a condition that falls out, changes what a flight doubts; it has to be changed here on purpose. */
+#include "control/integrity.h"
+#include "unity.h"
+
+#include <math.h>
+#include <string.h>
+
+/* So short that no sum moves: what is written is what is judged. */
+#define AT_ONCE_S 1.0e-9F
+#define HOVER_N 7.0F
+
+static integrity_t it;
+static flown_t flown;
+
+/* In the air, warm and proved; the heights do not move, nobody contradicts. */
+void setUp(void)
+{
+    integrity_init(&it);
+    it.has_height = it.proved = true;
+    it.height_m = it.near_m = 0.5F;
+    it.unmoved_s = 1.0F;
+    it.since_rise_s = 1.5F;
+    it.felt.running_s = it.pushed.running_s = 2.0F;
+    it.lagged_n = HOVER_N;
+    flown = (flown_t){.step_s = 0.025F,
+                      .off_ground = true,
+                      .ours = true,
+                      .thrust_n = HOVER_N,
+                      .hover_n = HOVER_N,
+                      .authority_mps2_per_n = 1.4F,
+                      .damping_per_s = 2.5F,
+                      .wanted_m = 0.5F,
+                      .noise_mps2 = 0.4F};
+}
+
+void tearDown(void) {}
+
+static uint16_t judged(float felt_m, float pushed_m)
+{
+    it.felt.off_m = felt_m;
+    it.pushed.off_m = pushed_m;
+    integrity_height(&it, &flown, it.height_m, AT_ONCE_S, 0.0F);
+    return it.doubts;
+}
+
+/* The same on the evidence that setUp() makes and `change` changes. */
+static uint16_t judged_with(void (*change)(float), float value, float felt_m, float pushed_m)
+{
+    setUp();
+    change(value);
+    return judged(felt_m, pushed_m);
+}
+
+static void nothing(float value)
+{
+    (void)value;
+}
+static void want(float m)
+{
+    flown.wanted_m = m;
+}
+static void rising(float mps)
+{
+    it.rise_mps = mps;
+}
+static void felt_for(float s)
+{
+    it.felt.running_s = s;
+}
+static void pushed_for(float s)
+{
+    it.pushed.running_s = s;
+}
+static void shaken(float times)
+{
+    it.shaken = times;
+}
+static void without_imu(float value)
+{
+    (void)value;
+    it.doubts = DOUBT_IMU;
+}
+static void moved_s_ago(float s)
+{
+    it.unmoved_s = s;
+}
+static void way(float m)
+{
+    it.way_m = m;
+}
+
+typedef struct {
+    void (*change)(float);
+    float value, felt_m, pushed_m;
+    uint16_t doubts;
+} row_t;
+
+static void check(const row_t *rows, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        char which[24] = "row ";
+        which[4] = (char)('0' + i / 10U);
+        which[5] = (char)('0' + i % 10U);
+        TEST_ASSERT_EQUAL_UINT16_MESSAGE(
+            rows[i].doubts, judged_with(rows[i].change, rows[i].value, rows[i].felt_m, rows[i].pushed_m), which);
+    }
+}
+#define CHECK(rows) check(rows, sizeof(rows) / sizeof((rows)[0]))
+
+/* ---- DOUBT_SIGHT: both witnesses */
+
+void test_both_witnesses_together_doubt_the_heights_one_by_half_a_metre(void)
+{
+    static const row_t rows[] = {
+        {nothing, 0, -0.51F, -0.29F, DOUBT_SIGHT}, {nothing, 0, -0.50F, -0.29F, 0},
+        {nothing, 0, -0.29F, -0.51F, DOUBT_SIGHT}, {nothing, 0, -0.29F, -0.50F, 0},
+        {nothing, 0, -0.51F, -0.28F, 0},           {nothing, 0, -0.28F, -0.51F, 0},
+        {nothing, 0, 0.51F, 0.29F, DOUBT_SIGHT},   {nothing, 0, 0.51F, -0.29F, 0},
+        {nothing, 0, -0.51F, 0.29F, 0},
+    };
+    CHECK(rows);
+}
+
+void test_a_law_near_its_reference_asks_nearly_twice_as_much(void)
+{
+    static const row_t rows[] = {
+        {want, 0.09F, -0.92F, -0.51F, DOUBT_SIGHT}, {want, 0.09F, -0.89F, -0.51F, 0},
+        {want, 0.09F, -0.92F, -0.50F, 0},           {want, -0.09F, -0.51F, -0.29F, 0},
+        {want, 0.10F, -0.51F, -0.29F, DOUBT_SIGHT}, {want, -0.11F, -0.51F, -0.29F, DOUBT_SIGHT},
+        {want, NAN, -0.51F, -0.29F, DOUBT_SIGHT},
+    };
+    CHECK(rows);
+}
+
+void test_heights_that_move_are_not_doubted(void)
+{
+    static const row_t rows[] = {
+        {rising, 0.199F, -0.51F, -0.29F, DOUBT_SIGHT}, {rising, -0.199F, -0.51F, -0.29F, DOUBT_SIGHT},
+        {rising, 0.20F, -0.51F, -0.29F, 0},            {rising, -0.20F, -0.51F, -0.29F, 0},
+        {moved_s_ago, 0.99F, -0.51F, -0.29F, 0},       {way, 0.15F, -0.45F, -0.51F, DOUBT_SIGHT},
+        {way, 0.151F, -0.45F, -0.51F, 0},              {way, -0.151F, -0.45F, -0.51F, 0},
+    };
+    CHECK(rows);
+}
+
+void test_a_witness_counts_after_half_a_second(void)
+{
+    static const row_t rows[] = {
+        {felt_for, 0.5F, -0.51F, -0.29F, 0},   {felt_for, 0.51F, -0.51F, -0.29F, DOUBT_SIGHT},
+        {pushed_for, 0.5F, -0.51F, -0.29F, 0}, {pushed_for, 0.51F, -0.51F, -0.29F, DOUBT_SIGHT},
+    };
+    CHECK(rows);
+}
+
+void test_a_noisy_accelerometer_has_to_be_further_off(void)
+{
+    static const row_t rows[] = {
+        {shaken, 2.0F, -1.02F, -0.29F, DOUBT_SIGHT},
+        {shaken, 2.0F, -0.99F, -0.29F, 0},
+        {shaken, 2.0F, -0.57F, -0.51F, DOUBT_SIGHT},
+        {shaken, 2.0F, -0.55F, -0.51F, 0},
+    };
+    CHECK(rows);
+}
+
+void test_the_accelerometer_alone_doubts_the_heights_beyond_six_decimetres(void)
+{
+    static const row_t rows[] = {
+        {pushed_for, 0.3F, -0.61F, 0, DOUBT_SIGHT},
+        {pushed_for, 0.3F, 0.61F, 0, DOUBT_SIGHT},
+        {pushed_for, 0.3F, -0.60F, 0, 0},
+        {pushed_for, 0.3F, 0.60F, 0, 0},
+    };
+    CHECK(rows);
+}
+
+void test_the_error_of_the_height_is_the_mean_of_the_witnesses_that_count(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(-0.52F, -0.30F));
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.41F, it.lost_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.pushed.off_m);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged_with(pushed_for, 0.3F, -0.7F, 5.0F));
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.7F, it.lost_m);
+    setUp();
+    it.doubts = DOUBT_IMU;
+    it.still = 16U;
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.7F, -0.3F));
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.3F, it.lost_m);
+}
+
+/* ---- DOUBT_SIGHT: both run away */
+
+static uint16_t run_away(float felt_mps, float pushed_mps, float rise_mps, float felt_m, float pushed_m)
+{
+    setUp();
+    it.felt.speed_mps = felt_mps;
+    it.pushed.speed_mps = pushed_mps;
+    it.rise_mps = rise_mps;
+    return judged(felt_m, pushed_m);
+}
+
+void test_both_witnesses_in_a_fast_climb_doubt_heights_that_stand(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, run_away(0.71F, 0.71F, 0.0F, -0.39F, -0.39F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, run_away(-0.71F, -0.71F, 0.0F, 0.39F, 0.39F));
+    TEST_ASSERT_EQUAL_UINT16(0U, run_away(0.70F, 0.71F, 0.0F, -0.39F, -0.39F));
+    TEST_ASSERT_EQUAL_UINT16(0U, run_away(0.71F, 0.70F, 0.0F, -0.39F, -0.39F));
+    TEST_ASSERT_EQUAL_UINT16(0U, run_away(0.71F, 0.71F, 0.0F, -0.38F, -0.39F));
+    TEST_ASSERT_EQUAL_UINT16(0U, run_away(0.71F, 0.71F, 0.0F, -0.39F, -0.38F));
+    TEST_ASSERT_EQUAL_UINT16(0U, run_away(0.71F, 0.71F, 0.0F, 0.39F, 0.39F));
+    TEST_ASSERT_EQUAL_UINT16(0U, run_away(0.71F, -0.71F, 0.0F, -0.39F, -0.39F));
+}
+
+void test_a_speed_is_taken_against_the_rate_of_the_heights(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(0U, run_away(0.75F, 0.85F, 0.1F, -0.39F, -0.39F));
+    TEST_ASSERT_EQUAL_UINT16(0U, run_away(0.85F, 0.75F, 0.1F, -0.39F, -0.39F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, run_away(0.85F, 0.85F, 0.1F, -0.39F, -0.39F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, run_away(0.65F, 0.65F, -0.1F, -0.39F, -0.39F));
+    TEST_ASSERT_EQUAL_UINT16(0U, run_away(1.0F, 1.0F, 0.2F, -0.39F, -0.39F));
+}
+
+void test_of_a_noisy_accelerometer_a_share_of_the_speed_counts(void)
+{
+    setUp();
+    it.shaken = 2.0F;
+    it.felt.speed_mps = 1.39F;
+    it.pushed.speed_mps = 0.71F;
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.8F, -0.39F));
+    it.felt.speed_mps = 1.41F;
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(-0.8F, -0.39F));
+}
+
+/* ---- DOUBT_SIGHT: a still slant */
+
+static uint16_t slant(uint16_t rigid, uint16_t still, float felt_m, float pushed_m)
+{
+    setUp();
+    it.rigid = rigid;
+    it.still = still;
+    return judged(felt_m, pushed_m);
+}
+
+void test_a_rigid_slant_and_both_witnesses_by_a_decimetre_doubt_the_heights(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, slant(2U, 0U, -0.11F, -0.11F));
+    TEST_ASSERT_EQUAL_UINT16(0U, slant(1U, 0U, -0.11F, -0.11F));
+    TEST_ASSERT_EQUAL_UINT16(0U, slant(2U, 0U, -0.10F, -0.11F));
+    TEST_ASSERT_EQUAL_UINT16(0U, slant(2U, 0U, -0.11F, -0.10F));
+    TEST_ASSERT_EQUAL_UINT16(0U, slant(2U, 0U, 0.11F, -0.11F));
+}
+
+void test_a_slant_of_noise_alone_needs_the_thrust_and_a_sign_of_another(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, slant(0U, 16U, -0.06F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(0U, slant(0U, 16U, -0.06F, -0.28F));
+    TEST_ASSERT_EQUAL_UINT16(0U, slant(0U, 15U, -0.06F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(0U, slant(0U, 16U, -0.05F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(0U, slant(0U, 16U, 0.06F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(0U, slant(1U, 16U, 0.06F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, slant(2U, 16U, 0.06F, -0.29F));
+}
+
+void test_a_swaying_tilt_and_a_rigid_slant_are_a_blocked_beam(void)
+{
+    setUp();
+    it.rigid = 16U;
+    it.sway_rad2 = 4.0e-4F;
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
+    it.sway_rad2 = 4.1e-4F;
+    it.rigid = 15U;
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
+    it.rigid = 16U;
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
+}
+
+void test_heights_of_nothing_but_steps_are_doubted(void)
+{
+    it.steps = 12.0F;
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
+    it.steps = 12.1F;
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
+}
+
+/* ---- DOUBT_SIGHT: unconfirmed */
+
+/* A step towards the vehicle was seen; the law pushes push_n towards wanted_m. */
+static uint16_t since_step(float push_n, float wanted_m, float felt_m, float pushed_m)
+{
+    setUp();
+    it.unconfirmed = true;
+    flown.hover_n = 0.0F; /* so that the difference is exact */
+    it.lagged_n = push_n;
+    flown.wanted_m = wanted_m;
+    return judged(felt_m, pushed_m);
+}
+
+void test_a_push_in_vain_after_a_step_towards_the_vehicle_doubts_the_heights(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, since_step(0.21F, 0.5F, 0.0F, -0.36F));
+    TEST_ASSERT_EQUAL_UINT16(0U, since_step(0.20F, 0.5F, 0.0F, -0.36F));
+    TEST_ASSERT_EQUAL_UINT16(0U, since_step(0.21F, 0.5F, 0.0F, -0.35F));
+    TEST_ASSERT_EQUAL_UINT16(0U, since_step(0.21F, 0.5F, 0.0F, 0.36F));
+    TEST_ASSERT_EQUAL_UINT16(0U, since_step(0.21F, -0.5F, 0.0F, -0.36F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, since_step(-0.21F, -0.5F, 0.0F, 0.36F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, since_step(0.21F, 0.003F, 0.0F, -0.36F));
+    TEST_ASSERT_EQUAL_UINT16(0U, since_step(0.21F, 0.0F, 0.0F, -0.36F));
+}
+
+void test_unless_the_accelerometer_tells_the_contrary(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(0U, since_step(0.3F, 0.5F, 0.21F, -0.36F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, since_step(0.3F, 0.5F, 0.20F, -0.36F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, since_step(0.3F, 0.5F, -0.21F, -0.36F));
+}
+
+static void in_vain(bool unconfirmed, bool proved, float felt_least_m, float pushed_for_s)
+{
+    setUp();
+    it.unconfirmed = unconfirmed;
+    it.proved = proved;
+    it.felt_least_m = felt_least_m;
+    it.pushed.running_s = pushed_for_s;
+    it.lagged_n = HOVER_N + 0.3F;
+    (void)judged(0.0F, -0.36F);
+}
+
+void test_a_push_in_vain_needs_a_proof_and_an_old_witness(void)
+{
+    in_vain(true, true, 0.0F, 2.0F);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, it.doubts);
+    in_vain(false, true, 0.0F, 2.0F);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    in_vain(true, true, 0.0F, 1.9F);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    in_vain(true, false, -0.20F, 2.0F);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    in_vain(true, false, -0.21F, 2.0F);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, it.doubts);
+}
+
+void test_without_an_accelerometer_a_push_in_vain_after_a_step_is_enough(void)
+{
+    it.unconfirmed = true;
+    it.doubts = DOUBT_IMU;
+    it.lagged_n = HOVER_N + 0.3F;
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, judged(0.0F, -0.35F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.0F, -0.36F));
+}
+
+void test_the_first_climb_is_the_accelerometers_to_tell(void)
+{
+    static const struct {
+        bool unconfirmed, proved;
+        float felt_m, running_s, way_m;
+        uint16_t doubts;
+    } rows[] = {
+        {true, false, -0.36F, 2.0F, 0.0F, DOUBT_SIGHT}, {true, false, -0.35F, 2.0F, 0.0F, 0},
+        {true, false, 0.36F, 2.0F, 0.0F, 0},            {false, false, -0.36F, 2.0F, 0.0F, 0},
+        {true, true, -0.36F, 2.0F, 0.0F, 0},            {true, false, -0.36F, 0.5F, 0.0F, 0},
+        {true, false, -0.36F, 2.0F, 0.16F, 0},          {true, false, -0.70F, 2.0F, 0.0F, DOUBT_SIGHT},
+        {true, false, -0.70F, 2.0F, 0.16F, DOUBT_IMU},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        it.unconfirmed = rows[i].unconfirmed;
+        it.proved = rows[i].proved;
+        it.felt.running_s = rows[i].running_s;
+        it.way_m = rows[i].way_m;
+        TEST_ASSERT_EQUAL_UINT16(rows[i].doubts, judged(rows[i].felt_m, 0.0F));
+    }
+}
+
+/* ---- DOUBT_SIGHT: on the ground by the heights alone */
+
+static uint16_t lift_off(float height_m, uint16_t rigid, uint16_t still, float sway_rad2, float felt_m)
+{
+    setUp();
+    flown.standing = it.standing = true;
+    it.height_m = it.swaying_from_m = height_m;
+    it.rigid = rigid;
+    it.still = still;
+    it.sway_rad2 = sway_rad2;
+    return judged(felt_m, 0.0F);
+}
+
+void test_a_climb_felt_before_an_odd_beam_shows_it_doubts_the_heights(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, lift_off(0.0F, 2U, 0U, 4.1e-4F, -0.081F));
+    TEST_ASSERT_EQUAL_UINT16(0U, lift_off(0.0F, 2U, 0U, 4.1e-4F, -0.080F));
+    TEST_ASSERT_EQUAL_UINT16(0U, lift_off(0.0F, 2U, 0U, 4.0e-4F, -0.081F));
+    TEST_ASSERT_EQUAL_UINT16(0U, lift_off(0.0F, 1U, 0U, 4.1e-4F, -0.081F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, lift_off(0.081F, 0U, 9U, 4.1e-4F, -0.081F));
+    TEST_ASSERT_EQUAL_UINT16(0U, lift_off(0.08F, 0U, 9U, 4.1e-4F, -0.081F));
+    TEST_ASSERT_EQUAL_UINT16(0U, lift_off(0.081F, 0U, 8U, 4.1e-4F, -0.081F));
+}
+
+void test_a_vehicle_that_is_off_the_ground_is_not_asked_about_its_lift_off(void)
+{
+    it.rigid = 2U;
+    it.unconfirmed = true;
+    it.sway_rad2 = 4.1e-4F;
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.09F, 0.0F));
+    it.swaying_s = 1.6F;
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.swaying_s);
+}
+
+/* One height 0.1 s after the last; how long the tilt has swayed then. */
+static float swayed_s(float height_m, uint16_t still, float sway_rad2)
+{
+    setUp();
+    flown.standing = it.standing = true;
+    it.height_m = height_m;
+    it.still = still;
+    it.sway_rad2 = sway_rad2;
+    it.swaying_s = 1.0F;
+    integrity_height(&it, &flown, height_m, 0.1F, 0.0F);
+    return it.swaying_s;
+}
+
+void test_a_sway_counts_while_the_beam_is_still_and_the_height_the_same(void)
+{
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 1.1F, swayed_s(0.05F, 9U, 4.1e-4F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, swayed_s(0.051F, 9U, 4.1e-4F));
+    TEST_ASSERT_EQUAL_FLOAT(0.051F, it.swaying_from_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, swayed_s(-0.051F, 9U, 4.1e-4F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, swayed_s(0.05F, 8U, 4.1e-4F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, swayed_s(0.05F, 9U, 4.0e-4F));
+}
+
+void test_a_sway_of_more_than_a_second_and_a_half_is_a_flight(void)
+{
+    flown.standing = it.standing = true;
+    it.height_m = 0.0F;
+    it.still = 9U;
+    it.sway_rad2 = 4.1e-4F;
+    it.swaying_s = 1.5F;
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
+    it.swaying_s = 1.51F;
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
+}
+
+/* ---- DOUBT_SIGHT: the thrust alone */
+
+/* How long the law has pushed in vain, 0.1 s after 1 s of it. */
+static float vain_s(float push_n, float wanted_m, float rise_mps, float pushed_m)
+{
+    setUp();
+    flown.hover_n = 0.0F;
+    it.lagged_n = push_n;
+    flown.wanted_m = wanted_m;
+    it.rise_mps = rise_mps * 1.5F; /* a third of a rate is forgotten within this height */
+    it.vain_s = 1.0F;
+    it.pushed.off_m = pushed_m;
+    integrity_height(&it, &flown, it.height_m, 0.1F, 0.0F);
+    return it.vain_s;
+}
+
+void test_a_push_without_any_motion_of_the_heights_is_in_vain(void)
+{
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 1.1F, vain_s(0.71F, 0.5F, 0.0F, -0.01F));
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 1.1F, vain_s(-0.71F, -0.5F, 0.0F, 0.01F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, vain_s(0.70F, 0.5F, 0.0F, -0.01F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, vain_s(0.71F, -0.5F, 0.0F, -0.01F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, vain_s(0.71F, 0.5F, 0.0F, 0.001F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, vain_s(0.71F, 0.5F, 0.0F, 0.0F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, vain_s(0.71F, 0.15F, 0.0F, -0.01F));
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 1.1F, vain_s(0.71F, 0.16F, 0.0F, -0.01F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, vain_s(0.71F, 0.5F, 0.121F, -0.01F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, vain_s(0.71F, 0.5F, -0.121F, -0.01F));
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 1.1F, vain_s(0.71F, 0.5F, 0.119F, -0.01F));
+}
+
+void test_a_push_in_vain_of_three_seconds_doubts_the_heights_where_the_thrust_is_all_there_is(void)
+{
+    for (int other = 0; other < 2; other++) {
+        setUp();
+        it.doubts = (other == 0) ? DOUBT_IMU : 0U;
+        it.lagged_n = HOVER_N + 1.0F;
+        it.vain_s = 3.0F;
+        TEST_ASSERT_EQUAL_UINT16((other == 0) ? DOUBT_IMU : 0U, judged(0.0F, -0.01F));
+        it.vain_s = 3.01F;
+        TEST_ASSERT_EQUAL_UINT16((other == 0) ? (DOUBT_IMU | DOUBT_SIGHT) : 0U, judged(0.0F, -0.01F));
+    }
+}
+
+void test_a_still_slant_needs_no_accelerometer(void)
+{
+    it.doubts = DOUBT_IMU;
+    it.still = 16U;
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, judged(0.0F, -0.28F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.0F, -0.29F));
+}
+
+/* ---- DOUBT_IMU */
+
+void test_an_accelerometer_alone_against_the_heights_is_doubted(void)
+{
+    static const row_t rows[] = {
+        {nothing, 0, 0.61F, 0.0F, DOUBT_IMU},       {nothing, 0, -0.61F, 0.0F, DOUBT_IMU},
+        {nothing, 0, 0.60F, 0.0F, 0},               {nothing, 0, 0.62F, 0.24F, DOUBT_IMU},
+        {nothing, 0, 0.62F, 0.26F, 0},              {nothing, 0, 0.62F, -0.26F, DOUBT_IMU},
+        {pushed_for, 0.5F, 0.61F, 0, DOUBT_SIGHT},  {without_imu, 0, 0.61F, 0, DOUBT_IMU},
+        {felt_for, 0.5F, 0.61F, 0.0F, 0},           {shaken, 2.0F, 1.22F, 0.0F, DOUBT_IMU},
+        {shaken, 2.0F, 1.18F, 0.0F, 0},
+    };
+    CHECK(rows);
+    TEST_ASSERT_EQUAL_UINT16(0U, slant(0U, 9U, 0.61F, 0.0F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, slant(0U, 8U, 0.61F, 0.0F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.felt.seen_m);
+}
+
+void test_heights_that_move_are_right_against_both_witnesses(void)
+{
+    static const row_t rows[] = {
+        {way, 0.16F, -0.52F, -0.30F, DOUBT_IMU},
+        {way, -0.16F, 0.52F, 0.30F, DOUBT_IMU},
+        {way, 0.16F, -0.50F, -0.52F, 0},
+        {way, 0.16F, -0.52F, -0.28F, 0},
+        {way, 0.15F, -0.52F, -0.30F, DOUBT_SIGHT},
+    };
+    CHECK(rows);
+}
+
+/* ---- DOUBT_THRUST */
+
+static uint16_t powerless(float push_n, float wanted_m, float felt_m, float pushed_m)
+{
+    setUp();
+    flown.hover_n = 0.0F;
+    it.lagged_n = push_n;
+    flown.wanted_m = wanted_m;
+    return judged(felt_m, pushed_m);
+}
+
+void test_a_thrust_without_effect_is_doubted_where_heights_and_accelerometer_agree(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, powerless(0.71F, 0.5F, 0.0F, -1.31F));
+    TEST_ASSERT_FALSE(it.held_down);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.pushed.seen_m);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, powerless(-0.71F, -0.16F, 0.0F, 1.31F));
+    TEST_ASSERT_TRUE(it.held_down);
+    TEST_ASSERT_EQUAL_UINT16(0U, powerless(0.71F, 0.5F, 0.0F, -1.30F));
+    TEST_ASSERT_EQUAL_UINT16(0U, powerless(0.70F, 0.5F, 0.0F, -1.31F));
+    TEST_ASSERT_EQUAL_UINT16(0U, powerless(0.71F, 0.15F, 0.0F, -1.31F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, powerless(0.71F, 0.5F, 0.20F, -1.31F));
+    TEST_ASSERT_EQUAL_UINT16(0U, powerless(0.71F, 0.5F, 0.21F, -1.31F));
+}
+
+void test_a_thrust_that_was_never_proved_or_has_no_second_witness_is_not_doubted(void)
+{
+    it.lagged_n = HOVER_N + 1.0F;
+    it.proved = false;
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, -1.4F));
+    it.proved = true;
+    it.felt.running_s = 0.5F;
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, -1.4F));
+    it.felt.running_s = 2.0F;
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, judged(0.0F, -1.4F));
+    TEST_ASSERT_EQUAL_FLOAT(HOVER_N, it.held_n);
+}
+
+/* ---- the end of a doubt */
+
+/* A doubt, and agreement of agreed_s over a motion of moved_m. */
+static uint16_t again(uint16_t doubts, float agreed_s, float moved_m, float felt_m, float pushed_m)
+{
+    setUp();
+    it.doubts = doubts;
+    it.agreed_s = agreed_s;
+    it.pushed.moved_m = moved_m;
+    return judged(felt_m, pushed_m);
+}
+
+void test_agreement_of_a_second_and_a_half_over_a_motion_ends_a_doubt(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(0U, again(DOUBT_SIGHT, 1.51F, 0.31F, 0.0F, 0.0F));
+    TEST_ASSERT_EQUAL_UINT16(0U, again(DOUBT_THRUST, 1.51F, 0.31F, 0.2F, -0.2F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.felt.seen_m);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, again(DOUBT_SIGHT | DOUBT_IMU, 1.51F, 0.31F, 0.0F, 0.0F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.50F, 0.31F, 0.0F, 0.0F));
+    TEST_ASSERT_EQUAL_FLOAT(1.5F, it.agreed_s);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.51F, 0.30F, 0.0F, 0.0F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.agreed_s);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.51F, 0.31F, 0.21F, 0.0F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.51F, 0.31F, 0.0F, 0.21F));
+}
+
+void test_the_motion_is_the_accelerometers_where_the_thrust_does_not_count(void)
+{
+    it.doubts = DOUBT_SIGHT;
+    it.agreed_s = 1.51F;
+    it.pushed.running_s = 0.5F;
+    it.felt.moved_m = 0.31F;
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
+    setUp();
+    it.doubts = DOUBT_SIGHT;
+    it.agreed_s = 1.51F;
+    it.felt.moved_m = 0.31F;
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
+}
+
+void test_a_slant_of_noise_alone_does_not_agree(void)
+{
+    for (uint16_t still = 15U; still <= 16U; still++) {
+        setUp();
+        it.doubts = DOUBT_SIGHT;
+        it.agreed_s = 1.51F;
+        it.pushed.moved_m = 0.31F;
+        it.still = still;
+        TEST_ASSERT_EQUAL_UINT16((still == 15U) ? 0U : DOUBT_SIGHT, judged(0.0F, 0.0F));
+    }
+}
+
+void test_heights_that_move_end_a_doubt_of_the_sight_alone(void)
+{
+    static const struct {
+        uint16_t doubts;
+        float way_m, steps;
+        uint16_t left;
+    } rows[] = {{DOUBT_SIGHT, 0.16F, 0.0F, 0U},
+                {DOUBT_SIGHT, -0.16F, 11.9F, 0U},
+                {DOUBT_SIGHT, 0.15F, 0.0F, DOUBT_SIGHT},
+                {DOUBT_SIGHT, 0.16F, 12.0F, DOUBT_SIGHT},
+                {DOUBT_THRUST, 0.16F, 0.0F, DOUBT_THRUST},
+                {DOUBT_THRUST | DOUBT_SIGHT, 0.16F, 0.0F, 0U}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        it.doubts = rows[i].doubts;
+        it.way_m = rows[i].way_m;
+        it.steps = rows[i].steps;
+        TEST_ASSERT_EQUAL_UINT16(rows[i].left, judged(0.0F, 0.0F));
+    }
+}
+
+void test_a_doubt_starts_its_sums_again_when_they_grow_past_half_a_metre(void)
+{
+    (void)again(DOUBT_SIGHT, 0.0F, 0.0F, -0.50F, 0.50F);
+    TEST_ASSERT_EQUAL_FLOAT(-0.5F, it.felt.seen_m);
+    (void)again(DOUBT_SIGHT, 0.0F, 0.0F, -0.51F, 0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.felt.seen_m);
+    (void)again(DOUBT_SIGHT, 0.0F, 0.0F, -0.1F, 0.51F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.pushed.seen_m);
+}
+
+/* ---- who is judged */
+
+void test_on_the_ground_and_under_a_pilot_nothing_is_judged(void)
+{
+    flown.grounded = true;
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.7F, -0.7F));
+    TEST_ASSERT_EQUAL_FLOAT(-0.7F, it.felt.seen_m);
+    setUp();
+    flown.ours = false;
+    it.rise_mps = 0.3F;
+    it.felt.speed_mps = 1.0F;
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.7F, -0.7F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.pushed.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.3F, it.felt.speed_mps);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.felt.running_s);
+}
