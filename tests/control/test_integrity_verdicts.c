@@ -1,5 +1,6 @@
-/* Every limit of the verdicts, from both sides: the evidence is written into the state, one height is judged. A limit that
- * moves, or a condition that falls out, changes what a flight doubts; it has to be changed here on purpose. */
+/* Every limit of the verdicts, from both sides: the evidence is written into the state, one height is judged.
+ * A limit that moves, or a condition that falls out, changes what a flight doubts; it has to be changed here
+ * on purpose. */
 #include "control/integrity.h"
 #include "unity.h"
 
@@ -103,7 +104,8 @@ static void check(const row_t *rows, size_t count)
         which[4] = (char)('0' + i / 10U);
         which[5] = (char)('0' + i % 10U);
         TEST_ASSERT_EQUAL_UINT16_MESSAGE(
-            rows[i].doubts, judged_with(rows[i].change, rows[i].value, rows[i].felt_m, rows[i].pushed_m), which);
+            rows[i].doubts, judged_with(rows[i].change, rows[i].value, rows[i].felt_m, rows[i].pushed_m),
+            which);
     }
 }
 #define CHECK(rows) check(rows, sizeof(rows) / sizeof((rows)[0]))
@@ -113,10 +115,14 @@ static void check(const row_t *rows, size_t count)
 void test_both_witnesses_together_doubt_the_heights_one_by_half_a_metre(void)
 {
     static const row_t rows[] = {
-        {nothing, 0, -0.51F, -0.29F, DOUBT_SIGHT}, {nothing, 0, -0.50F, -0.29F, 0},
-        {nothing, 0, -0.29F, -0.51F, DOUBT_SIGHT}, {nothing, 0, -0.29F, -0.50F, 0},
-        {nothing, 0, -0.51F, -0.28F, 0},           {nothing, 0, -0.28F, -0.51F, 0},
-        {nothing, 0, 0.51F, 0.29F, DOUBT_SIGHT},   {nothing, 0, 0.51F, -0.29F, 0},
+        {nothing, 0, -0.51F, -0.29F, DOUBT_SIGHT},
+        {nothing, 0, -0.50F, -0.29F, 0},
+        {nothing, 0, -0.29F, -0.51F, DOUBT_SIGHT},
+        {nothing, 0, -0.29F, -0.50F, 0},
+        {nothing, 0, -0.51F, -0.28F, 0},
+        {nothing, 0, -0.28F, -0.51F, 0},
+        {nothing, 0, 0.51F, 0.29F, DOUBT_SIGHT},
+        {nothing, 0, 0.51F, -0.29F, 0},
         {nothing, 0, -0.51F, 0.29F, 0},
     };
     CHECK(rows);
@@ -136,10 +142,14 @@ void test_a_law_near_its_reference_asks_nearly_twice_as_much(void)
 void test_heights_that_move_are_not_doubted(void)
 {
     static const row_t rows[] = {
-        {rising, 0.199F, -0.51F, -0.29F, DOUBT_SIGHT}, {rising, -0.199F, -0.51F, -0.29F, DOUBT_SIGHT},
-        {rising, 0.20F, -0.51F, -0.29F, 0},            {rising, -0.20F, -0.51F, -0.29F, 0},
-        {moved_s_ago, 0.99F, -0.51F, -0.29F, 0},       {way, 0.15F, -0.45F, -0.51F, DOUBT_SIGHT},
-        {way, 0.151F, -0.45F, -0.51F, 0},              {way, -0.151F, -0.45F, -0.51F, 0},
+        {rising, 0.199F, -0.51F, -0.29F, DOUBT_SIGHT},
+        {rising, -0.199F, -0.51F, -0.29F, DOUBT_SIGHT},
+        {rising, 0.20F, -0.51F, -0.29F, 0},
+        {rising, -0.20F, -0.51F, -0.29F, 0},
+        {moved_s_ago, 0.99F, -0.51F, -0.29F, 0},
+        {way, 0.15F, -0.45F, -0.51F, DOUBT_SIGHT},
+        {way, 0.151F, -0.45F, -0.51F, 0},
+        {way, -0.151F, -0.45F, -0.51F, 0},
     };
     CHECK(rows);
 }
@@ -147,8 +157,10 @@ void test_heights_that_move_are_not_doubted(void)
 void test_a_witness_counts_after_half_a_second(void)
 {
     static const row_t rows[] = {
-        {felt_for, 0.5F, -0.51F, -0.29F, 0},   {felt_for, 0.51F, -0.51F, -0.29F, DOUBT_SIGHT},
-        {pushed_for, 0.5F, -0.51F, -0.29F, 0}, {pushed_for, 0.51F, -0.51F, -0.29F, DOUBT_SIGHT},
+        {felt_for, 0.5F, -0.51F, -0.29F, 0},
+        {felt_for, 0.51F, -0.51F, -0.29F, DOUBT_SIGHT},
+        {pushed_for, 0.5F, -0.51F, -0.29F, 0},
+        {pushed_for, 0.51F, -0.51F, -0.29F, DOUBT_SIGHT},
     };
     CHECK(rows);
 }
@@ -357,10 +369,14 @@ void test_the_first_climb_is_the_accelerometers_to_tell(void)
         float felt_m, running_s, way_m;
         uint16_t doubts;
     } rows[] = {
-        {true, false, -0.36F, 2.0F, 0.0F, DOUBT_SIGHT}, {true, false, -0.35F, 2.0F, 0.0F, 0},
-        {true, false, 0.36F, 2.0F, 0.0F, 0},            {false, false, -0.36F, 2.0F, 0.0F, 0},
-        {true, true, -0.36F, 2.0F, 0.0F, 0},            {true, false, -0.36F, 0.5F, 0.0F, 0},
-        {true, false, -0.36F, 2.0F, 0.16F, 0},          {true, false, -0.70F, 2.0F, 0.0F, DOUBT_SIGHT},
+        {true, false, -0.36F, 2.0F, 0.0F, DOUBT_SIGHT},
+        {true, false, -0.35F, 2.0F, 0.0F, 0},
+        {true, false, 0.36F, 2.0F, 0.0F, 0},
+        {false, false, -0.36F, 2.0F, 0.0F, 0},
+        {true, true, -0.36F, 2.0F, 0.0F, 0},
+        {true, false, -0.36F, 0.5F, 0.0F, 0},
+        {true, false, -0.36F, 2.0F, 0.16F, 0},
+        {true, false, -0.70F, 2.0F, 0.0F, DOUBT_SIGHT},
         {true, false, -0.70F, 2.0F, 0.16F, DOUBT_IMU},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
@@ -500,11 +516,16 @@ void test_a_still_slant_needs_no_accelerometer(void)
 void test_an_accelerometer_alone_against_the_heights_is_doubted(void)
 {
     static const row_t rows[] = {
-        {nothing, 0, 0.61F, 0.0F, DOUBT_IMU},       {nothing, 0, -0.61F, 0.0F, DOUBT_IMU},
-        {nothing, 0, 0.60F, 0.0F, 0},               {nothing, 0, 0.62F, 0.24F, DOUBT_IMU},
-        {nothing, 0, 0.62F, 0.26F, 0},              {nothing, 0, 0.62F, -0.26F, DOUBT_IMU},
-        {pushed_for, 0.5F, 0.61F, 0, DOUBT_SIGHT},  {without_imu, 0, 0.61F, 0, DOUBT_IMU},
-        {felt_for, 0.5F, 0.61F, 0.0F, 0},           {shaken, 2.0F, 1.22F, 0.0F, DOUBT_IMU},
+        {nothing, 0, 0.61F, 0.0F, DOUBT_IMU},
+        {nothing, 0, -0.61F, 0.0F, DOUBT_IMU},
+        {nothing, 0, 0.60F, 0.0F, 0},
+        {nothing, 0, 0.62F, 0.24F, DOUBT_IMU},
+        {nothing, 0, 0.62F, 0.26F, 0},
+        {nothing, 0, 0.62F, -0.26F, DOUBT_IMU},
+        {pushed_for, 0.5F, 0.61F, 0, DOUBT_SIGHT},
+        {without_imu, 0, 0.61F, 0, DOUBT_IMU},
+        {felt_for, 0.5F, 0.61F, 0.0F, 0},
+        {shaken, 2.0F, 1.22F, 0.0F, DOUBT_IMU},
         {shaken, 2.0F, 1.18F, 0.0F, 0},
     };
     CHECK(rows);
@@ -516,10 +537,8 @@ void test_an_accelerometer_alone_against_the_heights_is_doubted(void)
 void test_heights_that_move_are_right_against_both_witnesses(void)
 {
     static const row_t rows[] = {
-        {way, 0.16F, -0.52F, -0.30F, DOUBT_IMU},
-        {way, -0.16F, 0.52F, 0.30F, DOUBT_IMU},
-        {way, 0.16F, -0.50F, -0.52F, 0},
-        {way, 0.16F, -0.52F, -0.28F, 0},
+        {way, 0.16F, -0.52F, -0.30F, DOUBT_IMU},   {way, -0.16F, 0.52F, 0.30F, DOUBT_IMU},
+        {way, 0.16F, -0.50F, -0.52F, 0},           {way, 0.16F, -0.52F, -0.28F, 0},
         {way, 0.15F, -0.52F, -0.30F, DOUBT_SIGHT},
     };
     CHECK(rows);
