@@ -4,6 +4,11 @@
 
 #include "control/median.h"
 
+#define ROLLED_RAD 0.78539816F  /* 45 degrees, as TILTED_COS in supervisor.c */
+#define FOLLOWS_RAD 0.25F       /* chosen: 570 degrees a second in frames of 25 ms */
+#define FOLLOWS_SPIKE_RAD 0.40F /* chosen: 460 degrees a second in two frames, one of them a spike */
+#define STRAYED_FRAMES 7U       /* chosen: a burst of six bad frames is over */
+
 void attitude_init(attitude_filter_t *filter)
 {
     *filter = (attitude_filter_t){.ready = false};
@@ -57,6 +62,26 @@ static attitude_t median_attitude(const attitude_filter_t *filter)
     };
 }
 
+/* A frame after a jump is not counted, nor are those after it, until one continues the motion from before the
+ * jump, or the burst of bad frames must be over. */
+static void watch_roll(attitude_filter_t *filter, const attitude_t *level)
+{
+    const float most_rad = (filter->strayed == 0U) ? FOLLOWS_RAD : FOLLOWS_SPIKE_RAD;
+    const bool follows = arc_rad(filter->followed.roll_rad, level->roll_rad) < most_rad &&
+                         arc_rad(filter->followed.pitch_rad, level->pitch_rad) < most_rad;
+
+    if (!follows && filter->held > 0U && filter->strayed + 1U < STRAYED_FRAMES) {
+        ++filter->strayed;
+        return;
+    }
+    const bool tilted = fabsf(level->roll_rad) > ROLLED_RAD || fabsf(level->pitch_rad) > ROLLED_RAD;
+    const bool counts = tilted && follows;
+
+    filter->followed = *level;
+    filter->strayed = 0U;
+    filter->rolled = counts ? (uint16_t)(filter->rolled + (filter->rolled < ATTITUDE_ROLLED_FRAMES)) : 0U;
+}
+
 bool attitude_step(attitude_filter_t *filter, const attitude_t *raw, attitude_t *level, attitude_t *median)
 {
     if (!filter->ready) {
@@ -70,6 +95,7 @@ bool attitude_step(attitude_filter_t *filter, const attitude_t *raw, attitude_t 
         .pitch_rad = raw->pitch_rad - filter->offset.pitch_rad,
         .yaw_rad = raw->yaw_rad,
     };
+    watch_roll(filter, level);
     filter->history[filter->next] = *level;
     filter->next = (uint16_t)((filter->next + 1U) % ATTITUDE_MEDIAN_FRAMES);
     if (filter->held < ATTITUDE_MEDIAN_FRAMES) {

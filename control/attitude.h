@@ -29,7 +29,14 @@ typedef struct {
     attitude_t history[ATTITUDE_MEDIAN_FRAMES]; /* latest angles, offset removed */
     uint16_t held;                              /* valid entries of history */
     uint16_t next;
+    attitude_t followed; /* latest frame that continued the motion */
+    uint16_t strayed;    /* frames since then */
+    uint16_t rolled;     /* frames in a row that continued a turn beyond 45 degrees */
 } attitude_filter_t;
+
+/* So many of them are a vehicle that turns over, and no burst of up to six bad frames: such a burst jumps, or
+ * it passes 45 degrees too late to show four. The median would tell it two frames later. */
+#define ATTITUDE_ROLLED_FRAMES 4U
 
 void attitude_init(attitude_filter_t *filter);
 

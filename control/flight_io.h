@@ -29,8 +29,7 @@ typedef struct {
     float roll_rad;             /* median of the latest five frames, > 0: mirror's side up; not used by
                                  * laws PD and PID */
     float pitch_rad;            /* as roll_rad, > 0: nose up */
-    uint16_t tilted_frames;     /* consecutive frames over 45 degrees, where frames come faster than
-                                 * cycles; else 0 */
+    uint16_t tilted_frames;     /* consecutive frames over 45 degrees; not read when frames is NULL */
     uint32_t attitude_time_us;  /* arrival of the latest IMU frame */
     uint32_t height_stamp_ms;   /* 24-bit sensor time of that scan; for laws PIDT and EST */
     uint32_t height_age_us;     /* from its rays to its arrival, when nothing delays it; for PIDT and

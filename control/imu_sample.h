@@ -12,6 +12,7 @@ typedef struct {
     uint32_t sequence; /* frames so far; 0 = none yet */
     uint32_t arrival_us;
     bool ready;                          /* the offset of the angles is known */
+    uint16_t rolled;                     /* attitude.h */
     attitude_t level;                    /* offset removed */
     attitude_t median;                   /* median of this frame and the four before it */
     float tilt_roll_rad, tilt_pitch_rad; /* the same median, offset not removed */

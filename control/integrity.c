@@ -18,15 +18,17 @@
 #include <stddef.h>
 
 #include "control/between.h"
-
-#define HALF_TURN_RAD 3.14159265F /* pi */
+#include "control/median.h"
 
 /* Tilt. */
-#define JUMP_RAD 0.35F               /* chosen: 20 degrees within a frame of 25 ms, 800 degrees a second */
-#define JUMPS_HELD 6U                /* chosen: a burst of six bad frames shows in six medians */
-#define ANGLE_MAX_RAD 7.0F           /* chosen: above 2 pi */
-#define UP_MAX_MPS2 200.0F           /* above the Razor's range, 16 g; as in estimator.c */
-#define TILTED_COS 0.70710678F       /* chosen: 45 degrees; as in supervisor.c */
+#define JUMP_RAD 0.35F            /* chosen: 20 degrees within a frame of 25 ms, 800 degrees a second */
+#define HALF_TURN_RAD 3.14159265F /* pi */
+#define STEADY_MIN_RAD 0.05F      /* chosen: 110 degrees a second, faster than an attitude that is held */
+#define STEADY_MAX_RAD 0.25F   /* as FOLLOWS_RAD in attitude.c; a spike or a lost frame makes one step more */
+#define JUMPS_HELD 6U          /* chosen: a burst of six bad frames shows in six medians */
+#define ANGLE_MAX_RAD 7.0F     /* chosen: above 2 pi */
+#define UP_MAX_MPS2 200.0F     /* above the Razor's range, 16 g; as in estimator.c */
+#define TILTED_COS 0.70710678F /* chosen: 45 degrees; as in supervisor.c */
 #define TILT_GAP_US UINT32_C(250000) /* ten frames of 25 ms: after such a gap any tilt is accepted */
 
 /* Scans. With a sensor noise of 3 mm, chance makes three scans with the same digits once in some millions. */
@@ -160,11 +162,34 @@ static void forget(integrity_t *i)
 
 /* ---- tilt */
 
-/* Angle between two directions, 0 .. pi. */
+/* The turn from one direction to another, -pi .. pi. */
 static float turn_rad(float from_rad, float to_rad)
 {
-    const float turn = fabsf(to_rad - from_rad);
-    return (turn > HALF_TURN_RAD) ? fabsf(2.0F * HALF_TURN_RAD - turn) : turn;
+    const float turned_rad = to_rad - from_rad;
+    return (turned_rad > HALF_TURN_RAD)    ? turned_rad - 2.0F * HALF_TURN_RAD
+           : (turned_rad < -HALF_TURN_RAD) ? turned_rad + 2.0F * HALF_TURN_RAD
+                                           : turned_rad;
+}
+
+/* One axis of turns_on(). */
+static bool turns_steadily(float accepted_rad, float before_rad, float now_rad, uint16_t frames)
+{
+    const float step_rad = turn_rad(before_rad, now_rad);
+    const float rest_rad = turn_rad(accepted_rad, now_rad) - (float)frames * step_rad;
+
+    return fabsf(step_rad) > STEADY_MIN_RAD && fabsf(step_rad) < STEADY_MAX_RAD &&
+           fabsf(rest_rad) < STEADY_MAX_RAD;
+}
+
+/* The tilts that were rejected go on turning, and at the same rate they have turned since the accepted one:
+ * the vehicle turns over, and a spike or a lost frame made the jump. Bad frames jump and then turn
+ * differently. */
+static bool turns_on(const integrity_t *i, float roll_rad, float pitch_rad)
+{
+    const uint16_t frames = (uint16_t)(i->jumped + 1U);
+
+    return i->jumped > 0U && (turns_steadily(i->roll_rad, i->told_rad[0], roll_rad, frames) ||
+                              turns_steadily(i->pitch_rad, i->told_rad[1], pitch_rad, frames));
 }
 
 /* Accepts or rejects one tilt. True: accepted. */
@@ -172,15 +197,17 @@ static bool accept_tilt(integrity_t *i, float roll_rad, float pitch_rad, uint32_
 {
     const bool recent = i->levelled && time_us - i->tilt_time_us <= TILT_GAP_US;
     const bool told = fabsf(roll_rad) < ANGLE_MAX_RAD && fabsf(pitch_rad) < ANGLE_MAX_RAD; /* no NaN */
-    const bool jump = turn_rad(i->roll_rad, roll_rad) > JUMP_RAD ||
-                      turn_rad(i->pitch_rad, pitch_rad) > JUMP_RAD;
+    const bool jump = arc_rad(i->roll_rad, roll_rad) > JUMP_RAD ||
+                      arc_rad(i->pitch_rad, pitch_rad) > JUMP_RAD;
 
     if (!told) {
         return false;
     }
     i->tilt_time_us = time_us;
-    if (recent && jump && i->jumped < JUMPS_HELD) {
+    if (recent && jump && i->jumped < JUMPS_HELD && !turns_on(i, roll_rad, pitch_rad)) {
         ++i->jumped;
+        i->told_rad[0] = roll_rad;
+        i->told_rad[1] = pitch_rad;
         return false;
     }
     i->levelled = true;
@@ -188,12 +215,20 @@ static bool accept_tilt(integrity_t *i, float roll_rad, float pitch_rad, uint32_
     i->roll_rad = roll_rad;
     i->pitch_rad = pitch_rad;
     i->upright = cosf(roll_rad) * cosf(pitch_rad);
-    if (i->upright >= TILTED_COS) {
-        i->tilted = 0U;
-    } else if (i->tilted < COUNT_MAX) {
-        ++i->tilted;
-    }
     return true;
+}
+
+/* Counts tilted frames. The median of a burst of bad frames outlasts it by two: the frame itself must be
+ * tilted too. */
+static void count_tilted(integrity_t *i, const imu_sample_t *frame)
+{
+    if (frame->rolled == ATTITUDE_ROLLED_FRAMES) {
+        i->tilted = COUNT_MAX;
+    } else if (i->upright >= TILTED_COS) {
+        i->tilted = 0U;
+    } else if (cosf(frame->level.roll_rad) * cosf(frame->level.pitch_rad) < TILTED_COS) {
+        i->tilted = (uint16_t)(i->tilted + (i->tilted < COUNT_MAX));
+    }
 }
 
 void integrity_tilt(integrity_t *integrity, const imu_sample_t *frames, uint16_t count, float roll_rad,
@@ -206,6 +241,7 @@ void integrity_tilt(integrity_t *integrity, const imu_sample_t *frames, uint16_t
         if (!accept_tilt(integrity, frame->median.roll_rad, frame->median.pitch_rad, frame->arrival_us)) {
             integrity->unfit_sequence = frame->sequence;
         }
+        count_tilted(integrity, frame);
     }
     if (count == 0U && (!integrity->levelled || time_us != integrity->tilt_time_us)) {
         (void)accept_tilt(integrity, roll_rad, pitch_rad, time_us);

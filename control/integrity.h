@@ -72,7 +72,8 @@ typedef struct {
     float roll_rad, pitch_rad; /* latest accepted tilt */
     float upright;             /* its cosine */
     uint16_t jumped;           /* tilts in a row that were rejected because they jumped */
-    uint16_t tilted;           /* accepted tilts in a row above 45 degrees */
+    float told_rad[2];         /* roll and pitch of the latest of them */
+    uint16_t tilted;           /* frames in a row above 45 degrees, their accepted tilt too */
     uint32_t tilt_time_us;     /* arrival of the latest tilt, accepted or not */
     uint32_t tilt_sequence;    /* latest frame that integrity_tilt() processed */
     uint32_t unfit_sequence;   /* frames up to this one must not be used: their tilt was rejected */
@@ -136,7 +137,8 @@ void integrity_init(integrity_t *integrity);
 
 /* Checks the tilt, once in each cycle. frames: oldest first, borrowed for the call; frames that were
  * processed before change nothing. When count is 0, roll_rad, pitch_rad and time_us (arrival) are one sample
- * instead. A tilt that jumps by more than 20 degrees is rejected until six in a row were rejected. Angles
+ * instead. A tilt that jumps by more than 20 degrees is rejected until six in a row were rejected, or until
+ * they show a steady turn. Angles
  * that are NaN or beyond 7 rad are rejected. Writes roll_rad, pitch_rad, tilted and unfit_sequence. */
 void integrity_tilt(integrity_t *integrity, const imu_sample_t *frames, uint16_t count, float roll_rad,
                     float pitch_rad, uint32_t time_us);

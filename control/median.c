@@ -1,9 +1,5 @@
 #include "control/median.h"
 
-#include <math.h>
-
-#define PI_RAD 3.14159265F /* pi */
-
 float median_of(const float *values, uint16_t count)
 {
     const uint16_t middle = (uint16_t)((count - 1U) / 2U);
@@ -21,12 +17,6 @@ float median_of(const float *values, uint16_t count)
         }
     }
     return values[chosen];
-}
-
-static float arc_rad(float from_rad, float to_rad)
-{
-    const float apart_rad = fabsf(to_rad - from_rad);
-    return (apart_rad > PI_RAD) ? 2.0F * PI_RAD - apart_rad : apart_rad;
 }
 
 float median_of_angles(const float *angles_rad, uint16_t count)

@@ -6,6 +6,7 @@
 #include "control/supervisor.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #include "control/between.h"
 
@@ -115,13 +116,16 @@ static void observe_attitude(supervisor_t *s, const flight_inputs_t *in, float u
     s->attitude_age_us = is_new ? elapsed(in->now_us, in->attitude_time_us)
                                 : add_time(s->attitude_age_us, s->step_us);
     s->attitude_time_us = in->attitude_time_us;
-    if (is_new && in->attitude_ready) {
-        const bool tilted = upright < TILTED_COS;
-        s->tilted_count = tilted ? (uint16_t)(s->tilted_count + (s->tilted_count < TILTED_ATTITUDES)) : 0U;
+    const bool counts = is_new && in->attitude_ready;
+
+    if (counts) {
         s->level = upright > LEVEL_COS;
     }
-    if (in->tilted_frames >= TILTED_ATTITUDES) {
-        s->tilted_count = TILTED_ATTITUDES;
+    if (in->frames != NULL) {
+        s->tilted_count = (in->tilted_frames < TILTED_ATTITUDES) ? in->tilted_frames : TILTED_ATTITUDES;
+    } else if (counts) {
+        const bool tilted = upright < TILTED_COS;
+        s->tilted_count = tilted ? (uint16_t)(s->tilted_count + (s->tilted_count < TILTED_ATTITUDES)) : 0U;
     }
 }
 

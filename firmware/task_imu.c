@@ -54,6 +54,7 @@ static void take(imu_sample_t *sample, const imu_raw_t *raw, uint32_t arrival_us
     if (filter.ready && !was_ready) {
         boot_keep_offset(&filter.offset);
     }
+    sample->rolled = filter.rolled;
     sample->level = imu_map_angles(&mapping, &level);
     sample->median = imu_map_angles(&mapping, &median);
     tilt = tilt_of(&mapping, &median);

@@ -37,6 +37,7 @@ const razor_config_t razor_default = {.period = 25 * SIM_MS,
                                       .acceleration_alias_mps2 = 0.0,
                                       .acceleration_alias_hz = 2.0,
                                       .attitude_burst_rad = 0.0,
+                                      .attitude_burst_radps = 0.0,
                                       .attitude_burst = {10.0, 0.075},
                                       .mute = {10.0, 0.0},
                                       .frozen = {10.0, 0.0},
@@ -155,7 +156,9 @@ static void compose(razor9dof_t *razor, frame_t *frame, const razor_truth_t *see
     const double yaw_deg = printed_angle_deg(razor, truth.yaw_rad);
     const double pitch_deg = razor->config.pitch_sign * printed_angle_deg(razor, pitch_rad);
     const double burst_rad = span_holds(&razor->config.attitude_burst, truth.t_s)
-                                 ? razor->config.attitude_burst_rad
+                                 ? razor->config.attitude_burst_rad +
+                                       razor->config.attitude_burst_radps *
+                                           (truth.t_s - razor->config.attitude_burst.start_s)
                                  : 0.0;
     const double roll_deg = -razor->config.roll_sign * printed_angle_deg(razor, roll_rad + burst_rad);
     const double scale = razor->config.angle_scale;

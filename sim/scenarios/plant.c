@@ -108,6 +108,8 @@ static const figure_t figures[] = {
     {"imu_spikes", "-", 0, 1, IMU(spike_probability), 1, "probability of a spike per angle"},
     {"attitude_burst_deg", "deg", -180, 180, IMU(attitude_burst_rad), DEG,
      "added to the roll that the IMU tells"},
+    {"attitude_burst_degps", "deg/s", -10000, 10000, IMU(attitude_burst_radps), DEG,
+     "and that grows so fast meanwhile"},
     {"attitude_burst_start", "s", -LARGE, LARGE, IMU(attitude_burst.start_s), 1,
      "scenario time from which on"},
     {"attitude_burst_length", "s", 0, LARGE, IMU(attitude_burst.length_s), 1,

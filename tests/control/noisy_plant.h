@@ -86,6 +86,7 @@ static inline void noisy_frame(noisy_t *n, uint32_t clock_us)
     f->down_mps2 = (float)(felt * cos(roll));
     f->median.roll_rad = (float)noisy_roll(n, NOISY_FRAME_AGE_US + 50000U) + (float)n->fallen_rad;
     f->median.pitch_rad = 0.0F;
+    f->level = f->median;
     f->tilt_roll_rad = f->median.roll_rad;
 }
 

@@ -168,3 +168,73 @@ void test_a_restored_offset_is_used_at_once(void)
     TEST_ASSERT_FLOAT_WITHIN(1e-6F, 0.02F, median.pitch_rad);
     TEST_ASSERT_EQUAL_UINT16(1, filter.held);
 }
+
+/* ---- turning over */
+
+#define DEGREE_RAD 0.0174532925F
+
+/* Frames that are added to a level vehicle's roll and pitch, then what `rolled` came to at most. */
+static uint16_t most_rolled(const float *degrees, unsigned frames, bool pitch)
+{
+    uint16_t most = 0U;
+
+    attitude_init(&filter);
+    learn(0.0F, 0.0F);
+    for (unsigned i = 0; i < frames + 20U; i++) {
+        const float told = (i >= 5U && i < frames + 5U) ? degrees[i - 5U] * DEGREE_RAD : 0.0F;
+        (void)step(pitch ? 0.0F : told, pitch ? told : 0.0F, 0.0F);
+        most = (filter.rolled > most) ? filter.rolled : most;
+    }
+    return most;
+}
+
+void test_a_roll_of_400_degrees_a_second_is_seen_at_its_fourth_frame_beyond_45_degrees(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        learn(0.0F, 0.0F);
+        for (int i = 0; i <= 30; i++) { /* and through the half turn */
+            const float roll_rad = (float)sign * 10.0F * (float)i * DEGREE_RAD;
+            (void)step(remainderf(roll_rad, 6.2831853F), 0.0F, 0.0F);
+            const int beyond = (i < 5) ? 0 : i - 4;
+            TEST_ASSERT_EQUAL_INT(beyond < (int)ATTITUDE_ROLLED_FRAMES ? beyond : (int)ATTITUDE_ROLLED_FRAMES,
+                                  filter.rolled);
+        }
+        attitude_init(&filter);
+    }
+}
+
+void test_one_spike_on_the_way_does_not_hide_a_roll(void)
+{
+    for (unsigned spike = 1; spike < 8; spike++) {
+        float roll[12];
+        for (unsigned i = 0; i < 12; i++) {
+            roll[i] = 10.0F * (float)(i + 1U) + (i == spike ? 25.0F : 0.0F);
+        }
+        TEST_ASSERT_EQUAL_UINT16(ATTITUDE_ROLLED_FRAMES, most_rolled(roll, 12, spike % 2U == 0U));
+    }
+}
+
+void test_up_to_six_bad_frames_are_no_roll_whatever_they_tell(void)
+{
+    for (float first = -180.0F; first <= 180.0F; first += 5.0F) {
+        for (float drift = -40.0F; drift <= 40.0F; drift += 1.0F) {
+            float told[6];
+            for (unsigned i = 0; i < 6; i++) {
+                told[i] = remainderf(first + drift * (float)i, 360.0F);
+            }
+            TEST_ASSERT_LESS_THAN_UINT16(ATTITUDE_ROLLED_FRAMES, most_rolled(told, 6, false));
+            TEST_ASSERT_LESS_THAN_UINT16(ATTITUDE_ROLLED_FRAMES, most_rolled(told, 6, true));
+        }
+    }
+}
+
+void test_a_vehicle_that_stays_on_its_side_is_seen_although_it_got_there_unseen(void)
+{
+    float told[11];
+
+    for (unsigned i = 0; i < 11; i++) {
+        told[i] = 90.0F;
+    }
+    TEST_ASSERT_EQUAL_UINT16(ATTITUDE_ROLLED_FRAMES, most_rolled(told, 11, false));
+    TEST_ASSERT_LESS_THAN_UINT16(ATTITUDE_ROLLED_FRAMES, most_rolled(told, 10, false));
+}

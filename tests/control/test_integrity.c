@@ -582,7 +582,7 @@ static void tilt(float degrees, int frames)
     for (int i = 0; i < frames; i++) {
         frame.sequence++;
         frame.arrival_us += 25000U;
-        frame.median.roll_rad = degrees * DEGREE_RAD;
+        frame.level.roll_rad = frame.median.roll_rad = degrees * DEGREE_RAD;
         integrity_tilt(&it, &frame, 1U, 0.0F, 0.0F, 0U);
     }
 }
@@ -608,6 +608,58 @@ void test_a_tilt_that_grows_is_believed_at_once(void)
         TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 10.0F * (float)i * DEGREE_RAD, it.roll_rad);
     }
     TEST_ASSERT_EQUAL_UINT16(6U, it.tilted);
+}
+
+void test_a_roll_whose_median_jumps_once_is_believed_at_its_second_frame(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        setUp();
+        for (int i = 0; i <= 10; i++) { /* from the third on one frame ahead: a spike in the five */
+            tilt((float)sign * 11.0F * (float)(i + (i > 2)), 1);
+            TEST_ASSERT_EQUAL_UINT16(i == 3 ? 1U : 0U, it.jumped);
+        }
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, (float)sign * 121.0F * DEGREE_RAD, it.roll_rad);
+    }
+}
+
+void test_bad_frames_that_jump_and_drift_are_no_roll(void)
+{
+    for (float drift = -5.0F; drift <= 20.0F; drift += 2.5F) {
+        setUp();
+        tilt(2.0F, 5);
+        for (int i = 0; i < 6; i++) {
+            tilt(60.0F + drift * (float)i, 1);
+            TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 2.0F * DEGREE_RAD, it.roll_rad);
+        }
+        tilt(1.0F, 1);
+        TEST_ASSERT_EQUAL_UINT16(0U, it.tilted);
+    }
+}
+
+void test_a_median_that_outlasts_its_frames_does_not_count_as_tilted(void)
+{
+    tilt(20.0F, 1);
+    tilt(39.0F, 1);
+    tilt(55.0F, 2);
+    TEST_ASSERT_EQUAL_UINT16(2U, it.tilted);
+    frame.sequence++;
+    frame.arrival_us += 25000U;
+    frame.level.roll_rad = 0.0F;
+    integrity_tilt(&it, &frame, 1U, 0.0F, 0.0F, 0U);
+    TEST_ASSERT_EQUAL_UINT16(2U, it.tilted);
+    tilt(40.0F, 1);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.tilted);
+}
+
+void test_a_vehicle_that_has_rolled_over_is_tilted_before_its_median_says_so(void)
+{
+    tilt(2.0F, 5);
+    frame.rolled = ATTITUDE_ROLLED_FRAMES - 1U;
+    tilt(2.0F, 1);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.tilted);
+    frame.rolled = ATTITUDE_ROLLED_FRAMES;
+    tilt(2.0F, 1);
+    TEST_ASSERT_GREATER_THAN_UINT16(3U, it.tilted);
 }
 
 void test_a_tilt_after_a_silence_or_through_the_half_turn_is_no_jump(void)

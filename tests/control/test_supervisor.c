@@ -749,7 +749,10 @@ void test_a_pilot_who_lands_withdraws_the_reference(void)
 
 void test_a_tilt_that_frames_have_shown_thrice_counts_in_a_slower_cycle_at_once(void)
 {
+    const imu_sample_t frame = {.ready = true};
+
     fly();
+    in.frames = &frame;
     in.tilted_frames = 2U;
     watch(500.0F, 5);
     state_is(FLIGHT_FLYING);

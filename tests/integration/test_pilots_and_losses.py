@@ -168,22 +168,24 @@ class Losses(unittest.TestCase):
     def test_six_bad_attitudes_cut_nothing(self):
         def burst(rng):
             return {"attitude_burst_deg": rng.choice((30.0, 60.0, 90.0, 120.0, -70.0)),
+                    "attitude_burst_degps": rng.choice((0.0, 100.0, 300.0, -300.0)),
                     "attitude_burst_start": rng.uniform(3.0, 16.0),
                     "attitude_burst_length": rng.choice((0.075, 0.15))}, {}, UNTIL_DOWN
         for flight in flights(("EST", "PID", "PIDT", "PD"), ("nominal", "drawn 0"), burst):
             self.assertNotIn("CUT", {row["state"] for row in flight.rows}, str(flight))
 
     def test_a_roll_of_400_degrees_a_second_is_cut(self):
-        """45 degrees are passed after 0.11 s. The median of five frames, three of them and the law's release follow; one
-        flight in twenty meets spikes of the IMU on its way."""
-        waits = []
-        for flight in flights(("EST",), ("nominal", "drawn 0"),
-                              lambda rng: ({"tumble": 400.0, "tumble_start": rng.uniform(4.0, 14.0)}, {}, UNTIL_DOWN)):
-            cut = next(row["t_s"] for row in flight.rows if row["state"] == "CUT")
-            waits.append(cut - flight.figures["tumble_start"] - 0.1125)
-            self.assertLess(waits[-1], 0.4, str(flight))
-        print(f"cut {sorted(waits)[len(waits) // 2]:.2f} s after 45 degrees, at most {max(waits):.2f} s")
-        self.assertLess(sorted(waits)[len(waits) // 2], 0.25)
+        """45 degrees are passed after 0.11 s. Four frames and the law's release follow; for law PID that is up to 0.1 s
+        later."""
+        for law, usual_s, most_s in (("EST", 0.13, 0.2), ("PID", 0.2, 0.25)):
+            waits = []
+            for flight in flights((law,) * 2, ("nominal", "drawn 0"),
+                                  lambda rng: ({"tumble": 400.0, "tumble_start": rng.uniform(4.0, 14.0)}, {}, UNTIL_DOWN)):
+                cut = next(row["t_s"] for row in flight.rows if row["state"] == "CUT")
+                waits.append(cut - flight.figures["tumble_start"] - 0.1125)
+                self.assertLess(waits[-1], most_s, str(flight))
+            print(f"{law}: cut {sorted(waits)[len(waits) // 2]:.2f} s after 45 degrees, at most {max(waits):.2f} s")
+            self.assertLess(sorted(waits)[len(waits) // 2], usual_s)
 
     def test_a_silent_imu_and_then_a_silent_scanner_do_not_fly_it_away(self):
         def gaps(rng):
