@@ -108,14 +108,25 @@ static bool take_echo(scip_parser_t *parser)
     return true;
 }
 
-static scip_event_t damage(scip_parser_t *parser, scip_damage_t cause)
+static void count_damage(scip_parser_t *parser, scip_damage_t cause)
 {
     parser->counters.damaged[cause]++;
     parser->last_damage = cause;
     parser->gap = true;
+}
+
+static scip_event_t damage(scip_parser_t *parser, scip_damage_t cause)
+{
+    count_damage(parser, cause);
     parser->state = HUNT;
     parser->skipping = !take_echo(parser) && !line_is_empty(parser);
     return SCIP_DAMAGED;
+}
+
+/* Octets that are wrong where they lie are copied first, and looked at once more. */
+static scip_event_t refuse(scip_parser_t *parser, const octet_t *text, scip_damage_t cause)
+{
+    return text == parser->line ? damage(parser, cause) : SCIP_DAMAGED;
 }
 
 static scip_event_t end_of_skipped(scip_parser_t *parser)
@@ -211,6 +222,18 @@ static uint16_t state_after_status(const scip_parser_t *parser)
     }
 }
 
+/* The status of a stream's scan: "99" and its sum. */
+static bool take_scan_status(scip_parser_t *parser, const octet_t *text)
+{
+    if (text[0] != (octet_t)'9' || text[1] != (octet_t)'9' || text[2] != (octet_t)'b' ||
+        !is_stream(&parser->awaited)) {
+        return false;
+    }
+    parser->reply = (scip_reply_t){.status = {text[0], text[1]}};
+    parser->state = TIME;
+    return true;
+}
+
 static scip_event_t end_of_status(scip_parser_t *parser)
 {
     const octet_t *line = parser->line;
@@ -263,30 +286,29 @@ static uint32_t read_stamp(const octet_t *text, check_t *check)
     return (upper << 12) | (halves >> 16);
 }
 
-static scip_damage_t take_time(scip_parser_t *parser, const octet_t *text)
+static scip_event_t take_time(scip_parser_t *parser, const octet_t *text)
 {
     check_t check = nothing_checked;
     const uint32_t stamp = read_stamp(text, &check);
     const scip_damage_t cause = verdict(&check, 4U, text[4]);
     if (cause != SCIP_DAMAGE_NONE) {
-        return cause;
+        return refuse(parser, text, cause);
     }
     if (parser->awaited.kind == SCIP_TIME_READ) {
         parser->reply.timestamp_ms = stamp;
         parser->state = REPLY_END;
-        return SCIP_DAMAGE_NONE;
+        return SCIP_NOTHING;
     }
     if (!has_room(parser)) {
-        return SCIP_DAMAGE_LENGTH;
+        return refuse(parser, text, SCIP_DAMAGE_LENGTH);
     }
     begin_data(parser, stamp);
-    return SCIP_DAMAGE_NONE;
+    return SCIP_NOTHING;
 }
 
 static scip_event_t end_of_time(scip_parser_t *parser)
 {
-    const scip_damage_t cause = line_has(parser, 4U) ? take_time(parser, parser->line) : SCIP_DAMAGE_LENGTH;
-    return cause == SCIP_DAMAGE_NONE ? SCIP_NOTHING : damage(parser, cause);
+    return line_has(parser, 4U) ? take_time(parser, parser->line) : damage(parser, SCIP_DAMAGE_LENGTH);
 }
 
 /* Two characters a point never straddle a block. */
@@ -357,15 +379,6 @@ static uint16_t characters_of_block(const scip_parser_t *parser)
     return parser->characters_left < SCIP_BLOCK ? parser->characters_left : (uint16_t)SCIP_BLOCK;
 }
 
-static void end_block(scip_parser_t *parser, uint16_t characters, uint32_t partial)
-{
-    parser->partial = partial;
-    parser->characters_left = (uint16_t)(parser->characters_left - characters);
-    if (parser->characters_left == 0U) {
-        parser->state = SCAN_END;
-    }
-}
-
 /* A quick look at the octet where the awaited echo would begin. */
 static bool may_end_in_echo(const scip_parser_t *parser, const octet_t *line, size_t line_length)
 {
@@ -373,25 +386,32 @@ static bool may_end_in_echo(const scip_parser_t *parser, const octet_t *line, si
     return line_length >= length && line[line_length - length] == *scip_request_echo(&parser->awaited);
 }
 
-/* What is left of a frame that was cut short may, with the next frame's echo behind it, have a block's length
- * and a right sum. */
+/* A line of a block's length. What is left of a frame that was cut short may, with the next frame's echo
+ * behind it, have that length and a right sum. */
+static scip_event_t take_block(scip_parser_t *parser, const octet_t *text, uint16_t characters)
+{
+    uint32_t partial = parser->partial;
+    const check_t check = decode(parser, &partial, text, characters);
+    const scip_damage_t cause = verdict(&check, characters, text[characters]);
+    if (may_end_in_echo(parser, text, characters + 1U) && (text != parser->line || take_echo(parser))) {
+        return refuse(parser, text, SCIP_DAMAGE_LENGTH);
+    }
+    if (cause != SCIP_DAMAGE_NONE) {
+        return refuse(parser, text, cause);
+    }
+    parser->partial = partial;
+    parser->characters_left = (uint16_t)(parser->characters_left - characters);
+    if (parser->characters_left == 0U) {
+        parser->state = SCAN_END;
+    }
+    return SCIP_NOTHING;
+}
+
 static scip_event_t end_of_data(scip_parser_t *parser)
 {
-    const octet_t *line = parser->line;
     const uint16_t characters = characters_of_block(parser);
-    uint32_t partial = parser->partial;
-    if (!line_has(parser, characters)) {
-        return damage(parser, SCIP_DAMAGE_LENGTH);
-    }
-    const check_t check = decode(parser, &partial, line, characters);
-    const scip_damage_t cause = may_end_in_echo(parser, line, characters + 1U) && take_echo(parser)
-                                    ? SCIP_DAMAGE_LENGTH
-                                    : verdict(&check, characters, line[characters]);
-    if (cause != SCIP_DAMAGE_NONE) {
-        return damage(parser, cause);
-    }
-    end_block(parser, characters, partial);
-    return SCIP_NOTHING;
+    return line_has(parser, characters) ? take_block(parser, parser->line, characters)
+                                        : damage(parser, SCIP_DAMAGE_LENGTH);
 }
 
 static bool stamp_follows(const scip_parser_t *parser)
@@ -463,12 +483,11 @@ static scip_event_t end_of_scan(scip_parser_t *parser)
     }
     if (is_stream(&parser->awaited)) {
         parser->flowing = true;
+        parser->state = ECHO;
         if (!in_sequence(parser)) {
-            (void)damage(parser, SCIP_DAMAGE_SEQUENCE);
-            parser->state = ECHO;
+            count_damage(parser, SCIP_DAMAGE_SEQUENCE);
             return SCIP_DAMAGED;
         }
-        parser->state = ECHO;
     } else {
         parser->awaiting = false;
         parser->state = HUNT;
@@ -539,19 +558,13 @@ static scip_event_t end_of_text(scip_parser_t *parser)
     return SCIP_TEXT;
 }
 
-static scip_event_t at_line_end(scip_parser_t *parser)
+static scip_event_t end_of_other_line(scip_parser_t *parser)
 {
     switch (parser->state) {
-    case DATA:
-        return end_of_data(parser);
     case ECHO:
         return end_of_echo(parser);
     case STATUS:
         return end_of_status(parser);
-    case TIME:
-        return end_of_time(parser);
-    case SCAN_END:
-        return end_of_scan(parser);
     case TEXT:
         return end_of_text(parser);
     case REPLY_END:
@@ -636,9 +649,8 @@ static scip_event_t end_long_line(scip_parser_t *parser)
     begin_line(parser);
     switch (parser->state) {
     case HUNT:
-        return end_of_skipped(parser);
     case ECHO:
-        return end_of_echo(parser);
+        return end_of_other_line(parser);
     case TEXT:
         parser->counters.skipped_lines++;
         return SCIP_NOTHING;
@@ -654,7 +666,21 @@ scip_event_t scip_parser_end_line(scip_parser_t *parser)
     }
     parser->line_length = (uint16_t)parser->gathered;
     parser->gathered = 0U;
-    return at_line_end(parser);
+    switch (parser->state) { /* lines of a scan: most lines, at the least cost */
+    case DATA:
+        return end_of_data(parser);
+    case STATUS:
+        if (line_has(parser, 2U) && take_scan_status(parser, parser->line)) {
+            return SCIP_NOTHING;
+        }
+        return end_of_other_line(parser);
+    case TIME:
+        return end_of_time(parser);
+    case SCAN_END:
+        return end_of_scan(parser);
+    default:
+        return end_of_other_line(parser);
+    }
 }
 
 /* Copies octets up to the end of the line. Returns how many. */
@@ -675,16 +701,10 @@ static size_t gather(scip_parser_t *parser, const octet_t *octets, size_t count)
 static size_t block_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
     const uint16_t characters = characters_of_block(parser);
-    uint32_t partial = parser->partial;
     if (count < characters + 2U || octets[characters + 1U] != SCIP_LINE_FEED ||
-        may_end_in_echo(parser, octets, characters + 1U)) {
+        take_block(parser, octets, characters) != SCIP_NOTHING) {
         return 0U;
     }
-    const check_t check = decode(parser, &partial, octets, characters);
-    if (verdict(&check, characters, octets[characters]) != SCIP_DAMAGE_NONE) {
-        return 0U;
-    }
-    end_block(parser, characters, partial);
     return characters + 2U;
 }
 
@@ -698,21 +718,17 @@ static size_t echo_in_place(scip_parser_t *parser, const octet_t *octets, size_t
     return length + 1U;
 }
 
-/* The status of a stream's scan, likewise: "99" and its sum. */
 static size_t status_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
-    if (count < STATUS_OCTETS || octets[0] != (octet_t)'9' || octets[1] != (octet_t)'9' ||
-        octets[2] != (octet_t)'b' || octets[3] != SCIP_LINE_FEED || !is_stream(&parser->awaited)) {
+    if (count < STATUS_OCTETS || octets[3] != SCIP_LINE_FEED || !take_scan_status(parser, octets)) {
         return 0U;
     }
-    parser->reply = (scip_reply_t){.status = {octets[0], octets[1]}};
-    parser->state = TIME;
     return STATUS_OCTETS;
 }
 
 static size_t time_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
-    if (count < TIME_OCTETS || octets[5] != SCIP_LINE_FEED || take_time(parser, octets) != SCIP_DAMAGE_NONE) {
+    if (count < TIME_OCTETS || octets[5] != SCIP_LINE_FEED || take_time(parser, octets) != SCIP_NOTHING) {
         return 0U;
     }
     return TIME_OCTETS;
