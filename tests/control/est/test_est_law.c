@@ -342,7 +342,7 @@ void test_the_lift_off_tells_the_hover_thrust_and_rather_low(void)
             off_n += ((double)flight.est.hover.thrust_n - hover_n) / 6.0;
         }
         printf("hover %.1f N: found at lift-off %+.2f N off\n", hover_n, off_n);
-        TEST_ASSERT_DOUBLE_WITHIN(0.22, -0.25, off_n);
+        TEST_ASSERT_FLOAT_WITHIN(0.22F, -0.25F, (float)off_n);
     }
 }
 
@@ -358,7 +358,7 @@ static double lowest_thrust_over_an_edge_n(double edge_m)
 
 void test_a_far_fall_of_the_terrain_is_followed_slowly_at_first(void)
 {
-    TEST_ASSERT_DOUBLE_WITHIN(0.25, -0.62, lowest_thrust_over_an_edge_n(0.6));
+    TEST_ASSERT_FLOAT_WITHIN(0.25F, -0.62F, (float)lowest_thrust_over_an_edge_n(0.6));
     TEST_ASSERT_TRUE(lowest_thrust_over_an_edge_n(0.25) < -2.0);
 }
 
