@@ -138,3 +138,151 @@ void test_what_may_not_take_off(void)
     TEST_ASSERT_FALSE(imu_axes_forbid(IMU_SOUND, &parameters));
     TEST_ASSERT_FALSE(imu_axes_forbid(IMU_ROLL, &parameters));
 }
+
+/* ---- one frame at a time */
+
+/* A frame that is what the means are: judged as it stands, after a suspicion of held_s. */
+static imu_fault_t look(float roll_rad, float pitch_rad, float told_roll_rad, float told_pitch_rad,
+                        float size_mps2, float noise_mps2)
+{
+    setUp();
+    frame.arrival_us = axes.time_us = 5000000U;
+    frame.arrival_us += 25000U;
+    frame.sequence = 1U;
+    frame.forward_mps2 = axes.forward_mps2 = -size_mps2 * sinf(pitch_rad);
+    frame.right_mps2 = axes.right_mps2 = size_mps2 * cosf(pitch_rad) * sinf(roll_rad);
+    frame.down_mps2 = axes.down_mps2 = size_mps2 * cosf(pitch_rad) * cosf(roll_rad);
+    frame.tilt_roll_rad = axes.roll_rad = told_roll_rad;
+    frame.tilt_pitch_rad = axes.pitch_rad = told_pitch_rad;
+    axes.seen_s = 3.0F;
+    imu_axes_step(&axes, &frame, 1U, true, noise_mps2);
+    return axes.suspected;
+}
+
+void test_a_degree_and_a_fifth_of_the_tilt_are_allowed(void)
+{
+    TEST_ASSERT_EQUAL(IMU_SOUND, look(0.0F, 0.0F, 0.0F, 0.0173F, G, 0.0F));
+    TEST_ASSERT_NOT_EQUAL(IMU_SOUND, look(0.0F, 0.0F, 0.0F, 0.0177F, G, 0.0F));
+    TEST_ASSERT_EQUAL(IMU_SOUND, look(0.1F, 0.0F, 0.1F + 0.0373F, 0.0F, G, 0.0F));
+    TEST_ASSERT_EQUAL(IMU_OTHER, look(0.1F, 0.0F, 0.1F + 0.0377F, 0.0F, G, 0.0F));
+    TEST_ASSERT_EQUAL(IMU_SOUND, look(0.0F, -0.1F, 0.0F, -0.1F - 0.0373F, G, 0.0F));
+    TEST_ASSERT_EQUAL(IMU_OTHER, look(0.0F, -0.1F, 0.0F, -0.1F - 0.0377F, G, 0.0F));
+}
+
+void test_noise_allows_more(void)
+{
+    TEST_ASSERT_EQUAL(IMU_SOUND, look(0.0F, 0.0F, 0.0395F, 0.0F, G, 1.0F));
+    TEST_ASSERT_NOT_EQUAL(IMU_SOUND, look(0.0F, 0.0F, 0.0405F, 0.0F, G, 1.0F));
+    TEST_ASSERT_NOT_EQUAL(IMU_SOUND, look(0.0F, 0.0F, 0.018F, 0.0F, G, 0.4F));
+}
+
+void test_a_change_has_to_mend_half_of_the_disagreement(void)
+{
+    TEST_ASSERT_EQUAL(IMU_ROLL, look(0.2F, 0.0F, -0.070F, 0.0F, G, 0.0F));  /* leaves 0.130 of 0.270 rad */
+    TEST_ASSERT_EQUAL(IMU_OTHER, look(0.2F, 0.0F, -0.063F, 0.0F, G, 0.0F)); /* leaves 0.137 of 0.263 rad */
+    TEST_ASSERT_EQUAL(IMU_PITCH, look(0.0F, 0.2F, 0.0F, -0.070F, G, 0.0F));
+    TEST_ASSERT_EQUAL(IMU_SWAPPED, look(0.2F, 0.0F, 0.0F, 0.105F, G, 0.0F));
+    TEST_ASSERT_EQUAL(IMU_OTHER, look(0.2F, 0.0F, 0.0F, 0.095F, G, 0.0F));
+}
+
+void test_less_than_a_tenth_of_the_tilt_are_radians(void)
+{
+    TEST_ASSERT_EQUAL(IMU_RADIANS, look(0.2F, 0.0F, 0.019F, 0.0F, G, 0.0F));
+    TEST_ASSERT_EQUAL(IMU_OTHER, look(0.2F, 0.0F, 0.021F, 0.0F, G, 0.0F));
+}
+
+void test_nothing_is_said_beyond_sixty_degrees(void)
+{
+    TEST_ASSERT_EQUAL(IMU_ROLL, look(1.04F, 0.0F, -1.04F, 0.0F, G, 0.0F));
+    TEST_ASSERT_EQUAL(IMU_SOUND, look(1.06F, 0.0F, -1.06F, 0.0F, G, 0.0F));
+    TEST_ASSERT_EQUAL(IMU_PITCH, look(0.0F, 1.04F, 0.0F, -1.04F, G, 0.0F));
+    TEST_ASSERT_EQUAL(IMU_SOUND, look(0.0F, -1.06F, 0.0F, 1.06F, G, 0.0F));
+    TEST_ASSERT_EQUAL(IMU_SOUND,
+                      look(1.570746F, 0.0F, 0.0F, 0.0F, G, 0.0F)); /* on its side, not upside down */
+    TEST_ASSERT_EQUAL(IMU_DOWN, look(1.572F, 0.0F, 0.0F, 0.0F, G, 0.0F));
+}
+
+void test_gravity_is_fifteen_percent_of_itself_to_either_side(void)
+{
+    TEST_ASSERT_EQUAL(IMU_SOUND, look(0.0F, 0.0F, 0.0F, 0.0F, 1.149F * G, 0.0F));
+    TEST_ASSERT_EQUAL(IMU_UNIT, look(0.0F, 0.0F, 0.0F, 0.0F, 1.151F * G, 0.0F));
+    TEST_ASSERT_EQUAL(IMU_SOUND, look(0.0F, 0.0F, 0.0F, 0.0F, 0.851F * G, 0.0F));
+    TEST_ASSERT_EQUAL(IMU_UNIT, look(0.0F, 0.0F, 0.0F, 0.0F, 0.849F * G, 0.0F));
+}
+
+static void take(float value, uint32_t gap_us, float seen_s)
+{
+    setUp();
+    axes.time_us = 1000000U;
+    axes.seen_s = seen_s;
+    frame.sequence = 1U;
+    frame.arrival_us = 1000000U + gap_us;
+    frame.forward_mps2 = frame.right_mps2 = frame.down_mps2 = value;
+    frame.tilt_roll_rad = frame.tilt_pitch_rad = value;
+    imu_axes_step(&axes, &frame, 1U, true, 0.0F);
+}
+
+void test_the_means_are_of_two_seconds_and_of_less_at_first(void)
+{
+    static const struct {
+        uint32_t gap_us;
+        float seen_s, share, seen_then_s;
+    } rows[] = {{25000U, 3.0F, 0.0125F, 3.0F},      {25000U, 1.975F, 0.0125F, 2.0F},
+                {25000U, 0.075F, 0.25F, 0.1F},      {25000U, 0.0F, 1.0F, 0.025F},
+                {299000U, 1.0F, 0.230177F, 1.299F}, {301000U, 1.0F, 1.0F, 0.0F},
+                {500U, 0.0F, 1.0F, 0.0005F},        {500U, 0.0005F, 0.5F, 0.001F}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        take(1.0F, rows[i].gap_us, rows[i].seen_s);
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, rows[i].share, axes.forward_mps2);
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, rows[i].share, axes.right_mps2);
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, rows[i].share, axes.down_mps2);
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, rows[i].share, axes.roll_rad);
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, rows[i].share, axes.pitch_rad);
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, rows[i].seen_then_s, axes.seen_s);
+    }
+}
+
+void test_a_verdict_takes_three_seconds_of_frames_and_one_of_suspicion(void)
+{
+    take(0.0F, 25000U, 2.97F);
+    TEST_ASSERT_EQUAL(IMU_SOUND, axes.suspected);
+    take(0.0F, 25000U, 2.98F);
+    TEST_ASSERT_EQUAL(IMU_UNIT, axes.suspected); /* nothing felt at all */
+    TEST_ASSERT_EQUAL(IMU_SOUND, axes.fault);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, axes.suspected_s);
+    for (int frames = 1; frames <= 41; frames++) {
+        frame.sequence++;
+        frame.arrival_us += 25000U;
+        imu_axes_step(&axes, &frame, 1U, true, 0.0F);
+        TEST_ASSERT_EQUAL((frames < 41) ? IMU_SOUND : IMU_UNIT, (frames == 40) ? IMU_SOUND : axes.fault);
+    }
+    TEST_ASSERT_EQUAL_FLOAT(1.0F, axes.suspected_s);
+}
+
+void test_frames_of_the_air_end_seeing_and_suspicion(void)
+{
+    for (int why = 0; why < 3; why++) {
+        setUp();
+        axes.seen_s = axes.suspected_s = 0.7F;
+        frame.sequence = 1U;
+        frame.ready = why != 1;
+        frame.has_acceleration = why != 2;
+        imu_axes_step(&axes, &frame, 1U, why != 0, 0.0F);
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, axes.seen_s);
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, axes.suspected_s);
+    }
+}
+
+void test_each_of_several_frames_counts_and_only_once(void)
+{
+    imu_sample_t frames[2] = {frame, frame};
+    axes.time_us = 1000000U;
+    for (uint32_t i = 0U; i < 2U; i++) {
+        frames[i].sequence = i + 1U;
+        frames[i].arrival_us = 1025000U + 25000U * i;
+    }
+    imu_axes_step(&axes, frames, 2U, true, 0.0F);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.05F, axes.seen_s);
+    imu_axes_step(&axes, frames, 2U, true, 0.0F);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.05F, axes.seen_s);
+}

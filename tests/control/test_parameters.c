@@ -1,4 +1,5 @@
 #include "control/parameters.h"
+#include "control/thrust.h"
 #include "unity.h"
 
 #include <math.h>
@@ -47,6 +48,57 @@ void test_the_defaults_are_the_seeds_best_values_but_for_the_law(void)
     TEST_ASSERT_EQUAL_FLOAT(0.0F, parameters.value[PARAMETER_LINK]);
     TEST_ASSERT_EQUAL_FLOAT((float)SEL_NONE, parameters.value[PARAMETER_SEL]);
     TEST_ASSERT_EQUAL_UINT32(0, parameters.generation);
+}
+
+/* Ground stations and stored sets rely on them. The seed's: Annex III. */
+void test_the_limits_and_defaults_are_those_that_were_released(void)
+{
+    static const struct {
+        const char *name;
+        float least, most, initial;
+    } rows[] = {
+        {"KP", 0, 1, 0.015F},         {"KD", 0, 1, 0.008F},
+        {"KI", 0, 1, 0.01F},          {"PKP", 0, 50, 6},
+        {"PKI", 0, 50, 1.4F},         {"PKD", 0, 50, 2.6F},
+        {"POSK", 0.25F, 6, 2.3F},     {"VELK", 0.5F, 12, 8},
+        {"VUP", 0.125F, 1.5F, 0.7F},  {"VDN", 0.125F, 1.5F, 1.1F},
+        {"CRATE", 0.125F, 5, 1},      {"GAIN", 0.4F, 2.5F, 1},
+        {"LAG", 0.03F, 0.5F, 0.12F},  {"DELAY", 0.008F, 0.12F, 0.0185F},
+        {"DAMP", 0.5F, 6, 2.5F},      {"CLAG", 0.1F, 1, 0.25F},
+        {"LINK", 0, 60, 0},           {"IDLE", 0, 25, 15},
+        {"IUNIT", 0.5F, 5000, 256},   {"DF", 0, 500, 105},
+        {"LF", 0, 500, 100},          {"L", 0, 500, 220},
+        {"D1", 0, 500, 115},          {"L1", 0, 500, 98},
+        {"D2", 0, 500, 107},          {"L2", 0, 500, 105},
+        {"GRAV", 0, THRUST_MAX_N, 7}, {"USAT", 0, THRUST_MAX_N, 1},
+        {"DSAT", 0, THRUST_MAX_N, 0},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const parameter_row_t *row = &parameter_table[find(rows[i].name)];
+        TEST_ASSERT_EQUAL_FLOAT_MESSAGE(rows[i].least, row->minimum, rows[i].name);
+        TEST_ASSERT_EQUAL_FLOAT_MESSAGE(rows[i].most, row->maximum, rows[i].name);
+        TEST_ASSERT_EQUAL_FLOAT_MESSAGE(rows[i].initial, row->initial, rows[i].name);
+    }
+}
+
+void test_a_choice_goes_from_its_first_name_to_its_last(void)
+{
+    for (int i = 0; i < PARAMETER_COUNT; i++) {
+        const parameter_row_t *row = &parameter_table[i];
+        if (row->choices != NULL) {
+            TEST_ASSERT_EQUAL_FLOAT_MESSAGE(0.0F, row->minimum, row->name);
+            TEST_ASSERT_EQUAL_FLOAT_MESSAGE(roundf(row->maximum), row->maximum, row->name);
+        }
+    }
+    TEST_ASSERT_EQUAL_FLOAT((float)LAW_COUNT - 1.0F, parameter_table[PARAMETER_LAW].maximum);
+    TEST_ASSERT_EQUAL_FLOAT((float)AXIS_COUNT - 1.0F, parameter_table[PARAMETER_IPITCH].maximum);
+}
+
+void test_a_set_begins_as_the_first_generation(void)
+{
+    memset(&parameters, 0x55, sizeof parameters);
+    parameters_init(&parameters);
+    TEST_ASSERT_EQUAL_UINT32(0U, parameters.generation);
 }
 
 void test_every_row_is_complete_and_its_default_is_within_its_limits(void)

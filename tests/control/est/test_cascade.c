@@ -134,3 +134,105 @@ void test_the_command_stays_in_its_range_whatever_the_state(void)
         TEST_ASSERT_TRUE(isfinite(cascade.quick_n) && isfinite(cascade.slow_n));
     }
 }
+
+/* ---- one step, each share of it alone; a slew of 6 N does not limit it */
+
+static float step(float speed_mps)
+{
+    return cascade_step(&cascade, &gains, &vehicle, &state, speed_mps, 0.1F);
+}
+
+void test_beyond_two_decimetres_the_speed_per_metre_is_three_tenths_more(void)
+{
+    const cascade_gains_t free_gains = {2.0F, 7.2F, 5.0F, 5.0F, 3.96F, 3.0F};
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 2.0F * 1.15F * 0.1F, cascade_speed_to(&free_gains, &state, 0.7F));
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, -2.0F * 1.15F * 0.1F, cascade_speed_to(&free_gains, &state, 0.5F));
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 2.0F * 1.3F * 0.2F, cascade_speed_to(&free_gains, &state, 0.8F));
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 2.0F * 1.3F * 0.5F, cascade_speed_to(&free_gains, &state, 1.1F));
+}
+
+void test_the_acceleration_is_limited_upwards_and_downwards(void)
+{
+    vehicle.authority_mps2_per_n = 4.0F;
+    TEST_ASSERT_FLOAT_WITHIN(1e-3F, 7.4F + 1.3F * 7.2F * 0.4F / 4.0F, step(0.4F));
+    cascade_init(&cascade, 7.4F);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3F, 7.4F + 1.3F * 3.96F / 4.0F, step(2.0F));
+    cascade_init(&cascade, 7.4F);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3F, 7.4F - 1.3F * 3.96F / 4.0F, step(-2.0F));
+}
+
+void test_the_drag_that_is_met_ends_at_0_8_metres_a_second(void)
+{
+    vehicle.authority_mps2_per_n = 4.0F;
+    for (float side = -1.0F; side < 2.0F; side += 2.0F) {
+        cascade_init(&cascade, 7.4F);
+        state.speed_mps = 0.7F * side;
+        TEST_ASSERT_FLOAT_WITHIN(1e-3F, 7.4F + 1.3F * 2.5F * 0.7F / 4.0F * side, step(0.7F * side));
+        cascade_init(&cascade, 7.4F);
+        state.speed_mps = 2.0F * side;
+        TEST_ASSERT_FLOAT_WITHIN(1e-3F, 7.4F + 1.3F * 2.5F * 0.8F / 4.0F * side, step(2.0F * side));
+    }
+}
+
+void test_the_thrust_stays_near_that_of_hovering(void)
+{
+    cascade_gains_t low = gains;
+    TEST_ASSERT_FLOAT_WITHIN(1e-3F, 7.4F + 3.5F, step(3.0F));
+    cascade_init(&cascade, 7.4F);
+    TEST_ASSERT_FLOAT_WITHIN(1e-3F, 7.4F - 3.0F, step(-3.0F));
+    low.below_hover_n = 7.0F;
+    low.fall_mps2 = 30.0F;
+    cascade_init(&cascade, 7.4F);
+    state.thrust_n = 1.0F;
+    TEST_ASSERT_FLOAT_WITHIN(1e-3F, 0.25F * 7.4F,
+                             cascade_step(&cascade, &low, &vehicle, &state, -3.0F, 0.1F));
+}
+
+void test_the_lead_is_three_tenths_beyond_what_is_delivered(void)
+{
+    state.thrust_n = 7.0F;
+    TEST_ASSERT_FLOAT_WITHIN(1e-3F, 7.0F + 1.3F * 0.4F, step(0.0F));
+}
+
+void test_tilt_is_met_to_37_degrees(void)
+{
+    vehicle.upright = 0.81F;
+    state.thrust_n = 7.4F / 0.81F;
+    TEST_ASSERT_FLOAT_WITHIN(1e-3F, 7.4F / 0.81F, step(0.0F));
+    vehicle.upright = 0.5F;
+    state.thrust_n = 7.4F / 0.8F;
+    TEST_ASSERT_FLOAT_WITHIN(1e-3F, 7.4F / 0.8F, step(0.0F));
+}
+
+void test_what_shakes_is_the_square_about_the_mean_of_a_second(void)
+{
+    cascade.slow_n = 5.4F;
+    cascade.quick_n = 1.0F;
+    (void)step(0.0F);
+    TEST_ASSERT_FLOAT_WITHIN(1e-4F, 5.6F, cascade.slow_n);
+    TEST_ASSERT_FLOAT_WITHIN(1e-4F, 1.3F, cascade.quick_n); /* a tenth of 2 x 2, nine of 1 */
+    cascade.thrust_n = 8.0F;
+    (void)cascade_step(&cascade, &gains, &vehicle, &state, 0.0F, 2.0F);
+    TEST_ASSERT_FLOAT_WITHIN(1e-4F, 8.0F, cascade.slow_n);
+}
+
+void test_the_calm_gain_is_a_newton_and_a_half_by_the_rms(void)
+{
+    static const float rows[][2] = {{9.0F / 0.9F, 0.5F}, {4.0F / 0.9F, 0.75F}, {100.0F, 0.4F}, {2.2F, 1.0F}};
+    for (int i = 0; i < 4; i++) {
+        cascade_init(&cascade, 7.4F);
+        cascade.quick_n = rows[i][0];
+        vehicle.authority_mps2_per_n = 4.0F;
+        TEST_ASSERT_FLOAT_WITHIN(1e-3F, 7.4F + 1.3F * 7.2F * rows[i][1] * 0.4F / 4.0F, step(0.4F));
+    }
+}
+
+void test_the_range_of_the_actuator_is_kept(void)
+{
+    vehicle.hover_n = vehicle.need_n = state.thrust_n = 9.5F;
+    cascade_init(&cascade, 9.5F);
+    TEST_ASSERT_EQUAL_FLOAT(THRUST_MAX_N, step(3.0F));
+    cascade_init(&cascade, 7.4F);
+    TEST_ASSERT_EQUAL_FLOAT(7.4F, cascade.slow_n);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, cascade.quick_n);
+}
