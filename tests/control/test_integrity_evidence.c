@@ -33,6 +33,7 @@ static void tilt(float roll_rad, float pitch_rad)
     frame.arrival_us += 25000U;
     frame.median.roll_rad = roll_rad;
     frame.median.pitch_rad = pitch_rad;
+    frame.level = frame.median;
     integrity_tilt(&it, &frame, 1U, 0.0F, 0.0F, 0U);
 }
 
@@ -135,16 +136,82 @@ void test_tilted_are_45_degrees_of_one_angle_or_less_of_two(void)
 
 void test_a_sample_or_a_frame_counts_once(void)
 {
+    integrity_tilt(&it, NULL, 0U, 0.1F, 0.0F, 0U);
     integrity_tilt(&it, NULL, 0U, 1.0F, 0.0F, 0U);
-    TEST_ASSERT_EQUAL_UINT16(1U, it.tilted);
-    integrity_tilt(&it, NULL, 0U, 1.0F, 0.0F, 0U);
-    TEST_ASSERT_EQUAL_UINT16(1U, it.tilted);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.jumped);
     integrity_tilt(&it, NULL, 0U, 1.0F, 0.0F, 25000U);
-    TEST_ASSERT_EQUAL_UINT16(2U, it.tilted);
-    tilt(1.0F, 0.0F);
+    TEST_ASSERT_EQUAL_UINT16(1U, it.jumped);
+    frame.arrival_us = 25000U;
+    tilt(-1.0F, 0.0F);
+    TEST_ASSERT_EQUAL_UINT16(2U, it.jumped);
     integrity_tilt(&it, &frame, 1U, 0.0F, 0.0F, 0U);
-    TEST_ASSERT_EQUAL_UINT16(3U, it.tilted);
-    TEST_ASSERT_EQUAL_FLOAT(1.0F, it.roll_rad);
+    TEST_ASSERT_EQUAL_UINT16(2U, it.jumped);
+    TEST_ASSERT_EQUAL_FLOAT(0.1F, it.roll_rad);
+}
+
+/* Between the steps of an attitude that is held (0.05 rad) and those that are no turn any more (0.25 rad),
+ * and within 0.25 rad of where that rate leads from the accepted tilt. */
+void test_rejected_tilts_that_go_on_turning_are_a_turn(void)
+{
+    static const struct {
+        float first_rad, second_rad;
+        bool turn;
+    } rows[] = {{0.40F, 0.64F, true},  {0.40F, 0.66F, false},  {0.36F, 0.42F, false}, {0.40F, 0.60F, true},
+                {0.40F, 0.54F, false}, {-0.40F, -0.60F, true}, {0.60F, 0.77F, false}, {0.43F, 0.63F, true},
+                {0.40F, 0.56F, true},  {0.40F, 0.40F, false},  {0.64F, 0.40F, false}};
+    for (int axis = 0; axis < 2; axis++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            const float first_rad = rows[i].first_rad, second_rad = rows[i].second_rad;
+            setUp();
+            tilt(0.0F, 0.0F);
+            tilt((axis == 0) ? first_rad : 0.0F, (axis == 1) ? first_rad : 0.0F);
+            TEST_ASSERT_EQUAL_UINT16(1U, it.jumped);
+            tilt((axis == 0) ? second_rad : 0.0F, (axis == 1) ? second_rad : 0.0F);
+            TEST_ASSERT_EQUAL_UINT16(rows[i].turn ? 0U : 2U, it.jumped);
+        }
+    }
+}
+
+void test_a_slow_turn_of_the_other_angle_is_none(void)
+{
+    for (int turns = 0; turns < 2; turns++) {
+        setUp();
+        const float rate_rad = (turns != 0) ? 0.052F : 0.048F;
+        tilt(0.0F, 0.0F);
+        tilt(1.0F, rate_rad);
+        tilt(1.0F, 2.0F * rate_rad);
+        TEST_ASSERT_EQUAL_UINT16((turns != 0) ? 0U : 2U, it.jumped);
+    }
+}
+
+void test_a_turn_goes_through_the_half_turn(void)
+{
+    for (float side = -1.0F; side < 2.0F; side += 2.0F) {
+        setUp();
+        tilt(3.0F * side, 0.0F);
+        tilt(-2.88F * side, 0.0F); /* 0.4 rad on */
+        TEST_ASSERT_EQUAL_UINT16(1U, it.jumped);
+        tilt(-2.68F * side, 0.0F);
+        TEST_ASSERT_EQUAL_UINT16(0U, it.jumped);
+        setUp();
+        tilt(2.6F * side, 0.0F);
+        tilt(3.05F * side, 0.0F);
+        tilt(-3.033F * side, 0.0F); /* 0.2 rad on */
+        TEST_ASSERT_EQUAL_UINT16(0U, it.jumped);
+    }
+}
+
+void test_frames_that_were_level_themselves_are_no_tilt(void)
+{
+    for (int level = 0; level < 3; level++) {
+        setUp();
+        frame.sequence++;
+        frame.median.roll_rad = 1.0F;
+        frame.level.roll_rad = (level == 1) ? 0.78F : 0.79F;
+        frame.rolled = (level == 2) ? ATTITUDE_ROLLED_FRAMES : 0;
+        integrity_tilt(&it, &frame, 1U, 0.0F, 0.0F, 0U);
+        TEST_ASSERT_EQUAL_UINT16((level == 0) ? 1U : (level == 1) ? 0U : 1000U, it.tilted);
+    }
 }
 
 /* ---- scans */

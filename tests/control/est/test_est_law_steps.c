@@ -731,7 +731,7 @@ void test_a_descent_without_heights_is_slower_near_the_ground_too(void)
     law.estimator.now.speed_mps = -0.3F;
     NEAR(expected_n(sinking, 3.96F, 3.0F), est_law_step(&law, &parameters, EST_MODE_SINK, 0.0F));
     move_somehow(6.0F);
-    law.estimator.now.speed_mps = -0.55F;
+    law.estimator.now.speed_mps = -0.61F;
     NEAR(expected_n(sinking_at_most, 3.96F, 3.0F), est_law_step(&law, &parameters, EST_MODE_SINK, 0.0F));
 }
 
