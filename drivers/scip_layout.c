@@ -236,6 +236,15 @@ uint16_t scip_layout_cluster(const scip_layout_t *layout, uint32_t bit_rate)
     return (uint16_t)cluster;
 }
 
+scip_range_t scip_layout_range(const scip_layout_t *layout, uint32_t bit_rate)
+{
+    const uint16_t cluster = scip_layout_cluster(layout, bit_rate);
+    const uint16_t steps = (uint16_t)(layout->last_step - layout->first_step + 1);
+    return (scip_range_t){.first_step = layout->first_step,
+                          .last_step = (uint16_t)(layout->last_step - steps % cluster),
+                          .cluster = cluster};
+}
+
 uint32_t scip_step_delay_us(uint16_t step)
 {
     return ((uint32_t)step * 3125U) >> 5;

@@ -89,6 +89,10 @@ uint32_t scip_rays_age_us(const scip_scan_t *scan, uint32_t bit_rate);
  * cannot keep up. bit_rate: in bits per second. */
 uint16_t scip_layout_cluster(const scip_layout_t *layout, uint32_t bit_rate);
 
+/* The range to request for a layout: its steps in whole clusters, without end. Steps that fill no cluster are
+ * left out: some sensors make a point of them, others do not, and then no scan has the expected length. */
+scip_range_t scip_layout_range(const scip_layout_t *layout, uint32_t bit_rate);
+
 /* Time from the scan's time stamp (step 0) to the sampling of a step, in microseconds, at 600 rpm. step:
  * 0..1023. */
 uint32_t scip_step_delay_us(uint16_t step);

@@ -143,6 +143,11 @@ static uint32_t wrong_rate_signs(const urg_seen_t *seen)
     return seen->framing_count + seen->strange_count;
 }
 
+static bool wrong_rate(const step_t *step, uint32_t signs)
+{
+    return wrong_rate_signs(step->seen) - step->link->sent_signs >= signs;
+}
+
 static void expect_reply(const step_t *step, scip_kind_t kind)
 {
     urg_link_t *link = step->link;
@@ -237,13 +242,38 @@ static void listen_to_stream(const step_t *step)
     step->link->knocking = true;
 }
 
+static bool knows_rate(const step_t *step)
+{
+    return step->link->good_rate != 0U && step->now_us - step->link->scan_us < SEARCH_KNOWN_US;
+}
+
+/* Octets without a sign of a wrong rate. */
+static bool heard_clean(const step_t *step)
+{
+    return step->seen->octet_count != step->link->sent_octets && !wrong_rate(step, 1U);
+}
+
+/* What is heard clean at the stream's rate and is no scan may be the stream of a request that was damaged on
+ * its way: the next request mends it. */
 static void search_on(const step_t *step)
 {
     urg_link_t *link = step->link;
-    if (link->good_rate != 0U && step->now_us - link->scan_us < SEARCH_KNOWN_US) {
-        knock_next(step);
-    } else {
+    if (!knows_rate(step)) {
         probe(step, next_probe(link, probe_index(link, link->rate)));
+    } else if (link->rate == link->good_rate && heard_clean(step)) {
+        knock_at_stream_rate(step);
+    } else {
+        knock_next(step);
+    }
+}
+
+/* The sensor has the new rate, or the old one: it is not known which octets were lost. */
+static void rate_unknown(const step_t *step)
+{
+    if (knows_rate(step)) {
+        knock_at_stream_rate(step);
+    } else {
+        probe(step, PROBE_STREAM);
     }
 }
 
@@ -422,24 +452,13 @@ static void on_legacy(const step_t *step)
 
 /* ---- silence ---- */
 
-static bool wrong_rate(const step_t *step, uint32_t signs)
-{
-    return wrong_rate_signs(step->seen) - step->link->sent_signs >= signs;
-}
-
-/* Octets without signs of a wrong rate: the rate is right and only the answer was lost. */
-static bool heard_clean(const step_t *step)
-{
-    return step->seen->octet_count != step->link->sent_octets && !wrong_rate(step, 1U);
-}
-
 static uint16_t attempts_allowed(const step_t *step)
 {
     switch (step->link->command) {
     case SCIP_LASER_OFF_1:
         return wrong_rate(step, WRONG_RATE_SIGNS) ? 1U : 2U;
     case SCIP_STOP:
-        if (heard_clean(step)) {
+        if (heard_clean(step)) { /* only the answer was lost */
             return 3U;
         }
         return step->link->status == URG_STOP2 ? 2U : 1U;
@@ -458,7 +477,7 @@ static void give_up_command(const step_t *step)
     switch (link->command) {
     case SCIP_LASER_OFF_1:
     case SCIP_BIT_RATE:
-        probe(step, PROBE_STREAM);
+        rate_unknown(step);
         break;
     case SCIP_RESET:
         probe(step, PROBE_FIRST);

@@ -14,18 +14,12 @@ int main(void);
 
 static void laser_config(urg_config_t *config)
 {
-    const scip_layout_t *layout = &scip_layouts[LASER_LAYOUT];
-
     config->wait_us = boot_is_restart() ? 0U : LASER_WAIT_US;
     config->first_rate = LASER_FIRST_RATE;
     config->fastest_rate = LASER_STREAM_RATE;
     config->stream_rate = LASER_STREAM_RATE;
     config->stream = SCIP_STREAM_2;
-    config->range.first_step = layout->first_step;
-    config->range.last_step = layout->last_step;
-    config->range.cluster = scip_layout_cluster(layout, LASER_STREAM_RATE);
-    config->range.interval = 0U;
-    config->range.scans = 0U;
+    config->range = scip_layout_range(&scip_layouts[LASER_LAYOUT], LASER_STREAM_RATE);
 }
 
 int main(void)

@@ -36,8 +36,8 @@ typedef struct {
     urg04lx_t *urg;
     timeline_action_t turn_over;
     command_t command;
-    int first, last, cluster, width;
-    int beyond; /* what stands for a distance that the field cannot hold */
+    int first, last, cluster, width; /* last: of the last point */
+    int beyond;                      /* what stands for a distance that the field cannot hold */
     bool active;
     int64_t turn;
     timeline_id_t event;
@@ -300,6 +300,9 @@ static void request_scan(scan_t *scan, const command_t *command)
     scan->command = *command;
     if (scan->cluster == 0) {
         scan->cluster = 1;
+    }
+    if (scan->urg->config.rounds_down) {
+        scan->last -= (scan->last - scan->first + 1) % scan->cluster;
     }
     await_turn(scan, next_turn(scan->urg));
 }

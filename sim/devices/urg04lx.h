@@ -33,6 +33,7 @@ typedef struct {
     sim_time_t phase;       /* start of the first revolution after power-up */
     sim_time_t ray_instant; /* sampling instant after the start of a revolution, 34 ms */
     double clock_ratio;     /* sensor clock against true time, 1.0 */
+    bool rounds_down;       /* steps that fill no cluster make no point; else they make the last one */
 } urg04lx_config_t;
 
 extern const urg04lx_config_t urg04lx_default;

@@ -417,6 +417,29 @@ void test_the_cluster_is_the_smallest_whose_scan_leaves_a_tenth_of_the_revolutio
     TEST_ASSERT_EQUAL_UINT16(10U, scip_layout_cluster(&layout, 100U)); /* not even one point fits */
 }
 
+/* A sensor that makes a point of steps that fill no cluster, and one that makes none, send the same. */
+void test_a_range_is_asked_for_in_whole_clusters(void)
+{
+    scip_layout_t layout = {.first_step = 100, .last_step = 1075}; /* 976 steps: 488 points of two */
+
+    for (uint16_t i = 0U; i < SCIP_LAYOUT_COUNT; i++) {
+        const scip_range_t all = scip_layout_range(&scip_layouts[i], 250000U);
+        TEST_ASSERT_EQUAL_UINT16(scip_layouts[i].first_step, all.first_step);
+        TEST_ASSERT_EQUAL_UINT16(scip_layouts[i].last_step, all.last_step);
+        TEST_ASSERT_EQUAL_UINT16(1U, all.cluster);
+        TEST_ASSERT_EQUAL_UINT16(0U, all.interval);
+        TEST_ASSERT_EQUAL_UINT16(0U, all.scans);
+    }
+    TEST_ASSERT_EQUAL_UINT16(656U,
+                             scip_layout_range(&scip_layouts[SCIP_LAYOUT_THREE_MIRRORS], 115200U).last_step);
+    TEST_ASSERT_EQUAL_UINT16(2U,
+                             scip_layout_range(&scip_layouts[SCIP_LAYOUT_THREE_MIRRORS], 115200U).cluster);
+    TEST_ASSERT_EQUAL_UINT16(1075U, scip_layout_range(&layout, 115000U).last_step);
+    layout.last_step = 1076U;
+    TEST_ASSERT_EQUAL_UINT16(3U, scip_layout_range(&layout, 115000U).cluster);
+    TEST_ASSERT_EQUAL_UINT16(1074U, scip_layout_range(&layout, 115000U).last_step);
+}
+
 /* --- a sensor's own limits
  * ---------------------------------------------------------------------------------------- */
 

@@ -1307,6 +1307,65 @@ void test_the_search_after_a_second_loss_is_that_after_the_first(void)
     TEST_ASSERT_EQUAL_UINT32_ARRAY(first, second, 9);
 }
 
+/* A command that was damaged on its way made it stream something else: the next order mends that. */
+void test_octets_that_are_no_scan_at_the_streams_rate_are_answered_by_the_order(void)
+{
+    stream_every_fourth();
+    nothing_after(NEXT_SCAN_US);
+    for (uint32_t i = 0; i < 5; i++) {
+        TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+        TEST_ASSERT_TRUE(action.send);
+        seen.octet_count += 101;
+        nothing_after(STEP_US);
+        TEST_ASSERT_FALSE(action.send);
+        nothing_after(STEP_US);
+        TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    }
+    seen.octet_count += 101;
+    seen.framing_count++;
+    nothing_after(2 * STEP_US);
+    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    seen.octet_count += 101;
+    nothing_after(STEP_US);
+    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+}
+
+/* Was the order lost, or the answer? Both rates are known. */
+void test_a_rate_that_is_not_confirmed_after_a_loss_leads_back_to_the_known_rates(void)
+{
+    stream_every_fourth();
+    nothing_after(NEXT_SCAN_US);
+    nothing_after(2 * STEP_US);
+    (void)reply_after(STEP_US, SCIP_SWITCH, "0", true);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+    nothing_after(500000);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    TEST_ASSERT_EQUAL_UINT32(280000, link_.timeout_us);
+    nothing_after(2 * STEP_US);
+    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+}
+
+void test_12_s_after_the_latest_scan_every_rate_is_tried(void)
+{
+    stream_every_fourth();
+    nothing_after(NEXT_SCAN_US);
+    nothing_after(2 * STEP_US);
+    (void)reply_after(STEP_US, SCIP_SWITCH, "0", true);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+    nothing_after(12000000U - (now_us - link_.scan_us));
+    TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    stream_every_fourth();
+    nothing_after(NEXT_SCAN_US);
+    nothing_after(2 * STEP_US);
+    (void)reply_after(STEP_US, SCIP_SWITCH, "0", true);
+    nothing_after(12000000U - 1U - (now_us - link_.scan_us));
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+}
+
 void test_power_is_cycled_20_s_after_the_latest_scan_and_not_before(void)
 {
     stream_every_fourth();

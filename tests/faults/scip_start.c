@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "drivers/scip_layout.h"
 #include "drivers/urg.h"
 #include "sim/devices/serial.h"
 #include "sim/devices/urg04lx.h"
@@ -14,7 +15,6 @@
 
 #define STEP (150 * SIM_MS)
 #define PATIENCE (60 * SIM_S)
-#define POINTS 35
 #define NO_OCTET 0U
 
 typedef struct {
@@ -27,6 +27,7 @@ typedef struct {
 typedef struct {
     sim_time_t from, to;
     bool from_sensor, from_host, noise; /* which direction is out; noise in place of the sensor's octets */
+    bool garbles;                       /* one octet in seven has a wrong bit, both ways; else none comes */
 } outage_t;
 
 static struct {
@@ -35,7 +36,7 @@ static struct {
     double rate;
     bool listening;
     urg_t urg;
-    uint16_t points[2 * POINTS];
+    uint16_t points[2 * SCIP_LAYOUT_POINTS_MAX];
     urg_config_t config;
     faults_t faults;
     outage_t outage;
@@ -43,10 +44,32 @@ static struct {
     unsigned to_host, to_sensor; /* octets since the start */
     unsigned scans, wrong, power_cycles;
     sim_time_t started, latest_scan;
+    sim_time_t good_from, first_good; /* line and sensor are well; first scan after that */
     timeline_id_t step;
 } host;
 
 static bool holds = true;
+
+/* What is asked for, and of which sensor. */
+typedef struct {
+    const char *name;
+    uint32_t first_rate, stream_rate;
+    scip_layout_id_t layout;
+    bool rounds_down; /* the sensor makes no point of steps that fill no cluster */
+} line_t;
+
+static const line_t lines[] = {
+    {"front, 250000", 115200, 250000, SCIP_LAYOUT_FRONT, false},
+    {"front, 115200 throughout", 115200, 115200, SCIP_LAYOUT_FRONT, false},
+    {"front, 19200 throughout", 19200, 19200, SCIP_LAYOUT_FRONT, false},
+    {"front, from 19200 to 57600", 19200, 57600, SCIP_LAYOUT_FRONT, false},
+    {"front, from 57600 to 750000", 57600, 750000, SCIP_LAYOUT_FRONT, false},
+    {"two beams, 250000", 115200, 250000, SCIP_LAYOUT_TWO_BEAMS, false},
+    {"three mirrors, 250000", 115200, 250000, SCIP_LAYOUT_THREE_MIRRORS, false},
+    {"three mirrors, 115200", 115200, 115200, SCIP_LAYOUT_THREE_MIRRORS, false},
+    {"the same, points rounded down", 115200, 115200, SCIP_LAYOUT_THREE_MIRRORS, true},
+};
+static const line_t *line = &lines[0];
 
 /* ---- the world: a surface that every ray sees at its own distance ---- */
 
@@ -65,6 +88,17 @@ static void look(void *context, int first_step, int last_step, int *distance_mm)
 
 /* ---- the host, as an application of the driver is written ---- */
 
+static int point_at(const scip_scan_t *scan, int i)
+{
+    const int first = scan->first_step + i * scan->cluster;
+    int nearest = distance_at(first);
+
+    for (int step = first + 1; step < first + scan->cluster; step++) {
+        nearest = distance_at(step) < nearest ? distance_at(step) : nearest;
+    }
+    return nearest;
+}
+
 static void check_scan(void)
 {
     scip_scan_t scan;
@@ -75,8 +109,11 @@ static void check_scan(void)
         host.longest_gap = timeline_now() - host.latest_scan;
     }
     host.latest_scan = timeline_now();
-    for (int i = 0; i < POINTS; i++) {
-        host.wrong += scan.distance_mm[i] != distance_at(372 + i);
+    if (host.first_good == 0 && host.latest_scan >= host.good_from) {
+        host.first_good = host.latest_scan;
+    }
+    for (int i = 0; i < scan.points; i++) {
+        host.wrong += scan.distance_mm[i] != point_at(&scan, i);
     }
 }
 
@@ -116,7 +153,8 @@ static void start_host(void *context)
     host.latest_scan = 0;
     host.started = timeline_now();
     serial_set_rate(&host.transmitter, host.rate);
-    if (!urg_init(&host.urg, &host.config, host.points, 2 * POINTS, (uint32_t)(timeline_now() / SIM_US))) {
+    if (!urg_init(&host.urg, &host.config, host.points, 2 * SCIP_LAYOUT_POINTS_MAX,
+                  (uint32_t)(timeline_now() / SIM_US))) {
         abort();
     }
     host.step = timeline_after(STEP, step, NULL);
@@ -135,6 +173,13 @@ static void power_sensor(void *context)
     urg04lx_power(host.sensor, true);
 }
 
+static void restart_sensor(void *context)
+{
+    (void)context;
+    urg04lx_power(host.sensor, false);
+    timeline_after(100 * SIM_MS, power_sensor, NULL);
+}
+
 static void restart_host(void)
 {
     stop_host();
@@ -144,8 +189,7 @@ static void restart_host(void)
 static void break_in(void)
 {
     if (host.to_host == host.faults.sensor_restart) {
-        urg04lx_power(host.sensor, false);
-        timeline_after(100 * SIM_MS, power_sensor, NULL);
+        restart_sensor(NULL);
     }
     if (host.to_host == host.faults.host_restart) {
         restart_host();
@@ -166,6 +210,18 @@ static bool in_outage(void)
     return timeline_now() >= host.outage.from && timeline_now() < host.outage.to;
 }
 
+/* What is left of an octet in an outage. */
+static bool survives(bool out, unsigned number, unsigned *octet)
+{
+    if (!in_outage() || !out) {
+        return true;
+    }
+    if (host.outage.garbles && number % 7 == 0) {
+        *octet ^= 1U << number % 8;
+    }
+    return host.outage.garbles;
+}
+
 static void make_noise(void *context)
 {
     (void)context;
@@ -178,7 +234,7 @@ static void make_noise(void *context)
 static void to_host(void *context, unsigned octet, double bit_ns)
 {
     (void)context;
-    if (!host.listening || (in_outage() && host.outage.from_sensor)) {
+    if (!host.listening || !survives(host.outage.from_sensor, host.to_host + 1, &octet)) {
         return;
     }
     host.to_host++;
@@ -200,7 +256,8 @@ static void to_sensor(void *context, unsigned octet, double bit_ns)
     if (host.to_sensor == host.faults.host_restart_sent) {
         restart_host();
     }
-    if (host.to_sensor != host.faults.lost_to_sensor && !(in_outage() && host.outage.from_host)) {
+    if (host.to_sensor != host.faults.lost_to_sensor &&
+        survives(host.outage.from_host, host.to_sensor, &octet)) {
         urg04lx_receive(host.sensor, octet, bit_ns);
     }
 }
@@ -223,16 +280,17 @@ static void power_up_with(double rate, sim_time_t boot)
     config.power_up_rate = rate;
     config.boot = boot;
     config.phase = 13 * SIM_MS;
+    config.rounds_down = line->rounds_down;
     timeline_reset();
     memset(&host, 0, sizeof host);
     host.sensor = urg04lx_create(&config, look, NULL, to_host, NULL);
     serial_init(&host.transmitter, rate, to_sensor, NULL);
     urg04lx_power(host.sensor, true);
-    host.config = (urg_config_t){.first_rate = 115200,
-                                 .stream_rate = 250000,
-                                 .fastest_rate = 250000,
+    host.config = (urg_config_t){.first_rate = line->first_rate,
+                                 .stream_rate = line->stream_rate,
+                                 .fastest_rate = line->stream_rate,
                                  .stream = SCIP_STREAM_2,
-                                 .range = {372, 406, 1, 0, 0}};
+                                 .range = scip_layout_range(&scip_layouts[line->layout], line->stream_rate)};
 }
 
 static void power_up(double rate)
@@ -465,8 +523,7 @@ static void begin_outage(const trouble_t *trouble, sim_time_t length)
     }
     if (trouble->restart) {
         host.outage.to = host.outage.from;
-        urg04lx_power(host.sensor, false);
-        timeline_after(100 * SIM_MS, power_sensor, NULL);
+        restart_sensor(NULL);
     }
 }
 
@@ -475,7 +532,7 @@ static double blind_s(const trouble_t *trouble, sim_time_t length, unsigned phas
 {
     double seconds;
 
-    power_up_with(115200, trouble->restart ? length - 100 * SIM_MS : urg04lx_default.boot);
+    power_up_with(line->first_rate, trouble->restart ? length - 100 * SIM_MS : urg04lx_default.boot);
     run_until(9 * SIM_S);
     start_host(NULL);
     (void)check_run(trouble->name, phase);
@@ -524,18 +581,168 @@ static void print_outages(void)
     printf("\n");
 }
 
+/* By how much the worst blind time is above the outage, over all lengths. */
+static double worst_excess_s(const trouble_t *trouble)
+{
+    double worst = 0.0;
+
+    for (size_t i = 0; i < sizeof lengths_ms / sizeof lengths_ms[0]; i++) {
+        if (!trouble->restart || lengths_ms[i] >= BOOT_LEAST_MS) {
+            worst = fmax(worst, worst_blind_s(trouble, lengths_ms[i] * SIM_MS) - lengths_ms[i] / 1000.0);
+        }
+    }
+    return worst;
+}
+
+static void print_lines(void)
+{
+    printf("%-30s %6s %6s %6s %8s\n", "longer than the trouble, s", "out", "half", "noise", "restarts");
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        line = &lines[i];
+        printf("%-30s", line->name);
+        for (size_t k = 0; k < sizeof troubles / sizeof troubles[0]; k++) {
+            printf(troubles[k].restart ? " %8.2f" : " %6.2f", worst_excess_s(&troubles[k]));
+        }
+        printf("\n");
+    }
+}
+
+/* ---- several troubles, one upon the other ---- */
+
+/* Outages of `out` with `good` between them; restarts at these times after the first one began. */
+typedef struct {
+    const char *name;
+    outage_t kind;
+    unsigned outages;
+    sim_time_t out, good;
+    unsigned restarts;
+    sim_time_t restart[2];
+    bool in_start; /* in the first dialogue, before any scan */
+    double most_s; /* to the first scan, from the end of the outage or of the boot */
+} misfortune_t;
+
+#define MISFORTUNE_BOOT (2300 * SIM_MS)
+#define BOTH_WAYS \
+    { \
+        .from_sensor = true, .from_host = true \
+    }
+#define GARBLED \
+    { \
+        .from_sensor = true, .from_host = true, .garbles = true \
+    }
+
+static const misfortune_t misfortunes[] = {
+    {"three outages of 0.3 s, 0.1 s between", BOTH_WAYS, 3, 300 * SIM_MS, 100 * SIM_MS, 0, {0}, false, 0.5},
+    {"three of 0.7 s, 0.3 s between", BOTH_WAYS, 3, 700 * SIM_MS, 300 * SIM_MS, 0, {0}, false, 0.5},
+    {"three of 2 s, 0.6 s between", BOTH_WAYS, 3, 2 * SIM_S, 600 * SIM_MS, 0, {0}, false, 0.5},
+    {"1 s of garbled octets", GARBLED, 1, SIM_S, 0, 0, {0}, false, 0.5},
+    {"4 s of garbled octets", GARBLED, 1, 4 * SIM_S, 0, 0, {0}, false, 0.5},
+    {"four of 0.7 s garbled, 0.9 s between", GARBLED, 4, 700 * SIM_MS, 900 * SIM_MS, 0, {0}, false, 1.25},
+    {"a restart in an outage of 1.5 s", BOTH_WAYS, 1, 1500 * SIM_MS, 0, 1, {400 * SIM_MS}, false, 1.0},
+    {"a restart in an outage of 5 s", BOTH_WAYS, 1, 5 * SIM_S, 0, 1, {400 * SIM_MS}, false, 1.0},
+    {"a restart, three of 0.4 s, 1.2 s between",
+     BOTH_WAYS,
+     3,
+     400 * SIM_MS,
+     1200 * SIM_MS,
+     1,
+     {600 * SIM_MS},
+     false,
+     1.4},
+    {"garbled while it comes back", GARBLED, 2, 2 * SIM_S, 100 * SIM_MS, 1, {0}, false, 1.0},
+    {"two restarts, 1 s between", {.from = 0}, 0, 0, 0, 2, {0, SIM_S}, false, 1.0},
+    {"two restarts, 2.7 s between", {.from = 0}, 0, 0, 0, 2, {0, 2700 * SIM_MS}, false, 1.0},
+    {"two restarts, 3.1 s between", {.from = 0}, 0, 0, 0, 2, {0, 3100 * SIM_MS}, false, 1.0},
+    {"an outage of 0.7 s in the start", BOTH_WAYS, 1, 700 * SIM_MS, 0, 0, {0}, true, 3.0},
+    {"1 s of garbled octets in the start", GARBLED, 1, SIM_S, 0, 0, {0}, true, 3.0},
+};
+
+static const misfortune_t *misfortune;
+static unsigned outages_left;
+
+static void next_outage(void *context)
+{
+    (void)context;
+    host.outage = misfortune->kind;
+    host.outage.from = timeline_now();
+    host.outage.to = timeline_now() + misfortune->out;
+    outages_left--;
+    if (outages_left > 0) {
+        timeline_after(misfortune->out + misfortune->good, next_outage, NULL);
+    }
+}
+
+static void begin_misfortune(void)
+{
+    const sim_time_t now = timeline_now();
+
+    host.first_good = 0;
+    host.good_from = now + misfortune->outages * (misfortune->out + misfortune->good) - misfortune->good;
+    outages_left = misfortune->outages;
+    if (outages_left > 0) {
+        next_outage(NULL);
+    }
+    for (unsigned i = 0; i < misfortune->restarts; i++) {
+        const sim_time_t booted = now + misfortune->restart[i] + 100 * SIM_MS + MISFORTUNE_BOOT;
+
+        timeline_after(misfortune->restart[i], restart_sensor, NULL);
+        host.good_from = booted > host.good_from ? booted : host.good_from;
+    }
+}
+
+/* From when all is well to the first scan. */
+static double late_s(unsigned phase)
+{
+    double seconds;
+
+    power_up_with(line->first_rate, MISFORTUNE_BOOT);
+    run_until(9 * SIM_S);
+    start_host(NULL);
+    if (!misfortune->in_start) {
+        (void)check_run(misfortune->name, phase);
+    }
+    run_until(timeline_now() + phase * OUTAGE_PHASE);
+    begin_misfortune();
+    run_until(host.good_from + 10 * SIM_S);
+    seconds = host.first_good == 0 ? 99.0 : (double)(host.first_good - host.good_from) / 1e9;
+    if (timeline_now() - host.latest_scan > 250 * SIM_MS || host.wrong != 0 || host.power_cycles != 0) {
+        complain("no scans, or wrong ones", misfortune->name, phase);
+    }
+    power_down();
+    return seconds;
+}
+
+static void print_misfortunes(void)
+{
+    printf("%-40s %8s %8s\n", "from the end of it to the first scan, s", "longest", "at most");
+    for (size_t i = 0; i < sizeof misfortunes / sizeof misfortunes[0]; i++) {
+        double worst = 0.0;
+
+        misfortune = &misfortunes[i];
+        for (unsigned phase = 0; phase < 4 * OUTAGE_PHASES; phase++) {
+            worst = fmax(worst, late_s(phase));
+        }
+        printf("%-40s %8.2f %8.2f\n", misfortune->name, worst, misfortune->most_s);
+        holds = holds && worst <= misfortune->most_s;
+    }
+}
+
 int main(int argc, char **argv)
 {
     if (argc == 2 && strcmp(argv[1], "--faults") == 0) {
         print_faults();
     } else if (argc == 2 && strcmp(argv[1], "--outages") == 0) {
         print_outages();
+    } else if (argc == 2 && strcmp(argv[1], "--lines") == 0) {
+        print_lines();
+    } else if (argc == 2 && strcmp(argv[1], "--misfortunes") == 0) {
+        print_misfortunes();
     } else if (argc == 2 && strcmp(argv[1], "--wait") == 0) {
         print_table(10000000);
     } else if (argc == 1) {
         print_table(0);
     } else {
-        fprintf(stderr, "usage: scip_start [--wait|--faults|--outages]\n");
+        fprintf(stderr, "usage: scip_start [--wait|--faults|--outages|--lines|--misfortunes]\n");
         return 2;
     }
     return holds ? 0 : 1;

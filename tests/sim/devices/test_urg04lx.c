@@ -1093,6 +1093,27 @@ void test_distances_come_back_from_any_range_and_cluster(void)
     }
 }
 
+/* 547 steps by two: the last one fills no cluster. */
+void test_steps_that_fill_no_cluster_make_a_point_or_none(void)
+{
+    for (unsigned down = 0; down < 2; down++) {
+        config.rounds_down = down == 1;
+        create_scip2();
+        ask("SS250000\n", "SS250000\n00P\n\n");
+        host_rate = 250000.0;
+        forget();
+        host("MS0111065702001\n");
+        run_for(320 * SIM_MS);
+        const char *at = heard.text + 21;
+        frame_t frame = read_frame(at, "99b\n");
+        TEST_ASSERT_EQUAL_INT(down == 1 ? 273 : 274, frame.count);
+        TEST_ASSERT_EQUAL_INT(27 + 2 * frame.count + 2 * 9, frame.end - at);
+        check_values(&frame, 111, down == 1 ? 656 : 657, 2, 4095);
+        urg04lx_destroy(urg);
+        urg = NULL;
+    }
+}
+
 /* Frames worked out by hand from the coding rules; small times lie behind the wrap of the 24-bit clock. */
 static void check_pinned(sim_time_t phase_ms, sim_time_t turn_ms, const char *command, const char *frame,
                          const char *ack)
