@@ -1,5 +1,6 @@
 """tools/fit on flights of simulated vehicles. Usage: test_fit.py PLOMADA"""
 import json
+import random
 import shutil
 import subprocess
 import sys
@@ -9,6 +10,10 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools/fit"))
+import acceptance  # noqa: E402
+import tune_vehicle  # noqa: E402
+
 PROGRAM = None
 THRUST = {"hover_thrust": 8.1, "gain": 1.2, "tau": 0.08, "tdelay": 0.02}
 PART_S = 15.0                   # of the recorder's 25 s: it takes less time
@@ -48,6 +53,7 @@ class Fit(unittest.TestCase):
         done, vehicle = self.fit(self.fly(4711, THRUST))
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(vehicle["throttle"], "THRUST", done.stdout)
+        self.assertEqual(vehicle["beyond"], [])
         self.assert_near(vehicle, "plant.hover_thrust", 8.1, 0.02)
         self.assert_near(vehicle, "authority", 9.80665 * 1.2 / 8.1, 0.12)
         self.assertLess(abs(vehicle["response"]["value"] - 0.1), 0.02, vehicle["response"])
@@ -66,6 +72,16 @@ class Fit(unittest.TestCase):
         self.assertEqual(vehicle["throttle"], "CLIMB", done.stdout)
         self.assert_near(vehicle, "plant.climb_neutral", 7.4, 0.02)
         self.assert_near(vehicle, "authority", 0.65, 0.15)
+
+    def test_a_vehicle_of_other_equations_is_named_and_its_intervals_are_wide_enough(self):
+        done, vehicle = self.fit(self.fly(4719, {"airframe": 1}))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("the rotors slow down later than they spin up", done.stdout)
+        self.assertIn("beyond the model", done.stdout)
+        for key, true in (("plant.hover_thrust", 7.4), ("response", 0.01 + (0.07 + 0.16) / 2.0)):
+            self.assertLess(vehicle[key]["low"], true, f"{key}: {vehicle[key]}")
+            self.assertGreater(vehicle[key]["high"], true, f"{key}: {vehicle[key]}")
+        self.assertLess(abs(vehicle["response"]["value"] - 0.125), 0.045, vehicle["response"])
 
     def verdict(self, log, expected, vehicle):
         (self.dir / "old.json").write_text(json.dumps(vehicle))
@@ -144,6 +160,37 @@ class Fit(unittest.TestCase):
             done = subprocess.run([PROGRAM, "fly", "experiment", "--vehicle", path], capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, 2)
             self.assertIn(reason, done.stderr)
+
+
+class Tuning(unittest.TestCase):
+    def test_the_lowest_place_of_a_surface_through_noisy_candidates_is_found(self):
+        rng = random.Random(7)
+        places = [[x, y] for x in (-0.4, 0.0, 0.4) for y in (-0.4, 0.0, 0.4)]
+        costs = [12.0 + 8.0 * (x - 0.15)**2 + 6.0 * (y + 0.2)**2 + rng.gauss(0.0, 0.05) for x, y in places]
+        x, y = tune_vehicle.bottom(places, costs)
+        self.assertAlmostEqual(x, 0.15, delta=0.08)
+        self.assertAlmostEqual(y, -0.2, delta=0.08)
+
+    def test_it_stays_within_what_was_flown_and_leaves_out_what_failed(self):
+        places = [[x, y] for x in (0.0, 0.1, 0.2) for y in (0.0, 0.1, 0.2)] + [[0.9, 0.9]]
+        costs = [10.0 - 3.0 * x + y for x, y in places[:-1]] + [500.0]
+        x, y = tune_vehicle.bottom(places, costs)
+        self.assertAlmostEqual(x, 0.2, delta=1e-6)
+        self.assertAlmostEqual(y, 0.0, delta=1e-6)
+        self.assertIsNone(tune_vehicle.bottom(places[:5], costs[:5]))
+
+    def test_a_failure_costs_500_mm_and_activity_more_than_is_free_30_mm_a_newton(self):
+        good = {"failed": False, "takeovers": 0, "halted": False, "hover_rms_mm": 10.0, "thrust_std_n": 0.7,
+                "terrain_rms_mm": 80.0, "overshoot_mm": 20.0}
+        self.assertAlmostEqual(tune_vehicle.cost([good], 0.7), 15.0)
+        self.assertAlmostEqual(tune_vehicle.cost([good | {"thrust_std_n": 0.8}], 0.7), 18.0)
+        self.assertAlmostEqual(tune_vehicle.cost([good, good | {"takeovers": 1}], 0.7), 257.5)
+
+    def test_records_of_another_program_or_of_other_tools_are_not_taken_up_again(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            path = Path(scratch, "1.jsonl")
+            path.write_text('{"number": 1, "made_by": "a"}\n{"number": 2, "made_by": "b"}\n{"number": 3, "made')
+            self.assertEqual(list(acceptance.known_records(path, "a")), [1])
 
 
 if __name__ == "__main__":

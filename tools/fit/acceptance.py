@@ -9,6 +9,8 @@ Exit status: 0; 1 something is not as it must be; 2 usage.
 """
 import argparse
 import concurrent.futures
+import contextlib
+import hashlib
 import json
 import os
 import random
@@ -26,8 +28,8 @@ import tune_vehicle  # noqa: E402
 ROOT = Path(__file__).resolve().parents[2]
 MIDDLE_S, LANDED_S = 12.0, 22.0 # of the experiment: the hover thrust is compared there, the battery sags; the landing command
 SEED_STEP = 1_000_000
-DRAWS, FORECAST, JUDGED = 8, 40, 24     # flights of a candidate, of a forecast, of a verdict
-BUDGET = {"EST": 13, "PID": 16}         # candidates
+DRAWS, FORECAST, JUDGED = 8, 40, 16     # flights of a candidate, of a forecast, of a verdict
+BUDGET = {"EST": 11, "PID": 14}         # candidates
 MUST = {"hover": 0.02, "authority": 0.10, "response": 0.015}
 KIND_MUST, HOLDS_MUST = 29 / 30, 24 / 30
 
@@ -81,7 +83,7 @@ def hover_interval(found, middle_s):
         return found["plant.climb_neutral"]
     rng = fit.numpy.random.default_rng(1)
     units = rng.multivariate_normal(found["units"], found["covariance"], 2000)
-    figures = fit.model.KINDS["THRUST"]
+    figures = fit.model.TABLES["THRUST"]
     drawn = []
     for unit in units:
         f = {name: figures[name].back(figures[name].prior()[0] + u * figures[name].prior()[1])
@@ -126,15 +128,17 @@ def tuned(program, law, vehicle_file, figures, seed, number):
     expected = tune_vehicle.predict(program, found, law, settings, FORECAST)
     stock = tune_vehicle.stock_settings(law)
     scenario = tune_vehicle.SCENARIOS[law]
-    seeds = [900_000_000 + seed * 10_000 + number * 10 + k for k in range(JUDGED)]
-    hover = {}
+    seeds = [900_000_000 + seed * 10_000 + number * 100 + k for k in range(JUDGED)]
+    hover, logs = {}, []
     for name, typed in (("stock", stock), ("tuned", settings)):
-        flown = forecast.fly_all(program, [forecast.words(scenario, s, typed, figures) for s in seeds])
-        bad = [f["failed"] or f["takeovers"] > 0 or f["hover_rms_mm"] is None for f in flown]
-        hover[name] = sum(tune_vehicle.FAILURE_MM if b else f["hover_rms_mm"] for b, f in zip(bad, flown, strict=True)) / JUDGED
-    seen = forecast.fly_logged(program, forecast.words(scenario, seeds[0], settings, figures))
-    return {"settings": settings, **hover, "expected": expected, "seen": seen,
-            "holds": {name: seen[name] is None or f["low"] <= seen[name] <= f["high"] for name, f in expected.items()}}
+        flown = forecast.fly_all_logged(program, [forecast.words(scenario, s, typed, figures) for s in seeds])
+        bad = [f["failed"] or f["takeovers"] > 0 or f["hover_rms_mm"] is None for f, _ in flown]
+        hover[name] = sum(tune_vehicle.FAILURE_MM if b else f["hover_rms_mm"] for b, (f, _) in zip(bad, flown, strict=True)) / JUDGED
+        logs = [seen for _, seen in flown]
+    held = {name: [seen[name] is not None and f["low"] <= seen[name] <= f["high"] for seen in logs] for name, f in expected.items()}
+    return {"settings": settings, **hover, "expected": expected, "seen": logs[0],
+            "holds": {name: each[0] for name, each in held.items()},
+            "held_share": {name: sum(each) / JUDGED for name, each in held.items()}}
 
 
 def row(record):
@@ -169,12 +173,25 @@ def tuning_verdicts(records, law):
     yield f"{law}: never worse by more than 10 %", sum(r["tuned"] <= 1.1 * r["stock"] for r in flown), n, n
     for name in ("hover_rms_mm", "recovery_s", "undershoot_mm"):
         yield f"{law}: forecast of {name} holds", sum(r["holds"].get(name, False) for r in flown), n, HOLDS_MUST * n
+        share = sum(r["held_share"].get(name, 0.0) for r in flown) / max(n, 1)
+        yield f"{law}: of {JUDGED} flights of each it would hold, in percent", round(100 * share), 100, 100 * HOLDS_MUST
 
 
-def known_records(path):
-    if not path.exists():
-        return {}
-    return {record["number"]: record for record in map(json.loads, path.read_text(encoding="utf-8").splitlines())}
+def maker(program):
+    """A sum of the program and of these tools: what others found is found anew."""
+    files = [Path(program), *sorted(Path(__file__).resolve().parent.glob("*.py"))]
+    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:12]
+
+
+def known_records(path, made_by):
+    """A line torn by an interruption is found anew."""
+    found = {}
+    for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
+        with contextlib.suppress(ValueError):
+            record = json.loads(line)
+            if record["made_by"] == made_by:
+                found[record["number"]] = record
+    return found
 
 
 def complete(arguments, number, record, laws):
@@ -206,9 +223,10 @@ def main(argv=None):
     arguments = read_arguments(argv)
     arguments.out.mkdir(parents=True, exist_ok=True)
     kept = arguments.out / f"{arguments.seed}.jsonl"
-    known = known_records(kept)
+    made_by = maker(arguments.program)
+    known = known_records(kept, made_by)
     records = dict(known)
-    print(f"seed {arguments.seed}")
+    print(f"seed {arguments.seed}, program and tools {made_by}")
     laws = [law for law in arguments.tune.split(",") if law]
     with concurrent.futures.ProcessPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         work = [pool.submit(complete, arguments, number, known.get(number), laws)
@@ -218,7 +236,7 @@ def main(argv=None):
             records[record["number"]] = record
             if news:
                 with kept.open("a", encoding="utf-8") as file:
-                    file.write(json.dumps(record, default=float) + "\n")
+                    file.write(json.dumps(record | {"made_by": made_by}, default=float) + "\n")
             print(row(record), flush=True)
     chosen = [records[number] for number in range(arguments.first, arguments.vehicles + 1)]
     found = list(verdicts(chosen))

@@ -45,10 +45,14 @@ MEANING = {
     "acc_noise": ("of the accelerometer, rms", "any flight"),
     "acc_bias": ("of the accelerometer", "any flight"),
     "height_noise": ("of a height, rms", "any flight"),
+    "slower": ("the rotors slow down later than they spin up", "quick doublets of the reference: experiment"),
+    "curve": ("the thrust is no straight line of the throttle", "steps of the reference of 0.5 m"),
+    "inflow": ("the thrust answers more at first than what stays, air through the rotors", "quick doublets of the reference: experiment"),
+    "inflow_lag": ("until it stays", "quick doublets of the reference: experiment"),
     "authority": ("", ""),
     "response": ("", ""),
 }
-NOT_OF_THE_PLANT = ("height_noise", "climb_wander")
+NOT_OF_THE_PLANT = ("height_noise", "climb_wander", *model.BEYOND["THRUST"])
 SIMULATED = {"THRUST": "thrust", "CLIMB": "a climb rate"}
 
 
@@ -56,8 +60,10 @@ def quantiles(values):
     return float(numpy.quantile(values, 0.05)), float(numpy.quantile(values, 0.95))
 
 
-def bounded(value, low, high, least=0.0):
-    return {"value": max(value, least), "low": max(low, least), "high": max(high, least)}
+def bounded(value, low, high, least=0.0, otherwise=None):
+    """otherwise: what other equations say. Where these were proved wrong, the next ones are wrong too, by as much or less."""
+    off = 0.0 if otherwise is None else abs(value - otherwise)
+    return {"value": max(value, least), "low": max(min(low, value - off), least), "high": max(high, value + off, least)}
 
 
 def derived(found, rng):
@@ -65,12 +71,9 @@ def derived(found, rng):
     def authority(f):
         return f["climb_rate"] if found.kind == "CLIMB" else model.GRAVITY_MPS2 * f["gain"] / f["hover_thrust"]
 
-    def response(f):
-        return f["tau"] + f["tdelay"]
-
     drawn = [found.draw(rng) for _ in range(2000)]
-    return {name: bounded(of(found.figures), *quantiles([of(f) for f in drawn]))
-            for name, of in (("authority", authority), ("response", response))}
+    return {name: bounded(of(found.figures), *quantiles([of(f) for f in drawn]), otherwise=of(found.simple))
+            for name, of in (("authority", authority), ("response", model.response_s))}
 
 
 def hover_over_time(found, stretches):
@@ -104,15 +107,26 @@ def attitude_of(stretches):
     return {"value": value, "low": 0.9 * value, "high": 1.1 * value}
 
 
+def beyond(found):
+    """Sentences: what the vehicle does and neither the simulated vehicle nor law EST's model knows."""
+    result = []
+    for name in model.BEYOND[found.kind]:
+        if name in found.table and name != "inflow_lag":
+            low, high = found.interval(name)
+            if low > 0.0 or high < 0.0:
+                result.append(f"{MEANING[name][0]} ({name} {found.figures[name]:.2f} [{low:.2f} .. {high:.2f}])")
+    return result
+
+
 def vehicle_of(found, other, stretches, logs, rng):
     heights = sum(len(stretch.ray_s) for stretch in stretches)
     telling = other.loss - found.loss
     result = {"throttle": found.kind, "throttle_told": telling > TELLING, "better_by": round(telling, 1)}
     for name in found.table:
         value, interval = found.figures[name], found.interval(name)
-        least = -math.inf if name in ("acc_bias", "sag") else 0.0  # a deadband, a dead time
+        least = -math.inf if name in ("acc_bias", "sag", "slower", "curve", "inflow") else 0.0  # a deadband, a dead time
         key = name if name in NOT_OF_THE_PLANT else f"plant.{name}"
-        result[key] = bounded(value, *interval, least) | {"told": told(found, name)}
+        result[key] = bounded(value, *interval, least, found.simple.get(name)) | {"told": told(found, name)}
     noise = result["height_noise"]
     result["plant.common_noise"] = {word: common_noise_mm(noise[word]) for word in ("value", "low", "high")}
     result["plant.attitude_rms"] = attitude_of(stretches)
@@ -124,6 +138,7 @@ def vehicle_of(found, other, stretches, logs, rng):
     result["names"] = list(found.likelihood.names)
     result["units"] = [float(unit) for unit in found.units]
     result["covariance"] = [[float(cell) for cell in row] for row in found.covariance]
+    result["beyond"] = beyond(found)
     result["logs"] = [str(log) for log in logs]
     return result
 
@@ -152,12 +167,13 @@ def text(vehicle):
     if vehicle["hover_over_time"]:
         (t0, n0), (t1, n1) = vehicle["hover_over_time"][0], vehicle["hover_over_time"][-1]
         lines.append(f"hover thrust: {n0:.2f} N at {t0:.0f} s, {n1:.2f} N at {t1:.0f} s of the log")
+    lines += [f"beyond the model, forecasts do not know it: {sentence}" for sentence in vehicle["beyond"]]
     lines.append(f"heights that no noise explains: {100 * vehicle['outliers']['value']:.1f} % of {vehicle['outliers']['of']}")
     lines.append("")
     for key, f in vehicle.items():
         name = key.removeprefix("plant.")
         if isinstance(f, dict) and "told" in f:
-            unit = model.KINDS[kind][name].unit
+            unit = model.TABLES[kind][name].unit
             lines.append(f"{key:22} {number(f['value']):>8} [{number(f['low'])} .. {number(f['high'])}] {unit:5} "
                          f"{MEANING[name][0]}: {f['told']}")
     return "\n".join(lines)

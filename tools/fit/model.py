@@ -16,6 +16,7 @@ import numpy
 from scipy.linalg import expm
 from scipy.optimize import minimize
 from scipy.signal import lfilter
+from scipy.stats import t as student
 
 GRAVITY_MPS2 = 9.80665
 STEP_S = 0.005                  # of the simulation of the model
@@ -34,6 +35,7 @@ FIRST = {"height": 0.1, "speed": 0.5, "push": 2.0}     # what is not known at th
 OUTLIER = 4.0                   # standard deviations of a height's prediction error
 DIFFERENCE = 1e-4
 BLOCK_S = 1.0                   # scores within it may be correlated
+FREE_LEAST = 0.5                # share of the blocks: of a short log the prior holds what the flight does not
 AT_REST, IDLE_MAX, REFUSED_MAX = 0.05, 2, 7
 STARTS = {"THRUST": ({}, {"gain": 0.8, "tau": 0.06}), "CLIMB": ({}, {"climb_deadband": 0.08, "climb_rate": 0.6})}
 INTERVAL = 1.645                # standard deviations of 90 %
@@ -84,6 +86,14 @@ CLIMB = {
     "climb_wander": Figure(0.02, 0.5, "m/s"),
 } | NOISES
 KINDS = {"THRUST": THRUST, "CLIMB": CLIMB}
+# What the equations leave out and a flight may show: rotors that slow down later than they spin up (logarithm of the lags'
+# ratio; tau is their geometric mean), thrust that grows faster than the throttle (of the square of its relative change), and more
+# of it at first than what stays, until the air through the rotors follows.
+BEYOND = {"THRUST": {"slower": Figure(0.0, 0.5, "-", logarithmic=False), "curve": Figure(0.0, 0.5, "-", logarithmic=False),
+                     "inflow": Figure(0.0, 0.5, "-", logarithmic=False), "inflow_lag": Figure(0.07, 0.4, "s")},
+          "CLIMB": {}}
+TABLES = {kind: table | BEYOND[kind] for kind, table in KINDS.items()}
+TELLS = 16.0                    # twice a log-likelihood, expected and reached: less is no proof of a figure of BEYOND
 
 
 @dataclass
@@ -105,6 +115,16 @@ def lagged(signal, lag_s):
     """First-order lag, at rest at its first value: of a signal given by the means of the steps, at the steps' beginnings."""
     keep = math.exp(-STEP_S / lag_s)
     return lfilter([0.0, 1.0 - keep], [1.0, -keep], signal, zi=[signal[0]])[0]
+
+
+def lagged_both_ways(signal, lag_s, slower):
+    """A lag upwards and a longer one downwards."""
+    up, down = (1.0 - math.exp(-STEP_S / (lag_s * math.exp(sign * slower / 2.0))) for sign in (-1.0, 1.0))
+    result, now = [], float(signal[0])
+    for wanted in signal.tolist():
+        result.append(now)
+        now += (up if wanted > now else down) * (wanted - now)
+    return numpy.array(result)
 
 
 def delayed(grid_s, signal, delay_s):
@@ -129,9 +149,15 @@ def thrust_motion(stretch, batch):
 
 
 def one_thrust_motion(stretch, f):
-    thrust_n = lagged(delayed(stretch.grid_s, stretch.thrust_n, f["tdelay"] + PULSE_S), f["tau"])
+    command_n = delayed(stretch.grid_s, stretch.thrust_n, f["tdelay"] + PULSE_S)
+    if "slower" in f:
+        thrust_n = lagged_both_ways(command_n, f["tau"], f["slower"])
+        thrust_n = thrust_n + f["inflow"] * (thrust_n - lagged(thrust_n, f["inflow_lag"]))
+    else:
+        thrust_n = lagged(command_n, f["tau"])
     hover_n = f["hover_thrust"] * (1.0 + f["sag"] * (stretch.grid_s - stretch.begin_s))
-    share = 1.0 + f["gain"] * (thrust_n - hover_n) / f["hover_thrust"]
+    change = (thrust_n - hover_n) / f["hover_thrust"]
+    share = 1.0 + f["gain"] * change + f.get("curve", 0.0) * change**2
     push = GRAVITY_MPS2 * (share * ground_effect(stretch.height_m) * stretch.upright - 1.0)
     keep = math.exp(-STEP_S * f["damping"])
     half = (1.0 - keep) / f["damping"] / 2.0
@@ -284,10 +310,10 @@ class Likelihood:
     """Twice the negative logarithm of the likelihood (and of the prior) of the figures, with its gradient and the
     curvature that is expected (Fisher's information)."""
 
-    def __init__(self, kind, stretches, held=None):
-        """held: figures that are not searched."""
+    def __init__(self, kind, stretches, held=None, beyond=False):
+        """held: figures that are not searched; beyond: whether those of BEYOND are, too."""
         self.kind, self.stretches, self.held = kind, stretches, held or {}
-        self.table = KINDS[kind]
+        self.table = TABLES[kind] if beyond else KINDS[kind]
         self.names = [name for name in self.table if name not in self.held]
         self.center = numpy.array([self.table[name].prior()[0] for name in self.names])
         self.weight = numpy.array([1.0 / self.table[name].prior()[1]**2 for name in self.names])
@@ -343,15 +369,18 @@ class Likelihood:
 
     def covariance(self, units):
         """In units. The larger, figure by figure, of what the model expects of its own errors and of what the scores of
-        the flight's seconds show (sandwich)."""
+        the flight's seconds show (sandwich). The seconds are few: what the figures took of their freedom is given back
+        (MacKinnon and White, J. Econometrics 29, 1985), and the spread is that whose normal 90 % interval is Student's."""
         self.look(units)
         bread = numpy.linalg.inv(self.information)
         expected = 2.0 * bread
         scores = numpy.array(self.scores)
         meat = scores.T @ scores + 4.0 * numpy.eye(len(units))
         shown = bread @ meat @ bread
-        widen = numpy.sqrt(numpy.maximum(numpy.diag(shown) / numpy.diag(expected), 1.0))
-        return expected * numpy.outer(widen, widen)
+        taken = float(numpy.sum(1.0 - numpy.minimum(numpy.diag(expected), 1.0)))
+        free = max(len(scores) - taken, FREE_LEAST * len(scores))
+        widen = numpy.sqrt(numpy.maximum(len(scores) / free * numpy.diag(shown) / numpy.diag(expected), 1.0))
+        return expected * numpy.outer(widen, widen) * (student.ppf(0.95, free) / INTERVAL)**2
 
 
 @dataclass
@@ -364,6 +393,7 @@ class Fit:
     loss: float                 # twice the negative log-likelihood
     likelihood: Likelihood
     outliers: int
+    simple: dict                # figures without those of BEYOND, where a flight shows these; else the same
 
     def interval(self, name):
         """90 %."""
@@ -399,8 +429,8 @@ def mark_outliers(stretch, kind, figures):
     return int((~kept).sum())
 
 
-def search(kind, stretches, start, held=None):
-    likelihood = Likelihood(kind, stretches, held)
+def search(kind, stretches, start, held=None, beyond=False):
+    likelihood = Likelihood(kind, stretches, held, beyond)
     state = {"best": math.inf, "idle": 0, "refused": 0}
 
     def progress(units):
@@ -426,6 +456,26 @@ def best_of(kind, stretches):
     return min((search(kind, stretches, start) for start in starts), key=lambda one: one[2])
 
 
+def beyond(likelihood, units, loss):
+    """The same, or a fit with the figures of BEYOND where the slope and the curvature of the likelihood promise much of them
+    (a score test) and a search keeps the promise."""
+    kind, stretches = likelihood.kind, likelihood.stretches
+    if not BEYOND[kind]:
+        return likelihood, units, loss
+    figures = likelihood.figures(units) | {name: figure.median for name, figure in BEYOND[kind].items()}
+    wide = Likelihood(kind, stretches, beyond=True)
+    wide.look(wide.units(figures))
+    if 0.5 * wide.gradient @ numpy.linalg.solve(wide.information, wide.gradient) < TELLS:
+        return likelihood, units, loss
+    found = search(kind, stretches, figures, beyond=True)
+    return found if found[2] < loss - TELLS else (likelihood, units, loss)
+
+
+def response_s(f):
+    """Lag and dead time together; of two lags their mean."""
+    return f["tau"] * math.cosh(f.get("slower", 0.0) / 2.0) + f["tdelay"]
+
+
 def fit(kind, stretches):
     for stretch in stretches:
         stretch.kept = None
@@ -433,4 +483,7 @@ def fit(kind, stretches):
     outliers = sum(mark_outliers(stretch, kind, likelihood.figures(units)) for stretch in stretches)
     if outliers > 0:
         likelihood, units, loss = search(kind, stretches, likelihood.figures(units))
-    return Fit(kind, KINDS[kind], likelihood.figures(units), units, likelihood.covariance(units), loss, likelihood, outliers)
+    simple = likelihood.figures(units)
+    likelihood, units, loss = beyond(likelihood, units, loss)
+    return Fit(kind, likelihood.table, likelihood.figures(units), units, likelihood.covariance(units), loss, likelihood, outliers,
+               simple)
