@@ -12,6 +12,7 @@ sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/fit"))
 import acceptance  # noqa: E402
+import flight_log  # noqa: E402
 import tune_vehicle  # noqa: E402
 
 PROGRAM = None
@@ -82,6 +83,17 @@ class Fit(unittest.TestCase):
             self.assertLess(vehicle[key]["low"], true, f"{key}: {vehicle[key]}")
             self.assertGreater(vehicle[key]["high"], true, f"{key}: {vehicle[key]}")
         self.assertLess(abs(vehicle["response"]["value"] - 0.125), 0.045, vehicle["response"])
+
+    def test_a_flight_that_the_supervisor_lowered_now_and_then_is_one_stretch(self):
+        vehicle = {"hover_thrust": 7.8647, "tau": 0.1304, "tdelay": 0.0177, "damping": 1.508, "gain": 1.2455, "common_noise": 5.08}
+        path = self.dir / "lowered.csv"
+        words = [word for name, value in vehicle.items() for word in ("--set", f"plant.{name}={value}")]
+        subprocess.run([PROGRAM, "fly", "experiment", "--seed", "301000701", *words, "--csv", path], check=False,
+                       stdout=subprocess.DEVNULL)
+        self.assertIn(",LOWERING,", path.read_text())
+        found = flight_log.stretches(path)
+        self.assertEqual(len(found), 1)
+        self.assertGreater(found[0].grid_s[-1] - found[0].grid_s[0], 19.0)
 
     def verdict(self, log, expected, vehicle):
         (self.dir / "old.json").write_text(json.dumps(vehicle))

@@ -8,7 +8,7 @@ import model
 
 NEEDED = ("t_s", "meas_m", "thrust_n", "roll_rad", "pitch_rad", "state", "up_mps2", "age_s")
 FLYING = ("FLYING", "HOLDING")
-ALOFT = (*FLYING, "LANDING")
+ALOFT = (*FLYING, "LANDING", "LOWERING", "DESCENDING")   # whoever commands it, the thrust is in the log
 SETTLED_S = 0.5                 # after the take-off
 LEAST_S = 5.0                   # of a stretch
 GAP_S = 0.3                     # between two heights: what is behind it is another stretch
