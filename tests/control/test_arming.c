@@ -152,3 +152,20 @@ void test_the_idle_is_a_share_of_the_throttle_while_armed_and_none_in_cut(void)
     TEST_ASSERT_EQUAL_FLOAT(0.0F, arming_idle_n(&arming, 0.0F, FLIGHT_GROUND));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, arming_idle_n(&arming, 15.0F, FLIGHT_CUT));
 }
+
+void test_a_disarmed_vehicle_waits_for_no_end(void)
+{
+    wish(true);
+    enter(FLIGHT_FLYING);
+    wish(false);
+    TEST_ASSERT_TRUE(arming.ending);
+    supervisor.reference_m = 0.0005F; /* any reference at all takes it back */
+    step();
+    TEST_ASSERT_FALSE(arming.ending);
+    supervisor.reference_m = 0.0F;
+    enter(FLIGHT_FLYING);
+    wish(false);
+    enter(FLIGHT_GROUND);
+    TEST_ASSERT_FALSE(arming.armed);
+    TEST_ASSERT_FALSE(arming.ending);
+}

@@ -98,3 +98,56 @@ void test_too_little_too_much_or_about_both_axes_sets_nothing(void)
     }
     TEST_ASSERT_EQUAL_MEMORY(&before, &parameters, sizeof before);
 }
+
+void test_a_unit_is_known_within_fifteen_percent_and_a_side_below_half_of_it(void)
+{
+    static const struct {
+        float x_counts, y_counts, z_counts;
+        bool found;
+    } rows[] = {{0, 0, 294.3F, true},   {0, 0, 294.5F, false},    {0, 0, -217.7F, true},
+                {0, 0, -217.5F, false}, {99, 79, 256.0F, true},   {99, 82, 256.0F, false},
+                {127, 0, 256.0F, true}, {0, -129, 256.0F, false}, {0, 0, 0.0005F, false}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        level.x_counts = rows[i].x_counts;
+        level.y_counts = rows[i].y_counts;
+        level.z_counts = rows[i].z_counts;
+        TEST_ASSERT_EQUAL(rows[i].found, imu_find_level(&parameters, &level));
+    }
+}
+
+/* How far it was turned; from a level where the angles may have passed the half turn. */
+static bool turned(float level_rad, float roll_rad, float pitch_rad)
+{
+    imu_raw_t raw = level;
+    level.roll_rad = level.pitch_rad = level_rad;
+    raw.roll_rad = level_rad + roll_rad;
+    raw.pitch_rad = level_rad + pitch_rad;
+    while (raw.roll_rad > 3.14159265F) {
+        raw.roll_rad -= 6.2831853F;
+    }
+    while (raw.roll_rad < -3.14159265F) {
+        raw.roll_rad += 6.2831853F;
+    }
+    return imu_find_axis(&parameters, PARAMETER_IROLL, &level, &raw);
+}
+
+void test_a_turn_is_8_to_60_degrees_about_one_axis(void)
+{
+    static const float levels_rad[] = {0.0F, 3.1F, -3.1F};
+    for (int i = 0; i < 3; i++) {
+        for (float side = -1.0F; side < 2.0F; side += 2.0F) {
+            TEST_ASSERT_TRUE(turned(levels_rad[i], 0.141F * side, 0.0F));
+            TEST_ASSERT_EQUAL_UINT16(side > 0.0F ? AXIS_ROLL : AXIS_MINUS_ROLL, choice(PARAMETER_IROLL));
+            TEST_ASSERT_FALSE(turned(levels_rad[i], 0.138F * side, 0.0F));
+            TEST_ASSERT_TRUE(turned(levels_rad[i], 1.046F * side, 0.0F));
+            TEST_ASSERT_FALSE(turned(levels_rad[i], 1.049F * side, 0.0F));
+            TEST_ASSERT_TRUE(turned(levels_rad[i], 0.3F * side, 0.148F));
+            TEST_ASSERT_FALSE(turned(levels_rad[i], 0.3F * side, -0.152F));
+        }
+    }
+    TEST_ASSERT_TRUE(turned(0.0F, 0.1F, -0.3F));
+    TEST_ASSERT_EQUAL_UINT16(AXIS_MINUS_PITCH, choice(PARAMETER_IROLL));
+    TEST_ASSERT_TRUE(turned(0.0F, -0.1F, 0.3F));
+    TEST_ASSERT_EQUAL_UINT16(AXIS_PITCH, choice(PARAMETER_IROLL));
+}

@@ -83,3 +83,42 @@ void test_a_pause_is_no_derivative(void)
     pidt_resume(&state);
     TEST_ASSERT_FLOAT_WITHIN(1e-5F, 7.0F + 6.3F * 0.3F + integral_n, step(0.6F, 0.3F, 0.1F));
 }
+
+/* One step of 0.1 s from a height and an integral, at a rate of 0; gains 6.3, 0.95, 3.1; limits 4 and 10 N.
+ */
+static float from(float reference_m, float height_m, float integral_n, float dt_s)
+{
+    state = (pidt_state_t){.integral_n = integral_n, .height_m = height_m, .rate_mps = 0.2F, .primed = true};
+    return step(reference_m, height_m, dt_s);
+}
+
+void test_a_gap_too_short_or_too_long_has_neither_derivative_nor_integral(void)
+{
+    static const float gaps_s[] = {0.0195F, 0.0205F, 0.4995F, 0.5005F};
+    for (int i = 0; i < 4; i++) {
+        const bool counts = i == 1 || i == 2;
+        (void)from(0.6F, 0.5F, 0.3F, gaps_s[i]);
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.3F + (counts ? 0.095F * gaps_s[i] : 0.0F), state.integral_n);
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, counts ? 0.2F * 0.0199F / (gaps_s[i] + 0.0199F) : 0.0F,
+                                 state.rate_mps);
+    }
+}
+
+/* 7 N and 3.1 x 0.0332 against the rate that is left; an integral at the limit grows no further, and does
+ * shrink. */
+void test_the_integral_stops_at_a_limit_and_comes_back_from_it(void)
+{
+    static const struct {
+        float error_m, integral_n;
+        bool grows;
+    } rows[] = {{0.0F, 2.0F, true},  {0.1F, 2.4F, true},     {0.1F, 2.55F, false},
+                {-0.1F, 4.0F, true}, {-0.1F, -2.2F, true},   {-0.1F, -2.29F, false},
+                {0.1F, -4.0F, true}, {0.0005F, 3.2F, false}, {-0.0005F, -3.2F, false}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        (void)from(0.5F + rows[i].error_m, 0.5F, rows[i].integral_n, 0.1F);
+        TEST_ASSERT_FLOAT_WITHIN(
+            2e-6F, rows[i].integral_n + (rows[i].grows ? 0.095F * rows[i].error_m : 0.0F), state.integral_n);
+    }
+    TEST_ASSERT_EQUAL_FLOAT(10.0F, from(0.6F, 0.5F, 5.0F, 0.1F));
+    TEST_ASSERT_EQUAL_FLOAT(4.0F, from(0.4F, 0.5F, -5.0F, 0.1F));
+}

@@ -95,3 +95,53 @@ void test_a_long_step_counts_as_three_seconds_and_hours_do_not_wrap(void)
         TEST_ASSERT_TRUE(reach_step(&reach, -600.0F, UINT32_C(4000000000)));
     }
 }
+
+/* A reference 300 mm above, watched from there; then one step. */
+static bool then(float off_mm, uint32_t step_us)
+{
+    setUp();
+    TEST_ASSERT_FALSE(reach_step(&reach, -300.0F, 0U));
+    reach.stuck_us = 2000000U;
+    return reach_step(&reach, off_mm, step_us);
+}
+
+void test_three_seconds_without_fifty_millimetres_of_progress_are_told(void)
+{
+    TEST_ASSERT_TRUE(then(-250.0F, 1000000U));
+    TEST_ASSERT_FALSE(then(-250.0F, 999999U));
+    TEST_ASSERT_FALSE(then(-249.0F, 1000000U));
+    TEST_ASSERT_EQUAL_UINT32(0U, reach.stuck_us);
+    TEST_ASSERT_EQUAL_FLOAT(249.0F, reach.nearest_mm);
+    TEST_ASSERT_TRUE(then(-400.0F, 1000000U));
+    TEST_ASSERT_EQUAL_FLOAT(300.0F, reach.nearest_mm);
+}
+
+void test_a_side_of_the_reference_is_watched_for_itself_and_a_decimetre_is_there(void)
+{
+    TEST_ASSERT_FALSE(then(300.0F, 5000000U));
+    TEST_ASSERT_TRUE(reach.above);
+    TEST_ASSERT_FALSE(then(-100.0F, 5000000U));
+    setUp();
+    (void)reach_step(&reach, -120.0F, 0U);
+    TEST_ASSERT_TRUE(reach_step(&reach, -101.0F, 5000000U));
+    TEST_ASSERT_FALSE(reach_step(&reach, -100.0F, 5000000U));
+    TEST_ASSERT_FALSE(reach.above);
+    TEST_ASSERT_FALSE(reach_step(&reach, 0.0005F, 1U));
+    TEST_ASSERT_TRUE(reach.above);
+    TEST_ASSERT_FALSE(reach_step(&reach, 0.0F, 1U));
+    TEST_ASSERT_FALSE(reach.above);
+}
+
+void test_one_step_counts_for_three_seconds_at_most_and_the_sum_for_a_minute(void)
+{
+    (void)then(-400.0F, 50000000U);
+    TEST_ASSERT_EQUAL_UINT32(5000000U, reach.stuck_us);
+    reach.stuck_us = 59999999U;
+    TEST_ASSERT_TRUE(reach_step(&reach, -400.0F, 5000000U));
+    TEST_ASSERT_EQUAL_UINT32(62999999U, reach.stuck_us);
+    TEST_ASSERT_TRUE(reach_step(&reach, -400.0F, 5000000U));
+    TEST_ASSERT_EQUAL_UINT32(62999999U, reach.stuck_us);
+    reach.stuck_us = 60000000U;
+    TEST_ASSERT_TRUE(reach_step(&reach, -400.0F, 1U));
+    TEST_ASSERT_EQUAL_UINT32(60000000U, reach.stuck_us);
+}

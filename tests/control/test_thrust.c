@@ -61,3 +61,8 @@ void test_nan_is_the_idle_pulse(void)
     TEST_ASSERT_EQUAL_FLOAT(THRUST_IDLE_PULSE_US, thrust_to_pulse_us(NAN));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, thrust_from_pulse_us(NAN));
 }
+
+void test_the_smallest_thrust_is_one(void)
+{
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 0.0005F, thrust_from_pulse_us(thrust_to_pulse_us(0.0005F)));
+}

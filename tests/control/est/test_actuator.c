@@ -90,3 +90,55 @@ void test_lag_and_dead_time_are_those_that_are_told(void)
     actuator_advance(&actuator, after(70000U));
     TEST_ASSERT_FLOAT_WITHIN(0.2F, 8.0F * (1.0F - expf(-0.5F)), actuator.thrust_n);
 }
+
+/* ---- one step */
+
+void test_times_are_rounded_to_microseconds(void)
+{
+    actuator_describe(&actuator, 0.0000104F, 0.1F);
+    TEST_ASSERT_EQUAL_UINT32(10U, actuator.delay_us);
+    actuator_describe(&actuator, 0.0000106F, 0.1F);
+    TEST_ASSERT_EQUAL_UINT32(11U, actuator.delay_us);
+}
+
+/* A share of step / (lag + half a step), which is never more than all of it. */
+void test_a_step_takes_its_share_of_what_is_missing(void)
+{
+    static const struct {
+        uint32_t step_us;
+        float share;
+    } rows[] = {
+        {12000U, 0.095238F}, {120000U, 0.666667F}, {239000U, 0.997912F}, {480000U, 1.0F}, {1000000U, 1.0F}};
+    for (int i = 0; i < 5; i++) {
+        setUp();
+        actuator.demand_n = 10.0F;
+        actuator_advance(&actuator, after(rows[i].step_us));
+        TEST_ASSERT_FLOAT_WITHIN(1e-4F, 10.0F * rows[i].share, actuator.thrust_n);
+        TEST_ASSERT_EQUAL_UINT32(after(rows[i].step_us), actuator.time_us);
+        actuator_advance(&actuator, after(rows[i].step_us - 1000U));
+        TEST_ASSERT_EQUAL_UINT32(after(rows[i].step_us), actuator.time_us);
+    }
+}
+
+void test_commands_take_effect_one_after_the_other(void)
+{
+    for (uint32_t i = 0U; i < 3U; i++) {
+        actuator_command(&actuator, 1.0F + (float)i, after(1000U * i));
+    }
+    TEST_ASSERT_EQUAL_UINT16(3U, actuator.count);
+    actuator_advance(&actuator, after(DELAY_US + 500U));
+    TEST_ASSERT_EQUAL_FLOAT(1.0F, actuator.demand_n);
+    TEST_ASSERT_EQUAL_UINT16(2U, actuator.count);
+    TEST_ASSERT_EQUAL_FLOAT(2.0F, actuator.coming[0].thrust_n);
+    TEST_ASSERT_EQUAL_FLOAT(3.0F, actuator.coming[1].thrust_n);
+    actuator_advance(&actuator, after(DELAY_US + 2000U));
+    TEST_ASSERT_EQUAL_FLOAT(3.0F, actuator.demand_n);
+    TEST_ASSERT_EQUAL_UINT16(0U, actuator.count);
+    for (uint16_t i = 0U; i < ACTUATOR_COMMANDS + 1U; i++) { /* one too many: the oldest acts at once */
+        actuator_command(&actuator, 10.0F + (float)i, after(50000U));
+    }
+    TEST_ASSERT_EQUAL_UINT16(ACTUATOR_COMMANDS, actuator.count);
+    TEST_ASSERT_EQUAL_FLOAT(10.0F, actuator.demand_n);
+    TEST_ASSERT_EQUAL_FLOAT(11.0F, actuator.coming[0].thrust_n);
+    TEST_ASSERT_EQUAL_FLOAT(22.0F, actuator.coming[ACTUATOR_COMMANDS - 1U].thrust_n);
+}

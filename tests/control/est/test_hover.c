@@ -97,3 +97,51 @@ void test_nothing_leaves_the_bounds_whatever_is_seen(void)
         TEST_ASSERT_TRUE(hover.variance_n2 >= 0.0F && hover.variance_n2 < 1.0F);
     }
 }
+
+/* ---- one step; variance 0.49 N2 */
+
+void test_a_sample_counts_by_kalmans_gain_with_its_noise_times_6_6(void)
+{
+    hover_step(&hover, 8.0F, 0.4F, 0.1F);
+    const float variance = 0.49F + 0.000038F;
+    const float gain = variance / (variance + 6.6F * 0.16F);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 7.0F + gain, hover.thrust_n);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, variance * (1.0F - gain), hover.variance_n2);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 2.1F * 0.1F * (1.0F - 0.1F / 0.76F), hover.gust_n);
+}
+
+void test_noise_beyond_half_a_newton_follows_gusts_less(void)
+{
+    hover_step(&hover, 8.0F, 0.96F, 0.1F);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.25F * 0.21F * (1.0F - 0.1F / 0.76F), hover.gust_n);
+    hover_init(&hover, 7.0F, 0.7F, 5.0F, 9.0F);
+    hover.gust_n = 0.4F;
+    hover_step(&hover, 7.4F, 0.4F, 0.1F); /* explained already */
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.4F * (1.0F - 0.1F / 0.76F), hover.gust_n);
+}
+
+void test_a_long_step_counts_half_and_leaves_no_gust(void)
+{
+    hover_step(&hover, 8.0F, 0.4F, 0.3F);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.5F * (1.0F - 0.3F / 0.76F), hover.gust_n);
+    hover_init(&hover, 7.0F, 0.7F, 5.0F, 9.0F);
+    hover_step(&hover, 8.0F, 0.4F, 0.8F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, hover.gust_n);
+}
+
+void test_gusts_end_at_a_newton_and_the_hover_thrust_at_its_bounds(void)
+{
+    for (float side = -1.0F; side < 2.0F; side += 2.0F) {
+        hover_init(&hover, 7.0F, 0.5F, 5.0F, 9.0F);
+        TEST_ASSERT_EQUAL_FLOAT(0.25F, hover.variance_n2);
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, hover.gust_n);
+        hover_nudge(&hover, 0.95F * side);
+        hover_nudge(&hover, 0.02F * side);
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.97F * side, hover.gust_n);
+        hover_nudge(&hover, 0.95F * side);
+        TEST_ASSERT_EQUAL_FLOAT(side, hover.gust_n);
+        hover_step(&hover, 7.0F + 30.0F * side, 0.4F, 0.1F);
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, side * (1.0F - 0.1F / 0.76F), hover.gust_n);
+        TEST_ASSERT_EQUAL_FLOAT(7.0F + 2.0F * side, hover.thrust_n);
+    }
+}
