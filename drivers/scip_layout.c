@@ -70,9 +70,11 @@ static void note_ray(tally_t *t, uint32_t ray)
     t->most = larger(ray, t->most);
 }
 
+static const tally_t no_ray = {.least = UINT16_MAX};
+
 static tally_t tally_all(const uint16_t *rays, size_t count)
 {
-    tally_t t = {0U, UINT16_MAX, 0U, 0U};
+    tally_t t = no_ray;
     size_t i = 0U;
     for (; i < count % 4U; i++) {
         note_ray(&t, rays[i]);
@@ -88,7 +90,7 @@ static tally_t tally_all(const uint16_t *rays, size_t count)
 
 static tally_t tally_between(const uint16_t *rays, size_t count, uint32_t nearest, uint32_t furthest)
 {
-    tally_t t = {0U, UINT16_MAX, 0U, 0U};
+    tally_t t = no_ray;
     for (size_t i = 0U; i < count; i++) {
         const uint32_t ray = rays[i];
         if (ray < nearest || ray > furthest) {

@@ -34,7 +34,7 @@ typedef struct {
     uint32_t sums, bits;
 } check_t;
 
-static const check_t nothing_checked = {0U, 0U};
+static const check_t nothing_checked = {.sums = 0U};
 
 #define FOUR_ZEROS ((uint32_t)0x30303030UL)   /* characters of value 0 */
 #define OUTSIDE ((uint32_t)0xC0C0C0C0UL)      /* bits that no encoded character has, its 30H taken off */
@@ -112,7 +112,6 @@ static void count_damage(scip_parser_t *parser, scip_damage_t cause)
 {
     parser->counters.damaged[cause]++;
     parser->last_damage = cause;
-    parser->gap = true;
 }
 
 static scip_event_t damage(scip_parser_t *parser, scip_damage_t cause)
@@ -229,7 +228,6 @@ static bool take_scan_status(scip_parser_t *parser, const octet_t *text)
         !is_stream(&parser->awaited)) {
         return false;
     }
-    parser->reply = (scip_reply_t){.status = {text[0], text[1]}};
     parser->state = TIME;
     return true;
 }
@@ -602,8 +600,6 @@ void scip_parser_expect(scip_parser_t *parser, const scip_request_t *request)
     parser->state = HUNT;
     parser->skipping = false;
     parser->flowing = false;
-    parser->gap = true;
-    parser->doubted = false;
     parser->stamps = 0U;
 }
 
@@ -611,7 +607,6 @@ void scip_parser_scan_into(scip_parser_t *parser, scip_scan_t *scan)
 {
     if (parser->state == DATA || parser->state == SCAN_END) {
         parser->state = HUNT;
-        parser->gap = true;
     }
     parser->scan = scan;
 }
@@ -620,7 +615,6 @@ void scip_parser_line_broken(scip_parser_t *parser)
 {
     parser->state = HUNT;
     parser->skipping = false;
-    parser->gap = true;
     begin_line(parser);
 }
 
@@ -697,41 +691,40 @@ static size_t gather(scip_parser_t *parser, const octet_t *octets, size_t count)
     return i;
 }
 
+/* A line of so many octets, its LF not counted, lies whole in the octets. */
+static bool has_whole(const octet_t *octets, size_t count, size_t length)
+{
+    return count > length && octets[length] == SCIP_LINE_FEED;
+}
+
 /* A block that lies whole in the octets. Returns how many octets it has, or 0 when there is any doubt. */
 static size_t block_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
     const uint16_t characters = characters_of_block(parser);
-    if (count < characters + 2U || octets[characters + 1U] != SCIP_LINE_FEED ||
-        take_block(parser, octets, characters) != SCIP_NOTHING) {
-        return 0U;
-    }
-    return characters + 2U;
+    const size_t length = characters + 1U;
+    return has_whole(octets, count, length) && take_block(parser, octets, characters) == SCIP_NOTHING
+               ? length + 1U
+               : 0U;
 }
 
 /* The echo of a stream that is in step, likewise. */
 static size_t echo_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
     const size_t length = parser->awaited.echo_length;
-    if (count < length + 1U || octets[length] != SCIP_LINE_FEED || !take_echo_at(parser, octets)) {
-        return 0U;
-    }
-    return length + 1U;
+    return has_whole(octets, count, length) && take_echo_at(parser, octets) ? length + 1U : 0U;
 }
 
 static size_t status_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
-    if (count < STATUS_OCTETS || octets[3] != SCIP_LINE_FEED || !take_scan_status(parser, octets)) {
-        return 0U;
-    }
-    return STATUS_OCTETS;
+    return has_whole(octets, count, STATUS_OCTETS - 1U) && take_scan_status(parser, octets) ? STATUS_OCTETS
+                                                                                            : 0U;
 }
 
 static size_t time_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
-    if (count < TIME_OCTETS || octets[5] != SCIP_LINE_FEED || take_time(parser, octets) != SCIP_NOTHING) {
-        return 0U;
-    }
-    return TIME_OCTETS;
+    return has_whole(octets, count, TIME_OCTETS - 1U) && take_time(parser, octets) == SCIP_NOTHING
+               ? TIME_OCTETS
+               : 0U;
 }
 
 static size_t line_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)

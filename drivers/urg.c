@@ -54,9 +54,6 @@ void urg_line_broken(urg_t *urg, uint32_t framing_errors)
 void urg_step(urg_t *urg, uint32_t now_us)
 {
     urg_link_step(&urg->link, &urg->seen, now_us, &urg->action);
-    if (urg->action.set_rate) {
-        scip_parser_line_broken(&urg->parser);
-    }
     if (urg->action.expect) {
         scip_parser_expect(&urg->parser, &urg->action.request);
     }

@@ -239,7 +239,6 @@ static void listen_to_stream(const step_t *step)
     set_rate(step, step->link->good_rate);
     expect_reply(step, step->link->config.stream);
     step->link->timeout_us = LISTEN_US;
-    step->link->knocking = true;
 }
 
 static bool knows_rate(const step_t *step)
@@ -532,7 +531,6 @@ static void on_scan(const step_t *step)
     set_status(step, URG_OK);
     link->failures = 0U;
     link->knocks = 0U;
-    link->knocking = false;
     link->good_rate = link->rate;
     link->scan_us = step->now_us;
     link->timeout_us = scan_timeout_us(link);
@@ -652,7 +650,7 @@ void urg_seen_event(urg_seen_t *seen, const scip_parser_t *parser, scip_event_t 
 
 bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us)
 {
-    scip_request_t stream = {.scan_octets = 0U};
+    scip_request_t stream;
     scip_request_t rate;
     if ((config->stream != SCIP_STREAM_2 && config->stream != SCIP_STREAM_3) || !is_within(config) ||
         !scip_request_scan(&stream, config->stream, &config->range) ||

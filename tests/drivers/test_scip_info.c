@@ -155,7 +155,9 @@ void test_a_rate_that_is_not_in_bits_per_second_is_none(void)
     TEST_ASSERT_EQUAL_UINT32(999999999, info.bit_rate);
     tell("SBPS:115200 [bps]", true);
     TEST_ASSERT_EQUAL_UINT32(115200, info.bit_rate);
-    TEST_ASSERT_EQUAL_UINT16(6, info.known);
+    tell("SBPS:5[bps]", true);
+    TEST_ASSERT_EQUAL_UINT32(5, info.bit_rate);
+    TEST_ASSERT_EQUAL_UINT16(7, info.known);
 }
 
 /* Some firmware adds a line to VV, sends a wrong sum behind SERI, or sums an II line only up to "<-". */
@@ -191,10 +193,22 @@ void test_blanks_and_small_letters_do_not_matter(void)
     tell("  dmin :  21  ", true);
     tell("MODL:  A  B ", true);
     tell("SERI:   ", true);
+    tell("VEND: ", true);
+    TEST_ASSERT_EQUAL_STRING("", info.vendor);
     TEST_ASSERT_EQUAL_UINT16(21, info.told.dmin_mm);
     TEST_ASSERT_EQUAL_STRING("A  B", info.model);
     TEST_ASSERT_EQUAL_STRING("", info.serial);
-    TEST_ASSERT_EQUAL_UINT16(3, info.known);
+    TEST_ASSERT_EQUAL_UINT16(4, info.known);
+}
+
+/* The memory of the line still holds the longer one. */
+void test_a_line_ends_where_it_ends(void)
+{
+    begin_pp();
+    feed("TIME:123456\nTIME:12\nLASR:ON\nLASR:O\nDMIN:204\nDMIN:20\n");
+    TEST_ASSERT_EQUAL_UINT32(0x12, info.time_ms);
+    TEST_ASSERT_FALSE(info.laser_on);
+    TEST_ASSERT_EQUAL_UINT16(20, info.told.dmin_mm);
 }
 
 void test_a_line_without_a_sum_is_believed_and_one_with_a_wrong_sum_only_as_text(void)
@@ -258,6 +272,10 @@ void test_the_clock_is_up_to_six_hexadecimal_digits(void)
     TEST_ASSERT_EQUAL_UINT32(0xFFFFFF, info.time_ms);
     tell("TIME:7a", true);
     TEST_ASSERT_EQUAL_UINT32(0x7A, info.time_ms);
+    tell("TIME:5", true);
+    TEST_ASSERT_EQUAL_UINT32(5, info.time_ms);
+    tell("TIME:1:2", true);
+    TEST_ASSERT_EQUAL_UINT32(1, info.time_ms);
     tell("SBPS:none", true);
     TEST_ASSERT_EQUAL_UINT32(0, info.bit_rate);
 }
@@ -362,8 +380,8 @@ void test_a_turn_of_no_steps_is_not_used(void)
 
 void test_limits_at_their_edges_are_used(void)
 {
-    static const char *const lines[] = {"DMIN:1000", "DMAX:22",  "ARES:1080", "ARES:4095",
-                                        "AMIN:540",  "AMAX:540", "AMAX:1080", "SCAN:1"};
+    static const char *const lines[] = {"DMIN:1",   "DMIN:1000", "DMAX:22",   "ARES:1080", "ARES:4095",
+                                        "AMIN:540", "AMAX:540",  "AMAX:1080", "SCAN:1"};
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         setUp();
         begin_pp();

@@ -74,6 +74,8 @@ void test_the_layouts_are_those_of_the_vehicle(void)
     TEST_ASSERT_EQUAL_STRING("two-beams", beams->name);
     TEST_ASSERT_EQUAL_UINT16(249, beams->first_step);
     TEST_ASSERT_EQUAL_UINT16(519, beams->last_step);
+    TEST_ASSERT_EQUAL_UINT16(277, beams->groups[0].last_step);
+    TEST_ASSERT_EQUAL_UINT16(491, beams->groups[1].first_step);
     for (uint16_t g = 0; g < 2; g++) { /* two beams of about 10 degrees */
         TEST_ASSERT_FLOAT_WITHIN(0.3F, 10.0F,
                                  scip_step_degrees(beams->groups[g].last_step + 1) -

@@ -646,6 +646,52 @@ void test_an_e_behind_a_broken_line_tells_nothing(void)
     TEST_ASSERT_EQUAL_UINT32(0, parser.counters.legacy);
 }
 
+/* The sensor lost its power in the stream. */
+void test_an_e_tells_scip_1_1_after_a_stream_too(void)
+{
+    expect_order(&front);
+    put_answer(&wire, &front, "00");
+    put_numbered_frame(&wire, &front, 0);
+    feed_range(&wire, 0, wire.length);
+    expect_plain(SCIP_STOP);
+    TEST_ASSERT_EQUAL(SCIP_LEGACY, feed_text("Q?\nE\n\n"));
+}
+
+void test_behind_an_e_the_next_lines_are_read_as_ever(void)
+{
+    expect_plain(SCIP_STOP);
+    TEST_ASSERT_EQUAL(SCIP_LEGACY, feed_text("QT\nE\n\n"));
+    TEST_ASSERT_EQUAL(SCIP_NOTHING, feed_text("\n"));
+    TEST_ASSERT_EQUAL(SCIP_REPLY, feed_text("QT\n00P\n\n"));
+    TEST_ASSERT_EQUAL_UINT32(1, parser.counters.legacy);
+    TEST_ASSERT_EQUAL_UINT32(0, damages());
+}
+
+void test_an_e_behind_a_damaged_line_tells_scip_1_1_and_behind_an_empty_one_nothing(void)
+{
+    expect_plain(SCIP_STOP);
+    TEST_ASSERT_EQUAL(SCIP_LEGACY, feed_text("QT\n0\nE\n\n"));
+    start();
+    expect_plain(SCIP_STOP);
+    TEST_ASSERT_EQUAL(SCIP_DAMAGED, feed_text("QT\n\nE\n\n"));
+    TEST_ASSERT_EQUAL_UINT32(0, parser.counters.legacy);
+}
+
+/* Nor before the first scan, when only its answer or a notice has come. */
+void test_a_broken_line_of_a_stream_is_not_taken_for_scip_1_1(void)
+{
+    static const char *const statuses[] = {"00", "98"};
+    for (unsigned i = 0; i < 2; i++) {
+        start();
+        wire.length = 0;
+        expect_order(&front);
+        put_answer(&wire, &front, statuses[i]);
+        feed_range(&wire, 0, wire.length);
+        TEST_ASSERT_EQUAL(SCIP_DAMAGED, feed_text("MS03?\nE\n\n"));
+        TEST_ASSERT_EQUAL_UINT32(0, parser.counters.legacy);
+    }
+}
+
 /* --- streams
  * ------------------------------------------------------------------------------------------------------ */
 
@@ -713,6 +759,30 @@ void test_hardware_notices_come_between_scans(void)
     TEST_ASSERT_EQUAL_UINT16('0', parser.reply.status[1]);
     TEST_ASSERT_EQUAL_UINT32(1, parser.counters.replies);
     TEST_ASSERT_EQUAL_UINT32(0, damages());
+}
+
+void test_behind_a_notice_the_next_scan_is_counted_down_from_its_echo_on(void)
+{
+    expect_order(&front);
+    put_answer(&wire, &front, "00");
+    put_answer(&wire, &front, "98");
+    feed_range(&wire, 0, wire.length);
+    TEST_ASSERT_EQUAL_UINT16(101, scip_parser_expected(&parser));
+}
+
+/* The latest frame of the run before was dropped; that excuses no frame of this one. */
+void test_a_new_run_forgets_the_doubt_of_the_one_before(void)
+{
+    expect_order(&counted);
+    put_answer(&wire, &counted, "00");
+    put_numbered_frame(&wire, &counted, 1);
+    TEST_ASSERT_EQUAL(SCIP_DAMAGED, feed_range(&wire, 0, wire.length));
+    expect_order(&counted);
+    wire.length = 0;
+    put_answer(&wire, &counted, "00");
+    put_numbered_frame(&wire, &counted, 2);
+    TEST_ASSERT_EQUAL(SCIP_DAMAGED, feed_range(&wire, 0, wire.length));
+    TEST_ASSERT_EQUAL_UINT(0, seen.scans);
 }
 
 void test_scans_of_a_stream_whose_answer_was_lost_are_delivered(void)
@@ -1080,6 +1150,36 @@ void test_a_parser_and_a_scan_of_271_points_fit_2_kib(void)
                                      sizeof(scip_parser_t) + sizeof(scip_scan_t) + 271 * sizeof(uint16_t));
 }
 
+static octet_t burst_octets[WIRE_MAX];
+
+/* In memory of its own: sanitizers see a look beyond its ends. */
+static size_t feed_alone(const octet_t *octets, size_t count, scip_event_t *event)
+{
+    octet_t *copy = malloc(count * sizeof *copy);
+    TEST_ASSERT_NOT_NULL(copy);
+    memcpy(copy, octets, count * sizeof *copy);
+    const size_t taken = scip_parser_feed_run(&parser, copy, count, event);
+    free(copy);
+    return taken;
+}
+
+static scip_event_t feed_run_text(const octet_t *octets, size_t count, size_t burst, unsigned *events)
+{
+    scip_event_t event = SCIP_NOTHING, last = SCIP_NOTHING;
+    while (count > 0) {
+        const size_t given = count < burst ? count : burst;
+        size_t taken = feed_alone(octets, given, &event);
+        TEST_ASSERT_GREATER_THAN_size_t(0, taken);
+        TEST_ASSERT_TRUE(taken <= given);
+        TEST_ASSERT_TRUE(event == SCIP_NOTHING || (octets[taken - 1] & 0xFF) == '\n');
+        octets += taken;
+        count -= taken;
+        events[event]++;
+        last = event != SCIP_NOTHING ? event : last;
+    }
+    return last;
+}
+
 /* --- faults
  * ------------------------------------------------------------------------------------------------------- */
 
@@ -1246,6 +1346,41 @@ void test_an_echo_that_makes_a_cut_block_whole_is_still_an_echo(void)
                                         parser.counters.damaged[SCIP_DAMAGE_SUM]);
     }
     TEST_ASSERT_EQUAL_UINT(1, found);
+}
+
+/* 39 points: the last block has 14 characters and a sum, as many as an echo, and with these steps the echo's
+ * sum is right too. */
+void test_an_echo_in_place_of_the_last_block_is_still_an_echo(void)
+{
+    order_t order = {"MS", 0, 38, 1, 0, 0};
+    char echo[40];
+    unsigned sum = 1;
+    while (sum != 0) {
+        order.first++;
+        order.last++;
+        write_echo(echo, sizeof echo, &order, 0);
+        sum = 0;
+        for (unsigned i = 0; i < 14; i++) {
+            sum = (sum + (unsigned)echo[i]) & 63;
+        }
+    }
+    for (unsigned burst = 0; burst < 2; burst++) {
+        unsigned events[SCIP_DAMAGED + 1] = {0};
+        start();
+        wire.length = 0;
+        put_answer(&wire, &order, "00");
+        put_numbered_frame(&wire, &order, 0);
+        wire.length -= 17; /* the last block, its LF, the empty line */
+        put_numbered_frame(&wire, &order, 1);
+        expect_order(&order);
+        for (size_t i = 0; i < wire.length; i++) {
+            burst_octets[i] = (octet_t)wire.octets[i];
+        }
+        (void)feed_run_text(burst_octets, wire.length, burst == 0 ? 1 : wire.length, events);
+        TEST_ASSERT_EQUAL_UINT(1, events[SCIP_SCAN]);
+        TEST_ASSERT_EQUAL_UINT32(100100, scan.timestamp_ms);
+        TEST_ASSERT_EQUAL_UINT32(1, parser.counters.damaged[SCIP_DAMAGE_LENGTH]);
+    }
 }
 
 /* Of a counted run the frame after one that vanished without a trace is dropped: its counter fell by two. */
@@ -1494,25 +1629,6 @@ void test_dirty_high_bits_of_an_octet_do_not_matter(void)
 /* --- runs of octets
  * ----------------------------------------------------------------------------------------------- */
 
-static octet_t burst_octets[WIRE_MAX];
-
-static scip_event_t feed_run_text(const octet_t *octets, size_t count, size_t burst, unsigned *events)
-{
-    scip_event_t event = SCIP_NOTHING, last = SCIP_NOTHING;
-    while (count > 0) {
-        const size_t given = count < burst ? count : burst;
-        size_t taken = scip_parser_feed_run(&parser, octets, given, &event);
-        TEST_ASSERT_GREATER_THAN_size_t(0, taken);
-        TEST_ASSERT_TRUE(taken <= given);
-        TEST_ASSERT_TRUE(event == SCIP_NOTHING || (octets[taken - 1] & 0xFF) == '\n');
-        octets += taken;
-        count -= taken;
-        events[event]++;
-        last = event != SCIP_NOTHING ? event : last;
-    }
-    return last;
-}
-
 /* Of a UTM-30LX, whose furthest distance is 60000 mm; the last block has 43 characters. */
 void test_a_scan_of_steps_0_to_1080_is_read_whole_in_any_portions(void)
 {
@@ -1627,6 +1743,70 @@ static scip_event_t feed_whole(const char *text)
     return feed_run_text(octets, count, count, events);
 }
 
+/* Every line of a frame with one octet too much in front of its LF. */
+void test_a_line_that_is_one_octet_too_long_is_damage_in_a_burst_and_octet_by_octet(void)
+{
+    char text[256];
+    put_run(&front);
+    for (size_t at = begins[1] + 15; at < begins[2] - 1; at++) {
+        if (wire.octets[at] == '\n') {
+            wire_t longer = wire;
+            memmove(&longer.octets[at + 1], &wire.octets[at], (wire.length - at) * sizeof wire.octets[0]);
+            longer.octets[at] = '1';
+            longer.length++;
+            compare_ways(&longer, longer.length);
+            TEST_ASSERT_EQUAL_UINT32(3, parser.counters.scans);
+            TEST_ASSERT_EQUAL_UINT32(1, damages());
+        }
+    }
+    snprintf(text, sizeof text, "MS0372040601000\n99b1\n");
+    start();
+    expect_order(&front);
+    TEST_ASSERT_EQUAL(SCIP_DAMAGED, feed_whole(text));
+    TEST_ASSERT_EQUAL(SCIP_DAMAGE_LENGTH, parser.last_damage);
+}
+
+/* What is in the line already belongs to what comes in the burst. */
+void test_a_burst_goes_on_with_the_line_that_single_octets_began(void)
+{
+    char text[256] = "";
+    put_run(&front);
+    for (size_t i = begins[0]; i < begins[1]; i++) {
+        text[i - begins[0]] = (char)wire.octets[i];
+    }
+    for (unsigned ahead = 1; ahead < 3; ahead++) {
+        start();
+        expect_order(&front);
+        (void)feed_range(&wire, 0, begins[0]);
+        for (unsigned i = 0; i < ahead; i++) {
+            (void)feed('x');
+        }
+        TEST_ASSERT_EQUAL(SCIP_SCAN, feed_whole(text));
+        TEST_ASSERT_EQUAL_UINT32(0, damages());
+    }
+}
+
+/* The last block at the very beginning of a burst. */
+void test_a_scan_may_be_cut_into_two_bursts_anywhere(void)
+{
+    put_run(&front);
+    for (size_t i = 0; i < wire.length; i++) {
+        burst_octets[i] = (octet_t)wire.octets[i];
+    }
+    for (size_t cut = 1; cut < begins[1]; cut++) {
+        unsigned events[SCIP_DAMAGED + 1] = {0};
+        start();
+        expect_order(&front);
+        (void)feed_run_text(burst_octets, cut, cut, events);
+        (void)feed_run_text(&burst_octets[cut], begins[1] - cut, begins[1] - cut, events);
+        TEST_ASSERT_EQUAL_UINT(1, events[SCIP_SCAN]);
+        TEST_ASSERT_EQUAL_UINT32(0, damages());
+        for (unsigned i = 0; i < 35; i++) {
+            TEST_ASSERT_EQUAL_UINT16(value_of(0, i, 2), points[i]);
+        }
+    }
+}
+
 void test_single_replies_in_one_burst_are_read_as_octet_by_octet(void)
 {
     TEST_ASSERT_TRUE(scip_request(&request, SCIP_TIME_READ));
@@ -1726,6 +1906,19 @@ void test_in_a_stream_the_octets_of_the_next_scan_are_known_from_its_first_to_it
         }
         TEST_ASSERT_EQUAL_UINT(3, seen.events[SCIP_SCAN]);
     }
+}
+
+/* 129 characters: two blocks, and one character. */
+void test_a_last_block_of_one_character_is_counted_down_too(void)
+{
+    const order_t order = {"MD", 384, 426, 1, 0, 0};
+    expect_order(&order);
+    put_answer(&wire, &order, "00");
+    (void)feed_range(&wire, 0, wire.length);
+    wire.length = 0;
+    put_numbered_frame(&wire, &order, 1);
+    assert_countdown(0);
+    TEST_ASSERT_EQUAL_UINT(1, seen.events[SCIP_SCAN]);
 }
 
 void test_a_scan_found_in_noise_is_counted_down_from_its_status_on(void)

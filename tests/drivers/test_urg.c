@@ -1,5 +1,6 @@
 #include "unity.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "drivers/urg.h"
@@ -31,16 +32,20 @@ void setUp(void)
 
 void tearDown(void) {}
 
+/* In memory of its own: sanitizers see a look beyond its end. */
 static bool feed(const char *text)
 {
-    static octet_t octets[3500];
-    size_t count = 0U;
+    const size_t count = strlen(text);
+    octet_t *octets = malloc(count * sizeof *octets);
+    bool complete;
 
-    while (text[count] != '\0') {
-        octets[count] = (octet_t)text[count];
-        count++;
+    TEST_ASSERT_NOT_NULL(octets);
+    for (size_t i = 0U; i < count; i++) {
+        octets[i] = (octet_t)text[i];
     }
-    return urg_feed(&urg, octets, count);
+    complete = urg_feed(&urg, octets, count);
+    free(octets);
+    return complete;
 }
 
 /* A frame of the stream; every distance the same: two characters. */
@@ -127,15 +132,66 @@ void test_from_power_up_to_the_first_scan(void)
 
 void test_a_scan_stays_while_the_next_one_comes_in(void)
 {
-    char half[64] = "";
+    char most[128] = "";
 
     reach_stream();
     (void)feed(frame(32U, "9H"));
-    memcpy(half, frame(64U, "0F"), 60U);
-    TEST_ASSERT_FALSE(feed(half));
+    memcpy(most, frame(64U, "0F"), 96U);
+    TEST_ASSERT_FALSE(feed(most));
     assert_scan(32U, 600U);
-    TEST_ASSERT_TRUE(feed(&frame(64U, "0F")[60]));
+    TEST_ASSERT_TRUE(feed(&frame(64U, "0F")[96]));
     assert_scan(64U, 22U);
+}
+
+void test_two_scans_and_a_notice_may_come_at_once(void)
+{
+    char text[400] = "";
+
+    reach_stream();
+    strcat(text, frame(32U, "9H"));
+    strcat(text, "MS0372040601000\n98a\n\n");
+    strcat(text, frame(64U, "0F"));
+    urg_report(&urg, &report);
+    TEST_ASSERT_EQUAL_UINT32(5U, report.seen.reply_count);
+    const uint32_t before = report.seen.octet_count;
+    TEST_ASSERT_TRUE(feed(text));
+    assert_scan(64U, 22U);
+    urg_report(&urg, &report);
+    TEST_ASSERT_EQUAL_UINT32(2U, report.seen.scan_count);
+    TEST_ASSERT_EQUAL_UINT32(1U, report.seen.notice_count);
+    TEST_ASSERT_EQUAL_UINT32(2U * 101U + 21U, report.seen.octet_count - before);
+}
+
+/* The longest command: LF, MS with its range, LF. */
+void test_a_lost_stream_is_asked_for_with_an_end_of_line_first(void)
+{
+    const char *sent = "";
+
+    reach_stream();
+    (void)feed(frame(32U, "9H"));
+    for (unsigned i = 0U; i < 10U && sent[0] == '\0'; i++) {
+        sent = step();
+    }
+    TEST_ASSERT_EQUAL_STRING("\nMS0372040601000\n", sent);
+    TEST_ASSERT_EQUAL_UINT16(SCIP_REQUEST_MAX, output.count);
+}
+
+/* What the sensor holds of the first one would spoil the second. */
+void test_a_repeated_command_has_an_end_of_line_first(void)
+{
+    (void)step();
+    (void)feed("L0\n0\n\n");
+    TEST_ASSERT_EQUAL_STRING("SCIP2.0\n", step());
+    TEST_ASSERT_EQUAL_STRING("", step());
+    TEST_ASSERT_EQUAL_STRING("", step());
+    TEST_ASSERT_EQUAL_STRING("\nSCIP2.0\n", step());
+}
+
+void test_an_empty_line_before_the_first_answer_is_nothing(void)
+{
+    TEST_ASSERT_FALSE(feed("\n"));
+    urg_report(&urg, &report);
+    TEST_ASSERT_EQUAL_UINT32(0U, report.scip.skipped_lines);
 }
 
 void test_of_two_scans_that_nobody_took_the_later_one_counts(void)

@@ -1307,6 +1307,175 @@ void test_the_search_after_a_second_loss_is_that_after_the_first(void)
     TEST_ASSERT_EQUAL_UINT32_ARRAY(first, second, 9);
 }
 
+/* What is heard while SCIP2.0 is tried at the first rate: two signs may be noise, three are the stream. */
+void test_signs_of_the_stream_lead_back_to_its_rate_for_two_steps(void)
+{
+    stream_every_fourth();
+    nothing_after(NEXT_SCAN_US);
+    nothing_after(279999);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    nothing_after(1);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    TEST_ASSERT_EQUAL_UINT32(130000, link_.timeout_us);
+    seen.framing_count += 2;
+    nothing_after(1);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    seen.strange_count++;
+    nothing_after(1);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(280000, link_.timeout_us);
+    TEST_ASSERT_FALSE(action.send);
+    nothing_after(280000);
+    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+    nothing_after(1); /* the signs before it count no more */
+    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+}
+
+/* After a loss: a sensor that was in SCIP1.1 does not stream, another one may. */
+void test_only_a_sensor_that_may_stream_is_stopped_first(void)
+{
+    static const struct {
+        const char *status;
+        bool legacy;
+        scip_kind_t next;
+    } answers[] = {{"0", true, SCIP_STREAM_2}, {"0E", false, SCIP_STOP}};
+    for (uint32_t i = 0; i < 2; i++) {
+        stream_every_fourth();
+        nothing_after(NEXT_SCAN_US);
+        nothing_after(2 * STEP_US);
+        (void)reply_after(STEP_US, SCIP_SWITCH, answers[i].status, answers[i].legacy);
+        TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+        (void)reply_after(STEP_US, SCIP_BIT_RATE, "00", false);
+        nothing_after(STEP_US);
+        TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+        TEST_ASSERT_EQUAL(answers[i].next, link_.command);
+    }
+}
+
+void test_from_a_sensor_that_verifies_two_seconds_count_from_its_notice(void)
+{
+    stream_every_fourth();
+    seen.notice = (scip_reply_t){{'2', '1'}, false, 0};
+    seen.notice_count++;
+    nothing_after(STEP_US);
+    nothing_after(2000000 - 1);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
+    nothing_after(1);
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
+}
+
+/* To a sensor that has refused the stream's rate. */
+static void refuse_rate(void)
+{
+    reset(0);
+    nothing_after(0);
+    (void)reply_after(STEP_US, SCIP_LASER_OFF_1, "0", true);
+    (void)reply_after(STEP_US, SCIP_SWITCH, "0", true);
+    (void)reply_after(STEP_US, SCIP_BIT_RATE, "02", false);
+    TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
+}
+
+void test_a_refused_rate_is_tried_again_after_time_mode_and_by_the_search(void)
+{
+    refuse_rate();
+    (void)reply_after(STEP_US, SCIP_STOP, "0A", false);
+    TEST_ASSERT_EQUAL(SCIP_TIME_LEAVE, link_.command);
+    (void)reply_after(STEP_US, SCIP_TIME_LEAVE, "00", false);
+    (void)reply_after(STEP_US, SCIP_STOP, "00", false);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+    refuse_rate();
+    while (link_.status != URG_LOST || link_.rate != 115200) {
+        nothing_after(500000);
+    }
+    TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
+    (void)reply_after(STEP_US, SCIP_STOP, "00", false);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+}
+
+void test_a_stop_is_asked_for_twice_where_the_rate_is_proved_and_three_times_where_octets_are_clean(void)
+{
+    refuse_rate();
+    for (uint16_t attempt = 1; attempt <= 2; attempt++) {
+        TEST_ASSERT_EQUAL(URG_STOP2, link_.status);
+        TEST_ASSERT_EQUAL_UINT16(attempt, link_.attempt);
+        nothing_after(500000);
+    }
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
+    const uint32_t rate = link_.rate;
+    for (uint16_t attempt = 1; attempt <= 3; attempt++) {
+        TEST_ASSERT_EQUAL_UINT32(rate, link_.rate);
+        TEST_ASSERT_EQUAL_UINT16(attempt, link_.attempt);
+        seen.octet_count++;
+        nothing_after(500000);
+    }
+    TEST_ASSERT_NOT_EQUAL_UINT32(rate, link_.rate);
+}
+
+void test_signs_before_a_command_do_not_tell_of_its_rate(void)
+{
+    reset(STEP_US);
+    seen.framing_count = 20;
+    nothing_after(0);
+    nothing_after(STEP_US);
+    TEST_ASSERT_EQUAL(URG_STOP1, link_.status);
+    nothing_after(STEP_US);
+    TEST_ASSERT_EQUAL(URG_STOP1, link_.status);
+    seen.framing_count += 7;
+    nothing_after(STEP_US);
+    TEST_ASSERT_EQUAL(URG_STOP1, link_.status);
+    seen.framing_count++;
+    nothing_after(STEP_US);
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
+}
+
+void test_octets_and_framing_errors_in_the_wait_add_up_to_a_stream(void)
+{
+    nothing_after(0);
+    seen.octet_count = 32;
+    seen.framing_count = 31;
+    nothing_after(STEP_US);
+    TEST_ASSERT_EQUAL(URG_WAIT, link_.status);
+    seen.framing_count = 32;
+    nothing_after(STEP_US);
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+}
+
+/* The configured rates first, then SCIP's from the lowest on, none of them twice; and again. */
+void test_the_search_goes_through_every_rate_once_in_its_order(void)
+{
+    static const uint32_t order[] = {250000, 115200, 19200, 57600, 500000, 750000, 250000, 115200};
+    reset(0);
+    config.fastest_rate = 0;
+    TEST_ASSERT_TRUE(urg_link_init(&link_, &config, now_us));
+    nothing_after(0);
+    nothing_after(500000);
+    nothing_after(500000);
+    for (uint32_t i = 0; i < 8; i++) {
+        TEST_ASSERT_EQUAL(URG_LOST, link_.status);
+        TEST_ASSERT_EQUAL_UINT32(order[i], link_.rate);
+        nothing_after(500000);
+    }
+}
+
+/* Scans did not start three times in a row: the first one is given three seconds more. */
+void test_a_sensor_that_starts_slowly_is_given_three_seconds_from_the_third_failure_on(void)
+{
+    static const uint32_t settles_us[] = {0, 0, 0, 3000000};
+    refuse_rate();
+    for (uint32_t failures = 0; failures < 4; failures++) {
+        for (uint32_t i = 0; i < 10 && link_.command != SCIP_STREAM_2; i++) {
+            (void)reply_after(STEP_US, link_.command, link_.command == SCIP_BIT_RATE ? "02" : "00", false);
+        }
+        TEST_ASSERT_EQUAL(URG_STREAM, link_.status);
+        TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+        TEST_ASSERT_EQUAL_UINT32(400000 + 2 * 100000 + settles_us[failures] + (16 + 21 + 101) * 87,
+                                 link_.timeout_us);
+        nothing_after(link_.timeout_us);
+    }
+}
+
 /* A command that was damaged on its way made it stream something else: the next order mends that. */
 void test_octets_that_are_no_scan_at_the_streams_rate_are_answered_by_the_order(void)
 {
