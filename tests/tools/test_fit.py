@@ -13,6 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/fit"))
 import acceptance  # noqa: E402
 import flight_log  # noqa: E402
+import model  # noqa: E402
 import tune_vehicle  # noqa: E402
 
 PROGRAM = None
@@ -174,7 +175,33 @@ class Fit(unittest.TestCase):
             self.assertIn(reason, done.stderr)
 
 
+FOUND = {"throttle": "THRUST", "plant.hover_thrust": {"value": 7.0}, "plant.gain": {"value": 1.0}, "plant.tau": {"value": 0.1},
+         "plant.tdelay": {"value": 0.01}, "plant.damping": {"value": 2.0}, "authority": {"value": 1.4}, "names": list(model.THRUST),
+         "units": [0.0] * len(model.THRUST), "covariance": [[0.01 * (k == m) for k in range(len(model.THRUST))]
+                                                            for m in range(len(model.THRUST))]}
+
+
 class Tuning(unittest.TestCase):
+    def test_a_rerun_flies_only_what_is_missing_and_every_flight_says_how_to_fly_it_again(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            vehicle, out = Path(scratch, "vehicle.json"), Path(scratch, "forecast.json")
+            kept = out.with_suffix(".flights.jsonl")
+            vehicle.write_text(json.dumps(FOUND))
+            command = [sys.executable, "-B", ROOT / "tools/fit/tune_vehicle.py", vehicle, "--program", PROGRAM, "--out", out,
+                       "--draws", "1", "--budget", "3", "--forecast", "2"]
+            first = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+            lines = kept.read_text().splitlines()
+            kept.write_text("\n".join(lines[:-1]) + "\n" + lines[-1][:40])
+            again = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+            self.assertEqual(again, first)
+            self.assertEqual(len(kept.read_text().splitlines()), len(lines) + 1)    # the torn line, and its flight anew
+            record = json.loads(lines[0])
+            self.assertRegex(record["command"], r"fly est-60cm-ramp --seed \d+ ")
+            self.assertTrue(record["version"] and record["program"])
+            figures = json.loads(subprocess.run(f"{record['command']} --json -", shell=True, stdin=subprocess.DEVNULL,
+                                                stderr=subprocess.DEVNULL, stdout=subprocess.PIPE, check=False).stdout)
+            self.assertEqual(figures, record["figures"])
+
     def test_the_lowest_place_of_a_surface_through_noisy_candidates_is_found(self):
         rng = random.Random(7)
         places = [[x, y] for x in (-0.4, 0.0, 0.4) for y in (-0.4, 0.0, 0.4)]

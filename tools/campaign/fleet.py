@@ -44,11 +44,16 @@ def fly_batch(program, flights):
     return [(key, fly(program, arguments)) for key, arguments in flights]
 
 
-def provenance(program):
-    """What a result tells of its program: the version of the sources beside these tools, and the program's own sum."""
+def version():
+    """Of the sources beside these tools."""
     header = ROOT / "firmware/version.h"
     found = re.search(r'VERSION\w*\s+"([^"]+)"', header.read_text(encoding="utf-8") if header.exists() else "")
-    return {"version": found.group(1) if found else "", "program": digest(program)[:12]}
+    return found.group(1) if found else ""
+
+
+def provenance(program):
+    """What a result tells of its program: the version of the sources, and the program's own sum."""
+    return {"version": version(), "program": digest(program)[:12]}
 
 
 def command(program, arguments):

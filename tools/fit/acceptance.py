@@ -124,8 +124,9 @@ def one(program, seed, number, folder, dumps):
 def tuned(program, law, vehicle_file, figures, seed, number):
     """The true vehicle with stock and with tuned gains, and whether the forecast held its next flight."""
     found = json.loads(vehicle_file.read_text(encoding="utf-8"))
-    settings, _, _ = tune_vehicle.tune(program, found, law, DRAWS, BUDGET[law])
-    expected = tune_vehicle.predict(program, found, law, settings, FORECAST)
+    flights = forecast.Flights(program)
+    settings, _, _ = tune_vehicle.tune(flights, found, law, DRAWS, BUDGET[law])
+    expected = tune_vehicle.predict(flights, found, law, settings, FORECAST)
     stock = tune_vehicle.stock_settings(law)
     scenario = tune_vehicle.SCENARIOS[law]
     seeds = [900_000_000 + seed * 10_000 + number * 100 + k for k in range(JUDGED)]

@@ -22,6 +22,9 @@ import model
 import picture
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools/campaign"))
+import fleet  # noqa: E402
+
 TELLING = 6.0                   # twice a log-likelihood: a kind that is better by less is a guess
 SEEN_WELL, SEEN = 0.9, 0.6      # share of what is known that comes from the flight
 HOVER_STEPS = 6
@@ -191,6 +194,7 @@ def main(argv=None):
     pictured = arguments.out.with_suffix(".png")
     try:
         vehicle, found, stretches = fit_logs(arguments.logs)
+        vehicle["version"] = fleet.version()
         arguments.out.parent.mkdir(parents=True, exist_ok=True)
         arguments.out.write_text(json.dumps(vehicle, indent=1) + "\n", encoding="utf-8")
         picture.draw(pictured, vehicle, found, stretches)

@@ -63,10 +63,38 @@ def words(scenario, seed, settings, plant):
     return result
 
 
+class Flights:
+    """Flies [arguments] and gives what came of each, in their order. With a store every flight is kept when it ends, and none is
+    flown twice."""
+
+    def __init__(self, program, store=None, progress=None):
+        self.program, self.store, self.progress = program, store, progress
+        self.sum = fleet.digest(program)
+        self.provenance = fleet.provenance(program)
+
+    def each(self, way, flights):
+        """way: fleet.fly or fly_logged."""
+        known = {} if self.store is None else self.store.known
+        keys = [f"{way.__name__} {fleet.key(self.sum, arguments)}" for arguments in flights]
+        missing = {key: arguments for key, arguments in zip(keys, flights, strict=True) if key not in known}
+        found = {}
+        pool = concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0)))
+        try:
+            for (key, arguments), figures in zip(missing.items(), pool.map(lambda one: way(self.program, one), missing.values()),
+                                                 strict=True):
+                found[key] = figures
+                if self.store is not None:
+                    self.store.add(key, self.provenance | {"command": fleet.command(self.program, arguments)}, figures)
+                if self.progress is not None:
+                    self.progress.step()
+        finally:
+            pool.shutdown(cancel_futures=True)
+        return [found[key] if key in found else known[key] for key in keys]
+
+
 def fly_all(program, flights):
     """Figures of [arguments], in their order."""
-    with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
-        return list(pool.map(lambda arguments: fleet.fly(program, arguments), flights))
+    return Flights(program).each(fleet.fly, flights)
 
 
 def fly_logged(program, arguments):
@@ -78,8 +106,7 @@ def fly_logged(program, arguments):
 
 
 def fly_all_logged(program, flights):
-    with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
-        return list(pool.map(lambda arguments: fly_logged(program, arguments), flights))
+    return Flights(program).each(fly_logged, flights)
 
 
 def edges(t_s, height_m, reference_m):

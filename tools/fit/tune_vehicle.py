@@ -7,7 +7,8 @@ in the same noise. Their cost is the mean hover RMS, a twentieth of the terrain 
 activity beyond 1.5 times that of the stock gains (0.45 N at least), and 500 mm for a failure. The search is Nelder and Mead's, and
 a quadratic surface through what it flew says where the valley's bottom is. The best on further draws is proposed; where none is
 better there, the stock gains stay. Prints the commands, and what the next flight of that course will be like,
-with 90 % intervals, by its log; `verdict.py` compares. Exit status: 0; 2 usage, or a program that does not fly.
+with 90 % intervals, by its log; `verdict.py` compares. Every flight is kept beside the forecast when it ends: a rerun goes on.
+Exit status: 0; 2 usage, or a program that does not fly; 130 interrupted.
 """
 import argparse
 import json
@@ -23,15 +24,17 @@ import model  # noqa: E402
 import numpy  # noqa: E402
 
 SCENARIOS = {"EST": "est-60cm-ramp", "PID": "pid-60cm-ramp"}
-# Where to look: name, stock, least, most.
+# Where to look: name, first, least, most. Law EST that knows its vehicle bears quicker gains than the delivered 2.3 and 8.
 GAINS = {
-    "EST": (("POSK", 2.3, 0.8, 5.0), ("VELK", 8.0, 1.5, 12.0)),
+    "EST": (("POSK", 2.6, 0.8, 5.0), ("VELK", 9.0, 1.5, 12.0)),
     "PID": (("KP", 0.006, 0.001, 0.03), ("KD", 0.0267, 0.004, 0.1), ("KI", 0.0003, 0.00002, 0.01)),
 }
+EST_CLIMB = {"POSK": 1.8, "VELK": 11.0}         # first, where the throttle commands a climb rate
 STOCK = {"EST": {}, "PID": {"KP": "0.015", "KD": "0.008", "KI": "0.01", "USAT": "1", "DSAT": "0"}}
 FIXED = {"EST": {}, "PID": {"LAW": "PID", "USAT": "1.7", "DSAT": "4"}}
 FAILURE_MM, ACTIVITY_MM_PER_N, ACTIVITY_FREE_N, ACTIVITY_MORE, SHARE = 500.0, 30.0, 0.45, 1.5, 0.05
-FIRST_STEP = 0.25               # upwards: a law that knows its vehicle bears quicker gains
+OTHERS = 2                      # draws for the decision, times those of the search
+FIRST_STEP = 0.25               # upwards
 NEAR = 0.3                      # of the least cost: candidates within make the quadratic surface
 USUAL_MPS2_PER_N = 1.4          # authority of the vehicle that the PID gains above suit
 # Parameters of law EST that the fit knows: name, least and most that the firmware takes, figure of the plant, what to add.
@@ -49,17 +52,16 @@ def text(value):
     return f"{value:.3g}" if value >= 1e-4 else f"{value:.7f}".rstrip("0")
 
 
-def bases_of(law, vehicle):
-    """What the gains are added to: the feed-forward; for law EST also the kind of throttle and its model of the vehicle, or the
-    delivered one: at the same gains that is another loop, at times a better one."""
+def base_of(law, vehicle):
+    """What the fit itself says: feed-forward; for law EST also the kind of throttle and the model of the vehicle."""
     kind = vehicle["throttle"]
     hover_n = vehicle["plant.hover_thrust" if kind == "THRUST" else "plant.climb_neutral"]["value"]
-    fed = FIXED[law] | {"GRAV": f"{hover_n:.2f}"}
-    if law == "PID":
-        return [fed]
-    known = {name: f"{min(max(vehicle[f'plant.{figure}']['value'] + more, least), most):.3g}"
-             for name, least, most, figure, more in MODELS[kind]}
-    return [fed | {"PLANT": kind} | known, fed | {"PLANT": "THRUST"}]
+    base = FIXED[law] | {"GRAV": f"{hover_n:.2f}"}
+    if law == "EST":
+        base["PLANT"] = kind
+        for name, least, most, figure, more in MODELS[kind]:
+            base[name] = f"{min(max(vehicle[f'plant.{figure}']['value'] + more, least), most):.3g}"
+    return base
 
 
 def climb_starts(vehicle):
@@ -73,14 +75,12 @@ def climb_starts(vehicle):
 
 
 def gains_of(law, vehicle):
-    """GAINS, those of PID for the authority that was found."""
-    if law == "EST":
-        return GAINS[law]
+    """GAINS, begun where the found vehicle asks for it."""
     if vehicle["throttle"] == "CLIMB":
-        starts = climb_starts(vehicle)
+        starts = EST_CLIMB if law == "EST" else climb_starts(vehicle)
     else:
-        weaker = USUAL_MPS2_PER_N / vehicle["authority"]["value"]
-        starts = {name: start * weaker for name, start, _, _ in GAINS[law]}
+        weaker = USUAL_MPS2_PER_N / vehicle["authority"]["value"] if law == "PID" else 1.0
+        starts = {name: first * weaker for name, first, _, _ in GAINS[law]}
     return tuple((name, min(max(starts[name], least), most), least, most) for name, _, least, most in GAINS[law])
 
 
@@ -104,24 +104,24 @@ def stock_settings(law):
 class Course:
     """The same vehicles in the same noise for every candidate."""
 
-    def __init__(self, program, law, vehicle, count, seed):
-        self.program, self.law = program, law
+    def __init__(self, flights, law, vehicle, count, seed):
+        self.flights, self.law = flights, law
         self.plants = forecast.draws(vehicle, count, seed)
         self.seeds = [SEED + 1000 * seed + k for k in range(count)]
         self.free_n = ACTIVITY_FREE_N
 
-    def arguments(self, settings):
-        return [forecast.words(SCENARIOS[self.law], seed, settings, plant)
-                for seed, plant in zip(self.seeds, self.plants, strict=True)]
+    def fly(self, way, settings):
+        return self.flights.each(way, [forecast.words(SCENARIOS[self.law], seed, settings, plant)
+                                       for seed, plant in zip(self.seeds, self.plants, strict=True)])
 
     def stock(self):
         """Cost of the stock gains, by whose activity that of all others is judged."""
-        flown = forecast.fly_all(self.program, self.arguments(stock_settings(self.law)))
+        flown = self.fly(forecast.fleet.fly, stock_settings(self.law))
         self.free_n = max(ACTIVITY_MORE * float(numpy.mean([figures["thrust_std_n"] or 0.0 for figures in flown])), ACTIVITY_FREE_N)
         return cost(flown, self.free_n)
 
     def cost(self, settings):
-        return cost(forecast.fly_all(self.program, self.arguments(settings)), self.free_n)
+        return cost(self.fly(forecast.fleet.fly, settings), self.free_n)
 
 
 def bottom(places, costs):
@@ -172,14 +172,13 @@ def search(course, base, gains, budget):
     return [best] if lowest is None else [best, settings_at(lowest)]
 
 
-def tune(program, vehicle, law, count, budget):
+def tune(flights, vehicle, law, count, budget):
     """(settings, stock's cost, tuned cost), both on draws that the search has not seen."""
-    course, others = Course(program, law, vehicle, count, 1), Course(program, law, vehicle, count + count // 2, 2)
+    course, others = Course(flights, law, vehicle, count, 1), Course(flights, law, vehicle, OTHERS * count, 2)
     stock_cost = others.stock()
     course.free_n = others.free_n
     gains = gains_of(law, vehicle)
-    bases = bases_of(law, vehicle)
-    base = min(bases, key=course.cost) if len(bases) > 1 else bases[0]
+    base = base_of(law, vehicle)
     tried = [base | {name: text(start) for name, start, _, _ in gains}, *search(course, base, gains, budget)]
     costs = [others.cost(settings) for settings in tried]
     best = int(numpy.argmin(costs))
@@ -198,19 +197,29 @@ def read_arguments(argv):
     return parser.parse_args(argv)
 
 
-def predict(program, vehicle, law, settings, count):
-    course = Course(program, law, vehicle, count, 3)
-    flown = forecast.fly_all_logged(program, course.arguments(settings))
+def predict(flights, vehicle, law, settings, count):
+    flown = Course(flights, law, vehicle, count, 3).fly(forecast.fly_logged, settings)
     return forecast.intervals([seen for _, seen in flown])
+
+
+def find(arguments, program):
+    """(settings, stock's cost, tuned cost, forecast)"""
+    vehicle = forecast.load(arguments.vehicle)
+    most = (arguments.budget + 4 * OTHERS) * arguments.draws + arguments.forecast
+    with forecast.fleet.Store(arguments.out.with_suffix(".flights.jsonl")) as store:
+        flights = forecast.Flights(program, store, forecast.fleet.Progress(most))
+        settings, stock, tuned = tune(flights, vehicle, arguments.law, arguments.draws, arguments.budget)
+        return settings, stock, tuned, predict(flights, vehicle, arguments.law, settings, arguments.forecast)
 
 
 def main(argv=None):
     arguments = read_arguments(argv)
     program = str(arguments.program.resolve())
     try:
-        vehicle = forecast.load(arguments.vehicle)
-        settings, stock, tuned = tune(program, vehicle, arguments.law, arguments.draws, arguments.budget)
-        expected = predict(program, vehicle, arguments.law, settings, arguments.forecast)
+        settings, stock, tuned, expected = find(arguments, program)
+    except KeyboardInterrupt:
+        print("tune: interrupted; what was flown is kept, the same command goes on", file=sys.stderr)
+        return 130
     except (forecast.fleet.Broken, OSError, KeyError, ValueError) as error:
         print(f"tune: {type(error).__name__}: {error}", file=sys.stderr)
         return 2
@@ -221,7 +230,8 @@ def main(argv=None):
     for name, f in expected.items():
         print(f"  {name:14} {f['value']:.3g} [{f['low']:.3g} .. {f['high']:.3g}]")
     arguments.out.write_text(json.dumps({"law": arguments.law, "scenario": SCENARIOS[arguments.law], "settings": settings,
-                                         "vehicle": str(arguments.vehicle.resolve()), "expected": expected}, indent=1) + "\n",
+                                         "vehicle": str(arguments.vehicle.resolve()), "expected": expected, "arguments": sys.argv[1:] if argv is None else argv}
+                                        | forecast.fleet.provenance(program), indent=1) + "\n",
                              encoding="utf-8")
     print(arguments.out)
     return 0
