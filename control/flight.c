@@ -26,10 +26,17 @@
 #define GAP_LONG_S 10.0F   /* chosen: longer gaps count as this long; integrity.c restarts after 1.5 s */
 #define LOW_MM 80.0F       /* chosen: above REST_BELOW_MM in supervisor.c, 50 mm */
 #define NO_AUTHORITY_WINDOW_N 0.6F /* chosen: 0.8 m/s2 */
-#define YIELD_N_PER_S 0.2F         /* chosen: as SINK_FADE_N_PER_S in est_law.c */
-#define UNSURE_WINDOW_N 2.0F       /* chosen: as HOVER_BOUND_N in est_law.c */
-#define UNSURE_REACH_M 0.09F       /* chosen: asks for 1.2 N at the delivered POSK and VELK */
-#define UNCONFIRMED_MPS 0.35F      /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
+#define CARRIED_BELOW_N 0.5F       /* chosen: by the vehicle model a sink rate of 0.3 m/s */
+#define CARRIED_ABOVE_N 0.7F       /* chosen: room to brake a fall */
+#define CARRIED_N_PER_S 0.06F      /* chosen: a hover thrust 1 N too high climbs for 8 s */
+#define HANDED_OVER_N_PER_S \
+    0.15F /* chosen: more, because with a pin it begins when the pilot gives the throttle back */
+#define CARRIED_MAX_S 33.0F   /* chosen: 2 N, more than GRAV is off; then a sink rate of 1.4 m/s */
+#define CARRIED_TIME_S 2.0F   /* as in integrity.c */
+#define YIELD_N_PER_S 0.2F    /* chosen: as SINK_FADE_N_PER_S in est_law.c */
+#define UNSURE_WINDOW_N 2.0F  /* chosen: as HOVER_BOUND_N in est_law.c */
+#define UNSURE_REACH_M 0.09F  /* chosen: asks for 1.2 N at the delivered POSK and VELK */
+#define UNCONFIRMED_MPS 0.35F /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
 #define TAKEOFF_MPS 0.6F      /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
 #define CLIMB_MARGIN_MPS 0.4F /* chosen: room for an overshoot of the climb rate above VUP */
 #define STOP_N_PER_S 2.0F     /* as STOP_N_PER_S in est_law.c */
@@ -131,7 +138,7 @@ static void update_hover(flight_t *flight, float gravity_n)
     }
     flight->hover_n = between(gravity_n - HOVER_MARGIN_N, flight->hover_n, gravity_n + HOVER_MARGIN_N);
     flight->hover_n = between(0.0F, flight->hover_n, THRUST_MAX_N);
-    est_law_set_sure_hover(&flight->est, flight->hover_n, descends(state));
+    est_law_set_sure_hover(&flight->est, flight->hover_n, descends(state) && !flight->carried);
 }
 
 /* Initial values of the new mode. The law keeps its integral action only during COASTING. */
@@ -156,6 +163,10 @@ static void change_mode(flight_t *flight, flight_mode_t before, flight_mode_t no
     } else if (flight->supervisor.state != FLIGHT_COASTING) {
         pid_reset(&flight->pid);
         pidt_reset(&flight->pidt);
+    }
+    if (is_est_mode(now) && handed_over && before == FLIGHT_MODE_IDLE) {
+        estimator_amend(&flight->est.estimator, 0.0F, flight->integrity.felt.speed_mps,
+                        flight->integrity.bias_mps2);
     }
     if (is_est_mode(now) && !is_est_mode(before) &&
         (handed_over || (before != FLIGHT_MODE_IDLE && !lifts(flight)))) {
@@ -440,6 +451,17 @@ static void change_doubts(flight_t *flight, float gravity_n)
     flight->doubts = integrity->doubts;
 }
 
+/* A pilot may have the vehicle, and nothing tells: without a pin on the ground, or in a descent that began
+ * so. */
+static bool may_be_carried(const flight_t *flight, const parameters_t *parameters)
+{
+    if (flight->supervisor.state == FLIGHT_GROUND) {
+        return integrity_carried(&flight->integrity) &&
+               parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE;
+    }
+    return flight->carried && integrity_sways(&flight->integrity);
+}
+
 static void supervise(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)
 {
     const estimator_t *estimator = &flight->est.estimator;
@@ -456,6 +478,7 @@ static void supervise(flight_t *flight, const parameters_t *parameters, const fl
         .upright = flight->integrity.upright,
         .sways = integrity_sways(&flight->integrity),
         .rocks = rocks(flight),
+        .carried = may_be_carried(flight, parameters),
     };
     supervisor_step(&flight->supervisor, parameters->value[PARAMETER_LINK], in, &estimate);
 }
@@ -560,6 +583,21 @@ static flight_mode_t select_mode(const flight_t *flight, const flight_inputs_t *
     return (uses_estimate(flight) ? modes_with_estimate : modes_without_estimate)[flight->supervisor.state];
 }
 
+/* True in a descent that began in a pilot's hands, without heights. */
+static void watch_carried(flight_t *flight, const parameters_t *parameters)
+{
+    const supervisor_t *supervisor = &flight->supervisor;
+
+    if (supervisor->state != FLIGHT_DESCENDING) {
+        flight->carried = false;
+    } else if (supervisor->handed_over && supervisor->state_us == 0U) {
+        flight->carried = true;
+        flight->carried_n_per_s = (parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE)
+                                      ? CARRIED_N_PER_S
+                                      : HANDED_OVER_N_PER_S;
+    }
+}
+
 /* Without a pin nothing tells who has the throttle, and FLOATING then begins in a pilot's hands. Something
  * that blocks the beam since power-on makes FLOATING on the ground too; then the take-off is still to come.
  */
@@ -567,8 +605,9 @@ static void update_sureness(flight_t *flight, const parameters_t *parameters, bo
 {
     const bool before = flight->unsure;
 
-    flight->unsure = flight->supervisor.state == FLIGHT_FLOATING && has_throttle &&
-                     parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE;
+    watch_carried(flight, parameters);
+    flight->unsure = flight->carried || (flight->supervisor.state == FLIGHT_FLOATING && has_throttle &&
+                                         parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE);
     if (before && !flight->unsure && !flight->lifting && flight->supervisor.state != FLIGHT_GROUND) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
@@ -628,6 +667,22 @@ static float within_descent_n(const flight_t *flight, const parameters_t *parame
     return at_least(thrust_n, flight->hover_n - sinking_n);
 }
 
+/* A pilot may fly, or has given the throttle back: nothing tells. So the thrust stays just below the best
+ * known hover thrust, and sinks slowly, because that may be wrong. What the accelerometer has felt for long
+ * is forgotten. */
+static float within_carried_n(flight_t *flight, float thrust_n)
+{
+    const estimate_t *now = &flight->est.estimator.now;
+    const float step_s = seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
+    const float sunk_n = flight->carried_n_per_s *
+                         seconds_at_most(flight->supervisor.state_us, CARRIED_MAX_S);
+
+    estimator_amend(&flight->est.estimator, 0.0F, now->speed_mps * (1.0F - step_s / CARRIED_TIME_S),
+                    now->bias_mps2);
+    return between(flight->hover_n - CARRIED_BELOW_N - sunk_n, thrust_n,
+                   flight->hover_n + CARRIED_ABOVE_N - sunk_n);
+}
+
 /* While commands have no effect, and in FLOATING, where a pilot may fly without a pin that reports it, the
  * thrust stays near the hover thrust. So it fits when the commands get their effect back. In a descent the
  * limit falls with time: the thrust that was held may be one that climbs. */
@@ -635,19 +690,20 @@ static float within_power_n(flight_t *flight, float thrust_n)
 {
     const bool doubted = integrity_doubts(&flight->integrity, DOUBT_THRUST);
 
-    if (doubted && descends(flight->supervisor.state)) {
-        flight->yield_n += YIELD_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
-    } else {
+    if (!doubted || !descends(flight->supervisor.state)) {
         flight->yield_n = 0.0F;
+    } else {
+        flight->yield_n += YIELD_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
     }
-    const float held_n = flight->integrity.held_n - flight->yield_n;
-
     if (flight->unsure) {
-        return between(flight->hover_n - UNSURE_WINDOW_N, thrust_n, flight->hover_n + UNSURE_WINDOW_N);
+        return flight->carried
+                   ? within_carried_n(flight, thrust_n)
+                   : between(flight->hover_n - UNSURE_WINDOW_N, thrust_n, flight->hover_n + UNSURE_WINDOW_N);
     }
     if (!doubted || flight->mode == FLIGHT_MODE_IDLE) {
         return thrust_n;
     }
+    const float held_n = flight->integrity.held_n - flight->yield_n;
     return flight->integrity.held_down ? at_least(thrust_n, held_n - NO_AUTHORITY_WINDOW_N)
                                        : at_most(thrust_n, held_n + NO_AUTHORITY_WINDOW_N);
 }

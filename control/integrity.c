@@ -94,6 +94,11 @@
 #define ROCKED_RAD 0.017F     /* chosen: 1 degree, four times the noise of an angle */
 #define ROCKED_BELOW_M 0.10F  /* as LANDED_NO_MORE_M in touchdown.h */
 #define ROCKED_S 0.8F         /* chosen: 32 frames; at 0.5 s 2 of 96 blocked flights rested in the air */
+#define SWAY_HAND_RAD2 0.012F /* chosen: 6 degrees rms; who tilts a vehicle by hand tilts it more */
+#define UNSEEN_S 1.5F         /* as HEIGHT_LOST_US in supervisor.c */
+#define CARRIED_S 1.0F        /* as ALOFT_HELD_US in supervisor.c */
+#define CARRIED_TIME_S 2.0F   /* chosen: above the period of a pilot's swings */
+#define CARRIED_BIAS_TIME_S 20.0F /* chosen: ten times that; the bias was measured at rest */
 #define SWAYING_S 1.5F        /* chosen: 15 scans; a lift-off that the heights see takes less than a second */
 #define SWAYING_M 0.05F       /* chosen: ten times the noise of a height */
 #define SWAY_AIR_RAD2 4.0e-4F /* chosen: 1.1 degrees rms; between this and SWAY_RAD2 neither is certain */
@@ -344,9 +349,21 @@ static bool acceleration_valid(const integrity_t *i)
     return counts(&i->felt) && !integrity_doubts(i, DOUBT_IMU);
 }
 
+/* Keeps the bias of one to two seconds ago: the end of a rest is noticed late. */
+static void keep_bias(integrity_t *i, float dt_s)
+{
+    i->block_s += dt_s;
+    if (i->block_s > REST_HELD_S) {
+        i->block_s = 0.0F;
+        i->kept_bias_mps2[0] = i->kept_bias_mps2[1];
+        i->kept_bias_mps2[1] = i->rest_mps2;
+    }
+}
+
 /* At rest the acceleration is the bias; a large one is a fault. */
 static void measure_rest(integrity_t *i, float dt_s)
 {
+    keep_bias(i, dt_s);
     i->rested_s = at_most(i->rested_s + dt_s, REST_TIME_S);
     i->rest_mps2 += at_most(dt_s / i->rested_s, 1.0F) * (i->up_mps2 - i->rest_mps2);
     i->bias_mps2 = i->rest_mps2;
@@ -355,6 +372,30 @@ static void measure_rest(integrity_t *i, float dt_s)
         set_doubt(i, DOUBT_IMU, true);
     } else if (i->rested_s > REST_HELD_S && fabsf(i->rest_mps2) < REST_FIT_MPS2) {
         set_doubt(i, DOUBT_IMU, false);
+    }
+}
+
+/* On the ground as far as the state says, no height, and the tilt sways as in the air: in the hands of a
+ * pilot, or in somebody's. Its way up and down is bounded, so the means of speed and acceleration are 0. */
+static void watch_carried(integrity_t *i, float mean_mps2, float dt_s)
+{
+    i->carried_s = (i->sway_rad2 < SWAY_HAND_RAD2) ? at_most(i->carried_s + dt_s, OLD_S) : 0.0F;
+    i->bias_mps2 = (i->rested_s > 0.0F) ? i->kept_bias_mps2[0] : i->bias_mps2;
+    i->rested_s = 0.0F;
+    const float mps2 = mean_mps2 - i->bias_mps2;
+    i->felt.speed_mps += mps2 * dt_s - i->felt.speed_mps * dt_s / CARRIED_TIME_S;
+    i->bias_mps2 += mps2 * dt_s / CARRIED_BIAS_TIME_S;
+}
+
+/* One frame in state GROUND. */
+static void watch_ground(integrity_t *i, float mean_mps2, float dt_s)
+{
+    i->unseen_s = at_most(i->unseen_s + dt_s, OLD_S);
+    if (i->unseen_s > UNSEEN_S && integrity_sways(i)) {
+        watch_carried(i, mean_mps2, dt_s);
+    } else {
+        i->carried_s = 0.0F;
+        measure_rest(i, dt_s);
     }
 }
 
@@ -436,7 +477,7 @@ static void integrate_frame(integrity_t *i, const flown_t *flown, const imu_samp
         i->unrocked_s = 0.0F;
     }
     if (flown->grounded) {
-        measure_rest(i, dt_s);
+        watch_ground(i, 0.5F * (before_mps2 + up_mps2), dt_s);
     } else {
         if (i->rested_s > 0.0F && !flown->standing) { /* a pilot has lifted it: that was no rest */
             i->bias_mps2 = 0.0F;
@@ -444,7 +485,7 @@ static void integrate_frame(integrity_t *i, const flown_t *flown, const imu_samp
         }
         i->rested_s = 0.0F;
         watch_fall(i, dt_s);
-        move(&i->felt, 0.5F * (before_mps2 + i->up_mps2) - i->bias_mps2, dt_s);
+        move(&i->felt, 0.5F * (before_mps2 + up_mps2) - i->bias_mps2, dt_s);
         if (flown->standing) {
             i->felt.speed_mps *= 1.0F - dt_s / STANDING_TIME_S;
             i->felt.running_s = 0.0F;
@@ -826,6 +867,7 @@ static void watch_lift_off(integrity_t *i, const flown_t *flown, float gap_s)
 void integrity_height(integrity_t *integrity, const flown_t *flown, float height_m, float gap_s, float age_s)
 {
     take_height(integrity, height_m, gap_s, age_s);
+    integrity->unseen_s = 0.0F;
     integrity->felt_least_m = integrity->unconfirmed ? at_most(integrity->felt_least_m, felt_off_m(integrity))
                                                      : 0.0F;
     watch_lift_off(integrity, flown, gap_s);
@@ -870,6 +912,11 @@ bool integrity_sways(const integrity_t *integrity)
 bool integrity_rocks(const integrity_t *integrity)
 {
     return integrity->unrocked_s < ROCKED_S && integrity->sway_rad2 > SWAY_RAD2;
+}
+
+bool integrity_carried(const integrity_t *integrity)
+{
+    return integrity->carried_s > CARRIED_S;
 }
 
 bool integrity_may_stand(const integrity_t *integrity)

@@ -111,11 +111,13 @@ typedef struct {
     /* accelerometer */
     uint32_t frame_sequence; /* latest frame that integrity_frames() processed */
     uint32_t frame_time_us;
-    float up_mps2;   /* upward acceleration in the latest frame, gravity removed */
-    float rest_mps2; /* its mean at rest */
-    float rested_s;  /* time at rest that this mean covers, at most 2 s */
-    float bias_mps2; /* of the accelerometer: at rest its mean, in the air corrected by the heights */
-    float shaken;    /* >= 1: divides the witness's innovation when the accelerometer is noisy */
+    float up_mps2;           /* upward acceleration in the latest frame, gravity removed */
+    float rest_mps2;         /* its mean at rest */
+    float rested_s;          /* time at rest that this mean covers, at most 2 s */
+    float kept_bias_mps2[2]; /* that mean one to two seconds ago, and up to one second ago */
+    float block_s;           /* time since the latter was taken */
+    float bias_mps2;         /* of the accelerometer: at rest its mean, in the air corrected by the heights */
+    float shaken;            /* >= 1: divides the witness's innovation when the accelerometer is noisy */
     witness_t felt;
     /* thrust */
     float lagged_n; /* commanded thrust through the lag of the motors */
@@ -127,9 +129,11 @@ typedef struct {
     float anchor_rad[2]; /* roll and pitch when they last moved */
     float unrocked_s;    /* time since then */
     float sway_rad2;     /* low-passed mean square of roll and pitch around mean_rad */
-    float stands_s;      /* how long the vehicle has shown the signs of integrity_stands() */
-    float still_s;       /* how long the tilt has swayed less than in the air, without a felt fall */
-    float still_mps[2];  /* low-passed speeds of the two witnesses (felt, pushed) since then */
+    float unseen_s;      /* time on the ground since the latest height, at most 2 s */
+    float carried_s;    /* how long it has been carried on the ground, see integrity_carried(); at most 2 s */
+    float stands_s;     /* how long the vehicle has shown the signs of integrity_stands() */
+    float still_s;      /* how long the tilt has swayed less than in the air, without a felt fall */
+    float still_mps[2]; /* low-passed speeds of the two witnesses (felt, pushed) since then */
 } integrity_t;
 
 /* Clears the state: no doubt, nothing known. Call once before the first cycle. */
@@ -185,6 +189,10 @@ bool integrity_sways(const integrity_t *integrity);
 /* The same with less delay, for the end of a landing: the tilt has moved by a degree within the last half
  * second. False without accelerations. */
 bool integrity_rocks(const integrity_t *integrity);
+
+/* True in state GROUND without heights, when the tilt has swayed as in the air for 1 s: a pilot flies it.
+ * Then the speed of the accelerometer's witness is valid. */
+bool integrity_carried(const integrity_t *integrity);
 
 /* True when the tilt has swayed less than in the air for 1 s: the vehicle may stand on the ground. Lower the
  * thrust to find out. */

@@ -20,6 +20,7 @@
 #define REST_ROCKS_MAX_US UINT32_C(20000000)  /* chosen: above the time of a landing from 4 m */
 #define LINK_HOLD_US UINT32_C(5000000)        /* chosen: the flag warns for 5 s, then the vehicle lands */
 #define DESCENT_TIMEOUT_US UINT32_C(45000000) /* the thrust of a blind descent has fallen to 0, descent.c */
+#define CARRIED_US UINT32_C(3000000)          /* chosen: a vehicle that has just landed sways for so long */
 #define AGE_MAX_US UINT32_C(3600000000)       /* one hour: below the wrap of 71 minutes */
 
 #define HEIGHT_MIN_MM (-50.0F)         /* chosen: no noise reaches 50 mm below the ground */
@@ -227,7 +228,9 @@ static void observe_estimate(supervisor_t *s, const vertical_estimate_t *estimat
 
 static void observe_hand_over(supervisor_t *s, const flight_inputs_t *in, const vertical_estimate_t *estimate)
 {
-    s->handed_over = in->has_throttle && s->pilots && estimate->sways && s->height.age_us > HEIGHT_LOST_US;
+    s->handed_over = s->height.age_us > HEIGHT_LOST_US && in->has_throttle &&
+                     ((estimate->carried && s->state_us > CARRIED_US) || (s->pilots && estimate->sways));
+    s->carried = estimate->carried;
     s->pilots = !in->has_throttle;
 }
 
@@ -267,7 +270,8 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
 {
     const bool fresh = height_fresh(s);
     const bool reference = s->reference_m > 0.0F;
-    const bool descent_timeout = s->state == FLIGHT_DESCENDING && s->state_us >= DESCENT_TIMEOUT_US;
+    const bool descent_timeout = s->state == FLIGHT_DESCENDING && s->state_us >= DESCENT_TIMEOUT_US &&
+                                 !s->carried;
     const bool lowering_limit = s->state == FLIGHT_LOWERING && s->lowerings == LOWERINGS_MAX;
 
     return (uint16_t)(bit(reference, FLIGHT_IF_REFERENCE) | bit(in->attitude_ready, FLIGHT_IF_READY) |

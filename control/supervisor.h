@@ -21,6 +21,8 @@ typedef struct {
     float upright;    /* cosine of the tilt of *in; valid also without `known` */
     bool sways;       /* the tilt moves as it does in flight; valid also without `known` */
     bool rocks;       /* the same within the last 0.8 s */
+    bool carried;     /* GROUND: no pin tells who has the throttle, there is no height, and a pilot flies;
+                       * DESCENDING: the same may still be so */
 } vertical_estimate_t;
 
 /* The latest valid height. */
@@ -74,6 +76,7 @@ typedef struct {
     bool rocks;  /* landing or descending, and the tilt moves as it does in flight */
     bool pilots; /* the pilot had the throttle in the previous cycle */
     bool handed_over;
+    bool carried;
     bool level;
 } supervisor_t;
 

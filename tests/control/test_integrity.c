@@ -575,6 +575,51 @@ void test_it_does_not_stand_while_it_falls_or_sways(void)
     TEST_ASSERT_TRUE(integrity_sways(&it));
 }
 
+/* ---- carried */
+
+/* On the ground for the state, without heights; who has it swings it so fast. */
+static void carry(float seconds, float swing_mps2, float sway_rad)
+{
+    for (int k = 0; k < (int)lroundf(seconds * 40.0F); k++) {
+        frame.sequence++;
+        frame.arrival_us += 25000U;
+        frame.median.roll_rad = sway_rad * sinf((float)frame.sequence * 0.15F);
+        frame.down_mps2 = 9.80665F + 0.3F + swing_mps2 * sinf((float)frame.sequence * 0.1F);
+        integrity_frames(&it, &flown, &frame, 1U);
+    }
+}
+
+void test_a_vehicle_that_sways_on_the_ground_without_heights_is_carried(void)
+{
+    flown.grounded = true;
+    carry(5.0F, 0.0F, 0.0F);
+    TEST_ASSERT_FALSE(integrity_carried(&it));
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.3F, it.bias_mps2);
+    carry(0.25F, 10.0F, 0.05F); /* the lift does not spoil the bias that was measured at rest */
+    carry(6.0F, 1.0F, 0.05F);
+    TEST_ASSERT_TRUE(integrity_carried(&it));
+    TEST_ASSERT_FLOAT_WITHIN(0.15F, 0.3F, it.bias_mps2);
+    TEST_ASSERT_FLOAT_WITHIN(0.4F, 0.0F, it.felt.speed_mps);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    carry(8.0F, 0.0F, 0.0F);
+    TEST_ASSERT_FALSE(integrity_carried(&it));
+}
+
+void test_who_tilts_it_by_hand_or_has_heights_does_not_carry_it(void)
+{
+    flown.grounded = true;
+    carry(5.0F, 0.0F, 0.0F);
+    carry(6.0F, 1.0F, 0.3F);
+    TEST_ASSERT_FALSE(integrity_carried(&it));
+    setUp();
+    flown.grounded = true;
+    for (int k = 0; k < 100; k++) {
+        carry(0.1F, 1.0F, 0.05F);
+        integrity_height(&it, &flown, 0.5F, 0.1F, 0.0F);
+        TEST_ASSERT_FALSE(integrity_carried(&it));
+    }
+}
+
 /* ---- tilt */
 
 static void tilt(float degrees, int frames)

@@ -308,6 +308,27 @@ void test_ground_to_descending_by_a_flying_vehicle_handed_over_without_a_height(
     }
 }
 
+void test_without_a_pin_a_vehicle_that_is_carried_for_longer_than_a_landing_sways_counts_as_handed_over(void)
+{
+    estimate.carried = true;
+    blind(2900);
+    state_is(FLIGHT_GROUND);
+    blind(400);
+    state_is(FLIGHT_DESCENDING);
+    blind(60000);
+    state_is(FLIGHT_DESCENDING);
+    estimate.carried = false;
+    blind(100);
+    state_is(FLIGHT_GROUND);
+}
+
+void test_a_vehicle_with_heights_is_not_handed_over_while_it_is_carried(void)
+{
+    estimate.carried = true;
+    watch(0.0F, 50);
+    state_is(FLIGHT_GROUND);
+}
+
 void test_a_throttle_that_was_never_the_pilots_is_not_handed_over(void)
 {
     estimate.sways = true;
