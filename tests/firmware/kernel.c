@@ -142,10 +142,15 @@ uint16_t kernel_random(uint32_t limit)
     return (uint16_t)(((random_state >> 16) * limit) >> 16);
 }
 
+/* Only after X_Params_init() do they point into themselves. */
+#define ASSERT_INITIALISED(params) \
+    TEST_ASSERT_EQUAL_PTR_MESSAGE(&(params)->__iprms, (params)->instance, "parameters without their defaults")
+
 static Task_Handle task_create(Task_FuncPtr function, const Task_Params *params, Error_Block *error,
                                int calls)
 {
     (void)calls;
+    ASSERT_INITIALISED(params);
     TEST_ASSERT_NULL_MESSAGE(error, "a failure must stop the system");
     kernel.task.created++;
     kernel.task.function = function;
@@ -170,6 +175,7 @@ static Void task_sleep(UInt32 ticks, int calls)
 static Swi_Handle swi_create(Swi_FuncPtr function, const Swi_Params *params, Error_Block *error, int calls)
 {
     (void)calls;
+    ASSERT_INITIALISED(params);
     TEST_ASSERT_NULL(error);
     kernel.swi.created++;
     kernel.swi.function = function;
@@ -207,6 +213,7 @@ static Hwi_Handle hwi_create(Int number, Hwi_FuncPtr function, const Hwi_Params 
     const uint16_t at = kernel.hwi.count;
 
     (void)calls;
+    ASSERT_INITIALISED(params);
     TEST_ASSERT_NULL(error);
     TEST_ASSERT_LESS_THAN(KERNEL_HWIS_MAX, at);
     for (uint16_t i = 0; i < at; i++) {
@@ -239,6 +246,7 @@ static Clock_Handle clock_create(Clock_FuncPtr function, UInt timeout, const Clo
                                  Error_Block *error, int calls)
 {
     (void)calls;
+    ASSERT_INITIALISED(params);
     TEST_ASSERT_NULL(error);
     kernel.clock.created++;
     kernel.clock.function = function;
@@ -252,6 +260,9 @@ static Semaphore_Handle semaphore_create(Int count, const Semaphore_Params *para
 {
     (void)calls;
     TEST_ASSERT_NULL(error);
+    if (params != NULL) {
+        ASSERT_INITIALISED(params);
+    }
     kernel.semaphore.created++;
     kernel.semaphore.mode = (params == NULL) ? Semaphore_Mode_COUNTING : params->mode;
     kernel.semaphore.count = count;

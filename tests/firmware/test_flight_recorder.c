@@ -322,3 +322,28 @@ void test_only_the_reader_turns_interrupts_off(void)
     (void)newest();
     TEST_ASSERT_TRUE(kernel.hwi.disabled > before);
 }
+
+void test_slow_cycles_are_45_ms_apart_or_more(void)
+{
+    fly(7.0F);
+    take(CYCLE_US);
+    const uint32_t before = held();
+    take(44000U);
+    TEST_ASSERT_EQUAL_UINT32(before, held());
+    take(1000U);
+    TEST_ASSERT_EQUAL_UINT32(before + 1U, held());
+}
+
+void test_after_a_full_ring_a_clear_leaves_what_comes_after_it(void)
+{
+    fly(7.0F);
+    for (uint32_t i = 0U; i < FLIGHT_RECORDER_RECORDS + 5U; i++) {
+        take(CYCLE_US);
+    }
+    TEST_ASSERT_EQUAL_UINT32(FLIGHT_RECORDER_RECORDS, held());
+    flight_recorder_clear();
+    TEST_ASSERT_EQUAL_UINT32(0U, held());
+    take(CYCLE_US);
+    take(CYCLE_US);
+    TEST_ASSERT_EQUAL_UINT32(2U, held());
+}

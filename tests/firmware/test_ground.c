@@ -79,3 +79,16 @@ void test_every_state_but_ground_and_cut_is_in_the_air(void)
         TEST_ASSERT_EQUAL_INT(state != FLIGHT_GROUND && state != FLIGHT_CUT, ground_left());
     }
 }
+
+void test_the_smallest_reference_or_thrust_is_not_idle(void)
+{
+    reference.reference_m = 0.0005F;
+    TEST_ASSERT_FALSE(ground_idle());
+    TEST_ASSERT_FALSE(ground_waits());
+    reference.reference_m = 0.0F;
+    flight.reference_m = 0.0005F;
+    TEST_ASSERT_FALSE(ground_idle());
+    flight.reference_m = 0.0F;
+    flight.thrust_n = 0.0005F;
+    TEST_ASSERT_FALSE(ground_idle());
+}

@@ -10,6 +10,7 @@
 #include "mock_servers.h"
 #include "mock_timebase.h"
 #include "mock_xbee_port.h"
+#include "control/integrity.h"
 #include "unity.h"
 
 static altitude_sample_t altitude;
@@ -229,4 +230,28 @@ void test_every_job_is_measured_from_the_tick_that_released_it(void)
     jobs_assert(MONITOR_SEND_COMM, 3U);
     TEST_ASSERT_EQUAL_UINT16(3, jobs[MONITOR_SEND_COMM].released);
     TEST_ASSERT_EQUAL_UINT32(4711, jobs[MONITOR_SEND_COMM].released_us);
+}
+
+static bool line_has(const char *word)
+{
+    char text[sizeof line.text + 1U];
+
+    kernel.clock.function(kernel.clock.params.arg);
+    kernel_run_task();
+    (void)memcpy(text, line.text, line.length);
+    text[line.length] = '\0';
+    return strstr(text, word) != NULL;
+}
+
+void test_a_doubt_is_told_but_in_the_first_line_after_a_reset(void)
+{
+    cause = "WATCHDOG";
+    flight.doubts = DOUBT_IMU;
+    TEST_ASSERT_FALSE(line_has("doubt:"));
+    more_ticks = 1U;
+    TEST_ASSERT_TRUE(line_has("doubt:IMU"));
+    cause = NULL;
+    TEST_ASSERT_TRUE(line_has("doubt:IMU"));
+    flight.doubts = 0U;
+    TEST_ASSERT_FALSE(line_has("doubt:"));
 }

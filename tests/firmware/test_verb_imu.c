@@ -275,3 +275,40 @@ void test_with_thrust_or_a_reference_or_another_word_it_is_refused(void)
     assert_answer("ERR IMU needs thrust 0 and no reference\r\n", "LEVEL");
     TEST_ASSERT_EQUAL_UINT16(0, writes);
 }
+
+void test_the_list_shows_whether_the_axes_are_proved_now(void)
+{
+    for (int i = 0; i < 4; i++) {
+        parameters.value[PARAMETER_IAXES] = (float)((i % 2 == 0) ? AXES_PROVED : AXES_ASSUMED);
+        TEST_ASSERT_TRUE(type(""));
+        TEST_ASSERT_FALSE(listing_more());
+        TEST_ASSERT_NOT_NULL(strstr(lines[2], (i % 2 == 0) ? " IAXES:PROVED " : " IAXES:ASSUMED "));
+    }
+}
+
+static float spike_x, spike_y;
+
+static void spike_aside(void)
+{
+    static uint16_t looks;
+    const razor_text_t text = {.length = 0U};
+    imu_raw_t raw = {.has_acceleration = true, .z_counts = 254.0F};
+
+    looks++;
+    if (looks % 3U == 2U) {
+        raw.x_counts = spike_x;
+        raw.y_counts = spike_y;
+    }
+    imu_exchange_show(&text, RAZOR_OK, &raw, 1040000U);
+}
+
+/* A side as large as gravity is no level: a spike of it in one frame of three is not looked at. */
+void test_a_spike_to_the_side_is_not_looked_at_either(void)
+{
+    kernel.task.on_sleep = spike_aside;
+    spike_x = 250.0F;
+    assert_answer("OK IMU LEVEL IUNIT:256.00 IDOWN:Z\r\n", "LEVEL");
+    spike_x = 0.0F;
+    spike_y = -250.0F;
+    assert_answer("OK IMU LEVEL IUNIT:256.00 IDOWN:Z\r\n", "LEVEL");
+}
