@@ -43,6 +43,7 @@
 #define STAND_TEST_N_PER_S \
     1.0F /* chosen: in 2 s too low to fly; the accelerometer shows a fall before it is fast */
 #define NOT_LIFTED_MAX_US UINT32_C(3000000) /* chosen: the take-off's ramp in est_law.c ends after 1.2 s */
+#define HEIGHT_LATE_US UINT32_C(170000)     /* a scan of 0.1 s is missing */
 #define FLOAT_REACH_M 0.30F /* chosen: three times the distance that counts as reached, reach.c */
 
 /* For states flown without an estimate. */
@@ -216,7 +217,10 @@ static void step_pidt(flight_t *flight, const parameters_t *parameters, float re
         .least_n = at_least(value[PARAMETER_GRAV] - PIDT_WINDOW_N, 0.0F),
     };
 
-    if (height->is_new || !flight->pidt.primed) {
+    if (height->age_us > HEIGHT_LATE_US && flight->est.airborne) { /* do not hold a push for long */
+        flight->setpoint_n = between(flight->hover_n - TRANSFER_START_N, flight->setpoint_n,
+                                     flight->hover_n + TRANSFER_START_N);
+    } else if (height->is_new || !flight->pidt.primed) {
         const uint32_t rays_us = flight->est.rays_us;
         flight->setpoint_n = pidt_step(&flight->pidt, &gains, reference_m, height->height_mm * 0.001F,
                                        seconds_at_most(rays_us - flight->pidt_rays_us, GAP_MAX_S));
@@ -304,6 +308,12 @@ static bool run_mode(flight_t *flight, const parameters_t *parameters, bool mode
     return false;
 }
 
+/* Another law goes on without the estimate. The latest command may have been an answer to noise. */
+static bool loses_estimate(const flight_t *flight, flight_mode_t before)
+{
+    return is_est_mode(before) && !has_estimate(flight);
+}
+
 static void bumpless_transfer(flight_t *flight, flight_mode_t before, bool law_changed)
 {
     const flight_mode_t now = flight->mode;
@@ -315,7 +325,7 @@ static void bumpless_transfer(flight_t *flight, flight_mode_t before, bool law_c
 
     if (changed && (at_once || takes_off)) {
         flight->transfer_n = 0.0F;
-    } else if (law_changed) {
+    } else if (law_changed && !loses_estimate(flight, before)) {
         flight->transfer_n = flight->thrust_n - flight->setpoint_n;
     } else if (changed) {
         flight->transfer_n = between(hover_n - TRANSFER_START_N, flight->thrust_n,
@@ -522,11 +532,28 @@ static float lifting_n(const flight_t *flight, const parameters_t *parameters)
                : flight->hover_n;
 }
 
+/* The IMU is back in flight. The estimate starts again from what thrust and heights tell, not from
+ * standstill, and with the bias from before; also where the heights are gone. */
+static void restart_estimate(flight_t *flight)
+{
+    const integrity_t *integrity = &flight->integrity;
+    estimator_t *estimator = &flight->est.estimator;
+    const float height_m = integrity_doubts(integrity, DOUBT_SIGHT)
+                               ? estimator->now.height_m
+                               : integrity->height_m + integrity_moved_m(integrity);
+
+    estimator_start(estimator, height_m, integrity_pushed_mps(integrity),
+                    estimator->felt ? integrity->bias_mps2 : 0.0F);
+}
+
 static void update_estimator(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)
 {
     const flight_state_t state = flight->supervisor.state;
     const bool at_rest = state == FLIGHT_GROUND && flight->supervisor.rest.on;
 
+    if (!flight->est.estimator.initialised && flight->est.airborne && est_law_has_imu(&flight->est)) {
+        restart_estimate(flight);
+    }
     if (flight->supervisor.height.is_new) {
         est_law_fuse_height(&flight->est, &in->altitude, in->height_stamp_ms, in->height_time_us,
                             in->height_age_us, at_rest);

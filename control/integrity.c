@@ -136,11 +136,6 @@ void integrity_init(integrity_t *integrity)
     *integrity = (integrity_t){.shaken = 1.0F, .upright = 1.0F};
 }
 
-bool integrity_doubts(const integrity_t *integrity, uint16_t doubt)
-{
-    return (integrity->doubts & doubt) != 0U;
-}
-
 const char *integrity_doubt_name(uint16_t doubts)
 {
     if ((doubts & DOUBT_SIGHT) != 0U) {
@@ -467,7 +462,7 @@ static void integrate_frame(integrity_t *i, const flown_t *flown, const imu_samp
     if (gap_us > FRAME_GAP_US) {
         i->rested_s = 0.0F;
         i->rest_mps2 = i->up_mps2;
-        start(&i->felt, counts(&i->pushed) ? i->pushed.speed_mps : 0.0F);
+        start(&i->felt, integrity_pushed_mps(i));
         return;
     }
     watch_sway(i, frame, dt_s);
@@ -533,6 +528,20 @@ void integrity_thrust(integrity_t *integrity, const flown_t *flown)
     const float mps2 = (excess_mps2 - flown->damping_per_s * integrity->pushed.speed_mps) /
                        (1.0F + flown->damping_per_s * dt_s);
     move(&integrity->pushed, mps2, dt_s);
+}
+
+float integrity_pushed_mps(const integrity_t *integrity)
+{
+    const witness_t *pushed = &integrity->pushed;
+
+    return counts(pushed) ? pushed->speed_mps + PUSHED_LEAK_PER_S * pushed->seen_m : integrity->rise_mps;
+}
+
+float integrity_moved_m(const integrity_t *integrity)
+{
+    const witness_t *pushed = &integrity->pushed;
+
+    return counts(pushed) ? pushed->seen_m - pushed->off_m : 0.0F;
 }
 
 float integrity_speed_mps(const integrity_t *integrity)
@@ -887,16 +896,6 @@ void integrity_height(integrity_t *integrity, const flown_t *flown, float height
 float integrity_felt_mps(const integrity_t *integrity)
 {
     return acceleration_valid(integrity) ? integrity->felt.speed_mps / integrity->shaken : 0.0F;
-}
-
-bool integrity_unconfirmed(const integrity_t *integrity)
-{
-    return integrity->unconfirmed;
-}
-
-bool integrity_deep(const integrity_t *integrity)
-{
-    return integrity->deep;
 }
 
 bool integrity_still(const integrity_t *integrity)

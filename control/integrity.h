@@ -173,11 +173,17 @@ float integrity_felt_mps(const integrity_t *integrity);
 
 /* True after a take-off or a step of the terrain towards the vehicle, until the heights show a climb. Until
  * then the beam may be blocked: keep climbs slow. */
-bool integrity_unconfirmed(const integrity_t *integrity);
+static inline bool integrity_unconfirmed(const integrity_t *integrity)
+{
+    return integrity->unconfirmed;
+}
 
 /* True after a step of the terrain of more than 0.4 m away from the vehicle, until the heights show a
  * descent. Until then the heights may be wrong: keep descents slow. */
-bool integrity_deep(const integrity_t *integrity);
+static inline bool integrity_deep(const integrity_t *integrity)
+{
+    return integrity->deep;
+}
 
 /* True when the slant distance of more than eight scans in a row has contained only white noise: the beam
  * may be blocked. */
@@ -206,7 +212,17 @@ bool integrity_stands(const integrity_t *integrity);
 const char *integrity_doubt_name(uint16_t doubts);
 
 /* True when at least one of the given DOUBT_* bits is set. */
-bool integrity_doubts(const integrity_t *integrity, uint16_t doubt);
+static inline bool integrity_doubts(const integrity_t *integrity, uint16_t doubt)
+{
+    return (integrity->doubts & doubt) != 0U;
+}
+
+/* Vertical speed by the thrust, less the error that the heights have shown of it. Where the thrust does not
+ * tell, the rate of the heights. */
+float integrity_pushed_mps(const integrity_t *integrity);
+
+/* Way since the rays of the latest height, by the thrust; > 0: upwards. */
+float integrity_moved_m(const integrity_t *integrity);
 
 /* Vertical speed without the heights: the mean of both witnesses, or the one that is valid and not doubted; 0
  * when there is none. */

@@ -28,6 +28,8 @@
 #define HEIGHTS_MISSING_S 0.2F       /* two scans of 0.1 s */
 #define LEARN_WITHOUT_HEIGHTS_S 0.3F /* three scans; as HEIGHT_FRESH_US in supervisor.c */
 #define FRAMES_FRESH_S ((float)ESTIMATOR_FRESH_US * 1.0e-6F)
+#define FRAMES_LATE_S 0.1F           /* two frames of 25 ms are missing, and the age of one */
+#define LATE_WINDOW_N 0.5F           /* chosen: as TRANSFER_START_N in flight.c */
 #define AGE_MAX_S 3600.0F            /* chosen: one hour; the counters stop here */
 #define MODEL_NOISE_ALONE_MPS2 0.15F /* chosen: a biased accelerometer drifts away, the model does not */
 #define GUST_MPS2_PER_M 39.2F        /* fitted as 28 N/m on a vehicle that hovers at 7 N */
@@ -113,6 +115,7 @@ static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt
 
     if (law->heightless_s > LEARN_WITHOUT_HEIGHTS_S || e->unchecked_count > 0U || law->without_authority ||
         estimator_accuses(e)) {
+        hover_forget_gust(&law->hover, dt_s);
         return; /* no height confirms the estimated speed */
     }
     if (e->now.height_m > IN_THE_AIR_M || seen_n > law->hover.thrust_n) {
@@ -246,6 +249,9 @@ void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t st
 {
     law->rays_us = ray_clock_step(&law->ray_clock, stamp_ms, arrival_us, age_us);
     law->heightless_s = seconds_between(law->rays_us, law->now_us);
+    if (law->frameless_s > FRAMES_LATE_S) {
+        estimator_forget_frame(&law->estimator);
+    }
     const height_outcome_t outcome = estimator_fuse_height(&law->estimator, altitude, law->rays_us,
                                                            at_rest || on_ground(law));
     if (law->airborne && outcome == HEIGHT_FUSED && law->estimator.felt) {
@@ -495,6 +501,16 @@ static float speed_setpoint_mps(est_law_t *law, const parameters_t *parameters, 
     }
 }
 
+/* Frames are missing: the latest command may have been an answer to noise, and must not last. */
+static float without_frames_n(const est_law_t *law, float thrust_n)
+{
+    const float hover_n = law->hover.thrust_n;
+
+    return (law->frameless_s > FRAMES_LATE_S)
+               ? between(hover_n - LATE_WINDOW_N, thrust_n, hover_n + LATE_WINDOW_N)
+               : thrust_n;
+}
+
 float est_law_step(est_law_t *law, const parameters_t *parameters, est_mode_t mode, float reference_m)
 {
     const float *value = parameters->value;
@@ -522,7 +538,8 @@ float est_law_step(est_law_t *law, const parameters_t *parameters, est_mode_t mo
 
     update_timers(law, mode, state.height_m);
     lower_ceiling(law, mode);
-    const float limited_n = at_most(at_least(thrust_n, thrust_least_n(law, mode)), thrust_most_n(law, mode));
+    const float limited_n = at_most(at_least(without_frames_n(law, thrust_n), thrust_least_n(law, mode)),
+                                    thrust_most_n(law, mode));
     return deadband_compensate(&law->deadband, law->hover.thrust_n, limited_n);
 }
 

@@ -49,6 +49,7 @@
 #define BIAS_DRIFT_MPS2 0.095F   /* fitted; m/s2 per root second */
 #define NO_ACC_DRIFT_MPS2 0.4F   /* tried 0.1 to 0.8: more follows gusts better and shakes the thrust more */
 #define NO_ACC_NOISE_MPS2 0.4F   /* tried 0.1 to 1.5: hardly matters below 1 */
+#define LATE_NOISE_MPS2 3.0F     /* chosen: what law PIDT accelerates by */
 #define TERRAIN_DRIFT_MPS 0.053F /* fitted; m/s per root second */
 #define TERRAIN_TIME_S 1.0F      /* chosen: a slope lasts about a second */
 #define NOISE_START_MPS2 0.4F    /* assumed of a Razor on a flying frame */
@@ -606,6 +607,15 @@ void estimator_drop_accelerations(estimator_t *e)
     }
 }
 
+void estimator_forget_frame(estimator_t *e)
+{
+    e->latest.up_mps2 = 0.0F;
+    e->latest.share = 0.0F;
+    e->latest.drift = drift_of(LATE_NOISE_MPS2, 0.0F);
+    reset_variance(e, BIAS, e->covariance[BIAS][BIAS]);
+    e->unchecked_count = UNCHECKED_AFTER_RESET;
+}
+
 bool estimator_accuses(const estimator_t *estimator)
 {
     return estimator->accused_frames > 0U;
@@ -620,6 +630,17 @@ void estimator_amend(estimator_t *e, float height_m, float speed_mps, float bias
     reset_covariance(e);
     bound_states(&e->delayed);
     predict_now(e);
+}
+
+void estimator_start(estimator_t *e, float height_m, float speed_mps, float bias_mps2)
+{
+    const float variance = e->covariance[BIAS][BIAS];
+
+    estimator_amend(e, height_m, speed_mps, bias_mps2);
+    reset_variance(e, BIAS, variance);
+    e->rejected_count = 0U;
+    e->unchecked_count = UNCHECKED_AFTER_RESET;
+    e->initialised = true;
 }
 
 void estimator_move_bias(estimator_t *e, float by_mps2)

@@ -57,7 +57,7 @@ typedef struct {
 typedef enum { HEIGHT_FUSED, HEIGHT_REJECTED, HEIGHT_TERRAIN_STEP, HEIGHT_RESET } height_outcome_t;
 
 typedef struct {
-    bool initialised; /* at least one frame and, after it, one height were received */
+    bool initialised; /* at least one frame and, after it, one height were received; or estimator_start() */
     estimate_t delayed;
     float covariance[ESTIMATOR_STATES][ESTIMATOR_STATES]; /* symmetric: [i][j] is kept for i <= j */
     uint32_t delayed_us;
@@ -112,12 +112,18 @@ float motion_up_mps2(const imu_sample_t *frame);
 /* The model alone predicts from now on, until a frame with accelerations comes. */
 void estimator_drop_accelerations(estimator_t *estimator);
 
+/* The frames are late: until the next one comes, the heights alone tell the speed, and nothing the bias. */
+void estimator_forget_frame(estimator_t *estimator);
+
 /* Heights and the modelled acceleration agree, or did within 0.8 s, that the accelerometer is wrong. It
  * has next to no weight then. */
 bool estimator_accuses(const estimator_t *estimator);
 
 /* Overwrites height, speed and bias. For use when the latest heights were wrong. */
 void estimator_amend(estimator_t *estimator, float height_m, float speed_mps, float bias_mps2);
+
+/* The same after a gap of the frames. The next heights are fused without the innovation test. */
+void estimator_start(estimator_t *estimator, float height_m, float speed_mps, float bias_mps2);
 
 /* Adds to the bias: the model has taken over a part of it. */
 void estimator_move_bias(estimator_t *estimator, float by_mps2);

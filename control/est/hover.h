@@ -21,6 +21,9 @@ void hover_init(hover_t *hover, float thrust_n, float sigma_n, float least_n, fl
  * acceleration needed. noise_n: rms noise of seen_n, > 0. */
 void hover_step(hover_t *hover, float seen_n, float noise_n, float dt_s);
 
+/* Without a sample: the gust ends as gusts do, dt_s later. */
+void hover_forget_gust(hover_t *hover, float dt_s);
+
 /* Adds more_n to the estimate. The caller has seen from the height that more thrust is needed (more_n >
  * 0), or less thrust (more_n < 0). */
 void hover_nudge(hover_t *hover, float more_n);

@@ -15,7 +15,7 @@ void tearDown(void) {}
 
 /* Bounds: highest above the reference, hardest touch, hover rms; 0: not looked at. */
 typedef struct {
-    const char *const assignments[6];
+    const char *const assignments[8];
     double highest_mm, touch_mps, rms_mm;
 } lie_t;
 
@@ -117,6 +117,16 @@ static const lie_t gaps[] = {
      0.0},
     {{FLAT, "plant.imu_mute_start=6", "plant.imu_mute=0.6", "plant.outage_start=6.5", "plant.outage=6"},
      1000.0,
+     1.0,
+     0.0},
+    {{FLAT, "plant.airframe=1", "plant.imu_mute_start=7.4", "plant.imu_mute=3.5", "plant.outage_start=11.2",
+      "plant.outage=3.4"},
+     600.0,
+     1.0,
+     0.0},
+    {{FLAT, "plant.airframe=1", "plant.imu_mute_start=6.7", "plant.imu_mute=2.2", "plant.outage_start=9.3",
+      "plant.outage=2.6"},
+     600.0,
      1.0,
      0.0},
 };

@@ -492,6 +492,66 @@ void test_without_frames_pidt_takes_over_and_says_so(void)
     TEST_ASSERT_TRUE(rms_mm() < 30.0);
 }
 
+/* The latest command before the gap may have been an answer to noise. */
+void test_a_silent_imu_brings_the_thrust_to_hover_within_a_tenth_of_a_second(void)
+{
+    float widest_n = 0.0F;
+    for (uint32_t seed = 1U; seed <= SEEDS; seed++) {
+        board(seed);
+        hover_at(0.6F);
+        world.imu_mute = true;
+        run(0.15);
+        do { /* law PIDT takes over after 0.25 s */
+            advance();
+            const float off_n = fabsf(out.thrust_n - flight.hover_n);
+            widest_n = (off_n > widest_n) ? off_n : widest_n;
+        } while (flight.active_law != LAW_PIDT);
+    }
+    printf("at most %.2f N from hover\n", (double)widest_n);
+    TEST_ASSERT_TRUE(widest_n > 0.2F && widest_n < 0.8F);
+}
+
+void test_heights_without_frames_tell_the_speed_and_do_not_bend_the_bias(void)
+{
+    hover_at(0.6F);
+    world.imu_mute = true;
+    run(0.4);
+    const float bias_mps2 = flight.est.estimator.now.bias_mps2;
+    run(3.0);
+    TEST_ASSERT_EQUAL_FLOAT(bias_mps2, flight.est.estimator.now.bias_mps2);
+    TEST_ASSERT_FLOAT_WITHIN(0.15F, (float)world.body.speed_m_s, flight.est.estimator.now.speed_mps);
+    TEST_ASSERT_FLOAT_WITHIN(0.3F, 0.0F, (float)(height_m() - 0.6));
+}
+
+/* It climbs at 0.8 m/s when the frames come back; heights come or not. */
+static float speed_error_after_a_gap(bool heights)
+{
+    hover_at(0.6F);
+    world.imu_mute = true;
+    run(1.0);
+    setr(1.5F);
+    run(0.8);
+    world.body.mute = !heights;
+    world.imu_mute = false;
+    run(0.1);
+    TEST_ASSERT_EQUAL(LAW_EST, flight.active_law);
+    TEST_ASSERT_TRUE(world.body.speed_m_s > 0.3);
+    return fabsf(flight.est.estimator.now.speed_mps - (float)world.body.speed_m_s);
+}
+
+void test_after_a_gap_of_the_imu_the_estimate_knows_how_fast_the_vehicle_moves(void)
+{
+    float sum_mps[2] = {0.0F, 0.0F};
+    for (uint32_t seed = 1U; seed <= SEEDS; seed++) {
+        board(seed);
+        sum_mps[0] += speed_error_after_a_gap(true) / (float)SEEDS;
+        board(seed);
+        sum_mps[1] += speed_error_after_a_gap(false) / (float)SEEDS;
+    }
+    printf("off by %.2f m/s with heights, %.2f without\n", (double)sum_mps[0], (double)sum_mps[1]);
+    TEST_ASSERT_TRUE(sum_mps[0] < 0.2F && sum_mps[1] < 0.2F);
+}
+
 /* ---- the flight before */
 
 static bool flies_again_heavier(bool gravity_typed)

@@ -422,6 +422,23 @@ void test_after_a_gap_of_the_frames_it_starts_anew(void)
     TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.7F, e.now.height_m);
 }
 
+void test_after_a_gap_it_can_be_told_where_and_how_fast_the_vehicle_is(void)
+{
+    hover();
+    time_us += 400000U;
+    const imu_sample_t f = frame();
+    estimator_predict(&e, &f, no_model);
+    TEST_ASSERT_FALSE(e.initialised);
+    estimator_start(&e, 0.8F, -0.6F, 0.1F);
+    TEST_ASSERT_TRUE(e.initialised);
+    TEST_ASSERT_EQUAL_FLOAT(0.8F, e.now.height_m);
+    TEST_ASSERT_EQUAL_FLOAT(-0.6F, e.now.speed_mps);
+    TEST_ASSERT_EQUAL_FLOAT(0.1F, e.now.bias_mps2);
+    const altitude_t a = altitude(0.4); /* far off, and fused all the same */
+    TEST_ASSERT_EQUAL(HEIGHT_FUSED, estimator_fuse_height(&e, &a, e.now_us, false));
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.4F, e.now.height_m);
+}
+
 /* Kalman's equations: gain P[i][0] / (P[0][0] + R), and P[i][j] less gain times P[0][j]. R is told by the
  * gain. */
 void test_a_height_corrects_states_and_covariance_by_one_gain(void)

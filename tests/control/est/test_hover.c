@@ -85,6 +85,19 @@ void test_a_nudge_moves_the_gusts_alone_within_a_newton(void)
     TEST_ASSERT_EQUAL_FLOAT(-1.0F, hover.gust_n);
 }
 
+void test_without_samples_a_gust_ends_and_the_hover_thrust_stays(void)
+{
+    see(7.4F, 0.3F, 20.0F);
+    hover_nudge(&hover, 0.8F);
+    const float before_n = hover.gust_n;
+    const float hover_n = hover.thrust_n;
+    for (float t = 0.0F; t < 0.76F; t += 0.019F) {
+        hover_forget_gust(&hover, 0.019F);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.37F, hover.gust_n / before_n); /* 1/e */
+    TEST_ASSERT_EQUAL_FLOAT(hover_n, hover.thrust_n);
+}
+
 void test_nothing_leaves_the_bounds_whatever_is_seen(void)
 {
     static const float seen[] = {-1e6F, 1e6F, 0.0F, 20.0F};
