@@ -217,14 +217,14 @@ static void step_pidt(flight_t *flight, const parameters_t *parameters, float re
         .least_n = at_least(value[PARAMETER_GRAV] - PIDT_WINDOW_N, 0.0F),
     };
 
-    if (height->age_us > HEIGHT_LATE_US && flight->est.airborne) { /* do not hold a push for long */
-        flight->setpoint_n = between(flight->hover_n - TRANSFER_START_N, flight->setpoint_n,
-                                     flight->hover_n + TRANSFER_START_N);
-    } else if (height->is_new || !flight->pidt.primed) {
+    if (height->is_new || !flight->pidt.primed) {
         const uint32_t rays_us = flight->est.rays_us;
         flight->setpoint_n = pidt_step(&flight->pidt, &gains, reference_m, height->height_mm * 0.001F,
                                        seconds_at_most(rays_us - flight->pidt_rays_us, GAP_MAX_S));
         flight->pidt_rays_us = rays_us;
+    } else if (height->age_us > HEIGHT_LATE_US && flight->est.airborne) { /* do not hold a push for long */
+        flight->setpoint_n = between(flight->hover_n - TRANSFER_START_N, flight->setpoint_n,
+                                     flight->hover_n + TRANSFER_START_N);
     }
 }
 

@@ -28,7 +28,7 @@
 #define HEIGHTS_MISSING_S 0.2F       /* two scans of 0.1 s */
 #define LEARN_WITHOUT_HEIGHTS_S 0.3F /* three scans; as HEIGHT_FRESH_US in supervisor.c */
 #define FRAMES_FRESH_S ((float)ESTIMATOR_FRESH_US * 1.0e-6F)
-#define FRAMES_LATE_S 0.1F           /* two frames of 25 ms are missing, and the age of one */
+#define FRAMES_LATE_S 0.15F          /* chosen: a frame of an IMU as slow as 0.1 s, and its age */
 #define LATE_WINDOW_N 0.5F           /* chosen: as TRANSFER_START_N in flight.c */
 #define AGE_MAX_S 3600.0F            /* chosen: one hour; the counters stop here */
 #define MODEL_NOISE_ALONE_MPS2 0.15F /* chosen: a biased accelerometer drifts away, the model does not */

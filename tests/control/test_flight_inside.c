@@ -451,6 +451,22 @@ void test_the_tilt_of_a_silent_imu_does_not_rock(void)
     TEST_ASSERT_FALSE(rocks(&f));
 }
 
+void test_pidt_holds_no_push_while_heights_are_late(void)
+{
+    f.pidt.primed = true;
+    f.hover_n = 7.2F;
+    f.setpoint_n = 9.0F;
+    f.supervisor.height.age_us = 170000U;
+    step_pidt(&f, &parameters, 0.6F);
+    NEAR(9.0F, f.setpoint_n);
+    f.supervisor.height.age_us = 170001U;
+    step_pidt(&f, &parameters, 0.6F);
+    NEAR(7.7F, f.setpoint_n);
+    f.setpoint_n = 4.0F;
+    step_pidt(&f, &parameters, 0.6F);
+    NEAR(6.7F, f.setpoint_n);
+}
+
 void test_each_mode_has_its_thrust(void)
 {
     f.mode = FLIGHT_MODE_IDLE;

@@ -493,14 +493,14 @@ void test_without_frames_pidt_takes_over_and_says_so(void)
 }
 
 /* The latest command before the gap may have been an answer to noise. */
-void test_a_silent_imu_brings_the_thrust_to_hover_within_a_tenth_of_a_second(void)
+void test_a_silent_imu_brings_the_thrust_to_hover_within_a_fifth_of_a_second(void)
 {
     float widest_n = 0.0F;
     for (uint32_t seed = 1U; seed <= SEEDS; seed++) {
         board(seed);
         hover_at(0.6F);
         world.imu_mute = true;
-        run(0.15);
+        run(0.18);
         do { /* law PIDT takes over after 0.25 s */
             advance();
             const float off_n = fabsf(out.thrust_n - flight.hover_n);
@@ -624,7 +624,7 @@ void test_accelerations_lost_in_flight_and_found_again_change_the_flag_and_not_t
 {
     hover_at(0.6F);
     world.no_acceleration = true;
-    run(0.15);
+    run(0.18);
     TEST_ASSERT_EQUAL_UINT16_MESSAGE(0, out.flags, "some frames without them are nothing");
     run(0.3);
     TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_IMU, out.flags);
@@ -890,7 +890,7 @@ void test_a_tilt_over_45_degrees_cuts(void)
     hover_at(0.6F);
     world.tilt_rad = 0.0;
     world.fallen_rad = 1.0;
-    run(0.15); /* in one jump */
+    run(0.18); /* in one jump */
     TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
     run(0.11);
     TEST_ASSERT_EQUAL(FLIGHT_CUT, out.state);
