@@ -35,6 +35,7 @@ void setUp(void)
     f.supervisor.step_us = 100000U;
     f.supervisor.height.height_mm = 500.0F;
     f.supervisor.height.sequence = 5U;
+    f.supervisor.height.age_us = 80000U;
     f.supervisor.reference_m = 0.6F;
     f.mode = FLIGHT_MODE_EST_HOLD;
     f.active_law = LAW_EST;
