@@ -35,7 +35,6 @@ void setUp(void)
     f.supervisor.step_us = 100000U;
     f.supervisor.height.height_mm = 500.0F;
     f.supervisor.height.sequence = 5U;
-    f.supervisor.height.age_us = 80000U;
     f.supervisor.reference_m = 0.6F;
     f.mode = FLIGHT_MODE_EST_HOLD;
     f.active_law = LAW_EST;
@@ -383,6 +382,7 @@ void test_pidt_gets_its_gains_the_time_between_rays_and_a_window_about_gravity(v
     NEAR(pidt.integral_n, f.pidt.integral_n);
     NEAR(pidt.rate_mps, f.pidt.rate_mps);
     TEST_ASSERT_EQUAL_UINT32(1120000U, f.pidt_rays_us);
+    f.supervisor.height.age_us = 80000U;
     f.setpoint_n = 1.0F;
     f.supervisor.height.is_new = false;
     step_pidt(&f, &parameters, 0.6F);
