@@ -200,14 +200,10 @@ static bool speaks_legacy(scip_kind_t kind)
 
 static uint16_t state_after_status(const scip_parser_t *parser)
 {
-    const scip_kind_t kind = parser->awaited.kind;
-    if (is_stream(&parser->awaited)) {
-        return has_status(parser, '9', '9') ? TIME : REPLY_END;
-    }
     if (!has_status(parser, '0', '0')) {
         return REPLY_END;
     }
-    switch (kind) {
+    switch (parser->awaited.kind) {
     case SCIP_SINGLE_2:
     case SCIP_SINGLE_3:
     case SCIP_TIME_READ:

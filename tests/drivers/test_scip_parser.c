@@ -722,6 +722,14 @@ void test_a_refused_stream_is_a_reply_and_nothing_follows(void)
     TEST_ASSERT_EQUAL(SCIP_NOTHING, feed_range(&wire, 0, wire.length));
 }
 
+/* Its echo's counter is not looked at. */
+void test_a_refused_run_is_a_reply(void)
+{
+    expect_order(&counted);
+    TEST_ASSERT_EQUAL(SCIP_REPLY, feed_text("MS0372040601004\n0Ee\n\n"));
+    TEST_ASSERT_EQUAL_UINT16('E', parser.reply.status[1]);
+}
+
 void test_a_refused_single_scan_is_a_reply(void)
 {
     const order_t single = {"GS", 372, 406, 1, 0, 0};
