@@ -670,6 +670,7 @@ static float within_climb_n(const flight_t *flight, const parameters_t *paramete
                                   : parameters->value[PARAMETER_VUP] + CLIMB_MARGIN_MPS;
     const bool fast = flight->integrity.pushed.speed_mps > fastest_mps - 0.1F &&
                       (flight->supervisor.state != FLIGHT_TAKEOFF ||
+                       integrity_doubts(&flight->integrity, DOUBT_IMU) ||
                        integrity_felt_mps(&flight->integrity) > fastest_mps - 0.1F);
 
     if (!fast || !(est || (flight->mode == FLIGHT_MODE_LAW && flight->active_law == LAW_PIDT))) {

@@ -100,6 +100,8 @@
 #define CARRIED_TIME_S 2.0F   /* chosen: above the period of a pilot's swings */
 #define CARRIED_BIAS_TIME_S 20.0F /* chosen: ten times that; the bias was measured at rest */
 #define SWAYING_S 1.5F        /* chosen: 15 scans; a lift-off that the heights see takes less than a second */
+#define STRONG_SHARE 1.3F     /* chosen: of GRAV; lifts the heaviest vehicle, 1.2 of GRAV, at 0.8 m/s2 */
+#define STRONG_COUNTS 3.0F    /* chosen: then half a second is enough, which lifts it by 0.1 m */
 #define SWAYING_M 0.05F       /* chosen: ten times the noise of a height */
 #define SWAY_AIR_RAD2 4.0e-4F /* chosen: 1.1 degrees rms; between this and SWAY_RAD2 neither is certain */
 
@@ -863,13 +865,14 @@ static void watch_lift_off(integrity_t *i, const flown_t *flown, float gap_s)
         i->swaying_s = 0.0F;
         return;
     }
-    const bool sways = i->unconfirmed && integrity_sways(i) && integrity_still(i);
+    const bool strong = i->lagged_n > STRONG_SHARE * flown->hover_n; /* no vehicle stays on the ground */
+    const bool sways = i->unconfirmed && integrity_sways(i) && (strong || integrity_still(i));
 
     if (!sways || fabsf(i->height_m - i->swaying_from_m) > SWAYING_M) {
         i->swaying_s = 0.0F;
         i->swaying_from_m = i->height_m;
     } else {
-        i->swaying_s += gap_s;
+        i->swaying_s += strong ? STRONG_COUNTS * gap_s : gap_s;
     }
 }
 

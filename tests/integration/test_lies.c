@@ -60,6 +60,18 @@ static const lie_t sights[] = {
     {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=10", "plant.block_mm=170"}, 1700.0, 1.0, 0.0},
 };
 
+/* Only the thrust tells the truth. */
+static const lie_t alone[] = {
+    {{FLAT, "plant.sight_blocked=1", "plant.block_mm=372", "plant.acc_sign=-1"}, 2000.0, 1.2, 0.0},
+};
+
+void test_a_blocked_beam_with_an_accelerometer_upside_down_is_noticed_at_the_lift_off(void)
+{
+    for (size_t i = 0; i < sizeof alone / sizeof alone[0]; i++) {
+        fly("est-60cm-ramp", &alone[i], false);
+    }
+}
+
 void test_a_sight_that_lies_does_not_fly_the_vehicle_away(void)
 {
     for (size_t i = 0; i < sizeof sights / sizeof sights[0]; i++) {
