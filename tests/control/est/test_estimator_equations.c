@@ -698,7 +698,7 @@ void test_the_tilt_of_a_height_is_that_of_the_nearest_frame(void)
                                     false); /* shown at T + 50 ms, and later */
         const float roll_rad = 0.1F * (float)(1U + late);
         NEAR(cosf(roll_rad) * cosf(roll_rad) - 0.2F * sinf(roll_rad), e.delayed.height_m);
-        TEST_ASSERT_EQUAL_UINT32(T_US + 12500U + late, e.delayed_us);
+        TEST_ASSERT_EQUAL_UINT32(T_US + 12490U + 20U * late, e.delayed_us);
         TEST_ASSERT_EQUAL_UINT32(e.delayed_us, e.rays_us);
         TEST_ASSERT_EQUAL_UINT16(5U, e.frame_count);
         TEST_ASSERT_EQUAL_UINT32(T_US + 125000U, e.now_us);
