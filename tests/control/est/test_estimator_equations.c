@@ -694,7 +694,7 @@ void test_the_tilt_of_a_height_is_that_of_the_nearest_frame(void)
         e.frame_count = 5U;
         e.latest = e.frames[4];
         const altitude_t altitude = {.valid = true, .slant_mm = 1000.0F, .arm_mm = 200.0F};
-        (void)estimator_fuse_height(&e, &altitude, T_US + 12500U + late,
+        (void)estimator_fuse_height(&e, &altitude, T_US + 12490U + 20U * late,
                                     false); /* shown at T + 50 ms, and later */
         const float roll_rad = 0.1F * (float)(1U + late);
         NEAR(cosf(roll_rad) * cosf(roll_rad) - 0.2F * sinf(roll_rad), e.delayed.height_m);
