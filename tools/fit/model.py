@@ -27,6 +27,7 @@ MOTORS_TURN_N, THROTTLE_FULL_N = 1.0, 11.76
 CLIMB_INTEGRAL_S = 0.4          # of an autopilot's speed loop, assumed as in sim/devices/quadrotor.c
 # The pulse is latched every 13.6 ms and acts at its own end, 1.4 ms at hover: half a period and the pulse, on average.
 PULSE_S = 0.0068 + 0.0014
+ROUNDED_S = 0.003               # chosen: a pulse's place within its period, 3.9 ms rms, does not quite average out over a flight
 FRAME_AGE_S = 0.0236            # of an acceleration when its frame is complete: control/est/estimator.c
 COMMAND_NOISE_N = 0.01          # per root of a hertz: steps of 0.3 N, each 4 ms sooner or later, 40 a second
 WANDER_S = 10.0
@@ -380,7 +381,9 @@ class Likelihood:
         taken = float(numpy.sum(1.0 - numpy.minimum(numpy.diag(expected), 1.0)))
         free = max(len(scores) - taken, FREE_LEAST * len(scores))
         widen = numpy.sqrt(numpy.maximum(len(scores) / free * numpy.diag(shown) / numpy.diag(expected), 1.0))
-        return expected * numpy.outer(widen, widen) * (student.ppf(0.95, free) / INTERVAL)**2
+        found = expected * numpy.outer(widen, widen) * (student.ppf(0.95, free) / INTERVAL)**2
+        rounded = numpy.where(numpy.array(self.names) == "tdelay", ROUNDED_S / self.scale, 0.0)
+        return found + numpy.diag(rounded**2)
 
 
 @dataclass
