@@ -687,7 +687,7 @@ void test_the_tilt_of_a_height_is_that_of_the_nearest_frame(void)
         setUp();
         e.initialised = false;
         for (uint16_t i = 0U; i < 5U; i++) {
-            e.frames[i] = (estimator_frame_t){.time_us = T_US + 25000U * (i + 1U),
+            e.frames[i] = (estimator_frame_t){.time_us = T_US + UINT32_C(25000) * (i + 1U),
                                               .roll_rad = 0.1F * (float)i,
                                               .pitch_rad = -0.1F * (float)i};
         }
