@@ -177,8 +177,10 @@ def verdict(builds, path, number, line):
                 after = code(build, name, lines[:number] + [line] + lines[number + 1:])
                 if not before:
                     sys.exit(f"mutants: {path} does not compile")
-                counted = counted or after not in ("", before)
-                if after not in ("", before) and build.notices(name, tests, f"test_{Path(path).stem}", directory):
+                if not after:
+                    return None
+                counted = counted or after != before
+                if after != before and build.notices(name, tests, f"test_{Path(path).stem}", directory):
                     return True
             if not counted:
                 return None
