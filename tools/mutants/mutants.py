@@ -122,8 +122,8 @@ class Build:
             return False    # a test that does not end notices too
 
     def objects(self, path):
-        """Those that are made of a file, and are linked into a test of the room."""
-        for name in self.read_by[path]:
+        """Those that are made of a file, and are linked into a test of the room; the product's first."""
+        for name in sorted(self.read_by[path]):
             member = f"({Path(name).name})"    # of a room's archive
             tests = [test for test, (_, _, linked) in self.tests.items() if f"LOAD {name}\n" in linked or member in linked]
             if tests:
@@ -168,7 +168,6 @@ def verdict(builds, path, number, line):
             (directory / path).write_text("\n".join(text) + "\n", encoding="utf-8")
             return build.assembly(name, path, directory)
 
-        counted = False
         for build in builds:
             for name, tests in build.objects(path):
                 if name not in build.faultless:
@@ -177,13 +176,10 @@ def verdict(builds, path, number, line):
                 after = code(build, name, lines[:number] + [line] + lines[number + 1:])
                 if not before:
                     sys.exit(f"mutants: {path} does not compile")
-                if not after:
+                if not after or (after == before and build is builds[0] and name == next(build.objects(path))[0]):
                     return None
-                counted = counted or after != before
                 if after != before and build.notices(name, tests, f"test_{Path(path).stem}", directory):
                     return True
-            if not counted:
-                return None
     return False
 
 
