@@ -1079,3 +1079,106 @@ void test_the_least_felt_error_is_kept_while_unconfirmed(void)
     height(0.5F);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, it.felt_least_m);
 }
+
+/* ---- at the limits themselves: a frame or a height of the same instant moves no sum */
+
+static void feel_at_once(float up_mps2)
+{
+    frame.arrival_us -= 25000U;
+    feel(up_mps2);
+}
+
+void test_a_limit_at_rest_belongs_to_the_state_before(void)
+{
+    static const struct {
+        uint16_t doubts;
+        float rested_s, rest_mps2;
+        uint16_t then;
+    } rows[] = {{0U, 1.0F, 2.0F, 0U},
+                {0U, 1.5F, 1.5F, 0U},
+                {DOUBT_IMU, 1.0F, 0.5F, DOUBT_IMU},
+                {DOUBT_IMU, 1.5F, 1.2F, DOUBT_IMU}};
+    for (int i = 0; i < 4; i++) {
+        setUp();
+        flown.grounded = true;
+        feel(0.0F);
+        it.doubts = rows[i].doubts;
+        it.rested_s = rows[i].rested_s;
+        it.rest_mps2 = rows[i].rest_mps2;
+        feel_at_once(rows[i].rest_mps2);
+        TEST_ASSERT_EQUAL_UINT16(rows[i].then, it.doubts);
+    }
+}
+
+void test_a_fall_and_a_rock_begin_beyond_their_limits(void)
+{
+    lie_still(-0.4F, -0.2F, 0.5F);
+    feel_at_once(0.0F);
+    NEAR(0.5F, it.still_s);
+    lie_still(0.0F, -0.8F, 0.5F);
+    it.still_mps[1] = -0.8F;
+    feel_at_once(0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.stands_s);
+    setUp();
+    feel(0.0F);
+    rock(0.017F, -0.017F);
+    NEAR(0.05F, it.unrocked_s);
+}
+
+void test_each_of_several_frames_counts(void)
+{
+    imu_sample_t frames[3];
+    feel(0.0F);
+    for (uint32_t i = 0U; i < 3U; i++) {
+        frames[i] = frame;
+        frames[i].sequence += i + 1U;
+        frames[i].arrival_us += 25000U * (i + 1U);
+        frames[i].down_mps2 = G_MPS2 + 1.0F;
+    }
+    integrity_frames(&it, &flown, frames, 3U);
+    NEAR(0.0625F, it.felt.speed_mps);
+    TEST_ASSERT_EQUAL_UINT32(4U, it.frame_sequence);
+    for (int i = 0; i < 3; i++) {
+        frames[i].level.roll_rad = frames[i].median.roll_rad = 0.8F;
+    }
+    integrity_tilt(&it, frames, 3U, 0.0F, 0.0F, 0U);
+    TEST_ASSERT_EQUAL_UINT16(3U, it.tilted);
+    TEST_ASSERT_EQUAL_UINT32(4U, it.tilt_sequence);
+}
+
+void test_a_glitch_of_a_quarter_of_a_second_is_none(void)
+{
+    for (int late = 0; late < 2; late++) {
+        hover();
+        it.since_rise_s = (late != 0) ? 0.25F : 0.249F;
+        it.before_rise_m = 0.3F;
+        height(0.3F);
+        TEST_ASSERT_EQUAL(late != 0, it.unconfirmed);
+    }
+    hover();
+    height(0.8F);
+    integrity_height(&it, &flown, 0.81F, 0.0005F, 0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.5F, it.before_rise_m); /* however soon the next height comes */
+}
+
+void test_a_rate_is_of_ten_milliseconds_at_least(void)
+{
+    hover();
+    integrity_height(&it, &flown, 0.511F, 0.011F, 0.0F);
+    NEAR(0.011F / 0.211F, it.rise_mps);
+    hover();
+    integrity_height(&it, &flown, 0.505F, 0.005F, 0.0F);
+    NEAR(0.5F * 0.005F / 0.205F, it.rise_mps);
+}
+
+void test_the_end_of_the_depth_lies_below_its_limit(void)
+{
+    hover();
+    it.deep = true;
+    it.deep_m = 0.12F;
+    it.height_m = 0.05F;
+    height(0.0F);
+    TEST_ASSERT_TRUE(integrity_deep(&it));
+    height(-0.001F);
+    TEST_ASSERT_FALSE(integrity_deep(&it));
+}
