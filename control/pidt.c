@@ -1,10 +1,19 @@
 #include "control/pidt.h"
 
+#include <math.h>
+#include <stdbool.h>
+
 #include "control/between.h"
 
 #define LOW_PASS_S 0.0199F /* chosen: 8 Hz */
 #define STEP_MIN_S 0.02F   /* chosen: scans are 0.1 s apart; a shorter gap is a repeated height */
 #define STEP_MAX_S 0.5F    /* chosen: five scans; a longer one gives no useful derivative */
+
+#define SWING_N 0.8F        /* chosen: three times the usual activity, 0.22 N */
+#define SWINGS_FREE 3.0F    /* chosen: an edge and the swing back make two */
+#define SWINGS_TIME_S 10.0F /* chosen: a loop that has swung would swing again */
+#define CALM_PER_SWING 0.1F /* chosen: nine swings take the gain to CALM_MIN */
+#define CALM_MIN 0.4F       /* chosen: keeps two fifths of the gain; as in cascade.c */
 
 void pidt_reset(pidt_state_t *state)
 {
@@ -28,6 +37,22 @@ static void differentiate(pidt_state_t *state, float height_m, float dt_s)
     state->primed = true;
 }
 
+/* Below 1 after swings to and fro: the gains are too high for this vehicle. action_n: what proportional and
+ * derivative part ask for. */
+static float calm(pidt_state_t *state, float action_n, float dt_s)
+{
+    const bool turned = action_n * state->peak_n < 0.0F;
+
+    state->swings *= 1.0F - dt_s / SWINGS_TIME_S;
+    if (turned && fabsf(state->peak_n) > SWING_N) {
+        state->swings += 1.0F;
+    }
+    if (turned || fabsf(action_n) > fabsf(state->peak_n)) {
+        state->peak_n = action_n;
+    }
+    return between(CALM_MIN, 1.0F - CALM_PER_SWING * (state->swings - SWINGS_FREE), 1.0F);
+}
+
 float pidt_step(pidt_state_t *state, const pidt_gains_t *gains, float reference_m, float height_m, float dt_s)
 {
     const bool steady = state->primed && dt_s >= STEP_MIN_S && dt_s <= STEP_MAX_S;
@@ -35,8 +60,8 @@ float pidt_step(pidt_state_t *state, const pidt_gains_t *gains, float reference_
     const float error_m = reference_m - height_m;
 
     differentiate(state, height_m, step_s);
-    const float other_n = gains->gravity_n + gains->kp_n_per_m * error_m -
-                          gains->kd_n_s_per_m * state->rate_mps;
+    const float action_n = gains->kp_n_per_m * error_m - gains->kd_n_s_per_m * state->rate_mps;
+    const float other_n = gains->gravity_n + calm(state, action_n, step_s) * action_n;
     const float more_n = gains->ki_n_per_m_s * error_m * step_s;
     const float thrust_n = other_n + state->integral_n + more_n;
     const bool further = (thrust_n > gains->most_n && more_n > 0.0F) ||

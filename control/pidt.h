@@ -18,6 +18,8 @@ typedef struct {
     float integral_n;
     float height_m; /* previous height */
     float rate_mps; /* vertical speed, low-passed, > 0 is up */
+    float peak_n;   /* largest action since it changed its sign */
+    float swings;   /* leaky count of the large ones */
     bool primed;    /* height_m has a value */
 } pidt_state_t;
 

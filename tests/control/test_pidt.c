@@ -122,3 +122,36 @@ void test_the_integral_stops_at_a_limit_and_comes_back_from_it(void)
     TEST_ASSERT_EQUAL_FLOAT(10.0F, from(0.6F, 0.5F, 5.0F, 0.1F));
     TEST_ASSERT_EQUAL_FLOAT(4.0F, from(0.4F, 0.5F, -5.0F, 0.1F));
 }
+
+/* A height that swings by 0.2 m at 1 Hz: 1.2 N of proportional and some 4 N of derivative part. */
+static float swing(float seconds, float amplitude_m)
+{
+    float most_n = 0.0F;
+    for (float t = 0.0F; t < seconds; t += 0.1F) {
+        const float thrust_n = step(0.6F, 0.6F + amplitude_m * sinf(6.2832F * t), 0.1F) - state.integral_n;
+        most_n = fmaxf(most_n, fabsf(thrust_n - 7.0F));
+    }
+    return most_n;
+}
+
+void test_a_loop_that_swings_loses_gain_and_gets_it_back(void)
+{
+    const float full_n = swing(1.0F, 0.1F);
+    (void)swing(8.0F, 0.1F);
+    const float calm_n = swing(1.0F, 0.1F);
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.4F, calm_n / full_n);
+    (void)swing(30.0F, 0.0F);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F * full_n, full_n, swing(1.0F, 0.1F));
+}
+
+void test_noise_and_an_edge_cost_no_gain(void)
+{
+    (void)swing(1.0F, 0.0F);
+    const float full_n = step(0.7F, 0.6F, 0.1F) - 7.0F - state.integral_n;
+    (void)swing(20.0F, 0.02F);
+    (void)swing(1.0F, 0.0F);
+    (void)step(0.6F, 0.85F, 0.1F);
+    (void)step(0.6F, 0.5F, 0.1F);
+    (void)swing(1.0F, 0.0F);
+    TEST_ASSERT_FLOAT_WITHIN(1e-4F, full_n, step(0.7F, 0.6F, 0.1F) - 7.0F - state.integral_n);
+}
