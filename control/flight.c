@@ -259,7 +259,6 @@ static bool stops_on_ground(flight_t *flight)
 {
     const flight_state_t state = flight->supervisor.state;
     const bool gives_up = state == FLIGHT_COASTING || state == FLIGHT_DESCENDING || state == FLIGHT_LANDING;
-
     flight->not_lifted = state == FLIGHT_TAKEOFF
                              ? !flight->est.airborne && flight->supervisor.state_us < NOT_LIFTED_MAX_US
                              : flight->not_lifted && gives_up;
@@ -546,6 +545,18 @@ static void restart_estimate(flight_t *flight)
                     estimator->felt ? integrity->bias_mps2 : 0.0F);
 }
 
+/* The take-off was given up on the ground, and the accelerometer feels that the vehicle has left it after
+ * all. */
+static void notice_lift(flight_t *flight, const parameters_t *parameters)
+{
+    if (has_estimate(flight) && integrity_felt_mps(&flight->integrity) > LIFTED_MPS) {
+        flight->hover_n = lifting_n(flight, parameters);
+        flight->hover_learned = true;
+        flight->not_lifted = false;
+        est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
+    }
+}
+
 static void update_estimator(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)
 {
     const flight_state_t state = flight->supervisor.state;
@@ -563,6 +574,8 @@ static void update_estimator(flight_t *flight, const parameters_t *parameters, c
         est_law_reset(&flight->est, parameters);
     } else if (state == FLIGHT_FLOATING && !in->has_throttle) {
         est_law_disengage(&flight->est);
+    } else if (flight->not_lifted && state != FLIGHT_TAKEOFF) {
+        notice_lift(flight, parameters);
     } else if (flight->mode == FLIGHT_MODE_LAW && !flight->est.airborne && flies(flight)) {
         est_law_engage(&flight->est, flight->thrust_n, lifting_n(flight, parameters));
     }

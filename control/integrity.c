@@ -31,9 +31,9 @@
 #define TILTED_COS 0.70710678F /* chosen: 45 degrees; as in supervisor.c */
 #define TILT_GAP_US UINT32_C(250000) /* ten frames of 25 ms: after such a gap any tilt is accepted */
 
-/* Scans. With a sensor noise of 3 mm, chance makes three scans with the same digits once in some millions. */
-#define COPIES_MAX 2U           /* chosen: the third identical scan is rejected */
-#define COUNT_MAX 1000U         /* chosen: counters stop here and do not wrap */
+/* Scans. With a sensor noise of 3 mm, chance makes two scans with the same digits once in some thousands. */
+#define COPIES_MAX 1U   /* chosen: the second identical scan is rejected; one in a climb misleads the law */
+#define COUNT_MAX 1000U /* chosen: counters stop here and do not wrap */
 #define HEIGHT_MIN_MM (-50.0F)  /* chosen: no noise reaches so far below the ground; as in supervisor.c */
 #define HEIGHT_BACK_MM (-30.0F) /* chosen: hysteresis of 20 mm, above five times the noise */
 #define HEIGHT_MAX_MM 5000.0F   /* above the scanner's 4095 mm; as in supervisor.c */

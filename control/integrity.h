@@ -148,8 +148,7 @@ void integrity_tilt(integrity_t *integrity, const imu_sample_t *frames, uint16_t
                     float pitch_rad, uint32_t time_us);
 
 /* Checks one scan. Call exactly once for each new scan, before integrity_height(). Returns true when its
- * height may be used: height within -50 .. 5000 mm, and the scan is not the second copy in a row of an
- * earlier one. */
+ * height may be used: height within -50 .. 5000 mm, and the scan is no copy of the one before. */
 bool integrity_scan(integrity_t *integrity, const altitude_t *altitude);
 
 /* Moves the accelerometer's witness, once in each cycle. frames: oldest first, borrowed for the call; frames

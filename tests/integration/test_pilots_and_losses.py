@@ -167,6 +167,13 @@ class Losses(unittest.TestCase):
             self.assertLess(stands, 20.0, f"motors run on the ground: {flight}")
             self.assertLess(max(row["height_m"] for row in flight.after(seen_s + 3.0)), 0.1, f"took off again: {flight}")
 
+    def test_a_scan_frozen_around_the_lift_off_neither_lifts_nor_drops_it(self):
+        for start_s in (1.5, 1.6, 1.7, 2.0, 2.2):
+            for flight in flights(("EST",), ("nominal", "drawn 0"),
+                                  lambda rng, start_s=start_s: ({"scan_frozen_start": start_s}, {}, UNTIL_DOWN)):
+                self.assertLess(flight.touch_mps(), 0.7, str(flight))
+                self.assertLess(max(row["height_m"] for row in flight.rows), 0.6 + 0.4, str(flight))
+
     def test_six_bad_attitudes_cut_nothing(self):
         def burst(rng):
             return {"attitude_burst_deg": rng.choice((30.0, 60.0, 90.0, 120.0, -70.0)),
