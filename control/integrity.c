@@ -761,7 +761,8 @@ static bool unproved_against(const integrity_t *i)
            felt_off_m(i) < -UNPROVED_M;
 }
 
-/* Reasons for DOUBT_SIGHT. */
+/* Reasons for DOUBT_SIGHT. Near the ground the accelerometer alone is not believed against heights that move:
+ * it misses the knocks of a touchdown on a rough floor. */
 static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
 {
     const bool stiff = i->rigid == STILL_SCANS &&
@@ -783,7 +784,7 @@ static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
     if (counts(&i->pushed)) {
         return vain_since_step(i, flown) || i->vain_s > VAIN_S;
     }
-    return acceleration_against(i, ALONE_M);
+    return (i->height_m > LOW_M || integrity_still(i)) && acceleration_against(i, ALONE_M);
 }
 
 /* Reasons for DOUBT_IMU. The hover thrust may have been learned from a wrong accelerometer. Then both

@@ -187,6 +187,23 @@ void test_the_accelerometer_alone_doubts_the_heights_beyond_six_decimetres(void)
     CHECK(rows);
 }
 
+static void low_and_still(float scans)
+{
+    pushed_for(0.3F);
+    it.height_m = 0.05F;
+    it.still = (uint16_t)scans;
+}
+void test_near_the_ground_the_accelerometer_alone_doubts_only_a_still_beam(void)
+{
+    static const row_t rows[] = {
+        {low_and_still, 8.0F, -0.7F, 0, 0},
+        {low_and_still, 8.0F, 0.7F, 0, 0},
+        {low_and_still, 9.0F, -0.7F, 0, DOUBT_SIGHT},
+        {low_and_still, 9.0F, 0.7F, 0, DOUBT_SIGHT},
+    };
+    CHECK(rows);
+}
+
 void test_the_error_of_the_height_is_the_mean_of_the_witnesses_that_count(void)
 {
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(-0.52F, -0.30F));
