@@ -1334,3 +1334,163 @@ void test_a_cycle_that_stops_on_the_ground_takes_two_newtons_a_second(void)
     TEST_ASSERT_EQUAL_UINT16(1U, f.est.actuator.count); /* recorded */
     NEAR(0.0F, f.est.actuator.coming[0].thrust_n - 4.8F);
 }
+
+/* ---- in a pilot's hands, without a pin or without heights */
+
+void test_it_may_be_carried_on_the_ground_without_a_pin_or_in_a_descent_that_began_so(void)
+{
+    for (int i = 0; i < 3; i++) {
+        setUp();
+        f.supervisor.state = FLIGHT_GROUND;
+        f.integrity.carried_s = (i == 1) ? 0.9F : 1.1F;
+        set(PARAMETER_SEL, (i == 2) ? (float)SEL_PIN : (float)SEL_NONE);
+        TEST_ASSERT_EQUAL(i == 0, may_be_carried(&f, &parameters));
+    }
+    f.supervisor.state = FLIGHT_DESCENDING;
+    f.integrity.sway_rad2 = 1.0e-3F;
+    TEST_ASSERT_FALSE(may_be_carried(&f, &parameters));
+    f.carried = true;
+    TEST_ASSERT_TRUE(may_be_carried(&f, &parameters));
+    f.integrity.sway_rad2 = 0.0F;
+    TEST_ASSERT_FALSE(may_be_carried(&f, &parameters));
+}
+
+void test_a_descent_handed_over_without_heights_is_carried_to_its_end(void)
+{
+    static const struct {
+        flight_state_t state;
+        bool handed_over, before, carried;
+        uint32_t state_us;
+    } rows[] = {{FLIGHT_DESCENDING, true, false, true, 0U},
+                {FLIGHT_DESCENDING, true, false, false, 1U},
+                {FLIGHT_DESCENDING, false, false, false, 0U},
+                {FLIGHT_DESCENDING, false, true, true, 5U},
+                {FLIGHT_LANDING, true, true, false, 0U}};
+    for (int i = 0; i < 5; i++) {
+        for (int pin = 0; pin < 2; pin++) {
+            setUp();
+            set(PARAMETER_SEL, (pin != 0) ? (float)SEL_PIN : (float)SEL_NONE);
+            f.supervisor.state = rows[i].state;
+            f.supervisor.handed_over = rows[i].handed_over;
+            f.supervisor.state_us = rows[i].state_us;
+            f.carried = rows[i].before;
+            update_sureness(&f, &parameters, true);
+            TEST_ASSERT_EQUAL(rows[i].carried, f.carried);
+            TEST_ASSERT_EQUAL(rows[i].carried, f.unsure);
+            NEAR((i == 0) ? ((pin != 0) ? 0.15F : 0.06F) : 0.0F, f.carried_n_per_s);
+        }
+    }
+}
+
+void test_a_carried_vehicle_has_a_thrust_below_hover_that_sinks(void)
+{
+    f.carried = f.unsure = true;
+    f.carried_n_per_s = 0.06F;
+    f.supervisor.state_us = 10000000U;
+    f.est.estimator.now.speed_mps = f.est.estimator.delayed.speed_mps = 0.4F;
+    f.est.estimator.now.bias_mps2 = f.est.estimator.delayed.bias_mps2 = 0.2F;
+    NEAR(7.0F - 0.5F - 0.6F, within_power_n(&f, 3.0F));
+    NEAR(0.38F, f.est.estimator.now.speed_mps); /* a twentieth: 0.1 of 2 s */
+    NEAR(0.0F, f.est.estimator.now.height_m);
+    NEAR(0.2F, f.est.estimator.now.bias_mps2);
+    NEAR(7.0F + 0.7F - 0.6F, within_power_n(&f, 9.0F));
+    NEAR(6.4F, within_power_n(&f, 6.4F));
+    f.supervisor.state_us = 50000000U;
+    NEAR(7.0F - 0.5F - 0.06F * 33.0F, within_power_n(&f, 3.0F));
+}
+
+void test_a_carried_descent_knows_its_hover_thrust_still(void)
+{
+    f.supervisor.state = FLIGHT_DESCENDING;
+    f.carried = true;
+    f.est.entry_hover_n = 6.0F;
+    f.hover_n = 7.2F;
+    update_hover(&f, GRAV_N);
+    NEAR(7.2F, f.est.entry_hover_n);
+}
+
+void test_a_descent_from_a_pilots_hands_starts_from_the_felt_speed(void)
+{
+    for (int i = 0; i < 3; i++) {
+        setUp();
+        f.supervisor.state = (i == 1) ? FLIGHT_LANDING : FLIGHT_DESCENDING;
+        f.integrity.felt.speed_mps = 0.3F;
+        f.integrity.bias_mps2 = 0.15F;
+        change_mode(&f, (i == 2) ? FLIGHT_MODE_LAW : FLIGHT_MODE_IDLE, FLIGHT_MODE_EST_SINK, GRAV_N);
+        NEAR((i == 0) ? 0.3F : 0.0F, f.est.estimator.now.speed_mps);
+        NEAR((i == 0) ? 0.15F : 0.0F, f.est.estimator.now.bias_mps2);
+        NEAR((i == 0) ? 0.0F : 0.5F, f.est.estimator.now.height_m);
+    }
+}
+
+/* ---- gaps */
+
+void test_an_imu_that_is_back_starts_the_estimate_from_thrust_and_heights(void)
+{
+    static const struct {
+        bool airborne, frames, felt, doubted, starts;
+    } rows[] = {{true, true, true, false, true},
+                {false, true, true, false, false},
+                {true, false, true, false, false},
+                {true, true, false, false, true},
+                {true, true, true, true, true}};
+    for (int i = 0; i < 5; i++) {
+        setUp();
+        lose_the_estimate();
+        f.est.airborne = rows[i].airborne;
+        f.est.frameless_s = rows[i].frames ? 0.0F : 1.0F;
+        f.est.estimator.felt = rows[i].felt;
+        f.integrity.doubts = rows[i].doubted ? DOUBT_SIGHT : 0U;
+        f.integrity.height_m = 0.7F;
+        f.integrity.bias_mps2 = 0.25F;
+        f.integrity.pushed = (witness_t){
+            .speed_mps = 0.2F, .off_m = 0.05F, .seen_m = 0.1F, .running_s = 2.0F};
+        update_estimator(&f, &parameters, &in);
+        TEST_ASSERT_EQUAL(rows[i].starts, f.est.estimator.initialised);
+        if (rows[i].starts) {
+            NEAR(rows[i].doubted ? 0.5F : 0.75F, f.est.estimator.now.height_m);
+            NEAR(0.24F, f.est.estimator.now.speed_mps);
+            NEAR(rows[i].felt ? 0.25F : 0.0F, f.est.estimator.now.bias_mps2);
+        }
+    }
+}
+
+void test_pidt_does_not_hold_a_push_while_heights_are_late(void)
+{
+    static const struct {
+        uint32_t age_us;
+        bool airborne;
+        float setpoint_n, then_n;
+    } rows[] = {{170000U, true, 9.0F, 9.0F},
+                {170001U, true, 9.0F, 7.5F},
+                {170001U, true, 5.0F, 6.5F},
+                {170001U, true, 7.2F, 7.2F},
+                {170001U, false, 9.0F, 9.0F}};
+    for (int i = 0; i < 5; i++) {
+        setUp();
+        f.pidt.primed = true;
+        f.supervisor.height.age_us = rows[i].age_us;
+        f.est.airborne = rows[i].airborne;
+        f.setpoint_n = rows[i].setpoint_n;
+        step_pidt(&f, &parameters, 0.6F);
+        NEAR(rows[i].then_n, f.setpoint_n);
+    }
+}
+
+void test_a_law_that_goes_on_without_the_estimate_starts_near_hover(void)
+{
+    for (int lost = 0; lost < 2; lost++) {
+        setUp();
+        f.mode = FLIGHT_MODE_LAW;
+        f.thrust_n = 9.0F;
+        f.est.estimator.initialised = lost == 0;
+        bumpless_transfer(&f, FLIGHT_MODE_EST_HOLD, true);
+        NEAR((lost != 0) ? 0.5F : 2.0F, f.transfer_n);
+    }
+}
+
+void test_a_doubted_accelerometer_does_not_free_a_climb_at_take_off(void)
+{
+    f.integrity.doubts = DOUBT_IMU;
+    TEST_ASSERT_TRUE(climbing_n(FLIGHT_TAKEOFF, FLIGHT_MODE_EST_HOLD, true, 0.51F, 0.0F) < 9.0F);
+}

@@ -1182,3 +1182,88 @@ void test_the_end_of_the_depth_lies_below_its_limit(void)
     height(-0.001F);
     TEST_ASSERT_FALSE(integrity_deep(&it));
 }
+
+/* ---- in somebody's hands, and after a gap */
+
+/* On the ground without a height, and the tilt sways as in the air. */
+static void carry(float unseen_s, float sway_rad2)
+{
+    setUp();
+    flown.grounded = true;
+    feel(0.0F);
+    it.unseen_s = unseen_s;
+    it.sway_rad2 = sway_rad2;
+    it.carried_s = 0.5F;
+    it.rested_s = 1.0F;
+    it.rest_mps2 = it.bias_mps2 = 0.3F;
+    it.kept_bias_mps2[0] = 0.1F;
+    it.kept_bias_mps2[1] = 0.2F;
+    it.felt.speed_mps = 0.4F;
+}
+
+void test_a_vehicle_that_sways_without_heights_is_carried_and_does_not_rest(void)
+{
+    carry(1.48F, 5.0e-4F);
+    feel(2.0F); /* on the mean 1 m/s2 */
+    NEAR(0.525F, it.carried_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.rested_s);
+    NEAR(0.4F + 0.9F * 0.025F - 0.4F * 0.025F / 2.0F, it.felt.speed_mps);
+    VERY_NEAR(0.1F + 0.9F * 0.025F / 20.0F, it.bias_mps2); /* the one kept from before */
+    feel(2.0F);
+    VERY_NEAR(0.1F + 0.9F * 0.025F / 20.0F + (2.0F - 0.101125F) * 0.025F / 20.0F, it.bias_mps2);
+    carry(1.47F, 5.0e-4F);
+    feel(0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.carried_s);
+    NEAR(1.025F, it.rested_s);
+    NEAR(1.495F, it.unseen_s);
+    carry(1.9F, 3.9e-4F);
+    feel(0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.carried_s);
+}
+
+void test_who_tilts_it_by_hand_does_not_fly_it(void)
+{
+    carry(1.9F, 0.0121F);
+    feel(0.0F);
+    NEAR(0.525F, it.carried_s); /* a 60th of the sway is forgotten with each frame */
+    carry(1.9F, 0.0123F);
+    feel(0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.carried_s);
+    it.carried_s = 1.0F;
+    TEST_ASSERT_FALSE(integrity_carried(&it));
+    it.carried_s = 1.01F;
+    TEST_ASSERT_TRUE(integrity_carried(&it));
+    carry(1.9F, 5.0e-4F);
+    it.carried_s = 1.99F;
+    feel(0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(2.0F, it.carried_s);
+    it.unseen_s = 1.99F;
+    feel(0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(2.0F, it.unseen_s);
+    height(0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.unseen_s);
+}
+
+void test_the_bias_of_one_to_two_seconds_ago_is_kept(void)
+{
+    carry(0.0F, 0.0F);
+    it.block_s = 0.97F;
+    feel(0.3F);
+    NEAR(0.995F, it.block_s);
+    NEAR(0.1F, it.kept_bias_mps2[0]);
+    feel(0.3F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.block_s);
+    NEAR(0.2F, it.kept_bias_mps2[0]);
+    NEAR(0.3F, it.kept_bias_mps2[1]);
+}
+
+void test_after_a_gap_the_thrusts_witness_tells_speed_and_way(void)
+{
+    it.rise_mps = 0.15F;
+    it.pushed = (witness_t){.speed_mps = 0.5F, .off_m = 0.1F, .seen_m = 0.3F, .running_s = 0.51F};
+    NEAR(0.5F + 0.4F * 0.3F, integrity_pushed_mps(&it));
+    NEAR(0.2F, integrity_moved_m(&it));
+    it.pushed.running_s = 0.5F;
+    NEAR(0.15F, integrity_pushed_mps(&it));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, integrity_moved_m(&it));
+}

@@ -699,3 +699,17 @@ void test_on_the_ground_and_under_a_pilot_nothing_is_judged(void)
     TEST_ASSERT_EQUAL_FLOAT(0.3F, it.felt.speed_mps);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, it.felt.running_s);
 }
+
+void test_a_thrust_that_lifts_any_vehicle_makes_a_sway_count_three_times(void)
+{
+    for (int strong = 0; strong < 2; strong++) {
+        setUp();
+        flown.standing = it.standing = true;
+        it.height_m = it.swaying_from_m = 0.0F;
+        it.sway_rad2 = 4.1e-4F;
+        it.swaying_s = 1.0F;
+        it.lagged_n = HOVER_N * ((strong != 0) ? 1.301F : 1.299F);
+        integrity_height(&it, &flown, 0.0F, 0.1F, 0.0F);
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, (strong != 0) ? 1.3F : 0.0F, it.swaying_s);
+    }
+}

@@ -552,3 +552,25 @@ void test_a_cycle_that_makes_no_transition_is_remembered(void)
     TEST_ASSERT_EQUAL(FLIGHT_LANDING, s.state);
     TEST_ASSERT_EQUAL(FLIGHT_STATE_COUNT, s.kept_state);
 }
+
+void test_a_flight_that_somebody_carries_is_handed_over_three_seconds_after_a_landing(void)
+{
+    for (int i = 0; i < 4; i++) {
+        setUp();
+        s.height.age_us = (i == 1) ? 1500000U : 1500001U;
+        s.state_us = (i == 2) ? 3000000U : 3000001U;
+        in.has_throttle = i != 3;
+        estimate.carried = true;
+        observe_hand_over(&s, &in, &estimate);
+        TEST_ASSERT_EQUAL(i == 0, s.handed_over);
+        TEST_ASSERT_TRUE(s.carried);
+    }
+    estimate.carried = false;
+    observe_hand_over(&s, &in, &estimate);
+    TEST_ASSERT_FALSE(s.carried);
+    s.state = FLIGHT_DESCENDING;
+    s.state_us = 45000000U;
+    TEST_ASSERT_TRUE(met(FLIGHT_IF_DESCENT_TIMEOUT));
+    s.carried = true; /* a pilot may fly */
+    TEST_ASSERT_FALSE(met(FLIGHT_IF_DESCENT_TIMEOUT));
+}

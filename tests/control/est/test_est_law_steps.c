@@ -848,3 +848,43 @@ void test_a_command_takes_effect_after_the_delay_and_beyond_the_deadband(void)
     NEAR(deadband_compensate(&law.deadband, 7.0F, without_n),
          est_law_step(&law, &parameters, EST_MODE_HOLD, 0.9F));
 }
+
+/* ---- frames that are late */
+
+void test_a_height_without_frames_forgets_the_latest_one(void)
+{
+    for (int late = 0; late < 2; late++) {
+        setUp();
+        law.frameless_s = (late != 0) ? 0.151F : 0.15F;
+        law.estimator.latest.share = 0.8F;
+        see(0.5F, false);
+        TEST_ASSERT_EQUAL_FLOAT((late != 0) ? 0.0F : 0.8F, law.estimator.latest.share);
+    }
+}
+
+void test_without_frames_the_thrust_is_within_half_a_newton_of_hover(void)
+{
+    for (int side = -1; side < 2; side += 2) {
+        for (int late = 0; late < 2; late++) {
+            setUp();
+            law.step_s = 0.5F;
+            law.frameless_s = (late != 0) ? 0.151F : 0.15F;
+            law.hover.thrust_n = 7.1F;
+            law.estimator.now.speed_mps = -1.0F * (float)side;
+            const float thrust_n = est_law_step(&law, &parameters, EST_MODE_HOLD, 0.5F);
+            if (late != 0) {
+                NEAR(7.1F + 0.5F * (float)side, thrust_n);
+            } else {
+                TEST_ASSERT_TRUE((thrust_n - 7.1F) * (float)side > 1.0F);
+            }
+        }
+    }
+}
+
+void test_a_gust_is_forgotten_while_no_height_confirms_the_speed(void)
+{
+    law.heightless_s = 0.28F;
+    law.hover.gust_n = 0.4F;
+    cycle(0.0F);
+    NEAR(0.4F * (1.0F - 0.025F / 0.76F), law.hover.gust_n);
+}

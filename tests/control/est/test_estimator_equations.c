@@ -745,3 +745,36 @@ void test_a_moved_bias_moves_at_both_instants(void)
     NEAR(0.15F, e.delayed.bias_mps2);
     NEAR(0.25F, e.now.bias_mps2);
 }
+
+void test_a_forgotten_frame_leaves_the_speed_to_the_heights(void)
+{
+    predict(2.0F);
+    e.covariance[BIAS][BIAS] = 0.03F;
+    e.covariance[SPEED][BIAS] = e.covariance[HEIGHT][BIAS] = 0.001F;
+    estimator_forget_frame(&e);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, e.latest.up_mps2);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, e.latest.share);
+    NEAR((0.53F * 0.53F + 9.0F) * 0.025F, e.latest.drift);
+    NEAR(0.03F, e.covariance[BIAS][BIAS]);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, e.covariance[SPEED][BIAS]);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, e.covariance[HEIGHT][BIAS]);
+    TEST_ASSERT_EQUAL_UINT16(2U, e.unchecked_count);
+}
+
+void test_a_started_estimate_is_the_given_one_and_keeps_what_is_known_of_the_bias(void)
+{
+    e.initialised = false;
+    e.rejected_count = 2U;
+    e.covariance[BIAS][BIAS] = 0.03F;
+    e.covariance[SPEED][BIAS] = 0.001F;
+    estimator_start(&e, 0.8F, 0.3F, 0.2F);
+    TEST_ASSERT_TRUE(e.initialised);
+    NEAR(0.8F, e.now.height_m);
+    NEAR(0.3F, e.now.speed_mps);
+    NEAR(0.2F, e.now.bias_mps2);
+    NEAR(0.03F, e.covariance[BIAS][BIAS]);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, e.covariance[SPEED][BIAS]);
+    NEAR(0.04F, e.covariance[SPEED][SPEED]);
+    TEST_ASSERT_EQUAL_UINT16(0U, e.rejected_count);
+    TEST_ASSERT_EQUAL_UINT16(2U, e.unchecked_count);
+}

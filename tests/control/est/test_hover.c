@@ -158,3 +158,13 @@ void test_gusts_end_at_a_newton_and_the_hover_thrust_at_its_bounds(void)
         TEST_ASSERT_EQUAL_FLOAT(7.0F + 2.0F * side, hover.thrust_n);
     }
 }
+
+void test_a_gust_ends_without_a_sample_as_with_one(void)
+{
+    hover.gust_n = 0.4F;
+    const hover_t before = hover;
+    hover_forget_gust(&hover, 0.1F);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.4F * (1.0F - 0.1F / 0.76F), hover.gust_n);
+    TEST_ASSERT_EQUAL_FLOAT(before.thrust_n, hover.thrust_n);
+    TEST_ASSERT_EQUAL_FLOAT(before.variance_n2, hover.variance_n2);
+}
