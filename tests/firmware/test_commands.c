@@ -539,8 +539,8 @@ void test_a_verb_gets_the_command_and_its_verdict_is_the_links_life_sign(void)
 
 void test_every_valid_line_is_a_life_sign_of_the_link(void)
 {
-    static const char *const valid[] = {"#PING",    "#GET",      "#GET KP", "#HELP",
-                                        "#KP 0.01", "#SETR 0.5", "#LAW PD", "#LINK 2"};
+    static const char *const valid[] = {"#PING",     "#GET",    "#GET KP", "#HELP",    "#KP 0.01",
+                                        "#SETR 0.5", "#LAW PD", "#LINK 2", "#VERSION", "#PING x"};
 
     for (uint32_t i = 0; i < sizeof valid / sizeof valid[0]; i++) {
         reference.link_time_us = 0U;

@@ -24,15 +24,23 @@ bool __wrap_bsp_storage_erase(uint16_t slot)
     return __real_bsp_storage_erase(slot);
 }
 
+static bool cell_sticks; /* a cell that was not programmed, and nobody says so */
+
 bool __wrap_bsp_storage_program(uint16_t slot, uint16_t first, const uint16_t cells[BSP_STORAGE_BLOCK])
 {
     TEST_ASSERT_EQUAL_UINT16_MESSAGE(1, kernel.hwi.depth, "interrupts are on while the flash is busy");
-    return __real_bsp_storage_program(slot, first, cells);
+    const bool programmed = __real_bsp_storage_program(slot, first, cells);
+
+    if (cell_sticks && first == BSP_STORAGE_BLOCK) {
+        flash_sectors_m_n[slot][first] ^= 1U;
+    }
+    return programmed;
 }
 
 void setUp(void)
 {
     kernel_reset();
+    cell_sticks = false;
     flash_blank();
     parameters_init(&parameters);
 }
@@ -324,4 +332,31 @@ void test_the_first_save_ever_may_fail_and_nothing_is_loaded_then(void)
         flash_cut_power_after(-1);
         TEST_ASSERT_NOT_EQUAL(PARAMETER_STORE_DONE, load());
     }
+}
+
+void test_what_was_programmed_is_read_back(void)
+{
+    cell_sticks = true;
+    TEST_ASSERT_EQUAL(PARAMETER_STORE_FAULT, save(1.0F));
+    cell_sticks = false;
+    TEST_ASSERT_EQUAL(PARAMETER_STORE_DONE, save(2.0F));
+    assert_loads(2.0F, 1U);
+}
+
+/* A newer copy of another version is overwritten first: the own one stays until the new one is complete. */
+void test_a_save_keeps_the_latest_copy_of_its_own_version(void)
+{
+    static parameter_image_t image;
+
+    (void)save(1.0F);
+    (void)save(2.0F);
+    const uint16_t newer = (parameter_image_read(&image, flash_sectors_m_n[1]) == PARAMETER_IMAGE_GOOD &&
+                            image.generation == 2U)
+                               ? 1U
+                               : 0U;
+    edit(newer, other_names);
+    TEST_ASSERT_EQUAL(PARAMETER_STORE_DONE, save(3.0F));
+    TEST_ASSERT_EQUAL(PARAMETER_IMAGE_GOOD, parameter_image_read(&image, flash_sectors_m_n[1U - newer]));
+    TEST_ASSERT_EQUAL_UINT32(1U, image.generation);
+    assert_loads(3.0F, 3U);
 }

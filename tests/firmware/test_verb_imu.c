@@ -129,7 +129,7 @@ static bool type(const char *argument)
 
 static void assert_answer(const char *expected, const char *argument)
 {
-    (void)type(argument);
+    TEST_ASSERT_EQUAL(strncmp(expected, "OK", 2U) == 0, type(argument));
     TEST_ASSERT_EQUAL_UINT16(1, line_count);
     TEST_ASSERT_EQUAL_STRING(expected, lines[0]);
 }
@@ -311,4 +311,9 @@ void test_a_spike_to_the_side_is_not_looked_at_either(void)
     spike_x = 0.0F;
     spike_y = -250.0F;
     assert_answer("OK IMU LEVEL IUNIT:256.00 IDOWN:Z\r\n", "LEVEL");
+}
+
+void test_one_letter_is_a_word_too(void)
+{
+    assert_answer("ERR IMU one of LEVEL|RIGHT|NOSE\r\n", "L");
 }

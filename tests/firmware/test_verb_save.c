@@ -35,6 +35,7 @@ static void write_parameters(const parameters_t *set, int calls)
 static parameter_store_result_t load(parameters_t *set, int calls)
 {
     (void)calls;
+    TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&parameters, set, sizeof parameters, "not the set in force");
     if (result.status == PARAMETER_STORE_DONE) {
         set->value[PARAMETER_KP] = 0.5F;
         set->generation += 9U;
@@ -45,6 +46,7 @@ static parameter_store_result_t load(parameters_t *set, int calls)
 static parameter_store_result_t save(const parameters_t *set, int calls)
 {
     (void)calls;
+    TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&parameters, set, sizeof parameters, "not the set in force");
     stored = *set;
     saves++;
     return result;
