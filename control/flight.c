@@ -142,6 +142,18 @@ static void update_hover(flight_t *flight, float gravity_n)
     est_law_set_sure_hover(&flight->est, flight->hover_n, descends(state) && !flight->carried);
 }
 
+/* Law EST takes over. knows: its hover thrust was learned in this flight, and is not learned anew from a
+ * vehicle that may still swing. */
+static void engage_estimate(flight_t *flight, bool knows)
+{
+    const hover_t learned = flight->est.hover;
+
+    est_law_engage(&flight->est, flight->thrust_n, knows ? learned.thrust_n : flight->hover_n);
+    if (knows) {
+        flight->est.hover.variance_n2 = learned.variance_n2;
+    }
+}
+
 /* Initial values of the new mode. The law keeps its integral action only during COASTING. */
 static void change_mode(flight_t *flight, flight_mode_t before, flight_mode_t now, float gravity_n)
 {
@@ -171,7 +183,7 @@ static void change_mode(flight_t *flight, flight_mode_t before, flight_mode_t no
     }
     if (is_est_mode(now) && !is_est_mode(before) &&
         (handed_over || (before != FLIGHT_MODE_IDLE && !lifts(flight)))) {
-        est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
+        engage_estimate(flight, before == FLIGHT_MODE_LAW && flight->est.airborne);
     }
 }
 

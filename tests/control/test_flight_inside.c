@@ -452,6 +452,20 @@ void test_the_tilt_of_a_silent_imu_does_not_rock(void)
     TEST_ASSERT_FALSE(rocks(&f));
 }
 
+void test_a_hover_thrust_learned_in_this_flight_is_not_learned_anew_after_another_law(void)
+{
+    for (int i = 0; i < 2; i++) {
+        setUp();
+        f.est.airborne = i == 1;
+        f.est.hover.thrust_n = 7.4F;
+        f.est.hover.variance_n2 = 0.01F;
+        f.hover_n = 6.9F;
+        change_mode(&f, FLIGHT_MODE_LAW, FLIGHT_MODE_EST_HOLD, 7.0F);
+        NEAR((i == 1) ? 7.4F : 6.9F, f.est.hover.thrust_n);
+        NEAR((i == 1) ? 0.01F : 0.25F, f.est.hover.variance_n2);
+    }
+}
+
 void test_pidt_holds_no_push_while_heights_are_late(void)
 {
     f.pidt.primed = true;
