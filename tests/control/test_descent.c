@@ -171,3 +171,12 @@ void test_blind_it_sinks_at_0_3_m_s_at_first_and_below_half_a_metre_per_second_f
     TEST_ASSERT_FLOAT_WITHIN(1.0F, 8.0F, (float)t_s);
     TEST_ASSERT_TRUE(speed_m_s < 0.5);
 }
+
+void test_a_new_descent_begins_in_the_air(void)
+{
+    descent.near_ground_s = 2.0F;
+    descent.rocks = true;
+    descent_start(&descent, 0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, descent.near_ground_s);
+    TEST_ASSERT_FALSE(descent.rocks);
+}

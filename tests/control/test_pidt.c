@@ -155,3 +155,38 @@ void test_noise_and_an_edge_cost_no_gain(void)
     (void)swing(1.0F, 0.0F);
     TEST_ASSERT_FLOAT_WITHIN(1e-4F, full_n, step(0.7F, 0.6F, 0.1F) - 7.0F - state.integral_n);
 }
+
+/* One step at the height of the step before, 0.1 m below the reference: 0.63 N are asked for. */
+static float calmed(float swings, float peak_n, float error_m)
+{
+    state = (pidt_state_t){.height_m = 0.5F, .primed = true, .swings = swings, .peak_n = peak_n};
+    return step(0.5F + error_m, 0.5F, 0.1F) - 7.0F - state.integral_n;
+}
+
+void test_swings_beyond_three_take_a_tenth_of_the_gain_each_down_to_two_fifths(void)
+{
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.63F, calmed(3.0F / 0.99F, 1.0F, 0.1F));
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.8F * 0.63F,
+                             calmed(5.0F / 0.99F, 1.0F, 0.1F)); /* a hundredth is forgotten */
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.41F * 0.63F, calmed(8.9F / 0.99F, 1.0F, 0.1F));
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.4F * 0.63F, calmed(20.0F, 1.0F, 0.1F));
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.63F, calmed(1.0F, 1.0F, 0.1F));
+}
+
+void test_a_swing_is_a_turn_from_beyond_0_8_newtons(void)
+{
+    for (float side = -1.0F; side < 2.0F; side += 2.0F) {
+        (void)calmed(2.0F, -0.81F * side, 0.1F * side);
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, 2.98F, state.swings);
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.63F * side, state.peak_n);
+        (void)calmed(2.0F, -0.79F * side, 0.1F * side);
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, 1.98F, state.swings);
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.63F * side, state.peak_n);
+        (void)calmed(2.0F, 0.9F * side, 0.1F * side);
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, 1.98F, state.swings);
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.9F * side, state.peak_n);
+        (void)calmed(2.0F, 0.5F * side, 0.1F * side);
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, 1.98F, state.swings);
+        TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.63F * side, state.peak_n);
+    }
+}

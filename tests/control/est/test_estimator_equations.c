@@ -576,6 +576,7 @@ static height_outcome_t second(float apart_m, uint16_t rejected)
     e.delayed.speed_mps = 1.5F;
     e.mean_innovation_m = 0.01F;
     e.fused_count = 8U;
+    e.covariance[TERRAIN][TERRAIN] = 0.2F;
     e.covariance[HEIGHT][SPEED] = e.covariance[HEIGHT][BIAS] = 0.001F;
     return see(0.7F + apart_m);
 }
