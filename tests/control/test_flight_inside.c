@@ -1508,3 +1508,23 @@ void test_a_doubted_accelerometer_does_not_free_a_climb_at_take_off(void)
     f.integrity.doubts = DOUBT_IMU;
     TEST_ASSERT_TRUE(climbing_n(FLIGHT_TAKEOFF, FLIGHT_MODE_EST_HOLD, true, 0.51F, 0.0F) < 9.0F);
 }
+
+void test_a_hover_thrust_learned_in_this_flight_survives_a_law_without_the_estimate(void)
+{
+    static const struct {
+        flight_mode_t before;
+        bool airborne, knows;
+    } rows[] = {
+        {FLIGHT_MODE_LAW, true, true}, {FLIGHT_MODE_LAW, false, false}, {FLIGHT_MODE_FLOAT, true, false}};
+    for (int i = 0; i < 3; i++) {
+        setUp();
+        f.est.airborne = rows[i].airborne;
+        f.est.hover.thrust_n = 7.6F;
+        f.est.hover.variance_n2 = 0.02F;
+        f.hover_n = 7.2F;
+        change_mode(&f, rows[i].before, FLIGHT_MODE_EST_HOLD, GRAV_N);
+        NEAR(rows[i].knows ? 7.6F : 7.2F, f.est.hover.thrust_n);
+        NEAR(rows[i].knows ? 0.02F : 0.25F, f.est.hover.variance_n2);
+        TEST_ASSERT_TRUE(f.est.airborne);
+    }
+}
