@@ -452,6 +452,28 @@ static void watch_fall(integrity_t *i, float dt_s)
     i->stands_s = (falls && i->sway_rad2 < SWAY_RAD2) ? i->stands_s + dt_s : 0.0F;
 }
 
+/* How the tilt moves. */
+static void watch_tilt(integrity_t *i, const imu_sample_t *frame, float dt_s)
+{
+    watch_sway(i, frame, dt_s);
+    if (i->height_m < ROCKED_BELOW_M) {
+        watch_rocking(i, frame, dt_s);
+    } else {
+        i->unrocked_s = 0.0F;
+    }
+}
+
+/* A frame without accelerations tells that too. */
+static void watch_tilt_alone(integrity_t *i, const imu_sample_t *frame)
+{
+    const uint32_t gap_us = frame->arrival_us - i->tilt_alone_us;
+
+    i->tilt_alone_us = frame->arrival_us;
+    if (gap_us <= FRAME_GAP_US) {
+        watch_tilt(i, frame, (float)gap_us * 1.0e-6F);
+    }
+}
+
 /* One accepted frame. up_mps2: what its accelerometer measures. */
 static void integrate_frame(integrity_t *i, const flown_t *flown, const imu_sample_t *frame, float up_mps2)
 {
@@ -467,12 +489,7 @@ static void integrate_frame(integrity_t *i, const flown_t *flown, const imu_samp
         start(&i->felt, integrity_pushed_mps(i));
         return;
     }
-    watch_sway(i, frame, dt_s);
-    if (i->height_m < ROCKED_BELOW_M) {
-        watch_rocking(i, frame, dt_s);
-    } else {
-        i->unrocked_s = 0.0F;
-    }
+    watch_tilt(i, frame, dt_s);
     if (flown->grounded) {
         watch_ground(i, 0.5F * (before_mps2 + up_mps2), dt_s);
     } else {
@@ -496,7 +513,12 @@ void integrity_frames(integrity_t *integrity, const flown_t *flown, const imu_sa
     for (uint16_t k = imu_first_after(frames, count, integrity->frame_sequence); k < count; ++k) {
         const imu_sample_t *frame = &frames[k];
         const bool fit = (int32_t)(frame->sequence - integrity->unfit_sequence) > 0;
-        if (!fit || !frame->ready || !frame->has_acceleration) {
+        if (!fit || !frame->ready) {
+            continue;
+        }
+        if (!frame->has_acceleration) {
+            integrity->frame_sequence = frame->sequence;
+            watch_tilt_alone(integrity, frame);
             continue;
         }
         const float up_mps2 = motion_up_mps2(frame);

@@ -115,6 +115,7 @@ typedef struct {
     float rest_mps2;         /* its mean at rest */
     float rested_s;          /* time at rest that this mean covers, at most 2 s */
     float kept_bias_mps2[2]; /* that mean one to two seconds ago, and up to one second ago */
+    uint32_t tilt_alone_us;  /* latest frame without accelerations */
     float block_s;           /* time since the latter was taken */
     float bias_mps2;         /* of the accelerometer: at rest its mean, in the air corrected by the heights */
     float shaken;            /* >= 1: divides the witness's innovation when the accelerometer is noisy */
@@ -192,7 +193,7 @@ bool integrity_still(const integrity_t *integrity);
 bool integrity_sways(const integrity_t *integrity);
 
 /* The same with less delay, for the end of a landing: the tilt has moved by a degree within the last half
- * second. False without accelerations. */
+ * second. */
 bool integrity_rocks(const integrity_t *integrity);
 
 /* True in state GROUND without heights, when the tilt has swayed as in the air for 1 s: a pilot flies it.

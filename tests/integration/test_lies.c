@@ -94,6 +94,27 @@ void test_a_light_vehicle_whose_beam_is_blocked_since_power_on_does_not_fly_away
     }
 }
 
+/* A Razor as it comes: no accelerations, the sway of the tilt tells that the vehicle flies. */
+static const lie_t stock[] = {
+    {{FLAT, "plant.imu_stock=1", "plant.sight_blocked=1", "plant.sight_blocked_start=10",
+      "plant.block_mm=160"},
+     1000.0,
+     1.0,
+     0.0},
+    {{FLAT, "plant.imu_stock=1", "plant.sight_blocked=1", "plant.sight_blocked_start=5",
+      "plant.block_mm=190"},
+     1000.0,
+     1.0,
+     0.0},
+};
+
+void test_a_blocked_beam_near_the_ground_is_doubted_without_accelerations_too(void)
+{
+    for (size_t i = 0; i < sizeof stock / sizeof stock[0]; i++) {
+        fly("est-60cm-ramp", &stock[i], false);
+    }
+}
+
 static const lie_t floors[] = {
     {{FLAT, "plant.bars_mm=60", "plant.bars_period=0.4"}, 300.0, 0.5, 40.0},
 };
