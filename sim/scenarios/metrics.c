@@ -103,16 +103,21 @@ static void find_extremes(metrics_record_t *record, const metrics_sample_t *s)
     }
 }
 
+/* A vehicle without thrust does not leave the ground: it stood on the platform, and that went away. What it
+ * falls is no deed of the firmware. */
 static void watch_touch(metrics_record_t *record, const metrics_sample_t *s)
 {
     if (s->height_m > AIRBORNE_M) {
+        const bool idle = record->before.thrust_n <= 0.0 && s->thrust_n <= 0.0;
+        record->dropped = record->airborne ? record->dropped : record->count > 0 && idle;
         record->airborne = true;
         record->fall_mps = 0.0;
     }
     record->fall_mps = fmax(record->fall_mps, -s->speed_mps);
     if (record->airborne && s->height_m <= TOUCHED_M) {
         record->airborne = false;
-        record->hardest_mps = fmax(record->hardest_mps, record->fall_mps);
+        record->hardest_mps = record->dropped ? record->hardest_mps
+                                              : fmax(record->hardest_mps, record->fall_mps);
     }
 }
 

@@ -84,6 +84,7 @@ typedef struct {
     double tenth_s, ninety_s; /* first time at 10 and 90 % of the reference; NAN: not yet */
     double overshoot_mm, undershoot_mm, last_off_s;
     double largest_mm, highest_mm;
+    bool dropped; /* it stood without thrust on a platform that went away */
     double fall_mps, hardest_mps;
     bool airborne;
     double takeovers, cuts, off_aloft;

@@ -113,6 +113,27 @@ void test_motors_may_stop_low_or_when_the_vehicle_is_tilted_or_the_pilots(void)
     NEAR(1e-9, 0.0, value(METRIC_OFF_ALOFT));
 }
 
+void test_a_platform_that_goes_away_under_a_standing_vehicle_is_no_touch(void)
+{
+    for (int idle = 0; idle < 2; idle++) {
+        setUp();
+        now.thrust_n = idle ? 0.0 : 5.0;
+        go(11.0, 0.0);
+        go(11.0 + 1.0 / HERTZ, 0.25);
+        go(11.2, 0.0);
+        if (idle) {
+            TEST_ASSERT_TRUE(isnan(value(METRIC_TOUCH_SPEED_MPS)));
+            now.thrust_n = 7.0;
+            go(13.0, 0.6);
+            now.thrust_n = 0.0; /* and a flight that falls is one */
+            go(14.0, 0.0);
+            NEAR(1e-6, 0.6, value(METRIC_TOUCH_SPEED_MPS));
+        } else {
+            NEAR(0.1, 1.3, value(METRIC_TOUCH_SPEED_MPS));
+        }
+    }
+}
+
 void test_who_never_comes_down_is_never_down(void)
 {
     hover();
