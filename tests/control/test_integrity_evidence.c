@@ -1267,3 +1267,23 @@ void test_after_a_gap_the_thrusts_witness_tells_speed_and_way(void)
     NEAR(0.15F, integrity_pushed_mps(&it));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, integrity_moved_m(&it));
 }
+
+void test_a_frame_without_accelerations_tells_the_sway_too(void)
+{
+    for (uint32_t more_us = 0U; more_us < 2U; more_us++) {
+        setUp();
+        feel(0.0F);
+        const uint32_t sequence = it.frame_sequence;
+        frame.has_acceleration = false;
+        frame.arrival_us = 1000000U;
+        feel(5.0F);
+        TEST_ASSERT_EQUAL_UINT32(sequence + 1U, it.frame_sequence);
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, it.sway_rad2); /* the first after long */
+        frame.median.roll_rad = 0.06F;
+        frame.arrival_us += 275000U + more_us;
+        feel(5.0F);
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-7F, (more_us == 0U) ? 0.2F * 0.0036F : 0.0F, it.sway_rad2);
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, it.felt.speed_mps);
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, it.up_mps2);
+    }
+}
