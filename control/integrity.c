@@ -399,7 +399,7 @@ static void watch_ground(integrity_t *i, float mean_mps2, float dt_s)
 /* Measures how much roll and pitch sway. */
 static void watch_sway(integrity_t *i, const imu_sample_t *frame, float dt_s)
 {
-    const float share = at_most(dt_s / SWAY_TIME_S, 1.0F);
+    const float share = dt_s / SWAY_TIME_S; /* dt_s is at most FRAME_GAP_US */
     const float roll_rad = frame->median.roll_rad - i->mean_rad[0];
     const float pitch_rad = frame->median.pitch_rad - i->mean_rad[1];
 
@@ -433,7 +433,7 @@ static void watch_still(integrity_t *i, float dt_s)
         i->still_mps[1] = i->pushed.speed_mps;
         i->still_s = 0.0F;
     }
-    const float share = at_most(dt_s / STILL_TIME_S, 1.0F);
+    const float share = dt_s / STILL_TIME_S;
     i->still_mps[0] += share * (i->felt.speed_mps - i->still_mps[0]);
     i->still_mps[1] += share * (i->pushed.speed_mps - i->still_mps[1]);
     i->still_s = (i->sway_rad2 < SWAY_RAD2) ? i->still_s + dt_s : 0.0F;
@@ -683,7 +683,7 @@ static void take_height(integrity_t *i, float height_m, float gap_s, float age_s
     i->has_height = true;
     i->rise_mps += gap_s / (RISE_TIME_S + gap_s) *
                    ((step ? i->rise_mps : rise_m / at_least(gap_s, 0.01F)) - i->rise_mps);
-    i->steps = at_least(i->steps * (1.0F - at_most(gap_s / STEPS_TIME_S, 1.0F)), 0.0F) + (step ? 1.0F : 0.0F);
+    i->steps = i->steps * (1.0F - at_most(gap_s / STEPS_TIME_S, 1.0F)) + (step ? 1.0F : 0.0F);
     if (!fresh) {
         i->felt.off_m = 0.0F;
         i->pushed.off_m = 0.0F;
@@ -813,7 +813,7 @@ static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
  * witnesses have the same error, and heights that move are right against both. */
 static bool imu_is_wrong(const integrity_t *i, const flown_t *flown)
 {
-    const bool alone = !against(&i->pushed, at_least(WITH_M, ALONE_SHARE * fabsf(i->felt.seen_m))) ||
+    const bool alone = !against(&i->pushed, ALONE_SHARE * fabsf(i->felt.seen_m)) ||
                        i->felt.seen_m * i->pushed.seen_m < 0.0F;
 
     if (integrity_still(i) || unproved_against(i)) {
