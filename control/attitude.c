@@ -2,9 +2,9 @@
 
 #include <math.h>
 
+#include "control/credible.h"
 #include "control/median.h"
 
-#define ROLLED_RAD 0.78539816F  /* 45 degrees, as TILTED_COS in supervisor.c */
 #define FOLLOWS_RAD 0.25F       /* chosen: 570 degrees a second in frames of 25 ms */
 #define FOLLOWS_SPIKE_RAD 0.40F /* chosen: 460 degrees a second in two frames, one of them a spike */
 #define STRAYED_FRAMES 7U       /* chosen: a burst of six bad frames is over */
@@ -74,7 +74,7 @@ static void watch_roll(attitude_filter_t *filter, const attitude_t *level)
         ++filter->strayed;
         return;
     }
-    const bool tilted = fabsf(level->roll_rad) > ROLLED_RAD || fabsf(level->pitch_rad) > ROLLED_RAD;
+    const bool tilted = fabsf(level->roll_rad) > TILTED_RAD || fabsf(level->pitch_rad) > TILTED_RAD;
     const bool counts = tilted && follows;
 
     filter->followed = *level;

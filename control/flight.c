@@ -9,15 +9,16 @@
 #include <math.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 #include "control/seconds.h"
 #include "control/thrust.h"
+#include "control/touchdown.h"
 
 #define HOVER_MARGIN_N 1.5F   /* mass 20 % off; below the 2 N of law EST, because no law corrects it here */
 #define HOVER_TIME_S 2.5F     /* chosen: a mean over the swings of the seed's law */
 #define TRANSFER_TIME_S 0.4F  /* chosen: four scans */
 #define TRANSFER_START_N 0.5F /* chosen: 0.7 m/s2 */
 #define STEP_MAX_S 0.5F       /* chosen: longer pauses count as this long */
-#define GAP_MAX_S 0.3F        /* as HEIGHT_FRESH_US in supervisor.c */
 #define BLIND_MAX_S 60.0F     /* above DESCENT_TIMEOUT_US in supervisor.c */
 
 #define PIDT_WINDOW_N 3.0F /* chosen: 0.4 g to either side */
@@ -31,15 +32,14 @@
 #define CARRIED_N_PER_S 0.06F      /* chosen: a hover thrust 1 N too high climbs for 8 s */
 #define HANDED_OVER_N_PER_S \
     0.15F /* chosen: more, because with a pin it begins when the pilot gives the throttle back */
-#define CARRIED_MAX_S 33.0F   /* chosen: 2 N, more than GRAV is off; then a sink rate of 1.4 m/s */
-#define CARRIED_TIME_S 2.0F   /* as in integrity.c */
-#define YIELD_N_PER_S 0.2F    /* chosen: as SINK_FADE_N_PER_S in est_law.c */
-#define UNSURE_WINDOW_N 2.0F  /* chosen: as HOVER_BOUND_N in est_law.c */
-#define UNSURE_REACH_M 0.09F  /* chosen: asks for 1.2 N at the delivered POSK and VELK */
-#define UNCONFIRMED_MPS 0.35F /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
-#define TAKEOFF_MPS 0.6F      /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
-#define CLIMB_MARGIN_MPS 0.4F /* chosen: room for an overshoot of the climb rate above VUP */
-#define STOP_N_PER_S 2.0F     /* as STOP_N_PER_S in est_law.c */
+#define CARRIED_MAX_S 33.0F    /* chosen: 2 N, more than GRAV is off; then a sink rate of 1.4 m/s */
+#define CARRIED_TIME_S 2.0F    /* as in integrity.c */
+#define HELD_SINK_N_PER_S 0.2F /* chosen: as SINK_FADE_N_PER_S in est_law.c */
+#define UNKNOWN_WINDOW_N 2.0F  /* chosen: as HOVER_BOUND_N in est_law.c */
+#define UNKNOWN_REACH_M 0.09F  /* chosen: asks for 1.2 N at the delivered POSK and VELK */
+#define UNCONFIRMED_MPS 0.35F  /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
+#define TAKEOFF_MPS 0.6F       /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
+#define CLIMB_MARGIN_MPS 0.4F  /* chosen: room for an overshoot of the climb rate above VUP */
 #define STAND_TEST_N_PER_S \
     1.0F /* chosen: in 2 s too low to fly; the accelerometer shows a fall before it is fast */
 #define NOT_LIFTED_MAX_US UINT32_C(3000000) /* chosen: the take-off's ramp in est_law.c ends after 1.2 s */
@@ -86,7 +86,7 @@ static bool has_estimate(const flight_t *flight)
 static bool commands_floating(const flight_t *flight)
 {
     return flight->supervisor.state == FLIGHT_FLOATING && flight->mode != FLIGHT_MODE_HOVER &&
-           !flight->unsure;
+           !flight->throttle_unknown;
 }
 
 /* Low-pass of the hover thrust. It is slow, so that a fault is doubted before its error is learned. It is
@@ -232,7 +232,7 @@ static void step_pidt(flight_t *flight, const parameters_t *parameters, float re
     if (height->is_new || !flight->pidt.primed) {
         const uint32_t rays_us = flight->est.rays_us;
         flight->setpoint_n = pidt_step(&flight->pidt, &gains, reference_m, height->height_mm * 0.001F,
-                                       seconds_at_most(rays_us - flight->pidt_rays_us, GAP_MAX_S));
+                                       seconds_at_most(rays_us - flight->pidt_rays_us, HEIGHT_FRESH_S));
         flight->pidt_rays_us = rays_us;
     } else if (height->age_us > HEIGHT_LATE_US && flight->est.airborne) { /* do not hold a push for long */
         flight->setpoint_n = between(flight->hover_n - TRANSFER_START_N, flight->setpoint_n,
@@ -249,7 +249,7 @@ static bool rocks(const flight_t *flight)
 static void step_descent(flight_t *flight, bool started)
 {
     const height_track_t *height = &flight->supervisor.height;
-    const float gap_s = height->is_new ? seconds_at_most(height->gap_us, GAP_MAX_S) : 0.0F;
+    const float gap_s = height->is_new ? seconds_at_most(height->gap_us, HEIGHT_FRESH_S) : 0.0F;
 
     flight->descent.rocks = rocks(flight);
     if (height->is_new || started) {
@@ -462,7 +462,8 @@ static void change_doubts(flight_t *flight, float gravity_n)
         (flight->est.airborne || flies_unseen)) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
-    est_law_set_without_authority(&flight->est, integrity_doubts(integrity, DOUBT_THRUST) || flight->unsure);
+    est_law_set_without_authority(&flight->est,
+                                  integrity_doubts(integrity, DOUBT_THRUST) || flight->throttle_unknown);
     est_law_set_accelerations_doubted(&flight->est, integrity_doubts(integrity, DOUBT_IMU));
     est_law_set_rocks(&flight->est, rocks(flight));
     if ((come & DOUBT_IMU) != 0U && flight->est.airborne) { /* the estimate used them until now */
@@ -653,14 +654,16 @@ static void watch_carried(flight_t *flight, const parameters_t *parameters)
 /* Without a pin nothing tells who has the throttle, and FLOATING then begins in a pilot's hands. Something
  * that blocks the beam since power-on makes FLOATING on the ground too; then the take-off is still to come.
  */
-static void update_sureness(flight_t *flight, const parameters_t *parameters, bool has_throttle)
+static void update_throttle_unknown(flight_t *flight, const parameters_t *parameters, bool has_throttle)
 {
-    const bool before = flight->unsure;
+    const bool before = flight->throttle_unknown;
 
     watch_carried(flight, parameters);
-    flight->unsure = flight->carried || (flight->supervisor.state == FLIGHT_FLOATING && has_throttle &&
-                                         parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE);
-    if (before && !flight->unsure && !flight->lifting && flight->supervisor.state != FLIGHT_GROUND) {
+    flight->throttle_unknown = flight->carried ||
+                               (flight->supervisor.state == FLIGHT_FLOATING && has_throttle &&
+                                parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE);
+    if (before && !flight->throttle_unknown && !flight->lifting &&
+        flight->supervisor.state != FLIGHT_GROUND) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
 }
@@ -677,7 +680,7 @@ static void float_along(flight_t *flight, bool entered)
     const float height_m = flight->supervisor.height.height_mm * 0.001F;
     const bool holds = !entered && flight->supervisor.state == FLIGHT_FLOATING &&
                        flight->mode != FLIGHT_MODE_HOVER;
-    const float reach_m = flight->unsure ? UNSURE_REACH_M : FLOAT_REACH_M;
+    const float reach_m = flight->throttle_unknown ? UNKNOWN_REACH_M : FLOAT_REACH_M;
 
     flight->floating_m = holds ? between(height_m - reach_m, flight->floating_m, height_m + reach_m)
                                : height_m;
@@ -712,7 +715,7 @@ static float within_descent_n(const flight_t *flight, const parameters_t *parame
     const bool holds = flight->mode == FLIGHT_MODE_EST_HOLD ||
                        (flight->mode == FLIGHT_MODE_LAW && flight->active_law == LAW_PIDT);
 
-    if (!holds || !integrity_deep(&flight->integrity)) {
+    if (!holds || !integrity_terrain_fell(&flight->integrity)) {
         return thrust_n;
     }
     const cascade_vehicle_t vehicle = est_law_vehicle(&flight->est, parameters);
@@ -744,19 +747,19 @@ static float within_power_n(flight_t *flight, float thrust_n)
     const bool doubted = integrity_doubts(&flight->integrity, DOUBT_THRUST);
 
     if (!doubted || !descends(flight->supervisor.state)) {
-        flight->yield_n = 0.0F;
+        flight->held_sunk_n = 0.0F;
     } else {
-        flight->yield_n += YIELD_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
+        flight->held_sunk_n += HELD_SINK_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
     }
-    if (flight->unsure) {
-        return flight->carried
-                   ? within_carried_n(flight, thrust_n)
-                   : between(flight->hover_n - UNSURE_WINDOW_N, thrust_n, flight->hover_n + UNSURE_WINDOW_N);
+    if (flight->throttle_unknown) {
+        return flight->carried ? within_carried_n(flight, thrust_n)
+                               : between(flight->hover_n - UNKNOWN_WINDOW_N, thrust_n,
+                                         flight->hover_n + UNKNOWN_WINDOW_N);
     }
     if (!doubted || flight->mode == FLIGHT_MODE_IDLE) {
         return thrust_n;
     }
-    const float held_n = flight->integrity.held_n - flight->yield_n;
+    const float held_n = flight->integrity.held_n - flight->held_sunk_n;
     return flight->integrity.held_down ? at_least(thrust_n, held_n - NO_AUTHORITY_WINDOW_N)
                                        : at_most(thrust_n, held_n + NO_AUTHORITY_WINDOW_N);
 }
@@ -847,7 +850,7 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
                                    flight->supervisor.state);
     update_estimator(flight, parameters, &checked);
     const bool law_changed = select_law(flight, parameters);
-    update_sureness(flight, parameters, in->has_throttle);
+    update_throttle_unknown(flight, parameters, in->has_throttle);
     flight->mode = select_mode(flight, in);
     if (before != flight->mode) {
         change_mode(flight, before, flight->mode, parameters->value[PARAMETER_GRAV]);
@@ -858,7 +861,7 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
     const bool action_changed = !stops && run_mode(flight, parameters, before != flight->mode);
     if (stops) {
         flight->setpoint_n = flight->thrust_n -
-                             STOP_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
+                             LANDED_FADE_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
         flight->transfer_n = 0.0F;
     }
     bumpless_transfer(flight, before, law_changed || action_changed);

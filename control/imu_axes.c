@@ -6,10 +6,11 @@
 
 #include <math.h>
 
+#include "control/credible.h"
+
 #define GRAVITY_MPS2 9.80665F /* standard gravity */
 #define UNIT_SHARE 0.15F      /* chosen: above an accelerometer's errors, below a wrong unit's */
 #define MEAN_S 2.0F           /* chosen: 80 frames */
-#define GAP_S 0.3F            /* 12 frames lost; as GAP_MAX_US in estimator.c */
 #define HELD_S 1.0F           /* chosen: 40 frames */
 #define LEAST_RAD 0.0175F     /* chosen: 1 degree; the check needs a vehicle that stands so far off level */
 #define SHARE_OF_TILT 0.2F    /* chosen: a wrong sign makes 2, a wrong axis 1, a moving hand less than 0.2 */
@@ -98,7 +99,7 @@ static void take(imu_axes_t *axes, const imu_sample_t *frame, float noise_mps2)
     const float dt_s = (float)(frame->arrival_us - axes->time_us) * 1.0e-6F;
 
     axes->time_us = frame->arrival_us;
-    axes->seen_s = (dt_s <= GAP_S) ? fminf(axes->seen_s + dt_s, IMU_AXES_SEEN_S) : 0.0F;
+    axes->seen_s = (dt_s <= FRAME_GAP_S) ? fminf(axes->seen_s + dt_s, IMU_AXES_SEEN_S) : 0.0F;
     const float share = (axes->seen_s > 0.0F) ? fminf(dt_s / fminf(axes->seen_s, MEAN_S), 1.0F) : 1.0F;
     axes->forward_mps2 += share * (frame->forward_mps2 - axes->forward_mps2);
     axes->right_mps2 += share * (frame->right_mps2 - axes->right_mps2);

@@ -18,25 +18,22 @@
 #include <stddef.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 #include "control/median.h"
 
 /* Tilt. */
 #define JUMP_RAD 0.35F            /* chosen: 20 degrees within a frame of 25 ms, 800 degrees a second */
 #define HALF_TURN_RAD 3.14159265F /* pi */
 #define STEADY_MIN_RAD 0.05F      /* chosen: 110 degrees a second, faster than an attitude that is held */
-#define STEADY_MAX_RAD 0.25F   /* as FOLLOWS_RAD in attitude.c; a spike or a lost frame makes one step more */
-#define JUMPS_HELD 6U          /* chosen: a burst of six bad frames shows in six medians */
-#define ANGLE_MAX_RAD 7.0F     /* chosen: above 2 pi */
-#define UP_MAX_MPS2 200.0F     /* above the Razor's range, 16 g; as in estimator.c */
-#define TILTED_COS 0.70710678F /* chosen: 45 degrees; as in supervisor.c */
+#define STEADY_MAX_RAD 0.25F /* as FOLLOWS_RAD in attitude.c; a spike or a lost frame makes one step more */
+#define JUMPS_HELD 6U        /* chosen: a burst of six bad frames shows in six medians */
+#define ANGLE_MAX_RAD 7.0F   /* chosen: above 2 pi */
 #define TILT_GAP_US UINT32_C(250000) /* ten frames of 25 ms: after such a gap any tilt is accepted */
 
 /* Scans. With a sensor noise of 3 mm, chance makes two scans with the same digits once in some thousands. */
 #define COPIES_MAX 1U   /* chosen: the second identical scan is rejected; one in a climb misleads the law */
 #define COUNT_MAX 1000U /* chosen: counters stop here and do not wrap */
-#define HEIGHT_MIN_MM (-50.0F)  /* chosen: no noise reaches so far below the ground; as in supervisor.c */
 #define HEIGHT_BACK_MM (-30.0F) /* chosen: hysteresis of 20 mm, above five times the noise */
-#define HEIGHT_MAX_MM 5000.0F   /* above the scanner's 4095 mm; as in supervisor.c */
 
 /* Blocked beam. Tried: 960 healthy flights; in none does the thrust contradict the heights while the slant is
  * so still. */
@@ -52,12 +49,11 @@
 /* Accelerometer at rest. */
 #define REST_TIME_S 2.0F     /* chosen: a mean of 80 frames */
 #define REST_HELD_S 1.0F     /* chosen: 40 frames */
-#define REST_UNFIT_MPS2 1.5F /* the largest bias that the estimator represents, BIAS_MAX_MPS2 there */
+#define REST_UNFIT_MPS2 1.5F /* the largest bias that the estimator represents, BIAS_MAX_MPS2 */
 #define REST_FIT_MPS2 1.2F   /* chosen: hysteresis of a fifth */
 
 /* Witnesses. */
-#define FRAME_GAP_US UINT32_C(300000) /* 12 frames lost; as GAP_MAX_US in estimator.c */
-#define STEP_MAX_S 0.5F               /* chosen: longer pauses count as this long; as in flight.c */
+#define STEP_MAX_S 0.5F        /* chosen: longer pauses count as this long; as in flight.c */
 #define SHAKEN_MPS2 0.9F       /* chosen: about twice the usual noise, NOISE_START_MPS2 in estimator.c */
 #define OLD_S 2.0F             /* chosen: full leak and correction after that time */
 #define WARM_S 0.5F            /* chosen: five scans before a witness counts */
@@ -66,21 +62,19 @@
 #define FELT_LEAK_PER_S 1.8F   /* chosen: 2 x 0.9, critically damped without the bias, poles at 0.9 1/s */
 #define FELT_PULL_PER_S2 0.81F /* 0.9 squared, see FELT_LEAK_PER_S */
 #define BIAS_PULL_PER_S3 0.1F  /* chosen: the bias follows in 8 s, 0.81 / 0.1; slower than the verdicts */
-#define BIAS_MAX_MPS2 1.5F     /* as in estimator.c */
 #define PUSHED_LEAK_PER_S 0.4F /* chosen: time constant of 2.5 s, as the sure hover thrust in flight.c */
 
 /* Heights. */
-#define STEP_M 0.10F        /* chosen: above INNOVATION_LIMIT_MAX_M in estimator.c, 0.08 m */
-#define LOW_M 0.08F         /* chosen: as LOW_MM in flight.c */
-#define GAP_ALLOWS_MPS 0.3F /* chosen: the speed error of a witness that still counts as agreement */
-#define GAP_MAX_S 1.5F      /* after which heights count as lost, HEIGHT_LOST_US in supervisor.c */
-#define CONFIRMED_M 0.12F   /* chosen: just above STEP_M */
-#define DEEP_M 0.40F        /* chosen: above the edge of the seed's course, 0.25 m */
-#define QUIET_S 0.5F        /* chosen: five scans */
-#define QUIET_M 0.10F       /* chosen: as CONTENT_M */
-#define GLITCH_S 0.25F      /* chosen: two scans and a half */
-#define STEPS_TIME_S 2.0F   /* chosen: 20 scans */
-#define STEPS_MAX 12.0F     /* chosen: more than half of the scans of STEPS_TIME_S are steps */
+#define STEP_M 0.10F         /* chosen: above INNOVATION_LIMIT_MAX_M in estimator.c, 0.08 m */
+#define LOW_M 0.08F          /* chosen: as LOW_MM in flight.c */
+#define GAP_ALLOWS_MPS 0.3F  /* chosen: the speed error of a witness that still counts as agreement */
+#define CONFIRMED_M 0.12F    /* chosen: just above STEP_M */
+#define TERRAIN_FALL_M 0.40F /* chosen: above the edge of the seed's course, 0.25 m */
+#define QUIET_S 0.5F         /* chosen: five scans */
+#define QUIET_M 0.10F        /* chosen: as CONTENT_M */
+#define GLITCH_S 0.25F       /* chosen: two scans and a half */
+#define STEPS_TIME_S 2.0F    /* chosen: 20 scans */
+#define STEPS_MAX 12.0F      /* chosen: more than half of the scans of STEPS_TIME_S are steps */
 
 /* Standing on the ground. The thrust predicts a fall, and the accelerometer does not measure one. */
 #define FALL_MPS 0.8F         /* chosen: above SINK_MAX_MPS in est_law.c, 0.6 m/s */
@@ -95,7 +89,6 @@
 #define ROCKED_BELOW_M 0.10F  /* as LANDED_NO_MORE_M in touchdown.h */
 #define ROCKED_S 0.8F         /* chosen: 32 frames; at 0.5 s 2 of 96 blocked flights rested in the air */
 #define SWAY_HAND_RAD2 0.012F /* chosen: 6 degrees rms; who tilts a vehicle by hand tilts it more */
-#define UNSEEN_S 1.5F         /* as HEIGHT_LOST_US in supervisor.c */
 #define CARRIED_S 1.0F        /* as ALOFT_HELD_US in supervisor.c */
 #define CARRIED_TIME_S 2.0F   /* chosen: above the period of a pilot's swings */
 #define CARRIED_BIAS_TIME_S 20.0F /* chosen: ten times that; the bias was measured at rest */
@@ -388,7 +381,7 @@ static void watch_carried(integrity_t *i, float mean_mps2, float dt_s)
 static void watch_ground(integrity_t *i, float mean_mps2, float dt_s)
 {
     i->unseen_s = at_most(i->unseen_s + dt_s, OLD_S);
-    if (i->unseen_s > UNSEEN_S && integrity_sways(i)) {
+    if (i->unseen_s > HEIGHT_LOST_S && integrity_sways(i)) {
         watch_carried(i, mean_mps2, dt_s);
     } else {
         i->carried_s = 0.0F;
@@ -642,10 +635,10 @@ static bool heights_moved(const integrity_t *i)
 static void watch_depth(integrity_t *i, float height_m, float rise_m, bool step)
 {
     if (step) {
-        i->deep = rise_m > DEEP_M;
-        i->deep_m = height_m;
-    } else if (i->standing || height_m < i->deep_m - CONFIRMED_M) {
-        i->deep = false;
+        i->terrain_fell = rise_m > TERRAIN_FALL_M;
+        i->after_fall_m = height_m;
+    } else if (i->standing || height_m < i->after_fall_m - CONFIRMED_M) {
+        i->terrain_fell = false;
     }
 }
 
@@ -654,7 +647,7 @@ static void watch_depth(integrity_t *i, float height_m, float rise_m, bool step)
 static void take_height(integrity_t *i, float height_m, float gap_s, float age_s)
 {
     const float rise_m = height_m - i->height_m;
-    const bool fresh = i->has_height && gap_s < GAP_MAX_S;
+    const bool fresh = i->has_height && gap_s < HEIGHT_LOST_S;
     const bool jumps = fabsf(rise_m) > STEP_M;
     const bool step = fresh && jumps && !follows(&i->felt, rise_m, gap_s) &&
                       !follows(&i->pushed, rise_m, gap_s);
@@ -677,7 +670,7 @@ static void take_height(integrity_t *i, float height_m, float gap_s, float age_s
     i->unmoved_s = heights_move(i)    ? 0.0F
                    : (step || !fresh) ? MOVED_S
                                       : at_most(i->unmoved_s + gap_s, MOVED_S);
-    i->since_rise_s = (step && rise_m > 0.0F) ? 0.0F : at_most(i->since_rise_s + gap_s, GAP_MAX_S);
+    i->since_rise_s = (step && rise_m > 0.0F) ? 0.0F : at_most(i->since_rise_s + gap_s, HEIGHT_LOST_S);
     i->before_rise_m = (i->since_rise_s > 0.0F) ? i->before_rise_m : i->height_m;
     i->height_m = height_m;
     i->has_height = true;

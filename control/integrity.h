@@ -95,8 +95,8 @@ typedef struct {
                            * in the heights since. The beam may be blocked */
     bool standing;        /* on the ground, or take-off commanded and not yet off the ground */
     bool proved;          /* the heights have confirmed a climb since the ground */
-    bool deep;            /* the terrain has fallen far, and no descent has shown in the heights since */
-    float deep_m;         /* height after that step */
+    bool terrain_fell;    /* the terrain has fallen far, and no descent has shown in the heights since */
+    float after_fall_m;   /* height after that step */
     float near_m;         /* height after the step that made `unconfirmed` true */
     float before_rise_m;  /* height before the latest upward step of the height */
     float since_rise_s;   /* time since that step, at most 1.5 s */
@@ -180,9 +180,9 @@ static inline bool integrity_unconfirmed(const integrity_t *integrity)
 
 /* True after a step of the terrain of more than 0.4 m away from the vehicle, until the heights show a
  * descent. Until then the heights may be wrong: keep descents slow. */
-static inline bool integrity_deep(const integrity_t *integrity)
+static inline bool integrity_terrain_fell(const integrity_t *integrity)
 {
-    return integrity->deep;
+    return integrity->terrain_fell;
 }
 
 /* True when the slant distance of more than eight scans in a row has contained only white noise: the beam

@@ -9,9 +9,8 @@
 #include <stddef.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 
-#define HEIGHT_FRESH_US UINT32_C(300000)   /* three scans of 0.1 s */
-#define HEIGHT_LOST_US UINT32_C(1500000)   /* chosen: after a longer time it has drifted too far */
 #define ATTITUDE_FRESH_US UINT32_C(250000) /* ten frames of 25 ms */
 #define ALOFT_HELD_US \
     UINT32_C(1000000)                  /* chosen: a pilot who flies, not one who lifts the vehicle by hand \
@@ -23,8 +22,6 @@
 #define CARRIED_US UINT32_C(3000000)          /* chosen: a vehicle that has just landed sways for so long */
 #define AGE_MAX_US UINT32_C(3600000000)       /* one hour: below the wrap of 71 minutes */
 
-#define HEIGHT_MIN_MM (-50.0F)         /* chosen: no noise reaches 50 mm below the ground */
-#define HEIGHT_MAX_MM 5000.0F          /* above the scanner's 4095 mm */
 #define OFF_GROUND_MM 150.0F           /* chosen: over the ground effect and any noise */
 #define REST_BELOW_MM 50.0F            /* chosen: ten times the height's noise */
 #define REST_FALL_MM 20.0F             /* chosen: four times the height's noise */
@@ -41,7 +38,6 @@
 #define TILTED_ATTITUDES 3U /* chosen: one or two may be spikes of the IMU */
 #define LOWERINGS_MAX 3U    /* chosen: a third failure means that the law cannot fly the vehicle */
 #define LOWERINGS_FORGOTTEN_US UINT32_C(20000000) /* chosen: the length of the seed's flights */
-#define TILTED_COS 0.70710678F                    /* chosen: 45 degrees */
 #define LEVEL_COS 0.93969262F                     /* chosen: 20 degrees */
 
 void supervisor_init(supervisor_t *supervisor)

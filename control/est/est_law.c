@@ -11,6 +11,7 @@
 #include <stddef.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 #include "control/seconds.h"
 #include "control/thrust.h"
 #include "control/touchdown.h"
@@ -26,7 +27,6 @@
 #define IN_THE_AIR_M 0.04F           /* chosen: ten times the noise of a height */
 #define MODEL_NOISE_MPS2 0.84F       /* fitted */
 #define HEIGHTS_MISSING_S 0.2F       /* two scans of 0.1 s */
-#define LEARN_WITHOUT_HEIGHTS_S 0.3F /* three scans; as HEIGHT_FRESH_US in supervisor.c */
 #define FRAMES_FRESH_S ((float)ESTIMATOR_FRESH_US * 1.0e-6F)
 #define FRAMES_LATE_S 0.15F          /* chosen: a frame of an IMU as slow as 0.1 s, and its age */
 #define LATE_WINDOW_N 0.5F           /* chosen: as TRANSFER_START_N in flight.c */
@@ -66,7 +66,6 @@
 #define SINK_FADE_N_PER_S 0.2F      /* chosen: at the hover thrust after 2.5 s */
 #define LAND_ABOVE_HOVER_N 1.5F     /* chosen: as HOVER_MARGIN_N in flight.c */
 #define LAND_FADE_N_PER_S 0.1F      /* chosen: at the hover thrust after 15 s */
-#define STOP_N_PER_S 2.0F           /* as the end of a landing, LANDED_FADE_N_PER_S in touchdown.h */
 #define TERRAIN_KEEP_S 30.0F        /* chosen: drift of the summed terrain height is forgotten */
 #define LOWEST_OVER_TERRAIN_M 0.15F /* the height of OFF_GROUND in supervisor.c */
 
@@ -113,7 +112,7 @@ static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt
     const float seen_n = law->actuator.thrust_n * vehicle.upright - taken_n;
     const float doubt_n = SPEED_DOUBT_N_PER_MPS * fabsf(e->now.speed_mps);
 
-    if (law->heightless_s > LEARN_WITHOUT_HEIGHTS_S || e->unchecked_count > 0U || law->without_authority ||
+    if (law->heightless_s > HEIGHT_FRESH_S || e->unchecked_count > 0U || law->without_authority ||
         estimator_accuses(e)) {
         hover_forget_gust(&law->hover, dt_s);
         return; /* no height confirms the estimated speed */
@@ -136,7 +135,7 @@ static void learn_hover_by_model(est_law_t *law, const parameters_t *parameters,
     const float moved_mps2 = dt_s / time_s * law->estimator.now.bias_mps2;
     const float before_n = law->hover.thrust_n;
 
-    if (law->heightless_s > LEARN_WITHOUT_HEIGHTS_S || law->without_authority) {
+    if (law->heightless_s > HEIGHT_FRESH_S || law->without_authority) {
         return;
     }
     if (is_climb(parameters) && law->estimator.now.height_m > IN_THE_AIR_M) {
@@ -525,7 +524,7 @@ float est_law_step(est_law_t *law, const parameters_t *parameters, est_mode_t mo
     };
 
     if (!law->airborne && mode != EST_MODE_HOLD) {
-        law->ramp_n = at_least(law->ramp_n - STOP_N_PER_S * law->step_s, 0.0F);
+        law->ramp_n = at_least(law->ramp_n - LANDED_FADE_N_PER_S * law->step_s, 0.0F);
         return law->ramp_n;
     }
     if (!law->airborne && !take_off(law, parameters)) {

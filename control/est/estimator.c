@@ -12,14 +12,13 @@
 #include <stddef.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 #include "control/seconds.h"
 
 #define GRAVITY_MPS2 9.80665F        /* standard gravity */
 #define FRAME_AGE_US UINT32_C(23600) /* 15 ms within the Razor (assumed), 8.6 ms on the wire */
 #define TILT_AGE_US UINT32_C(50000)  /* the median of five frames is two frames of 25 ms old */
 #define NO_RAYS_US UINT32_C(75000)   /* after other rays: a scan of 0.1 s, less a margin of a frame */
-#define GAP_MAX_US INT32_C(300000)   /* chosen: 12 frames lost; the filter starts again */
-#define UP_MAX_MPS2 200.0F           /* above what the Razor can say, 16 g */
 #define ANGLE_MAX_RAD 3.2F           /* pi, rounded up */
 
 #define HEIGHT_NOISE_M 0.0013F /* fitted */
@@ -67,7 +66,6 @@
 #define REST_SIGMA_MPS 0.02F          /* chosen: a vehicle on the ground may still shake */
 
 #define SPEED_MAX_MPS 4.0F       /* chosen: above what the vehicle reaches */
-#define BIAS_MAX_MPS2 1.5F       /* chosen: 0.15 g, more than the sensor has */
 #define TERRAIN_MAX_MPS 0.5F     /* chosen: the seed's ramp rises by 0.36 m/s */
 #define SPEED_RESET_MAX_MPS 1.0F /* chosen: limit of the speed that survives a reset */
 
@@ -402,7 +400,7 @@ void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motio
     e->latest.pitch_rad = frame->median.pitch_rad;
     e->upright = upright;
     e->up_mps2 = usable ? up_mps2 : 0.0F;
-    if (!e->has_frames || gap_us > GAP_MAX_US || gap_us < -GAP_MAX_US) {
+    if (!e->has_frames || gap_us > (int32_t)FRAME_GAP_US || gap_us < -(int32_t)FRAME_GAP_US) {
         restart_at_frame(e, time_us, up_mps2);
     } else if (before(e->delayed_us, time_us)) {
         append_frame(e, &e->latest);

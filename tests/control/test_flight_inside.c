@@ -99,7 +99,7 @@ void test_without_an_estimate_it_is_a_mean_of_the_thrust_in_flight(void)
     static const struct {
         flight_state_t state;
         flight_mode_t mode;
-        bool unsure, airborne, follows;
+        bool throttle_unknown, airborne, follows;
     } rows[] = {{FLIGHT_FLYING, FLIGHT_MODE_LAW, false, true, true},
                 {FLIGHT_TAKEOFF, FLIGHT_MODE_LAW, false, true, false},
                 {FLIGHT_FLOATING, FLIGHT_MODE_FLOAT, false, true, true},
@@ -112,7 +112,7 @@ void test_without_an_estimate_it_is_a_mean_of_the_thrust_in_flight(void)
         f.thrust_n = 7.5F;
         f.supervisor.state = rows[i].state;
         f.mode = rows[i].mode;
-        f.unsure = rows[i].unsure;
+        f.throttle_unknown = rows[i].throttle_unknown;
         follow_hover(&f);
         NEAR(rows[i].follows ? 7.02F : 7.0F, f.hover_n);
     }
@@ -776,7 +776,7 @@ void test_a_doubt_of_the_thrust_or_an_unsure_pilot_leaves_the_law_without_author
     for (int i = 0; i < 3; i++) {
         setUp();
         f.integrity.doubts = (i == 1) ? DOUBT_THRUST : 0U;
-        f.unsure = i == 2;
+        f.throttle_unknown = i == 2;
         change_doubts(&f, GRAV_N);
         TEST_ASSERT_EQUAL(i != 0, f.est.without_authority);
     }
@@ -964,8 +964,8 @@ void test_floating_without_a_pin_is_unsure_and_its_end_engages(void)
         setUp();
         f.supervisor.state = (i == 1) ? FLIGHT_FLYING : FLIGHT_FLOATING;
         set(PARAMETER_SEL, (i == 2) ? (float)SEL_PIN : (float)SEL_NONE);
-        update_sureness(&f, &parameters, i != 3);
-        TEST_ASSERT_EQUAL(i == 0, f.unsure);
+        update_throttle_unknown(&f, &parameters, i != 3);
+        TEST_ASSERT_EQUAL(i == 0, f.throttle_unknown);
     }
     static const struct {
         flight_state_t state;
@@ -978,12 +978,12 @@ void test_floating_without_a_pin_is_unsure_and_its_end_engages(void)
     for (int i = 0; i < 5; i++) {
         setUp();
         f.supervisor.state = rows[i].state;
-        f.unsure = rows[i].before;
+        f.throttle_unknown = rows[i].before;
         f.lifting = rows[i].lifting;
         f.est.airborne = false;
         f.hover_n = 7.3F;
         f.thrust_n = 6.7F;
-        update_sureness(&f, &parameters, true);
+        update_throttle_unknown(&f, &parameters, true);
         TEST_ASSERT_EQUAL(rows[i].engaged, f.est.airborne);
         if (rows[i].engaged) {
             NEAR(7.3F, f.est.hover.thrust_n);
@@ -995,7 +995,7 @@ void test_floating_without_a_pin_is_unsure_and_its_end_engages(void)
 void test_floating_holds_its_first_height_within_its_reach(void)
 {
     static const struct {
-        bool entered, unsure;
+        bool entered, throttle_unknown;
         flight_mode_t mode;
         float before_m, held_m;
     } rows[] = {
@@ -1007,7 +1007,7 @@ void test_floating_holds_its_first_height_within_its_reach(void)
         setUp();
         f.supervisor.state = FLIGHT_FLOATING;
         f.mode = rows[i].mode;
-        f.unsure = rows[i].unsure;
+        f.throttle_unknown = rows[i].throttle_unknown;
         f.floating_m = rows[i].before_m;
         float_along(&f, rows[i].entered);
         NEAR(rows[i].held_m, f.floating_m);
@@ -1058,7 +1058,7 @@ void test_a_descent_over_a_far_fall_of_the_terrain_has_one_too(void)
 {
     const float least_n = 7.0F - 0.35F * 2.5F * 7.0F / 9.80665F;
     NEAR(3.0F, within_descent_n(&f, &parameters, 3.0F));
-    f.integrity.deep = true;
+    f.integrity.terrain_fell = true;
     NEAR(least_n, within_descent_n(&f, &parameters, 3.0F));
     NEAR(8.0F, within_descent_n(&f, &parameters, 8.0F));
     f.mode = FLIGHT_MODE_LAW;
@@ -1079,7 +1079,7 @@ void test_a_thrust_in_doubt_stays_near_the_held_one_on_one_side(void)
     NEAR(6.6F, within_power_n(&f, 3.0F));
     NEAR(11.0F, within_power_n(&f, 11.0F));
     f.supervisor.state = FLIGHT_LANDING;
-    f.yield_n = 0.5F;
+    f.held_sunk_n = 0.5F;
     NEAR(6.6F - 0.52F, within_power_n(&f, 3.0F)); /* 0.2 N/s */
     f.supervisor.step_us = 5000000U;
     NEAR(6.6F - 0.62F, within_power_n(&f, 3.0F));
@@ -1087,18 +1087,18 @@ void test_a_thrust_in_doubt_stays_near_the_held_one_on_one_side(void)
     NEAR(0.0F, within_power_n(&f, 0.0F));
     f.supervisor.state = FLIGHT_FLYING;
     (void)within_power_n(&f, 3.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, f.yield_n);
-    f.yield_n = 0.5F;
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, f.held_sunk_n);
+    f.held_sunk_n = 0.5F;
     f.supervisor.state = FLIGHT_LANDING;
     f.integrity.doubts = DOUBT_SIGHT;
     f.mode = FLIGHT_MODE_EST_LAND;
     NEAR(3.0F, within_power_n(&f, 3.0F));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, f.yield_n);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, f.held_sunk_n);
 }
 
 void test_where_a_pilot_may_fly_the_thrust_is_within_two_newtons_of_hover(void)
 {
-    f.unsure = true;
+    f.throttle_unknown = true;
     NEAR(9.0F, within_power_n(&f, 11.0F));
     NEAR(5.0F, within_power_n(&f, 3.0F));
     NEAR(7.5F, within_power_n(&f, 7.5F));
@@ -1388,9 +1388,9 @@ void test_a_descent_handed_over_without_heights_is_carried_to_its_end(void)
             f.supervisor.handed_over = rows[i].handed_over;
             f.supervisor.state_us = rows[i].state_us;
             f.carried = rows[i].before;
-            update_sureness(&f, &parameters, true);
+            update_throttle_unknown(&f, &parameters, true);
             TEST_ASSERT_EQUAL(rows[i].carried, f.carried);
-            TEST_ASSERT_EQUAL(rows[i].carried, f.unsure);
+            TEST_ASSERT_EQUAL(rows[i].carried, f.throttle_unknown);
             NEAR((i == 0) ? ((pin != 0) ? 0.15F : 0.06F) : 0.0F, f.carried_n_per_s);
         }
     }
@@ -1398,7 +1398,7 @@ void test_a_descent_handed_over_without_heights_is_carried_to_its_end(void)
 
 void test_a_carried_vehicle_has_a_thrust_below_hover_that_sinks(void)
 {
-    f.carried = f.unsure = true;
+    f.carried = f.throttle_unknown = true;
     f.carried_n_per_s = 0.06F;
     f.supervisor.state_us = 10000000U;
     f.est.estimator.now.speed_mps = f.est.estimator.delayed.speed_mps = 0.4F;

@@ -131,15 +131,15 @@ void test_a_far_fall_of_the_terrain_is_unconfirmed_until_a_descent_shows(void)
     fly();
     world.lie_m = 0.3F;
     run(0.3F);
-    TEST_ASSERT_FALSE(integrity_deep(&it));
+    TEST_ASSERT_FALSE(integrity_terrain_fell(&it));
     world.lie_m = 0.8F;
     run(0.3F);
-    TEST_ASSERT_TRUE(integrity_deep(&it));
+    TEST_ASSERT_TRUE(integrity_terrain_fell(&it));
     flown.thrust_n = HOVER_N - 0.6F;
     run(0.5F);
-    TEST_ASSERT_TRUE(integrity_deep(&it));
+    TEST_ASSERT_TRUE(integrity_terrain_fell(&it));
     run(1.0F);
-    TEST_ASSERT_FALSE(integrity_deep(&it));
+    TEST_ASSERT_FALSE(integrity_terrain_fell(&it));
     TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
 }
 

@@ -925,7 +925,7 @@ void test_heights_that_have_moved_are_remembered_for_a_second(void)
     TEST_ASSERT_EQUAL_FLOAT(1.0F, it.unmoved_s);
 }
 
-/* ---- unconfirmed and deep */
+/* ---- unconfirmed and terrain_fell */
 
 void test_a_step_towards_the_vehicle_is_unconfirmed_until_twelve_centimetres_of_climb(void)
 {
@@ -1008,10 +1008,10 @@ void test_standing_takes_the_proof_back(void)
 {
     hover();
     it.standing = true;
-    it.deep = true;
+    it.terrain_fell = true;
     height(0.5F);
     TEST_ASSERT_FALSE(it.proved);
-    TEST_ASSERT_FALSE(it.deep);
+    TEST_ASSERT_FALSE(it.terrain_fell);
     TEST_ASSERT_TRUE(it.unconfirmed);
 }
 
@@ -1049,19 +1049,19 @@ void test_deep_is_a_fall_of_the_terrain_beyond_forty_centimetres(void)
 {
     hover();
     height(0.895F);
-    TEST_ASSERT_FALSE(integrity_deep(&it));
+    TEST_ASSERT_FALSE(integrity_terrain_fell(&it));
     hover();
     height(0.905F);
-    TEST_ASSERT_TRUE(integrity_deep(&it));
+    TEST_ASSERT_TRUE(integrity_terrain_fell(&it));
     height(0.84F);
     height(0.786F);
-    TEST_ASSERT_TRUE(integrity_deep(&it));
+    TEST_ASSERT_TRUE(integrity_terrain_fell(&it));
     height(0.784F);
-    TEST_ASSERT_FALSE(integrity_deep(&it));
+    TEST_ASSERT_FALSE(integrity_terrain_fell(&it));
     hover();
-    it.deep = true;
+    it.terrain_fell = true;
     height(0.2F); /* a step back */
-    TEST_ASSERT_FALSE(integrity_deep(&it));
+    TEST_ASSERT_FALSE(integrity_terrain_fell(&it));
 }
 
 void test_the_least_felt_error_is_kept_while_unconfirmed(void)
@@ -1174,13 +1174,13 @@ void test_a_rate_is_of_ten_milliseconds_at_least(void)
 void test_the_end_of_the_depth_lies_below_its_limit(void)
 {
     hover();
-    it.deep = true;
-    it.deep_m = 0.12F;
+    it.terrain_fell = true;
+    it.after_fall_m = 0.12F;
     it.height_m = 0.05F;
     height(0.0F);
-    TEST_ASSERT_TRUE(integrity_deep(&it));
+    TEST_ASSERT_TRUE(integrity_terrain_fell(&it));
     height(-0.001F);
-    TEST_ASSERT_FALSE(integrity_deep(&it));
+    TEST_ASSERT_FALSE(integrity_terrain_fell(&it));
 }
 
 /* ---- in somebody's hands, and after a gap */
