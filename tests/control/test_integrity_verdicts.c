@@ -464,6 +464,19 @@ void test_a_sway_counts_while_the_beam_is_still_and_the_height_the_same(void)
     TEST_ASSERT_EQUAL_FLOAT(0.0F, swayed_s(0.05F, 9U, 4.0e-4F));
 }
 
+void test_the_height_of_a_sway_is_measured_from_its_start(void)
+{
+    flown.standing = it.standing = true;
+    it.height_m = 0.34F;
+    it.swaying_from_m = 0.30F;
+    it.still = 9U;
+    it.sway_rad2 = 4.1e-4F;
+    it.swaying_s = 1.0F;
+    (void)judged(0.0F, 0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(1.0F, it.swaying_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.30F, it.swaying_from_m);
+}
+
 void test_a_sway_of_more_than_a_second_and_a_half_is_a_flight(void)
 {
     flown.standing = it.standing = true;

@@ -223,6 +223,7 @@ void test_a_frame_is_kept_and_moves_the_present_estimate(void)
     NEAR((0.53F * 0.53F + 0.4F * 0.4F) * 0.025F, e.latest.drift);
     TEST_ASSERT_EQUAL_UINT32(1U, e.sequence);
     TEST_ASSERT_EQUAL_UINT32(T_US + 25000U, e.felt_us);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, e.off_model_mps2); /* off no model */
 }
 
 void test_the_oldest_frame_is_used_up_when_no_rays_can_be_older(void)
@@ -720,6 +721,7 @@ void test_an_amended_estimate_is_the_given_one(void)
 {
     e.delayed = (estimate_t){.height_m = 0.4F, .speed_mps = 0.1F, .bias_mps2 = 0.3F, .terrain_mps = 0.2F};
     e.frames[0] = (estimator_frame_t){.time_us = T_US + 100000U, .up_mps2 = 1.0F};
+    e.frames[1] = (estimator_frame_t){.time_us = T_US + 300000U, .up_mps2 = 5.0F}; /* used up long ago */
     e.frame_count = 1U;
     e.now = (estimate_t){.height_m = 0.415F, .speed_mps = 0.2F, .bias_mps2 = 0.3F};
     e.covariance[SPEED][BIAS] = 0.01F;
@@ -731,6 +733,7 @@ void test_an_amended_estimate_is_the_given_one(void)
     NEAR(0.0F, e.delayed.terrain_mps);
     NEAR(0.6F, e.now.speed_mps);
     NEAR(e.delayed.height_m + 0.05F + 0.005F, e.now.height_m);
+    TEST_ASSERT_EQUAL_UINT32(T_US + 100000U, e.now_us);
     NEAR(0.04F, e.covariance[SPEED][SPEED]);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, e.covariance[SPEED][BIAS]);
     estimator_amend(&e, 0.7F, 6.0F, 3.0F);
@@ -778,4 +781,13 @@ void test_a_started_estimate_is_the_given_one_and_keeps_what_is_known_of_the_bia
     NEAR(0.04F, e.covariance[SPEED][SPEED]);
     TEST_ASSERT_EQUAL_UINT16(0U, e.rejected_count);
     TEST_ASSERT_EQUAL_UINT16(2U, e.unchecked_count);
+}
+
+void test_a_correction_leaves_each_variance_a_least_one(void)
+{
+    memset(e.covariance, 0, sizeof e.covariance);
+    (void)see(0.5F);
+    for (unsigned i = 0; i < N; i++) {
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-9F, 1.0e-7F, e.covariance[i][i]);
+    }
 }
