@@ -2,10 +2,10 @@
 """acceptance.py [--vehicles N] [--seed N] [--tune EST,PID] ...: does fit find vehicles that nobody told it?
 
 Draws vehicles: throttle THRUST or CLIMB in turn, mass +-20 %, motors' lag 60 to 150 ms, dead time 0 to 40 ms, gain (or climb
-rate) +-30 %, damping, turbulence, noises. Each flies `experiment` with the stock gains, as often as --dumps says; fit sees what the recorder holds. Then come
-the errors, how often the 90 % intervals hold the truth, and what must be. With --tune also: each vehicle is tuned for on its
-fit, and flies the true vehicle with stock and with tuned gains: 40 s of processor time a vehicle, 20 minutes for 30. Results are
-kept in DIR as they come; a rerun with the same program and tools goes on.
+rate) +-30 %, damping, turbulence, noises. Each flies `experiment` with the stock gains, as often as --dumps says; fit sees what
+the recorder holds. Then come the errors, how often the 90 % intervals hold the truth, and what must be. With --tune also: each
+vehicle is tuned for on its fit, and flies the true vehicle with stock and with tuned gains: 40 s of processor time a vehicle,
+20 minutes for 30. Results are kept in DIR as they come; a rerun with the same program and tools goes on.
 Exit status: 0; 1 something is not as it must be; 2 usage.
 """
 import argparse
