@@ -199,19 +199,28 @@ void scip_info_init(scip_info_t *info)
     *info = (scip_info_t){.health = SCIP_HEALTH_UNKNOWN};
 }
 
+/* "KEY:value". False without a colon. */
+static bool divide(slice_t line, slice_t *key, slice_t *value)
+{
+    uint16_t colon = 0U;
+    while (colon < line.length && line.text[colon] != (octet_t)':') {
+        colon++;
+    }
+    if (colon == line.length) {
+        return false;
+    }
+    *key = trimmed((slice_t){line.text, colon});
+    *value = trimmed(without_first(line, (uint16_t)(colon + 1U)));
+    return true;
+}
+
 void scip_info_take(scip_info_t *info, const scip_parser_t *parser)
 {
     const slice_t line = {parser->line, parser->text_length};
     const bool believed = parser->text_proved || parser->text_length == parser->line_length;
-    slice_t key = line;
-    key.length = 0U;
-    while (key.length < line.length && line.text[key.length] != (octet_t)':') {
-        key.length++;
-    }
-    const bool divided = key.length < line.length;
-    const slice_t value = trimmed(without_first(line, (uint16_t)(key.length + (divided ? 1U : 0U))));
-    key = trimmed(key);
-    if (!divided || key.length != 4U ||
+    slice_t key;
+    slice_t value;
+    if (!divide(line, &key, &value) || key.length != 4U ||
         !(take_text(info, key, value) || take_small(info, key, value, believed) ||
           take_other(info, key, value, believed))) {
         info->unknown++;

@@ -2,6 +2,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "drivers/scip_info.h"
@@ -209,6 +210,19 @@ void test_a_line_ends_where_it_ends(void)
     TEST_ASSERT_EQUAL_UINT32(0x12, info.time_ms);
     TEST_ASSERT_FALSE(info.laser_on);
     TEST_ASSERT_EQUAL_UINT16(20, info.told.dmin_mm);
+}
+
+/* Alone in its memory: sanitizers see a look beyond it. */
+void test_a_line_without_a_colon_is_looked_at_no_further(void)
+{
+    scip_parser_t *alone = malloc(sizeof *alone);
+    TEST_ASSERT_NOT_NULL(alone);
+    scip_parser_init(alone);
+    memset(alone->line, 'x', sizeof alone->line);
+    alone->text_length = alone->line_length = SCIP_LINE_MAX;
+    scip_info_take(&info, alone);
+    TEST_ASSERT_EQUAL_UINT16(1, info.unknown);
+    free(alone);
 }
 
 void test_a_line_without_a_sum_is_believed_and_one_with_a_wrong_sum_only_as_text(void)

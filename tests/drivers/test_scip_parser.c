@@ -100,6 +100,7 @@ static scip_scan_t scan;
 static uint16_t points[POINTS_MAX];
 static scip_request_t request;
 static wire_t wire;
+static wire_t faulty; /* the wire with a fault */
 static unsigned long values[POINTS_MAX];
 
 static struct {
@@ -158,10 +159,12 @@ static scip_event_t feed_range(const wire_t *w, size_t begin, size_t end)
 /* The last event other than SCIP_NOTHING. */
 static scip_event_t feed_text(const char *text)
 {
-    static wire_t typed;
-    typed.length = 0;
-    put_text(&typed, text);
-    return feed_range(&typed, 0, typed.length);
+    scip_event_t last = SCIP_NOTHING;
+    while (*text != '\0') {
+        const scip_event_t event = feed((unsigned)*text++);
+        last = event != SCIP_NOTHING ? event : last;
+    }
+    return last;
 }
 
 static void start(void)
@@ -554,11 +557,12 @@ void test_information_lines_with_wrong_or_missing_sums_are_delivered_unproved(vo
     expect_plain(SCIP_VERSION);
     feed_text("VV\n00P\n");
     assert_line("SERI:H0706400;G\n", "SERI:H0706400", false);
+    assert_line("SERI:H0706400;F\n", "SERI:H0706400", true);
     assert_line("I know nothing\n", "I know nothing", false);
     assert_line("x\n", "x", false);
     assert_line(";0\n", "", true);
     TEST_ASSERT_EQUAL(SCIP_REPLY, feed_text("\n"));
-    TEST_ASSERT_EQUAL_UINT(4, seen.events[SCIP_TEXT]);
+    TEST_ASSERT_EQUAL_UINT(5, seen.events[SCIP_TEXT]);
 }
 
 void test_an_information_line_that_is_too_long_is_left_out(void)
@@ -776,6 +780,20 @@ void test_behind_a_notice_the_next_scan_is_counted_down_from_its_echo_on(void)
     put_answer(&wire, &front, "98");
     feed_range(&wire, 0, wire.length);
     TEST_ASSERT_EQUAL_UINT16(101, scip_parser_expected(&parser));
+}
+
+/* A notice may stand for a scan, or come between two. */
+void test_the_counter_may_fall_by_two_over_a_notice(void)
+{
+    expect_order(&counted);
+    put_answer(&wire, &counted, "00");
+    put_numbered_frame(&wire, &counted, 0);
+    put_echo(&wire, &counted, 3);
+    put_text(&wire, "98a\n\n");
+    put_numbered_frame(&wire, &counted, 2);
+    TEST_ASSERT_EQUAL(SCIP_SCAN, feed_range(&wire, 0, wire.length));
+    TEST_ASSERT_EQUAL_UINT(2, seen.scans);
+    TEST_ASSERT_EQUAL_UINT16(2, scan.remaining);
 }
 
 /* The latest frame of the run before was dropped; that excuses no frame of this one. */
@@ -1252,7 +1270,6 @@ void test_no_flipped_bit_yields_a_distance_or_costs_another_frame(void)
 
 void test_no_dropped_octet_yields_a_distance_or_costs_another_frame(void)
 {
-    static wire_t faulty;
     for (size_t r = 0; r < RUNS; r++) {
         put_run(runs[r]);
         for (size_t at = 0; at < wire.length; at++) {
@@ -1269,7 +1286,6 @@ void test_no_dropped_octet_yields_a_distance_or_costs_another_frame(void)
 
 static void assert_insertion_survives(const order_t *order, size_t at, unsigned octet)
 {
-    static wire_t faulty;
     faulty.length = 0;
     for (size_t i = 0; i < wire.length; i++) {
         if (i == at) {
@@ -1308,7 +1324,6 @@ void test_an_octet_before_an_echo_and_line_ends_between_frames_cost_nothing(void
 
 void test_a_frame_cut_short_anywhere_costs_only_itself(void)
 {
-    static wire_t faulty;
     for (size_t r = 0; r < RUNS; r++) {
         put_run(runs[r]);
         for (size_t at = begins[1]; at < begins[2]; at++) {
@@ -1718,25 +1733,24 @@ static void compare_ways(const wire_t *damaged, size_t burst)
 void test_a_damaged_frame_in_one_burst_makes_what_single_octets_make(void)
 {
     static const unsigned replacements[] = {'\n', '9', 'b', '0', 'o', 'p', 0x00, 0xFF};
-    wire_t damaged;
     put_run(&front);
     const wire_t whole = wire;
     for (size_t at = begins[1]; at < begins[2]; at++) {
         for (size_t i = 0; i < sizeof replacements / sizeof replacements[0]; i++) {
-            damaged = whole;
-            damaged.octets[at] = replacements[i];
-            compare_ways(&damaged, damaged.length);
-            compare_ways(&damaged, at + 1);
+            faulty = whole;
+            faulty.octets[at] = replacements[i];
+            compare_ways(&faulty, faulty.length);
+            compare_ways(&faulty, at + 1);
         }
-        damaged = whole;
-        memmove(&damaged.octets[at], &damaged.octets[at + 1],
-                (whole.length - at - 1) * sizeof damaged.octets[0]);
-        damaged.length--;
-        compare_ways(&damaged, damaged.length);
-        memmove(&damaged.octets[at + 1], &whole.octets[at], (whole.length - at) * sizeof damaged.octets[0]);
-        damaged.octets[at] = whole.octets[at];
-        damaged.length = whole.length + 1;
-        compare_ways(&damaged, damaged.length);
+        faulty = whole;
+        memmove(&faulty.octets[at], &faulty.octets[at + 1],
+                (whole.length - at - 1) * sizeof faulty.octets[0]);
+        faulty.length--;
+        compare_ways(&faulty, faulty.length);
+        memmove(&faulty.octets[at + 1], &whole.octets[at], (whole.length - at) * sizeof faulty.octets[0]);
+        faulty.octets[at] = whole.octets[at];
+        faulty.length = whole.length + 1;
+        compare_ways(&faulty, faulty.length);
     }
 }
 
@@ -1758,11 +1772,11 @@ void test_a_line_that_is_one_octet_too_long_is_damage_in_a_burst_and_octet_by_oc
     put_run(&front);
     for (size_t at = begins[1] + 15; at < begins[2] - 1; at++) {
         if (wire.octets[at] == '\n') {
-            wire_t longer = wire;
-            memmove(&longer.octets[at + 1], &wire.octets[at], (wire.length - at) * sizeof wire.octets[0]);
-            longer.octets[at] = '1';
-            longer.length++;
-            compare_ways(&longer, longer.length);
+            faulty = wire;
+            memmove(&faulty.octets[at + 1], &wire.octets[at], (wire.length - at) * sizeof wire.octets[0]);
+            faulty.octets[at] = '1';
+            faulty.length++;
+            compare_ways(&faulty, faulty.length);
             TEST_ASSERT_EQUAL_UINT32(3, parser.counters.scans);
             TEST_ASSERT_EQUAL_UINT32(1, damages());
         }

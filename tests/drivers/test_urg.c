@@ -148,9 +148,10 @@ void test_two_scans_and_a_notice_may_come_at_once(void)
     char text[400] = "";
 
     reach_stream();
-    strcat(text, frame(32U, "9H"));
-    strcat(text, "MS0372040601000\n98a\n\n");
-    strcat(text, frame(64U, "0F"));
+    strcpy(text, frame(32U, "9H"));
+    strcpy(&text[101], "MS0372040601000\n98a\n\n");
+    strcpy(&text[101 + 21], frame(64U, "0F"));
+    strcpy(&text[101 + 21 + 101], "MS03");
     urg_report(&urg, &report);
     TEST_ASSERT_EQUAL_UINT32(5U, report.seen.reply_count);
     const uint32_t before = report.seen.octet_count;
@@ -159,7 +160,8 @@ void test_two_scans_and_a_notice_may_come_at_once(void)
     urg_report(&urg, &report);
     TEST_ASSERT_EQUAL_UINT32(2U, report.seen.scan_count);
     TEST_ASSERT_EQUAL_UINT32(1U, report.seen.notice_count);
-    TEST_ASSERT_EQUAL_UINT32(2U * 101U + 21U, report.seen.octet_count - before);
+    TEST_ASSERT_EQUAL_UINT32(2U * 101U + 21U + 4U, report.seen.octet_count - before);
+    TEST_ASSERT_EQUAL_UINT16(97U, urg_expected(&urg));
 }
 
 /* The longest command: LF, MS with its range, LF. */
