@@ -74,18 +74,34 @@ static void put_answer(wire_t *wire, const order_t *order, const char *status)
     put(wire, '\n');
 }
 
+static void put_summed(wire_t *wire, const char *characters, size_t count)
+{
+    char line[SCIP_FRAMES_BLOCK + 3];
+    scip_frames_summed(line, characters, count);
+    put_text(wire, line);
+}
+
 static void put_frame(wire_t *wire, const order_t *order, unsigned remaining, unsigned long stamp,
                       const unsigned long *values)
 {
-    static char data[3 * POINTS_MAX], text[WIRE_MAX + 1];
     const unsigned width = width_of(order);
-    char echo[40];
+    char block[SCIP_FRAMES_BLOCK], value[4];
+    size_t count = 0;
+    put_echo(wire, order, remaining);
+    put_summed(wire, order->symbol[0] == 'M' ? "99" : "00", 2);
+    scip_frames_encode(value, stamp, 4);
+    put_summed(wire, value, 4);
     for (unsigned i = 0; i < points_of(order); i++) {
-        scip_frames_encode(&data[width * i], values[i], width);
+        scip_frames_encode(value, values[i], width);
+        for (unsigned k = 0; k < width; k++) {
+            block[count++] = value[k];
+            if (count == SCIP_FRAMES_BLOCK || (i == points_of(order) - 1 && k == width - 1)) {
+                put_summed(wire, block, count);
+                count = 0;
+            }
+        }
     }
-    write_echo(echo, sizeof echo, order, remaining);
-    scip_frames_frame(text, echo, stamp, data, (size_t)width * points_of(order));
-    put_text(wire, text);
+    put(wire, '\n');
 }
 
 /* --- the product's side
@@ -323,9 +339,20 @@ void test_three_characters_saturate_at_what_sixteen_bits_hold(void)
 /* --- recordings, see tests/fixtures/scip/README.md
  * ---------------------------------------------------------------- */
 
+/* A number of a table and the character behind it, which is returned. */
+static int read_cell(FILE *table, unsigned long *number)
+{
+    int character = fgetc(table);
+    *number = 0;
+    while (character >= '0' && character <= '9') {
+        *number = 10 * *number + (unsigned long)(character - '0');
+        character = fgetc(table);
+    }
+    return character;
+}
+
 static unsigned replay(const char *name, const order_t *order, uint32_t replies)
 {
-    static char row[4000];
     char path[300];
     snprintf(path, sizeof path, FIXTURES "/scip/%s.bin", name);
     FILE *octets = fopen(path, "rb");
@@ -340,17 +367,19 @@ static unsigned replay(const char *name, const order_t *order, uint32_t replies)
             continue;
         }
         scans++;
-        TEST_ASSERT_NOT_NULL(fgets(row, sizeof row, said));
-        char *next = row;
-        TEST_ASSERT_EQUAL_UINT32(strtoul(next, &next, 10), scan.timestamp_ms);
-        TEST_ASSERT_EQUAL_UINT16(strtoul(next + 1, &next, 10), scan.points);
+        unsigned long number;
+        TEST_ASSERT_EQUAL(',', read_cell(said, &number));
+        TEST_ASSERT_EQUAL_UINT32(number, scan.timestamp_ms);
+        int behind = read_cell(said, &number);
+        TEST_ASSERT_EQUAL_UINT16(number, scan.points);
         for (uint16_t i = 0; i < scan.points; i++) {
-            unsigned long mm = strtoul(next + 1, &next, 10);
-            TEST_ASSERT_EQUAL_UINT16(mm > 65535 ? 65535 : mm, scan.distance_mm[i]);
+            TEST_ASSERT_EQUAL(',', behind);
+            behind = read_cell(said, &number);
+            TEST_ASSERT_EQUAL_UINT16(number > 65535 ? 65535 : number, scan.distance_mm[i]);
         }
-        TEST_ASSERT_EQUAL('\n', *next);
+        TEST_ASSERT_EQUAL('\n', behind);
     }
-    TEST_ASSERT_NULL(fgets(row, sizeof row, said));
+    TEST_ASSERT_EQUAL(EOF, fgetc(said));
     TEST_ASSERT_EQUAL_UINT32(0, damages());
     TEST_ASSERT_EQUAL_UINT32(replies, parser.counters.replies);
     fclose(octets);
@@ -1734,22 +1763,20 @@ void test_a_damaged_frame_in_one_burst_makes_what_single_octets_make(void)
 {
     static const unsigned replacements[] = {'\n', '9', 'b', '0', 'o', 'p', 0x00, 0xFF};
     put_run(&front);
-    const wire_t whole = wire;
     for (size_t at = begins[1]; at < begins[2]; at++) {
         for (size_t i = 0; i < sizeof replacements / sizeof replacements[0]; i++) {
-            faulty = whole;
+            faulty = wire;
             faulty.octets[at] = replacements[i];
             compare_ways(&faulty, faulty.length);
             compare_ways(&faulty, at + 1);
         }
-        faulty = whole;
-        memmove(&faulty.octets[at], &faulty.octets[at + 1],
-                (whole.length - at - 1) * sizeof faulty.octets[0]);
+        faulty = wire;
+        memmove(&faulty.octets[at], &faulty.octets[at + 1], (wire.length - at - 1) * sizeof faulty.octets[0]);
         faulty.length--;
         compare_ways(&faulty, faulty.length);
-        memmove(&faulty.octets[at + 1], &whole.octets[at], (whole.length - at) * sizeof faulty.octets[0]);
-        faulty.octets[at] = whole.octets[at];
-        faulty.length = whole.length + 1;
+        memmove(&faulty.octets[at + 1], &wire.octets[at], (wire.length - at) * sizeof faulty.octets[0]);
+        faulty.octets[at] = wire.octets[at];
+        faulty.length = wire.length + 1;
         compare_ways(&faulty, faulty.length);
     }
 }
