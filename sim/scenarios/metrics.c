@@ -108,7 +108,8 @@ static void find_extremes(metrics_record_t *record, const metrics_sample_t *s)
 static void watch_touch(metrics_record_t *record, const metrics_sample_t *s)
 {
     if (s->height_m > AIRBORNE_M) {
-        const bool idle = record->before.thrust_n <= 0.0 && s->thrust_n <= 0.0;
+        const bool idle = record->before.thrust_n <= 0.0 && s->thrust_n <= 0.0 &&
+                          s->speed_mps <= 0.0; /* else a pilot lifts it */
         record->dropped = record->airborne ? record->dropped : record->count > 0 && idle;
         record->airborne = true;
         record->fall_mps = 0.0;

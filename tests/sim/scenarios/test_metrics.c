@@ -113,13 +113,32 @@ void test_motors_may_stop_low_or_when_the_vehicle_is_tilted_or_the_pilots(void)
     NEAR(1e-9, 0.0, value(METRIC_OFF_ALOFT));
 }
 
+/* The ground falls at once, the vehicle does not move. */
+static void lose_the_platform(double height_m)
+{
+    now.t_s = time_s();
+    now.height_m = now.seen_m = height_m;
+    now.on_ground = false;
+    metrics_add(&record, &now);
+    ticks++;
+}
+
+void test_a_pilots_flight_that_ends_on_the_ground_is_a_touch_whatever_the_law_commands(void)
+{
+    now.thrust_n = 0.0;
+    go(11.0, 0.0);
+    go(12.0, 0.8);
+    go(12.5, 0.0);
+    NEAR(1e-6, 1.6, value(METRIC_TOUCH_SPEED_MPS));
+}
+
 void test_a_platform_that_goes_away_under_a_standing_vehicle_is_no_touch(void)
 {
     for (int idle = 0; idle < 2; idle++) {
         setUp();
         now.thrust_n = idle ? 0.0 : 5.0;
         go(11.0, 0.0);
-        go(11.0 + 1.0 / HERTZ, 0.25);
+        lose_the_platform(0.25);
         go(11.2, 0.0);
         if (idle) {
             TEST_ASSERT_TRUE(isnan(value(METRIC_TOUCH_SPEED_MPS)));
