@@ -80,6 +80,7 @@
 #define FALL_MPS 0.8F         /* chosen: above SINK_MAX_MPS in est_law.c, 0.6 m/s */
 #define STANDS_S 0.6F         /* chosen: 24 frames */
 #define SWAY_TIME_S 1.5F      /* chosen: 60 frames */
+#define SPIKE_RAD2 0.01F      /* chosen: 6 degrees; one wrong frame on the ground is no sway of the air */
 #define SWAY_RAD2 2.5e-4F     /* chosen: 0.9 degrees rms, both angles together; in the air it sways more */
 #define STILL_S 1.0F          /* chosen: two thirds of SWAY_TIME_S */
 #define STILL_TIME_S 2.0F     /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in that time */
@@ -398,7 +399,8 @@ static void watch_sway(integrity_t *i, const imu_sample_t *frame, float dt_s)
 
     i->mean_rad[0] += share * roll_rad;
     i->mean_rad[1] += share * pitch_rad;
-    i->sway_rad2 += share * (roll_rad * roll_rad + pitch_rad * pitch_rad - i->sway_rad2);
+    const float rad2 = roll_rad * roll_rad + pitch_rad * pitch_rad;
+    i->sway_rad2 += share * ((i->standing ? at_most(rad2, SPIKE_RAD2) : rad2) - i->sway_rad2);
 }
 
 /* Measures how long the tilt has stayed where it is, near the ground. This ends within a second of a
