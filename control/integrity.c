@@ -77,21 +77,21 @@
 #define STEPS_MAX 12.0F      /* chosen: more than half of the scans of STEPS_TIME_S are steps */
 
 /* Standing on the ground. The thrust predicts a fall, and the accelerometer does not measure one. */
-#define FALL_MPS 0.8F         /* chosen: above SINK_MAX_MPS in est_law.c, 0.6 m/s */
-#define STANDS_S 0.6F         /* chosen: 24 frames */
-#define SWAY_TIME_S 1.5F      /* chosen: 60 frames */
-#define SPIKE_RAD2 0.01F      /* chosen: 6 degrees; one wrong frame on the ground is no sway of the air */
-#define SWAY_RAD2 2.5e-4F     /* chosen: 0.9 degrees rms, both angles together; in the air it sways more */
-#define STILL_S 1.0F          /* chosen: two thirds of SWAY_TIME_S */
-#define STILL_TIME_S 2.0F     /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in that time */
-#define FELL_MPS 0.4F         /* chosen: half of FALL_MPS */
-#define FALL_STILL_MPS 0.5F   /* chosen: above FELL_MPS */
-#define ROCKED_RAD 0.017F     /* chosen: 1 degree, four times the noise of an angle */
-#define ROCKED_BELOW_M 0.10F  /* as LANDED_NO_MORE_M in touchdown.h */
-#define ROCKED_S 0.8F         /* chosen: 32 frames; at 0.5 s 2 of 96 blocked flights rested in the air */
-#define SWAY_HAND_RAD2 0.012F /* chosen: 6 degrees rms; who tilts a vehicle by hand tilts it more */
-#define CARRIED_S 1.0F        /* as ALOFT_HELD_US in supervisor.c */
-#define CARRIED_TIME_S 2.0F   /* chosen: above the period of a pilot's swings */
+#define FALL_MPS 0.8F        /* chosen: above SINK_MAX_MPS in est_law.c, 0.6 m/s */
+#define STANDS_S 0.6F        /* chosen: 24 frames */
+#define SWAY_TIME_S 1.5F     /* chosen: 60 frames */
+#define SPIKE_RAD2 1.2e-3F   /* chosen: 2 degrees; a wrong frame in ten on the ground is no sway of the air */
+#define SWAY_RAD2 2.5e-4F    /* chosen: 0.9 degrees rms, both angles together; in the air it sways more */
+#define STILL_S 1.0F         /* chosen: two thirds of SWAY_TIME_S */
+#define STILL_TIME_S 2.0F    /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in that time */
+#define FELL_MPS 0.4F        /* chosen: half of FALL_MPS */
+#define FALL_STILL_MPS 0.5F  /* chosen: above FELL_MPS */
+#define ROCKED_RAD 0.017F    /* chosen: 1 degree, four times the noise of an angle */
+#define ROCKED_BELOW_M 0.10F /* as LANDED_NO_MORE_M in touchdown.h */
+#define ROCKED_S 0.8F        /* chosen: 32 frames; at 0.5 s 2 of 96 blocked flights rested in the air */
+#define SWAY_HAND_RAD2 0.012F     /* chosen: 6 degrees rms; who tilts a vehicle by hand tilts it more */
+#define CARRIED_S 1.5F            /* chosen: above ROCKED_S, so that a nudge on the ground starts nothing */
+#define CARRIED_TIME_S 2.0F       /* chosen: above the period of a pilot's swings */
 #define CARRIED_BIAS_TIME_S 20.0F /* chosen: ten times that; the bias was measured at rest */
 #define SWAYING_S 1.5F        /* chosen: 15 scans; a lift-off that the heights see takes less than a second */
 #define STRONG_SHARE 1.3F     /* chosen: of GRAV; lifts the heaviest vehicle, 1.2 of GRAV, at 0.8 m/s2 */
@@ -370,7 +370,7 @@ static void measure_rest(integrity_t *i, float dt_s)
  * pilot, or in somebody's. Its way up and down is bounded, so the means of speed and acceleration are 0. */
 static void watch_carried(integrity_t *i, float mean_mps2, float dt_s)
 {
-    i->carried_s = (i->sway_rad2 < SWAY_HAND_RAD2) ? at_most(i->carried_s + dt_s, OLD_S) : 0.0F;
+    i->carried_s = (i->swing_rad2 < SWAY_HAND_RAD2) ? at_most(i->carried_s + dt_s, OLD_S) : 0.0F;
     i->bias_mps2 = (i->rested_s > 0.0F) ? i->kept_bias_mps2[0] : i->bias_mps2;
     i->rested_s = 0.0F;
     const float mps2 = mean_mps2 - i->bias_mps2;
@@ -382,7 +382,7 @@ static void watch_carried(integrity_t *i, float mean_mps2, float dt_s)
 static void watch_ground(integrity_t *i, float mean_mps2, float dt_s)
 {
     i->unseen_s = at_most(i->unseen_s + dt_s, OLD_S);
-    if (i->unseen_s > HEIGHT_LOST_S && integrity_sways(i)) {
+    if (i->unseen_s > HEIGHT_LOST_S && integrity_sways(i) && integrity_rocks(i)) {
         watch_carried(i, mean_mps2, dt_s);
     } else {
         i->carried_s = 0.0F;
@@ -400,6 +400,7 @@ static void watch_sway(integrity_t *i, const imu_sample_t *frame, float dt_s)
     i->mean_rad[0] += share * roll_rad;
     i->mean_rad[1] += share * pitch_rad;
     const float rad2 = roll_rad * roll_rad + pitch_rad * pitch_rad;
+    i->swing_rad2 += share * (rad2 - i->swing_rad2);
     i->sway_rad2 += share * ((i->standing ? at_most(rad2, SPIKE_RAD2) : rad2) - i->sway_rad2);
 }
 

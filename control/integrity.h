@@ -129,7 +129,8 @@ typedef struct {
     float mean_rad[2];   /* low-passed roll and pitch */
     float anchor_rad[2]; /* roll and pitch when they last moved */
     float unrocked_s;    /* time since then */
-    float sway_rad2;     /* low-passed mean square of roll and pitch around mean_rad */
+    float swing_rad2;    /* low-passed mean square of roll and pitch around mean_rad */
+    float sway_rad2;     /* the same; while it stands one wrong frame counts little */
     float unseen_s;      /* time on the ground since the latest height, at most 2 s */
     float carried_s;    /* how long it has been carried on the ground, see integrity_carried(); at most 2 s */
     float stands_s;     /* how long the vehicle has shown the signs of integrity_stands() */

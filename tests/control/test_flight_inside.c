@@ -1356,7 +1356,7 @@ void test_it_may_be_carried_on_the_ground_without_a_pin_or_in_a_descent_that_beg
     for (int i = 0; i < 3; i++) {
         setUp();
         f.supervisor.state = FLIGHT_GROUND;
-        f.integrity.carried_s = (i == 1) ? 0.9F : 1.1F;
+        f.integrity.carried_s = (i == 1) ? 1.4F : 1.6F;
         set(PARAMETER_SEL, (i == 2) ? (float)SEL_PIN : (float)SEL_NONE);
         TEST_ASSERT_EQUAL(i == 0, may_be_carried(&f, &parameters));
     }

@@ -619,6 +619,38 @@ void test_who_tilts_it_by_hand_or_has_heights_does_not_carry_it(void)
     }
 }
 
+static void stand_tilted(float seconds, float roll_rad)
+{
+    it.standing = true; /* as integrity_thrust() finds in state GROUND */
+    for (int k = 0; k < (int)lroundf(seconds * 40.0F); k++) {
+        frame.sequence++;
+        frame.arrival_us += 25000U;
+        frame.median.roll_rad = roll_rad;
+        integrity_frames(&it, &flown, &frame, 1U);
+        TEST_ASSERT_FALSE(integrity_carried(&it));
+    }
+}
+
+/* It stands without heights. */
+void test_tilts_by_hand_nudges_and_wrong_frames_are_no_carried_vehicle(void)
+{
+    flown.grounded = true;
+    carry(5.0F, 0.0F, 0.0F);
+    for (int k = 0; k < 200; k++) { /* the signs of the IMU are tried */
+        carry(0.1F, 0.0F, 0.3F);
+        TEST_ASSERT_FALSE(integrity_carried(&it));
+    }
+    for (float roll_rad = 0.02F; roll_rad < 0.4F; roll_rad += 0.02F) { /* put down, each time another way */
+        stand_tilted(8.0F, roll_rad);
+        stand_tilted(0.2F, 0.5F * roll_rad);
+        stand_tilted(8.0F, 0.0F);
+    }
+    for (int k = 0; k < 200; k++) {
+        stand_tilted(0.475F, 0.0F);
+        stand_tilted(0.025F, (k % 2 == 0) ? 0.5F : -0.5F);
+    }
+}
+
 /* ---- tilt */
 
 static void tilt(float degrees, int frames)

@@ -1196,7 +1196,8 @@ static void carry(float unseen_s, float sway_rad2)
     flown.grounded = true;
     feel(0.0F);
     it.unseen_s = unseen_s;
-    it.sway_rad2 = sway_rad2;
+    it.sway_rad2 = it.swing_rad2 = sway_rad2;
+    it.unrocked_s = 0.0F;
     it.carried_s = 0.5F;
     it.rested_s = 1.0F;
     it.rest_mps2 = it.bias_mps2 = 0.3F;
@@ -1233,9 +1234,9 @@ void test_who_tilts_it_by_hand_does_not_fly_it(void)
     carry(1.9F, 0.0123F);
     feel(0.0F);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, it.carried_s);
-    it.carried_s = 1.0F;
+    it.carried_s = 1.5F;
     TEST_ASSERT_FALSE(integrity_carried(&it));
-    it.carried_s = 1.01F;
+    it.carried_s = 1.51F;
     TEST_ASSERT_TRUE(integrity_carried(&it));
     carry(1.9F, 5.0e-4F);
     it.carried_s = 1.99F;

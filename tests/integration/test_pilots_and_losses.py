@@ -167,6 +167,12 @@ class Losses(unittest.TestCase):
             self.assertLess(stands, 20.0, f"motors run on the ground: {flight}")
             self.assertLess(max(row["height_m"] for row in flight.after(seen_s + 3.0)), 0.1, f"took off again: {flight}")
 
+    def test_spikes_of_an_imu_start_no_motor_of_a_vehicle_that_stands_without_heights(self):
+        for flight in flights(("EST", "PID"), VEHICLES,
+                              lambda rng: ({"outage_start": 0.0, "outage": 60.0, "imu_spikes": rng.uniform(0.005, 0.05)},
+                                           {"SETR": "0", "SEL": "NONE"}, [])):
+            self.assertEqual(max(row["thrust_n"] for row in flight.rows), 0.0, str(flight))
+
     def test_a_scan_frozen_around_the_lift_off_neither_lifts_nor_drops_it(self):
         for start_s in (1.5, 1.6, 1.7, 2.0, 2.2):
             for flight in flights(("EST",), ("nominal", "drawn 0"),
