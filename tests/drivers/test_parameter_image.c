@@ -45,6 +45,7 @@ void test_the_layout_is_pinned(void)
     image.count = 2U;
     image.values[0] = 1.0F;
     image.values[1] = -10.0F;
+    memset(cells, 0, sizeof cells); /* the filling is written, too */
     TEST_ASSERT_EQUAL_UINT16(16, parameter_image_write(cells, &image));
     TEST_ASSERT_EQUAL_HEX16_ARRAY(expected, cells, 16);
 }

@@ -98,6 +98,7 @@ void test_lf_cr_and_cr_lf_end_one_line_each_and_cr_behind_lf_another(void)
     TEST_ASSERT_EQUAL(2U, feed("#D 4\n\r"));
     TEST_ASSERT_TRUE(collector.line.bare);
     TEST_ASSERT_EQUAL(1U, feed_octets("#E 5\r\0\n", 7U));
+    TEST_ASSERT_EQUAL(2U, feed("#F 6\r\n\n")); /* one LF belongs to the CR, the next is a line */
     TEST_ASSERT_EQUAL(0U, collector.strays);
 }
 

@@ -74,6 +74,14 @@ void test_an_answer_is_built_from_texts_numbers_and_counts(void)
     assert_line("OK KP 0.015 42 3\r\n");
 }
 
+/* Check value of CRC-16/CCITT-FALSE. */
+void test_a_sum_is_a_star_and_four_digits(void)
+{
+    telemetry_text(&line, "123456789");
+    telemetry_sum(&line);
+    assert_line("123456789*29B1");
+}
+
 void test_begin_forgets_everything(void)
 {
     telemetry_text(&line, "rest of an old line");
