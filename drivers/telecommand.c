@@ -40,7 +40,6 @@ static bool end_line(telecommand_collector_t *collector, char character, char pr
 {
     /* Not LF CR: behind a line of a packet list, which ends with LF, Enter sends CR, and must be a line. */
     if (character == '\n' && previous == '\r') {
-        collector->previous = '\0';
         return false;
     }
     if (!collector->started || character == CTRL_C) {
