@@ -55,19 +55,20 @@ typedef struct {
     const char *name;
     uint32_t first_rate, stream_rate;
     scip_layout_id_t layout;
-    bool rounds_down; /* the sensor makes no point of steps that fill no cluster */
+    bool rounds_down;  /* the sensor makes no point of steps that fill no cluster */
+    double dialogue_s; /* the 60 octets of a start take so much longer than at 115200 */
 } line_t;
 
 static const line_t lines[] = {
-    {"front, 250000", 115200, 250000, SCIP_LAYOUT_FRONT, false},
-    {"front, 115200 throughout", 115200, 115200, SCIP_LAYOUT_FRONT, false},
-    {"front, 19200 throughout", 19200, 19200, SCIP_LAYOUT_FRONT, false},
-    {"front, from 19200 to 57600", 19200, 57600, SCIP_LAYOUT_FRONT, false},
-    {"front, from 57600 to 750000", 57600, 750000, SCIP_LAYOUT_FRONT, false},
-    {"two beams, 250000", 115200, 250000, SCIP_LAYOUT_TWO_BEAMS, false},
-    {"three mirrors, 250000", 115200, 250000, SCIP_LAYOUT_THREE_MIRRORS, false},
-    {"three mirrors, 115200", 115200, 115200, SCIP_LAYOUT_THREE_MIRRORS, false},
-    {"the same, points rounded down", 115200, 115200, SCIP_LAYOUT_THREE_MIRRORS, true},
+    {"front, 250000", 115200, 250000, SCIP_LAYOUT_FRONT, false, 0.0},
+    {"front, 115200 throughout", 115200, 115200, SCIP_LAYOUT_FRONT, false, 0.0},
+    {"front, 19200 throughout", 19200, 19200, SCIP_LAYOUT_FRONT, false, 0.026},
+    {"front, from 19200 to 57600", 19200, 57600, SCIP_LAYOUT_FRONT, false, 0.026},
+    {"front, from 57600 to 750000", 57600, 750000, SCIP_LAYOUT_FRONT, false, 0.0},
+    {"two beams, 250000", 115200, 250000, SCIP_LAYOUT_TWO_BEAMS, false, 0.0},
+    {"three mirrors, 250000", 115200, 250000, SCIP_LAYOUT_THREE_MIRRORS, false, 0.0},
+    {"three mirrors, 115200", 115200, 115200, SCIP_LAYOUT_THREE_MIRRORS, false, 0.0},
+    {"the same, points rounded down", 115200, 115200, SCIP_LAYOUT_THREE_MIRRORS, true, 0.0},
 };
 static const line_t *line = &lines[0];
 
@@ -558,7 +559,8 @@ static double worst_blind_s(const trouble_t *trouble, sim_time_t length)
     for (unsigned phase = 0; phase < OUTAGE_PHASES; phase++) {
         worst = fmax(worst, blind_s(trouble, length, phase));
     }
-    holds = holds && worst <= (double)length / 1e9 + trouble->most_s;
+    holds = holds &&
+            worst <= (double)length / 1e9 + trouble->most_s + (trouble->restart ? line->dialogue_s : 0.0);
     return worst;
 }
 
