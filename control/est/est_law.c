@@ -114,7 +114,7 @@ static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt
 
     if (law->heightless_s > HEIGHT_FRESH_S || e->unchecked_count > 0U || law->without_authority ||
         estimator_accuses(e)) {
-        hover_forget_gust(&law->hover, dt_s);
+        hover_fade_gust(&law->hover, dt_s);
         return; /* no height confirms the estimated speed */
     }
     if (e->now.height_m > IN_THE_AIR_M || seen_n > law->hover.thrust_n) {

@@ -25,7 +25,7 @@ void hover_init(hover_t *hover, float thrust_n, float sigma_n, float least_n, fl
     };
 }
 
-static inline void fade_gust(hover_t *hover, float dt_s)
+void hover_fade_gust(hover_t *hover, float dt_s)
 {
     hover->gust_n *= at_least(1.0F - dt_s / GUST_TIME_S, 0.0F);
 }
@@ -43,12 +43,7 @@ void hover_step(hover_t *hover, float seen_n, float noise_n, float dt_s)
                               hover->most_n);
     hover->variance_n2 *= 1.0F - gain;
     hover->gust_n = between(-GUST_MAX_N, hover->gust_n + gust_share * unexplained_n, GUST_MAX_N);
-    fade_gust(hover, dt_s);
-}
-
-void hover_forget_gust(hover_t *hover, float dt_s)
-{
-    fade_gust(hover, dt_s);
+    hover_fade_gust(hover, dt_s);
 }
 
 void hover_nudge(hover_t *hover, float more_n)

@@ -22,7 +22,7 @@ void hover_init(hover_t *hover, float thrust_n, float sigma_n, float least_n, fl
 void hover_step(hover_t *hover, float seen_n, float noise_n, float dt_s);
 
 /* Without a sample: the gust ends as gusts do, dt_s later. */
-void hover_forget_gust(hover_t *hover, float dt_s);
+void hover_fade_gust(hover_t *hover, float dt_s);
 
 /* Adds more_n to the estimate. The caller has seen from the height that more thrust is needed (more_n >
  * 0), or less thrust (more_n < 0). */

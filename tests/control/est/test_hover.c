@@ -92,7 +92,7 @@ void test_without_samples_a_gust_ends_and_the_hover_thrust_stays(void)
     const float before_n = hover.gust_n;
     const float hover_n = hover.thrust_n;
     for (float t = 0.0F; t < 0.76F; t += 0.019F) {
-        hover_forget_gust(&hover, 0.019F);
+        hover_fade_gust(&hover, 0.019F);
     }
     TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.37F, hover.gust_n / before_n); /* 1/e */
     TEST_ASSERT_EQUAL_FLOAT(hover_n, hover.thrust_n);
@@ -163,7 +163,7 @@ void test_a_gust_ends_without_a_sample_as_with_one(void)
 {
     hover.gust_n = 0.4F;
     const hover_t before = hover;
-    hover_forget_gust(&hover, 0.1F);
+    hover_fade_gust(&hover, 0.1F);
     TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.4F * (1.0F - 0.1F / 0.76F), hover.gust_n);
     TEST_ASSERT_EQUAL_FLOAT(before.thrust_n, hover.thrust_n);
     TEST_ASSERT_EQUAL_FLOAT(before.variance_n2, hover.variance_n2);
