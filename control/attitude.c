@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "control/angle.h"
 #include "control/credible.h"
 #include "control/median.h"
 

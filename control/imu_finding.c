@@ -2,11 +2,12 @@
 
 #include <math.h>
 
+#include "control/angle.h"
+
 #define UNIT_ERROR 0.15F           /* chosen: as UNIT_SHARE in imu_axes.c */
 #define TILT_LEAST_RAD 0.13962634F /* chosen: 8 degrees, a clear movement */
 #define TILT_MOST_RAD 1.0471976F   /* chosen: 60 degrees */
 #define OTHER_SHARE 0.5F           /* chosen: a hand never turns about one axis alone */
-#define PI_F 3.14159265F           /* pi */
 
 /* Razor_AHRS; g; m/s2; thousandths of g. */
 static const float units[] = {256.0F, 1.0F, 9.80665F, 1000.0F};
@@ -27,20 +28,10 @@ bool imu_find_level(parameters_t *parameters, const imu_raw_t *raw)
     return false;
 }
 
-static float turned_rad(float now_rad, float before_rad)
-{
-    const float turn_rad = now_rad - before_rad;
-
-    if (turn_rad > PI_F) {
-        return turn_rad - 2.0F * PI_F;
-    }
-    return (turn_rad < -PI_F) ? turn_rad + 2.0F * PI_F : turn_rad;
-}
-
 bool imu_find_axis(parameters_t *parameters, parameter_id_t id, const imu_raw_t *level, const imu_raw_t *raw)
 {
-    const float roll_rad = turned_rad(raw->roll_rad, level->roll_rad);
-    const float pitch_rad = turned_rad(raw->pitch_rad, level->pitch_rad);
+    const float roll_rad = turn_rad(level->roll_rad, raw->roll_rad);
+    const float pitch_rad = turn_rad(level->pitch_rad, raw->pitch_rad);
     const bool by_roll = fabsf(roll_rad) > fabsf(pitch_rad);
     const float tilt_rad = by_roll ? roll_rad : pitch_rad;
     const float other_rad = by_roll ? pitch_rad : roll_rad;

@@ -17,14 +17,13 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "control/angle.h"
 #include "control/between.h"
 #include "control/credible.h"
-#include "control/median.h"
 
 /* Tilt. */
-#define JUMP_RAD 0.35F            /* chosen: 20 degrees within a frame of 25 ms, 800 degrees a second */
-#define HALF_TURN_RAD 3.14159265F /* pi */
-#define STEADY_MIN_RAD 0.05F      /* chosen: 110 degrees a second, faster than an attitude that is held */
+#define JUMP_RAD 0.35F       /* chosen: 20 degrees within a frame of 25 ms, 800 degrees a second */
+#define STEADY_MIN_RAD 0.05F /* chosen: 110 degrees a second, faster than an attitude that is held */
 #define STEADY_MAX_RAD 0.25F /* as FOLLOWS_RAD in attitude.c; a spike or a lost frame makes one step more */
 #define JUMPS_HELD 6U        /* chosen: a burst of six bad frames shows in six medians */
 #define ANGLE_MAX_RAD 7.0F   /* chosen: above 2 pi */
@@ -157,15 +156,6 @@ static void forget(integrity_t *i)
 }
 
 /* ---- tilt */
-
-/* The turn from one direction to another, -pi .. pi. */
-static float turn_rad(float from_rad, float to_rad)
-{
-    const float turned_rad = to_rad - from_rad;
-    return (turned_rad > HALF_TURN_RAD)    ? turned_rad - 2.0F * HALF_TURN_RAD
-           : (turned_rad < -HALF_TURN_RAD) ? turned_rad + 2.0F * HALF_TURN_RAD
-                                           : turned_rad;
-}
 
 /* One axis of turns_on(). */
 static bool turns_steadily(float accepted_rad, float before_rad, float now_rad, uint16_t frames)

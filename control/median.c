@@ -1,5 +1,7 @@
 #include "control/median.h"
 
+#include "control/angle.h"
+
 float median_of(const float *values, uint16_t count)
 {
     const uint16_t middle = (uint16_t)((count - 1U) / 2U);

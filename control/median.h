@@ -3,16 +3,7 @@
 #ifndef CONTROL_MEDIAN_H
 #define CONTROL_MEDIAN_H
 
-#include <math.h>
 #include <stdint.h>
-
-/* Angle between two directions, 0 .. pi. The angles may be up to one turn beyond +-pi. */
-static inline float arc_rad(float from_rad, float to_rad)
-{
-    const float half_turn_rad = 3.14159265F; /* pi */
-    const float apart_rad = fabsf(to_rad - from_rad);
-    return (apart_rad > half_turn_rad) ? fabsf(2.0F * half_turn_rad - apart_rad) : apart_rad;
-}
 
 /* Median of `count` finite values, count >= 1, in any order. The values are borrowed for the call. */
 float median_of(const float *values, uint16_t count);

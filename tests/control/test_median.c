@@ -126,14 +126,6 @@ void test_angles_on_both_sides_of_the_seam_are_neighbours(void)
     TEST_ASSERT_EQUAL_FLOAT(3.14F, median_of_angles(angles, 5)); /* order: 3.10 3.12 3.14 -3.13 -3.10 */
 }
 
-void test_the_arc_is_the_short_way(void)
-{
-    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.2F, arc_rad(3.04159F, -3.04159F));
-    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.2F, arc_rad(-3.04159F, 3.04159F));
-    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 3.0F, arc_rad(-1.5F, 1.5F));
-    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 2.0F * PI - 3.2F, arc_rad(1.6F, -1.6F));
-}
-
 void test_values_beyond_the_count_are_not_read(void)
 {
     static const float values[] = {3.0F, 1.0F, 2.0F, 100.0F};
