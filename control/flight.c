@@ -474,14 +474,14 @@ static void change_doubts(flight_t *flight, float gravity_n)
 }
 
 /* A pilot may have the vehicle, and nothing tells: without a pin on the ground, or in a descent that began
- * so. */
+ * so. An IMU that has fallen silent does not say so any longer: the descent then ends by its time. */
 static bool may_be_carried(const flight_t *flight, const parameters_t *parameters)
 {
     if (flight->supervisor.state == FLIGHT_GROUND) {
         return integrity_carried(&flight->integrity) &&
-               parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE;
+               parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE && est_law_has_imu(&flight->est);
     }
-    return flight->carried && integrity_sways(&flight->integrity);
+    return flight->carried && integrity_sways(&flight->integrity) && est_law_has_imu(&flight->est);
 }
 
 static void supervise(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)

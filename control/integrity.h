@@ -193,11 +193,12 @@ bool integrity_still(const integrity_t *integrity);
 /* True when roll and pitch sway as in the air: more than 1.1 degrees rms together. */
 bool integrity_sways(const integrity_t *integrity);
 
-/* The same with less delay, for the end of a landing: the tilt has moved by a degree within the last half
- * second. */
+/* The same with less delay, for the end of a landing: the tilt has moved by a degree within the last
+ * 0.8 s. */
 bool integrity_rocks(const integrity_t *integrity);
 
-/* True in state GROUND without heights, when the tilt has swayed as in the air for 1 s: a pilot flies it.
+/* True in state GROUND without heights, when the tilt has swayed as in the air and gone on moving for 1.5 s:
+ * a pilot flies it, or somebody carries it; a nudge or a wrong frame is over sooner.
  * Then the speed of the accelerometer's witness is valid. */
 bool integrity_carried(const integrity_t *integrity);
 

@@ -149,6 +149,13 @@ class Pilots(unittest.TestCase):
                 self.at_most(1.2, flight.touch_mps(), flight, "m/s at the touch")
                 self.assertLess(flight.rows[-1]["thrust_n"], 0.5, f"motors go on: {flight}")
 
+    def test_handed_over_without_heights_its_motors_stop_although_the_imu_falls_silent(self):
+        for pin in ("PIN", "NONE"):
+            for flight in flights(("EST", "PID"), ("nominal", "nominal 1"), lifted_then(pin, lambda s, rng: {
+                    **silent(-1000.0, LASTS_FOREVER), "imu_mute_start": s + rng.uniform(-2.0, 3.0), "imu_mute": LASTS_FOREVER})):
+                self.assertEqual(flight.rows[-1]["state"], "GROUND", str(flight))
+                self.assertLess(flight.rows[-1]["thrust_n"], 0.5, f"motors go on: {flight}")
+
     def test_whoever_gives_it_back_gives_back_a_vehicle_that_flies_and_stops(self):
         for pin in ("PIN", "NONE"):
             for flight in flights(("EST", "PID", "PIDT", "PD"), ("nominal", "drawn 0"), pilot(pin, 0.8, 1.4)):
