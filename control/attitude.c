@@ -6,9 +6,12 @@
 #include "control/credible.h"
 #include "control/median.h"
 
-#define FOLLOWS_RAD 0.25F       /* chosen: 570 degrees a second in frames of 25 ms */
-#define FOLLOWS_SPIKE_RAD 0.40F /* chosen: 460 degrees a second in two frames, one of them a spike */
+#define FOLLOWS_RAD 0.30F /* chosen: 690 degrees a second in frames of 25 ms, below a spike of 20 degrees */
+#define FOLLOWS_SPIKE_RAD 0.60F /* chosen: the same in two frames, one of them a spike */
 #define STRAYED_FRAMES 7U       /* chosen: a burst of six bad frames is over */
+#define STRAYED_COUNT 3U        /* chosen: so many of them count as frames of a turn */
+#define BENT_RAD 0.17453293F    /* chosen: 10 degrees, above the tilts of a flight */
+#define BEYOND_FRAMES 3U        /* chosen: one or two beyond 45 degrees may be a gust's */
 
 void attitude_init(attitude_filter_t *filter)
 {
@@ -63,8 +66,31 @@ static attitude_t median_attitude(const attitude_filter_t *filter)
     };
 }
 
-/* A frame after a jump is not counted, nor are those after it, until one continues the motion from before the
- * jump, or the burst of bad frames must be over. */
+static bool tilts_beyond(const attitude_t *level, float limit_rad)
+{
+    return fabsf(level->roll_rad) > limit_rad || fabsf(level->pitch_rad) > limit_rad;
+}
+
+/* Counts the frames since the vehicle was last level. The last of them only counts beyond 45 degrees. */
+static void count_roll(attitude_filter_t *filter, const attitude_t *level, bool follows)
+{
+    if (!tilts_beyond(level, BENT_RAD)) {
+        filter->rolled = 0U;
+    } else if (!follows) {
+        filter->rolled = STRAYED_COUNT;
+    } else {
+        ++filter->rolled;
+    }
+    filter->beyond = tilts_beyond(level, TILTED_RAD) ? (uint16_t)(filter->beyond + 1U) : 0U;
+    filter->beyond = (filter->beyond < BEYOND_FRAMES) ? filter->beyond : BEYOND_FRAMES;
+    const uint16_t most = (filter->beyond == BEYOND_FRAMES) ? ATTITUDE_ROLLED_FRAMES
+                                                            : ATTITUDE_ROLLED_FRAMES - 1U;
+    filter->rolled = (filter->rolled < most) ? filter->rolled : most;
+}
+
+/* A turn is continuous; a burst of bad frames is short. So the frames of a turn are counted from the first
+ * one that is not level, which must follow from a level one. A frame after a jump does not follow; within a
+ * turn it counts, because it may be a spike. */
 static void watch_roll(attitude_filter_t *filter, const attitude_t *level)
 {
     const float most_rad = (filter->strayed == 0U) ? FOLLOWS_RAD : FOLLOWS_SPIKE_RAD;
@@ -73,14 +99,13 @@ static void watch_roll(attitude_filter_t *filter, const attitude_t *level)
 
     if (!follows && filter->held > 0U && filter->strayed + 1U < STRAYED_FRAMES) {
         ++filter->strayed;
+        filter->rolled = (uint16_t)(filter->rolled +
+                                    (filter->rolled > 0U && filter->rolled + 1U < ATTITUDE_ROLLED_FRAMES));
         return;
     }
-    const bool tilted = fabsf(level->roll_rad) > TILTED_RAD || fabsf(level->pitch_rad) > TILTED_RAD;
-    const bool counts = tilted && follows;
-
     filter->followed = *level;
     filter->strayed = 0U;
-    filter->rolled = counts ? (uint16_t)(filter->rolled + (filter->rolled < ATTITUDE_ROLLED_FRAMES)) : 0U;
+    count_roll(filter, level, follows);
 }
 
 bool attitude_step(attitude_filter_t *filter, const attitude_t *raw, attitude_t *level, attitude_t *median)

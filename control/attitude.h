@@ -31,12 +31,13 @@ typedef struct {
     uint16_t next;
     attitude_t followed; /* latest frame that continued the motion */
     uint16_t strayed;    /* frames since then */
-    uint16_t rolled;     /* frames in a row that continued a turn beyond 45 degrees */
+    uint16_t rolled;     /* frames since the vehicle was last level; the last only counts beyond 45 degrees */
+    uint16_t beyond;     /* frames in a row beyond 45 degrees, at most 3 */
 } attitude_filter_t;
 
-/* So many of them are a vehicle that turns over, and no burst of up to six bad frames: such a burst jumps, or
- * it passes 45 degrees too late to show four. The median would tell it two frames later. */
-#define ATTITUDE_ROLLED_FRAMES 4U
+/* So many of them are a vehicle that turns over: one more than a burst of bad frames may have. The median
+ * would tell it later. */
+#define ATTITUDE_ROLLED_FRAMES 7U
 
 void attitude_init(attitude_filter_t *filter);
 

@@ -20,6 +20,7 @@
 #define EVENT_PERIOD Event_Id_00
 #define EVENT_ALTITUDE Event_Id_01
 #define EVENT_IMU Event_Id_02
+#define EVENT_ROLL Event_Id_03
 
 static Event_Handle event;
 static UInt in_force;
@@ -49,9 +50,14 @@ void task_control_imu_arrived(void)
     post(EVENT_IMU);
 }
 
+void task_control_rolls(void)
+{
+    post(EVENT_ROLL);
+}
+
 static UInt events_of(uint16_t releases)
 {
-    return (((releases & FLIGHT_RELEASE_PERIOD) != 0U) ? EVENT_PERIOD : 0U) |
+    return EVENT_ROLL | (((releases & FLIGHT_RELEASE_PERIOD) != 0U) ? EVENT_PERIOD : 0U) |
            (((releases & FLIGHT_RELEASE_HEIGHT) != 0U) ? EVENT_ALTITUDE : 0U) |
            (((releases & FLIGHT_RELEASE_FRAME) != 0U) ? EVENT_IMU : 0U);
 }

@@ -101,6 +101,9 @@ static Void task_imu(UArg unused0, UArg unused1)
         }
         imu_server_write(&sample);
         task_control_imu_arrived();
+        if (sample.rolled == ATTITUDE_ROLLED_FRAMES) {
+            task_control_rolls();
+        }
         monitor_done(MONITOR_IMU);
     }
 }

@@ -12,8 +12,10 @@ void task_send_laser_create(void);
 void task_send_comm_create(void);
 void task_receive_comm_create(void);
 
-/* Release TaskControl: a new altitude has arrived; a new IMU frame has arrived. Any task. */
+/* Release TaskControl: a new altitude has arrived; a new IMU frame has arrived; the vehicle turns over, which
+ * no law waits with. Any task. */
 void task_control_altitude_arrived(void);
 void task_control_imu_arrived(void);
+void task_control_rolls(void);
 
 #endif

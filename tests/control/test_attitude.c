@@ -195,18 +195,49 @@ static uint16_t most_rolled(const float *degrees, unsigned frames, bool pitch)
     return most;
 }
 
-void test_a_roll_of_400_degrees_a_second_is_seen_at_its_fourth_frame_beyond_45_degrees(void)
+void test_a_roll_of_400_degrees_a_second_is_seen_at_its_seventh_frame_beyond_10_degrees(void)
 {
     for (int sign = -1; sign <= 1; sign += 2) {
         learn(0.0F, 0.0F);
-        for (int i = 0; i <= 30; i++) { /* and through the half turn */
-            const float roll_rad = within_half_a_turn((float)sign * 10.0F * (float)i) * DEGREE_RAD;
+        for (int i = 0; i <= 22; i++) { /* and through the half turn */
+            const float roll_rad = within_half_a_turn((float)sign * 10.1F * (float)i) * DEGREE_RAD;
             (void)step(roll_rad, 0.0F, 0.0F);
-            const int beyond = (i < 5) ? 0 : i - 4;
-            TEST_ASSERT_EQUAL_INT(beyond < (int)ATTITUDE_ROLLED_FRAMES ? beyond : (int)ATTITUDE_ROLLED_FRAMES,
+            TEST_ASSERT_EQUAL_INT(i < (int)ATTITUDE_ROLLED_FRAMES ? i : (int)ATTITUDE_ROLLED_FRAMES,
                                   filter.rolled);
         }
         attitude_init(&filter);
+    }
+}
+
+void test_a_slow_roll_is_seen_at_its_third_frame_beyond_45_degrees(void)
+{
+    learn(0.0F, 0.0F);
+    for (int i = 0; i < 30; i++) {
+        (void)step(0.0F, 3.1F * DEGREE_RAD * (float)i, 0.0F);
+        const bool seen = 3.1F * (float)(i - 2) > 45.0F;
+        TEST_ASSERT_EQUAL_INT(seen, filter.rolled == ATTITUDE_ROLLED_FRAMES);
+    }
+}
+
+void test_the_fastest_roll_that_is_followed_is_650_degrees_a_second(void)
+{
+    float roll[10];
+
+    for (unsigned i = 0; i < 10; i++) {
+        roll[i] = 16.5F * (float)(i + 1U);
+    }
+    TEST_ASSERT_EQUAL_UINT16(ATTITUDE_ROLLED_FRAMES, most_rolled(roll, 10, false));
+    TEST_ASSERT_LESS_THAN_UINT16(ATTITUDE_ROLLED_FRAMES, most_rolled(roll, 6, false));
+}
+
+void test_a_spike_of_20_degrees_before_six_bad_frames_is_no_frame_of_a_turn(void)
+{
+    for (float drift = -16.0F; drift <= 16.0F; drift += 2.0F) {
+        float told[7] = {20.0F};
+        for (unsigned i = 1; i < 7; i++) {
+            told[i] = 16.0F + drift * (float)(i - 1U);
+        }
+        TEST_ASSERT_LESS_THAN_UINT16(ATTITUDE_ROLLED_FRAMES, most_rolled(told, 7, drift > 0.0F));
     }
 }
 

@@ -26,6 +26,8 @@ void __real_flight_step(flight_t *flight, const parameters_t *parameters, const 
 void __wrap_flight_step(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in,
                         flight_outputs_t *out);
 
+#define ROLLS Event_Id_03 /* part of every wait */
+
 static altitude_sample_t altitude;
 static imu_sample_t imu;
 static imu_sample_t imu_before;
@@ -219,7 +221,7 @@ void test_create_makes_an_event_a_clock_of_108_ms_and_one_task_of_priority_4(voi
     TEST_ASSERT_EQUAL_UINT64(1024, kernel.task.params.stackSize);
 }
 
-void test_the_clock_an_altitude_and_an_imu_frame_post_one_event_each(void)
+void test_the_clock_an_altitude_an_imu_frame_and_a_roll_post_one_event_each(void)
 {
     kernel.clock.function(kernel.clock.params.arg);
     TEST_ASSERT_EQUAL_HEX16(Event_Id_00, kernel.event.posted);
@@ -229,6 +231,9 @@ void test_the_clock_an_altitude_and_an_imu_frame_post_one_event_each(void)
     kernel.event.posted = 0U;
     task_control_imu_arrived();
     TEST_ASSERT_EQUAL_HEX16(Event_Id_02, kernel.event.posted);
+    kernel.event.posted = 0U;
+    task_control_rolls();
+    TEST_ASSERT_EQUAL_HEX16(ROLLS, kernel.event.posted);
 }
 
 void test_a_cycle_waits_looks_steps_drives_the_throttle_publishes_and_records(void)
@@ -264,31 +269,31 @@ void test_the_next_wait_follows_the_release_parameter(void)
 {
     between = change_the_release;
     run(5U);
-    TEST_ASSERT_EQUAL_HEX16(Event_Id_00, masks[0]);
-    TEST_ASSERT_EQUAL_HEX16(Event_Id_00, masks[1]); /* FREE in the cycle before */
-    TEST_ASSERT_EQUAL_HEX16(Event_Id_01, masks[2]);
-    TEST_ASSERT_EQUAL_HEX16(Event_Id_01, masks[3]);
-    TEST_ASSERT_EQUAL_HEX16(Event_Id_00, masks[4]);
-    TEST_ASSERT_EQUAL_HEX16(Event_Id_00, masks[5]);
+    TEST_ASSERT_EQUAL_HEX16(Event_Id_00 | ROLLS, masks[0]);
+    TEST_ASSERT_EQUAL_HEX16(Event_Id_00 | ROLLS, masks[1]); /* FREE in the cycle before */
+    TEST_ASSERT_EQUAL_HEX16(Event_Id_01 | ROLLS, masks[2]);
+    TEST_ASSERT_EQUAL_HEX16(Event_Id_01 | ROLLS, masks[3]);
+    TEST_ASSERT_EQUAL_HEX16(Event_Id_00 | ROLLS, masks[4]);
+    TEST_ASSERT_EQUAL_HEX16(Event_Id_00 | ROLLS, masks[5]);
 }
 
 void test_the_very_first_wait_follows_the_release_parameter_too(void)
 {
     parameters.value[PARAMETER_RELEASE] = (float)RELEASE_SCAN;
     run(1U);
-    TEST_ASSERT_EQUAL_HEX16(Event_Id_01, masks[0]);
+    TEST_ASSERT_EQUAL_HEX16(Event_Id_01 | ROLLS, masks[0]);
 }
 
 void test_the_later_laws_have_releases_of_their_own(void)
 {
     parameters.value[PARAMETER_LAW] = (float)LAW_PIDT;
     run(1U);
-    TEST_ASSERT_EQUAL_HEX16(Event_Id_01, masks[1]);
+    TEST_ASSERT_EQUAL_HEX16(Event_Id_01 | ROLLS, masks[1]);
     TEST_ASSERT_EQUAL_UINT32(100000, jobs[MONITOR_CONTROL].deadline_us);
     waits = steps = pulse_count = publications = alive_reports = 0U;
     parameters.value[PARAMETER_LAW] = (float)LAW_EST;
     run(1U);
-    TEST_ASSERT_EQUAL_HEX16(Event_Id_01 | Event_Id_02, masks[1]);
+    TEST_ASSERT_EQUAL_HEX16(Event_Id_01 | Event_Id_02 | ROLLS, masks[1]);
     TEST_ASSERT_EQUAL_UINT32(25000, jobs[MONITOR_CONTROL].deadline_us);
 }
 

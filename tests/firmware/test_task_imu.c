@@ -55,6 +55,14 @@ void task_control_imu_arrived(void)
     kernel_note("release");
 }
 
+static uint16_t rolls;
+
+void task_control_rolls(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(ATTITUDE_ROLLED_FRAMES, written[write_count - 1U].rolled);
+    rolls++;
+}
+
 static bool restart;
 static attitude_t kept;
 static uint16_t kept_count;
@@ -250,6 +258,17 @@ void test_malformed_frames_do_not_count_towards_the_offset(void)
     kernel_run_task();
     TEST_ASSERT_FALSE(written[write_count - 2U].ready);
     TEST_ASSERT_TRUE(written[write_count - 1U].ready);
+}
+
+void test_a_vehicle_that_turns_over_releases_the_control_cycle_whatever_its_law_waits_for(void)
+{
+    rolls = 0U;
+    at_rest(0.0, 0.0);
+    for (int n = 1; n <= 12; n++) { /* beyond 10 degrees from the second on */
+        angles(0.0, 0.0, 9.0 * n);
+    }
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_UINT16(5, rolls); /* at the eighth to the twelfth */
 }
 
 void test_every_frame_good_or_not_is_one_job_that_its_arrival_has_released(void)
