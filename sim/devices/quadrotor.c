@@ -48,6 +48,8 @@ const quadrotor_config_t quadrotor_default = {.gain = 1.0,
                                               .damping_per_s = 2.4,
                                               .hover_thrust_n = 7.4,
                                               .sag_per_s = 0.001,
+                                              .hover_jump_n = 0.0,
+                                              .hover_jump_start_s = 10.0,
                                               .turbulence_mps2 = 0.2,
                                               .turbulence_tau_s = 0.5,
                                               .attitude_rms_rad = 2.0 * DEGREE_RAD,
@@ -331,7 +333,9 @@ static double ground_effect(const quadrotor_t *q)
 
 static double hover_n(const quadrotor_t *q, double t_s)
 {
-    return q->config.hover_thrust_n * (1.0 + q->config.sag_per_s * fmax(t_s, 0.0));
+    const quadrotor_config_t *c = &q->config;
+    const double jump_n = t_s >= c->hover_jump_start_s ? c->hover_jump_n : 0.0;
+    return c->hover_thrust_n * (1.0 + c->sag_per_s * fmax(t_s, 0.0)) + jump_n;
 }
 
 static double lift_mps2(const quadrotor_t *q, double t_s)

@@ -31,6 +31,8 @@ typedef struct {
     double damping_per_s;         /* D 2.4 */
     double hover_thrust_n;        /* TH0 7.4 */
     double sag_per_s;             /* 0.001 */
+    double hover_jump_n;          /* 0: more hover thrust from hover_jump_start_s on: a load, a lost blade */
+    double hover_jump_start_s;    /* 10 */
     double turbulence_mps2;       /* 0.2 rms */
     double turbulence_tau_s;      /* 0.5 */
     double attitude_rms_rad;      /* 2 deg */

@@ -244,6 +244,20 @@ void test_an_imu_that_falls_silent_in_the_landing_does_not_keep_the_motors_runni
     }
 }
 
+static const lie_t loads[] = {
+    {{FLAT, "plant.hover_jump=1.2", "plant.hover_jump_start=6"}, 150.0, 0.6, 40.0},
+    {{FLAT, "plant.hover_jump=-1.2", "plant.hover_jump_start=6"}, 150.0, 0.6, 40.0},
+    {{FLAT, "plant.hover_jump=1.2", "plant.hover_jump_start=6", "plant.airframe=1"}, 150.0, 0.6, 40.0},
+    {{FLAT, "plant.hover_jump=-1.2", "plant.hover_jump_start=6", "plant.airframe=1"}, 150.0, 0.6, 40.0},
+};
+
+void test_a_load_that_comes_or_goes_in_flight_is_carried(void)
+{
+    for (size_t i = 0; i < sizeof loads / sizeof loads[0]; i++) {
+        fly("est-60cm-ramp", &loads[i], true);
+    }
+}
+
 void test_a_pilot_whom_no_pin_tells_of_gives_back_a_vehicle_that_flies(void)
 {
     for (size_t i = 0; i < sizeof pilots / sizeof pilots[0]; i++) {

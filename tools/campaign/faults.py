@@ -126,6 +126,10 @@ def gust(rng):
     return {"gust": rng.uniform(1.0, 6.0) * sign(rng), "gust_start": somewhen(rng), "gust_length": wide(rng, 0.1, 2.0)}
 
 
+def load(rng):
+    return {"hover_jump": rng.uniform(0.3, 1.2) * sign(rng), "hover_jump_start": somewhen(rng)}
+
+
 def lag2(rng):
     return {"lag2": rng.uniform(0.02, 0.15)}
 
@@ -146,7 +150,7 @@ KINDS = {
     "line delay": line_delay, "IMU silent": imu("mute"), "IMU frozen": imu("frozen"), "IMU garbled": imu_garbled,
     "accelerometer's unit": acc_unit, "accelerometer's sign": acc_sign, "accelerometer's bias": acc_bias,
     "accelerometer jumps": acc_jump, "aliased vibration": acc_alias, "attitude burst": attitude_burst,
-    "uneven floor": rough_floor, "bars": bars, "edge": edge, "gust": gust, "second lag": lag2,
+    "uneven floor": rough_floor, "bars": bars, "edge": edge, "gust": gust, "load": load, "second lag": lag2,
     "ground effect": ground_effect, "pilot": pilot,
 }
 

@@ -356,6 +356,21 @@ void test_the_battery_sags_from_the_origin_on(double t_s, double hover_n)
     NEAR(5e-4, G * (1.0 + (s.thrust_n - hover_n) / 7.4), lift(&s));
 }
 
+TEST_CASE(9.98, 7.4)
+TEST_CASE(10.02, 8.4)
+void test_a_load_comes_at_its_time_and_stays(double t_s, double hover_n)
+{
+    quadrotor_config_t loaded = calm;
+    loaded.hover_jump_n = 1.0;
+    loaded.sag_per_s = 0.0;
+    start(&loaded, &terrain_flat, 1);
+    fly(20.0, 9.0);
+    quadrotor_set_origin(quad, timeline_now() - (sim_time_t)(t_s * 1e9));
+    wait(1 * SIM_MS);
+    const quadrotor_state_t s = now();
+    NEAR(5e-4, G * (1.0 + (s.thrust_n - hover_n) / 7.4), lift(&s));
+}
+
 static double mean_of(const double *x, size_t n)
 {
     double sum = 0.0;
