@@ -28,18 +28,24 @@
 #define LOW_MM 80.0F       /* chosen: above REST_BELOW_MM in supervisor.c, 50 mm */
 #define NO_AUTHORITY_WINDOW_N 0.6F /* chosen: 0.8 m/s2 */
 #define CARRIED_BELOW_N 0.5F       /* chosen: by the vehicle model a sink rate of 0.3 m/s */
-#define CARRIED_ABOVE_N 0.7F       /* chosen: room to brake a fall */
-#define CARRIED_N_PER_S 0.06F      /* chosen: a hover thrust 1 N too high climbs for 8 s */
+#define CARRIED_N_PER_S 0.06F      /* chosen: little, because the pilot may fly on for long */
 #define HANDED_OVER_N_PER_S \
     0.15F /* chosen: more, because with a pin it begins when the pilot gives the throttle back */
-#define CARRIED_MAX_S 33.0F    /* chosen: 2 N, more than GRAV is off; then a sink rate of 1.4 m/s */
-#define CARRIED_TIME_S 2.0F    /* as in integrity.c */
-#define HELD_SINK_N_PER_S 0.2F /* chosen: as SINK_FADE_N_PER_S in est_law.c */
-#define UNKNOWN_WINDOW_N 2.0F  /* chosen: as HOVER_BOUND_N in est_law.c */
-#define UNKNOWN_REACH_M 0.09F  /* chosen: asks for 1.2 N at the delivered POSK and VELK */
-#define UNCONFIRMED_MPS 0.35F  /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
-#define TAKEOFF_MPS 0.6F       /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
-#define CLIMB_MARGIN_MPS 0.4F  /* chosen: room for an overshoot of the climb rate above VUP */
+#define CARRIED_SUNK_N 1.2F       /* chosen: with CARRIED_BELOW_N more than a fifth of GRAV */
+#define CARRIED_FELT_N 2.0F       /* chosen: more than GRAV is off */
+#define CARRIED_TIME_S 2.0F       /* as in integrity.c */
+#define CARRIED_BIAS_TIME_S 10.0F /* chosen: five times that */
+#define CARRIED_MOVES_MPS 0.35F   /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in CARRIED_TIME_S */
+#define CARRIED_N_PER_M 2.0F      /* chosen: a climb of 1 m/s lowers it by 1.5 N before that is forgotten */
+#define CARRIED_CLIMB_N_PER_MPS 1.0F /* chosen: halves the climb of a vehicle that is lighter by a fifth */
+#define CARRIED_FALL_N_PER_MPS 2.0F  /* chosen: twice that */
+#define CARRIED_BRAKE_N 1.8F         /* chosen: what the two before may have sunk */
+#define HELD_SINK_N_PER_S 0.2F       /* chosen: as SINK_FADE_N_PER_S in est_law.c */
+#define UNKNOWN_WINDOW_N 2.0F        /* chosen: as HOVER_BOUND_N in est_law.c */
+#define UNKNOWN_REACH_M 0.09F        /* chosen: asks for 1.2 N at the delivered POSK and VELK */
+#define UNCONFIRMED_MPS 0.35F /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
+#define TAKEOFF_MPS 0.6F      /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
+#define CLIMB_MARGIN_MPS 0.4F /* chosen: room for an overshoot of the climb rate above VUP */
 #define STAND_TEST_N_PER_S \
     1.0F /* chosen: in 2 s too low to fly; the accelerometer shows a fall before it is fast */
 #define NOT_LIFTED_MAX_US UINT32_C(3000000) /* chosen: the take-off's ramp in est_law.c ends after 1.2 s */
@@ -473,12 +479,19 @@ static void change_doubts(flight_t *flight, float gravity_n)
     flight->doubts = integrity->doubts;
 }
 
+/* The operator has told it to fly: armed, or a reference in force. */
+static bool told_to_fly(const flight_t *flight)
+{
+    return flight->arming.armed || flight->supervisor.reference_m > 0.0F;
+}
+
 /* A pilot may have the vehicle, and nothing tells: without a pin on the ground, or in a descent that began
- * so. An IMU that has fallen silent does not say so any longer: the descent then ends by its time. */
+ * so. Somebody may carry it too, so it must have been told to fly. An IMU that has fallen silent does not say
+ * so any longer: the descent then ends by its time. */
 static bool may_be_carried(const flight_t *flight, const parameters_t *parameters)
 {
     if (flight->supervisor.state == FLIGHT_GROUND) {
-        return integrity_carried(&flight->integrity) &&
+        return integrity_carried(&flight->integrity) && told_to_fly(flight) &&
                parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE && est_law_has_imu(&flight->est);
     }
     return flight->carried && integrity_sways(&flight->integrity) && est_law_has_imu(&flight->est);
@@ -645,6 +658,7 @@ static void watch_carried(flight_t *flight, const parameters_t *parameters)
         flight->carried = false;
     } else if (supervisor->handed_over && supervisor->state_us == 0U) {
         flight->carried = true;
+        flight->carried_felt_n = 0.0F;
         flight->carried_n_per_s = (parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE)
                                       ? CARRIED_N_PER_S
                                       : HANDED_OVER_N_PER_S;
@@ -724,19 +738,23 @@ static float within_descent_n(const flight_t *flight, const parameters_t *parame
 }
 
 /* A pilot may fly, or has given the throttle back: nothing tells. So the thrust stays just below the best
- * known hover thrust, and sinks slowly, because that may be wrong. What the accelerometer has felt for long
- * is forgotten. */
-static float within_carried_n(flight_t *flight, float thrust_n)
+ * known hover thrust, and sinks slowly, because that may be wrong; faster while a climb is felt. What the
+ * accelerometer has felt for long is forgotten, because of its bias. A pilot's climbs and falls cancel. */
+static float carried_n(flight_t *flight)
 {
     const estimate_t *now = &flight->est.estimator.now;
     const float step_s = seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
-    const float sunk_n = flight->carried_n_per_s *
-                         seconds_at_most(flight->supervisor.state_us, CARRIED_MAX_S);
+    const float share = step_s / CARRIED_TIME_S;
+    const float felt_mps = now->speed_mps - between(-CARRIED_MOVES_MPS, now->speed_mps, CARRIED_MOVES_MPS);
+    const float sunk_n = flight->carried_n_per_s * seconds_at_most(flight->supervisor.state_us, BLIND_MAX_S);
+    const float n_per_mps = (felt_mps > 0.0F) ? CARRIED_CLIMB_N_PER_MPS : CARRIED_FALL_N_PER_MPS;
 
-    estimator_amend(&flight->est.estimator, 0.0F, now->speed_mps * (1.0F - step_s / CARRIED_TIME_S),
-                    now->bias_mps2);
-    return between(flight->hover_n - CARRIED_BELOW_N - sunk_n, thrust_n,
-                   flight->hover_n + CARRIED_ABOVE_N - sunk_n);
+    estimator_amend(&flight->est.estimator, 0.0F, now->speed_mps * (1.0F - share),
+                    now->bias_mps2 + share * now->speed_mps / CARRIED_BIAS_TIME_S);
+    flight->carried_felt_n = between(0.0F, flight->carried_felt_n + CARRIED_N_PER_M * felt_mps * step_s,
+                                     CARRIED_FELT_N);
+    return flight->hover_n - CARRIED_BELOW_N - at_most(sunk_n, CARRIED_SUNK_N) - flight->carried_felt_n -
+           at_least(n_per_mps * felt_mps, -CARRIED_BRAKE_N);
 }
 
 /* While commands have no effect, and in FLOATING, where a pilot may fly without a pin that reports it, the
@@ -752,7 +770,7 @@ static float within_power_n(flight_t *flight, float thrust_n)
         flight->held_sunk_n += HELD_SINK_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
     }
     if (flight->throttle_unknown) {
-        return flight->carried ? within_carried_n(flight, thrust_n)
+        return flight->carried ? carried_n(flight)
                                : between(flight->hover_n - UNKNOWN_WINDOW_N, thrust_n,
                                          flight->hover_n + UNKNOWN_WINDOW_N);
     }

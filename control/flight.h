@@ -47,6 +47,7 @@ typedef struct {
     float stand_test_n;    /* upper limit while a descent tests whether the vehicle stands */
     float floating_m;      /* height that FLOATING holds */
     float carried_n_per_s; /* rate at which its thrust sinks */
+    float carried_felt_n;  /* how far felt climbs have lowered it */
     bool carried;          /* DESCENDING that began in a pilot's hands */
     bool throttle_unknown; /* FLOATING or carried, and no pin tells who has the throttle */
     flight_mode_t mode;

@@ -330,14 +330,16 @@ static bool acceleration_valid(const integrity_t *i)
     return counts(&i->felt) && !integrity_doubts(i, DOUBT_IMU);
 }
 
-/* Keeps the bias of one to two seconds ago: the end of a rest is noticed late. */
+/* Keeps the bias of three to four seconds ago: the end of a rest is noticed late. */
 static void keep_bias(integrity_t *i, float dt_s)
 {
     i->block_s += dt_s;
     if (i->block_s > REST_HELD_S) {
         i->block_s = 0.0F;
-        i->kept_bias_mps2[0] = i->kept_bias_mps2[1];
-        i->kept_bias_mps2[1] = i->rest_mps2;
+        for (uint16_t k = 1U; k < INTEGRITY_BLOCKS; ++k) {
+            i->kept_bias_mps2[k - 1U] = i->kept_bias_mps2[k];
+        }
+        i->kept_bias_mps2[INTEGRITY_BLOCKS - 1U] = i->rest_mps2;
     }
 }
 

@@ -33,6 +33,7 @@
 #include "control/est/estimator.h"
 
 #define INTEGRITY_SCANS 12U /* chosen: 1.2 s at ten scans a second */
+#define INTEGRITY_BLOCKS 4U /* chosen: a pilot's lift-off is noticed after two seconds or three */
 
 /* Bits of integrity_t.doubts. */
 #define DOUBT_SIGHT 1U
@@ -111,14 +112,14 @@ typedef struct {
     /* accelerometer */
     uint32_t frame_sequence; /* latest frame that integrity_frames() processed */
     uint32_t frame_time_us;
-    float up_mps2;           /* upward acceleration in the latest frame, gravity removed */
-    float rest_mps2;         /* its mean at rest */
-    float rested_s;          /* time at rest that this mean covers, at most 2 s */
-    float kept_bias_mps2[2]; /* that mean one to two seconds ago, and up to one second ago */
-    uint32_t tilt_alone_us;  /* latest frame without accelerations */
-    float block_s;           /* time since the latter was taken */
-    float bias_mps2;         /* of the accelerometer: at rest its mean, in the air corrected by the heights */
-    float shaken;            /* >= 1: divides the witness's innovation when the accelerometer is noisy */
+    float up_mps2;                          /* upward acceleration in the latest frame, gravity removed */
+    float rest_mps2;                        /* its mean at rest */
+    float rested_s;                         /* time at rest that this mean covers, at most 2 s */
+    float kept_bias_mps2[INTEGRITY_BLOCKS]; /* that mean at the end of the latest seconds, oldest first */
+    uint32_t tilt_alone_us;                 /* latest frame without accelerations */
+    float block_s;                          /* time since the latter was taken */
+    float bias_mps2; /* of the accelerometer: at rest its mean, in the air corrected by the heights */
+    float shaken;    /* >= 1: divides the witness's innovation when the accelerometer is noisy */
     witness_t felt;
     /* thrust */
     float lagged_n; /* commanded thrust through the lag of the motors */

@@ -1351,14 +1351,24 @@ void test_a_cycle_that_stops_on_the_ground_takes_two_newtons_a_second(void)
 
 /* ---- in a pilot's hands, without a pin or without heights */
 
-void test_it_may_be_carried_on_the_ground_without_a_pin_or_in_a_descent_that_began_so(void)
+void test_it_may_be_carried_on_the_ground_without_a_pin_when_told_to_fly_or_in_a_descent_that_began_so(void)
 {
-    for (int i = 0; i < 3; i++) {
+    static const struct {
+        float carried_s, reference_m;
+        bool armed, pin, may;
+    } rows[] = {{1.6F, 0.6F, false, false, true},
+                {1.6F, 0.0F, true, false, true},
+                {1.6F, 0.0F, false, false, false},
+                {1.4F, 0.6F, true, false, false},
+                {1.6F, 0.6F, true, true, false}};
+    for (int i = 0; i < 5; i++) {
         setUp();
         f.supervisor.state = FLIGHT_GROUND;
-        f.integrity.carried_s = (i == 1) ? 1.4F : 1.6F;
-        set(PARAMETER_SEL, (i == 2) ? (float)SEL_PIN : (float)SEL_NONE);
-        TEST_ASSERT_EQUAL(i == 0, may_be_carried(&f, &parameters));
+        f.integrity.carried_s = rows[i].carried_s;
+        f.supervisor.reference_m = rows[i].reference_m;
+        f.arming.armed = rows[i].armed;
+        set(PARAMETER_SEL, rows[i].pin ? (float)SEL_PIN : (float)SEL_NONE);
+        TEST_ASSERT_EQUAL(rows[i].may, may_be_carried(&f, &parameters));
     }
     f.supervisor.state = FLIGHT_DESCENDING;
     f.integrity.sway_rad2 = 1.0e-3F;
@@ -1396,21 +1406,40 @@ void test_a_descent_handed_over_without_heights_is_carried_to_its_end(void)
     }
 }
 
+/* One step of 0.1 s with a felt speed, after felt climbs of before_n. */
+static float carried_step_n(float felt_mps, float before_n)
+{
+    f.carried_felt_n = before_n;
+    f.est.estimator.now.speed_mps = f.est.estimator.delayed.speed_mps = felt_mps;
+    f.est.estimator.now.bias_mps2 = f.est.estimator.delayed.bias_mps2 = 0.2F;
+    return within_power_n(&f, 3.0F);
+}
+
 void test_a_carried_vehicle_has_a_thrust_below_hover_that_sinks(void)
 {
     f.carried = f.throttle_unknown = true;
     f.carried_n_per_s = 0.06F;
     f.supervisor.state_us = 10000000U;
-    f.est.estimator.now.speed_mps = f.est.estimator.delayed.speed_mps = 0.4F;
-    f.est.estimator.now.bias_mps2 = f.est.estimator.delayed.bias_mps2 = 0.2F;
-    NEAR(7.0F - 0.5F - 0.6F, within_power_n(&f, 3.0F));
-    NEAR(0.38F, f.est.estimator.now.speed_mps); /* a twentieth: 0.1 of 2 s */
+    NEAR(7.0F - 0.5F - 0.6F, carried_step_n(0.3F, 0.0F));
+    NEAR(0.285F, f.est.estimator.now.speed_mps); /* less a twentieth: 0.1 of 2 s */
     NEAR(0.0F, f.est.estimator.now.height_m);
-    NEAR(0.2F, f.est.estimator.now.bias_mps2);
-    NEAR(7.0F + 0.7F - 0.6F, within_power_n(&f, 9.0F));
-    NEAR(6.4F, within_power_n(&f, 6.4F));
+    NEAR(0.2015F, f.est.estimator.now.bias_mps2);
+    NEAR(7.0F - 0.5F - 0.6F - 0.4F, carried_step_n(-0.3F, 0.4F));
     f.supervisor.state_us = 50000000U;
-    NEAR(7.0F - 0.5F - 0.06F * 33.0F, within_power_n(&f, 3.0F));
+    NEAR(7.0F - 0.5F - 1.2F, carried_step_n(0.0F, 0.0F));
+}
+
+void test_a_carried_vehicle_that_feels_a_climb_gives_less_and_a_fall_more(void)
+{
+    f.carried = f.throttle_unknown = true;
+    NEAR(7.0F - 0.5F - 0.2F - 1.0F, carried_step_n(1.35F, 0.0F)); /* 1 m/s beyond: 2 N in a second */
+    NEAR(0.2F, f.carried_felt_n);
+    NEAR(7.0F - 0.5F + 1.0F, carried_step_n(-0.85F, 0.0F));
+    NEAR(0.0F, f.carried_felt_n); /* no more than what climbs have lowered */
+    NEAR(7.0F - 0.5F - 0.9F + 1.0F, carried_step_n(-0.85F, 1.0F));
+    NEAR(7.0F - 0.5F + 1.8F, carried_step_n(-2.0F, 0.0F));
+    (void)carried_step_n(3.0F, 1.95F);
+    NEAR(2.0F, f.carried_felt_n);
 }
 
 void test_a_carried_descent_knows_its_hover_thrust_still(void)

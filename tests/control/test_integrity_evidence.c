@@ -1249,7 +1249,7 @@ void test_who_tilts_it_by_hand_does_not_fly_it(void)
     TEST_ASSERT_EQUAL_FLOAT(0.0F, it.unseen_s);
 }
 
-void test_the_bias_of_one_to_two_seconds_ago_is_kept(void)
+void test_the_bias_of_three_to_four_seconds_ago_is_kept(void)
 {
     carry(0.0F, 0.0F);
     it.block_s = 0.97F;
@@ -1259,7 +1259,8 @@ void test_the_bias_of_one_to_two_seconds_ago_is_kept(void)
     feel(0.3F);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, it.block_s);
     NEAR(0.2F, it.kept_bias_mps2[0]);
-    NEAR(0.3F, it.kept_bias_mps2[1]);
+    NEAR(0.0F, it.kept_bias_mps2[2]);
+    NEAR(0.3F, it.kept_bias_mps2[3]);
 }
 
 void test_after_a_gap_the_thrusts_witness_tells_speed_and_way(void)
