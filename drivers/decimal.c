@@ -27,6 +27,7 @@
 #define WRITE_SHORTEST_MIN 1e-7F
 #define FIXED_DECIMALS_MAX 6U
 #define SHORTEST_DECIMALS_MAX 15U /* nine significant digits of the smallest value: always enough */
+#define WRITTEN_MAX 22U           /* 64 bits have 20 digits; a point and a sign */
 
 #define LIMB_BITS 16
 #define LIMBS 14U
@@ -293,9 +294,9 @@ static uint64_t scaled(float magnitude, uint16_t decimals)
 
 /* Writes `number` with its last `decimals` digits behind a point; returns where the text begins in the
  * buffer. */
-static size_t write_backwards(char buffer[DECIMAL_TEXT_MAX], uint64_t number, uint16_t decimals, bool minus)
+static size_t write_backwards(char buffer[WRITTEN_MAX], uint64_t number, uint16_t decimals, bool minus)
 {
-    size_t at = DECIMAL_TEXT_MAX;
+    size_t at = WRITTEN_MAX;
 
     for (uint16_t place = 0U; place <= decimals || number != 0U; place++) {
         if (place == decimals && decimals > 0U) {
@@ -312,10 +313,10 @@ static size_t write_backwards(char buffer[DECIMAL_TEXT_MAX], uint64_t number, ui
 
 static size_t write_decimals(char *text, size_t capacity, float value, uint16_t decimals)
 {
-    char buffer[DECIMAL_TEXT_MAX];
+    char buffer[WRITTEN_MAX];
     uint64_t number = scaled(fabsf(value), decimals);
     size_t begin = write_backwards(buffer, number, decimals, value < 0.0F && number != 0U);
-    size_t length = DECIMAL_TEXT_MAX - begin;
+    size_t length = WRITTEN_MAX - begin;
 
     if (length > capacity) {
         return 0U;

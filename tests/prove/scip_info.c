@@ -1,31 +1,32 @@
-/* Any slice of the parser's line, wherever it lies, of up to SLICE_MOST characters (the longest word has 11),
- * and any line as long: more characters are more of the same. The source is included for its parts. */
+/* scip_info.c, its own source included: any line that the parser can hand over. Every function is proved by
+ * itself, for slices of any length that end where their memory ends, so that nothing behind a slice is read;
+ * in the proofs of its callers it is replaced by what it needs and what it was proved to give (prove.py,
+ * APART). */
 #include "drivers/scip_info.c"
 
 #include "prove.h"
 
-#define SLICE_MOST 12U
+#define WORDS "malfunction" /* the longest */
 
 static scip_parser_t parser;
 static scip_info_t info;
+static octet_t memory[SCIP_LINE_MAX];
+static char text_[SCIP_INFO_TEXT];
 
-static slice_t any_slice(uint16_t most)
+static slice_t any_slice(void)
 {
-    const uint16_t begin = nondet_cell();
     const uint16_t length = nondet_cell();
 
-    ASSUME(begin <= SCIP_LINE_MAX && length <= SCIP_LINE_MAX - begin && length <= most);
-    return (slice_t){&parser.line[begin], length};
+    ASSUME(length <= SCIP_LINE_MAX);
+    return (slice_t){&memory[SCIP_LINE_MAX - length], length};
 }
 
-static void any_line(void)
+static bool is_slice(slice_t slice)
 {
-    scip_parser_t any;
-    scip_info_t any_info;
+    const octet_t *begin = __CPROVER_same_object(slice.text, memory) ? memory : parser.line;
 
-    parser = any;
-    info = any_info;
-    ASSUME(parser.line_length <= SLICE_MOST && parser.text_length <= parser.line_length);
+    return __CPROVER_same_object(slice.text, begin) && slice.text >= begin && slice.length <= SCIP_LINE_MAX &&
+           slice.text + slice.length <= begin + SCIP_LINE_MAX;
 }
 
 static bool within(slice_t part, slice_t whole)
@@ -34,51 +35,156 @@ static bool within(slice_t part, slice_t whole)
            part.text + part.length <= whole.text + whole.length;
 }
 
+static slice_t any_part(slice_t whole)
+{
+    const uint16_t begin = nondet_cell();
+    const uint16_t length = nondet_cell();
+
+    ASSUME(begin <= whole.length && length <= whole.length - begin);
+    return (slice_t){&whole.text[begin], length};
+}
+
+/* ---- what each part needs, and gives ---- */
+
+static slice_t trimmed(slice_t slice)
+{
+    PROVE(is_slice(slice), "a slice");
+    return any_part(slice);
+}
+
+static bool begins_with(slice_t slice, const char *words)
+{
+    PROVE(is_slice(slice), "a slice");
+    PROVE(words[0] != '\0', "words");
+    return nondet_bool();
+}
+
+static bool contains(slice_t slice, const char *words)
+{
+    return begins_with(slice, words);
+}
+
+static uint16_t read_digits(slice_t slice, uint16_t base, uint16_t most, uint32_t *number)
+{
+    const uint16_t digits = nondet_cell();
+
+    PROVE(is_slice(slice), "a slice");
+    PROVE((base == 10U && most <= DIGITS_MAX) || (base == 16U && most <= TIME_DIGITS_MAX), "within 32 bits");
+    *number = nondet_size();
+    ASSUME(digits <= slice.length && digits <= most);
+    return digits;
+}
+
+static void read_small(slice_t slice, uint16_t *number)
+{
+    PROVE(is_slice(slice), "a slice");
+    PROVE(number == &info.told.dmin_mm || number == &info.told.dmax_mm || number == &info.told.ares ||
+              number == &info.told.amin || number == &info.told.amax || number == &info.told.afrt ||
+              number == &info.told.scan_rpm || number == &info.speed_rpm,
+          "a number of the information");
+    *number = nondet_cell();
+}
+
+static void copy(char *text, slice_t value)
+{
+    PROVE(is_slice(value), "a slice");
+    PROVE(text == info.vendor || text == info.product || text == info.firmware || text == info.protocol ||
+              text == info.serial || text == info.model || text == info.mode || text == info.state,
+          "a text of the information");
+}
+
+static scip_health_t health_of(slice_t state)
+{
+    PROVE(is_slice(state), "a slice");
+    return (scip_health_t)(nondet_cell() % 3U);
+}
+
+static bool divide(slice_t line, slice_t *key, slice_t *value)
+{
+    PROVE(is_slice(line), "a slice");
+    *key = any_part(line);
+    *value = any_part(line);
+    return nondet_bool();
+}
+
+/* ---- the proofs ---- */
+
 void any_slice_is_trimmed(void)
 {
-    any_line();
-    const slice_t slice = any_slice(SLICE_MOST);
-    PROVE(within(trimmed(slice), slice), "a part of it");
+    const slice_t slice = any_slice();
+
+    PROVE(within(trimmed_itself(slice), slice), "a part of it");
+}
+
+void any_slice_may_begin_with_words(void)
+{
+    (void)begins_with_itself(any_slice(), WORDS);
 }
 
 void any_slice_is_searched(void)
 {
-    any_line();
-    (void)contains(any_slice(SLICE_MOST), "malfunction");
+    (void)contains_itself(any_slice(), WORDS);
 }
 
-void any_slice_is_read(void)
+void any_decimal_digits_are_read(void)
 {
+    const slice_t slice = any_slice();
     uint32_t number;
+    const uint16_t digits = read_digits_itself(slice, 10U, DIGITS_MAX, &number);
+
+    PROVE(digits <= DIGITS_MAX && digits <= slice.length, "no more digits than asked for");
+    PROVE(number <= (uint32_t)999999999UL, "nine digits");
+}
+
+void any_hexadecimal_digits_are_read(void)
+{
+    const slice_t slice = any_slice();
+    uint32_t number;
+    const uint16_t digits = read_digits_itself(slice, 16U, TIME_DIGITS_MAX, &number);
+
+    PROVE(digits <= TIME_DIGITS_MAX && digits <= slice.length, "no more digits than asked for");
+    PROVE(number <= (uint32_t)0xFFFFFFUL, "within 24 bits");
+}
+
+void any_number_is_found(void)
+{
+    uint32_t wide;
     uint16_t small;
 
-    any_line();
-    const slice_t slice = any_slice(SLICE_MOST);
-    PROVE(read_digits(slice, 16U, TIME_DIGITS_MAX, &number) <= TIME_DIGITS_MAX,
-          "no more digits than asked for");
-    PROVE(number <= (uint32_t)0xFFFFFFUL, "within 24 bits");
-    PROVE(read_digits(slice, 10U, DIGITS_MAX, &number) <= DIGITS_MAX, "no more digits than asked for");
-    PROVE(number <= (uint32_t)999999999UL, "nine digits");
-    (void)read_bit_rate(slice, &number);
-    read_small(slice, &small);
+    read_small_itself(any_slice(), &small);
+    (void)read_bit_rate(any_slice(), &wide);
 }
 
 void any_slice_is_copied(void)
 {
-    any_line();
-    copy(info.vendor, any_slice(SCIP_LINE_MAX));
+    copy_itself(text_, any_slice());
 }
 
-/* What scip_info_take() does with key and value are the parts above. */
+void any_state_has_a_health(void)
+{
+    (void)health_of_itself(any_slice());
+}
+
 void any_line_is_divided(void)
 {
+    const slice_t line = any_slice();
     slice_t key, value;
 
-    any_line();
-    const slice_t line = any_slice(SLICE_MOST);
-    if (divide(line, &key, &value)) {
+    if (divide_itself(line, &key, &value)) {
         PROVE(within(key, line) && within(value, line), "parts of it");
     }
+}
+
+/* scip_parser.c proves the lengths, for each line that it hands over. */
+void any_line_is_taken(void)
+{
+    scip_parser_t any;
+    scip_info_t any_info;
+
+    parser = any;
+    info = any_info;
+    ASSUME(parser.line_length <= SCIP_LINE_MAX && parser.text_length <= parser.line_length);
+    scip_info_take(&info, &parser);
 }
 
 void any_limits_give_directions(void)
