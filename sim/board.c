@@ -34,6 +34,7 @@ static struct {
     xbee_t *xbee;
     rc_mux_t mux;
     pilot_t *pilot;
+    board_pin_t pin;
     board_terminal_t terminal;
     void *terminal_context;
     const kernel_costs_t *costs;
@@ -221,6 +222,7 @@ void board_power_on(const board_config_t *config, board_terminal_t terminal, voi
     board.xbee = xbee_create(to_firmware, (void *)(uintptr_t)BOARD_RADIO, to_terminal, NULL);
     rc_mux_init(&board.mux, autopilot_pulse, NULL);
     board.pilot = seat_pilot(config);
+    board.pin = BOARD_PIN_HONEST;
     chip_drive_pin(SELECTOR_PIN, true);
     lay_wires();
     chip_pwm_connect(throttle_pulse, NULL);
@@ -350,16 +352,30 @@ void board_radio_reach(bool in_reach)
     xbee_reach(board.xbee, in_reach);
 }
 
+static void drive_selector(void)
+{
+    const bool level = board.pin == BOARD_PIN_HONEST ? board.mux.firmware_selected
+                                                     : board.pin == BOARD_PIN_FIRMWARE;
+
+    chip_drive_pin(SELECTOR_PIN, level);
+    for (int i = 0; i < BOARD_PROBES; i++) {
+        if (probes[i].selector != NULL) {
+            probes[i].selector(level);
+        }
+    }
+}
+
 void board_select(bool firmware)
 {
     rc_mux_select(&board.mux, firmware);
     quadrotor_set_manual(board.quadrotor, !firmware);
-    chip_drive_pin(SELECTOR_PIN, firmware);
-    for (int i = 0; i < BOARD_PROBES; i++) {
-        if (probes[i].selector != NULL) {
-            probes[i].selector(firmware);
-        }
-    }
+    drive_selector();
+}
+
+void board_pin(board_pin_t tells)
+{
+    board.pin = tells;
+    drive_selector();
 }
 
 void board_stick(sim_time_t high_ns)

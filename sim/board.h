@@ -74,6 +74,9 @@ void board_probe(board_probe_t which, const board_probes_t *probes);
 /* The pilot's switch: whose throttle the multiplexer lets through, and the level on the firmware's selector
  * pin. After power-on it is the firmware's. */
 void board_select(bool firmware);
+/* What the pin tells: the switch, or always the same, as a broken wire or another threshold does. */
+typedef enum { BOARD_PIN_PILOT, BOARD_PIN_FIRMWARE, BOARD_PIN_HONEST } board_pin_t;
+void board_pin(board_pin_t tells);
 /* A pulse of the receiver's throttle channel; reaches the autopilot while the pilot has the throttle. */
 void board_stick(sim_time_t high_ns);
 

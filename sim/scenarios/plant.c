@@ -107,6 +107,10 @@ static const figure_t figures[] = {
      "scenario time at which the scanner loses its power for a moment"},
     {"radio_lost_start", "s", -LARGE, LARGE, AT(radio_lost_start_s), 1,
      "scenario time from which the radio is out of reach"},
+    {"pin_stuck", "-", -1, 1, AT(pin_stuck), 1,
+     "the selector's pin (SEL PIN) says 0: pilot; 1: firmware; -1: truth"},
+    {"pin_stuck_start", "s", -LARGE, LARGE, AT(pin_stuck_start_s), 1, "scenario time from which on"},
+    {"pin_stuck_length", "s", 0, LARGE, AT(pin_stuck_length_s), 1, "for how long"},
     {"imu_noise", "rad", 0, 1, IMU(angle_noise_rad), 1, "of roll and pitch, rms"},
     {"imu_spikes", "-", 0, 1, IMU(spike_probability), 1, "probability of a spike per angle"},
     {"attitude_burst_deg", "deg", -180, 180, IMU(attitude_burst_rad), DEG,
@@ -182,6 +186,9 @@ void plant_init(plant_t *plant, unsigned long seed)
     plant->outage_start_s = 10.0;
     plant->restart_start_s = SPAN_FOR_GOOD_S;
     plant->radio_lost_start_s = SPAN_FOR_GOOD_S;
+    plant->pin_stuck = -1.0;
+    plant->pin_stuck_start_s = 10.0;
+    plant->pin_stuck_length_s = SPAN_FOR_GOOD_S;
 }
 
 bool plant_known(const char *name)
@@ -237,6 +244,11 @@ static void lose_radio(void *context)
     board_radio_reach(false);
 }
 
+static void stick_pin(void *tells)
+{
+    board_pin((board_pin_t)(uintptr_t)tells);
+}
+
 static void strike_scanner(void *fault)
 {
     line_fault_add(board_laser_faults(), fault);
@@ -254,6 +266,17 @@ static sim_time_t at(sim_time_t origin, double t_s)
     return when > timeline_now() ? when : timeline_now();
 }
 
+static void plan_pin(const plant_t *plant, sim_time_t origin)
+{
+    const board_pin_t stuck = plant->pin_stuck >= 0.5 ? BOARD_PIN_FIRMWARE : BOARD_PIN_PILOT;
+
+    timeline_at(at(origin, plant->pin_stuck_start_s), stick_pin, (void *)(uintptr_t)stuck);
+    if (plant->pin_stuck_length_s < SPAN_FOR_GOOD_S) {
+        timeline_at(at(origin, plant->pin_stuck_start_s + plant->pin_stuck_length_s), stick_pin,
+                    (void *)(uintptr_t)BOARD_PIN_HONEST);
+    }
+}
+
 void plant_plan(const plant_t *plant, const char *name, sim_time_t origin)
 {
     static line_fault_spec_t restart = {.kind = LINE_FAULT_RESTART};
@@ -269,6 +292,9 @@ void plant_plan(const plant_t *plant, const char *name, sim_time_t origin)
     }
     if (concerns(name, "scanner_restart") && plant->restart_start_s < SPAN_FOR_GOOD_S) {
         timeline_at(at(origin, plant->restart_start_s), strike_scanner, &restart);
+    }
+    if (concerns(name, "pin_stuck") && plant->pin_stuck > -0.5) {
+        plan_pin(plant, origin);
     }
 }
 

@@ -18,6 +18,8 @@ typedef struct {
     double outage_start_s, outage_s;
     double restart_start_s; /* of the scanner */
     double radio_lost_start_s;
+    double pin_stuck; /* of the selector, board_pin_t; < 0: honest */
+    double pin_stuck_start_s, pin_stuck_length_s;
     double attitude_throttle;
 } plant_t;
 
@@ -32,7 +34,8 @@ void plant_set(plant_t *plant, const char *name, double value);
 void plant_complete(plant_t *plant);
 
 /* Plans what goes wrong at its scenario time, counted from origin: the scanner's line mute, its power lost
- * for a moment, the radio out of reach. Of these only the one whose figures `name` belongs to; NULL: all. */
+ * for a moment, the radio out of reach, the selector's pin stuck. Of these only the one whose figures `name`
+ * belongs to; NULL: all. */
 void plant_plan(const plant_t *plant, const char *name, sim_time_t origin);
 
 /* Names, units, what they are when nobody sets them, and meanings. */

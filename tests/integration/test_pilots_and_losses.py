@@ -128,6 +128,25 @@ class Pilots(unittest.TestCase):
     def test_without_the_pin_it_holds_it_as_well_as_grav_is_trimmed(self):
         self.holds("NONE", ("nominal", "nominal 1"), 0.22, None)
 
+    def test_a_pin_that_never_says_pilot_is_as_good_as_none(self):
+        for flight in flights(("EST", "PID"), VEHICLES, lambda rng: (
+                {**pilot("PIN", 0.8, 1.2)(rng)[0], "pin_stuck": 1, "pin_stuck_start": 2.0}, {"SEL": "PIN"}, UNTIL_DOWN)):
+            back = [row["height_m"] for row in flight.after(flight.given_back_s()) if row["t_s"] < LAND_S]
+            self.assertGreater(min(back), 0.03, f"m at least: {flight}")
+            self.at_most(1.6, max(back), flight, "m")
+            self.assertEqual(flight.rows[-1]["state"], "GROUND", str(flight))
+
+    def test_a_pin_that_says_pilot_for_a_while_makes_it_drift_not_fly_away(self):
+        for flight in flights(("EST", "PID"), VEHICLES, lambda rng: (
+                {"pin_stuck": 0, "pin_stuck_start": rng.uniform(7.0, 10.0), "pin_stuck_length": 6.0}, {"SEL": "PIN"}, UNTIL_DOWN)):
+            start_s = flight.figures["pin_stuck_start"]
+            told = [row for row in flight.after(start_s + 0.1) if row["t_s"] < start_s + 5.9]
+            self.assertLessEqual({row["state"] for row in told}, {"FLOATING", "GROUND"}, str(flight))
+            self.assertTrue(all(int(row["flags"]) & 64 for row in told), str(flight))
+            self.at_most(1.5, max(row["height_m"] for row in flight.rows), flight, "m")
+            self.assertEqual(flight.rows[-1]["state"], "GROUND", str(flight))
+            self.at_most(1.2, flight.touch_mps(), flight, "m/s at the touch")
+
     def test_floating_without_heights_comes_down(self):
         for pin in ("PIN", "NONE"):
             for flight in flights(("EST", "PID"), VEHICLES,

@@ -143,6 +143,10 @@ def pilot(rng):
             "SEL": rng.choice(("NONE", "PIN"))}
 
 
+def pin_stuck(rng):
+    return {"SEL": "PIN", "pin_stuck": rng.randrange(2), **during(rng, "pin_stuck", 0.3, 6.0)}
+
+
 # Figures of the plant (and parameters in capitals), or faults of the scanner's line.
 KINDS = {
     "rays lost": rays_lost, "sight blocked": sight_blocked, "scan frozen": scan_frozen, "scanner silent": outage,
@@ -151,7 +155,7 @@ KINDS = {
     "accelerometer's unit": acc_unit, "accelerometer's sign": acc_sign, "accelerometer's bias": acc_bias,
     "accelerometer jumps": acc_jump, "aliased vibration": acc_alias, "attitude burst": attitude_burst,
     "uneven floor": rough_floor, "bars": bars, "edge": edge, "gust": gust, "load": load, "second lag": lag2,
-    "ground effect": ground_effect, "pilot": pilot,
+    "ground effect": ground_effect, "pilot": pilot, "selector's pin stuck": pin_stuck,
 }
 
 
