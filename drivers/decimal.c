@@ -86,9 +86,10 @@ static bool wide_divide(wide_t *wide, uint16_t divisor)
 /* Puts zero limbs below the number until it has at least `used`; returns how many. */
 static uint16_t wide_raise_to(wide_t *wide, uint16_t used)
 {
-    uint16_t raise = used > wide->used ? (uint16_t)(used - wide->used) : 0U;
+    const uint16_t raised = (used > wide->used) ? used : wide->used;
+    const uint16_t raise = (uint16_t)(raised - wide->used);
 
-    wide->used = (uint16_t)(wide->used + raise);
+    wide->used = raised;
     for (uint16_t i = wide->used; i-- > 0U;) {
         wide->limb[i] = i >= raise ? wide->limb[i - raise] : 0U;
     }
@@ -122,13 +123,13 @@ static uint16_t limbs_to_divide(int32_t tens)
  * is below. */
 static int32_t make_binary(number_t *number)
 {
-    int32_t tens = number->exponent;
+    int32_t tens = number->exponent; /* to multiply by; if negative, to divide by */
     uint16_t raised;
 
     for (; tens > 0; tens -= fives(tens)) {
         wide_multiply_add(&number->digits, power_of_five[fives(tens)], 0U);
     }
-    tens = number->exponent < 0 ? -number->exponent : 0;
+    tens = -tens;
     raised = wide_raise_to(&number->digits, limbs_to_divide(tens));
     for (; tens > 0; tens -= fives(tens)) {
         number->more |= wide_divide(&number->digits, power_of_five[fives(tens)]);

@@ -22,7 +22,7 @@ uint16_t flight_log_cell(float value, flight_log_scale_t scale)
 
 float flight_log_value(uint16_t cell, flight_log_scale_t scale)
 {
-    const int32_t number = (cell < NOT_THERE) ? (int32_t)cell : (int32_t)cell - INT32_C(65536);
+    const int32_t number = (int32_t)(cell ^ NOT_THERE) - (int32_t)NOT_THERE; /* its sign is its top bit */
 
     return (cell == NOT_THERE) ? NAN : (float)number / steps[scale];
 }

@@ -57,14 +57,13 @@ uint16_t parameter_image_write(uint16_t cells[PARAMETER_IMAGE_CELLS_MAX], const 
 {
     const uint16_t checked = checked_cells(image->count);
     uint16_t used = (uint16_t)(checked + 2U);
-    uint16_t i;
 
     cells[CELL_MARK] = MARK;
     cells[CELL_VERSION] = PARAMETER_IMAGE_VERSION;
     cells[CELL_COUNT] = image->count;
     put(&cells[CELL_NAMES], image->names);
     put(&cells[CELL_GENERATION], image->generation);
-    for (i = 0U; i < image->count; i++) {
+    for (uint16_t i = image->count; i-- > 0U;) {
         pattern_t pattern;
 
         pattern.number = image->values[i];
@@ -101,7 +100,6 @@ parameter_image_status_t parameter_image_read(parameter_image_t *image,
                                               const uint16_t cells[PARAMETER_IMAGE_CELLS_MAX])
 {
     const parameter_image_status_t status = look(cells);
-    uint16_t i;
 
     if (status != PARAMETER_IMAGE_GOOD) {
         return status;
@@ -109,7 +107,7 @@ parameter_image_status_t parameter_image_read(parameter_image_t *image,
     image->names = get(&cells[CELL_NAMES]);
     image->generation = get(&cells[CELL_GENERATION]);
     image->count = cells[CELL_COUNT];
-    for (i = 0U; i < image->count; i++) {
+    for (uint16_t i = image->count; i-- > 0U;) {
         pattern_t pattern;
 
         pattern.bits = get(&cells[checked_cells(i)]);

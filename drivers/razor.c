@@ -17,15 +17,12 @@ enum { PASSING, DELIVERED, TITLE, ACCELERATION, ANGLES };
 
 void razor_collector_init(razor_collector_t *collector)
 {
-    collector->overlong = 0U;
-    collector->cut = 0U;
-    razor_collector_broken(collector);
+    *collector = (razor_collector_t){.state = PASSING};
 }
 
 void razor_collector_broken(razor_collector_t *collector)
 {
     collector->gathered.length = 0U;
-    collector->part_start = 0U;
     collector->state = PASSING;
 }
 
@@ -70,8 +67,7 @@ static void end_title(razor_collector_t *collector)
     if (memcmp(title, angles_title, TITLE_LENGTH) == 0) {
         collector->state = ANGLES;
     } else if (memcmp(title, acceleration_title, TITLE_LENGTH) == 0) {
-        (void)memmove(gathered->text, title, TITLE_LENGTH);
-        gathered->length = TITLE_LENGTH;
+        gathered->length = TITLE_LENGTH; /* an earlier part, if any, began with the same title */
         collector->state = ACCELERATION;
     } else {
         drop_part(collector);
@@ -135,18 +131,19 @@ static bool is_separator(char character)
 /* Exactly three numbers with commas between. */
 static bool read_triple(const char *text, const char *end, float triple[3])
 {
-    for (uint16_t i = 0U; i < 3U; i++) {
-        const char *stop = i < 2U ? memchr(text, ',', (size_t)(end - text)) : end;
+    for (uint16_t i = 0U; i < 2U; i++) {
+        const char *stop = memchr(text, ',', (size_t)(end - text));
 
         if (stop == NULL || !decimal_read(text, (size_t)(stop - text), &triple[i])) {
             return false;
         }
-        text = i < 2U ? stop + 1 : end;
+        text = stop + 1;
     }
-    return true;
+    return decimal_read(text, (size_t)(end - text), &triple[2]);
 }
 
-/* Reads what stands behind the title of A-C. Returns where the next part begins, NULL when malformed. */
+/* Reads what stands behind the title of A-C, which does not end in a separator. Returns where the next part
+ * begins, NULL when malformed. */
 static const char *read_acceleration(const char *body, const char *end, float xyz[3])
 {
     const char *next = memchr(body, '#', (size_t)(end - body));
@@ -155,7 +152,7 @@ static const char *read_acceleration(const char *body, const char *end, float xy
     if (next == NULL) {
         return NULL;
     }
-    if (stop > body && is_separator(stop[-1])) {
+    if (is_separator(stop[-1])) {
         stop--;
     }
     return read_triple(body, stop, xyz) ? next : NULL;

@@ -23,13 +23,15 @@ static slice_t without_first(slice_t slice, uint16_t count)
 
 static slice_t trimmed(slice_t slice)
 {
-    while (slice.length > 0U && slice.text[0] == (octet_t)' ') {
-        slice = without_first(slice, 1U);
+    uint16_t begin = 0U;
+    uint16_t end = 0U;
+    for (uint16_t i = 0U; i < slice.length; i++) {
+        if (slice.text[i] != (octet_t)' ') {
+            begin = end == 0U ? i : begin;
+            end = (uint16_t)(i + 1U);
+        }
     }
-    while (slice.length > 0U && slice.text[slice.length - 1U] == (octet_t)' ') {
-        slice.length--;
-    }
-    return slice;
+    return (slice_t){&slice.text[begin], (uint16_t)(end - begin)};
 }
 
 static octet_t lower(octet_t character)
@@ -49,13 +51,13 @@ static bool begins_with(slice_t slice, const char *words)
 
 static bool contains(slice_t slice, const char *words)
 {
-    while (slice.length > 0U) {
-        if (begins_with(slice, words)) {
-            return true;
+    while (!begins_with(slice, words)) {
+        if (slice.length == 0U) {
+            return false;
         }
         slice = without_first(slice, 1U);
     }
-    return false;
+    return true;
 }
 
 /* Value of a digit of either base; 16 and more for anything else. */
@@ -263,8 +265,8 @@ uint16_t scip_limits_step(const scip_limits_t *limits, int32_t mdeg)
 {
     const int32_t within = mdeg > TURN_MDEG ? TURN_MDEG : (mdeg < -TURN_MDEG ? -TURN_MDEG : mdeg);
     const int32_t step = (int32_t)limits->afrt + divided_by(within * (int32_t)limits->ares, TURN_MDEG);
-    if (step <= (int32_t)limits->amin) {
-        return limits->amin;
-    }
-    return step >= (int32_t)limits->amax ? limits->amax : (uint16_t)step;
+    const int32_t least = (int32_t)limits->amin;
+    const int32_t most = (int32_t)limits->amax;
+    const int32_t from_least = (step > least) ? step : least;
+    return (uint16_t)((from_least < most) ? from_least : most);
 }

@@ -47,7 +47,7 @@ static uint16_t steps_per_point(const scip_scan_t *scan)
 /* Steps from the scan's first to this one; 0 when it lies before. */
 static uint16_t steps_into(const scip_scan_t *scan, uint16_t step)
 {
-    return step > scan->first_step ? (uint16_t)(step - scan->first_step) : 0U;
+    return (uint16_t)(larger(step, scan->first_step) - scan->first_step);
 }
 
 /* Index of the first point that begins at the step or after it. */
@@ -88,15 +88,20 @@ static tally_t tally_all(const uint16_t *rays, size_t count)
     return t;
 }
 
+static bool is_between(uint32_t ray, uint32_t nearest, uint32_t furthest)
+{
+    return ray >= nearest && ray <= furthest;
+}
+
 static tally_t tally_between(const uint16_t *rays, size_t count, uint32_t nearest, uint32_t furthest)
 {
     tally_t t = no_ray;
     for (size_t i = 0U; i < count; i++) {
         const uint32_t ray = rays[i];
-        if (ray < nearest || ray > furthest) {
-            t.bad++;
-        } else {
+        if (is_between(ray, nearest, furthest)) {
             note_ray(&t, ray);
+        } else {
+            t.bad++;
         }
     }
     return t;
@@ -108,7 +113,7 @@ static tally_t tally(const scip_scan_t *scan, uint16_t begin, uint16_t end, cons
     const uint16_t *rays = &scan->distance_mm[begin];
     const uint32_t furthest = largest_distance(scan, limits);
     const tally_t t = tally_all(rays, (size_t)end - begin);
-    return t.least >= limits->dmin_mm && t.most <= furthest
+    return is_between(t.least, limits->dmin_mm, furthest) && is_between(t.most, limits->dmin_mm, furthest)
                ? t
                : tally_between(rays, (size_t)end - begin, limits->dmin_mm, furthest);
 }
@@ -183,17 +188,16 @@ uint16_t scip_group_step_mm(const scip_scan_t *scan, const scip_group_t *group)
     const uint16_t end = points_before(scan, (uint16_t)(group->last_step + 1U));
     const uint16_t furthest = largest_distance(scan, &scip_limits_urg04lx);
     uint16_t before = 0U;
-    uint16_t largest = 0U;
+    uint32_t largest = 0U;
     for (uint16_t i = point_from(scan, group->first_step); i < end; i++) {
         const uint16_t distance = scan->distance_mm[i];
         const bool good = distance >= SCIP_CODE_LIMIT_MM && distance <= furthest;
         if (good && before != 0U) {
-            const uint16_t step = (uint16_t)(distance > before ? distance - before : before - distance);
-            largest = step > largest ? step : largest;
+            largest = larger(largest, larger(distance, before) - smaller(distance, before));
         }
         before = good ? distance : 0U;
     }
-    return largest;
+    return (uint16_t)largest;
 }
 
 float scip_step_degrees(uint16_t step)
@@ -204,10 +208,10 @@ float scip_step_degrees(uint16_t step)
 uint16_t scip_step_at_degrees(float degrees)
 {
     const float step = degrees / DEGREES_PER_STEP + (float)SCIP_STEP_FRONT + 0.5F;
-    if (!(step >= (float)SCIP_STEP_FIRST)) {
-        return SCIP_STEP_FIRST;
-    }
-    return step >= (float)SCIP_STEP_LAST ? SCIP_STEP_LAST : (uint16_t)step;
+    const float first = (float)SCIP_STEP_FIRST;
+    const float last = (float)SCIP_STEP_LAST;
+    const float from_first = (step > first) ? step : first;
+    return (uint16_t)((from_first < last) ? from_first : last);
 }
 
 uint32_t scip_rays_age_us(const scip_scan_t *scan, uint32_t bit_rate)

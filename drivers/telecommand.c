@@ -19,10 +19,7 @@ static void restart(telecommand_collector_t *collector)
 
 void telecommand_collector_init(telecommand_collector_t *collector)
 {
-    restart(collector);
-    collector->started = false;
-    collector->previous = '\0';
-    collector->strays = 0U;
+    *collector = (telecommand_collector_t){.previous = '\0'};
 }
 
 static bool is_blank(char character)
@@ -112,24 +109,20 @@ char telecommand_upper(char character)
     return character >= 'a' && character <= 'z' ? (char)(character - 'a' + 'A') : character;
 }
 
-static bool is_legible(const telecommand_line_t *line)
+static bool is_legible(char character)
 {
-    for (uint16_t i = 0U; i < line->length; i++) {
-        char character = line->text[i];
-
-        if ((character < ' ' || character > '~') && character != '\t') {
-            return false;
-        }
-    }
-    return true;
+    return (character >= ' ' && character <= '~') || character == '\t';
 }
 
-static uint16_t skip_blanks(const telecommand_line_t *line, uint16_t at, uint16_t end)
+/* Behind the last of so many characters of a line that is not blank; behind the `#` at the least. */
+static uint16_t end_of(const telecommand_line_t *line, uint16_t length)
 {
-    while (at < end && is_blank(line->text[at])) {
-        at++;
+    uint16_t end = 1U;
+
+    for (uint16_t i = 1U; i < length; i++) {
+        end = is_blank(line->text[i]) ? end : (uint16_t)(i + 1U);
     }
-    return at;
+    return end;
 }
 
 static telecommand_status_t take_name(const telecommand_line_t *line, uint16_t *at, uint16_t end,
@@ -148,7 +141,7 @@ static telecommand_status_t take_name(const telecommand_line_t *line, uint16_t *
         }
     }
     command->name_length = length;
-    return length > 0U ? TELECOMMAND_OK : TELECOMMAND_EMPTY;
+    return TELECOMMAND_OK;
 }
 
 static bool is_named(const telecommand_t *command, const char *name)
@@ -159,18 +152,19 @@ static bool is_named(const telecommand_t *command, const char *name)
 /* Zeros, at most one point among them, a sign before them. */
 static bool is_zero(const char *text, uint16_t length)
 {
-    uint16_t at = (length > 0U && (text[0] == '-' || text[0] == '+')) ? 1U : 0U;
-    uint16_t zeros = 0U;
+    bool any = false;
     uint16_t points = 0U;
 
-    for (; at < length && (text[at] == '0' || text[at] == '.'); at++) {
-        if (text[at] == '0') {
-            zeros++;
-        } else {
+    for (uint16_t i = 0U; i < length; i++) {
+        if (text[i] == '0') {
+            any = true;
+        } else if (text[i] == '.') {
             points++;
+        } else if (i > 0U || (text[i] != '-' && text[i] != '+')) {
+            return false;
         }
     }
-    return at == length && zeros > 0U && points <= 1U;
+    return any && points <= 1U;
 }
 
 /* Which nothing may hold up. */
@@ -180,23 +174,23 @@ static bool stops(const telecommand_t *command)
            (is_named(command, "SETR") && is_zero(command->argument, command->argument_length));
 }
 
+static bool is_hexadecimal(char character)
+{
+    const char digit = telecommand_upper(character);
+
+    return (digit >= '0' && digit <= '9') || (digit >= 'A' && digit <= 'F');
+}
+
 /* Where `*` and the sum begin; end when the line carries none. */
 static uint16_t find_sum(const telecommand_line_t *line, uint16_t end)
 {
-    const uint16_t length = LINE_SUM_DIGITS + 1U;
-    uint16_t at = (end > length) ? (uint16_t)(end - length) : end;
+    uint16_t digits = end;
 
-    if (at == end || line->text[at] != SUM_MARK) {
-        return end;
+    while (digits > 1U && is_hexadecimal(line->text[digits - 1U])) {
+        digits--;
     }
-    for (uint16_t i = (uint16_t)(at + 1U); i < end; i++) {
-        const char digit = telecommand_upper(line->text[i]);
-
-        if (!((digit >= '0' && digit <= '9') || (digit >= 'A' && digit <= 'F'))) {
-            return end;
-        }
-    }
-    return at;
+    return end - digits == LINE_SUM_DIGITS && line->text[digits - 1U] == SUM_MARK ? (uint16_t)(digits - 1U)
+                                                                                  : end;
 }
 
 static bool sum_is_right(const telecommand_line_t *line, uint16_t sum_at)
@@ -212,25 +206,6 @@ static bool sum_is_right(const telecommand_line_t *line, uint16_t sum_at)
     return true;
 }
 
-/* Name and argument out of the first `end` characters. */
-static telecommand_status_t split(const telecommand_line_t *line, uint16_t end, telecommand_t *command)
-{
-    telecommand_status_t status;
-    uint16_t at;
-
-    while (end > 1U && is_blank(line->text[end - 1U])) {
-        end--;
-    }
-    at = skip_blanks(line, 1U, end);
-    status = take_name(line, &at, end, command);
-    if (status == TELECOMMAND_OK) {
-        for (at = skip_blanks(line, at, end); at < end; at++) {
-            command->argument[command->argument_length++] = line->text[at];
-        }
-    }
-    return status;
-}
-
 static telecommand_status_t reject(telecommand_t *command, telecommand_status_t status)
 {
     command->name_length = 0U;
@@ -238,12 +213,44 @@ static telecommand_status_t reject(telecommand_t *command, telecommand_status_t 
     return status;
 }
 
-telecommand_status_t telecommand_parse(const telecommand_line_t *line, bool sum_required,
+/* What is left of the line, without blanks around it. */
+static telecommand_status_t take_argument(const telecommand_line_t *line, uint16_t at, uint16_t end,
+                                          telecommand_t *command)
+{
+    for (; at < end; at++) {
+        const char character = line->text[at];
+
+        if (!is_legible(character)) {
+            return reject(command, TELECOMMAND_CHARACTER);
+        }
+        if (command->argument_length > 0U || !is_blank(character)) {
+            command->argument[command->argument_length++] = character;
+        }
+    }
+    return TELECOMMAND_OK;
+}
+
+/* Name and argument, which end where the sum begins. */
+static telecommand_status_t split(const telecommand_line_t *line, uint16_t sum_at, telecommand_t *command)
+{
+    const uint16_t end = end_of(line, sum_at);
+    telecommand_status_t status;
+    uint16_t at = 1U;
+
+    if (end == 1U) {
+        return TELECOMMAND_EMPTY;
+    }
+    while (is_blank(line->text[at])) {
+        at++;
+    }
+    status = take_name(line, &at, end, command);
+    return status == TELECOMMAND_OK ? take_argument(line, at, end, command) : status;
+}
+
+/* Name and argument of a line that can be read, whatever its sum. */
+static telecommand_status_t understand(const telecommand_line_t *line, uint16_t sum_at,
                                        telecommand_t *command)
 {
-    uint16_t end = line->length;
-    telecommand_status_t status;
-
     (void)reject(command, TELECOMMAND_OK);
     if (line->damaged) {
         return TELECOMMAND_DAMAGED;
@@ -254,15 +261,16 @@ telecommand_status_t telecommand_parse(const telecommand_line_t *line, bool sum_
     if (line->overlong) {
         return TELECOMMAND_OVERLONG;
     }
-    if (!is_legible(line)) {
-        return TELECOMMAND_CHARACTER;
-    }
-    while (end > 1U && is_blank(line->text[end - 1U])) {
-        end--;
-    }
-    const uint16_t sum_at = find_sum(line, end);
+    return split(line, sum_at, command);
+}
 
-    status = split(line, sum_at, command);
+telecommand_status_t telecommand_parse(const telecommand_line_t *line, bool sum_required,
+                                       telecommand_t *command)
+{
+    const uint16_t end = end_of(line, line->length);
+    const uint16_t sum_at = find_sum(line, end);
+    const telecommand_status_t status = understand(line, sum_at, command);
+
     if (status != TELECOMMAND_OK || stops(command)) {
         return status;
     }
@@ -274,7 +282,8 @@ telecommand_status_t telecommand_parse(const telecommand_line_t *line, bool sum_
 
 bool telecommand_is_urgent(const telecommand_line_t *line)
 {
+    const uint16_t sum_at = find_sum(line, end_of(line, line->length));
     telecommand_t command;
 
-    return telecommand_parse(line, false, &command) == TELECOMMAND_OK && stops(&command);
+    return understand(line, sum_at, &command) == TELECOMMAND_OK && stops(&command);
 }

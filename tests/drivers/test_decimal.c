@@ -240,6 +240,20 @@ void test_ties_go_to_even_and_one_digit_far_behind_decides(void)
         "000000000000000000000000000000000000000000000001");
 }
 
+void test_zeros_far_behind_a_tie_leave_it_a_tie(void)
+{
+    assert_reads(1.0F, "1.0000000596046447753906250000000000000000000000");
+    assert_reads(18446744073709551616.0F, "18446745173221179392"); /* 2^64 and half a unit */
+}
+
+void test_a_tie_of_33_digits_is_read_as_what_lies_just_below_it(void)
+{
+    const float below = ldexpf(16681887.0F, -35);
+
+    assert_reads(below, "0.000485506825498305261135101318359375");
+    assert_reads(nextafterf(below, 1.0F), "0.00048550682549830526113510131835938");
+}
+
 void test_many_digits_before_the_point_are_counted(void)
 {
     char text[400];

@@ -91,7 +91,8 @@ void test_milliseconds_are_written_with_their_zeros(void)
     static const struct {
         uint32_t ms;
         const char *text;
-    } rows[] = {{0U, "0.000"}, {9U, "0.009"}, {90U, "0.090"}, {1001U, "1.001"}, {60100U, "60.100"}};
+    } rows[] = {{0U, "0.000"},  {9U, "0.009"},    {10U, "0.010"},
+                {90U, "0.090"}, {1001U, "1.001"}, {60100U, "60.100"}};
 
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         telemetry_begin(&line);

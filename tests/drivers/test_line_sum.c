@@ -31,10 +31,11 @@ void test_it_is_written_as_four_digits_in_upper_case(void)
     } rows[] = {{0x0000U, "0000"}, {0x00A1U, "00A1"}, {0xFFFFU, "FFFF"}, {0x9BCDU, "9BCD"}};
 
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        char digits[LINE_SUM_DIGITS];
+        char digits[LINE_SUM_DIGITS + 1U] = {'~', '~', '~', '~', '~'};
 
         line_sum_write(digits, rows[i].sum);
         TEST_ASSERT_EQUAL_STRING_LEN(rows[i].digits, digits, LINE_SUM_DIGITS);
+        TEST_ASSERT_EQUAL('~', digits[LINE_SUM_DIGITS]);
     }
 }
 

@@ -189,3 +189,15 @@ void test_newer_holds_across_the_wrap(void)
     TEST_ASSERT_TRUE(parameter_image_newer(0U, UINT32_C(0xFFFFFFFF)));
     TEST_ASSERT_FALSE(parameter_image_newer(UINT32_C(0xFFFFFFFF), 0U));
 }
+
+void test_of_two_generations_half_the_numbers_apart_neither_is_newer(void)
+{
+    TEST_ASSERT_TRUE(parameter_image_newer(UINT32_C(0x7FFFFFFF), 0U));
+    TEST_ASSERT_FALSE(parameter_image_newer(UINT32_C(0x80000000), 0U));
+    TEST_ASSERT_FALSE(parameter_image_newer(0U, UINT32_C(0x80000000)));
+}
+
+void test_names_that_differ_in_their_first_character_only_differ(void)
+{
+    TEST_ASSERT_NOT_EQUAL(parameter_image_name(0U, "KP"), parameter_image_name(0U, "XP"));
+}

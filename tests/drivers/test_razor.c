@@ -339,6 +339,12 @@ void test_lines_of_other_sensors_between_the_parts_are_passed_over(void)
     }
 }
 
+void test_a_title_cut_by_a_line_end_does_not_go_on_in_the_next_line(void)
+{
+    feed("#YP\nR=1.00,2.00,3.00\n");
+    assert_counts(0U, 0U, 0U, 0U);
+}
+
 void test_other_firmwares_are_never_guessed_at(void)
 {
     /* formats of Razor_AHRS and its forks */

@@ -436,6 +436,7 @@ void test_a_stop_a_landing_and_a_reference_of_zero_are_urgent_however_written(vo
                                          "#SETR -\n",
                                          "#SETR 0.0.0\n",
                                          "#SETR 0 1\n",
+                                         "#SETR 0-\n",
                                          "#STOPS\n",
                                          "#STO\n",
                                          "#LANDING\n",
@@ -455,6 +456,27 @@ void test_a_stop_a_landing_and_a_reference_of_zero_are_urgent_however_written(vo
         TEST_ASSERT_EQUAL(1U, feed(others[i]));
         TEST_ASSERT_FALSE_MESSAGE(telecommand_is_urgent(&collector.line), others[i]);
     }
+}
+
+void test_an_empty_line_behind_a_damaged_one_is_not_damaged(void)
+{
+    TEST_ASSERT_EQUAL(0U, feed("#A"));
+    telecommand_collector_broken(&collector);
+    TEST_ASSERT_EQUAL(TELECOMMAND_DAMAGED, parse_line("\n"));
+    TEST_ASSERT_EQUAL(TELECOMMAND_BARE, parse_line("\n"));
+}
+
+void test_a_line_taken_back_to_its_sharp_goes_on(void)
+{
+    assert_parses("#KO\x08\x08STOP\n", "STOP", "");
+}
+
+void test_what_an_earlier_line_left_in_memory_is_not_read(void)
+{
+    assert_parses("#ABCD EFGHIJKLMNOP\n", "ABCD", "EFGHIJKLMNOP");
+    assert_parses("#KP 1\n", "KP", "1");
+    assert_error(TELECOMMAND_EMPTY, "#\n");
+    assert_parses("#Y\n", "Y", "");
 }
 
 void test_a_damaged_line_is_never_urgent(void)

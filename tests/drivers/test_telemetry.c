@@ -32,6 +32,10 @@ void test_fields_are_parted_by_a_blank(void)
     telemetry_field_count(&line, "flags", 257U);
     telemetry_field_number(&line, "thr", 7.12F, 2U);
     assert_line("alt:0.598 laser:OK flags:257 thr:7.12");
+    telemetry_begin(&line);
+    telemetry_text(&line, "P");
+    telemetry_field_count(&line, "flags", 1U);
+    assert_line("P flags:1");
 }
 
 void test_a_field_without_a_name_or_a_text_is_not_in_the_line(void)
@@ -194,6 +198,8 @@ void test_a_pulse_is_a_line_of_at_most_eight_octets_in_tenths_of_a_microsecond(v
     telemetry_pulse(&line, 1999.68F);
     TEST_ASSERT_EQUAL_STRING_LEN("P19997\r\n", line.text, 8);
     TEST_ASSERT_EQUAL_UINT16(8, line.length);
+    telemetry_pulse(&line, 1999.64F);
+    TEST_ASSERT_EQUAL_STRING_LEN("P19996\r\n", line.text, 8);
     telemetry_pulse(&line, 999.36F);
     TEST_ASSERT_EQUAL_STRING_LEN("P9994\r\n", line.text, 7);
     TEST_ASSERT_EQUAL_UINT16(7, line.length);
