@@ -42,6 +42,9 @@
 #define CARRIED_BRAKE_N 1.8F         /* chosen: what the two before may have sunk */
 #define HELD_SINK_N_PER_S 0.2F       /* chosen: as SINK_FADE_N_PER_S in est_law.c */
 #define UNKNOWN_WINDOW_N 2.0F        /* chosen: as HOVER_BOUND_N in est_law.c */
+#define VAIN_LANDING_N 1.5F          /* chosen: by the vehicle model a sink rate of 0.9 m/s */
+#define VAIN_LANDING_S 1.0F          /* chosen: twice as long as a landing begins with so little thrust */
+#define LANDS_MPS 0.3F               /* chosen: three quarters of the sink rate of a landing */
 #define UNKNOWN_REACH_M 0.09F        /* chosen: asks for 1.2 N at the delivered POSK and VELK */
 #define UNCONFIRMED_MPS 0.35F /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
 #define TAKEOFF_MPS 0.6F      /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
@@ -665,19 +668,37 @@ static void watch_carried(flight_t *flight, const parameters_t *parameters)
     }
 }
 
-/* Without a pin nothing tells who has the throttle, and FLOATING then begins in a pilot's hands. Something
- * that blocks the beam since power-on makes FLOATING on the ground too; then the take-off is still to come.
- */
+/* True in LANDING with far too little thrust to fly, of a vehicle that does not sink: a pilot holds it, and
+ * nothing tells. */
+static bool lands_in_vain(flight_t *flight)
+{
+    const supervisor_t *supervisor = &flight->supervisor;
+    const bool weak = flight->throttle_unknown || flight->thrust_n < flight->hover_n - VAIN_LANDING_N;
+    const bool sinks = supervisor->height.height_mm < LOW_MM || flight->integrity.rise_mps < -LANDS_MPS;
+
+    if (!weak || sinks || supervisor->state_us == 0U) {
+        flight->vain_landing_s = 0.0F;
+    } else {
+        flight->vain_landing_s = at_most(
+            flight->vain_landing_s + seconds_at_most(supervisor->step_us, STEP_MAX_S), VAIN_LANDING_S);
+    }
+    return flight->vain_landing_s >= VAIN_LANDING_S;
+}
+
+/* Without a pin nothing tells who has the throttle: FLOATING begins in a pilot's hands, and LANDING may be
+ * held up by them. Something that blocks the beam since power-on makes FLOATING on the ground too; then the
+ * take-off is still to come. */
 static void update_throttle_unknown(flight_t *flight, const parameters_t *parameters, bool has_throttle)
 {
     const bool before = flight->throttle_unknown;
+    const flight_state_t state = flight->supervisor.state;
 
     watch_carried(flight, parameters);
+    const bool unsure = (state == FLIGHT_FLOATING && has_throttle) ||
+                        (state == FLIGHT_LANDING && lands_in_vain(flight));
     flight->throttle_unknown = flight->carried ||
-                               (flight->supervisor.state == FLIGHT_FLOATING && has_throttle &&
-                                parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE);
-    if (before && !flight->throttle_unknown && !flight->lifting &&
-        flight->supervisor.state != FLIGHT_GROUND) {
+                               (unsure && parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE);
+    if (before && !flight->throttle_unknown && !flight->lifting && state != FLIGHT_GROUND) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
 }
@@ -764,14 +785,14 @@ static float within_power_n(flight_t *flight, float thrust_n)
 {
     const bool doubted = integrity_doubts(&flight->integrity, DOUBT_THRUST);
 
-    if (!doubted || !descends(flight->supervisor.state)) {
+    if (!(doubted || flight->throttle_unknown) || !descends(flight->supervisor.state)) {
         flight->held_sunk_n = 0.0F;
     } else {
         flight->held_sunk_n += HELD_SINK_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
     }
     if (flight->throttle_unknown) {
         return flight->carried ? carried_n(flight)
-                               : between(flight->hover_n - UNKNOWN_WINDOW_N, thrust_n,
+                               : between(flight->hover_n - UNKNOWN_WINDOW_N - flight->held_sunk_n, thrust_n,
                                          flight->hover_n + UNKNOWN_WINDOW_N);
     }
     if (!doubted || flight->mode == FLIGHT_MODE_IDLE) {
@@ -800,7 +821,8 @@ static float stand_test_n(flight_t *flight, float thrust_n)
     return at_most(thrust_n, flight->stand_test_n);
 }
 
-/* Detects a reference that is not reached; only in the states in which the law acts. */
+/* Detects a reference that is not reached, in the states in which the law acts, and a landing that does not
+ * sink. */
 static void judge_reach(flight_t *flight)
 {
     const supervisor_t *supervisor = &flight->supervisor;
@@ -810,9 +832,11 @@ static void judge_reach(flight_t *flight)
         reach_reset(&flight->reach);
     }
     flight->reach_m = supervisor->reference_m;
-    flight->out_of_reach = acts &&
-                           reach_step(&flight->reach, supervisor->height.height_mm - reference_mm(flight),
-                                      supervisor->step_us);
+    flight->out_of_reach = acts ? reach_step(&flight->reach,
+                                             supervisor->height.height_mm - reference_mm(flight),
+                                             supervisor->step_us)
+                                : supervisor->state == FLIGHT_LANDING &&
+                                      flight->vain_landing_s >= VAIN_LANDING_S;
 }
 
 uint16_t flight_releases(const flight_t *flight, const parameters_t *parameters)

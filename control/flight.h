@@ -43,13 +43,14 @@ typedef struct {
     uint16_t doubts;       /* DOUBT_* of the previous cycle */
     bool lifting;          /* since the ground the vehicle has not left it yet, as far as known */
     bool not_lifted;       /* TAKEOFF ended and the vehicle had not left the ground */
-    float held_sunk_n;     /* how far the window of doubt THRUST has sunk in the present descent */
+    float held_sunk_n;     /* how far the window of its thrust has sunk in the present descent */
     float stand_test_n;    /* upper limit while a descent tests whether the vehicle stands */
     float floating_m;      /* height that FLOATING holds */
     float carried_n_per_s; /* rate at which its thrust sinks */
     float carried_felt_n;  /* how far felt climbs have lowered it */
     bool carried;          /* DESCENDING that began in a pilot's hands */
-    bool throttle_unknown; /* FLOATING or carried, and no pin tells who has the throttle */
+    bool throttle_unknown; /* FLOATING, carried or landing in vain; no pin tells who has the throttle */
+    float vain_landing_s;  /* how long a landing has had too little thrust to fly, and it does not sink */
     flight_mode_t mode;
     pid_state_t pid;
     bool integral; /* the law had an integral action in the previous cycle */

@@ -31,8 +31,8 @@ typedef enum {
     512U /* doubt IMU: accelerations are not believed; or law EST gets none and flies without them */
 #define FLIGHT_FLAG_THRUST 1024U /* doubt THRUST: commands have no effect */
 #define FLIGHT_FLAG_REACH \
-    128U /* the reference is not reached: over 0.1 m off for 3 s, and no nearer; \
-          * set by flight.c */
+    128U /* the reference is not reached: over 0.1 m off for 3 s, and no nearer; or a landing does not \
+          * sink; set by flight.c */
 
 /* Name as in the telemetry: "GROUND" and so on. Zero-terminated, static. */
 const char *flight_state_name(flight_state_t state);

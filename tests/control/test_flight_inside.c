@@ -1442,6 +1442,50 @@ void test_a_carried_vehicle_that_feels_a_climb_gives_less_and_a_fall_more(void)
     NEAR(2.0F, f.carried_felt_n);
 }
 
+void test_a_landing_with_too_little_thrust_to_fly_that_does_not_sink_is_in_vain(void)
+{
+    static const struct {
+        float thrust_n, height_mm, rise_mps, before_s;
+        uint32_t state_us;
+        bool vain;
+    } rows[] = {{5.4F, 100.0F, -0.29F, 0.95F, 1U, true},  {5.4F, 100.0F, -0.29F, 0.85F, 1U, false},
+                {5.6F, 100.0F, -0.29F, 0.95F, 1U, false}, {5.4F, 79.0F, -0.29F, 0.95F, 1U, false},
+                {5.4F, 100.0F, -0.31F, 0.95F, 1U, false}, {5.4F, 100.0F, -0.29F, 0.95F, 0U, false}};
+    for (int i = 0; i < 6; i++) {
+        setUp();
+        f.supervisor.state = FLIGHT_LANDING;
+        f.supervisor.state_us = rows[i].state_us;
+        f.supervisor.height.height_mm = rows[i].height_mm;
+        f.integrity.rise_mps = rows[i].rise_mps;
+        f.thrust_n = rows[i].thrust_n;
+        f.vain_landing_s = rows[i].before_s;
+        TEST_ASSERT_EQUAL(rows[i].vain, lands_in_vain(&f));
+        NEAR(i == 0 ? 1.0F : i == 1 ? 0.95F : 0.0F, f.vain_landing_s);
+        judge_reach(&f);
+        TEST_ASSERT_EQUAL(rows[i].vain, f.out_of_reach);
+    }
+}
+
+void test_without_a_pin_a_landing_in_vain_keeps_a_thrust_near_hover(void)
+{
+    for (int pin = 0; pin < 2; pin++) {
+        setUp();
+        set(PARAMETER_SEL, (pin != 0) ? (float)SEL_PIN : (float)SEL_NONE);
+        f.supervisor.state = FLIGHT_LANDING;
+        f.supervisor.state_us = 1U;
+        f.supervisor.height.height_mm = 500.0F;
+        f.thrust_n = 5.0F;
+        f.vain_landing_s = 1.0F;
+        update_throttle_unknown(&f, &parameters, true);
+        TEST_ASSERT_EQUAL(pin == 0, f.throttle_unknown);
+        f.thrust_n = 7.0F; /* it stays so */
+        update_throttle_unknown(&f, &parameters, true);
+        TEST_ASSERT_EQUAL(pin == 0, f.throttle_unknown);
+        f.held_sunk_n = 0.4F;
+        NEAR((pin == 0) ? 7.0F - 2.0F - 0.42F : 3.0F, within_power_n(&f, 3.0F));
+    }
+}
+
 void test_a_carried_descent_knows_its_hover_thrust_still(void)
 {
     f.supervisor.state = FLIGHT_DESCENDING;

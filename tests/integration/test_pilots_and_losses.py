@@ -204,6 +204,17 @@ class Pilots(unittest.TestCase):
                 self.assertEqual(flight.rows[-1]["state"], "GROUND", str(flight))
                 self.assertLess(flight.rows[-1]["thrust_n"], 0.5, f"motors go on: {flight}")
 
+    def test_a_landing_that_a_pilot_holds_up_ends_softly_when_he_gives_it_back(self):
+        """Without a pin nothing tells that he holds it; the order was typed in his turn."""
+        for law, most_mps in (("EST", 0.6), ("PID", 0.4)):
+            for flight in flights((law,) * 2, ("nominal", "drawn 0"), lambda rng: (
+                    {"pilot_start": 21.0, "pilot": rng.uniform(10.0, 14.0), "pilot_height": rng.uniform(0.4, 1.4)},
+                    {"SEL": "NONE"}, UNTIL_DOWN)):
+                self.at_most(most_mps, flight.touch_mps(), flight, "m/s at the touch")
+                self.assertGreater(flight.rows[-1]["t_s"], flight.given_back_s(), f"he landed it: {flight}")
+                turn = [int(row["flags"]) for row in flight.after(LAND_S) if row["t_s"] < flight.given_back_s()]
+                self.assertTrue(any(flags & (128 + 1024) for flags in turn), f"not told: {flight}")
+
     def test_whoever_gives_it_back_gives_back_a_vehicle_that_flies_and_stops(self):
         for pin in ("PIN", "NONE"):
             for flight in flights(("EST", "PID", "PIDT", "PD"), ("nominal", "drawn 0"), pilot(pin, 0.8, 1.4)):
