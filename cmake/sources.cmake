@@ -1,6 +1,6 @@
 # The product: the single list of files, read by CMakeLists.txt and by the check of ccs_project/.
 set(CONTROL_SOURCES
-    control/est/actuator.c control/altitude.c control/arming.c control/attitude.c control/calibration.c control/est/cascade.c control/est/deadband.c
+    control/est/actuator.c control/altitude.c control/arming.c control/attitude.c control/calibration.c control/est/cascade.c control/est/deadband.c control/est/effect.c
     control/descent.c control/est/est_law.c control/est/estimator.c control/flight.c control/flight_state.c control/est/hover.c
     control/integrity.c control/imu_axes.c control/imu_finding.c control/imu_mapping.c control/median.c
     control/parameters.c control/pid.c control/pidt.c control/ray_clock.c control/reach.c control/supervisor.c control/thrust.c)

@@ -45,7 +45,7 @@
 #define VAIN_LANDING_N 1.5F          /* chosen: by the vehicle model a sink rate of 0.9 m/s */
 #define VAIN_LANDING_S 1.0F          /* chosen: twice as long as a landing begins with so little thrust */
 #define LANDS_MPS 0.3F               /* chosen: three quarters of the sink rate of a landing */
-#define UNKNOWN_REACH_M 0.09F        /* chosen: asks for 1.2 N at the delivered POSK and VELK */
+#define UNKNOWN_REACH_M 0.06F        /* tried 0.05 to 0.09; asks for 0.8 N at the delivered gains */
 #define UNCONFIRMED_MPS 0.35F /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
 #define TAKEOFF_MPS 0.6F      /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
 #define CLIMB_MARGIN_MPS 0.4F /* chosen: room for an overshoot of the climb rate above VUP */
@@ -53,6 +53,7 @@
     1.0F /* chosen: in 2 s too low to fly; the accelerometer shows a fall before it is fast */
 #define NOT_LIFTED_MAX_US UINT32_C(3000000) /* chosen: the take-off's ramp in est_law.c ends after 1.2 s */
 #define HEIGHT_LATE_US UINT32_C(170000)     /* a scan of 0.1 s is missing */
+#define EFFECT_REACH_M 0.14F                /* chosen: below VAIN_M in integrity.c */
 #define FLOAT_REACH_M 0.30F /* chosen: three times the distance that counts as reached, reach.c */
 
 /* For states flown without an estimate. */
@@ -91,11 +92,23 @@ static bool has_estimate(const flight_t *flight)
     return est_law_ready(&flight->est);
 }
 
-/* FLOATING, and the vehicle certainly obeys. */
+/* FLOATING, and the throttle is certainly the firmware's. */
 static bool commands_floating(const flight_t *flight)
 {
     return flight->supervisor.state == FLIGHT_FLOATING && flight->mode != FLIGHT_MODE_HOVER &&
            !flight->throttle_unknown;
+}
+
+/* No pin tells who has the throttle. The vehicle shows that it is the firmware. */
+static bool shows_effect(const flight_t *flight)
+{
+    return flight->throttle_unknown && flight->effect.has_effect;
+}
+
+/* FLOATING, and the thrust that is commanded carries the vehicle. */
+static bool carries_floating(const flight_t *flight)
+{
+    return commands_floating(flight) || shows_effect(flight);
 }
 
 /* Low-pass of the hover thrust. It is slow, so that a fault is doubted before its error is learned. It is
@@ -104,7 +117,7 @@ static void follow_hover(flight_t *flight)
 {
     const float step_s = seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
     const bool estimated = has_estimate(flight) && flight->est.airborne;
-    if (!estimated && flight->supervisor.state != FLIGHT_FLYING && !commands_floating(flight)) {
+    if (!estimated && flight->supervisor.state != FLIGHT_FLYING && !carries_floating(flight)) {
         return;
     }
     if (flight->learned_s > 0.0F &&
@@ -136,7 +149,7 @@ static void update_hover(flight_t *flight, float gravity_n)
 {
     const flight_state_t state = flight->supervisor.state;
     const bool grounded = state == FLIGHT_GROUND || lifts(flight);
-    const bool flies = state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING || commands_floating(flight);
+    const bool flies = state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING || carries_floating(flight);
     const bool sees = (flight->supervisor.flags & FLIGHT_FLAG_HEIGHT) == 0U;
 
     flight->hover_learned = !grounded && (flight->hover_learned || flies);
@@ -471,8 +484,8 @@ static void change_doubts(flight_t *flight, float gravity_n)
         (flight->est.airborne || flies_unseen)) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
-    est_law_set_without_authority(&flight->est,
-                                  integrity_doubts(integrity, DOUBT_THRUST) || flight->throttle_unknown);
+    est_law_set_without_authority(&flight->est, integrity_doubts(integrity, DOUBT_THRUST) ||
+                                                    (flight->throttle_unknown && !shows_effect(flight)));
     est_law_set_accelerations_doubted(&flight->est, integrity_doubts(integrity, DOUBT_IMU));
     est_law_set_rocks(&flight->est, rocks(flight));
     if ((come & DOUBT_IMU) != 0U && flight->est.airborne) { /* the estimate used them until now */
@@ -668,6 +681,27 @@ static void watch_carried(flight_t *flight, const parameters_t *parameters)
     }
 }
 
+/* FLOATING without a pin: does the vehicle do what is commanded? Once it does, its hover thrust is learned.
+ */
+static void watch_effect(flight_t *flight, bool begins)
+{
+    const estimator_t *estimator = &flight->est.estimator;
+    const uint32_t since_us = estimator->now_us - flight->effect_us;
+    const bool had_effect = flight->effect.has_effect;
+
+    flight->effect_us = estimator->now_us;
+    if (begins || flight->supervisor.state != FLIGHT_FLOATING || !est_law_has_acceleration(&flight->est) ||
+        since_us > FRAME_GAP_US) {
+        effect_init(&flight->effect);
+    } else if (since_us > 0U) {
+        effect_step(&flight->effect, flight->est.authority_mps2_per_n * flight->est.actuator.thrust_n,
+                    estimator->up_mps2, (float)since_us * 1.0e-6F);
+        if (flight->effect.has_effect && !had_effect) {
+            est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
+        }
+    }
+}
+
 /* True in LANDING with far too little thrust to fly, of a vehicle that does not sink: a pilot holds it, and
  * nothing tells. */
 static bool lands_in_vain(flight_t *flight)
@@ -698,7 +732,9 @@ static void update_throttle_unknown(flight_t *flight, const parameters_t *parame
                         (state == FLIGHT_LANDING && lands_in_vain(flight));
     flight->throttle_unknown = flight->carried ||
                                (unsure && parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE);
-    if (before && !flight->throttle_unknown && !flight->lifting && state != FLIGHT_GROUND) {
+    if (flight->throttle_unknown) {
+        watch_effect(flight, !before);
+    } else if (before && !flight->lifting && state != FLIGHT_GROUND) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
 }
@@ -715,7 +751,9 @@ static void float_along(flight_t *flight, bool entered)
     const float height_m = flight->supervisor.height.height_mm * 0.001F;
     const bool holds = !entered && flight->supervisor.state == FLIGHT_FLOATING &&
                        flight->mode != FLIGHT_MODE_HOVER;
-    const float reach_m = flight->throttle_unknown ? UNKNOWN_REACH_M : FLOAT_REACH_M;
+    const float reach_m = shows_effect(flight)       ? EFFECT_REACH_M
+                          : flight->throttle_unknown ? UNKNOWN_REACH_M
+                                                     : FLOAT_REACH_M;
 
     flight->floating_m = holds ? between(height_m - reach_m, flight->floating_m, height_m + reach_m)
                                : height_m;

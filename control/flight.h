@@ -10,6 +10,7 @@
 
 #include "control/arming.h"
 #include "control/descent.h"
+#include "control/est/effect.h"
 #include "control/est/est_law.h"
 #include "control/flight_io.h"
 #include "control/imu_axes.h"
@@ -51,6 +52,8 @@ typedef struct {
     bool carried;          /* DESCENDING that began in a pilot's hands */
     bool throttle_unknown; /* FLOATING, carried or landing in vain; no pin tells who has the throttle */
     float vain_landing_s;  /* how long a landing has had too little thrust to fly, and it does not sink */
+    effect_t effect;       /* valid while throttle_unknown; judged in FLOATING */
+    uint32_t effect_us;    /* latest frame in it */
     flight_mode_t mode;
     pid_state_t pid;
     bool integral; /* the law had an integral action in the previous cycle */

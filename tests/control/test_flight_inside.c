@@ -995,19 +995,24 @@ void test_floating_without_a_pin_is_unsure_and_its_end_engages(void)
 void test_floating_holds_its_first_height_within_its_reach(void)
 {
     static const struct {
-        bool entered, throttle_unknown;
+        bool entered, throttle_unknown, has_effect;
         flight_mode_t mode;
         float before_m, held_m;
-    } rows[] = {
-        {false, false, FLIGHT_MODE_FLOAT, 0.6F, 0.6F},   {true, false, FLIGHT_MODE_FLOAT, 0.6F, 0.5F},
-        {false, false, FLIGHT_MODE_HOVER, 0.6F, 0.5F},   {false, false, FLIGHT_MODE_FLOAT, 0.9F, 0.8F},
-        {false, false, FLIGHT_MODE_FLOAT, 0.1F, 0.2F},   {false, true, FLIGHT_MODE_EST_HOLD, 0.9F, 0.59F},
-        {false, true, FLIGHT_MODE_EST_HOLD, 0.1F, 0.41F}};
-    for (int i = 0; i < 7; i++) {
+    } rows[] = {{false, false, false, FLIGHT_MODE_FLOAT, 0.6F, 0.6F},
+                {true, false, false, FLIGHT_MODE_FLOAT, 0.6F, 0.5F},
+                {false, false, false, FLIGHT_MODE_HOVER, 0.6F, 0.5F},
+                {false, false, true, FLIGHT_MODE_FLOAT, 0.9F, 0.8F},
+                {false, false, false, FLIGHT_MODE_FLOAT, 0.1F, 0.2F},
+                {false, true, false, FLIGHT_MODE_EST_HOLD, 0.9F, 0.56F},
+                {false, true, false, FLIGHT_MODE_EST_HOLD, 0.1F, 0.44F},
+                {false, true, true, FLIGHT_MODE_EST_HOLD, 0.9F, 0.64F},
+                {false, true, true, FLIGHT_MODE_EST_HOLD, 0.1F, 0.36F}};
+    for (int i = 0; i < 9; i++) {
         setUp();
         f.supervisor.state = FLIGHT_FLOATING;
         f.mode = rows[i].mode;
         f.throttle_unknown = rows[i].throttle_unknown;
+        f.effect.has_effect = rows[i].has_effect;
         f.floating_m = rows[i].before_m;
         float_along(&f, rows[i].entered);
         NEAR(rows[i].held_m, f.floating_m);
@@ -1020,6 +1025,50 @@ void test_floating_holds_its_first_height_within_its_reach(void)
     NEAR(0.6F, aim_m(&f));
     TEST_ASSERT_TRUE(is_hold_mode(FLIGHT_MODE_EST_HOLD) && is_hold_mode(FLIGHT_MODE_FLOAT));
     TEST_ASSERT_FALSE(is_hold_mode(FLIGHT_MODE_HOVER) || is_hold_mode(FLIGHT_MODE_LAW));
+}
+
+/* One frame of FLOATING without a pin, whose accelerometer measures this share of a jump of the thrust. */
+static void float_a_frame(uint32_t step_us, bool felt)
+{
+    f.est.estimator.now_us += step_us;
+    f.est.estimator.felt = felt;
+    update_throttle_unknown(&f, &parameters, true);
+}
+
+void test_a_vehicle_that_floats_without_a_pin_learns_its_hover_thrust_once_it_obeys(void)
+{
+    f.supervisor.state = FLIGHT_FLOATING;
+    parameters.value[PARAMETER_SEL] = (float)SEL_NONE;
+    f.hover_n = 7.3F;
+    f.thrust_n = 6.7F;
+    f.est.authority_mps2_per_n = 1.4F;
+    float_a_frame(25000U, true);
+    TEST_ASSERT_TRUE(f.throttle_unknown && f.effect.running_s == 0.0F);
+    for (int i = 0; i < 100 && !f.effect.has_effect; i++) {
+        f.est.actuator.thrust_n = 7.0F + 0.5F * (float)(i % 3);
+        f.est.estimator.up_mps2 = 1.4F * f.est.actuator.thrust_n - 9.0F;
+        TEST_ASSERT_FALSE(carries_floating(&f));
+        float_a_frame(25000U, true);
+    }
+    TEST_ASSERT_TRUE(carries_floating(&f));
+    NEAR(7.3F, f.est.hover.thrust_n);
+    NEAR(6.7F, f.est.cascade.thrust_n);
+    f.est.cascade.thrust_n = 1.0F;
+    float_a_frame(0U, true); /* no new frame */
+    TEST_ASSERT_TRUE(carries_floating(&f));
+    float_a_frame(25000U, true);
+    NEAR(1.0F, f.est.cascade.thrust_n); /* engaged once */
+    effect_t known = f.effect;
+    float_a_frame(FRAME_GAP_US + 1U, true);
+    TEST_ASSERT_FALSE(carries_floating(&f));
+    f.effect = known;
+    float_a_frame(25000U, false);
+    TEST_ASSERT_FALSE(carries_floating(&f));
+    f.effect = known;
+    f.carried = true;
+    f.supervisor.state = FLIGHT_DESCENDING;
+    float_a_frame(25000U, true);
+    TEST_ASSERT_TRUE(f.throttle_unknown && !carries_floating(&f));
 }
 
 /* ---- limits of the thrust */
