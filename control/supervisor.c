@@ -145,8 +145,8 @@ static void observe_reference(supervisor_t *s, float link_s, const flight_inputs
     const bool plausible = in->reference_m >= 0.0F && in->reference_m <= FLIGHT_REFERENCE_MAX_M;
 
     s->reference_sequence = in->reference_sequence;
-    /* in a pilot's turn it waits for the hand-back */
-    s->land = is_new ? in->reference_m == 0.0F : s->land && s->state == FLIGHT_FLOATING;
+    /* until it is done; a pilot's turn interrupts it, and it goes on at the hand-back */
+    s->land = is_new ? in->reference_m == 0.0F : s->land && s->state != FLIGHT_GROUND;
     if (is_new) {
         s->link_age_us = 0U;
     }

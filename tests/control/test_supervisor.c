@@ -632,14 +632,13 @@ void test_flying_to_floating_and_back_by_the_pilots_switch_with_the_reference_of
     TEST_ASSERT_EQUAL_FLOAT(0.5F, s.reference_m);
 }
 
-void test_landing_to_floating_by_the_pilots_switch_and_it_does_not_land_again(void)
+void test_landing_to_floating_by_the_pilots_switch_and_it_lands_when_he_gives_it_back(void)
 {
     land();
     pilot_takes_it(400.0F);
-    pilot_gives_it_back(400.0F);
     watch(400.0F, 20);
     state_is(FLIGHT_FLOATING);
-    setr(0.0F);
+    pilot_gives_it_back(400.0F);
     watch(400.0F, 1);
     state_is(FLIGHT_LANDING);
 }

@@ -128,6 +128,13 @@ class Pilots(unittest.TestCase):
     def test_without_the_pin_it_holds_it_too_once_the_vehicle_shows_that_it_obeys(self):
         self.holds("NONE", VEHICLES, 0.15, 0.20)
 
+    def test_a_landing_that_a_pilot_interrupts_goes_on_when_he_gives_it_back(self):
+        for flight in flights(("EST", "PID"), VEHICLES, lambda rng: (
+                {"pilot_start": LAND_S + rng.uniform(0.1, 1.0), "pilot": rng.uniform(0.05, 5.0), "pilot_height": 0.6}, {"SEL": "PIN"}, UNTIL_DOWN)):
+            self.assertIn("LANDING", {row["state"] for row in flight.after(flight.given_back_s())}, str(flight))
+            self.assertEqual(flight.rows[-1]["state"], "GROUND", str(flight))
+            self.at_most(0.8, flight.touch_mps(), flight, "m/s at the touch")
+
     def test_a_pin_that_never_says_pilot_is_as_good_as_none(self):
         for flight in flights(("EST", "PID"), VEHICLES, lambda rng: (
                 {**pilot("PIN", 0.8, 1.2)(rng)[0], "pin_stuck": 1, "pin_stuck_start": 2.0}, {"SEL": "PIN"}, UNTIL_DOWN)):
