@@ -59,6 +59,16 @@ void urg_step(urg_t *urg, uint32_t now_us)
     }
 }
 
+void urg_scan_at(urg_t *urg, uint32_t now_us)
+{
+    urg_link_scan_at(&urg->link, now_us);
+}
+
+uint32_t urg_pause_us(const urg_t *urg)
+{
+    return urg_link_pause_us(&urg->link);
+}
+
 bool urg_next_to_send(urg_t *urg, urg_output_t *output)
 {
     const urg_action_t *action = &urg->action;
@@ -97,6 +107,7 @@ void urg_report(const urg_t *urg, urg_report_t *report)
         .rate = urg->link.rate,
         .restarts = urg->link.restarts,
         .timeouts = urg->link.timeouts,
+        .pause_us = urg_link_pause_us(&urg->link),
         .seen = urg->seen,
         .scip = urg->parser.counters,
         .last_damage = urg->parser.last_damage,

@@ -2,12 +2,12 @@
  *
  *   urg_init()          sets the configuration, and the memory for two scans
  *   urg_feed()          processes received octets, any number at a time
- *   urg_step()          call it every 150 ms, with or without received octets
+ *   urg_step()          call it every 150 ms, or when urg_pause_us() has passed
  *   urg_next_to_send()  call it after each step: actions for the UART
  *   urg_take_scan()     call it when urg_feed() returned true: the scan
  *
- * A sixth function, urg_line_broken(), is for UARTs that report errors. The driver uses no clock, port, task
- * or heap.
+ * Two more calls are for some callers: urg_line_broken() where the UART reports errors; urg_scan_at() for the
+ * shortest search after an outage. The driver uses no clock, port, task or heap.
  *
  * Calling context: one call at a time. When an interrupt calls urg_feed(), disable it during the other calls.
  * No call waits or loops for long. The fields of urg_t are private: use urg_report(). */
@@ -51,6 +51,7 @@ typedef struct {
     uint32_t rate;     /* of the board's UART, bits per second */
     uint32_t restarts; /* how often the stream was lost */
     uint32_t timeouts; /* commands without an answer */
+    uint32_t pause_us; /* until the next step, as urg_pause_us() */
     urg_seen_t seen;
     scip_counters_t scip;
     scip_damage_t last_damage;
@@ -69,8 +70,12 @@ bool urg_feed(urg_t *urg, const octet_t *octets, size_t count);
  * which are a sign of a wrong bit rate. */
 void urg_line_broken(urg_t *urg, uint32_t framing_errors);
 
-/* One step of the link, every 150 ms. now_us: time in microseconds, wraps at 2^32. */
+/* One step of the link, at least every 150 ms. now_us: time in microseconds, wraps at 2^32. */
 void urg_step(urg_t *urg, uint32_t now_us);
+
+/* As urg_link_scan_at(), urg_link_pause_us(). */
+void urg_scan_at(urg_t *urg, uint32_t now_us);
+uint32_t urg_pause_us(const urg_t *urg);
 
 /* Gets the actions of the latest step, once. Always writes *output. Returns false when there is nothing to
  * do.

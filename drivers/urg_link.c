@@ -5,16 +5,17 @@
  * A stream stops for one of three likely causes. The recovery from one must not delay that from another:
  *
  *   1. The cable is interrupted, and the sensor still streams. Its scans count again as soon as they are
- *      received. So the link sends no QT, which would end the stream. It repeats the scan request (MS), which
- *      only restarts the stream of a streaming sensor.
+ *      received. So the link must listen at the stream's rate whenever a frame may come, and send nothing
+ *      there: QT ends a stream, and MS restarts it, which costs one frame.
  *   2. The sensor has lost its power. It boots for seconds, then waits in SCIP1.1 at its first rate. So the
- *      link repeats SCIP2.0 at that rate. Octets of a sensor that still streams at the other rate are
- *      received there as signs of a wrong rate.
+ *      link repeats SCIP2.0 at that rate, where a frame of the other rate would be lost.
  *   3. The sensor has lost its stream, but not its rate. It needs the repeated scan request.
  *
- * So for SEARCH_KNOWN_US the two known rates take turns of one step each. After that all rates are tried,
- * with QT and longer time-outs.
- * What breaks: the recovery times. `scip_start --outages` prints the longest times without scans. */
+ * Frames come at equal distances. So for SEARCH_KNOWN_US the link is at the stream's rate when a frame is due
+ * and at the first rate between two frames. It sends the request seldom. Where the times are not known, or
+ * the frames leave no time, it is at the first rate for most of the time, and what it hears there at a wrong
+ * rate leads it back. After SEARCH_KNOWN_US all rates are tried, with QT and longer time-outs. What breaks:
+ * the recovery times. `scip_start --outages` prints the longest times without scans. */
 #include "drivers/urg_link.h"
 
 #define REVOLUTION_US 100000U     /* data sheet, 600 rpm */
@@ -23,10 +24,15 @@
 #define SETTLE_US 3000000U        /* chosen: what a laser or a motor may need before the first scan */
 #define VERIFY_US 2000000U        /* chosen: at statuses 21..49 the sensor tests itself */
 #define POWER_CYCLE_US 20000000U  /* chosen: time without a scan, well above the 8 s of a boot */
-#define KNOCK_US 130000U          /* one step of 150 ms, less its jitter */
-#define LISTEN_US 280000U         /* two steps of 150 ms, less their jitter */
+#define KNOCK_US 130000U          /* chosen: real sensors mostly answer within 110 ms */
+#define LISTEN_US 160000U         /* chosen: a revolution, and its octets */
+#define TURN_US 40000U            /* chosen: least time at one rate; see urg_link_pause_us() */
+#define VISIT_US 60000U           /* what a revolution leaves beside TURN_US */
+#define PHASE_US 15000U           /* chosen: the latency of the scans' times and of the steps */
+#define DRIFT 512U                /* chosen: 0.2 %; recorded revolutions take 99.88 ms in place of 100 */
+#define SETTLE_RATE_US 90000U     /* chosen: two steps of 50 ms, less their jitter */
 #define SEARCH_KNOWN_US 12000000U /* chosen: above the 8 s that a sensor boots */
-#define KNOCKS_ROUND 6U           /* chosen: one command in six is sent at the stream's rate */
+#define REQUEST_US 1000000U       /* chosen: its scans come within the 1.5 s after which a flight is over */
 #define HEARD_OCTETS 64U          /* chosen: so many octets in WAIT mean that the sensor already streams */
 #define WRONG_RATE_SIGNS 8U       /* chosen: since a command; more than noise makes */
 #define STREAM_SIGNS 3U /* chosen: between two commands of the search; a wrong guess costs one turn only */
@@ -98,6 +104,12 @@ static uint32_t wire_us(const urg_link_t *link, uint32_t octets)
 static uint32_t scan_period_us(const urg_link_t *link)
 {
     return REVOLUTION_US * ((uint32_t)link->config.range.interval + 1U);
+}
+
+/* On the line. */
+static uint32_t frame_us(const urg_link_t *link)
+{
+    return link->scan_octets * (10000000U / link->config.stream_rate + 1U);
 }
 
 static uint32_t scan_timeout_us(const urg_link_t *link)
@@ -176,6 +188,7 @@ static void start_command(const step_t *step, urg_status_t status, scip_kind_t k
     set_status(step, status);
     step->link->attempt = 1U;
     step->link->knocking = false;
+    step->link->listening = false;
     send_command(step, kind);
 }
 
@@ -204,41 +217,122 @@ static void probe(const step_t *step, uint16_t index)
 
 /* ---- the search for a sensor that has streamed before ---- */
 
-/* A slow answer does not need the knock's time: it comes to the next knock, or the stream is heard. */
-static void knock(const step_t *step, uint32_t rate, scip_kind_t kind)
+/* A slow answer does not need the knock's time: it is heard as signs of a wrong rate, or the next knock is
+ * answered. */
+static void knock(const step_t *step, uint32_t rate, scip_kind_t kind, uint32_t timeout_us)
 {
     set_rate(step, rate);
     start_command(step, URG_LOST, kind);
-    step->link->timeout_us = KNOCK_US;
+    step->link->timeout_us = timeout_us;
     step->link->knocking = true;
 }
 
 static void knock_at_stream_rate(const step_t *step)
 {
-    knock(step, step->link->good_rate, step->link->config.stream);
-    step->link->timeout_us = LISTEN_US;
+    knock(step, step->link->good_rate, step->link->config.stream, KNOCK_US);
 }
 
-/* After the first one, which is at the stream's rate. */
-static void knock_next(const step_t *step)
+/* At the stream's rate, without a command. */
+static void listen(const step_t *step, uint32_t timeout_us)
 {
-    urg_link_t *link = step->link;
-    link->knocks++;
-    if (link->good_rate == link->config.first_rate) {
-        knock_at_stream_rate(step);
-    } else if (link->knocks % KNOCKS_ROUND == 0U) {
-        knock(step, link->good_rate, link->config.stream);
-    } else {
-        knock(step, link->config.first_rate, SCIP_SWITCH);
-    }
+    set_rate(step, step->link->good_rate);
+    set_status(step, URG_LOST);
+    expect_reply(step, step->link->config.stream);
+    step->link->timeout_us = timeout_us;
+    step->link->knocking = true;
+    step->link->listening = true;
 }
 
 /* Something that is no answer was heard at the first rate: the stream, most likely. It needs no command. */
 static void listen_to_stream(const step_t *step)
 {
-    set_rate(step, step->link->good_rate);
-    expect_reply(step, step->link->config.stream);
-    step->link->timeout_us = LISTEN_US;
+    listen(step, LISTEN_US);
+}
+
+/* By how much the time of the next frame may be wrong. */
+static uint32_t phase_us(const step_t *step)
+{
+    return PHASE_US + (step->now_us - step->link->frame_us) / DRIFT;
+}
+
+/* Time of a period in which no frame is on the line; 0 when too short, or unknown. */
+static uint32_t free_us(const step_t *step)
+{
+    const uint32_t busy_us = frame_us(step->link) + 2U * phase_us(step);
+    const uint32_t period_us = scan_period_us(step->link);
+    return step->link->timed && busy_us + TURN_US <= period_us ? period_us - busy_us : 0U;
+}
+
+static uint32_t turn_us(uint32_t left_us)
+{
+    return left_us > TURN_US ? left_us : TURN_US;
+}
+
+/* With what is left of the time without frames. */
+static void visit(const step_t *step, uint32_t left_us)
+{
+    const uint32_t rate = step->link->config.first_rate;
+    knock(step, rate, SCIP_SWITCH, turn_us(left_us < VISIT_US ? left_us : VISIT_US));
+}
+
+/* At the first rate while no frame of the stream can come, else at the stream's; never twice at the latter.
+ */
+static void take_turn(const step_t *step)
+{
+    const urg_link_t *link = step->link;
+    const bool was_listening = link->listening && link->timeout_us < LISTEN_US;
+    const uint32_t period_us = scan_period_us(link);
+    const uint32_t gap_us = free_us(step);
+    const uint32_t past_us = (step->now_us - link->frame_us + period_us - phase_us(step)) % period_us;
+    const uint32_t left_us = period_us - past_us;
+    if (was_listening || past_us + TURN_US <= gap_us) {
+        visit(step, past_us < gap_us ? gap_us - past_us : 0U);
+    } else {
+        listen(step, left_us < TURN_US / 2U ? left_us + period_us : turn_us(left_us));
+    }
+}
+
+/* At the first rate it is the stream, most likely; at the stream's rate, the answer to SCIP2.0. */
+static bool hears_other_rate(const step_t *step)
+{
+    return step->link->knocking && wrong_rate(step, STREAM_SIGNS);
+}
+
+/* After 1, 2, 4 and 8 s without a scan. */
+static bool is_request_due(const step_t *step)
+{
+    urg_link_t *link = step->link;
+    const bool due = step->now_us - link->scan_us >= link->request_us;
+    link->request_us *= due ? 2U : 1U;
+    return due;
+}
+
+static void knock_next(const step_t *step)
+{
+    const urg_link_t *link = step->link;
+    const uint32_t first_rate = link->config.first_rate;
+    if (link->good_rate == first_rate || is_request_due(step)) {
+        knock_at_stream_rate(step);
+    } else if (link->command == link->config.stream && hears_other_rate(step)) {
+        knock(step, first_rate, SCIP_SWITCH, FIRST_REPLY_US);
+    } else if (free_us(step) == 0U) {
+        knock(step, first_rate, SCIP_SWITCH, KNOCK_US);
+    } else {
+        take_turn(step);
+    }
+}
+
+/* A sensor that has told of trouble needs the request, and so does one at the end of a counted run. Any other
+ * may stream still, and the request would cost a frame; its next one may be on the line now. */
+static void begin_search(const step_t *step)
+{
+    if (step->link->timeout_us == 0U || step->link->config.range.scans != 0U) {
+        knock_at_stream_rate(step);
+    } else if (step->seen->octet_count != step->link->seen.octet_count) {
+        listen_to_stream(step);
+    } else {
+        knock_next(step);
+    }
 }
 
 static bool knows_rate(const step_t *step)
@@ -252,17 +346,35 @@ static bool heard_clean(const step_t *step)
     return step->seen->octet_count != step->link->sent_octets && !wrong_rate(step, 1U);
 }
 
-/* What is heard clean at the stream's rate and is no scan may be the stream of a request that was damaged on
- * its way: the next request mends it. */
+/* Octets at the stream's rate, but no scan: the end of a frame, whose next one comes. After a whole
+ * revolution it may be the stream of a request that was damaged on its way: the next request mends it. */
+static void hear_on(const step_t *step)
+{
+    if (step->link->listening && step->link->timeout_us == LISTEN_US) {
+        knock_at_stream_rate(step);
+    } else {
+        listen_to_stream(step);
+    }
+}
+
 static void search_on(const step_t *step)
 {
     urg_link_t *link = step->link;
     if (!knows_rate(step)) {
         probe(step, next_probe(link, probe_index(link, link->rate)));
     } else if (link->rate == link->good_rate && heard_clean(step)) {
-        knock_at_stream_rate(step);
+        hear_on(step);
     } else {
         knock_next(step);
+    }
+}
+
+static void change_rate(const step_t *step)
+{
+    if (step->link->command == SCIP_SWITCH) {
+        listen_to_stream(step);
+    } else {
+        search_on(step);
     }
 }
 
@@ -281,10 +393,10 @@ static void stop_sensor(const step_t *step)
     start_command(step, URG_STOP2, SCIP_STOP);
 }
 
-/* A sensor that was in SCIP1.1 just now does not stream: after a loss there is no need to stop it first. */
+/* After a loss there is no need to stop the sensor first: what it may stream is what it is asked for. */
 static void stop_or_stream(const step_t *step)
 {
-    if (step->link->is_idle && step->link->good_rate != 0U) {
+    if (step->link->good_rate != 0U) {
         start_command(step, URG_STREAM, step->link->config.stream);
     } else {
         stop_sensor(step);
@@ -353,7 +465,6 @@ static bool is_refusal(const scip_reply_t *reply)
 static void on_switch_reply(const step_t *step)
 {
     const scip_reply_t *reply = &step->seen->reply;
-    step->link->is_idle = reply->legacy;
     if (!reply->legacy || reply->status[0] == (octet_t)'0') {
         rate_or_stop(step);
     }
@@ -364,7 +475,8 @@ static void on_rate_reply(const step_t *step)
     urg_link_t *link = step->link;
     const scip_reply_t *reply = &step->seen->reply;
     if (is_status(reply, '0', '0') || is_status(reply, '0', '3')) {
-        link->waiting = false; /* the own UART follows at the next step */
+        link->waiting = false; /* the own UART follows */
+        link->sent_us = step->now_us;
     } else if (is_refusal(reply) && link->attempt == 1U) {
         repeat_command(step);
     } else {
@@ -517,22 +629,18 @@ static bool is_silent(const step_t *step)
            (guessing && wrong_rate(step, WRONG_RATE_SIGNS));
 }
 
-static bool hears_stream(const step_t *step)
-{
-    const urg_link_t *link = step->link;
-    return link->knocking && link->command == SCIP_SWITCH && wrong_rate(step, STREAM_SIGNS);
-}
-
 /* ---- the states ---- */
 
 static void on_scan(const step_t *step)
 {
     urg_link_t *link = step->link;
     set_status(step, URG_OK);
+    link->knocking = false;
     link->failures = 0U;
-    link->knocks = 0U;
+    link->request_us = REQUEST_US;
     link->good_rate = link->rate;
     link->scan_us = step->now_us;
+    link->frame_us = link->timed ? link->frame_us : step->now_us;
     link->timeout_us = scan_timeout_us(link);
     if (link->config.range.scans != 0U && step->seen->scan_remaining == 0U) {
         send_command(step, link->config.stream);
@@ -547,22 +655,30 @@ static void cycle_power_in_time(const step_t *step)
     }
 }
 
+/* The sensor needs some time to change its rate. */
+static void follow_rate(const step_t *step)
+{
+    if (step->now_us - step->link->sent_us >= SETTLE_RATE_US) {
+        set_rate(step, step->link->config.stream_rate);
+        stop_or_stream(step);
+    }
+}
+
 static void step_dialogue(const step_t *step)
 {
     urg_link_t *link = step->link;
     const urg_seen_t *seen = step->seen;
     cycle_power_in_time(step);
     if (!link->waiting) {
-        set_rate(step, link->config.stream_rate);
-        stop_or_stream(step);
+        follow_rate(step);
     } else if (seen->scan_count != link->seen.scan_count && link->command == link->config.stream) {
         on_scan(step);
     } else if (seen->reply_count != link->seen.reply_count && seen->reply_kind == link->command) {
         on_reply(step);
     } else if (seen->legacy_count != link->seen.legacy_count) {
         on_legacy(step);
-    } else if (hears_stream(step)) {
-        listen_to_stream(step);
+    } else if (hears_other_rate(step)) {
+        change_rate(step);
     } else if (is_silent(step)) {
         on_silence(step);
     }
@@ -604,7 +720,7 @@ static void step_stream(const step_t *step)
     }
     if (step->now_us - link->scan_us >= link->timeout_us) {
         link->restarts++;
-        knock_at_stream_rate(step);
+        begin_search(step);
     }
 }
 
@@ -662,7 +778,30 @@ bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us
     *link = (urg_link_t){
         .config = *config, .status = URG_WAIT, .since_us = now_us, .rate = config->first_rate};
     link->scan_octets = stream.scan_octets;
+    link->pause_us = URG_STEP_US;
     return true;
+}
+
+void urg_link_scan_at(urg_link_t *link, uint32_t now_us)
+{
+    link->frame_us = now_us;
+    link->timed = true;
+}
+
+uint32_t urg_link_pause_us(const urg_link_t *link)
+{
+    return link->pause_us;
+}
+
+/* While the sensor is searched: to the end of the turn, or shorter where answers may come. */
+static uint32_t pause_us(const step_t *step)
+{
+    const urg_link_t *link = step->link;
+    const uint32_t left_us = link->timeout_us - (step->now_us - link->sent_us);
+    if (link->good_rate == 0U || link->status == URG_OK) {
+        return URG_STEP_US;
+    }
+    return link->knocking && left_us < 2U * TURN_US ? turn_us(left_us) : URG_SEARCH_STEP_US;
 }
 
 void urg_link_step(urg_link_t *link, const urg_seen_t *seen, uint32_t now_us, urg_action_t *action)
@@ -680,6 +819,7 @@ void urg_link_step(urg_link_t *link, const urg_seen_t *seen, uint32_t now_us, ur
         step_dialogue(&step);
         break;
     }
+    link->pause_us = pause_us(&step);
     link->seen = *seen;
     action->rate = link->rate;
 }

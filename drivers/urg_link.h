@@ -1,17 +1,17 @@
 /* State machine that brings the URG-04LX from power-up to a stream of scans, and back to it after any loss.
- * It has no clock, port or task. The caller steps it every 150 ms with what was received; each step returns
- * an action.
+ * It has no clock, port or task. The caller steps it every 150 ms, or when urg_link_pause_us() has passed,
+ * with what was received; each step returns an action.
  *
  *   WAIT -> STOP1 (L0) -> SWITCH (SCIP2.0) -> RATE (SS) -> STOP2 (QT) -> STREAM (MS) -> OK
  *
  * Each command has a time-out and is repeated until the sensor confirms it. The board's UART changes to a new
- * rate one step after the sensor's reply.
+ * rate 90 ms after the sensor's reply or later.
  *
  * The link assumes nothing about the sensor's state. The sensor answers QT in every state: SCIP2.0 "00",
  * streaming "00" after the present frames, time mode "0E", SCIP1.1 "E". So when the sensor is lost, the link
  * sends QT at one rate after the other, without end. When the sensor answers but sends no scans: QT and MS
- * again, then TM2, then RS. For the first 12 s after a stream stops, each step sends MS at the stream's rate
- * or SCIP2.0 at the first rate.
+ * again, then TM2, then RS. For the first 12 s after a stream stops, it listens at the stream's rate, and
+ * between the frames it sends SCIP2.0 at the first rate.
  *
  * Pure; the caller owns the state. Context: Task (TaskSendLaser). Times are in microseconds and wrap; two
  * steps must be less than 35 minutes apart. */
@@ -27,6 +27,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+#define URG_STEP_US 150000U       /* the seed's tick of 150 ms */
+#define URG_SEARCH_STEP_US 50000U /* chosen: half a revolution */
 
 /* State of the link, the seed's LASER_STATUS; shown in the telemetry. */
 typedef enum {
@@ -95,14 +98,17 @@ typedef struct {
     scip_kind_t command;  /* latest command */
     bool waiting;         /* the link waits for the reply to a command */
     bool rate_refused;    /* the sensor refused stream_rate: keep the present rate */
-    bool is_idle;         /* the sensor does not stream: it was in SCIP1.1 when SCIP2.0 was sent */
     bool line_unknown;    /* the sensor may hold an incomplete line: send LF before the next command */
     uint16_t scan_octets; /* length of one frame of the stream */
     uint32_t sent_octets; /* counter of octets when the latest command was sent */
     uint32_t sent_signs;  /* counter of signs of a wrong rate at that time */
     uint32_t good_rate;   /* rate at which scans were received; 0: none yet */
+    uint32_t frame_us;    /* time of the latest scan: as told, else that of the step which has seen it */
+    uint32_t pause_us;    /* until the next step */
+    bool timed;           /* the caller tells the times of the scans */
     bool knocking;        /* the present command is part of the search at the known rates */
-    uint16_t knocks;      /* number of commands of that search since the latest scan */
+    bool listening;       /* it is at the stream's rate, and no command was sent */
+    uint32_t request_us;  /* time without scans after which the stream is requested again */
     urg_seen_t seen;      /* what was received up to the previous step */
 } urg_link_t;
 
@@ -119,6 +125,15 @@ void urg_seen_event(urg_seen_t *seen, const scip_parser_t *parser, scip_event_t 
 /* One step. seen: everything received up to now_us, with the present counters of octets and framing errors.
  * Always writes *action. */
 void urg_link_step(urg_link_t *link, const urg_seen_t *seen, uint32_t now_us, urg_action_t *action);
+
+/* The latest scan was complete at this time. Not needed, but scans come at equal distances: who tells it
+ * makes the link listen at the right moments while it searches. Call it for every scan or for none. */
+void urg_link_scan_at(urg_link_t *link, uint32_t now_us);
+
+/* How long the caller may wait until the next step: URG_STEP_US; while a sensor that has streamed is
+ * searched, 40 to 80 ms. Who always waits URG_STEP_US loses a few tenths of a second there, and nothing else.
+ */
+uint32_t urg_link_pause_us(const urg_link_t *link);
 
 #ifdef __cplusplus
 }

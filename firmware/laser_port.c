@@ -28,6 +28,7 @@ static Semaphore_Handle laser_ready;
 static void scan_done(void)
 {
     scan_arrival_us = bsp_time_us();
+    urg_scan_at(&urg, scan_arrival_us);
     monitor_released(MONITOR_RECEIVE_LASER, scan_arrival_us);
     Swi_post(laser_swi);
 }

@@ -17,6 +17,8 @@
 #define CONTROL_PERIOD_MS 108U  /* release FREE */
 #define CONTROL_TIMEOUT_MS 150U /* TaskControl runs at least this often, with any RELEASE */
 #define SEND_LASER_PERIOD_MS 150U
+#define SEND_LASER_TICK_MS 10U   /* of its Clock */
+#define SEND_LASER_SEARCH_MS 40U /* shortest distance, while a lost scanner is searched: urg_pause_us() */
 #define SEND_COMM_PERIOD_MS 200U
 
 /* Deadlines, counted from the release. For a sporadic task: its shortest distance between two releases. */

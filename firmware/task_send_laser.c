@@ -14,21 +14,30 @@
 #include "firmware/tasks.h"
 #include "bsp/timebase.h"
 
+#define PERIOD_TICKS (SEND_LASER_PERIOD_MS / SEND_LASER_TICK_MS)
+#define TICK_US (1000U * SEND_LASER_TICK_MS)
+
 static Semaphore_Handle tick;
+static volatile uint16_t ticks_left; /* until the next release */
 
 static Void release(UArg unused)
 {
     (void)unused;
+    ticks_left--;
+    if (ticks_left > 0U) {
+        return;
+    }
+    ticks_left = PERIOD_TICKS;
     monitor_released(MONITOR_SEND_LASER, bsp_time_us());
     Semaphore_post(tick);
 }
 
+/* Blinks at the pace of the period, also while steps are more frequent. */
 static void show(urg_status_t status)
 {
-    static bool on;
+    const bool odd = (bsp_time_us() / (1000UL * SEND_LASER_PERIOD_MS)) % 2U != 0U;
 
-    on = (status == URG_OK) || !on;
-    bsp_led_blue(on);
+    bsp_led_blue(status == URG_OK || odd);
     bsp_led_red(status == URG_LOST);
 }
 
@@ -44,6 +53,16 @@ static void publish(const urg_report_t *urg)
     laser_server_write(&sample);
 }
 
+/* Earlier than the period, while the driver asks for it. */
+static void release_after(uint32_t pause_us)
+{
+    const uint16_t ticks = (uint16_t)((pause_us + TICK_US - 1U) / TICK_US);
+
+    if (ticks < PERIOD_TICKS) {
+        ticks_left = ticks;
+    }
+}
+
 static Void task_send_laser(UArg unused0, UArg unused1)
 {
     static laser_statistics_t statistics;
@@ -54,6 +73,7 @@ static Void task_send_laser(UArg unused0, UArg unused1)
         (void)Semaphore_pend(tick, BIOS_WAIT_FOREVER);
         monitor_begin(MONITOR_SEND_LASER);
         laser_port_step(&statistics);
+        release_after(statistics.urg.pause_us);
         publish(&statistics.urg);
         show(statistics.urg.status);
         monitor_done(MONITOR_SEND_LASER);
@@ -71,9 +91,10 @@ void task_send_laser_create(void)
     semaphore.mode = Semaphore_Mode_BINARY;
     tick = Semaphore_create(0, &semaphore, NULL);
     Clock_Params_init(&clock);
-    clock.period = SEND_LASER_PERIOD_MS;
+    ticks_left = PERIOD_TICKS;
+    clock.period = SEND_LASER_TICK_MS;
     clock.startFlag = TRUE;
-    (void)Clock_create(release, SEND_LASER_PERIOD_MS, &clock, NULL);
+    (void)Clock_create(release, SEND_LASER_TICK_MS, &clock, NULL);
     Task_Params_init(&task);
     task.instance->name = "TaskSendLaser";
     task.priority = TASK_SEND_LASER_PRIORITY;

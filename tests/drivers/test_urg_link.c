@@ -601,16 +601,19 @@ void test_a_mute_sensor_is_noticed_within_600_ms_and_not_before_450(void)
     TEST_ASSERT_EQUAL_UINT32(1, link_.restarts);
 }
 
-void test_a_stream_that_stopped_is_started_again_at_the_same_rate(void)
+void test_a_stream_that_stopped_is_started_again_at_the_same_rate_within_1_5_s(void)
 {
     steps_to_ok();
     steps(20);
     sensor.streaming = false;
-    uint32_t before = asked_count;
-    steps(10);
-    TEST_ASSERT_EQUAL(URG_OK, link_.status);
-    TEST_ASSERT_EQUAL_UINT(before + 1, asked_count);
-    TEST_ASSERT_EQUAL_STRING("\nMS0372040601000\n", asked[before].text);
+    step();
+    const uint32_t scans = seen.scan_count, stops = times_asked("QT");
+    for (uint32_t i = 0; i < 10 && seen.scan_count == scans; i++) {
+        step();
+    }
+    TEST_ASSERT_GREATER_THAN_UINT32(scans, seen.scan_count);
+    TEST_ASSERT_EQUAL_UINT(2, times_asked("MS"));
+    TEST_ASSERT_EQUAL_UINT(stops, times_asked("QT"));
     TEST_ASSERT_EQUAL_UINT16(0, link_.failures);
 }
 
@@ -676,20 +679,30 @@ void test_a_stream_that_is_only_out_of_hearing_is_not_stopped(void)
     }
 }
 
-/* Both known rates have their turns before any other has one. */
+/* Before any other rate has a turn: for a restarted sensor at the first rate; after 1, 2, 4 and 8 s by a
+ * request at the stream's. */
 void test_a_lost_sensor_is_first_looked_for_where_it_can_be(void)
 {
     steps_to_ok();
     steps(10);
     sensor.on = false;
     uint32_t begin = asked_count;
+    const uint32_t lost_step = step_number;
     steps(75);
+    uint32_t requests_ms[9] = {0}, requests = 0;
     for (uint32_t i = begin; i < asked_count; i++) {
-        const bool at_stream_rate = (i - begin) % 6 == 0;
+        const bool at_stream_rate = asked[i].text[1] == 'M';
         assert_asked(i, at_stream_rate ? "\nMS0372040601000\n" : "\nSCIP2.0\n", asked[i].step,
                      at_stream_rate ? 250000 : 115200, URG_LOST);
+        if (at_stream_rate) {
+            requests_ms[requests++] = (asked[i].step - lost_step) * STEP_MS;
+        }
     }
     TEST_ASSERT_GREATER_THAN_UINT(60, asked_count - begin);
+    TEST_ASSERT_EQUAL_UINT(4, requests);
+    for (uint32_t i = 0; i < 4; i++) {
+        TEST_ASSERT_UINT_WITHIN(STEP_MS, (1000U << i) + STEP_MS / 2, requests_ms[i]);
+    }
     begin = asked_count;
     steps(30);
     TEST_ASSERT_EQUAL_STRING("\nQT\n", asked[asked_count - 1].text);
@@ -817,7 +830,10 @@ void test_a_sensor_that_answers_but_does_not_scan_climbs_the_ladder(void)
     sensor.streams = false;
     sensor.streaming = false;
     uint32_t begin = asked_count;
-    steps(30);
+    steps(40);
+    while (asked[begin].text[1] != 'M') {
+        begin++;
+    }
     static const char *const ladder[] = {"\nMS0372040601000\n",
                                          "\nQT\n",
                                          "MS0372040601000\n",
@@ -1268,7 +1284,7 @@ void test_every_time_out_is_what_the_octets_and_the_revolutions_take(void)
     TEST_ASSERT_EQUAL(URG_OK, link_.status);
     nothing_after(1U);
     TEST_ASSERT_EQUAL(URG_LOST, link_.status);
-    TEST_ASSERT_EQUAL_UINT32(280000, link_.timeout_us);
+    TEST_ASSERT_EQUAL_UINT32(130000, link_.timeout_us);
     TEST_ASSERT_EQUAL_UINT32(NEXT_SCAN_US, reply_after(STEP_US, SCIP_STREAM_2, "00", false));
     TEST_ASSERT_EQUAL(URG_STREAM, link_.status);
     scan_after(STEP_US);
@@ -1308,11 +1324,11 @@ void test_the_search_after_a_second_loss_is_that_after_the_first(void)
 }
 
 /* What is heard while SCIP2.0 is tried at the first rate: two signs may be noise, three are the stream. */
-void test_signs_of_the_stream_lead_back_to_its_rate_for_two_steps(void)
+void test_signs_of_the_stream_lead_back_to_its_rate_for_a_revolution(void)
 {
     stream_every_fourth();
     nothing_after(NEXT_SCAN_US);
-    nothing_after(279999);
+    nothing_after(129999);
     TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
     nothing_after(1);
     TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
@@ -1324,22 +1340,21 @@ void test_signs_of_the_stream_lead_back_to_its_rate_for_two_steps(void)
     nothing_after(1);
     TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
     TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
-    TEST_ASSERT_EQUAL_UINT32(280000, link_.timeout_us);
+    TEST_ASSERT_EQUAL_UINT32(160000, link_.timeout_us);
     TEST_ASSERT_FALSE(action.send);
-    nothing_after(280000);
+    nothing_after(160000);
     TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
     nothing_after(1); /* the signs before it count no more */
     TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
 }
 
-/* After a loss: a sensor that was in SCIP1.1 does not stream, another one may. */
-void test_only_a_sensor_that_may_stream_is_stopped_first(void)
+/* What it may stream is what it is asked for. */
+void test_after_a_loss_no_sensor_is_stopped_first(void)
 {
     static const struct {
         const char *status;
         bool legacy;
-        scip_kind_t next;
-    } answers[] = {{"0", true, SCIP_STREAM_2}, {"0E", false, SCIP_STOP}};
+    } answers[] = {{"0", true}, {"0E", false}};
     for (uint32_t i = 0; i < 2; i++) {
         stream_every_fourth();
         nothing_after(NEXT_SCAN_US);
@@ -1349,7 +1364,7 @@ void test_only_a_sensor_that_may_stream_is_stopped_first(void)
         (void)reply_after(STEP_US, SCIP_BIT_RATE, "00", false);
         nothing_after(STEP_US);
         TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
-        TEST_ASSERT_EQUAL(answers[i].next, link_.command);
+        TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
     }
 }
 
@@ -1476,27 +1491,29 @@ void test_a_sensor_that_starts_slowly_is_given_three_seconds_from_the_third_fail
     }
 }
 
-/* A command that was damaged on its way made it stream something else: the next order mends that. */
-void test_octets_that_are_no_scan_at_the_streams_rate_are_answered_by_the_order(void)
+/* They may be the end of a frame: the next one comes within a revolution. If none does, a command that was
+ * damaged on its way made the sensor stream something else: the next request mends that. */
+void test_octets_that_are_no_scan_at_the_streams_rate_are_answered_by_a_request_a_revolution_later(void)
 {
     stream_every_fourth();
     nothing_after(NEXT_SCAN_US);
-    for (uint32_t i = 0; i < 5; i++) {
-        TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
-        TEST_ASSERT_TRUE(action.send);
-        seen.octet_count += 101;
-        nothing_after(STEP_US);
-        TEST_ASSERT_FALSE(action.send);
-        nothing_after(STEP_US);
-        TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
-    }
+    TEST_ASSERT_TRUE(action.send);
+    seen.octet_count += 100;
+    nothing_after(130000);
+    TEST_ASSERT_FALSE(action.send);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(160000, link_.timeout_us);
+    seen.octet_count += 100;
+    nothing_after(160000);
+    TEST_ASSERT_TRUE(action.send);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
     seen.octet_count += 101;
     seen.framing_count++;
-    nothing_after(2 * STEP_US);
+    nothing_after(130000);
     TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
     TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
     seen.octet_count += 101;
-    nothing_after(STEP_US);
+    nothing_after(130000);
     TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
 }
 
@@ -1505,14 +1522,14 @@ void test_a_rate_that_is_not_confirmed_after_a_loss_leads_back_to_the_known_rate
 {
     stream_every_fourth();
     nothing_after(NEXT_SCAN_US);
-    nothing_after(2 * STEP_US);
+    nothing_after(130000);
     (void)reply_after(STEP_US, SCIP_SWITCH, "0", true);
     TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
     nothing_after(500000);
     TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
     TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
-    TEST_ASSERT_EQUAL_UINT32(280000, link_.timeout_us);
-    nothing_after(2 * STEP_US);
+    TEST_ASSERT_EQUAL_UINT32(130000, link_.timeout_us);
+    nothing_after(130000);
     TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
     TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
 }
@@ -1623,4 +1640,180 @@ void test_after_a_reset_the_sensor_is_looked_for_at_the_first_rate(void)
     (void)reply_after(STEP_US, SCIP_RESET, "00", false);
     TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
     TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+}
+
+/* ---- the search between the frames of a sensor that may stream still ---- */
+
+#define REVOLUTION_US 100000U
+#define FRAME_US (101U * 41U)
+#define PHASE_US \
+    15000U /* by which a frame may be early or late, and by a part in 512 of the time since the latest */
+
+/* To a stream of every revolution, whose scans are told with their times. */
+static void stream_in_time(void)
+{
+    reset(0);
+    steps_to_ok();
+    TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_));
+    seen.scan_count++;
+    urg_link_scan_at(&link_, now_us);
+    nothing_after(20000);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
+}
+
+static void next_step(void)
+{
+    nothing_after(urg_link_pause_us(&link_));
+}
+
+static void lose(void)
+{
+    while (link_.status == URG_OK) {
+        next_step();
+    }
+}
+
+void test_the_first_rate_is_tried_while_no_frame_can_come_and_in_every_revolution(void)
+{
+    for (uint32_t late_us = 0; late_us <= 10000; late_us += 2500) {
+        uint32_t visits = 0, listened = 0, begun_us;
+        stream_in_time();
+        const uint32_t scan_us = link_.frame_us;
+        nothing_after(late_us);
+        lose();
+        begun_us = now_us;
+        while (now_us - scan_us < 6000000) { /* later the guards leave less than 40 ms */
+            const uint32_t pause_us = urg_link_pause_us(&link_), since_us = now_us - scan_us;
+            const uint32_t guard_us = PHASE_US + (since_us - REVOLUTION_US) / 512; /* of the turn before */
+            const uint32_t next_us = (since_us / REVOLUTION_US + 1) * REVOLUTION_US;
+            TEST_ASSERT_UINT_WITHIN(20000, 60000, pause_us); /* 40 to 80 ms */
+            if (link_.rate == 115200) {
+                TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+                TEST_ASSERT_GREATER_OR_EQUAL_UINT32(guard_us, since_us % REVOLUTION_US);
+                TEST_ASSERT_LESS_OR_EQUAL_UINT32(next_us - guard_us / 2 - FRAME_US, since_us + pause_us);
+                visits++;
+                listened = 0;
+            } else if (!action.send && link_.timeout_us < 100000) {
+                listened++;
+            }
+            TEST_ASSERT_LESS_THAN_UINT32(3, listened); /* steps, of one turn */
+            next_step();
+        }
+        TEST_ASSERT_GREATER_OR_EQUAL_UINT32((now_us - begun_us) * 8 / 10 / REVOLUTION_US, visits);
+    }
+}
+
+/* Time by time: the first scans of a search are those of a sensor that streams on. */
+void test_where_times_are_unknown_or_frames_leave_no_time_the_first_rate_has_most_of_it(void)
+{
+    static const uint16_t last_steps[] = {372 + 270, 372 + 360};
+    static const uint32_t visits_us[] = {60000, 130000};
+    stream_in_time();
+    link_.timed = false;
+    lose();
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    TEST_ASSERT_EQUAL_UINT32(130000, link_.timeout_us);
+    TEST_ASSERT_EQUAL_UINT32(50000, urg_link_pause_us(&link_));
+    for (uint32_t i = 0; i < 2; i++) {
+        stream_in_time();
+        link_.config.range.last_step = last_steps[i];
+        link_.scan_octets = i == 0 ? 630U : 725U; /* at 250000: 26 and 30 ms, of 100 - 40 - 2 * 15 */
+        lose();
+        while (link_.rate == 250000) {
+            next_step();
+        }
+        TEST_ASSERT_LESS_OR_EQUAL_UINT32(visits_us[i], link_.timeout_us);
+        TEST_ASSERT_EQUAL(i == 1, link_.timeout_us == 130000);
+    }
+}
+
+void test_an_answer_that_comes_late_is_heard_as_signs_of_another_rate_and_waited_for_at_the_first(void)
+{
+    stream_in_time();
+    lose();
+    while (link_.rate != 115200) {
+        next_step();
+    }
+    next_step();
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    seen.framing_count += 2;
+    nothing_after(1);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    seen.framing_count++;
+    nothing_after(1);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(400000, link_.timeout_us);
+    TEST_ASSERT_EQUAL_UINT32(50000, urg_link_pause_us(&link_));
+    seen.octet_count += 11;
+    (void)reply_after(110000, SCIP_SWITCH, "0E", false);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+}
+
+void test_the_end_of_a_frame_leads_to_a_revolution_without_a_command(void)
+{
+    stream_in_time();
+    lose();
+    while (link_.rate != 250000) {
+        next_step();
+    }
+    seen.octet_count++;
+    next_step();
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    TEST_ASSERT_FALSE(action.send);
+    TEST_ASSERT_EQUAL_UINT32(160000, link_.timeout_us);
+    TEST_ASSERT_EQUAL_UINT32(50000, urg_link_pause_us(&link_));
+    scan_after(50000);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
+    TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_));
+}
+
+/* No request while the next frame comes; but one at once where the sensor has told of trouble. */
+void test_octets_at_the_moment_of_the_loss_are_heard_to_their_end(void)
+{
+    stream_in_time();
+    while (now_us - link_.scan_us < 300000) {
+        nothing_after(10000);
+    }
+    seen.octet_count++;
+    nothing_after(200000);
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
+    TEST_ASSERT_FALSE(action.send);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    TEST_ASSERT_EQUAL_UINT32(160000, link_.timeout_us);
+    stream_in_time();
+    seen.octet_count += 21;
+    seen.notice = (scip_reply_t){{'5', '0'}, false, 0};
+    seen.notice_count++;
+    nothing_after(50000);
+    TEST_ASSERT_TRUE(action.send);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+}
+
+void test_the_own_rate_follows_the_sensors_after_90_ms(void)
+{
+    stream_in_time();
+    lose();
+    while (link_.rate != 115200) {
+        next_step();
+    }
+    (void)reply_after(20000, SCIP_SWITCH, "0", true);
+    TEST_ASSERT_EQUAL_UINT32(50000, urg_link_pause_us(&link_));
+    (void)reply_after(20000, SCIP_BIT_RATE, "00", false);
+    nothing_after(89999);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    nothing_after(1);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+}
+
+/* The seed's tick, as long as no stream was lost. */
+void test_a_start_is_stepped_every_150_ms(void)
+{
+    reset(0);
+    while (link_.status != URG_OK) {
+        TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_));
+        step();
+    }
+    TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_));
 }

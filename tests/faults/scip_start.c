@@ -14,6 +14,7 @@
 #include "sim/timeline.h"
 
 #define STEP (150 * SIM_MS)
+#define TICK (10 * SIM_MS)
 #define PATIENCE (60 * SIM_S)
 #define NO_OCTET 0U
 
@@ -35,6 +36,7 @@ static struct {
     serial_t transmitter;
     double rate;
     bool listening;
+    bool plain; /* steps every 150 ms, tells no times of scans */
     urg_t urg;
     uint16_t points[2 * SCIP_LAYOUT_POINTS_MAX];
     urg_config_t config;
@@ -55,20 +57,27 @@ typedef struct {
     const char *name;
     uint32_t first_rate, stream_rate;
     scip_layout_id_t layout;
-    bool rounds_down;  /* the sensor makes no point of steps that fill no cluster */
-    double dialogue_s; /* the 60 octets of a start take so much longer than at 115200 */
+    bool rounds_down;               /* the sensor makes no point of steps that fill no cluster */
+    bool plain;                     /* the host steps every 150 ms and tells no times of scans */
+    double slower_s;                /* this host, or this sensor, takes so much longer */
+    sim_time_t latency, revolution; /* 0: the model's own */
 } line_t;
 
 static const line_t lines[] = {
-    {"front, 250000", 115200, 250000, SCIP_LAYOUT_FRONT, false, 0.0},
-    {"front, 115200 throughout", 115200, 115200, SCIP_LAYOUT_FRONT, false, 0.0},
-    {"front, 19200 throughout", 19200, 19200, SCIP_LAYOUT_FRONT, false, 0.026},
-    {"front, from 19200 to 57600", 19200, 57600, SCIP_LAYOUT_FRONT, false, 0.026},
-    {"front, from 57600 to 750000", 57600, 750000, SCIP_LAYOUT_FRONT, false, 0.0},
-    {"two beams, 250000", 115200, 250000, SCIP_LAYOUT_TWO_BEAMS, false, 0.0},
-    {"three mirrors, 250000", 115200, 250000, SCIP_LAYOUT_THREE_MIRRORS, false, 0.0},
-    {"three mirrors, 115200", 115200, 115200, SCIP_LAYOUT_THREE_MIRRORS, false, 0.0},
-    {"the same, points rounded down", 115200, 115200, SCIP_LAYOUT_THREE_MIRRORS, true, 0.0},
+    {"front, 250000", 115200, 250000, SCIP_LAYOUT_FRONT, .rounds_down = false},
+    {"front, 115200 throughout", 115200, 115200, SCIP_LAYOUT_FRONT, .rounds_down = false},
+    {"front, 19200 throughout", 19200, 19200, SCIP_LAYOUT_FRONT, .rounds_down = false},
+    {"front, from 19200 to 57600", 19200, 57600, SCIP_LAYOUT_FRONT, .rounds_down = false},
+    {"front, from 57600 to 750000", 57600, 750000, SCIP_LAYOUT_FRONT, .rounds_down = false},
+    {"two beams, 250000", 115200, 250000, SCIP_LAYOUT_TWO_BEAMS, .rounds_down = false},
+    {"three mirrors, 250000", 115200, 250000, SCIP_LAYOUT_THREE_MIRRORS, .rounds_down = false},
+    {"three mirrors, 115200", 115200, 115200, SCIP_LAYOUT_THREE_MIRRORS, .rounds_down = false},
+    {"the same, points rounded down", 115200, 115200, SCIP_LAYOUT_THREE_MIRRORS, .rounds_down = true},
+    {"front, steps of 150 ms only", 115200, 250000, SCIP_LAYOUT_FRONT, .plain = true, .slower_s = 0.2},
+    {"front, answers after 100 ms", 115200, 250000, SCIP_LAYOUT_FRONT, .latency = 100 * SIM_MS,
+     .slower_s = 0.2},
+    {"front, revolutions of 99.7 ms", 115200, 250000, SCIP_LAYOUT_FRONT, .revolution = 99700 * SIM_US},
+    {"front, revolutions of 100.9 ms", 115200, 250000, SCIP_LAYOUT_FRONT, .revolution = 100900 * SIM_US},
 };
 static const line_t *line = &lines[0];
 
@@ -110,6 +119,9 @@ static void check_scan(void)
         host.longest_gap = timeline_now() - host.latest_scan;
     }
     host.latest_scan = timeline_now();
+    if (!host.plain) {
+        urg_scan_at(&host.urg, (uint32_t)(timeline_now() / SIM_US));
+    }
     if (host.first_good == 0 && host.latest_scan >= host.good_from) {
         host.first_good = host.latest_scan;
     }
@@ -125,13 +137,21 @@ static void hear(octet_t octet)
     }
 }
 
+/* To the next step, by a clock that ticks every 10 ms; or always the same. */
+static sim_time_t pause(void)
+{
+    const sim_time_t wanted = (sim_time_t)urg_pause_us(&host.urg) * SIM_US;
+
+    return host.plain ? STEP : (wanted + TICK - 1) / TICK * TICK;
+}
+
 static void step(void *context)
 {
     urg_output_t output;
 
     (void)context;
-    host.step = timeline_after(STEP, step, NULL);
     urg_step(&host.urg, (uint32_t)(timeline_now() / SIM_US));
+    host.step = timeline_after(pause(), step, NULL);
     if (!urg_next_to_send(&host.urg, &output)) {
         return;
     }
@@ -282,8 +302,11 @@ static void power_up_with(double rate, sim_time_t boot)
     config.boot = boot;
     config.phase = 13 * SIM_MS;
     config.rounds_down = line->rounds_down;
+    config.latency = line->latency != 0 ? line->latency : config.latency;
+    config.revolution = line->revolution != 0 ? line->revolution : config.revolution;
     timeline_reset();
     memset(&host, 0, sizeof host);
+    host.plain = line->plain;
     host.sensor = urg04lx_create(&config, look, NULL, to_host, NULL);
     serial_init(&host.transmitter, rate, to_sensor, NULL);
     urg04lx_power(host.sensor, true);
@@ -508,10 +531,10 @@ typedef struct {
 } trouble_t;
 
 static const trouble_t troubles[] = {
-    {"the line is out, both ways", {.from_sensor = true, .from_host = true}, false, 0.5},
-    {"from the sensor only", {.from_sensor = true}, false, 0.5},
-    {"both ways, and noise", {.from_sensor = true, .from_host = true, .noise = true}, false, 0.5},
-    {"the sensor restarts and boots", {.from_sensor = false}, true, 1.0},
+    {"the line is out, both ways", {.from_sensor = true, .from_host = true}, false, 0.35},
+    {"from the sensor only", {.from_sensor = true}, false, 0.35},
+    {"both ways, and noise", {.from_sensor = true, .from_host = true, .noise = true}, false, 0.45},
+    {"the sensor restarts and boots", {.from_sensor = false}, true, 0.85},
 };
 
 static void begin_outage(const trouble_t *trouble, sim_time_t length)
@@ -559,8 +582,7 @@ static double worst_blind_s(const trouble_t *trouble, sim_time_t length)
     for (unsigned phase = 0; phase < OUTAGE_PHASES; phase++) {
         worst = fmax(worst, blind_s(trouble, length, phase));
     }
-    holds = holds &&
-            worst <= (double)length / 1e9 + trouble->most_s + (trouble->restart ? line->dialogue_s : 0.0);
+    holds = holds && worst <= (double)length / 1e9 + trouble->most_s + line->slower_s;
     return worst;
 }
 
@@ -637,8 +659,8 @@ static const misfortune_t misfortunes[] = {
     {"three outages of 0.3 s, 0.1 s between", BOTH_WAYS, 3, 300 * SIM_MS, 100 * SIM_MS, 0, {0}, false, 0.5},
     {"three of 0.7 s, 0.3 s between", BOTH_WAYS, 3, 700 * SIM_MS, 300 * SIM_MS, 0, {0}, false, 0.5},
     {"three of 2 s, 0.6 s between", BOTH_WAYS, 3, 2 * SIM_S, 600 * SIM_MS, 0, {0}, false, 0.5},
-    {"1 s of garbled octets", GARBLED, 1, SIM_S, 0, 0, {0}, false, 0.5},
-    {"4 s of garbled octets", GARBLED, 1, 4 * SIM_S, 0, 0, {0}, false, 0.5},
+    {"1 s of garbled octets", GARBLED, 1, SIM_S, 0, 0, {0}, false, 0.75},
+    {"4 s of garbled octets", GARBLED, 1, 4 * SIM_S, 0, 0, {0}, false, 0.75},
     {"four of 0.7 s garbled, 0.9 s between", GARBLED, 4, 700 * SIM_MS, 900 * SIM_MS, 0, {0}, false, 1.25},
     {"a restart in an outage of 1.5 s", BOTH_WAYS, 1, 1500 * SIM_MS, 0, 1, {400 * SIM_MS}, false, 1.0},
     {"a restart in an outage of 5 s", BOTH_WAYS, 1, 5 * SIM_S, 0, 1, {400 * SIM_MS}, false, 1.0},
@@ -650,7 +672,7 @@ static const misfortune_t misfortunes[] = {
      1,
      {600 * SIM_MS},
      false,
-     1.4},
+     1.0},
     {"garbled while it comes back", GARBLED, 2, 2 * SIM_S, 100 * SIM_MS, 1, {0}, false, 1.0},
     {"two restarts, 1 s between", {.from = 0}, 0, 0, 0, 2, {0, SIM_S}, false, 1.0},
     {"two restarts, 2.7 s between", {.from = 0}, 0, 0, 0, 2, {0, 2700 * SIM_MS}, false, 1.0},

@@ -13,6 +13,7 @@
 #include "unity.h"
 
 #define PERIOD_US 150000U
+#define TICK_US 10000U
 
 static uint32_t now_us;
 static laser_statistics_t receiving; /* as the port's step has it */
@@ -68,6 +69,7 @@ void setUp(void)
     now_us = 0xFFF00000U; /* wraps soon */
     (void)memset(&laser, 0, sizeof laser);
     (void)memset(&receiving, 0, sizeof receiving);
+    receiving.urg.pause_us = PERIOD_US;
     writes = 0U;
     blue = red = false;
     bsp_time_us_Stub(time_us);
@@ -86,11 +88,18 @@ void tearDown(void)
     kernel_check();
 }
 
+static void clock_ticks(uint16_t count)
+{
+    while (count-- > 0U) {
+        now_us += TICK_US;
+        kernel.clock.function(kernel.clock.params.arg);
+    }
+}
+
 static void tick(void)
 {
-    now_us += PERIOD_US;
     kernel.notes[0] = '\0';
-    kernel.clock.function(kernel.clock.params.arg);
+    clock_ticks(15U);
     kernel_run_task();
 }
 
@@ -101,14 +110,14 @@ static void ticks(uint16_t count)
     }
 }
 
-void test_create_makes_a_binary_tick_every_150_ms_and_one_task_of_priority_3(void)
+void test_create_makes_a_binary_semaphore_a_clock_of_10_ms_and_one_task_of_priority_3(void)
 {
     TEST_ASSERT_EQUAL_UINT16(1, kernel.semaphore.created);
     TEST_ASSERT_EQUAL(Semaphore_Mode_BINARY, kernel.semaphore.mode);
     TEST_ASSERT_EQUAL_INT(0, kernel.semaphore.count);
     TEST_ASSERT_EQUAL_UINT16(1, kernel.clock.created);
-    TEST_ASSERT_EQUAL_UINT(150, kernel.clock.timeout);
-    TEST_ASSERT_EQUAL_UINT32(150, kernel.clock.params.period);
+    TEST_ASSERT_EQUAL_UINT(10, kernel.clock.timeout);
+    TEST_ASSERT_EQUAL_UINT32(10, kernel.clock.params.period);
     TEST_ASSERT_TRUE(kernel.clock.params.startFlag);
     TEST_ASSERT_EQUAL_UINT16(1, kernel.task.created);
     TEST_ASSERT_EQUAL_STRING("TaskSendLaser", kernel.task.name);
@@ -116,8 +125,9 @@ void test_create_makes_a_binary_tick_every_150_ms_and_one_task_of_priority_3(voi
     TEST_ASSERT_EQUAL_UINT64(1024, kernel.task.params.stackSize);
 }
 
-void test_nothing_happens_before_the_first_tick(void)
+void test_nothing_happens_before_150_ms(void)
 {
+    clock_ticks(14U);
     kernel_run_task();
     TEST_ASSERT_EQUAL_STRING("pend ", kernel.notes);
 }
@@ -134,10 +144,46 @@ void test_each_tick_steps_and_publishes_once(void)
 
 void test_ticks_that_a_late_task_missed_are_not_made_up_for(void)
 {
-    kernel.clock.function(kernel.clock.params.arg);
-    kernel.clock.function(kernel.clock.params.arg);
+    clock_ticks(30U);
     kernel_run_task();
     TEST_ASSERT_EQUAL_UINT16(1, writes);
+}
+
+/* Up to the next tick of the clock. */
+static void assert_next_step_after(uint16_t count)
+{
+    const uint16_t before = writes;
+
+    clock_ticks((uint16_t)(count - 1U));
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_UINT16(before, writes);
+    clock_ticks(1U);
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_UINT16(before + 1U, writes);
+}
+
+void test_a_step_comes_earlier_while_the_driver_asks_for_it(void)
+{
+    tick();
+    assert_next_step_after(15U);
+    receiving.urg.pause_us = 40000U;
+    assert_next_step_after(15U);
+    assert_next_step_after(4U);
+    receiving.urg.pause_us = 40001U;
+    assert_next_step_after(4U);
+    assert_next_step_after(5U);
+    receiving.urg.pause_us = PERIOD_US;
+    assert_next_step_after(5U);
+    assert_next_step_after(15U);
+}
+
+void test_a_late_step_does_not_shift_the_150_ms(void)
+{
+    tick();
+    clock_ticks(15U);
+    clock_ticks(3U);
+    kernel_run_task();
+    assert_next_step_after(12U);
 }
 
 void test_the_blue_light_blinks_until_scans_arrive_and_then_stays_on(void)

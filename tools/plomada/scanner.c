@@ -7,7 +7,6 @@
 #include "drivers/urg.h"
 
 #define FIRST_RATE 115200UL
-#define STEP (150 * SIM_MS)
 #define ASK_PATIENCE SIM_S
 #define GAP_MS 1000U /* between two scans: the stream was lost */
 
@@ -72,7 +71,7 @@ static void step(void *context)
             send(output.octets, output.count);
         }
     }
-    timeline_after(STEP, step, context);
+    timeline_after((sim_time_t)urg_pause_us(&scanner.urg) * SIM_US, step, context);
 }
 
 static void keep_text(void)

@@ -193,7 +193,7 @@ void test_the_firmware_table_has_the_firmware_s_priorities_and_periods(void)
     expect_task("TaskIMU", TASK_IMU_PRIORITY, 25);
     expect_task("TaskReceiveLaser", TASK_RECEIVE_LASER_PRIORITY, 100);
     expect_task("TaskControl", TASK_CONTROL_PRIORITY, CONTROL_PERIOD_MS);
-    expect_task("TaskSendLaser", TASK_SEND_LASER_PRIORITY, SEND_LASER_PERIOD_MS);
+    expect_task("TaskSendLaser", TASK_SEND_LASER_PRIORITY, SEND_LASER_SEARCH_MS);
     expect_task("TaskSendComm", TASK_SEND_COMM_PRIORITY, SEND_COMM_PERIOD_MS);
     expect_task("TaskReceiveComm", TASK_RECEIVE_COMM_PRIORITY, 300);
     TEST_ASSERT_EQUAL_INT(SEED_TASKS, tasks);
