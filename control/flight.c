@@ -21,11 +21,12 @@
 #define STEP_MAX_S 0.5F       /* chosen: longer pauses count as this long */
 #define BLIND_MAX_S 60.0F     /* above DESCENT_TIMEOUT_US in supervisor.c */
 
-#define PIDT_WINDOW_N 3.0F /* chosen: 0.4 g to either side */
-#define SETTLE_S 0.6F      /* chosen: six scans; until then the estimate is copied */
-#define LIFTED_MPS 0.25F   /* chosen: above what a bias of 0.2 m/s2 makes on the ground */
-#define GAP_LONG_S 10.0F   /* chosen: longer gaps count as this long; integrity.c restarts after 1.5 s */
-#define LOW_MM 80.0F       /* chosen: above REST_BELOW_MM in supervisor.c, 50 mm */
+#define PIDT_WINDOW_N 3.0F  /* chosen: 0.4 g to either side */
+#define INSTEAD_SHARE 0.65F /* tried 0.6 to 1: of PIDT's gains, for vehicles that shake with them */
+#define SETTLE_S 0.6F       /* chosen: six scans; until then the estimate is copied */
+#define LIFTED_MPS 0.25F    /* chosen: above what a bias of 0.2 m/s2 makes on the ground */
+#define GAP_LONG_S 10.0F    /* chosen: longer gaps count as this long; integrity.c restarts after 1.5 s */
+#define LOW_MM 80.0F        /* chosen: above REST_BELOW_MM in supervisor.c, 50 mm */
 #define NO_AUTHORITY_WINDOW_N 0.6F /* chosen: 0.8 m/s2 */
 #define CARRIED_BELOW_N 0.5F       /* chosen: by the vehicle model a sink rate of 0.3 m/s */
 #define CARRIED_N_PER_S 0.06F      /* chosen: little, because the pilot may fly on for long */
@@ -46,9 +47,11 @@
 #define VAIN_LANDING_S 1.0F          /* chosen: twice as long as a landing begins with so little thrust */
 #define LANDS_MPS 0.3F               /* chosen: three quarters of the sink rate of a landing */
 #define UNKNOWN_REACH_M 0.06F        /* tried 0.05 to 0.09; asks for 0.8 N at the delivered gains */
-#define UNCONFIRMED_MPS 0.35F /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
-#define TAKEOFF_MPS 0.6F      /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
-#define CLIMB_MARGIN_MPS 0.4F /* chosen: room for an overshoot of the climb rate above VUP */
+#define UNCONFIRMED_MPS 0.35F  /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
+#define TAKEOFF_MPS 0.6F       /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
+#define UNCHECKED_ABOVE_N 0.5F /* chosen: as TRANSFER_START_N */
+#define UNCHECKED_BELOW_N 1.0F /* chosen: twice that */
+#define CLIMB_MARGIN_MPS 0.4F  /* chosen: room for an overshoot of the climb rate above VUP */
 #define STAND_TEST_N_PER_S \
     1.0F /* chosen: in 2 s too low to fly; the accelerometer shows a fall before it is fast */
 #define NOT_LIFTED_MAX_US UINT32_C(3000000) /* chosen: the take-off's ramp in est_law.c ends after 1.2 s */
@@ -242,10 +245,12 @@ static void step_pidt(flight_t *flight, const parameters_t *parameters, float re
 {
     const height_track_t *height = &flight->supervisor.height;
     const float *value = parameters->value;
+    const bool instead = parameters_choice(parameters, PARAMETER_LAW) == LAW_EST;
+    const float share = instead ? INSTEAD_SHARE : 1.0F;
     const pidt_gains_t gains = {
-        .kp_n_per_m = value[PARAMETER_PKP],
-        .ki_n_per_m_s = value[PARAMETER_PKI],
-        .kd_n_s_per_m = value[PARAMETER_PKD],
+        .kp_n_per_m = share * value[PARAMETER_PKP],
+        .ki_n_per_m_s = share * value[PARAMETER_PKI],
+        .kd_n_s_per_m = share * value[PARAMETER_PKD],
         .gravity_n = value[PARAMETER_GRAV],
         .most_n = at_most(value[PARAMETER_GRAV] + PIDT_WINDOW_N, THRUST_MAX_N),
         .least_n = at_least(value[PARAMETER_GRAV] - PIDT_WINDOW_N, 0.0F),
@@ -816,6 +821,15 @@ static float carried_n(flight_t *flight)
            at_least(n_per_mps * felt_mps, -CARRIED_BRAKE_N);
 }
 
+/* The IMU was silent, and no heights have checked the speed of the estimate since. */
+static float within_coasting_n(const flight_t *flight, float thrust_n)
+{
+    if (flight->supervisor.state != FLIGHT_COASTING || flight->est.estimator.unchecked_count == 0U) {
+        return thrust_n;
+    }
+    return between(flight->hover_n - UNCHECKED_BELOW_N, thrust_n, flight->hover_n + UNCHECKED_ABOVE_N);
+}
+
 /* While commands have no effect, and in FLOATING, where a pilot may fly without a pin that reports it, the
  * thrust stays near the hover thrust. So it fits when the commands get their effect back. In a descent the
  * limit falls with time: the thrust that was held may be one that climbs. */
@@ -946,7 +960,7 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
     }
     bumpless_transfer(flight, before, law_changed || action_changed);
     const float climbing_n = within_climb_n(flight, parameters, flight->setpoint_n + flight->transfer_n);
-    const float wanted_n = within_descent_n(flight, parameters, climbing_n);
+    const float wanted_n = within_coasting_n(flight, within_descent_n(flight, parameters, climbing_n));
     flight->thrust_n = between(flight->idle_n, stand_test_n(flight, within_power_n(flight, wanted_n)),
                                THRUST_MAX_N);
     est_law_record_command(&flight->est, flight->thrust_n);

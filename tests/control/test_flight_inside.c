@@ -367,6 +367,7 @@ void test_with_release_scan_a_sample_needs_a_new_height_or_is_the_first(void)
 
 void test_pidt_gets_its_gains_the_time_between_rays_and_a_window_about_gravity(void)
 {
+    set(PARAMETER_LAW, (float)LAW_PIDT);
     set(PARAMETER_PKP, 4.0F);
     set(PARAMETER_PKI, 1.0F);
     set(PARAMETER_PKD, 3.0F);
@@ -402,6 +403,35 @@ void test_pidt_gets_its_gains_the_time_between_rays_and_a_window_about_gravity(v
     f.pidt.primed = false;
     step_pidt(&f, &parameters, 3.0F);
     NEAR(THRUST_MAX_N, f.setpoint_n);
+}
+
+void test_in_place_of_est_pidt_has_0_65_of_its_gains(void)
+{
+    set(PARAMETER_LAW, (float)LAW_EST);
+    set(PARAMETER_PKP, 4.0F);
+    set(PARAMETER_PKI, 1.0F);
+    set(PARAMETER_PKD, 3.0F);
+    f.pidt = (pidt_state_t){.integral_n = 0.2F, .height_m = 0.49F, .rate_mps = 0.05F, .primed = true};
+    f.est.rays_us = 120000U;
+    f.supervisor.height.is_new = true;
+    pidt_state_t pidt = f.pidt;
+    const pidt_gains_t gains = {2.6F, 0.65F, 1.95F, 7.0F, 10.0F, 4.0F};
+    const float expected_n = pidt_step(&pidt, &gains, 0.6F, 0.5F, 0.12F);
+    step_pidt(&f, &parameters, 0.6F);
+    NEAR(expected_n, f.setpoint_n);
+    NEAR(pidt.integral_n, f.pidt.integral_n);
+}
+
+void test_an_estimate_that_no_height_has_checked_coasts_near_the_hover_thrust(void)
+{
+    f.hover_n = 7.2F;
+    for (int i = 0; i < 3; i++) {
+        f.supervisor.state = (i == 1) ? FLIGHT_FLYING : FLIGHT_COASTING;
+        f.est.estimator.unchecked_count = (uint16_t)((i == 2) ? 0 : 1);
+        NEAR((i == 0) ? 7.7F : 9.0F, within_coasting_n(&f, 9.0F));
+        NEAR((i == 0) ? 6.2F : 5.0F, within_coasting_n(&f, 5.0F));
+        NEAR(7.5F, within_coasting_n(&f, 7.5F));
+    }
 }
 
 void test_a_long_gap_of_rays_counts_as_300_ms(void)
