@@ -56,6 +56,7 @@
     1.0F /* chosen: in 2 s too low to fly; the accelerometer shows a fall before it is fast */
 #define NOT_LIFTED_MAX_US UINT32_C(3000000) /* chosen: the take-off's ramp in est_law.c ends after 1.2 s */
 #define HEIGHT_LATE_US UINT32_C(170000)     /* a scan of 0.1 s is missing */
+#define UNPOWERED_S 1.0F                    /* chosen: a free fall of 5 m */
 #define EFFECT_REACH_M 0.14F                /* chosen: below VAIN_M in integrity.c */
 #define FLOAT_REACH_M 0.30F /* chosen: three times the distance that counts as reached, reach.c */
 
@@ -530,7 +531,8 @@ static void supervise(flight_t *flight, const parameters_t *parameters, const fl
         .height_mm = now->height_m * 1000.0F,
         .climb_mm_s = (now->speed_mps - now->terrain_mps) * 1000.0F,
         .stands = integrity_stands(&flight->integrity) ||
-                  (flight->not_lifted && flight->thrust_n <= flight->idle_n),
+                  (flight->not_lifted && flight->thrust_n <= flight->idle_n) ||
+                  flight->unpowered_s > UNPOWERED_S,
         .upright = flight->integrity.upright,
         .sways = integrity_sways(&flight->integrity),
         .rocks = rocks(flight),
@@ -855,6 +857,25 @@ static float within_power_n(flight_t *flight, float thrust_n)
                                        : at_most(thrust_n, held_n + NO_AUTHORITY_WINDOW_N);
 }
 
+/* A landing that a height has shown near the ground ends there, also when the next heights are missing or
+ * contradict the estimate: a mirror that loses most of its rays shows few. A second without thrust is its
+ * end, whatever was measured. */
+static float within_landing_n(flight_t *flight, float thrust_n)
+{
+    const flight_state_t state = flight->supervisor.state;
+    const bool lands = state == FLIGHT_LANDING || (state == FLIGHT_DESCENDING && flight->landed_s > 0.0F);
+
+    if (!lands || integrity_doubts(&flight->integrity, DOUBT_SIGHT)) {
+        flight->landed_s = flight->unpowered_s = 0.0F;
+        return thrust_n;
+    }
+    const float step_s = seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
+    flight->unpowered_s = (flight->thrust_n > flight->idle_n) ? 0.0F : flight->unpowered_s + step_s;
+    flight->landed_s = touchdown_time_s(flight->landed_s, flight->supervisor.height.height_mm * 0.001F,
+                                        rocks(flight), step_s);
+    return at_most(thrust_n, touchdown_limit_n(flight->landed_s, flight->hover_n));
+}
+
 /* Finds the end of a descent. While the vehicle may stand on the ground, the thrust is lowered step by step.
  * If the accelerometer measures a fall, the vehicle is in the air and the thrust returns. If it does not, the
  * vehicle stands. */
@@ -961,8 +982,8 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
     bumpless_transfer(flight, before, law_changed || action_changed);
     const float climbing_n = within_climb_n(flight, parameters, flight->setpoint_n + flight->transfer_n);
     const float wanted_n = within_coasting_n(flight, within_descent_n(flight, parameters, climbing_n));
-    flight->thrust_n = between(flight->idle_n, stand_test_n(flight, within_power_n(flight, wanted_n)),
-                               THRUST_MAX_N);
+    const float landing_n = within_landing_n(flight, within_power_n(flight, wanted_n));
+    flight->thrust_n = between(flight->idle_n, stand_test_n(flight, landing_n), THRUST_MAX_N);
     est_law_record_command(&flight->est, flight->thrust_n);
     judge_reach(flight);
     write_outputs(flight, parameters, out);

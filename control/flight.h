@@ -43,6 +43,8 @@ typedef struct {
     bool scan_fit;
     uint16_t doubts;       /* DOUBT_* of the previous cycle */
     bool lifting;          /* since the ground the vehicle has not left it yet, as far as known */
+    float landed_s;        /* time near the ground since a height of LANDING showed it, see touchdown.h */
+    float unpowered_s;     /* how long such a landing has had no thrust */
     bool not_lifted;       /* TAKEOFF ended and the vehicle had not left the ground */
     float held_sunk_n;     /* how far the window of its thrust has sunk in the present descent */
     float stand_test_n;    /* upper limit while a descent tests whether the vehicle stands */

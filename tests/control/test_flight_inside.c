@@ -1217,6 +1217,64 @@ void test_the_end_of_a_descent_is_tried_by_a_newton_a_second(void)
     TEST_ASSERT_EQUAL_FLOAT(0.0F, stand_test_n(&f, 8.0F));
 }
 
+void test_a_landing_near_the_ground_goes_on_there_while_heights_are_missing(void)
+{
+    f.hover_n = 7.0F;
+    f.supervisor.state = FLIGHT_DESCENDING;
+    f.supervisor.height.height_mm = 30.0F;
+    NEAR(8.0F, within_landing_n(&f, 8.0F)); /* a height of before the landing tells nothing */
+    f.supervisor.state = FLIGHT_LANDING;
+    f.supervisor.height.height_mm = 41.0F;
+    NEAR(8.0F, within_landing_n(&f, 8.0F));
+    f.supervisor.height.height_mm = 39.0F;
+    NEAR(7.3F, within_landing_n(&f, 8.0F)); /* 0.5 N above, after 0.1 s at 2 N/s */
+    f.supervisor.state = FLIGHT_DESCENDING;
+    NEAR(7.1F, within_landing_n(&f, 8.0F));
+    NEAR(3.0F, within_landing_n(&f, 3.0F));
+    f.supervisor.state = FLIGHT_LANDING;
+    NEAR(6.7F, within_landing_n(&f, 8.0F));
+    f.supervisor.height.height_mm = 101.0F;
+    NEAR(8.0F, within_landing_n(&f, 8.0F));
+    f.supervisor.height.height_mm = 30.0F;
+    NEAR(7.3F, within_landing_n(&f, 8.0F));
+    f.integrity.doubts = DOUBT_SIGHT;
+    NEAR(8.0F, within_landing_n(&f, 8.0F));
+    f.integrity.doubts = 0U;
+    f.landed_s = 1.0F;
+    f.supervisor.state = FLIGHT_LOWERING;
+    NEAR(8.0F, within_landing_n(&f, 8.0F));
+    NEAR(0.0F, f.landed_s);
+}
+
+void test_a_second_of_a_landing_without_thrust_is_counted(void)
+{
+    f.supervisor.state = FLIGHT_LANDING;
+    f.idle_n = f.thrust_n = 0.8F;
+    (void)within_landing_n(&f, 8.0F);
+    (void)within_landing_n(&f, 8.0F);
+    NEAR(0.2F, f.unpowered_s);
+    f.thrust_n = 0.81F;
+    (void)within_landing_n(&f, 8.0F);
+    NEAR(0.0F, f.unpowered_s);
+    f.unpowered_s = 0.5F;
+    f.supervisor.state = FLIGHT_FLYING;
+    (void)within_landing_n(&f, 8.0F);
+    NEAR(0.0F, f.unpowered_s);
+}
+
+void test_a_landing_ends_after_more_than_a_second_without_thrust(void)
+{
+    static const float unpowered_s[] = {0.99F, 1.01F};
+    for (int i = 0; i < 2; i++) {
+        setUp();
+        const flight_inputs_t landing = {.has_throttle = true};
+        f.supervisor.state = FLIGHT_LANDING;
+        f.unpowered_s = unpowered_s[i];
+        supervise(&f, &parameters, &landing);
+        TEST_ASSERT_EQUAL(i == 1, f.supervisor.stands);
+    }
+}
+
 void test_a_take_off_that_ends_on_the_ground_stops_there(void)
 {
     f.supervisor.state = FLIGHT_TAKEOFF;

@@ -253,6 +253,19 @@ class Losses(unittest.TestCase):
                 self.assertLess(flight.touch_mps(), 0.8 if flight.kind.startswith("nominal") else 1.2, str(flight))
                 self.assertLess(max(row["height_m"] for row in flight.rows), 0.6 + 0.4, str(flight))
 
+    def test_a_mirror_that_loses_most_of_its_rays_stops_no_landing(self):
+        """Without it the motors stop 2 to 6 s after the touch; here few scans show the ground."""
+        waits = []
+        for flight in flights(("EST", "PID", "PIDT", "PD"), ("nominal", "drawn 0"), lambda rng: (
+                {"rays_lost": 0.6, "rays_lost_start": rng.uniform(12.0, 18.0)}, {}, ["--duration", "14", *UNTIL_DOWN])):
+            touch_s = max(row["t_s"] for row in flight.rows if row["height_m"] > 0.01)
+            off_s = max(row["t_s"] for row in flight.rows if row["thrust_n"] > 1.0)
+            waits.append(off_s - touch_s)
+            self.assertLess(waits[-1], 15.0, str(flight))
+            self.assertLess(flight.rows[-1]["thrust_n"], 1.0, f"motors go on: {flight}")
+        self.assertLess(sorted(waits)[len(waits) // 2], 9.0)
+        self.assertGreater(min(waits), 1.0)
+
     def test_six_bad_attitudes_cut_nothing(self):
         def burst(rng):
             return {"attitude_burst_deg": rng.choice((30.0, 60.0, 90.0, 120.0, -70.0)),
