@@ -208,11 +208,26 @@ static void set_rate(const step_t *step, uint32_t rate)
     step->link->line_unknown = true;
 }
 
+/* In a first start: the sensor has answered, so it is at the stream's rate or at the first one. */
+static bool has_answered(const step_t *step)
+{
+    const urg_link_t *link = step->link;
+    return link->answered && link->good_rate == 0U && step->now_us - link->answered_us < SEARCH_KNOWN_US;
+}
+
 static void probe(const step_t *step, uint16_t index)
 {
     step->link->rate_refused = false;
     set_rate(step, probe_rate(step->link, index));
     start_command(step, URG_LOST, SCIP_STOP);
+    step->link->timeout_us = has_answered(step) ? KNOCK_US : step->link->timeout_us;
+}
+
+static void probe_next(const step_t *step)
+{
+    const uint16_t index = probe_index(step->link, step->link->rate);
+    const uint16_t other = index == PROBE_STREAM ? (uint16_t)PROBE_FIRST : (uint16_t)PROBE_STREAM;
+    probe(step, has_answered(step) ? other : next_probe(step->link, index));
 }
 
 /* ---- the search for a sensor that has streamed before ---- */
@@ -361,7 +376,7 @@ static void search_on(const step_t *step)
 {
     urg_link_t *link = step->link;
     if (!knows_rate(step)) {
-        probe(step, next_probe(link, probe_index(link, link->rate)));
+        probe_next(step);
     } else if (link->rate == link->good_rate && heard_clean(step)) {
         hear_on(step);
     } else {
@@ -518,8 +533,16 @@ static void on_stream_reply(const step_t *step)
     }
 }
 
+static void note_answer(const step_t *step)
+{
+    urg_link_t *link = step->link;
+    link->answered = link->rate == link->config.first_rate || link->rate == link->config.stream_rate;
+    link->answered_us = step->now_us;
+}
+
 static void on_reply(const step_t *step)
 {
+    note_answer(step);
     switch (step->link->command) {
     case SCIP_LASER_OFF_1:
         if (step->seen->reply.legacy) {
@@ -553,6 +576,7 @@ static void on_reply(const step_t *step)
 static void on_legacy(const step_t *step)
 {
     urg_link_t *link = step->link;
+    note_answer(step);
     if (link->command != SCIP_SWITCH) {
         start_command(step, URG_SWITCH, SCIP_SWITCH);
     } else if (link->attempt > 1U) {
@@ -619,13 +643,21 @@ static void on_silence(const step_t *step)
     }
 }
 
+/* Where nothing at all answers a scan request, the scans are not waited for. */
+static uint32_t answer_timeout_us(const step_t *step)
+{
+    const urg_link_t *link = step->link;
+    const bool mute = link->status == URG_STREAM && step->seen->octet_count == link->sent_octets;
+    return mute ? FIRST_REPLY_US : link->timeout_us;
+}
+
 /* While the rate is only a guess, signs of a wrong one answer as well as a time-out. */
 static bool is_silent(const step_t *step)
 {
     const urg_link_t *link = step->link;
     const bool guessing = link->status == URG_STOP1 ||
                           (link->status == URG_LOST && link->command == SCIP_STOP);
-    return step->now_us - link->sent_us >= link->timeout_us ||
+    return step->now_us - link->sent_us >= answer_timeout_us(step) ||
            (guessing && wrong_rate(step, WRONG_RATE_SIGNS));
 }
 

@@ -106,6 +106,8 @@ typedef struct {
     uint32_t frame_us;    /* time of the latest scan: as told, else that of the step which has seen it */
     uint32_t pause_us;    /* until the next step */
     bool timed;           /* the caller tells the times of the scans */
+    uint32_t answered_us; /* time of the latest answer */
+    bool answered;        /* it came at one of the configured rates */
     bool knocking;        /* the present command is part of the search at the known rates */
     bool listening;       /* it is at the stream's rate, and no command was sent */
     uint32_t request_us;  /* time without scans after which the stream is requested again */

@@ -1817,3 +1817,93 @@ void test_a_start_is_stepped_every_150_ms(void)
     }
     TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_));
 }
+
+/* ---- a start in which the sensor falls silent ---- */
+
+/* Up to the request of the stream's rate. */
+static void start_until_rate(void)
+{
+    reset(0);
+    config.fastest_rate = 0;
+    (void)urg_link_init(&link_, &config, now_us);
+    nothing_after(0);
+    (void)reply_after(STEP_US, SCIP_LASER_OFF_1, "0", true);
+    (void)reply_after(STEP_US, SCIP_SWITCH, "0", true);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+}
+
+void test_a_sensor_that_answered_in_the_start_is_looked_for_at_the_two_rates_it_can_have(void)
+{
+    static const uint32_t rates[] = {250000, 115200};
+    start_until_rate();
+    const uint32_t answered_us = now_us;
+    nothing_after(402001);
+    for (uint32_t i = 0; now_us - answered_us < 12000000; i++) {
+        TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
+        TEST_ASSERT_EQUAL_UINT32(rates[i % 2], link_.rate);
+        TEST_ASSERT_EQUAL_UINT32(130000, link_.timeout_us);
+        TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_));
+        nothing_after(130000);
+    }
+    for (uint32_t i = 0; i < 2 && link_.rate != 19200; i++) {
+        nothing_after(500000);
+    }
+    TEST_ASSERT_EQUAL_UINT32(19200, link_.rate);
+    TEST_ASSERT_GREATER_THAN_UINT32(400000, link_.timeout_us);
+}
+
+void test_it_is_looked_for_so_up_to_12_s_after_its_answer(void)
+{
+    for (uint32_t late_us = 0; late_us < 2; late_us++) {
+        start_until_rate();
+        nothing_after(11999999 + late_us);
+        TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
+        TEST_ASSERT_EQUAL(late_us == 0, link_.timeout_us == 130000);
+    }
+}
+
+/* Of a sensor that was found at a third rate nothing is known when it falls silent. */
+void test_an_answer_at_a_third_rate_tells_nothing_of_the_two(void)
+{
+    reset(0);
+    nothing_after(0);
+    while (link_.rate != 19200) {
+        nothing_after(500000);
+    }
+    (void)reply_after(STEP_US, SCIP_STOP, "00", false);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+    nothing_after(500000);
+    TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
+    TEST_ASSERT_GREATER_THAN_UINT32(400000, link_.timeout_us);
+}
+
+void test_an_answer_of_scip_1_1_is_an_answer_too(void)
+{
+    reset(0);
+    nothing_after(0);
+    seen.legacy_count++;
+    nothing_after(STEP_US);
+    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+    nothing_after(500000);
+    nothing_after(500000);
+    TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    TEST_ASSERT_EQUAL_UINT32(130000, link_.timeout_us);
+}
+
+/* Nothing at all: the request or its answer was lost. An answer: the scans are waited for. */
+void test_a_request_that_nothing_answers_is_given_up_after_400_ms(void)
+{
+    for (uint32_t heard = 0; heard < 2; heard++) {
+        start_until_rate();
+        (void)reply_after(STEP_US, SCIP_BIT_RATE, "00", false);
+        nothing_after(STEP_US);
+        (void)reply_after(STEP_US, SCIP_STOP, "00", false);
+        TEST_ASSERT_EQUAL(URG_STREAM, link_.status);
+        seen.octet_count += heard;
+        nothing_after(399999);
+        TEST_ASSERT_EQUAL(URG_STREAM, link_.status);
+        nothing_after(1);
+        TEST_ASSERT_EQUAL(heard == 0 ? URG_STOP2 : URG_STREAM, link_.status);
+    }
+}
