@@ -118,6 +118,7 @@
 #define STILL_MPS 0.2F       /* chosen: heights that change more slowly do not move */
 #define CONTENT_M 0.10F      /* chosen: a law so near its reference is not misled by a wrong height */
 #define CONTENT_SHARE 1.8F   /* chosen: near the reference the limits nearly double */
+#define ALIVE_SHARE 1.4F     /* tried: 1.8 helps no more; a slant that changes with the tilt is not blocked */
 #define UNCONFIRMED_M 0.35F  /* chosen: above BOTH_M; the climb is slow meanwhile */
 #define UNPROVED_M 0.35F     /* chosen: twice what the lift-off of a drawn vehicle shows */
 #define UNCONFIRMED_N 0.2F   /* chosen: a small part of PUSH_N, because the climb is slow */
@@ -740,12 +741,12 @@ static bool still_against(const integrity_t *i)
            ((felt || rigid) && against(&i->pushed, BOTH_M) && i->still == STILL_SCANS);
 }
 
-/* Both witnesses contradict the heights in the same direction. */
-static bool both_against(const integrity_t *i, const flown_t *flown)
+/* Both witnesses contradict the heights in the same direction, by that share of the limits. */
+static bool both_against(const integrity_t *i, const flown_t *flown, float share)
 {
     const float felt_m = felt_off_m(i);
     const float pushed_m = i->pushed.seen_m;
-    const float sure = (fabsf(flown->wanted_m) < CONTENT_M) ? CONTENT_SHARE : 1.0F;
+    const float sure = (fabsf(flown->wanted_m) < CONTENT_M) ? share * CONTENT_SHARE : share;
 
     return acceleration_valid(i) && counts(&i->pushed) && felt_m * pushed_m > 0.0F &&
            at_least(fabsf(felt_m), fabsf(pushed_m)) > sure * AGAINST_M &&
@@ -788,8 +789,11 @@ static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
         return true;
     }
     if (acceleration_valid(i) && counts(&i->pushed)) {
+        /* the thrust's witness of a vehicle unlike the model drifts, and the accelerometer's bias may jump */
+        const float share = (i->still == 0U) ? ALIVE_SHARE : 1.0F;
+
         return both_run_away(i) || vain_since_step(i, flown) ||
-               (fabsf(i->rise_mps) < STILL_MPS && both_against(i, flown));
+               (fabsf(i->rise_mps) < STILL_MPS && both_against(i, flown, share));
     }
     if (counts(&i->pushed)) {
         return vain_since_step(i, flown) || i->vain_s > VAIN_S;
@@ -808,7 +812,7 @@ static bool imu_is_wrong(const integrity_t *i, const flown_t *flown)
         return false;
     }
     return (acceleration_against(i, ALONE_M) && counts(&i->pushed) && alone) ||
-           (heights_move(i) && acceleration_against(i, AGAINST_M) && both_against(i, flown));
+           (heights_move(i) && acceleration_against(i, AGAINST_M) && both_against(i, flown, 1.0F));
 }
 
 /* Reasons for DOUBT_THRUST. */

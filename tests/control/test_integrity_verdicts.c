@@ -19,6 +19,7 @@ void setUp(void)
 {
     integrity_init(&it);
     it.has_height = it.proved = true;
+    it.still = 1U; /* the slant may be that of a blocked beam */
     it.height_m = it.near_m = 0.5F;
     it.unmoved_s = 1.0F;
     it.since_rise_s = 1.5F;
@@ -124,6 +125,22 @@ void test_both_witnesses_together_doubt_the_heights_one_by_half_a_metre(void)
         {nothing, 0, 0.51F, 0.29F, DOUBT_SIGHT},
         {nothing, 0, 0.51F, -0.29F, 0},
         {nothing, 0, -0.51F, 0.29F, 0},
+    };
+    CHECK(rows);
+}
+
+static void slant_alive(float wanted_m)
+{
+    it.still = 0U;
+    flown.wanted_m = wanted_m;
+}
+
+void test_a_slant_that_changes_with_the_tilt_asks_for_more_of_it(void)
+{
+    static const row_t rows[] = {
+        {slant_alive, 0.5F, -0.71F, -0.40F, DOUBT_SIGHT}, {slant_alive, 0.5F, -0.69F, -0.40F, 0},
+        {slant_alive, 0.5F, -0.71F, -0.38F, 0},           {slant_alive, 0.09F, -1.27F, -0.71F, DOUBT_SIGHT},
+        {slant_alive, 0.09F, -1.25F, -0.71F, 0},
     };
     CHECK(rows);
 }
