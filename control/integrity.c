@@ -744,13 +744,16 @@ static bool still_against(const integrity_t *i)
 /* Both witnesses contradict the heights in the same direction, by that share of the limits. */
 static bool both_against(const integrity_t *i, const flown_t *flown, float share)
 {
-    const float felt_m = felt_off_m(i);
-    const float pushed_m = i->pushed.seen_m;
     const float sure = (fabsf(flown->wanted_m) < CONTENT_M) ? share * CONTENT_SHARE : share;
 
-    return acceleration_valid(i) && counts(&i->pushed) && felt_m * pushed_m > 0.0F &&
-           at_least(fabsf(felt_m), fabsf(pushed_m)) > sure * AGAINST_M &&
-           at_most(fabsf(felt_m), fabsf(pushed_m)) > sure * BOTH_M;
+    if (!against(&i->pushed, sure * BOTH_M)) {
+        return false;
+    }
+    const float felt_m = felt_off_m(i);
+    const float pushed_m = i->pushed.seen_m;
+
+    return acceleration_against(i, sure * BOTH_M) && felt_m * pushed_m > 0.0F &&
+           at_least(fabsf(felt_m), fabsf(pushed_m)) > sure * AGAINST_M;
 }
 
 /* Since a step towards the vehicle the thrust has pushed, and no climb has shown in the heights. The
