@@ -21,6 +21,8 @@
 #define STEP_MAX_S 0.5F       /* chosen: longer pauses count as this long */
 #define BLIND_MAX_S 60.0F     /* above DESCENT_TIMEOUT_US in supervisor.c */
 
+#define BLIND_STILL_TIMES 2.0F /* tried 2 and 3: a calm vehicle that flies touches at 0.8 and 0.95 m/s */
+
 #define PIDT_WINDOW_N 3.0F  /* chosen: 0.4 g to either side */
 #define INSTEAD_SHARE 0.65F /* tried 0.6 to 1: of PIDT's gains, for vehicles that shake with them */
 #define SETTLE_S 0.6F       /* chosen: six scans; until then the estimate is copied */
@@ -286,6 +288,18 @@ static void step_descent(flight_t *flight, bool started)
     }
 }
 
+/* While the tilt is still, the vehicle probably stands, and nothing else tells it: time runs faster. */
+static void step_blind_descent(flight_t *flight, bool started)
+{
+    const bool still = integrity_calm(&flight->integrity) && est_law_has_imu(&flight->est);
+    const float step_s = still ? seconds_at_most(flight->supervisor.step_us, STEP_MAX_S) : 0.0F;
+
+    flight->hurried_s = started ? 0.0F : flight->hurried_s + BLIND_STILL_TIMES * step_s;
+    flight->setpoint_n = descent_blind(
+        flight->hover_n,
+        at_most(seconds_at_most(flight->supervisor.state_us, BLIND_MAX_S) + flight->hurried_s, BLIND_MAX_S));
+}
+
 /* Height to hold, above the terrain. */
 static float aim_m(const flight_t *flight)
 {
@@ -336,8 +350,7 @@ static bool run_mode(flight_t *flight, const parameters_t *parameters, bool mode
         step_descent(flight, mode_changed);
         break;
     case FLIGHT_MODE_BLIND_DESCENT:
-        flight->setpoint_n = descent_blind(flight->hover_n,
-                                           seconds_at_most(flight->supervisor.state_us, BLIND_MAX_S));
+        step_blind_descent(flight, mode_changed);
         break;
     case FLIGHT_MODE_IDLE:
     default:
@@ -519,6 +532,12 @@ static bool may_be_carried(const flight_t *flight, const parameters_t *parameter
     return flight->carried && integrity_sways(&flight->integrity) && est_law_has_imu(&flight->est);
 }
 
+/* Without thrust it stands after a take-off that was given up, and after a landing. */
+static bool ends_without_thrust(const flight_t *flight)
+{
+    return flight->not_lifted || (flight->landed_s > 0.0F && flight->unpowered_s > UNPOWERED_S);
+}
+
 static void supervise(flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)
 {
     const estimator_t *estimator = &flight->est.estimator;
@@ -531,8 +550,7 @@ static void supervise(flight_t *flight, const parameters_t *parameters, const fl
         .height_mm = now->height_m * 1000.0F,
         .climb_mm_s = (now->speed_mps - now->terrain_mps) * 1000.0F,
         .stands = integrity_stands(&flight->integrity) ||
-                  (flight->not_lifted && flight->thrust_n <= flight->idle_n) ||
-                  flight->unpowered_s > UNPOWERED_S,
+                  (flight->thrust_n <= flight->idle_n && ends_without_thrust(flight)),
         .upright = flight->integrity.upright,
         .sways = integrity_sways(&flight->integrity),
         .rocks = rocks(flight),
@@ -839,7 +857,11 @@ static float within_power_n(flight_t *flight, float thrust_n)
 {
     const bool doubted = integrity_doubts(&flight->integrity, DOUBT_THRUST);
 
-    if (!(doubted || flight->throttle_unknown) || !descends(flight->supervisor.state)) {
+    if (!doubted && !flight->throttle_unknown) {
+        flight->held_sunk_n = 0.0F;
+        return thrust_n;
+    }
+    if (!descends(flight->supervisor.state)) {
         flight->held_sunk_n = 0.0F;
     } else {
         flight->held_sunk_n += HELD_SINK_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
@@ -849,7 +871,7 @@ static float within_power_n(flight_t *flight, float thrust_n)
                                : between(flight->hover_n - UNKNOWN_WINDOW_N - flight->held_sunk_n, thrust_n,
                                          flight->hover_n + UNKNOWN_WINDOW_N);
     }
-    if (!doubted || flight->mode == FLIGHT_MODE_IDLE) {
+    if (flight->mode == FLIGHT_MODE_IDLE) {
         return thrust_n;
     }
     const float held_n = flight->integrity.held_n - flight->held_sunk_n;
@@ -866,7 +888,7 @@ static float within_landing_n(flight_t *flight, float thrust_n)
     const bool lands = state == FLIGHT_LANDING || (state == FLIGHT_DESCENDING && flight->landed_s > 0.0F);
 
     if (!lands || integrity_doubts(&flight->integrity, DOUBT_SIGHT)) {
-        flight->landed_s = flight->unpowered_s = 0.0F;
+        flight->landed_s = 0.0F;
         return thrust_n;
     }
     const float step_s = seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
@@ -887,10 +909,10 @@ static float stand_test_n(flight_t *flight, float thrust_n)
 
     if (!descent || !integrity_may_stand(&flight->integrity)) {
         flight->stand_test_n = THRUST_MAX_N;
-    } else {
-        const float step_n = STAND_TEST_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
-        flight->stand_test_n = at_least(at_most(flight->stand_test_n, flight->thrust_n) - step_n, 0.0F);
+        return thrust_n;
     }
+    const float step_n = STAND_TEST_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
+    flight->stand_test_n = at_least(at_most(flight->stand_test_n, flight->thrust_n) - step_n, 0.0F);
     return at_most(thrust_n, flight->stand_test_n);
 }
 

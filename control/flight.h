@@ -44,7 +44,7 @@ typedef struct {
     uint16_t doubts;       /* DOUBT_* of the previous cycle */
     bool lifting;          /* since the ground the vehicle has not left it yet, as far as known */
     float landed_s;        /* time near the ground since a height of LANDING showed it, see touchdown.h */
-    float unpowered_s;     /* how long such a landing has had no thrust */
+    float unpowered_s;     /* how long it has had no thrust; valid while landed_s > 0 */
     bool not_lifted;       /* TAKEOFF ended and the vehicle had not left the ground */
     float held_sunk_n;     /* how far the window of its thrust has sunk in the present descent */
     float stand_test_n;    /* upper limit while a descent tests whether the vehicle stands */
@@ -78,6 +78,7 @@ typedef struct {
     float setpoint_n;   /* thrust that the mode computes */
     float transfer_n;   /* added to setpoint_n; fades to 0: bumpless transfer between modes */
     float thrust_n;     /* previous command */
+    float hurried_s;    /* by which a blind descent is ahead of its time */
 } flight_t;
 
 void flight_init(flight_t *flight);

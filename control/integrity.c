@@ -929,6 +929,11 @@ bool integrity_sways(const integrity_t *integrity)
     return integrity->sway_rad2 > SWAY_AIR_RAD2;
 }
 
+bool integrity_calm(const integrity_t *integrity)
+{
+    return integrity->sway_rad2 < SWAY_RAD2;
+}
+
 bool integrity_rocks(const integrity_t *integrity)
 {
     return integrity->unrocked_s < ROCKED_S && integrity->sway_rad2 > SWAY_RAD2;

@@ -194,6 +194,9 @@ bool integrity_still(const integrity_t *integrity);
 /* True when roll and pitch sway as in the air: more than 1.1 degrees rms together. */
 bool integrity_sways(const integrity_t *integrity);
 
+/* True when they sway less than that: below 0.9 degrees rms, as on the ground. */
+bool integrity_calm(const integrity_t *integrity);
+
 /* The same with less delay, for the end of a landing: the tilt has moved by a degree within the last
  * 0.8 s. */
 bool integrity_rocks(const integrity_t *integrity);

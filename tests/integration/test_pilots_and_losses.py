@@ -266,6 +266,15 @@ class Losses(unittest.TestCase):
         self.assertLess(sorted(waits)[len(waits) // 2], 9.0)
         self.assertGreater(min(waits), 1.0)
 
+    def test_a_stock_razor_and_no_heights_stop_the_motors_too(self):
+        """Only the still tilt tells that it stands."""
+        for flight in flights(("EST", "PID"), ("nominal", "drawn 0"), lambda rng: (
+                {"imu_stock": 1.0, **silent(rng.uniform(5.0, 9.0), LASTS_FOREVER)}, {}, UNTIL_DOWN)):
+            touch_s = max(row["t_s"] for row in flight.rows if row["height_m"] > 0.01)
+            off_s = max(row["t_s"] for row in flight.rows if row["thrust_n"] > 1.0)
+            self.assertLess(abs(off_s - touch_s - 14.0), 6.0, str(flight))
+            self.assertLess(flight.touch_mps(), 1.1, str(flight))
+
     def test_six_bad_attitudes_cut_nothing(self):
         def burst(rng):
             return {"attitude_burst_deg": rng.choice((30.0, 60.0, 90.0, 120.0, -70.0)),
