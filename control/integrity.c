@@ -43,6 +43,7 @@
 #define STILL_SHARE 0.4F   /* chosen: white noise alone makes 1, a swinging slant next to 0 */
 #define STILL_SCANS 16U    /* chosen: 1.6 s of scans */
 #define STILL_BOTH_M 0.10F /* chosen: low, because the still slant is evidence too */
+#define FLAT_FELT_M 0.15F  /* chosen: half of BOTH_M; the thrust must then show AGAINST_M */
 #define STILL_FELT_M 0.05F /* chosen: half of that; the thrust must then show BOTH_M */
 
 /* Accelerometer at rest. */
@@ -126,6 +127,7 @@
 #define WAY_TIME_S 1.0F      /* chosen: ten scans */
 #define MOVED_S 1.0F         /* chosen: as WAY_TIME_S */
 #define MOVES_M 0.15F        /* chosen: nothing in front of a mirror moves so far */
+#define MOVED_LEAST_M 0.10F  /* tried 0.10 and 0.15: with the latter a steep ramp was doubted, 2 of 600 */
 
 void integrity_init(integrity_t *integrity)
 {
@@ -278,6 +280,7 @@ static void watch_slant(integrity_t *i, const altitude_t *altitude)
     const bool still = i->scans == INTEGRITY_SCANS && slant_mm2 < STILL_MOST_MM2 &&
                        (slant_mm2 < STILL_MM2 || noise(i->slants_mm) > STILL_SHARE * slant_mm2);
     const bool rigid = i->scans == INTEGRITY_SCANS && slant_mm2 < STILL_MM2;
+    i->flat = i->scans == INTEGRITY_SCANS && slant_mm2 < STILL_MOST_MM2 && i->shaken <= 1.0F;
     i->rigid = rigid ? (uint16_t)(i->rigid + (i->rigid < STILL_SCANS)) : 0U;
     i->still = still ? (uint16_t)(i->still + (i->still < STILL_SCANS)) : 0U;
 }
@@ -663,9 +666,9 @@ static void take_height(integrity_t *i, float height_m, float gap_s, float age_s
         i->unconfirmed = false;
     }
     i->way_m = (step || !fresh) ? 0.0F : i->way_m * (1.0F - at_most(gap_s / WAY_TIME_S, 1.0F)) + rise_m;
-    i->unmoved_s = heights_move(i)    ? 0.0F
-                   : (step || !fresh) ? MOVED_S
-                                      : at_most(i->unmoved_s + gap_s, MOVED_S);
+    i->unmoved_s = fabsf(i->way_m) > MOVED_LEAST_M ? 0.0F
+                   : (step || !fresh)              ? MOVED_S
+                                                   : at_most(i->unmoved_s + gap_s, MOVED_S);
     i->since_rise_s = (step && rise_m > 0.0F) ? 0.0F : at_most(i->since_rise_s + gap_s, HEIGHT_LOST_S);
     i->before_rise_m = (i->since_rise_s > 0.0F) ? i->before_rise_m : i->height_m;
     i->height_m = height_m;
@@ -737,14 +740,18 @@ static bool still_against(const integrity_t *i)
     const bool rigid = i->rigid >= RIGID_SCANS;
     const bool both = acceleration_against(i, STILL_BOTH_M) && against(&i->pushed, STILL_BOTH_M);
 
-    return (felt && both && rigid) ||
+    const bool flat = i->flat && felt && acceleration_against(i, FLAT_FELT_M) &&
+                      against(&i->pushed, AGAINST_M);
+
+    return (felt && both && rigid) || flat ||
            ((felt || rigid) && against(&i->pushed, BOTH_M) && i->still == STILL_SCANS);
 }
 
 /* Both witnesses contradict the heights in the same direction, by that share of the limits. */
 static bool both_against(const integrity_t *i, const flown_t *flown, float share)
 {
-    const float sure = (fabsf(flown->wanted_m) < CONTENT_M) ? share * CONTENT_SHARE : share;
+    const bool content = fabsf(flown->wanted_m) < CONTENT_M && !i->flat;
+    const float sure = content ? share * CONTENT_SHARE : share;
 
     if (!against(&i->pushed, sure * BOTH_M)) {
         return false;

@@ -92,6 +92,12 @@ static void way(float m)
     it.way_m = m;
 }
 
+static void flat(float wanted_m)
+{
+    it.flat = true;
+    flown.wanted_m = wanted_m;
+}
+
 typedef struct {
     void (*change)(float);
     float value, felt_m, pushed_m;
@@ -156,6 +162,16 @@ void test_a_law_near_its_reference_asks_nearly_twice_as_much(void)
     CHECK(rows);
 }
 
+void test_a_slant_that_varies_little_asks_less_also_near_the_reference(void)
+{
+    static const row_t rows[] = {
+        {flat, 0.09F, -0.16F, -0.51F, DOUBT_SIGHT}, {flat, 0.09F, -0.14F, -0.51F, 0},
+        {flat, 0.09F, -0.16F, -0.49F, 0},           {flat, 0.09F, 0.16F, -0.51F, 0},
+        {flat, 0.09F, 0.16F, 0.51F, DOUBT_SIGHT},   {flat, 0.09F, -0.51F, -0.29F, DOUBT_SIGHT},
+    };
+    CHECK(rows);
+}
+
 void test_heights_that_move_are_not_doubted(void)
 {
     static const row_t rows[] = {
@@ -164,9 +180,9 @@ void test_heights_that_move_are_not_doubted(void)
         {rising, 0.20F, -0.51F, -0.29F, 0},
         {rising, -0.20F, -0.51F, -0.29F, 0},
         {moved_s_ago, 0.99F, -0.51F, -0.29F, 0},
-        {way, 0.15F, -0.45F, -0.51F, DOUBT_SIGHT},
-        {way, 0.151F, -0.45F, -0.51F, 0},
-        {way, -0.151F, -0.45F, -0.51F, 0},
+        {way, 0.10F, -0.45F, -0.51F, DOUBT_SIGHT},
+        {way, 0.101F, -0.45F, -0.51F, 0},
+        {way, -0.101F, -0.45F, -0.51F, 0},
     };
     CHECK(rows);
 }
@@ -584,9 +600,9 @@ void test_an_accelerometer_alone_against_the_heights_is_doubted(void)
 void test_heights_that_move_are_right_against_both_witnesses(void)
 {
     static const row_t rows[] = {
-        {way, 0.16F, -0.52F, -0.30F, DOUBT_IMU},   {way, -0.16F, 0.52F, 0.30F, DOUBT_IMU},
-        {way, 0.16F, -0.50F, -0.52F, 0},           {way, 0.16F, -0.52F, -0.28F, 0},
-        {way, 0.15F, -0.52F, -0.30F, DOUBT_SIGHT},
+        {way, 0.16F, -0.52F, -0.30F, DOUBT_IMU}, {way, -0.16F, 0.52F, 0.30F, DOUBT_IMU},
+        {way, 0.16F, -0.50F, -0.52F, 0},         {way, 0.16F, -0.52F, -0.28F, 0},
+        {way, 0.15F, -0.52F, -0.30F, 0},         {way, 0.10F, -0.52F, -0.30F, DOUBT_SIGHT},
     };
     CHECK(rows);
 }
