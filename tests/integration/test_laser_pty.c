@@ -241,6 +241,29 @@ void test_packets_have_64_octets_and_the_last_one_of_a_reply_comes_at_its_end(vo
     TEST_ASSERT_EQUAL_INT(0, end_server(SIGTERM));
 }
 
+/* 682 steps: 227 clusters of 3 and a step. 2 n characters in blocks of 64, 27 octets besides. */
+void test_steps_that_fill_no_cluster_make_a_point_or_none(void)
+{
+    static const char *const options[] = {NULL, "--round-down"};
+    static const size_t frame[] = {27 + 2 * 228 + 2 * 8, 27 + 2 * 227 + 2 * 8};
+    static long at_ms[3000];
+    static size_t octets[3000];
+
+    for (int i = 0; i < 2; i++) {
+        size_t count, total = 0;
+
+        start("--burst", options[i], NULL, NULL, 115200);
+        answers("SCIP2.0\n", "SCIP2.0\n0\n\n");
+        say("MS0044072503001\n");
+        count = reads_until_quiet(500, at_ms, octets, 3000);
+        for (size_t k = 0; k < count; k++) {
+            total += octets[k];
+        }
+        TEST_ASSERT_EQUAL_size_t(21 + frame[i], total);
+        TEST_ASSERT_EQUAL_INT(0, end_server(SIGTERM));
+    }
+}
+
 /* Programs for the sensor's own USB port take a short reply by one read(). */
 void test_a_short_reply_comes_in_one_packet_at_any_rate(void)
 {

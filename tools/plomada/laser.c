@@ -28,22 +28,31 @@ static const char usage[] =
     "when "
     "the line\n"
     "                  pauses for 2 ms\n"
+    "  --round-down    steps at the end of the range that fill no cluster make no point, as hokuyoaist "
+    "expects; without it\n"
+    "                  they make one more, as urg_library expects\n"
     "  --fault SPEC    may be repeated\n\n"
     "The sensor has been on for long: it listens, in SCIP1.1, at its power-up rate, which the "
     "pseudo-terminal is set to. As\n"
     "on a real line, a client must follow SS and S with its own rate (tcsetattr, TCSETS2): while the rates "
     "differ, what it\n"
     "sends is ignored and what it receives is nonsense. Malformed commands are refused "
-    "(sim/devices/urg04lx.h says how).\n\n"
+    "(sim/devices/urg04lx.h says how),\n"
+    "and so are those of newer models: ME, ND, NE and RB are answered 0E, undefined command.\n\n"
     "Faults, on what the sensor sends:\n";
 
-enum { OPT_LINK = 1, OPT_RATE, OPT_HEIGHT, OPT_SEED, OPT_BURST, OPT_FAULT, OPT_HELP };
+enum { OPT_LINK = 1, OPT_RATE, OPT_HEIGHT, OPT_SEED, OPT_BURST, OPT_ROUND_DOWN, OPT_FAULT, OPT_HELP };
 
 static const struct option long_options[] = {
-    {"link", required_argument, NULL, OPT_LINK},     {"rate", required_argument, NULL, OPT_RATE},
-    {"height", required_argument, NULL, OPT_HEIGHT}, {"seed", required_argument, NULL, OPT_SEED},
-    {"burst", no_argument, NULL, OPT_BURST},         {"fault", required_argument, NULL, OPT_FAULT},
-    {"help", no_argument, NULL, OPT_HELP},           {NULL, 0, NULL, 0},
+    {"link", required_argument, NULL, OPT_LINK},
+    {"rate", required_argument, NULL, OPT_RATE},
+    {"height", required_argument, NULL, OPT_HEIGHT},
+    {"seed", required_argument, NULL, OPT_SEED},
+    {"burst", no_argument, NULL, OPT_BURST},
+    {"fault", required_argument, NULL, OPT_FAULT},
+    {"round-down", no_argument, NULL, OPT_ROUND_DOWN},
+    {"help", no_argument, NULL, OPT_HELP},
+    {NULL, 0, NULL, 0},
 };
 
 static struct {
@@ -52,7 +61,7 @@ static struct {
     double height_m;
     line_fault_spec_t faults[FAULTS_MAX];
     int fault_count;
-    bool burst, help;
+    bool burst, round_down, help;
 } order = {.rate = 115200, .seed = 1};
 
 static struct {
@@ -133,6 +142,9 @@ static bool read_option(int option, const char *argument)
         return read_seed(argument);
     case OPT_BURST:
         order.burst = true;
+        return true;
+    case OPT_ROUND_DOWN:
+        order.round_down = true;
         return true;
     case OPT_FAULT:
         return read_fault(argument);
@@ -254,6 +266,8 @@ static void create_sensor(void)
     const line_fault_ends_t ends = {to_client, NULL, restart, trouble, NULL};
     quadrotor_config_t quadrotor = quadrotor_default;
     urg04lx_config_t urg = urg04lx_default;
+
+    urg.rounds_down = order.round_down;
     noise_t phase;
 
     timeline_reset();
