@@ -10,7 +10,6 @@
 #define FIRST_STEP 367U /* 384 is straight ahead; 1024 steps make a turn */
 #define LAST_STEP 401U
 #define POINTS (LAST_STEP - FIRST_STEP + 1U)
-#define STEP_US 150000U /* the driver is stepped every 150 ms */
 
 static const urg_config_t config = {
     .wait_us = 10000000U, /* the sensor's own power-up; ends early when it is heard */
@@ -45,6 +44,7 @@ static void receive(void)
         urg_line_broken(&urg, errors);
     }
     if (urg_feed(&urg, octets, count)) {
+        urg_scan_at(&urg, board_time_us());
         use_scan();
     }
 }
@@ -74,9 +74,9 @@ int main(void)
     stepped_us = board_time_us();
     while (board_runs()) {
         receive();
-        if (board_time_us() - stepped_us >= STEP_US) {
-            stepped_us += STEP_US;
-            urg_step(&urg, board_time_us());
+        if (board_time_us() - stepped_us >= urg_pause_us(&urg)) {
+            stepped_us = board_time_us();
+            urg_step(&urg, stepped_us);
             send();
         }
     }

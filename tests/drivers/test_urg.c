@@ -164,6 +164,27 @@ void test_two_scans_and_a_notice_may_come_at_once(void)
     TEST_ASSERT_EQUAL_UINT16(97U, urg_expected(&urg));
 }
 
+/* A scan 30 ms before the latest step: the next frames are due at 70 ms behind that step, 170, ... */
+void test_after_a_loss_the_steps_are_asked_for_when_frames_are_due(void)
+{
+    reach_stream();
+    TEST_ASSERT_EQUAL_UINT32(150000U, urg_pause_us(&urg));
+    (void)feed(frame(32U, "9H"));
+    now_us += 120000U;
+    urg_scan_at(&urg, now_us);
+    now_us -= 120000U;
+    for (unsigned i = 0U; i < 5U && status() != URG_LOST; i++) {
+        TEST_ASSERT_EQUAL_UINT32(150000U, urg_pause_us(&urg));
+        (void)step();
+    }
+    TEST_ASSERT_EQUAL(URG_LOST, status());
+    /* The fifth step: 630 ms behind the scan. The first rate from 16.2 ms behind a frame to as much before
+     * the next one, which lasts 4.1 ms. */
+    TEST_ASSERT_EQUAL_UINT32(115200U, output.rate);
+    TEST_ASSERT_UINT32_WITHIN(200U, 70000U - 16200U - 4100U, urg_pause_us(&urg));
+    TEST_ASSERT_EQUAL_UINT32(urg_pause_us(&urg), report.pause_us);
+}
+
 /* The longest command: LF, MS with its range, LF. */
 void test_a_lost_stream_is_asked_for_with_an_end_of_line_first(void)
 {

@@ -1907,3 +1907,37 @@ void test_a_request_that_nothing_answers_is_given_up_after_400_ms(void)
         TEST_ASSERT_EQUAL(heard == 0 ? URG_STOP2 : URG_STREAM, link_.status);
     }
 }
+
+/* 160 ms of listening that end so long after the time of a frame, within a revolution. */
+static void listen_until(uint32_t phase_us)
+{
+    stream_in_time();
+    while (now_us - link_.frame_us < 300000) {
+        nothing_after(10000);
+    }
+    seen.octet_count++;
+    nothing_after(500000 + (phase_us + 40000) % REVOLUTION_US - (now_us - link_.frame_us));
+    TEST_ASSERT_EQUAL_UINT32(160000, link_.timeout_us);
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
+    nothing_after(160000);
+    TEST_ASSERT_EQUAL_UINT32(phase_us, (now_us - link_.frame_us) % REVOLUTION_US);
+}
+
+/* At 700 ms a frame may be early or late by 15 + 700 / 512 = 16.4 ms and lasts 4.1 ms. */
+void test_behind_a_long_listening_the_next_turn_is_what_the_frames_allow(void)
+{
+    static const struct {
+        uint32_t phase_us, rate, timeout_us;
+    } turns[] = {
+        {20000, 115200, 59000}, /* 80 ms to the frame, less 16.4 and 4.1 */
+        {70000, 250000, 46000}, /* to 16.4 ms behind it */
+        {90000, 250000, 40000},
+        {97000, 250000, 119000}, /* and to that behind the one after it */
+    };
+    for (uint32_t i = 0; i < 4; i++) {
+        listen_until(turns[i].phase_us);
+        TEST_ASSERT_EQUAL_UINT32(turns[i].rate, link_.rate);
+        TEST_ASSERT_UINT32_WITHIN(1000, turns[i].timeout_us, link_.timeout_us);
+        TEST_ASSERT_EQUAL(turns[i].rate == 115200, action.send);
+    }
+}

@@ -84,7 +84,6 @@ size_t uart_read(unsigned char *octets, size_t most);
 void uart_write(const unsigned char *octets, size_t count);
 void wait_ms(unsigned ms);
 void show(float mm);
-bool step_is_due(void);
 """ + block, encoding="utf-8")
         run("cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-I", ROOT, "-c", program, "-o", self.top / "readme.o")
 

@@ -8,7 +8,7 @@
 
 static urg_t urg;
 static uint16_t points[2 * POINTS]; /* two scans: one is used while the next comes in */
-static uint32_t stepped_ms;
+static uint32_t stepped_us;
 
 static void show_scan()
 {
@@ -56,12 +56,13 @@ void loop()
     while (Serial1.available() > 0) {
         const octet_t octet = (octet_t)Serial1.read();
         if (urg_feed(&urg, &octet, 1)) {
+            urg_scan_at(&urg, micros());
             show_scan();
         }
     }
-    if (millis() - stepped_ms >= 150) {
-        stepped_ms += 150;
-        urg_step(&urg, micros());
+    if (micros() - stepped_us >= urg_pause_us(&urg)) {
+        stepped_us = micros();
+        urg_step(&urg, stepped_us);
         send();
     }
 }
