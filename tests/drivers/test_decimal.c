@@ -244,6 +244,7 @@ void test_zeros_far_behind_a_tie_leave_it_a_tie(void)
 {
     assert_reads(1.0F, "1.0000000596046447753906250000000000000000000000");
     assert_reads(18446744073709551616.0F, "18446745173221179392"); /* 2^64 and half a unit */
+    assert_reads(18446746272732807168.0F, "18446745173221244928"); /* and 2^16 more */
 }
 
 void test_a_tie_of_33_digits_is_read_as_what_lies_just_below_it(void)

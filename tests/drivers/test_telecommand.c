@@ -81,6 +81,7 @@ void test_a_line_is_name_and_value(void)
     assert_parses("#LAW PID\n", "LAW", "PID");
     assert_parses("#X 1\n", "X", "1");
     assert_parses("#Y\n", "Y", "");
+    assert_parses("#Z  1 2 \n", "Z", "1 2");
     TEST_ASSERT_EQUAL(0U, collector.strays);
 }
 

@@ -6,6 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+typedef char size_t_has_32_bits[sizeof(size_t) == 4 ? 1 : -1];
+
 bool nondet_bool(void);
 float nondet_float(void);
 size_t nondet_size(void);

@@ -1,14 +1,18 @@
 #!/usr/bin/env python3
-"""prove.py [NAME ...]: proves drivers/ with CBMC, file by file; docs/portability.md says what. 77: no CBMC.
+"""prove.py [--faults] [NAME ...]: proves drivers/ with CBMC, file by file; docs/portability.md says what. 77: no CBMC.
+--faults: each proof must fail when the fault of its own in faults.py is in the code.
 
 CBMC bounds an array inside a structure that is reached by a pointer only by the whole structure. So what is proved is a
 copy of drivers/ in which each index of such an array goes through prove_at(), which asserts the array's own bound."""
+import concurrent.futures
 import os
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
+
+from faults import FAULTS
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
@@ -27,6 +31,7 @@ APART = {
     "decimal": ["wide_multiply_add", "wide_divide", "wide_raise_to", "make_binary", "round_to_float", "to_float", "decimal_read",
                 "scaled", "write_backwards", "write_decimals"],
     "scip_info": ["trimmed", "begins_with", "contains", "read_digits", "read_small", "copy", "health_of", "divide"],
+    "scip_parser": ["gather", "line_in_place", "line_by_copy", "scip_parser_end_line", "decode_pairs", "decode_triples", "pass"],
 }
 
 # Harness, sources besides it, rounds of a loop at most (proved too), functions. A harness that includes its source has none.
@@ -52,7 +57,12 @@ PROOFS = [
      ["starts_sound", "orders_leave_it_sound", "octets_leave_it_sound", "line_ends_in_hunt", "line_ends_in_echo",
       "line_ends_in_status", "line_ends_in_time", "line_ends_in_text", "line_ends_in_reply", "line_ends_in_legacy",
       "line_ends_in_data", "line_ends_in_scan", "octets_are_gathered", "echo_in_place_leaves_it_sound",
-      "status_in_place_leaves_it_sound", "time_in_place_leaves_it_sound", "block_in_place_leaves_it_sound"]),
+      "status_in_place_leaves_it_sound", "time_in_place_leaves_it_sound", "block_in_place_leaves_it_sound",
+      "any_line_is_copied"]),
+    ("scip_parser", ["scip_request"], 67,
+     ["any_block_is_passed", "any_pairs_are_decoded", "any_triples_are_decoded", "any_triples_are_decoded_behind_one",
+      "any_triples_are_decoded_behind_two"]),
+    ("scip_parser", ["scip_request"], 14, ["any_burst_is_taken_apart"]),
 ]
 
 
@@ -89,12 +99,19 @@ def with_apart(text, names):
     return text
 
 
-def copy_drivers(tree):
+def copy_drivers(tree, changed=("", "", "")):
+    """changed: file, text, the fault that stands there instead."""
     os.mkdir(os.path.join(tree, "drivers"))
+    file, old, new = changed
     for name in os.listdir(os.path.join(ROOT, "drivers")):
         if name.endswith((".c", ".h")):
             with open(os.path.join(ROOT, "drivers", name), encoding="utf-8") as source:
-                text = with_apart(source.read(), APART.get(name[:-2], []) if name.endswith(".c") else [])
+                text = source.read()
+            if name == file:
+                if text.count(old) != 1:
+                    sys.exit(f"prove: {file} has '{old}' {text.count(old)} times")
+                text = text.replace(old, new)
+            text = with_apart(text, APART.get(name[:-2], []) if name.endswith(".c") else [])
             with open(os.path.join(tree, "drivers", name), "w", encoding="utf-8") as copy:
                 copy.write('#include "prove.h"\n' + with_bounds(text))
 
@@ -111,11 +128,29 @@ def prove(cbmc, tree, name, sources, rounds, function):
     return good, proved, used.ru_utime + used.ru_stime, lines
 
 
-def report(name, function, good, proved, seconds, lines):
-    print(f"{'proved' if good else 'FAILED'}  {name}: {function}, {proved} properties, {seconds:.0f} s", flush=True)
-    if not good:
-        print("\n".join([line for line in lines if line.endswith(": FAILURE")] or lines[-20:]))
-    return good
+def failures_of(lines):
+    return [line for line in lines if line.endswith(": FAILURE")]
+
+
+def prove_one(cbmc, name, sources, rounds, function):
+    """(good, what to print)"""
+    with tempfile.TemporaryDirectory() as tree:
+        copy_drivers(tree)
+        good, proved, seconds, lines = prove(cbmc, tree, name, sources, rounds, function)
+    text = f"{'proved' if good else 'FAILED'}  {name}: {function}, {proved} properties, {seconds:.0f} s"
+    return good, "\n".join([text] + ([] if good else failures_of(lines) or lines[-20:])), seconds
+
+
+def prove_fault(cbmc, name, sources, rounds, function):
+    found = [fault[2:] for fault in FAULTS if fault[:2] == (name, function)]
+    if len(found) != 1:
+        return False, f"FAILED  {name}: {function} has no fault of its own in faults.py", 0.0
+    with tempfile.TemporaryDirectory() as tree:
+        copy_drivers(tree, found[0])
+        good, _, seconds, lines = prove(cbmc, tree, name, sources, rounds, function)
+    noticed = not good and failures_of(lines)
+    text = failures_of(lines)[0] if noticed else "with its fault in the code it does not fail\n" + "\n".join(lines[-5:])
+    return bool(noticed), f"{'noticed' if noticed else 'FAILED'}  {name}: {function}, {seconds:.0f} s: {text}", seconds
 
 
 def notices(cbmc, tree):
@@ -125,27 +160,32 @@ def notices(cbmc, tree):
     with open(os.path.join(tree, "drivers", "too_far.c"), "w", encoding="utf-8") as copy:
         copy.write(text)
     good, _, _, lines = prove(cbmc, tree, "too_far_harness", ["too_far"], 2, "one_too_far")
-    failures = [line for line in lines if line.endswith(": FAILURE")]
+    failures = failures_of(lines)
     if good or len(failures) != 1 or "within its own array" not in failures[0]:
         print("FAILED  an index that is one too far is not noticed")
         return False
     return True
 
 
-def main(wanted):
+def main(arguments):
     cbmc = find_cbmc()
     if cbmc is None:
         print("CBMC is missing: tools/setup/setup.sh prove")
         return SKIPPED
-    ran = 0
     with tempfile.TemporaryDirectory() as tree:
         copy_drivers(tree)
         good = notices(cbmc, tree)
-        for name, sources, rounds, functions in PROOFS:
-            for function in functions if not wanted or name in wanted else []:
-                good = report(name, function, *prove(cbmc, tree, name, sources, rounds, function)) and good
-                ran += 1
-    return 0 if good and ran > 0 else 1
+    wanted = [name for name in arguments if name != "--faults"]
+    step = prove_fault if "--faults" in arguments else prove_one
+    steps = [(cbmc, name, sources, rounds, function) for name, sources, rounds, functions in PROOFS
+             for function in functions if not wanted or name in wanted]
+    total = 0.0
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for fine, text, seconds in pool.map(lambda one: step(*one), steps):
+            print(text, flush=True)
+            good, total = good and fine, total + seconds
+    print(f"{len(steps)} proofs, {total:.0f} s of processor time")
+    return 0 if good and steps else 1
 
 
 if __name__ == "__main__":

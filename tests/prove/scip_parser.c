@@ -1,17 +1,19 @@
 /* One octet, or a burst of them, from any sound state of the parser to a sound one: then any octets, however
- * many, leave it sound. Line ends are taken state by state, which is what keeps each proof short. The source
- * is included for its states. */
+ * many, leave it sound. Line ends are taken state by state, which is what keeps each proof short. A burst has
+ * memory of its own length, so that nothing behind it is read. The source is included for its states. */
 #include "drivers/scip_parser.c"
 
 #include "prove.h"
 
-#define POINTS_MAX 70U /* blocks begin, go on and end: more points are more of the same */
+void *malloc(size_t size);
+
+#define POINTS_MAX (SCIP_STEP_MAX + 1U)
 #define BURST_MAX (SCIP_BLOCK + 4U)
 
 static uint16_t memory[POINTS_MAX];
 static scip_scan_t scan;
 static scip_parser_t parser;
-static octet_t burst[BURST_MAX];
+static octet_t *burst;
 static size_t burst_count;
 
 /* Any answer, after a proof that what is compared is the awaited echo and octets of the line or the burst. */
@@ -26,9 +28,92 @@ int memcmp(const void *echo, const void *octets, size_t size)
     if (__CPROVER_same_object(at, &parser)) {
         PROVE(at >= parser.line && at + count <= parser.line + SCIP_LINE_MAX, "of the line");
     } else {
-        PROVE(at >= burst && at + count <= burst + burst_count, "of the burst");
+        PROVE(__CPROVER_r_ok(at, size), "of the burst");
     }
     return (int)nondet_cell();
+}
+
+/* What a block's characters are decoded with. */
+
+static check_t any_check(void)
+{
+    check_t any;
+
+    return any;
+}
+
+static bool has_octets(const octet_t *text, uint16_t count)
+{
+    return count <= SCIP_BLOCK && (text == parser.line || __CPROVER_r_ok(text, count * sizeof text[0]));
+}
+
+static bool has_points(const uint16_t *out, uint16_t count)
+{
+    return out >= memory && out + count <= memory + parser.awaited.points;
+}
+
+static check_t decode_pairs(uint16_t *out, const octet_t *text, uint16_t characters)
+{
+    PROVE(has_octets(text, characters), "octets of the block");
+    PROVE(characters % 2U == 0U && has_points(out, characters / 2U), "whole points of the scan");
+    return any_check();
+}
+
+static check_t decode_triples(uint16_t *out, uint16_t begun, uint32_t *partial, const octet_t *text,
+                              uint16_t characters)
+{
+    PROVE(has_octets(text, characters), "octets of the block");
+    PROVE(begun < 3U && has_points(out, (begun + characters) / 3U), "points of the scan");
+    *partial = (uint32_t)nondet_size();
+    return any_check();
+}
+
+static check_t pass(const octet_t *text, uint16_t characters)
+{
+    PROVE(has_octets(text, characters), "octets of the block");
+    return any_check();
+}
+
+/* What a burst is taken apart into, and an octet that ends a line: any answer that these were proved to give.
+ */
+
+static size_t any_part(const octet_t *octets, size_t count)
+{
+    const size_t part = nondet_size();
+
+    PROVE(__CPROVER_same_object(octets, burst) && count > 0U && count <= burst_count, "octets of the burst");
+    PROVE(__CPROVER_POINTER_OFFSET(octets) + count * sizeof octets[0] == burst_count * sizeof octets[0],
+          "what is left of it");
+    ASSUME(part <= count);
+    return part;
+}
+
+static size_t gather(scip_parser_t *any, const octet_t *octets, size_t count)
+{
+    (void)any;
+    return any_part(octets, count);
+}
+
+static size_t line_in_place(scip_parser_t *any, const octet_t *octets, size_t count)
+{
+    (void)any;
+    return any_part(octets, count);
+}
+
+static size_t line_by_copy(scip_parser_t *any, const octet_t *octets, size_t count, scip_event_t *event)
+{
+    const size_t part = any_part(octets, count);
+
+    (void)any;
+    ASSUME(part > 0U);
+    *event = (scip_event_t)(nondet_cell() % (SCIP_DAMAGED + 1U));
+    return part;
+}
+
+scip_event_t scip_parser_end_line(scip_parser_t *any)
+{
+    (void)any;
+    return (scip_event_t)(nondet_cell() % (SCIP_DAMAGED + 1U));
 }
 
 static bool is_sound_request(const scip_request_t *request)
@@ -110,8 +195,11 @@ void octets_leave_it_sound(void)
 static void end_a_line(uint16_t state)
 {
     any_sound_state(state);
-    (void)scip_parser_feed(&parser, SCIP_LINE_FEED);
+    const scip_event_t event = scip_parser_end_line_itself(&parser);
     PROVE(is_sound(), "sound after the end of a line");
+    PROVE(event != SCIP_TEXT ||
+              (parser.line_length <= SCIP_LINE_MAX && parser.text_length <= parser.line_length),
+          "a text within the line, which scip_info.c is proved for");
 }
 
 void line_ends_in_hunt(void)
@@ -163,20 +251,17 @@ void line_ends_in_scan(void)
 
 static void any_burst(uint16_t state)
 {
-    octet_t any[BURST_MAX];
-
-    for (size_t i = 0; i < BURST_MAX; i++) {
-        burst[i] = any[i];
-    }
     burst_count = nondet_size();
     ASSUME(burst_count > 0U && burst_count <= BURST_MAX);
+    burst = malloc(burst_count * sizeof burst[0]);
+    ASSUME(burst != NULL);
     any_sound_state(state);
 }
 
 static void take_in_place(uint16_t state)
 {
     any_burst(state);
-    PROVE(line_in_place(&parser, burst, burst_count) <= burst_count, "no more than there is");
+    PROVE(line_in_place_itself(&parser, burst, burst_count) <= burst_count, "no more than there is");
     PROVE(is_sound(), "sound after octets in place");
 }
 
@@ -205,7 +290,70 @@ void octets_are_gathered(void)
     size_t more;
 
     any_burst(HUNT);
-    more = gather(&parser, burst, burst_count);
+    more = gather_itself(&parser, burst, burst_count);
     PROVE(more <= burst_count, "no more than there is");
     PROVE(is_sound(), "sound while they are gathered");
+}
+
+void any_line_is_copied(void)
+{
+    scip_event_t event;
+
+    any_burst(nondet_cell());
+    const size_t taken = line_by_copy_itself(&parser, burst, burst_count, &event);
+    PROVE(taken > 0U && taken <= burst_count, "some, and no more than there is");
+}
+
+/* In up to 12 parts: more are more of the same. */
+void any_burst_is_taken_apart(void)
+{
+    scip_event_t event;
+
+    any_burst(nondet_cell());
+    ASSUME(burst_count <= 12U);
+    PROVE(scip_parser_feed_run(&parser, burst, burst_count, &event) <= burst_count, "no more than there is");
+}
+
+/* Blocks of each length, with the octets and the points that they need and none behind them. */
+
+static octet_t text_[SCIP_BLOCK];
+
+void any_block_is_passed(void)
+{
+    for (uint16_t count = 0U; count <= SCIP_BLOCK; count++) {
+        (void)pass_itself(&text_[SCIP_BLOCK - count], count);
+    }
+}
+
+void any_pairs_are_decoded(void)
+{
+    for (uint16_t count = 0U; count <= SCIP_BLOCK; count += 2U) {
+        (void)decode_pairs_itself(&memory[POINTS_MAX - count / 2U], &text_[SCIP_BLOCK - count], count);
+    }
+}
+
+static void decode_any_triples(uint16_t begun)
+{
+    static uint32_t partial;
+
+    for (uint16_t count = 0U; count <= SCIP_BLOCK; count++) {
+        partial = (uint32_t)nondet_size();
+        (void)decode_triples_itself(&memory[POINTS_MAX - (begun + count) / 3U], begun, &partial,
+                                    &text_[SCIP_BLOCK - count], count);
+    }
+}
+
+void any_triples_are_decoded(void)
+{
+    decode_any_triples(0U);
+}
+
+void any_triples_are_decoded_behind_one(void)
+{
+    decode_any_triples(1U);
+}
+
+void any_triples_are_decoded_behind_two(void)
+{
+    decode_any_triples(2U);
 }
