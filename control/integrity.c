@@ -42,6 +42,7 @@
     64.0F /* chosen: 8 mm rms, above the noise of any drawn sensor; bars on a floor make more */
 #define STILL_SHARE 0.4F   /* chosen: white noise alone makes 1, a swinging slant next to 0 */
 #define STILL_SCANS 16U    /* chosen: 1.6 s of scans */
+#define WHITE_SCANS 40U    /* tried: 120 healthy drawn flights reach 24, a blocked beam 40 within 4 to 6 s */
 #define STILL_BOTH_M 0.10F /* chosen: low, because the still slant is evidence too */
 #define FLAT_FELT_M 0.15F  /* chosen: half of BOTH_M; the thrust must then show AGAINST_M */
 #define STILL_FELT_M 0.05F /* chosen: half of that; the thrust must then show BOTH_M */
@@ -70,7 +71,7 @@
 #define GAP_ALLOWS_MPS 0.3F  /* chosen: the speed error of a witness that still counts as agreement */
 #define CONFIRMED_M 0.12F    /* chosen: just above STEP_M */
 #define TERRAIN_FALL_M 0.40F /* chosen: above the edge of the seed's course, 0.25 m */
-#define QUIET_S 0.5F         /* chosen: five scans */
+#define QUIET_S 1.0F         /* tried: 60 drawn vehicles whose blocked beam shows the reference; ten scans */
 #define QUIET_M 0.10F        /* chosen: as CONTENT_M */
 #define GLITCH_S 0.25F       /* chosen: two scans and a half */
 #define STEPS_TIME_S 2.0F    /* chosen: 20 scans */
@@ -283,6 +284,13 @@ static void watch_slant(integrity_t *i, const altitude_t *altitude)
     i->flat = i->scans == INTEGRITY_SCANS && slant_mm2 < STILL_MOST_MM2 && i->shaken <= 1.0F;
     i->rigid = rigid ? (uint16_t)(i->rigid + (i->rigid < STILL_SCANS)) : 0U;
     i->still = still ? (uint16_t)(i->still + (i->still < STILL_SCANS)) : 0U;
+    if (!integrity_sways(i)) {
+        i->white = 0U;
+    } else if (still) {
+        i->white = (uint16_t)(i->white + (i->white < WHITE_SCANS));
+    } else {
+        i->white = (uint16_t)(i->white - (i->white > 0U));
+    }
 }
 
 bool integrity_scan(integrity_t *integrity, const altitude_t *altitude)
@@ -657,8 +665,7 @@ static void take_height(integrity_t *i, float height_m, float gap_s, float age_s
         i->unconfirmed = true;
         i->near_m = height_m;
         i->quiet_s = 0.0F;
-    } else if (!fresh || rise_m > STEP_M || height_m > i->near_m + CONFIRMED_M ||
-               (i->quiet_s > QUIET_S && !integrity_still(i))) {
+    } else if (!fresh || rise_m > STEP_M || height_m > i->near_m + CONFIRMED_M || i->quiet_s > QUIET_S) {
         if (i->unconfirmed && !i->proved) {
             i->proved = true;
             confirm(i);
@@ -744,7 +751,7 @@ static bool still_against(const integrity_t *i)
                       against(&i->pushed, AGAINST_M);
 
     return (felt && both && rigid) || flat ||
-           ((felt || rigid) && against(&i->pushed, BOTH_M) && i->still == STILL_SCANS);
+           ((felt || rigid) && against(&i->pushed, BOTH_M) && i->white >= STILL_SCANS);
 }
 
 /* Both witnesses contradict the heights in the same direction, by that share of the limits. */
@@ -789,7 +796,7 @@ static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
     const bool stiff = i->rigid == STILL_SCANS &&
                        integrity_sways(i); /* the tilt sways, and the slant does not change */
 
-    if (i->steps > STEPS_MAX || stiff || aloft_unseen(i, flown)) {
+    if (i->steps > STEPS_MAX || stiff || i->white == WHITE_SCANS || aloft_unseen(i, flown)) {
         return true;
     }
     if (heights_moved(i)) {
@@ -912,7 +919,8 @@ void integrity_height(integrity_t *integrity, const flown_t *flown, float height
                          fabsf(flown->wanted_m) > VAIN_M)
                             ? integrity->vain_s + gap_s
                             : 0.0F;
-    integrity->quiet_s = (flown->wanted_m < QUIET_M) ? integrity->quiet_s + gap_s : 0.0F;
+    integrity->quiet_s = (flown->wanted_m < QUIET_M && integrity->still == 0U) ? integrity->quiet_s + gap_s
+                                                                               : 0.0F;
     if (!flown->ours) {
         forget(integrity);
         start(&integrity->felt, integrity->rise_mps);

@@ -87,6 +87,7 @@ typedef struct {
     bool flat;                        /* these vary little */
     uint16_t rigid; /* scans in a row whose slants vary less than those of any flying vehicle */
     uint16_t still; /* scans in a row whose slants contain only white noise */
+    uint16_t white; /* while the tilt sways: such scans, less those that contain more; 0 or above */
     /* heights */
     bool has_height;      /* at least one height was received */
     float height_m;       /* latest height */

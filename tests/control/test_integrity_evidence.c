@@ -216,6 +216,9 @@ void test_frames_that_were_level_themselves_are_no_tilt(void)
 
 /* ---- scans */
 
+static uint16_t white_before;
+static float sway_before_rad2;
+
 /* The twelfth scan: a ramp of slope_mm a scan, and noise_mm to either side by turns. */
 static void scan_of(float slope_mm, float noise_mm)
 {
@@ -227,6 +230,8 @@ static void scan_of(float slope_mm, float noise_mm)
     it.slants_mm[0] = 99.0F; /* drops out */
     memcpy(it.slants_mm + 1, slants_mm, sizeof slants_mm - sizeof slants_mm[0]);
     it.scans = INTEGRITY_SCANS - 1U;
+    it.white = white_before;
+    it.sway_rad2 = sway_before_rad2;
     TEST_ASSERT_TRUE(integrity_scan(
         &it,
         &(altitude_t){.height_mm = 500.0F, .slant_mm = slants_mm[INTEGRITY_SCANS - 1U], .spread_mm = 9.0F}));
@@ -956,22 +961,45 @@ void test_a_step_away_from_the_vehicle_confirms_at_once(void)
     TEST_ASSERT_FALSE(it.unconfirmed);
 }
 
-void test_a_law_that_is_content_for_half_a_second_confirms_unless_the_slant_is_still(void)
+void test_a_law_that_is_content_for_a_second_confirms(void)
 {
-    static const struct {
-        float quiet_s;
-        uint16_t still;
-        bool unconfirmed;
-    } rows[] = {{0.5F, 0U, true}, {0.51F, 0U, false}, {0.51F, 8U, false}, {0.51F, 9U, true}};
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 2; i++) {
         hover();
         it.unconfirmed = true;
-        it.quiet_s = rows[i].quiet_s;
-        it.still = rows[i].still;
+        it.quiet_s = (i == 0) ? 1.0F : 1.01F;
         height(0.5F);
-        TEST_ASSERT_EQUAL(rows[i].unconfirmed, it.unconfirmed);
+        TEST_ASSERT_EQUAL(i == 0, it.unconfirmed);
         TEST_ASSERT_EQUAL_FLOAT(0.0F, it.quiet_s); /* the law wants to climb */
     }
+}
+
+void test_a_slant_of_noise_is_no_contentment(void)
+{
+    for (uint16_t still = 0U; still < 2U; still++) {
+        hover();
+        it.quiet_s = 0.2F;
+        it.still = still;
+        flown.wanted_m = 0.0F;
+        height(0.5F);
+        NEAR(still == 0U ? 0.3F : 0.0F, it.quiet_s);
+    }
+}
+
+void test_scans_of_noise_count_while_the_tilt_sways_and_others_count_back(void)
+{
+    static const struct {
+        uint16_t before, after;
+        float noise_mm, sway_rad2;
+    } rows[] = {{5U, 6U, 5.0F, 4.1e-4F},   {5U, 4U, 9.0F, 4.1e-4F}, {0U, 0U, 9.0F, 4.1e-4F},
+                {40U, 40U, 5.0F, 4.1e-4F}, {5U, 0U, 5.0F, 4.0e-4F}, {5U, 0U, 9.0F, 4.0e-4F}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        white_before = rows[i].before;
+        sway_before_rad2 = rows[i].sway_rad2;
+        scan_of(0.0F, rows[i].noise_mm);
+        TEST_ASSERT_EQUAL_UINT16(rows[i].after, it.white);
+    }
+    white_before = 0U;
+    sway_before_rad2 = 0.0F;
 }
 
 void test_a_law_is_content_below_a_decimetre_of_wanted_climb(void)

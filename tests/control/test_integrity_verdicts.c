@@ -247,7 +247,7 @@ void test_the_error_of_the_height_is_the_mean_of_the_witnesses_that_count(void)
     TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.7F, it.lost_m);
     setUp();
     it.doubts = DOUBT_IMU;
-    it.still = 16U;
+    it.white = 16U;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.7F, -0.3F));
     TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.3F, it.lost_m);
 }
@@ -314,15 +314,29 @@ void test_a_rigid_slant_and_both_witnesses_by_a_decimetre_doubt_the_heights(void
     TEST_ASSERT_EQUAL_UINT16(0U, slant(2U, 0U, 0.11F, -0.11F));
 }
 
+static uint16_t noisy_slant(uint16_t rigid, uint16_t white, float felt_m, float pushed_m)
+{
+    setUp();
+    it.rigid = rigid;
+    it.white = white;
+    return judged(felt_m, pushed_m);
+}
+
 void test_a_slant_of_noise_alone_needs_the_thrust_and_a_sign_of_another(void)
 {
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, slant(0U, 16U, -0.06F, -0.29F));
-    TEST_ASSERT_EQUAL_UINT16(0U, slant(0U, 16U, -0.06F, -0.28F));
-    TEST_ASSERT_EQUAL_UINT16(0U, slant(0U, 15U, -0.06F, -0.29F));
-    TEST_ASSERT_EQUAL_UINT16(0U, slant(0U, 16U, -0.05F, -0.29F));
-    TEST_ASSERT_EQUAL_UINT16(0U, slant(0U, 16U, 0.06F, -0.29F));
-    TEST_ASSERT_EQUAL_UINT16(0U, slant(1U, 16U, 0.06F, -0.29F));
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, slant(2U, 16U, 0.06F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, noisy_slant(0U, 16U, -0.06F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(0U, 16U, -0.06F, -0.28F));
+    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(0U, 15U, -0.06F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(0U, 16U, -0.05F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(0U, 16U, 0.06F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(1U, 16U, 0.06F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, noisy_slant(2U, 16U, 0.06F, -0.29F));
+}
+
+void test_a_slant_of_noise_for_four_seconds_is_a_blocked_beam(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(0U, 39U, 0.0F, 0.0F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, noisy_slant(0U, 40U, 0.0F, 0.0F));
 }
 
 void test_a_swaying_tilt_and_a_rigid_slant_are_a_blocked_beam(void)
@@ -569,7 +583,7 @@ void test_a_push_in_vain_of_three_seconds_doubts_the_heights_where_the_thrust_is
 void test_a_still_slant_needs_no_accelerometer(void)
 {
     it.doubts = DOUBT_IMU;
-    it.still = 16U;
+    it.white = 16U;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, judged(0.0F, -0.28F));
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.0F, -0.29F));
 }

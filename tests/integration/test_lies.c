@@ -65,6 +65,21 @@ static const lie_t sights[] = {
     {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=10", "plant.block_mm=170"}, 1700.0, 1.0, 0.0},
 };
 
+/* The blocked beam shows about the reference, so the law is content and drifts. */
+static const lie_t content[] = {
+    {{FLAT, "plant.sight_blocked=0.71", "plant.block_mm=805"}, 800.0, 1.0, 0.0},
+    {{FLAT, "plant.sight_blocked=1", "plant.block_mm=795", "plant.hover_thrust=7.8"}, 800.0, 1.0, 0.0},
+    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=6", "plant.block_mm=739"}, 1500.0, 1.0, 0.0},
+    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=6", "plant.block_mm=750"}, 1500.0, 1.0, 0.0},
+};
+
+void test_a_blocked_beam_that_shows_the_reference_does_not_fly_the_vehicle_away(void)
+{
+    for (size_t i = 0; i < sizeof content / sizeof content[0]; i++) {
+        fly("est-60cm-ramp", &content[i], false);
+    }
+}
+
 /* Only the thrust tells the truth. */
 static const lie_t alone[] = {
     {{FLAT, "plant.sight_blocked=1", "plant.block_mm=372", "plant.acc_sign=-1"}, 2000.0, 1.2, 0.0},
