@@ -396,6 +396,20 @@ static void check_time_table(const char *table, long rx_octets, long tx_octets)
     TEST_ASSERT_TRUE(last_us > 1000000);
 }
 
+void test_a_recording_at_the_fastest_rate(void)
+{
+    static char text[200000];
+
+    begin("--height", "0.4", NULL, NULL);
+    TEST_ASSERT_EQUAL_INT(0, child_plomada("scip record '" LINK
+                                           "' fast.bin --force --seconds 1 --rate 750000 2>&1",
+                                           text, sizeof text));
+    TEST_ASSERT_NOT_NULL(strstr(text, "damaged: 0\n"));
+    child_read_file("fast.bin.md", text, sizeof text);
+    TEST_ASSERT_NOT_NULL(strstr(text, "| rate of the stream | 750000 bit/s, 10.0"));
+    TEST_ASSERT_EQUAL_INT(0, end_server(SIGTERM));
+}
+
 void test_a_recording_is_whole_and_has_its_birth_certificate(void)
 {
     static char text[200000], octets[200000];

@@ -25,8 +25,9 @@ static const char usage[] =
     "  FILE.csv   when: dir,t_us,offset,length\n"
     "  FILE.md    the birth certificate: device, firmware, date, command\n\n"
     "  --seconds S    of scans (default 10); Ctrl-C ends it earlier\n"
-    "  --rate N       19200, 57600, 115200 or 250000 bit/s (default 115200; many RS232 adapters cannot do "
-    "250000)\n"
+    "  --rate N       19200, 57600, 115200, 250000, 500000 or 750000 bit/s (default 115200; many RS232 "
+    "adapters cannot do\n"
+    "                 250000 and more)\n"
     "  --steps A..B   0..768 (default 44..725)\n"
     "  --force        overwrites files that are there already\n\n"
     "Once a second all files are brought up to date, and stderr shows the scans per second: a recording that "
@@ -88,7 +89,7 @@ static bool read_seconds(recording_t *recording, const char *text)
 
 static bool read_rate(recording_t *recording, const char *text)
 {
-    static const unsigned long rates[] = {19200, 57600, 115200, 250000};
+    static const unsigned long rates[] = {19200, 57600, 115200, 250000, 500000, 750000};
     char *end;
 
     recording->scanner.rate = strtoul(text, &end, 10);
@@ -97,7 +98,7 @@ static bool read_rate(recording_t *recording, const char *text)
             return true;
         }
     }
-    return complain("not one of 19200, 57600, 115200, 250000", text);
+    return complain("not one of 19200, 57600, 115200, 250000, 500000, 750000", text);
 }
 
 static bool read_steps(recording_t *recording, const char *text)
