@@ -9,6 +9,7 @@
 #define SHARE_LEAST 0.45F   /* tried 0.4 to 0.6: half of what an effect makes */
 #define CHANCE 0.03F        /* chosen: m2/s4; of small changes the share is uncertain by so much */
 #define PRODUCT_MIN 0.01F   /* chosen: m2/s4; less tells nothing */
+#define SWINGS_MOST 0.6F    /* tried: m2/s4; a pilot who swings it makes commands that go along with him */
 #define CORRELATION_2 0.09F /* tried 0.06 to 0.16: a correlation of 0.3; below it the share may be chance */
 
 void effect_init(effect_t *effect)
@@ -41,7 +42,7 @@ void effect_step(effect_t *effect, float pushed_mps2, float felt_mps2, float dt_
     effect->felt_2 += mean * (felt * felt - effect->felt_2);
     effect->running_s = at_most(effect->running_s + dt_s, MEAN_S);
 
-    const bool sure = effect->running_s >= MEAN_S &&
+    const bool sure = effect->running_s >= MEAN_S && effect->pushed_2 < SWINGS_MOST &&
                       effect->product * effect->product > CORRELATION_2 * effect->pushed_2 * effect->felt_2;
     effect->has_effect = effect->product > least_product(effect) && (effect->has_effect || sure);
 }

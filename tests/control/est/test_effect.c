@@ -81,6 +81,22 @@ void test_a_third_of_an_effect_is_none(void)
     TEST_ASSERT_EQUAL_FLOAT(60.0F, until(&flight, true, 60.0F));
 }
 
+static bool swing(float mps2)
+{
+    effect_init(&effect);
+    for (int i = 0; i < 1200; i++) { /* a pilot swings it at 0.7 Hz, and the commands go along with him */
+        const float pushed_mps2 = mps2 * sinf(6.2832F * 0.7F * FRAME_S * (float)i);
+        effect_step(&effect, pushed_mps2, pushed_mps2, FRAME_S);
+    }
+    return effect.has_effect;
+}
+
+void test_commands_that_swing_far_show_no_effect(void)
+{
+    TEST_ASSERT_FALSE(swing(2.6F));
+    TEST_ASSERT_TRUE(swing(1.2F));
+}
+
 void test_commands_that_hardly_change_tell_nothing(void)
 {
     const flight_t flight = {1.0F, 0.07F, 0.02F, 0.0F};
