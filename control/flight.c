@@ -514,19 +514,13 @@ static void change_doubts(flight_t *flight, float gravity_n)
     flight->doubts = integrity->doubts;
 }
 
-/* The operator has told it to fly: armed, or a reference in force. */
-static bool told_to_fly(const flight_t *flight)
-{
-    return flight->arming.armed || flight->supervisor.reference_m > 0.0F;
-}
-
 /* A pilot may have the vehicle, and nothing tells: without a pin on the ground, or in a descent that began
- * so. Somebody may carry it too, so it must have been told to fly. An IMU that has fallen silent does not say
- * so any longer: the descent then ends by its time. */
+ * so. Somebody may carry it by hand too: that is not told apart, and a vehicle that flies must not fall. An
+ * IMU that has fallen silent does not say so any longer: the descent then ends by its time. */
 static bool may_be_carried(const flight_t *flight, const parameters_t *parameters)
 {
     if (flight->supervisor.state == FLIGHT_GROUND) {
-        return integrity_carried(&flight->integrity) && told_to_fly(flight) &&
+        return integrity_carried(&flight->integrity) &&
                parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE && est_law_has_imu(&flight->est);
     }
     return flight->carried && integrity_sways(&flight->integrity) && est_law_has_imu(&flight->est);
