@@ -45,6 +45,7 @@
 #define WHITE_SCANS 40U    /* tried: 120 healthy drawn flights reach 24, a blocked beam 40 within 4 to 6 s */
 #define STILL_BOTH_M 0.10F /* chosen: low, because the still slant is evidence too */
 #define FLAT_FELT_M 0.15F  /* chosen: half of BOTH_M; the thrust must then show AGAINST_M */
+#define FLAT_SCANS 6U      /* tried: without it 1 of 100 healthy flights of climb rates was doubted */
 #define STILL_FELT_M 0.05F /* chosen: half of that; the thrust must then show BOTH_M */
 
 /* Accelerometer at rest. */
@@ -747,7 +748,7 @@ static bool still_against(const integrity_t *i)
     const bool rigid = i->rigid >= RIGID_SCANS;
     const bool both = acceleration_against(i, STILL_BOTH_M) && against(&i->pushed, STILL_BOTH_M);
 
-    const bool flat = i->flat && felt && acceleration_against(i, FLAT_FELT_M) &&
+    const bool flat = i->flat && i->white >= FLAT_SCANS && felt && acceleration_against(i, FLAT_FELT_M) &&
                       against(&i->pushed, AGAINST_M);
 
     return (felt && both && rigid) || flat ||

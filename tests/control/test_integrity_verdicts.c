@@ -95,7 +95,13 @@ static void way(float m)
 static void flat(float wanted_m)
 {
     it.flat = true;
+    it.white = 6U;
     flown.wanted_m = wanted_m;
+}
+static void flat_by_chance(float wanted_m)
+{
+    flat(wanted_m);
+    it.white = 5U;
 }
 
 typedef struct {
@@ -167,7 +173,8 @@ void test_a_slant_that_varies_little_asks_less_also_near_the_reference(void)
     static const row_t rows[] = {
         {flat, 0.09F, -0.16F, -0.51F, DOUBT_SIGHT}, {flat, 0.09F, -0.14F, -0.51F, 0},
         {flat, 0.09F, -0.16F, -0.49F, 0},           {flat, 0.09F, 0.16F, -0.51F, 0},
-        {flat, 0.09F, 0.16F, 0.51F, DOUBT_SIGHT},   {flat, 0.09F, -0.51F, -0.29F, DOUBT_SIGHT},
+        {flat_by_chance, 0.09F, -0.16F, -0.51F, 0}, {flat, 0.09F, 0.16F, 0.51F, DOUBT_SIGHT},
+        {flat, 0.09F, -0.51F, -0.29F, DOUBT_SIGHT},
     };
     CHECK(rows);
 }
