@@ -69,8 +69,8 @@ static const lie_t sights[] = {
 static const lie_t content[] = {
     {{FLAT, "plant.sight_blocked=0.71", "plant.block_mm=805"}, 800.0, 1.0, 0.0},
     {{FLAT, "plant.sight_blocked=1", "plant.block_mm=795", "plant.hover_thrust=7.8"}, 800.0, 1.0, 0.0},
-    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=6", "plant.block_mm=739"}, 1500.0, 1.0, 0.0},
-    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=6", "plant.block_mm=750"}, 1500.0, 1.0, 0.0},
+    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=6", "plant.block_mm=739"}, 1600.0, 1.0, 0.0},
+    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=6", "plant.block_mm=750"}, 1600.0, 1.0, 0.0},
 };
 
 void test_a_blocked_beam_that_shows_the_reference_does_not_fly_the_vehicle_away(void)
