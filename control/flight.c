@@ -60,6 +60,9 @@
 #define HEIGHT_LATE_US UINT32_C(170000)     /* a scan of 0.1 s is missing */
 #define UNPOWERED_S 1.0F                    /* chosen: a free fall of 5 m */
 #define EFFECT_REACH_M 0.14F                /* chosen: below VAIN_M in integrity.c */
+#define PIN_TRUSTED_S 5.0F                  /* chosen: a loose contact is over sooner */
+#define PIN_BELOW_N 2.0F                    /* chosen: a load of a newton let go, and a newton to sink */
+#define PIN_ABOVE_N 1.0F                    /* chosen: a load of a newton */
 #define FLOAT_REACH_M 0.30F /* chosen: three times the distance that counts as reached, reach.c */
 
 /* For states flown without an estimate. */
@@ -187,6 +190,8 @@ static void change_mode(flight_t *flight, flight_mode_t before, flight_mode_t no
 {
     const bool handed_over = flight->supervisor.state == FLIGHT_DESCENDING; /* by a pilot, without heights */
 
+    flight->piloted_s = 0.0F;
+    flight->stuck_pin_n = 0.0F;
     if (before == FLIGHT_MODE_DESCENT) {
         flight->hover_n += flight->descent.trim_n;
     }
@@ -300,6 +305,46 @@ static void step_blind_descent(flight_t *flight, bool started)
         at_most(seconds_at_most(flight->supervisor.state_us, BLIND_MAX_S) + flight->hurried_s, BLIND_MAX_S));
 }
 
+/* Thrust of a descent by heights, or without them; it only holds the height while the pin is trusted. */
+static float stuck_pin_descent_n(flight_t *flight)
+{
+    const height_track_t *height = &flight->supervisor.height;
+    const bool holds = flight->piloted_s < PIN_TRUSTED_S && !flight->supervisor.land;
+
+    if (height->age_us > HEIGHT_LOST_US) {
+        return holds ? flight->hover_n
+                     : descent_blind(flight->hover_n, seconds_at_most(height->age_us, BLIND_MAX_S));
+    }
+    if (!height->is_new) {
+        return flight->hover_n + flight->stuck_pin_n;
+    }
+    flight->descent.sink_mm_s = holds ? 0.0F : flight->descent.sink_mm_s;
+    flight->descent.rocks = rocks(flight);
+    return descent_step(&flight->descent, flight->hover_n, height->height_mm, height->rate_mm_s,
+                        seconds_at_most(height->gap_us, HEIGHT_FRESH_S));
+}
+
+/* While the pin says that the pilot has the throttle, no thrust commanded here moves the vehicle, unless the pin
+ * is wrong. For that case the output holds it by its heights, and lands it after a while, or when that is
+ * ordered. Only the output contains this: nothing is learned from it, and a hand-back starts without it. */
+static void step_stuck_pin(flight_t *flight)
+{
+    const bool piloted = (flight->supervisor.flags & FLIGHT_FLAG_PILOT) != 0U;
+
+    if (!piloted || flight->piloted_s <= 0.0F) {
+        descent_start(&flight->descent, 0.0F);
+        flight->piloted_s = 0.0F;
+        flight->stuck_pin_n = 0.0F;
+    }
+    if (piloted) {
+        flight->piloted_s += seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
+        const float wanted_n = stuck_pin_descent_n(flight) - flight->hover_n;
+        const float least_n = (flight->descent.near_ground_s > 0.0F) ? -THRUST_MAX_N : -PIN_BELOW_N;
+        flight->stuck_pin_n = at_least(between(least_n, wanted_n, PIN_ABOVE_N),
+                                       flight->idle_n - flight->thrust_n);
+    }
+}
+
 /* Height to hold, above the terrain. */
 static float aim_m(const flight_t *flight)
 {
@@ -345,6 +390,7 @@ static bool run_mode(flight_t *flight, const parameters_t *parameters, bool mode
         break;
     case FLIGHT_MODE_HOVER:
         flight->setpoint_n = flight->hover_n;
+        step_stuck_pin(flight);
         break;
     case FLIGHT_MODE_DESCENT:
         step_descent(flight, mode_changed);
@@ -932,7 +978,7 @@ uint16_t flight_releases(const flight_t *flight, const parameters_t *parameters)
 {
     const uint16_t law = parameters_choice(parameters, PARAMETER_LAW);
 
-    if (law == LAW_EST || is_est_mode(flight->mode)) {
+    if (law == LAW_EST || is_est_mode(flight->mode) || flight->piloted_s > 0.0F) {
         return FLIGHT_RELEASE_HEIGHT | FLIGHT_RELEASE_FRAME;
     }
     if (law == LAW_PIDT || parameters_choice(parameters, PARAMETER_RELEASE) == RELEASE_SCAN) {
@@ -951,9 +997,9 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
     const bool without_acceleration = wants_imu && !imu_missing && !est_law_has_acceleration(&flight->est);
     const float measured_mm = (supervisor->height.sequence != 0U) ? supervisor->height.height_mm : NAN;
 
-    out->thrust_n = flight->thrust_n;
+    out->thrust_n = flight->thrust_n + flight->stuck_pin_n;
     out->idle_n = flight->idle_n;
-    out->pulse_us = thrust_to_pulse_us(flight->thrust_n);
+    out->pulse_us = thrust_to_pulse_us(out->thrust_n);
     out->state = supervisor->state;
     out->flags = (uint16_t)(supervisor->flags | (imu_missing ? FLIGHT_FLAG_ATTITUDE : 0U) |
                             (flight->out_of_reach ? FLIGHT_FLAG_REACH : 0U) |

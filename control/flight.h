@@ -77,7 +77,9 @@ typedef struct {
     float learned_s;    /* how long hover_n has been learned, at most 2.5 s */
     float setpoint_n;   /* thrust that the mode computes */
     float transfer_n;   /* added to setpoint_n; fades to 0: bumpless transfer between modes */
-    float thrust_n;     /* previous command */
+    float thrust_n;     /* previous command, without stuck_pin_n */
+    float stuck_pin_n;  /* added to the output while the pin says that the pilot has the throttle */
+    float piloted_s;    /* for how long it has said so */
     float hurried_s;    /* by which a blind descent is ahead of its time */
 } flight_t;
 
@@ -100,8 +102,8 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
                  flight_outputs_t *out);
 
 /* Events that release the next cycle, FLIGHT_RELEASE_*. PD and PID: as the parameter RELEASE says. PIDT:
- * each height. EST, and every law while the estimator flies: each height and each IMU frame. flight_step()
- * writes the same value to its outputs. */
+ * each height. EST, and every law while the estimator or a pilot flies: each height and each IMU frame.
+ * flight_step() writes the same value to its outputs. */
 uint16_t flight_releases(const flight_t *flight, const parameters_t *parameters);
 
 #endif

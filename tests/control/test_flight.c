@@ -452,9 +452,72 @@ void test_floating_is_the_gravity_feed_forward_and_follows_it(void)
     TEST_ASSERT_EQUAL_FLOAT(6.4F, out.thrust_n);
     plant.mute = true;
     in.has_throttle = false;
-    held_by_a_pilot(0.5, 30.0);
+    held_by_a_pilot(0.5, 4.9);
     TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
     TEST_ASSERT_EQUAL_FLOAT(6.4F, out.thrust_n);
+    held_by_a_pilot(0.5, 30.0); /* the pin may be wrong, and there is no height */
+    TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
+    TEST_ASSERT_EQUAL_FLOAT(4.4F, out.thrust_n);
+}
+
+/* ---- a pin that is wrong */
+
+void test_a_vehicle_whose_pin_says_pilot_holds_its_height_for_five_seconds_and_then_lands(void)
+{
+    calm_law();
+    hover_at(0.8F);
+    in.has_throttle = false;
+    run(4.9);
+    TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
+    TEST_ASSERT_DOUBLE_WITHIN(0.2, 0.7, plant.height_m);
+    run_until(FLIGHT_GROUND, 8.0);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, out.thrust_n);
+    run(1.0);
+    TEST_ASSERT_EQUAL(FLIGHT_GROUND, out.state);
+}
+
+void test_a_vehicle_whose_pin_says_pilot_does_not_fly_away_when_its_load_changes(void)
+{
+    for (double load_n = -1.2; load_n < 1.3; load_n += 0.6) {
+        board(7.4, 2.4);
+        calm_law();
+        hover_at(0.8F);
+        in.has_throttle = false;
+        plant.hover_n += load_n;
+        run_until(FLIGHT_GROUND, 15.0);
+        TEST_ASSERT_TRUE(highest_m > 0.7 && highest_m < 1.2);
+        TEST_ASSERT_TRUE(plant.touch_m_s > 0.05 && plant.touch_m_s < 0.8);
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, out.thrust_n);
+    }
+}
+
+void test_a_vehicle_whose_pin_says_pilot_obeys_an_order_to_land(void)
+{
+    hover_at(0.8F);
+    in.has_throttle = false;
+    run(0.5);
+    TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
+    TEST_ASSERT_DOUBLE_WITHIN(0.2, 0.8, plant.height_m);
+    setr(0.0F);
+    run(2.0);
+    TEST_ASSERT_DOUBLE_WITHIN(0.2, 0.4, plant.height_m);
+    run_until(FLIGHT_GROUND, 8.0);
+    TEST_ASSERT_TRUE(plant.touch_m_s > 0.05 && plant.touch_m_s < 0.6);
+}
+
+/* With a pilot the output moves nothing. */
+void test_what_is_put_out_against_a_wrong_pin_is_gone_at_the_hand_back(void)
+{
+    calm_law();
+    hover_at(0.8F);
+    in.has_throttle = false;
+    held_by_a_pilot(1.0, 12.0);
+    TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
+    TEST_ASSERT_FLOAT_WITHIN(0.3F, 7.4F, flight.hover_n);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, flight.hover_n - 2.0F, out.thrust_n);
+    in.has_throttle = true;
+    run_until(FLIGHT_FLYING, 0.2);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, flight.hover_n, out.thrust_n);
 }
 
 /* Thrust in doubt is held near the hover thrust, but not on the ground. */
@@ -492,7 +555,7 @@ void test_a_flight_handed_to_a_pilot_and_back_starts_near_hover_with_a_fresh_law
         TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
         TEST_ASSERT_EQUAL_FLOAT(0.0F, flight.pid.integral_n);
         TEST_ASSERT_FALSE(flight.pid.primed);
-        const float before_n = out.thrust_n;
+        const float before_n = flight.thrust_n;
         TEST_ASSERT_FLOAT_WITHIN(0.3F, (float)hover_n, before_n);
         in.has_throttle = true;
         run_until(FLIGHT_FLYING, 0.2);
@@ -530,13 +593,13 @@ void test_a_pilots_landing_gives_the_hover_thrust_of_the_flight_up(void)
     hover_at(0.8F);
     in.has_throttle = false;
     held_by_a_pilot(0.5, 1.0);
-    TEST_ASSERT_FLOAT_WITHIN(0.3F, 8.0F, out.thrust_n);
+    TEST_ASSERT_FLOAT_WITHIN(0.3F, 8.0F, flight.hover_n);
     held_by_a_pilot(0.0, 2.0);
     TEST_ASSERT_EQUAL(FLIGHT_GROUND, out.state);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, out.thrust_n);
     held_by_a_pilot(0.5, 2.0);
     TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
-    TEST_ASSERT_EQUAL_FLOAT(7.0F, out.thrust_n);
+    TEST_ASSERT_EQUAL_FLOAT(7.0F, flight.hover_n);
 }
 
 void test_the_hover_thrust_is_found_in_flight_and_given_up_on_the_ground(void)

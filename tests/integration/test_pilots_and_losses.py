@@ -147,16 +147,40 @@ class Pilots(unittest.TestCase):
             self.at_most(1.6, max(back), flight, "m")
             self.assertEqual(flight.rows[-1]["state"], "GROUND", str(flight))
 
-    def test_a_pin_that_says_pilot_for_a_while_makes_it_drift_not_fly_away(self):
+    def test_a_pin_that_says_pilot_for_a_while_makes_it_float_and_then_fly_on_or_stay_down(self):
         for flight in flights(("EST", "PID"), VEHICLES, lambda rng: (
                 {"pin_stuck": 0, "pin_stuck_start": rng.uniform(7.0, 10.0), "pin_stuck_length": 6.0}, {"SEL": "PIN"}, UNTIL_DOWN)):
             start_s = flight.figures["pin_stuck_start"]
             told = [row for row in flight.after(start_s + 0.15) if row["t_s"] < start_s + 5.9]  # PID: each 0.108 s
             self.assertLessEqual({row["state"] for row in told}, {"FLOATING", "GROUND"}, str(flight))
             self.assertTrue(all(int(row["flags"]) & 64 for row in told), str(flight))
-            self.at_most(1.5, max(row["height_m"] for row in flight.rows), flight, "m")
+            self.at_most(1.4, max(row["height_m"] for row in flight.rows), flight, "m")
+            self.assertGreater(told[150]["height_m"], 0.1, f"sinks at once: {flight}")
             self.assertEqual(flight.rows[-1]["state"], "GROUND", str(flight))
-            self.at_most(1.2, flight.touch_mps(), flight, "m/s at the touch")
+            self.at_most(1.0, flight.touch_mps(), flight, "m/s at the touch")
+
+    def test_a_pin_that_says_pilot_for_ever_ends_in_a_soft_landing_by_itself_or_by_order(self):
+        """Also when a load is let go or added meanwhile, which climbed out of sight at the hover thrust."""
+        def stuck(rng):
+            start_s = rng.uniform(5.0, 11.0)
+            land_s = start_s + rng.choice((rng.uniform(0.5, 4.0), 40.0))
+            return ({"pin_stuck": 0, "pin_stuck_start": start_s, "hover_jump": rng.choice((-1, 0, 1)) * rng.uniform(0.3, 1.2),
+                     "hover_jump_start": start_s + rng.uniform(-1.0, 4.0)}, {"SEL": "PIN"}, ["--duration", f"{land_s:.1f}", *UNTIL_DOWN])
+        hardest_mps, highest_m = 0.0, 0.0
+        for flight in flights(("EST", "PID"), VEHICLES, stuck):
+            start_s = flight.figures["pin_stuck_start"]
+            high_m = max(row["height_m"] for row in flight.rows)
+            self.at_most(1.1 if flight.law == "EST" else 1.7, high_m, flight, "m")
+            highest_m = max(highest_m, high_m)
+            down_s = next(row["t_s"] for row in flight.after(start_s) if row["state"] == "GROUND")
+            self.at_most(15.0, down_s - start_s, flight, "s to the ground")
+            self.assertEqual(flight.rows[-1]["height_m"], 0.0, str(flight))
+            self.assertEqual(flight.rows[-1]["thrust_n"], 0.0, f"motors go on: {flight}")
+            hardest_mps = max(hardest_mps, flight.touch_mps())
+            self.at_most(0.8 if flight.law == "EST" else 1.2, flight.touch_mps(), flight, "m/s at the touch")
+        print(f"pin stuck at pilot: at most {highest_m:.2f} m high, {hardest_mps:.2f} m/s at the touch")
+        self.assertGreater(hardest_mps, 0.1)
+        self.assertGreater(highest_m, 0.6)
 
     def test_floating_without_heights_comes_down(self):
         for pin in ("PIN", "NONE"):
