@@ -324,8 +324,8 @@ static float stuck_pin_descent_n(flight_t *flight)
                         seconds_at_most(height->gap_us, HEIGHT_FRESH_S));
 }
 
-/* While the pin says that the pilot has the throttle, no thrust commanded here moves the vehicle, unless the pin
- * is wrong. For that case the output holds it by its heights, and lands it after a while, or when that is
+/* While the pin says that the pilot has the throttle, no thrust commanded here moves the vehicle, unless the
+ * pin is wrong. For that case the output holds it by its heights, and lands it after a while, or when that is
  * ordered. Only the output contains this: nothing is learned from it, and a hand-back starts without it. */
 static void step_stuck_pin(flight_t *flight)
 {
