@@ -11,6 +11,8 @@
 #define STRAYED_FRAMES 7U       /* chosen: a burst of six bad frames is over */
 #define STRAYED_COUNT 3U        /* chosen: so many of them count as frames of a turn */
 #define BENT_RAD 0.17453293F    /* chosen: 10 degrees, above the tilts of a flight */
+#define STIRS_RAD 0.05F         /* chosen: 115 degrees a second, ten times what gusts and noise do */
+#define RESTS_RAD 0.02F         /* chosen: 46 degrees a second; a vehicle that flies forward stays bent */
 #define BEYOND_FRAMES 3U        /* chosen: one or two beyond 45 degrees may be a gust's */
 
 void attitude_init(attitude_filter_t *filter)
@@ -71,41 +73,85 @@ static bool tilts_beyond(const attitude_t *level, float limit_rad)
     return fabsf(level->roll_rad) > limit_rad || fabsf(level->pitch_rad) > limit_rad;
 }
 
-/* Counts the frames since the vehicle was last level. The last of them only counts beyond 45 degrees. */
-static void count_roll(attitude_filter_t *filter, const attitude_t *level, bool follows)
+static bool are_close(const attitude_t *a, const attitude_t *b, float most_rad)
 {
-    if (!tilts_beyond(level, BENT_RAD)) {
+    return arc_rad(a->roll_rad, b->roll_rad) < most_rad && arc_rad(a->pitch_rad, b->pitch_rad) < most_rad;
+}
+
+/* The frame so many before this one. */
+static const attitude_t *earlier(const attitude_filter_t *filter, uint16_t frames)
+{
+    return &filter->history[(filter->next + ATTITUDE_MEDIAN_FRAMES - frames) % ATTITUDE_MEDIAN_FRAMES];
+}
+
+static bool stirs(float before_rad, float last_rad)
+{
+    const float step_rad = fabsf(last_rad - before_rad);
+    return step_rad > STIRS_RAD && step_rad < FOLLOWS_RAD;
+}
+
+/* True when the frame before this one, still level, has begun a turn already. A vehicle in the air moves less
+ * from frame to frame, a spike more. */
+static bool has_begun(const attitude_filter_t *filter)
+{
+    const attitude_t *const last = earlier(filter, 1U);
+    const attitude_t *const before = earlier(filter, 2U);
+    return filter->rolled == 0U && filter->held > 1U &&
+           (stirs(before->roll_rad, last->roll_rad) || stirs(before->pitch_rad, last->pitch_rad));
+}
+
+/* Adds a frame to the turn. The last of them only counts beyond 45 degrees. */
+static void count_frame(attitude_filter_t *filter, const attitude_t *level, bool sure)
+{
+    const bool is_beyond = sure && tilts_beyond(level, TILTED_RAD);
+
+    filter->beyond = (uint16_t)(filter->beyond + (is_beyond && filter->beyond < BEYOND_FRAMES));
+    const bool lies = is_beyond && filter->beyond == BEYOND_FRAMES;
+    const uint16_t most = lies ? ATTITUDE_ROLLED_FRAMES : ATTITUDE_ROLLED_FRAMES - 1U;
+    filter->rolled = (filter->rolled < most) ? (uint16_t)(filter->rolled + 1U) : most;
+}
+
+/* Counts the frames since the vehicle was last level, or bent without turning. */
+static void count_roll(attitude_filter_t *filter, const attitude_t *level, bool follows, bool rests)
+{
+    if (!tilts_beyond(level, BENT_RAD) || (rests && !tilts_beyond(level, TILTED_RAD))) {
         filter->rolled = 0U;
-    } else if (!follows) {
-        filter->rolled = STRAYED_COUNT;
-    } else {
-        ++filter->rolled;
+        filter->beyond = 0U;
+        return;
     }
-    filter->beyond = tilts_beyond(level, TILTED_RAD) ? (uint16_t)(filter->beyond + 1U) : 0U;
-    filter->beyond = (filter->beyond < BEYOND_FRAMES) ? filter->beyond : BEYOND_FRAMES;
-    const uint16_t most = (filter->beyond == BEYOND_FRAMES) ? ATTITUDE_ROLLED_FRAMES
-                                                            : ATTITUDE_ROLLED_FRAMES - 1U;
-    filter->rolled = (filter->rolled < most) ? filter->rolled : most;
+    if (!follows) {
+        filter->rolled = STRAYED_COUNT - 1U;
+        filter->beyond = 0U;
+    } else if (has_begun(filter)) {
+        filter->rolled = 1U;
+    }
+    count_frame(filter, level, true);
 }
 
 /* A turn is continuous; a burst of bad frames is short. So the frames of a turn are counted from the first
- * one that is not level, which must follow from a level one. A frame after a jump does not follow; within a
- * turn it counts, because it may be a spike. */
+ * one that is not level, which must follow from a level one; that one counts too when it had begun to turn.
+ * A frame after a jump does not follow; within a turn it counts, because it may be a spike. */
 static void watch_roll(attitude_filter_t *filter, const attitude_t *level)
 {
-    const float most_rad = (filter->strayed == 0U) ? FOLLOWS_RAD : FOLLOWS_SPIKE_RAD;
-    const bool follows = arc_rad(filter->followed.roll_rad, level->roll_rad) < most_rad &&
-                         arc_rad(filter->followed.pitch_rad, level->pitch_rad) < most_rad;
+    const bool is_near = are_close(&filter->followed, level, FOLLOWS_SPIKE_RAD);
+    const attitude_t *const last = earlier(filter, 1U);
+    const bool beside = filter->strayed == 1U && are_close(&filter->followed, last, FOLLOWS_SPIKE_RAD) &&
+                        are_close(last, level, FOLLOWS_RAD);
+    const bool follows = (filter->strayed == 0U) ? are_close(&filter->followed, level, FOLLOWS_RAD)
+                                                 : is_near || beside;
 
     if (!follows && filter->held > 0U && filter->strayed + 1U < STRAYED_FRAMES) {
         ++filter->strayed;
-        filter->rolled = (uint16_t)(filter->rolled +
-                                    (filter->rolled > 0U && filter->rolled + 1U < ATTITUDE_ROLLED_FRAMES));
+        filter->rolled = has_begun(filter) ? 1U : filter->rolled;
+        if (filter->rolled > 0U) {
+            count_frame(filter, level, is_near);
+        }
         return;
     }
+    const bool rests = are_close(&filter->followed, level, RESTS_RAD);
     filter->followed = *level;
     filter->strayed = 0U;
-    count_roll(filter, level, follows);
+    count_roll(filter, level, follows, rests);
 }
 
 bool attitude_step(attitude_filter_t *filter, const attitude_t *raw, attitude_t *level, attitude_t *median)

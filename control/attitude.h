@@ -31,8 +31,8 @@ typedef struct {
     uint16_t next;
     attitude_t followed; /* latest frame that continued the motion */
     uint16_t strayed;    /* frames since then */
-    uint16_t rolled;     /* frames since the vehicle was last level; the last only counts beyond 45 degrees */
-    uint16_t beyond;     /* frames in a row beyond 45 degrees, at most 3 */
+    uint16_t rolled;     /* frames of the present turn; the last only counts beyond 45 degrees */
+    uint16_t beyond;     /* those beyond 45 degrees, at most 3 */
 } attitude_filter_t;
 
 /* So many of them are a vehicle that turns over: one more than a burst of bad frames may have. The median

@@ -209,6 +209,63 @@ void test_a_roll_of_400_degrees_a_second_is_seen_at_its_seventh_frame_beyond_10_
     }
 }
 
+/* Frames of a roll until it is seen; a spike is added to one of them. */
+static unsigned frames_until_seen(float first_degrees, float more_degrees, unsigned spiked,
+                                  float spike_degrees)
+{
+    const attitude_t level_from_the_start = {0.0F, 0.0F, 0.0F};
+
+    attitude_restore(&filter, &level_from_the_start);
+    for (unsigned i = 0; i < 4; i++) {
+        (void)step(0.0F, 0.0F, 0.0F);
+    }
+    for (unsigned i = 0; i < 16; i++) {
+        const float told = first_degrees + more_degrees * (float)i + (i == spiked ? spike_degrees : 0.0F);
+        (void)step(told * DEGREE_RAD, 0.0F, 0.0F);
+        if (filter.rolled == ATTITUDE_ROLLED_FRAMES) {
+            return i + 1U;
+        }
+    }
+    return 0U;
+}
+
+void test_the_first_frame_of_a_roll_counts_once_it_has_moved_by_3_degrees(void)
+{
+    TEST_ASSERT_EQUAL_UINT(8U, frames_until_seen(2.5F, 15.0F, 99U, 0.0F));
+    TEST_ASSERT_EQUAL_UINT(7U, frames_until_seen(3.2F, 15.0F, 99U, 0.0F));
+    TEST_ASSERT_EQUAL_UINT(7U, frames_until_seen(9.0F, 10.0F, 99U, 0.0F));
+    TEST_ASSERT_EQUAL_UINT(8U, frames_until_seen(4.0F, 10.0F, 99U, 0.0F)); /* the third beyond 45 degrees */
+}
+
+void test_a_spike_delays_the_sight_of_a_roll_by_at_most_two_frames(void)
+{
+    for (unsigned spiked = 0; spiked < 9; spiked++) {
+        for (float first = 0.5F; first < 10.0F; first += 1.0F) {
+            const unsigned without = frames_until_seen(first, 10.0F, 99U, 0.0F);
+            for (float spike = -20.0F; spike <= 20.0F; spike += 40.0F) {
+                const unsigned seen = frames_until_seen(first, 10.0F, spiked, spike);
+                TEST_ASSERT_GREATER_OR_EQUAL_UINT(6U, seen);
+                TEST_ASSERT_LESS_OR_EQUAL_UINT(without + 2U, seen);
+            }
+        }
+    }
+}
+
+void test_six_bad_frames_are_no_roll_while_the_vehicle_flies_forward(void)
+{
+    const attitude_t level_from_the_start = {0.0F, 0.0F, 0.0F};
+
+    for (float drift = 8.0F; drift <= 16.0F; drift += 0.5F) {
+        attitude_restore(&filter, &level_from_the_start);
+        for (unsigned i = 0; i < 40; i++) {
+            const float sway = (i % 2U == 0U) ? 12.4F : 11.6F;
+            const float told = (i >= 20U && i < 26U) ? drift * (float)(i - 19U) : 0.0F;
+            (void)step(0.0F, (sway + told) * DEGREE_RAD, 0.0F);
+            TEST_ASSERT_LESS_THAN_UINT16(ATTITUDE_ROLLED_FRAMES, filter.rolled);
+        }
+    }
+}
+
 void test_a_slow_roll_is_seen_at_its_third_frame_beyond_45_degrees(void)
 {
     learn(0.0F, 0.0F);
