@@ -49,6 +49,8 @@
 #define VAIN_LANDING_S 1.0F          /* chosen: twice as long as a landing begins with so little thrust */
 #define LANDS_MPS 0.3F               /* chosen: three quarters of the sink rate of a landing */
 #define UNKNOWN_REACH_M 0.06F        /* tried 0.05 to 0.09; asks for 0.8 N at the delivered gains */
+#define FLOAT_TRIM_N 0.4F             /* chosen: GRAV is trimmed so much too low, or less */
+#define FLOAT_TRIM_N_PER_M_S 8.0F     /* tried 4 and 8: half of it after a second 25 mm too low */
 #define UNCONFIRMED_MPS 0.35F  /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
 #define TAKEOFF_MPS 0.6F       /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
 #define UNCHECKED_ABOVE_N 0.5F /* chosen: as TRANSFER_START_N */
@@ -762,7 +764,7 @@ static void watch_effect(flight_t *flight, bool begins)
         effect_step(&flight->effect, flight->est.authority_mps2_per_n * flight->est.actuator.thrust_n,
                     estimator->up_mps2, (float)since_us * 1.0e-6F);
         if (flight->effect.has_effect && !had_effect) {
-            est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
+            est_law_engage(&flight->est, flight->thrust_n, flight->hover_n + flight->float_trim_n);
         }
     }
 }
@@ -798,6 +800,7 @@ static void update_throttle_unknown(flight_t *flight, const parameters_t *parame
     flight->throttle_unknown = flight->carried ||
                                (unsure && parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE);
     if (flight->throttle_unknown) {
+        flight->float_trim_n = before ? flight->float_trim_n : 0.0F;
         watch_effect(flight, !before);
     } else if (before && !flight->lifting && state != FLIGHT_GROUND) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
@@ -890,6 +893,22 @@ static float within_coasting_n(const flight_t *flight, float thrust_n)
     return between(flight->hover_n - UNCHECKED_BELOW_N, thrust_n, flight->hover_n + UNCHECKED_ABOVE_N);
 }
 
+/* FLOATING in a pilot's hands, or given back by him: nothing tells. GRAV is too low rather than too high, so the
+ * vehicle sinks when it is given back, until its effect shows and its hover thrust is learned. Until then more
+ * thrust is added while it is too low; never less, and nothing is learned from it. */
+static float floating_n(flight_t *flight, float thrust_n)
+{
+    const float below_m = flight->floating_m - flight->supervisor.height.height_mm * 0.001F;
+    const bool trims = flight->mode == FLIGHT_MODE_EST_HOLD && est_law_has_acceleration(&flight->est) &&
+                       !shows_effect(flight);
+    const float trim_n = flight->float_trim_n + FLOAT_TRIM_N_PER_M_S * below_m *
+                                                    seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
+
+    flight->float_trim_n = trims ? between(0.0F, trim_n, FLOAT_TRIM_N) : 0.0F;
+    return between(flight->hover_n - UNKNOWN_WINDOW_N - flight->held_sunk_n, thrust_n + flight->float_trim_n,
+                   flight->hover_n + UNKNOWN_WINDOW_N);
+}
+
 /* While commands have no effect, and in FLOATING, where a pilot may fly without a pin that reports it, the
  * thrust stays near the hover thrust. So it fits when the commands get their effect back. In a descent the
  * limit falls with time: the thrust that was held may be one that climbs. */
@@ -907,9 +926,7 @@ static float within_power_n(flight_t *flight, float thrust_n)
         flight->held_sunk_n += HELD_SINK_N_PER_S * seconds_at_most(flight->supervisor.step_us, STEP_MAX_S);
     }
     if (flight->throttle_unknown) {
-        return flight->carried ? carried_n(flight)
-                               : between(flight->hover_n - UNKNOWN_WINDOW_N - flight->held_sunk_n, thrust_n,
-                                         flight->hover_n + UNKNOWN_WINDOW_N);
+        return flight->carried ? carried_n(flight) : floating_n(flight, thrust_n);
     }
     if (flight->mode == FLIGHT_MODE_IDLE) {
         return thrust_n;
@@ -976,9 +993,12 @@ static void judge_reach(flight_t *flight)
 
 uint16_t flight_releases(const flight_t *flight, const parameters_t *parameters)
 {
+    if (is_est_mode(flight->mode) || flight->piloted_s > 0.0F) {
+        return FLIGHT_RELEASE_HEIGHT | FLIGHT_RELEASE_FRAME;
+    }
     const uint16_t law = parameters_choice(parameters, PARAMETER_LAW);
 
-    if (law == LAW_EST || is_est_mode(flight->mode) || flight->piloted_s > 0.0F) {
+    if (law == LAW_EST) {
         return FLIGHT_RELEASE_HEIGHT | FLIGHT_RELEASE_FRAME;
     }
     if (law == LAW_PIDT || parameters_choice(parameters, PARAMETER_RELEASE) == RELEASE_SCAN) {

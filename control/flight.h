@@ -54,6 +54,7 @@ typedef struct {
     bool carried;          /* DESCENDING that began in a pilot's hands */
     bool throttle_unknown; /* FLOATING, carried or landing in vain; no pin tells who has the throttle */
     float vain_landing_s;  /* how long a landing has had too little thrust to fly, and it does not sink */
+    float float_trim_n;    /* added while throttle_unknown, see floating_n() */
     effect_t effect;       /* valid while throttle_unknown; judged in FLOATING */
     uint32_t effect_us;    /* latest frame in it */
     flight_mode_t mode;

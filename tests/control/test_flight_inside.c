@@ -536,6 +536,51 @@ void test_what_is_added_is_limited_and_ends_with_the_pilots_turn(void)
     }
 }
 
+/* The present height is 0.5 m; the cycle takes 0.1 s. */
+void test_floating_without_a_pin_adds_thrust_while_it_is_too_low_until_the_effect_shows(void)
+{
+    static const struct {
+        float floating_m, before_n;
+        bool felt, shown, est;
+        float added_n;
+    } rows[] = {{0.55F, 0.1F, true, false, true, 0.14F}, {0.55F, 0.38F, true, false, true, 0.4F},
+                {0.45F, 0.1F, true, false, true, 0.06F}, {0.45F, 0.02F, true, false, true, 0.0F},
+                {0.55F, 0.1F, false, false, true, 0.0F}, {0.55F, 0.1F, true, true, true, 0.0F},
+                {0.55F, 0.1F, true, false, false, 0.0F}};
+    for (int i = 0; i < 7; i++) {
+        setUp();
+        f.supervisor.state = FLIGHT_FLOATING;
+        f.throttle_unknown = true;
+        f.mode = rows[i].est ? FLIGHT_MODE_EST_HOLD : FLIGHT_MODE_FLOAT;
+        f.floating_m = rows[i].floating_m;
+        f.float_trim_n = rows[i].before_n;
+        f.est.estimator.felt = rows[i].felt;
+        f.effect.has_effect = rows[i].shown;
+        NEAR(6.8F + rows[i].added_n, within_power_n(&f, 6.8F));
+        NEAR(rows[i].added_n, f.float_trim_n);
+        NEAR(7.0F, f.hover_n);
+    }
+    setUp(); /* the limit of all of it */
+    f.throttle_unknown = true;
+    f.float_trim_n = 0.4F;
+    f.floating_m = 0.6F;
+    NEAR(9.0F, within_power_n(&f, 8.9F));
+}
+
+void test_a_pilots_next_turn_begins_without_what_was_added(void)
+{
+    for (int i = 0; i < 2; i++) {
+        setUp();
+        set(PARAMETER_SEL, SEL_NONE);
+        f.supervisor.state = FLIGHT_FLOATING;
+        f.throttle_unknown = i == 1;
+        f.float_trim_n = 0.3F;
+        update_throttle_unknown(&f, &parameters, true);
+        TEST_ASSERT_TRUE(f.throttle_unknown);
+        NEAR((i == 1) ? 0.3F : 0.0F, f.float_trim_n);
+    }
+}
+
 void test_the_cycles_follow_the_frames_while_a_pilot_flies(void)
 {
     set(PARAMETER_LAW, LAW_PID);

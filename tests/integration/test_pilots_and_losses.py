@@ -130,7 +130,7 @@ class Pilots(unittest.TestCase):
         self.holds("PIN", 0.12, 0.18, 0.18)
 
     def test_without_the_pin_it_holds_it_too_once_the_vehicle_shows_that_it_obeys(self):
-        self.holds("NONE", 0.15, 0.20, 0.20)
+        self.holds("NONE", 0.15, 0.15, 0.18)
 
     def test_a_landing_that_a_pilot_interrupts_goes_on_when_he_gives_it_back(self):
         for flight in flights(("EST", "PID"), VEHICLES, lambda rng: (
