@@ -49,8 +49,8 @@
 #define VAIN_LANDING_S 1.0F          /* chosen: twice as long as a landing begins with so little thrust */
 #define LANDS_MPS 0.3F               /* chosen: three quarters of the sink rate of a landing */
 #define UNKNOWN_REACH_M 0.06F        /* tried 0.05 to 0.09; asks for 0.8 N at the delivered gains */
-#define FLOAT_TRIM_N 0.4F             /* chosen: GRAV is trimmed so much too low, or less */
-#define FLOAT_TRIM_N_PER_M_S 8.0F     /* tried 4 and 8: half of it after a second 25 mm too low */
+#define FLOAT_TRIM_N 0.4F            /* chosen: GRAV is trimmed so much too low, or less */
+#define FLOAT_TRIM_N_PER_M_S 8.0F    /* tried 4 and 8: half of it after a second 25 mm too low */
 #define UNCONFIRMED_MPS 0.35F  /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
 #define TAKEOFF_MPS 0.6F       /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
 #define UNCHECKED_ABOVE_N 0.5F /* chosen: as TRANSFER_START_N */
@@ -893,9 +893,9 @@ static float within_coasting_n(const flight_t *flight, float thrust_n)
     return between(flight->hover_n - UNCHECKED_BELOW_N, thrust_n, flight->hover_n + UNCHECKED_ABOVE_N);
 }
 
-/* FLOATING in a pilot's hands, or given back by him: nothing tells. GRAV is too low rather than too high, so the
- * vehicle sinks when it is given back, until its effect shows and its hover thrust is learned. Until then more
- * thrust is added while it is too low; never less, and nothing is learned from it. */
+/* FLOATING in a pilot's hands, or given back by him: nothing tells. GRAV is too low rather than too high, so
+ * the vehicle sinks when it is given back, until its effect shows and its hover thrust is learned. Until then
+ * more thrust is added while it is too low; never less, and nothing is learned from it. */
 static float floating_n(flight_t *flight, float thrust_n)
 {
     const float below_m = flight->floating_m - flight->supervisor.height.height_mm * 0.001F;
