@@ -36,8 +36,8 @@
 #define FLOOR_MAX_M 0.080F     /* chosen: as INNOVATION_LIMIT_MAX_M */
 #define FLOOR_SHARE 0.20F      /* tried: a slower mean knows bars of 60 mm only after the take-off */
 #define FLOOR_CLIP 9.0F        /* chosen: 3 sigma, so that one edge counts little */
-#define FLOOR_SIGMAS 4.5F      /* tried: both edges of a bar pass the test */
-#define FLOOR_VARIANCE 4.0F    /* tried: heights over a bar are correlated, white noise is not */
+#define FLOOR_SIGMAS 6.0F      /* tried: both edges of a bar pass the test, from a wrong speed too */
+#define FLOOR_VARIANCE 0.5F    /* tried: more, and the vehicle swings by the thrust model alone */
 #define BAR_US UINT32_C(1000000) /* chosen: two edges within that time are a bar, and more will follow */
 #define BAR_LEAST_M 0.040F       /* chosen: ten times the noise of a height */
 #define BAR_MOST_M 0.15F         /* chosen: higher ones are edges or wrong scans, which are rejected */

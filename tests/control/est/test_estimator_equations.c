@@ -473,11 +473,11 @@ void test_a_height_of_a_smooth_floor_has_a_noise_of_1_3_mm(void)
     NEAR(0.01F, e.innovation_m);
 }
 
-/* Quiet heights leave 0.8 of the square of a floor's 30 mm; beyond 20 mm it counts four times. */
+/* Quiet heights leave 0.8 of the square of a floor's 30 mm; what is beyond 20 mm counts by half. */
 void test_a_height_of_a_rough_floor_has_its_noise_too(void)
 {
     memset(e.covariance, 0, sizeof e.covariance);
-    e.covariance[HEIGHT][HEIGHT] = 4.0F * (0.8F * 0.0009F - 0.0004F) + R_M2;
+    e.covariance[HEIGHT][HEIGHT] = 0.5F * (0.8F * 0.0009F - 0.0004F) + R_M2;
     e.floor_m = 0.03F;
     e.previous_m[0] = e.previous_m[1] = 0.51F;
     (void)see(0.51F);
@@ -526,8 +526,8 @@ void test_the_bound_of_an_innovation_is_three_sigma_within_53_and_80_mm(void)
         TEST_ASSERT_FALSE(passes(6.0e-4F, 0.004F, 0.0739F * side));
         TEST_ASSERT_TRUE(passes(0.01F, 0.004F, 0.0795F * side));
         TEST_ASSERT_FALSE(passes(0.01F, 0.004F, 0.0805F * side));
-        TEST_ASSERT_TRUE(passes(1.0e-6F, 0.03F, 0.1200F * side)); /* 4.5 x 26.8 mm */
-        TEST_ASSERT_FALSE(passes(1.0e-6F, 0.03F, 0.1215F * side));
+        TEST_ASSERT_TRUE(passes(1.0e-6F, 0.03F, 0.1600F * side)); /* 6 x 26.8 mm */
+        TEST_ASSERT_FALSE(passes(1.0e-6F, 0.03F, 0.1620F * side));
         TEST_ASSERT_FALSE(passes(1.0e-6F, 0.0223F, 0.0800F * side)); /* 19.9 mm: smooth */
         TEST_ASSERT_TRUE(passes(1.0e-6F, 0.0225F, 0.0900F * side));  /* 20.1 mm: rough */
     }
