@@ -301,10 +301,11 @@ static void step_blind_descent(flight_t *flight, bool started)
     const bool still = integrity_calm(&flight->integrity) && est_law_has_imu(&flight->est);
     const float step_s = still ? seconds_at_most(flight->supervisor.step_us, STEP_MAX_S) : 0.0F;
 
-    flight->hurried_s = started ? 0.0F : flight->hurried_s + BLIND_STILL_TIMES * step_s;
+    flight->blind_ahead_s = started ? 0.0F : flight->blind_ahead_s + BLIND_STILL_TIMES * step_s;
     flight->setpoint_n = descent_blind(
         flight->hover_n,
-        at_most(seconds_at_most(flight->supervisor.state_us, BLIND_MAX_S) + flight->hurried_s, BLIND_MAX_S));
+        at_most(seconds_at_most(flight->supervisor.state_us, BLIND_MAX_S) + flight->blind_ahead_s,
+                BLIND_MAX_S));
 }
 
 /* Thrust of a descent by heights, or without them; it only holds the height while the pin is trusted. */
@@ -769,9 +770,8 @@ static void watch_effect(flight_t *flight, bool begins)
     }
 }
 
-/* True in LANDING with far too little thrust to fly, of a vehicle that does not sink: a pilot holds it, and
- * nothing tells. */
-static bool lands_in_vain(flight_t *flight)
+/* LANDING: how long it has had far too little thrust to fly, and does not sink. */
+static void watch_landing(flight_t *flight)
 {
     const supervisor_t *supervisor = &flight->supervisor;
     const bool weak = flight->throttle_unknown || flight->thrust_n < flight->hover_n - VAIN_LANDING_N;
@@ -783,7 +783,12 @@ static bool lands_in_vain(flight_t *flight)
         flight->vain_landing_s = at_most(
             flight->vain_landing_s + seconds_at_most(supervisor->step_us, STEP_MAX_S), VAIN_LANDING_S);
     }
-    return flight->vain_landing_s >= VAIN_LANDING_S;
+}
+
+/* True in LANDING of a vehicle that a pilot holds up: nothing tells it. */
+static bool lands_in_vain(const flight_t *flight)
+{
+    return flight->supervisor.state == FLIGHT_LANDING && flight->vain_landing_s >= VAIN_LANDING_S;
 }
 
 /* Without a pin nothing tells who has the throttle: FLOATING begins in a pilot's hands, and LANDING may be
@@ -795,8 +800,10 @@ static void update_throttle_unknown(flight_t *flight, const parameters_t *parame
     const flight_state_t state = flight->supervisor.state;
 
     watch_carried(flight, parameters);
-    const bool unsure = (state == FLIGHT_FLOATING && has_throttle) ||
-                        (state == FLIGHT_LANDING && lands_in_vain(flight));
+    if (state == FLIGHT_LANDING) {
+        watch_landing(flight);
+    }
+    const bool unsure = (state == FLIGHT_FLOATING && has_throttle) || lands_in_vain(flight);
     flight->throttle_unknown = flight->carried ||
                                (unsure && parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE);
     if (flight->throttle_unknown) {
@@ -987,8 +994,7 @@ static void judge_reach(flight_t *flight)
     flight->out_of_reach = acts ? reach_step(&flight->reach,
                                              supervisor->height.height_mm - reference_mm(flight),
                                              supervisor->step_us)
-                                : supervisor->state == FLIGHT_LANDING &&
-                                      flight->vain_landing_s >= VAIN_LANDING_S;
+                                : lands_in_vain(flight);
 }
 
 uint16_t flight_releases(const flight_t *flight, const parameters_t *parameters)

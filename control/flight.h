@@ -68,20 +68,20 @@ typedef struct {
     arming_t arming;
     float idle_n; /* minimum thrust: the idle while armed, else 0 */
     reach_t reach;
-    float reach_m;      /* reference that `reach` watches */
-    bool out_of_reach;  /* the vehicle does not get to the reference in force */
-    float hover_n;      /* sure hover thrust: from the estimator, or else the mean of the
-                         * thrust with a time constant of 2.5 s, in flight and while nothing is
-                         * doubted. Limits: GRAV +-1.5 N */
-    bool hover_learned; /* hover_n was learned in this flight; it stays valid while the
-                         * pilot has the throttle */
-    float learned_s;    /* how long hover_n has been learned, at most 2.5 s */
-    float setpoint_n;   /* thrust that the mode computes */
-    float transfer_n;   /* added to setpoint_n; fades to 0: bumpless transfer between modes */
-    float thrust_n;     /* previous command, without stuck_pin_n */
-    float stuck_pin_n;  /* added to the output while the pin says that the pilot has the throttle */
-    float piloted_s;    /* for how long it has said so */
-    float hurried_s;    /* by which a blind descent is ahead of its time */
+    float reach_m;       /* reference that `reach` watches */
+    bool out_of_reach;   /* the vehicle does not get to the reference in force */
+    float hover_n;       /* sure hover thrust: from the estimator, or else the mean of the
+                          * thrust with a time constant of 2.5 s, in flight and while nothing is
+                          * doubted. Limits: GRAV +-1.5 N */
+    bool hover_learned;  /* hover_n was learned in this flight; it stays valid while the
+                          * pilot has the throttle */
+    float learned_s;     /* how long hover_n has been learned, at most 2.5 s */
+    float setpoint_n;    /* thrust that the mode computes */
+    float transfer_n;    /* added to setpoint_n; fades to 0: bumpless transfer between modes */
+    float thrust_n;      /* previous command, without stuck_pin_n */
+    float stuck_pin_n;   /* added to the output while the pin says that the pilot has the throttle */
+    float piloted_s;     /* for how long it has said so */
+    float blind_ahead_s; /* by which a blind descent is ahead of its time */
 } flight_t;
 
 void flight_init(flight_t *flight);

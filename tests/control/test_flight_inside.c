@@ -1345,7 +1345,7 @@ void test_time_runs_three_times_as_fast_in_a_blind_descent_whose_tilt_is_still(v
     f.mode = FLIGHT_MODE_BLIND_DESCENT;
     f.supervisor.state = FLIGHT_DESCENDING;
     f.supervisor.state_us = 10000000U;
-    f.hurried_s = 9.0F;
+    f.blind_ahead_s = 9.0F;
     f.integrity.sway_rad2 = 2.4e-4F; /* 0.89 degrees rms */
     (void)run_mode(&f, &parameters, true);
     NEAR(descent_blind(7.2F, 10.0F), f.setpoint_n);
@@ -1729,10 +1729,13 @@ void test_a_landing_with_too_little_thrust_to_fly_that_does_not_sink_is_in_vain(
         f.integrity.rise_mps = rows[i].rise_mps;
         f.thrust_n = rows[i].thrust_n;
         f.vain_landing_s = rows[i].before_s;
+        watch_landing(&f);
         TEST_ASSERT_EQUAL(rows[i].vain, lands_in_vain(&f));
         NEAR(i == 0 ? 1.0F : i == 1 ? 0.95F : 0.0F, f.vain_landing_s);
         judge_reach(&f);
         TEST_ASSERT_EQUAL(rows[i].vain, f.out_of_reach);
+        f.supervisor.state = FLIGHT_DESCENDING;
+        TEST_ASSERT_FALSE(lands_in_vain(&f));
     }
 }
 
