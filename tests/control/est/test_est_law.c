@@ -178,7 +178,8 @@ void test_a_pilots_turn_teaches_no_hover_thrust_and_ends_within_half_a_newton_of
             world.body.hover_n = hover_n;
             hover_at(0.6F);
             flown_by_a_pilot(3.0 + seed);
-            TEST_ASSERT_FLOAT_WITHIN(0.35F, (float)hover_n, out.thrust_n);
+            TEST_ASSERT_FLOAT_WITHIN(0.35F, (float)hover_n, flight.thrust_n);
+            TEST_ASSERT_FLOAT_WITHIN(2.4F, (float)hover_n, out.thrust_n); /* against a wrong pin */
             run_until(FLIGHT_FLYING, 0.1);
             TEST_ASSERT_FLOAT_WITHIN(0.5F, (float)hover_n, out.thrust_n);
             run(4.0);
