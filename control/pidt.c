@@ -9,6 +9,9 @@
 #define STEP_MIN_S 0.02F   /* chosen: scans are 0.1 s apart; a shorter gap is a repeated height */
 #define STEP_MAX_S 0.5F    /* chosen: five scans; a longer one gives no useful derivative */
 
+#define FAR_M 0.40F /* tried 0.25 to 0.5: below a reference of 0.6 m, and the climb can still be braked */
+#define APPROACH_MPS 0.1F /* chosen: slower ones may be a vehicle that needs more thrust */
+
 #define SWING_N 0.8F        /* chosen: three times the usual activity, 0.22 N */
 #define SWINGS_FREE 3.0F    /* chosen: an edge and the swing back make two */
 #define SWINGS_TIME_S 10.0F /* chosen: a loop that has swung would swing again */
@@ -60,9 +63,11 @@ float pidt_step(pidt_state_t *state, const pidt_gains_t *gains, float reference_
     const float error_m = reference_m - height_m;
 
     differentiate(state, height_m, step_s);
-    const float action_n = gains->kp_n_per_m * error_m - gains->kd_n_s_per_m * state->rate_mps;
+    const float near_m = between(-FAR_M, error_m, FAR_M);
+    const float action_n = gains->kp_n_per_m * near_m - gains->kd_n_s_per_m * state->rate_mps;
     const float other_n = gains->gravity_n + calm(state, action_n, step_s) * action_n;
-    const float more_n = gains->ki_n_per_m_s * error_m * step_s;
+    const bool arrives = near_m != error_m && near_m * state->rate_mps > FAR_M * APPROACH_MPS;
+    const float more_n = arrives ? 0.0F : gains->ki_n_per_m_s * near_m * step_s;
     const float thrust_n = other_n + state->integral_n + more_n;
     const bool further = (thrust_n > gains->most_n && more_n > 0.0F) ||
                          (thrust_n < gains->least_n && more_n < 0.0F);

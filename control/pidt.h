@@ -1,6 +1,7 @@
 /* PID law in SI units, with real time steps. The derivative is that of the measured height, behind a low
- * pass of 8 Hz. Anti-windup: the integral stops while it would move the thrust further out of its window.
- * Newtons per motor. Pure; the caller owns the state. */
+ * pass of 8 Hz. The proportional part counts an error of at most 0.4 m, so that a climb from far can be
+ * braked. Anti-windup: the integral stops while it would move the thrust further out of its window, and
+ * beyond 0.4 m while the vehicle approaches. Newtons per motor. Pure; the caller owns the state. */
 #ifndef CONTROL_PIDT_H
 #define CONTROL_PIDT_H
 

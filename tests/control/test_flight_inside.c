@@ -388,6 +388,7 @@ void test_pidt_gets_its_gains_the_time_between_rays_and_a_window_about_gravity(v
     f.supervisor.height.is_new = false;
     step_pidt(&f, &parameters, 0.6F);
     TEST_ASSERT_EQUAL_FLOAT(1.0F, f.setpoint_n);
+    set(PARAMETER_PKP, 50.0F);
     f.pidt.primed = false;
     step_pidt(&f, &parameters, 3.0F);
     NEAR(10.0F, f.setpoint_n);
@@ -399,7 +400,6 @@ void test_pidt_gets_its_gains_the_time_between_rays_and_a_window_about_gravity(v
     step_pidt(&f, &parameters, -3.0F);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, f.setpoint_n);
     set(PARAMETER_GRAV, 9.0F);
-    set(PARAMETER_PKP, 50.0F);
     f.pidt.primed = false;
     step_pidt(&f, &parameters, 3.0F);
     NEAR(THRUST_MAX_N, f.setpoint_n);

@@ -52,13 +52,37 @@ void test_while_it_pushes_out_of_the_window_the_integral_stands(void)
 {
     (void)step(3.0F, 0.0F, 0.1F);
     for (int i = 0; i < 50; i++) {
-        TEST_ASSERT_EQUAL_FLOAT(10.0F, step(3.0F, 0.0F, 0.1F));
+        TEST_ASSERT_FLOAT_WITHIN(0.3F, 9.8F, step(3.0F, 0.0F, 0.1F));
     }
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, state.integral_n);
+    TEST_ASSERT_FLOAT_WITHIN(0.15F, 0.35F, state.integral_n); /* 7 + 6.3 * 0.4, and so much to 10 */
     state.integral_n = 2.0F;
     (void)step(3.0F, 3.4F, 0.5F);
     (void)step(3.0F, 3.4F, 0.5F);
     TEST_ASSERT_TRUE(state.integral_n < 2.0F); /* it may always come back */
+}
+
+void test_beyond_0_4_m_the_error_asks_for_no_more_thrust(void)
+{
+    (void)step(0.0F, 0.0F, 0.1F);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 7.0F + 6.3F * 0.3F, step(0.3F, 0.0F, 0.0F));
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 7.0F + 6.3F * 0.4F, step(1.4F, 0.0F, 0.0F));
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 7.0F - 6.3F * 0.4F, step(-1.4F, 0.0F, 0.0F));
+}
+
+void test_the_integral_waits_while_a_far_reference_is_approached(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        setUp();
+        for (int i = 0; i < 6; i++) { /* 0.5 m/s, from 1 m to 0.75 m off */
+            (void)step(1.0F, 1.0F - (float)sign * (1.0F - 0.05F * (float)i), 0.1F);
+        }
+        const float far_n = state.integral_n;
+        TEST_ASSERT_FLOAT_WITHIN(0.001F, 0.0F, far_n);
+        for (int i = 0; i < 10; i++) { /* it hangs there */
+            (void)step(1.0F, 1.0F - (float)sign * 0.75F, 0.1F);
+        }
+        TEST_ASSERT_TRUE((float)sign * state.integral_n > 0.2F);
+    }
 }
 
 void test_the_window_holds_for_any_height(void)
