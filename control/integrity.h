@@ -84,7 +84,7 @@ typedef struct {
     uint16_t copies;                  /* scans in a row that repeat the scan before */
     float slants_mm[INTEGRITY_SCANS]; /* latest slant distances, oldest first */
     uint16_t scans;                   /* number of valid entries in slants_mm */
-    bool flat;                        /* these vary little */
+    bool flat;                        /* these vary by less than 8 mm rms, and the accelerometer is quiet */
     uint16_t rigid; /* scans in a row whose slants vary less than those of any flying vehicle */
     uint16_t still; /* scans in a row whose slants contain only white noise */
     uint16_t white; /* while the tilt sways: such scans, less those that contain more; 0 or above */

@@ -27,7 +27,7 @@
 #define KNOCK_US 130000U          /* chosen: real sensors mostly answer within 110 ms */
 #define LISTEN_US 160000U         /* chosen: a revolution, and its octets */
 #define TURN_US 40000U            /* chosen: least time at one rate; see urg_link_pause_us() */
-#define VISIT_US 60000U           /* what a revolution leaves beside TURN_US */
+#define FIRST_RATE_US 60000U      /* what a revolution leaves beside TURN_US */
 #define PHASE_US 15000U           /* chosen: the latency of the scans' times and of the steps */
 #define DRIFT 512U                /* chosen: 0.2 %; recorded revolutions take 99.88 ms in place of 100 */
 #define SETTLE_RATE_US 90000U     /* chosen: two steps of 50 ms, less their jitter */
@@ -284,10 +284,10 @@ static uint32_t turn_us(uint32_t left_us)
 }
 
 /* With what is left of the time without frames. */
-static void visit(const step_t *step, uint32_t left_us)
+static void try_first_rate(const step_t *step, uint32_t left_us)
 {
     const uint32_t rate = step->link->config.first_rate;
-    knock(step, rate, SCIP_SWITCH, turn_us(left_us < VISIT_US ? left_us : VISIT_US));
+    knock(step, rate, SCIP_SWITCH, turn_us(left_us < FIRST_RATE_US ? left_us : FIRST_RATE_US));
 }
 
 /* At the first rate while no frame of the stream can come, else at the stream's; never twice at the latter.
@@ -301,7 +301,7 @@ static void take_turn(const step_t *step)
     const uint32_t past_us = (step->now_us - link->frame_us + period_us - phase_us(step)) % period_us;
     const uint32_t left_us = period_us - past_us;
     if (was_listening || past_us + TURN_US <= gap_us) {
-        visit(step, past_us < gap_us ? gap_us - past_us : 0U);
+        try_first_rate(step, past_us < gap_us ? gap_us - past_us : 0U);
     } else {
         listen(step, left_us < TURN_US / 2U ? left_us + period_us : turn_us(left_us));
     }

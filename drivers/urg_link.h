@@ -13,8 +13,9 @@
  * again, then TM2, then RS. For the first 12 s after a stream stops, it listens at the stream's rate, and
  * between the frames it sends SCIP2.0 at the first rate.
  *
- * Pure; the caller owns the state. Context: Task (TaskSendLaser). Times are in microseconds and wrap; two
- * steps must be less than 35 minutes apart. */
+ * Pure; the caller owns the state. Context: one at a time. urg_link_scan_at() belongs where scans are
+ * received (here the Hwi of the UART), the others to a Task (TaskSendLaser), which keeps that interrupt off
+ * meanwhile. Times are in microseconds and wrap; two steps must be less than 35 minutes apart. */
 #ifndef DRIVERS_URG_LINK_H
 #define DRIVERS_URG_LINK_H
 
