@@ -132,7 +132,8 @@ static void follow_hover(flight_t *flight)
         return;
     }
     if (flight->learned_s > 0.0F &&
-        (integrity_unconfirmed(&flight->integrity) || integrity_still(&flight->integrity))) {
+        (integrity_unconfirmed(&flight->integrity) || integrity_still(&flight->integrity) ||
+         integrity_apart(&flight->integrity))) {
         return;
     }
     const float target_n = estimated ? flight->est.hover.thrust_n : flight->thrust_n;
@@ -550,6 +551,10 @@ static void change_doubts(flight_t *flight, float gravity_n)
     const bool flies_unseen = (come & DOUBT_SIGHT) != 0U && integrity_sways(integrity);
     if (((come & DOUBT_SIGHT) != 0U || (gone & DOUBT_THRUST) != 0U) &&
         (flight->est.airborne || flies_unseen)) {
+        est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
+    }
+    if ((gone & DOUBT_SIGHT) != 0U && flight->est.airborne) { /* the heights are right after all */
+        estimator_amend(&flight->est.estimator, integrity->height_m, integrity->rise_mps, integrity->bias_mps2);
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
     est_law_set_without_authority(&flight->est, integrity_doubts(integrity, DOUBT_THRUST) ||

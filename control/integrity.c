@@ -42,6 +42,7 @@
     64.0F /* chosen: 8 mm rms, above the noise of any drawn sensor; bars on a floor make more */
 #define STILL_SHARE 0.4F   /* chosen: white noise alone makes 1, a swinging slant next to 0 */
 #define STILL_SCANS 16U    /* chosen: 1.6 s of scans */
+#define NOISE_SCANS 19U      /* tried: at 16 one of 40 healthy flights in FLOATING was doubted */
 #define WHITE_SCANS 40U    /* tried: 120 healthy drawn flights reach 24, a blocked beam 40 within 4 to 6 s */
 #define STILL_BOTH_M 0.10F /* chosen: low, because the still slant is evidence too */
 #define FLAT_FELT_M 0.15F  /* chosen: half of BOTH_M; the thrust must then show AGAINST_M */
@@ -72,6 +73,7 @@
 #define GAP_ALLOWS_MPS 0.3F  /* chosen: the speed error of a witness that still counts as agreement */
 #define CONFIRMED_M 0.12F    /* chosen: just above STEP_M */
 #define TERRAIN_FALL_M 0.40F /* chosen: above the edge of the seed's course, 0.25 m */
+#define PULLED_TIME_S 2.0F   /* chosen: as OLD_S */
 #define QUIET_S 1.0F         /* tried: 60 drawn vehicles whose blocked beam shows the reference; ten scans */
 #define QUIET_M 0.10F        /* chosen: as CONTENT_M */
 #define GLITCH_S 0.25F       /* chosen: two scans and a half */
@@ -118,6 +120,10 @@
 #define VAIN_M 0.15F         /* chosen: above CONTENT_M */
 #define RUN_AWAY_MPS 0.7F    /* chosen: above the speed of unconfirmed climbs, 0.35 and 0.6 m/s */
 #define RUN_AWAY_M 0.38F     /* chosen: between BOTH_M and AGAINST_M */
+#define APART_MPS 0.5F       /* chosen: about as much as the heights lag behind at a lift-off */
+#define UNSEEN_MPS 0.6F      /* tried: no healthy flight of 1800; at 0.5 two are doubted */
+#define UNSEEN_FELT_M 0.25F  /* tried: with 0.20 no healthy flight of 1800, with 0.15 two */
+#define UNSEEN_PUSHED_M 0.1F /* chosen: less than UNSEEN_FELT_M, its hover thrust has just been learned */
 #define STILL_MPS 0.2F       /* chosen: heights that change more slowly do not move */
 #define CONTENT_M 0.10F      /* chosen: a law so near its reference is not misled by a wrong height */
 #define CONTENT_SHARE 1.8F   /* chosen: near the reference the limits nearly double */
@@ -158,6 +164,14 @@ static void forget(integrity_t *i)
     i->felt.off_m = i->felt.seen_m = i->felt.moved_m = 0.0F;
     i->pushed.off_m = i->pushed.seen_m = i->pushed.moved_m = 0.0F;
     i->agreed_s = 0.0F;
+}
+
+/* From now on the question is whether a climb shows in the heights: forgets that they showed more than the
+ * witnesses. */
+static void forget_sinking(integrity_t *i)
+{
+    i->felt.off_m = at_most(i->felt.off_m, 0.0F);
+    i->pushed.off_m = at_most(i->pushed.off_m, 0.0F);
 }
 
 /* ---- tilt */
@@ -241,19 +255,18 @@ void integrity_tilt(integrity_t *integrity, const imu_sample_t *frames, uint16_t
 
 /* ---- scans */
 
-/* Sample variance of INTEGRITY_SCANS values. */
+/* Sample variance of INTEGRITY_SCANS values. Differences from the first value keep the squares small. */
 static float variance(const float *value)
 {
-    float mean = 0.0F;
+    float sum = 0.0F;
     float square = 0.0F;
 
-    for (uint16_t k = 0U; k < INTEGRITY_SCANS; ++k) {
-        mean += value[k] / (float)INTEGRITY_SCANS;
+    for (uint16_t k = 1U; k < INTEGRITY_SCANS; ++k) {
+        const float off = value[k] - value[0];
+        sum += off;
+        square += off * off;
     }
-    for (uint16_t k = 0U; k < INTEGRITY_SCANS; ++k) {
-        square += (value[k] - mean) * (value[k] - mean);
-    }
-    return square / (float)(INTEGRITY_SCANS - 1U);
+    return (square - sum * sum / (float)INTEGRITY_SCANS) / (float)(INTEGRITY_SCANS - 1U);
 }
 
 /* Variance of the white noise in the values: the second difference of white noise has six times its
@@ -285,13 +298,19 @@ static void watch_slant(integrity_t *i, const altitude_t *altitude)
     i->flat = i->scans == INTEGRITY_SCANS && slant_mm2 < STILL_MOST_MM2 && i->shaken <= 1.0F;
     i->rigid = rigid ? (uint16_t)(i->rigid + (i->rigid < STILL_SCANS)) : 0U;
     i->still = still ? (uint16_t)(i->still + (i->still < STILL_SCANS)) : 0U;
-    if (!integrity_sways(i)) {
+    if (!integrity_sways(i) || i->height_m < LOW_M) { /* so low it may touch the ground */
         i->white = 0U;
     } else if (still) {
         i->white = (uint16_t)(i->white + (i->white < WHITE_SCANS));
     } else {
         i->white = (uint16_t)(i->white - (i->white > 0U));
     }
+}
+
+/* The slant changes by more than white noise, and no step made it so. Or nothing is known about it. */
+static bool slant_lives(const integrity_t *i)
+{
+    return i->still == 0U && (i->scans == INTEGRITY_SCANS || i->scans == 0U);
 }
 
 bool integrity_scan(integrity_t *integrity, const altitude_t *altitude)
@@ -608,8 +627,17 @@ static void compare_felt(integrity_t *i, float rise_m, float gap_s, float age_s)
     const float pull = integrity_doubts(i, DOUBT_SIGHT) ? 0.0F : age;
 
     compare(&i->felt, rise_m, gap_s, age_s, FELT_LEAK_PER_S * age, FELT_PULL_PER_S2 * pull);
+    i->pulled_ms += gap_s * (pull * i->felt.seen_m - i->pulled_ms / PULLED_TIME_S);
     i->bias_mps2 -= BIAS_PULL_PER_S3 * pull * gap_s * i->felt.seen_m;
     i->bias_mps2 = between(-BIAS_MAX_MPS2, i->bias_mps2, BIAS_MAX_MPS2);
+}
+
+/* The heights are doubted now: takes back what they have corrected in the witness of the accelerometer. */
+static void take_back(integrity_t *i)
+{
+    i->felt.speed_mps -= FELT_PULL_PER_S2 * i->pulled_ms;
+    i->bias_mps2 = between(-BIAS_MAX_MPS2, i->bias_mps2 + BIAS_PULL_PER_S3 * i->pulled_ms, BIAS_MAX_MPS2);
+    i->pulled_ms = 0.0F;
 }
 
 /* The heights show the first climb. Until now the hover thrust was not known well, so the witness of the
@@ -661,11 +689,14 @@ static void take_height(integrity_t *i, float height_m, float gap_s, float age_s
                       !follows(&i->pushed, rise_m, gap_s);
 
     watch_depth(i, height_m, rise_m, step);
+    i->scans = (step && i->scans > 1U) ? 1U : i->scans; /* a step is no motion of the slant */
     i->proved = i->proved && !i->standing;
-    if (i->standing || (step && rise_m < 0.0F && !returns(i, height_m))) {
+    const bool unfelt = i->unconfirmed && !i->proved && i->felt.running_s > 0.0F; /* a jump is no first climb */
+    if (i->standing || (step && (unfelt || (rise_m < 0.0F && !returns(i, height_m))))) {
         i->unconfirmed = true;
         i->near_m = height_m;
         i->quiet_s = 0.0F;
+        forget_sinking(i);
     } else if (!fresh || rise_m > STEP_M || height_m > i->near_m + CONFIRMED_M || i->quiet_s > QUIET_S) {
         if (i->unconfirmed && !i->proved) {
             i->proved = true;
@@ -681,8 +712,9 @@ static void take_height(integrity_t *i, float height_m, float gap_s, float age_s
     i->before_rise_m = (i->since_rise_s > 0.0F) ? i->before_rise_m : i->height_m;
     i->height_m = height_m;
     i->has_height = true;
-    i->rise_mps += gap_s / (RISE_TIME_S + gap_s) *
-                   ((step ? i->rise_mps : rise_m / at_least(gap_s, 0.01F)) - i->rise_mps);
+    const float share = gap_s / (RISE_TIME_S + gap_s);
+    i->rise_mps += share * ((step ? i->rise_mps : rise_m / at_least(gap_s, 0.01F)) - i->rise_mps);
+    i->slower_mps += share * (at_most(i->felt.speed_mps, i->pushed.speed_mps) - i->slower_mps);
     i->steps = i->steps * (1.0F - at_most(gap_s / STEPS_TIME_S, 1.0F)) + (step ? 1.0F : 0.0F);
     if (!fresh) {
         i->felt.off_m = 0.0F;
@@ -713,6 +745,12 @@ static bool acceleration_against(const integrity_t *i, float at_least_m)
     return acceleration_valid(i) && fabsf(felt_off_m(i)) > at_least_m;
 }
 
+/* Neither witness contradicts the heights by the smallest limit of any rule below. */
+static bool both_agree(const integrity_t *i)
+{
+    return fabsf(i->felt.seen_m) < STILL_FELT_M && fabsf(i->pushed.seen_m) < STILL_BOTH_M;
+}
+
 /* The thrust pushes towards the reference by more than least_n, and the heights do not follow. */
 static bool pushes_in_vain(const integrity_t *i, const flown_t *flown, float least_n)
 {
@@ -728,6 +766,16 @@ static bool both_run_away(const integrity_t *i)
     return fabsf(i->rise_mps) < STILL_MPS && felt_mps * pushed_mps > 0.0F &&
            felt_mps * i->felt.seen_m < 0.0F && at_most(fabsf(felt_mps), fabsf(pushed_mps)) > RUN_AWAY_MPS &&
            at_most(fabsf(felt_off_m(i)), fabsf(i->pushed.seen_m)) > RUN_AWAY_M;
+}
+
+/* Both witnesses climb, and the heights have stopped. A beam may be blocked during a climb, so this does not
+ * wait until heights_moved() is over. slower_mps lags like rise_mps: a vehicle that has just turned upwards is
+ * not doubted. */
+static bool climbs_unseen(const integrity_t *i)
+{
+    return i->slower_mps - i->rise_mps > UNSEEN_MPS && i->pushed.seen_m < -UNSEEN_PUSHED_M &&
+           acceleration_valid(i) && counts(&i->pushed) && felt_off_m(i) < -UNSEEN_FELT_M &&
+           fabsf(i->rise_mps) < STILL_MPS;
 }
 
 /* The law takes the vehicle to be on the ground still. But the tilt sways as in the air, for long; or the
@@ -752,7 +800,7 @@ static bool still_against(const integrity_t *i)
                       against(&i->pushed, AGAINST_M);
 
     return (felt && both && rigid) || flat ||
-           ((felt || rigid) && against(&i->pushed, BOTH_M) && i->white >= STILL_SCANS);
+           ((felt || rigid) && against(&i->pushed, BOTH_M) && i->white >= NOISE_SCANS);
 }
 
 /* Both witnesses contradict the heights in the same direction, by that share of the limits. */
@@ -776,8 +824,9 @@ static bool both_against(const integrity_t *i, const flown_t *flown, float share
 static bool vain_since_step(const integrity_t *i, const flown_t *flown)
 {
     const float pushed_m = i->pushed.seen_m;
+    const bool flew = i->proved || i->near_m > STEP_M; /* a step after the lift-off moves near_m up */
 
-    return i->unconfirmed && (i->proved || i->felt_least_m < -WITH_M) && i->pushed.running_s >= OLD_S &&
+    return i->unconfirmed && (flew || i->felt_least_m < -WITH_M) && i->pushed.running_s >= OLD_S &&
            fabsf(pushed_m) > UNCONFIRMED_M && pushes_in_vain(i, flown, UNCONFIRMED_N) &&
            !(acceleration_against(i, WITH_M) && felt_off_m(i) * pushed_m < 0.0F);
 }
@@ -797,10 +846,11 @@ static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
     const bool stiff = i->rigid == STILL_SCANS &&
                        integrity_sways(i); /* the tilt sways, and the slant does not change */
 
-    if (i->steps > STEPS_MAX || stiff || i->white == WHITE_SCANS || aloft_unseen(i, flown)) {
+    if (i->steps > STEPS_MAX || stiff || i->white == WHITE_SCANS || aloft_unseen(i, flown) ||
+        climbs_unseen(i)) {
         return true;
     }
-    if (heights_moved(i)) {
+    if (heights_moved(i) || (acceleration_valid(i) && both_agree(i))) {
         return false;
     }
     if (still_against(i) || unproved_against(i)) {
@@ -826,7 +876,7 @@ static bool imu_is_wrong(const integrity_t *i, const flown_t *flown)
     const bool alone = !against(&i->pushed, ALONE_SHARE * fabsf(i->felt.seen_m)) ||
                        i->felt.seen_m * i->pushed.seen_m < 0.0F;
 
-    if (integrity_still(i) || unproved_against(i)) {
+    if (both_agree(i) || integrity_still(i) || unproved_against(i)) {
         return false;
     }
     return (acceleration_against(i, ALONE_M) && counts(&i->pushed) && alone) ||
@@ -882,6 +932,7 @@ static void judge(integrity_t *i, const flown_t *flown, float gap_s)
     } else if (sight_is_wrong(i, flown)) {
         set_doubt(i, DOUBT_SIGHT, true);
         i->lost_m = lost_m(i);
+        take_back(i);
         forget(i);
     } else if (thrust_is_wrong(i, flown)) {
         set_doubt(i, DOUBT_THRUST, true);
@@ -920,7 +971,7 @@ void integrity_height(integrity_t *integrity, const flown_t *flown, float height
                          fabsf(flown->wanted_m) > VAIN_M)
                             ? integrity->vain_s + gap_s
                             : 0.0F;
-    integrity->quiet_s = (flown->wanted_m < QUIET_M && integrity->still == 0U) ? integrity->quiet_s + gap_s
+    integrity->quiet_s = (flown->wanted_m < QUIET_M && slant_lives(integrity)) ? integrity->quiet_s + gap_s
                                                                                : 0.0F;
     if (!flown->ours) {
         forget(integrity);
@@ -938,6 +989,12 @@ float integrity_felt_mps(const integrity_t *integrity)
 bool integrity_still(const integrity_t *integrity)
 {
     return integrity->still > STILL_SCANS / 2U;
+}
+
+bool integrity_apart(const integrity_t *integrity)
+{
+    return acceleration_valid(integrity) &&
+           fabsf(integrity->felt.speed_mps - integrity->rise_mps) > APART_MPS * integrity->shaken;
 }
 
 bool integrity_sways(const integrity_t *integrity)

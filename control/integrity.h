@@ -92,6 +92,7 @@ typedef struct {
     bool has_height;      /* at least one height was received */
     float height_m;       /* latest height */
     float rise_mps;       /* low-passed rate of the heights, without steps */
+    float slower_mps;     /* speed of the slower witness, low-passed like rise_mps */
     float way_m;          /* leaky sum of the height changes since the latest step */
     float unmoved_s;      /* time since way_m was last large, at most 1 s; 1 s after a step */
     bool unconfirmed;     /* after a take-off or a step of the terrain towards the vehicle: no climb has shown
@@ -122,6 +123,7 @@ typedef struct {
     float block_s;                          /* time since the latter was taken */
     float bias_mps2; /* of the accelerometer: at rest its mean, in the air corrected by the heights */
     float shaken;    /* >= 1: divides the witness's innovation when the accelerometer is noisy */
+    float pulled_ms; /* leaky sum of seen_m over time: how far the heights have corrected the witness */
     witness_t felt;
     /* thrust */
     float lagged_n; /* commanded thrust through the lag of the motors */
@@ -192,6 +194,10 @@ static inline bool integrity_terrain_fell(const integrity_t *integrity)
 /* True when the slant distance of more than eight scans in a row has contained only white noise: the beam
  * may be blocked. */
 bool integrity_still(const integrity_t *integrity);
+
+/* True when the speed of the accelerometer's witness and the rate of the heights differ by more than 0.5 m/s:
+ * learn nothing from them. */
+bool integrity_apart(const integrity_t *integrity);
 
 /* True when roll and pitch sway as in the air: more than 1.1 degrees rms together. */
 bool integrity_sways(const integrity_t *integrity);
