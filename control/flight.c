@@ -554,7 +554,8 @@ static void change_doubts(flight_t *flight, float gravity_n)
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
     if ((gone & DOUBT_SIGHT) != 0U && flight->est.airborne) { /* the heights are right after all */
-        estimator_amend(&flight->est.estimator, integrity->height_m, integrity->rise_mps, integrity->bias_mps2);
+        estimator_amend(&flight->est.estimator, integrity->height_m, integrity->rise_mps,
+                        integrity->bias_mps2);
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
     est_law_set_without_authority(&flight->est, integrity_doubts(integrity, DOUBT_THRUST) ||

@@ -42,7 +42,7 @@
     64.0F /* chosen: 8 mm rms, above the noise of any drawn sensor; bars on a floor make more */
 #define STILL_SHARE 0.4F   /* chosen: white noise alone makes 1, a swinging slant next to 0 */
 #define STILL_SCANS 16U    /* chosen: 1.6 s of scans */
-#define NOISE_SCANS 19U      /* tried: at 16 one of 40 healthy flights in FLOATING was doubted */
+#define NOISE_SCANS 19U    /* tried: at 16 one of 40 healthy flights in FLOATING was doubted */
 #define WHITE_SCANS 40U    /* tried: 120 healthy drawn flights reach 24, a blocked beam 40 within 4 to 6 s */
 #define STILL_BOTH_M 0.10F /* chosen: low, because the still slant is evidence too */
 #define FLAT_FELT_M 0.15F  /* chosen: half of BOTH_M; the thrust must then show AGAINST_M */
@@ -74,6 +74,8 @@
 #define CONFIRMED_M 0.12F    /* chosen: just above STEP_M */
 #define TERRAIN_FALL_M 0.40F /* chosen: above the edge of the seed's course, 0.25 m */
 #define PULLED_TIME_S 2.0F   /* chosen: as OLD_S */
+#define SUNK_M 0.025F        /* chosen: five times the noise of a height; no vehicle flies below its ground */
+#define SUNK_SCANS 3U        /* chosen: 0.3 s */
 #define QUIET_S 1.0F         /* tried: 60 drawn vehicles whose blocked beam shows the reference; ten scans */
 #define QUIET_M 0.10F        /* chosen: as CONTENT_M */
 #define GLITCH_S 0.25F       /* chosen: two scans and a half */
@@ -691,8 +693,8 @@ static void take_height(integrity_t *i, float height_m, float gap_s, float age_s
     watch_depth(i, height_m, rise_m, step);
     i->scans = (step && i->scans > 1U) ? 1U : i->scans; /* a step is no motion of the slant */
     i->proved = i->proved && !i->standing;
-    const bool unfelt = i->unconfirmed && !i->proved && i->felt.running_s > 0.0F; /* a jump is no first climb */
-    if (i->standing || (step && (unfelt || (rise_m < 0.0F && !returns(i, height_m))))) {
+    const bool first = i->unconfirmed && !i->proved; /* a jump is no first climb */
+    if (i->standing || (step && (first || (rise_m < 0.0F && !returns(i, height_m))))) {
         i->unconfirmed = true;
         i->near_m = height_m;
         i->quiet_s = 0.0F;
@@ -769,8 +771,8 @@ static bool both_run_away(const integrity_t *i)
 }
 
 /* Both witnesses climb, and the heights have stopped. A beam may be blocked during a climb, so this does not
- * wait until heights_moved() is over. slower_mps lags like rise_mps: a vehicle that has just turned upwards is
- * not doubted. */
+ * wait until heights_moved() is over. slower_mps lags like rise_mps: a vehicle that has just turned upwards
+ * is not doubted. */
 static bool climbs_unseen(const integrity_t *i)
 {
     return i->slower_mps - i->rise_mps > UNSEEN_MPS && i->pushed.seen_m < -UNSEEN_PUSHED_M &&
@@ -846,8 +848,8 @@ static bool sight_is_wrong(const integrity_t *i, const flown_t *flown)
     const bool stiff = i->rigid == STILL_SCANS &&
                        integrity_sways(i); /* the tilt sways, and the slant does not change */
 
-    if (i->steps > STEPS_MAX || stiff || i->white == WHITE_SCANS || aloft_unseen(i, flown) ||
-        climbs_unseen(i)) {
+    if (i->steps > STEPS_MAX || stiff || i->white == WHITE_SCANS || i->sunk == SUNK_SCANS ||
+        aloft_unseen(i, flown) || climbs_unseen(i)) {
         return true;
     }
     if (heights_moved(i) || (acceleration_valid(i) && both_agree(i))) {
@@ -971,6 +973,10 @@ void integrity_height(integrity_t *integrity, const flown_t *flown, float height
                          fabsf(flown->wanted_m) > VAIN_M)
                             ? integrity->vain_s + gap_s
                             : 0.0F;
+    integrity->ground_m = flown->grounded ? height_m : integrity->ground_m;
+    integrity->sunk = (height_m < integrity->ground_m - SUNK_M && flown->wanted_m > QUIET_M)
+                          ? (uint16_t)(integrity->sunk + (integrity->sunk < SUNK_SCANS))
+                          : 0U;
     integrity->quiet_s = (flown->wanted_m < QUIET_M && slant_lives(integrity)) ? integrity->quiet_s + gap_s
                                                                                : 0.0F;
     if (!flown->ours) {

@@ -162,6 +162,19 @@ void test_what_the_flight_has_learned_is_given_up_on_the_ground(void)
     }
 }
 
+void test_nothing_is_learned_while_accelerometer_and_heights_are_apart(void)
+{
+    for (int apart = 0; apart < 2; apart++) {
+        setUp();
+        f.learned_s = 2.5F;
+        f.hover_n = 7.0F;
+        f.est.hover.thrust_n = 7.4F;
+        f.integrity.felt = (witness_t){.speed_mps = (apart != 0) ? 0.51F : 0.49F, .running_s = 2.0F};
+        update_hover(&f, GRAV_N);
+        TEST_ASSERT_EQUAL(apart == 0, f.hover_n > 7.001F);
+    }
+}
+
 void test_nothing_is_learned_without_sight_or_in_doubt(void)
 {
     for (int why = 0; why < 5; why++) {
@@ -866,6 +879,32 @@ void test_a_doubt_of_the_sight_corrects_the_estimate_by_the_error_found(void)
     change_doubts(&f, GRAV_N); /* once */
     NEAR(0.9F, f.est.estimator.now.height_m);
     NEAR(6.5F, f.est.hover.thrust_n);
+}
+
+void test_the_end_of_a_doubt_of_the_sight_starts_the_estimate_from_the_heights(void)
+{
+    for (int airborne = 0; airborne < 2; airborne++) {
+        setUp();
+        f.est.airborne = airborne != 0;
+        f.doubts = DOUBT_SIGHT;
+        f.integrity.height_m = 0.45F;
+        f.integrity.rise_mps = -0.6F;
+        f.integrity.bias_mps2 = 0.15F;
+        f.est.estimator.delayed.height_m = f.est.estimator.now.height_m = 0.9F;
+        f.est.estimator.delayed.speed_mps = f.est.estimator.now.speed_mps = 2.0F;
+        f.est.hover.thrust_n = 6.5F;
+        f.thrust_n = 4.5F;
+        f.hover_n = 7.1F;
+        change_doubts(&f, GRAV_N);
+        NEAR((airborne != 0) ? 0.45F : 0.9F, f.est.estimator.now.height_m);
+        NEAR((airborne != 0) ? -0.6F : 2.0F, f.est.estimator.now.speed_mps);
+        NEAR((airborne != 0) ? 7.1F : 6.5F, f.est.hover.thrust_n);
+        if (airborne != 0) {
+            NEAR(0.15F, f.est.estimator.now.bias_mps2);
+            NEAR(4.5F, f.est.cascade.thrust_n);
+        }
+        TEST_ASSERT_EQUAL_UINT16(0U, f.doubts);
+    }
 }
 
 void test_a_vehicle_that_flies_unseen_is_engaged_and_one_on_the_ground_is_not(void)

@@ -220,6 +220,8 @@ static uint16_t white_before;
 static float sway_before_rad2;
 
 /* The twelfth scan: a ramp of slope_mm a scan, and noise_mm to either side by turns. */
+static float scan_height_m = 0.5F;
+
 static void scan_of(float slope_mm, float noise_mm)
 {
     float slants_mm[INTEGRITY_SCANS];
@@ -231,6 +233,7 @@ static void scan_of(float slope_mm, float noise_mm)
     memcpy(it.slants_mm + 1, slants_mm, sizeof slants_mm - sizeof slants_mm[0]);
     it.scans = INTEGRITY_SCANS - 1U;
     it.white = white_before;
+    it.height_m = scan_height_m;
     it.sway_rad2 = sway_before_rad2;
     TEST_ASSERT_TRUE(integrity_scan(
         &it,
@@ -998,8 +1001,132 @@ void test_scans_of_noise_count_while_the_tilt_sways_and_others_count_back(void)
         scan_of(0.0F, rows[i].noise_mm);
         TEST_ASSERT_EQUAL_UINT16(rows[i].after, it.white);
     }
+    for (int low = 0; low < 2; low++) { /* so low the vehicle may touch the ground */
+        white_before = 5U;
+        sway_before_rad2 = 4.1e-4F;
+        scan_height_m = (low == 0) ? 0.081F : 0.079F;
+        scan_of(0.0F, 5.0F);
+        TEST_ASSERT_EQUAL_UINT16((low == 0) ? 6U : 0U, it.white);
+    }
     white_before = 0U;
     sway_before_rad2 = 0.0F;
+    scan_height_m = 0.5F;
+}
+
+void test_a_slant_with_a_step_in_it_proves_no_contentment_until_twelve_scans_later(void)
+{
+    static const struct {
+        uint16_t scans;
+        float quiet_s;
+    } rows[] = {{0U, 0.3F}, {1U, 0.0F}, {11U, 0.0F}, {12U, 0.3F}};
+    for (int i = 0; i < 4; i++) {
+        hover();
+        it.quiet_s = 0.2F;
+        it.scans = rows[i].scans;
+        flown.wanted_m = 0.0F;
+        height(0.5F);
+        NEAR(rows[i].quiet_s, it.quiet_s);
+    }
+}
+
+void test_a_step_restarts_the_slants_and_a_sensor_without_spread_has_none(void)
+{
+    static const struct {
+        float height_m;
+        uint16_t before, after;
+    } rows[] = {{0.7F, 12U, 1U}, {0.3F, 12U, 1U}, {0.55F, 12U, 12U}, {0.7F, 0U, 0U}};
+    for (int i = 0; i < 4; i++) {
+        hover();
+        it.scans = rows[i].before;
+        height(rows[i].height_m);
+        TEST_ASSERT_EQUAL_UINT16(rows[i].after, it.scans);
+    }
+}
+
+void test_the_ground_is_the_latest_height_in_state_ground(void)
+{
+    for (int stands = 0; stands < 2; stands++) {
+        hover();
+        flown.grounded = stands != 0;
+        flown.standing = true;
+        it.ground_m = 0.02F;
+        height(0.5F);
+        NEAR(stands != 0 ? 0.5F : 0.02F, it.ground_m);
+    }
+}
+
+void test_a_jump_upwards_is_no_first_climb(void)
+{
+    for (int proved = 0; proved < 2; proved++) {
+        hover();
+        it.unconfirmed = true;
+        it.proved = proved != 0;
+        height(0.7F);
+        TEST_ASSERT_EQUAL(proved == 0, it.unconfirmed);
+        NEAR(proved == 0 ? 0.7F : 0.5F, it.near_m);
+    }
+}
+
+void test_a_step_towards_the_vehicle_forgets_that_the_heights_showed_more(void)
+{
+    for (int sinks = 0; sinks < 2; sinks++) {
+        hover();
+        it.felt.running_s = it.pushed.running_s = 2.0F;
+        it.felt.off_m = (sinks == 0) ? 0.2F : -0.2F;
+        it.pushed.off_m = (sinks == 0) ? 0.3F : -0.3F;
+        height(0.3F);
+        TEST_ASSERT_TRUE(it.unconfirmed);
+        TEST_ASSERT_FLOAT_WITHIN(0.002F, 0.0F, (sinks == 0) ? it.pushed.off_m : 0.0F);
+        TEST_ASSERT_EQUAL(sinks == 1, it.felt.off_m < -0.1F);
+        TEST_ASSERT_EQUAL(sinks == 1, it.pushed.off_m < -0.2F);
+    }
+}
+
+void test_the_speed_of_the_slower_witness_lags_by_a_third_per_scan(void)
+{
+    for (int row = 0; row < 2; row++) {
+        hover();
+        it.slower_mps = 0.1F;
+        it.felt = (witness_t){.speed_mps = (row == 0) ? 0.4F : 1.0F, .running_s = 0.1F};
+        it.pushed = (witness_t){.speed_mps = (row == 0) ? 1.0F : 0.4F, .running_s = 0.1F};
+        height(0.5F);
+        TEST_ASSERT_FLOAT_WITHIN(0.001F, 0.2F, it.slower_mps);
+    }
+}
+
+void test_corrections_by_the_heights_are_summed_and_fade_in_two_seconds(void)
+{
+    hover();
+    it.felt = (witness_t){.running_s = 2.0F};
+    it.felt.off_m = 0.3F;
+    it.pulled_ms = 0.4F;
+    height(0.5F);
+    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.4F + 0.1F * 0.3F - 0.4F * 0.1F / 2.0F, it.pulled_ms);
+    it.doubts = DOUBT_SIGHT;
+    it.felt.off_m = 0.3F;
+    height(0.5F);
+    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.41F * 0.95F, it.pulled_ms);
+}
+
+void test_heights_and_accelerometer_are_apart_by_half_a_metre_per_second(void)
+{
+    static const struct {
+        float felt_mps, rise_mps, shaken, running_s;
+        uint16_t doubts;
+        bool apart;
+    } rows[] = {{0.51F, 0.0F, 1.0F, 1.0F, 0U, true},        {0.50F, 0.0F, 1.0F, 1.0F, 0U, false},
+                {-0.51F, 0.0F, 1.0F, 1.0F, 0U, true},       {0.0F, 0.51F, 1.0F, 1.0F, 0U, true},
+                {0.51F, 0.02F, 1.0F, 1.0F, 0U, false},      {0.51F, 0.0F, 1.1F, 1.0F, 0U, false},
+                {0.56F, 0.0F, 1.1F, 1.0F, 0U, true},        {0.51F, 0.0F, 1.0F, 0.5F, 0U, false},
+                {0.51F, 0.0F, 1.0F, 1.0F, DOUBT_IMU, false}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        it.felt = (witness_t){.speed_mps = rows[i].felt_mps, .running_s = rows[i].running_s};
+        it.rise_mps = rows[i].rise_mps;
+        it.shaken = rows[i].shaken;
+        it.doubts = rows[i].doubts;
+        TEST_ASSERT_EQUAL(rows[i].apart, integrity_apart(&it));
+    }
 }
 
 void test_a_law_is_content_below_a_decimetre_of_wanted_climb(void)

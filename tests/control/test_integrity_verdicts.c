@@ -254,7 +254,7 @@ void test_the_error_of_the_height_is_the_mean_of_the_witnesses_that_count(void)
     TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.7F, it.lost_m);
     setUp();
     it.doubts = DOUBT_IMU;
-    it.white = 16U;
+    it.white = 19U;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.7F, -0.3F));
     TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.3F, it.lost_m);
 }
@@ -302,6 +302,92 @@ void test_of_a_noisy_accelerometer_a_share_of_the_speed_counts(void)
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(-0.8F, -0.39F));
 }
 
+/* ---- DOUBT_SIGHT: a climb that the heights do not show */
+
+/* The heights moved a moment ago. */
+static uint16_t climb(float slower_mps, float rise_mps, float felt_m, float pushed_m)
+{
+    setUp();
+    it.unmoved_s = 0.0F;
+    it.slower_mps = slower_mps;
+    it.rise_mps = rise_mps;
+    return judged(felt_m, pushed_m);
+}
+
+void test_a_climb_of_both_witnesses_doubts_heights_that_have_stopped_at_once(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, climb(0.61F, 0.0F, -0.26F, -0.11F));
+    TEST_ASSERT_EQUAL_UINT16(0U, climb(0.60F, 0.0F, -0.26F, -0.11F));
+    TEST_ASSERT_EQUAL_UINT16(0U, climb(-0.61F, 0.0F, -0.26F, -0.11F));
+    TEST_ASSERT_EQUAL_UINT16(0U, climb(0.61F, 0.0F, -0.25F, -0.11F));
+    TEST_ASSERT_EQUAL_UINT16(0U, climb(0.61F, 0.0F, -0.26F, -0.10F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, climb(0.80F, 0.19F, -0.26F, -0.11F));
+    TEST_ASSERT_EQUAL_UINT16(0U, climb(0.78F, 0.19F, -0.26F, -0.11F));
+    TEST_ASSERT_EQUAL_UINT16(0U, climb(1.00F, 0.21F, -0.26F, -0.11F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, climb(0.42F, -0.19F, -0.26F, -0.11F));
+    TEST_ASSERT_EQUAL_UINT16(0U, climb(1.00F, -0.21F, -0.26F, -0.11F));
+}
+
+static uint16_t climb_with(uint16_t doubts, float shaken, float felt_s, float pushed_s)
+{
+    setUp();
+    it.unmoved_s = 0.0F;
+    it.slower_mps = 1.0F;
+    it.doubts = doubts;
+    it.shaken = shaken;
+    it.felt.running_s = felt_s;
+    it.pushed.running_s = pushed_s;
+    return (uint16_t)(judged(-0.3F, -0.2F) & DOUBT_SIGHT);
+}
+
+void test_a_climb_unseen_needs_both_witnesses_and_a_quiet_accelerometer(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, climb_with(0U, 1.0F, 2.0F, 2.0F));
+    TEST_ASSERT_EQUAL_UINT16(0U, climb_with(DOUBT_IMU, 1.0F, 2.0F, 2.0F));
+    TEST_ASSERT_EQUAL_UINT16(0U, climb_with(0U, 1.3F, 2.0F, 2.0F));
+    TEST_ASSERT_EQUAL_UINT16(0U, climb_with(0U, 1.0F, 0.5F, 2.0F));
+    TEST_ASSERT_EQUAL_UINT16(0U, climb_with(0U, 1.0F, 2.0F, 0.5F));
+}
+
+/* speed 0.81 1/s2, bias 0.1 1/s3: FELT_PULL_PER_S2, BIAS_PULL_PER_S3 */
+void test_a_doubt_of_the_heights_takes_back_what_they_have_corrected(void)
+{
+    setUp();
+    it.felt.speed_mps = 0.9F;
+    it.bias_mps2 = 0.2F;
+    it.pulled_ms = -0.5F;
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.4F, -0.2F));
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.9F, it.felt.speed_mps);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, -0.5F, it.pulled_ms);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(-0.6F, -0.3F));
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.305F, it.felt.speed_mps);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 0.15F, it.bias_mps2);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.pulled_ms);
+}
+
+/* ---- DOUBT_SIGHT: below the ground */
+
+void test_three_heights_below_the_ground_doubt_the_heights_of_a_law_that_wants_to_climb(void)
+{
+    static const struct {
+        float height_m, wanted_m;
+        uint16_t doubts;
+    } rows[] = {{-0.016F, 0.6F, DOUBT_SIGHT}, {-0.014F, 0.6F, 0U}, {-0.016F, 0.1F, 0U}, {-0.016F, NAN, 0U}};
+    for (int i = 0; i < 4; i++) {
+        setUp();
+        it.ground_m = 0.01F;
+        it.height_m = rows[i].height_m;
+        flown.wanted_m = rows[i].wanted_m;
+        TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
+        TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
+        TEST_ASSERT_EQUAL_UINT16(rows[i].doubts, judged(0.0F, 0.0F));
+    }
+    setUp();
+    it.sunk = 2U;
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F)); /* a good one between starts the count again */
+    TEST_ASSERT_EQUAL_UINT16(0U, it.sunk);
+}
+
 /* ---- DOUBT_SIGHT: a still slant */
 
 static uint16_t slant(uint16_t rigid, uint16_t still, float felt_m, float pushed_m)
@@ -331,13 +417,13 @@ static uint16_t noisy_slant(uint16_t rigid, uint16_t white, float felt_m, float 
 
 void test_a_slant_of_noise_alone_needs_the_thrust_and_a_sign_of_another(void)
 {
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, noisy_slant(0U, 16U, -0.06F, -0.29F));
-    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(0U, 16U, -0.06F, -0.28F));
-    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(0U, 15U, -0.06F, -0.29F));
-    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(0U, 16U, -0.05F, -0.29F));
-    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(0U, 16U, 0.06F, -0.29F));
-    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(1U, 16U, 0.06F, -0.29F));
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, noisy_slant(2U, 16U, 0.06F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, noisy_slant(0U, 19U, -0.06F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(0U, 19U, -0.06F, -0.28F));
+    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(0U, 18U, -0.06F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(0U, 19U, -0.05F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(0U, 19U, 0.06F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(0U, noisy_slant(1U, 19U, 0.06F, -0.29F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, noisy_slant(2U, 19U, 0.06F, -0.29F));
 }
 
 void test_a_slant_of_noise_for_four_seconds_is_a_blocked_beam(void)
@@ -407,6 +493,7 @@ static void in_vain(bool unconfirmed, bool proved, float felt_least_m, float pus
     it.felt_least_m = felt_least_m;
     it.pushed.running_s = pushed_for_s;
     it.lagged_n = HOVER_N + 0.3F;
+    it.height_m = it.near_m = 0.10F;
     (void)judged(0.0F, -0.36F);
 }
 
@@ -422,6 +509,18 @@ void test_a_push_in_vain_needs_a_proof_and_an_old_witness(void)
     TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
     in_vain(true, false, -0.21F, 2.0F);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, it.doubts);
+}
+
+void test_a_jump_of_the_height_after_the_lift_off_is_such_a_proof(void)
+{
+    for (int high = 0; high < 2; high++) {
+        setUp();
+        it.unconfirmed = true;
+        it.proved = false;
+        it.height_m = it.near_m = (high == 0) ? 0.10F : 0.11F;
+        it.lagged_n = HOVER_N + 0.3F;
+        TEST_ASSERT_EQUAL_UINT16((high == 0) ? 0U : DOUBT_SIGHT, judged(0.0F, -0.36F));
+    }
 }
 
 void test_without_an_accelerometer_a_push_in_vain_after_a_step_is_enough(void)
@@ -590,7 +689,7 @@ void test_a_push_in_vain_of_three_seconds_doubts_the_heights_where_the_thrust_is
 void test_a_still_slant_needs_no_accelerometer(void)
 {
     it.doubts = DOUBT_IMU;
-    it.white = 16U;
+    it.white = 19U;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, judged(0.0F, -0.28F));
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.0F, -0.29F));
 }
