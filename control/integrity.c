@@ -680,8 +680,27 @@ static void watch_depth(integrity_t *i, float height_m, float rise_m, bool step)
     }
 }
 
-/* Processes one height: step or not, confirmed or not, then the innovations of both witnesses. A take-off is
- * unconfirmed, as is a step of the terrain towards the vehicle. */
+/* A take-off is unconfirmed until a climb shows in the heights, as is a step of the terrain towards the
+ * vehicle. A jump is no first climb. */
+static void watch_confirmation(integrity_t *i, float height_m, float rise_m, bool step, bool fresh)
+{
+    i->proved = i->proved && !i->standing;
+    const bool first = i->unconfirmed && !i->proved;
+    if (i->standing || (step && (first || (rise_m < 0.0F && !returns(i, height_m))))) {
+        i->unconfirmed = true;
+        i->near_m = height_m;
+        i->quiet_s = 0.0F;
+        forget_sinking(i);
+    } else if (!fresh || rise_m > STEP_M || height_m > i->near_m + CONFIRMED_M || i->quiet_s > QUIET_S) {
+        if (first) {
+            i->proved = true;
+            confirm(i);
+        }
+        i->unconfirmed = false;
+    }
+}
+
+/* Processes one height: step or not, confirmed or not, then the innovations of both witnesses. */
 static void take_height(integrity_t *i, float height_m, float gap_s, float age_s)
 {
     const float rise_m = height_m - i->height_m;
@@ -692,20 +711,7 @@ static void take_height(integrity_t *i, float height_m, float gap_s, float age_s
 
     watch_depth(i, height_m, rise_m, step);
     i->scans = (step && i->scans > 1U) ? 1U : i->scans; /* a step is no motion of the slant */
-    i->proved = i->proved && !i->standing;
-    const bool first = i->unconfirmed && !i->proved; /* a jump is no first climb */
-    if (i->standing || (step && (first || (rise_m < 0.0F && !returns(i, height_m))))) {
-        i->unconfirmed = true;
-        i->near_m = height_m;
-        i->quiet_s = 0.0F;
-        forget_sinking(i);
-    } else if (!fresh || rise_m > STEP_M || height_m > i->near_m + CONFIRMED_M || i->quiet_s > QUIET_S) {
-        if (i->unconfirmed && !i->proved) {
-            i->proved = true;
-            confirm(i);
-        }
-        i->unconfirmed = false;
-    }
+    watch_confirmation(i, height_m, rise_m, step, fresh);
     i->way_m = (step || !fresh) ? 0.0F : i->way_m * (1.0F - at_most(gap_s / WAY_TIME_S, 1.0F)) + rise_m;
     i->unmoved_s = fabsf(i->way_m) > MOVED_LEAST_M ? 0.0F
                    : (step || !fresh)              ? MOVED_S
