@@ -629,7 +629,7 @@ static void compare_felt(integrity_t *i, float rise_m, float gap_s, float age_s)
     const float pull = integrity_doubts(i, DOUBT_SIGHT) ? 0.0F : age;
 
     compare(&i->felt, rise_m, gap_s, age_s, FELT_LEAK_PER_S * age, FELT_PULL_PER_S2 * pull);
-    i->pulled_ms += gap_s * (pull * i->felt.seen_m - i->pulled_ms / PULLED_TIME_S);
+    i->pulled_m_s += gap_s * (pull * i->felt.seen_m - i->pulled_m_s / PULLED_TIME_S);
     i->bias_mps2 -= BIAS_PULL_PER_S3 * pull * gap_s * i->felt.seen_m;
     i->bias_mps2 = between(-BIAS_MAX_MPS2, i->bias_mps2, BIAS_MAX_MPS2);
 }
@@ -637,9 +637,9 @@ static void compare_felt(integrity_t *i, float rise_m, float gap_s, float age_s)
 /* The heights are doubted now: takes back what they have corrected in the witness of the accelerometer. */
 static void take_back(integrity_t *i)
 {
-    i->felt.speed_mps -= FELT_PULL_PER_S2 * i->pulled_ms;
-    i->bias_mps2 = between(-BIAS_MAX_MPS2, i->bias_mps2 + BIAS_PULL_PER_S3 * i->pulled_ms, BIAS_MAX_MPS2);
-    i->pulled_ms = 0.0F;
+    i->felt.speed_mps -= FELT_PULL_PER_S2 * i->pulled_m_s;
+    i->bias_mps2 = between(-BIAS_MAX_MPS2, i->bias_mps2 + BIAS_PULL_PER_S3 * i->pulled_m_s, BIAS_MAX_MPS2);
+    i->pulled_m_s = 0.0F;
 }
 
 /* The heights show the first climb. Until now the hover thrust was not known well, so the witness of the

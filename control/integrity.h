@@ -125,7 +125,8 @@ typedef struct {
     float block_s;                          /* time since the latter was taken */
     float bias_mps2; /* of the accelerometer: at rest its mean, in the air corrected by the heights */
     float shaken;    /* >= 1: divides the witness's innovation when the accelerometer is noisy */
-    float pulled_ms; /* leaky sum of seen_m over time: how far the heights have corrected the witness */
+    float
+        pulled_m_s; /* leaky sum of seen_m over time, metres times seconds: what has corrected the witness */
     witness_t felt;
     /* thrust */
     float lagged_n; /* commanded thrust through the lag of the motors */

@@ -1099,13 +1099,13 @@ void test_corrections_by_the_heights_are_summed_and_fade_in_two_seconds(void)
     hover();
     it.felt = (witness_t){.running_s = 2.0F};
     it.felt.off_m = 0.3F;
-    it.pulled_ms = 0.4F;
+    it.pulled_m_s = 0.4F;
     height(0.5F);
-    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.4F + 0.1F * 0.3F - 0.4F * 0.1F / 2.0F, it.pulled_ms);
+    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.4F + 0.1F * 0.3F - 0.4F * 0.1F / 2.0F, it.pulled_m_s);
     it.doubts = DOUBT_SIGHT;
     it.felt.off_m = 0.3F;
     height(0.5F);
-    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.41F * 0.95F, it.pulled_ms);
+    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.41F * 0.95F, it.pulled_m_s);
 }
 
 void test_heights_and_accelerometer_are_apart_by_half_a_metre_per_second(void)

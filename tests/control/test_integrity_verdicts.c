@@ -355,14 +355,14 @@ void test_a_doubt_of_the_heights_takes_back_what_they_have_corrected(void)
     setUp();
     it.felt.speed_mps = 0.9F;
     it.bias_mps2 = 0.2F;
-    it.pulled_ms = -0.5F;
+    it.pulled_m_s = -0.5F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.4F, -0.2F));
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.9F, it.felt.speed_mps);
-    TEST_ASSERT_FLOAT_WITHIN(0.001F, -0.5F, it.pulled_ms);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, -0.5F, it.pulled_m_s);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(-0.6F, -0.3F));
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.305F, it.felt.speed_mps);
     TEST_ASSERT_FLOAT_WITHIN(0.001F, 0.15F, it.bias_mps2);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.pulled_ms);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.pulled_m_s);
 }
 
 /* ---- DOUBT_SIGHT: below the ground */
