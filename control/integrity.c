@@ -979,7 +979,8 @@ void integrity_height(integrity_t *integrity, const flown_t *flown, float height
                          fabsf(flown->wanted_m) > VAIN_M)
                             ? integrity->vain_s + gap_s
                             : 0.0F;
-    integrity->ground_m = flown->grounded ? height_m : integrity->ground_m;
+    integrity->ground_m = flown->grounded ? at_most(height_m, 0.0F)
+                                          : integrity->ground_m; /* a pilot lifts it */
     integrity->sunk = (height_m < integrity->ground_m - SUNK_M && flown->wanted_m > QUIET_M)
                           ? (uint16_t)(integrity->sunk + (integrity->sunk < SUNK_SCANS))
                           : 0U;

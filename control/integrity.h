@@ -101,7 +101,7 @@ typedef struct {
     bool proved;          /* the heights have confirmed a climb since the ground */
     bool terrain_fell;    /* the terrain has fallen far, and no descent has shown in the heights since */
     float after_fall_m;   /* height after that step */
-    float ground_m;       /* latest height in state GROUND */
+    float ground_m;       /* latest height in state GROUND, at most 0: a pilot may lift it there */
     uint16_t sunk;        /* heights in a row below that while the law wants to climb, at most 3 */
     float near_m;         /* height after the step that made `unconfirmed` true */
     float before_rise_m;  /* height before the latest upward step of the height */

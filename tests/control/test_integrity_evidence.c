@@ -1043,15 +1043,19 @@ void test_a_step_restarts_the_slants_and_a_sensor_without_spread_has_none(void)
     }
 }
 
-void test_the_ground_is_the_latest_height_in_state_ground(void)
+void test_the_ground_is_the_latest_height_in_state_ground_but_none_that_a_pilot_lifts_it_to(void)
 {
-    for (int stands = 0; stands < 2; stands++) {
+    static const struct {
+        bool grounded;
+        float height_m, ground_m;
+    } rows[] = {{true, -0.02F, -0.02F}, {true, 0.01F, 0.0F}, {true, 0.9F, 0.0F}, {false, -0.02F, -0.01F}};
+    for (int i = 0; i < 4; i++) {
         hover();
-        flown.grounded = stands != 0;
+        flown.grounded = rows[i].grounded;
         flown.standing = true;
-        it.ground_m = 0.02F;
-        height(0.5F);
-        NEAR(stands != 0 ? 0.5F : 0.02F, it.ground_m);
+        it.ground_m = -0.01F;
+        height(rows[i].height_m);
+        NEAR(rows[i].ground_m, it.ground_m);
     }
 }
 

@@ -372,10 +372,10 @@ void test_three_heights_below_the_ground_doubt_the_heights_of_a_law_that_wants_t
     static const struct {
         float height_m, wanted_m;
         uint16_t doubts;
-    } rows[] = {{-0.016F, 0.6F, DOUBT_SIGHT}, {-0.014F, 0.6F, 0U}, {-0.016F, 0.1F, 0U}, {-0.016F, NAN, 0U}};
+    } rows[] = {{-0.036F, 0.6F, DOUBT_SIGHT}, {-0.034F, 0.6F, 0U}, {-0.036F, 0.1F, 0U}, {-0.036F, NAN, 0U}};
     for (int i = 0; i < 4; i++) {
         setUp();
-        it.ground_m = 0.01F;
+        it.ground_m = -0.01F;
         it.height_m = rows[i].height_m;
         flown.wanted_m = rows[i].wanted_m;
         TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
