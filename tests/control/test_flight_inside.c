@@ -839,6 +839,34 @@ void test_it_flies_by_the_heights_or_by_a_felt_climb(void)
     }
 }
 
+void test_a_take_off_that_was_given_up_flies_when_a_climb_is_felt(void)
+{
+    static const struct {
+        flight_state_t state;
+        bool estimated;
+        float felt_mps;
+        bool flies;
+    } rows[] = {{FLIGHT_LANDING, true, 0.26F, true},
+                {FLIGHT_LANDING, true, 0.25F, false},
+                {FLIGHT_LANDING, false, 0.26F, false},
+                {FLIGHT_TAKEOFF, true, 0.26F, false}};
+    for (int i = 0; i < 4; i++) {
+        setUp();
+        f.not_lifted = true;
+        f.hover_learned = false;
+        f.est.airborne = false;
+        f.supervisor.state = rows[i].state;
+        f.integrity.felt = (witness_t){.speed_mps = rows[i].felt_mps, .running_s = 1.0F};
+        if (!rows[i].estimated) {
+            lose_the_estimate();
+        }
+        update_estimator(&f, &parameters, &in);
+        TEST_ASSERT_EQUAL(rows[i].flies, !f.not_lifted);
+        TEST_ASSERT_EQUAL(rows[i].flies, f.hover_learned);
+        TEST_ASSERT_EQUAL(rows[i].flies, f.est.airborne);
+    }
+}
+
 void test_the_first_hover_thrust_of_another_law_is_newtons(void)
 {
     f.est.actuator.thrust_n = 8.0F;
