@@ -1029,7 +1029,7 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
     const bool without_acceleration = wants_imu && !imu_missing && !est_law_has_acceleration(&flight->est);
     const float measured_mm = (supervisor->height.sequence != 0U) ? supervisor->height.height_mm : NAN;
 
-    out->thrust_n = flight->thrust_n + flight->stuck_pin_n;
+    out->thrust_n = at_most(flight->thrust_n + flight->stuck_pin_n, THRUST_MAX_N);
     out->idle_n = flight->idle_n;
     out->pulse_us = thrust_to_pulse_us(out->thrust_n);
     out->state = supervisor->state;

@@ -1596,6 +1596,17 @@ void test_a_reference_out_of_reach_is_told_in_the_states_that_act(void)
 
 /* ---- outputs */
 
+void test_the_output_against_a_wrong_pin_is_at_most_full_thrust(void)
+{
+    f.thrust_n = THRUST_MAX_N - 0.4F;
+    f.stuck_pin_n = 0.3F;
+    write_outputs(&f, &parameters, &out);
+    NEAR(THRUST_MAX_N - 0.1F, out.thrust_n);
+    f.stuck_pin_n = 1.0F;
+    write_outputs(&f, &parameters, &out);
+    TEST_ASSERT_EQUAL_FLOAT(THRUST_MAX_N, out.thrust_n);
+}
+
 void test_the_release_is_the_laws(void)
 {
     TEST_ASSERT_EQUAL_UINT16(FLIGHT_RELEASE_HEIGHT | FLIGHT_RELEASE_FRAME, flight_releases(&f, &parameters));
