@@ -130,7 +130,8 @@ static void count_roll(attitude_filter_t *filter, const attitude_t *level, bool 
 
 /* A turn is continuous; a burst of bad frames is short. So the frames of a turn are counted from the first
  * one that is not level, which must follow from a level one; that one counts too when it had begun to turn.
- * A frame after a jump does not follow; within a turn it counts, because it may be a spike. */
+ * A frame after a jump does not follow; within a turn it counts, because it may be a spike. When the frame
+ * before was the only one that did not follow, a frame beside it goes on with the turn. */
 static void watch_roll(attitude_filter_t *filter, const attitude_t *level)
 {
     const bool is_near = are_close(&filter->followed, level, FOLLOWS_SPIKE_RAD);
