@@ -277,6 +277,18 @@ void test_a_beam_blocked_just_below_the_reference_does_not_fly_it_away(void)
     }
 }
 
+/* The beam sees a table that is 30 mm higher than the landing gear. For a moment the heights are below the
+ * ground, and right: it climbs over, or takes the beam for blocked and lands. */
+void test_a_table_just_above_the_landing_gear_ends_in_a_climb_or_a_soft_landing(void)
+{
+    static const char *const table[] = {FLAT, "plant.edge_m=0.63", "plant.edge_start=8", NULL};
+    const child_flights_t flights = child_fly_seeds("est-60cm-ramp", 4, table);
+
+    TEST_ASSERT_TRUE(flights.worst[METRIC_HIGHEST_MM] > 150.0 && flights.worst[METRIC_HIGHEST_MM] < 800.0);
+    TEST_ASSERT_TRUE(flights.worst[METRIC_TOUCH_SPEED_MPS] > 0.05 &&
+                     flights.worst[METRIC_TOUCH_SPEED_MPS] < 0.6);
+}
+
 /* The beam is blocked while the vehicle climbs: to 3.5 m, because heights that moved a moment ago were
  * believed for a second, and the hover thrust was learned from them meanwhile. */
 static const lie_t climbing[] = {
