@@ -360,13 +360,15 @@ class Pages(unittest.TestCase):
     GOOD = {"Makefile": "fly: ## flies\n", "firmware/a.c": "static void take(void)\n{\n}\n", "docs/other.md": "# Other\n\n## A part\n",
             "README.md": "[x](docs/other.md#a-part) `firmware/a.c` `make fly` `take` (`firmware/a.c`)\n"}
 
-    def complaints(self, readme):
+    KINDS = {"front": ("README.md",), "how-to": ("docs/other.md",)}
+
+    def complaints(self, readme, kinds=None):
         with tempfile.TemporaryDirectory() as name:
             root = Path(name).resolve()
             for path, text in (self.GOOD | {"README.md": readme}).items():
                 (root / path).parent.mkdir(exist_ok=True)
                 (root / path).write_text(text, encoding="utf-8")
-            return list(pages.check(root))
+            return list(pages.check(root, kinds=kinds or self.KINDS))
 
     def test_a_page_that_names_what_exists_is_good(self):
         self.assertEqual(self.complaints(self.GOOD["README.md"]), [])
@@ -378,9 +380,22 @@ class Pages(unittest.TestCase):
             self.assertEqual(len(found), 1, (new, found))
             self.assertTrue(found[0].startswith("README.md: "), found)
 
-    def test_too_many_words_are_counted(self):
-        found = self.complaints("word " * (pages.WORDS - 5))
-        self.assertEqual(found, [f"{pages.WORDS} words in all pages, fewer than {pages.WORDS} are wanted"])
+    def test_a_page_has_as_many_words_of_text_as_its_kind_may_have(self):
+        most = pages.WORDS["front"]
+        self.assertEqual(self.complaints("word " * most), [])
+        self.assertEqual(self.complaints("word " * (most + 1)),
+                         [f"README.md: {most + 1} words of text; a page of its kind, front, has at most {most}"])
+        self.assertEqual(self.complaints("word " * (most + 1), {"how-to": ("README.md", "docs/other.md")}), [])
+
+    def test_code_and_tables_are_not_text(self):
+        looked_up = "```\n" + "word " * 5000 + "\n```\n" + "| word | word |\n" * 5000
+        self.assertEqual(self.complaints(looked_up + "word " * pages.WORDS["front"]), [])
+        self.assertEqual(len(self.complaints(looked_up + "word " * (pages.WORDS["front"] + 1))), 1)
+
+    def test_a_page_of_no_kind_is_named(self):
+        found = self.complaints("", {"front": ("README.md",)})
+        self.assertEqual(len(found), 1, found)
+        self.assertTrue(found[0].startswith("docs/other.md: of no kind"), found)
 
 
 class Places(unittest.TestCase):
