@@ -149,36 +149,54 @@ class Limits(unittest.TestCase):
 
 
 class Document(unittest.TestCase):
-    tables = {"flash": "| 1 |", "compilers": "gcc 1"}
+    HEAD = "| stack | needed | size | free |\n|---|--:|--:|--:|\n"
+    tables = {"stacks": HEAD + "| TaskA | 900 | 1000 | 100 |\n| **all** | 800 | 1000 | 200 |", "compilers": "gcc 1"}
 
     def setUp(self):
         handle = tempfile.NamedTemporaryFile(mode="w", suffix=".md", delete=False)
         with handle:
-            handle.write("# Memory\n<!-- flash -->\n| 1 |\n<!-- end -->\n\n<!-- compilers -->\ngcc 1\n<!-- end -->\n")
+            handle.write(f"# Memory\n<!-- stacks -->\n{self.tables['stacks']}\n<!-- end -->\n\n<!-- compilers -->\ngcc 1\n<!-- end -->\n")
         self.addCleanup(Path(handle.name).unlink)
         self.addCleanup(setattr, size, "DOCUMENT", size.DOCUMENT)
         size.DOCUMENT = Path(handle.name)
 
-    def compared(self, write=False, **tables):
+    def wrong(self, before="", after="", write=False, compilers="gcc 1"):
+        stacks = self.tables["stacks"]
+        self.assertIn(before, stacks)
         with contextlib.redirect_stdout(io.StringIO()):
-            return size.document({**self.tables, **tables}, write)
+            return size.document({"stacks": stacks.replace(before, after, 1), "compilers": compilers}, write)
 
     def test_the_same_is_the_same(self):
-        self.assertTrue(self.compared())
+        self.assertEqual(self.wrong(), [])
 
-    def test_another_number_is_not(self):
-        self.assertFalse(self.compared(flash="| 2 |"))
+    def test_a_number_may_be_off_by_a_twentieth_of_the_largest_in_its_row_and_no_more(self):
+        self.assertEqual(self.wrong("900 | 1000 | 100", "850 | 1000 | 150"), [])
+        self.assertEqual(self.wrong("900 | 1000 | 100", "849 | 1000 | 151"), [["TaskA", "849", "1000", "151"]])
+        self.assertEqual(self.wrong("800 | 1000 | 200", "851 | 1000 | 149"), [["**all**", "851", "1000", "149"]])
+
+    def test_a_limit_is_said_to_the_word(self):
+        self.assertEqual(self.wrong("900 | 1000", "900 | 1001"), [["TaskA", "900", "1001", "100"]])
+
+    def test_a_row_more_one_less_or_of_another_name(self):
+        self.assertEqual(self.wrong("TaskA", "TaskB"), [["TaskB", "900", "1000", "100"]])
+        self.assertEqual(len(self.wrong("| TaskA | 900 | 1000 | 100 |\n")), 1)
+        self.assertEqual(len(self.wrong("| TaskA", "| TaskC | 1 | 2 | 1 |\n| TaskA")), 1)
+        self.assertEqual(len(self.wrong(" | 100 |", " |")), 1)
+
+    def test_another_column_is_another_table(self):
+        self.assertEqual(len(self.wrong("needed", "wanted")), 1)
 
     def test_with_other_compilers_nothing_is_compared(self):
-        self.assertTrue(self.compared(flash="| 2 |", compilers="gcc 2"))
+        self.assertEqual(self.wrong("900", "1", compilers="gcc 2"), [])
 
     def test_it_is_written_on_demand(self):
-        self.assertTrue(self.compared(write=True, flash="| 2 |"))
-        self.assertTrue(self.compared(flash="| 2 |"))
+        self.assertEqual(self.wrong("900", "1", write=True), [])
+        self.assertEqual(self.wrong("900", "1"), [])
+        self.assertEqual(len(self.wrong()), 1)
 
     def test_a_table_without_a_place(self):
         with self.assertRaises(SystemExit):
-            self.compared(ram="| 3 |")
+            size.document({**self.tables, "ram": "| 3 |"}, False)
 
 
 @unittest.skipUnless(shutil.which(size.M68K[0]), "no m68k compiler")
