@@ -25,6 +25,7 @@
 typedef struct {
     const char *name;
     bool (*execute)(answer_t *answer);
+    const char *takes; /* as #HELP tells it; "": refuses a value; NULL: ignores it, for it is never refused */
     const char *meaning;
 } verb_t;
 
@@ -108,9 +109,6 @@ static bool execute_ping(answer_t *answer)
 
 static bool execute_version(answer_t *answer)
 {
-    if (answer->command->argument_length > 0U) {
-        return answer_refuse(answer, "takes no value");
-    }
     answer_begin(answer);
     telemetry_text(&answer->line, " " PLOMADA_VERSION);
     answer_send(answer);
@@ -157,30 +155,30 @@ static bool execute_stop(answer_t *answer)
 static bool execute_help(answer_t *answer);
 
 static const verb_t verbs[] = {
-    {"SETR", verb_setr, "0..3 m - height reference; 0 lands"},
-    {"ARM", execute_arm,
-     "- on the ground: IDLE percent of throttle instead of none, which keeps started motors turning"},
-    {"STOP", execute_stop,
-     "- disarms: no throttle on the ground, in the air it lands first; goes before all that waits"},
-    {"LAND", verb_land, "- lands, as #SETR 0; goes before all that waits"},
-    {"GET", execute_get, "[NAME] - one parameter, or all"},
-    {"SAVE", verb_save, "- stores the parameters"},
-    {"LOAD", verb_load, "- the stored parameters"},
-    {"DEFAULTS", verb_defaults,
-     "[SEED] - the parameters as delivered, or the seed's law and gains; the stored ones stay"},
-    {"LOG", verb_log, "[SECONDS|CLEAR|STOP|RATE FAST|RATE SLOW] - the flight recorder as CSV"},
-    {"CALIBRATE", verb_calibrate,
-     "[COUNTS [SECONDS]] - thrust step by step, tied down; any line but #PING ends it"},
-    {"LASER", verb_laser, "- the scanner's state, rate, frames and errors by cause"},
-    {"IMU", verb_imu,
-     "[LEVEL|RIGHT|NOSE] - what the IMU sends; finds its unit and axes from how the vehicle is held"},
-    {"PERF", verb_perf,
-     "[COSTS|RESET] - responses, deadlines, stacks, load, waits; processor times; RESET clears them"},
-    {"STREAM", verb_stream, "PULSE|OFF - the pulse of each control cycle in place of telemetry"},
-    {"HANG", verb_hang, "TASK - hangs a task, for a test of the watchdog; on the ground only"},
-    {"PING", execute_ping, "[TEXT] - answers the same text"},
-    {"VERSION", execute_version, "- the firmware's version"},
-    {"HELP", execute_help, "- this list"},
+    {"SETR", verb_setr, "0..3 m", "height reference; 0 lands"},
+    {"ARM", execute_arm, "",
+     "on the ground: IDLE percent of throttle instead of none, which keeps started motors turning"},
+    {"STOP", execute_stop, NULL,
+     "disarms: no throttle on the ground, in the air it lands first; goes before all that waits"},
+    {"LAND", verb_land, NULL, "lands, as #SETR 0; goes before all that waits"},
+    {"GET", execute_get, "[NAME]", "one parameter, or all"},
+    {"SAVE", verb_save, "", "stores the parameters"},
+    {"LOAD", verb_load, "", "the stored parameters"},
+    {"DEFAULTS", verb_defaults, "[SEED]",
+     "the parameters as delivered, or the seed's law and gains; the stored ones stay"},
+    {"LOG", verb_log, "[SECONDS|CLEAR|STOP|RATE FAST|RATE SLOW]", "the flight recorder as CSV"},
+    {"CALIBRATE", verb_calibrate, "[COUNTS [SECONDS]]",
+     "thrust step by step, tied down; any line but #PING ends it"},
+    {"LASER", verb_laser, "", "the scanner's state, rate, frames and errors by cause"},
+    {"IMU", verb_imu, "[LEVEL|RIGHT|NOSE]",
+     "what the IMU sends; finds its unit and axes from how the vehicle is held"},
+    {"PERF", verb_perf, "[COSTS|RESET]",
+     "responses, deadlines, stacks, load, waits; processor times; RESET clears them"},
+    {"STREAM", verb_stream, "PULSE|OFF", "the pulse of each control cycle in place of telemetry"},
+    {"HANG", verb_hang, "TASK", "hangs a task, for a test of the watchdog; on the ground only"},
+    {"PING", execute_ping, "[TEXT]", "answers the same text"},
+    {"VERSION", execute_version, "", "the firmware's version"},
+    {"HELP", execute_help, "", "this list"},
 };
 #define VERB_COUNT (sizeof verbs / sizeof verbs[0])
 
@@ -190,6 +188,14 @@ static void begin_help(answer_t *answer, const char *name)
     telemetry_text(&answer->line, " #");
     telemetry_text(&answer->line, name);
     telemetry_text(&answer->line, " ");
+}
+
+static void write_takes(answer_t *answer, const char *takes)
+{
+    if (takes != NULL && takes[0] != '\0') {
+        telemetry_text(&answer->line, takes);
+        telemetry_text(&answer->line, " ");
+    }
 }
 
 static bool write_help(answer_t *answer, uint16_t number)
@@ -205,6 +211,8 @@ static bool write_help(answer_t *answer, uint16_t number)
     }
     if (verb < VERB_COUNT) {
         begin_help(answer, verbs[verb].name);
+        write_takes(answer, verbs[verb].takes);
+        telemetry_text(&answer->line, "- ");
         telemetry_text(&answer->line, verbs[verb].meaning);
     }
     return verb < VERB_COUNT;
@@ -253,6 +261,14 @@ static bool execute_set(answer_t *answer, parameter_id_t id)
     return true;
 }
 
+static bool execute_verb(answer_t *answer, const verb_t *verb)
+{
+    if (verb->takes != NULL && verb->takes[0] == '\0' && answer->command->argument_length > 0U) {
+        return answer_refuse(answer, "takes no value");
+    }
+    return verb->execute(answer);
+}
+
 static bool execute(answer_t *answer)
 {
     const telecommand_t *command = answer->command;
@@ -265,7 +281,7 @@ static bool execute(answer_t *answer)
     for (i = 0U; i < VERB_COUNT; i++) {
         if (strlen(verbs[i].name) == command->name_length &&
             strncmp(verbs[i].name, command->name, command->name_length) == 0) {
-            return verbs[i].execute(answer);
+            return execute_verb(answer, &verbs[i]);
         }
     }
     return answer_refuse(answer, "unknown command, try #HELP");

@@ -53,19 +53,11 @@ static parameter_store_result_t load(void)
     return result;
 }
 
+/* False after the refusal. */
 static bool grounded(answer_t *answer)
 {
     return ground_idle() ||
            answer_refuse(answer, ground_waits() ? "motors idle, see #STOP" : "not on the ground");
-}
-
-/* False after the refusal: the command takes no argument and needs the ground. */
-static bool allowed(answer_t *answer)
-{
-    if (answer->command->argument_length > 0U) {
-        return answer_refuse(answer, "takes no value");
-    }
-    return grounded(answer);
 }
 
 bool verb_save(answer_t *answer)
@@ -73,7 +65,7 @@ bool verb_save(answer_t *answer)
     static parameters_t parameters;
     parameter_store_result_t result;
 
-    if (!allowed(answer)) {
+    if (!grounded(answer)) {
         return false;
     }
     parameter_server_read(&parameters);
@@ -85,7 +77,7 @@ bool verb_load(answer_t *answer)
 {
     parameter_store_result_t result;
 
-    if (!allowed(answer)) {
+    if (!grounded(answer)) {
         return false;
     }
     result = load();

@@ -441,6 +441,8 @@ void test_version_answers_three_numbers(void)
     TEST_ASSERT_EQUAL_STRING("", &answers[0][end]);
     assert_answer("OK VERSION " PLOMADA_VERSION, "#version");
     assert_refused("ERR VERSION takes no value", "#VERSION 2");
+    assert_refused("ERR ARM takes no value", "#ARM off");
+    assert_refused("ERR SAVE takes no value", "#SAVE KP");
 }
 
 void test_help_tells_every_parameter_and_every_verb_with_limits_and_meaning(void)
@@ -520,19 +522,19 @@ void test_every_command_that_help_tells_of_is_known(void)
 static bool verb_refuses(answer_t *answer, int calls)
 {
     (void)calls;
-    TEST_ASSERT_EQUAL_UINT16(5, answer->command->name_length);
-    TEST_ASSERT_EQUAL_STRING_LEN("LASER", answer->command->name, 5);
+    TEST_ASSERT_EQUAL_UINT16(4, answer->command->name_length);
+    TEST_ASSERT_EQUAL_STRING_LEN("PERF", answer->command->name, 4);
     TEST_ASSERT_EQUAL_STRING_LEN("x", answer->command->argument, 1);
     return false;
 }
 
 void test_a_verb_gets_the_command_and_its_verdict_is_the_links_life_sign(void)
 {
-    verb_laser_Stub(verb_refuses);
-    type("#laser x");
+    verb_perf_Stub(verb_refuses);
+    type("#perf x");
     TEST_ASSERT_EQUAL_UINT16(0, reference_writes);
-    verb_laser_Stub(verb);
-    type("#LASER");
+    verb_perf_Stub(verb);
+    type("#PERF");
     TEST_ASSERT_EQUAL_UINT16(1, reference_writes);
     TEST_ASSERT_EQUAL_UINT32(41, reference.link_sequence);
 }

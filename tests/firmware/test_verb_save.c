@@ -193,14 +193,11 @@ void test_while_armed_motors_idle_all_three_are_refused_with_the_remedy(void)
     TEST_ASSERT_EQUAL_UINT16(0, saves + writes);
 }
 
-void test_an_argument_is_refused(void)
+void test_defaults_of_another_name_are_refused(void)
 {
-    TEST_ASSERT_FALSE(type("SAVE", "KP"));
-    assert_answer("ERR SAVE takes no value\r\n");
     TEST_ASSERT_FALSE(type("DEFAULTS", "EST"));
     assert_answer("ERR DEFAULTS one of SEED\r\n");
     TEST_ASSERT_EQUAL_UINT16(0, writes);
-    TEST_ASSERT_EQUAL_UINT16(0, saves);
 }
 
 void test_each_failure_of_the_store_has_its_reason_and_changes_nothing(void)

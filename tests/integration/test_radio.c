@@ -198,6 +198,94 @@ void test_help_names_every_parameter_and_verb(void)
     TEST_ASSERT_EQUAL_INT(0, count_of("ERR "));
 }
 
+#define REFUSED_MAX 200
+#define SLOW_S 0.4 /* no answer waits for the one before it */
+
+/* Lines that must be refused, and by whose name. */
+static struct {
+    char line[32], name[16];
+} refused[REFUSED_MAX];
+static int refused_count;
+
+static void must_be_refused(const char *name, const char *value)
+{
+    TEST_ASSERT_LESS_THAN_INT(REFUSED_MAX, refused_count);
+    TEST_ASSERT_TRUE(snprintf(refused[refused_count].name, sizeof refused[0].name, "%s", name) > 0);
+    TEST_ASSERT_LESS_THAN_INT(
+        sizeof refused[0].line,
+        snprintf(refused[refused_count].line, sizeof refused[0].line, "#%s %s", name, value));
+    refused_count++;
+}
+
+/* What asks for nothing gets something, what asks for a word gets that word and one more. */
+static void spoil(const char *name, const char *words)
+{
+    static const char *const junk[] = {"0", "no", "1 x"};
+
+    for (size_t i = strcmp(name, "SETR") == 0 ? 1 : 0; i < sizeof junk / sizeof junk[0]; i++) {
+        must_be_refused(name, junk[i]);
+    }
+    for (const char *word = words; *word != '\0'; word += strspn(word, "[]|")) {
+        char more[40];
+
+        snprintf(more, sizeof more, "%.*s 0", (int)strcspn(word, "[]|"), word);
+        if (strcspn(word, "[]|") > 0U) {
+            must_be_refused(name, more);
+        }
+        word += strcspn(word, "[]|");
+    }
+}
+
+/* From `OK HELP #NAME WORDS - meaning`, as the firmware tells its own table: no verb can be forgotten. Those
+ * that are never refused and the one that takes any text are left out. */
+static void spoil_every_verb(void)
+{
+    static const char begin[] = "\nOK HELP #";
+    int verbs = 0;
+
+    refused_count = 0;
+    type("#HELP\n", 6, 0.0, 6.0);
+    for (const char *at = strstr(talk.terminal.text, begin); at != NULL; at = strstr(at + 1, begin)) {
+        char name[16] = "", words[64] = "";
+
+        TEST_ASSERT_GREATER_OR_EQUAL_INT(1, sscanf(at + strlen(begin), "%15s %63[^-]", name, words));
+        if (parameter_find(name, (uint16_t)strlen(name)) != PARAMETER_COUNT) {
+            continue;
+        }
+        verbs++;
+        if (strcmp(name, "STOP") != 0 && strcmp(name, "LAND") != 0 && strcmp(name, "PING") != 0) {
+            words[strlen(words) - (words[0] != '\0' ? 1U : 0U)] = '\0'; /* the blank before the dash */
+            spoil(name, words);
+        }
+    }
+    TEST_ASSERT_GREATER_THAN_INT(15, verbs);
+}
+
+void test_no_verb_takes_a_value_that_it_does_not_ask_for(void)
+{
+    static char script[REFUSED_MAX * (sizeof refused[0].line + 1U)];
+    const char *at;
+
+    spoil_every_verb();
+    script[0] = '\0';
+    for (int i = 0; i < refused_count; i++) {
+        strcat(strcat(script, refused[i].line), "\n");
+    }
+    type(script, strlen(script), SLOW_S, 1.0);
+    at = talk.terminal.text;
+    for (int i = 0; i < refused_count; i++) {
+        char answer[24];
+
+        snprintf(answer, sizeof answer, "\nERR %s ", refused[i].name);
+        at = strstr(at, answer);
+        TEST_ASSERT_NOT_NULL_MESSAGE(at, refused[i].line);
+        at++;
+    }
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, count_of("OK "), "a line was obeyed");
+    TEST_ASSERT_NULL_MESSAGE(strstr(talk.terminal.text, "thr:1"), "armed");
+    assert_nothing_changed();
+}
+
 void test_a_hundred_lines_ten_milliseconds_apart_are_all_kept(void)
 {
     static char text[2000];
