@@ -7,6 +7,7 @@
 #include <xdc/std.h>
 
 #include "firmware/answer.h"
+#include "bsp/timebase.h"
 #include "firmware/calibrator.h"
 #include "firmware/ground.h"
 #include "firmware/imu_gate.h"
@@ -367,33 +368,38 @@ void commands_execute(const xbee_message_t *message)
     }
 }
 
-/* Sends what there is room for. False: it is time to take a line, or to wait for one. */
-static bool go_on(void)
+/* A line that has come must wait: a list ends first, and its answer needs room. A stop never waits. */
+static bool held_up(void)
 {
-    bool more;
-
     if (xbee_port_pressing()) {
         return false;
     }
-    if (listing_more()) {
-        return true;
-    }
+    return listing_more() || (xbee_port_waiting() && !xbee_port_clear());
+}
+
+/* Sends of the others what there is room for. True: there is more, and no line to take. */
+static bool goes_on(void)
+{
     if (xbee_port_waiting()) {
-        return !xbee_port_clear();
+        return false;
     }
-    more = verb_log_more();
+    const bool more = verb_log_more();
     return verb_calibrate_more() || more;
 }
 
-bool commands_continue(void)
+uint32_t commands_continue(void)
 {
-    bool waited = false;
+    uint32_t free_us = bsp_time_us();
+    bool held = held_up();
 
-    while (go_on()) {
-        waited = true;
+    while (held || goes_on()) {
         Task_sleep(CONTINUE_POLL_MS);
+        if (held && !xbee_port_pressing()) {
+            free_us = bsp_time_us();
+        }
+        held = held_up();
     }
-    return waited && xbee_port_waiting();
+    return free_us;
 }
 
 void commands_report_lost(uint16_t count)

@@ -11,6 +11,7 @@
 #include "mock_calibrator.h"
 #include "mock_ground.h"
 #include "mock_servers.h"
+#include "mock_timebase.h"
 #include "mock_verbs.h"
 #include "mock_xbee_port.h"
 #include "firmware/listing.h"
@@ -823,9 +824,18 @@ static bool is_clear(int calls)
     return clear;
 }
 
+static uint32_t now_us; /* a sleep takes a millisecond */
+
+static uint32_t time_us(int calls)
+{
+    (void)calls;
+    return now_us;
+}
+
 static void meanwhile(void)
 {
     kernel_note("sleep");
+    now_us += 1000U;
 }
 
 static void long_answers(uint16_t list, uint16_t log, uint16_t calibration)
@@ -839,6 +849,8 @@ static void long_answers(uint16_t list, uint16_t log, uint16_t calibration)
     line_waits = line_presses = false;
     clear = true;
     room = false;
+    now_us = 0U;
+    bsp_time_us_Stub(time_us);
     verb_log_more_Stub(log_more);
     verb_calibrate_more_Stub(calibration_more);
     xbee_port_waiting_Stub(waiting);
@@ -855,17 +867,17 @@ static void long_answers(uint16_t list, uint16_t log, uint16_t calibration)
 void test_long_answers_go_on_ten_milliseconds_apart_until_both_are_complete(void)
 {
     long_answers(0U, 3U, 2U);
-    TEST_ASSERT_FALSE(commands_continue());
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, commands_continue(), "any line would have been taken");
     TEST_ASSERT_EQUAL_STRING("log calibration sleep log calibration sleep log calibration ", kernel.notes);
     TEST_ASSERT_EQUAL_UINT32(10, kernel.task.slept_ticks);
     long_answers(0U, 0U, 0U);
-    TEST_ASSERT_FALSE(commands_continue());
+    TEST_ASSERT_EQUAL_UINT32(0, commands_continue());
     TEST_ASSERT_EQUAL_STRING("log calibration ", kernel.notes);
 }
 
 static void a_line_comes(void)
 {
-    kernel_note("sleep");
+    meanwhile();
     line_waits = true;
 }
 
@@ -873,9 +885,9 @@ void test_a_line_that_waits_goes_before_the_rest_of_the_log(void)
 {
     long_answers(0U, 100U, 0U);
     kernel.task.on_sleep = a_line_comes;
-    TEST_ASSERT_TRUE(commands_continue());
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, commands_continue(), "a log does not hold it up");
     TEST_ASSERT_EQUAL_STRING("log calibration sleep ", kernel.notes);
-    TEST_ASSERT_FALSE(commands_continue());
+    TEST_ASSERT_EQUAL_UINT32(1000, commands_continue());
     TEST_ASSERT_EQUAL_STRING("log calibration sleep ", kernel.notes);
 }
 
@@ -883,13 +895,13 @@ void test_a_line_that_waits_lets_a_list_end_first(void)
 {
     long_answers(2U, 100U, 0U);
     line_waits = true;
-    TEST_ASSERT_TRUE(commands_continue());
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(2000, commands_continue(), "the end of the list");
     TEST_ASSERT_EQUAL_STRING("line sleep line sleep line ", kernel.notes);
 }
 
 static void the_radio_clears(void)
 {
-    kernel_note("sleep");
+    meanwhile();
     clear = kernel.task.sleeps == 3U;
 }
 
@@ -899,13 +911,13 @@ void test_a_line_waits_until_the_radio_has_room_for_its_answer(void)
     line_waits = true;
     clear = false;
     kernel.task.on_sleep = the_radio_clears;
-    TEST_ASSERT_TRUE(commands_continue());
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(3000, commands_continue(), "when the radio cleared");
     TEST_ASSERT_EQUAL_STRING("sleep sleep sleep ", kernel.notes);
 }
 
 static void a_stop_comes(void)
 {
-    kernel_note("sleep");
+    meanwhile();
     line_waits = line_presses = true;
 }
 
@@ -915,9 +927,9 @@ void test_a_line_that_presses_interrupts_whatever_is_being_sent(void)
     long_answers(50U, 100U, 5U);
     clear = false;
     kernel.task.on_sleep = a_stop_comes;
-    TEST_ASSERT_TRUE(commands_continue());
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, commands_continue(), "a list does not hold it up");
     TEST_ASSERT_EQUAL_STRING("line sleep ", kernel.notes);
-    TEST_ASSERT_FALSE(commands_continue());
+    TEST_ASSERT_EQUAL_UINT32(1000, commands_continue());
     TEST_ASSERT_EQUAL_STRING("line sleep ", kernel.notes);
     line_waits = line_presses = false;
     list_lines = 0U;

@@ -6,6 +6,7 @@
 #include "jobs.h"
 #include "kernel.h"
 #include "mock_commands.h"
+#include "mock_timebase.h"
 #include "mock_xbee_port.h"
 #include "unity.h"
 
@@ -54,13 +55,24 @@ static void execute(const xbee_message_t *message, int calls)
     executed++;
 }
 
-static bool held_up; /* by the radio */
+static uint32_t free_after_us; /* behind the arrival: the radio held the line up */
 
-static bool go_on(int calls)
+static uint32_t free_us(void)
+{
+    return script[taken < SCRIPT ? taken : SCRIPT - 1U].arrival_us + free_after_us;
+}
+
+static uint32_t go_on(int calls)
 {
     (void)calls;
     kernel_note("continue");
-    return held_up;
+    return free_us();
+}
+
+static uint32_t time_us(int calls)
+{
+    (void)calls;
+    return script[taken - 1U].arrival_us + 5000000U;
 }
 
 static void report_lost(uint16_t count, int calls)
@@ -75,12 +87,13 @@ void setUp(void)
 {
     kernel_reset();
     taken = executed = reports = 0U;
-    held_up = false;
+    free_after_us = (uint32_t)-700000;
     xbee_port_create_Stub(port_create);
     xbee_port_wait_Stub(port_wait);
     commands_execute_Stub(execute);
     commands_report_lost_Stub(report_lost);
     commands_continue_Stub(go_on);
+    bsp_time_us_Stub(time_us);
     jobs_reset();
     task_receive_comm_create();
 }
@@ -120,10 +133,11 @@ void test_every_line_is_one_job_released_when_it_was_complete(void)
     TEST_ASSERT_EQUAL_UINT32(0xFFFFFFF0U, jobs[MONITOR_RECEIVE_COMM].released_us);
 }
 
-void test_a_line_that_the_radio_held_up_counts_from_when_it_was_taken(void)
+void test_a_line_that_was_held_up_counts_from_when_it_could_be_taken(void)
 {
-    held_up = true;
+    free_after_us = 4000000U;
     kernel_run_task();
     jobs_assert(MONITOR_RECEIVE_COMM, SCRIPT);
-    TEST_ASSERT_EQUAL_UINT16(0, jobs[MONITOR_RECEIVE_COMM].released);
+    TEST_ASSERT_EQUAL_UINT16(SCRIPT, jobs[MONITOR_RECEIVE_COMM].released);
+    TEST_ASSERT_EQUAL_UINT32(0xFFFFFFF0U + 4000000U, jobs[MONITOR_RECEIVE_COMM].released_us);
 }

@@ -142,6 +142,40 @@ void test_the_load_is_told_in_percent(void)
     TEST_ASSERT_UINT64_WITHIN(6, 8, field("OK PERF reset:POWER ", "load:"));
 }
 
+/* What the firmware told of TaskReceiveComm, asked when all is quiet again. */
+static unsigned long told_of_comm(const char *name, double until_s)
+{
+    run_until_s(until_s - 2.0);
+    length = 0;
+    type("#PERF\n");
+    run_until_s(until_s);
+    return field("OK PERF TaskReceiveComm ", name);
+}
+
+/* A list's end, room for the answers of the lines before, a log: what a line has to wait for is no response.
+ */
+void test_what_waits_behind_long_answers_is_not_late(void)
+{
+    static const char *const before[] = {"#HELP\n", "#GET\n#GET\n", "#HELP\n#PING b\n#HELP\n", "#LOG\n"};
+
+    run_until_s(12.0);
+    for (size_t i = 0; i < sizeof before / sizeof before[0]; i++) {
+        const double from_s = 12.0 + 30.0 * (double)i;
+
+        run_until_s(from_s);
+        type("#PERF RESET\n");
+        run_until_s(from_s + 1.0);
+        type(before[i]);
+        run_until_s(from_s + 1.5);
+        type("#PING a\n#PING b\n#GET KP\n");
+        run_until_s(from_s + 2.0);
+        type("#STOP\n#PING c\n");
+        TEST_ASSERT_EQUAL_UINT64_MESSAGE(0, told_of_comm("late:", from_s + 29.0), before[i]);
+        TEST_ASSERT_TRUE_MESSAGE(field("OK PERF TaskReceiveComm ", "worst_us:") < 30000, before[i]);
+        TEST_ASSERT_EQUAL_UINT64_MESSAGE(0, field("OK PERF TaskSendComm ", "late:"), before[i]);
+    }
+}
+
 /* A command that takes 0.4 s of the 0.3 s that it may. */
 void test_a_missed_deadline_is_counted(void)
 {
