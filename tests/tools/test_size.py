@@ -76,6 +76,15 @@ class Graphs(unittest.TestCase):
     def test_a_clone_goes_by_its_name(self):
         self.assertEqual(self.problems(**{"hwi_a": ["dispatch.constprop.0", "ring"], "dispatch.constprop.0": ["__indirect_call"]}), [])
 
+    def test_what_a_library_calls_back_lies_on_its_stack(self):
+        table = TABLE + "calls  library_sum  on_start  reason\n"
+        self.assertEqual(self.problems(table=table, sizes={**BYTES, "on_start": 200}), [])
+        self.assertEqual(self.worst["swi"],
+                         [("SwiA", 20 + 30 + 100 + 3 * size.CALL, ("swi_a", "work", "library_sum", "on_start"))])
+        self.assertEqual(self.problems(table=table, on_start=["Semaphore_pend"])[-1:],
+                         ["hwi_a (hwi) may reach Semaphore_pend(), which blocks"])
+        self.assertEqual(self.problems(table=table, work=[]), ["tools/size/stacks.txt: library_sum() calls through no pointer"])
+
     def test_a_recursion(self):
         self.assertEqual(self.problems(work=["task_a"])[-1:], ["swi_a (swi) may reach Semaphore_pend(), which blocks"])
         self.assertIn("task_a: recursion", self.problems(work=["task_a"]))

@@ -159,6 +159,8 @@ class Stacks:
         return 0
 
     def below(self, key):
+        if key not in self.own:
+            return {each for target in self.calls.get(key, ()) for each in self.known(target)}
         found = set()
         for callee in self.callees.get(key, ()):
             if callee != "__indirect_call":
@@ -183,11 +185,9 @@ class Stacks:
             self.problems.append(f"{key}: recursion")
             return 0, ()
         if key not in self.deepest:
-            if key not in self.own:
-                self.deepest[key] = self.allowance(key), (key,)
-            else:
-                size, way = max((self.path(callee, (*above, key)) for callee in self.below(key)), default=(0, ()))
-                self.deepest[key] = self.own[key] + size, (key.split(":")[-1], *way)
+            own = self.own[key] if key in self.own else self.allowance(key)
+            size, way = max((self.path(callee, (*above, key)) for callee in self.below(key)), default=(0, ()))
+            self.deepest[key] = own + size, (key.split(":")[-1], *way)
         return self.deepest[key]
 
     def reachable(self, key, seen):
@@ -216,6 +216,7 @@ class Stacks:
                                       for callee in sorted(self.reachable(key, set())) if BLOCKING.match(callee)]
 
         pointers = {key.split(":")[-1] for key, callees in self.callees.items() if "__indirect_call" in callees}
+        pointers |= {callee for callees in self.callees.values() for callee in callees if callee not in self.own}
         self.problems += [f"tools/size/stacks.txt: {function}() calls through no pointer"
                           for function in sorted(set(self.calls) - pointers)]
 
