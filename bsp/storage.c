@@ -1,12 +1,20 @@
-/* What runs while the bank is busy must not lie in it: these functions and TI's flash library are linked to
- * run from RAM. Waiting for the flash needs no time limit: its state machine gives up by itself. */
+/* What runs while the bank is busy, and what changes the flash's registers, must not lie in the bank: it is
+ * linked to run from RAM, as TI's flash library is. Not those functions that driverlib puts there itself
+ * (Flash_enableECC). Waiting for the flash needs no time limit: its state machine gives up by itself. */
 #ifdef __TMS320C28XX__
+#pragma CODE_SECTION(correct_errors, ".TI.ramfunc")
+#pragma CODE_SECTION(forget_lines, ".TI.ramfunc")
+#pragma CODE_SECTION(activate, ".TI.ramfunc")
 #pragma CODE_SECTION(open_bank, ".TI.ramfunc")
 #pragma CODE_SECTION(close_bank, ".TI.ramfunc")
 #pragma CODE_SECTION(finished, ".TI.ramfunc")
+#pragma CODE_SECTION(bsp_storage_read, ".TI.ramfunc")
 #pragma CODE_SECTION(bsp_storage_erase, ".TI.ramfunc")
 #pragma CODE_SECTION(bsp_storage_program, ".TI.ramfunc")
 #pragma CODE_SECTION(Fapi_serviceWatchdogTimer, ".TI.ramfunc")
+#pragma CODE_SECTION(Flash_disableECC, ".TI.ramfunc")
+#pragma CODE_SECTION(Flash_claimPumpSemaphore, ".TI.ramfunc")
+#pragma CODE_SECTION(Flash_releasePumpSemaphore, ".TI.ramfunc")
 #pragma CODE_SECTION(SysCtl_serviceWatchdog, ".TI.ramfunc")
 #endif
 
@@ -18,8 +26,13 @@
 
 #define SYSCLK_MHZ (DEVICE_SYSCLK_FREQ / 1000000U)
 
-/* The linker command file says where: 0BC000H. */
+/* As Fapi_flushPipeline() reads, but that one reads bank 1, which nobody starts. */
+#define LINES 4U
+#define LINE_DISTANCE 0x100U
+
+/* The linker command file says where: 0BC000H, and where the code begins, in the same bank. */
 extern uint16_t flash_sectors_m_n[BSP_STORAGE_SLOTS][BSP_STORAGE_CELLS];
+extern const volatile uint16_t flash_code[];
 
 Fapi_StatusType Fapi_serviceWatchdogTimer(void);
 
@@ -33,17 +46,54 @@ Fapi_StatusType Fapi_serviceWatchdogTimer(void)
     return Fapi_Status_Success;
 }
 
+static void correct_errors(bool on)
+{
+    if (on) {
+        Flash_enableECC(FLASH0ECC_BASE);
+    } else {
+        Flash_disableECC(FLASH0ECC_BASE);
+    }
+    FLASH_DELAY_CONFIG;
+}
+
+/* Cache and prefetch hold lines as they were before an erasure: others take their place. */
+static void forget_lines(void)
+{
+    uint16_t line;
+
+    for (line = 0U; line < LINES; line++) {
+        (void)flash_code[line * LINE_DISTANCE];
+    }
+}
+
+/* Without error correction: the library reads 48 of TI's own cells, whose correction bits are wrong on some
+ * parts; it would be an NMI ("C2000 Flash FAQ", TI's wiki). TI's own programs do it in the same order
+ * (F2837x_sci_flash_kernels.c). */
+static bool activate(void)
+{
+    bool active;
+
+    correct_errors(false);
+    EALLOW;
+    active = Fapi_initializeAPI(F021_CPU0_W0_BASE_ADDRESS, SYSCLK_MHZ) == Fapi_Status_Success &&
+             Fapi_setActiveFlashBank(Fapi_FlashBank0) == Fapi_Status_Success;
+    correct_errors(true);
+    return active;
+}
+
 static bool open_bank(void)
 {
+    bool active;
+
     Flash_claimPumpSemaphore(FLASHPUMPSEMAPHORE_BASE, FLASH_BANK0_WRAPPER);
+    active = activate();
     EALLOW;
-    return Fapi_initializeAPI(F021_CPU0_W0_BASE_ADDRESS, SYSCLK_MHZ) == Fapi_Status_Success &&
-           Fapi_setActiveFlashBank(Fapi_FlashBank0) == Fapi_Status_Success;
+    return active;
 }
 
 static void close_bank(void)
 {
-    Fapi_flushPipeline();
+    forget_lines();
     EDIS;
     Flash_releasePumpSemaphore(FLASHPUMPSEMAPHORE_BASE);
 }
@@ -61,11 +111,11 @@ void bsp_storage_read(uint16_t slot, uint16_t *cells, uint16_t count)
     const volatile uint16_t *stored = flash_sectors_m_n[slot];
     uint16_t i;
 
-    Flash_disableECC(FLASH0ECC_BASE);
+    correct_errors(false);
     for (i = 0U; i < count; i++) {
         cells[i] = stored[i];
     }
-    Flash_enableECC(FLASH0ECC_BASE);
+    correct_errors(true);
 }
 
 bool bsp_storage_erase(uint16_t slot)

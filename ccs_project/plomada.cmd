@@ -35,7 +35,7 @@ PAGE 1:
 SECTIONS
 {
     codestart   : > BEGIN,  PAGE = 0
-    .text       : > FLASH,  PAGE = 0, ALIGN(8)
+    .text       : > FLASH,  PAGE = 0, ALIGN(8), START(_flash_code)
     .cinit      : > FLASH,  PAGE = 0, ALIGN(8)
     .binit      : > FLASH,  PAGE = 0, ALIGN(8)
     .pinit      : > FLASH,  PAGE = 0, ALIGN(8)

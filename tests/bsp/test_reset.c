@@ -3,6 +3,7 @@
 
 #include "bsp/watchdog.h"
 #include "dog.h"
+#include "sim/ti/driverlib/chip.h"
 #include "unity.h"
 
 void setUp(void)
@@ -32,4 +33,12 @@ void test_the_cause_is_forgotten_once_it_was_told(void)
     dog_run_until(DOG_PERIOD);
     TEST_ASSERT_EQUAL(BSP_RESET_WATCHDOG, bsp_reset_cause());
     TEST_ASSERT_NOT_EQUAL(BSP_RESET_WATCHDOG, bsp_reset_cause());
+}
+
+void test_after_an_nmi_the_cause_is_the_nmi(void)
+{
+    chip_nmi();
+    dog_run_until(SIM_S);
+    TEST_ASSERT_EQUAL_INT(1, dog_bites());
+    TEST_ASSERT_EQUAL(BSP_RESET_NMI, bsp_reset_cause());
 }

@@ -7,16 +7,24 @@
 #include "sim/ti/driverlib/sysctl.h"
 #include "sim/ti/f021/flash.h"
 #include "sim/ti/f021/include/F021_F2837xS_C28x.h"
+#include "sim/timeline.h"
 #include "unity.h"
 
 static uint16_t cells[BSP_STORAGE_CELLS];
 
 void setUp(void)
 {
+    timeline_reset();
+    chip_reset(NULL);
     flash_blank();
 }
 
-void tearDown(void) {}
+/* Whatever a test does: nothing that the library reads may be an NMI, and errors are corrected again. */
+void tearDown(void)
+{
+    TEST_ASSERT_EQUAL_UINT_MESSAGE(0, chip_nmis(), "NMI");
+    TEST_ASSERT_TRUE(flash_corrects());
+}
 
 static void fill(uint16_t *block, uint16_t from)
 {

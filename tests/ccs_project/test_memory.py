@@ -70,6 +70,24 @@ class Memory(unittest.TestCase):
         for part in (".text", ".econst"):
             self.assertIn(f"-l F021_API_F2837xS_FPU32.lib ({part})", self.sections[".TI.ramfunc"])
 
+    def test_what_handles_the_flash_runs_from_ram(self):
+        storage = code("bsp/storage.c")
+        own = set(re.findall(r"^(?!extern)(?:static )?\w[\w ]*?\b(\w+)\([^;{]*\)\n\{", storage, re.MULTILINE))
+        driverlibs = set(re.findall(r"\b((?:Flash|SysCtl)_\w+)\(", storage))
+        in_ram = set(re.findall(r'CODE_SECTION\((\w+), "\.TI\.ramfunc"\)', storage))
+        self.assertGreater(len(own), 8)
+        # driverlib's flash.h places this one itself, and no other that is used here.
+        self.assertEqual(own | driverlibs - {"Flash_enableECC"}, in_ram)
+        for path in product_files(".c"):
+            if path != "bsp/storage.c":
+                self.assertNotRegex(code(path), r"\b(?:Flash|Fapi)_", path)
+
+    def test_the_lines_that_replace_others_are_code_in_the_bank_that_is_started(self):
+        self.assertIn("START(_flash_code)", self.sections[".text"])
+        region, = self.where(".text")
+        self.assertGreaterEqual(self.regions[region][1], 0x80000)
+        self.assertLessEqual(self.regions[region][2], 0xBFFFF)
+
     def test_every_section_has_a_place_on_the_page_that_it_names(self):
         own = {name for path in product_files(".c")
                for name in re.findall(r'(?:DATA_SECTION\(\w+, |CODE_SECTION\(\w+, |section\()"([.\w:]+)"', code(path))}

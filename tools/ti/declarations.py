@@ -5,7 +5,7 @@ A check is C text at file scope, compiled under a name of its own: gcc's message
 import re
 
 # Not integers: only their presence is checked.
-NOT_VALUES = {"EALLOW", "EDIS", "ESTOP0", "F021_CPU0_W0_BASE_ADDRESS", "HWREGH"}
+NOT_VALUES = {"EALLOW", "EDIS", "ESTOP0", "FLASH_DELAY_CONFIG", "F021_CPU0_W0_BASE_ADDRESS", "HWREGH"}
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 DEFINE = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(\w+)(\(\w+\))?[ \t]+(\S.*)$", re.MULTILINE)
 FUNCTION = re.compile(r"(?:static inline\s+)?(.*?)\b(\w+)\s*\(([^()]*)\)$", re.DOTALL)

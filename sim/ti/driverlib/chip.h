@@ -19,6 +19,13 @@ void chip_restart(void);
  * then restarts chip and firmware. NULL: nobody, and the watchdog rests. */
 void chip_watchdog_connect(void (*reset)(void *context), void *context);
 
+/* An NMI, as of the flash's error correction: the vector is taken at once, nobody services the NMI, and 65536
+ * periods of SYSCLK later the NMI watchdog resets the chip as above. What the processor was at ends there:
+ * the caller lets nothing take effect any more. */
+void chip_nmi(void);
+/* NMIs since power-on. */
+unsigned chip_nmis(void);
+
 /* A transmitted octet, delivered at the end of its stop bit; bit_ns is the length of one bit as sent. */
 typedef void (*chip_octet_t)(void *context, unsigned octet, double bit_ns);
 void chip_sci_connect(uint32_t base, chip_octet_t transmitted, void *context);

@@ -8,7 +8,8 @@
 #define WDDIS 0x40U
 #define WDPS 0x07U
 #define COUNTS 256
-#define COUNT_NS 51200 /* 10 MHz / 512 */
+#define COUNT_NS 51200   /* 10 MHz / 512 */
+#define NMI_PERIOD 65536 /* NMIWDPRD after reset, and one */
 
 static struct {
     uint32_t wdcr;
@@ -16,6 +17,11 @@ static struct {
     sim_time_t anchor;
     timeline_id_t overflow;
 } watchdog;
+
+static struct {
+    unsigned count;
+    timeline_id_t expiry;
+} nmi;
 
 static uint32_t causes;
 static uint32_t boot_rom_causes;
@@ -29,14 +35,39 @@ static sim_time_t period(void)
     return (sim_time_t)COUNTS * COUNT_NS << (prescaler == 0 ? 0 : prescaler - 1);
 }
 
+static void bite(uint32_t cause)
+{
+    causes |= cause | SYSCTL_CAUSE_XRS;
+    if (reset_callback != NULL) {
+        reset_callback(reset_context);
+    }
+}
+
 static void overflow(void *unused)
 {
     (void)unused;
     watchdog.overflow = 0;
-    causes |= SYSCTL_CAUSE_WDRS | SYSCTL_CAUSE_XRS;
-    if (reset_callback != NULL) {
-        reset_callback(reset_context);
+    bite(SYSCTL_CAUSE_WDRS);
+}
+
+static void nmi_expired(void *unused)
+{
+    (void)unused;
+    nmi.expiry = 0;
+    bite(SYSCTL_CAUSE_NMIWDRS);
+}
+
+void chip_nmi(void)
+{
+    nmi.count++;
+    if (nmi.expiry == 0) {
+        nmi.expiry = timeline_after(NMI_PERIOD * SIM_S / (sim_time_t)sysctl_sysclk_hz(), nmi_expired, NULL);
     }
+}
+
+unsigned chip_nmis(void)
+{
+    return nmi.count;
 }
 
 /* The part of the period that is over stays over under another prescaler. */
@@ -54,6 +85,8 @@ static void change(uint32_t wdcr, bool service)
 
 void watchdog_reset(void)
 {
+    timeline_cancel(nmi.expiry);
+    nmi.expiry = 0;
     change(0, true);
 }
 
@@ -61,6 +94,7 @@ void watchdog_power_on(void)
 {
     causes = SYSCTL_CAUSE_POR | SYSCTL_CAUSE_XRS;
     boot_rom_causes = causes;
+    nmi.count = 0;
     watchdog_reset();
 }
 

@@ -22,6 +22,7 @@
  * pulse widths, calls back within each, and stores 39 values in protected registers after the first call. */
 #define CALLS_BACK 6
 #define SETUP_STORES 39
+#define CODE_CELLS 0x400
 
 /* The linker command file of the target gives it its address. */
 extern uint16_t flash_sectors_m_n[FLASH_SECTORS][FLASH_SECTOR_CELLS];
@@ -29,12 +30,18 @@ uint16_t flash_sectors_m_n[FLASH_SECTORS][FLASH_SECTOR_CELLS] = {
     [0 ... FLASH_SECTORS - 1] = {[0 ... FLASH_SECTOR_CELLS - 1] = BLANK},
 };
 
+/* And this one: what lies in the bank and never changes. */
+extern const volatile uint16_t flash_code[CODE_CELLS];
+const volatile uint16_t flash_code[CODE_CELLS];
+
 Fapi_FmcRegistersType f021_registers;
 
 static struct {
     bool programmed[FLASH_SECTORS][FLASH_SECTOR_CELLS / BLOCK];
     bool pump, initialised, active, busy;
-    int set_up; /* of the stores that set up the state machine: those that took effect */
+    bool uncorrected; /* the error correction is off, */
+    bool written_off; /* and was written so: in force behind FLASH_DELAY_CONFIG */
+    int set_up;       /* of the stores that set up the state machine: those that took effect */
     Fapi_FlashStatusType status;
     bool cut;
     long left; /* cells until the power fails, when cut */
@@ -248,15 +255,34 @@ void Flash_releasePumpSemaphore(uint32_t pumpSemBase)
 void Flash_enableECC(uint32_t eccBase)
 {
     EALLOW;
-    (void)eccBase;
+    flash.written_off = flash.written_off && eccBase != FLASH0ECC_BASE;
     EDIS;
 }
 
 void Flash_disableECC(uint32_t eccBase)
 {
     EALLOW;
-    (void)eccBase;
+    flash.written_off = flash.written_off || eccBase == FLASH0ECC_BASE;
     EDIS;
+}
+
+void driverlib_flash_delay(void)
+{
+    flash.uncorrected = flash.written_off;
+}
+
+bool flash_corrects(void)
+{
+    return !flash.uncorrected;
+}
+
+/* TI's own cells: on some parts their correction bits are wrong. */
+static bool otp_readable(void)
+{
+    if (!flash.uncorrected) {
+        chip_nmi();
+    }
+    return flash.uncorrected;
 }
 
 Fapi_StatusType Fapi_initializeAPI(Fapi_FmcRegistersType *poFlashControlRegister, uint32 u32HclkFrequency)
@@ -269,6 +295,9 @@ Fapi_StatusType Fapi_initializeAPI(Fapi_FmcRegistersType *poFlashControlRegister
 Fapi_StatusType Fapi_setActiveFlashBank(Fapi_FlashBankType oNewFlashBank)
 {
     EALLOW;
+    if (!otp_readable()) {
+        return Fapi_Error_Fail;
+    }
     flash.active = oNewFlashBank == Fapi_FlashBank0;
     if (flash.active) {
         set_up_state_machine();
@@ -343,4 +372,8 @@ Fapi_FlashStatusType Fapi_getFsmStatus(void)
     return flash.status;
 }
 
-void Fapi_flushPipeline(void) {}
+/* Reads 0C2000H, 0C2100H, 0C2200H and 0C2300H, of bank 1; SYS/BIOS starts bank 0 only. */
+void Fapi_flushPipeline(void)
+{
+    chip_nmi();
+}

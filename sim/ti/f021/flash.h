@@ -2,6 +2,11 @@
  * power-on to power-on of the board, and which may lose power in the middle of an operation. The firmware
  * never includes this.
  *
+ * TI's library reads cells of TI's own, whose correction bits are wrong on some parts, while it makes a bank
+ * active, and cells of bank 1, which nobody starts, when it flushes the pipeline. Both are an NMI
+ * (chip_nmi()); the first is none while the error correction is off. What it was at then ends without
+ * success.
+ *
  * An erased cell is FFFFH; programming only clears bits, eight cells at a time, once between two erasures. No
  * operation takes virtual time. */
 #ifndef SIM_TI_F021_FLASH_H
@@ -33,5 +38,8 @@ void flash_cut_power_after(long cells);
 
 /* Cells erased and programmed since flash_blank(). */
 long flash_cells_changed(void);
+
+/* Whether errors in bank 0 are corrected now. */
+bool flash_corrects(void);
 
 #endif

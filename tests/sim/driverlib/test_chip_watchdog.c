@@ -151,3 +151,17 @@ void test_with_nobody_to_restart_the_chip_it_bites_no_more(void)
     TEST_ASSERT_EQUAL_INT64(SIM_NEVER, timeline_next());
     TEST_ASSERT_EQUAL_HEX32(SYSCTL_CAUSE_WDRS, SysCtl_getResetCause() & SYSCTL_CAUSE_WDRS);
 }
+
+void test_an_nmi_that_nobody_services_resets_after_65536_cycles_and_once(void)
+{
+    SysCtl_disableWatchdog();
+    TEST_ASSERT_TRUE(SysCtl_setClock(DEVICE_SETCLOCK_CFG));
+    chip_nmi();
+    chip_nmi();
+    TEST_ASSERT_EQUAL_UINT(2, chip_nmis());
+    run_until(SIM_S);
+    TEST_ASSERT_EQUAL_INT(1, bites);
+    TEST_ASSERT_EQUAL_INT64(65536 * 5, bitten_at);
+    TEST_ASSERT_EQUAL_HEX32(SYSCTL_CAUSE_NMIWDRS, SysCtl_getResetCause() & SYSCTL_CAUSE_NMIWDRS);
+    TEST_ASSERT_EQUAL_HEX32(0, SysCtl_getResetCause() & SYSCTL_CAUSE_WDRS);
+}

@@ -12,6 +12,7 @@
 #include "sim/ti/driverlib/cpu.h"
 #include "sim/ti/driverlib/flash.h"
 #include "sim/ti/f021/include/F021_F2837xS_C28x.h"
+#include "sim/timeline.h"
 #include "unity.h"
 
 extern uint16_t flash_sectors_m_n[FLASH_SECTORS][FLASH_SECTOR_CELLS];
@@ -33,6 +34,8 @@ Fapi_StatusType Fapi_serviceWatchdogTimer(void)
 
 void setUp(void)
 {
+    timeline_reset();
+    chip_reset(NULL);
     called_back = closes_at = 0;
     flash_blank();
     (void)remove(path);
@@ -46,6 +49,8 @@ void tearDown(void)
 static void start(void)
 {
     Flash_claimPumpSemaphore(FLASHPUMPSEMAPHORE_BASE, FLASH_BANK0_WRAPPER);
+    Flash_disableECC(FLASH0ECC_BASE);
+    FLASH_DELAY_CONFIG;
     TEST_ASSERT_EQUAL(Fapi_Status_Success, Fapi_initializeAPI(F021_CPU0_W0_BASE_ADDRESS, 200));
     TEST_ASSERT_EQUAL(Fapi_Status_Success, Fapi_setActiveFlashBank(Fapi_FlashBank0));
 }
@@ -275,4 +280,34 @@ void test_stores_of_the_set_up_are_lost_behind_a_call_that_closes_the_registers(
     TEST_ASSERT_EQUAL(Fapi_Status_Success, erase(flash_sectors_m_n[0]));
     wait();
     TEST_ASSERT_EQUAL(0, Fapi_getFsmStatus());
+}
+
+void test_making_the_bank_active_with_the_error_correction_on_is_an_nmi(void)
+{
+    Flash_claimPumpSemaphore(FLASHPUMPSEMAPHORE_BASE, FLASH_BANK0_WRAPPER);
+    (void)Fapi_initializeAPI(F021_CPU0_W0_BASE_ADDRESS, 200);
+    TEST_ASSERT_NOT_EQUAL(Fapi_Status_Success, Fapi_setActiveFlashBank(Fapi_FlashBank0));
+    TEST_ASSERT_EQUAL_UINT(1, chip_nmis());
+    TEST_ASSERT_NOT_EQUAL_MESSAGE(Fapi_Status_Success, erase(flash_sectors_m_n[0]), "never made active");
+}
+
+void test_a_change_of_the_error_correction_is_in_force_behind_the_delay(void)
+{
+    TEST_ASSERT_TRUE(flash_corrects());
+    Flash_disableECC(FLASH0ECC_BASE);
+    TEST_ASSERT_TRUE(flash_corrects());
+    FLASH_DELAY_CONFIG;
+    TEST_ASSERT_FALSE(flash_corrects());
+    Flash_enableECC(FLASH0ECC_BASE);
+    TEST_ASSERT_FALSE(flash_corrects());
+    FLASH_DELAY_CONFIG;
+    TEST_ASSERT_TRUE(flash_corrects());
+}
+
+void test_the_librarys_flush_reads_a_bank_that_nobody_starts(void)
+{
+    start();
+    TEST_ASSERT_EQUAL_UINT(0, chip_nmis());
+    Fapi_flushPipeline();
+    TEST_ASSERT_EQUAL_UINT(1, chip_nmis());
 }
