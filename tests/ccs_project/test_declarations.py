@@ -96,6 +96,15 @@ class Compared(unittest.TestCase):
         found = [each.split(": ")[1] for each in check_ti.compared(library)]
         self.assertEqual(found, ["Fapi_EraseSector", "Fapi_flushPipeline", "Fapi_serviceWatchdogTimer", "uint16"])
 
+    def test_another_compiler_than_driverlibs_is_named(self):
+        spec = self.top / WARE / "ccs/driverlib.projectspec"
+        self.assertEqual(check_ti.compiler(check_ti.Project(), self.top), [])
+        spec.parent.mkdir()
+        spec.write_text('<project cgtVersion="22.6.3.LTS"/>', encoding="utf-8")
+        self.assertEqual(check_ti.compiler(check_ti.Project(), self.top), [])
+        spec.write_text('<project cgtVersion="20.2.5.LTS"/>', encoding="utf-8")
+        self.assertEqual(len(check_ti.compiler(check_ti.Project(), self.top)), 1)
+
     def test_the_headers_of_the_hooks_are_where_the_check_looks(self):
         own = [each for each in re.findall(r'#include "(.+)"', check_ti.HOOKS) if each != "debug.h"]    # that one is driverlib's
         self.assertEqual([each for each in own if not (REPOSITORY / each).is_file()], [])

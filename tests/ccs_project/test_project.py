@@ -70,7 +70,7 @@ class Settings(unittest.TestCase):
     def test_versions_are_those_of_the_plan(self):
         self.assertEqual(self.project.versions(), {
             "SYSBIOS": ["6", "83", "00", "18"], "XDCTOOLS": ["3", "62", "01", "15"],
-            "C2000WARE": ["26", "01", "00", "00"], "CGT": ["20.2.5.LTS"]})
+            "C2000WARE": ["26", "01", "00", "00"], "CGT": ["22.6.3.LTS"]})
 
     def test_one_object_format_throughout(self):
         # ti.targets.C28_float is COFF.
@@ -94,9 +94,24 @@ class Settings(unittest.TestCase):
     def test_the_board_the_core_and_the_processor_are_defined(self):
         # Without _LAUNCHXL_F28377S device.h describes another board: half the clock and a dead UART.
         for name in self.project.configurations:
-            for word in ("-v28", "-ml", "--float_support=fpu32", "--tmu_support=tmu0", "--c99", "--define=CPU1", "--define=_LAUNCHXL_F28377S",
+            for word in ("-v28", "-ml", "--float_support=fpu32", "--c99", "--define=CPU1", "--define=_LAUNCHXL_F28377S",
                          "--define=xdc__strict"):
                 self.assertIn(word, self.options(name))
+
+    def test_floats_are_computed_in_the_order_of_the_sources_everywhere_it_is_said(self):
+        # docs/realtime.md says why. TI's compiler uses the TMU with --fp_mode=relaxed only.
+        for name in self.project.configurations:
+            for attribute in ("compilerBuildOptions", "linkerBuildOptions"):
+                self.assertEqual([word for word in self.options(name, attribute) if re.match(r"--(?:fp_|tmu_)", word)],
+                                 ["--fp_mode=strict"] * (attribute == "compilerBuildOptions"))
+        for path in ("tools/ti/firmware.py", "ccs_project/app.cfg", "tools/size/stacks.txt", "tools/rta/plomada-est.csv"):
+            self.assertNotRegex(text(path), r"--(?:fp|tmu)_\w+=|\bTMU\b", path)
+        self.assertIn("add_compile_options(-ffp-contract=off)", text("CMakeLists.txt"))
+        for path in ("CMakeLists.txt", *(f"cmake/{each.name}" for each in (REPOSITORY / "cmake").glob("*.cmake"))):
+            self.assertNotRegex(text(path), r"-ffast-math|-Ofast|-funsafe-math|-fassociative-math", path)
+        page = " ".join(text("docs/realtime.md").split())
+        self.assertIn("the build says `--fp_mode=strict`", page)
+        self.assertIn("uses the trigonometric unit (TMU) with `--fp_mode=relaxed` only", page)
 
     def test_headers_are_found_in_the_rooms_and_in_driverlib(self):
         for name in self.project.configurations:

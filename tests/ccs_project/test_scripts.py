@@ -93,14 +93,14 @@ class Missing(Script):
     def test_the_projects_versions_are_found_in_tis_usual_places(self):
         ti = self.home / "ti"
         places = {"CCS_ROOT": "ccs1250/ccs", "BIOS_ROOT": "bios_6_83_00_18", "XDC_ROOT": "xdctools_3_62_01_15_core",
-                  "CGT_ROOT": "ccs1250/ccs/tools/compiler/ti-cgt-c2000_20.2.5.LTS",
+                  "CGT_ROOT": "ccs1250/ccs/tools/compiler/ti-cgt-c2000_22.6.3.LTS",
                   "C2000WARE_ROOT": "c2000/C2000Ware_26_01_00_00"}
         for variable, place in places.items():
             self.install(variable, ti / place)
         self.assertEqual(self.call("firmware.py", "--out", self.out).returncode, 0)
         xs = self.calls()[0]
         self.assertIn(f"--xdcpath={ti}/bios_6_83_00_18/packages;", xs)
-        self.assertIn(f"{ti}/ccs1250/ccs/tools/compiler/ti-cgt-c2000_20.2.5.LTS", xs)
+        self.assertIn(f"{ti}/ccs1250/ccs/tools/compiler/ti-cgt-c2000_22.6.3.LTS", xs)
 
     def test_another_version_is_not_taken_by_itself(self):
         for variable in ALL[2:]:
@@ -167,7 +167,9 @@ class Build(Script):
         *_, (name, _, *words) = self.build()
         self.assertEqual(name, "cl2000")
         before, after = words[:words.index("--run_linker")], words[words.index("--run_linker"):]
-        self.assertIn("--abi=coffabi", before)
+        compiled = Project().options("Release", "compilerBuildOptions", COM_TI_C2000WARE_INSTALL_DIR=self.roots["C2000WARE_ROOT"])
+        self.assertEqual(before, ["-v28", "-ml", "-mt", "--float_support=fpu32", "--fp_mode=strict", "--abi=coffabi"])
+        self.assertEqual([word for word in compiled if word in before], before)
         objects = [word for word in after if word.endswith(".obj")]
         self.assertEqual(sorted(objects), sorted(Path(source).stem + ".obj" for source in SOURCES))
         self.assertEqual([word for word in after if word.endswith(".cmd")], ["configPkg/linker.cmd", str(CCS / "plomada.cmd")])

@@ -146,7 +146,7 @@ void test_create_makes_the_port_first_and_then_one_task_of_priority_6(void)
     TEST_ASSERT_EQUAL_UINT16(1, kernel.task.created);
     TEST_ASSERT_EQUAL_STRING("TaskIMU", kernel.task.name);
     TEST_ASSERT_EQUAL_INT(6, kernel.task.params.priority);
-    TEST_ASSERT_EQUAL_UINT64(1024, kernel.task.params.stackSize);
+    TEST_ASSERT_EQUAL_UINT64(1152, kernel.task.params.stackSize);
 }
 
 void test_each_frame_is_waited_for_and_then_published(void)

@@ -109,7 +109,7 @@ void test_create_makes_the_port_first_and_then_one_task_of_priority_1(void)
     TEST_ASSERT_EQUAL_UINT16(1, kernel.task.created);
     TEST_ASSERT_EQUAL_STRING("TaskReceiveComm", kernel.task.name);
     TEST_ASSERT_EQUAL_INT(1, kernel.task.params.priority);
-    TEST_ASSERT_EQUAL_UINT64(1024, kernel.task.params.stackSize);
+    TEST_ASSERT_EQUAL_UINT64(1152, kernel.task.params.stackSize);
 }
 
 void test_each_line_is_executed_once_in_its_order_losses_told_before_it_long_answers_between_lines(void)

@@ -118,7 +118,7 @@ void test_create_makes_the_port_at_the_sensors_first_rate_and_then_one_task_of_p
     TEST_ASSERT_EQUAL_UINT16(1, kernel.task.created);
     TEST_ASSERT_EQUAL_STRING("TaskReceiveLaser", kernel.task.name);
     TEST_ASSERT_EQUAL_INT(5, kernel.task.params.priority);
-    TEST_ASSERT_EQUAL_UINT64(1024, kernel.task.params.stackSize);
+    TEST_ASSERT_EQUAL_UINT64(1152, kernel.task.params.stackSize);
 }
 
 void test_a_scan_is_published_before_control_is_released(void)

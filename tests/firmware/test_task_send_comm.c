@@ -120,7 +120,7 @@ void test_create_makes_a_binary_tick_every_200_ms_and_one_task_of_priority_2(voi
     TEST_ASSERT_EQUAL_UINT16(1, kernel.task.created);
     TEST_ASSERT_EQUAL_STRING("TaskSendComm", kernel.task.name);
     TEST_ASSERT_EQUAL_INT(2, kernel.task.params.priority);
-    TEST_ASSERT_EQUAL_UINT64(1024, kernel.task.params.stackSize);
+    TEST_ASSERT_EQUAL_UINT64(1152, kernel.task.params.stackSize);
 }
 
 void test_nothing_is_sent_before_the_first_tick(void)

@@ -122,7 +122,7 @@ void test_create_makes_a_binary_semaphore_a_clock_of_10_ms_and_one_task_of_prior
     TEST_ASSERT_EQUAL_UINT16(1, kernel.task.created);
     TEST_ASSERT_EQUAL_STRING("TaskSendLaser", kernel.task.name);
     TEST_ASSERT_EQUAL_INT(3, kernel.task.params.priority);
-    TEST_ASSERT_EQUAL_UINT64(1024, kernel.task.params.stackSize);
+    TEST_ASSERT_EQUAL_UINT64(1152, kernel.task.params.stackSize);
 }
 
 void test_nothing_happens_before_150_ms(void)

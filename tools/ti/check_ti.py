@@ -145,6 +145,14 @@ def hooks(ware, bios, xdc):
     return [run([*kernel.gcc, "-DDEBUG", "-isystem", str(registers.includes[0])], HOOKS).stderr.strip()]
 
 
+def compiler(project, ware):
+    """Complaints when TI built driverlib by another release of the compiler than the project names."""
+    spec = Path(ware) / "driverlib/f2837xs/driverlib/ccs/driverlib.projectspec"
+    built = re.search(r'cgtVersion="([^"]+)"', spec.read_text(encoding="utf-8")) if spec.is_file() else None
+    named = project.attributes["cgtVersion"]
+    return [f"driverlib is of compiler {built.group(1)}, the project names {named}"] if built and built.group(1) != named else []
+
+
 def looked_up(project, *variables):
     """The roots, or None; says which are missing and ends the program when one that is given is none."""
     found = {variable: roots.look_up(variable, project) for variable in variables}
@@ -167,6 +175,7 @@ def main():
         complaints += compared(flash_library(*ware))
     elif ware:
         print(f"{ware[0]} has no {FLASH_API}: bsp/storage.c was read with sim/'s declarations of the flash library")
+    complaints += compiler(project, *ware) if ware else []
     complaints += hooks(*ware, *kernel) if ware and kernel else []
     complaints = [each for each in complaints if each]
     for each in complaints:

@@ -14,6 +14,8 @@ import roots
 from ccs_project import REPOSITORY, Project
 
 GENERATED = "configPkg"
+# The compiler's options that say for which processor, and how it computes: the linker chooses the C library by them.
+PROCESSOR = ("-v", "-ml", "-mt", "--float_support", "--fp_mode", "--abi")
 
 
 def configuro(project, at):
@@ -32,7 +34,8 @@ def compile_one(project, configuration, at, source):
 
 def link(project, configuration, at):
     options = project.options(configuration, "linkerBuildOptions", COM_TI_C2000WARE_INSTALL_DIR=at["C2000WARE_ROOT"])
-    return [at["CGT_ROOT"] / "bin" / "cl2000", "-v28", "-ml", "-mt", "--float_support=fpu32", "--tmu_support=tmu0", "--abi=coffabi", "--run_linker",
+    compiled = project.options(configuration, "compilerBuildOptions", COM_TI_C2000WARE_INSTALL_DIR=at["C2000WARE_ROOT"])
+    return [at["CGT_ROOT"] / "bin" / "cl2000", *(word for word in compiled if word.startswith(PROCESSOR)), "--run_linker",
             f"--map_file={project.name}.map", f"--output_file={project.name}.out",
             f"--search_path={at['CGT_ROOT'] / 'lib'}", f"--search_path={at['CGT_ROOT'] / 'include'}",
             *(f"{source.stem}.obj" for source in project.files(".c")),
