@@ -77,6 +77,7 @@ const quadrotor_config_t quadrotor_default = {.gain = 1.0,
                                               .anchored = false,
                                               .bench_height_m = 0.0,
                                               .bench_roll_rad = 0.0,
+                                              .bench_pitch_rad = 0.0,
                                               .bench_roll_start_s = 0.0};
 
 typedef struct {
@@ -422,6 +423,20 @@ static double pass_terrain(quadrotor_t *q, double t_s, double *terrain_mps)
     return ramp_m + floor_height_m(&q->floor);
 }
 
+/* In somebody's hands, or on the bench. */
+static void hold(quadrotor_t *q)
+{
+    quadrotor_state_t *s = &q->state;
+
+    s->altitude_m = q->config.bench_height_m;
+    s->speed_mps = s->acceleration_mps2 = 0.0;
+    s->on_ground = false;
+    if ((double)q->clock * 1e-9 >= q->config.bench_roll_start_s) {
+        s->roll_rad = q->config.bench_roll_rad;
+        s->pitch_rad = q->config.bench_pitch_rad;
+    }
+}
+
 static void step(quadrotor_t *q)
 {
     quadrotor_state_t *s = &q->state;
@@ -436,8 +451,8 @@ static void step(quadrotor_t *q)
         rotate(q, t_s);
         const double acceleration_mps2 = air_mps2(q, t_s) + disturbance_mps2(q) + gust_mps2(q);
         rise_or_rest(q, acceleration_mps2, terrain_m, terrain_mps);
-    } else if (q->config.bench_roll_rad != 0.0 && (double)q->clock * 1e-9 >= q->config.bench_roll_start_s) {
-        s->roll_rad = q->config.bench_roll_rad;
+    } else {
+        hold(q);
     }
     s->terrain_m = terrain_m;
     s->height_m = s->altitude_m - terrain_m;

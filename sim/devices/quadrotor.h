@@ -62,7 +62,8 @@ typedef struct {
     floor_config_t floor;
     bool anchored; /* bench: stands still at bench_height_m, whatever the thrust */
     double bench_height_m;
-    double bench_roll_rad; /* 0; held so, about the gear's lowest level under the centre, right side up, */
+    double bench_roll_rad;  /* 0; held so, about the gear's lowest level under the centre, right side up, */
+    double bench_pitch_rad; /* 0; nose up, */
     double bench_roll_start_s; /* since power-on from which on; level before, for the IMU's zero */
 } quadrotor_config_t;
 

@@ -781,6 +781,28 @@ void test_the_anchored_vehicle_stands_still_whatever_the_thrust(void)
     NEAR(1e-9, 0.45, now().height_m); /* the platform came below it */
 }
 
+void test_who_holds_it_brings_it_where_he_wants_and_lets_it_go(void)
+{
+    quadrotor_config_t held = quadrotor_default;
+
+    held.anchored = true;
+    start(&held, &terrain_flat, 1);
+    wait(SIM_S);
+    held.bench_height_m = 0.5;
+    held.bench_roll_rad = 0.2;
+    held.bench_pitch_rad = -0.1;
+    quadrotor_change(quad, &held, &terrain_flat);
+    wait(SIM_S);
+    NEAR(1e-12, 0.5, now().height_m);
+    NEAR(1e-12, 0.2, now().roll_rad);
+    NEAR(1e-12, -0.1, now().pitch_rad);
+    held.anchored = false;
+    quadrotor_change(quad, &held, &terrain_flat);
+    wait(3 * SIM_S);
+    NEAR(1e-3, 0.0, now().height_m);
+    TEST_ASSERT_TRUE(now().on_ground);
+}
+
 static quadrotor_state_t flight(const quadrotor_config_t *config, unsigned long seed, sim_time_t query)
 {
     start(config, &terrain_platform, seed);
