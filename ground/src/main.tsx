@@ -1,9 +1,10 @@
 import { render } from 'preact';
 import { useEffect, useRef } from 'preact/hooks';
-import { signal } from '@preact/signals';
+import { effect, signal } from '@preact/signals';
 import './style.css';
 import { choosePort, knownPorts } from './link/serial';
-import { age, beat, connectSerial, connectSocket, connectVehicle, diagnosis, dialog, disconnect, failure, heardAny, latest, link, lostReason, phase, restore, restored, session, silent, stop, stopState, view, type View } from './store';
+import { BEAT_MS } from './freshness';
+import { beat, connectSerial, connectSocket, connectVehicle, diagnosis, dialog, disconnect, failure, link, live, lostReason, phase, restore, restored, seen, session, stop, stopState, view, type View } from './store';
 import { ConsoleView } from './views/console';
 import { FlyView } from './views/fly';
 import { ParametersView } from './views/parameters';
@@ -28,6 +29,10 @@ function setTheme(theme: Theme): void {
 }
 setTheme(preferred());
 document.documentElement.lang = language.value;
+/** Nothing is green but while telemetry comes: style.css has the colours that say *well* under this attribute only. */
+effect(() => {
+  document.documentElement.dataset.live = live.value ? 'yes' : 'no';
+});
 
 function Logo() {
   return (
@@ -37,10 +42,10 @@ function Logo() {
 
 function Status() {
   const words = w();
-  const bad = phase.value === 'lost' || silent.value;
-  const text = phase.value === 'open' ? (silent.value && heardAny.value ? words.lost : words.open) : words[phase.value === 'opening' ? 'opening' : phase.value === 'lost' ? 'lost' : 'idle'];
+  const bad = phase.value === 'lost' || (phase.value === 'open' && seen.value.kind === 'old');
+  const text = bad ? words.lost : words[phase.value === 'opening' || phase.value === 'open' ? phase.value : 'idle'];
   return (
-    <button class={`status ${bad ? 'bad' : phase.value === 'open' && heardAny.value ? 'good' : ''}`} onClick={() => (dialog.value = true)} aria-haspopup="dialog">
+    <button class={`status ${bad ? 'bad' : live.value ? 'good' : ''}`} onClick={() => (dialog.value = true)} aria-haspopup="dialog">
       <i />
       <span><strong>{text}</strong><small>{link.value?.label === 'simulated vehicle' ? words.simTitle : link.value?.label ?? words.connect}</small></span>
     </button>
@@ -68,7 +73,7 @@ function Banner() {
   if (phase.value === 'lost') texts.push(['bad', words.lostReasons[lostReason.value ?? 'broken']!]);
   if (stopState.value.STOP === 'unanswered' || stopState.value.LAND === 'unanswered') texts.push(['bad', words.stopUnanswered]);
   if (diagnosis.value) texts.push(['bad', words.diagnoses[diagnosis.value]!]);
-  else if (silent.value && heardAny.value) texts.push(['bad', words.noTelemetry(Math.floor(age.value / 1000).toString())]);
+  else if (phase.value === 'open' && seen.value.kind === 'old') texts.push(['bad', words.noTelemetry(Math.floor(seen.value.age / 1000).toString())]);
   if (restored.value && phase.value === 'idle') texts.push(['', words.restored(restored.value.lines)]);
   return (
     <div role="alert" class="banners">
@@ -131,7 +136,6 @@ function App() {
       <header class="top">
         <h1 class="brand"><Logo /><strong>Plomada<span>Ground</span></strong></h1>
         <Status />
-        <span class="state-chip" data-state={latest.value?.state ?? ''}>{latest.value?.state ?? '–'}</span>
         <span class="spacer" />
         <button class="quiet icon" onClick={switchLanguage} lang={language.value === 'en' ? 'es' : 'en'}>{words.language}</button>
         <button class="quiet icon" aria-label={words.theme} title={words.theme} onClick={() => {
@@ -162,10 +166,10 @@ window.addEventListener('keydown', (event) => {
 });
 window.addEventListener('pagehide', () => void session.flush());
 window.addEventListener('beforeunload', (event) => {
-  if (phase.value === 'open' && latest.value && latest.value.state !== 'GROUND') event.preventDefault();
+  if (phase.value === 'open' && seen.value.kind !== 'nothing' && seen.value.telemetry.state !== 'GROUND') event.preventDefault();
 });
 
 void restore().then(() => {
   render(<App />, document.getElementById('app')!);
-  setInterval(beat, 100);
+  setInterval(beat, BEAT_MS);
 });

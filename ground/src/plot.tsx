@@ -148,13 +148,15 @@ export function Plot(props: { curves: Curve[]; data: () => PlotData; live?: numb
       });
     };
     draw();
-    const timer = props.live ? setInterval(() => requestAnimationFrame(draw), props.live) : null;
+    let frame = 0;
+    const timer = props.live ? setInterval(() => (frame = requestAnimationFrame(draw)), props.live) : null;
     const resize = new ResizeObserver(() => plot.setSize({ width: Math.max(200, element.clientWidth), height: latest.current.height }));
     resize.observe(element);
     const theme = new MutationObserver(() => plot.redraw(false));
     theme.observe(document.documentElement, { attributes: true });
     return () => {
       if (timer) clearInterval(timer);
+      cancelAnimationFrame(frame);
       resize.disconnect();
       theme.disconnect();
       plot.destroy();

@@ -1,8 +1,9 @@
-import { batch, computed, signal } from '@preact/signals';
+import { batch, computed, signal, type Signal } from '@preact/signals';
 import { OpenError, type Link, type LostReason, type OpenFailure } from './link/link';
 import { openSerial } from './link/serial';
 import { openSocket } from './link/socket';
 import { openVehicle, VehicleLink } from './link/vehicle';
+import { freshness, type Heard } from './freshness';
 import { LineSplitter, parseLine, type Line, type Telemetry } from './protocol/lines';
 import { parseHelp, valueOf, type Parameter, type ParameterSet } from './protocol/parameters';
 import { CommandQueue, type Outcome } from './protocol/queue';
@@ -15,7 +16,6 @@ export type Phase = 'idle' | 'opening' | 'open' | 'lost';
 export type StopState = 'none' | 'sent' | 'answered' | 'unanswered';
 export type View = 'fly' | 'parameters' | 'recorder' | 'wizards' | 'console' | 'replay';
 
-export const SILENCE_MS = 1500;
 const CONSOLE_LINES = 2000;
 
 export const phase = signal<Phase>('idle');
@@ -23,18 +23,13 @@ export const failure = signal<{ why: OpenFailure; detail: string } | null>(null)
 export const lostReason = signal<LostReason | null>(null);
 export const link = signal<Link | null>(null);
 export const vehicle = computed(() => (link.value instanceof VehicleLink ? link.value : null));
-export const latest = signal<Telemetry | null>(null);
-export const latestAt = signal(0); // link's clock, ms
-export const clock = signal(0); // link's clock, some times a second
+export const clock = signal(0); // link's clock, ms, some times a second; it goes on when the link is gone
 export const heardAny = signal(false); // any line of this firmware
 export const foreign = signal(0); // lines that are not the firmware's
 export const garbage = signal(0); // octets that are no text
 export const openedAt = signal(0);
 export const stopState = signal<{ STOP: StopState; LAND: StopState }>({ STOP: 'none', LAND: 'none' });
-export const parameters = signal<Parameter[]>([]);
-export const stored = signal<ParameterSet | null>(null);
 export const loading = signal(false);
-export const storeLine = signal<string | null>(null); // what power-up said of the stored set
 export const consoleLines = signal<Entry[]>([]);
 export const view = signal<View>('fly');
 export const dialog = signal(true); // the connect sheet
@@ -42,8 +37,27 @@ export const notice = signal<string | null>(null);
 export const series = new Series();
 export const session = new SessionLog();
 
-export const age = computed(() => (latest.value ? clock.value - latestAt.value : clock.value - openedAt.value));
-export const silent = computed(() => phase.value === 'open' && age.value > SILENCE_MS);
+const heardLast = signal<Heard | null>(null);
+const pageClock = signal(0); // ms
+/** The one owner of how fresh it is what the page shows. */
+export const seen = computed(() => freshness(phase.value === 'open', heardLast.value, openedAt.value, { link: clock.value, page: pageClock.value }));
+/** The telemetry, while it is so; null: nothing is known of now. */
+export const live = computed(() => (seen.value.kind === 'live' ? seen.value.telemetry : null));
+
+/** What belongs to the vehicle at the other end, and is forgotten when there may be another one. */
+const perVehicle: (() => void)[] = [];
+export function ofThisVehicle<T>(initial: T): Signal<T> {
+  const value = signal(initial);
+  perVehicle.push(() => (value.value = initial));
+  return value;
+}
+function forgetVehicle(): void {
+  batch(() => perVehicle.forEach((forget) => forget()));
+}
+export const parameters = ofThisVehicle<Parameter[]>([]);
+export const stored = ofThisVehicle<ParameterSet | null>(null);
+export const storeLine = ofThisVehicle<string | null>(null); // what power-up said of the stored set
+
 /** What a link that is open and says nothing useful is up to. */
 export const diagnosis = computed<'silence' | 'wrongRate' | 'foreign' | null>(() => {
   if (phase.value !== 'open' || heardAny.value) return null;
@@ -83,6 +97,7 @@ function transmit(text: string): void {
 }
 
 function heard(octets: Uint8Array): void {
+  if (!link.value) return; // the last of a link that is being closed
   for (const text of splitter.push(octets)) {
     record(false, text);
     const line = parseLine(text);
@@ -102,11 +117,10 @@ function heard(octets: Uint8Array): void {
 
 function onTelemetry(telemetry: Telemetry): void {
   const now = link.value!.now();
-  if (latest.value === null || telemetry.reset) void command('#GET LINK').then(giveBackLink);
+  if (heardLast.value === null || telemetry.reset) void command('#GET LINK').then(giveBackLink);
   series.add(now / 1000, telemetry, vehicle.value ? vehicle.value.truth().height_m : NaN);
   batch(() => {
-    latest.value = telemetry;
-    latestAt.value = now;
+    heardLast.value = { telemetry, link: now, page: performance.now() };
     if (telemetry.reset) series.mark(now / 1000, `reset ${telemetry.reset}`).answered = true;
   });
 }
@@ -184,13 +198,11 @@ function opened(kind: Link): void {
     splitter.reset();
     series.clear();
     link.value = kind;
-    latest.value = null;
+    heardLast.value = null;
     openedAt.value = clock.value = kind.now();
     heardAny.value = false;
     foreign.value = garbage.value = 0;
-    parameters.value = [];
-    stored.value = null;
-    storeLine.value = null;
+    forgetVehicle();
     stopState.value = { STOP: 'none', LAND: 'none' };
     consoleLines.value = [];
     phase.value = 'open';
@@ -210,7 +222,7 @@ const events = {
     batch(() => {
       phase.value = 'lost';
       lostReason.value = reason;
-      link.value = null;
+      leaveLink();
     });
     void session.flush();
   },
@@ -236,9 +248,12 @@ export const connectVehicle = (): Promise<void> => open(() => openVehicle(events
 export async function disconnect(): Promise<void> {
   queue?.clear('disconnected');
   queue = null;
-  await link.value?.close();
-  link.value = null;
-  phase.value = 'idle';
+  const closing = link.value;
+  batch(() => {
+    phase.value = 'idle';
+    leaveLink();
+  });
+  await closing?.close();
   await session.flush();
 }
 
@@ -247,9 +262,7 @@ export function powerCycle(): void {
   vehicle.value?.powerCycle();
   queue?.clear('power off');
   linkSeconds = 0;
-  parameters.value = [];
-  stored.value = null;
-  storeLine.value = null;
+  forgetVehicle();
 }
 
 // ---- the flight recorder ----
@@ -326,11 +339,24 @@ export function cancelDownload(): void {
 
 // ---- the page's heart ----
 
+/** The link's clock when the link was left, and the page's. */
+let left = { link: 0, page: 0 };
+function leaveLink(): void {
+  if (link.value) left = { link: link.value.now(), page: performance.now() };
+  link.value = null;
+}
+
+function look(): void {
+  pageClock.value = performance.now();
+  if (link.value) clock.value = link.value.now();
+  else if (heardLast.value) clock.value = left.link + (pageClock.value - left.page);
+}
+
 export function beat(): void {
+  batch(look); // first: whatever fails below, the page does not stand still and look alive
   queue?.tick();
   if (phase.value === 'open' && linkSeconds > 0 && (link.value?.now() ?? 0) - lastSent > (linkSeconds * 1000) / 3) transmit(ALIVE);
   batch(() => {
-    clock.value = link.value?.now() ?? clock.value;
     if (pendingConsole.length > 0) {
       consoleLines.value = [...consoleLines.value, ...pendingConsole].slice(-CONSOLE_LINES);
       pendingConsole = [];

@@ -5,6 +5,10 @@ export const language = signal<'en' | 'es'>((localStorage.getItem('plomada.langu
 export function w(): Words {
   return language.value === 'es' ? es : en;
 }
+/** How old something is, in words; `age` in ms. */
+export function ago(age: number): string {
+  return w().ago(Math.floor(age / 1000));
+}
 /** The firmware's reason for a refusal, in the reader's language where its words are known. */
 export function told(reason: string): string {
   const known = w().reasons.find(([pattern]) => pattern.test(reason));

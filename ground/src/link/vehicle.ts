@@ -197,6 +197,16 @@ export class VehicleLink implements Link {
     this.machine.vehicle_meet_ramp();
   }
 
+  /** false: the program has stopped for good, or broken. */
+  private step(milliseconds: number): boolean {
+    try {
+      return this.machine.vehicle_step(milliseconds) !== 0;
+    } catch (error) {
+      console.error(error);
+      return false;
+    }
+  }
+
   /** Lets the time pass that the wall clock says, in small steps, so that answers come at their time. */
   private tick(): void {
     const wall = performance.now();
@@ -206,7 +216,7 @@ export class VehicleLink implements Link {
       const step = Math.min(Math.floor(this.owed), 50);
       this.owed -= step;
       this.elapsed += step;
-      if (this.machine.vehicle_step(step) === 0) {
+      if (!this.step(step)) {
         clearInterval(this.timer);
         this.events.lost('halted');
         return;

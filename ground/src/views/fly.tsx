@@ -1,8 +1,8 @@
 import { signal } from '@preact/signals';
 import { useRef } from 'preact/hooks';
 import { Plot, saveFile, savePng, stamp } from '../plot';
-import { age, clock, command, heardAny, latest, phase, powerCycle, series, silent, vehicle } from '../store';
-import { told, w } from '../words';
+import { clock, command, live, ofThisVehicle, phase, powerCycle, seen, series, vehicle } from '../store';
+import { ago, told, w } from '../words';
 import { Troubles } from './troubles';
 
 const wanted = signal(localStorage.getItem('plomada.reference') ?? '0.6');
@@ -21,53 +21,66 @@ function Number3({ label, value, unit, sub, tone }: { label: string; value: stri
 }
 
 export function Numbers() {
-  const t = latest.value;
+  const now = seen.value;
   const words = w();
-  const off = silent.value || !t;
+  const t = now.kind === 'nothing' ? null : now.telemetry;
   const text = (value: number | undefined, digits: number): string => (value === undefined || Number.isNaN(value) ? '–' : value.toFixed(digits));
-  const airborne = t && t.state !== 'GROUND';
+  /** What stands below a number: how old it is, as soon as it is not of now. */
+  const sub = (fresh: string): string => (now.kind === 'old' ? ago(now.age) : fresh);
+  const tone = (fresh: string | false | null | undefined): string => (now.kind === 'live' && fresh ? fresh : '');
+  const connection = phase.value === 'open' || phase.value === 'lost' ? phase.value : 'idle';
   return (
-    <section class={`numbers ${off ? 'stale' : ''}`} aria-label={words.live}>
-      <Number3 label={words.height} value={text(t?.height, 2)} unit="m" sub={`${words.reference} ${t && t.reference > 0 ? `${t.reference.toFixed(2)} m` : words.none}`} tone="primary" />
-      <Number3 label={words.thrust} value={text(t?.thrust, 1)} unit="N" sub={words.perMotor} />
-      <Number3 label={words.state} value={t?.state ?? '–'} sub={t ? words.states[t.state] ?? '' : ''} tone={`word ${t && ['CUT', 'DESCENDING', 'LOWERING'].includes(t.state) ? 'bad' : airborne ? 'good' : ''}`} />
-      <Number3 label={words.laser} value={t?.laser ?? '–'} sub={t ? words.lasers[t.laser] ?? '' : ''} tone={`word ${t?.laser === 'OK' ? 'good' : t?.laser === 'LOST' ? 'bad' : ''}`} />
-      <Number3 label={words.link} value={phase.value === 'open' && heardAny.value ? Math.max(0, age.value / 1000).toFixed(1) : '–'} unit="s" sub={phase.value === 'open' ? words.open : words[phase.value === 'lost' ? 'lost' : 'idle']} tone={silent.value ? 'bad' : ''} />
+    <section class={`numbers ${now.kind === 'live' ? '' : 'stale'}`} aria-label={now.kind === 'live' ? words.live : words.link}>
+      <Number3 label={words.height} value={text(t?.height, 2)} unit="m" sub={sub(`${words.reference} ${t && t.reference > 0 ? `${t.reference.toFixed(2)} m` : words.none}`)} tone="primary" />
+      <Number3 label={words.thrust} value={text(t?.thrust, 1)} unit="N" sub={sub(words.perMotor)} />
+      <Number3 label={words.state} value={t?.state ?? '–'} sub={sub(t ? words.states[t.state] ?? '' : '')} tone={`word ${tone(t && (['CUT', 'DESCENDING', 'LOWERING'].includes(t.state) ? 'bad' : t.state !== 'GROUND' && 'good'))}`} />
+      <Number3 label={words.laser} value={t?.laser ?? '–'} sub={sub(t ? words.lasers[t.laser] ?? '' : '')} tone={`word ${tone(t?.laser === 'OK' ? 'good' : t?.laser === 'LOST' && 'bad')}`} />
+      <Number3 label={words.link} value={t ? (now.age / 1000).toFixed(1) : '–'} unit="s" sub={now.kind === 'old' ? `${connection === 'open' ? '' : `${words[connection]} · `}${ago(now.age)}` : words[connection]} tone={now.kind === 'old' ? 'bad' : ''} />
     </section>
   );
 }
 
 export function Messages() {
-  const t = latest.value;
+  const now = seen.value;
   const words = w();
-  if (!t) return null;
+  if (now.kind === 'nothing') return null;
+  const { flags: bits, state } = now.telemetry;
   const flags: [string, string][] = [];
-  for (let bit = 0; bit < 16; bit++) if (t.flags & (1 << bit)) flags.push(words.flags[bit] ?? words.unknownFlag(1 << bit));
+  for (let bit = 0; bit < 16; bit++) if (bits & (1 << bit)) flags.push(words.flags[bit] ?? words.unknownFlag(1 << bit));
+  if (now.kind === 'old') {
+    return (
+      <ul class="messages">
+        <li class="alone"><strong>{words.notLive(ago(now.age))}</strong></li>
+        <li class="past"><strong>{state}</strong><span>{words.states[state] ?? ''}</span></li>
+        {flags.map(([what]) => (<li class="past" key={what}><strong>{what}</strong></li>))}
+      </ul>
+    );
+  }
   return (
     <ul class="messages" aria-live="polite">
       {flags.map(([what, todo]) => (
         <li class="warn" key={what}><strong>{what}</strong><span>{todo}</span></li>
       ))}
       {flags.length === 0 && (
-        <li class="fine"><strong>{words.allWell}</strong><span>{t.state === 'GROUND' ? words.allWellDo : words.states[t.state] ?? words.flyingWell}</span></li>
+        <li class="fine"><strong>{words.allWell}</strong><span>{state === 'GROUND' ? words.allWellDo : words.states[state] ?? words.flyingWell}</span></li>
       )}
     </ul>
   );
 }
 
-const armed = signal('');
+const armed = ofThisVehicle('');
 async function arm(): Promise<void> {
   const outcome = await command('#ARM');
   armed.value = outcome.ok ? outcome.lines[0]!.rest : outcome.silent ? w().noAnswer : told(outcome.reason);
 }
 
-const replied = signal<{ text: string; bad: boolean } | null>(null); // to the latest reference
+const replied = ofThisVehicle<{ text: string; bad: boolean } | null>(null); // to the latest reference
 
 function Reference() {
   const words = w();
-  const t = latest.value;
-  const open = phase.value === 'open' && t !== null;
-  const flying = open && t.reference > 0;
+  const t = live.value;
+  const open = phase.value === 'open' && seen.value.kind !== 'nothing'; // a silent vehicle may still hear
+  const flying = t !== null && t.reference > 0;
   const send = (): void => {
     localStorage.setItem('plomada.reference', wanted.value);
     replied.value = null;
@@ -91,7 +104,7 @@ function Reference() {
       </div>
       <button class="go" disabled={!open} onClick={send}>{flying ? `${words.changeTo} ${Number(wanted.value).toFixed(1)} m` : words.takeOff}</button>
       {replied.value && <p class={`banner ${replied.value.bad ? 'bad' : ''}`} role="alert">{replied.value.text}</p>}
-      {!vehicle.value && <><button disabled={!open || t.state !== 'GROUND'} onClick={() => void arm()}>{words.arm}{armed.value && <small> · {armed.value}</small>}</button><p class="hint">{words.armHint}</p></>}
+      {!vehicle.value && <><button disabled={t?.state !== 'GROUND'} onClick={() => void arm()}>{words.arm}{armed.value && <small> · {armed.value}</small>}</button><p class="hint">{words.armHint}</p></>}
     </section>
   );
 }
@@ -134,7 +147,7 @@ export function Simulation() {
     <section class="card simulation" aria-labelledby="simulation-title">
       <h2 id="simulation-title">{words.simPanel}</h2>
       <Picture />
-      {latest.value?.laser !== 'OK' && latest.value?.state === 'GROUND' && v.laser && <p class="hint">{words.firstSteps}</p>}
+      {live.value?.laser !== 'OK' && live.value?.state === 'GROUND' && v.laser && <p class="hint">{words.firstSteps}</p>}
       <div class="row" role="group" aria-label={words.speed}>
         <span class="row-label">{words.speed}</span>
         {[0.25, 1, 2, 5].map((speed) => (
@@ -158,19 +171,20 @@ export function Simulation() {
 export function FlyView() {
   const words = w();
   const plots = useRef<HTMLDivElement>(null);
+  const withTruth = vehicle.value !== null; // curves and columns are of one mind, also while the link changes
   const curves = [
     { label: words.measured, colour: '--curve-height', axis: 'm' as const, width: 2.5, fill: true },
     { label: words.reference, colour: '--curve-reference', axis: 'm' as const, dash: [6, 4] },
-    ...(vehicle.value ? [{ label: words.truth, colour: '--curve-truth', axis: 'm' as const, width: 1.5 }] : []),
+    ...(withTruth ? [{ label: words.truth, colour: '--curve-truth', axis: 'm' as const, width: 1.5 }] : []),
   ];
   const range = (): [number, number] => {
-    const end = phase.value === 'open' ? clock.peek() / 1000 : series.end;
+    const end = clock.peek() === 0 ? series.end : clock.peek() / 1000; // a session from before a reload has no clock
     return span.peek() === 0 ? [Math.min(series.start, end - 1), end] : [end - span.peek(), end];
   };
   const heights = () => {
     const [from, to] = range();
     const { columns, states } = series.window(from, to);
-    return { columns: [columns[0]!, columns[1]!, columns[2]!, ...(vehicle.peek() ? [columns[4]!] : [])], states, marks: series.marks, from, to };
+    return { columns: [columns[0]!, columns[1]!, columns[2]!, ...(withTruth ? [columns[4]!] : [])], states, marks: series.marks, from, to };
   };
   const thrusts = () => {
     const [from, to] = range();
@@ -182,7 +196,7 @@ export function FlyView() {
       <div class="fly-main">
         <Numbers />
         <Messages />
-        <section class="card plots" ref={plots} aria-label={`${words.height}, ${words.thrust}`}>
+        <section class="card plots live-plots" ref={plots} aria-label={`${words.height}, ${words.thrust}`}>
           <div class="plot-tools">
             <span class="row-label">{words.window}</span>
             {([[20, '20 s'], [60, '1 min'], [300, '5 min'], [0, '∞']] as const).map(([seconds, label]) => (
@@ -193,7 +207,7 @@ export function FlyView() {
             <button class="quiet" onClick={() => saveFile(`plomada-${stamp()}.csv`, series.csv(), 'text/csv')}>{words.saveCsv}</button>
             <button class="quiet" onClick={() => savePng(plots.current, `plomada-${stamp()}.png`)}>{words.savePng}</button>
           </div>
-          <Plot key={`h${vehicle.value ? 1 : 0}`} curves={curves} data={heights} live={100} hold={held.value} height={300} label={words.height} clock />
+          <Plot key={`h${withTruth ? 1 : 0}`} curves={curves} data={heights} live={100} hold={held.value} height={300} label={words.height} clock />
           <Plot curves={[{ label: words.thrust, colour: '--curve-thrust', axis: 'N', fill: true }]} data={thrusts} live={100} hold={held.value} height={150} label={words.thrust} clock />
           <p class="hint">{words.zoomHint}</p>
         </section>

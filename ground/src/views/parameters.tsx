@@ -3,13 +3,13 @@ import { useEffect } from 'preact/hooks';
 import { pickFiles, saveFile, stamp } from '../plot';
 import { delivered, presets } from '../presets';
 import { differences, objection, parseSet, same, writeSet, type Difference, type ParameterSet } from '../protocol/parameters';
-import { command, heardAny, loading, parameters, phase, readParameters, stored } from '../store';
-import { told, w } from '../words';
+import { command, heardAny, loading, ofThisVehicle, parameters, phase, readParameters, seen, stored } from '../store';
+import { ago, told, w } from '../words';
 
-const edits = signal<ParameterSet>({});
+const edits = ofThisVehicle<ParameterSet>({});
 const file = signal<{ name: string; set: ParameterSet } | null>(null);
-const confirming = signal<Difference[] | null>(null);
-const message = signal<{ text: string; bad: boolean } | null>(null);
+const confirming = ofThisVehicle<Difference[] | null>(null);
+const message = ofThisVehicle<{ text: string; bad: boolean } | null>(null);
 
 function current(): ParameterSet {
   return Object.fromEntries(parameters.value.map((p) => [p.name, p.value]));
@@ -88,6 +88,7 @@ export function ParametersView() {
         <button disabled={!open} onClick={() => void storage('#SAVE')}>{words.storeThem}</button>
         <button class="primary" disabled={!open || pending.length === 0 || wrong} onClick={() => (confirming.value = pending)}>{words.writeChanges}{pending.length > 0 ? ` (${pending.length})` : ''}</button>
       </div>
+      {rows.length > 0 && seen.value.kind === 'old' && <p class="banner bad">{words.asRead(ago(seen.value.age))}</p>}
       {message.value && <p class={`banner ${message.value.bad ? 'bad' : 'good'}`} role="status">{message.value.text}</p>}
       {confirming.value && (
         <div class="confirm" role="alertdialog" aria-label={words.confirmWrite}>
@@ -112,7 +113,7 @@ export function ParametersView() {
                   edits.value = next;
                 };
                 return (
-                  <tr key={p.name} class={changed ? 'changed' : ''}>
+                  <tr key={p.name} data-parameter={p.name} class={changed ? 'changed' : ''}>
                     <th scope="row">{p.name}</th>
                     <td>
                       {p.choices ? (

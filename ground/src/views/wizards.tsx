@@ -1,31 +1,30 @@
-import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import { age, borrowLink, command, giveBackLink, latest, listeners, parameters, phase, readParameters, stop, storeLine } from '../store';
+import { borrowLink, command, giveBackLink, listeners, live, ofThisVehicle, parameters, phase, readParameters, stop, storeLine } from '../store';
 import type { Line } from '../protocol/lines';
 import { told, w } from '../words';
 
-const volts = signal('');
-const byHand = signal<Record<string, boolean>>({});
-const tied = signal(false);
-const calibration = signal<{ running: boolean; thrust: string; grav: string; end: string }>({ running: false, thrust: '', grav: '', end: '' });
-const imu = signal<{ step: string; text: string; bad: boolean }[]>([]);
+const volts = ofThisVehicle('');
+const byHand = ofThisVehicle<Record<string, boolean>>({});
+const tied = ofThisVehicle(false);
+const calibration = ofThisVehicle<{ running: boolean; thrust: string; grav: string; end: string }>({ running: false, thrust: '', grav: '', end: '' });
+const imu = ofThisVehicle<{ step: string; text: string; bad: boolean }[]>([]);
 
 /** The link is armed for so long: a page that dies ends the calibration in that time. */
 const LINK_S = 3;
 const CELLS_LOW_V = 11.1;
 
 export function checks(): Record<string, boolean> {
-  const t = latest.value;
+  const t = live.value;
   const has = (bit: number): boolean => t !== null && (t.flags & bit) === 0;
   return {
-    link: phase.value === 'open' && t !== null && age.value < 600,
+    link: t !== null,
     laser: t?.laser === 'OK',
     height: t !== null && !Number.isNaN(t.height) && t.height < 0.1,
     imu: has(2),
     upright: has(32),
     ground: t?.state === 'GROUND' && t.reference === 0,
-    flags: t?.flags === 0,
-    settings: parameters.value.length > 0 && !(storeLine.value ?? '').startsWith('ERR'),
+    flags: t !== null && t.flags === 0,
+    settings: t !== null && parameters.value.length > 0 && !(storeLine.value ?? '').startsWith('ERR'),
     tilt: byHand.value.tilt === true || parameters.value.some((p) => p.name === 'IAXES' && p.value === 'PROVED'),
     battery: Number(volts.value.replace(',', '.')) >= CELLS_LOW_V,
   };
@@ -68,13 +67,18 @@ function heardCalibration(line: Line): void {
 function Calibration() {
   const words = w();
   const c = calibration.value;
+  const blind = c.running && live.value === null;
+  const finish = (end: string): void => {
+    if (!calibration.value.running) return;
+    calibration.value = { ...calibration.value, running: false, end };
+    void stop('STOP');
+  };
+  useEffect(() => {
+    if (blind) finish('silent'); // nobody may raise a thrust that he does not see
+  }, [blind]);
   useEffect(() => {
     if (!c.running) return undefined;
-    const halt = (): void => {
-      if (!calibration.value.running) return;
-      calibration.value = { ...calibration.value, running: false };
-      void stop('STOP');
-    };
+    const halt = (): void => finish('');
     listeners.add(heardCalibration);
     window.addEventListener('keydown', halt, true);
     window.addEventListener('pointerdown', halt, true);
@@ -111,7 +115,7 @@ function Calibration() {
       ) : (
         <>
           <label class="check"><input type="checkbox" checked={tied.value} onChange={(event) => (tied.value = event.currentTarget.checked)} /> {words.calibrationBound}</label>
-          <button class="primary" disabled={!tied.value || phase.value !== 'open' || latest.value?.state !== 'GROUND'} onClick={() => void begin()}>{words.calibrationGo}</button>
+          <button class="primary" disabled={!tied.value || phase.value !== 'open' || live.value?.state !== 'GROUND'} onClick={() => void begin()}>{words.calibrationGo}</button>
           {c.end && <p class="banner" role="status">{words.calibrationEnd(words.calibrationEnds[c.end] ?? told(c.end), c.thrust || '–')}</p>}
           {c.end && Number(c.grav) > 0 && <button onClick={() => void command(`#GRAV ${c.grav}`)}>{words.setGrav(c.grav)}</button>}
         </>

@@ -3,6 +3,7 @@ import { existsSync, mkdtempSync, readFileSync, readdirSync, writeFileSync } fro
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { describe, expect, it } from 'vitest';
+import { freshness, LIVE_MS } from '../../src/freshness';
 import { delivered, presets } from '../../src/presets';
 import { LineSplitter, parseLine, type Line } from '../../src/protocol/lines';
 import { dumpsIn, fromXctu, readLog } from '../../src/protocol/logs';
@@ -60,6 +61,20 @@ describe('the sum of a line', () => {
     expect(splitSum(line).right).toBe(true);
     expect(splitSum(line.replace('meas', 'meaz')).right).toBe(false);
     expect(parseLine(line.replace('meas', 'meaz'))).toMatchObject({ damaged: true });
+  });
+});
+
+describe('how fresh it is what was heard', () => {
+  const telemetry = { height: 0.6, reference: 0.6, laser: 'OK', thrust: 7, state: 'FLYING', flags: 0 };
+  const heard = { telemetry, link: 1000, page: 5000 };
+  const at = (link: number, page: number, open = true): string => freshness(open, heard, 0, { link, page }).kind;
+  it('is the older of what the link’s clock and the page’s say', () => {
+    expect([at(1200, 5200), at(1000 + LIVE_MS + 1, 5200), at(1000, 5000 + LIVE_MS + 1)]).toEqual(['live', 'old', 'old']);
+    expect(freshness(true, heard, 0, { link: 1200, page: 5900 }).age).toBe(900);
+  });
+  it('is old at once when the link is gone, and nothing where nothing was heard', () => {
+    expect(at(1000, 5000, false)).toBe('old');
+    expect(freshness(true, null, 400, { link: 1000, page: 1000 })).toEqual({ kind: 'nothing', age: 600 });
   });
 });
 
