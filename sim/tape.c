@@ -19,6 +19,8 @@
 #define CELLS_A_LINE 16
 #define RUN_MAX 48
 #define LINE_MAX_OCTETS 4096
+#define TIME_MOST (INT64_C(1000000) * SIM_S) /* eleven days: a run with one instant beyond is none */
+#define LENGTH_MOST_NS 1e8                   /* ten bits at 100 bit/s */
 
 static const char *const wire_words[] = {"laser", "imu", "radio"};
 _Static_assert(sizeof wire_words / sizeof wire_words[0] == BOARD_WIRES, "every wire has a word");
@@ -184,6 +186,16 @@ static bool hex(const char *text, int digits, unsigned *value)
     return true;
 }
 
+static sim_time_t last_octet(const list_t *octets)
+{
+    return octets->count == 0 ? 0 : ((const moment_t *)octets->items)[octets->count - 1].time;
+}
+
+static sim_time_t last_level(const list_t *levels)
+{
+    return levels->count == 0 ? 0 : ((const level_t *)levels->items)[levels->count - 1].time;
+}
+
 static const char *read_octets(tape_t *tape, const char *rest)
 {
     char word[8];
@@ -202,6 +214,12 @@ static const char *read_octets(tape_t *tape, const char *rest)
     }
     if (wire == BOARD_WIRES) {
         return "no such wire";
+    }
+    if (length_ns > LENGTH_MOST_NS || time > TIME_MOST) {
+        return "beyond what a run lasts";
+    }
+    if (time < last_octet(&tape->octets[wire])) {
+        return "before the octet before it on this wire";
     }
     for (rest += used; *rest != '\0'; rest += 2) {
         if (!hex(rest, 2, &octet)) {
@@ -238,6 +256,12 @@ static const char *read_level(tape_t *tape, const char *rest)
 
     if (sscanf(rest, "%" SCNd64 " %d", &time, &level) != 2 || time < 0 || (level != 0 && level != 1)) {
         return "select T_NS 0|1";
+    }
+    if (time > TIME_MOST) {
+        return "beyond what a run lasts";
+    }
+    if (time < last_level(&tape->levels)) {
+        return "before the level before it";
     }
     *(level_t *)append(&tape->levels, sizeof(level_t)) = (level_t){time, level == 1};
     return NULL;
@@ -286,8 +310,9 @@ static const char *read_line(tape_t *tape, char *line)
     return strcmp(line, "truth") == 0 ? read_truth(tape, rest) : read_key(tape, line, rest);
 }
 
-/* False at the end of the file and at a line without its end: what was cut off does not count. */
-static bool next_line(FILE *in, char line[LINE_MAX_OCTETS])
+/* False at the end of the file and at a last line without its end: what was cut off does not count. *wrong:
+ * what is no line at all. */
+static bool next_line(FILE *in, char line[LINE_MAX_OCTETS], const char **wrong)
 {
     size_t length;
 
@@ -296,7 +321,8 @@ static bool next_line(FILE *in, char line[LINE_MAX_OCTETS])
     }
     length = strlen(line);
     if (length == 0 || line[length - 1] != '\n') {
-        return false;
+        *wrong = feof(in) != 0 ? NULL : "not text, or longer than any line of a recording";
+        return *wrong != NULL;
     }
     line[length - 1] = '\0';
     return true;
@@ -316,12 +342,12 @@ tape_t *tape_read(FILE *in, const char **error)
     for (int i = 0; i < CELLS; i++) {
         tape->cells[i] = ERASED;
     }
-    if (!next_line(in, line) || strcmp(line, FIRST_LINE) != 0) {
+    if (!next_line(in, line, &wrong) || wrong != NULL || strcmp(line, FIRST_LINE) != 0) {
         wrong = "not a recording of plomada";
     }
-    while (wrong == NULL && next_line(in, line)) {
+    while (wrong == NULL && next_line(in, line, &wrong)) {
         number++;
-        wrong = read_line(tape, line);
+        wrong = wrong != NULL ? wrong : read_line(tape, line);
     }
     if (wrong != NULL) {
         snprintf(message, sizeof message, "line %ld: %s", number, wrong);

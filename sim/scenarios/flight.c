@@ -214,6 +214,19 @@ static void type_at(sim_time_t when, const char *name, const char *value)
     timeline_at(when, type_event, text);
 }
 
+/* What must happen before t = 0. */
+static double lead_s(const scenario_t *scenario)
+{
+    return scenario->field_day ? FIELD_DAY_LEAD_S : 0.0;
+}
+
+double flight_soonest_s(const scenario_t *scenario, const char *name, const char *value)
+{
+    const sim_time_t takes = xbee_latency(strlen(name) + strlen(value) + 3);
+
+    return (double)takes * 1e-9 - lead_s(scenario);
+}
+
 /* The line is complete at the firmware's pin at t_s. */
 static void type_complete_at(double t_s, const char *name, const char *value)
 {
@@ -230,12 +243,6 @@ static void type_overrides(const flight_options_t *options, double t_s)
             t_s += LINE_SPACING_S;
         }
     }
-}
-
-/* What must happen before t = 0. */
-static double lead_s(const scenario_t *scenario)
-{
-    return scenario->field_day ? FIELD_DAY_LEAD_S : 0.0;
 }
 
 /* The setting itself, or that of the same name for an autopilot whose throttle commands a climb. */
@@ -731,7 +738,7 @@ const char *flight_replay(const tape_t *tape, bool open_loop, FILE *csv, FILE *t
 
     memset(&flight, 0, sizeof flight);
     memset(result, 0, sizeof *result);
-    if (first < 0) {
+    if (first < 0 || first > tape_end(tape)) {
         return "the recording ends before its first row";
     }
     flight.origin = number_of(tape, "origin_ns");

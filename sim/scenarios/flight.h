@@ -55,6 +55,9 @@ const char *flight_check(const char *name, const char *value);
 /* Whether it is the name of one of them. */
 bool flight_knows(const char *name);
 
+/* Scenario time at which a line that is typed when the scenario begins is complete at the receiver. */
+double flight_soonest_s(const scenario_t *scenario, const char *name, const char *value);
+
 /* Checks and stores one NAME=VALUE. NULL when fine, else what is wrong with it. */
 const char *flight_override(flight_options_t *options, const char *assignment);
 

@@ -1,7 +1,5 @@
 #include "sim/timing/trace.h"
 
-#include <inttypes.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,77 +13,57 @@ enum { TRACKS_PER_KIND = 1000 };
 
 /* ---- events ---- */
 
-static void quote(trace_t *trace, const char *text)
+static void begin(trace_t *trace, const char *phase, int group, int track, const char *name)
 {
-    (void)fprintf(trace->out, "\"");
-    for (; *text != '\0'; text++) {
-        (void)fprintf(trace->out, *text == '"' || *text == '\\' ? "\\%c" : "%c", *text);
-    }
-    (void)fprintf(trace->out, "\"");
-}
-
-static void event(trace_t *trace, const char *phase, int group, int track, const char *name)
-{
-    (void)fprintf(trace->out, "%s\n{\"ph\":\"%s\",\"pid\":%d,\"tid\":%d,\"name\":", trace->any ? "," : "",
-                  phase, group, track);
-    quote(trace, name);
-    trace->any = true;
+    json_object(&trace->json, NULL);
+    json_text(&trace->json, "ph", phase);
+    json_whole(&trace->json, "pid", group);
+    json_whole(&trace->json, "tid", track);
+    json_text(&trace->json, "name", name);
 }
 
 static void time_field(trace_t *trace, const char *field, sim_time_t time)
 {
-    (void)fprintf(trace->out, ",\"%s\":%" PRId64 ".%03d", field, time / SIM_US, (int)(time % SIM_US));
+    json_fixed(&trace->json, field, (double)time / (double)SIM_US, 3);
 }
 
-static void arguments(trace_t *trace, const char *format, va_list values)
+/* With its arguments, which the caller writes until end(). */
+static void span(trace_t *trace, int group, int track, const char *name, sim_time_t from, sim_time_t to)
 {
-    (void)fprintf(trace->out, ",\"args\":{");
-    (void)vfprintf(trace->out, format, values);
-    (void)fprintf(trace->out, "}}");
-}
-
-static void span(trace_t *trace, int group, int track, const char *name, sim_time_t from, sim_time_t to,
-                 const char *format, ...) __attribute__((format(printf, 7, 8)));
-static void span(trace_t *trace, int group, int track, const char *name, sim_time_t from, sim_time_t to,
-                 const char *format, ...)
-{
-    va_list values;
-
-    event(trace, "X", group, track, name);
+    begin(trace, "X", group, track, name);
     time_field(trace, "ts", from);
     time_field(trace, "dur", to - from);
-    va_start(values, format);
-    arguments(trace, format, values);
-    va_end(values);
+    json_object(&trace->json, "args");
 }
 
-static void instant(trace_t *trace, int group, int track, const char *name, sim_time_t when,
-                    const char *format, ...) __attribute__((format(printf, 6, 7)));
-static void instant(trace_t *trace, int group, int track, const char *name, sim_time_t when,
-                    const char *format, ...)
+static void instant(trace_t *trace, int group, int track, const char *name, sim_time_t when)
 {
-    va_list values;
-
-    event(trace, "i", group, track, name);
+    begin(trace, "i", group, track, name);
     time_field(trace, "ts", when);
-    (void)fprintf(trace->out, ",\"s\":\"t\"");
-    va_start(values, format);
-    arguments(trace, format, values);
-    va_end(values);
+    json_text(&trace->json, "s", "t");
+    json_object(&trace->json, "args");
+}
+
+static void end(trace_t *trace)
+{
+    json_close(&trace->json);
+    json_close(&trace->json);
 }
 
 static void label(trace_t *trace, const char *what, int group, int track, const char *name)
 {
-    event(trace, "M", group, track, what);
-    (void)fprintf(trace->out, ",\"args\":{\"name\":");
-    quote(trace, name);
-    (void)fprintf(trace->out, "}}");
+    begin(trace, "M", group, track, what);
+    json_object(&trace->json, "args");
+    json_text(&trace->json, "name", name);
+    end(trace);
 }
 
 static void order(trace_t *trace, const char *what, int group, int track, int index)
 {
-    event(trace, "M", group, track, what);
-    (void)fprintf(trace->out, ",\"args\":{\"sort_index\":%d}}", index);
+    begin(trace, "M", group, track, what);
+    json_object(&trace->json, "args");
+    json_whole(&trace->json, "sort_index", index);
+    end(trace);
 }
 
 static void group_header(trace_t *trace, int group, const char *name)
@@ -97,8 +75,9 @@ static void group_header(trace_t *trace, int group, const char *name)
 void trace_open(trace_t *trace, FILE *out)
 {
     memset(trace, 0, sizeof *trace);
-    trace->out = out;
-    (void)fprintf(out, "{\"displayTimeUnit\":\"ms\",\"traceEvents\":[");
+    json_begin(&trace->json, out);
+    json_text(&trace->json, "displayTimeUnit", "ms");
+    json_array(&trace->json, "traceEvents");
     group_header(trace, PROCESSOR, "Processor");
     group_header(trace, JOBS, "Jobs");
     group_header(trace, GATES, "Gates");
@@ -111,7 +90,8 @@ void trace_open(trace_t *trace, FILE *out)
 
 void trace_close(trace_t *trace)
 {
-    (void)fprintf(trace->out, "\n]}\n");
+    json_close(&trace->json);
+    json_end(&trace->json);
 }
 
 /* ---- tracks ---- */
@@ -178,8 +158,11 @@ static trace_gate_t *gate_of(trace_t *trace, int number)
 
 static void stop(trace_t *trace, const trace_job_t *job, sim_time_t when)
 {
-    span(trace, PROCESSOR, 1, job->id.name, trace->running_since, when, "\"priority\":%d", job->id.priority);
-    span(trace, JOBS, track_of(&job->id), "runs", trace->running_since, when, "%s", "");
+    span(trace, PROCESSOR, 1, job->id.name, trace->running_since, when);
+    json_whole(&trace->json, "priority", job->id.priority);
+    end(trace);
+    span(trace, JOBS, track_of(&job->id), "runs", trace->running_since, when);
+    end(trace);
 }
 
 static void finish(trace_t *trace, trace_job_t *job, const kernel_job_t *id, sim_time_t when)
@@ -187,8 +170,10 @@ static void finish(trace_t *trace, trace_job_t *job, const kernel_job_t *id, sim
     sim_time_t begun = id->released > job->finished ? id->released : job->finished;
 
     stop(trace, job, when);
-    span(trace, JOBS, track_of(id), id->name, begun, when, "\"response_us\":%.3f,\"priority\":%d",
-         (double)(when - id->released) / 1e3, id->priority);
+    span(trace, JOBS, track_of(id), id->name, begun, when);
+    time_field(trace, "response_us", when - id->released);
+    json_whole(&trace->json, "priority", id->priority);
+    end(trace);
     job->finished = when;
 }
 
@@ -198,7 +183,8 @@ static void enter(trace_t *trace, trace_job_t *job, int number, sim_time_t when)
 
     if (job->blocked_at != NOT_BLOCKED) {
         (void)snprintf(name, sizeof name, "waits for %s", gate_name(number));
-        span(trace, JOBS, track_of(&job->id), name, job->blocked_at, when, "%s", "");
+        span(trace, JOBS, track_of(&job->id), name, job->blocked_at, when);
+        end(trace);
         job->blocked_at = NOT_BLOCKED;
     }
     *gate_of(trace, number) = (trace_gate_t){.entered = when, .owner = job->id.number};
@@ -208,8 +194,9 @@ static void leave(trace_t *trace, const trace_job_t *job, int number, sim_time_t
 {
     trace_gate_t *gate = gate_of(trace, number);
 
-    span(trace, GATES, number + 1, job->id.name, gate->entered, when, "\"inherited_priority\":%d",
-         gate->inherited);
+    span(trace, GATES, number + 1, job->id.name, gate->entered, when);
+    json_whole(&trace->json, "inherited_priority", gate->inherited);
+    end(trace);
     gate->owner = FREE;
 }
 
@@ -218,7 +205,8 @@ static void change_priority(trace_t *trace, const kernel_job_t *id, int priority
     char name[40];
 
     (void)snprintf(name, sizeof name, "priority %d", priority);
-    instant(trace, JOBS, track_of(id), name, when, "%s", "");
+    instant(trace, JOBS, track_of(id), name, when);
+    end(trace);
     for (int i = 0; i < trace->gates; i++) {
         trace_gate_t *gate = &trace->gate[i];
 
@@ -271,8 +259,9 @@ void trace_laser_octet(trace_t *trace, unsigned octet, double bit_ns)
     }
     trace->frame_octets++;
     if (octet == '\n' && trace->previous_octet == '\n') {
-        span(trace, WIRES, FRAMES, "frame", trace->frame_begin, timeline_now(), "\"octets\":%d",
-             trace->frame_octets);
+        span(trace, WIRES, FRAMES, "frame", trace->frame_begin, timeline_now());
+        json_whole(&trace->json, "octets", trace->frame_octets);
+        end(trace);
         trace->frame_octets = 0;
     }
     trace->previous_octet = octet;
@@ -283,8 +272,9 @@ void trace_pulse(trace_t *trace, sim_time_t high_ns)
     char name[40];
 
     (void)snprintf(name, sizeof name, "%.1f us", (double)high_ns / 1e3);
-    span(trace, WIRES, PULSES, name, timeline_now() - high_ns, timeline_now(), "\"changed\":%s",
-         high_ns != trace->pulse ? "true" : "false");
+    span(trace, WIRES, PULSES, name, timeline_now() - high_ns, timeline_now());
+    json_flag(&trace->json, "changed", high_ns != trace->pulse);
+    end(trace);
     trace->pulse = high_ns;
 }
 
@@ -293,6 +283,7 @@ void trace_answer(trace_t *trace, sim_time_t scan_end, unsigned compare)
     char name[40];
 
     (void)snprintf(name, sizeof name, "compare %u", compare);
-    instant(trace, WIRES, COMPARES, name, timeline_now(), "\"after_scan_us\":%.3f",
-            (double)(timeline_now() - scan_end) / 1e3);
+    instant(trace, WIRES, COMPARES, name, timeline_now());
+    time_field(trace, "after_scan_us", timeline_now() - scan_end);
+    end(trace);
 }

@@ -9,6 +9,7 @@
 
 #include <stdio.h>
 
+#include "sim/json.h"
 #include "sim/ti/sysbios/kernel.h"
 
 #define TRACE_JOBS_MAX 64
@@ -28,8 +29,7 @@ typedef struct {
 } trace_gate_t;
 
 typedef struct {
-    FILE *out;
-    bool any;
+    json_t json;
     trace_job_t job[TRACE_JOBS_MAX];
     int jobs;
     trace_gate_t gate[TRACE_GATES_MAX];

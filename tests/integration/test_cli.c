@@ -259,6 +259,12 @@ void test_what_is_out_of_range_is_told_with_its_limits(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "LAW=X: no such choice; one of PD, PID, PIDT, EST"), output);
 }
 
+/* Of the flight before, or of the run before: none is overwritten. */
+static void forget_recording(void)
+{
+    remove(SCRATCH "/recording/flight.plomada");
+}
+
 void test_a_replay_gives_the_log_of_every_scenario_octet_for_octet(void)
 {
     static char flown[2000000], again[2000000];
@@ -269,6 +275,7 @@ void test_a_replay_gives_the_log_of_every_scenario_octet_for_octet(void)
 
         snprintf(words, sizeof words, "fly %s --seed 3 --csv flown.csv --record recording >metrics.txt",
                  scenarios[i].name);
+        forget_recording();
         TEST_ASSERT_LESS_THAN_INT_MESSAGE(2, run(words), output);
         TEST_ASSERT_EQUAL_INT_MESSAGE(0, run("replay recording --csv again.csv"), output);
         const size_t count = child_read_file("flown.csv", flown, sizeof flown);
@@ -283,6 +290,7 @@ void test_a_replay_with_another_law_says_that_nothing_answers_to_it(void)
 {
     static char again[2000000];
 
+    forget_recording();
     TEST_ASSERT_EQUAL_INT(0, run("fly est-60cm-ramp --record recording"));
     TEST_ASSERT_EQUAL_INT(0, run("replay recording --set LAW=PID --csv again.csv"));
     TEST_ASSERT_NOT_NULL_MESSAGE(

@@ -93,6 +93,10 @@ void test_what_is_wrong_is_told_by_its_line(void)
     refused("set LAW\n", ":1: set NAME VALUE: that is its form");
     refused("at 5 SETR 4\n", ":1: SETR: out of range 0..3 m");
     refused("at soon SETR 1\n", ":1: soon: not a number");
+    refused("at 0 SETR 0.9\n", ":1: 0: too early, that line takes until 0.027");
+    refused("at 5 plant.tau 0.1\n", ":1: plant.tau: a figure of the plant is not typed; set it");
+    refused("set SETR 0.9\n", ":1: SETR: is no setting: reference, or at");
+    refused("like bench\n", ":1: bench: has no flight to be like");
     refused("expect hover_mm 1 2\n", ":1: hover_mm: no such metric");
     refused("expect hover_rms_mm 5 2\n", ":1: 2: out of range");
     refused("like pid-60\n", ":1: pid-60: no such scenario");
@@ -103,6 +107,34 @@ void test_what_is_wrong_is_told_by_its_line(void)
     refused("reference 0.5\nland 9\nend 8\n", "end is not after land");
     TEST_ASSERT_EQUAL_INT(2, child_plomada("fly ./no-such-file 2>&1", output, sizeof output));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "./no-such-file: No such file"), output);
+}
+
+static void write_octets(const char *octets, size_t count)
+{
+    FILE *file = fopen(path, "w");
+
+    TEST_ASSERT_NOT_NULL(file);
+    TEST_ASSERT_EQUAL_UINT(count, fwrite(octets, 1, count, file));
+    fclose(file);
+}
+
+void test_what_is_no_text_is_refused_and_an_editors_mark_is_not(void)
+{
+    static const char nuls[] = "reference 0.5\n\0\0\0land 12\n", marked[] = "\xEF\xBB\xBF" FLIGHT;
+
+    write_octets(nuls, sizeof nuls - 1);
+    TEST_ASSERT_EQUAL_INT(2, child_plomada("fly " SCRATCH "/own.scenario 2>&1", output, sizeof output));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, ":2: not text"), output);
+    write_octets(marked, sizeof marked - 1);
+    TEST_ASSERT_EQUAL_INT(0, child_plomada("fly " SCRATCH "/own.scenario 2>&1", output, sizeof output));
+    TEST_ASSERT_EQUAL_INT(2, child_plomada("fly ./ 2>&1", output, sizeof output));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "Is a directory"), output);
+    TEST_ASSERT_EQUAL_INT(2, child_plomada("fly /dev/zero 2>&1", output, sizeof output));
+}
+
+void test_a_line_that_is_typed_at_the_soonest_flies(void)
+{
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, fly(FLIGHT "at 0.03 SETR 0.9\n", ""), output);
 }
 
 void test_more_than_there_is_room_for_is_refused(void)

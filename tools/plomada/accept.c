@@ -1,6 +1,7 @@
 #include "accept.h"
 
 #include <getopt.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +11,8 @@
 
 #include "commands.h"
 #include "lines.h"
+#include "output.h"
+#include "sim/json.h"
 #include "sim/scenarios/wires.h"
 #include "terminal.h"
 #include "world.h"
@@ -21,7 +24,8 @@ static const char usage[] =
     "A fresh board, item by item, without motors and propellers: the PC plays scanner, IMU, operator and "
     "airframe over three\n"
     "serial adapters. docs/acceptance.md says how to wire it. `plomada board` is a board to try it on.\n\n"
-    "  --report PREFIX     writes PREFIX.md and PREFIX.json (default acceptance)\n"
+    "  --report PREFIX     writes PREFIX.md and PREFIX.json (default acceptance); a finished report there is "
+    "kept unless --afresh\n"
     "  --pulses FILE       what a logic analyser records of the throttle pin meanwhile, by sigrok-cli -O "
     "csv\n"
     "  --bits LINE=FILE    the same of the board's transmit pin of a line (laser, imu, xbee): its bit times "
@@ -62,6 +66,8 @@ static struct {
 static struct {
     accept_verdict_t verdict[ITEMS_MAX];
     char detail[ITEMS_MAX][ACCEPT_DETAIL_MAX];
+    char date[32];
+    bool passed;
 } found;
 
 static bool complain(const char *what, const char *subject)
@@ -148,27 +154,39 @@ static bool read_arguments(int argc, char **argv)
 
 /* ---- what was found so far ---- */
 
-static FILE *open_file(const char *suffix, const char *mode)
+static void name_file(char path[PATH_MAX], const char *suffix)
 {
-    char path[512];
-
-    snprintf(path, sizeof path, "%s.%s", order.report, suffix);
-    return fopen(path, mode);
+    snprintf(path, PATH_MAX, "%s.%s", order.report, suffix);
 }
 
-static void keep_state(void)
+static bool is_there(const char *suffix)
 {
-    FILE *file = open_file("state", "w");
+    char path[PATH_MAX];
 
-    if (file == NULL) {
-        return;
+    name_file(path, suffix);
+    return access(path, F_OK) == 0;
+}
+
+static bool write_file(const char *suffix, void (*content)(FILE *out))
+{
+    char path[PATH_MAX];
+    output_t output = {.path = path};
+
+    name_file(path, suffix);
+    if (!output_open(&output)) {
+        return false;
     }
+    content(output.file);
+    return output_close(&output);
+}
+
+static void write_state(FILE *out)
+{
     for (int i = 0; i < accept_item_count; i++) {
         if (found.verdict[i] != ACCEPT_OPEN) {
-            fprintf(file, "%s\t%d\t%s\n", accept_items[i].name, (int)found.verdict[i], found.detail[i]);
+            fprintf(out, "%s\t%d\t%s\n", accept_items[i].name, (int)found.verdict[i], found.detail[i]);
         }
     }
-    fclose(file);
 }
 
 static void take_state(const char *name, int verdict, const char *detail)
@@ -183,10 +201,11 @@ static void take_state(const char *name, int verdict, const char *detail)
 
 static void load_state(void)
 {
-    FILE *file = order.afresh ? NULL : open_file("state", "r");
-    char line[512], name[32], detail[400];
+    char path[PATH_MAX], line[512], name[32], detail[400];
     int verdict;
 
+    name_file(path, "state");
+    FILE *file = order.afresh ? NULL : fopen(path, "r");
     if (file == NULL) {
         return;
     }
@@ -202,18 +221,6 @@ static void load_state(void)
 
 /* ---- the report ---- */
 
-static void write_string(FILE *out, const char *text)
-{
-    fputc('"', out);
-    for (; *text != '\0'; text++) {
-        if (*text == '"' || *text == '\\') {
-            fputc('\\', out);
-        }
-        fputc((unsigned char)*text < 0x20 ? ' ' : *text, out);
-    }
-    fputc('"', out);
-}
-
 static const char *firmware_version(void)
 {
     for (int i = 0; i < accept_item_count; i++) {
@@ -224,34 +231,38 @@ static const char *firmware_version(void)
     return "not told";
 }
 
-static void write_json(FILE *out, const char *date, bool passed)
+static void write_json(FILE *out)
 {
-    fprintf(out,
-            "{\n  \"passed\": %s,\n  \"date\": \"%s\",\n  \"chip\": \"TMS320F28377S (LAUNCHXL-F28377S)\",\n  "
-            "\"firmware\": ",
-            passed ? "true" : "false", date);
-    write_string(out, firmware_version());
-    fprintf(out, ",\n  \"adapters\": {");
+    json_t json;
+
+    json_begin(&json, out);
+    json_flag(&json, "passed", found.passed);
+    json_text(&json, "date", found.date);
+    json_text(&json, "chip", "TMS320F28377S (LAUNCHXL-F28377S)");
+    json_text(&json, "firmware", firmware_version());
+    json_object(&json, "adapters");
     for (int i = 0; i < BOARD_WIRES; i++) {
-        fprintf(out, "%s\"%s\": ", i == 0 ? "" : ", ", wire_names[i]);
-        write_string(out, order.means.lines.path[i]);
+        json_text(&json, wire_names[i], order.means.lines.path[i]);
     }
-    fprintf(out, "},\n  \"pulses\": ");
-    write_string(out, order.means.lines.pulses != NULL ? order.means.lines.pulses : "told by the board");
-    fprintf(out, ",\n  \"items\": [");
+    json_close(&json);
+    json_text(&json, "pulses",
+              order.means.lines.pulses != NULL ? order.means.lines.pulses : "told by the board");
+    json_array(&json, "items");
     for (int i = 0; i < accept_item_count; i++) {
-        fprintf(out, "%s\n    {\"item\": \"%s\", \"verdict\": \"%s\", \"detail\": ", i == 0 ? "" : ",",
-                accept_items[i].name, verdicts[found.verdict[i]]);
-        write_string(out, found.detail[i]);
-        fputc('}', out);
+        json_object(&json, NULL);
+        json_text(&json, "item", accept_items[i].name);
+        json_text(&json, "verdict", verdicts[found.verdict[i]]);
+        json_text(&json, "detail", found.detail[i]);
+        json_close(&json);
     }
-    fprintf(out, "\n  ]\n}\n");
+    json_close(&json);
+    json_end(&json);
 }
 
-static void write_markdown(FILE *out, const char *date, bool passed)
+static void write_markdown(FILE *out)
 {
     fprintf(out, "# Acceptance of a board: %s\n\n%s, TMS320F28377S on a LAUNCHXL-F28377S, firmware: %s.\n",
-            passed ? "passed" : "NOT passed", date, firmware_version());
+            found.passed ? "passed" : "NOT passed", found.date, firmware_version());
     fprintf(out,
             "Adapters: scanner %s, IMU %s, radio %s. Throttle pin: %s.\n\n| item | verdict | found "
             "|\n|---|---|---|\n",
@@ -267,21 +278,17 @@ static void write_markdown(FILE *out, const char *date, bool passed)
 static bool write_report(bool passed)
 {
     const time_t now = time(NULL);
-    char date[32];
-    FILE *json = open_file("json", "w"), *markdown = open_file("md", "w");
 
-    strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
-    if (json != NULL && markdown != NULL) {
-        write_json(json, date, passed);
-        write_markdown(markdown, date, passed);
-    }
-    if (json != NULL) {
-        fclose(json);
-    }
-    if (markdown != NULL) {
-        fclose(markdown);
-    }
-    return (json != NULL && markdown != NULL) || complain("cannot be written", order.report);
+    found.passed = passed;
+    strftime(found.date, sizeof found.date, "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
+    const bool json = write_file("json", write_json);
+    return write_file("md", write_markdown) && json;
+}
+
+/* A report is one board's: that of the board before it is not lost to the next one. */
+static bool is_of_another(void)
+{
+    return !order.afresh && is_there("json") && !is_there("state");
 }
 
 /* ---- the run ---- */
@@ -311,7 +318,7 @@ static void try_item(int i)
         found.verdict[i] = verdict; /* else it was interrupted, and is open still */
         printf("%-8s %-9s %s\n", verdicts[verdict], item->name, found.detail[i]);
         fflush(stdout);
-        keep_state();
+        (void)write_file("state", write_state); /* says so when it cannot */
     }
 }
 
@@ -344,9 +351,9 @@ static bool all_done(void)
 
 static void forget_state(void)
 {
-    char path[512];
+    char path[PATH_MAX];
 
-    snprintf(path, sizeof path, "%s.state", order.report);
+    name_file(path, "state");
     unlink(path);
 }
 
@@ -358,6 +365,10 @@ static int run(void)
     const char *error;
     bool passed;
 
+    if (is_of_another()) {
+        complain("the report of another acceptance; another --report PREFIX, or --afresh", order.report);
+        return 2;
+    }
     memcpy(config.device, order.means.lines.path, sizeof config.device);
     terminal_begin();
     error = world_open(&config, &failed);
@@ -367,6 +378,10 @@ static int run(void)
         return 2;
     }
     load_state();
+    if (!write_file("state", write_state)) { /* better known before the flight than after it */
+        world_close();
+        return 2;
+    }
     (void)world_run_until(SIM_S / 2); /* what still comes from before is no answer */
     passed = try_all();
     world_close();

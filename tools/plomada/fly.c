@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "commands.h"
 #include "measure.h"
@@ -13,11 +14,13 @@
 #include "output.h"
 #include "scenario_file.h"
 #include "vehicle.h"
+#include "sim/json.h"
 #include "sim/scenarios/flight.h"
 #include "sim/scenarios/plant.h"
 #include "sim/ti/f021/flash.h"
 
 #define HEIGHT_MAX_M 5.0
+#define SECONDS_MAX 1e6 /* eleven days */
 
 static const char usage[] =
     "usage: plomada fly SCENARIO [OPTION]...\n\n"
@@ -37,7 +40,7 @@ static const char usage[] =
     "                      storage is blank at power-on. The file is made when there is none\n"
     "  --record DIR        everything at the firmware's pins, in DIR/flight.plomada: `plomada replay DIR` "
     "gives the same run\n"
-    "                      again. DIR is made when there is none\n"
+    "                      again. DIR is made when there is none; a recording in it is never overwritten\n"
     "  --vehicle FILE      the figures of the vehicle that `make fit` found; a --set behind it wins\n"
     "  --set NAME=VALUE    a telecommand parameter (see `plomada params`) or a plant figure; may be "
     "repeated\n"
@@ -145,8 +148,10 @@ static bool read_seed(request_t *request, const char *text)
 {
     char *end;
 
+    errno = 0;
     request->flight.seed = strtoul(text, &end, 10);
-    return (*text >= '0' && *text <= '9' && *end == '\0') || complain("not a seed (0, 1, 2 ...)", text);
+    return (*text >= '0' && *text <= '9' && *end == '\0' && errno == 0 && request->flight.seed <= LONG_MAX) ||
+           complain("not a seed (0, 1, 2 ... 9223372036854775807)", text);
 }
 
 static bool read_seconds(double *seconds, const char *text)
@@ -154,8 +159,8 @@ static bool read_seconds(double *seconds, const char *text)
     char *end;
 
     *seconds = strtod(text, &end);
-    return (*text != '\0' && *end == '\0' && *seconds > 0.0 && isfinite(*seconds)) ||
-           complain("not a number of seconds", text);
+    return (*text != '\0' && *end == '\0' && *seconds > 0.0 && *seconds <= SECONDS_MAX) ||
+           complain("not a number of seconds, at most 1000000", text);
 }
 
 static bool read_fault(flight_options_t *flight, const char *text)
@@ -415,18 +420,19 @@ static bool bench_ended(const flight_result_t *result)
 
 static void write_json(FILE *out, const request_t *request, const flight_result_t *result, bool met)
 {
-    fprintf(out, "{\n  \"scenario\": \"%s\",\n  \"seed\": %lu,\n  \"met\": %s,\n  \"failed\": %s",
-            request->scenario->name, request->flight.seed, met ? "true" : "false",
-            result->metrics.failed ? "true" : "false");
+    json_t json;
+
+    json_begin(&json, out);
+    json_text(&json, "scenario", request->scenario->name);
+    json_whole(&json, "seed", (long long)request->flight.seed);
+    json_flag(&json, "met", met);
+    json_flag(&json, "failed", result->metrics.failed);
     for (int i = 0; i < METRIC_COUNT; i++) {
-        if (isnan(result->metrics.value[i])) {
-            fprintf(out, ",\n  \"%s\": null", metric_names[i]);
-        } else {
-            fprintf(out, ",\n  \"%s\": %.6g", metric_names[i], result->metrics.value[i]);
-        }
+        json_number(&json, metric_names[i], result->metrics.value[i], 6);
     }
-    fprintf(out, ",\n  \"started\": %s,\n  \"halted\": %s\n}\n", result->started ? "true" : "false",
-            result->halt != NULL ? "true" : "false");
+    json_flag(&json, "started", result->started);
+    json_flag(&json, "halted", result->halt != NULL);
+    json_end(&json);
 }
 
 /* Stored at once as well: a file that cannot be written is better known before the flight than after it. */
@@ -464,14 +470,17 @@ static bool open_record(request_t *request)
         return complain(strerror(errno), request->record_dir);
     }
     snprintf(path, sizeof path, "%s/%s", request->record_dir, RECORDING_NAME);
+    if (access(path, F_OK) == 0) {
+        return complain("there is a recording already; another --record DIR, or remove it", path);
+    }
     request->record.path = path;
     return output_open(&request->record);
 }
 
 static bool open_outputs(request_t *request)
 {
-    const bool opened = output_open(&request->csv) && output_open(&request->json) &&
-                        output_open(&request->log) && output_open(&request->trace) && open_record(request);
+    const bool opened = open_record(request) && output_open(&request->csv) && output_open(&request->json) &&
+                        output_open(&request->log) && output_open(&request->trace);
 
     request->flight.csv = request->csv.file;
     request->flight.record = request->record.file;

@@ -1,3 +1,4 @@
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -34,7 +35,18 @@ static void print_usage(FILE *out)
     fprintf(out, "\n`plomada SUBCOMMAND --help` tells more, `plomada --version` the version.\n");
 }
 
-int main(int argc, char **argv)
+/* What was printed and did not reach its file (a full disk) is no result. */
+static int after_printing(int status)
+{
+    errno = 0;
+    if (fflush(stdout) == 0 && ferror(stdout) == 0) {
+        return status;
+    }
+    fprintf(stderr, "plomada: stdout: %s\n", errno != 0 ? strerror(errno) : "could not be written");
+    return 2;
+}
+
+static int run(int argc, char **argv)
 {
     if (argc < 2) {
         print_usage(stderr);
@@ -56,4 +68,9 @@ int main(int argc, char **argv)
     fprintf(stderr, "plomada: no subcommand '%s'\n\n", argv[1]);
     print_usage(stderr);
     return 2;
+}
+
+int main(int argc, char **argv)
+{
+    return after_printing(run(argc, argv));
 }

@@ -35,6 +35,9 @@ bool output_close(output_t *output)
     const bool flushed = fflush(output->file) == 0;
     const bool closed = output_is_stdout(output) || fclose(output->file) == 0;
 
+    if (output_is_stdout(output)) {
+        clearerr(stdout); /* said here, not again at the program's end */
+    }
     output->file = NULL;
     return (flushed && closed && !failed_before) || complain(output);
 }

@@ -1,6 +1,7 @@
 #include "replay_log.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +23,8 @@
 #define GAP_S 1.0 /* longer ones stay gaps */
 #define FRAME_S 0.025
 #define FRAMES_A_SCAN 4U
+#define TIME_MOST_S 1e6                /* eleven days */
+#define BYTE_ORDER_MARK "\xEF\xBB\xBF" /* some programs begin a text with it */
 
 typedef enum { T_S, MEAS_M, REF_M, THRUST_N, ROLL_RAD, PITCH_RAD, UP_MPS2, AGE_S, FIELD_COUNT } field_t;
 static const char *const fields[] = {"t_s",      "meas_m",    "ref_m",   "thrust_n",
@@ -42,6 +45,11 @@ static struct {
     double rays_s, cycle_s, reference_m;
     uint32_t sequence; /* of the frames */
     unsigned long rows, heights, accelerations, settled;
+    int columns;        /* of the titles */
+    double last_s;      /* time of the row before */
+    unsigned long line; /* that is read */
+    bool torn;          /* by a NUL or by its length */
+    char message[120];
 } replay;
 
 bool replay_log_reads(FILE *in)
@@ -50,18 +58,30 @@ bool replay_log_reads(FILE *in)
     bool found = false;
 
     for (int i = 0; i < 1000 && !found && fgets(line, sizeof line, in) != NULL; i++) {
-        found = strncmp(line, "t_s,", 4) == 0 || strncmp(line, "alt:", 4) == 0;
+        const char *text = line + (i == 0 && strncmp(line, BYTE_ORDER_MARK, 3) == 0 ? 3 : 0);
+
+        found = strncmp(text, "t_s,", 4) == 0 || strncmp(text, "alt:", 4) == 0;
     }
     rewind(in);
     return found;
 }
 
-static double number(const char *text)
+static const char *wrong(const char *what, const char *subject)
+{
+    snprintf(replay.message, sizeof replay.message, "line %lu: %s: %s", replay.line, subject, what);
+    return replay.message;
+}
+
+/* NAN: nothing there. False: something, and no number. */
+static bool read_number(const char *text, double *value)
 {
     char *end;
-    const double value = strtod(text, &end);
 
-    return end == text ? NAN : value;
+    *value = strtod(text, &end);
+    if (*text == '\0') {
+        *value = NAN;
+    }
+    return *text == '\0' || (end != text && *end == '\0' && isfinite(*value));
 }
 
 static void read_titles(char *line)
@@ -72,35 +92,53 @@ static void read_titles(char *line)
     for (int f = 0; f < FIELD_COUNT; f++) {
         replay.place[f] = -1;
     }
-    for (char *title; (title = strsep(&rest, ",\r\n")) != NULL; place++) {
+    for (char *title; (title = strsep(&rest, ",")) != NULL; place++) {
         for (int f = 0; f < FIELD_COUNT; f++) {
             replay.place[f] = strcmp(title, fields[f]) == 0 ? place : replay.place[f];
         }
     }
+    replay.columns = place;
 }
 
-static row_t read_row(char *line)
+static const char *read_cells(char *line, const char *cells[COLUMNS_MAX])
 {
-    const char *cells[COLUMNS_MAX] = {NULL};
     char *rest = line;
-    row_t row;
+    int count = 0;
 
-    for (int i = 0; i < COLUMNS_MAX && rest != NULL; i++) {
-        cells[i] = strsep(&rest, ",\r\n");
+    for (; count < COLUMNS_MAX && rest != NULL; count++) {
+        cells[count] = strsep(&rest, ",");
     }
-    for (int f = 0; f < FIELD_COUNT; f++) {
-        const char *cell = replay.place[f] < 0 || replay.place[f] >= COLUMNS_MAX ? NULL
-                                                                                 : cells[replay.place[f]];
-        row.value[f] = cell == NULL ? NAN : number(cell);
+    return count == replay.columns ? NULL : wrong("not as many cells as titles", "row");
+}
+
+static const char *read_row(char *line, row_t *row)
+{
+    const char *cells[COLUMNS_MAX];
+    const char *error = read_cells(line, cells);
+
+    for (int f = 0; f < FIELD_COUNT && error == NULL; f++) {
+        row->value[f] = NAN;
+        if (replay.place[f] >= 0 && !read_number(cells[replay.place[f]], &row->value[f])) {
+            error = wrong("not a number", fields[f]);
+        }
     }
-    return row;
+    if (error == NULL && !(row->value[T_S] >= -TIME_MOST_S && row->value[T_S] <= TIME_MOST_S)) {
+        error = wrong("no time of a flight", fields[T_S]);
+    }
+    if (error == NULL && replay.rows > 0U && row->value[T_S] <= replay.last_s) {
+        error = wrong("not after the row before it", fields[T_S]);
+    }
+    replay.last_s = row->value[T_S];
+    return error;
 }
 
 static double told(const char *line, const char *key)
 {
     const char *at = strstr(line, key);
+    char *end;
+    const double value = at == NULL ? NAN : strtod(at + strlen(key), &end);
 
-    return at == NULL ? NAN : number(at + strlen(key));
+    return at == NULL || end == at + strlen(key) || !isfinite(value) ? NAN : value;
 }
 
 /* The time of a line of telemetry is its place. */
@@ -321,29 +359,58 @@ static void tell(void)
             replay.accelerations == replay.settled ? " (without them EST flies by thrust and heights)" : "");
 }
 
-static bool read_line(char *line, row_t *row)
+/* *is_row: whether the line is one of the flight. */
+static const char *read_line(char *line, row_t *row, bool *is_row)
 {
+    *is_row = false;
     if (strncmp(line, "t_s,", 4) == 0) {
         read_titles(line);
         replay.telemetry = false;
-        return false;
+        return NULL;
     }
     if (strncmp(line, "alt:", 4) == 0) {
         *row = read_telemetry(line);
-        replay.telemetry = true;
-        return true;
+        *is_row = replay.telemetry = true;
+        return NULL;
     }
-    if (replay.place[T_S] != 0) {
-        return false;
+    if (replay.place[T_S] != 0 || replay.telemetry || (*line == '\0' && !replay.torn)) {
+        return NULL;
     }
-    *row = read_row(line);
-    return !isnan(row->value[T_S]);
+    if (replay.torn) {
+        return wrong("not text", "row");
+    }
+    *is_row = true;
+    return read_row(line, row);
+}
+
+static char *next_line(FILE *in, char line[LINE_MAX_OCTETS])
+{
+    if (fgets(line, LINE_MAX_OCTETS, in) == NULL) {
+        return NULL;
+    }
+    replay.line++;
+    replay.torn = strchr(line, '\n') == NULL && feof(in) == 0;
+    line[strcspn(line, "\r\n")] = '\0';
+    return replay.line == 1U && strncmp(line, BYTE_ORDER_MARK, 3) == 0 ? line + 3 : line;
+}
+
+static void fly_row(FILE *csv, const row_t *row, row_t *last)
+{
+    if (replay.rows++ == 0U) {
+        settle(row);
+    } else {
+        fill(last, row->value[T_S]);
+    }
+    *last = *row;
+    step(row);
+    write_row(csv, row);
 }
 
 const char *replay_log(FILE *in, const flight_options_t *sets, FILE *csv)
 {
-    char line[LINE_MAX_OCTETS];
+    char room[LINE_MAX_OCTETS];
     row_t row, last;
+    bool is_row;
 
     memset(&replay, 0, sizeof replay);
     replay.place[T_S] = -1;
@@ -357,17 +424,14 @@ const char *replay_log(FILE *in, const flight_options_t *sets, FILE *csv)
     }
     replay.out.releases = flight_releases(&replay.flight, &replay.parameters);
     fputs("t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags,flown_n\n", csv);
-    while (fgets(line, sizeof line, in) != NULL) {
-        if (read_line(line, &row)) {
-            if (replay.rows++ == 0U) {
-                settle(&row);
-            } else {
-                fill(&last, row.value[T_S]);
-            }
-            last = row;
-            step(&row);
-            write_row(csv, &row);
+    for (char *line; error == NULL && (line = next_line(in, room)) != NULL;) {
+        error = read_line(line, &row, &is_row);
+        if (error == NULL && is_row) {
+            fly_row(csv, &row, &last);
         }
+    }
+    if (error != NULL) {
+        return error;
     }
     tell();
     return replay.rows == 0U ? "no row of a flight in it" : NULL;

@@ -6,6 +6,8 @@
 
 #include "commands.h"
 #include "measured.h"
+#include "output.h"
+#include "sim/json.h"
 #include "tools/rta/analysis.h"
 #include "tools/rta/table.h"
 
@@ -356,61 +358,73 @@ static void print_report(const request_t *request, bool holds)
     printf("%s\n", holds ? "all deadlines hold" : "NOT all deadlines hold");
 }
 
-static void write_json_ms(FILE *out, const char *key, rta_ps_t time)
+static void write_json_ms(json_t *json, const char *key, rta_ps_t time)
 {
-    if (isinf(time)) {
-        fprintf(out, ", \"%s\": null", key);
-    } else {
-        fprintf(out, ", \"%s\": %.9g", key, time / RTA_PS_PER_MS);
-    }
+    json_number(json, key, time / RTA_PS_PER_MS, 9);
 }
 
-static void write_json_task(FILE *out, const request_t *request, int task)
+static void write_json_task(json_t *json, const request_t *request, int task)
 {
     const rta_table_t *table = &request->table;
     rta_ps_t response = rta_response(table, &request->options, task);
 
-    fprintf(out, "{\"name\": \"%s\", \"priority\": %d", table->row[task].name, table->row[task].priority);
-    write_json_ms(out, "period_ms", table->row[task].period);
-    write_json_ms(out, "deadline_ms", table->row[task].deadline);
-    write_json_ms(out, "demand_seed_ms", rta_demand_seed(table, &request->options, task));
-    write_json_ms(out, "demand_ms", rta_demand(table, &request->options, task));
-    write_json_ms(out, "demand_switching_ms", rta_demand_switching(table, &request->options, task));
-    write_json_ms(out, "response_ms", response);
-    write_json_ms(out, "slack_ms", isinf(response) ? response : table->row[task].deadline - response);
-    fprintf(out, "}");
+    json_object(json, NULL);
+    json_text(json, "name", table->row[task].name);
+    json_whole(json, "priority", table->row[task].priority);
+    write_json_ms(json, "period_ms", table->row[task].period);
+    write_json_ms(json, "deadline_ms", table->row[task].deadline);
+    write_json_ms(json, "demand_seed_ms", rta_demand_seed(table, &request->options, task));
+    write_json_ms(json, "demand_ms", rta_demand(table, &request->options, task));
+    write_json_ms(json, "demand_switching_ms", rta_demand_switching(table, &request->options, task));
+    write_json_ms(json, "response_ms", response);
+    write_json_ms(json, "slack_ms", table->row[task].deadline - response);
+    json_close(json);
+}
+
+static void write_json_load(json_t *json, const request_t *request)
+{
+    const rta_load_t load = rta_load(&request->table, &request->options);
+
+    json_object(json, "load");
+    json_fixed(json, "hwi", load.kind[RTA_HWI], 6);
+    json_fixed(json, "swi", load.kind[RTA_SWI], 6);
+    json_fixed(json, "tasks", load.kind[RTA_TASK], 6);
+    json_fixed(json, "switches", load.switches, 6);
+    json_fixed(json, "total", load.total, 6);
+    json_close(json);
 }
 
 static void write_json(FILE *out, const request_t *request, bool holds)
 {
-    rta_load_t load = rta_load(&request->table, &request->options);
     int task[RTA_ROWS_MAX];
     int tasks = rta_tasks(&request->table, task);
+    json_t json;
 
-    fprintf(out, "{\n  \"holds\": %s,\n  \"tasks\": [", holds ? "true" : "false");
+    json_begin(&json, out);
+    json_flag(&json, "holds", holds);
+    json_array(&json, "tasks");
     for (int i = 0; i < tasks; i++) {
-        fprintf(out, "%s\n    ", i > 0 ? "," : "");
-        write_json_task(out, request, task[i]);
+        write_json_task(&json, request, task[i]);
     }
-    fprintf(out,
-            "\n  ],\n  \"load\": {\"hwi\": %.6f, \"swi\": %.6f, \"tasks\": %.6f, \"switches\": %.6f, "
-            "\"total\": %.6f}",
-            load.kind[RTA_HWI], load.kind[RTA_SWI], load.kind[RTA_TASK], load.switches, load.total);
+    json_close(&json);
+    write_json_load(&json, request);
     if (request->chain_members > 0) {
-        fprintf(out, ",\n  \"chain\": {\"members\": \"%s\"", request->chain_text);
-        write_json_ms(out, "response_ms",
+        json_object(&json, "chain");
+        json_text(&json, "members", request->chain_text);
+        write_json_ms(&json, "response_ms",
                       rta_chain(&request->table, &request->options, request->chain, request->chain_members));
-        fprintf(out, "}");
+        json_close(&json);
     }
-    fprintf(out, ",\n  \"growth\": %.6g,\n  \"growth_with_switches\": %.6g\n}\n",
-            rta_growth(&request->table, &request->options, false).factor,
-            rta_growth(&request->table, &request->options, true).factor);
+    json_number(&json, "growth", rta_growth(&request->table, &request->options, false).factor, 6);
+    json_number(&json, "growth_with_switches", rta_growth(&request->table, &request->options, true).factor,
+                6);
+    json_end(&json);
 }
 
 static int run(request_t *request)
 {
     const char *text = load_text(request->table_name);
-    FILE *json;
+    output_t json = {.path = request->json_path};
     bool holds;
 
     if (text == NULL || !load_table(request, text) || !read_chain(request)) {
@@ -428,14 +442,14 @@ static int run(request_t *request)
         measured_apply(&request->measured, &request->table);
     }
     holds = rta_holds(&request->table, &request->options);
-    if (request->json_path != NULL) {
-        json = fopen(request->json_path, "w");
-        if (json == NULL) {
-            perror(request->json_path);
-            return 2;
-        }
-        write_json(json, request, holds);
-        fclose(json);
+    if (!output_open(&json)) {
+        return 2;
+    }
+    if (json.file != NULL) {
+        write_json(json.file, request, holds);
+    }
+    if (!output_close(&json)) {
+        return 2;
     }
     if (request->measured_path != NULL) {
         print_board(request, holds);

@@ -5,13 +5,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "nearest.h"
 #include "sim/scenarios/flight.h"
+#include "sim/scenarios/plant.h"
 
 #define LINE_MAX_OCTETS 256
 #define WORDS_MAX 8
 #define DURATION_MAX_S 3600.0
+#define BYTE_ORDER_MARK "\xEF\xBB\xBF" /* some editors begin a text with it */
 
 static struct {
     scenario_t scenario;
@@ -69,6 +72,9 @@ static const char *read_like(void)
     if (reading.settings + reading.plant + reading.later > 0) {
         return "like comes before set and at";
     }
+    if (other->bench) {
+        return told("has no flight to be like", reading.word[1]);
+    }
     const char *name = reading.scenario.name;
     reading.scenario = *other;
     reading.scenario.name = name;
@@ -111,6 +117,9 @@ static const char *read_set(void)
     const char *error = flight_check(reading.word[1], reading.word[2]);
     char setting[LINE_MAX_OCTETS];
 
+    if (error == NULL && strcasecmp(reading.word[1], "SETR") == 0) {
+        error = "is no setting: reference, or at";
+    }
     if (error != NULL) {
         return told(error, reading.word[1]);
     }
@@ -118,6 +127,19 @@ static const char *read_set(void)
     return strncmp(setting, "plant.", 6) == 0
                ? put(reading.scenario.plant, &reading.plant, SCENARIO_PLANT_MAX, kept(setting))
                : put(reading.scenario.settings, &reading.settings, SCENARIO_SETTINGS_MAX, kept(setting));
+}
+
+/* The radio takes its time, and nobody types before the scenario begins. */
+static const char *too_early(const later_line_t *line, const char *value)
+{
+    const double soonest_s = flight_soonest_s(&reading.scenario, reading.word[2], value);
+
+    if (line->t_s >= soonest_s) {
+        return NULL;
+    }
+    snprintf(reading.message, sizeof reading.message, "%s: too early, that line takes until %.3f",
+             reading.word[1], ceil(fmax(soonest_s, 0.0) * 1e3) * 1e-3);
+    return reading.message;
 }
 
 static const char *read_at(void)
@@ -130,6 +152,9 @@ static const char *read_at(void)
         snprintf(value + strlen(value), sizeof value - strlen(value), "%s%s", i == 3 ? "" : " ",
                  reading.word[i]);
     }
+    if (error == NULL && plant_known(reading.word[2])) {
+        error = told("a figure of the plant is not typed; set it", reading.word[2]);
+    }
     if (error == NULL && flight_knows(reading.word[2])) {
         error = flight_check(reading.word[2], value);
         error = error == NULL ? NULL : told(error, reading.word[2]);
@@ -137,6 +162,7 @@ static const char *read_at(void)
     if (error == NULL && reading.later == SCENARIO_LATER_MAX - 1) {
         error = "too many";
     }
+    error = error == NULL ? too_early(line, value) : error;
     if (error == NULL) {
         line->name = kept(reading.word[2]);
         line->value = kept(value);
@@ -245,13 +271,17 @@ static const char *read_words(void)
     return no_such_keyword();
 }
 
-static const char *read_line(char *text)
+/* last: nothing comes behind it. */
+static const char *read_line(char *text, bool last)
 {
     char *rest = text;
     char *comment = strchr(text, '#');
 
     if (strchr(text, '\n') == NULL && strlen(text) == LINE_MAX_OCTETS - 1) {
         return "line too long";
+    }
+    if (strchr(text, '\n') == NULL && !last) {
+        return "not text";
     }
     if (comment != NULL) {
         *comment = '\0';
@@ -298,14 +328,19 @@ const scenario_t *scenario_file_read(const char *path)
     reading.scenario.summary = "";
     reading.scenario.fate = FATE_EITHER;
     while (error == NULL && fgets(text, sizeof text, in) != NULL) {
-        number++;
-        error = read_line(text);
+        const size_t mark = number++ == 0 && strncmp(text, BYTE_ORDER_MARK, 3) == 0 ? 3 : 0;
+
+        error = read_line(text + mark, feof(in) != 0);
+    }
+    if (in != NULL && error == NULL && ferror(in) != 0) {
+        error = strerror(errno); /* a directory */
+        number = 0;
     }
     if (reading.scenario.name == NULL) {
         reading.scenario.name = kept(name_of(path));
     }
     if (in != NULL && fclose(in) == 0 && error == NULL) {
-        number = 0;
+        number = 0; /* of the whole file */
         error = check();
     }
     if (error != NULL && number > 0) {

@@ -1,6 +1,7 @@
 #include "vehicle.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,11 +46,13 @@ static const char *take(flight_options_t *options, const char *name)
     char assignment[96];
     const size_t length = strcspn(name, "\"");
     const char *value = value_at(name + length);
+    char *end = NULL;
+    const double figure = value == NULL ? NAN : strtod(value, &end);
 
-    if (value == NULL || length > 40) {
+    if (value == NULL || length > 40 || end == value || !isfinite(figure)) {
         return "a figure of the plant without its value";
     }
-    snprintf(assignment, sizeof assignment, "%.*s=%.9g", (int)length, name, strtod(value, NULL));
+    snprintf(assignment, sizeof assignment, "%.*s=%.9g", (int)length, name, figure);
     return flight_override(options, assignment);
 }
 

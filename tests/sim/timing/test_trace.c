@@ -153,50 +153,57 @@ static void run_schedule(void)
 void test_the_schedule_is_written_as_it_happened(void)
 {
     run_schedule();
-    assert_has("{\"ph\":\"X\",\"pid\":2,\"tid\":96,\"name\":\"RX\",\"ts\":100.000,\"dur\":10.000,"
-               "\"args\":{\"response_us\":10.000,\"priority\":96}}");
-    assert_has("{\"ph\":\"X\",\"pid\":2,\"tid\":1001,\"name\":\"Swi\",\"ts\":205.000,\"dur\":20.000,"
-               "\"args\":{\"response_us\":20.000,\"priority\":2}}");
-    assert_has("{\"ph\":\"X\",\"pid\":2,\"tid\":2001,\"name\":\"high\",\"ts\":225.000,\"dur\":260.000,"
-               "\"args\":{\"response_us\":260.000,\"priority\":9}}");
+    assert_has("{\"ph\": \"X\", \"pid\": 2, \"tid\": 96, \"name\": \"RX\", \"ts\": 100.000, \"dur\": 10.000, "
+               "\"args\": {\"response_us\": 10.000, \"priority\": 96}}");
     assert_has(
-        "{\"ph\":\"X\",\"pid\":2,\"tid\":2001,\"name\":\"runs\",\"ts\":225.000,\"dur\":50.000,\"args\":{}}");
-    assert_has("{\"ph\":\"X\",\"pid\":2,\"tid\":2001,\"name\":\"waits for "
-               "server\",\"ts\":275.000,\"dur\":60.000,\"args\":{}}");
+        "{\"ph\": \"X\", \"pid\": 2, \"tid\": 1001, \"name\": \"Swi\", \"ts\": 205.000, \"dur\": 20.000, "
+        "\"args\": {\"response_us\": 20.000, \"priority\": 2}}");
     assert_has(
-        "{\"ph\":\"X\",\"pid\":2,\"tid\":2001,\"name\":\"runs\",\"ts\":335.000,\"dur\":150.000,\"args\":{}}");
-    assert_has("{\"ph\":\"X\",\"pid\":1,\"tid\":1,\"name\":\"low \\\"1\\\"\",\"ts\":275.000,\"dur\":60.000,"
-               "\"args\":{\"priority\":1}}");
-    assert_has("{\"ph\":\"X\",\"pid\":3,\"tid\":1,\"name\":\"low \\\"1\\\"\",\"ts\":160.000,\"dur\":175.000,"
-               "\"args\":{\"inherited_priority\":9}}");
-    assert_has("{\"ph\":\"X\",\"pid\":3,\"tid\":1,\"name\":\"high\",\"ts\":335.000,\"dur\":150.000,"
-               "\"args\":{\"inherited_priority\":0}}");
-    assert_has("{\"ph\":\"i\",\"pid\":2,\"tid\":2000,\"name\":\"priority "
-               "9\",\"ts\":275.000,\"s\":\"t\",\"args\":{}}");
-    assert_has("{\"ph\":\"i\",\"pid\":2,\"tid\":2000,\"name\":\"priority "
-               "1\",\"ts\":335.000,\"s\":\"t\",\"args\":{}}");
-    TEST_ASSERT_EQUAL_INT(8, count("\"pid\":1,\"tid\":1,\"name\"") - 1); /* and its label */
+        "{\"ph\": \"X\", \"pid\": 2, \"tid\": 2001, \"name\": \"high\", \"ts\": 225.000, \"dur\": 260.000, "
+        "\"args\": {\"response_us\": 260.000, \"priority\": 9}}");
+    assert_has("{\"ph\": \"X\", \"pid\": 2, \"tid\": 2001, \"name\": \"runs\", \"ts\": 225.000, \"dur\": "
+               "50.000, \"args\": {}}");
+    assert_has("{\"ph\": \"X\", \"pid\": 2, \"tid\": 2001, \"name\": \"waits for "
+               "server\", \"ts\": 275.000, \"dur\": 60.000, \"args\": {}}");
+    assert_has("{\"ph\": \"X\", \"pid\": 2, \"tid\": 2001, \"name\": \"runs\", \"ts\": 335.000, \"dur\": "
+               "150.000, \"args\": {}}");
+    assert_has("{\"ph\": \"X\", \"pid\": 1, \"tid\": 1, \"name\": \"low \\\"1\\\"\", \"ts\": 275.000, "
+               "\"dur\": 60.000, "
+               "\"args\": {\"priority\": 1}}");
+    assert_has("{\"ph\": \"X\", \"pid\": 3, \"tid\": 1, \"name\": \"low \\\"1\\\"\", \"ts\": 160.000, "
+               "\"dur\": 175.000, "
+               "\"args\": {\"inherited_priority\": 9}}");
+    assert_has(
+        "{\"ph\": \"X\", \"pid\": 3, \"tid\": 1, \"name\": \"high\", \"ts\": 335.000, \"dur\": 150.000, "
+        "\"args\": {\"inherited_priority\": 0}}");
+    assert_has("{\"ph\": \"i\", \"pid\": 2, \"tid\": 2000, \"name\": \"priority "
+               "9\", \"ts\": 275.000, \"s\": \"t\", \"args\": {}}");
+    assert_has("{\"ph\": \"i\", \"pid\": 2, \"tid\": 2000, \"name\": \"priority "
+               "1\", \"ts\": 335.000, \"s\": \"t\", \"args\": {}}");
+    TEST_ASSERT_EQUAL_INT(8, count("\"pid\": 1, \"tid\": 1, \"name\"") - 1); /* and its label */
 }
 
 void test_tracks_are_named_with_kind_and_priority_and_sorted_by_precedence(void)
 {
     run_schedule();
-    assert_has("\"tid\":96,\"name\":\"thread_name\",\"args\":{\"name\":\"Hwi 96 RX\"}");
-    assert_has("\"tid\":1001,\"name\":\"thread_name\",\"args\":{\"name\":\"Swi 2 Swi\"}");
-    assert_has("\"tid\":2001,\"name\":\"thread_name\",\"args\":{\"name\":\"Task 9 high\"}");
-    assert_has("\"tid\":2000,\"name\":\"thread_name\",\"args\":{\"name\":\"Task 1 low \\\"1\\\"\"}");
-    assert_has("\"pid\":3,\"tid\":1,\"name\":\"thread_name\",\"args\":{\"name\":\"server\"}");
-    assert_has("\"tid\":96,\"name\":\"thread_sort_index\",\"args\":{\"sort_index\":96}");
-    assert_has("\"tid\":1001,\"name\":\"thread_sort_index\",\"args\":{\"sort_index\":998}");
-    assert_has("\"tid\":2001,\"name\":\"thread_sort_index\",\"args\":{\"sort_index\":1991}");
-    assert_has("\"tid\":2000,\"name\":\"thread_sort_index\",\"args\":{\"sort_index\":1999}");
+    assert_has("\"tid\": 96, \"name\": \"thread_name\", \"args\": {\"name\": \"Hwi 96 RX\"}");
+    assert_has("\"tid\": 1001, \"name\": \"thread_name\", \"args\": {\"name\": \"Swi 2 Swi\"}");
+    assert_has("\"tid\": 2001, \"name\": \"thread_name\", \"args\": {\"name\": \"Task 9 high\"}");
+    assert_has("\"tid\": 2000, \"name\": \"thread_name\", \"args\": {\"name\": \"Task 1 low \\\"1\\\"\"}");
+    assert_has("\"pid\": 3, \"tid\": 1, \"name\": \"thread_name\", \"args\": {\"name\": \"server\"}");
+    assert_has("\"tid\": 96, \"name\": \"thread_sort_index\", \"args\": {\"sort_index\": 96}");
+    assert_has("\"tid\": 1001, \"name\": \"thread_sort_index\", \"args\": {\"sort_index\": 998}");
+    assert_has("\"tid\": 2001, \"name\": \"thread_sort_index\", \"args\": {\"sort_index\": 1991}");
+    assert_has("\"tid\": 2000, \"name\": \"thread_sort_index\", \"args\": {\"sort_index\": 1999}");
 }
 
 void test_an_empty_trace_is_complete(void)
 {
+    static const char head[] = "{\n  \"displayTimeUnit\": \"ms\",\n  \"traceEvents\": [\n    {";
+
     close_and_read();
-    TEST_ASSERT_EQUAL_STRING_LEN("{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n{", text, 41);
-    TEST_ASSERT_EQUAL_STRING("}\n]}\n", text + strlen(text) - 5);
+    TEST_ASSERT_EQUAL_STRING_LEN(head, text, sizeof head - 1);
+    TEST_ASSERT_EQUAL_STRING("}\n  ]\n}\n", text + strlen(text) - 8);
 }
 
 /* ---- the wires ---- */
@@ -217,11 +224,13 @@ void test_frames_go_from_the_first_start_bit_to_the_last_stop_bit(void)
     send("Q\n\n");
     send("half");
     close_and_read();
-    assert_has("{\"ph\":\"X\",\"pid\":4,\"tid\":1,\"name\":\"frame\",\"ts\":1000.000,\"dur\":320.000,"
-               "\"args\":{\"octets\":8}}");
-    assert_has("{\"ph\":\"X\",\"pid\":4,\"tid\":1,\"name\":\"frame\",\"ts\":5000.000,\"dur\":120.000,"
-               "\"args\":{\"octets\":3}}");
-    TEST_ASSERT_EQUAL_INT(2, count("\"name\":\"frame\""));
+    assert_has(
+        "{\"ph\": \"X\", \"pid\": 4, \"tid\": 1, \"name\": \"frame\", \"ts\": 1000.000, \"dur\": 320.000, "
+        "\"args\": {\"octets\": 8}}");
+    assert_has(
+        "{\"ph\": \"X\", \"pid\": 4, \"tid\": 1, \"name\": \"frame\", \"ts\": 5000.000, \"dur\": 120.000, "
+        "\"args\": {\"octets\": 3}}");
+    TEST_ASSERT_EQUAL_INT(2, count("\"name\": \"frame\""));
 }
 
 void test_pulses_say_whether_they_differ_from_the_one_before(void)
@@ -233,9 +242,12 @@ void test_pulses_say_whether_they_differ_from_the_one_before(void)
         trace_pulse(&trace, pulses[i]);
     }
     close_and_read();
-    assert_has("\"name\":\"1500.0 us\",\"ts\":8500.000,\"dur\":1500.000,\"args\":{\"changed\":true}}");
-    assert_has("\"name\":\"1500.0 us\",\"ts\":18500.000,\"dur\":1500.000,\"args\":{\"changed\":false}}");
-    assert_has("\"name\":\"1499.5 us\",\"ts\":28500.500,\"dur\":1499.500,\"args\":{\"changed\":true}}");
+    assert_has(
+        "\"name\": \"1500.0 us\", \"ts\": 8500.000, \"dur\": 1500.000, \"args\": {\"changed\": true}}");
+    assert_has(
+        "\"name\": \"1500.0 us\", \"ts\": 18500.000, \"dur\": 1500.000, \"args\": {\"changed\": false}}");
+    assert_has(
+        "\"name\": \"1499.5 us\", \"ts\": 28500.500, \"dur\": 1499.500, \"args\": {\"changed\": true}}");
 }
 
 void test_an_answer_is_an_instant_with_its_latency(void)
@@ -243,8 +255,8 @@ void test_an_answer_is_an_instant_with_its_latency(void)
     timeline_move_to(3 * SIM_MS);
     trace_answer(&trace, 3 * SIM_MS - 1937400, 3042);
     close_and_read();
-    assert_has("{\"ph\":\"i\",\"pid\":4,\"tid\":2,\"name\":\"compare "
-               "3042\",\"ts\":3000.000,\"s\":\"t\",\"args\":{\"after_scan_us\":1937.400}}");
+    assert_has("{\"ph\": \"i\", \"pid\": 4, \"tid\": 2, \"name\": \"compare "
+               "3042\", \"ts\": 3000.000, \"s\": \"t\", \"args\": {\"after_scan_us\": 1937.400}}");
 }
 
 /* ---- a crowd, for check_trace.py ---- */

@@ -1,0 +1,124 @@
+"""Files that are damaged, and disks that are full, as users of `plomada` meet them. Usage: test_bad_files.py PLOMADA"""
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = sys.argv.pop(1)
+FULL = "/dev/full"
+FLIGHT = "reference 0.5\nland 4\nend 8\n"
+
+
+class Files(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.dir = Path(tempfile.mkdtemp())
+        cls.addClassCleanup(shutil.rmtree, cls.dir)
+        (cls.dir / "own.scenario").write_text(FLIGHT)
+        done = cls.plomada("fly", "./own.scenario", "--csv", "flown.csv", "--record", "run", "--log", "console.log")
+        assert done.returncode in (0, 1), done.stderr
+
+    @classmethod
+    def plomada(cls, *words, **options):
+        return subprocess.run([PROGRAM, *words], cwd=cls.dir, check=False, capture_output="stdout" not in options, timeout=60,
+                              stderr=subprocess.PIPE if "stdout" in options else None, text=True, errors="replace", **options)
+
+    def refused(self, done, reason):
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn(reason, done.stderr)
+
+    @unittest.skipUnless(os.path.exists(FULL), "no /dev/full")
+    def test_what_does_not_fit_on_the_disk_is_status_2_whoever_writes_it(self):
+        flight = ("fly", "./own.scenario")
+        for words in (("rta", "--json"), (*flight, "--csv"), (*flight, "--json"), (*flight, "--log"), (*flight, "--trace"),
+                      ("replay", "run", "--csv"), ("replay", "flown.csv", "--csv")):
+            with self.subTest(words):
+                self.refused(self.plomada(*words, FULL), FULL)
+
+    @unittest.skipUnless(os.path.exists(FULL), "no /dev/full")
+    def test_what_cannot_be_printed_is_status_2(self):
+        for words in (("list",), ("list", "--plant"), ("params",), ("rta",), ("rta", "--print"), ("--help",), ("--version",), ("fly", "--help"),
+                      ("fly", "./own.scenario"), ("fly", "./own.scenario", "--csv", "-"), ("replay", "run"), ("log", "console.log", "-o", "-")):
+            with self.subTest(words), open(FULL, "w", encoding="utf-8") as full:
+                self.refused(self.plomada(*words, stdout=full), "stdout")
+
+    def test_a_recording_is_not_overwritten(self):
+        before = (self.dir / "run/flight.plomada").read_bytes()
+        done = self.plomada("fly", "./own.scenario", "--seed", "2", "--record", "run", "--csv", "not-begun.csv")
+        self.refused(done, "there is a recording already")
+        self.assertEqual((self.dir / "run/flight.plomada").read_bytes(), before)
+        self.assertFalse((self.dir / "not-begun.csv").exists())
+
+    def test_json_is_valid_whatever_the_scenario_is_called(self):
+        for name in (b'a"b', b"back\\slash", b"\x01\xff"):
+            (self.dir / "named.scenario").write_bytes(FLIGHT.encode() + b"name " + name + b"\n")
+            self.plomada("fly", "./named.scenario", "--json", "named.json")
+            told = json.loads((self.dir / "named.json").read_bytes())
+            self.assertEqual(told["scenario"], name.decode("utf-8", errors="replace"))
+
+    def test_a_seed_that_no_number_holds_is_refused(self):
+        for seed in ("18446744073709551616", "9223372036854775808", "-1", ""):
+            self.refused(self.plomada("fly", "./own.scenario", "--seed", seed), "not a seed")
+
+    def test_a_flight_longer_than_time_is_refused(self):
+        for option in ("--duration", "--until-down"):
+            self.refused(self.plomada("fly", "./own.scenario", option, "1e18"), "not a number of seconds")
+
+    def replay(self, octets):
+        (self.dir / "given").write_bytes(octets)
+        return self.plomada("replay", "given", "--csv", "replayed.csv")
+
+    def test_a_recording_whose_times_go_back_is_refused_with_its_line(self):
+        lines = (self.dir / "run/flight.plomada").read_bytes().splitlines(keepends=True)
+        at = [n for n, line in enumerate(lines) if line.startswith(b"octets imu")]
+        swapped = lines.copy()
+        swapped[at[50]], swapped[at[80]] = lines[at[80]], lines[at[50]]
+        self.refused(self.replay(b"".join(swapped)), f"line {at[51] + 1}: before the octet before it")
+        levels = [*lines, b"select 9000000 1\n", b"select 8000000 0\n"]
+        self.refused(self.replay(b"".join(levels)), f"line {len(levels)}: before the level before it")
+
+    def test_a_recording_of_other_than_text_is_refused_and_one_cut_off_is_not(self):
+        whole = (self.dir / "run/flight.plomada").read_bytes()
+        half = whole[:len(whole) // 2]
+        self.assertEqual(self.replay(half).returncode, 0)
+        self.refused(self.replay(half + b"\0\0\n" + whole[len(whole) // 2:]), "not text")
+        self.refused(self.replay(b"plomada-recording 1\noctets imu 9223372036854775807 1e5 0000\n"), "line 2: beyond what a run lasts")
+        self.refused(self.replay(b"plomada-recording 1\noctets imu 5 inf 0000\n"), "line 2")
+        self.refused(self.replay(re.sub(rb"first_row_ns \d+", b"first_row_ns 900000000000000000", whole)), "ends before its first row")
+        self.refused(self.replay(b""), "not a recording")
+
+    def test_a_log_is_refused_with_the_line_that_is_wrong(self):
+        rows = (self.dir / "flown.csv").read_text().splitlines()
+        cells = rows[99].split(",")
+
+        def with_cell(place, cell):
+            return "\n".join([*rows[:99], ",".join([*cells[:place], cell, *cells[place + 1:]]), *rows[100:]]) + "\n"
+
+        for text, reason in ((with_cell(0, "inf"), "line 100: t_s: not a number"), (with_cell(0, ""), "line 100: t_s: no time"),
+                             (with_cell(0, "0.1"), "line 100: t_s: not after"), (with_cell(0, "1e300"), "line 100: t_s: no time"),
+                             (with_cell(1, "nan"), "line 100: meas_m: not a number"), (with_cell(1, "0.6m"), "line 100: meas_m"),
+                             ("\n".join([*rows[:99], rows[99][:20]]), "line 100: row: not as many cells"),
+                             ("\n".join([*rows[:99], "\0" + rows[99], rows[100]]), "line 100: row: not text"),
+                             (rows[0] + "\n", "no row of a flight")):
+            with self.subTest(reason):
+                self.refused(self.replay(text.encode()), reason)
+
+    def test_a_log_from_another_system_is_the_same_log(self):
+        self.assertEqual(self.replay((self.dir / "flown.csv").read_bytes()).returncode, 0)
+        as_it_is = (self.dir / "replayed.csv").read_bytes()
+        self.assertEqual(self.replay(b"\xef\xbb\xbf" + (self.dir / "flown.csv").read_bytes().replace(b"\n", b"\r\n")).returncode, 0)
+        self.assertEqual((self.dir / "replayed.csv").read_bytes(), as_it_is)
+
+    def test_a_vehicle_with_a_value_that_is_no_number_is_refused(self):
+        for value in ("null", '"heavy"', "NaN", "Infinity", ""):
+            (self.dir / "vehicle.json").write_text(f'{{"plant.gain": {{"value": {value}}}}}')
+            self.refused(self.plomada("fly", "./own.scenario", "--vehicle", "vehicle.json"), "without its value")
+
+
+if __name__ == "__main__":
+    unittest.main()
