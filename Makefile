@@ -113,9 +113,10 @@ test-long: ## The long ones: sweeps of many flights, campaigns, tuning, fuzzing
 	@printf '\n== long tests as released ==\n'
 	@$(ctest) build -L long -LE soak
 
-soak: ## The longest: a board in real time, fits of 30 vehicles, proofs; most of an hour
+soak: ## The longest, nothing skipped: a board in real time, fits of 30 vehicles, proofs; most of an hour
+	@$(setup) prove ground
 	$(build_tests)
-	@$(ctest) build -L soak
+	@NOTHING_SKIPPED=1 $(ctest) build -L soak
 
 mutants: ## Do the unit tests notice small faults? ARGS="--room control --sample 300 --seed 1"; survivors as a diff
 	@$(setup) build test
@@ -129,7 +130,7 @@ port: ## The unit tests of drivers/ and control/ also with 16-bit octets, 16-bit
 	@$(setup) build test port
 	@$(cmake) -B build-port -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON -DPLOMADA_PORT=ON
 	+@cmake --build build-port --target port $(jobs)
-	@$(ctest) build-port -L port; status=$$?; python3 -B tests/port/summary.py build-port && exit $$status
+	@NOTHING_SKIPPED=1 $(ctest) build-port -L port; status=$$?; python3 -B tests/port/summary.py build-port && exit $$status
 
 size: ## Flash, static RAM and stacks against the chip's limits, and docs/memory.md against them (ARGS=--write)
 	@$(setup) size

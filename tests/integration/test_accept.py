@@ -89,7 +89,7 @@ class Short(unittest.TestCase):
             first.send_signal(signal.SIGINT)
             rest = first.communicate(timeout=60)[0]
             if "ACCEPTED: " in rest and "NOT" not in rest:
-                self.skipTest("it was through before the signal came")
+                bench.no_verdict()      # it was through before the signal came
             self.assertEqual(first.returncode, 1)
             second = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
             self.assertEqual(second.returncode, 0, second.stdout)
@@ -105,10 +105,9 @@ class Short(unittest.TestCase):
 
 class Long(unittest.TestCase):
     def test_a_board_that_is_right_passes_every_item_that_needs_nobody(self):
-        for _ in range(bench.TRIES):
-            status, output, found, _ = run(flight_s=60)
-            if status == 0 and not any("keep up" in item["detail"] for item in found["items"]):
-                break
+        status, output, found, _ = run(flight_s=60)
+        if any("keep up" in item["detail"] for item in found["items"]):
+            bench.no_verdict()
         self.assertEqual(status, 0, output)
         skipped = {item["item"] for item in found["items"] if item["verdict"] == "skipped"}
         self.assertLessEqual(skipped, {"supplies", "leds", "version"})

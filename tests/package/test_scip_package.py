@@ -111,4 +111,4 @@ void show(float mm);
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)

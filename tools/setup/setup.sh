@@ -10,10 +10,12 @@
 #   bench     valgrind
 #   fuzz      clang and its libFuzzer
 #   prove     CBMC and a C preprocessor; build/cbmc where Debian's suite has no CBMC
-#   plot      Python virtual environment build/venv with the pinned packages of tools/plot/requirements.txt
-#   campaign  the same, and in it those of tools/campaign/requirements.txt; for tuning too
+#   plot      Python virtual environment build/venv with the packages of tools/plot/requirements.txt
+#   campaign  the same, and in it those of tools/campaign/requirements.txt; for tuning too, and for some tests
 #   ground    clang, lld, wasi-libc and binaryen for the vehicle in the browser; wasmtime in build/venv; node and the pinned
 #             packages of ground/package-lock.json; Chromium and Firefox for its tests
+#
+# Packages of Python and of node are those whose sums stand in requirements.txt (tools/setup/pin.sh) and package-lock.json, no others.
 #
 # Non-interactive and idempotent: silent, and no call of apt or pip, when nothing is missing. Packages are installed
 # as root, or by sudo where the user may use it; otherwise one line says what to install, and the status is 1.
@@ -217,7 +219,7 @@ make_venv() {
     rm -rf "$venv"
     mkdir -p "$root/build"
     "$python" -m venv "$venv"
-    pip_install -r "$requirements" || die "pip could not install tools/plot/requirements.txt (see above)"
+    pip_install "$venv" "$requirements" || die "pip could not install tools/plot/requirements.txt (see above)"
     cp "$requirements" "$venv/requirements.txt"
 }
 
@@ -228,29 +230,30 @@ add_format() {
     rm -rf "$format"
     mkdir -p "$root/build"
     "$python" -m venv "$format"
-    "$format/bin/python" -m pip --quiet --disable-pip-version-check install --only-binary :all: -r "$format_requirements" ||
+    pip_install "$format" "$format_requirements" ||
         die "pip could not install tools/format/requirements.txt (see above)"
     cp "$format_requirements" "$format/requirements.txt"
 }
 
-pip_install() { "$venv/bin/python" -m pip --quiet --disable-pip-version-check install --only-binary :all: "$@"; }
+# A virtual environment and a requirements.txt.
+pip_install() { "$1/bin/python" -m pip --quiet --disable-pip-version-check install --only-binary :all: --require-hashes -r "$2"; }
 
 add_campaign() {
     say "adding the packages of tools/campaign/requirements.txt to build/venv"
-    pip_install -r "$requirements" -r "$campaign_requirements" ||
+    pip_install "$venv" "$campaign_requirements" ||
         die "pip could not install tools/campaign/requirements.txt (see above)"
     cp "$campaign_requirements" "$venv/campaign.txt"
 }
 
 add_ground() {
     say "adding the packages of ground/requirements.txt to build/venv"
-    pip_install -r "$ground_requirements" || die "pip could not install ground/requirements.txt (see above)"
+    pip_install "$venv" "$ground_requirements" || die "pip could not install ground/requirements.txt (see above)"
     cp "$ground_requirements" "$venv/ground.txt"
 }
 
 add_modules() {
     say "installing the packages of ground/package-lock.json in ground/node_modules"
-    (cd "$root/ground" && npm install --no-save --silent --no-audit --no-fund) >&2 || die "npm could not install them (see above)"
+    (cd "$root/ground" && npm ci --ignore-scripts --silent --no-audit --no-fund) >&2 || die "npm could not install them (see above)"
     cp "$root/ground/package-lock.json" "$root/ground/node_modules/.installed-lock.json"
 }
 

@@ -1,13 +1,13 @@
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
-import { button, FIREFOX, freePort, openFirefox, openPage, serveSite, startBoard, startVehicle, tab, untilHeight, untilLaserIsOk, untilState, type Board, type Site } from './rig';
+import { button, FIREFOX, freePort, leftOut, openFirefox, openPage, serveSite, startBoard, startVehicle, tab, untilHeight, untilLaserIsOk, untilState, type Board, type Site } from './rig';
 
 let browser: Browser;
 let site: Site;
 let page: Page;
 let board: Board | null = null;
 
-describe.skipIf(FIREFOX === null)(`in Firefox, by WebDriver BiDi${FIREFOX === null ? ' (not here: no Firefox)' : ''}`, () => {
+describe.skipIf(leftOut(FIREFOX === null ? 'no Firefox' : null))(`in Firefox, by WebDriver BiDi${FIREFOX === null ? ' (not here: no Firefox)' : ''}`, () => {
   beforeAll(async () => {
     site = await serveSite();
     browser = await openFirefox();

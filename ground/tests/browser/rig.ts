@@ -107,6 +107,12 @@ export function startBoard(xbee: string): Promise<Board> {
 }
 
 /** Why a pseudo-terminal cannot stand for this machine's serial port in a browser of its own; null: it can. */
+/** Whether a group of tests is skipped, and why; tests/run.py says when nothing may be. */
+export function leftOut(why: string | null): boolean {
+  if (why !== null && process.env.NOTHING_SKIPPED === '1') throw new Error(`nothing may be skipped in this run: ${why}`);
+  return why !== null;
+}
+
 export function whyNoSerial(): string | null {
   if (process.getuid?.() !== 0) return 'not root';
   try {

@@ -1,6 +1,6 @@
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
-import { button, openPage, serialBrowser, serveSite, startBoard, tab, whyNoSerial, type Board, type Site } from './rig';
+import { button, leftOut, openPage, serialBrowser, serveSite, startBoard, tab, whyNoSerial, type Board, type Site } from './rig';
 
 const why = whyNoSerial();
 let browser: Browser;
@@ -8,7 +8,7 @@ let site: Site;
 let page: Page;
 let board: Board;
 
-describe.skipIf(why !== null)(`by Web Serial, the unmodified firmware on a pseudo-terminal in place of ttyS0${why ? ` (not here: ${why})` : ''}`, () => {
+describe.skipIf(leftOut(why))(`by Web Serial, the unmodified firmware on a pseudo-terminal in place of ttyS0${why ? ` (not here: ${why})` : ''}`, () => {
   beforeAll(async () => {
     site = await serveSite();
     board = await startBoard('pty');
