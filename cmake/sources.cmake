@@ -2,8 +2,11 @@
 set(CONTROL_SOURCES
     control/est/actuator.c control/altitude.c control/arming.c control/attitude.c control/calibration.c control/est/cascade.c control/est/deadband.c control/est/effect.c
     control/descent.c control/est/est_law.c control/est/estimator.c control/flight.c control/flight_state.c control/est/hover.c
-    control/integrity.c control/imu_axes.c control/imu_finding.c control/imu_mapping.c control/median.c
-    control/parameters.c control/pid.c control/pidt.c control/ray_clock.c control/reach.c control/supervisor.c control/thrust.c)
+    control/imu_axes.c control/imu_finding.c control/imu_mapping.c control/imu_sample.c control/median.c
+    control/parameters.c control/pid.c control/pidt.c control/ray_clock.c control/reach.c control/supervisor.c control/thrust.c
+    control/sense/accelerometer.c control/sense/beam.c control/sense/confirmation.c control/sense/heights.c control/sense/push.c
+    control/sense/sense.c control/sense/senses.c control/sense/stand.c control/sense/sway.c control/sense/tilt.c control/sense/verdict.c
+    control/sense/witness.c)
 set(DRIVERS_SOURCES
     drivers/decimal.c drivers/flight_log.c drivers/line_sum.c drivers/parameter_image.c drivers/razor.c drivers/scip_info.c
     drivers/scip_layout.c drivers/scip_parser.c drivers/scip_request.c drivers/telecommand.c

@@ -23,12 +23,11 @@
 
 #define BLIND_STILL_TIMES 2.0F /* tried 2 and 3: a calm vehicle that flies touches at 0.8 and 0.95 m/s */
 
-#define PIDT_WINDOW_N 3.0F  /* chosen: 0.4 g to either side */
-#define INSTEAD_SHARE 0.65F /* tried 0.6 to 1: of PIDT's gains, for vehicles that shake with them */
-#define SETTLE_S 0.6F       /* chosen: six scans; until then the estimate is copied */
-#define LIFTED_MPS 0.25F    /* chosen: above what a bias of 0.2 m/s2 makes on the ground */
-#define GAP_LONG_S 10.0F    /* chosen: longer gaps count as this long; integrity.c restarts after 1.5 s */
-#define LOW_MM 80.0F        /* chosen: above REST_BELOW_MM in supervisor.c, 50 mm */
+#define PIDT_WINDOW_N 3.0F         /* chosen: 0.4 g to either side */
+#define INSTEAD_SHARE 0.65F        /* tried 0.6 to 1: of PIDT's gains, for vehicles that shake with them */
+#define SETTLE_S 0.6F              /* chosen: six scans; until then the estimate is copied */
+#define LIFTED_MPS 0.25F           /* chosen: above what a bias of 0.2 m/s2 makes on the ground */
+#define LOW_MM 80.0F               /* chosen: above REST_BELOW_MM in supervisor.c, 50 mm */
 #define NO_AUTHORITY_WINDOW_N 0.6F /* chosen: 0.8 m/s2 */
 #define CARRIED_BELOW_N 0.5F       /* chosen: by the vehicle model a sink rate of 0.3 m/s */
 #define CARRIED_N_PER_S 0.06F      /* chosen: little, because the pilot may fly on for long */
@@ -36,7 +35,7 @@
     0.15F /* chosen: more, because with a pin it begins when the pilot gives the throttle back */
 #define CARRIED_SUNK_N 1.2F       /* chosen: with CARRIED_BELOW_N more than a fifth of GRAV */
 #define CARRIED_FELT_N 2.0F       /* chosen: more than GRAV is off */
-#define CARRIED_TIME_S 2.0F       /* as in integrity.c */
+#define CARRIED_TIME_S 2.0F       /* as IN_HANDS_TIME_S in accelerometer.c */
 #define CARRIED_BIAS_TIME_S 10.0F /* chosen: five times that */
 #define CARRIED_MOVES_MPS 0.35F   /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in CARRIED_TIME_S */
 #define CARRIED_N_PER_M 2.0F      /* chosen: a climb of 1 m/s lowers it by 1.5 N before that is forgotten */
@@ -51,7 +50,7 @@
 #define UNKNOWN_REACH_M 0.06F        /* tried 0.05 to 0.09; asks for 0.8 N at the delivered gains */
 #define FLOAT_TRIM_N 0.4F            /* chosen: GRAV is trimmed so much too low, or less */
 #define FLOAT_TRIM_N_PER_M_S 8.0F    /* tried 4 and 8: half of it after a second 25 mm too low */
-#define UNCONFIRMED_MPS 0.35F  /* chosen: CONFIRMED_M in integrity.c, 0.12 m, takes 0.35 s at this rate */
+#define UNCONFIRMED_MPS 0.35F  /* chosen: CONFIRMED_M in confirmation.c, 0.12 m, takes 0.35 s at this rate */
 #define TAKEOFF_MPS 0.6F       /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
 #define UNCHECKED_ABOVE_N 0.5F /* chosen: as TRANSFER_START_N */
 #define UNCHECKED_BELOW_N 1.0F /* chosen: twice that */
@@ -61,7 +60,7 @@
 #define NOT_LIFTED_MAX_US UINT32_C(3000000) /* chosen: the take-off's ramp in est_law.c ends after 1.2 s */
 #define HEIGHT_LATE_US UINT32_C(170000)     /* a scan of 0.1 s is missing */
 #define UNPOWERED_S 1.0F                    /* chosen: a free fall of 5 m */
-#define EFFECT_REACH_M 0.14F                /* chosen: below VAIN_M in integrity.c */
+#define EFFECT_REACH_M 0.14F                /* chosen: below VAIN_M in verdict.c */
 #define PIN_TRUSTED_S 5.0F                  /* chosen: a loose contact is over sooner */
 #define PIN_BELOW_N 2.0F                    /* chosen: a load of a newton let go, and a newton to sink */
 #define PIN_ABOVE_N 1.0F                    /* chosen: a load of a newton */
@@ -87,7 +86,7 @@ void flight_init(flight_t *flight)
 {
     *flight = (flight_t){.hover_n = 0.0F};
     supervisor_init(&flight->supervisor);
-    integrity_init(&flight->integrity);
+    sense_init(&flight->sense);
     imu_axes_init(&flight->axes);
     est_law_init(&flight->est);
 }
@@ -131,9 +130,7 @@ static void follow_hover(flight_t *flight)
     if (!estimated && flight->supervisor.state != FLIGHT_FLYING && !carries_floating(flight)) {
         return;
     }
-    if (flight->learned_s > 0.0F &&
-        (integrity_unconfirmed(&flight->integrity) || integrity_still(&flight->integrity) ||
-         integrity_apart(&flight->integrity))) {
+    if (flight->learned_s > 0.0F && !flight->evidence.teaches) {
         return;
     }
     const float target_n = estimated ? flight->est.hover.thrust_n : flight->thrust_n;
@@ -168,7 +165,7 @@ static void update_hover(flight_t *flight, float gravity_n)
     if (!flight->hover_learned) {
         flight->hover_n = gravity_n;
         flight->learned_s = 0.0F;
-    } else if (flies && sees && !integrity_doubts(&flight->integrity, DOUBT_SIGHT | DOUBT_THRUST)) {
+    } else if (flies && sees && !doubts(&flight->evidence, DOUBT_SIGHT | DOUBT_THRUST)) {
         follow_hover(flight);
     }
     flight->hover_n = between(gravity_n - HOVER_MARGIN_N, flight->hover_n, gravity_n + HOVER_MARGIN_N);
@@ -214,8 +211,7 @@ static void change_mode(flight_t *flight, flight_mode_t before, flight_mode_t no
         pidt_reset(&flight->pidt);
     }
     if (is_est_mode(now) && handed_over && before == FLIGHT_MODE_IDLE) {
-        estimator_amend(&flight->est.estimator, 0.0F, flight->integrity.felt.speed_mps,
-                        flight->integrity.bias_mps2);
+        estimator_amend(&flight->est.estimator, 0.0F, flight->evidence.felt_mps, flight->evidence.bias_mps2);
     }
     if (is_est_mode(now) && !is_est_mode(before) &&
         (handed_over || (before != FLIGHT_MODE_IDLE && !lifts(flight)))) {
@@ -281,7 +277,7 @@ static void step_pidt(flight_t *flight, const parameters_t *parameters, float re
 /* The tilt moves as in flight. An IMU that has fallen silent does not say so any longer. */
 static bool rocks(const flight_t *flight)
 {
-    return integrity_rocks(&flight->integrity) && est_law_has_imu(&flight->est);
+    return flight->evidence.rocks && est_law_has_imu(&flight->est);
 }
 
 static void step_descent(flight_t *flight, bool started)
@@ -299,7 +295,7 @@ static void step_descent(flight_t *flight, bool started)
 /* While the tilt is still, the vehicle probably stands, and nothing else tells it: time runs faster. */
 static void step_blind_descent(flight_t *flight, bool started)
 {
-    const bool still = integrity_calm(&flight->integrity) && est_law_has_imu(&flight->est);
+    const bool still = flight->evidence.calm && est_law_has_imu(&flight->est);
     const float step_s = still ? seconds_at_most(flight->supervisor.step_us, STEP_MAX_S) : 0.0F;
 
     flight->blind_ahead_s = started ? 0.0F : flight->blind_ahead_s + BLIND_STILL_TIMES * step_s;
@@ -471,12 +467,12 @@ static bool is_off_ground(const flight_t *flight, const flight_inputs_t *in)
     }
 }
 
-static flown_t describe(const flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)
+static situation_t describe(const flight_t *flight, const parameters_t *parameters, const flight_inputs_t *in)
 {
     const cascade_vehicle_t vehicle = est_law_vehicle(&flight->est, parameters);
     const supervisor_t *supervisor = &flight->supervisor;
 
-    return (flown_t){
+    return (situation_t){
         .step_s = supervisor->started ? seconds_at_most(in->now_us - supervisor->now_us, STEP_MAX_S) : 0.0F,
         .grounded = supervisor->state == FLIGHT_GROUND,
         .standing = lifts(flight),
@@ -492,81 +488,48 @@ static flown_t describe(const flight_t *flight, const parameters_t *parameters, 
     };
 }
 
-static void compare_height(flight_t *flight, const flown_t *flown, const flight_inputs_t *in)
-{
-    const bool is_new = in->height_valid && in->height_sequence != flight->scan_sequence;
-
-    if (is_new) {
-        flight->scan_sequence = in->height_sequence;
-        flight->scan_fit = integrity_scan(&flight->integrity, &in->altitude);
-    }
-    if (is_new && flight->scan_fit) {
-        integrity_height(&flight->integrity, flown, in->altitude.height_mm * 0.001F,
-                         seconds_at_most(in->height_time_us - flight->scan_time_us, GAP_LONG_S),
-                         seconds_at_most(in->height_age_us, GAP_LONG_S));
-        flight->scan_time_us = in->height_time_us;
-    }
-}
-
-/* Checks the inputs, and removes from *in what must not be used: heights in doubt, rejected tilts, frames
- * with such a tilt. */
+/* Checks the inputs, and removes from *in what must not be used. */
 static void check_inputs(flight_t *flight, const parameters_t *parameters, flight_inputs_t *in)
 {
-    integrity_t *integrity = &flight->integrity;
-    const flown_t flown = describe(flight, parameters, in);
+    const situation_t situation = describe(flight, parameters, in);
 
-    integrity_tilt(integrity, in->frames, in->frame_count, in->roll_rad, in->pitch_rad, in->attitude_time_us);
-    if (integrity->jumped > 0U) {
-        in->altitude.height_mm = altitude_at_tilt(&in->altitude, integrity->roll_rad, integrity->pitch_rad);
-    }
-    in->roll_rad = integrity->roll_rad;
-    in->pitch_rad = integrity->pitch_rad;
-    in->tilted_frames = integrity->tilted;
-    integrity_frames(integrity, &flown, in->frames, in->frame_count);
-    imu_axes_step(&flight->axes, in->frames, in->frame_count, flown.grounded, flown.noise_mps2);
-    integrity_thrust(integrity, &flown);
-    compare_height(flight, &flown, in);
-    in->height_valid = in->height_valid && flight->scan_fit && !integrity_doubts(integrity, DOUBT_SIGHT);
-    while (in->frame_count > 0U && (int32_t)(in->frames[0].sequence - integrity->unfit_sequence) <= 0) {
-        ++in->frames;
-        --in->frame_count;
-    }
+    imu_axes_step(&flight->axes, in->frames, in->frame_count, situation.grounded, situation.noise_mps2);
+    flight->evidence = sense_step(&flight->sense, &situation, in);
 }
 
 /* Reacts to doubts that were set or cleared in this cycle. */
 static void change_doubts(flight_t *flight, float gravity_n)
 {
-    const integrity_t *integrity = &flight->integrity;
-    const uint16_t come = integrity->doubts & (uint16_t)~flight->doubts;
-    const uint16_t gone = flight->doubts & (uint16_t)~integrity->doubts;
+    const evidence_t *evidence = &flight->evidence;
+    const uint16_t come = evidence->doubts & (uint16_t)~flight->doubts;
+    const uint16_t gone = flight->doubts & (uint16_t)~evidence->doubts;
 
     if ((come & DOUBT_SIGHT) != 0U) {
-        estimator_amend(&flight->est.estimator, flight->est.estimator.now.height_m - integrity->lost_m,
-                        integrity_speed_mps(integrity), integrity->bias_mps2);
+        estimator_amend(&flight->est.estimator, flight->est.estimator.now.height_m - evidence->lost_m,
+                        evidence->speed_mps, evidence->bias_mps2);
     }
     if ((come & DOUBT_IMU) != 0U && flight->learned_s < HOVER_TIME_S) {
         flight->hover_n = gravity_n; /* it may have been learned from a wrong accelerometer */
         flight->learned_s = 0.0F;
     }
-    const bool flies_unseen = (come & DOUBT_SIGHT) != 0U && integrity_sways(integrity);
+    const bool flies_unseen = (come & DOUBT_SIGHT) != 0U && evidence->sways;
     if (((come & DOUBT_SIGHT) != 0U || (gone & DOUBT_THRUST) != 0U) &&
         (flight->est.airborne || flies_unseen)) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
     if ((gone & DOUBT_SIGHT) != 0U && flight->est.airborne) { /* the heights are right after all */
-        estimator_amend(&flight->est.estimator, integrity->height_m, integrity->rise_mps,
-                        integrity->bias_mps2);
+        estimator_amend(&flight->est.estimator, evidence->height_m, evidence->rise_mps, evidence->bias_mps2);
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
-    est_law_set_without_authority(&flight->est, integrity_doubts(integrity, DOUBT_THRUST) ||
+    est_law_set_without_authority(&flight->est, doubts(evidence, DOUBT_THRUST) ||
                                                     (flight->throttle_unknown && !shows_effect(flight)));
-    est_law_set_accelerations_doubted(&flight->est, integrity_doubts(integrity, DOUBT_IMU));
+    est_law_set_accelerations_doubted(&flight->est, doubts(evidence, DOUBT_IMU));
     est_law_set_rocks(&flight->est, rocks(flight));
     if ((come & DOUBT_IMU) != 0U && flight->est.airborne) { /* the estimate used them until now */
-        estimator_amend(&flight->est.estimator, integrity->height_m, integrity->rise_mps, 0.0F);
+        estimator_amend(&flight->est.estimator, evidence->height_m, evidence->rise_mps, 0.0F);
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
-    flight->doubts = integrity->doubts;
+    flight->doubts = evidence->doubts;
 }
 
 /* A pilot may have the vehicle, and nothing tells: without a pin on the ground, or in a descent that began
@@ -575,10 +538,10 @@ static void change_doubts(flight_t *flight, float gravity_n)
 static bool may_be_carried(const flight_t *flight, const parameters_t *parameters)
 {
     if (flight->supervisor.state == FLIGHT_GROUND) {
-        return integrity_carried(&flight->integrity) &&
-               parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE && est_law_has_imu(&flight->est);
+        return flight->evidence.in_hands && parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE &&
+               est_law_has_imu(&flight->est);
     }
-    return flight->carried && integrity_sways(&flight->integrity) && est_law_has_imu(&flight->est);
+    return flight->carried && flight->evidence.sways && est_law_has_imu(&flight->est);
 }
 
 /* Without thrust it stands after a take-off that was given up, and after a landing. */
@@ -598,10 +561,10 @@ static void supervise(flight_t *flight, const parameters_t *parameters, const fl
         .known = has_estimate(flight) && estimator->confirmed,
         .height_mm = now->height_m * 1000.0F,
         .climb_mm_s = (now->speed_mps - now->terrain_mps) * 1000.0F,
-        .stands = integrity_stands(&flight->integrity) ||
+        .stands = flight->evidence.stands ||
                   (flight->thrust_n <= flight->idle_n && ends_without_thrust(flight)),
-        .upright = flight->integrity.upright,
-        .sways = integrity_sways(&flight->integrity),
+        .upright = flight->evidence.upright,
+        .sways = flight->evidence.sways,
         .rocks = rocks(flight),
         .carried = may_be_carried(flight, parameters),
     };
@@ -620,9 +583,8 @@ static bool may_stand(const flight_t *flight)
 {
     const flight_state_t state = flight->supervisor.state;
 
-    return lifts(flight)
-               ? !flight->est.airborne
-               : state == FLIGHT_FLOATING && !has_risen(flight) && !integrity_sways(&flight->integrity);
+    return lifts(flight) ? !flight->est.airborne
+                         : state == FLIGHT_FLOATING && !has_risen(flight) && !flight->evidence.sways;
 }
 
 /* True when the vehicle has left the ground, by the heights or by the accelerometer. For the laws that do not
@@ -631,14 +593,14 @@ static bool flies(const flight_t *flight)
 {
     return (flight->supervisor.state == FLIGHT_FLYING && (!flight->lifting || has_risen(flight))) ||
            ((flight->supervisor.state == FLIGHT_FLYING || flight->supervisor.state == FLIGHT_TAKEOFF) &&
-            flight->integrity.felt.speed_mps > LIFTED_MPS * flight->integrity.shaken);
+            flight->evidence.felt_mps > LIFTED_MPS * flight->evidence.shaken);
 }
 
 /* First hover thrust after lift-off: the delivered thrust less what acceleration and drag need. */
 static float lifting_n(const flight_t *flight, const parameters_t *parameters)
 {
     const cascade_vehicle_t vehicle = est_law_vehicle(&flight->est, parameters);
-    const float taken_mps2 = flight->est.lift_mps2 + vehicle.damping_per_s * flight->integrity.felt.speed_mps;
+    const float taken_mps2 = flight->est.lift_mps2 + vehicle.damping_per_s * flight->evidence.felt_mps;
     const float gravity_n = parameters->value[PARAMETER_GRAV];
     const float hover_n = flight->est.actuator.thrust_n - taken_mps2 / vehicle.authority_mps2_per_n;
 
@@ -651,21 +613,19 @@ static float lifting_n(const flight_t *flight, const parameters_t *parameters)
  * standstill, and with the bias from before; also where the heights are gone. */
 static void restart_estimate(flight_t *flight)
 {
-    const integrity_t *integrity = &flight->integrity;
+    const evidence_t *evidence = &flight->evidence;
     estimator_t *estimator = &flight->est.estimator;
-    const float height_m = integrity_doubts(integrity, DOUBT_SIGHT)
-                               ? estimator->now.height_m
-                               : integrity->height_m + integrity_moved_m(integrity);
+    const float height_m = doubts(evidence, DOUBT_SIGHT) ? estimator->now.height_m
+                                                         : evidence->height_m + evidence->moved_m;
 
-    estimator_start(estimator, height_m, integrity_pushed_mps(integrity),
-                    estimator->felt ? integrity->bias_mps2 : 0.0F);
+    estimator_start(estimator, height_m, evidence->pushed_mps, estimator->felt ? evidence->bias_mps2 : 0.0F);
 }
 
 /* The take-off was given up on the ground, and the accelerometer feels that the vehicle has left it after
  * all. */
 static void notice_lift(flight_t *flight, const parameters_t *parameters)
 {
-    if (has_estimate(flight) && integrity_felt_mps(&flight->integrity) > LIFTED_MPS) {
+    if (has_estimate(flight) && felt_mps(&flight->evidence) > LIFTED_MPS) {
         flight->hover_n = lifting_n(flight, parameters);
         flight->hover_learned = true;
         flight->not_lifted = false;
@@ -733,7 +693,7 @@ static flight_mode_t select_mode(const flight_t *flight, const flight_inputs_t *
         return FLIGHT_MODE_HOVER;
     }
     if (flight->supervisor.state == FLIGHT_COASTING && has_estimate(flight) && flight->est.airborne &&
-        integrity_doubts(&flight->integrity, DOUBT_SIGHT)) {
+        doubts(&flight->evidence, DOUBT_SIGHT)) {
         return FLIGHT_MODE_EST_SINK; /* the last heights were wrong: do not hold them */
     }
     return (uses_estimate(flight) ? modes_with_estimate : modes_without_estimate)[flight->supervisor.state];
@@ -781,7 +741,7 @@ static void watch_landing(flight_t *flight)
 {
     const supervisor_t *supervisor = &flight->supervisor;
     const bool weak = flight->throttle_unknown || flight->thrust_n < flight->hover_n - VAIN_LANDING_N;
-    const bool sinks = supervisor->height.height_mm < LOW_MM || flight->integrity.rise_mps < -LANDS_MPS;
+    const bool sinks = supervisor->height.height_mm < LOW_MM || flight->evidence.rise_mps < -LANDS_MPS;
 
     if (!weak || sinks || supervisor->state_us == 0U) {
         flight->vain_landing_s = 0.0F;
@@ -847,13 +807,12 @@ static float within_climb_n(const flight_t *flight, const parameters_t *paramete
 {
     const bool est = flight->mode == FLIGHT_MODE_EST_HOLD;
     const float unconfirmed_mps = flight->supervisor.state == FLIGHT_TAKEOFF ? TAKEOFF_MPS : UNCONFIRMED_MPS;
-    const float fastest_mps = integrity_unconfirmed(&flight->integrity)
+    const float fastest_mps = flight->evidence.unconfirmed
                                   ? unconfirmed_mps
                                   : parameters->value[PARAMETER_VUP] + CLIMB_MARGIN_MPS;
-    const bool fast = flight->integrity.pushed.speed_mps > fastest_mps - 0.1F &&
-                      (flight->supervisor.state != FLIGHT_TAKEOFF ||
-                       integrity_doubts(&flight->integrity, DOUBT_IMU) ||
-                       integrity_felt_mps(&flight->integrity) > fastest_mps - 0.1F);
+    const bool fast = flight->evidence.push_mps > fastest_mps - 0.1F &&
+                      (flight->supervisor.state != FLIGHT_TAKEOFF || doubts(&flight->evidence, DOUBT_IMU) ||
+                       felt_mps(&flight->evidence) > fastest_mps - 0.1F);
 
     if (!fast || !(est || (flight->mode == FLIGHT_MODE_LAW && flight->active_law == LAW_PIDT))) {
         return thrust_n;
@@ -869,7 +828,7 @@ static float within_descent_n(const flight_t *flight, const parameters_t *parame
     const bool holds = flight->mode == FLIGHT_MODE_EST_HOLD ||
                        (flight->mode == FLIGHT_MODE_LAW && flight->active_law == LAW_PIDT);
 
-    if (!holds || !integrity_terrain_fell(&flight->integrity)) {
+    if (!holds || !flight->evidence.terrain_fell) {
         return thrust_n;
     }
     const cascade_vehicle_t vehicle = est_law_vehicle(&flight->est, parameters);
@@ -927,7 +886,7 @@ static float floating_n(flight_t *flight, float thrust_n)
  * limit falls with time: the thrust that was held may be one that climbs. */
 static float within_power_n(flight_t *flight, float thrust_n)
 {
-    const bool doubted = integrity_doubts(&flight->integrity, DOUBT_THRUST);
+    const bool doubted = doubts(&flight->evidence, DOUBT_THRUST);
 
     if (!doubted && !flight->throttle_unknown) {
         flight->held_sunk_n = 0.0F;
@@ -944,9 +903,9 @@ static float within_power_n(flight_t *flight, float thrust_n)
     if (flight->mode == FLIGHT_MODE_IDLE) {
         return thrust_n;
     }
-    const float held_n = flight->integrity.held_n - flight->held_sunk_n;
-    return flight->integrity.held_down ? at_least(thrust_n, held_n - NO_AUTHORITY_WINDOW_N)
-                                       : at_most(thrust_n, held_n + NO_AUTHORITY_WINDOW_N);
+    const float held_n = flight->evidence.held_n - flight->held_sunk_n;
+    return flight->evidence.held_down ? at_least(thrust_n, held_n - NO_AUTHORITY_WINDOW_N)
+                                      : at_most(thrust_n, held_n + NO_AUTHORITY_WINDOW_N);
 }
 
 /* A landing that a height has shown near the ground ends there, also when the next heights are missing or
@@ -957,7 +916,7 @@ static float within_landing_n(flight_t *flight, float thrust_n)
     const flight_state_t state = flight->supervisor.state;
     const bool lands = state == FLIGHT_LANDING || (state == FLIGHT_DESCENDING && flight->landed_s > 0.0F);
 
-    if (!lands || integrity_doubts(&flight->integrity, DOUBT_SIGHT)) {
+    if (!lands || doubts(&flight->evidence, DOUBT_SIGHT)) {
         flight->landed_s = 0.0F;
         return thrust_n;
     }
@@ -974,10 +933,10 @@ static float within_landing_n(flight_t *flight, float thrust_n)
 static float stand_test_n(flight_t *flight, float thrust_n)
 {
     const bool by_estimate = flight->mode == FLIGHT_MODE_EST_SINK || flight->mode == FLIGHT_MODE_EST_LAND;
-    const bool acceleration_valid = !integrity_doubts(&flight->integrity, DOUBT_IMU);
+    const bool acceleration_valid = !doubts(&flight->evidence, DOUBT_IMU);
     const bool descent = by_estimate || (flight->mode == FLIGHT_MODE_BLIND_DESCENT && acceleration_valid);
 
-    if (!descent || !integrity_may_stand(&flight->integrity)) {
+    if (!descent || !flight->evidence.may_stand) {
         flight->stand_test_n = THRUST_MAX_N;
         return thrust_n;
     }
@@ -1036,8 +995,8 @@ static void write_outputs(const flight_t *flight, const parameters_t *parameters
     out->flags = (uint16_t)(supervisor->flags | (imu_missing ? FLIGHT_FLAG_ATTITUDE : 0U) |
                             (flight->out_of_reach ? FLIGHT_FLAG_REACH : 0U) |
                             (without_acceleration ? FLIGHT_FLAG_IMU : 0U) |
-                            flight->integrity.doubts * FLIGHT_FLAG_SIGHT);
-    out->doubts = flight->integrity.doubts;
+                            flight->evidence.doubts * FLIGHT_FLAG_SIGHT);
+    out->doubts = flight->evidence.doubts;
     out->imu_fault = flight->axes.fault;
     out->reference_m = supervisor->reference_m;
     out->estimate_mm = estimated ? estimator->now.height_m * 1000.0F : measured_mm;

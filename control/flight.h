@@ -12,13 +12,14 @@
 #include "control/descent.h"
 #include "control/est/effect.h"
 #include "control/est/est_law.h"
+#include "control/facts.h"
 #include "control/flight_io.h"
 #include "control/imu_axes.h"
-#include "control/integrity.h"
 #include "control/parameters.h"
 #include "control/pid.h"
 #include "control/pidt.h"
 #include "control/reach.h"
+#include "control/sense/sense.h"
 #include "control/supervisor.h"
 
 /* What computes the thrust. */
@@ -36,11 +37,9 @@ typedef enum {
 
 typedef struct {
     supervisor_t supervisor;
-    integrity_t integrity;
+    sense_t sense;
+    evidence_t evidence; /* of the present cycle, by `sense` */
     imu_axes_t axes;
-    uint32_t scan_sequence; /* latest scan that integrity_scan() judged */
-    uint32_t scan_time_us;  /* latest height that was compared with the witnesses */
-    bool scan_fit;
     uint16_t doubts;       /* DOUBT_* of the previous cycle */
     bool lifting;          /* since the ground the vehicle has not left it yet, as far as known */
     float landed_s;        /* time near the ground since a height of LANDING showed it, see touchdown.h */

@@ -59,7 +59,7 @@ typedef struct {
     float idle_n;   /* minimum of thrust_n: the idle while armed, else 0 */
     flight_state_t state;
     uint16_t flags;  /* FLIGHT_FLAG_* */
-    uint16_t doubts; /* DOUBT_*, integrity.h */
+    uint16_t doubts; /* DOUBT_*, facts.h */
     imu_fault_t imu_fault;
     float reference_m;   /* reference in force, 0 = none */
     float estimate_mm;   /* height that the law uses; NAN: not known */

@@ -26,7 +26,7 @@ typedef enum {
 #define FLIGHT_FLAG_LINK 16U    /* link supervision is on and the link is silent */
 #define FLIGHT_FLAG_TILT 32U    /* tilted over 45 degrees, or CUT */
 #define FLIGHT_FLAG_PILOT 64U   /* the pilot has the throttle */
-#define FLIGHT_FLAG_SIGHT 256U  /* doubt SIGHT: heights are not believed, integrity.h */
+#define FLIGHT_FLAG_SIGHT 256U  /* doubt SIGHT: heights are not believed, facts.h */
 #define FLIGHT_FLAG_IMU \
     512U /* doubt IMU: accelerations are not believed; or law EST gets none and flies without them */
 #define FLIGHT_FLAG_THRUST 1024U /* doubt THRUST: commands have no effect */

@@ -8,12 +8,11 @@
 
 #include "control/credible.h"
 
-#define GRAVITY_MPS2 9.80665F /* standard gravity */
-#define UNIT_SHARE 0.15F      /* chosen: above an accelerometer's errors, below a wrong unit's */
-#define MEAN_S 2.0F           /* chosen: 80 frames */
-#define HELD_S 1.0F           /* chosen: 40 frames */
-#define LEAST_RAD 0.0175F     /* chosen: 1 degree; the check needs a vehicle that stands so far off level */
-#define SHARE_OF_TILT 0.2F    /* chosen: a wrong sign makes 2, a wrong axis 1, a moving hand less than 0.2 */
+#define UNIT_SHARE 0.15F   /* chosen: above an accelerometer's errors, below a wrong unit's */
+#define MEAN_S 2.0F        /* chosen: 80 frames */
+#define HELD_S 1.0F        /* chosen: 40 frames */
+#define LEAST_RAD 0.0175F  /* chosen: 1 degree; the check needs a vehicle that stands so far off level */
+#define SHARE_OF_TILT 0.2F /* chosen: a wrong sign makes 2, a wrong axis 1, a moving hand less than 0.2 */
 #define NOISE_RAD_PER_MPS2 0.04F /* five sigma of the mean: 5 sqrt(25 ms / 4 s) / g */
 #define MENDED_SHARE 0.5F        /* chosen: the change must remove at least half of the disagreement */
 #define STEEP_RAD 1.05F          /* chosen: 60 degrees */
@@ -72,7 +71,7 @@ static imu_fault_t judge(const imu_axes_t *axes, float noise_mps2)
     const float apart = apart_rad(told, felt);
     const float least_rad = fmaxf(LEAST_RAD, NOISE_RAD_PER_MPS2 * noise_mps2);
 
-    if (fabsf(size_mps2 - GRAVITY_MPS2) > UNIT_SHARE * GRAVITY_MPS2) {
+    if (fabsf(size_mps2 - IMU_GRAVITY_MPS2) > UNIT_SHARE * IMU_GRAVITY_MPS2) {
         return IMU_UNIT;
     }
     if (axes->down_mps2 < 0.0F) {

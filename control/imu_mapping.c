@@ -1,6 +1,6 @@
 #include "control/imu_mapping.h"
 
-#define GRAVITY_MPS2 9.80665F /* standard gravity */
+#include "control/imu_sample.h"
 
 imu_mapping_t imu_mapping_of(const parameters_t *parameters)
 {
@@ -42,7 +42,7 @@ attitude_t imu_map_angles(const imu_mapping_t *mapping, const attitude_t *imu)
 void imu_map_acceleration(const imu_mapping_t *mapping, const imu_raw_t *raw, float *forward_mps2,
                           float *right_mps2, float *down_mps2)
 {
-    const float scale = GRAVITY_MPS2 / mapping->counts_per_g;
+    const float scale = IMU_GRAVITY_MPS2 / mapping->counts_per_g;
     const float right = is_roll(mapping->roll) ? raw->y_counts : -raw->x_counts;
     const float forward = is_roll(mapping->pitch) ? -raw->y_counts : raw->x_counts;
 

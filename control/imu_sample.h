@@ -8,6 +8,8 @@
 
 #include "control/attitude.h"
 
+#define IMU_GRAVITY_MPS2 9.80665F /* standard gravity */
+
 typedef struct {
     uint32_t sequence; /* frames so far; 0 = none yet */
     uint32_t arrival_us;
@@ -33,5 +35,11 @@ static inline uint16_t imu_first_after(const imu_sample_t *frames, uint16_t coun
     }
     return first;
 }
+
+/* Upward acceleration that the frame's accelerometer measures, gravity removed, m/s2. */
+float imu_up_mps2(const imu_sample_t *frame);
+
+/* The same; also writes the cosine of the frame's tilt. */
+float imu_up_and_upright(const imu_sample_t *frame, float *upright);
 
 #endif

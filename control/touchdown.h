@@ -20,7 +20,7 @@
 
 /* New time near the ground, from the time before (time_s) and one step of dt_s. Below LANDED_M it starts;
  * above LANDED_NO_MORE_M it is 0 again. From LANDED_ROCKS_S on it runs slowly while the tilt sways as in
- * flight (integrity_rocks()). */
+ * flight (sway_rocks()). */
 static inline float touchdown_time_s(float time_s, float height_m, bool rocks, float dt_s)
 {
     const bool low = height_m < LANDED_M || (time_s > 0.0F && height_m < LANDED_NO_MORE_M);

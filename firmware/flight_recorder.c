@@ -90,7 +90,7 @@ static void append_frame(const imu_sample_t *frame, uint32_t before_us)
     record.time_ms = clock.now_ms - before_us / US_PER_MS;
     record.roll_rad = frame->median.roll_rad;
     record.pitch_rad = frame->median.pitch_rad;
-    record.up_mps2 = motion_up_mps2(frame);
+    record.up_mps2 = imu_up_mps2(frame);
     record.age_us = isnan(record.height_mm) ? NAN : age_us(frame->arrival_us);
     append(&record);
 }
@@ -108,7 +108,7 @@ static float take_frames(const flight_inputs_t *in, bool apart)
             continue;
         }
         latest.frame = frame->sequence;
-        up_mps2 = motion_up_mps2(frame);
+        up_mps2 = imu_up_mps2(frame);
         if (apart && before_us > SAME_INSTANT_US &&
             latest.record.time_ms <= clock.now_ms - before_us / US_PER_MS) {
             append_frame(frame, before_us);

@@ -7,7 +7,7 @@
 #include <xdc/std.h>
 
 #include "firmware/boot.h"
-#include "control/integrity.h"
+#include "control/sense/verdict.h"
 #include "firmware/monitor.h"
 #include "firmware/pulse_stream.h"
 #include "firmware/schedule.h"
@@ -38,7 +38,7 @@ static void report(telemetry_line_t *line, const char *reset)
     flight_status_server_read(&now.flight);
     now.height_mm = ((now.flight.flags & FLIGHT_FLAG_HEIGHT) == 0U) ? altitude.altitude.height_mm : NAN;
     now.laser = urg_status_name(laser.status);
-    now.doubt = (reset == NULL) ? integrity_doubt_name(now.flight.doubts) : NULL;
+    now.doubt = (reset == NULL) ? verdict_doubt_name(now.flight.doubts) : NULL;
     now.reset = reset;
     published_telemetry(line, &now);
 }

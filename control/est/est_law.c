@@ -16,8 +16,7 @@
 #include "control/thrust.h"
 #include "control/touchdown.h"
 
-#define GRAVITY_MPS2 9.80665F /* standard gravity */
-#define STEP_MAX_S 0.5F       /* chosen: longer pauses count as this long */
+#define STEP_MAX_S 0.5F /* chosen: longer pauses count as this long */
 
 #define HOVER_BOUND_N 2.0F /* mass 20 % off (1.4 N), battery and gusts; see HOVER_MARGIN_N in flight.c */
 #define HOVER_SIGMA_START_N 0.7F     /* half of a mass 20 % off */
@@ -48,7 +47,7 @@
 #define LIFT_OFF_SIGMAS 1.2F /* chosen: of the measured noise, on a mean of three frames */
 #define LIFT_OFF_SHARE 0.7F  /* chosen: below the lightest vehicle, 0.8 of GRAV */
 #define LIFT_FILTER_S 0.08F  /* chosen: three frames */
-#define LIFT_TIME_S 1.0F     /* as STANDING_TIME_S in integrity.c */
+#define LIFT_TIME_S 1.0F     /* as STANDING_TIME_S in accelerometer.c */
 
 #define FALL_MPS2 3.96F          /* fitted: 0.4 g */
 #define BELOW_HOVER_N 3.0F       /* chosen: the rotors keep turning */
@@ -86,7 +85,8 @@ static inline cascade_vehicle_t vehicle_model(const est_law_t *law, const parame
     const estimator_t *e = &law->estimator;
     const float *value = parameters->value;
     cascade_vehicle_t vehicle = {
-        .authority_mps2_per_n = value[PARAMETER_GAIN] * GRAVITY_MPS2 / at_least(law->hover.thrust_n, 1.0F),
+        .authority_mps2_per_n = value[PARAMETER_GAIN] * IMU_GRAVITY_MPS2 /
+                                at_least(law->hover.thrust_n, 1.0F),
         .damping_per_s = value[PARAMETER_DAMP],
         .hover_n = law->hover.thrust_n,
         .need_n = law->hover.thrust_n,

@@ -15,7 +15,6 @@
 #include "control/credible.h"
 #include "control/seconds.h"
 
-#define GRAVITY_MPS2 9.80665F        /* standard gravity */
 #define FRAME_AGE_US UINT32_C(23600) /* 15 ms within the Razor (assumed), 8.6 ms on the wire */
 #define TILT_AGE_US UINT32_C(50000)  /* the median of five frames is two frames of 25 ms old */
 #define NO_RAYS_US UINT32_C(75000)   /* after other rays: a scan of 0.1 s, less a margin of a frame */
@@ -235,24 +234,6 @@ static void predict_now(estimator_t *e)
     e->now_us = time_us;
 }
 
-/* Also writes the cosine of the tilt. */
-static inline float up_and_upright(const imu_sample_t *frame, float *upright)
-{
-    const float level = cosf(frame->median.pitch_rad);
-    const float level_roll = cosf(frame->median.roll_rad);
-
-    *upright = level_roll * level;
-    return frame->down_mps2 * level * level_roll + frame->right_mps2 * level * sinf(frame->median.roll_rad) -
-           frame->forward_mps2 * sinf(frame->median.pitch_rad) - GRAVITY_MPS2;
-}
-
-float motion_up_mps2(const imu_sample_t *frame)
-{
-    float upright;
-
-    return up_and_upright(frame, &upright);
-}
-
 /* The second difference of white noise has six times its variance; what the vehicle does adds little to it.
  */
 static void measure_noise(estimator_t *e, float up_mps2)
@@ -381,7 +362,7 @@ void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motio
     const uint32_t time_us = frame->arrival_us - FRAME_AGE_US;
     const int32_t gap_us = (int32_t)(time_us - e->now_us);
     float upright;
-    const float told_mps2 = up_and_upright(frame, &upright);
+    const float told_mps2 = imu_up_and_upright(frame, &upright);
     const float up_mps2 = frame->has_acceleration ? told_mps2 : 0.0F;
     const bool usable = frame->has_acceleration && fabsf(up_mps2) < UP_MAX_MPS2;
     const bool lacks = !usable && e->felt && (uint32_t)(time_us - e->felt_us) <= ESTIMATOR_FRESH_US;

@@ -106,9 +106,6 @@ void estimator_predict(estimator_t *estimator, const imu_sample_t *frame, modell
 height_outcome_t estimator_fuse_height(estimator_t *estimator, const altitude_t *altitude, uint32_t rays_us,
                                        bool at_rest);
 
-/* Upward acceleration that the frame's accelerometer measures, gravity removed, m/s2. */
-float motion_up_mps2(const imu_sample_t *frame);
-
 /* The model alone predicts from now on, until a frame with accelerations comes. */
 void estimator_drop_accelerations(estimator_t *estimator);
 

@@ -376,7 +376,7 @@ static published_t published(void)
         .age_us = height ? height_age_us(&firmware) : NAN,
         .roll_rad = attitude ? firmware.imu.median.roll_rad : NAN,
         .pitch_rad = attitude ? firmware.imu.median.pitch_rad : NAN,
-        .up_mps2 = new_frame(&firmware.imu) ? motion_up_mps2(&firmware.imu) : NAN,
+        .up_mps2 = new_frame(&firmware.imu) ? imu_up_mps2(&firmware.imu) : NAN,
         .flight = firmware.flight,
     };
 

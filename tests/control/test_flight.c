@@ -526,12 +526,12 @@ void test_no_doubt_keeps_motors_running_on_the_ground(void)
     board(7.4, 2.4);
     calm_law();
     hover_at(0.8F);
-    flight.integrity.doubts = DOUBT_THRUST;
-    flight.integrity.held_n = 7.4F;
-    flight.integrity.held_down = true;
+    flight.sense.verdict.doubts = DOUBT_THRUST;
+    flight.sense.verdict.held_n = 7.4F;
+    flight.sense.verdict.held_down = true;
     setr(0.0F);
     run_until(FLIGHT_GROUND, 12.0);
-    flight.integrity.doubts = DOUBT_THRUST;
+    flight.sense.verdict.doubts = DOUBT_THRUST;
     run(0.3);
     TEST_ASSERT_EQUAL(FLIGHT_GROUND, out.state);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, out.doubts);

@@ -44,9 +44,22 @@ void setUp(void)
     f.est.actuator.thrust_n = GRAV_N;
     in = (flight_inputs_t){.attitude_ready = true, .has_throttle = true};
     memset(&out, 0, sizeof out);
+    f.evidence = (evidence_t){.teaches = true, .calm = true, .upright = 1.0F, .shaken = 1.0F};
 }
 
 void tearDown(void) {}
+
+static void sway(bool sways)
+{
+    f.evidence.sways = f.evidence.rocks = sways;
+    f.evidence.calm = !sways;
+}
+
+static void feel(float felt_mps)
+{
+    f.evidence.felt_mps = felt_mps;
+    f.evidence.felt_valid = true;
+}
 
 static void lose_the_estimate(void)
 {
@@ -61,7 +74,7 @@ void test_it_begins_with_nothing_known(void)
     flight_init(&f);
     TEST_ASSERT_EQUAL(supervisor.state, f.supervisor.state);
     TEST_ASSERT_EQUAL(supervisor.kept_state, f.supervisor.kept_state);
-    TEST_ASSERT_EQUAL_FLOAT(1.0F, f.integrity.shaken);
+    TEST_ASSERT_EQUAL_FLOAT(1.0F, f.sense.senses.accelerometer.shaken);
     TEST_ASSERT_EQUAL(IMU_SOUND, f.axes.fault);
     TEST_ASSERT_EQUAL_FLOAT(0.4F, f.est.estimator.noise_mps2);
     TEST_ASSERT_EQUAL(FLIGHT_MODE_IDLE, f.mode);
@@ -128,8 +141,7 @@ void test_heights_that_may_be_of_a_blocked_beam_teach_nothing_but_at_first(void)
     for (int i = 0; i < 4; i++) {
         setUp();
         f.est.hover.thrust_n = 7.4F;
-        f.integrity.unconfirmed = i == 0 || i == 3;
-        f.integrity.still = (i == 1) ? 9U : 8U;
+        f.evidence.teaches = i == 2;
         f.learned_s = (i == 3) ? 0.0F : 1.0F;
         follow_hover(&f);
         NEAR((i < 2) ? 7.0F : (i == 2) ? 7.04F : 7.4F, f.hover_n);
@@ -162,29 +174,16 @@ void test_what_the_flight_has_learned_is_given_up_on_the_ground(void)
     }
 }
 
-void test_nothing_is_learned_while_accelerometer_and_heights_are_apart(void)
-{
-    for (int apart = 0; apart < 2; apart++) {
-        setUp();
-        f.learned_s = 2.5F;
-        f.hover_n = 7.0F;
-        f.est.hover.thrust_n = 7.4F;
-        f.integrity.felt = (witness_t){.speed_mps = (apart != 0) ? 0.51F : 0.49F, .running_s = 2.0F};
-        update_hover(&f, GRAV_N);
-        TEST_ASSERT_EQUAL(apart == 0, f.hover_n > 7.001F);
-    }
-}
-
 void test_nothing_is_learned_without_sight_or_in_doubt(void)
 {
     for (int why = 0; why < 5; why++) {
         setUp();
         f.est.hover.thrust_n = 7.4F;
         f.supervisor.flags = (why == 1) ? FLIGHT_FLAG_HEIGHT : 0U;
-        f.integrity.doubts = (uint16_t)((why == 2)   ? DOUBT_SIGHT
-                                        : (why == 3) ? DOUBT_THRUST
-                                        : (why == 4) ? DOUBT_IMU
-                                                     : 0U);
+        f.evidence.doubts = (uint16_t)((why == 2)   ? DOUBT_SIGHT
+                                       : (why == 3) ? DOUBT_THRUST
+                                       : (why == 4) ? DOUBT_IMU
+                                                    : 0U);
         update_hover(&f, GRAV_N);
         NEAR((why == 0 || why == 4) ? 7.016F : 7.0F, f.hover_n);
     }
@@ -605,14 +604,14 @@ void test_the_cycles_follow_the_frames_while_a_pilot_flies(void)
 
 void test_the_tilt_of_a_silent_imu_does_not_rock(void)
 {
-    f.integrity.sway_rad2 = 1.0e-3F;
+    sway(true);
     TEST_ASSERT_TRUE(rocks(&f));
     step_descent(&f, false);
     TEST_ASSERT_TRUE(f.descent.rocks);
     f.est.frameless_s = 1.0F;
     TEST_ASSERT_FALSE(rocks(&f));
     f.est.frameless_s = 0.0F;
-    f.integrity.sway_rad2 = 0.0F;
+    sway(false);
     TEST_ASSERT_FALSE(rocks(&f));
 }
 
@@ -656,7 +655,7 @@ void test_each_mode_has_its_thrust(void)
     TEST_ASSERT_FALSE(run_mode(&f, &parameters, false));
     NEAR(7.2F, f.setpoint_n);
     f.mode = FLIGHT_MODE_BLIND_DESCENT;
-    f.integrity.sway_rad2 = 0.001F;
+    sway(true);
     f.supervisor.state_us = 5000000U;
     TEST_ASSERT_FALSE(run_mode(&f, &parameters, false));
     NEAR(descent_blind(7.2F, 5.0F), f.setpoint_n);
@@ -767,7 +766,7 @@ void test_the_flight_is_described_to_the_consistency_check(void)
     f.thrust_n = 7.9F;
     f.est.deadband.band_n = 0.2F;
     f.est.estimator.noise_mps2 = 0.7F;
-    flown_t flown = describe(&f, &parameters, &in);
+    situation_t flown = describe(&f, &parameters, &in);
     NEAR(0.1F, flown.step_s);
     TEST_ASSERT_FALSE(flown.grounded || flown.standing || flown.ordered);
     TEST_ASSERT_TRUE(flown.off_ground && flown.ours);
@@ -807,9 +806,9 @@ void test_it_has_risen_and_may_stand_by_heights_above_the_ground(void)
     TEST_ASSERT_TRUE(may_stand(&f));
     f.supervisor.state = FLIGHT_FLOATING;
     TEST_ASSERT_TRUE(may_stand(&f));
-    f.integrity.sway_rad2 = 1.0e-3F;
+    sway(true);
     TEST_ASSERT_FALSE(may_stand(&f));
-    f.integrity.sway_rad2 = 0.0F;
+    sway(false);
     f.supervisor.height.height_mm = 181.0F;
     TEST_ASSERT_FALSE(may_stand(&f));
 }
@@ -833,8 +832,8 @@ void test_it_flies_by_the_heights_or_by_a_felt_climb(void)
         f.supervisor.state = rows[i].state;
         f.lifting = rows[i].lifting;
         f.supervisor.height.height_mm = rows[i].height_mm;
-        f.integrity.felt.speed_mps = rows[i].felt_mps;
-        f.integrity.shaken = rows[i].shaken;
+        f.evidence.felt_mps = rows[i].felt_mps;
+        f.evidence.shaken = rows[i].shaken;
         TEST_ASSERT_EQUAL(rows[i].flies, flies(&f));
     }
 }
@@ -856,7 +855,7 @@ void test_a_take_off_that_was_given_up_flies_when_a_climb_is_felt(void)
         f.hover_learned = false;
         f.est.airborne = false;
         f.supervisor.state = rows[i].state;
-        f.integrity.felt = (witness_t){.speed_mps = rows[i].felt_mps, .running_s = 1.0F};
+        feel(rows[i].felt_mps);
         if (!rows[i].estimated) {
             lose_the_estimate();
         }
@@ -871,7 +870,7 @@ void test_the_first_hover_thrust_of_another_law_is_newtons(void)
 {
     f.est.actuator.thrust_n = 8.0F;
     f.est.lift_mps2 = 0.6F;
-    f.integrity.felt.speed_mps = 0.2F;
+    f.evidence.felt_mps = 0.2F;
     f.hover_n = 6.9F;
     NEAR(8.0F - 1.1F * 7.0F / 9.80665F, lifting_n(&f, &parameters));
     f.est.actuator.thrust_n = 11.0F;
@@ -889,10 +888,10 @@ void test_the_first_hover_thrust_of_another_law_is_newtons(void)
 
 void test_a_doubt_of_the_sight_corrects_the_estimate_by_the_error_found(void)
 {
-    f.integrity.doubts = DOUBT_SIGHT;
-    f.integrity.lost_m = -0.4F;
-    f.integrity.felt = (witness_t){.speed_mps = 0.3F, .running_s = 2.0F};
-    f.integrity.bias_mps2 = 0.15F;
+    f.evidence.doubts = DOUBT_SIGHT;
+    f.evidence.lost_m = -0.4F;
+    f.evidence.speed_mps = 0.3F;
+    f.evidence.bias_mps2 = 0.15F;
     f.thrust_n = 7.7F;
     f.hover_n = 7.1F;
     change_doubts(&f, GRAV_N);
@@ -902,7 +901,7 @@ void test_a_doubt_of_the_sight_corrects_the_estimate_by_the_error_found(void)
     NEAR(7.1F, f.est.hover.thrust_n);
     NEAR(7.7F, f.est.cascade.thrust_n);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, f.doubts);
-    f.integrity.lost_m = 0.4F;
+    f.evidence.lost_m = 0.4F;
     f.est.hover.thrust_n = 6.5F;
     change_doubts(&f, GRAV_N); /* once */
     NEAR(0.9F, f.est.estimator.now.height_m);
@@ -915,9 +914,9 @@ void test_the_end_of_a_doubt_of_the_sight_starts_the_estimate_from_the_heights(v
         setUp();
         f.est.airborne = airborne != 0;
         f.doubts = DOUBT_SIGHT;
-        f.integrity.height_m = 0.45F;
-        f.integrity.rise_mps = -0.6F;
-        f.integrity.bias_mps2 = 0.15F;
+        f.evidence.height_m = 0.45F;
+        f.evidence.rise_mps = -0.6F;
+        f.evidence.bias_mps2 = 0.15F;
         f.est.estimator.delayed.height_m = f.est.estimator.now.height_m = 0.9F;
         f.est.estimator.delayed.speed_mps = f.est.estimator.now.speed_mps = 2.0F;
         f.est.hover.thrust_n = 6.5F;
@@ -940,18 +939,18 @@ void test_a_vehicle_that_flies_unseen_is_engaged_and_one_on_the_ground_is_not(vo
     for (int sways = 0; sways < 2; sways++) {
         setUp();
         f.est.airborne = false;
-        f.integrity.doubts = DOUBT_SIGHT;
-        f.integrity.sway_rad2 = (sways != 0) ? 1.0e-3F : 0.0F;
+        f.evidence.doubts = DOUBT_SIGHT;
+        sway(sways != 0);
         change_doubts(&f, GRAV_N);
         TEST_ASSERT_EQUAL(sways != 0, f.est.airborne);
     }
     setUp();
     f.est.airborne = false;
-    f.integrity.sway_rad2 = 1.0e-3F; /* and no doubt */
-    f.integrity.doubts = DOUBT_THRUST;
+    sway(true); /* and no doubt */
+    f.evidence.doubts = DOUBT_THRUST;
     change_doubts(&f, GRAV_N);
     TEST_ASSERT_FALSE(f.est.airborne);
-    f.integrity.doubts = 0U;
+    f.evidence.doubts = 0U;
     change_doubts(&f, GRAV_N);
     TEST_ASSERT_FALSE(f.est.airborne);
 }
@@ -965,9 +964,9 @@ void test_a_doubt_of_the_imu_gives_up_what_was_learned_a_short_time(void)
         setUp();
         f.hover_n = 7.6F;
         f.learned_s = rows[i].learned_s;
-        f.integrity.doubts = DOUBT_IMU;
-        f.integrity.height_m = 0.45F;
-        f.integrity.rise_mps = -0.1F;
+        f.evidence.doubts = DOUBT_IMU;
+        f.evidence.height_m = 0.45F;
+        f.evidence.rise_mps = -0.1F;
         f.est.estimator.now.bias_mps2 = f.est.estimator.delayed.bias_mps2 = 0.7F;
         f.thrust_n = 6.8F;
         change_doubts(&f, GRAV_N);
@@ -983,8 +982,8 @@ void test_a_doubt_of_the_imu_gives_up_what_was_learned_a_short_time(void)
     }
     setUp();
     f.est.airborne = false;
-    f.integrity.doubts = DOUBT_IMU;
-    f.integrity.height_m = 0.45F;
+    f.evidence.doubts = DOUBT_IMU;
+    f.evidence.height_m = 0.45F;
     change_doubts(&f, GRAV_N);
     NEAR(0.5F, f.est.estimator.now.height_m);
     TEST_ASSERT_FALSE(f.est.airborne);
@@ -994,7 +993,7 @@ void test_a_doubt_of_the_thrust_or_an_unsure_pilot_leaves_the_law_without_author
 {
     for (int i = 0; i < 3; i++) {
         setUp();
-        f.integrity.doubts = (i == 1) ? DOUBT_THRUST : 0U;
+        f.evidence.doubts = (i == 1) ? DOUBT_THRUST : 0U;
         f.throttle_unknown = i == 2;
         change_doubts(&f, GRAV_N);
         TEST_ASSERT_EQUAL(i != 0, f.est.without_authority);
@@ -1004,100 +1003,10 @@ void test_a_doubt_of_the_thrust_or_an_unsure_pilot_leaves_the_law_without_author
     f.hover_n = 7.3F;
     change_doubts(&f, GRAV_N);
     NEAR(7.3F, f.est.hover.thrust_n);
-    f.integrity.sway_rad2 = 1.0e-3F;
+    sway(true);
     TEST_ASSERT_FALSE(f.est.rocks);
     change_doubts(&f, GRAV_N);
     TEST_ASSERT_TRUE(f.est.rocks);
-}
-
-/* ---- inputs */
-
-void test_a_new_scan_is_judged_once_and_its_height_compared(void)
-{
-    in.height_valid = true;
-    in.height_sequence = 7U;
-    in.altitude = (altitude_t){.valid = true, .height_mm = 510.0F, .slant_mm = 700.0F, .spread_mm = 9.0F};
-    in.height_time_us = 1100000U;
-    f.scan_time_us = 1000000U;
-    f.integrity.has_height = true;
-    f.integrity.height_m = 0.5F;
-    f.integrity.felt = (witness_t){.speed_mps = 0.2F, .running_s = 2.0F};
-    in.height_age_us = 70000U;
-    const flown_t flown = describe(&f, &parameters, &in);
-    compare_height(&f, &flown, &in);
-    TEST_ASSERT_TRUE(f.scan_fit);
-    TEST_ASSERT_EQUAL_UINT32(7U, f.scan_sequence);
-    TEST_ASSERT_EQUAL_UINT32(1100000U, f.scan_time_us);
-    NEAR(0.51F, f.integrity.height_m);
-    NEAR(0.1F / 3.0F, f.integrity.rise_mps); /* 0.1 m/s through 0.1 of 0.3 s */
-    NEAR(0.01F + 0.2F * 0.07F, f.integrity.felt.seen_m);
-    in.altitude.height_mm = 520.0F;
-    compare_height(&f, &flown, &in);
-    NEAR(0.51F, f.integrity.height_m);
-    in.height_sequence = 8U;
-    in.altitude.height_mm = -60.0F;
-    in.height_time_us = 1200000U;
-    compare_height(&f, &flown, &in);
-    TEST_ASSERT_FALSE(f.scan_fit);
-    NEAR(0.51F, f.integrity.height_m);
-    TEST_ASSERT_EQUAL_UINT32(1100000U, f.scan_time_us);
-    in.height_sequence = 9U;
-    in.height_valid = false;
-    compare_height(&f, &flown, &in);
-    TEST_ASSERT_EQUAL_UINT32(8U, f.scan_sequence);
-}
-
-void test_only_inputs_that_are_credible_are_passed_on(void)
-{
-    imu_sample_t frames[3];
-    memset(frames, 0, sizeof frames);
-    for (uint32_t i = 0U; i < 3U; i++) {
-        frames[i] = (imu_sample_t){.sequence = 11U + i, .arrival_us = 1000000U + 25000U * i, .ready = true};
-    }
-    frames[1].median.roll_rad = 1.0F; /* a jump */
-    frames[1].level = frames[1].median;
-    frames[2].median.roll_rad = 1.0F;
-    frames[2].level = frames[2].median;
-    in.frames = frames;
-    in.frame_count = 3U;
-    in.roll_rad = 1.0F;
-    in.pitch_rad = 0.5F;
-    in.tilted_frames = 9U;
-    in.height_valid = true;
-    f.scan_fit = true;
-    in.altitude = (altitude_t){.valid = true, .height_mm = 100.0F, .slant_mm = 700.0F, .leg_mm = 100.0F};
-    check_inputs(&f, &parameters, &in);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, in.roll_rad); /* the accepted ones */
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, in.pitch_rad);
-    TEST_ASSERT_EQUAL_UINT16(0U, in.tilted_frames);
-    NEAR(600.0F, in.altitude.height_mm);
-    TEST_ASSERT_EQUAL_UINT16(0U, in.frame_count);
-    TEST_ASSERT_TRUE(in.height_valid);
-    f.integrity.doubts = DOUBT_SIGHT;
-    check_inputs(&f, &parameters, &in);
-    TEST_ASSERT_FALSE(in.height_valid);
-    f.integrity.doubts = 0U;
-    f.scan_fit = false;
-    in.height_valid = true;
-    check_inputs(&f, &parameters, &in);
-    TEST_ASSERT_FALSE(in.height_valid);
-}
-
-void test_frames_after_a_rejected_one_are_passed_on(void)
-{
-    imu_sample_t frames[3];
-    memset(frames, 0, sizeof frames);
-    for (uint32_t i = 0U; i < 3U; i++) {
-        frames[i].sequence = 11U + i;
-        frames[i].ready = true;
-    }
-    f.integrity.unfit_sequence = 12U;
-    f.integrity.tilt_sequence = 13U;
-    in.frames = frames;
-    in.frame_count = 3U;
-    check_inputs(&f, &parameters, &in);
-    TEST_ASSERT_EQUAL_UINT16(1U, in.frame_count);
-    TEST_ASSERT_EQUAL_UINT32(13U, in.frames[0].sequence);
 }
 
 /* ---- which law and mode */
@@ -1165,13 +1074,13 @@ void test_heights_found_wrong_are_not_held_while_coasting(void)
     for (int i = 0; i < 4; i++) {
         setUp();
         f.supervisor.state = (i == 3) ? FLIGHT_FLYING : FLIGHT_COASTING;
-        f.integrity.doubts = (i == 1) ? DOUBT_IMU : DOUBT_SIGHT;
+        f.evidence.doubts = (i == 1) ? DOUBT_IMU : DOUBT_SIGHT;
         f.est.airborne = i != 2;
         TEST_ASSERT_EQUAL((i == 0) ? FLIGHT_MODE_EST_SINK : FLIGHT_MODE_EST_HOLD, select_mode(&f, &in));
     }
     setUp();
     f.supervisor.state = FLIGHT_COASTING;
-    f.integrity.doubts = DOUBT_SIGHT;
+    f.evidence.doubts = DOUBT_SIGHT;
     lose_the_estimate();
     f.active_law = LAW_PIDT;
     TEST_ASSERT_EQUAL(FLIGHT_MODE_HOVER, select_mode(&f, &in));
@@ -1298,9 +1207,9 @@ static float climbing_n(flight_state_t state, flight_mode_t mode, bool unconfirm
 {
     f.supervisor.state = state;
     f.mode = mode;
-    f.integrity.unconfirmed = unconfirmed;
-    f.integrity.pushed.speed_mps = pushed_mps;
-    f.integrity.felt = (witness_t){.speed_mps = felt_mps, .running_s = 2.0F};
+    f.evidence.unconfirmed = unconfirmed;
+    f.evidence.push_mps = pushed_mps;
+    feel(felt_mps);
     return within_climb_n(&f, &parameters, 11.0F);
 }
 
@@ -1326,7 +1235,7 @@ void test_a_descent_over_a_far_fall_of_the_terrain_has_one_too(void)
 {
     const float least_n = 7.0F - 0.35F * 2.5F * 7.0F / 9.80665F;
     NEAR(3.0F, within_descent_n(&f, &parameters, 3.0F));
-    f.integrity.terrain_fell = true;
+    f.evidence.terrain_fell = true;
     NEAR(least_n, within_descent_n(&f, &parameters, 3.0F));
     NEAR(8.0F, within_descent_n(&f, &parameters, 8.0F));
     f.mode = FLIGHT_MODE_LAW;
@@ -1339,11 +1248,11 @@ void test_a_descent_over_a_far_fall_of_the_terrain_has_one_too(void)
 
 void test_a_thrust_in_doubt_stays_near_the_held_one_on_one_side(void)
 {
-    f.integrity.doubts = DOUBT_THRUST;
-    f.integrity.held_n = 7.2F;
+    f.evidence.doubts = DOUBT_THRUST;
+    f.evidence.held_n = 7.2F;
     NEAR(7.8F, within_power_n(&f, 11.0F));
     NEAR(3.0F, within_power_n(&f, 3.0F));
-    f.integrity.held_down = true;
+    f.evidence.held_down = true;
     NEAR(6.6F, within_power_n(&f, 3.0F));
     NEAR(11.0F, within_power_n(&f, 11.0F));
     f.supervisor.state = FLIGHT_LANDING;
@@ -1358,7 +1267,7 @@ void test_a_thrust_in_doubt_stays_near_the_held_one_on_one_side(void)
     TEST_ASSERT_EQUAL_FLOAT(0.0F, f.held_sunk_n);
     f.held_sunk_n = 0.5F;
     f.supervisor.state = FLIGHT_LANDING;
-    f.integrity.doubts = DOUBT_SIGHT;
+    f.evidence.doubts = DOUBT_SIGHT;
     f.mode = FLIGHT_MODE_EST_LAND;
     NEAR(3.0F, within_power_n(&f, 3.0F));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, f.held_sunk_n);
@@ -1386,8 +1295,8 @@ void test_the_end_of_a_descent_is_tried_by_a_newton_a_second(void)
     for (int i = 0; i < 7; i++) {
         setUp();
         f.mode = rows[i].mode;
-        f.integrity.doubts = rows[i].doubts;
-        f.integrity.still_s = rows[i].still ? 1.1F : 0.9F;
+        f.evidence.doubts = rows[i].doubts;
+        f.evidence.may_stand = rows[i].still;
         f.stand_test_n = 6.0F;
         f.thrust_n = 6.5F;
         NEAR(rows[i].tries ? 5.9F : 8.0F, stand_test_n(&f, 8.0F));
@@ -1396,7 +1305,7 @@ void test_the_end_of_a_descent_is_tried_by_a_newton_a_second(void)
     }
     setUp();
     f.mode = FLIGHT_MODE_EST_SINK;
-    f.integrity.still_s = 1.1F;
+    f.evidence.may_stand = true;
     f.stand_test_n = THRUST_MAX_N;
     f.thrust_n = 6.5F;
     NEAR(6.4F, stand_test_n(&f, 8.0F));
@@ -1413,17 +1322,17 @@ void test_time_runs_three_times_as_fast_in_a_blind_descent_whose_tilt_is_still(v
     f.supervisor.state = FLIGHT_DESCENDING;
     f.supervisor.state_us = 10000000U;
     f.blind_ahead_s = 9.0F;
-    f.integrity.sway_rad2 = 2.4e-4F; /* 0.89 degrees rms */
+    sway(false);
     (void)run_mode(&f, &parameters, true);
     NEAR(descent_blind(7.2F, 10.0F), f.setpoint_n);
     (void)run_mode(&f, &parameters, false); /* 0.1 s */
     NEAR(descent_blind(7.2F, 10.2F), f.setpoint_n);
     (void)run_mode(&f, &parameters, false);
     NEAR(descent_blind(7.2F, 10.4F), f.setpoint_n);
-    f.integrity.sway_rad2 = 2.6e-4F;
+    f.evidence.calm = false;
     (void)run_mode(&f, &parameters, false);
     NEAR(descent_blind(7.2F, 10.4F), f.setpoint_n);
-    f.integrity.sway_rad2 = 0.0F;
+    sway(false);
     f.est.frameless_s = 0.3F; /* an IMU that tells nothing is still too */
     (void)run_mode(&f, &parameters, false);
     NEAR(descent_blind(7.2F, 10.4F), f.setpoint_n);
@@ -1449,9 +1358,9 @@ void test_a_landing_near_the_ground_goes_on_there_while_heights_are_missing(void
     NEAR(8.0F, within_landing_n(&f, 8.0F));
     f.supervisor.height.height_mm = 30.0F;
     NEAR(7.3F, within_landing_n(&f, 8.0F));
-    f.integrity.doubts = DOUBT_SIGHT;
+    f.evidence.doubts = DOUBT_SIGHT;
     NEAR(8.0F, within_landing_n(&f, 8.0F));
-    f.integrity.doubts = 0U;
+    f.evidence.doubts = 0U;
     f.landed_s = 1.0F;
     f.supervisor.state = FLIGHT_LOWERING;
     NEAR(8.0F, within_landing_n(&f, 8.0F));
@@ -1664,7 +1573,7 @@ void test_each_lack_has_its_flag(void)
         f.est.frameless_s = (i == 1 || i == 5) ? 1.0F : 0.0F;
         f.est.estimator.felt = i != 2 && i != 5;
         f.out_of_reach = i == 3;
-        f.integrity.doubts = (uint16_t)((i == 4) ? (DOUBT_SIGHT | DOUBT_THRUST) : 0U);
+        f.evidence.doubts = (uint16_t)((i == 4) ? (DOUBT_SIGHT | DOUBT_THRUST) : 0U);
         write_outputs(&f, &parameters, &out);
         static const uint16_t flags[] = {0U,
                                          FLIGHT_FLAG_ATTITUDE,
@@ -1673,7 +1582,7 @@ void test_each_lack_has_its_flag(void)
                                          FLIGHT_FLAG_SIGHT * (DOUBT_SIGHT | DOUBT_THRUST),
                                          FLIGHT_FLAG_ATTITUDE};
         TEST_ASSERT_EQUAL_UINT16(flags[i], out.flags);
-        TEST_ASSERT_EQUAL_UINT16(f.integrity.doubts, out.doubts);
+        TEST_ASSERT_EQUAL_UINT16(f.evidence.doubts, out.doubts);
     }
     setUp();
     set(PARAMETER_LAW, LAW_PID); /* it needs no IMU */
@@ -1714,16 +1623,16 @@ void test_it_may_be_carried_on_the_ground_without_a_pin_or_in_a_descent_that_beg
     for (int i = 0; i < 3; i++) {
         setUp();
         f.supervisor.state = FLIGHT_GROUND;
-        f.integrity.carried_s = (i == 1) ? 1.4F : 1.6F;
+        f.evidence.in_hands = i != 1;
         set(PARAMETER_SEL, (i == 2) ? (float)SEL_PIN : (float)SEL_NONE);
         TEST_ASSERT_EQUAL(i == 0, may_be_carried(&f, &parameters));
     }
     f.supervisor.state = FLIGHT_DESCENDING;
-    f.integrity.sway_rad2 = 1.0e-3F;
+    sway(true);
     TEST_ASSERT_FALSE(may_be_carried(&f, &parameters));
     f.carried = true;
     TEST_ASSERT_TRUE(may_be_carried(&f, &parameters));
-    f.integrity.sway_rad2 = 0.0F;
+    sway(false);
     TEST_ASSERT_FALSE(may_be_carried(&f, &parameters));
 }
 
@@ -1804,7 +1713,7 @@ void test_a_landing_with_too_little_thrust_to_fly_that_does_not_sink_is_in_vain(
         f.supervisor.state = FLIGHT_LANDING;
         f.supervisor.state_us = rows[i].state_us;
         f.supervisor.height.height_mm = rows[i].height_mm;
-        f.integrity.rise_mps = rows[i].rise_mps;
+        f.evidence.rise_mps = rows[i].rise_mps;
         f.thrust_n = rows[i].thrust_n;
         f.vain_landing_s = rows[i].before_s;
         watch_landing(&f);
@@ -1852,8 +1761,8 @@ void test_a_descent_from_a_pilots_hands_starts_from_the_felt_speed(void)
     for (int i = 0; i < 3; i++) {
         setUp();
         f.supervisor.state = (i == 1) ? FLIGHT_LANDING : FLIGHT_DESCENDING;
-        f.integrity.felt.speed_mps = 0.3F;
-        f.integrity.bias_mps2 = 0.15F;
+        f.evidence.felt_mps = 0.3F;
+        f.evidence.bias_mps2 = 0.15F;
         change_mode(&f, (i == 2) ? FLIGHT_MODE_LAW : FLIGHT_MODE_IDLE, FLIGHT_MODE_EST_SINK, GRAV_N);
         NEAR((i == 0) ? 0.3F : 0.0F, f.est.estimator.now.speed_mps);
         NEAR((i == 0) ? 0.15F : 0.0F, f.est.estimator.now.bias_mps2);
@@ -1878,11 +1787,11 @@ void test_an_imu_that_is_back_starts_the_estimate_from_thrust_and_heights(void)
         f.est.airborne = rows[i].airborne;
         f.est.frameless_s = rows[i].frames ? 0.0F : 1.0F;
         f.est.estimator.felt = rows[i].felt;
-        f.integrity.doubts = rows[i].doubted ? DOUBT_SIGHT : 0U;
-        f.integrity.height_m = 0.7F;
-        f.integrity.bias_mps2 = 0.25F;
-        f.integrity.pushed = (witness_t){
-            .speed_mps = 0.2F, .off_m = 0.05F, .seen_m = 0.1F, .running_s = 2.0F};
+        f.evidence.doubts = rows[i].doubted ? DOUBT_SIGHT : 0U;
+        f.evidence.height_m = 0.7F;
+        f.evidence.bias_mps2 = 0.25F;
+        f.evidence.pushed_mps = 0.24F;
+        f.evidence.moved_m = 0.05F;
         update_estimator(&f, &parameters, &in);
         TEST_ASSERT_EQUAL(rows[i].starts, f.est.estimator.initialised);
         if (rows[i].starts) {
@@ -1929,7 +1838,7 @@ void test_a_law_that_goes_on_without_the_estimate_starts_near_hover(void)
 
 void test_a_doubted_accelerometer_does_not_free_a_climb_at_take_off(void)
 {
-    f.integrity.doubts = DOUBT_IMU;
+    f.evidence.doubts = DOUBT_IMU;
     TEST_ASSERT_TRUE(climbing_n(FLIGHT_TAKEOFF, FLIGHT_MODE_EST_HOLD, true, 0.51F, 0.0F) < 9.0F);
 }
 

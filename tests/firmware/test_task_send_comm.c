@@ -10,7 +10,7 @@
 #include "mock_servers.h"
 #include "mock_timebase.h"
 #include "mock_xbee_port.h"
-#include "control/integrity.h"
+#include "control/facts.h"
 #include "unity.h"
 
 static altitude_sample_t altitude;

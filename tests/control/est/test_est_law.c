@@ -368,9 +368,9 @@ void test_a_doubt_of_the_thrust_gives_none_on_the_ground(void)
     hover_at(0.6F);
     setr(0.0F);
     run_until(FLIGHT_GROUND, 15.0);
-    flight.integrity.doubts = DOUBT_THRUST;
-    flight.integrity.held_n = 7.3F;
-    flight.integrity.held_down = true;
+    flight.sense.verdict.doubts = DOUBT_THRUST;
+    flight.sense.verdict.held_n = 7.3F;
+    flight.sense.verdict.held_down = true;
     run(1.0);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, out.thrust_n);
 }

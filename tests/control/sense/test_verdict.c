@@ -1,49 +1,45 @@
 /* Every limit of the verdicts, from both sides: the evidence is written into the state, one height is judged.
  * A limit that moves, or a condition that falls out, changes what a flight doubts; it has to be changed here
  * on purpose. */
-#include "control/integrity.h"
-#include "unity.h"
-
-#include <math.h>
-#include <string.h>
+#include "sense/sensed.h"
 
 /* So short that no sum moves: what is written is what is judged. */
 #define AT_ONCE_S 1.0e-9F
 #define HOVER_N 7.0F
 
-static integrity_t it;
-static flown_t flown;
+static sense_t it;
+static situation_t flown;
 
 /* In the air, warm and proved; the heights do not move, nobody contradicts. */
 void setUp(void)
 {
-    integrity_init(&it);
-    it.has_height = it.proved = true;
-    it.still = 1U; /* the slant may be that of a blocked beam */
-    it.height_m = it.near_m = 0.5F;
-    it.unmoved_s = 1.0F;
-    it.since_rise_s = 1.5F;
-    it.felt.running_s = it.pushed.running_s = 2.0F;
-    it.lagged_n = HOVER_N;
-    flown = (flown_t){.step_s = 0.025F,
-                      .off_ground = true,
-                      .ours = true,
-                      .thrust_n = HOVER_N,
-                      .hover_n = HOVER_N,
-                      .authority_mps2_per_n = 1.4F,
-                      .damping_per_s = 2.5F,
-                      .wanted_m = 0.5F,
-                      .noise_mps2 = 0.4F};
+    sense_init(&it);
+    it.senses.heights.known = it.senses.confirmation.proved = true;
+    it.senses.beam.still = 1U; /* the slant may be that of a blocked beam */
+    it.senses.heights.height_m = it.senses.confirmation.near_m = 0.5F;
+    it.senses.heights.unmoved_s = 1.0F;
+    it.senses.heights.since_rise_s = 1.5F;
+    it.senses.accelerometer.felt.running_s = it.senses.push.pushed.running_s = 2.0F;
+    it.senses.push.lagged_n = HOVER_N;
+    flown = (situation_t){.step_s = 0.025F,
+                          .off_ground = true,
+                          .ours = true,
+                          .thrust_n = HOVER_N,
+                          .hover_n = HOVER_N,
+                          .authority_mps2_per_n = 1.4F,
+                          .damping_per_s = 2.5F,
+                          .wanted_m = 0.5F,
+                          .noise_mps2 = 0.4F};
 }
 
 void tearDown(void) {}
 
 static uint16_t judged(float felt_m, float pushed_m)
 {
-    it.felt.off_m = felt_m;
-    it.pushed.off_m = pushed_m;
-    integrity_height(&it, &flown, it.height_m, AT_ONCE_S, 0.0F);
-    return it.doubts;
+    it.senses.accelerometer.felt.off_m = felt_m;
+    it.senses.push.pushed.off_m = pushed_m;
+    sensed_height(&it, &flown, it.senses.heights.height_m, AT_ONCE_S, 0.0F);
+    return it.verdict.doubts;
 }
 
 /* The same on the evidence that setUp() makes and `change` changes. */
@@ -64,44 +60,44 @@ static void want(float m)
 }
 static void rising(float mps)
 {
-    it.rise_mps = mps;
+    it.senses.heights.rise_mps = mps;
 }
 static void felt_for(float s)
 {
-    it.felt.running_s = s;
+    it.senses.accelerometer.felt.running_s = s;
 }
 static void pushed_for(float s)
 {
-    it.pushed.running_s = s;
+    it.senses.push.pushed.running_s = s;
 }
 static void shaken(float times)
 {
-    it.shaken = times;
+    it.senses.accelerometer.shaken = times;
 }
 static void without_imu(float value)
 {
     (void)value;
-    it.doubts = DOUBT_IMU;
+    it.verdict.doubts = DOUBT_IMU;
 }
 static void moved_s_ago(float s)
 {
-    it.unmoved_s = s;
+    it.senses.heights.unmoved_s = s;
 }
 static void way(float m)
 {
-    it.way_m = m;
+    it.senses.heights.way_m = m;
 }
 
 static void flat(float wanted_m)
 {
-    it.flat = true;
-    it.white = 6U;
+    it.senses.beam.flat = true;
+    it.senses.beam.white = 6U;
     flown.wanted_m = wanted_m;
 }
 static void flat_by_chance(float wanted_m)
 {
     flat(wanted_m);
-    it.white = 5U;
+    it.senses.beam.white = 5U;
 }
 
 typedef struct {
@@ -143,7 +139,7 @@ void test_both_witnesses_together_doubt_the_heights_one_by_half_a_metre(void)
 
 static void slant_alive(float wanted_m)
 {
-    it.still = 0U;
+    it.senses.beam.still = 0U;
     flown.wanted_m = wanted_m;
 }
 
@@ -230,8 +226,8 @@ void test_the_accelerometer_alone_doubts_the_heights_beyond_six_decimetres(void)
 static void low_and_still(float scans)
 {
     pushed_for(0.3F);
-    it.height_m = 0.05F;
-    it.still = (uint16_t)scans;
+    it.senses.heights.height_m = 0.05F;
+    it.senses.beam.still = (uint16_t)scans;
 }
 void test_near_the_ground_the_accelerometer_alone_doubts_only_a_still_beam(void)
 {
@@ -247,16 +243,16 @@ void test_near_the_ground_the_accelerometer_alone_doubts_only_a_still_beam(void)
 void test_the_error_of_the_height_is_the_mean_of_the_witnesses_that_count(void)
 {
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(-0.52F, -0.30F));
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.41F, it.lost_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.felt.seen_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.pushed.off_m);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.41F, it.verdict.lost_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.push.pushed.off_m);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged_with(pushed_for, 0.3F, -0.7F, 5.0F));
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.7F, it.lost_m);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.7F, it.verdict.lost_m);
     setUp();
-    it.doubts = DOUBT_IMU;
-    it.white = 19U;
+    it.verdict.doubts = DOUBT_IMU;
+    it.senses.beam.white = 19U;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.7F, -0.3F));
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.3F, it.lost_m);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.3F, it.verdict.lost_m);
 }
 
 /* ---- DOUBT_SIGHT: both run away */
@@ -264,9 +260,9 @@ void test_the_error_of_the_height_is_the_mean_of_the_witnesses_that_count(void)
 static uint16_t run_away(float felt_mps, float pushed_mps, float rise_mps, float felt_m, float pushed_m)
 {
     setUp();
-    it.felt.speed_mps = felt_mps;
-    it.pushed.speed_mps = pushed_mps;
-    it.rise_mps = rise_mps;
+    it.senses.accelerometer.felt.speed_mps = felt_mps;
+    it.senses.push.pushed.speed_mps = pushed_mps;
+    it.senses.heights.rise_mps = rise_mps;
     return judged(felt_m, pushed_m);
 }
 
@@ -294,11 +290,11 @@ void test_a_speed_is_taken_against_the_rate_of_the_heights(void)
 void test_of_a_noisy_accelerometer_a_share_of_the_speed_counts(void)
 {
     setUp();
-    it.shaken = 2.0F;
-    it.felt.speed_mps = 1.39F;
-    it.pushed.speed_mps = 0.71F;
+    it.senses.accelerometer.shaken = 2.0F;
+    it.senses.accelerometer.felt.speed_mps = 1.39F;
+    it.senses.push.pushed.speed_mps = 0.71F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.8F, -0.39F));
-    it.felt.speed_mps = 1.41F;
+    it.senses.accelerometer.felt.speed_mps = 1.41F;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(-0.8F, -0.39F));
 }
 
@@ -308,9 +304,9 @@ void test_of_a_noisy_accelerometer_a_share_of_the_speed_counts(void)
 static uint16_t climb(float slower_mps, float rise_mps, float felt_m, float pushed_m)
 {
     setUp();
-    it.unmoved_s = 0.0F;
-    it.slower_mps = slower_mps;
-    it.rise_mps = rise_mps;
+    it.senses.heights.unmoved_s = 0.0F;
+    it.senses.slower_mps = slower_mps;
+    it.senses.heights.rise_mps = rise_mps;
     return judged(felt_m, pushed_m);
 }
 
@@ -331,12 +327,12 @@ void test_a_climb_of_both_witnesses_doubts_heights_that_have_stopped_at_once(voi
 static uint16_t climb_with(uint16_t doubts, float shaken, float felt_s, float pushed_s)
 {
     setUp();
-    it.unmoved_s = 0.0F;
-    it.slower_mps = 1.0F;
-    it.doubts = doubts;
-    it.shaken = shaken;
-    it.felt.running_s = felt_s;
-    it.pushed.running_s = pushed_s;
+    it.senses.heights.unmoved_s = 0.0F;
+    it.senses.slower_mps = 1.0F;
+    it.verdict.doubts = doubts;
+    it.senses.accelerometer.shaken = shaken;
+    it.senses.accelerometer.felt.running_s = felt_s;
+    it.senses.push.pushed.running_s = pushed_s;
     return (uint16_t)(judged(-0.3F, -0.2F) & DOUBT_SIGHT);
 }
 
@@ -353,16 +349,16 @@ void test_a_climb_unseen_needs_both_witnesses_and_a_quiet_accelerometer(void)
 void test_a_doubt_of_the_heights_takes_back_what_they_have_corrected(void)
 {
     setUp();
-    it.felt.speed_mps = 0.9F;
-    it.bias_mps2 = 0.2F;
-    it.pulled_m_s = -0.5F;
+    it.senses.accelerometer.felt.speed_mps = 0.9F;
+    it.senses.accelerometer.bias_mps2 = 0.2F;
+    it.senses.accelerometer.pulled_m_s = -0.5F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.4F, -0.2F));
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.9F, it.felt.speed_mps);
-    TEST_ASSERT_FLOAT_WITHIN(0.001F, -0.5F, it.pulled_m_s);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.9F, it.senses.accelerometer.felt.speed_mps);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, -0.5F, it.senses.accelerometer.pulled_m_s);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(-0.6F, -0.3F));
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.305F, it.felt.speed_mps);
-    TEST_ASSERT_FLOAT_WITHIN(0.001F, 0.15F, it.bias_mps2);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.pulled_m_s);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.305F, it.senses.accelerometer.felt.speed_mps);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 0.15F, it.senses.accelerometer.bias_mps2);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.pulled_m_s);
 }
 
 /* ---- DOUBT_SIGHT: below the ground */
@@ -375,17 +371,17 @@ void test_three_heights_below_the_ground_doubt_the_heights_of_a_law_that_wants_t
     } rows[] = {{-0.036F, 0.6F, DOUBT_SIGHT}, {-0.034F, 0.6F, 0U}, {-0.036F, 0.1F, 0U}, {-0.036F, NAN, 0U}};
     for (int i = 0; i < 4; i++) {
         setUp();
-        it.ground_m = -0.01F;
-        it.height_m = rows[i].height_m;
+        it.senses.confirmation.ground_m = -0.01F;
+        it.senses.heights.height_m = rows[i].height_m;
         flown.wanted_m = rows[i].wanted_m;
         TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
         TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
         TEST_ASSERT_EQUAL_UINT16(rows[i].doubts, judged(0.0F, 0.0F));
     }
     setUp();
-    it.sunk = 2U;
+    it.senses.confirmation.sunk = 2U;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F)); /* a good one between starts the count again */
-    TEST_ASSERT_EQUAL_UINT16(0U, it.sunk);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.confirmation.sunk);
 }
 
 /* ---- DOUBT_SIGHT: a still slant */
@@ -393,8 +389,8 @@ void test_three_heights_below_the_ground_doubt_the_heights_of_a_law_that_wants_t
 static uint16_t slant(uint16_t rigid, uint16_t still, float felt_m, float pushed_m)
 {
     setUp();
-    it.rigid = rigid;
-    it.still = still;
+    it.senses.beam.rigid = rigid;
+    it.senses.beam.still = still;
     return judged(felt_m, pushed_m);
 }
 
@@ -410,8 +406,8 @@ void test_a_rigid_slant_and_both_witnesses_by_a_decimetre_doubt_the_heights(void
 static uint16_t noisy_slant(uint16_t rigid, uint16_t white, float felt_m, float pushed_m)
 {
     setUp();
-    it.rigid = rigid;
-    it.white = white;
+    it.senses.beam.rigid = rigid;
+    it.senses.beam.white = white;
     return judged(felt_m, pushed_m);
 }
 
@@ -435,21 +431,21 @@ void test_a_slant_of_noise_for_four_seconds_is_a_blocked_beam(void)
 void test_a_swaying_tilt_and_a_rigid_slant_are_a_blocked_beam(void)
 {
     setUp();
-    it.rigid = 16U;
-    it.sway_rad2 = 4.0e-4F;
+    it.senses.beam.rigid = 16U;
+    it.senses.sway.sway_rad2 = 4.0e-4F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
-    it.sway_rad2 = 4.1e-4F;
-    it.rigid = 15U;
+    it.senses.sway.sway_rad2 = 4.1e-4F;
+    it.senses.beam.rigid = 15U;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
-    it.rigid = 16U;
+    it.senses.beam.rigid = 16U;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
 }
 
 void test_heights_of_nothing_but_steps_are_doubted(void)
 {
-    it.steps = 12.0F;
+    it.senses.heights.steps = 12.0F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
-    it.steps = 12.1F;
+    it.senses.heights.steps = 12.1F;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
 }
 
@@ -459,9 +455,9 @@ void test_heights_of_nothing_but_steps_are_doubted(void)
 static uint16_t since_step(float push_n, float wanted_m, float felt_m, float pushed_m)
 {
     setUp();
-    it.unconfirmed = true;
+    it.senses.confirmation.unconfirmed = true;
     flown.hover_n = 0.0F; /* so that the difference is exact */
-    it.lagged_n = push_n;
+    it.senses.push.lagged_n = push_n;
     flown.wanted_m = wanted_m;
     return judged(felt_m, pushed_m);
 }
@@ -488,46 +484,46 @@ void test_unless_the_accelerometer_tells_the_contrary(void)
 static void in_vain(bool unconfirmed, bool proved, float felt_least_m, float pushed_for_s)
 {
     setUp();
-    it.unconfirmed = unconfirmed;
-    it.proved = proved;
-    it.felt_least_m = felt_least_m;
-    it.pushed.running_s = pushed_for_s;
-    it.lagged_n = HOVER_N + 0.3F;
-    it.height_m = it.near_m = 0.10F;
+    it.senses.confirmation.unconfirmed = unconfirmed;
+    it.senses.confirmation.proved = proved;
+    it.verdict.felt_least_m = felt_least_m;
+    it.senses.push.pushed.running_s = pushed_for_s;
+    it.senses.push.lagged_n = HOVER_N + 0.3F;
+    it.senses.heights.height_m = it.senses.confirmation.near_m = 0.10F;
     (void)judged(0.0F, -0.36F);
 }
 
 void test_a_push_in_vain_needs_a_proof_and_an_old_witness(void)
 {
     in_vain(true, true, 0.0F, 2.0F);
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, it.verdict.doubts);
     in_vain(false, true, 0.0F, 2.0F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
     in_vain(true, true, 0.0F, 1.9F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
     in_vain(true, false, -0.20F, 2.0F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
     in_vain(true, false, -0.21F, 2.0F);
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, it.verdict.doubts);
 }
 
 void test_a_jump_of_the_height_after_the_lift_off_is_such_a_proof(void)
 {
     for (int high = 0; high < 2; high++) {
         setUp();
-        it.unconfirmed = true;
-        it.proved = false;
-        it.height_m = it.near_m = (high == 0) ? 0.10F : 0.11F;
-        it.lagged_n = HOVER_N + 0.3F;
+        it.senses.confirmation.unconfirmed = true;
+        it.senses.confirmation.proved = false;
+        it.senses.heights.height_m = it.senses.confirmation.near_m = (high == 0) ? 0.10F : 0.11F;
+        it.senses.push.lagged_n = HOVER_N + 0.3F;
         TEST_ASSERT_EQUAL_UINT16((high == 0) ? 0U : DOUBT_SIGHT, judged(0.0F, -0.36F));
     }
 }
 
 void test_without_an_accelerometer_a_push_in_vain_after_a_step_is_enough(void)
 {
-    it.unconfirmed = true;
-    it.doubts = DOUBT_IMU;
-    it.lagged_n = HOVER_N + 0.3F;
+    it.senses.confirmation.unconfirmed = true;
+    it.verdict.doubts = DOUBT_IMU;
+    it.senses.push.lagged_n = HOVER_N + 0.3F;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, judged(0.0F, -0.35F));
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.0F, -0.36F));
 }
@@ -551,10 +547,10 @@ void test_the_first_climb_is_the_accelerometers_to_tell(void)
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         setUp();
-        it.unconfirmed = rows[i].unconfirmed;
-        it.proved = rows[i].proved;
-        it.felt.running_s = rows[i].running_s;
-        it.way_m = rows[i].way_m;
+        it.senses.confirmation.unconfirmed = rows[i].unconfirmed;
+        it.senses.confirmation.proved = rows[i].proved;
+        it.senses.accelerometer.felt.running_s = rows[i].running_s;
+        it.senses.heights.way_m = rows[i].way_m;
         TEST_ASSERT_EQUAL_UINT16(rows[i].doubts, judged(rows[i].felt_m, 0.0F));
     }
 }
@@ -564,11 +560,11 @@ void test_the_first_climb_is_the_accelerometers_to_tell(void)
 static uint16_t lift_off(float height_m, uint16_t rigid, uint16_t still, float sway_rad2, float felt_m)
 {
     setUp();
-    flown.standing = it.standing = true;
-    it.height_m = it.swaying_from_m = height_m;
-    it.rigid = rigid;
-    it.still = still;
-    it.sway_rad2 = sway_rad2;
+    flown.standing = it.senses.standing = true;
+    it.senses.heights.height_m = it.verdict.swaying_from_m = height_m;
+    it.senses.beam.rigid = rigid;
+    it.senses.beam.still = still;
+    it.senses.sway.sway_rad2 = sway_rad2;
     return judged(felt_m, 0.0F);
 }
 
@@ -585,33 +581,33 @@ void test_a_climb_felt_before_an_odd_beam_shows_it_doubts_the_heights(void)
 
 void test_a_vehicle_that_is_off_the_ground_is_not_asked_about_its_lift_off(void)
 {
-    it.rigid = 2U;
-    it.unconfirmed = true;
-    it.sway_rad2 = 4.1e-4F;
+    it.senses.beam.rigid = 2U;
+    it.senses.confirmation.unconfirmed = true;
+    it.senses.sway.sway_rad2 = 4.1e-4F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.09F, 0.0F));
-    it.swaying_s = 1.6F;
+    it.verdict.swaying_s = 1.6F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.swaying_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.verdict.swaying_s);
 }
 
 /* One height 0.1 s after the last; how long the tilt has swayed then. */
 static float swayed_s(float height_m, uint16_t still, float sway_rad2)
 {
     setUp();
-    flown.standing = it.standing = true;
-    it.height_m = height_m;
-    it.still = still;
-    it.sway_rad2 = sway_rad2;
-    it.swaying_s = 1.0F;
-    integrity_height(&it, &flown, height_m, 0.1F, 0.0F);
-    return it.swaying_s;
+    flown.standing = it.senses.standing = true;
+    it.senses.heights.height_m = height_m;
+    it.senses.beam.still = still;
+    it.senses.sway.sway_rad2 = sway_rad2;
+    it.verdict.swaying_s = 1.0F;
+    sensed_height(&it, &flown, height_m, 0.1F, 0.0F);
+    return it.verdict.swaying_s;
 }
 
 void test_a_sway_counts_while_the_beam_is_still_and_the_height_the_same(void)
 {
     TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 1.1F, swayed_s(0.05F, 9U, 4.1e-4F));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, swayed_s(0.051F, 9U, 4.1e-4F));
-    TEST_ASSERT_EQUAL_FLOAT(0.051F, it.swaying_from_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.051F, it.verdict.swaying_from_m);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, swayed_s(-0.051F, 9U, 4.1e-4F));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, swayed_s(0.05F, 8U, 4.1e-4F));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, swayed_s(0.05F, 9U, 4.0e-4F));
@@ -619,26 +615,26 @@ void test_a_sway_counts_while_the_beam_is_still_and_the_height_the_same(void)
 
 void test_the_height_of_a_sway_is_measured_from_its_start(void)
 {
-    flown.standing = it.standing = true;
-    it.height_m = 0.34F;
-    it.swaying_from_m = 0.30F;
-    it.still = 9U;
-    it.sway_rad2 = 4.1e-4F;
-    it.swaying_s = 1.0F;
+    flown.standing = it.senses.standing = true;
+    it.senses.heights.height_m = 0.34F;
+    it.verdict.swaying_from_m = 0.30F;
+    it.senses.beam.still = 9U;
+    it.senses.sway.sway_rad2 = 4.1e-4F;
+    it.verdict.swaying_s = 1.0F;
     (void)judged(0.0F, 0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(1.0F, it.swaying_s);
-    TEST_ASSERT_EQUAL_FLOAT(0.30F, it.swaying_from_m);
+    TEST_ASSERT_EQUAL_FLOAT(1.0F, it.verdict.swaying_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.30F, it.verdict.swaying_from_m);
 }
 
 void test_a_sway_of_more_than_a_second_and_a_half_is_a_flight(void)
 {
-    flown.standing = it.standing = true;
-    it.height_m = 0.0F;
-    it.still = 9U;
-    it.sway_rad2 = 4.1e-4F;
-    it.swaying_s = 1.5F;
+    flown.standing = it.senses.standing = true;
+    it.senses.heights.height_m = 0.0F;
+    it.senses.beam.still = 9U;
+    it.senses.sway.sway_rad2 = 4.1e-4F;
+    it.verdict.swaying_s = 1.5F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
-    it.swaying_s = 1.51F;
+    it.verdict.swaying_s = 1.51F;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
 }
 
@@ -649,13 +645,13 @@ static float vain_s(float push_n, float wanted_m, float rise_mps, float pushed_m
 {
     setUp();
     flown.hover_n = 0.0F;
-    it.lagged_n = push_n;
+    it.senses.push.lagged_n = push_n;
     flown.wanted_m = wanted_m;
-    it.rise_mps = rise_mps * 1.5F; /* a third of a rate is forgotten within this height */
-    it.vain_s = 1.0F;
-    it.pushed.off_m = pushed_m;
-    integrity_height(&it, &flown, it.height_m, 0.1F, 0.0F);
-    return it.vain_s;
+    it.senses.heights.rise_mps = rise_mps * 1.5F; /* a third of a rate is forgotten within this height */
+    it.verdict.vain_s = 1.0F;
+    it.senses.push.pushed.off_m = pushed_m;
+    sensed_height(&it, &flown, it.senses.heights.height_m, 0.1F, 0.0F);
+    return it.verdict.vain_s;
 }
 
 void test_a_push_without_any_motion_of_the_heights_is_in_vain(void)
@@ -677,19 +673,19 @@ void test_a_push_in_vain_of_three_seconds_doubts_the_heights_where_the_thrust_is
 {
     for (int other = 0; other < 2; other++) {
         setUp();
-        it.doubts = (other == 0) ? DOUBT_IMU : 0U;
-        it.lagged_n = HOVER_N + 1.0F;
-        it.vain_s = 3.0F;
+        it.verdict.doubts = (other == 0) ? DOUBT_IMU : 0U;
+        it.senses.push.lagged_n = HOVER_N + 1.0F;
+        it.verdict.vain_s = 3.0F;
         TEST_ASSERT_EQUAL_UINT16((other == 0) ? DOUBT_IMU : 0U, judged(0.0F, -0.01F));
-        it.vain_s = 3.01F;
+        it.verdict.vain_s = 3.01F;
         TEST_ASSERT_EQUAL_UINT16((other == 0) ? (DOUBT_IMU | DOUBT_SIGHT) : 0U, judged(0.0F, -0.01F));
     }
 }
 
 void test_a_still_slant_needs_no_accelerometer(void)
 {
-    it.doubts = DOUBT_IMU;
-    it.white = 19U;
+    it.verdict.doubts = DOUBT_IMU;
+    it.senses.beam.white = 19U;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, judged(0.0F, -0.28F));
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.0F, -0.29F));
 }
@@ -714,7 +710,7 @@ void test_an_accelerometer_alone_against_the_heights_is_doubted(void)
     CHECK(rows);
     TEST_ASSERT_EQUAL_UINT16(0U, slant(0U, 9U, 0.61F, 0.0F));
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, slant(0U, 8U, 0.61F, 0.0F));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.seen_m);
 }
 
 void test_heights_that_move_are_right_against_both_witnesses(void)
@@ -733,7 +729,7 @@ static uint16_t powerless(float push_n, float wanted_m, float felt_m, float push
 {
     setUp();
     flown.hover_n = 0.0F;
-    it.lagged_n = push_n;
+    it.senses.push.lagged_n = push_n;
     flown.wanted_m = wanted_m;
     return judged(felt_m, pushed_m);
 }
@@ -741,10 +737,10 @@ static uint16_t powerless(float push_n, float wanted_m, float felt_m, float push
 void test_a_thrust_without_effect_is_doubted_where_heights_and_accelerometer_agree(void)
 {
     TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, powerless(0.71F, 0.5F, 0.0F, -1.31F));
-    TEST_ASSERT_FALSE(it.held_down);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.pushed.seen_m);
+    TEST_ASSERT_FALSE(it.verdict.held_down);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.push.pushed.seen_m);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, powerless(-0.71F, -0.16F, 0.0F, 1.31F));
-    TEST_ASSERT_TRUE(it.held_down);
+    TEST_ASSERT_TRUE(it.verdict.held_down);
     TEST_ASSERT_EQUAL_UINT16(0U, powerless(0.71F, 0.5F, 0.0F, -1.30F));
     TEST_ASSERT_EQUAL_UINT16(0U, powerless(0.70F, 0.5F, 0.0F, -1.31F));
     TEST_ASSERT_EQUAL_UINT16(0U, powerless(0.71F, 0.15F, 0.0F, -1.31F));
@@ -754,15 +750,15 @@ void test_a_thrust_without_effect_is_doubted_where_heights_and_accelerometer_agr
 
 void test_a_thrust_that_was_never_proved_or_has_no_second_witness_is_not_doubted(void)
 {
-    it.lagged_n = HOVER_N + 1.0F;
-    it.proved = false;
+    it.senses.push.lagged_n = HOVER_N + 1.0F;
+    it.senses.confirmation.proved = false;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, -1.4F));
-    it.proved = true;
-    it.felt.running_s = 0.5F;
+    it.senses.confirmation.proved = true;
+    it.senses.accelerometer.felt.running_s = 0.5F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, -1.4F));
-    it.felt.running_s = 2.0F;
+    it.senses.accelerometer.felt.running_s = 2.0F;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, judged(0.0F, -1.4F));
-    TEST_ASSERT_EQUAL_FLOAT(HOVER_N, it.held_n);
+    TEST_ASSERT_EQUAL_FLOAT(HOVER_N, it.verdict.held_n);
 }
 
 /* ---- the end of a doubt */
@@ -771,9 +767,9 @@ void test_a_thrust_that_was_never_proved_or_has_no_second_witness_is_not_doubted
 static uint16_t again(uint16_t doubts, float agreed_s, float moved_m, float felt_m, float pushed_m)
 {
     setUp();
-    it.doubts = doubts;
-    it.agreed_s = agreed_s;
-    it.pushed.moved_m = moved_m;
+    it.verdict.doubts = doubts;
+    it.verdict.agreed_s = agreed_s;
+    it.senses.push.pushed.moved_m = moved_m;
     return judged(felt_m, pushed_m);
 }
 
@@ -781,27 +777,27 @@ void test_agreement_of_a_second_and_a_half_over_a_motion_ends_a_doubt(void)
 {
     TEST_ASSERT_EQUAL_UINT16(0U, again(DOUBT_SIGHT, 1.51F, 0.31F, 0.0F, 0.0F));
     TEST_ASSERT_EQUAL_UINT16(0U, again(DOUBT_THRUST, 1.51F, 0.31F, 0.2F, -0.2F));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.seen_m);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, again(DOUBT_SIGHT | DOUBT_IMU, 1.51F, 0.31F, 0.0F, 0.0F));
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.50F, 0.31F, 0.0F, 0.0F));
-    TEST_ASSERT_EQUAL_FLOAT(1.5F, it.agreed_s);
+    TEST_ASSERT_EQUAL_FLOAT(1.5F, it.verdict.agreed_s);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.51F, 0.30F, 0.0F, 0.0F));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.agreed_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.verdict.agreed_s);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.51F, 0.31F, 0.21F, 0.0F));
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.51F, 0.31F, 0.0F, 0.21F));
 }
 
 void test_the_motion_is_the_accelerometers_where_the_thrust_does_not_count(void)
 {
-    it.doubts = DOUBT_SIGHT;
-    it.agreed_s = 1.51F;
-    it.pushed.running_s = 0.5F;
-    it.felt.moved_m = 0.31F;
+    it.verdict.doubts = DOUBT_SIGHT;
+    it.verdict.agreed_s = 1.51F;
+    it.senses.push.pushed.running_s = 0.5F;
+    it.senses.accelerometer.felt.moved_m = 0.31F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
     setUp();
-    it.doubts = DOUBT_SIGHT;
-    it.agreed_s = 1.51F;
-    it.felt.moved_m = 0.31F;
+    it.verdict.doubts = DOUBT_SIGHT;
+    it.verdict.agreed_s = 1.51F;
+    it.senses.accelerometer.felt.moved_m = 0.31F;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
 }
 
@@ -809,10 +805,10 @@ void test_a_slant_of_noise_alone_does_not_agree(void)
 {
     for (uint16_t still = 15U; still <= 16U; still++) {
         setUp();
-        it.doubts = DOUBT_SIGHT;
-        it.agreed_s = 1.51F;
-        it.pushed.moved_m = 0.31F;
-        it.still = still;
+        it.verdict.doubts = DOUBT_SIGHT;
+        it.verdict.agreed_s = 1.51F;
+        it.senses.push.pushed.moved_m = 0.31F;
+        it.senses.beam.still = still;
         TEST_ASSERT_EQUAL_UINT16((still == 15U) ? 0U : DOUBT_SIGHT, judged(0.0F, 0.0F));
     }
 }
@@ -831,9 +827,9 @@ void test_heights_that_move_end_a_doubt_of_the_sight_alone(void)
                 {DOUBT_THRUST | DOUBT_SIGHT, 0.16F, 0.0F, 0U}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         setUp();
-        it.doubts = rows[i].doubts;
-        it.way_m = rows[i].way_m;
-        it.steps = rows[i].steps;
+        it.verdict.doubts = rows[i].doubts;
+        it.senses.heights.way_m = rows[i].way_m;
+        it.senses.heights.steps = rows[i].steps;
         TEST_ASSERT_EQUAL_UINT16(rows[i].left, judged(0.0F, 0.0F));
     }
 }
@@ -841,12 +837,12 @@ void test_heights_that_move_end_a_doubt_of_the_sight_alone(void)
 void test_a_doubt_starts_its_sums_again_when_they_grow_past_half_a_metre(void)
 {
     (void)again(DOUBT_SIGHT, 0.0F, 0.0F, -0.50F, 0.50F);
-    TEST_ASSERT_EQUAL_FLOAT(-0.5F, it.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(-0.5F, it.senses.accelerometer.felt.seen_m);
     (void)again(DOUBT_SIGHT, 0.0F, 0.0F, -0.51F, 0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.seen_m);
     (void)again(DOUBT_SIGHT, 0.0F, 0.0F, -0.1F, 0.51F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.felt.seen_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.pushed.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.push.pushed.seen_m);
 }
 
 /* ---- who is judged */
@@ -855,27 +851,27 @@ void test_on_the_ground_and_under_a_pilot_nothing_is_judged(void)
 {
     flown.grounded = true;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.7F, -0.7F));
-    TEST_ASSERT_EQUAL_FLOAT(-0.7F, it.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(-0.7F, it.senses.accelerometer.felt.seen_m);
     setUp();
     flown.ours = false;
-    it.rise_mps = 0.3F;
-    it.felt.speed_mps = 1.0F;
+    it.senses.heights.rise_mps = 0.3F;
+    it.senses.accelerometer.felt.speed_mps = 1.0F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.7F, -0.7F));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.pushed.seen_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.3F, it.felt.speed_mps);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.felt.running_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.push.pushed.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.3F, it.senses.accelerometer.felt.speed_mps);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.running_s);
 }
 
 void test_a_thrust_that_lifts_any_vehicle_makes_a_sway_count_three_times(void)
 {
     for (int strong = 0; strong < 2; strong++) {
         setUp();
-        flown.standing = it.standing = true;
-        it.height_m = it.swaying_from_m = 0.0F;
-        it.sway_rad2 = 4.1e-4F;
-        it.swaying_s = 1.0F;
-        it.lagged_n = HOVER_N * ((strong != 0) ? 1.301F : 1.299F);
-        integrity_height(&it, &flown, 0.0F, 0.1F, 0.0F);
-        TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, (strong != 0) ? 1.3F : 0.0F, it.swaying_s);
+        flown.standing = it.senses.standing = true;
+        it.senses.heights.height_m = it.verdict.swaying_from_m = 0.0F;
+        it.senses.sway.sway_rad2 = 4.1e-4F;
+        it.verdict.swaying_s = 1.0F;
+        it.senses.push.lagged_n = HOVER_N * ((strong != 0) ? 1.301F : 1.299F);
+        sensed_height(&it, &flown, 0.0F, 0.1F, 0.0F);
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, (strong != 0) ? 1.3F : 0.0F, it.verdict.swaying_s);
     }
 }

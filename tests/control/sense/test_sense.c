@@ -1,16 +1,11 @@
-#include "control/integrity.h"
-#include "unity.h"
-
-#include <math.h>
-#include <string.h>
+#include "sense/sensed.h"
 
 #define HOVER_N 7.4F
-#define DEGREE_RAD 0.0174532925F
 
 /* A vehicle that moves as its thrust says, and what its sensors tell of it: a height every 0.1 s, a frame
  * every 25 ms. */
-static integrity_t it;
-static flown_t flown;
+static sense_t it;
+static situation_t flown;
 static imu_sample_t frame;
 static struct {
     float height_m, speed_mps, lie_m, felt_lie_mps2, lagged_n;
@@ -20,19 +15,19 @@ static struct {
 
 void setUp(void)
 {
-    integrity_init(&it);
+    sense_init(&it);
     memset(&world, 0, sizeof world);
     memset(&frame, 0, sizeof frame);
     frame.ready = frame.has_acceleration = true;
     world.lagged_n = HOVER_N;
-    flown = (flown_t){.step_s = 0.025F,
-                      .off_ground = true,
-                      .ours = true,
-                      .thrust_n = HOVER_N,
-                      .hover_n = HOVER_N,
-                      .authority_mps2_per_n = 9.80665F / HOVER_N,
-                      .damping_per_s = 2.5F,
-                      .noise_mps2 = 0.4F};
+    flown = (situation_t){.step_s = 0.025F,
+                          .off_ground = true,
+                          .ours = true,
+                          .thrust_n = HOVER_N,
+                          .hover_n = HOVER_N,
+                          .authority_mps2_per_n = 9.80665F / HOVER_N,
+                          .damping_per_s = 2.5F,
+                          .noise_mps2 = 0.4F};
 }
 
 void tearDown(void) {}
@@ -57,11 +52,11 @@ static void cycle(void)
     frame.arrival_us += 25000U;
     frame.median.roll_rad = world.steady ? 0.0F : 0.05F * sinf((float)frame.sequence * 0.1F);
     if (!world.deaf) {
-        integrity_frames(&it, &flown, &frame, 1U);
+        sensed_frames(&it, &flown, &frame, 1U);
     }
-    integrity_thrust(&it, &flown);
+    sensed_thrust(&it, &flown);
     if (++world.cycles % 4U == 0U) {
-        integrity_height(&it, &flown, seen_m, 0.1F, 0.0F);
+        sensed_height(&it, &flown, seen_m, 0.1F, 0.0F);
     }
 }
 
@@ -88,17 +83,17 @@ static void fly(void)
     flown.wanted_m = 0.0F;
     flown.thrust_n = HOVER_N;
     run(3.0F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
 }
 
 static float until(uint16_t doubt, float at_most_s)
 {
     float passed_s = 0.0F;
-    while (!integrity_doubts(&it, doubt) && passed_s < at_most_s) {
+    while (!sensed_doubts(&it, doubt) && passed_s < at_most_s) {
         cycle();
         passed_s += 0.025F;
     }
-    TEST_ASSERT_EQUAL_UINT16(doubt, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(doubt, it.verdict.doubts);
     return passed_s;
 }
 
@@ -111,9 +106,9 @@ void test_a_sound_flight_with_climbs_and_descents_is_believed(void)
         flown.thrust_n = HOVER_N + (i % 2 == 0 ? 1.0F : -1.0F);
         flown.wanted_m = i % 2 == 0 ? 0.5F : -0.5F;
         run(1.5F);
-        TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+        TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
     }
-    TEST_ASSERT_FLOAT_WITHIN(0.15F, world.speed_mps, integrity_speed_mps(&it));
+    TEST_ASSERT_FLOAT_WITHIN(0.15F, world.speed_mps, verdict_speed_mps(&it.verdict, &it.senses));
 }
 
 void test_steps_of_the_terrain_are_believed_be_they_as_high_as_they_like(void)
@@ -122,7 +117,7 @@ void test_steps_of_the_terrain_are_believed_be_they_as_high_as_they_like(void)
     for (int i = 0; i < 6; i++) {
         world.lie_m = i % 2 == 0 ? 0.8F : 0.0F;
         run(2.0F);
-        TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+        TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
     }
 }
 
@@ -131,16 +126,16 @@ void test_a_far_fall_of_the_terrain_is_unconfirmed_until_a_descent_shows(void)
     fly();
     world.lie_m = 0.3F;
     run(0.3F);
-    TEST_ASSERT_FALSE(integrity_terrain_fell(&it));
+    TEST_ASSERT_FALSE(it.senses.confirmation.terrain_fell);
     world.lie_m = 0.8F;
     run(0.3F);
-    TEST_ASSERT_TRUE(integrity_terrain_fell(&it));
+    TEST_ASSERT_TRUE(it.senses.confirmation.terrain_fell);
     flown.thrust_n = HOVER_N - 0.6F;
     run(0.5F);
-    TEST_ASSERT_TRUE(integrity_terrain_fell(&it));
+    TEST_ASSERT_TRUE(it.senses.confirmation.terrain_fell);
     run(1.0F);
-    TEST_ASSERT_FALSE(integrity_terrain_fell(&it));
-    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    TEST_ASSERT_FALSE(it.senses.confirmation.terrain_fell);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
 }
 
 void test_a_hover_thrust_a_quarter_of_a_newton_off_is_believed(void)
@@ -148,7 +143,7 @@ void test_a_hover_thrust_a_quarter_of_a_newton_off_is_believed(void)
     flown.hover_n = HOVER_N - 0.25F;
     fly();
     run(20.0F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
 }
 
 /* ---- heights */
@@ -161,8 +156,8 @@ void test_heights_that_do_not_show_a_climb_that_both_others_tell_are_doubted(voi
     flown.thrust_n = HOVER_N + 1.5F;
     const float after_s = until(DOUBT_SIGHT, 3.0F);
     TEST_ASSERT_TRUE(after_s > 0.5F && after_s < 1.5F);
-    TEST_ASSERT_TRUE(it.lost_m < -0.2F && it.lost_m > -0.8F);
-    TEST_ASSERT_FLOAT_WITHIN(0.3F, world.speed_mps, integrity_speed_mps(&it));
+    TEST_ASSERT_TRUE(it.verdict.lost_m < -0.2F && it.verdict.lost_m > -0.8F);
+    TEST_ASSERT_FLOAT_WITHIN(0.3F, world.speed_mps, verdict_speed_mps(&it.verdict, &it.senses));
 }
 
 void test_a_slow_climb_after_the_ground_came_nearer_at_once_is_doubted_too(void)
@@ -171,7 +166,7 @@ void test_a_slow_climb_after_the_ground_came_nearer_at_once_is_doubted_too(void)
     world.frozen_height = true;
     flown.wanted_m = 0.5F;
     run(0.2F);
-    TEST_ASSERT_TRUE(integrity_unconfirmed(&it));
+    TEST_ASSERT_TRUE(it.senses.confirmation.unconfirmed);
     flown.thrust_n = HOVER_N + 0.66F;
     TEST_ASSERT_TRUE(until(DOUBT_SIGHT, 4.0F) < 2.5F);
 }
@@ -182,11 +177,11 @@ void test_a_climb_that_shows_after_a_step_confirms_it(void)
     world.lie_m = -0.3F;
     flown.wanted_m = 0.3F;
     run(0.2F);
-    TEST_ASSERT_TRUE(integrity_unconfirmed(&it));
+    TEST_ASSERT_TRUE(it.senses.confirmation.unconfirmed);
     flown.thrust_n = HOVER_N + 0.66F;
     run(1.2F);
-    TEST_ASSERT_FALSE(integrity_unconfirmed(&it));
-    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    TEST_ASSERT_FALSE(it.senses.confirmation.unconfirmed);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
 }
 
 void test_heights_that_follow_again_are_believed_again(void)
@@ -199,10 +194,10 @@ void test_heights_that_follow_again_are_believed_again(void)
     flown.wanted_m = NAN;
     flown.thrust_n = HOVER_N - 0.5F;
     run(3.0F);
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, it.verdict.doubts);
     world.frozen_height = false;
     run(4.0F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
 }
 
 void test_without_accelerations_a_push_in_vain_is_what_doubts_the_heights(void)
@@ -210,8 +205,8 @@ void test_without_accelerations_a_push_in_vain_is_what_doubts_the_heights(void)
     fly();
     world.deaf = true;
     run(0.5F);
-    integrity_init(&it);
-    it.shaken = 1.0F;
+    sense_init(&it);
+    it.senses.accelerometer.shaken = 1.0F;
     world.frozen_height = true;
     flown.wanted_m = 0.3F;
     flown.thrust_n = HOVER_N + 1.0F;
@@ -221,14 +216,14 @@ void test_without_accelerations_a_push_in_vain_is_what_doubts_the_heights(void)
 
 void test_the_ground_forgets_a_doubt_of_sight_by_a_new_order_alone(void)
 {
-    it.doubts = DOUBT_SIGHT | DOUBT_THRUST;
+    it.verdict.doubts = DOUBT_SIGHT | DOUBT_THRUST;
     flown.grounded = true;
     flown.off_ground = false;
     run(3.0F);
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT | DOUBT_THRUST, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT | DOUBT_THRUST, it.verdict.doubts);
     flown.ordered = true;
     cycle();
-    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
 }
 
 void test_nothing_is_judged_while_a_pilot_flies(void)
@@ -238,15 +233,15 @@ void test_nothing_is_judged_while_a_pilot_flies(void)
     world.frozen_height = true;
     world.felt_lie_mps2 = 5.0F;
     run(5.0F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
 }
 
 void test_a_doubt_has_a_name_and_the_gravest_is_told(void)
 {
-    TEST_ASSERT_NULL(integrity_doubt_name(0U));
-    TEST_ASSERT_EQUAL_STRING("THRUST", integrity_doubt_name(DOUBT_THRUST));
-    TEST_ASSERT_EQUAL_STRING("IMU", integrity_doubt_name(DOUBT_IMU | DOUBT_THRUST));
-    TEST_ASSERT_EQUAL_STRING("SIGHT", integrity_doubt_name(DOUBT_SIGHT | DOUBT_IMU));
+    TEST_ASSERT_NULL(verdict_doubt_name(0U));
+    TEST_ASSERT_EQUAL_STRING("THRUST", verdict_doubt_name(DOUBT_THRUST));
+    TEST_ASSERT_EQUAL_STRING("IMU", verdict_doubt_name(DOUBT_IMU | DOUBT_THRUST));
+    TEST_ASSERT_EQUAL_STRING("SIGHT", verdict_doubt_name(DOUBT_SIGHT | DOUBT_IMU));
 }
 
 void test_a_glitch_that_returns_to_where_it_began_is_no_ground_that_came_nearer(void)
@@ -257,11 +252,11 @@ void test_a_glitch_that_returns_to_where_it_began_is_no_ground_that_came_nearer(
     run(0.1F);
     world.lie_m = 0.0F;
     run(0.1F);
-    TEST_ASSERT_FALSE(integrity_unconfirmed(&it));
+    TEST_ASSERT_FALSE(it.senses.confirmation.unconfirmed);
     run(1.0F);
     world.lie_m = -0.35F;
     run(0.1F);
-    TEST_ASSERT_TRUE(integrity_unconfirmed(&it));
+    TEST_ASSERT_TRUE(it.senses.confirmation.unconfirmed);
 }
 
 /* ---- scans */
@@ -279,10 +274,10 @@ void test_a_beam_that_does_not_swing_with_the_mirror_is_blocked(void)
             const altitude_t altitude = {.slant_mm = 705.0F + noise_mm + (blocked ? 0.0F : swing_mm),
                                          .height_mm = 500.0F + noise_mm + (blocked ? swing_mm : 0.0F),
                                          .spread_mm = 18.0F + (float)(scan % 3)};
-            TEST_ASSERT_TRUE(integrity_scan(&it, &altitude));
+            TEST_ASSERT_TRUE(senses_scan(&it.senses, &altitude));
         }
         run(0.3F);
-        TEST_ASSERT_EQUAL_UINT16(blocked ? DOUBT_SIGHT : 0U, it.doubts);
+        TEST_ASSERT_EQUAL_UINT16(blocked ? DOUBT_SIGHT : 0U, it.verdict.doubts);
     }
 }
 
@@ -293,7 +288,7 @@ static void scan_blocked(int scans)
         const altitude_t altitude = {.slant_mm = 705.0F + ((scan % 2 == 0) ? 1.0F : -1.0F),
                                      .height_mm = 300.0F,
                                      .spread_mm = 18.0F + (float)(scan % 3)};
-        TEST_ASSERT_TRUE(integrity_scan(&it, &altitude));
+        TEST_ASSERT_TRUE(senses_scan(&it.senses, &altitude));
     }
 }
 
@@ -323,7 +318,7 @@ void test_a_vehicle_that_hardly_lifts_is_not_doubted(void)
     flown.wanted_m = 0.5F;
     flown.thrust_n = HOVER_N + 0.1F;
     run(6.0F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
 }
 
 /* The thrust that carries it was learned from an accelerometer that is wrong: both tell the same, and the
@@ -337,7 +332,7 @@ void test_heights_that_move_on_and_on_are_believed_against_both(void)
     flown.wanted_m = 0.5F;
     TEST_ASSERT_TRUE(until(DOUBT_IMU, 2.0F) > 0.2F);
     run(2.0F);
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, it.verdict.doubts);
 }
 
 /* Heights near the wanted one leave the law content; the beam's stillness tells, and the thrust. */
@@ -353,7 +348,7 @@ void test_a_beam_of_nothing_but_noise_is_doubted_as_soon_as_thrust_and_accelerom
             scan_blocked(14);
         }
         run(1.4F);
-        TEST_ASSERT_EQUAL_UINT16(blocked != 0 ? DOUBT_SIGHT : 0U, it.doubts);
+        TEST_ASSERT_EQUAL_UINT16(blocked != 0 ? DOUBT_SIGHT : 0U, it.verdict.doubts);
     }
 }
 
@@ -362,24 +357,24 @@ void test_an_accelerometer_is_not_blamed_by_a_beam_that_may_be_blocked(void)
     fly();
     world.frozen_height = true;
     scan_blocked(24);
-    TEST_ASSERT_TRUE(integrity_still(&it));
+    TEST_ASSERT_TRUE(beam_is_still(&it.senses.beam));
     flown.hover_n = HOVER_N + 0.8F; /* and so the thrust tells of no climb */
     flown.thrust_n = HOVER_N + 0.8F;
     flown.wanted_m = 0.05F;
     run(2.0F);
-    TEST_ASSERT_FALSE(integrity_doubts(&it, DOUBT_IMU));
+    TEST_ASSERT_FALSE(sensed_doubts(&it, DOUBT_IMU));
 }
 
 void test_a_scan_that_says_the_same_as_the_one_before_is_a_copy(void)
 {
     altitude_t altitude = {.height_mm = 500.0F, .slant_mm = 705.3F, .spread_mm = 21.0F};
-    TEST_ASSERT_TRUE(integrity_scan(&it, &altitude));
-    TEST_ASSERT_FALSE(integrity_scan(&it, &altitude));
-    TEST_ASSERT_FALSE(integrity_scan(&it, &altitude));
+    TEST_ASSERT_TRUE(senses_scan(&it.senses, &altitude));
+    TEST_ASSERT_FALSE(senses_scan(&it.senses, &altitude));
+    TEST_ASSERT_FALSE(senses_scan(&it.senses, &altitude));
     altitude.spread_mm = 22.0F;
-    TEST_ASSERT_TRUE(integrity_scan(&it, &altitude));
+    TEST_ASSERT_TRUE(senses_scan(&it.senses, &altitude));
     altitude.slant_mm = 705.4F;
-    TEST_ASSERT_TRUE(integrity_scan(&it, &altitude));
+    TEST_ASSERT_TRUE(senses_scan(&it.senses, &altitude));
 }
 
 void test_heights_out_of_reach_are_none(void)
@@ -387,11 +382,12 @@ void test_heights_out_of_reach_are_none(void)
     static const float bad_mm[] = {-51.0F, 5001.0F, NAN, INFINITY};
     static const float good_mm[] = {-49.0F, 0.0F, 4999.0F};
     for (unsigned i = 0; i < 4; i++) {
-        TEST_ASSERT_FALSE(integrity_scan(&it, &(altitude_t){.height_mm = bad_mm[i], .slant_mm = (float)i}));
+        TEST_ASSERT_FALSE(
+            senses_scan(&it.senses, &(altitude_t){.height_mm = bad_mm[i], .slant_mm = (float)i}));
     }
     for (unsigned i = 0; i < 3; i++) {
         TEST_ASSERT_TRUE(
-            integrity_scan(&it, &(altitude_t){.height_mm = good_mm[i], .slant_mm = 9.0F + (float)i}));
+            senses_scan(&it.senses, &(altitude_t){.height_mm = good_mm[i], .slant_mm = 9.0F + (float)i}));
     }
 }
 
@@ -411,12 +407,12 @@ void test_an_accelerometer_that_does_not_feel_g_at_rest_is_doubted(void)
     for (unsigned i = 0; i < 4; i++) {
         setUp();
         rest(lies_mps2[i], 2.0F);
-        TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, it.doubts);
+        TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, it.verdict.doubts);
     }
     setUp();
     rest(1.4F, 5.0F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.4F, it.bias_mps2);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.4F, it.senses.accelerometer.bias_mps2);
 }
 
 void test_one_that_feels_g_again_is_believed_again_on_the_ground_alone(void)
@@ -426,9 +422,9 @@ void test_one_that_feels_g_again_is_believed_again_on_the_ground_alone(void)
     flown.off_ground = true;
     world.felt_lie_mps2 = 0.0F;
     run(10.0F);
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, it.verdict.doubts);
     rest(0.0F, 8.0F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
 }
 
 void test_an_accelerometer_against_heights_and_thrust_is_doubted_within_a_second(void)
@@ -447,10 +443,10 @@ void test_the_bias_follows_the_heights_whatever_the_thrust_model_says(void)
     fly();
     world.felt_lie_mps2 = 0.4F;
     run(5.0F);
-    TEST_ASSERT_FLOAT_WITHIN(0.12F, 0.22F, it.bias_mps2);
+    TEST_ASSERT_FLOAT_WITHIN(0.12F, 0.22F, it.senses.accelerometer.bias_mps2);
     run(25.0F);
-    TEST_ASSERT_FLOAT_WITHIN(0.04F, 0.4F, it.bias_mps2);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    TEST_ASSERT_FLOAT_WITHIN(0.04F, 0.4F, it.senses.accelerometer.bias_mps2);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
 }
 
 void test_a_noisy_accelerometer_is_asked_less(void)
@@ -458,8 +454,9 @@ void test_a_noisy_accelerometer_is_asked_less(void)
     fly();
     flown.noise_mps2 = 1.8F;
     run(0.1F);
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, 2.83F, it.shaken);
-    TEST_ASSERT_FLOAT_WITHIN(0.001F, it.felt.speed_mps / it.shaken, integrity_felt_mps(&it));
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 2.83F, it.senses.accelerometer.shaken);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, it.senses.accelerometer.felt.speed_mps / it.senses.accelerometer.shaken,
+                             sensed_felt_mps(&it));
 }
 
 /* ---- thrust */
@@ -471,18 +468,18 @@ void test_commands_without_an_effect_are_doubted_once_the_law_pushes(void)
         fly();
         world.powerless = true;
         run(5.0F);
-        TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+        TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
         flown.wanted_m = 0.5F * side;
         flown.thrust_n = HOVER_N + 2.0F * side;
         TEST_ASSERT_TRUE(until(DOUBT_THRUST, 4.0F) < 2.5F);
-        TEST_ASSERT_EQUAL(side < 0.0F, it.held_down);
-        TEST_ASSERT_EQUAL_FLOAT(HOVER_N, it.held_n);
+        TEST_ASSERT_EQUAL(side < 0.0F, it.verdict.held_down);
+        TEST_ASSERT_EQUAL_FLOAT(HOVER_N, it.verdict.held_n);
         flown.thrust_n = HOVER_N + 0.6F * side;
         run(6.0F);
-        TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, it.doubts);
+        TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, it.verdict.doubts);
         world.powerless = false;
         run(5.0F);
-        TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+        TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
     }
 }
 
@@ -499,7 +496,7 @@ void test_heights_below_the_ground_count_again_only_when_well_above(void)
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const altitude_t altitude = {
             .height_mm = rows[i].height_mm, .slant_mm = 150.0F + (float)i, .spread_mm = 20.0F};
-        TEST_ASSERT_EQUAL(rows[i].counts, integrity_scan(&it, &altitude));
+        TEST_ASSERT_EQUAL(rows[i].counts, senses_scan(&it.senses, &altitude));
     }
 }
 
@@ -512,11 +509,11 @@ void test_it_stands_where_little_thrust_does_not_make_it_fall(void)
     world.powerless = true;
     flown.wanted_m = NAN;
     run(6.0F);
-    TEST_ASSERT_FALSE(integrity_stands(&it));
+    TEST_ASSERT_FALSE(stand_is_sure(&it.senses.stand));
     flown.thrust_n = 0.5F * HOVER_N;
     run(2.5F);
-    TEST_ASSERT_TRUE(integrity_stands(&it));
-    TEST_ASSERT_FALSE(integrity_sways(&it));
+    TEST_ASSERT_TRUE(stand_is_sure(&it.senses.stand));
+    TEST_ASSERT_FALSE(sway_as_in_the_air(&it.senses.sway));
 }
 
 void test_a_speed_felt_wrongly_from_before_does_not_hide_that_it_stands(void)
@@ -529,16 +526,16 @@ void test_a_speed_felt_wrongly_from_before_does_not_hide_that_it_stands(void)
     world.frozen_height = true;
     run(1.0F);
     world.felt_lie_mps2 = 0.0F;
-    it.doubts = DOUBT_SIGHT;
+    it.verdict.doubts = DOUBT_SIGHT;
     run(5.0F);
-    TEST_ASSERT_TRUE(it.felt.speed_mps < -0.4F);
-    TEST_ASSERT_TRUE(integrity_may_stand(&it));
+    TEST_ASSERT_TRUE(it.senses.accelerometer.felt.speed_mps < -0.4F);
+    TEST_ASSERT_TRUE(stand_is_possible(&it.senses.stand));
     flown.thrust_n = 0.9F * HOVER_N;
     run(1.0F);
-    TEST_ASSERT_FALSE(integrity_stands(&it));
+    TEST_ASSERT_FALSE(stand_is_sure(&it.senses.stand));
     flown.thrust_n = 0.6F * HOVER_N;
     run(2.5F);
-    TEST_ASSERT_TRUE(integrity_stands(&it));
+    TEST_ASSERT_TRUE(stand_is_sure(&it.senses.stand));
 }
 
 void test_a_still_vehicle_may_stand_until_it_feels_a_fall(void)
@@ -547,13 +544,13 @@ void test_a_still_vehicle_may_stand_until_it_feels_a_fall(void)
     world.steady = true;
     flown.wanted_m = NAN;
     run(0.5F);
-    TEST_ASSERT_FALSE(integrity_may_stand(&it));
+    TEST_ASSERT_FALSE(stand_is_possible(&it.senses.stand));
     run(9.5F);
-    TEST_ASSERT_TRUE(integrity_may_stand(&it));
+    TEST_ASSERT_TRUE(stand_is_possible(&it.senses.stand));
     flown.thrust_n = 0.8F * HOVER_N;
     run(1.0F);
-    TEST_ASSERT_FALSE(integrity_may_stand(&it));
-    TEST_ASSERT_FALSE(integrity_stands(&it));
+    TEST_ASSERT_FALSE(stand_is_possible(&it.senses.stand));
+    TEST_ASSERT_FALSE(stand_is_sure(&it.senses.stand));
 }
 
 void test_it_does_not_stand_while_it_falls_or_sways(void)
@@ -563,15 +560,15 @@ void test_it_does_not_stand_while_it_falls_or_sways(void)
     flown.wanted_m = NAN;
     flown.thrust_n = 0.5F * HOVER_N;
     run(3.0F);
-    TEST_ASSERT_FALSE(integrity_stands(&it));
+    TEST_ASSERT_FALSE(stand_is_sure(&it.senses.stand));
     setUp();
     fly();
     world.powerless = true;
     flown.wanted_m = NAN;
     flown.thrust_n = 0.5F * HOVER_N;
     run(3.0F);
-    TEST_ASSERT_FALSE(integrity_stands(&it));
-    TEST_ASSERT_TRUE(integrity_sways(&it));
+    TEST_ASSERT_FALSE(stand_is_sure(&it.senses.stand));
+    TEST_ASSERT_TRUE(sway_as_in_the_air(&it.senses.sway));
 }
 
 /* ---- carried */
@@ -584,7 +581,7 @@ static void carry(float seconds, float swing_mps2, float sway_rad)
         frame.arrival_us += 25000U;
         frame.median.roll_rad = sway_rad * sinf((float)frame.sequence * 0.15F);
         frame.down_mps2 = 9.80665F + 0.3F + swing_mps2 * sinf((float)frame.sequence * 0.1F);
-        integrity_frames(&it, &flown, &frame, 1U);
+        sensed_frames(&it, &flown, &frame, 1U);
     }
 }
 
@@ -592,16 +589,16 @@ void test_a_vehicle_that_sways_on_the_ground_without_heights_is_carried(void)
 {
     flown.grounded = true;
     carry(5.0F, 0.0F, 0.0F);
-    TEST_ASSERT_FALSE(integrity_carried(&it));
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.3F, it.bias_mps2);
+    TEST_ASSERT_FALSE(accelerometer_is_in_hands(&it.senses.accelerometer));
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.3F, it.senses.accelerometer.bias_mps2);
     carry(0.25F, 10.0F, 0.05F); /* the lift does not spoil the bias that was measured at rest */
     carry(6.0F, 1.0F, 0.05F);
-    TEST_ASSERT_TRUE(integrity_carried(&it));
-    TEST_ASSERT_FLOAT_WITHIN(0.15F, 0.3F, it.bias_mps2);
-    TEST_ASSERT_FLOAT_WITHIN(0.4F, 0.0F, it.felt.speed_mps);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.doubts);
+    TEST_ASSERT_TRUE(accelerometer_is_in_hands(&it.senses.accelerometer));
+    TEST_ASSERT_FLOAT_WITHIN(0.15F, 0.3F, it.senses.accelerometer.bias_mps2);
+    TEST_ASSERT_FLOAT_WITHIN(0.4F, 0.0F, it.senses.accelerometer.felt.speed_mps);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
     carry(8.0F, 0.0F, 0.0F);
-    TEST_ASSERT_FALSE(integrity_carried(&it));
+    TEST_ASSERT_FALSE(accelerometer_is_in_hands(&it.senses.accelerometer));
 }
 
 void test_who_tilts_it_by_hand_or_has_heights_does_not_carry_it(void)
@@ -609,25 +606,25 @@ void test_who_tilts_it_by_hand_or_has_heights_does_not_carry_it(void)
     flown.grounded = true;
     carry(5.0F, 0.0F, 0.0F);
     carry(6.0F, 1.0F, 0.3F);
-    TEST_ASSERT_FALSE(integrity_carried(&it));
+    TEST_ASSERT_FALSE(accelerometer_is_in_hands(&it.senses.accelerometer));
     setUp();
     flown.grounded = true;
     for (int k = 0; k < 100; k++) {
         carry(0.1F, 1.0F, 0.05F);
-        integrity_height(&it, &flown, 0.5F, 0.1F, 0.0F);
-        TEST_ASSERT_FALSE(integrity_carried(&it));
+        sensed_height(&it, &flown, 0.5F, 0.1F, 0.0F);
+        TEST_ASSERT_FALSE(accelerometer_is_in_hands(&it.senses.accelerometer));
     }
 }
 
 static void stand_tilted(float seconds, float roll_rad)
 {
-    it.standing = true; /* as integrity_thrust() finds in state GROUND */
+    it.senses.standing = true; /* as sensed_thrust() finds in state GROUND */
     for (int k = 0; k < (int)lroundf(seconds * 40.0F); k++) {
         frame.sequence++;
         frame.arrival_us += 25000U;
         frame.median.roll_rad = roll_rad;
-        integrity_frames(&it, &flown, &frame, 1U);
-        TEST_ASSERT_FALSE(integrity_carried(&it));
+        sensed_frames(&it, &flown, &frame, 1U);
+        TEST_ASSERT_FALSE(accelerometer_is_in_hands(&it.senses.accelerometer));
     }
 }
 
@@ -638,7 +635,7 @@ void test_tilts_by_hand_nudges_and_wrong_frames_are_no_carried_vehicle(void)
     carry(5.0F, 0.0F, 0.0F);
     for (int k = 0; k < 200; k++) { /* the signs of the IMU are tried */
         carry(0.1F, 0.0F, 0.3F);
-        TEST_ASSERT_FALSE(integrity_carried(&it));
+        TEST_ASSERT_FALSE(accelerometer_is_in_hands(&it.senses.accelerometer));
     }
     for (float roll_rad = 0.02F; roll_rad < 0.4F; roll_rad += 0.02F) { /* put down, each time another way */
         stand_tilted(8.0F, roll_rad);
@@ -659,7 +656,7 @@ static void tilt(float degrees, int frames)
         frame.sequence++;
         frame.arrival_us += 25000U;
         frame.level.roll_rad = frame.median.roll_rad = degrees * DEGREE_RAD;
-        integrity_tilt(&it, &frame, 1U, 0.0F, 0.0F, 0U);
+        tilt_step(&it.senses.tilt, &frame, 1U, 0.0F, 0.0F, 0U);
     }
 }
 
@@ -667,23 +664,23 @@ void test_a_tilt_that_comes_in_one_jump_is_believed_after_six_frames(void)
 {
     tilt(2.0F, 20);
     tilt(70.0F, 6);
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 2.0F * DEGREE_RAD, it.roll_rad);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.tilted);
-    TEST_ASSERT_EQUAL_UINT32(frame.sequence, it.unfit_sequence);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 2.0F * DEGREE_RAD, it.senses.tilt.roll_rad);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.tilt.tilted);
+    TEST_ASSERT_EQUAL_UINT32(frame.sequence, it.senses.tilt.unfit_sequence);
     tilt(1.0F, 1);
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 1.0F * DEGREE_RAD, it.roll_rad);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 1.0F * DEGREE_RAD, it.senses.tilt.roll_rad);
     tilt(70.0F, 9);
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 70.0F * DEGREE_RAD, it.roll_rad);
-    TEST_ASSERT_EQUAL_UINT16(3U, it.tilted);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 70.0F * DEGREE_RAD, it.senses.tilt.roll_rad);
+    TEST_ASSERT_EQUAL_UINT16(3U, it.senses.tilt.tilted);
 }
 
 void test_a_tilt_that_grows_is_believed_at_once(void)
 {
     for (int i = 0; i <= 10; i++) {
         tilt(10.0F * (float)i, 1); /* 400 degrees per second */
-        TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 10.0F * (float)i * DEGREE_RAD, it.roll_rad);
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 10.0F * (float)i * DEGREE_RAD, it.senses.tilt.roll_rad);
     }
-    TEST_ASSERT_EQUAL_UINT16(6U, it.tilted);
+    TEST_ASSERT_EQUAL_UINT16(6U, it.senses.tilt.tilted);
 }
 
 void test_a_roll_whose_median_jumps_once_is_believed_at_its_second_frame(void)
@@ -692,9 +689,9 @@ void test_a_roll_whose_median_jumps_once_is_believed_at_its_second_frame(void)
         setUp();
         for (int i = 0; i <= 10; i++) { /* from the third on one frame ahead: a spike in the five */
             tilt((float)sign * 11.0F * (float)(i + (i > 2)), 1);
-            TEST_ASSERT_EQUAL_UINT16(i == 3 ? 1U : 0U, it.jumped);
+            TEST_ASSERT_EQUAL_UINT16(i == 3 ? 1U : 0U, it.senses.tilt.jumped);
         }
-        TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, (float)sign * 121.0F * DEGREE_RAD, it.roll_rad);
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, (float)sign * 121.0F * DEGREE_RAD, it.senses.tilt.roll_rad);
     }
 }
 
@@ -705,10 +702,10 @@ void test_bad_frames_that_jump_and_drift_are_no_roll(void)
         tilt(2.0F, 5);
         for (int i = 0; i < 6; i++) {
             tilt(60.0F + drift * (float)i, 1);
-            TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 2.0F * DEGREE_RAD, it.roll_rad);
+            TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 2.0F * DEGREE_RAD, it.senses.tilt.roll_rad);
         }
         tilt(1.0F, 1);
-        TEST_ASSERT_EQUAL_UINT16(0U, it.tilted);
+        TEST_ASSERT_EQUAL_UINT16(0U, it.senses.tilt.tilted);
     }
 }
 
@@ -717,14 +714,14 @@ void test_a_median_that_outlasts_its_frames_does_not_count_as_tilted(void)
     tilt(20.0F, 1);
     tilt(39.0F, 1);
     tilt(55.0F, 2);
-    TEST_ASSERT_EQUAL_UINT16(2U, it.tilted);
+    TEST_ASSERT_EQUAL_UINT16(2U, it.senses.tilt.tilted);
     frame.sequence++;
     frame.arrival_us += 25000U;
     frame.level.roll_rad = 0.0F;
-    integrity_tilt(&it, &frame, 1U, 0.0F, 0.0F, 0U);
-    TEST_ASSERT_EQUAL_UINT16(2U, it.tilted);
+    tilt_step(&it.senses.tilt, &frame, 1U, 0.0F, 0.0F, 0U);
+    TEST_ASSERT_EQUAL_UINT16(2U, it.senses.tilt.tilted);
     tilt(40.0F, 1);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.tilted);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.tilt.tilted);
 }
 
 void test_a_vehicle_that_has_rolled_over_is_tilted_before_its_median_says_so(void)
@@ -732,10 +729,10 @@ void test_a_vehicle_that_has_rolled_over_is_tilted_before_its_median_says_so(voi
     tilt(2.0F, 5);
     frame.rolled = ATTITUDE_ROLLED_FRAMES - 1U;
     tilt(2.0F, 1);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.tilted);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.tilt.tilted);
     frame.rolled = ATTITUDE_ROLLED_FRAMES;
     tilt(2.0F, 1);
-    TEST_ASSERT_GREATER_THAN_UINT16(3U, it.tilted);
+    TEST_ASSERT_GREATER_THAN_UINT16(3U, it.senses.tilt.tilted);
 }
 
 void test_a_tilt_after_a_silence_or_through_the_half_turn_is_no_jump(void)
@@ -743,19 +740,130 @@ void test_a_tilt_after_a_silence_or_through_the_half_turn_is_no_jump(void)
     tilt(2.0F, 5);
     frame.arrival_us += 300000U;
     tilt(70.0F, 1);
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 70.0F * DEGREE_RAD, it.roll_rad);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 70.0F * DEGREE_RAD, it.senses.tilt.roll_rad);
     tilt(175.0F, 9);
     tilt(-175.0F, 1);
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -175.0F * DEGREE_RAD, it.roll_rad);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -175.0F * DEGREE_RAD, it.senses.tilt.roll_rad);
 }
 
 void test_one_sample_stands_for_the_frames_where_there_are_none(void)
 {
-    integrity_tilt(&it, NULL, 0U, 0.1F, -0.2F, 1000U);
-    TEST_ASSERT_EQUAL_FLOAT(0.1F, it.roll_rad);
-    TEST_ASSERT_EQUAL_FLOAT(-0.2F, it.pitch_rad);
-    integrity_tilt(&it, NULL, 0U, NAN, 0.0F, 2000U);
-    TEST_ASSERT_EQUAL_FLOAT(0.1F, it.roll_rad);
-    integrity_tilt(&it, NULL, 0U, 1.0F, 0.0F, 2000U);
-    TEST_ASSERT_EQUAL_FLOAT(0.1F, it.roll_rad);
+    tilt_step(&it.senses.tilt, NULL, 0U, 0.1F, -0.2F, 1000U);
+    TEST_ASSERT_EQUAL_FLOAT(0.1F, it.senses.tilt.roll_rad);
+    TEST_ASSERT_EQUAL_FLOAT(-0.2F, it.senses.tilt.pitch_rad);
+    tilt_step(&it.senses.tilt, NULL, 0U, NAN, 0.0F, 2000U);
+    TEST_ASSERT_EQUAL_FLOAT(0.1F, it.senses.tilt.roll_rad);
+    tilt_step(&it.senses.tilt, NULL, 0U, 1.0F, 0.0F, 2000U);
+    TEST_ASSERT_EQUAL_FLOAT(0.1F, it.senses.tilt.roll_rad);
+}
+
+/* ---- what is passed on */
+
+static flight_inputs_t inputs_of_height(uint32_t sequence, float height_mm, uint32_t time_us)
+{
+    return (flight_inputs_t){
+        .height_valid = true,
+        .height_sequence = sequence,
+        .altitude = {.valid = true,
+                     .height_mm = height_mm,
+                     .slant_mm = 200.0F + height_mm,
+                     .spread_mm = 9.0F},
+        .height_time_us = time_us,
+        .height_age_us = 70000U,
+    };
+}
+
+void test_a_new_scan_is_judged_once_and_its_height_compared(void)
+{
+    flight_inputs_t in = inputs_of_height(7U, 510.0F, 1100000U);
+
+    it.height_time_us = 1000000U;
+    it.senses.heights.known = true;
+    it.senses.heights.height_m = 0.5F;
+    it.senses.accelerometer.felt = (witness_t){.speed_mps = 0.2F, .running_s = 2.0F};
+    evidence_t evidence = sense_step(&it, &flown, &in);
+    TEST_ASSERT_TRUE(in.height_valid);
+    TEST_ASSERT_EQUAL_FLOAT(0.51F, evidence.height_m);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 0.1F / 3.0F, evidence.rise_mps); /* 0.1 m/s through 0.1 of 0.3 s */
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 0.01F + 0.2F * 0.07F, it.senses.accelerometer.felt.seen_m);
+    in.altitude.height_mm = 520.0F; /* the same scan again */
+    evidence = sense_step(&it, &flown, &in);
+    TEST_ASSERT_EQUAL_FLOAT(0.51F, evidence.height_m);
+    in = inputs_of_height(8U, -60.0F, 1200000U);
+    evidence = sense_step(&it, &flown, &in);
+    TEST_ASSERT_FALSE(in.height_valid);
+    TEST_ASSERT_EQUAL_FLOAT(0.51F, evidence.height_m);
+    in = inputs_of_height(9U, 520.0F, 1300000U);
+    evidence = sense_step(&it, &flown, &in); /* 0.2 s after the one before */
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 0.0333333F + 0.5F * (0.05F - 0.0333333F), evidence.rise_mps);
+}
+
+void test_only_inputs_that_are_credible_are_passed_on(void)
+{
+    imu_sample_t frames[3];
+
+    memset(frames, 0, sizeof frames);
+    for (uint32_t i = 0U; i < 3U; i++) {
+        frames[i] = (imu_sample_t){.sequence = 11U + i, .arrival_us = 1000000U + 25000U * i, .ready = true};
+    }
+    frames[1].level.roll_rad = frames[1].median.roll_rad = 1.0F; /* a jump */
+    frames[2].level.roll_rad = frames[2].median.roll_rad = 1.0F;
+    flight_inputs_t in = inputs_of_height(1U, 100.0F, 1000000U);
+    in.altitude.slant_mm = 700.0F;
+    in.altitude.leg_mm = 100.0F;
+    in.frames = frames;
+    in.frame_count = 3U;
+    in.roll_rad = 1.0F;
+    in.pitch_rad = 0.5F;
+    in.tilted_frames = 9U;
+    (void)sense_step(&it, &flown, &in);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, in.roll_rad); /* the accepted ones */
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, in.pitch_rad);
+    TEST_ASSERT_EQUAL_UINT16(0U, in.tilted_frames);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-3F, 600.0F, in.altitude.height_mm);
+    TEST_ASSERT_EQUAL_UINT16(0U, in.frame_count);
+    TEST_ASSERT_TRUE(in.height_valid);
+    it.verdict.doubts = DOUBT_SIGHT;
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, sense_step(&it, &flown, &in).doubts);
+    TEST_ASSERT_FALSE(in.height_valid);
+}
+
+void test_frames_after_a_rejected_one_are_passed_on(void)
+{
+    imu_sample_t frames[3];
+
+    memset(frames, 0, sizeof frames);
+    for (uint32_t i = 0U; i < 3U; i++) {
+        frames[i] = (imu_sample_t){.sequence = 11U + i, .arrival_us = 1000000U + 25000U * i, .ready = true};
+    }
+    frames[1].median.roll_rad = 1.0F;
+    flight_inputs_t in = {.frames = frames, .frame_count = 3U};
+    (void)sense_step(&it, &flown, &in);
+    TEST_ASSERT_EQUAL_UINT16(1U, in.frame_count);
+    TEST_ASSERT_EQUAL_UINT32(13U, in.frames[0].sequence);
+}
+
+/* ---- names */
+
+void test_every_doubt_tells_its_rule(void)
+{
+    fly();
+    TEST_ASSERT_EQUAL(VERDICT_NONE, verdict_reason(&it.verdict));
+    world.frozen_height = true;
+    flown.wanted_m = 0.5F;
+    flown.thrust_n = HOVER_N + 1.5F;
+    (void)until(DOUBT_SIGHT, 3.0F);
+    TEST_ASSERT_EQUAL_STRING("noclimb", verdict_reason_name((uint16_t)verdict_reason(&it.verdict)));
+    flown.ordered = flown.grounded = true;
+    cycle();
+    TEST_ASSERT_EQUAL_STRING("-", verdict_reason_name((uint16_t)verdict_reason(&it.verdict)));
+}
+
+void test_no_two_rules_have_one_name(void)
+{
+    for (uint16_t a = 0U; a < VERDICT_COUNT; a++) {
+        for (uint16_t b = (uint16_t)(a + 1U); b < VERDICT_COUNT; b++) {
+            TEST_ASSERT_TRUE(strcmp(verdict_reason_name(a), verdict_reason_name(b)) != 0);
+        }
+    }
 }

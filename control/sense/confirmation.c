@@ -1,0 +1,64 @@
+/* A take-off is unconfirmed until a climb shows in the heights, as is a step of the terrain towards the
+ * vehicle. A jump is no first climb. After a far fall of the terrain the heights have to show that the
+ * vehicle follows it. */
+#include "control/sense/confirmation.h"
+
+#include "control/between.h"
+#include "control/sense/witness.h"
+
+#define CONFIRMED_M 0.12F    /* chosen: just above WITNESS_STEP_M */
+#define TERRAIN_FALL_M 0.40F /* chosen: above the edge of the seed's course, 0.25 m */
+#define SUNK_M 0.025F        /* chosen: five times the noise of a height; no vehicle flies below its ground */
+#define QUIET_S 1.0F         /* tried: 60 drawn vehicles whose blocked beam shows the reference; ten scans */
+
+static void watch_depth(confirmation_t *confirmation, const height_change_t *change, bool standing)
+{
+    if (change->step) {
+        confirmation->terrain_fell = change->rise_m > TERRAIN_FALL_M;
+        confirmation->after_fall_m = change->height_m;
+    } else if (standing || change->height_m < confirmation->after_fall_m - CONFIRMED_M) {
+        confirmation->terrain_fell = false;
+    }
+}
+
+/* A climb shows, or nothing can contradict it any more. */
+static bool is_over(const confirmation_t *confirmation, const height_change_t *change)
+{
+    return !change->fresh || change->rise_m > WITNESS_STEP_M ||
+           change->height_m > confirmation->near_m + CONFIRMED_M || confirmation->quiet_s > QUIET_S;
+}
+
+confirmation_event_t confirmation_height(confirmation_t *confirmation, const heights_t *heights,
+                                         const height_change_t *change, bool standing)
+{
+    watch_depth(confirmation, change, standing);
+    confirmation->proved = confirmation->proved && !standing;
+    const bool first = confirmation_is_first(confirmation);
+    const bool nearer = change->rise_m < 0.0F && !heights_return(heights, change->height_m);
+
+    if (standing || (change->step && (first || nearer))) {
+        confirmation->unconfirmed = true;
+        confirmation->near_m = change->height_m;
+        confirmation->quiet_s = 0.0F;
+        return CONFIRMATION_BEGINS;
+    }
+    if (!is_over(confirmation, change)) {
+        return CONFIRMATION_GOES_ON;
+    }
+    confirmation->proved = confirmation->proved || first;
+    confirmation->unconfirmed = false;
+    return first ? CONFIRMATION_FIRST : CONFIRMATION_GOES_ON;
+}
+
+void confirmation_wait(confirmation_t *confirmation, const height_change_t *change, float wanted_m,
+                       bool grounded, bool lives)
+{
+    const bool climbs = wanted_m > CONFIRMATION_QUIET_M;
+    const bool content = wanted_m < CONFIRMATION_QUIET_M;
+
+    confirmation->ground_m = grounded ? at_most(change->height_m, 0.0F) : confirmation->ground_m;
+    confirmation->sunk = (change->height_m < confirmation->ground_m - SUNK_M && climbs)
+                             ? (uint16_t)(confirmation->sunk + (confirmation->sunk < CONFIRMATION_SUNK))
+                             : 0U;
+    confirmation->quiet_s = (content && lives) ? confirmation->quiet_s + change->gap_s : 0.0F;
+}

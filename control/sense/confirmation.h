@@ -1,0 +1,49 @@
+/* What the heights have not shown yet: the climb of a take-off, the climb after a step of the terrain towards
+ * the vehicle, and the descent after a far fall of the terrain. Until then the beam may be blocked.
+ *
+ * Metres and seconds. Pure; the caller owns the state, all zero at first. Context: one Task. */
+#ifndef CONTROL_SENSE_CONFIRMATION_H
+#define CONTROL_SENSE_CONFIRMATION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "control/sense/heights.h"
+
+#define CONFIRMATION_SUNK 3U       /* chosen: 0.3 s; `sunk` stops here */
+#define CONFIRMATION_QUIET_M 0.10F /* chosen: as CONTENT_M in verdict.c */
+
+typedef struct {
+    bool unconfirmed;   /* after a take-off or a step towards the vehicle: no climb has shown since */
+    bool proved;        /* the heights have confirmed a climb since the ground */
+    float near_m;       /* height after the step that made `unconfirmed` true */
+    float quiet_s;      /* how long the law has not wanted to climb, and the slant moves */
+    bool terrain_fell;  /* the terrain has fallen far, and no descent has shown in the heights since */
+    float after_fall_m; /* height after that step */
+    float ground_m;     /* latest height in state GROUND, at most 0: a pilot may lift it there */
+    uint16_t sunk;      /* heights in a row below that while the law wants to climb */
+} confirmation_t;
+
+/* What a height means for the witnesses. */
+typedef enum {
+    CONFIRMATION_GOES_ON,
+    CONFIRMATION_BEGINS, /* from now on the question is whether a climb shows in the heights */
+    CONFIRMATION_FIRST   /* the heights show the first climb since the ground */
+} confirmation_event_t;
+
+/* One height, before heights_update(). standing: on the ground, or not yet off it. */
+confirmation_event_t confirmation_height(confirmation_t *confirmation, const heights_t *heights,
+                                         const height_change_t *change, bool standing);
+
+/* The same height, after the witnesses were compared. wanted_m: reference minus height, NAN: none is held.
+ * lives: the slant moves. */
+void confirmation_wait(confirmation_t *confirmation, const height_change_t *change, float wanted_m,
+                       bool grounded, bool lives);
+
+/* The first climb since the ground is still to come. */
+static inline bool confirmation_is_first(const confirmation_t *confirmation)
+{
+    return confirmation->unconfirmed && !confirmation->proved;
+}
+
+#endif

@@ -1,0 +1,58 @@
+/* How the heights move: rate, way since the latest step, steps of the terrain.
+ *
+ * Metres and seconds. Pure; the caller owns the state, all zero at first. Context: one Task. */
+#ifndef CONTROL_SENSE_HEIGHTS_H
+#define CONTROL_SENSE_HEIGHTS_H
+
+#include <stdbool.h>
+
+typedef struct {
+    bool known;          /* at least one height was received */
+    float height_m;      /* latest height */
+    float rise_mps;      /* low-passed rate of the heights, without steps */
+    float way_m;         /* leaky sum of the height changes since the latest step */
+    float unmoved_s;     /* time since way_m was last large, at most 1 s; 1 s after a step */
+    float before_rise_m; /* height before the latest upward step of the height */
+    float since_rise_s;  /* time since that step, at most 1.5 s */
+    float steps;         /* leaky count of the steps */
+    float unseen_s;      /* time on the ground since the latest height, at most 2 s */
+} heights_t;
+
+/* One height against the one before. */
+typedef struct {
+    float height_m;
+    float rise_m;     /* change of the height */
+    float gap_s;      /* time since the height before, > 0 */
+    float age_s;      /* time since its rays were taken */
+    bool fresh;       /* the height before was not lost */
+    bool step;        /* a step of the terrain: no witness explains the change */
+    bool first_climb; /* it shows the first climb since the ground */
+} height_change_t;
+
+/* What the change is, before it is taken over. step: as far as the heights alone tell. */
+height_change_t heights_change(const heights_t *heights, float height_m, float gap_s, float age_s);
+
+/* Takes the height over. */
+void heights_update(heights_t *heights, const height_change_t *change);
+
+/* Share of a low pass with the time constant of rise_mps. */
+float heights_rise_share(float gap_s);
+
+/* dt_s on the ground without a height. */
+void heights_wait(heights_t *heights, float dt_s);
+
+/* The height is back at its value before a short upward step: that was a glitch, the terrain did not rise. */
+bool heights_return(const heights_t *heights, float height_m);
+
+/* A thing in front of a mirror stays where it is. So heights that keep moving do not come from a blocked
+ * beam. */
+bool heights_move(const heights_t *heights);
+
+/* The same, now or within the last second. */
+bool heights_moved(const heights_t *heights);
+
+/* The height makes steps for more than half of the time, or for less. At half neither is true. */
+bool heights_are_steps(const heights_t *heights);
+bool heights_step_less(const heights_t *heights);
+
+#endif

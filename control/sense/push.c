@@ -1,0 +1,45 @@
+/* One lag for the motors, and the vehicle's model of cascade.h. */
+#include "control/sense/push.h"
+
+#include "control/between.h"
+
+#define STEP_MAX_S 0.5F        /* chosen: longer pauses count as this long; as in flight.c */
+#define LAG_S 0.15F            /* LAG of 0.12 s and DELAY of 18.5 ms, as one lag */
+#define PUSHED_LEAK_PER_S 0.4F /* chosen: time constant of 2.5 s, as the sure hover thrust in flight.c */
+
+void push_lag(push_t *push, const situation_t *situation)
+{
+    const float dt_s = at_most(situation->step_s, STEP_MAX_S);
+
+    push->lagged_n += dt_s / (LAG_S + dt_s) * (situation->thrust_n - push->lagged_n);
+}
+
+void push_move(push_t *push, const situation_t *situation, float upright)
+{
+    const float dt_s = at_most(situation->step_s, STEP_MAX_S);
+    const float excess_mps2 = situation->authority_mps2_per_n *
+                              (push->lagged_n * upright - situation->hover_n);
+    const float mps2 = (excess_mps2 - situation->damping_per_s * push->pushed.speed_mps) /
+                       (1.0F + situation->damping_per_s * dt_s);
+
+    witness_move(&push->pushed, mps2, dt_s);
+}
+
+void push_compare(push_t *push, float rise_m, float gap_s, float age_s)
+{
+    witness_compare(&push->pushed, rise_m, gap_s, age_s, PUSHED_LEAK_PER_S, 0.0F);
+}
+
+float push_speed_mps(const push_t *push, float rise_mps)
+{
+    const witness_t *pushed = &push->pushed;
+
+    return witness_counts(pushed) ? pushed->speed_mps + PUSHED_LEAK_PER_S * pushed->seen_m : rise_mps;
+}
+
+float push_moved_m(const push_t *push)
+{
+    const witness_t *pushed = &push->pushed;
+
+    return witness_counts(pushed) ? pushed->seen_m - pushed->off_m : 0.0F;
+}

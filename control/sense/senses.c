@@ -1,0 +1,165 @@
+/* The order of the parts. What breaks: the order. The sway of a frame counts for that frame already, and the
+ * lift-off of a pilot is noticed before the frame moves the witness. */
+#include "control/sense/senses.h"
+
+#include <math.h>
+
+#include "control/between.h"
+#include "control/credible.h"
+
+void senses_init(senses_t *senses)
+{
+    *senses = (senses_t){.standing = false};
+    tilt_init(&senses->tilt);
+    accelerometer_init(&senses->accelerometer);
+}
+
+void senses_forget(senses_t *senses)
+{
+    witness_forget(&senses->accelerometer.felt);
+    witness_forget(&senses->push.pushed);
+}
+
+/* One frame in state GROUND. */
+static void watch_ground(senses_t *s, float mean_mps2, float dt_s)
+{
+    heights_wait(&s->heights, dt_s);
+    if (s->heights.unseen_s > HEIGHT_LOST_S && sway_as_in_the_air(&s->sway) && sway_rocks(&s->sway)) {
+        accelerometer_in_hands(&s->accelerometer, mean_mps2, sway_is_no_hand(&s->sway), dt_s);
+    } else {
+        accelerometer_rest(&s->accelerometer, dt_s);
+    }
+}
+
+/* One frame off the ground, or with a take-off commanded. */
+static void watch_flight(senses_t *s, float mean_mps2, bool standing, float dt_s)
+{
+    if (!standing) {
+        accelerometer_was_lifted(&s->accelerometer, s->heights.rise_mps);
+    }
+    stand_frame(&s->stand, &s->accelerometer.felt, &s->push.pushed, sway_is_calm(&s->sway), dt_s);
+    accelerometer_move(&s->accelerometer, mean_mps2, standing, dt_s);
+}
+
+/* One accepted frame. up_mps2: what its accelerometer measures. */
+static void take_frame(senses_t *s, const situation_t *situation, const imu_sample_t *frame, float up_mps2)
+{
+    uint32_t gap_us;
+    const float mean_mps2 = accelerometer_mean_mps2(&s->accelerometer, frame->arrival_us, up_mps2, &gap_us);
+    const float dt_s = (float)gap_us * 1.0e-6F;
+
+    if (gap_us > FRAME_GAP_US) {
+        accelerometer_restart(&s->accelerometer, push_speed_mps(&s->push, s->heights.rise_mps));
+        return;
+    }
+    sway_frame(&s->sway, frame, s->heights.height_m, s->standing, dt_s);
+    if (situation->grounded) {
+        watch_ground(s, mean_mps2, dt_s);
+    } else {
+        watch_flight(s, mean_mps2, situation->standing, dt_s);
+    }
+}
+
+void senses_frames(senses_t *senses, const situation_t *situation, const imu_sample_t *frames, uint16_t count)
+{
+    for (uint16_t k = imu_first_after(frames, count, senses->accelerometer.sequence); k < count; ++k) {
+        const imu_sample_t *frame = &frames[k];
+        const bool fit = (int32_t)(frame->sequence - senses->tilt.unfit_sequence) > 0;
+
+        if (!fit || !frame->ready) {
+            continue;
+        }
+        if (!frame->has_acceleration) {
+            senses->accelerometer.sequence = frame->sequence;
+            sway_frame_alone(&senses->sway, frame, senses->heights.height_m, senses->standing);
+            continue;
+        }
+        const float up_mps2 = imu_up_mps2(frame);
+        if (fabsf(up_mps2) < UP_MAX_MPS2) {
+            senses->accelerometer.sequence = frame->sequence;
+            take_frame(senses, situation, frame, up_mps2);
+        }
+    }
+}
+
+void senses_thrust(senses_t *senses, const situation_t *situation, bool felt_valid)
+{
+    const witness_t *felt = &senses->accelerometer.felt;
+    const bool stands = senses->heights.known && senses->heights.height_m < SENSES_LOW_M &&
+                        !sway_as_in_the_air(&senses->sway);
+    const bool felt_tells = !situation->grounded && felt_valid && witness_counts(felt);
+
+    accelerometer_set_noise(&senses->accelerometer, situation->noise_mps2);
+    senses->standing = situation->grounded || situation->standing;
+    push_lag(&senses->push, situation);
+    if (!situation->off_ground || stands) {
+        witness_start(&senses->push.pushed, felt_tells ? felt->speed_mps : 0.0F);
+    } else {
+        push_move(&senses->push, situation, senses->tilt.upright);
+    }
+}
+
+bool senses_scan(senses_t *senses, const altitude_t *altitude)
+{
+    return beam_scan(&senses->beam, altitude, senses->heights.height_m, sway_as_in_the_air(&senses->sway),
+                     senses->accelerometer.shaken <= 1.0F);
+}
+
+/* What a height means for the witnesses. At the first climb the hover thrust was not known well until now, so
+ * the witness of the thrust restarts from the rate of the heights. */
+static void confirm(senses_t *s, height_change_t *change)
+{
+    const confirmation_event_t event = confirmation_height(&s->confirmation, &s->heights, change,
+                                                           s->standing);
+
+    change->first_climb = event == CONFIRMATION_FIRST;
+    switch (event) {
+    case CONFIRMATION_BEGINS:
+        witness_forget_sinking(&s->accelerometer.felt);
+        witness_forget_sinking(&s->push.pushed);
+        break;
+    case CONFIRMATION_FIRST:
+        s->push.pushed.speed_mps = s->heights.rise_mps;
+        senses_forget(s);
+        break;
+    case CONFIRMATION_GOES_ON:
+    default:
+        break;
+    }
+}
+
+/* A step says nothing about the witnesses: it counts as the change that each of them predicts. */
+static void compare(senses_t *s, const height_change_t *change, bool believed)
+{
+    const witness_t *felt = &s->accelerometer.felt;
+    const witness_t *pushed = &s->push.pushed;
+    const float gap_s = change->gap_s;
+
+    accelerometer_compare(&s->accelerometer, change->step ? felt->speed_mps * gap_s : change->rise_m, gap_s,
+                          change->age_s, believed);
+    push_compare(&s->push, change->step ? pushed->speed_mps * gap_s : change->rise_m, gap_s, change->age_s);
+}
+
+height_change_t senses_height(senses_t *senses, float height_m, float gap_s, float age_s, bool believed)
+{
+    witness_t *felt = &senses->accelerometer.felt;
+    witness_t *pushed = &senses->push.pushed;
+    height_change_t change = heights_change(&senses->heights, height_m, gap_s, age_s);
+
+    change.step = change.step && !witness_follows(felt, change.rise_m, gap_s) &&
+                  !witness_follows(pushed, change.rise_m, gap_s);
+    if (change.step) {
+        beam_forget_slants(&senses->beam);
+    }
+    confirm(senses, &change);
+    heights_update(&senses->heights, &change);
+    senses->slower_mps += heights_rise_share(gap_s) *
+                          (at_most(felt->speed_mps, pushed->speed_mps) - senses->slower_mps);
+    if (change.fresh) {
+        compare(senses, &change, believed);
+    } else {
+        felt->off_m = 0.0F;
+        pushed->off_m = 0.0F;
+    }
+    return change;
+}

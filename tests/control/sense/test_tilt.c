@@ -1,0 +1,185 @@
+#include "sense/one_frame.h"
+
+void setUp(void)
+{
+    begin();
+}
+
+void tearDown(void) {}
+
+void test_twenty_degrees_in_a_frame_are_a_jump_of_either_angle_to_either_side(void)
+{
+    for (int axis = 0; axis < 2; axis++) {
+        for (float side = -1.0F; side < 2.0F; side += 2.0F) {
+            setUp();
+            tilt(0.0F, 0.0F);
+            tilt((axis == 0) ? 0.355F * side : 0.0F, (axis == 1) ? 0.355F * side : 0.0F);
+            TEST_ASSERT_EQUAL_UINT16(1U, it.senses.tilt.jumped);
+            TEST_ASSERT_EQUAL_UINT32(2U, it.senses.tilt.unfit_sequence);
+            tilt((axis == 0) ? 0.345F * side : 0.0F, (axis == 1) ? 0.345F * side : 0.0F);
+            TEST_ASSERT_EQUAL_UINT16(0U, it.senses.tilt.jumped);
+            TEST_ASSERT_EQUAL_FLOAT((axis == 0) ? 0.345F * side : 0.0F, it.senses.tilt.roll_rad);
+            TEST_ASSERT_EQUAL_FLOAT((axis == 1) ? 0.345F * side : 0.0F, it.senses.tilt.pitch_rad);
+            TEST_ASSERT_EQUAL_UINT32(2U, it.senses.tilt.unfit_sequence);
+        }
+    }
+}
+
+void test_the_way_through_the_half_turn_is_the_short_one(void)
+{
+    tilt(3.0F, 0.0F);
+    tilt(-3.0F, 0.0F); /* 0.283 rad */
+    TEST_ASSERT_EQUAL_FLOAT(-3.0F, it.senses.tilt.roll_rad);
+    tilt(2.9F, 0.0F); /* 0.383 rad */
+    TEST_ASSERT_EQUAL_UINT16(1U, it.senses.tilt.jumped);
+}
+
+void test_a_jump_within_ten_frames_of_silence_is_one_and_after_them_none(void)
+{
+    for (uint32_t more_us = 0U; more_us < 2U; more_us++) {
+        setUp();
+        tilt(0.0F, 0.0F);
+        frame.arrival_us += 225000U + more_us;
+        tilt(1.0F, 0.0F);
+        TEST_ASSERT_EQUAL_UINT16(1U - more_us, it.senses.tilt.jumped);
+    }
+}
+
+void test_the_time_of_a_refused_tilt_counts_as_news(void)
+{
+    tilt(0.0F, 0.0F);
+    frame.arrival_us += 200000U;
+    tilt(1.0F, 0.0F);
+    frame.arrival_us += 100000U;
+    tilt(1.0F, 0.0F);
+    TEST_ASSERT_EQUAL_UINT16(2U, it.senses.tilt.jumped);
+    TEST_ASSERT_EQUAL_UINT32(frame.arrival_us, it.senses.tilt.time_us);
+}
+
+void test_six_jumps_in_a_row_are_counted_anew_after_a_good_tilt(void)
+{
+    tilt(0.0F, 0.0F);
+    for (int burst = 0; burst < 2; burst++) {
+        for (int i = 0; i < 6; i++) {
+            tilt(1.0F, 0.0F);
+            TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.tilt.roll_rad);
+        }
+        tilt(0.0F, 0.0F);
+    }
+}
+
+void test_angles_beyond_seven_radians_or_without_a_number_are_refused(void)
+{
+    static const float bad[] = {7.1F, -7.1F, NAN};
+    for (int i = 0; i < 3; i++) {
+        setUp();
+        tilt(bad[i], 0.0F);
+        tilt(0.0F, bad[i]);
+        TEST_ASSERT_FALSE(it.senses.tilt.levelled);
+        TEST_ASSERT_EQUAL_UINT32(2U, it.senses.tilt.unfit_sequence);
+        TEST_ASSERT_EQUAL_UINT32(0U, it.senses.tilt.time_us);
+    }
+    tilt(6.9F, -6.9F);
+    TEST_ASSERT_TRUE(it.senses.tilt.levelled);
+}
+
+void test_tilted_are_45_degrees_of_one_angle_or_less_of_two(void)
+{
+    static const struct {
+        float roll_deg, pitch_deg;
+        uint16_t tilted;
+    } rows[] = {
+        {44.5F, 0.0F, 0U}, {45.5F, 0.0F, 1U}, {0.0F, -45.5F, 1U}, {34.0F, 30.0F, 0U}, {34.0F, 33.0F, 1U}};
+    for (int i = 0; i < 5; i++) {
+        setUp();
+        tilt(rows[i].roll_deg * DEGREE_RAD, rows[i].pitch_deg * DEGREE_RAD);
+        TEST_ASSERT_EQUAL_UINT16(rows[i].tilted, it.senses.tilt.tilted);
+    }
+    NEAR(0.69528F, it.senses.tilt.upright); /* cos 34 cos 33 */
+    tilt(0.5F, 0.5F);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.tilt.tilted);
+    it.senses.tilt.tilted = 999U;
+    tilt(0.8F, 0.8F);
+    tilt(0.8F, 0.8F);
+    TEST_ASSERT_EQUAL_UINT16(1000U, it.senses.tilt.tilted); /* and does not wrap */
+}
+
+void test_a_sample_or_a_frame_counts_once(void)
+{
+    tilt_step(&it.senses.tilt, NULL, 0U, 0.1F, 0.0F, 0U);
+    tilt_step(&it.senses.tilt, NULL, 0U, 1.0F, 0.0F, 0U);
+    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.tilt.jumped);
+    tilt_step(&it.senses.tilt, NULL, 0U, 1.0F, 0.0F, 25000U);
+    TEST_ASSERT_EQUAL_UINT16(1U, it.senses.tilt.jumped);
+    frame.arrival_us = 25000U;
+    tilt(-1.0F, 0.0F);
+    TEST_ASSERT_EQUAL_UINT16(2U, it.senses.tilt.jumped);
+    tilt_step(&it.senses.tilt, &frame, 1U, 0.0F, 0.0F, 0U);
+    TEST_ASSERT_EQUAL_UINT16(2U, it.senses.tilt.jumped);
+    TEST_ASSERT_EQUAL_FLOAT(0.1F, it.senses.tilt.roll_rad);
+}
+
+/* Between the steps of an attitude that is held (0.05 rad) and those that are no turn any more (0.25 rad),
+ * and within 0.25 rad of where that rate leads from the accepted tilt. */
+void test_rejected_tilts_that_go_on_turning_are_a_turn(void)
+{
+    static const struct {
+        float first_rad, second_rad;
+        bool turn;
+    } rows[] = {{0.40F, 0.64F, true},  {0.40F, 0.66F, false},  {0.36F, 0.42F, false}, {0.40F, 0.60F, true},
+                {0.40F, 0.54F, false}, {-0.40F, -0.60F, true}, {0.60F, 0.77F, false}, {0.43F, 0.63F, true},
+                {0.40F, 0.56F, true},  {0.40F, 0.40F, false},  {0.64F, 0.40F, false}};
+    for (int axis = 0; axis < 2; axis++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            const float first_rad = rows[i].first_rad, second_rad = rows[i].second_rad;
+            setUp();
+            tilt(0.0F, 0.0F);
+            tilt((axis == 0) ? first_rad : 0.0F, (axis == 1) ? first_rad : 0.0F);
+            TEST_ASSERT_EQUAL_UINT16(1U, it.senses.tilt.jumped);
+            tilt((axis == 0) ? second_rad : 0.0F, (axis == 1) ? second_rad : 0.0F);
+            TEST_ASSERT_EQUAL_UINT16(rows[i].turn ? 0U : 2U, it.senses.tilt.jumped);
+        }
+    }
+}
+
+void test_a_slow_turn_of_the_other_angle_is_none(void)
+{
+    for (int turns = 0; turns < 2; turns++) {
+        setUp();
+        const float rate_rad = (turns != 0) ? 0.052F : 0.048F;
+        tilt(0.0F, 0.0F);
+        tilt(1.0F, rate_rad);
+        tilt(1.0F, 2.0F * rate_rad);
+        TEST_ASSERT_EQUAL_UINT16((turns != 0) ? 0U : 2U, it.senses.tilt.jumped);
+    }
+}
+
+void test_a_turn_goes_through_the_half_turn(void)
+{
+    for (float side = -1.0F; side < 2.0F; side += 2.0F) {
+        setUp();
+        tilt(3.0F * side, 0.0F);
+        tilt(-2.88F * side, 0.0F); /* 0.4 rad on */
+        TEST_ASSERT_EQUAL_UINT16(1U, it.senses.tilt.jumped);
+        tilt(-2.68F * side, 0.0F);
+        TEST_ASSERT_EQUAL_UINT16(0U, it.senses.tilt.jumped);
+        setUp();
+        tilt(2.6F * side, 0.0F);
+        tilt(3.05F * side, 0.0F);
+        tilt(-3.033F * side, 0.0F); /* 0.2 rad on */
+        TEST_ASSERT_EQUAL_UINT16(0U, it.senses.tilt.jumped);
+    }
+}
+
+void test_frames_that_were_level_themselves_are_no_tilt(void)
+{
+    for (int level = 0; level < 3; level++) {
+        setUp();
+        frame.sequence++;
+        frame.median.roll_rad = 1.0F;
+        frame.level.roll_rad = (level == 1) ? 0.78F : 0.79F;
+        frame.rolled = (level == 2) ? ATTITUDE_ROLLED_FRAMES : 0;
+        tilt_step(&it.senses.tilt, &frame, 1U, 0.0F, 0.0F, 0U);
+        TEST_ASSERT_EQUAL_UINT16((level == 0) ? 1U : (level == 1) ? 0U : 1000U, it.senses.tilt.tilted);
+    }
+}
