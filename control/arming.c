@@ -10,6 +10,7 @@ static void obey(arming_t *arming, const flight_inputs_t *in, flight_state_t sta
     arming->sequence = in->arm_sequence;
     arming->armed = arming->armed || (in->arm && state == FLIGHT_GROUND);
     arming->ending = arming->armed && !in->arm;
+    arming->hands_over = in->arm;
 }
 
 static bool fault(flight_state_t before, const supervisor_t *supervisor)
@@ -32,6 +33,7 @@ void arming_step(arming_t *arming, const flight_inputs_t *in, flight_state_t bef
         arming->armed = false;
         arming->ending = false;
     }
+    arming->hands_over = arming->hands_over && arming->armed && state == FLIGHT_GROUND;
 }
 
 float arming_idle_n(const arming_t *arming, float idle_percent, flight_state_t state)

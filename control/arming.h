@@ -1,8 +1,10 @@
-/* Arming and idle thrust. The autopilot's motors are started by its own stick command. They may stop when
+/* Arming, idle thrust, and the order that a hand-over needs. The autopilot's motors are started by its own stick command. They may stop when
  * the throttle is below 10 %. So the firmware gives IDLE percent instead of no thrust between the pilot's
  * hand-over and the take-off, and between two flights.
  *
- * Only the operator arms. Pure; the caller owns the state, all zero at first. */
+ * Only the operator arms. Without a reference, heights and tilt together show that a pilot flies. The tilt
+ * alone shows it only after an #ARM, given since power-on and since the latest landing. Pure; the caller owns
+ * the state, all zero at first. */
 #ifndef CONTROL_ARMING_H
 #define CONTROL_ARMING_H
 
@@ -14,6 +16,7 @@
 typedef struct {
     bool armed;
     bool ending;       /* will disarm when the vehicle is on the ground */
+    bool hands_over;   /* #ARM came since the vehicle stands: a hand-over may follow */
     uint32_t sequence; /* latest request that was processed */
 } arming_t;
 

@@ -417,11 +417,11 @@ static void bumpless_transfer(flight_t *flight, flight_mode_t before, bool law_c
     const flight_mode_t now = flight->mode;
     const float hover_n = flight->hover_n;
     const bool changed = before != now && !(is_est_mode(before) && is_est_mode(now));
-    const bool at_once = now == FLIGHT_MODE_IDLE || now == FLIGHT_MODE_DESCENT || now == FLIGHT_MODE_EST_LAND;
+    const bool at_once = now == FLIGHT_MODE_DESCENT || now == FLIGHT_MODE_EST_LAND;
 
     const bool takes_off = before == FLIGHT_MODE_IDLE || (before == FLIGHT_MODE_HOVER && lifts(flight));
 
-    if (changed && (at_once || takes_off)) {
+    if (now == FLIGHT_MODE_IDLE || (changed && (at_once || takes_off))) {
         flight->transfer_n = 0.0F;
     } else if (law_changed && !loses_estimate(flight, before)) {
         flight->transfer_n = flight->thrust_n - flight->setpoint_n;
@@ -566,6 +566,7 @@ static void supervise(flight_t *flight, const parameters_t *parameters, const fl
         .upright = flight->evidence.upright,
         .sways = flight->evidence.sways,
         .rocks = rocks(flight),
+        .hands_over = flight->arming.hands_over,
         .carried = may_be_carried(flight, parameters),
     };
     supervisor_step(&flight->supervisor, parameters->value[PARAMETER_LINK], in, &estimate);
@@ -577,8 +578,8 @@ static bool has_risen(const flight_t *flight)
     return flight->supervisor.height.height_mm * 0.001F - flight->est.ground_m > LOW_MM * 0.001F;
 }
 
-/* True when the vehicle may not have left the ground yet. With a blocked beam the state can be FLOATING on
- * the ground. */
+/* True when the vehicle may not have left the ground yet. A pilot who takes the throttle during a take-off
+ * makes it FLOATING on the ground. */
 static bool may_stand(const flight_t *flight)
 {
     const flight_state_t state = flight->supervisor.state;
@@ -686,10 +687,10 @@ static bool uses_estimate(const flight_t *flight)
 }
 
 /* While the pilot has the throttle the command is the hover thrust, so that the hand-back does not cut the
- * motors. The same where the vehicle may stand and something blocks the beam. */
+ * motors. */
 static flight_mode_t select_mode(const flight_t *flight, const flight_inputs_t *in)
 {
-    if (flight->supervisor.state == FLIGHT_FLOATING && (!in->has_throttle || flight->lifting)) {
+    if (flight->supervisor.state == FLIGHT_FLOATING && !in->has_throttle) {
         return FLIGHT_MODE_HOVER;
     }
     if (flight->supervisor.state == FLIGHT_COASTING && has_estimate(flight) && flight->est.airborne &&
@@ -758,8 +759,7 @@ static bool lands_in_vain(const flight_t *flight)
 }
 
 /* Without a pin nothing tells who has the throttle: FLOATING begins in a pilot's hands, and LANDING may be
- * held up by them. Something that blocks the beam since power-on makes FLOATING on the ground too; then the
- * take-off is still to come. */
+ * held up by them. */
 static void update_throttle_unknown(flight_t *flight, const parameters_t *parameters, bool has_throttle)
 {
     const bool before = flight->throttle_unknown;
@@ -775,7 +775,7 @@ static void update_throttle_unknown(flight_t *flight, const parameters_t *parame
     if (flight->throttle_unknown) {
         flight->float_trim_n = before ? flight->float_trim_n : 0.0F;
         watch_effect(flight, !before);
-    } else if (before && !flight->lifting && state != FLIGHT_GROUND) {
+    } else if (before && state != FLIGHT_GROUND) {
         est_law_engage(&flight->est, flight->thrust_n, flight->hover_n);
     }
 }

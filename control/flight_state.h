@@ -43,7 +43,8 @@ const char *flight_state_name(flight_state_t state);
 #define FLIGHT_IF_HEIGHT 4U      /* the latest valid height is at most 0.3 s old */
 #define FLIGHT_IF_LOST 8U        /* the latest valid height is more than 1.5 s old, or there never was one */
 #define FLIGHT_IF_OFF_GROUND 16U /* fresh height above 0.15 m */
-#define FLIGHT_IF_ALOFT 32U      /* fresh heights above 0.15 m for 1 s */
+#define FLIGHT_IF_ALOFT \
+    32U /* fresh heights above 0.15 m and level (see below) for 1 s, and the tilt moves as in flight */
 #define FLIGHT_IF_AT_REST \
     64U /* fresh heights below 0.05 m that did not fall by 0.02 m, for 1.2 s in \
          * the present state. In LANDING and DESCENDING also: for 0.6 s too \
@@ -65,8 +66,8 @@ const char *flight_state_name(flight_state_t state);
                                        * FLYING: the law cannot fly this vehicle */
 #define FLIGHT_IF_HAS_THROTTLE 16384U /* the pilot does not have the throttle */
 #define FLIGHT_IF_HANDED_OVER \
-    32768U /* the pilot gave the throttle back in this cycle, there is no height, \
-            * and the tilt moves as in flight */
+    32768U /* #ARM was given on the ground, there is no height, the tilt moves as in flight, and the pilot \
+            * gave the throttle back in this cycle; without a pin he may have */
 #define FLIGHT_IF_ALL 65535U
 
 typedef struct {

@@ -19,7 +19,6 @@
 #define REST_ROCKS_MAX_US UINT32_C(20000000)  /* chosen: above the time of a landing from 4 m */
 #define LINK_HOLD_US UINT32_C(5000000)        /* chosen: the flag warns for 5 s, then the vehicle lands */
 #define DESCENT_TIMEOUT_US UINT32_C(45000000) /* the thrust of a blind descent has fallen to 0, descent.c */
-#define CARRIED_US UINT32_C(3000000)          /* chosen: a vehicle that has just landed sways for so long */
 #define AGE_MAX_US UINT32_C(3600000000)       /* one hour: below the wrap of 71 minutes */
 
 #define OFF_GROUND_MM 150.0F           /* chosen: over the ground effect and any noise */
@@ -169,6 +168,11 @@ static bool attitude_fresh(const supervisor_t *s)
     return s->attitude_age_us <= ATTITUDE_FRESH_US;
 }
 
+static bool is_level(const supervisor_t *s)
+{
+    return s->level && attitude_fresh(s);
+}
+
 bool supervisor_has_estimate(const supervisor_t *supervisor)
 {
     return supervisor->estimate_age_us <= ESTIMATE_HELD_US;
@@ -207,7 +211,8 @@ static void observe_ground(supervisor_t *s)
     const bool resting = fresh && height_mm < REST_BELOW_MM && height_mm >= s->rest_from_mm - REST_FALL_MM;
 
     follow_ground(s);
-    update_hold(&s->aloft, fresh && height_mm > s->ground_mm + OFF_GROUND_MM, s->step_us);
+    /* a height shows nothing while the tilt that corrects it is not known, or looks past the ground */
+    update_hold(&s->aloft, fresh && is_level(s) && height_mm > s->ground_mm + OFF_GROUND_MM, s->step_us);
     update_hold(&s->rest, resting, s->step_us);
     s->rest_from_mm = resting ? s->rest_from_mm : height_mm;
 }
@@ -222,10 +227,13 @@ static void observe_estimate(supervisor_t *s, const vertical_estimate_t *estimat
     s->estimate_age_us = estimate->known ? 0U : add_time(s->estimate_age_us, s->step_us);
 }
 
+/* No thrust without an order (arming.h). Heights alone do not show a flight: a hand below the beam, or a beam
+ * past an edge, measures the same. A tilt alone does not either: somebody may hold the vehicle. */
 static void observe_hand_over(supervisor_t *s, const flight_inputs_t *in, const vertical_estimate_t *estimate)
 {
-    s->handed_over = s->height.age_us > HEIGHT_LOST_US && in->has_throttle &&
-                     ((estimate->carried && s->state_us > CARRIED_US) || (s->pilots && estimate->sways));
+    s->sways = estimate->sways;
+    s->handed_over = estimate->hands_over && s->height.age_us > HEIGHT_LOST_US && in->has_throttle &&
+                     (estimate->carried || (s->pilots && estimate->sways));
     s->carried = estimate->carried;
     s->pilots = !in->has_throttle;
 }
@@ -273,14 +281,14 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
     return (uint16_t)(bit(reference, FLIGHT_IF_REFERENCE) | bit(in->attitude_ready, FLIGHT_IF_READY) |
                       bit(fresh, FLIGHT_IF_HEIGHT) | bit(s->height.age_us > HEIGHT_LOST_US, FLIGHT_IF_LOST) |
                       bit(fresh && s->height.height_mm > OFF_GROUND_MM, FLIGHT_IF_OFF_GROUND) |
-                      bit(s->aloft.for_us >= ALOFT_HELD_US, FLIGHT_IF_ALOFT) |
+                      bit(s->aloft.for_us >= ALOFT_HELD_US && s->sways, FLIGHT_IF_ALOFT) |
                       bit(s->stands || rests(s), FLIGHT_IF_AT_REST) |
                       bit(fresh && reference && too_high(s), FLIGHT_IF_TOO_HIGH) |
                       bit(fresh && recovered(s), FLIGHT_IF_RECOVERED) | bit(s->land, FLIGHT_IF_LAND) |
                       bit(descent_timeout, FLIGHT_IF_DESCENT_TIMEOUT) |
                       bit(lowering_limit, FLIGHT_IF_LOWERING_LIMIT) |
                       bit(s->tilted_count == TILTED_ATTITUDES, FLIGHT_IF_TILTED) |
-                      bit(s->level && attitude_fresh(s), FLIGHT_IF_LEVEL) |
+                      bit(is_level(s), FLIGHT_IF_LEVEL) |
                       bit(s->handed_over, FLIGHT_IF_HANDED_OVER) |
                       bit(in->has_throttle, FLIGHT_IF_HAS_THROTTLE));
 }

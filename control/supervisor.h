@@ -21,6 +21,7 @@ typedef struct {
     float upright;    /* cosine of the tilt of *in; valid also without `known` */
     bool sways;       /* the tilt moves as it does in flight; valid also without `known` */
     bool rocks;       /* the same within the last 0.8 s */
+    bool hands_over;  /* #ARM lets the tilt alone tell a pilot's flight, arming.h */
     bool carried;     /* GROUND: no pin tells who has the throttle, there is no height, and a pilot flies;
                        * DESCENDING: the same may still be so */
 } vertical_estimate_t;
@@ -75,6 +76,7 @@ typedef struct {
     uint16_t kept_conditions;
     bool rocks;  /* landing or descending, and the tilt moves as it does in flight */
     bool pilots; /* the pilot had the throttle in the previous cycle */
+    bool sways;  /* the tilt moves as it does in flight */
     bool handed_over;
     bool carried;
     bool level;

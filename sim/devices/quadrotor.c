@@ -29,9 +29,7 @@
 #define ROTOR_ABOVE_GEAR_M 0.28
 #define TUG_TAU_S 0.12
 
-#define ATTITUDE_RAD_PER_S (2.0 * M_PI * 0.6)
 #define ATTITUDE_DAMPING 0.4
-#define GROUND_DRIVE 0.15
 #define ADVANCE_PITCH_RAD (1.0 * DEGREE_RAD)
 #define ADVANCE_MARGIN_S 2.0
 #define HEADING_RAD M_PI /* due south: the heading crosses the wrap all the time */
@@ -53,6 +51,8 @@ const quadrotor_config_t quadrotor_default = {.gain = 1.0,
                                               .turbulence_mps2 = 0.2,
                                               .turbulence_tau_s = 0.5,
                                               .attitude_rms_rad = 2.0 * DEGREE_RAD,
+                                              .attitude_hz = 0.6,
+                                              .ground_sway = 0.15,
                                               .actuator_delay_s = 0.010,
                                               .climb_rate_mps_per_n = 0.0,
                                               .climb_neutral_n = THROTTLE_FULL_N / 2.0,
@@ -116,7 +116,7 @@ struct quadrotor {
     noise_t turbulence_noise, tug_noise;
 
     axis_t roll, pitch;
-    double attitude_drive, yaw_drift_rad;
+    double attitude_radps, attitude_drive, yaw_drift_rad;
     noise_t yaw_noise;
 
     bool counting, was_above;
@@ -144,8 +144,9 @@ static void prepare_steps(quadrotor_t *q)
     q->barometer_keep = exp(-STEP_S / BAROMETER_TAU_S);
     q->tug_keep = exp(-STEP_S / TUG_TAU_S);
     q->tug_probability = 1.0 - exp(-c->tug_rate_per_s * STEP_S);
+    q->attitude_radps = 2.0 * M_PI * c->attitude_hz;
     q->attitude_drive = c->attitude_rms_rad *
-                        sqrt(4.0 * ATTITUDE_DAMPING * pow(ATTITUDE_RAD_PER_S, 3.0) * STEP_S);
+                        sqrt(4.0 * ATTITUDE_DAMPING * pow(q->attitude_radps, 3.0) * STEP_S);
 }
 
 quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const terrain_t *terrain, unsigned long seed)
@@ -292,9 +293,8 @@ static double disturbance_mps2(quadrotor_t *q)
     return q->turbulence_mps2 + q->tug_mps2;
 }
 
-static void swing(axis_t *axis, double drive, double rest_rad)
+static void swing(axis_t *axis, double w, double drive, double rest_rad)
 {
-    const double w = ATTITUDE_RAD_PER_S;
     axis->rate_radps += STEP_S * (w * w * (rest_rad - axis->angle_rad) -
                                   2.0 * ATTITUDE_DAMPING * w * axis->rate_radps);
     axis->rate_radps += drive * white(&axis->noise);
@@ -310,9 +310,9 @@ static double advance_pitch_rad(const quadrotor_t *q, double t_s)
 
 static void rotate(quadrotor_t *q, double t_s)
 {
-    const double share = q->state.on_ground ? GROUND_DRIVE : 1.0;
-    swing(&q->roll, share * q->attitude_drive, 0.0);
-    swing(&q->pitch, share * q->attitude_drive, advance_pitch_rad(q, t_s));
+    const double share = q->state.on_ground ? q->config.ground_sway : 1.0;
+    swing(&q->roll, q->attitude_radps, share * q->attitude_drive, 0.0);
+    swing(&q->pitch, q->attitude_radps, share * q->attitude_drive, advance_pitch_rad(q, t_s));
     if (q->config.tumble_radps != 0.0 && t_s >= q->config.tumble_start_s && !q->state.on_ground &&
         fabs(q->tumble_rad) < M_PI) {
         q->tumble_rad += STEP_S * q->config.tumble_radps;

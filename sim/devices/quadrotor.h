@@ -36,6 +36,8 @@ typedef struct {
     double turbulence_mps2;       /* 0.2 rms */
     double turbulence_tau_s;      /* 0.5 */
     double attitude_rms_rad;      /* 2 deg */
+    double attitude_hz;           /* 0.6: natural frequency of that motion */
+    double ground_sway;           /* 0.15: share of it on the ground; 1: somebody holds it, or a boat */
     double actuator_delay_s;      /* 0.010 behind the end of the pulse */
     double climb_rate_mps_per_n;  /* 0: the throttle commands thrust */
     double climb_neutral_n;       /* 5.88, the middle of the stick, 1.5 ms */

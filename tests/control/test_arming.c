@@ -169,3 +169,47 @@ void test_a_disarmed_vehicle_waits_for_no_end(void)
     TEST_ASSERT_FALSE(arming.armed);
     TEST_ASSERT_FALSE(arming.ending);
 }
+
+/* ---- the order that a hand-over needs */
+
+void test_a_hand_over_is_ordered_from_the_wish_until_it_leaves_the_ground(void)
+{
+    step();
+    TEST_ASSERT_FALSE(arming.hands_over);
+    wish(true);
+    TEST_ASSERT_TRUE(arming.hands_over);
+    for (int i = 0; i < 100; i++) {
+        step();
+        TEST_ASSERT_TRUE(arming.hands_over);
+    }
+    enter(FLIGHT_TAKEOFF);
+    TEST_ASSERT_FALSE(arming.hands_over);
+    enter(FLIGHT_GROUND);
+    TEST_ASSERT_TRUE(arming.armed);
+    TEST_ASSERT_FALSE_MESSAGE(arming.hands_over, "of the flight before");
+    wish(true);
+    TEST_ASSERT_TRUE(arming.hands_over);
+}
+
+void test_a_stop_or_a_fault_takes_that_order_back(void)
+{
+    wish(true);
+    wish(false);
+    TEST_ASSERT_FALSE(arming.hands_over);
+    wish(true);
+    supervisor.flags = FLIGHT_FLAG_TILT;
+    step();
+    TEST_ASSERT_FALSE(arming.hands_over);
+    supervisor.flags = 0U;
+    step();
+    TEST_ASSERT_FALSE(arming.hands_over);
+}
+
+void test_a_wish_in_the_air_orders_no_hand_over(void)
+{
+    wish(true);
+    enter(FLIGHT_FLOATING);
+    wish(true);
+    enter(FLIGHT_GROUND);
+    TEST_ASSERT_FALSE(arming.hands_over);
+}

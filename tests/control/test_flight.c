@@ -136,8 +136,15 @@ static void hover_at(float reference_m)
 }
 
 /* A pilot holds the vehicle at a height; the firmware floats. */
+/* The tilt moves as in the air. */
+static void sway(void)
+{
+    flight.integrity.sway_rad2 = 0.01F;
+}
+
 static void held_by_a_pilot(double height_m, double seconds)
 {
+    sway();
     for (long i = lround(seconds * 2000.0); i > 0; i--) {
         plant.height_m = height_m;
         plant.speed_m_s = 0.0;
@@ -892,6 +899,7 @@ void test_random_inputs_never_leave_the_actuators_range(void)
         in.pitch_rad = angles[any(100) == 0];
         in.attitude_time_us = in.now_us;
         in.attitude_ready = any(100) != 0;
+        sway();
         flight_step(&flight, &parameters, &in, &out);
         TEST_ASSERT_TRUE(out.thrust_n >= 0.0F && out.thrust_n <= THRUST_MAX_N);
         TEST_ASSERT_EQUAL_FLOAT(thrust_to_pulse_us(out.thrust_n), out.pulse_us);

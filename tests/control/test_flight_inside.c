@@ -340,6 +340,17 @@ void test_the_thrust_passes_over_without_a_jump(void)
     }
 }
 
+/* Else the armed idle would go on for a second after a disarming. */
+void test_a_change_of_the_law_on_the_ground_adds_nothing_to_the_idle(void)
+{
+    f.mode = FLIGHT_MODE_IDLE;
+    f.thrust_n = 1.8F;
+    f.setpoint_n = 0.0F;
+    f.transfer_n = 0.3F;
+    bumpless_transfer(&f, FLIGHT_MODE_IDLE, true);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, f.transfer_n);
+}
+
 /* ---- the laws */
 
 void test_the_seeds_law_gets_its_gains_and_the_error(void)
@@ -1054,15 +1065,12 @@ void test_the_states_fly_by_the_estimate_where_it_is_sound(void)
     }
 }
 
-void test_a_pilot_or_a_stand_makes_floating_the_hover_thrust(void)
+void test_a_pilot_makes_floating_the_hover_thrust(void)
 {
     f.supervisor.state = FLIGHT_FLOATING;
     TEST_ASSERT_EQUAL(FLIGHT_MODE_EST_HOLD, select_mode(&f, &in));
     lose_the_estimate();
     TEST_ASSERT_EQUAL(FLIGHT_MODE_FLOAT, select_mode(&f, &in));
-    f.lifting = true;
-    TEST_ASSERT_EQUAL(FLIGHT_MODE_HOVER, select_mode(&f, &in));
-    f.lifting = false;
     in.has_throttle = false;
     TEST_ASSERT_EQUAL(FLIGHT_MODE_HOVER, select_mode(&f, &in));
     f.supervisor.state = FLIGHT_FLYING;
@@ -1097,17 +1105,15 @@ void test_floating_without_a_pin_is_unsure_and_its_end_engages(void)
     }
     static const struct {
         flight_state_t state;
-        bool before, lifting, engaged;
-    } rows[] = {{FLIGHT_FLYING, true, false, true},
-                {FLIGHT_FLYING, false, false, false},
-                {FLIGHT_FLYING, true, true, false},
-                {FLIGHT_GROUND, true, false, false},
-                {FLIGHT_FLOATING, true, false, false}};
-    for (int i = 0; i < 5; i++) {
+        bool before, engaged;
+    } rows[] = {{FLIGHT_FLYING, true, true},
+                {FLIGHT_FLYING, false, false},
+                {FLIGHT_GROUND, true, false},
+                {FLIGHT_FLOATING, true, false}};
+    for (int i = 0; i < 4; i++) {
         setUp();
         f.supervisor.state = rows[i].state;
         f.throttle_unknown = rows[i].before;
-        f.lifting = rows[i].lifting;
         f.est.airborne = false;
         f.hover_n = 7.3F;
         f.thrust_n = 6.7F;

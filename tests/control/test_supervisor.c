@@ -18,7 +18,7 @@ static struct {
 void setUp(void)
 {
     supervisor_init(&s);
-    estimate = (vertical_estimate_t){.known = false};
+    estimate = (vertical_estimate_t){.known = false, .sways = true};
     change.from = change.to = FLIGHT_GROUND;
     in = (flight_inputs_t){.now_us = 0xFFF00000U, /* the clock wraps a second later */
                            .attitude_ready = true,
@@ -295,6 +295,7 @@ void test_ground_to_descending_by_a_flying_vehicle_handed_over_without_a_height(
         for (int sees = 0; sees < 2; sees++) {
             setUp();
             estimate.sways = sways;
+            estimate.hands_over = true;
             in.has_throttle = false;
             blind(2000);
             if (sees) {
@@ -308,13 +309,15 @@ void test_ground_to_descending_by_a_flying_vehicle_handed_over_without_a_height(
     }
 }
 
-void test_without_a_pin_a_vehicle_that_is_carried_for_longer_than_a_landing_sways_counts_as_handed_over(void)
+void test_without_a_pin_an_armed_vehicle_that_is_carried_counts_as_handed_over(void)
 {
     estimate.carried = true;
-    blind(2900);
+    blind(60000);
     state_is(FLIGHT_GROUND);
-    blind(400);
+    estimate.hands_over = true;
+    blind(100);
     state_is(FLIGHT_DESCENDING);
+    estimate.hands_over = false; /* which counts on the ground only */
     blind(60000);
     state_is(FLIGHT_DESCENDING);
     estimate.carried = false;
@@ -322,16 +325,55 @@ void test_without_a_pin_a_vehicle_that_is_carried_for_longer_than_a_landing_sway
     state_is(FLIGHT_GROUND);
 }
 
+/* DESIGN: nothing moves without an order. */
+void test_a_pilot_without_heights_gives_it_back_in_vain_when_nobody_has_armed_it(void)
+{
+    in.has_throttle = false;
+    blind(2000);
+    in.has_throttle = true;
+    estimate.carried = true;
+    blind(60000);
+    state_is(FLIGHT_GROUND);
+}
+
+void test_heights_above_a_vehicle_that_does_not_move_are_not_a_flight(void)
+{
+    estimate.sways = false;
+    watch(700.0F, 100);
+    state_is(FLIGHT_GROUND);
+    estimate.sways = true;
+    watch(700.0F, 1);
+    state_is(FLIGHT_FLOATING);
+}
+
+void test_heights_of_a_vehicle_that_is_tilted_or_has_lost_its_imu_are_not_a_flight(void)
+{
+    watch(0.0F, 5);
+    in.roll_rad = 0.5F;
+    watch(700.0F, 100);
+    state_is(FLIGHT_GROUND);
+    in.roll_rad = 0.0F;
+    for (int i = 0; i < 100; i++) {
+        see(700.0F);
+        in.now_us += 100000U;
+        in.attitude_time_us = (i % 5 == 0) ? in.now_us : in.attitude_time_us; /* a frame in half a second */
+        step();
+    }
+    state_is(FLIGHT_GROUND);
+    watch(700.0F, 12);
+    state_is(FLIGHT_FLOATING);
+}
+
 void test_a_vehicle_with_heights_is_not_handed_over_while_it_is_carried(void)
 {
-    estimate.carried = true;
+    estimate.carried = estimate.hands_over = true;
     watch(0.0F, 50);
     state_is(FLIGHT_GROUND);
 }
 
 void test_a_throttle_that_was_never_the_pilots_is_not_handed_over(void)
 {
-    estimate.sways = true;
+    estimate.hands_over = true;
     blind(5000);
     state_is(FLIGHT_GROUND);
 }
@@ -1045,6 +1087,7 @@ static void stand_after_a_descent(void)
 
 static void be_handed_a_flying_vehicle(void)
 {
+    estimate.hands_over = true;
     in.has_throttle = false;
     blind(2000);
     estimate.sways = true;

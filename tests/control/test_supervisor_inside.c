@@ -36,7 +36,8 @@ void setUp(void)
                            .reference_m = 0.6F,
                            .reference_sequence = 2U,
                            .has_throttle = true};
-    estimate = (vertical_estimate_t){.known = true, .height_mm = 500.0F, .upright = 1.0F};
+    s.sways = true;
+    estimate = (vertical_estimate_t){.known = true, .height_mm = 500.0F, .upright = 1.0F, .sways = true, .hands_over = true};
 }
 
 void tearDown(void) {}
@@ -345,6 +346,12 @@ void test_off_the_ground_is_above_150_mm_and_aloft_for_a_second_above_the_ground
     TEST_ASSERT_FALSE(met(FLIGHT_IF_ALOFT));
     s.aloft.for_us = 1000000U;
     TEST_ASSERT_TRUE(met(FLIGHT_IF_ALOFT));
+    s.sways = false;
+    TEST_ASSERT_FALSE(met(FLIGHT_IF_ALOFT));
+    s.level = false;
+    observe_ground(&s);
+    TEST_ASSERT_FALSE(s.aloft.on);
+    s.level = true;
     s.ground_mm = 100.0F;
     s.height.is_new = false;
     s.height.height_mm = 250.0F;
@@ -422,9 +429,10 @@ void test_what_the_estimate_says_of_standing_counts_in_descents(void)
 
 void test_a_flight_is_handed_over_by_a_pilot_without_heights(void)
 {
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 6; i++) {
         setUp();
         s.pilots = i != 1;
+        estimate.hands_over = i != 5;
         in.has_throttle = i != 2;
         estimate.sways = i != 3;
         s.height.age_us = (i == 4) ? 1500000U : 1500001U;
@@ -556,12 +564,12 @@ void test_a_cycle_that_makes_no_transition_is_remembered(void)
     TEST_ASSERT_EQUAL(FLIGHT_STATE_COUNT, s.kept_state);
 }
 
-void test_a_flight_that_somebody_carries_is_handed_over_three_seconds_after_a_landing(void)
+void test_an_armed_flight_that_somebody_carries_is_handed_over(void)
 {
     for (int i = 0; i < 4; i++) {
         setUp();
         s.height.age_us = (i == 1) ? 1500000U : 1500001U;
-        s.state_us = (i == 2) ? 3000000U : 3000001U;
+        estimate.hands_over = i != 2;
         in.has_throttle = i != 3;
         estimate.carried = true;
         observe_hand_over(&s, &in, &estimate);

@@ -10,6 +10,7 @@ import random
 import shlex
 import subprocess
 import sys
+import tempfile
 import unittest
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -18,13 +19,14 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools/campaign"))
 import faults  # noqa: E402
 import plan  # noqa: E402
 
-PROGRAM, FLIGHTS = "", 1
+PROGRAM, FLIGHTS, SCRATCH = "", 1, tempfile.TemporaryDirectory()
 FIRST_SEED = 501
 VEHICLES = ("nominal", "drawn 1", "nominal 1", "drawn 0")   # the airframe behind the word; nominal: 0
 DOUBTS = 256 + 512 + 1024                                   # flags SIGHT, IMU, THRUST
 LAND_S, LASTS_FOREVER = 26.0, 500
 PERIOD_S = 0.01                                             # of the log
 UNTIL_DOWN = ["--until-down", "60"]
+ARM = "#ARM"                                                # among the words of a flight: typed before the pilot's turn
 
 
 def vehicle(kind, seed):
@@ -36,6 +38,11 @@ def vehicle(kind, seed):
     return {**figures, "airframe": airframe}, {} if kind.startswith("untrimmed") else {"GRAV": typed["GRAV"]}
 
 
+def armed(scenario):
+    """The file with that scenario and an #ARM on the ground, before a reference is set."""
+    return Path(SCRATCH.name) / f"armed-{scenario}.flight"
+
+
 class Flight:
     """One flight; rows: its log as numbers, with the state's name."""
 
@@ -44,7 +51,8 @@ class Flight:
         of_vehicle, gravity = vehicle(kind, seed)
         self.figures, self.kind, self.law = figures, kind, law
         chosen = plan.LAWS[law]
-        arguments = [chosen.scenario, "--seed", str(seed), "--duration", str(LAND_S), *words]
+        scenario = str(armed(chosen.scenario)) if ARM in words else chosen.scenario
+        arguments = [scenario, "--seed", str(seed), "--duration", str(LAND_S), *(word for word in words if word != ARM)]
         for name, value in {**chosen.settings, **gravity, **typed}.items():
             arguments += ["--set", f"{name}={value}"]
         for name, value in {**of_vehicle, "platform": 0.0, **figures}.items():
@@ -75,6 +83,8 @@ class Flight:
 
 
 def flights(laws, kinds, condition):
+    for scenario in {plan.LAWS[law].scenario for law in laws}:
+        armed(scenario).write_text(f"like {scenario}\nat 0.9 ARM\n")
     if FLIGHTS == 1:
         laws, kinds = laws[:2], kinds[:2]
     jobs = [(law, kind, FIRST_SEED + i, condition) for law in laws for kind in kinds for i in range(FLIGHTS)]
@@ -88,11 +98,17 @@ def lifted(pin, reference="0"):
                         {"SETR": reference, "SEL": pin}, UNTIL_DOWN)
 
 
-def lifted_then(pin, condition, reference="0"):
+def lifted_then(pin, condition, reference="0", arm=False):
     def both(rng):
         figures, typed, words = lifted(pin, reference)(rng)
-        return {**figures, **condition(figures["pilot_start"] + figures["pilot"], rng)}, typed, words
+        return ({**figures, **condition(figures["pilot_start"] + figures["pilot"], rng)}, typed,
+                [*words, ARM] if arm else words)
     return both
+
+
+def lifted_blind(pin, reference, more=lambda s, rng: {}, arm=True):
+    """There never is a height."""
+    return lifted_then(pin, lambda s, rng: {**silent(-1000.0, LASTS_FOREVER), **more(s, rng)}, reference, arm)
 
 
 def silent(start_s, length_s):
@@ -202,7 +218,7 @@ class Pilots(unittest.TestCase):
         for pin, reference in (("PIN", "0"), ("NONE", "0"), ("NONE", "0.6")):
             kinds = ("nominal", "untrimmed 1", "untrimmed 0", "drawn 1", "nominal 1", "drawn 0")
             for flight in flights(("EST", "PID"), kinds,
-                                  lifted_then(pin, lambda s, rng: silent(-1000.0, LASTS_FOREVER), reference)):
+                                  lifted_blind(pin, reference)):
                 self.assertIn("DESCENDING", {row["state"] for row in flight.after(flight.given_back_s())}, str(flight))
                 hardest_mps = max(hardest_mps, flight.touch_mps())
                 self.at_most(1.0 if flight.kind == "nominal" else 1.4, flight.touch_mps(), flight, "m/s at the touch")
@@ -210,11 +226,17 @@ class Pilots(unittest.TestCase):
         print(f"handed over without heights: {hardest_mps:.2f} m/s at the touch")
         self.assertGreater(hardest_mps, 0.2)
 
+    def test_handed_over_without_heights_and_without_arm_it_has_no_thrust(self):
+        for pin, reference in (("PIN", "0"), ("NONE", "0"), ("NONE", "0.6")):
+            for flight in flights(("EST", "PID"), ("nominal", "drawn 1"), lifted_blind(pin, reference, arm=False)):
+                self.assertEqual({row["state"] for row in flight.rows}, {"GROUND"}, str(flight))
+                self.assertEqual(max(row["thrust_n"] for row in flight.rows), 0.0, str(flight))
+
     def test_a_light_vehicle_handed_over_without_heights_does_not_fly_away(self):
         """A quarter below GRAV: the lightest drawn one has a fifth less."""
         def light(pin, reference):
             def both(rng):
-                figures, typed, words = lifted_then(pin, lambda s, r: silent(-1000.0, LASTS_FOREVER), reference)(rng)
+                figures, typed, words = lifted_blind(pin, reference)(rng)
                 return {**figures, "hover_thrust": 5.6}, {**typed, "GRAV": "7"}, words
             return both
         climbs_m = []
@@ -229,9 +251,8 @@ class Pilots(unittest.TestCase):
 
     def test_handed_over_without_heights_its_motors_stop_although_the_imu_falls_silent(self):
         for pin, reference in (("PIN", "0"), ("NONE", "0"), ("NONE", "0.6")):
-            for flight in flights(("EST", "PID"), ("nominal", "nominal 1"), lifted_then(pin, lambda s, rng: {
-                    **silent(-1000.0, LASTS_FOREVER), "imu_mute_start": s + rng.uniform(-2.0, 3.0), "imu_mute": LASTS_FOREVER},
-                    reference)):
+            for flight in flights(("EST", "PID"), ("nominal", "nominal 1"), lifted_blind(
+                    pin, reference, lambda s, rng: {"imu_mute_start": s + rng.uniform(-2.0, 3.0), "imu_mute": LASTS_FOREVER})):
                 self.assertEqual(flight.rows[-1]["state"], "GROUND", str(flight))
                 self.assertLess(flight.rows[-1]["thrust_n"], 0.5, f"motors go on: {flight}")
 
