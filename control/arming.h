@@ -1,6 +1,6 @@
-/* Arming, idle thrust, and the order that a hand-over needs. The autopilot's motors are started by its own stick command. They may stop when
- * the throttle is below 10 %. So the firmware gives IDLE percent instead of no thrust between the pilot's
- * hand-over and the take-off, and between two flights.
+/* Arming, idle thrust, and the order that a hand-over needs. The autopilot's motors are started by its own
+ * stick command. They may stop when the throttle is below 10 %. So the firmware gives IDLE percent instead of
+ * no thrust between the pilot's hand-over and the take-off, and between two flights.
  *
  * Only the operator arms. Without a reference, heights and tilt together show that a pilot flies. The tilt
  * alone shows it only after an #ARM, given since power-on and since the latest landing. Pure; the caller owns

@@ -288,8 +288,7 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
                       bit(descent_timeout, FLIGHT_IF_DESCENT_TIMEOUT) |
                       bit(lowering_limit, FLIGHT_IF_LOWERING_LIMIT) |
                       bit(s->tilted_count == TILTED_ATTITUDES, FLIGHT_IF_TILTED) |
-                      bit(is_level(s), FLIGHT_IF_LEVEL) |
-                      bit(s->handed_over, FLIGHT_IF_HANDED_OVER) |
+                      bit(is_level(s), FLIGHT_IF_LEVEL) | bit(s->handed_over, FLIGHT_IF_HANDED_OVER) |
                       bit(in->has_throttle, FLIGHT_IF_HAS_THROTTLE));
 }
 

@@ -37,7 +37,8 @@ void setUp(void)
                            .reference_sequence = 2U,
                            .has_throttle = true};
     s.sways = true;
-    estimate = (vertical_estimate_t){.known = true, .height_mm = 500.0F, .upright = 1.0F, .sways = true, .hands_over = true};
+    estimate = (vertical_estimate_t){
+        .known = true, .height_mm = 500.0F, .upright = 1.0F, .sways = true, .hands_over = true};
 }
 
 void tearDown(void) {}

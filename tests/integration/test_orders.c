@@ -268,11 +268,12 @@ static void report(const vehicle_t *v, const seen_t *seen)
     static const char *const pins[] = {"honest pin", "pin stuck at pilot", "loose pin", "switched"};
     static const char *const imus[] = {"IMU well", "IMU gaps", "IMU spikes", "IMU garbled"};
 
-    printf("ORDERS_SEED=%lu: %.2f N and %.2f N after a landing, %s at %.1f s: tilt %.3f rad %.2f s, %s, SEL %s "
-           "%s, %s, %s, LAW %s\n",
-           v->seed, seen->most_n, seen->after_n, flight_state_name(seen->state), seen->at_s, v->rms_rad,
-           v->period_s, sights[v->sight], v->selects ? "PIN" : "NONE", pins[v->pin], imus[v->imu],
-           v->arms ? "armed" : "not armed", v->law);
+    printf(
+        "ORDERS_SEED=%lu: %.2f N and %.2f N after a landing, %s at %.1f s: tilt %.3f rad %.2f s, %s, SEL %s "
+        "%s, %s, %s, LAW %s\n",
+        v->seed, seen->most_n, seen->after_n, flight_state_name(seen->state), seen->at_s, v->rms_rad,
+        v->period_s, sights[v->sight], v->selects ? "PIN" : "NONE", pins[v->pin], imus[v->imu],
+        v->arms ? "armed" : "not armed", v->law);
 }
 
 void test_no_drawn_vehicle_has_thrust_above_the_idle_without_an_order(void)
