@@ -139,7 +139,7 @@ static void hover_at(float reference_m)
 /* The tilt moves as in the air. */
 static void sway(void)
 {
-    flight.integrity.sway_rad2 = 0.01F;
+    flight.sense.senses.sway.sway_rad2 = 0.01F;
 }
 
 static void held_by_a_pilot(double height_m, double seconds)
