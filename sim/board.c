@@ -215,6 +215,7 @@ void board_power_on(const board_config_t *config, board_terminal_t terminal, voi
     timeline_reset();
     chip_reset(kernel_raise);
     board.quadrotor = quadrotor_create(&config->quadrotor, &config->terrain, config->seed);
+    quadrotor_set_place(board.quadrotor, config->place, config->course);
     scene_init(&board.scene, &config->scene, board.quadrotor, config->seed);
     create_laser(config);
     board.imu = razor9dof_create(&config->imu, motion, NULL, config->seed, to_firmware,

@@ -18,6 +18,8 @@ typedef struct {
     unsigned long seed;
     quadrotor_config_t quadrotor;
     terrain_t terrain;
+    const place_t *place;   /* NULL: an endless floor. Borrowed until power-off */
+    const course_t *course; /* NULL: nobody steers */
     scene_config_t scene;
     urg04lx_config_t laser;
     const line_fault_spec_t *laser_faults; /* between the scanner model and the firmware */

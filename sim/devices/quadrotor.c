@@ -37,6 +37,9 @@
 #define YAW_STEP_RAD (0.06 * DEGREE_RAD)
 
 #define ALOFT_M 0.1
+#define GEAR_HALF_M 0.15 /* chosen: of its square of feet, inside the rotors */
+#define SLIPS_OFF_M \
+    0.1 /* chosen: a foot on an edge so far above the ground under the centre does not carry */
 #define CONTACT_ARMED_M 0.03
 #define CONTACT_MPS (-0.02)
 #define REBOUND 0.15
@@ -103,6 +106,8 @@ struct quadrotor {
     double followed_n, lag2; /* the demand behind the autopilot's second lag */
     rotors_t rotors;
     floor_t floor;
+    const place_t *place; /* NULL: an endless floor */
+    travel_t travel;
     double ramp_m; /* the terrain without the floor's unevenness */
     double tumble_rad;
     double climb_integral_mps2; /* of the autopilot's speed controller */
@@ -168,6 +173,7 @@ quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const terrain_t 
     q->state.motors = q->naza.running;
     rotors_init(&q->rotors, &config->rotors);
     floor_init(&q->floor, &config->floor, STEP_S, seed);
+    travel_init(&q->travel, NULL);
     prepare_noise(q, seed);
     prepare_steps(q);
     return q;
@@ -176,6 +182,17 @@ quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const terrain_t 
 void quadrotor_destroy(quadrotor_t *quadrotor)
 {
     free(quadrotor);
+}
+
+void quadrotor_set_place(quadrotor_t *quadrotor, const place_t *place, const course_t *course)
+{
+    quadrotor->place = place;
+    travel_init(&quadrotor->travel, course);
+}
+
+const place_t *quadrotor_place(const quadrotor_t *quadrotor)
+{
+    return quadrotor->place;
 }
 
 static double scenario_s(const quadrotor_t *q)
@@ -311,8 +328,11 @@ static double advance_pitch_rad(const quadrotor_t *q, double t_s)
 static void rotate(quadrotor_t *q, double t_s)
 {
     const double share = q->state.on_ground ? q->config.ground_sway : 1.0;
-    swing(&q->roll, q->attitude_radps, share * q->attitude_drive, 0.0);
-    swing(&q->pitch, q->attitude_radps, share * q->attitude_drive, advance_pitch_rad(q, t_s));
+    const double steered = q->state.on_ground ? 0.0 : 1.0;
+    travel_steer(&q->travel, t_s, STEP_S, q->state.heading_rad);
+    swing(&q->roll, q->attitude_radps, share * q->attitude_drive, steered * q->travel.roll_rad);
+    swing(&q->pitch, q->attitude_radps, share * q->attitude_drive,
+          advance_pitch_rad(q, t_s) + steered * q->travel.pitch_rad);
     if (q->config.tumble_radps != 0.0 && t_s >= q->config.tumble_start_s && !q->state.on_ground &&
         fabs(q->tumble_rad) < M_PI) {
         q->tumble_rad += STEP_S * q->config.tumble_radps;
@@ -323,7 +343,8 @@ static void rotate(quadrotor_t *q, double t_s)
     const double wander = q->yaw_drift_rad +
                           share * noise_uniform(&q->yaw_noise, -YAW_STEP_RAD, YAW_STEP_RAD);
     q->yaw_drift_rad = fmin(fmax(wander, -YAW_DRIFT_RAD), YAW_DRIFT_RAD);
-    q->state.yaw_rad = remainder(HEADING_RAD + q->yaw_drift_rad, 2.0 * M_PI);
+    q->state.heading_rad = q->travel.wanted.heading_rad - q->yaw_drift_rad;
+    q->state.yaw_rad = remainder(HEADING_RAD - q->state.heading_rad, 2.0 * M_PI);
 }
 
 static double ground_effect(const quadrotor_t *q)
@@ -410,17 +431,76 @@ static void rise_or_rest(quadrotor_t *q, double acceleration_mps2, double terrai
     }
 }
 
-/* The ground one step later, and how fast it rises. A bar's edge has no speed: it is not what throws a
- * vehicle up. */
-static double pass_terrain(quadrotor_t *q, double t_s, double *terrain_mps)
+/* The ground under the centre, what carries the gear (the highest under its feet), and how fast that rises
+ * under a vehicle that moves. A bar's or a block's edge has no speed: it is not what throws a vehicle up. */
+typedef struct {
+    double centre_m, carries_m, rises_mps;
+} ground_t;
+
+static place_hit_t below(const quadrotor_t *q, double fore_m, double right_m, double t_s)
+{
+    const double c = cos(q->state.heading_rad), s = sin(q->state.heading_rad);
+
+    return place_below(q->place, q->travel.x_m + c * fore_m + s * right_m,
+                       q->travel.y_m + s * fore_m - c * right_m, q->state.altitude_m, t_s);
+}
+
+static ground_t ground_of_place(const quadrotor_t *q, double t_s)
+{
+    place_hit_t highest = below(q, 0.0, 0.0, t_s);
+    const double centre_m = highest.at.z;
+
+    for (int foot = 0; foot < 4; foot++) {
+        const place_hit_t hit = below(q, foot & 1 ? GEAR_HALF_M : -GEAR_HALF_M,
+                                      foot & 2 ? GEAR_HALF_M : -GEAR_HALF_M, t_s);
+        if (hit.at.z > highest.at.z && hit.at.z < centre_m + SLIPS_OFF_M) {
+            highest = hit;
+        }
+    }
+    return (ground_t){centre_m, highest.at.z,
+                      highest.rises_mps + highest.slope_x * q->travel.vx_mps +
+                          highest.slope_y * q->travel.vy_mps};
+}
+
+static ground_t pass_terrain(quadrotor_t *q, double t_s)
 {
     const double ramp_m = terrain_height_m(&q->terrain, t_s);
     if (!q->state.on_ground) {
         floor_pass(&q->floor);
     }
-    *terrain_mps = (ramp_m - q->ramp_m) / STEP_S + (q->state.on_ground ? 0.0 : q->floor.rate_mps);
+    const double rises_mps = (ramp_m - q->ramp_m) / STEP_S + (q->state.on_ground ? 0.0 : q->floor.rate_mps);
     q->ramp_m = ramp_m;
-    return ramp_m + floor_height_m(&q->floor);
+    const double under_m = ramp_m + floor_height_m(&q->floor);
+    ground_t ground = {under_m, under_m, rises_mps};
+    if (q->place != NULL) {
+        const ground_t of_place = ground_of_place(q, t_s);
+        ground.centre_m += of_place.centre_m;
+        ground.carries_m += of_place.carries_m;
+        ground.rises_mps += of_place.rises_mps;
+    }
+    return ground;
+}
+
+static void collide(quadrotor_t *q, double t_s)
+{
+    const place_vector_t centre = {q->travel.x_m, q->travel.y_m, q->state.altitude_m};
+
+    if (q->place != NULL && place_inside(q->place, centre, t_s)) {
+        q->state.collided = true;
+    }
+}
+
+/* Lift along the rotors' axis is what holds the vehicle up, over the cosine of its tilt. */
+static void advance(quadrotor_t *q, double t_s, double air_mps2)
+{
+    quadrotor_state_t *s = &q->state;
+    const double upright = cos(s->roll_rad) * cos(s->pitch_rad);
+    const double lift_mps2 = fmax(air_mps2 + GRAVITY_MPS2, 0.0) / fmax(upright, 0.1);
+
+    travel_step(&q->travel, STEP_S, s->heading_rad, s->roll_rad, s->pitch_rad, lift_mps2, s->on_ground);
+    s->x_m = q->travel.x_m;
+    s->y_m = q->travel.y_m;
+    collide(q, t_s);
 }
 
 /* In somebody's hands, or on the bench. */
@@ -444,18 +524,19 @@ static void step(quadrotor_t *q)
     follow_rules(q);
     q->clock += STEP;
     const double t_s = scenario_s(q);
-    double terrain_mps;
-    const double terrain_m = pass_terrain(q, t_s, &terrain_mps);
+    const ground_t ground = pass_terrain(q, t_s);
     spin(q, t_s);
     if (!q->config.anchored) {
         rotate(q, t_s);
-        const double acceleration_mps2 = air_mps2(q, t_s) + disturbance_mps2(q) + gust_mps2(q);
-        rise_or_rest(q, acceleration_mps2, terrain_m, terrain_mps);
+        const double air = air_mps2(q, t_s);
+        const double acceleration_mps2 = air + disturbance_mps2(q) + gust_mps2(q);
+        rise_or_rest(q, acceleration_mps2, ground.carries_m, ground.rises_mps);
+        advance(q, t_s, air);
     } else {
         hold(q);
     }
-    s->terrain_m = terrain_m;
-    s->height_m = s->altitude_m - terrain_m;
+    s->terrain_m = ground.centre_m;
+    s->height_m = s->altitude_m - ground.centre_m;
 }
 
 static void bring_up(quadrotor_t *q)

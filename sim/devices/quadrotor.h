@@ -18,11 +18,14 @@
 
 #include <stdbool.h>
 
+#include "sim/devices/course.h"
 #include "sim/devices/floor.h"
 #include "sim/devices/naza.h"
+#include "sim/devices/place.h"
 #include "sim/devices/rotors.h"
 #include "sim/devices/span.h"
 #include "sim/devices/terrain.h"
+#include "sim/devices/travel.h"
 #include "sim/timeline.h"
 
 typedef struct {
@@ -73,9 +76,11 @@ extern const quadrotor_config_t quadrotor_default;
 
 typedef struct {
     double altitude_m, height_m, terrain_m, speed_mps,
-        acceleration_mps2; /* acceleration of the body, upwards, without g */
-    double thrust_n;       /* what the motors deliver now */
-    double roll_rad, pitch_rad, yaw_rad;
+        acceleration_mps2;               /* acceleration of the body, upwards, without g */
+    double thrust_n;                     /* what the motors deliver now */
+    double roll_rad, pitch_rad, yaw_rad; /* yaw as a compass counts, clockwise */
+    double x_m, y_m, heading_rad;        /* axes of place.h; heading of the nose, counter-clockwise */
+    bool collided;                       /* has flown into something */
     bool on_ground;
     bool motors;          /* running, by the autopilot's rules */
     unsigned motor_stops; /* times that they stopped over 0.1 m above the ground */
@@ -91,6 +96,10 @@ void quadrotor_destroy(quadrotor_t *quadrotor);
 /* The vehicle, its air and the ground become others while it flies; motion, noise and the autopilot's stop
  * type go on. */
 void quadrotor_change(quadrotor_t *quadrotor, const quadrotor_config_t *config, const terrain_t *terrain);
+/* Where it flies, and how; both borrowed. NULL: an endless even floor; it stays where it is. Before the first
+ * step. The ground is the sum of the place's, of the terrain and of the floor of its configuration. */
+void quadrotor_set_place(quadrotor_t *quadrotor, const place_t *place, const course_t *course);
+const place_t *quadrotor_place(const quadrotor_t *quadrotor);
 void quadrotor_set_origin(quadrotor_t *quadrotor, sim_time_t origin);
 /* The throttle pulse that reached the autopilot, at its falling edge. No pulse yet: no thrust. */
 void quadrotor_pulse(quadrotor_t *quadrotor, sim_time_t high_ns);

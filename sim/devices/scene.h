@@ -1,6 +1,8 @@
 /* What the scanner's rays hit: mirrors on their arms, the ground under the tilted vehicle, and between the
- * mirrors nothing in reach. Adds the sensor's noise. The geometry is written from the bracket's drawing (seed
- * document, figures 5.7 and 5.8, Annex III), independently of the product's correction. */
+ * mirrors what stands around in its place; without a place nothing in reach. In a place each ray goes its own
+ * way, by geometry: a mirror's rays are a fan, and the three mirrors see three spots. Without one they all
+ * measure under the vehicle's centre. Adds the sensor's noise. The geometry is written from the bracket's
+ * drawing (seed document, figures 5.7 and 5.8, Annex III), independently of the product's correction. */
 #ifndef SIM_DEVICES_SCENE_H
 #define SIM_DEVICES_SCENE_H
 
@@ -23,6 +25,8 @@ typedef struct {
     span_t sight_blocked_span; /* since power-on */
     span_t frozen; /* the sensor gives the distances of its latest scan again and again; its clock runs on.
                     * Never */
+    double struck_beam; /* 0: the three before act on every beam; 1: on the front mirror's alone, 2: on that
+                         * of mirror 1, aft; 3: of mirror 2, fore */
     double edge_m; /* what the beam sees lies that much higher than what the gear will stand on; < 0: beyond
                     * the edge of a table */
     double edge_start_s; /* 0 */

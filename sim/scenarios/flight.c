@@ -39,6 +39,8 @@ static struct {
     char answer[1024];   /* to it */
     sim_time_t answered; /* its latest line; 0: none */
     bool recording, first_row_recorded;
+    bool in_place;
+    place_file_t place;   /* valid while in_place */
     bool open_loop;       /* the vehicle answers to the flight as flown */
     uint32_t shown_frame; /* sequence of the latest in the log */
     unsigned pings;
@@ -335,8 +337,8 @@ static void write_titles(FILE *csv)
 
     telemetry_begin_answer(&line);
     published_titles(&line);
-    fprintf(csv, "%.*s,height_m,abs_m,terrain_m%s\n", (int)line.length, line.text,
-            flight.open_loop ? ",flown_n" : "");
+    fprintf(csv, "%.*s,height_m,abs_m,terrain_m%s%s\n", (int)line.length, line.text,
+            flight.open_loop ? ",flown_n" : "", flight.in_place ? ",x_m,y_m,heading_rad" : "");
 }
 
 static void write_number(FILE *csv, double value, int decimals)
@@ -349,7 +351,7 @@ static void write_number(FILE *csv, double value, int decimals)
 
 /* What only the world knows; in a replay also the thrust that the vehicle answered to. */
 typedef struct {
-    double height_m, altitude_m, terrain_m, flown_n;
+    double height_m, altitude_m, terrain_m, flown_n, x_m, y_m, heading_rad;
 } truth_t;
 
 /* An acceleration is shown once. */
@@ -404,6 +406,9 @@ static void write_row(FILE *csv, double t_s, const truth_t *truth)
     if (flight.open_loop) {
         write_number(csv, truth->flown_n, 3);
     }
+    if (flight.in_place) {
+        fprintf(csv, ",%.4f,%.4f,%.4f", truth->x_m, truth->y_m, truth->heading_rad);
+    }
     fputc('\n', csv);
 }
 
@@ -452,7 +457,13 @@ static void sample(FILE *csv)
     const metrics_sample_t seen = look(t_s, state);
 
     metrics_add(&flight.record, &seen);
-    const truth_t truth = {state->height_m, state->altitude_m, state->terrain_m, seen.thrust_n};
+    const truth_t truth = {.height_m = state->height_m,
+                           .altitude_m = state->altitude_m,
+                           .terrain_m = state->terrain_m,
+                           .flown_n = seen.thrust_n,
+                           .x_m = state->x_m,
+                           .y_m = state->y_m,
+                           .heading_rad = state->heading_rad};
 
     if (flight.recording) {
         record_row(&truth);
@@ -512,6 +523,8 @@ static void configure(const scenario_t *scenario, const flight_options_t *option
     }
     board->laser_faults = options->faults;
     board->laser_fault_count = options->fault_count;
+    board->place = flight.in_place ? &flight.place.place : NULL;
+    board->course = flight.in_place ? &flight.place.course : NULL;
     board->quadrotor.anchored = scenario->bench;
     board->quadrotor.bench_height_m = options->height_m;
 }
@@ -680,6 +693,13 @@ static void run(const scenario_t *scenario, const flight_options_t *options, fli
     }
 }
 
+/* Where it flies, if anywhere. */
+static bool lay_place(const char *text, unsigned long seed)
+{
+    flight.in_place = text != NULL;
+    return text == NULL || place_file_read(&flight.place, text, seed);
+}
+
 bool flight_run(const scenario_t *scenario, const flight_options_t *options, flight_result_t *result,
                 const char **error)
 {
@@ -694,6 +714,10 @@ bool flight_run(const scenario_t *scenario, const flight_options_t *options, fli
     flight.record.field_day = scenario->field_day;
     *error = open_devices(options);
     if (*error != NULL) {
+        return false;
+    }
+    if (!lay_place(options->place != NULL ? options->place : scenario->place, options->seed)) {
+        *error = flight.place.message;
         return false;
     }
     configure(scenario, options);
@@ -724,7 +748,8 @@ static void replay_rows(const tape_t *tape, sim_time_t first, FILE *csv, size_t 
 
     for (*rows = 0; tape_truth_row(tape, *rows, row) && kernel_run_until(first + (sim_time_t)*rows * STEP);
          (*rows)++) {
-        const truth_t truth = {row[0], row[1], row[2], row[3]};
+        const truth_t truth = {
+            .height_m = row[0], .altitude_m = row[1], .terrain_m = row[2], .flown_n = row[3]};
 
         write_row(csv, (double)(timeline_now() - flight.origin) * 1e-9, &truth);
     }

@@ -9,6 +9,7 @@
 
 #include "sim/board.h"
 #include "sim/scenarios/metrics.h"
+#include "sim/scenarios/place_file.h"
 #include "sim/scenarios/scenarios.h"
 #include "sim/tape.h"
 
@@ -37,9 +38,11 @@ typedef struct {
     int fault_count;
     const kernel_costs_t *costs; /* NULL: Annex IV's */
     bool dump;                   /* #LOG RATE FAST before the flight, #LOG after it */
-    double height_m;             /* bench: of the landing gear above the floor */
-    FILE *telemetry; /* lines that the operator's terminal receives; NULL: none. Bench: the answer to #LASER
-                      * last */
+    const char *place; /* the text of a place file that place_file_read() takes, in place of the scenario's;
+                        * NULL: the scenario's */
+    double height_m;   /* bench: of the landing gear above the floor */
+    FILE *telemetry;   /* lines that the operator's terminal receives; NULL: none. Bench: the answer to #LASER
+                        * last */
 } flight_options_t;
 
 typedef struct {

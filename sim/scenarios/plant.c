@@ -100,6 +100,8 @@ static const figure_t figures[] = {
     {"scan_frozen_start", "s", -LARGE, LARGE, SCENE(frozen.start_s), 1,
      "scenario time from which scans repeat, with new time stamps"},
     {"scan_frozen_length", "s", 0, LARGE, SCENE(frozen.length_s), 1, "for how long"},
+    {"struck_beam", "-", 0, 3, SCENE(struck_beam), 1,
+     "0: lost, blocked and frozen act on every beam; 1 front, 2 aft, 3 fore"},
     {"ray_instant", "s", 0, 0.1, AT(ray_instant_s), 1, "sampling instant after the start of a revolution"},
     {"clock_ppm", "ppm", -10000, 10000, AT(clock_ppm), 1, "the scanner's clock against true time"},
     {"outage_start", "s", -LARGE, LARGE, AT(outage_start_s), 1,

@@ -33,8 +33,9 @@ typedef struct {
     const char *plant[SCENARIO_PLANT_MAX];  /* "plant.tau 0.1", ... NULL ends; --set wins */
     bool bench; /* the vehicle stands still: no flight, no commands; ends at end_s */
     double reference_m;
-    bool platform;               /* the seed's ramp and platform; else flat */
-    double tug_rate_per_s;       /* rope tugs; 0 = none */
+    const char *place;     /* where it flies and its way, the text of a place file; NULL: an endless floor */
+    bool platform;         /* the seed's ramp and platform; else flat */
+    double tug_rate_per_s; /* rope tugs; 0 = none */
     double climb_rate_mps_per_n; /* that the throttle commands; 0 = it commands thrust */
     bool field_day; /* the autopilot's rules for motors, and a pilot who starts them and hands over */
     const char *climb_settings[SCENARIO_SETTINGS_MAX]; /* instead of those of their names, where the throttle

@@ -74,6 +74,70 @@ void test_a_file_that_is_like_a_scenario_flies_as_it_does(void)
     TEST_ASSERT_TRUE(figure("hover_rms_mm") < 0.5 * own_mm);
 }
 
+#define OVER_A_TABLE FLIGHT "set LAW EST\nplace table 2 0 1 1 0.25\nplace go 4 4 0 0.5\n"
+
+/* The table is 1 m wide at 0.5 m/s: heights and ground are its for some 2 s. */
+void test_a_place_is_flown_through(void)
+{
+    TEST_ASSERT_EQUAL_INT_MESSAGE(
+        0, fly(OVER_A_TABLE "expect ground_contacts 0 0\nexpect cuts 0 0\n", "--csv " SCRATCH "/place.csv"),
+        output);
+    FILE *csv = fopen(SCRATCH "/place.csv", "r");
+    char line[1000];
+    unsigned over = 0, rows = 0;
+    double x_m = 0.0;
+
+    TEST_ASSERT_NOT_NULL(csv);
+    TEST_ASSERT_NOT_NULL(fgets(line, sizeof line, csv));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(line, "height_m,abs_m,terrain_m,x_m,y_m,heading_rad"), line);
+    while (fgets(line, sizeof line, csv) != NULL) {
+        double last[4];
+        char *at = strrchr(line, ',');
+
+        for (int i = 3; i >= 0; i--, at = strrchr(line, ',')) {
+            last[i] = atof(at + 1);
+            *at = '\0';
+        }
+        over += last[0] > 0.2;
+        x_m = last[1];
+        rows++;
+    }
+    fclose(csv);
+    TEST_ASSERT_GREATER_THAN_UINT(1500, rows);
+    TEST_ASSERT_UINT_WITHIN(80, 200, over);
+    TEST_ASSERT_DOUBLE_WITHIN(0.6, 4.0, x_m);
+}
+
+void test_the_place_of_the_page_is_flown_through(void)
+{
+    static const char command[] = "fly est-60cm-ramp --place " PAGES
+                                  "/examples/hall.place --set plant.platform=0 "
+                                  "--duration 36 2>&1";
+
+    TEST_ASSERT_TRUE_MESSAGE(child_plomada(command, output, sizeof output) <= 1, output);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, figure("ground_contacts"));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, figure("cuts"));
+}
+
+void test_what_is_wrong_in_a_place_is_told_with_its_line(void)
+{
+    refused(FLIGHT "place box 1 1\n", ":4: place: box: no such word");
+    refused(FLIGHT "place block 1 0 1 1\n", "block: HEIGHT: missing");
+    TEST_ASSERT_EQUAL_INT(2, child_plomada("fly bench --place /dev/null/none 2>&1", output, sizeof output));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "/dev/null/none: Not a directory"), output);
+    TEST_ASSERT_EQUAL_INT(2, child_plomada("fly bench --place /dev/zero 2>&1", output, sizeof output));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "/dev/zero: "), output);
+    FILE *file = fopen(path, "w");
+    TEST_ASSERT_NOT_NULL(file);
+    fputs("# a hall\ngo 1 2 3\n", file);
+    fclose(file);
+    snprintf(output, sizeof output, "fly est-60cm-ramp --place %s 2>&1", path);
+    char command[300];
+    snprintf(command, sizeof command, "%.280s", output);
+    TEST_ASSERT_EQUAL_INT(2, child_plomada(command, output, sizeof output));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, ":2: go: SPEED: missing"), output);
+}
+
 void test_a_set_of_the_command_line_wins(void)
 {
     fly(FLIGHT "set LAW PD\nset plant.hover_thrust 9\n", "");

@@ -12,6 +12,7 @@
 #include "measure.h"
 #include "nearest.h"
 #include "output.h"
+#include "place.h"
 #include "scenario_file.h"
 #include "vehicle.h"
 #include "sim/json.h"
@@ -73,6 +74,9 @@ static const char usage[] =
     "                      second once it scans; may be repeated. With --set LINK=S above 0 the operator "
     "keeps sending\n"
     "                      #PING\n"
+    "  --place FILE        the vehicle flies in the place, and by the way, that FILE describes "
+    "(docs/campaign.md). The log then\n"
+    "                      has x_m, y_m and heading_rad\n"
     "  --height M          bench: the landing gear is at M metres above the floor, 0..5 (default 0)\n\n"
     "bench has no flight: the vehicle stands still, the telemetry goes to stdout, and the last line is the "
     "answer to\n"
@@ -102,6 +106,7 @@ enum {
     OPT_UNTIL_DOWN,
     OPT_FAULT,
     OPT_HEIGHT,
+    OPT_PLACE,
     OPT_HELP
 };
 
@@ -123,6 +128,7 @@ static const struct option long_options[] = {
     {"xbee", required_argument, NULL, OPT_XBEE},
     {"duration", required_argument, NULL, OPT_DURATION},
     {"height", required_argument, NULL, OPT_HEIGHT},
+    {"place", required_argument, NULL, OPT_PLACE},
     {"until-down", required_argument, NULL, OPT_UNTIL_DOWN},
     {"fault", required_argument, NULL, OPT_FAULT},
     {"help", no_argument, NULL, OPT_HELP},
@@ -133,7 +139,7 @@ typedef struct {
     flight_options_t flight;
     const scenario_t *scenario;
     output_t csv, json, log, trace, record;
-    const char *storage_path, *record_dir;
+    const char *storage_path, *record_dir, *place_path;
     double cost_scale;
     bool help, height, timing;
 } request_t;
@@ -255,6 +261,9 @@ static bool read_option(request_t *request, int option, const char *argument)
         return read_fault(&request->flight, argument);
     case OPT_HEIGHT:
         return read_height(request, argument);
+    case OPT_PLACE:
+        request->place_path = argument;
+        return true;
     case OPT_HELP:
         request->help = true;
         return true;
@@ -502,13 +511,21 @@ static bool close_outputs(request_t *request)
     return output_close(&request->csv) && closed;
 }
 
+static bool load_place(request_t *request)
+{
+    if (request->place_path != NULL) {
+        request->flight.place = place_read(request->place_path);
+    }
+    return request->place_path == NULL || request->flight.place != NULL;
+}
+
 static int run(request_t *request)
 {
     static flight_result_t result;
     const char *error;
     bool met, kept;
 
-    if (!load_storage(request->storage_path) || !open_outputs(request)) {
+    if (!load_place(request) || !load_storage(request->storage_path) || !open_outputs(request)) {
         return 2;
     }
     request->flight.costs = measure_begin(request->cost_scale, request->trace.file);

@@ -12,7 +12,9 @@
 #include "sim/scenarios/plant.h"
 
 #define LINE_MAX_OCTETS 256
-#define WORDS_MAX 8
+#define WORDS_MAX \
+    14 /* place lift X Y LENGTH WIDTH TRAVEL SPEED START STAY turned DEG, and two to be told of */
+#define PLACE_N 16384
 #define DURATION_MAX_S 3600.0
 #define BYTE_ORDER_MARK "\xEF\xBB\xBF" /* some editors begin a text with it */
 
@@ -21,7 +23,8 @@ static struct {
     int settings, plant, later; /* how many */
     int count;                  /* of the words of this line */
     char *word[WORDS_MAX];
-    char message[160];
+    char place[PLACE_N];
+    char message[240];
 } reading;
 
 static const char *told(const char *what, const char *word)
@@ -76,8 +79,10 @@ static const char *read_like(void)
         return told("has no flight to be like", reading.word[1]);
     }
     const char *name = reading.scenario.name;
+    const char *place = reading.scenario.place;
     reading.scenario = *other;
     reading.scenario.name = name;
+    reading.scenario.place = place != NULL ? place : other->place;
     reading.scenario.fate = FATE_EITHER;
     reading.scenario.expectation_count = 0;
     while (reading.settings < SCENARIO_SETTINGS_MAX && other->settings[reading.settings] != NULL) {
@@ -187,6 +192,23 @@ static const char *read_platform(void)
                : told("yes or no", reading.word[1]);
 }
 
+/* A line of a place file, behind the others. */
+static const char *read_place(void)
+{
+    static place_file_t file;
+    char line[LINE_MAX_OCTETS] = "";
+
+    for (int i = 1; i < reading.count; i++) {
+        snprintf(line + strlen(line), sizeof line - strlen(line), "%s ", reading.word[i]);
+    }
+    if (strlen(reading.place) + strlen(line) + 2 > sizeof reading.place) {
+        return "too many";
+    }
+    strcat(strcat(reading.place, line), "\n");
+    reading.scenario.place = reading.place;
+    return place_file_read(&file, reading.place, 1) ? NULL : told(file.message, "place");
+}
+
 static const char *read_land(void)
 {
     return read_number(reading.word[1], METRICS_REFERENCE_S, DURATION_MAX_S, &reading.scenario.land_s);
@@ -243,6 +265,7 @@ static const struct {
     {"at", 3, WORDS_MAX, read_at, "at SECONDS COMMAND [VALUE]"},
     {"reference", 2, 2, read_reference, "reference METRES"},
     {"platform", 2, 2, read_platform, "platform yes|no"},
+    {"place", 2, WORDS_MAX, read_place, "place WORD NUMBER..."},
     {"land", 2, 2, read_land, "land SECONDS"},
     {"end", 2, 2, read_end, "end SECONDS"},
     {"expect", 4, 4, read_expect, "expect METRIC LEAST MOST"},

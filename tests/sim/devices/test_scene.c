@@ -295,3 +295,108 @@ void test_a_scan_that_thaws_measures_again(void)
     scan();
     TEST_ASSERT_EQUAL_INT(RAYS, rays_at(1805));
 }
+
+/* In a place. The vehicle stands level, its gear 0.6 m above the floor, its nose along x. */
+
+static place_t place;
+static int all_mm[SCENE_STEPS];
+
+static void start_in_place(void)
+{
+    start(1);
+    quadrotor_set_place(quad, &place, NULL);
+}
+
+static void sweep(void)
+{
+    scene_scan(&scene, 0, SCENE_STEPS - 1, all_mm);
+}
+
+/* Front: 105 + 700. Aft: 115 + 698. Fore: 107 + 705. The ray 20 steps (7.03125 degrees) off the axis goes 1 /
+ * cos of that as far: 811.1. */
+void test_in_a_place_each_mirrors_rays_are_a_fan(void)
+{
+    place_init(&place);
+    start_in_place();
+    sweep();
+    TEST_ASSERT_EQUAL_INT(805, all_mm[384]);
+    TEST_ASSERT_EQUAL_INT(811, all_mm[404]);
+    TEST_ASSERT_EQUAL_INT(813, all_mm[128]);
+    TEST_ASSERT_EQUAL_INT(812, all_mm[640]);
+}
+
+/* A box of 5 cm, 0.2 m high, under each spot in turn: 107 mm fore, 115 mm aft, 220 mm to the right. */
+TEST_CASE(0.107, -0.115, 805, 813, 612)
+TEST_CASE(-0.115, -0.115, 805, 613, 812)
+TEST_CASE(0.0, -0.220, 605, 813, 812)
+TEST_CASE(0.0, 0.220, 805, 813, 812)
+void test_three_mirrors_see_three_spots(double x_m, double y_m, int front_mm, int aft_mm, int fore_mm)
+{
+    place_init(&place);
+    TEST_ASSERT_TRUE(place_add(
+        &place,
+        &(place_block_t){
+            .x_m = x_m, .y_m = y_m, .length_m = 0.05, .width_m = 0.05, .near_top_m = 0.2, .far_top_m = 0.2}));
+    start_in_place();
+    sweep();
+    TEST_ASSERT_EQUAL_INT(front_mm, all_mm[384]);
+    TEST_ASSERT_EQUAL_INT(aft_mm, all_mm[128]);
+    TEST_ASSERT_EQUAL_INT(fore_mm, all_mm[640]);
+}
+
+/* A wall 2 m to the right of the centre: the sensor stands 115 mm out. Step 300 looks 29.53125 degrees aft of
+ * right: 1885 / cos = 2166.5. The other way there is none within 4 m: nothing but what is beyond the reach.
+ */
+void test_between_the_mirrors_the_walls_are_seen(void)
+{
+    place_init(&place);
+    TEST_ASSERT_TRUE(place_add(
+        &place, &(place_block_t){
+                    .y_m = -2.05, .length_m = 6.0, .width_m = 0.1, .near_top_m = 2.0, .far_top_m = 2.0}));
+    start_in_place();
+    sweep();
+    TEST_ASSERT_INT_WITHIN(1, 2166, all_mm[300]);
+    TEST_ASSERT_EQUAL_INT(0, all_mm[80]);
+    TEST_ASSERT_EQUAL_INT(805, all_mm[384]);
+}
+
+/* Right side up by 10 degrees: the mirror's spot rises by 220 sin 10 + 100 cos 10, and looks down aslant. */
+void test_in_a_place_a_tilt_tells_what_the_seeds_figures_draw(void)
+{
+    still.bench_roll_rad = 10.0 * M_PI / 180.0;
+    still.bench_roll_start_s = 0.0;
+    place_init(&place);
+    start_in_place();
+    at(0.1);
+    sweep();
+    TEST_ASSERT_INT_WITHIN(1, (int)lround(105.0 + (600.0 + 38.20 + 98.48) / 0.984808), all_mm[384]);
+}
+
+void test_a_fault_of_one_beam_leaves_the_others(void)
+{
+    place_init(&place);
+    calm.sight_blocked = 1.0;
+    calm.struck_beam = 3.0;
+    start_in_place();
+    sweep();
+    TEST_ASSERT_EQUAL_INT(805, all_mm[384]);
+    TEST_ASSERT_EQUAL_INT(813, all_mm[128]);
+    TEST_ASSERT_EQUAL_INT(150, all_mm[640]);
+}
+
+void test_one_frozen_beam_tells_its_latest_distance_while_the_others_go_on(void)
+{
+    place_init(&place);
+    calm.frozen = (span_t){5.0, 10.0};
+    calm.struck_beam = 1.0;
+    start_in_place();
+    at(1.0);
+    sweep();
+    TEST_ASSERT_TRUE(place_add(
+        &place, &(place_block_t){.length_m = 1.0, .width_m = 1.0, .near_top_m = 0.1, .far_top_m = 0.1}));
+    at(6.0);
+    sweep();
+    TEST_ASSERT_EQUAL_INT(805, all_mm[384]);
+    TEST_ASSERT_EQUAL_INT(713, all_mm[128]);
+    TEST_ASSERT_EQUAL_INT(712, all_mm[640]);
+}

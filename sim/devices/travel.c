@@ -1,0 +1,58 @@
+#include "sim/devices/travel.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#define GRAVITY_MPS2 9.80665
+/* A loop that settles in 3 s, well below the attitude's 0.6 Hz. */
+#define PLACE_PER_S2 1.0
+#define SPEED_PER_S 1.6
+#define LEAN_MAX_RAD 0.35
+#define DRAG_PER_S 0.3 /* chosen: 1 m/s leans by 1.7 degrees */
+
+void travel_init(travel_t *travel, const course_t *course)
+{
+    *travel = (travel_t){.course = course};
+    course_begin(&travel->wanted);
+}
+
+static double lean_rad(double wanted_mps2)
+{
+    return fmin(fmax(-atan(wanted_mps2 / GRAVITY_MPS2), -LEAN_MAX_RAD), LEAN_MAX_RAD);
+}
+
+void travel_steer(travel_t *travel, double t_s, double step_s, double heading_rad)
+{
+    const course_point_t *to = &travel->wanted;
+
+    if (travel->course == NULL) {
+        return;
+    }
+    course_step(travel->course, &travel->wanted, t_s, step_s);
+    const double ax = to->ax_mps2 + DRAG_PER_S * to->vx_mps + PLACE_PER_S2 * (to->x_m - travel->x_m) +
+                      SPEED_PER_S * (to->vx_mps - travel->vx_mps);
+    const double ay = to->ay_mps2 + DRAG_PER_S * to->vy_mps + PLACE_PER_S2 * (to->y_m - travel->y_m) +
+                      SPEED_PER_S * (to->vy_mps - travel->vy_mps);
+    travel->pitch_rad = lean_rad(ax * cos(heading_rad) + ay * sin(heading_rad));
+    travel->roll_rad = lean_rad(ax * sin(heading_rad) - ay * cos(heading_rad));
+}
+
+void travel_step(travel_t *travel, double step_s, double heading_rad, double roll_rad, double pitch_rad,
+                 double lift_mps2, bool on_ground)
+{
+    if (travel->course == NULL) {
+        return;
+    }
+    if (on_ground) {
+        travel->vx_mps = travel->vy_mps = 0.0;
+        return;
+    }
+    const double fore_mps2 = -lift_mps2 * sin(pitch_rad) * cos(roll_rad);
+    const double right_mps2 = -lift_mps2 * sin(roll_rad);
+    const double c = cos(heading_rad), s = sin(heading_rad);
+
+    travel->vx_mps += step_s * (c * fore_mps2 + s * right_mps2 - DRAG_PER_S * travel->vx_mps);
+    travel->vy_mps += step_s * (s * fore_mps2 - c * right_mps2 - DRAG_PER_S * travel->vy_mps);
+    travel->x_m += step_s * travel->vx_mps;
+    travel->y_m += step_s * travel->vy_mps;
+}
