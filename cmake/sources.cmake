@@ -13,12 +13,12 @@ set(DRIVERS_SOURCES
     drivers/telemetry.c drivers/urg.c drivers/urg_link.c)
 set(BSP_SOURCES
     bsp/board.c bsp/led.c bsp/reset.c bsp/retained.c bsp/selector.c bsp/start.c bsp/storage.c bsp/throttle.c bsp/timebase.c bsp/uart.c
-    bsp/watchdog.c)
+    bsp/usb.c bsp/watchdog.c)
 set(FIRMWARE_SOURCES
     firmware/alive.c firmware/answer.c firmware/boot.c firmware/calibrator.c firmware/commands.c firmware/cpu_time.c firmware/fault.c
     firmware/flight_recorder.c firmware/geometry.c firmware/ground.c firmware/imu_exchange.c firmware/imu_gate.c firmware/imu_port.c firmware/laser_port.c firmware/listing.c firmware/main.c
     firmware/monitor.c firmware/parameter_store.c firmware/published.c firmware/pulse_stream.c firmware/servers.c firmware/task_control.c
     firmware/task_imu.c
     firmware/task_receive_comm.c firmware/task_receive_laser.c firmware/task_send_comm.c firmware/task_send_laser.c
-    firmware/uart_port.c firmware/verb_bench.c firmware/verb_calibrate.c firmware/verb_imu.c firmware/verb_laser.c firmware/verb_log.c firmware/verb_perf.c firmware/verb_reference.c
+    firmware/uart_port.c firmware/usb_port.c firmware/verb_bench.c firmware/verb_calibrate.c firmware/verb_imu.c firmware/verb_laser.c firmware/verb_log.c firmware/verb_perf.c firmware/verb_reference.c
     firmware/verb_save.c firmware/xbee_port.c)

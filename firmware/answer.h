@@ -1,5 +1,6 @@
 /* Builds and sends one answer line: `OK ...` or `ERR NAME reason`, up to TELEMETRY_ANSWER_MAX characters.
- * The verb's caller owns the answer_t. Context: Task, TaskReceiveComm only. */
+ * The verb's caller owns the answer_t. Context: Task; answer_send() and what
+ * refuses, TaskReceiveComm only. */
 #ifndef FIRMWARE_ANSWER_H
 #define FIRMWARE_ANSWER_H
 

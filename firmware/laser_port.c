@@ -13,6 +13,7 @@
 #include "firmware/schedule.h"
 #include "bsp/timebase.h"
 #include "firmware/uart_port.h"
+#include "firmware/usb_port.h"
 
 /* Fed by the receive Hwi; all others use it with interrupts off. */
 static urg_t urg;
@@ -102,6 +103,9 @@ void laser_port_create(const urg_config_t *config)
     laser_swi = Swi_create(laser_swi_run, &swi, NULL);
     cpu_time_watch(CPU_TIME_LASER_SWI, laser_swi);
     uart_port_create(BSP_UART_LASER, rate, received);
+    if (config->wait_us > 0U) {
+        usb_port_start();
+    }
 }
 
 void laser_port_wait(laser_message_t *message)
@@ -129,6 +133,16 @@ void laser_port_statistics(laser_statistics_t *statistics)
     Hwi_restore(key);
 }
 
+/* While the scanner starts up, nothing is sent to it. */
+static void lend_transmitter(urg_status_t status)
+{
+    if (status == URG_WAIT) {
+        usb_port_step();
+    } else {
+        usb_port_end();
+    }
+}
+
 static void send(const urg_output_t *output)
 {
     char text[SCIP_REQUEST_MAX];
@@ -152,6 +166,7 @@ void laser_port_step(laser_statistics_t *statistics)
     rate = output.rate;
     copy_statistics(statistics);
     Hwi_restore(key);
+    lend_transmitter(statistics->urg.status);
     if (output.set_rate) {
         uart_port_reopen(BSP_UART_LASER, output.rate);
     }

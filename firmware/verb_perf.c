@@ -48,7 +48,7 @@ static void write_waits(answer_t *answer)
 }
 
 /* The run, each task, the servers' waits. */
-static bool write_line(answer_t *answer, uint16_t number)
+bool verb_perf_line(answer_t *answer, uint16_t number)
 {
     const uint16_t last = (uint16_t)MONITOR_TASKS + 1U;
 
@@ -107,5 +107,5 @@ bool verb_perf(answer_t *answer)
     if (answer->command->argument_length > 0U) {
         return answer_refuse(answer, "one of COSTS|RESET");
     }
-    return listing_start(answer, write_line);
+    return listing_start(answer, verb_perf_line);
 }

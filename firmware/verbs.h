@@ -19,6 +19,8 @@ bool verb_imu(answer_t *answer);
  * deadlines and stack, and per server the longest wait. `#PERF RESET` clears the values that can be
  * cleared. */
 bool verb_perf(answer_t *answer);
+/* Builds a line of `#PERF`, the first is number 0, without its end. False behind the last. Any task. */
+bool verb_perf_line(answer_t *answer, uint16_t number);
 
 /* verb_save.c: `#SAVE` and `#LOAD` store and load the parameters, `#DEFAULTS` sets those of `#HELP`. On
  * the ground without a reference only. */

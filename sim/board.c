@@ -180,6 +180,7 @@ static pilot_t *seat_pilot(const board_config_t *config)
 
 static void lay_wires(void)
 {
+    chip_usb_connect(NULL, NULL);
     for (int i = 0; i < BOARD_WIRES; i++) {
         board.wires[i].base = wire_bases[i];
         serial_init(&board.wires[i].far_end, 1.0, to_firmware, (void *)(uintptr_t)i);
@@ -269,6 +270,11 @@ void board_connect(board_wire_t wire, void (*out)(void *context, unsigned octet)
     } else if (wire == BOARD_IMU) {
         razor9dof_power(board.imu, false);
     }
+}
+
+void board_connect_usb(void (*out)(void *context, unsigned octet, double bit_ns), void *context)
+{
+    chip_usb_connect(out, context);
 }
 
 void board_receive_at(board_wire_t wire, double rate, const void *octets, size_t count)

@@ -50,6 +50,9 @@ typedef enum { BOARD_LASER, BOARD_IMU, BOARD_RADIO, BOARD_WIRES } board_wire_t;
 /* A real device in place of the model on that wire, which is switched off. `out` gets each octet that the
  * firmware sends there, at the end of its stop bit. Between board_power_on() and the first run. */
 void board_connect(board_wire_t wire, void (*out)(void *context, unsigned octet), void *context);
+/* Somebody listens at the LaunchPad's USB serial port: `out` gets each octet that the firmware sends there.
+ * After board_power_on(). */
+void board_connect_usb(void (*out)(void *context, unsigned octet, double bit_ns), void *context);
 /* The real device has sent: the octets arrive one after the other at the UART's present rate. */
 void board_receive(board_wire_t wire, const void *octets, size_t count);
 /* The same at the far end's own rate, bits per second: where the two differ by more than the UART bears, it

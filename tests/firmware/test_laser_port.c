@@ -9,6 +9,7 @@
 #include "mock_cpu_time.h"
 #include "mock_timebase.h"
 #include "mock_uart_port.h"
+#include "mock_usb_port.h"
 #include "tests/support/scip_frames.h"
 #include "unity.h"
 
@@ -21,7 +22,9 @@ static uint32_t reopened_at;
 static char sent[64];
 static uint16_t sent_count;
 static const char *answer_while_sending; /* comes before uart_port_send() returns, or NULL */
-static uint16_t level;                   /* octets until the port wants to be called again */
+static unsigned usb_starts, usb_lines;   /* of the USB port, which shares the transmitter */
+static bool usb_ended;
+static uint16_t level; /* octets until the port wants to be called again */
 static laser_message_t message;
 static laser_statistics_t now;
 static laser_statistics_t before;
@@ -101,6 +104,7 @@ static bool port_send(bsp_uart_t uart, const char *text, uint16_t count, int cal
     (void)calls;
     TEST_ASSERT_EQUAL(BSP_UART_LASER, uart);
     TEST_ASSERT_LESS_THAN(sizeof sent, count);
+    TEST_ASSERT_TRUE_MESSAGE(usb_ended, "the USB port would hear it, not the scanner");
     kernel_no_lock();
     kernel_note("send");
     (void)memcpy(sent, text, count);
@@ -110,6 +114,25 @@ static bool port_send(bsp_uart_t uart, const char *text, uint16_t count, int cal
         feed(answer_while_sending);
     }
     return true;
+}
+
+static void usb_start(int calls)
+{
+    (void)calls;
+    TEST_ASSERT_NOT_NULL_MESSAGE(receiver, "before its UART is open");
+    usb_starts++;
+}
+
+static void usb_step(int calls)
+{
+    (void)calls;
+    usb_lines++;
+}
+
+static void usb_end(int calls)
+{
+    (void)calls;
+    usb_ended = true;
 }
 
 static void wait(void)
@@ -184,6 +207,11 @@ void setUp(void)
     uart_port_reopen_Stub(port_reopen);
     uart_port_send_Stub(port_send);
     bsp_time_us_Stub(time_us);
+    usb_port_start_Stub(usb_start);
+    usb_port_step_Stub(usb_step);
+    usb_port_end_Stub(usb_end);
+    usb_starts = usb_lines = 0U;
+    usb_ended = false;
     jobs_reset();
     cpu_time_watch_Expect(CPU_TIME_LASER_SWI, NULL);
     cpu_time_watch_IgnoreArg_handle();
@@ -226,6 +254,28 @@ void test_create_makes_the_swi_and_a_binary_semaphore_then_the_uart(void)
     TEST_ASSERT_EQUAL_UINT(2, kernel.swi.params.priority);
     TEST_ASSERT_EQUAL(Semaphore_Mode_BINARY, kernel.semaphore.mode);
     TEST_ASSERT_EQUAL_UINT16(1, kernel.semaphore.created);
+}
+
+void test_while_the_scanner_starts_up_the_usb_port_speaks_with_each_step_and_never_again(void)
+{
+    urg_config_t waiting = config;
+
+    TEST_ASSERT_EQUAL_UINT_MESSAGE(0U, usb_starts, "nothing waits");
+    waiting.wait_us = 1000000U;
+    kernel_reset();
+    cpu_time_watch_Expect(CPU_TIME_LASER_SWI, NULL);
+    cpu_time_watch_IgnoreArg_handle();
+    laser_port_create(&waiting);
+    TEST_ASSERT_EQUAL_UINT(1U, usb_starts);
+    for (unsigned i = 1U; i <= 6U; i++) {
+        step();
+        TEST_ASSERT_EQUAL_UINT(i, usb_lines);
+        TEST_ASSERT_FALSE(usb_ended);
+    }
+    step();
+    TEST_ASSERT_EQUAL_UINT(6U, usb_lines);
+    TEST_ASSERT_TRUE(usb_ended);
+    TEST_ASSERT_NOT_EQUAL_UINT(0U, sent_count);
 }
 
 void test_the_task_waits_while_nothing_is_complete(void)

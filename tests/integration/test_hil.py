@@ -4,9 +4,12 @@ Usage: test_hil.py PLOMADA short|long
 """
 import os
 import re
+import select
 import signal
 import subprocess
 import sys
+import tempfile
+import time
 import unittest
 
 import bench
@@ -49,6 +52,25 @@ class Short(unittest.TestCase):
                                   capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 2)
         self.assertIn("/nowhere/pulses.csv", done.stderr)
+
+    def test_with_nothing_but_its_own_usb_port_a_board_says_its_version_and_how_it_performs(self):
+        with tempfile.TemporaryDirectory() as directory:
+            usb = os.path.join(directory, "usb")
+            with bench.Board(PROGRAM, "--usb", usb) as board:
+                end, heard = time.monotonic() + 30, b""
+                port = os.open(usb, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+                while heard.count(b"OK VERSION") < 2 and time.monotonic() < end:
+                    if select.select([port], [], [], 1.0)[0]:
+                        heard += os.read(port, 4096)
+                os.close(port)
+                self.assertTrue(os.path.islink(usb))
+            self.assertEqual(board.status, 0)
+            self.assertFalse(os.path.lexists(usb))
+        said = heard.decode().split("\r\n")
+        version = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout.split()[1]
+        self.assertIn(f"OK VERSION {version}", said)
+        for name in ("TaskIMU", "TaskReceiveLaser", "TaskControl", "TaskSendLaser", "TaskSendComm", "TaskReceiveComm"):
+            self.assertEqual(sum(line.startswith(f"OK PERF {name} worst_us:") for line in said), 1, said)
 
     def test_the_boards_links_are_gone_when_it_ends_and_a_power_cycle_keeps_them(self):
         with bench.Board(PROGRAM) as board:

@@ -22,7 +22,7 @@ calls  ring      listen()               reason
 cells  30   library_*        reason
 cells  100  Semaphore_pend   reason
 """
-SOURCE = """static void (*const handlers[])(void) = {[START] = on_start, [STOP] = on_stop};
+SOURCE = """static void (*const handlers[])(void) = {[START] = on_start, [STOP] = on_stop, NULL};
 void main(void)
 {
     listen(1, on_ring);

@@ -28,25 +28,28 @@
 #define LATE (400 * SIM_MS)
 #define GARBLED_ONE_IN 50U
 
-static const char usage[] = "usage: plomada board --laser PATH --imu PATH --xbee PATH [OPTION]...\n\n"
-                            "Runs the unmodified firmware in real time with all three serial lines outside, "
-                            "as a LaunchPad does. Each PATH becomes\n"
-                            "a symbolic link to a pseudo-terminal, removed at the end (SIGINT, SIGTERM; exit "
-                            "status 0): what a serial adapter on\n"
-                            "the board's pins would be. Its bit rate is that of whoever opens it; at another "
-                            "rate than the firmware's both hear\n"
-                            "nonsense. SIGUSR1 takes the power away and gives it back.\n\n"
-                            "  --storage FILE      the chip's flash, kept over a power cycle and in the "
-                            "file; without it kept until the end\n"
-                            "  --pulses FILE       the throttle pin as a logic analyser records it, in "
-                            "sigrok-cli's format (csv:time=true:dedup=true);\n"
-                            "                      FILE may be a FIFO\n"
-                            "  --bits LINE=FILE    the transmit pin of a line (laser, imu, xbee) in the "
-                            "same way; may be repeated\n"
-                            "  --duration S        ends by itself\n"
-                            "  --seed N            phases (default 1)\n"
-                            "  --defect NAME[@S]   something is wrong, from S seconds after the first "
-                            "power-on on (default: always); may be repeated:\n";
+static const char usage[] =
+    "usage: plomada board --laser PATH --imu PATH --xbee PATH [OPTION]...\n\n"
+    "Runs the unmodified firmware in real time with all three serial lines outside, "
+    "as a LaunchPad does. Each PATH becomes\n"
+    "a symbolic link to a pseudo-terminal, removed at the end (SIGINT, SIGTERM; exit "
+    "status 0): what a serial adapter on\n"
+    "the board's pins would be. Its bit rate is that of whoever opens it; at another "
+    "rate than the firmware's both hear\n"
+    "nonsense. SIGUSR1 takes the power away and gives it back.\n\n"
+    "  --usb PATH          the same for the LaunchPad's own USB serial port (115200, the "
+    "board only talks)\n"
+    "  --storage FILE      the chip's flash, kept over a power cycle and in the "
+    "file; without it kept until the end\n"
+    "  --pulses FILE       the throttle pin as a logic analyser records it, in "
+    "sigrok-cli's format (csv:time=true:dedup=true);\n"
+    "                      FILE may be a FIFO\n"
+    "  --bits LINE=FILE    the transmit pin of a line (laser, imu, xbee) in the "
+    "same way; may be repeated\n"
+    "  --duration S        ends by itself\n"
+    "  --seed N            phases (default 1)\n"
+    "  --defect NAME[@S]   something is wrong, from S seconds after the first "
+    "power-on on (default: always); may be repeated:\n";
 
 static const char defect_help[] =
     "      laser-swapped imu-swapped xbee-swapped   transmit and receive wire of that line are crossed\n"
@@ -87,20 +90,21 @@ static const char *const other_defects[] = {"wrong-rate",    "pulse-inverted", "
 _Static_assert(sizeof other_defects / sizeof other_defects[0] == DEFECTS - WRONG_RATE_DEFECT,
                "every other defect has a name");
 
-enum { OPT_STORAGE = 1, OPT_DURATION, OPT_SEED, OPT_DEFECT };
+enum { OPT_STORAGE = 1, OPT_DURATION, OPT_SEED, OPT_DEFECT, OPT_USB };
 
 static const struct option long_options[] = {
     {"storage", required_argument, NULL, OPT_STORAGE},
     {"duration", required_argument, NULL, OPT_DURATION},
     {"seed", required_argument, NULL, OPT_SEED},
     {"defect", required_argument, NULL, OPT_DEFECT},
+    {"usb", required_argument, NULL, OPT_USB},
     LINE_BITS_OPTION,
     LINE_OPTIONS,
 };
 
 static struct {
     lines_t lines;
-    const char *storage;
+    const char *storage, *usb;
     double duration_s, defect_s[DEFECTS]; /* NAN: not this defect */
     unsigned long seed;
 } order;
@@ -108,6 +112,8 @@ static struct {
 static struct {
     port_t ports[BOARD_WIRES];
     bool linked[BOARD_WIRES];
+    port_t usb;
+    bool usb_linked;
     noise_t noise;
     unsigned passed;       /* octets, for the garbled ones */
     int pulses;            /* file, -1: none */
@@ -184,6 +190,9 @@ static bool read_option(int option, const char *argument)
         return read_number(argument, &number) || complain("not a seed (0, 1, 2 ...)", argument);
     case OPT_DEFECT:
         return read_defect(argument);
+    case OPT_USB:
+        order.usb = argument;
+        return true;
     default:
         return false;
     }
@@ -272,6 +281,16 @@ static void out(void *context, unsigned octet)
         c = (unsigned char)(noise_bits(&bench.noise) & 0xFFU);
     }
     (void)port_write(port, &c, 1);
+}
+
+static void out_usb(void *unused, unsigned octet, double bit_ns)
+{
+    const double ratio = (double)port_rate(&bench.usb) * bit_ns * 1e-9 / oscillator();
+    unsigned char c = (unsigned char)(fabs(ratio - 1.0) > MISMATCH ? noise_bits(&bench.noise) & 0xFFU
+                                                                   : octet);
+
+    (void)unused;
+    (void)port_write(&bench.usb, &c, 1);
 }
 
 typedef struct {
@@ -417,6 +436,9 @@ static void power_on(void)
     if (!isnan(order.defect_s[NO_WATCHDOG])) {
         chip_watchdog_connect(NULL, NULL);
     }
+    if (order.usb != NULL) {
+        board_connect_usb(out_usb, NULL);
+    }
     pace_begin();
     kernel_set_pacer(pace_wait);
     for (int i = 0; i < BOARD_WIRES; i++) {
@@ -468,34 +490,44 @@ static void live(void)
     }
 }
 
+static bool open_wire(port_t *port, unsigned long rate, const char *path, bool *linked)
+{
+    const char *error = port_open_pty(port, rate);
+
+    if (error == NULL) {
+        error = port_link(port, path);
+        *linked = error == NULL;
+    }
+    return error == NULL || complain(error, path);
+}
+
 /* Signals are caught before the links are there: who finds a link may send one at once. */
 static bool open_wires(void)
 {
     static const unsigned long rates[BOARD_WIRES] = {115200, 57600, 9600};
+    bool fine = order.usb == NULL || open_wire(&bench.usb, 115200, order.usb, &bench.usb_linked);
 
-    for (int i = 0; i < BOARD_WIRES; i++) {
-        const char *error = port_open_pty(&bench.ports[i], rates[i]);
-
-        if (error == NULL) {
-            error = port_link(&bench.ports[i], order.lines.path[i]);
-            bench.linked[i] = error == NULL;
-        }
-        if (error != NULL) {
-            return complain(error, order.lines.path[i]);
-        }
+    for (int i = 0; i < BOARD_WIRES && fine; i++) {
+        fine = open_wire(&bench.ports[i], rates[i], order.lines.path[i], &bench.linked[i]);
     }
-    return true;
+    return fine;
+}
+
+static void close_wire(port_t *port, const char *path, bool linked)
+{
+    if (linked) {
+        port_unlink(port, path);
+    }
+    if (port->name[0] != '\0') {
+        port_close(port);
+    }
 }
 
 static void close_wires(void)
 {
+    close_wire(&bench.usb, order.usb, bench.usb_linked);
     for (int i = 0; i < BOARD_WIRES; i++) {
-        if (bench.linked[i]) {
-            port_unlink(&bench.ports[i], order.lines.path[i]);
-        }
-        if (bench.ports[i].name[0] != '\0') {
-            port_close(&bench.ports[i]);
-        }
+        close_wire(&bench.ports[i], order.lines.path[i], bench.linked[i]);
     }
 }
 

@@ -129,7 +129,7 @@ class Stacks:
         path, table = text.split(":")
         code = house.code_only((ROOT / path).read_text(encoding="utf-8"))
         held = re.search(rf"\b{table}\[\]\)?(?:\([^)]*\))?\s*=\s*\{{(.*?)\}};", code, re.DOTALL).group(1)
-        return re.findall(r"[A-Za-z_]\w*", re.sub(r"\[\w+\]", "", held))
+        return [name for name in re.findall(r"[A-Za-z_]\w*", re.sub(r"\[\w+\]", "", held)) if not name.isupper()]
 
     def read_graph(self, path, text):
         for title, label, outside in re.findall(r'node: \{ title: "([^"]+)" label: "([^"]*)"( shape : ellipse)?', text):

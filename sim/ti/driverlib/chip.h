@@ -29,6 +29,9 @@ unsigned chip_nmis(void);
 /* A transmitted octet, delivered at the end of its stop bit; bit_ns is the length of one bit as sent. */
 typedef void (*chip_octet_t)(void *context, unsigned octet, double bit_ns);
 void chip_sci_connect(uint32_t base, chip_octet_t transmitted, void *context);
+/* The same for GPIO84, the LaunchPad's USB serial port: what SCIA transmits while that pin is its own. It
+ * does not reach the pin that chip_sci_connect() is about. */
+void chip_usb_connect(chip_octet_t transmitted, void *context);
 
 /* An octet arrives on the receive pin, at the end of its stop bit. When bit_ns is off by more than 4.5 % from
  * the receiver's own rate, or the pin is not muxed to this SCI, it is a framing error or nothing, as on the

@@ -71,6 +71,10 @@ static const wiring_t WIRING[PORT_COUNT] = {
 };
 
 static sci_t ports[PORT_COUNT];
+static struct {
+    chip_octet_t transmitted;
+    void *context;
+} usb;
 static void (*raise_interrupt)(int interrupt);
 
 static void update(sci_t *sci);
@@ -122,6 +126,27 @@ static bool wired(const uint32_t *pins)
         }
     }
     return false;
+}
+
+/* Each pin that is the transmitter's puts the octet out: the USB port's to it, a header's to the device. */
+static void put_out(const sci_t *sci)
+{
+    const uint32_t *pins = sci->wiring->transmit_pins;
+    bool header = false;
+
+    for (unsigned i = 0; i < PIN_CHOICES && pins[i] != 0; i++) {
+        if (!gpio_routed(pins[i])) {
+            continue;
+        }
+        if (pins[i] != GPIO_84_SCITXDA) {
+            header = true;
+        } else if (usb.transmitted != NULL) {
+            usb.transmitted(usb.context, sci->r.shift, sci->r.shift_bit_ns);
+        }
+    }
+    if (header && sci->transmitted != NULL) {
+        sci->transmitted(sci->context, sci->r.shift, sci->r.shift_bit_ns);
+    }
 }
 
 static uint16_t fifo_take(fifo_t *fifo)
@@ -183,9 +208,7 @@ static void shifted_out(void *context)
     sci_t *sci = context;
     sci->r.shift_event = 0;
     sci->r.shifting = false;
-    if (sci->transmitted != NULL && wired(sci->wiring->transmit_pins)) {
-        sci->transmitted(sci->context, sci->r.shift, sci->r.shift_bit_ns);
-    }
+    put_out(sci);
     update(sci);
 }
 
@@ -412,6 +435,12 @@ void chip_sci_connect(uint32_t base, chip_octet_t transmitted, void *context)
 {
     at(base)->transmitted = transmitted;
     at(base)->context = context;
+}
+
+void chip_usb_connect(chip_octet_t transmitted, void *context)
+{
+    usb.transmitted = transmitted;
+    usb.context = context;
 }
 
 double chip_sci_rate(uint32_t base)
