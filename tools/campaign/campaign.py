@@ -6,7 +6,7 @@ campaign.py --resume [--out DIR]: goes on with the campaign in DIR, with the opt
 The vehicle of a run depends on the campaign's seed and the run's number alone, so all laws fly the same vehicles.
 Flights run in processes of their own through Dask, on this machine or on the cluster of --scheduler. Each result is
 kept at once in DIR/flights.jsonl, with the command that flies it again, seed, program and vehicle; a rerun flies only what is missing there, and what another program or other draws
-would fly anew. Then come the table and the verdicts on stdout, and in DIR campaign.csv, campaign.json and campaign.png.
+would fly anew. A folder has one campaign, and one with options has its own. Then come the table and the verdicts on stdout, and in DIR campaign.csv, campaign.json and campaign.png.
 The campaign without options is the one in docs/control.md: its tables must be these, or --page writes them.
 With --faults, each of N flights has one to three random conditions, such as lost rays, a frozen IMU, a noisy line, and all
 laws fly the same ones. Then come, for each flight that did harm, the command that repeats it, and the rates;
@@ -14,7 +14,9 @@ docs/reliability.md has those of the default campaign, which are compared, and t
 docs/campaign.md tells more. Exit status: 0; 1 a law does not reach what it must, or the page says otherwise; 2 usage or a program that does not fly; 130 interrupted.
 """
 import argparse
+import hashlib
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -31,6 +33,44 @@ ROOT = Path(__file__).resolve().parents[2]
 
 FAULTS = 2000
 BEGUN = "arguments.json"        # of --out
+
+
+# Options that change neither what is flown nor what is told of it: how many words each takes. And how far a campaign goes.
+ASIDE = {"--out": 1, "--resume": 0, "--page": 0, "--program": 1, "--scheduler": 1}
+LENGTH = {"--runs": 1}
+NAME_MAX = 80                   # octets of a folder's name
+
+
+def without(words, aside):
+    """A command line less some options and their words."""
+    found, words = [], list(words)
+    while words:
+        name, _, value = words.pop(0).partition("=")
+        if name in aside:
+            del words[:0 if value else aside[name]]
+        else:
+            found.append(f"{name}={value}" if value else name)
+    return found
+
+
+def identity(words):
+    """The words of a command line that make the campaign what it is: one of more flights is the same, gone on with."""
+    found = without(words, ASIDE | LENGTH)
+    for at, word in enumerate(found):
+        if word.startswith("--faults="):
+            found[at] = "--faults"
+        elif word.isdigit() and found[at - 1] == "--faults":
+            del found[at]
+    return found
+
+
+def folder_of(words):
+    """Where a campaign goes that names no folder: one with options has its own, so that none overwrites another."""
+    own = " ".join(without(words, ASIDE))
+    name = re.sub(r"[^\w.=+]+", "-", own).strip("-")
+    if len(name) > NAME_MAX:
+        name = f"{name[:NAME_MAX - 9]}-{hashlib.sha256(own.encode()).hexdigest()[:8]}"
+    return ROOT / "build/campaign" / name
 
 
 def of_page(arguments):
@@ -60,7 +100,16 @@ def resumed(parser, arguments):
     path = arguments.out / BEGUN
     if not path.exists():
         parser.error(f"--resume: no campaign was begun in {arguments.out}")
-    return parser.parse_args([*json.loads(path.read_text(encoding="utf-8")), "--out", str(arguments.out)])
+    return parser.parse_args([*begun_with(path), "--out", str(arguments.out)])
+
+
+def begun_with(path):
+    """The command line of a campaign. Raises Broken."""
+    try:
+        words = [str(word) for word in json.loads(path.read_text(encoding="utf-8"))]
+    except (ValueError, TypeError) as error:
+        raise fleet.Broken(f"{path}: not the arguments of a campaign: {error}") from None
+    return words
 
 
 def choose(parser, arguments):
@@ -99,9 +148,10 @@ def read_arguments(argv):
                              "docs/reliability.md")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster (default: this machine's processors)")
     parser.add_argument("--program", type=Path, default=ROOT / "build/plomada", help="default: build/plomada")
-    parser.add_argument("--out", type=Path, default=ROOT / "build/campaign", metavar="DIR",
-                        help="default: build/campaign")
+    parser.add_argument("--out", type=Path, metavar="DIR",
+                        help="default: build/campaign, and in it a folder for each campaign with options")
     arguments = parser.parse_args(argv)
+    arguments.out = arguments.out or folder_of(sys.argv[1:] if argv is None else argv)
     if arguments.resume:
         arguments = resumed(parser, arguments)
     choose(parser, arguments)
@@ -257,15 +307,23 @@ def run(arguments):
 
 
 def remember(arguments, argv):
-    """For --resume."""
-    if not arguments.resume and "--resume" not in (sys.argv[1:] if argv is None else argv):
-        arguments.out.mkdir(parents=True, exist_ok=True)
-        (arguments.out / BEGUN).write_text(json.dumps(sys.argv[1:] if argv is None else list(argv)), encoding="utf-8")
+    """For --resume. A folder has one campaign: its arguments, tables and picture are not those of another."""
+    words = sys.argv[1:] if argv is None else list(argv)
+    path = arguments.out / BEGUN
+    if "--resume" in words:
+        return
+    if path.exists():
+        begun = begun_with(path)
+        if identity(begun) != identity(words):
+            raise fleet.Broken(f"{arguments.out} has another campaign, begun with: {' '.join(begun) or 'no options'}; give this one its own "
+                               "--out DIR")
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(words), encoding="utf-8")
 
 
 def main(argv=None):
-    arguments = read_arguments(argv)
     try:
+        arguments = read_arguments(argv)
         remember(arguments, argv)
         return run_faults(arguments) if arguments.faults else run(arguments)
     except (fleet.Broken, OSError) as error:
