@@ -100,7 +100,7 @@ class Files(unittest.TestCase):
             return "\n".join([*rows[:99], ",".join([*cells[:place], cell, *cells[place + 1:]]), *rows[100:]]) + "\n"
 
         for text, reason in ((with_cell(0, "inf"), "line 100: t_s: not a number"), (with_cell(0, ""), "line 100: t_s: no time"),
-                             (with_cell(0, "0.1"), "line 100: t_s: not after"), (with_cell(0, "1e300"), "line 100: t_s: no time"),
+                             (with_cell(0, "0.1"), "line 100: t_s: before the row"), (with_cell(0, "1e300"), "line 100: t_s: no time"),
                              (with_cell(1, "nan"), "line 100: meas_m: not a number"), (with_cell(1, "0.6m"), "line 100: meas_m"),
                              ("\n".join([*rows[:99], rows[99][:20]]), "line 100: row: not as many cells"),
                              ("\n".join([*rows[:99], "\0" + rows[99], rows[100]]), "line 100: row: not text"),

@@ -13,6 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/fit"))
 import acceptance  # noqa: E402
 import flight_log  # noqa: E402
+import forecast  # noqa: E402
 import model  # noqa: E402
 import tune_vehicle  # noqa: E402
 
@@ -175,6 +176,58 @@ class Fit(unittest.TestCase):
             self.assertIn(reason, done.stderr)
 
 
+class BadLogs(unittest.TestCase):
+    """What fit once believed, or fell over."""
+
+    def test_the_fault_and_its_line_are_named(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            log, given = Path(scratch, "log.csv"), Path(scratch, "given.csv")
+            subprocess.run([PROGRAM, "fly", "experiment", "--csv", log], check=False, stdout=subprocess.DEVNULL)
+            titles, *rows = [line.split(",") for line in log.read_text().splitlines()]
+
+            def text(changed):
+                """changed(cells by their title, line) of each row."""
+                lines = [changed(dict(zip(titles, row, strict=True)), at) for at, row in enumerate(rows, 2)]
+                return "\n".join(",".join(line) for line in (titles, *(cells.values() for cells in lines))) + "\n"
+
+            def only(name, cell, line=700):
+                return text(lambda cells, at: cells | {name: cell} if line in (0, at) else cells)
+
+            def times(change):
+                return text(lambda cells, at: cells | {"t_s": f"{change(float(cells['t_s']), at):g}"})
+
+            for what, octets, reason in (
+                    ("millimetres", text(lambda cells, _: cells | {"meas_m": f"{1e3 * float(cells['meas_m'] or 0):g}"}), ":2: meas_m: -7.9 is not in metres"),
+                    ("milliseconds", times(lambda t, _: 1000 * t), ": t_s: .*no time of a flight in seconds"),
+                    ("a jump", times(lambda t, at: t + (1e5 if at > 700 else 0)), ":701: t_s: from 6.98 to 100007"),
+                    ("a long jump", times(lambda t, at: t + (1e15 if at > 700 else 0)), ":701: t_s: 1e[+]15 is not in seconds"),
+                    ("time goes back", times(lambda t, at: t - (3 if at > 700 else 0)), ":701: t_s: 3.99 does not come after 6.98"),
+                    ("inf", only("thrust_n", "inf"), ":700: thrust_n: 'inf' is no number"),
+                    ("a quote", only("state", 'FLY"ING'), ":700: a quote within a row"),
+                    ("degrees", only("roll_rad", "9.5"), ":700: roll_rad: 9.5 is not in radians"),
+                    ("no time", only("t_s", ""), ":700: t_s: nothing does not come after"),
+                    ("no heights", only("meas_m", "", 0), "no heights: meas_m is empty"),
+                    ("no thrust", only("thrust_n", ""), "1 rows have no thrust_n"),
+                    ("no tilt", only("roll_rad", "", 0), "no roll: roll_rad is empty"),
+                    ("semicolons", log.read_text().replace(",", ";"), ":1: cells are separated by ';'"),
+                    ("a picture", (ROOT / "docs/images/fit.png").read_bytes(), "neither a flight CSV"),
+                    ("nothing", "", "neither a flight CSV"), ("titles", ",".join(titles) + "\n", "no samples")):
+                given.write_bytes(octets if isinstance(octets, bytes) else octets.encode())
+                with self.subTest(what), self.assertRaisesRegex(flight_log.Unfit, "given.csv.*" + reason):
+                    flight_log.stretches(given)
+            done = subprocess.run([sys.executable, "-B", ROOT / "tools/fit/fit.py", given], capture_output=True, text=True, check=False)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertNotIn("Traceback", done.stderr)
+
+            given.write_text("\ufeff" + "\r\n".join(",".join(f'"{cell}"' for cell in row) for row in (titles, *rows)) + "\r\n")
+            self.assertEqual(len(flight_log.stretches(given)), len(flight_log.stretches(log)))     # of a spreadsheet
+
+    def test_rows_that_are_missing_part_two_stretches(self):
+        t_s = [*(k / 100 for k in range(700)), *(100 + k / 100 for k in range(700))]
+        every = [True] * len(t_s)
+        self.assertEqual(flight_log.spans(t_s, every, every), [(0.5, 6.99), (100.5, 106.99)])
+
+
 FOUND = {"throttle": "THRUST", "plant.hover_thrust": {"value": 7.0}, "plant.gain": {"value": 1.0}, "plant.tau": {"value": 0.1},
          "plant.tdelay": {"value": 0.01}, "plant.damping": {"value": 2.0}, "authority": {"value": 1.4}, "names": list(model.THRUST),
          "units": [0.0] * len(model.THRUST), "covariance": [[0.01 * (k == m) for k in range(len(model.THRUST))]
@@ -188,7 +241,7 @@ class Tuning(unittest.TestCase):
             kept = out.with_suffix(".flights.jsonl")
             vehicle.write_text(json.dumps(FOUND))
             command = [sys.executable, "-B", ROOT / "tools/fit/tune_vehicle.py", vehicle, "--program", PROGRAM, "--out", out,
-                       "--draws", "1", "--budget", "3", "--forecast", "2"]
+                       "--draws", "1", "--budget", "3", "--forecast", "2", "--fresh", "3"]
             first = subprocess.run(command, capture_output=True, text=True, check=True).stdout
             lines = kept.read_text().splitlines()
             kept.write_text("\n".join(lines[:-1]) + "\n" + lines[-1][:40])
@@ -201,6 +254,19 @@ class Tuning(unittest.TestCase):
             figures = json.loads(subprocess.run(f"{record['command']} --json -", shell=True, stdin=subprocess.DEVNULL,
                                                 stderr=subprocess.DEVNULL, stdout=subprocess.PIPE, check=False).stdout)
             self.assertEqual(figures, record["figures"])
+
+    def test_what_is_no_vehicle_or_no_forecast_is_refused_by_its_name(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            path = Path(scratch, "given.json")
+            for text in ("", "null", "[]", "{}", '{"throttle": "THRUST"}', json.dumps(FOUND | {"units": [1.0]}), "\x89PNG\r\n",
+                         json.dumps(FOUND | {"throttle": "STEAM"}), json.dumps(FOUND | {"plant.gain": {"value": float("inf")}})):
+                path.write_text(text)
+                with self.assertRaisesRegex(ValueError, "given.json: no vehicle of make fit"):
+                    forecast.load_vehicle(path)
+                with self.assertRaisesRegex(ValueError, "given.json: no forecast of make tune"):
+                    forecast.load_forecast(path)
+            path.write_text(json.dumps(FOUND))
+            self.assertEqual(forecast.load_vehicle(path), FOUND)
 
     def test_the_lowest_place_of_a_surface_through_noisy_candidates_is_found(self):
         rng = random.Random(7)
@@ -220,16 +286,89 @@ class Tuning(unittest.TestCase):
 
     def test_a_failure_costs_500_mm_and_activity_more_than_is_free_30_mm_a_newton(self):
         good = {"failed": False, "takeovers": 0, "halted": False, "hover_rms_mm": 10.0, "thrust_std_n": 0.7,
-                "terrain_rms_mm": 80.0, "overshoot_mm": 20.0}
-        self.assertAlmostEqual(tune_vehicle.cost([good], 0.7), 15.0)
-        self.assertAlmostEqual(tune_vehicle.cost([good | {"thrust_std_n": 0.8}], 0.7), 18.0)
-        self.assertAlmostEqual(tune_vehicle.cost([good, good | {"takeovers": 1}], 0.7), 257.5)
+                "terrain_rms_mm": 80.0, "overshoot_mm": 20.0, "recovery_s": 0.8}
+        self.assertAlmostEqual(tune_vehicle.cost([good], 0.7), 19.0)
+        self.assertAlmostEqual(tune_vehicle.cost([good | {"thrust_std_n": 0.8}], 0.7), 22.0)
+        self.assertAlmostEqual(tune_vehicle.cost([good, good | {"takeovers": 1}], 0.7), 259.5)
 
     def test_records_of_another_program_or_of_other_tools_are_not_taken_up_again(self):
         with tempfile.TemporaryDirectory() as scratch:
             path = Path(scratch, "1.jsonl")
             path.write_text('{"number": 1, "made_by": "a"}\n{"number": 2, "made_by": "b"}\n{"number": 3, "made')
             self.assertEqual(list(acceptance.known_records(path, "a")), [1])
+
+
+class FakeFlights:
+    """Flights whose figures are the stock gains' times `factors` where other gains are typed: {world: (hover, recovery)}."""
+
+    def __init__(self, **factors):
+        self.factors = factors
+
+    def each(self, _, flights):
+        return [self.figures(words) for words in flights]
+
+    def figures(self, words):
+        hover, recovery = self.factors["rotors" if "plant.airframe=1" in words else "model"]
+        if not any(word.startswith("POSK=") for word in words):
+            hover = recovery = 1.0
+        chance = random.Random(words[2]).gauss(1.0, 0.1)
+        return {"failed": False, "takeovers": 0, "halted": False, "hover_rms_mm": 12.0 * chance * hover, "recovery_s": 0.8 * chance * recovery,
+                "thrust_std_n": 0.5 if hover == 1.0 else 0.7, "terrain_rms_mm": 80.0, "overshoot_mm": 20.0}
+
+
+OF_ROTORS = FOUND | {"names": list(model.TABLES["THRUST"]), "units": [0.0] * len(model.TABLES["THRUST"]), "beyond": ["it slows down late"],
+                     "covariance": [[0.01 * (k == m) for k in range(len(model.TABLES["THRUST"]))] for m in range(len(model.TABLES["THRUST"]))]}
+
+
+class Proving(unittest.TestCase):
+    def tune(self, vehicle, **factors):
+        proposal = tune_vehicle.tune(FakeFlights(**factors), vehicle, "EST", 4, 5)
+        defaults = {"POSK": "2.3", "VELK": "8", "PLANT": "THRUST", "GAIN": "1", "LAG": "0.12", "DELAY": "0.0185", "DAMP": "2.5"}
+        return proposal, "\n".join(tune_vehicle.told("EST", vehicle, proposal, defaults))
+
+    def test_what_hovers_better_and_recovers_no_later_is_proposed_and_its_activity_told(self):
+        proposal, told = self.tune(FOUND, model=(0.9, 0.9))
+        self.assertFalse(proposal.kept)
+        self.assertIn("#POSK ", told)
+        self.assertRegex(told, r"thrust activity 0.5 to 0.7 N, [+]40 %")
+        self.assertRegex(told, r"hover RMS 12\S* to 10.\d mm, -10 %")
+
+    def test_what_recovers_later_or_hovers_no_better_is_not(self):
+        for factors in ((0.8, 1.01), (1.0, 0.5), (1.01, 0.9)):
+            proposal, told = self.tune(FOUND, model=factors)
+            self.assertEqual((proposal.kept, proposal.settings), (True, {}), factors)
+            self.assertIn("The stock gains stay", told)
+            self.assertIn("#VELK 8", told)
+
+    def test_a_vehicle_beyond_the_model_must_be_better_by_both_equations_and_by_much(self):
+        for model_, rotors, kept in (((0.7, 0.7), (0.8, 0.8), False), ((0.7, 0.7), (0.95, 0.95), True), ((0.95, 0.95), (0.7, 0.7), True),
+                                     ((0.7, 0.7), (0.8, 1.1), True)):
+            proposal, told = self.tune(OF_ROTORS, model=model_, rotors=rotors)
+            self.assertEqual(proposal.kept, kept, (model_, rotors))
+            self.assertIn("beyond the model: it slows down late", told)
+            self.assertIn("by the equations of the other airframe: hover RMS", told)
+
+    def test_what_lies_at_its_limit_is_told(self):
+        limits = list(tune_vehicle.at_limit("EST", FOUND, {"POSK": "2.6", "VELK": "12", "LAG": "0.03", "GAIN": "1.1"}))
+        self.assertEqual([sentence.split()[0] for sentence in limits], ["VELK", "LAG"])
+        self.assertIn("VELK 12 is at its limit, 1.5 to 12", limits[0])
+
+    def test_the_bounds_of_a_change_are_students(self):
+        c = tune_vehicle.change([10.0, 10.0, 10.0, 10.0], [9.0, 9.0, 11.0, 11.0])
+        self.assertAlmostEqual(c.tuned / c.stock, 1.0)
+        self.assertAlmostEqual(c.most, 2.3534 * 1.1547 / 2.0 / 10.0, places=4)     # one-sided, three degrees of freedom
+        self.assertAlmostEqual(c.least, -c.most)
+        same = tune_vehicle.change([3.98, 3.98], [3.98, 3.98])
+        self.assertEqual((same.least, same.most), (0.0, 0.0))
+
+    def test_the_other_airframe_flies_with_what_the_fit_found(self):
+        for plant in forecast.draws(OF_ROTORS, 3, 1, "rotors"):
+            self.assertEqual(plant["airframe"], 1.0)
+            self.assertAlmostEqual((plant["spin_up"] * plant["slow_down"])**0.5, 0.1, delta=0.03)
+            done = subprocess.run([PROGRAM, "fly", *forecast.words("est-60cm-ramp", 1, {}, plant)], capture_output=True, text=True, check=False)
+            self.assertIn(done.returncode, (0, 1), done.stderr)
+        self.assertEqual([plant.get("airframe", 0.0) for plant in forecast.draws(OF_ROTORS, 4, 1)], [0.0, 1.0, 0.0, 1.0])
+        self.assertFalse(any("airframe" in plant for plant in forecast.draws(FOUND, 4, 1)))
 
 
 if __name__ == "__main__":

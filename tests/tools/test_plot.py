@@ -73,6 +73,34 @@ class Reading(Case):
         with self.assertRaisesRegex(recording.Unreadable, "no samples"):
             recording.read(self.write("f.csv", HEADER))
 
+    def test_what_no_flight_can_hold_is_refused_with_its_line(self):
+        row = "1.99,0.4,0.41,0.01,0.6,7.00,0.01,,FLYING,0,0.398,0.498,0.100,1400.0\n"
+        for place, cell, reason in ((0, "1.5", "does not come after 1.98"), (0, "", "nothing does not"), (0, "nan", "no number"), (1, "612", "not in metres"),
+                                    (1, "1e999", "no number"), (1, "0x1", "no number"), (4, "-0.1", "not in metres"), (5, "712", "not in newtons"),
+                                    (6, "-12", "not in radians"), (8, "fly", "no state"), (9, "1e9", "not in flags"), (8, 'FLY"', "a quote")):
+            cells = row.split(",")
+            cells[place] = cell
+            with self.subTest(cell), self.assertRaisesRegex(recording.Unreadable, f"f.csv:201: .*{reason}"):
+                recording.read(self.write("f.csv", FLIGHT.replace(row, ",".join(cells))))
+        with self.assertRaisesRegex(recording.Unreadable, "f.csv:201: 13 cells, the titles are 14"):
+            recording.read(self.write("f.csv", FLIGHT.replace(row, row.replace(",1400.0", ""))))
+        with self.assertRaisesRegex(recording.Unreadable, "two columns abs_m"):
+            recording.read(self.write("f.csv", FLIGHT.replace("\n", ",abs_m\n", 1).replace("1400.0\n", "1400.0,0\n")))
+
+    def test_a_file_without_end_is_no_flight(self):
+        with self.assertRaisesRegex(recording.Unreadable, "no flight"):
+            recording.read("/dev/zero")
+
+    def test_a_csv_that_ends_within_a_row_says_so(self):
+        rec = recording.read(self.write("f.csv", FLIGHT[:-30]))
+        self.assertEqual((rec.cut, len(rec.t)), (True, 199))
+        self.assertFalse(recording.read(self.write("f.csv", FLIGHT)).cut)
+
+    def test_of_telemetry_what_cannot_be_is_left_out_and_counted(self):
+        text = "".join(f"{line}\n" for line in (LINE, LINE.replace("0.598", "598"), LINE.replace("7.12", "inf"), LINE.replace("FLYING", "fly\x01"), LINE))
+        rec = recording.read(self.write("t.txt", text))
+        self.assertEqual((len(rec.t), rec.damaged), (2, 3))
+
     def test_telemetry_text_runs_at_200_ms_and_answers_take_no_time(self):
         rec = recording.read(self.write("t.txt", f"OK SETR 0.6\r\n{LINE}\r\n\r\nERR KP range\r\n{GAP}\r\nalt:0.5 re\r\n{LINE}\r\n"))
         self.assertEqual(rec.kind, "telemetry")
@@ -117,10 +145,22 @@ class Drawing(Case):
         self.assertEqual(head[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(struct.unpack(">II", head[16:]), (1200, 900))
 
+    def test_a_csv_that_was_cut_off_is_drawn_with_a_word(self):
+        done = self.plot(self.write("flight.csv", FLIGHT[:-30]))
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("flight.csv: ends within a row, which is left out", done.stderr)
+
+    @unittest.skipUnless(Path("/dev/full").exists(), "no /dev/full")
+    def test_a_picture_that_cannot_be_written_is_status_2(self):
+        (self.dir / "flight.png").symlink_to("/dev/full")
+        done = self.plot(self.write("flight.csv", FLIGHT))
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("No space left", done.stderr)
+
     def test_every_kind_gives_a_picture(self):
         flight = self.write("flight.csv", FLIGHT)
         self.write("flight.json", '{"overshoot_mm": 12.5, "rise_time_s": null}')
-        other = self.write("other.csv", FLIGHT.replace("0.6", "0.5"))
+        other = self.write("other.csv", FLIGHT.replace(",0.6,", ",0.5,"))
         self.assert_picture(self.plot(flight), self.dir / "flight.png")
         self.assert_picture(self.plot(flight, other, "-o", self.dir / "two/both.png"), self.dir / "two/both.png")
         log = self.console([f"02-05-2015 11:44:56.100,0,RECV,{(LINE + chr(10)).encode().hex()}",

@@ -19,7 +19,6 @@ import numpy
 
 import flight_log
 import model
-import picture
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/campaign"))
@@ -194,10 +193,12 @@ def main(argv=None):
     pictured = arguments.out.with_suffix(".png")
     try:
         vehicle, found, stretches = fit_logs(arguments.logs)
+        import fit_picture  # Matplotlib takes its second: what is wrong with a log is told before
+
         vehicle["version"] = fleet.version()
         arguments.out.parent.mkdir(parents=True, exist_ok=True)
         arguments.out.write_text(json.dumps(vehicle, indent=1) + "\n", encoding="utf-8")
-        picture.draw(pictured, vehicle, found, stretches)
+        fit_picture.draw(pictured, vehicle, found, stretches)
     except (flight_log.Unfit, OSError) as error:
         print(f"fit: {error}", file=sys.stderr)
         return 2

@@ -1,8 +1,12 @@
 """A flight's CSV, of `plomada log` or of `fly --csv`, as stretches in the air."""
-import csv
 import math
+import sys
+from pathlib import Path
 
 import numpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "plot"))
+import recording  # noqa: E402
 
 import model
 
@@ -16,25 +20,20 @@ ALOFT_M = 0.08
 PC_ROW_S = 0.010                # of fly --csv: what is new in a row came within it
 
 
-class Unfit(Exception):
-    """The file does not hold what is needed; the text says what is missing."""
+Unfit = recording.Unreadable    # the file does not hold what is needed; the text says what is missing
 
 
 def columns(path):
-    with open(path, encoding="utf-8-sig", newline="") as file:
-        reader = csv.DictReader(file)
-        missing = [name for name in NEEDED if name not in (reader.fieldnames or [])]
-        if missing:
-            raise Unfit(f"{path}: no column {', '.join(missing)}")
-        rows = list(reader)
-    if not rows:
-        raise Unfit(f"{path}: no rows")
-    found = {name: [row[name] for row in rows] for name in reader.fieldnames}
-    try:
-        return {name: values if name == "state" else numpy.array([float(v) if v else math.nan for v in values])
-                for name, values in found.items()}
-    except ValueError as error:
-        raise Unfit(f"{path}: {error}") from None
+    """Raises Unfit."""
+    found = recording.read(path)
+    if found.kind not in ("flight", "recorder"):
+        raise Unfit(f"{path}: no CSV of a flight; `plomada log {path}` makes one of the dumps in it")
+    missing = [name for name in NEEDED if name not in found.columns]
+    if missing:
+        raise Unfit(f"{path}: no column {', '.join(missing)}")
+    if found.cut:
+        print(f"{path}: ends within a row, which is left out; the flight may have gone on", file=sys.stderr)
+    return {name: values if name == "state" else numpy.array(values) for name, values in found.columns.items()}
 
 
 def filled(t_s, values):
@@ -49,6 +48,9 @@ def spans(t_s, aloft, rays):
     for k, now_s in enumerate(t_s):
         last_ray = now_s if rays[k] else last_ray
         good = aloft[k] and now_s - last_ray < GAP_S
+        if begin is not None and now_s - t_s[k - 1] > GAP_S:        # rows are missing
+            found.append((begin, t_s[k - 1]))
+            begin = None
         if good and begin is None:
             begin = now_s
         elif not good and begin is not None:
@@ -62,6 +64,11 @@ def spans(t_s, aloft, rays):
 def stretches(path):
     """Raises Unfit."""
     c = columns(path)
+    for name, what in (("meas_m", "heights"), ("age_s", "ages of the heights"), ("roll_rad", "roll"), ("pitch_rad", "pitch")):
+        if numpy.isnan(c[name]).all():
+            raise Unfit(f"{path}: no {what}: {name} is empty")
+    if numpy.isnan(c["thrust_n"]).any():
+        raise Unfit(f"{path}: {int(numpy.isnan(c['thrust_n']).sum())} rows have no thrust_n")
     t_s = c["t_s"]
     late_s = PC_ROW_S / 2.0 if "height_m" in c else 0.0     # a row of the PC board shows what came up to 10 ms before it
     instant = t_s - c["age_s"]
@@ -73,7 +80,8 @@ def stretches(path):
             new[k], latest = True, instant[k]
     frames = ~numpy.isnan(c["up_mps2"])
     if not frames.any():
-        raise Unfit(f"{path}: no accelerations; without them the kind of throttle cannot be told")
+        raise Unfit(f"{path}: no accelerations, as from a Razor as it comes; without them the kind of throttle cannot be told "
+                    "(docs/fit.md)")
     if numpy.median(numpy.diff(t_s[frames])) > 0.04:
         raise Unfit(f"{path}: accelerations {1e3 * numpy.median(numpy.diff(t_s[frames])):.0f} ms apart; type #LOG RATE FAST "
                     "before the flight")

@@ -28,6 +28,37 @@ def load(path):
     return json.loads(Path(path).read_text(encoding="utf-8"))
 
 
+def load_vehicle(path):
+    """A vehicle of fit, whole. ValueError says what is wrong with it."""
+    try:
+        vehicle = load(path)
+        names, table = vehicle["names"], model.TABLES[vehicle["throttle"]]
+        spread = numpy.array(vehicle["covariance"], float)
+        numbers = numpy.array([*vehicle["units"], *spread.flat, vehicle["authority"]["value"],
+                               *(vehicle[f"plant.{name}"]["value"] for name in names if f"plant.{name}" in vehicle)], float)
+        whole = set(model.KINDS[vehicle["throttle"]]) <= set(names) <= set(table) and spread.shape == (len(names), len(names))
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
+        raise ValueError(f"{path}: no vehicle of make fit: {type(error).__name__} {error}") from None
+    if not whole or len(vehicle["units"]) != len(names) or not numpy.isfinite(numbers).all():
+        raise ValueError(f"{path}: no vehicle of make fit: figures are missing, or no numbers")
+    return vehicle
+
+
+def load_forecast(path):
+    """(forecast of tune, its vehicle), whole. ValueError says what is wrong."""
+    try:
+        found = load(path)
+        numbers = [f[word] for name, f in found["expected"].items() for word in ("value", "low", "high") if name in FIGURES]
+        whole = set(found["expected"]) <= set(FIGURES) and numpy.isfinite(numpy.array(numbers, float)).all()
+        vehicle = load(found["vehicle"])
+        whole = whole and vehicle["throttle"] in model.KINDS
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
+        raise ValueError(f"{path}: no forecast of make tune: {type(error).__name__} {error}") from None
+    if not whole:
+        raise ValueError(f"{path}: no forecast of make tune: figures that are unknown, or no numbers")
+    return found, vehicle
+
+
 def plant_of(kind, figures):
     """Plant figures for --set."""
     unknown = ("height_noise", "climb_wander", *model.BEYOND[kind])
@@ -41,16 +72,32 @@ def plant_of(kind, figures):
     return plant
 
 
-def draws(vehicle, count, seed):
-    """[plant figures] of vehicles that the flights allow."""
+def rotors_of(figures):
+    """The same vehicle by the simulation's other equations (plant.airframe 1), as far as the fit says: how steeply the thrust
+    follows the throttle, and both lags of the rotors. Of the rest it has what that airframe has."""
+    plant = {name: value for name, value in plant_of("THRUST", figures).items() if name not in ("gain", "tau", "damping", "climb_rate")}
+    faster = math.exp(-figures["slower"] / 2.0)
+    return plant | {"airframe": 1.0, "exponent": figures["gain"], "spin_up": figures["tau"] * faster,
+                    "slow_down": figures["tau"] / faster}
+
+
+def worlds(vehicle):
+    """By which equations a vehicle is flown. One that its flights show to be beyond the model is also flown by those of the other
+    airframe: what is better by both is not owed to what one of them leaves out."""
+    return ("model", "rotors") if "slower" in vehicle["names"] else ("model",)
+
+
+def draws(vehicle, count, seed, world=None):
+    """[plant figures] of vehicles that the flights allow. world: of worlds(), None: each in turn."""
     rng = numpy.random.default_rng(seed)
-    table = model.TABLES[vehicle["throttle"]]
+    kind, table, known = vehicle["throttle"], model.TABLES[vehicle["throttle"]], worlds(vehicle)
     attitude = {"attitude_rms": vehicle["plant.attitude_rms"]["value"]} if "plant.attitude_rms" in vehicle else {}
     found = []
-    for units in rng.multivariate_normal(vehicle["units"], vehicle["covariance"], count):
+    for k, units in enumerate(rng.multivariate_normal(vehicle["units"], vehicle["covariance"], count)):
         figures = {name: table[name].back(table[name].prior()[0] + unit * table[name].prior()[1])
                    for name, unit in zip(vehicle["names"], units, strict=True)}
-        found.append(plant_of(vehicle["throttle"], figures) | attitude)
+        by_rotors = (world or known[k % len(known)]) == "rotors"
+        found.append((rotors_of(figures) if by_rotors else plant_of(kind, figures)) | attitude)
     return found
 
 

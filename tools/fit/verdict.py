@@ -40,10 +40,9 @@ def main(argv=None):
     parser.add_argument("--forecast", type=Path, default=forecast.ROOT / "build/forecast.json")
     arguments = parser.parse_args(argv)
     try:
-        expected = forecast.load(arguments.forecast)
+        expected, old = forecast.load_forecast(arguments.forecast)
         seen = forecast.quality(arguments.log)
-        old = forecast.load(expected["vehicle"])
-    except (flight_log.Unfit, OSError, ValueError, KeyError) as error:
+    except (flight_log.Unfit, OSError, ValueError) as error:
         print(f"verdict: {error}", file=sys.stderr)
         return 2
     held = True

@@ -125,8 +125,8 @@ static const char *read_row(char *line, row_t *row)
     if (error == NULL && !(row->value[T_S] >= -TIME_MOST_S && row->value[T_S] <= TIME_MOST_S)) {
         error = wrong("no time of a flight", fields[T_S]);
     }
-    if (error == NULL && replay.rows > 0U && row->value[T_S] <= replay.last_s) {
-        error = wrong("not after the row before it", fields[T_S]);
+    if (error == NULL && replay.rows > 0U && row->value[T_S] < replay.last_s) {
+        error = wrong("before the row before it", fields[T_S]);
     }
     replay.last_s = row->value[T_S];
     return error;

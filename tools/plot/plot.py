@@ -247,11 +247,12 @@ def describe(paths, recordings):
     rec = recordings[0]
     if rec.has("flown_n"):
         return f"{rec.name}: open loop", "the vehicle did not answer to this law's thrust; its heights are those of the flight as flown"
+    cut = "the file ends within a row" if rec.cut else ""
     if rec.kind == "flight":
-        return rec.name, metrics_text(paths[0])
+        return rec.name, "   ".join(filter(None, (metrics_text(paths[0]), cut)))
     source = {"console": "XCTU console log", "recorder": "flight recorder"}.get(rec.kind, "telemetry text")
     damaged = f", {rec.damaged} damaged lines left out" if rec.damaged else ""
-    return rec.name, f"{source}: {len(rec.t)} lines{damaged}"
+    return rec.name, f"{source}: {len(rec.t)} lines{damaged}{', ' + cut if cut else ''}"
 
 
 def picture_path(output, first):
@@ -281,6 +282,9 @@ def with_dumps_converted(files, program, directory):
 def draw_files(files, output):
     """One picture; prints its path."""
     recordings = [recording.read(path) for path in files]
+    for file, rec in zip(files, recordings, strict=True):
+        if rec.cut:
+            print(f"plot: {file}: ends within a row, which is left out; the flight may have gone on", file=sys.stderr)
     path = picture_path(output, files[0])
     path.parent.mkdir(parents=True, exist_ok=True)
     draw(recordings, *describe(files, recordings), path)
@@ -313,7 +317,7 @@ def main(arguments):
         print(f"plot: {error}", file=sys.stderr)
         return 2
     except OSError as error:
-        print(f"plot: {error.filename}: {error.strerror}", file=sys.stderr)
+        print(f"plot: {error.filename or output}: {error.strerror or error}", file=sys.stderr)
         return 2
     return 0
 

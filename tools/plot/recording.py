@@ -1,8 +1,9 @@
 """What was recorded: flight CSV, flight recorder CSV, XCTU console log or telemetry text, read into one Recording.
 
-Columns hold floats, NaN where the file has no value. No library beyond Python's own.
+Columns hold floats, NaN where the file has no value. Every tool reads its flights here, so that none believes what cannot be:
+a number that is none, a time that goes back, a height that no scanner of 4 m sees, an angle in degrees. What is wrong in a CSV
+is told with its line; of telemetry, which a radio may damage, such a line is left out and counted. No library beyond Python's own.
 """
-import csv
 import math
 import re
 from dataclasses import dataclass, field
@@ -11,6 +12,8 @@ from pathlib import Path
 RECORDER_COLUMNS = ("t_s", "meas_m", "est_m", "innov_m", "ref_m", "thrust_n", "roll_rad", "pitch_rad", "state", "flags")
 FLIGHT_COLUMNS = RECORDER_COLUMNS + ("height_m", "abs_m", "terrain_m", "pulse_us")     # and what only the PC board knows
 OPEN_LOOP_COLUMNS = ("flown_n",)       # of `plomada replay` on a log: the thrust that the vehicle answered to
+FIT_COLUMNS = ("up_mps2", "age_s")     # of logs since #LOG RATE FAST
+KNOWN_COLUMNS = (*FLIGHT_COLUMNS, *OPEN_LOOP_COLUMNS, *FIT_COLUMNS)
 TEXT_COLUMNS = ("state", "laser")
 TELEMETRY_PERIOD_S = 0.2
 
@@ -19,6 +22,18 @@ CONSOLE_LINE = re.compile(r"^\d+-\d+-\d+ (\d+):(\d\d):(\d\d)\.(\d{3}),[^,]*,(SEN
 CONSOLE_START = re.compile(r"^\d+-\d+-\d+ \d+:\d\d:\d\d\.\d{3},")
 FIELD = re.compile(r"(\w+):(\S+)")
 ANSWER = re.compile(r"^(OK|ERR)( |$)")
+
+
+NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d{1,3})?")
+WORD = re.compile(r"[A-Z_]*")
+MARK = "\ufeff"                 # some programs begin a text with it
+OCTETS_MAX = 200_000_000        # a flight of an hour has 50 million
+# What a column can hold. Heights: the scanner sees 4.095 m, its code has twelve bits (docs/scip.md); the reference is 0 to 3 m,
+# full throttle 11.76 N, an angle of the Razor at most half a turn, its accelerometer's range 16 g.
+LIMITS = {"t_s": (-1e6, 1e6, "seconds"), "meas_m": (-5.0, 5.0, "metres"), "ref_m": (0.0, 3.0, "metres"),
+          "thrust_n": (0.0, 20.0, "newtons per motor"), "roll_rad": (-3.2, 3.2, "radians"), "pitch_rad": (-3.2, 3.2, "radians"),
+          "up_mps2": (-200.0, 200.0, "m/s2"), "flags": (0.0, 65535.0, "flags"), "age_s": (0.0, 5000.0, "seconds")}
+SPACING_MOST_S = 1.0            # the slowest record of a flight comes every 0.15 s
 
 
 class Unreadable(Exception):
@@ -32,6 +47,7 @@ class Recording:
     columns: dict = field(default_factory=dict)     # name -> list, all of one length
     sent: list = field(default_factory=list)        # (t_s, text) of the operator's lines, console logs only
     damaged: int = 0                                # telemetry lines that could not be read
+    cut: bool = False                               # a CSV that ends within a row, which is left out
 
     @property
     def t(self):
@@ -42,9 +58,17 @@ class Recording:
             value != "" if name in TEXT_COLUMNS else not math.isnan(value) for value in self.columns[name])
 
 
-def number(text):
-    """A float, NaN for the marks of a missing value."""
-    return math.nan if text in ("", "-", None) else float(text)
+def number(text, name=None):
+    """A float, NaN for the marks of a missing value. ValueError: no number, or none that column `name` can hold."""
+    if text in ("", "-"):
+        return math.nan
+    value = float(text) if NUMBER.fullmatch(text) else math.nan
+    if not math.isfinite(value):
+        raise ValueError(f"'{text[:40]}' is no number")
+    low, high, unit = LIMITS.get(name, (-math.inf, math.inf, ""))
+    if not low <= value <= high:
+        raise ValueError(f"{text[:40]} is not in {unit}: {low:g} to {high:g}")
+    return value
 
 
 DUMP_ROW = re.compile(rb"OK LOG [0-9]|4F4B204C4F47203[0-9]", re.IGNORECASE)     # text, or the same in a payload's hex
@@ -52,19 +76,29 @@ DUMP_ROW = re.compile(rb"OK LOG [0-9]|4F4B204C4F47203[0-9]", re.IGNORECASE)     
 
 def has_dump(path):
     """Whether rows of a #LOG dump are in a file that is not CSV already."""
-    raw = Path(path).read_bytes()
+    raw = octets_of(path)
     return not raw.lstrip(b"\xef\xbb\xbf").startswith(b"t_s,") and DUMP_ROW.search(raw) is not None
+
+
+def octets_of(path):
+    with Path(path).open("rb") as file:
+        octets = file.read(OCTETS_MAX + 1)
+    if len(octets) > OCTETS_MAX:
+        raise Unreadable(f"{path}: more than {OCTETS_MAX // 1_000_000} million octets are no flight")
+    return octets
 
 
 def read(path):
     """Reads a file; its kind is found from the content. Raises Unreadable or OSError."""
     path = Path(path)
-    raw = path.read_bytes().replace(b"\0", b"")     # a radio that powers up sends NULs
-    lines = raw.decode("utf-8-sig", errors="replace").replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    first = next((line for line in lines if line.strip()), "")
-    if first.startswith("t_s,"):
-        flight = "height_m" in first.split(",")
-        return read_csv(path, lines, "flight" if flight else "recorder", FLIGHT_COLUMNS if flight else RECORDER_COLUMNS)
+    raw = octets_of(path)
+    text = raw.decode("utf-8", errors="replace").removeprefix(MARK).replace("\r\n", "\n").replace("\r", "\n")
+    first = next((line for line in text.lstrip("\0").split("\n", 50) if line.strip("\0 \t")), "")
+    if first.replace('"', "").startswith("t_s,"):
+        return read_csv(path, text)
+    if first.replace('"', "").startswith(("t_s;", "t_s\t")):
+        raise Unreadable(f"{path}:1: cells are separated by '{first.replace(chr(34), '')[3]}', not by a comma")
+    lines = text.replace("\0", "").split("\n")        # a radio that powers up sends NULs
     if CONSOLE_START.match(first):
         return read_console(path, lines)
     recording = Recording(path.stem, "telemetry")
@@ -75,23 +109,68 @@ def read(path):
     return recording
 
 
-def read_csv(path, lines, kind, names):
-    rows = csv.DictReader(line for line in lines if line)
-    missing = [name for name in names if name not in rows.fieldnames]
-    if missing:
-        raise Unreadable(f"{path}: no column {', '.join(missing)}")
-    names = (*names, *(name for name in OPEN_LOOP_COLUMNS if name in rows.fieldnames))
-    columns = {name: [] for name in names}
-    for row in rows:
-        try:
-            values = {name: row[name] if name in TEXT_COLUMNS else number(row[name]) for name in names}
-        except ValueError as error:
-            raise Unreadable(f"{path}:{rows.line_num}: {error}") from None
-        for name, value in values.items():
-            columns[name].append(value)
-    if not columns["t_s"]:
+def read_csv(path, text):
+    """All known columns of a flight's CSV. Raises Unreadable."""
+    *lines, rest = text.split("\n")
+    titles, rows = None, []
+    for at, line in enumerate([*lines, rest] if not lines else lines, 1):
+        if not line:
+            continue
+        cells = cells_of(path, at, line)
+        if titles is None:
+            titles = cells
+        elif len(cells) != len(titles):
+            raise Unreadable(f"{path}:{at}: {len(cells)} cells, the titles are {len(titles)}")
+        else:
+            rows.append((at, cells))
+    flight = "height_m" in titles
+    names = FLIGHT_COLUMNS if flight else RECORDER_COLUMNS
+    wrong = [f"no column {', '.join(name for name in names if name not in titles)}"] if set(names) - set(titles) else []
+    wrong += [f"two columns {name}" for name in KNOWN_COLUMNS if titles.count(name) > 1]
+    if wrong:
+        raise Unreadable(f"{path}: {wrong[0]}")
+    if not rows:
         raise Unreadable(f"{path}: no samples")
-    return Recording(path.stem, kind, columns)
+    columns = columns_of(path, titles, rows)
+    return Recording(path.stem, "flight" if flight else "recorder", columns, cut=rest != "")
+
+
+def cells_of(path, at, line):
+    """Cells of a row; a spreadsheet may have put quotes around them."""
+    cells = [cell[1:-1] if len(cell) > 1 and cell[0] == cell[-1] == '"' else cell for cell in line.split(",")]
+    if '"' in "".join(cells):
+        raise Unreadable(f"{path}:{at}: a quote within a row")
+    return cells
+
+
+def cell_of(name, text):
+    if name not in TEXT_COLUMNS:
+        return number(text, name)
+    if not WORD.fullmatch(text):
+        raise ValueError(f"'{text[:40]}' is no {name}")
+    return text
+
+
+def columns_of(path, titles, rows):
+    places = [(name, titles.index(name)) for name in KNOWN_COLUMNS if name in titles]
+    columns = {name: [] for name, _ in places}
+    before = -math.inf
+    for at, cells in rows:
+        for name, place in places:
+            try:
+                columns[name].append(cell_of(name, cells[place]))
+            except ValueError as error:
+                raise Unreadable(f"{path}:{at}: {name}: {error}") from None
+        now = columns["t_s"][-1]
+        if not now >= before:       # NaN neither
+            raise Unreadable(f"{path}:{at}: t_s: {cells[titles.index('t_s')] or 'nothing'} does not come after {before:g}")
+        before = now
+    spacing_s = (columns["t_s"][-1] - columns["t_s"][0]) / len(rows)
+    if spacing_s > SPACING_MOST_S:
+        at = max(range(1, len(rows)), key=lambda k: columns["t_s"][k] - columns["t_s"][k - 1])
+        raise Unreadable(f"{path}:{rows[at][0]}: t_s: from {columns['t_s'][at - 1]:g} to {columns['t_s'][at]:g}, and rows {spacing_s:.3g} s apart on "
+                         "average: no time of a flight in seconds")
+    return columns
 
 
 def read_console(path, lines):
@@ -144,12 +223,12 @@ def read_telemetry(recording, timed_lines):
         try:
             row = {
                 "t_s": t,
-                "meas_m": number(fields["alt"]),
-                "ref_m": number(fields["ref"]),
-                "thrust_n": number(fields["thr"]),
-                "state": fields["state"],
-                "laser": fields["laser"],
-                "flags": number(fields["flags"]),
+                "meas_m": number(fields["alt"], "meas_m"),
+                "ref_m": number(fields["ref"], "ref_m"),
+                "thrust_n": number(fields["thr"], "thrust_n"),
+                "state": cell_of("state", fields["state"]),
+                "laser": cell_of("laser", fields["laser"]),
+                "flags": number(fields["flags"], "flags"),
             }
         except (KeyError, ValueError):
             recording.damaged += 1
