@@ -1,10 +1,11 @@
-import { render } from 'preact';
+import { Component, render, type ComponentChildren } from 'preact';
 import { useEffect, useRef } from 'preact/hooks';
 import { effect, signal } from '@preact/signals';
 import './style.css';
 import { choosePort, knownPorts } from './link/serial';
 import { BEAT_MS } from './freshness';
-import { beat, connectSerial, connectSocket, connectVehicle, diagnosis, dialog, disconnect, failure, link, live, lostReason, phase, restore, restored, seen, session, stop, stopState, view, type View } from './store';
+import { keep, kept, keptAs } from './keep';
+import { beat, connectSerial, connectSocket, connectVehicle, diagnosis, dialog, disconnect, failure, link, live, lostReason, phase, restore, restored, seen, session, stop, stopState, unkept, unreadable, view, type View } from './store';
 import { ConsoleView } from './views/console';
 import { FlyView } from './views/fly';
 import { ParametersView } from './views/parameters';
@@ -18,11 +19,11 @@ const ICONS: Record<View, string> = {
 };
 const VIEWS = Object.keys(ICONS) as View[];
 const known = signal(false);
-const address = signal(localStorage.getItem('plomada.address') ?? 'ws://localhost:8124');
+const address = signal(kept('address') ?? 'ws://localhost:8124');
 
 type Theme = 'light' | 'dark';
 function preferred(): Theme {
-  return (localStorage.getItem('plomada.theme') as Theme | null) ?? (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light');
+  return keptAs<Theme>('theme', (text) => (text === 'light' || text === 'dark' ? text : null), matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light');
 }
 function setTheme(theme: Theme): void {
   document.documentElement.dataset.theme = theme;
@@ -75,6 +76,8 @@ function Banner() {
   if (diagnosis.value) texts.push(['bad', words.diagnoses[diagnosis.value]!]);
   else if (phase.value === 'open' && seen.value.kind === 'old') texts.push(['bad', words.noTelemetry(Math.floor(seen.value.age / 1000).toString())]);
   if (restored.value && phase.value === 'idle') texts.push(['', words.restored(restored.value.lines)]);
+  if (unkept.value > 0) texts.push(['bad', words.unkept(unkept.value)]);
+  if (unreadable.value > 0) texts.push(['', words.unreadableStore(unreadable.value)]);
   return (
     <div role="alert" class="banners">
       {texts.map(([kind, text]) => (
@@ -119,12 +122,23 @@ function ConnectDialog() {
         <section>
           <h4>{words.socketTitle}</h4><p>{words.socketText} <code>build/plomada fly hover-60s --realtime --xbee ws:8124</code></p>
           <label class="address">{words.socketAddress}<input value={address.value} onInput={(event) => (address.value = event.currentTarget.value)} /></label>
-          <button onClick={() => { localStorage.setItem('plomada.address', address.value); void connectSocket(address.value); }}>{words.socketGo}</button>
+          <button onClick={() => { keep('address', address.value); void connectSocket(address.value); }}>{words.socketGo}</button>
         </section>
       </div>
       {(phase.value === 'open' || phase.value === 'opening') && <footer><button onClick={() => void disconnect()}>{words.disconnect}</button></footer>}
     </dialog>
   );
+}
+
+/** A view that cannot be drawn takes nothing else with it: STOP and LAND stay. */
+class Fence extends Component<{ children: ComponentChildren }, { error: string | null }> {
+  override state = { error: null };
+  static override getDerivedStateFromError(error: unknown): { error: string } {
+    return { error: String(error) };
+  }
+  override render() {
+    return this.state.error === null ? this.props.children : <p class="banner bad" role="alert">{w().viewBroken} <code>{this.state.error}</code></p>;
+  }
 }
 
 function App() {
@@ -140,7 +154,7 @@ function App() {
         <button class="quiet icon" onClick={switchLanguage} lang={language.value === 'en' ? 'es' : 'en'}>{words.language}</button>
         <button class="quiet icon" aria-label={words.theme} title={words.theme} onClick={() => {
           const next: Theme = document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark';
-          localStorage.setItem('plomada.theme', next);
+          keep('theme', next);
           setTheme(next);
         }}><svg viewBox="0 0 24 24" aria-hidden="true"><circle cx="12" cy="12" r="8" /><path d="M12 4a8 8 0 0 1 0 16z" class="half" /></svg></button>
         <Stops />
@@ -152,7 +166,7 @@ function App() {
           </button>
         ))}
       </nav>
-      <main><Banner /><Shown /></main>
+      <main><Banner /><Fence key={view.value}><Shown /></Fence></main>
       <ConnectDialog />
     </>
   );
@@ -164,12 +178,14 @@ window.addEventListener('keydown', (event) => {
   if (event.key === 'Escape' && phase.value === 'open') void stop('STOP');
   else if (event.key.toLowerCase() === 'l' && !typing && !event.ctrlKey && !event.metaKey && !event.altKey && phase.value === 'open') void stop('LAND');
 });
-window.addEventListener('pagehide', () => void session.flush());
+window.addEventListener('pagehide', () => {
+  session.leave();
+  void session.flush();
+});
 window.addEventListener('beforeunload', (event) => {
   if (phase.value === 'open' && seen.value.kind !== 'nothing' && seen.value.telemetry.state !== 'GROUND') event.preventDefault();
 });
 
-void restore().then(() => {
-  render(<App />, document.getElementById('app')!);
-  setInterval(beat, BEAT_MS);
-});
+render(<App />, document.getElementById('app')!);
+setInterval(beat, BEAT_MS);
+void restore().catch((error: unknown) => console.error(error)); // what was kept is no condition for flying

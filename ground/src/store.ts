@@ -4,6 +4,7 @@ import { openSerial } from './link/serial';
 import { openSocket } from './link/socket';
 import { openVehicle, VehicleLink } from './link/vehicle';
 import { freshness, type Heard } from './freshness';
+import { keep, kept } from './keep';
 import { LineSplitter, parseLine, type Line, type Telemetry } from './protocol/lines';
 import { parseHelp, valueOf, type Parameter, type ParameterSet } from './protocol/parameters';
 import { CommandQueue, type Outcome } from './protocol/queue';
@@ -36,6 +37,8 @@ export const dialog = signal(true); // the connect sheet
 export const notice = signal<string | null>(null);
 export const series = new Series();
 export const session = new SessionLog();
+export const unkept = signal(0); // lines that the browser refuses to keep
+export const unreadable = signal(0); // records that the browser has kept badly
 
 const heardLast = signal<Heard | null>(null);
 const pageClock = signal(0); // ms
@@ -78,10 +81,10 @@ function record(out: boolean, text: string): void {
 }
 
 /** Whether every line that leaves carries its sum. A firmware with `#SUM ON` demands it, and the page notices by itself. */
-export const sums = signal(localStorage.getItem('plomada.sums') === '1');
+export const sums = signal(kept('sums') === '1');
 export function setSums(on: boolean): void {
   sums.value = on;
-  localStorage.setItem('plomada.sums', on ? '1' : '0');
+  keep('sums', on ? '1' : '0');
 }
 
 /** What LINK is, as far as it was heard; a link that is armed is kept alive, whatever else is sent. */
@@ -140,14 +143,16 @@ function known(name: string, value: string): void {
   if (parameters.value.some((p) => p.name === name)) parameters.value = parameters.value.map((p) => (p.name === name ? { ...p, value } : p));
 }
 
-const BORROWED = 'plomada.link';
-/** A calibration sets LINK for a while. What it was is written down, so that also a page that died gives it back. */
+/** A calibration sets LINK for a while. What it was is written down, so that also a page that died gives it back; to this vehicle, not to
+ * that of another tab. */
+const borrowed = (): string => `link.${link.value?.label ?? ''}`;
 export function borrowLink(before: string): void {
-  localStorage.setItem(BORROWED, before);
+  keep(borrowed(), before);
 }
 export async function giveBackLink(): Promise<void> {
-  const before = localStorage.getItem(BORROWED);
-  if (before !== null && (await command(`#LINK ${before}`)).ok) localStorage.removeItem(BORROWED);
+  const name = borrowed();
+  const before = kept(name);
+  if (before !== null && (await command(`#LINK ${before}`)).ok) keep(name, null);
 }
 
 const MARKED = /^#(SETR|STOP|LAND|ARM|LAW|CALIBRATE|SAVE|LOAD|DEFAULTS|GRAV)\b/i;
@@ -254,6 +259,7 @@ export async function disconnect(): Promise<void> {
     leaveLink();
   });
   await closing?.close();
+  session.leave();
   await session.flush();
 }
 
@@ -353,6 +359,8 @@ function look(): void {
 }
 
 export function beat(): void {
+  unkept.value = session.refused;
+  unreadable.value = session.damaged;
   batch(look); // first: whatever fails below, the page does not stand still and look alive
   queue?.tick();
   if (phase.value === 'open' && linkSeconds > 0 && (link.value?.now() ?? 0) - lastSent > (linkSeconds * 1000) / 3) transmit(ALIVE);
@@ -369,7 +377,9 @@ export async function restore(): Promise<void> {
   await session.start();
   const [before] = await session.list();
   if (!before || Date.now() - before.last > 15 * 60_000 || before.lines === 0) return;
+  if (await session.livesElsewhere(before.id)) return; // another tab flies: nothing was interrupted
   const entries = await session.read(before.id);
+  if (phase.value !== 'idle') return; // the operator was quicker
   for (const entry of entries) {
     const line = parseLine(entry.text);
     if (line.kind === 'telemetry') series.add(entry.t / 1000, line.telemetry, NaN);

@@ -67,6 +67,7 @@ export const en = {
   } as Record<string, string>,
   allFigures: (n: number, changed: number) => `All ${n} figures of the simulated world${changed > 0 ? `, ${changed} changed` : ''}`, allStandard: 'All as they were', standard: 'As it was', fromPowerOn: 'from the next power-on', seed: 'Seed',
   rateFast: 'Every frame, 25 s (#LOG RATE FAST)', notes: { cut: 'rows cut off, left out', damaged: 'damaged rows, left out', missing: 'rows missing' } as Record<string, string>,
+  unkept: (n: number) => `The browser refuses to keep the log: the last ${n} lines are in this page only. Save the session in the console before you close it.`, unreadableStore: (n: number) => `${n} records of the kept sessions are damaged and were left out.`, viewBroken: 'This view cannot be drawn. STOP and LAND work; choose another view, or load the page again.',
   unreadable: { noTime: 'it has no column t_s.', nothing: 'neither a flight CSV, nor telemetry, nor a dump of the flight recorder.' } as Record<string, string>,
   meanings: {} as Record<string, string>, // English: the firmware's own
   reasons: [] as [RegExp, string][],
@@ -162,6 +163,7 @@ export const es: Words = {
   },
   allFigures: (n, changed) => `Las ${n} cifras del mundo simulado${changed > 0 ? `, ${changed} cambiadas` : ''}`, allStandard: 'Todas como estaban', standard: 'Como estaba', fromPowerOn: 'desde el próximo encendido', seed: 'Semilla',
   rateFast: 'Cada trama, 25 s (#LOG RATE FAST)', notes: { cut: 'filas cortadas, omitidas', damaged: 'filas dañadas, omitidas', missing: 'filas que faltan' },
+  unkept: (n) => `El navegador no guarda el registro: las últimas ${n} líneas están solo en esta página. Guarde la sesión en la consola antes de cerrarla.`, unreadableStore: (n) => `${n} anotaciones de las sesiones guardadas están dañadas y se omitieron.`, viewBroken: 'Esta vista no se puede dibujar. STOP y ATERRIZAR funcionan; elija otra vista o vuelva a cargar la página.',
   unreadable: { noTime: 'no tiene columna t_s.', nothing: 'no es CSV de vuelo, ni telemetría, ni un volcado del registro.' },
   meanings: {
     KP: 'PD, PID: ganancia proporcional.', KD: 'PD, PID: ganancia derivativa por muestra.', KI: 'PID: ganancia integral por muestra.', USAT: 'PD, PID: empuje máximo sobre GRAV.', DSAT: 'PD, PID: empuje máximo bajo GRAV.', GRAV: 'Compensación de la gravedad por motor.',

@@ -1,7 +1,8 @@
 import { signal } from '@preact/signals';
+import { keep, keptAs } from './keep';
 import { en, es, type Words } from './texts';
 
-export const language = signal<'en' | 'es'>((localStorage.getItem('plomada.language') as 'en' | 'es' | null) ?? (navigator.language.startsWith('es') ? 'es' : 'en'));
+export const language = signal(keptAs<'en' | 'es'>('language', (text) => (text === 'en' || text === 'es' ? text : null), navigator.language.startsWith('es') ? 'es' : 'en'));
 export function w(): Words {
   return language.value === 'es' ? es : en;
 }
@@ -16,6 +17,6 @@ export function told(reason: string): string {
 }
 export function switchLanguage(): void {
   language.value = language.value === 'es' ? 'en' : 'es';
-  localStorage.setItem('plomada.language', language.value);
+  keep('language', language.value);
   document.documentElement.lang = language.value;
 }

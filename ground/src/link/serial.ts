@@ -1,7 +1,8 @@
+import { keep, keptAs } from '../keep';
 import { claimRadio, OpenError, type Link, type LinkEvents } from './link';
 
 const RATE = 9600;
-const REMEMBERED = 'plomada.port';
+const REMEMBERED = 'port';
 
 interface PortName {
   vendor?: number;
@@ -17,11 +18,7 @@ function nameOf(port: SerialPort): PortName {
 }
 
 function remembered(): PortName | null {
-  try {
-    return JSON.parse(localStorage.getItem(REMEMBERED) ?? 'null') as PortName | null;
-  } catch {
-    return null;
-  }
+  return keptAs<PortName | null>(REMEMBERED, (text) => JSON.parse(text) as PortName | null, null);
 }
 
 /** The ports that this page may open already; the one used last is the first. */
@@ -57,7 +54,7 @@ export async function openSerial(port: SerialPort, events: LinkEvents): Promise<
     release();
     throw openFailure(error as DOMException);
   }
-  localStorage.setItem(REMEMBERED, JSON.stringify(nameOf(port)));
+  keep(REMEMBERED, JSON.stringify(nameOf(port)));
   return new SerialLink(port, events, release);
 }
 

@@ -1,5 +1,6 @@
 import { signal } from '@preact/signals';
 import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
+import { keep, keptAs } from '../keep';
 import { saveFile } from '../plot';
 import { ALIVE, consoleLines, phase, sendRaw, session, setSums, sums } from '../store';
 import { writeSession, type SessionInfo } from '../session';
@@ -7,7 +8,7 @@ import { w } from '../words';
 
 const typed = signal('');
 const telemetry = signal(false);
-const history: string[] = JSON.parse(localStorage.getItem('plomada.history') ?? '[]') as string[];
+const history = keptAs<string[]>('history', (text) => (JSON.parse(text) as unknown[]).filter((line) => typeof line === 'string'), []);
 let place = history.length;
 const sessions = signal<SessionInfo[]>([]);
 
@@ -16,7 +17,7 @@ function send(): void {
   if (text === '' || phase.value !== 'open') return;
   if (history[history.length - 1] !== text) history.push(text);
   history.splice(0, Math.max(0, history.length - 100));
-  localStorage.setItem('plomada.history', JSON.stringify(history));
+  keep('history', JSON.stringify(history));
   place = history.length;
   sendRaw(text.startsWith('#') ? text : `#${text}`);
   typed.value = '';
@@ -79,7 +80,7 @@ export function ConsoleView() {
             <li key={info.id}>
               <span><strong>{new Date(info.id).toLocaleString()}</strong><br /><small>{info.link} · {info.lines} {words.lines}</small></span>
               <button onClick={() => void save(info)}>{words.saveLog}</button>
-              <button class="quiet" disabled={info.id === session.current?.id} onClick={async () => { await session.remove(info.id); await list(); }}>{words.deleteLog}</button>
+              <button class="quiet" disabled={info.id === session.id} onClick={async () => { await session.remove(info.id); await list(); }}>{words.deleteLog}</button>
             </li>
           ))}
         </ul>

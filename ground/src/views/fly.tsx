@@ -1,11 +1,12 @@
 import { signal } from '@preact/signals';
 import { useRef } from 'preact/hooks';
+import { keep, keptAs } from '../keep';
 import { Plot, saveFile, savePng, stamp } from '../plot';
 import { clock, command, live, ofThisVehicle, phase, powerCycle, seen, series, vehicle } from '../store';
 import { ago, told, w } from '../words';
 import { Troubles } from './troubles';
 
-const wanted = signal(localStorage.getItem('plomada.reference') ?? '0.6');
+const wanted = signal(keptAs('reference', (text) => (Number(text) >= 0.1 && Number(text) <= 3 ? text : null), '0.6'));
 const span = signal(60);
 const held = signal(false);
 const tick = signal(0); // what the simulation's buttons change
@@ -82,7 +83,7 @@ function Reference() {
   const open = phase.value === 'open' && seen.value.kind !== 'nothing'; // a silent vehicle may still hear
   const flying = t !== null && t.reference > 0;
   const send = (): void => {
-    localStorage.setItem('plomada.reference', wanted.value);
+    keep('reference', wanted.value);
     replied.value = null;
     void command(`#SETR ${Number(wanted.value)}`).then((outcome) => {
       const remark = outcome.ok ? /\((.*)\)$/.exec(outcome.lines[0]?.rest ?? '')?.[1] ?? '' : outcome.reason;
