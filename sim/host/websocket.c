@@ -11,11 +11,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/random.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #define ROOM 8192
 #define PAYLOAD_MAX 4096U
+#define KEY 16 /* hexadecimal digits: 64 bits, which no page can try out */
 
 enum { OPCODE_BINARY = 2, OPCODE_CLOSE = 8, OPCODE_PING = 9, OPCODE_PONG = 10 };
 
@@ -97,6 +99,7 @@ void websocket_accept(const char *key, char answer[WEBSOCKET_ACCEPT])
 static struct {
     int listener, pair, client; /* -1: none */
     bool open;                  /* the handshake is done */
+    char key[KEY + 1];          /* of the address: who knows it was told it by this program's operator */
     unsigned char room[ROOM];   /* of the client, not yet understood */
     size_t count;
 } server;
@@ -182,18 +185,60 @@ static bool one_frame(void)
     return true;
 }
 
+/* The value of a header, up to the first blank; name begins with the line feed before it. */
+static bool header(const char *name, char value[64])
+{
+    const char *found = strcasestr((char *)server.room, name);
+
+    value[0] = '\0';
+    return found != NULL && sscanf(found + strlen(name), " %63[^ \r\n]", value) == 1;
+}
+
+bool websocket_is_local(const char *origin)
+{
+    static const char *const hosts[] = {"localhost", "127.0.0.1", "[::1]"};
+    const char *host = strstr(origin, "://");
+
+    for (size_t i = 0; host != NULL && i < sizeof hosts / sizeof hosts[0]; i++) {
+        const size_t length = strlen(hosts[i]);
+        const char *rest = host + 3 + length;
+
+        if (strncmp(host + 3, hosts[i], length) == 0 &&
+            (*rest == '\0' || (*rest == ':' && rest[1 + strspn(rest + 1, "0123456789")] == '\0'))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Every browser tells from where a page came, and every page that it shows can reach this machine's ports. So
+ * a page of this machine may enter, and a program that is no browser; any other page must know the address
+ * as it was printed. A page that was opened from a disk is such another: its origin, `null`, is anybody's. */
+static bool may_enter(void)
+{
+    char origin[64], path[KEY + 2] = "";
+
+    if (sscanf((char *)server.room, "GET /%17[^ \r\n]", path) == 1 && strcmp(path, server.key) == 0) {
+        return true;
+    }
+    return !header("\nOrigin:", origin) || websocket_is_local(origin);
+}
+
 static bool handshake(void)
 {
-    static const char name[] = "\nSec-WebSocket-Key:";
-    char key[64] = "", accept_key[WEBSOCKET_ACCEPT], answer[256];
-    const char *found;
+    static const char stranger[] = "HTTP/1.1 403 Forbidden\r\nConnection: close\r\nContent-Length: 0\r\n\r\n";
+    char key[64], accept_key[WEBSOCKET_ACCEPT], answer[256];
 
     server.room[server.count] = '\0';
     if (strstr((char *)server.room, "\r\n\r\n") == NULL) {
         return false;
     }
-    found = strcasestr((char *)server.room, name);
-    if (found == NULL || sscanf(found + sizeof name - 1, " %63[^ \r\n]", key) != 1) {
+    if (!header("\nSec-WebSocket-Key:", key)) {
+        drop_client();
+        return false;
+    }
+    if (!may_enter()) {
+        send_all(server.client, stranger, sizeof stranger - 1);
         drop_client();
         return false;
     }
@@ -302,12 +347,28 @@ static const char *give_up(int pair[2], const char *error)
     return error;
 }
 
+static const char *draw_key(void)
+{
+    unsigned char random[KEY / 2];
+
+    if (getrandom(random, sizeof random, 0) != (ssize_t)sizeof random) {
+        return strerror(errno);
+    }
+    for (size_t i = 0; i < sizeof random; i++) {
+        snprintf(&server.key[2 * i], 3, "%02x", random[i]);
+    }
+    return NULL;
+}
+
 const char *websocket_open(port_t *port, unsigned tcp_port)
 {
     int pair[2] = {-1, -1};
     const char *error = listen_at(tcp_port);
     pid_t child;
 
+    if (error == NULL) {
+        error = draw_key();
+    }
     if (error != NULL) {
         return give_up(pair, error);
     }
@@ -329,6 +390,6 @@ const char *websocket_open(port_t *port, unsigned tcp_port)
     close(pair[1]);
     close(server.listener);
     *port = (port_t){.fd = pair[0], .slave = -1};
-    snprintf(port->name, sizeof port->name, "ws://localhost:%u", tcp_port);
+    snprintf(port->name, sizeof port->name, "ws://localhost:%u/%s", tcp_port, server.key);
     return NULL;
 }

@@ -34,8 +34,8 @@ export function serveSite(): Promise<Site> {
   return new Promise((done) => server.listen(0, '127.0.0.1', () => done({ url: `http://localhost:${(server.address() as AddressInfo).port}`, close: () => server.close() })));
 }
 
-export async function openBrowser(executable = CHROMIUM): Promise<Browser> {
-  return chromium.launch({ executablePath: executable, args: ['--no-sandbox', '--disable-gpu', '--js-flags=--expose-gc'] });
+export async function openBrowser(executable = CHROMIUM, ...more: string[]): Promise<Browser> {
+  return chromium.launch({ executablePath: executable, args: ['--no-sandbox', '--disable-gpu', '--js-flags=--expose-gc', ...more] });
 }
 
 export async function openFirefox(): Promise<Browser> {
@@ -57,6 +57,13 @@ export const big = (page: Page, n: number) => page.locator('.big').nth(n).locato
 export async function startVehicle(page: Page, speed?: string): Promise<void> {
   await button(page, 'Start the simulated vehicle').click();
   if (speed) await button(page, speed).click();
+}
+
+/** The field of a parameter, wherever its group is. */
+export async function parameter(page: Page, name: string, search = 'Search') {
+  await page.waitForSelector('.group', { timeout: 30_000 });
+  await page.getByLabel(search, { exact: true }).fill(name);
+  return page.locator(`[data-parameter="${name}"]`).locator('input, select');
 }
 
 export async function untilHeight(page: Page, metres: number, within: number, timeout = 30_000): Promise<void> {

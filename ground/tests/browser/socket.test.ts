@@ -1,6 +1,7 @@
+import { join } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
-import { button, openBrowser, openPage, freePort, serveSite, startBoard, tab, untilLaserIsOk, untilState, type Board, type Site } from './rig';
+import { button, openBrowser, openPage, freePort, ROOT, serveSite, startBoard, tab, untilLaserIsOk, untilState, type Board, type Site } from './rig';
 
 let browser: Browser;
 let site: Site;
@@ -89,5 +90,40 @@ describe('by WebSocket, the unmodified firmware in a program of its own', () => 
     await button(page, 'Connect again').click();
     await connect(page);
     await page.waitForFunction(() => document.body.innerText.includes('Nobody answers at this address'));
+  });
+});
+
+describe('whose page may fly the simulation', () => {
+  const origins: [string, (site: Site) => string][] = [
+    ['of a stranger’s site', (at) => at.url.replace('localhost', 'strange.example')],
+    ['that was opened from a disk, whose origin is anybody’s', () => `file://${join(ROOT, 'build-ground/index.html')}`],
+  ];
+  for (const [what, url] of origins) {
+    it(`a page ${what} needs the address that the program printed`, async () => {
+      const own = await startBoard(`ws:${await freePort()}`);
+      const elsewhere = await openBrowser(undefined, '--host-resolver-rules=MAP strange.example 127.0.0.1');
+      try {
+        const other = await openPage(elsewhere, url(site));
+        await other.getByLabel('Address').fill(own.address.replace(/\/[0-9a-f]+$/, ''));
+        await button(other, 'Connect').click();
+        await other.waitForFunction(() => document.body.innerText.includes('needs the whole address that the command prints'));
+        await other.getByLabel('Address').fill(own.address);
+        await button(other, 'Connect').click();
+        await untilState(other, 'GROUND');
+      } finally {
+        await elsewhere.close();
+        await own.stop();
+      }
+    });
+  }
+
+  it('a page of this machine needs the port only', async () => {
+    const own = await startBoard(`ws:${await freePort()}`);
+    const other = await openPage(browser, site.url);
+    await other.getByLabel('Address').fill(own.address.replace(/\/[0-9a-f]+$/, ''));
+    await button(other, 'Connect').click();
+    await untilState(other, 'GROUND');
+    await other.context().close();
+    await own.stop();
   });
 });

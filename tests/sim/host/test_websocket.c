@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -51,16 +52,27 @@ static size_t received(int fd, char *text, size_t capacity)
     return got > 0 ? (size_t)got : 0;
 }
 
+/* `origin`: a whole header line, or nothing. */
+static int asked(const char *path, const char *origin, char *answer, size_t capacity)
+{
+    char request[512];
+    const int fd = connected();
+    const int size =
+        snprintf(request, sizeof request,
+                 "GET %s HTTP/1.1\r\nHost: x\r\n%sUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                 "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n",
+                 path, origin);
+
+    TEST_ASSERT_EQUAL(size, send(fd, request, (size_t)size, 0));
+    answer[received(fd, answer, capacity - 1)] = '\0';
+    return fd;
+}
+
 static int shaken(void)
 {
-    static const char request[] =
-        "GET / HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n";
-    char answer[512] = "";
-    const int fd = connected();
+    char answer[512];
+    const int fd = asked("/", "", answer, sizeof answer);
 
-    TEST_ASSERT_EQUAL(sizeof request - 1, send(fd, request, sizeof request - 1, 0));
-    received(fd, answer, sizeof answer - 1);
     TEST_ASSERT_EQUAL_STRING_LEN("HTTP/1.1 101 ", answer, 13);
     TEST_ASSERT_NOT_NULL(strstr(answer, "Sec-WebSocket-Accept: s3pPLMBiTxaQ9kYGzzhZRbK+xOo=\r\n"));
     return fd;
@@ -130,6 +142,53 @@ void test_what_is_no_websocket_is_sent_away(void)
     TEST_ASSERT_EQUAL(18, send(fd, "GET / HTTP/1.1\r\n\r\n", 18, 0));
     TEST_ASSERT_EQUAL(0, received(fd, answer, sizeof answer));
     close(fd);
+}
+
+/* The server takes one client at a time, and notices a moment later that one has left. */
+static void enters(const char *status, const char *path, const char *origin)
+{
+    char answer[512];
+
+    close(asked(path, origin, answer, sizeof answer));
+    TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE(status, answer, strlen(status), origin);
+    usleep(50000);
+}
+
+void test_a_page_of_this_machine_enters_and_any_other_only_with_the_printed_address(void)
+{
+    static const char *const local[] = {"", "Origin: http://localhost:8123\r\n", "Origin: http://127.0.0.1\r\n",
+                                        "origin: https://[::1]:8443\r\n"};
+    static const char *const strange[] = {"Origin: https://strange.example\r\n",
+                                          "Origin: http://localhost.strange.example\r\n",
+                                          "Origin: http://localhost:80.strange.example\r\n",
+                                          "Origin: http://127.0.0.1.strange.example:80\r\n",
+                                          "Origin: http://notlocalhost\r\n", "Origin: null\r\n",
+                                          "Origin: file://\r\n", "ORIGIN:https://strange.example\r\n"};
+    const char *path = strrchr(port.name, '/');
+    char near[32];
+
+    TEST_ASSERT_EQUAL_MESSAGE(17, strlen(path), port.name);
+    for (size_t i = 0; i < sizeof local / sizeof local[0]; i++) {
+        enters("HTTP/1.1 101 ", "/", local[i]);
+    }
+    snprintf(near, sizeof near, "%s0", path);
+    for (size_t i = 0; i < sizeof strange / sizeof strange[0]; i++) {
+        enters("HTTP/1.1 403 ", "/", strange[i]);
+        enters("HTTP/1.1 403 ", near, strange[i]);
+        enters("HTTP/1.1 403 ", "/0123456789abcdef", strange[i]);
+        enters("HTTP/1.1 101 ", path, strange[i]);
+    }
+}
+
+void test_every_server_has_an_address_of_its_own(void)
+{
+    char first[sizeof port.name];
+
+    snprintf(first, sizeof first, "%s", port.name);
+    port_close(&port);
+    setUp();
+    TEST_ASSERT_EQUAL_STRING_LEN("ws://localhost:18124/", port.name, 21);
+    TEST_ASSERT_NOT_EQUAL(0, strcmp(first, port.name));
 }
 
 void test_a_port_that_is_taken_is_told(void)
