@@ -28,69 +28,84 @@ static const char *const axes_names[] = {[AXES_ASSUMED] = "ASSUMED", [AXES_PROVE
 typedef char every_axes_have_a_name[(sizeof axes_names / sizeof axes_names[0] == AXES_COUNT) ? 1 : -1];
 
 const parameter_row_t parameter_table[] = {
-    [PARAMETER_KP] = {"KP", "N/mm", 0.0F, 1.0F, 0.015F, NULL, "PD, PID: proportional gain."},
-    [PARAMETER_KD] = {"KD", "N/mm", 0.0F, 1.0F, 0.008F, NULL, "PD, PID: derivative gain per sample."},
-    [PARAMETER_KI] = {"KI", "N/mm", 0.0F, 1.0F, 0.01F, NULL, "PID: integral gain per sample."},
-    [PARAMETER_USAT] = {"USAT", "N", 0.0F, THRUST_MAX_N, 1.0F, NULL, "PD, PID: most thrust above GRAV."},
-    [PARAMETER_DSAT] = {"DSAT", "N", 0.0F, THRUST_MAX_N, 0.0F, NULL, "PD, PID: most thrust below GRAV."},
-    [PARAMETER_GRAV] = {"GRAV", "N", 0.0F, THRUST_MAX_N, 7.0F, NULL, "Gravity feed-forward per motor."},
-    [PARAMETER_LAW] = {"LAW", "-", 0.0F, (float)(LAW_COUNT - 1), (float)LAW_EST, law_names, "Control law."},
+    [PARAMETER_KP] = {"KP", "N/mm", 0.0F, 1.0F, 0.015F, NULL, PARAMETERS_PD_PID,
+                      "PD, PID: proportional gain."},
+    [PARAMETER_KD] = {"KD", "N/mm", 0.0F, 1.0F, 0.008F, NULL, PARAMETERS_PD_PID,
+                      "PD, PID: derivative gain per sample."},
+    [PARAMETER_KI] = {"KI", "N/mm", 0.0F, 1.0F, 0.01F, NULL, PARAMETERS_PD_PID,
+                      "PID: integral gain per sample."},
+    [PARAMETER_USAT] = {"USAT", "N", 0.0F, THRUST_MAX_N, 1.0F, NULL, PARAMETERS_PD_PID,
+                        "PD, PID: most thrust above GRAV."},
+    [PARAMETER_DSAT] = {"DSAT", "N", 0.0F, THRUST_MAX_N, 0.0F, NULL, PARAMETERS_PD_PID,
+                        "PD, PID: most thrust below GRAV."},
+    [PARAMETER_GRAV] = {"GRAV", "N", 0.0F, THRUST_MAX_N, 7.0F, NULL, PARAMETERS_LAWS,
+                        "Gravity feed-forward per motor."},
+    [PARAMETER_LAW] = {"LAW", "-", 0.0F, (float)(LAW_COUNT - 1), (float)LAW_EST, law_names, PARAMETERS_LAWS,
+                       "Control law."},
     [PARAMETER_RELEASE] = {"RELEASE", "-", 0.0F, (float)(RELEASE_COUNT - 1), (float)RELEASE_FREE,
-                           release_names, "PD, PID: every 108 ms or with each scan."},
-    [PARAMETER_PKP] = {"PKP", "N/m", 0.0F, 50.0F, 6.0F, NULL, "PIDT: proportional gain."},
-    [PARAMETER_PKI] = {"PKI", "N/m/s", 0.0F, 50.0F, 1.4F, NULL, "PIDT: integral gain."},
-    [PARAMETER_PKD] = {"PKD", "N*s/m", 0.0F, 50.0F, 2.6F, NULL, "PIDT: derivative gain."},
-    [PARAMETER_POSK] = {"POSK", "1/s", 0.25F, 6.0F, 2.3F, NULL, "EST: speed per metre off the reference."},
-    [PARAMETER_VELK] = {"VELK", "1/s", 0.5F, 12.0F, 8.0F, NULL,
+                           release_names, PARAMETERS_PD_PID, "PD, PID: every 108 ms or with each scan."},
+    [PARAMETER_PKP] = {"PKP", "N/m", 0.0F, 50.0F, 6.0F, NULL, PARAMETERS_PIDT, "PIDT: proportional gain."},
+    [PARAMETER_PKI] = {"PKI", "N/m/s", 0.0F, 50.0F, 1.4F, NULL, PARAMETERS_PIDT, "PIDT: integral gain."},
+    [PARAMETER_PKD] = {"PKD", "N*s/m", 0.0F, 50.0F, 2.6F, NULL, PARAMETERS_PIDT, "PIDT: derivative gain."},
+    [PARAMETER_POSK] = {"POSK", "1/s", 0.25F, 6.0F, 2.3F, NULL, PARAMETERS_EST,
+                        "EST: speed per metre off the reference."},
+    [PARAMETER_VELK] = {"VELK", "1/s", 0.5F, 12.0F, 8.0F, NULL, PARAMETERS_EST,
                         "EST: acceleration per metre per second off."},
-    [PARAMETER_VUP] = {"VUP", "m/s", 0.125F, 1.5F, 0.7F, NULL, "EST: fastest climb."},
-    [PARAMETER_VDN] = {"VDN", "m/s", 0.125F, 1.5F, 1.1F, NULL, "EST: fastest descent to a reference."},
+    [PARAMETER_VUP] = {"VUP", "m/s", 0.125F, 1.5F, 0.7F, NULL, PARAMETERS_EST, "EST: fastest climb."},
+    [PARAMETER_VDN] = {"VDN", "m/s", 0.125F, 1.5F, 1.1F, NULL, PARAMETERS_EST,
+                       "EST: fastest descent to a reference."},
     [PARAMETER_TERRAIN] = {"TERRAIN", "-", 0.0F, (float)(TERRAIN_COUNT - 1), (float)TERRAIN_FOLLOW,
-                           terrain_names,
+                           terrain_names, PARAMETERS_EST,
                            "EST: keeps the height above the terrain, or passes over its steps."},
     [PARAMETER_PLANT] = {"PLANT", "-", 0.0F, (float)(PLANT_COUNT - 1), (float)PLANT_THRUST, plant_names,
-                         "EST: what the autopilot's throttle commands."},
-    [PARAMETER_CRATE] = {"CRATE", "m/s/N", 0.125F, 5.0F, 1.0F, NULL,
+                         PARAMETERS_EST_MODEL, "EST: what the autopilot's throttle commands."},
+    [PARAMETER_CRATE] = {"CRATE", "m/s/N", 0.125F, 5.0F, 1.0F, NULL, PARAMETERS_EST_MODEL,
                          "EST: climb rate per newton with PLANT CLIMB."},
     /* Model of the vehicle. Limits: what vehicles of this kind have, twice over. Defaults: lag assumed of
      * motors and rotors of this size; delay half a pulse period 6.8, pulse 1.5, autopilot 10 ms (assumed);
      * with a damping of 2 to 3 the model repeats the seed's flights; lag of an autopilot's climb rate
      * assumed. `make fit` finds them. */
-    [PARAMETER_GAIN] = {"GAIN", "times", 0.4F, 2.5F, 1.0F, NULL,
+    [PARAMETER_GAIN] = {"GAIN", "times", 0.4F, 2.5F, 1.0F, NULL, PARAMETERS_EST_MODEL,
                         "EST: effect of a newton, 1 as the hover thrust tells."},
-    [PARAMETER_LAG] = {"LAG", "s", 0.03F, 0.5F, 0.12F, NULL, "EST: lag of the motors."},
-    [PARAMETER_DELAY] = {"DELAY", "s", 0.008F, 0.12F, 0.0185F, NULL, "EST: from a command to the motors."},
-    [PARAMETER_DAMP] = {"DAMP", "1/s", 0.5F, 6.0F, 2.5F, NULL, "EST: damping of a climb by the air."},
-    [PARAMETER_CLAG] = {"CLAG", "s", 0.1F, 1.0F, 0.25F, NULL,
+    [PARAMETER_LAG] = {"LAG", "s", 0.03F, 0.5F, 0.12F, NULL, PARAMETERS_EST_MODEL, "EST: lag of the motors."},
+    [PARAMETER_DELAY] = {"DELAY", "s", 0.008F, 0.12F, 0.0185F, NULL, PARAMETERS_EST_MODEL,
+                         "EST: from a command to the motors."},
+    [PARAMETER_DAMP] = {"DAMP", "1/s", 0.5F, 6.0F, 2.5F, NULL, PARAMETERS_EST_MODEL,
+                        "EST: damping of a climb by the air."},
+    [PARAMETER_CLAG] = {"CLAG", "s", 0.1F, 1.0F, 0.25F, NULL, PARAMETERS_EST_MODEL,
                         "EST: lag of the autopilot's climb rate with PLANT CLIMB."},
-    [PARAMETER_LINK] = {"LINK", "s", 0.0F, 60.0F, 0.0F, NULL, "Longest silence of the link; 0 disarms."},
-    [PARAMETER_SUM] = {"SUM", "-", 0.0F, (float)(SUM_COUNT - 1), (float)SUM_OFF, sum_names,
+    [PARAMETER_LINK] = {"LINK", "s", 0.0F, 60.0F, 0.0F, NULL, PARAMETERS_RADIO,
+                        "Longest silence of the link; 0 disarms."},
+    [PARAMETER_SUM] = {"SUM", "-", 0.0F, (float)(SUM_COUNT - 1), (float)SUM_OFF, sum_names, PARAMETERS_RADIO,
                        "Whether every command line must carry its sum."},
     [PARAMETER_SEL] = {"SEL", "-", 0.0F, (float)(SEL_COUNT - 1), (float)SEL_NONE, sel_names,
-                       "Whether a pin tells that the pilot has the throttle."},
-    [PARAMETER_IDLE] = {"IDLE", "%", 0.0F, 25.0F, 15.0F, NULL,
+                       PARAMETERS_THROTTLE, "Whether a pin tells that the pilot has the throttle."},
+    [PARAMETER_IDLE] = {"IDLE", "%", 0.0F, 25.0F, 15.0F, NULL, PARAMETERS_THROTTLE,
                         "Least throttle while armed: keeps the motors turning."},
     [PARAMETER_IROLL] = {"IROLL", "-", 0.0F, (float)(AXIS_COUNT - 1), (float)AXIS_MINUS_ROLL, axis_names,
-                         "The IMU's angle that is the vehicle's roll, right side up."},
+                         PARAMETERS_IMU, "The IMU's angle that is the vehicle's roll, right side up."},
     [PARAMETER_IPITCH] = {"IPITCH", "-", 0.0F, (float)(AXIS_COUNT - 1), (float)AXIS_PITCH, axis_names,
-                          "The IMU's angle that is the vehicle's pitch, nose up."},
+                          PARAMETERS_IMU, "The IMU's angle that is the vehicle's pitch, nose up."},
     [PARAMETER_IDOWN] = {"IDOWN", "-", 0.0F, (float)(DOWN_COUNT - 1), (float)DOWN_Z, down_names,
-                         "Where the IMU's accelerometer feels gravity."},
-    [PARAMETER_IUNIT] = {"IUNIT", "1/g", 0.5F, 5000.0F, 256.0F, NULL,
+                         PARAMETERS_IMU, "Where the IMU's accelerometer feels gravity."},
+    [PARAMETER_IUNIT] = {"IUNIT", "1/g", 0.5F, 5000.0F, 256.0F, NULL, PARAMETERS_IMU,
                          "Counts of the IMU's accelerometer per g."},
     [PARAMETER_IAXES] = {"IAXES", "-", 0.0F, (float)(AXES_COUNT - 1), (float)AXES_ASSUMED, axes_names,
-                         "Whether tilting by hand has proved IROLL and IPITCH."},
+                         PARAMETERS_IMU, "Whether tilting by hand has proved IROLL and IPITCH."},
     /* The seed's Annex III. Up to 500 mm: longer than any arm of a vehicle of this size. */
-    [PARAMETER_DF] = {"DF", "mm", 0.0F, 500.0F, 105.0F, NULL, "Scanner to the front mirror."},
-    [PARAMETER_LF] = {"LF", "mm", 0.0F, 500.0F, 100.0F, NULL,
+    [PARAMETER_DF] = {"DF", "mm", 0.0F, 500.0F, 105.0F, NULL, PARAMETERS_MIRRORS,
+                      "Scanner to the front mirror."},
+    [PARAMETER_LF] = {"LF", "mm", 0.0F, 500.0F, 100.0F, NULL, PARAMETERS_MIRRORS,
                       "Front mirror to the lowest point of the landing gear."},
-    [PARAMETER_L] = {"L", "mm", 0.0F, 500.0F, 220.0F, NULL,
+    [PARAMETER_L] = {"L", "mm", 0.0F, 500.0F, 220.0F, NULL, PARAMETERS_MIRRORS,
                      "Vehicle's centre to the front mirror, to the right."},
-    [PARAMETER_D1] = {"D1", "mm", 0.0F, 500.0F, 115.0F, NULL, "Scanner to mirror 1, aft."},
-    [PARAMETER_L1] = {"L1", "mm", 0.0F, 500.0F, 98.0F, NULL,
+    [PARAMETER_D1] = {"D1", "mm", 0.0F, 500.0F, 115.0F, NULL, PARAMETERS_MIRRORS,
+                      "Scanner to mirror 1, aft."},
+    [PARAMETER_L1] = {"L1", "mm", 0.0F, 500.0F, 98.0F, NULL, PARAMETERS_MIRRORS,
                       "Mirror 1 to the lowest point of the landing gear."},
-    [PARAMETER_D2] = {"D2", "mm", 0.0F, 500.0F, 107.0F, NULL, "Scanner to mirror 2, fore."},
-    [PARAMETER_L2] = {"L2", "mm", 0.0F, 500.0F, 105.0F, NULL,
+    [PARAMETER_D2] = {"D2", "mm", 0.0F, 500.0F, 107.0F, NULL, PARAMETERS_MIRRORS,
+                      "Scanner to mirror 2, fore."},
+    [PARAMETER_L2] = {"L2", "mm", 0.0F, 500.0F, 105.0F, NULL, PARAMETERS_MIRRORS,
                       "Mirror 2 to the lowest point of the landing gear."},
 };
 typedef char
@@ -119,18 +134,10 @@ void parameters_set_seed(parameters_t *parameters)
 
 bool parameter_is_used(parameter_id_t id, control_law_t law)
 {
-    switch (id) {
-    case PARAMETER_KP:
-    case PARAMETER_KD:
-    case PARAMETER_USAT:
-    case PARAMETER_DSAT:
-    case PARAMETER_RELEASE:
-        return law == LAW_PD || law == LAW_PID;
-    case PARAMETER_KI:
-        return law == LAW_PID;
-    case PARAMETER_PKP:
-    case PARAMETER_PKI:
-    case PARAMETER_PKD:
+    switch (parameter_table[id].group) {
+    case PARAMETERS_PD_PID:
+        return law == LAW_PID || (law == LAW_PD && id != PARAMETER_KI);
+    case PARAMETERS_PIDT:
         return law == LAW_PIDT || law == LAW_EST;
     default:
         return true;

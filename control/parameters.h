@@ -76,6 +76,20 @@ typedef enum { DOWN_Z, DOWN_MINUS_Z, DOWN_COUNT } control_down_t;
 /* Whether IROLL and IPITCH are assumed, or proved by tilting the vehicle by hand. */
 typedef enum { AXES_ASSUMED, AXES_PROVED, AXES_COUNT } control_axes_t;
 
+/* What a parameter is for, so that forty of them are found. */
+typedef enum {
+    PARAMETERS_LAWS,      /* for every law, and which one */
+    PARAMETERS_PD_PID,    /* laws PD and PID */
+    PARAMETERS_PIDT,      /* law PIDT, and EST without an estimate */
+    PARAMETERS_EST,       /* law EST */
+    PARAMETERS_EST_MODEL, /* the vehicle that law EST computes with */
+    PARAMETERS_THROTTLE,  /* who has it, and the motors' idle */
+    PARAMETERS_RADIO,
+    PARAMETERS_IMU,
+    PARAMETERS_MIRRORS,
+    PARAMETER_GROUP_COUNT
+} parameter_group_t;
+
 typedef struct {
     const char *name; /* as typed after '#', upper case */
     const char *unit; /* "m", "N/mm", "N", "s", or "-" for a choice */
@@ -83,7 +97,8 @@ typedef struct {
     float maximum;
     float initial;
     const char *const *choices; /* NULL for a number; else maximum + 1 names, the value is an index */
-    const char *meaning;        /* one sentence */
+    parameter_group_t group;
+    const char *meaning; /* one sentence */
 } parameter_row_t;
 
 extern const parameter_row_t parameter_table[]; /* PARAMETER_COUNT */

@@ -7,7 +7,7 @@
 #include "firmware/imu_gate.h"
 #include "firmware/servers.h"
 
-static const parameter_row_t limits = {"SETR", "m", 0.0F, FLIGHT_REFERENCE_MAX_M, 0.0F, NULL, ""};
+static const parameter_row_t limits = {.name = "SETR", .unit = "m", .maximum = FLIGHT_REFERENCE_MAX_M};
 
 static void set_reference(float reference_m)
 {

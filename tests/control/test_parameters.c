@@ -251,6 +251,39 @@ void test_a_gain_is_used_by_the_laws_that_its_meaning_names(void)
     }
 }
 
+/* And the group says the same, so that a page that sorts by it does not contradict the sentence beside it. */
+void test_a_parameter_stands_in_the_group_of_its_meaning_and_no_group_is_empty(void)
+{
+    static const struct {
+        const char *begin;
+        parameter_group_t first, last;
+    } laws[] = {{"PD, PID: ", PARAMETERS_PD_PID, PARAMETERS_PD_PID},
+                {"PID: ", PARAMETERS_PD_PID, PARAMETERS_PD_PID},
+                {"PIDT: ", PARAMETERS_PIDT, PARAMETERS_PIDT},
+                {"EST: ", PARAMETERS_EST, PARAMETERS_EST_MODEL}};
+    int members[PARAMETER_GROUP_COUNT] = {0};
+
+    for (int i = 0; i < PARAMETER_COUNT; i++) {
+        const parameter_group_t group = parameter_table[i].group;
+        bool of_a_law = false;
+
+        TEST_ASSERT_LESS_THAN_MESSAGE(PARAMETER_GROUP_COUNT, group, parameter_table[i].name);
+        members[group]++;
+        for (size_t k = 0; k < sizeof laws / sizeof laws[0]; k++) {
+            if (strncmp(parameter_table[i].meaning, laws[k].begin, strlen(laws[k].begin)) == 0) {
+                of_a_law = true;
+                TEST_ASSERT_TRUE_MESSAGE(group >= laws[k].first && group <= laws[k].last,
+                                         parameter_table[i].name);
+            }
+        }
+        TEST_ASSERT_EQUAL_MESSAGE(of_a_law, group >= PARAMETERS_PD_PID && group <= PARAMETERS_EST_MODEL,
+                                  parameter_table[i].name);
+    }
+    for (int group = 0; group < PARAMETER_GROUP_COUNT; group++) {
+        TEST_ASSERT_GREATER_THAN(0, members[group]);
+    }
+}
+
 void test_in_the_air_thrust_changes_by_bounded_steps_and_the_throttle_keeps_its_owner(void)
 {
     static const parameter_id_t stepped[] = {PARAMETER_GRAV, PARAMETER_USAT, PARAMETER_DSAT};

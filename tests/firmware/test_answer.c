@@ -86,9 +86,9 @@ void test_counts_have_their_name_and_all_their_digits(void)
 void test_limits_of_a_number_and_of_a_choice(void)
 {
     static const char *const colours[] = {"RED", "GREEN", "BLUE"};
-    const parameter_row_t number = {"N", "mm", -0.5F, 11.76F, 0.0F, NULL, "m"};
-    const parameter_row_t choice = {"C", "-", 0.0F, 2.0F, 0.0F, colours, "m"};
-    const parameter_row_t only = {"O", "-", 0.0F, 0.0F, 0.0F, colours, "m"};
+    const parameter_row_t number = {"N", "mm", -0.5F, 11.76F, 0.0F, NULL, PARAMETERS_LAWS, "m"};
+    const parameter_row_t choice = {"C", "-", 0.0F, 2.0F, 0.0F, colours, PARAMETERS_LAWS, "m"};
+    const parameter_row_t only = {"O", "-", 0.0F, 0.0F, 0.0F, colours, PARAMETERS_LAWS, "m"};
 
     TEST_ASSERT_FALSE(answer_refuse_range(&answer, &number));
     assert_sent("ERR VERB out of range -0.5..11.76 mm\r\n");

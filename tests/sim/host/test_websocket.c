@@ -57,11 +57,11 @@ static int asked(const char *path, const char *origin, char *answer, size_t capa
 {
     char request[512];
     const int fd = connected();
-    const int size =
-        snprintf(request, sizeof request,
-                 "GET %s HTTP/1.1\r\nHost: x\r\n%sUpgrade: websocket\r\nConnection: Upgrade\r\n"
-                 "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n",
-                 path, origin);
+    const int size = snprintf(
+        request, sizeof request,
+        "GET %s HTTP/1.1\r\nHost: x\r\n%sUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n",
+        path, origin);
 
     TEST_ASSERT_EQUAL(size, send(fd, request, (size_t)size, 0));
     answer[received(fd, answer, capacity - 1)] = '\0';
@@ -156,14 +156,16 @@ static void enters(const char *status, const char *path, const char *origin)
 
 void test_a_page_of_this_machine_enters_and_any_other_only_with_the_printed_address(void)
 {
-    static const char *const local[] = {"", "Origin: http://localhost:8123\r\n", "Origin: http://127.0.0.1\r\n",
-                                        "origin: https://[::1]:8443\r\n"};
+    static const char *const local[] = {"", "Origin: http://localhost:8123\r\n",
+                                        "Origin: http://127.0.0.1\r\n", "origin: https://[::1]:8443\r\n"};
     static const char *const strange[] = {"Origin: https://strange.example\r\n",
                                           "Origin: http://localhost.strange.example\r\n",
                                           "Origin: http://localhost:80.strange.example\r\n",
                                           "Origin: http://127.0.0.1.strange.example:80\r\n",
-                                          "Origin: http://notlocalhost\r\n", "Origin: null\r\n",
-                                          "Origin: file://\r\n", "ORIGIN:https://strange.example\r\n"};
+                                          "Origin: http://notlocalhost\r\n",
+                                          "Origin: null\r\n",
+                                          "Origin: file://\r\n",
+                                          "ORIGIN:https://strange.example\r\n"};
     const char *path = strrchr(port.name, '/');
     char near[32];
 
