@@ -2,6 +2,7 @@ import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import type { Mark } from './series';
+import { shown } from './words';
 
 export interface Curve {
   label: string;
@@ -118,8 +119,8 @@ export function Plot(props: { curves: Curve[]; data: () => PlotData; live?: numb
         rad: { range: (_u, low, high) => [Math.min(-0.2, low ?? 0), Math.max(0.2, high ?? 0)] },
       },
       axes: [
-        { ...axisBase, size: 28, values: (_u: uPlot, ticks: number[]) => ticks.map((tick) => (props.clock ? new Date(tick * 1000).toTimeString().slice(0, 8) : `${Number(tick.toFixed(2))} s`)) },
-        ...axes.map((axis, i): uPlot.Axis => ({ ...axisBase, scale: axis, side: i === 0 ? 3 : 1, grid: i === 0 ? axisBase.grid : { show: false }, size: 44, values: (_u, ticks) => ticks.map((tick) => `${Number(tick.toFixed(2))}${axis === 'rad' ? '' : ` ${axis}`}`) })),
+        { ...axisBase, size: 28, values: (_u: uPlot, ticks: number[]) => ticks.map((tick) => (props.clock ? new Date(tick * 1000).toTimeString().slice(0, 8) : `${shown(Number(tick.toFixed(2)))} s`)) },
+        ...axes.map((axis, i): uPlot.Axis => ({ ...axisBase, scale: axis, side: i === 0 ? 3 : 1, grid: i === 0 ? axisBase.grid : { show: false }, size: 44, values: (_u, ticks) => ticks.map((tick) => `${shown(Number(tick.toFixed(2)))}${axis === 'rad' ? '' : ` ${axis}`}`) })),
       ],
       series: [
         {},

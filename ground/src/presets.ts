@@ -3,6 +3,9 @@ import type { ParameterSet } from './protocol/parameters';
 /** Of this firmware, as `plomada params` told when the page was built (ground/firmware.ts). */
 declare const __DELIVERED__: ParameterSet;
 export const delivered: ParameterSet = __DELIVERED__;
+declare const __GROUPS__: Record<string, string>;
+/** What each parameter is for; the names of the groups are `groups` of the texts. */
+export const groupOf: Record<string, string> = __GROUPS__;
 
 /** Sets of the seed document (chapters 6 and 7: its best flown values) and the laws as delivered. */
 const seed = { RELEASE: 'FREE', KP: '0.015', KD: '0.008', USAT: '1', DSAT: '0', GRAV: '7' };

@@ -96,6 +96,7 @@ function transmit(text: string): void {
   const line = sums.value ? withSum(text) : text;
   record(true, line);
   lastSent = link.value?.now() ?? 0;
+  if (!CHANGES_NOTHING.test(text)) asPoweredOn = false;
   link.value?.send(line);
 }
 
@@ -121,6 +122,7 @@ function heard(octets: Uint8Array): void {
 function onTelemetry(telemetry: Telemetry): void {
   const now = link.value!.now();
   if (heardLast.value === null || telemetry.reset) void command('#GET LINK').then(giveBackLink);
+  if (telemetry.reset) asPoweredOn = true;
   series.add(now / 1000, telemetry, vehicle.value ? vehicle.value.truth().height_m : NaN);
   batch(() => {
     heardLast.value = { telemetry, link: now, page: performance.now() };
@@ -181,8 +183,18 @@ export async function stop(name: 'STOP' | 'LAND'): Promise<void> {
   if (answered) setTimeout(() => (stopState.value = stopState.value[name] === 'answered' ? { ...stopState.value, [name]: 'none' } : stopState.value), 4000);
 }
 
-export async function readParameters(): Promise<void> {
-  if (loading.value) return;
+/** Since a power-on that this page has heard nothing was sent that could change a parameter. */
+let asPoweredOn = false;
+const CHANGES_NOTHING = /^#\s*(GET|HELP|PING|LASER|PERF|VERSION|SETR|ARM|STOP|LAND|LOG|STREAM|IMU\s*(\*|$))/i;
+
+/** False: not everything could be read. Whoever asks while it is being read waits for the same. */
+let reading: Promise<boolean> | null = null;
+export function readParameters(): Promise<boolean> {
+  reading ??= readAll().finally(() => (reading = null));
+  return reading;
+}
+
+async function readAll(): Promise<boolean> {
   loading.value = true;
   const help = await command('#HELP');
   const values = await command('#GET');
@@ -192,10 +204,17 @@ export async function readParameters(): Promise<void> {
     const row = rows.find((p) => p.name === line.name);
     if (row) row.value = valueOf(line.name, line.rest)?.value ?? '';
   }
+  const whole = help.ok && values.ok && rows.length === values.lines.length && rows.every((row) => row.value !== '');
   batch(() => {
     if (rows.length > 0) parameters.value = rows;
+    if (whole && asPoweredOn) stored.value = valuesOf(rows);
     loading.value = false;
   });
+  return whole;
+}
+
+export function valuesOf(rows: Parameter[]): ParameterSet {
+  return Object.fromEntries(rows.map((p) => [p.name, p.value]));
 }
 
 function opened(kind: Link): void {
@@ -218,6 +237,7 @@ function opened(kind: Link): void {
   void session.begin(kind.label);
   lastSent = -Infinity;
   linkSeconds = 0;
+  asPoweredOn = false;
 }
 
 const events = {

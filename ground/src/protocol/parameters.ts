@@ -1,3 +1,5 @@
+import { typed } from './decimal';
+
 /** A row of the firmware's own table, from its answers to #HELP and #GET. */
 export interface Parameter {
   name: string;
@@ -30,7 +32,7 @@ export function valueOf(name: string, rest: string): { name: string; value: stri
 
 /** Why this text may not be sent as the parameter's value; null: it may. */
 export function objection(parameter: Parameter, text: string): 'empty' | 'number' | 'range' | 'choice' | null {
-  const value = text.trim();
+  const value = typed(text);
   if (value === '') return 'empty';
   if (parameter.choices) return parameter.choices.includes(value.toUpperCase()) ? null : 'choice';
   if (!/^[+-]?(\d+\.?\d*|\.\d+)$/.test(value)) return 'number';
@@ -60,8 +62,8 @@ export function differences(now: ParameterSet, wanted: ParameterSet): Difference
 export function parseSet(text: string): ParameterSet {
   const set: ParameterSet = {};
   for (const line of text.split(/\r?\n/)) {
-    const match = /^\s*#?\s*([A-Z][A-Z0-9_]{0,11})[ =]+([A-Za-z0-9.+-]+)\s*(?:\/\/.*|;.*)?$/.exec(line);
-    if (match) set[match[1]!] = match[2]!.toUpperCase();
+    const match = /^\s*#?\s*([A-Z][A-Z0-9_]{0,11})[ =]+([A-Za-z0-9.,+-]+)\s*(?:\/\/.*|;.*)?$/.exec(line);
+    if (match) set[match[1]!] = typed(match[2]!).toUpperCase();
   }
   return set;
 }

@@ -4,7 +4,7 @@ import { keep, keptAs } from '../keep';
 import { saveFile } from '../plot';
 import { ALIVE, consoleLines, phase, sendRaw, session, setSums, sums } from '../store';
 import { writeSession, type SessionInfo } from '../session';
-import { w } from '../words';
+import { language, w } from '../words';
 
 const typed = signal('');
 const telemetry = signal(false);
@@ -78,7 +78,7 @@ export function ConsoleView() {
         <ul>
           {sessions.value.map((info) => (
             <li key={info.id}>
-              <span><strong>{new Date(info.id).toLocaleString()}</strong><br /><small>{info.link} · {info.lines} {words.lines}</small></span>
+              <span><strong>{new Date(info.id).toLocaleString(language.value)}</strong><br /><small>{info.link} · {info.lines} {words.lines}</small></span>
               <button onClick={() => void save(info)}>{words.saveLog}</button>
               <button class="quiet" disabled={info.id === session.id} onClick={async () => { await session.remove(info.id); await list(); }}>{words.deleteLog}</button>
             </li>

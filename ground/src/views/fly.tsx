@@ -3,7 +3,7 @@ import { useRef } from 'preact/hooks';
 import { keep, keptAs } from '../keep';
 import { Plot, saveFile, savePng, stamp } from '../plot';
 import { clock, command, live, ofThisVehicle, phase, powerCycle, seen, series, vehicle } from '../store';
-import { ago, told, w } from '../words';
+import { ago, shown, told, w } from '../words';
 import { Troubles } from './troubles';
 
 const wanted = signal(keptAs('reference', (text) => (Number(text) >= 0.1 && Number(text) <= 3 ? text : null), '0.6'));
@@ -25,18 +25,17 @@ export function Numbers() {
   const now = seen.value;
   const words = w();
   const t = now.kind === 'nothing' ? null : now.telemetry;
-  const text = (value: number | undefined, digits: number): string => (value === undefined || Number.isNaN(value) ? '–' : value.toFixed(digits));
   /** What stands below a number: how old it is, as soon as it is not of now. */
   const sub = (fresh: string): string => (now.kind === 'old' ? ago(now.age) : fresh);
   const tone = (fresh: string | false | null | undefined): string => (now.kind === 'live' && fresh ? fresh : '');
   const connection = phase.value === 'open' || phase.value === 'lost' ? phase.value : 'idle';
   return (
     <section class={`numbers ${now.kind === 'live' ? '' : 'stale'}`} aria-label={now.kind === 'live' ? words.live : words.link}>
-      <Number3 label={words.height} value={text(t?.height, 2)} unit="m" sub={sub(`${words.reference} ${t && t.reference > 0 ? `${t.reference.toFixed(2)} m` : words.none}`)} tone="primary" />
-      <Number3 label={words.thrust} value={text(t?.thrust, 1)} unit="N" sub={sub(words.perMotor)} />
+      <Number3 label={words.height} value={shown(t?.height, 2)} unit="m" sub={sub(`${words.reference} ${t && t.reference > 0 ? `${shown(t.reference, 2)} m` : words.none}`)} tone="primary" />
+      <Number3 label={words.thrust} value={shown(t?.thrust, 1)} unit="N" sub={sub(words.perMotor)} />
       <Number3 label={words.state} value={t?.state ?? '–'} sub={sub(t ? words.states[t.state] ?? '' : '')} tone={`word ${tone(t && (['CUT', 'DESCENDING', 'LOWERING'].includes(t.state) ? 'bad' : t.state !== 'GROUND' && 'good'))}`} />
       <Number3 label={words.laser} value={t?.laser ?? '–'} sub={sub(t ? words.lasers[t.laser] ?? '' : '')} tone={`word ${tone(t?.laser === 'OK' ? 'good' : t?.laser === 'LOST' && 'bad')}`} />
-      <Number3 label={words.link} value={t ? (now.age / 1000).toFixed(1) : '–'} unit="s" sub={now.kind === 'old' ? `${connection === 'open' ? '' : `${words[connection]} · `}${ago(now.age)}` : words[connection]} tone={now.kind === 'old' ? 'bad' : ''} />
+      <Number3 label={words.link} value={t ? shown(now.age / 1000, 1) : '–'} unit="s" sub={now.kind === 'old' ? `${connection === 'open' ? '' : `${words[connection]} · `}${ago(now.age)}` : words[connection]} tone={now.kind === 'old' ? 'bad' : ''} />
     </section>
   );
 }
@@ -45,8 +44,8 @@ export function Messages() {
   const now = seen.value;
   const words = w();
   if (now.kind === 'nothing') return null;
-  const { flags: bits, state } = now.telemetry;
-  const flags: [string, string][] = [];
+  const { flags: bits, state, reference } = now.telemetry;
+  const flags: [string, string][] = state === 'GROUND' && reference > 0 ? [words.waitsToTakeOff(shown(reference, 2))] : [];
   for (let bit = 0; bit < 16; bit++) if (bits & (1 << bit)) flags.push(words.flags[bit] ?? words.unknownFlag(1 << bit));
   if (now.kind === 'old') {
     return (
@@ -69,10 +68,11 @@ export function Messages() {
   );
 }
 
-const armed = ofThisVehicle('');
+const notArmed = ofThisVehicle(''); // why
 async function arm(): Promise<void> {
+  notArmed.value = '';
   const outcome = await command('#ARM');
-  armed.value = outcome.ok ? outcome.lines[0]!.rest : outcome.silent ? w().noAnswer : told(outcome.reason);
+  if (!outcome.ok) notArmed.value = outcome.silent ? w().noAnswer : told(outcome.reason);
 }
 
 const replied = ofThisVehicle<{ text: string; bad: boolean } | null>(null); // to the latest reference
@@ -81,7 +81,9 @@ function Reference() {
   const words = w();
   const t = live.value;
   const open = phase.value === 'open' && seen.value.kind !== 'nothing'; // a silent vehicle may still hear
-  const flying = t !== null && t.reference > 0;
+  const grounded = t?.state === 'GROUND';
+  const flying = t !== null && !grounded;
+  const seesGround = t?.laser === 'OK' && (t.flags & 1) === 0;
   const send = (): void => {
     keep('reference', wanted.value);
     replied.value = null;
@@ -94,18 +96,18 @@ function Reference() {
     <section class="card reference" aria-labelledby="reference-title">
       <h2 id="reference-title">{words.flyTo}</h2>
       <div class="stepper">
-        <button aria-label="−0.1 m" onClick={() => (wanted.value = Math.max(0.1, Number(wanted.value) - 0.1).toFixed(1))}>−</button>
-        <output>{Number(wanted.value).toFixed(1)}<small> m</small></output>
-        <button aria-label="+0.1 m" onClick={() => (wanted.value = Math.min(3, Number(wanted.value) + 0.1).toFixed(1))}>+</button>
+        <button aria-label={`−${shown(0.1)} m`} onClick={() => (wanted.value = Math.max(0.1, Number(wanted.value) - 0.1).toFixed(1))}>−</button>
+        <output>{shown(Number(wanted.value), 1)}<small> m</small></output>
+        <button aria-label={`+${shown(0.1)} m`} onClick={() => (wanted.value = Math.min(3, Number(wanted.value) + 0.1).toFixed(1))}>+</button>
       </div>
       <div class="presets">
         {['0.3', '0.6', '1.0', '1.5'].map((value) => (
-          <button key={value} class={value === wanted.value ? 'chosen' : ''} aria-pressed={value === wanted.value} onClick={() => (wanted.value = value)}>{value}</button>
+          <button key={value} class={value === wanted.value ? 'chosen' : ''} aria-pressed={value === wanted.value} onClick={() => (wanted.value = value)}>{shown(value)}</button>
         ))}
       </div>
-      <button class="go" disabled={!open} onClick={send}>{flying ? `${words.changeTo} ${Number(wanted.value).toFixed(1)} m` : words.takeOff}</button>
+      <button class="go" disabled={!open} onClick={send}>{flying ? `${words.changeTo} ${shown(Number(wanted.value), 1)} m` : grounded && !seesGround ? words.takeOffLater : words.takeOff}</button>
       {replied.value && <p class={`banner ${replied.value.bad ? 'bad' : ''}`} role="alert">{replied.value.text}</p>}
-      {!vehicle.value && <><button disabled={t?.state !== 'GROUND'} onClick={() => void arm()}>{words.arm}{armed.value && <small> · {armed.value}</small>}</button><p class="hint">{words.armHint}</p></>}
+      {!vehicle.value && <><button disabled={t?.state !== 'GROUND'} onClick={() => void arm()}>{words.arm}{grounded && t.thrust > 0 && <small> · {words.motorsIdle}</small>}</button>{notArmed.value && <p class="banner bad" role="alert">{words.refused}: {notArmed.value}</p>}<p class="hint">{words.armHint}</p><ol class="hint">{Object.entries(words.armSteps).map(([step, text]) => (<li key={step}>{text}</li>))}</ol></>}
     </section>
   );
 }
@@ -121,8 +123,8 @@ function Picture() {
   const floor = ground - truth.terrain_m * scale;
   const shift2 = Math.min(0, y - 30); // keep it in view
   return (
-    <svg class="picture" viewBox={`0 ${shift2} 260 170`} role="img" aria-label={`${w().truth} ${truth.height_m.toFixed(2)} m`}>
-      <g class="grid-lines">{[0, 0.5, 1, 1.5, 2, 2.5, 3].map((m) => (<g key={m}><line x1="34" x2="256" y1={ground - m * scale} y2={ground - m * scale} /><text x="4" y={ground - m * scale + 4}>{m} m</text></g>))}</g>
+    <svg class="picture" viewBox={`0 ${shift2} 260 170`} role="img" aria-label={`${w().truth} ${shown(truth.height_m, 2)} m`}>
+      <g class="grid-lines">{[0, 0.5, 1, 1.5, 2, 2.5, 3].map((m) => (<g key={m}><line x1="34" x2="256" y1={ground - m * scale} y2={ground - m * scale} /><text x="4" y={ground - m * scale + 4}>{shown(m)} m</text></g>))}</g>
       <rect class="earth" x="34" y={floor} width="222" height={Math.max(4, 180 - floor)} />
       <g class="hatch">{Array.from({ length: 11 }, (_, i) => (<line key={i} x1={44 + i * 24 - shift} x2={36 + i * 24 - shift} y1={floor + 2} y2={floor + 12} />))}</g>
       {v.laser && <line class="beam" x1="145" x2="145" y1={y} y2={floor} />}
@@ -152,7 +154,7 @@ export function Simulation() {
       <div class="row" role="group" aria-label={words.speed}>
         <span class="row-label">{words.speed}</span>
         {[0.25, 1, 2, 5].map((speed) => (
-          <button key={speed} class={`chip ${v.speed === speed ? 'chosen' : ''}`} aria-pressed={v.speed === speed} onClick={act(() => (v.speed = speed))}>{speed}×</button>
+          <button key={speed} class={`chip ${v.speed === speed ? 'chosen' : ''}`} aria-pressed={v.speed === speed} onClick={act(() => (v.speed = speed))}>{shown(speed)}×</button>
         ))}
       </div>
       <div class="faults" role="group" aria-label={words.faults}>

@@ -1,7 +1,8 @@
 import { signal } from '@preact/signals';
 import { useState } from 'preact/hooks';
 import type { Figure, VehicleLink } from '../link/vehicle';
-import { w } from '../words';
+import { typed } from '../protocol/decimal';
+import { shown, w } from '../words';
 
 const NOW = Symbol('now'); // seconds since power-on
 const FOR_GOOD = 1e9;
@@ -29,7 +30,7 @@ export const TROUBLES: { name: string; set: Setting[]; once?: boolean }[] = [
 ];
 
 const offered = signal(matchMedia('(min-width: 641px)').matches); // on a phone the plots come first
-const shown = signal(false);
+const opened = signal(false);
 const refused = signal('');
 
 function figureOf(vehicle: VehicleLink, name: string): Figure | undefined {
@@ -60,7 +61,7 @@ export function reach(figure: Figure): { low: number; high: number; step: number
   return { low, high, step: (high - low) / 200 };
 }
 
-const plain = (value: number): string => (value >= FOR_GOOD ? '∞' : String(Number(value.toPrecision(5))));
+const plain = (value: number): string => (value >= FOR_GOOD ? '∞' : shown(Number(value.toPrecision(5))));
 
 function FigureRow({ vehicle, figure, changed }: { vehicle: VehicleLink; figure: Figure; changed: () => void }) {
   const words = w();
@@ -73,7 +74,7 @@ function FigureRow({ vehicle, figure, changed }: { vehicle: VehicleLink; figure:
   return (
     <li class={figure.value !== figure.standard ? 'changed' : ''}>
       <label><code>{figure.name}</code><input class="short" inputMode="decimal" value={draft ?? plain(figure.value)} onInput={(event) => setDraft(event.currentTarget.value)} onChange={(event) => {
-        set(Number(event.currentTarget.value.replace(',', '.').replace('∞', '1e9')));
+        set(Number(typed(event.currentTarget.value).replace('∞', '1e9')));
         setDraft(null);
       }} /> {figure.unit === '-' ? '' : figure.unit}</label>
       <input type="range" aria-label={figure.name} min={low} max={high} step={step} value={figure.value} onInput={(event) => set(Number(event.currentTarget.value))} />
@@ -106,11 +107,11 @@ export function Troubles({ vehicle, changed }: { vehicle: VehicleLink; changed: 
         })}
       </div>
       </details>
-      <details class="figures" open={shown.value} onToggle={(event) => (shown.value = event.currentTarget.open)}>
+      <details class="figures" open={opened.value} onToggle={(event) => (opened.value = event.currentTarget.open)}>
         <summary>{words.allFigures(vehicle.figures.length, away.length)}</summary>
         {refused.value && <p class="banner bad" role="alert">{words.objections.range} {refused.value}</p>}
         {away.length > 0 && <button class="quiet" onClick={() => { for (const { name, standard } of away) vehicle.setFigure(name, standard); changed(); }}>{words.allStandard}</button>}
-        {shown.value && <ul>{vehicle.figures.map((figure) => <FigureRow key={figure.name} vehicle={vehicle} figure={figure} changed={changed} />)}</ul>}
+        {opened.value && <ul>{vehicle.figures.map((figure) => <FigureRow key={figure.name} vehicle={vehicle} figure={figure} changed={changed} />)}</ul>}
       </details>
     </>
   );

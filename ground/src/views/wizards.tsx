@@ -1,17 +1,23 @@
 import { useEffect } from 'preact/hooks';
+import { signal } from '@preact/signals';
+import { battery, batteryLimits, CELLS, CELLS_MOST } from '../battery';
+import { keep, keptAs } from '../keep';
+import { heightSeen, LIFTED_M, NO_LIFT, rise, type Lift } from '../lift';
+import { typed } from '../protocol/decimal';
 import { borrowLink, command, giveBackLink, listeners, live, ofThisVehicle, parameters, phase, readParameters, stop, storeLine } from '../store';
 import type { Line } from '../protocol/lines';
-import { told, w } from '../words';
+import { shown, told, w } from '../words';
 
 const volts = ofThisVehicle('');
 const byHand = ofThisVehicle<Record<string, boolean>>({});
 const tied = ofThisVehicle(false);
-const calibration = ofThisVehicle<{ running: boolean; thrust: string; grav: string; end: string }>({ running: false, thrust: '', grav: '', end: '' });
+const calibration = ofThisVehicle<{ running: boolean; thrust: string; grav: string; end: string; rise: number }>({ running: false, thrust: '', grav: '', end: '', rise: NaN });
 const imu = ofThisVehicle<{ step: string; text: string; bad: boolean }[]>([]);
 
 /** The link is armed for so long: a page that dies ends the calibration in that time. */
 const LINK_S = 3;
-const CELLS_LOW_V = 11.1;
+const cells = signal(keptAs('cells', (text) => (Number(text) >= 2 && Number(text) <= CELLS_MOST ? Math.round(Number(text)) : null), CELLS));
+let lift: Lift = NO_LIFT;
 
 export function checks(): Record<string, boolean> {
   const t = live.value;
@@ -26,13 +32,14 @@ export function checks(): Record<string, boolean> {
     flags: t !== null && t.flags === 0,
     settings: t !== null && parameters.value.length > 0 && !(storeLine.value ?? '').startsWith('ERR'),
     tilt: byHand.value.tilt === true || parameters.value.some((p) => p.name === 'IAXES' && p.value === 'PROVED'),
-    battery: Number(volts.value.replace(',', '.')) >= CELLS_LOW_V,
+    battery: battery(cells.value, Number(typed(volts.value))) === 'good',
   };
 }
 
 function Checklist() {
   const words = w();
   const state = checks();
+  const limits = batteryLimits(cells.value);
   const open = Object.values(state).filter((ok) => !ok).length;
   useEffect(() => {
     if (phase.value === 'open' && parameters.value.length === 0) void readParameters();
@@ -45,10 +52,18 @@ function Checklist() {
         {Object.entries(words.checks).map(([name, [title, text]]) => (
           <li key={name} class={state[name] ? 'done' : ''}>
             <span class="tick" aria-hidden="true">{state[name] ? '✓' : ''}</span>
-            <div><strong>{title}</strong><small>{text}</small></div>
+            <div><strong>{title}</strong><small>{name === 'battery' ? words.batteryNeeds(shown(limits.least, 1), shown(limits.most, 1)) : text}</small>{name === 'battery' && <small class="problem">{words.batteryIs[battery(cells.value, Number(typed(volts.value)))]}</small>}</div>
             <span class="visually-hidden">{state[name] ? '✓' : '–'}</span>
             {name === 'tilt' && <label class="check"><input type="checkbox" checked={byHand.value.tilt === true} onChange={(event) => (byHand.value = { ...byHand.value, tilt: event.currentTarget.checked })} /> {words.doneByHand}</label>}
-            {name === 'battery' && <input class="short" inputMode="decimal" aria-label={title} placeholder="V" value={volts.value} onInput={(event) => (volts.value = event.currentTarget.value)} />}
+            {name === 'battery' && (
+              <span class="row">
+                <select aria-label={words.cellsLabel} value={cells.value} onChange={(event) => {
+                  cells.value = Number(event.currentTarget.value);
+                  keep('cells', String(cells.value));
+                }}>{Array.from({ length: CELLS_MOST - 1 }, (_, i) => (<option key={i} value={i + 2}>{words.cells(i + 2)}</option>))}</select>
+                <input class="short" inputMode="decimal" aria-label={title} placeholder="V" value={volts.value} onInput={(event) => (volts.value = event.currentTarget.value)} />
+              </span>
+            )}
           </li>
         ))}
       </ul>
@@ -57,11 +72,12 @@ function Checklist() {
 }
 
 function heardCalibration(line: Line): void {
+  if (line.kind === 'telemetry') lift = heightSeen(lift, line.telemetry.height);
   if (line.kind !== 'answer' || line.name !== 'CALIBRATE') return;
   const thrust = /thr:([\d.]+)/.exec(line.rest)?.[1] ?? calibration.value.thrust;
   const end = /end:(\w+)/.exec(line.rest)?.[1] ?? (line.ok ? '' : line.rest);
   const grav = /grav:([\d.]+)/.exec(line.rest)?.[1] ?? calibration.value.grav;
-  calibration.value = { running: end === '' && calibration.value.running, thrust, grav, end };
+  calibration.value = { ...calibration.value, running: end === '' && calibration.value.running, thrust, grav, end };
 }
 
 function Calibration() {
@@ -70,7 +86,7 @@ function Calibration() {
   const blind = c.running && live.value === null;
   const finish = (end: string): void => {
     if (!calibration.value.running) return;
-    calibration.value = { ...calibration.value, running: false, end };
+    calibration.value = { ...calibration.value, running: false, end, rise: rise(lift) }; // what follows is a fall
     void stop('STOP');
   };
   useEffect(() => {
@@ -94,7 +110,7 @@ function Calibration() {
     };
   }, [c.running]);
   const begin = async (): Promise<void> => {
-    calibration.value = { running: false, thrust: '', grav: '', end: '' };
+    calibration.value = { running: false, thrust: '', grav: '', end: '', rise: NaN };
     const asked = await command('#GET LINK');
     borrowLink(asked.lines[0]?.rest.split(' ')[0] ?? '0');
     const armed = await command(`#LINK ${LINK_S}`);
@@ -104,20 +120,21 @@ function Calibration() {
     }
     const begun = await command('#CALIBRATE', { tries: 1 });
     if (!begun.ok) void giveBackLink();
-    calibration.value = begun.ok ? { running: true, thrust: '0', grav: '', end: '' } : { ...calibration.value, end: begun.reason };
+    lift = NO_LIFT;
+    calibration.value = begun.ok ? { running: true, thrust: '0', grav: '', end: '', rise: NaN } : { ...calibration.value, end: begun.reason };
   };
   return (
     <section class={`card ${c.running ? 'alarm' : ''}`} aria-labelledby="calibration-title">
       <h2 id="calibration-title">{words.calibration}</h2>
       <p>{words.calibrationText}</p>
       {c.running ? (
-        <div role="alert"><p class="shout">{words.calibrationRunning}</p><p class="big-value">{c.thrust}<small> N</small></p></div>
+        <div role="alert"><p class="shout">{words.calibrationRunning}</p><p class="big-value">{shown(c.thrust)}<small> N</small></p></div>
       ) : (
         <>
           <label class="check"><input type="checkbox" checked={tied.value} onChange={(event) => (tied.value = event.currentTarget.checked)} /> {words.calibrationBound}</label>
           <button class="primary" disabled={!tied.value || phase.value !== 'open' || live.value?.state !== 'GROUND'} onClick={() => void begin()}>{words.calibrationGo}</button>
-          {c.end && <p class="banner" role="status">{words.calibrationEnd(words.calibrationEnds[c.end] ?? told(c.end), c.thrust || '–')}</p>}
-          {c.end && Number(c.grav) > 0 && <button onClick={() => void command(`#GRAV ${c.grav}`)}>{words.setGrav(c.grav)}</button>}
+          {c.end && <p class="banner" role="status">{words.calibrationEnd(words.calibrationEnds[c.end] ?? told(c.end), c.thrust === '' ? '–' : shown(c.thrust))}</p>}
+          {c.end && Number(c.grav) > 0 && (c.rise >= LIFTED_M ? <button onClick={() => void command(`#GRAV ${c.grav}`)}>{words.setGrav(shown(c.grav))}</button> : <p class="banner">{words.noHover(shown(c.grav), shown(c.rise, 2))}</p>)}
         </>
       )}
     </section>

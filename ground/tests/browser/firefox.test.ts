@@ -43,7 +43,7 @@ describe.skipIf(leftOut(FIREFOX === null ? 'no Firefox' : null))(`in Firefox, by
     await button(page, 'Connect').click();
     await untilState(page, 'GROUND');
     await tab(page, 'Parameters').click();
-    await page.waitForSelector('table.parameters', { timeout: 30_000 });
+    await page.waitForSelector('.group', { timeout: 30_000 });
     await board.stop();
     await page.waitForFunction(() => document.body.innerText.includes('The simulation has ended or the connection broke.'));
   });

@@ -67,7 +67,7 @@ export async function parameter(page: Page, name: string, search = 'Search') {
 }
 
 export async function untilHeight(page: Page, metres: number, within: number, timeout = 30_000): Promise<void> {
-  await page.waitForFunction(([want, by]) => Math.abs(parseFloat(document.querySelector('.big-value')!.textContent!) - want!) <= by!, [metres, within], { timeout });
+  await page.waitForFunction(([want, by]) => Math.abs(parseFloat(document.querySelector('.big-value')!.textContent!.replace(',', '.')) - want!) <= by!, [metres, within], { timeout });
 }
 
 export async function untilState(page: Page, state: string, timeout = 30_000): Promise<void> {

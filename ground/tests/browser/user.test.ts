@@ -1,13 +1,11 @@
 import { execFileSync } from 'node:child_process';
-import { createHash } from 'node:crypto';
 import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
-import { createServer, type Server } from 'node:http';
-import type { AddressInfo } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
-import { button, openBrowser, openPage, picture, PLOMADA, serveSite, startVehicle, tab, untilHeight, untilLaserIsOk, untilState, type Site } from './rig';
+import { button, openBrowser, openPage, parameter, picture, PLOMADA, serveSite, startVehicle, tab, untilHeight, untilLaserIsOk, untilState, type Site } from './rig';
+import { scripted } from './script';
 
 let browser: Browser;
 let site: Site;
@@ -52,8 +50,7 @@ describe('a vehicle that demands sums', () => {
     page = await openPage(browser, site.url);
     await startVehicle(page, '5×');
     await tab(page, 'Parameters').click();
-    await page.waitForSelector('table.parameters', { timeout: 30_000 });
-    await page.getByLabel('SUM', { exact: true }).selectOption('ON');
+    await (await parameter(page, 'SUM')).selectOption('ON');
     await page.getByRole('button', { name: 'Write changes (1)' }).click();
     await button(page, 'Write now').click();
     await shows('1 written.');
@@ -194,12 +191,12 @@ describe('the wizards', () => {
     await button(page, '1 Level').click();
     await shows('OK IMU LEVEL');
     await tilt('imu_mount_roll_deg', 15);
-    await page.waitForTimeout(400);
+    await page.waitForTimeout(1500);
     await button(page, '2 Right side up').click();
     await shows('OK IMU RIGHT IROLL:-ROLL IAXES:ASSUMED');
     await tilt('imu_mount_roll_deg', 0);
     await tilt('imu_mount_pitch_deg', 15);
-    await page.waitForTimeout(400);
+    await page.waitForTimeout(1500);
     await button(page, '3 Nose up').click();
     await shows('OK IMU NOSE IPITCH:PITCH IAXES:PROVED');
   });
@@ -255,20 +252,6 @@ describe('what was saved', () => {
   });
 });
 
-/** A device that is not the firmware: the least of a WebSocket server that can say something. */
-async function stranger(says: Buffer | null): Promise<{ url: string; server: Server }> {
-  const server = createServer();
-  server.on('upgrade', (request, socket) => {
-    const accept = createHash('sha1').update(`${request.headers['sec-websocket-key']}258EAFA5-E914-47DA-95CA-C5AB0DC85B11`).digest('base64');
-    socket.write(`HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: ${accept}\r\n\r\n`);
-    const timer = setInterval(() => says && socket.write(Buffer.concat([Buffer.from([0x82, says.length]), says])), 100);
-    socket.on('close', () => clearInterval(timer));
-    socket.on('error', () => clearInterval(timer));
-  });
-  await new Promise<void>((done) => server.listen(0, '127.0.0.1', done));
-  return { url: `ws://localhost:${(server.address() as AddressInfo).port}`, server };
-}
-
 describe('a link that leads elsewhere', () => {
   it('is told in plain words: silence, another rate, another device, nobody, no Web Serial', async () => {
     page = await openPage(browser, site.url);
@@ -278,14 +261,15 @@ describe('a link that leads elsewhere', () => {
       [Buffer.from([0x80, 0xff, 0xe0, 0x9c, 0x80, 0x0d]), 'Octets come that are no text'],
     ];
     for (const [says, want] of cases) {
-      const { url, server } = await stranger(says);
-      await page.getByLabel('Address').fill(url);
+      const device = await scripted(() => undefined);
+      const timer = setInterval(() => says && device.send(says), 100);
+      await page.getByLabel('Address').fill(device.url);
       await button(page, 'Connect').click();
       await shows(want);
       await page.locator('.status').click();
       await button(page, 'Disconnect').click();
-      server.closeAllConnections();
-      server.close();
+      clearInterval(timer);
+      device.end();
     }
     await page.evaluate(() => Object.defineProperty(navigator, 'serial', { value: undefined })); // as in Safari
     await button(page, 'Choose a port').click();
@@ -344,7 +328,10 @@ describe('in Spanish', () => {
       await untilState(page, 'GROUND');
       for (let view = 0; view < 6; view++) {
         await page.locator('nav button').nth(view).click();
-        if (view === 1) await page.waitForSelector('table.parameters', { timeout: 30_000 });
+        if (view === 1) {
+          await page.waitForSelector('.group', { timeout: 30_000 });
+          for (const group of await page.locator('.group:not([open]) summary').all().then((all) => all.reverse())) await group.click();
+        }
         await gather();
       }
       await page.context().close();

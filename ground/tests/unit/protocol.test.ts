@@ -4,7 +4,9 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { describe, expect, it } from 'vitest';
 import { freshness, LIVE_MS } from '../../src/freshness';
-import { delivered, presets } from '../../src/presets';
+import { battery, batteryLimits, CELLS } from '../../src/battery';
+import { heightSeen, LIFTED_M, NO_LIFT, rise } from '../../src/lift';
+import { delivered, groupOf, presets } from '../../src/presets';
 import { LineSplitter, parseLine, type Line } from '../../src/protocol/lines';
 import { dumpsIn, fromXctu, readLog } from '../../src/protocol/logs';
 import { differences, objection, parseHelp, parseSet, same, writeSet } from '../../src/protocol/parameters';
@@ -195,7 +197,8 @@ describe('parameters', () => {
   });
   it('are refused before they are sent', () => {
     expect(['0.02', '1', ' 0 '].map((text) => objection(kp, text))).toEqual([null, null, null]);
-    expect(['', '1.01', '-0.1', '1e-3', 'nan', '0,5'].map((text) => objection(kp, text))).toEqual(['empty', 'range', 'range', 'number', 'number', 'number']);
+    expect(['', '1.01', '-0.1', '1e-3', 'nan', '1,000.5', '0,0,5', '2,9'].map((text) => objection(kp, text))).toEqual(['empty', 'range', 'range', 'number', 'number', 'number', 'number', 'range']);
+    expect(['0,5', '0.5'].map((text) => objection(kp, text))).toEqual([null, null]);
     expect([objection(law, 'est'), objection(law, 'LQR')]).toEqual([null, 'choice']);
   });
   it('survive a file', () => expect(parseSet(writeSet({ KP: '0.02', LAW: 'PID', L: '220', IROLL: '-ROLL' }))).toEqual({ KP: '0.02', LAW: 'PID', L: '220', IROLL: '-ROLL' }));
@@ -204,11 +207,48 @@ describe('parameters', () => {
   });
   it('compare as numbers', () => expect([same('7', '7.0'), same('7', '7.1'), same('PD', 'PID')]).toEqual([true, false, false]));
   it('as delivered are those of this firmware, and the presets set none that it does not have', () => {
-    const rows = execFileSync('../build/plomada', ['params'], { encoding: 'utf8' }).split('\n').slice(1).filter((row) => row !== '');
-    const table = Object.fromEntries(rows.map((row) => { const cells = row.trim().split(/\s+/); return [cells[0]!, cells[4]!]; }));
+    const rows = execFileSync('../build/plomada', ['params'], { encoding: 'utf8' }).split('\n').slice(1).filter((row) => row !== '').map((row) => row.trim().split(/\s+/));
+    const table = Object.fromEntries(rows.map((cells) => [cells[0]!, cells[4]!]));
     expect(delivered).toEqual(table);
+    expect(groupOf).toEqual(Object.fromEntries(rows.map((cells) => [cells[0]!, cells[5]!])));
+    for (const words of [en, es]) expect(Object.keys(words.groups).sort()).toEqual([...new Set(Object.values(groupOf)), 'other'].sort());
     expect(Object.keys(es.meanings).filter((name) => !(name in table))).toEqual([]); // one that is missing is shown in the firmware's English
     for (const set of Object.values(presets)) expect(Object.keys(set).filter((name) => !(name in table))).toEqual([]);
+  });
+});
+
+describe('what docs/hardware.md says', () => {
+  const page = readFileSync('../docs/hardware.md', 'utf8');
+  it('of the battery is what the checklist asks for', () => {
+    const [, cells, full] = /battery: .*?, (\d)S .*?, ([\d.]+) V when full/.exec(page)!;
+    const [, least, most] = /Battery, ([\d.]+) to ([\d.]+) V/.exec(page)!;
+    expect(CELLS).toBe(Number(cells));
+    expect(batteryLimits(CELLS).least).toBeCloseTo(Number(least), 6);
+    expect(batteryLimits(CELLS).most).toBeCloseTo(Number(most), 6);
+    expect(full).toBe(most);
+    expect([11.2, Number(least), Number(most), 17.1, NaN, 0].map((volts) => battery(CELLS, volts))).toEqual(['low', 'good', 'good', 'many', 'none', 'none']);
+  });
+  it('of starting the motors is what stands at Arm, in its order', () => {
+    const steps = page.slice(page.indexOf('## Starting the motors')).match(/^\d\. .*$/gm)!.slice(0, 4);
+    const marks: [string, RegExp, RegExp, RegExp][] = [
+      ['arm', /#ARM/, /Arm\./, /Armar\./], ['motors', /sticks .* motors start/, /sticks/, /palancas/], ['handOver', /switch to \*LaunchPad\*/, /switch to LaunchPad/, /interruptor a LaunchPad/], ['takeOff', /#SETR/, /Take off/, /Despegar/],
+    ];
+    for (const [i, [name, there, english, spanish]] of marks.entries()) {
+      expect(steps[i]).toMatch(there);
+      expect([Object.keys(en.armSteps)[i], Object.keys(es.armSteps)[i]]).toEqual([name, name]);
+      expect(en.armSteps[name]).toMatch(english);
+      expect(es.armSteps[name]).toMatch(spanish);
+    }
+  });
+});
+
+describe('whether a tied vehicle left the ground', () => {
+  const seen = (heights: number[]): number => rise(heights.reduce(heightSeen, NO_LIFT));
+  it('is told by a second of heights against the first second, and one wild height decides nothing', () => {
+    expect(seen([0, 0.004, 0.002, 0.003, 0.001, 0.05, 0.05, 0.048, 0.052, 0.05])).toBeCloseTo(0.048, 6);
+    expect(seen([0, 0, 0.3, 0, 0, 0, 0, 0, 0, 0.3])).toBe(0);
+    expect(seen([0, NaN, 0, 0, 0, 0, NaN, 0.06, 0.06, 0.06, 0.06])).toBeNaN(); // four are too few
+    expect(NaN >= LIFTED_M).toBe(false);
   });
 });
 
