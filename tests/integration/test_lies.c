@@ -1,14 +1,16 @@
 /* One sensor lies, and the vehicle neither flies away nor falls: rows of conditions with the harm that they
- * may do. LIES_SEEDS flights per row, 2 unless the environment says otherwise. */
+ * may do. Pinned: conditions that once did harm, flown by the same seeds each time. How often such conditions do
+ * harm, over seeds and sizes drawn anew, is asked by test_rates.py. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include "child.h"
 #include "unity.h"
 
 #define FLAT "plant.platform=0"
+#define FIRST_SEED 301UL
+#define SEEDS 2UL
 
 void setUp(void) {}
 void tearDown(void) {}
@@ -18,12 +20,6 @@ typedef struct {
     const char *const assignments[9];
     double highest_mm, touch_mps, rms_mm;
 } lie_t;
-
-static unsigned long seeds(void)
-{
-    const char *text = getenv("LIES_SEEDS");
-    return text != NULL ? strtoul(text, NULL, 10) : 2UL;
-}
 
 static void at_most(double bound, double found, const char *what, const lie_t *lie, unsigned long seed)
 {
@@ -49,7 +45,7 @@ static void fly_once(const char *scenario, unsigned long seed, const lie_t *lie,
 
 static void fly(const char *scenario, const lie_t *lie, bool lands)
 {
-    for (unsigned long seed = 301; seed < 301 + seeds(); seed++) {
+    for (unsigned long seed = FIRST_SEED; seed < FIRST_SEED + SEEDS; seed++) {
         fly_once(scenario, seed, lie, lands);
     }
 }
@@ -69,8 +65,8 @@ static const lie_t sights[] = {
 static const lie_t content[] = {
     {{FLAT, "plant.sight_blocked=0.71", "plant.block_mm=805"}, 800.0, 1.0, 0.0},
     {{FLAT, "plant.sight_blocked=1", "plant.block_mm=795", "plant.hover_thrust=7.8"}, 800.0, 1.0, 0.0},
-    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=6", "plant.block_mm=739"}, 1600.0, 1.0, 0.0},
-    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=6", "plant.block_mm=750"}, 1600.0, 1.0, 0.0},
+    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=6", "plant.block_mm=739"}, 1500.0, 1.0, 0.0},
+    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=6", "plant.block_mm=750"}, 1500.0, 1.0, 0.0},
 };
 
 void test_a_blocked_beam_that_shows_the_reference_does_not_fly_the_vehicle_away(void)
@@ -226,7 +222,7 @@ void test_motors_stop_within_12_s_on_the_ground_though_the_beam_looks_beyond_an_
     static flight_result_t result;
 
     for (size_t i = 0; i < sizeof edges / sizeof edges[0]; i++) {
-        for (unsigned long seed = 301; seed < 301 + seeds(); seed++) {
+        for (unsigned long seed = FIRST_SEED; seed < FIRST_SEED + SEEDS; seed++) {
             order_t order = {seed, &edges[i]};
             const double *value = result.metrics.value;
 
@@ -328,7 +324,7 @@ static const lie_t jump = {{FLAT, "plant.airframe=1", "plant.acc_jump=1.6", "pla
 
 void test_a_jump_of_the_accelerometer_does_not_bring_the_heights_into_doubt(void)
 {
-    for (unsigned long seed = 301; seed < 309; seed++) {
+    for (unsigned long seed = FIRST_SEED; seed < FIRST_SEED + 8; seed++) {
         fly_once("est-60cm-ramp", seed, &jump, true);
     }
 }

@@ -1,6 +1,6 @@
 /* The firmware's estimator assumes thrust in proportion to the throttle, one lag and one damping. Here it
  * flies rotors by momentum theory: thrust by a power of the throttle, quick up and slow down, inflow, drag by
- * the square. */
+ * the square. Means and worst of pinned seeds; rates over vehicles drawn anew: test_rates.py. */
 #include "child.h"
 #include "unity.h"
 
