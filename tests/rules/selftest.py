@@ -431,18 +431,22 @@ class Version(unittest.TestCase):
             root = Path(name)
             (root / "firmware").mkdir()
             (root / "firmware/version.h").write_text(f'#define PLOMADA_VERSION "{told}"\n', encoding="utf-8")
-            (root / "CHANGELOG.md").write_text(f"# Changes\n\n{entry}\n\n## 0.1.0\n", encoding="utf-8")
+            (root / "CHANGELOG.md").write_text(f"# Changes\n\n{entry}\n\n## 0.1.0 (2026-11-22)\n", encoding="utf-8")
             return list(version.check(root))
 
     def test_the_newest_entry_is_the_version(self):
-        self.assertEqual(self.complaints("0.2.0", "## 0.2.0"), [])
+        self.assertEqual(self.complaints("0.2.0", "## 0.2.0 (2026-12-01)"), [])
 
     def test_another_newest_entry_is_named(self):
-        self.assertEqual(len(self.complaints("0.2.0", "## 0.3.0")), 1)
+        self.assertEqual(len(self.complaints("0.2.0", "## 0.3.0 (2026-12-01)")), 1)
         self.assertEqual(len(self.complaints("0.2.0", "")), 1)
 
     def test_a_version_that_is_none_is_named(self):
-        self.assertEqual(len(self.complaints("0.2", "## 0.2")), 1)
+        self.assertEqual(len(self.complaints("0.2", "## 0.2 (2026-12-01)")), 1)
+
+    def test_an_entry_without_its_day_is_named(self):
+        for title in ("## 0.2.0", "## 0.2.0 (soon)", "## 0.2.0 (2026-13-01)", "## 0.2.0 2026-12-01"):
+            self.assertEqual(len(self.complaints("0.2.0", title)), 1, title)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,6 @@
 """tools/fit on flights of simulated vehicles. Usage: test_fit.py PLOMADA"""
+import contextlib
+import io
 import json
 import random
 import shutil
@@ -296,6 +298,13 @@ class Tuning(unittest.TestCase):
             path = Path(scratch, "1.jsonl")
             path.write_text('{"number": 1, "made_by": "a"}\n{"number": 2, "made_by": "b"}\n{"number": 3, "made')
             self.assertEqual(list(acceptance.known_records(path, "a")), [1])
+
+    def test_a_must_of_the_acceptance_is_missed_when_so_few_are_improbable_and_never_is_never(self):
+        for reached, must, missed in ((30, 29 / 30, False), (28, 29 / 30, False), (24, 29 / 30, True), (22, 0.8, False), (14, 0.8, True),
+                                      (30, 1.0, False), (29, 1.0, True)):
+            with contextlib.redirect_stdout(io.StringIO()) as told:
+                self.assertEqual(acceptance.print_verdict("x", reached, must, of=30, error=0.05 / 17), missed, (reached, must))
+            self.assertEqual(told.getvalue().endswith(" MISSED\n"), missed)
 
 
 class FakeFlights:

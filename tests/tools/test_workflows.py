@@ -5,6 +5,7 @@ By a parser of YAML (build/venv). What this holds is said in CONTRIBUTING.md, "T
 import json
 import re
 import subprocess
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -87,7 +88,7 @@ class Workflows(unittest.TestCase):
                 for target in job["strategy"]["matrix"][drawn.group(1)] if drawn else command.split()[1:]:
                     self.assertIsNotNone(recipe(target), f"{where}: make {target}")
             for command in (step["run"] for step in job["steps"] if step.get("run", "").startswith(".")):
-                self.assertTrue((ROOT / command).is_file(), f"{where}: {command}")
+                self.assertTrue((ROOT / command.split()[0]).is_file(), f"{where}: {command}")
 
     def test_a_job_that_exists_to_run_something_skips_nothing(self):
         self.assertIn("\nexport NOTHING_SKIPPED=1\n", (ROOT / ".ci/run").read_text(encoding="utf-8"))
@@ -96,6 +97,37 @@ class Workflows(unittest.TestCase):
                 if "$(ctest)" in line:
                     self.assertIn("NOTHING_SKIPPED=1 $(ctest)", line, target)
         self.assertRegex(recipe("soak"), r"\$\(setup\) .*\bprove\b")
+
+
+class Subjects(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = scratch.name
+        self.git("init", "-q")
+
+    def git(self, *words):
+        identity = ["-c", "user.name=x", "-c", "user.email=x@example.org"]
+        return subprocess.run(["git", *identity, *words], cwd=self.folder, capture_output=True, text=True, check=True).stdout.strip()
+
+    def commit(self, subject):
+        self.git("commit", "-q", "--allow-empty", "-m", subject)
+        return self.git("rev-parse", "HEAD")
+
+    def told(self, *words):
+        done = subprocess.run([ROOT / ".ci/subjects", *words], cwd=self.folder, capture_output=True, text=True, check=False)
+        return done.returncode, done.stdout
+
+    def test_a_subject_has_at_most_72_characters(self):
+        base = self.commit("y" * 100)
+        self.assertEqual(self.told()[0], 1)
+        self.commit("x" * 72)
+        self.assertEqual(self.told(base), (0, ""))
+        self.commit("x" * 73)
+        self.commit("short")
+        self.assertEqual(self.told(base)[0], 1)
+        self.assertIn("x" * 73, self.told(base)[1])
+        self.assertEqual(self.told("0" * 40), (0, ""), "the first push of a branch: its last commit")
 
 
 class Packages(unittest.TestCase):
