@@ -1,8 +1,9 @@
 /* Nothing moves without an order: since power-on and after every landing no thrust above the armed idle,
  * however the vehicle is rocked, whatever its sensors miss, and whatever the selector's pin says.
  *
- * Vehicles are drawn, ORDERS_VEHICLES of them, from ORDERS_SEED on; "new" draws that seed too. A failure
- * names the seed: ORDERS_SEED=N ORDERS_VEHICLES=1 repeats it. */
+ * Vehicles are drawn, ORDERS_VEHICLES of them, from ORDERS_SEED on; "new" draws that seed too, as each run of
+ * the soak does, and SOAK_SEED repeats that run. A failure names the seed: ORDERS_SEED=N ORDERS_VEHICLES=1
+ * repeats it. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -49,14 +50,22 @@ static const span_t for_good = {SPAN_POWER_ON_S, SPAN_FOR_GOOD_S};
 static unsigned vehicles;
 static unsigned long first_seed;
 
+static unsigned long drawn_seed(void)
+{
+    const char *given = getenv("SOAK_SEED");
+    const unsigned long seed = given != NULL ? strtoul(given, NULL, 10)
+                                             : (unsigned long)time(NULL) % 1000000UL;
+
+    printf("SOAK_SEED=%lu repeats this run\n", seed);
+    return 1000UL * seed;
+}
+
 void setUp(void)
 {
     const char *count = getenv("ORDERS_VEHICLES"), *seed = getenv("ORDERS_SEED");
 
     vehicles = count != NULL ? (unsigned)strtoul(count, NULL, 10) : 40U;
-    first_seed = seed == NULL               ? 1UL
-                 : strcmp(seed, "new") == 0 ? (unsigned long)time(NULL) % 1000000UL * 1000UL
-                                            : strtoul(seed, NULL, 10);
+    first_seed = seed == NULL ? 1UL : strcmp(seed, "new") == 0 ? drawn_seed() : strtoul(seed, NULL, 10);
 }
 
 void tearDown(void) {}
