@@ -1,7 +1,7 @@
 /* An autopilot whose throttle commands a climb rate: how well law EST flies it, how wrong CRATE, GRAV and
  * PLANT may be, and the two tests that tell which autopilot one has. The figures of docs/control.md, "What
- * does the throttle command?", are the bounds of these tests, of means over pinned seeds. How often a flight keeps
- * what is required, over seeds drawn anew, is asked by test_rates.py. */
+ * does the throttle command?", are the bounds of these tests, of means over pinned seeds. How often a flight
+ * keeps what is required, over seeds drawn anew, is asked by test_rates.py. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* One sensor lies, and the vehicle neither flies away nor falls: rows of conditions with the harm that they
- * may do. Pinned: conditions that once did harm, flown by the same seeds each time. How often such conditions do
- * harm, over seeds and sizes drawn anew, is asked by test_rates.py. */
+ * may do. Pinned: conditions that once did harm, flown by the same seeds each time. How often such conditions
+ * do harm, over seeds and sizes drawn anew, is asked by test_rates.py. */
 #include <math.h>
 #include <stdio.h>
 #include <unistd.h>

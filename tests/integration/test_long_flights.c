@@ -1,6 +1,6 @@
 /* Flights of hours, in virtual time. What wraps: the time in microseconds every 71.6 minutes, and negative as
- * a signed number after half of that; the scanner's stamps every 4 h 39 min. One pinned seed: a wrap is no matter
- * of chance. */
+ * a signed number after half of that; the scanner's stamps every 4 h 39 min. One pinned seed: a wrap is no
+ * matter of chance. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
