@@ -53,7 +53,7 @@ class Log(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.dir)
 
     def log(self, name, content, *options):
-        (self.dir / name).write_bytes(content.encode("ascii"))
+        (self.dir / name).write_bytes(content.encode("latin-1"))
         return subprocess.run([PROGRAM, "log", name, *options], cwd=self.dir, capture_output=True, text=True, check=False)
 
     def written(self, name):
@@ -66,7 +66,11 @@ class Log(unittest.TestCase):
         lines = [TELEMETRY, "OK KP 0.015", *dump(), TELEMETRY]
         for name, content in (("a.txt", text(lines)), ("b.txt", text(lines).replace("\r\n", "\n")),
                               ("c.log", console(text(lines).encode())), ("d.log", console(text(lines).encode(), 1)),
-                              ("e.log", console(b"\0\0" + text(lines).encode(), 200))):
+                              ("e.log", console(b"\0\0" + text(lines).encode(), 200)),
+                              # what precedes XCTU's own header, and a log that lacks it
+                              ("f.log", "\n" + console(text(lines).encode())), ("g.log", "XCTU, flight 3\r\n\n" + console(text(lines).encode())),
+                              ("h.log", "\xef\xbb\xbf" + console(text(lines).encode())),
+                              ("i.log", console(text(lines).encode()).split("\n", 1)[1])):
             done = self.log(name, content)
             self.assertEqual((done.returncode, done.stderr), (0, ""), name)
             self.assertEqual(self.written(Path(name).stem + ".csv"), CSV, name)

@@ -117,6 +117,13 @@ class Reading(Case):
                                               for k, packet in enumerate(packets(text, size))))
             self.assertEqual((rec.kind, rec.columns["state"], rec.damaged), ("console", ["FLYING", "COASTING", "FLYING"], 0), size)
 
+    def test_a_console_log_with_anything_before_its_header_is_one(self):
+        rows = ['02-05-2015 23:59:58.000,-,AT,"A,0013A2004031A8D7,XBee,10EF,COM4 - 9600/8/N/1/N"',
+                f"02-05-2015 23:59:58.100,0,RECV,{(LINE + chr(13) + chr(10)).encode().hex()}"]
+        for before in ("", "\n", "flight 3\n", "\ufeff", "XCTU\n\n", f"{LINE}\n"):
+            rec = recording.read(self.write("x.log", (before + "\n".join(rows) + "\n").encode()))
+            self.assertEqual((rec.kind, rec.columns["state"]), ("console", ["FLYING"]), before)
+
     def test_a_console_log_over_midnight_with_commands_sent(self):
         line = (LINE + "\r\n").encode().hex()
         rec = recording.read(self.console([

@@ -29,13 +29,15 @@ static int hex_digit(int c)
     return isdigit(c) ? c - '0' : isxdigit(c) ? toupper(c) - 'A' + 10 : -1;
 }
 
-/* A line of XCTU's: date time,id,RECV,hex. Returns where the hex begins, NULL for another line. */
-static const char *received_hex(const char *line)
+/* A record of XCTU's: date time,id,TYPE,rest. Returns where the type begins, NULL for another line. */
+static const char *record_type(const char *line)
 {
     const char *first = strchr(line, ','), *second = first == NULL ? NULL : strchr(first + 1, ',');
+    int day, month, year, hour, minute;
 
-    return second != NULL && isdigit((unsigned char)line[0]) && strncmp(second, ",RECV,", 6) == 0 ? second + 6
-                                                                                                  : NULL;
+    return second != NULL && sscanf(line, "%d-%d-%d %d:%d:", &day, &month, &year, &hour, &minute) == 5
+               ? second + 1
+               : NULL;
 }
 
 static void take_hex(assembler_t *assembler, const char *hex)
@@ -46,32 +48,24 @@ static void take_hex(assembler_t *assembler, const char *hex)
     }
 }
 
-static bool is_console(const char *line)
-{
-    int day, month, year, hour, minute;
-
-    return sscanf(line, "%d-%d-%d %d:%d:", &day, &month, &year, &hour, &minute) == 5;
-}
-
 void saved_read(FILE *in, void (*take)(void *context, const char *line), void *context, char rest[SAVED_LINE])
 {
     assembler_t assembler = {.take = take, .context = context, .text = rest};
     char *line = NULL;
     size_t room = 0;
     ssize_t length;
-    bool console = false, first = true;
+    bool console = false; /* from its first record on, whatever stands before it */
 
     while ((length = getline(&line, &room, in)) > 0) {
-        if (first) {
-            console = is_console(line);
-            first = false;
-        }
-        if (!console) {
+        const char *type = record_type(line);
+
+        console = console || type != NULL;
+        if (type != NULL && strncmp(type, "RECV,", 5) == 0) {
+            take_hex(&assembler, type + 5);
+        } else if (!console) {
             for (ssize_t i = 0; i < length; i++) {
                 take_octet(&assembler, (unsigned char)line[i]);
             }
-        } else if (received_hex(line) != NULL) {
-            take_hex(&assembler, received_hex(line));
         }
     }
     free(line);

@@ -99,7 +99,7 @@ def read(path):
     if first.replace('"', "").startswith(("t_s;", "t_s\t")):
         raise Unreadable(f"{path}:1: cells are separated by '{first.replace(chr(34), '')[3]}', not by a comma")
     lines = text.replace("\0", "").split("\n")        # a radio that powers up sends NULs
-    if CONSOLE_START.match(first):
+    if any(CONSOLE_START.match(line) for line in lines):     # whatever stands before its first record
         return read_console(path, lines)
     recording = Recording(path.stem, "telemetry")
     read_telemetry(recording, ((index * TELEMETRY_PERIOD_S, line) for index, line in enumerate(
