@@ -16,6 +16,7 @@
 
 #define SHAKEN_MPS2 0.9F       /* chosen: about twice the usual noise, NOISE_START_MPS2 in estimator.c */
 #define STANDING_TIME_S 1.0F   /* chosen: on the ground the felt speed decays, the bias must not add up */
+#define STANDING_WAY_S 2.0F    /* chosen: nor its way; longer than a lift-off, 0.1 m/s2 make 0.2 m */
 #define FELT_LEAK_PER_S 1.8F   /* chosen: 2 x 0.9, critically damped without the bias, poles at 0.9 1/s */
 #define FELT_PULL_PER_S2 0.81F /* 0.9 squared, see FELT_LEAK_PER_S */
 #define BIAS_PULL_PER_S3 0.1F  /* chosen: the bias follows in 8 s, 0.81 / 0.1; slower than the verdicts */
@@ -113,6 +114,7 @@ void accelerometer_move(accelerometer_t *accelerometer, float mean_mps2, bool st
     witness_move(felt, mean_mps2 - accelerometer->bias_mps2, dt_s);
     if (standing) {
         felt->speed_mps *= 1.0F - dt_s / STANDING_TIME_S;
+        felt->off_m *= 1.0F - dt_s / STANDING_WAY_S;
         felt->running_s = 0.0F;
     }
 }

@@ -571,6 +571,30 @@ void test_it_does_not_stand_while_it_falls_or_sways(void)
     TEST_ASSERT_TRUE(sway_as_in_the_air(&it.senses.sway));
 }
 
+/* Propellers off, or ropes that hold it: a take-off without a lift-off, then a landing. The accelerometer's
+ * bias has become another since it was measured. */
+void test_a_take_off_that_stands_for_a_minute_doubts_nothing(void)
+{
+    for (float bias_mps2 = -0.1F; bias_mps2 < 0.15F; bias_mps2 += 0.2F) {
+        setUp();
+        world.steady = world.powerless = true;
+        flown.grounded = true;
+        flown.off_ground = false;
+        run(5.0F);
+        flown.grounded = false;
+        flown.standing = true;
+        flown.thrust_n = 1.3F * HOVER_N;
+        world.felt_lie_mps2 = bias_mps2;
+        run(60.0F);
+        TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
+        flown.standing = false;
+        flown.wanted_m = NAN;
+        flown.thrust_n = 0.9F * HOVER_N;
+        run(3.0F);
+        TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
+    }
+}
+
 /* ---- carried */
 
 /* On the ground for the state, without heights; who has it swings it so fast. */
