@@ -149,7 +149,7 @@ const scenario_t scenarios[] = {
     },
     {
         .name = "pid-40cm",
-        .summary = "figure A1.3: PID at 40 cm, free of ropes",
+        .summary = "figure A1.3: PID at 40 cm, its ropes slack all the time",
         .settings = {FLOWN_PID},
         .reference_m = 0.4,
         .land_s = 20.0,
