@@ -61,7 +61,7 @@ export const en = {
     ['Thrust has no effect', 'The vehicle does not follow the commands: motors off, throttle not handed over, or the pilot flies.'],
   ] as [string, string][],
   unknownFlag: (n: number) => [`Flag ${n}`, 'This page does not know it: see the operator’s guide.'] as [string, string],
-  sums: 'A sum on every line', sumsHint: 'A vehicle with #SUM ON demands it; the page notices by itself. See “A radio of your own” in the operator’s guide.',
+  sums: 'A sum on every line', sumsHint: 'A vehicle with #SUM ON demands it; the page notices by itself. It is against noise, not against strangers: see “Keep strangers out” in the operator’s guide.',
   troublesTitle: 'Sensors, air and ground', troubles: {
     raysLost: '60 % of rays lost', blocked: 'Sight blocked', scanFrozen: 'Scans frozen', glitches: '10 % broken scans', outage: 'Laser mute for 1 s', restart: 'Laser restarts', imuMute: 'IMU mute', imuFrozen: 'IMU frozen', imuGarbled: 'IMU garbled',
     accBias: 'Accelerometer +2.3 m/s²', accSign: 'Accelerometer reversed', vibration: 'Vibration', gust: 'Gust for 1 s', tugs: 'Rope tugs', heavy: 'Heavier: 9 N hover', edge: 'Table below the beam', bars: 'Bars on the floor',
@@ -161,7 +161,7 @@ export const es: Words = {
     ['El empuje no hace efecto', 'El vehículo no sigue las órdenes: motores parados, gas sin entregar, o vuela el piloto.'],
   ],
   unknownFlag: (n) => [`Aviso ${n}`, 'Esta página no lo conoce: vea la guía del operador.'],
-  sums: 'Suma en cada línea', sumsHint: 'Un vehículo con #SUM ON la exige; la página lo nota sola. Vea «A radio of your own» en la guía del operador.',
+  sums: 'Suma en cada línea', sumsHint: 'Un vehículo con #SUM ON la exige; la página lo nota sola. Protege del ruido, no de extraños: vea «Keep strangers out» en la guía del operador.',
   troublesTitle: 'Sensores, aire y suelo', troubles: {
     raysLost: '60 % de rayos perdidos', blocked: 'Vista tapada', scanFrozen: 'Barridos congelados', glitches: '10 % de barridos rotos', outage: 'Láser mudo 1 s', restart: 'Láser se reinicia', imuMute: 'IMU muda', imuFrozen: 'IMU congelada', imuGarbled: 'IMU con errores',
     accBias: 'Acelerómetro +2,3 m/s²', accSign: 'Acelerómetro invertido', vibration: 'Vibración', gust: 'Ráfaga de 1 s', tugs: 'Tirones de cuerda', heavy: 'Más pesado: 9 N', edge: 'Mesa bajo el haz', bars: 'Listones en el suelo',
