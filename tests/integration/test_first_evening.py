@@ -165,6 +165,9 @@ class Evening(unittest.TestCase):
         self.assertEqual(set(DONE) - self.done, set(), "the page does not say this any more")
         self.assertGreaterEqual(len(self.typed), 37)
 
+    def test_who_takes_twice_the_time_gets_through_it_too(self):
+        self.spend(PAGE.read_text(encoding="utf-8"), 2 * PAUSE_S)
+
     def test_a_page_that_says_what_is_not_so_is_found_out(self):
         page = re.sub(r"\n {3,}", " ", PAGE.read_text(encoding="utf-8"))   # each step one line
         for step, says, instead in ((9, "`OK PING 1`", "`OK PING 2`"), (13, "from 0.48 to 0.52", "from 0.53 to 0.57"),
