@@ -27,7 +27,7 @@ COMMANDS = (
     "#IROLL -ROLL", "#IPITCH PITCH", "#IDOWN Z", "#IUNIT 256", "#IAXES ASSUMED", "#IMU",
     "#DF 105", "#LF 100", "#L 220", "#D1 115", "#L1 98", "#D2 107", "#L2 105",
     "#SAVE", "#LOAD", "#DEFAULTS", "#DEFAULTS SEED",
-    "#LINK 60", "#CALIBRATE 30 5", "#LINK 2", "#LINK 0",
+    "#LINK 60", "#CALIBRATE 30 5", "#LINK 0",
     "#PING 1", "#STREAM PULSE", "#STREAM OFF", "#HANG TASK",
     "#LOG 10", "#LOG", "#LOG STOP", "#LOG CLEAR",
     "#GET", "#GET KP", "#LASER", "#PERF", "#PERF RESET", "#VERSION", "#HELP",
