@@ -54,6 +54,14 @@ class Files(unittest.TestCase):
         self.assertEqual((self.dir / "run/flight.plomada").read_bytes(), before)
         self.assertFalse((self.dir / "not-begun.csv").exists())
 
+    def test_the_report_on_a_board_is_not_overwritten_by_that_on_the_next(self):
+        (self.dir / "board.json").write_text("{}")
+        lines = ("accept", "--laser", "/nowhere", "--imu", "/nowhere", "--xbee", "/nowhere", "--report", "board")
+        self.refused(self.plomada(*lines), "board: the report of another acceptance")
+        self.refused(self.plomada(*lines, "--afresh"), "/nowhere: No such file")
+        (self.dir / "board.state").write_text("")       # interrupted: it goes on
+        self.refused(self.plomada(*lines), "/nowhere: No such file")
+
     def test_json_is_valid_whatever_the_scenario_is_called(self):
         for name in (b'a"b', b"back\\slash", b"\x01\xff"):
             (self.dir / "named.scenario").write_bytes(FLIGHT.encode() + b"name " + name + b"\n")

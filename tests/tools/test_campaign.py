@@ -141,6 +141,24 @@ class Vehicles(unittest.TestCase):
             self.assertIn("rise_time_s", fleet.fly(PROGRAM, plan.arguments(law, "untrimmed", 1, 1)))
 
 
+class Writing(Case):
+    def test_what_does_not_fit_leaves_the_file_as_it_was(self):
+        path = self.dir / "vehicle.json"
+        fleet.write_whole(path, "old")
+        with mock.patch.object(Path, "write_text", side_effect=OSError(28, "No space left on device")), self.assertRaises(OSError):
+            fleet.write_whole(path, "new")
+        self.assertEqual(path.read_text(), "old")
+        fleet.write_whole(path, "new")
+        self.assertEqual(path.read_text(), "new")
+        self.assertEqual([name.name for name in self.dir.iterdir() if name.suffix == ".new"], [])
+
+    @unittest.skipUnless(Path("/dev/full").exists(), "no /dev/full")
+    def test_a_device_is_written_and_not_replaced(self):
+        with self.assertRaises(OSError):
+            fleet.write_whole("/dev/full", "new")
+        self.assertTrue(Path("/dev/full").is_char_device())
+
+
 class Keeping(Case):
     LESS = ("--law", "PID,EST", "--set", "nominal")
 

@@ -105,6 +105,10 @@ class Gains(unittest.TestCase):
         self.assertEqual(tune.Gain("DSAT", 0.0, 4.0).value(0.25), 1.0)
         self.assertAlmostEqual(tune.Gain("KP", 0.01, 1.0).value(0.5), 0.1)
 
+    def test_a_gain_at_its_limit_is_told(self):
+        found = tune.at_limit(tune.GAINS["EST"], (2.0, 12.0, 0.2, 1.1))
+        self.assertEqual(found, ["VELK 12 is at its limit, 1 to 12: the best may lie beyond", "VUP 0.2 is at its limit, 0.2 to 1.5: the best may lie beyond"])
+
     def test_numbers_are_typed_without_exponent(self):
         self.assertEqual([tune.text(value) for value in (0.00002, 5.0, 0.0, 12.3, 0.000183)],
                          ["0.00002", "5", "0", "12.3", "0.000183"])

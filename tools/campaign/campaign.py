@@ -228,8 +228,7 @@ def write(arguments, groups, rows):
 
     out = arguments.out
     table.write_csv(out / "campaign.csv", rows)
-    (out / "campaign.json").write_text(json.dumps({"seed": arguments.seed, "rows": table.plain(rows)}, indent=1) + "\n",
-                                       encoding="utf-8")
+    fleet.write_whole(out / "campaign.json", json.dumps({"seed": arguments.seed, "rows": table.plain(rows)}, indent=1) + "\n")
     lands = {name: plan.SETS[name].lands for name in groups}
     picture.draw(out / "campaign.png", groups, lands)
     if arguments.page:
@@ -318,7 +317,7 @@ def remember(arguments, argv):
             raise fleet.Broken(f"{arguments.out} has another campaign, begun with: {' '.join(begun) or 'no options'}; give this one its own "
                                "--out DIR")
     arguments.out.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(words), encoding="utf-8")
+    fleet.write_whole(path, json.dumps(words))
 
 
 def main(argv=None):

@@ -61,6 +61,20 @@ def command(program, arguments):
     return shlex.join([program, "fly", *arguments])
 
 
+def write_whole(path, text):
+    """All of it, or, on a full disk, the file as it was. What is no file (a pipe, a device) is written as it is."""
+    path = Path(path)
+    if path.exists() and not path.is_file():
+        path.write_text(text, encoding="utf-8")
+        return
+    fresh = path.with_name(f"{path.name}.{os.getpid()}.new")
+    try:
+        fresh.write_text(text, encoding="utf-8")
+        fresh.replace(path)
+    finally:
+        fresh.unlink(missing_ok=True)
+
+
 def digest(program):
     return hashlib.sha256(Path(program).read_bytes()).hexdigest()
 

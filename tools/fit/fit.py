@@ -194,10 +194,9 @@ def main(argv=None):
     try:
         vehicle, found, stretches = fit_logs(arguments.logs)
         import fit_picture  # Matplotlib takes its second: what is wrong with a log is told before
-
         vehicle["version"] = fleet.version()
         arguments.out.parent.mkdir(parents=True, exist_ok=True)
-        arguments.out.write_text(json.dumps(vehicle, indent=1) + "\n", encoding="utf-8")
+        fleet.write_whole(arguments.out, json.dumps(vehicle, indent=1) + "\n")
         fit_picture.draw(pictured, vehicle, found, stretches)
     except (flight_log.Unfit, OSError) as error:
         print(f"fit: {error}", file=sys.stderr)

@@ -349,6 +349,14 @@ def find(arguments, vehicle, program):
         return proposal, predict(flights, vehicle, arguments.law, proposal.settings, arguments.forecast)
 
 
+def record(arguments, words, program, proposal, expected):
+    """For verdict.py, and for whoever asks later how it came about."""
+    fresh = {world: {name: vars(c) for name, c in found.items()} for world, found in proposal.changes.items()}
+    return {"law": arguments.law, "scenario": SCENARIOS[arguments.law], "settings": proposal.settings, "kept": proposal.kept,
+            "fresh": fresh, "vehicle": str(arguments.vehicle.resolve()), "expected": expected,
+            "arguments": words} | forecast.fleet.provenance(program)
+
+
 def main(argv=None):
     arguments = read_arguments(argv)
     program = str(arguments.program.resolve())
@@ -356,6 +364,8 @@ def main(argv=None):
         vehicle = forecast.load_vehicle(arguments.vehicle)
         proposal, expected = find(arguments, vehicle, program)
         lines = list(told(arguments.law, vehicle, proposal, defaults_of(program)))
+        kept = record(arguments, sys.argv[1:] if argv is None else argv, program, proposal, expected)
+        forecast.fleet.write_whole(arguments.out, json.dumps(kept, indent=1) + "\n")
     except KeyboardInterrupt:
         print("tune: interrupted; what was flown is kept, the same command goes on", file=sys.stderr)
         return 130
@@ -366,12 +376,6 @@ def main(argv=None):
     print(f"forecast of the next {SCENARIOS[arguments.law]}, by its log:")
     for name, f in expected.items():
         print(f"  {name:14} {f['value']:.3g} [{f['low']:.3g} .. {f['high']:.3g}]")
-    arguments.out.write_text(json.dumps({"law": arguments.law, "scenario": SCENARIOS[arguments.law], "settings": proposal.settings,
-                                         "kept": proposal.kept,
-                                         "fresh": {world: {name: vars(c) for name, c in found.items()} for world, found in proposal.changes.items()},
-                                         "vehicle": str(arguments.vehicle.resolve()), "expected": expected, "arguments": sys.argv[1:] if argv is None else argv}
-                                        | forecast.fleet.provenance(program), indent=1) + "\n",
-                             encoding="utf-8")
     print(arguments.out)
     return 0
 

@@ -285,6 +285,12 @@ def read_arguments(argv):
     return options
 
 
+def at_limit(gains, values):
+    """Sentences: gains that the search would have taken further."""
+    return [f"{gain.name} {text(value)} is at its limit, {text(gain.low)} to {text(gain.high)}: the best may lie beyond"
+            for gain, value in zip(gains, values, strict=True) if not gain.low < value < gain.high]
+
+
 def tune(options):
     program, law = str(options.program.resolve()), plan.LAWS[options.law]
     tree = Tree(options.constants) if options.constants else None
@@ -293,7 +299,7 @@ def tune(options):
         candidates = Constants(client, tree, options) if tree else Candidates(client, program, options)
         search(candidates, [gain.unit(value) for gain, value in zip(candidates.gains, start, strict=True)])
     best, values = candidates.best
-    print(f"cost {best:.1f} mm, {candidates.progress.done} flights", file=sys.stderr)
+    print(f"cost {best:.1f} mm, {candidates.progress.done} flights", *at_limit(candidates.gains, values), sep="\n", file=sys.stderr)
     print("\n".join(candidates.shown(values)))
 
 
