@@ -22,7 +22,7 @@ void telecommand_collector_init(telecommand_collector_t *collector)
     *collector = (telecommand_collector_t){.previous = '\0'};
 }
 
-static bool is_blank(char character)
+bool telecommand_is_blank(char character)
 {
     return character == ' ' || character == '\t';
 }
@@ -61,7 +61,7 @@ static void gather(telecommand_collector_t *collector, char character)
     telecommand_line_t *line = &collector->line;
 
     if (!collector->started) {
-        collector->strays += is_blank(character) ? 0U : 1U;
+        collector->strays += telecommand_is_blank(character) ? 0U : 1U;
     } else if (line->length == TELECOMMAND_LINE_MAX) {
         line->overlong = true;
     } else {
@@ -120,7 +120,7 @@ static uint16_t end_of(const telecommand_line_t *line, uint16_t length)
     uint16_t end = 1U;
 
     for (uint16_t i = 1U; i < length; i++) {
-        end = is_blank(line->text[i]) ? end : (uint16_t)(i + 1U);
+        end = telecommand_is_blank(line->text[i]) ? end : (uint16_t)(i + 1U);
     }
     return end;
 }
@@ -130,7 +130,7 @@ static telecommand_status_t take_name(const telecommand_line_t *line, uint16_t *
 {
     uint16_t length = 0U;
 
-    for (; *at < end && !is_blank(line->text[*at]); (*at)++) {
+    for (; *at < end && !telecommand_is_blank(line->text[*at]); (*at)++) {
         char character = telecommand_upper(line->text[*at]);
 
         if (!is_name(character)) {
@@ -223,7 +223,7 @@ static telecommand_status_t take_argument(const telecommand_line_t *line, uint16
         if (!is_legible(character)) {
             return reject(command, TELECOMMAND_CHARACTER);
         }
-        if (command->argument_length > 0U || !is_blank(character)) {
+        if (command->argument_length > 0U || !telecommand_is_blank(character)) {
             command->argument[command->argument_length++] = character;
         }
     }
@@ -240,7 +240,7 @@ static telecommand_status_t split(const telecommand_line_t *line, uint16_t sum_a
     if (end == 1U) {
         return TELECOMMAND_EMPTY;
     }
-    while (is_blank(line->text[at])) {
+    while (telecommand_is_blank(line->text[at])) {
         at++;
     }
     status = take_name(line, &at, end, command);

@@ -19,6 +19,9 @@
 /* A letter in upper case; any other character as it is. */
 char telecommand_upper(char character);
 
+/* A blank or a tab. */
+bool telecommand_is_blank(char character);
+
 typedef struct {
     char text[TELECOMMAND_LINE_MAX]; /* from '#', without the line end */
     uint16_t length;

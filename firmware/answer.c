@@ -16,11 +16,20 @@ static void add_name(answer_t *answer)
 bool answer_argument_is(const answer_t *answer, const char *word)
 {
     const telecommand_t *command = answer->command;
-    uint16_t i;
+    uint16_t i = 0U;
 
-    for (i = 0U; i < command->argument_length && word[i] == telecommand_upper(command->argument[i]); i++) {
+    for (; i < command->argument_length && *word != '\0'; word++) {
+        const char character = command->argument[i++];
+
+        if (*word != (telecommand_is_blank(character) ? ' ' : telecommand_upper(character))) {
+            return false;
+        }
+        while (telecommand_is_blank(character) && i < command->argument_length &&
+               telecommand_is_blank(command->argument[i])) {
+            i++;
+        }
     }
-    return i == command->argument_length && word[i] == '\0';
+    return i == command->argument_length && *word == '\0';
 }
 
 void answer_begin(answer_t *answer)

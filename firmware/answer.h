@@ -15,8 +15,8 @@ typedef struct {
     telemetry_line_t line;
 } answer_t;
 
-/* True when the command's argument is that word. `word` is in upper case; the operator may type either
- * case. */
+/* True when the command's argument is that word, or these words. `word` is in upper case, with one blank
+ * between two words; the operator may type either case, and blanks or tabs as he likes. */
 bool answer_argument_is(const answer_t *answer, const char *word);
 /* Begins the line with `OK ` and the name of the command. */
 void answer_begin(answer_t *answer);

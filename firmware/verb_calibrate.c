@@ -26,11 +26,11 @@ static bool read_whole(const telecommand_t *command, uint16_t *at, uint16_t most
     uint16_t from = *at;
     float number;
 
-    while (from < command->argument_length && command->argument[from] == ' ') {
+    while (from < command->argument_length && telecommand_is_blank(command->argument[from])) {
         from++;
     }
     *at = from;
-    while (*at < command->argument_length && command->argument[*at] != ' ') {
+    while (*at < command->argument_length && !telecommand_is_blank(command->argument[*at])) {
         (*at)++;
     }
     if (from == *at) {

@@ -160,3 +160,14 @@ void test_an_argument_is_compared_whole_and_in_either_case(void)
     TEST_ASSERT_TRUE(argument_is("", ""));
     TEST_ASSERT_FALSE(argument_is("[", "{"));
 }
+
+void test_blanks_and_tabs_between_words_are_one_blank(void)
+{
+    TEST_ASSERT_TRUE(argument_is("RATE FAST", "RATE FAST"));
+    TEST_ASSERT_TRUE(argument_is("rate   fast", "RATE FAST"));
+    TEST_ASSERT_TRUE(argument_is("RATE\t FAST", "RATE FAST"));
+    TEST_ASSERT_FALSE(argument_is("RATEFAST", "RATE FAST"));
+    TEST_ASSERT_FALSE(argument_is("RATE  FASTER", "RATE FAST"));
+    TEST_ASSERT_FALSE(argument_is("RATE  ", "RATE FAST"));
+    TEST_ASSERT_FALSE(argument_is("RA TE FAST", "RATE FAST"));
+}

@@ -114,7 +114,7 @@ void test_counts_and_seconds_may_be_given(void)
     TEST_ASSERT_TRUE(type("1  60"));
     TEST_ASSERT_EQUAL_UINT16(1, counts);
     TEST_ASSERT_EQUAL_UINT16(60, seconds);
-    TEST_ASSERT_TRUE(type("200 1"));
+    TEST_ASSERT_TRUE(type("200\t1"));
     TEST_ASSERT_EQUAL_UINT16(200, counts);
     TEST_ASSERT_EQUAL_UINT16(1, seconds);
 }
