@@ -1,5 +1,5 @@
-/* What the rooms of control/ tell each other: evidence_t says what the sensors show, situation_t what the
- * vehicle is doing. Each has one maker; everybody else gets it as const.
+/* What the rooms of control/ tell each other: evidence_t says what the sensors show, command_t what the
+ * vehicle was told to do. Each has one maker; everybody else gets it as const.
  *
  * Metres, seconds, newtons per motor, radians; positive is upwards. */
 #ifndef CONTROL_FACTS_H
@@ -45,7 +45,7 @@ typedef struct {
     bool held_down;   /* the law wanted to descend at that instant */
 } evidence_t;
 
-/* What the vehicle is doing, in the previous cycle but where a comment says otherwise. */
+/* What the vehicle was told to do in the previous cycle, and what that should cause. Made by flight.c. */
 typedef struct {
     float step_s;    /* time since the previous cycle */
     bool grounded;   /* state GROUND: on the ground without thrust */
@@ -58,7 +58,7 @@ typedef struct {
     float hover_n;                             /* sure hover thrust, see flight.h */
     float wanted_m;   /* reference minus height, > 0: the law wants to climb; NAN: no height is held */
     float noise_mps2; /* rms noise of the accelerometer, measured by the estimator */
-} situation_t;
+} command_t;
 
 /* True when at least one of the given DOUBT_* bits is set. */
 static inline bool doubts(const evidence_t *evidence, uint16_t doubt)

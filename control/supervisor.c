@@ -173,6 +173,11 @@ static bool is_level(const supervisor_t *s)
     return s->level && attitude_fresh(s);
 }
 
+bool supervisor_is_at_rest(const supervisor_t *supervisor)
+{
+    return supervisor->state == FLIGHT_GROUND && supervisor->rest.on;
+}
+
 bool supervisor_has_estimate(const supervisor_t *supervisor)
 {
     return supervisor->estimate_age_us <= ESTIMATE_HELD_US;

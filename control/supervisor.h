@@ -93,6 +93,9 @@ void supervisor_init(supervisor_t *supervisor);
 void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs_t *in,
                      const vertical_estimate_t *estimate);
 
+/* True when it stands on the ground, by state and heights. */
+bool supervisor_is_at_rest(const supervisor_t *supervisor);
+
 /* True when an estimate was known within the last 0.35 s. */
 bool supervisor_has_estimate(const supervisor_t *supervisor);
 

@@ -329,26 +329,18 @@ void est_law_set_sure_hover(est_law_t *law, float hover_n, bool descending)
     }
 }
 
-void est_law_set_without_authority(est_law_t *law, bool without_authority)
+void est_law_doubt(est_law_t *law, const est_doubts_t *doubts)
 {
-    law->without_authority = without_authority;
-    if (without_authority) {
+    law->without_authority = doubts->without_authority;
+    if (doubts->without_authority) {
         law->hover.thrust_n = between(law->hover.least_n, law->sure_hover_n, law->hover.most_n);
         law->hover.gust_n = 0.0F;
     }
-}
-
-void est_law_set_rocks(est_law_t *law, bool rocks)
-{
-    law->rocks = rocks;
-}
-
-void est_law_set_accelerations_doubted(est_law_t *law, bool doubted)
-{
-    if (doubted && !law->accelerations_doubted) {
+    if (doubts->accelerations && !law->accelerations_doubted) {
         estimator_drop_accelerations(&law->estimator);
     }
-    law->accelerations_doubted = doubted;
+    law->accelerations_doubted = doubts->accelerations;
+    law->rocks = doubts->rocks;
 }
 
 cascade_vehicle_t est_law_vehicle(const est_law_t *law, const parameters_t *parameters)

@@ -92,15 +92,16 @@ void est_law_engage(est_law_t *law, float thrust_n, float hover_n);
  * limits its thrust by the value that hover_n had when the descent began. */
 void est_law_set_sure_hover(est_law_t *law, float hover_n, bool descending);
 
-/* without_authority true: commands have no effect (doubt THRUST). Nothing is learned or predicted from them,
- * and the hover thrust is the sure one. */
-void est_law_set_without_authority(est_law_t *law, bool without_authority);
+/* What is doubted in this cycle. */
+typedef struct {
+    bool without_authority; /* commands have no effect (doubt THRUST): nothing is learned or predicted from
+                             * them, and the hover thrust is the sure one */
+    bool accelerations; /* the accelerometer is wrong (doubt IMU): accelerations in the frames are ignored */
+    bool rocks;         /* the tilt moves as it does in flight, see touchdown.h */
+} est_doubts_t;
 
-/* rocks true: the tilt moves as it does in flight, see touchdown.h. */
-void est_law_set_rocks(est_law_t *law, bool rocks);
-
-/* doubted true: the accelerometer is wrong (doubt IMU). Accelerations in the frames are ignored. */
-void est_law_set_accelerations_doubted(est_law_t *law, bool doubted);
+/* Call in every cycle, after est_law_predict(). */
+void est_law_doubt(est_law_t *law, const est_doubts_t *doubts);
 
 /* Present model of the vehicle, with the estimated hover thrust. */
 cascade_vehicle_t est_law_vehicle(const est_law_t *law, const parameters_t *parameters);

@@ -7,20 +7,19 @@
 #define LAG_S 0.15F            /* LAG of 0.12 s and DELAY of 18.5 ms, as one lag */
 #define PUSHED_LEAK_PER_S 0.4F /* chosen: time constant of 2.5 s, as the sure hover thrust in flight.c */
 
-void push_lag(push_t *push, const situation_t *situation)
+void push_lag(push_t *push, const command_t *command)
 {
-    const float dt_s = at_most(situation->step_s, STEP_MAX_S);
+    const float dt_s = at_most(command->step_s, STEP_MAX_S);
 
-    push->lagged_n += dt_s / (LAG_S + dt_s) * (situation->thrust_n - push->lagged_n);
+    push->lagged_n += dt_s / (LAG_S + dt_s) * (command->thrust_n - push->lagged_n);
 }
 
-void push_move(push_t *push, const situation_t *situation, float upright)
+void push_move(push_t *push, const command_t *command, float upright)
 {
-    const float dt_s = at_most(situation->step_s, STEP_MAX_S);
-    const float excess_mps2 = situation->authority_mps2_per_n *
-                              (push->lagged_n * upright - situation->hover_n);
-    const float mps2 = (excess_mps2 - situation->damping_per_s * push->pushed.speed_mps) /
-                       (1.0F + situation->damping_per_s * dt_s);
+    const float dt_s = at_most(command->step_s, STEP_MAX_S);
+    const float excess_mps2 = command->authority_mps2_per_n * (push->lagged_n * upright - command->hover_n);
+    const float mps2 = (excess_mps2 - command->damping_per_s * push->pushed.speed_mps) /
+                       (1.0F + command->damping_per_s * dt_s);
 
     witness_move(&push->pushed, mps2, dt_s);
 }

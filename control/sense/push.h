@@ -15,11 +15,11 @@ typedef struct {
 } push_t;
 
 /* Moves the lag of the motors, once in each cycle. */
-void push_lag(push_t *push, const situation_t *situation);
+void push_lag(push_t *push, const command_t *command);
 
 /* Dead reckoning, once in each cycle in which the thrust alone carries the vehicle. upright: cosine of the
  * tilt. */
-void push_move(push_t *push, const situation_t *situation, float upright);
+void push_move(push_t *push, const command_t *command, float upright);
 
 /* Adds the innovation of one height. */
 void push_compare(push_t *push, float rise_m, float gap_s, float age_s);

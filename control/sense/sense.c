@@ -24,7 +24,7 @@ static void believe_tilt(const tilt_t *tilt, flight_inputs_t *in)
     in->tilted_frames = tilt->tilted;
 }
 
-static void compare_height(sense_t *sense, const situation_t *situation, const flight_inputs_t *in)
+static void compare_height(sense_t *sense, const command_t *command, const flight_inputs_t *in)
 {
     const bool is_new = in->height_valid && in->height_sequence != sense->scan_sequence;
 
@@ -38,7 +38,7 @@ static void compare_height(sense_t *sense, const situation_t *situation, const f
             &sense->senses, in->altitude.height_mm * 0.001F,
             seconds_at_most(in->height_time_us - sense->height_time_us, GAP_LONG_S),
             seconds_at_most(in->height_age_us, GAP_LONG_S), (sense->verdict.doubts & DOUBT_SIGHT) == 0U);
-        verdict_height(&sense->verdict, &sense->senses, situation, &change);
+        verdict_height(&sense->verdict, &sense->senses, command, &change);
         sense->height_time_us = in->height_time_us;
     }
 }
@@ -85,21 +85,21 @@ static evidence_t evidence_of(const sense_t *sense)
     };
 }
 
-evidence_t sense_step(sense_t *sense, const situation_t *situation, flight_inputs_t *in)
+evidence_t sense_step(sense_t *sense, const command_t *command, flight_inputs_t *in)
 {
     senses_t *senses = &sense->senses;
 
     tilt_step(&senses->tilt, in->frames, in->frame_count, in->roll_rad, in->pitch_rad, in->attitude_time_us);
     believe_tilt(&senses->tilt, in);
-    senses_frames(senses, situation, in->frames, in->frame_count);
-    if (situation->grounded) {
+    senses_frames(senses, command, in->frames, in->frame_count);
+    if (command->grounded) {
         verdict_rest(&sense->verdict, &senses->accelerometer);
     }
-    if (situation->ordered && situation->grounded) {
+    if (command->ordered && command->grounded) {
         verdict_order(&sense->verdict, senses);
     }
-    senses_thrust(senses, situation, (sense->verdict.doubts & DOUBT_IMU) == 0U);
-    compare_height(sense, situation, in);
+    senses_thrust(senses, command, (sense->verdict.doubts & DOUBT_IMU) == 0U);
+    compare_height(sense, command, in);
     in->height_valid = in->height_valid && sense->scan_fit && (sense->verdict.doubts & DOUBT_SIGHT) == 0U;
     drop_unfit(&senses->tilt, in);
     return evidence_of(sense);

@@ -26,8 +26,8 @@ typedef struct {
 /* Clears the state: no doubt, nothing known. Call once before the first cycle. */
 void sense_init(sense_t *sense);
 
-/* Once in each cycle. situation: of the previous cycle. Removes from *in what must not be used: heights in
+/* Once in each cycle. command: of the previous cycle. Removes from *in what must not be used: heights in
  * doubt, rejected tilts, frames with such a tilt. Returns what the sensors show. */
-evidence_t sense_step(sense_t *sense, const situation_t *situation, flight_inputs_t *in);
+evidence_t sense_step(sense_t *sense, const command_t *command, flight_inputs_t *in);
 
 #endif

@@ -42,7 +42,7 @@ static void watch_flight(senses_t *s, float mean_mps2, bool standing, float dt_s
 }
 
 /* One accepted frame. up_mps2: what its accelerometer measures. */
-static void take_frame(senses_t *s, const situation_t *situation, const imu_sample_t *frame, float up_mps2)
+static void take_frame(senses_t *s, const command_t *command, const imu_sample_t *frame, float up_mps2)
 {
     uint32_t gap_us;
     const float mean_mps2 = accelerometer_mean_mps2(&s->accelerometer, frame->arrival_us, up_mps2, &gap_us);
@@ -53,14 +53,14 @@ static void take_frame(senses_t *s, const situation_t *situation, const imu_samp
         return;
     }
     sway_frame(&s->sway, frame, s->heights.height_m, s->standing, dt_s);
-    if (situation->grounded) {
+    if (command->grounded) {
         watch_ground(s, mean_mps2, dt_s);
     } else {
-        watch_flight(s, mean_mps2, situation->standing, dt_s);
+        watch_flight(s, mean_mps2, command->standing, dt_s);
     }
 }
 
-void senses_frames(senses_t *senses, const situation_t *situation, const imu_sample_t *frames, uint16_t count)
+void senses_frames(senses_t *senses, const command_t *command, const imu_sample_t *frames, uint16_t count)
 {
     for (uint16_t k = imu_first_after(frames, count, senses->accelerometer.sequence); k < count; ++k) {
         const imu_sample_t *frame = &frames[k];
@@ -77,25 +77,25 @@ void senses_frames(senses_t *senses, const situation_t *situation, const imu_sam
         const float up_mps2 = imu_up_mps2(frame);
         if (fabsf(up_mps2) < UP_MAX_MPS2) {
             senses->accelerometer.sequence = frame->sequence;
-            take_frame(senses, situation, frame, up_mps2);
+            take_frame(senses, command, frame, up_mps2);
         }
     }
 }
 
-void senses_thrust(senses_t *senses, const situation_t *situation, bool felt_valid)
+void senses_thrust(senses_t *senses, const command_t *command, bool felt_valid)
 {
     const witness_t *felt = &senses->accelerometer.felt;
     const bool stands = senses->heights.known && senses->heights.height_m < SENSES_LOW_M &&
                         !sway_as_in_the_air(&senses->sway);
-    const bool felt_tells = !situation->grounded && felt_valid && witness_counts(felt);
+    const bool felt_tells = !command->grounded && felt_valid && witness_counts(felt);
 
-    accelerometer_set_noise(&senses->accelerometer, situation->noise_mps2);
-    senses->standing = situation->grounded || situation->standing;
-    push_lag(&senses->push, situation);
-    if (!situation->off_ground || stands) {
+    accelerometer_set_noise(&senses->accelerometer, command->noise_mps2);
+    senses->standing = command->grounded || command->standing;
+    push_lag(&senses->push, command);
+    if (!command->off_ground || stands) {
         witness_start(&senses->push.pushed, felt_tells ? felt->speed_mps : 0.0F);
     } else {
-        push_move(&senses->push, situation, senses->tilt.upright);
+        push_move(&senses->push, command, senses->tilt.upright);
     }
 }
 

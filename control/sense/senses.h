@@ -43,11 +43,10 @@ void senses_init(senses_t *senses);
 /* Moves the accelerometer's witness, once in each cycle. frames: oldest first, borrowed for the call; frames
  * that were processed before, or whose tilt was rejected, change nothing. On the ground it measures the
  * bias. */
-void senses_frames(senses_t *senses, const situation_t *situation, const imu_sample_t *frames,
-                   uint16_t count);
+void senses_frames(senses_t *senses, const command_t *command, const imu_sample_t *frames, uint16_t count);
 
 /* Moves the thrust's witness, once in each cycle. felt_valid: the accelerometer is not doubted. */
-void senses_thrust(senses_t *senses, const situation_t *situation, bool felt_valid);
+void senses_thrust(senses_t *senses, const command_t *command, bool felt_valid);
 
 /* Checks one scan. Call exactly once for each new scan, before senses_height(). Returns true when its height
  * may be used. */

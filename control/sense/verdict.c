@@ -57,7 +57,7 @@
 typedef struct {
     const verdict_t *verdict;
     const senses_t *senses;
-    const situation_t *situation;
+    const command_t *command;
     const witness_t *felt, *pushed;
     float felt_off_m;  /* sum of the accelerometer's innovations, less when it is noisy */
     bool felt_valid;   /* the accelerometer's witness counts and is not doubted */
@@ -69,12 +69,12 @@ bool verdict_felt_valid(const verdict_t *verdict, const senses_t *senses)
     return witness_counts(&senses->accelerometer.felt) && (verdict->doubts & DOUBT_IMU) == 0U;
 }
 
-static case_t case_of(const verdict_t *verdict, const senses_t *senses, const situation_t *situation)
+static case_t case_of(const verdict_t *verdict, const senses_t *senses, const command_t *command)
 {
     return (case_t){
         .verdict = verdict,
         .senses = senses,
-        .situation = situation,
+        .command = command,
         .felt = &senses->accelerometer.felt,
         .pushed = &senses->push.pushed,
         .felt_off_m = accelerometer_off_m(&senses->accelerometer),
@@ -109,18 +109,18 @@ static bool heights_rest(const case_t *c)
 }
 
 /* The thrust pushes towards the reference by more than least_n, and the heights do not follow. */
-static bool pushes_in_vain(const senses_t *senses, const situation_t *situation, float least_n)
+static bool pushes_in_vain(const senses_t *senses, const command_t *command, float least_n)
 {
-    const float push_n = senses->push.lagged_n - situation->hover_n;
+    const float push_n = senses->push.lagged_n - command->hover_n;
 
-    return fabsf(push_n) > least_n && push_n * situation->wanted_m > 0.0F &&
+    return fabsf(push_n) > least_n && push_n * command->wanted_m > 0.0F &&
            senses->push.pushed.seen_m * push_n < 0.0F;
 }
 
 /* Both witnesses contradict the heights in the same direction, by that share of the limits. */
 static bool both_against(const case_t *c, float share)
 {
-    const bool content = fabsf(c->situation->wanted_m) < CONTENT_M && !c->senses->beam.flat;
+    const bool content = fabsf(c->command->wanted_m) < CONTENT_M && !c->senses->beam.flat;
     const float sure = content ? share * CONTENT_SHARE : share;
 
     if (!witness_against(c->pushed, sure * BOTH_M)) {
@@ -163,7 +163,7 @@ static bool is_aloft(const case_t *c)
                      (s->heights.height_m > SENSES_LOW_M && beam_is_still(&s->beam));
 
     return c->verdict->swaying_s > SWAYING_S ||
-           (c->situation->standing && s->confirmation.unconfirmed && odd && sway_as_in_the_air(&s->sway) &&
+           (c->command->standing && s->confirmation.unconfirmed && odd && sway_as_in_the_air(&s->sway) &&
             c->verdict->felt_least_m < -ALOFT_M);
 }
 
@@ -218,7 +218,7 @@ static bool is_no_climb(const case_t *c)
 
     return confirmation->unconfirmed && (flew || c->verdict->felt_least_m < -WITH_M) &&
            c->pushed->running_s >= WITNESS_OLD_S && fabsf(pushed_m) > UNCONFIRMED_M &&
-           pushes_in_vain(c->senses, c->situation, UNCONFIRMED_N) &&
+           pushes_in_vain(c->senses, c->command, UNCONFIRMED_N) &&
            !(felt_against(c, WITH_M) && c->felt_off_m * pushed_m < 0.0F);
 }
 
@@ -307,9 +307,9 @@ static verdict_reason_t against_imu(const case_t *c)
 
 static verdict_reason_t against_thrust(const case_t *c)
 {
-    const bool vain = c->senses->confirmation.proved && fabsf(c->situation->wanted_m) > VAIN_M &&
+    const bool vain = c->senses->confirmation.proved && fabsf(c->command->wanted_m) > VAIN_M &&
                       witness_against(c->pushed, NO_AUTHORITY_M) && c->felt_valid &&
-                      !felt_against(c, WITH_M) && pushes_in_vain(c->senses, c->situation, PUSH_N);
+                      !felt_against(c, WITH_M) && pushes_in_vain(c->senses, c->command, PUSH_N);
 
     return vain ? VERDICT_NO_EFFECT : VERDICT_NONE;
 }
@@ -402,17 +402,17 @@ static void doubt_sight(verdict_t *verdict, senses_t *senses, const case_t *c, v
     forget(verdict, senses);
 }
 
-static void doubt_thrust(verdict_t *verdict, senses_t *senses, const situation_t *situation)
+static void doubt_thrust(verdict_t *verdict, senses_t *senses, const command_t *command)
 {
     set_doubt(verdict, DOUBT_THRUST, VERDICT_NO_EFFECT);
-    verdict->held_n = situation->hover_n;
-    verdict->held_down = situation->wanted_m < 0.0F;
+    verdict->held_n = command->hover_n;
+    verdict->held_down = command->wanted_m < 0.0F;
     forget(verdict, senses);
 }
 
-static void judge_imu(verdict_t *verdict, senses_t *senses, const situation_t *situation)
+static void judge_imu(verdict_t *verdict, senses_t *senses, const command_t *command)
 {
-    const case_t c = case_of(verdict, senses, situation);
+    const case_t c = case_of(verdict, senses, command);
     const verdict_reason_t reason = ((verdict->doubts & DOUBT_IMU) == 0U) ? against_imu(&c) : VERDICT_NONE;
 
     if (reason != VERDICT_NONE) {
@@ -421,10 +421,10 @@ static void judge_imu(verdict_t *verdict, senses_t *senses, const situation_t *s
     }
 }
 
-static void judge(verdict_t *verdict, senses_t *senses, const situation_t *situation, float gap_s)
+static void judge(verdict_t *verdict, senses_t *senses, const command_t *command, float gap_s)
 {
-    judge_imu(verdict, senses, situation);
-    const case_t c = case_of(verdict, senses, situation);
+    judge_imu(verdict, senses, command);
+    const case_t c = case_of(verdict, senses, command);
 
     if ((verdict->doubts & (DOUBT_SIGHT | DOUBT_THRUST)) != 0U) {
         judge_again(verdict, senses, &c, gap_s);
@@ -434,21 +434,20 @@ static void judge(verdict_t *verdict, senses_t *senses, const situation_t *situa
     if (reason != VERDICT_NONE) {
         doubt_sight(verdict, senses, &c, reason);
     } else if (against_thrust(&c) != VERDICT_NONE) {
-        doubt_thrust(verdict, senses, situation);
+        doubt_thrust(verdict, senses, command);
     }
 }
 
 /* How long the tilt has swayed as in the air, and the beam has shown nothing of it. */
-static void watch_lift_off(verdict_t *verdict, const senses_t *senses, const situation_t *situation,
-                           float gap_s)
+static void watch_lift_off(verdict_t *verdict, const senses_t *senses, const command_t *command, float gap_s)
 {
-    if (!situation->standing) {
+    if (!command->standing) {
         verdict->swaying_s = 0.0F;
         return;
     }
     const float height_m = senses->heights.height_m;
     const bool strong = senses->push.lagged_n >
-                        STRONG_SHARE * situation->hover_n; /* no vehicle stays on the ground */
+                        STRONG_SHARE * command->hover_n; /* no vehicle stays on the ground */
     const bool sways = senses->confirmation.unconfirmed && sway_as_in_the_air(&senses->sway) &&
                        (strong || beam_is_still(&senses->beam));
 
@@ -460,15 +459,15 @@ static void watch_lift_off(verdict_t *verdict, const senses_t *senses, const sit
     }
 }
 
-static void watch_push(verdict_t *verdict, const senses_t *senses, const situation_t *situation, float gap_s)
+static void watch_push(verdict_t *verdict, const senses_t *senses, const command_t *command, float gap_s)
 {
-    const bool vain = pushes_in_vain(senses, situation, PUSH_N) &&
-                      fabsf(senses->heights.rise_mps) < VAIN_MPS && fabsf(situation->wanted_m) > VAIN_M;
+    const bool vain = pushes_in_vain(senses, command, PUSH_N) && fabsf(senses->heights.rise_mps) < VAIN_MPS &&
+                      fabsf(command->wanted_m) > VAIN_M;
 
     verdict->vain_s = vain ? verdict->vain_s + gap_s : 0.0F;
 }
 
-void verdict_height(verdict_t *verdict, senses_t *senses, const situation_t *situation,
+void verdict_height(verdict_t *verdict, senses_t *senses, const command_t *command,
                     const height_change_t *change)
 {
     accelerometer_t *accelerometer = &senses->accelerometer;
@@ -476,15 +475,15 @@ void verdict_height(verdict_t *verdict, senses_t *senses, const situation_t *sit
 
     verdict->agreed_s = change->first_climb ? 0.0F : verdict->agreed_s;
     verdict->felt_least_m = senses->confirmation.unconfirmed ? at_most(verdict->felt_least_m, off_m) : 0.0F;
-    watch_lift_off(verdict, senses, situation, change->gap_s);
-    watch_push(verdict, senses, situation, change->gap_s);
-    confirmation_wait(&senses->confirmation, change, situation->wanted_m, situation->grounded,
+    watch_lift_off(verdict, senses, command, change->gap_s);
+    watch_push(verdict, senses, command, change->gap_s);
+    confirmation_wait(&senses->confirmation, change, command->wanted_m, command->grounded,
                       beam_lives(&senses->beam));
-    if (!situation->ours) {
+    if (!command->ours) {
         forget(verdict, senses);
         witness_start(&accelerometer->felt, senses->heights.rise_mps);
-    } else if (!situation->grounded) {
-        judge(verdict, senses, situation, change->gap_s);
+    } else if (!command->grounded) {
+        judge(verdict, senses, command, change->gap_s);
     }
 }
 

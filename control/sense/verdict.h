@@ -65,8 +65,8 @@ void verdict_rest(verdict_t *verdict, const accelerometer_t *accelerometer);
 void verdict_order(verdict_t *verdict, senses_t *senses);
 
 /* One verdict per height, after senses_height(): a new doubt, or the end of one. Nothing is judged while
- * situation->grounded is true or the pilot has the throttle. A doubt clears sums of *senses. */
-void verdict_height(verdict_t *verdict, senses_t *senses, const situation_t *situation,
+ * command->grounded is true or the pilot has the throttle. A doubt clears sums of *senses. */
+void verdict_height(verdict_t *verdict, senses_t *senses, const command_t *command,
                     const height_change_t *change);
 
 /* The accelerometer's witness is valid and its source is not in doubt. */

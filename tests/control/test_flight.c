@@ -358,13 +358,13 @@ void test_a_change_of_law_in_flight_does_not_move_the_thrust(void)
     for (int i = 0; i < 6; i++) {
         const float before_n = out.thrust_n;
         const float law = i % 2 == 0 ? LAW_PD : LAW_PID;
-        TEST_ASSERT_TRUE(i % 2 == 1 || fabsf(flight.pid.integral_n) > 0.1F);
+        TEST_ASSERT_TRUE(i % 2 == 1 || fabsf(flight.laws.pid.integral_n) > 0.1F);
         set(PARAMETER_LAW, law);
         run(0.108);
         TEST_ASSERT_FLOAT_WITHIN(0.03F, before_n, out.thrust_n);
         run(5.0);
         TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
-        TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F, flight.transfer_n);
+        TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F, flight.laws.transfer_n);
     }
 }
 
@@ -407,7 +407,7 @@ void test_a_short_gap_coasts_at_hover_and_comes_back_without_a_jump(void)
     plant.mute = false;
     run_until(FLIGHT_FLYING, 0.3);
     TEST_ASSERT_FLOAT_WITHIN(0.05F, before_n, out.thrust_n);
-    TEST_ASSERT_TRUE(flight.pid.integral_n > 0.2F);
+    TEST_ASSERT_TRUE(flight.laws.pid.integral_n > 0.2F);
     measure(4.0, 0.8);
     TEST_ASSERT_TRUE(rms_mm() < 60.0);
 }
@@ -520,11 +520,11 @@ void test_what_is_put_out_against_a_wrong_pin_is_gone_at_the_hand_back(void)
     in.has_throttle = false;
     held_by_a_pilot(1.0, 12.0);
     TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
-    TEST_ASSERT_FLOAT_WITHIN(0.3F, 7.4F, flight.hover_n);
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, flight.hover_n - 2.0F, out.thrust_n);
+    TEST_ASSERT_FLOAT_WITHIN(0.3F, 7.4F, flight.where.hover.thrust_n);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, flight.where.hover.thrust_n - 2.0F, out.thrust_n);
     in.has_throttle = true;
     run_until(FLIGHT_FLYING, 0.2);
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, flight.hover_n, out.thrust_n);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, flight.where.hover.thrust_n, out.thrust_n);
 }
 
 /* Thrust in doubt is held near the hover thrust, but not on the ground. */
@@ -560,14 +560,14 @@ void test_a_flight_handed_to_a_pilot_and_back_starts_near_hover_with_a_fresh_law
         TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_PILOT, out.flags);
         held_by_a_pilot(1.0, 10.0);
         TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
-        TEST_ASSERT_EQUAL_FLOAT(0.0F, flight.pid.integral_n);
-        TEST_ASSERT_FALSE(flight.pid.primed);
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, flight.laws.pid.integral_n);
+        TEST_ASSERT_FALSE(flight.laws.pid.primed);
         const float before_n = flight.thrust_n;
         TEST_ASSERT_FLOAT_WITHIN(0.3F, (float)hover_n, before_n);
         in.has_throttle = true;
         run_until(FLIGHT_FLYING, 0.2);
         TEST_ASSERT_FLOAT_WITHIN(0.001F, before_n, out.thrust_n);
-        TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.0F, flight.pid.integral_n);
+        TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.0F, flight.laws.pid.integral_n);
         TEST_ASSERT_EQUAL_FLOAT(0.8F, out.reference_m);
         run(12.0);
         measure(2.0, 0.8);
@@ -600,13 +600,13 @@ void test_a_pilots_landing_gives_the_hover_thrust_of_the_flight_up(void)
     hover_at(0.8F);
     in.has_throttle = false;
     held_by_a_pilot(0.5, 1.0);
-    TEST_ASSERT_FLOAT_WITHIN(0.3F, 8.0F, flight.hover_n);
+    TEST_ASSERT_FLOAT_WITHIN(0.3F, 8.0F, flight.where.hover.thrust_n);
     held_by_a_pilot(0.0, 2.0);
     TEST_ASSERT_EQUAL(FLIGHT_GROUND, out.state);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, out.thrust_n);
     held_by_a_pilot(0.5, 2.0);
     TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
-    TEST_ASSERT_EQUAL_FLOAT(7.0F, flight.hover_n);
+    TEST_ASSERT_EQUAL_FLOAT(7.0F, flight.where.hover.thrust_n);
 }
 
 void test_the_hover_thrust_is_found_in_flight_and_given_up_on_the_ground(void)
@@ -617,10 +617,10 @@ void test_the_hover_thrust_is_found_in_flight_and_given_up_on_the_ground(void)
         calm_law();
         hover_at(0.8F);
         run(4.0);
-        TEST_ASSERT_FLOAT_WITHIN(0.15F, (float)hovers_n[i], flight.hover_n);
+        TEST_ASSERT_FLOAT_WITHIN(0.15F, (float)hovers_n[i], flight.where.hover.thrust_n);
         setr(0.0F);
         run_until(FLIGHT_GROUND, 20.0);
-        TEST_ASSERT_EQUAL_FLOAT(7.0F, flight.hover_n);
+        TEST_ASSERT_EQUAL_FLOAT(7.0F, flight.where.hover.thrust_n);
     }
 }
 
@@ -631,10 +631,10 @@ void test_the_hover_thrust_stays_within_a_newton_and_a_half_of_gravity(void)
     set(PARAMETER_USAT, 4.0F);
     hover_at(0.8F);
     run(20.0);
-    TEST_ASSERT_EQUAL_FLOAT(8.5F, flight.hover_n);
+    TEST_ASSERT_EQUAL_FLOAT(8.5F, flight.where.hover.thrust_n);
     set(PARAMETER_GRAV, 11.0F);
     run(0.2);
-    TEST_ASSERT_TRUE(flight.hover_n >= 9.5F && flight.hover_n <= 11.76F);
+    TEST_ASSERT_TRUE(flight.where.hover.thrust_n >= 9.5F && flight.where.hover.thrust_n <= 11.76F);
 }
 
 /* ---- landing */
@@ -903,8 +903,8 @@ void test_random_inputs_never_leave_the_actuators_range(void)
         flight_step(&flight, &parameters, &in, &out);
         TEST_ASSERT_TRUE(out.thrust_n >= 0.0F && out.thrust_n <= THRUST_MAX_N);
         TEST_ASSERT_EQUAL_FLOAT(thrust_to_pulse_us(out.thrust_n), out.pulse_us);
-        TEST_ASSERT_TRUE(isfinite(flight.hover_n) && isfinite(flight.transfer_n) &&
-                         isfinite(flight.pid.integral_n));
+        TEST_ASSERT_TRUE(isfinite(flight.where.hover.thrust_n) && isfinite(flight.laws.transfer_n) &&
+                         isfinite(flight.laws.pid.integral_n));
         TEST_ASSERT_TRUE(out.state != FLIGHT_GROUND || out.thrust_n == 0.0F);
         seen |= 1U << out.state;
     }

@@ -7,7 +7,7 @@
 #include "control/altitude.h"
 #include "control/attitude.h"
 #include "control/imu_mapping.h"
-#include "control/pid.h"
+#include "control/laws/pid.h"
 #include "drivers/razor.h"
 #include "drivers/scip_layout.h"
 #include "drivers/scip_parser.h"

@@ -11,7 +11,7 @@ import house
 
 ROOMS = ("control", "drivers", "bsp", "firmware", "sim", "tools/plomada")
 WITNESSES = {    # name: the files that a thing of its kind is told in
-    r"\binnovation_mm\b": ("a published field", {"control/flight_io.h", "control/flight.c", "firmware/published.h"}),
+    r"\binnovation_mm\b": ("a published field", {"control/flight_io.h", "control/outputs.c", "firmware/published.h"}),
     r'"VUP"': ("a parameter", {"control/parameters.c"}),    # and its name in the enum of parameters.h
     r'"climb-rate"': ("a scenario", {"sim/scenarios/scenarios.c"}),
 }

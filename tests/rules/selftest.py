@@ -400,7 +400,7 @@ class Pages(unittest.TestCase):
 
 class Places(unittest.TestCase):
     def complaints(self, **changed):
-        told = {"control/flight_io.h": "float innovation_mm;", "control/flight.c": "out->innovation_mm = 0;",
+        told = {"control/flight_io.h": "float innovation_mm;", "control/outputs.c": "out->innovation_mm = 0;",
                 "firmware/published.h": "flight.innovation_mm", "control/parameters.c": '{"VUP", "m/s"}',
                 "sim/scenarios/scenarios.c": '.name = "climb-rate"', "firmware/b.c": "int b; /* innovation_mm */"}
         with tempfile.TemporaryDirectory() as name:

@@ -479,14 +479,14 @@ void test_without_frames_pidt_takes_over_and_says_so(void)
     hover_at(0.6F);
     world.imu_mute = true;
     run(0.5);
-    TEST_ASSERT_EQUAL(LAW_PIDT, flight.active_law);
+    TEST_ASSERT_EQUAL(LAW_PIDT, flight.law);
     TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_ATTITUDE, out.flags);
     measure(15.0, 0.6);
     TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
     TEST_ASSERT_TRUE(largest_error_m < 0.3);
     world.imu_mute = false;
     run(0.2);
-    TEST_ASSERT_EQUAL(LAW_EST, flight.active_law);
+    TEST_ASSERT_EQUAL(LAW_EST, flight.law);
     run(3.0);
     measure(6.0, 0.6);
     TEST_ASSERT_EQUAL_UINT16(0, out.flags);
@@ -504,9 +504,9 @@ void test_a_silent_imu_brings_the_thrust_to_hover_within_a_fifth_of_a_second(voi
         run(0.18);
         do { /* law PIDT takes over after 0.25 s */
             advance();
-            const float off_n = fabsf(out.thrust_n - flight.hover_n);
+            const float off_n = fabsf(out.thrust_n - flight.where.hover.thrust_n);
             widest_n = (off_n > widest_n) ? off_n : widest_n;
-        } while (flight.active_law != LAW_PIDT);
+        } while (flight.law != LAW_PIDT);
     }
     printf("at most %.2f N from hover\n", (double)widest_n);
     TEST_ASSERT_TRUE(widest_n > 0.2F && widest_n < 0.8F);
@@ -535,7 +535,7 @@ static float speed_error_after_a_gap(bool heights)
     world.body.mute = !heights;
     world.imu_mute = false;
     run(0.1);
-    TEST_ASSERT_EQUAL(LAW_EST, flight.active_law);
+    TEST_ASSERT_EQUAL(LAW_EST, flight.law);
     TEST_ASSERT_TRUE(world.body.speed_m_s > 0.3);
     return fabsf(flight.est.estimator.now.speed_mps - (float)world.body.speed_m_s);
 }
@@ -587,13 +587,13 @@ void test_without_accelerations_it_flies_by_the_thrust_model_and_the_heights_and
         board(seed);
         world.no_acceleration = true;
         hover_at(0.6F);
-        TEST_ASSERT_EQUAL(LAW_EST, flight.active_law);
+        TEST_ASSERT_EQUAL(LAW_EST, flight.law);
         TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_IMU, out.flags);
         highest[seed - 1] = highest_m;
         measure(10.0, 0.6);
         rms[seed - 1] = rms_mm();
         activity[seed - 1] = activity_n();
-        TEST_ASSERT_EQUAL(LAW_EST, flight.active_law);
+        TEST_ASSERT_EQUAL(LAW_EST, flight.law);
     }
     qsort(rms, SEEDS, sizeof rms[0], ascending);
     qsort(activity, SEEDS, sizeof activity[0], ascending);
@@ -636,7 +636,7 @@ void test_accelerations_lost_in_flight_and_found_again_change_the_flag_and_not_t
     TEST_ASSERT_EQUAL_UINT16(0, out.flags);
     measure(10.0, 0.6);
     TEST_ASSERT_TRUE(largest_error_m < 0.1);
-    TEST_ASSERT_EQUAL(LAW_EST, flight.active_law);
+    TEST_ASSERT_EQUAL(LAW_EST, flight.law);
 }
 
 /* 4 m/s2 from one frame to the next: the estimate has followed them until they are in doubt. */
@@ -651,7 +651,7 @@ void test_an_accelerometer_that_jumps_in_flight_is_doubted_and_the_thrust_model_
         TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_IMU, out.flags);
         TEST_ASSERT_TRUE(largest_error_m < 0.45);
         measure(10.0, 0.6);
-        TEST_ASSERT_EQUAL(LAW_EST, flight.active_law);
+        TEST_ASSERT_EQUAL(LAW_EST, flight.law);
         TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
         TEST_ASSERT_TRUE(rms_mm() > 5.0 && rms_mm() < 30.0);
     }

@@ -332,15 +332,15 @@ void test_imu_and_estimate_are_ready_while_they_are_fresh(void)
 
 void test_a_doubt_of_the_accelerations_drops_them_once_and_ignores_them(void)
 {
-    est_law_set_accelerations_doubted(&law, true);
+    est_law_doubt(&law, &(est_doubts_t){.accelerations = true});
     TEST_ASSERT_FALSE(law.estimator.felt);
     law.estimator.felt = true;
-    est_law_set_accelerations_doubted(&law, true);
+    est_law_doubt(&law, &(est_doubts_t){.accelerations = true});
     TEST_ASSERT_TRUE(law.estimator.felt);
     law.estimator.felt = false;
     cycle(3.0F);
     TEST_ASSERT_FALSE(est_law_has_acceleration(&law));
-    est_law_set_accelerations_doubted(&law, false);
+    est_law_doubt(&law, &(est_doubts_t){.accelerations = false});
     TEST_ASSERT_FALSE(law.estimator.felt);
     cycle(0.0F);
     TEST_ASSERT_TRUE(est_law_has_acceleration(&law));
@@ -635,14 +635,14 @@ void test_a_thrust_without_authority_is_the_sure_one(void)
 {
     law.hover.gust_n = 0.3F;
     law.sure_hover_n = 7.5F;
-    est_law_set_without_authority(&law, false);
+    est_law_doubt(&law, &(est_doubts_t){.without_authority = false});
     NEAR(7.0F, law.hover.thrust_n);
     NEAR(0.3F, law.hover.gust_n);
-    est_law_set_without_authority(&law, true);
+    est_law_doubt(&law, &(est_doubts_t){.without_authority = true});
     NEAR(7.5F, law.hover.thrust_n);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, law.hover.gust_n);
     law.sure_hover_n = 11.0F;
-    est_law_set_without_authority(&law, true);
+    est_law_doubt(&law, &(est_doubts_t){.without_authority = true});
     NEAR(9.0F, law.hover.thrust_n);
     TEST_ASSERT_TRUE(law.without_authority);
 }
@@ -781,7 +781,7 @@ void test_the_end_of_a_landing_fades_the_thrust_out(void)
     NEAR(7.0F + 0.5F - 2.0F * 0.6F, est_law_step(&law, &parameters, EST_MODE_LAND, 0.0F));
     NEAR(0.6F, law.near_ground_s);
     law.near_ground_s = 1.0F;
-    est_law_set_rocks(&law, true);
+    law.rocks = true;
     (void)est_law_step(&law, &parameters, EST_MODE_LAND, 0.0F);
     NEAR(1.01F, law.near_ground_s); /* it is in the air yet: a tenth */
     (void)est_law_step(&law, &parameters, EST_MODE_SINK, 0.0F);

@@ -5,13 +5,13 @@
 #include "sense/sensed.h"
 
 static sense_t it;
-static situation_t flown;
+static command_t flown;
 static imu_sample_t frame;
 
 static inline void begin(void)
 {
     sense_init(&it);
-    flown = (situation_t){.step_s = 0.025F, .off_ground = true, .ours = true, .authority_mps2_per_n = 1.4F};
+    flown = (command_t){.step_s = 0.025F, .off_ground = true, .ours = true, .authority_mps2_per_n = 1.4F};
     frame = (imu_sample_t){.ready = true, .has_acceleration = true, .down_mps2 = G_MPS2};
 }
 

@@ -14,7 +14,7 @@
 #define NEAR(expected, actual) TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, expected, actual)
 #define VERY_NEAR(expected, actual) TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, expected, actual)
 
-static inline void sensed_frames(sense_t *it, const situation_t *flown, const imu_sample_t *frames,
+static inline void sensed_frames(sense_t *it, const command_t *flown, const imu_sample_t *frames,
                                  uint16_t count)
 {
     senses_frames(&it->senses, flown, frames, count);
@@ -23,7 +23,7 @@ static inline void sensed_frames(sense_t *it, const situation_t *flown, const im
     }
 }
 
-static inline void sensed_thrust(sense_t *it, const situation_t *flown)
+static inline void sensed_thrust(sense_t *it, const command_t *flown)
 {
     if (flown->ordered && flown->grounded) {
         verdict_order(&it->verdict, &it->senses);
@@ -31,7 +31,7 @@ static inline void sensed_thrust(sense_t *it, const situation_t *flown)
     senses_thrust(&it->senses, flown, (it->verdict.doubts & DOUBT_IMU) == 0U);
 }
 
-static inline void sensed_height(sense_t *it, const situation_t *flown, float height_m, float gap_s,
+static inline void sensed_height(sense_t *it, const command_t *flown, float height_m, float gap_s,
                                  float age_s)
 {
     const height_change_t change = senses_height(&it->senses, height_m, gap_s, age_s,

@@ -5,7 +5,7 @@
 /* A vehicle that moves as its thrust says, and what its sensors tell of it: a height every 0.1 s, a frame
  * every 25 ms. */
 static sense_t it;
-static situation_t flown;
+static command_t flown;
 static imu_sample_t frame;
 static struct {
     float height_m, speed_mps, lie_m, felt_lie_mps2, lagged_n;
@@ -20,14 +20,14 @@ void setUp(void)
     memset(&frame, 0, sizeof frame);
     frame.ready = frame.has_acceleration = true;
     world.lagged_n = HOVER_N;
-    flown = (situation_t){.step_s = 0.025F,
-                          .off_ground = true,
-                          .ours = true,
-                          .thrust_n = HOVER_N,
-                          .hover_n = HOVER_N,
-                          .authority_mps2_per_n = 9.80665F / HOVER_N,
-                          .damping_per_s = 2.5F,
-                          .noise_mps2 = 0.4F};
+    flown = (command_t){.step_s = 0.025F,
+                        .off_ground = true,
+                        .ours = true,
+                        .thrust_n = HOVER_N,
+                        .hover_n = HOVER_N,
+                        .authority_mps2_per_n = 9.80665F / HOVER_N,
+                        .damping_per_s = 2.5F,
+                        .noise_mps2 = 0.4F};
 }
 
 void tearDown(void) {}

@@ -8,7 +8,7 @@
 #define HOVER_N 7.0F
 
 static sense_t it;
-static situation_t flown;
+static command_t flown;
 
 /* In the air, warm and proved; the heights do not move, nobody contradicts. */
 void setUp(void)
@@ -21,15 +21,15 @@ void setUp(void)
     it.senses.heights.since_rise_s = 1.5F;
     it.senses.accelerometer.felt.running_s = it.senses.push.pushed.running_s = 2.0F;
     it.senses.push.lagged_n = HOVER_N;
-    flown = (situation_t){.step_s = 0.025F,
-                          .off_ground = true,
-                          .ours = true,
-                          .thrust_n = HOVER_N,
-                          .hover_n = HOVER_N,
-                          .authority_mps2_per_n = 1.4F,
-                          .damping_per_s = 2.5F,
-                          .wanted_m = 0.5F,
-                          .noise_mps2 = 0.4F};
+    flown = (command_t){.step_s = 0.025F,
+                        .off_ground = true,
+                        .ours = true,
+                        .thrust_n = HOVER_N,
+                        .hover_n = HOVER_N,
+                        .authority_mps2_per_n = 1.4F,
+                        .damping_per_s = 2.5F,
+                        .wanted_m = 0.5F,
+                        .noise_mps2 = 0.4F};
 }
 
 void tearDown(void) {}

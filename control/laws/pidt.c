@@ -1,4 +1,4 @@
-#include "control/pidt.h"
+#include "control/laws/pidt.h"
 
 #include <math.h>
 #include <stdbool.h>

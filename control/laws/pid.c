@@ -1,4 +1,4 @@
-#include "control/pid.h"
+#include "control/laws/pid.h"
 
 #include "control/between.h"
 #include "control/thrust.h"

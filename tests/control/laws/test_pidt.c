@@ -1,4 +1,4 @@
-#include "control/pidt.h"
+#include "control/laws/pidt.h"
 #include "unity.h"
 
 #include <math.h>

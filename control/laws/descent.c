@@ -1,4 +1,4 @@
-#include "control/descent.h"
+#include "control/laws/descent.h"
 
 #include "control/between.h"
 #include "control/touchdown.h"

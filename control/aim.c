@@ -1,0 +1,52 @@
+/* What breaks: a held height that follows too slowly pulls against a pilot. */
+#include "control/aim.h"
+
+#include <math.h>
+
+#include "control/between.h"
+
+#define EFFECT_REACH_M 0.14F  /* chosen: below VAIN_M in verdict.c */
+#define UNKNOWN_REACH_M 0.06F /* tried 0.05 to 0.09; asks for 0.8 N at the delivered gains */
+#define FLOAT_REACH_M 0.30F   /* chosen: three times the distance that counts as reached, reach.c */
+
+float aim_height_m(const aim_t *aim, const supervisor_t *supervisor)
+{
+    return (supervisor->state == FLIGHT_FLOATING) ? aim->floating_m : supervisor->reference_m;
+}
+
+float aim_wanted_m(const aim_t *aim, const supervisor_t *supervisor, flight_mode_t mode)
+{
+    const flight_state_t state = supervisor->state;
+    const bool holds = state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING || state == FLIGHT_LOWERING ||
+                       (state == FLIGHT_FLOATING && mode != FLIGHT_MODE_HOVER);
+
+    return holds ? aim_height_m(aim, supervisor) - supervisor->height.height_mm * 0.001F : NAN;
+}
+
+void aim_float(aim_t *aim, const where_t *where, flight_mode_t mode, flight_mode_t mode_before)
+{
+    const pilot_state_t *pilot = &where->pilot;
+    const float height_m = where->supervisor.height.height_mm * 0.001F;
+    const bool holds = modes_hold(mode_before) && where->supervisor.state == FLIGHT_FLOATING &&
+                       mode != FLIGHT_MODE_HOVER;
+    const float reach_m = pilot_shows_effect(pilot) ? EFFECT_REACH_M
+                          : pilot_is_unknown(pilot) ? UNKNOWN_REACH_M
+                                                    : FLOAT_REACH_M;
+
+    aim->floating_m = holds ? between(height_m - reach_m, aim->floating_m, height_m + reach_m) : height_m;
+}
+
+void aim_judge(aim_t *aim, const where_t *where)
+{
+    const supervisor_t *supervisor = &where->supervisor;
+    const bool acts = supervisor->state == FLIGHT_TAKEOFF || supervisor->state == FLIGHT_FLYING;
+
+    if (!acts || supervisor->reference_m != aim->reach_m) {
+        reach_reset(&aim->reach);
+    }
+    aim->reach_m = supervisor->reference_m;
+    aim->out_of_reach = acts ? reach_step(&aim->reach,
+                                          supervisor->height.height_mm - supervisor->reference_m * 1000.0F,
+                                          supervisor->step_us)
+                             : pilot_holds_up(&where->pilot, supervisor->state);
+}

@@ -1,0 +1,34 @@
+/* Which height is held, and whether the vehicle gets there.
+ *
+ * Pure; the caller owns the state, all zero at first. */
+#ifndef CONTROL_AIM_H
+#define CONTROL_AIM_H
+
+#include <stdbool.h>
+
+#include "control/modes.h"
+#include "control/reach.h"
+#include "control/where/where.h"
+
+typedef struct {
+    float floating_m; /* height that FLOATING holds */
+    reach_t reach;
+    float reach_m;     /* reference that `reach` watches */
+    bool out_of_reach; /* the vehicle does not get to the reference in force */
+} aim_t;
+
+/* Height to hold, above the terrain. */
+float aim_height_m(const aim_t *aim, const supervisor_t *supervisor);
+
+/* Reference minus height; NAN when no height is held. */
+float aim_wanted_m(const aim_t *aim, const supervisor_t *supervisor, flight_mode_t mode);
+
+/* FLOATING holds the height at its start. When something else moves the vehicle, the held height follows; at
+ * once where a pilot may fly. */
+void aim_float(aim_t *aim, const where_t *where, flight_mode_t mode, flight_mode_t mode_before);
+
+/* Detects a reference that is not reached, in the states in which the law acts, and a landing that does not
+ * sink. Writes out_of_reach. */
+void aim_judge(aim_t *aim, const where_t *where);
+
+#endif

@@ -1,0 +1,239 @@
+/* Each limit is a function of what is known and of its own memory; none of them reads the law's thrust.
+ * What breaks: two limits that exclude each other. The later one in the table wins, so the ground wins
+ * against the air, and the actuator against all. */
+#include "control/bounds.h"
+
+#include <math.h>
+
+#include "control/between.h"
+#include "control/seconds.h"
+#include "control/thrust.h"
+#include "control/touchdown.h"
+
+#define UNCONFIRMED_MPS 0.35F /* chosen: CONFIRMED_M in confirmation.c, 0.12 m, takes 0.35 s at this rate */
+#define TAKEOFF_MPS 0.6F      /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
+#define CLIMB_MARGIN_MPS 0.4F /* chosen: room for an overshoot of the climb rate above VUP */
+#define SWITCH_MPS 0.1F       /* chosen: that much below the climb rate two speeds switch the limit on */
+
+#define UNCHECKED_ABOVE_N 0.5F /* chosen: as TRANSFER_START_N in laws.c */
+#define UNCHECKED_BELOW_N 1.0F /* chosen: twice that */
+
+#define NO_AUTHORITY_WINDOW_N 0.6F /* chosen: 0.8 m/s2 */
+#define HELD_SINK_N_PER_S 0.2F     /* chosen: as SINK_FADE_N_PER_S in est_law.c */
+#define UNKNOWN_WINDOW_N 2.0F      /* chosen: as HOVER_BOUND_N in est_law.c */
+
+#define BACK_BELOW_N 0.5F         /* chosen: by the vehicle model a sink rate of 0.3 m/s */
+#define BACK_SUNK_N 1.2F          /* chosen: with BACK_BELOW_N more than a fifth of GRAV */
+#define BACK_FELT_N 2.0F          /* chosen: more than GRAV is off */
+#define BACK_MOVES_MPS 0.35F      /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in IN_HANDS_S of handover.c */
+#define BACK_N_PER_M 2.0F         /* chosen: a climb of 1 m/s lowers it by 1.5 N before that is forgotten */
+#define BACK_CLIMB_N_PER_MPS 1.0F /* chosen: halves the climb of a vehicle that is lighter by a fifth */
+#define BACK_FALL_N_PER_MPS 2.0F  /* chosen: twice that */
+#define BACK_BRAKE_N 1.8F         /* chosen: what the two before may have sunk */
+#define BACK_MAX_S 60.0F          /* above DESCENT_TIMEOUT_US in supervisor.c */
+
+#define STANDING_N_PER_S \
+    1.0F /* chosen: in 2 s too low to fly; the accelerometer shows a fall before it is fast */
+
+#define FLOAT_TRIM_N 0.4F         /* chosen: GRAV is trimmed so much too low, or less */
+#define FLOAT_TRIM_N_PER_M_S 8.0F /* tried 4 and 8: half of it after a second 25 mm too low */
+
+typedef struct {
+    float least_n, most_n;
+} interval_t;
+
+static const interval_t anything = {-INFINITY, INFINITY};
+
+static interval_t most(float most_n)
+{
+    return (interval_t){-INFINITY, most_n};
+}
+
+static interval_t least(float least_n)
+{
+    return (interval_t){least_n, INFINITY};
+}
+
+static interval_t about(float middle_n, float below_n, float above_n)
+{
+    return (interval_t){middle_n - below_n, middle_n + above_n};
+}
+
+/* Thrust above the hover thrust that makes a climb rate, by the vehicle's model. */
+static float climbing_n(const situation_t *now, float climb_mps)
+{
+    const cascade_vehicle_t vehicle = est_law_vehicle(now->est, now->parameters);
+
+    return vehicle.damping_per_s * climb_mps / vehicle.authority_mps2_per_n;
+}
+
+/* Limits the climb without use of the estimate. The limit is low while no height has confirmed the climb. */
+static interval_t of_climb(bounds_t *bounds, const situation_t *now)
+{
+    const evidence_t *evidence = now->evidence;
+    const bool takes_off = now->where->supervisor.state == FLIGHT_TAKEOFF;
+    const float unconfirmed_mps = takes_off ? TAKEOFF_MPS : UNCONFIRMED_MPS;
+    const float fastest_mps = evidence->unconfirmed
+                                  ? unconfirmed_mps
+                                  : now->parameters->value[PARAMETER_VUP] + CLIMB_MARGIN_MPS;
+    const float switch_mps = fastest_mps - SWITCH_MPS;
+    const bool fast = evidence->push_mps > switch_mps &&
+                      (!takes_off || doubts(evidence, DOUBT_IMU) || felt_mps(evidence) > switch_mps);
+
+    (void)bounds;
+    return (fast && modes_hold_reference(now->mode, now->law))
+               ? most(now->where->hover.thrust_n + climbing_n(now, fastest_mps))
+               : anything;
+}
+
+/* The same downwards, after a far step of the terrain that no descent has confirmed. */
+static interval_t of_descent(bounds_t *bounds, const situation_t *now)
+{
+    (void)bounds;
+    return (now->evidence->terrain_fell && modes_hold_reference(now->mode, now->law))
+               ? least(now->where->hover.thrust_n - climbing_n(now, UNCONFIRMED_MPS))
+               : anything;
+}
+
+static interval_t of_coasting(bounds_t *bounds, const situation_t *now)
+{
+    const bool unchecked = now->where->supervisor.state == FLIGHT_COASTING &&
+                           now->est->estimator.unchecked_count > 0U;
+
+    (void)bounds;
+    return unchecked ? about(now->where->hover.thrust_n, UNCHECKED_BELOW_N, UNCHECKED_ABOVE_N) : anything;
+}
+
+/* A pilot may fly, or has given the throttle back: nothing tells. So the thrust stays just below the best
+ * known hover thrust, and sinks slowly, because that may be wrong; faster while a climb is felt. */
+static float given_back_n(bounds_t *bounds, const situation_t *now)
+{
+    const where_t *where = now->where;
+    const float speed_mps = now->est->estimator.now.speed_mps;
+    const float felt_mps = speed_mps - between(-BACK_MOVES_MPS, speed_mps, BACK_MOVES_MPS);
+    const float sunk_n = where->pilot.sink_n_per_s * seconds_at_most(where->supervisor.state_us, BACK_MAX_S);
+    const float n_per_mps = (felt_mps > 0.0F) ? BACK_CLIMB_N_PER_MPS : BACK_FALL_N_PER_MPS;
+
+    bounds->felt_n = between(0.0F, bounds->felt_n + BACK_N_PER_M * felt_mps * where_step_s(where),
+                             BACK_FELT_N);
+    return where->hover.thrust_n - BACK_BELOW_N - at_most(sunk_n, BACK_SUNK_N) - bounds->felt_n -
+           at_least(n_per_mps * felt_mps, -BACK_BRAKE_N);
+}
+
+static interval_t while_unknown(bounds_t *bounds, const situation_t *now)
+{
+    const float hover_n = now->where->hover.thrust_n;
+
+    if (now->where->pilot.given_back) {
+        const float only_n = given_back_n(bounds, now);
+
+        return (interval_t){only_n, only_n};
+    }
+    return (interval_t){hover_n - UNKNOWN_WINDOW_N - bounds->sunk_n, hover_n + UNKNOWN_WINDOW_N};
+}
+
+/* While commands have no effect, and where a pilot may fly without a pin that reports it, the thrust stays
+ * near the hover thrust. So it fits when the commands get their effect back. In a descent the limit falls
+ * with time: the thrust that was held may be one that climbs. */
+static interval_t of_power(bounds_t *bounds, const situation_t *now)
+{
+    const bool doubted = doubts(now->evidence, DOUBT_THRUST);
+    const bool unknown = pilot_is_unknown(&now->where->pilot);
+
+    bounds->felt_n = now->where->pilot.given_back ? bounds->felt_n : 0.0F;
+    bounds->sunk_n = ((doubted || unknown) && where_descends(now->where))
+                         ? bounds->sunk_n + HELD_SINK_N_PER_S * where_step_s(now->where)
+                         : 0.0F;
+    if (unknown) {
+        return while_unknown(bounds, now);
+    }
+    if (!doubted || now->mode == FLIGHT_MODE_IDLE) {
+        return anything;
+    }
+    const float held_n = now->evidence->held_n - bounds->sunk_n;
+    return now->evidence->held_down ? least(held_n - NO_AUTHORITY_WINDOW_N)
+                                    : most(held_n + NO_AUTHORITY_WINDOW_N);
+}
+
+/* A landing that a height has shown near the ground ends there, also when the next heights are missing or
+ * contradict the estimate: a mirror that loses most of its rays shows few. */
+static interval_t of_landing(bounds_t *bounds, const situation_t *now)
+{
+    (void)bounds;
+    return most(touchdown_limit_n(now->where->contact.touching_s, now->where->hover.thrust_n));
+}
+
+/* Finds the end of a descent. While the vehicle may stand on the ground, the thrust is lowered step by step.
+ * If the accelerometer measures a fall, the vehicle is in the air and the thrust returns. If it does not, the
+ * vehicle stands. */
+static interval_t of_standing(bounds_t *bounds, const situation_t *now)
+{
+    const bool by_estimate = now->mode == FLIGHT_MODE_EST_SINK || now->mode == FLIGHT_MODE_EST_LAND;
+    const bool blind = now->mode == FLIGHT_MODE_BLIND_DESCENT && !doubts(now->evidence, DOUBT_IMU);
+    const float step_n = STANDING_N_PER_S * where_step_s(now->where);
+
+    if (!(by_estimate || blind) || !now->evidence->may_stand) {
+        bounds->standing_n = THRUST_MAX_N;
+        return anything;
+    }
+    bounds->standing_n = at_least(at_most(bounds->standing_n, now->thrust_n) - step_n, 0.0F);
+    return most(bounds->standing_n);
+}
+
+static interval_t of_actuator(bounds_t *bounds, const situation_t *now)
+{
+    (void)bounds;
+    return (interval_t){now->idle_n, THRUST_MAX_N};
+}
+
+static const struct {
+    bound_t id;
+    interval_t (*of)(bounds_t *bounds, const situation_t *now);
+} table[] = {
+    {BOUND_CLIMB, of_climb},       {BOUND_DESCENT, of_descent}, {BOUND_COASTING, of_coasting},
+    {BOUND_POWER, of_power},       {BOUND_LANDING, of_landing}, {BOUND_STANDING, of_standing},
+    {BOUND_ACTUATOR, of_actuator},
+};
+
+float bounds_trim_n(bounds_t *bounds, const situation_t *now)
+{
+    const where_t *where = now->where;
+    const bool unknown = pilot_is_unknown(&where->pilot) && !where->pilot.given_back;
+    const bool trims = unknown && now->mode == FLIGHT_MODE_EST_HOLD && est_law_has_acceleration(now->est) &&
+                       !pilot_shows_effect(&where->pilot);
+    const float below_m = now->aim_m - where->supervisor.height.height_mm * 0.001F;
+    const float trim_n = bounds->trim_n + FLOAT_TRIM_N_PER_M_S * below_m * where_step_s(where);
+
+    bounds->trim_n = trims ? between(0.0F, trim_n, FLOAT_TRIM_N) : 0.0F;
+    return bounds->trim_n;
+}
+
+float bounds_apply(bounds_t *bounds, const situation_t *now, float thrust_n)
+{
+    bounds->holds = BOUND_NONE;
+    for (uint16_t k = 0U; k < sizeof table / sizeof table[0]; ++k) {
+        const interval_t interval = table[k].of(bounds, now);
+        const float before_n = thrust_n;
+
+        thrust_n = between(interval.least_n, thrust_n, interval.most_n);
+        bounds->holds = (thrust_n != before_n) ? table[k].id : bounds->holds;
+    }
+    return thrust_n;
+}
+
+static const char *const names[] = {
+    [BOUND_NONE] = "-",
+    [BOUND_CLIMB] = "CLIMB",
+    [BOUND_DESCENT] = "DESCENT",
+    [BOUND_COASTING] = "COASTING",
+    [BOUND_POWER] = "POWER",
+    [BOUND_LANDING] = "LANDING",
+    [BOUND_STANDING] = "STANDING",
+    [BOUND_ACTUATOR] = "ACTUATOR",
+};
+typedef char every_bound_has_a_name[(sizeof names / sizeof names[0] == BOUND_COUNT) ? 1 : -1];
+
+const char *bound_name(uint16_t limit)
+{
+    return names[limit];
+}

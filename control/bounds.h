@@ -1,0 +1,45 @@
+/* Bounds on the thrust, as intervals that apply in order. The last one that changes the thrust holds; it is
+ * published, so that a log says why the thrust was that. Nothing acts behind them but the output against a
+ * wrong pin (laws/stuck_pin.h) and the guard (guard.h).
+ *
+ * Newtons per motor, seconds. Pure; the caller owns the state. */
+#ifndef CONTROL_BOUNDS_H
+#define CONTROL_BOUNDS_H
+
+#include <stdint.h>
+
+#include "control/situation.h"
+
+typedef enum {
+    BOUND_NONE,
+    BOUND_CLIMB,    /* a climb faster than the reference, or than an unconfirmed height, allows */
+    BOUND_DESCENT,  /* a descent after a far step of the terrain that no height has confirmed */
+    BOUND_COASTING, /* the IMU was silent, and no heights have checked the speed since */
+    BOUND_POWER,    /* commands have no effect, or a pilot may fly */
+    BOUND_LANDING,  /* near the ground */
+    BOUND_STANDING, /* the vehicle may stand: the thrust is lowered to find out */
+    BOUND_ACTUATOR, /* idle and full thrust */
+    BOUND_COUNT
+} bound_t;
+
+typedef struct {
+    float sunk_n;     /* how far the window of the held thrust has sunk in the present descent */
+    float felt_n;     /* how far felt climbs have lowered the thrust of a descent out of a pilot's hands */
+    float standing_n; /* upper limit while a descent tests whether the vehicle stands */
+    float trim_n;     /* added while the throttle is unknown, see bounds_trim_n() */
+    bound_t holds;    /* BOUND_NONE: the law's thrust is unchanged */
+} bounds_t;
+
+/* FLOATING in a pilot's hands, or given back by him: nothing tells. GRAV is too low rather than too high, so
+ * the vehicle sinks when it is given back, until its effect shows and its hover thrust is learned. Until then
+ * more thrust is added while it is too low; never less, and nothing is learned from it. Returns what to add
+ * to the law's thrust, >= 0. */
+float bounds_trim_n(bounds_t *bounds, const situation_t *now);
+
+/* The bounded thrust. Once in each cycle. */
+float bounds_apply(bounds_t *bounds, const situation_t *now, float thrust_n);
+
+/* "CLIMB" and so on; BOUND_NONE: "-". */
+const char *bound_name(uint16_t limit);
+
+#endif

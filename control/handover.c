@@ -1,0 +1,238 @@
+/* A table of the edges of doubts, and one function for each other thing that comes or goes.
+ * What breaks: an estimate that is not told flies on what was believed before. */
+#include "control/handover.h"
+
+#include "control/between.h"
+
+#define LIFTED_MPS 0.25F      /* chosen: above what a bias of 0.2 m/s2 makes on the ground */
+#define IN_HANDS_S 2.0F       /* as IN_HANDS_TIME_S in accelerometer.c */
+#define IN_HANDS_BIAS_S 10.0F /* chosen: five times that */
+
+/* What the estimate goes on from. */
+typedef enum {
+    AMEND_NOT,
+    AMEND_WITHOUT_ERROR, /* the error of the heights, speed and bias of the witnesses */
+    AMEND_BY_HEIGHTS,    /* the heights, with the accelerometer's bias */
+    AMEND_BY_HEIGHTS_ALONE
+} amend_t;
+
+/* Where an edge counts. */
+typedef enum { ANYWHERE, IN_THE_AIR, IN_THE_AIR_OR_UNSEEN } place_t;
+
+/* One edge of the doubts. */
+typedef struct {
+    uint16_t came, gone; /* any of these */
+    place_t place;
+    amend_t amend;
+    bool engages; /* law EST starts again, from the previous thrust and the sure hover thrust */
+} edge_t;
+
+/* Before law EST is told what is doubted now, and after it. */
+static const edge_t first_edges[] = {
+    {.came = DOUBT_SIGHT, .place = ANYWHERE, .amend = AMEND_WITHOUT_ERROR},
+    {.came = DOUBT_SIGHT, .gone = DOUBT_THRUST, .place = IN_THE_AIR_OR_UNSEEN, .engages = true},
+    {.gone = DOUBT_SIGHT, .place = IN_THE_AIR, .amend = AMEND_BY_HEIGHTS, .engages = true},
+};
+static const edge_t last_edges[] = {
+    {.came = DOUBT_IMU, .place = IN_THE_AIR, .amend = AMEND_BY_HEIGHTS_ALONE, .engages = true},
+};
+
+static void engage(est_law_t *est, const situation_t *now)
+{
+    est_law_engage(est, now->thrust_n, now->where->hover.thrust_n);
+}
+
+static void amend(est_law_t *est, const evidence_t *evidence, amend_t how)
+{
+    switch (how) {
+    case AMEND_WITHOUT_ERROR:
+        estimator_amend(&est->estimator, est->estimator.now.height_m - evidence->lost_m, evidence->speed_mps,
+                        evidence->bias_mps2);
+        break;
+    case AMEND_BY_HEIGHTS:
+        estimator_amend(&est->estimator, evidence->height_m, evidence->rise_mps, evidence->bias_mps2);
+        break;
+    case AMEND_BY_HEIGHTS_ALONE:
+        estimator_amend(&est->estimator, evidence->height_m, evidence->rise_mps, 0.0F);
+        break;
+    case AMEND_NOT:
+    default:
+        break;
+    }
+}
+
+/* What came and went in this cycle. */
+typedef struct {
+    uint16_t came, gone;
+} change_t;
+
+static bool is_place(place_t place, const change_t *change, const situation_t *now)
+{
+    const bool unseen = (change->came & DOUBT_SIGHT) != 0U && now->evidence->sways;
+
+    return place == ANYWHERE || now->est->airborne || (place == IN_THE_AIR_OR_UNSEEN && unseen);
+}
+
+static void tell(est_law_t *est, const edge_t *edges, uint16_t count, const change_t *change,
+                 const situation_t *now)
+{
+    for (uint16_t k = 0U; k < count; ++k) {
+        const edge_t *edge = &edges[k];
+        const bool is_edge = (edge->came & change->came) != 0U || (edge->gone & change->gone) != 0U;
+
+        if (!is_edge || !is_place(edge->place, change, now)) {
+            continue;
+        }
+        amend(est, now->evidence, edge->amend);
+        if (edge->engages) {
+            engage(est, now);
+        }
+    }
+}
+
+void handover_doubts(handover_t *handover, est_law_t *est, hover_thrust_t *hover, const situation_t *now)
+{
+    const uint16_t doubted = now->evidence->doubts;
+    const pilot_state_t *pilot = &now->where->pilot;
+    const change_t change = {
+        .came = doubted & (uint16_t)~handover->doubts,
+        .gone = handover->doubts & (uint16_t)~doubted,
+    };
+
+    if ((change.came & DOUBT_IMU) != 0U) {
+        hover_thrust_distrust(hover, now->parameters->value[PARAMETER_GRAV]);
+    }
+    tell(est, first_edges, sizeof first_edges / sizeof first_edges[0], &change, now);
+    est_law_doubt(est, &(est_doubts_t){
+                           .without_authority = (doubted & DOUBT_THRUST) != 0U ||
+                                                (pilot_is_unknown(pilot) && !pilot_shows_effect(pilot)),
+                           .accelerations = (doubted & DOUBT_IMU) != 0U,
+                           .rocks = now->rocks,
+                       });
+    tell(est, last_edges, sizeof last_edges / sizeof last_edges[0], &change, now);
+    handover->doubts = doubted;
+}
+
+/* From what thrust and heights tell, not from standstill, and with the bias from before; also where the
+ * heights are gone. */
+void handover_imu(est_law_t *est, const situation_t *now)
+{
+    const evidence_t *evidence = now->evidence;
+    estimator_t *estimator = &est->estimator;
+
+    if (estimator->initialised || !est->airborne || !est_law_has_imu(est)) {
+        return;
+    }
+    const float height_m = doubts(evidence, DOUBT_SIGHT) ? estimator->now.height_m
+                                                         : evidence->height_m + evidence->moved_m;
+    estimator_start(estimator, height_m, evidence->pushed_mps, estimator->felt ? evidence->bias_mps2 : 0.0F);
+}
+
+/* First hover thrust after lift-off: the delivered thrust less what acceleration and drag need. */
+static float lifting_n(const situation_t *now)
+{
+    const est_law_t *est = now->est;
+    const cascade_vehicle_t vehicle = est_law_vehicle(est, now->parameters);
+    const float taken_mps2 = est->lift_mps2 + vehicle.damping_per_s * now->evidence->felt_mps;
+    const float hover_n = est->actuator.thrust_n - taken_mps2 / vehicle.authority_mps2_per_n;
+
+    return est_law_ready(est) && est_law_has_acceleration(est)
+               ? hover_thrust_near(now->parameters->value[PARAMETER_GRAV], hover_n)
+               : now->where->hover.thrust_n;
+}
+
+/* True when the vehicle has left the ground, by the heights or by the accelerometer. For the laws that do not
+ * detect their lift-off themselves. */
+static bool flies(const situation_t *now)
+{
+    const flight_state_t state = now->where->supervisor.state;
+    const bool felt = now->evidence->felt_mps > LIFTED_MPS * now->evidence->shaken;
+
+    return (state == FLIGHT_FLYING && (!now->where->contact.lifting || now->risen)) ||
+           ((state == FLIGHT_FLYING || state == FLIGHT_TAKEOFF) && felt);
+}
+
+/* The take-off was given up on the ground, and the accelerometer feels that the vehicle has left it after
+ * all. */
+static void notice_lift(est_law_t *est, where_t *where, const situation_t *now)
+{
+    if (est_law_ready(est) && felt_mps(now->evidence) > LIFTED_MPS) {
+        hover_thrust_lift_off(&where->hover, lifting_n(now));
+        contact_lift_off(&where->contact);
+        engage(est, now);
+    }
+}
+
+void handover_contact(est_law_t *est, where_t *where, const situation_t *now, bool has_throttle)
+{
+    const flight_state_t state = where->supervisor.state;
+
+    if (state == FLIGHT_GROUND) {
+        est_law_reset(est, now->parameters);
+    } else if (state == FLIGHT_FLOATING && !has_throttle) {
+        est_law_disengage(est);
+    } else if (where->contact.gave_up && state != FLIGHT_TAKEOFF) {
+        notice_lift(est, where, now);
+    } else if (now->mode == FLIGHT_MODE_LAW && !est->airborne && flies(now)) {
+        est_law_engage(est, now->thrust_n, lifting_n(now));
+    }
+}
+
+void handover_pilot(est_law_t *est, const situation_t *now, pilot_news_t news, float trim_n)
+{
+    if (news == PILOT_SHOWS_EFFECT) { /* now its hover thrust is learned */
+        est_law_engage(est, now->thrust_n, now->where->hover.thrust_n + trim_n);
+    } else if (news == PILOT_IS_SURE) {
+        engage(est, now);
+    }
+}
+
+/* Law EST takes over. A hover thrust that it has learned in this flight is not learned anew from a vehicle
+ * that may still swing. */
+static void take_over(est_law_t *est, const situation_t *now)
+{
+    const bool knows = now->mode_before == FLIGHT_MODE_LAW && est->airborne;
+    const hover_t learned = est->hover;
+
+    if (!knows) {
+        engage(est, now);
+        return;
+    }
+    est_law_engage(est, now->thrust_n, learned.thrust_n);
+    est->hover.variance_n2 = learned.variance_n2;
+}
+
+void handover_mode(est_law_t *est, const situation_t *now)
+{
+    const where_t *where = now->where;
+    const bool given_back = where->supervisor.state == FLIGHT_DESCENDING; /* by a pilot, without heights */
+    const bool from_idle = now->mode_before == FLIGHT_MODE_IDLE;
+
+    if (!modes_use_estimate(now->mode)) {
+        return;
+    }
+    if (given_back && from_idle) {
+        estimator_amend(&est->estimator, 0.0F, now->evidence->felt_mps, now->evidence->bias_mps2);
+    }
+    if (!modes_use_estimate(now->mode_before) &&
+        (given_back || (!from_idle && !contact_lifts(&where->contact)))) {
+        take_over(est, now);
+    }
+}
+
+void handover_hover(est_law_t *est, const situation_t *now)
+{
+    est_law_set_sure_hover(est, now->where->hover.thrust_n,
+                           where_descends(now->where) && !now->where->pilot.given_back);
+}
+
+void handover_given_back(est_law_t *est, const situation_t *now)
+{
+    const estimate_t *estimate = &est->estimator.now;
+    const float share = where_step_s(now->where) / IN_HANDS_S;
+
+    if (now->where->pilot.given_back) {
+        estimator_amend(&est->estimator, 0.0F, estimate->speed_mps * (1.0F - share),
+                        estimate->bias_mps2 + share * estimate->speed_mps / IN_HANDS_BIAS_S);
+    }
+}

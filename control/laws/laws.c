@@ -1,0 +1,133 @@
+/* The mode computes the thrust. In the air every change of the mode is without a jump of the thrust: bumpless
+ * transfer, as in any text on control. */
+#include "control/laws/laws.h"
+
+#include "control/between.h"
+#include "control/flight_io.h"
+#include "control/touchdown.h"
+
+#define TRANSFER_TIME_S 0.4F  /* chosen: four scans */
+#define TRANSFER_START_N 0.5F /* chosen: 0.7 m/s2 */
+
+static float no_thrust(laws_t *laws, est_law_t *est, const situation_t *now)
+{
+    (void)laws;
+    (void)est;
+    (void)now;
+    return 0.0F;
+}
+
+float law_hover_step(laws_t *laws, est_law_t *est, const situation_t *now)
+{
+    (void)laws;
+    (void)est;
+    return now->where->hover.thrust_n;
+}
+
+/* By mode; LAW has rows of its own. */
+static const law_step_t steps_of_mode[FLIGHT_MODE_COUNT] = {
+    [FLIGHT_MODE_IDLE] = no_thrust,           [FLIGHT_MODE_LAW] = no_thrust,
+    [FLIGHT_MODE_HOVER] = law_hover_step,     [FLIGHT_MODE_FLOAT] = law_pidt_step,
+    [FLIGHT_MODE_DESCENT] = law_descent_step, [FLIGHT_MODE_BLIND_DESCENT] = law_blind_step,
+    [FLIGHT_MODE_EST_HOLD] = law_est_hold,    [FLIGHT_MODE_EST_LAND] = law_est_land,
+    [FLIGHT_MODE_EST_SINK] = law_est_sink,
+};
+/* By the law in force, where the chosen law flies. */
+static const law_step_t steps_of_law[LAW_COUNT] = {
+    [LAW_PD] = law_pid_step,
+    [LAW_PID] = law_pid_step,
+    [LAW_PIDT] = law_pidt_step,
+    [LAW_EST] = law_est_hold,
+};
+
+static void reset(laws_t *laws)
+{
+    pid_reset(&laws->pid);
+    pidt_reset(&laws->pidt);
+}
+
+static void resume_law(laws_t *laws, const situation_t *now)
+{
+    const bool flying = now->where->supervisor.state == FLIGHT_FLYING;
+
+    pid_resume(&laws->pid);
+    pidt_resume(&laws->pidt);
+    if (modes_use_estimate(now->mode_before) && flying) { /* as EST has estimated it */
+        laws->pidt.integral_n = now->where->hover.thrust_n - now->parameters->value[PARAMETER_GRAV];
+    }
+}
+
+void laws_change(laws_t *laws, const situation_t *now)
+{
+    if (now->mode == FLIGHT_MODE_DESCENT) {
+        descent_start(&laws->descent, now->where->supervisor.height.rate_mm_s);
+    }
+    if (now->mode == FLIGHT_MODE_LAW) {
+        resume_law(laws, now);
+    } else if (now->mode == FLIGHT_MODE_FLOAT) {
+        pidt_reset(&laws->pidt);
+    } else if (now->where->supervisor.state != FLIGHT_COASTING) {
+        reset(laws);
+    }
+}
+
+bool laws_step(laws_t *laws, est_law_t *est, const situation_t *now)
+{
+    const law_step_t step = (now->mode == FLIGHT_MODE_LAW) ? steps_of_law[now->law]
+                                                           : steps_of_mode[now->mode];
+    const bool had_integral = laws->integral;
+
+    laws->setpoint_n = step(laws, est, now);
+    return laws->integral != had_integral;
+}
+
+void laws_stop(laws_t *laws, const situation_t *now)
+{
+    laws->setpoint_n = now->thrust_n - LANDED_FADE_N_PER_S * where_step_s(now->where);
+    laws->transfer_n = 0.0F;
+}
+
+/* Another law goes on without the estimate. The latest command may have been an answer to noise. */
+static bool loses_estimate(const situation_t *now)
+{
+    return modes_use_estimate(now->mode_before) && !est_law_ready(now->est);
+}
+
+/* The mode starts with its own thrust. */
+static bool starts_at_once(const situation_t *now)
+{
+    return now->mode == FLIGHT_MODE_DESCENT || now->mode == FLIGHT_MODE_EST_LAND ||
+           now->mode_before == FLIGHT_MODE_IDLE ||
+           (now->mode_before == FLIGHT_MODE_HOVER && contact_lifts(&now->where->contact));
+}
+
+void laws_transfer(laws_t *laws, const situation_t *now, bool law_changed)
+{
+    const float hover_n = now->where->hover.thrust_n;
+    const bool both_est = modes_use_estimate(now->mode_before) && modes_use_estimate(now->mode);
+    const bool changed = now->mode_before != now->mode && !both_est;
+
+    if (now->mode == FLIGHT_MODE_IDLE || (changed && starts_at_once(now))) {
+        laws->transfer_n = 0.0F;
+    } else if (law_changed && !loses_estimate(now)) {
+        laws->transfer_n = now->thrust_n - laws->setpoint_n;
+    } else if (changed) {
+        laws->transfer_n = between(hover_n - TRANSFER_START_N, now->thrust_n, hover_n + TRANSFER_START_N) -
+                           laws->setpoint_n;
+    } else {
+        laws->transfer_n *= TRANSFER_TIME_S / (TRANSFER_TIME_S + where_step_s(now->where));
+    }
+}
+
+uint16_t laws_releases(const parameters_t *parameters, flight_mode_t mode)
+{
+    const uint16_t law = parameters_choice(parameters, PARAMETER_LAW);
+
+    if (modes_use_estimate(mode) || law == LAW_EST) {
+        return FLIGHT_RELEASE_HEIGHT | FLIGHT_RELEASE_FRAME;
+    }
+    if (law == LAW_PIDT || parameters_choice(parameters, PARAMETER_RELEASE) == RELEASE_SCAN) {
+        return FLIGHT_RELEASE_HEIGHT;
+    }
+    return FLIGHT_RELEASE_PERIOD;
+}

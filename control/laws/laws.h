@@ -1,0 +1,60 @@
+/* The laws behind one interface: each has a file, and one row in a table of laws.c.
+ *
+ * A law gives a thrust in each cycle. Between two heights it may hold the one before. Newtons per motor.
+ * Pure; the caller owns the state, all zero at first. */
+#ifndef CONTROL_LAWS_LAWS_H
+#define CONTROL_LAWS_LAWS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "control/est/est_law.h"
+#include "control/laws/descent.h"
+#include "control/laws/pid.h"
+#include "control/laws/pidt.h"
+#include "control/situation.h"
+
+typedef struct {
+    pid_state_t pid;
+    bool integral; /* the law had an integral action in its previous sample */
+    pidt_state_t pidt;
+    uint32_t pidt_rays_us; /* rays of the height before, law PIDT */
+    descent_t descent;
+    float blind_ahead_s; /* by which a blind descent is ahead of its time */
+    float setpoint_n;    /* thrust that the mode computes */
+    float transfer_n;    /* added to setpoint_n; fades to 0: bumpless transfer between modes */
+} laws_t;
+
+/* One law. Returns the setpoint. est: the state of law EST. */
+typedef float (*law_step_t)(laws_t *laws, est_law_t *est, const situation_t *now);
+
+/* Initial values, when the mode has changed. The law keeps its integral action only during COASTING. */
+void laws_change(laws_t *laws, const situation_t *now);
+
+/* The setpoint of the mode. Returns true when the law has gained or lost its integral action. */
+bool laws_step(laws_t *laws, est_law_t *est, const situation_t *now);
+
+/* Heights or reference were lost before the vehicle left the ground: the thrust ramps down. */
+void laws_stop(laws_t *laws, const situation_t *now);
+
+/* Bumpless transfer. A mode that takes over in the air starts from the previous thrust, limited to 0.5 N from
+ * hover. The difference then fades with a time constant of 0.4 s. Two exceptions start at once: a descent
+ * with a height, and the law on the ground. A change of the law alone starts exactly from the previous
+ * thrust. law_changed: it has changed in this cycle, or its integral action has. */
+void laws_transfer(laws_t *laws, const situation_t *now, bool law_changed);
+
+/* Events that release the next cycle, FLIGHT_RELEASE_*. PD and PID: as the parameter RELEASE says. PIDT: each
+ * height. EST, and every law while the estimator flies: each height and each IMU frame. */
+uint16_t laws_releases(const parameters_t *parameters, flight_mode_t mode);
+
+/* The rows, for laws.c. */
+float law_pid_step(laws_t *laws, est_law_t *est, const situation_t *now);
+float law_pidt_step(laws_t *laws, est_law_t *est, const situation_t *now);
+float law_est_hold(laws_t *laws, est_law_t *est, const situation_t *now);
+float law_est_land(laws_t *laws, est_law_t *est, const situation_t *now);
+float law_est_sink(laws_t *laws, est_law_t *est, const situation_t *now);
+float law_hover_step(laws_t *laws, est_law_t *est, const situation_t *now);
+float law_descent_step(laws_t *laws, est_law_t *est, const situation_t *now);
+float law_blind_step(laws_t *laws, est_law_t *est, const situation_t *now);
+
+#endif

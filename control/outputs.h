@@ -1,0 +1,15 @@
+/* What a cycle tells the rest of the firmware. */
+#ifndef CONTROL_OUTPUTS_H
+#define CONTROL_OUTPUTS_H
+
+#include "control/flight_io.h"
+#include "control/situation.h"
+
+/* Everything but the thrust and its pulse, imu_fault and releases. out_of_reach: the vehicle does not get to
+ * the reference. */
+void outputs_tell(const situation_t *now, bool out_of_reach, flight_outputs_t *out);
+
+/* Thrust and pulse. more_n: added against a wrong pin. */
+void outputs_drive(float thrust_n, float more_n, flight_outputs_t *out);
+
+#endif

@@ -1,0 +1,28 @@
+/* What a law, a bound and a hand-over may look at in one cycle. Everything is const: who reads it decides
+ * nothing for others. */
+#ifndef CONTROL_SITUATION_H
+#define CONTROL_SITUATION_H
+
+#include <stdbool.h>
+
+#include "control/est/est_law.h"
+#include "control/facts.h"
+#include "control/modes.h"
+#include "control/parameters.h"
+#include "control/where/where.h"
+
+typedef struct {
+    const parameters_t *parameters;
+    const evidence_t *evidence;
+    const where_t *where;
+    const est_law_t *est;
+    control_law_t law; /* in force; PIDT replaces EST while no estimate is fresh */
+    flight_mode_t mode, mode_before;
+    float aim_m;    /* height to hold, above the terrain */
+    float thrust_n; /* previous command */
+    float idle_n;   /* minimum thrust: the idle while armed, else 0 */
+    bool risen;     /* above the height that was measured on the ground, whatever that was */
+    bool rocks; /* the tilt moves as in flight; an IMU that has fallen silent does not say so any longer */
+} situation_t;
+
+#endif

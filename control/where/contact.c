@@ -1,0 +1,87 @@
+/* What breaks: a vehicle that is taken to stand while it flies gets no thrust. So the ground is left by any
+ * sign, and reached by the supervisor's state alone. */
+#include "control/where/contact.h"
+
+#include "control/touchdown.h"
+
+#define GAVE_UP_MAX_US UINT32_C(3000000) /* chosen: the take-off's ramp in est_law.c ends after 1.2 s */
+#define UNPOWERED_S 1.0F                 /* chosen: a free fall of 5 m */
+
+static bool takes_off(flight_state_t state)
+{
+    return state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING;
+}
+
+static bool gives_up(flight_state_t state)
+{
+    return state == FLIGHT_COASTING || state == FLIGHT_DESCENDING || state == FLIGHT_LANDING;
+}
+
+/* True when the vehicle may not have left the ground yet. A pilot who takes the throttle during a take-off
+ * makes it FLOATING on the ground. */
+static bool may_stand(const contact_t *contact, const contact_signs_t *signs)
+{
+    return takes_off(signs->state) && contact->lifting
+               ? !signs->airborne
+               : signs->state == FLIGHT_FLOATING && !signs->risen && !signs->sways;
+}
+
+static contact_kind_t kind_of(const contact_t *contact, flight_state_t state)
+{
+    if (state == FLIGHT_GROUND) {
+        return CONTACT_GROUND;
+    }
+    if (takes_off(state) && contact->lifting) {
+        return CONTACT_LIFTING;
+    }
+    return (contact->touching_s > 0.0F) ? CONTACT_TOUCHING : CONTACT_AIR;
+}
+
+void contact_step(contact_t *contact, const contact_signs_t *signs)
+{
+    const flight_state_t state = signs->state;
+
+    contact->lifting = state == FLIGHT_GROUND || (contact->lifting && may_stand(contact, signs));
+    contact->kind = kind_of(contact, state);
+}
+
+void contact_watch_take_off(contact_t *contact, flight_state_t state, uint32_t state_us, bool airborne)
+{
+    contact->gave_up = state == FLIGHT_TAKEOFF ? !airborne && state_us < GAVE_UP_MAX_US
+                                               : contact->gave_up && gives_up(state);
+}
+
+void contact_lift_off(contact_t *contact)
+{
+    contact->gave_up = false;
+}
+
+void contact_land(contact_t *contact, const landing_signs_t *signs)
+{
+    const flight_state_t state = signs->state;
+    const bool lands = state == FLIGHT_LANDING || (state == FLIGHT_DESCENDING && contact->touching_s > 0.0F);
+
+    if (lands && signs->sees) {
+        contact->unpowered_s = signs->powered ? 0.0F : contact->unpowered_s + signs->step_s;
+        contact->touching_s = touchdown_time_s(contact->touching_s, signs->height_m, signs->rocks,
+                                               signs->step_s);
+    } else {
+        contact->touching_s = 0.0F;
+    }
+    contact->kind = kind_of(contact, state);
+}
+
+bool contact_lifts(const contact_t *contact)
+{
+    return contact->kind == CONTACT_LIFTING;
+}
+
+bool contact_stops(const contact_t *contact, flight_state_t state)
+{
+    return contact->gave_up && gives_up(state);
+}
+
+bool contact_ends_without_thrust(const contact_t *contact)
+{
+    return contact->gave_up || (contact->touching_s > 0.0F && contact->unpowered_s > UNPOWERED_S);
+}

@@ -1,0 +1,69 @@
+/* Does the vehicle touch the ground? One answer for everybody, from the state, the heights and the end of the
+ * take-off.
+ *
+ * Seconds. Pure; the caller owns the state, all zero at first. */
+#ifndef CONTROL_WHERE_CONTACT_H
+#define CONTROL_WHERE_CONTACT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "control/flight_state.h"
+
+typedef enum {
+    CONTACT_GROUND,  /* on the ground, without a take-off */
+    CONTACT_LIFTING, /* a take-off is commanded, and the vehicle has not left the ground, as far as is known
+                      */
+    CONTACT_AIR,
+    CONTACT_TOUCHING /* a landing has come near the ground, and the thrust fades out */
+} contact_kind_t;
+
+typedef struct {
+    contact_kind_t kind;
+    bool lifting;      /* since the ground the vehicle has not left it yet, as far as known */
+    bool gave_up;      /* TAKEOFF ended, and the vehicle had not left the ground */
+    float touching_s;  /* time near the ground since a height of LANDING showed it, see touchdown.h */
+    float unpowered_s; /* how long it has had no thrust; valid while touching_s > 0 */
+} contact_t;
+
+/* What one cycle shows, after the supervisor's step. */
+typedef struct {
+    flight_state_t state;
+    bool airborne; /* the estimate's take-off has left the ground */
+    bool risen;    /* the height is above the one that was measured on the ground, whatever that was */
+    bool sways;    /* the tilt moves as in flight */
+} contact_signs_t;
+
+/* One cycle, after the supervisor's step and the height of the cycle. */
+void contact_step(contact_t *contact, const contact_signs_t *signs);
+
+/* Later in the cycle, when it is known who has the throttle: did the take-off end on the ground? state_us:
+ * time in this state. airborne: as above. */
+void contact_watch_take_off(contact_t *contact, flight_state_t state, uint32_t state_us, bool airborne);
+
+/* The vehicle has left the ground after all. */
+void contact_lift_off(contact_t *contact);
+
+/* What the end of a cycle shows of a landing. */
+typedef struct {
+    flight_state_t state;
+    float height_m; /* latest height, of the supervisor */
+    bool rocks;     /* the tilt moves as in flight */
+    bool powered;   /* there was more thrust than the idle */
+    bool sees;      /* the heights are not doubted */
+    float step_s;
+} landing_signs_t;
+
+/* At the end of the cycle: how near the end of a landing is. */
+void contact_land(contact_t *contact, const landing_signs_t *signs);
+
+/* A take-off is commanded and the vehicle has not left the ground, whatever height is measured. */
+bool contact_lifts(const contact_t *contact);
+
+/* Heights or reference were lost before the vehicle left the ground: the thrust ramps down to 0. */
+bool contact_stops(const contact_t *contact, flight_state_t state);
+
+/* Without thrust it stands after a take-off that was given up, and after a landing. */
+bool contact_ends_without_thrust(const contact_t *contact);
+
+#endif
