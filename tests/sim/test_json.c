@@ -18,8 +18,17 @@ void setUp(void)
     json_begin(&json, out);
 }
 
+static void finish(void)
+{
+    if (out != NULL) {
+        fclose(out);
+    }
+    out = NULL;
+}
+
 void tearDown(void)
 {
+    finish();
     free(text);
     text = NULL;
 }
@@ -27,7 +36,7 @@ void tearDown(void)
 static void written(const char *expected)
 {
     json_end(&json);
-    fclose(out);
+    finish();
     TEST_ASSERT_EQUAL_STRING(expected, text);
 }
 
