@@ -25,6 +25,7 @@ void outputs_tell(const situation_t *now, bool out_of_reach, flight_outputs_t *o
     const float measured_mm = (supervisor->height.sequence != 0U) ? supervisor->height.height_mm : NAN;
 
     out->idle_n = now->idle_n;
+    out->hover_n = now->where->hover.thrust_n;
     out->state = supervisor->state;
     out->flags = flags(now, out_of_reach);
     out->doubts = now->evidence->doubts;

@@ -192,28 +192,3 @@ parameter_status_t parameters_set(parameters_t *parameters, parameter_id_t id, f
     ++parameters->generation;
     return PARAMETER_ACCEPTED;
 }
-
-bool parameter_may_change_in_air(parameter_id_t id, float from, float to)
-{
-    switch (id) {
-    case PARAMETER_GRAV:
-    case PARAMETER_USAT:
-    case PARAMETER_DSAT:
-        return fabsf(to - from) <= PARAMETER_STEP_IN_AIR_N;
-    case PARAMETER_SEL:
-    case PARAMETER_IROLL:
-    case PARAMETER_IPITCH:
-    case PARAMETER_IDOWN:
-    case PARAMETER_IUNIT:
-    case PARAMETER_DF:
-    case PARAMETER_LF:
-    case PARAMETER_L:
-    case PARAMETER_D1:
-    case PARAMETER_L1:
-    case PARAMETER_D2:
-    case PARAMETER_L2:
-        return to == from;
-    default:
-        return true;
-    }
-}

@@ -138,14 +138,4 @@ static inline uint16_t parameters_choice(const parameters_t *parameters, paramet
  * it must also be whole. Otherwise nothing changes. -0 is stored as 0. */
 parameter_status_t parameters_set(parameters_t *parameters, parameter_id_t id, float value);
 
-/* Whether the value may change from `from` to `to` while the vehicle is in the air.
- *
- * GRAV, USAT and DSAT: by PARAMETER_STEP_IN_AIR_N at most, because the thrust of PD and PID follows them
- * at once. From hover, that much less thrust ends in a sink rate of 0.8 m/s (damping 2.4 1/s).
- * Not at all: SEL, because it decides who has the throttle; the IMU's axes and unit; the mirrors' places,
- * because the height would jump. All others: yes. A change of LAW starts from the previous thrust
- * (flight.h). */
-#define PARAMETER_STEP_IN_AIR_N 1.5F
-bool parameter_may_change_in_air(parameter_id_t id, float from, float to);
-
 #endif

@@ -12,6 +12,7 @@
 #include "firmware/ground.h"
 #include "firmware/imu_gate.h"
 #include "drivers/decimal.h"
+#include "control/in_air.h"
 #include "control/parameters.h"
 #include "firmware/listing.h"
 #include "firmware/servers.h"
@@ -224,20 +225,32 @@ static bool execute_help(answer_t *answer)
     return listing_start(answer, write_help);
 }
 
-/* What may change by steps in the air is of the newtons, the rest not at all. */
-static bool refuse_in_air(answer_t *answer, parameter_id_t id)
+/* In the air only what the pace there allows. False: refused, and answered. */
+static bool may_change(answer_t *answer, const parameters_t *parameters, parameter_id_t id, float value)
 {
-    const bool stepped = id == PARAMETER_GRAV || id == PARAMETER_USAT || id == PARAMETER_DSAT;
+    static const char *const reasons[] = {
+        [IN_AIR_NEVER] = "not on the ground",
+        [IN_AIR_TOO_MANY_N] = "in the air by 0.2 N in 10 s at most",
+        [IN_AIR_OVER_QUARTER] = "in the air by a quarter in 10 s at most",
+        [IN_AIR_TOO_OFTEN] = "in the air once in 10 s, EST at any time",
+        [IN_AIR_OFF_HOVER] = "would put the hover thrust out of reach",
+    };
+    static in_air_pace_t pace;
+    flight_outputs_t flight;
 
-    return answer_refuse(answer, stepped ? "in the air by 1.5 N at most" : "not on the ground");
+    if (!ground_left()) {
+        return true;
+    }
+    flight_status_server_read(&flight);
+    const in_air_t verdict = in_air_change(&pace, parameters, id, value, flight.hover_n, bsp_time_us());
+    return verdict == IN_AIR_FINE || answer_refuse(answer, reasons[verdict]);
 }
 
 static bool execute_set(answer_t *answer, parameter_id_t id)
 {
     const telecommand_t *command = answer->command;
     const parameter_row_t *row = &parameter_table[id];
-    static parameters_t parameters;
-    float before;
+    static parameters_t parameters, changed;
     float value = (float)parameter_find_choice(id, command->argument, command->argument_length);
 
     if (command->argument_length == 0U) {
@@ -247,17 +260,17 @@ static bool execute_set(answer_t *answer, parameter_id_t id)
         return answer_refuse(answer, "not a number");
     }
     parameter_server_read(&parameters);
-    before = parameters.value[id];
-    if (parameters_set(&parameters, id, value) != PARAMETER_ACCEPTED) {
+    changed = parameters;
+    if (parameters_set(&changed, id, value) != PARAMETER_ACCEPTED) {
         return answer_refuse_range(answer, row);
     }
-    if (!parameter_may_change_in_air(id, before, value) && ground_left()) {
-        return refuse_in_air(answer, id);
+    if (!may_change(answer, &parameters, id, value)) {
+        return false;
     }
-    if ((id == PARAMETER_IROLL || id == PARAMETER_IPITCH) && value != before) {
-        (void)parameters_set(&parameters, PARAMETER_IAXES, (float)AXES_ASSUMED);
+    if ((id == PARAMETER_IROLL || id == PARAMETER_IPITCH) && value != parameters.value[id]) {
+        (void)parameters_set(&changed, PARAMETER_IAXES, (float)AXES_ASSUMED);
     }
-    parameter_server_write(&parameters);
+    parameter_server_write(&changed);
     report_set(answer, id);
     return true;
 }

@@ -71,12 +71,26 @@ void laws_change(laws_t *laws, const situation_t *now)
     }
 }
 
+/* A new GRAV changes no thrust of a law that flies: its integral takes the difference over. PD has none, so
+ * its thrust follows. FLOATING follows too: GRAV is what a pilot will be given. */
+static void take_gravity(laws_t *laws, const situation_t *now)
+{
+    const float gravity_n = now->parameters->value[PARAMETER_GRAV];
+
+    if (now->mode == FLIGHT_MODE_LAW && now->mode_before == FLIGHT_MODE_LAW) {
+        laws->pid.integral_n -= gravity_n - laws->gravity_n;
+        laws->pidt.integral_n -= gravity_n - laws->gravity_n;
+    }
+    laws->gravity_n = gravity_n;
+}
+
 bool laws_step(laws_t *laws, est_law_t *est, const situation_t *now)
 {
     const law_step_t step = (now->mode == FLIGHT_MODE_LAW) ? steps_of_law[now->law]
                                                            : steps_of_mode[now->mode];
     const bool had_integral = laws->integral;
 
+    take_gravity(laws, now);
     laws->setpoint_n = step(laws, est, now);
     return laws->integral != had_integral;
 }

@@ -283,32 +283,3 @@ void test_a_parameter_stands_in_the_group_of_its_meaning_and_no_group_is_empty(v
         TEST_ASSERT_GREATER_THAN(0, members[group]);
     }
 }
-
-void test_in_the_air_thrust_changes_by_bounded_steps_and_the_throttle_keeps_its_owner(void)
-{
-    static const parameter_id_t stepped[] = {PARAMETER_GRAV, PARAMETER_USAT, PARAMETER_DSAT};
-
-    for (size_t i = 0; i < sizeof stepped / sizeof stepped[0]; i++) {
-        TEST_ASSERT_TRUE(parameter_may_change_in_air(stepped[i], 7.0F, 5.5F));
-        TEST_ASSERT_TRUE(parameter_may_change_in_air(stepped[i], 7.0F, 8.5F));
-        TEST_ASSERT_FALSE(parameter_may_change_in_air(stepped[i], 7.0F, 5.49F));
-        TEST_ASSERT_FALSE(parameter_may_change_in_air(stepped[i], 7.0F, 8.51F));
-        TEST_ASSERT_FALSE(parameter_may_change_in_air(stepped[i], 7.0F, 0.0F));
-    }
-    TEST_ASSERT_FALSE(parameter_may_change_in_air(PARAMETER_SEL, (float)SEL_NONE, (float)SEL_PIN));
-    TEST_ASSERT_FALSE(parameter_may_change_in_air(PARAMETER_IROLL, (float)AXIS_MINUS_ROLL, (float)AXIS_ROLL));
-    TEST_ASSERT_FALSE(parameter_may_change_in_air(PARAMETER_IPITCH, (float)AXIS_PITCH, (float)AXIS_ROLL));
-    TEST_ASSERT_FALSE(parameter_may_change_in_air(PARAMETER_IDOWN, (float)DOWN_Z, (float)DOWN_MINUS_Z));
-    TEST_ASSERT_FALSE(parameter_may_change_in_air(PARAMETER_IUNIT, 256.0F, 255.0F));
-    for (int id = PARAMETER_DF; id <= PARAMETER_L2; id++) {
-        const float value = parameter_table[id].initial;
-
-        TEST_ASSERT_FALSE_MESSAGE(parameter_may_change_in_air((parameter_id_t)id, value, value + 1.0F),
-                                  parameter_table[id].name);
-        TEST_ASSERT_TRUE_MESSAGE(parameter_may_change_in_air((parameter_id_t)id, value, value),
-                                 parameter_table[id].name);
-    }
-    TEST_ASSERT_TRUE(parameter_may_change_in_air(PARAMETER_SEL, (float)SEL_PIN, (float)SEL_PIN));
-    TEST_ASSERT_TRUE(parameter_may_change_in_air(PARAMETER_LAW, (float)LAW_EST, (float)LAW_PD));
-    TEST_ASSERT_TRUE(parameter_may_change_in_air(PARAMETER_KP, 0.0F, 1.0F));
-}

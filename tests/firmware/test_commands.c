@@ -665,6 +665,7 @@ void test_any_line_but_a_ping_ends_a_calibration(void)
 
 void test_what_turns_the_imus_axes_round_is_for_the_ground(void)
 {
+    bsp_time_us_IgnoreAndReturn(ARRIVAL_US);
     in_the_air = true;
     assert_refused("ERR IROLL not on the ground", "#IROLL ROLL");
     assert_refused("ERR IPITCH not on the ground", "#IPITCH -PITCH");
@@ -677,6 +678,7 @@ void test_what_turns_the_imus_axes_round_is_for_the_ground(void)
 
 void test_where_the_mirrors_are_is_for_the_ground(void)
 {
+    bsp_time_us_IgnoreAndReturn(ARRIVAL_US);
     in_the_air = true;
     assert_refused("ERR L not on the ground", "#L 325");
     assert_refused("ERR D1 not on the ground", "#D1 120");
@@ -947,16 +949,20 @@ void test_lost_lines_are_told_with_their_number(void)
     TEST_ASSERT_EQUAL_UINT16(0, reference_writes);
 }
 
-void test_in_the_air_thrust_changes_by_bounded_steps(void)
+void test_in_the_air_little_changes_within_ten_seconds(void)
 {
+    bsp_time_us_IgnoreAndReturn(ARRIVAL_US);
     in_the_air = true;
-    assert_refused("ERR GRAV in the air by 1.5 N at most", "#GRAV 0");
-    assert_refused("ERR USAT in the air by 1.5 N at most", "#USAT 11");
-    assert_refused("ERR DSAT in the air by 1.5 N at most", "#DSAT 7");
+    flight.hover_n = 7.4F;
+    assert_refused("ERR GRAV would put the hover thrust out of reach", "#GRAV 0");
+    assert_refused("ERR USAT in the air by 0.2 N in 10 s at most", "#USAT 11");
+    assert_refused("ERR DSAT in the air by 0.2 N in 10 s at most", "#DSAT 7");
+    assert_refused("ERR KP in the air by a quarter in 10 s at most", "#KP 0");
     assert_refused("ERR SEL not on the ground", "#SEL PIN");
-    assert_answer("OK GRAV 6.5", "#GRAV 6.5");
-    assert_answer("OK GRAV 5", "#GRAV 5");
+    assert_answer("OK GRAV 6.81", "#GRAV 6.81");
+    assert_refused("ERR GRAV in the air by 0.2 N in 10 s at most", "#GRAV 6.7");
     assert_answer("OK LAW PD", "#LAW PD");
+    assert_refused("ERR LAW in the air once in 10 s, EST at any time", "#LAW PID");
     assert_answer("OK SEL NONE", "#SEL NONE");
     in_the_air = false;
     assert_answer("OK GRAV 0", "#GRAV 0");

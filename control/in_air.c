@@ -1,0 +1,127 @@
+/* One window per parameter: within it the value stays near the one at its begin. All further rules follow
+ * from what a parameter does to the thrust of a hover. */
+#include "control/in_air.h"
+
+#include <math.h>
+
+#define WINDOW_US UINT32_C(10000000) /* chosen: two time constants of a hover thrust that is learned anew */
+#define STEP_N 0.2F   /* chosen: PD then hangs 43 mm lower with the least KP that flew, 0.00466 */
+#define SHARE 0.25F   /* chosen: half of what makes a loop swing that is tuned to half its limit */
+#define REACH_N 1.5F  /* as HOVER_MARGIN_N in flight.c: farther from GRAV no hover thrust is believed */
+#define MARGIN_N 0.3F /* chosen: 0.4 m/s2 to brake with */
+
+typedef enum { FREE, GROUND_ONLY, NEWTONS, GAIN, LAW } kind_t;
+
+static kind_t kind_of(parameter_id_t id)
+{
+    switch (id) {
+    case PARAMETER_GRAV:
+    case PARAMETER_USAT:
+    case PARAMETER_DSAT:
+        return NEWTONS;
+    case PARAMETER_KP:
+    case PARAMETER_KD:
+    case PARAMETER_KI:
+    case PARAMETER_PKP:
+    case PARAMETER_PKI:
+    case PARAMETER_PKD:
+    case PARAMETER_POSK:
+    case PARAMETER_VELK:
+    case PARAMETER_CRATE: /* the vehicle's model: law EST divides by it */
+    case PARAMETER_GAIN:
+    case PARAMETER_LAG:
+    case PARAMETER_DELAY:
+    case PARAMETER_DAMP:
+    case PARAMETER_CLAG:
+        return GAIN;
+    case PARAMETER_LAW:
+        return LAW;
+    case PARAMETER_SEL: /* decides who has the throttle */
+    case PARAMETER_IROLL:
+    case PARAMETER_IPITCH:
+    case PARAMETER_IDOWN:
+    case PARAMETER_IUNIT:
+    case PARAMETER_DF: /* the mirrors' places: the height would jump */
+    case PARAMETER_LF:
+    case PARAMETER_L:
+    case PARAMETER_D1:
+    case PARAMETER_L1:
+    case PARAMETER_D2:
+    case PARAMETER_L2:
+        return GROUND_ONLY;
+    default:
+        return FREE;
+    }
+}
+
+static bool gives_gravity_alone(const parameters_t *parameters)
+{
+    return parameters->value[PARAMETER_USAT] == 0.0F && parameters->value[PARAMETER_DSAT] == 0.0F;
+}
+
+/* What the laws PD and PID can still add to the hover thrust, or take away: the less of both. */
+static float margin_n(const parameters_t *parameters, float hover_n)
+{
+    const float *value = parameters->value;
+    const float above_n = value[PARAMETER_GRAV] + value[PARAMETER_USAT] - hover_n;
+    const float below_n = hover_n - (value[PARAMETER_GRAV] - value[PARAMETER_DSAT]);
+
+    return (above_n < below_n) ? above_n : below_n;
+}
+
+static in_air_t judge_newtons(const parameters_t *now, parameter_id_t id, float from, float to, float hover_n)
+{
+    const bool alone = gives_gravity_alone(now);
+    parameters_t then = *now;
+
+    then.value[id] = to;
+    if (fabsf(then.value[PARAMETER_GRAV] - hover_n) > REACH_N) {
+        return IN_AIR_OFF_HOVER;
+    }
+    if (alone && id == PARAMETER_GRAV) {
+        return IN_AIR_FINE;
+    }
+    if (fabsf(to - from) > STEP_N || fabsf(to - now->value[id]) > STEP_N) {
+        return IN_AIR_TOO_MANY_N;
+    }
+    const float left_n = margin_n(&then, hover_n);
+    return (left_n < MARGIN_N && left_n < margin_n(now, hover_n)) ? IN_AIR_OFF_HOVER : IN_AIR_FINE;
+}
+
+static in_air_t judge(const parameters_t *now, const in_air_window_t *window, parameter_id_t id, float to,
+                      float hover_n)
+{
+    const float value = now->value[id];
+    const float from = window->open ? window->from : value;
+
+    switch (kind_of(id)) {
+    case GROUND_ONLY:
+        return IN_AIR_NEVER;
+    case NEWTONS:
+        return judge_newtons(now, id, from, to, hover_n);
+    case GAIN:
+        return (fabsf(to - from) > SHARE * from || fabsf(to - value) > SHARE * value) ? IN_AIR_OVER_QUARTER
+                                                                                      : IN_AIR_FINE;
+    case LAW:
+        return (window->open && to != (float)LAW_EST) ? IN_AIR_TOO_OFTEN : IN_AIR_FINE;
+    case FREE:
+    default:
+        return IN_AIR_FINE;
+    }
+}
+
+in_air_t in_air_change(in_air_pace_t *pace, const parameters_t *parameters, parameter_id_t id, float to,
+                       float hover_n, uint32_t now_us)
+{
+    in_air_window_t *window = &pace->window[id];
+
+    window->open = window->open && now_us - window->since_us < WINDOW_US;
+    if (to == parameters->value[id]) {
+        return IN_AIR_FINE;
+    }
+    const in_air_t verdict = judge(parameters, window, id, to, hover_n);
+    if (verdict == IN_AIR_FINE && !window->open) {
+        *window = (in_air_window_t){.open = true, .from = parameters->value[id], .since_us = now_us};
+    }
+    return verdict;
+}
