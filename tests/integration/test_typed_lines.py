@@ -59,7 +59,7 @@ class TypedLines(unittest.TestCase):
 
 
 HANDS_OVER = ["corners on", "wait 1", "corners off", "stick 0.2", "wait 2", "switch launchpad", "wait 5"]
-HOVERS = ["on running", "wait 25", "type #ARM", "wait 1", "type #SETR 2.5", "wait 10"]
+HOVERS = ["type #ARM", "wait 1", "type #SETR 2.5", "wait 10"]
 UP = ["on", "wait 25"]
 
 # Page, where the recipe begins and ends there, what comes first, what is done behind a line, the pause, what is told in the end.
@@ -67,7 +67,7 @@ RECIPES = (
     ("operator.md", "1. `#LINK 60`", "With law PD", UP, {"#ARM": HANDS_OVER}, 15, r"OK CALIBRATE end:COMMAND .* grav:\d"),
     ("hardware.md", "2. **Throttle inversion**", "Less where", [*UP, "switch launchpad"], {}, 15, r"thr:0\.00 state:GROUND flags:0"),
     ("hardware.md", "1. Switch at *pilot*", "5. **To take", UP, {"#ARM": [*HANDS_OVER, "free"]}, 15, r"thr:1\.76 state:GROUND flags:0"),
-    ("control.md", "2. **Step**", "From `alt` take", HOVERS, {}, 2, r"alt:2\.\d+ .* state:FLYING"),
+    ("control.md", "2. **Step**", "From `alt` take", ["on running", "wait 25"], {"#DSAT 0": HOVERS}, 2, r"alt:2\.\d+ .* state:FLYING"),
 )
 
 
