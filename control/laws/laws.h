@@ -18,7 +18,7 @@ typedef struct {
     pid_state_t pid;
     bool integral; /* the law had an integral action in its previous sample */
     pidt_state_t pidt;
-    float gravity_n; /* GRAV of the previous cycle */
+    float gravity_n;       /* GRAV of the previous cycle */
     uint32_t pidt_rays_us; /* rays of the height before, law PIDT */
     descent_t descent;
     float blind_ahead_s; /* by which a blind descent is ahead of its time */

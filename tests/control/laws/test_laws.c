@@ -106,6 +106,31 @@ void test_a_change_of_the_law_on_the_ground_adds_nothing_to_the_idle(void)
     TEST_ASSERT_EQUAL_FLOAT(0.0F, f.laws.transfer_n);
 }
 
+void test_a_new_gravity_moves_no_thrust_of_a_law_that_flies(void)
+{
+    static const struct {
+        flight_mode_t mode, before;
+        float integral_n;
+    } rows[] = {{FLIGHT_MODE_LAW, FLIGHT_MODE_LAW, 0.1F},
+                {FLIGHT_MODE_LAW, FLIGHT_MODE_HOVER, 0.4F},
+                {FLIGHT_MODE_HOVER, FLIGHT_MODE_HOVER, 0.4F}};
+
+    for (int i = 0; i < 3; i++) {
+        setUp();
+        f.law = LAW_PID;
+        f.where.supervisor.height.height_mm = 600.0F; /* at its reference: the law adds nothing */
+        f.mode = rows[i].mode;
+        f.laws.gravity_n = 7.0F;
+        f.laws.pid.integral_n = f.laws.pidt.integral_n = 0.4F;
+        TEST_ASSERT_EQUAL(PARAMETER_ACCEPTED, parameters_set(&parameters, PARAMETER_GRAV, 7.3F));
+        const situation_t now = situation_after(rows[i].before);
+        (void)laws_step(&f.laws, &f.est, &now);
+        NEAR(rows[i].integral_n, f.laws.pid.integral_n);
+        NEAR(rows[i].integral_n, f.laws.pidt.integral_n);
+        NEAR(7.3F, f.laws.gravity_n);
+    }
+}
+
 void test_each_mode_has_its_thrust(void)
 {
     f.mode = FLIGHT_MODE_IDLE;
