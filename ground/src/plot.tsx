@@ -104,6 +104,7 @@ export function Plot(props: { curves: Curve[]; data: () => PlotData; live?: numb
   useEffect(() => {
     const element = host.current!;
     let zoomed = false;
+    let gone = false;
     let current = props.data();
     const axes = [...new Set(props.curves.map((c) => c.axis))];
     const axisBase = { stroke: () => css('--muted'), grid: { stroke: () => css('--grid'), width: 1 }, ticks: { show: false }, font: '12px system-ui, sans-serif' };
@@ -141,7 +142,7 @@ export function Plot(props: { curves: Curve[]; data: () => PlotData; live?: numb
     props.onPlot?.(plot);
     plot.over.addEventListener('dblclick', () => (zoomed = false));
     const draw = (): void => {
-      if (zoomed || latest.current.hold) return;
+      if (gone || zoomed || latest.current.hold) return;
       current = latest.current.data();
       plot.batch(() => {
         plot.setData(current.columns as uPlot.AlignedData, current.from === undefined);
@@ -149,15 +150,14 @@ export function Plot(props: { curves: Curve[]; data: () => PlotData; live?: numb
       });
     };
     draw();
-    let frame = 0;
-    const timer = props.live ? setInterval(() => (frame = requestAnimationFrame(draw)), props.live) : null;
+    const timer = props.live ? setInterval(() => requestAnimationFrame(draw), props.live) : null;
     const resize = new ResizeObserver(() => plot.setSize({ width: Math.max(200, element.clientWidth), height: latest.current.height }));
     resize.observe(element);
     const theme = new MutationObserver(() => plot.redraw(false));
     theme.observe(document.documentElement, { attributes: true });
     return () => {
       if (timer) clearInterval(timer);
-      cancelAnimationFrame(frame);
+      gone = true; // frames that were asked for may still come
       resize.disconnect();
       theme.disconnect();
       plot.destroy();

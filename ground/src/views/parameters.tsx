@@ -106,7 +106,7 @@ function Row({ parameter: p }: { parameter: Parameter }) {
         {problem && <em class="problem" role="alert">{words.objections[problem]}</em>}
       </span>
       <span class="limits">{p.choices ? '' : `${shown(p.minimum)} … ${shown(p.maximum)}${p.unit === '-' ? '' : ` ${p.unit}`}`}</span>
-      <span class="delivered" title={words.delivered}><span class="visually-hidden">{words.delivered}</span> {delivered[p.name] === undefined ? '' : shown(delivered[p.name]!)}</span>
+      <span class="delivered">{delivered[p.name] === undefined ? '' : `${words.delivered}: ${shown(delivered[p.name]!)}`}</span>
       <span class="meaning">{words.meanings[p.name] ?? <span lang="en">{p.meaning}</span>}</span>
       <span class="tags">
         {isChanged(p) && <span class="tag accent">{words.tagChanged}</span>}
