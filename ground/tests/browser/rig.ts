@@ -59,10 +59,16 @@ export async function startVehicle(page: Page, speed?: string): Promise<void> {
   if (speed) await button(page, speed).click();
 }
 
+/** Every group of parameters, also those that the page has closed. */
+export async function openGroups(page: Page): Promise<void> {
+  await page.waitForSelector('.group', { timeout: 30_000 });
+  for (const group of (await page.locator('.group:not([open]) summary').all()).reverse()) await group.click();
+  await page.waitForFunction(() => [...document.querySelectorAll('.group')].every((group) => group.querySelector('[data-parameter]')));
+}
+
 /** The field of a parameter, wherever its group is. */
 export async function parameter(page: Page, name: string, search = 'Search') {
-  await page.waitForSelector('.group', { timeout: 30_000 });
-  await page.getByLabel(search, { exact: true }).fill(name);
+  await page.getByLabel(search, { exact: true }).fill(name, { timeout: 30_000 });
   return page.locator(`[data-parameter="${name}"]`).locator('input, select');
 }
 

@@ -4,7 +4,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
-import { button, openBrowser, openPage, parameter, PLOMADA, serveSite, startVehicle, tab, untilLaserIsOk, untilState, type Site } from './rig';
+import { button, openBrowser, openGroups, openPage, parameter, PLOMADA, serveSite, startVehicle, tab, untilLaserIsOk, untilState, type Site } from './rig';
 import { scripted, type Scripted } from './script';
 
 let browser: Browser;
@@ -184,7 +184,7 @@ describe('the parameters', () => {
     expect(await page.locator('.group[data-group=pd-pid]').getAttribute('open')).toBeNull();
     expect(await page.locator('.group[data-group=pd-pid] summary').innerText()).toContain('law EST is set');
     expect(await page.locator('.group[data-group=est]').getAttribute('open')).not.toBeNull();
-    for (const group of await page.locator('.group:not([open]) summary').all().then((all) => all.reverse())) await group.click();
+    await openGroups(page);
     const shown = await page.locator('[data-parameter]').evaluateAll((all) => all.map((row) => `${(row as HTMLElement).dataset.parameter} ${(row.closest('[data-group]') as HTMLElement).dataset.group}`));
     expect(shown.sort()).toEqual(rows.slice(1).map((cells) => `${cells[0]} ${cells[at]}`).sort());
     await page.locator('[data-parameter=LAW] select').selectOption('PID');
@@ -218,8 +218,7 @@ describe('the parameters', () => {
       await page.locator('.featured button').click();
       await page.locator('.chip', { hasText: /^5×$/ }).click();
       await page.locator('nav button').nth(1).click();
-      await page.waitForSelector('.group', { timeout: 30_000 });
-      for (const group of await page.locator('.group:not([open]) summary').all().then((all) => all.reverse())) await group.click();
+      await openGroups(page);
       const cut = await page.locator('[data-parameter] > *').evaluateAll((all) => all.filter((cell) => {
         const range = document.createRange();
         range.selectNodeContents(cell);
@@ -243,10 +242,7 @@ describe('in Spanish', () => {
     await page.locator('.figures summary').last().click();
     for (let view = 0; view < 5; view++) {
       await page.locator('nav button').nth(view).click();
-      if (view === 1) {
-        await page.waitForSelector('.group', { timeout: 30_000 });
-        for (const group of await page.locator('.group:not([open]) summary').all().then((all) => all.reverse())) await group.click();
-      }
+      if (view === 1) await openGroups(page);
       const points = await page.evaluate(() => {
         const found: string[] = [];
         const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);

@@ -4,7 +4,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
-import { button, openBrowser, openPage, parameter, picture, PLOMADA, serveSite, startVehicle, tab, untilHeight, untilLaserIsOk, untilState, type Site } from './rig';
+import { button, openBrowser, openGroups, openPage, parameter, picture, PLOMADA, serveSite, startVehicle, tab, untilHeight, untilLaserIsOk, untilState, type Site } from './rig';
 import { scripted } from './script';
 
 let browser: Browser;
@@ -328,10 +328,7 @@ describe('in Spanish', () => {
       await untilState(page, 'GROUND');
       for (let view = 0; view < 6; view++) {
         await page.locator('nav button').nth(view).click();
-        if (view === 1) {
-          await page.waitForSelector('.group', { timeout: 30_000 });
-          for (const group of await page.locator('.group:not([open]) summary').all().then((all) => all.reverse())) await group.click();
-        }
+        if (view === 1) await openGroups(page);
         await gather();
       }
       await page.context().close();
