@@ -1,0 +1,402 @@
+/* The scanner's driver, by its five calls alone, against the second model of the sensor (sensor.h): how long
+ * it is blind after power cycles of sensors with other power-up rates, after damaged octets, after a sensor
+ * that stopped by itself, and how long a first scan takes. Exit status 1 when a bound does not hold, a scan
+ * is wrong or the power pin would have been needed. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "drivers/urg.h"
+#include "sensor.h"
+#include "wire.h"
+
+#define HOST_TICK (10 * MS)
+#define PATIENCE (40 * S)
+#define POINTS 35
+
+static struct {
+    sensor_t *sensor;
+    uart_t to_sensor, to_host;
+    urg_t urg;
+    uint16_t points[2 * POINTS];
+    ns_t now, stepped_at, latest_scan, longest_gap;
+    bool running, out;
+    unsigned damaged_percent;
+    dice_t dice;
+    unsigned scans, wrong, power_cycles;
+} host;
+
+static bool holds = true;
+
+/* ---- the line ---- */
+
+static bool hit(void)
+{
+    return host.damaged_percent > 0 && dice_below(&host.dice, 100) < host.damaged_percent;
+}
+
+static void sensor_octet(void *context, unsigned octet, bool framing_error)
+{
+    (void)context;
+    if (!host.out) {
+        sensor_hears(host.sensor, hit() ? octet ^ (1U << dice_below(&host.dice, 8)) : octet, framing_error,
+                     host.now);
+    }
+}
+
+static void check_scan(void)
+{
+    scip_scan_t scan;
+    if (!urg_take_scan(&host.urg, &scan)) {
+        host.wrong++;
+        return;
+    }
+    host.scans++;
+    if (host.latest_scan != 0 && host.now - host.latest_scan > host.longest_gap) {
+        host.longest_gap = host.now - host.latest_scan;
+    }
+    host.latest_scan = host.now;
+    urg_scan_at(&host.urg, (uint32_t)(host.now / US));
+    for (unsigned i = 0; i < scan.points; i++) {
+        host.wrong += scan.distance_mm[i] != sensor_distance_mm(scan.first_step + i);
+    }
+}
+
+static void host_octet(void *context, unsigned octet, bool framing_error)
+{
+    const octet_t heard = (octet_t)(hit() ? octet ^ (1U << dice_below(&host.dice, 8)) : octet);
+    (void)context;
+    if (host.out || !host.running) {
+        return;
+    }
+    if (framing_error) {
+        urg_line_broken(&host.urg, 1);
+    }
+    if (urg_feed(&host.urg, &heard, 1)) {
+        check_scan();
+    }
+}
+
+/* ---- the host ---- */
+
+static void step(void)
+{
+    urg_output_t output;
+    const ns_t now = host.now;
+    urg_step(&host.urg, (uint32_t)(now / US));
+    host.stepped_at = now;
+    if (!urg_next_to_send(&host.urg, &output)) {
+        return;
+    }
+    host.power_cycles += output.cycle_power;
+    if (output.set_rate) {
+        uart_flush(&host.to_sensor, now);
+        uart_sender_rate(&host.to_sensor, output.rate);
+        uart_receiver_rate(&host.to_host, output.rate, now);
+    }
+    uart_send(&host.to_sensor, (const char *)output.octets, output.count);
+}
+
+static void run_for(ns_t span)
+{
+    const ns_t end = host.now + span;
+    while (host.now < end) {
+        host.now += TICK;
+        uart_run(&host.to_sensor, host.now);
+        sensor_run(host.sensor, host.now);
+        uart_run(&host.to_host, host.now);
+        if (host.running && host.now % HOST_TICK == 0 &&
+            host.now - host.stepped_at >= (ns_t)urg_pause_us(&host.urg) * US) {
+            step();
+        }
+    }
+}
+
+static void begin(const sensor_config_t *config, unsigned seed)
+{
+    memset(&host, 0, sizeof host);
+    host.now = S;
+    host.dice.state = 0x9E3779B97F4A7C15ULL + seed;
+    uart_open(&host.to_sensor, 115200, sensor_octet, NULL);
+    uart_open(&host.to_host, 115200, host_octet, NULL);
+    host.sensor = sensor_create(config, &host.to_sensor, &host.to_host);
+    sensor_power(host.sensor, true, host.now);
+}
+
+static void start_host(const urg_config_t *config)
+{
+    if (!urg_init(&host.urg, config, host.points, 2 * POINTS, (uint32_t)(host.now / US))) {
+        abort();
+    }
+    uart_sender_rate(&host.to_sensor, config->first_rate);
+    uart_receiver_rate(&host.to_host, config->first_rate, host.now);
+    host.running = true;
+    host.stepped_at = host.now;
+}
+
+static void complain(const char *what, const char *where, unsigned number)
+{
+    if (holds) {
+        printf("FAILED: %s: %s %u\n", what, where, number);
+    }
+    holds = false;
+}
+
+/* To the next scan; negative when none comes. */
+static double seconds_to_scan(void)
+{
+    const ns_t begun = host.now;
+    const unsigned scans = host.scans;
+    while (host.scans == scans && host.now < begun + PATIENCE) {
+        run_for(MS);
+    }
+    return host.scans == scans ? -1.0 : (double)(host.now - begun) / 1e9;
+}
+
+static void end(const char *where, unsigned number)
+{
+    if (host.now - host.latest_scan > 400 * MS) {
+        complain("no scans", where, number);
+    }
+    if (host.wrong != 0) {
+        complain("wrong scans", where, number);
+    }
+    if (host.power_cycles != 0) {
+        complain("the power pin was needed", where, number);
+    }
+    sensor_destroy(host.sensor);
+}
+
+/* ---- the trials ---- */
+
+static const char *const answer_names[] = {"after 8 ms", "at revolutions", "after 90..115 ms",
+                                           "so, but first 381"};
+static const uint32_t rates[] = {19200, 57600, 115200, 250000};
+#define RATES (sizeof rates / sizeof rates[0])
+
+static sensor_config_t sensor_of(uint32_t power_up_rate, answers_t answers, unsigned trial)
+{
+    return (sensor_config_t){.power_up_rate = power_up_rate,
+                             .boot = 2500 * MS,
+                             .turn = 99880 * US,
+                             .phase = trial * 7919 % 100000 * US,
+                             .settles = 10 * MS,
+                             .answers = answers};
+}
+
+static urg_config_t order_of(uint32_t first_rate, uint32_t stream_rate)
+{
+    return (urg_config_t){.first_rate = first_rate,
+                          .stream_rate = stream_rate,
+                          .fastest_rate = 250000,
+                          .stream = SCIP_STREAM_2,
+                          .range = {372, 406, 1, 0, 0}};
+}
+
+/* The worst and the middle of n numbers. */
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* What a sensor needs that answers at once, once a revolution, or as the recorded one: a command is answered
+ * up to 115 ms later, a line that was damaged on its way is answered before it, and the first scan comes
+ * three revolutions after the answer to its order. */
+static const double power_most_s[] = {1.0, 1.0, 1.0, 1.5}, unlearned_most_s[] = {2.0, 2.0, 2.0, 4.0},
+                    damage_most_s[] = {0.5, 1.15, 1.15, 1.15}, stop_most_s[] = {0.8, 0.8, 0.95, 0.95},
+                    start_most_s[] = {2.0, 2.0, 2.0, 3.2};
+
+static void show(const char *what, double *seconds, size_t n, double most_s)
+{
+    size_t beyond = 0;
+    for (size_t i = 0; i < n; i++) {
+        beyond += seconds[i] > most_s;
+    }
+    qsort(seconds, n, sizeof seconds[0], by_size);
+    printf("%-60s %5zu %7.2f %7.2f %7.2f %7zu\n", what, n, seconds[n / 2], seconds[n - 1], most_s, beyond);
+    holds = holds && beyond == 0;
+}
+
+static void stream_for_a_while(const char *where, const urg_config_t *order, unsigned trial)
+{
+    run_for(3 * S);
+    start_host(order);
+    if (seconds_to_scan() < 0.0) {
+        complain("no start", where, trial);
+    }
+    run_for(2 * S + trial * 3719 % 150000 * US);
+    host.longest_gap = 0;
+}
+
+#define POWER_TRIALS 60U
+#define POWER_OFF (100 * MS)
+
+/* Blind beyond the outage and the boot. */
+static double after_power_cycle_s(uint32_t power_up_rate, answers_t answers, unsigned trial, bool learned)
+{
+    const sensor_config_t config = sensor_of(power_up_rate, answers, trial);
+    const urg_config_t order = order_of(115200, 250000);
+    double seconds;
+    begin(&config, trial);
+    if (!learned) {
+        run_for(3 * S);
+        sensor_leave_in_scip2(host.sensor, 250000, host.now);
+    }
+    stream_for_a_while("power", &order, trial);
+    sensor_power(host.sensor, false, host.now);
+    run_for(POWER_OFF);
+    sensor_power(host.sensor, true, host.now);
+    run_for(config.boot);
+    seconds = seconds_to_scan();
+    run_for(2 * S);
+    end("power", trial);
+    return seconds < 0.0 ? 99.0 : seconds;
+}
+
+static void print_power(void)
+{
+    double seconds[POWER_TRIALS];
+    char what[80];
+    for (int learned = 1; learned >= 0; learned--) {
+        for (answers_t answers = 0; answers < ANSWERS_COUNT; answers++) {
+            for (size_t i = 0; i < RATES; i++) {
+                for (unsigned trial = 0; trial < POWER_TRIALS; trial++) {
+                    seconds[trial] = after_power_cycle_s(rates[i], answers, trial, learned);
+                }
+                snprintf(what, sizeof what, "boots at %u, answers %s%s", (unsigned)rates[i],
+                         answer_names[answers], learned ? "" : ", never seen to boot");
+
+                show(what, seconds, POWER_TRIALS,
+                     learned ? power_most_s[answers] : unlearned_most_s[answers]);
+            }
+        }
+    }
+}
+
+#define DAMAGE_TRIALS 2500U
+
+/* From the end of the damage to the next scan. */
+static double after_damage_s(answers_t answers, unsigned trial)
+{
+    const sensor_config_t config = sensor_of(115200, answers, trial);
+    const urg_config_t order = order_of(115200, 250000);
+    double seconds;
+    begin(&config, trial);
+    stream_for_a_while("damage", &order, trial);
+    host.damaged_percent = 5 + dice_below(&host.dice, 46);
+    run_for(200 * MS + dice_below(&host.dice, 5000) * MS);
+    host.damaged_percent = 0;
+    host.wrong = 0;
+    seconds = seconds_to_scan();
+    run_for(3 * S);
+    end("damage", trial);
+    return seconds < 0.0 ? 99.0 : seconds;
+}
+
+static void print_damage(unsigned trials)
+{
+    double *seconds = calloc(trials, sizeof *seconds);
+    char what[80];
+    for (answers_t answers = 0; answers < ANSWERS_COUNT; answers++) {
+        for (unsigned trial = 0; trial < trials; trial++) {
+            seconds[trial] = after_damage_s(answers, trial);
+        }
+        snprintf(what, sizeof what, "5 to 50 %% of the octets wrong, answers %s", answer_names[answers]);
+        show(what, seconds, trials, damage_most_s[answers]);
+    }
+    free(seconds);
+}
+
+#define STOP_TRIALS 100U
+
+static double after_stop_s(stop_t how, answers_t answers, unsigned trial)
+{
+    const sensor_config_t config = sensor_of(115200, answers, trial);
+    const urg_config_t order = order_of(115200, 250000);
+    double seconds;
+    begin(&config, trial);
+    stream_for_a_while("stop", &order, trial);
+    sensor_stop(host.sensor, how, host.now);
+    seconds = seconds_to_scan();
+    run_for(2 * S);
+    seconds = fmax(seconds, (double)host.longest_gap / 1e9);
+    end("stop", trial);
+    return seconds < 0.0 ? 99.0 : seconds;
+}
+
+static void print_stops(void)
+{
+    static const char *const names[] = {"RS", "QT", "time mode"};
+    double seconds[STOP_TRIALS];
+    char what[80];
+    for (answers_t answers = 0; answers < ANSWERS_COUNT; answers++) {
+        for (stop_t how = 0; how < STOP_COUNT; how++) {
+            for (unsigned trial = 0; trial < STOP_TRIALS; trial++) {
+                seconds[trial] = after_stop_s(how, answers, trial);
+            }
+            snprintf(what, sizeof what, "stops by itself: %s, answers %s", names[how], answer_names[answers]);
+            show(what, seconds, STOP_TRIALS, stop_most_s[answers]);
+        }
+    }
+}
+
+#define START_TRIALS 40U
+
+static double start_s(uint32_t rate, bool scip2, answers_t answers, unsigned trial)
+{
+    const sensor_config_t config = sensor_of(rate, answers, trial);
+    urg_config_t order = order_of(19200, 115200); /* drivers/README.md */
+    double seconds;
+    order.fastest_rate = 0;
+    order.range = (scip_range_t){367, 401, 1, 0, 0};
+    begin(&config, trial);
+    run_for(3 * S);
+    if (scip2) {
+        sensor_leave_in_scip2(host.sensor, rate, host.now);
+    }
+    start_host(&order);
+    seconds = seconds_to_scan();
+    run_for(2 * S);
+    end("start", trial);
+    return seconds < 0.0 ? 99.0 : seconds;
+}
+
+static void print_starts(void)
+{
+    double seconds[START_TRIALS];
+    char what[80];
+    for (answers_t answers = 0; answers < ANSWERS_COUNT; answers++) {
+        for (size_t i = 0; i < RATES; i++) {
+            for (int scip2 = 0; scip2 < 2; scip2++) {
+                for (unsigned trial = 0; trial < START_TRIALS; trial++) {
+                    seconds[trial] = start_s(rates[i], scip2, answers, trial);
+                }
+                snprintf(what, sizeof what, "first scan, idle in %s at %u, answers %s",
+                         scip2 ? "SCIP2.0" : "SCIP1.1", (unsigned)rates[i], answer_names[answers]);
+                show(what, seconds, START_TRIALS, start_most_s[answers]);
+            }
+        }
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const char *what = argc > 1 ? argv[1] : "";
+    printf("%-60s %5s %7s %7s %7s %7s\n", "without scans beyond the trouble, s", "times", "median", "most",
+           "bound", "beyond");
+    if (strcmp(what, "power") == 0) {
+        print_power();
+    } else if (strcmp(what, "damage") == 0) {
+        print_damage(argc > 2 ? (unsigned)atoi(argv[2]) : DAMAGE_TRIALS);
+    } else if (strcmp(what, "stops") == 0) {
+        print_stops();
+    } else if (strcmp(what, "starts") == 0) {
+        print_starts();
+    } else {
+        fprintf(stderr, "usage: scip_recovery power|damage [TRIALS]|stops|starts\n");
+        return 2;
+    }
+    return holds ? 0 : 1;
+}

@@ -1,0 +1,48 @@
+/* A second model of the URG-04LX, for the tests of the driver alone. Written from Hokuyo's page "SCIP2.0"
+ * (C-42-03320B), from the digest of SCIP1.1 and from recordings of a real sensor of 2008; it shares no line
+ * with sim/devices/urg04lx.c, and no belief with the driver:
+ *
+ *   - a recorded sensor answers once a revolution, 90 to 115 ms after a command, the first command after 381
+ * ms;
+ *   - it powers up at the rate that it was told to store: 19200 as delivered;
+ *   - at a wrong rate it hears what the levels on the wire give (uart.h), and that stays in its line;
+ *   - the laser needs a revolution before the one that is measured;
+ *   - it may stop by itself, without a word. */
+#ifndef TESTS_FAULTS_SENSOR_H
+#define TESTS_FAULTS_SENSOR_H
+
+#include "uart.h"
+
+typedef enum {
+    ANSWERS_SOON,    /* 8 ms after the command, as in SCIP1.1 */
+    ANSWERS_AT_TURN, /* when the present revolution is over */
+    ANSWERS_LATE,    /* 90 to 115 ms after the command */
+    ANSWERS_LATEST,  /* the same, and the first one after power-up 381 ms */
+    ANSWERS_COUNT
+} answers_t;
+
+typedef enum { STOP_RESET, STOP_QUIT, STOP_TIME, STOP_COUNT } stop_t; /* as after RS, QT, TM0 */
+
+typedef struct {
+    uint32_t power_up_rate;
+    ns_t boot, turn, phase;
+    ns_t settles; /* from the end of SS's reply to the new rate */
+    answers_t answers;
+} sensor_config_t;
+
+typedef struct sensor sensor_t;
+
+/* from_host: its receiver is the sensor's; to_host: its sender. */
+sensor_t *sensor_create(const sensor_config_t *config, uart_t *from_host, uart_t *to_host);
+void sensor_destroy(sensor_t *sensor);
+void sensor_power(sensor_t *sensor, bool on, ns_t now);
+void sensor_stop(sensor_t *sensor, stop_t how, ns_t now);
+/* Leaves it as another host would have: in SCIP2.0, at this rate. */
+void sensor_leave_in_scip2(sensor_t *sensor, uint32_t rate, ns_t now);
+/* An octet that its UART heard. */
+void sensor_hears(sensor_t *sensor, unsigned octet, bool framing_error, ns_t now);
+void sensor_run(sensor_t *sensor, ns_t now);
+bool sensor_streams(const sensor_t *sensor);
+unsigned sensor_distance_mm(unsigned step);
+
+#endif
