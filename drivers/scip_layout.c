@@ -45,22 +45,23 @@ static uint16_t steps_per_point(const scip_scan_t *scan)
 }
 
 /* Steps from the scan's first to this one; 0 when it lies before. */
-static uint16_t steps_into(const scip_scan_t *scan, uint16_t step)
+static uint32_t steps_into(const scip_scan_t *scan, uint32_t step)
 {
-    return (uint16_t)(larger(step, scan->first_step) - scan->first_step);
+    return larger(step, scan->first_step) - scan->first_step;
 }
 
 /* Index of the first point that begins at the step or after it. */
-static uint16_t point_from(const scip_scan_t *scan, uint16_t step)
+static uint32_t point_from(const scip_scan_t *scan, uint32_t step)
 {
-    const uint16_t cluster = steps_per_point(scan);
-    return (uint16_t)((steps_into(scan, step) + (uint16_t)(cluster - 1U)) / cluster);
+    const uint32_t cluster = steps_per_point(scan);
+    const uint32_t into = steps_into(scan, step);
+    return cluster == 1U ? into : (into + cluster - 1U) / cluster;
 }
 
 /* Number of points that end before the step. */
-static uint16_t points_before(const scip_scan_t *scan, uint16_t step)
+static uint32_t points_before(const scip_scan_t *scan, uint32_t step)
 {
-    return (uint16_t)smaller((uint32_t)steps_into(scan, step) / steps_per_point(scan), scan->points);
+    return smaller(steps_into(scan, step) / steps_per_point(scan), scan->points);
 }
 
 static void note_ray(tally_t *t, uint32_t ray)
@@ -76,11 +77,12 @@ static tally_t tally_all(const uint16_t *rays, size_t count)
 {
     tally_t t = no_ray;
     size_t i = 0U;
-    for (; i < count % 4U; i++) {
+    for (; i < count % 5U; i++) {
         note_ray(&t, rays[i]);
     }
-    for (; i < count; i += 4U) { /* four a round: cheaper */
+    for (; i < count; i += 5U) { /* cheaper, and most for the 35 rays of a mirror */
         note_ray(&t, rays[i]);
+        note_ray(&t, rays[i + 4U]);
         note_ray(&t, rays[i + 1U]);
         note_ray(&t, rays[i + 2U]);
         note_ray(&t, rays[i + 3U]);
@@ -108,14 +110,14 @@ static tally_t tally_between(const uint16_t *rays, size_t count, uint32_t neares
 }
 
 /* Mostly every ray is good, and asking each is not needed. */
-static tally_t tally(const scip_scan_t *scan, uint16_t begin, uint16_t end, const scip_limits_t *limits)
+static tally_t tally(const scip_scan_t *scan, uint32_t begin, uint32_t end, const scip_limits_t *limits)
 {
     const uint16_t *rays = &scan->distance_mm[begin];
     const uint32_t furthest = largest_distance(scan, limits);
-    const tally_t t = tally_all(rays, (size_t)end - begin);
+    const tally_t t = tally_all(rays, (size_t)(end - begin));
     return is_between(t.least, limits->dmin_mm, furthest) && is_between(t.most, limits->dmin_mm, furthest)
                ? t
-               : tally_between(rays, (size_t)end - begin, limits->dmin_mm, furthest);
+               : tally_between(rays, (size_t)(end - begin), limits->dmin_mm, furthest);
 }
 
 static uint16_t count_between(const uint16_t *rays, size_t count, uint32_t least, uint32_t most)
@@ -163,15 +165,15 @@ static float robust_mean(const uint16_t *rays, size_t count, const tally_t *good
 scip_group_mean_t scip_group_mean_within(const scip_scan_t *scan, const scip_group_t *group,
                                          const scip_limits_t *limits)
 {
-    const uint16_t behind = (uint16_t)(group->last_step + 1U);
-    const uint16_t rays = (uint16_t)((behind - group->first_step) / steps_per_point(scan));
-    const uint16_t end = points_before(scan, behind);
-    const uint16_t begin = (uint16_t)smaller(point_from(scan, group->first_step), end);
+    const uint32_t behind = group->last_step + (uint32_t)1U;
+    const uint32_t rays = (behind - group->first_step) / steps_per_point(scan);
+    const uint32_t end = points_before(scan, behind);
+    const uint32_t begin = smaller(point_from(scan, group->first_step), end);
     const tally_t t = tally(scan, begin, end, limits);
     const uint16_t *const seen = &scan->distance_mm[begin];
     scip_group_mean_t mean = {.good_rays = (uint16_t)(end - begin - t.bad)};
     if (mean.good_rays > 0U) {
-        mean.mean_mm = robust_mean(seen, (size_t)end - begin, &t);
+        mean.mean_mm = robust_mean(seen, (size_t)(end - begin), &t);
         mean.spread_mm = (uint16_t)(t.most - t.least);
         mean.valid = 2U * mean.good_rays >= rays;
     }
@@ -185,11 +187,11 @@ scip_group_mean_t scip_group_mean(const scip_scan_t *scan, const scip_group_t *g
 
 uint16_t scip_group_step_mm(const scip_scan_t *scan, const scip_group_t *group)
 {
-    const uint16_t end = points_before(scan, (uint16_t)(group->last_step + 1U));
+    const uint32_t end = points_before(scan, group->last_step + (uint32_t)1U);
     const uint16_t furthest = largest_distance(scan, &scip_limits_urg04lx);
     uint16_t before = 0U;
     uint32_t largest = 0U;
-    for (uint16_t i = point_from(scan, group->first_step); i < end; i++) {
+    for (uint32_t i = point_from(scan, group->first_step); i < end; i++) {
         const uint16_t distance = scan->distance_mm[i];
         const bool good = distance >= SCIP_CODE_LIMIT_MM && distance <= furthest;
         if (good && before != 0U) {

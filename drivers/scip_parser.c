@@ -114,8 +114,19 @@ static void count_damage(scip_parser_t *parser, scip_damage_t cause)
     parser->last_damage = cause;
 }
 
+static uint16_t strange_in(const scip_parser_t *parser, uint16_t length)
+{
+    uint16_t strange = 0U;
+    for (uint16_t i = 0U; i < length; i++) {
+        strange = (uint16_t)(strange + (parser->line[i] > 0x7FU ? 1U : 0U));
+    }
+    return strange;
+}
+
+/* Octets of a line that was taken for good are never strange. */
 static scip_event_t damage(scip_parser_t *parser, scip_damage_t cause)
 {
+    parser->counters.strange += strange_in(parser, parser->line_length);
     count_damage(parser, cause);
     parser->state = HUNT;
     parser->skipping = !take_echo(parser) && !line_is_empty(parser);
@@ -132,7 +143,11 @@ static scip_event_t end_of_skipped(scip_parser_t *parser)
 {
     bool after_text = parser->skipping;
     parser->skipping = false;
-    if (take_echo(parser) || line_is_empty(parser)) {
+    if (line_is_empty(parser)) {
+        parser->counters.stray += after_text ? 1U : 0U;
+        return SCIP_NOTHING;
+    }
+    if (take_echo(parser)) {
         return SCIP_NOTHING;
     }
     if (after_text && !parser->flowing && line_is_refusal(parser)) {
@@ -141,6 +156,7 @@ static scip_event_t end_of_skipped(scip_parser_t *parser)
     }
     parser->skipping = true;
     parser->counters.skipped_lines++;
+    parser->counters.strange += strange_in(parser, parser->line_length);
     return SCIP_NOTHING;
 }
 
@@ -167,21 +183,27 @@ static inline uint32_t six_bits(check_t *check, octet_t character)
     return bits;
 }
 
-/* Two values of two characters each, the first in the lower half. A character below 30H borrows from the next
- * one, and shows all the same. */
-static inline uint32_t two_values(check_t *check, const octet_t *text)
+/* The 6-bit values of four characters, in four octets. A character below 30H borrows from the next one, and
+ * shows all the same. */
+static inline uint32_t four_values(const octet_t *text)
 {
     const uint32_t first = octet_of(text[0]);
     const uint32_t second = octet_of(text[1]);
     const uint32_t third = octet_of(text[2]);
     const uint32_t fourth = octet_of(text[3]);
-    const uint32_t four = first | (second << 8) | (third << 16) | (fourth << 24);
-    const uint32_t bits = four - FOUR_ZEROS;
-    const uint32_t upper = bits & EVERY_SECOND;
-    const uint32_t lower = (bits - upper) >> 8;
-    check->sums += upper + lower;
-    check->bits |= bits;
-    return (upper << 6) | lower;
+    return (first | (second << 8) | (third << 16) | (fourth << 24)) - FOUR_ZEROS;
+}
+
+/* Two values of two characters each, the first in the lower half. */
+static inline uint32_t two_values(uint32_t four)
+{
+    return ((uint32_t)(four & EVERY_SECOND) << 6) | ((four >> 8) & EVERY_SECOND);
+}
+
+/* Of up to four times four characters, added up octet by octet. */
+static inline void add_sums(check_t *check, uint32_t four)
+{
+    check->sums += (four & EVERY_SECOND) + ((four >> 8) & EVERY_SECOND);
 }
 
 static scip_damage_t verdict(const check_t *check, uint16_t characters, octet_t sum)
@@ -218,10 +240,14 @@ static uint16_t state_after_status(const scip_parser_t *parser)
 }
 
 /* The status of a stream's scan: "99" and its sum. */
+static bool is_scan_status(const octet_t *text)
+{
+    return text[0] == (octet_t)'9' && text[1] == (octet_t)'9' && text[2] == (octet_t)'b';
+}
+
 static bool take_scan_status(scip_parser_t *parser, const octet_t *text)
 {
-    if (text[0] != (octet_t)'9' || text[1] != (octet_t)'9' || text[2] != (octet_t)'b' ||
-        !is_stream(&parser->awaited)) {
+    if (!is_scan_status(text) || !is_stream(&parser->awaited)) {
         return false;
     }
     parser->state = TIME;
@@ -275,8 +301,11 @@ static void begin_data(scip_parser_t *parser, uint32_t stamp)
 
 static uint32_t read_stamp(const octet_t *text, check_t *check)
 {
-    const uint32_t halves = two_values(check, text);
+    const uint32_t four = four_values(text);
+    const uint32_t halves = two_values(four);
     const uint32_t upper = halves & 0xFFFFU;
+    add_sums(check, four);
+    check->bits |= four;
     return (upper << 12) | (halves >> 16);
 }
 
@@ -305,19 +334,44 @@ static scip_event_t end_of_time(scip_parser_t *parser)
     return line_has(parser, 4U) ? take_time(parser, parser->line) : damage(parser, SCIP_DAMAGE_LENGTH);
 }
 
+/* Two points. Returns their characters' values. */
+static inline uint32_t decode_two(uint16_t *out, const octet_t *text)
+{
+    const uint32_t four = four_values(text);
+    const uint32_t two = two_values(four);
+    out[0] = (uint16_t)(two & 0xFFFFU);
+    out[1] = (uint16_t)(two >> 16);
+    return four;
+}
+
+/* Eight points; the sums of four characters still fit into an octet. */
+static inline void decode_eight(check_t *check, uint16_t *out, const octet_t *text)
+{
+    const uint32_t first = decode_two(out, text);
+    const uint32_t second = decode_two(&out[2], &text[4]);
+    const uint32_t third = decode_two(&out[4], &text[8]);
+    const uint32_t fourth = decode_two(&out[6], &text[12]);
+    check->bits |= first | second | third | fourth;
+    add_sums(check, first + second + third + fourth);
+}
+
 /* Two characters a point never straddle a block. */
 static check_t decode_pairs(uint16_t *out, const octet_t *text, uint16_t characters)
 {
     const size_t points = characters / 2U;
     check_t check = nothing_checked;
-    for (size_t i = points % 2U; i < points; i += 2U) {
-        const uint32_t two = two_values(&check, &text[2U * i]);
-        out[i] = (uint16_t)(two & 0xFFFFU);
-        out[i + 1U] = (uint16_t)(two >> 16);
-    }
-    if (points % 2U != 0U) {
+    size_t i = points % 2U;
+    if (i != 0U) {
         const uint32_t upper = six_bits(&check, text[0]);
         out[0] = (uint16_t)((upper << 6) | six_bits(&check, text[1]));
+    }
+    for (; (points - i) % 8U != 0U; i += 2U) {
+        const uint32_t four = decode_two(&out[i], &text[2U * i]);
+        check.bits |= four;
+        add_sums(&check, four);
+    }
+    for (; i < points; i += 8U) {
+        decode_eight(&check, &out[i], &text[2U * i]);
     }
     return check;
 }
@@ -377,7 +431,7 @@ static uint16_t characters_of_block(const scip_parser_t *parser)
 static bool may_end_in_echo(const scip_parser_t *parser, const octet_t *line, size_t line_length)
 {
     const uint16_t length = parser->awaited.echo_length;
-    return line_length >= length && line[line_length - length] == *scip_request_echo(&parser->awaited);
+    return line_length >= length && line[line_length - length] == parser->echo_first;
 }
 
 /* A line of a block's length. What is left of a frame that was cut short may, with the next frame's echo
@@ -582,6 +636,22 @@ static bool has_filled_memory(const scip_parser_t *parser)
     return parser->line[SCIP_LINE_MAX - 1U] != SCIP_LINE_FEED;
 }
 
+/* Octets of the present line that its memory holds. */
+static uint16_t held(const scip_parser_t *parser)
+{
+    return (uint16_t)(has_filled_memory(parser) ? SCIP_LINE_MAX : parser->gathered);
+}
+
+uint32_t scip_parser_octets(const scip_parser_t *parser)
+{
+    return parser->counters.octets + held(parser);
+}
+
+uint32_t scip_parser_strange(const scip_parser_t *parser)
+{
+    return parser->counters.strange + strange_in(parser, held(parser));
+}
+
 void scip_parser_init(scip_parser_t *parser)
 {
     *parser = (scip_parser_t){.state = HUNT};
@@ -592,6 +662,7 @@ void scip_parser_expect(scip_parser_t *parser, const scip_request_t *request)
 {
     parser->awaited = *request;
     parser->echo_fixed = (uint16_t)(request->echo_length - (is_counted(request) ? 2U : 0U));
+    parser->echo_first = *scip_request_echo(&parser->awaited);
     parser->awaiting = true;
     parser->state = HUNT;
     parser->skipping = false;
@@ -611,12 +682,9 @@ void scip_parser_line_broken(scip_parser_t *parser)
 {
     parser->state = HUNT;
     parser->skipping = false;
+    parser->counters.strange += strange_in(parser, held(parser));
+    parser->counters.octets += held(parser);
     begin_line(parser);
-}
-
-static bool is_within_line(const scip_parser_t *parser)
-{
-    return parser->gathered > 0U || has_filled_memory(parser);
 }
 
 static void keep_end_of_line(scip_parser_t *parser)
@@ -635,6 +703,8 @@ static void keep_end_of_line(scip_parser_t *parser)
 /* Of a line longer than its memory the end is looked at, where the awaited echo may be. */
 static scip_event_t end_long_line(scip_parser_t *parser)
 {
+    parser->counters.strange += strange_in(parser, SCIP_LINE_MAX);
+    parser->counters.octets += SCIP_LINE_MAX + 1U;
     keep_end_of_line(parser);
     begin_line(parser);
     switch (parser->state) {
@@ -654,7 +724,8 @@ scip_event_t scip_parser_end_line(scip_parser_t *parser)
     if (has_filled_memory(parser)) {
         return end_long_line(parser);
     }
-    parser->line_length = (uint16_t)parser->gathered;
+    parser->line_length = parser->gathered;
+    parser->counters.octets += parser->line_length + 1U;
     parser->gathered = 0U;
     switch (parser->state) { /* lines of a scan: most lines, at the least cost */
     case DATA:
@@ -676,14 +747,14 @@ scip_event_t scip_parser_end_line(scip_parser_t *parser)
 /* Copies octets up to the end of the line. Returns how many. */
 static size_t gather(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
-    uint_fast16_t at = parser->gathered;
+    size_t at = parser->gathered;
     size_t i = 0U;
     while (i < count && octet_of(octets[i]) != SCIP_LINE_FEED) {
         parser->line[at] = octet_of(octets[i]);
         at = (at + 1U) % SCIP_LINE_MAX;
         i++;
     }
-    parser->gathered = at;
+    parser->gathered = (octet_t)at;
     return i;
 }
 
@@ -703,11 +774,39 @@ static size_t block_in_place(scip_parser_t *parser, const octet_t *octets, size_
                : 0U;
 }
 
-/* The echo of a stream that is in step, likewise. */
-static size_t echo_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
+static size_t blocks_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
 {
-    const size_t length = parser->awaited.echo_length;
-    return has_whole(octets, count, length) && take_echo_at(parser, octets) ? length + 1U : 0U;
+    size_t taken = 0U;
+    size_t block;
+    do {
+        block = block_in_place(parser, &octets[taken], count - taken);
+        taken += block;
+    } while (block > 0U && parser->state == DATA);
+    return taken;
+}
+
+/* The echo of a stream that is in step (no other request has the state ECHO), likewise; and the two lines
+ * that follow, where they are those of a scan. */
+static size_t head_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
+{
+    const size_t status = parser->awaited.echo_length + 1U;
+    const size_t time = status + STATUS_OCTETS;
+    if (count < time + TIME_OCTETS) {
+        return has_whole(octets, count, status - 1U) && take_echo_at(parser, octets) ? status : 0U;
+    }
+    if (octets[status - 1U] != SCIP_LINE_FEED || !take_echo_at(parser, octets)) {
+        return 0U;
+    }
+    if (octets[time - 1U] != SCIP_LINE_FEED || octets[time + TIME_OCTETS - 1U] != SCIP_LINE_FEED ||
+        !is_scan_status(&octets[status])) {
+        return status;
+    }
+    parser->state = TIME;
+    if (take_time(parser, &octets[time]) != SCIP_NOTHING) {
+        return time;
+    }
+    return time + TIME_OCTETS +
+           blocks_in_place(parser, &octets[time + TIME_OCTETS], count - time - TIME_OCTETS);
 }
 
 static size_t status_in_place(scip_parser_t *parser, const octet_t *octets, size_t count)
@@ -727,9 +826,9 @@ static size_t line_in_place(scip_parser_t *parser, const octet_t *octets, size_t
 {
     switch (parser->state) {
     case DATA:
-        return block_in_place(parser, octets, count);
+        return blocks_in_place(parser, octets, count);
     case ECHO:
-        return echo_in_place(parser, octets, count);
+        return head_in_place(parser, octets, count);
     case STATUS:
         return status_in_place(parser, octets, count);
     case TIME:
@@ -754,11 +853,12 @@ size_t scip_parser_feed_run(scip_parser_t *parser, const octet_t *octets, size_t
 {
     size_t taken = 0U;
     *event = SCIP_NOTHING;
-    if (is_within_line(parser)) {
+    if (parser->gathered > 0U || has_filled_memory(parser)) {
         taken = line_by_copy(parser, octets, count, event);
     }
     while (*event == SCIP_NOTHING && taken < count) {
         const size_t in_place = line_in_place(parser, &octets[taken], count - taken);
+        parser->counters.octets += (uint32_t)in_place;
         taken += in_place > 0U ? in_place : line_by_copy(parser, &octets[taken], count - taken, event);
     }
     return taken;

@@ -73,16 +73,21 @@ typedef struct {
 
 /* Counters wrap at 2^32. */
 typedef struct {
+    uint32_t octets;  /* up to the latest line end; see scip_parser_octets() */
+    uint32_t strange; /* likewise, octets above 7FH, which SCIP does not have: a wrong rate, or damage */
     uint32_t replies;
     uint32_t scans; /* good scans, delivered or not */
     uint32_t notices;
     uint32_t legacy;
     uint32_t damaged[SCIP_DAMAGE_COUNT]; /* by cause; [SCIP_DAMAGE_NONE] unused */
+    uint32_t
+        stray; /* replies to other than the awaited request: two line ends behind a line that was skipped */
     uint32_t skipped_lines; /* lines that are not empty, not the awaited echo and not part of its reply */
 } scip_counters_t;
 
-/* Data lines have 65 characters; the information lines of some models are longer. A power of two. */
-#define SCIP_LINE_MAX 128U
+/* Data lines have 65 characters; the information lines of some models are longer. As many cells as an octet
+ * numbers: the cheapest to count. */
+#define SCIP_LINE_MAX 256U
 
 typedef struct {
     scip_reply_t reply;
@@ -97,9 +102,10 @@ typedef struct {
     bool awaiting;
     uint16_t echo_fixed; /* octets of the awaited echo that never change: all except the counter of
                           * a counted run */
+    octet_t echo_first;  /* of the awaited echo */
     uint16_t state;
-    uint_fast16_t gathered; /* cell of `line` for the next octet; behind the last one comes the first again */
-    bool skipping;          /* the line before was skipped and not empty */
+    octet_t gathered; /* cell of `line` for the next octet; behind the last one comes the first again */
+    bool skipping;    /* the line before was skipped and not empty */
     scip_scan_t *scan;
     uint16_t characters_left;  /* of the scan's data */
     uint32_t partial;          /* first characters of a point that straddles two blocks */
@@ -131,6 +137,11 @@ void scip_parser_scan_into(scip_parser_t *parser, scip_scan_t *scan);
  * the cause. */
 void scip_parser_line_broken(scip_parser_t *parser);
 
+/* Received octets, and those above 7FH among them, the present line included. Of a line longer than its
+ * memory only what its memory holds. */
+uint32_t scip_parser_octets(const scip_parser_t *parser);
+uint32_t scip_parser_strange(const scip_parser_t *parser);
+
 /* Number of octets until the present reply or scan is complete, as far as it is known now; 0: not known.
  * Between two scans of a stream it is that of the next scan. A notice, or the end of the stream, is
  * shorter. */
@@ -144,11 +155,13 @@ scip_event_t scip_parser_end_line(scip_parser_t *parser);
 static inline scip_event_t scip_parser_feed(scip_parser_t *parser, octet_t octet)
 {
     const octet_t clean = octet_of(octet);
+    size_t at;
     if (clean == SCIP_LINE_FEED) {
         return scip_parser_end_line(parser);
     }
-    parser->line[parser->gathered] = clean;
-    parser->gathered = (parser->gathered + 1U) % SCIP_LINE_MAX;
+    at = parser->gathered;
+    parser->gathered = (octet_t)((at + 1U) % SCIP_LINE_MAX);
+    parser->line[at] = clean;
     return SCIP_NOTHING;
 }
 

@@ -129,14 +129,27 @@ bool scip_request_scan(scip_request_t *request, scip_kind_t kind, const scip_ran
     return true;
 }
 
+static void put_in_front(scip_request_t *request, const char *text, uint16_t length)
+{
+    const uint16_t before = request->text_length;
+    request->text_length = (uint16_t)(before + length);
+    for (uint16_t i = 1U; i <= before; i++) {
+        request->text[request->text_length - i] = request->text[before - i];
+    }
+    for (uint16_t i = 0U; i < length; i++) {
+        request->text[i] = (octet_t)text[i];
+    }
+}
+
 void scip_request_end_line_first(scip_request_t *request)
 {
-    if (request->text[0] == SCIP_LINE_FEED) {
-        return;
+    if (request->text[0] != SCIP_LINE_FEED) {
+        put_in_front(request, "\n", 1U);
     }
-    for (uint16_t i = request->text_length; i > 0U; i--) {
-        request->text[i] = request->text[i - 1U];
-    }
-    request->text[0] = SCIP_LINE_FEED;
-    request->text_length++;
+}
+
+void scip_request_leave_time_first(scip_request_t *request)
+{
+    scip_request_end_line_first(request);
+    put_in_front(request, "\nTM2", 4U);
 }

@@ -13,8 +13,8 @@
 extern "C" {
 #endif
 
-/* Longest request: LF, symbol, parameters, LF (MS and MD: 16 + 1). User strings are not sent. */
-#define SCIP_REQUEST_MAX 17U
+/* Longest request: LF, TM2, LF, symbol, parameters, LF (MS and MD: 16 + 5). User strings are not sent. */
+#define SCIP_REQUEST_MAX 21U
 #define SCIP_STEP_MAX 1080U        /* steps of UTM-30LX and UST-10LX are numbered 0..1080 */
 #define SCIP_STEP_MAX_URG04LX 768U /* of the URG-04LX 0..768: it refuses others */
 #define SCIP_POINTS_MAX 1081U
@@ -88,6 +88,10 @@ bool scip_request_scan(scip_request_t *request, scip_kind_t kind, const scip_ran
  * command, noise, octets at another rate). So the sensor does not read the two as one command. The reply does
  * not change. A second call changes nothing. */
 void scip_request_end_line_first(scip_request_t *request);
+
+/* Puts LF, TM2 and LF in front of the text: a sensor in time mode leaves it first, and any other refuses TM2
+ * and obeys the request. Its own answer, one revolution earlier, is not the awaited one. */
+void scip_request_leave_time_first(scip_request_t *request);
 
 /* Pointer to the echo's first octet, within request->text. */
 static inline const octet_t *scip_request_echo(const scip_request_t *request)

@@ -28,17 +28,25 @@ static void change_scans(urg_t *urg)
     scip_parser_scan_into(&urg->parser, &urg->scans[urg->filling]);
 }
 
-bool urg_feed(urg_t *urg, const octet_t *octets, size_t count)
+bool urg_take_event(urg_t *urg, scip_event_t event)
 {
-    size_t taken = 0U;
+    urg_seen_event(&urg->seen, &urg->parser, event);
+    if (event != SCIP_SCAN) {
+        return false;
+    }
+    change_scans(urg);
+    return true;
+}
+
+bool urg_feed_all(urg_t *urg, const octet_t *octets, size_t count)
+{
     bool complete = false;
-    urg_seen_octets(&urg->seen, octets, count);
-    while (taken < count) {
+    while (count > 0U) {
         scip_event_t event;
-        taken += scip_parser_feed_run(&urg->parser, &octets[taken], count - taken, &event);
-        urg_seen_event(&urg->seen, &urg->parser, event);
-        if (event == SCIP_SCAN) {
-            change_scans(urg);
+        const size_t taken = scip_parser_feed_run(&urg->parser, octets, count, &event);
+        octets += taken;
+        count -= taken;
+        if (event != SCIP_NOTHING && urg_take_event(urg, event)) {
             complete = true;
         }
     }
@@ -53,6 +61,7 @@ void urg_line_broken(urg_t *urg, uint32_t framing_errors)
 
 void urg_step(urg_t *urg, uint32_t now_us)
 {
+    urg_seen_octets(&urg->seen, &urg->parser);
     urg_link_step(&urg->link, &urg->seen, now_us, &urg->action);
     if (urg->action.expect) {
         scip_parser_expect(&urg->parser, &urg->action.request);
@@ -66,7 +75,13 @@ void urg_scan_at(urg_t *urg, uint32_t now_us)
 
 uint32_t urg_pause_us(const urg_t *urg)
 {
-    return urg_link_pause_us(&urg->link);
+    urg_seen_t seen = urg->seen;
+    if (urg->link.status == URG_OK) { /* asked often, and here the number is enough */
+        seen.octet_count = scip_parser_octets(&urg->parser);
+    } else {
+        urg_seen_octets(&seen, &urg->parser);
+    }
+    return urg_link_pause_us(&urg->link, &seen);
 }
 
 bool urg_next_to_send(urg_t *urg, urg_output_t *output)
@@ -102,13 +117,15 @@ uint16_t urg_expected(const urg_t *urg)
 
 void urg_report(const urg_t *urg, urg_report_t *report)
 {
+    urg_seen_t seen = urg->seen;
+    urg_seen_octets(&seen, &urg->parser);
     *report = (urg_report_t){
         .status = urg->link.status,
         .rate = urg->link.rate,
         .restarts = urg->link.restarts,
         .timeouts = urg->link.timeouts,
-        .pause_us = urg_link_pause_us(&urg->link),
-        .seen = urg->seen,
+        .pause_us = urg_link_pause_us(&urg->link, &seen),
+        .seen = seen,
         .scip = urg->parser.counters,
         .last_damage = urg->parser.last_damage,
     };

@@ -2,9 +2,9 @@
  *
  *   urg_init()          sets the configuration, and the memory for two scans
  *   urg_feed()          processes received octets, any number at a time
- *   urg_step()          call it every 150 ms, or when urg_pause_us() has passed
- *   urg_next_to_send()  call it after each step: actions for the UART
- *   urg_take_scan()     call it when urg_feed() returned true: the scan
+ *   urg_step()          call it when urg_pause_us() has passed since the step before; ask that again and
+ * again urg_next_to_send()  call it after each step: actions for the UART urg_take_scan()     call it when
+ * urg_feed() returned true: the scan
  *
  * Two more calls are for some callers: urg_line_broken() where the UART reports errors; urg_scan_at() for the
  * shortest search after an outage. The driver uses no clock, port, task or heap.
@@ -63,8 +63,21 @@ typedef struct {
 bool urg_init(urg_t *urg, const urg_config_t *config, uint16_t *distance_mm, uint16_t values,
               uint32_t now_us);
 
-/* Processes received octets. Returns true when at least one scan has become complete. */
-bool urg_feed(urg_t *urg, const octet_t *octets, size_t count);
+/* Private parts of urg_feed(). */
+bool urg_feed_all(urg_t *urg, const octet_t *octets, size_t count);
+bool urg_take_event(urg_t *urg, scip_event_t event);
+
+/* Processes received octets. Returns true when at least one scan has become complete. Inline, because an
+ * interrupt may call it for every octet. */
+static inline bool urg_feed(urg_t *urg, const octet_t *octets, size_t count)
+{
+    scip_event_t event;
+    if (count != 1U) {
+        return urg_feed_all(urg, octets, count);
+    }
+    event = scip_parser_feed(&urg->parser, octets[0]);
+    return event != SCIP_NOTHING && urg_take_event(urg, event);
+}
 
 /* Call this when the UART lost or damaged octets. framing_errors: how many of the errors were framing errors,
  * which are a sign of a wrong bit rate. */
@@ -73,7 +86,7 @@ void urg_line_broken(urg_t *urg, uint32_t framing_errors);
 /* One step of the link, at least every 150 ms. now_us: time in microseconds, wraps at 2^32. */
 void urg_step(urg_t *urg, uint32_t now_us);
 
-/* As urg_link_scan_at(), urg_link_pause_us(). */
+/* As urg_link_scan_at(), urg_link_pause_us(). The pause changes with what is fed. */
 void urg_scan_at(urg_t *urg, uint32_t now_us);
 uint32_t urg_pause_us(const urg_t *urg);
 

@@ -20,23 +20,30 @@
 
 #define REVOLUTION_US 100000U     /* data sheet, 600 rpm */
 #define FIRST_REPLY_US 400000U    /* real sensors were seen to take 381 ms */
+#define KNOCK_US 130000U          /* recorded sensors mostly answer 90 to 115 ms after a command */
 #define SCAN_MARGIN_US 250000U    /* chosen: two and a half revolutions */
+#define MUTE_MARGIN_US 30000U     /* chosen: recorded revolutions differ by 15 ms; the tick of 10 ms */
 #define SETTLE_US 3000000U        /* chosen: what a laser or a motor may need before the first scan */
 #define VERIFY_US 2000000U        /* chosen: at statuses 21..49 the sensor tests itself */
 #define POWER_CYCLE_US 20000000U  /* chosen: time without a scan, well above the 8 s of a boot */
-#define KNOCK_US 130000U          /* chosen: real sensors mostly answer within 110 ms */
 #define LISTEN_US 160000U         /* chosen: a revolution, and its octets */
 #define TURN_US 40000U            /* chosen: least time at one rate; see urg_link_pause_us() */
-#define FIRST_RATE_US 60000U      /* what a revolution leaves beside TURN_US */
 #define PHASE_US 15000U           /* chosen: the latency of the scans' times and of the steps */
+#define ANSWER_END_US 50000U      /* KNOCK_US behind a command that follows a frame's time at once */
 #define DRIFT 512U                /* chosen: 0.2 %; recorded revolutions take 99.88 ms in place of 100 */
 #define SETTLE_RATE_US 90000U     /* chosen: two steps of 50 ms, less their jitter */
 #define SEARCH_KNOWN_US 12000000U /* chosen: above the 8 s that a sensor boots */
-#define REQUEST_US 1000000U       /* chosen: its scans come within the 1.5 s after which a flight is over */
+#define REQUEST_US 400000U        /* chosen: four revolutions, after which the answer to one has its effect */
+#define REQUEST_MAX_US 8000000U   /* chosen: a frame in eighty */
 #define HEARD_OCTETS 64U          /* chosen: so many octets in WAIT mean that the sensor already streams */
 #define WRONG_RATE_SIGNS 8U       /* chosen: since a command; more than noise makes */
-#define STREAM_SIGNS 3U /* chosen: between two commands of the search; a wrong guess costs one turn only */
-#define LADDER_TOP 3U   /* steps of the recovery: QT and MS, TM2, RS */
+#define STREAM_SIGNS 3U   /* chosen: between two commands of the search; a wrong guess costs one turn only */
+#define ANSWER_OCTETS 48U /* chosen: two answers to a request; few frames have less */
+#define SIGN_SHARE 4U     /* chosen: at a wrong rate most octets show it; of damaged ones one in eight does */
+#define THERE_US 1000000U /* chosen: no sensor loses its power and boots in that time */
+#define LADDER_TOP 3U     /* steps of the recovery: QT and MS, TM2, RS */
+#define HALF 0x80000000UL
+#define LONG_SWEEP 3U /* chosen: in every third sweep of a first search answers have FIRST_REPLY_US */
 
 typedef struct {
     urg_link_t *link;
@@ -117,15 +124,24 @@ static uint32_t scan_timeout_us(const urg_link_t *link)
     return 2U * scan_period_us(link) + wire_us(link, link->scan_octets) + SCAN_MARGIN_US;
 }
 
+/* A sensor that has streamed before answers soon, or after what it has still to answer. L0 is the first word
+ * to one whose rate is a guess: a later answer than that is heard at another rate, and the search comes back.
+ */
+static uint32_t first_reply_us(const urg_link_t *link, scip_kind_t kind)
+{
+    return link->good_rate != 0U || kind == SCIP_LASER_OFF_1 ? 2U * KNOCK_US : FIRST_REPLY_US;
+}
+
 static uint32_t reply_timeout_us(const urg_link_t *link, const scip_request_t *request)
 {
     uint32_t octets = (uint32_t)request->text_length + request->reply_octets;
-    uint32_t timeout_us = FIRST_REPLY_US;
+    uint32_t timeout_us = first_reply_us(link, request->kind);
     if (request->kind == SCIP_STOP) {
         octets += link->scan_octets;
     } else if (request->kind == link->config.stream) {
         octets += link->scan_octets;
-        timeout_us += 2U * scan_period_us(link) + (link->failures >= LADDER_TOP ? SETTLE_US : 0U);
+        timeout_us += link->good_rate != 0U ? 0U : 2U * scan_period_us(link);
+        timeout_us += link->failures >= LADDER_TOP ? SETTLE_US : 0U;
     }
     return timeout_us + wire_us(link, octets);
 }
@@ -155,9 +171,18 @@ static uint32_t wrong_rate_signs(const urg_seen_t *seen)
     return seen->framing_count + seen->strange_count;
 }
 
+/* A reply, though to other than the awaited, proves the rate: what this sensor heard at another one, it
+ * echoes. */
+static bool proved_rate(const step_t *step)
+{
+    return step->seen->stray_count != step->link->sent_strays;
+}
+
 static bool wrong_rate(const step_t *step, uint32_t signs)
 {
-    return wrong_rate_signs(step->seen) - step->link->sent_signs >= signs;
+    const uint32_t shown = wrong_rate_signs(step->seen) - step->link->sent_signs;
+    const uint32_t heard = step->seen->octet_count - step->link->sent_octets;
+    return shown >= signs && shown >= heard / SIGN_SHARE && !proved_rate(step);
 }
 
 static void expect_reply(const step_t *step, scip_kind_t kind)
@@ -165,11 +190,14 @@ static void expect_reply(const step_t *step, scip_kind_t kind)
     urg_link_t *link = step->link;
     step->action->expect = build_request(link, kind, &step->action->request);
     link->waiting = true;
+    link->acknowledged = false;
     link->command = kind;
     link->sent_us = step->now_us;
     link->timeout_us = reply_timeout_us(link, &step->action->request);
     link->sent_octets = step->seen->octet_count;
     link->sent_signs = wrong_rate_signs(step->seen);
+    link->sent_framing = step->seen->framing_count;
+    link->sent_strays = step->seen->stray_count;
 }
 
 static void send_command(const step_t *step, scip_kind_t kind)
@@ -215,25 +243,37 @@ static bool has_answered(const step_t *step)
     return link->answered && link->good_rate == 0U && step->now_us - link->answered_us < SEARCH_KNOWN_US;
 }
 
+/* Most answers come soon. Rates are many, so the later ones have their time in every third sweep only. */
+static uint32_t probe_timeout_us(const step_t *step)
+{
+    const urg_link_t *link = step->link;
+    const bool is_long = link->sweep % LONG_SWEEP == LONG_SWEEP - 1U;
+    if (has_answered(step)) {
+        return KNOCK_US;
+    }
+    return is_long ? link->timeout_us : link->timeout_us - FIRST_REPLY_US + KNOCK_US;
+}
+
 static void probe(const step_t *step, uint16_t index)
 {
     step->link->rate_refused = false;
     set_rate(step, probe_rate(step->link, index));
     start_command(step, URG_LOST, SCIP_STOP);
-    step->link->timeout_us = has_answered(step) ? KNOCK_US : step->link->timeout_us;
+    step->link->timeout_us = probe_timeout_us(step);
 }
 
 static void probe_next(const step_t *step)
 {
-    const uint16_t index = probe_index(step->link, step->link->rate);
+    urg_link_t *link = step->link;
+    const uint16_t index = probe_index(link, link->rate);
     const uint16_t other = index == PROBE_STREAM ? (uint16_t)PROBE_FIRST : (uint16_t)PROBE_STREAM;
-    probe(step, has_answered(step) ? other : next_probe(step->link, index));
+    const uint16_t next = next_probe(link, index);
+    link->sweep = (uint16_t)((link->sweep + (next <= index ? 1U : 0U)) % LONG_SWEEP);
+    probe(step, has_answered(step) ? other : next);
 }
 
 /* ---- the search for a sensor that has streamed before ---- */
 
-/* A slow answer does not need the knock's time: it is heard as signs of a wrong rate, or the next knock is
- * answered. */
 static void knock(const step_t *step, uint32_t rate, scip_kind_t kind, uint32_t timeout_us)
 {
     set_rate(step, rate);
@@ -242,9 +282,17 @@ static void knock(const step_t *step, uint32_t rate, scip_kind_t kind, uint32_t 
     step->link->knocking = true;
 }
 
+/* A mute sensor may be in time mode, which it must leave before. */
 static void knock_at_stream_rate(const step_t *step)
 {
-    knock(step, step->link->good_rate, step->link->config.stream, KNOCK_US);
+    urg_link_t *link = step->link;
+    knock(step, link->good_rate, link->config.stream, KNOCK_US);
+    if (link->request_us == 0U) {
+        scip_request_leave_time_first(&step->action->request);
+        link->timeout_us += KNOCK_US;
+    }
+    link->requested_us = step->now_us;
+    link->request_us = link->request_us == 0U ? REQUEST_US : link->request_us;
 }
 
 /* At the stream's rate, without a command. */
@@ -258,9 +306,10 @@ static void listen(const step_t *step, uint32_t timeout_us)
     step->link->listening = true;
 }
 
-/* Something that is no answer was heard at the first rate: the stream, most likely. It needs no command. */
+/* Something that is no answer was heard at another rate: the stream, most likely. It needs no command. */
 static void listen_to_stream(const step_t *step)
 {
+    step->link->asking = false;
     listen(step, LISTEN_US);
 }
 
@@ -278,62 +327,127 @@ static uint32_t free_us(const step_t *step)
     return step->link->timed && busy_us + TURN_US <= period_us ? period_us - busy_us : 0U;
 }
 
-static uint32_t turn_us(uint32_t left_us)
+/* Since the time of the latest frame is over. */
+static uint32_t past_us(const step_t *step)
 {
-    return left_us > TURN_US ? left_us : TURN_US;
+    const uint32_t period_us = scan_period_us(step->link);
+    return (step->now_us - step->link->frame_us + period_us - phase_us(step)) % period_us;
 }
 
-/* With what is left of the time without frames. */
-static void try_first_rate(const step_t *step, uint32_t left_us)
+/* Long enough for an answer, also over the time of one frame, but not into that of the next. */
+static uint32_t asking_us(const step_t *step)
 {
-    const uint32_t rate = step->link->config.first_rate;
-    knock(step, rate, SCIP_SWITCH, turn_us(left_us < FIRST_RATE_US ? left_us : FIRST_RATE_US));
-}
-
-/* At the first rate while no frame of the stream can come, else at the stream's; never twice at the latter.
- */
-static void take_turn(const step_t *step)
-{
-    const urg_link_t *link = step->link;
-    const bool was_listening = link->listening && link->timeout_us < LISTEN_US;
-    const uint32_t period_us = scan_period_us(link);
     const uint32_t gap_us = free_us(step);
-    const uint32_t past_us = (step->now_us - link->frame_us + period_us - phase_us(step)) % period_us;
-    const uint32_t left_us = period_us - past_us;
-    if (was_listening || past_us + TURN_US <= gap_us) {
-        try_first_rate(step, past_us < gap_us ? gap_us - past_us : 0U);
+    const uint32_t past = past_us(step);
+    const uint32_t end_us = gap_us < ANSWER_END_US ? gap_us : ANSWER_END_US;
+    if (gap_us == 0U || past + KNOCK_US <= gap_us) {
+        return KNOCK_US;
+    }
+    return past < end_us + TURN_US ? scan_period_us(step->link) + end_us - past : KNOCK_US;
+}
+
+/* Until the next frame must be there. */
+static uint32_t listening_us(const step_t *step)
+{
+    const uint32_t left_us = scan_period_us(step->link) - past_us(step);
+    if (free_us(step) == 0U) {
+        return LISTEN_US;
+    }
+    return left_us < TURN_US / 2U ? left_us + scan_period_us(step->link) : left_us;
+}
+
+static bool knows_power_up_rate(const step_t *step)
+{
+    return step->link->has_booted && step->now_us - step->link->scan_us < SEARCH_KNOWN_US;
+}
+
+/* The rate at which the sensor was seen to power up. Else one after the other, from the first one on. */
+static uint32_t rate_to_ask(const step_t *step)
+{
+    urg_link_t *link = step->link;
+    if (knows_power_up_rate(step)) {
+        return link->config.first_rate;
+    }
+    link->asked = next_probe(link, link->asked);
+    return probe_rate(link, link->asked);
+}
+
+static void ask_at(const step_t *step, uint32_t rate, scip_kind_t kind, uint32_t timeout_us)
+{
+    step->link->asking = true;
+    step->link->asked_rate = rate;
+    step->link->asked_kind = kind;
+    knock(step, rate, kind, timeout_us);
+}
+
+static void ask(const step_t *step)
+{
+    const uint32_t rate = rate_to_ask(step);
+    if (rate == step->link->good_rate) {
+        step->link->asking = true;
+        knock_at_stream_rate(step);
     } else {
-        listen(step, left_us < TURN_US / 2U ? left_us + period_us : turn_us(left_us));
+        ask_at(step, rate, SCIP_SWITCH, asking_us(step) + (knows_power_up_rate(step) ? 0U : REVOLUTION_US));
     }
 }
 
-/* At the first rate it is the stream, most likely; at the stream's rate, the answer to SCIP2.0. */
+/* At the stream's rate it is the late answer to what was asked, and at the asked rate the stream; strange
+ * octets without a framing error may also be the echo of what the sensor has heard at another rate. */
 static bool hears_other_rate(const step_t *step)
 {
-    return step->link->knocking && wrong_rate(step, STREAM_SIGNS);
+    const urg_link_t *link = step->link;
+    const bool framing = step->seen->framing_count - link->sent_framing >= STREAM_SIGNS;
+    const bool late = link->rate == link->good_rate && (link->listening || link->asked_kind == SCIP_BIT_RATE);
+    return link->knocking && wrong_rate(step, STREAM_SIGNS) && (late || (link->asking && framing));
 }
 
-/* After 1, 2, 4 and 8 s without a scan. */
-static bool is_request_due(const step_t *step)
+static void listen_or_request(const step_t *step)
 {
     urg_link_t *link = step->link;
-    const bool due = step->now_us - link->scan_us >= link->request_us;
-    link->request_us *= due ? 2U : 1U;
-    return due;
+    link->asking = false;
+    if (step->now_us - link->requested_us >= link->request_us) {
+        link->request_us = 2U * link->request_us < REQUEST_MAX_US ? 2U * link->request_us : REQUEST_MAX_US;
+        knock_at_stream_rate(step);
+    } else {
+        listen(step, listening_us(step));
+    }
 }
 
+/* By turns: the stream's rate, where a frame or the answer to a request may come, and those of a power-up. */
 static void knock_next(const step_t *step)
 {
-    const urg_link_t *link = step->link;
-    const uint32_t first_rate = link->config.first_rate;
-    if (link->good_rate == first_rate || is_request_due(step)) {
-        knock_at_stream_rate(step);
-    } else if (link->command == link->config.stream && hears_other_rate(step)) {
-        knock(step, first_rate, SCIP_SWITCH, FIRST_REPLY_US);
-    } else if (free_us(step) == 0U) {
-        knock(step, first_rate, SCIP_SWITCH, KNOCK_US);
+    if (step->link->asking) {
+        listen_or_request(step);
     } else {
-        take_turn(step);
+        ask(step);
+    }
+}
+
+/* It comes at that rate; so does the next one. But to SS it means that the sensor has the stream's rate now.
+ */
+static void on_late_answer(const step_t *step)
+{
+    urg_link_t *link = step->link;
+    if (link->asked_kind == SCIP_BIT_RATE) {
+        link->asked_kind = SCIP_SWITCH;
+        knock_at_stream_rate(step);
+    } else if (link->asked_rate == link->good_rate) {
+        knock_next(step);
+    } else {
+        ask_at(step, link->asked_rate, SCIP_SWITCH, FIRST_REPLY_US);
+    }
+}
+
+/* Nothing at all came in place of a frame: the sensor has stopped, or lost its power, or the cable is out. A
+ * sensor that has reset itself is at its first rate and understands SS; it answers at once or never. */
+static void begin_search_for_mute(const step_t *step)
+{
+    urg_link_t *link = step->link;
+    link->request_us = 0U;
+    if (link->good_rate == link->config.first_rate) {
+        knock_at_stream_rate(step);
+    } else {
+        ask_at(step, link->config.first_rate, SCIP_BIT_RATE, asking_us(step));
     }
 }
 
@@ -341,18 +455,24 @@ static void knock_next(const step_t *step)
  * may stream still, and the request would cost a frame; its next one may be on the line now. */
 static void begin_search(const step_t *step)
 {
-    if (step->link->timeout_us == 0U || step->link->config.range.scans != 0U) {
+    urg_link_t *link = step->link;
+    link->request_us = REQUEST_US;
+    link->heard = false;
+    link->requested_us = step->now_us;
+    link->asked_kind = SCIP_SWITCH;
+    link->asked_rate = link->config.first_rate;
+    if (link->timeout_us == 0U || link->config.range.scans != 0U) {
         knock_at_stream_rate(step);
-    } else if (step->seen->octet_count != step->link->seen.octet_count) {
-        listen_to_stream(step);
+    } else if (step->seen->octet_count == step->seen->octets_at_scan) {
+        begin_search_for_mute(step);
     } else {
-        knock_next(step);
+        listen_to_stream(step);
     }
 }
 
-static bool knows_rate(const step_t *step)
+static bool has_streamed(const step_t *step)
 {
-    return step->link->good_rate != 0U && step->now_us - step->link->scan_us < SEARCH_KNOWN_US;
+    return step->link->good_rate != 0U;
 }
 
 /* Octets without a sign of a wrong rate. */
@@ -361,24 +481,60 @@ static bool heard_clean(const step_t *step)
     return step->seen->octet_count != step->link->sent_octets && !wrong_rate(step, 1U);
 }
 
-/* Octets at the stream's rate, but no scan: the end of a frame, whose next one comes. After a whole
- * revolution it may be the stream of a request that was damaged on its way: the next request mends it. */
+static bool hears_few(const step_t *step)
+{
+    return step->seen->octet_count - step->link->sent_octets < ANSWER_OCTETS;
+}
+
+/* To a request. A damaged one has a few octets; a whole one that is not the awaited one belongs to a request
+ * that was damaged on its way, or to the stream that it has started. */
+static bool hears_answer(const step_t *step)
+{
+    return !step->link->listening && (hears_few(step) || proved_rate(step));
+}
+
+/* Octets at the stream's rate, but no scan. It may be the end of a frame, whose next one comes; if that does
+ * not come right in a whole revolution, the sensor streams something else. The next request mends that. */
 static void hear_on(const step_t *step)
 {
-    if (step->link->listening && step->link->timeout_us == LISTEN_US) {
+    urg_link_t *link = step->link;
+    const bool listened = link->listening && link->timeout_us == LISTEN_US;
+    link->request_us = REQUEST_US;
+    if (listened || hears_answer(step)) {
         knock_at_stream_rate(step);
     } else {
         listen_to_stream(step);
     }
 }
 
+/* Octets at the stream's rate, and they are not those of another one. */
+static bool hears_sensor(const step_t *step)
+{
+    return step->link->rate == step->link->good_rate && step->seen->octet_count != step->link->sent_octets &&
+           !wrong_rate(step, 1U);
+}
+
+/* A sensor that was there a moment ago, and is mute now, has stopped. */
+static bool is_there(const step_t *step)
+{
+    return step->link->heard && step->now_us - step->link->heard_us < THERE_US;
+}
+
 static void search_on(const step_t *step)
 {
     urg_link_t *link = step->link;
-    if (!knows_rate(step)) {
+    if (has_streamed(step) && hears_sensor(step)) {
+        link->heard = true;
+        link->heard_us = step->now_us;
+    }
+    if (!has_streamed(step)) {
         probe_next(step);
-    } else if (link->rate == link->good_rate && heard_clean(step)) {
+    } else if (hears_sensor(step)) {
         hear_on(step);
+    } else if (is_there(step)) {
+        knock_at_stream_rate(step);
+    } else if (link->rate == link->good_rate && wrong_rate(step, STREAM_SIGNS)) {
+        on_late_answer(step);
     } else {
         knock_next(step);
     }
@@ -386,17 +542,27 @@ static void search_on(const step_t *step)
 
 static void change_rate(const step_t *step)
 {
-    if (step->link->command == SCIP_SWITCH) {
-        listen_to_stream(step);
+    if (step->link->rate == step->link->good_rate) {
+        on_late_answer(step);
     } else {
-        search_on(step);
+        listen_to_stream(step);
+    }
+}
+
+/* The sensor is at one rate or the other, and answers. */
+static void search_again(const step_t *step, uint16_t index)
+{
+    if (has_streamed(step)) {
+        ask(step);
+    } else {
+        probe(step, index);
     }
 }
 
 /* The sensor has the new rate, or the old one: it is not known which octets were lost. */
 static void rate_unknown(const step_t *step)
 {
-    if (knows_rate(step)) {
+    if (has_streamed(step)) {
         knock_at_stream_rate(step);
     } else {
         probe(step, PROBE_STREAM);
@@ -411,7 +577,7 @@ static void stop_sensor(const step_t *step)
 /* After a loss there is no need to stop the sensor first: what it may stream is what it is asked for. */
 static void stop_or_stream(const step_t *step)
 {
-    if (step->link->good_rate != 0U) {
+    if (has_streamed(step)) {
         start_command(step, URG_STREAM, step->link->config.stream);
     } else {
         stop_sensor(step);
@@ -450,7 +616,7 @@ static void scans_missing(const step_t *step)
     count_failure(step->link);
     step->link->line_unknown = true;
     if (step->link->failures == 1U) {
-        start_command(step, URG_STOP2, SCIP_STOP);
+        stop_or_stream(step);
     } else {
         leave_time_mode_or_reset(step);
     }
@@ -477,10 +643,20 @@ static bool is_refusal(const scip_reply_t *reply)
     return reply->status[0] == (octet_t)'0' && reply->status[1] >= (octet_t)'A';
 }
 
+/* Only a sensor that has just powered up speaks SCIP1.1, and it does so at the rate stored in it. */
+static void learn_rate(const step_t *step)
+{
+    if (step->seen->reply.legacy) {
+        step->link->config.first_rate = step->link->rate;
+        step->link->has_booted = true;
+    }
+}
+
 static void on_switch_reply(const step_t *step)
 {
     const scip_reply_t *reply = &step->seen->reply;
     if (!reply->legacy || reply->status[0] == (octet_t)'0') {
+        learn_rate(step);
         rate_or_stop(step);
     }
 }
@@ -496,7 +672,7 @@ static void on_rate_reply(const step_t *step)
         repeat_command(step);
     } else {
         link->rate_refused = true;
-        stop_sensor(step);
+        stop_or_stream(step);
     }
 }
 
@@ -515,16 +691,31 @@ static void on_stop_reply(const step_t *step)
 /* A knock was heard. */
 static void await_first_scan(const step_t *step)
 {
-    if (step->link->knocking) {
-        step->link->knocking = false;
+    urg_link_t *link = step->link;
+    if (has_streamed(step)) {
+        link->knocking = false;
         set_status(step, URG_STREAM);
-        step->link->timeout_us = scan_timeout_us(step->link);
+        link->timeout_us = step->now_us - link->sent_us + scan_timeout_us(link);
+    }
+    link->acknowledged = true;
+    link->acknowledged_octets = step->seen->octet_count;
+}
+
+/* The sensor had another one to answer, perhaps one that was damaged on its way; or has still. */
+static void repeat_or_listen(const step_t *step)
+{
+    if (step->link->attempt == 1U) {
+        repeat_command(step);
+    } else {
+        listen_to_stream(step);
     }
 }
 
 static void on_stream_reply(const step_t *step)
 {
-    if (is_refusal(&step->seen->reply)) {
+    if (has_streamed(step) && is_status(&step->seen->reply, '0', 'B')) {
+        repeat_or_listen(step);
+    } else if (is_refusal(&step->seen->reply)) {
         command_refused(step);
     } else if (is_status(&step->seen->reply, '0', '0')) {
         await_first_scan(step);
@@ -546,6 +737,7 @@ static void on_reply(const step_t *step)
     switch (step->link->command) {
     case SCIP_LASER_OFF_1:
         if (step->seen->reply.legacy) {
+            learn_rate(step);
             start_command(step, URG_SWITCH, SCIP_SWITCH);
         } else {
             stop_sensor(step); /* in SCIP2.0 already, and perhaps streaming or in time mode */
@@ -561,10 +753,10 @@ static void on_reply(const step_t *step)
         on_stop_reply(step);
         break;
     case SCIP_TIME_LEAVE:
-        stop_sensor(step);
+        stop_or_stream(step);
         break;
     case SCIP_RESET:
-        probe(step, PROBE_FIRST);
+        search_again(step, PROBE_FIRST);
         break;
     default:
         on_stream_reply(step);
@@ -591,7 +783,7 @@ static uint16_t attempts_allowed(const step_t *step)
 {
     switch (step->link->command) {
     case SCIP_LASER_OFF_1:
-        return wrong_rate(step, WRONG_RATE_SIGNS) ? 1U : 2U;
+        return heard_clean(step) ? 2U : 1U;
     case SCIP_STOP:
         if (heard_clean(step)) { /* only the answer was lost */
             return 3U;
@@ -601,8 +793,24 @@ static uint16_t attempts_allowed(const step_t *step)
         return step->link->knocking ? 1U : 2U;
     case SCIP_TIME_LEAVE:
         return 2U;
+    case SCIP_STREAM_2:
+    case SCIP_STREAM_3:
+        return has_streamed(step) && step->link->status == URG_STREAM && !step->link->acknowledged ? 2U : 1U;
     default:
         return 1U;
+    }
+}
+
+/* After a stream, octets that are no scan are a damaged one, and without an answer the request may be lost.
+ */
+static void scans_do_not_come(const step_t *step)
+{
+    const urg_link_t *link = step->link;
+    const bool mute = link->acknowledged && link->acknowledged_octets == step->seen->octet_count;
+    if (has_streamed(step) && !mute) {
+        search_on(step);
+    } else {
+        scans_missing(step);
     }
 }
 
@@ -615,17 +823,17 @@ static void give_up_command(const step_t *step)
         rate_unknown(step);
         break;
     case SCIP_RESET:
-        probe(step, PROBE_FIRST);
+        search_again(step, PROBE_FIRST);
         break;
     case SCIP_STOP:
         search_on(step);
         break;
     case SCIP_SWITCH:
     case SCIP_TIME_LEAVE:
-        probe(step, probe_index(link, link->rate));
+        search_again(step, probe_index(link, link->rate));
         break;
     default:
-        scans_missing(step);
+        scans_do_not_come(step);
         break;
     }
 }
@@ -648,7 +856,8 @@ static uint32_t answer_timeout_us(const step_t *step)
 {
     const urg_link_t *link = step->link;
     const bool mute = link->status == URG_STREAM && step->seen->octet_count == link->sent_octets;
-    return mute ? FIRST_REPLY_US : link->timeout_us;
+    const uint32_t most_us = has_streamed(step) ? KNOCK_US : FIRST_REPLY_US;
+    return mute ? most_us : link->timeout_us;
 }
 
 /* While the rate is only a guess, signs of a wrong one answer as well as a time-out. */
@@ -669,7 +878,6 @@ static void on_scan(const step_t *step)
     set_status(step, URG_OK);
     link->knocking = false;
     link->failures = 0U;
-    link->request_us = REQUEST_US;
     link->good_rate = link->rate;
     link->scan_us = step->now_us;
     link->frame_us = link->timed ? link->frame_us : step->now_us;
@@ -685,6 +893,19 @@ static void cycle_power_in_time(const step_t *step)
         step->link->scan_us = step->now_us;
         step->action->cycle_power = true;
     }
+}
+
+/* The sensor answers one line after the other: the awaited answer may be the next one. */
+static bool hears_stray(const step_t *step)
+{
+    const urg_link_t *link = step->link;
+    return link->knocking && !link->listening && step->seen->stray_count != link->seen.stray_count &&
+           hears_few(step);
+}
+
+static void wait_on(const step_t *step)
+{
+    step->link->timeout_us = step->now_us - step->link->sent_us + KNOCK_US;
 }
 
 /* The sensor needs some time to change its rate. */
@@ -709,6 +930,8 @@ static void step_dialogue(const step_t *step)
         on_reply(step);
     } else if (seen->legacy_count != link->seen.legacy_count) {
         on_legacy(step);
+    } else if (hears_stray(step)) {
+        wait_on(step);
     } else if (hears_other_rate(step)) {
         change_rate(step);
     } else if (is_silent(step)) {
@@ -741,6 +964,21 @@ static void on_notice(const step_t *step)
     }
 }
 
+/* Time from a frame to where the next one is late. */
+static uint32_t late_us(const urg_link_t *link)
+{
+    const uint32_t period_us = scan_period_us(link);
+    return period_us * (frame_us(link) / period_us + 1U) + MUTE_MARGIN_US;
+}
+
+/* Not an octet since the latest frame. */
+static bool is_mute(const step_t *step)
+{
+    const urg_link_t *link = step->link;
+    return link->timed && step->seen->octet_count == step->seen->octets_at_scan &&
+           step->now_us - link->frame_us >= late_us(link);
+}
+
 static void step_stream(const step_t *step)
 {
     urg_link_t *link = step->link;
@@ -750,7 +988,7 @@ static void step_stream(const step_t *step)
     if (step->seen->notice_count != link->seen.notice_count) {
         on_notice(step);
     }
-    if (step->now_us - link->scan_us >= link->timeout_us) {
+    if (step->now_us - link->scan_us >= link->timeout_us || is_mute(step)) {
         link->restarts++;
         begin_search(step);
     }
@@ -761,12 +999,17 @@ const char *urg_status_name(urg_status_t status)
     return status_names[status];
 }
 
-void urg_seen_octets(urg_seen_t *seen, const octet_t *octets, size_t count)
+/* Of a long line the parser knows its end only, so what it tells may go back. */
+static uint32_t later(uint32_t told, uint32_t known)
 {
-    seen->octet_count += (uint32_t)count;
-    for (size_t i = 0U; i < count; i++) {
-        seen->strange_count += octet_of(octets[i]) > 0x7FU ? 1U : 0U;
-    }
+    return told - known < HALF ? told : known;
+}
+
+void urg_seen_octets(urg_seen_t *seen, const scip_parser_t *parser)
+{
+    seen->octet_count = later(scip_parser_octets(parser), seen->octet_count);
+    seen->strange_count = later(scip_parser_strange(parser), seen->strange_count);
+    seen->stray_count = parser->counters.stray;
 }
 
 void urg_seen_event(urg_seen_t *seen, const scip_parser_t *parser, scip_event_t event)
@@ -779,6 +1022,7 @@ void urg_seen_event(urg_seen_t *seen, const scip_parser_t *parser, scip_event_t 
         break;
     case SCIP_SCAN:
         seen->scan_count++;
+        seen->octets_at_scan = parser->counters.octets; /* a line has just ended */
         seen->scan_remaining = parser->scan->remaining;
         break;
     case SCIP_NOTICE:
@@ -810,7 +1054,7 @@ bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us
     *link = (urg_link_t){
         .config = *config, .status = URG_WAIT, .since_us = now_us, .rate = config->first_rate};
     link->scan_octets = stream.scan_octets;
-    link->pause_us = URG_STEP_US;
+    link->asked = PROBE_STREAM;
     return true;
 }
 
@@ -820,20 +1064,37 @@ void urg_link_scan_at(urg_link_t *link, uint32_t now_us)
     link->timed = true;
 }
 
-uint32_t urg_link_pause_us(const urg_link_t *link)
+static bool has_news(const urg_link_t *link, const urg_seen_t *seen)
 {
-    return link->pause_us;
+    return seen->reply_count != link->seen.reply_count || seen->scan_count != link->seen.scan_count ||
+           seen->legacy_count != link->seen.legacy_count || seen->stray_count != link->seen.stray_count ||
+           wrong_rate_signs(seen) - link->sent_signs >= STREAM_SIGNS;
 }
 
-/* While the sensor is searched: to the end of the turn, or shorter where answers may come. */
-static uint32_t pause_us(const step_t *step)
+/* From the latest step to where a frame is late, or a command without its answer. */
+static uint32_t patience_us(const urg_link_t *link, const urg_seen_t *seen)
 {
-    const urg_link_t *link = step->link;
-    const uint32_t left_us = link->timeout_us - (step->now_us - link->sent_us);
-    if (link->good_rate == 0U || link->status == URG_OK) {
+    if (link->status != URG_OK) {
+        return link->waiting ? link->timeout_us - (link->stepped_us - link->sent_us)
+                             : SETTLE_RATE_US - (link->stepped_us - link->sent_us);
+    }
+    return link->timed && seen->octet_count == seen->octets_at_scan
+               ? link->frame_us + late_us(link) - link->stepped_us
+               : URG_STEP_US;
+}
+
+/* A start without trouble has the seed's tick. */
+uint32_t urg_link_pause_us(const urg_link_t *link, const urg_seen_t *seen)
+{
+    const bool by_tick = link->status == URG_WAIT || (link->good_rate == 0U && link->timeouts == 0U);
+    const uint32_t left_us = patience_us(link, seen);
+    if (by_tick) {
         return URG_STEP_US;
     }
-    return link->knocking && left_us < 2U * TURN_US ? turn_us(left_us) : URG_SEARCH_STEP_US;
+    if (left_us < TURN_US || (link->status != URG_OK && has_news(link, seen))) {
+        return TURN_US;
+    }
+    return left_us < URG_STEP_US ? left_us : URG_STEP_US;
 }
 
 void urg_link_step(urg_link_t *link, const urg_seen_t *seen, uint32_t now_us, urg_action_t *action)
@@ -851,7 +1112,7 @@ void urg_link_step(urg_link_t *link, const urg_seen_t *seen, uint32_t now_us, ur
         step_dialogue(&step);
         break;
     }
-    link->pause_us = pause_us(&step);
+    link->stepped_us = now_us;
     link->seen = *seen;
     action->rate = link->rate;
 }

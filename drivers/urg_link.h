@@ -55,6 +55,7 @@ typedef struct {
     scip_kind_t reply_kind; /* kind of the latest reply */
     scip_reply_t reply;     /* latest reply */
     uint32_t scan_count;
+    uint32_t octets_at_scan; /* octet_count when the latest scan was complete */
     uint16_t scan_remaining; /* of the latest scan; used in counted runs only */
     uint32_t legacy_count;   /* number of answers "E" of SCIP1.1 */
     uint32_t notice_count;
@@ -62,6 +63,7 @@ typedef struct {
     uint32_t octet_count;
     uint32_t framing_count; /* framing errors of the UART: wrong rate, or a bad cable */
     uint32_t strange_count; /* octets above 7FH: a wrong rate, also where the UART reports no errors */
+    uint32_t stray_count;   /* replies to other than the awaited request */
     uint32_t damage_count;  /* damaged replies and scans, all causes */
 } urg_seen_t;
 
@@ -87,32 +89,45 @@ typedef struct {
 typedef struct {
     urg_config_t config;
     urg_status_t status;
-    uint32_t since_us;    /* when the present status was entered */
-    uint32_t sent_us;     /* when the latest command was sent */
-    uint32_t timeout_us;  /* time-out of the latest command; in OK: of the next scan */
-    uint32_t rate;        /* present rate of the board's UART */
-    uint16_t attempt;     /* number of times the present command was sent */
-    uint32_t restarts;    /* how often the stream was lost */
-    uint32_t timeouts;    /* commands without an answer */
-    uint16_t failures;    /* how often in a row scans did not start or stopped; limited */
-    uint32_t scan_us;     /* time of the latest scan, power cycle or end of WAIT */
-    scip_kind_t command;  /* latest command */
-    bool waiting;         /* the link waits for the reply to a command */
-    bool rate_refused;    /* the sensor refused stream_rate: keep the present rate */
-    bool line_unknown;    /* the sensor may hold an incomplete line: send LF before the next command */
-    uint16_t scan_octets; /* length of one frame of the stream */
-    uint32_t sent_octets; /* counter of octets when the latest command was sent */
-    uint32_t sent_signs;  /* counter of signs of a wrong rate at that time */
-    uint32_t good_rate;   /* rate at which scans were received; 0: none yet */
-    uint32_t frame_us;    /* time of the latest scan: as told, else that of the step which has seen it */
-    uint32_t pause_us;    /* until the next step */
-    bool timed;           /* the caller tells the times of the scans */
-    uint32_t answered_us; /* time of the latest answer */
-    bool answered;        /* it came at one of the configured rates */
-    bool knocking;        /* the present command is part of the search at the known rates */
-    bool listening;       /* it is at the stream's rate, and no command was sent */
-    uint32_t request_us;  /* time without scans after which the stream is requested again */
-    urg_seen_t seen;      /* what was received up to the previous step */
+    uint32_t since_us;     /* when the present status was entered */
+    uint32_t sent_us;      /* when the latest command was sent */
+    uint32_t timeout_us;   /* time-out of the latest command; in OK: of the next scan */
+    uint32_t rate;         /* present rate of the board's UART */
+    uint16_t attempt;      /* number of times the present command was sent */
+    uint32_t restarts;     /* how often the stream was lost */
+    uint32_t timeouts;     /* commands without an answer */
+    uint16_t failures;     /* how often in a row scans did not start or stopped; limited */
+    uint32_t scan_us;      /* time of the latest scan, power cycle or end of WAIT */
+    scip_kind_t command;   /* latest command */
+    bool waiting;          /* the link waits for the reply to a command */
+    bool rate_refused;     /* the sensor refused stream_rate: keep the present rate */
+    bool line_unknown;     /* the sensor may hold an incomplete line: send LF before the next command */
+    uint16_t scan_octets;  /* length of one frame of the stream */
+    uint32_t sent_octets;  /* counter of octets when the latest command was sent */
+    uint32_t sent_signs;   /* counter of signs of a wrong rate at that time */
+    uint32_t sent_framing; /* of framing errors alone */
+    uint32_t sent_strays;  /* counter of stray replies at that time */
+    uint32_t good_rate;    /* rate at which scans were received; 0: none yet */
+    uint32_t frame_us;     /* time of the latest scan: as told, else that of the step which has seen it */
+    bool timed;            /* the caller tells the times of the scans */
+    uint32_t answered_us;  /* time of the latest answer */
+    bool answered;         /* it came at one of the configured rates */
+    bool has_booted; /* a sensor in SCIP1.1 has answered: config.first_rate is now the rate at which it did */
+    uint16_t sweep;  /* of a first search through all rates */
+    bool knocking;   /* the present command is part of the search for a sensor that has streamed */
+    bool listening;  /* it is at the stream's rate, and no command was sent */
+    bool asking;     /* the present turn of that search is for a sensor that powers up */
+    uint16_t asked;  /* position of the latest other rate in the search */
+    uint32_t asked_rate; /* of the latest such turn */
+    scip_kind_t asked_kind;
+    bool acknowledged;            /* the sensor has accepted the present request for the stream */
+    uint32_t acknowledged_octets; /* counter of octets at that time */
+    uint32_t requested_us;        /* when the search sent that request last */
+    uint32_t request_us;          /* least time to the next one; 0: none was sent yet */
+    bool heard;                   /* the search has heard octets at the stream's rate that are no scan */
+    uint32_t heard_us;            /* when it did last */
+    uint32_t stepped_us;          /* when the latest step was */
+    urg_seen_t seen;              /* what was received up to the previous step */
 } urg_link_t;
 
 /* Starts in WAIT. Returns false, and does nothing, for an impossible configuration: a rate that is not SCIP's
@@ -120,9 +135,9 @@ typedef struct {
  * not a stream. */
 bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us);
 
-/* Count received octets and parser events in *seen, for callers that do not use urg.h (which does both). Call
- * urg_seen_octets() before the octets go to the parser, and urg_seen_event() for each event. */
-void urg_seen_octets(urg_seen_t *seen, const octet_t *octets, size_t count);
+/* Note in *seen what the parser has received, for callers that do not use urg.h (which does both):
+ * urg_seen_octets() before each step, urg_seen_event() for each event. */
+void urg_seen_octets(urg_seen_t *seen, const scip_parser_t *parser);
 void urg_seen_event(urg_seen_t *seen, const scip_parser_t *parser, scip_event_t event);
 
 /* One step. seen: everything received up to now_us, with the present counters of octets and framing errors.
@@ -136,7 +151,7 @@ void urg_link_scan_at(urg_link_t *link, uint32_t now_us);
 /* How long the caller may wait until the next step: URG_STEP_US; while a sensor that has streamed is
  * searched, 40 to 80 ms. Who always waits URG_STEP_US loses a few tenths of a second there, and nothing else.
  */
-uint32_t urg_link_pause_us(const urg_link_t *link);
+uint32_t urg_link_pause_us(const urg_link_t *link, const urg_seen_t *seen);
 
 #ifdef __cplusplus
 }

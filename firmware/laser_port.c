@@ -156,6 +156,15 @@ static void send(const urg_output_t *output)
     }
 }
 
+uint32_t laser_port_pause_us(void)
+{
+    UInt key = Hwi_disable();
+    const uint32_t pause_us = urg_pause_us(&urg);
+
+    Hwi_restore(key);
+    return pause_us;
+}
+
 void laser_port_step(laser_statistics_t *statistics)
 {
     urg_output_t output;

@@ -1,6 +1,6 @@
 /* The scanner's driver on its UART: drivers/urg.h, one object. The receive Hwi feeds it, TaskSendLaser steps
- * it, Laser_SWI passes complete scans to TaskReceiveLaser. Replies to commands do not wake a task: the next
- * step sees them. */
+ * it, Laser_SWI passes complete scans to TaskReceiveLaser. Replies to commands do not wake a task: they
+ * shorten the pause to the next step. */
 #ifndef FIRMWARE_LASER_PORT_H
 #define FIRMWARE_LASER_PORT_H
 
@@ -32,6 +32,9 @@ void laser_port_wait(laser_message_t *message);
 /* One step of the driver: sets the rate of the board's UART and sends what the sensor is to be told. Copies
  * the statistics as they are then. TaskSendLaser only. */
 void laser_port_step(laser_statistics_t *statistics);
+
+/* Time from the latest step to the next one, as the driver wants it now. Any task, Swi or Clock function. */
+uint32_t laser_port_pause_us(void);
 
 /* Copies the present statistics. Any task. */
 void laser_port_statistics(laser_statistics_t *statistics);

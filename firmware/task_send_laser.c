@@ -18,16 +18,17 @@
 #define TICK_US (1000U * SEND_LASER_TICK_MS)
 
 static Semaphore_Handle tick;
-static volatile uint16_t ticks_left; /* until the next release */
+static uint16_t ticks; /* since the latest release */
 
+/* Every 150 ms, and earlier where the driver wants it: what the scanner says changes that. */
 static Void release(UArg unused)
 {
     (void)unused;
-    ticks_left--;
-    if (ticks_left > 0U) {
+    ticks++;
+    if (ticks < PERIOD_TICKS && TICK_US * (uint32_t)ticks < laser_port_pause_us()) {
         return;
     }
-    ticks_left = PERIOD_TICKS;
+    ticks = 0U;
     monitor_released(MONITOR_SEND_LASER, bsp_time_us());
     Semaphore_post(tick);
 }
@@ -53,16 +54,6 @@ static void publish(const urg_report_t *urg)
     laser_server_write(&sample);
 }
 
-/* Earlier than the period, while the driver asks for it. */
-static void release_after(uint32_t pause_us)
-{
-    const uint16_t ticks = (uint16_t)((pause_us + TICK_US - 1U) / TICK_US);
-
-    if (ticks < PERIOD_TICKS) {
-        ticks_left = ticks;
-    }
-}
-
 static Void task_send_laser(UArg unused0, UArg unused1)
 {
     static laser_statistics_t statistics;
@@ -73,7 +64,6 @@ static Void task_send_laser(UArg unused0, UArg unused1)
         (void)Semaphore_pend(tick, BIOS_WAIT_FOREVER);
         monitor_begin(MONITOR_SEND_LASER);
         laser_port_step(&statistics);
-        release_after(statistics.urg.pause_us);
         publish(&statistics.urg);
         show(statistics.urg.status);
         monitor_done(MONITOR_SEND_LASER);
@@ -91,7 +81,7 @@ void task_send_laser_create(void)
     semaphore.mode = Semaphore_Mode_BINARY;
     tick = Semaphore_create(0, &semaphore, NULL);
     Clock_Params_init(&clock);
-    ticks_left = PERIOD_TICKS;
+    ticks = 0U;
     clock.period = SEND_LASER_TICK_MS;
     clock.startFlag = TRUE;
     (void)Clock_create(release, SEND_LASER_TICK_MS, &clock, NULL);

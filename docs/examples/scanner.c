@@ -12,7 +12,7 @@
 #define POINTS (LAST_STEP - FIRST_STEP + 1U)
 
 static const urg_config_t config = {
-    .wait_us = 10000000U, /* the sensor's own power-up; ends early when it is heard */
+    .wait_us = 0U,        /* it may boot still: the search finds it as soon as it listens */
     .first_rate = 19200U, /* as delivered */
     .stream_rate = 115200U,
     .stream = SCIP_STREAM_2,

@@ -195,9 +195,23 @@ void test_a_leading_line_end_leaves_echo_and_reply_as_they_are(void)
     assert_text("\nMS0372040601000\n");
     TEST_ASSERT_EQUAL_UINT16(15, request.echo_length);
     TEST_ASSERT_EQUAL_PTR(&request.text[1], scip_request_echo(&request));
-    TEST_ASSERT_EQUAL_UINT16(SCIP_REQUEST_MAX, request.text_length);
     scip_request_end_line_first(&request);
     assert_text("\nMS0372040601000\n");
     TEST_ASSERT_TRUE(scip_request(&request, SCIP_STOP));
     TEST_ASSERT_EQUAL_PTR(&request.text[0], scip_request_echo(&request));
+}
+
+void test_a_request_may_leave_time_mode_first(void)
+{
+    const scip_range_t range = range_of(372, 406, 1, 0, 0);
+    for (int ended = 0; ended < 2; ended++) {
+        TEST_ASSERT_TRUE(scip_request_scan(&request, SCIP_STREAM_2, &range));
+        if (ended == 1) {
+            scip_request_end_line_first(&request);
+        }
+        scip_request_leave_time_first(&request);
+        assert_text("\nTM2\nMS0372040601000\n");
+        TEST_ASSERT_EQUAL_UINT16(SCIP_REQUEST_MAX, request.text_length);
+        TEST_ASSERT_EQUAL_PTR(&request.text[5], scip_request_echo(&request));
+    }
 }

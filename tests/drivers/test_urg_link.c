@@ -11,7 +11,7 @@
 #define STEP_US 150000U
 #define STEP_MS 150U
 #define NEVER 1000000U
-#define LOG_MAX 400
+#define LOG_MAX 4000
 #define QUEUE_MAX 400
 
 /* --- a small scripted sensor, written apart from the product
@@ -193,7 +193,7 @@ static uint32_t host_rate;
 static uint32_t power_cycles;
 
 static struct {
-    char text[20];
+    char text[SCIP_REQUEST_MAX + 1];
     uint32_t step, rate;
     urg_status_t status;
 } asked[LOG_MAX];
@@ -215,7 +215,6 @@ static void host_hears(void)
         }
         octet ^= sent_to_host == flip_to_host ? 4U : 0U;
         const octet_t heard = (octet_t)octet;
-        urg_seen_octets(&seen, &heard, 1);
         urg_seen_event(&seen, &parser, scip_parser_feed(&parser, heard));
     }
 }
@@ -243,6 +242,7 @@ static void host_sends(void)
 static void step(void)
 {
     host_hears();
+    urg_seen_octets(&seen, &parser);
     urg_link_step(&link_, &seen, now_us, &action);
     TEST_ASSERT_EQUAL_UINT32(link_.rate, action.rate);
     if (action.set_rate) {
@@ -433,12 +433,19 @@ void test_a_slow_sensor_is_not_asked_twice(void)
     TEST_ASSERT_EQUAL_UINT(5, asked_count);
 }
 
-void test_every_command_is_repeated_only_after_400_ms(void)
+/* What comes later than the time for it is heard at the next rate, and the search comes back. */
+void test_every_rate_is_asked_again_only_after_400_ms(void)
 {
     sensor.on = false;
     steps(1000);
     for (uint32_t i = 1; i < asked_count; i++) {
-        TEST_ASSERT_GREATER_OR_EQUAL_UINT(3, asked[i].step - asked[i - 1].step);
+        uint32_t before = i - 1;
+        while (before > 0 && asked[before].rate != asked[i].rate) {
+            before--;
+        }
+        if (asked[before].rate == asked[i].rate) {
+            TEST_ASSERT_GREATER_OR_EQUAL_UINT(3, asked[i].step - asked[before].step);
+        }
     }
 }
 
@@ -612,7 +619,7 @@ void test_a_stream_that_stopped_is_started_again_at_the_same_rate_within_1_5_s(v
         step();
     }
     TEST_ASSERT_GREATER_THAN_UINT32(scans, seen.scan_count);
-    TEST_ASSERT_EQUAL_UINT(2, times_asked("MS"));
+    TEST_ASSERT_EQUAL_UINT(1, times_asked("TM2\nMS"));
     TEST_ASSERT_EQUAL_UINT(stops, times_asked("QT"));
     TEST_ASSERT_EQUAL_UINT16(0, link_.failures);
 }
@@ -689,8 +696,10 @@ void test_a_lost_sensor_is_first_looked_for_where_it_can_be(void)
     uint32_t begin = asked_count;
     const uint32_t lost_step = step_number;
     steps(75);
+    TEST_ASSERT_EQUAL_STRING("\nSS250000\n", asked[begin].text);
+    TEST_ASSERT_EQUAL_STRING("\nTM2\nMS0372040601000\n", asked[begin + 1].text);
     uint32_t requests_ms[9] = {0}, requests = 0;
-    for (uint32_t i = begin; i < asked_count; i++) {
+    for (uint32_t i = begin + 2; i < asked_count; i++) {
         const bool at_stream_rate = asked[i].text[1] == 'M';
         assert_asked(i, at_stream_rate ? "\nMS0372040601000\n" : "\nSCIP2.0\n", asked[i].step,
                      at_stream_rate ? 250000 : 115200, URG_LOST);
@@ -698,14 +707,16 @@ void test_a_lost_sensor_is_first_looked_for_where_it_can_be(void)
             requests_ms[requests++] = (asked[i].step - lost_step) * STEP_MS;
         }
     }
-    TEST_ASSERT_GREATER_THAN_UINT(60, asked_count - begin);
+    TEST_ASSERT_GREATER_THAN_UINT(25, asked_count - begin);
     TEST_ASSERT_EQUAL_UINT(4, requests);
-    for (uint32_t i = 0; i < 4; i++) {
-        TEST_ASSERT_UINT_WITHIN(STEP_MS, (1000U << i) + STEP_MS / 2, requests_ms[i]);
+    for (uint32_t i = 2; i < 4; i++) { /* more and more seldom */
+        TEST_ASSERT_GREATER_THAN_UINT32(requests_ms[i - 1] - requests_ms[i - 2] + 2 * STEP_MS,
+                                        requests_ms[i] - requests_ms[i - 1]);
     }
     begin = asked_count;
     steps(30);
-    TEST_ASSERT_EQUAL_STRING("\nQT\n", asked[asked_count - 1].text);
+    TEST_ASSERT_EQUAL_STRING("\nSCIP2.0\n", asked[asked_count - 1].text);
+    TEST_ASSERT_EQUAL_UINT(1, times_asked("QT"));
 }
 
 void test_where_first_and_stream_rate_are_one_the_order_alone_finds_the_sensor(void)
@@ -793,11 +804,11 @@ void test_a_dead_sensor_is_looked_for_at_every_rate_for_ever(void)
     reset(0);
     sensor.on = false;
     steps(800);
-    TEST_ASSERT_EQUAL_UINT(2, times_asked("L0"));
-    TEST_ASSERT_EQUAL_UINT(asked_count - 2, times_asked("QT"));
+    TEST_ASSERT_EQUAL_UINT(1, times_asked("L0"));
+    TEST_ASSERT_EQUAL_UINT(asked_count - 1, times_asked("QT"));
     TEST_ASSERT_GREATER_THAN_UINT(200, asked_count);
-    for (uint32_t i = 2; i < asked_count; i++) {
-        TEST_ASSERT_EQUAL_UINT(rates[(i - 2) % 4], asked[i].rate);
+    for (uint32_t i = 1; i < asked_count; i++) {
+        TEST_ASSERT_EQUAL_UINT(rates[(i - 1) % 4], asked[i].rate);
         TEST_ASSERT_EQUAL(URG_LOST, asked[i].status);
         TEST_ASSERT_EQUAL_UINT('\n', (uint32_t)asked[i].text[0]);
     }
@@ -818,12 +829,12 @@ void test_other_configured_rates_are_probed_first(void)
     (void)urg_link_init(&link_, &config, now_us);
     sensor.on = false;
     steps(100);
-    for (uint32_t i = 2; i < 20; i++) {
-        TEST_ASSERT_EQUAL_UINT(rates[(i - 2) % 6], asked[i].rate);
+    for (uint32_t i = 1; i < 20; i++) {
+        TEST_ASSERT_EQUAL_UINT(rates[(i - 1) % 6], asked[i].rate);
     }
 }
 
-/* The sensor answers everything but never scans: QT, then TM2, then RS. */
+/* The sensor answers everything but never scans: MS again, then TM2, then RS. */
 void test_a_sensor_that_answers_but_does_not_scan_climbs_the_ladder(void)
 {
     steps_to_ok();
@@ -834,18 +845,12 @@ void test_a_sensor_that_answers_but_does_not_scan_climbs_the_ladder(void)
     while (asked[begin].text[1] != 'M') {
         begin++;
     }
-    static const char *const ladder[] = {"\nMS0372040601000\n",
-                                         "\nQT\n",
-                                         "MS0372040601000\n",
-                                         "\nTM2\n",
-                                         "QT\n",
-                                         "MS0372040601000\n",
-                                         "\nRS\n",
-                                         "\nQT\n"};
-    for (uint32_t i = 0; i < 8; i++) {
+    static const char *const ladder[] = {"\nMS0372040601000\n", "\nTM2\n", "MS0372040601000\n", "\nRS\n",
+                                         "\nSCIP2.0\n"};
+    for (uint32_t i = 0; i < 5; i++) {
         TEST_ASSERT_EQUAL_STRING(ladder[i], asked[begin + i].text);
     }
-    TEST_ASSERT_EQUAL_UINT(115200, asked[begin + 7].rate);
+    TEST_ASSERT_EQUAL_UINT(115200, asked[begin + 4].rate);
     steps(270);
     TEST_ASSERT_GREATER_THAN_UINT(3, times_asked("RS"));
     TEST_ASSERT_EQUAL_UINT(2, power_cycles);
@@ -1160,7 +1165,6 @@ static void probe_hears(uint32_t octets, uint32_t framing)
     reset(0);
     urg_link_step(&link_, &some, 0, &action);
     urg_link_step(&link_, &some, 450000, &action);
-    urg_link_step(&link_, &some, 900000, &action);
     TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
     some.octet_count += octets;
     some.framing_count += framing;
@@ -1175,7 +1179,9 @@ void test_a_probe_that_hears_clean_octets_stays_at_its_rate(void)
     probe_hears(30, 0);
     TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
     TEST_ASSERT_EQUAL_UINT16(2, link_.attempt);
-    probe_hears(30, 1);
+    probe_hears(30, 6); /* damage, not another rate */
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    probe_hears(30, 8);
     TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
     probe_hears(0, 7);
     TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
@@ -1261,7 +1267,7 @@ static void stream_every_fourth(void)
     config.range.interval = 3;
     (void)urg_link_init(&link_, &config, now_us);
     nothing_after(0);
-    TEST_ASSERT_EQUAL_UINT32(400000 + 10 * 87, link_.timeout_us); /* LF, L0, LF; 6 octets */
+    TEST_ASSERT_EQUAL_UINT32(260000 + 10 * 87, link_.timeout_us); /* LF, L0, LF; 6 octets */
     TEST_ASSERT_EQUAL_UINT32(400000 + 19 * 87, reply_after(STEP_US, SCIP_LASER_OFF_1, "0", true));
     TEST_ASSERT_EQUAL_UINT32(400000 + 23 * 87, reply_after(STEP_US, SCIP_SWITCH, "0", true));
     (void)reply_after(STEP_US, SCIP_BIT_RATE, "00", false);
@@ -1285,7 +1291,9 @@ void test_every_time_out_is_what_the_octets_and_the_revolutions_take(void)
     nothing_after(1U);
     TEST_ASSERT_EQUAL(URG_LOST, link_.status);
     TEST_ASSERT_EQUAL_UINT32(130000, link_.timeout_us);
-    TEST_ASSERT_EQUAL_UINT32(NEXT_SCAN_US, reply_after(STEP_US, SCIP_STREAM_2, "00", false));
+    nothing_after(130000);
+    TEST_ASSERT_EQUAL_UINT32(260000, link_.timeout_us); /* of TM2 and MS */
+    TEST_ASSERT_EQUAL_UINT32(STEP_US + NEXT_SCAN_US, reply_after(STEP_US, SCIP_STREAM_2, "00", false));
     TEST_ASSERT_EQUAL(URG_STREAM, link_.status);
     scan_after(STEP_US);
     seen.notice = (scip_reply_t){{'2', '1'}, false, 0};
@@ -1294,58 +1302,19 @@ void test_every_time_out_is_what_the_octets_and_the_revolutions_take(void)
     TEST_ASSERT_EQUAL_UINT32(2000000, link_.timeout_us);
 }
 
-/* Of the search at the known rates: the next command of each of its turns, up to the stream's return. */
-static void lose_and_find(uint32_t rates[], uint32_t count)
+/* To the first SCIP2.0 of a search: SS and a request go before it. */
+static void lose_and_ask(void)
 {
     nothing_after(NEXT_SCAN_US);
-    for (uint32_t i = 0; i < count; i++) {
-        rates[i] = link_.rate;
-        nothing_after(STEP_US);
-        if (link_.rate == 250000) {
-            nothing_after(STEP_US); /* it listens for two steps there */
-        }
-    }
-    while (link_.rate != 250000) {
-        nothing_after(STEP_US);
-    }
-    scan_after(1000);
-    TEST_ASSERT_EQUAL(URG_OK, link_.status);
-}
-
-void test_the_search_after_a_second_loss_is_that_after_the_first(void)
-{
-    uint32_t first[9], second[9];
-    stream_every_fourth();
-    lose_and_find(first, 9);
-    lose_and_find(second, 9);
-    TEST_ASSERT_EQUAL_UINT32(250000, first[0]);
-    TEST_ASSERT_EQUAL_UINT32(115200, first[1]);
-    TEST_ASSERT_EQUAL_UINT32_ARRAY(first, second, 9);
-}
-
-/* What is heard while SCIP2.0 is tried at the first rate: two signs may be noise, three are the stream. */
-void test_signs_of_the_stream_lead_back_to_its_rate_for_a_revolution(void)
-{
-    stream_every_fourth();
-    nothing_after(NEXT_SCAN_US);
-    nothing_after(129999);
-    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
-    nothing_after(1);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
     TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
-    TEST_ASSERT_EQUAL_UINT32(130000, link_.timeout_us);
-    seen.framing_count += 2;
-    nothing_after(1);
-    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
-    seen.strange_count++;
-    nothing_after(1);
-    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    nothing_after(130000);
     TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
-    TEST_ASSERT_EQUAL_UINT32(160000, link_.timeout_us);
-    TEST_ASSERT_FALSE(action.send);
-    nothing_after(160000);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    TEST_ASSERT_TRUE(action.send);
+    nothing_after(260000);
     TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
-    nothing_after(1); /* the signs before it count no more */
-    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
 }
 
 /* What it may stream is what it is asked for. */
@@ -1357,8 +1326,7 @@ void test_after_a_loss_no_sensor_is_stopped_first(void)
     } answers[] = {{"0", true}, {"0E", false}};
     for (uint32_t i = 0; i < 2; i++) {
         stream_every_fourth();
-        nothing_after(NEXT_SCAN_US);
-        nothing_after(2 * STEP_US);
+        lose_and_ask();
         (void)reply_after(STEP_US, SCIP_SWITCH, answers[i].status, answers[i].legacy);
         TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
         (void)reply_after(STEP_US, SCIP_BIT_RATE, "00", false);
@@ -1429,18 +1397,18 @@ void test_a_stop_is_asked_for_twice_where_the_rate_is_proved_and_three_times_whe
 
 void test_signs_before_a_command_do_not_tell_of_its_rate(void)
 {
-    reset(STEP_US);
+    reset(50000);
     seen.framing_count = 20;
     nothing_after(0);
-    nothing_after(STEP_US);
+    nothing_after(50000);
     TEST_ASSERT_EQUAL(URG_STOP1, link_.status);
-    nothing_after(STEP_US);
+    nothing_after(50000);
     TEST_ASSERT_EQUAL(URG_STOP1, link_.status);
     seen.framing_count += 7;
-    nothing_after(STEP_US);
+    nothing_after(50000);
     TEST_ASSERT_EQUAL(URG_STOP1, link_.status);
     seen.framing_count++;
-    nothing_after(STEP_US);
+    nothing_after(50000);
     TEST_ASSERT_EQUAL(URG_LOST, link_.status);
 }
 
@@ -1466,7 +1434,6 @@ void test_the_search_goes_through_every_rate_once_in_its_order(void)
     TEST_ASSERT_TRUE(urg_link_init(&link_, &config, now_us));
     nothing_after(0);
     nothing_after(500000);
-    nothing_after(500000);
     for (uint32_t i = 0; i < 8; i++) {
         TEST_ASSERT_EQUAL(URG_LOST, link_.status);
         TEST_ASSERT_EQUAL_UINT32(order[i], link_.rate);
@@ -1491,65 +1458,22 @@ void test_a_sensor_that_starts_slowly_is_given_three_seconds_from_the_third_fail
     }
 }
 
-/* They may be the end of a frame: the next one comes within a revolution. If none does, a command that was
- * damaged on its way made the sensor stream something else: the next request mends that. */
-void test_octets_that_are_no_scan_at_the_streams_rate_are_answered_by_a_request_a_revolution_later(void)
-{
-    stream_every_fourth();
-    nothing_after(NEXT_SCAN_US);
-    TEST_ASSERT_TRUE(action.send);
-    seen.octet_count += 100;
-    nothing_after(130000);
-    TEST_ASSERT_FALSE(action.send);
-    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
-    TEST_ASSERT_EQUAL_UINT32(160000, link_.timeout_us);
-    seen.octet_count += 100;
-    nothing_after(160000);
-    TEST_ASSERT_TRUE(action.send);
-    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
-    seen.octet_count += 101;
-    seen.framing_count++;
-    nothing_after(130000);
-    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
-    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
-    seen.octet_count += 101;
-    nothing_after(130000);
-    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
-}
-
 /* Was the order lost, or the answer? Both rates are known. */
 void test_a_rate_that_is_not_confirmed_after_a_loss_leads_back_to_the_known_rates(void)
 {
     stream_every_fourth();
-    nothing_after(NEXT_SCAN_US);
-    nothing_after(130000);
+    lose_and_ask();
     (void)reply_after(STEP_US, SCIP_SWITCH, "0", true);
     TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
     nothing_after(500000);
     TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
     TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
     TEST_ASSERT_EQUAL_UINT32(130000, link_.timeout_us);
-    nothing_after(130000);
+    while (link_.rate == 250000) {
+        nothing_after(130000);
+    }
     TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
     TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
-}
-
-void test_12_s_after_the_latest_scan_every_rate_is_tried(void)
-{
-    stream_every_fourth();
-    nothing_after(NEXT_SCAN_US);
-    nothing_after(2 * STEP_US);
-    (void)reply_after(STEP_US, SCIP_SWITCH, "0", true);
-    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
-    nothing_after(12000000U - (now_us - link_.scan_us));
-    TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
-    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
-    stream_every_fourth();
-    nothing_after(NEXT_SCAN_US);
-    nothing_after(2 * STEP_US);
-    (void)reply_after(STEP_US, SCIP_SWITCH, "0", true);
-    nothing_after(12000000U - 1U - (now_us - link_.scan_us));
-    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
 }
 
 void test_power_is_cycled_20_s_after_the_latest_scan_and_not_before(void)
@@ -1638,7 +1562,7 @@ void test_after_a_reset_the_sensor_is_looked_for_at_the_first_rate(void)
     }
     TEST_ASSERT_EQUAL(SCIP_RESET, link_.command);
     (void)reply_after(STEP_US, SCIP_RESET, "00", false);
-    TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
+    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
     TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
 }
 
@@ -1654,7 +1578,7 @@ static void stream_in_time(void)
 {
     reset(0);
     steps_to_ok();
-    TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_));
+    TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_, &seen));
     seen.scan_count++;
     urg_link_scan_at(&link_, now_us);
     nothing_after(20000);
@@ -1663,7 +1587,7 @@ static void stream_in_time(void)
 
 static void next_step(void)
 {
-    nothing_after(urg_link_pause_us(&link_));
+    nothing_after(urg_link_pause_us(&link_, &seen));
 }
 
 static void lose(void)
@@ -1673,109 +1597,13 @@ static void lose(void)
     }
 }
 
-void test_the_first_rate_is_tried_while_no_frame_can_come_and_in_every_revolution(void)
-{
-    for (uint32_t late_us = 0; late_us <= 10000; late_us += 2500) {
-        uint32_t visits = 0, listened = 0, begun_us;
-        stream_in_time();
-        const uint32_t scan_us = link_.frame_us;
-        nothing_after(late_us);
-        lose();
-        begun_us = now_us;
-        while (now_us - scan_us < 6000000) { /* later the guards leave less than 40 ms */
-            const uint32_t pause_us = urg_link_pause_us(&link_), since_us = now_us - scan_us;
-            const uint32_t guard_us = PHASE_US + (since_us - REVOLUTION_US) / 512; /* of the turn before */
-            const uint32_t next_us = (since_us / REVOLUTION_US + 1) * REVOLUTION_US;
-            TEST_ASSERT_UINT_WITHIN(20000, 60000, pause_us); /* 40 to 80 ms */
-            if (link_.rate == 115200) {
-                TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
-                TEST_ASSERT_GREATER_OR_EQUAL_UINT32(guard_us, since_us % REVOLUTION_US);
-                TEST_ASSERT_LESS_OR_EQUAL_UINT32(next_us - guard_us / 2 - FRAME_US, since_us + pause_us);
-                visits++;
-                listened = 0;
-            } else if (!action.send && link_.timeout_us < 100000) {
-                listened++;
-            }
-            TEST_ASSERT_LESS_THAN_UINT32(3, listened); /* steps, of one turn */
-            next_step();
-        }
-        TEST_ASSERT_GREATER_OR_EQUAL_UINT32((now_us - begun_us) * 8 / 10 / REVOLUTION_US, visits);
-    }
-}
-
-/* Time by time: the first scans of a search are those of a sensor that streams on. */
-void test_where_times_are_unknown_or_frames_leave_no_time_the_first_rate_has_most_of_it(void)
-{
-    static const uint16_t last_steps[] = {372 + 270, 372 + 360};
-    static const uint32_t visits_us[] = {60000, 130000};
-    stream_in_time();
-    link_.timed = false;
-    lose();
-    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
-    TEST_ASSERT_EQUAL_UINT32(130000, link_.timeout_us);
-    TEST_ASSERT_EQUAL_UINT32(50000, urg_link_pause_us(&link_));
-    for (uint32_t i = 0; i < 2; i++) {
-        stream_in_time();
-        link_.config.range.last_step = last_steps[i];
-        link_.scan_octets = i == 0 ? 630U : 725U; /* at 250000: 26 and 30 ms, of 100 - 40 - 2 * 15 */
-        lose();
-        while (link_.rate == 250000) {
-            next_step();
-        }
-        TEST_ASSERT_LESS_OR_EQUAL_UINT32(visits_us[i], link_.timeout_us);
-        TEST_ASSERT_EQUAL(i == 1, link_.timeout_us == 130000);
-    }
-}
-
-void test_an_answer_that_comes_late_is_heard_as_signs_of_another_rate_and_waited_for_at_the_first(void)
-{
-    stream_in_time();
-    lose();
-    while (link_.rate != 115200) {
-        next_step();
-    }
-    next_step();
-    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
-    seen.framing_count += 2;
-    nothing_after(1);
-    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
-    seen.framing_count++;
-    nothing_after(1);
-    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
-    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
-    TEST_ASSERT_EQUAL_UINT32(400000, link_.timeout_us);
-    TEST_ASSERT_EQUAL_UINT32(50000, urg_link_pause_us(&link_));
-    seen.octet_count += 11;
-    (void)reply_after(110000, SCIP_SWITCH, "0E", false);
-    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
-}
-
-void test_the_end_of_a_frame_leads_to_a_revolution_without_a_command(void)
-{
-    stream_in_time();
-    lose();
-    while (link_.rate != 250000) {
-        next_step();
-    }
-    seen.octet_count++;
-    next_step();
-    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
-    TEST_ASSERT_FALSE(action.send);
-    TEST_ASSERT_EQUAL_UINT32(160000, link_.timeout_us);
-    TEST_ASSERT_EQUAL_UINT32(50000, urg_link_pause_us(&link_));
-    scan_after(50000);
-    TEST_ASSERT_EQUAL(URG_OK, link_.status);
-    TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_));
-}
-
 /* No request while the next frame comes; but one at once where the sensor has told of trouble. */
 void test_octets_at_the_moment_of_the_loss_are_heard_to_their_end(void)
 {
     stream_in_time();
-    while (now_us - link_.scan_us < 300000) {
-        nothing_after(10000);
-    }
     seen.octet_count++;
+    nothing_after(300000);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
     nothing_after(200000);
     TEST_ASSERT_EQUAL(URG_LOST, link_.status);
     TEST_ASSERT_FALSE(action.send);
@@ -1798,7 +1626,6 @@ void test_the_own_rate_follows_the_sensors_after_90_ms(void)
         next_step();
     }
     (void)reply_after(20000, SCIP_SWITCH, "0", true);
-    TEST_ASSERT_EQUAL_UINT32(50000, urg_link_pause_us(&link_));
     (void)reply_after(20000, SCIP_BIT_RATE, "00", false);
     nothing_after(89999);
     TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
@@ -1812,10 +1639,200 @@ void test_a_start_is_stepped_every_150_ms(void)
 {
     reset(0);
     while (link_.status != URG_OK) {
-        TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_));
+        TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_, &seen));
         step();
     }
-    TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_));
+    TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_, &seen));
+}
+
+/* ---- what the search takes what it hears for ---- */
+
+/* To the first window of a search in which nothing is sent at the stream's rate. */
+static void listen_between(void)
+{
+    stream_in_time();
+    lose();
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+    while (link_.command != SCIP_SWITCH) {
+        next_step();
+    }
+    while (link_.rate != 250000 || action.send) {
+        next_step();
+    }
+    TEST_ASSERT_TRUE(link_.listening);
+}
+
+void test_a_mute_revolution_is_a_loss_and_one_with_an_octet_is_none(void)
+{
+    for (uint32_t octets = 0; octets < 2; octets++) {
+        stream_in_time();
+        const uint32_t scan_us = link_.frame_us;
+        seen.octet_count += octets;
+        nothing_after(scan_us + 129999 - now_us);
+        TEST_ASSERT_EQUAL(URG_OK, link_.status);
+        nothing_after(1);
+        TEST_ASSERT_EQUAL(octets == 0 ? URG_LOST : URG_OK, link_.status);
+    }
+}
+
+void test_the_step_behind_a_mute_revolution_is_asked_for(void)
+{
+    stream_in_time();
+    TEST_ASSERT_EQUAL_UINT32(link_.frame_us + 130000 - now_us, urg_link_pause_us(&link_, &seen));
+    urg_link_scan_at(&link_, now_us + 80000);
+    TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_, &seen));
+}
+
+void test_news_shorten_the_pause_in_a_search(void)
+{
+    listen_between();
+    TEST_ASSERT_GREATER_THAN_UINT32(40000, urg_link_pause_us(&link_, &seen));
+    seen.reply_count++;
+    TEST_ASSERT_EQUAL_UINT32(40000, urg_link_pause_us(&link_, &seen));
+    seen.reply_count--;
+    seen.legacy_count++;
+    TEST_ASSERT_EQUAL_UINT32(40000, urg_link_pause_us(&link_, &seen));
+    seen.legacy_count--;
+    seen.stray_count++;
+    TEST_ASSERT_EQUAL_UINT32(40000, urg_link_pause_us(&link_, &seen));
+    seen.stray_count--;
+    seen.scan_count++;
+    TEST_ASSERT_EQUAL_UINT32(40000, urg_link_pause_us(&link_, &seen));
+}
+
+void test_a_frame_that_begins_in_a_listening_window_is_heard_to_its_end(void)
+{
+    listen_between();
+    seen.octet_count += 60;
+    nothing_after(link_.timeout_us);
+    TEST_ASSERT_FALSE(action.send);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    TEST_ASSERT_EQUAL_UINT32(160000, link_.timeout_us);
+    seen.octet_count += 101;
+    nothing_after(160000);
+    TEST_ASSERT_TRUE(action.send);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    seen.octet_count += 21; /* its answer, damaged */
+    nothing_after(130000);
+    TEST_ASSERT_TRUE(action.send);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+}
+
+void test_a_sensor_heard_a_second_ago_is_only_asked_at_its_rate(void)
+{
+    listen_between();
+    seen.octet_count += 60;
+    nothing_after(link_.timeout_us);
+    const uint32_t heard_us = now_us;
+    nothing_after(160000);
+    while (now_us - heard_us < 1000000) {
+        TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+        TEST_ASSERT_TRUE(action.send);
+        nothing_after(130000);
+    }
+    TEST_ASSERT_NOT_EQUAL_UINT32(250000, link_.rate);
+}
+
+void test_signs_of_another_rate_while_listening_are_a_late_answer(void)
+{
+    listen_between();
+    seen.octet_count += 11;
+    seen.framing_count += 2;
+    nothing_after(40000);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    seen.framing_count++;
+    nothing_after(1);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(400000, link_.timeout_us);
+}
+
+void test_strange_octets_at_the_asked_rate_may_be_an_echo_and_framing_errors_are_the_stream(void)
+{
+    for (uint32_t framing = 0; framing < 2; framing++) {
+        listen_between();
+        while (link_.rate != 115200) {
+            next_step();
+        }
+        seen.octet_count += 6;
+        seen.strange_count += 6;
+        seen.framing_count += 3 * framing;
+        nothing_after(40000);
+        TEST_ASSERT_EQUAL_UINT32(framing == 0 ? 115200 : 250000, link_.rate);
+    }
+}
+
+void test_a_stray_answer_gives_the_awaited_one_its_time(void)
+{
+    stream_in_time();
+    lose();
+    nothing_after(link_.timeout_us);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    seen.octet_count += 9;
+    seen.stray_count++;
+    nothing_after(100000);
+    TEST_ASSERT_EQUAL_UINT32(230000, link_.timeout_us);
+    TEST_ASSERT_FALSE(action.send);
+}
+
+void test_ss_that_is_answered_late_means_that_the_sensor_has_the_streams_rate(void)
+{
+    stream_in_time();
+    lose();
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+    nothing_after(link_.timeout_us);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    seen.octet_count += 3;
+    seen.framing_count += 3;
+    nothing_after(50000);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    TEST_ASSERT_TRUE(action.send);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+}
+
+/* ---- the rate at which the sensor powers up ---- */
+
+void test_the_rate_at_which_scip_1_1_answers_is_where_the_next_search_begins(void)
+{
+    reset(0);
+    sensor.rate = sensor.power_up_rate = 19200;
+    TEST_ASSERT_FALSE(link_.has_booted);
+    steps_to_ok();
+    TEST_ASSERT_TRUE(link_.has_booted);
+    TEST_ASSERT_EQUAL_UINT32(19200, link_.config.first_rate);
+    sensor.on = false;
+    const uint32_t begin = asked_count;
+    steps(40);
+    for (uint32_t i = begin; i < asked_count; i++) {
+        TEST_ASSERT_TRUE(asked[i].rate == 19200 || asked[i].rate == 250000);
+    }
+    steps(100); /* 12 s after the latest scan it may be another sensor */
+    uint32_t others = 0;
+    for (uint32_t i = begin; i < asked_count; i++) {
+        others += asked[i].rate == 57600;
+    }
+    TEST_ASSERT_GREATER_THAN_UINT32(3, others);
+}
+
+void test_a_sensor_found_in_scip_2_0_teaches_no_rate_and_every_one_is_asked(void)
+{
+    uint32_t at[4] = {0};
+    static const uint32_t rates[] = {19200, 57600, 115200, 250000};
+    reset(0);
+    start_streaming(250000);
+    steps_to_ok();
+    TEST_ASSERT_FALSE(link_.has_booted);
+    sensor.on = false;
+    const uint32_t begin = asked_count;
+    steps(40);
+    for (uint32_t i = begin; i < asked_count; i++) {
+        for (uint32_t k = 0; k < 4; k++) {
+            at[k] += asked[i].rate == rates[k];
+        }
+    }
+    for (uint32_t k = 0; k < 4; k++) {
+        TEST_ASSERT_GREATER_THAN_UINT32(1, at[k]);
+    }
 }
 
 /* ---- a start in which the sensor falls silent ---- */
@@ -1842,14 +1859,14 @@ void test_a_sensor_that_answered_in_the_start_is_looked_for_at_the_two_rates_it_
         TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
         TEST_ASSERT_EQUAL_UINT32(rates[i % 2], link_.rate);
         TEST_ASSERT_EQUAL_UINT32(130000, link_.timeout_us);
-        TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_));
+        TEST_ASSERT_EQUAL_UINT32(130000, urg_link_pause_us(&link_, &seen));
         nothing_after(130000);
     }
     for (uint32_t i = 0; i < 2 && link_.rate != 19200; i++) {
         nothing_after(500000);
     }
     TEST_ASSERT_EQUAL_UINT32(19200, link_.rate);
-    TEST_ASSERT_GREATER_THAN_UINT32(400000, link_.timeout_us);
+    TEST_ASSERT_GREATER_THAN_UINT32(130000, link_.timeout_us);
 }
 
 void test_it_is_looked_for_so_up_to_12_s_after_its_answer(void)
@@ -1874,7 +1891,7 @@ void test_an_answer_at_a_third_rate_tells_nothing_of_the_two(void)
     TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
     nothing_after(500000);
     TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
-    TEST_ASSERT_GREATER_THAN_UINT32(400000, link_.timeout_us);
+    TEST_ASSERT_GREATER_THAN_UINT32(130000, link_.timeout_us);
 }
 
 void test_an_answer_of_scip_1_1_is_an_answer_too(void)
@@ -1905,39 +1922,5 @@ void test_a_request_that_nothing_answers_is_given_up_after_400_ms(void)
         TEST_ASSERT_EQUAL(URG_STREAM, link_.status);
         nothing_after(1);
         TEST_ASSERT_EQUAL(heard == 0 ? URG_STOP2 : URG_STREAM, link_.status);
-    }
-}
-
-/* 160 ms of listening that end so long after the time of a frame, within a revolution. */
-static void listen_until(uint32_t phase_us)
-{
-    stream_in_time();
-    while (now_us - link_.frame_us < 300000) {
-        nothing_after(10000);
-    }
-    seen.octet_count++;
-    nothing_after(500000 + (phase_us + 40000) % REVOLUTION_US - (now_us - link_.frame_us));
-    TEST_ASSERT_EQUAL_UINT32(160000, link_.timeout_us);
-    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
-    nothing_after(160000);
-    TEST_ASSERT_EQUAL_UINT32(phase_us, (now_us - link_.frame_us) % REVOLUTION_US);
-}
-
-/* At 700 ms a frame may be early or late by 15 + 700 / 512 = 16.4 ms and lasts 4.1 ms. */
-void test_behind_a_long_listening_the_next_turn_is_what_the_frames_allow(void)
-{
-    static const struct {
-        uint32_t phase_us, rate, timeout_us;
-    } turns[] = {
-        {20000, 115200, 59000}, /* 80 ms to the frame, less 16.4 and 4.1 */
-        {70000, 250000, 46000}, /* to 16.4 ms behind it */
-        {90000, 250000, 40000},
-        {97000, 250000, 119000}, /* and to that behind the one after it */
-    };
-    for (uint32_t i = 0; i < 4; i++) {
-        listen_until(turns[i].phase_us);
-        TEST_ASSERT_EQUAL_UINT32(turns[i].rate, link_.rate);
-        TEST_ASSERT_UINT32_WITHIN(1000, turns[i].timeout_us, link_.timeout_us);
-        TEST_ASSERT_EQUAL(turns[i].rate == 115200, action.send);
     }
 }

@@ -55,6 +55,12 @@ static void led_red(bool on, int calls)
     red = on;
 }
 
+static uint32_t pause_us(int calls)
+{
+    (void)calls;
+    return receiving.urg.pause_us;
+}
+
 static void alive(alive_t task, int calls)
 {
     (void)calls;
@@ -74,6 +80,7 @@ void setUp(void)
     blue = red = false;
     bsp_time_us_Stub(time_us);
     laser_port_step_Stub(step);
+    laser_port_pause_us_Stub(pause_us);
     laser_server_write_Stub(publish);
     bsp_led_blue_Stub(led_blue);
     bsp_led_red_Stub(led_red);
@@ -167,13 +174,16 @@ void test_a_step_comes_earlier_while_the_driver_asks_for_it(void)
     tick();
     assert_next_step_after(15U);
     receiving.urg.pause_us = 40000U;
-    assert_next_step_after(15U);
+    assert_next_step_after(4U);
     assert_next_step_after(4U);
     receiving.urg.pause_us = 40001U;
-    assert_next_step_after(4U);
     assert_next_step_after(5U);
     receiving.urg.pause_us = PERIOD_US;
-    assert_next_step_after(5U);
+    clock_ticks(9U);
+    kernel_run_task();
+    receiving.urg.pause_us = 100000U; /* as soon as it is wanted */
+    assert_next_step_after(1U);
+    receiving.urg.pause_us = 10U * PERIOD_US;
     assert_next_step_after(15U);
 }
 

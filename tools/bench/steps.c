@@ -14,7 +14,6 @@
 #include "control/parameters.h"
 #include "drivers/razor.h"
 #include "drivers/scip_layout.h"
-#include "drivers/scip_parser.h"
 #include "drivers/telecommand.h"
 #include "firmware/published.h"
 #include "drivers/urg.h"
@@ -27,7 +26,8 @@
         } \
     } while (0)
 
-/* ---- the scanner: one MS frame of 35 points, 101 octets, from its first octet to the mean distance ---- */
+/* ---- the scanner: one MS frame of 35 points, 101 octets, by urg_feed() and urg_take_scan() to the mean
+ * distance ---- */
 
 #define FRAME_N 101
 #define FRONT (&scip_layouts[SCIP_LAYOUT_FRONT].groups[0])
@@ -35,9 +35,9 @@
 static octet_t frame[FRAME_N];
 static uint32_t stamp_ms;
 static bool leg; /* in front of a fifth of the rays */
-static scip_parser_t parser;
+static urg_t urg;
 static scip_scan_t scan;
-static uint16_t points[271];
+static uint16_t points[2 * 35];
 static volatile float mean_mm;
 
 static size_t put_sum(size_t from, size_t to)
@@ -85,52 +85,69 @@ static void next_frame(void)
     REQUIRE(at == FRAME_N);
 }
 
+/* What was sent, as the sensor answers it: the first two commands as SCIP1.1. */
+static void answer(const urg_output_t *output, bool legacy)
+{
+    octet_t reply[SCIP_REQUEST_MAX + 5];
+    size_t count = 0;
+
+    for (uint16_t i = output->octets[0] == '\n' ? 1 : 0; i < output->count; i++) {
+        reply[count++] = output->octets[i];
+    }
+    memcpy(&reply[count], legacy ? "0\n\n" : "00P\n\n", legacy ? 3 : 5);
+    (void)urg_feed(&urg, reply, count + (legacy ? 3 : 5));
+}
+
+static bool streams(void)
+{
+    urg_report_t report;
+
+    urg_report(&urg, &report);
+    return report.status == URG_STREAM && report.seen.reply_kind == SCIP_STREAM_2;
+}
+
 static void begin_stream(void)
 {
-    scip_request_t request;
+    const urg_config_t config = {0, 115200, 115200, 0, SCIP_STREAM_2, {372, 406, 1, 0, 0}, 0};
+    urg_output_t output;
 
-    REQUIRE(scip_request_scan(&request, SCIP_STREAM_2, &(scip_range_t){372, 406, 1, 0, 0}));
-    scan = (scip_scan_t){.distance_mm = points, .capacity = 271};
-    scip_parser_init(&parser);
-    scip_parser_scan_into(&parser, &scan);
-    scip_parser_expect(&parser, &request);
+    REQUIRE(urg_init(&urg, &config, points, 70, 0));
+    for (uint32_t steps_done = 1; !streams(); steps_done++) {
+        REQUIRE(steps_done < 20);
+        urg_step(&urg, steps_done * 150000U);
+        if (urg_next_to_send(&urg, &output) && output.count > 0) {
+            answer(&output, steps_done <= 2);
+        }
+    }
     next_frame();
 }
 
 static void use_scan(void)
 {
+    (void)urg_take_scan(&urg, &scan);
     mean_mm = scip_group_mean(&scan, FRONT).mean_mm;
 }
 
-/* As an application does it that gets octets in bursts. */
-static void scip_bursts(const octet_t *octets, size_t count, size_t most)
+static void scip_frame(void)
 {
-    while (count > 0) {
-        scip_event_t event;
-        const size_t taken = scip_parser_feed_run(&parser, octets, count < most ? count : most, &event);
+    if (urg_feed(&urg, frame, FRAME_N)) {
+        use_scan();
+    }
+}
 
-        octets += taken;
-        count -= taken;
-        if (event == SCIP_SCAN) {
+static void scip_frame_by_16(void)
+{
+    for (size_t from = 0; from < FRAME_N; from += 16) {
+        if (urg_feed(&urg, &frame[from], from + 16 < FRAME_N ? 16 : FRAME_N - from)) {
             use_scan();
         }
     }
 }
 
-static void scip_frame(void)
-{
-    scip_bursts(frame, FRAME_N, FRAME_N);
-}
-
-static void scip_frame_by_16(void)
-{
-    scip_bursts(frame, FRAME_N, 16);
-}
-
 static void scip_frame_by_octet(void)
 {
     for (unsigned i = 0; i < FRAME_N; i++) {
-        if (scip_parser_feed(&parser, frame[i]) == SCIP_SCAN) {
+        if (urg_feed(&urg, &frame[i], 1)) {
             use_scan();
         }
     }

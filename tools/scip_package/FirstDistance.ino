@@ -37,7 +37,7 @@ void setup()
 {
     urg_config_t config = {};
 
-    config.wait_us = 10000000UL;    /* the sensor's own power-up; ends early when it is heard */
+    config.wait_us = 0;             /* it may boot still: the search finds it as soon as it listens */
     config.first_rate = 19200;      /* as delivered */
     config.stream_rate = config.fastest_rate = 115200;
     config.stream = SCIP_STREAM_2;
