@@ -2,7 +2,7 @@
 set(CONTROL_SOURCES
     control/aim.c control/altitude.c control/arming.c control/attitude.c control/bounds.c control/calibration.c
     control/est/actuator.c control/est/cascade.c control/est/deadband.c control/est/effect.c control/est/est_law.c
-    control/est/estimator.c control/est/hover.c control/flight.c control/flight_state.c control/handover.c control/imu_axes.c
+    control/est/estimator.c control/est/hover.c control/flight.c control/flight_state.c control/guard.c control/handover.c control/imu_axes.c
     control/imu_finding.c control/imu_mapping.c control/imu_sample.c control/in_air.c control/laws/descent.c control/laws/law_descent.c
     control/laws/law_est.c control/laws/law_pid.c control/laws/law_pidt.c control/laws/laws.c control/laws/pid.c
     control/laws/pidt.c control/laws/stuck_pin.c control/median.c control/modes.c control/outputs.c control/parameters.c

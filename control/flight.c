@@ -152,7 +152,8 @@ static void command(flight_t *flight, const situation_t *now, bool law_changed)
     const landing_signs_t signs = signs_of_landing(now);
 
     contact_land(&flight->where.contact, &signs);
-    flight->thrust_n = bounds_apply(&flight->bounds, now, law_n + trim_n);
+    const guard_case_t last = signs_of_guard(now, bounds_apply(&flight->bounds, now, law_n + trim_n));
+    flight->thrust_n = guard_step(&flight->guard, &last);
     handover_given_back(&flight->est, now);
     est_law_record_command(&flight->est, flight->thrust_n);
 }

@@ -13,6 +13,7 @@
 #include "control/est/est_law.h"
 #include "control/facts.h"
 #include "control/flight_io.h"
+#include "control/guard.h"
 #include "control/handover.h"
 #include "control/imu_axes.h"
 #include "control/laws/laws.h"
@@ -37,7 +38,8 @@ typedef struct {
     bounds_t bounds;
     aim_t aim; /* height that is held */
     arming_t arming;
-    float idle_n;   /* minimum thrust: the idle while armed, else 0 */
+    float idle_n; /* minimum thrust: the idle while armed, else 0 */
+    guard_t guard;
     float thrust_n; /* previous command, without what is added against a wrong pin */
 } flight_t;
 

@@ -2,7 +2,11 @@
  * else is of this one. */
 #include "control/signs.h"
 
-#define LOW_MM 80.0F /* chosen: above REST_BELOW_MM in supervisor.c */
+#include "control/between.h"
+
+#define HEAVIEST 1.2F   /* hover thrust of the heaviest vehicle, in GRAV */
+#define HEAVIEST_N 8.9F /* the same of the nominal vehicle, 7.4 N: the seed flew with GRAV 0 too */
+#define LOW_MM 80.0F    /* chosen: above REST_BELOW_MM in supervisor.c */
 
 /* FLOATING, and the throttle is certainly the firmware's. */
 static bool commands_floating(const situation_t *now)
@@ -93,6 +97,20 @@ contact_signs_t signs_of_contact(const situation_t *now)
         .airborne = now->est->airborne,
         .risen = now->risen,
         .sways = now->evidence->sways,
+    };
+}
+
+guard_case_t signs_of_guard(const situation_t *now, float wanted_n)
+{
+    const flight_state_t state = now->where->supervisor.state;
+
+    return (guard_case_t){
+        .wanted_n = wanted_n,
+        .idle_n = now->idle_n,
+        .heaviest_n = at_least(HEAVIEST * now->parameters->value[PARAMETER_GRAV], HEAVIEST_N),
+        .step_s = where_step_s(now->where),
+        .ordered = state != FLIGHT_GROUND && state != FLIGHT_CUT,
+        .confirmed = !now->evidence->unconfirmed,
     };
 }
 

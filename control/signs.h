@@ -6,6 +6,7 @@
 
 #include "control/facts.h"
 #include "control/flight_io.h"
+#include "control/guard.h"
 #include "control/situation.h"
 
 /* For sense_step(): what was commanded in the previous cycle. in: of this one. wanted_m: reference minus
@@ -20,6 +21,9 @@ contact_signs_t signs_of_contact(const situation_t *now);
 landing_signs_t signs_of_landing(const situation_t *now);
 
 pilot_signs_t signs_of_pilot(const situation_t *now, bool has_throttle);
+
+/* wanted_n: the bounded thrust. */
+guard_case_t signs_of_guard(const situation_t *now, float wanted_n);
 
 hover_lesson_t signs_of_hover(const situation_t *now);
 

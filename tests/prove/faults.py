@@ -1,4 +1,4 @@
-"""One fault for each proof: (harness, function, file of drivers/, text, what stands there instead). Each must make its proof fail."""
+"""One fault for each proof: (harness, function, file, text, what stands there instead). Each must make its proof fail."""
 
 FAULTS = [
     ("telecommand", "collector_starts_sound", "telecommand.c", "*collector = (telecommand_collector_t){.previous = '\\0'};",
@@ -75,4 +75,8 @@ FAULTS = [
     ("scip_parser", "any_triples_are_decoded_behind_two", "scip_parser.c", "if (begun == 3U)", "if (begun >= 2U)"),
     ("scip_parser", "any_line_is_copied", "scip_parser.c", "if (more == count)", "if (more > count)"),
     ("scip_parser", "any_burst_is_taken_apart", "scip_parser.c", "count - taken, event);\n    }", "count, event);\n    }"),
+    ("guard", "any_thrust_is_within_idle_and_full", "guard.c", "between(idle_n, now->wanted_n, THRUST_MAX_N)", "now->wanted_n"),
+    ("guard", "no_order_is_no_thrust", "guard.c", "now->ordered ? thrust_n : idle_n", "thrust_n"),
+    ("guard", "any_unseen_impulse_is_bounded", "guard.c", "if (unseen_ns > GUARD_UNSEEN_NS)", "if (unseen_ns > GUARD_UNSEEN_NS && now->step_s > 0.1F)"),
+    ("guard", "any_impulse_is_one", "guard.c", "return more_n * step_s;", "return more_n * (step_s - 0.1F);"),
 ]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""prove.py [--faults] [NAME ...]: proves drivers/ with CBMC, file by file; docs/portability.md says what. 77: no CBMC.
+"""prove.py [--faults] [NAME ...]: proves drivers/ and the guard of control/ with CBMC, file by file; docs/portability.md says what. 77: no CBMC.
 --faults: each proof must fail when the fault of its own in faults.py is in the code.
 
 CBMC bounds an array inside a structure that is reached by a pointer only by the whole structure. So what is proved is a
@@ -28,6 +28,7 @@ POINTERS = ("distance_mm",)     # members that are no arrays
 # Proved by themselves, as NAME_itself(). A call of NAME() goes to the harness: it proves what NAME needs and gives any answer
 # that NAME_itself() was proved to give.
 APART = {
+    "guard": ["impulse_ns"],
     "decimal": ["wide_multiply_add", "wide_divide", "wide_raise_to", "make_binary", "round_to_float", "to_float", "decimal_read",
                 "scaled", "write_backwards", "write_decimals"],
     "scip_info": ["trimmed", "begins_with", "contains", "read_digits", "read_small", "copy", "health_of", "divide"],
@@ -63,7 +64,10 @@ PROOFS = [
      ["any_block_is_passed", "any_pairs_are_decoded", "any_triples_are_decoded", "any_triples_are_decoded_behind_one",
       "any_triples_are_decoded_behind_two"]),
     ("scip_parser", ["scip_request"], 14, ["any_burst_is_taken_apart"]),
+    ("guard", [], 2, ["any_thrust_is_within_idle_and_full", "no_order_is_no_thrust", "any_unseen_impulse_is_bounded", "any_impulse_is_one"]),
 ]
+# Of control/ what the guard is made of.
+GUARD = ("guard.c", "guard.h", "between.h", "thrust.h")
 
 
 def find_cbmc():
@@ -101,18 +105,20 @@ def with_apart(text, names):
 
 def copy_drivers(tree, changed=("", "", "")):
     """changed: file, text, the fault that stands there instead."""
-    os.mkdir(os.path.join(tree, "drivers"))
     file, old, new = changed
-    for name in os.listdir(os.path.join(ROOT, "drivers")):
-        if name.endswith((".c", ".h")):
-            with open(os.path.join(ROOT, "drivers", name), encoding="utf-8") as source:
+    for room in ("drivers", "control"):
+        os.mkdir(os.path.join(tree, room))
+        for name in os.listdir(os.path.join(ROOT, room)):
+            if not name.endswith((".c", ".h")) or (room == "control" and name not in GUARD):
+                continue
+            with open(os.path.join(ROOT, room, name), encoding="utf-8") as source:
                 text = source.read()
             if name == file:
                 if text.count(old) != 1:
                     sys.exit(f"prove: {file} has '{old}' {text.count(old)} times")
                 text = text.replace(old, new)
             text = with_apart(text, APART.get(name[:-2], []) if name.endswith(".c") else [])
-            with open(os.path.join(tree, "drivers", name), "w", encoding="utf-8") as copy:
+            with open(os.path.join(tree, room, name), "w", encoding="utf-8") as copy:
                 copy.write('#include "prove.h"\n' + with_bounds(text))
 
 
