@@ -32,7 +32,8 @@ APART = {
     "decimal": ["wide_multiply_add", "wide_divide", "wide_raise_to", "make_binary", "round_to_float", "to_float", "decimal_read",
                 "scaled", "write_backwards", "write_decimals"],
     "scip_info": ["trimmed", "begins_with", "contains", "read_digits", "read_small", "copy", "health_of", "divide"],
-    "scip_parser": ["gather", "line_in_place", "line_by_copy", "scip_parser_end_line", "decode_pairs", "decode_triples", "pass"],
+    "scip_parser": ["gather", "line_in_place", "line_by_copy", "scip_parser_end_line", "decode_pairs", "decode_triples", "pass",
+                    "strange_in", "block_in_place", "blocks_in_place"],
 }
 
 # Harness, sources besides it, rounds of a loop at most (proved too), functions. A harness that includes its source has none.
@@ -53,17 +54,18 @@ PROOFS = [
       "any_hexadecimal_digits_are_read", "any_number_is_found", "any_slice_is_copied", "any_state_has_a_health",
       "any_line_is_divided", "any_line_is_taken", "any_limits_give_directions"]),
     ("urg_link", ["scip_request"], 21,
-     ["starts_sound", "steps_in_wait", "steps_in_a_stream", "steps_in_a_dialogue", "octets_are_counted"]),
+     ["starts_sound", "steps_in_wait", "steps_in_a_stream", "steps_in_a_dialogue"]),
+    ("scip_parser", ["scip_request"], 258, ["strange_octets_are_counted", "line_ends_in_text"]),
     ("scip_parser", ["scip_request"], 130,
      ["starts_sound", "orders_leave_it_sound", "octets_leave_it_sound", "line_ends_in_hunt", "line_ends_in_echo",
-      "line_ends_in_status", "line_ends_in_time", "line_ends_in_text", "line_ends_in_reply", "line_ends_in_legacy",
-      "line_ends_in_data", "line_ends_in_scan", "octets_are_gathered", "echo_in_place_leaves_it_sound",
+      "line_ends_in_status", "line_ends_in_time", "line_ends_in_reply", "line_ends_in_legacy",
+      "line_ends_in_data", "line_ends_in_scan", "octets_are_gathered", "head_in_place_leaves_it_sound",
       "status_in_place_leaves_it_sound", "time_in_place_leaves_it_sound", "block_in_place_leaves_it_sound",
       "any_line_is_copied"]),
     ("scip_parser", ["scip_request"], 67,
      ["any_block_is_passed", "any_pairs_are_decoded", "any_triples_are_decoded", "any_triples_are_decoded_behind_one",
       "any_triples_are_decoded_behind_two"]),
-    ("scip_parser", ["scip_request"], 14, ["any_burst_is_taken_apart"]),
+    ("scip_parser", ["scip_request"], 14, ["any_burst_is_taken_apart", "blocks_are_taken_one_by_one"]),
     ("guard", [], 2, ["any_thrust_is_within_idle_and_full", "no_order_is_no_thrust", "any_unseen_impulse_is_bounded", "any_impulse_is_one"]),
 ]
 # Of control/ what the guard is made of.

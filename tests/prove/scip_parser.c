@@ -116,6 +116,15 @@ scip_event_t scip_parser_end_line(scip_parser_t *any)
     return (scip_event_t)(nondet_cell() % (SCIP_DAMAGED + 1U));
 }
 
+static uint16_t strange_in(const scip_parser_t *any, uint16_t length)
+{
+    const uint16_t strange = nondet_cell();
+
+    PROVE(any == &parser && length <= SCIP_LINE_MAX, "cells of the line");
+    ASSUME(strange <= length);
+    return strange;
+}
+
 static bool is_sound_request(const scip_request_t *request)
 {
     return request->kind < SCIP_KIND_COUNT && request->text_length <= SCIP_REQUEST_MAX &&
@@ -140,6 +149,7 @@ static bool is_sound(void)
     return parser.state <= SCAN_END && parser.gathered < SCIP_LINE_MAX && parser.stamps <= 2U &&
            is_sound_request(&parser.awaited) &&
            parser.echo_fixed + (is_counted(&parser.awaited) ? 2U : 0U) == parser.awaited.echo_length &&
+           (parser.state != ECHO || is_stream(&parser.awaited)) &&
            (parser.state != DATA || is_sound_progress());
 }
 
@@ -155,6 +165,41 @@ static void any_sound_state(uint16_t state)
     ASSUME(scan.capacity <= POINTS_MAX);
     parser.scan = nondet_bool() ? &scan : NULL;
     ASSUME(is_sound());
+}
+
+/* Blocks leave any sound state. */
+static size_t blocks_of(const octet_t *octets, size_t count)
+{
+    const size_t part = nondet_size();
+
+    PROVE(is_sound() && parser.state == DATA, "a block is due");
+    PROVE(__CPROVER_same_object(octets, burst) && count <= burst_count, "octets of the burst");
+    PROVE(__CPROVER_POINTER_OFFSET(octets) + count * sizeof octets[0] == burst_count * sizeof octets[0],
+          "what is left of it");
+    ASSUME(part <= count);
+    any_sound_state(nondet_cell());
+    return part;
+}
+
+static size_t block_in_place(scip_parser_t *any, const octet_t *octets, size_t count)
+{
+    (void)any;
+    return blocks_of(octets, count);
+}
+
+static size_t blocks_in_place(scip_parser_t *any, const octet_t *octets, size_t count)
+{
+    (void)any;
+    return blocks_of(octets, count);
+}
+
+void strange_octets_are_counted(void)
+{
+    const uint16_t length = nondet_cell();
+
+    any_sound_state(nondet_cell());
+    ASSUME(length <= SCIP_LINE_MAX);
+    PROVE(strange_in_itself(&parser, length) <= length, "no more than there are");
 }
 
 void starts_sound(void)
@@ -265,7 +310,7 @@ static void take_in_place(uint16_t state)
     PROVE(is_sound(), "sound after octets in place");
 }
 
-void echo_in_place_leaves_it_sound(void)
+void head_in_place_leaves_it_sound(void)
 {
     take_in_place(ECHO);
 }
@@ -282,7 +327,18 @@ void time_in_place_leaves_it_sound(void)
 
 void block_in_place_leaves_it_sound(void)
 {
-    take_in_place(DATA);
+    any_burst(DATA);
+    PROVE(block_in_place_itself(&parser, burst, burst_count) <= burst_count, "no more than there is");
+    PROVE(is_sound(), "sound after a block in place");
+}
+
+/* In up to 12 parts. */
+void blocks_are_taken_one_by_one(void)
+{
+    any_burst(DATA);
+    ASSUME(burst_count <= 12U);
+    PROVE(blocks_in_place_itself(&parser, burst, burst_count) <= burst_count, "no more than there is");
+    PROVE(is_sound(), "sound after blocks in place");
 }
 
 void octets_are_gathered(void)

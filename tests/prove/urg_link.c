@@ -93,12 +93,3 @@ void steps_in_a_dialogue(void)
     ASSUME(status < URG_STATUS_COUNT && status != URG_WAIT && status != URG_OK);
     step_from(status);
 }
-
-void octets_are_counted(void)
-{
-    octet_t octets[20];
-    const size_t count = nondet_size();
-
-    ASSUME(count <= sizeof octets / sizeof octets[0]);
-    urg_seen_octets(&seen, octets, count);
-}
