@@ -3,6 +3,6 @@
 #ifndef FIRMWARE_VERSION_H
 #define FIRMWARE_VERSION_H
 
-#define PLOMADA_VERSION "0.1.0"
+#define PLOMADA_VERSION "0.2.0"
 
 #endif
