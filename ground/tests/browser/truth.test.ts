@@ -254,11 +254,11 @@ describe('in Spanish', () => {
       expect(points, `view ${view}`).toEqual([]);
     }
     await page.locator('nav button').nth(1).click();
-    await (await parameter(page, 'KP', 'Buscar')).fill('0,02');
+    await (await parameter(page, 'KP', 'Buscar')).fill('0,018');
     await page.getByRole('button', { name: /^Escribir cambios \(1\)/ }).click();
     await page.getByRole('button', { name: 'Escribir ahora' }).click();
     await shows('1 escritos.');
-    expect(await page.getByLabel('KP', { exact: true }).inputValue()).toBe('0,02');
+    expect(await page.getByLabel('KP', { exact: true }).inputValue()).toBe('0,018');
     await page.getByLabel('KP', { exact: true }).fill('2,9');
     await shows('Fuera de límites.');
     const file = join(mkdtempSync(join(tmpdir(), 'plomada-set-')), 'hand.set');
@@ -268,7 +268,7 @@ describe('in Spanish', () => {
     await (await chooser).setFiles([file]);
     await page.waitForFunction(() => (document.querySelector('[aria-label=KP]') as HTMLInputElement).value === '0,03');
     await page.locator('nav button').nth(4).click();
-    expect(await page.locator('.lines').innerText()).toContain('#KP 0.02');
+    expect(await page.locator('.lines').innerText()).toContain('#KP 0.018');
     await page.locator('nav button').nth(3).click();
     await page.getByLabel('Batería', { exact: true }).fill('14,9');
     expect(await page.locator('.checks li.done', { hasText: 'Batería' }).count()).toBe(1);
