@@ -145,17 +145,23 @@ static float wanted_n(flight_t *flight, const situation_t *now, bool law_changed
     return flight->laws.setpoint_n + flight->laws.transfer_n;
 }
 
-static void command(flight_t *flight, const situation_t *now, bool law_changed)
+/* Returns the thrust to put out. The estimate is told of it without what a stuck pin adds: while a pilot
+ * flies, that moves nothing. */
+static float command(flight_t *flight, const situation_t *now, bool law_changed)
 {
     const float law_n = wanted_n(flight, now, law_changed);
     const float trim_n = bounds_trim_n(&flight->bounds, now);
     const landing_signs_t signs = signs_of_landing(now);
 
     contact_land(&flight->where.contact, &signs);
-    const guard_case_t last = signs_of_guard(now, bounds_apply(&flight->bounds, now, law_n + trim_n));
-    flight->thrust_n = guard_step(&flight->guard, &last);
+    const float bounded_n = bounds_apply(&flight->bounds, now, law_n + trim_n);
+    const guard_case_t last = signs_of_guard(now, bounded_n + flight->pin.more_n);
+    const float driven_n = guard_step(&flight->guard, &last);
+
+    flight->thrust_n = stuck_pin_acts(&flight->pin) ? bounded_n : driven_n;
     handover_given_back(&flight->est, now);
     est_law_record_command(&flight->est, flight->thrust_n);
+    return driven_n;
 }
 
 uint16_t flight_releases(const flight_t *flight, const parameters_t *parameters)
@@ -175,10 +181,10 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
     const bool law_changed = choose(flight, &now, in->has_throttle);
     change_mode(flight, &now);
     learn(flight, &now);
-    command(flight, &now, law_changed);
+    const float driven_n = command(flight, &now, law_changed);
     aim_judge(&flight->aim, &flight->where);
     outputs_tell(&now, flight->aim.out_of_reach, out);
-    outputs_drive(flight->thrust_n, flight->pin.more_n, out);
+    outputs_drive(driven_n, out);
     out->imu_fault = flight->axes.fault;
     out->releases = flight_releases(flight, parameters);
 }

@@ -2,7 +2,6 @@
 
 #include <math.h>
 
-#include "control/between.h"
 #include "control/thrust.h"
 
 static uint16_t flags(const situation_t *now, bool out_of_reach)
@@ -34,8 +33,8 @@ void outputs_tell(const situation_t *now, bool out_of_reach, flight_outputs_t *o
     out->innovation_mm = estimated ? estimator->innovation_m * 1000.0F : NAN;
 }
 
-void outputs_drive(float thrust_n, float more_n, flight_outputs_t *out)
+void outputs_drive(float thrust_n, flight_outputs_t *out)
 {
-    out->thrust_n = at_most(thrust_n + more_n, THRUST_MAX_N);
+    out->thrust_n = thrust_n;
     out->pulse_us = thrust_to_pulse_us(out->thrust_n);
 }

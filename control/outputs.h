@@ -9,7 +9,7 @@
  * the reference. */
 void outputs_tell(const situation_t *now, bool out_of_reach, flight_outputs_t *out);
 
-/* Thrust and pulse. more_n: added against a wrong pin. */
-void outputs_drive(float thrust_n, float more_n, flight_outputs_t *out);
+/* Thrust and pulse. thrust_n: as the guard has left it. */
+void outputs_drive(float thrust_n, flight_outputs_t *out);
 
 #endif

@@ -274,7 +274,7 @@ static inline void write_outputs(void)
     const situation_t now = situation();
 
     outputs_tell(&now, f.aim.out_of_reach, &out);
-    outputs_drive(f.thrust_n, f.pin.more_n, &out);
+    outputs_drive(f.thrust_n + f.pin.more_n, &out);
     out.imu_fault = f.axes.fault;
     out.releases = flight_releases(&f, &parameters);
 }
