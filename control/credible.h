@@ -8,6 +8,10 @@
 #define HEIGHT_MIN_MM (-50.0F) /* chosen: no noise reaches 50 mm below the ground */
 #define HEIGHT_MAX_MM 5000.0F  /* above the scanner's 4095 mm */
 
+#define LOW_MM \
+    80.0F /* chosen: above REST_BELOW_MM in supervisor.c; so low the vehicle may touch the ground */
+#define LOW_M 0.08F
+
 #define HEIGHT_FRESH_US UINT32_C(300000) /* three scans of 0.1 s */
 #define HEIGHT_FRESH_S 0.3F
 #define HEIGHT_LOST_US UINT32_C(1500000) /* chosen: after a longer time the estimate has drifted too far */

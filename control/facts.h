@@ -21,23 +21,23 @@ typedef struct {
                        * a climb: the beam may be blocked, keep climbs slow */
     bool terrain_fell; /* after a step of more than 0.4 m away from the vehicle, until the heights show a
                         * descent: they may be wrong, keep descents slow */
-    bool teaches;    /* false: unconfirmed, or the beam may be blocked, or accelerometer and heights differ by
-                      * more    than 0.5 m/s: learn nothing from them */
-    bool sways;      /* roll and pitch sway as in the air */
-    bool calm;       /* they sway as on the ground; between the two neither is certain */
-    bool rocks;      /* the tilt has moved by a degree within the last 0.8 s */
-    bool in_hands;   /* state GROUND without heights: a pilot flies it, or somebody carries it */
-    bool may_stand;  /* calm for so long that it may stand on the ground: lower the thrust to find out */
-    bool stands;     /* too little thrust to fly, no felt fall, and calm: it stands on the ground */
-    float upright;   /* cosine of the believed tilt */
-    float height_m;  /* latest height that was no copy and within range, believed or not */
-    float rise_mps;  /* low-passed rate of the heights, without steps */
-    float lost_m;    /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
-    float felt_mps;  /* speed of the accelerometer's witness, whatever it is worth */
-    bool felt_valid; /* that witness counts, and is not doubted */
-    float shaken;    /* >= 1: a noisy accelerometer's speed counts so much less */
-    float bias_mps2; /* of the accelerometer */
-    float push_mps;  /* speed of the thrust's witness, whatever it is worth */
+    bool teaches;  /* false: learn nothing from the heights: they are unconfirmed, the beam may be blocked, or
+                    * accelerometer and heights differ by more than 0.5 m/s */
+    bool sways;    /* roll and pitch sway as in the air */
+    bool calm;     /* they sway as on the ground; between the two neither is certain */
+    bool rocks;    /* the tilt has moved by a degree within the last 0.8 s */
+    bool in_hands; /* state GROUND without heights: a pilot flies it, or somebody carries it */
+    bool may_stand;   /* calm for so long that it may stand on the ground: lower the thrust to find out */
+    bool stands;      /* too little thrust to fly, no felt fall, and calm: it stands on the ground */
+    float upright;    /* cosine of the believed tilt */
+    float height_m;   /* latest height that was no copy and within range, believed or not */
+    float rise_mps;   /* low-passed rate of the heights, without steps */
+    float lost_m;     /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
+    float felt_mps;   /* speed of the accelerometer's witness, whatever it is worth */
+    bool felt_valid;  /* that witness counts, and is not doubted */
+    float shaken;     /* >= 1: a noisy accelerometer's speed counts so much less */
+    float bias_mps2;  /* of the accelerometer */
+    float push_mps;   /* speed of the thrust's witness, whatever it is worth */
     float pushed_mps; /* the same less the error that the heights have shown; else the rate of the heights */
     float moved_m;    /* way since the rays of the latest height, by the thrust */
     float speed_mps;  /* without the heights: mean of the witnesses that are valid and not doubted, or 0 */
@@ -55,7 +55,7 @@ typedef struct {
     bool ordered;    /* a new #SETR in this cycle; on the ground it clears DOUBT_SIGHT and DOUBT_THRUST */
     float thrust_n;  /* commanded thrust, less the dead band */
     float authority_mps2_per_n, damping_per_s; /* vehicle model, as in cascade.h */
-    float hover_n;                             /* sure hover thrust, see flight.h */
+    float hover_n;                             /* sure hover thrust, where/hover_thrust.h */
     float wanted_m;   /* reference minus height, > 0: the law wants to climb; NAN: no height is held */
     float noise_mps2; /* rms noise of the accelerometer, measured by the estimator */
 } command_t;

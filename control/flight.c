@@ -5,10 +5,9 @@
  * the previous cycle. */
 #include "control/flight.h"
 
+#include "control/credible.h"
 #include "control/outputs.h"
 #include "control/signs.h"
-
-#define RISEN_M (80.0F * 0.001F) /* chosen: above REST_BELOW_MM in supervisor.c */
 
 void flight_init(flight_t *flight)
 {
@@ -35,7 +34,7 @@ static situation_t situation_of(const flight_t *flight, const parameters_t *para
         .aim_m = aim_height_m(&flight->aim, supervisor),
         .thrust_n = flight->thrust_n,
         .idle_n = flight->idle_n,
-        .risen = supervisor->height.height_mm * 0.001F - flight->est.ground_m > RISEN_M,
+        .risen = supervisor->height.height_mm * 0.001F - flight->est.ground_m > LOW_MM * 0.001F,
         .rocks = flight->evidence.rocks && est_law_has_imu(&flight->est),
     };
 }

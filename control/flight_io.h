@@ -57,7 +57,7 @@ typedef struct {
     float thrust_n; /* commanded, newtons per motor, 0 .. THRUST_MAX_N */
     float pulse_us; /* throttle pulse, thrust.h */
     float idle_n;   /* minimum of thrust_n: the idle while armed, else 0 */
-    float hover_n;  /* hover thrust as far as it is known, flight.h */
+    float hover_n;  /* hover thrust as far as it is known, where/hover_thrust.h */
     flight_state_t state;
     uint16_t flags;  /* FLIGHT_FLAG_* */
     uint16_t doubts; /* DOUBT_*, facts.h */

@@ -5,9 +5,11 @@
 #include <math.h>
 
 #define WINDOW_US UINT32_C(10000000) /* chosen: two time constants of a hover thrust that is learned anew */
-#define STEP_N 0.2F   /* chosen: PD then hangs 43 mm lower with the least KP that flew, 0.00466 */
-#define SHARE 0.25F   /* chosen: half of what makes a loop swing that is tuned to half its limit */
-#define REACH_N 1.5F  /* as HOVER_MARGIN_N in flight.c: farther from GRAV no hover thrust is believed */
+#define STEP_N 0.2F /* chosen: PD then hangs 43 mm lower with the least KP that flew, 0.00466 */
+#define SHARE 0.25F /* chosen: half of what makes a loop swing that is tuned to half its limit */
+#define REACH_N \
+    1.5F              /* as HOVER_MARGIN_N in hover_thrust.c: farther from GRAV no hover thrust is believed \
+                       */
 #define MARGIN_N 0.3F /* chosen: 0.4 m/s2 to brake with */
 
 typedef enum { FREE, GROUND_ONLY, NEWTONS, GAIN, LAW } kind_t;

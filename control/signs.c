@@ -3,10 +3,10 @@
 #include "control/signs.h"
 
 #include "control/between.h"
+#include "control/credible.h"
 
 #define HEAVIEST 1.2F   /* hover thrust of the heaviest vehicle, in GRAV */
 #define HEAVIEST_N 8.9F /* the same of the nominal vehicle, 7.4 N: the seed flew with GRAV 0 too */
-#define LOW_MM 80.0F    /* chosen: above REST_BELOW_MM in supervisor.c */
 
 /* FLOATING, and the throttle is certainly the firmware's. */
 static bool commands_floating(const situation_t *now)

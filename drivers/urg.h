@@ -2,9 +2,10 @@
  *
  *   urg_init()          sets the configuration, and the memory for two scans
  *   urg_feed()          processes received octets, any number at a time
- *   urg_step()          call it when urg_pause_us() has passed since the step before; ask that again and
- * again urg_next_to_send()  call it after each step: actions for the UART urg_take_scan()     call it when
- * urg_feed() returned true: the scan
+ *   urg_pause_us()      ask it again and again: it becomes shorter with what is fed
+ *   urg_step()          call it when that time has passed since the step before
+ *   urg_next_to_send()  call it after each step: actions for the UART
+ *   urg_take_scan()     call it when urg_feed() returned true: the scan
  *
  * Two more calls are for some callers: urg_line_broken() where the UART reports errors; urg_scan_at() for the
  * shortest search after an outage. The driver uses no clock, port, task or heap.

@@ -18,17 +18,17 @@
 
 #define STEP_MAX_S 0.5F /* chosen: longer pauses count as this long */
 
-#define HOVER_BOUND_N 2.0F /* mass 20 % off (1.4 N), battery and gusts; see HOVER_MARGIN_N in flight.c */
+#define HOVER_BOUND_N 2.0F           /* mass 20 % off (1.4 N), battery, gusts; see hover_thrust.c */
 #define HOVER_SIGMA_START_N 0.7F     /* half of a mass 20 % off */
 #define NEUTRAL_SIGMA_N 0.07F        /* chosen: the thrust in the middle of the stick is known well */
-#define HOVER_SIGMA_TAKE_OVER_N 0.5F /* chosen: as TRANSFER_START_N in flight.c */
+#define HOVER_SIGMA_TAKE_OVER_N 0.5F /* chosen: as TRANSFER_START_N in laws.c */
 #define SPEED_DOUBT_N_PER_MPS 0.5F   /* chosen: the damping may be wrong by a quarter */
 #define IN_THE_AIR_M 0.04F           /* chosen: ten times the noise of a height */
 #define MODEL_NOISE_MPS2 0.84F       /* fitted */
 #define HEIGHTS_MISSING_S 0.2F       /* two scans of 0.1 s */
 #define FRAMES_FRESH_S ((float)ESTIMATOR_FRESH_US * 1.0e-6F)
 #define FRAMES_LATE_S 0.15F          /* chosen: a frame of an IMU as slow as 0.1 s, and its age */
-#define LATE_WINDOW_N 0.5F           /* chosen: as TRANSFER_START_N in flight.c */
+#define LATE_WINDOW_N 0.5F           /* chosen: as TRANSFER_START_N in laws.c */
 #define AGE_MAX_S 3600.0F            /* chosen: one hour; the counters stop here */
 #define MODEL_NOISE_ALONE_MPS2 0.15F /* chosen: a biased accelerometer drifts away, the model does not */
 #define GUST_MPS2_PER_M 39.2F        /* fitted as 28 N/m on a vehicle that hovers at 7 N */
@@ -63,7 +63,7 @@
 #define SINK_ABOVE_HOVER_N 0.5F     /* chosen: room for gusts at first */
 #define SINK_BELOW_HOVER_N 1.3F     /* chosen: by the vehicle model a sink rate of at most 0.7 m/s */
 #define SINK_FADE_N_PER_S 0.2F      /* chosen: at the hover thrust after 2.5 s */
-#define LAND_ABOVE_HOVER_N 1.5F     /* chosen: as HOVER_MARGIN_N in flight.c */
+#define LAND_ABOVE_HOVER_N 1.5F     /* chosen: as HOVER_MARGIN_N in hover_thrust.c */
 #define LAND_FADE_N_PER_S 0.1F      /* chosen: at the hover thrust after 15 s */
 #define TERRAIN_KEEP_S 30.0F        /* chosen: drift of the summed terrain height is forgotten */
 #define LOWEST_OVER_TERRAIN_M 0.15F /* the height of OFF_GROUND in supervisor.c */

@@ -10,7 +10,6 @@
 #define COPIES_MAX 1U   /* chosen: the second identical scan is rejected; one in a climb misleads the law */
 #define COUNT_MAX 1000U /* chosen: the counter stops here and does not wrap */
 #define HEIGHT_BACK_MM (-30.0F) /* chosen: hysteresis of 20 mm, above five times the noise */
-#define LOW_M 0.08F             /* chosen: as LOW_MM in flight.c; so low it may touch the ground */
 
 /* Tried: 960 healthy flights; in none does the thrust contradict the heights while the slant is so still. */
 #define STILL_MM2 4.0F /* tried, see above: 2 mm rms */

@@ -3,9 +3,9 @@
 
 #include "control/between.h"
 
-#define STEP_MAX_S 0.5F        /* chosen: longer pauses count as this long; as in flight.c */
+#define STEP_MAX_S 0.5F        /* chosen: longer pauses count as this long; as in where.c */
 #define LAG_S 0.15F            /* LAG of 0.12 s and DELAY of 18.5 ms, as one lag */
-#define PUSHED_LEAK_PER_S 0.4F /* chosen: time constant of 2.5 s, as the sure hover thrust in flight.c */
+#define PUSHED_LEAK_PER_S 0.4F /* chosen: time constant of 2.5 s, as HOVER_TIME_S in hover_thrust.c */
 
 void push_lag(push_t *push, const command_t *command)
 {

@@ -85,7 +85,7 @@ void senses_frames(senses_t *senses, const command_t *command, const imu_sample_
 void senses_thrust(senses_t *senses, const command_t *command, bool felt_valid)
 {
     const witness_t *felt = &senses->accelerometer.felt;
-    const bool stands = senses->heights.known && senses->heights.height_m < SENSES_LOW_M &&
+    const bool stands = senses->heights.known && senses->heights.height_m < LOW_M &&
                         !sway_as_in_the_air(&senses->sway);
     const bool felt_tells = !command->grounded && felt_valid && witness_counts(felt);
 

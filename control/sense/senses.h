@@ -23,8 +23,6 @@
 #include "control/sense/sway.h"
 #include "control/sense/tilt.h"
 
-#define SENSES_LOW_M 0.08F /* chosen: as LOW_MM in flight.c */
-
 typedef struct {
     bool standing;    /* on the ground, or take-off commanded and not yet off the ground */
     float slower_mps; /* speed of the slower witness, low-passed like heights.rise_mps */

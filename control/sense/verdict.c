@@ -11,6 +11,7 @@
 #include <stddef.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 
 /* A still slant, see also beam.c. */
 #define RIGID_SCANS 2U     /* chosen: one scan alone may be chance */
@@ -25,7 +26,7 @@
 #define STRONG_SHARE 1.3F  /* chosen: of GRAV; lifts the heaviest vehicle, 1.2 of GRAV, at 0.8 m/s2 */
 #define STRONG_COUNTS 3.0F /* chosen: then half a second is enough, which lifts it by 0.1 m */
 #define SWAYING_M 0.05F    /* chosen: ten times the noise of a height */
-#define ALOFT_M 0.08F      /* chosen: as SENSES_LOW_M */
+#define ALOFT_M 0.08F      /* chosen: as LOW_M */
 
 #define AGAINST_M 0.50F      /* chosen: five times WITNESS_STEP_M */
 #define BOTH_M 0.28F         /* chosen: about half of AGAINST_M, for the second witness */
@@ -159,8 +160,7 @@ static bool is_sunk(const case_t *c)
 static bool is_aloft(const case_t *c)
 {
     const senses_t *s = c->senses;
-    const bool odd = s->beam.rigid >= RIGID_SCANS ||
-                     (s->heights.height_m > SENSES_LOW_M && beam_is_still(&s->beam));
+    const bool odd = s->beam.rigid >= RIGID_SCANS || (s->heights.height_m > LOW_M && beam_is_still(&s->beam));
 
     return c->verdict->swaying_s > SWAYING_S ||
            (c->command->standing && s->confirmation.unconfirmed && odd && sway_as_in_the_air(&s->sway) &&
@@ -237,7 +237,7 @@ static bool is_vain(const case_t *c)
  * a touchdown on a rough floor. */
 static bool is_felt(const case_t *c)
 {
-    return (c->senses->heights.height_m > SENSES_LOW_M || beam_is_still(&c->senses->beam)) &&
+    return (c->senses->heights.height_m > LOW_M || beam_is_still(&c->senses->beam)) &&
            felt_against(c, ALONE_M);
 }
 

@@ -5,7 +5,6 @@
 #include "control/between.h"
 #include "control/credible.h"
 
-#define LOW_MM 80.0F             /* chosen: above REST_BELOW_MM in supervisor.c, 50 mm */
 #define GIVEN_BACK_N_PER_S 0.06F /* chosen: little, because the pilot may fly on for long */
 #define BY_PIN_N_PER_S 0.15F     /* chosen: more, because with a pin it begins when he gives it back */
 #define VAIN_LANDING_N 1.5F      /* chosen: by the vehicle model a sink rate of 0.9 m/s */
