@@ -1,6 +1,7 @@
 #include "drivers/urg.h"
 
-bool urg_init(urg_t *urg, const urg_config_t *config, uint16_t *distance_mm, uint16_t values, uint32_t now_us)
+bool urg_init(urg_driver_t *urg, const urg_config_t *config, uint16_t *distance_mm, uint16_t values,
+              uint32_t now_us)
 {
     scip_request_t stream;
     urg_link_t link;
@@ -11,7 +12,7 @@ bool urg_init(urg_t *urg, const urg_config_t *config, uint16_t *distance_mm, uin
     if (values / 2U < stream.points) {
         return false;
     }
-    *urg = (urg_t){.link = link};
+    *urg = (urg_driver_t){.link = link};
     for (uint16_t i = 0U; i < 2U; i++) {
         urg->scans[i].distance_mm = &distance_mm[i * stream.points];
         urg->scans[i].capacity = stream.points;
@@ -21,14 +22,14 @@ bool urg_init(urg_t *urg, const urg_config_t *config, uint16_t *distance_mm, uin
     return true;
 }
 
-static void change_scans(urg_t *urg)
+static void change_scans(urg_driver_t *urg)
 {
     urg->fresh = true;
     urg->filling ^= 1U;
     scip_parser_scan_into(&urg->parser, &urg->scans[urg->filling]);
 }
 
-bool urg_take_event(urg_t *urg, scip_event_t event)
+bool urg_take_event(urg_driver_t *urg, scip_event_t event)
 {
     urg_seen_event(&urg->seen, &urg->parser, event);
     if (event != SCIP_SCAN) {
@@ -38,7 +39,7 @@ bool urg_take_event(urg_t *urg, scip_event_t event)
     return true;
 }
 
-bool urg_feed_all(urg_t *urg, const octet_t *octets, size_t count)
+bool urg_feed_all(urg_driver_t *urg, const octet_t *octets, size_t count)
 {
     bool complete = false;
     while (count > 0U) {
@@ -53,13 +54,13 @@ bool urg_feed_all(urg_t *urg, const octet_t *octets, size_t count)
     return complete;
 }
 
-void urg_line_broken(urg_t *urg, uint32_t framing_errors)
+void urg_line_broken(urg_driver_t *urg, uint32_t framing_errors)
 {
     scip_parser_line_broken(&urg->parser);
     urg->seen.framing_count += framing_errors;
 }
 
-void urg_step(urg_t *urg, uint32_t now_us)
+void urg_step(urg_driver_t *urg, uint32_t now_us)
 {
     urg_seen_octets(&urg->seen, &urg->parser);
     urg_link_step(&urg->link, &urg->seen, now_us, &urg->action);
@@ -68,12 +69,12 @@ void urg_step(urg_t *urg, uint32_t now_us)
     }
 }
 
-void urg_scan_at(urg_t *urg, uint32_t now_us)
+void urg_scan_at(urg_driver_t *urg, uint32_t now_us)
 {
     urg_link_scan_at(&urg->link, now_us);
 }
 
-uint32_t urg_pause_us(const urg_t *urg)
+uint32_t urg_pause_us(const urg_driver_t *urg)
 {
     urg_seen_t seen = urg->seen;
     if (urg->link.status == URG_OK) { /* asked often, and here the number is enough */
@@ -84,7 +85,7 @@ uint32_t urg_pause_us(const urg_t *urg)
     return urg_link_pause_us(&urg->link, &seen);
 }
 
-bool urg_next_to_send(urg_t *urg, urg_output_t *output)
+bool urg_next_to_send(urg_driver_t *urg, urg_output_t *output)
 {
     const urg_action_t *action = &urg->action;
     const bool some = action->send || action->set_rate || action->cycle_power;
@@ -100,7 +101,7 @@ bool urg_next_to_send(urg_t *urg, urg_output_t *output)
     return some;
 }
 
-bool urg_take_scan(urg_t *urg, scip_scan_t *scan)
+bool urg_take_scan(urg_driver_t *urg, scip_scan_t *scan)
 {
     const bool fresh = urg->fresh;
     if (fresh) {
@@ -110,12 +111,12 @@ bool urg_take_scan(urg_t *urg, scip_scan_t *scan)
     return fresh;
 }
 
-uint16_t urg_expected(const urg_t *urg)
+uint16_t urg_expected(const urg_driver_t *urg)
 {
     return scip_parser_expected(&urg->parser);
 }
 
-void urg_report(const urg_t *urg, urg_report_t *report)
+void urg_report(const urg_driver_t *urg, urg_report_t *report)
 {
     urg_seen_t seen = urg->seen;
     urg_seen_octets(&seen, &urg->parser);

@@ -11,7 +11,7 @@
  * shortest search after an outage. The driver uses no clock, port, task or heap.
  *
  * Calling context: one call at a time. When an interrupt calls urg_feed(), disable it during the other calls.
- * No call waits or loops for long. The fields of urg_t are private: use urg_report(). */
+ * No call waits or loops for long. The fields of urg_driver_t are private: use urg_report(). */
 #ifndef DRIVERS_URG_H
 #define DRIVERS_URG_H
 
@@ -36,7 +36,7 @@ typedef struct {
     scip_scan_t scans[2]; /* the parser fills one; the other one is complete and can be taken */
     uint16_t filling;
     bool fresh; /* a complete scan has not been taken yet */
-} urg_t;
+} urg_driver_t;
 
 /* Actions for the board, to be done in this order. */
 typedef struct {
@@ -61,16 +61,16 @@ typedef struct {
 /* Starts the driver. distance_mm: memory for two scans of n points, 2 n values; the driver uses it until the
  * next urg_init(). The caller then opens the UART at first_rate. now_us: as in urg_step(). Returns false, and
  * does nothing, when the memory is too small or urg_link_init() refuses the configuration. */
-bool urg_init(urg_t *urg, const urg_config_t *config, uint16_t *distance_mm, uint16_t values,
+bool urg_init(urg_driver_t *urg, const urg_config_t *config, uint16_t *distance_mm, uint16_t values,
               uint32_t now_us);
 
 /* Private parts of urg_feed(). */
-bool urg_feed_all(urg_t *urg, const octet_t *octets, size_t count);
-bool urg_take_event(urg_t *urg, scip_event_t event);
+bool urg_feed_all(urg_driver_t *urg, const octet_t *octets, size_t count);
+bool urg_take_event(urg_driver_t *urg, scip_event_t event);
 
 /* Processes received octets. Returns true when at least one scan has become complete. Inline, because an
  * interrupt may call it for every octet. */
-static inline bool urg_feed(urg_t *urg, const octet_t *octets, size_t count)
+static inline bool urg_feed(urg_driver_t *urg, const octet_t *octets, size_t count)
 {
     scip_event_t event;
     if (count != 1U) {
@@ -82,29 +82,29 @@ static inline bool urg_feed(urg_t *urg, const octet_t *octets, size_t count)
 
 /* Call this when the UART lost or damaged octets. framing_errors: how many of the errors were framing errors,
  * which are a sign of a wrong bit rate. */
-void urg_line_broken(urg_t *urg, uint32_t framing_errors);
+void urg_line_broken(urg_driver_t *urg, uint32_t framing_errors);
 
 /* One step of the link, at least every 150 ms. now_us: time in microseconds, wraps at 2^32. */
-void urg_step(urg_t *urg, uint32_t now_us);
+void urg_step(urg_driver_t *urg, uint32_t now_us);
 
 /* As urg_link_scan_at(), urg_link_pause_us(). The pause changes with what is fed. */
-void urg_scan_at(urg_t *urg, uint32_t now_us);
-uint32_t urg_pause_us(const urg_t *urg);
+void urg_scan_at(urg_driver_t *urg, uint32_t now_us);
+uint32_t urg_pause_us(const urg_driver_t *urg);
 
 /* Gets the actions of the latest step, once. Always writes *output. Returns false when there is nothing to
  * do.
  */
-bool urg_next_to_send(urg_t *urg, urg_output_t *output);
+bool urg_next_to_send(urg_driver_t *urg, urg_output_t *output);
 
 /* Gets the latest complete scan, once. Returns false when there is none. The points are valid until the next
  * scan is complete. */
-bool urg_take_scan(urg_t *urg, scip_scan_t *scan);
+bool urg_take_scan(urg_driver_t *urg, scip_scan_t *scan);
 
 /* Number of octets until the present reply or scan is complete; see scip_parser_expected(). */
-uint16_t urg_expected(const urg_t *urg);
+uint16_t urg_expected(const urg_driver_t *urg);
 
 /* Copies status and counters to *report. */
-void urg_report(const urg_t *urg, urg_report_t *report);
+void urg_report(const urg_driver_t *urg, urg_report_t *report);
 
 #ifdef __cplusplus
 }

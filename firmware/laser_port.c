@@ -16,7 +16,7 @@
 #include "firmware/usb_port.h"
 
 /* Fed by the receive Hwi; all others use it with interrupts off. */
-static urg_t urg;
+static urg_driver_t urg;
 static uint16_t points[2U * SCIP_LAYOUT_POINTS_MAX]; /* of two scans: one fills, one waits for Laser_SWI */
 static uint32_t scan_arrival_us;
 static uint32_t overruns;

@@ -19,7 +19,7 @@ static const urg_config_t config = {
     .range = {.first_step = FIRST_STEP, .last_step = LAST_STEP, .cluster = 1U, .interval = 0U, .scans = 0U},
 };
 
-static urg_t urg;
+static urg_driver_t urg;
 static uint16_t points[2U * POINTS]; /* two scans: one is used while the next comes in */
 static uint32_t stepped_us;
 

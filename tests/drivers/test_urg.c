@@ -9,7 +9,7 @@
 #define POINTS 35U
 #define STEP_US 150000U
 
-static urg_t urg;
+static urg_driver_t urg;
 static uint16_t memory[2U * POINTS + 1U];
 static urg_output_t output;
 static urg_report_t report;
@@ -371,5 +371,6 @@ void test_too_little_memory_and_impossible_orders_are_refused(void)
 /* Or in as many cells, where an octet takes a wider one. */
 void test_all_that_a_user_keeps_for_35_points_fits_in_1_kib(void)
 {
-    TEST_ASSERT_LESS_OR_EQUAL_UINT(1024U, (sizeof(urg_t) + 2U * POINTS * sizeof(uint16_t)) / sizeof(octet_t));
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(1024U,
+                                   (sizeof(urg_driver_t) + 2U * POINTS * sizeof(uint16_t)) / sizeof(octet_t));
 }

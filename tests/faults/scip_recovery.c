@@ -18,7 +18,7 @@
 static struct {
     sensor_t *sensor;
     uart_t to_sensor, to_host;
-    urg_t urg;
+    urg_driver_t urg;
     uint16_t points[2 * POINTS];
     ns_t now, stepped_at, latest_scan, longest_gap;
     bool running, out;

@@ -37,7 +37,7 @@ static struct {
     double rate;
     bool listening;
     bool plain; /* steps every 150 ms, tells no times of scans */
-    urg_t urg;
+    urg_driver_t urg;
     uint16_t points[2 * SCIP_LAYOUT_POINTS_MAX];
     urg_config_t config;
     faults_t faults;

@@ -26,7 +26,7 @@ int main(void)
 {
     static const urg_config_t config = { 0, 115200, 115200, 0, SCIP_STREAM_2, { 372, 406, 1, 0, 0 }, 0 };
     static uint16_t points[70];
-    static urg_t urg;
+    static urg_driver_t urg;
     urg_output_t output;
 
     if (!urg_init(&urg, &config, points, 70, 0)) {
@@ -86,6 +86,16 @@ void wait_ms(unsigned ms);
 void show(float mm);
 """ + block, encoding="utf-8")
         run("cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-I", ROOT, "-c", program, "-o", self.top / "readme.o")
+
+    def test_a_program_that_uses_urg_library_compiles_with_it(self):
+        theirs, ours = f'#include "{HERE}/urg_library_names.h"\n', '#include "drivers/scip_layout.h"\n#include "drivers/urg.h"\n'
+        for compiler, language in (("cc", "c"), ("c++", "c++")):
+            if shutil.which(compiler) is None:
+                continue
+            for text in (theirs + ours, ours + theirs):
+                program = self.top / f"both.{language}"
+                program.write_text(text + "urg_t their_sensor; urg_driver_t our_sensor;\n", encoding="utf-8")
+                run(compiler, "-x", language, "-Wall", "-Wextra", "-Werror", "-I", ROOT, "-c", program, "-o", self.top / "both.o")
 
     def test_every_header_that_is_installed_includes_only_such(self):
         text = (PACKAGE / "CMakeLists.txt").read_text(encoding="utf-8")

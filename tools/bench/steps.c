@@ -35,7 +35,7 @@
 static octet_t frame[FRAME_N];
 static uint32_t stamp_ms;
 static bool leg; /* in front of a fifth of the rays */
-static urg_t urg;
+static urg_driver_t urg;
 static scip_scan_t scan;
 static uint16_t points[2 * 35];
 static volatile float mean_mm;
@@ -424,8 +424,8 @@ static void print_memory(void)
 {
     const size_t two_scans = 2 * 35 * sizeof points[0];
 
-    printf("urg_t %zu, two scans of 35 points %zu: %zu octets\n", sizeof(urg_t), two_scans,
-           sizeof(urg_t) + two_scans);
+    printf("urg_driver_t %zu, two scans of 35 points %zu: %zu octets\n", sizeof(urg_driver_t), two_scans,
+           sizeof(urg_driver_t) + two_scans);
 }
 
 int main(int argc, char **argv)

@@ -13,7 +13,7 @@
 static struct {
     scanner_config_t config;
     port_t port;
-    urg_t urg;
+    urg_driver_t urg;
     uint16_t distance_mm[2 * SCIP_POINTS_MAX];
     unsigned long rate;                         /* of the latest scan */
     uint32_t first_ms, latest_ms, stream_scans; /* of the scans since the latest gap */

@@ -6,7 +6,7 @@
 #define LAST_STEP 401
 #define POINTS (LAST_STEP - FIRST_STEP + 1)
 
-static urg_t urg;
+static urg_driver_t urg;
 static uint16_t points[2 * POINTS]; /* two scans: one is used while the next comes in */
 static uint32_t stepped_us;
 
