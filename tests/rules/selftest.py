@@ -8,6 +8,7 @@ from pathlib import Path
 import commands
 import house
 import includes
+import inside
 import length
 import mirror
 import pages
@@ -274,6 +275,56 @@ class State(Sample):
         self.assert_one(state, "tests/rules/excuses.txt: bsp/c.c:edge")
         self.write("bsp/c.c", "extern uint16_t edge[];\n")
         self.assertEqual(self.complaints(state), [])
+
+
+class Inside(Sample):
+    """control/where.h keeps where_t, of which other files read `kind` and write `told`; facts.h publishes what is no secret."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("control/facts.h", "typedef struct {\n    float height_m;\n} evidence_t;\n")
+        self.write("control/where.h", "typedef struct {\n    float since_s;\n} hold_t;\ntypedef struct {\n    int kind, told;\n    hold_t hold[2];\n"
+                   "} where_t;\ntypedef struct {\n    int sign;\n} sign_t;\nvoid where_step(where_t *where, const sign_t *sign, const evidence_t *evidence);\n"
+                   "where_t where_made(void);\nvoid evidence_write(evidence_t *evidence);\n")
+        self.write("control/where.c", "void where_step(where_t *where, const sign_t *sign)\n{\n    where->kind = where->hold[0].since_s > 1;\n}\n")
+        self.write("control/a.c", "int a(where_t *where)\n{\n    where->told = 1;\n    return where->kind;\n}\n")
+
+    def counted(self, body, before=""):
+        self.write("tests/control/test_a.c", before + "void test_it(void)\n{\n" + body + "\n}\n")
+        return sorted(set(sum(inside.lines(house.House(self.root)).values(), [])))
+
+    def test_what_only_its_own_file_names_is_inner(self):
+        for body in ("where_t w;\n    w.hold[1].since_s = 2;", "where_t w = {.hold = {{.since_s = 1}}};", "where_t *w;\n    check((*w).hold[0].since_s);",
+                     "check(where_made().hold[0].since_s);", "where_t many[2];\n    many[0].hold[0].since_s = 1;",
+                     "where_t w;\n    w = (where_t){.kind = 1};", "where_t w;\n    w.kind = 3;", "where_t w;\n    w.kind++;", "HIDDEN.since_s = 1;"):
+            with self.subTest(body=body):
+                self.assertNotEqual(self.counted(body), [])
+
+    def test_what_the_product_does_a_test_may_do(self):
+        for body in ("where_t w;\n    check(w.kind == 3);", "where_t w;\n    w.told = 3;", "evidence_t e;\n    e.height_m = 1;",
+                     "sign_t s = {.sign = 1};", "evidence_t e = {.height_m = 1};", "struct {\n    float since_s;\n    } row;\n    row.since_s = 1;",
+                     "/* w.hold.since_s */", 'puts("w.hold");'):
+            with self.subTest(body=body):
+                self.assertEqual(self.counted(body), [])
+
+    def test_a_struct_within_a_tests_own_struct_or_header_is_seen(self):
+        self.write("tests/control/case.h", "typedef struct {\n    where_t where;\n} case_t;\nstatic case_t c;\n")
+        self.assertEqual(self.counted("c.where.hold[0].since_s = 1;", '#include "case.h"\n'), ["hold_t.since_s", "where_t.hold"])
+        self.assertEqual(self.counted("c.where.kind;", "static where_t w;\nstatic struct {\n    where_t where;\n} c;\n"), [])
+
+    def test_a_name_counts_for_the_struct_of_its_own_function(self):
+        self.assertEqual(self.counted("evidence_t w;\n    w.height_m = 1;", "void f(where_t *w)\n{\n    use(w);\n}\n"), [])
+
+    def test_more_lines_than_are_excused_and_an_excuse_that_is_too_large(self):
+        line = "    w.hold[0].since_s = 1;\n"
+        self.counted("where_t w;\n" + line * inside.LIMIT)
+        self.assertEqual(self.complaints(inside), [])
+        self.counted("where_t w;\n" + line * (inside.LIMIT + 1))
+        self.assert_one(inside, f"tests/control:lines: {inside.LIMIT + 1} ")
+        self.write("tests/rules/excuses.txt", f"inside {inside.THING} {inside.LIMIT + 1} to fall\n")
+        self.assertEqual(self.complaints(inside), [])
+        self.write("tests/rules/excuses.txt", f"inside {inside.THING} {inside.LIMIT + 2 + inside.SLACK} to fall\n")
+        self.assert_one(inside, "tests/rules/excuses.txt: ")
 
 
 class Commands(unittest.TestCase):
