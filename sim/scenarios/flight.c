@@ -311,6 +311,23 @@ static void plan_pings(const flight_options_t *options)
     }
 }
 
+static void refer(void *line)
+{
+    const later_line_t *order = line;
+    const bool lands = strcasecmp(order->name, "SETR") != 0;
+
+    metrics_order(&flight.record, order->t_s, lands ? 0.0 : strtod(order->value, NULL));
+}
+
+/* The record of the flight hears of another reference when the firmware does. */
+static void plan_reference(const later_line_t *line)
+{
+    if (strcasecmp(line->name, "SETR") == 0 || strcasecmp(line->name, "LAND") == 0 ||
+        strcasecmp(line->name, "STOP") == 0) {
+        timeline_at(at(line->t_s), refer, (void *)(uintptr_t)line);
+    }
+}
+
 static void plan(const scenario_t *scenario, const flight_options_t *options)
 {
     char reference[32];
@@ -320,6 +337,7 @@ static void plan(const scenario_t *scenario, const flight_options_t *options)
     type_complete_at(METRICS_REFERENCE_S, "SETR", reference);
     for (const later_line_t *line = scenario->later; line->name != NULL; line++) {
         type_complete_at(line->t_s, line->name, line->value);
+        plan_reference(line);
     }
     type_complete_at(flight.record.land_s, "SETR", "0");
     timeline_at(at(flight.record.land_s), landing, NULL);
@@ -431,6 +449,14 @@ static void record_row(const truth_t *truth)
     tape_truth(truth->height_m, truth->altitude_m, truth->terrain_m, truth->flown_n);
 }
 
+/* What the firmware says that it doubts. */
+static unsigned doubts_of(uint16_t flags)
+{
+    return ((flags & FLIGHT_FLAG_SIGHT) != 0U ? METRICS_SIGHT : 0U) |
+           ((flags & FLIGHT_FLAG_IMU) != 0U ? METRICS_IMU : 0U) |
+           ((flags & FLIGHT_FLAG_THRUST) != 0U ? METRICS_THRUST : 0U);
+}
+
 static metrics_sample_t look(double t_s, const quadrotor_state_t *truth)
 {
     const flight_outputs_t out = firmware_view().flight;
@@ -443,6 +469,8 @@ static metrics_sample_t look(double t_s, const quadrotor_state_t *truth)
                               .taken_over = phase == FLIGHT_LOWERING || phase == FLIGHT_DESCENDING,
                               .coming_down = phase == FLIGHT_DESCENDING || phase == FLIGHT_LANDING,
                               .on_ground = truth->on_ground,
+                              .ours = board_selected(),
+                              .doubts = doubts_of(out.flags),
                               .may_cut = board_selected() &&
                                          cos(truth->roll_rad) * cos(truth->pitch_rad) > UPRIGHT,
                               .flagged = out.flags != 0U,
@@ -655,6 +683,7 @@ static void conclude(flight_result_t *result)
     value[METRIC_GROUND_CONTACTS] = quadrotor_state(board_quadrotor())->contacts;
     value[METRIC_MOTOR_STOPS] = quadrotor_state(board_quadrotor())->motor_stops;
     value[METRIC_MOTORS_AT_END] = quadrotor_state(board_quadrotor())->motors;
+    value[METRIC_COLLIDED] = quadrotor_state(board_quadrotor())->collided;
     value[METRIC_SCANS] = firmware_view().scans;
     value[METRIC_SCANS_REJECTED] = (double)firmware_view().damages + firmware_view().altitude.heightless;
     value[METRIC_COMMANDS_OK] = flight.ok;

@@ -19,6 +19,8 @@
 #define OFF_S 0.2
 #define WRONG_M 0.3
 #define OVER_S 1.0
+#define REACHED_M 0.1        /* where FLIGHT_FLAG_REACH ends too */
+#define REACHED_WITHIN_S 8.0 /* twice what a climb of 3 m takes with VUP as delivered, 0.7 m/s */
 
 const char *const metric_names[] = {
     "rise_time_s",    "overshoot_mm", "hover_rms_mm",   "hover_mean_error_mm",
@@ -27,7 +29,9 @@ const char *const metric_names[] = {
     "commands_err",   "max_error_mm", "highest_mm",     "touch_speed_mps",
     "takeovers",      "cuts",         "off_aloft",      "down_s",
     "stopped_s",      "deceived_s",   "flagged_s",      "again_rms_mm",
-    "by_eye_rms_mm",  "motor_stops",  "motors_at_end",
+    "by_eye_rms_mm",  "motor_stops",  "motors_at_end",  "landed_unordered",
+    "sight_doubts",   "imu_doubts",   "thrust_doubts",  "off_s",
+    "aloft_s",        "collided",
 };
 _Static_assert(sizeof metric_names / sizeof metric_names[0] == METRIC_COUNT, "every metric has a name");
 
@@ -96,7 +100,7 @@ static void find_extremes(metrics_record_t *record, const metrics_sample_t *s)
     const double off_mm = error_mm(record, s);
 
     if (s->t_s >= METRICS_REFERENCE_S) {
-        record->highest_mm = fmax(record->highest_mm, off_mm);
+        record->highest_mm = fmax(record->highest_mm, (s->height_m - record->highest_wanted_m) * 1000.0);
     }
     if (s->t_s >= MAX_ERROR_START_S && s->t_s <= record->land_s) {
         record->largest_mm = fmax(record->largest_mm, fabs(off_mm));
@@ -196,6 +200,58 @@ static void watch_estimate(metrics_record_t *record, const metrics_sample_t *s)
     }
 }
 
+/* Whether the firmware is to keep a height now. */
+static bool held(const metrics_record_t *record, const metrics_sample_t *s)
+{
+    return s->ours && record->wanted_m > 0.0 && s->t_s >= METRICS_REFERENCE_S && s->t_s < record->land_s;
+}
+
+/* A flight that ends by itself. What the pilot has landed is not one. */
+static void watch_landing(metrics_record_t *record, const metrics_sample_t *s)
+{
+    record->flew = held(record, s) && (record->flew || s->height_m > 0.5 * record->wanted_m);
+    if (!s->on_ground || !record->flew) {
+        record->stood_since_s = s->t_s;
+    } else if (s->t_s - record->stood_since_s >= OVER_S) {
+        record->landed_unordered++;
+        record->flew = false;
+    }
+}
+
+/* A doubt that began before, on the ground, counts with the take-off; one that began in a pilot's hands does
+ * not. */
+static void watch_doubts(metrics_record_t *record, const metrics_sample_t *s)
+{
+    const bool aloft = s->height_m > AIRBORNE_M && s->t_s >= METRICS_REFERENCE_S && s->t_s < record->land_s;
+    const unsigned risen = s->doubts & ~record->doubts;
+
+    if (aloft && s->ours) {
+        record->in_air_s += record->count > 0 ? s->t_s - record->before.t_s : 0.0;
+        for (int i = 0; i < METRICS_SOURCES; i++) {
+            record->doubted[i] += (risen >> i) & 1U;
+        }
+    }
+    record->doubts = aloft ? s->doubts : 0U;
+}
+
+static void watch_reference(metrics_record_t *record, const metrics_sample_t *s)
+{
+    const double off_m = s->height_m - record->wanted_m;
+    const int side = off_m > WRONG_M ? 1 : off_m < -WRONG_M ? -1 : 0;
+
+    if (!held(record, s)) { /* it begins anew with what it gets back */
+        record->reached = false;
+        record->ordered_s = fmax(s->t_s, record->ordered_s);
+    }
+    record->reached = record->reached || fabs(off_m) < REACHED_M ||
+                      s->t_s > record->ordered_s + REACHED_WITHIN_S;
+    if (side == 0 || side != record->off_side || !held(record, s) || !record->reached) {
+        record->aside_since_s = s->t_s;
+    }
+    record->off_side = side;
+    record->aside_s = fmax(record->aside_s, s->t_s - record->aside_since_s);
+}
+
 static void gather(metrics_record_t *record, const metrics_sample_t *s)
 {
     const double t = s->t_s, off_mm = error_mm(record, s);
@@ -225,6 +281,11 @@ static void gather(metrics_record_t *record, const metrics_sample_t *s)
 void metrics_begin(metrics_record_t *record, double reference_m, bool terrain, double land_s)
 {
     *record = (metrics_record_t){.reference_m = reference_m,
+                                 .wanted_m = reference_m,
+                                 .highest_wanted_m = reference_m,
+                                 .ordered_s = METRICS_REFERENCE_S,
+                                 .stood_since_s = -INFINITY,
+                                 .aside_since_s = -INFINITY,
                                  .terrain = terrain,
                                  .land_s = land_s,
                                  .tenth_s = NAN,
@@ -239,6 +300,14 @@ void metrics_begin(metrics_record_t *record, double reference_m, bool terrain, d
                                  .running_s = -INFINITY};
 }
 
+void metrics_order(metrics_record_t *record, double t_s, double reference_m)
+{
+    record->wanted_m = reference_m;
+    record->highest_wanted_m = fmax(record->highest_wanted_m, reference_m);
+    record->ordered_s = t_s;
+    record->reached = false;
+}
+
 void metrics_add(metrics_record_t *record, const metrics_sample_t *sample)
 {
     gather(record, sample);
@@ -250,6 +319,9 @@ void metrics_add(metrics_record_t *record, const metrics_sample_t *sample)
     watch_motors(record, sample);
     watch_descent(record, sample);
     watch_estimate(record, sample);
+    watch_landing(record, sample);
+    watch_doubts(record, sample);
+    watch_reference(record, sample);
     record->before = *sample;
     record->count++;
 }
@@ -303,5 +375,11 @@ void metrics_compute(const metrics_record_t *record, metrics_t *metrics)
     value[METRIC_FLAGGED_S] = record->flagged_s;
     value[METRIC_AGAIN_RMS_MM] = rms(&record->again);
     value[METRIC_BY_EYE_RMS_MM] = rms(&record->by_eye);
+    value[METRIC_LANDED_UNORDERED] = record->landed_unordered;
+    value[METRIC_SIGHT_DOUBTS] = record->doubted[0];
+    value[METRIC_IMU_DOUBTS] = record->doubted[1];
+    value[METRIC_THRUST_DOUBTS] = record->doubted[2];
+    value[METRIC_OFF_S] = record->aside_s;
+    value[METRIC_ALOFT_S] = record->in_air_s;
     judge(record, metrics);
 }

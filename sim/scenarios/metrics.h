@@ -10,12 +10,20 @@
 #define METRICS_EDGE_S 11.02    /* recovery counts from here */
 #define METRICS_RECOVERY_END_S 15.0
 
+/* Sources that the firmware may doubt, as bits. */
+#define METRICS_SIGHT 1U
+#define METRICS_IMU 2U
+#define METRICS_THRUST 4U
+#define METRICS_SOURCES 3
+
 typedef struct {
     double t_s, height_m, speed_mps, thrust_n; /* thrust: commanded */
     bool taken_over;  /* the supervisor has taken the vehicle from the law: LOWERING or DESCENDING */
     bool coming_down; /* by the supervisor's order, and nothing but a new reference ends it: DESCENDING,
                          LANDING */
     bool on_ground;
+    bool ours;         /* the firmware has the throttle */
+    unsigned doubts;   /* sources that it doubts */
     bool may_cut;      /* the firmware has the throttle, and the vehicle is not truly tilted by more than 45
                           degrees */
     bool flagged;      /* the firmware doubts something, and says so */
@@ -38,8 +46,9 @@ typedef enum {
     METRIC_SCANS_REJECTED,
     METRIC_COMMANDS_OK,
     METRIC_COMMANDS_ERR,
-    METRIC_MAX_ERROR_MM,    /* largest |height - reference|, 6 s to the landing command */
-    METRIC_HIGHEST_MM,      /* above the reference, from the reference to the end of the flight */
+    METRIC_MAX_ERROR_MM, /* largest |height - reference|, 6 s to the landing command */
+    METRIC_HIGHEST_MM,   /* above the highest reference ordered so far, from the first one to the end of the
+                            flight */
     METRIC_TOUCH_SPEED_MPS, /* hardest touch: fastest fall within the last 30 mm; NAN when it never came down
                              */
     METRIC_TAKEOVERS,       /* times that the supervisor took over before the landing command */
@@ -51,10 +60,20 @@ typedef enum {
     METRIC_DECEIVED_S, /* longest time for which the height that the law acts on was wrong by more than 0.3 m
                         * in the air without a flag */
     METRIC_FLAGGED_S,  /* time with a flag in the air, before the landing command */
-    METRIC_AGAIN_RMS_MM,  /* of height - reference, 5 to 8 s after the field day's second take-off */
-    METRIC_BY_EYE_RMS_MM, /* likewise while its pilot holds the height */
-    METRIC_MOTOR_STOPS,   /* times that the autopilot stopped the motors in the air */
-    METRIC_MOTORS_AT_END, /* 1: they still run */
+    METRIC_AGAIN_RMS_MM,     /* of height - reference, 5 to 8 s after the field day's second take-off */
+    METRIC_BY_EYE_RMS_MM,    /* likewise while its pilot holds the height */
+    METRIC_MOTOR_STOPS,      /* times that the autopilot stopped the motors in the air */
+    METRIC_MOTORS_AT_END,    /* 1: they still run */
+    METRIC_LANDED_UNORDERED, /* times that a flight ended by itself: on the ground for a second, with a
+                              * reference in force and the firmware's the throttle */
+    METRIC_SIGHT_DOUBTS,  /* times that the firmware began to doubt the heights, in the air before the landing
+                             command, the throttle being its own */
+    METRIC_IMU_DOUBTS,    /* the accelerations */
+    METRIC_THRUST_DOUBTS, /* the effect of its commands */
+    METRIC_OFF_S,    /* longest time for which it was more than 0.3 m off the reference in force, to the same
+                      * side; counted once that was reached, or ordered 8 s ago */
+    METRIC_ALOFT_S,  /* time in the air before the landing command, the throttle being the firmware's */
+    METRIC_COLLIDED, /* 1: has flown into something */
     METRIC_COUNT
 } metric_t;
 
@@ -90,12 +109,21 @@ typedef struct {
     double takeovers, cuts, off_aloft;
     double aloft_since_s; /* above 30 mm without a break; NAN: not */
     double off_since_s, wrong_since_s, deceived_s, flagged_s;
+    double wanted_m, highest_wanted_m, ordered_s; /* the reference in force, and since when */
+    bool reached, flew;                           /* that reference; off the ground by it */
+    double stood_since_s, landed_unordered;
+    unsigned doubts;
+    double doubted[METRICS_SOURCES];
+    int off_side; /* of the reference: 1 above, -1 below */
+    double aside_since_s, aside_s, in_air_s;
     double order_s, aloft_s,
         running_s; /* coming down since; last seen in the air; last seen with running motors */
     bool too_high, off_course;
 } metrics_record_t;
 
 void metrics_begin(metrics_record_t *record, double reference_m, bool terrain, double land_s);
+/* Another reference than that of metrics_begin() is in force from t_s on; 0: it lands. */
+void metrics_order(metrics_record_t *record, double t_s, double reference_m);
 void metrics_add(metrics_record_t *record, const metrics_sample_t *sample);
 /* After the landing command or a descent by the supervisor: on the ground, with the motors off, for a second.
  */

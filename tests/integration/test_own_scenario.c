@@ -51,7 +51,7 @@ void test_a_flight_as_the_file_says(void)
         0,
         fly("# up, and higher\n" FLIGHT
             "name mine\nset LAW EST\nset plant.turbulence 0\nat 6 SETR 0.9 # a step\n"
-            "expect highest_mm 380 500\nexpect ground_contacts 0 0\nfate succeeds\n",
+            "expect max_error_mm 380 500\nexpect ground_contacts 0 0\nfate succeeds\n",
             "--seed 4"),
         output);
     TEST_ASSERT_NOT_NULL(strstr(output, "mine, seed 4"));
@@ -60,8 +60,8 @@ void test_a_flight_as_the_file_says(void)
 
 void test_an_expectation_that_does_not_hold_is_named(void)
 {
-    TEST_ASSERT_EQUAL_INT(1, fly(FLIGHT "expect highest_mm 380 500\n", ""));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "NOT MET: highest_mm is not within 380..500"), output);
+    TEST_ASSERT_EQUAL_INT(1, fly(FLIGHT "expect max_error_mm 380 500\n", ""));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "NOT MET: max_error_mm is not within 380..500"), output);
 }
 
 void test_a_file_that_is_like_a_scenario_flies_as_it_does(void)

@@ -17,7 +17,7 @@ void setUp(void)
 {
     metrics_begin(&record, 0.6, false, LAND_S);
     ticks = 0;
-    now = (metrics_sample_t){.thrust_n = 7.4, .may_cut = true};
+    now = (metrics_sample_t){.thrust_n = 7.4, .ours = true, .may_cut = true};
     now.on_ground = true;
 }
 
@@ -278,6 +278,116 @@ void test_a_flight_fails_by_what_happens_first(void)
     go(8.0, 1.7);
     value(METRIC_RISE_TIME_S);
     TEST_ASSERT_EQUAL_STRING("rose above the reference + 1 m", found.failure);
+}
+
+void test_a_flight_that_ends_by_itself_is_counted_and_one_that_is_ordered_or_the_pilots_is_not(void)
+{
+    hover();
+    go(23.0, 0.0);
+    go(26.0, 0.0);
+    NEAR(1e-9, 0.0, value(METRIC_LANDED_UNORDERED));
+
+    setUp();
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    go(10.0, 0.6);
+    go(12.0, 0.0);
+    go(12.9, 0.0);
+    NEAR(1e-9, 0.0, value(METRIC_LANDED_UNORDERED)); /* a touch */
+    go(18.0, 0.0);
+    NEAR(1e-9, 1.0, value(METRIC_LANDED_UNORDERED));
+
+    setUp();
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    now.ours = false;
+    go(10.0, 0.0);
+    now.ours = true;
+    go(18.0, 0.0);
+    NEAR(1e-9, 0.0, value(METRIC_LANDED_UNORDERED));
+
+    setUp();
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    metrics_order(&record, 2.0, 0.0);
+    go(4.0, 0.0);
+    go(18.0, 0.0);
+    NEAR(1e-9, 0.0, value(METRIC_LANDED_UNORDERED));
+}
+
+void test_each_source_that_is_doubted_counts_once_each_time_in_the_air(void)
+{
+    now.doubts = METRICS_IMU; /* since the ground: counts with the take-off */
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    now.doubts = METRICS_IMU | METRICS_SIGHT;
+    go(5.0, 0.6);
+    now.doubts = 0;
+    go(6.0, 0.6);
+    now.doubts = METRICS_SIGHT;
+    go(7.0, 0.6);
+    now.doubts = 0;
+    go(LAND_S, 0.6);
+    now.doubts = METRICS_THRUST; /* while it lands */
+    go(25.0, 0.0);
+    NEAR(1e-9, 2.0, value(METRIC_SIGHT_DOUBTS));
+    NEAR(1e-9, 1.0, value(METRIC_IMU_DOUBTS));
+    NEAR(1e-9, 0.0, value(METRIC_THRUST_DOUBTS));
+    NEAR(0.06, 18.95, value(METRIC_ALOFT_S));
+}
+
+void test_commands_without_effect_in_a_pilots_hands_are_no_doubt_of_the_truth(void)
+{
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    now.ours = false;
+    now.doubts = METRICS_THRUST;
+    go(5.0, 0.6);
+    now.ours = true;
+    go(6.0, 0.6);
+    NEAR(1e-9, 0.0, value(METRIC_THRUST_DOUBTS));
+    now.doubts = 0;
+    go(7.0, 0.6);
+    now.doubts = METRICS_THRUST;
+    go(8.0, 0.6);
+    NEAR(1e-9, 1.0, value(METRIC_THRUST_DOUBTS));
+}
+
+void test_who_leaves_its_height_is_off_and_who_is_still_on_its_way_is_not(void)
+{
+    hover();
+    NEAR(0.011, 0.0, value(METRIC_OFF_S));
+
+    setUp();
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    go(10.0, 0.6);
+    go(10.5, 1.0); /* 0.4 m above, then below: 0.35 s on each side of the way, and 3 s */
+    go(13.5, 1.0);
+    go(14.0, 0.2);
+    go(16.0, 0.2);
+    go(LAND_S, 0.6);
+    NEAR(0.3, 3.1, value(METRIC_OFF_S));
+
+    setUp(); /* an order is no fault, unless it is not obeyed */
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    go(5.0, 0.6);
+    metrics_order(&record, 5.0, 2.0);
+    go(9.0, 2.0);
+    NEAR(0.011, 0.0, value(METRIC_OFF_S));
+    NEAR(0.1, 0.0, value(METRIC_HIGHEST_MM));
+    metrics_order(&record, 9.0, 1.0);
+    go(18.0, 2.0);
+    NEAR(0.02, 1.0, value(METRIC_OFF_S));
+    NEAR(0.1, 0.0, value(METRIC_HIGHEST_MM)); /* above the highest one ordered */
+}
+
+void test_one_that_never_leaves_the_ground_has_left_its_height(void)
+{
+    go(LAND_S, 0.0);
+    NEAR(0.02, LAND_S - METRICS_REFERENCE_S - 8.0, value(METRIC_OFF_S));
+    NEAR(1e-9, 0.0, value(METRIC_LANDED_UNORDERED));
 }
 
 /* As many as a day has. */
