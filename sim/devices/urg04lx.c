@@ -11,6 +11,8 @@
 #define STEPS_N (LAST_STEP + 1)
 #define AMIN_STEP 44
 #define AMAX_STEP 725
+#define INSTANT_STEP 389     /* that config.ray_instant tells */
+#define STEPS_IN_A_TURN 1024 /* of which a reply may ask for 769 */
 #define NEAREST_GOOD_MM 20
 #define CODE_NOT_MEASURABLE 19
 #define CODE_BEYOND_SCIP1 16
@@ -23,6 +25,9 @@
 #define TROUBLE_ENDS 50 /* first code that ends a measurement */
 #define TROUBLE_OVER 98
 #define VERIFY_TURNS 10
+/* From `V` to its echo, the first octets on the wire, of a recorded URG-04LX (two logs in gearbox's
+ * hokuyo_aist: 380.0 and 381 ms). */
+#define FIRST_ANSWER (381 * SIM_MS)
 
 typedef struct {
     char text[COMMAND_N + 1];
@@ -31,7 +36,7 @@ typedef struct {
     bool repeated; /* same symbol as the one before, which is still unanswered */
 } command_t;
 
-/* A measurement asked for: sampled in one revolution, sent at its end. */
+/* A measurement asked for: sampled step by step in one revolution, sent at its end. */
 typedef struct {
     urg04lx_t *urg;
     timeline_action_t turn_over;
@@ -40,6 +45,7 @@ typedef struct {
     int beyond;                      /* what stands for a distance that the field cannot hold */
     bool active;
     int64_t turn;
+    int next; /* step to be sampled */
     timeline_id_t event;
     int distance_mm[STEPS_N];
 } scan_t;
@@ -55,6 +61,7 @@ struct urg04lx {
     double next_rate; /* takes over when the line falls silent; 0: none */
     timeline_id_t boot_event;
     bool powered, ready, scip2, laser_on, time_mode;
+    bool answered; /* any command since power-up */
     sim_time_t first_turn, clock_zero;
 
     command_t incoming;
@@ -185,20 +192,47 @@ static int64_t next_turn(const urg04lx_t *urg)
     return turning < 0 ? 0 : turning / urg->config.revolution + 1;
 }
 
+static int last_at_once(const scan_t *scan)
+{
+    const int last = scan->next + URG_RAYS_AT_ONCE - 1;
+
+    return last < scan->last ? last : scan->last;
+}
+
+/* The mirror looks at the middle of the steps that are sampled together. */
+static sim_time_t instant(const scan_t *scan)
+{
+    const urg04lx_t *urg = scan->urg;
+    const double middle = 0.5 * (scan->next + last_at_once(scan)) - INSTANT_STEP;
+    const sim_time_t nominal = turn_start(urg, scan->turn) + urg->config.ray_instant +
+                               (sim_time_t)llround(middle / STEPS_IN_A_TURN * (double)urg->config.revolution);
+    const sim_time_t start = turn_start(urg, scan->turn), over = turn_start(urg, scan->turn + 1);
+
+    return nominal < start ? start : nominal < over ? nominal : over;
+}
+
 static void sample(void *context)
 {
     scan_t *scan = context;
     const urg04lx_t *urg = scan->urg;
+    const urg_rays_t rays = {.first_step = scan->first,
+                             .last_step = scan->last,
+                             .from_step = scan->next,
+                             .to_step = last_at_once(scan)};
 
-    urg->world(urg->world_context, scan->first, scan->last, scan->distance_mm + scan->first);
-    scan->event = timeline_at(turn_start(urg, scan->turn + 1), scan->turn_over, scan);
+    urg->world(urg->world_context, &rays, scan->distance_mm + rays.from_step);
+    scan->next = rays.to_step + 1;
+    scan->event = scan->next <= scan->last
+                      ? timeline_at(instant(scan), sample, scan)
+                      : timeline_at(turn_start(urg, scan->turn + 1), scan->turn_over, scan);
 }
 
 static void await_turn(scan_t *scan, int64_t turn)
 {
     scan->active = true;
     scan->turn = turn;
-    scan->event = timeline_at(turn_start(scan->urg, turn) + scan->urg->config.ray_instant, sample, scan);
+    scan->next = scan->first;
+    scan->event = timeline_at(instant(scan), sample, scan);
 }
 
 static void drop_scan(scan_t *scan)
@@ -279,12 +313,30 @@ static bool unanswered(const urg04lx_t *urg)
     return urg->queue_count > 0 || urg->single.active;
 }
 
+static bool at_once(const char *text)
+{
+    return strncmp(text, "TM", 2) == 0 || strncmp(text, "GD", 2) == 0 || strncmp(text, "GS", 2) == 0;
+}
+
+static sim_time_t answer_delay(const urg04lx_t *urg)
+{
+    if (!urg->config.answers_in_turn) {
+        return urg->config.latency;
+    }
+    if (!urg->answered) {
+        return FIRST_ANSWER;
+    }
+    return urg->scip2 && !at_once(urg->queue[urg->queue_head].text)
+               ? turn_start(urg, next_turn(urg)) - timeline_now()
+               : urg->config.latency;
+}
+
 static void pump(urg04lx_t *urg)
 {
     bool blocked = urg->single.active || urg->next_rate > 0.0;
 
     if (urg->command_event == 0 && urg->queue_count > 0 && !blocked) {
-        urg->command_event = timeline_after(urg->config.latency, handle_next, urg);
+        urg->command_event = timeline_after(answer_delay(urg), handle_next, urg);
     }
 }
 
@@ -830,6 +882,7 @@ static void handle_next(void *context)
     command_t command = urg->queue[urg->queue_head];
 
     urg->command_event = 0;
+    urg->answered = true;
     urg->queue_head = (urg->queue_head + 1) % QUEUE_N;
     urg->queue_count--;
     if (urg->scip2) {
@@ -930,7 +983,7 @@ static void switch_off(urg04lx_t *urg)
     urg->queue_count = 0;
     urg->trouble = 0;
     urg->verifying = false;
-    urg->powered = urg->ready = urg->scip2 = urg->laser_on = urg->time_mode = false;
+    urg->powered = urg->ready = urg->scip2 = urg->laser_on = urg->time_mode = urg->answered = false;
 }
 
 void urg04lx_power(urg04lx_t *urg, bool on)

@@ -18,10 +18,17 @@
 #include "sim/devices/serial.h"
 #include "sim/noise.h"
 
-/* Distances of the steps first..last in mm as the sensor would report them (codes below 20 included), taken
- * at the instant of the call: the middle of the sweep. distance_mm[0] is the first step's. Outside 44..725
- * the sensor itself puts code 19. */
-typedef void (*urg_world_t)(void *context, int first_step, int last_step, int *distance_mm);
+/* The mirror turns past some steps: half a millisecond of them at a time, which is the airframe's step. */
+#define URG_RAYS_AT_ONCE 5
+typedef struct {
+    int first_step, last_step; /* asked for in this revolution */
+    int from_step, to_step;    /* whose instant is now; the revolution begins with from_step == first_step */
+} urg_rays_t;
+
+/* Distances of the steps from_step..to_step in mm as the sensor would report them (codes below 20 included),
+ * taken at the instant of the call. distance_mm[0] is from_step's. Outside 44..725 the sensor itself puts
+ * code 19. */
+typedef void (*urg_world_t)(void *context, const urg_rays_t *rays, int *distance_mm);
 
 typedef struct urg04lx urg04lx_t;
 
@@ -29,9 +36,13 @@ typedef struct {
     double power_up_rate;   /* bits per second, 115200 on the seed's sensor (factory 19200) */
     sim_time_t boot;        /* power to the first octet that is heard */
     sim_time_t latency;     /* a command's turn (its terminator, or the answer before) to its answer, 8 ms */
+    bool answers_in_turn;   /* false: always so. true: as recorded. SCIP1.1, TM, GD and GS so; other commands
+                             * once   a revolution, at its end, which is 90 to 115 ms after a command that
+                             * follows   an   answer; the first since power-up after 381 ms */
     sim_time_t revolution;  /* 100 ms */
     sim_time_t phase;       /* start of the first revolution after power-up */
-    sim_time_t ray_instant; /* sampling instant after the start of a revolution, 34 ms */
+    sim_time_t ray_instant; /* of step 389, the middle of 372..406, after the start of a revolution: 34 ms.
+                             * The others come as the mirror turns, 97.66 us from step to step */
     double clock_ratio;     /* sensor clock against true time, 1.0 */
     bool rounds_down;       /* steps that fill no cluster make no point; else they make the last one */
 } urg04lx_config_t;

@@ -84,7 +84,15 @@ static const figure_t figures[] = {
      "the beam's ground lies that much higher than the gear's; < 0: lower"},
     {"edge_start", "s", -LARGE, LARGE, SCENE(edge_start_s), 1, "scenario time from which on"},
     {"ray_noise", "mm", 0, 1000, SCENE(ray_sigma_mm), 1, "of each ray, rms"},
+    {"ray_correlation", "-", 0, 0.99, SCENE(ray_correlation), 1,
+     "of neighbouring rays' noise; recorded: 0.5"},
     {"common_noise", "mm", 0, 1000, SCENE(common_sigma_mm), 1, "of all rays of a scan, rms"},
+    {"mirror_noise", "mm", 0, 1000, SCENE(mirror_sigma_mm), 1,
+     "of all rays of a mirror in a scan, each mirror its own, rms"},
+    {"wander", "mm", 0, 1000, SCENE(wander_sigma_mm), 1, "slow drift of all rays, rms; recorded: 2"},
+    {"wander_tau", "s", 0.1, 10000, SCENE(wander_tau_s), 1, "its correlation time"},
+    {"warm_up_mm", "mm", -1000, 1000, SCENE(warm_up_mm), 1, "that much too far at power-on, then less"},
+    {"warm_up_tau", "s", 1, 100000, SCENE(warm_up_s), 1, "by 1/e in each such time"},
     {"glitches", "-", 0, 1, SCENE(glitch_probability), 1, "probability of a broken scan"},
     {"rays_lost", "-", 0, 1, SCENE(rays_lost), 1,
      "share of the rays, each scan others, that are codes below 20"},
@@ -100,9 +108,15 @@ static const figure_t figures[] = {
     {"scan_frozen_start", "s", -LARGE, LARGE, SCENE(frozen.start_s), 1,
      "scenario time from which scans repeat, with new time stamps"},
     {"scan_frozen_length", "s", 0, LARGE, SCENE(frozen.length_s), 1, "for how long"},
-    {"struck_beam", "-", 0, 3, SCENE(struck_beam), 1,
-     "0: lost, blocked and frozen act on every beam; 1 front, 2 aft, 3 fore"},
-    {"ray_instant", "s", 0, 0.1, AT(ray_instant_s), 1, "sampling instant after the start of a revolution"},
+    {"struck_beam", "-", 0, 6, SCENE(struck_beam), 1,
+     "beams so struck: 0 all, 1 front, 2 aft, 3 fore; 4, 5, 6: not 3, 2, 1"},
+    {"ray_instant", "s", 0, 0.1, AT(ray_instant_s), 1,
+     "of step 389, the front's middle, after the start of a revolution"},
+    {"scanner_answers", "-", 0, 1, AT(scanner_answers), 1,
+     "0: 8 ms after a command; 1: as recorded, once a revolution"},
+    {"scanner_rate", "bit/s", 19200, 750000, AT(board.laser.power_up_rate), 1,
+     "at power-up, as stored in it; from the factory 19200"},
+    {"scanner_boot", "s", 0.1, 30, AT(scanner_boot_s), 1, "from its power to the first octet that it hears"},
     {"clock_ppm", "ppm", -10000, 10000, AT(clock_ppm), 1, "the scanner's clock against true time"},
     {"outage_start", "s", -LARGE, LARGE, AT(outage_start_s), 1,
      "scenario time from which the scanner's line is mute"},
@@ -186,6 +200,8 @@ void plant_init(plant_t *plant, unsigned long seed)
 {
     *plant = (plant_t){.board = board_config(seed)};
     plant->ray_instant_s = (double)plant->board.laser.ray_instant * 1e-9;
+    plant->scanner_boot_s = (double)plant->board.laser.boot * 1e-9;
+    plant->scanner_answers = plant->board.laser.answers_in_turn;
     plant->imu_age_s = (double)plant->board.imu.age * 1e-9;
     plant->outage_start_s = 10.0;
     plant->restart_start_s = SPAN_FOR_GOOD_S;
@@ -235,6 +251,8 @@ void plant_complete(plant_t *plant)
 {
     plant->board.laser.ray_instant = (sim_time_t)llround(plant->ray_instant_s * 1e9);
     plant->board.laser.clock_ratio = 1.0 + plant->clock_ppm * 1e-6;
+    plant->board.laser.boot = (sim_time_t)llround(plant->scanner_boot_s * 1e9);
+    plant->board.laser.answers_in_turn = plant->scanner_answers >= 0.5;
     complete_imu(plant);
     if (plant->attitude_throttle >= 0.5 && plant->board.quadrotor.climb_rate_mps_per_n <= 0.0) {
         plant->board.quadrotor.climb_rate_mps_per_n = 1.0;

@@ -28,11 +28,11 @@ static double wall_mm(sim_time_t when)
     return 2000.0 - 50.0 * (double)when / 1e9;
 }
 
-static void look(void *context, int first_step, int last_step, int *distance_mm)
+static void look(void *context, const urg_rays_t *rays, int *distance_mm)
 {
     (void)context;
-    for (int step = first_step; step <= last_step; step++) {
-        distance_mm[step - first_step] = (int)wall_mm(timeline_now());
+    for (int step = rays->from_step; step <= rays->to_step; step++) {
+        distance_mm[step - rays->from_step] = (int)wall_mm(timeline_now());
     }
 }
 

@@ -89,11 +89,11 @@ static int distance_at(int step)
     return 600 + 7 * (step % 40);
 }
 
-static void look(void *context, int first_step, int last_step, int *distance_mm)
+static void look(void *context, const urg_rays_t *rays, int *distance_mm)
 {
     (void)context;
-    for (int step = first_step; step <= last_step; step++) {
-        distance_mm[step - first_step] = distance_at(step);
+    for (int step = rays->from_step; step <= rays->to_step; step++) {
+        distance_mm[step - rays->from_step] = distance_at(step);
     }
 }
 

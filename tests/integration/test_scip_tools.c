@@ -43,22 +43,25 @@ static void hear(void *context, unsigned octet, double bit_ns)
     stream[stream_length++] = (unsigned char)octet;
 }
 
-/* Distances of every kind: codes, near, beyond two characters, up to DMAX. */
-static void world(void *context, int first_step, int last_step, int *distance_mm)
+/* Distances of every kind: codes, near, beyond two characters, up to DMAX. Revolutions begin at whole 100 ms.
+ */
+static void world(void *context, const urg_rays_t *rays, int *distance_mm)
 {
-    truth_t *t = &truth[truth_count++];
+    truth_t *t;
 
     (void)context;
+    truth_count += rays->from_step == rays->first_step;
     TEST_ASSERT_TRUE(truth_count <= FRAMES_MAX);
-    t->stamp_ms = (long)((timeline_now() - urg04lx_default.ray_instant) / SIM_MS) & 0xFFFFFFL;
-    t->first = first_step;
-    t->last = last_step;
-    for (int i = 0; i <= last_step - first_step; i++) {
+    t = &truth[truth_count - 1];
+    t->stamp_ms = (long)(timeline_now() / urg04lx_default.revolution) * 100L & 0xFFFFFFL;
+    t->first = rays->first_step;
+    t->last = rays->last_step;
+    for (int i = 0; i <= rays->to_step - rays->from_step; i++) {
         const double kind = noise_uniform(&world_noise, 0.0, 1.0);
 
         distance_mm[i] = (int)noise_uniform(&world_noise, kind < 0.1 ? 0.0 : 20.0,
                                             kind < 0.1 ? 20.0 : 5601.0);
-        t->distance_mm[i] = distance_mm[i];
+        t->distance_mm[rays->from_step - rays->first_step + i] = distance_mm[i];
     }
 }
 

@@ -442,10 +442,10 @@ static void hear(void *context, unsigned octet, double bit_ns)
     heard[heard_count] = '\0';
 }
 
-static void world(void *context, int first_step, int last_step, int *distance_mm)
+static void world(void *context, const urg_rays_t *rays, int *distance_mm)
 {
     (void)context;
-    for (int i = 0; i <= last_step - first_step; i++) {
+    for (int i = 0; i <= rays->to_step - rays->from_step; i++) {
         distance_mm[i] = 700;
     }
 }

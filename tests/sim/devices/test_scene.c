@@ -51,7 +51,9 @@ static void at(double t_s)
 
 static void scan(void)
 {
-    scene_scan(&scene, FIRST, LAST, ray_mm);
+    const urg_rays_t rays = {FIRST, LAST, FIRST, LAST};
+
+    scene_scan(&scene, &rays, ray_mm);
 }
 
 static int rays_at(int mm)
@@ -309,7 +311,9 @@ static void start_in_place(void)
 
 static void sweep(void)
 {
-    scene_scan(&scene, 0, SCENE_STEPS - 1, all_mm);
+    const urg_rays_t rays = {0, SCENE_STEPS - 1, 0, SCENE_STEPS - 1};
+
+    scene_scan(&scene, &rays, all_mm);
 }
 
 /* Front: 105 + 700. Aft: 115 + 698. Fore: 107 + 705. The ray 20 steps (7.03125 degrees) off the axis goes 1 /
@@ -399,4 +403,152 @@ void test_one_frozen_beam_tells_its_latest_distance_while_the_others_go_on(void)
     TEST_ASSERT_EQUAL_INT(805, all_mm[384]);
     TEST_ASSERT_EQUAL_INT(713, all_mm[128]);
     TEST_ASSERT_EQUAL_INT(712, all_mm[640]);
+}
+
+TEST_CASE(4.0, 150, 150, 812)
+TEST_CASE(5.0, 150, 813, 150)
+TEST_CASE(6.0, 805, 150, 150)
+void test_a_fault_may_strike_two_beams(double beams, int front_mm, int aft_mm, int fore_mm)
+{
+    place_init(&place);
+    calm.sight_blocked = 1.0;
+    calm.struck_beam = beams;
+    start_in_place();
+    sweep();
+    TEST_ASSERT_EQUAL_INT(front_mm, all_mm[384]);
+    TEST_ASSERT_EQUAL_INT(aft_mm, all_mm[128]);
+    TEST_ASSERT_EQUAL_INT(fore_mm, all_mm[640]);
+}
+
+/* Lifted by 350 mm, or each second ray a code. */
+void test_a_glitch_strikes_the_beams_that_faults_strike(void)
+{
+    int lifted = 0, broken = 0;
+
+    place_init(&place);
+    calm.glitch_probability = 1.0;
+    calm.struck_beam = 3.0;
+    start_in_place();
+    for (int n = 0; n < 40; n++) {
+        sweep();
+        TEST_ASSERT_EQUAL_INT(805, all_mm[384]);
+        TEST_ASSERT_EQUAL_INT(813, all_mm[128]);
+        lifted += all_mm[640] == 812 + 350;
+        broken += all_mm[640] < 20 || all_mm[641] < 20;
+    }
+    TEST_ASSERT_EQUAL_INT(40, lifted + broken);
+    TEST_ASSERT_TRUE(lifted > 8 && broken > 8);
+}
+
+/* ---- noise ---- */
+
+#define TURNS 3000
+
+/* Standard deviations over the revolutions of the front's ray, of what it and its neighbour, and of what it
+ * and the aft mirror's have in common. */
+typedef struct {
+    double ray, neighbour, aft, wander;
+} spread_t;
+
+static spread_t spread(void)
+{
+    double squares = 0.0, neighbour = 0.0, aft = 0.0, next = 0.0, before = 0.0;
+
+    place_init(&place);
+    start_in_place();
+    for (int n = 0; n < TURNS; n++) {
+        at(0.1 * n);
+        sweep();
+        const double front = all_mm[384] - 805;
+        squares += front * front;
+        neighbour += front * (all_mm[385] - 805);
+        aft += front * (all_mm[128] - 813);
+        next += n > 0 ? front * before : 0.0;
+        before = front;
+    }
+    return (spread_t){sqrt(squares / TURNS), neighbour / squares, aft / squares, next / squares};
+}
+
+void test_common_noise_is_the_same_in_all_mirrors(void)
+{
+    calm.common_sigma_mm = 6.0;
+    const spread_t s = spread();
+    NEAR(0.3, 6.0, s.ray);
+    NEAR(0.02, 1.0, s.neighbour);
+    NEAR(0.02, 1.0, s.aft);
+    NEAR(0.05, 0.0, s.wander);
+}
+
+void test_mirror_noise_is_each_mirrors_own(void)
+{
+    calm.mirror_sigma_mm = 6.0;
+    const spread_t s = spread();
+    NEAR(0.3, 6.0, s.ray);
+    NEAR(0.02, 1.0, s.neighbour);
+    NEAR(0.05, 0.0, s.aft);
+}
+
+/* Recorded: 0.48 from ray to ray. Rounding to millimetres adds 1/12 mm2 to 36. */
+void test_neighbouring_rays_go_together_as_told(void)
+{
+    calm.ray_sigma_mm = 6.0;
+    calm.ray_correlation = 0.5;
+    const spread_t s = spread();
+    NEAR(0.3, 6.0, s.ray);
+    NEAR(0.05, 0.5, s.neighbour);
+    NEAR(0.05, 0.0, s.aft);
+}
+
+/* exp(-0.1 s / 3 s) = 0.967. Its samples are few: 300 s hold 100 times 3 s. */
+void test_a_wander_is_common_to_the_mirrors_and_slow(void)
+{
+    calm.wander_sigma_mm = 6.0;
+    const spread_t s = spread();
+    NEAR(1.2, 6.0, s.ray);
+    NEAR(0.02, 1.0, s.aft);
+    NEAR(0.02, 0.967, s.wander);
+}
+
+/* 40 mm at power-on, 40/e = 14.7 after 600 s, none after hours. */
+void test_a_sensor_that_warms_up_reads_less_and_less_too_far(void)
+{
+    place_init(&place);
+    calm.warm_up_mm = 40.0;
+    calm.warm_up_s = 600.0;
+    start_in_place();
+    sweep();
+    TEST_ASSERT_EQUAL_INT(845, all_mm[384]);
+    at(600.0);
+    sweep();
+    TEST_ASSERT_EQUAL_INT(820, all_mm[384]);
+    at(20000.0);
+    sweep();
+    TEST_ASSERT_EQUAL_INT(805, all_mm[384]);
+}
+
+/* A lift at 0.4 m/s under all three spots: the rays see it where it is when each is measured, 25 ms apart. On
+ * the wire: aft before front before fore. */
+void test_three_mirrors_see_a_lift_at_three_instants(void)
+{
+    int mm[3][SCENE_STEPS];
+
+    place_init(&place);
+    TEST_ASSERT_TRUE(place_add(&place, &(place_block_t){.length_m = 2.0,
+                                                        .width_m = 2.0,
+                                                        .bottom_m = -1.0,
+                                                        .travel_m = 0.5,
+                                                        .travel_mps = 0.4,
+                                                        .travel_start_s = 1.0,
+                                                        .stay_s = 10.0}));
+    start_in_place();
+    for (int i = 0; i < 3; i++) {
+        const int step = (int[]){128, 384, 640}[i];
+        const urg_rays_t rays = {0, SCENE_STEPS - 1, step, step};
+
+        at(1.5 + 0.025 * i);
+        scene_scan(&scene, &rays, &mm[i][step]);
+    }
+    TEST_ASSERT_INT_WITHIN(1, 813 - 200, mm[0][128]);
+    TEST_ASSERT_INT_WITHIN(1, 805 - 210, mm[1][384]);
+    TEST_ASSERT_INT_WITHIN(1, 812 - 220, mm[2][640]);
 }

@@ -23,20 +23,22 @@ static urg04lx_config_t config;
 static heard_t heard;
 static double host_rate;
 static int world_mm[STEPS_N];
-static sim_time_t world_called_at;
+static sim_time_t world_called_at; /* for step 389 */
+static sim_time_t step_at[STEPS_N];
 static int world_first, world_last;
 static unsigned world_calls, instants;
 
-static void world(void *context, int first_step, int last_step, int *distance_mm)
+static void world(void *context, const urg_rays_t *rays, int *distance_mm)
 {
     TEST_ASSERT_EQUAL_PTR(world_mm, context);
-    world_called_at = timeline_now();
-    world_first = first_step;
-    world_last = last_step;
-    world_calls++;
-    for (int step = first_step; step <= last_step; step++) {
-        distance_mm[step - first_step] = world_mm[step];
+    world_first = rays->first_step;
+    world_last = rays->last_step;
+    world_calls += rays->from_step == rays->first_step;
+    for (int step = rays->from_step; step <= rays->to_step; step++) {
+        distance_mm[step - rays->from_step] = world_mm[step];
+        step_at[step] = timeline_now();
     }
+    world_called_at = step_at[389];
 }
 
 static void listen(void *context, unsigned octet, double bit_ns)
@@ -1281,14 +1283,49 @@ void test_an_endless_stream_sends_one_frame_per_revolution(void)
     TEST_ASSERT_EQUAL_UINT(0, urg04lx_state(urg).revolutions_skipped);
 }
 
-void test_a_stream_costs_one_event_per_octet_and_two_per_revolution(void)
+/* 97.65625 us from step to step, at most two steps from the middle of those that are measured together: the
+ * mirrors of the seed's bracket are looked into 25 ms apart. */
+void test_each_step_is_measured_as_the_mirror_turns_past_it(void)
+{
+    config.phase = 30 * SIM_MS;
+    create_scip2();
+    run_until(1075 * SIM_MS);
+    host("MS0044072500001\n");
+    run_until(1229 * SIM_MS);
+    for (int step = 44; step <= 725; step++) {
+        const double due_ms = 1130.0 + 34.0 + (step - 389) * 0.09765625;
+
+        TEST_ASSERT_DOUBLE_WITHIN(0.196, due_ms, (double)step_at[step] * 1e-6);
+        TEST_ASSERT_TRUE(step == 44 || step_at[step] >= step_at[step - 1]);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.4, 25.0, (double)(step_at[384] - step_at[128]) * 1e-6);
+}
+
+/* Where the front is looked at so early or late that other steps would fall into other revolutions. */
+TEST_CASE(0)
+TEST_CASE(100)
+void test_no_step_is_measured_outside_its_revolution(int front_ms)
+{
+    config.phase = 30 * SIM_MS;
+    config.ray_instant = front_ms * SIM_MS;
+    create_scip2();
+    run_until(1075 * SIM_MS);
+    host("MS0044072500001\n");
+    run_until(1400 * SIM_MS);
+    for (int step = 44; step <= 725; step++) {
+        TEST_ASSERT_TRUE(step_at[step] >= 1130 * SIM_MS && step_at[step] <= 1230 * SIM_MS);
+    }
+}
+
+/* 35 steps in groups of five. */
+void test_a_stream_costs_one_event_per_octet_and_eight_per_revolution(void)
 {
     create_scip2();
     forget();
     host("MS0372040601000\n");
     instants = 0;
     run_for(10 * SIM_S);
-    TEST_ASSERT_TRUE(instants <= heard.count + 2 * 101 + 2);
+    TEST_ASSERT_TRUE(instants <= heard.count + 8 * 101 + 2);
 }
 
 void test_a_counted_stream_counts_down_and_turns_the_laser_off(void)
@@ -1587,7 +1624,7 @@ void test_the_clock_starts_with_the_power(void)
     run_for(SIM_S);
     ask("SCIP2.0\n", "SCIP2.0\n0\n\n");
     forget();
-    host("MS0384038401001\n");
+    host("MS0389038901001\n");
     run_for(SIM_S);
     frame_t frame = read_frame(heard.text + 21, "99b\n");
     TEST_ASSERT_EQUAL_INT64(1800, frame.time_ms);
@@ -1600,7 +1637,7 @@ void test_the_revolution_is_configurable(void)
     config.ray_instant = 20 * SIM_MS;
     create_scip2();
     forget();
-    host("MS0384038401002\n");
+    host("MS0389038901002\n");
     run_for(SIM_S);
     frame_t first = read_frame(heard.text + 21, "99b\n");
     frame_t second = read_frame(first.end, "99b\n");
@@ -1733,4 +1770,58 @@ void test_random_octets_break_nothing(void)
     TEST_ASSERT_NOT_NULL(strstr(heard.text, "QT\n00P\n\n"));
     TEST_ASSERT_TRUE(urg04lx_state(urg).scip2);
     TEST_ASSERT_FALSE(urg04lx_state(urg).streaming);
+}
+
+/* ---- answers as recorded ---- */
+
+/* The recording: V after 380 ms, the switch after 7, then VV, PP, II, BM one after the other at once: 96, 98,
+ * 99, 98 ms; GD within 174; TM1 within 1. Revolutions begin at 30 ms and every 100. */
+void test_a_sensor_as_recorded_answers_once_a_revolution(void)
+{
+    config.answers_in_turn = true;
+    config.phase = 30 * SIM_MS;
+    create();
+    urg04lx_power(urg, true);
+    run_until(config.boot + 5 * SIM_MS);
+    forget();
+    host("V\n");
+    const sim_time_t asked = timeline_now();
+    run_for(SIM_S);
+    TEST_ASSERT_EQUAL_INT64(asked + 381 * SIM_MS + 86806, heard.at[0]);
+    ask("SCIP2.0\n", "SCIP2.0\n0\n\n");
+    run_until(12020 * SIM_MS);
+    forget();
+    host("VV\nPP\nII\n");
+    run_until(12600 * SIM_MS);
+    TEST_ASSERT_EQUAL_INT64(12030 * SIM_MS + 86806, heard.at[0]);
+    TEST_ASSERT_EQUAL_INT64(12130 * SIM_MS + 86806, heard.at[strstr(heard.text, "\nPP\n") + 1 - heard.text]);
+    TEST_ASSERT_EQUAL_INT64(12230 * SIM_MS + 86806, heard.at[strstr(heard.text, "\nII\n") + 1 - heard.text]);
+}
+
+void test_a_sensor_as_recorded_answers_time_and_single_scans_at_once(void)
+{
+    config.answers_in_turn = true;
+    create_scip2();
+    run_for(SIM_S);
+    forget();
+    host("TM0\n");
+    const sim_time_t asked = timeline_now();
+    run_for(50 * SIM_MS);
+    TEST_ASSERT_EQUAL_INT64(asked + config.latency + 86806, heard.at[0]);
+}
+
+/* After a loss of power the first answer is late again. */
+void test_a_sensor_as_recorded_is_slow_after_each_power_up(void)
+{
+    config.answers_in_turn = true;
+    create_scip2();
+    urg04lx_power(urg, false);
+    urg04lx_power(urg, true);
+    run_for(config.boot + SIM_MS);
+    forget();
+    host("V\n");
+    run_for(380 * SIM_MS);
+    TEST_ASSERT_EQUAL_UINT(0, heard.count);
+    run_for(50 * SIM_MS);
+    TEST_ASSERT_TRUE(heard.count > 0);
 }

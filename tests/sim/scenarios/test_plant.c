@@ -92,3 +92,14 @@ void test_each_row_tells_its_figure_in_the_figures_unit(void)
     TEST_ASSERT_TRUE(rows >= 80);
     TEST_ASSERT_EQUAL_UINT(1, found);
 }
+
+void test_the_scanners_figures_reach_its_model(void)
+{
+    plant_set(&plant, "plant.scanner_answers", 1.0);
+    plant_set(&plant, "plant.scanner_rate", 19200.0);
+    plant_set(&plant, "plant.scanner_boot", 2.5);
+    plant_complete(&plant);
+    TEST_ASSERT_TRUE(plant.board.laser.answers_in_turn);
+    NEAR(1e-9, 19200.0, plant.board.laser.power_up_rate);
+    TEST_ASSERT_EQUAL_INT64(2500 * SIM_MS, plant.board.laser.boot);
+}
