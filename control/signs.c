@@ -53,7 +53,7 @@ command_t signs_of_command(const situation_t *now, const flight_inputs_t *in, fl
         .authority_mps2_per_n = vehicle.authority_mps2_per_n,
         .damping_per_s = vehicle.damping_per_s,
         .wanted_m = wanted_m,
-        .noise_mps2 = now->est->estimator.noise_mps2,
+        .noise_mps2 = now->est->estimator.credit.noise_mps2,
     };
 }
 

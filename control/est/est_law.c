@@ -118,7 +118,7 @@ static void learn_hover(est_law_t *law, const parameters_t *parameters, float dt
         return; /* no height confirms the estimated speed */
     }
     if (e->now.height_m > IN_THE_AIR_M || seen_n > law->hover.thrust_n) {
-        hover_step(&law->hover, seen_n, e->noise_mps2 / vehicle.authority_mps2_per_n + doubt_n, dt_s);
+        hover_step(&law->hover, seen_n, e->credit.noise_mps2 / vehicle.authority_mps2_per_n + doubt_n, dt_s);
     }
     if (is_climb(parameters) && e->now.height_m > IN_THE_AIR_M) {
         deadband_learn(&law->deadband, law->actuator.thrust_n - law->hover.thrust_n,
@@ -233,7 +233,7 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_s
 
 static float lift_off_threshold_mps2(const est_law_t *law)
 {
-    return at_least(LIFT_OFF_SIGMAS * law->estimator.noise_mps2, LIFT_OFF_MPS2);
+    return at_least(LIFT_OFF_SIGMAS * law->estimator.credit.noise_mps2, LIFT_OFF_MPS2);
 }
 
 /* True during the take-off ramp, while the vehicle does not yet accelerate upwards: less than 0.4 (chosen) of
@@ -254,7 +254,7 @@ void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t st
     const height_outcome_t outcome = estimator_fuse_height(&law->estimator, altitude, law->rays_us,
                                                            at_rest || on_ground(law));
     if (law->airborne && outcome == HEIGHT_FUSED && law->estimator.felt) {
-        const float expected = 1.0F - law->estimator.latest.share;
+        const float expected = 1.0F - law->estimator.latest.motion.share;
         hover_nudge(&law->hover,
                     -GUST_MPS2_PER_M * expected * law->estimator.innovation_m / law->authority_mps2_per_n);
     }

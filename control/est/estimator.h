@@ -1,14 +1,11 @@
-/* Estimator of height above the terrain, vertical speed, accelerometer bias and terrain rate. It is a
- * Kalman filter with four states:
- *
- *   height' = speed - terrain rate,   speed' = upward acceleration - bias,
- *   bias' = 0,   rate' = -rate / 1 s.
+/* Estimator of height above the terrain, vertical speed, accelerometer bias and terrain rate, by the Kalman
+ * filter of filter.h.
  *
  * Prediction uses the accelerations of the IMU frames. They are mixed with the acceleration that the
  * thrust should cause. Heights correct the states at the instant when their rays were taken.
  *
  * A height arrives late. So the filter and its covariance stay at the instant of the latest rays
- * (`delayed`). The frames since then are kept. The present estimate (`now`) is `delayed`, predicted
+ * (`delayed_us`). The frames since then are kept. The present estimate (`now`) is the filter's, predicted
  * through these frames. A height that is 70 ms old is therefore fused as exactly as a fresh one.
  *
  * Innovation test: a height whose innovation exceeds a bound of at most 80 mm is rejected. Two rejected
@@ -25,32 +22,17 @@
 #include <stdint.h>
 
 #include "control/altitude.h"
+#include "control/est/credit.h"
+#include "control/est/filter.h"
+#include "control/est/roughness.h"
 #include "control/imu_sample.h"
 
-#define ESTIMATOR_FRAMES 16U /* chosen: 0.4 s of frames; a height is 0.07 s old */
-#define ESTIMATOR_STATES 4U
+#define ESTIMATOR_FRAMES 16U                /* chosen: 0.4 s of frames; a height is 0.07 s old */
 #define ESTIMATOR_FRESH_US UINT32_C(250000) /* the estimate is not used when its frames are older */
 
 typedef struct {
-    float height_m;    /* above the terrain */
-    float speed_mps;   /* upwards, relative to the earth */
-    float bias_mps2;   /* bias of the accelerometer; > 0: it reads too much upwards */
-    float terrain_mps; /* rate of the terrain below; > 0: it rises */
-} estimate_t;
-
-/* Acceleration that the thrust should cause. */
-typedef struct {
-    bool known;
-    float up_mps2;
-    float noise_mps2; /* rms error of up_mps2, > 0 */
-} modelled_motion_t;
-
-typedef struct {
     uint32_t time_us; /* when the frame was measured */
-    float up_mps2;    /* mean since the frame before, gravity removed */
-    float share;      /* share of the accelerometer in up_mps2, 0 .. 1 (its bias has the same share);
-                       * the rest is the model */
-    float drift;      /* what its noise adds to the variance of the speed in a second */
+    motion_t motion;  /* since the frame before */
     float roll_rad, pitch_rad;
 } estimator_frame_t;
 
@@ -58,8 +40,7 @@ typedef enum { HEIGHT_FUSED, HEIGHT_REJECTED, HEIGHT_TERRAIN_STEP, HEIGHT_RESET 
 
 typedef struct {
     bool initialised; /* at least one frame and, after it, one height were received; or estimator_start() */
-    estimate_t delayed;
-    float covariance[ESTIMATOR_STATES][ESTIMATOR_STATES]; /* symmetric: [i][j] is kept for i <= j */
+    filter_t filter;  /* at delayed_us, the instant of the latest rays or later */
     uint32_t delayed_us;
     uint32_t rays_us; /* delayed_us at the latest height */
     estimate_t now;   /* estimate at now_us, the instant of the latest frame */
@@ -73,19 +54,11 @@ typedef struct {
     uint16_t frame_count;
     bool has_frames; /* at least one frame was received */
     uint32_t sequence;
-    float previous_mps2[2];   /* raw accelerations of the two frames before */
-    float noise_mps2;         /* measured rms of the accelerometer's noise */
-    float off_model_mps2;     /* measured less modelled acceleration, low-passed */
-    float mean_innovation_m;  /* low-passed */
-    uint16_t fused_count;     /* heights in a row that were fused, at most ACCUSED_HEIGHTS */
-    uint16_t accused_frames;  /* > 0: heights and model agree that the accelerometer is wrong */
-    float previous_m[2];      /* the two previous heights */
-    float floor_m;            /* measured rms noise of the heights; includes the roughness of the floor */
+    credit_t credit;          /* of the accelerometer */
+    roughness_t roughness;    /* of the heights */
     uint16_t rejected_count;  /* rejected heights in a row */
     uint16_t unchecked_count; /* heights still to be fused without the innovation test */
     bool confirmed;           /* the latest height passed the test, or was the second one of a terrain step */
-    float edge_m;             /* latest innovation as high as a bar, see estimator.c */
-    uint32_t edge_us;         /* instant of its rays */
     float rejected_innovation_m; /* innovation of the latest rejected height */
     float innovation_m;          /* innovation of the latest height */
     float terrain_height_m; /* terrain height above the terrain of the start: its steps plus its integrated

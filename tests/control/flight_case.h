@@ -37,7 +37,7 @@ static inline void begin(void)
     est_law_reset(&f.est, &parameters);
     f.est.estimator.initialised = f.est.estimator.has_frames = f.est.estimator.felt = true;
     f.est.estimator.confirmed = true;
-    f.est.estimator.now.height_m = f.est.estimator.delayed.height_m = 0.5F;
+    f.est.estimator.now.height_m = f.est.estimator.filter.estimate.height_m = 0.5F;
     f.est.airborne = true;
     f.where.supervisor.state = FLIGHT_FLYING;
     f.where.supervisor.started = true;

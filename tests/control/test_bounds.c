@@ -199,8 +199,8 @@ void test_a_landing_near_the_ground_goes_on_there_while_heights_are_missing(void
 static float carried_step_n(float felt_mps, float before_n)
 {
     f.bounds.felt_n = before_n;
-    f.est.estimator.now.speed_mps = f.est.estimator.delayed.speed_mps = felt_mps;
-    f.est.estimator.now.bias_mps2 = f.est.estimator.delayed.bias_mps2 = 0.2F;
+    f.est.estimator.now.speed_mps = f.est.estimator.filter.estimate.speed_mps = felt_mps;
+    f.est.estimator.now.bias_mps2 = f.est.estimator.filter.estimate.bias_mps2 = 0.2F;
     return bounded_n(3.0F);
 }
 

@@ -172,8 +172,8 @@ void test_the_end_of_a_doubt_of_the_sight_starts_the_estimate_from_the_heights(v
         f.evidence.height_m = 0.45F;
         f.evidence.rise_mps = -0.6F;
         f.evidence.bias_mps2 = 0.15F;
-        f.est.estimator.delayed.height_m = f.est.estimator.now.height_m = 0.9F;
-        f.est.estimator.delayed.speed_mps = f.est.estimator.now.speed_mps = 2.0F;
+        f.est.estimator.filter.estimate.height_m = f.est.estimator.now.height_m = 0.9F;
+        f.est.estimator.filter.estimate.speed_mps = f.est.estimator.now.speed_mps = 2.0F;
         f.est.hover.thrust_n = 6.5F;
         f.thrust_n = 4.5F;
         f.where.hover.thrust_n = 7.1F;
@@ -222,7 +222,7 @@ void test_a_doubt_of_the_imu_gives_up_what_was_learned_a_short_time(void)
         f.evidence.doubts = DOUBT_IMU;
         f.evidence.height_m = 0.45F;
         f.evidence.rise_mps = -0.1F;
-        f.est.estimator.now.bias_mps2 = f.est.estimator.delayed.bias_mps2 = 0.7F;
+        f.est.estimator.now.bias_mps2 = f.est.estimator.filter.estimate.bias_mps2 = 0.7F;
         f.thrust_n = 6.8F;
         change_doubts();
         NEAR(rows[i].hover_n, f.where.hover.thrust_n);
@@ -309,7 +309,7 @@ void test_a_new_height_is_fused_and_on_the_ground_at_rest(void)
         f.where.supervisor.state = (i == 1) ? FLIGHT_FLYING : FLIGHT_GROUND;
         f.where.supervisor.rest.on = i != 2;
         f.where.supervisor.height.is_new = i != 3;
-        f.est.estimator.delayed.speed_mps = 0.2F;
+        f.est.estimator.filter.estimate.speed_mps = 0.2F;
         in.altitude = (altitude_t){.valid = true, .slant_mm = 500.0F};
         in.height_stamp_ms = 4000U;
         in.height_time_us = 2000000U;
@@ -317,7 +317,7 @@ void test_a_new_height_is_fused_and_on_the_ground_at_rest(void)
         f.est.estimator.delayed_us = 1940000U;
         update_estimator();
         TEST_ASSERT_EQUAL_UINT32((i != 3) ? 1940000U : 0U, f.est.rays_us);
-        TEST_ASSERT_EQUAL(i == 0, f.est.estimator.delayed.speed_mps < 0.05F);
+        TEST_ASSERT_EQUAL(i == 0, f.est.estimator.filter.estimate.speed_mps < 0.05F);
     }
 }
 

@@ -17,7 +17,7 @@ void test_it_begins_with_nothing_known(void)
     TEST_ASSERT_EQUAL(supervisor.kept_state, f.where.supervisor.kept_state);
     TEST_ASSERT_EQUAL_FLOAT(1.0F, f.sense.senses.accelerometer.shaken);
     TEST_ASSERT_EQUAL(IMU_SOUND, f.axes.fault);
-    TEST_ASSERT_EQUAL_FLOAT(0.4F, f.est.estimator.noise_mps2);
+    TEST_ASSERT_EQUAL_FLOAT(0.4F, f.est.estimator.credit.noise_mps2);
     TEST_ASSERT_EQUAL(FLIGHT_MODE_IDLE, f.mode);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, f.where.hover.thrust_n + f.thrust_n + f.laws.transfer_n +
                                       f.where.hover.learned_s);

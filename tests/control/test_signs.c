@@ -51,7 +51,7 @@ void test_the_flight_is_described_to_the_consistency_check(void)
     f.where.hover.thrust_n = 7.2F;
     f.thrust_n = 7.9F;
     f.est.deadband.band_n = 0.2F;
-    f.est.estimator.noise_mps2 = 0.7F;
+    f.est.estimator.credit.noise_mps2 = 0.7F;
     command_t flown = described();
     NEAR(0.1F, flown.step_s);
     TEST_ASSERT_FALSE(flown.grounded || flown.standing || flown.ordered);

@@ -240,7 +240,7 @@ void test_four_times_the_accelerometers_noise_is_borne_without_four_times_the_ac
     double activity;
     TEST_ASSERT_TRUE(mean_rms_mm(shaken, SEEDS, &activity) <= 26.0);
     TEST_ASSERT_TRUE(activity <= 0.8);
-    TEST_ASSERT_FLOAT_WITHIN(0.3F, 1.6F, flight.est.estimator.noise_mps2);
+    TEST_ASSERT_FLOAT_WITHIN(0.3F, 1.6F, flight.est.estimator.credit.noise_mps2);
 }
 
 void test_a_fifth_more_or_less_weight_needs_no_trim(void)
@@ -878,7 +878,7 @@ void test_scans_that_disagree_never_make_it_fly_away(void)
 void test_a_law_that_starts_with_a_wrong_speed_recovers(void)
 {
     hover_at(0.6F);
-    flight.est.estimator.delayed.speed_mps = 3.0F;
+    flight.est.estimator.filter.estimate.speed_mps = 3.0F;
     flight.est.estimator.now.speed_mps = 3.0F;
     run(3.0);
     measure(3.0, 0.6);

@@ -32,7 +32,8 @@ void setUp(void)
     estimator_t *e = &law.estimator;
     e->initialised = e->has_frames = e->felt = true;
     e->delayed_us = e->rays_us = e->now_us = e->felt_us = T_US - FRAME_AGE_US;
-    e->delayed.height_m = e->now.height_m = e->previous_m[0] = e->previous_m[1] = 0.5F;
+    e->filter.estimate.height_m = e->now.height_m = e->roughness.previous_m[0] = e->roughness.previous_m[1] =
+        0.5F;
     e->latest.time_us = e->now_us;
     law.authority_mps2_per_n = G_MPS2 / 7.0F;
     law.airborne = true;
@@ -69,7 +70,7 @@ void test_it_begins_with_nothing_known(void)
     TEST_ASSERT_EQUAL(ray_clock.started, law.ray_clock.started);
     TEST_ASSERT_EQUAL_UINT32(ray_clock.stamp_ms, law.ray_clock.stamp_ms);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, law.heightless_s + law.frameless_s + law.flown_hover_n + law.near_ground_s);
-    TEST_ASSERT_EQUAL_FLOAT(0.4F, law.estimator.noise_mps2);
+    TEST_ASSERT_EQUAL_FLOAT(0.4F, law.estimator.credit.noise_mps2);
     est_law_predict(&law, &parameters, NULL, 0U, T_US);
     TEST_ASSERT_TRUE(law.started);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, law.step_s);
@@ -114,7 +115,7 @@ static void assert_learned(bool learned)
     const float taken_n = (e->up_mps2 - e->now.bias_mps2 + 2.5F * e->now.speed_mps) / authority;
     if (learned) {
         hover_step(&expected, law.actuator.thrust_n * e->upright - taken_n,
-                   e->noise_mps2 / authority + 0.5F * fabsf(e->now.speed_mps), 0.025F);
+                   e->credit.noise_mps2 / authority + 0.5F * fabsf(e->now.speed_mps), 0.025F);
         TEST_ASSERT_TRUE(fabsf(expected.thrust_n - before.hover.thrust_n) > 0.001F);
     }
     TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, expected.thrust_n, law.hover.thrust_n);
@@ -126,7 +127,7 @@ void test_the_hover_thrust_is_learned_by_newton(void)
     for (float side = -1.0F; side < 2.0F; side += 2.0F) {
         setUp();
         law.estimator.now.speed_mps = 0.4F * side;
-        law.estimator.now.bias_mps2 = law.estimator.delayed.bias_mps2 = -0.3F * side;
+        law.estimator.now.bias_mps2 = law.estimator.filter.estimate.bias_mps2 = -0.3F * side;
         frame.median.roll_rad = 0.3F;
         cycle(1.0F * side);
         assert_learned(true);
@@ -140,9 +141,9 @@ void test_nothing_is_learned_that_no_height_confirms(void)
         law.heightless_s = (why == 1) ? 0.28F : 0.27F;
         law.estimator.unchecked_count = (why == 2) ? 1U : 0U;
         law.without_authority = why == 3;
-        law.estimator.accused_frames = (why == 4) ? 5U : 0U;
+        law.estimator.credit.accused_frames = (why == 4) ? 5U : 0U;
         law.airborne = why != 5;
-        law.estimator.now.height_m = law.estimator.delayed.height_m = (why == 6) ? 0.035F : 0.045F;
+        law.estimator.now.height_m = law.estimator.filter.estimate.height_m = (why == 6) ? 0.035F : 0.045F;
         cycle((why == 7) ? -1.0F : 1.0F);
         if (why == 7) { /* low, but the thrust needed is more than known */
             assert_learned(true);
@@ -151,7 +152,7 @@ void test_nothing_is_learned_that_no_height_confirms(void)
         }
     }
     setUp();
-    law.estimator.now.height_m = law.estimator.delayed.height_m = 0.035F;
+    law.estimator.now.height_m = law.estimator.filter.estimate.height_m = 0.035F;
     cycle(-1.0F);
     assert_learned(true);
 }
@@ -162,7 +163,7 @@ void test_without_accelerations_the_models_error_becomes_hover_thrust(void)
     for (int why = 0; why < 4; why++) {
         setUp();
         law.estimator.felt = frame.has_acceleration = false;
-        law.estimator.now.bias_mps2 = law.estimator.delayed.bias_mps2 = 0.6F;
+        law.estimator.now.bias_mps2 = law.estimator.filter.estimate.bias_mps2 = 0.6F;
         law.heightless_s = (why == 1) ? 0.28F : 0.27F;
         law.without_authority = why == 2;
         law.hover.most_n = (why == 3) ? 7.001F : 9.0F;
@@ -182,7 +183,7 @@ void test_a_climb_rate_autopilot_is_learned_slowly_and_its_deadband_too(void)
             set(PARAMETER_PLANT, PLANT_CLIMB);
             law.estimator.felt = frame.has_acceleration = felt != 0;
             law.estimator.now.height_m = (low != 0) ? 0.035F : 0.05F;
-            law.estimator.now.bias_mps2 = law.estimator.delayed.bias_mps2 = (felt != 0) ? 0.0F : 0.6F;
+            law.estimator.now.bias_mps2 = law.estimator.filter.estimate.bias_mps2 = (felt != 0) ? 0.0F : 0.6F;
             law.actuator.thrust_n = law.actuator.demand_n = 7.4F;
             law.deadband.band_n = 0.2F;
             cycle(0.0F);
@@ -216,19 +217,19 @@ void test_the_modelled_motion_is_thrust_less_hover_and_drag(void)
 {
     law.estimator.felt = frame.has_acceleration = false;
     law.actuator.thrust_n = law.actuator.demand_n = 7.7F;
-    law.estimator.now.speed_mps = law.estimator.delayed.speed_mps = 0.2F;
-    law.estimator.now.bias_mps2 = law.estimator.delayed.bias_mps2 = 0.3F;
+    law.estimator.now.speed_mps = law.estimator.filter.estimate.speed_mps = 0.2F;
+    law.estimator.now.bias_mps2 = law.estimator.filter.estimate.bias_mps2 = 0.3F;
     law.estimator.upright = 0.95F;
     cycle(0.0F);
-    NEAR(G_MPS2 / 7.0F * (7.7F * 0.95F - 7.0F) - 2.5F * 0.2F, law.estimator.latest.up_mps2);
-    NEAR(1.0F, law.estimator.latest.share);
+    NEAR(G_MPS2 / 7.0F * (7.7F * 0.95F - 7.0F) - 2.5F * 0.2F, law.estimator.latest.motion.up_mps2);
+    NEAR(1.0F, law.estimator.latest.motion.share);
     setUp(); /* with accelerations, the gust is part of the model */
     law.hover.gust_n = 0.4F;
     law.actuator.thrust_n = law.actuator.demand_n = 7.7F;
     cycle(0.0F);
     const float share = 0.84F * 0.84F / (0.84F * 0.84F + 0.16F);
-    NEAR(share, law.estimator.latest.share);
-    NEAR((1.0F - share) * G_MPS2 / 7.0F * 0.3F, law.estimator.latest.up_mps2);
+    NEAR(share, law.estimator.latest.motion.share);
+    NEAR((1.0F - share) * G_MPS2 / 7.0F * 0.3F, law.estimator.latest.motion.up_mps2);
 }
 
 void test_the_model_is_known_in_the_air_alone(void)
@@ -241,7 +242,7 @@ void test_the_model_is_known_in_the_air_alone(void)
         law.estimator.now.height_m = (why >= 4) ? 0.035F : 0.045F;
         law.heightless_s = (why == 5) ? 0.18F : 0.17F;
         cycle(0.0F);
-        TEST_ASSERT_EQUAL(why == 0 || why == 5, law.estimator.latest.share < 0.99F);
+        TEST_ASSERT_EQUAL(why == 0 || why == 5, law.estimator.latest.motion.share < 0.99F);
     }
 }
 
@@ -249,11 +250,11 @@ void test_without_heights_the_model_has_more_weight(void)
 {
     law.heightless_s = 0.17F; /* 0.195 s then */
     cycle(0.0F);
-    NEAR(0.81514F, law.estimator.latest.share); /* 0.84 against 0.4 m/s2 */
+    NEAR(0.81514F, law.estimator.latest.motion.share); /* 0.84 against 0.4 m/s2 */
     setUp();
     law.heightless_s = 0.18F;
     cycle(0.0F);
-    NEAR(0.0225F / 0.1825F, law.estimator.latest.share); /* 0.15 */
+    NEAR(0.0225F / 0.1825F, law.estimator.latest.motion.share); /* 0.15 */
 }
 
 /* ---- cycles */
@@ -355,7 +356,7 @@ void test_the_lift_off_is_watched_through_80_ms_and_its_speed_decays_within_a_se
     law.lift_mps2 = 0.2F;
     law.lift_n = 6.0F;
     law.lift_mps = 0.4F;
-    law.estimator.now.bias_mps2 = law.estimator.delayed.bias_mps2 = 0.1F;
+    law.estimator.now.bias_mps2 = law.estimator.filter.estimate.bias_mps2 = 0.1F;
     cycle(1.1F);
     NEAR(0.2F + 0.3125F * 0.8F, law.lift_mps2); /* 25 of 80 ms */
     NEAR(6.0F + 0.3125F * 1.0F, law.lift_n);
@@ -377,7 +378,7 @@ static bool lifts(float lift_mps2, float noise_mps2, float height_m, float thrus
     setUp();
     law.airborne = false;
     law.lift_mps2 = lift_mps2;
-    law.estimator.noise_mps2 = noise_mps2;
+    law.estimator.credit.noise_mps2 = noise_mps2;
     law.ground_m = 0.02F;
     law.estimator.now.height_m = 0.02F + height_m;
     law.actuator.thrust_n = thrust_n;
@@ -481,8 +482,8 @@ void test_without_accelerations_the_height_tells_when_it_left_the_ground(void)
 {
     law.airborne = law.estimator.felt = false;
     law.ground_m = 0.5F;
-    law.estimator.now.height_m = law.estimator.delayed.height_m = 0.54F;
-    law.estimator.now.bias_mps2 = law.estimator.delayed.bias_mps2 = 0.2F;
+    law.estimator.now.height_m = law.estimator.filter.estimate.height_m = 0.54F;
+    law.estimator.now.bias_mps2 = law.estimator.filter.estimate.bias_mps2 = 0.2F;
     law.actuator.thrust_n = law.actuator.demand_n = 7.9F;
     law.heightless_s = 0.05F;
     const float jerk = 4.0F * G_MPS2 / 7.0F;
@@ -514,7 +515,7 @@ void test_an_innovation_is_a_gust_as_far_as_the_model_has_weight(void)
 {
     for (int why = 0; why < 4; why++) {
         setUp();
-        law.estimator.latest.share = 0.8F;
+        law.estimator.latest.motion.share = 0.8F;
         law.airborne = why != 1;
         law.estimator.felt = why != 2;
         see((why == 3) ? 0.9F : 0.51F, false);
@@ -541,16 +542,16 @@ void test_on_the_ramp_a_vehicle_that_does_not_accelerate_is_at_rest(void)
         law.airborne = rows[i].airborne;
         law.ramping = rows[i].ramping;
         law.lift_mps2 = rows[i].lift_mps2;
-        law.estimator.noise_mps2 = rows[i].noise_mps2;
-        law.estimator.delayed.speed_mps = 0.1F;
-        law.estimator.covariance[1][1] = 0.04F;
+        law.estimator.credit.noise_mps2 = rows[i].noise_mps2;
+        law.estimator.filter.estimate.speed_mps = 0.1F;
+        law.estimator.filter.covariance[FILTER_SPEED][FILTER_SPEED] = 0.04F;
         see(0.5F, false);
-        TEST_ASSERT_EQUAL(rows[i].rests, law.estimator.delayed.speed_mps < 0.01F);
+        TEST_ASSERT_EQUAL(rows[i].rests, law.estimator.filter.estimate.speed_mps < 0.01F);
     }
     setUp();
-    law.estimator.delayed.speed_mps = 0.1F;
+    law.estimator.filter.estimate.speed_mps = 0.1F;
     see(0.5F, true);
-    TEST_ASSERT_TRUE(law.estimator.delayed.speed_mps < 0.01F);
+    TEST_ASSERT_TRUE(law.estimator.filter.estimate.speed_mps < 0.01F);
 }
 
 /* ---- taking over and giving back */
@@ -856,9 +857,9 @@ void test_a_height_without_frames_forgets_the_latest_one(void)
     for (int late = 0; late < 2; late++) {
         setUp();
         law.frameless_s = (late != 0) ? 0.151F : 0.15F;
-        law.estimator.latest.share = 0.8F;
+        law.estimator.latest.motion.share = 0.8F;
         see(0.5F, false);
-        TEST_ASSERT_EQUAL_FLOAT((late != 0) ? 0.0F : 0.8F, law.estimator.latest.share);
+        TEST_ASSERT_EQUAL_FLOAT((late != 0) ? 0.0F : 0.8F, law.estimator.latest.motion.share);
     }
 }
 

@@ -96,14 +96,14 @@ static void fly(double seconds, double sigma_m)
 
 static void assert_sound(void)
 {
-    const float *x = &e.delayed.height_m;
+    const float *x = &e.filter.estimate.height_m;
     for (int i = 0; i < 4; i++) {
         TEST_ASSERT_TRUE(isfinite(x[i]));
-        TEST_ASSERT_TRUE(e.covariance[i][i] > 0.0F && e.covariance[i][i] <= 1.0001F);
+        TEST_ASSERT_TRUE(e.filter.covariance[i][i] > 0.0F && e.filter.covariance[i][i] <= 1.0001F);
         for (int j = i; j < 4; j++) {
-            TEST_ASSERT_TRUE(isfinite(e.covariance[i][j]));
-            TEST_ASSERT_TRUE(e.covariance[i][j] * e.covariance[i][j] <=
-                             1.01F * e.covariance[i][i] * e.covariance[j][j] + 1e-12F);
+            TEST_ASSERT_TRUE(isfinite(e.filter.covariance[i][j]));
+            TEST_ASSERT_TRUE(e.filter.covariance[i][j] * e.filter.covariance[i][j] <=
+                             1.01F * e.filter.covariance[i][i] * e.filter.covariance[j][j] + 1e-12F);
         }
     }
 }
@@ -210,10 +210,10 @@ void test_the_tilt_at_the_rays_corrects_the_height(void)
         estimator_predict(&e, &f, no_model);
     }
     (void)estimator_fuse_height(&e, &a, time_us - 300000U, false);
-    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.6F, e.delayed.height_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.6F, e.filter.estimate.height_m);
     (void)estimator_fuse_height(&e, &a, time_us - 50000U, false);
     TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.7F * cosf(0.1F) - 0.22F * sinf(0.1F) - 0.1F,
-                             e.delayed.height_m + 0.0F * e.innovation_m + 0.0F);
+                             e.filter.estimate.height_m + 0.0F * e.innovation_m + 0.0F);
 }
 
 void test_the_accelerometers_noise_is_measured(void)
@@ -223,7 +223,7 @@ void test_the_accelerometers_noise_is_measured(void)
         setUp();
         noise_rms = rms[i];
         fly(12.0, 0.003);
-        TEST_ASSERT_FLOAT_WITHIN(0.3F * (float)rms[i], (float)rms[i], e.noise_mps2);
+        TEST_ASSERT_FLOAT_WITHIN(0.3F * (float)rms[i], (float)rms[i], e.credit.noise_mps2);
     }
 }
 
@@ -235,14 +235,14 @@ void test_noise_gives_the_expectation_its_share(void)
         time_us += 25000U;
         estimator_predict(&e, &f, expected);
     }
-    TEST_ASSERT_TRUE(e.latest.share > 0.95F);
+    TEST_ASSERT_TRUE(e.latest.motion.share > 0.95F);
     noise_rms = 1.6;
     for (int i = 0; i < 300; i++) {
         imu_sample_t f = frame();
         time_us += 25000U;
         estimator_predict(&e, &f, expected);
     }
-    TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.84F * 0.84F / (0.84F * 0.84F + 1.6F * 1.6F), e.latest.share);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.84F * 0.84F / (0.84F * 0.84F + 1.6F * 1.6F), e.latest.motion.share);
 }
 
 void test_rest_tells_the_bias(void)
@@ -307,8 +307,8 @@ void test_the_third_in_a_row_starts_anew_whatever_it_says(void)
     TEST_ASSERT_EQUAL(HEIGHT_REJECTED, see(0.9));
     TEST_ASSERT_EQUAL(HEIGHT_REJECTED, see(0.1));
     TEST_ASSERT_EQUAL(HEIGHT_RESET, see(1.4));
-    TEST_ASSERT_FLOAT_WITHIN(0.05F, 1.4F, e.delayed.height_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, e.delayed.terrain_mps);
+    TEST_ASSERT_FLOAT_WITHIN(0.05F, 1.4F, e.filter.estimate.height_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, e.filter.estimate.terrain_mps);
     TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.5));
     TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.5));
     for (int i = 0; i < 12; i++) {
@@ -342,10 +342,10 @@ void test_from_any_wrong_state_it_recovers_within_two_seconds(void)
         setUp();
         bits = SEED + (uint32_t)i;
         hover();
-        e.delayed.height_m += (float)(4.0 * uniform() - 2.0);
-        e.delayed.speed_mps = (float)(8.0 * uniform() - 4.0);
-        e.delayed.bias_mps2 = (float)(3.0 * uniform() - 1.5);
-        e.delayed.terrain_mps = (float)(uniform() - 0.5);
+        e.filter.estimate.height_m += (float)(4.0 * uniform() - 2.0);
+        e.filter.estimate.speed_mps = (float)(8.0 * uniform() - 4.0);
+        e.filter.estimate.bias_mps2 = (float)(3.0 * uniform() - 1.5);
+        e.filter.estimate.terrain_mps = (float)(uniform() - 0.5);
         for (int k = 0; k < 20; k++) {
             (void)see(0.5);
         }
@@ -407,7 +407,7 @@ void test_a_million_quiet_steps_do_not_wear_the_covariance_down(void)
     }
     assert_sound();
     TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.52));
-    TEST_ASSERT_TRUE(e.delayed.height_m > 0.503F);
+    TEST_ASSERT_TRUE(e.filter.estimate.height_m > 0.503F);
 }
 
 void test_after_a_gap_of_the_frames_it_starts_anew(void)
@@ -445,19 +445,21 @@ void test_a_height_corrects_states_and_covariance_by_one_gain(void)
 {
     fly(8.0, 0.005);
     const estimator_t before = e;
-    const float(*const p)[ESTIMATOR_STATES] = before.covariance;
-    const altitude_t a = altitude((double)e.delayed.height_m + 0.01);
+    const float(*const p)[FILTER_STATES] = before.filter.covariance;
+    const altitude_t a = altitude((double)e.filter.estimate.height_m + 0.01);
     TEST_ASSERT_EQUAL(HEIGHT_FUSED, estimator_fuse_height(&e, &a, e.delayed_us, false));
-    const float per_m = (e.delayed.height_m - before.delayed.height_m) / 0.01F / p[0][0];
+    const float per_m = (e.filter.estimate.height_m - before.filter.estimate.height_m) / 0.01F / p[0][0];
     TEST_ASSERT_TRUE(per_m > 0.0F && per_m * p[0][0] < 0.9F);
-    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.01F * per_m * p[0][1], e.delayed.speed_mps - before.delayed.speed_mps);
-    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.01F * per_m * p[0][2], e.delayed.bias_mps2 - before.delayed.bias_mps2);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.01F * per_m * p[0][1],
+                             e.filter.estimate.speed_mps - before.filter.estimate.speed_mps);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.01F * per_m * p[0][2],
+                             e.filter.estimate.bias_mps2 - before.filter.estimate.bias_mps2);
     TEST_ASSERT_FLOAT_WITHIN(1e-5F, 0.01F * per_m * p[0][3],
-                             e.delayed.terrain_mps - before.delayed.terrain_mps);
-    for (uint16_t i = 0U; i < ESTIMATOR_STATES; i++) {
-        for (uint16_t j = i; j < ESTIMATOR_STATES; j++) {
+                             e.filter.estimate.terrain_mps - before.filter.estimate.terrain_mps);
+    for (uint16_t i = 0U; i < FILTER_STATES; i++) {
+        for (uint16_t j = i; j < FILTER_STATES; j++) {
             const float less = per_m * p[0][i] * p[0][j];
-            TEST_ASSERT_FLOAT_WITHIN(1e-8F + 0.02F * fabsf(less), p[i][j] - less, e.covariance[i][j]);
+            TEST_ASSERT_FLOAT_WITHIN(1e-8F + 0.02F * fabsf(less), p[i][j] - less, e.filter.covariance[i][j]);
         }
     }
 }
@@ -467,7 +469,7 @@ void test_after_a_gap_nothing_of_before_is_left(void)
 {
     hover();
     noise_rms = 0.0;
-    const float noise_mps2 = e.noise_mps2;
+    const float noise_mps2 = e.credit.noise_mps2;
     time_us += 400000U;
     bias = 3.0;
     const imu_sample_t f = frame();
@@ -475,10 +477,10 @@ void test_after_a_gap_nothing_of_before_is_left(void)
     TEST_ASSERT_EQUAL_UINT16(0U, e.frame_count);
     TEST_ASSERT_EQUAL_UINT32(f.arrival_us - 23600U, e.now_us);
     TEST_ASSERT_EQUAL_UINT32(e.now_us, e.delayed_us);
-    TEST_ASSERT_TRUE(e.noise_mps2 <= noise_mps2);
+    TEST_ASSERT_TRUE(e.credit.noise_mps2 <= noise_mps2);
     const imu_sample_t next = frame();
     estimator_predict(&e, &next, no_model);
-    TEST_ASSERT_TRUE_MESSAGE(e.noise_mps2 <= noise_mps2, "two equal frames show no noise");
+    TEST_ASSERT_TRUE_MESSAGE(e.credit.noise_mps2 <= noise_mps2, "two equal frames show no noise");
 }
 
 void test_an_edge_that_comes_and_goes_is_a_bar_at_once(void)
@@ -486,9 +488,9 @@ void test_an_edge_that_comes_and_goes_is_a_bar_at_once(void)
     hover();
     (void)see(0.56);
     (void)see(0.56);
-    TEST_ASSERT_TRUE_MESSAGE(e.floor_m < 0.02F, "an edge");
+    TEST_ASSERT_TRUE_MESSAGE(e.roughness.noise_m < 0.02F, "an edge");
     (void)see(0.50);
-    TEST_ASSERT_FLOAT_WITHIN(0.006F, 0.03F, e.floor_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.006F, 0.03F, e.roughness.noise_m);
     for (int i = 0; i < 4; i++) {
         TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(i % 2 == 0 ? 0.56 : 0.50));
         TEST_ASSERT_FLOAT_WITHIN(0.12F, 0.0F, e.now.speed_mps);
@@ -500,14 +502,14 @@ void test_an_edge_that_comes_and_goes_is_a_bar_at_once(void)
 void test_bars_on_the_floor_are_noise_and_a_single_edge_is_not(void)
 {
     hover();
-    TEST_ASSERT_TRUE(e.floor_m < 0.006F);
+    TEST_ASSERT_TRUE(e.roughness.noise_m < 0.006F);
     (void)see(0.5 + 0.25);
     (void)see(0.5 + 0.25);
-    TEST_ASSERT_TRUE(e.floor_m < 0.02F);
+    TEST_ASSERT_TRUE(e.roughness.noise_m < 0.02F);
     for (int i = 0; i < 60; i++) {
         (void)see(0.75 + (i % 2 == 0 ? 0.06 : 0.0));
     }
-    TEST_ASSERT_TRUE(e.floor_m > 0.04F && e.floor_m < 0.08F);
+    TEST_ASSERT_TRUE(e.roughness.noise_m > 0.04F && e.roughness.noise_m < 0.08F);
     for (int i = 0; i < 20; i++) {
         TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.75 + (i % 2 == 0 ? 0.06 : 0.0)));
         TEST_ASSERT_FLOAT_WITHIN(0.03F, 0.78F, e.now.height_m);
@@ -536,7 +538,7 @@ void test_an_accelerometer_that_thrust_and_heights_accuse_has_no_weight(void)
             }
         }
         TEST_ASSERT_EQUAL(gust == 0, estimator_accuses(&e));
-        TEST_ASSERT_TRUE((e.latest.share < 0.05F) == (gust == 0));
+        TEST_ASSERT_TRUE((e.latest.motion.share < 0.05F) == (gust == 0));
     }
 }
 
@@ -551,12 +553,12 @@ void test_an_accelerometer_far_from_the_thrusts_motion_counts_less(void)
         f.down_mps2 += 4.0F;
         estimator_predict(&e, &f, still);
     }
-    TEST_ASSERT_TRUE(e.latest.share < 0.15F);
-    TEST_ASSERT_FLOAT_WITHIN(0.3F, 4.0F, e.off_model_mps2);
+    TEST_ASSERT_TRUE(e.latest.motion.share < 0.15F);
+    TEST_ASSERT_FLOAT_WITHIN(0.3F, 4.0F, e.credit.off_model_mps2);
     for (int i = 0; i < 20; i++) {
         time_us += 25000U;
         const imu_sample_t f = frame();
         estimator_predict(&e, &f, still);
     }
-    TEST_ASSERT_TRUE(e.latest.share > 0.6F);
+    TEST_ASSERT_TRUE(e.latest.motion.share > 0.6F);
 }

@@ -1,0 +1,55 @@
+/* What breaks: innovations would also contain the noise of the accelerometer; so the heights are compared
+ * with each other. Over bars the filter takes small edges for speed, and after a large one the next change of
+ * the height. */
+#include "control/est/roughness.h"
+
+#include <math.h>
+
+#include "control/between.h"
+
+#define FLOOR_START_M 0.004F     /* chosen: about the noise of a height over a smooth floor */
+#define FLOOR_MAX_M 0.080F       /* chosen: as INNOVATION_LIMIT_MAX_M in estimator.c */
+#define FLOOR_SHARE 0.20F        /* tried: a slower mean knows bars of 60 mm only after the take-off */
+#define FLOOR_CLIP 9.0F          /* chosen: 3 sigma, so that one edge counts little */
+#define FLOOR_VARIANCE 0.5F      /* tried: more, and the vehicle swings by the thrust model alone */
+#define BAR_US UINT32_C(1000000) /* chosen: two edges within that time are a bar, and more will follow */
+#define BAR_LEAST_M 0.040F       /* chosen: ten times the noise of a height */
+#define BAR_MOST_M 0.15F         /* chosen: higher ones are edges or wrong scans, which are rejected */
+#define BAR_SHARE 0.5F           /* rms of a height that is half of the time on the bar */
+
+void roughness_init(roughness_t *roughness)
+{
+    *roughness = (roughness_t){.noise_m = FLOOR_START_M};
+}
+
+/* The second difference of white noise has six times its variance. */
+void roughness_measure(roughness_t *roughness, float height_m)
+{
+    const float difference_m = height_m - 2.0F * roughness->previous_m[0] + roughness->previous_m[1];
+    const float variance = roughness->noise_m * roughness->noise_m;
+    const float seen = at_most(difference_m * difference_m / 6.0F, FLOOR_CLIP * variance);
+
+    roughness->noise_m = between(FLOOR_START_M, sqrtf(variance + FLOOR_SHARE * (seen - variance)),
+                                 FLOOR_MAX_M);
+    roughness->previous_m[1] = roughness->previous_m[0];
+    roughness->previous_m[0] = height_m;
+}
+
+float roughness_variance_m2(const roughness_t *roughness)
+{
+    const float noise_m = roughness->noise_m;
+    return FLOOR_VARIANCE * at_least(noise_m * noise_m - ROUGHNESS_SMOOTH_M * ROUGHNESS_SMOOTH_M, 0.0F);
+}
+
+void roughness_watch_bars(roughness_t *roughness, float innovation_m, uint32_t rays_us)
+{
+    if (fabsf(innovation_m) < BAR_LEAST_M || fabsf(innovation_m) > BAR_MOST_M) {
+        return;
+    }
+    if (innovation_m * roughness->edge_m < 0.0F && rays_us - roughness->edge_us < BAR_US) {
+        const float bar_m = at_most(fabsf(innovation_m), fabsf(roughness->edge_m));
+        roughness->noise_m = between(roughness->noise_m, BAR_SHARE * bar_m, FLOOR_MAX_M);
+    }
+    roughness->edge_m = innovation_m;
+    roughness->edge_us = rays_us;
+}

@@ -1,0 +1,84 @@
+/* Noise of the heights, from both sides of each limit. */
+#include "control/est/roughness.h"
+#include "unity.h"
+
+#include <math.h>
+
+#define NEAR(expected, actual) TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, expected, actual)
+#define T_US UINT32_C(400000) /* the time before it wraps */
+
+static roughness_t roughness;
+
+void setUp(void)
+{
+    roughness_init(&roughness);
+}
+
+void tearDown(void) {}
+
+void test_the_noise_is_a_sixth_of_the_squared_second_difference_over_five_heights(void)
+{
+    static const struct {
+        float before_m, first_m, second_m, noise_m;
+    } rows[] = {{0.010F, 0.51F, 0.50F, 0.0F},      /* computed below */
+                {0.010F, 0.40F, 0.40F, 0.016125F}, /* clipped at 9 times the variance */
+                {0.004F, 0.50F, 0.50F, 0.004F},
+                {0.080F, 0.10F, 0.50F, 0.080F}};
+
+    for (int i = 0; i < 4; i++) {
+        roughness = (roughness_t){.noise_m = rows[i].before_m,
+                                  .previous_m = {rows[i].first_m, rows[i].second_m}};
+        roughness_measure(&roughness, 0.50F);
+        const float bend_m = 0.5F - 2.0F * rows[i].first_m + rows[i].second_m;
+        const float expected = (i == 0) ? sqrtf(0.8e-4F + 0.2F * bend_m * bend_m / 6.0F) : rows[i].noise_m;
+        NEAR(expected, roughness.noise_m);
+        NEAR(0.50F, roughness.previous_m[0]);
+        NEAR(rows[i].first_m, roughness.previous_m[1]);
+    }
+}
+
+/* What is beyond 20 mm counts by half. */
+void test_a_floor_is_rough_beyond_20_mm(void)
+{
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, roughness_variance_m2(&roughness));
+    roughness.noise_m = 0.0199F;
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, roughness_variance_m2(&roughness));
+    roughness.noise_m = 0.03F;
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-9F, 0.5F * (0.0009F - 0.0004F), roughness_variance_m2(&roughness));
+}
+
+static void edge(float innovation_m, float edge_m, uint32_t ago_us)
+{
+    roughness_init(&roughness);
+    roughness_watch_bars(&roughness, edge_m, T_US - ago_us);
+    roughness_watch_bars(&roughness, innovation_m, T_US);
+}
+
+void test_an_edge_that_returns_within_a_second_is_a_bar_of_half_its_height(void)
+{
+    edge(-0.05F, 0.06F, 999999U);
+    NEAR(0.025F, roughness.noise_m);
+    edge(0.06F, -0.05F, 1U);
+    NEAR(0.025F, roughness.noise_m);
+    edge(-0.05F, 0.06F, 1000000U);
+    NEAR(0.004F, roughness.noise_m);
+    edge(0.05F, 0.06F, 1U);
+    NEAR(0.004F, roughness.noise_m);
+    edge(-0.041F, 0.06F, 1U);
+    NEAR(0.0205F, roughness.noise_m);
+    edge(-0.149F, 0.149F, 1U);
+    NEAR(0.0745F, roughness.noise_m);
+}
+
+/* It is none, so the edge before it stays the latest one. */
+void test_what_is_lower_than_40_mm_or_higher_than_150_is_no_edge_of_a_bar(void)
+{
+    static const float none_m[] = {-0.039F, -0.151F};
+
+    for (int i = 0; i < 2; i++) {
+        edge(none_m[i], 0.06F, 1000U);
+        NEAR(0.004F, roughness.noise_m);
+        roughness_watch_bars(&roughness, -0.05F, T_US + 1U);
+        NEAR(0.025F, roughness.noise_m);
+    }
+}
