@@ -1,18 +1,44 @@
 #include "drivers/urg.h"
 
+static const char *const refusal_texts[] = {
+    "accepted",
+    "stream is neither MS nor MD",
+    "first_rate is not a rate of SCIP",
+    "stream_rate is not a rate of SCIP",
+    "a rate is above fastest_rate",
+    "the range ends beyond the sensor's last step",
+    "steps, cluster, interval or count of the range are impossible",
+    "the memory is too small for two scans",
+};
+typedef char
+    every_refusal_has_a_text[(sizeof refusal_texts / sizeof refusal_texts[0] == URG_REFUSAL_COUNT) ? 1 : -1];
+
+urg_refusal_t urg_refusal(const urg_config_t *config, uint16_t values)
+{
+    scip_request_t stream;
+    const urg_refusal_t refusal = urg_link_refusal(config);
+    if (refusal != URG_ACCEPTED) {
+        return refusal;
+    }
+    (void)scip_request_scan(&stream, config->stream, &config->range);
+    return values / 2U < stream.points ? URG_MEMORY : URG_ACCEPTED;
+}
+
+const char *urg_refusal_text(urg_refusal_t refusal)
+{
+    return refusal_texts[refusal];
+}
+
 bool urg_init(urg_driver_t *urg, const urg_config_t *config, uint16_t *distance_mm, uint16_t values,
               uint32_t now_us)
 {
     scip_request_t stream;
-    urg_link_t link;
-    if (!urg_link_init(&link, config, now_us)) {
+    if (urg_refusal(config, values) != URG_ACCEPTED) {
         return false;
     }
-    (void)scip_request_scan(&stream, config->stream, &config->range); /* which the link has asked for too */
-    if (values / 2U < stream.points) {
-        return false;
-    }
-    *urg = (urg_driver_t){.link = link};
+    (void)scip_request_scan(&stream, config->stream, &config->range);
+    *urg = (urg_driver_t){.fresh = false};
+    (void)urg_link_init(&urg->link, config, now_us);
     for (uint16_t i = 0U; i < 2U; i++) {
         urg->scans[i].distance_mm = &distance_mm[i * stream.points];
         urg->scans[i].capacity = stream.points;

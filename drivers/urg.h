@@ -60,9 +60,14 @@ typedef struct {
 
 /* Starts the driver. distance_mm: memory for two scans of n points, 2 n values; the driver uses it until the
  * next urg_init(). The caller then opens the UART at first_rate. now_us: as in urg_step(). Returns false, and
- * does nothing, when the memory is too small or urg_link_init() refuses the configuration. */
+ * does nothing, when urg_refusal() names a cause. */
 bool urg_init(urg_driver_t *urg, const urg_config_t *config, uint16_t *distance_mm, uint16_t values,
               uint32_t now_us);
+
+/* The first cause for which urg_init() refuses this configuration with memory for so many values; and its
+ * words, zero-terminated, static: "stream_rate is not a rate of SCIP". */
+urg_refusal_t urg_refusal(const urg_config_t *config, uint16_t values);
+const char *urg_refusal_text(urg_refusal_t refusal);
 
 /* Private parts of urg_feed(). */
 bool urg_feed_all(urg_driver_t *urg, const octet_t *octets, size_t count);

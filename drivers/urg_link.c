@@ -1040,17 +1040,42 @@ void urg_seen_event(urg_seen_t *seen, const scip_parser_t *parser, scip_event_t 
     }
 }
 
+static urg_refusal_t rate_refusal(const urg_config_t *config)
+{
+    scip_request_t unused;
+    if (!scip_request_bit_rate(&unused, config->first_rate)) {
+        return URG_FIRST_RATE;
+    }
+    if (!scip_request_bit_rate(&unused, config->stream_rate)) {
+        return URG_STREAM_RATE;
+    }
+    return is_possible(config, config->first_rate) && is_possible(config, config->stream_rate) ? URG_ACCEPTED
+                                                                                               : URG_TOO_FAST;
+}
+
+urg_refusal_t urg_link_refusal(const urg_config_t *config)
+{
+    scip_request_t unused;
+    const urg_refusal_t rate = rate_refusal(config);
+    if (config->stream != SCIP_STREAM_2 && config->stream != SCIP_STREAM_3) {
+        return URG_STREAM_KIND;
+    }
+    if (rate != URG_ACCEPTED) {
+        return rate;
+    }
+    if (!is_within(config)) {
+        return URG_LAST_STEP;
+    }
+    return scip_request_scan(&unused, config->stream, &config->range) ? URG_ACCEPTED : URG_RANGE;
+}
+
 bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us)
 {
     scip_request_t stream;
-    scip_request_t rate;
-    if ((config->stream != SCIP_STREAM_2 && config->stream != SCIP_STREAM_3) || !is_within(config) ||
-        !scip_request_scan(&stream, config->stream, &config->range) ||
-        !scip_request_bit_rate(&rate, config->first_rate) ||
-        !scip_request_bit_rate(&rate, config->stream_rate) || !is_possible(config, config->first_rate) ||
-        !is_possible(config, config->stream_rate)) {
+    if (urg_link_refusal(config) != URG_ACCEPTED) {
         return false;
     }
+    (void)scip_request_scan(&stream, config->stream, &config->range);
     *link = (urg_link_t){
         .config = *config, .status = URG_WAIT, .since_us = now_us, .rate = config->first_rate};
     link->scan_octets = stream.scan_octets;

@@ -77,6 +77,19 @@ typedef struct {
     uint16_t last_step;    /* of the sensor; 0: SCIP_STEP_MAX_URG04LX */
 } urg_config_t;
 
+/* Why an order is impossible. */
+typedef enum {
+    URG_ACCEPTED,
+    URG_STREAM_KIND, /* `stream` is neither SCIP_STREAM_2 nor SCIP_STREAM_3 */
+    URG_FIRST_RATE,  /* `first_rate` is not one of scip_bit_rates */
+    URG_STREAM_RATE, /* nor `stream_rate` */
+    URG_TOO_FAST,    /* one of them is above `fastest_rate` */
+    URG_LAST_STEP,   /* the range ends beyond the sensor's `last_step` */
+    URG_RANGE,       /* a field of `range` is outside its limits */
+    URG_MEMORY,      /* the memory is too small for two scans; urg_refusal() only */
+    URG_REFUSAL_COUNT
+} urg_refusal_t;
+
 typedef struct {
     bool set_rate;    /* reopen the board's UART at `rate` before sending */
     uint32_t rate;    /* rate of the board's UART from now on */
@@ -130,9 +143,10 @@ typedef struct {
     urg_seen_t seen;              /* what was received up to the previous step */
 } urg_link_t;
 
-/* Starts in WAIT. Returns false, and does nothing, for an impossible configuration: a rate that is not SCIP's
- * or is above fastest_rate, a range beyond last_step or that scip_request_scan() refuses, or a kind that is
- * not a stream. */
+/* The first cause, in the order above, for which urg_link_init() refuses the configuration. */
+urg_refusal_t urg_link_refusal(const urg_config_t *config);
+
+/* Starts in WAIT. Returns false, and does nothing, when urg_link_refusal() names a cause. */
 bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us);
 
 /* Note in *seen what the parser has received, for callers that do not use urg.h (which does both):

@@ -355,17 +355,68 @@ void test_a_sensor_of_1081_steps_streams_them_all(void)
     TEST_ASSERT_EQUAL_UINT16(59428U, scan.distance_mm[1080]);
 }
 
-void test_too_little_memory_and_impossible_orders_are_refused(void)
+static void refused(const urg_config_t *bad, uint16_t values, urg_refusal_t cause, const char *words)
 {
-    urg_config_t bad = config;
+    const urg_driver_t before = urg;
 
-    TEST_ASSERT_FALSE(urg_init(&urg, &config, memory, 2U * POINTS - 1U, 0U));
-    TEST_ASSERT_TRUE(urg_init(&urg, &config, memory, 2U * POINTS + 1U, 0U));
-    bad.range.last_step = 769U;
-    TEST_ASSERT_FALSE(urg_init(&urg, &bad, memory, 2U * POINTS, 0U));
-    bad = config;
-    bad.stream_rate = 500000U;
-    TEST_ASSERT_FALSE(urg_init(&urg, &bad, memory, 2U * POINTS, 0U));
+    TEST_ASSERT_EQUAL(cause, urg_refusal(bad, values));
+    TEST_ASSERT_EQUAL_STRING(words, urg_refusal_text(cause));
+    TEST_ASSERT_EQUAL(cause == URG_ACCEPTED, urg_init(&urg, bad, memory, values, 0U));
+    if (cause != URG_ACCEPTED) {
+        TEST_ASSERT_EQUAL_MEMORY(&before, &urg, sizeof urg);
+    }
+}
+
+void test_an_order_that_is_refused_changes_nothing_and_names_its_cause(void)
+{
+    const struct {
+        urg_config_t config;
+        urg_refusal_t cause;
+        const char *words;
+    } rows[] = {
+        {{0U, 19200U, 115200U, 0U, SCIP_SINGLE_2, {0U, 34U, 1U, 0U, 0U}, 0U},
+         URG_STREAM_KIND,
+         "stream is neither MS nor MD"},
+        {{0U, 38400U, 115200U, 0U, SCIP_STREAM_2, {0U, 34U, 1U, 0U, 0U}, 0U},
+         URG_FIRST_RATE,
+         "first_rate is not a rate of SCIP"},
+        {{0U, 19200U, 230400U, 0U, SCIP_STREAM_2, {0U, 34U, 1U, 0U, 0U}, 0U},
+         URG_STREAM_RATE,
+         "stream_rate is not a rate of SCIP"},
+        {{0U, 19200U, 250000U, 115200U, SCIP_STREAM_2, {0U, 34U, 1U, 0U, 0U}, 0U},
+         URG_TOO_FAST,
+         "a rate is above fastest_rate"},
+        {{0U, 115200U, 19200U, 57600U, SCIP_STREAM_2, {0U, 34U, 1U, 0U, 0U}, 0U},
+         URG_TOO_FAST,
+         "a rate is above fastest_rate"},
+        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {735U, 769U, 1U, 0U, 0U}, 0U},
+         URG_LAST_STEP,
+         "the range ends beyond the sensor's last step"},
+        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {34U, 0U, 1U, 0U, 0U}, 0U},
+         URG_RANGE,
+         "steps, cluster, interval or count of the range are impossible"},
+        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {0U, 34U, 0U, 0U, 0U}, 0U},
+         URG_RANGE,
+         "steps, cluster, interval or count of the range are impossible"},
+        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {0U, 34U, 1U, 10U, 0U}, 0U},
+         URG_RANGE,
+         "steps, cluster, interval or count of the range are impossible"},
+        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {0U, 34U, 1U, 0U, 100U}, 0U},
+         URG_RANGE,
+         "steps, cluster, interval or count of the range are impossible"},
+        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {0U, 35U, 1U, 0U, 0U}, 0U},
+         URG_MEMORY,
+         "the memory is too small for two scans"},
+        {{0U, 19200U, 115200U, 115200U, SCIP_STREAM_3, {734U, 768U, 1U, 9U, 99U}, 0U},
+         URG_ACCEPTED,
+         "accepted"},
+    };
+
+    for (size_t i = 0U; i < sizeof rows / sizeof rows[0]; i++) {
+        refused(&rows[i].config, 2U * POINTS, rows[i].cause, rows[i].words);
+    }
+    refused(&config, 2U * POINTS - 1U, URG_MEMORY, "the memory is too small for two scans");
+    refused(&config, 2U * POINTS + 1U, URG_ACCEPTED, "accepted");
 }
 
 /* Or in as many cells, where an octet takes a wider one. */

@@ -1,4 +1,4 @@
-/* The board of docs/examples/scanner.c: the model of a URG-04LX as delivered (19200 bps, SCIP1.1) on a
+/* The board of examples/scanner/scanner.c: the model of a URG-04LX as delivered (19200 bps, SCIP1.1) on a
  * virtual UART, in front of a wall that comes nearer; after 15 s the cable is out for two seconds. Ends after
  * 20 s. */
 #include <math.h>
@@ -147,4 +147,9 @@ bool board_runs(void)
         exit(1);
     }
     return false;
+}
+
+int main(void)
+{
+    return scanner_run() == NULL ? 0 : 1;
 }

@@ -26,7 +26,7 @@ KINDS = {
                     "docs/reliability.md"),
 }
 PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "drivers/README.md")
-ROOMS = "bsp|ccs_project|cmake|control|docs|drivers|firmware|ground|sim|tests|tools"
+ROOMS = "bsp|ccs_project|cmake|control|docs|drivers|examples|firmware|ground|sim|tests|tools"
 LINK = re.compile(r"\]\(([^)\s]*)\)")
 NAMED = re.compile(rf"`((?:{ROOMS})/[\w./-]*\w)`")
 PLACED = re.compile(rf"((?:`\w+`(?:\(\))?(?:,\s+)?)+)\s+\(`((?:{ROOMS})/[\w/]+\.c)`\)")

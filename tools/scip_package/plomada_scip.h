@@ -2,8 +2,9 @@
 #ifndef PLOMADA_SCIP_H
 #define PLOMADA_SCIP_H
 
-#include "drivers/scip_info.h"
-#include "drivers/scip_layout.h"
-#include "drivers/urg.h"
+#include "plomada/scip_info.h"
+#include "plomada/scip_layout.h"
+#include "plomada/scip_version.h"
+#include "plomada/urg.h"
 
 #endif

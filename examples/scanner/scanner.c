@@ -1,12 +1,14 @@
 /* The scanner's driver in an application of its own: no operating system, no heap, one loop. From whatever
  * state the sensor is in it is brought to stream, and after any loss again; each scan's mean distance
- * straight ahead is shown.
- *
- * Needs of Plomada: drivers/octet.h, drivers/scip_*.h and .c, drivers/urg*.h and .c; nothing else. */
-#include "board.h"
-#include "drivers/scip_layout.h"
-#include "drivers/urg.h"
+ * straight ahead is shown. board.h is all that it needs of a machine. */
+#include <plomada/scip_layout.h>
+#include <plomada/urg.h>
 
+#include "board.h"
+
+#ifndef STREAM_RATE
+#define STREAM_RATE 115200U /* up to 750000 where the line allows it */
+#endif
 #define FIRST_STEP 367U /* 384 is straight ahead; 1024 steps make a turn */
 #define LAST_STEP 401U
 #define POINTS (LAST_STEP - FIRST_STEP + 1U)
@@ -14,7 +16,7 @@
 static const urg_config_t config = {
     .wait_us = 0U,        /* it may boot still: the search finds it as soon as it listens */
     .first_rate = 19200U, /* as delivered */
-    .stream_rate = 115200U,
+    .stream_rate = STREAM_RATE,
     .stream = SCIP_STREAM_2,
     .range = {.first_step = FIRST_STEP, .last_step = LAST_STEP, .cluster = 1U, .interval = 0U, .scans = 0U},
 };
@@ -65,11 +67,14 @@ static void send(void)
     board_uart_write(output.octets, output.count);
 }
 
-int main(void)
+const char *scanner_run(void)
 {
-    if (!urg_init(&urg, &config, points, 2U * POINTS, board_time_us())) {
-        return 1;
+    const urg_refusal_t refusal = urg_refusal(&config, 2U * POINTS);
+
+    if (refusal != URG_ACCEPTED) {
+        return urg_refusal_text(refusal);
     }
+    (void)urg_init(&urg, &config, points, 2U * POINTS, board_time_us());
     board_uart_open(config.first_rate);
     stepped_us = board_time_us();
     while (board_runs()) {
@@ -80,5 +85,5 @@ int main(void)
             send();
         }
     }
-    return 0;
+    return NULL;
 }
