@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open test test-long soak format mutants test-ground port size faults fuzz prove bench coverage firmware flash check-ti clean
+.PHONY: help build fly plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open test test-long soak format mutants test-ground port size faults fuzz prove bench coverage package firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -131,6 +131,12 @@ port: ## The unit tests of drivers/ and control/ also with 16-bit octets, 16-bit
 	@$(cmake) -B build-port -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON -DPLOMADA_PORT=ON
 	+@cmake --build build-port --target port $(jobs)
 	@NOTHING_SKIPPED=1 $(ctest) build-port -L port; status=$$?; python3 -B tests/port/summary.py build-port && exit $$status
+
+package: ## The scanner's driver for others: every compiler that must take it, PlatformIO; the ZIP is built in build-package/
+	@$(setup) build test package
+	@$(cmake) -B build-package -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON -DPLOMADA_PACKAGE=ON
+	+@cmake --build build-package --target plomada scanner_posix $(jobs)
+	@NOTHING_SKIPPED=1 $(ctest) build-package -L package
 
 size: ## Flash, static RAM and stacks against the chip's limits, and docs/memory.md against them (ARGS=--write)
 	@$(setup) size

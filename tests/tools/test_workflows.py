@@ -13,7 +13,7 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 WORKFLOWS = sorted((ROOT / ".github/workflows").glob("*.y*ml"))
-FOLDERS = [ROOT / name for name in ("tools/plot", "tools/campaign", "tools/format", "ground")]
+FOLDERS = [ROOT / name for name in ("tools/plot", "tools/campaign", "tools/format", "tools/scip_package", "ground")]
 PINNED = re.compile(r"[\w.-]+/[\w./-]+@[0-9a-f]{40}")
 REQUIREMENT = re.compile(r"^([\w.-]+)==(\S+)((?: \\\n    --hash=sha256:[0-9a-f]{64})*)$", re.MULTILINE)
 # Where a second try, or a failure that nobody hears of, would stand.
@@ -92,7 +92,7 @@ class Workflows(unittest.TestCase):
 
     def test_a_job_that_exists_to_run_something_skips_nothing(self):
         self.assertIn("\nexport NOTHING_SKIPPED=1\n", (ROOT / ".ci/run").read_text(encoding="utf-8"))
-        for target in ("soak", "port"):
+        for target in ("soak", "port", "package"):
             for line in recipe(target).splitlines():
                 if "$(ctest)" in line:
                     self.assertIn("NOTHING_SKIPPED=1 $(ctest)", line, target)
@@ -153,7 +153,7 @@ class Packages(unittest.TestCase):
             found = pins(folder / "requirements.txt")
             for name, version in pins(folder / "requirements.in").items():
                 self.assertEqual(found.get(name), version, f"{folder}: {name}, {PINS} was not run")
-            if folder.name != "format":     # an environment of its own
+            if folder.name not in ("format", "scip_package"):     # environments of their own
                 for name, version in found.items():
                     self.assertEqual(everywhere.setdefault(name, version), version, name)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# setup.sh build|test|port|size|coverage|bench|fuzz|prove|plot|campaign|ground ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
+# setup.sh build|test|port|size|coverage|bench|fuzz|prove|package|plot|campaign|ground ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
 #
 #   build     C compiler, CMake
 #   test      Ninja (a third of make's processor time); Ruby and CMock, which generates the mocks; Python 3 for the checks of the house rules; build/format with the
@@ -10,6 +10,7 @@
 #   bench     valgrind
 #   fuzz      clang and its libFuzzer
 #   prove     CBMC and a C preprocessor; build/cbmc where Debian's suite has no CBMC
+#   package   compilers for other machines: clang, avr-gcc, arm-none-eabi-gcc, MinGW-w64; build/pio with the pinned PlatformIO
 #   plot      Python virtual environment build/venv with the packages of tools/plot/requirements.txt
 #   campaign  the same, and in it those of tools/campaign/requirements.txt; for tuning too, and for some tests
 #   ground    clang, lld, wasi-libc and binaryen for the vehicle in the browser; wasmtime in build/venv; node and the pinned
@@ -29,6 +30,8 @@ ground_requirements=$root/ground/requirements.txt
 cmock_private=$root/build/cmock
 format=$root/build/format
 format_requirements=$root/tools/format/requirements.txt
+pio=$root/build/pio
+pio_requirements=$root/tools/scip_package/requirements.txt
 
 say() { printf 'setup: %s\n' "$*" >&2; }
 die() { say "$*"; exit 1; }
@@ -58,6 +61,8 @@ venv_ready() {
 
 format_ready() { [ -x "$format/bin/clang-format" ] && cmp -s "$format_requirements" "$format/requirements.txt"; }
 
+pio_ready() { [ -x "$pio/bin/pio" ] && cmp -s "$pio_requirements" "$pio/requirements.txt"; }
+
 campaign_ready() { venv_ready && cmp -s "$campaign_requirements" "$venv/campaign.txt"; }
 
 ground_ready() { venv_ready && cmp -s "$ground_requirements" "$venv/ground.txt"; }
@@ -84,6 +89,14 @@ wasm_packages() {
 node_ready() { has node && node -e 'process.exit(parseInt(process.versions.node) < 18 ? 1 : 0)' 2>/dev/null; }
 
 cbmc_ready() { has cbmc || [ -x "$root/build/cbmc/cbmc" ]; }
+
+any_clang() {
+    local clang
+    for clang in clang clang-{14..30}; do
+        if has "$clang"; then return 0; fi
+    done
+    return 1
+}
 
 # A clang that has libFuzzer.
 fuzzer_ready() {
@@ -142,6 +155,15 @@ missing_packages() {
             has python3 || echo python3
             has gcc || echo gcc
             cbmc_ready || ! known cbmc || echo cbmc ;;
+        package)
+            has gcc || echo gcc
+            has g++ || echo g++
+            any_clang || echo clang
+            avr_packages
+            has arm-none-eabi-gcc || echo gcc-arm-none-eabi
+            finds arm-none-eabi-gcc string.h || echo libnewlib-arm-none-eabi
+            has x86_64-w64-mingw32-gcc || echo gcc-mingw-w64-x86-64-win32
+            pio_ready || venv_maker >/dev/null || echo python3-venv ;;
         plot|campaign)
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
         ground)
@@ -154,7 +176,7 @@ missing_packages() {
             has firefox || has firefox-esr || ! grep -qs '^ID=debian' /etc/os-release || echo firefox-esr
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
         *)
-            say "unknown job '$1'; know build, test, port, size, coverage, bench, fuzz, prove, plot, campaign, ground"
+            say "unknown job '$1'; know build, test, port, size, coverage, bench, fuzz, prove, package, plot, campaign, ground"
             exit 2 ;;
     esac
 }
@@ -223,16 +245,16 @@ make_venv() {
     cp "$requirements" "$venv/requirements.txt"
 }
 
-add_format() {
+# own_venv FOLDER REQUIREMENTS: a virtual environment for these packages alone.
+own_venv() {
     local python
     python=$(venv_maker) || die "no Python 3.11 or later that can make a virtual environment: apt-get install python3-venv"
-    say "making build/format with the packages of tools/format/requirements.txt"
-    rm -rf "$format"
+    say "making ${1#"$root/"} with the packages of ${2#"$root/"}"
+    rm -rf "$1"
     mkdir -p "$root/build"
-    "$python" -m venv "$format"
-    pip_install "$format" "$format_requirements" ||
-        die "pip could not install tools/format/requirements.txt (see above)"
-    cp "$format_requirements" "$format/requirements.txt"
+    "$python" -m venv "$1"
+    pip_install "$1" "$2" || die "pip could not install ${2#"$root/"} (see above)"
+    cp "$2" "$1/requirements.txt"
 }
 
 # A virtual environment and a requirements.txt.
@@ -257,7 +279,7 @@ add_modules() {
     cp "$root/ground/package-lock.json" "$root/ground/node_modules/.installed-lock.json"
 }
 
-[ $# -gt 0 ] || { say "usage: setup.sh build|test|port|size|coverage|bench|fuzz|prove|plot|campaign|ground ..."; exit 2; }
+[ $# -gt 0 ] || { say "usage: setup.sh build|test|port|size|coverage|bench|fuzz|prove|package|plot|campaign|ground ..."; exit 2; }
 
 packages=()
 want_cmock=
@@ -267,6 +289,7 @@ want_campaign=
 want_ground=
 want_modules=
 want_format=
+want_pio=
 for job in "$@"; do
     list=$(missing_packages "$job")
     for package in $list; do packages+=("$package"); done
@@ -274,6 +297,7 @@ for job in "$@"; do
         test)
             cmock_ready || want_cmock=yes
             format_ready || want_format=yes ;;
+        package) pio_ready || want_pio=yes ;;
         prove) cbmc_ready || known cbmc || want_cbmc=yes ;;
         plot) venv_ready || want_venv=yes ;;
         campaign)
@@ -304,4 +328,5 @@ fi
 [ -z "$want_campaign" ] || add_campaign
 [ -z "$want_ground" ] || add_ground
 [ -z "$want_modules" ] || add_modules
-[ -z "$want_format" ] || add_format
+[ -z "$want_format" ] || own_venv "$format" "$format_requirements"
+[ -z "$want_pio" ] || own_venv "$pio" "$pio_requirements"
