@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "sim/noise.h"
 
@@ -10,7 +11,8 @@
 
 void place_init(place_t *place)
 {
-    *place = (place_t){.count = 0};
+    memset(place, 0, sizeof *place);
+    place->floor[0] = place->floor[1] = surface_plain;
 }
 
 bool place_add(place_t *place, const place_block_t *block)
@@ -18,7 +20,19 @@ bool place_add(place_t *place, const place_block_t *block)
     if (place->count == PLACE_BLOCKS_MAX) {
         return false;
     }
+    place->bounds[place->count].cosine = cos(block->heading_rad);
+    place->bounds[place->count].sine = sin(block->heading_rad);
+    place->bounds[place->count].radius_m = 0.5 * hypot(block->length_m, block->width_m);
     place->blocks[place->count++] = *block;
+    return true;
+}
+
+bool place_shine(place_t *place, const place_sun_t *sun)
+{
+    if (place->suns == PLACE_SUNS_MAX) {
+        return false;
+    }
+    place->sun[place->suns++] = *sun;
     return true;
 }
 
@@ -103,10 +117,11 @@ typedef struct {
     double u, v, w, du, dv, dw;
 } local_t;
 
-static local_t into(const place_block_t *block, place_vector_t from, place_vector_t direction,
+static local_t into(const place_t *place, int number, place_vector_t from, place_vector_t direction,
                     double lifted_m)
 {
-    const double c = cos(block->heading_rad), s = sin(block->heading_rad);
+    const place_block_t *block = &place->blocks[number];
+    const double c = place->bounds[number].cosine, s = place->bounds[number].sine;
     const double x = from.x - block->x_m, y = from.y - block->y_m;
 
     return (local_t){.u = c * x + s * y,
@@ -170,6 +185,21 @@ static place_vector_t along(place_vector_t from, place_vector_t direction, doubl
                             from.z + distance_m * direction.z};
 }
 
+/* Plain ones are one object, which surface_signal() knows. */
+static const surface_t *own_or_plain(const surface_t *surface)
+{
+    return surface->name[0] == '\0' || strcmp(surface->name, surface_plain.name) == 0 ? &surface_plain
+                                                                                      : surface;
+}
+
+static const surface_t *floor_at(const place_t *place, double x_m, double y_m)
+{
+    const bool odd = place->tile_m > 0.0 &&
+                     fmod(fabs(floor(x_m / place->tile_m) + floor(y_m / place->tile_m)), 2.0) > 0.5;
+
+    return own_or_plain(&place->floor[odd ? 1 : 0]);
+}
+
 /* A rough floor is met where the ray crosses its height below the crossing of the even one: exact for a ray
  * straight down, and for any other as far as the floor does not change within the difference. */
 static void cast_floor(const place_t *place, place_vector_t from, place_vector_t direction, place_hit_t *hit)
@@ -184,8 +214,21 @@ static void cast_floor(const place_t *place, place_vector_t from, place_vector_t
     floor.distance_m = even_m + roughness_m(place, under.x, under.y, &floor) / direction.z;
     if (floor.distance_m < hit->distance_m) {
         floor.at = along(from, direction, floor.distance_m);
+        floor.surface = floor_at(place, floor.at.x, floor.at.y);
         *hit = floor;
     }
+}
+
+/* Seen from above: whether the ray's line comes near enough to the block, and not only behind its start. */
+static bool may_meet(const place_t *place, int number, place_vector_t from, place_vector_t direction)
+{
+    const double x = place->blocks[number].x_m - from.x, y = place->blocks[number].y_m - from.y;
+    const double radius_m = place->bounds[number].radius_m;
+    const double level2 = direction.x * direction.x + direction.y * direction.y;
+    const double across = x * direction.y - y * direction.x, ahead = x * direction.x + y * direction.y;
+
+    return x * x + y * y <= radius_m * radius_m ||
+           (across * across <= radius_m * radius_m * level2 && ahead > 0.0);
 }
 
 static void cast_block(const place_t *place, int number, place_vector_t from, place_vector_t direction,
@@ -194,10 +237,10 @@ static void cast_block(const place_t *place, int number, place_vector_t from, pl
     const place_block_t *block = &place->blocks[number];
     double rises_mps;
 
-    if (!is_there(block, t_s)) {
+    if (!may_meet(place, number, from, direction) || !is_there(block, t_s)) {
         return;
     }
-    const local_t ray = into(block, from, direction, travelled_m(block, t_s, &rises_mps));
+    const local_t ray = into(place, number, from, direction, travelled_m(block, t_s, &rises_mps));
     const crossing_t crossing = cross(block, &ray);
     if (crossing.outside || crossing.enter_m < 0.0 || crossing.enter_m >= hit->distance_m) {
         return;
@@ -205,22 +248,39 @@ static void cast_block(const place_t *place, int number, place_vector_t from, pl
     const double slope = crossing.by_top ? slope_of(block) : 0.0;
     *hit = (place_hit_t){.distance_m = crossing.enter_m,
                          .at = along(from, direction, crossing.enter_m),
-                         .slope_x = slope * cos(block->heading_rad),
-                         .slope_y = slope * sin(block->heading_rad),
+                         .slope_x = slope * place->bounds[number].cosine,
+                         .slope_y = slope * place->bounds[number].sine,
                          .rises_mps = rises_mps,
                          .incidence_cos = crossing.cosine,
-                         .block = number};
+                         .block = number,
+                         .surface = own_or_plain(&block->surface)};
 }
 
 bool place_cast(const place_t *place, place_vector_t from, place_vector_t direction, double reach_m,
                 double t_s, place_hit_t *hit)
 {
-    *hit = (place_hit_t){.distance_m = reach_m, .block = -1};
+    *hit = (place_hit_t){.distance_m = reach_m, .block = -1, .surface = &surface_plain};
     cast_floor(place, from, direction, hit);
     for (int i = 0; i < place->count; i++) {
         cast_block(place, i, from, direction, t_s, hit);
     }
     return hit->distance_m < reach_m;
+}
+
+double place_sunlight(const place_t *place, double x_m, double y_m)
+{
+    double strongest = 0.0;
+
+    for (int i = 0; i < place->suns; i++) {
+        const place_sun_t *sun = &place->sun[i];
+        const double c = cos(sun->heading_rad), s = sin(sun->heading_rad);
+        const double x = x_m - sun->x_m, y = y_m - sun->y_m;
+
+        if (fabs(c * x + s * y) <= 0.5 * sun->length_m && fabs(c * y - s * x) <= 0.5 * sun->width_m) {
+            strongest = fmax(strongest, sun->strength);
+        }
+    }
+    return strongest;
 }
 
 place_hit_t place_below(const place_t *place, double x_m, double y_m, double z_m, double t_s)
@@ -233,11 +293,12 @@ place_hit_t place_below(const place_t *place, double x_m, double y_m, double z_m
     return hit;
 }
 
-static bool holds(const place_block_t *block, place_vector_t point, double t_s)
+static bool holds(const place_t *place, int number, place_vector_t point, double t_s)
 {
+    const place_block_t *block = &place->blocks[number];
     const place_vector_t none = {0.0, 0.0, 0.0};
     double rises_mps;
-    const local_t at = into(block, point, none, travelled_m(block, t_s, &rises_mps));
+    const local_t at = into(place, number, point, none, travelled_m(block, t_s, &rises_mps));
     const double top_m = 0.5 * (block->near_top_m + block->far_top_m) + slope_of(block) * at.u;
 
     return fabs(at.u) < 0.5 * block->length_m && fabs(at.v) < 0.5 * block->width_m &&
@@ -247,7 +308,8 @@ static bool holds(const place_block_t *block, place_vector_t point, double t_s)
 bool place_inside(const place_t *place, place_vector_t point, double t_s)
 {
     for (int i = 0; i < place->count; i++) {
-        if (is_there(&place->blocks[i], t_s) && holds(&place->blocks[i], point, t_s)) {
+        if (may_meet(place, i, point, (place_vector_t){0.0, 0.0, 0.0}) && is_there(&place->blocks[i], t_s) &&
+            holds(place, i, point, t_s)) {
             return true;
         }
     }

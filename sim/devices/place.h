@@ -15,8 +15,10 @@
 #include <stdbool.h>
 
 #include "sim/devices/span.h"
+#include "sim/devices/surface.h"
 
 #define PLACE_BLOCKS_MAX 200
+#define PLACE_SUNS_MAX 8
 #define PLACE_WAVES 64
 /* A surface that is higher than the gear by less carries it; a higher one is a wall. A vehicle that falls at
  * 10 m/s comes 5 mm deeper in a step of 0.5 ms; a kerb of 20 mm lifts the gear that slides over it. */
@@ -36,6 +38,7 @@ typedef struct {
     double travel_m; /* a lift: bottom and top rise by so much, < 0: sink, and come back after stay_s */
     double travel_mps;
     double travel_start_s, stay_s;
+    surface_t surface; /* without a name: plain */
 } place_block_t;
 
 typedef struct {
@@ -43,9 +46,23 @@ typedef struct {
     double correlation_m; /* the integral of its autocorrelation */
 } place_rough_t;
 
+/* Sunlight on everything over a part of the floor. */
+typedef struct {
+    double x_m, y_m, heading_rad, length_m, width_m;
+    double strength; /* 0..1 */
+} place_sun_t;
+
 typedef struct {
     int count;
     place_block_t blocks[PLACE_BLOCKS_MAX];
+    struct { /* of each block: its heading, and how far from its middle it ends */
+        double cosine, sine, radius_m;
+    } bounds[PLACE_BLOCKS_MAX];
+    surface_t
+        floor[2]; /* in squares like a chequer board's, a corner at the origin; the first only: tile_m 0 */
+    double tile_m;
+    int suns;
+    place_sun_t sun[PLACE_SUNS_MAX];
     place_rough_t rough;
     struct {
         double kx, ky, phase;
@@ -60,12 +77,15 @@ typedef struct {
     double rises_mps;        /* of a lift */
     double incidence_cos;    /* cosine of the angle to the surface's normal, 0..1 */
     int block;               /* -1: the floor */
+    const surface_t *surface;
 } place_hit_t;
 
 /* An even floor with nothing on it. */
 void place_init(place_t *place);
 /* False: full. The block is copied. */
 bool place_add(place_t *place, const place_block_t *block);
+/* False: full. */
+bool place_shine(place_t *place, const place_sun_t *sun);
 /* The waves of a rough floor by the seed. */
 void place_roughen(place_t *place, const place_rough_t *rough, unsigned long seed);
 
@@ -73,6 +93,9 @@ void place_roughen(place_t *place, const place_rough_t *rough, unsigned long see
  * A ray that begins inside a block leaves it unseen. */
 bool place_cast(const place_t *place, place_vector_t from, place_vector_t direction, double reach_m,
                 double t_s, place_hit_t *hit);
+
+/* Sunlight at (x, y). */
+double place_sunlight(const place_t *place, double x_m, double y_m);
 
 /* The highest surface at (x, y) that is not more than PLACE_CARRIES_M above z_m; there is always the floor.
  */

@@ -449,8 +449,9 @@ static ground_t ground_of_place(const quadrotor_t *q, double t_s)
 {
     place_hit_t highest = below(q, 0.0, 0.0, t_s);
     const double centre_m = highest.at.z;
+    const bool far = q->state.altitude_m > centre_m + SLIPS_OFF_M + CONTACT_ARMED_M; /* nothing carries */
 
-    for (int foot = 0; foot < 4; foot++) {
+    for (int foot = 0; foot < 4 && !far; foot++) {
         const place_hit_t hit = below(q, foot & 1 ? GEAR_HALF_M : -GEAR_HALF_M,
                                       foot & 2 ? GEAR_HALF_M : -GEAR_HALF_M, t_s);
         if (hit.at.z > highest.at.z && hit.at.z < centre_m + SLIPS_OFF_M) {

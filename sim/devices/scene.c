@@ -4,6 +4,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "sim/devices/echo.h"
+
 const scene_config_t scene_default = {.ray_sigma_mm = 5.0,
                                       .ray_correlation = 0.0,
                                       .common_sigma_mm = 3.0,
@@ -20,13 +22,17 @@ const scene_config_t scene_default = {.ray_sigma_mm = 5.0,
                                       .sight_blocked_span = {SPAN_POWER_ON_S, SPAN_FOR_GOOD_S},
                                       .frozen = {SPAN_FOR_GOOD_S, SPAN_FOR_GOOD_S},
                                       .struck_beam = 0.0,
+                                      .spot_rad = 0.0,
+                                      .sunlight = 0.0,
                                       .edge_m = 0.0,
                                       .edge_start_s = 0.0};
 
 #define GLITCH_LIFT_MM 350.0
 #define FAR_CODE 0      /* nothing in reach */
-#define REACH_MM 5600.0 /* as far as the sensor tells distances; beyond 4095 its own affair */
-#define SKYWARD 0.1     /* cosine of the tilt from which on the beam finds no ground */
+#define DAZZLED_CODE 18 /* too much light */
+#define NEIGHBOURS_CODE 7
+#define EDGE_LOST (3.0 / 9) /* the recording in scene.h */
+#define SKYWARD 0.1         /* cosine of the tilt from which on the beam finds no ground */
 
 void scene_init(scene_t *scene, const scene_config_t *config, quadrotor_t *quadrotor, unsigned long seed)
 {
@@ -38,6 +44,7 @@ void scene_init(scene_t *scene, const scene_config_t *config, quadrotor_t *quadr
     noise_init(&scene->wander_noise, seed, "laser wander");
     noise_init(&scene->glitch_noise, seed, "laser glitches");
     noise_init(&scene->lost_noise, seed, "laser lost rays");
+    noise_init(&scene->surface_noise, seed, "laser surfaces");
     scene->wander_mm = config->wander_sigma_mm * noise_gauss(&scene->wander_noise);
     scene->wandered_s = 0.0;
     memset(&scene->turn, 0, sizeof scene->turn);
@@ -65,19 +72,6 @@ typedef struct {
     bool skyward;
 } look_t;
 
-/* What the sensor would tell without noise; 0: nothing in reach. */
-static double place_mm(const scene_t *scene, const look_t *look, int mirror, int step)
-{
-    const bracket_ray_t ray = bracket_ray(mirror, &look->pose, step);
-    const place_vector_t from = {0.001 * ray.from.x, 0.001 * ray.from.y, 0.001 * ray.from.z};
-    place_hit_t hit;
-
-    return place_cast(quadrotor_place(scene->quadrotor), from, ray.direction, 0.001 * REACH_MM, look->t_s,
-                      &hit)
-               ? ray.before_mm + 1000.0 * hit.distance_m
-               : FAR_CODE;
-}
-
 /* What the sensor tells of a ray that comes back too weak: the codes that real ones show (low intensity,
  * neighbouring steps in error, the same step failed twice), 0 above all. */
 static int lost_code(scene_t *scene)
@@ -85,6 +79,52 @@ static int lost_code(scene_t *scene)
     static const int codes[] = {0, 0, 0, 0, 0, 1, 7, 9};
 
     return codes[noise_bits(&scene->lost_noise) % (sizeof codes / sizeof codes[0])];
+}
+
+static double sunlight_at(const scene_t *scene, const bracket_ray_t *ray, double mm)
+{
+    const double along = mm - ray->before_mm;
+
+    return fmax(scene->config.sunlight, place_sunlight(quadrotor_place(scene->quadrotor),
+                                                       0.001 * (ray->from.x + along * ray->direction.x),
+                                                       0.001 * (ray->from.y + along * ray->direction.y)));
+}
+
+static bool happens(noise_t *noise, double probability)
+{
+    return probability > 0.0 && noise_uniform(noise, 0.0, 1.0) < probability;
+}
+
+/* The noise of a ray, or of what lies between: shared with others, and its own. */
+typedef struct {
+    double shared_mm, own_mm;
+} ray_noise_t;
+
+/* What the sensor tells of a ray: millimetres, or a code. */
+static int told_mm(scene_t *scene, const look_t *look, int mirror, int step, ray_noise_t noise)
+{
+    const place_t *place = quadrotor_place(scene->quadrotor);
+    const bracket_ray_t ray = bracket_ray(mirror, &look->pose, step);
+    const echo_t echo = echo_of(place, &ray, scene->config.spot_rad, look->t_s, &scene->surface_noise);
+    const double far_m = 0.001 * echo.mm;
+
+    if (echo.signal <= 0.0) {
+        return FAR_CODE;
+    }
+    if (echo.edged && happens(&scene->surface_noise, EDGE_LOST)) {
+        return NEIGHBOURS_CODE;
+    }
+    if (echo.plain) {
+        return (int)lround(echo.mm + noise.shared_mm + noise.own_mm);
+    }
+    const double sun = sunlight_at(scene, &ray, echo.mm);
+    if (happens(&scene->surface_noise, echo.dazzle)) {
+        return DAZZLED_CODE;
+    }
+    if (happens(&scene->surface_noise, surface_lost(echo.signal, far_m, sun))) {
+        return lost_code(scene);
+    }
+    return (int)lround(echo.mm + noise.shared_mm + noise.own_mm * surface_noise(echo.signal, far_m, sun));
 }
 
 /* Whether a fault of the sight acts on this mirror's beam. */
@@ -134,19 +174,15 @@ double scene_height_m(const scene_t *scene)
            edge_m(scene, quadrotor_scenario_s(scene->quadrotor));
 }
 
-static double ground_mm(const scene_t *scene, const look_t *look, int mirror, int step)
+/* Under the vehicle's centre, where there is no place. */
+static int anywhere_mm(const scene_t *scene, const look_t *look, int mirror, ray_noise_t noise)
 {
     const quadrotor_state_t *state = look->state;
     const double higher_mm = 1000.0 * edge_m(scene, look->t_s);
+    const double mm = slant_mm(&bracket_mirrors[mirror], state) -
+                      higher_mm / (cos(state->roll_rad) * cos(state->pitch_rad));
 
-    if (look->skyward) {
-        return FAR_CODE;
-    }
-    if (quadrotor_place(scene->quadrotor) != NULL) {
-        return place_mm(scene, look, mirror, step) - higher_mm;
-    }
-    return slant_mm(&bracket_mirrors[mirror], state) -
-           higher_mm / (cos(state->roll_rad) * cos(state->pitch_rad));
+    return (int)lround(mm + noise.shared_mm + noise.own_mm);
 }
 
 /* A revolution's own draws. */
@@ -155,7 +191,8 @@ static void begin_turn(scene_t *scene)
     const scene_config_t *c = &scene->config;
 
     scene->turn.common_mm = c->common_sigma_mm * noise_gauss(&scene->common_noise);
-    scene->turn.lift_mm = scene->turn.ray_mm = 0.0;
+    scene->turn.lift_mm = 0.0;
+    scene->turn.ray_step = -2;
     scene->turn.broken = false;
     for (int i = 0; i < BRACKET_MIRRORS; i++) {
         scene->turn.mirror_mm[i] = c->mirror_sigma_mm > 0.0
@@ -200,40 +237,45 @@ static look_t look_now(scene_t *scene, const urg_rays_t *asked)
                     .skyward = cos(state->roll_rad) * cos(state->pitch_rad) < SKYWARD};
 }
 
-static double ray_noise_mm(scene_t *scene)
+/* A ray goes together with the one before it, where that was measured. */
+static ray_noise_t noise_of_ray(scene_t *scene, const look_t *look, int step)
 {
-    const double keep = scene->config.ray_correlation;
+    const double keep = step == scene->turn.ray_step + 1 ? scene->config.ray_correlation : 0.0;
 
+    scene->turn.ray_step = step;
     scene->turn.ray_mm = keep * scene->turn.ray_mm + sqrt(1.0 - keep * keep) * scene->config.ray_sigma_mm *
                                                          noise_gauss(&scene->ray_noise);
-    return scene->turn.common_mm + scene->turn.ray_mm;
+    return (ray_noise_t){scene->turn.common_mm + look->slow_mm, scene->turn.ray_mm};
 }
 
 /* A ray through a mirror. */
 static int bent_mm(scene_t *scene, const look_t *look, int mirror, int step)
 {
-    const bool struck = is_struck(scene, mirror);
-    const double noise_mm = ray_noise_mm(scene) + scene->turn.mirror_mm[mirror] + look->slow_mm +
-                            (struck ? scene->turn.lift_mm : 0.0);
+    ray_noise_t noise = noise_of_ray(scene, look, step);
 
+    noise.shared_mm += scene->turn.mirror_mm[mirror] + (is_struck(scene, mirror) ? scene->turn.lift_mm : 0.0);
     if (lost(scene, mirror, look->t_s)) {
         return lost_code(scene);
     }
     if (step - bracket_mirrors[mirror].first_step < blocked_steps(scene, mirror, look)) {
-        return (int)lround(scene->config.block_mm + noise_mm);
+        return (int)lround(scene->config.block_mm + noise.shared_mm + noise.own_mm);
     }
-    const double mm = ground_mm(scene, look, mirror, step);
-    return mm == FAR_CODE ? FAR_CODE : (int)lround(mm + noise_mm);
+    if (look->skyward) {
+        return FAR_CODE;
+    }
+    if (quadrotor_place(scene->quadrotor) == NULL) {
+        return anywhere_mm(scene, look, mirror, noise);
+    }
+    noise.shared_mm -= 1000.0 * edge_m(scene, look->t_s);
+    return told_mm(scene, look, mirror, step, noise);
 }
 
 /* A ray between the mirrors: what stands around. */
 static int straight_mm(scene_t *scene, const look_t *look, int step)
 {
-    if (quadrotor_place(scene->quadrotor) == NULL) {
-        return FAR_CODE;
-    }
-    const double mm = place_mm(scene, look, -1, step);
-    return mm == FAR_CODE ? FAR_CODE : (int)lround(mm + ray_noise_mm(scene) + look->slow_mm);
+    return quadrotor_place(scene->quadrotor) == NULL
+               ? FAR_CODE
+               : told_mm(scene, look, -1, step, noise_of_ray(scene, look, step));
 }
 
 static int measured_mm(scene_t *scene, const look_t *look, int step)

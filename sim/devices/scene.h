@@ -8,7 +8,11 @@
  * Neighbouring rays go together (correlation 0.48, then 0.25, 0.11). The means of 35 rays in different
  * directions have 0.4 to 1.0 mm and hardly go together (0.06): the noise is each mirror's own. All
  * directions drift together by up to 1 mm in a second. So the figures by default ask more of the laws than
- * that sensor does; `ray_noise 2.4`, `ray_correlation 0.5`, `common_noise 0`, `wander 2` are as recorded. */
+ * that sensor does; `ray_noise 2.4`, `ray_correlation 0.5`, `common_noise 0`, `wander 2` are as recorded.
+ *
+ * Mixed pixels: in the same recording the rays at 4 of 9 edges between two things are sharp, at 2 one or two
+ * tell something in between, at 3 three or four in a row are lost. So a ray that lights both sides of an edge
+ * (spot_rad) tells the mean by the light that comes back, or, one in three, a code. */
 #ifndef SIM_DEVICES_SCENE_H
 #define SIM_DEVICES_SCENE_H
 
@@ -42,6 +46,8 @@ typedef struct {
     double struck_beam; /* 0: the four before act on every beam; 1: on the front mirror's alone, 2: on that
                          * of mirror 1, aft; 3: of mirror 2, fore; 4: front and aft; 5: front and fore; 6: aft
                          * and fore */
+    double spot_rad;    /* half the width of what a ray lights, 0: a line. Recorded: 6e-3, one step */
+    double sunlight;    /* 0..1, everywhere */
     double edge_m; /* what the beam sees lies that much higher than what the gear will stand on; < 0: beyond
                     * the edge of a table */
     double edge_start_s; /* 0 */
@@ -52,13 +58,14 @@ extern const scene_config_t scene_default;
 typedef struct {
     scene_config_t config;
     quadrotor_t *quadrotor;
-    noise_t ray_noise, common_noise, mirror_noise, wander_noise, glitch_noise, lost_noise;
+    noise_t ray_noise, common_noise, mirror_noise, wander_noise, glitch_noise, lost_noise, surface_noise;
     double wander_mm, wandered_s;
     struct { /* what the rays of this revolution share */
         double common_mm, mirror_mm[BRACKET_MIRRORS];
         double lift_mm; /* of a glitch */
         bool broken;    /* by one */
-        double ray_mm;  /* noise of the ray before */
+        int ray_step;   /* measured last, */
+        double ray_mm;  /* its noise */
     } turn;
     int latest_mm[SCENE_STEPS]; /* of each step, as told last */
 } scene_t;

@@ -6,9 +6,11 @@
 #include <string.h>
 
 #define LINE_N 200
-#define WORDS_N 12
+#define WORDS_N 16
 #define NUMBERS_N 8
+#define NAMES_N 2
 #define TURNED "turned"
+#define OF "of"
 #define DEG (M_PI / 180.0)
 #define BOARD_M 0.03 /* chosen: of a table */
 #define LEG_M 0.04   /* chosen */
@@ -20,9 +22,11 @@
 typedef struct {
     place_file_t *file;
     const char *verb;
+    const char *name[NAMES_N];
     double value[NUMBERS_N];
     double turned_rad;
     bool is_turned;
+    surface_t surface; /* of the thing; without a name: plain */
 } order_t;
 
 typedef struct {
@@ -34,11 +38,13 @@ typedef struct {
     const char *name;
     argument_t arguments[NUMBERS_N]; /* no name ends */
     bool (*obey)(const order_t *order);
-    bool turns;
+    bool turns, has_surface;
+    int names; /* come before the numbers */
 } verb_t;
 
 static bool put(const order_t *order, place_block_t block)
 {
+    block.surface = order->surface;
     if (place_add(&order->file->place, &block)) {
         return true;
     }
@@ -181,6 +187,81 @@ static bool obey_go(const order_t *order)
     return true;
 }
 
+/* The file's own surfaces win. */
+static const surface_t *surface_named(const place_file_t *file, const char *name)
+{
+    for (int i = 0; i < file->surface_count; i++) {
+        if (strcmp(file->surfaces[i].name, name) == 0) {
+            return &file->surfaces[i];
+        }
+    }
+    return surface_find(name);
+}
+
+static bool read_surface(const order_t *order, const char *name, surface_t *surface)
+{
+    const surface_t *found = surface_named(order->file, name);
+
+    if (found == NULL) {
+        snprintf(order->file->message, sizeof order->file->message, "%.40s: no surface %.40s", order->verb,
+                 name);
+        return false;
+    }
+    *surface = *found;
+    return true;
+}
+
+static bool obey_floor(const order_t *order)
+{
+    order->file->place.tile_m = 0.0;
+    return read_surface(order, order->name[0], &order->file->place.floor[0]);
+}
+
+static bool obey_tiles(const order_t *order)
+{
+    order->file->place.tile_m = order->value[0];
+    return read_surface(order, order->name[0], &order->file->place.floor[0]) &&
+           read_surface(order, order->name[1], &order->file->place.floor[1]);
+}
+
+static bool obey_sun(const order_t *order)
+{
+    const place_sun_t sun = {.x_m = order->value[0],
+                             .y_m = order->value[1],
+                             .heading_rad = order->turned_rad,
+                             .length_m = order->value[2],
+                             .width_m = order->value[3],
+                             .strength = order->value[4]};
+
+    if (place_shine(&order->file->place, &sun)) {
+        return true;
+    }
+    snprintf(order->file->message, sizeof order->file->message, "sun: more than %d", PLACE_SUNS_MAX);
+    return false;
+}
+
+static bool obey_surface(const order_t *order)
+{
+    place_file_t *file = order->file;
+    surface_t surface = {.reflectance = order->value[0],
+                         .gloss = order->value[1],
+                         .clear = order->value[2],
+                         .offset_mm = order->value[3],
+                         .depth_mm = order->value[4]};
+
+    if (strlen(order->name[0]) >= SURFACE_NAME_N || file->surface_count == PLACE_FILE_SURFACES_MAX ||
+        surface.reflectance + surface.gloss + surface.clear > 1.0 ||
+        strcmp(order->name[0], surface_plain.name) == 0) {
+        snprintf(file->message, sizeof file->message,
+                 "surface: at most %d, names shorter than %d and not plain, light shared out at most once",
+                 PLACE_FILE_SURFACES_MAX, SURFACE_NAME_N);
+        return false;
+    }
+    snprintf(surface.name, sizeof surface.name, "%s", order->name[0]);
+    file->surfaces[file->surface_count++] = surface;
+    return true;
+}
+
 #define X_Y \
     {"X", -100, 100}, \
     { \
@@ -196,16 +277,28 @@ static bool obey_go(const order_t *order)
     }
 
 static const verb_t verbs[] = {
-    {"rough", {{"RMS_MM", 0, 1000}, {"CORRELATION_M", 0.001, 100}}, obey_rough, false},
-    {"block", {X_Y, SIZE("LENGTH"), SIZE("WIDTH"), SIZE("HEIGHT")}, obey_block, true},
-    {"ramp", {X_Y, SIZE("LENGTH"), SIZE("WIDTH"), {"NEAR", 0, 100}, {"FAR", 0, 100}}, obey_ramp, true},
-    {"stairs", {X_Y, {"STEPS", 1, STEPS_MAX}, SIZE("RUN"), SIZE("RISE"), SIZE("WIDTH")}, obey_stairs, true},
-    {"table", {X_Y, SIZE("LENGTH"), SIZE("WIDTH"), SIZE("HEIGHT")}, obey_table, true},
-    {"post", {X_Y, SIZE("THICKNESS"), SIZE("HEIGHT")}, obey_post, true},
+    {"rough", {{"RMS_MM", 0, 1000}, {"CORRELATION_M", 0.001, 100}}, obey_rough, false, false, 0},
+    {"block", {X_Y, SIZE("LENGTH"), SIZE("WIDTH"), SIZE("HEIGHT")}, obey_block, true, true, 0},
+    {"ramp",
+     {X_Y, SIZE("LENGTH"), SIZE("WIDTH"), {"NEAR", 0, 100}, {"FAR", 0, 100}},
+     obey_ramp,
+     true,
+     true,
+     0},
+    {"stairs",
+     {X_Y, {"STEPS", 1, STEPS_MAX}, SIZE("RUN"), SIZE("RISE"), SIZE("WIDTH")},
+     obey_stairs,
+     true,
+     true,
+     0},
+    {"table", {X_Y, SIZE("LENGTH"), SIZE("WIDTH"), SIZE("HEIGHT")}, obey_table, true, true, 0},
+    {"post", {X_Y, SIZE("THICKNESS"), SIZE("HEIGHT")}, obey_post, true, true, 0},
     {"wall",
      {{"X1", -100, 100}, {"Y1", -100, 100}, {"X2", -100, 100}, {"Y2", -100, 100}, SIZE("HEIGHT")},
      obey_wall,
-     false},
+     false,
+     true,
+     0},
     {"lift",
      {X_Y,
       SIZE("LENGTH"),
@@ -215,12 +308,29 @@ static const verb_t verbs[] = {
       SECONDS("START"),
       SECONDS("STAY")},
      obey_lift,
-     true},
+     true,
+     true,
+     0},
     {"foot",
      {X_Y, SIZE("LENGTH"), SIZE("WIDTH"), SIZE("HEIGHT"), SECONDS("START"), SECONDS("SECONDS")},
      obey_foot,
-     true},
-    {"go", {SECONDS("START"), X_Y, {"SPEED", 0.01, 10}}, obey_go, true},
+     true,
+     true,
+     0},
+    {"go", {SECONDS("START"), X_Y, {"SPEED", 0.01, 10}}, obey_go, true, false, 0},
+    {"floor", {{NULL, 0, 0}}, obey_floor, false, false, 1},
+    {"tiles", {SIZE("SIZE")}, obey_tiles, false, false, 2},
+    {"sun", {X_Y, SIZE("LENGTH"), SIZE("WIDTH"), {"STRENGTH", 0, 1}}, obey_sun, true, false, 0},
+    {"surface",
+     {{"REFLECTANCE", 0, 1},
+      {"GLOSS", 0, 1},
+      {"CLEAR", 0, 1},
+      {"OFFSET_MM", -1000, 1000},
+      {"DEPTH_MM", 0, 1000}},
+     obey_surface,
+     false,
+     false,
+     1},
 };
 #define VERB_COUNT (sizeof verbs / sizeof verbs[0])
 
@@ -265,25 +375,64 @@ static int arguments_of(const verb_t *verb)
     return count;
 }
 
-static bool read_turned(order_t *order, const verb_t *verb, char *const *words, int count)
+static bool read_turned(order_t *order, const verb_t *verb, const char *word)
 {
     static const argument_t degrees = {TURNED, -360, 360};
     double turned_deg;
 
-    if (count == 0) {
-        return true;
-    }
-    if (!verb->turns || strcmp(words[0], TURNED) != 0) {
-        return fault(order->file, verb->name, words[0], "one word too many");
-    }
-    if (count != 2) {
+    if (word == NULL) {
         return fault(order->file, verb->name, TURNED, "wants one angle, in degrees");
     }
-    if (!read_number(order->file, verb->name, &degrees, words[1], &turned_deg)) {
+    if (!read_number(order->file, verb->name, &degrees, word, &turned_deg)) {
         return false;
     }
     order->turned_rad = turned_deg * DEG;
     order->is_turned = true;
+    return true;
+}
+
+/* What may stand behind the numbers, once each, in any order. */
+static bool read_tail(order_t *order, const verb_t *verb, char *const *words, int count)
+{
+    for (int i = 0; i < count; i += 2) {
+        const char *value = i + 1 < count ? words[i + 1] : NULL;
+        const bool turned = verb->turns && !order->is_turned && strcmp(words[i], TURNED) == 0;
+        const bool of = verb->has_surface && order->surface.name[0] == '\0' && strcmp(words[i], OF) == 0;
+
+        if (!turned && !of) {
+            return fault(order->file, verb->name, words[i], "one word too many");
+        }
+        if (of && value == NULL) {
+            return fault(order->file, verb->name, OF, "wants a surface");
+        }
+        if (turned ? !read_turned(order, verb, value) : !read_surface(order, value, &order->surface)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool read_names(order_t *order, const verb_t *verb, char *const *words, int count)
+{
+    for (int i = 0; i < verb->names; i++) {
+        if (i >= count) {
+            return fault(order->file, verb->name, "NAME", "missing");
+        }
+        order->name[i] = words[i];
+    }
+    return true;
+}
+
+static bool read_numbers(order_t *order, const verb_t *verb, char *const *words, int count)
+{
+    for (int i = 0; i < arguments_of(verb); i++) {
+        if (i >= count) {
+            return fault(order->file, verb->name, verb->arguments[i].name, "missing");
+        }
+        if (!read_number(order->file, verb->name, &verb->arguments[i], words[i], &order->value[i])) {
+            return false;
+        }
+    }
     return true;
 }
 
@@ -296,16 +445,10 @@ static bool read_words(place_file_t *file, char *const *words, int count)
         snprintf(file->message, sizeof file->message, "%.40s: no such word", words[0]);
         return false;
     }
-    const int wanted = arguments_of(verb);
-    for (int i = 0; i < wanted; i++) {
-        if (i + 1 >= count) {
-            return fault(file, verb->name, verb->arguments[i].name, "missing");
-        }
-        if (!read_number(file, verb->name, &verb->arguments[i], words[i + 1], &order.value[i])) {
-            return false;
-        }
-    }
-    return read_turned(&order, verb, words + wanted + 1, count - wanted - 1) && verb->obey(&order);
+    const int numbers = 1 + verb->names, tail = numbers + arguments_of(verb);
+    return read_names(&order, verb, words + 1, count - 1) &&
+           read_numbers(&order, verb, words + numbers, count - numbers) &&
+           read_tail(&order, verb, words + tail, count - tail) && verb->obey(&order);
 }
 
 static bool read_line(place_file_t *file, char *line)

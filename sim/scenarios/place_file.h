@@ -10,9 +10,15 @@
  *   lift    X Y LENGTH WIDTH TRAVEL SPEED START STAY   level with the floor; rises, stays, and sinks again
  *   foot    X Y LENGTH WIDTH HEIGHT START SECONDS      a block that is there for a while
  *   go      START X Y SPEED                   a leg of the way
+ *   floor   NAME                              its surface
+ *   tiles   NAME NAME SIZE                    the floor in squares of two surfaces, a corner at 0 0
+ *   sun     X Y LENGTH WIDTH STRENGTH         sunlight on everything over there, 0 to 1
+ *   surface NAME REFLECTANCE GLOSS CLEAR OFFSET_MM DEPTH_MM   one more, or another one of that name
+ * (surface.h)
  *
  * `turned DEG` behind a thing turns it about its X Y, counter-clockwise from above; behind a leg it is where
- * the nose turns to on the way. Metres, seconds, degrees. The vehicle stands at 0 0, nose along x. */
+ * the nose turns to on the way. `of NAME` behind a thing is its surface. Metres, seconds, degrees. The
+ * vehicle stands at 0 0, nose along x. */
 #ifndef SIM_SCENARIOS_PLACE_FILE_H
 #define SIM_SCENARIOS_PLACE_FILE_H
 
@@ -22,9 +28,13 @@
 #include "sim/devices/course.h"
 #include "sim/devices/place.h"
 
+#define PLACE_FILE_SURFACES_MAX 16
+
 typedef struct {
     place_t place;
     course_t course;
+    surface_t surfaces[PLACE_FILE_SURFACES_MAX]; /* of its own */
+    int surface_count;
     unsigned line;     /* of the fault */
     char message[160]; /* what is wrong with it */
 } place_file_t;

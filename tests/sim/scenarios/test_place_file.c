@@ -120,7 +120,8 @@ void test_a_fault_is_named_with_its_line(void)
     refuse("block 1 0 1 1 0.3 turned x", 1, "block: turned: not a number");
     refuse("wall 0 0 1 1 2 turned 4", 1, "wall: turned: one word too many");
     refuse("go 1 1 1 0", 1, "go: SPEED: out of range 0.01..10");
-    refuse("go 1 1 1 1 turned 1 2 3 4 5 6 7 8", 1, "go: 7: one word too many");
+    refuse("go 1 1 1 1 turned 1 2 3 4 5 6 7 8", 1, "go: 2: one word too many");
+    refuse("go 1 1 1 1 turned 1 2 3 4 5 6 7 8 9 10 11", 1, "go: 11: one word too many");
 }
 
 void test_too_much_is_refused(void)
@@ -139,4 +140,61 @@ void test_too_much_is_refused(void)
     memset(text, ' ', 201);
     text[201] = '\0';
     refuse(text, 1, "longer than 200 characters");
+}
+
+static const char *surface_at(double x_m, double y_m)
+{
+    return place_below(&file.place, x_m, y_m, 10.0, 0.0).surface->name;
+}
+
+void test_things_are_of_the_surfaces_that_their_lines_name(void)
+{
+    read("floor carpet\nblock 3 0 1 1 0.4 of black\ntable 6 0 1 1 0.7 of glass turned 90\n"
+         "stairs 9 0 2 0.3 0.1 1 turned 0 of wood\nblock 12 0 1 1 0.1\nwall 20 -1 20 1 2 of white");
+    TEST_ASSERT_EQUAL_STRING("carpet", surface_at(0.0, 0.0));
+    TEST_ASSERT_EQUAL_STRING("black", surface_at(3.0, 0.0));
+    TEST_ASSERT_EQUAL_STRING("glass", surface_at(6.0, 0.0));
+    TEST_ASSERT_EQUAL_STRING("wood", surface_at(9.45, 0.0));
+    TEST_ASSERT_EQUAL_STRING("plain", surface_at(12.0, 0.0));
+    TEST_ASSERT_EQUAL_STRING("white", surface_at(20.0, 0.0));
+}
+
+void test_tiles_are_a_chequer_board_with_a_corner_at_the_origin(void)
+{
+    read("tiles white black 0.3");
+    TEST_ASSERT_EQUAL_STRING("white", surface_at(0.1, 0.1));
+    TEST_ASSERT_EQUAL_STRING("black", surface_at(0.4, 0.1));
+    TEST_ASSERT_EQUAL_STRING("black", surface_at(-0.1, 0.1));
+    TEST_ASSERT_EQUAL_STRING("white", surface_at(-0.1, -0.1));
+}
+
+void test_a_file_may_have_surfaces_of_its_own(void)
+{
+    read("surface parquet 0.4 0.2 0 3 0\nsurface black 0.02 0 0 15 0\nfloor parquet\nblock 3 0 1 1 1 of "
+         "black");
+    NEAR(1e-12, 3.0, place_below(&file.place, 0.0, 0.0, 1.0, 0.0).surface->offset_mm);
+    NEAR(1e-12, 15.0, place_below(&file.place, 3.0, 0.0, 2.0, 0.0).surface->offset_mm);
+}
+
+void test_the_sun_shines_where_its_line_says(void)
+{
+    read("sun 2 0 2 1 0.8\nsun 5 0 2 1 0.5 turned 90");
+    NEAR(1e-12, 0.8, place_sunlight(&file.place, 2.9, 0.4));
+    NEAR(1e-12, 0.0, place_sunlight(&file.place, 2.9, 0.6));
+    NEAR(1e-12, 0.5, place_sunlight(&file.place, 5.0, 0.9));
+    NEAR(1e-12, 0.0, place_sunlight(&file.place, 5.9, 0.0));
+}
+
+void test_surfaces_that_are_wrong_are_told(void)
+{
+    refuse("floor", 1, "floor: NAME: missing");
+    refuse("\nfloor cheese", 2, "floor: no surface cheese");
+    refuse("tiles white", 1, "tiles: NAME: missing");
+    refuse("tiles white black", 1, "tiles: SIZE: missing");
+    refuse("block 1 1 1 1 1 of", 1, "block: of: wants a surface");
+    refuse("block 1 1 1 1 1 of black of white", 1, "block: of: one word too many");
+    refuse("go 1 1 1 1 of black", 1, "go: of: one word too many");
+    refuse("sun 0 0 1 1 2", 1, "sun: STRENGTH: out of range 0..1");
+    refuse("surface shiny 0.5 0.6 0 0 0", 1,
+           "surface: at most 16, names shorter than 16 and not plain, light shared out at most once");
 }
