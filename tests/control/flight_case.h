@@ -1,15 +1,16 @@
-/* A flight whose state is written down, for the tests of the parts that flight_step() is made of. Each
- * function below calls one part, as flight_step() does, with what the state says. How it flies:
- * test_flight.c, est/test_est_law.c. */
+/* The case that a part of the control room is shown: the published situation, and beside it the modules that
+ * the part may change. A test says what is the case in the words below, calls one part by its header, and
+ * asks what that has done. Nothing here repeats flight_step(): how the parts act together is flown, in
+ * test_flight.c.
+ *
+ * This is the only file of these tests that knows how the modules remember. */
 #ifndef TESTS_CONTROL_FLIGHT_CASE_H
 #define TESTS_CONTROL_FLIGHT_CASE_H
 
-#include "control/between.h"
 #include "control/flight.h"
 #include "control/outputs.h"
 #include "control/signs.h"
 #include "control/thrust.h"
-#include "control/touchdown.h"
 #include "unity.h"
 
 #include <math.h>
@@ -18,8 +19,11 @@
 #define GRAV_N 7.0F
 #define NEAR(expected, actual) TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, expected, actual)
 
-static flight_t f;
 static parameters_t parameters;
+static evidence_t evidence;
+static where_t where;
+static est_law_t est;
+static situation_t now;
 static flight_inputs_t in;
 static flight_outputs_t out;
 
@@ -28,269 +32,276 @@ static inline void set(parameter_id_t id, float value)
     TEST_ASSERT_EQUAL(PARAMETER_ACCEPTED, parameters_set(&parameters, id, value));
 }
 
-/* FLYING with law EST at 0.5 m, all sensors fresh, cycles of 100 ms; hover thrust 7 N. */
-static inline void begin(void)
+/* ---- state and heights, as the supervisor has found them */
+
+static inline void in_state(flight_state_t state)
 {
-    parameters_init(&parameters);
-    flight_init(&f);
-    est_law_predict(&f.est, &parameters, NULL, 0U, 0U);
-    est_law_reset(&f.est, &parameters);
-    f.est.estimator.initialised = f.est.estimator.has_frames = f.est.estimator.felt = true;
-    f.est.estimator.confirmed = true;
-    f.est.estimator.now.height_m = f.est.estimator.filter.estimate.height_m = 0.5F;
-    f.est.airborne = true;
-    f.where.supervisor.state = FLIGHT_FLYING;
-    f.where.supervisor.started = true;
-    f.where.supervisor.step_us = 100000U;
-    f.where.supervisor.height.height_mm = 500.0F;
-    f.where.supervisor.height.sequence = 5U;
-    f.where.supervisor.reference_m = 0.6F;
-    f.mode = FLIGHT_MODE_EST_HOLD;
-    f.law = LAW_EST;
-    f.where.hover.thrust_n = f.thrust_n = f.laws.setpoint_n = GRAV_N;
-    f.where.hover.learned = true;
-    f.where.hover.learned_s = 2.5F;
-    f.est.actuator.thrust_n = GRAV_N;
-    in = (flight_inputs_t){.attitude_ready = true, .has_throttle = true};
-    memset(&out, 0, sizeof out);
-    f.evidence = (evidence_t){.teaches = true, .calm = true, .upright = 1.0F, .shaken = 1.0F};
+    where.supervisor.state = state;
 }
 
-static inline void sway(bool sways)
+static inline void in_state_for_us(flight_state_t state, uint32_t state_us)
 {
-    f.evidence.sways = f.evidence.rocks = sways;
-    f.evidence.calm = !sways;
+    in_state(state);
+    where.supervisor.state_us = state_us;
 }
 
-static inline void feel(float felt_mps)
+static inline void cycle_takes_us(uint32_t step_us)
 {
-    f.evidence.felt_mps = felt_mps;
-    f.evidence.felt_valid = true;
+    where.supervisor.step_us = step_us;
 }
 
-static inline void lose_the_estimate(void)
+static inline void at_mm(float height_mm)
 {
-    f.est.estimator.initialised = false;
+    where.supervisor.height.height_mm = height_mm;
+}
+
+/* The latest height, gap_us after the one before. */
+static inline void height_is(float height_mm, float rate_mm_s, uint32_t gap_us, bool is_new)
+{
+    where.supervisor.height = (height_track_t){
+        .height_mm = height_mm, .rate_mm_s = rate_mm_s, .gap_us = gap_us, .sequence = 5U, .is_new = is_new};
+}
+
+static inline void no_height_has_come(void)
+{
+    where.supervisor.height.sequence = 0U;
+}
+
+static inline void height_is_new(bool is_new, uint32_t age_us)
+{
+    where.supervisor.height.is_new = is_new;
+    where.supervisor.height.age_us = age_us;
+}
+
+static inline void flagged(uint16_t flags)
+{
+    where.supervisor.flags = flags;
+}
+
+static inline void ordered_m(float reference_m)
+{
+    where.supervisor.reference_m = reference_m;
+    where.supervisor.land = reference_m <= 0.0F;
+}
+
+static inline void cycle_was_at_us(bool started, uint32_t then_us)
+{
+    where.supervisor.started = started;
+    where.supervisor.now_us = then_us;
+}
+
+static inline void order_was(uint32_t sequence)
+{
+    where.supervisor.reference_sequence = sequence;
+}
+
+static inline void estimate_contradicts(bool contradicts)
+{
+    where.supervisor.estimate_age_us = contradicts ? 60000000U : 0U;
+}
+
+static inline void given_back_unseen(bool handed_over)
+{
+    where.supervisor.handed_over = handed_over;
+}
+
+/* ---- contact, pilot, hover thrust */
+
+/* The vehicle stands and takes off; whether it has left the ground is told by contact_step(). */
+static inline void lifting(bool is_lifting)
+{
+    const contact_signs_t ground = {.state = FLIGHT_GROUND};
+    const contact_signs_t off = {.state = FLIGHT_FLYING, .airborne = !is_lifting};
+
+    contact_step(&where.contact, &ground);
+    contact_step(&where.contact, &off);
+}
+
+static inline void took_off_in_vain(void)
+{
+    contact_watch_take_off(&where.contact, FLIGHT_TAKEOFF, 0U, false);
 }
 
 static inline void unknown(bool is_unknown)
 {
-    f.where.pilot.throttle = is_unknown ? THROTTLE_UNKNOWN : THROTTLE_OURS;
+    where.pilot.throttle = is_unknown ? THROTTLE_UNKNOWN : THROTTLE_OURS;
 }
 
-static inline bool has_imu_and_rocks(void)
+static inline void commands_show(bool has_effect)
 {
-    return f.evidence.rocks && est_law_has_imu(&f.est);
+    where.pilot.effect.has_effect = has_effect;
 }
 
-/* What contact follows from state and lift-off, for states that a test has written down. */
-static inline void touch(void)
+/* A descent that began in a pilot's hands. */
+static inline void given_back(float sink_n_per_s)
 {
-    const flight_state_t state = f.where.supervisor.state;
-    contact_t *contact = &f.where.contact;
-
-    contact->kind = state == FLIGHT_GROUND ? CONTACT_GROUND
-                    : (state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING) && contact->lifting
-                        ? CONTACT_LIFTING
-                        : CONTACT_AIR;
+    where.pilot.given_back = true;
+    where.pilot.sink_n_per_s = sink_n_per_s;
+    unknown(true);
 }
 
-static inline situation_t situation_after(flight_mode_t before)
+static inline void nothing_learned(void)
 {
-    touch();
-    return (situation_t){
-        .parameters = &parameters,
-        .evidence = &f.evidence,
-        .where = &f.where,
-        .est = &f.est,
-        .law = f.law,
-        .mode = f.mode,
-        .mode_before = before,
-        .aim_m = aim_height_m(&f.aim, &f.where.supervisor),
-        .thrust_n = f.thrust_n,
-        .idle_n = f.idle_n,
-        .risen = f.where.supervisor.height.height_mm * 0.001F - f.est.ground_m > 0.08F,
-        .rocks = has_imu_and_rocks(),
-    };
+    hover_thrust_step(&where.hover, &(hover_lesson_t){.gravity_n = GRAV_N, .grounded = true});
 }
 
-static inline situation_t situation(void)
+static inline void hovers_at_n(float thrust_n)
 {
-    return situation_after(f.mode);
+    hover_thrust_lift_off(&where.hover, thrust_n);
 }
 
-static inline void update_hover(void)
-{
-    const situation_t now = situation();
-    const hover_lesson_t lesson = signs_of_hover(&now);
+/* ---- the estimate */
 
-    hover_thrust_step(&f.where.hover, &lesson);
-    handover_hover(&f.est, &now);
+static inline void airborne(bool is_airborne)
+{
+    est.airborne = is_airborne;
 }
 
-static inline void change_mode(flight_mode_t before, flight_mode_t mode)
+static inline void estimated(float height_m, float speed_mps, float bias_mps2)
 {
-    f.mode = mode;
-    const situation_t now = situation_after(before);
-
-    stuck_pin_reset(&f.pin);
-    if (before == FLIGHT_MODE_DESCENT) {
-        hover_thrust_correct(&f.where.hover, f.laws.descent.trim_n);
-    }
-    laws_change(&f.laws, &now);
-    handover_mode(&f.est, &now);
+    estimator_start(&est.estimator, height_m, speed_mps, bias_mps2);
+    est.estimator.unchecked_count = 0U;
 }
 
-static inline void transfer(flight_mode_t before, bool law_changed)
+/* No height has checked the speed yet. */
+static inline void unchecked(void)
 {
-    const situation_t now = situation_after(before);
+    const estimate_t *is = &est.estimator.now;
 
-    laws_transfer(&f.laws, &now, law_changed);
+    estimator_start(&est.estimator, is->height_m, is->speed_mps, is->bias_mps2);
 }
 
-static inline bool run_mode(bool mode_changed)
+static inline void confirmed(bool is_confirmed)
 {
-    const situation_t now = situation_after(mode_changed ? FLIGHT_MODE_COUNT : f.mode);
-    const bool changed = laws_step(&f.laws, &f.est, &now);
-
-    stuck_pin_step(&f.pin, &now);
-    return changed;
+    est.estimator.confirmed = is_confirmed;
 }
 
-static inline bool step_pid(void)
+static inline void innovation_is_m(float innovation_m)
 {
-    const situation_t now = situation();
-    const bool had_integral = f.laws.integral;
-
-    f.laws.setpoint_n = law_pid_step(&f.laws, &f.est, &now);
-    return f.laws.integral != had_integral;
+    est.estimator.innovation_m = innovation_m;
 }
 
-static inline void step_pidt(float reference_m)
+static inline void noise_is_mps2(float noise_mps2)
 {
-    situation_t now = situation();
-
-    now.aim_m = reference_m;
-    f.laws.setpoint_n = law_pidt_step(&f.laws, &f.est, &now);
+    est.estimator.credit.noise_mps2 = noise_mps2;
 }
 
-static inline void step_descent(bool started)
+static inline void band_is_n(float band_n)
 {
-    const situation_t now = situation_after(started ? FLIGHT_MODE_COUNT : f.mode);
-
-    f.laws.setpoint_n = law_descent_step(&f.laws, &f.est, &now);
+    est.deadband.band_n = band_n;
 }
 
-static inline void step_stuck_pin(void)
+static inline void lose_the_estimate(void)
 {
-    f.mode = FLIGHT_MODE_HOVER;
-    const situation_t now = situation();
-
-    stuck_pin_step(&f.pin, &now);
+    est.estimator.initialised = false;
 }
 
-/* All limits, and what floating adds. */
-static inline float bounded_n(float thrust_n)
+static inline void accelerations_come(bool felt)
 {
-    const situation_t now = situation();
-    const float trim_n = bounds_trim_n(&f.bounds, &now);
-    const float bounded = bounds_apply(&f.bounds, &now, thrust_n + trim_n);
-
-    handover_given_back(&f.est, &now);
-    return bounded;
+    est.estimator.felt = felt;
 }
 
-static inline float landing_n(float thrust_n)
+static inline void frame_was_s_ago(float frameless_s)
 {
-    const situation_t now = situation();
-    const landing_signs_t signs = signs_of_landing(&now);
-
-    contact_land(&f.where.contact, &signs);
-    return bounded_n(thrust_n);
+    est.frameless_s = frameless_s;
 }
 
-static inline void change_doubts(void)
+static inline void est_hovers_at_n(float thrust_n)
 {
-    const situation_t now = situation();
-
-    handover_doubts(&f.handover, &f.est, &f.where.hover, &now);
+    est.hover.thrust_n = thrust_n;
 }
 
-/* The estimator's part of a cycle: the IMU, the height, contact. */
-static inline void update_estimator(void)
+static inline void delivers_n(float thrust_n)
 {
-    situation_t now = situation();
-
-    handover_imu(&f.est, &now);
-    if (f.where.supervisor.height.is_new) {
-        est_law_fuse_height(&f.est, &in.altitude, in.height_stamp_ms, in.height_time_us, in.height_age_us,
-                            supervisor_is_at_rest(&f.where.supervisor));
-    }
-    const contact_signs_t signs = signs_of_contact(&now);
-    contact_step(&f.where.contact, &signs);
-    handover_contact(&f.est, &f.where, &now, in.has_throttle);
+    est.actuator.thrust_n = thrust_n;
 }
 
-static inline bool select_law(void)
+static inline void ground_was_at_m(float height_m)
 {
-    const control_law_t before = f.law;
-
-    f.law = modes_law(&parameters, est_law_ready(&f.est));
-    return f.law != before;
+    est.ground_m = height_m;
 }
 
-static inline flight_mode_t select_mode(void)
+static inline void rays_were_at_us(uint32_t rays_us)
 {
-    return modes_select(&f.where.supervisor, &f.evidence,
-                        &(mode_choice_t){.law = f.law,
-                                         .estimated = est_law_ready(&f.est),
-                                         .airborne = f.est.airborne,
-                                         .has_throttle = in.has_throttle});
+    est.rays_us = rays_us;
 }
 
-static inline void update_throttle(bool has_throttle)
+static inline void lifts_at(float lift_mps2)
 {
-    const situation_t now = situation();
-    const pilot_signs_t signs = signs_of_pilot(&now, has_throttle);
-
-    handover_pilot(&f.est, &now, pilot_step(&f.where.pilot, &signs), f.bounds.trim_n);
+    est.lift_mps2 = lift_mps2;
 }
 
-static inline void float_along(bool entered)
+/* The thrust that law EST goes on from. */
+static inline float goes_on_from_n(void)
 {
-    aim_float(&f.aim, &f.where, f.mode, entered ? FLIGHT_MODE_IDLE : FLIGHT_MODE_EST_HOLD);
+    return est.cascade.thrust_n;
 }
 
-static inline bool stops_on_ground(void)
-{
-    const supervisor_t *supervisor = &f.where.supervisor;
+/* ---- the sensors */
 
-    contact_watch_take_off(&f.where.contact, supervisor->state, supervisor->state_us, f.est.airborne);
-    return contact_stops(&f.where.contact, supervisor->state);
+static inline void sway(bool sways)
+{
+    evidence.sways = evidence.rocks = now.rocks = sways;
+    evidence.calm = !sways;
 }
 
-static inline void write_outputs(void)
+static inline void feel(float felt_mps)
 {
-    const situation_t now = situation();
-
-    outputs_tell(&now, f.aim.out_of_reach, &out);
-    outputs_drive(f.thrust_n + f.pin.more_n, &out);
-    out.imu_fault = f.axes.fault;
-    out.releases = flight_releases(&f, &parameters);
+    evidence.felt_mps = felt_mps;
+    evidence.felt_valid = true;
 }
 
-static inline command_t described(void)
+/* The mode changes. */
+static inline void mode_changes(flight_mode_t before, flight_mode_t mode)
 {
-    const situation_t now = situation();
-
-    return signs_of_command(&now, &in, aim_wanted_m(&f.aim, &f.where.supervisor, f.mode));
+    now.mode_before = before;
+    now.mode = mode;
 }
 
-static inline bool may_be_in_hands(void)
+static inline void mode_is(flight_mode_t mode)
 {
-    const situation_t now = situation();
+    mode_changes(mode, mode);
+}
 
-    return signs_of_vertical(&now, false).carried;
+/* FLYING with law EST at 0.5 m towards 0.6 m, all sensors fresh, cycles of 100 ms; hover thrust 7 N. */
+static inline void begin(void)
+{
+    static const imu_sample_t frame = {
+        .sequence = 1U, .ready = true, .has_acceleration = true, .down_mps2 = IMU_GRAVITY_MPS2};
+    const altitude_t altitude = {.valid = true, .slant_mm = 500.0F};
+
+    parameters_init(&parameters);
+    est_law_init(&est);
+    est_law_reset(&est, &parameters);
+    est_law_predict(&est, &parameters, &frame, 1U, 0U);
+    frame_was_s_ago(0.0F);
+    accelerations_come(true);
+    (void)estimator_fuse_height(&est.estimator, &altitude, 0U, false);
+    estimated(0.5F, 0.0F, 0.0F);
+    est_law_engage(&est, GRAV_N, GRAV_N);
+    delivers_n(GRAV_N);
+    memset(&where, 0, sizeof where);
+    supervisor_init(&where.supervisor);
+    in_state_for_us(FLIGHT_FLYING, 0U);
+    cycle_was_at_us(true, 0U);
+    cycle_takes_us(100000U);
+    ordered_m(0.6F);
+    estimate_contradicts(false);
+    height_is(500.0F, 0.0F, 100000U, false);
+    contact_step(&where.contact, &(contact_signs_t){.state = FLIGHT_FLYING});
+    hovers_at_n(GRAV_N);
+    evidence = (evidence_t){.teaches = true, .calm = true, .upright = 1.0F, .shaken = 1.0F};
+    now = (situation_t){.parameters = &parameters,
+                        .evidence = &evidence,
+                        .where = &where,
+                        .est = &est,
+                        .law = LAW_EST,
+                        .aim_m = 0.6F,
+                        .thrust_n = GRAV_N,
+                        .risen = true};
+    mode_is(FLIGHT_MODE_EST_HOLD);
+    in = (flight_inputs_t){.attitude_ready = true, .has_throttle = true};
+    out = (flight_outputs_t)FLIGHT_OUTPUTS_INITIAL;
 }
 
 #endif

@@ -1,27 +1,39 @@
+#include "control/aim.h"
 #include "flight_case.h"
+
+static aim_t aim;
 
 void setUp(void)
 {
     begin();
+    memset(&aim, 0, sizeof aim);
 }
 
 void tearDown(void) {}
+
+/* FLOATING holds this height, and the vehicle is at 0.5 m. */
+static void floats_at_m(float height_m)
+{
+    at_mm(1000.0F * height_m);
+    aim_float(&aim, &where, FLIGHT_MODE_FLOAT, FLIGHT_MODE_IDLE);
+    at_mm(500.0F);
+}
 
 void test_a_wanted_height_is_there_while_one_is_held(void)
 {
     for (int state = 0; state < (int)FLIGHT_STATE_COUNT; state++) {
         setUp();
-        f.where.supervisor.state = (flight_state_t)state;
-        f.aim.floating_m = 0.8F;
+        floats_at_m(0.8F);
+        in_state((flight_state_t)state);
         const bool holds = state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING || state == FLIGHT_LOWERING;
         if (state == FLIGHT_FLOATING) {
-            NEAR(0.3F, aim_wanted_m(&f.aim, &f.where.supervisor, f.mode));
-            f.mode = FLIGHT_MODE_HOVER;
-            TEST_ASSERT_TRUE(isnan(aim_wanted_m(&f.aim, &f.where.supervisor, f.mode)));
+            NEAR(0.3F, aim_wanted_m(&aim, &where.supervisor, now.mode));
+            mode_is(FLIGHT_MODE_HOVER);
+            TEST_ASSERT_TRUE(isnan(aim_wanted_m(&aim, &where.supervisor, now.mode)));
         } else if (holds) {
-            NEAR(0.1F, aim_wanted_m(&f.aim, &f.where.supervisor, f.mode));
+            NEAR(0.1F, aim_wanted_m(&aim, &where.supervisor, now.mode));
         } else {
-            TEST_ASSERT_TRUE(isnan(aim_wanted_m(&f.aim, &f.where.supervisor, f.mode)));
+            TEST_ASSERT_TRUE(isnan(aim_wanted_m(&aim, &where.supervisor, now.mode)));
         }
     }
 }
@@ -43,42 +55,59 @@ void test_floating_holds_its_first_height_within_its_reach(void)
                 {false, true, true, FLIGHT_MODE_EST_HOLD, 0.1F, 0.36F}};
     for (int i = 0; i < 9; i++) {
         setUp();
-        f.where.supervisor.state = FLIGHT_FLOATING;
-        f.mode = rows[i].mode;
+        in_state(FLIGHT_FLOATING);
         unknown(rows[i].throttle_unknown);
-        f.where.pilot.effect.has_effect = rows[i].has_effect;
-        f.aim.floating_m = rows[i].before_m;
-        float_along(rows[i].entered);
-        NEAR(rows[i].held_m, f.aim.floating_m);
-        NEAR(f.aim.floating_m, aim_height_m(&f.aim, &f.where.supervisor));
+        commands_show(rows[i].has_effect);
+        floats_at_m(rows[i].before_m);
+        aim_float(&aim, &where, rows[i].mode, rows[i].entered ? FLIGHT_MODE_IDLE : FLIGHT_MODE_EST_HOLD);
+        NEAR(rows[i].held_m, aim_height_m(&aim, &where.supervisor));
     }
-    f.where.supervisor.state = FLIGHT_FLYING;
-    f.aim.floating_m = 0.6F;
-    float_along(false);
-    NEAR(0.5F, f.aim.floating_m);
-    NEAR(0.6F, aim_height_m(&f.aim, &f.where.supervisor));
-    TEST_ASSERT_TRUE(modes_hold(FLIGHT_MODE_EST_HOLD) && modes_hold(FLIGHT_MODE_FLOAT));
-    TEST_ASSERT_FALSE(modes_hold(FLIGHT_MODE_HOVER) || modes_hold(FLIGHT_MODE_LAW));
+    in_state(FLIGHT_FLYING); /* towards its reference; what floating held is forgotten */
+    floats_at_m(0.6F);
+    aim_float(&aim, &where, FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_EST_HOLD);
+    NEAR(0.6F, aim_height_m(&aim, &where.supervisor));
+    in_state(FLIGHT_FLOATING);
+    NEAR(0.5F, aim_height_m(&aim, &where.supervisor));
 }
 
-void test_a_reference_out_of_reach_is_told_in_the_states_that_act(void)
+/* 0.3 m below it for cycles of 10 s. */
+static bool stays_below(flight_state_t state, float reference_m, int cycles)
 {
-    f.where.supervisor.reference_m = f.aim.reach_m = 0.6F;
-    f.aim.reach = (reach_t){.on = true, .above = false, .nearest_mm = 100.0F, .stuck_us = 60000000U};
-    const reach_t stuck = f.aim.reach;
-    f.where.supervisor.height.height_mm = 300.0F;
-    aim_judge(&f.aim, &f.where);
-    TEST_ASSERT_TRUE(f.aim.out_of_reach);
-    f.where.supervisor.state = FLIGHT_TAKEOFF;
-    aim_judge(&f.aim, &f.where);
-    TEST_ASSERT_TRUE(f.aim.out_of_reach);
-    f.where.supervisor.reference_m = 0.7F;
-    aim_judge(&f.aim, &f.where);
-    TEST_ASSERT_FALSE(f.aim.out_of_reach);
-    NEAR(0.7F, f.aim.reach_m);
-    f.aim.reach = stuck;
-    f.where.supervisor.state = FLIGHT_LANDING;
-    aim_judge(&f.aim, &f.where);
-    TEST_ASSERT_FALSE(f.aim.out_of_reach);
-    TEST_ASSERT_FALSE(f.aim.reach.on);
+    in_state(state);
+    ordered_m(reference_m);
+    cycle_takes_us(10000000U);
+    at_mm(300.0F);
+    for (int i = 0; i < cycles; i++) {
+        aim_judge(&aim, &where);
+    }
+    return aim.out_of_reach;
+}
+
+void test_a_reference_out_of_reach_is_told_in_the_states_that_act_until_another_one_comes(void)
+{
+    TEST_ASSERT_TRUE(stays_below(FLIGHT_FLYING, 0.6F, 20));
+    TEST_ASSERT_TRUE(stays_below(FLIGHT_TAKEOFF, 0.6F, 1));
+    TEST_ASSERT_FALSE(stays_below(FLIGHT_TAKEOFF, 0.7F, 1));
+    TEST_ASSERT_TRUE(stays_below(FLIGHT_TAKEOFF, 0.7F, 20));
+    TEST_ASSERT_FALSE(stays_below(FLIGHT_COASTING, 0.7F, 20));
+    TEST_ASSERT_FALSE(stays_below(FLIGHT_FLYING, 0.7F, 1)); /* counted anew */
+}
+
+void test_a_landing_that_somebody_holds_up_does_not_reach_the_ground(void)
+{
+    const pilot_signs_t held_up = {.state = FLIGHT_LANDING,
+                                   .has_throttle = true,
+                                   .step_s = 0.5F,
+                                   .height_mm = 500.0F,
+                                   .thrust_n = 5.0F,
+                                   .hover_n = 7.0F};
+
+    in_state(FLIGHT_LANDING);
+    aim_judge(&aim, &where);
+    TEST_ASSERT_FALSE(aim.out_of_reach);
+    for (int i = 0; i < 3; i++) {
+        (void)pilot_step(&where.pilot, &held_up);
+    }
+    aim_judge(&aim, &where);
+    TEST_ASSERT_TRUE(aim.out_of_reach);
 }

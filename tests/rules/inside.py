@@ -65,6 +65,14 @@ def structs(text):
     return found
 
 
+def without_members(code):
+    """The code with the bodies of its structs blank: what they declare are no variables."""
+    for match in list(STRUCT.finditer(code)):
+        end = closing(code, match.end() - 1)
+        code = code[:match.end()] + re.sub(r"[^\n]", " ", code[match.end():end]) + code[end:]
+    return code
+
+
 def fields(body):
     found = {}
     body = re.sub(r"\{[^{}]*\}\s*(\w+)", r" \1", re.sub(r"\b(?:struct|union|enum)\b\s*", "inner_", body))
@@ -105,7 +113,7 @@ class Source:
         self.returns = {**returns, **dict((name, kind) for kind, name in RETURNS.findall(self.whole))}
         self.ends = [match.end() for match in re.finditer(r"^\}", self.whole, re.MULTILINE)]
         self.variables = {}
-        for match in DECLARED.finditer(self.whole):
+        for match in DECLARED.finditer(without_members(self.whole)):
             for name in re.findall(r"\w+", re.sub(r"\[[^\]]*\]", "", match.group(2))):
                 self.variables.setdefault(name, []).append((match.start(), match.group(1)))
         for name in structs(self.whole):

@@ -1,8 +1,12 @@
+#include "control/laws/laws.h"
 #include "flight_case.h"
+
+static laws_t laws;
 
 void setUp(void)
 {
     begin();
+    memset(&laws, 0, sizeof laws);
 }
 
 void tearDown(void) {}
@@ -13,11 +17,10 @@ void test_law_est_is_asked_to_hold_to_land_or_to_sink(void)
     static const est_mode_t asked[] = {EST_MODE_HOLD, EST_MODE_LAND, EST_MODE_SINK};
     for (int i = 0; i < 3; i++) {
         setUp();
-        f.mode = modes[i];
-        f.est.step_s = 0.1F;
-        est_law_t expected = f.est;
+        mode_is(modes[i]);
+        est_law_t expected = est;
         const float expected_n = est_law_step(&expected, &parameters, asked[i], 0.6F);
-        TEST_ASSERT_FALSE(run_mode(false));
-        NEAR(expected_n, f.laws.setpoint_n);
+        TEST_ASSERT_FALSE(laws_step(&laws, &est, &now));
+        NEAR(expected_n, laws.setpoint_n);
     }
 }

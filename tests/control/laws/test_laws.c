@@ -1,62 +1,143 @@
+#include "control/laws/laws.h"
 #include "flight_case.h"
 
+static laws_t laws;
+
+/* Gains with which an integral action comes before the thrust leaves its window. */
 void setUp(void)
 {
     begin();
+    set(PARAMETER_KP, 0.005F);
+    set(PARAMETER_KI, 0.0002F);
+    set(PARAMETER_USAT, 3.0F);
+    memset(&laws, 0, sizeof laws);
 }
 
 void tearDown(void) {}
 
-static void spoil_laws(void)
+static float step_n(flight_mode_t before, flight_mode_t mode)
 {
-    f.laws.pid = (pid_state_t){.integral_n = 0.5F, .primed = true};
-    f.laws.pidt = (pidt_state_t){.integral_n = 0.5F, .primed = true};
+    mode_changes(before, mode);
+    (void)laws_step(&laws, &est, &now);
+    return laws.setpoint_n;
+}
+
+static void change_mode(flight_mode_t before, flight_mode_t mode)
+{
+    mode_changes(before, mode);
+    laws_change(&laws, &now);
+}
+
+/* PID, or PIDT, is 0.1 m too low for a while: it has an integral action. Then it is where it wants to be, and
+ * the integral action is all that it asks for beyond GRAV. */
+static float flown_n(control_law_t law)
+{
+    now.law = law;
+    (void)step_n(FLIGHT_MODE_IDLE, FLIGHT_MODE_IDLE);
+    at_mm(500.0F);
+    for (int i = 0; i < 30; i++) {
+        height_is_new(true, 0U);
+        rays_were_at_us(est.rays_us + 100000U);
+        (void)step_n(FLIGHT_MODE_LAW, FLIGHT_MODE_LAW);
+    }
+    at_mm(600.0F);
+    for (int i = 0; i < 10; i++) { /* until its derivative is gone */
+        height_is_new(true, 0U);
+        rays_were_at_us(est.rays_us + 100000U);
+        (void)step_n(FLIGHT_MODE_LAW, FLIGHT_MODE_LAW);
+    }
+    return laws.setpoint_n - GRAV_N;
+}
+
+/* What is left of it in the law that flies next. */
+static float left_n(control_law_t law)
+{
+    now.law = law;
+    height_is_new(true, 0U);
+    return step_n(FLIGHT_MODE_LAW, FLIGHT_MODE_LAW) - GRAV_N;
 }
 
 void test_a_law_resumes_with_its_integral_and_others_forget_it_but_in_coasting(void)
 {
-    spoil_laws();
-    f.where.hover.thrust_n = 7.3F;
-    change_mode(FLIGHT_MODE_HOVER, FLIGHT_MODE_LAW);
-    NEAR(0.5F, f.laws.pid.integral_n);
-    NEAR(0.5F, f.laws.pidt.integral_n);
-    TEST_ASSERT_FALSE(f.laws.pid.primed || f.laws.pidt.primed);
-    change_mode(FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_LAW);
-    NEAR(0.3F, f.laws.pidt.integral_n); /* what law EST has found */
-    f.where.supervisor.state = FLIGHT_TAKEOFF;
-    f.laws.pidt.integral_n = 0.5F;
-    change_mode(FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_LAW);
-    NEAR(0.5F, f.laws.pidt.integral_n);
-    spoil_laws();
-    f.where.supervisor.state = FLIGHT_COASTING;
-    change_mode(FLIGHT_MODE_LAW, FLIGHT_MODE_HOVER);
-    NEAR(0.5F, f.laws.pid.integral_n);
-    NEAR(0.5F, f.laws.pidt.integral_n);
-    f.where.supervisor.state = FLIGHT_FLOATING;
-    change_mode(FLIGHT_MODE_LAW, FLIGHT_MODE_HOVER);
-    NEAR(0.0F, f.laws.pid.integral_n);
-    NEAR(0.0F, f.laws.pidt.integral_n);
-    spoil_laws();
-    f.where.supervisor.state = FLIGHT_COASTING;
-    change_mode(FLIGHT_MODE_LAW, FLIGHT_MODE_FLOAT);
-    NEAR(0.5F, f.laws.pid.integral_n);
-    NEAR(0.0F, f.laws.pidt.integral_n);
+    static const struct {
+        flight_state_t state;
+        flight_mode_t before, then;
+        bool pid_keeps, pidt_keeps;
+    } rows[] = {{FLIGHT_FLYING, FLIGHT_MODE_HOVER, FLIGHT_MODE_LAW, true, true},
+                {FLIGHT_TAKEOFF, FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_LAW, true, true},
+                {FLIGHT_COASTING, FLIGHT_MODE_LAW, FLIGHT_MODE_HOVER, true, true},
+                {FLIGHT_FLOATING, FLIGHT_MODE_LAW, FLIGHT_MODE_HOVER, false, false},
+                {FLIGHT_COASTING, FLIGHT_MODE_LAW, FLIGHT_MODE_FLOAT, true, false}};
+    static const control_law_t pid_and_pidt[] = {LAW_PID, LAW_PIDT};
+
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        for (int k = 0; k < 2; k++) {
+            setUp();
+            set(PARAMETER_LAW, (float)pid_and_pidt[k]);
+            const float integral_n = flown_n(pid_and_pidt[k]);
+            TEST_ASSERT_TRUE(integral_n > 0.1F);
+            in_state(rows[i].state);
+            change_mode(rows[i].before, rows[i].then);
+            const bool keeps = (k == 0) ? rows[i].pid_keeps : rows[i].pidt_keeps;
+            TEST_ASSERT_FLOAT_WITHIN(0.01F, keeps ? integral_n : 0.0F, left_n(pid_and_pidt[k]));
+        }
+    }
 }
 
-void test_a_descent_starts_from_the_measured_rate_and_leaves_its_trim(void)
+/* The next sample has no derivative: what was seen while another mode flew says nothing of a speed. */
+void test_a_law_that_resumes_has_no_derivative(void)
 {
-    f.where.supervisor.height.rate_mm_s = -150.0F;
-    f.laws.descent.trim_n = 0.4F;
-    change_mode(FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_DESCENT);
-    NEAR(150.0F, f.laws.descent.sink_mm_s);
-    NEAR(0.0F, f.laws.descent.trim_n);
-    NEAR(7.0F, f.where.hover.thrust_n);
-    f.laws.descent.trim_n = 0.4F;
-    change_mode(FLIGHT_MODE_DESCENT, FLIGHT_MODE_BLIND_DESCENT);
-    NEAR(7.4F, f.where.hover.thrust_n);
-    f.laws.descent.sink_mm_s = 77.0F;
-    change_mode(FLIGHT_MODE_LAW, FLIGHT_MODE_EST_LAND);
-    NEAR(77.0F, f.laws.descent.sink_mm_s);
+    static const control_law_t pid_and_pidt[] = {LAW_PID, LAW_PIDT};
+
+    for (int k = 0; k < 2; k++) {
+        setUp();
+        set(PARAMETER_LAW, (float)pid_and_pidt[k]);
+        set(PARAMETER_KI, 0.0F);
+        set(PARAMETER_PKI, 0.0F);
+        (void)flown_n(pid_and_pidt[k]);
+        change_mode(FLIGHT_MODE_HOVER, FLIGHT_MODE_LAW);
+        at_mm(590.0F);
+        rays_were_at_us(est.rays_us + 100000U);
+        const float share_n = 0.01F * ((k == 0) ? 1000.0F * parameters.value[PARAMETER_KP]
+                                                : parameters.value[PARAMETER_PKP]);
+        TEST_ASSERT_FLOAT_WITHIN(0.001F, share_n, left_n(pid_and_pidt[k]));
+    }
+}
+
+void test_pidt_takes_over_from_est_with_the_hover_thrust_that_was_found(void)
+{
+    hovers_at_n(7.3F);
+    set(PARAMETER_LAW, (float)LAW_PIDT);
+    (void)flown_n(LAW_PIDT);
+    change_mode(FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_LAW);
+    NEAR(0.3F, left_n(LAW_PIDT));
+}
+
+void test_a_descent_starts_from_the_measured_rate(void)
+{
+    descent_t expected;
+
+    for (int changes = 0; changes < 2; changes++) {
+        setUp();
+        height_is(500.0F, -150.0F, 100000U, true);
+        descent_start(&expected, (changes != 0) ? -150.0F : 0.0F);
+        change_mode(FLIGHT_MODE_EST_HOLD, (changes != 0) ? FLIGHT_MODE_DESCENT : FLIGHT_MODE_EST_LAND);
+        NEAR(descent_step(&expected, GRAV_N, 500.0F, -150.0F, 0.1F),
+             step_n(FLIGHT_MODE_DESCENT, FLIGHT_MODE_DESCENT));
+    }
+}
+
+/* 0.3 N is left from a transfer before, in a cycle of 0.1 s. */
+static void has_left_0_3_n(void)
+{
+    const float thrust_n = now.thrust_n;
+    const flight_mode_t before = now.mode_before, mode = now.mode;
+
+    now.thrust_n = laws.setpoint_n + 0.3F;
+    mode_is(FLIGHT_MODE_LAW);
+    laws_transfer(&laws, &now, true);
+    now.thrust_n = thrust_n;
+    mode_changes(before, mode);
 }
 
 void test_the_thrust_passes_over_without_a_jump(void)
@@ -79,141 +160,118 @@ void test_the_thrust_passes_over_without_a_jump(void)
                 {FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_BLIND_DESCENT, 6.8F, -0.2F, false}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         setUp();
-        f.mode = rows[i].now;
-        f.thrust_n = rows[i].thrust_n;
-        f.laws.transfer_n = 0.3F;
-        transfer(rows[i].before, rows[i].law_changed);
-        NEAR(rows[i].transfer_n, f.laws.transfer_n);
+        (void)step_n(FLIGHT_MODE_HOVER, FLIGHT_MODE_HOVER);
+        mode_changes(rows[i].before, rows[i].now);
+        now.thrust_n = rows[i].thrust_n;
+        has_left_0_3_n();
+        laws_transfer(&laws, &now, rows[i].law_changed);
+        NEAR(rows[i].transfer_n, laws.transfer_n);
     }
-    for (int lifting = 0; lifting < 2; lifting++) {
+    for (int lifts = 0; lifts < 2; lifts++) {
         setUp();
-        f.mode = FLIGHT_MODE_EST_HOLD;
-        f.thrust_n = 6.8F;
-        f.where.contact.lifting = lifting != 0;
-        transfer(FLIGHT_MODE_HOVER, false);
-        NEAR((lifting != 0) ? 0.0F : -0.2F, f.laws.transfer_n);
+        (void)step_n(FLIGHT_MODE_HOVER, FLIGHT_MODE_HOVER);
+        mode_changes(FLIGHT_MODE_HOVER, FLIGHT_MODE_EST_HOLD);
+        now.thrust_n = 6.8F;
+        lifting(lifts != 0);
+        laws_transfer(&laws, &now, false);
+        NEAR((lifts != 0) ? 0.0F : -0.2F, laws.transfer_n);
     }
 }
 
 /* Else the armed idle would go on for a second after a disarming. */
 void test_a_change_of_the_law_on_the_ground_adds_nothing_to_the_idle(void)
 {
-    f.mode = FLIGHT_MODE_IDLE;
-    f.thrust_n = 1.8F;
-    f.laws.setpoint_n = 0.0F;
-    f.laws.transfer_n = 0.3F;
-    transfer(FLIGHT_MODE_IDLE, true);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, f.laws.transfer_n);
-}
-
-void test_a_new_gravity_moves_no_thrust_of_a_law_that_flies(void)
-{
-    static const struct {
-        flight_mode_t mode, before;
-        float integral_n;
-    } rows[] = {{FLIGHT_MODE_LAW, FLIGHT_MODE_LAW, 0.1F},
-                {FLIGHT_MODE_LAW, FLIGHT_MODE_HOVER, 0.4F},
-                {FLIGHT_MODE_HOVER, FLIGHT_MODE_HOVER, 0.4F}};
-
-    for (int i = 0; i < 3; i++) {
-        setUp();
-        f.law = LAW_PID;
-        f.where.supervisor.height.height_mm = 600.0F; /* at its reference: the law adds nothing */
-        f.mode = rows[i].mode;
-        f.laws.gravity_n = 7.0F;
-        f.laws.pid.integral_n = f.laws.pidt.integral_n = 0.4F;
-        TEST_ASSERT_EQUAL(PARAMETER_ACCEPTED, parameters_set(&parameters, PARAMETER_GRAV, 7.3F));
-        const situation_t now = situation_after(rows[i].before);
-        (void)laws_step(&f.laws, &f.est, &now);
-        NEAR(rows[i].integral_n, f.laws.pid.integral_n);
-        NEAR(rows[i].integral_n, f.laws.pidt.integral_n);
-        NEAR(7.3F, f.laws.gravity_n);
-    }
-}
-
-void test_each_mode_has_its_thrust(void)
-{
-    f.mode = FLIGHT_MODE_IDLE;
-    TEST_ASSERT_FALSE(run_mode(false));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, f.laws.setpoint_n);
-    f.mode = FLIGHT_MODE_HOVER;
-    f.where.hover.thrust_n = 7.2F;
-    TEST_ASSERT_FALSE(run_mode(false));
-    NEAR(7.2F, f.laws.setpoint_n);
-    f.mode = FLIGHT_MODE_BLIND_DESCENT;
-    sway(true);
-    f.where.supervisor.state_us = 5000000U;
-    TEST_ASSERT_FALSE(run_mode(false));
-    NEAR(descent_blind(7.2F, 5.0F), f.laws.setpoint_n);
-    f.where.hover.thrust_n = 100.0F; /* so that a minute leaves something */
-    f.where.supervisor.state_us = 90000000U;
-    (void)run_mode(false);
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-3F, descent_blind(100.0F, 60.0F), f.laws.setpoint_n);
-    f.where.hover.thrust_n = 7.2F;
-    f.mode = FLIGHT_MODE_LAW;
-    f.law = LAW_PID;
-    TEST_ASSERT_TRUE(run_mode(false));
-    TEST_ASSERT_TRUE(f.laws.pid.primed);
-    f.law = LAW_PIDT;
-    TEST_ASSERT_FALSE(run_mode(false));
-    TEST_ASSERT_TRUE(f.laws.pidt.primed);
-    f.laws.pidt.primed = false;
-    f.mode = FLIGHT_MODE_FLOAT;
-    f.where.supervisor.state = FLIGHT_FLOATING;
-    f.aim.floating_m = 0.5F;
-    (void)run_mode(false);
-    NEAR(7.0F, f.laws.setpoint_n); /* it is at the height that it holds */
-    f.mode = FLIGHT_MODE_DESCENT;
-    f.laws.setpoint_n = -1.0F;
-    (void)run_mode(false);
-    TEST_ASSERT_EQUAL_FLOAT(-1.0F, f.laws.setpoint_n);
-    (void)run_mode(true);
-    TEST_ASSERT_TRUE(f.laws.setpoint_n > 3.0F);
-}
-
-void test_the_release_is_the_laws(void)
-{
-    TEST_ASSERT_EQUAL_UINT16(FLIGHT_RELEASE_HEIGHT | FLIGHT_RELEASE_FRAME, flight_releases(&f, &parameters));
-    set(PARAMETER_LAW, LAW_PID);
-    TEST_ASSERT_EQUAL_UINT16(FLIGHT_RELEASE_HEIGHT | FLIGHT_RELEASE_FRAME, flight_releases(&f, &parameters));
-    f.mode = FLIGHT_MODE_LAW;
-    TEST_ASSERT_EQUAL_UINT16(FLIGHT_RELEASE_PERIOD, flight_releases(&f, &parameters));
-    set(PARAMETER_RELEASE, (float)RELEASE_SCAN);
-    TEST_ASSERT_EQUAL_UINT16(FLIGHT_RELEASE_HEIGHT, flight_releases(&f, &parameters));
-    set(PARAMETER_RELEASE, (float)RELEASE_FREE);
-    set(PARAMETER_LAW, LAW_PIDT);
-    TEST_ASSERT_EQUAL_UINT16(FLIGHT_RELEASE_HEIGHT, flight_releases(&f, &parameters));
-    f.mode = FLIGHT_MODE_EST_LAND;
-    TEST_ASSERT_EQUAL_UINT16(FLIGHT_RELEASE_HEIGHT | FLIGHT_RELEASE_FRAME, flight_releases(&f, &parameters));
-}
-
-void test_a_cycle_that_stops_on_the_ground_takes_two_newtons_a_second(void)
-{
-    f.where.supervisor.state = FLIGHT_LANDING;
-    f.where.supervisor.land = true;
-    f.where.contact.gave_up = true;
-    f.est.airborne = false;
-    f.thrust_n = 5.0F;
-    f.laws.transfer_n = 0.3F;
-    f.mode = FLIGHT_MODE_EST_LAND;
-    f.arming.armed = true;
-    in.now_us = 100000U;
-    in.height_valid = false;
-    flight_step(&f, &parameters, &in, &out);
-    NEAR(4.8F, out.thrust_n);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, f.laws.transfer_n);
-    TEST_ASSERT_EQUAL_UINT16(1U, f.est.actuator.count); /* recorded */
-    NEAR(0.0F, f.est.actuator.coming[0].thrust_n - 4.8F);
+    now.thrust_n = 1.8F;
+    (void)step_n(FLIGHT_MODE_IDLE, FLIGHT_MODE_IDLE);
+    has_left_0_3_n();
+    laws_transfer(&laws, &now, true);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, laws.transfer_n);
 }
 
 void test_a_law_that_goes_on_without_the_estimate_starts_near_hover(void)
 {
     for (int lost = 0; lost < 2; lost++) {
         setUp();
-        f.mode = FLIGHT_MODE_LAW;
-        f.thrust_n = 9.0F;
-        f.est.estimator.initialised = lost == 0;
-        transfer(FLIGHT_MODE_EST_HOLD, true);
-        NEAR((lost != 0) ? 0.5F : 2.0F, f.laws.transfer_n);
+        (void)step_n(FLIGHT_MODE_HOVER, FLIGHT_MODE_HOVER);
+        mode_changes(FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_LAW);
+        now.thrust_n = 9.0F;
+        if (lost != 0) {
+            lose_the_estimate();
+        }
+        laws_transfer(&laws, &now, true);
+        NEAR((lost != 0) ? 0.5F : 2.0F, laws.transfer_n);
     }
+}
+
+void test_a_new_gravity_moves_no_thrust_of_a_law_that_flies(void)
+{
+    static const struct {
+        control_law_t law;
+        flight_mode_t before, mode;
+        bool follows;
+    } rows[] = {{LAW_PID, FLIGHT_MODE_LAW, FLIGHT_MODE_LAW, false},
+                {LAW_PIDT, FLIGHT_MODE_LAW, FLIGHT_MODE_LAW, false},
+                {LAW_PID, FLIGHT_MODE_HOVER, FLIGHT_MODE_LAW, true},
+                {LAW_PIDT, FLIGHT_MODE_HOVER, FLIGHT_MODE_HOVER, true}};
+
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        set(PARAMETER_LAW, (float)rows[i].law);
+        const float integral_n = flown_n(rows[i].law);
+        TEST_ASSERT_TRUE(integral_n > 0.1F);
+        set(PARAMETER_GRAV, 7.3F);
+        (void)step_n(rows[i].before, rows[i].mode);
+        TEST_ASSERT_FLOAT_WITHIN(0.01F, integral_n + (rows[i].follows ? 0.3F : 0.0F), left_n(rows[i].law));
+    }
+}
+
+void test_each_mode_has_its_thrust(void)
+{
+    NEAR(0.0F, step_n(FLIGHT_MODE_IDLE, FLIGHT_MODE_IDLE));
+    hovers_at_n(7.2F);
+    NEAR(7.2F, step_n(FLIGHT_MODE_HOVER, FLIGHT_MODE_HOVER));
+    in_state_for_us(FLIGHT_DESCENDING, 5000000U);
+    sway(true);
+    NEAR(descent_blind(7.2F, 5.0F), step_n(FLIGHT_MODE_HOVER, FLIGHT_MODE_BLIND_DESCENT));
+    in_state(FLIGHT_FLYING);
+    now.aim_m = 0.5F;
+    NEAR(GRAV_N, step_n(FLIGHT_MODE_FLOAT, FLIGHT_MODE_FLOAT)); /* it is at the height that it holds */
+    height_is_new(true, 0U);
+    TEST_ASSERT_FLOAT_WITHIN(0.2F, 7.1F,
+                             step_n(FLIGHT_MODE_HOVER, FLIGHT_MODE_DESCENT)); /* it begins to sink */
+    now.aim_m = 0.6F;
+    now.law = LAW_PD;
+    NEAR(GRAV_N + 0.5F, step_n(FLIGHT_MODE_LAW, FLIGHT_MODE_LAW));
+    now.law = LAW_PIDT;
+    height_is_new(true, 0U);
+    TEST_ASSERT_TRUE(step_n(FLIGHT_MODE_LAW, FLIGHT_MODE_LAW) > GRAV_N + 0.1F);
+    est_law_t expected = est;
+    now.law = LAW_EST;
+    NEAR(est_law_step(&expected, &parameters, EST_MODE_HOLD, 0.6F),
+         step_n(FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_EST_HOLD));
+}
+
+void test_a_take_off_given_up_takes_two_newtons_a_second(void)
+{
+    has_left_0_3_n();
+    now.thrust_n = 5.0F;
+    laws_stop(&laws, &now);
+    NEAR(4.8F, laws.setpoint_n);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, laws.transfer_n);
+}
+
+void test_the_release_is_the_laws(void)
+{
+    const uint16_t both = FLIGHT_RELEASE_HEIGHT | FLIGHT_RELEASE_FRAME;
+
+    TEST_ASSERT_EQUAL_UINT16(both, laws_releases(&parameters, FLIGHT_MODE_EST_HOLD));
+    set(PARAMETER_LAW, LAW_PID);
+    TEST_ASSERT_EQUAL_UINT16(both, laws_releases(&parameters, FLIGHT_MODE_EST_HOLD));
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_RELEASE_PERIOD, laws_releases(&parameters, FLIGHT_MODE_LAW));
+    set(PARAMETER_RELEASE, (float)RELEASE_SCAN);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_RELEASE_HEIGHT, laws_releases(&parameters, FLIGHT_MODE_LAW));
+    set(PARAMETER_RELEASE, (float)RELEASE_FREE);
+    set(PARAMETER_LAW, LAW_PIDT);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_RELEASE_HEIGHT, laws_releases(&parameters, FLIGHT_MODE_LAW));
+    TEST_ASSERT_EQUAL_UINT16(both, laws_releases(&parameters, FLIGHT_MODE_EST_LAND));
 }

@@ -1,84 +1,142 @@
+#include "control/laws/stuck_pin.h"
+
 #include "flight_case.h"
 
+static stuck_pin_t pin;
+
+/* The pin says that the pilot flies; hover thrust 7 N, cycles of 0.1 s. */
 void setUp(void)
 {
     begin();
+    memset(&pin, 0, sizeof pin);
+    in_state(FLIGHT_FLOATING);
+    flagged(FLIGHT_FLAG_PILOT);
+    mode_is(FLIGHT_MODE_HOVER);
+    height_is(500.0F, 0.0F, 100000U, false);
 }
 
 void tearDown(void) {}
 
-/* A wrong pin: what the output adds, from heights that sink by 0.1 m/s. */
-void test_what_is_added_while_the_pin_says_pilot_depends_on_time_order_and_heights(void)
+static float added_n(void)
+{
+    stuck_pin_step(&pin, &now);
+    return pin.more_n;
+}
+
+/* It says so for so many cycles, and the vehicle hangs still. */
+static void said_for(int cycles)
+{
+    height_is(500.0F, 0.0F, 100000U, true);
+    for (int i = 0; i < cycles; i++) {
+        (void)added_n();
+    }
+}
+
+/* Heights that sink by 0.1 m/s. */
+static float sinks_n(void)
+{
+    height_is(500.0F, -100.0F, 100000U, true);
+    return added_n();
+}
+
+void test_for_five_seconds_the_output_only_holds_the_height(void)
+{
+    said_for(45);
+    const float before_n = pin.more_n;
+    TEST_ASSERT_FLOAT_WITHIN(0.3F, 0.0F, before_n); /* it wants 0.03 m/s */
+    const float held_n = sinks_n();
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.2F, held_n - before_n); /* against 0.1 m/s */
+    height_is_new(false, 0U);
+    NEAR(held_n, added_n()); /* as before */
+    said_for(2);
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, before_n, pin.more_n); /* 4.9 s */
+    said_for(10);
+    TEST_ASSERT_TRUE(pin.more_n < before_n - 0.5F); /* then it sinks */
+}
+
+void test_an_order_to_land_counts_at_once(void)
+{
+    said_for(10);
+    ordered_m(0.0F);
+    said_for(10);
+    TEST_ASSERT_TRUE(pin.more_n < -0.5F);
+}
+
+void test_without_heights_it_holds_and_then_falls_as_a_blind_descent(void)
 {
     static const struct {
-        uint16_t flags;
-        float piloted_s;
+        int cycles;
         bool land;
         uint32_t age_us;
-        bool is_new;
         float added_n;
-    } rows[] = {
-        {0U, 3.0F, true, 0U, true, 0.0F},
-        {FLIGHT_FLAG_PILOT, 1.0F, false, 0U, true, 0.0959F}, /* 0.03 m/s, for one height */
-        {FLIGHT_FLAG_PILOT, 1.0F, true, 0U, true, -0.8359F}, /* the whole rate at once, 0.275 at 0.5 m */
-        {FLIGHT_FLAG_PILOT, 5.0F, false, 0U, true, -0.8359F},
-        {FLIGHT_FLAG_PILOT, 5.0F, false, 0U, false, -0.2F}, /* as before */
-        {FLIGHT_FLAG_PILOT, 1.0F, false, 2000000U, false, 0.0F},
-        {FLIGHT_FLAG_PILOT, 1.0F, true, 2000000U, false, -0.527F}, /* 7.3 % and the fade of 2 s */
-        {FLIGHT_FLAG_PILOT, 9.0F, false, 60000000U, false, -2.0F},
-    };
-    for (int i = 0; i < 8; i++) {
-        setUp();
-        f.where.supervisor.state = FLIGHT_FLOATING;
-        f.where.supervisor.flags = rows[i].flags;
-        f.where.supervisor.land = rows[i].land;
-        f.where.supervisor.height = (height_track_t){.height_mm = 500.0F,
-                                                     .rate_mm_s = -100.0F,
-                                                     .gap_us = 100000U,
-                                                     .age_us = rows[i].age_us,
-                                                     .is_new = rows[i].is_new};
-        f.pin.descent.sink_mm_s = 300.0F;
-        f.pin.piloted_s = rows[i].piloted_s;
-        f.pin.more_n = -0.2F;
-        step_stuck_pin();
-        TEST_ASSERT_FLOAT_WITHIN(0.005F, rows[i].added_n, f.pin.more_n);
-        NEAR((rows[i].flags != 0U) ? rows[i].piloted_s + 0.1F : 0.0F, f.pin.piloted_s);
-        NEAR(7.0F, f.where.hover.thrust_n);
-    }
-}
+    } rows[] = {{10, false, 2000000U, 0.0F},
+                {10, true, 2000000U, -0.527F}, /* 7.3 % and the fade of 2 s */
+                {60, false, 2000000U, -0.527F},
+                {60, false, 60000000U, -2.0F}};
 
-void test_what_is_added_is_limited_and_ends_with_the_pilots_turn(void)
-{
-    static const struct {
-        float rate_mm_s, near_ground_s, idle_n, added_n;
-    } rows[] = {{-800.0F, 0.0F, 0.0F, 1.0F},
-                {1500.0F, 0.0F, 0.0F, -2.0F},
-                {0.0F, 4.0F, 0.0F, -7.0F}, /* lies on the ground */
-                {0.0F, 4.0F, 0.6F, -6.4F}};
     for (int i = 0; i < 4; i++) {
         setUp();
-        f.where.supervisor.flags = FLIGHT_FLAG_PILOT;
-        f.where.supervisor.height = (height_track_t){
-            .height_mm = 30.0F, .rate_mm_s = rows[i].rate_mm_s, .gap_us = 100000U, .is_new = true};
-        f.where.supervisor.height.height_mm = (rows[i].near_ground_s > 0.0F) ? 30.0F : 500.0F;
-        f.pin.descent.near_ground_s = rows[i].near_ground_s;
-        f.idle_n = rows[i].idle_n;
-        f.pin.piloted_s = 6.0F;
-        step_stuck_pin();
-        NEAR(rows[i].added_n, f.pin.more_n);
-        write_outputs();
-        NEAR(7.0F + rows[i].added_n, out.thrust_n);
-        NEAR(thrust_to_pulse_us(7.0F + rows[i].added_n), out.pulse_us);
-        change_mode(FLIGHT_MODE_HOVER, FLIGHT_MODE_EST_HOLD);
-        NEAR(0.0F, f.pin.more_n + f.pin.piloted_s);
+        said_for(rows[i].cycles);
+        ordered_m(rows[i].land ? 0.0F : 0.6F);
+        height_is_new(false, rows[i].age_us);
+        TEST_ASSERT_FLOAT_WITHIN(0.005F, rows[i].added_n, added_n());
     }
 }
 
-void test_the_cycles_follow_the_frames_while_a_pilot_flies(void)
+void test_what_is_added_is_limited(void)
 {
-    set(PARAMETER_LAW, LAW_PID);
-    f.mode = FLIGHT_MODE_HOVER;
-    TEST_ASSERT_EQUAL_UINT16(FLIGHT_RELEASE_PERIOD, flight_releases(&f, &parameters));
-    f.pin.piloted_s = 0.1F; /* the pin is read in each of them */
-    TEST_ASSERT_EQUAL_UINT16(FLIGHT_RELEASE_HEIGHT | FLIGHT_RELEASE_FRAME, flight_releases(&f, &parameters));
+    said_for(60);
+    height_is(500.0F, -1500.0F, 100000U, true);
+    NEAR(1.0F, added_n());
+    height_is(500.0F, 3000.0F, 100000U, true);
+    NEAR(-2.0F, added_n());
+    now.idle_n = 5.5F;
+    NEAR(-1.5F, added_n()); /* the idle is the least */
+    now.idle_n = 0.0F;
+    for (int i = 0; i < 60; i++) { /* it lies on the ground */
+        height_is(10.0F, 0.0F, 100000U, true);
+        (void)added_n();
+    }
+    NEAR(-7.0F, added_n());
+    now.idle_n = 0.6F;
+    NEAR(-6.4F, added_n());
+}
+
+void test_a_gap_of_heights_counts_as_0_3_s(void)
+{
+    float thrust_n[2];
+
+    for (uint32_t i = 0U; i < 2U; i++) {
+        setUp();
+        said_for(60);
+        height_is(500.0F, 100.0F, 300000U + 4700000U * i, true);
+        (void)added_n();
+        thrust_n[i] = sinks_n();
+    }
+    NEAR(thrust_n[0], thrust_n[1]);
+}
+
+void test_it_ends_with_the_pilots_turn_and_begins_anew(void)
+{
+    said_for(60);
+    TEST_ASSERT_TRUE(stuck_pin_acts(&pin) && pin.more_n < -0.5F);
+    mode_is(FLIGHT_MODE_EST_HOLD);
+    const float before_n = pin.more_n;
+    NEAR(before_n, added_n()); /* not in another mode: its change resets it */
+    stuck_pin_reset(&pin);
+    TEST_ASSERT_FALSE(stuck_pin_acts(&pin));
+    NEAR(0.0F, pin.more_n);
+    mode_is(FLIGHT_MODE_HOVER);
+    said_for(10);
+    TEST_ASSERT_FLOAT_WITHIN(0.15F, 0.0F, pin.more_n); /* trusted again */
+    said_for(60);
+    flagged(0U); /* the pin says that nobody else flies */
+    NEAR(0.0F, added_n());
+    TEST_ASSERT_FALSE(stuck_pin_acts(&pin));
+}
+
+void test_the_hover_thrust_is_not_its_business(void)
+{
+    said_for(60);
+    NEAR(7.0F, where.hover.thrust_n);
 }

@@ -1,175 +1,196 @@
 #include "control/credible.h"
-#include "flight_case.h"
+#include "control/where/piloting.h"
+#include "unity.h"
 
+#include <string.h>
+
+#define NEAR(expected, actual) TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, expected, actual)
+
+static pilot_state_t pilot;
+static pilot_signs_t signs;
+
+/* FLYING at 0.5 m with the hover thrust, cycles of 0.1 s, no pin. */
 void setUp(void)
 {
-    begin();
+    memset(&pilot, 0, sizeof pilot);
+    signs = (pilot_signs_t){.state = FLIGHT_FLYING,
+                            .has_throttle = true,
+                            .step_s = 0.1F,
+                            .height_mm = 500.0F,
+                            .thrust_n = 7.0F,
+                            .hover_n = 7.0F,
+                            .felt = true};
 }
 
 void tearDown(void) {}
 
-void test_a_pilots_next_turn_begins_without_what_was_added(void)
+static pilot_news_t step(flight_state_t state)
 {
-    for (int i = 0; i < 2; i++) {
+    signs.state = state;
+    return pilot_step(&pilot, &signs);
+}
+
+void test_floating_without_a_pin_is_unknown(void)
+{
+    for (int i = 0; i < 4; i++) {
         setUp();
-        set(PARAMETER_SEL, SEL_NONE);
-        f.where.supervisor.state = FLIGHT_FLOATING;
-        f.aim.floating_m = 0.5F;
-        unknown(i == 1);
-        f.bounds.trim_n = 0.3F;
-        (void)bounded_n(7.0F); /* the cycle before */
-        update_throttle(true);
-        TEST_ASSERT_TRUE(pilot_is_unknown(&f.where.pilot));
-        NEAR((i == 1) ? 0.3F : 0.0F, f.bounds.trim_n);
+        signs.has_pin = i == 2;
+        signs.has_throttle = i != 3;
+        (void)step((i == 1) ? FLIGHT_FLYING : FLIGHT_FLOATING);
+        TEST_ASSERT_EQUAL(i == 0, pilot_is_unknown(&pilot));
+        TEST_ASSERT_EQUAL((i == 0)   ? THROTTLE_UNKNOWN
+                          : (i == 3) ? THROTTLE_PILOT
+                                     : THROTTLE_OURS,
+                          pilot.throttle);
     }
 }
 
-void test_floating_without_a_pin_is_unsure_and_its_end_engages(void)
+void test_its_end_off_the_ground_is_news(void)
 {
-    for (int i = 0; i < 4; i++) {
-        setUp();
-        f.where.supervisor.state = (i == 1) ? FLIGHT_FLYING : FLIGHT_FLOATING;
-        set(PARAMETER_SEL, (i == 2) ? (float)SEL_PIN : (float)SEL_NONE);
-        update_throttle(i != 3);
-        TEST_ASSERT_EQUAL(i == 0, pilot_is_unknown(&f.where.pilot));
-    }
     static const struct {
-        flight_state_t state;
-        bool before, engaged;
-    } rows[] = {{FLIGHT_FLYING, true, true},
-                {FLIGHT_FLYING, false, false},
-                {FLIGHT_GROUND, true, false},
-                {FLIGHT_FLOATING, true, false}};
+        flight_state_t before, then;
+        pilot_news_t news;
+    } rows[] = {{FLIGHT_FLOATING, FLIGHT_FLYING, PILOT_IS_SURE},
+                {FLIGHT_FLYING, FLIGHT_FLYING, PILOT_NO_NEWS},
+                {FLIGHT_FLOATING, FLIGHT_GROUND, PILOT_NO_NEWS},
+                {FLIGHT_FLOATING, FLIGHT_FLOATING, PILOT_NO_NEWS}};
     for (int i = 0; i < 4; i++) {
         setUp();
-        f.where.supervisor.state = rows[i].state;
-        unknown(rows[i].before);
-        f.est.airborne = false;
-        f.where.hover.thrust_n = 7.3F;
-        f.thrust_n = 6.7F;
-        update_throttle(true);
-        TEST_ASSERT_EQUAL(rows[i].engaged, f.est.airborne);
-        if (rows[i].engaged) {
-            NEAR(7.3F, f.est.hover.thrust_n);
-            NEAR(6.7F, f.est.cascade.thrust_n);
+        TEST_ASSERT_EQUAL(PILOT_NO_NEWS, step(rows[i].before));
+        TEST_ASSERT_EQUAL(rows[i].news, step(rows[i].then));
+    }
+}
+
+/* One frame of FLOATING without a pin, whose accelerometer measures what the commands ask for. */
+static pilot_news_t float_a_frame(uint32_t step_us, bool felt)
+{
+    signs.frame_us += step_us;
+    signs.felt = felt;
+    return step(FLIGHT_FLOATING);
+}
+
+/* Frames until the commands show an effect, 100 at most. */
+static pilot_news_t obey(void)
+{
+    pilot_news_t news = PILOT_NO_NEWS;
+
+    for (int i = 0; i < 100 && news == PILOT_NO_NEWS; i++) {
+        signs.pushed_mps2 = 1.4F * (7.0F + 0.5F * (float)(i % 3));
+        signs.felt_mps2 = signs.pushed_mps2 - 9.0F;
+        news = float_a_frame(25000U, true);
+        TEST_ASSERT_EQUAL(news == PILOT_SHOWS_EFFECT, pilot_shows_effect(&pilot));
+    }
+    return news;
+}
+
+void test_a_vehicle_that_obeys_shows_that_the_throttle_is_ours_once(void)
+{
+    (void)float_a_frame(25000U, true);
+    TEST_ASSERT_TRUE(pilot_is_unknown(&pilot) && !pilot_shows_effect(&pilot));
+    TEST_ASSERT_EQUAL(PILOT_SHOWS_EFFECT, obey());
+    TEST_ASSERT_EQUAL(PILOT_NO_NEWS, float_a_frame(0U, true)); /* no new frame */
+    TEST_ASSERT_EQUAL(PILOT_NO_NEWS, float_a_frame(25000U, true));
+    TEST_ASSERT_TRUE(pilot_shows_effect(&pilot));
+}
+
+void test_an_effect_is_shown_anew_after_a_gap_of_frames_or_of_accelerations_and_in_each_turn(void)
+{
+    for (int why = 0; why < 4; why++) {
+        setUp();
+        (void)float_a_frame(25000U, true);
+        TEST_ASSERT_EQUAL(PILOT_SHOWS_EFFECT, obey());
+        if (why < 2) {
+            (void)float_a_frame((why == 0) ? FRAME_GAP_US + 1U : 25000U, why == 0);
+            TEST_ASSERT_FALSE(pilot_shows_effect(&pilot));
+        } else if (why == 2) {
+            (void)step(FLIGHT_FLYING);
+            TEST_ASSERT_FALSE(pilot_shows_effect(&pilot)); /* it is not unknown */
+            (void)float_a_frame(25000U, true);
+            TEST_ASSERT_FALSE(pilot_shows_effect(&pilot));
+        } else { /* out of the pilot's hands without heights */
+            signs.entered = signs.handed_over = true;
+            (void)step(FLIGHT_DESCENDING);
+            TEST_ASSERT_TRUE(pilot_is_unknown(&pilot) && !pilot_shows_effect(&pilot));
         }
     }
+    setUp();
+    (void)float_a_frame(25000U, true);
+    TEST_ASSERT_EQUAL(PILOT_SHOWS_EFFECT, obey());
+    (void)float_a_frame(FRAME_GAP_US, true); /* a gap of just that is none */
+    TEST_ASSERT_TRUE(pilot_shows_effect(&pilot));
 }
 
-/* One frame of FLOATING without a pin, whose accelerometer measures this share of a jump of the thrust. */
-static void float_a_frame(uint32_t step_us, bool felt)
-{
-    f.est.estimator.now_us += step_us;
-    f.est.estimator.felt = felt;
-    update_throttle(true);
-}
-
-void test_a_vehicle_that_floats_without_a_pin_learns_its_hover_thrust_once_it_obeys(void)
-{
-    f.where.supervisor.state = FLIGHT_FLOATING;
-    parameters.value[PARAMETER_SEL] = (float)SEL_NONE;
-    f.where.hover.thrust_n = 7.3F;
-    f.thrust_n = 6.7F;
-    f.est.authority_mps2_per_n = 1.4F;
-    float_a_frame(25000U, true);
-    TEST_ASSERT_TRUE(pilot_is_unknown(&f.where.pilot) && f.where.pilot.effect.running_s == 0.0F);
-    for (int i = 0; i < 100 && !f.where.pilot.effect.has_effect; i++) {
-        f.est.actuator.thrust_n = 7.0F + 0.5F * (float)(i % 3);
-        f.est.estimator.up_mps2 = 1.4F * f.est.actuator.thrust_n - 9.0F;
-        TEST_ASSERT_FALSE(pilot_shows_effect(&f.where.pilot));
-        float_a_frame(25000U, true);
-    }
-    TEST_ASSERT_TRUE(pilot_shows_effect(&f.where.pilot));
-    NEAR(7.3F, f.est.hover.thrust_n);
-    NEAR(6.7F, f.est.cascade.thrust_n);
-    f.est.cascade.thrust_n = 1.0F;
-    float_a_frame(0U, true); /* no new frame */
-    TEST_ASSERT_TRUE(pilot_shows_effect(&f.where.pilot));
-    float_a_frame(25000U, true);
-    NEAR(1.0F, f.est.cascade.thrust_n); /* engaged once */
-    effect_t known = f.where.pilot.effect;
-    float_a_frame(FRAME_GAP_US + 1U, true);
-    TEST_ASSERT_FALSE(pilot_shows_effect(&f.where.pilot));
-    f.where.pilot.effect = known;
-    float_a_frame(25000U, false);
-    TEST_ASSERT_FALSE(pilot_shows_effect(&f.where.pilot));
-    f.where.pilot.effect = known;
-    f.where.pilot.given_back = true;
-    f.where.supervisor.state = FLIGHT_DESCENDING;
-    float_a_frame(25000U, true);
-    TEST_ASSERT_TRUE(pilot_is_unknown(&f.where.pilot) && !pilot_shows_effect(&f.where.pilot));
-}
-
-void test_a_descent_handed_over_without_heights_is_carried_to_its_end(void)
+void test_a_descent_handed_over_without_heights_is_the_pilots_to_its_end(void)
 {
     static const struct {
         flight_state_t state;
-        bool handed_over, before, carried;
-        uint32_t state_us;
-    } rows[] = {{FLIGHT_DESCENDING, true, false, true, 0U},
-                {FLIGHT_DESCENDING, true, false, false, 1U},
-                {FLIGHT_DESCENDING, false, false, false, 0U},
-                {FLIGHT_DESCENDING, false, true, true, 5U},
-                {FLIGHT_LANDING, true, true, false, 0U}};
+        bool handed_over, entered, before, given_back;
+    } rows[] = {{FLIGHT_DESCENDING, true, true, false, true},
+                {FLIGHT_DESCENDING, true, false, false, false},
+                {FLIGHT_DESCENDING, false, true, false, false},
+                {FLIGHT_DESCENDING, false, false, true, true},
+                {FLIGHT_LANDING, true, true, true, false}};
     for (int i = 0; i < 5; i++) {
         for (int pin = 0; pin < 2; pin++) {
             setUp();
-            set(PARAMETER_SEL, (pin != 0) ? (float)SEL_PIN : (float)SEL_NONE);
-            f.where.supervisor.state = rows[i].state;
-            f.where.supervisor.handed_over = rows[i].handed_over;
-            f.where.supervisor.state_us = rows[i].state_us;
-            f.where.pilot.given_back = rows[i].before;
-            update_throttle(true);
-            TEST_ASSERT_EQUAL(rows[i].carried, f.where.pilot.given_back);
-            TEST_ASSERT_EQUAL(rows[i].carried, pilot_is_unknown(&f.where.pilot));
-            NEAR((i == 0) ? ((pin != 0) ? 0.15F : 0.06F) : 0.0F, f.where.pilot.sink_n_per_s);
+            signs.has_pin = pin != 0;
+            if (rows[i].before) {
+                signs.entered = signs.handed_over = true;
+                (void)step(FLIGHT_DESCENDING);
+            }
+            signs.entered = rows[i].entered;
+            signs.handed_over = rows[i].handed_over;
+            (void)step(rows[i].state);
+            TEST_ASSERT_EQUAL(rows[i].given_back, pilot.given_back);
+            TEST_ASSERT_EQUAL(rows[i].given_back, pilot_is_unknown(&pilot));
+            if (rows[i].given_back) {
+                NEAR((pin != 0) ? 0.15F : 0.06F, pilot.sink_n_per_s);
+            }
         }
     }
+}
+
+/* 11 cycles of a landing: the first begins it, the others are a second. */
+static bool in_vain(float thrust_n, float height_mm, float rise_mps)
+{
+    setUp();
+    signs.thrust_n = thrust_n;
+    signs.height_mm = height_mm;
+    signs.rise_mps = rise_mps;
+    signs.entered = true;
+    (void)step(FLIGHT_LANDING);
+    signs.entered = false;
+    for (int i = 0; i < 9; i++) {
+        (void)step(FLIGHT_LANDING);
+        TEST_ASSERT_FALSE(pilot_holds_up(&pilot, FLIGHT_LANDING));
+    }
+    (void)step(FLIGHT_LANDING);
+    (void)step(FLIGHT_LANDING);
+    return pilot_holds_up(&pilot, FLIGHT_LANDING);
 }
 
 void test_a_landing_with_too_little_thrust_to_fly_that_does_not_sink_is_in_vain(void)
 {
-    static const struct {
-        float thrust_n, height_mm, rise_mps, before_s;
-        uint32_t state_us;
-        bool vain;
-    } rows[] = {{5.4F, 100.0F, -0.29F, 0.95F, 1U, true},  {5.4F, 100.0F, -0.29F, 0.85F, 1U, false},
-                {5.6F, 100.0F, -0.29F, 0.95F, 1U, false}, {5.4F, 79.0F, -0.29F, 0.95F, 1U, false},
-                {5.4F, 100.0F, -0.31F, 0.95F, 1U, false}, {5.4F, 100.0F, -0.29F, 0.95F, 0U, false}};
-    for (int i = 0; i < 6; i++) {
-        setUp();
-        f.where.supervisor.state = FLIGHT_LANDING;
-        f.where.supervisor.state_us = rows[i].state_us;
-        f.where.supervisor.height.height_mm = rows[i].height_mm;
-        f.evidence.rise_mps = rows[i].rise_mps;
-        f.thrust_n = rows[i].thrust_n;
-        f.where.pilot.vain_s = rows[i].before_s;
-        update_throttle(true);
-        TEST_ASSERT_EQUAL(rows[i].vain, pilot_holds_up(&f.where.pilot, f.where.supervisor.state));
-        NEAR(i == 0 ? 1.0F : i == 1 ? 0.95F : 0.0F, f.where.pilot.vain_s);
-        aim_judge(&f.aim, &f.where);
-        TEST_ASSERT_EQUAL(rows[i].vain, f.aim.out_of_reach);
-        f.where.supervisor.state = FLIGHT_DESCENDING;
-        TEST_ASSERT_FALSE(pilot_holds_up(&f.where.pilot, f.where.supervisor.state));
-    }
+    TEST_ASSERT_TRUE(in_vain(5.4F, 100.0F, -0.29F));
+    TEST_ASSERT_FALSE(pilot_holds_up(&pilot, FLIGHT_DESCENDING));
+    TEST_ASSERT_FALSE(in_vain(5.6F, 100.0F, -0.29F));
+    TEST_ASSERT_FALSE(in_vain(5.4F, 79.0F, -0.29F));
+    TEST_ASSERT_FALSE(in_vain(5.4F, 100.0F, -0.31F));
+    TEST_ASSERT_TRUE(in_vain(5.4F, 100.0F, -0.29F));
+    signs.entered = true; /* another landing */
+    (void)step(FLIGHT_LANDING);
+    TEST_ASSERT_FALSE(pilot_holds_up(&pilot, FLIGHT_LANDING));
 }
 
-void test_without_a_pin_a_landing_in_vain_keeps_a_thrust_near_hover(void)
+void test_without_a_pin_a_landing_in_vain_leaves_the_throttle_unknown(void)
 {
     for (int pin = 0; pin < 2; pin++) {
-        setUp();
-        set(PARAMETER_SEL, (pin != 0) ? (float)SEL_PIN : (float)SEL_NONE);
-        f.where.supervisor.state = FLIGHT_LANDING;
-        f.where.supervisor.state_us = 1U;
-        f.where.supervisor.height.height_mm = 500.0F;
-        f.thrust_n = 5.0F;
-        f.where.pilot.vain_s = 1.0F;
-        update_throttle(true);
-        TEST_ASSERT_EQUAL(pin == 0, pilot_is_unknown(&f.where.pilot));
-        f.thrust_n = 7.0F; /* it stays so */
-        update_throttle(true);
-        TEST_ASSERT_EQUAL(pin == 0, pilot_is_unknown(&f.where.pilot));
-        f.bounds.sunk_n = 0.4F;
-        NEAR((pin == 0) ? 7.0F - 2.0F - 0.42F : 3.0F, bounded_n(3.0F));
+        TEST_ASSERT_TRUE(in_vain(5.0F, 500.0F, 0.0F));
+        signs.has_pin = pin != 0;
+        (void)step(FLIGHT_LANDING);
+        TEST_ASSERT_EQUAL(pin == 0, pilot_is_unknown(&pilot));
+        signs.thrust_n = 7.0F; /* it stays so */
+        (void)step(FLIGHT_LANDING);
+        TEST_ASSERT_EQUAL(pin == 0, pilot_is_unknown(&pilot));
     }
 }
