@@ -1,6 +1,7 @@
 """A board in real time on pseudo-terminals, and who talks to it. For test_hil.py and test_accept.py."""
 import json
 import os
+import re
 import signal
 import subprocess
 import tempfile
@@ -64,8 +65,8 @@ def hil(program, scenario, defects=(), patience=60, pin=False):
 
 
 def metrics(output):
-    return {words[0]: float(words[1]) for words in map(str.split, output.splitlines()) if len(words) == 2 and words[0].islower()
-            and words[1].replace(".", "").replace("-", "").isdigit()}
+    """Of the rows `  name  number  meaning`."""
+    return {name: float(found) for name, found in re.findall(r"^[ !] ([a-z_]+) +(-?\d+(?:\.\d+)?) ", output, re.MULTILINE)}
 
 
 def virtual(program, scenario, seed=1):

@@ -109,9 +109,9 @@ void test_a_flight_can_be_made_shorter_and_ends_when_it_is_down(void)
 void test_faults_of_the_scanners_line_strike_in_flight(void)
 {
     run("fly est-60cm-ramp");
-    TEST_ASSERT_NOT_NULL(strstr(output, "  scans_rejected       0\n"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "  scans_rejected       0 "));
     run("fly est-60cm-ramp --fault drop@15000 --fault flip@17000");
-    TEST_ASSERT_NOT_NULL(strstr(output, "  scans_rejected       2\n"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "  scans_rejected       2 "));
 }
 
 void test_the_same_seed_gives_the_same_csv_and_another_seed_another(void)
@@ -145,6 +145,41 @@ void test_a_broken_expectation_exits_1_and_still_writes_both_files(void)
     for (int i = 0; i < METRIC_COUNT; i++) {
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, metric_names[i]), metric_names[i]);
     }
+}
+
+void test_each_row_of_a_flight_says_what_it_must_be_and_what_it_means(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, run("fly est-60cm-ramp"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, " 0.6..1       climb from 10 to 90 % of the reference"),
+                                 output);
+    for (const char *row = strstr(output, "\n  "); row != NULL; row = strstr(row + 1, "\n  ")) {
+        const char *end = strchr(row + 1, '\n');
+
+        TEST_ASSERT_TRUE_MESSAGE(end - row > 50, row); /* a meaning stands at its end */
+    }
+    TEST_ASSERT_NULL_MESSAGE(strstr(output, "\n!"), output);
+}
+
+void test_rows_that_do_not_apply_are_hidden_unless_they_are_expected(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, run("fly est-60cm-ramp"));
+    TEST_ASSERT_NULL_MESSAGE(strstr(output, "again_rms_mm"), output);
+    TEST_ASSERT_NULL_MESSAGE(strstr(output, "motor_stops"), output);
+    TEST_ASSERT_NULL_MESSAGE(strstr(output, " - "), output);
+    TEST_ASSERT_EQUAL_INT(0, run("fly field-day"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "\n  again_rms_mm"), output);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "\n  motor_stops          0         0..0"), output);
+    TEST_ASSERT_NULL_MESSAGE(strstr(output, "terrain_rms_mm"), output);
+}
+
+void test_what_was_not_met_is_told_whole_and_explained(void)
+{
+    TEST_ASSERT_EQUAL_INT(1, run("fly pid-40cm --set GRAV=1"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "\n! rise_time_s          -         0.6..2.1"), output);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "\n  ground_contacts      0         0..0"), output);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "NOT MET: rise_time_s is not within"), output);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "NOT MET: hover_rms_mm is not within"), output);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "NOT MET means: "), output);
 }
 
 void test_overrides_reach_the_firmware_and_the_plant(void)

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "commands.h"
+#include "figures.h"
 #include "measure.h"
 #include "nearest.h"
 #include "output.h"
@@ -82,6 +83,9 @@ static const char usage[] =
     "bench has no flight: the vehicle stands still, the telemetry goes to stdout, and the last line is the "
     "answer to\n"
     "#LASER. It needs no commands; those of --set are typed soon after power-up.\n\n"
+    "Printed: each figure that applies, what it must be in this scenario, and what it means. MET: all are as "
+    "they must be;\n"
+    "NOT MET: the figures marked ! are not.\n\n"
     "Exit status: 0 the flight met the scenario's expectations (real time and bench: it came to its end), 1 "
     "it did not,\n"
     "2 usage, or a file that cannot be read or written.\n\n"
@@ -354,40 +358,8 @@ static bool read_arguments(request_t *request, int argc, char **argv)
     return find_scenario(request, argv[optind]) && check_arguments(request);
 }
 
-static int decimals(metric_t metric)
-{
-    switch (metric) {
-    case METRIC_GROUND_CONTACTS:
-    case METRIC_SCANS:
-    case METRIC_SCANS_REJECTED:
-    case METRIC_COMMANDS_OK:
-    case METRIC_COMMANDS_ERR:
-    case METRIC_TAKEOVERS:
-    case METRIC_CUTS:
-    case METRIC_OFF_ALOFT:
-        return 0;
-    default:
-        return 3;
-    }
-}
-
-static void print_table(FILE *out, const request_t *request, const flight_result_t *result)
-{
-    fprintf(out, "%s, seed %lu\n", request->scenario->name, request->flight.seed);
-    for (int i = 0; i < METRIC_COUNT; i++) {
-        double value = result->metrics.value[i];
-
-        if (isnan(value)) {
-            fprintf(out, "  %-20s -\n", metric_names[i]);
-        } else {
-            fprintf(out, "  %-20s %.*f\n", metric_names[i], decimals((metric_t)i), value);
-        }
-    }
-}
-
 static bool print_verdict(FILE *out, const request_t *request, const flight_result_t *result)
 {
-    const expectation_t *broken;
     bool met;
 
     if (result->halt != NULL) {
@@ -401,22 +373,17 @@ static bool print_verdict(FILE *out, const request_t *request, const flight_resu
     if (request->flight.realtime) {
         return true;
     }
-    met = scenario_met(request->scenario, &result->metrics, &broken);
+    met = figures_judge(out, request->scenario, &result->metrics);
     if (met) {
         fprintf(out, "MET: all expectations of %s\n", request->scenario->name);
-    } else if (broken != NULL) {
-        fprintf(out, "NOT MET: %s is not within %g..%g\n", metric_names[broken->metric], broken->minimum,
-                broken->maximum);
-    } else {
-        fprintf(out, "NOT MET: %s\n",
-                result->metrics.failed ? result->metrics.failure : "it was to fail, and did not");
     }
     return met;
 }
 
 static bool print_result(FILE *out, const request_t *request, const flight_result_t *result)
 {
-    print_table(out, request, result);
+    fprintf(out, "%s, seed %lu\n", request->scenario->name, request->flight.seed);
+    figures_print(out, request->scenario, &result->metrics, NULL);
     return print_verdict(out, request, result);
 }
 
