@@ -40,7 +40,10 @@ fly: ## Fly the seed's 60 cm flight, by its own law and by the estimator's; CSV,
 	    build/plomada fly $$flight --csv build/$$flight.csv --json build/$$flight.json || [ $$? -eq 1 ] || exit 2; \
 	    $(python) tools/plot/plot.py build/$$flight.csv -o build/$$flight.png || exit 2; \
 	    printf '%s\n' "$(CURDIR)/build/$$flight.csv" "$(CURDIR)/build/$$flight.json"; done
+	@printf '\nBoth flights in one picture, and as one that moves (open it in a browser):\n'
 	@$(python) tools/plot/plot.py $(flights:%=build/%.csv) -o build/fly.png
+	@$(python) tools/plot/moving.py $(flights:%=build/%.csv) --title "PID, as the thesis flew it" \
+	    --title "Law EST: an estimator and a cascade" -o build/fly.svg
 	@grep -L '"met": true' $(flights:%=build/%.json) | sed 's/$$/: not as it must be/' | (! grep .)
 
 plot: ## Draw LOG=FILE: a flight's CSV (or several), an XCTU console log or text, with or without dumps of #LOG

@@ -127,7 +127,7 @@ class Versions(unittest.TestCase):
         versions = Project().versions()
         known = {"bios": "_".join(versions["SYSBIOS"]), "xdctools": "_".join(versions["XDCTOOLS"]) + "_core",
                  "C2000Ware": "_".join(versions["C2000WARE"])}
-        for page in [*(REPOSITORY / "docs").glob("*.md"), REPOSITORY / "README.md"]:
+        for page in [*(REPOSITORY / "docs").rglob("*.md"), REPOSITORY / "README.md"]:
             for product, version in re.findall(r"\b(bios|xdctools|C2000Ware)_(\d[\w]*)", page.read_text(encoding="utf-8")):
                 self.assertEqual(version, known[product], page.name)
 

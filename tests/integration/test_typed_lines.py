@@ -41,7 +41,7 @@ class TypedLines(unittest.TestCase):
         return next((answer for answer in board.answers()), "no answer")
 
     def test_each_is_answered_by_ok(self):
-        pages = [*sorted((ROOT / "docs").glob("*.md")), ROOT / "README.md", ROOT / "CHANGELOG.md"]
+        pages = [*sorted((ROOT / "docs").rglob("*.md")), ROOT / "README.md", ROOT / "CHANGELOG.md"]
         table = subprocess.run([PLOMADA, "params"], capture_output=True, text=True, check=True).stdout
         parameters = set(re.findall(r"^([A-Z0-9]+) ", table, re.MULTILINE))
         self.assertIn("GRAV", parameters)

@@ -329,37 +329,43 @@ class Inside(Sample):
 
 class Commands(unittest.TestCase):
     PARAMS = "name  unit  limits  default\nKP    N/mm  0..1    0.015\nLAW   -     PD|PID  PID\n"
-    README = ("| Command | Unit | Meaning | Limits |\n|---|:--|---|---|\n| `#KP 0.015` | N/mm | gain | 0 … 1 |\n"
+    PAGE = ("| Command | Unit | Meaning | Limits |\n|---|:--|---|---|\n| `#KP 0.015` | N/mm | gain | 0 … 1 |\n"
               "| `#LAW PD` |  | law | PD\\|PID |\n| `#GET` | | all | |\n| `#HELP` | | | |\n| `#PING n` | | | |\n")
     PACKETS = "<data>" + "".join(f"<packet><payload>{text.encode().hex()}0A</payload></packet>" for text in (
         "#KP 1", "#LAW PD", "#GET", "#GET KP", "#HELP", "#PING 1")) + "</data>"
 
     VERBS = 'static const verb_t verbs[] = {\n    {"GET", get, ""},\n    {"HELP", help, ""},\n    {"PING", ping, ""},\n};\n'
 
-    def check(self, params=PARAMS, verbs=VERBS, readme=README, packets=PACKETS):
-        return commands.check(params, verbs, readme, packets)
+    def check(self, params=PARAMS, verbs=VERBS, page=PAGE, packets=PACKETS):
+        return commands.check(params, verbs, page, packets)
 
     def test_agreement(self):
         self.assertEqual(self.check(), [])
 
     def test_each_disagreement_is_named(self):
-        self.assertEqual(self.check(readme=self.README.replace("#KP", "#KQ")),
-                         ["README: no row for #KP", "README: #KQ is no command"])
-        self.assertEqual(self.check(readme=self.README.replace("N/mm", "N/m")),
-                         ["README: #KP unit is 'N/m', the program says 'N/mm'"])
-        self.assertEqual(self.check(readme=self.README.replace("0 … 1", "0 … 2")),
-                         ["README: #KP limits is '0..2', the program says '0..1'"])
-        self.assertEqual(self.check(readme=self.README.replace("Unit", "Einheit")),
-                         ["README: #KP has no column 'unit'", "README: #LAW has no column 'unit'"])
+        self.assertEqual(self.check(page=self.PAGE.replace("#KP", "#KQ")),
+                         ["page: no row for #KP", "page: #KQ is no command"])
+        self.assertEqual(self.check(page=self.PAGE.replace("N/mm", "N/m")),
+                         ["page: #KP unit is 'N/m', the program says 'N/mm'"])
+        self.assertEqual(self.check(page=self.PAGE.replace("0 … 1", "0 … 2")),
+                         ["page: #KP limits is '0..2', the program says '0..1'"])
+        self.assertEqual(self.check(page=self.PAGE.replace("Unit", "Einheit")),
+                         ["page: #KP has no column 'unit'", "page: #LAW has no column 'unit'"])
         self.assertEqual(self.check(params=self.PARAMS + "KI    N/mm  0..1   0\n"),
-                         ["README: no row for #KI", "packets: none for #KI"])
+                         ["page: no row for #KI", "packets: none for #KI"])
         self.assertEqual(self.check(packets=self.PACKETS.replace("#LAW".encode().hex(), "#LOW".encode().hex())),
                          ["packets: none for #LAW", "packets: #LOW is no command"])
-        self.assertEqual(self.check(readme=self.README.replace("| `#HELP` | | | |\n", "")), ["README: no row for #HELP"])
+        self.assertEqual(self.check(page=self.PAGE.replace("| `#HELP` | | | |\n", "")), ["page: no row for #HELP"])
         self.assertEqual(self.check(verbs=self.VERBS.replace("PING", "PONG")),
-                         ["README: no row for #PONG", "README: #PING is no command", "packets: none for #PONG",
+                         ["page: no row for #PONG", "page: #PING is no command", "packets: none for #PONG",
                           "packets: #PING is no command"])
 
+    def test_subcommands_and_targets_are_those_of_the_page(self):
+        told, makefile = "usage:\n\n  fly      flies\n  log      finds\n", "fly: build ## Flies\nhidden:\n"
+        page = "| `plomada fly` | flies |\n| `plomada log` | finds |\n| `make fly` | flies |\n"
+        self.assertEqual(commands.check_others(told, makefile, page), [])
+        self.assertEqual(commands.check_others(told, makefile + "size: ## Measures\n", page.replace("plomada log", "plomada lag")),
+                         ["page: no row for plomada log", "page: plomada lag is no command", "page: no row for make size"])
 
 
 class Published(unittest.TestCase):
@@ -408,7 +414,7 @@ class Published(unittest.TestCase):
 
 
 class Pages(unittest.TestCase):
-    GOOD = {"Makefile": "fly: ## flies\n", "firmware/a.c": "static void take(void)\n{\n}\n", "docs/other.md": "# Other\n\n## A part\n",
+    GOOD = {"Makefile": "fly: ## flies\n", "firmware/a.c": "static void take(void)\n{\n}\n", "docs/other.md": "# Other\n\n> **For** you. **At the end** you know.\n\n## A part\n",
             "README.md": "[x](docs/other.md#a-part) `firmware/a.c` `make fly` `take` (`firmware/a.c`)\n"}
 
     KINDS = {"front": ("README.md",), "how-to": ("docs/other.md",)}
@@ -439,9 +445,24 @@ class Pages(unittest.TestCase):
         self.assertEqual(self.complaints("word " * (most + 1), {"how-to": ("README.md", "docs/other.md")}), [])
 
     def test_code_and_tables_are_not_text(self):
+        kinds = {"how-to": ("README.md", "docs/other.md")}
         looked_up = "```\n" + "word " * 5000 + "\n```\n" + "| word | word |\n" * 5000
-        self.assertEqual(self.complaints(looked_up + "word " * pages.WORDS["front"]), [])
-        self.assertEqual(len(self.complaints(looked_up + "word " * (pages.WORDS["front"] + 1))), 1)
+        self.assertEqual(self.complaints(looked_up + "word " * pages.WORDS["how-to"], kinds), [])
+        self.assertEqual(len(self.complaints(looked_up + "word " * (pages.WORDS["how-to"] + 1), kinds)), 1)
+
+    def test_but_for_the_front_page_which_is_one_screen(self):
+        self.assertEqual(len(self.complaints("| word | word |\n" * 101)), 1)
+
+    def test_a_page_says_for_whom_it_is(self):
+        said = self.GOOD["docs/other.md"]
+        for page in (said.replace("**For**", "For"), said.replace("**At the end**", "then"), said.replace("> ", "")):
+            self.assertEqual(list(pages.for_nobody("docs/other.md", page)),
+                             ["does not say below its title > **For** whom it is, **At the end** what he has"])
+        self.assertEqual(list(pages.for_nobody("docs/es/index.md", "# Uno\n\n> **Para** ti.\n> **Al final** vuelas.\n")), [])
+
+    def test_a_list_begins_behind_an_empty_line(self):
+        self.assertEqual(list(pages.glued_lists("so:\n\n- one\n- two\n  goes on\n- three\n\n```\nx\n- y\n```\n")), [])
+        self.assertEqual(list(pages.glued_lists("so:\n- one\n")), ["line 2: a list begins right behind a line of text"])
 
     def test_a_page_of_no_kind_is_named(self):
         found = self.complaints("", {"front": ("README.md",)})
