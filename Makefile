@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open test test-long soak format mutants test-ground port size faults fuzz prove bench coverage package firmware flash check-ti clean
+.PHONY: help build fly plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open site publish test test-long soak format mutants test-ground port size faults fuzz prove bench coverage package firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -16,7 +16,7 @@ ctest = python3 -B tests/run.py
 cmake = CMAKE_GENERATOR="$$(command -v ninja >/dev/null && echo Ninja || echo Unix Makefiles)" cmake -S .
 # The two build trees of the tests. Both build everything once: test and test-long share them.
 define build_tests
-	@$(setup) build test campaign
+	@$(setup) build test campaign site
 	@printf '\n== build with ASan and UBSan ==\n'
 	@$(cmake) -B build-sanitize -DCMAKE_BUILD_TYPE=Debug -DSANITIZE=ON -DPLOMADA_TESTS=ON
 	+@cmake --build build-sanitize $(jobs)
@@ -97,6 +97,15 @@ ground-vehicle: ## The simulated vehicle as one WebAssembly module: build-ground
 
 ground-open: ground ## The same, served on this machine: http://localhost:8123
 	@python3 -B tools/ground/serve.py build-ground 8123
+
+site: ## The pages as a site with a search: build-site/index.html
+	@$(setup) site
+	@NO_MKDOCS_2_WARNING=1 build/site-tools/bin/mkdocs --quiet build --strict --config-file tools/site/mkdocs.yml
+	@printf '%s\n' "$(CURDIR)/build-site/index.html"
+
+publish: ground ## The site with the browser page in it, to be put on a web server: build-site/
+	@FLY=fly/index.html $(MAKE) site
+	@rm -rf build-site/fly && cp -r build-ground build-site/fly
 
 test-ground: ground ## The page's tests: units, then Chromium against the unmodified firmware; the vehicle in wasmtime
 	@$(python) -B tests/ground/test_vehicle.py build/plomada

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# setup.sh build|test|port|size|coverage|bench|fuzz|prove|package|plot|campaign|ground ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
+# setup.sh build|test|port|size|coverage|bench|fuzz|prove|package|plot|campaign|ground|site ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
 #
 #   build     C compiler, CMake
 #   test      Ninja (a third of make's processor time); Ruby and CMock, which generates the mocks; Python 3 for the checks of the house rules; build/format with the
@@ -15,6 +15,7 @@
 #   campaign  the same, and in it those of tools/campaign/requirements.txt; for tuning too, and for some tests
 #   ground    clang, lld, wasi-libc and binaryen for the vehicle in the browser; wasmtime in build/venv; node and the pinned
 #             packages of ground/package-lock.json; Chromium and Firefox for its tests
+#   site      Python virtual environment build/site-tools with the packages of tools/site/requirements.txt
 #
 # Packages of Python and of node are those whose sums stand in requirements.txt (tools/setup/pin.sh) and package-lock.json, no others.
 #
@@ -30,6 +31,8 @@ ground_requirements=$root/ground/requirements.txt
 cmock_private=$root/build/cmock
 format=$root/build/format
 format_requirements=$root/tools/format/requirements.txt
+site=$root/build/site-tools
+site_requirements=$root/tools/site/requirements.txt
 pio=$root/build/pio
 pio_requirements=$root/tools/scip_package/requirements.txt
 
@@ -61,6 +64,7 @@ venv_ready() {
 
 format_ready() { [ -x "$format/bin/clang-format" ] && cmp -s "$format_requirements" "$format/requirements.txt"; }
 
+site_ready() { [ -x "$site/bin/mkdocs" ] && cmp -s "$site_requirements" "$site/requirements.txt"; }
 pio_ready() { [ -x "$pio/bin/pio" ] && cmp -s "$pio_requirements" "$pio/requirements.txt"; }
 
 campaign_ready() { venv_ready && cmp -s "$campaign_requirements" "$venv/campaign.txt"; }
@@ -166,6 +170,8 @@ missing_packages() {
             pio_ready || venv_maker >/dev/null || echo python3-venv ;;
         plot|campaign)
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
+        site)
+            site_ready || venv_maker >/dev/null || echo python3-venv ;;
         ground)
             wasm_ready || wasm_packages
             [ -f /usr/include/wasm32-wasi/stdio.h ] || echo wasi-libc
@@ -176,7 +182,7 @@ missing_packages() {
             has firefox || has firefox-esr || ! grep -qs '^ID=debian' /etc/os-release || echo firefox-esr
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
         *)
-            say "unknown job '$1'; know build, test, port, size, coverage, bench, fuzz, prove, package, plot, campaign, ground"
+            say "unknown job '$1'; know build, test, port, size, coverage, bench, fuzz, prove, package, plot, campaign, ground, site"
             exit 2 ;;
     esac
 }
@@ -234,17 +240,6 @@ install_packages() {
     fi
 }
 
-make_venv() {
-    local python
-    python=$(venv_maker) || die "no Python 3.11 or later that can make a virtual environment: apt-get install python3-venv"
-    say "making build/venv with the packages of tools/plot/requirements.txt"
-    rm -rf "$venv"
-    mkdir -p "$root/build"
-    "$python" -m venv "$venv"
-    pip_install "$venv" "$requirements" || die "pip could not install tools/plot/requirements.txt (see above)"
-    cp "$requirements" "$venv/requirements.txt"
-}
-
 # own_venv FOLDER REQUIREMENTS: a virtual environment for these packages alone.
 own_venv() {
     local python
@@ -279,7 +274,7 @@ add_modules() {
     cp "$root/ground/package-lock.json" "$root/ground/node_modules/.installed-lock.json"
 }
 
-[ $# -gt 0 ] || { say "usage: setup.sh build|test|port|size|coverage|bench|fuzz|prove|package|plot|campaign|ground ..."; exit 2; }
+[ $# -gt 0 ] || { say "usage: setup.sh build|test|port|size|coverage|bench|fuzz|prove|package|plot|campaign|ground|site ..."; exit 2; }
 
 packages=()
 want_cmock=
@@ -290,6 +285,7 @@ want_ground=
 want_modules=
 want_format=
 want_pio=
+want_site=
 for job in "$@"; do
     list=$(missing_packages "$job")
     for package in $list; do packages+=("$package"); done
@@ -300,6 +296,7 @@ for job in "$@"; do
         package) pio_ready || want_pio=yes ;;
         prove) cbmc_ready || known cbmc || want_cbmc=yes ;;
         plot) venv_ready || want_venv=yes ;;
+        site) site_ready || want_site=yes ;;
         campaign)
             venv_ready || want_venv=yes
             campaign_ready || want_campaign=yes ;;
@@ -324,9 +321,10 @@ if [ ${#packages[@]} -gt 0 ] || [ -n "$want_cmock" ]; then
     fi
 fi
 [ -z "$want_cbmc" ] || "$here/unpack_cbmc.sh" "$root/build/cbmc"
-[ -z "$want_venv" ] || make_venv
+[ -z "$want_venv" ] || own_venv "$venv" "$requirements"
 [ -z "$want_campaign" ] || add_campaign
 [ -z "$want_ground" ] || add_ground
 [ -z "$want_modules" ] || add_modules
 [ -z "$want_format" ] || own_venv "$format" "$format_requirements"
 [ -z "$want_pio" ] || own_venv "$pio" "$pio_requirements"
+[ -z "$want_site" ] || own_venv "$site" "$site_requirements"

@@ -1,0 +1,84 @@
+"""What MkDocs does not do by itself: pages that lie outside of docs/, links to sources, and the navigation.
+
+The first page is README.md, the navigation is the list of docs/pages.md: neither is written twice. With FLY=URL in the environment
+the site offers the browser page there (make publish).
+"""
+import os
+import re
+from pathlib import Path
+
+from mkdocs.structure.files import File
+
+ROOT = Path(__file__).resolve().parents[2]
+OUTSIDE = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md", "drivers/README.md": "driver.md"}
+LINK = re.compile(r"(\]\()([^)\s#]+)(#[^)\s]*)?(\))")
+FLY_NOW = '\n!!! tip "Fly now"\n    [The simulated vehicle, in this browser]({url}){{ target="_blank" }}: nothing to install.\n'
+
+
+def place_of(path):
+    """Where a file of the repository lies in the site's sources."""
+    if path in OUTSIDE:
+        return OUTSIDE[path]
+    return path[len("docs/"):] if path.startswith("docs/") else f"source/{path}"
+
+
+def path_of(place):
+    return next((path for path, name in OUTSIDE.items() if name == place), f"docs/{place}")
+
+
+def target_of(page, link):
+    """The path in the repository that a link of a page leads to; None: it leads out of it."""
+    if re.match(r"\w+:", link):
+        return None
+    return os.path.normpath(os.path.join(os.path.dirname(page), link))
+
+
+def relinked(page, text):
+    def turn(found):
+        target = target_of(page, found.group(2))
+        if target is None:
+            return found.group(0)
+        link = os.path.relpath(place_of(target), os.path.dirname(place_of(page)) or ".")
+        return f"{found.group(1)}{link}{found.group(3) or ''}{found.group(4)}"
+    return LINK.sub(turn, text)
+
+
+def sources_linked():
+    """The files that are no pages and lie outside of docs/, but that a page links."""
+    for page in [*OUTSIDE, *(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").rglob("*.md"))]:
+        for found in LINK.finditer((ROOT / page).read_text(encoding="utf-8")):
+            target = target_of(page, found.group(2))
+            if target and place_of(target).startswith("source/") and (ROOT / target).is_file():
+                yield target
+
+
+def navigation():
+    """[{section: [place, ...]}, ...] of docs/pages.md."""
+    sections = [{"Plomada": ["index.md", "pages.md"]}]
+    for title, body in re.findall(r"^## (.*)\n((?:(?!## ).*\n)*)", (ROOT / "docs/pages.md").read_text(encoding="utf-8"), re.MULTILINE):
+        places = [place_of(target_of("docs/pages.md", link)) for _, link, _, _ in LINK.findall(body)]
+        sections.append({title: list(dict.fromkeys(places))})
+    return sections
+
+
+def on_config(config):
+    config["nav"] = navigation()
+    return config
+
+
+def on_files(files, config):
+    for path, place in OUTSIDE.items():
+        files.append(File.generated(config, place, content=(ROOT / path).read_text(encoding="utf-8")))
+    for path in sorted(set(sources_linked())):
+        files.append(File.generated(config, place_of(path), abs_src_path=str(ROOT / path)))
+    return files
+
+
+def on_page_markdown(markdown, page, config, files):
+    path = path_of(page.file.src_uri)
+    text = relinked(path, markdown)
+    if os.environ.get("FLY") and path in ("README.md", "docs/ground.md", "docs/es/index.md"):
+        up = "../" * page.file.src_uri.count("/")
+        title, _, rest = text.partition("\n")
+        text = title + "\n" + FLY_NOW.format(url=up + os.environ["FLY"]) + rest
+    return text
