@@ -249,6 +249,18 @@ void test_it_rests_after_1_2_seconds(void)
     state_is(FLIGHT_GROUND);
 }
 
+void test_rest_counts_from_the_begin_of_the_landing(void)
+{
+    fly();
+    watch(40.0F, 30);
+    state_is(FLIGHT_FLYING);
+    setr(0.0F);
+    watch(40.0F, 13);
+    state_is(FLIGHT_LANDING);
+    watch(40.0F, 1);
+    state_is(FLIGHT_GROUND);
+}
+
 void test_while_the_tilt_moves_a_landing_goes_on_for_20_seconds_at_most(void)
 {
     begin();
