@@ -28,6 +28,15 @@ enum {
     SCAN_END /* the empty line after the points */
 };
 
+/* Of a scan that was not asked for: what must come next. */
+enum {
+    FOREIGN_ECHO, /* any line */
+    FOREIGN_STATUS,
+    FOREIGN_TIME,
+    FOREIGN_BLOCK,
+    FOREIGN_MORE /* another block, or the empty line */
+};
+
 /* What is noted of a line's encoded characters: their sum, in two halves of 16 bits, and all their bits, by
  * which one outside 30H..6FH shows. */
 typedef struct {
@@ -123,9 +132,21 @@ static uint16_t strange_in(const scip_parser_t *parser, uint16_t length)
     return strange;
 }
 
+static void lose_foreign(scip_parser_t *parser)
+{
+    parser->foreign_line = FOREIGN_ECHO;
+    parser->foreign_before = false;
+}
+
 /* Octets of a line that was taken for good are never strange. */
 static scip_event_t damage(scip_parser_t *parser, scip_damage_t cause)
 {
+    if (parser->state == ECHO) {
+        parser->foreign_line = FOREIGN_STATUS;
+        parser->foreign_before = false;
+    } else {
+        lose_foreign(parser);
+    }
     parser->counters.strange += strange_in(parser, parser->line_length);
     count_damage(parser, cause);
     parser->state = HUNT;
@@ -137,36 +158,6 @@ static scip_event_t damage(scip_parser_t *parser, scip_damage_t cause)
 static scip_event_t refuse(scip_parser_t *parser, const octet_t *text, scip_damage_t cause)
 {
     return text == parser->line ? damage(parser, cause) : SCIP_DAMAGED;
-}
-
-static scip_event_t end_of_skipped(scip_parser_t *parser)
-{
-    bool after_text = parser->skipping;
-    parser->skipping = false;
-    if (line_is_empty(parser)) {
-        parser->counters.stray += after_text ? 1U : 0U;
-        return SCIP_NOTHING;
-    }
-    if (take_echo(parser)) {
-        return SCIP_NOTHING;
-    }
-    if (after_text && !parser->flowing && line_is_refusal(parser)) {
-        parser->state = LEGACY_END;
-        return SCIP_NOTHING;
-    }
-    parser->skipping = true;
-    parser->counters.skipped_lines++;
-    parser->counters.strange += strange_in(parser, parser->line_length);
-    return SCIP_NOTHING;
-}
-
-static scip_event_t end_of_echo(scip_parser_t *parser)
-{
-    const bool may_be_echo = parser->line_length == parser->awaited.echo_length;
-    if ((may_be_echo && take_echo_at(parser, parser->line)) || take_echo(parser) || line_is_empty(parser)) {
-        return SCIP_NOTHING;
-    }
-    return damage(parser, SCIP_DAMAGE_ECHO);
 }
 
 static bool line_has(const scip_parser_t *parser, uint16_t characters)
@@ -181,6 +172,102 @@ static inline uint32_t six_bits(check_t *check, octet_t character)
     check->sums += bits;
     check->bits |= bits;
     return bits;
+}
+
+static scip_damage_t verdict(const check_t *check, uint16_t characters, octet_t sum)
+{
+    const uint32_t total = (check->sums >> 16) + check->sums + (uint32_t)0x30U * characters;
+    if ((check->bits & OUTSIDE) != 0U) {
+        return SCIP_DAMAGE_CHARACTER;
+    }
+    return sum == sum_character((uint16_t)total) ? SCIP_DAMAGE_NONE : SCIP_DAMAGE_SUM;
+}
+
+static check_t pass(const octet_t *text, uint16_t characters)
+{
+    check_t check = nothing_checked;
+    for (uint16_t i = 0U; i < characters; i++) {
+        (void)six_bits(&check, text[i]);
+    }
+    return check;
+}
+
+/* The status of a stream's scan: "99" and its sum. */
+static bool is_scan_status(const octet_t *text)
+{
+    return text[0] == (octet_t)'9' && text[1] == (octet_t)'9' && text[2] == (octet_t)'b';
+}
+
+static bool sum_is_right(const scip_parser_t *parser)
+{
+    const uint16_t characters = (uint16_t)(parser->line_length - 1U);
+    const check_t check = pass(parser->line, characters);
+    return verdict(&check, characters, parser->line[characters]) == SCIP_DAMAGE_NONE;
+}
+
+/* The line is not empty. */
+static bool foreign_line_fits(const scip_parser_t *parser)
+{
+    switch (parser->foreign_line) {
+    case FOREIGN_ECHO:
+        return true;
+    case FOREIGN_STATUS:
+        return line_has(parser, 2U) && is_scan_status(parser->line);
+    case FOREIGN_TIME:
+        return line_has(parser, 4U) && sum_is_right(parser);
+    default:
+        return parser->line_length <= SCIP_BLOCK + 1U && sum_is_right(parser);
+    }
+}
+
+static void follow_foreign(scip_parser_t *parser)
+{
+    if (!foreign_line_fits(parser)) {
+        lose_foreign(parser);
+    } else if (parser->foreign_line != FOREIGN_MORE) {
+        parser->foreign_line++;
+    }
+}
+
+/* Damage may hit nothing but the echo of the awaited scan; hardly so twice in a row. */
+static void end_foreign(scip_parser_t *parser)
+{
+    const bool whole = parser->foreign_line == FOREIGN_MORE;
+    parser->counters.foreign += whole && parser->foreign_before ? 1U : 0U;
+    parser->foreign_before = whole;
+    parser->foreign_line = FOREIGN_ECHO;
+}
+
+static scip_event_t end_of_skipped(scip_parser_t *parser)
+{
+    bool after_text = parser->skipping;
+    parser->skipping = false;
+    if (line_is_empty(parser)) {
+        parser->counters.stray += after_text ? 1U : 0U;
+        end_foreign(parser);
+        return SCIP_NOTHING;
+    }
+    if (take_echo(parser)) {
+        return SCIP_NOTHING;
+    }
+    if (after_text && !parser->flowing && line_is_refusal(parser)) {
+        parser->state = LEGACY_END;
+        return SCIP_NOTHING;
+    }
+    parser->skipping = true;
+    follow_foreign(parser);
+    parser->counters.skipped_lines++;
+    parser->counters.strange += strange_in(parser, parser->line_length);
+    return SCIP_NOTHING;
+}
+
+static scip_event_t end_of_echo(scip_parser_t *parser)
+{
+    const bool may_be_echo = parser->line_length == parser->awaited.echo_length;
+    if ((may_be_echo && take_echo_at(parser, parser->line)) || take_echo(parser) || line_is_empty(parser)) {
+        return SCIP_NOTHING;
+    }
+    return damage(parser, SCIP_DAMAGE_ECHO);
 }
 
 /* The 6-bit values of four characters, in four octets. A character below 30H borrows from the next one, and
@@ -206,15 +293,6 @@ static inline void add_sums(check_t *check, uint32_t four)
     check->sums += (four & EVERY_SECOND) + ((four >> 8) & EVERY_SECOND);
 }
 
-static scip_damage_t verdict(const check_t *check, uint16_t characters, octet_t sum)
-{
-    const uint32_t total = (check->sums >> 16) + check->sums + (uint32_t)0x30U * characters;
-    if ((check->bits & OUTSIDE) != 0U) {
-        return SCIP_DAMAGE_CHARACTER;
-    }
-    return sum == sum_character((uint16_t)total) ? SCIP_DAMAGE_NONE : SCIP_DAMAGE_SUM;
-}
-
 static bool speaks_legacy(scip_kind_t kind)
 {
     return kind == SCIP_LASER_OFF_1 || kind == SCIP_SWITCH;
@@ -237,12 +315,6 @@ static uint16_t state_after_status(const scip_parser_t *parser)
     default:
         return REPLY_END;
     }
-}
-
-/* The status of a stream's scan: "99" and its sum. */
-static bool is_scan_status(const octet_t *text)
-{
-    return text[0] == (octet_t)'9' && text[1] == (octet_t)'9' && text[2] == (octet_t)'b';
 }
 
 static bool take_scan_status(scip_parser_t *parser, const octet_t *text)
@@ -393,15 +465,6 @@ static check_t decode_triples(uint16_t *out, uint16_t begun, uint32_t *partial, 
         }
     }
     *partial = point;
-    return check;
-}
-
-static check_t pass(const octet_t *text, uint16_t characters)
-{
-    check_t check = nothing_checked;
-    for (uint16_t i = 0U; i < characters; i++) {
-        (void)six_bits(&check, text[i]);
-    }
     return check;
 }
 
@@ -682,6 +745,7 @@ void scip_parser_line_broken(scip_parser_t *parser)
 {
     parser->state = HUNT;
     parser->skipping = false;
+    lose_foreign(parser);
     parser->counters.strange += strange_in(parser, held(parser));
     parser->counters.octets += held(parser);
     begin_line(parser);

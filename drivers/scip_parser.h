@@ -82,6 +82,8 @@ typedef struct {
     uint32_t damaged[SCIP_DAMAGE_COUNT]; /* by cause; [SCIP_DAMAGE_NONE] unused */
     uint32_t
         stray; /* replies to other than the awaited request: two line ends behind a line that was skipped */
+    uint32_t foreign;       /* of them scans of another request, whole and with right sums, behind one like
+                             * it: the line is good, and the sensor streams something else */
     uint32_t skipped_lines; /* lines that are not empty, not the awaited echo and not part of its reply */
 } scip_counters_t;
 
@@ -104,8 +106,10 @@ typedef struct {
                           * a counted run */
     octet_t echo_first;  /* of the awaited echo */
     uint16_t state;
-    octet_t gathered; /* cell of `line` for the next octet; behind the last one comes the first again */
-    bool skipping;    /* the line before was skipped and not empty */
+    octet_t gathered;      /* cell of `line` for the next octet; behind the last one comes the first again */
+    bool skipping;         /* the line before was skipped and not empty */
+    uint16_t foreign_line; /* of a scan of another request: what must come next */
+    bool foreign_before;   /* the frame before was one */
     scip_scan_t *scan;
     uint16_t characters_left;  /* of the scan's data */
     uint32_t partial;          /* first characters of a point that straddles two blocks */

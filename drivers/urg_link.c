@@ -43,6 +43,7 @@
 #define THERE_US 1000000U /* chosen: no sensor loses its power and boots in that time */
 #define LADDER_TOP 3U     /* steps of the recovery: QT and MS, TM2, RS */
 #define HALF 0x80000000UL
+#define LONG_US (2U * URG_STEP_US) /* nothing to wait for */
 #define LONG_SWEEP 3U /* chosen: in every third sweep of a first search answers have FIRST_REPLY_US */
 
 typedef struct {
@@ -198,6 +199,7 @@ static void expect_reply(const step_t *step, scip_kind_t kind)
     link->sent_signs = wrong_rate_signs(step->seen);
     link->sent_framing = step->seen->framing_count;
     link->sent_strays = step->seen->stray_count;
+    link->sent_foreign = step->seen->foreign_count;
 }
 
 static void send_command(const step_t *step, scip_kind_t kind)
@@ -282,17 +284,30 @@ static void knock(const step_t *step, uint32_t rate, scip_kind_t kind, uint32_t 
     step->link->knocking = true;
 }
 
-/* A mute sensor may be in time mode, which it must leave before. */
+/* A mute sensor may be in time mode, which it must leave before. What it has made of a question at another
+ * rate waits in its line, and is answered first: so the order to leave goes ahead, and ends that line. */
+static void leave_time(const step_t *step)
+{
+    knock(step, step->link->good_rate, SCIP_TIME_LEAVE, KNOCK_US - TURN_US);
+    step->link->asking = true;
+}
+
 static void knock_at_stream_rate(const step_t *step)
 {
     urg_link_t *link = step->link;
+    const bool first = link->request_us == 0U;
+    if (first && link->command == SCIP_BIT_RATE) {
+        leave_time(step);
+        return;
+    }
+    const bool has_left = link->command == SCIP_TIME_LEAVE;
     knock(step, link->good_rate, link->config.stream, KNOCK_US);
-    if (link->request_us == 0U) {
+    if (first && !has_left) {
         scip_request_leave_time_first(&step->action->request);
         link->timeout_us += KNOCK_US;
     }
     link->requested_us = step->now_us;
-    link->request_us = link->request_us == 0U ? REQUEST_US : link->request_us;
+    link->request_us = first ? REQUEST_US : link->request_us;
 }
 
 /* At the stream's rate, without a command. */
@@ -423,18 +438,28 @@ static void knock_next(const step_t *step)
     }
 }
 
-/* It comes at that rate; so does the next one. But to SS it means that the sensor has the stream's rate now.
- */
+/* The sensor needs some time to change its rate; the own UART follows. */
+static void await_new_rate(const step_t *step)
+{
+    step->link->waiting = false;
+    step->link->sent_us = step->now_us;
+}
+
+/* It was heard at the stream's rate. To SS it means that the sensor has that rate now. To SCIP2.0, at the
+ * rate of a power-up, that it has obeyed: SS is next, and saves the time of another answer. An unknown
+ * power-up rate is learnt from an answer alone that is heard: the same again. */
 static void on_late_answer(const step_t *step)
 {
     urg_link_t *link = step->link;
     if (link->asked_kind == SCIP_BIT_RATE) {
         link->asked_kind = SCIP_SWITCH;
-        knock_at_stream_rate(step);
+        link->request_us = REQUEST_US;
+        await_new_rate(step);
     } else if (link->asked_rate == link->good_rate) {
         knock_next(step);
     } else {
-        ask_at(step, link->asked_rate, SCIP_SWITCH, FIRST_REPLY_US);
+        ask_at(step, link->asked_rate, knows_power_up_rate(step) ? SCIP_BIT_RATE : SCIP_SWITCH,
+               FIRST_REPLY_US);
     }
 }
 
@@ -447,11 +472,18 @@ static void begin_search_for_mute(const step_t *step)
     if (link->good_rate == link->config.first_rate) {
         knock_at_stream_rate(step);
     } else {
-        ask_at(step, link->config.first_rate, SCIP_BIT_RATE, asking_us(step));
+        ask_at(step, link->config.first_rate, SCIP_BIT_RATE, TURN_US);
     }
 }
 
-/* A sensor that has told of trouble needs the request, and so does one at the end of a counted run. Any other
+/* The line is good, and the sensor streams what it was not asked for: news since the step before. */
+static bool streams_other(const step_t *step)
+{
+    return step->seen->foreign_count != step->link->seen.foreign_count;
+}
+
+/* A sensor that has told of trouble needs the request, and so does one at the end of a counted run, or that
+ * streams something else. Any other
  * may stream still, and the request would cost a frame; its next one may be on the line now. */
 static void begin_search(const step_t *step)
 {
@@ -461,7 +493,7 @@ static void begin_search(const step_t *step)
     link->requested_us = step->now_us;
     link->asked_kind = SCIP_SWITCH;
     link->asked_rate = link->config.first_rate;
-    if (link->timeout_us == 0U || link->config.range.scans != 0U) {
+    if (link->timeout_us == 0U || link->config.range.scans != 0U || streams_other(step)) {
         knock_at_stream_rate(step);
     } else if (step->seen->octet_count == step->seen->octets_at_scan) {
         begin_search_for_mute(step);
@@ -486,21 +518,32 @@ static bool hears_few(const step_t *step)
     return step->seen->octet_count - step->link->sent_octets < ANSWER_OCTETS;
 }
 
-/* To a request. A damaged one has a few octets; a whole one that is not the awaited one belongs to a request
- * that was damaged on its way, or to the stream that it has started. */
+/* Nothing but a damaged answer to the latest request: the sensor does not stream. */
 static bool hears_answer(const step_t *step)
 {
-    return !step->link->listening && (hears_few(step) || proved_rate(step));
+    return !step->link->listening && hears_few(step);
 }
 
-/* Octets at the stream's rate, but no scan. It may be the end of a frame, whose next one comes; if that does
- * not come right in a whole revolution, the sensor streams something else. The next request mends that. */
+static bool hears_foreign(const step_t *step)
+{
+    return step->seen->foreign_count != step->link->sent_foreign;
+}
+
+/* For longer than a revolution. */
+static bool is_quiet(const step_t *step)
+{
+    return step->now_us - step->link->octets_us >= scan_period_us(step->link) + MUTE_MARGIN_US;
+}
+
+/* Octets at the stream's rate, but no scan. While they come, the line is most likely bad and the stream as it
+ * was. A request is then worse than none: what damage makes of it may be another stream, or the end of one.
+ */
 static void hear_on(const step_t *step)
 {
     urg_link_t *link = step->link;
-    const bool listened = link->listening && link->timeout_us == LISTEN_US;
-    link->request_us = REQUEST_US;
-    if (listened || hears_answer(step)) {
+    if (hears_foreign(step) || hears_answer(step) || is_quiet(step) ||
+        step->now_us - link->requested_us >= REQUEST_MAX_US) {
+        link->request_us = REQUEST_US;
         knock_at_stream_rate(step);
     } else {
         listen_to_stream(step);
@@ -666,8 +709,7 @@ static void on_rate_reply(const step_t *step)
     urg_link_t *link = step->link;
     const scip_reply_t *reply = &step->seen->reply;
     if (is_status(reply, '0', '0') || is_status(reply, '0', '3')) {
-        link->waiting = false; /* the own UART follows */
-        link->sent_us = step->now_us;
+        await_new_rate(step);
     } else if (is_refusal(reply) && link->attempt == 1U) {
         repeat_command(step);
     } else {
@@ -790,9 +832,8 @@ static uint16_t attempts_allowed(const step_t *step)
         }
         return step->link->status == URG_STOP2 ? 2U : 1U;
     case SCIP_SWITCH:
-        return step->link->knocking ? 1U : 2U;
     case SCIP_TIME_LEAVE:
-        return 2U;
+        return step->link->knocking ? 1U : 2U;
     case SCIP_STREAM_2:
     case SCIP_STREAM_3:
         return has_streamed(step) && step->link->status == URG_STREAM && !step->link->acknowledged ? 2U : 1U;
@@ -895,12 +936,15 @@ static void cycle_power_in_time(const step_t *step)
     }
 }
 
-/* The sensor answers one line after the other: the awaited answer may be the next one. */
+/* The sensor answers one line after the other: behind the answer to an earlier one, perhaps damaged on its
+ * way, comes the awaited one. A request that overtakes it is refused ("0B"). */
 static bool hears_stray(const step_t *step)
 {
     const urg_link_t *link = step->link;
-    return link->knocking && !link->listening && step->seen->stray_count != link->seen.stray_count &&
-           hears_few(step);
+    const uint32_t strays = step->seen->stray_count - link->seen.stray_count;
+    const uint32_t frames = step->seen->foreign_count - link->seen.foreign_count;
+    return link->knocking && !link->listening && strays != frames &&
+           step->now_us - link->sent_us < 2U * KNOCK_US;
 }
 
 static void wait_on(const step_t *step)
@@ -908,7 +952,6 @@ static void wait_on(const step_t *step)
     step->link->timeout_us = step->now_us - step->link->sent_us + KNOCK_US;
 }
 
-/* The sensor needs some time to change its rate. */
 static void follow_rate(const step_t *step)
 {
     if (step->now_us - step->link->sent_us >= SETTLE_RATE_US) {
@@ -932,6 +975,8 @@ static void step_dialogue(const step_t *step)
         on_legacy(step);
     } else if (hears_stray(step)) {
         wait_on(step);
+    } else if (link->listening && hears_foreign(step)) {
+        search_on(step);
     } else if (hears_other_rate(step)) {
         change_rate(step);
     } else if (is_silent(step)) {
@@ -988,7 +1033,7 @@ static void step_stream(const step_t *step)
     if (step->seen->notice_count != link->seen.notice_count) {
         on_notice(step);
     }
-    if (step->now_us - link->scan_us >= link->timeout_us || is_mute(step)) {
+    if (step->now_us - link->scan_us >= link->timeout_us || is_mute(step) || streams_other(step)) {
         link->restarts++;
         begin_search(step);
     }
@@ -1010,6 +1055,7 @@ void urg_seen_octets(urg_seen_t *seen, const scip_parser_t *parser)
     seen->octet_count = later(scip_parser_octets(parser), seen->octet_count);
     seen->strange_count = later(scip_parser_strange(parser), seen->strange_count);
     seen->stray_count = parser->counters.stray;
+    seen->foreign_count = parser->counters.foreign;
 }
 
 void urg_seen_event(urg_seen_t *seen, const scip_parser_t *parser, scip_event_t event)
@@ -1105,7 +1151,7 @@ static uint32_t patience_us(const urg_link_t *link, const urg_seen_t *seen)
     }
     return link->timed && seen->octet_count == seen->octets_at_scan
                ? link->frame_us + late_us(link) - link->stepped_us
-               : URG_STEP_US;
+               : LONG_US;
 }
 
 /* A start without trouble has the seed's tick. */
@@ -1116,16 +1162,22 @@ uint32_t urg_link_pause_us(const urg_link_t *link, const urg_seen_t *seen)
     if (by_tick) {
         return URG_STEP_US;
     }
-    if (left_us < TURN_US || (link->status != URG_OK && has_news(link, seen))) {
+    if (left_us < TURN_US || (link->status != URG_OK && link->waiting && has_news(link, seen))) {
         return TURN_US;
     }
-    return left_us < URG_STEP_US ? left_us : URG_STEP_US;
+    if (left_us < URG_STEP_US || left_us >= URG_STEP_US + TURN_US) {
+        return left_us < URG_STEP_US ? left_us : URG_STEP_US;
+    }
+    return left_us - TURN_US; /* or the step after this one would come too late */
 }
 
 void urg_link_step(urg_link_t *link, const urg_seen_t *seen, uint32_t now_us, urg_action_t *action)
 {
     const step_t step = {link, seen, now_us, action};
     *action = (urg_action_t){.send = false};
+    if (seen->octet_count != link->seen.octet_count) {
+        link->octets_us = now_us;
+    }
     switch (link->status) {
     case URG_WAIT:
         step_wait(&step);

@@ -63,7 +63,8 @@ typedef struct {
     uint32_t octet_count;
     uint32_t framing_count; /* framing errors of the UART: wrong rate, or a bad cable */
     uint32_t strange_count; /* octets above 7FH: a wrong rate, also where the UART reports no errors */
-    uint32_t stray_count;   /* replies to other than the awaited request */
+    uint32_t stray_count;   /* replies to other than the awaited request, and scans of another one */
+    uint32_t foreign_count; /* of them scans of another request; scip_parser.h, `foreign` */
     uint32_t damage_count;  /* damaged replies and scans, all causes */
 } urg_seen_t;
 
@@ -120,6 +121,7 @@ typedef struct {
     uint32_t sent_signs;   /* counter of signs of a wrong rate at that time */
     uint32_t sent_framing; /* of framing errors alone */
     uint32_t sent_strays;  /* counter of stray replies at that time */
+    uint32_t sent_foreign; /* counter of another request's scans at that time */
     uint32_t good_rate;    /* rate at which scans were received; 0: none yet */
     uint32_t frame_us;     /* time of the latest scan: as told, else that of the step which has seen it */
     bool timed;            /* the caller tells the times of the scans */
@@ -139,6 +141,7 @@ typedef struct {
     uint32_t request_us;          /* least time to the next one; 0: none was sent yet */
     bool heard;                   /* the search has heard octets at the stream's rate that are no scan */
     uint32_t heard_us;            /* when it did last */
+    uint32_t octets_us;           /* the step that has seen octets last */
     uint32_t stepped_us;          /* when the latest step was */
     urg_seen_t seen;              /* what was received up to the previous step */
 } urg_link_t;

@@ -2048,3 +2048,112 @@ void test_the_count_is_never_more_than_a_scan_and_right_again_for_the_next_one(v
         parser.stamps = 0; /* the same two stamps all over */
     }
 }
+
+/* --- scans that were not asked for
+ * -------------------------------------------------------------------------------- */
+
+static const order_t other = {"MS", 372, 500, 1, 0, 0}; /* 129 points: five blocks, the last one short */
+
+/* A frame of another order, without the octet at `lost`, and with the one at `changed` changed. */
+static void feed_other(unsigned frame, size_t lost, size_t changed)
+{
+    wire.length = 0;
+    put_numbered_frame(&wire, &other, frame);
+    for (size_t i = 0; i < wire.length; i++) {
+        if (i != lost) {
+            (void)feed(i == changed ? wire.octets[i] ^ 1U : wire.octets[i]);
+        }
+    }
+}
+
+#define NOWHERE ((size_t)WIRE_MAX)
+
+static void stream_front(void)
+{
+    setUp();
+    expect_order(&front);
+    put_answer(&wire, &front, "00");
+    put_numbered_frame(&wire, &front, 0);
+    (void)feed_range(&wire, 0, wire.length);
+    TEST_ASSERT_EQUAL_UINT(1, seen.scans);
+}
+
+void test_the_second_whole_scan_of_another_request_in_a_row_is_counted_and_each_one_behind_it(void)
+{
+    for (unsigned hunting = 0; hunting < 2; hunting++) {
+        stream_front();
+        if (hunting == 1) {
+            expect_order(&front);
+        }
+        for (unsigned k = 0; k < 4; k++) {
+            TEST_ASSERT_EQUAL_UINT32(k < 2 ? 0 : k - 1, parser.counters.foreign);
+            feed_other(k, NOWHERE, NOWHERE);
+        }
+        TEST_ASSERT_EQUAL_UINT32(3, parser.counters.foreign);
+        TEST_ASSERT_EQUAL_UINT(1, seen.scans);
+    }
+}
+
+/* Any octet behind the echo, which may be anything. One lost of a block passes the sum now and then. */
+void test_a_damaged_scan_of_another_request_is_not_counted_nor_the_one_behind_it(void)
+{
+    stream_front();
+    feed_other(0, NOWHERE, NOWHERE);
+    const size_t length = wire.length;
+    for (size_t at = 16; at < length; at++) {
+        for (unsigned lost = 0; lost < (at < 26 ? 2U : 1U); lost++) {
+            const uint32_t before = parser.counters.foreign;
+            feed_other(1, lost == 1 ? at : NOWHERE, lost == 0 ? at : NOWHERE);
+            (void)feed_text("\n"); /* for a lost or changed line end */
+            TEST_ASSERT_EQUAL_UINT32(before, parser.counters.foreign);
+            feed_other(2, NOWHERE, NOWHERE);
+            TEST_ASSERT_EQUAL_UINT32(before, parser.counters.foreign);
+            feed_other(1, NOWHERE, NOWHERE);
+            TEST_ASSERT_EQUAL_UINT32(before + 1, parser.counters.foreign);
+        }
+    }
+}
+
+/* What damage makes of the awaited stream: nothing but the echo is hit, here and there. */
+void test_awaited_scans_with_a_damaged_echo_are_no_other_stream(void)
+{
+    stream_front();
+    for (unsigned k = 1; k < 20; k++) {
+        wire.length = 0;
+        put_numbered_frame(&wire, &front, k);
+        wire.octets[5] ^= k % 2;
+        (void)feed_range(&wire, 0, wire.length);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, parser.counters.foreign);
+    TEST_ASSERT_EQUAL_UINT(10, seen.scans);
+}
+
+void test_a_broken_line_and_damage_within_a_scan_end_a_row_of_others(void)
+{
+    for (unsigned broken = 0; broken < 2; broken++) {
+        stream_front();
+        feed_other(0, NOWHERE, NOWHERE);
+        if (broken == 1) {
+            scip_parser_line_broken(&parser);
+        } else {
+            wire.length = 0;
+            put_numbered_frame(&wire, &front, 1);
+            wire.octets[40] ^= 1U;
+            (void)feed_range(&wire, 0, wire.length);
+        }
+        feed_other(2, NOWHERE, NOWHERE);
+        TEST_ASSERT_EQUAL_UINT32(0, parser.counters.foreign);
+        feed_other(3, NOWHERE, NOWHERE);
+        TEST_ASSERT_EQUAL_UINT32(1, parser.counters.foreign);
+    }
+}
+
+void test_answers_without_points_are_no_scans_of_another_request(void)
+{
+    stream_front();
+    expect_order(&front);
+    for (unsigned k = 0; k < 3; k++) {
+        (void)feed_text("MS0372050001000\n99b\n\nTM1\n00P\nm2@0?\n\nVV\n00P\n99b\nm2@0?\n\n");
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, parser.counters.foreign);
+}

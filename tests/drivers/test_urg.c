@@ -190,6 +190,7 @@ void test_a_lost_stream_is_asked_for_behind_an_end_of_line_and_of_time_mode(void
     const char *sent = "";
 
     reach_stream();
+    urg.link.config.first_rate = config.stream_rate; /* it powers up there; else they go one by one */
     (void)feed(frame(32U, "9H"));
     for (unsigned i = 0U; i < 20U && strstr(sent, "MS") == NULL; i++) {
         sent = step();

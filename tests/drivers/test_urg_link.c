@@ -619,7 +619,7 @@ void test_a_stream_that_stopped_is_started_again_at_the_same_rate_within_1_5_s(v
         step();
     }
     TEST_ASSERT_GREATER_THAN_UINT32(scans, seen.scan_count);
-    TEST_ASSERT_EQUAL_UINT(1, times_asked("TM2\nMS"));
+    TEST_ASSERT_EQUAL_UINT(1, times_asked("TM2"));
     TEST_ASSERT_EQUAL_UINT(stops, times_asked("QT"));
     TEST_ASSERT_EQUAL_UINT16(0, link_.failures);
 }
@@ -697,9 +697,10 @@ void test_a_lost_sensor_is_first_looked_for_where_it_can_be(void)
     const uint32_t lost_step = step_number;
     steps(75);
     TEST_ASSERT_EQUAL_STRING("\nSS250000\n", asked[begin].text);
-    TEST_ASSERT_EQUAL_STRING("\nTM2\nMS0372040601000\n", asked[begin + 1].text);
+    TEST_ASSERT_EQUAL_STRING("\nTM2\n", asked[begin + 1].text);
+    TEST_ASSERT_EQUAL_STRING("\nMS0372040601000\n", asked[begin + 2].text);
     uint32_t requests_ms[9] = {0}, requests = 0;
-    for (uint32_t i = begin + 2; i < asked_count; i++) {
+    for (uint32_t i = begin + 3; i < asked_count; i++) {
         const bool at_stream_rate = asked[i].text[1] == 'M';
         assert_asked(i, at_stream_rate ? "\nMS0372040601000\n" : "\nSCIP2.0\n", asked[i].step,
                      at_stream_rate ? 250000 : 115200, URG_LOST);
@@ -1290,9 +1291,11 @@ void test_every_time_out_is_what_the_octets_and_the_revolutions_take(void)
     TEST_ASSERT_EQUAL(URG_OK, link_.status);
     nothing_after(1U);
     TEST_ASSERT_EQUAL(URG_LOST, link_.status);
-    TEST_ASSERT_EQUAL_UINT32(130000, link_.timeout_us);
-    nothing_after(130000);
-    TEST_ASSERT_EQUAL_UINT32(260000, link_.timeout_us); /* of TM2 and MS */
+    TEST_ASSERT_EQUAL_UINT32(40000, link_.timeout_us); /* SS; its answer is heard at the other rate too */
+    nothing_after(40000);
+    TEST_ASSERT_EQUAL_UINT32(90000, link_.timeout_us); /* TM2, up to where SS would be answered */
+    nothing_after(90000);
+    TEST_ASSERT_EQUAL_UINT32(130000, link_.timeout_us); /* MS */
     TEST_ASSERT_EQUAL_UINT32(STEP_US + NEXT_SCAN_US, reply_after(STEP_US, SCIP_STREAM_2, "00", false));
     TEST_ASSERT_EQUAL(URG_STREAM, link_.status);
     scan_after(STEP_US);
@@ -1302,17 +1305,20 @@ void test_every_time_out_is_what_the_octets_and_the_revolutions_take(void)
     TEST_ASSERT_EQUAL_UINT32(2000000, link_.timeout_us);
 }
 
-/* To the first SCIP2.0 of a search: SS and a request go before it. */
+/* To the first SCIP2.0 of a search: SS, TM2 and a request go before it. */
 static void lose_and_ask(void)
 {
     nothing_after(NEXT_SCAN_US);
     TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
     TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
-    nothing_after(130000);
+    nothing_after(40000);
+    TEST_ASSERT_EQUAL(SCIP_TIME_LEAVE, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    nothing_after(90000);
     TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
     TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
     TEST_ASSERT_TRUE(action.send);
-    nothing_after(260000);
+    nothing_after(130000);
     TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
     TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
 }
@@ -1710,12 +1716,89 @@ void test_a_frame_that_begins_in_a_listening_window_is_heard_to_its_end(void)
     TEST_ASSERT_EQUAL_UINT32(160000, link_.timeout_us);
     seen.octet_count += 101;
     nothing_after(160000);
+    TEST_ASSERT_FALSE(action.send);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+}
+
+/* Damage would make another request of it. */
+void test_while_damaged_octets_come_nothing_is_sent_for_8_s(void)
+{
+    stream_in_time();
+    seen.octet_count++;
+    lose();
+    const uint32_t lost_us = now_us;
+    while (now_us - lost_us < 8000000) {
+        TEST_ASSERT_FALSE(action.send);
+        TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+        seen.octet_count += 101;
+        seen.stray_count++;
+        nothing_after(160000);
+    }
     TEST_ASSERT_TRUE(action.send);
     TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
-    seen.octet_count += 21; /* its answer, damaged */
+    nothing_after(130000); /* no octet more: an order for scans every time */
+    TEST_ASSERT_TRUE(action.send);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+}
+
+void test_damaged_octets_that_end_are_a_sensor_that_has_stopped(void)
+{
+    stream_in_time();
+    seen.octet_count++;
+    lose();
+    TEST_ASSERT_FALSE(action.send);
+    seen.octet_count += 60;
+    nothing_after(30000);
+    TEST_ASSERT_FALSE(action.send);
+    nothing_after(129999);
+    TEST_ASSERT_FALSE(action.send);
+    nothing_after(1);
+    TEST_ASSERT_TRUE(action.send);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+}
+
+void test_a_damaged_answer_and_nothing_else_repeats_the_order(void)
+{
+    stream_in_time();
+    seen.octet_count++;
+    seen.foreign_count++;
+    lose();
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    TEST_ASSERT_TRUE(action.send);
+    seen.octet_count += 47;
     nothing_after(130000);
     TEST_ASSERT_TRUE(action.send);
+    seen.octet_count += 48; /* or a frame */
+    nothing_after(130000);
+    TEST_ASSERT_FALSE(action.send);
+}
+
+/* The line is good: it has heard a request that was damaged, or another host's. */
+void test_a_stream_of_something_else_is_asked_to_be_another_at_once(void)
+{
+    stream_in_time();
+    seen.octet_count += 101;
+    seen.foreign_count++;
+    nothing_after(20000);
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
+    TEST_ASSERT_EQUAL_STRING_LEN("\nMS0372040601000\n", (const char *)action.request.text, 17);
+    stream_in_time();
+    seen.octet_count++;
+    lose();
+    TEST_ASSERT_FALSE(action.send);
+    seen.octet_count += 101;
+    seen.foreign_count++;
+    TEST_ASSERT_TRUE(link_.listening);
+    nothing_after(40000);
+    TEST_ASSERT_TRUE(action.send);
     TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    seen.octet_count += 202; /* it goes on, and the order has no answer */
+    seen.stray_count++;
+    seen.foreign_count++;
+    nothing_after(129999);
+    TEST_ASSERT_FALSE(action.send);
+    nothing_after(1);
+    TEST_ASSERT_TRUE(action.send);
 }
 
 void test_a_sensor_heard_a_second_ago_is_only_asked_at_its_rate(void)
@@ -1743,7 +1826,7 @@ void test_signs_of_another_rate_while_listening_are_a_late_answer(void)
     seen.framing_count++;
     nothing_after(1);
     TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
-    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command); /* SCIP2.0 is obeyed; SS is next */
     TEST_ASSERT_EQUAL_UINT32(400000, link_.timeout_us);
 }
 
@@ -1767,12 +1850,17 @@ void test_a_stray_answer_gives_the_awaited_one_its_time(void)
     stream_in_time();
     lose();
     nothing_after(link_.timeout_us);
-    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    TEST_ASSERT_EQUAL(SCIP_TIME_LEAVE, link_.command);
     seen.octet_count += 9;
     seen.stray_count++;
-    nothing_after(100000);
-    TEST_ASSERT_EQUAL_UINT32(230000, link_.timeout_us);
+    nothing_after(80000);
+    TEST_ASSERT_EQUAL(SCIP_TIME_LEAVE, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(210000, link_.timeout_us);
     TEST_ASSERT_FALSE(action.send);
+    seen.stray_count++; /* not for ever */
+    nothing_after(180000);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    TEST_ASSERT_TRUE(action.send);
 }
 
 void test_ss_that_is_answered_late_means_that_the_sensor_has_the_streams_rate(void)
@@ -1785,6 +1873,11 @@ void test_ss_that_is_answered_late_means_that_the_sensor_has_the_streams_rate(vo
     seen.octet_count += 3;
     seen.framing_count += 3;
     nothing_after(50000);
+    TEST_ASSERT_FALSE(action.send); /* it changes its rate */
+    TEST_ASSERT_EQUAL_UINT32(90000, urg_link_pause_us(&link_, &seen));
+    nothing_after(89999);
+    TEST_ASSERT_FALSE(action.send);
+    nothing_after(1);
     TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
     TEST_ASSERT_TRUE(action.send);
     TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);

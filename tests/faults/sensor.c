@@ -8,6 +8,8 @@
 #define QUEUE 6
 #define BLOCK 64
 #define RATE_NONE 0U
+#define OTHER_LAST 500
+#define OTHER_ECHO "0500"
 
 typedef struct {
     char text[LINE + 1];
@@ -392,6 +394,11 @@ void sensor_power(sensor_t *sensor, bool on, ns_t now)
 
 void sensor_stop(sensor_t *sensor, stop_t how, ns_t now)
 {
+    if (how == STOP_OTHER) {
+        sensor->last = OTHER_LAST;
+        memcpy(sensor->echo + 6, OTHER_ECHO, 4);
+        return;
+    }
     quit(sensor);
     sensor->timing = how == STOP_TIME;
     if (how == STOP_RESET) {

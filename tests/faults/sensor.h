@@ -21,7 +21,13 @@ typedef enum {
     ANSWERS_COUNT
 } answers_t;
 
-typedef enum { STOP_RESET, STOP_QUIT, STOP_TIME, STOP_COUNT } stop_t; /* as after RS, QT, TM0 */
+typedef enum {
+    STOP_RESET,
+    STOP_QUIT,
+    STOP_TIME,
+    STOP_OTHER,
+    STOP_COUNT
+} stop_t; /* as after RS, QT, TM0, another MS */
 
 typedef struct {
     uint32_t power_up_rate;
