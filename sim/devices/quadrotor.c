@@ -8,6 +8,7 @@
 #include "sim/noise.h"
 
 #define STEP ((sim_time_t)500000)
+#define HIGH_M 50.0 /* above everything that a vehicle takes off from */
 #define STEP_S 0.0005
 #define GRAVITY_MPS2 9.80665
 #define DEGREE_RAD (M_PI / 180.0)
@@ -54,6 +55,8 @@ const quadrotor_config_t quadrotor_default = {.gain = 1.0,
                                               .turbulence_mps2 = 0.2,
                                               .turbulence_tau_s = 0.5,
                                               .attitude_rms_rad = 2.0 * DEGREE_RAD,
+                                              .roll_sway = 1.0,
+                                              .pitch_sway = 1.0,
                                               .attitude_hz = 0.6,
                                               .ground_sway = 0.15,
                                               .actuator_delay_s = 0.010,
@@ -188,6 +191,9 @@ void quadrotor_set_place(quadrotor_t *quadrotor, const place_t *place, const cou
 {
     quadrotor->place = place;
     travel_init(&quadrotor->travel, course);
+    if (place != NULL && !quadrotor->config.anchored) {
+        quadrotor->state.altitude_m = place_below(place, 0.0, 0.0, HIGH_M, 0.0).at.z;
+    }
 }
 
 const place_t *quadrotor_place(const quadrotor_t *quadrotor)
@@ -330,8 +336,9 @@ static void rotate(quadrotor_t *q, double t_s)
     const double share = q->state.on_ground ? q->config.ground_sway : 1.0;
     const double steered = q->state.on_ground ? 0.0 : 1.0;
     travel_steer(&q->travel, t_s, STEP_S, q->state.heading_rad);
-    swing(&q->roll, q->attitude_radps, share * q->attitude_drive, steered * q->travel.roll_rad);
-    swing(&q->pitch, q->attitude_radps, share * q->attitude_drive,
+    const double drive = share * q->attitude_drive;
+    swing(&q->roll, q->attitude_radps, q->config.roll_sway * drive, steered * q->travel.roll_rad);
+    swing(&q->pitch, q->attitude_radps, q->config.pitch_sway * drive,
           advance_pitch_rad(q, t_s) + steered * q->travel.pitch_rad);
     if (q->config.tumble_radps != 0.0 && t_s >= q->config.tumble_start_s && !q->state.on_ground &&
         fabs(q->tumble_rad) < M_PI) {

@@ -40,6 +40,7 @@ typedef struct {
     double turbulence_tau_s;      /* 0.5 */
     double attitude_rms_rad;      /* 2 deg */
     double attitude_hz;           /* 0.6: natural frequency of that motion */
+    double roll_sway, pitch_sway; /* 1: share of it about each axis */
     double ground_sway;           /* 0.15: share of it on the ground; 1: somebody holds it, or a boat */
     double actuator_delay_s;      /* 0.010 behind the end of the pulse */
     double climb_rate_mps_per_n;  /* 0: the throttle commands thrust */
@@ -97,7 +98,8 @@ void quadrotor_destroy(quadrotor_t *quadrotor);
  * type go on. */
 void quadrotor_change(quadrotor_t *quadrotor, const quadrotor_config_t *config, const terrain_t *terrain);
 /* Where it flies, and how; both borrowed. NULL: an endless even floor; it stays where it is. Before the first
- * step. The ground is the sum of the place's, of the terrain and of the floor of its configuration. */
+ * step. It stands on what there is at the origin. The ground is the sum of the place's, of the terrain and of
+ * the floor of its configuration. */
 void quadrotor_set_place(quadrotor_t *quadrotor, const place_t *place, const course_t *course);
 const place_t *quadrotor_place(const quadrotor_t *quadrotor);
 void quadrotor_set_origin(quadrotor_t *quadrotor, sim_time_t origin);

@@ -150,7 +150,8 @@ static void count_incidents(metrics_record_t *record, const metrics_sample_t *s)
 
     watch_ground(record, s);
     if (record->count > 0) {
-        record->takeovers += s->taken_over && !before->taken_over && s->t_s < record->land_s;
+        record->takeovers += s->taken_over && !before->taken_over && s->t_s < record->land_s &&
+                             !(record->lowered && !record->reached);
         record->cuts += cut(record, s);
     }
 }
@@ -302,6 +303,7 @@ void metrics_begin(metrics_record_t *record, double reference_m, bool terrain, d
 
 void metrics_order(metrics_record_t *record, double t_s, double reference_m)
 {
+    record->lowered = reference_m < record->wanted_m;
     record->wanted_m = reference_m;
     record->highest_wanted_m = fmax(record->highest_wanted_m, reference_m);
     record->ordered_s = t_s;

@@ -51,8 +51,9 @@ typedef enum {
                             flight */
     METRIC_TOUCH_SPEED_MPS, /* hardest touch: fastest fall within the last 30 mm; NAN when it never came down
                              */
-    METRIC_TAKEOVERS,       /* times that the supervisor took over before the landing command */
-    METRIC_CUTS,            /* times that the thrust was cut above 30 mm, landing included */
+    METRIC_TAKEOVERS, /* times that the supervisor took over before the landing command; on the way down to a
+                       * lower reference it may */
+    METRIC_CUTS,      /* times that the thrust was cut above 30 mm, landing included */
     METRIC_OFF_ALOFT, /* times that the motors were off for 0.2 s above 0.3 m, and nothing had ordered it */
     METRIC_DOWN_S,    /* on the ground for good, after the landing command or a descent by the supervisor that
                        * was not called off, whichever comes first; NAN: never */
@@ -110,6 +111,7 @@ typedef struct {
     double aloft_since_s; /* above 30 mm without a break; NAN: not */
     double off_since_s, wrong_since_s, deceived_s, flagged_s;
     double wanted_m, highest_wanted_m, ordered_s; /* the reference in force, and since when */
+    bool lowered;                                 /* it is lower than the one before */
     bool reached, flew;                           /* that reference; off the ground by it */
     double stood_since_s, landed_unordered;
     unsigned doubts;

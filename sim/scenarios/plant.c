@@ -51,6 +51,8 @@ static const figure_t figures[] = {
     {"ground_effect", "-", 0, 10, QUAD(ground_effect), 1, "times that of Cheeseman and Bennett"},
     {"attitude_rms", "rad", 0, 1, QUAD(attitude_rms_rad), 1, "roll and pitch motion"},
     {"attitude_hz", "Hz", 0.05, 5, QUAD(attitude_hz), 1, "its natural frequency"},
+    {"roll_sway", "-", 0, 1, QUAD(roll_sway), 1, "share of it about the roll axis"},
+    {"pitch_sway", "-", 0, 1, QUAD(pitch_sway), 1, "and about the pitch axis"},
     {"ground_sway", "-", 0, 1, QUAD(ground_sway), 1, "share of it on the ground"},
     {"tumble", "deg/s", -10000, 10000, QUAD(tumble_radps), DEG,
      "roll rate of a vehicle that turns on its back"},

@@ -10,7 +10,7 @@
 #define SCENARIO_SETTINGS_MAX 16
 #define SCENARIO_EXPECTATIONS_MAX 10
 #define SCENARIO_LATER_MAX 80
-#define SCENARIO_PLANT_MAX 32
+#define SCENARIO_PLANT_MAX 48 /* a drawn vehicle's fifteen, and those of three lies */
 
 typedef struct {
     double t_s;               /* complete at the receiver */

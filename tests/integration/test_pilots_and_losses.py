@@ -1,6 +1,6 @@
 """test_pilots_and_losses.py PLOMADA [soak]: flights with a pilot, and flights that lose a sensor at a bad moment.
 
-Vehicles: the nominal one of each airframe, and those that a campaign of faults draws (tools/campaign/faults.py), GRAV
+Vehicles: the nominal one of each airframe, and those that plan.vehicle() draws (tools/campaign), GRAV
 trimmed by hand or not. One flight of each kind, by some of the laws and vehicles, pinned to one seed. soak: how often each test
 fails on flights, laws, vehicles and conditions drawn anew (tools/campaign/rate.py): at most one time in twenty. A failure prints
 the command that repeats its flight.
@@ -18,7 +18,6 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools/campaign"))
-import faults  # noqa: E402
 import plan  # noqa: E402
 
 PROGRAM, NAMES = "", []
@@ -37,7 +36,7 @@ def vehicle(kind, seed):
     airframe = float(kind[-1]) if kind[-1].isdigit() else 0.0
     if kind.startswith("nominal"):
         return {"airframe": airframe}, {}
-    figures, typed, _ = faults.vehicle(FIRST_SEED, seed)
+    figures, typed = plan.vehicle(FIRST_SEED, seed)
     return {**figures, "airframe": airframe}, {} if kind.startswith("untrimmed") else {"GRAV": typed["GRAV"]}
 
 

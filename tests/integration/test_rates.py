@@ -15,7 +15,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "tools/campaign"))
-import faults  # noqa: E402
 import fleet  # noqa: E402
 import harm  # noqa: E402
 import plan  # noqa: E402
@@ -44,11 +43,15 @@ def nominal(draw):
 
 
 def drawn(draw):
-    """Vehicles of both airframes, GRAV trimmed by hand, as a campaign of lies draws them."""
+    """Vehicles of both airframes, GRAV trimmed by hand, as a survey draws them."""
     def vehicle(rng):
-        figures, typed, _ = faults.vehicle(rng.randrange(1, 1_000_000), rng.randrange(1, 1_000_000))
+        figures, typed = plan.vehicle(rng.randrange(1, 1_000_000), rng.randrange(1, 1_000_000))
         return figures | FLAT | typed | draw(rng)
     return vehicle
+
+
+def sign(rng):
+    return rng.choice((-1.0, 1.0))
 
 
 def healthy(set_name):
@@ -71,7 +74,7 @@ def two_gaps(rng):
 
 
 def burst(rng):
-    return {"attitude_burst_deg": rng.uniform(30.0, 170.0) * faults.sign(rng), "attitude_burst_start": rng.uniform(2.0, 16.0),
+    return {"attitude_burst_deg": rng.uniform(30.0, 170.0) * sign(rng), "attitude_burst_start": rng.uniform(2.0, 16.0),
             "attitude_burst_length": 0.025 * rng.randrange(1, 7)}
 
 
@@ -99,12 +102,12 @@ REQUIREMENTS = {
     "beam blocked in flight, drawn": Requirement(drawn(blocked_in_flight), {"highest_mm": 3000.0, "touch_speed_mps": 1.8}),
     "IMU silent, then the scanner": Requirement(nominal(two_gaps), {"highest_mm": 1000.0}),
     "IMU silent, then the scanner, drawn": Requirement(drawn(two_gaps), {"highest_mm": 1000.0}),
-    "accelerometer's offset": Requirement(nominal(lambda rng: {"acc_bias": rng.uniform(0.5, 2.5) * faults.sign(rng)}), {"hover_rms_mm": 60.0}),
-    "accelerometer's unit": Requirement(nominal(faults.acc_unit), {"hover_rms_mm": 60.0}),
-    "accelerometer's sign": Requirement(nominal(faults.acc_sign), {"hover_rms_mm": 60.0}),
-    "accelerometer jumps": Requirement(nominal(lambda rng: {"acc_jump": rng.uniform(0.5, 4.0) * faults.sign(rng), "acc_jump_start": rng.uniform(2.0, 25.0)}),
+    "accelerometer's offset": Requirement(nominal(lambda rng: {"acc_bias": rng.uniform(0.5, 2.5) * sign(rng)}), {"hover_rms_mm": 60.0}),
+    "accelerometer's unit": Requirement(nominal(lambda rng: {"acc_scale": rng.choice((1 / 256, 0.102, 0.5, 2.0, 9.80665))}), {"hover_rms_mm": 60.0}),
+    "accelerometer's sign": Requirement(nominal(lambda _: {"acc_sign": -1.0}), {"hover_rms_mm": 60.0}),
+    "accelerometer jumps": Requirement(nominal(lambda rng: {"acc_jump": rng.uniform(0.5, 4.0) * sign(rng), "acc_jump_start": rng.uniform(2.0, 25.0)}),
                                        {"hover_rms_mm": 60.0}),
-    "accelerometer jumps, drawn": Requirement(drawn(lambda rng: {"acc_jump": rng.uniform(0.5, 4.0) * faults.sign(rng), "acc_jump_start": rng.uniform(2.0, 25.0)}),
+    "accelerometer jumps, drawn": Requirement(drawn(lambda rng: {"acc_jump": rng.uniform(0.5, 4.0) * sign(rng), "acc_jump_start": rng.uniform(2.0, 25.0)}),
                                               HARM),
     "attitude burst of up to six frames": Requirement(nominal(burst), {"cuts": 0}, OF_FOUR_HUNDRED),
     "bars of 6 cm": Requirement(nominal(lambda rng: {"bars_mm": 60.0, "bars_period": 0.4}), {"hover_rms_mm": 40.0}),
@@ -115,7 +118,7 @@ REQUIREMENTS = {
                                        {"stopped_after_s": 12.0} | HARM),
     "pilot's turn that no pin tells": Requirement(nominal(pilots_turn("NONE")), {"ground_contacts": 0}),
     "pilot's turn that the pin tells": Requirement(nominal(pilots_turn("PIN")), NO_CONTACT),
-    "load comes or goes": Requirement(nominal(faults.load), HARM),
+    "load comes or goes": Requirement(nominal(lambda rng: {"hover_jump": rng.uniform(0.3, 1.2) * sign(rng), "hover_jump_start": rng.uniform(2.0, 16.0)}), HARM),
     # Nothing is wrong.
     "healthy, drawn": Requirement(healthy("untrimmed"), CALM, OF_FOUR_HUNDRED),
     "healthy, drawn: hover": Requirement(healthy("untrimmed"), {"hover_rms_mm": 27.0}),

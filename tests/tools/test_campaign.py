@@ -178,8 +178,8 @@ class Keeping(Case):
     def test_another_campaign_does_not_write_into_the_folder_of_one(self):
         self.campaign(*self.LESS, "--runs", "2")
         before = {path.name: path.read_bytes() for path in self.out.iterdir()}
-        for words in (("--seed", "2"), ("--faults", "10"), ("--set", "plant.tau=0.1")):
-            status, _, err, flown = self.campaign(*self.LESS, "--runs", "2", *words) if words[0] != "--faults" else self.campaign(*words)
+        for words in (("--seed", "2"), ("--lies", "1"), ("--set", "plant.tau=0.1")):
+            status, _, err, flown = self.campaign(*self.LESS, "--runs", "2", *words) if words[0] != "--lies" else self.campaign(*words)
             self.assertEqual((status, flown), (2, 0))
             self.assertIn("has another campaign, begun with: --law PID,EST --set nominal --runs 2", err)
         self.assertEqual({path.name: path.read_bytes() for path in self.out.iterdir()}, before)
@@ -190,8 +190,8 @@ class Keeping(Case):
         self.assertEqual(campaign.folder_of(["--law", "PID,EST", "--set=plant.tau=0.1", "--program", "x"]), root / "law-PID-EST-set=plant.tau=0.1")
         long = [campaign.folder_of(["--set", "a" * 200 + end]).name for end in "xy"]
         self.assertTrue(long[0] != long[1] and all(len(name) <= 80 for name in long), long)
-        self.assertEqual(campaign.identity(["--faults", "2000", "--seed", "3"]), campaign.identity(["--faults=100", "--seed", "3", "--resume"]))
-        self.assertNotEqual(campaign.identity(["--faults", "--seed", "3"]), campaign.identity(["--faults", "--seed", "4"]))
+        self.assertEqual(campaign.identity(["--lies", "2000", "--seed", "3"]), campaign.identity(["--lies=100", "--seed", "3", "--resume"]))
+        self.assertNotEqual(campaign.identity(["--lies", "--seed", "3"]), campaign.identity(["--lies", "--seed", "4"]))
 
     def test_a_line_torn_by_a_kill_is_flown_again_and_harms_no_other(self):
         first = self.campaign(*self.LESS, "--runs", "6")[1]

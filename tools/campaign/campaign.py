@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """campaign.py [--law L,L] [--set S,S] [--runs N] [--page] ...: flies each law on many vehicles.
-campaign.py --faults [N] [--law L,L] [--page] ...: flies them while the world lies to them.
+campaign.py --healthy [N] | --lies [N] [--law L,L] [--only SITUATION,ROW] [--held-out] [--page] ...: flies them in many situations.
+campaign.py --fly SITUATION/NUMBER/LAW: flies one of those again, and says what it did.
 campaign.py --resume [--out DIR]: goes on with the campaign in DIR, with the options it was begun with.
 
 The vehicle of a run depends on the campaign's seed and the run's number alone, so all laws fly the same vehicles.
@@ -8,9 +9,9 @@ Flights run in processes of their own through Dask, on this machine or on the cl
 kept at once in DIR/flights.jsonl, with the command that flies it again, seed, program and vehicle; a rerun flies only what is missing there, and what another program or other draws
 would fly anew. A folder has one campaign, and one with options has its own. Then come the table and the verdicts on stdout, and in DIR campaign.csv, campaign.json and campaign.png.
 The campaign without options is the one in docs/control.md: its tables must be these, or --page writes them.
-With --faults, each of N flights has one to three random conditions, such as lost rays, a frozen IMU, a noisy line, and all
-laws fly the same ones. Then come, for each flight that did harm, the command that repeats it, and the rates;
-docs/reliability.md has those of the default campaign, which are compared, and those of a large one.
+With --healthy or --lies the laws fly N times in each situation of tools/campaign/healthy.toml or lies.toml: law EST, the others N / 4 times. Then
+come the rates by situation, by row and by law; docs/reliability.md has the rows, and --page writes them. --held-out draws from
+those parts of the ranges that nothing may be tuned on.
 docs/campaign.md tells more. Exit status: 0; 1 a law does not reach what it must, or the page says otherwise; 2 usage or a program that does not fly; 130 interrupted.
 """
 import argparse
@@ -20,18 +21,16 @@ import re
 import sys
 from pathlib import Path
 
-import faults
 import fleet
-import harm
 import page
 import plan
+import situations
+import survey
 import table
 import verdict
 
 ROOT = Path(__file__).resolve().parents[2]
 
-
-FAULTS = 2000
 BEGUN = "arguments.json"        # of --out
 
 
@@ -57,9 +56,9 @@ def identity(words):
     """The words of a command line that make the campaign what it is: one of more flights is the same, gone on with."""
     found = without(words, ASIDE | LENGTH)
     for at, word in enumerate(found):
-        if word.startswith("--faults="):
-            found[at] = "--faults"
-        elif word.isdigit() and found[at - 1] == "--faults":
+        if word.startswith(tuple(f"--{name}=" for name in survey.RUNS)):
+            found[at] = word.partition("=")[0]
+        elif word.isdigit() and found[at - 1].lstrip("-") in survey.RUNS:
             del found[at]
     return found
 
@@ -73,9 +72,9 @@ def folder_of(words):
     return ROOT / "build/campaign" / name
 
 
-def of_page(arguments):
-    """Whether these flights with faults may stand in docs/reliability.md."""
-    return (set(arguments.laws), arguments.seed) == (set(plan.LAWS), 1) and arguments.faults >= FAULTS
+def surveyed(arguments):
+    """(Name of the table, flights in each situation), or None."""
+    return next(((name, getattr(arguments, name)) for name in survey.RUNS if getattr(arguments, name)), None)
 
 
 def names(known):
@@ -126,8 +125,10 @@ def choose(parser, arguments):
         arguments.sets = names(plan.SETS)(",".join(words)) if words else plan.DEFAULT_SETS
     except argparse.ArgumentTypeError as error:
         parser.error(str(error))
-    if arguments.faults and (arguments.typed or arguments.vehicle):
-        parser.error("--faults goes without --set and --vehicle")
+    if surveyed(arguments) and (arguments.set_words or arguments.vehicle or arguments.runs):
+        parser.error("--healthy and --lies go without --set, --vehicle and --runs")
+    if (arguments.only or arguments.held_out) and not surveyed(arguments):
+        parser.error("--only and --held-out go with --healthy or --lies")
 
 
 def read_arguments(argv):
@@ -141,10 +142,14 @@ def read_arguments(argv):
     parser.add_argument("--vehicle", type=Path, metavar="FILE", help="of make fit: in place of the nominal vehicle")
     parser.add_argument("--resume", action="store_true", help="with the options of the campaign in DIR")
     parser.add_argument("--runs", type=positive, help="flights per law in each set (default: in brackets above)")
-    parser.add_argument("--faults", type=positive, nargs="?", const=FAULTS, metavar="N",
-                        help=f"flights with faults ({FAULTS}) instead of the sets")
+    for name, runs in survey.RUNS.items():
+        parser.add_argument(f"--{name}", type=positive, nargs="?", const=runs, metavar="N",
+                            help=f"in the situations of {name}.toml, each N times ({runs}) instead of the sets")
+    parser.add_argument("--only", type=lambda text: text.split(","), default=[], metavar="S,S", help="of them these situations or rows alone")
+    parser.add_argument("--held-out", action="store_true", help="from the parts of the ranges that are kept out of every tuning")
+    parser.add_argument("--fly", metavar="FLIGHT", help="one of them again: SITUATION/NUMBER/LAW")
     parser.add_argument("--seed", type=positive, default=1, help="of the draws (1)")
-    parser.add_argument("--page", action="store_true", help="writes the tables of docs/control.md and its picture; with --faults those of "
+    parser.add_argument("--page", action="store_true", help="writes the tables of docs/control.md and its picture; with --healthy or --lies one of "
                              "docs/reliability.md")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster (default: this machine's processors)")
     parser.add_argument("--program", type=Path, default=ROOT / "build/plomada", help="default: build/plomada")
@@ -155,12 +160,10 @@ def read_arguments(argv):
     if arguments.resume:
         arguments = resumed(parser, arguments)
     choose(parser, arguments)
-    if arguments.faults and (arguments.sets != plan.DEFAULT_SETS or arguments.runs):
-        parser.error("--faults goes without --set and --runs")
-    if arguments.faults and arguments.page and not of_page(arguments):
-        parser.error(f"--page goes with the default laws and seed, and at least {FAULTS} flights")
+    if surveyed(arguments) and arguments.page and (set(arguments.laws), arguments.seed, arguments.only) != (set(plan.LAWS), 1, []):
+        parser.error("--page goes with all situations, the default laws and seed")
     of_control = (set(arguments.laws), set(arguments.sets), arguments.runs, arguments.seed)
-    if not arguments.faults and arguments.page and of_control != (
+    if not surveyed(arguments) and arguments.page and of_control != (
             set(plan.LAWS), set(plan.DEFAULT_SETS), None, 1):
         parser.error("--page goes with the default laws, sets, runs and seed")
     return arguments
@@ -247,41 +250,17 @@ def compare_page(rows, rewrite):
     return page.compare(rendered, page.PAGE.read_text(encoding="utf-8"))
 
 
-def flights_with_faults(program, laws, seed, count):
-    """{key: (label, arguments)}: the laws take turns, so that each number of a condition is flown by all of them."""
-    digest = fleet.digest(program)
-    planned = {}
-    for at in range(count):
-        name, number = list(laws)[at % len(laws)], at // len(laws) + 1
-        words = faults.arguments(laws[name], seed, number)
-        planned[fleet.key(digest, words)] = ({"law": name, "faults": number}, words)
-    return planned
+def run_survey(arguments):
+    """The exit status."""
+    name, runs = surveyed(arguments)
+    return survey.run(name, arguments.laws, arguments.seed, runs, arguments.held_out, arguments.only, str(arguments.program.resolve()),
+                      arguments.out, arguments.scheduler, arguments.page)
 
 
-def run_faults(arguments):
-    """The exit status: 1 when docs/reliability.md says otherwise."""
-    program = str(arguments.program.resolve())
-    laws = {name: plan.LAWS[name] for name in arguments.laws}
-    planned = flights_with_faults(program, laws, arguments.seed, arguments.faults)
-    with fleet.Store(arguments.out / "faults.jsonl") as store:
-        new = fly_missing(program, planned, store, arguments.scheduler)
-    print(f"{new} flights flown, {len(planned) - new} known", file=sys.stderr)
-    flown = [harm.Flight(label["law"], label["faults"], tuple(faults.conditions(arguments.seed, label["faults"])),
-                         tuple(words), store.known[key]) for key, (label, words) in planned.items()]
-    failing = list(harm.failing(flown, str(arguments.program)))
-    (arguments.out / "harm.txt").write_text("".join(f"{line}\n" for line in failing), encoding="utf-8")
-    print(*failing, sep="\n", end="\n\n")
-    print(f"{harm.text(flown)}\n\n{arguments.out / 'harm.txt'}")
-    if not of_page(arguments):
-        return 0
-    block = "default" if arguments.faults == FAULTS else "large"
-    rendered = harm.render(flown, arguments.faults, with_kinds=block == "large")
-    if arguments.page:
-        harm.write(block, rendered)
-    otherwise = harm.compare(block, rendered) if block == "default" else []
-    if otherwise:
-        print("docs/reliability.md is otherwise; --page writes it:", *otherwise, sep="\n")
-    return 1 if otherwise else 0
+def fly_one(arguments):
+    flight = survey.find(arguments.fly, arguments.seed)
+    survey.fly_one(flight, str(arguments.program.resolve()), ROOT / "build/campaign/single")
+    return 0
 
 
 def run(arguments):
@@ -323,9 +302,11 @@ def remember(arguments, argv):
 def main(argv=None):
     try:
         arguments = read_arguments(argv)
+        if arguments.fly:
+            return fly_one(arguments)
         remember(arguments, argv)
-        return run_faults(arguments) if arguments.faults else run(arguments)
-    except (fleet.Broken, OSError) as error:
+        return run_survey(arguments) if surveyed(arguments) else run(arguments)
+    except (fleet.Broken, situations.Wrong, OSError) as error:
         print(f"campaign: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:

@@ -23,10 +23,15 @@ class Broken(Exception):
     """The program did not fly; the text says why."""
 
 
-def fly(program, arguments):
-    """The figures of one flight, as `plomada fly --json` gives them."""
+def fly(program, arguments, scenario=None):
+    """The figures of one flight, as `plomada fly --json` gives them. scenario: the text of its file, which then stands before the
+    arguments: it need not be on the machine that flies."""
     with tempfile.TemporaryDirectory(prefix="plomada-") as scratch:
         path = Path(scratch, "flight.json")
+        if scenario is not None:
+            own = Path(scratch, "own.scenario")
+            own.write_text(scenario, encoding="utf-8")
+            arguments = [str(own), *arguments]
         try:
             done = subprocess.run([program, "fly", *arguments, "--json", str(path)], stdin=subprocess.DEVNULL,
                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False,
@@ -40,8 +45,8 @@ def fly(program, arguments):
 
 
 def fly_batch(program, flights):
-    """One task. flights: [(key, arguments)]; gives [(key, figures)]."""
-    return [(key, fly(program, arguments)) for key, arguments in flights]
+    """One task. flights: [(key, arguments)] or [(key, arguments, scenario)]; gives [(key, figures)]."""
+    return [(key, fly(program, *flight)) for key, *flight in flights]
 
 
 def version():
@@ -103,7 +108,7 @@ def fleet(scheduler=None):
 
 
 def fly_all(client, program, flights, batch=BATCH):
-    """Yields (key, figures) of [(key, arguments)] as they come, in any order. Raises Broken with the first flight that
+    """Yields (key, figures) of fly_batch()'s flights as they come, in any order. Raises Broken with the first flight that
     could not be flown."""
     from distributed import as_completed
 

@@ -113,6 +113,19 @@ def draws(seed, run):
     }
 
 
+def vehicle(seed, number):
+    """As an operator has set it up: a vehicle of either airframe, one in five over the ramp, GRAV trimmed by hand for a mass that may be
+    anything. Figures of the plant, and what is typed."""
+    rng = random.Random(f"vehicle {seed}/{number}")
+    drawn = draws(f"faults {seed}", number)
+    figures = {name: drawn[name] for name in VEHICLE}
+    figures |= {"airframe": float(rng.randrange(2)), "hover_thrust": drawn["hover_untrimmed"]}
+    if rng.random() < 0.8:
+        figures["platform"] = 0.0
+    gravity = drawn["hover_untrimmed"] - rng.uniform(0.25, 0.55)
+    return figures, {"GRAV": f"{gravity:.2f}", "SETR": f"{rng.uniform(0.4, 1.0):.2f}"}
+
+
 def plant(set_name, seed, run):
     """The plant figures that are set for this run: name -> value."""
     drawn = draws(seed, run)

@@ -113,6 +113,40 @@ void test_without_a_pulse_it_rests_on_the_ground(void)
     }
 }
 
+void test_it_stands_on_what_there_is_at_the_origin(void)
+{
+    static place_t place;
+
+    place_init(&place);
+    place_add(&place, &(place_block_t){.length_m = 0.7, .width_m = 0.7, .near_top_m = 0.4, .far_top_m = 0.4});
+    start(&calm, &terrain_flat, 1);
+    quadrotor_set_place(quad, &place, NULL);
+    fly(2.0, 3.0);
+    NEAR(1e-9, 0.4, now().altitude_m);
+    NEAR(1e-9, 0.0, now().height_m);
+    TEST_ASSERT_FALSE(now().collided);
+    fly(1.0, 8.0);
+    TEST_ASSERT_TRUE(now().altitude_m > 0.41);
+    TEST_ASSERT_FALSE(now().collided);
+}
+
+void test_a_sway_about_one_axis_leaves_the_other_at_rest(void)
+{
+    quadrotor_config_t one = quadrotor_default;
+    double roll = 0.0, pitch = 0.0;
+
+    one.pitch_sway = 0.0;
+    one.ground_sway = 1.0;
+    start(&one, &terrain_flat, 3);
+    for (int k = 0; k < 500; k++) {
+        wait(10 * SIM_MS);
+        roll = fmax(roll, fabs(now().roll_rad));
+        pitch = fmax(pitch, fabs(now().pitch_rad));
+    }
+    TEST_ASSERT_TRUE(roll > 1.0 * DEG);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, pitch);
+}
+
 void test_thrust_below_the_weight_does_not_lift(void)
 {
     start(&calm, &terrain_flat, 1);

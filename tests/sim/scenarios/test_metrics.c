@@ -383,6 +383,23 @@ void test_who_leaves_its_height_is_off_and_who_is_still_on_its_way_is_not(void)
     NEAR(0.1, 0.0, value(METRIC_HIGHEST_MM)); /* above the highest one ordered */
 }
 
+void test_on_the_way_to_a_lower_reference_the_supervisor_may_take_over(void)
+{
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    metrics_order(&record, 2.0, 2.0);
+    go(6.0, 2.0);
+    metrics_order(&record, 6.0, 0.6);
+    now.taken_over = true;
+    go(7.0, 0.6);
+    now.taken_over = false;
+    go(9.0, 0.6);
+    NEAR(1e-9, 0.0, value(METRIC_TAKEOVERS));
+    now.taken_over = true;
+    go(10.0, 0.6);
+    NEAR(1e-9, 1.0, value(METRIC_TAKEOVERS));
+}
+
 void test_one_that_never_leaves_the_ground_has_left_its_height(void)
 {
     go(LAND_S, 0.0);
