@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open site publish test test-long soak format mutants test-ground port size faults fuzz prove bench coverage package firmware flash check-ti clean
+.PHONY: help build fly plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open site publish test test-long soak format mutants test-ground port size faults fuzz prove bench coverage package release firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -182,6 +182,9 @@ coverage: ## Lines of drivers/ and control/, at least 95 %; lines and branches o
 	@gcovr --root . --object-directory build-coverage --filter control/ --filter drivers/ --fail-under-line 95
 	@gcovr --root . --object-directory build-coverage --filter drivers/scip_ --filter drivers/urg \
 	    --fail-under-line 100 --fail-under-branch 100 --branches
+
+release: build publish ## All that a release consists of, with sums, in build-release/, and what a person must still do
+	@python3 -B tools/release/release.py
 
 firmware: ## The target image, by TI's tools without CCS: docs/flashing.md
 	@python3 -B tools/ti/firmware.py

@@ -18,6 +18,7 @@ PINNED = re.compile(r"[\w.-]+/[\w./-]+@[0-9a-f]{40}")
 REQUIREMENT = re.compile(r"^([\w.-]+)==(\S+)((?: \\\n    --hash=sha256:[0-9a-f]{64})*)$", re.MULTILINE)
 # Where a second try, or a failure that nobody hears of, would stand.
 SECOND_TRY = re.compile(r"\bretry\b\s*[:=(]|\bretries\b|--repeat\b|--reruns?\b|continue-on-error|\|\| true\b", re.IGNORECASE)
+PUBLISHES = {"pages": "write", "id-token": "write"}
 PINS = "tools/setup/pin.sh"     # asks for the newest pip-tools, which then writes the sums
 
 
@@ -57,12 +58,26 @@ def recipe(target):
 
 
 class Workflows(unittest.TestCase):
-    def test_there_is_one_and_each_may_only_read(self):
+    def test_there_is_one_and_each_may_only_read_but_for_the_job_that_publishes(self):
         self.assertTrue(WORKFLOWS)
         for path in WORKFLOWS:
             self.assertEqual(yaml.safe_load(path.read_text(encoding="utf-8")).get("permissions"), {"contents": "read"}, path.name)
         for where, job in jobs():
-            self.assertNotIn("permissions", job, where)
+            if "permissions" in job:
+                self.may_publish(where, job)
+
+    def may_publish(self, where, job):
+        """It runs nothing of the repository: what it publishes was built by a job that may only read, from the branch main."""
+        self.assertEqual(job["permissions"], PUBLISHES, where)
+        self.assertEqual([step.get("uses", "").split("@")[0] for step in job["steps"]], ["actions/deploy-pages"], where)
+        workflow = yaml.safe_load((ROOT / ".github/workflows" / where.split(":")[0]).read_text(encoding="utf-8"))
+        self.assertEqual(workflow[True], {"push": {"branches": ["main"]}}, where)    # YAML takes `on` for true
+
+    def test_the_pages_and_the_browser_page_are_published(self):
+        told = (ROOT / ".github/workflows/site.yml").read_text(encoding="utf-8")
+        self.assertIn("- run: make publish\n", told)
+        self.assertIn("          path: build-site\n", told)
+        self.assertRegex(recipe("publish"), r"FLY=fly/index.html .*\n.*build-site/fly")
 
     def test_each_action_is_a_commit_with_its_version_beside_it(self):
         used = [(where, step["uses"]) for where, step in steps() if "uses" in step]
