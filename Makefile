@@ -183,8 +183,8 @@ coverage: ## Lines of drivers/ and control/, at least 95 %; lines and branches o
 	@gcovr --root . --object-directory build-coverage --filter drivers/scip_ --filter drivers/urg \
 	    --fail-under-line 100 --fail-under-branch 100 --branches
 
-release: build publish ## All that a release consists of, with sums, in build-release/, and what a person must still do
-	@python3 -B tools/release/release.py
+release: build publish ## All that a release consists of, with sums, in build-release/, and what a person must still do (URL=https://...)
+	@python3 -B tools/release/release.py $(if $(URL),--url $(URL))
 
 firmware: ## The target image, by TI's tools without CCS: docs/flashing.md
 	@python3 -B tools/ti/firmware.py

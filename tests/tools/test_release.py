@@ -33,6 +33,7 @@ class Releasing(unittest.TestCase):
                    "file(WRITE ${PROJECT_BINARY_DIR}/urg.h \"a driver\")\n"
                    "add_custom_target(package COMMAND ${CMAKE_COMMAND} -E tar cf plomada_scip-0.2.0.zip --format=zip urg.h)\n")
         self.git("init", "-q")
+        self.git("remote", "add", "origin", "git@example.org:people/plomada.git")
         self.commit()
 
     def write(self, name, text):
@@ -108,6 +109,12 @@ class Releasing(unittest.TestCase):
     def test_what_was_not_built_is_refused(self):
         (self.root / "build-site/fly/index.html").unlink()
         self.refused("has no fly/index.html")
+
+    def test_an_address_is_never_made_up(self):
+        self.assertEqual(release.address(self.root, None), "https://example.org/people/plomada")
+        self.assertEqual(release.address(self.root, "https://example.org/other"), "https://example.org/other")
+        self.git("remote", "remove", "origin")
+        self.refused("make release URL=https://")
 
     def test_the_projects_own_list_is_found(self):
         items = release.still_to_do(ROOT)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""release.py [--out DIR]: packs what a release consists of, checks it, and says what a person must still do.
+"""release.py [--out DIR] [--url URL]: packs what a release consists of, checks it, and says what a person must still do.
 
 Needed before: build/plomada, build-ground/ and build-site/ (make release builds them). Written into DIR (build-release/):
 
@@ -32,7 +32,7 @@ class Refused(Exception):
 def run(*words, **more):
     done = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False, **more)
     if done.returncode != 0:
-        raise Refused(f"{' '.join(map(str, words))}: {(done.stderr or done.stdout).strip()}")
+        raise Refused(f"{' '.join(map(str, words))}: {(done.stdout + done.stderr).strip()}")
     return done.stdout.strip()
 
 
@@ -107,10 +107,19 @@ def pack_sources(root, target, version):
     run("git", "archive", "--format=tar.gz", f"--prefix=plomada-{version}/", "-o", target.resolve(), "HEAD", cwd=root)
 
 
-def pack_driver(root, out, moment):
+def address(root, given):
+    """Of the repository, which Arduino and PlatformIO want in the driver's package."""
+    url = given or run("git", "config", "--default", "", "--get", "remote.origin.url", cwd=root)
+    url = re.sub(r"\.git$", "", re.sub(r"^git@([^:]+):", r"https://\1/", url))
+    if not re.fullmatch(r"https?://[^ \"]+", url):
+        raise Refused("the driver's package wants the repository's address, and git does not know it: make release URL=https://...")
+    return url
+
+
+def pack_driver(root, out, moment, url):
     """By the driver's own project."""
     build = out / "driver"
-    run("cmake", "-S", root / "tools/scip_package", "-B", build)
+    run("cmake", "-S", root / "tools/scip_package", "-B", build, f"-DPLOMADA_SCIP_URL={url}")
     run("cmake", "--build", build)
     run("cmake", "--build", build, "--target", "package")
     made = sorted(build.glob("plomada_scip-*.zip"))
@@ -132,8 +141,9 @@ def sum_of(path):
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def make(root, program, out):
+def make(root, program, out, given_url=None):
     version, changes = check_source(root, program)
+    url = address(root, given_url)
     items = still_to_do(root)
     moment = max(BEFORE_1980, time.gmtime(int(run("git", "log", "-1", "--format=%ct", cwd=root)))[:6])
     out.mkdir(parents=True, exist_ok=True)
@@ -142,7 +152,7 @@ def make(root, program, out):
     pack(root / "build-ground", out / f"plomada-{version}-page.zip", ("index.html", "vehicle.js"), moment)
     pack(root / "build-site", out / f"plomada-{version}-site.zip", ("index.html", "control.html", "search/search_index.json", "fly/index.html"), moment)
     pack_sources(root, out / f"plomada-{version}.tar.gz", version)
-    pack_driver(root, out, moment)
+    pack_driver(root, out, moment, url)
     files = sorted(out.glob("plomada*"))
     (out / "SHA256SUMS").write_text("".join(f"{sum_of(path)}  {path.name}\n" for path in files), encoding="utf-8")
     (out / "RELEASE.md").write_text(report(version, changes, files, items), encoding="utf-8")
@@ -152,9 +162,10 @@ def make(root, program, out):
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, default=ROOT / "build-release")
+    parser.add_argument("--url", help="address of the repository; default: that of git's origin")
     options = parser.parse_args(arguments)
     try:
-        version, files, items = make(ROOT, ROOT / "build/plomada", options.out)
+        version, files, items = make(ROOT, ROOT / "build/plomada", options.out, options.url)
     except (Refused, OSError) as error:
         print(f"release: {error}", file=sys.stderr)
         return 1
