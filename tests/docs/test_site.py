@@ -94,7 +94,10 @@ class Site(unittest.TestCase):
         with tempfile.TemporaryDirectory() as name:
             self.assertEqual(self.build(name, FLY="fly/index.html").stderr, "")
             for page, link in (("index.html", 'href="fly/index.html"'), ("es/index.html", 'href="../fly/index.html"')):
-                self.assertIn(link, (Path(name) / page).read_text(encoding="utf-8"))
+                built = (Path(name) / page).read_text(encoding="utf-8")
+                self.assertIn(link, built)
+                self.assertIn("admonition-title", built)
+                self.assertNotIn("!!!", built)
         self.assertNotIn("fly/index.html", (self.folder / "index.html").read_text(encoding="utf-8"))
 
 

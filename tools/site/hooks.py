@@ -12,7 +12,8 @@ from mkdocs.structure.files import File
 ROOT = Path(__file__).resolve().parents[2]
 OUTSIDE = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md", "drivers/README.md": "driver.md"}
 LINK = re.compile(r"(\]\()([^)\s#]+)(#[^)\s]*)?(\))")
-FLY_NOW = '\n!!! tip "Fly now"\n    [The simulated vehicle, in this browser]({url}){{ target="_blank" }}: nothing to install.\n'
+FLY_NOW = {"en": ("Fly now", "The simulated vehicle, in this browser", "nothing to install"),
+           "es": ("Vuela ahora", "El vehículo simulado, en este navegador", "sin instalar nada")}
 
 
 def place_of(path):
@@ -80,5 +81,6 @@ def on_page_markdown(markdown, page, config, files):
     if os.environ.get("FLY") and path in ("README.md", "docs/ground.md", "docs/es/index.md"):
         up = "../" * page.file.src_uri.count("/")
         title, _, rest = text.partition("\n")
-        text = title + "\n" + FLY_NOW.format(url=up + os.environ["FLY"]) + rest
+        now, vehicle, nothing = FLY_NOW["es" if path.startswith("docs/es/") else "en"]
+        text = f'{title}\n\n!!! tip "{now}"\n    [{vehicle}]({up}{os.environ["FLY"]}){{ target="_blank" }}: {nothing}.\n{rest}'
     return text
