@@ -55,14 +55,23 @@ static void change_scans(urg_driver_t *urg)
     scip_parser_scan_into(&urg->parser, &urg->scans[urg->filling]);
 }
 
-bool urg_take_event(urg_driver_t *urg, scip_event_t event)
+/* Inline: a call more would be a hundredth of a scan's instructions. */
+static inline bool take_event(urg_driver_t *urg, scip_event_t event)
 {
     urg_seen_event(&urg->seen, &urg->parser, event);
-    if (event != SCIP_SCAN) {
-        return false;
+    if (event == SCIP_SCAN) {
+        change_scans(urg);
+        return true;
     }
-    change_scans(urg);
-    return true;
+    if (event == SCIP_TEXT && urg->info != NULL) {
+        scip_info_take(urg->info, &urg->parser);
+    }
+    return false;
+}
+
+bool urg_take_event(urg_driver_t *urg, scip_event_t event)
+{
+    return take_event(urg, event);
 }
 
 bool urg_feed_all(urg_driver_t *urg, const octet_t *octets, size_t count)
@@ -73,7 +82,7 @@ bool urg_feed_all(urg_driver_t *urg, const octet_t *octets, size_t count)
         const size_t taken = scip_parser_feed_run(&urg->parser, octets, count, &event);
         octets += taken;
         count -= taken;
-        if (event != SCIP_NOTHING && urg_take_event(urg, event)) {
+        if (event != SCIP_NOTHING && take_event(urg, event)) {
             complete = true;
         }
     }
@@ -135,6 +144,18 @@ bool urg_take_scan(urg_driver_t *urg, scip_scan_t *scan)
         urg->fresh = false;
     }
     return fresh;
+}
+
+void urg_ask(urg_driver_t *urg, scip_info_t *info)
+{
+    scip_info_init(info);
+    urg->info = info;
+    urg_link_ask(&urg->link);
+}
+
+bool urg_told(const urg_driver_t *urg)
+{
+    return urg_link_told(&urg->link) == URG_QUESTIONS;
 }
 
 uint16_t urg_expected(const urg_driver_t *urg)

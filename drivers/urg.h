@@ -7,8 +7,9 @@
  *   urg_next_to_send()  call it after each step: actions for the UART
  *   urg_take_scan()     call it when urg_feed() returned true: the scan
  *
- * Two more calls are for some callers: urg_line_broken() where the UART reports errors; urg_scan_at() for the
- * shortest search after an outage. The driver uses no clock, port, task or heap.
+ * More calls are for some callers: urg_line_broken() where the UART reports errors; urg_scan_at() for the
+ * shortest search after an outage; urg_ask() for what the sensor tells of itself. The driver uses no clock,
+ * port, task or heap.
  *
  * Calling context: one call at a time. When an interrupt calls urg_feed(), disable it during the other calls.
  * No call waits or loops for long. The fields of urg_driver_t are private: use urg_report(). */
@@ -20,6 +21,7 @@
 #include <stdint.h>
 
 #include "drivers/octet.h"
+#include "drivers/scip_info.h"
 #include "drivers/scip_parser.h"
 #include "drivers/urg_link.h"
 
@@ -36,6 +38,7 @@ typedef struct {
     scip_scan_t scans[2]; /* the parser fills one; the other one is complete and can be taken */
     uint16_t filling;
     bool fresh; /* a complete scan has not been taken yet */
+    scip_info_t *info;
 } urg_driver_t;
 
 /* Actions for the board, to be done in this order. */
@@ -104,6 +107,16 @@ bool urg_next_to_send(urg_driver_t *urg, urg_output_t *output);
 /* Gets the latest complete scan, once. Returns false when there is none. The points are valid until the next
  * scan is complete. */
 bool urg_take_scan(urg_driver_t *urg, scip_scan_t *scan);
+
+/* Asks the sensor for its version, limits and state (VV, PP, II), once; *info is cleared, then written while
+ * urg_feed() reads the answers. Before the first stream it costs three answers' time; a stream that runs
+ * stops for some revolutions. Call it again to ask again. *info must stay until urg_told() or the next
+ * urg_init(). */
+void urg_ask(urg_driver_t *urg, scip_info_t *info);
+
+/* All three were answered since urg_ask(). A question without an answer is left out: it stays false, and
+ * scans come. */
+bool urg_told(const urg_driver_t *urg);
 
 /* Number of octets until the present reply or scan is complete; see scip_parser_expected(). */
 uint16_t urg_expected(const urg_driver_t *urg);

@@ -42,6 +42,7 @@
 #define SIGN_SHARE 4U     /* chosen: at a wrong rate most octets show it; of damaged ones one in eight does */
 #define THERE_US 1000000U /* chosen: no sensor loses its power and boots in that time */
 #define LADDER_TOP 3U     /* steps of the recovery: QT and MS, TM2, RS */
+#define TEXT_OCTETS 400U  /* recorded: II of a UTM-30LX 243, of a URG-04LX 209 */
 #define HALF 0x80000000UL
 #define LONG_US (2U * URG_STEP_US) /* nothing to wait for */
 #define LONG_SWEEP 3U /* chosen: in every third sweep of a first search answers have FIRST_REPLY_US */
@@ -58,6 +59,13 @@ static const char *const status_names[] = {
 };
 typedef char
     every_status_has_a_name[(sizeof status_names / sizeof status_names[0] == URG_STATUS_COUNT) ? 1 : -1];
+
+static const scip_kind_t questions[URG_QUESTIONS] = {SCIP_VERSION, SCIP_PARAMETERS, SCIP_STATE};
+
+static bool is_question(scip_kind_t kind)
+{
+    return kind == SCIP_VERSION || kind == SCIP_PARAMETERS || kind == SCIP_STATE;
+}
 
 #define PROBE_STREAM 0U /* the probe begins with the configured rates */
 #define PROBE_FIRST 1U
@@ -143,6 +151,8 @@ static uint32_t reply_timeout_us(const urg_link_t *link, const scip_request_t *r
         octets += link->scan_octets;
         timeout_us += link->good_rate != 0U ? 0U : 2U * scan_period_us(link);
         timeout_us += link->failures >= LADDER_TOP ? SETTLE_US : 0U;
+    } else if (is_question(request->kind)) {
+        octets += TEXT_OCTETS;
     }
     return timeout_us + wire_us(link, octets);
 }
@@ -718,13 +728,43 @@ static void on_rate_reply(const step_t *step)
     }
 }
 
+static void ask_or_stream(const step_t *step)
+{
+    const urg_link_t *link = step->link;
+    if (link->asks_left > 0U) {
+        start_command(step, URG_STOP2, questions[URG_QUESTIONS - link->asks_left]);
+    } else {
+        start_command(step, URG_STREAM, link->config.stream);
+    }
+}
+
+/* The sensor has stopped, so it has time for questions. */
+static void on_stopped(const step_t *step)
+{
+    urg_link_t *link = step->link;
+    if (link->to_ask && !has_streamed(step)) {
+        link->to_ask = false;
+        link->asks_left = URG_QUESTIONS;
+    }
+    ask_or_stream(step);
+}
+
+static void on_told(const step_t *step)
+{
+    if (is_status(&step->seen->reply, '0', '0')) {
+        step->link->told++;
+    }
+    step->link->asks_left--;
+    ask_or_stream(step);
+}
+
 static void on_stop_reply(const step_t *step)
 {
     urg_link_t *link = step->link;
     if (is_refusal(&step->seen->reply)) {
         command_refused(step);
     } else if (link->rate == link->config.stream_rate || link->rate_refused) {
-        start_command(step, URG_STREAM, link->config.stream);
+        on_stopped(step);
     } else {
         start_command(step, URG_RATE, SCIP_BIT_RATE);
     }
@@ -797,6 +837,11 @@ static void on_reply(const step_t *step)
     case SCIP_TIME_LEAVE:
         stop_or_stream(step);
         break;
+    case SCIP_VERSION:
+    case SCIP_PARAMETERS:
+    case SCIP_STATE:
+        on_told(step);
+        break;
     case SCIP_RESET:
         search_again(step, PROBE_FIRST);
         break;
@@ -834,6 +879,10 @@ static uint16_t attempts_allowed(const step_t *step)
     case SCIP_SWITCH:
     case SCIP_TIME_LEAVE:
         return step->link->knocking ? 1U : 2U;
+    case SCIP_VERSION:
+    case SCIP_PARAMETERS:
+    case SCIP_STATE:
+        return 2U;
     case SCIP_STREAM_2:
     case SCIP_STREAM_3:
         return has_streamed(step) && step->link->status == URG_STREAM && !step->link->acknowledged ? 2U : 1U;
@@ -872,6 +921,12 @@ static void give_up_command(const step_t *step)
     case SCIP_SWITCH:
     case SCIP_TIME_LEAVE:
         search_again(step, probe_index(link, link->rate));
+        break;
+    case SCIP_VERSION:
+    case SCIP_PARAMETERS:
+    case SCIP_STATE:
+        link->asks_left = 0U; /* it may have gone: the stream first */
+        ask_or_stream(step);
         break;
     default:
         scans_do_not_come(step);
@@ -918,6 +973,7 @@ static void on_scan(const step_t *step)
     urg_link_t *link = step->link;
     set_status(step, URG_OK);
     link->knocking = false;
+    link->asks_left = 0U;
     link->failures = 0U;
     link->good_rate = link->rate;
     link->scan_us = step->now_us;
@@ -1036,6 +1092,10 @@ static void step_stream(const step_t *step)
     if (step->now_us - link->scan_us >= link->timeout_us || is_mute(step) || streams_other(step)) {
         link->restarts++;
         begin_search(step);
+    } else if (link->to_ask) {
+        link->to_ask = false; /* one interruption, whatever comes of it */
+        link->asks_left = URG_QUESTIONS;
+        stop_sensor(step);
     }
 }
 
@@ -1127,6 +1187,17 @@ bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us
     link->scan_octets = stream.scan_octets;
     link->asked = PROBE_STREAM;
     return true;
+}
+
+void urg_link_ask(urg_link_t *link)
+{
+    link->to_ask = true;
+    link->told = 0U;
+}
+
+uint16_t urg_link_told(const urg_link_t *link)
+{
+    return link->told;
 }
 
 void urg_link_scan_at(urg_link_t *link, uint32_t now_us)

@@ -30,6 +30,7 @@ extern "C" {
 #endif
 
 #define URG_STEP_US 150000U       /* the seed's tick of 150 ms */
+#define URG_QUESTIONS 3U          /* VV, PP, II */
 #define URG_SEARCH_STEP_US 50000U /* chosen: half a revolution */
 
 /* State of the link, the seed's LASER_STATUS; shown in the telemetry. */
@@ -38,7 +39,7 @@ typedef enum {
     URG_STOP1,  /* L0 sent */
     URG_SWITCH, /* SCIP2.0 sent */
     URG_RATE,   /* SS sent */
-    URG_STOP2,  /* QT or TM2 sent; the sensor has answered at this rate */
+    URG_STOP2,  /* QT, TM2 or a question sent; the sensor has answered at this rate */
     URG_STREAM, /* MS sent */
     URG_OK,     /* scans arrive */
     URG_LOST,   /* no answer, or no more scans: the link searches the sensor, first at the known rates */
@@ -108,14 +109,17 @@ typedef struct {
     uint32_t timeout_us;   /* time-out of the latest command; in OK: of the next scan */
     uint32_t rate;         /* present rate of the board's UART */
     uint16_t attempt;      /* number of times the present command was sent */
+    uint16_t asks_left;    /* of VV, PP and II, the present one included */
     uint32_t restarts;     /* how often the stream was lost */
     uint32_t timeouts;     /* commands without an answer */
     uint16_t failures;     /* how often in a row scans did not start or stopped; limited */
+    uint16_t told;         /* how many of the latest VV, PP and II were answered */
     uint32_t scan_us;      /* time of the latest scan, power cycle or end of WAIT */
     scip_kind_t command;   /* latest command */
     bool waiting;          /* the link waits for the reply to a command */
     bool rate_refused;     /* the sensor refused stream_rate: keep the present rate */
     bool line_unknown;     /* the sensor may hold an incomplete line: send LF before the next command */
+    bool timed;            /* the caller tells the times of the scans */
     uint16_t scan_octets;  /* length of one frame of the stream */
     uint32_t sent_octets;  /* counter of octets when the latest command was sent */
     uint32_t sent_signs;   /* counter of signs of a wrong rate at that time */
@@ -124,18 +128,18 @@ typedef struct {
     uint32_t sent_foreign; /* counter of another request's scans at that time */
     uint32_t good_rate;    /* rate at which scans were received; 0: none yet */
     uint32_t frame_us;     /* time of the latest scan: as told, else that of the step which has seen it */
-    bool timed;            /* the caller tells the times of the scans */
     uint32_t answered_us;  /* time of the latest answer */
     bool answered;         /* it came at one of the configured rates */
+    bool to_ask;           /* VV, PP and II are wanted */
     bool has_booted; /* a sensor in SCIP1.1 has answered: config.first_rate is now the rate at which it did */
     uint16_t sweep;  /* of a first search through all rates */
     bool knocking;   /* the present command is part of the search for a sensor that has streamed */
     bool listening;  /* it is at the stream's rate, and no command was sent */
     bool asking;     /* the present turn of that search is for a sensor that powers up */
-    uint16_t asked;  /* position of the latest other rate in the search */
+    bool acknowledged;   /* the sensor has accepted the present request for the stream */
+    uint16_t asked;      /* position of the latest other rate in the search */
     uint32_t asked_rate; /* of the latest such turn */
     scip_kind_t asked_kind;
-    bool acknowledged;            /* the sensor has accepted the present request for the stream */
     uint32_t acknowledged_octets; /* counter of octets at that time */
     uint32_t requested_us;        /* when the search sent that request last */
     uint32_t request_us;          /* least time to the next one; 0: none was sent yet */
@@ -160,6 +164,12 @@ void urg_seen_event(urg_seen_t *seen, const scip_parser_t *parser, scip_event_t 
 /* One step. seen: everything received up to now_us, with the present counters of octets and framing errors.
  * Always writes *action. */
 void urg_link_step(urg_link_t *link, const urg_seen_t *seen, uint32_t now_us, urg_action_t *action);
+
+/* Asks VV, PP and II, once: before the first stream, or in a stream that runs, which is stopped for it and
+ * then ordered again. A lost stream is found first. Where one is not answered, after a second try, the rest
+ * is left out. urg_link_told(): how many were answered, 0..URG_QUESTIONS. */
+void urg_link_ask(urg_link_t *link);
+uint16_t urg_link_told(const urg_link_t *link);
 
 /* The latest scan was complete at this time. Not needed, but scans come at equal distances: who tells it
  * makes the link listen at the right moments while it searches. Call it for every scan or for none. */

@@ -420,6 +420,168 @@ void test_an_order_that_is_refused_changes_nothing_and_names_its_cause(void)
     refused(&config, 2U * POINTS + 1U, URG_ACCEPTED, "accepted");
 }
 
+/* --- what the sensor tells of itself --- */
+
+static scip_info_t info;
+
+static const char *const version =
+    "VV\n00P\nVEND:Hokuyo Automatic Co.,Ltd.;[\nPROD:SOKUIKI Sensor URG-04LX;[\n"
+    "FIRM:3.1.04(02/Aug./2007);a\nPROT:SCIP 2.0;N\nSERI:H0706400;F\n\n";
+static const char *const limits =
+    "PP\n00P\nMODL:URG-04LX(Hokuyo Automatic Co.,Ltd.);N\nDMIN:20;4\nDMAX:5600;_\n"
+    "ARES:1024;\\\nAMIN:44;7\nAMAX:725;o\nAFRT:384;6\nSCAN:600;e\n\n";
+static const char *const state = "II\n00P\nLASR:OFF;7\nSTAT:Sensor works well.;8\n\n";
+
+static void answer_questions(void)
+{
+    TEST_ASSERT_EQUAL_STRING("VV\n", step());
+    TEST_ASSERT_EQUAL(URG_STOP2, status());
+    (void)feed(version);
+    TEST_ASSERT_EQUAL_STRING("PP\n", step());
+    TEST_ASSERT_FALSE(urg_told(&urg));
+    (void)feed(limits);
+    TEST_ASSERT_EQUAL_STRING("II\n", step());
+    (void)feed(state);
+    TEST_ASSERT_FALSE(urg_told(&urg));
+    TEST_ASSERT_EQUAL_STRING("MS0372040601000\n", step());
+    TEST_ASSERT_TRUE(urg_told(&urg));
+}
+
+static void assert_all_told(void)
+{
+    TEST_ASSERT_EQUAL_STRING("H0706400", info.serial);
+    TEST_ASSERT_EQUAL_UINT16(725U, scip_info_limits(&info).amax);
+    TEST_ASSERT_EQUAL(SCIP_HEALTH_GOOD, info.health);
+    TEST_ASSERT_EQUAL_UINT16(15U, info.known);
+}
+
+static void start_streaming(void)
+{
+    (void)feed("MS0372040601000\n00P\n\n");
+    TEST_ASSERT_TRUE(feed(frame(1000U, "0o")));
+    (void)step();
+    TEST_ASSERT_EQUAL(URG_OK, status());
+}
+
+static void reach_stop(void)
+{
+    (void)step();
+    (void)feed("L0\n0\n\n");
+    (void)step();
+    (void)feed("SCIP2.0\n0\n\n");
+    (void)step();
+    (void)feed("SS250000\n00P\n\n");
+    (void)step();
+    TEST_ASSERT_EQUAL_STRING("\nQT\n", step());
+    (void)feed("QT\n00P\n\n");
+}
+
+void test_who_asks_before_the_start_is_told_before_the_first_scan(void)
+{
+    memset(&info, 0x55, sizeof info);
+    urg_ask(&urg, &info);
+    TEST_ASSERT_EQUAL_UINT16(0U, info.known);
+    reach_stop();
+    answer_questions();
+    assert_all_told();
+    start_streaming();
+    TEST_ASSERT_EQUAL_STRING("", step());
+}
+
+void test_who_does_not_ask_is_told_nothing_and_a_text_harms_nobody(void)
+{
+    reach_stop();
+    TEST_ASSERT_EQUAL_STRING("MS0372040601000\n", step());
+    TEST_ASSERT_FALSE(urg_told(&urg));
+    (void)feed("VV\n00P\nVEND:x;X\n\n");
+    start_streaming();
+}
+
+void test_who_asks_in_a_stream_is_told_and_the_stream_goes_on(void)
+{
+    reach_stream();
+    start_streaming();
+    urg_ask(&urg, &info);
+    TEST_ASSERT_EQUAL_STRING("QT\n", step());
+    TEST_ASSERT_FALSE(feed(frame(1100U, "0o"))); /* it was on its way: not the awaited answer */
+    (void)feed("QT\n00P\n\n");
+    answer_questions();
+    assert_all_told();
+    (void)feed("MS0372040601000\n00P\n\n");
+    TEST_ASSERT_TRUE(feed(frame(2000U, "0o")));
+    (void)step();
+    TEST_ASSERT_EQUAL(URG_OK, status());
+    TEST_ASSERT_EQUAL_UINT32(0U, report.restarts);
+    urg_ask(&urg, &info); /* again */
+    TEST_ASSERT_FALSE(urg_told(&urg));
+    TEST_ASSERT_EQUAL_STRING("QT\n", step());
+    (void)feed("QT\n00P\n\n");
+    answer_questions();
+}
+
+void test_a_question_that_is_refused_is_left_out(void)
+{
+    urg_ask(&urg, &info);
+    reach_stop();
+    TEST_ASSERT_EQUAL_STRING("VV\n", step());
+    (void)feed("VV\n0Ee\n\n");
+    TEST_ASSERT_EQUAL_STRING("PP\n", step());
+    (void)feed(limits);
+    TEST_ASSERT_EQUAL_STRING("II\n", step());
+    (void)feed(state);
+    TEST_ASSERT_EQUAL_STRING("MS0372040601000\n", step());
+    TEST_ASSERT_FALSE(urg_told(&urg));
+    TEST_ASSERT_EQUAL_UINT16(725U, info.told.amax);
+    start_streaming();
+}
+
+/* 0.4 s and 400 octets at 250000 bit/s, twice; then the scans are wanted more. */
+void test_a_question_without_an_answer_is_asked_again_and_then_scans_are_wanted_more(void)
+{
+    uint32_t asked_us;
+
+    urg_ask(&urg, &info);
+    reach_stop();
+    TEST_ASSERT_EQUAL_STRING("VV\n", step());
+    asked_us = now_us;
+    (void)feed("VV\n00P\nVEND:Hokuyo Automatic Co.,Ltd.;[\n"); /* and the line breaks */
+    while (step()[0] == '\0') {
+    }
+    TEST_ASSERT_EQUAL_UINT16(4U, output.count);
+    TEST_ASSERT_UINT32_WITHIN(STEP_US, 420000U, now_us - asked_us);
+    asked_us = now_us;
+    while (step()[0] == '\0') {
+    }
+    TEST_ASSERT_EQUAL_UINT8('M', output.octets[0]);
+    TEST_ASSERT_UINT32_WITHIN(STEP_US, 420000U, now_us - asked_us);
+    start_streaming();
+    TEST_ASSERT_FALSE(urg_told(&urg));
+    TEST_ASSERT_EQUAL_STRING("", step());
+}
+
+/* The line is cut while it asks: the stream is searched as ever, and nobody asks a second time. */
+void test_a_line_that_breaks_while_it_asks_in_a_stream_costs_no_second_interruption(void)
+{
+    reach_stream();
+    start_streaming();
+    urg_ask(&urg, &info);
+    TEST_ASSERT_EQUAL_STRING("QT\n", step());
+    for (unsigned i = 0U; i < 20U; i++) {
+        (void)step();
+    }
+    while (status() != URG_LOST || report.rate != 250000U) {
+        (void)step();
+    }
+    TEST_ASSERT_TRUE(feed(frame(5000U, "0o")));
+    for (unsigned i = 0U; i < 3U && status() != URG_OK; i++) {
+        (void)step();
+        (void)feed(frame(5100U + 100U * i, "0o"));
+    }
+    TEST_ASSERT_EQUAL(URG_OK, status());
+    TEST_ASSERT_EQUAL_STRING("", step());
+    TEST_ASSERT_FALSE(urg_told(&urg));
+}
+
 /* Or in as many cells, where an octet takes a wider one. */
 void test_all_that_a_user_keeps_for_35_points_fits_in_1_kib(void)
 {

@@ -27,14 +27,16 @@ static bool is_one_of_scips(uint32_t rate)
 static bool is_own(scip_kind_t kind)
 {
     return kind == SCIP_LASER_OFF_1 || kind == SCIP_SWITCH || kind == SCIP_BIT_RATE || kind == SCIP_STOP ||
-           kind == SCIP_RESET || kind == SCIP_TIME_LEAVE || kind == link_.config.stream;
+           kind == SCIP_RESET || kind == SCIP_TIME_LEAVE || is_question(kind) || kind == link_.config.stream;
 }
 
 static bool is_sound(void)
 {
     return (uint32_t)link_.status < URG_STATUS_COUNT && is_own(link_.command) &&
            is_one_of_scips(link_.rate) && (link_.good_rate == 0U || is_one_of_scips(link_.good_rate)) &&
-           (link_.good_rate != 0U || (link_.status != URG_OK && !link_.knocking));
+           (link_.good_rate != 0U || (link_.status != URG_OK && !link_.knocking)) &&
+           link_.asks_left <= URG_QUESTIONS &&
+           (!is_question(link_.command) || (link_.asks_left > 0U && link_.status != URG_OK));
 }
 
 static void any_config(urg_config_t *config)
