@@ -170,6 +170,8 @@ void urg_report(const urg_driver_t *urg, urg_report_t *report)
     *report = (urg_report_t){
         .status = urg->link.status,
         .rate = urg->link.rate,
+        .first_rate = urg->link.config.first_rate,
+        .first_rate_known = urg->link.config.first_rate_known,
         .restarts = urg->link.restarts,
         .timeouts = urg->link.timeouts,
         .pause_us = urg_link_pause_us(&urg->link, &seen),

@@ -52,10 +52,12 @@ typedef struct {
 
 typedef struct {
     urg_status_t status;
-    uint32_t rate;     /* of the board's UART, bits per second */
-    uint32_t restarts; /* how often the stream was lost */
-    uint32_t timeouts; /* commands without an answer */
-    uint32_t pause_us; /* until the next step, as urg_pause_us() */
+    uint32_t rate;         /* of the board's UART, bits per second */
+    uint32_t first_rate;   /* at which the sensor powers up, as far as is known */
+    bool first_rate_known; /* it was seen to: to be stored for the next urg_config_t */
+    uint32_t restarts;     /* how often the stream was lost */
+    uint32_t timeouts;     /* commands without an answer */
+    uint32_t pause_us;     /* until the next step, as urg_pause_us() */
     urg_seen_t seen;
     scip_counters_t scip;
     scip_damage_t last_damage;

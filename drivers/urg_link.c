@@ -383,7 +383,7 @@ static uint32_t listening_us(const step_t *step)
 
 static bool knows_power_up_rate(const step_t *step)
 {
-    return step->link->has_booted && step->now_us - step->link->scan_us < SEARCH_KNOWN_US;
+    return step->link->config.first_rate_known && step->now_us - step->link->scan_us < SEARCH_KNOWN_US;
 }
 
 /* The rate at which the sensor was seen to power up. Else one after the other, from the first one on. */
@@ -701,7 +701,7 @@ static void learn_rate(const step_t *step)
 {
     if (step->seen->reply.legacy) {
         step->link->config.first_rate = step->link->rate;
-        step->link->has_booted = true;
+        step->link->config.first_rate_known = true;
     }
 }
 

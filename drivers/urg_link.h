@@ -77,6 +77,7 @@ typedef struct {
     scip_kind_t stream;    /* SCIP_STREAM_2 or SCIP_STREAM_3 */
     scip_range_t range;    /* scans > 0: a counted run, requested again when it ends */
     uint16_t last_step;    /* of the sensor; 0: SCIP_STEP_MAX_URG04LX */
+    bool first_rate_known; /* this sensor powers up at first_rate: it was seen to. Else the link learns it */
 } urg_config_t;
 
 /* Why an order is impossible. */
@@ -131,14 +132,13 @@ typedef struct {
     uint32_t answered_us;  /* time of the latest answer */
     bool answered;         /* it came at one of the configured rates */
     bool to_ask;           /* VV, PP and II are wanted */
-    bool has_booted; /* a sensor in SCIP1.1 has answered: config.first_rate is now the rate at which it did */
-    uint16_t sweep;  /* of a first search through all rates */
-    bool knocking;   /* the present command is part of the search for a sensor that has streamed */
-    bool listening;  /* it is at the stream's rate, and no command was sent */
-    bool asking;     /* the present turn of that search is for a sensor that powers up */
-    bool acknowledged;   /* the sensor has accepted the present request for the stream */
-    uint16_t asked;      /* position of the latest other rate in the search */
-    uint32_t asked_rate; /* of the latest such turn */
+    uint16_t sweep;        /* of a first search through all rates */
+    bool knocking;         /* the present command is part of the search for a sensor that has streamed */
+    bool listening;        /* it is at the stream's rate, and no command was sent */
+    bool asking;           /* the present turn of that search is for a sensor that powers up */
+    bool acknowledged;     /* the sensor has accepted the present request for the stream */
+    uint16_t asked;        /* position of the latest other rate in the search */
+    uint32_t asked_rate;   /* of the latest such turn */
     scip_kind_t asked_kind;
     uint32_t acknowledged_octets; /* counter of octets at that time */
     uint32_t requested_us;        /* when the search sent that request last */

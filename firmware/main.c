@@ -4,6 +4,7 @@
 #include "bsp/board.h"
 #include "firmware/boot.h"
 #include "firmware/mounting.h"
+#include "firmware/parameter_store.h"
 #include "firmware/servers.h"
 #include "firmware/tasks.h"
 #include "firmware/uart_port.h"
@@ -14,8 +15,11 @@ int main(void);
 
 static void laser_config(urg_config_t *config)
 {
+    const uint32_t stored = parameter_store_laser_rate();
+
     config->wait_us = boot_is_restart() ? 0U : LASER_WAIT_US;
-    config->first_rate = LASER_FIRST_RATE;
+    config->first_rate_known = stored > 0U && stored <= LASER_STREAM_RATE;
+    config->first_rate = config->first_rate_known ? stored : LASER_FIRST_RATE;
     config->fastest_rate = LASER_STREAM_RATE;
     config->stream_rate = LASER_STREAM_RATE;
     config->stream = SCIP_STREAM_2;

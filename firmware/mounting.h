@@ -7,7 +7,7 @@
 #include "drivers/scip_layout.h"
 
 #define LASER_LAYOUT SCIP_LAYOUT_FRONT
-#define LASER_FIRST_RATE 115200UL  /* bits per second of the sensor after power-up */
+#define LASER_FIRST_RATE 115200UL  /* bits per second after power-up, where none is stored */
 #define LASER_STREAM_RATE 250000UL /* bits per second; the MAX3222's limit, no higher rate is tried */
 #define LASER_WAIT_US 10000000UL   /* start-up time of sensor and RS232 adapter, seed document 5.2.1.3 */
 

@@ -7,9 +7,11 @@
 #include <xdc/std.h>
 
 #include "drivers/parameter_image.h"
+#include "drivers/scip_request.h"
 #include "bsp/storage.h"
 
 #define VALUES ((uint16_t)PARAMETER_COUNT)
+#define LASER_RATE VALUES /* place of the scanner's power-up rate; older copies have none */
 #define SLOTS BSP_STORAGE_SLOTS
 #define NO_SLOT SLOTS
 
@@ -44,6 +46,13 @@ static uint32_t names_of_all(void)
     return names;
 }
 
+static uint32_t names_of(uint16_t count)
+{
+    const uint32_t names = names_of_all();
+
+    return count > LASER_RATE ? parameter_image_name(names, "laser power-up rate") : names;
+}
+
 static void look(void)
 {
     uint16_t slot;
@@ -54,17 +63,19 @@ static void look(void)
     }
 }
 
-static bool usable(const copy_t *copy, uint32_t names, bool foreign_too)
+/* Also one of the time when the scanner's rate was not stored. */
+static bool usable(const copy_t *copy, bool foreign_too)
 {
-    const bool ours = copy->image.names == names && copy->image.count == VALUES;
+    const uint16_t count = copy->image.count;
+    const bool ours = (count == VALUES || count == LASER_RATE + 1U) && copy->image.names == names_of(count);
 
     return copy->status == PARAMETER_IMAGE_GOOD && (ours || foreign_too);
 }
 
-static uint16_t newest(uint32_t names, bool foreign_too)
+static uint16_t newest(bool foreign_too)
 {
-    const bool first = usable(&copies[0], names, foreign_too);
-    const bool second = usable(&copies[1], names, foreign_too);
+    const bool first = usable(&copies[0], foreign_too);
+    const bool second = usable(&copies[1], foreign_too);
 
     if (first && second) {
         return parameter_image_newer(copies[1].image.generation, copies[0].image.generation) ? 1U : 0U;
@@ -110,7 +121,7 @@ parameter_store_result_t parameter_store_load(parameters_t *parameters)
     uint16_t slot;
 
     look();
-    slot = newest(names_of_all(), false);
+    slot = newest(false);
     if (slot == NO_SLOT) {
         result.status = why_none();
         return result;
@@ -126,11 +137,34 @@ parameter_store_result_t parameter_store_load(parameters_t *parameters)
     return result;
 }
 
-static void fill(parameter_image_t *image, const parameters_t *parameters)
+static uint32_t laser_rate_in(uint16_t slot)
+{
+    uint16_t i;
+
+    if (slot == NO_SLOT || copies[slot].image.count <= LASER_RATE) {
+        return 0U;
+    }
+    for (i = 0U; i < SCIP_BIT_RATES; i++) {
+        if (copies[slot].image.values[LASER_RATE] == (float)scip_bit_rates[i]) {
+            return scip_bit_rates[i];
+        }
+    }
+    return 0U;
+}
+
+uint32_t parameter_store_laser_rate(void)
+{
+    look();
+    return laser_rate_in(newest(false));
+}
+
+static void fill(parameter_image_t *image, const parameters_t *parameters, uint32_t laser_rate)
 {
     uint16_t id;
 
-    image->count = VALUES;
+    image->count = LASER_RATE + 1U;
+    image->names = names_of(image->count);
+    image->values[LASER_RATE] = (float)laser_rate;
     for (id = 0U; id < (uint16_t)PARAMETER_COUNT; id++) {
         image->values[id] = parameters->value[id];
     }
@@ -170,7 +204,7 @@ static bool write(uint16_t slot, const parameter_image_t *image)
     return written;
 }
 
-parameter_store_result_t parameter_store_save(const parameters_t *parameters)
+parameter_store_result_t parameter_store_save(const parameters_t *parameters, uint32_t laser_rate)
 {
     parameter_store_result_t result = {PARAMETER_STORE_DONE, 1U, PARAMETER_COUNT};
     static parameter_image_t image;
@@ -178,15 +212,14 @@ parameter_store_result_t parameter_store_save(const parameters_t *parameters)
     uint16_t latest;
 
     look();
-    image.names = names_of_all();
-    latest = newest(image.names, true);
-    kept = newest(image.names, false);
+    latest = newest(true);
+    kept = newest(false);
+    fill(&image, parameters, laser_rate > 0U ? laser_rate : laser_rate_in(kept));
     if (latest != NO_SLOT) {
         result.generation = copies[latest].image.generation + 1U;
         kept = (kept != NO_SLOT) ? kept : latest;
     }
     image.generation = result.generation;
-    fill(&image, parameters);
     if (!write((kept == 0U) ? 1U : 0U, &image)) {
         result.status = PARAMETER_STORE_FAULT;
     }

@@ -28,7 +28,11 @@ typedef struct {
  * the status is DONE, else none. */
 parameter_store_result_t parameter_store_load(parameters_t *parameters);
 
-/* Saves the values. On the ground only: interrupts are disabled while the flash is busy (storage.h). */
-parameter_store_result_t parameter_store_save(const parameters_t *parameters);
+/* Saves the values, and the scanner's power-up rate, bits per second; 0: not known, a stored one is kept. On
+ * the ground only: interrupts are disabled while the flash is busy (storage.h). */
+parameter_store_result_t parameter_store_save(const parameters_t *parameters, uint32_t laser_rate);
+
+/* The stored power-up rate of the scanner, one of SCIP's; 0: none was stored. */
+uint32_t parameter_store_laser_rate(void);
 
 #endif

@@ -43,10 +43,11 @@ uint16_t imu_server_history(imu_sample_t history[IMU_HISTORY]);
 /* LaserStatus server, written by TaskSendLaser. */
 typedef struct {
     urg_status_t status;
-    uint32_t rate;     /* bits per second */
-    uint32_t restarts; /* how often the stream was lost */
-    uint32_t timeouts; /* commands that got no answer */
-    urg_seen_t seen;   /* counters at that time */
+    uint32_t rate;          /* bits per second */
+    uint32_t power_up_rate; /* of the sensor, bits per second; 0: it was not seen to power up */
+    uint32_t restarts;      /* how often the stream was lost */
+    uint32_t timeouts;      /* commands that got no answer */
+    urg_seen_t seen;        /* counters at that time */
 } laser_sample_t;
 
 void laser_server_write(const laser_sample_t *sample);

@@ -48,6 +48,7 @@ static void publish(const urg_report_t *urg)
 
     sample.status = urg->status;
     sample.rate = urg->rate;
+    sample.power_up_rate = urg->first_rate_known ? urg->first_rate : 0U;
     sample.restarts = urg->restarts;
     sample.timeouts = urg->timeouts;
     sample.seen = urg->seen;

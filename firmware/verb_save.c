@@ -63,13 +63,15 @@ static bool grounded(answer_t *answer)
 bool verb_save(answer_t *answer)
 {
     static parameters_t parameters;
+    static laser_sample_t laser;
     parameter_store_result_t result;
 
     if (!grounded(answer)) {
         return false;
     }
     parameter_server_read(&parameters);
-    result = parameter_store_save(&parameters);
+    laser_server_read(&laser);
+    result = parameter_store_save(&parameters, laser.power_up_rate);
     return report(answer, &result);
 }
 

@@ -328,7 +328,8 @@ void test_a_rate_alone_is_handed_over(void)
 /* As a UTM-30LX on USB: it has no SCIP1.1, its rate is no matter, and it turns four times as fast. */
 void test_a_sensor_of_1081_steps_streams_them_all(void)
 {
-    static const urg_config_t far = {0U, 115200U, 115200U, 0U, SCIP_STREAM_3, {0U, 1080U, 1U, 0U, 0U}, 1080U};
+    static const urg_config_t far = {0U,    115200U, 115200U, 0U, SCIP_STREAM_3, {0U, 1080U, 1U, 0U, 0U},
+                                     1080U, false};
     static uint16_t points[2U * 1081U];
     static char data[3U * 1081U], text[3500];
     scip_scan_t scan;
@@ -375,40 +376,40 @@ void test_an_order_that_is_refused_changes_nothing_and_names_its_cause(void)
         urg_refusal_t cause;
         const char *words;
     } rows[] = {
-        {{0U, 19200U, 115200U, 0U, SCIP_SINGLE_2, {0U, 34U, 1U, 0U, 0U}, 0U},
+        {{0U, 19200U, 115200U, 0U, SCIP_SINGLE_2, {0U, 34U, 1U, 0U, 0U}, 0U, false},
          URG_STREAM_KIND,
          "stream is neither MS nor MD"},
-        {{0U, 38400U, 115200U, 0U, SCIP_STREAM_2, {0U, 34U, 1U, 0U, 0U}, 0U},
+        {{0U, 38400U, 115200U, 0U, SCIP_STREAM_2, {0U, 34U, 1U, 0U, 0U}, 0U, false},
          URG_FIRST_RATE,
          "first_rate is not a rate of SCIP"},
-        {{0U, 19200U, 230400U, 0U, SCIP_STREAM_2, {0U, 34U, 1U, 0U, 0U}, 0U},
+        {{0U, 19200U, 230400U, 0U, SCIP_STREAM_2, {0U, 34U, 1U, 0U, 0U}, 0U, false},
          URG_STREAM_RATE,
          "stream_rate is not a rate of SCIP"},
-        {{0U, 19200U, 250000U, 115200U, SCIP_STREAM_2, {0U, 34U, 1U, 0U, 0U}, 0U},
+        {{0U, 19200U, 250000U, 115200U, SCIP_STREAM_2, {0U, 34U, 1U, 0U, 0U}, 0U, false},
          URG_TOO_FAST,
          "a rate is above fastest_rate"},
-        {{0U, 115200U, 19200U, 57600U, SCIP_STREAM_2, {0U, 34U, 1U, 0U, 0U}, 0U},
+        {{0U, 115200U, 19200U, 57600U, SCIP_STREAM_2, {0U, 34U, 1U, 0U, 0U}, 0U, false},
          URG_TOO_FAST,
          "a rate is above fastest_rate"},
-        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {735U, 769U, 1U, 0U, 0U}, 0U},
+        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {735U, 769U, 1U, 0U, 0U}, 0U, false},
          URG_LAST_STEP,
          "the range ends beyond the sensor's last step"},
-        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {34U, 0U, 1U, 0U, 0U}, 0U},
+        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {34U, 0U, 1U, 0U, 0U}, 0U, false},
          URG_RANGE,
          "steps, cluster, interval or count of the range are impossible"},
-        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {0U, 34U, 0U, 0U, 0U}, 0U},
+        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {0U, 34U, 0U, 0U, 0U}, 0U, false},
          URG_RANGE,
          "steps, cluster, interval or count of the range are impossible"},
-        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {0U, 34U, 1U, 10U, 0U}, 0U},
+        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {0U, 34U, 1U, 10U, 0U}, 0U, false},
          URG_RANGE,
          "steps, cluster, interval or count of the range are impossible"},
-        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {0U, 34U, 1U, 0U, 100U}, 0U},
+        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {0U, 34U, 1U, 0U, 100U}, 0U, false},
          URG_RANGE,
          "steps, cluster, interval or count of the range are impossible"},
-        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {0U, 35U, 1U, 0U, 0U}, 0U},
+        {{0U, 19200U, 115200U, 0U, SCIP_STREAM_2, {0U, 35U, 1U, 0U, 0U}, 0U, false},
          URG_MEMORY,
          "the memory is too small for two scans"},
-        {{0U, 19200U, 115200U, 115200U, SCIP_STREAM_3, {734U, 768U, 1U, 9U, 99U}, 0U},
+        {{0U, 19200U, 115200U, 115200U, SCIP_STREAM_3, {734U, 768U, 1U, 9U, 99U}, 0U, false},
          URG_ACCEPTED,
          "accepted"},
     };
@@ -587,4 +588,25 @@ void test_all_that_a_user_keeps_for_35_points_fits_in_1_kib(void)
 {
     TEST_ASSERT_LESS_OR_EQUAL_UINT(1024U,
                                    (sizeof(urg_driver_t) + 2U * POINTS * sizeof(uint16_t)) / sizeof(octet_t));
+}
+
+/* What the board stores, and gives back in the next urg_config_t. */
+void test_the_report_tells_the_rate_at_which_the_sensor_powers_up(void)
+{
+    urg_config_t stored = config;
+
+    urg_report(&urg, &report);
+    TEST_ASSERT_FALSE(report.first_rate_known);
+    TEST_ASSERT_EQUAL_UINT32(config.first_rate, report.first_rate);
+    (void)step();
+    (void)feed("L0\n0\n\n");
+    (void)step();
+    urg_report(&urg, &report);
+    TEST_ASSERT_TRUE(report.first_rate_known);
+    stored.first_rate = 19200U;
+    stored.first_rate_known = true;
+    TEST_ASSERT_TRUE(urg_init(&urg, &stored, memory, 2U * POINTS, now_us));
+    urg_report(&urg, &report);
+    TEST_ASSERT_TRUE(report.first_rate_known);
+    TEST_ASSERT_EQUAL_UINT32(19200U, report.first_rate);
 }

@@ -763,7 +763,8 @@ void test_no_rate_is_tried_that_the_own_uart_cannot_do(void)
 
 void test_what_sensor_or_uart_cannot_do_is_refused_at_once(void)
 {
-    static const urg_config_t good = {0, 115200, 250000, 250000, SCIP_STREAM_2, {372, 406, 1, 0, 0}, 0};
+    static const urg_config_t good = {0, 115200, 250000, 250000, SCIP_STREAM_2, {372, 406, 1, 0, 0},
+                                      0, false};
     urg_config_t bad[10];
     const urg_link_t untouched = link_;
     TEST_ASSERT_TRUE(urg_link_init(&link_, &good, 0));
@@ -789,7 +790,7 @@ void test_what_sensor_or_uart_cannot_do_is_refused_at_once(void)
 
 void test_a_range_may_reach_the_last_step_of_the_sensor(void)
 {
-    urg_config_t whole = {0, 115200, 250000, 250000, SCIP_STREAM_2, {0, 768, 1, 0, 0}, 0};
+    urg_config_t whole = {0, 115200, 250000, 250000, SCIP_STREAM_2, {0, 768, 1, 0, 0}, 0, false};
     TEST_ASSERT_TRUE(urg_link_init(&link_, &whole, 0));
     whole.range.last_step = whole.last_step = 1080;
     TEST_ASSERT_TRUE(urg_link_init(&link_, &whole, 0));
@@ -1890,9 +1891,9 @@ void test_the_rate_at_which_scip_1_1_answers_is_where_the_next_search_begins(voi
 {
     reset(0);
     sensor.rate = sensor.power_up_rate = 19200;
-    TEST_ASSERT_FALSE(link_.has_booted);
+    TEST_ASSERT_FALSE(link_.config.first_rate_known);
     steps_to_ok();
-    TEST_ASSERT_TRUE(link_.has_booted);
+    TEST_ASSERT_TRUE(link_.config.first_rate_known);
     TEST_ASSERT_EQUAL_UINT32(19200, link_.config.first_rate);
     sensor.on = false;
     const uint32_t begin = asked_count;
@@ -1915,7 +1916,7 @@ void test_a_sensor_found_in_scip_2_0_teaches_no_rate_and_every_one_is_asked(void
     reset(0);
     start_streaming(250000);
     steps_to_ok();
-    TEST_ASSERT_FALSE(link_.has_booted);
+    TEST_ASSERT_FALSE(link_.config.first_rate_known);
     sensor.on = false;
     const uint32_t begin = asked_count;
     steps(40);

@@ -238,14 +238,21 @@ static void stream_for_a_while(const char *where, const urg_config_t *order, uns
 #define POWER_TRIALS 60U
 #define POWER_OFF (100 * MS)
 
+/* Whether this host knows the sensor's power-up rate: it saw the sensor boot, or the host before it did and
+ * has stored that; or it found the sensor at work. */
+typedef enum { RATE_LEARNT, RATE_STORED, RATE_UNKNOWN, KNOWLEDGE_COUNT } knowledge_t;
+static const char *const knowledge_names[] = {"", ", stored rate", ", never seen to boot"};
+
 /* Blind beyond the outage and the boot. */
-static double after_power_cycle_s(uint32_t power_up_rate, answers_t answers, unsigned trial, bool learned)
+static double after_power_cycle_s(uint32_t power_up_rate, answers_t answers, unsigned trial,
+                                  knowledge_t knowledge)
 {
     const sensor_config_t config = sensor_of(power_up_rate, answers, trial);
-    const urg_config_t order = order_of(115200, 250000);
+    urg_config_t order = order_of(knowledge == RATE_STORED ? power_up_rate : 115200, 250000);
     double seconds;
     begin(&config, trial);
-    if (!learned) {
+    order.first_rate_known = knowledge == RATE_STORED;
+    if (knowledge != RATE_LEARNT) {
         run_for(3 * S);
         sensor_leave_in_scip2(host.sensor, 250000, host.now);
     }
@@ -264,17 +271,17 @@ static void print_power(void)
 {
     double seconds[POWER_TRIALS];
     char what[80];
-    for (int learned = 1; learned >= 0; learned--) {
+    for (knowledge_t knowledge = 0; knowledge < KNOWLEDGE_COUNT; knowledge++) {
         for (answers_t answers = 0; answers < ANSWERS_COUNT; answers++) {
             for (size_t i = 0; i < RATES; i++) {
                 for (unsigned trial = 0; trial < POWER_TRIALS; trial++) {
-                    seconds[trial] = after_power_cycle_s(rates[i], answers, trial, learned);
+                    seconds[trial] = after_power_cycle_s(rates[i], answers, trial, knowledge);
                 }
                 snprintf(what, sizeof what, "boots at %u, answers %s%s", (unsigned)rates[i],
-                         answer_names[answers], learned ? "" : ", never seen to boot");
+                         answer_names[answers], knowledge_names[knowledge]);
 
                 show(what, seconds, POWER_TRIALS,
-                     learned ? power_most_s[answers] : unlearned_most_s[answers]);
+                     knowledge == RATE_UNKNOWN ? unlearned_most_s[answers] : power_most_s[answers]);
             }
         }
     }

@@ -45,7 +45,7 @@ typedef struct {
 
 static void open_line(line_t *line, uint32_t first_rate, uint32_t stream_rate)
 {
-    const urg_config_t config = {0, first_rate, stream_rate, 0, SCIP_STREAM_2, {372, 406, 1, 0, 0}, 0};
+    const urg_config_t config = {0, first_rate, stream_rate, 0, SCIP_STREAM_2, {372, 406, 1, 0, 0}, 0, false};
 
     memset(line, 0, sizeof *line);
     (void)urg_link_init(&line->link, &config, 0);

@@ -7,6 +7,7 @@
 #include "mock_boot.h"
 #include "mock_servers.h"
 #include "mock_tasks.h"
+#include "mock_parameter_store.h"
 #include "mock_uart_port.h"
 #include "mock_verbs.h"
 #include "mock_watchdog.h"
@@ -57,6 +58,15 @@ static void task_receive_laser(const urg_config_t *given, int calls)
     config = *given;
 }
 
+static uint32_t stored_rate;
+
+static uint32_t laser_rate(int calls)
+{
+    (void)calls;
+    TEST_ASSERT_TRUE_MESSAGE(booted, "the storage is read before the board is up");
+    return stored_rate;
+}
+
 void setUp(void)
 {
     order[0] = '\0';
@@ -73,6 +83,8 @@ void setUp(void)
     task_receive_comm_create_Stub(task_receive_comm);
     uart_port_start_Stub(ports);
     verb_load_at_start_Stub(load);
+    stored_rate = 0U;
+    parameter_store_laser_rate_Stub(laser_rate);
     bsp_watchdog_start_Stub(watchdog);
     BIOS_start_Stub(bios);
 }
@@ -99,6 +111,22 @@ void test_the_scanner_has_its_rates_and_streams_the_mirrors(void)
     TEST_ASSERT_EQUAL_UINT16(range.first_step, config.range.first_step);
     TEST_ASSERT_EQUAL_UINT16(range.last_step, config.range.last_step);
     TEST_ASSERT_EQUAL_UINT16(range.cluster, config.range.cluster);
+}
+
+void test_a_stored_power_up_rate_is_where_the_scanner_is_looked_for_first(void)
+{
+    static const uint32_t rates[] = {0U, 19200U, LASER_STREAM_RATE, 500000U};
+
+    for (uint16_t i = 0U; i < 4U; i++) {
+        const bool usable = rates[i] > 0U && rates[i] <= LASER_STREAM_RATE;
+
+        stored_rate = rates[i];
+        booted = false;
+        order[0] = '\0';
+        (void)firmware_main();
+        TEST_ASSERT_EQUAL(usable, config.first_rate_known);
+        TEST_ASSERT_EQUAL_UINT32(usable ? rates[i] : LASER_FIRST_RATE, config.first_rate);
+    }
 }
 
 /* Its motor turns already then, and the vehicle may be in the air. */

@@ -73,7 +73,7 @@ static float marked(void)
 static parameter_store_status_t save(float number)
 {
     mark(number);
-    result = parameter_store_save(&parameters);
+    result = parameter_store_save(&parameters, 0U);
     return result.status;
 }
 
@@ -124,7 +124,7 @@ void test_every_value_comes_back(void)
                                                     : row->minimum * 0.7F + row->maximum * 0.3F;
     }
     expected = parameters;
-    result = parameter_store_save(&parameters);
+    result = parameter_store_save(&parameters, 0U);
     TEST_ASSERT_EQUAL(PARAMETER_STORE_DONE, result.status);
     parameters_init(&parameters);
     result = parameter_store_load(&parameters);
@@ -192,10 +192,8 @@ void test_copies_of_other_parameters_are_refused_and_kept_as_long_as_there_is_ro
 
 /* Folded here once more: a set under an old name, or with a choice under another, must not be read as this
  * one. */
-void test_a_copy_is_signed_with_the_names_of_all_parameters_and_choices(void)
+static uint32_t names_of_parameters(void)
 {
-    uint16_t cells[PARAMETER_IMAGE_CELLS_MAX];
-    parameter_image_t image;
     uint32_t names = 0U;
 
     for (uint16_t id = 0U; id < PARAMETER_COUNT; id++) {
@@ -206,6 +204,15 @@ void test_a_copy_is_signed_with_the_names_of_all_parameters_and_choices(void)
             names = parameter_image_name(names, row->choices[i]);
         }
     }
+    return names;
+}
+
+void test_a_copy_is_signed_with_the_names_of_all_parameters_and_choices(void)
+{
+    uint16_t cells[PARAMETER_IMAGE_CELLS_MAX];
+    parameter_image_t image;
+    const uint32_t names = parameter_image_name(names_of_parameters(), "laser power-up rate");
+
     TEST_ASSERT_EQUAL(PARAMETER_STORE_DONE, save(1.0F));
     bsp_storage_read(0U, cells, PARAMETER_IMAGE_CELLS_MAX);
     TEST_ASSERT_EQUAL(PARAMETER_IMAGE_GOOD, parameter_image_read(&image, cells));
@@ -359,4 +366,62 @@ void test_a_save_keeps_the_latest_copy_of_its_own_version(void)
     TEST_ASSERT_EQUAL(PARAMETER_IMAGE_GOOD, parameter_image_read(&image, flash_sectors_m_n[1U - newer]));
     TEST_ASSERT_EQUAL_UINT32(1U, image.generation);
     assert_loads(3.0F, 3U);
+}
+
+/* ---- the scanner's power-up rate ---- */
+
+void test_the_scanners_rate_comes_back_and_is_kept_while_it_is_not_known(void)
+{
+    TEST_ASSERT_EQUAL_UINT32(0U, parameter_store_laser_rate());
+    mark(3.0F);
+    (void)parameter_store_save(&parameters, 19200U);
+    TEST_ASSERT_EQUAL_UINT32(19200U, parameter_store_laser_rate());
+    for (uint32_t i = 0U; i < 3U; i++) { /* in either slot */
+        TEST_ASSERT_EQUAL(PARAMETER_STORE_DONE, save(4.0F));
+        TEST_ASSERT_EQUAL_UINT32(19200U, parameter_store_laser_rate());
+    }
+    (void)parameter_store_save(&parameters, 250000U);
+    TEST_ASSERT_EQUAL_UINT32(250000U, parameter_store_laser_rate());
+    assert_loads(4.0F, 5U);
+}
+
+/* As it was stored before. */
+static void without_rate(parameter_image_t *image)
+{
+    image->count = PARAMETER_COUNT;
+    image->names = names_of_parameters();
+}
+
+void test_a_copy_without_the_scanners_rate_still_loads(void)
+{
+    (void)save(6.0F);
+    edit(0U, without_rate);
+    assert_loads(6.0F, 1U);
+    TEST_ASSERT_EQUAL_UINT32(0U, parameter_store_laser_rate());
+    mark(7.0F);
+    (void)parameter_store_save(&parameters, 57600U);
+    assert_loads(7.0F, 2U);
+    TEST_ASSERT_EQUAL_UINT32(57600U, parameter_store_laser_rate());
+}
+
+static void with_another_rate(parameter_image_t *image)
+{
+    image->values[PARAMETER_COUNT] = 9600.0F;
+}
+
+static void with_another_count(parameter_image_t *image)
+{
+    image->count = PARAMETER_COUNT;
+}
+
+void test_a_rate_that_is_none_of_scips_is_none_and_a_copy_cut_short_is_foreign(void)
+{
+    mark(8.0F);
+    (void)parameter_store_save(&parameters, 19200U);
+    edit(0U, with_another_rate);
+    TEST_ASSERT_EQUAL_UINT32(0U, parameter_store_laser_rate());
+    assert_loads(8.0F, 1U);
+    edit(0U, with_another_count);
+    assert_nothing_loads(PARAMETER_STORE_FOREIGN);
+    TEST_ASSERT_EQUAL_UINT32(0U, parameter_store_laser_rate());
 }

@@ -223,15 +223,21 @@ void test_what_is_published_is_the_drivers_state_at_that_tick(void)
 {
     receiving.urg = (urg_report_t){.status = URG_LOST,
                                    .rate = 57600U,
+                                   .first_rate = 19200U,
+                                   .first_rate_known = true,
                                    .restarts = 3U,
                                    .timeouts = 4U,
                                    .seen = {.scan_count = 5U, .octet_count = 6U, .damage_count = 7U}};
     tick();
     TEST_ASSERT_EQUAL(URG_LOST, laser.status);
     TEST_ASSERT_EQUAL_UINT32(57600, laser.rate);
+    TEST_ASSERT_EQUAL_UINT32(19200, laser.power_up_rate);
     TEST_ASSERT_EQUAL_UINT32(3, laser.restarts);
     TEST_ASSERT_EQUAL_UINT32(4, laser.timeouts);
     TEST_ASSERT_EQUAL_MEMORY(&receiving.urg.seen, &laser.seen, sizeof laser.seen);
+    receiving.urg.first_rate_known = false;
+    tick();
+    TEST_ASSERT_EQUAL_UINT32(0, laser.power_up_rate);
 }
 
 void test_every_complete_cycle_is_a_sign_of_life(void)

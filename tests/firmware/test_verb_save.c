@@ -13,6 +13,7 @@ static parameters_t parameters;
 static parameters_t stored;
 static uint16_t writes;
 static uint16_t saves;
+static uint32_t stored_rate;
 static uint16_t answers;
 static char answer_text[TELEMETRY_ANSWER_MAX + 1U];
 static parameter_store_result_t result;
@@ -43,13 +44,20 @@ static parameter_store_result_t load(parameters_t *set, int calls)
     return result;
 }
 
-static parameter_store_result_t save(const parameters_t *set, int calls)
+static parameter_store_result_t save(const parameters_t *set, uint32_t laser_rate, int calls)
 {
     (void)calls;
+    stored_rate = laser_rate;
     TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&parameters, set, sizeof parameters, "not the set in force");
     stored = *set;
     saves++;
     return result;
+}
+
+static void read_laser(laser_sample_t *sample, int calls)
+{
+    (void)calls;
+    *sample = (laser_sample_t){.rate = 250000U, .power_up_rate = 19200U};
 }
 
 static void radio(const telemetry_line_t *line, int calls)
@@ -82,6 +90,7 @@ void setUp(void)
     result = (parameter_store_result_t){PARAMETER_STORE_DONE, 4U, PARAMETER_COUNT};
     idle = true;
     parameter_server_read_Stub(read_parameters);
+    laser_server_read_Stub(read_laser);
     parameter_server_write_Stub(write_parameters);
     parameter_store_load_Stub(load);
     parameter_store_save_Stub(save);
@@ -120,6 +129,7 @@ void test_save_stores_the_set_in_force_and_tells_its_generation(void)
     TEST_ASSERT_TRUE(type("SAVE", ""));
     TEST_ASSERT_EQUAL_UINT16(1, saves);
     TEST_ASSERT_EQUAL_MEMORY(&parameters, &stored, sizeof stored);
+    TEST_ASSERT_EQUAL_UINT32(19200, stored_rate);
     TEST_ASSERT_EQUAL_UINT16(0, writes);
     assert_answer("OK SAVE generation:4\r\n");
 }

@@ -43,7 +43,7 @@ PROGRAM = """#include <plomada/scip_layout.h>
 
 int main(void)
 {
-    static const urg_config_t config = { 0, 115200, 115200, 0, SCIP_STREAM_2, { 372, 406, 1, 0, 0 }, 0 };
+    static const urg_config_t config = { 0, 115200, 115200, 0, SCIP_STREAM_2, { 372, 406, 1, 0, 0 }, 0, false };
     static uint16_t points[70];
     static urg_driver_t urg;
     urg_output_t output;

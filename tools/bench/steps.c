@@ -108,7 +108,7 @@ static bool streams(void)
 
 static void begin_stream(void)
 {
-    const urg_config_t config = {0, 115200, 115200, 0, SCIP_STREAM_2, {372, 406, 1, 0, 0}, 0};
+    const urg_config_t config = {0, 115200, 115200, 0, SCIP_STREAM_2, {372, 406, 1, 0, 0}, 0, false};
     urg_output_t output;
 
     REQUIRE(urg_init(&urg, &config, points, 70, 0));
@@ -206,8 +206,8 @@ static void next_tick(void)
 
 static void prepare_link(void)
 {
-    (void)urg_link_init(&link_, &(urg_config_t){0, 115200, 115200, 0, SCIP_STREAM_2, {372, 406, 1, 0, 0}, 0},
-                        0);
+    (void)urg_link_init(
+        &link_, &(urg_config_t){0, 115200, 115200, 0, SCIP_STREAM_2, {372, 406, 1, 0, 0}, 0, false}, 0);
     for (unsigned i = 0; i < 100 && link_.status != URG_OK; i++) {
         now_us += 150000U;
         send_laser();
