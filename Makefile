@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open site publish test test-long soak format mutants test-ground port size faults fuzz prove bench coverage package release firmware flash check-ti clean
+.PHONY: help build fly mine plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open site publish test test-long soak format mutants test-ground port size faults fuzz prove bench coverage package release firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -45,6 +45,18 @@ fly: ## Fly the seed's 60 cm flight, by its own law and by the estimator's; CSV,
 	@$(python) tools/plot/moving.py $(flights:%=build/%.csv) --title "PID, as the thesis flew it" \
 	    --title "Law EST: an estimator and a cascade" -o build/fly.svg
 	@grep -L '"met": true' $(flights:%=build/%.json) | sed 's/$$/: not as it must be/' | (! grep .)
+
+mine: ## Fly a law of your own, FILE=examples/my_law/law_mine.c, beside law EST: docs/my_law.md; build-mine/plomada, pictures in build/
+	@test -f "$(or $(FILE),examples/my_law/law_mine.c)" || { echo "make mine: no file $(FILE)" >&2; exit 2; }
+	@$(setup) build plot
+	@$(MAKE) build
+	@$(cmake) -B build-mine -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=OFF \
+	    -DPLOMADA_LAW="$(abspath $(or $(FILE),examples/my_law/law_mine.c))" >/dev/null
+	+@cmake --build build-mine --target plomada $(jobs)
+	@build-mine/plomada fly examples/my_law/mine.scenario --csv build/mine.csv --json build/mine.json
+	@build/plomada fly est-60cm-ramp --csv build/est-60cm-ramp.csv --json build/est-60cm-ramp.json >/dev/null || [ $$? -eq 1 ]
+	@$(python) tools/plot/plot.py build/mine.csv build/est-60cm-ramp.csv -o build/mine.png
+	@$(python) tools/plot/moving.py build/mine.csv build/est-60cm-ramp.csv --title "Your law" --title "Law EST" -o build/mine.svg
 
 plot: ## Draw LOG=FILE: a flight's CSV (or several), an XCTU console log or text, with or without dumps of #LOG
 	@test -n "$(LOG)" || { echo "usage: make plot LOG=FILE" >&2; exit 2; }
@@ -91,11 +103,11 @@ ground: build ground-vehicle ## The browser page, to be published or opened as i
 
 ground-vehicle: ## The simulated vehicle as one WebAssembly module: build-ground/plomada.wasm, and vehicle.js for the page
 	@$(setup) build plot ground
-	@tools/ground/vehicle.sh >/dev/null
+	@tools/ground/vehicle.sh $(abspath $(FILE)) >/dev/null
 	@mkdir -p build-ground && cp build-wasm/plomada.wasm build-ground/
 	@python3 -B tools/ground/vehicle_js.py build-ground/plomada.wasm build-ground/vehicle.js
 
-ground-open: ground ## The same, served on this machine: http://localhost:8123
+ground-open: ground ## The same, served on this machine: http://localhost:8123 (FILE=a law of your own, docs/my_law.md)
 	@python3 -B tools/ground/serve.py build-ground 8123
 
 site: ## The pages as a site with a search: build-site/index.html

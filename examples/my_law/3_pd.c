@@ -1,0 +1,18 @@
+/* Step 3: and less thrust the faster the vehicle climbs. */
+#include "control/laws/laws.h"
+
+#define KP_N_PER_M 6.0F   /* law PIDT's, as delivered */
+#define KD_N_S_PER_M 2.6F /* likewise */
+
+float law_pid_step(laws_t *laws, est_law_t *est, const situation_t *now)
+{
+    const height_track_t *height = &now->where->supervisor.height;
+    const float error_m = now->where->supervisor.reference_m - height->height_mm * 0.001F;
+    const float climb_mps = height->rate_mm_s * 0.001F;
+
+    (void)est;
+    if (!height->is_new) {
+        return laws->setpoint_n;
+    }
+    return now->parameters->value[PARAMETER_GRAV] + KP_N_PER_M * error_m - KD_N_S_PER_M * climb_mps;
+}
