@@ -1,4 +1,4 @@
-/* Step 4: and an integral, which finds the thrust that GRAV lacks. */
+/* Step 4: and an integral, which finds the thrust that GRAV lacks. And limits: no motor stops in the air. */
 #include "control/between.h"
 #include "control/laws/laws.h"
 
@@ -7,12 +7,14 @@
 #define KI_N_PER_M_S 1.4F /* likewise */
 #define NEAR_M 0.3F       /* the integral waits until the vehicle is so near: on its way it would wind up */
 #define INTEGRAL_MOST_N 2.0F /* more is no wrong GRAV but a fault */
+#define WINDOW_N 3.0F        /* law PIDT's: 0.4 g to either side of GRAV */
 
 float law_pid_step(laws_t *laws, est_law_t *est, const situation_t *now)
 {
     const height_track_t *height = &now->where->supervisor.height;
     const float error_m = now->where->supervisor.reference_m - height->height_mm * 0.001F;
     const float climb_mps = height->rate_mm_s * 0.001F;
+    const float gravity_n = now->parameters->value[PARAMETER_GRAV];
     const float gap_s = (float)height->gap_us * 1e-6F;
 
     (void)est;
@@ -23,6 +25,7 @@ float law_pid_step(laws_t *laws, est_law_t *est, const situation_t *now)
         laws->pid.integral_n = between(
             -INTEGRAL_MOST_N, laws->pid.integral_n + KI_N_PER_M_S * error_m * gap_s, INTEGRAL_MOST_N);
     }
-    return now->parameters->value[PARAMETER_GRAV] + KP_N_PER_M * error_m - KD_N_S_PER_M * climb_mps +
-           laws->pid.integral_n;
+    return between(gravity_n - WINDOW_N,
+                   gravity_n + KP_N_PER_M * error_m - KD_N_S_PER_M * climb_mps + laws->pid.integral_n,
+                   gravity_n + WINDOW_N);
 }

@@ -70,7 +70,7 @@ class Lessons(unittest.TestCase):
         text = PAGE.read_text(encoding="utf-8")
         sources = "".join((FOLDER / f"{step}.c").read_text(encoding="utf-8") for step in STEPS) + (ROOT / "control/laws/laws.h").read_text(encoding="utf-8")
         blocks = re.findall(r"```c\n(.*?)```", text, re.DOTALL)
-        self.assertEqual(len(blocks), 6)
+        self.assertEqual(len(blocks), 7)
         for block in blocks:
             self.assertIn(block, sources)
 

@@ -158,6 +158,7 @@ void test_each_row_of_a_flight_says_what_it_must_be_and_what_it_means(void)
         TEST_ASSERT_TRUE_MESSAGE(end - row > 50, row); /* a meaning stands at its end */
     }
     TEST_ASSERT_NULL_MESSAGE(strstr(output, "\n!"), output);
+    TEST_ASSERT_NULL_MESSAGE(strstr(output, "(null)"), output);
 }
 
 void test_rows_that_do_not_apply_are_hidden_unless_they_are_expected(void)
