@@ -43,7 +43,7 @@ class Moving(unittest.TestCase):
     def test_the_first_page_shows_what_make_fly_draws(self):
         recipe = (ROOT / "Makefile").read_text(encoding="utf-8")
         flights = re.search(r"^flights := (.*)$", recipe, re.MULTILINE).group(1).split()
-        titles = re.findall(r'--title "([^"]+)"', recipe)
+        titles = re.findall(r'--title "([^"]+)"', re.search(r"^fly:(?:.*\n)(?:\t.*\n)+", recipe, re.MULTILINE).group(0))
         words = [str(self.flight(name)) for name in flights] + [word for title in titles for word in ("--title", title)]
         self.assertEqual(self.draw(*words).returncode, 0)
         drawn = (self.folder / "out.svg").read_text(encoding="utf-8")
