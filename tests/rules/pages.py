@@ -20,8 +20,8 @@ import house
 WORDS = {"front": 500, "tutorial": 2500, "how-to": 2500, "reference": 4500, "explanation": 4500}
 KINDS = {
     "front": ("README.md",),
-    "tutorial": ("docs/first_evening.md", "docs/my_law.md", "docs/es/index.md", "docs/es/primera_tarde.md"),
-    "how-to": ("CONTRIBUTING.md", "docs/acceptance.md", "docs/campaign.md", "docs/fit.md", "docs/flashing.md", "docs/ground.md",
+    "tutorial": ("docs/first_evening.md", "docs/ground.md", "docs/my_law.md", "docs/es/index.md", "docs/es/primera_tarde.md"),
+    "how-to": ("CONTRIBUTING.md", "docs/acceptance.md", "docs/campaign.md", "docs/fit.md", "docs/flashing.md",
                "docs/recordings.md", "drivers/README.md"),
     "reference": ("CHANGELOG.md", "docs/commands.md", "docs/hardware.md", "docs/memory.md", "docs/operator.md", "docs/pages.md", "docs/razor.md",
                   "docs/scip.md"),
