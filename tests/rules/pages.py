@@ -6,7 +6,7 @@ Usage: pages.py ROOT [PROGRAM]
   each `make TARGET` is in the Makefile; with PROGRAM each option behind `plomada SUBCOMMAND` is in its --help
   each page has its kind in KINDS, and at most as many words as WORDS says of that kind: those of its text. Blocks of code and
   tables are looked up, not read through, so they do not count but on the front page. No limit holds for all pages together.
-  each page in docs/ says behind its title for whom it is and what he has at its end
+  each page in docs/, and CONTRIBUTING.md, says behind its title for whom it is and what he has at its end
   lists begin behind an empty line, as the site's Markdown demands (tools/site)
 """
 import re
@@ -114,7 +114,7 @@ def kind_of(page, kinds):
 
 
 def for_nobody(name, text):
-    if name.startswith("docs/") and not FOR_WHOM.match(text):
+    if (name.startswith("docs/") or name == "CONTRIBUTING.md") and not FOR_WHOM.match(text):
         yield "does not say below its title > **For** whom it is, **At the end** what he has"
 
 
