@@ -63,7 +63,7 @@ static inline bool take_event(urg_driver_t *urg, scip_event_t event)
         change_scans(urg);
         return true;
     }
-    if (event == SCIP_TEXT && urg->info != NULL) {
+    if (event == SCIP_TEXT) { /* awaited since urg_ask() alone, which has told where to */
         scip_info_take(urg->info, &urg->parser);
     }
     return false;

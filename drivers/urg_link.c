@@ -248,11 +248,12 @@ static void set_rate(const step_t *step, uint32_t rate)
     step->link->line_unknown = true;
 }
 
-/* In a first start: the sensor has answered, so it is at the stream's rate or at the first one. */
+/* In a first start, where alone rates are probed: the sensor has answered, so it is at the stream's rate or at
+ * the first one. */
 static bool has_answered(const step_t *step)
 {
     const urg_link_t *link = step->link;
-    return link->answered && link->good_rate == 0U && step->now_us - link->answered_us < SEARCH_KNOWN_US;
+    return link->answered && step->now_us - link->answered_us < SEARCH_KNOWN_US;
 }
 
 /* Most answers come soon. Rates are many, so the later ones have their time in every third sweep only. */
@@ -742,7 +743,7 @@ static void ask_or_stream(const step_t *step)
 static void on_stopped(const step_t *step)
 {
     urg_link_t *link = step->link;
-    if (link->to_ask && !has_streamed(step)) {
+    if (link->to_ask) {
         link->to_ask = false;
         link->asks_left = URG_QUESTIONS;
     }

@@ -2157,3 +2157,32 @@ void test_answers_without_points_are_no_scans_of_another_request(void)
     }
     TEST_ASSERT_EQUAL_UINT32(0, parser.counters.foreign);
 }
+
+void test_of_a_line_that_never_ends_its_memory_is_counted(void)
+{
+    for (unsigned i = 1; i <= 600; i++) {
+        (void)feed(i == 300 ? 0x80U : 'x');
+        TEST_ASSERT_LESS_OR_EQUAL_UINT32(i, scip_parser_octets(&parser));
+    }
+    TEST_ASSERT_EQUAL_UINT32(256, scip_parser_octets(&parser));
+    TEST_ASSERT_EQUAL_UINT32(0, scip_parser_strange(&parser)); /* it has left the memory */
+    (void)feed(0x80U);
+    TEST_ASSERT_EQUAL_UINT32(1, scip_parser_strange(&parser));
+}
+
+/* A burst that ends with the echo, right, wrong in an octet, or without its line end. */
+void test_a_burst_that_holds_an_echo_alone_is_taken_where_it_is_right(void)
+{
+    static const char *const lines[] = {"MS0372040601000\n", "MS0372040601001\n", "MS0372040601000x"};
+    octet_t octets[16];
+    for (unsigned k = 0; k < 3; k++) {
+        scip_event_t event;
+        stream_front();
+        for (unsigned i = 0; i < 16; i++) {
+            octets[i] = (octet_t)lines[k][i];
+        }
+        TEST_ASSERT_EQUAL_size_t(16, scip_parser_feed_run(&parser, octets, 16, &event));
+        TEST_ASSERT_EQUAL(k == 1 ? SCIP_DAMAGED : SCIP_NOTHING, event);
+        TEST_ASSERT_EQUAL_UINT16(k == 0 ? 85 : (k == 1 ? 0 : 85), scip_parser_expected(&parser));
+    }
+}

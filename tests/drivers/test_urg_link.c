@@ -2019,3 +2019,91 @@ void test_a_request_that_nothing_answers_is_given_up_after_400_ms(void)
         TEST_ASSERT_EQUAL(heard == 0 ? URG_STOP2 : URG_STREAM, link_.status);
     }
 }
+
+/* ---- the less likely turns of a search ---- */
+
+/* A stream of the whole circle fills 64 of 100 ms, so nothing is asked between two frames. */
+void test_where_frames_leave_no_time_an_answer_is_awaited_for_130_ms(void)
+{
+    for (uint32_t whole = 0; whole < 2; whole++) {
+        reset(0);
+        if (whole == 1) {
+            config.range = (scip_range_t){0, 768, 1, 0, 0};
+            TEST_ASSERT_TRUE(urg_link_init(&link_, &config, now_us));
+        }
+        link_.status = URG_OK;
+        link_.good_rate = link_.rate = 250000;
+        link_.config.first_rate_known = true;
+        urg_link_scan_at(&link_, now_us);
+        scan_after(1);
+        lose();
+        while (link_.command != SCIP_SWITCH) {
+            nothing_after(link_.timeout_us);
+        }
+        nothing_after(link_.timeout_us);
+        TEST_ASSERT_TRUE(link_.listening);
+        TEST_ASSERT_EQUAL(whole == 1, link_.timeout_us == 160000);
+        nothing_after(link_.timeout_us);
+        TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+        TEST_ASSERT_EQUAL(whole == 1, link_.timeout_us == 130000);
+    }
+}
+
+/* The sensor powers up at the stream's rate: octets of another one are noise. */
+void test_noise_is_no_late_answer_where_the_sensor_has_one_rate(void)
+{
+    stream_in_time();
+    link_.config.first_rate = link_.good_rate;
+    lose();
+    while (!link_.listening) {
+        nothing_after(link_.timeout_us);
+    }
+    seen.octet_count += 3;
+    seen.framing_count += 3;
+    nothing_after(20000);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
+    TEST_ASSERT_TRUE(link_.knocking);
+}
+
+/* "0B": an earlier one, perhaps damaged on its way, had not been answered yet. */
+void test_a_request_refused_because_of_an_earlier_one_is_repeated_once_and_then_listened_for(void)
+{
+    stream_in_time();
+    seen.foreign_count++;
+    lose();
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    (void)reply_after(100000, SCIP_STREAM_2, "0B", false);
+    TEST_ASSERT_TRUE(action.send);
+    TEST_ASSERT_EQUAL_UINT16(2, link_.attempt);
+    (void)reply_after(100000, SCIP_STREAM_2, "0B", false);
+    TEST_ASSERT_FALSE(action.send);
+    TEST_ASSERT_TRUE(link_.listening);
+    TEST_ASSERT_EQUAL_UINT16(0, link_.failures);
+}
+
+/* Octets that are no scan: a damaged one. No octet: the sensor has accepted, and does not scan. */
+void test_after_an_accepted_request_silence_is_a_failure_and_octets_are_none(void)
+{
+    for (uint32_t octets = 0; octets < 2; octets++) {
+        stream_in_time();
+        seen.foreign_count++;
+        lose();
+        seen.octet_count += 21;
+        (void)reply_after(100000, SCIP_STREAM_2, "00", false);
+        TEST_ASSERT_EQUAL(URG_STREAM, link_.status);
+        seen.octet_count += 101 * octets;
+        nothing_after(link_.timeout_us - 100000);
+        TEST_ASSERT_EQUAL_UINT16(octets == 0 ? 1 : 0, link_.failures);
+        TEST_ASSERT_EQUAL(octets == 0 ? URG_STREAM : URG_LOST, link_.status);
+    }
+}
+
+/* Until 12 s after its answer. */
+void test_an_answer_of_long_ago_tells_nothing_of_the_rate(void)
+{
+    start_until_rate();
+    nothing_after(12000000);
+    TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
+    TEST_ASSERT_NOT_EQUAL_UINT32(130000, link_.timeout_us);
+}
