@@ -2,7 +2,9 @@
 
 #include <stddef.h>
 
+/* "PL"; neither erased nor programmed to zero, so a blank sector is not taken for a copy. */
 #define MARK 0x504CU
+/* A cell of flash that was erased and not programmed since. */
 #define ERASED 0xFFFFU
 #define CRC_START UINT32_C(0xFFFFFFFF)
 #define CRC_POLYNOMIAL UINT32_C(0xEDB88320) /* 04C11DB7H reflected */
@@ -14,6 +16,7 @@ typedef union {
     uint32_t bits;
 } pattern_t;
 
+/* Bit by bit: a table would cost 1 KiB of flash, and a copy is checked at power-up and #SAVE alone. */
 static uint32_t crc_octet(uint32_t crc, uint16_t octet)
 {
     uint16_t bit;
@@ -25,6 +28,7 @@ static uint32_t crc_octet(uint32_t crc, uint16_t octet)
     return crc;
 }
 
+/* A cell counts as two octets, the low one first, so that a tool on a PC gets the same from the bytes. */
 static uint32_t crc_of(const uint16_t *cells, uint16_t count)
 {
     uint32_t crc = CRC_START;
@@ -48,6 +52,7 @@ static uint32_t get(const uint16_t *cells)
     return (uint32_t)cells[0] | ((uint32_t)cells[1] << 16);
 }
 
+/* Cells under the sum, which is also where it lies; of value i, where that value lies. */
 static uint16_t checked_cells(uint16_t count)
 {
     return (uint16_t)(CELL_VALUES + 2U * count);
@@ -63,6 +68,7 @@ uint16_t parameter_image_write(uint16_t cells[PARAMETER_IMAGE_CELLS_MAX], const 
     cells[CELL_COUNT] = image->count;
     put(&cells[CELL_NAMES], image->names);
     put(&cells[CELL_GENERATION], image->generation);
+    /* Bit patterns, not numbers: a NaN or a -0 comes back as it was. */
     for (uint16_t i = image->count; i-- > 0U;) {
         pattern_t pattern;
 
@@ -76,6 +82,8 @@ uint16_t parameter_image_write(uint16_t cells[PARAMETER_IMAGE_CELLS_MAX], const 
     return used;
 }
 
+/* A power failure while the sector is erased or programmed leaves some cells ERASED: that is damage, and only
+ * a sector without any head is none at all. The count is looked at before it says where the sum lies. */
 static parameter_image_status_t look(const uint16_t *cells)
 {
     const uint16_t count = cells[CELL_COUNT];
@@ -123,11 +131,13 @@ uint32_t parameter_image_name(uint32_t names, const char *name)
     for (i = 0U; name[i] != '\0'; i++) {
         names = crc_octet(names, (uint16_t)name[i]);
     }
+    /* Between two names, where no character can stand: "AB","C" is not "A","BC". */
     return crc_octet(names, ERASED);
 }
 
 bool parameter_image_newer(uint32_t generation, uint32_t than)
 {
+    /* Wraps: half of all numbers are ahead. */
     const uint32_t ahead = generation - than;
 
     return ahead != 0U && ahead < UINT32_C(0x80000000);

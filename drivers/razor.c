@@ -13,6 +13,8 @@
 static const char acceleration_title[] = "#A-C=";
 static const char angles_title[] = "#YPR=";
 
+/* What is being received: nothing of interest; the same, and the frame before may be read; the first
+ * characters behind a #; the numbers of an A-C line; those of a YPR line, which ends the frame. */
 enum { PASSING, DELIVERED, TITLE, ACCELERATION, ANGLES };
 
 void razor_collector_init(razor_collector_t *collector)
@@ -26,6 +28,7 @@ void razor_collector_broken(razor_collector_t *collector)
     collector->state = PASSING;
 }
 
+/* Longer than any frame: what is gathered cannot be one. */
 static void keep(razor_collector_t *collector, char character)
 {
     razor_text_t *gathered = &collector->gathered;
@@ -38,12 +41,14 @@ static void keep(razor_collector_t *collector, char character)
     }
 }
 
+/* The line is another one, or was cut short: an A-C line before it stays, its YPR line may come behind. */
 static void drop_part(razor_collector_t *collector)
 {
     collector->gathered.length = collector->part_start;
     collector->state = PASSING;
 }
 
+/* A # within a title or within numbers begins anew: the line end before it was lost. */
 static void begin_part(razor_collector_t *collector)
 {
     if (collector->state == TITLE) {
@@ -59,6 +64,7 @@ static void begin_part(razor_collector_t *collector)
     keep(collector, '#');
 }
 
+/* Five characters decide; lines with other titles (#YPRAMG, texts) are passed over. */
 static void end_title(razor_collector_t *collector)
 {
     razor_text_t *gathered = &collector->gathered;
@@ -74,6 +80,8 @@ static void end_title(razor_collector_t *collector)
     }
 }
 
+/* A YPR line completes a frame. The end of an A-C line is kept as its separator, and so is none of a title.
+ */
 static bool end_line(razor_collector_t *collector)
 {
     switch (collector->state) {
@@ -103,6 +111,7 @@ static void gather(razor_collector_t *collector, char character)
     }
 }
 
+/* CR and LF both end a line, so CR LF ends it twice, the second time without an effect. */
 bool razor_collect(razor_collector_t *collector, octet_t octet)
 {
     char character = (char)octet;
@@ -152,12 +161,14 @@ static const char *read_acceleration(const char *body, const char *end, float xy
     if (next == NULL) {
         return NULL;
     }
+    /* There is a character before it: the title is. */
     if (is_separator(stop[-1])) {
         stop--;
     }
     return read_triple(body, stop, xyz) ? next : NULL;
 }
 
+/* NaN is not within. */
 static bool within(const float triple[3], float limit)
 {
     return fabsf(triple[0]) <= limit && fabsf(triple[1]) <= limit && fabsf(triple[2]) <= limit;

@@ -21,6 +21,7 @@ static slice_t without_first(slice_t slice, uint16_t count)
     return (slice_t){&slice.text[count], (uint16_t)(slice.length - count)};
 }
 
+/* Without blanks at both ends, in one pass. */
 static slice_t trimmed(slice_t slice)
 {
     uint16_t begin = 0U;
@@ -49,6 +50,7 @@ static bool begins_with(slice_t slice, const char *words)
     return words[i] == '\0';
 }
 
+/* Texts are short and come once: the plain search is enough. */
 static bool contains(slice_t slice, const char *words)
 {
     while (!begins_with(slice, words)) {
@@ -109,6 +111,7 @@ static void read_small(slice_t slice, uint16_t *number)
     }
 }
 
+/* What is too long is cut; the last cell keeps its zero. */
 static void copy(char *text, slice_t value)
 {
     uint16_t i = 0U;
@@ -140,6 +143,7 @@ static scip_health_t health_of(slice_t state)
     return SCIP_HEALTH_UNKNOWN;
 }
 
+/* Texts are taken as told, also with a wrong sum: a person reads them. */
 static bool take_text(scip_info_t *info, slice_t key, slice_t value)
 {
     const struct {
@@ -158,6 +162,8 @@ static bool take_text(scip_info_t *info, slice_t key, slice_t value)
     return false;
 }
 
+/* Numbers decide what is asked of the sensor, so one that damage may have changed is left as it was. The key
+ * is known all the same. */
 static bool take_small(scip_info_t *info, slice_t key, slice_t value, bool believed)
 {
     scip_limits_t *told = &info->told;
@@ -219,6 +225,7 @@ static bool divide(slice_t line, slice_t *key, slice_t *value)
 void scip_info_take(scip_info_t *info, const scip_parser_t *parser)
 {
     const slice_t line = {parser->line, parser->text_length};
+    /* A line without a sum at all is of a sensor that sends none. */
     const bool believed = parser->text_proved || parser->text_length == parser->line_length;
     slice_t key;
     slice_t value;
@@ -235,6 +242,7 @@ void scip_info_take(scip_info_t *info, const scip_parser_t *parser)
     info->unproved = (uint16_t)(info->unproved + (believed ? 0U : 1U));
 }
 
+/* Limits are believed all or none: a mix of two sensors would give wrong directions. */
 static bool fit_together(const scip_limits_t *limits)
 {
     const bool distances = limits->dmin_mm > 0U && limits->dmin_mm <= DMIN_MOST_MM &&

@@ -34,11 +34,13 @@ static uint32_t larger(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
+/* With two characters the largest value is a code, "far or unknown". */
 static uint16_t largest_distance(const scip_scan_t *scan, const scip_limits_t *limits)
 {
     return scan->characters == 3U ? limits->dmax_mm : (uint16_t)smaller(limits->dmax_mm, SCIP_FAR_2_MM - 1U);
 }
 
+/* A cluster of 0 is one of 1, by the protocol. */
 static uint16_t steps_per_point(const scip_scan_t *scan)
 {
     return scan->cluster > 1U ? scan->cluster : 1U;
@@ -64,6 +66,7 @@ static uint32_t points_before(const scip_scan_t *scan, uint32_t step)
     return smaller(steps_into(scan, step) / steps_per_point(scan), scan->points);
 }
 
+/* A ray that may be bad is noted too; tally() looks at the extremes afterwards. */
 static void note_ray(tally_t *t, uint32_t ray)
 {
     t->sum += ray;
@@ -90,6 +93,7 @@ static tally_t tally_all(const uint16_t *rays, size_t count)
     return t;
 }
 
+/* Of a set whose extremes are between, every ray is. */
 static bool is_between(uint32_t ray, uint32_t nearest, uint32_t furthest)
 {
     return ray >= nearest && ray <= furthest;
@@ -120,6 +124,7 @@ static tally_t tally(const scip_scan_t *scan, uint32_t begin, uint32_t end, cons
                : tally_between(rays, (size_t)(end - begin), limits->dmin_mm, furthest);
 }
 
+/* One comparison a ray: below `least` the difference wraps and is large. */
 static uint16_t count_between(const uint16_t *rays, size_t count, uint32_t least, uint32_t most)
 {
     const uint32_t span = most - least;
@@ -191,6 +196,7 @@ uint16_t scip_group_step_mm(const scip_scan_t *scan, const scip_group_t *group)
     const uint16_t furthest = largest_distance(scan, &scip_limits_urg04lx);
     uint16_t before = 0U;
     uint32_t largest = 0U;
+    /* A step over a bad ray is none: what lies in between was not seen. */
     for (uint32_t i = point_from(scan, group->first_step); i < end; i++) {
         const uint16_t distance = scan->distance_mm[i];
         const bool good = distance >= SCIP_CODE_LIMIT_MM && distance <= furthest;
@@ -207,6 +213,7 @@ float scip_step_degrees(uint16_t step)
     return ((float)step - (float)SCIP_STEP_FRONT) * DEGREES_PER_STEP;
 }
 
+/* Nearest step; beyond the sensor's view the first or last one. */
 uint16_t scip_step_at_degrees(float degrees)
 {
     const float step = degrees / DEGREES_PER_STEP + (float)SCIP_STEP_FRONT + 0.5F;
@@ -216,6 +223,8 @@ uint16_t scip_step_at_degrees(float degrees)
     return (uint16_t)((from_first < last) ? from_first : last);
 }
 
+/* The rays of a layout pass at its middle step; what follows is the rest of the revolution, the line, and
+ * both ends' handling. */
 uint32_t scip_rays_age_us(const scip_scan_t *scan, uint32_t bit_rate)
 {
     const scip_kind_t kind = scan->characters == 3U ? SCIP_STREAM_3 : SCIP_STREAM_2;
@@ -238,6 +247,7 @@ uint16_t scip_layout_cluster(const scip_layout_t *layout, uint32_t bit_rate)
     const uint32_t steps = (uint32_t)layout->last_step - (uint32_t)layout->first_step + 1U;
     uint32_t cluster = 1U;
 
+    /* The first that fits is the finest. */
     while (cluster < steps && !fits_the_revolution((steps + cluster - 1U) / cluster, bit_rate)) {
         cluster++;
     }
@@ -253,6 +263,7 @@ scip_range_t scip_layout_range(const scip_layout_t *layout, uint32_t bit_rate)
                           .cluster = cluster};
 }
 
+/* 100000 us / 1024 steps, without a division. */
 uint32_t scip_step_delay_us(uint16_t step)
 {
     return ((uint32_t)step * 3125U) >> 5;

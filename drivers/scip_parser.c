@@ -54,6 +54,7 @@ static bool is_stream(const scip_request_t *request)
     return request->kind == SCIP_STREAM_2 || request->kind == SCIP_STREAM_3;
 }
 
+/* A run of so many scans, whose echo counts them down. */
 static bool is_counted(const scip_request_t *request)
 {
     return is_stream(request) && request->range.scans != 0U;
@@ -69,11 +70,13 @@ static bool line_is_empty(const scip_parser_t *parser)
     return parser->line_length == 0U;
 }
 
+/* SCIP1.1 answers a line that it does not know with E. */
 static bool line_is_refusal(const scip_parser_t *parser)
 {
     return parser->line_length == 1U && parser->line[0] == (octet_t)'E';
 }
 
+/* The low six bits, as a character. */
 static uint16_t sum_character(uint16_t sum)
 {
     return (uint16_t)((sum & 0x3FU) + 0x30U);
@@ -117,6 +120,7 @@ static bool take_echo(scip_parser_t *parser)
     return true;
 }
 
+/* For the caller who looks once: the latest cause. */
 static void count_damage(scip_parser_t *parser, scip_damage_t cause)
 {
     parser->counters.damaged[cause]++;
@@ -174,6 +178,7 @@ static inline uint32_t six_bits(check_t *check, octet_t character)
     return bits;
 }
 
+/* 30H was taken off every character, and belongs to the sum. */
 static scip_damage_t verdict(const check_t *check, uint16_t characters, octet_t sum)
 {
     const uint32_t total = (check->sums >> 16) + check->sums + (uint32_t)0x30U * characters;
@@ -183,6 +188,7 @@ static scip_damage_t verdict(const check_t *check, uint16_t characters, octet_t 
     return sum == sum_character((uint16_t)total) ? SCIP_DAMAGE_NONE : SCIP_DAMAGE_SUM;
 }
 
+/* Nobody wants the points; the sum is checked all the same. */
 static check_t pass(const octet_t *text, uint16_t characters)
 {
     check_t check = nothing_checked;
@@ -198,6 +204,7 @@ static bool is_scan_status(const octet_t *text)
     return text[0] == (octet_t)'9' && text[1] == (octet_t)'9' && text[2] == (octet_t)'b';
 }
 
+/* Of any line; the last character is the sum. */
 static bool sum_is_right(const scip_parser_t *parser)
 {
     const uint16_t characters = (uint16_t)(parser->line_length - 1U);
@@ -293,11 +300,13 @@ static inline void add_sums(check_t *check, uint32_t four)
     check->sums += (four & EVERY_SECOND) + ((four >> 8) & EVERY_SECOND);
 }
 
+/* Their answers in SCIP1.1 have one status character and no sum. */
 static bool speaks_legacy(scip_kind_t kind)
 {
     return kind == SCIP_LASER_OFF_1 || kind == SCIP_SWITCH;
 }
 
+/* A refusal has nothing behind it. */
 static uint16_t state_after_status(const scip_parser_t *parser)
 {
     if (!has_status(parser, '0', '0')) {
@@ -358,6 +367,7 @@ static scip_event_t end_of_status(scip_parser_t *parser)
     return SCIP_NOTHING;
 }
 
+/* Without memory scans are counted only. */
 static bool has_room(const scip_parser_t *parser)
 {
     return parser->scan == NULL || parser->scan->capacity >= parser->awaited.points;
@@ -371,6 +381,7 @@ static void begin_data(scip_parser_t *parser, uint32_t stamp)
     parser->state = DATA;
 }
 
+/* 24 bits in four characters. */
 static uint32_t read_stamp(const octet_t *text, check_t *check)
 {
     const uint32_t four = four_values(text);
@@ -485,6 +496,7 @@ static check_t decode(const scip_parser_t *parser, uint32_t *partial, const octe
     return decode_triples(&points[done / 3U], done % 3U, partial, text, characters);
 }
 
+/* All blocks but the last have 64. */
 static uint16_t characters_of_block(const scip_parser_t *parser)
 {
     return parser->characters_left < SCIP_BLOCK ? parser->characters_left : (uint16_t)SCIP_BLOCK;
@@ -541,6 +553,7 @@ static bool stamp_follows(const scip_parser_t *parser)
     return false;
 }
 
+/* Of the counter of a counted run. */
 static bool has_fallen_by_one(const scip_parser_t *parser)
 {
     return parser->remaining + 1U == parser->latest_remaining;
@@ -572,6 +585,7 @@ static bool in_sequence(scip_parser_t *parser)
     return follows;
 }
 
+/* The description comes with the points, and only now: until the last sum nothing of it is true. */
 static scip_event_t deliver(const scip_parser_t *parser)
 {
     scip_scan_t *scan = parser->scan;
@@ -607,6 +621,7 @@ static scip_event_t end_of_scan(scip_parser_t *parser)
     return deliver(parser);
 }
 
+/* The answer "00" to the order: clock and counter begin anew. */
 static void begin_stream(scip_parser_t *parser)
 {
     parser->flowing = true;
@@ -639,6 +654,7 @@ static scip_event_t end_of_reply(scip_parser_t *parser)
     return SCIP_REPLY;
 }
 
+/* Until its empty line an E may be the rest of a damaged line. */
 static scip_event_t end_of_legacy(scip_parser_t *parser)
 {
     if (!line_is_empty(parser)) {
@@ -733,6 +749,7 @@ void scip_parser_expect(scip_parser_t *parser, const scip_request_t *request)
     parser->stamps = 0U;
 }
 
+/* Blocks already decoded lie in the old memory: the scan under way is lost. */
 void scip_parser_scan_into(scip_parser_t *parser, scip_scan_t *scan)
 {
     if (parser->state == DATA || parser->state == SCAN_END) {
@@ -751,6 +768,7 @@ void scip_parser_line_broken(scip_parser_t *parser)
     begin_line(parser);
 }
 
+/* The memory is a ring by now: its newest octets to its begin. */
 static void keep_end_of_line(scip_parser_t *parser)
 {
     const size_t first = parser->gathered + SCIP_LINE_MAX - SCIP_REQUEST_MAX;
@@ -783,6 +801,7 @@ static scip_event_t end_long_line(scip_parser_t *parser)
     }
 }
 
+/* Once per line, in an interrupt: the common lines first. */
 scip_event_t scip_parser_end_line(scip_parser_t *parser)
 {
     if (has_filled_memory(parser)) {

@@ -12,6 +12,8 @@ typedef struct {
     uint16_t characters;
 } command_t;
 
+/* Symbol, octets of the reply when accepted (0: as many as there are points, or lines), characters a point.
+ */
 static const command_t commands[SCIP_KIND_COUNT] = {
     [SCIP_LASER_OFF_1] = {"L0", 6U, 0U},        [SCIP_SWITCH] = {"SCIP2.0", 11U, 0U},
     [SCIP_BIT_RATE] = {"SS", 14U, 0U},          [SCIP_STOP] = {"QT", 8U, 0U},
@@ -39,6 +41,7 @@ static void append_symbol(scip_request_t *request, const char *symbol)
     }
 }
 
+/* Fixed width, from the last digit on. */
 static void append_number(scip_request_t *request, uint32_t number, uint16_t digits)
 {
     uint16_t position = (uint16_t)(request->text_length + digits);
@@ -59,6 +62,7 @@ static void begin(scip_request_t *request, scip_kind_t kind)
     append_symbol(request, commands[kind].symbol);
 }
 
+/* What stands so far is what the sensor echoes. */
 static void finish(scip_request_t *request)
 {
     request->echo_length = request->text_length;
@@ -111,6 +115,7 @@ bool scip_request_scan(scip_request_t *request, scip_kind_t kind, const scip_ran
     if (kind >= SCIP_KIND_COUNT || commands[kind].characters == 0U || !in_range(range)) {
         return false;
     }
+    /* begin() clears the request. */
     const scip_range_t asked = *range; /* may be request->range */
     begin(request, kind);
     request->range = asked;
@@ -129,6 +134,7 @@ bool scip_request_scan(scip_request_t *request, scip_kind_t kind, const scip_ran
     return true;
 }
 
+/* Moved from the end on, because both places overlap. */
 static void put_in_front(scip_request_t *request, const char *text, uint16_t length)
 {
     const uint16_t before = request->text_length;

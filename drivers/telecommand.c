@@ -9,6 +9,7 @@
 #define DELETE '\x7F'
 #define SUM_MARK '*'
 
+/* Not the characters: length says how many count. */
 static void restart(telecommand_collector_t *collector)
 {
     collector->line.length = 0U;
@@ -93,11 +94,13 @@ bool telecommand_collect(telecommand_collector_t *collector, octet_t octet)
     return false;
 }
 
+/* Octets were lost. Outside of a line nothing is harmed; within one nobody knows which. */
 void telecommand_collector_broken(telecommand_collector_t *collector)
 {
     collector->line.damaged = collector->started;
 }
 
+/* After telecommand_upper(). */
 static bool is_name(char character)
 {
     return (character >= 'A' && character <= 'Z') || (character >= '0' && character <= '9') ||
@@ -125,6 +128,7 @@ static uint16_t end_of(const telecommand_line_t *line, uint16_t length)
     return end;
 }
 
+/* A name that is too long is cut: no command has such a name, and the answer quotes what was understood. */
 static telecommand_status_t take_name(const telecommand_line_t *line, uint16_t *at, uint16_t end,
                                       telecommand_t *command)
 {
@@ -206,6 +210,7 @@ static bool sum_is_right(const telecommand_line_t *line, uint16_t sum_at)
     return true;
 }
 
+/* A refused line leaves no name behind that a careless reader might obey. */
 static telecommand_status_t reject(telecommand_t *command, telecommand_status_t status)
 {
     command->name_length = 0U;
@@ -271,6 +276,8 @@ telecommand_status_t telecommand_parse(const telecommand_line_t *line, bool sum_
     const uint16_t sum_at = find_sum(line, end);
     const telecommand_status_t status = understand(line, sum_at, command);
 
+    /* A stop is obeyed whatever its sum: a wrong one says that something is damaged, not that the motors may
+     * go on. */
     if (status != TELECOMMAND_OK || stops(command)) {
         return status;
     }
@@ -280,6 +287,7 @@ telecommand_status_t telecommand_parse(const telecommand_line_t *line, bool sum_
     return sum_is_right(line, sum_at) ? TELECOMMAND_OK : reject(command, TELECOMMAND_SUM_WRONG);
 }
 
+/* By the same parser as the command itself, so that no line is urgent and then not a stop. */
 bool telecommand_is_urgent(const telecommand_line_t *line)
 {
     const uint16_t sum_at = find_sum(line, end_of(line, line->length));

@@ -48,6 +48,8 @@ bool urg_init(urg_driver_t *urg, const urg_config_t *config, uint16_t *distance_
     return true;
 }
 
+/* The complete one waits for urg_take_scan(); the parser may fill the other at once, so no scan waits for the
+ * reader. */
 static void change_scans(urg_driver_t *urg)
 {
     urg->fresh = true;
@@ -74,6 +76,7 @@ bool urg_take_event(urg_driver_t *urg, scip_event_t event)
     return take_event(urg, event);
 }
 
+/* A burst may hold the end of one scan and the whole of the next: then the next is the one to be taken. */
 bool urg_feed_all(urg_driver_t *urg, const octet_t *octets, size_t count)
 {
     bool complete = false;
@@ -89,6 +92,7 @@ bool urg_feed_all(urg_driver_t *urg, const octet_t *octets, size_t count)
     return complete;
 }
 
+/* Framing errors alone tell of a wrong rate; an overrun does not. */
 void urg_line_broken(urg_driver_t *urg, uint32_t framing_errors)
 {
     scip_parser_line_broken(&urg->parser);
@@ -99,6 +103,7 @@ void urg_step(urg_driver_t *urg, uint32_t now_us)
 {
     urg_seen_octets(&urg->seen, &urg->parser);
     urg_link_step(&urg->link, &urg->seen, now_us, &urg->action);
+    /* Before it is sent: the answer may be there while the last octet leaves. */
     if (urg->action.expect) {
         scip_parser_expect(&urg->parser, &urg->action.request);
     }
@@ -109,6 +114,7 @@ void urg_scan_at(urg_driver_t *urg, uint32_t now_us)
     urg_link_scan_at(&urg->link, now_us);
 }
 
+/* With what was fed since the step: an answer makes the pause shorter. */
 uint32_t urg_pause_us(const urg_driver_t *urg)
 {
     urg_seen_t seen = urg->seen;
@@ -132,10 +138,12 @@ bool urg_next_to_send(urg_driver_t *urg, urg_output_t *output)
     for (uint16_t i = 0U; i < output->count; i++) {
         output->octets[i] = action->request.text[i];
     }
+    /* Once: a second call must not send it again. */
     urg->action = (urg_action_t){.send = false};
     return some;
 }
 
+/* The one that is not being filled. */
 bool urg_take_scan(urg_driver_t *urg, scip_scan_t *scan)
 {
     const bool fresh = urg->fresh;

@@ -248,8 +248,8 @@ static void set_rate(const step_t *step, uint32_t rate)
     step->link->line_unknown = true;
 }
 
-/* In a first start, where alone rates are probed: the sensor has answered, so it is at the stream's rate or at
- * the first one. */
+/* In a first start, where alone rates are probed: the sensor has answered, so it is at the stream's rate or
+ * at the first one. */
 static bool has_answered(const step_t *step)
 {
     const urg_link_t *link = step->link;
@@ -1187,6 +1187,7 @@ bool urg_link_init(urg_link_t *link, const urg_config_t *config, uint32_t now_us
         .config = *config, .status = URG_WAIT, .since_us = now_us, .rate = config->first_rate};
     link->scan_octets = stream.scan_octets;
     link->asked = PROBE_STREAM;
+    link->asked_rate = config->first_rate; /* also where a stream ends for questions, without a search */
     return true;
 }
 

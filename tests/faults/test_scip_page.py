@@ -2,6 +2,7 @@
 
 With --write it puts into the page what the commands print. The block of the bench is left out where valgrind is not
 installed, or the compiler is not that of the baseline."""
+import csv
 import re
 import shutil
 import subprocess
@@ -43,6 +44,15 @@ class Page(unittest.TestCase):
     def test_every_block_is_a_command(self):
         self.assertEqual(self.page.count("```"), 2 * len(BLOCK.findall(self.page)))
         self.assertEqual(len(BLOCK.findall(self.page)), 5)
+
+    def test_other_pages_have_the_same_figures(self):
+        with open(ROOT / "tools/bench/baseline.csv", encoding="utf-8") as file:
+            counted = {row["step"]: row["instructions"] for row in csv.DictReader(file)}
+        for name in ("drivers/README.md", "docs/realtime.md"):
+            words = " ".join((ROOT / name).read_text(encoding="utf-8").split())
+            figures = re.findall(r"(\d+) instructions", words)
+            with self.subTest(name):
+                self.assertEqual(sorted(figures), sorted([counted["scip_frame"], counted["scip_frame_by_octet"]]))
 
     def test_the_files_it_names_exist(self):
         for name in re.findall(r"`((?:drivers|tests|tools|sim)/[\w/.]+\.\w+)`", self.page):

@@ -51,7 +51,7 @@ PROOFS = [
     ("decimal", [], 42, ["any_text_is_read"]),
     ("decimal", [], 24, ["any_value_is_scaled", "any_digits_are_written", "any_decimals_are_written", "any_value_is_written",
                          "any_value_is_written_shortest"]),
-    ("scip_info", [], 258, ["any_slice_is_trimmed", "any_slice_is_searched", "any_number_is_found", "any_line_is_divided"]),
+    ("scip_info", [], 66, ["any_slice_is_trimmed", "any_slice_is_searched", "any_number_is_found", "any_line_is_divided"]),
     ("scip_info", [], 130,
      ["any_slice_may_begin_with_words", "any_decimal_digits_are_read", "any_hexadecimal_digits_are_read", "any_slice_is_copied",
       "any_state_has_a_health", "any_line_is_taken", "any_limits_give_directions"]),

@@ -37,8 +37,7 @@ static bool is_sound(void)
     return (uint32_t)link_.status < URG_STATUS_COUNT && is_own(link_.command) &&
            is_one_of_scips(link_.rate) && (link_.good_rate == 0U || is_one_of_scips(link_.good_rate)) &&
            (link_.good_rate != 0U || (link_.status != URG_OK && !link_.knocking)) &&
-           (link_.good_rate == 0U || link_.status == URG_OK || is_one_of_scips(link_.asked_rate)) &&
-           link_.asks_left <= URG_QUESTIONS &&
+           is_one_of_scips(link_.asked_rate) && link_.asks_left <= URG_QUESTIONS &&
            (!is_question(link_.command) || (link_.asks_left > 0U && link_.status != URG_OK));
 }
 
