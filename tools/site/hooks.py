@@ -44,6 +44,20 @@ def relinked(page, text):
     return LINK.sub(turn, text)
 
 
+def spoken(diagram):
+    """A mermaid flowchart as a list of its ways, which needs no program from elsewhere, and can be read aloud."""
+    node = r"(\w+)(?:[\[({]+([^\])}]+)[\])}]+)?"
+    names = {name: text for name, text in re.findall(node, diagram) if text}
+    ways = []
+    for line in diagram.splitlines():
+        parts = re.split(r"\s*(?:--+>(?:\|([^|]*)\|)?|-\.(.*?)\.->)\s*", line.strip())
+        if len(parts) > 1:
+            steps = [names.get(name, name) for name in (re.match(node, part).group(1) for part in parts[::3])]
+            labels = [f" *({plain or dotted})*" if plain or dotted else "" for plain, dotted in zip(parts[1::3], parts[2::3])]
+            ways.append("- " + steps[0] + "".join(f" →{label} {step}" for label, step in zip(labels, steps[1:])))
+    return "\n".join(ways)
+
+
 def sources_linked():
     """The files that are no pages and lie outside of docs/, but that a page links."""
     for page in [*OUTSIDE, *(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").rglob("*.md"))]:
@@ -77,7 +91,7 @@ def on_files(files, config):
 
 def on_page_markdown(markdown, page, config, files):
     path = path_of(page.file.src_uri)
-    text = relinked(path, markdown)
+    text = re.sub(r"```mermaid\n(.*?)```", lambda diagram: spoken(diagram.group(1)), relinked(path, markdown), flags=re.DOTALL)
     if os.environ.get("FLY") and path in ("README.md", "docs/ground.md", "docs/es/index.md"):
         up = "../" * page.file.src_uri.count("/")
         title, _, rest = text.partition("\n")
