@@ -568,7 +568,7 @@ static bool counter_follows(const scip_parser_t *parser)
 /* A stamp follows when it is ahead of one of the last two seen, so a wrong one whose sum was right harms no
  * later one. No two frames in a row are dropped here, so a restarted clock or a wrong counter costs one scan.
  */
-static bool in_sequence(scip_parser_t *parser)
+static bool take_sequence(scip_parser_t *parser)
 {
     bool follows = parser->doubted || (stamp_follows(parser) && counter_follows(parser));
     parser->last_stamps_ms[1] = parser->last_stamps_ms[0];
@@ -609,7 +609,7 @@ static scip_event_t end_of_scan(scip_parser_t *parser)
     if (is_stream(&parser->awaited)) {
         parser->flowing = true;
         parser->state = ECHO;
-        if (!in_sequence(parser)) {
+        if (!take_sequence(parser)) {
             count_damage(parser, SCIP_DAMAGE_SEQUENCE);
             return SCIP_DAMAGED;
         }

@@ -388,7 +388,7 @@ static bool knows_power_up_rate(const step_t *step)
 }
 
 /* The rate at which the sensor was seen to power up. Else one after the other, from the first one on. */
-static uint32_t rate_to_ask(const step_t *step)
+static uint32_t choose_rate(const step_t *step)
 {
     urg_link_t *link = step->link;
     if (knows_power_up_rate(step)) {
@@ -408,7 +408,7 @@ static void ask_at(const step_t *step, uint32_t rate, scip_kind_t kind, uint32_t
 
 static void ask(const step_t *step)
 {
-    const uint32_t rate = rate_to_ask(step);
+    const uint32_t rate = choose_rate(step);
     if (rate == step->link->good_rate) {
         step->link->asking = true;
         knock_at_stream_rate(step);

@@ -2186,3 +2186,12 @@ void test_a_burst_that_holds_an_echo_alone_is_taken_where_it_is_right(void)
         TEST_ASSERT_EQUAL_UINT16(k == 0 ? 85 : (k == 1 ? 0 : 85), scip_parser_expected(&parser));
     }
 }
+
+void test_octets_before_a_broken_line_are_counted_once(void)
+{
+    (void)feed_text("12345");
+    scip_parser_line_broken(&parser);
+    TEST_ASSERT_EQUAL_UINT32(5, scip_parser_octets(&parser));
+    (void)feed_text("123456789\n");
+    TEST_ASSERT_EQUAL_UINT32(15, scip_parser_octets(&parser));
+}

@@ -1845,6 +1845,9 @@ void test_strange_octets_at_the_asked_rate_may_be_an_echo_and_framing_errors_are
         nothing_after(40000);
         TEST_ASSERT_EQUAL_UINT32(framing == 0 ? 115200 : 250000, link_.rate);
     }
+    nothing_after(link_.timeout_us); /* no stream: the turn of the question again */
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
 }
 
 void test_a_stray_answer_gives_the_awaited_one_its_time(void)
@@ -1883,6 +1886,13 @@ void test_ss_that_is_answered_late_means_that_the_sensor_has_the_streams_rate(vo
     TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
     TEST_ASSERT_TRUE(action.send);
     TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    while (!link_.listening) { /* it was noise: what is heard later is no answer to SS any more */
+        nothing_after(link_.timeout_us);
+    }
+    seen.octet_count += 3;
+    seen.framing_count += 3;
+    nothing_after(20000);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
 }
 
 /* ---- the rate at which the sensor powers up ---- */
@@ -2064,6 +2074,7 @@ void test_noise_is_no_late_answer_where_the_sensor_has_one_rate(void)
     TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
     TEST_ASSERT_EQUAL(URG_LOST, link_.status);
     TEST_ASSERT_TRUE(link_.knocking);
+    TEST_ASSERT_EQUAL_UINT32(now_us, link_.sent_us); /* and the search goes on at once */
 }
 
 /* "0B": an earlier one, perhaps damaged on its way, had not been answered yet. */
@@ -2142,4 +2153,37 @@ void test_a_line_lost_while_the_sensor_is_asked_leads_to_no_rate_of_nought(void)
         nothing_after(urg_link_pause_us(&link_, &seen));
         TEST_ASSERT_NOT_EQUAL_UINT32(0, link_.rate);
     }
+}
+
+void test_a_first_word_is_said_twice_where_octets_are_clean(void)
+{
+    reset(0);
+    nothing_after(0);
+    for (uint16_t attempt = 1; attempt <= 2; attempt++) {
+        TEST_ASSERT_EQUAL(SCIP_LASER_OFF_1, link_.command);
+        TEST_ASSERT_EQUAL_UINT16(attempt, link_.attempt);
+        seen.octet_count++;
+        nothing_after(500000);
+    }
+    TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
+}
+
+/* Each costs a frame of a sensor that streams out of hearing. */
+void test_requests_of_a_search_come_at_distances_that_double_up_to_8_s(void)
+{
+    static const uint32_t distances_us[] = {400000, 800000, 1600000, 3200000};
+    uint32_t before_us = 0, requests = 0;
+    stream_in_time();
+    lose();
+    while (requests < 5) {
+        nothing_after(urg_link_pause_us(&link_, &seen));
+        if (action.send && link_.command == SCIP_STREAM_2) {
+            if (requests > 0) {
+                TEST_ASSERT_UINT32_WITHIN(170000, distances_us[requests - 1] + 170000, now_us - before_us);
+            }
+            before_us = now_us;
+            requests++;
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT32(6400000, link_.request_us);
 }
