@@ -1462,6 +1462,7 @@ void test_a_sensor_that_starts_slowly_is_given_three_seconds_from_the_third_fail
         TEST_ASSERT_EQUAL_UINT32(400000 + 2 * 100000 + settles_us[failures] + (16 + 21 + 101) * 87,
                                  link_.timeout_us);
         nothing_after(link_.timeout_us);
+        TEST_ASSERT_LESS_OR_EQUAL_UINT16(3, link_.failures);
     }
 }
 
@@ -2108,6 +2109,15 @@ void test_after_an_accepted_request_silence_is_a_failure_and_octets_are_none(voi
         TEST_ASSERT_EQUAL_UINT16(octets == 0 ? 1 : 0, link_.failures);
         TEST_ASSERT_EQUAL(octets == 0 ? URG_STREAM : URG_LOST, link_.status);
     }
+    stream_in_time();
+    seen.foreign_count++;
+    lose();
+    seen.octet_count += 21;
+    (void)reply_after(100000, SCIP_STREAM_2, "00", false);
+    nothing_after(link_.timeout_us - 100000);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    nothing_after(link_.timeout_us); /* the second one was not accepted: its answer may be lost */
+    TEST_ASSERT_EQUAL_UINT16(1, link_.failures);
 }
 
 /* Until 12 s after its answer. */
@@ -2186,4 +2196,62 @@ void test_requests_of_a_search_come_at_distances_that_double_up_to_8_s(void)
         }
     }
     TEST_ASSERT_EQUAL_UINT32(6400000, link_.request_us);
+    while (!link_.listening) {
+        nothing_after(link_.timeout_us);
+    }
+    seen.octet_count += 202;
+    seen.foreign_count++;
+    nothing_after(40000);
+    TEST_ASSERT_TRUE(action.send);
+    TEST_ASSERT_EQUAL_UINT32(400000, link_.request_us); /* the sensor is there */
+}
+
+/* In a first search most rates are wrong, so only every third round through them waits for a late answer. */
+void test_every_third_round_of_a_first_search_waits_for_late_answers(void)
+{
+    reset(0);
+    config.fastest_rate = 0;
+    TEST_ASSERT_TRUE(urg_link_init(&link_, &config, now_us));
+    nothing_after(0);
+    nothing_after(500000);
+    for (uint32_t round = 0; round < 9; round++) {
+        for (uint32_t i = 0; i < 6; i++) {
+            TEST_ASSERT_EQUAL(round % 3 == 2, link_.timeout_us > 400000);
+            nothing_after(600000);
+        }
+    }
+}
+
+/* From the end of a frame's time, which grows with the time since the latest frame, to an answer's time; or
+ * over the next frame and 50 ms on, or what is free. */
+void test_a_question_ends_where_the_next_frame_is_not_lost(void)
+{
+    uint32_t over_a_frame = 0;
+    stream_in_time();
+    const uint32_t frame_us = link_.frame_us;
+    lose();
+    while (now_us - frame_us < 11000000) {
+        nothing_after(urg_link_pause_us(&link_, &seen));
+        if (action.send && link_.command == SCIP_SWITCH && link_.timeout_us != 130000) {
+            const uint32_t phase_us = PHASE_US + (now_us - frame_us) / 512U;
+            const uint32_t gap_us = REVOLUTION_US - FRAME_US - 2U * phase_us;
+            const uint32_t past_us = (now_us - frame_us + REVOLUTION_US - phase_us) % REVOLUTION_US;
+            TEST_ASSERT_EQUAL_UINT32(REVOLUTION_US + (gap_us < 50000 ? gap_us : 50000),
+                                     past_us + link_.timeout_us);
+            over_a_frame++;
+        }
+    }
+    TEST_ASSERT_GREATER_THAN_UINT32(4, over_a_frame);
+}
+
+/* One sign of another rate among few octets is enough: nobody was heard. */
+void test_an_octet_with_a_framing_error_is_nobody(void)
+{
+    for (uint32_t signs = 0; signs < 2; signs++) {
+        listen_between();
+        seen.octet_count += 3;
+        seen.framing_count += signs;
+        nothing_after(link_.timeout_us);
+        TEST_ASSERT_EQUAL_UINT32(signs == 0 ? 250000 : 115200, link_.rate);
+    }
 }

@@ -10,13 +10,19 @@
 
 static scip_parser_t parser;
 static scip_info_t info;
-static octet_t memory[SCIP_LINE_MAX];
+static struct {
+    octet_t octets[SCIP_LINE_MAX];
+} held;
+static octet_t *const memory = held.octets;
 static char text_[SCIP_INFO_TEXT];
 
+/* Of any octets: what is static would be zeros, and no digit among them. */
 static slice_t any_slice(void)
 {
     const uint16_t length = nondet_cell();
+    __typeof__(held) any;
 
+    held = any;
     ASSUME(length <= SCIP_LINE_MAX);
     return (slice_t){&memory[SCIP_LINE_MAX - length], length};
 }
