@@ -2168,6 +2168,9 @@ void test_of_a_line_that_never_ends_its_memory_is_counted(void)
     TEST_ASSERT_EQUAL_UINT32(0, scip_parser_strange(&parser)); /* it has left the memory */
     (void)feed(0x80U);
     TEST_ASSERT_EQUAL_UINT32(1, scip_parser_strange(&parser));
+    (void)feed_text("\nab\n");
+    TEST_ASSERT_EQUAL_UINT32(257 + 3,
+                             scip_parser_octets(&parser)); /* of the long line what was held, and its end */
 }
 
 /* A burst that ends with the echo, right, wrong in an octet, or without its line end. */
@@ -2194,4 +2197,44 @@ void test_octets_before_a_broken_line_are_counted_once(void)
     TEST_ASSERT_EQUAL_UINT32(5, scip_parser_octets(&parser));
     (void)feed_text("123456789\n");
     TEST_ASSERT_EQUAL_UINT32(15, scip_parser_octets(&parser));
+}
+
+/* What lies behind a burst in memory is not read: it may be an older one. */
+void test_of_a_burst_that_ends_in_a_scan_no_octet_more_is_taken(void)
+{
+    const order_t two_blocks = {"MS", 372, 419, 1, 0, 0};
+    octet_t octets[200];
+    for (size_t cut = 1; cut < 100; cut++) {
+        scip_event_t event;
+        start();
+        expect_order(&two_blocks);
+        wire.length = 0;
+        put_answer(&wire, &two_blocks, "00");
+        (void)feed_range(&wire, 0, wire.length);
+        wire.length = 0;
+        put_numbered_frame(&wire, &two_blocks, 0);
+        for (size_t i = 0; i < wire.length; i++) {
+            octets[i] = (octet_t)wire.octets[i];
+        }
+        TEST_ASSERT_EQUAL_size_t(cut, scip_parser_feed_run(&parser, octets, cut, &event));
+        TEST_ASSERT_EQUAL(SCIP_NOTHING, event);
+        TEST_ASSERT_EQUAL_size_t(wire.length - cut,
+                                 scip_parser_feed_run(&parser, &octets[cut], wire.length - cut, &event));
+        TEST_ASSERT_EQUAL(SCIP_SCAN, event);
+    }
+}
+
+/* 65 characters and their sum. */
+void test_a_line_longer_than_a_block_is_of_no_scan(void)
+{
+    char line[70], text[120];
+    memset(line, '0', 65);
+    scip_frames_summed(text, line, 65);
+    stream_front();
+    for (unsigned k = 0; k < 3; k++) {
+        (void)feed_text("MS0000100001000\n99b\nm2@0?\n");
+        (void)feed_text(text);
+        (void)feed_text("\n");
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, parser.counters.foreign);
 }

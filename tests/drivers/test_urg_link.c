@@ -2255,3 +2255,38 @@ void test_an_octet_with_a_framing_error_is_nobody(void)
         TEST_ASSERT_EQUAL_UINT32(signs == 0 ? 250000 : 115200, link_.rate);
     }
 }
+
+void test_a_question_has_the_time_of_400_octets(void)
+{
+    stream_in_time();
+    urg_link_ask(&link_);
+    nothing_after(20000);
+    TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
+    (void)reply_after(100000, SCIP_STOP, "00", false);
+    TEST_ASSERT_EQUAL(SCIP_VERSION, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(260000 + (action.request.text_length + 400U) * 41, link_.timeout_us);
+}
+
+/* Heard while a request waits for its answer: the time of the request is over first. */
+void test_a_late_answer_in_the_time_of_a_request_is_noticed_behind_it(void)
+{
+    stream_in_time();
+    lose();
+    while (link_.asked_kind != SCIP_SWITCH || link_.command != SCIP_STREAM_2 || !action.send) {
+        nothing_after(link_.timeout_us);
+    }
+    seen.octet_count += 3;
+    seen.framing_count += 3;
+    nothing_after(link_.timeout_us);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+    TEST_ASSERT_TRUE(action.send);
+}
+
+void test_a_scan_in_a_listening_window_ends_the_search(void)
+{
+    listen_between();
+    scan_after(10000);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
+    TEST_ASSERT_FALSE(link_.knocking);
+}
