@@ -2238,3 +2238,16 @@ void test_a_line_longer_than_a_block_is_of_no_scan(void)
     }
     TEST_ASSERT_EQUAL_UINT32(0, parser.counters.foreign);
 }
+
+/* Also a scan of another request; not an empty line behind an empty one. */
+void test_replies_to_other_requests_are_counted_as_strays(void)
+{
+    stream_front();
+    expect_plain(SCIP_STOP);
+    (void)feed_text("TM2\n00P\n\n\n\n");
+    TEST_ASSERT_EQUAL_UINT32(1, parser.counters.stray);
+    feed_other(0, NOWHERE, NOWHERE);
+    TEST_ASSERT_EQUAL_UINT32(2, parser.counters.stray);
+    TEST_ASSERT_EQUAL(SCIP_REPLY, feed_text("QT\n00P\n\n"));
+    TEST_ASSERT_EQUAL_UINT32(2, parser.counters.stray);
+}

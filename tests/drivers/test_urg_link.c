@@ -2290,3 +2290,40 @@ void test_a_scan_in_a_listening_window_ends_the_search(void)
     TEST_ASSERT_EQUAL(URG_OK, link_.status);
     TEST_ASSERT_FALSE(link_.knocking);
 }
+
+/* One sign of another rate among few octets: the first word is not said again there. */
+void test_a_first_word_is_said_once_where_an_octet_is_not_clean(void)
+{
+    reset(0);
+    nothing_after(0);
+    seen.octet_count += 3;
+    seen.framing_count++;
+    nothing_after(500000);
+    TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
+}
+
+/* Where a mute revolution would end just behind a step, the step comes earlier, and the next one in time. */
+void test_a_step_leaves_room_for_the_one_behind_a_mute_revolution(void)
+{
+    stream_in_time();
+    urg_link_scan_at(&link_, now_us + 30000); /* mute 160 ms from now */
+    TEST_ASSERT_EQUAL_UINT32(120000, urg_link_pause_us(&link_, &seen));
+    urg_link_scan_at(&link_, now_us + 59999);
+    TEST_ASSERT_EQUAL_UINT32(149999, urg_link_pause_us(&link_, &seen));
+    urg_link_scan_at(&link_, now_us + 60000);
+    TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_, &seen));
+}
+
+/* The parser forgets octets of a line that is longer than its memory; what was told stays told. */
+void test_strange_octets_of_a_long_line_are_not_taken_back(void)
+{
+    scip_parser_t own;
+    urg_seen_t told = {.strange_count = 0};
+    scip_parser_init(&own);
+    for (uint32_t i = 0; i < 600; i++) {
+        (void)scip_parser_feed(&own, (octet_t)(i == 0 ? 0x80U : 'x'));
+        urg_seen_octets(&told, &own);
+        TEST_ASSERT_EQUAL_UINT32(1, told.strange_count);
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, scip_parser_strange(&own));
+}
