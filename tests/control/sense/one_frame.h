@@ -4,13 +4,12 @@
 
 #include "sense/sensed.h"
 
-static sense_t it;
 static command_t flown;
 static imu_sample_t frame;
 
 static inline void begin(void)
 {
-    sense_init(&it);
+    sensed_begin();
     flown = (command_t){.step_s = 0.025F, .off_ground = true, .ours = true, .authority_mps2_per_n = 1.4F};
     frame = (imu_sample_t){.ready = true, .has_acceleration = true, .down_mps2 = G_MPS2};
 }
@@ -22,7 +21,7 @@ static inline void tilt(float roll_rad, float pitch_rad)
     frame.median.roll_rad = roll_rad;
     frame.median.pitch_rad = pitch_rad;
     frame.level = frame.median;
-    tilt_step(&it.senses.tilt, &frame, 1U, 0.0F, 0.0F, 0U);
+    tilt_step(&senses.tilt, &frame, 1U, 0.0F, 0.0F, 0U);
 }
 
 static inline void feel(float up_mps2)
@@ -30,7 +29,7 @@ static inline void feel(float up_mps2)
     frame.sequence++;
     frame.arrival_us += 25000U;
     frame.down_mps2 = G_MPS2 + up_mps2;
-    sensed_frames(&it, &flown, &frame, 1U);
+    sensed_frames(&flown, &frame, 1U);
 }
 
 static inline void rock(float roll_rad, float pitch_rad)
@@ -44,16 +43,16 @@ static inline void rock(float roll_rad, float pitch_rad)
 static inline void hover(void)
 {
     begin();
-    it.senses.heights.known = it.senses.confirmation.proved = true;
-    it.senses.heights.height_m = it.senses.confirmation.near_m = 0.5F;
-    it.senses.heights.since_rise_s = 1.5F;
-    it.senses.heights.unmoved_s = 1.0F;
+    senses.heights.known = senses.confirmation.proved = true;
+    senses.heights.height_m = senses.confirmation.near_m = 0.5F;
+    senses.heights.since_rise_s = 1.5F;
+    senses.heights.unmoved_s = 1.0F;
     flown.wanted_m = 0.5F;
 }
 
 static inline void height(float height_m)
 {
-    sensed_height(&it, &flown, height_m, 0.1F, 0.0F);
+    sensed_height(&flown, height_m, 0.1F, 0.0F);
 }
 
 static inline void feel_at_once(float up_mps2)

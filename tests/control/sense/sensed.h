@@ -1,9 +1,10 @@
-/* The sensors for the tests of sense/: one frame, one cycle, one height at a time, in the order of
- * sense_step(). */
+/* The sensors one by one, and the verdict on them, for the tests of sense/: one frame, one cycle, one height at a
+ * time. How a cycle asks them: test_sense.c. */
 #ifndef TESTS_CONTROL_SENSED_H
 #define TESTS_CONTROL_SENSED_H
 
-#include "control/sense/sense.h"
+#include "control/sense/senses.h"
+#include "control/sense/verdict.h"
 #include "unity.h"
 
 #include <math.h>
@@ -14,43 +15,49 @@
 #define NEAR(expected, actual) TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, expected, actual)
 #define VERY_NEAR(expected, actual) TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, expected, actual)
 
-static inline void sensed_frames(sense_t *it, const command_t *flown, const imu_sample_t *frames,
-                                 uint16_t count)
+static senses_t senses;
+static verdict_t verdict;
+
+static inline void sensed_begin(void)
 {
-    senses_frames(&it->senses, flown, frames, count);
+    senses_init(&senses);
+    memset(&verdict, 0, sizeof verdict);
+}
+
+static inline void sensed_frames(const command_t *flown, const imu_sample_t *frames, uint16_t count)
+{
+    senses_frames(&senses, flown, frames, count);
     if (flown->grounded) {
-        verdict_rest(&it->verdict, &it->senses.accelerometer);
+        verdict_rest(&verdict, &senses.accelerometer);
     }
 }
 
-static inline void sensed_thrust(sense_t *it, const command_t *flown)
+static inline void sensed_thrust(const command_t *flown)
 {
     if (flown->ordered && flown->grounded) {
-        verdict_order(&it->verdict, &it->senses);
+        verdict_order(&verdict, &senses);
     }
-    senses_thrust(&it->senses, flown, (it->verdict.doubts & DOUBT_IMU) == 0U);
+    senses_thrust(&senses, flown, (verdict.doubts & DOUBT_IMU) == 0U);
 }
 
-static inline void sensed_height(sense_t *it, const command_t *flown, float height_m, float gap_s,
-                                 float age_s)
+static inline void sensed_height(const command_t *flown, float height_m, float gap_s, float age_s)
 {
-    const height_change_t change = senses_height(&it->senses, height_m, gap_s, age_s,
-                                                 (it->verdict.doubts & DOUBT_SIGHT) == 0U);
-    verdict_height(&it->verdict, &it->senses, flown, &change);
+    const height_change_t change = senses_height(&senses, height_m, gap_s, age_s,
+                                                 (verdict.doubts & DOUBT_SIGHT) == 0U);
+    verdict_height(&verdict, &senses, flown, &change);
 }
 
-static inline bool sensed_doubts(const sense_t *it, uint16_t doubt)
+static inline bool sensed_doubts(uint16_t doubt)
 {
-    return (it->verdict.doubts & doubt) != 0U;
+    return (verdict.doubts & doubt) != 0U;
 }
 
-static inline float sensed_felt_mps(const sense_t *it)
+static inline float sensed_felt_mps(void)
 {
-    const accelerometer_t *accelerometer = &it->senses.accelerometer;
+    const accelerometer_t *accelerometer = &senses.accelerometer;
 
-    return verdict_felt_valid(&it->verdict, &it->senses)
-               ? accelerometer->felt.speed_mps / accelerometer->shaken
-               : 0.0F;
+    return verdict_felt_valid(&verdict, &senses) ? accelerometer->felt.speed_mps / accelerometer->shaken
+                                                 : 0.0F;
 }
 
 #endif

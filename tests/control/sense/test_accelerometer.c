@@ -10,36 +10,36 @@ void tearDown(void) {}
 void test_the_felt_speed_is_the_integral_of_the_acceleration_without_the_bias(void)
 {
     feel(0.0F);
-    it.senses.accelerometer.bias_mps2 = 0.5F;
-    it.senses.accelerometer.felt = (witness_t){0};
+    senses.accelerometer.bias_mps2 = 0.5F;
+    senses.accelerometer.felt = (witness_t){0};
     feel(2.0F); /* trapezium: 1 m/s2 on the mean */
-    NEAR((1.0F - 0.5F) * 0.025F, it.senses.accelerometer.felt.speed_mps);
-    VERY_NEAR(-0.5F * 0.5F * 0.025F * 0.025F, it.senses.accelerometer.felt.off_m);
+    NEAR((1.0F - 0.5F) * 0.025F, senses.accelerometer.felt.speed_mps);
+    VERY_NEAR(-0.5F * 0.5F * 0.025F * 0.025F, senses.accelerometer.felt.off_m);
     for (int i = 0; i < 39; i++) {
         feel(2.0F);
     }
-    NEAR(0.0125F + 39.0F * 0.025F * 1.5F, it.senses.accelerometer.felt.speed_mps);
-    NEAR(1.0F, it.senses.accelerometer.felt.running_s);
+    NEAR(0.0125F + 39.0F * 0.025F * 1.5F, senses.accelerometer.felt.speed_mps);
+    NEAR(1.0F, senses.accelerometer.felt.running_s);
     /* v t + a t2 / 2 over the 0.975 s after the first step, and that step */
-    TEST_ASSERT_FLOAT_WITHIN(0.001F, -0.01219F - 0.71297F - 0.00016F, it.senses.accelerometer.felt.off_m);
-    TEST_ASSERT_FLOAT_WITHIN(0.03F, 0.75F, it.senses.accelerometer.felt.moved_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, -0.01219F - 0.71297F - 0.00016F, senses.accelerometer.felt.off_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.03F, 0.75F, senses.accelerometer.felt.moved_m);
     for (int i = 0; i < 50; i++) {
         feel(-3.0F);
     }
-    TEST_ASSERT_EQUAL_FLOAT(2.0F, it.senses.accelerometer.felt.running_s);
-    TEST_ASSERT_TRUE(it.senses.accelerometer.felt.moved_m > 1.0F); /* a way, not a place */
+    TEST_ASSERT_EQUAL_FLOAT(2.0F, senses.accelerometer.felt.running_s);
+    TEST_ASSERT_TRUE(senses.accelerometer.felt.moved_m > 1.0F); /* a way, not a place */
 }
 
 void test_frames_that_are_old_unfit_not_ready_or_without_accelerations_add_nothing(void)
 {
     feel(0.0F);
     feel(1.0F);
-    const witness_t before = it.senses.accelerometer.felt;
-    sensed_frames(&it, &flown, &frame, 1U);
-    TEST_ASSERT_EQUAL_FLOAT(before.speed_mps, it.senses.accelerometer.felt.speed_mps);
-    it.senses.tilt.unfit_sequence = 3U;
+    const witness_t before = senses.accelerometer.felt;
+    sensed_frames(&flown, &frame, 1U);
+    TEST_ASSERT_EQUAL_FLOAT(before.speed_mps, senses.accelerometer.felt.speed_mps);
+    senses.tilt.unfit_sequence = 3U;
     feel(1.0F);
-    TEST_ASSERT_EQUAL_FLOAT(before.speed_mps, it.senses.accelerometer.felt.speed_mps);
+    TEST_ASSERT_EQUAL_FLOAT(before.speed_mps, senses.accelerometer.felt.speed_mps);
     frame.ready = false;
     feel(1.0F);
     frame.ready = true;
@@ -49,12 +49,12 @@ void test_frames_that_are_old_unfit_not_ready_or_without_accelerations_add_nothi
     feel(200.1F);
     feel(-200.1F);
     feel(NAN);
-    TEST_ASSERT_EQUAL_FLOAT(before.speed_mps, it.senses.accelerometer.felt.speed_mps);
+    TEST_ASSERT_EQUAL_FLOAT(before.speed_mps, senses.accelerometer.felt.speed_mps);
     TEST_ASSERT_EQUAL_UINT32(5U,
-                             it.senses.accelerometer.sequence); /* that without accelerations told the tilt */
+                             senses.accelerometer.sequence); /* that without accelerations told the tilt */
     feel(199.0F);
-    TEST_ASSERT_EQUAL_UINT32(9U, it.senses.accelerometer.sequence);
-    NEAR(before.speed_mps + 100.0F * 0.175F, it.senses.accelerometer.felt.speed_mps);
+    TEST_ASSERT_EQUAL_UINT32(9U, senses.accelerometer.sequence);
+    NEAR(before.speed_mps + 100.0F * 0.175F, senses.accelerometer.felt.speed_mps);
 }
 
 void test_after_twelve_lost_frames_the_felt_speed_starts_from_the_thrusts(void)
@@ -64,17 +64,17 @@ void test_after_twelve_lost_frames_the_felt_speed_starts_from_the_thrusts(void)
             setUp();
             feel(0.0F);
             feel(1.0F);
-            it.senses.push.pushed = (witness_t){.speed_mps = 0.7F, .running_s = (warm != 0) ? 0.51F : 0.5F};
-            it.senses.accelerometer.rested_s = (float)more_us;
+            senses.push.pushed = (witness_t){.speed_mps = 0.7F, .running_s = (warm != 0) ? 0.51F : 0.5F};
+            senses.accelerometer.rested_s = (float)more_us;
             frame.arrival_us += 275000U + more_us;
             feel(2.0F);
             if (more_us == 0U) {
-                NEAR(0.0125F + 1.5F * 0.3F, it.senses.accelerometer.felt.speed_mps);
+                NEAR(0.0125F + 1.5F * 0.3F, senses.accelerometer.felt.speed_mps);
             } else {
-                TEST_ASSERT_EQUAL_FLOAT((warm != 0) ? 0.7F : 0.0F, it.senses.accelerometer.felt.speed_mps);
-                TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.running_s);
-                TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.rested_s);
-                NEAR(2.0F, it.senses.accelerometer.rest_mps2);
+                TEST_ASSERT_EQUAL_FLOAT((warm != 0) ? 0.7F : 0.0F, senses.accelerometer.felt.speed_mps);
+                TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.running_s);
+                TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.rested_s);
+                NEAR(2.0F, senses.accelerometer.rest_mps2);
             }
         }
     }
@@ -84,20 +84,20 @@ void test_at_rest_the_mean_is_the_bias_of_the_last_two_seconds(void)
 {
     flown.grounded = true;
     feel(0.0F);
-    it.senses.accelerometer.rested_s = it.senses.accelerometer.rest_mps2 = 0.0F;
+    senses.accelerometer.rested_s = senses.accelerometer.rest_mps2 = 0.0F;
     feel(0.4F);
-    NEAR(0.4F, it.senses.accelerometer.bias_mps2);
+    NEAR(0.4F, senses.accelerometer.bias_mps2);
     feel(0.8F);
-    NEAR(0.6F, it.senses.accelerometer.bias_mps2);
-    NEAR(0.6F, it.senses.accelerometer.rest_mps2);
-    NEAR(0.05F, it.senses.accelerometer.rested_s);
-    it.senses.accelerometer.rested_s = 2.0F;
+    NEAR(0.6F, senses.accelerometer.bias_mps2);
+    NEAR(0.6F, senses.accelerometer.rest_mps2);
+    NEAR(0.05F, senses.accelerometer.rested_s);
+    senses.accelerometer.rested_s = 2.0F;
     feel(1.0F);
-    TEST_ASSERT_EQUAL_FLOAT(2.0F, it.senses.accelerometer.rested_s);
-    NEAR(0.6F + 0.4F * 0.025F / 2.0F, it.senses.accelerometer.rest_mps2);
-    it.senses.accelerometer.felt.speed_mps = 1.0F;
+    TEST_ASSERT_EQUAL_FLOAT(2.0F, senses.accelerometer.rested_s);
+    NEAR(0.6F + 0.4F * 0.025F / 2.0F, senses.accelerometer.rest_mps2);
+    senses.accelerometer.felt.speed_mps = 1.0F;
     feel(1.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.speed_mps);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.speed_mps);
 }
 
 /* One frame at rest, whose mean is then rest_mps2. */
@@ -105,12 +105,12 @@ static uint16_t rested(uint16_t doubts, float rested_s, float rest_mps2)
 {
     setUp();
     flown.grounded = true;
-    it.verdict.doubts = doubts;
-    it.senses.accelerometer.time_us = frame.arrival_us;
-    it.senses.accelerometer.rested_s = rested_s;
-    it.senses.accelerometer.rest_mps2 = rest_mps2;
+    verdict.doubts = doubts;
+    senses.accelerometer.time_us = frame.arrival_us;
+    senses.accelerometer.rested_s = rested_s;
+    senses.accelerometer.rest_mps2 = rest_mps2;
     feel(rest_mps2);
-    return it.verdict.doubts;
+    return verdict.doubts;
 }
 
 void test_an_unfit_accelerometer_is_one_and_a_half_off_for_a_second(void)
@@ -131,19 +131,19 @@ void test_a_pilot_that_lifts_the_vehicle_spoils_the_rest(void)
     for (int standing = 0; standing < 2; standing++) {
         setUp();
         feel(0.0F);
-        it.senses.accelerometer.rested_s = 1.0F;
-        it.senses.accelerometer.bias_mps2 = 0.3F;
-        it.senses.heights.rise_mps = 0.2F;
-        it.senses.accelerometer.felt.off_m = 0.1F;
+        senses.accelerometer.rested_s = 1.0F;
+        senses.accelerometer.bias_mps2 = 0.3F;
+        senses.heights.rise_mps = 0.2F;
+        senses.accelerometer.felt.off_m = 0.1F;
         flown.standing = standing != 0;
         feel(0.0F);
-        TEST_ASSERT_EQUAL_FLOAT((standing != 0) ? 0.3F : 0.0F, it.senses.accelerometer.bias_mps2);
-        TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.rested_s);
+        TEST_ASSERT_EQUAL_FLOAT((standing != 0) ? 0.3F : 0.0F, senses.accelerometer.bias_mps2);
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.rested_s);
         if (standing == 0) {
-            NEAR(0.2F, it.senses.accelerometer.felt.speed_mps);
-            it.senses.heights.rise_mps = 5.0F;
+            NEAR(0.2F, senses.accelerometer.felt.speed_mps);
+            senses.heights.rise_mps = 5.0F;
             feel(0.0F);
-            NEAR(0.2F, it.senses.accelerometer.felt.speed_mps);
+            NEAR(0.2F, senses.accelerometer.felt.speed_mps);
         }
     }
 }
@@ -152,26 +152,26 @@ void test_while_standing_the_felt_speed_dies_within_a_second_and_does_not_count(
 {
     flown.standing = true;
     feel(0.0F);
-    it.senses.accelerometer.felt.speed_mps = 1.0F;
-    it.senses.accelerometer.felt.running_s = 2.0F;
+    senses.accelerometer.felt.speed_mps = 1.0F;
+    senses.accelerometer.felt.running_s = 2.0F;
     feel(0.0F);
-    NEAR(0.975F, it.senses.accelerometer.felt.speed_mps);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.running_s);
+    NEAR(0.975F, senses.accelerometer.felt.speed_mps);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.running_s);
 }
 
 void test_corrections_by_the_heights_are_summed_and_fade_in_two_seconds(void)
 {
     hover();
-    it.senses.accelerometer.felt = (witness_t){.running_s = 2.0F};
-    it.senses.accelerometer.felt.off_m = 0.3F;
-    it.senses.accelerometer.pulled_m_s = 0.4F;
+    senses.accelerometer.felt = (witness_t){.running_s = 2.0F};
+    senses.accelerometer.felt.off_m = 0.3F;
+    senses.accelerometer.pulled_m_s = 0.4F;
     height(0.5F);
     TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.4F + 0.1F * 0.3F - 0.4F * 0.1F / 2.0F,
-                             it.senses.accelerometer.pulled_m_s);
-    it.verdict.doubts = DOUBT_SIGHT;
-    it.senses.accelerometer.felt.off_m = 0.3F;
+                             senses.accelerometer.pulled_m_s);
+    verdict.doubts = DOUBT_SIGHT;
+    senses.accelerometer.felt.off_m = 0.3F;
     height(0.5F);
-    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.41F * 0.95F, it.senses.accelerometer.pulled_m_s);
+    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.41F * 0.95F, senses.accelerometer.pulled_m_s);
 }
 
 void test_a_limit_at_rest_belongs_to_the_state_before(void)
@@ -188,11 +188,11 @@ void test_a_limit_at_rest_belongs_to_the_state_before(void)
         setUp();
         flown.grounded = true;
         feel(0.0F);
-        it.verdict.doubts = rows[i].doubts;
-        it.senses.accelerometer.rested_s = rows[i].rested_s;
-        it.senses.accelerometer.rest_mps2 = rows[i].rest_mps2;
+        verdict.doubts = rows[i].doubts;
+        senses.accelerometer.rested_s = rows[i].rested_s;
+        senses.accelerometer.rest_mps2 = rows[i].rest_mps2;
         feel_at_once(rows[i].rest_mps2);
-        TEST_ASSERT_EQUAL_UINT16(rows[i].then, it.verdict.doubts);
+        TEST_ASSERT_EQUAL_UINT16(rows[i].then, verdict.doubts);
     }
 }
 
@@ -202,71 +202,71 @@ static void carry(float unseen_s, float sway_rad2)
     setUp();
     flown.grounded = true;
     feel(0.0F);
-    it.senses.heights.unseen_s = unseen_s;
-    it.senses.sway.sway_rad2 = it.senses.sway.swing_rad2 = sway_rad2;
-    it.senses.sway.unrocked_s = 0.0F;
-    it.senses.accelerometer.in_hands_s = 0.5F;
-    it.senses.accelerometer.rested_s = 1.0F;
-    it.senses.accelerometer.rest_mps2 = it.senses.accelerometer.bias_mps2 = 0.3F;
-    it.senses.accelerometer.kept_bias_mps2[0] = 0.1F;
-    it.senses.accelerometer.kept_bias_mps2[1] = 0.2F;
-    it.senses.accelerometer.felt.speed_mps = 0.4F;
+    senses.heights.unseen_s = unseen_s;
+    senses.sway.sway_rad2 = senses.sway.swing_rad2 = sway_rad2;
+    senses.sway.unrocked_s = 0.0F;
+    senses.accelerometer.in_hands_s = 0.5F;
+    senses.accelerometer.rested_s = 1.0F;
+    senses.accelerometer.rest_mps2 = senses.accelerometer.bias_mps2 = 0.3F;
+    senses.accelerometer.kept_bias_mps2[0] = 0.1F;
+    senses.accelerometer.kept_bias_mps2[1] = 0.2F;
+    senses.accelerometer.felt.speed_mps = 0.4F;
 }
 
 void test_a_vehicle_that_sways_without_heights_is_carried_and_does_not_rest(void)
 {
     carry(1.48F, 5.0e-4F);
     feel(2.0F); /* on the mean 1 m/s2 */
-    NEAR(0.525F, it.senses.accelerometer.in_hands_s);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.rested_s);
-    NEAR(0.4F + 0.9F * 0.025F - 0.4F * 0.025F / 2.0F, it.senses.accelerometer.felt.speed_mps);
-    VERY_NEAR(0.1F + 0.9F * 0.025F / 20.0F, it.senses.accelerometer.bias_mps2); /* the one kept from before */
+    NEAR(0.525F, senses.accelerometer.in_hands_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.rested_s);
+    NEAR(0.4F + 0.9F * 0.025F - 0.4F * 0.025F / 2.0F, senses.accelerometer.felt.speed_mps);
+    VERY_NEAR(0.1F + 0.9F * 0.025F / 20.0F, senses.accelerometer.bias_mps2); /* the one kept from before */
     feel(2.0F);
     VERY_NEAR(0.1F + 0.9F * 0.025F / 20.0F + (2.0F - 0.101125F) * 0.025F / 20.0F,
-              it.senses.accelerometer.bias_mps2);
+              senses.accelerometer.bias_mps2);
     carry(1.47F, 5.0e-4F);
     feel(0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.in_hands_s);
-    NEAR(1.025F, it.senses.accelerometer.rested_s);
-    NEAR(1.495F, it.senses.heights.unseen_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.in_hands_s);
+    NEAR(1.025F, senses.accelerometer.rested_s);
+    NEAR(1.495F, senses.heights.unseen_s);
     carry(1.9F, 3.9e-4F);
     feel(0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.in_hands_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.in_hands_s);
 }
 
 void test_who_tilts_it_by_hand_does_not_fly_it(void)
 {
     carry(1.9F, 0.0121F);
     feel(0.0F);
-    NEAR(0.525F, it.senses.accelerometer.in_hands_s); /* a 60th of the sway is forgotten with each frame */
+    NEAR(0.525F, senses.accelerometer.in_hands_s); /* a 60th of the sway is forgotten with each frame */
     carry(1.9F, 0.0123F);
     feel(0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.in_hands_s);
-    it.senses.accelerometer.in_hands_s = 1.5F;
-    TEST_ASSERT_FALSE(accelerometer_is_in_hands(&it.senses.accelerometer));
-    it.senses.accelerometer.in_hands_s = 1.51F;
-    TEST_ASSERT_TRUE(accelerometer_is_in_hands(&it.senses.accelerometer));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.in_hands_s);
+    senses.accelerometer.in_hands_s = 1.5F;
+    TEST_ASSERT_FALSE(accelerometer_is_in_hands(&senses.accelerometer));
+    senses.accelerometer.in_hands_s = 1.51F;
+    TEST_ASSERT_TRUE(accelerometer_is_in_hands(&senses.accelerometer));
     carry(1.9F, 5.0e-4F);
-    it.senses.accelerometer.in_hands_s = 1.99F;
+    senses.accelerometer.in_hands_s = 1.99F;
     feel(0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(2.0F, it.senses.accelerometer.in_hands_s);
-    it.senses.heights.unseen_s = 1.99F;
+    TEST_ASSERT_EQUAL_FLOAT(2.0F, senses.accelerometer.in_hands_s);
+    senses.heights.unseen_s = 1.99F;
     feel(0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(2.0F, it.senses.heights.unseen_s);
+    TEST_ASSERT_EQUAL_FLOAT(2.0F, senses.heights.unseen_s);
     height(0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.heights.unseen_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.unseen_s);
 }
 
 void test_the_bias_of_three_to_four_seconds_ago_is_kept(void)
 {
     carry(0.0F, 0.0F);
-    it.senses.accelerometer.block_s = 0.97F;
+    senses.accelerometer.block_s = 0.97F;
     feel(0.3F);
-    NEAR(0.995F, it.senses.accelerometer.block_s);
-    NEAR(0.1F, it.senses.accelerometer.kept_bias_mps2[0]);
+    NEAR(0.995F, senses.accelerometer.block_s);
+    NEAR(0.1F, senses.accelerometer.kept_bias_mps2[0]);
     feel(0.3F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.block_s);
-    NEAR(0.2F, it.senses.accelerometer.kept_bias_mps2[0]);
-    NEAR(0.0F, it.senses.accelerometer.kept_bias_mps2[2]);
-    NEAR(0.3F, it.senses.accelerometer.kept_bias_mps2[3]);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.block_s);
+    NEAR(0.2F, senses.accelerometer.kept_bias_mps2[0]);
+    NEAR(0.0F, senses.accelerometer.kept_bias_mps2[2]);
+    NEAR(0.3F, senses.accelerometer.kept_bias_mps2[3]);
 }

@@ -21,38 +21,38 @@ static void scan_of(float slope_mm, float noise_mm)
         slants_mm[k] = 700.0F + slope_mm * ((float)k - 5.5F) + ((k % 2 == 0) ? noise_mm : -noise_mm);
     }
     setUp();
-    it.senses.beam.slants_mm[0] = 99.0F; /* drops out */
-    memcpy(it.senses.beam.slants_mm + 1, slants_mm, sizeof slants_mm - sizeof slants_mm[0]);
-    it.senses.beam.scans = BEAM_SCANS - 1U;
-    it.senses.beam.white = white_before;
-    it.senses.heights.height_m = scan_height_m;
-    it.senses.sway.sway_rad2 = sway_before_rad2;
+    senses.beam.slants_mm[0] = 99.0F; /* drops out */
+    memcpy(senses.beam.slants_mm + 1, slants_mm, sizeof slants_mm - sizeof slants_mm[0]);
+    senses.beam.scans = BEAM_SCANS - 1U;
+    senses.beam.white = white_before;
+    senses.heights.height_m = scan_height_m;
+    senses.sway.sway_rad2 = sway_before_rad2;
     TEST_ASSERT_TRUE(senses_scan(
-        &it.senses,
+        &senses,
         &(altitude_t){.height_mm = 500.0F, .slant_mm = slants_mm[BEAM_SCANS - 1U], .spread_mm = 9.0F}));
-    TEST_ASSERT_EQUAL_UINT16(BEAM_SCANS, it.senses.beam.scans);
+    TEST_ASSERT_EQUAL_UINT16(BEAM_SCANS, senses.beam.scans);
 }
 
 /* The sample variance of noise a by turns is 12/11 a2. */
 void test_a_slant_below_two_millimetres_rms_is_rigid(void)
 {
     scan_of(0.0F, 1.90F);
-    TEST_ASSERT_EQUAL_UINT16(1U, it.senses.beam.rigid);
-    TEST_ASSERT_EQUAL_UINT16(1U, it.senses.beam.still);
+    TEST_ASSERT_EQUAL_UINT16(1U, senses.beam.rigid);
+    TEST_ASSERT_EQUAL_UINT16(1U, senses.beam.still);
     scan_of(0.0F, 1.93F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.beam.rigid);
-    TEST_ASSERT_EQUAL_UINT16(1U, it.senses.beam.still);
+    TEST_ASSERT_EQUAL_UINT16(0U, senses.beam.rigid);
+    TEST_ASSERT_EQUAL_UINT16(1U, senses.beam.still);
     scan_of(0.5F, 0.1F); /* rigid, and hardly noise */
-    TEST_ASSERT_EQUAL_UINT16(1U, it.senses.beam.rigid);
-    TEST_ASSERT_EQUAL_UINT16(1U, it.senses.beam.still);
+    TEST_ASSERT_EQUAL_UINT16(1U, senses.beam.rigid);
+    TEST_ASSERT_EQUAL_UINT16(1U, senses.beam.still);
 }
 
 void test_a_slant_beyond_eight_millimetres_rms_is_not_still(void)
 {
     scan_of(0.0F, 7.6F);
-    TEST_ASSERT_EQUAL_UINT16(1U, it.senses.beam.still);
+    TEST_ASSERT_EQUAL_UINT16(1U, senses.beam.still);
     scan_of(0.0F, 7.7F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.beam.still);
+    TEST_ASSERT_EQUAL_UINT16(0U, senses.beam.still);
 }
 
 /* Noise by second differences 16/6 a2; variance with a ramp s (143 s2 + 12 a2 - 12 a s) / 11. With a = 2 mm
@@ -60,10 +60,10 @@ void test_a_slant_beyond_eight_millimetres_rms_is_not_still(void)
 void test_a_slant_is_still_when_noise_makes_two_fifths_of_its_variance(void)
 {
     scan_of(1.38F, 2.0F);
-    TEST_ASSERT_EQUAL_UINT16(1U, it.senses.beam.still);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.beam.rigid);
+    TEST_ASSERT_EQUAL_UINT16(1U, senses.beam.still);
+    TEST_ASSERT_EQUAL_UINT16(0U, senses.beam.rigid);
     scan_of(1.41F, 2.0F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.beam.still);
+    TEST_ASSERT_EQUAL_UINT16(0U, senses.beam.still);
 }
 
 void test_less_than_twelve_scans_say_nothing_and_a_moving_one_begins_anew(void)
@@ -71,58 +71,58 @@ void test_less_than_twelve_scans_say_nothing_and_a_moving_one_begins_anew(void)
     for (int scan = 1; scan <= 40; scan++) {
         const altitude_t altitude = {
             .height_mm = 500.0F, .slant_mm = 700.0F, .spread_mm = 9.0F + (float)(scan % 2)};
-        TEST_ASSERT_TRUE(senses_scan(&it.senses, &altitude));
+        TEST_ASSERT_TRUE(senses_scan(&senses, &altitude));
         const int still = (scan < 12) ? 0 : (scan < 27) ? scan - 11 : 16;
-        TEST_ASSERT_EQUAL_UINT16(still, it.senses.beam.still);
-        TEST_ASSERT_EQUAL_UINT16(still, it.senses.beam.rigid);
-        TEST_ASSERT_EQUAL(still > 8, beam_is_still(&it.senses.beam));
+        TEST_ASSERT_EQUAL_UINT16(still, senses.beam.still);
+        TEST_ASSERT_EQUAL_UINT16(still, senses.beam.rigid);
+        TEST_ASSERT_EQUAL(still > 8, beam_is_still(&senses.beam));
     }
-    TEST_ASSERT_TRUE(senses_scan(&it.senses, &(altitude_t){.slant_mm = 800.0F, .spread_mm = 9.0F}));
-    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.beam.still);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.beam.rigid);
+    TEST_ASSERT_TRUE(senses_scan(&senses, &(altitude_t){.slant_mm = 800.0F, .spread_mm = 9.0F}));
+    TEST_ASSERT_EQUAL_UINT16(0U, senses.beam.still);
+    TEST_ASSERT_EQUAL_UINT16(0U, senses.beam.rigid);
 }
 
 void test_one_ray_has_no_spread_and_is_neither_a_copy_nor_a_slant(void)
 {
     const altitude_t altitude = {.height_mm = 500.0F, .slant_mm = 700.0F};
     for (int i = 0; i < 4; i++) {
-        TEST_ASSERT_TRUE(senses_scan(&it.senses, &altitude));
+        TEST_ASSERT_TRUE(senses_scan(&senses, &altitude));
     }
-    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.beam.scans);
+    TEST_ASSERT_EQUAL_UINT16(0U, senses.beam.scans);
     const altitude_t narrow = {.height_mm = 500.0F, .slant_mm = 700.0F, .spread_mm = 0.0005F};
-    TEST_ASSERT_TRUE(senses_scan(&it.senses, &narrow)); /* the smallest spread is one */
-    TEST_ASSERT_FALSE(senses_scan(&it.senses, &narrow));
-    TEST_ASSERT_EQUAL_UINT16(2U, it.senses.beam.scans);
+    TEST_ASSERT_TRUE(senses_scan(&senses, &narrow)); /* the smallest spread is one */
+    TEST_ASSERT_FALSE(senses_scan(&senses, &narrow));
+    TEST_ASSERT_EQUAL_UINT16(2U, senses.beam.scans);
 }
 
 void test_heights_out_of_reach_leave_the_slants_alone(void)
 {
     static const float heights_mm[] = {-5001.0F, 5001.0F, NAN, -5000.0F, 5000.0F};
     for (int i = 0; i < 5; i++) {
-        (void)senses_scan(&it.senses,
+        (void)senses_scan(&senses,
                           &(altitude_t){.height_mm = heights_mm[i], .slant_mm = (float)i, .spread_mm = 1.0F});
-        TEST_ASSERT_EQUAL_UINT16((i < 3) ? 0 : i - 2, it.senses.beam.scans);
+        TEST_ASSERT_EQUAL_UINT16((i < 3) ? 0 : i - 2, senses.beam.scans);
     }
 }
 
 void test_the_limits_of_a_height_belong_to_it(void)
 {
-    TEST_ASSERT_TRUE(senses_scan(&it.senses, &(altitude_t){.height_mm = 5000.0F}));
-    TEST_ASSERT_TRUE(senses_scan(&it.senses, &(altitude_t){.height_mm = -50.0F}));
-    TEST_ASSERT_FALSE(senses_scan(&it.senses, &(altitude_t){.height_mm = -50.1F}));
-    TEST_ASSERT_TRUE(it.senses.beam.below_ground);
-    TEST_ASSERT_TRUE(senses_scan(&it.senses, &(altitude_t){.height_mm = -30.0F}));
-    TEST_ASSERT_FALSE(it.senses.beam.below_ground);
+    TEST_ASSERT_TRUE(senses_scan(&senses, &(altitude_t){.height_mm = 5000.0F}));
+    TEST_ASSERT_TRUE(senses_scan(&senses, &(altitude_t){.height_mm = -50.0F}));
+    TEST_ASSERT_FALSE(senses_scan(&senses, &(altitude_t){.height_mm = -50.1F}));
+    TEST_ASSERT_TRUE(senses.beam.below_ground);
+    TEST_ASSERT_TRUE(senses_scan(&senses, &(altitude_t){.height_mm = -30.0F}));
+    TEST_ASSERT_FALSE(senses.beam.below_ground);
 }
 
 void test_copies_are_counted_to_a_thousand(void)
 {
     const altitude_t altitude = {.height_mm = 500.0F, .slant_mm = 700.0F, .spread_mm = 9.0F};
-    (void)senses_scan(&it.senses, &altitude);
-    it.senses.beam.copies = 998U;
+    (void)senses_scan(&senses, &altitude);
+    senses.beam.copies = 998U;
     for (int i = 0; i < 3; i++) {
-        TEST_ASSERT_FALSE(senses_scan(&it.senses, &altitude));
-        TEST_ASSERT_EQUAL_UINT16((i == 0) ? 999U : 1000U, it.senses.beam.copies);
+        TEST_ASSERT_FALSE(senses_scan(&senses, &altitude));
+        TEST_ASSERT_EQUAL_UINT16((i == 0) ? 999U : 1000U, senses.beam.copies);
     }
 }
 
@@ -137,14 +137,14 @@ void test_scans_of_noise_count_while_the_tilt_sways_and_others_count_back(void)
         white_before = rows[i].before;
         sway_before_rad2 = rows[i].sway_rad2;
         scan_of(0.0F, rows[i].noise_mm);
-        TEST_ASSERT_EQUAL_UINT16(rows[i].after, it.senses.beam.white);
+        TEST_ASSERT_EQUAL_UINT16(rows[i].after, senses.beam.white);
     }
     for (int low = 0; low < 2; low++) { /* so low the vehicle may touch the ground */
         white_before = 5U;
         sway_before_rad2 = 4.1e-4F;
         scan_height_m = (low == 0) ? 0.081F : 0.079F;
         scan_of(0.0F, 5.0F);
-        TEST_ASSERT_EQUAL_UINT16((low == 0) ? 6U : 0U, it.senses.beam.white);
+        TEST_ASSERT_EQUAL_UINT16((low == 0) ? 6U : 0U, senses.beam.white);
     }
     white_before = 0U;
     sway_before_rad2 = 0.0F;
@@ -159,8 +159,8 @@ void test_a_step_restarts_the_slants_and_a_sensor_without_spread_has_none(void)
     } rows[] = {{0.7F, 12U, 1U}, {0.3F, 12U, 1U}, {0.55F, 12U, 12U}, {0.7F, 0U, 0U}};
     for (int i = 0; i < 4; i++) {
         hover();
-        it.senses.beam.scans = rows[i].before;
+        senses.beam.scans = rows[i].before;
         height(rows[i].height_m);
-        TEST_ASSERT_EQUAL_UINT16(rows[i].after, it.senses.beam.scans);
+        TEST_ASSERT_EQUAL_UINT16(rows[i].after, senses.beam.scans);
     }
 }

@@ -10,37 +10,37 @@ void tearDown(void) {}
 void test_a_step_towards_the_vehicle_is_unconfirmed_until_twelve_centimetres_of_climb(void)
 {
     hover();
-    it.senses.confirmation.quiet_s = 0.3F;
+    senses.confirmation.quiet_s = 0.3F;
     height(0.3F);
-    TEST_ASSERT_TRUE(it.senses.confirmation.unconfirmed);
-    TEST_ASSERT_EQUAL_FLOAT(0.3F, it.senses.confirmation.near_m);
+    TEST_ASSERT_TRUE(senses.confirmation.unconfirmed);
+    TEST_ASSERT_EQUAL_FLOAT(0.3F, senses.confirmation.near_m);
     height(0.36F);
     height(0.419F);
-    TEST_ASSERT_TRUE(it.senses.confirmation.unconfirmed);
+    TEST_ASSERT_TRUE(senses.confirmation.unconfirmed);
     height(0.421F);
-    TEST_ASSERT_FALSE(it.senses.confirmation.unconfirmed);
+    TEST_ASSERT_FALSE(senses.confirmation.unconfirmed);
 }
 
 void test_a_step_away_from_the_vehicle_confirms_at_once(void)
 {
     hover();
-    it.senses.confirmation.unconfirmed = true;
-    it.senses.confirmation.near_m = 5.0F;
+    senses.confirmation.unconfirmed = true;
+    senses.confirmation.near_m = 5.0F;
     height(0.595F);
-    TEST_ASSERT_TRUE(it.senses.confirmation.unconfirmed);
+    TEST_ASSERT_TRUE(senses.confirmation.unconfirmed);
     height(0.70F);
-    TEST_ASSERT_FALSE(it.senses.confirmation.unconfirmed);
+    TEST_ASSERT_FALSE(senses.confirmation.unconfirmed);
 }
 
 void test_a_law_that_is_content_for_a_second_confirms(void)
 {
     for (int i = 0; i < 2; i++) {
         hover();
-        it.senses.confirmation.unconfirmed = true;
-        it.senses.confirmation.quiet_s = (i == 0) ? 1.0F : 1.01F;
+        senses.confirmation.unconfirmed = true;
+        senses.confirmation.quiet_s = (i == 0) ? 1.0F : 1.01F;
         height(0.5F);
-        TEST_ASSERT_EQUAL(i == 0, it.senses.confirmation.unconfirmed);
-        TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.confirmation.quiet_s); /* the law wants to climb */
+        TEST_ASSERT_EQUAL(i == 0, senses.confirmation.unconfirmed);
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.confirmation.quiet_s); /* the law wants to climb */
     }
 }
 
@@ -48,11 +48,11 @@ void test_a_slant_of_noise_is_no_contentment(void)
 {
     for (uint16_t still = 0U; still < 2U; still++) {
         hover();
-        it.senses.confirmation.quiet_s = 0.2F;
-        it.senses.beam.still = still;
+        senses.confirmation.quiet_s = 0.2F;
+        senses.beam.still = still;
         flown.wanted_m = 0.0F;
         height(0.5F);
-        NEAR(still == 0U ? 0.3F : 0.0F, it.senses.confirmation.quiet_s);
+        NEAR(still == 0U ? 0.3F : 0.0F, senses.confirmation.quiet_s);
     }
 }
 
@@ -64,11 +64,11 @@ void test_a_slant_with_a_step_in_it_proves_no_contentment_until_twelve_scans_lat
     } rows[] = {{0U, 0.3F}, {1U, 0.0F}, {11U, 0.0F}, {12U, 0.3F}};
     for (int i = 0; i < 4; i++) {
         hover();
-        it.senses.confirmation.quiet_s = 0.2F;
-        it.senses.beam.scans = rows[i].scans;
+        senses.confirmation.quiet_s = 0.2F;
+        senses.beam.scans = rows[i].scans;
         flown.wanted_m = 0.0F;
         height(0.5F);
-        NEAR(rows[i].quiet_s, it.senses.confirmation.quiet_s);
+        NEAR(rows[i].quiet_s, senses.confirmation.quiet_s);
     }
 }
 
@@ -82,9 +82,9 @@ void test_the_ground_is_the_latest_height_in_state_ground_but_none_that_a_pilot_
         hover();
         flown.grounded = rows[i].grounded;
         flown.standing = true;
-        it.senses.confirmation.ground_m = -0.01F;
+        senses.confirmation.ground_m = -0.01F;
         height(rows[i].height_m);
-        NEAR(rows[i].ground_m, it.senses.confirmation.ground_m);
+        NEAR(rows[i].ground_m, senses.confirmation.ground_m);
     }
 }
 
@@ -92,11 +92,11 @@ void test_a_jump_upwards_is_no_first_climb(void)
 {
     for (int proved = 0; proved < 2; proved++) {
         hover();
-        it.senses.confirmation.unconfirmed = true;
-        it.senses.confirmation.proved = proved != 0;
+        senses.confirmation.unconfirmed = true;
+        senses.confirmation.proved = proved != 0;
         height(0.7F);
-        TEST_ASSERT_EQUAL(proved == 0, it.senses.confirmation.unconfirmed);
-        NEAR(proved == 0 ? 0.7F : 0.5F, it.senses.confirmation.near_m);
+        TEST_ASSERT_EQUAL(proved == 0, senses.confirmation.unconfirmed);
+        NEAR(proved == 0 ? 0.7F : 0.5F, senses.confirmation.near_m);
     }
 }
 
@@ -104,15 +104,15 @@ void test_a_step_towards_the_vehicle_forgets_that_the_heights_showed_more(void)
 {
     for (int sinks = 0; sinks < 2; sinks++) {
         hover();
-        it.senses.accelerometer.felt.running_s = it.senses.push.pushed.running_s = 2.0F;
-        it.senses.accelerometer.felt.off_m = (sinks == 0) ? 0.2F : -0.2F;
-        it.senses.push.pushed.off_m = (sinks == 0) ? 0.3F : -0.3F;
+        senses.accelerometer.felt.running_s = senses.push.pushed.running_s = 2.0F;
+        senses.accelerometer.felt.off_m = (sinks == 0) ? 0.2F : -0.2F;
+        senses.push.pushed.off_m = (sinks == 0) ? 0.3F : -0.3F;
         height(0.3F);
-        TEST_ASSERT_TRUE(it.senses.confirmation.unconfirmed);
+        TEST_ASSERT_TRUE(senses.confirmation.unconfirmed);
         TEST_ASSERT_FLOAT_WITHIN(0.002F, (sinks == 0) ? 0.0F : -0.164F,
-                                 it.senses.accelerometer.felt.off_m); /* 1.8 1/s of 0.1 s */
+                                 senses.accelerometer.felt.off_m); /* 1.8 1/s of 0.1 s */
         TEST_ASSERT_FLOAT_WITHIN(0.002F, (sinks == 0) ? 0.0F : -0.288F,
-                                 it.senses.push.pushed.off_m); /* 0.4 1/s */
+                                 senses.push.pushed.off_m); /* 0.4 1/s */
     }
 }
 
@@ -121,44 +121,44 @@ void test_a_law_is_content_below_a_decimetre_of_wanted_climb(void)
     static const float rows[][2] = {{0.09F, 0.3F}, {0.10F, 0.0F}, {0.2F, 0.0F}, {-1.0F, 0.3F}, {NAN, 0.0F}};
     for (int i = 0; i < 5; i++) {
         hover();
-        it.senses.confirmation.quiet_s = 0.2F;
+        senses.confirmation.quiet_s = 0.2F;
         flown.wanted_m = rows[i][0];
         height(0.5F);
-        NEAR(rows[i][1], it.senses.confirmation.quiet_s);
+        NEAR(rows[i][1], senses.confirmation.quiet_s);
     }
 }
 
 void test_the_first_climb_proves_the_heights_and_starts_the_pushed_speed_from_them(void)
 {
     hover();
-    it.senses.confirmation.proved = false;
-    it.senses.confirmation.unconfirmed = true;
-    it.senses.confirmation.near_m = 0.4F;
-    it.senses.push.pushed = (witness_t){.speed_mps = 2.0F, .off_m = 0.3F, .running_s = 1.0F};
-    it.senses.heights.rise_mps = 0.25F;
-    it.senses.accelerometer.felt.off_m = 0.2F;
+    senses.confirmation.proved = false;
+    senses.confirmation.unconfirmed = true;
+    senses.confirmation.near_m = 0.4F;
+    senses.push.pushed = (witness_t){.speed_mps = 2.0F, .off_m = 0.3F, .running_s = 1.0F};
+    senses.heights.rise_mps = 0.25F;
+    senses.accelerometer.felt.off_m = 0.2F;
     height(0.521F);
-    TEST_ASSERT_TRUE(it.senses.confirmation.proved);
-    NEAR(0.25F, it.senses.push.pushed.speed_mps);
-    NEAR(0.021F, it.senses.push.pushed.seen_m);
-    NEAR(0.021F, it.senses.accelerometer.felt.seen_m);
+    TEST_ASSERT_TRUE(senses.confirmation.proved);
+    NEAR(0.25F, senses.push.pushed.speed_mps);
+    NEAR(0.021F, senses.push.pushed.seen_m);
+    NEAR(0.021F, senses.accelerometer.felt.seen_m);
     hover();
-    it.senses.confirmation.unconfirmed = true; /* proved before: the witness knows better */
-    it.senses.confirmation.near_m = 0.3F;
-    it.senses.push.pushed = (witness_t){.speed_mps = 2.0F, .running_s = 1.0F};
+    senses.confirmation.unconfirmed = true; /* proved before: the witness knows better */
+    senses.confirmation.near_m = 0.3F;
+    senses.push.pushed = (witness_t){.speed_mps = 2.0F, .running_s = 1.0F};
     height(0.5F);
-    TEST_ASSERT_EQUAL_FLOAT(2.0F, it.senses.push.pushed.speed_mps);
+    TEST_ASSERT_EQUAL_FLOAT(2.0F, senses.push.pushed.speed_mps);
 }
 
 void test_standing_takes_the_proof_back(void)
 {
     hover();
-    it.senses.standing = true;
-    it.senses.confirmation.terrain_fell = true;
+    senses.standing = true;
+    senses.confirmation.terrain_fell = true;
     height(0.5F);
-    TEST_ASSERT_FALSE(it.senses.confirmation.proved);
-    TEST_ASSERT_FALSE(it.senses.confirmation.terrain_fell);
-    TEST_ASSERT_TRUE(it.senses.confirmation.unconfirmed);
+    TEST_ASSERT_FALSE(senses.confirmation.proved);
+    TEST_ASSERT_FALSE(senses.confirmation.terrain_fell);
+    TEST_ASSERT_TRUE(senses.confirmation.unconfirmed);
 }
 
 /* The height falls back to back_m, after_s after a step up from 0.5 to 0.8 m. */
@@ -166,14 +166,14 @@ static bool unconfirmed_after(float back_m, int heights)
 {
     hover();
     height(0.8F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.heights.since_rise_s);
-    TEST_ASSERT_EQUAL_FLOAT(0.5F, it.senses.heights.before_rise_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.since_rise_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.5F, senses.heights.before_rise_m);
     for (int i = 1; i < heights; i++) {
         height(0.8F);
-        NEAR(0.1F * (float)i, it.senses.heights.since_rise_s);
+        NEAR(0.1F * (float)i, senses.heights.since_rise_s);
     }
     height(back_m);
-    return it.senses.confirmation.unconfirmed;
+    return senses.confirmation.unconfirmed;
 }
 
 void test_a_glitch_is_short_and_ends_where_it_began(void)
@@ -188,67 +188,67 @@ void test_a_glitch_is_short_and_ends_where_it_began(void)
     for (int i = 0; i < 20; i++) {
         height(0.5F);
     }
-    TEST_ASSERT_EQUAL_FLOAT(1.5F, it.senses.heights.since_rise_s);
+    TEST_ASSERT_EQUAL_FLOAT(1.5F, senses.heights.since_rise_s);
 }
 
 void test_deep_is_a_fall_of_the_terrain_beyond_forty_centimetres(void)
 {
     hover();
     height(0.895F);
-    TEST_ASSERT_FALSE(it.senses.confirmation.terrain_fell);
+    TEST_ASSERT_FALSE(senses.confirmation.terrain_fell);
     hover();
     height(0.905F);
-    TEST_ASSERT_TRUE(it.senses.confirmation.terrain_fell);
+    TEST_ASSERT_TRUE(senses.confirmation.terrain_fell);
     height(0.84F);
     height(0.786F);
-    TEST_ASSERT_TRUE(it.senses.confirmation.terrain_fell);
+    TEST_ASSERT_TRUE(senses.confirmation.terrain_fell);
     height(0.784F);
-    TEST_ASSERT_FALSE(it.senses.confirmation.terrain_fell);
+    TEST_ASSERT_FALSE(senses.confirmation.terrain_fell);
     hover();
-    it.senses.confirmation.terrain_fell = true;
+    senses.confirmation.terrain_fell = true;
     height(0.2F); /* a step back */
-    TEST_ASSERT_FALSE(it.senses.confirmation.terrain_fell);
+    TEST_ASSERT_FALSE(senses.confirmation.terrain_fell);
 }
 
 void test_the_least_felt_error_is_kept_while_unconfirmed(void)
 {
     hover();
-    it.senses.confirmation.unconfirmed = true;
-    it.verdict.felt_least_m = -0.05F;
-    it.senses.accelerometer.felt.off_m = -0.1F;
+    senses.confirmation.unconfirmed = true;
+    verdict.felt_least_m = -0.05F;
+    senses.accelerometer.felt.off_m = -0.1F;
     height(0.5F);
-    NEAR(-0.1F, it.verdict.felt_least_m);
-    it.senses.accelerometer.felt.off_m = 0.1F;
+    NEAR(-0.1F, verdict.felt_least_m);
+    senses.accelerometer.felt.off_m = 0.1F;
     height(0.5F);
-    NEAR(-0.1F, it.verdict.felt_least_m);
-    it.senses.confirmation.unconfirmed = false;
+    NEAR(-0.1F, verdict.felt_least_m);
+    senses.confirmation.unconfirmed = false;
     height(0.5F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.verdict.felt_least_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict.felt_least_m);
 }
 
 void test_a_glitch_of_a_quarter_of_a_second_is_none(void)
 {
     for (int late = 0; late < 2; late++) {
         hover();
-        it.senses.heights.since_rise_s = (late != 0) ? 0.25F : 0.249F;
-        it.senses.heights.before_rise_m = 0.3F;
+        senses.heights.since_rise_s = (late != 0) ? 0.25F : 0.249F;
+        senses.heights.before_rise_m = 0.3F;
         height(0.3F);
-        TEST_ASSERT_EQUAL(late != 0, it.senses.confirmation.unconfirmed);
+        TEST_ASSERT_EQUAL(late != 0, senses.confirmation.unconfirmed);
     }
     hover();
     height(0.8F);
-    sensed_height(&it, &flown, 0.81F, 0.0005F, 0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.5F, it.senses.heights.before_rise_m); /* however soon the next height comes */
+    sensed_height(&flown, 0.81F, 0.0005F, 0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.5F, senses.heights.before_rise_m); /* however soon the next height comes */
 }
 
 void test_the_end_of_the_depth_lies_below_its_limit(void)
 {
     hover();
-    it.senses.confirmation.terrain_fell = true;
-    it.senses.confirmation.after_fall_m = 0.12F;
-    it.senses.heights.height_m = 0.05F;
+    senses.confirmation.terrain_fell = true;
+    senses.confirmation.after_fall_m = 0.12F;
+    senses.heights.height_m = 0.05F;
     height(0.0F);
-    TEST_ASSERT_TRUE(it.senses.confirmation.terrain_fell);
+    TEST_ASSERT_TRUE(senses.confirmation.terrain_fell);
     height(-0.001F);
-    TEST_ASSERT_FALSE(it.senses.confirmation.terrain_fell);
+    TEST_ASSERT_FALSE(senses.confirmation.terrain_fell);
 }

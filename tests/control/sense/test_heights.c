@@ -10,74 +10,74 @@ void tearDown(void) {}
 void test_a_height_moves_the_rate_the_way_and_the_sums(void)
 {
     hover();
-    it.senses.accelerometer.felt = (witness_t){.speed_mps = 0.3F, .running_s = 2.0F};
-    it.senses.heights.way_m = 0.1F;
-    it.senses.heights.rise_mps = 0.1F;
-    it.senses.accelerometer.felt.off_m = 0.07F;
-    it.senses.push.pushed.off_m = -0.02F;
-    sensed_height(&it, &flown, 0.53F, 0.1F, 0.1F);
-    NEAR(0.1F + (0.3F - 0.1F) / 3.0F, it.senses.heights.rise_mps); /* 0.1 of 0.2 + 0.1 s */
-    NEAR(0.1F * 0.9F + 0.03F, it.senses.heights.way_m);
-    NEAR(0.13F, it.senses.accelerometer.felt.seen_m); /* 0.07 + 0.03, and 0.3 m/s x 0.1 s of age */
-    NEAR(0.1F - 0.18F * 0.13F, it.senses.accelerometer.felt.off_m);
-    NEAR(0.3F + 0.081F * 0.13F, it.senses.accelerometer.felt.speed_mps);
-    VERY_NEAR(-0.01F * 0.13F, it.senses.accelerometer.bias_mps2);
-    NEAR(0.01F, it.senses.push.pushed.seen_m);
-    VERY_NEAR(0.01F - 0.04F * 0.01F, it.senses.push.pushed.off_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.53F, it.senses.heights.height_m);
+    senses.accelerometer.felt = (witness_t){.speed_mps = 0.3F, .running_s = 2.0F};
+    senses.heights.way_m = 0.1F;
+    senses.heights.rise_mps = 0.1F;
+    senses.accelerometer.felt.off_m = 0.07F;
+    senses.push.pushed.off_m = -0.02F;
+    sensed_height(&flown, 0.53F, 0.1F, 0.1F);
+    NEAR(0.1F + (0.3F - 0.1F) / 3.0F, senses.heights.rise_mps); /* 0.1 of 0.2 + 0.1 s */
+    NEAR(0.1F * 0.9F + 0.03F, senses.heights.way_m);
+    NEAR(0.13F, senses.accelerometer.felt.seen_m); /* 0.07 + 0.03, and 0.3 m/s x 0.1 s of age */
+    NEAR(0.1F - 0.18F * 0.13F, senses.accelerometer.felt.off_m);
+    NEAR(0.3F + 0.081F * 0.13F, senses.accelerometer.felt.speed_mps);
+    VERY_NEAR(-0.01F * 0.13F, senses.accelerometer.bias_mps2);
+    NEAR(0.01F, senses.push.pushed.seen_m);
+    VERY_NEAR(0.01F - 0.04F * 0.01F, senses.push.pushed.off_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.53F, senses.heights.height_m);
 }
 
 void test_a_young_witness_and_doubted_heights_correct_less(void)
 {
     hover();
-    it.senses.accelerometer.felt = (witness_t){.off_m = 0.1F, .running_s = 1.0F};
+    senses.accelerometer.felt = (witness_t){.off_m = 0.1F, .running_s = 1.0F};
     height(0.5F);
-    NEAR(0.1F - 0.09F * 0.1F, it.senses.accelerometer.felt.off_m);
-    NEAR(0.0405F * 0.1F, it.senses.accelerometer.felt.speed_mps);
-    VERY_NEAR(-0.005F * 0.1F, it.senses.accelerometer.bias_mps2);
+    NEAR(0.1F - 0.09F * 0.1F, senses.accelerometer.felt.off_m);
+    NEAR(0.0405F * 0.1F, senses.accelerometer.felt.speed_mps);
+    VERY_NEAR(-0.005F * 0.1F, senses.accelerometer.bias_mps2);
     hover();
-    it.verdict.doubts = DOUBT_SIGHT;
-    it.senses.accelerometer.felt = (witness_t){.off_m = 0.1F, .running_s = 2.0F};
+    verdict.doubts = DOUBT_SIGHT;
+    senses.accelerometer.felt = (witness_t){.off_m = 0.1F, .running_s = 2.0F};
     height(0.5F);
-    NEAR(0.082F, it.senses.accelerometer.felt.off_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.speed_mps);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.bias_mps2);
+    NEAR(0.082F, senses.accelerometer.felt.off_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.speed_mps);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.bias_mps2);
 }
 
 void test_the_bias_ends_at_one_and_a_half_to_either_side(void)
 {
     for (float side = -1.0F; side < 2.0F; side += 2.0F) {
         hover();
-        it.senses.accelerometer.bias_mps2 = -1.499F * side;
-        it.senses.accelerometer.felt = (witness_t){.off_m = 0.45F * side, .running_s = 2.0F};
+        senses.accelerometer.bias_mps2 = -1.499F * side;
+        senses.accelerometer.felt = (witness_t){.off_m = 0.45F * side, .running_s = 2.0F};
         height(0.5F);
-        NEAR(-1.5F * side, it.senses.accelerometer.bias_mps2);
+        NEAR(-1.5F * side, senses.accelerometer.bias_mps2);
     }
 }
 
 void test_a_long_gap_leaks_all_of_a_sum_and_one_of_a_second_and_a_half_forgets(void)
 {
     hover();
-    it.senses.accelerometer.felt = (witness_t){.off_m = 0.1F, .running_s = 2.0F};
-    it.senses.push.pushed = (witness_t){.off_m = 0.1F, .running_s = 2.0F};
-    it.senses.heights.way_m = 0.1F;
-    sensed_height(&it, &flown, 0.5F, 1.4F, 0.0F);
-    VERY_NEAR(0.0F, it.senses.accelerometer.felt.off_m);
-    NEAR(0.044F, it.senses.push.pushed.off_m);
-    VERY_NEAR(0.0F, it.senses.heights.way_m);
+    senses.accelerometer.felt = (witness_t){.off_m = 0.1F, .running_s = 2.0F};
+    senses.push.pushed = (witness_t){.off_m = 0.1F, .running_s = 2.0F};
+    senses.heights.way_m = 0.1F;
+    sensed_height(&flown, 0.5F, 1.4F, 0.0F);
+    VERY_NEAR(0.0F, senses.accelerometer.felt.off_m);
+    NEAR(0.044F, senses.push.pushed.off_m);
+    VERY_NEAR(0.0F, senses.heights.way_m);
     hover();
-    it.senses.accelerometer.felt = (witness_t){.off_m = 0.1F, .seen_m = 0.1F, .running_s = 2.0F};
-    it.senses.push.pushed = it.senses.accelerometer.felt;
-    it.senses.heights.way_m = 0.1F;
-    it.senses.heights.unmoved_s = 0.0F;
-    it.senses.confirmation.unconfirmed = true;
-    sensed_height(&it, &flown, 0.52F, 1.5F, 0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.off_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.push.pushed.off_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.1F, it.senses.accelerometer.felt.seen_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.heights.way_m);
-    TEST_ASSERT_EQUAL_FLOAT(1.0F, it.senses.heights.unmoved_s);
-    TEST_ASSERT_FALSE(it.senses.confirmation.unconfirmed);
+    senses.accelerometer.felt = (witness_t){.off_m = 0.1F, .seen_m = 0.1F, .running_s = 2.0F};
+    senses.push.pushed = senses.accelerometer.felt;
+    senses.heights.way_m = 0.1F;
+    senses.heights.unmoved_s = 0.0F;
+    senses.confirmation.unconfirmed = true;
+    sensed_height(&flown, 0.52F, 1.5F, 0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.off_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.push.pushed.off_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.1F, senses.accelerometer.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.way_m);
+    TEST_ASSERT_EQUAL_FLOAT(1.0F, senses.heights.unmoved_s);
+    TEST_ASSERT_FALSE(senses.confirmation.unconfirmed);
 }
 
 void test_what_neither_witness_explains_is_a_step_of_the_terrain(void)
@@ -91,22 +91,22 @@ void test_what_neither_witness_explains_is_a_step_of_the_terrain(void)
                 {-0.135F, 1.0F, 1.0F, true}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         hover();
-        it.senses.accelerometer.felt = (witness_t){.speed_mps = rows[i].felt_mps, .running_s = 0.1F};
-        it.senses.push.pushed = (witness_t){.speed_mps = rows[i].pushed_mps, .running_s = 0.1F};
-        it.senses.heights.steps = 2.0F;
-        it.senses.heights.way_m = it.senses.heights.rise_mps = 0.06F;
-        it.senses.heights.unmoved_s = 0.5F;
+        senses.accelerometer.felt = (witness_t){.speed_mps = rows[i].felt_mps, .running_s = 0.1F};
+        senses.push.pushed = (witness_t){.speed_mps = rows[i].pushed_mps, .running_s = 0.1F};
+        senses.heights.steps = 2.0F;
+        senses.heights.way_m = senses.heights.rise_mps = 0.06F;
+        senses.heights.unmoved_s = 0.5F;
         height(0.5F + rows[i].rise_m);
-        NEAR(rows[i].step ? 2.9F : 1.9F, it.senses.heights.steps); /* a twentieth leaks */
+        NEAR(rows[i].step ? 2.9F : 1.9F, senses.heights.steps); /* a twentieth leaks */
         if (rows[i].step) {
-            TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.heights.way_m);
-            TEST_ASSERT_EQUAL_FLOAT(1.0F, it.senses.heights.unmoved_s);
-            TEST_ASSERT_EQUAL_FLOAT(0.06F, it.senses.heights.rise_mps);
+            TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.way_m);
+            TEST_ASSERT_EQUAL_FLOAT(1.0F, senses.heights.unmoved_s);
+            TEST_ASSERT_EQUAL_FLOAT(0.06F, senses.heights.rise_mps);
             NEAR(0.1F * rows[i].felt_mps,
-                 it.senses.accelerometer.felt.seen_m); /* taken as if the witness had been right */
-            NEAR(0.1F * rows[i].pushed_mps, it.senses.push.pushed.seen_m);
+                 senses.accelerometer.felt.seen_m); /* taken as if the witness had been right */
+            NEAR(0.1F * rows[i].pushed_mps, senses.push.pushed.seen_m);
         } else {
-            NEAR(0.054F + rows[i].rise_m, it.senses.heights.way_m);
+            NEAR(0.054F + rows[i].rise_m, senses.heights.way_m);
         }
     }
 }
@@ -115,37 +115,37 @@ void test_witnesses_that_have_not_begun_explain_nothing(void)
 {
     hover();
     height(0.615F);
-    NEAR(1.0F, it.senses.heights.steps);
+    NEAR(1.0F, senses.heights.steps);
     hover();
     height(0.595F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.heights.steps);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.steps);
     setUp();
     height(0.9F); /* the first height */
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.heights.steps);
-    TEST_ASSERT_TRUE(it.senses.heights.known);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.steps);
+    TEST_ASSERT_TRUE(senses.heights.known);
 }
 
 void test_heights_that_have_moved_are_remembered_for_a_second(void)
 {
     hover();
-    it.senses.heights.way_m = 0.2F;
+    senses.heights.way_m = 0.2F;
     height(0.5F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.heights.unmoved_s);
-    it.senses.heights.way_m = 0.0F;
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.unmoved_s);
+    senses.heights.way_m = 0.0F;
     height(0.5F);
-    NEAR(0.1F, it.senses.heights.unmoved_s);
+    NEAR(0.1F, senses.heights.unmoved_s);
     for (int i = 0; i < 10; i++) {
         height(0.5F);
     }
-    TEST_ASSERT_EQUAL_FLOAT(1.0F, it.senses.heights.unmoved_s);
+    TEST_ASSERT_EQUAL_FLOAT(1.0F, senses.heights.unmoved_s);
 }
 
 void test_a_rate_is_of_ten_milliseconds_at_least(void)
 {
     hover();
-    sensed_height(&it, &flown, 0.511F, 0.011F, 0.0F);
-    NEAR(0.011F / 0.211F, it.senses.heights.rise_mps);
+    sensed_height(&flown, 0.511F, 0.011F, 0.0F);
+    NEAR(0.011F / 0.211F, senses.heights.rise_mps);
     hover();
-    sensed_height(&it, &flown, 0.505F, 0.005F, 0.0F);
-    NEAR(0.5F * 0.005F / 0.205F, it.senses.heights.rise_mps);
+    sensed_height(&flown, 0.505F, 0.005F, 0.0F);
+    NEAR(0.5F * 0.005F / 0.205F, senses.heights.rise_mps);
 }

@@ -10,34 +10,34 @@ void tearDown(void) {}
 void test_the_thrust_arrives_through_a_lag_of_150_ms(void)
 {
     flown.thrust_n = 7.0F;
-    sensed_thrust(&it, &flown);
-    NEAR(1.0F, it.senses.push.lagged_n); /* 0.025 / 0.175 */
+    sensed_thrust(&flown);
+    NEAR(1.0F, senses.push.lagged_n); /* 0.025 / 0.175 */
     flown.step_s = 3.0F;
-    sensed_thrust(&it, &flown);
-    NEAR(1.0F + 6.0F * 0.5F / 0.65F, it.senses.push.lagged_n); /* a pause counts as half a second */
+    sensed_thrust(&flown);
+    NEAR(1.0F + 6.0F * 0.5F / 0.65F, senses.push.lagged_n); /* a pause counts as half a second */
 }
 
 void test_the_pushed_speed_is_the_models(void)
 {
-    flown.thrust_n = it.senses.push.lagged_n = 8.0F;
+    flown.thrust_n = senses.push.lagged_n = 8.0F;
     flown.hover_n = 7.0F;
-    it.senses.tilt.upright = 0.95F;
-    it.senses.push.pushed.speed_mps = 0.2F;
+    senses.tilt.upright = 0.95F;
+    senses.push.pushed.speed_mps = 0.2F;
     flown.damping_per_s = 2.0F;
-    sensed_thrust(&it, &flown);
+    sensed_thrust(&flown);
     /* implicit: a = (1.4 (8 x 0.95 - 7) - 2 x 0.2) / (1 + 2 x 0.025) */
-    NEAR(0.2F + 0.44F / 1.05F * 0.025F, it.senses.push.pushed.speed_mps);
-    NEAR(0.025F, it.senses.push.pushed.running_s);
-    VERY_NEAR(-(0.2F + 0.5F * 0.41905F * 0.025F) * 0.025F, it.senses.push.pushed.off_m);
+    NEAR(0.2F + 0.44F / 1.05F * 0.025F, senses.push.pushed.speed_mps);
+    NEAR(0.025F, senses.push.pushed.running_s);
+    VERY_NEAR(-(0.2F + 0.5F * 0.41905F * 0.025F) * 0.025F, senses.push.pushed.off_m);
 }
 
 void test_after_a_gap_the_thrusts_witness_tells_speed_and_way(void)
 {
-    it.senses.heights.rise_mps = 0.15F;
-    it.senses.push.pushed = (witness_t){.speed_mps = 0.5F, .off_m = 0.1F, .seen_m = 0.3F, .running_s = 0.51F};
-    NEAR(0.5F + 0.4F * 0.3F, push_speed_mps(&it.senses.push, it.senses.heights.rise_mps));
-    NEAR(0.2F, push_moved_m(&it.senses.push));
-    it.senses.push.pushed.running_s = 0.5F;
-    NEAR(0.15F, push_speed_mps(&it.senses.push, it.senses.heights.rise_mps));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, push_moved_m(&it.senses.push));
+    senses.heights.rise_mps = 0.15F;
+    senses.push.pushed = (witness_t){.speed_mps = 0.5F, .off_m = 0.1F, .seen_m = 0.3F, .running_s = 0.51F};
+    NEAR(0.5F + 0.4F * 0.3F, push_speed_mps(&senses.push, senses.heights.rise_mps));
+    NEAR(0.2F, push_moved_m(&senses.push));
+    senses.push.pushed.running_s = 0.5F;
+    NEAR(0.15F, push_speed_mps(&senses.push, senses.heights.rise_mps));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, push_moved_m(&senses.push));
 }

@@ -1,4 +1,10 @@
-#include "sense/sensed.h"
+#include "control/sense/sense.h"
+#include "unity.h"
+
+#include <math.h>
+#include <string.h>
+
+#define DEGREE_RAD 0.0174532925F
 
 #define HOVER_N 7.4F
 

@@ -28,17 +28,17 @@ void test_the_pushed_speed_waits_on_the_ground_and_starts_at_the_felt_one(void)
         setUp();
         flown.off_ground = rows[i].off_ground;
         flown.grounded = rows[i].grounded;
-        it.senses.heights.known = rows[i].has_height;
-        it.senses.heights.height_m = rows[i].height_m;
-        it.senses.sway.sway_rad2 = rows[i].sway_rad2;
-        it.verdict.doubts = rows[i].doubted ? DOUBT_IMU : 0U;
-        it.senses.accelerometer.felt = (witness_t){.speed_mps = 0.6F,
+        senses.heights.known = rows[i].has_height;
+        senses.heights.height_m = rows[i].height_m;
+        senses.sway.sway_rad2 = rows[i].sway_rad2;
+        verdict.doubts = rows[i].doubted ? DOUBT_IMU : 0U;
+        senses.accelerometer.felt = (witness_t){.speed_mps = 0.6F,
                                                    .running_s = rows[i].felt_counts ? 0.51F : 0.5F};
-        it.senses.push.pushed = (witness_t){.speed_mps = 0.0F, .off_m = 0.3F, .running_s = 1.0F};
-        sensed_thrust(&it, &flown);
-        TEST_ASSERT_EQUAL_FLOAT(rows[i].speed_mps, it.senses.push.pushed.speed_mps);
-        NEAR(rows[i].waits ? 0.0F : 1.025F, it.senses.push.pushed.running_s);
-        NEAR(rows[i].waits ? 0.0F : 0.3F, it.senses.push.pushed.off_m);
+        senses.push.pushed = (witness_t){.speed_mps = 0.0F, .off_m = 0.3F, .running_s = 1.0F};
+        sensed_thrust(&flown);
+        TEST_ASSERT_EQUAL_FLOAT(rows[i].speed_mps, senses.push.pushed.speed_mps);
+        NEAR(rows[i].waits ? 0.0F : 1.025F, senses.push.pushed.running_s);
+        NEAR(rows[i].waits ? 0.0F : 0.3F, senses.push.pushed.off_m);
     }
 }
 
@@ -47,8 +47,8 @@ void test_standing_is_the_ground_or_a_take_off_that_has_not_left_it(void)
     for (int i = 0; i < 4; i++) {
         flown.grounded = (i & 1) != 0;
         flown.standing = (i & 2) != 0;
-        sensed_thrust(&it, &flown);
-        TEST_ASSERT_EQUAL(i != 0, it.senses.standing);
+        sensed_thrust(&flown);
+        TEST_ASSERT_EQUAL(i != 0, senses.standing);
     }
 }
 
@@ -57,8 +57,8 @@ void test_noise_beyond_twice_the_usual_shakes_with_the_power_of_one_and_a_half(v
     static const float rows[][2] = {{0.2F, 1.0F}, {0.9F, 1.0F}, {1.8F, 2.82843F}, {3.6F, 8.0F}};
     for (int i = 0; i < 4; i++) {
         flown.noise_mps2 = rows[i][0];
-        sensed_thrust(&it, &flown);
-        NEAR(rows[i][1], it.senses.accelerometer.shaken);
+        sensed_thrust(&flown);
+        NEAR(rows[i][1], senses.accelerometer.shaken);
     }
 }
 
@@ -68,49 +68,49 @@ void test_a_new_order_on_the_ground_forgets_and_one_in_the_air_does_not(void)
         setUp();
         flown.ordered = true;
         flown.grounded = grounded != 0;
-        it.verdict.doubts = DOUBT_SIGHT | DOUBT_IMU | DOUBT_THRUST;
-        it.senses.accelerometer.felt.seen_m = it.senses.accelerometer.felt.off_m =
-            it.senses.accelerometer.felt.moved_m = it.verdict.agreed_s = 0.4F;
-        sensed_thrust(&it, &flown);
-        TEST_ASSERT_EQUAL_UINT16((grounded != 0) ? DOUBT_IMU : 7U, it.verdict.doubts);
-        TEST_ASSERT_EQUAL_FLOAT((grounded != 0) ? 0.0F : 0.4F, it.senses.accelerometer.felt.seen_m);
-        TEST_ASSERT_EQUAL_FLOAT((grounded != 0) ? 0.0F : 0.4F, it.senses.accelerometer.felt.off_m);
-        TEST_ASSERT_EQUAL_FLOAT((grounded != 0) ? 0.0F : 0.4F, it.senses.accelerometer.felt.moved_m);
-        TEST_ASSERT_EQUAL_FLOAT((grounded != 0) ? 0.0F : 0.4F, it.verdict.agreed_s);
+        verdict.doubts = DOUBT_SIGHT | DOUBT_IMU | DOUBT_THRUST;
+        senses.accelerometer.felt.seen_m = senses.accelerometer.felt.off_m =
+            senses.accelerometer.felt.moved_m = verdict.agreed_s = 0.4F;
+        sensed_thrust(&flown);
+        TEST_ASSERT_EQUAL_UINT16((grounded != 0) ? DOUBT_IMU : 7U, verdict.doubts);
+        TEST_ASSERT_EQUAL_FLOAT((grounded != 0) ? 0.0F : 0.4F, senses.accelerometer.felt.seen_m);
+        TEST_ASSERT_EQUAL_FLOAT((grounded != 0) ? 0.0F : 0.4F, senses.accelerometer.felt.off_m);
+        TEST_ASSERT_EQUAL_FLOAT((grounded != 0) ? 0.0F : 0.4F, senses.accelerometer.felt.moved_m);
+        TEST_ASSERT_EQUAL_FLOAT((grounded != 0) ? 0.0F : 0.4F, verdict.agreed_s);
     }
 }
 
 void test_the_speed_without_heights_is_that_of_the_witnesses_that_are_left(void)
 {
-    it.senses.accelerometer.felt = (witness_t){.speed_mps = 0.4F, .running_s = 0.51F};
-    it.senses.push.pushed = (witness_t){.speed_mps = 0.8F, .running_s = 0.51F};
-    NEAR(0.6F, verdict_speed_mps(&it.verdict, &it.senses));
-    it.verdict.doubts = DOUBT_IMU;
-    NEAR(0.8F, verdict_speed_mps(&it.verdict, &it.senses));
-    it.verdict.doubts = DOUBT_THRUST;
-    NEAR(0.4F, verdict_speed_mps(&it.verdict, &it.senses));
-    it.verdict.doubts = DOUBT_THRUST | DOUBT_IMU;
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict_speed_mps(&it.verdict, &it.senses));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, sensed_felt_mps(&it));
-    it.verdict.doubts = 0U;
-    it.senses.accelerometer.shaken = 2.0F;
-    NEAR(0.2F, sensed_felt_mps(&it));
-    it.senses.push.pushed.running_s = 0.5F;
-    NEAR(0.4F, verdict_speed_mps(&it.verdict, &it.senses));
-    it.senses.accelerometer.felt.running_s = 0.5F;
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict_speed_mps(&it.verdict, &it.senses));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, sensed_felt_mps(&it));
+    senses.accelerometer.felt = (witness_t){.speed_mps = 0.4F, .running_s = 0.51F};
+    senses.push.pushed = (witness_t){.speed_mps = 0.8F, .running_s = 0.51F};
+    NEAR(0.6F, verdict_speed_mps(&verdict, &senses));
+    verdict.doubts = DOUBT_IMU;
+    NEAR(0.8F, verdict_speed_mps(&verdict, &senses));
+    verdict.doubts = DOUBT_THRUST;
+    NEAR(0.4F, verdict_speed_mps(&verdict, &senses));
+    verdict.doubts = DOUBT_THRUST | DOUBT_IMU;
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict_speed_mps(&verdict, &senses));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, sensed_felt_mps());
+    verdict.doubts = 0U;
+    senses.accelerometer.shaken = 2.0F;
+    NEAR(0.2F, sensed_felt_mps());
+    senses.push.pushed.running_s = 0.5F;
+    NEAR(0.4F, verdict_speed_mps(&verdict, &senses));
+    senses.accelerometer.felt.running_s = 0.5F;
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict_speed_mps(&verdict, &senses));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, sensed_felt_mps());
 }
 
 void test_the_speed_of_the_slower_witness_lags_by_a_third_per_scan(void)
 {
     for (int row = 0; row < 2; row++) {
         hover();
-        it.senses.slower_mps = 0.1F;
-        it.senses.accelerometer.felt = (witness_t){.speed_mps = (row == 0) ? 0.4F : 1.0F, .running_s = 0.1F};
-        it.senses.push.pushed = (witness_t){.speed_mps = (row == 0) ? 1.0F : 0.4F, .running_s = 0.1F};
+        senses.slower_mps = 0.1F;
+        senses.accelerometer.felt = (witness_t){.speed_mps = (row == 0) ? 0.4F : 1.0F, .running_s = 0.1F};
+        senses.push.pushed = (witness_t){.speed_mps = (row == 0) ? 1.0F : 0.4F, .running_s = 0.1F};
         height(0.5F);
-        TEST_ASSERT_FLOAT_WITHIN(0.001F, 0.2F, it.senses.slower_mps);
+        TEST_ASSERT_FLOAT_WITHIN(0.001F, 0.2F, senses.slower_mps);
     }
 }
 
@@ -127,12 +127,12 @@ void test_heights_and_accelerometer_are_apart_by_half_a_metre_per_second(void)
                 {0.51F, 0.0F, 1.0F, 1.0F, DOUBT_IMU, false}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         setUp();
-        it.senses.accelerometer.felt = (witness_t){.speed_mps = rows[i].felt_mps,
+        senses.accelerometer.felt = (witness_t){.speed_mps = rows[i].felt_mps,
                                                    .running_s = rows[i].running_s};
-        it.senses.heights.rise_mps = rows[i].rise_mps;
-        it.senses.accelerometer.shaken = rows[i].shaken;
-        it.verdict.doubts = rows[i].doubts;
-        TEST_ASSERT_EQUAL(rows[i].apart, verdict_apart(&it.verdict, &it.senses));
+        senses.heights.rise_mps = rows[i].rise_mps;
+        senses.accelerometer.shaken = rows[i].shaken;
+        verdict.doubts = rows[i].doubts;
+        TEST_ASSERT_EQUAL(rows[i].apart, verdict_apart(&verdict, &senses));
     }
 }
 
@@ -146,13 +146,13 @@ void test_each_of_several_frames_counts(void)
         frames[i].arrival_us += 25000U * (i + 1U);
         frames[i].down_mps2 = G_MPS2 + 1.0F;
     }
-    sensed_frames(&it, &flown, frames, 3U);
-    NEAR(0.0625F, it.senses.accelerometer.felt.speed_mps);
-    TEST_ASSERT_EQUAL_UINT32(4U, it.senses.accelerometer.sequence);
+    sensed_frames(&flown, frames, 3U);
+    NEAR(0.0625F, senses.accelerometer.felt.speed_mps);
+    TEST_ASSERT_EQUAL_UINT32(4U, senses.accelerometer.sequence);
     for (int i = 0; i < 3; i++) {
         frames[i].level.roll_rad = frames[i].median.roll_rad = 0.8F;
     }
-    tilt_step(&it.senses.tilt, frames, 3U, 0.0F, 0.0F, 0U);
-    TEST_ASSERT_EQUAL_UINT16(3U, it.senses.tilt.tilted);
-    TEST_ASSERT_EQUAL_UINT32(4U, it.senses.tilt.sequence);
+    tilt_step(&senses.tilt, frames, 3U, 0.0F, 0.0F, 0U);
+    TEST_ASSERT_EQUAL_UINT16(3U, senses.tilt.tilted);
+    TEST_ASSERT_EQUAL_UINT32(4U, senses.tilt.sequence);
 }

@@ -13,10 +13,10 @@ static void lie_still(float felt_mps, float pushed_mps, float still_s)
 {
     setUp();
     feel(0.0F);
-    it.senses.accelerometer.felt = (witness_t){.speed_mps = felt_mps, .running_s = 2.0F};
-    it.senses.push.pushed = (witness_t){.speed_mps = pushed_mps, .running_s = 2.0F};
-    it.senses.stand.calm_s = still_s;
-    it.senses.stand.stands_s = 0.3F;
+    senses.accelerometer.felt = (witness_t){.speed_mps = felt_mps, .running_s = 2.0F};
+    senses.push.pushed = (witness_t){.speed_mps = pushed_mps, .running_s = 2.0F};
+    senses.stand.calm_s = still_s;
+    senses.stand.stands_s = 0.3F;
 }
 
 void test_it_stands_while_the_thrust_says_a_fall_of_0_8_that_is_not_felt(void)
@@ -28,11 +28,11 @@ void test_it_stands_while_the_thrust_says_a_fall_of_0_8_that_is_not_felt(void)
                 {-0.1F, -0.91F, true}, {0.5F, -0.79F, false}, {0.0F, 0.81F, false}};
     for (int i = 0; i < 6; i++) {
         lie_still(rows[i].felt_mps, rows[i].pushed_mps, 0.5F);
-        it.senses.stand.calm_mps[0] = rows[i].felt_mps;
-        it.senses.stand.calm_mps[1] = rows[i].pushed_mps;
+        senses.stand.calm_mps[0] = rows[i].felt_mps;
+        senses.stand.calm_mps[1] = rows[i].pushed_mps;
         feel(0.0F);
-        NEAR(rows[i].stands ? 0.325F : 0.0F, it.senses.stand.stands_s);
-        NEAR(0.525F, it.senses.stand.calm_s);
+        NEAR(rows[i].stands ? 0.325F : 0.0F, senses.stand.stands_s);
+        NEAR(0.525F, senses.stand.calm_s);
     }
 }
 
@@ -50,10 +50,10 @@ void test_after_a_second_of_stillness_the_changes_of_the_speeds_tell_it_too(void
                 {1.01F, -0.9F, -0.28F, true}};
     for (int i = 0; i < 5; i++) {
         lie_still(-1.0F, -0.9F, rows[i].still_s);
-        it.senses.stand.calm_mps[0] = rows[i].felt0_mps;
-        it.senses.stand.calm_mps[1] = rows[i].pushed0_mps;
+        senses.stand.calm_mps[0] = rows[i].felt0_mps;
+        senses.stand.calm_mps[1] = rows[i].pushed0_mps;
         feel(0.0F);
-        NEAR(rows[i].stands ? 0.325F : 0.0F, it.senses.stand.stands_s);
+        NEAR(rows[i].stands ? 0.325F : 0.0F, senses.stand.stands_s);
     }
 }
 
@@ -61,13 +61,13 @@ void test_a_sway_or_a_witness_that_does_not_count_ends_the_standing(void)
 {
     for (int what = 0; what < 4; what++) {
         lie_still(0.0F, -0.9F, 0.5F);
-        it.senses.sway.sway_rad2 = (what == 1) ? 2.6e-4F : 2.5e-4F; /* a 60th is forgotten first */
-        it.senses.sway.sway_rad2 += it.senses.sway.sway_rad2 / 59.5F * (what == 1);
-        it.senses.accelerometer.felt.running_s = (what == 2) ? 0.5F : 0.51F;
-        it.senses.push.pushed.running_s = (what == 3) ? 0.5F : 0.51F;
+        senses.sway.sway_rad2 = (what == 1) ? 2.6e-4F : 2.5e-4F; /* a 60th is forgotten first */
+        senses.sway.sway_rad2 += senses.sway.sway_rad2 / 59.5F * (what == 1);
+        senses.accelerometer.felt.running_s = (what == 2) ? 0.5F : 0.51F;
+        senses.push.pushed.running_s = (what == 3) ? 0.5F : 0.51F;
         feel(0.0F);
-        NEAR((what == 0) ? 0.325F : 0.0F, it.senses.stand.stands_s);
-        NEAR((what == 1) ? 0.0F : 0.525F, it.senses.stand.calm_s);
+        NEAR((what == 0) ? 0.325F : 0.0F, senses.stand.stands_s);
+        NEAR((what == 1) ? 0.0F : 0.525F, senses.stand.calm_s);
     }
 }
 
@@ -75,36 +75,36 @@ void test_stillness_begins_anew_with_a_fall_and_keeps_the_speeds_of_that_time(vo
 {
     lie_still(-0.41F, -0.2F, 0.5F);
     feel(0.0F);
-    NEAR(0.025F, it.senses.stand.calm_s); /* felt: 0.41 m/s less than before */
-    NEAR(-0.41F, it.senses.stand.calm_mps[0]);
-    NEAR(-0.2F, it.senses.stand.calm_mps[1]);
+    NEAR(0.025F, senses.stand.calm_s); /* felt: 0.41 m/s less than before */
+    NEAR(-0.41F, senses.stand.calm_mps[0]);
+    NEAR(-0.2F, senses.stand.calm_mps[1]);
     lie_still(-0.39F, -0.2F, 0.5F);
     feel(0.0F);
-    NEAR(0.525F, it.senses.stand.calm_s);
-    NEAR(-0.39F / 80.0F, it.senses.stand.calm_mps[0]); /* 25 ms of 2 s */
-    NEAR(-0.2F / 80.0F, it.senses.stand.calm_mps[1]);
+    NEAR(0.525F, senses.stand.calm_s);
+    NEAR(-0.39F / 80.0F, senses.stand.calm_mps[0]); /* 25 ms of 2 s */
+    NEAR(-0.2F / 80.0F, senses.stand.calm_mps[1]);
     lie_still(0.3F, 0.2F, 0.0F);
     feel(0.0F);
-    NEAR(0.3F, it.senses.stand.calm_mps[0]);
-    NEAR(0.2F, it.senses.stand.calm_mps[1]);
+    NEAR(0.3F, senses.stand.calm_mps[0]);
+    NEAR(0.2F, senses.stand.calm_mps[1]);
     lie_still(0.3F, 0.2F, 0.5F);
-    it.senses.sway.sway_rad2 = 1.0e-3F;
+    senses.sway.sway_rad2 = 1.0e-3F;
     feel(0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.stand.calm_s);
-    NEAR(0.3F, it.senses.stand.calm_mps[0]);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.stand.calm_s);
+    NEAR(0.3F, senses.stand.calm_mps[0]);
 }
 
 void test_a_fall_and_a_rock_begin_beyond_their_limits(void)
 {
     lie_still(-0.4F, -0.2F, 0.5F);
     feel_at_once(0.0F);
-    NEAR(0.5F, it.senses.stand.calm_s);
+    NEAR(0.5F, senses.stand.calm_s);
     lie_still(0.0F, -0.8F, 0.5F);
-    it.senses.stand.calm_mps[1] = -0.8F;
+    senses.stand.calm_mps[1] = -0.8F;
     feel_at_once(0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.stand.stands_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.stand.stands_s);
     setUp();
     feel(0.0F);
     rock(0.017F, -0.017F);
-    NEAR(0.05F, it.senses.sway.unrocked_s);
+    NEAR(0.05F, senses.sway.unrocked_s);
 }

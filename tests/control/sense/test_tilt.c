@@ -14,13 +14,13 @@ void test_twenty_degrees_in_a_frame_are_a_jump_of_either_angle_to_either_side(vo
             setUp();
             tilt(0.0F, 0.0F);
             tilt((axis == 0) ? 0.355F * side : 0.0F, (axis == 1) ? 0.355F * side : 0.0F);
-            TEST_ASSERT_EQUAL_UINT16(1U, it.senses.tilt.jumped);
-            TEST_ASSERT_EQUAL_UINT32(2U, it.senses.tilt.unfit_sequence);
+            TEST_ASSERT_EQUAL_UINT16(1U, senses.tilt.jumped);
+            TEST_ASSERT_EQUAL_UINT32(2U, senses.tilt.unfit_sequence);
             tilt((axis == 0) ? 0.345F * side : 0.0F, (axis == 1) ? 0.345F * side : 0.0F);
-            TEST_ASSERT_EQUAL_UINT16(0U, it.senses.tilt.jumped);
-            TEST_ASSERT_EQUAL_FLOAT((axis == 0) ? 0.345F * side : 0.0F, it.senses.tilt.roll_rad);
-            TEST_ASSERT_EQUAL_FLOAT((axis == 1) ? 0.345F * side : 0.0F, it.senses.tilt.pitch_rad);
-            TEST_ASSERT_EQUAL_UINT32(2U, it.senses.tilt.unfit_sequence);
+            TEST_ASSERT_EQUAL_UINT16(0U, senses.tilt.jumped);
+            TEST_ASSERT_EQUAL_FLOAT((axis == 0) ? 0.345F * side : 0.0F, senses.tilt.roll_rad);
+            TEST_ASSERT_EQUAL_FLOAT((axis == 1) ? 0.345F * side : 0.0F, senses.tilt.pitch_rad);
+            TEST_ASSERT_EQUAL_UINT32(2U, senses.tilt.unfit_sequence);
         }
     }
 }
@@ -29,9 +29,9 @@ void test_the_way_through_the_half_turn_is_the_short_one(void)
 {
     tilt(3.0F, 0.0F);
     tilt(-3.0F, 0.0F); /* 0.283 rad */
-    TEST_ASSERT_EQUAL_FLOAT(-3.0F, it.senses.tilt.roll_rad);
+    TEST_ASSERT_EQUAL_FLOAT(-3.0F, senses.tilt.roll_rad);
     tilt(2.9F, 0.0F); /* 0.383 rad */
-    TEST_ASSERT_EQUAL_UINT16(1U, it.senses.tilt.jumped);
+    TEST_ASSERT_EQUAL_UINT16(1U, senses.tilt.jumped);
 }
 
 void test_a_jump_within_ten_frames_of_silence_is_one_and_after_them_none(void)
@@ -41,7 +41,7 @@ void test_a_jump_within_ten_frames_of_silence_is_one_and_after_them_none(void)
         tilt(0.0F, 0.0F);
         frame.arrival_us += 225000U + more_us;
         tilt(1.0F, 0.0F);
-        TEST_ASSERT_EQUAL_UINT16(1U - more_us, it.senses.tilt.jumped);
+        TEST_ASSERT_EQUAL_UINT16(1U - more_us, senses.tilt.jumped);
     }
 }
 
@@ -52,8 +52,8 @@ void test_the_time_of_a_refused_tilt_counts_as_news(void)
     tilt(1.0F, 0.0F);
     frame.arrival_us += 100000U;
     tilt(1.0F, 0.0F);
-    TEST_ASSERT_EQUAL_UINT16(2U, it.senses.tilt.jumped);
-    TEST_ASSERT_EQUAL_UINT32(frame.arrival_us, it.senses.tilt.time_us);
+    TEST_ASSERT_EQUAL_UINT16(2U, senses.tilt.jumped);
+    TEST_ASSERT_EQUAL_UINT32(frame.arrival_us, senses.tilt.time_us);
 }
 
 void test_six_jumps_in_a_row_are_counted_anew_after_a_good_tilt(void)
@@ -62,7 +62,7 @@ void test_six_jumps_in_a_row_are_counted_anew_after_a_good_tilt(void)
     for (int burst = 0; burst < 2; burst++) {
         for (int i = 0; i < 6; i++) {
             tilt(1.0F, 0.0F);
-            TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.tilt.roll_rad);
+            TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.tilt.roll_rad);
         }
         tilt(0.0F, 0.0F);
     }
@@ -75,12 +75,12 @@ void test_angles_beyond_seven_radians_or_without_a_number_are_refused(void)
         setUp();
         tilt(bad[i], 0.0F);
         tilt(0.0F, bad[i]);
-        TEST_ASSERT_FALSE(it.senses.tilt.levelled);
-        TEST_ASSERT_EQUAL_UINT32(2U, it.senses.tilt.unfit_sequence);
-        TEST_ASSERT_EQUAL_UINT32(0U, it.senses.tilt.time_us);
+        TEST_ASSERT_FALSE(senses.tilt.levelled);
+        TEST_ASSERT_EQUAL_UINT32(2U, senses.tilt.unfit_sequence);
+        TEST_ASSERT_EQUAL_UINT32(0U, senses.tilt.time_us);
     }
     tilt(6.9F, -6.9F);
-    TEST_ASSERT_TRUE(it.senses.tilt.levelled);
+    TEST_ASSERT_TRUE(senses.tilt.levelled);
 }
 
 void test_tilted_are_45_degrees_of_one_angle_or_less_of_two(void)
@@ -93,30 +93,30 @@ void test_tilted_are_45_degrees_of_one_angle_or_less_of_two(void)
     for (int i = 0; i < 5; i++) {
         setUp();
         tilt(rows[i].roll_deg * DEGREE_RAD, rows[i].pitch_deg * DEGREE_RAD);
-        TEST_ASSERT_EQUAL_UINT16(rows[i].tilted, it.senses.tilt.tilted);
+        TEST_ASSERT_EQUAL_UINT16(rows[i].tilted, senses.tilt.tilted);
     }
-    NEAR(0.69528F, it.senses.tilt.upright); /* cos 34 cos 33 */
+    NEAR(0.69528F, senses.tilt.upright); /* cos 34 cos 33 */
     tilt(0.5F, 0.5F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.tilt.tilted);
-    it.senses.tilt.tilted = 999U;
+    TEST_ASSERT_EQUAL_UINT16(0U, senses.tilt.tilted);
+    senses.tilt.tilted = 999U;
     tilt(0.8F, 0.8F);
     tilt(0.8F, 0.8F);
-    TEST_ASSERT_EQUAL_UINT16(1000U, it.senses.tilt.tilted); /* and does not wrap */
+    TEST_ASSERT_EQUAL_UINT16(1000U, senses.tilt.tilted); /* and does not wrap */
 }
 
 void test_a_sample_or_a_frame_counts_once(void)
 {
-    tilt_step(&it.senses.tilt, NULL, 0U, 0.1F, 0.0F, 0U);
-    tilt_step(&it.senses.tilt, NULL, 0U, 1.0F, 0.0F, 0U);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.tilt.jumped);
-    tilt_step(&it.senses.tilt, NULL, 0U, 1.0F, 0.0F, 25000U);
-    TEST_ASSERT_EQUAL_UINT16(1U, it.senses.tilt.jumped);
+    tilt_step(&senses.tilt, NULL, 0U, 0.1F, 0.0F, 0U);
+    tilt_step(&senses.tilt, NULL, 0U, 1.0F, 0.0F, 0U);
+    TEST_ASSERT_EQUAL_UINT16(0U, senses.tilt.jumped);
+    tilt_step(&senses.tilt, NULL, 0U, 1.0F, 0.0F, 25000U);
+    TEST_ASSERT_EQUAL_UINT16(1U, senses.tilt.jumped);
     frame.arrival_us = 25000U;
     tilt(-1.0F, 0.0F);
-    TEST_ASSERT_EQUAL_UINT16(2U, it.senses.tilt.jumped);
-    tilt_step(&it.senses.tilt, &frame, 1U, 0.0F, 0.0F, 0U);
-    TEST_ASSERT_EQUAL_UINT16(2U, it.senses.tilt.jumped);
-    TEST_ASSERT_EQUAL_FLOAT(0.1F, it.senses.tilt.roll_rad);
+    TEST_ASSERT_EQUAL_UINT16(2U, senses.tilt.jumped);
+    tilt_step(&senses.tilt, &frame, 1U, 0.0F, 0.0F, 0U);
+    TEST_ASSERT_EQUAL_UINT16(2U, senses.tilt.jumped);
+    TEST_ASSERT_EQUAL_FLOAT(0.1F, senses.tilt.roll_rad);
 }
 
 /* Between the steps of an attitude that is held (0.05 rad) and those that are no turn any more (0.25 rad),
@@ -135,9 +135,9 @@ void test_rejected_tilts_that_go_on_turning_are_a_turn(void)
             setUp();
             tilt(0.0F, 0.0F);
             tilt((axis == 0) ? first_rad : 0.0F, (axis == 1) ? first_rad : 0.0F);
-            TEST_ASSERT_EQUAL_UINT16(1U, it.senses.tilt.jumped);
+            TEST_ASSERT_EQUAL_UINT16(1U, senses.tilt.jumped);
             tilt((axis == 0) ? second_rad : 0.0F, (axis == 1) ? second_rad : 0.0F);
-            TEST_ASSERT_EQUAL_UINT16(rows[i].turn ? 0U : 2U, it.senses.tilt.jumped);
+            TEST_ASSERT_EQUAL_UINT16(rows[i].turn ? 0U : 2U, senses.tilt.jumped);
         }
     }
 }
@@ -150,7 +150,7 @@ void test_a_slow_turn_of_the_other_angle_is_none(void)
         tilt(0.0F, 0.0F);
         tilt(1.0F, rate_rad);
         tilt(1.0F, 2.0F * rate_rad);
-        TEST_ASSERT_EQUAL_UINT16((turns != 0) ? 0U : 2U, it.senses.tilt.jumped);
+        TEST_ASSERT_EQUAL_UINT16((turns != 0) ? 0U : 2U, senses.tilt.jumped);
     }
 }
 
@@ -160,14 +160,14 @@ void test_a_turn_goes_through_the_half_turn(void)
         setUp();
         tilt(3.0F * side, 0.0F);
         tilt(-2.88F * side, 0.0F); /* 0.4 rad on */
-        TEST_ASSERT_EQUAL_UINT16(1U, it.senses.tilt.jumped);
+        TEST_ASSERT_EQUAL_UINT16(1U, senses.tilt.jumped);
         tilt(-2.68F * side, 0.0F);
-        TEST_ASSERT_EQUAL_UINT16(0U, it.senses.tilt.jumped);
+        TEST_ASSERT_EQUAL_UINT16(0U, senses.tilt.jumped);
         setUp();
         tilt(2.6F * side, 0.0F);
         tilt(3.05F * side, 0.0F);
         tilt(-3.033F * side, 0.0F); /* 0.2 rad on */
-        TEST_ASSERT_EQUAL_UINT16(0U, it.senses.tilt.jumped);
+        TEST_ASSERT_EQUAL_UINT16(0U, senses.tilt.jumped);
     }
 }
 
@@ -179,7 +179,7 @@ void test_frames_that_were_level_themselves_are_no_tilt(void)
         frame.median.roll_rad = 1.0F;
         frame.level.roll_rad = (level == 1) ? 0.78F : 0.79F;
         frame.rolled = (level == 2) ? ATTITUDE_ROLLED_FRAMES : 0;
-        tilt_step(&it.senses.tilt, &frame, 1U, 0.0F, 0.0F, 0U);
-        TEST_ASSERT_EQUAL_UINT16((level == 0) ? 1U : (level == 1) ? 0U : 1000U, it.senses.tilt.tilted);
+        tilt_step(&senses.tilt, &frame, 1U, 0.0F, 0.0F, 0U);
+        TEST_ASSERT_EQUAL_UINT16((level == 0) ? 1U : (level == 1) ? 0U : 1000U, senses.tilt.tilted);
     }
 }

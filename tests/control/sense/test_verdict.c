@@ -7,20 +7,19 @@
 #define AT_ONCE_S 1.0e-9F
 #define HOVER_N 7.0F
 
-static sense_t it;
 static command_t flown;
 
 /* In the air, warm and proved; the heights do not move, nobody contradicts. */
 void setUp(void)
 {
-    sense_init(&it);
-    it.senses.heights.known = it.senses.confirmation.proved = true;
-    it.senses.beam.still = 1U; /* the slant may be that of a blocked beam */
-    it.senses.heights.height_m = it.senses.confirmation.near_m = 0.5F;
-    it.senses.heights.unmoved_s = 1.0F;
-    it.senses.heights.since_rise_s = 1.5F;
-    it.senses.accelerometer.felt.running_s = it.senses.push.pushed.running_s = 2.0F;
-    it.senses.push.lagged_n = HOVER_N;
+    sensed_begin();
+    senses.heights.known = senses.confirmation.proved = true;
+    senses.beam.still = 1U; /* the slant may be that of a blocked beam */
+    senses.heights.height_m = senses.confirmation.near_m = 0.5F;
+    senses.heights.unmoved_s = 1.0F;
+    senses.heights.since_rise_s = 1.5F;
+    senses.accelerometer.felt.running_s = senses.push.pushed.running_s = 2.0F;
+    senses.push.lagged_n = HOVER_N;
     flown = (command_t){.step_s = 0.025F,
                         .off_ground = true,
                         .ours = true,
@@ -36,10 +35,10 @@ void tearDown(void) {}
 
 static uint16_t judged(float felt_m, float pushed_m)
 {
-    it.senses.accelerometer.felt.off_m = felt_m;
-    it.senses.push.pushed.off_m = pushed_m;
-    sensed_height(&it, &flown, it.senses.heights.height_m, AT_ONCE_S, 0.0F);
-    return it.verdict.doubts;
+    senses.accelerometer.felt.off_m = felt_m;
+    senses.push.pushed.off_m = pushed_m;
+    sensed_height(&flown, senses.heights.height_m, AT_ONCE_S, 0.0F);
+    return verdict.doubts;
 }
 
 /* The same on the evidence that setUp() makes and `change` changes. */
@@ -60,44 +59,44 @@ static void want(float m)
 }
 static void rising(float mps)
 {
-    it.senses.heights.rise_mps = mps;
+    senses.heights.rise_mps = mps;
 }
 static void felt_for(float s)
 {
-    it.senses.accelerometer.felt.running_s = s;
+    senses.accelerometer.felt.running_s = s;
 }
 static void pushed_for(float s)
 {
-    it.senses.push.pushed.running_s = s;
+    senses.push.pushed.running_s = s;
 }
 static void shaken(float times)
 {
-    it.senses.accelerometer.shaken = times;
+    senses.accelerometer.shaken = times;
 }
 static void without_imu(float value)
 {
     (void)value;
-    it.verdict.doubts = DOUBT_IMU;
+    verdict.doubts = DOUBT_IMU;
 }
 static void moved_s_ago(float s)
 {
-    it.senses.heights.unmoved_s = s;
+    senses.heights.unmoved_s = s;
 }
 static void way(float m)
 {
-    it.senses.heights.way_m = m;
+    senses.heights.way_m = m;
 }
 
 static void flat(float wanted_m)
 {
-    it.senses.beam.flat = true;
-    it.senses.beam.white = 6U;
+    senses.beam.flat = true;
+    senses.beam.white = 6U;
     flown.wanted_m = wanted_m;
 }
 static void flat_by_chance(float wanted_m)
 {
     flat(wanted_m);
-    it.senses.beam.white = 5U;
+    senses.beam.white = 5U;
 }
 
 typedef struct {
@@ -139,7 +138,7 @@ void test_both_witnesses_together_doubt_the_heights_one_by_half_a_metre(void)
 
 static void slant_alive(float wanted_m)
 {
-    it.senses.beam.still = 0U;
+    senses.beam.still = 0U;
     flown.wanted_m = wanted_m;
 }
 
@@ -226,8 +225,8 @@ void test_the_accelerometer_alone_doubts_the_heights_beyond_six_decimetres(void)
 static void low_and_still(float scans)
 {
     pushed_for(0.3F);
-    it.senses.heights.height_m = 0.05F;
-    it.senses.beam.still = (uint16_t)scans;
+    senses.heights.height_m = 0.05F;
+    senses.beam.still = (uint16_t)scans;
 }
 void test_near_the_ground_the_accelerometer_alone_doubts_only_a_still_beam(void)
 {
@@ -243,16 +242,16 @@ void test_near_the_ground_the_accelerometer_alone_doubts_only_a_still_beam(void)
 void test_the_error_of_the_height_is_the_mean_of_the_witnesses_that_count(void)
 {
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(-0.52F, -0.30F));
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.41F, it.verdict.lost_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.seen_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.push.pushed.off_m);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.41F, verdict.lost_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.push.pushed.off_m);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged_with(pushed_for, 0.3F, -0.7F, 5.0F));
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.7F, it.verdict.lost_m);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.7F, verdict.lost_m);
     setUp();
-    it.verdict.doubts = DOUBT_IMU;
-    it.senses.beam.white = 19U;
+    verdict.doubts = DOUBT_IMU;
+    senses.beam.white = 19U;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.7F, -0.3F));
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.3F, it.verdict.lost_m);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.3F, verdict.lost_m);
 }
 
 /* ---- DOUBT_SIGHT: both run away */
@@ -260,9 +259,9 @@ void test_the_error_of_the_height_is_the_mean_of_the_witnesses_that_count(void)
 static uint16_t run_away(float felt_mps, float pushed_mps, float rise_mps, float felt_m, float pushed_m)
 {
     setUp();
-    it.senses.accelerometer.felt.speed_mps = felt_mps;
-    it.senses.push.pushed.speed_mps = pushed_mps;
-    it.senses.heights.rise_mps = rise_mps;
+    senses.accelerometer.felt.speed_mps = felt_mps;
+    senses.push.pushed.speed_mps = pushed_mps;
+    senses.heights.rise_mps = rise_mps;
     return judged(felt_m, pushed_m);
 }
 
@@ -290,11 +289,11 @@ void test_a_speed_is_taken_against_the_rate_of_the_heights(void)
 void test_of_a_noisy_accelerometer_a_share_of_the_speed_counts(void)
 {
     setUp();
-    it.senses.accelerometer.shaken = 2.0F;
-    it.senses.accelerometer.felt.speed_mps = 1.39F;
-    it.senses.push.pushed.speed_mps = 0.71F;
+    senses.accelerometer.shaken = 2.0F;
+    senses.accelerometer.felt.speed_mps = 1.39F;
+    senses.push.pushed.speed_mps = 0.71F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.8F, -0.39F));
-    it.senses.accelerometer.felt.speed_mps = 1.41F;
+    senses.accelerometer.felt.speed_mps = 1.41F;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(-0.8F, -0.39F));
 }
 
@@ -304,9 +303,9 @@ void test_of_a_noisy_accelerometer_a_share_of_the_speed_counts(void)
 static uint16_t climb(float slower_mps, float rise_mps, float felt_m, float pushed_m)
 {
     setUp();
-    it.senses.heights.unmoved_s = 0.0F;
-    it.senses.slower_mps = slower_mps;
-    it.senses.heights.rise_mps = rise_mps;
+    senses.heights.unmoved_s = 0.0F;
+    senses.slower_mps = slower_mps;
+    senses.heights.rise_mps = rise_mps;
     return judged(felt_m, pushed_m);
 }
 
@@ -327,12 +326,12 @@ void test_a_climb_of_both_witnesses_doubts_heights_that_have_stopped_at_once(voi
 static uint16_t climb_with(uint16_t doubts, float shaken, float felt_s, float pushed_s)
 {
     setUp();
-    it.senses.heights.unmoved_s = 0.0F;
-    it.senses.slower_mps = 1.0F;
-    it.verdict.doubts = doubts;
-    it.senses.accelerometer.shaken = shaken;
-    it.senses.accelerometer.felt.running_s = felt_s;
-    it.senses.push.pushed.running_s = pushed_s;
+    senses.heights.unmoved_s = 0.0F;
+    senses.slower_mps = 1.0F;
+    verdict.doubts = doubts;
+    senses.accelerometer.shaken = shaken;
+    senses.accelerometer.felt.running_s = felt_s;
+    senses.push.pushed.running_s = pushed_s;
     return (uint16_t)(judged(-0.3F, -0.2F) & DOUBT_SIGHT);
 }
 
@@ -349,16 +348,16 @@ void test_a_climb_unseen_needs_both_witnesses_and_a_quiet_accelerometer(void)
 void test_a_doubt_of_the_heights_takes_back_what_they_have_corrected(void)
 {
     setUp();
-    it.senses.accelerometer.felt.speed_mps = 0.9F;
-    it.senses.accelerometer.bias_mps2 = 0.2F;
-    it.senses.accelerometer.pulled_m_s = -0.5F;
+    senses.accelerometer.felt.speed_mps = 0.9F;
+    senses.accelerometer.bias_mps2 = 0.2F;
+    senses.accelerometer.pulled_m_s = -0.5F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.4F, -0.2F));
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.9F, it.senses.accelerometer.felt.speed_mps);
-    TEST_ASSERT_FLOAT_WITHIN(0.001F, -0.5F, it.senses.accelerometer.pulled_m_s);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.9F, senses.accelerometer.felt.speed_mps);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, -0.5F, senses.accelerometer.pulled_m_s);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(-0.6F, -0.3F));
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.305F, it.senses.accelerometer.felt.speed_mps);
-    TEST_ASSERT_FLOAT_WITHIN(0.001F, 0.15F, it.senses.accelerometer.bias_mps2);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.pulled_m_s);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.305F, senses.accelerometer.felt.speed_mps);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 0.15F, senses.accelerometer.bias_mps2);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.pulled_m_s);
 }
 
 /* ---- DOUBT_SIGHT: below the ground */
@@ -371,17 +370,17 @@ void test_three_heights_below_the_ground_doubt_the_heights_of_a_law_that_wants_t
     } rows[] = {{-0.036F, 0.6F, DOUBT_SIGHT}, {-0.034F, 0.6F, 0U}, {-0.036F, 0.1F, 0U}, {-0.036F, NAN, 0U}};
     for (int i = 0; i < 4; i++) {
         setUp();
-        it.senses.confirmation.ground_m = -0.01F;
-        it.senses.heights.height_m = rows[i].height_m;
+        senses.confirmation.ground_m = -0.01F;
+        senses.heights.height_m = rows[i].height_m;
         flown.wanted_m = rows[i].wanted_m;
         TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
         TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
         TEST_ASSERT_EQUAL_UINT16(rows[i].doubts, judged(0.0F, 0.0F));
     }
     setUp();
-    it.senses.confirmation.sunk = 2U;
+    senses.confirmation.sunk = 2U;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F)); /* a good one between starts the count again */
-    TEST_ASSERT_EQUAL_UINT16(0U, it.senses.confirmation.sunk);
+    TEST_ASSERT_EQUAL_UINT16(0U, senses.confirmation.sunk);
 }
 
 /* ---- DOUBT_SIGHT: a still slant */
@@ -389,8 +388,8 @@ void test_three_heights_below_the_ground_doubt_the_heights_of_a_law_that_wants_t
 static uint16_t slant(uint16_t rigid, uint16_t still, float felt_m, float pushed_m)
 {
     setUp();
-    it.senses.beam.rigid = rigid;
-    it.senses.beam.still = still;
+    senses.beam.rigid = rigid;
+    senses.beam.still = still;
     return judged(felt_m, pushed_m);
 }
 
@@ -406,8 +405,8 @@ void test_a_rigid_slant_and_both_witnesses_by_a_decimetre_doubt_the_heights(void
 static uint16_t noisy_slant(uint16_t rigid, uint16_t white, float felt_m, float pushed_m)
 {
     setUp();
-    it.senses.beam.rigid = rigid;
-    it.senses.beam.white = white;
+    senses.beam.rigid = rigid;
+    senses.beam.white = white;
     return judged(felt_m, pushed_m);
 }
 
@@ -431,21 +430,21 @@ void test_a_slant_of_noise_for_four_seconds_is_a_blocked_beam(void)
 void test_a_swaying_tilt_and_a_rigid_slant_are_a_blocked_beam(void)
 {
     setUp();
-    it.senses.beam.rigid = 16U;
-    it.senses.sway.sway_rad2 = 4.0e-4F;
+    senses.beam.rigid = 16U;
+    senses.sway.sway_rad2 = 4.0e-4F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
-    it.senses.sway.sway_rad2 = 4.1e-4F;
-    it.senses.beam.rigid = 15U;
+    senses.sway.sway_rad2 = 4.1e-4F;
+    senses.beam.rigid = 15U;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
-    it.senses.beam.rigid = 16U;
+    senses.beam.rigid = 16U;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
 }
 
 void test_heights_of_nothing_but_steps_are_doubted(void)
 {
-    it.senses.heights.steps = 12.0F;
+    senses.heights.steps = 12.0F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
-    it.senses.heights.steps = 12.1F;
+    senses.heights.steps = 12.1F;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
 }
 
@@ -455,9 +454,9 @@ void test_heights_of_nothing_but_steps_are_doubted(void)
 static uint16_t since_step(float push_n, float wanted_m, float felt_m, float pushed_m)
 {
     setUp();
-    it.senses.confirmation.unconfirmed = true;
+    senses.confirmation.unconfirmed = true;
     flown.hover_n = 0.0F; /* so that the difference is exact */
-    it.senses.push.lagged_n = push_n;
+    senses.push.lagged_n = push_n;
     flown.wanted_m = wanted_m;
     return judged(felt_m, pushed_m);
 }
@@ -484,46 +483,46 @@ void test_unless_the_accelerometer_tells_the_contrary(void)
 static void in_vain(bool unconfirmed, bool proved, float felt_least_m, float pushed_for_s)
 {
     setUp();
-    it.senses.confirmation.unconfirmed = unconfirmed;
-    it.senses.confirmation.proved = proved;
-    it.verdict.felt_least_m = felt_least_m;
-    it.senses.push.pushed.running_s = pushed_for_s;
-    it.senses.push.lagged_n = HOVER_N + 0.3F;
-    it.senses.heights.height_m = it.senses.confirmation.near_m = 0.10F;
+    senses.confirmation.unconfirmed = unconfirmed;
+    senses.confirmation.proved = proved;
+    verdict.felt_least_m = felt_least_m;
+    senses.push.pushed.running_s = pushed_for_s;
+    senses.push.lagged_n = HOVER_N + 0.3F;
+    senses.heights.height_m = senses.confirmation.near_m = 0.10F;
     (void)judged(0.0F, -0.36F);
 }
 
 void test_a_push_in_vain_needs_a_proof_and_an_old_witness(void)
 {
     in_vain(true, true, 0.0F, 2.0F);
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, it.verdict.doubts);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, verdict.doubts);
     in_vain(false, true, 0.0F, 2.0F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
+    TEST_ASSERT_EQUAL_UINT16(0U, verdict.doubts);
     in_vain(true, true, 0.0F, 1.9F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
+    TEST_ASSERT_EQUAL_UINT16(0U, verdict.doubts);
     in_vain(true, false, -0.20F, 2.0F);
-    TEST_ASSERT_EQUAL_UINT16(0U, it.verdict.doubts);
+    TEST_ASSERT_EQUAL_UINT16(0U, verdict.doubts);
     in_vain(true, false, -0.21F, 2.0F);
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, it.verdict.doubts);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, verdict.doubts);
 }
 
 void test_a_jump_of_the_height_after_the_lift_off_is_such_a_proof(void)
 {
     for (int high = 0; high < 2; high++) {
         setUp();
-        it.senses.confirmation.unconfirmed = true;
-        it.senses.confirmation.proved = false;
-        it.senses.heights.height_m = it.senses.confirmation.near_m = (high == 0) ? 0.10F : 0.11F;
-        it.senses.push.lagged_n = HOVER_N + 0.3F;
+        senses.confirmation.unconfirmed = true;
+        senses.confirmation.proved = false;
+        senses.heights.height_m = senses.confirmation.near_m = (high == 0) ? 0.10F : 0.11F;
+        senses.push.lagged_n = HOVER_N + 0.3F;
         TEST_ASSERT_EQUAL_UINT16((high == 0) ? 0U : DOUBT_SIGHT, judged(0.0F, -0.36F));
     }
 }
 
 void test_without_an_accelerometer_a_push_in_vain_after_a_step_is_enough(void)
 {
-    it.senses.confirmation.unconfirmed = true;
-    it.verdict.doubts = DOUBT_IMU;
-    it.senses.push.lagged_n = HOVER_N + 0.3F;
+    senses.confirmation.unconfirmed = true;
+    verdict.doubts = DOUBT_IMU;
+    senses.push.lagged_n = HOVER_N + 0.3F;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, judged(0.0F, -0.35F));
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.0F, -0.36F));
 }
@@ -547,10 +546,10 @@ void test_the_first_climb_is_the_accelerometers_to_tell(void)
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         setUp();
-        it.senses.confirmation.unconfirmed = rows[i].unconfirmed;
-        it.senses.confirmation.proved = rows[i].proved;
-        it.senses.accelerometer.felt.running_s = rows[i].running_s;
-        it.senses.heights.way_m = rows[i].way_m;
+        senses.confirmation.unconfirmed = rows[i].unconfirmed;
+        senses.confirmation.proved = rows[i].proved;
+        senses.accelerometer.felt.running_s = rows[i].running_s;
+        senses.heights.way_m = rows[i].way_m;
         TEST_ASSERT_EQUAL_UINT16(rows[i].doubts, judged(rows[i].felt_m, 0.0F));
     }
 }
@@ -560,11 +559,11 @@ void test_the_first_climb_is_the_accelerometers_to_tell(void)
 static uint16_t lift_off(float height_m, uint16_t rigid, uint16_t still, float sway_rad2, float felt_m)
 {
     setUp();
-    flown.standing = it.senses.standing = true;
-    it.senses.heights.height_m = it.verdict.swaying_from_m = height_m;
-    it.senses.beam.rigid = rigid;
-    it.senses.beam.still = still;
-    it.senses.sway.sway_rad2 = sway_rad2;
+    flown.standing = senses.standing = true;
+    senses.heights.height_m = verdict.swaying_from_m = height_m;
+    senses.beam.rigid = rigid;
+    senses.beam.still = still;
+    senses.sway.sway_rad2 = sway_rad2;
     return judged(felt_m, 0.0F);
 }
 
@@ -581,33 +580,33 @@ void test_a_climb_felt_before_an_odd_beam_shows_it_doubts_the_heights(void)
 
 void test_a_vehicle_that_is_off_the_ground_is_not_asked_about_its_lift_off(void)
 {
-    it.senses.beam.rigid = 2U;
-    it.senses.confirmation.unconfirmed = true;
-    it.senses.sway.sway_rad2 = 4.1e-4F;
+    senses.beam.rigid = 2U;
+    senses.confirmation.unconfirmed = true;
+    senses.sway.sway_rad2 = 4.1e-4F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.09F, 0.0F));
-    it.verdict.swaying_s = 1.6F;
+    verdict.swaying_s = 1.6F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.verdict.swaying_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict.swaying_s);
 }
 
 /* One height 0.1 s after the last; how long the tilt has swayed then. */
 static float swayed_s(float height_m, uint16_t still, float sway_rad2)
 {
     setUp();
-    flown.standing = it.senses.standing = true;
-    it.senses.heights.height_m = height_m;
-    it.senses.beam.still = still;
-    it.senses.sway.sway_rad2 = sway_rad2;
-    it.verdict.swaying_s = 1.0F;
-    sensed_height(&it, &flown, height_m, 0.1F, 0.0F);
-    return it.verdict.swaying_s;
+    flown.standing = senses.standing = true;
+    senses.heights.height_m = height_m;
+    senses.beam.still = still;
+    senses.sway.sway_rad2 = sway_rad2;
+    verdict.swaying_s = 1.0F;
+    sensed_height(&flown, height_m, 0.1F, 0.0F);
+    return verdict.swaying_s;
 }
 
 void test_a_sway_counts_while_the_beam_is_still_and_the_height_the_same(void)
 {
     TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 1.1F, swayed_s(0.05F, 9U, 4.1e-4F));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, swayed_s(0.051F, 9U, 4.1e-4F));
-    TEST_ASSERT_EQUAL_FLOAT(0.051F, it.verdict.swaying_from_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.051F, verdict.swaying_from_m);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, swayed_s(-0.051F, 9U, 4.1e-4F));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, swayed_s(0.05F, 8U, 4.1e-4F));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, swayed_s(0.05F, 9U, 4.0e-4F));
@@ -615,26 +614,26 @@ void test_a_sway_counts_while_the_beam_is_still_and_the_height_the_same(void)
 
 void test_the_height_of_a_sway_is_measured_from_its_start(void)
 {
-    flown.standing = it.senses.standing = true;
-    it.senses.heights.height_m = 0.34F;
-    it.verdict.swaying_from_m = 0.30F;
-    it.senses.beam.still = 9U;
-    it.senses.sway.sway_rad2 = 4.1e-4F;
-    it.verdict.swaying_s = 1.0F;
+    flown.standing = senses.standing = true;
+    senses.heights.height_m = 0.34F;
+    verdict.swaying_from_m = 0.30F;
+    senses.beam.still = 9U;
+    senses.sway.sway_rad2 = 4.1e-4F;
+    verdict.swaying_s = 1.0F;
     (void)judged(0.0F, 0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(1.0F, it.verdict.swaying_s);
-    TEST_ASSERT_EQUAL_FLOAT(0.30F, it.verdict.swaying_from_m);
+    TEST_ASSERT_EQUAL_FLOAT(1.0F, verdict.swaying_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.30F, verdict.swaying_from_m);
 }
 
 void test_a_sway_of_more_than_a_second_and_a_half_is_a_flight(void)
 {
-    flown.standing = it.senses.standing = true;
-    it.senses.heights.height_m = 0.0F;
-    it.senses.beam.still = 9U;
-    it.senses.sway.sway_rad2 = 4.1e-4F;
-    it.verdict.swaying_s = 1.5F;
+    flown.standing = senses.standing = true;
+    senses.heights.height_m = 0.0F;
+    senses.beam.still = 9U;
+    senses.sway.sway_rad2 = 4.1e-4F;
+    verdict.swaying_s = 1.5F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
-    it.verdict.swaying_s = 1.51F;
+    verdict.swaying_s = 1.51F;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
 }
 
@@ -645,13 +644,13 @@ static float vain_s(float push_n, float wanted_m, float rise_mps, float pushed_m
 {
     setUp();
     flown.hover_n = 0.0F;
-    it.senses.push.lagged_n = push_n;
+    senses.push.lagged_n = push_n;
     flown.wanted_m = wanted_m;
-    it.senses.heights.rise_mps = rise_mps * 1.5F; /* a third of a rate is forgotten within this height */
-    it.verdict.vain_s = 1.0F;
-    it.senses.push.pushed.off_m = pushed_m;
-    sensed_height(&it, &flown, it.senses.heights.height_m, 0.1F, 0.0F);
-    return it.verdict.vain_s;
+    senses.heights.rise_mps = rise_mps * 1.5F; /* a third of a rate is forgotten within this height */
+    verdict.vain_s = 1.0F;
+    senses.push.pushed.off_m = pushed_m;
+    sensed_height(&flown, senses.heights.height_m, 0.1F, 0.0F);
+    return verdict.vain_s;
 }
 
 void test_a_push_without_any_motion_of_the_heights_is_in_vain(void)
@@ -673,19 +672,19 @@ void test_a_push_in_vain_of_three_seconds_doubts_the_heights_where_the_thrust_is
 {
     for (int other = 0; other < 2; other++) {
         setUp();
-        it.verdict.doubts = (other == 0) ? DOUBT_IMU : 0U;
-        it.senses.push.lagged_n = HOVER_N + 1.0F;
-        it.verdict.vain_s = 3.0F;
+        verdict.doubts = (other == 0) ? DOUBT_IMU : 0U;
+        senses.push.lagged_n = HOVER_N + 1.0F;
+        verdict.vain_s = 3.0F;
         TEST_ASSERT_EQUAL_UINT16((other == 0) ? DOUBT_IMU : 0U, judged(0.0F, -0.01F));
-        it.verdict.vain_s = 3.01F;
+        verdict.vain_s = 3.01F;
         TEST_ASSERT_EQUAL_UINT16((other == 0) ? (DOUBT_IMU | DOUBT_SIGHT) : 0U, judged(0.0F, -0.01F));
     }
 }
 
 void test_a_still_slant_needs_no_accelerometer(void)
 {
-    it.verdict.doubts = DOUBT_IMU;
-    it.senses.beam.white = 19U;
+    verdict.doubts = DOUBT_IMU;
+    senses.beam.white = 19U;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, judged(0.0F, -0.28F));
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.0F, -0.29F));
 }
@@ -710,7 +709,7 @@ void test_an_accelerometer_alone_against_the_heights_is_doubted(void)
     CHECK(rows);
     TEST_ASSERT_EQUAL_UINT16(0U, slant(0U, 9U, 0.61F, 0.0F));
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, slant(0U, 8U, 0.61F, 0.0F));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.seen_m);
 }
 
 void test_heights_that_move_are_right_against_both_witnesses(void)
@@ -729,7 +728,7 @@ static uint16_t powerless(float push_n, float wanted_m, float felt_m, float push
 {
     setUp();
     flown.hover_n = 0.0F;
-    it.senses.push.lagged_n = push_n;
+    senses.push.lagged_n = push_n;
     flown.wanted_m = wanted_m;
     return judged(felt_m, pushed_m);
 }
@@ -737,10 +736,10 @@ static uint16_t powerless(float push_n, float wanted_m, float felt_m, float push
 void test_a_thrust_without_effect_is_doubted_where_heights_and_accelerometer_agree(void)
 {
     TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, powerless(0.71F, 0.5F, 0.0F, -1.31F));
-    TEST_ASSERT_FALSE(it.verdict.held_down);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.push.pushed.seen_m);
+    TEST_ASSERT_FALSE(verdict.held_down);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.push.pushed.seen_m);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, powerless(-0.71F, -0.16F, 0.0F, 1.31F));
-    TEST_ASSERT_TRUE(it.verdict.held_down);
+    TEST_ASSERT_TRUE(verdict.held_down);
     TEST_ASSERT_EQUAL_UINT16(0U, powerless(0.71F, 0.5F, 0.0F, -1.30F));
     TEST_ASSERT_EQUAL_UINT16(0U, powerless(0.70F, 0.5F, 0.0F, -1.31F));
     TEST_ASSERT_EQUAL_UINT16(0U, powerless(0.71F, 0.15F, 0.0F, -1.31F));
@@ -750,15 +749,15 @@ void test_a_thrust_without_effect_is_doubted_where_heights_and_accelerometer_agr
 
 void test_a_thrust_that_was_never_proved_or_has_no_second_witness_is_not_doubted(void)
 {
-    it.senses.push.lagged_n = HOVER_N + 1.0F;
-    it.senses.confirmation.proved = false;
+    senses.push.lagged_n = HOVER_N + 1.0F;
+    senses.confirmation.proved = false;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, -1.4F));
-    it.senses.confirmation.proved = true;
-    it.senses.accelerometer.felt.running_s = 0.5F;
+    senses.confirmation.proved = true;
+    senses.accelerometer.felt.running_s = 0.5F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, -1.4F));
-    it.senses.accelerometer.felt.running_s = 2.0F;
+    senses.accelerometer.felt.running_s = 2.0F;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, judged(0.0F, -1.4F));
-    TEST_ASSERT_EQUAL_FLOAT(HOVER_N, it.verdict.held_n);
+    TEST_ASSERT_EQUAL_FLOAT(HOVER_N, verdict.held_n);
 }
 
 /* ---- the end of a doubt */
@@ -767,9 +766,9 @@ void test_a_thrust_that_was_never_proved_or_has_no_second_witness_is_not_doubted
 static uint16_t again(uint16_t doubts, float agreed_s, float moved_m, float felt_m, float pushed_m)
 {
     setUp();
-    it.verdict.doubts = doubts;
-    it.verdict.agreed_s = agreed_s;
-    it.senses.push.pushed.moved_m = moved_m;
+    verdict.doubts = doubts;
+    verdict.agreed_s = agreed_s;
+    senses.push.pushed.moved_m = moved_m;
     return judged(felt_m, pushed_m);
 }
 
@@ -777,27 +776,27 @@ void test_agreement_of_a_second_and_a_half_over_a_motion_ends_a_doubt(void)
 {
     TEST_ASSERT_EQUAL_UINT16(0U, again(DOUBT_SIGHT, 1.51F, 0.31F, 0.0F, 0.0F));
     TEST_ASSERT_EQUAL_UINT16(0U, again(DOUBT_THRUST, 1.51F, 0.31F, 0.2F, -0.2F));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.seen_m);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, again(DOUBT_SIGHT | DOUBT_IMU, 1.51F, 0.31F, 0.0F, 0.0F));
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.50F, 0.31F, 0.0F, 0.0F));
-    TEST_ASSERT_EQUAL_FLOAT(1.5F, it.verdict.agreed_s);
+    TEST_ASSERT_EQUAL_FLOAT(1.5F, verdict.agreed_s);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.51F, 0.30F, 0.0F, 0.0F));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.verdict.agreed_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict.agreed_s);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.51F, 0.31F, 0.21F, 0.0F));
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.51F, 0.31F, 0.0F, 0.21F));
 }
 
 void test_the_motion_is_the_accelerometers_where_the_thrust_does_not_count(void)
 {
-    it.verdict.doubts = DOUBT_SIGHT;
-    it.verdict.agreed_s = 1.51F;
-    it.senses.push.pushed.running_s = 0.5F;
-    it.senses.accelerometer.felt.moved_m = 0.31F;
+    verdict.doubts = DOUBT_SIGHT;
+    verdict.agreed_s = 1.51F;
+    senses.push.pushed.running_s = 0.5F;
+    senses.accelerometer.felt.moved_m = 0.31F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
     setUp();
-    it.verdict.doubts = DOUBT_SIGHT;
-    it.verdict.agreed_s = 1.51F;
-    it.senses.accelerometer.felt.moved_m = 0.31F;
+    verdict.doubts = DOUBT_SIGHT;
+    verdict.agreed_s = 1.51F;
+    senses.accelerometer.felt.moved_m = 0.31F;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
 }
 
@@ -805,10 +804,10 @@ void test_a_slant_of_noise_alone_does_not_agree(void)
 {
     for (uint16_t still = 15U; still <= 16U; still++) {
         setUp();
-        it.verdict.doubts = DOUBT_SIGHT;
-        it.verdict.agreed_s = 1.51F;
-        it.senses.push.pushed.moved_m = 0.31F;
-        it.senses.beam.still = still;
+        verdict.doubts = DOUBT_SIGHT;
+        verdict.agreed_s = 1.51F;
+        senses.push.pushed.moved_m = 0.31F;
+        senses.beam.still = still;
         TEST_ASSERT_EQUAL_UINT16((still == 15U) ? 0U : DOUBT_SIGHT, judged(0.0F, 0.0F));
     }
 }
@@ -827,9 +826,9 @@ void test_heights_that_move_end_a_doubt_of_the_sight_alone(void)
                 {DOUBT_THRUST | DOUBT_SIGHT, 0.16F, 0.0F, 0U}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         setUp();
-        it.verdict.doubts = rows[i].doubts;
-        it.senses.heights.way_m = rows[i].way_m;
-        it.senses.heights.steps = rows[i].steps;
+        verdict.doubts = rows[i].doubts;
+        senses.heights.way_m = rows[i].way_m;
+        senses.heights.steps = rows[i].steps;
         TEST_ASSERT_EQUAL_UINT16(rows[i].left, judged(0.0F, 0.0F));
     }
 }
@@ -837,12 +836,12 @@ void test_heights_that_move_end_a_doubt_of_the_sight_alone(void)
 void test_a_doubt_starts_its_sums_again_when_they_grow_past_half_a_metre(void)
 {
     (void)again(DOUBT_SIGHT, 0.0F, 0.0F, -0.50F, 0.50F);
-    TEST_ASSERT_EQUAL_FLOAT(-0.5F, it.senses.accelerometer.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(-0.5F, senses.accelerometer.felt.seen_m);
     (void)again(DOUBT_SIGHT, 0.0F, 0.0F, -0.51F, 0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.seen_m);
     (void)again(DOUBT_SIGHT, 0.0F, 0.0F, -0.1F, 0.51F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.seen_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.push.pushed.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.push.pushed.seen_m);
 }
 
 /* ---- who is judged */
@@ -851,27 +850,27 @@ void test_on_the_ground_and_under_a_pilot_nothing_is_judged(void)
 {
     flown.grounded = true;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.7F, -0.7F));
-    TEST_ASSERT_EQUAL_FLOAT(-0.7F, it.senses.accelerometer.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(-0.7F, senses.accelerometer.felt.seen_m);
     setUp();
     flown.ours = false;
-    it.senses.heights.rise_mps = 0.3F;
-    it.senses.accelerometer.felt.speed_mps = 1.0F;
+    senses.heights.rise_mps = 0.3F;
+    senses.accelerometer.felt.speed_mps = 1.0F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.7F, -0.7F));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.push.pushed.seen_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.3F, it.senses.accelerometer.felt.speed_mps);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, it.senses.accelerometer.felt.running_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.push.pushed.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.3F, senses.accelerometer.felt.speed_mps);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.running_s);
 }
 
 void test_a_thrust_that_lifts_any_vehicle_makes_a_sway_count_three_times(void)
 {
     for (int strong = 0; strong < 2; strong++) {
         setUp();
-        flown.standing = it.senses.standing = true;
-        it.senses.heights.height_m = it.verdict.swaying_from_m = 0.0F;
-        it.senses.sway.sway_rad2 = 4.1e-4F;
-        it.verdict.swaying_s = 1.0F;
-        it.senses.push.lagged_n = HOVER_N * ((strong != 0) ? 1.301F : 1.299F);
-        sensed_height(&it, &flown, 0.0F, 0.1F, 0.0F);
-        TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, (strong != 0) ? 1.3F : 0.0F, it.verdict.swaying_s);
+        flown.standing = senses.standing = true;
+        senses.heights.height_m = verdict.swaying_from_m = 0.0F;
+        senses.sway.sway_rad2 = 4.1e-4F;
+        verdict.swaying_s = 1.0F;
+        senses.push.lagged_n = HOVER_N * ((strong != 0) ? 1.301F : 1.299F);
+        sensed_height(&flown, 0.0F, 0.1F, 0.0F);
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, (strong != 0) ? 1.3F : 0.0F, verdict.swaying_s);
     }
 }
