@@ -44,9 +44,10 @@ static inline void hover(void)
 {
     begin();
     senses.heights.known = senses.confirmation.proved = true;
-    senses.heights.height_m = senses.confirmation.near_m = 0.5F;
-    senses.heights.since_rise_s = 1.5F;
-    senses.heights.unmoved_s = 1.0F;
+    at_m(0.5F);
+    came_near_at_m(0.5F);
+    rose_s_ago(1.5F);
+    last_moved_s_ago(1.0F);
     flown.wanted_m = 0.5F;
 }
 

@@ -24,6 +24,195 @@ static inline void sensed_begin(void)
     memset(&verdict, 0, sizeof verdict);
 }
 
+/* ---- what they are taken to have shown */
+
+static inline void sways_rad2(float sway_rad2)
+{
+    senses.sway.sway_rad2 = sway_rad2;
+}
+
+static inline void doubted(uint16_t doubts)
+{
+    verdict.doubts = doubts;
+}
+
+static inline void has_swayed_s(float swaying_s)
+{
+    verdict.swaying_s = swaying_s;
+}
+
+static inline void has_agreed_s(float agreed_s)
+{
+    verdict.agreed_s = agreed_s;
+}
+
+static inline void pushed_in_vain_s(float vain_s)
+{
+    verdict.vain_s = vain_s;
+}
+
+static inline void felt_least_is_m(float least_m)
+{
+    verdict.felt_least_m = least_m;
+}
+
+static inline void swayed_from_m(float height_m)
+{
+    verdict.swaying_from_m = height_m;
+}
+
+static inline void has_moved_m(float way_m)
+{
+    senses.heights.way_m = way_m;
+}
+
+static inline void last_moved_s_ago(float unmoved_s)
+{
+    senses.heights.unmoved_s = unmoved_s;
+}
+
+static inline void rises_mps(float rise_mps)
+{
+    senses.heights.rise_mps = rise_mps;
+}
+
+static inline void has_stepped(float steps)
+{
+    senses.heights.steps = steps;
+}
+
+static inline void rose_s_ago(float since_rise_s)
+{
+    senses.heights.since_rise_s = since_rise_s;
+}
+
+static inline void is_unconfirmed(bool unconfirmed)
+{
+    senses.confirmation.unconfirmed = unconfirmed;
+}
+
+static inline void is_proved(bool proved)
+{
+    senses.confirmation.proved = proved;
+}
+
+static inline void content_for_s(float quiet_s)
+{
+    senses.confirmation.quiet_s = quiet_s;
+}
+
+static inline void came_near_at_m(float near_m)
+{
+    senses.confirmation.near_m = near_m;
+}
+
+static inline void terrain_fell(bool fell)
+{
+    senses.confirmation.terrain_fell = fell;
+}
+
+static inline void ground_is_m(float ground_m)
+{
+    senses.confirmation.ground_m = ground_m;
+}
+
+static inline void still_scans(uint16_t still)
+{
+    senses.beam.still = still;
+}
+
+static inline void rigid_scans(uint16_t rigid)
+{
+    senses.beam.rigid = rigid;
+}
+
+static inline void white_scans(uint16_t white)
+{
+    senses.beam.white = white;
+}
+
+static inline void slants_known(uint16_t scans)
+{
+    senses.beam.scans = scans;
+}
+
+static inline void pushes_n(float lagged_n)
+{
+    senses.push.lagged_n = lagged_n;
+}
+
+static inline void at_m(float height_m)
+{
+    senses.heights.height_m = height_m;
+}
+
+static inline void stands(bool standing)
+{
+    senses.standing = standing;
+}
+
+static inline void felt_is(witness_t felt)
+{
+    senses.accelerometer.felt = felt;
+}
+
+static inline void pushed_is(witness_t pushed)
+{
+    senses.push.pushed = pushed;
+}
+
+static inline void slower_is_mps(float slower_mps)
+{
+    senses.slower_mps = slower_mps;
+}
+
+static inline void shaken_by(float shaken)
+{
+    senses.accelerometer.shaken = shaken;
+}
+
+static inline void has_rested_s(float rested_s)
+{
+    senses.accelerometer.rested_s = rested_s;
+}
+
+static inline void rests_at_mps2(float rest_mps2)
+{
+    senses.accelerometer.rest_mps2 = rest_mps2;
+}
+
+static inline void was_pulled_m_s(float pulled_m_s)
+{
+    senses.accelerometer.pulled_m_s = pulled_m_s;
+}
+
+static inline void bias_is_mps2(float bias_mps2)
+{
+    senses.accelerometer.bias_mps2 = bias_mps2;
+}
+
+static inline void in_hands_for_s(float in_hands_s)
+{
+    senses.accelerometer.in_hands_s = in_hands_s;
+}
+
+static inline void calm_for_s(float calm_s)
+{
+    senses.stand.calm_s = calm_s;
+}
+
+static inline void stood_for_s(float stands_s)
+{
+    senses.stand.stands_s = stands_s;
+}
+
+static inline void unrocked_for_s(float unrocked_s)
+{
+    senses.sway.unrocked_s = unrocked_s;
+}
+
+/* ---- one frame, one cycle, one height */
+
 static inline void sensed_frames(const command_t *flown, const imu_sample_t *frames, uint16_t count)
 {
     senses_frames(&senses, flown, frames, count);

@@ -10,8 +10,8 @@ void tearDown(void) {}
 void test_the_felt_speed_is_the_integral_of_the_acceleration_without_the_bias(void)
 {
     feel(0.0F);
-    senses.accelerometer.bias_mps2 = 0.5F;
-    senses.accelerometer.felt = (witness_t){0};
+    bias_is_mps2(0.5F);
+    felt_is((witness_t){0});
     feel(2.0F); /* trapezium: 1 m/s2 on the mean */
     NEAR((1.0F - 0.5F) * 0.025F, senses.accelerometer.felt.speed_mps);
     VERY_NEAR(-0.5F * 0.5F * 0.025F * 0.025F, senses.accelerometer.felt.off_m);
@@ -65,7 +65,7 @@ void test_after_twelve_lost_frames_the_felt_speed_starts_from_the_thrusts(void)
             feel(0.0F);
             feel(1.0F);
             senses.push.pushed = (witness_t){.speed_mps = 0.7F, .running_s = (warm != 0) ? 0.51F : 0.5F};
-            senses.accelerometer.rested_s = (float)more_us;
+            has_rested_s((float)more_us);
             frame.arrival_us += 275000U + more_us;
             feel(2.0F);
             if (more_us == 0U) {
@@ -84,14 +84,15 @@ void test_at_rest_the_mean_is_the_bias_of_the_last_two_seconds(void)
 {
     flown.grounded = true;
     feel(0.0F);
-    senses.accelerometer.rested_s = senses.accelerometer.rest_mps2 = 0.0F;
+    has_rested_s(0.0F);
+    rests_at_mps2(0.0F);
     feel(0.4F);
     NEAR(0.4F, senses.accelerometer.bias_mps2);
     feel(0.8F);
     NEAR(0.6F, senses.accelerometer.bias_mps2);
     NEAR(0.6F, senses.accelerometer.rest_mps2);
     NEAR(0.05F, senses.accelerometer.rested_s);
-    senses.accelerometer.rested_s = 2.0F;
+    has_rested_s(2.0F);
     feel(1.0F);
     TEST_ASSERT_EQUAL_FLOAT(2.0F, senses.accelerometer.rested_s);
     NEAR(0.6F + 0.4F * 0.025F / 2.0F, senses.accelerometer.rest_mps2);
@@ -105,10 +106,10 @@ static uint16_t rested(uint16_t doubts, float rested_s, float rest_mps2)
 {
     setUp();
     flown.grounded = true;
-    verdict.doubts = doubts;
+    doubted(doubts);
     senses.accelerometer.time_us = frame.arrival_us;
-    senses.accelerometer.rested_s = rested_s;
-    senses.accelerometer.rest_mps2 = rest_mps2;
+    has_rested_s(rested_s);
+    rests_at_mps2(rest_mps2);
     feel(rest_mps2);
     return verdict.doubts;
 }
@@ -131,9 +132,9 @@ void test_a_pilot_that_lifts_the_vehicle_spoils_the_rest(void)
     for (int standing = 0; standing < 2; standing++) {
         setUp();
         feel(0.0F);
-        senses.accelerometer.rested_s = 1.0F;
-        senses.accelerometer.bias_mps2 = 0.3F;
-        senses.heights.rise_mps = 0.2F;
+        has_rested_s(1.0F);
+        bias_is_mps2(0.3F);
+        rises_mps(0.2F);
         senses.accelerometer.felt.off_m = 0.1F;
         flown.standing = standing != 0;
         feel(0.0F);
@@ -141,7 +142,7 @@ void test_a_pilot_that_lifts_the_vehicle_spoils_the_rest(void)
         TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.rested_s);
         if (standing == 0) {
             NEAR(0.2F, senses.accelerometer.felt.speed_mps);
-            senses.heights.rise_mps = 5.0F;
+            rises_mps(5.0F);
             feel(0.0F);
             NEAR(0.2F, senses.accelerometer.felt.speed_mps);
         }
@@ -164,11 +165,11 @@ void test_corrections_by_the_heights_are_summed_and_fade_in_two_seconds(void)
     hover();
     senses.accelerometer.felt = (witness_t){.running_s = 2.0F};
     senses.accelerometer.felt.off_m = 0.3F;
-    senses.accelerometer.pulled_m_s = 0.4F;
+    was_pulled_m_s(0.4F);
     height(0.5F);
     TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.4F + 0.1F * 0.3F - 0.4F * 0.1F / 2.0F,
                              senses.accelerometer.pulled_m_s);
-    verdict.doubts = DOUBT_SIGHT;
+    doubted(DOUBT_SIGHT);
     senses.accelerometer.felt.off_m = 0.3F;
     height(0.5F);
     TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.41F * 0.95F, senses.accelerometer.pulled_m_s);
@@ -188,9 +189,9 @@ void test_a_limit_at_rest_belongs_to_the_state_before(void)
         setUp();
         flown.grounded = true;
         feel(0.0F);
-        verdict.doubts = rows[i].doubts;
-        senses.accelerometer.rested_s = rows[i].rested_s;
-        senses.accelerometer.rest_mps2 = rows[i].rest_mps2;
+        doubted(rows[i].doubts);
+        has_rested_s(rows[i].rested_s);
+        rests_at_mps2(rows[i].rest_mps2);
         feel_at_once(rows[i].rest_mps2);
         TEST_ASSERT_EQUAL_UINT16(rows[i].then, verdict.doubts);
     }
@@ -204,10 +205,11 @@ static void carry(float unseen_s, float sway_rad2)
     feel(0.0F);
     senses.heights.unseen_s = unseen_s;
     senses.sway.sway_rad2 = senses.sway.swing_rad2 = sway_rad2;
-    senses.sway.unrocked_s = 0.0F;
-    senses.accelerometer.in_hands_s = 0.5F;
-    senses.accelerometer.rested_s = 1.0F;
-    senses.accelerometer.rest_mps2 = senses.accelerometer.bias_mps2 = 0.3F;
+    unrocked_for_s(0.0F);
+    in_hands_for_s(0.5F);
+    has_rested_s(1.0F);
+    rests_at_mps2(0.3F);
+    bias_is_mps2(0.3F);
     senses.accelerometer.kept_bias_mps2[0] = 0.1F;
     senses.accelerometer.kept_bias_mps2[1] = 0.2F;
     senses.accelerometer.felt.speed_mps = 0.4F;
@@ -242,12 +244,12 @@ void test_who_tilts_it_by_hand_does_not_fly_it(void)
     carry(1.9F, 0.0123F);
     feel(0.0F);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.in_hands_s);
-    senses.accelerometer.in_hands_s = 1.5F;
+    in_hands_for_s(1.5F);
     TEST_ASSERT_FALSE(accelerometer_is_in_hands(&senses.accelerometer));
-    senses.accelerometer.in_hands_s = 1.51F;
+    in_hands_for_s(1.51F);
     TEST_ASSERT_TRUE(accelerometer_is_in_hands(&senses.accelerometer));
     carry(1.9F, 5.0e-4F);
-    senses.accelerometer.in_hands_s = 1.99F;
+    in_hands_for_s(1.99F);
     feel(0.0F);
     TEST_ASSERT_EQUAL_FLOAT(2.0F, senses.accelerometer.in_hands_s);
     senses.heights.unseen_s = 1.99F;

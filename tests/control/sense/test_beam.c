@@ -23,10 +23,10 @@ static void scan_of(float slope_mm, float noise_mm)
     setUp();
     senses.beam.slants_mm[0] = 99.0F; /* drops out */
     memcpy(senses.beam.slants_mm + 1, slants_mm, sizeof slants_mm - sizeof slants_mm[0]);
-    senses.beam.scans = BEAM_SCANS - 1U;
-    senses.beam.white = white_before;
-    senses.heights.height_m = scan_height_m;
-    senses.sway.sway_rad2 = sway_before_rad2;
+    slants_known(BEAM_SCANS - 1U);
+    white_scans(white_before);
+    at_m(scan_height_m);
+    sways_rad2(sway_before_rad2);
     TEST_ASSERT_TRUE(senses_scan(
         &senses,
         &(altitude_t){.height_mm = 500.0F, .slant_mm = slants_mm[BEAM_SCANS - 1U], .spread_mm = 9.0F}));
@@ -159,7 +159,7 @@ void test_a_step_restarts_the_slants_and_a_sensor_without_spread_has_none(void)
     } rows[] = {{0.7F, 12U, 1U}, {0.3F, 12U, 1U}, {0.55F, 12U, 12U}, {0.7F, 0U, 0U}};
     for (int i = 0; i < 4; i++) {
         hover();
-        senses.beam.scans = rows[i].before;
+        slants_known(rows[i].before);
         height(rows[i].height_m);
         TEST_ASSERT_EQUAL_UINT16(rows[i].after, senses.beam.scans);
     }

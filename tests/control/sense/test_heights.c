@@ -11,8 +11,8 @@ void test_a_height_moves_the_rate_the_way_and_the_sums(void)
 {
     hover();
     senses.accelerometer.felt = (witness_t){.speed_mps = 0.3F, .running_s = 2.0F};
-    senses.heights.way_m = 0.1F;
-    senses.heights.rise_mps = 0.1F;
+    has_moved_m(0.1F);
+    rises_mps(0.1F);
     senses.accelerometer.felt.off_m = 0.07F;
     senses.push.pushed.off_m = -0.02F;
     sensed_height(&flown, 0.53F, 0.1F, 0.1F);
@@ -36,7 +36,7 @@ void test_a_young_witness_and_doubted_heights_correct_less(void)
     NEAR(0.0405F * 0.1F, senses.accelerometer.felt.speed_mps);
     VERY_NEAR(-0.005F * 0.1F, senses.accelerometer.bias_mps2);
     hover();
-    verdict.doubts = DOUBT_SIGHT;
+    doubted(DOUBT_SIGHT);
     senses.accelerometer.felt = (witness_t){.off_m = 0.1F, .running_s = 2.0F};
     height(0.5F);
     NEAR(0.082F, senses.accelerometer.felt.off_m);
@@ -48,7 +48,7 @@ void test_the_bias_ends_at_one_and_a_half_to_either_side(void)
 {
     for (float side = -1.0F; side < 2.0F; side += 2.0F) {
         hover();
-        senses.accelerometer.bias_mps2 = -1.499F * side;
+        bias_is_mps2(-1.499F * side);
         senses.accelerometer.felt = (witness_t){.off_m = 0.45F * side, .running_s = 2.0F};
         height(0.5F);
         NEAR(-1.5F * side, senses.accelerometer.bias_mps2);
@@ -60,17 +60,17 @@ void test_a_long_gap_leaks_all_of_a_sum_and_one_of_a_second_and_a_half_forgets(v
     hover();
     senses.accelerometer.felt = (witness_t){.off_m = 0.1F, .running_s = 2.0F};
     senses.push.pushed = (witness_t){.off_m = 0.1F, .running_s = 2.0F};
-    senses.heights.way_m = 0.1F;
+    has_moved_m(0.1F);
     sensed_height(&flown, 0.5F, 1.4F, 0.0F);
     VERY_NEAR(0.0F, senses.accelerometer.felt.off_m);
     NEAR(0.044F, senses.push.pushed.off_m);
     VERY_NEAR(0.0F, senses.heights.way_m);
     hover();
     senses.accelerometer.felt = (witness_t){.off_m = 0.1F, .seen_m = 0.1F, .running_s = 2.0F};
-    senses.push.pushed = senses.accelerometer.felt;
-    senses.heights.way_m = 0.1F;
-    senses.heights.unmoved_s = 0.0F;
-    senses.confirmation.unconfirmed = true;
+    pushed_is(senses.accelerometer.felt);
+    has_moved_m(0.1F);
+    last_moved_s_ago(0.0F);
+    is_unconfirmed(true);
     sensed_height(&flown, 0.52F, 1.5F, 0.0F);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.off_m);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.push.pushed.off_m);
@@ -93,9 +93,10 @@ void test_what_neither_witness_explains_is_a_step_of_the_terrain(void)
         hover();
         senses.accelerometer.felt = (witness_t){.speed_mps = rows[i].felt_mps, .running_s = 0.1F};
         senses.push.pushed = (witness_t){.speed_mps = rows[i].pushed_mps, .running_s = 0.1F};
-        senses.heights.steps = 2.0F;
-        senses.heights.way_m = senses.heights.rise_mps = 0.06F;
-        senses.heights.unmoved_s = 0.5F;
+        has_stepped(2.0F);
+        has_moved_m(0.06F);
+        rises_mps(0.06F);
+        last_moved_s_ago(0.5F);
         height(0.5F + rows[i].rise_m);
         NEAR(rows[i].step ? 2.9F : 1.9F, senses.heights.steps); /* a twentieth leaks */
         if (rows[i].step) {
@@ -128,10 +129,10 @@ void test_witnesses_that_have_not_begun_explain_nothing(void)
 void test_heights_that_have_moved_are_remembered_for_a_second(void)
 {
     hover();
-    senses.heights.way_m = 0.2F;
+    has_moved_m(0.2F);
     height(0.5F);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.unmoved_s);
-    senses.heights.way_m = 0.0F;
+    has_moved_m(0.0F);
     height(0.5F);
     NEAR(0.1F, senses.heights.unmoved_s);
     for (int i = 0; i < 10; i++) {

@@ -33,7 +33,7 @@ void test_the_pushed_speed_is_the_models(void)
 
 void test_after_a_gap_the_thrusts_witness_tells_speed_and_way(void)
 {
-    senses.heights.rise_mps = 0.15F;
+    rises_mps(0.15F);
     senses.push.pushed = (witness_t){.speed_mps = 0.5F, .off_m = 0.1F, .seen_m = 0.3F, .running_s = 0.51F};
     NEAR(0.5F + 0.4F * 0.3F, push_speed_mps(&senses.push, senses.heights.rise_mps));
     NEAR(0.2F, push_moved_m(&senses.push));

@@ -29,9 +29,9 @@ void test_the_pushed_speed_waits_on_the_ground_and_starts_at_the_felt_one(void)
         flown.off_ground = rows[i].off_ground;
         flown.grounded = rows[i].grounded;
         senses.heights.known = rows[i].has_height;
-        senses.heights.height_m = rows[i].height_m;
-        senses.sway.sway_rad2 = rows[i].sway_rad2;
-        verdict.doubts = rows[i].doubted ? DOUBT_IMU : 0U;
+        at_m(rows[i].height_m);
+        sways_rad2(rows[i].sway_rad2);
+        doubted(rows[i].doubted ? DOUBT_IMU : 0U);
         senses.accelerometer.felt = (witness_t){.speed_mps = 0.6F,
                                                    .running_s = rows[i].felt_counts ? 0.51F : 0.5F};
         senses.push.pushed = (witness_t){.speed_mps = 0.0F, .off_m = 0.3F, .running_s = 1.0F};
@@ -68,7 +68,7 @@ void test_a_new_order_on_the_ground_forgets_and_one_in_the_air_does_not(void)
         setUp();
         flown.ordered = true;
         flown.grounded = grounded != 0;
-        verdict.doubts = DOUBT_SIGHT | DOUBT_IMU | DOUBT_THRUST;
+        doubted(DOUBT_SIGHT | DOUBT_IMU | DOUBT_THRUST);
         senses.accelerometer.felt.seen_m = senses.accelerometer.felt.off_m =
             senses.accelerometer.felt.moved_m = verdict.agreed_s = 0.4F;
         sensed_thrust(&flown);
@@ -85,15 +85,15 @@ void test_the_speed_without_heights_is_that_of_the_witnesses_that_are_left(void)
     senses.accelerometer.felt = (witness_t){.speed_mps = 0.4F, .running_s = 0.51F};
     senses.push.pushed = (witness_t){.speed_mps = 0.8F, .running_s = 0.51F};
     NEAR(0.6F, verdict_speed_mps(&verdict, &senses));
-    verdict.doubts = DOUBT_IMU;
+    doubted(DOUBT_IMU);
     NEAR(0.8F, verdict_speed_mps(&verdict, &senses));
-    verdict.doubts = DOUBT_THRUST;
+    doubted(DOUBT_THRUST);
     NEAR(0.4F, verdict_speed_mps(&verdict, &senses));
-    verdict.doubts = DOUBT_THRUST | DOUBT_IMU;
+    doubted(DOUBT_THRUST | DOUBT_IMU);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict_speed_mps(&verdict, &senses));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, sensed_felt_mps());
-    verdict.doubts = 0U;
-    senses.accelerometer.shaken = 2.0F;
+    doubted(0U);
+    shaken_by(2.0F);
     NEAR(0.2F, sensed_felt_mps());
     senses.push.pushed.running_s = 0.5F;
     NEAR(0.4F, verdict_speed_mps(&verdict, &senses));
@@ -106,7 +106,7 @@ void test_the_speed_of_the_slower_witness_lags_by_a_third_per_scan(void)
 {
     for (int row = 0; row < 2; row++) {
         hover();
-        senses.slower_mps = 0.1F;
+        slower_is_mps(0.1F);
         senses.accelerometer.felt = (witness_t){.speed_mps = (row == 0) ? 0.4F : 1.0F, .running_s = 0.1F};
         senses.push.pushed = (witness_t){.speed_mps = (row == 0) ? 1.0F : 0.4F, .running_s = 0.1F};
         height(0.5F);
@@ -129,9 +129,9 @@ void test_heights_and_accelerometer_are_apart_by_half_a_metre_per_second(void)
         setUp();
         senses.accelerometer.felt = (witness_t){.speed_mps = rows[i].felt_mps,
                                                    .running_s = rows[i].running_s};
-        senses.heights.rise_mps = rows[i].rise_mps;
-        senses.accelerometer.shaken = rows[i].shaken;
-        verdict.doubts = rows[i].doubts;
+        rises_mps(rows[i].rise_mps);
+        shaken_by(rows[i].shaken);
+        doubted(rows[i].doubts);
         TEST_ASSERT_EQUAL(rows[i].apart, verdict_apart(&verdict, &senses));
     }
 }

@@ -15,8 +15,8 @@ static void lie_still(float felt_mps, float pushed_mps, float still_s)
     feel(0.0F);
     senses.accelerometer.felt = (witness_t){.speed_mps = felt_mps, .running_s = 2.0F};
     senses.push.pushed = (witness_t){.speed_mps = pushed_mps, .running_s = 2.0F};
-    senses.stand.calm_s = still_s;
-    senses.stand.stands_s = 0.3F;
+    calm_for_s(still_s);
+    stood_for_s(0.3F);
 }
 
 void test_it_stands_while_the_thrust_says_a_fall_of_0_8_that_is_not_felt(void)
@@ -61,7 +61,7 @@ void test_a_sway_or_a_witness_that_does_not_count_ends_the_standing(void)
 {
     for (int what = 0; what < 4; what++) {
         lie_still(0.0F, -0.9F, 0.5F);
-        senses.sway.sway_rad2 = (what == 1) ? 2.6e-4F : 2.5e-4F; /* a 60th is forgotten first */
+        sways_rad2((what == 1) ? 2.6e-4F : 2.5e-4F); /* a 60th is forgotten first */
         senses.sway.sway_rad2 += senses.sway.sway_rad2 / 59.5F * (what == 1);
         senses.accelerometer.felt.running_s = (what == 2) ? 0.5F : 0.51F;
         senses.push.pushed.running_s = (what == 3) ? 0.5F : 0.51F;
@@ -88,7 +88,7 @@ void test_stillness_begins_anew_with_a_fall_and_keeps_the_speeds_of_that_time(vo
     NEAR(0.3F, senses.stand.calm_mps[0]);
     NEAR(0.2F, senses.stand.calm_mps[1]);
     lie_still(0.3F, 0.2F, 0.5F);
-    senses.sway.sway_rad2 = 1.0e-3F;
+    sways_rad2(1.0e-3F);
     feel(0.0F);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.stand.calm_s);
     NEAR(0.3F, senses.stand.calm_mps[0]);

@@ -11,7 +11,7 @@ void test_the_sway_is_the_mean_square_of_both_angles_about_their_mean(void)
 {
     feel(0.0F);
     senses.sway.mean_rad[0] = senses.sway.mean_rad[1] = 0.0F;
-    senses.sway.sway_rad2 = 0.0F;
+    sways_rad2(0.0F);
     frame.median.roll_rad = 0.06F;
     frame.median.pitch_rad = -0.03F;
     feel(0.0F);
@@ -51,36 +51,36 @@ void test_a_degree_of_either_angle_is_a_rock_and_the_next_is_measured_from_there
 void test_rocking_is_looked_at_near_the_ground_alone(void)
 {
     feel(0.0F);
-    senses.heights.height_m = 0.10F;
-    senses.sway.unrocked_s = 0.5F;
+    at_m(0.10F);
+    unrocked_for_s(0.5F);
     feel(0.0F);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.sway.unrocked_s);
-    senses.heights.height_m = 0.099F;
+    at_m(0.099F);
     feel(0.0F);
     NEAR(0.025F, senses.sway.unrocked_s);
 }
 
 void test_what_sways_and_rocks_is_told_by_limits(void)
 {
-    senses.sway.sway_rad2 = 4.0e-4F;
+    sways_rad2(4.0e-4F);
     TEST_ASSERT_FALSE(sway_as_in_the_air(&senses.sway));
-    senses.sway.sway_rad2 = 4.1e-4F;
+    sways_rad2(4.1e-4F);
     TEST_ASSERT_TRUE(sway_as_in_the_air(&senses.sway));
-    senses.sway.sway_rad2 = 2.5e-4F;
+    sways_rad2(2.5e-4F);
     TEST_ASSERT_FALSE(sway_rocks(&senses.sway));
-    senses.sway.sway_rad2 = 2.6e-4F;
+    sways_rad2(2.6e-4F);
     TEST_ASSERT_TRUE(sway_rocks(&senses.sway));
-    senses.sway.unrocked_s = 0.79F;
+    unrocked_for_s(0.79F);
     TEST_ASSERT_TRUE(sway_rocks(&senses.sway));
-    senses.sway.unrocked_s = 0.8F;
+    unrocked_for_s(0.8F);
     TEST_ASSERT_FALSE(sway_rocks(&senses.sway));
-    senses.stand.calm_s = 1.0F;
+    calm_for_s(1.0F);
     TEST_ASSERT_FALSE(stand_is_possible(&senses.stand));
-    senses.stand.calm_s = 1.01F;
+    calm_for_s(1.01F);
     TEST_ASSERT_TRUE(stand_is_possible(&senses.stand));
-    senses.stand.stands_s = 0.6F;
+    stood_for_s(0.6F);
     TEST_ASSERT_FALSE(stand_is_sure(&senses.stand));
-    senses.stand.stands_s = 0.61F;
+    stood_for_s(0.61F);
     TEST_ASSERT_TRUE(stand_is_sure(&senses.stand));
 }
 

@@ -14,12 +14,13 @@ void setUp(void)
 {
     sensed_begin();
     senses.heights.known = senses.confirmation.proved = true;
-    senses.beam.still = 1U; /* the slant may be that of a blocked beam */
-    senses.heights.height_m = senses.confirmation.near_m = 0.5F;
-    senses.heights.unmoved_s = 1.0F;
-    senses.heights.since_rise_s = 1.5F;
+    still_scans(1U); /* the slant may be that of a blocked beam */
+    at_m(0.5F);
+    came_near_at_m(0.5F);
+    last_moved_s_ago(1.0F);
+    rose_s_ago(1.5F);
     senses.accelerometer.felt.running_s = senses.push.pushed.running_s = 2.0F;
-    senses.push.lagged_n = HOVER_N;
+    pushes_n(HOVER_N);
     flown = (command_t){.step_s = 0.025F,
                         .off_ground = true,
                         .ours = true,
@@ -59,7 +60,7 @@ static void want(float m)
 }
 static void rising(float mps)
 {
-    senses.heights.rise_mps = mps;
+    rises_mps(mps);
 }
 static void felt_for(float s)
 {
@@ -71,32 +72,28 @@ static void pushed_for(float s)
 }
 static void shaken(float times)
 {
-    senses.accelerometer.shaken = times;
+    shaken_by(times);
 }
 static void without_imu(float value)
 {
     (void)value;
-    verdict.doubts = DOUBT_IMU;
-}
-static void moved_s_ago(float s)
-{
-    senses.heights.unmoved_s = s;
+    doubted(DOUBT_IMU);
 }
 static void way(float m)
 {
-    senses.heights.way_m = m;
+    has_moved_m(m);
 }
 
 static void flat(float wanted_m)
 {
     senses.beam.flat = true;
-    senses.beam.white = 6U;
+    white_scans(6U);
     flown.wanted_m = wanted_m;
 }
 static void flat_by_chance(float wanted_m)
 {
     flat(wanted_m);
-    senses.beam.white = 5U;
+    white_scans(5U);
 }
 
 typedef struct {
@@ -138,7 +135,7 @@ void test_both_witnesses_together_doubt_the_heights_one_by_half_a_metre(void)
 
 static void slant_alive(float wanted_m)
 {
-    senses.beam.still = 0U;
+    still_scans(0U);
     flown.wanted_m = wanted_m;
 }
 
@@ -181,7 +178,7 @@ void test_heights_that_move_are_not_doubted(void)
         {rising, -0.199F, -0.51F, -0.29F, DOUBT_SIGHT},
         {rising, 0.20F, -0.51F, -0.29F, 0},
         {rising, -0.20F, -0.51F, -0.29F, 0},
-        {moved_s_ago, 0.99F, -0.51F, -0.29F, 0},
+        {last_moved_s_ago, 0.99F, -0.51F, -0.29F, 0},
         {way, 0.10F, -0.45F, -0.51F, DOUBT_SIGHT},
         {way, 0.101F, -0.45F, -0.51F, 0},
         {way, -0.101F, -0.45F, -0.51F, 0},
@@ -225,8 +222,8 @@ void test_the_accelerometer_alone_doubts_the_heights_beyond_six_decimetres(void)
 static void low_and_still(float scans)
 {
     pushed_for(0.3F);
-    senses.heights.height_m = 0.05F;
-    senses.beam.still = (uint16_t)scans;
+    at_m(0.05F);
+    still_scans((uint16_t)scans);
 }
 void test_near_the_ground_the_accelerometer_alone_doubts_only_a_still_beam(void)
 {
@@ -248,8 +245,8 @@ void test_the_error_of_the_height_is_the_mean_of_the_witnesses_that_count(void)
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged_with(pushed_for, 0.3F, -0.7F, 5.0F));
     TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.7F, verdict.lost_m);
     setUp();
-    verdict.doubts = DOUBT_IMU;
-    senses.beam.white = 19U;
+    doubted(DOUBT_IMU);
+    white_scans(19U);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.7F, -0.3F));
     TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.3F, verdict.lost_m);
 }
@@ -261,7 +258,7 @@ static uint16_t run_away(float felt_mps, float pushed_mps, float rise_mps, float
     setUp();
     senses.accelerometer.felt.speed_mps = felt_mps;
     senses.push.pushed.speed_mps = pushed_mps;
-    senses.heights.rise_mps = rise_mps;
+    rises_mps(rise_mps);
     return judged(felt_m, pushed_m);
 }
 
@@ -289,7 +286,7 @@ void test_a_speed_is_taken_against_the_rate_of_the_heights(void)
 void test_of_a_noisy_accelerometer_a_share_of_the_speed_counts(void)
 {
     setUp();
-    senses.accelerometer.shaken = 2.0F;
+    shaken_by(2.0F);
     senses.accelerometer.felt.speed_mps = 1.39F;
     senses.push.pushed.speed_mps = 0.71F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.8F, -0.39F));
@@ -303,9 +300,9 @@ void test_of_a_noisy_accelerometer_a_share_of_the_speed_counts(void)
 static uint16_t climb(float slower_mps, float rise_mps, float felt_m, float pushed_m)
 {
     setUp();
-    senses.heights.unmoved_s = 0.0F;
-    senses.slower_mps = slower_mps;
-    senses.heights.rise_mps = rise_mps;
+    last_moved_s_ago(0.0F);
+    slower_is_mps(slower_mps);
+    rises_mps(rise_mps);
     return judged(felt_m, pushed_m);
 }
 
@@ -326,10 +323,10 @@ void test_a_climb_of_both_witnesses_doubts_heights_that_have_stopped_at_once(voi
 static uint16_t climb_with(uint16_t doubts, float shaken, float felt_s, float pushed_s)
 {
     setUp();
-    senses.heights.unmoved_s = 0.0F;
-    senses.slower_mps = 1.0F;
-    verdict.doubts = doubts;
-    senses.accelerometer.shaken = shaken;
+    last_moved_s_ago(0.0F);
+    slower_is_mps(1.0F);
+    doubted(doubts);
+    shaken_by(shaken);
     senses.accelerometer.felt.running_s = felt_s;
     senses.push.pushed.running_s = pushed_s;
     return (uint16_t)(judged(-0.3F, -0.2F) & DOUBT_SIGHT);
@@ -349,8 +346,8 @@ void test_a_doubt_of_the_heights_takes_back_what_they_have_corrected(void)
 {
     setUp();
     senses.accelerometer.felt.speed_mps = 0.9F;
-    senses.accelerometer.bias_mps2 = 0.2F;
-    senses.accelerometer.pulled_m_s = -0.5F;
+    bias_is_mps2(0.2F);
+    was_pulled_m_s(-0.5F);
     TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.4F, -0.2F));
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.9F, senses.accelerometer.felt.speed_mps);
     TEST_ASSERT_FLOAT_WITHIN(0.001F, -0.5F, senses.accelerometer.pulled_m_s);
@@ -370,8 +367,8 @@ void test_three_heights_below_the_ground_doubt_the_heights_of_a_law_that_wants_t
     } rows[] = {{-0.036F, 0.6F, DOUBT_SIGHT}, {-0.034F, 0.6F, 0U}, {-0.036F, 0.1F, 0U}, {-0.036F, NAN, 0U}};
     for (int i = 0; i < 4; i++) {
         setUp();
-        senses.confirmation.ground_m = -0.01F;
-        senses.heights.height_m = rows[i].height_m;
+        ground_is_m(-0.01F);
+        at_m(rows[i].height_m);
         flown.wanted_m = rows[i].wanted_m;
         TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
         TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
@@ -388,8 +385,8 @@ void test_three_heights_below_the_ground_doubt_the_heights_of_a_law_that_wants_t
 static uint16_t slant(uint16_t rigid, uint16_t still, float felt_m, float pushed_m)
 {
     setUp();
-    senses.beam.rigid = rigid;
-    senses.beam.still = still;
+    rigid_scans(rigid);
+    still_scans(still);
     return judged(felt_m, pushed_m);
 }
 
@@ -405,8 +402,8 @@ void test_a_rigid_slant_and_both_witnesses_by_a_decimetre_doubt_the_heights(void
 static uint16_t noisy_slant(uint16_t rigid, uint16_t white, float felt_m, float pushed_m)
 {
     setUp();
-    senses.beam.rigid = rigid;
-    senses.beam.white = white;
+    rigid_scans(rigid);
+    white_scans(white);
     return judged(felt_m, pushed_m);
 }
 
@@ -430,21 +427,21 @@ void test_a_slant_of_noise_for_four_seconds_is_a_blocked_beam(void)
 void test_a_swaying_tilt_and_a_rigid_slant_are_a_blocked_beam(void)
 {
     setUp();
-    senses.beam.rigid = 16U;
-    senses.sway.sway_rad2 = 4.0e-4F;
+    rigid_scans(16U);
+    sways_rad2(4.0e-4F);
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
-    senses.sway.sway_rad2 = 4.1e-4F;
-    senses.beam.rigid = 15U;
+    sways_rad2(4.1e-4F);
+    rigid_scans(15U);
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
-    senses.beam.rigid = 16U;
+    rigid_scans(16U);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
 }
 
 void test_heights_of_nothing_but_steps_are_doubted(void)
 {
-    senses.heights.steps = 12.0F;
+    has_stepped(12.0F);
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
-    senses.heights.steps = 12.1F;
+    has_stepped(12.1F);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
 }
 
@@ -454,9 +451,9 @@ void test_heights_of_nothing_but_steps_are_doubted(void)
 static uint16_t since_step(float push_n, float wanted_m, float felt_m, float pushed_m)
 {
     setUp();
-    senses.confirmation.unconfirmed = true;
+    is_unconfirmed(true);
     flown.hover_n = 0.0F; /* so that the difference is exact */
-    senses.push.lagged_n = push_n;
+    pushes_n(push_n);
     flown.wanted_m = wanted_m;
     return judged(felt_m, pushed_m);
 }
@@ -483,12 +480,13 @@ void test_unless_the_accelerometer_tells_the_contrary(void)
 static void in_vain(bool unconfirmed, bool proved, float felt_least_m, float pushed_for_s)
 {
     setUp();
-    senses.confirmation.unconfirmed = unconfirmed;
-    senses.confirmation.proved = proved;
-    verdict.felt_least_m = felt_least_m;
+    is_unconfirmed(unconfirmed);
+    is_proved(proved);
+    felt_least_is_m(felt_least_m);
     senses.push.pushed.running_s = pushed_for_s;
-    senses.push.lagged_n = HOVER_N + 0.3F;
-    senses.heights.height_m = senses.confirmation.near_m = 0.10F;
+    pushes_n(HOVER_N + 0.3F);
+    at_m(0.10F);
+    came_near_at_m(0.10F);
     (void)judged(0.0F, -0.36F);
 }
 
@@ -510,19 +508,20 @@ void test_a_jump_of_the_height_after_the_lift_off_is_such_a_proof(void)
 {
     for (int high = 0; high < 2; high++) {
         setUp();
-        senses.confirmation.unconfirmed = true;
-        senses.confirmation.proved = false;
-        senses.heights.height_m = senses.confirmation.near_m = (high == 0) ? 0.10F : 0.11F;
-        senses.push.lagged_n = HOVER_N + 0.3F;
+        is_unconfirmed(true);
+        is_proved(false);
+        at_m((high == 0) ? 0.10F : 0.11F);
+        came_near_at_m((high == 0) ? 0.10F : 0.11F);
+        pushes_n(HOVER_N + 0.3F);
         TEST_ASSERT_EQUAL_UINT16((high == 0) ? 0U : DOUBT_SIGHT, judged(0.0F, -0.36F));
     }
 }
 
 void test_without_an_accelerometer_a_push_in_vain_after_a_step_is_enough(void)
 {
-    senses.confirmation.unconfirmed = true;
-    verdict.doubts = DOUBT_IMU;
-    senses.push.lagged_n = HOVER_N + 0.3F;
+    is_unconfirmed(true);
+    doubted(DOUBT_IMU);
+    pushes_n(HOVER_N + 0.3F);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, judged(0.0F, -0.35F));
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.0F, -0.36F));
 }
@@ -546,10 +545,10 @@ void test_the_first_climb_is_the_accelerometers_to_tell(void)
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         setUp();
-        senses.confirmation.unconfirmed = rows[i].unconfirmed;
-        senses.confirmation.proved = rows[i].proved;
+        is_unconfirmed(rows[i].unconfirmed);
+        is_proved(rows[i].proved);
         senses.accelerometer.felt.running_s = rows[i].running_s;
-        senses.heights.way_m = rows[i].way_m;
+        has_moved_m(rows[i].way_m);
         TEST_ASSERT_EQUAL_UINT16(rows[i].doubts, judged(rows[i].felt_m, 0.0F));
     }
 }
@@ -560,10 +559,11 @@ static uint16_t lift_off(float height_m, uint16_t rigid, uint16_t still, float s
 {
     setUp();
     flown.standing = senses.standing = true;
-    senses.heights.height_m = verdict.swaying_from_m = height_m;
-    senses.beam.rigid = rigid;
-    senses.beam.still = still;
-    senses.sway.sway_rad2 = sway_rad2;
+    at_m(height_m);
+    swayed_from_m(height_m);
+    rigid_scans(rigid);
+    still_scans(still);
+    sways_rad2(sway_rad2);
     return judged(felt_m, 0.0F);
 }
 
@@ -580,11 +580,11 @@ void test_a_climb_felt_before_an_odd_beam_shows_it_doubts_the_heights(void)
 
 void test_a_vehicle_that_is_off_the_ground_is_not_asked_about_its_lift_off(void)
 {
-    senses.beam.rigid = 2U;
-    senses.confirmation.unconfirmed = true;
-    senses.sway.sway_rad2 = 4.1e-4F;
+    rigid_scans(2U);
+    is_unconfirmed(true);
+    sways_rad2(4.1e-4F);
     TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.09F, 0.0F));
-    verdict.swaying_s = 1.6F;
+    has_swayed_s(1.6F);
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict.swaying_s);
 }
@@ -594,10 +594,10 @@ static float swayed_s(float height_m, uint16_t still, float sway_rad2)
 {
     setUp();
     flown.standing = senses.standing = true;
-    senses.heights.height_m = height_m;
-    senses.beam.still = still;
-    senses.sway.sway_rad2 = sway_rad2;
-    verdict.swaying_s = 1.0F;
+    at_m(height_m);
+    still_scans(still);
+    sways_rad2(sway_rad2);
+    has_swayed_s(1.0F);
     sensed_height(&flown, height_m, 0.1F, 0.0F);
     return verdict.swaying_s;
 }
@@ -615,11 +615,11 @@ void test_a_sway_counts_while_the_beam_is_still_and_the_height_the_same(void)
 void test_the_height_of_a_sway_is_measured_from_its_start(void)
 {
     flown.standing = senses.standing = true;
-    senses.heights.height_m = 0.34F;
-    verdict.swaying_from_m = 0.30F;
-    senses.beam.still = 9U;
-    senses.sway.sway_rad2 = 4.1e-4F;
-    verdict.swaying_s = 1.0F;
+    at_m(0.34F);
+    swayed_from_m(0.30F);
+    still_scans(9U);
+    sways_rad2(4.1e-4F);
+    has_swayed_s(1.0F);
     (void)judged(0.0F, 0.0F);
     TEST_ASSERT_EQUAL_FLOAT(1.0F, verdict.swaying_s);
     TEST_ASSERT_EQUAL_FLOAT(0.30F, verdict.swaying_from_m);
@@ -628,12 +628,12 @@ void test_the_height_of_a_sway_is_measured_from_its_start(void)
 void test_a_sway_of_more_than_a_second_and_a_half_is_a_flight(void)
 {
     flown.standing = senses.standing = true;
-    senses.heights.height_m = 0.0F;
-    senses.beam.still = 9U;
-    senses.sway.sway_rad2 = 4.1e-4F;
-    verdict.swaying_s = 1.5F;
+    at_m(0.0F);
+    still_scans(9U);
+    sways_rad2(4.1e-4F);
+    has_swayed_s(1.5F);
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
-    verdict.swaying_s = 1.51F;
+    has_swayed_s(1.51F);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
 }
 
@@ -644,10 +644,10 @@ static float vain_s(float push_n, float wanted_m, float rise_mps, float pushed_m
 {
     setUp();
     flown.hover_n = 0.0F;
-    senses.push.lagged_n = push_n;
+    pushes_n(push_n);
     flown.wanted_m = wanted_m;
-    senses.heights.rise_mps = rise_mps * 1.5F; /* a third of a rate is forgotten within this height */
-    verdict.vain_s = 1.0F;
+    rises_mps(rise_mps * 1.5F); /* a third of a rate is forgotten within this height */
+    pushed_in_vain_s(1.0F);
     senses.push.pushed.off_m = pushed_m;
     sensed_height(&flown, senses.heights.height_m, 0.1F, 0.0F);
     return verdict.vain_s;
@@ -672,19 +672,19 @@ void test_a_push_in_vain_of_three_seconds_doubts_the_heights_where_the_thrust_is
 {
     for (int other = 0; other < 2; other++) {
         setUp();
-        verdict.doubts = (other == 0) ? DOUBT_IMU : 0U;
-        senses.push.lagged_n = HOVER_N + 1.0F;
-        verdict.vain_s = 3.0F;
+        doubted((other == 0) ? DOUBT_IMU : 0U);
+        pushes_n(HOVER_N + 1.0F);
+        pushed_in_vain_s(3.0F);
         TEST_ASSERT_EQUAL_UINT16((other == 0) ? DOUBT_IMU : 0U, judged(0.0F, -0.01F));
-        verdict.vain_s = 3.01F;
+        pushed_in_vain_s(3.01F);
         TEST_ASSERT_EQUAL_UINT16((other == 0) ? (DOUBT_IMU | DOUBT_SIGHT) : 0U, judged(0.0F, -0.01F));
     }
 }
 
 void test_a_still_slant_needs_no_accelerometer(void)
 {
-    verdict.doubts = DOUBT_IMU;
-    senses.beam.white = 19U;
+    doubted(DOUBT_IMU);
+    white_scans(19U);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, judged(0.0F, -0.28F));
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.0F, -0.29F));
 }
@@ -728,7 +728,7 @@ static uint16_t powerless(float push_n, float wanted_m, float felt_m, float push
 {
     setUp();
     flown.hover_n = 0.0F;
-    senses.push.lagged_n = push_n;
+    pushes_n(push_n);
     flown.wanted_m = wanted_m;
     return judged(felt_m, pushed_m);
 }
@@ -749,10 +749,10 @@ void test_a_thrust_without_effect_is_doubted_where_heights_and_accelerometer_agr
 
 void test_a_thrust_that_was_never_proved_or_has_no_second_witness_is_not_doubted(void)
 {
-    senses.push.lagged_n = HOVER_N + 1.0F;
-    senses.confirmation.proved = false;
+    pushes_n(HOVER_N + 1.0F);
+    is_proved(false);
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, -1.4F));
-    senses.confirmation.proved = true;
+    is_proved(true);
     senses.accelerometer.felt.running_s = 0.5F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, -1.4F));
     senses.accelerometer.felt.running_s = 2.0F;
@@ -766,8 +766,8 @@ void test_a_thrust_that_was_never_proved_or_has_no_second_witness_is_not_doubted
 static uint16_t again(uint16_t doubts, float agreed_s, float moved_m, float felt_m, float pushed_m)
 {
     setUp();
-    verdict.doubts = doubts;
-    verdict.agreed_s = agreed_s;
+    doubted(doubts);
+    has_agreed_s(agreed_s);
     senses.push.pushed.moved_m = moved_m;
     return judged(felt_m, pushed_m);
 }
@@ -788,14 +788,14 @@ void test_agreement_of_a_second_and_a_half_over_a_motion_ends_a_doubt(void)
 
 void test_the_motion_is_the_accelerometers_where_the_thrust_does_not_count(void)
 {
-    verdict.doubts = DOUBT_SIGHT;
-    verdict.agreed_s = 1.51F;
+    doubted(DOUBT_SIGHT);
+    has_agreed_s(1.51F);
     senses.push.pushed.running_s = 0.5F;
     senses.accelerometer.felt.moved_m = 0.31F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
     setUp();
-    verdict.doubts = DOUBT_SIGHT;
-    verdict.agreed_s = 1.51F;
+    doubted(DOUBT_SIGHT);
+    has_agreed_s(1.51F);
     senses.accelerometer.felt.moved_m = 0.31F;
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
 }
@@ -804,10 +804,10 @@ void test_a_slant_of_noise_alone_does_not_agree(void)
 {
     for (uint16_t still = 15U; still <= 16U; still++) {
         setUp();
-        verdict.doubts = DOUBT_SIGHT;
-        verdict.agreed_s = 1.51F;
+        doubted(DOUBT_SIGHT);
+        has_agreed_s(1.51F);
         senses.push.pushed.moved_m = 0.31F;
-        senses.beam.still = still;
+        still_scans(still);
         TEST_ASSERT_EQUAL_UINT16((still == 15U) ? 0U : DOUBT_SIGHT, judged(0.0F, 0.0F));
     }
 }
@@ -826,9 +826,9 @@ void test_heights_that_move_end_a_doubt_of_the_sight_alone(void)
                 {DOUBT_THRUST | DOUBT_SIGHT, 0.16F, 0.0F, 0U}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         setUp();
-        verdict.doubts = rows[i].doubts;
-        senses.heights.way_m = rows[i].way_m;
-        senses.heights.steps = rows[i].steps;
+        doubted(rows[i].doubts);
+        has_moved_m(rows[i].way_m);
+        has_stepped(rows[i].steps);
         TEST_ASSERT_EQUAL_UINT16(rows[i].left, judged(0.0F, 0.0F));
     }
 }
@@ -853,7 +853,7 @@ void test_on_the_ground_and_under_a_pilot_nothing_is_judged(void)
     TEST_ASSERT_EQUAL_FLOAT(-0.7F, senses.accelerometer.felt.seen_m);
     setUp();
     flown.ours = false;
-    senses.heights.rise_mps = 0.3F;
+    rises_mps(0.3F);
     senses.accelerometer.felt.speed_mps = 1.0F;
     TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.7F, -0.7F));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.push.pushed.seen_m);
@@ -866,10 +866,11 @@ void test_a_thrust_that_lifts_any_vehicle_makes_a_sway_count_three_times(void)
     for (int strong = 0; strong < 2; strong++) {
         setUp();
         flown.standing = senses.standing = true;
-        senses.heights.height_m = verdict.swaying_from_m = 0.0F;
-        senses.sway.sway_rad2 = 4.1e-4F;
-        verdict.swaying_s = 1.0F;
-        senses.push.lagged_n = HOVER_N * ((strong != 0) ? 1.301F : 1.299F);
+        at_m(0.0F);
+        swayed_from_m(0.0F);
+        sways_rad2(4.1e-4F);
+        has_swayed_s(1.0F);
+        pushes_n(HOVER_N * ((strong != 0) ? 1.301F : 1.299F));
         sensed_height(&flown, 0.0F, 0.1F, 0.0F);
         TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, (strong != 0) ? 1.3F : 0.0F, verdict.swaying_s);
     }
