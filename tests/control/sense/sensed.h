@@ -1,5 +1,5 @@
-/* The sensors one by one, and the verdict on them, for the tests of sense/: one frame, one cycle, one height at a
- * time. How a cycle asks them: test_sense.c. */
+/* The sensors one by one, and the verdict on them, for the tests of sense/: one frame, one cycle, one height
+ * at a time. How a cycle asks them: test_sense.c. */
 #ifndef TESTS_CONTROL_SENSED_H
 #define TESTS_CONTROL_SENSED_H
 

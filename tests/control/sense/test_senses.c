@@ -33,7 +33,7 @@ void test_the_pushed_speed_waits_on_the_ground_and_starts_at_the_felt_one(void)
         sways_rad2(rows[i].sway_rad2);
         doubted(rows[i].doubted ? DOUBT_IMU : 0U);
         senses.accelerometer.felt = (witness_t){.speed_mps = 0.6F,
-                                                   .running_s = rows[i].felt_counts ? 0.51F : 0.5F};
+                                                .running_s = rows[i].felt_counts ? 0.51F : 0.5F};
         senses.push.pushed = (witness_t){.speed_mps = 0.0F, .off_m = 0.3F, .running_s = 1.0F};
         sensed_thrust(&flown);
         TEST_ASSERT_EQUAL_FLOAT(rows[i].speed_mps, senses.push.pushed.speed_mps);
@@ -128,7 +128,7 @@ void test_heights_and_accelerometer_are_apart_by_half_a_metre_per_second(void)
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         setUp();
         senses.accelerometer.felt = (witness_t){.speed_mps = rows[i].felt_mps,
-                                                   .running_s = rows[i].running_s};
+                                                .running_s = rows[i].running_s};
         rises_mps(rows[i].rise_mps);
         shaken_by(rows[i].shaken);
         doubted(rows[i].doubts);

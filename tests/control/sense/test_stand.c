@@ -1,25 +1,45 @@
-#include "sense/one_frame.h"
+#include "control/sense/stand.h"
+#include "unity.h"
 
+#include <string.h>
+
+#define FRAME_S 0.025F
+
+static stand_t stand;
+static witness_t felt, pushed;
+
+/* Both witnesses count. */
 void setUp(void)
 {
-    begin();
+    memset(&stand, 0, sizeof stand);
+    felt = pushed = (witness_t){.running_s = 2.0F};
 }
 
 void tearDown(void) {}
 
-/* One frame of 25 ms of a still vehicle whose witnesses have these speeds, still_s after the tilt came to
- * rest; sums of standing and of stillness run from 0.3 s and still_s. */
-static void lie_still(float felt_mps, float pushed_mps, float still_s)
+/* So many calm frames with these speeds. */
+static void lie(int frames, float felt_mps, float pushed_mps)
 {
-    setUp();
-    feel(0.0F);
-    senses.accelerometer.felt = (witness_t){.speed_mps = felt_mps, .running_s = 2.0F};
-    senses.push.pushed = (witness_t){.speed_mps = pushed_mps, .running_s = 2.0F};
-    calm_for_s(still_s);
-    stood_for_s(0.3F);
+    felt.speed_mps = felt_mps;
+    pushed.speed_mps = pushed_mps;
+    for (int i = 0; i < frames; i++) {
+        stand_frame(&stand, &felt, &pushed, true, FRAME_S);
+    }
 }
 
-void test_it_stands_while_the_thrust_says_a_fall_of_0_8_that_is_not_felt(void)
+void test_it_may_stand_when_the_tilt_has_been_calm_for_a_second(void)
+{
+    lie(39, 0.0F, 0.0F);
+    TEST_ASSERT_FALSE(stand_is_possible(&stand));
+    lie(2, 0.0F, 0.0F);
+    TEST_ASSERT_TRUE(stand_is_possible(&stand));
+    stand_frame(&stand, &felt, &pushed, false, FRAME_S);
+    TEST_ASSERT_FALSE(stand_is_possible(&stand));
+    lie(39, 0.0F, 0.0F);
+    TEST_ASSERT_FALSE(stand_is_possible(&stand));
+}
+
+void test_it_stands_while_the_thrust_says_a_fall_of_0_8_that_is_not_felt_for_0_6_s(void)
 {
     static const struct {
         float felt_mps, pushed_mps;
@@ -27,84 +47,62 @@ void test_it_stands_while_the_thrust_says_a_fall_of_0_8_that_is_not_felt(void)
     } rows[] = {{0.0F, -0.81F, true},  {0.0F, -0.79F, false}, {-0.1F, -0.89F, false},
                 {-0.1F, -0.91F, true}, {0.5F, -0.79F, false}, {0.0F, 0.81F, false}};
     for (int i = 0; i < 6; i++) {
-        lie_still(rows[i].felt_mps, rows[i].pushed_mps, 0.5F);
-        senses.stand.calm_mps[0] = rows[i].felt_mps;
-        senses.stand.calm_mps[1] = rows[i].pushed_mps;
-        feel(0.0F);
-        NEAR(rows[i].stands ? 0.325F : 0.0F, senses.stand.stands_s);
-        NEAR(0.525F, senses.stand.calm_s);
+        setUp();
+        lie(23, rows[i].felt_mps, rows[i].pushed_mps);
+        TEST_ASSERT_FALSE(stand_is_sure(&stand));
+        lie(2, rows[i].felt_mps, rows[i].pushed_mps);
+        TEST_ASSERT_EQUAL(rows[i].stands, stand_is_sure(&stand));
     }
 }
 
-/* Since the tilt came to rest the speeds have changed from these: only the changes are compared then, and a
- * 80th of them has been taken into the means. */
-void test_after_a_second_of_stillness_the_changes_of_the_speeds_tell_it_too(void)
+/* The speed of the accelerometer may be wrong from before: a second after the tilt became calm only the
+ * changes are compared, by half a metre per second. */
+void test_after_a_calm_second_the_changes_of_the_speeds_tell_it_too(void)
 {
     static const struct {
-        float still_s, felt0_mps, pushed0_mps;
+        int frames;
+        float from_mps, to_mps;
         bool stands;
-    } rows[] = {{1.01F, -1.0F, -0.39F, true},
-                {1.01F, -1.0F, -0.41F, false},
-                {0.97F, -1.0F, -0.39F, false},
-                {1.01F, -0.9F, -0.39F, false},
-                {1.01F, -0.9F, -0.28F, true}};
-    for (int i = 0; i < 5; i++) {
-        lie_still(-1.0F, -0.9F, rows[i].still_s);
-        senses.stand.calm_mps[0] = rows[i].felt0_mps;
-        senses.stand.calm_mps[1] = rows[i].pushed0_mps;
-        feel(0.0F);
-        NEAR(rows[i].stands ? 0.325F : 0.0F, senses.stand.stands_s);
+    } rows[] = {{41, -0.30F, -0.90F, true}, {41, -0.45F, -0.90F, false}, {10, -0.30F, -0.90F, false}};
+    for (int i = 0; i < 3; i++) {
+        setUp();
+        lie(rows[i].frames, -1.0F, rows[i].from_mps);
+        lie(10, -1.0F, rows[i].to_mps);
+        TEST_ASSERT_FALSE(stand_is_sure(&stand));
+        /* the means follow in two seconds, so the fall goes on as it does without a floor */
+        for (int k = 1; k <= 15; k++) {
+            lie(1, -1.0F, rows[i].to_mps - 0.02F * (float)k);
+        }
+        TEST_ASSERT_EQUAL(rows[i].stands, stand_is_sure(&stand));
     }
 }
 
 void test_a_sway_or_a_witness_that_does_not_count_ends_the_standing(void)
 {
     for (int what = 0; what < 4; what++) {
-        lie_still(0.0F, -0.9F, 0.5F);
-        sways_rad2((what == 1) ? 2.6e-4F : 2.5e-4F); /* a 60th is forgotten first */
-        senses.sway.sway_rad2 += senses.sway.sway_rad2 / 59.5F * (what == 1);
-        senses.accelerometer.felt.running_s = (what == 2) ? 0.5F : 0.51F;
-        senses.push.pushed.running_s = (what == 3) ? 0.5F : 0.51F;
-        feel(0.0F);
-        NEAR((what == 0) ? 0.325F : 0.0F, senses.stand.stands_s);
-        NEAR((what == 1) ? 0.0F : 0.525F, senses.stand.calm_s);
+        setUp();
+        lie(30, 0.0F, -0.9F);
+        TEST_ASSERT_TRUE(stand_is_sure(&stand));
+        felt.running_s = (what == 1) ? 0.5F : 0.51F;
+        pushed.running_s = (what == 2) ? 0.5F : 0.51F;
+        stand_frame(&stand, &felt, &pushed, what != 3, FRAME_S);
+        TEST_ASSERT_EQUAL(what == 0, stand_is_sure(&stand));
     }
 }
 
-void test_stillness_begins_anew_with_a_fall_and_keeps_the_speeds_of_that_time(void)
+void test_a_felt_fall_of_0_4_begins_the_calm_anew(void)
 {
-    lie_still(-0.41F, -0.2F, 0.5F);
-    feel(0.0F);
-    NEAR(0.025F, senses.stand.calm_s); /* felt: 0.41 m/s less than before */
-    NEAR(-0.41F, senses.stand.calm_mps[0]);
-    NEAR(-0.2F, senses.stand.calm_mps[1]);
-    lie_still(-0.39F, -0.2F, 0.5F);
-    feel(0.0F);
-    NEAR(0.525F, senses.stand.calm_s);
-    NEAR(-0.39F / 80.0F, senses.stand.calm_mps[0]); /* 25 ms of 2 s */
-    NEAR(-0.2F / 80.0F, senses.stand.calm_mps[1]);
-    lie_still(0.3F, 0.2F, 0.0F);
-    feel(0.0F);
-    NEAR(0.3F, senses.stand.calm_mps[0]);
-    NEAR(0.2F, senses.stand.calm_mps[1]);
-    lie_still(0.3F, 0.2F, 0.5F);
-    sways_rad2(1.0e-3F);
-    feel(0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.stand.calm_s);
-    NEAR(0.3F, senses.stand.calm_mps[0]);
-}
-
-void test_a_fall_and_a_rock_begin_beyond_their_limits(void)
-{
-    lie_still(-0.4F, -0.2F, 0.5F);
-    feel_at_once(0.0F);
-    NEAR(0.5F, senses.stand.calm_s);
-    lie_still(0.0F, -0.8F, 0.5F);
-    senses.stand.calm_mps[1] = -0.8F;
-    feel_at_once(0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.stand.stands_s);
-    setUp();
-    feel(0.0F);
-    rock(0.017F, -0.017F);
-    NEAR(0.05F, senses.sway.unrocked_s);
+    for (int fell = 0; fell < 2; fell++) {
+        setUp();
+        lie(60, 0.0F, 0.0F);
+        lie(1, (fell != 0) ? -0.42F : -0.38F, 0.0F);
+        TEST_ASSERT_EQUAL(fell == 0, stand_is_possible(&stand));
+    }
+    for (int slow = 0; slow < 2; slow++) { /* a drift is none: the mean follows within two seconds */
+        setUp();
+        for (int i = 0; i < 200; i++) {
+            lie(1, ((slow != 0) ? -0.0025F : -0.02F) * (float)i, 0.0F);
+        }
+        TEST_ASSERT_EQUAL(slow != 0, stand_is_possible(&stand));
+    }
 }

@@ -1,105 +1,164 @@
-#include "sense/one_frame.h"
+#include "control/sense/sway.h"
+#include "unity.h"
+
+#include <math.h>
+#include <string.h>
+
+#define FRAME_S 0.025F
+
+static sway_t sway;
+static imu_sample_t frame;
 
 void setUp(void)
 {
-    begin();
+    memset(&sway, 0, sizeof sway);
+    memset(&frame, 0, sizeof frame);
 }
 
 void tearDown(void) {}
 
-void test_the_sway_is_the_mean_square_of_both_angles_about_their_mean(void)
+/* One frame near the ground. */
+static void tilt(float roll_rad, float pitch_rad)
 {
-    feel(0.0F);
-    senses.sway.mean_rad[0] = senses.sway.mean_rad[1] = 0.0F;
-    sways_rad2(0.0F);
-    frame.median.roll_rad = 0.06F;
-    frame.median.pitch_rad = -0.03F;
-    feel(0.0F);
-    VERY_NEAR(0.06F / 60.0F, senses.sway.mean_rad[0]);
-    VERY_NEAR(-0.03F / 60.0F, senses.sway.mean_rad[1]);
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-8F, (0.0036F + 0.0009F) / 60.0F, senses.sway.sway_rad2);
-    for (int i = 0; i < 600; i++) { /* ten time constants: a lasting tilt is no sway */
-        feel(0.0F);
-    }
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 0.06F, senses.sway.mean_rad[0]);
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, -0.03F, senses.sway.mean_rad[1]);
-    TEST_ASSERT_FLOAT_WITHIN(2.0e-6F, 0.0F, senses.sway.sway_rad2);
+    frame.median.roll_rad = roll_rad;
+    frame.median.pitch_rad = pitch_rad;
+    sway_frame(&sway, &frame, 0.05F, false, FRAME_S);
 }
 
-void test_a_degree_of_either_angle_is_a_rock_and_the_next_is_measured_from_there(void)
+/* Ten seconds to and fro by that much, both angles together, to either side of a mean. */
+static void swing(float rms_rad, float mean_rad)
 {
-    for (int axis = 0; axis < 2; axis++) {
+    setUp();
+    for (int i = 0; i < 400; i++) {
+        const float rad = (i % 2 == 0) ? rms_rad : -rms_rad;
+        tilt(mean_rad + 0.8F * rad, 0.6F * rad);
+    }
+}
+
+void test_the_sway_of_both_angles_together_is_that_of_the_air_beyond_1_1_degrees_rms(void)
+{
+    swing(0.0196F, 0.0F);
+    TEST_ASSERT_FALSE(sway_as_in_the_air(&sway) || sway_is_calm(&sway));
+    swing(0.0206F, 0.0F);
+    TEST_ASSERT_TRUE(sway_as_in_the_air(&sway));
+    swing(0.0154F, 0.0F); /* below 0.9 degrees it is calm; between, neither is sure */
+    TEST_ASSERT_TRUE(sway_is_calm(&sway));
+    swing(0.0162F, 0.0F);
+    TEST_ASSERT_FALSE(sway_is_calm(&sway));
+    swing(0.10F, 0.0F); /* a hand tilts it by more than six */
+    TEST_ASSERT_TRUE(sway_is_no_hand(&sway));
+    swing(0.12F, 0.0F);
+    TEST_ASSERT_FALSE(sway_is_no_hand(&sway));
+}
+
+void test_a_lasting_tilt_is_no_sway(void)
+{
+    swing(0.01F, 0.3F);
+    TEST_ASSERT_TRUE(sway_is_calm(&sway));
+}
+
+/* 1.5 s: after that time from standstill 1 - 1/e of the square is there. */
+void test_a_sway_shows_in_a_second_and_a_half(void)
+{
+    for (int frames = 50; frames <= 70; frames += 20) {
         setUp();
-        feel(0.0F);
-        rock(0.0F, 0.0F);
-        rock((axis == 0) ? 0.0165F : 0.0F, (axis == 1) ? -0.0165F : 0.0F);
-        NEAR(0.075F, senses.sway.unrocked_s);
-        rock((axis == 0) ? -0.0175F : 0.0F, (axis == 1) ? 0.0175F : 0.0F);
-        TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.sway.unrocked_s);
-        rock((axis == 0) ? -0.03F : 0.0F, (axis == 1) ? 0.03F : 0.0F);
-        NEAR(0.025F, senses.sway.unrocked_s);
-        rock(0.0F, 0.0F);
-        TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.sway.unrocked_s);
+        for (int i = 0; i < frames; i++) {
+            tilt((i % 2 == 0) ? 0.0252F : -0.0252F, 0.0F);
+        }
+        TEST_ASSERT_EQUAL(frames == 70, sway_as_in_the_air(&sway));
     }
-    for (int i = 0; i < 33; i++) {
-        rock(0.0F, 0.0F);
+}
+
+/* Frames of noise after the sway has gone: how many are needed until it does not rock. */
+static int frames_until_still(float roll_rad, float pitch_rad)
+{
+    int frames = 0;
+
+    while (sway_rocks(&sway) && frames < 200) {
+        tilt(roll_rad, pitch_rad);
+        frames++;
     }
-    TEST_ASSERT_EQUAL_FLOAT(0.8F, senses.sway.unrocked_s);
-    TEST_ASSERT_FALSE(sway_rocks(&senses.sway));
+    return frames;
 }
 
-void test_rocking_is_looked_at_near_the_ground_alone(void)
+void test_it_rocks_for_0_8_s_after_a_move_of_a_degree_of_either_angle(void)
 {
-    feel(0.0F);
-    at_m(0.10F);
-    unrocked_for_s(0.5F);
-    feel(0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.sway.unrocked_s);
-    at_m(0.099F);
-    feel(0.0F);
-    NEAR(0.025F, senses.sway.unrocked_s);
+    static const struct {
+        float roll_rad, pitch_rad;
+        bool rocks;
+    } rows[] = {{0.0165F, 0.0F, false},
+                {0.0175F, 0.0F, true},
+                {0.0F, -0.0165F, false},
+                {0.0F, -0.0175F, true},
+                {-0.0175F, 0.0F, true}};
+    for (int i = 0; i < 5; i++) {
+        swing(0.1F, 0.0F);
+        tilt(0.0F, 0.0F);
+        for (int k = 0; k < 20; k++) {
+            tilt(0.0F, 0.0F);
+        }
+        TEST_ASSERT_TRUE(sway_rocks(&sway));
+        const int frames = frames_until_still(rows[i].roll_rad, rows[i].pitch_rad);
+        TEST_ASSERT_INT_WITHIN(1, rows[i].rocks ? 33 : 12, frames);
+    }
 }
 
-void test_what_sways_and_rocks_is_told_by_limits(void)
+void test_the_next_move_is_measured_from_where_it_has_come_to(void)
 {
-    sways_rad2(4.0e-4F);
-    TEST_ASSERT_FALSE(sway_as_in_the_air(&senses.sway));
-    sways_rad2(4.1e-4F);
-    TEST_ASSERT_TRUE(sway_as_in_the_air(&senses.sway));
-    sways_rad2(2.5e-4F);
-    TEST_ASSERT_FALSE(sway_rocks(&senses.sway));
-    sways_rad2(2.6e-4F);
-    TEST_ASSERT_TRUE(sway_rocks(&senses.sway));
-    unrocked_for_s(0.79F);
-    TEST_ASSERT_TRUE(sway_rocks(&senses.sway));
-    unrocked_for_s(0.8F);
-    TEST_ASSERT_FALSE(sway_rocks(&senses.sway));
-    calm_for_s(1.0F);
-    TEST_ASSERT_FALSE(stand_is_possible(&senses.stand));
-    calm_for_s(1.01F);
-    TEST_ASSERT_TRUE(stand_is_possible(&senses.stand));
-    stood_for_s(0.6F);
-    TEST_ASSERT_FALSE(stand_is_sure(&senses.stand));
-    stood_for_s(0.61F);
-    TEST_ASSERT_TRUE(stand_is_sure(&senses.stand));
+    swing(0.1F, 0.0F);
+    tilt(0.0F, 0.0F);
+    for (int i = 1; i <= 60; i++) { /* creeping: each degree is a move */
+        tilt(0.002F * (float)i, 0.0F);
+        TEST_ASSERT_TRUE(sway_rocks(&sway));
+    }
 }
 
-void test_a_frame_without_accelerations_tells_the_sway_too(void)
+void test_a_calm_tilt_does_not_rock(void)
+{
+    swing(0.0154F, 0.0F);
+    tilt(0.05F, 0.0F);
+    TEST_ASSERT_FALSE(sway_rocks(&sway) && sway_is_calm(&sway));
+    for (int i = 0; i < 400; i++) {
+        tilt(0.05F, 0.0F);
+    }
+    TEST_ASSERT_FALSE(sway_rocks(&sway));
+}
+
+/* Higher than a decimetre what sways rocks. */
+void test_the_moves_are_looked_at_near_the_ground_alone(void)
+{
+    for (int high = 0; high < 2; high++) {
+        swing(0.1F, 0.0F);
+        frame.median.roll_rad = frame.median.pitch_rad = 0.0F;
+        for (int i = 0; i < 60; i++) {
+            sway_frame(&sway, &frame, (high != 0) ? 0.10F : 0.099F, false, FRAME_S);
+        }
+        TEST_ASSERT_TRUE(sway_as_in_the_air(&sway));
+        TEST_ASSERT_EQUAL(high != 0, sway_rocks(&sway));
+    }
+}
+
+void test_while_it_stands_a_wrong_frame_counts_little(void)
+{
+    for (int standing = 0; standing < 2; standing++) {
+        setUp();
+        frame.median.roll_rad = 0.5F;
+        sway_frame(&sway, &frame, 0.05F, standing != 0, FRAME_S);
+        TEST_ASSERT_EQUAL(standing == 0, sway_as_in_the_air(&sway));
+        TEST_ASSERT_TRUE(sway_is_no_hand(&sway)); /* which is asked on the ground, of the whole of it */
+    }
+}
+
+void test_frames_without_accelerations_have_a_clock_of_their_own(void)
 {
     for (uint32_t more_us = 0U; more_us < 2U; more_us++) {
         setUp();
-        feel(0.0F);
-        const uint32_t sequence = senses.accelerometer.sequence;
-        frame.has_acceleration = false;
         frame.arrival_us = 1000000U;
-        feel(5.0F);
-        TEST_ASSERT_EQUAL_UINT32(sequence + 1U, senses.accelerometer.sequence);
-        TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.sway.sway_rad2); /* the first after long */
-        frame.median.roll_rad = 0.06F;
-        frame.arrival_us += 275000U + more_us;
-        feel(5.0F);
-        TEST_ASSERT_FLOAT_WITHIN(1.0e-7F, (more_us == 0U) ? 0.2F * 0.0036F : 0.0F, senses.sway.sway_rad2);
-        TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.speed_mps);
-        TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.up_mps2);
+        frame.median.roll_rad = 0.5F;
+        sway_frame_alone(&sway, &frame, 0.05F, false);
+        TEST_ASSERT_TRUE(sway_is_calm(&sway)); /* the first after long */
+        frame.arrival_us += 300000U + more_us;
+        sway_frame_alone(&sway, &frame, 0.05F, false);
+        TEST_ASSERT_EQUAL(more_us == 0U, sway_as_in_the_air(&sway));
     }
 }
