@@ -3,7 +3,7 @@
  * asks what that has done. Nothing here repeats flight_step(): how the parts act together is flown, in
  * test_flight.c.
  *
- * This is the only file of these tests that knows how the modules remember. */
+ * This file, and est/est_case.h, are all that knows how the modules remember. */
 #ifndef TESTS_CONTROL_FLIGHT_CASE_H
 #define TESTS_CONTROL_FLIGHT_CASE_H
 
@@ -11,26 +11,15 @@
 #include "control/outputs.h"
 #include "control/signs.h"
 #include "control/thrust.h"
-#include "unity.h"
+#include "est/est_case.h"
 
-#include <math.h>
-#include <string.h>
-
-#define GRAV_N 7.0F
 #define NEAR(expected, actual) TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, expected, actual)
 
-static parameters_t parameters;
 static evidence_t evidence;
 static where_t where;
-static est_law_t est;
 static situation_t now;
 static flight_inputs_t in;
 static flight_outputs_t out;
-
-static inline void set(parameter_id_t id, float value)
-{
-    TEST_ASSERT_EQUAL(PARAMETER_ACCEPTED, parameters_set(&parameters, id, value));
-}
 
 /* ---- state and heights, as the supervisor has found them */
 
@@ -150,93 +139,6 @@ static inline void hovers_at_n(float thrust_n)
     hover_thrust_lift_off(&where.hover, thrust_n);
 }
 
-/* ---- the estimate */
-
-static inline void airborne(bool is_airborne)
-{
-    est.airborne = is_airborne;
-}
-
-static inline void estimated(float height_m, float speed_mps, float bias_mps2)
-{
-    estimator_start(&est.estimator, height_m, speed_mps, bias_mps2);
-    est.estimator.unchecked_count = 0U;
-}
-
-/* No height has checked the speed yet. */
-static inline void unchecked(void)
-{
-    const estimate_t *is = &est.estimator.now;
-
-    estimator_start(&est.estimator, is->height_m, is->speed_mps, is->bias_mps2);
-}
-
-static inline void confirmed(bool is_confirmed)
-{
-    est.estimator.confirmed = is_confirmed;
-}
-
-static inline void innovation_is_m(float innovation_m)
-{
-    est.estimator.innovation_m = innovation_m;
-}
-
-static inline void noise_is_mps2(float noise_mps2)
-{
-    est.estimator.credit.noise_mps2 = noise_mps2;
-}
-
-static inline void band_is_n(float band_n)
-{
-    est.deadband.band_n = band_n;
-}
-
-static inline void lose_the_estimate(void)
-{
-    est.estimator.initialised = false;
-}
-
-static inline void accelerations_come(bool felt)
-{
-    est.estimator.felt = felt;
-}
-
-static inline void frame_was_s_ago(float frameless_s)
-{
-    est.frameless_s = frameless_s;
-}
-
-static inline void est_hovers_at_n(float thrust_n)
-{
-    est.hover.thrust_n = thrust_n;
-}
-
-static inline void delivers_n(float thrust_n)
-{
-    est.actuator.thrust_n = thrust_n;
-}
-
-static inline void ground_was_at_m(float height_m)
-{
-    est.ground_m = height_m;
-}
-
-static inline void rays_were_at_us(uint32_t rays_us)
-{
-    est.rays_us = rays_us;
-}
-
-static inline void lifts_at(float lift_mps2)
-{
-    est.lift_mps2 = lift_mps2;
-}
-
-/* The thrust that law EST goes on from. */
-static inline float goes_on_from_n(void)
-{
-    return est.cascade.thrust_n;
-}
-
 /* ---- the sensors */
 
 static inline void sway(bool sways)
@@ -266,20 +168,7 @@ static inline void mode_is(flight_mode_t mode)
 /* FLYING with law EST at 0.5 m towards 0.6 m, all sensors fresh, cycles of 100 ms; hover thrust 7 N. */
 static inline void begin(void)
 {
-    static const imu_sample_t frame = {
-        .sequence = 1U, .ready = true, .has_acceleration = true, .down_mps2 = IMU_GRAVITY_MPS2};
-    const altitude_t altitude = {.valid = true, .slant_mm = 500.0F};
-
-    parameters_init(&parameters);
-    est_law_init(&est);
-    est_law_reset(&est, &parameters);
-    est_law_predict(&est, &parameters, &frame, 1U, 0U);
-    frame_was_s_ago(0.0F);
-    accelerations_come(true);
-    (void)estimator_fuse_height(&est.estimator, &altitude, 0U, false);
-    estimated(0.5F, 0.0F, 0.0F);
-    est_law_engage(&est, GRAV_N, GRAV_N);
-    delivers_n(GRAV_N);
+    est_begin(FRAME_AGE_US);
     memset(&where, 0, sizeof where);
     supervisor_init(&where.supervisor);
     in_state_for_us(FLIGHT_FLYING, 0U);

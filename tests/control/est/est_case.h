@@ -1,0 +1,178 @@
+/* Law EST in a case that is said in words, for the tests of its calls and of those who tell it something.
+ * This is the only file of these tests that knows how it remembers. */
+#ifndef TESTS_CONTROL_EST_CASE_H
+#define TESTS_CONTROL_EST_CASE_H
+
+#include "control/est/est_law.h"
+#include "unity.h"
+
+#include <math.h>
+#include <string.h>
+
+#define GRAV_N 7.0F
+#define FRAME_AGE_US UINT32_C(23600) /* FRAME_AGE_US of imu_sample.h plus half a period */
+
+static parameters_t parameters;
+static est_law_t est;
+
+static inline void set(parameter_id_t id, float value)
+{
+    TEST_ASSERT_EQUAL(PARAMETER_ACCEPTED, parameters_set(&parameters, id, value));
+}
+
+static inline void airborne(bool is_airborne)
+{
+    est.airborne = is_airborne;
+}
+
+/* ---- the estimate */
+
+static inline void estimated(float height_m, float speed_mps, float bias_mps2)
+{
+    estimator_start(&est.estimator, height_m, speed_mps, bias_mps2);
+    est.estimator.unchecked_count = 0U;
+}
+
+/* No height has checked the speed yet. */
+static inline void unchecked(void)
+{
+    const estimate_t *is = &est.estimator.now;
+
+    estimator_start(&est.estimator, is->height_m, is->speed_mps, is->bias_mps2);
+}
+
+static inline void confirmed(bool is_confirmed)
+{
+    est.estimator.confirmed = is_confirmed;
+}
+
+static inline void innovation_is_m(float innovation_m)
+{
+    est.estimator.innovation_m = innovation_m;
+}
+
+static inline void noise_is_mps2(float noise_mps2)
+{
+    est.estimator.credit.noise_mps2 = noise_mps2;
+}
+
+static inline void accused(void)
+{
+    est.estimator.credit.accused_frames = 5U;
+}
+
+static inline void lose_the_estimate(void)
+{
+    est.estimator.initialised = false;
+}
+
+static inline void no_frame_has_come(void)
+{
+    est.estimator.has_frames = false;
+}
+
+static inline void accelerations_come(bool felt)
+{
+    est.estimator.felt = felt;
+}
+
+static inline void upright_is(float upright)
+{
+    est.estimator.upright = upright;
+}
+
+/* The terrain rises at this rate; it has risen by so much. */
+static inline void terrain_rises(float terrain_mps, float terrain_height_m)
+{
+    est.estimator.now.terrain_mps = terrain_mps;
+    est.estimator.terrain_height_m = terrain_height_m;
+}
+
+static inline void frame_was_s_ago(float frameless_s)
+{
+    est.frameless_s = frameless_s;
+}
+
+static inline void height_was_s_ago(float heightless_s)
+{
+    est.heightless_s = heightless_s;
+}
+
+static inline void rays_were_at_us(uint32_t rays_us)
+{
+    est.rays_us = rays_us;
+}
+
+/* ---- thrust */
+
+static inline void est_hovers_at_n(float thrust_n)
+{
+    est.hover.thrust_n = thrust_n;
+}
+
+static inline void gust_is_n(float gust_n)
+{
+    est.hover.gust_n = gust_n;
+}
+
+static inline void delivers_n(float thrust_n)
+{
+    est.actuator.thrust_n = est.actuator.demand_n = thrust_n;
+}
+
+static inline void band_is_n(float band_n)
+{
+    est.deadband.band_n = band_n;
+}
+
+/* The thrust that it goes on from. */
+static inline float goes_on_from_n(void)
+{
+    return est.cascade.thrust_n;
+}
+
+/* ---- take-off */
+
+static inline void ground_was_at_m(float height_m)
+{
+    est.ground_m = height_m;
+}
+
+static inline void lifts_at(float lift_mps2)
+{
+    est.lift_mps2 = lift_mps2;
+}
+
+/* Delivered thrust and speed that belong to that acceleration. */
+static inline void lifts_with(float lift_n, float lift_mps)
+{
+    est.lift_n = lift_n;
+    est.lift_mps = lift_mps;
+}
+
+/* In the air at 0.5 m and at rest, all sensors fresh; hover thrust, thrust and GRAV 7 N. */
+static inline void est_begin(uint32_t now_us)
+{
+    const imu_sample_t frame = {.sequence = 1U,
+                                .arrival_us = now_us,
+                                .ready = true,
+                                .has_acceleration = true,
+                                .down_mps2 = IMU_GRAVITY_MPS2};
+    const altitude_t altitude = {.valid = true, .slant_mm = 500.0F};
+
+    parameters_init(&parameters);
+    est_law_init(&est);
+    est_law_predict(&est, &parameters, NULL, 0U, now_us - FRAME_AGE_US);
+    est_law_reset(&est, &parameters);
+    est_law_predict(&est, &parameters, &frame, 1U, now_us);
+    frame_was_s_ago(0.0F);
+    height_was_s_ago(0.0F);
+    accelerations_come(true);
+    (void)estimator_fuse_height(&est.estimator, &altitude, now_us - FRAME_AGE_US, false);
+    estimated(0.5F, 0.0F, 0.0F);
+    est_law_engage(&est, GRAV_N, GRAV_N);
+    est_law_set_sure_hover(&est, GRAV_N, false);
+    delivers_n(GRAV_N);
+}
+
+#endif
