@@ -247,6 +247,19 @@ void test_a_vehicle_given_back_that_feels_a_climb_gives_less_and_a_fall_more(voi
     NEAR(2.0F, lowered_n());
 }
 
+void test_what_felt_climbs_have_lowered_ends_with_the_descent(void)
+{
+    const pilot_signs_t flies = {.state = FLIGHT_FLYING, .has_throttle = true};
+
+    (void)given_back_n(0U, 0.0F, 1.0F);
+    (void)pilot_step(&where.pilot, &flies);
+    in_state(FLIGHT_FLYING);
+    (void)bounded_n(7.0F);
+    given_back(0.06F);
+    in_state(FLIGHT_DESCENDING);
+    NEAR(0.0F, lowered_n());
+}
+
 void test_a_doubted_accelerometer_does_not_free_a_climb_at_take_off(void)
 {
     evidence.doubts = DOUBT_IMU;

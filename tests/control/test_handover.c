@@ -395,3 +395,21 @@ void test_what_was_felt_for_long_is_forgotten_as_a_bias(void)
         NEAR((back != 0) ? 0.0F : 0.5F, est.estimator.now.height_m);
     }
 }
+
+/* The end of a landing, which is slow while the tilt moves as in flight. */
+void test_law_est_is_told_that_the_tilt_moves(void)
+{
+    float thrust_n[2];
+
+    for (int rocks = 0; rocks < 2; rocks++) {
+        setUp();
+        sway(rocks != 0);
+        change_doubts(0U);
+        for (uint32_t i = 1U; i <= 20U; i++) {
+            estimated(0.01F, 0.0F, 0.0F);
+            est_law_predict(&est, &parameters, NULL, 0U, FRAME_AGE_US + 100000U * i);
+            thrust_n[rocks] = est_law_step(&est, &parameters, EST_MODE_LAND, 0.0F);
+        }
+    }
+    TEST_ASSERT_TRUE(thrust_n[1] > thrust_n[0] + 0.5F);
+}

@@ -135,6 +135,22 @@ void test_it_ends_with_the_pilots_turn_and_begins_anew(void)
     TEST_ASSERT_FALSE(stuck_pin_acts(&pin));
 }
 
+void test_near_the_ground_a_tilt_that_moves_makes_the_end_slow(void)
+{
+    float more_n[2];
+
+    for (int rocks = 0; rocks < 2; rocks++) {
+        setUp();
+        now.rocks = rocks != 0;
+        said_for(60);
+        for (int i = 0; i < 20; i++) {
+            height_is(10.0F, 0.0F, 100000U, true);
+            more_n[rocks] = added_n();
+        }
+    }
+    TEST_ASSERT_TRUE(more_n[1] > more_n[0] + 0.5F);
+}
+
 void test_the_hover_thrust_is_not_its_business(void)
 {
     said_for(60);

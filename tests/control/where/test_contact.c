@@ -117,8 +117,11 @@ void test_a_landing_ends_after_more_than_a_second_without_thrust(void)
         }
         TEST_ASSERT_FALSE(contact_ends_without_thrust(&contact));
         landing.powered = i == 1;
+        landing.step_s = 0.09F;
         (void)thrust_after_n(FLIGHT_LANDING, landing.height_m);
+        TEST_ASSERT_FALSE(contact_ends_without_thrust(&contact));
         landing.powered = false;
+        landing.step_s = 0.02F;
         (void)thrust_after_n(FLIGHT_LANDING, landing.height_m);
         TEST_ASSERT_EQUAL(i == 0, contact_ends_without_thrust(&contact));
     }
