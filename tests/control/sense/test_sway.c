@@ -53,7 +53,7 @@ void test_the_sway_of_both_angles_together_is_that_of_the_air_beyond_1_1_degrees
 
 void test_a_lasting_tilt_is_no_sway(void)
 {
-    swing(0.01F, 0.3F);
+    swing(0.01F, 0.03F);
     TEST_ASSERT_TRUE(sway_is_calm(&sway));
 }
 
