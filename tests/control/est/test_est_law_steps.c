@@ -394,6 +394,18 @@ void test_the_lift_off_is_watched_through_80_ms(void)
     NEAR(0.6875F, est.lift_mps2); /* nothing felt is no acceleration */
 }
 
+void test_the_thrust_of_the_lift_off_is_watched_likewise(void)
+{
+    stand();
+    lifts_with(6.0F, 0.0F);
+    delivers_n(7.0F);
+    cycle(0.0F);
+    lifts_at(1.0F);
+    (void)ramp_n();
+    TEST_ASSERT_TRUE(est.airborne);
+    NEAR(6.3125F - 1.0F / AUTHORITY, est.hover.thrust_n);
+}
+
 /* On the ramp, with this lift acceleration, noise, height above the ground, thrust and GRAV 7 N. */
 static bool lifts(float lift_mps2, float noise_mps2, float height_m, float thrust_n)
 {
@@ -628,6 +640,13 @@ void test_on_the_ramp_a_vehicle_that_does_not_accelerate_is_at_rest(void)
     estimated(0.5F, 0.1F, 0.0F);
     see(0.5F, true);
     TEST_ASSERT_TRUE(est.estimator.now.speed_mps < 0.01F);
+    setUp();
+    stand();
+    (void)ramp_n();
+    est_law_disengage(&est); /* a pilot takes the throttle: it may fly */
+    estimated(0.5F, 0.1F, 0.0F);
+    see(0.5F, false);
+    TEST_ASSERT_TRUE(est.estimator.now.speed_mps > 0.05F);
 }
 
 /* ---- taking over and giving back */
@@ -647,6 +666,41 @@ void test_an_engaged_law_starts_from_command_and_hover_thrust(void)
     NEAR(9.0F, est.hover.thrust_n);
     est_law_engage(&est, 6.5F, 4.3F);
     NEAR(5.0F, est.hover.thrust_n);
+}
+
+/* What a landing, a doubt or the terrain of a flight has left counts no longer in the next. */
+void test_a_reset_forgets_the_flight(void)
+{
+    float thrust_n[2];
+
+    est_law_doubt(&est, &(est_doubts_t){.without_authority = true});
+    est_law_reset(&est, &parameters);
+    airborne(true);
+    TEST_ASSERT_TRUE(model_share() > 0.01F);
+    setUp();
+    for (int k = 0; k < 10; k++) {
+        pass_seeing(0.1F);
+        estimated(0.02F, -0.5F, 0.0F);
+        (void)est_law_step(&est, &parameters, EST_MODE_LAND, 0.0F);
+    }
+    est_law_reset(&est, &parameters);
+    airborne(true);
+    pass_seeing(0.1F);
+    estimated(0.02F, -0.5F, 0.0F);
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, 7.3F, est_law_step(&est, &parameters, EST_MODE_LAND, 0.0F));
+    for (int i = 0; i < 2; i++) {
+        setUp();
+        set(PARAMETER_TERRAIN, TERRAIN_IGNORE);
+        (void)est_law_step(&est, &parameters, EST_MODE_HOLD, 0.6F);
+        terrain_rises(0.0F, (i == 0) ? 0.0F : 0.3F); /* it has landed on something else */
+        est_law_reset(&est, &parameters);
+        ground_was_at_m(0.3F);
+        pass_seeing(0.1F);
+        estimated(0.5F, 0.0F, 0.0F);
+        thrust_n[i] = est_law_step(&est, &parameters, EST_MODE_HOLD, 0.6F);
+        TEST_ASSERT_TRUE(est.airborne);
+    }
+    NEAR(thrust_n[0], thrust_n[1]);
 }
 
 void test_a_thrust_without_authority_is_the_sure_one(void)
@@ -913,7 +967,7 @@ void test_fifteen_centimetres_over_the_terrain_are_kept(void)
 
     for (int i = 0; i < 2; i++) {
         setUp();
-        set(PARAMETER_TERRAIN, TERRAIN_IGNORE);
+        set(PARAMETER_TERRAIN, (i == 0) ? (float)TERRAIN_FOLLOW : (float)TERRAIN_IGNORE);
         (void)hold_n((i == 0) ? 0.15F : 0.60F);
         terrain_rises(0.0F, (i == 0) ? 0.0F : 0.9F);
         for (int k = 0; k < 40; k++) { /* until no slew is left */
