@@ -153,6 +153,59 @@ static void held_by_a_pilot(double height_m, double seconds)
     }
 }
 
+/* ---- the whole of a cycle */
+
+/* Whatever the memory held, the same inputs give the same outputs. */
+void test_a_flight_begins_anew_in_any_memory(void)
+{
+    static flight_t other;
+    static float thrust_n[200];
+
+    for (int dirty = 0; dirty < 2; dirty++) {
+        board(7.4, 2.4);
+        memset(&other, (dirty != 0) ? 0x55 : 0, sizeof other);
+        flight_init(&other);
+        flight = other;
+        set(PARAMETER_LAW, LAW_EST);
+        run(1.0);
+        setr(0.4F);
+        for (int i = 0; i < 200; i++) {
+            run(0.025);
+            TEST_ASSERT_TRUE(dirty == 0 || thrust_n[i] == out.thrust_n);
+            thrust_n[i] = out.thrust_n;
+        }
+        TEST_ASSERT_TRUE(highest_m > 0.2);
+    }
+}
+
+/* The heights fall fast while the pin says that a pilot flies: what that adds to a hover thrust near the full
+ * thrust passes the guard too. */
+void test_what_is_added_against_a_wrong_pin_stays_within_the_actuator(void)
+{
+    float most_n = 0.0F;
+
+    set(PARAMETER_GRAV, THRUST_MAX_N);
+    in.has_throttle = false;
+    held_by_a_pilot(1.5, 2.0);
+    TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
+    for (double height_m = 1.5; height_m > 0.3; height_m -= 0.15) {
+        held_by_a_pilot(height_m, 0.11);
+        TEST_ASSERT_TRUE(out.thrust_n <= THRUST_MAX_N);
+        most_n = fmaxf(most_n, out.thrust_n);
+    }
+    TEST_ASSERT_EQUAL_FLOAT(THRUST_MAX_N, most_n);
+}
+
+void test_while_the_pin_says_pilot_every_height_and_frame_releases_a_cycle(void)
+{
+    calm_law();
+    hover_at(0.8F);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_RELEASE_PERIOD, out.releases);
+    in.has_throttle = false;
+    run(0.5);
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_RELEASE_HEIGHT | FLIGHT_RELEASE_FRAME, out.releases);
+}
+
 /* ---- before and at the take-off */
 
 void test_on_the_ground_without_a_reference_there_is_the_idle_pulse(void)
