@@ -196,6 +196,23 @@ void test_what_is_added_against_a_wrong_pin_stays_within_the_actuator(void)
     TEST_ASSERT_EQUAL_FLOAT(THRUST_MAX_N, most_n);
 }
 
+/* It has not left the ground, as far as is known: the thrust ramps down by 2 N/s, whatever flies otherwise.
+ */
+void test_a_take_off_withdrawn_before_the_lift_off_takes_the_thrust_back(void)
+{
+    board(9.5, 2.4); /* too heavy to lift */
+    run(1.0);
+    setr(0.4F);
+    run(1.0);
+    TEST_ASSERT_EQUAL(FLIGHT_TAKEOFF, out.state);
+    setr(0.0F);
+    run_until(FLIGHT_LANDING, 0.2);
+    const float before_n = out.thrust_n;
+    run(0.54);
+    TEST_ASSERT_EQUAL(FLIGHT_LANDING, out.state);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, before_n - 1.08F, out.thrust_n);
+}
+
 void test_while_the_pin_says_pilot_every_height_and_frame_releases_a_cycle(void)
 {
     calm_law();
