@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly mine plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open site publish test test-long soak format mutants test-ground port size faults fuzz prove bench coverage package release firmware flash check-ti clean
+.PHONY: help build fly mine plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open site publish test test-long soak format mutants test-ground port size faults fuzz prove bench coverage package others release firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -161,6 +161,12 @@ package: ## The scanner's driver for others: every compiler that must take it, P
 	@$(cmake) -B build-package -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON -DPLOMADA_PACKAGE=ON
 	+@cmake --build build-package --target plomada scanner_posix $(jobs)
 	@NOTHING_SKIPPED=1 $(ctest) build-package -L package
+
+others: ## urg_library's and hokuyoaist's programs, built from source, on the model of the sensor: what a URG-04LX can
+	@$(setup) build test others
+	@$(cmake) -B build-package -DCMAKE_BUILD_TYPE=Release -DPLOMADA_TESTS=ON -DPLOMADA_OTHERS=ON
+	+@cmake --build build-package --target plomada $(jobs)
+	@NOTHING_SKIPPED=1 $(ctest) build-package -L others
 
 size: ## Flash, static RAM and stacks against the chip's limits, and docs/memory.md against them (ARGS=--write)
 	@$(setup) size

@@ -107,7 +107,7 @@ class Workflows(unittest.TestCase):
 
     def test_a_job_that_exists_to_run_something_skips_nothing(self):
         self.assertIn("\nexport NOTHING_SKIPPED=1\n", (ROOT / ".ci/run").read_text(encoding="utf-8"))
-        for target in ("soak", "port", "package"):
+        for target in ("soak", "port", "package", "others"):
             for line in recipe(target).splitlines():
                 if "$(ctest)" in line:
                     self.assertIn("NOTHING_SKIPPED=1 $(ctest)", line, target)

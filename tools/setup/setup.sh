@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# setup.sh build|test|port|size|coverage|bench|fuzz|prove|package|plot|campaign|ground|site ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
+# setup.sh build|test|port|size|coverage|bench|fuzz|prove|package|others|plot|campaign|ground|site ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
 #
 #   build     C compiler, CMake
 #   test      Ninja (a third of make's processor time); Ruby and CMock, which generates the mocks; Python 3 for the checks of the house rules; build/format with the
@@ -11,6 +11,7 @@
 #   fuzz      clang and its libFuzzer
 #   prove     CBMC and a C preprocessor; build/cbmc where Debian's suite has no CBMC
 #   package   compilers for other machines: clang, avr-gcc, arm-none-eabi-gcc, MinGW-w64; build/pio with the pinned PlatformIO
+#   others    sources of urg_library, hokuyoaist and flexiport in build/others, at the commits of tools/setup/others.txt
 #   plot      Python virtual environment build/venv with the packages of tools/plot/requirements.txt
 #   campaign  the same, and in it those of tools/campaign/requirements.txt; for tuning too, and for some tests
 #   ground    clang, lld, wasi-libc and binaryen for the vehicle in the browser; wasmtime in build/venv; node and the pinned
@@ -34,6 +35,7 @@ format_requirements=$root/tools/format/requirements.txt
 site=$root/build/site-tools
 site_requirements=$root/tools/site/requirements.txt
 pio=$root/build/pio
+others=$root/build/others
 pio_requirements=$root/tools/scip_package/requirements.txt
 
 say() { printf 'setup: %s\n' "$*" >&2; }
@@ -65,6 +67,13 @@ venv_ready() {
 format_ready() { [ -x "$format/bin/clang-format" ] && cmp -s "$format_requirements" "$format/requirements.txt"; }
 
 site_ready() { [ -x "$site/bin/mkdocs" ] && cmp -s "$site_requirements" "$site/requirements.txt"; }
+others_ready() {
+    local name commit address
+    while read -r name commit address; do
+        [ "$(git --git-dir="$others/$name/.git" rev-parse HEAD 2>/dev/null)" = "$commit" ] || return 1
+    done < <(grep -v '^#' "$here/others.txt")
+}
+
 pio_ready() { [ -x "$pio/bin/pio" ] && cmp -s "$pio_requirements" "$pio/requirements.txt"; }
 
 campaign_ready() { venv_ready && cmp -s "$campaign_requirements" "$venv/campaign.txt"; }
@@ -168,6 +177,9 @@ missing_packages() {
             finds arm-none-eabi-gcc string.h || echo libnewlib-arm-none-eabi
             has x86_64-w64-mingw32-gcc || echo gcc-mingw-w64-x86-64-win32
             pio_ready || venv_maker >/dev/null || echo python3-venv ;;
+        others)
+            has g++ || echo g++
+            has git || echo git ;;
         plot|campaign)
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
         site)
@@ -182,7 +194,7 @@ missing_packages() {
             has firefox || has firefox-esr || ! grep -qs '^ID=debian' /etc/os-release || echo firefox-esr
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
         *)
-            say "unknown job '$1'; know build, test, port, size, coverage, bench, fuzz, prove, package, plot, campaign, ground, site"
+            say "unknown job '$1'; know build, test, port, size, coverage, bench, fuzz, prove, package, others, plot, campaign, ground, site"
             exit 2 ;;
     esac
 }
@@ -252,6 +264,16 @@ own_venv() {
     cp "$2" "$1/requirements.txt"
 }
 
+fetch_others() {
+    local name commit address
+    while read -r name commit address; do
+        say "fetching $name"
+        rm -rf "${others:?}/$name"
+        git clone --quiet "$address" "$others/$name" && git -C "$others/$name" -c advice.detachedHead=false checkout --quiet "$commit" ||
+            die "git could not fetch $name (see above)"
+    done < <(grep -v '^#' "$here/others.txt")
+}
+
 # A virtual environment and a requirements.txt.
 pip_install() { "$1/bin/python" -m pip --quiet --disable-pip-version-check install --only-binary :all: --require-hashes -r "$2"; }
 
@@ -274,7 +296,7 @@ add_modules() {
     cp "$root/ground/package-lock.json" "$root/ground/node_modules/.installed-lock.json"
 }
 
-[ $# -gt 0 ] || { say "usage: setup.sh build|test|port|size|coverage|bench|fuzz|prove|package|plot|campaign|ground|site ..."; exit 2; }
+[ $# -gt 0 ] || { say "usage: setup.sh build|test|port|size|coverage|bench|fuzz|prove|package|others|plot|campaign|ground|site ..."; exit 2; }
 
 packages=()
 want_cmock=
@@ -285,6 +307,7 @@ want_ground=
 want_modules=
 want_format=
 want_pio=
+want_others=
 want_site=
 for job in "$@"; do
     list=$(missing_packages "$job")
@@ -294,6 +317,7 @@ for job in "$@"; do
             cmock_ready || want_cmock=yes
             format_ready || want_format=yes ;;
         package) pio_ready || want_pio=yes ;;
+        others) others_ready || want_others=yes ;;
         prove) cbmc_ready || known cbmc || want_cbmc=yes ;;
         plot) venv_ready || want_venv=yes ;;
         site) site_ready || want_site=yes ;;
@@ -327,4 +351,5 @@ fi
 [ -z "$want_modules" ] || add_modules
 [ -z "$want_format" ] || own_venv "$format" "$format_requirements"
 [ -z "$want_pio" ] || own_venv "$pio" "$pio_requirements"
+[ -z "$want_others" ] || fetch_others
 [ -z "$want_site" ] || own_venv "$site" "$site_requirements"
