@@ -113,6 +113,17 @@ class Programs(unittest.TestCase):
             self.assertIn("Sensor diagnostic: Sensor works well.", said)
             self.assertIn(f"{points} ranges", said)
 
+    def test_hokuyoaists_recordings_of_three_sensors_are_read(self):
+        for name, sensor, points, unread in (("urg_04lx", "URG-04LX", 682, None), ("utm_30lx", "UTM-30LX", None, "ME           2"),
+                                             ("uxm_30lx_e", "UXM-30LX-E", 761, None)):
+            done = subprocess.run([PLOMADA, "scip", "decode", self.top / f"hokuyoaist/examples/example_{name}.logr"], capture_output=True,
+                                  text=True, check=False)
+            rows = [line.count(",") for line in done.stdout.splitlines()[1:]]
+            self.assertEqual(rows, [points] if points else [], name)
+            self.assertIn(f"sensor: {sensor}(Hokuyo Automatic Co.,Ltd.)", done.stderr)
+            self.assertIn("damaged: 0 ", done.stderr)
+            self.assertIn(unread or "", done.stderr)
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)
