@@ -8,7 +8,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,23 +19,22 @@
 #endif
 
 #include "board.h"
+#include "posix.h"
 
 #define WAIT_MS 5 /* less than an eighth of what urg_pause_us() asks for at least */
 
 static const char *device;
 static int port = -1;
-static volatile sig_atomic_t stopped;
-
-static void stop(int signal_number)
-{
-    (void)signal_number;
-    stopped = 1;
-}
 
 static void fail(const char *what)
 {
     fprintf(stderr, "scanner: %s: %s\n", device, what);
     exit(1);
+}
+
+void posix_use(const char *path)
+{
+    device = path;
 }
 
 #ifdef __linux__
@@ -115,36 +113,3 @@ uint32_t board_uart_errors(void)
 }
 
 void board_cycle_sensor_power(void) {}
-
-void board_show(bool valid, uint16_t distance_mm)
-{
-    if (valid) {
-        printf("%u mm\n", (unsigned)distance_mm);
-    } else {
-        printf("nothing\n");
-    }
-    fflush(stdout);
-}
-
-bool board_runs(void)
-{
-    return stopped == 0;
-}
-
-int main(int argc, char **argv)
-{
-    const char *refused;
-
-    if (argc != 2) {
-        fprintf(stderr, "usage: scanner DEVICE\n");
-        return 2;
-    }
-    device = argv[1];
-    signal(SIGINT, stop);
-    signal(SIGTERM, stop);
-    refused = scanner_run();
-    if (refused != NULL) {
-        fail(refused);
-    }
-    return 0;
-}
