@@ -38,9 +38,9 @@ struct pilot {
 static bool my_turn(const pilot_config_t *config, double t_s)
 {
     const double since_s = t_s - config->turn.start_s;
+    const double into_s = config->every_s > 0.0 ? fmod(since_s, config->every_s) : since_s;
 
-    return since_s >= 0.0 &&
-           (config->every_s > 0.0 ? fmod(since_s, config->every_s) : since_s) < config->turn.length_s;
+    return since_s >= 0.0 && into_s < config->turn.length_s && t_s - into_s < config->until_s;
 }
 
 static double wanted_n(pilot_t *pilot, const pilot_view_t *view)

@@ -17,6 +17,7 @@ typedef struct {
 typedef struct {
     span_t turn;          /* 10 s, for 0 s: never takes it */
     double every_s;       /* 0: once; else again, so long after the start of the turn before */
+    double until_s;       /* no turn begins later; never */
     double height_m;      /* 0.6; 0: lands it and leaves the throttle down */
     double trim_n;        /* 7: where the stick is when the turn begins */
     double delay_s;       /* 0.2, eye to hand */
@@ -35,8 +36,8 @@ typedef struct {
 
 #define PILOT_DEFAULT \
     { \
-        .turn = {10.0, 0.0}, .every_s = 0.0, .height_m = 0.6, .trim_n = 7.0, .delay_s = 0.2, \
-        .unrest_n = 0.05 \
+        .turn = {10.0, 0.0}, .every_s = 0.0, .until_s = SPAN_FOR_GOOD_S, .height_m = 0.6, .trim_n = 7.0, \
+        .delay_s = 0.2, .unrest_n = 0.05 \
     }
 
 typedef struct {

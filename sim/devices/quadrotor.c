@@ -545,6 +545,7 @@ static void step(quadrotor_t *q)
     }
     s->terrain_m = ground.centre_m;
     s->height_m = s->altitude_m - ground.centre_m;
+    s->clearance_m = s->altitude_m - ground.carries_m;
 }
 
 static void bring_up(quadrotor_t *q)

@@ -77,8 +77,9 @@ extern const quadrotor_config_t quadrotor_default;
 
 typedef struct {
     double altitude_m, height_m, terrain_m, speed_mps,
-        acceleration_mps2;               /* acceleration of the body, upwards, without g */
-    double thrust_n;                     /* what the motors deliver now */
+        acceleration_mps2; /* acceleration of the body, upwards, without g */
+    double clearance_m; /* of the gear's lowest foot: 0 on rough ground or an edge, where height_m is not */
+    double thrust_n;    /* what the motors deliver now */
     double roll_rad, pitch_rad, yaw_rad; /* yaw as a compass counts, clockwise */
     double x_m, y_m, heading_rad;        /* axes of place.h; heading of the nose, counter-clockwise */
     bool collided;                       /* has flown into something */

@@ -468,6 +468,7 @@ static metrics_sample_t look(double t_s, const quadrotor_state_t *truth)
                               .thrust_n = (double)out.thrust_n,
                               .taken_over = phase == FLIGHT_LOWERING || phase == FLIGHT_DESCENDING,
                               .coming_down = phase == FLIGHT_DESCENDING || phase == FLIGHT_LANDING,
+                              .clearance_m = truth->clearance_m,
                               .on_ground = truth->on_ground,
                               .ours = board_selected(),
                               .doubts = doubts_of(out.flags),

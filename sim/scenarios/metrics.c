@@ -111,7 +111,7 @@ static void find_extremes(metrics_record_t *record, const metrics_sample_t *s)
  * falls is no deed of the firmware. */
 static void watch_touch(metrics_record_t *record, const metrics_sample_t *s)
 {
-    if (s->height_m > AIRBORNE_M) {
+    if (s->clearance_m > AIRBORNE_M) {
         const bool idle = record->before.thrust_n <= 0.0 && s->thrust_n <= 0.0 &&
                           s->speed_mps <= 0.0; /* else a pilot lifts it */
         record->dropped = record->airborne ? record->dropped : record->count > 0 && idle;
@@ -119,7 +119,7 @@ static void watch_touch(metrics_record_t *record, const metrics_sample_t *s)
         record->fall_mps = 0.0;
     }
     record->fall_mps = fmax(record->fall_mps, -s->speed_mps);
-    if (record->airborne && s->height_m <= TOUCHED_M) {
+    if (record->airborne && s->clearance_m <= TOUCHED_M) {
         record->airborne = false;
         record->hardest_mps = record->dropped ? record->hardest_mps
                                               : fmax(record->hardest_mps, record->fall_mps);
@@ -170,7 +170,7 @@ static void watch_motors(metrics_record_t *record, const metrics_sample_t *s)
 
 static void watch_descent(metrics_record_t *record, const metrics_sample_t *s)
 {
-    if (!s->on_ground || s->height_m > AIRBORNE_M) {
+    if (!s->on_ground || s->clearance_m > AIRBORNE_M) {
         record->aloft_s = s->t_s;
     }
     if (s->thrust_n > MOTORS_TURN_N) {

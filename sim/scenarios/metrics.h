@@ -18,9 +18,10 @@
 
 typedef struct {
     double t_s, height_m, speed_mps, thrust_n; /* thrust: commanded */
-    bool taken_over;  /* the supervisor has taken the vehicle from the law: LOWERING or DESCENDING */
-    bool coming_down; /* by the supervisor's order, and nothing but a new reference ends it: DESCENDING,
-                         LANDING */
+    bool taken_over;    /* the supervisor has taken the vehicle from the law: LOWERING or DESCENDING */
+    bool coming_down;   /* by the supervisor's order, and nothing but a new reference ends it: DESCENDING,
+                           LANDING */
+    double clearance_m; /* between the gear and what carries it */
     bool on_ground;
     bool ours;         /* the firmware has the throttle */
     unsigned doubts;   /* sources that it doubts */

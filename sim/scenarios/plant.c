@@ -180,6 +180,7 @@ static const figure_t figures[] = {
     {"pilot", "s", 0, LARGE, PILOT(turn.length_s), 1, "for how long; 0: never (see also parameter SEL)"},
     {"pilot_every", "s", 0, LARGE, PILOT(every_s), 1,
      "and again, so long after the start of the turn before; 0: once"},
+    {"pilot_until", "s", -LARGE, LARGE, PILOT(until_s), 1, "scenario time after which none of these begins"},
     {"pilot_height", "m", 0, 10, PILOT(height_m), 1, "height that the pilot holds; 0: lands it"},
     {"pilot_trim", "N", 0, 12, PILOT(trim_n), 1, "where the stick is when the turn begins"},
     {"pilot_delay", "s", 0, 1.2, PILOT(delay_s), 1, "from the pilot's eye to the hand"},

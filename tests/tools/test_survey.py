@@ -262,6 +262,12 @@ class Saying(unittest.TestCase):
                 self.assertIn("+other", survey.compare(block, f"\nwritten {block}\n\nother\n"))
         self.assertEqual(copy.read_text(encoding="utf-8").count("\nwritten "), 3)
 
+    def test_the_rows_of_the_page_are_those_of_the_tables(self):
+        for name, of_table in TABLES.items():
+            shown = survey.pattern(name).search(survey.PAGE.read_text(encoding="utf-8")).group()
+            titles = [line.split("|")[1].strip() for line in shown.splitlines() if line.startswith("| ")]
+            self.assertEqual(titles[1:titles.index("all")], list(of_table.rows()))
+
     # With the real program and firmware: none may stop, and a command that is printed repeats its flight.
     def test_flights_are_kept_and_repeat(self):
         words = ("--lies", "4", "--only", "two-at-once,beam blocked in flight", "--law", "EST,PID")

@@ -2,7 +2,7 @@
 
 A situation is data. docs/campaign.md tells how one is written; the tables are read by load(). What its words mean:
 
-  draw     {NAME: RANGE}: numbers that the other lines use. A range is [LEAST, MOST], or {wide = [..]}: each factor as likely as the
+  draw     {NAME: RANGE}: numbers that the other lines use, beside hover, the vehicle's hover thrust. A range is [LEAST, MOST], or {wide = [..]}: each factor as likely as the
            other; {either = [..]}: of either sign; {whole = [..]}: an integer; {one_of = [..]}: a number or a word
   set      {NAME: VALUE}: a figure of the plant, or a parameter in capitals
   place    lines of a place file; {times, draw, line, then} writes its line so often, draws anew for each, and `then` changes numbers
@@ -194,6 +194,7 @@ class Draft:
         self.known, self.held_out = {}, held_out
         self.figures, typed = plan.vehicle(f"{stream} {seed}", number)
         self.figures["platform"], self.typed = 0.0, {"GRAV": typed["GRAV"]}
+        self.known["hover"] = self.figures["hover_thrust"]
         self.place, self.at, self.faults, self.sources = [], [], [], []
         self.reference = self.land = None
 

@@ -121,6 +121,19 @@ void test_turns_come_again_when_told_so(void)
     TEST_ASSERT_EQUAL_UINT(4, gives);
 }
 
+void test_the_last_turn_begins_before_its_time_and_is_flown_to_its_end(void)
+{
+    config.turn = (span_t){2.0, 1.0};
+    config.every_s = 5.0;
+    config.until_s = 7.5;
+    start();
+    run_until(7.9);
+    TEST_ASSERT_TRUE(mine);
+    run_until(30.0);
+    TEST_ASSERT_EQUAL_UINT(2, takes);
+    TEST_ASSERT_EQUAL_UINT(2, gives);
+}
+
 void test_the_turn_begins_with_the_stick_at_its_trim(void)
 {
     config.turn = (span_t){1.0, 3.0};

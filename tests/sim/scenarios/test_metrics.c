@@ -12,11 +12,13 @@ static metrics_record_t record;
 static metrics_t found;
 static long ticks;
 static metrics_sample_t now; /* what the next samples are */
+static double carried_m;     /* how far the ground under a foot is above that under the centre */
 
 void setUp(void)
 {
     metrics_begin(&record, 0.6, false, LAND_S);
     ticks = 0;
+    carried_m = 0.0;
     now = (metrics_sample_t){.thrust_n = 7.4, .ours = true, .may_cut = true};
     now.on_ground = true;
 }
@@ -40,7 +42,8 @@ static void go(double t_s, double height_m)
         now.height_m = now.seen_m = from_m + (height_m - from_m) * (double)i / (double)steps;
         now.estimate_m = now.estimate_m + now.seen_m -
                          (i == 1 ? from_m : from_m + (height_m - from_m) * (double)(i - 1) / (double)steps);
-        now.on_ground = now.height_m <= 0.0;
+        now.clearance_m = fmax(now.height_m - carried_m, 0.0);
+        now.on_ground = now.clearance_m <= 0.0;
         metrics_add(&record, &now);
         ticks++;
     }
@@ -398,6 +401,19 @@ void test_on_the_way_to_a_lower_reference_the_supervisor_may_take_over(void)
     now.taken_over = true;
     go(10.0, 0.6);
     NEAR(1e-9, 1.0, value(METRIC_TAKEOVERS));
+}
+
+/* Rough ground, a slope, an edge: a foot touches, and the centre stays 80 mm above the ground. */
+void test_who_stands_on_a_foot_is_down_and_has_touched(void)
+{
+    hover();
+    carried_m = 0.08;
+    go(23.0, 0.08); /* 0.52 m in 3 s */
+    now.thrust_n = 0.0;
+    go(26.0, 0.08);
+    NEAR(0.025, 3.0, value(METRIC_DOWN_S));
+    NEAR(0.002, 0.52 / 3.0, value(METRIC_TOUCH_SPEED_MPS));
+    TEST_ASSERT_TRUE(metrics_over(&record));
 }
 
 void test_one_that_never_leaves_the_ground_has_left_its_height(void)
