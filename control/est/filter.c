@@ -30,7 +30,7 @@ static inline float *covariance_of(float p[FILTER_STATES][FILTER_STATES], uint16
 void filter_reset_variance(filter_t *filter, filter_state_t state, float variance)
 {
     for (uint16_t i = 0U; i < FILTER_STATES; ++i) {
-        *covariance_of(filter->covariance, state, i) = 0.0F;
+        *covariance_of(filter->covariance, (uint16_t)state, i) = 0.0F;
     }
     filter->covariance[state][state] = variance;
 }
@@ -150,17 +150,17 @@ void filter_correct(filter_t *filter, filter_state_t state, float innovation, fl
     float gain[FILTER_STATES];
 
     for (uint16_t i = 0U; i < FILTER_STATES; ++i) {
-        row[i] = *covariance_of(p, state, i);
+        row[i] = *covariance_of(p, (uint16_t)state, i);
         gain[i] = row[i] * per_sum;
     }
     filter->estimate.height_m += gain[FILTER_HEIGHT] * innovation;
     filter->estimate.speed_mps += gain[FILTER_SPEED] * innovation;
     filter->estimate.bias_mps2 += gain[FILTER_BIAS] * innovation;
     filter->estimate.terrain_mps += gain[FILTER_TERRAIN] * innovation;
-    correct_row(p[FILTER_HEIGHT], FILTER_HEIGHT, row, gain, state, variance);
-    correct_row(p[FILTER_SPEED], FILTER_SPEED, row, gain, state, variance);
-    correct_row(p[FILTER_BIAS], FILTER_BIAS, row, gain, state, variance);
-    correct_row(p[FILTER_TERRAIN], FILTER_TERRAIN, row, gain, state, variance);
+    correct_row(p[FILTER_HEIGHT], FILTER_HEIGHT, row, gain, (uint16_t)state, variance);
+    correct_row(p[FILTER_SPEED], FILTER_SPEED, row, gain, (uint16_t)state, variance);
+    correct_row(p[FILTER_BIAS], FILTER_BIAS, row, gain, (uint16_t)state, variance);
+    correct_row(p[FILTER_TERRAIN], FILTER_TERRAIN, row, gain, (uint16_t)state, variance);
     bound_states(&filter->estimate);
     bound_covariance(p);
 }
