@@ -72,7 +72,7 @@ class Wiring(unittest.TestCase):
         full = constant("bsp/throttle.h", "BSP_THROTTLE_FULL_COUNTS") * tick_us / 1000
         self.assertEqual((round(period, 1), round(idle, 2), round(full, 2)), (13.6, 2.0, 1.0))
         self.assertIn("13.6 ms, high for 1 to 2 ms", self.rows["J8.80"][6])
-        self.assertIn("**2 ms is no thrust, 1 ms is\n  full thrust.**", text(HARDWARE))
+        self.assertIn("**2 ms is no thrust, 1 ms is full thrust.**", " ".join(text(HARDWARE).split()))
 
     def test_the_leds_blink_at_the_pace_of_the_task_that_drives_them(self):
         period = constant("firmware/schedule.h", "SEND_LASER_PERIOD_MS")
