@@ -5,7 +5,7 @@
 
 #include "control/between.h"
 
-#define EFFECT_REACH_M 0.14F  /* chosen: below VAIN_M in verdict.c */
+#define EFFECT_REACH_M 0.14F  /* chosen: below VAIN_M in rules.c */
 #define UNKNOWN_REACH_M 0.06F /* tried 0.05 to 0.09; asks for 0.8 N at the delivered gains */
 #define FLOAT_REACH_M 0.30F   /* chosen: three times the distance that counts as reached, reach.c */
 

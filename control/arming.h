@@ -11,7 +11,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "control/supervisor.h"
+#include "control/where/supervisor.h"
 
 typedef struct {
     bool armed;
@@ -27,6 +27,12 @@ typedef struct {
  * a tilt or a silent link; a DESCENDING (without heights) that has reached the ground. */
 void arming_step(arming_t *arming, const flight_inputs_t *in, flight_state_t before,
                  const supervisor_t *supervisor);
+
+/* #ARM lets the tilt alone tell a pilot's flight. */
+static inline bool arming_hands_over(const arming_t *arming)
+{
+    return arming->hands_over;
+}
 
 /* Minimum thrust in newtons per motor: the idle while armed; 0 when not armed, and in CUT. idle_percent:
  * of the throttle's range. */

@@ -36,6 +36,12 @@ typedef struct {
  * to the law's thrust, >= 0. */
 float bounds_trim_n(bounds_t *bounds, const situation_t *now);
 
+/* The same of the latest cycle. */
+static inline float bounds_added_n(const bounds_t *bounds)
+{
+    return bounds->trim_n;
+}
+
 /* The bounded thrust. Once in each cycle. */
 float bounds_apply(bounds_t *bounds, const situation_t *now, float thrust_n);
 

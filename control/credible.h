@@ -11,6 +11,7 @@
 #define LOW_MM \
     80.0F /* chosen: above REST_BELOW_MM in supervisor.c; so low the vehicle may touch the ground */
 #define LOW_M 0.08F
+#define IN_THE_AIR_M 0.04F /* chosen: ten times the noise of a height */
 
 #define HEIGHT_FRESH_US UINT32_C(300000) /* three scans of 0.1 s */
 #define HEIGHT_FRESH_S 0.3F

@@ -5,7 +5,6 @@
  * the previous cycle. */
 #include "control/flight.h"
 
-#include "control/credible.h"
 #include "control/outputs.h"
 #include "control/signs.h"
 
@@ -21,9 +20,7 @@ void flight_init(flight_t *flight)
 /* Its pointers stay true while the cycle goes on. */
 static situation_t situation_of(const flight_t *flight, const parameters_t *parameters)
 {
-    const supervisor_t *supervisor = &flight->where.supervisor;
-
-    return (situation_t){
+    situation_t now = {
         .parameters = parameters,
         .evidence = &flight->evidence,
         .where = &flight->where,
@@ -31,12 +28,13 @@ static situation_t situation_of(const flight_t *flight, const parameters_t *para
         .law = flight->law,
         .mode = flight->mode,
         .mode_before = flight->mode,
-        .aim_m = aim_height_m(&flight->aim, supervisor),
+        .aim_m = aim_height_m(&flight->aim, &flight->where.supervisor),
         .thrust_n = flight->thrust_n,
         .idle_n = flight->idle_n,
-        .risen = supervisor->height.height_mm * 0.001F - flight->est.ground_m > LOW_MM * 0.001F,
-        .rocks = flight->evidence.rocks && est_law_has_imu(&flight->est),
     };
+
+    situation_derive(&now);
+    return now;
 }
 
 /* Samples in: what is believed of them, and what is doubted. */
@@ -48,7 +46,7 @@ static void sense(flight_t *flight, const parameters_t *parameters, flight_input
 
     imu_axes_step(&flight->axes, in->frames, in->frame_count, command.grounded, command.noise_mps2);
     flight->evidence = sense_step(&flight->sense, &command, in);
-    est_law_predict(&flight->est, parameters, in->frames, in->frame_count, in->now_us);
+    handover_frames(&flight->est, &before, in);
 }
 
 /* One transition of the state at most, and the idle thrust that it allows. */
@@ -56,7 +54,7 @@ static void supervise(flight_t *flight, const situation_t *now, const flight_inp
 {
     supervisor_t *supervisor = &flight->where.supervisor;
     const flight_state_t before = supervisor->state;
-    const vertical_estimate_t vertical = signs_of_vertical(now, flight->arming.hands_over);
+    const vertical_estimate_t vertical = signs_of_vertical(now, arming_hands_over(&flight->arming));
 
     supervisor_step(supervisor, now->parameters->value[PARAMETER_LINK], in, &vertical);
     arming_step(&flight->arming, in, before, supervisor);
@@ -70,13 +68,10 @@ static void locate(flight_t *flight, const parameters_t *parameters, const fligh
     where_t *where = &flight->where;
     situation_t now = situation_of(flight, parameters);
 
-    handover_doubts(&flight->handover, &flight->est, &where->hover, &now);
+    handover_doubts(&flight->handover, &flight->est, where, &now);
     supervise(flight, &now, in);
     handover_imu(&flight->est, &now);
-    if (where->supervisor.height.is_new) {
-        est_law_fuse_height(&flight->est, &in->altitude, in->height_stamp_ms, in->height_time_us,
-                            in->height_age_us, supervisor_is_at_rest(&where->supervisor));
-    }
+    handover_height(&flight->est, &now, in);
     now = situation_of(flight, parameters);
     const contact_signs_t signs = signs_of_contact(&now);
     contact_step(&where->contact, &signs);
@@ -86,16 +81,11 @@ static void locate(flight_t *flight, const parameters_t *parameters, const fligh
 /* Who has the throttle, then law and mode. Returns true when the law has changed. */
 static bool choose(flight_t *flight, situation_t *now, bool has_throttle)
 {
-    const bool estimated = est_law_ready(&flight->est);
     const pilot_signs_t signs = signs_of_pilot(now, has_throttle);
 
-    handover_pilot(&flight->est, now, pilot_step(&flight->where.pilot, &signs), flight->bounds.trim_n);
-    const mode_choice_t choice = {
-        .law = modes_law(now->parameters, estimated),
-        .estimated = estimated,
-        .airborne = flight->est.airborne,
-        .has_throttle = has_throttle,
-    };
+    handover_pilot(&flight->est, &flight->where, now, pilot_step(&flight->where.pilot, &signs),
+                   bounds_added_n(&flight->bounds));
+    const mode_choice_t choice = signs_of_mode(now, has_throttle);
     const bool law_changed = choice.law != flight->law;
     now->law = flight->law = choice.law;
     now->mode = flight->mode = modes_select(&flight->where.supervisor, &flight->evidence, &choice);
@@ -109,10 +99,10 @@ static void change_mode(flight_t *flight, const situation_t *now)
     }
     stuck_pin_reset(&flight->pin);
     if (now->mode_before == FLIGHT_MODE_DESCENT) {
-        hover_thrust_correct(&flight->where.hover, flight->laws.descent.trim_n);
+        hover_thrust_correct(&flight->where.hover, laws_found_n(&flight->laws));
     }
     laws_change(&flight->laws, now);
-    handover_mode(&flight->est, now);
+    handover_mode(&flight->est, &flight->where, now);
 }
 
 /* What is known in this mode: the hover thrust, and the height that it holds. */
@@ -129,19 +119,18 @@ static void learn(flight_t *flight, situation_t *now)
 /* The thrust of the law, not yet bounded. */
 static float wanted_n(flight_t *flight, const situation_t *now, bool law_changed)
 {
-    contact_t *contact = &flight->where.contact;
-    const supervisor_t *supervisor = &flight->where.supervisor;
     bool changed = law_changed;
 
-    contact_watch_take_off(contact, supervisor->state, supervisor->state_us, flight->est.airborne);
-    if (contact_stops(contact, supervisor->state)) {
+    where_watch_take_off(&flight->where);
+    if (where_stops(&flight->where)) {
         laws_stop(&flight->laws, now);
     } else {
+        handover_take_off(&flight->est, &flight->where, now);
         changed = laws_step(&flight->laws, &flight->est, now) || law_changed;
         stuck_pin_step(&flight->pin, now);
     }
     laws_transfer(&flight->laws, now, changed);
-    return flight->laws.setpoint_n + flight->laws.transfer_n;
+    return laws_thrust_n(&flight->laws);
 }
 
 /* Returns the thrust to put out. The estimate is told of it without what a stuck pin adds: while a pilot
@@ -154,7 +143,7 @@ static float command(flight_t *flight, const situation_t *now, bool law_changed)
 
     contact_land(&flight->where.contact, &signs);
     const float bounded_n = bounds_apply(&flight->bounds, now, law_n + trim_n);
-    const guard_case_t last = signs_of_guard(now, bounded_n + flight->pin.more_n);
+    const guard_case_t last = signs_of_guard(now, bounded_n + stuck_pin_added_n(&flight->pin));
     const float driven_n = guard_step(&flight->guard, &last);
 
     flight->thrust_n = stuck_pin_acts(&flight->pin) ? bounded_n : driven_n;

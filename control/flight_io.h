@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #include "control/altitude.h"
-#include "control/flight_state.h"
+#include "control/where/flight_state.h"
 #include "control/imu_axes.h"
 #include "control/imu_sample.h"
 #include "control/thrust.h"

@@ -37,9 +37,32 @@ static const edge_t last_edges[] = {
     {.came = DOUBT_IMU, .place = IN_THE_AIR, .amend = AMEND_BY_HEIGHTS_ALONE, .engages = true},
 };
 
-static void engage(est_law_t *est, const situation_t *now)
+void handover_frames(est_law_t *est, const situation_t *before, const flight_inputs_t *in)
 {
-    est_law_engage(est, now->thrust_n, now->where->hover.thrust_n);
+    est_law_predict(est, before->parameters, before->where->contact.airborne, in->frames, in->frame_count,
+                    in->now_us);
+}
+
+void handover_height(est_law_t *est, const situation_t *now, const flight_inputs_t *in)
+{
+    const supervisor_t *supervisor = &now->where->supervisor;
+    const est_height_t height = {&in->altitude, in->height_stamp_ms, in->height_time_us, in->height_age_us};
+
+    if (supervisor->height.is_new) {
+        est_law_fuse_height(est, &height, now->where->contact.airborne, supervisor_is_at_rest(supervisor));
+    }
+}
+
+/* Law EST flies from now on. hover_n: best known hover thrust. */
+static void engage_at(est_law_t *est, where_t *where, const situation_t *now, float hover_n)
+{
+    contact_fly(&where->contact);
+    est_law_engage(est, now->thrust_n, hover_n);
+}
+
+static void engage(est_law_t *est, where_t *where, const situation_t *now)
+{
+    engage_at(est, where, now, where->hover.thrust_n);
 }
 
 static void amend(est_law_t *est, const evidence_t *evidence, amend_t how)
@@ -70,10 +93,10 @@ static bool is_place(place_t place, const change_t *change, const situation_t *n
 {
     const bool unseen = (change->came & DOUBT_SIGHT) != 0U && now->evidence->sways;
 
-    return place == ANYWHERE || now->est->airborne || (place == IN_THE_AIR_OR_UNSEEN && unseen);
+    return place == ANYWHERE || now->where->contact.airborne || (place == IN_THE_AIR_OR_UNSEEN && unseen);
 }
 
-static void tell(est_law_t *est, const edge_t *edges, uint16_t count, const change_t *change,
+static void tell(est_law_t *est, where_t *where, const edge_t *edges, uint16_t count, const change_t *change,
                  const situation_t *now)
 {
     for (uint16_t k = 0U; k < count; ++k) {
@@ -85,31 +108,31 @@ static void tell(est_law_t *est, const edge_t *edges, uint16_t count, const chan
         }
         amend(est, now->evidence, edge->amend);
         if (edge->engages) {
-            engage(est, now);
+            engage(est, where, now);
         }
     }
 }
 
-void handover_doubts(handover_t *handover, est_law_t *est, hover_thrust_t *hover, const situation_t *now)
+void handover_doubts(handover_t *handover, est_law_t *est, where_t *where, const situation_t *now)
 {
     const uint16_t doubted = now->evidence->doubts;
-    const pilot_state_t *pilot = &now->where->pilot;
+    const pilot_state_t *pilot = &where->pilot;
     const change_t change = {
         .came = doubted & (uint16_t)~handover->doubts,
         .gone = handover->doubts & (uint16_t)~doubted,
     };
 
     if ((change.came & DOUBT_IMU) != 0U) {
-        hover_thrust_distrust(hover, now->parameters->value[PARAMETER_GRAV]);
+        hover_thrust_distrust(&where->hover, now->parameters->value[PARAMETER_GRAV]);
     }
-    tell(est, first_edges, sizeof first_edges / sizeof first_edges[0], &change, now);
+    tell(est, where, first_edges, sizeof first_edges / sizeof first_edges[0], &change, now);
     est_law_doubt(est, &(est_doubts_t){
                            .without_authority = (doubted & DOUBT_THRUST) != 0U ||
                                                 (pilot_is_unknown(pilot) && !pilot_shows_effect(pilot)),
                            .accelerations = (doubted & DOUBT_IMU) != 0U,
                            .rocks = now->rocks,
                        });
-    tell(est, last_edges, sizeof last_edges / sizeof last_edges[0], &change, now);
+    tell(est, where, last_edges, sizeof last_edges / sizeof last_edges[0], &change, now);
     handover->doubts = doubted;
 }
 
@@ -120,7 +143,7 @@ void handover_imu(est_law_t *est, const situation_t *now)
     const evidence_t *evidence = now->evidence;
     estimator_t *estimator = &est->estimator;
 
-    if (estimator->initialised || !est->airborne || !est_law_has_imu(est)) {
+    if (estimator->initialised || !now->where->contact.airborne || !est_law_has_imu(est)) {
         return;
     }
     const float height_m = doubts(evidence, DOUBT_SIGHT) ? estimator->now.height_m
@@ -133,7 +156,7 @@ static float lifting_n(const situation_t *now)
 {
     const est_law_t *est = now->est;
     const cascade_vehicle_t vehicle = est_law_vehicle(est, now->parameters);
-    const float taken_mps2 = est->lift_mps2 + vehicle.damping_per_s * now->evidence->felt_mps;
+    const float taken_mps2 = est->lift.up_mps2 + vehicle.damping_per_s * now->evidence->felt_mps;
     const float hover_n = est->actuator.thrust_n - taken_mps2 / vehicle.authority_mps2_per_n;
 
     return est_law_ready(est) && est_law_has_acceleration(est)
@@ -159,7 +182,7 @@ static void notice_lift(est_law_t *est, where_t *where, const situation_t *now)
     if (est_law_ready(est) && felt_mps(now->evidence) > LIFTED_MPS) {
         hover_thrust_lift_off(&where->hover, lifting_n(now));
         contact_lift_off(&where->contact);
-        engage(est, now);
+        engage(est, where, now);
     }
 }
 
@@ -168,43 +191,44 @@ void handover_contact(est_law_t *est, where_t *where, const situation_t *now, bo
     const flight_state_t state = where->supervisor.state;
 
     if (state == FLIGHT_GROUND) {
-        est_law_reset(est, now->parameters);
+        est_law_reset(est, now->parameters, where->contact.airborne);
+        contact_end_flight(&where->contact);
     } else if (state == FLIGHT_FLOATING && !has_throttle) {
         est_law_disengage(est);
+        contact_end_flight(&where->contact);
     } else if (where->contact.gave_up && state != FLIGHT_TAKEOFF) {
         notice_lift(est, where, now);
-    } else if (now->mode == FLIGHT_MODE_LAW && !est->airborne && flies(now)) {
-        est_law_engage(est, now->thrust_n, lifting_n(now));
+    } else if (now->mode == FLIGHT_MODE_LAW && !where->contact.airborne && flies(now)) {
+        engage_at(est, where, now, lifting_n(now));
     }
 }
 
-void handover_pilot(est_law_t *est, const situation_t *now, pilot_news_t news, float trim_n)
+void handover_pilot(est_law_t *est, where_t *where, const situation_t *now, pilot_news_t news, float trim_n)
 {
     if (news == PILOT_SHOWS_EFFECT) { /* now its hover thrust is learned */
-        est_law_engage(est, now->thrust_n, now->where->hover.thrust_n + trim_n);
+        engage_at(est, where, now, where->hover.thrust_n + trim_n);
     } else if (news == PILOT_IS_SURE) {
-        engage(est, now);
+        engage(est, where, now);
     }
 }
 
 /* Law EST takes over. A hover thrust that it has learned in this flight is not learned anew from a vehicle
  * that may still swing. */
-static void take_over(est_law_t *est, const situation_t *now)
+static void take_over(est_law_t *est, where_t *where, const situation_t *now)
 {
-    const bool knows = now->mode_before == FLIGHT_MODE_LAW && est->airborne;
+    const bool knows = now->mode_before == FLIGHT_MODE_LAW && where->contact.airborne;
     const hover_t learned = est->hover;
 
     if (!knows) {
-        engage(est, now);
+        engage(est, where, now);
         return;
     }
-    est_law_engage(est, now->thrust_n, learned.thrust_n);
+    engage_at(est, where, now, learned.thrust_n);
     est->hover.variance_n2 = learned.variance_n2;
 }
 
-void handover_mode(est_law_t *est, const situation_t *now)
+void handover_mode(est_law_t *est, where_t *where, const situation_t *now)
 {
-    const where_t *where = now->where;
     const bool given_back = where->supervisor.state == FLIGHT_DESCENDING; /* by a pilot, without heights */
     const bool from_idle = now->mode_before == FLIGHT_MODE_IDLE;
 
@@ -216,7 +240,15 @@ void handover_mode(est_law_t *est, const situation_t *now)
     }
     if (!modes_use_estimate(now->mode_before) &&
         (given_back || (!from_idle && !contact_lifts(&where->contact)))) {
-        take_over(est, now);
+        take_over(est, where, now);
+    }
+}
+
+void handover_take_off(est_law_t *est, where_t *where, const situation_t *now)
+{
+    if (now->mode == FLIGHT_MODE_EST_HOLD && !where->contact.airborne &&
+        est_law_take_off(est, now->parameters)) {
+        contact_fly(&where->contact);
     }
 }
 

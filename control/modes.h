@@ -9,7 +9,7 @@
 
 #include "control/facts.h"
 #include "control/parameters.h"
-#include "control/supervisor.h"
+#include "control/where/supervisor.h"
 
 typedef enum {
     FLIGHT_MODE_IDLE, /* no thrust */

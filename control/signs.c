@@ -23,7 +23,7 @@ static bool is_off_ground(const situation_t *now, bool has_throttle)
     case FLIGHT_CUT:
         return false;
     case FLIGHT_TAKEOFF:
-        return now->est->airborne;
+        return now->where->contact.airborne;
     case FLIGHT_FLYING:
         return !now->where->contact.lifting && has_throttle;
     case FLIGHT_FLOATING:
@@ -94,7 +94,6 @@ contact_signs_t signs_of_contact(const situation_t *now)
 {
     return (contact_signs_t){
         .state = now->where->supervisor.state,
-        .airborne = now->est->airborne,
         .risen = now->risen,
         .sways = now->evidence->sways,
     };
@@ -149,6 +148,18 @@ pilot_signs_t signs_of_pilot(const situation_t *now, bool has_throttle)
     };
 }
 
+mode_choice_t signs_of_mode(const situation_t *now, bool has_throttle)
+{
+    const bool estimated = est_law_ready(now->est);
+
+    return (mode_choice_t){
+        .law = modes_law(now->parameters, estimated),
+        .estimated = estimated,
+        .airborne = now->where->contact.airborne,
+        .has_throttle = has_throttle,
+    };
+}
+
 hover_lesson_t signs_of_hover(const situation_t *now)
 {
     const supervisor_t *supervisor = &now->where->supervisor;
@@ -164,7 +175,7 @@ hover_lesson_t signs_of_hover(const situation_t *now)
         .sees = (supervisor->flags & FLIGHT_FLAG_HEIGHT) == 0U &&
                 !doubts(now->evidence, DOUBT_SIGHT | DOUBT_THRUST),
         .teaches = now->evidence->teaches,
-        .estimated = est_law_ready(now->est) && now->est->airborne,
+        .estimated = est_law_ready(now->est) && now->where->contact.airborne,
         .estimated_n = now->est->hover.thrust_n,
         .holds = state == FLIGHT_FLYING || floats,
         .thrust_n = now->thrust_n,

@@ -22,6 +22,9 @@ landing_signs_t signs_of_landing(const situation_t *now);
 
 pilot_signs_t signs_of_pilot(const situation_t *now, bool has_throttle);
 
+/* For modes_select(). */
+mode_choice_t signs_of_mode(const situation_t *now, bool has_throttle);
+
 /* wanted_n: the bounded thrust. */
 guard_case_t signs_of_guard(const situation_t *now, float wanted_n);
 

@@ -25,4 +25,7 @@ typedef struct {
     bool rocks; /* the tilt moves as in flight; an IMU that has fallen silent does not say so any longer */
 } situation_t;
 
+/* Writes `risen` and `rocks` from the rest. */
+void situation_derive(situation_t *now);
+
 #endif

@@ -18,14 +18,12 @@
 #include "control/est/deadband.h"
 #include "control/est/estimator.h"
 #include "control/est/hover.h"
+#include "control/est/learning.h"
+#include "control/est/let_down.h"
+#include "control/est/lift_off.h"
+#include "control/est/terrain_keep.h"
 #include "control/parameters.h"
 #include "control/ray_clock.h"
-
-typedef enum {
-    EST_MODE_HOLD, /* hold reference_m */
-    EST_MODE_LAND, /* descend; slow down near the ground, and fade the thrust out there */
-    EST_MODE_SINK  /* descend without a height */
-} est_mode_t;
 
 typedef struct {
     estimator_t estimator;
@@ -39,40 +37,37 @@ typedef struct {
     float step_s;               /* duration of the latest cycle */
     uint32_t rays_us;           /* when the rays of the latest height were taken */
     float authority_mps2_per_n; /* of the present model, see cascade.h; > 0 */
-    bool airborne;              /* the vehicle is off the ground */
-    bool ramping;               /* take-off: the thrust ramps up until the vehicle leaves the ground */
-    float ramp_n;               /* thrust of that ramp */
-    float lift_mps2;            /* low-passed upward acceleration */
-    float lift_n;               /* delivered thrust through the same low-pass */
-    float lift_mps;             /* upward speed since the ramp began, from the accelerometer */
-    float reference_m;
-    float reference_terrain_m; /* estimator.terrain_height_m at the time when reference_m was set */
-    float sure_hover_n;        /* hover thrust from before the present doubt */
-    float flown_hover_n;       /* sure_hover_n at the end of the flight before; 0: none with this GRAV */
-    float flown_gravity_n;     /* GRAV of that flight */
-    float entry_hover_n;       /* sure_hover_n at the start of the present descent */
-    float ceiling_n;           /* upper limit of the thrust in a descent */
-    float ground_m;            /* height where it stood last; not 0 when something blocks the beam */
+    lift_off_t lift;
+    let_down_t down;
+    terrain_keep_t terrain;
+    float sure_hover_n;    /* hover thrust from before the present doubt */
+    float flown_hover_n;   /* sure_hover_n at the end of the flight before; 0: none with this GRAV */
+    float flown_gravity_n; /* GRAV of that flight */
     bool accelerations_doubted;
     bool without_authority; /* doubt THRUST: commands have no effect */
     float heightless_s;     /* time since the rays of the latest height */
     float frameless_s;      /* time since the latest frame was measured */
-    float near_ground_s;    /* time near the ground while landing */
     bool rocks;             /* the tilt sways as in flight */
 } est_law_t;
 
 void est_law_init(est_law_t *law);
 
 /* Prediction step, once in every cycle. frames: IMU frames, oldest first; borrowed for the call. Frames
- * that were processed before change nothing. now_us: time of the cycle. */
-void est_law_predict(est_law_t *law, const parameters_t *parameters, const imu_sample_t *frames,
-                     uint16_t count, uint32_t now_us);
+ * that were processed before change nothing. airborne: the vehicle has left the ground (contact.h); the same
+ * below. now_us: time of the cycle. */
+void est_law_predict(est_law_t *law, const parameters_t *parameters, bool airborne,
+                     const imu_sample_t *frames, uint16_t count, uint32_t now_us);
 
-/* Correction step, once per valid new height. stamp_ms: 24-bit sensor time of its scan. arrival_us:
- * arrival of its last octet. age_us: time from its rays to that octet, when nothing delays it. at_rest:
- * the vehicle is known to stand on the ground. */
-void est_law_fuse_height(est_law_t *law, const altitude_t *altitude, uint32_t stamp_ms, uint32_t arrival_us,
-                         uint32_t age_us, bool at_rest);
+/* A valid new height. */
+typedef struct {
+    const altitude_t *altitude;
+    uint32_t stamp_ms;   /* 24-bit sensor time of its scan */
+    uint32_t arrival_us; /* of its last octet */
+    uint32_t age_us;     /* from its rays to that octet, when nothing delays it */
+} est_height_t;
+
+/* Correction step, once per valid new height. at_rest: the vehicle is known to stand on the ground. */
+void est_law_fuse_height(est_law_t *law, const est_height_t *height, bool airborne, bool at_rest);
 
 /* True when the latest IMU frame is at most ESTIMATOR_FRESH_US old. */
 bool est_law_has_imu(const est_law_t *law);
@@ -83,8 +78,11 @@ bool est_law_has_acceleration(const est_law_t *law);
  * accelerations only while heights are fresh. */
 bool est_law_ready(const est_law_t *law);
 
-/* Call in every cycle on the ground. The next est_law_step() then begins a take-off. */
-void est_law_reset(est_law_t *law, const parameters_t *parameters);
+/* Call in every cycle on the ground. airborne: until this cycle the vehicle flew. */
+void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne);
+/* Call before est_law_step() in EST_MODE_HOLD while the vehicle has not left the ground: the thrust ramps up.
+ * Returns true when it has left the ground. */
+bool est_law_take_off(est_law_t *law, const parameters_t *parameters);
 /* Call in the air, when EST takes over. hover_n: best known hover thrust. thrust_n: previous command. */
 void est_law_engage(est_law_t *law, float thrust_n, float hover_n);
 
@@ -110,7 +108,8 @@ cascade_vehicle_t est_law_vehicle(const est_law_t *law, const parameters_t *para
 void est_law_disengage(est_law_t *law);
 
 /* Thrust command in newtons per motor. reference_m (above the terrain) counts in EST_MODE_HOLD only. */
-float est_law_step(est_law_t *law, const parameters_t *parameters, est_mode_t mode, float reference_m);
+float est_law_step(est_law_t *law, const parameters_t *parameters, bool airborne, est_mode_t mode,
+                   float reference_m);
 
 /* Records the thrust that was really commanded. Call in every cycle, also when another law flies: without
  * it hover thrust and prediction drift. */

@@ -32,7 +32,7 @@ float law_pidt_step(laws_t *laws, est_law_t *est, const situation_t *now)
         laws->pidt_rays_us = est->rays_us;
         return pidt_step(&laws->pidt, &gains, now->aim_m, height->height_mm * 0.001F, gap_s);
     }
-    if (height->age_us > HEIGHT_LATE_US && est->airborne) { /* do not hold a push for long */
+    if (height->age_us > HEIGHT_LATE_US && now->where->contact.airborne) { /* do not hold a push for long */
         return between(hover_n - LATE_N, laws->setpoint_n, hover_n + LATE_N);
     }
     return laws->setpoint_n;

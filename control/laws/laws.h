@@ -44,6 +44,18 @@ void laws_stop(laws_t *laws, const situation_t *now);
  * thrust. law_changed: it has changed in this cycle, or its integral action has. */
 void laws_transfer(laws_t *laws, const situation_t *now, bool law_changed);
 
+/* The thrust of this cycle, with what is left of a transfer. */
+static inline float laws_thrust_n(const laws_t *laws)
+{
+    return laws->setpoint_n + laws->transfer_n;
+}
+
+/* What the latest descent by heights has needed on top of the hover thrust. */
+static inline float laws_found_n(const laws_t *laws)
+{
+    return laws->descent.trim_n;
+}
+
 /* Events that release the next cycle, FLIGHT_RELEASE_*. PD and PID: as the parameter RELEASE says. PIDT: each
  * height. EST, and every law while the estimator flies: each height and each IMU frame. */
 uint16_t laws_releases(const parameters_t *parameters, flight_mode_t mode);

@@ -21,6 +21,12 @@ void stuck_pin_step(stuck_pin_t *pin, const situation_t *now);
 /* The mode has changed. */
 void stuck_pin_reset(stuck_pin_t *pin);
 
+/* What is added to the output. */
+static inline float stuck_pin_added_n(const stuck_pin_t *pin)
+{
+    return pin->more_n;
+}
+
 /* The pin says that the pilot flies: its heights and frames are read in each cycle. */
 static inline bool stuck_pin_acts(const stuck_pin_t *pin)
 {

@@ -1,9 +1,11 @@
-/* Who is believed: today's rules, each with a name. A source is doubted when it contradicts the two others:
+/* Who is believed. A source is doubted when it contradicts the two others:
  *
  *   the heights contradict both others          DOUBT_SIGHT: treat the heights as lost
  *   the accelerometer contradicts both others   DOUBT_IMU: fly without accelerations
  *   the thrust contradicts both others          DOUBT_THRUST: a pilot flies, or something holds the vehicle;
  *                                               the thrust stays near the last known hover thrust
+ *
+ * Which of them contradicts is for rules.h to say.
  *
  * Metres, seconds, newtons per motor. Pure; the caller owns the state, all zero at first. Context: one
  * Task. */
@@ -14,33 +16,8 @@
 #include <stdint.h>
 
 #include "control/facts.h"
+#include "control/sense/rules.h"
 #include "control/sense/senses.h"
-
-/* The rule that raised a doubt. */
-typedef enum {
-    VERDICT_NONE,
-    /* DOUBT_SIGHT */
-    VERDICT_STEPS,    /* the height makes steps for most of the time */
-    VERDICT_STIFF,    /* the tilt sways, and the slant does not change */
-    VERDICT_WHITE,    /* the tilt sways, and the slant contains only white noise for long */
-    VERDICT_SUNK,     /* heights below the ground while the law wants to climb */
-    VERDICT_ALOFT,    /* the law takes it to stand, but it sways or has climbed as in the air */
-    VERDICT_UNSEEN,   /* both witnesses climb, and the heights have stopped */
-    VERDICT_STILL,    /* the witnesses predict a motion, and the slant is still */
-    VERDICT_UNPROVED, /* the first climb after the ground shows in the accelerometer only */
-    VERDICT_RUNAWAY,  /* both witnesses have a fast climb or fall, and the heights do not move */
-    VERDICT_NO_CLIMB, /* since a step towards the vehicle the thrust has pushed, and no climb has shown */
-    VERDICT_BOTH,     /* both witnesses contradict the heights in the same direction */
-    VERDICT_VAIN,     /* the law has pushed for long, and no height moved */
-    VERDICT_FELT,     /* the accelerometer alone contradicts them; nothing else tells */
-    /* DOUBT_IMU */
-    VERDICT_REST,  /* at rest it does not measure g */
-    VERDICT_ALONE, /* the accelerometer contradicts heights and thrust */
-    VERDICT_MOVED, /* heights that move are right against both */
-    /* DOUBT_THRUST */
-    VERDICT_NO_EFFECT, /* the thrust pushes in vain, and the accelerometer agrees with the heights */
-    VERDICT_COUNT
-} verdict_reason_t;
 
 #define VERDICT_DOUBTS 3U /* SIGHT, IMU, THRUST */
 
@@ -48,14 +25,11 @@ typedef struct {
     uint16_t doubts; /* DOUBT_* */
     verdict_reason_t
         reasons[VERDICT_DOUBTS]; /* of the doubts SIGHT, IMU, THRUST; VERDICT_NONE: not doubted */
-    float felt_least_m;          /* smallest sum of the accelerometer's innovations while unconfirmed, <= 0 */
-    float swaying_s;             /* how long the tilt has swayed and the slant not, while standing */
-    float swaying_from_m;        /* height at its start */
-    float vain_s;                /* how long the law has pushed while no height moved */
-    float lost_m;                /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
-    float agreed_s;              /* how long heights and witnesses have agreed during a doubt */
-    float held_n;                /* hover thrust when DOUBT_THRUST rose */
-    bool held_down;              /* the law wanted to descend at that instant */
+    rules_t rules;
+    float lost_m;   /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
+    float agreed_s; /* how long heights and witnesses have agreed during a doubt */
+    float held_n;   /* hover thrust when DOUBT_THRUST rose */
+    bool held_down; /* the law wanted to descend at that instant */
 } verdict_t;
 
 /* After the frames of a cycle: an accelerometer that does not measure g at rest is doubted. */
@@ -84,8 +58,5 @@ verdict_reason_t verdict_reason(const verdict_t *verdict);
 
 /* Name for the telemetry: "SIGHT", "IMU" or "THRUST", of several the first in this order; NULL: no doubt. */
 const char *verdict_doubt_name(uint16_t doubts);
-
-/* Name of a rule, lower case: "unseen"; VERDICT_NONE: "-". */
-const char *verdict_reason_name(uint16_t reason);
 
 #endif

@@ -22,7 +22,7 @@ static bool gives_up(flight_state_t state)
 static bool may_stand(const contact_t *contact, const contact_signs_t *signs)
 {
     return takes_off(signs->state) && contact->lifting
-               ? !signs->airborne
+               ? !contact->airborne
                : signs->state == FLIGHT_FLOATING && !signs->risen && !signs->sways;
 }
 
@@ -45,10 +45,20 @@ void contact_step(contact_t *contact, const contact_signs_t *signs)
     contact->kind = kind_of(contact, state);
 }
 
-void contact_watch_take_off(contact_t *contact, flight_state_t state, uint32_t state_us, bool airborne)
+void contact_watch_take_off(contact_t *contact, flight_state_t state, uint32_t state_us)
 {
-    contact->gave_up = state == FLIGHT_TAKEOFF ? !airborne && state_us < GAVE_UP_MAX_US
+    contact->gave_up = state == FLIGHT_TAKEOFF ? !contact->airborne && state_us < GAVE_UP_MAX_US
                                                : contact->gave_up && gives_up(state);
+}
+
+void contact_fly(contact_t *contact)
+{
+    contact->airborne = true;
+}
+
+void contact_end_flight(contact_t *contact)
+{
+    contact->airborne = false;
 }
 
 void contact_lift_off(contact_t *contact)

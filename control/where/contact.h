@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "control/flight_state.h"
+#include "control/where/flight_state.h"
 
 typedef enum {
     CONTACT_GROUND,  /* on the ground, without a take-off */
@@ -20,6 +20,7 @@ typedef enum {
 
 typedef struct {
     contact_kind_t kind;
+    bool airborne;     /* the firmware's thrust carries the vehicle */
     bool lifting;      /* since the ground the vehicle has not left it yet, as far as known */
     bool gave_up;      /* TAKEOFF ended, and the vehicle had not left the ground */
     float touching_s;  /* time near the ground since a height of LANDING showed it, see touchdown.h */
@@ -29,17 +30,20 @@ typedef struct {
 /* What one cycle shows, after the supervisor's step. */
 typedef struct {
     flight_state_t state;
-    bool airborne; /* the estimate's take-off has left the ground */
-    bool risen;    /* the height is above the one that was measured on the ground, whatever that was */
-    bool sways;    /* the tilt moves as in flight */
+    bool risen; /* the height is above the one that was measured on the ground, whatever that was */
+    bool sways; /* the tilt moves as in flight */
 } contact_signs_t;
 
 /* One cycle, after the supervisor's step and the height of the cycle. */
 void contact_step(contact_t *contact, const contact_signs_t *signs);
 
 /* Later in the cycle, when it is known who has the throttle: did the take-off end on the ground? state_us:
- * time in this state. airborne: as above. */
-void contact_watch_take_off(contact_t *contact, flight_state_t state, uint32_t state_us, bool airborne);
+ * time in this state. */
+void contact_watch_take_off(contact_t *contact, flight_state_t state, uint32_t state_us);
+
+/* The firmware's thrust carries the vehicle, from now on; and no longer: it stands, or a pilot flies it. */
+void contact_fly(contact_t *contact);
+void contact_end_flight(contact_t *contact);
 
 /* The vehicle has left the ground after all. */
 void contact_lift_off(contact_t *contact);

@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 #include "control/est/effect.h"
-#include "control/flight_state.h"
+#include "control/where/flight_state.h"
 
 typedef enum { THROTTLE_OURS, THROTTLE_PILOT, THROTTLE_UNKNOWN } throttle_t;
 

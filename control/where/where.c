@@ -16,6 +16,16 @@ float where_gap_s(const where_t *where, uint32_t now_us)
     return supervisor->started ? seconds_at_most(now_us - supervisor->now_us, STEP_MAX_S) : 0.0F;
 }
 
+void where_watch_take_off(where_t *where)
+{
+    contact_watch_take_off(&where->contact, where->supervisor.state, where->supervisor.state_us);
+}
+
+bool where_stops(const where_t *where)
+{
+    return contact_stops(&where->contact, where->supervisor.state);
+}
+
 bool where_descends(const where_t *where)
 {
     const flight_state_t state = where->supervisor.state;

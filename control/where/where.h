@@ -3,7 +3,7 @@
 #ifndef CONTROL_WHERE_WHERE_H
 #define CONTROL_WHERE_WHERE_H
 
-#include "control/supervisor.h"
+#include "control/where/supervisor.h"
 #include "control/where/contact.h"
 #include "control/where/hover_thrust.h"
 #include "control/where/piloting.h"
@@ -22,5 +22,11 @@ float where_step_s(const where_t *where);
 float where_gap_s(const where_t *where, uint32_t now_us);
 
 bool where_descends(const where_t *where);
+
+/* Did the take-off end on the ground? In each cycle, when it is known who has the throttle. */
+void where_watch_take_off(where_t *where);
+
+/* Heights or reference were lost before the vehicle left the ground: the thrust ramps down to 0. */
+bool where_stops(const where_t *where);
 
 #endif

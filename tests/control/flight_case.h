@@ -86,7 +86,7 @@ static inline void order_was(uint32_t sequence)
 
 static inline void estimate_contradicts(bool contradicts)
 {
-    where.supervisor.estimate_age_us = contradicts ? 60000000U : 0U;
+    where.supervisor.climb.estimate_age_us = contradicts ? 60000000U : 0U;
 }
 
 static inline void given_back_unseen(bool handed_over)
@@ -100,15 +100,28 @@ static inline void given_back_unseen(bool handed_over)
 static inline void lifting(bool is_lifting)
 {
     const contact_signs_t ground = {.state = FLIGHT_GROUND};
-    const contact_signs_t off = {.state = FLIGHT_FLYING, .airborne = !is_lifting};
+    const contact_signs_t off = {.state = FLIGHT_FLYING};
+    const bool was_airborne = where.contact.airborne;
 
     contact_step(&where.contact, &ground);
+    where.contact.airborne = !is_lifting;
     contact_step(&where.contact, &off);
+    where.contact.airborne = was_airborne;
+}
+
+static inline void airborne(bool is_airborne)
+{
+    where.contact.airborne = is_airborne;
 }
 
 static inline void took_off_in_vain(void)
 {
-    contact_watch_take_off(&where.contact, FLIGHT_TAKEOFF, 0U, false);
+    contact_t *contact = &where.contact;
+    const bool was_airborne = contact->airborne;
+
+    contact_end_flight(contact);
+    contact_watch_take_off(contact, FLIGHT_TAKEOFF, 0U);
+    contact->airborne = was_airborne;
 }
 
 static inline void unknown(bool is_unknown)
@@ -177,6 +190,7 @@ static inline void begin(void)
     ordered_m(0.6F);
     estimate_contradicts(false);
     height_is(500.0F, 0.0F, 100000U, false);
+    contact_fly(&where.contact);
     contact_step(&where.contact, &(contact_signs_t){.state = FLIGHT_FLYING});
     hovers_at_n(GRAV_N);
     evidence = (evidence_t){.teaches = true, .calm = true, .upright = 1.0F, .shaken = 1.0F};

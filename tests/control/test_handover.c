@@ -13,13 +13,13 @@ void tearDown(void) {}
 static void change_mode(flight_mode_t before, flight_mode_t mode)
 {
     mode_changes(before, mode);
-    handover_mode(&est, &now);
+    handover_mode(&est, &where, &now);
 }
 
 static void change_doubts(uint16_t doubted)
 {
     evidence.doubts = doubted;
-    handover_doubts(&handover, &est, &where.hover, &now);
+    handover_doubts(&handover, &est, &where, &now);
 }
 
 static void locate(void)
@@ -51,7 +51,7 @@ void test_law_est_is_engaged_where_it_takes_over_in_the_air(void)
         now.thrust_n = 6.6F;
         hovers_at_n(7.2F);
         change_mode(rows[i].before, rows[i].now);
-        TEST_ASSERT_EQUAL(rows[i].engaged, est.airborne);
+        TEST_ASSERT_EQUAL(rows[i].engaged, where.contact.airborne);
         if (rows[i].engaged) {
             NEAR(6.6F, goes_on_from_n());
             NEAR(7.2F, est.hover.thrust_n);
@@ -96,7 +96,7 @@ void test_it_flies_by_the_heights_or_by_a_felt_climb(void)
         airborne(false);
         now.risen = rows[i].height_mm > 80.0F;
         locate();
-        TEST_ASSERT_EQUAL(rows[i].flies, est.airborne);
+        TEST_ASSERT_EQUAL(rows[i].flies, where.contact.airborne);
     }
 }
 
@@ -125,7 +125,7 @@ void test_a_take_off_that_was_given_up_flies_when_a_climb_is_felt(void)
         TEST_ASSERT_EQUAL(rows[i].flies, !contact_stops(&where.contact, FLIGHT_LANDING));
         hover_thrust_step(&where.hover, &(hover_lesson_t){.gravity_n = 8.0F, .estimated_n = 7.0F});
         TEST_ASSERT_EQUAL(!rows[i].flies, where.hover.thrust_n == 8.0F); /* else it is of this flight */
-        TEST_ASSERT_EQUAL(rows[i].flies, est.airborne);
+        TEST_ASSERT_EQUAL(rows[i].flies, where.contact.airborne);
     }
 }
 
@@ -136,7 +136,7 @@ static float first_hover_n(void)
     airborne(false);
     est_hovers_at_n(7.0F);
     locate();
-    TEST_ASSERT_TRUE(est.airborne);
+    TEST_ASSERT_TRUE(where.contact.airborne);
     return est.hover.thrust_n;
 }
 
@@ -212,15 +212,15 @@ void test_a_vehicle_that_flies_unseen_is_engaged_and_one_on_the_ground_is_not(vo
         airborne(false);
         sway(sways != 0);
         change_doubts(DOUBT_SIGHT);
-        TEST_ASSERT_EQUAL(sways != 0, est.airborne);
+        TEST_ASSERT_EQUAL(sways != 0, where.contact.airborne);
     }
     setUp();
     airborne(false);
     sway(true); /* and no doubt */
     change_doubts(DOUBT_THRUST);
-    TEST_ASSERT_FALSE(est.airborne);
+    TEST_ASSERT_FALSE(where.contact.airborne);
     change_doubts(0U);
-    TEST_ASSERT_FALSE(est.airborne);
+    TEST_ASSERT_FALSE(where.contact.airborne);
 }
 
 void test_a_doubt_of_the_imu_gives_up_what_was_learned_a_short_time(void)
@@ -260,7 +260,7 @@ void test_a_doubt_of_the_imu_gives_up_what_was_learned_a_short_time(void)
     evidence.height_m = 0.45F;
     change_doubts(DOUBT_IMU);
     NEAR(0.5F, est.estimator.now.height_m);
-    TEST_ASSERT_FALSE(est.airborne);
+    TEST_ASSERT_FALSE(where.contact.airborne);
 }
 
 void test_a_doubt_of_the_thrust_or_an_unsure_pilot_leaves_the_law_without_authority(void)
@@ -286,18 +286,18 @@ void test_on_the_ground_the_law_is_reset_and_with_a_pilot_disengaged(void)
 {
     in_state(FLIGHT_GROUND);
     locate();
-    TEST_ASSERT_FALSE(est.airborne);
+    TEST_ASSERT_FALSE(where.contact.airborne);
     setUp();
     in_state(FLIGHT_FLOATING);
     locate();
-    TEST_ASSERT_TRUE(est.airborne);
+    TEST_ASSERT_TRUE(where.contact.airborne);
     in.has_throttle = false;
     locate();
-    TEST_ASSERT_FALSE(est.airborne);
+    TEST_ASSERT_FALSE(where.contact.airborne);
     in_state(FLIGHT_FLYING);
     airborne(true);
     locate();
-    TEST_ASSERT_TRUE(est.airborne);
+    TEST_ASSERT_TRUE(where.contact.airborne);
 }
 
 void test_other_laws_engage_the_estimate_when_they_fly(void)
@@ -312,7 +312,7 @@ void test_other_laws_engage_the_estimate_when_they_fly(void)
         now.thrust_n = 6.6F;
         locate();
         NEAR((i == 0) ? 6.6F : 1.0F, goes_on_from_n());
-        TEST_ASSERT_EQUAL(i == 0 || i == 2, est.airborne);
+        TEST_ASSERT_EQUAL(i == 0 || i == 2, where.contact.airborne);
     }
 }
 
@@ -376,7 +376,7 @@ void test_a_hover_thrust_learned_in_this_flight_survives_a_law_without_the_estim
         change_mode(rows[i].before, FLIGHT_MODE_EST_HOLD);
         NEAR(rows[i].knows ? 7.6F : 7.2F, est.hover.thrust_n);
         NEAR(rows[i].knows ? 0.02F : 0.25F, est.hover.variance_n2);
-        TEST_ASSERT_TRUE(est.airborne);
+        TEST_ASSERT_TRUE(where.contact.airborne);
     }
 }
 
@@ -407,8 +407,8 @@ void test_law_est_is_told_that_the_tilt_moves(void)
         change_doubts(0U);
         for (uint32_t i = 1U; i <= 20U; i++) {
             estimated(0.01F, 0.0F, 0.0F);
-            est_law_predict(&est, &parameters, NULL, 0U, FRAME_AGE_US + 100000U * i);
-            thrust_n[rocks] = est_law_step(&est, &parameters, EST_MODE_LAND, 0.0F);
+            est_law_predict(&est, &parameters, true, NULL, 0U, FRAME_AGE_US + 100000U * i);
+            thrust_n[rocks] = est_law_step(&est, &parameters, true, EST_MODE_LAND, 0.0F);
         }
     }
     TEST_ASSERT_TRUE(thrust_n[1] > thrust_n[0] + 0.5F);

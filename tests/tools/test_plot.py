@@ -187,7 +187,7 @@ class Drawing(Case):
         self.assert_picture(self.plot(replayed), self.dir / "replayed.png")
 
     def test_the_colours_of_states_and_the_names_of_flags_are_the_firmwares(self):
-        header = (ROOT / "control/flight_state.h").read_text(encoding="utf-8")
+        header = (ROOT / "control/where/flight_state.h").read_text(encoding="utf-8")
         states = {name for name in re.findall(r"\bFLIGHT_([A-Z]+),", header)}
         flags = {int(value) for value in re.findall(r"#define FLIGHT_FLAG_\w+[\s\\]+(\d+)U", header)}
         self.assertEqual(states, set(plot.STATE_COLOURS))

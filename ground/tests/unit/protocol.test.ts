@@ -363,7 +363,7 @@ describe('the series of the plots', () => {
 });
 
 describe('the words', () => {
-  const header = readFileSync('../control/flight_state.h', 'utf8');
+  const header = readFileSync('../control/where/flight_state.h', 'utf8');
   it('know every flag of the firmware', () => {
     const flags = [...header.matchAll(/#define FLIGHT_FLAG_\w+[ \\\n]+(\d+)U/g)].map((match) => Number(match[1]));
     expect(flags.length).toBeGreaterThan(7);

@@ -20,11 +20,6 @@ static inline void set(parameter_id_t id, float value)
     TEST_ASSERT_EQUAL(PARAMETER_ACCEPTED, parameters_set(&parameters, id, value));
 }
 
-static inline void airborne(bool is_airborne)
-{
-    est.airborne = is_airborne;
-}
-
 /* ---- the estimate */
 
 static inline void estimated(float height_m, float speed_mps, float bias_mps2)
@@ -135,19 +130,19 @@ static inline float goes_on_from_n(void)
 
 static inline void ground_was_at_m(float height_m)
 {
-    est.ground_m = height_m;
+    est.lift.ground_m = height_m;
 }
 
 static inline void lifts_at(float lift_mps2)
 {
-    est.lift_mps2 = lift_mps2;
+    est.lift.up_mps2 = lift_mps2;
 }
 
 /* Delivered thrust and speed that belong to that acceleration. */
 static inline void lifts_with(float lift_n, float lift_mps)
 {
-    est.lift_n = lift_n;
-    est.lift_mps = lift_mps;
+    est.lift.thrust_n = lift_n;
+    est.lift.up_mps = lift_mps;
 }
 
 /* In the air at 0.5 m and at rest, all sensors fresh; hover thrust, thrust and GRAV 7 N. */
@@ -162,9 +157,9 @@ static inline void est_begin(uint32_t now_us)
 
     parameters_init(&parameters);
     est_law_init(&est);
-    est_law_predict(&est, &parameters, NULL, 0U, now_us - FRAME_AGE_US);
-    est_law_reset(&est, &parameters);
-    est_law_predict(&est, &parameters, &frame, 1U, now_us);
+    est_law_predict(&est, &parameters, false, NULL, 0U, now_us - FRAME_AGE_US);
+    est_law_reset(&est, &parameters, false);
+    est_law_predict(&est, &parameters, false, &frame, 1U, now_us);
     frame_was_s_ago(0.0F);
     height_was_s_ago(0.0F);
     accelerations_come(true);

@@ -145,7 +145,7 @@ static void flown_by_a_pilot(double seconds)
     }
     TEST_ASSERT_EQUAL_STRING("FLOATING", flight_state_name(out.state));
     TEST_ASSERT_EQUAL_FLOAT(learned_n, flight.est.hover.thrust_n);
-    TEST_ASSERT_FALSE(flight.est.airborne);
+    TEST_ASSERT_FALSE(flight.where.contact.airborne);
     in.has_throttle = true;
 }
 
@@ -162,10 +162,10 @@ void test_the_lift_off_acceleration_follows_the_accelerometer_with_80_ms(void)
     est_law_init(&law);
     for (frame.sequence = 1U; frame.sequence <= 12U; frame.sequence++) {
         frame.arrival_us += 20000UL;
-        est_law_predict(&law, &parameters, &frame, 1U, frame.arrival_us);
+        est_law_predict(&law, &parameters, false, &frame, 1U, frame.arrival_us);
         if (frame.sequence > 1U) { /* the first one only starts the clock */
             missing *= 0.75F;
-            TEST_ASSERT_FLOAT_WITHIN(0.02F, 2.0F - missing, law.lift_mps2);
+            TEST_ASSERT_FLOAT_WITHIN(0.02F, 2.0F - missing, law.lift.up_mps2);
         }
     }
 }
@@ -336,10 +336,10 @@ void test_the_lift_off_tells_the_hover_thrust_and_rather_low(void)
             world.body.hover_n = hover_n;
             run(3.0);
             setr(0.6F);
-            for (int i = 0; i < 8000 && !flight.est.airborne; i++) {
+            for (int i = 0; i < 8000 && !flight.where.contact.airborne; i++) {
                 advance();
             }
-            TEST_ASSERT_TRUE(flight.est.airborne);
+            TEST_ASSERT_TRUE(flight.where.contact.airborne);
             off_n += ((double)flight.est.hover.thrust_n - hover_n) / 6.0;
         }
         printf("hover %.1f N: found at lift-off %+.2f N off\n", hover_n, off_n);

@@ -12,11 +12,49 @@
 static imu_sample_t frame;
 static uint32_t clock_us;
 static est_law_t before;
+static bool flies; /* as contact tells it */
+
+static void airborne(bool is_airborne)
+{
+    flies = is_airborne;
+}
+
+static void predict(const imu_sample_t *frames, uint16_t count)
+{
+    est_law_predict(&est, &parameters, flies, frames, count, clock_us);
+}
+
+/* A cycle of the law, with the lift-off as contact is told of it. */
+static float step(est_mode_t mode, float reference_m)
+{
+    flies = flies || (mode == EST_MODE_HOLD && est_law_take_off(&est, &parameters));
+    return est_law_step(&est, &parameters, flies, mode, reference_m);
+}
+
+static void reset(void)
+{
+    est_law_reset(&est, &parameters, flies);
+    airborne(false);
+}
+
+/* As the hand-over does both. */
+static void engage(float thrust_n, float hover_n)
+{
+    airborne(true);
+    est_law_engage(&est, thrust_n, hover_n);
+}
+
+static void disengage(void)
+{
+    airborne(false);
+    est_law_disengage(&est);
+}
 
 /* In the air at 0.5 m and at rest; hover thrust and GRAV 7 N. */
 void setUp(void)
 {
     est_begin(T_US);
+    airborne(true);
     hover_init(&est.hover, GRAV_N, 0.1F, 5.0F, 9.0F);
     noise_is_mps2(0.4F);
     clock_us = T_US;
@@ -33,14 +71,14 @@ static void cycle(float up_mps2)
     frame.sequence++;
     frame.arrival_us = clock_us;
     frame.down_mps2 = G_MPS2 + up_mps2;
-    est_law_predict(&est, &parameters, &frame, 1U, clock_us);
+    predict(&frame, 1U);
 }
 
 /* Time passes without a frame, and none is missed. */
 static void pass(float seconds)
 {
     clock_us += (uint32_t)lroundf(seconds * 1.0e6F);
-    est_law_predict(&est, &parameters, NULL, 0U, clock_us);
+    predict(NULL, 0U);
     frame_was_s_ago(0.0F);
 }
 
@@ -51,7 +89,7 @@ static void pass_seeing(float seconds)
     frame.sequence++;
     frame.arrival_us = clock_us;
     frame.down_mps2 = G_MPS2;
-    est_law_predict(&est, &parameters, &frame, 1U, clock_us);
+    predict(&frame, 1U);
 }
 
 static void deaf(void)
@@ -64,11 +102,12 @@ void test_it_begins_with_nothing_known(void)
 {
     memset(&est, 0x55, sizeof est);
     est_law_init(&est);
-    TEST_ASSERT_FALSE(est.airborne || est_law_has_imu(&est) || est_law_ready(&est));
+    airborne(false);
+    TEST_ASSERT_FALSE(est_law_has_imu(&est) || est_law_ready(&est));
     TEST_ASSERT_FALSE(est_law_has_acceleration(&est));
-    est_law_predict(&est, &parameters, NULL, 0U, T_US);
-    est_law_reset(&est, &parameters);
-    NEAR(0.68F * GRAV_N, est_law_step(&est, &parameters, EST_MODE_HOLD, 0.6F)); /* the ramp, no time yet */
+    est_law_predict(&est, &parameters, flies, NULL, 0U, T_US);
+    reset();
+    NEAR(0.68F * GRAV_N, step(EST_MODE_HOLD, 0.6F)); /* the ramp, no time yet */
 }
 
 /* ---- the vehicle's model */
@@ -275,12 +314,12 @@ void test_without_heights_the_model_has_more_weight(void)
 /* The take-off's ramp, which grows by 4 N/s, tells the duration of a cycle. */
 static float ramp_n(void)
 {
-    return est_law_step(&est, &parameters, EST_MODE_HOLD, 0.6F);
+    return step(EST_MODE_HOLD, 0.6F);
 }
 
 static void stand(void)
 {
-    est_law_reset(&est, &parameters);
+    reset();
     ground_was_at_m(0.5F);
     delivers_n(0.0F);
 }
@@ -315,11 +354,11 @@ void test_without_frames_for_250_ms_the_actuators_model_moves_with_the_clock(voi
     actuator_t expected = est.actuator;
     for (int i = 1; i <= 10; i++) { /* 250 ms */
         clock_us += 25000U;
-        est_law_predict(&est, &parameters, NULL, 0U, clock_us);
+        predict(NULL, 0U);
         NEAR(7.0F, est.actuator.thrust_n);
     }
     clock_us += 100000U;
-    est_law_predict(&est, &parameters, NULL, 0U, clock_us);
+    predict(NULL, 0U);
     actuator_advance(&expected, clock_us - ESTIMATOR_FRESH_US);
     TEST_ASSERT_TRUE(expected.thrust_n > 7.1F);
     NEAR(expected.thrust_n, est.actuator.thrust_n);
@@ -350,9 +389,9 @@ void test_imu_and_estimate_are_ready_while_they_are_fresh(void)
 void test_the_age_of_frames_and_heights_grows_with_the_clock(void)
 {
     clock_us += 250000U;
-    est_law_predict(&est, &parameters, NULL, 0U, clock_us);
+    predict(NULL, 0U);
     TEST_ASSERT_TRUE(est_law_has_imu(&est));
-    est_law_predict(&est, &parameters, NULL, 0U, clock_us + 1000U);
+    est_law_predict(&est, &parameters, flies, NULL, 0U, clock_us + 1000U);
     TEST_ASSERT_FALSE(est_law_has_imu(&est));
     setUp();
     deaf();
@@ -386,12 +425,12 @@ void test_the_lift_off_is_watched_through_80_ms(void)
     lifts_at(0.2F);
     estimated(0.5F, 0.0F, 0.1F);
     cycle(1.1F);
-    NEAR(0.2F + 0.3125F * 0.8F, est.lift_mps2); /* 25 of 80 ms */
+    NEAR(0.2F + 0.3125F * 0.8F, est.lift.up_mps2); /* 25 of 80 ms */
     setUp();
     deaf();
     lifts_at(1.0F);
     cycle(0.0F);
-    NEAR(0.6875F, est.lift_mps2); /* nothing felt is no acceleration */
+    NEAR(0.6875F, est.lift.up_mps2); /* nothing felt is no acceleration */
 }
 
 void test_the_thrust_of_the_lift_off_is_watched_likewise(void)
@@ -402,7 +441,7 @@ void test_the_thrust_of_the_lift_off_is_watched_likewise(void)
     cycle(0.0F);
     lifts_at(1.0F);
     (void)ramp_n();
-    TEST_ASSERT_TRUE(est.airborne);
+    TEST_ASSERT_TRUE(flies);
     NEAR(6.3125F - 1.0F / AUTHORITY, est.hover.thrust_n);
 }
 
@@ -417,7 +456,7 @@ static bool lifts(float lift_mps2, float noise_mps2, float height_m, float thrus
     delivers_n(thrust_n);
     lifts_at(lift_mps2);
     (void)ramp_n();
-    return est.airborne;
+    return flies;
 }
 
 void test_it_is_off_the_ground_by_acceleration_or_height_and_enough_thrust(void)
@@ -443,7 +482,7 @@ void test_without_accelerations_the_height_has_to_show_more(void)
         estimated((high != 0) ? 0.0555F : 0.0545F, 0.0F, 0.0F);
         delivers_n(7.0F);
         (void)ramp_n();
-        TEST_ASSERT_EQUAL(high != 0, est.airborne);
+        TEST_ASSERT_EQUAL(high != 0, flies);
     }
 }
 
@@ -467,12 +506,12 @@ void test_the_ramp_grows_by_4_newtons_a_second_to_a_third_above_gravity(void)
     pass(0.1F);
     TEST_ASSERT_FLOAT_WITHIN(1.0e-3F, 0.68F * 7.0F + 0.8F, ramp_n());
     NEAR(1.35F * 7.0F, most_n());
-    NEAR(1.35F * 7.0F - 0.2F, est_law_step(&est, &parameters, EST_MODE_LAND, 0.0F)); /* 2 N/s down */
+    NEAR(1.35F * 7.0F - 0.2F, step(EST_MODE_LAND, 0.0F)); /* 2 N/s down */
     for (int i = 0; i < 50; i++) {
         pass(0.1F);
-        (void)est_law_step(&est, &parameters, EST_MODE_SINK, 0.0F);
+        (void)step(EST_MODE_SINK, 0.0F);
     }
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, est_law_step(&est, &parameters, EST_MODE_SINK, 0.0F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, step(EST_MODE_SINK, 0.0F));
 }
 
 /* A battery that has emptied needs more thrust in the next flight. */
@@ -503,7 +542,7 @@ void test_the_thrust_at_the_lift_off_is_the_first_hover_thrust(void)
         lifts_at(1.0F);
         lifts_with(7.5F, (sinks != 0) ? -0.1F : 0.1F);
         (void)ramp_n();
-        TEST_ASSERT_TRUE(est.airborne);
+        TEST_ASSERT_TRUE(flies);
         const float drag_mps2 = (sinks != 0) ? 0.0F : 2.5F * 0.1F; /* none of a vehicle on the ground */
         NEAR(7.5F - (1.0F + drag_mps2) / AUTHORITY, est.hover.thrust_n);
         NEAR(0.49F, est.hover.variance_n2);
@@ -530,11 +569,11 @@ void test_the_speed_of_the_lift_off_is_summed_on_the_ramp_alone(void)
         }
         estimated(0.5F, 0.0F, 0.0F);
         delivers_n(8.0F);
-        const float speed_mps = est.lift_mps;
+        const float speed_mps = est.lift.up_mps;
         lifts_at(1.0F);
         lifts_with(8.0F, speed_mps);
         (void)ramp_n();
-        TEST_ASSERT_TRUE(est.airborne);
+        TEST_ASSERT_TRUE(flies);
         hover_n[ramps] = est.hover.thrust_n;
     }
     NEAR(8.0F - 1.0F / AUTHORITY, hover_n[0]);
@@ -582,7 +621,8 @@ static void see(float height_m, bool at_rest)
 {
     const altitude_t altitude = {.valid = true, .slant_mm = 1000.0F * height_m};
     before = est;
-    est_law_fuse_height(&est, &altitude, 1000U, clock_us, 70000U, at_rest);
+    const est_height_t height = {&altitude, 1000U, clock_us, 70000U};
+    est_law_fuse_height(&est, &height, flies, at_rest);
 }
 
 void test_a_height_is_as_old_as_its_rays(void)
@@ -643,7 +683,7 @@ void test_on_the_ramp_a_vehicle_that_does_not_accelerate_is_at_rest(void)
     setUp();
     stand();
     (void)ramp_n();
-    est_law_disengage(&est); /* a pilot takes the throttle: it may fly */
+    disengage(); /* a pilot takes the throttle: it may fly */
     estimated(0.5F, 0.1F, 0.0F);
     see(0.5F, false);
     TEST_ASSERT_TRUE(est.estimator.now.speed_mps > 0.05F);
@@ -653,18 +693,16 @@ void test_on_the_ramp_a_vehicle_that_does_not_accelerate_is_at_rest(void)
 
 void test_an_engaged_law_starts_from_command_and_hover_thrust(void)
 {
-    est_law_disengage(&est);
-    TEST_ASSERT_FALSE(est.airborne);
+    disengage();
     gust_is_n(0.4F);
-    est_law_engage(&est, 6.5F, 7.3F);
-    TEST_ASSERT_TRUE(est.airborne);
+    engage(6.5F, 7.3F);
     NEAR(7.3F, est.hover.thrust_n);
     NEAR(0.25F, est.hover.variance_n2);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, est.hover.gust_n);
     NEAR(6.5F, goes_on_from_n());
-    est_law_engage(&est, 6.5F, 9.3F);
+    engage(6.5F, 9.3F);
     NEAR(9.0F, est.hover.thrust_n);
-    est_law_engage(&est, 6.5F, 4.3F);
+    engage(6.5F, 4.3F);
     NEAR(5.0F, est.hover.thrust_n);
 }
 
@@ -674,31 +712,31 @@ void test_a_reset_forgets_the_flight(void)
     float thrust_n[2];
 
     est_law_doubt(&est, &(est_doubts_t){.without_authority = true});
-    est_law_reset(&est, &parameters);
+    reset();
     airborne(true);
     TEST_ASSERT_TRUE(model_share() > 0.01F);
     setUp();
     for (int k = 0; k < 10; k++) {
         pass_seeing(0.1F);
         estimated(0.02F, -0.5F, 0.0F);
-        (void)est_law_step(&est, &parameters, EST_MODE_LAND, 0.0F);
+        (void)step(EST_MODE_LAND, 0.0F);
     }
-    est_law_reset(&est, &parameters);
+    reset();
     airborne(true);
     pass_seeing(0.1F);
     estimated(0.02F, -0.5F, 0.0F);
-    TEST_ASSERT_FLOAT_WITHIN(0.02F, 7.3F, est_law_step(&est, &parameters, EST_MODE_LAND, 0.0F));
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, 7.3F, step(EST_MODE_LAND, 0.0F));
     for (int i = 0; i < 2; i++) {
         setUp();
         set(PARAMETER_TERRAIN, TERRAIN_IGNORE);
-        (void)est_law_step(&est, &parameters, EST_MODE_HOLD, 0.6F);
+        (void)step(EST_MODE_HOLD, 0.6F);
         terrain_rises(0.0F, (i == 0) ? 0.0F : 0.3F); /* it has landed on something else */
-        est_law_reset(&est, &parameters);
+        reset();
         ground_was_at_m(0.3F);
         pass_seeing(0.1F);
         estimated(0.5F, 0.0F, 0.0F);
-        thrust_n[i] = est_law_step(&est, &parameters, EST_MODE_HOLD, 0.6F);
-        TEST_ASSERT_TRUE(est.airborne);
+        thrust_n[i] = step(EST_MODE_HOLD, 0.6F);
+        TEST_ASSERT_TRUE(flies);
     }
     NEAR(thrust_n[0], thrust_n[1]);
 }
@@ -785,7 +823,7 @@ static void move_somehow(float height_m, float speed_mps)
 
 static void assert_commands(float expected, est_mode_t mode)
 {
-    NEAR(expected, est_law_step(&est, &parameters, mode, 0.6F));
+    NEAR(expected, step(mode, 0.6F));
 }
 
 void test_the_command_is_the_cascades_from_the_state_that_it_will_meet(void)
@@ -815,7 +853,7 @@ static float descend(est_mode_t mode, bool wants_more)
 {
     pass_seeing(0.5F);
     estimated(0.5F, wants_more ? -2.0F : 2.0F, 0.0F);
-    return est_law_step(&est, &parameters, mode, 0.0F);
+    return step(mode, 0.0F);
 }
 
 void test_the_ceiling_of_a_descent_starts_above_the_entrys_hover_thrust_and_falls(void)
@@ -833,8 +871,8 @@ void test_the_ceiling_of_a_descent_starts_above_the_entrys_hover_thrust_and_fall
     TEST_ASSERT_EQUAL_FLOAT(0.0F, descend(EST_MODE_LAND, true));
     est_law_set_sure_hover(&est, 7.2F, false); /* the descent is over */
     NEAR(8.7F, descend(EST_MODE_LAND, true));
-    est_law_reset(&est, &parameters); /* and so it is on the ground */
-    est_law_engage(&est, GRAV_N, GRAV_N);
+    reset(); /* and so it is on the ground */
+    engage(GRAV_N, GRAV_N);
     NEAR(8.7F, descend(EST_MODE_LAND, true));
 }
 
@@ -855,8 +893,8 @@ static float touch_n(est_mode_t mode)
 {
     pass_seeing(0.1F);
     estimated(0.02F, -0.5F, 0.0F);
-    est_law_engage(&est, GRAV_N, GRAV_N); /* the slew from there leaves room */
-    return est_law_step(&est, &parameters, mode, 0.0F);
+    engage(GRAV_N, GRAV_N); /* the slew from there leaves room */
+    return step(mode, 0.0F);
 }
 
 void test_the_end_of_a_landing_fades_the_thrust_out_by_two_newtons_a_second(void)
@@ -866,15 +904,14 @@ void test_the_end_of_a_landing_fades_the_thrust_out_by_two_newtons_a_second(void
     for (int i = 0; i < 12; i++) {
         pass_seeing(0.1F);
         estimated(0.02F, -0.5F, 0.0F);
-        limit_n[i] = est_law_step(&est, &parameters, EST_MODE_LAND, 0.0F);
+        limit_n[i] = step(EST_MODE_LAND, 0.0F);
     }
     TEST_ASSERT_FLOAT_WITHIN(0.02F, 7.0F + 0.5F - 2.0F * 0.6F, limit_n[5]);
     TEST_ASSERT_FLOAT_WITHIN(0.01F, -0.2F, limit_n[6] - limit_n[5]);
     est_law_doubt(&est, &(est_doubts_t){.rocks = true}); /* it is in the air yet: a tenth */
     pass_seeing(0.1F);
     estimated(0.02F, -0.5F, 0.0F);
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, limit_n[11] - 0.02F,
-                             est_law_step(&est, &parameters, EST_MODE_LAND, 0.0F));
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, limit_n[11] - 0.02F, step(EST_MODE_LAND, 0.0F));
 }
 
 void test_the_end_of_a_landing_is_forgotten_in_another_mode_and_when_the_law_takes_over(void)
@@ -886,10 +923,10 @@ void test_the_end_of_a_landing_is_forgotten_in_another_mode_and_when_the_law_tak
         for (int k = 0; k < 10; k++) {
             pass_seeing(0.1F);
             estimated(0.02F, -0.5F, 0.0F);
-            (void)est_law_step(&est, &parameters, EST_MODE_LAND, 0.0F);
+            (void)step(EST_MODE_LAND, 0.0F);
         }
         if (i < 2) {
-            (void)est_law_step(&est, &parameters, others[i], 0.6F);
+            (void)step(others[i], 0.6F);
         }
         NEAR(7.3F, touch_n(EST_MODE_LAND)); /* after 0.1 s of it */
     }
@@ -899,17 +936,17 @@ void test_the_end_of_a_landing_is_forgotten_in_another_mode_and_when_the_law_tak
 
 static float hold_n(float reference_m)
 {
-    est_law_engage(&est, GRAV_N, GRAV_N);
+    engage(GRAV_N, GRAV_N);
     pass_seeing(0.1F);
     estimated(0.5F, 0.0F, 0.0F);
-    return est_law_step(&est, &parameters, EST_MODE_HOLD, reference_m);
+    return step(EST_MODE_HOLD, reference_m);
 }
 
 /* The same while the law goes on. */
 static float go_on_n(float height_m, float reference_m)
 {
     estimated(height_m, 0.0F, 0.0F);
-    return est_law_step(&est, &parameters, EST_MODE_HOLD, reference_m);
+    return step(EST_MODE_HOLD, reference_m);
 }
 
 void test_ignored_terrain_moves_the_setpoint_by_its_height(void)
@@ -922,7 +959,7 @@ void test_ignored_terrain_moves_the_setpoint_by_its_height(void)
             setUp();
             set(PARAMETER_TERRAIN, (terrain != 0) ? (float)TERRAIN_IGNORE : (float)TERRAIN_FOLLOW);
             (void)hold_n(0.60F); /* counts from the terrain of now */
-            est_law_engage(&est, GRAV_N, GRAV_N);
+            engage(GRAV_N, GRAV_N);
             terrain_rises(0.0F, 0.0F);
             (void)go_on_n(0.5F, 0.60F);
             setUp();
@@ -1002,11 +1039,10 @@ void test_the_deadband_is_compensated(void)
     move_somehow(0.5F, 0.15F);
     set(PARAMETER_PLANT, PLANT_CLIMB);
     const est_law_t start = est;
-    const float without_n = est_law_step(&est, &parameters, EST_MODE_HOLD, 0.9F);
+    const float without_n = step(EST_MODE_HOLD, 0.9F);
     est = start;
     band_is_n(0.2F);
-    NEAR(deadband_compensate(&est.deadband, 7.0F, without_n),
-         est_law_step(&est, &parameters, EST_MODE_HOLD, 0.9F));
+    NEAR(deadband_compensate(&est.deadband, 7.0F, without_n), step(EST_MODE_HOLD, 0.9F));
 }
 
 /* ---- frames that are late */
@@ -1031,7 +1067,7 @@ void test_without_frames_the_thrust_is_within_half_a_newton_of_hover(void)
             est_hovers_at_n(7.1F);
             frame_was_s_ago((late != 0) ? 0.151F : 0.15F);
             estimated(0.5F, -1.0F * (float)side, 0.0F);
-            const float thrust_n = est_law_step(&est, &parameters, EST_MODE_HOLD, 0.5F);
+            const float thrust_n = step(EST_MODE_HOLD, 0.5F);
             if (late != 0) {
                 NEAR(7.1F + 0.5F * (float)side, thrust_n);
             } else {

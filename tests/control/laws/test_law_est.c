@@ -19,7 +19,7 @@ void test_law_est_is_asked_to_hold_to_land_or_to_sink(void)
         setUp();
         mode_is(modes[i]);
         est_law_t expected = est;
-        const float expected_n = est_law_step(&expected, &parameters, asked[i], 0.6F);
+        const float expected_n = est_law_step(&expected, &parameters, where.contact.airborne, asked[i], 0.6F);
         TEST_ASSERT_FALSE(laws_step(&laws, &est, &now));
         NEAR(expected_n, laws.setpoint_n);
     }

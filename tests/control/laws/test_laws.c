@@ -247,7 +247,7 @@ void test_each_mode_has_its_thrust(void)
     TEST_ASSERT_TRUE(step_n(FLIGHT_MODE_LAW, FLIGHT_MODE_LAW) > GRAV_N + 0.1F);
     est_law_t expected = est;
     now.law = LAW_EST;
-    NEAR(est_law_step(&expected, &parameters, EST_MODE_HOLD, 0.6F),
+    NEAR(est_law_step(&expected, &parameters, where.contact.airborne, EST_MODE_HOLD, 0.6F),
          step_n(FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_EST_HOLD));
 }
 

@@ -38,7 +38,7 @@ static inline void doubted(uint16_t doubts)
 
 static inline void has_swayed_s(float swaying_s)
 {
-    verdict.swaying_s = swaying_s;
+    verdict.rules.swaying_s = swaying_s;
 }
 
 static inline void has_agreed_s(float agreed_s)
@@ -48,17 +48,17 @@ static inline void has_agreed_s(float agreed_s)
 
 static inline void pushed_in_vain_s(float vain_s)
 {
-    verdict.vain_s = vain_s;
+    verdict.rules.vain_s = vain_s;
 }
 
 static inline void felt_least_is_m(float least_m)
 {
-    verdict.felt_least_m = least_m;
+    verdict.rules.felt_least_m = least_m;
 }
 
 static inline void swayed_from_m(float height_m)
 {
-    verdict.swaying_from_m = height_m;
+    verdict.rules.swaying_from_m = height_m;
 }
 
 static inline void has_moved_m(float way_m)

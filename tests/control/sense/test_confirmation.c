@@ -217,13 +217,13 @@ void test_the_least_felt_error_is_kept_while_unconfirmed(void)
     felt_least_is_m(-0.05F);
     senses.accelerometer.felt.off_m = -0.1F;
     height(0.5F);
-    NEAR(-0.1F, verdict.felt_least_m);
+    NEAR(-0.1F, verdict.rules.felt_least_m);
     senses.accelerometer.felt.off_m = 0.1F;
     height(0.5F);
-    NEAR(-0.1F, verdict.felt_least_m);
+    NEAR(-0.1F, verdict.rules.felt_least_m);
     is_unconfirmed(false);
     height(0.5F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict.felt_least_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict.rules.felt_least_m);
 }
 
 void test_a_glitch_of_a_quarter_of_a_second_is_none(void)

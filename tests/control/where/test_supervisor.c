@@ -1,4 +1,4 @@
-#include "supervised.h"
+#include "where/supervised.h"
 
 #include <stdio.h>
 

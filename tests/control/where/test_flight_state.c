@@ -1,4 +1,4 @@
-#include "control/flight_state.h"
+#include "control/where/flight_state.h"
 
 #include <stdbool.h>
 #include <stdio.h>

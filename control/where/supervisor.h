@@ -45,6 +45,35 @@ typedef struct {
     uint32_t for_us; /* at most one hour */
 } hold_t;
 
+/* The tilt. */
+typedef struct {
+    uint32_t time_us, age_us; /* of the latest frame */
+    uint16_t tilted_count;    /* frames in a row that were tilted over, as many as count */
+    bool level;
+} attitude_watch_t;
+
+/* The commands' link. */
+typedef struct {
+    uint32_t sequence;
+    uint32_t age_us; /* of the latest line */
+} link_watch_t;
+
+/* The ground below, by heights. */
+typedef struct {
+    hold_t aloft, rest;
+    float rest_from_mm;
+    float height_mm; /* measured where it stands, when the height did not show that; else 0 */
+    bool sought;     /* the vehicle stands, and no height was measured there yet */
+} ground_watch_t;
+
+/* Climbs over the reference. */
+typedef struct {
+    uint16_t too_high_count;
+    uint16_t lowerings;      /* see FLIGHT_IF_LOWERING_LIMIT */
+    float estimated_peak_mm; /* predicted top of the motion, above the reference; NAN: no estimate */
+    uint32_t estimate_age_us;
+} climb_watch_t;
+
 typedef struct {
     flight_state_t state;
     uint16_t flags;    /* FLIGHT_FLAG_* */
@@ -56,20 +85,10 @@ typedef struct {
     uint32_t now_us;
     uint32_t reference_sequence;
     bool land;
-    uint32_t attitude_time_us;
-    uint32_t attitude_age_us;
-    uint32_t link_sequence;
-    uint32_t link_age_us;
-    hold_t aloft;
-    hold_t rest;
-    float rest_from_mm;
-    float ground_mm;    /* measured height where it stands, when the height did not show that; else 0 */
-    bool ground_sought; /* the vehicle stands, and no height was measured there yet */
-    uint16_t too_high_count;
-    uint16_t lowerings;      /* see FLIGHT_IF_LOWERING_LIMIT */
-    float estimated_peak_mm; /* predicted top of the motion, above the reference; NAN: no estimate */
-    uint32_t estimate_age_us;
-    uint16_t tilted_count;
+    attitude_watch_t attitude;
+    link_watch_t link;
+    ground_watch_t ground;
+    climb_watch_t climb;
     bool stands;
     /* The latest state and conditions that made no transition; FLIGHT_STATE_COUNT: none. */
     flight_state_t kept_state;
@@ -79,7 +98,6 @@ typedef struct {
     bool sways;  /* the tilt moves as it does in flight */
     bool handed_over;
     bool carried;
-    bool level;
 } supervisor_t;
 
 /* Starts in GROUND, with nothing known. */

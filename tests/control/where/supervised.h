@@ -2,7 +2,7 @@
 #ifndef TESTS_CONTROL_SUPERVISED_H
 #define TESTS_CONTROL_SUPERVISED_H
 
-#include "control/supervisor.h"
+#include "control/where/supervisor.h"
 #include "unity.h"
 
 #include <math.h>

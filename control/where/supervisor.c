@@ -3,7 +3,7 @@
  * What breaks: times. The microseconds wrap after 71 minutes, so ages are summed from step to step and stop
  * at an hour. Only the conditions AT_REST, DESCENT_TIMEOUT and LOWERING_LIMIT depend on the state. The test
  * of the table takes all others as independent of the state, so it does not cover a further one. */
-#include "control/supervisor.h"
+#include "control/where/supervisor.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -45,10 +45,10 @@ void supervisor_init(supervisor_t *supervisor)
         .state = FLIGHT_GROUND,
         .kept_state = FLIGHT_STATE_COUNT,
         .height.age_us = AGE_MAX_US,
-        .attitude_age_us = AGE_MAX_US,
-        .link_age_us = AGE_MAX_US,
-        .estimated_peak_mm = NAN,
-        .estimate_age_us = AGE_MAX_US,
+        .attitude.age_us = AGE_MAX_US,
+        .link.age_us = AGE_MAX_US,
+        .climb.estimated_peak_mm = NAN,
+        .climb.estimate_age_us = AGE_MAX_US,
     };
 }
 
@@ -108,34 +108,37 @@ static void observe_height(supervisor_t *s, const flight_inputs_t *in)
 
 static void observe_attitude(supervisor_t *s, const flight_inputs_t *in, float upright)
 {
-    const bool is_new = in->attitude_time_us != s->attitude_time_us;
-    s->attitude_age_us = is_new ? elapsed(in->now_us, in->attitude_time_us)
-                                : add_time(s->attitude_age_us, s->step_us);
-    s->attitude_time_us = in->attitude_time_us;
+    const bool is_new = in->attitude_time_us != s->attitude.time_us;
+    s->attitude.age_us = is_new ? elapsed(in->now_us, in->attitude_time_us)
+                                : add_time(s->attitude.age_us, s->step_us);
+    s->attitude.time_us = in->attitude_time_us;
     const bool counts = is_new && in->attitude_ready;
 
     if (counts) {
-        s->level = upright > LEVEL_COS;
+        s->attitude.level = upright > LEVEL_COS;
     }
     if (in->frames != NULL) {
-        s->tilted_count = (in->tilted_frames < TILTED_ATTITUDES) ? in->tilted_frames : TILTED_ATTITUDES;
+        s->attitude.tilted_count = (in->tilted_frames < TILTED_ATTITUDES) ? in->tilted_frames
+                                                                          : TILTED_ATTITUDES;
     } else if (counts) {
         const bool tilted = upright < TILTED_COS;
-        s->tilted_count = tilted ? (uint16_t)(s->tilted_count + (s->tilted_count < TILTED_ATTITUDES)) : 0U;
+        s->attitude.tilted_count = tilted ? (uint16_t)(s->attitude.tilted_count +
+                                                       (s->attitude.tilted_count < TILTED_ATTITUDES))
+                                          : 0U;
     }
 }
 
 static void observe_link(supervisor_t *s, const flight_inputs_t *in)
 {
-    const bool is_new = in->link_sequence != s->link_sequence;
-    s->link_age_us = is_new ? elapsed(in->now_us, in->link_time_us) : add_time(s->link_age_us, s->step_us);
-    s->link_sequence = in->link_sequence;
+    const bool is_new = in->link_sequence != s->link.sequence;
+    s->link.age_us = is_new ? elapsed(in->now_us, in->link_time_us) : add_time(s->link.age_us, s->step_us);
+    s->link.sequence = in->link_sequence;
 }
 
 static bool link_silent(const supervisor_t *s, float link_s, uint32_t longer_us)
 {
     const uint32_t limit_us = (uint32_t)(link_s * 1.0e6F) + longer_us;
-    return link_s > 0.0F && s->link_sequence != 0U && s->link_age_us > limit_us;
+    return link_s > 0.0F && s->link.sequence != 0U && s->link.age_us > limit_us;
 }
 
 static void observe_reference(supervisor_t *s, float link_s, const flight_inputs_t *in)
@@ -147,11 +150,11 @@ static void observe_reference(supervisor_t *s, float link_s, const flight_inputs
     /* until it is done; a pilot's turn interrupts it, and it goes on at the hand-back */
     s->land = is_new ? in->reference_m == 0.0F : s->land && s->state != FLIGHT_GROUND;
     if (is_new) {
-        s->link_age_us = 0U;
+        s->link.age_us = 0U;
     }
     if (is_new && plausible) {
         s->reference_m = in->reference_m;
-        s->lowerings = 0U;
+        s->climb.lowerings = 0U;
     }
     if (link_silent(s, link_s, LINK_HOLD_US)) {
         s->reference_m = 0.0F;
@@ -165,22 +168,22 @@ static bool height_fresh(const supervisor_t *s)
 
 static bool attitude_fresh(const supervisor_t *s)
 {
-    return s->attitude_age_us <= ATTITUDE_FRESH_US;
+    return s->attitude.age_us <= ATTITUDE_FRESH_US;
 }
 
 static bool is_level(const supervisor_t *s)
 {
-    return s->level && attitude_fresh(s);
+    return s->attitude.level && attitude_fresh(s);
 }
 
 bool supervisor_is_at_rest(const supervisor_t *supervisor)
 {
-    return supervisor->state == FLIGHT_GROUND && supervisor->rest.on;
+    return supervisor->state == FLIGHT_GROUND && supervisor->ground.rest.on;
 }
 
 bool supervisor_has_estimate(const supervisor_t *supervisor)
 {
-    return supervisor->estimate_age_us <= ESTIMATE_HELD_US;
+    return supervisor->climb.estimate_age_us <= ESTIMATE_HELD_US;
 }
 
 /* Where a climb ends, above the reference, once it is braked after ahead_s; a descent does not count. */
@@ -203,9 +206,10 @@ static float measured_peak_mm(const supervisor_t *s)
 static void follow_ground(supervisor_t *s)
 {
     if (s->height.is_new) {
-        s->ground_mm = s->ground_sought ? s->height.height_mm : at_most(s->ground_mm, s->height.height_mm);
-        s->ground_mm = at_least(s->ground_mm, 0.0F);
-        s->ground_sought = false;
+        s->ground.height_mm = s->ground.sought ? s->height.height_mm
+                                               : at_most(s->ground.height_mm, s->height.height_mm);
+        s->ground.height_mm = at_least(s->ground.height_mm, 0.0F);
+        s->ground.sought = false;
     }
 }
 
@@ -213,23 +217,25 @@ static void observe_ground(supervisor_t *s)
 {
     const float height_mm = s->height.height_mm;
     const bool fresh = height_fresh(s);
-    const bool resting = fresh && height_mm < REST_BELOW_MM && height_mm >= s->rest_from_mm - REST_FALL_MM;
+    const bool resting = fresh && height_mm < REST_BELOW_MM &&
+                         height_mm >= s->ground.rest_from_mm - REST_FALL_MM;
 
     follow_ground(s);
     /* a height shows nothing while the tilt that corrects it is not known, or looks past the ground */
-    update_hold(&s->aloft, fresh && is_level(s) && height_mm > s->ground_mm + OFF_GROUND_MM, s->step_us);
-    update_hold(&s->rest, resting, s->step_us);
-    s->rest_from_mm = resting ? s->rest_from_mm : height_mm;
+    update_hold(&s->ground.aloft, fresh && is_level(s) && height_mm > s->ground.height_mm + OFF_GROUND_MM,
+                s->step_us);
+    update_hold(&s->ground.rest, resting, s->step_us);
+    s->ground.rest_from_mm = resting ? s->ground.rest_from_mm : height_mm;
 }
 
 static void observe_estimate(supervisor_t *s, const vertical_estimate_t *estimate)
 {
-    s->estimated_peak_mm = estimate->known
-                               ? peak_mm(s, estimate->height_mm, estimate->climb_mm_s, ESTIMATE_AHEAD_S)
-                               : NAN;
+    s->climb.estimated_peak_mm = estimate->known
+                                     ? peak_mm(s, estimate->height_mm, estimate->climb_mm_s, ESTIMATE_AHEAD_S)
+                                     : NAN;
     s->stands = estimate->stands && (s->state == FLIGHT_LANDING || s->state == FLIGHT_DESCENDING);
     s->rocks = estimate->rocks && (s->state == FLIGHT_LANDING || s->state == FLIGHT_DESCENDING);
-    s->estimate_age_us = estimate->known ? 0U : add_time(s->estimate_age_us, s->step_us);
+    s->climb.estimate_age_us = estimate->known ? 0U : add_time(s->climb.estimate_age_us, s->step_us);
 }
 
 /* No thrust without an order (arming.h). Heights alone do not show a flight: a hand below the beam, or a beam
@@ -247,19 +253,20 @@ static void observe_climb(supervisor_t *s)
 {
     if (s->height.is_new) {
         const bool above = measured_peak_mm(s) > TOO_HIGH_MM;
-        s->too_high_count = above ? (uint16_t)(s->too_high_count + (s->too_high_count < TOO_HIGH_HEIGHTS))
-                                  : 0U;
+        s->climb.too_high_count = above ? (uint16_t)(s->climb.too_high_count +
+                                                     (s->climb.too_high_count < TOO_HIGH_HEIGHTS))
+                                        : 0U;
     }
 }
 
 static bool too_high(const supervisor_t *s)
 {
-    return s->too_high_count == TOO_HIGH_HEIGHTS || s->estimated_peak_mm > TOO_HIGH_MM;
+    return s->climb.too_high_count == TOO_HIGH_HEIGHTS || s->climb.estimated_peak_mm > TOO_HIGH_MM;
 }
 
 static bool recovered(const supervisor_t *s)
 {
-    return measured_peak_mm(s) < RECOVERED_MM && !(s->estimated_peak_mm >= RECOVERED_MM);
+    return measured_peak_mm(s) < RECOVERED_MM && !(s->climb.estimated_peak_mm >= RECOVERED_MM);
 }
 
 static uint16_t bit(bool condition, uint16_t mask)
@@ -272,7 +279,7 @@ static bool rests(const supervisor_t *s)
 {
     const bool rocks = s->rocks && s->state_us < REST_ROCKS_MAX_US;
 
-    return s->rest.for_us >= REST_HELD_US && !rocks;
+    return s->ground.rest.for_us >= REST_HELD_US && !rocks;
 }
 
 static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
@@ -281,18 +288,18 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
     const bool reference = s->reference_m > 0.0F;
     const bool descent_timeout = s->state == FLIGHT_DESCENDING && s->state_us >= DESCENT_TIMEOUT_US &&
                                  !s->carried;
-    const bool lowering_limit = s->state == FLIGHT_LOWERING && s->lowerings == LOWERINGS_MAX;
+    const bool lowering_limit = s->state == FLIGHT_LOWERING && s->climb.lowerings == LOWERINGS_MAX;
 
     return (uint16_t)(bit(reference, FLIGHT_IF_REFERENCE) | bit(in->attitude_ready, FLIGHT_IF_READY) |
                       bit(fresh, FLIGHT_IF_HEIGHT) | bit(s->height.age_us > HEIGHT_LOST_US, FLIGHT_IF_LOST) |
                       bit(fresh && s->height.height_mm > OFF_GROUND_MM, FLIGHT_IF_OFF_GROUND) |
-                      bit(s->aloft.for_us >= ALOFT_HELD_US && s->sways, FLIGHT_IF_ALOFT) |
+                      bit(s->ground.aloft.for_us >= ALOFT_HELD_US && s->sways, FLIGHT_IF_ALOFT) |
                       bit(s->stands || rests(s), FLIGHT_IF_AT_REST) |
                       bit(fresh && reference && too_high(s), FLIGHT_IF_TOO_HIGH) |
                       bit(fresh && recovered(s), FLIGHT_IF_RECOVERED) | bit(s->land, FLIGHT_IF_LAND) |
                       bit(descent_timeout, FLIGHT_IF_DESCENT_TIMEOUT) |
                       bit(lowering_limit, FLIGHT_IF_LOWERING_LIMIT) |
-                      bit(s->tilted_count == TILTED_ATTITUDES, FLIGHT_IF_TILTED) |
+                      bit(s->attitude.tilted_count == TILTED_ATTITUDES, FLIGHT_IF_TILTED) |
                       bit(is_level(s), FLIGHT_IF_LEVEL) | bit(s->handed_over, FLIGHT_IF_HANDED_OVER) |
                       bit(in->has_throttle, FLIGHT_IF_HAS_THROTTLE));
 }
@@ -314,26 +321,26 @@ static uint16_t flags(const supervisor_t *s, uint16_t met, float link_s, const f
 static void count_lowerings(supervisor_t *s, flight_state_t next)
 {
     if (s->state == FLIGHT_FLYING && s->state_us >= LOWERINGS_FORGOTTEN_US) {
-        s->lowerings = 0U;
+        s->climb.lowerings = 0U;
     }
     if (next == FLIGHT_LOWERING) {
-        ++s->lowerings;
+        ++s->climb.lowerings;
     }
 }
 
 static void enter(supervisor_t *s, flight_state_t state)
 {
-    const bool given_up = s->lowerings == LOWERINGS_MAX && state != FLIGHT_LOWERING;
+    const bool given_up = s->climb.lowerings == LOWERINGS_MAX && state != FLIGHT_LOWERING;
 
     count_lowerings(s, state);
     s->state = state;
     s->state_us = 0U;
-    s->rest.on = false;
-    s->ground_sought = state == FLIGHT_GROUND && s->stands;
-    s->ground_mm = (s->ground_sought && height_fresh(s)) ? s->height.height_mm : 0.0F;
+    s->ground.rest.on = false;
+    s->ground.sought = state == FLIGHT_GROUND && s->stands;
+    s->ground.height_mm = (s->ground.sought && height_fresh(s)) ? s->height.height_mm : 0.0F;
     if (state == FLIGHT_GROUND || state == FLIGHT_DESCENDING || state == FLIGHT_CUT || given_up) {
         s->reference_m = 0.0F;
-        s->lowerings = 0U;
+        s->climb.lowerings = 0U;
     }
 }
 

@@ -1,6 +1,6 @@
 /* Each limit of the supervisor from both sides, by its inputs. What the states make of them:
  * test_supervisor.c, test_flight_state.c. */
-#include "supervised.h"
+#include "where/supervised.h"
 
 void setUp(void)
 {

@@ -1,6 +1,6 @@
 /* The order of the rows counts: those of a state stand together, and the first that applies is taken, so the
  * pilot's switch and a tilt come first. */
-#include "control/flight_state.h"
+#include "control/where/flight_state.h"
 
 #define CAN_FLY (FLIGHT_IF_REFERENCE | FLIGHT_IF_READY | FLIGHT_IF_HEIGHT)
 

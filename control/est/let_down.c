@@ -1,0 +1,74 @@
+/* The ceiling starts from the hover thrust that was sure when the descent began, and it only falls. Neither
+ * learning during the descent nor a change of the kind of descent raises it again. What breaks: a ceiling
+ * that follows what a descent teaches can rise with a wrong height, and the vehicle climbs away. */
+#include "control/est/let_down.h"
+
+#include "control/between.h"
+#include "control/thrust.h"
+#include "control/touchdown.h"
+
+#define LAND_MPS 0.15F          /* chosen: touches at 0.15 m/s, a drop from 1 mm */
+#define LAND_PER_S 0.25F        /* chosen: with LAND_MPS 0.4 m/s from 1 m */
+#define LAND_MAX_MPS 0.40F      /* chosen: from 1 m down within 5 s */
+#define SINK_MPS 0.28F          /* chosen: without heights the touchdown comes without warning */
+#define SINK_PER_S 0.07F        /* chosen: 0.35 m/s at 1 m */
+#define SINK_MAX_MPS 0.6F       /* chosen: from 3 m down within 10 s */
+#define SINK_ABOVE_HOVER_N 0.5F /* chosen: room for gusts at first */
+#define SINK_BELOW_HOVER_N 1.3F /* chosen: by the vehicle model a sink rate of at most 0.7 m/s */
+#define SINK_FADE_N_PER_S 0.2F  /* chosen: at the hover thrust after 2.5 s */
+#define LAND_ABOVE_HOVER_N 1.5F /* chosen: as HOVER_MARGIN_N in hover_thrust.c */
+#define LAND_FADE_N_PER_S 0.1F  /* chosen: at the hover thrust after 15 s */
+
+void let_down_reset(let_down_t *down)
+{
+    down->ceiling_n = THRUST_MAX_N;
+    down->near_ground_s = 0.0F;
+}
+
+void let_down_arm(let_down_t *down, float hover_n)
+{
+    down->ceiling_n = THRUST_MAX_N;
+    down->entry_hover_n = hover_n;
+}
+
+float let_down_mps(est_mode_t mode, float height_m)
+{
+    const float over_m = at_least(height_m, 0.0F);
+
+    return (mode == EST_MODE_SINK) ? -at_most(SINK_MPS + SINK_PER_S * over_m, SINK_MAX_MPS)
+                                   : -at_most(LAND_MPS + LAND_PER_S * over_m, LAND_MAX_MPS);
+}
+
+void let_down_step(let_down_t *down, est_mode_t mode, float height_m, bool rocks, float step_s)
+{
+    const bool sinks = mode == EST_MODE_SINK;
+    const float above_n = sinks ? SINK_ABOVE_HOVER_N : LAND_ABOVE_HOVER_N;
+    const float fade_n_per_s = sinks ? SINK_FADE_N_PER_S : LAND_FADE_N_PER_S;
+
+    down->near_ground_s = (mode == EST_MODE_LAND)
+                              ? touchdown_time_s(down->near_ground_s, height_m, rocks, step_s)
+                              : 0.0F;
+    if (mode != EST_MODE_HOLD) {
+        down->ceiling_n = at_most(down->ceiling_n - fade_n_per_s * step_s, down->entry_hover_n + above_n);
+        down->ceiling_n = at_least(down->ceiling_n, 0.0F);
+    }
+}
+
+/* Without heights the estimated speed may be wrong. It must not cut the thrust so far that the vehicle falls.
+ */
+static float least_n(const let_down_t *down, est_mode_t mode)
+{
+    return (mode == EST_MODE_SINK) ? at_least(down->entry_hover_n - SINK_BELOW_HOVER_N, 0.0F) : 0.0F;
+}
+
+static float most_n(const let_down_t *down, est_mode_t mode, float hover_n)
+{
+    const float low_n = touchdown_limit_n(down->near_ground_s, hover_n);
+
+    return (mode == EST_MODE_LAND) ? at_most(down->ceiling_n, low_n) : down->ceiling_n;
+}
+
+float let_down_limit_n(const let_down_t *down, est_mode_t mode, float thrust_n, float hover_n)
+{
+    return at_most(at_least(thrust_n, least_n(down, mode)), most_n(down, mode, hover_n));
+}

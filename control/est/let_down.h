@@ -1,0 +1,37 @@
+/* How law EST comes down: its speed, and the limits of its thrust.
+ *
+ * Metres, seconds, newtons per motor; speeds are positive upwards. Pure; the caller owns the state. Context:
+ * one Task. */
+#ifndef CONTROL_LET_DOWN_H
+#define CONTROL_LET_DOWN_H
+
+#include <stdbool.h>
+
+typedef enum {
+    EST_MODE_HOLD, /* hold reference_m */
+    EST_MODE_LAND, /* descend; slow down near the ground, and fade the thrust out there */
+    EST_MODE_SINK  /* descend without a height */
+} est_mode_t;
+
+typedef struct {
+    float entry_hover_n; /* sure hover thrust at the start of the present descent */
+    float ceiling_n;     /* upper limit of the thrust in a descent */
+    float near_ground_s; /* time near the ground while landing, see touchdown.h */
+} let_down_t;
+
+/* No descent: it stands on the ground. */
+void let_down_reset(let_down_t *down);
+
+/* No descent: it flies. hover_n: the sure hover thrust. */
+void let_down_arm(let_down_t *down, float hover_n);
+
+/* Vertical speed of a landing or of a descent without heights. */
+float let_down_mps(est_mode_t mode, float height_m);
+
+/* One cycle of step_s. rocks: the tilt moves as in flight. */
+void let_down_step(let_down_t *down, est_mode_t mode, float height_m, bool rocks, float step_s);
+
+/* The thrust within the limits of the mode. hover_n: the hover thrust of now. */
+float let_down_limit_n(const let_down_t *down, est_mode_t mode, float thrust_n, float hover_n);
+
+#endif

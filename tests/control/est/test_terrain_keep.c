@@ -1,0 +1,44 @@
+/* TERRAIN IGNORE, in numbers. */
+#include "control/est/terrain_keep.h"
+#include "unity.h"
+
+#define NEAR(expected, actual) TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, expected, actual)
+
+static terrain_keep_t keep;
+
+void setUp(void)
+{
+    keep = (terrain_keep_t){.reference_m = 0.0F};
+    terrain_keep_start(&keep, 0.0F);
+}
+
+void tearDown(void) {}
+
+static float setpoint_m(float reference_m, float terrain_m, bool follows)
+{
+    return terrain_keep_setpoint_m(&keep, reference_m, terrain_m, follows, 0.1F);
+}
+
+void test_ignored_terrain_moves_the_setpoint_by_its_height(void)
+{
+    NEAR(0.55F, setpoint_m(0.55F, 0.0F, false));
+    NEAR(0.60F, setpoint_m(0.60F, 0.05F, false)); /* a new reference counts from the terrain of now */
+    NEAR(0.55F, setpoint_m(0.60F, 0.10F, false)); /* 5 cm above it, and so 55 cm over the terrain of now */
+    NEAR(0.55F + 0.05F * 0.1F / 30.0F, setpoint_m(0.60F, 0.10F, false)); /* forgotten within 30 s */
+    NEAR(0.60F, setpoint_m(0.60F, 0.10F, true));
+    NEAR(0.60F, setpoint_m(0.60F, 0.10F, false));
+}
+
+void test_a_start_forgets_what_the_terrain_has_done(void)
+{
+    (void)setpoint_m(0.60F, 0.0F, false);
+    terrain_keep_start(&keep, 0.3F);
+    NEAR(0.60F, setpoint_m(0.60F, 0.3F, false));
+}
+
+void test_fifteen_centimetres_over_the_terrain_are_kept(void)
+{
+    (void)setpoint_m(0.60F, 0.0F, false);
+    NEAR(0.16F, setpoint_m(0.60F, 0.44F, false));
+    NEAR(0.15F, setpoint_m(0.60F, 0.9F, false));
+}
