@@ -111,7 +111,7 @@ class Settings(unittest.TestCase):
             self.assertNotRegex(text(path), r"-ffast-math|-Ofast|-funsafe-math|-fassociative-math", path)
         page = " ".join(text("docs/realtime.md").split())
         self.assertIn("the build says `--fp_mode=strict`", page)
-        self.assertIn("uses the trigonometric unit (TMU) with `--fp_mode=relaxed` only", page)
+        self.assertIn("uses the chip's trigonometric unit (TMU) with `--fp_mode=relaxed` only", page)
 
     def test_headers_are_found_in_the_rooms_and_in_driverlib(self):
         for name in self.project.configurations:
