@@ -4,8 +4,9 @@
 
 #include "control/thrust.h"
 
-static const char *const law_names[] = {"PD", "PID", "PIDT", "EST"};
-typedef char every_law_has_a_name[(sizeof law_names / sizeof law_names[0] == LAW_COUNT) ? 1 : -1];
+#define LAW_NAME(name, step, cycles) #name,
+static const char *const law_names[] = {LAWS(LAW_NAME)};
+#undef LAW_NAME
 static const char *const release_names[] = {[RELEASE_FREE] = "FREE", [RELEASE_SCAN] = "SCAN"};
 typedef char
     every_release_has_a_name[(sizeof release_names / sizeof release_names[0] == RELEASE_COUNT) ? 1 : -1];

@@ -10,6 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "control/laws/table.h"
+
 typedef enum {
     PARAMETER_KP,      /* N/mm */
     PARAMETER_KD,      /* N/mm per sample */
@@ -53,7 +55,9 @@ typedef enum {
     PARAMETER_COUNT
 } parameter_id_t;
 
-typedef enum { LAW_PD, LAW_PID, LAW_PIDT, LAW_EST, LAW_COUNT } control_law_t;
+#define LAW_CHOICE(name, step, cycles) LAW_##name,
+typedef enum { LAWS(LAW_CHOICE) LAW_COUNT } control_law_t;
+#undef LAW_CHOICE
 typedef enum { RELEASE_FREE, RELEASE_SCAN, RELEASE_COUNT } control_release_t;
 typedef enum { TERRAIN_FOLLOW, TERRAIN_IGNORE, TERRAIN_COUNT } control_terrain_t;
 typedef enum {

@@ -33,12 +33,12 @@ static const law_step_t steps_of_mode[FLIGHT_MODE_COUNT] = {
     [FLIGHT_MODE_EST_SINK] = law_est_sink,
 };
 /* By the law in force, where the chosen law flies. */
-static const law_step_t steps_of_law[LAW_COUNT] = {
-    [LAW_PD] = law_pid_step,
-    [LAW_PID] = law_pid_step,
-    [LAW_PIDT] = law_pidt_step,
-    [LAW_EST] = law_est_hold,
-};
+#define LAW_ROW(name, step, cycles) {step, cycles},
+static const struct {
+    law_step_t step;
+    law_cycles_t cycles;
+} law_rows[LAW_COUNT] = {LAWS(LAW_ROW)};
+#undef LAW_ROW
 
 static void reset(laws_t *laws)
 {
@@ -86,7 +86,7 @@ static void take_gravity(laws_t *laws, const situation_t *now)
 
 bool laws_step(laws_t *laws, est_law_t *est, const situation_t *now)
 {
-    const law_step_t step = (now->mode == FLIGHT_MODE_LAW) ? steps_of_law[now->law]
+    const law_step_t step = (now->mode == FLIGHT_MODE_LAW) ? law_rows[now->law].step
                                                            : steps_of_mode[now->mode];
     const bool had_integral = laws->integral;
 
@@ -135,12 +135,12 @@ void laws_transfer(laws_t *laws, const situation_t *now, bool law_changed)
 
 uint16_t laws_releases(const parameters_t *parameters, flight_mode_t mode)
 {
-    const uint16_t law = parameters_choice(parameters, PARAMETER_LAW);
+    const law_cycles_t cycles = law_rows[parameters_choice(parameters, PARAMETER_LAW)].cycles;
 
-    if (modes_use_estimate(mode) || law == LAW_EST) {
+    if (modes_use_estimate(mode) || cycles == CYCLES_BY_FRAME) {
         return FLIGHT_RELEASE_HEIGHT | FLIGHT_RELEASE_FRAME;
     }
-    if (law == LAW_PIDT || parameters_choice(parameters, PARAMETER_RELEASE) == RELEASE_SCAN) {
+    if (cycles == CYCLES_BY_HEIGHT || parameters_choice(parameters, PARAMETER_RELEASE) == RELEASE_SCAN) {
         return FLIGHT_RELEASE_HEIGHT;
     }
     return FLIGHT_RELEASE_PERIOD;

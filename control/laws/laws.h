@@ -1,4 +1,4 @@
-/* The laws behind one interface: each has a file, and one row in a table of laws.c.
+/* The laws behind one interface: each has a file, and one row in table.h.
  *
  * A law gives a thrust in each cycle. Between two heights it may hold the one before. Newtons per motor.
  * Pure; the caller owns the state, all zero at first. */
@@ -12,6 +12,7 @@
 #include "control/laws/descent.h"
 #include "control/laws/pid.h"
 #include "control/laws/pidt.h"
+#include "control/laws/table.h"
 #include "control/situation.h"
 
 typedef struct {
@@ -56,14 +57,16 @@ static inline float laws_found_n(const laws_t *laws)
     return laws->descent.trim_n;
 }
 
-/* Events that release the next cycle, FLIGHT_RELEASE_*. PD and PID: as the parameter RELEASE says. PIDT: each
- * height. EST, and every law while the estimator flies: each height and each IMU frame. */
+/* Events that release the next cycle, FLIGHT_RELEASE_*: the law's row says. While the estimator flies, with
+ * every law each height and each IMU frame. */
 uint16_t laws_releases(const parameters_t *parameters, flight_mode_t mode);
 
-/* The rows, for laws.c. */
-float law_pid_step(laws_t *laws, est_law_t *est, const situation_t *now);
-float law_pidt_step(laws_t *laws, est_law_t *est, const situation_t *now);
-float law_est_hold(laws_t *laws, est_law_t *est, const situation_t *now);
+/* The steps of the laws, of the form law_step_t: by their rows. */
+#define LAW_STEP(name, step, cycles) float step(laws_t *laws, est_law_t *est, const situation_t *now);
+LAWS(LAW_STEP)
+#undef LAW_STEP
+
+/* Those of the modes, for laws.c. */
 float law_est_land(laws_t *laws, est_law_t *est, const situation_t *now);
 float law_est_sink(laws_t *laws, est_law_t *est, const situation_t *now);
 float law_hover_step(laws_t *laws, est_law_t *est, const situation_t *now);

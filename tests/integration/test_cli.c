@@ -65,6 +65,18 @@ void test_list_and_params_name_everything(void)
     }
 }
 
+void test_params_tells_the_choices_of_the_parameter_that_is_named(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, run("params law"));
+    TEST_ASSERT_NOT_NULL(strstr(output, "\none of: PD|PID|PIDT|EST\n"));
+    TEST_ASSERT_NULL(strstr(output, "GRAV"));
+    TEST_ASSERT_EQUAL_INT(0, run("params GRAV"));
+    TEST_ASSERT_NULL(strstr(output, "one of"));
+    TEST_ASSERT_EQUAL_INT(2, run("params LAWS"));
+    TEST_ASSERT_EQUAL_INT(2, run("params LAW GRAV"));
+    TEST_ASSERT_EQUAL_INT(2, run("params --law"));
+}
+
 void test_the_plant_figures_are_listed_with_their_values_as_in_the_help_of_fly(void)
 {
     static char listed[40000];

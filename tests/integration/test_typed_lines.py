@@ -18,7 +18,7 @@ READY = ["on", "wait 25", "type #LINK 60", "wait 0.5", "type #SAVE", "wait 0.5"]
 TILTED = ["type #IMU LEVEL", "wait 1", "hold 0.1 20 0", "wait 2"]
 NOSE_UP = ["type #IMU LEVEL", "wait 1", "hold 0.1 0 20", "wait 2"]
 BEFORE = {"#IMU RIGHT": TILTED, "#IMU NOSE": NOSE_UP}
-SPOKEN_OF = {"#NAME value", "#SETR"}    # the form of a line; with some height
+SPOKEN_OF = {"#NAME value", "#SETR", "#LAW MINE"}    # the form of a line; with some height; of another program: tests/examples/test_my_law.py
 LINE = re.compile(r"#[A-Z][A-Z0-9]*(?: [^`]*)?\Z")
 
 

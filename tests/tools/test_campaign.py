@@ -33,6 +33,7 @@ import verdict  # noqa: E402
 
 # Notes each flight, then does what the directory says: `broken` and `hanging` hold the seed of the flight that is.
 STAND_IN = """#!/bin/sh
+[ "$1" != params ] || {{ echo "one of: PD|PID|PIDT|EST|GLIDE"; exit; }}
 for path; do :; done
 seed=$(expr "$*" : '.*--seed \\([0-9]*\\)')
 echo "$*" >> {dir}/log
@@ -293,6 +294,15 @@ class Keeping(Case):
         with contextlib.redirect_stderr(io.StringIO()) as err, self.assertRaises(SystemExit):
             campaign.main(self.argv("--plan", str(file)))
         self.assertIn("is there already", err.getvalue())
+
+    def test_a_law_that_only_the_program_has_is_flown_by_its_name(self):
+        self.addCleanup(plan.LAWS.pop, "GLIDE", None)
+        status, out, _, flown = self.campaign("--law", "GLIDE,PID", "--set", "nominal", "--runs", "2")
+        self.assertEqual((status, flown), (0, 4), out)
+        self.assertEqual([("--set LAW=GLIDE" in json.loads(line)["command"]) for line in sorted(self.stored())].count(True), 2)
+        with contextlib.redirect_stderr(io.StringIO()) as err, self.assertRaises(SystemExit):
+            campaign.main(self.argv("--law", "FALL"))
+        self.assertIn("'FALL' is none of", err.getvalue())
 
     def dask(self, *words):
         process = subprocess.Popen([sys.executable, "-m", "dask", *words, "--no-dashboard", "--scheduler-file",

@@ -111,13 +111,21 @@ def begun_with(path):
     return words
 
 
+def words_of_laws(arguments):
+    """What is named where a law belongs."""
+    laws = arguments.law_words.split(",") if arguments.law_words else []
+    return laws + (arguments.fly or "").split("/")[2:3]
+
+
 def choose(parser, arguments):
-    """Laws, sets and assignments; what --plan adds is known from here on."""
+    """Laws, sets and assignments; what --plan adds, and the program's own laws that are named, are known from here on."""
     if arguments.plan:
         try:
             plan.extend(json.loads(arguments.plan.read_text(encoding="utf-8")))
         except (OSError, ValueError, TypeError, KeyError) as error:
             parser.error(f"--plan {arguments.plan}: {error}")
+    if not set(words_of_laws(arguments)) <= {*plan.LAWS, "all"}:
+        plan.take_from(arguments.program)
     words = [word for word in arguments.set_words if "=" not in word]
     arguments.typed = dict(word.split("=", 1) for word in arguments.set_words if "=" in word)
     try:

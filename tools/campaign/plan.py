@@ -1,6 +1,8 @@
 """What a campaign flies: the laws, the sets of vehicles, and the vehicle of each run."""
 import math
 import random
+import re
+import subprocess
 from dataclasses import dataclass
 
 SCENARIO = "pid-60cm-ramp"
@@ -80,6 +82,17 @@ def extend(own):
             raise ValueError(f"set {name}: no draw of {', '.join(sorted(unknown))}")
         SETS[name] = Set(words.get("summary", name), words.get("runs", 20), tuple(words.get("figures", ())),
                          dict(words.get("fixed", {})), bool(words.get("lands", False)))
+
+
+def take_from(program):
+    """Adds the laws that the program has (control/laws/table.h) and LAWS does not. A program that does not tell has none more."""
+    try:
+        told = subprocess.run([program, "params", "LAW"], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False).stdout
+    except OSError:
+        return      # what is wrong with the program, the first flight tells
+    choices = re.search(r"^one of: (.*)$", told, re.MULTILINE)
+    for name in choices.group(1).split("|") if choices else ():
+        LAWS.setdefault(name, Law({"LAW": name}))
 
 
 HOVER = {"hover_trimmed", "hover_untrimmed"}

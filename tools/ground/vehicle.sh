@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# vehicle.sh [LAW]: builds build-wasm/plomada.wasm, the PC board as one WebAssembly module (sim/wasm/vehicle.h). LAW: a file in place of
-# control/laws/law_pid.c (docs/my_law.md).
+# vehicle.sh [LAW]: builds build-wasm/plomada.wasm, the PC board as one WebAssembly module (sim/wasm/vehicle.h). LAW: a file with a law of
+# one's own (docs/my_law.md).
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 [ -f "$root/build-wasm/CMakeCache.txt" ] ||
