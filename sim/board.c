@@ -51,7 +51,6 @@ board_config_t board_config(unsigned long seed)
     board_config_t config = {
         .seed = seed,
         .quadrotor = quadrotor_default,
-        .terrain = terrain_flat,
         .scene = scene_default,
         .laser = urg04lx_default,
         .imu = razor_default,
@@ -215,8 +214,7 @@ void board_power_on(const board_config_t *config, board_terminal_t terminal, voi
     board.terminal_context = terminal_context;
     timeline_reset();
     chip_reset(kernel_raise);
-    board.quadrotor = quadrotor_create(&config->quadrotor, &config->terrain, config->seed);
-    quadrotor_set_place(board.quadrotor, config->place, config->course);
+    board.quadrotor = quadrotor_create(&config->quadrotor, config->place, config->course, config->seed);
     scene_init(&board.scene, &config->scene, board.quadrotor, config->seed);
     create_laser(config);
     board.imu = razor9dof_create(&config->imu, motion, NULL, config->seed, to_firmware,
@@ -349,7 +347,7 @@ bool board_selected(void)
 
 void board_change(const board_config_t *config)
 {
-    quadrotor_change(board.quadrotor, &config->quadrotor, &config->terrain);
+    quadrotor_change(board.quadrotor, &config->quadrotor);
     board.scene.config = config->scene;
     razor9dof_change(board.imu, &config->imu);
 }

@@ -17,8 +17,7 @@
 typedef struct {
     unsigned long seed;
     quadrotor_config_t quadrotor;
-    terrain_t terrain;
-    const place_t *place;   /* NULL: an endless floor. Borrowed until power-off */
+    const place_t *place;   /* NULL: an endless even floor. Borrowed until power-off */
     const course_t *course; /* NULL: nobody steers */
     scene_config_t scene;
     urg04lx_config_t laser;
@@ -87,8 +86,9 @@ void board_stick(sim_time_t high_ns);
 
 bool board_selected(void); /* the firmware has the throttle */
 
-/* While it is on, vehicle, terrain, what the rays meet and the IMU's errors become those of config. The
- * scanner itself, the pilot, phases and seeds are those of power-on. */
+/* While it is on, vehicle, what the rays meet and the IMU's errors become those of config. The place and the
+ * course stay, and whoever lent them may change what is in them. The scanner itself, the pilot, phases and
+ * seeds are those of power-on. */
 void board_change(const board_config_t *config);
 
 /* The radio pair in or out of each other's reach: what is on air out of it is lost. */

@@ -21,6 +21,8 @@ typedef struct {
 } course_leg_t;
 
 typedef struct {
+    bool carried; /* the vehicle goes exactly as the course says, whatever its lean does: a flight of which
+                   * only the times are known at which it was where */
     int count;
     course_leg_t legs[COURSE_LEGS_MAX];
 } course_t;

@@ -6,7 +6,7 @@
 
 #include "sim/noise.h"
 
-#define FAR_M 100.0
+#define FAR_M 1e4
 #define LEVEL 1e-12
 
 void place_init(place_t *place)
@@ -200,18 +200,67 @@ static const surface_t *floor_at(const place_t *place, double x_m, double y_m)
     return own_or_plain(&place->floor[odd ? 1 : 0]);
 }
 
+/* Whether (x, any y) lies on the higher of the floor's two levels. */
+static bool is_upper(const place_bars_t *bars, double x_m)
+{
+    const double along_m = x_m - bars->from_m;
+    const bool bar = along_m >= 0.0 && fmod(along_m, bars->period_m) >= (1.0 - bars->share) * bars->period_m;
+
+    return bars->height_m > 0.0 ? bar : !bar;
+}
+
+/* How far ahead of x, towards dx, the higher level begins; infinite: nowhere. */
+static double step_up_m(const place_bars_t *bars, double x_m, double dx)
+{
+    const bool at_a_bars_start = (bars->height_m > 0.0) == (dx > 0.0);
+    const double offset_m = bars->from_m + (at_a_bars_start ? (1.0 - bars->share) * bars->period_m : 0.0);
+    const double periods = (x_m - offset_m) / bars->period_m;
+    const double next = dx > 0.0 ? ceil(periods) : floor(periods);
+    const double first = at_a_bars_start ? 0.0 : 1.0;
+
+    if (next < first) {
+        return dx > 0.0 ? offset_m + first * bars->period_m - x_m : INFINITY;
+    }
+    return fabs(offset_m + next * bars->period_m - x_m);
+}
+
+/* The floor without its roughness: straight down at the higher level, at a bar's side, or at the lower level.
+ */
+static place_hit_t cast_bars(const place_t *place, place_vector_t from, place_vector_t direction)
+{
+    const place_bars_t *bars = &place->bars;
+    const double upper_m = place->level_m + fmax(bars->height_m, 0.0);
+    const double lower_m = place->level_m + fmin(bars->height_m, 0.0);
+    const double upper_at_m = (upper_m - from.z) / direction.z;
+    const double upper_x_m = from.x + fmax(upper_at_m, 0.0) * direction.x;
+    place_hit_t floor = {.block = -1, .incidence_cos = -direction.z, .distance_m = upper_at_m};
+
+    if (bars->height_m == 0.0 || is_upper(bars, upper_x_m)) {
+        return floor;
+    }
+    floor.distance_m = (lower_m - from.z) / direction.z;
+    if (fabs(direction.x) > LEVEL) {
+        const double side_m = fmax(upper_at_m, 0.0) +
+                              step_up_m(bars, upper_x_m, direction.x) / fabs(direction.x);
+        if (side_m < floor.distance_m) {
+            floor.distance_m = side_m;
+            floor.incidence_cos = fabs(direction.x);
+        }
+    }
+    return floor;
+}
+
 /* A rough floor is met where the ray crosses its height below the crossing of the even one: exact for a ray
  * straight down, and for any other as far as the floor does not change within the difference. */
 static void cast_floor(const place_t *place, place_vector_t from, place_vector_t direction, place_hit_t *hit)
 {
-    if (direction.z >= 0.0 || from.z < 0.0) {
+    if (direction.z >= 0.0) {
         return;
     }
-    const double even_m = -from.z / direction.z;
-    place_hit_t floor = {.block = -1, .incidence_cos = -direction.z};
-    const place_vector_t under = along(from, direction, even_m);
+    place_hit_t floor = cast_bars(place, from, direction);
+    const place_vector_t under = along(from, direction, floor.distance_m);
 
-    floor.distance_m = even_m + roughness_m(place, under.x, under.y, &floor) / direction.z;
+    floor.distance_m += roughness_m(place, under.x, under.y, &floor) / direction.z;
     if (floor.distance_m < hit->distance_m) {
         floor.at = along(from, direction, floor.distance_m);
         floor.surface = floor_at(place, floor.at.x, floor.at.y);
@@ -286,7 +335,7 @@ double place_sunlight(const place_t *place, double x_m, double y_m)
 place_hit_t place_below(const place_t *place, double x_m, double y_m, double z_m, double t_s)
 {
     const place_vector_t down = {0.0, 0.0, -1.0};
-    const place_vector_t from = {x_m, y_m, fmax(z_m, 0.0) + PLACE_CARRIES_M};
+    const place_vector_t from = {x_m, y_m, fmax(z_m, place->level_m) + PLACE_CARRIES_M};
     place_hit_t hit;
 
     place_cast(place, from, down, FAR_M, t_s, &hit);

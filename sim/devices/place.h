@@ -5,10 +5,10 @@
  * that is level or rises evenly from the near end to the far one. So a ramp is one block, a flight of stairs
  * is some, a table is a board on four legs, a wall is a thin high one.
  *
- * The floor between the things may be rough: a sum of waves with the statistics of white noise through two
- * equal lags, in the plane (a Matern field of order 3/2: covariance rms^2 (1 + r/l) exp(-r/l) at distance r,
- * l half of the correlation length). Waves by Rahimi and Recht 2007: their vectors are drawn from the
- * field's spectrum, a bivariate t distribution with three degrees of freedom. */
+ * The floor between the things may have bars, and be rough: a sum of waves with the statistics of white noise
+ * through two equal lags, in the plane (a Matern field of order 3/2: covariance rms^2 (1 + r/l) exp(-r/l) at
+ * distance r, l half of the correlation length). Waves by Rahimi and Recht 2007: their vectors are drawn from
+ * the field's spectrum, a bivariate t distribution with three degrees of freedom. */
 #ifndef SIM_DEVICES_PLACE_H
 #define SIM_DEVICES_PLACE_H
 
@@ -46,6 +46,14 @@ typedef struct {
     double correlation_m; /* the integral of its autocorrelation */
 } place_rough_t;
 
+/* Bars across the floor, one behind the other along x for ever. */
+typedef struct {
+    double height_m; /* < 0: grooves; 0: none */
+    double period_m; /* from bar to bar */
+    double share;    /* of it is a bar, the rest gap */
+    double from_m;   /* there the first gap begins */
+} place_bars_t;
+
 /* Sunlight on everything over a part of the floor. */
 typedef struct {
     double x_m, y_m, heading_rad, length_m, width_m;
@@ -63,6 +71,8 @@ typedef struct {
     double tile_m;
     int suns;
     place_sun_t sun[PLACE_SUNS_MAX];
+    double level_m; /* of the floor; a pit is a lower floor between blocks */
+    place_bars_t bars;
     place_rough_t rough;
     struct {
         double kx, ky, phase;

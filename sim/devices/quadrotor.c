@@ -31,8 +31,6 @@
 #define TUG_TAU_S 0.12
 
 #define ATTITUDE_DAMPING 0.4
-#define ADVANCE_PITCH_RAD (1.0 * DEGREE_RAD)
-#define ADVANCE_MARGIN_S 2.0
 #define HEADING_RAD M_PI /* due south: the heading crosses the wrap all the time */
 #define YAW_DRIFT_RAD (10.0 * DEGREE_RAD)
 #define YAW_STEP_RAD (0.06 * DEGREE_RAD)
@@ -42,6 +40,7 @@
 #define SLIPS_OFF_M \
     0.1 /* chosen: a foot on an edge so far above the ground under the centre does not carry */
 #define CONTACT_ARMED_M 0.03
+#define GONE_M 0.001 /* ground that is so much lower at once has been taken away */
 #define CONTACT_MPS (-0.02)
 #define REBOUND 0.15
 
@@ -79,12 +78,13 @@ const quadrotor_config_t quadrotor_default = {.gain = 1.0,
                                               .gust = {10.0, 1.0},
                                               .tumble_radps = 0.0,
                                               .tumble_start_s = 10.0,
-                                              .floor = FLOOR_DEFAULT,
                                               .anchored = false,
                                               .bench_height_m = 0.0,
                                               .bench_roll_rad = 0.0,
                                               .bench_pitch_rad = 0.0,
                                               .bench_roll_start_s = 0.0};
+
+static const place_t endless_floor; /* even */
 
 typedef struct {
     sim_time_t active;
@@ -98,7 +98,6 @@ typedef struct {
 
 struct quadrotor {
     quadrotor_config_t config;
-    terrain_t terrain;
     sim_time_t clock, origin;
     quadrotor_state_t state;
 
@@ -108,10 +107,8 @@ struct quadrotor {
     double demand_n, lag;
     double followed_n, lag2; /* the demand behind the autopilot's second lag */
     rotors_t rotors;
-    floor_t floor;
-    const place_t *place; /* NULL: an endless floor */
+    const place_t *place;
     travel_t travel;
-    double ramp_m; /* the terrain without the floor's unevenness */
     double tumble_rad;
     double climb_integral_mps2; /* of the autopilot's speed controller */
     naza_t naza;
@@ -157,26 +154,28 @@ static void prepare_steps(quadrotor_t *q)
                         sqrt(4.0 * ATTITUDE_DAMPING * pow(q->attitude_radps, 3.0) * STEP_S);
 }
 
-quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const terrain_t *terrain, unsigned long seed)
+quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const place_t *place, const course_t *course,
+                              unsigned long seed)
 {
     quadrotor_t *q = calloc(1, sizeof *q);
     if (q == NULL) {
         abort();
     }
     q->config = *config;
-    q->terrain = *terrain;
+    q->place = place != NULL ? place : &endless_floor;
     q->clock = timeline_now();
     q->last_pulse = q->clock;
     q->origin = SIM_NEVER;
     q->counting = true;
-    q->state.altitude_m = q->state.height_m = config->anchored ? config->bench_height_m : 0.0;
+    q->state.altitude_m = config->anchored ? config->bench_height_m
+                                           : place_below(q->place, 0.0, 0.0, HIGH_M, 0.0).at.z;
+    q->state.height_m = config->anchored ? config->bench_height_m : 0.0;
     q->state.on_ground = !config->anchored;
     q->state.yaw_rad = config->anchored ? 0.0 : HEADING_RAD;
     naza_init(&q->naza, &config->naza);
     q->state.motors = q->naza.running;
     rotors_init(&q->rotors, &config->rotors);
-    floor_init(&q->floor, &config->floor, STEP_S, seed);
-    travel_init(&q->travel, NULL);
+    travel_init(&q->travel, course);
     prepare_noise(q, seed);
     prepare_steps(q);
     return q;
@@ -185,15 +184,6 @@ quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const terrain_t 
 void quadrotor_destroy(quadrotor_t *quadrotor)
 {
     free(quadrotor);
-}
-
-void quadrotor_set_place(quadrotor_t *quadrotor, const place_t *place, const course_t *course)
-{
-    quadrotor->place = place;
-    travel_init(&quadrotor->travel, course);
-    if (place != NULL && !quadrotor->config.anchored) {
-        quadrotor->state.altitude_m = place_below(place, 0.0, 0.0, HIGH_M, 0.0).at.z;
-    }
 }
 
 const place_t *quadrotor_place(const quadrotor_t *quadrotor)
@@ -324,13 +314,6 @@ static void swing(axis_t *axis, double w, double drive, double rest_rad)
     axis->angle_rad += STEP_S * axis->rate_radps;
 }
 
-static double advance_pitch_rad(const quadrotor_t *q, double t_s)
-{
-    const bool advancing = q->terrain.ramp && t_s >= q->terrain.ramp_start_s - ADVANCE_MARGIN_S &&
-                           t_s < q->terrain.edge_s + ADVANCE_MARGIN_S;
-    return advancing ? ADVANCE_PITCH_RAD : 0.0;
-}
-
 static void rotate(quadrotor_t *q, double t_s)
 {
     const double share = q->state.on_ground ? q->config.ground_sway : 1.0;
@@ -338,8 +321,7 @@ static void rotate(quadrotor_t *q, double t_s)
     travel_steer(&q->travel, t_s, STEP_S, q->state.heading_rad);
     const double drive = share * q->attitude_drive;
     swing(&q->roll, q->attitude_radps, q->config.roll_sway * drive, steered * q->travel.roll_rad);
-    swing(&q->pitch, q->attitude_radps, q->config.pitch_sway * drive,
-          advance_pitch_rad(q, t_s) + steered * q->travel.pitch_rad);
+    swing(&q->pitch, q->attitude_radps, q->config.pitch_sway * drive, steered * q->travel.pitch_rad);
     if (q->config.tumble_radps != 0.0 && t_s >= q->config.tumble_start_s && !q->state.on_ground &&
         fabs(q->tumble_rad) < M_PI) {
         q->tumble_rad += STEP_S * q->config.tumble_radps;
@@ -421,7 +403,8 @@ static void touch(quadrotor_t *q, double terrain_m, double terrain_mps)
 static void rise_or_rest(quadrotor_t *q, double acceleration_mps2, double terrain_m, double terrain_mps)
 {
     quadrotor_state_t *s = &q->state;
-    if (s->on_ground && acceleration_mps2 <= 0.0 && terrain_mps >= 0.0) {
+    const bool carried = terrain_mps >= 0.0 && s->altitude_m - terrain_m < GONE_M;
+    if (s->on_ground && acceleration_mps2 <= 0.0 && carried) {
         s->altitude_m = terrain_m;
         s->acceleration_mps2 = 0.0;
         return;
@@ -452,7 +435,7 @@ static place_hit_t below(const quadrotor_t *q, double fore_m, double right_m, do
                        q->travel.y_m + s * fore_m - c * right_m, q->state.altitude_m, t_s);
 }
 
-static ground_t ground_of_place(const quadrotor_t *q, double t_s)
+static ground_t ground_below(const quadrotor_t *q, double t_s)
 {
     place_hit_t highest = below(q, 0.0, 0.0, t_s);
     const double centre_m = highest.at.z;
@@ -470,30 +453,11 @@ static ground_t ground_of_place(const quadrotor_t *q, double t_s)
                           highest.slope_y * q->travel.vy_mps};
 }
 
-static ground_t pass_terrain(quadrotor_t *q, double t_s)
-{
-    const double ramp_m = terrain_height_m(&q->terrain, t_s);
-    if (!q->state.on_ground) {
-        floor_pass(&q->floor);
-    }
-    const double rises_mps = (ramp_m - q->ramp_m) / STEP_S + (q->state.on_ground ? 0.0 : q->floor.rate_mps);
-    q->ramp_m = ramp_m;
-    const double under_m = ramp_m + floor_height_m(&q->floor);
-    ground_t ground = {under_m, under_m, rises_mps};
-    if (q->place != NULL) {
-        const ground_t of_place = ground_of_place(q, t_s);
-        ground.centre_m += of_place.centre_m;
-        ground.carries_m += of_place.carries_m;
-        ground.rises_mps += of_place.rises_mps;
-    }
-    return ground;
-}
-
 static void collide(quadrotor_t *q, double t_s)
 {
     const place_vector_t centre = {q->travel.x_m, q->travel.y_m, q->state.altitude_m};
 
-    if (q->place != NULL && place_inside(q->place, centre, t_s)) {
+    if (place_inside(q->place, centre, t_s)) {
         q->state.collided = true;
     }
 }
@@ -532,7 +496,7 @@ static void step(quadrotor_t *q)
     follow_rules(q);
     q->clock += STEP;
     const double t_s = scenario_s(q);
-    const ground_t ground = pass_terrain(q, t_s);
+    const ground_t ground = ground_below(q, t_s);
     spin(q, t_s);
     if (!q->config.anchored) {
         rotate(q, t_s);
@@ -561,14 +525,18 @@ void quadrotor_set_origin(quadrotor_t *quadrotor, sim_time_t origin)
     quadrotor->origin = origin;
 }
 
-void quadrotor_change(quadrotor_t *quadrotor, const quadrotor_config_t *config, const terrain_t *terrain)
+void quadrotor_change(quadrotor_t *quadrotor, const quadrotor_config_t *config)
 {
     bring_up(quadrotor);
     quadrotor->config = *config;
-    quadrotor->terrain = *terrain;
     quadrotor->rotors.config = config->rotors;
-    floor_change(&quadrotor->floor, &config->floor);
     prepare_steps(quadrotor);
+}
+
+void quadrotor_follow(quadrotor_t *quadrotor, const course_t *course)
+{
+    bring_up(quadrotor);
+    travel_follow(&quadrotor->travel, course);
 }
 
 void quadrotor_pulse(quadrotor_t *quadrotor, sim_time_t high_ns)

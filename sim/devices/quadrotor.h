@@ -11,20 +11,18 @@
  * the same (what a simple estimator assumes); and that of rotors.h.
  *
  * SI units; thrust in the seed's newtons per motor. The seed's angles: roll > 0 raises the mirror's side
- * (right), pitch > 0 raises the nose. Heights: `height` of the landing gear above the terrain below it,
- * `altitude` above the floor. */
+ * (right), pitch > 0 raises the nose. Heights: `height` of the landing gear above the terrain below the
+ * centre, or, while it stands, above what carries it: 0; `altitude` above the floor. */
 #ifndef SIM_DEVICES_QUADROTOR_H
 #define SIM_DEVICES_QUADROTOR_H
 
 #include <stdbool.h>
 
 #include "sim/devices/course.h"
-#include "sim/devices/floor.h"
 #include "sim/devices/naza.h"
 #include "sim/devices/place.h"
 #include "sim/devices/rotors.h"
 #include "sim/devices/span.h"
-#include "sim/devices/terrain.h"
 #include "sim/devices/travel.h"
 #include "sim/timeline.h"
 
@@ -65,8 +63,7 @@ typedef struct {
     double
         tumble_radps; /* 0: roll rate that the autopilot does not stop before the vehicle lies on its back */
     double tumble_start_s; /* 10 */
-    floor_config_t floor;
-    bool anchored; /* bench: stands still at bench_height_m, whatever the thrust */
+    bool anchored;         /* bench: stands still at bench_height_m, whatever the thrust */
     double bench_height_m;
     double bench_roll_rad;  /* 0; held so, about the gear's lowest level under the centre, right side up, */
     double bench_pitch_rad; /* 0; nose up, */
@@ -91,18 +88,17 @@ typedef struct {
 
 typedef struct quadrotor quadrotor_t;
 
-/* origin: virtual time of scenario time t = 0 (terrain, sag and the pitch bias follow t); may be set later.
- */
-quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const terrain_t *terrain, unsigned long seed);
+/* place and course: where it flies, and how; both borrowed. NULL: an endless even floor; it stays where it
+ * is. It stands on what there is at the origin. */
+quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const place_t *place, const course_t *course,
+                              unsigned long seed);
 void quadrotor_destroy(quadrotor_t *quadrotor);
-/* The vehicle, its air and the ground become others while it flies; motion, noise and the autopilot's stop
- * type go on. */
-void quadrotor_change(quadrotor_t *quadrotor, const quadrotor_config_t *config, const terrain_t *terrain);
-/* Where it flies, and how; both borrowed. NULL: an endless even floor; it stays where it is. Before the first
- * step. It stands on what there is at the origin. The ground is the sum of the place's, of the terrain and of
- * the floor of its configuration. */
-void quadrotor_set_place(quadrotor_t *quadrotor, const place_t *place, const course_t *course);
+/* The vehicle and its air become others while it flies; motion, noise and the autopilot's stop type go on. */
+void quadrotor_change(quadrotor_t *quadrotor, const quadrotor_config_t *config);
+/* Another course, begun from where it is. */
+void quadrotor_follow(quadrotor_t *quadrotor, const course_t *course);
 const place_t *quadrotor_place(const quadrotor_t *quadrotor);
+/* Virtual time of scenario time t = 0: place, course and sag follow t. May be set later. */
 void quadrotor_set_origin(quadrotor_t *quadrotor, sim_time_t origin);
 /* The throttle pulse that reached the autopilot, at its falling edge. No pulse yet: no thrust. */
 void quadrotor_pulse(quadrotor_t *quadrotor, sim_time_t high_ns);

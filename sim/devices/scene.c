@@ -31,8 +31,8 @@ const scene_config_t scene_default = {.ray_sigma_mm = 5.0,
 #define FAR_CODE 0      /* nothing in reach */
 #define DAZZLED_CODE 18 /* too much light */
 #define NEIGHBOURS_CODE 7
+#define SKYWARD 0.1         /* cosine from which on an edge is no nearer */
 #define EDGE_LOST (3.0 / 9) /* the recording in scene.h */
-#define SKYWARD 0.1         /* cosine of the tilt from which on the beam finds no ground */
 
 void scene_init(scene_t *scene, const scene_config_t *config, quadrotor_t *quadrotor, unsigned long seed)
 {
@@ -51,25 +51,11 @@ void scene_init(scene_t *scene, const scene_config_t *config, quadrotor_t *quadr
     memset(scene->latest_mm, 0, sizeof scene->latest_mm);
 }
 
-/* The ray leaves the mirror along the vehicle's own "down". The lowest point of the gear under the vehicle's
- * centre is at `height` above the ground when level; tilt turns about the point on the gear plane under the
- * centre, as the seed draws it. */
-static double slant_mm(const bracket_mirror_t *mirror, const quadrotor_state_t *state)
-{
-    double down = cos(state->roll_rad) * cos(state->pitch_rad);
-    double point_mm = state->height_m * 1000.0 + mirror->up_mm * down +
-                      mirror->out_mm * sin(state->roll_rad) + mirror->fore_mm * sin(state->pitch_rad);
-
-    return mirror->path_mm + point_mm / down;
-}
-
 /* The rays that are measured now. */
 typedef struct {
     const urg_rays_t *asked;
-    const quadrotor_state_t *state;
     bracket_pose_t pose;
     double t_s, slow_mm; /* slow_mm: all that drifts */
-    bool skyward;
 } look_t;
 
 /* What the sensor tells of a ray that comes back too weak: the codes that real ones show (low intensity,
@@ -100,6 +86,17 @@ typedef struct {
     double shared_mm, own_mm;
 } ray_noise_t;
 
+static double edge_m(const scene_t *scene, double t_s)
+{
+    return t_s >= scene->config.edge_start_s ? scene->config.edge_m : 0.0;
+}
+
+/* Nearer by so much: the beam's ground lies higher. */
+static double nearer_mm(const scene_t *scene, const look_t *look, int mirror, const bracket_ray_t *ray)
+{
+    return mirror >= 0 ? 1000.0 * edge_m(scene, look->t_s) / fmax(-ray->direction.z, SKYWARD) : 0.0;
+}
+
 /* What the sensor tells of a ray: millimetres, or a code. */
 static int told_mm(scene_t *scene, const look_t *look, int mirror, int step, ray_noise_t noise)
 {
@@ -108,6 +105,7 @@ static int told_mm(scene_t *scene, const look_t *look, int mirror, int step, ray
     const echo_t echo = echo_of(place, &ray, scene->config.spot_rad, look->t_s, &scene->surface_noise);
     const double far_m = 0.001 * echo.mm;
 
+    noise.shared_mm -= nearer_mm(scene, look, mirror, &ray);
     if (echo.signal <= 0.0) {
         return FAR_CODE;
     }
@@ -163,26 +161,10 @@ static int blocked_steps(const scene_t *scene, int number, const look_t *look)
                : 0;
 }
 
-static double edge_m(const scene_t *scene, double t_s)
-{
-    return t_s >= scene->config.edge_start_s ? scene->config.edge_m : 0.0;
-}
-
 double scene_height_m(const scene_t *scene)
 {
     return quadrotor_state(scene->quadrotor)->height_m -
            edge_m(scene, quadrotor_scenario_s(scene->quadrotor));
-}
-
-/* Under the vehicle's centre, where there is no place. */
-static int anywhere_mm(const scene_t *scene, const look_t *look, int mirror, ray_noise_t noise)
-{
-    const quadrotor_state_t *state = look->state;
-    const double higher_mm = 1000.0 * edge_m(scene, look->t_s);
-    const double mm = slant_mm(&bracket_mirrors[mirror], state) -
-                      higher_mm / (cos(state->roll_rad) * cos(state->pitch_rad));
-
-    return (int)lround(mm + noise.shared_mm + noise.own_mm);
 }
 
 /* A revolution's own draws. */
@@ -229,12 +211,10 @@ static look_t look_now(scene_t *scene, const urg_rays_t *asked)
     const double now_s = (double)timeline_now() * 1e-9;
 
     return (look_t){.asked = asked,
-                    .state = state,
                     .pose = bracket_pose(state),
                     .t_s = quadrotor_scenario_s(scene->quadrotor),
                     .slow_mm = wandered_mm(scene, now_s) +
-                               scene->config.warm_up_mm * exp(-now_s / scene->config.warm_up_s),
-                    .skyward = cos(state->roll_rad) * cos(state->pitch_rad) < SKYWARD};
+                               scene->config.warm_up_mm * exp(-now_s / scene->config.warm_up_s)};
 }
 
 /* A ray goes together with the one before it, where that was measured. */
@@ -260,30 +240,15 @@ static int bent_mm(scene_t *scene, const look_t *look, int mirror, int step)
     if (step - bracket_mirrors[mirror].first_step < blocked_steps(scene, mirror, look)) {
         return (int)lround(scene->config.block_mm + noise.shared_mm + noise.own_mm);
     }
-    if (look->skyward) {
-        return FAR_CODE;
-    }
-    if (quadrotor_place(scene->quadrotor) == NULL) {
-        return anywhere_mm(scene, look, mirror, noise);
-    }
-    noise.shared_mm -= 1000.0 * edge_m(scene, look->t_s);
     return told_mm(scene, look, mirror, step, noise);
-}
-
-/* A ray between the mirrors: what stands around. */
-static int straight_mm(scene_t *scene, const look_t *look, int step)
-{
-    return quadrotor_place(scene->quadrotor) == NULL
-               ? FAR_CODE
-               : told_mm(scene, look, -1, step, noise_of_ray(scene, look, step));
 }
 
 static int measured_mm(scene_t *scene, const look_t *look, int step)
 {
     const int mirror = bracket_mirror_at(step);
 
-    if (mirror < 0) {
-        return straight_mm(scene, look, step);
+    if (mirror < 0) { /* what stands around */
+        return told_mm(scene, look, mirror, step, noise_of_ray(scene, look, step));
     }
     if (scene->turn.broken && is_struck(scene, mirror) && (step - look->asked->first_step) % 2 == 1) {
         return (int)noise_uniform(&scene->glitch_noise, 0.0, 19.0);

@@ -5,6 +5,9 @@
  * brakes. So a tilt that the air gives it moves the vehicle too, and it wanders about its place by some
  * centimetres.
  *
+ * On a course that carries it (course.h) the vehicle leans as the way asks, and keeps to it all the same;
+ * what it lost on the ground it makes up for in the air, half a metre at most: then the course waits for it.
+ *
  * Axes of place.h. The seed's angles: roll > 0 raises the right side, pitch > 0 the nose. */
 #ifndef SIM_DEVICES_TRAVEL_H
 #define SIM_DEVICES_TRAVEL_H
@@ -16,10 +19,13 @@ typedef struct {
     course_point_t wanted;
     double x_m, y_m, vx_mps, vy_mps;
     double roll_rad, pitch_rad; /* asked for */
+    bool standing;
 } travel_t;
 
 /* The course is borrowed. */
 void travel_init(travel_t *travel, const course_t *course);
+/* Another course, from where the vehicle is wanted now. */
+void travel_follow(travel_t *travel, const course_t *course);
 /* One step of the one who steers; heading_rad: of the nose, in the place's axes. */
 void travel_steer(travel_t *travel, double t_s, double step_s, double heading_rad);
 /* One step of the vehicle. lift_mps2: along the rotors' axis. On the ground it stays where it is. */

@@ -526,7 +526,7 @@ static void configure(const scenario_t *scenario, const flight_options_t *option
     board_config_t *board = &flight.plant.board;
 
     plant_init(&flight.plant, options->seed);
-    board->terrain = scenario->platform ? terrain_platform : terrain_flat;
+    flight.plant.ground.ramp = scenario->platform;
     board->quadrotor.tug_rate_per_s = scenario->tug_rate_per_s;
     board->quadrotor.climb_rate_mps_per_n = scenario->climb_rate_mps_per_n;
     if (flight.record.land_s > scenario->land_s) { /* the battery lasts as long */
@@ -552,8 +552,11 @@ static void configure(const scenario_t *scenario, const flight_options_t *option
     }
     board->laser_faults = options->faults;
     board->laser_fault_count = options->fault_count;
-    board->place = flight.in_place ? &flight.place.place : NULL;
-    board->course = flight.in_place ? &flight.place.course : NULL;
+    if (flight.in_place) {
+        seed_course_floor(&flight.plant.ground, options->seed, &flight.place.place);
+        board->place = &flight.place.place;
+        board->course = &flight.place.course;
+    }
     board->quadrotor.anchored = scenario->bench;
     board->quadrotor.bench_height_m = options->height_m;
 }

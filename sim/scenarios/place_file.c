@@ -16,6 +16,7 @@
 #define LEG_M 0.04   /* chosen */
 #define WALL_M 0.1   /* chosen: its thickness */
 #define STEPS_MAX 40.0
+#define BARS_FROM_M 0.5         /* as seed_course.c has them: the vehicle takes off from an even spot */
 #define TURN_RADPS (45.0 * DEG) /* chosen: a pilot's calm turn */
 
 /* A line, taken apart. */
@@ -68,6 +69,15 @@ static place_block_t block_of(const order_t *order, double near_m, double far_m)
 static bool obey_rough(const order_t *order)
 {
     order->file->place.rough = (place_rough_t){1e-3 * order->value[0], order->value[1]};
+    return true;
+}
+
+static bool obey_bars(const order_t *order)
+{
+    order->file->place.bars = (place_bars_t){.height_m = 1e-3 * order->value[0],
+                                             .period_m = order->value[1],
+                                             .share = order->value[2],
+                                             .from_m = BARS_FROM_M};
     return true;
 }
 
@@ -278,6 +288,7 @@ static bool obey_surface(const order_t *order)
 
 static const verb_t verbs[] = {
     {"rough", {{"RMS_MM", 0, 1000}, {"CORRELATION_M", 0.001, 100}}, obey_rough, false, false, 0},
+    {"bars", {{"HEIGHT_MM", -1000, 1000}, SIZE("PERIOD"), {"SHARE", 0, 1}}, obey_bars, false, false, 0},
     {"block", {X_Y, SIZE("LENGTH"), SIZE("WIDTH"), SIZE("HEIGHT")}, obey_block, true, true, 0},
     {"ramp",
      {X_Y, SIZE("LENGTH"), SIZE("WIDTH"), {"NEAR", 0, 100}, {"FAR", 0, 100}},

@@ -1,6 +1,7 @@
 /* A place and the way through it, as text: a line for a thing or a leg of the way, # begins a remark.
  *
  *   rough   RMS_MM CORRELATION_M              the floor between the things
+ *   bars    HEIGHT_MM PERIOD SHARE            bars across the floor along x from 0.5 m on; < 0: grooves
  *   block   X Y LENGTH WIDTH HEIGHT           a box on the floor, its middle at X Y
  *   ramp    X Y LENGTH WIDTH NEAR FAR         rises evenly along its length, or falls
  *   stairs  X Y STEPS RUN RISE WIDTH          X Y: middle of the first step's near edge

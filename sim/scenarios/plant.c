@@ -76,12 +76,13 @@ static const figure_t figures[] = {
      "climb that the barometer makes up at the ground, rms"},
     {"tug_rate", "1/s", 0, 1000, QUAD(tug_rate_per_s), 1, "rope tugs"},
     {"tug", "m/s2", -100, 100, QUAD(tug_mps2), 1, "of one rope tug"},
-    {"platform", "m", -10, 10, AT(board.terrain.height_m), 1, "height of the ramp's platform"},
-    {"floor_rms_mm", "mm", 0, 10000, QUAD(floor.rms_m), 1e-3, "uneven floor under the flight"},
-    {"floor_tau", "s", 1e-2, 1000, QUAD(floor.tau_s), 1, "its correlation time at the speed flown"},
-    {"bars_mm", "mm", -1000, 1000, QUAD(floor.bars_m), 1e-3, "bars on the floor"},
-    {"bars_period", "s", 1e-2, 1000, QUAD(floor.bars_period_s), 1, "from bar to bar"},
-    {"bars_share", "-", 0, 1, QUAD(floor.bars_share), 1, "of that is a bar"},
+    {"platform", "m", -10, 10, AT(ground.platform_m), 1, "height of the ramp's platform; < 0: a pit"},
+    {"floor_rms_mm", "mm", 0, 10000, AT(ground.rough_rms_m), 1e-3,
+     "uneven floor under the flight, which then advances at 0.4 m/s"},
+    {"floor_tau", "s", 1e-2, 1000, AT(ground.rough_s), 1, "its correlation time at that speed"},
+    {"bars_mm", "mm", -1000, 1000, AT(ground.bars_m), 1e-3, "bars on the floor"},
+    {"bars_period", "s", 1e-2, 1000, AT(ground.bars_s), 1, "from bar to bar at that speed"},
+    {"bars_share", "-", 0, 1, AT(ground.bars_share), 1, "of that is a bar"},
     {"edge_m", "m", -10, 10, SCENE(edge_m), 1,
      "the beam's ground lies that much higher than the gear's; < 0: lower"},
     {"edge_start", "s", -LARGE, LARGE, SCENE(edge_start_s), 1, "scenario time from which on"},
@@ -204,7 +205,7 @@ static double *field_of(plant_t *plant, const figure_t *figure)
 
 void plant_init(plant_t *plant, unsigned long seed)
 {
-    *plant = (plant_t){.board = board_config(seed)};
+    *plant = (plant_t){.board = board_config(seed), .ground = seed_course_flat};
     plant->ray_instant_s = (double)plant->board.laser.ray_instant * 1e-9;
     plant->scanner_boot_s = (double)plant->board.laser.boot * 1e-9;
     plant->scanner_answers = plant->board.laser.answers_in_turn;
@@ -260,6 +261,9 @@ void plant_complete(plant_t *plant)
     plant->board.laser.boot = (sim_time_t)llround(plant->scanner_boot_s * 1e9);
     plant->board.laser.answers_in_turn = plant->scanner_answers >= 0.5;
     complete_imu(plant);
+    seed_course_lay(&plant->ground, plant->board.seed, &plant->place, &plant->course);
+    plant->board.place = &plant->place;
+    plant->board.course = &plant->course;
     if (plant->attitude_throttle >= 0.5 && plant->board.quadrotor.climb_rate_mps_per_n <= 0.0) {
         plant->board.quadrotor.climb_rate_mps_per_n = 1.0;
     }
@@ -344,7 +348,6 @@ void plant_print(FILE *out)
     plant_t plant;
 
     plant_init(&plant, 1);
-    plant.board.terrain = terrain_platform;
     for (size_t i = 0; i < FIGURE_COUNT; i++) {
         const figure_t *figure = &figures[i];
         char value[32];

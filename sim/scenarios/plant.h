@@ -9,6 +9,7 @@
 #include <stdio.h>
 
 #include "sim/board.h"
+#include "sim/scenarios/seed_course.h"
 
 typedef struct {
     board_config_t board;
@@ -22,6 +23,9 @@ typedef struct {
     double pin_stuck; /* of the selector, board_pin_t; < 0: honest */
     double pin_stuck_start_s, pin_stuck_length_s;
     double attitude_throttle;
+    seed_course_t ground; /* of a flight that has no place of its own */
+    place_t place;        /* it, laid; board points here */
+    course_t course;
 } plant_t;
 
 void plant_init(plant_t *plant, unsigned long seed);
@@ -31,7 +35,7 @@ bool plant_known(const char *name);
 /* NULL: a number that the figure may take; else what is wrong. The name must be known. */
 const char *plant_check(const char *name, const char *text);
 void plant_set(plant_t *plant, const char *name, double value);
-/* What board's fields follow from the figures. */
+/* What board's fields follow from the figures: its place and course are in *plant, which must outlive it. */
 void plant_complete(plant_t *plant);
 
 /* Plans what goes wrong at its scenario time, counted from origin: the scanner's line mute, its power lost

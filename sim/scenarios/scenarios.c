@@ -30,7 +30,7 @@ const scenario_t scenarios[] = {
                          {METRIC_HOVER_MEAN_ERROR_MM, -60, 70},
                          {METRIC_TERRAIN_RMS_MM, 70, 210},
                          {METRIC_RECOVERY_S, 1.5, 3.98},
-                         {METRIC_UNDERSHOOT_MM, 25, 260},
+                         {METRIC_UNDERSHOOT_MM, 10, 260},
                          {METRIC_GROUND_CONTACTS, 0, 0},
                          {METRIC_THRUST_STD_N, 0.38, 0.52}},
     },

@@ -33,8 +33,8 @@ typedef struct {
     const char *plant[SCENARIO_PLANT_MAX];  /* "plant.tau 0.1", ... NULL ends; --set wins */
     bool bench; /* the vehicle stands still: no flight, no commands; ends at end_s */
     double reference_m;
-    const char *place;     /* where it flies and its way, the text of a place file; NULL: an endless floor */
-    bool platform;         /* the seed's ramp and platform; else flat */
+    const char *place;     /* where it flies and its way, the text of a place file; NULL: as platform says */
+    bool platform;         /* the seed's ramp and platform; else an endless even floor */
     double tug_rate_per_s; /* rope tugs; 0 = none */
     double climb_rate_mps_per_n; /* that the throttle commands; 0 = it commands thrust */
     bool field_day; /* the autopilot's rules for motors, and a pilot who starts them and hands over */

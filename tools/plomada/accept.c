@@ -359,8 +359,7 @@ static void forget_state(void)
 
 static int run(void)
 {
-    world_config_t config = {
-        .seed = 1, .terrain = terrain_flat, .quadrotor = quadrotor_default, .line = terminal_line};
+    world_config_t config = {.seed = 1, .quadrotor = quadrotor_default, .line = terminal_line};
     board_wire_t failed;
     const char *error;
     bool passed;

@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "figures.h"
 #include "lines.h"
+#include "sim/scenarios/seed_course.h"
 #include "sim/scenarios/wires.h"
 #include "terminal.h"
 #include "world.h"
@@ -178,14 +179,20 @@ static int conclude(const bench_flight_t *flight)
 static int run(void)
 {
     static bench_flight_t flight;
-    world_config_t config = {
-        .seed = order.seed, .terrain = terrain_flat, .quadrotor = quadrotor_default, .line = terminal_line};
+    static place_t place;
+    static course_t course;
+    world_config_t config = {.seed = order.seed,
+                             .place = &place,
+                             .course = &course,
+                             .quadrotor = quadrotor_default,
+                             .line = terminal_line};
     board_wire_t failed;
     const char *error;
 
     memcpy(config.device, order.lines.path, sizeof config.device);
     config.pulses = order.lines.pulses;
-    config.terrain = order.scenario->platform ? terrain_platform : terrain_flat;
+    seed_course_lay(order.scenario->platform ? &seed_course_ramp : &seed_course_flat, order.seed, &place,
+                    &course);
     config.quadrotor.tug_rate_per_s = order.scenario->tug_rate_per_s;
     config.quadrotor.climb_rate_mps_per_n = order.scenario->climb_rate_mps_per_n;
     terminal_begin();

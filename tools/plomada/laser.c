@@ -277,7 +277,7 @@ static void create_sensor(void)
     quadrotor.bench_height_m = order.height_m;
     urg.power_up_rate = (double)order.rate;
     urg.phase = (sim_time_t)noise_uniform(&phase, 0.0, (double)urg.revolution);
-    server.quadrotor = quadrotor_create(&quadrotor, &terrain_flat, order.seed);
+    server.quadrotor = quadrotor_create(&quadrotor, NULL, NULL, order.seed);
     scene_init(&server.scene, &scene_default, server.quadrotor, order.seed);
     server.fault = line_fault_create(order.faults, order.fault_count, order.seed, &ends);
     server.urg = urg04lx_create(&urg, scene_scan, &server.scene, line_fault_octet, server.fault);

@@ -338,7 +338,8 @@ static void create_models(void)
 
     timeline_reset();
     noise_init(&world.nonsense, world.config.seed, "nonsense");
-    world.quadrotor = quadrotor_create(&world.config.quadrotor, &world.config.terrain, world.config.seed);
+    world.quadrotor = quadrotor_create(&world.config.quadrotor, world.config.place, world.config.course,
+                                       world.config.seed);
     scene_init(&world.scene, &scene_default, world.quadrotor, world.config.seed);
     world.laser = urg04lx_create(&phases.laser, scene_scan, &world.scene, from_laser, NULL);
     world.imu = razor9dof_create(&phases.imu, motion, NULL, world.config.seed, from_imu, NULL);

@@ -12,7 +12,8 @@
 typedef struct {
     const char *device[BOARD_WIRES]; /* serial ports */
     unsigned long seed;
-    terrain_t terrain;
+    const place_t *place; /* NULL: an endless even floor; both borrowed */
+    const course_t *course;
     quadrotor_config_t quadrotor;
     const char *pulses; /* what the analyser records, by sigrok-cli -O csv: a FIFO or a growing file. NULL:
                            the pulse is what the board tells */

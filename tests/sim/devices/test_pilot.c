@@ -166,7 +166,7 @@ static void holds(double airframe, double hover_n, double height_m)
     vehicle.airframe = airframe;
     vehicle.hover_thrust_n = hover_n;
     timeline_reset();
-    quad = quadrotor_create(&vehicle, &terrain_flat, 3);
+    quad = quadrotor_create(&vehicle, NULL, NULL, 3);
     quadrotor_set_origin(quad, 0);
     config.turn = (span_t){0.0, 60.0};
     config.height_m = height_m;
@@ -198,7 +198,7 @@ void test_height_zero_lands_it_and_leaves_the_throttle_down(void)
 {
     const quadrotor_config_t vehicle = quadrotor_default;
 
-    quad = quadrotor_create(&vehicle, &terrain_flat, 3);
+    quad = quadrotor_create(&vehicle, NULL, NULL, 3);
     quadrotor_set_origin(quad, 0);
     config.turn = (span_t){0.0, 60.0};
     config.height_m = 0.0;

@@ -270,3 +270,108 @@ void test_any_ray_meets_what_a_march_along_it_meets(void)
     }
     TEST_ASSERT_GREATER_THAN_UINT(60, hits);
 }
+
+/* ---- bars ---- */
+
+static void lay_bars(double height_m)
+{
+    place.bars = (place_bars_t){.height_m = height_m, .period_m = 0.4, .share = 0.25, .from_m = 1.0};
+}
+
+/* Gap from 1 to 1.3 m, bar to 1.4, gap to 1.7, and so on; none before. */
+TEST_CASE(0.05, 0.05, 0.0)
+TEST_CASE(-0.05, -0.05, 0.0)
+void test_bars_lie_across_the_floor_in_their_period_and_share(double height_m, double bar_m, double gap_m)
+{
+    lay_bars(height_m);
+    NEAR(1e-12, gap_m, ground_m(-3.0, 0.0));
+    NEAR(1e-12, gap_m, ground_m(0.95, 0.0));
+    NEAR(1e-12, gap_m, ground_m(1.29, 5.0));
+    NEAR(1e-12, bar_m, ground_m(1.31, -5.0));
+    NEAR(1e-12, bar_m, ground_m(1.39, 0.0));
+    NEAR(1e-12, gap_m, ground_m(1.41, 0.0));
+    NEAR(1e-12, bar_m, ground_m(101.35, 0.0));
+}
+
+/* Down by 45 degrees from (1.1, 0.5): the floor at 1.6; with a bar of 0.1 at 1.3..1.4 its top is passed
+ * at 1.5, its side not met. From (0.85, 0.5): on the bar's level at 1.25, and into its side at 1.3, 0.05
+ * high. From the other side likewise. */
+TEST_CASE(1.1, 1.0, 1.6, 0.0)
+TEST_CASE(0.95, 1.0, 1.35, 0.1)
+TEST_CASE(0.85, 1.0, 1.3, 0.05)
+TEST_CASE(1.85, -1.0, 1.4, 0.05)
+TEST_CASE(1.75, -1.0, 1.35, 0.1)
+TEST_CASE(0.3, 1.0, 0.8, 0.0)
+TEST_CASE(0.8, -1.0, 0.3, 0.0)
+void test_a_slanting_ray_meets_a_bars_top_its_side_or_the_gap(double from_m, double towards, double x_m,
+                                                              double z_m)
+{
+    lay_bars(0.1);
+    const place_hit_t hit = cast(from_m, 0.0, 0.5, (place_vector_t){towards * sqrt(0.5), 0.0, -sqrt(0.5)});
+    NEAR(1e-9, x_m, hit.at.x);
+    NEAR(1e-9, z_m, hit.at.z);
+    NEAR(1e-9, sqrt(0.5), hit.incidence_cos);
+}
+
+/* A groove of 0.1 from 1.3 to 1.4: into it, and onto its far wall. */
+TEST_CASE(0.85, 1.0, 1.4, -0.05)
+TEST_CASE(1.85, -1.0, 1.3, -0.05)
+TEST_CASE(0.7, 1.0, 1.2, 0.0)
+void test_a_ray_meets_a_grooves_wall(double from_m, double towards, double x_m, double z_m)
+{
+    lay_bars(-0.1);
+    const place_hit_t hit = cast(from_m, 0.0, 0.5, (place_vector_t){towards * sqrt(0.5), 0.0, -sqrt(0.5)});
+    NEAR(1e-9, x_m, hit.at.x);
+    NEAR(1e-9, z_m, hit.at.z);
+}
+
+/* Its foot stands in a gap beside a bar: the bar carries a gear that comes to lie on it. */
+void test_a_bar_carries_what_is_within_it(void)
+{
+    lay_bars(0.06);
+    NEAR(1e-12, 0.06, place_below(&place, 1.35, 0.0, 0.01, 0.0).at.z);
+    NEAR(1e-12, 0.0, place_below(&place, 1.25, 0.0, 0.01, 0.0).at.z);
+}
+
+void test_a_floor_may_lie_lower_between_blocks(void)
+{
+    place.level_m = -0.5;
+    stand((place_block_t){.length_m = 2.0, .width_m = 2.0, .bottom_m = -0.5});
+    NEAR(1e-12, 0.0, ground_m(0.5, 0.0));
+    NEAR(1e-12, -0.5, ground_m(1.5, 0.0));
+    NEAR(1e-12, 1.5, cast(1.5, 0.0, 1.0, down).distance_m);
+}
+
+/* What is left out of a cast because it lies aside is never what the ray meets. */
+void test_no_block_is_overlooked(void)
+{
+    noise_t noise;
+
+    noise_init(&noise, 9, "casts");
+    for (int n = 0; n < 3000; n++) {
+        const double x = noise_uniform(&noise, -3.0, 3.0), y = noise_uniform(&noise, -3.0, 3.0);
+        const double turn = noise_uniform(&noise, 0.0, 2.0 * M_PI), steep = noise_uniform(&noise, 0.05, 1.57);
+        const place_vector_t direction = {cos(turn) * cos(steep), sin(turn) * cos(steep), -sin(steep)};
+        const double heading = noise_uniform(&noise, 0.0, 2.0 * M_PI);
+        const double half_m = noise_uniform(&noise, 0.02, 1.0);
+        double first_m = 2.0 / sin(steep); /* the floor from 2 m */
+
+        place_init(&place);
+        stand((place_block_t){.heading_rad = heading,
+                              .length_m = 2.0 * half_m,
+                              .width_m = 0.3,
+                              .near_top_m = 1.0,
+                              .far_top_m = 1.0});
+        /* Walks along the ray in millimetres. */
+        for (double at_m = 0.0; at_m < first_m; at_m += 0.001) {
+            const double px = x + at_m * direction.x, py = y + at_m * direction.y,
+                         pz = 2.0 + at_m * direction.z;
+            const double u = cos(heading) * px + sin(heading) * py, v = cos(heading) * py - sin(heading) * px;
+
+            if (fabs(u) < half_m && fabs(v) < 0.15 && pz < 1.0) {
+                first_m = at_m;
+            }
+        }
+        NEAR(0.02, first_m, cast(x, y, 2.0, direction).distance_m);
+    }
+}

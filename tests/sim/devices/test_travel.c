@@ -87,3 +87,18 @@ void test_nobody_who_steers_is_no_lean(void)
     NEAR(0.0, 0.0, travel.pitch_rad);
     NEAR(0.0, 0.0, travel.x_m);
 }
+
+/* Whatever the lean does: the pitch here would brake it. */
+void test_a_course_that_carries_is_kept_exactly(void)
+{
+    course.carried = true;
+    course.legs[course.count++] = (course_leg_t){.start_s = 1.0, .x_m = 40.0, .speed_mps = 0.4};
+    for (double t_s = 0.0; t_s < 6.0; t_s += STEP_S) {
+        travel_steer(&travel, t_s, STEP_S, 0.0);
+        travel_step(&travel, STEP_S, 0.0, 2.0 * DEG, 5.0 * DEG, GRAVITY_MPS2, false);
+    }
+    /* 5 s at 0.4 m/s less the 53 mm of taking up speed */
+    NEAR(1e-3, 2.0 - 0.0533, travel.x_m);
+    NEAR(1e-9, 0.0, travel.y_m);
+    NEAR(1e-3, 0.4, travel.vx_mps);
+}

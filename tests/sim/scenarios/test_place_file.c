@@ -198,3 +198,13 @@ void test_surfaces_that_are_wrong_are_told(void)
     refuse("surface shiny 0.5 0.6 0 0 0", 1,
            "surface: at most 16, names shorter than 16 and not plain, light shared out at most once");
 }
+
+void test_bars_and_grooves_lie_across_the_way(void)
+{
+    read("bars 50 0.4 0.25");
+    NEAR(1e-12, 0.0, z_m(0.3, 0.0));
+    NEAR(1e-12, 0.0, z_m(0.7, 0.0));
+    NEAR(1e-12, 0.05, z_m(0.85, 3.0));
+    read("bars -30 0.4 0.25");
+    NEAR(1e-12, -0.03, z_m(0.85, 0.0));
+}

@@ -26,7 +26,7 @@ void test_a_figure_reaches_its_field_in_the_fields_unit(void)
     plant_set(&plant, "plant.clock_ppm", 50.0);
     plant_complete(&plant);
     NEAR(1e-12, 6.5, plant.board.quadrotor.hover_thrust_n);
-    NEAR(1e-12, 0.030, plant.board.quadrotor.floor.rms_m);
+    NEAR(1e-12, 0.030, plant.ground.rough_rms_m);
     NEAR(1e-12, -M_PI / 2.0, plant.board.imu.attitude_burst_rad);
     TEST_ASSERT_EQUAL_INT64(40 * SIM_MS, plant.board.laser.ray_instant);
     NEAR(1e-12, 1.00005, plant.board.laser.clock_ratio);
