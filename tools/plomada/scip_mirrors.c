@@ -29,8 +29,10 @@ static const char usage[] =
     "and its landing gear M metres above a flat floor (0..3). A step looks at a mirror when\n"
     "  - at least 10 scans hold it, and 90 % of them with a good distance,\n"
     "  - its distances are stable: at most 40 mm between their quartiles,\n"
-    "  - their median is within MM (default 40) of the mirror's d + height + l: as delivered, of the\n"
-    "    parameters DF and LF, D1 and L1 (aft), D2 and L2 (fore).\n"
+    "  - their median, times the cosine of the step's angle to the mirror's axis, is within MM (default 40) "
+    "of\n"
+    "    the mirror's d + height + l: as delivered, of the parameters DF and LF, D1 and L1 (aft), D2 and L2 "
+    "(fore).\n"
     "Steps up to 60 from the front (384) can only look at the front mirror, smaller ones at the aft, larger "
     "ones at the\n"
     "fore. The longest row of neighbouring steps is the mirror, its window 5 steps inside either end.\n\n"
@@ -122,6 +124,21 @@ static mirror_t mirror_at(unsigned step)
     return step > SCIP_STEP_FRONT + FRONT_REACH ? MIRROR_FORE : MIRROR_FRONT;
 }
 
+/* The rays of a mirror are a fan: a ray that is off the mirror's axis goes on as far off the plumb line, and
+ * is longer by 1 / cos. At 3 m that is 44 mm at the rim. The axes: 90 degrees to either side of the front on
+ * the bracket of three mirrors, 42.5 degrees on that of two beams. */
+static double plumb_part(unsigned step)
+{
+    static const double axes_deg[] = {-90.0, -42.5, 0.0, 42.5, 90.0};
+    const double step_deg = 360.0 / 1024.0, at_deg = ((double)step - (double)SCIP_STEP_FRONT) * step_deg;
+    double aside_deg = 180.0;
+
+    for (size_t i = 0; i < sizeof axes_deg / sizeof axes_deg[0]; i++) {
+        aside_deg = fmin(aside_deg, fabs(at_deg - axes_deg[i]));
+    }
+    return cos(aside_deg * (M_PI / 180.0));
+}
+
 static double expected_mm(mirror_t mirror, const order_t *order)
 {
     const altitude_geometry_t geometry = altitude_geometry_default();
@@ -145,15 +162,16 @@ static void find_rows(survey_t *survey, const order_t *order, row_t rows[MIRROR_
 
     for (unsigned step = 0; step < STEPS; step++) {
         const mirror_t mirror = mirror_at(step);
-        const bool fits = stable_median(survey, step, &median_mm) &&
-                          fabs(median_mm - expected_mm(mirror, order)) <= order->tolerance_mm;
+        const bool stable = stable_median(survey, step, &median_mm);
+        const double plumb_mm = stable ? median_mm * plumb_part(step) : 0.0;
+        const bool fits = stable && fabs(plumb_mm - expected_mm(mirror, order)) <= order->tolerance_mm;
 
         if (!fits || (row.steps > 0 && mirror != mirror_at(row.first))) {
             row.steps = 0;
         }
         if (fits) {
-            row = row.steps == 0 ? (row_t){step, step, 1, median_mm}
-                                 : (row_t){row.first, step, row.steps + 1, row.median_mm + median_mm};
+            row = row.steps == 0 ? (row_t){step, step, 1, plumb_mm}
+                                 : (row_t){row.first, step, row.steps + 1, row.median_mm + plumb_mm};
             keep_longest(&rows[mirror], &row);
         }
     }
