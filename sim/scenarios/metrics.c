@@ -135,9 +135,9 @@ static bool cut(const metrics_record_t *record, const metrics_sample_t *s)
 
 static void watch_ground(metrics_record_t *record, const metrics_sample_t *s)
 {
-    const bool was_aloft = record->count > 0 && record->before.height_m > AIRBORNE_M;
+    const bool was_aloft = record->count > 0 && record->before.clearance_m > AIRBORNE_M;
 
-    if (s->height_m <= AIRBORNE_M) {
+    if (s->clearance_m <= AIRBORNE_M) {
         record->aloft_since_s = NAN;
     } else if (!was_aloft) {
         record->aloft_since_s = s->t_s;
@@ -187,7 +187,7 @@ static void watch_descent(metrics_record_t *record, const metrics_sample_t *s)
 
 static void watch_estimate(metrics_record_t *record, const metrics_sample_t *s)
 {
-    const bool aloft = s->height_m > AIRBORNE_M && s->t_s >= METRICS_REFERENCE_S;
+    const bool aloft = s->clearance_m > AIRBORNE_M && s->t_s >= METRICS_REFERENCE_S;
 
     if (aloft && s->flagged && s->t_s < record->land_s && record->count > 0) {
         record->flagged_s += s->t_s - record->before.t_s;
@@ -223,7 +223,7 @@ static void watch_landing(metrics_record_t *record, const metrics_sample_t *s)
  * not. */
 static void watch_doubts(metrics_record_t *record, const metrics_sample_t *s)
 {
-    const bool aloft = s->height_m > AIRBORNE_M && s->t_s >= METRICS_REFERENCE_S && s->t_s < record->land_s;
+    const bool aloft = s->clearance_m > AIRBORNE_M && s->t_s >= METRICS_REFERENCE_S && s->t_s < record->land_s;
     const unsigned risen = s->doubts & ~record->doubts;
 
     if (aloft && s->ours) {

@@ -1174,7 +1174,7 @@ void test_a_course_waits_for_a_vehicle_that_stands(void)
 }
 
 /* Its feet, 0.15 m off the centre, stand on two blocks 6 cm high, the centre over the gap between them. */
-void test_what_stands_on_its_feet_has_no_height(void)
+void test_what_stands_on_its_feet_is_down_with_its_centre_over_a_gap(void)
 {
     place_t blocks;
 
@@ -1191,7 +1191,8 @@ void test_what_stands_on_its_feet_has_no_height(void)
     fly(4.0, 3.0);
     TEST_ASSERT_TRUE(now().on_ground);
     NEAR(1e-9, 0.06, now().altitude_m);
-    NEAR(1e-9, 0.0, now().height_m);
+    NEAR(1e-9, 0.0, now().clearance_m);
+    NEAR(1e-9, 0.06, now().height_m);
 }
 
 /* A step of the ground is not a speed of it. */

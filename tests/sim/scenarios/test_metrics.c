@@ -433,3 +433,21 @@ void test_a_day_of_samples_is_no_matter(void)
     TEST_ASSERT_EQUAL_size_t(8640000, record.count);
     NEAR(1e-3, 0.0, value(METRIC_HOVER_RMS_MM));
 }
+
+/* On feet with the centre over a gap 6 cm deep: neither cut in the air when its motors stop, nor doubted
+ * there. */
+void test_a_vehicle_that_stands_on_its_feet_over_a_gap_is_not_aloft(void)
+{
+    carried_m = 0.06;
+    now.height_m = 0.06;
+    now.may_cut = true;
+    go(2.0, 0.06);
+    now.doubts = 1U;
+    now.flagged = true;
+    go(4.0, 0.06);
+    now.thrust_n = 0.0;
+    go(5.0, 0.06);
+    NEAR(1e-9, 0.0, value(METRIC_CUTS));
+    NEAR(1e-9, 0.0, value(METRIC_FLAGGED_S));
+    NEAR(1e-9, 0.0, value(METRIC_SIGHT_DOUBTS));
+}
