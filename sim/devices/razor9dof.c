@@ -38,6 +38,7 @@ const razor_config_t razor_default = {.period = 25 * SIM_MS,
                                       .acceleration_alias_hz = 2.0,
                                       .attitude_burst_rad = 0.0,
                                       .attitude_burst_radps = 0.0,
+                                      .attitude_burst_turned_rad = 0.0,
                                       .attitude_burst = {10.0, 0.075},
                                       .mute = {10.0, 0.0},
                                       .frozen = {10.0, 0.0},
@@ -142,25 +143,35 @@ static void put_acceleration(razor9dof_t *razor, frame_t *frame, const razor_tru
                counts * cos(pitch_rad) * cos(roll_rad));
 }
 
+/* That the told attitude is off by, for a while. */
+static double burst_rad(const razor9dof_t *razor, double t_s)
+{
+    const razor_config_t *c = &razor->config;
+
+    return span_holds(&c->attitude_burst, t_s)
+               ? c->attitude_burst_rad + c->attitude_burst_radps * (t_s - c->attitude_burst.start_s)
+               : 0.0;
+}
+
 static void compose(razor9dof_t *razor, frame_t *frame, const razor_truth_t *seen)
 {
     const razor_truth_t truth = *seen;
     const double way = razor->config.turned >= 0.5 ? -1.0 : 1.0;
     const double roll_rad = way * truth.roll_rad + razor->config.mount_roll_rad;
     const double pitch_rad = way * truth.pitch_rad + razor->config.mount_pitch_rad;
+    const double burst = burst_rad(razor, truth.t_s);
     frame->length = 0;
     if (razor->config.stock < 0.5) {
         put_acceleration(razor, frame, &truth, roll_rad, pitch_rad);
         put_text(frame, razor->config.joined ? "" : "\r\n");
     }
     const double yaw_deg = printed_angle_deg(razor, truth.yaw_rad);
-    const double pitch_deg = razor->config.pitch_sign * printed_angle_deg(razor, pitch_rad);
-    const double burst_rad = span_holds(&razor->config.attitude_burst, truth.t_s)
-                                 ? razor->config.attitude_burst_rad +
-                                       razor->config.attitude_burst_radps *
-                                           (truth.t_s - razor->config.attitude_burst.start_s)
-                                 : 0.0;
-    const double roll_deg = -razor->config.roll_sign * printed_angle_deg(razor, roll_rad + burst_rad);
+    const double pitch_deg = razor->config.pitch_sign *
+                             printed_angle_deg(
+                                 razor, pitch_rad + burst * sin(razor->config.attitude_burst_turned_rad));
+    const double roll_deg = -razor->config.roll_sign *
+                            printed_angle_deg(
+                                razor, roll_rad + burst * cos(razor->config.attitude_burst_turned_rad));
     const double scale = razor->config.angle_scale;
     const bool swapped = razor->config.swapped >= 0.5;
     put_triple(frame, "#YPR=", scale * yaw_deg, scale * (swapped ? roll_deg : pitch_deg),

@@ -40,9 +40,10 @@ typedef struct {
     double
         acceleration_alias_mps2;  /* 0: amplitude of a vibration that the sampling has brought down to ... */
     double acceleration_alias_hz; /* 2 */
-    double attitude_burst_rad;    /* 0: added to roll ... */
+    double attitude_burst_rad;    /* 0: added to the attitude ... */
     double attitude_burst_radps;  /* 0: ... and growing so fast ... */
-    span_t attitude_burst;        /* 10 s, for three frames */
+    double attitude_burst_turned_rad; /* 0: to roll; a right angle: to pitch */
+    span_t attitude_burst;            /* 10 s, for three frames */
     span_t mute, frozen, garbled; /* 10 s, for 0 s: nothing is sent; the latest frame again and again; octets
                                    * with a wrong bit */
     double garbled_share;         /* 0.05 of the octets */

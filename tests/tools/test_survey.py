@@ -2,6 +2,7 @@
 import contextlib
 import io
 import json
+import random
 import re
 import shlex
 import shutil
@@ -44,6 +45,9 @@ lies = ["sight"]
 row = "both"
 set = { tau = 0.1 }
 reference = 0.5
+[third]
+set = { tau = 0.2 }
+lies = ["IMU"]
 [two]
 mix = 2
 runs = 2
@@ -85,7 +89,18 @@ class Meaning(unittest.TestCase):
         mixed = flight(self.table, "two")
         figures = dict(lines(mixed.text, "set"))
         self.assertLessEqual({"plant.gust", "plant.tau", "SEL"}, set(figures))
-        self.assertEqual(mixed.sources, ("sight",))
+        self.assertEqual(set(mixed.sources), {"sight", "IMU"})
+
+    # Two of one row set the same figures: the second would undo the first.
+    def test_what_is_mixed_lies_and_is_of_different_rows(self):
+        for mix in (2, 3):
+            seen = set()
+            for number in range(300):
+                parts = situations.mixed(TABLES["lies"], mix, random.Random(number))
+                self.assertEqual((len(parts), len({part.row for part in parts})), (mix, mix))
+                self.assertTrue(all(part.sources for part in parts))
+                seen |= {part.name for part in parts}
+            self.assertEqual(seen, {one.name for one in TABLES["lies"].situations.values() if one.sources})
 
     def test_every_law_flies_the_same_and_every_number_another(self):
         seen = set()

@@ -220,14 +220,19 @@ class Draft:
         return "\n".join([*lines, f"reference {reference_m:g}", f"land {land_s:g}", f"end {land_s + 10:g}", ""])
 
 
+def mixed(table, count, rng):
+    """So many situations that lie, each of another row: two of one row would be one, since the later sets what the earlier has set."""
+    rows = [lying for of_row in table.rows().values() if (lying := [one for one in of_row if one.sources])]
+    return [rng.choice(of_row) for of_row in rng.sample(rows, count)]
+
+
 def flight(table, situation, law, seed, number, held_out=False):
     """The flight of this number; the same for every law but for what the law types. Numbers count from 1."""
     where = f"{table.name}.toml: {situation.name}"
     rng = random.Random(f"{table.name} {situation.name} {seed}/{number}{' held out' * held_out}")
     draft = Draft(f"{table.name} {situation.name}", seed, number, held_out)
     draft.add(table.base, rng, where)
-    others = [other for other in table.situations.values() if not other.mix]
-    for one in rng.sample(others, situation.mix) if situation.mix else [situation]:
+    for one in mixed(table, situation.mix, rng) if situation.mix else [situation]:
         draft.add(one, rng, where)
     words = ["--seed", str((seed - 1) * plan.RUNS_PER_SEED + number), "--until-down", str(DOWN_WITHIN_S)]
     words += [word for spec in draft.faults for word in ("--fault", spec)]

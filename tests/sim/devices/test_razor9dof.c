@@ -436,6 +436,22 @@ void test_a_burst_of_bad_attitudes_is_in_the_roll_alone_and_ends(void)
     NEAR(0.006, 2.0, decoded.roll);
 }
 
+TEST_CASE(90.0, 0.0, 60.0)
+TEST_CASE(-90.0, 0.0, -60.0)
+TEST_CASE(30.0, 51.96, 30.0)
+void test_a_burst_of_bad_attitudes_leans_to_the_side_that_is_asked_for(double turned_deg, double roll_deg,
+                                                                       double pitch_deg)
+{
+    exact.attitude_burst_rad = 60.0 * DEG;
+    exact.attitude_burst_turned_rad = turned_deg * DEG;
+    exact.attitude_burst = (span_t){5.0, 0.075};
+    truth.t_s = 5.05;
+    start(1);
+    run_frames(1);
+    NEAR(0.01, roll_deg, decoded.roll);
+    NEAR(0.01, pitch_deg, decoded.pitch);
+}
+
 void test_a_mute_sensor_sends_nothing_and_comes_back_with_whole_frames(void)
 {
     exact.mute = (span_t){1.0, 0.5};
