@@ -342,6 +342,18 @@ place_hit_t place_below(const place_t *place, double x_m, double y_m, double z_m
     return hit;
 }
 
+bool place_block_at(const place_t *place, int number, double t_s, place_block_t *block)
+{
+    double rises_mps;
+    const double lifted_m = travelled_m(&place->blocks[number], t_s, &rises_mps);
+
+    *block = place->blocks[number];
+    block->bottom_m += lifted_m;
+    block->near_top_m += lifted_m;
+    block->far_top_m += lifted_m;
+    return is_there(block, t_s);
+}
+
 static bool holds(const place_t *place, int number, place_vector_t point, double t_s)
 {
     const place_block_t *block = &place->blocks[number];

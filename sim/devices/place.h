@@ -111,6 +111,9 @@ double place_sunlight(const place_t *place, double x_m, double y_m);
  */
 place_hit_t place_below(const place_t *place, double x_m, double y_m, double z_m, double t_s);
 
+/* The block of that number as it is at t_s, lifted; false: it is not there. */
+bool place_block_at(const place_t *place, int number, double t_s, place_block_t *block);
+
 /* True in a block, deeper than a surface may be and still carry: where only a collision leads. */
 bool place_inside(const place_t *place, place_vector_t point, double t_s);
 

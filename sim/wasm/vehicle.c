@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "sim/board.h"
+#include "sim/scenarios/place_file.h"
 #include "sim/scenarios/plant.h"
 #include "sim/ti/f021/flash.h"
 #include "sim/timeline.h"
@@ -14,6 +15,7 @@
 #define EXPORT(name) __attribute__((export_name(name)))
 #define ARGUMENTS_MAX 64
 #define HEARD_MAX 32768
+#define PLACE_TEXT_MAX 16384
 #define RAMP_AHEAD_S 1.0
 #define STICK_MIDDLE (1500 * SIM_US)
 
@@ -21,8 +23,11 @@ static char room[VEHICLE_ROOM];
 static char heard[HEARD_MAX];
 static int heard_count;
 static bool on;
-static plant_t plant;                           /* its figures stay from one power-on to the next */
-static double ramp_from_m, ramp_since_s = -1.0; /* where and when vehicle_meet_ramp() was called; < 0: not */
+static plant_t plant; /* its figures stay from one power-on to the next */
+static char place_text[PLACE_TEXT_MAX],
+    next_place[PLACE_TEXT_MAX];           /* laid: now, and from the next power-on */
+static place_file_t laid;                 /* place_text, read */
+static double went_from_m, went_s = -1.0; /* where and when vehicle_go() was called; < 0: not */
 static vehicle_truth_t truth;
 
 EXPORT("vehicle_room") char *vehicle_room(void)
@@ -77,14 +82,32 @@ static void prepare_plant(unsigned seed)
     plant = fresh;
 }
 
+/* The place that was laid, with the roughness and the bars of the figures, and its way from when it was
+ * ordered. */
+static void complete_place(plant_t *now)
+{
+    place_file_read(&laid, place_text, now->board.seed); /* vehicle_lay() has seen that it can be read */
+    seed_course_floor(&now->ground, now->board.seed, &laid.place);
+    now->board.place = &laid.place;
+    now->course = (course_t){.count = 0};
+    if (went_s >= 0.0) {
+        now->course = laid.course;
+        for (int i = 0; i < laid.course.count; i++) {
+            now->course.legs[i].start_s += went_s - laid.course.legs[0].start_s;
+        }
+    }
+}
+
 static const plant_t *completed(void)
 {
     static plant_t now;
 
     now = plant;
     plant_complete(&now);
-    if (ramp_since_s >= 0.0) {
-        seed_course_meet(&now.ground, ramp_from_m, ramp_since_s, RAMP_AHEAD_S, &now.place, &now.course);
+    if (place_text[0] != '\0') {
+        complete_place(&now);
+    } else if (went_s >= 0.0) {
+        seed_course_meet(&now.ground, went_from_m, went_s, RAMP_AHEAD_S, &now.place, &now.course);
     }
     return &now;
 }
@@ -95,7 +118,8 @@ EXPORT("vehicle_power_on") void vehicle_power_on(unsigned seed)
         board_power_off();
     }
     prepare_plant(seed);
-    ramp_since_s = -1.0;
+    went_s = -1.0;
+    memcpy(place_text, next_place, sizeof place_text);
     heard_count = 0;
     board_power_on(&completed()->board, terminal, NULL);
     quadrotor_set_origin(board_quadrotor(), timeline_now()); /* scenario time: since power-on */
@@ -222,12 +246,76 @@ EXPORT("vehicle_reach") void vehicle_reach(int in_reach)
     board_radio_reach(in_reach != 0);
 }
 
-EXPORT("vehicle_meet_ramp") void vehicle_meet_ramp(void)
+EXPORT("vehicle_lay") int vehicle_lay(int size)
+{
+    static place_file_t tried;
+
+    room[size < VEHICLE_ROOM ? size : VEHICLE_ROOM - 1] = '\0';
+    if (size >= PLACE_TEXT_MAX) {
+        return snprintf(room, sizeof room, "longer than %d octets", PLACE_TEXT_MAX - 1);
+    }
+    if (!place_file_read(&tried, room, 1)) {
+        return snprintf(room, sizeof room, "line %u: %s", tried.line, tried.message);
+    }
+    memcpy(next_place, room, (size_t)size + 1);
+    return 0;
+}
+
+EXPORT("vehicle_go") void vehicle_go(void)
 {
     const plant_t *now;
 
-    ramp_from_m = quadrotor_state(board_quadrotor())->x_m;
-    ramp_since_s = quadrotor_scenario_s(board_quadrotor());
+    went_from_m = quadrotor_state(board_quadrotor())->x_m;
+    went_s = quadrotor_scenario_s(board_quadrotor());
     now = completed();
     quadrotor_follow(board_quadrotor(), now->board.course);
+}
+
+EXPORT("vehicle_map") int vehicle_map(void)
+{
+    const place_t *place = quadrotor_place(board_quadrotor());
+    const course_t *way = place_text[0] != '\0' ? &laid.course : completed()->board.course;
+    const double t_s = quadrotor_scenario_s(board_quadrotor());
+    size_t used = 0;
+
+    for (int i = 0; i < place->count && used < sizeof room; i++) {
+        place_block_t block;
+
+        if (place_block_at(place, i, t_s, &block)) {
+            used += (size_t)snprintf(&room[used], sizeof room - used,
+                                     "block %.4f %.4f %.4f %.4f %.4f %.4f %.4f %.4f\n", block.x_m, block.y_m,
+                                     block.heading_rad, block.length_m, block.width_m, block.bottom_m,
+                                     block.near_top_m, block.far_top_m);
+        }
+    }
+    for (int i = 0; i < way->count && used < sizeof room; i++) {
+        used += (size_t)snprintf(&room[used], sizeof room - used, "leg %.4f %.4f\n", way->legs[i].x_m,
+                                 way->legs[i].y_m);
+    }
+    return (int)(used < sizeof room ? used : sizeof room - 1);
+}
+
+EXPORT("vehicle_view") const vehicle_view_t *vehicle_view(void)
+{
+    static vehicle_view_t told;
+    const quadrotor_state_t *state = quadrotor_state(board_quadrotor());
+    const view_t view = view_of(quadrotor_place(board_quadrotor()), state,
+                                quadrotor_scenario_s(board_quadrotor()));
+
+    told.x_m = state->x_m;
+    told.y_m = state->y_m;
+    told.heading_rad = state->heading_rad;
+    memcpy(told.ground_m, view.ground_m, sizeof told.ground_m);
+    for (int i = 0; i < VIEW_BEAMS; i++) {
+        const place_vector_t from = view.beam[i].from, to = view.beam[i].to;
+
+        told.beam[i].from_x_m = from.x;
+        told.beam[i].from_y_m = from.y;
+        told.beam[i].from_z_m = from.z;
+        told.beam[i].to_x_m = to.x;
+        told.beam[i].to_y_m = to.y;
+        told.beam[i].to_z_m = to.z;
+        told.beam[i].meets = view.beam[i].meets ? 1.0 : 0.0;
+    }
+    return &told;
 }

@@ -5,6 +5,8 @@
 #ifndef SIM_WASM_VEHICLE_H
 #define SIM_WASM_VEHICLE_H
 
+#include "sim/devices/view.h"
+
 #define VEHICLE_ROOM 65536
 
 /* Where arguments and typed text are put, and what was heard is found. */
@@ -51,7 +53,28 @@ void vehicle_trouble_laser(int code);
 void vehicle_select(int firmware);
 /* The radio pair in or out of each other's reach. */
 void vehicle_reach(int in_reach);
-/* The ramp and platform of the seed come by, the ramp in a second. */
-void vehicle_meet_ramp(void);
+/* The place that the next power-on is in: a place file (place_file.h), `size` octets in the room; 0: an even
+ * floor. 0: it is one. Else octets of what is wrong with it, moved to the room; the place before stays. */
+int vehicle_lay(int size);
+/* The vehicle goes its way, from now on: that of the place that was laid; else over the ramp and platform of
+ * the seed, which come by, the ramp in a second. */
+void vehicle_go(void);
+
+/* The place as it is now, seen from above, moved to the room: how many octets. A line for each block:
+ * `block`, x, y, heading in radians, length, width, bottom, near top, far top in metres; and for each leg of
+ * the way: `leg`, x, y. */
+int vehicle_map(void);
+
+/* Where the vehicle is, the ground along its nose and its beams (sim/devices/view.h): valid until the next
+ * call. */
+typedef struct {
+    double x_m, y_m, heading_rad;
+    double ground_m[VIEW_POINTS];
+    struct {
+        double from_x_m, from_y_m, from_z_m, to_x_m, to_y_m, to_z_m;
+        double meets; /* 0: nothing in the sensor's reach */
+    } beam[VIEW_BEAMS];
+} vehicle_view_t;
+const vehicle_view_t *vehicle_view(void);
 
 #endif

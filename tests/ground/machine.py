@@ -7,6 +7,7 @@ import wasmtime
 
 TRUTH = ("time_s", "height_m", "altitude_m", "terrain_m", "speed_mps", "thrust_n", "roll_rad", "pitch_rad", "pulse_us",
          "contacts")
+GROUND = 161    # VIEW_POINTS of sim/devices/view.h
 
 
 class Machine:
@@ -56,6 +57,25 @@ class Machine:
 
     def set(self, **figures):
         return [self.call("vehicle_set", self.put(f"{name}={value}".encode())) for name, value in figures.items()]
+
+    def lay(self, text):
+        """A place for the next power-on; what is wrong with it."""
+        size = self.call("vehicle_lay", self.put(text.encode()))
+        return bytes(self.exports["memory"].read(self.store, self.room, self.room + size)).decode()
+
+    def map(self):
+        """[(kind, [numbers])]"""
+        size = self.call("vehicle_map")
+        lines = bytes(self.exports["memory"].read(self.store, self.room, self.room + size)).decode().splitlines()
+        return [(line.split()[0], [float(word) for word in line.split()[1:]]) for line in lines]
+
+    def view(self):
+        """x, y, heading; the ground along the nose; the beams as (from x, y, z, to x, y, z, meets)."""
+        at, count = self.call("vehicle_view"), 3 + GROUND + 3 * 7
+        octets = bytes(self.exports["memory"].read(self.store, at, at + 8 * count))
+        values = list((ctypes.c_double * count).from_buffer_copy(octets))
+        beams = [values[3 + GROUND + 7 * i:10 + GROUND + 7 * i] for i in range(3)]
+        return values[:3], values[3:3 + GROUND], beams
 
     def run(self, seconds):
         """What the operator's terminal receives meanwhile."""

@@ -138,6 +138,59 @@ class Vehicle(unittest.TestCase):
         vehicle.type("#IMU\n")
         self.assertIn("seen:angles ", vehicle.run(2))
 
+    def test_the_seeds_ramp_comes_by_and_the_beams_end_on_it(self):
+        vehicle = self.airborne()
+        where, ground, beams = vehicle.view()
+        self.assertEqual((max(ground), vehicle.map()), (0.0, []))
+        for beam in beams:
+            self.assertAlmostEqual(beam[5], 0.0, delta=1e-9)
+            self.assertAlmostEqual(beam[2], vehicle.truth()["altitude_m"] + 0.1, delta=0.03)
+        vehicle.call("vehicle_go")
+        self.assertEqual([kind for kind, _ in vehicle.map()], ["block", "block", "leg"])
+        vehicle.run(3)
+        after, ground, beams = vehicle.view()
+        self.assertAlmostEqual(after[0] - where[0], 1.1, delta=0.2)     # 0.4 m/s, taken up
+        self.assertAlmostEqual(max(ground), 0.25, delta=1e-6)
+        for beam in beams:
+            self.assertAlmostEqual(beam[5], 0.25, delta=1e-6)
+        self.assertAlmostEqual(vehicle.truth()["terrain_m"], 0.25, delta=1e-6)
+
+    # The hall's way begins with the order, however long the vehicle stood before.
+    def test_a_place_that_is_laid_is_flown_in_after_the_next_power_on(self):
+        vehicle = machine.Machine(WASM, self.directory)
+        vehicle.power_on(7)
+        text = (ROOT / "docs/examples/hall.place").read_text()
+        self.assertEqual(vehicle.lay(text), "")
+        self.assertEqual(vehicle.map(), [])
+        vehicle.power_on(7)
+        kinds = [kind for kind, _ in vehicle.map()]
+        self.assertEqual((kinds.count("block"), kinds.count("leg")), (2 + 5 + 3 + 1, 2))
+        vehicle.run(25)
+        vehicle.type("#SETR 0.6\n")
+        vehicle.run(6)
+        for coordinate in vehicle.view()[0][:2]:
+            self.assertAlmostEqual(coordinate, 0.0, delta=0.6)      # its pilot holds it there, in its sway
+        vehicle.call("vehicle_go")
+        highest = 0.0
+        for _ in range(70):
+            vehicle.run(0.2)
+            _, ground, beams = vehicle.view()
+            highest = max(highest, *(beam[5] for beam in beams))
+        self.assertGreater(vehicle.view()[0][0], 3.0)
+        self.assertGreater(highest, 0.39)       # the table
+        self.assertEqual(vehicle.truth()["contacts"], 0)
+
+    def test_a_place_that_cannot_be_read_is_refused_and_the_one_before_stays(self):
+        vehicle = machine.Machine(WASM, self.directory)
+        vehicle.lay("block 1 0 1 1 0.3")
+        self.assertRegex(vehicle.lay("block 2 0 1 1 0.3\nblok 1 2 3"), "^line 2: ")
+        self.assertRegex(vehicle.lay("#" * 20000), "longer than")
+        vehicle.power_on(1)
+        self.assertEqual([numbers[0] for kind, numbers in vehicle.map() if kind == "block"], [1.0])
+        self.assertEqual(vehicle.lay(""), "")
+        vehicle.power_on(1)
+        self.assertEqual(vehicle.map(), [])
+
 
 if __name__ == "__main__":
     missing = what_is_missing()

@@ -17,7 +17,10 @@ interface Exports {
   vehicle_power_imu(on: number): void;
   vehicle_trouble_laser(code: number): void;
   vehicle_select(firmware: number): void;
-  vehicle_meet_ramp(): void;
+  vehicle_lay(size: number): number;
+  vehicle_go(): void;
+  vehicle_map(): number;
+  vehicle_view(): number;
   vehicle_reach(inReach: number): void;
   vehicle_plant(): number;
   vehicle_set(size: number): number;
@@ -36,6 +39,45 @@ export interface Truth {
   contacts: number;
 }
 const TRUTH = ['time_s', 'height_m', 'altitude_m', 'terrain_m', 'speed_mps', 'thrust_n', 'roll_rad', 'pitch_rad', 'pulse_us', 'contacts'] as const;
+
+type Point = [x: number, y: number, z: number];
+
+export interface Beam {
+  from: Point;
+  to: Point;
+  meets: boolean; // else nothing in the sensor's reach
+}
+
+/** Where the vehicle is, the ground along its nose, and its beams: front, aft, fore (sim/devices/view.h). */
+export interface View {
+  x: number;
+  y: number;
+  heading: number;
+  ground: number[]; // every GROUND_STEP metres from GROUND_FIRST on
+  beams: Beam[];
+}
+export const GROUND_FIRST = -2;
+export const GROUND_STEP = 0.025;
+const GROUND_POINTS = 161;
+const BEAMS = 3;
+const BEAM_VALUES = 7;
+
+/** A thing in the place, as it is now. */
+export interface Block {
+  x: number;
+  y: number;
+  heading: number;
+  length: number;
+  width: number;
+  top: number;
+}
+
+export type PlaceName = 'floor' | 'hall' | 'own';
+
+export interface PlaceMap {
+  blocks: Block[];
+  way: [x: number, y: number][];
+}
 
 /** A figure of the simulated world (`plomada list --plant`). */
 export interface Figure {
@@ -88,6 +130,7 @@ export async function flyScenario(args: string[]): Promise<{ status: number; out
   return { status, output: wasi.output, files };
 }
 
+const ROOM = 65536; // VEHICLE_ROOM of sim/wasm/vehicle.h
 const TICK = 20; // ms of the wall clock between two steps
 const CATCH_UP = 1500; // a page in the background is woken once a second
 
@@ -104,6 +147,7 @@ export class VehicleLink implements Link {
   laser = true;
   imu = true;
   pilot = false;
+  place: PlaceName = 'floor';
   readonly figures: Figure[];
   private readonly room: number;
   private readonly origin = Date.now();
@@ -165,9 +209,7 @@ export class VehicleLink implements Link {
 
   /** From the module's own list, whatever it has. */
   private readFigures(): Figure[] {
-    const size = this.machine.vehicle_plant();
-    const text = new TextDecoder().decode(new Uint8Array(this.machine.memory.buffer, this.room, size));
-    return text.trim().split('\n').map((row) => {
+    return this.heard(this.machine.vehicle_plant()).trim().split('\n').map((row) => {
       const [name = '', unit = '', least, most, value, atOnce, meaning = ''] = row.split('\t');
       return { name, unit, least: Number(least), most: Number(most), standard: Number(value), value: Number(value), atOnce: atOnce === '1', meaning };
     });
@@ -193,8 +235,43 @@ export class VehicleLink implements Link {
     this.machine.vehicle_trouble_laser(70);
   }
 
-  meetRamp(): void {
-    this.machine.vehicle_meet_ramp();
+  /** The way of the place, or the seed's ramp. */
+  go(): void {
+    this.machine.vehicle_go();
+  }
+
+  /** The place of the next power-on, by the text of a place file; '': an even floor. What is wrong with it; '': nothing. */
+  lay(place: PlaceName, text: string): string {
+    const octets = new TextEncoder().encode(text).slice(0, ROOM - 1); // the module says what is too long
+    new Uint8Array(this.machine.memory.buffer).set(octets, this.room);
+    const wrong = this.heard(this.machine.vehicle_lay(octets.length));
+    if (wrong === '') this.place = place;
+    return wrong;
+  }
+
+  map(): PlaceMap {
+    const map: PlaceMap = { blocks: [], way: [] };
+    for (const line of this.heard(this.machine.vehicle_map()).split('\n')) {
+      const [kind, ...rest] = line.split(' ');
+      const [x = 0, y = 0, heading = 0, length = 0, width = 0, , near = 0, far = 0] = rest.map(Number);
+      if (kind === 'block') map.blocks.push({ x, y, heading, length, width, top: Math.max(near, far) });
+      if (kind === 'leg') map.way.push([x, y]);
+    }
+    return map;
+  }
+
+  view(): View {
+    const values = Array.from(new Float64Array(this.machine.memory.buffer, this.machine.vehicle_view(), 3 + GROUND_POINTS + BEAMS * BEAM_VALUES));
+    const [x = 0, y = 0, heading = 0] = values;
+    const beams = Array.from({ length: BEAMS }, (_, i): Beam => {
+      const [fromX = 0, fromY = 0, fromZ = 0, toX = 0, toY = 0, toZ = 0, meets] = values.slice(3 + GROUND_POINTS + i * BEAM_VALUES);
+      return { from: [fromX, fromY, fromZ], to: [toX, toY, toZ], meets: meets === 1 };
+    });
+    return { x, y, heading, ground: values.slice(3, 3 + GROUND_POINTS), beams };
+  }
+
+  private heard(size: number): string {
+    return new TextDecoder().decode(new Uint8Array(this.machine.memory.buffer, this.room, size));
   }
 
   /** false: the program has stopped for good, or broken. */

@@ -4,6 +4,7 @@ import { keep, keptAs } from '../keep';
 import { Plot, saveFile, savePng, stamp } from '../plot';
 import { clock, command, live, ofThisVehicle, phase, powerCycle, seen, series, vehicle } from '../store';
 import { ago, shown, told, w } from '../words';
+import { Picture, Places } from './place';
 import { Troubles } from './troubles';
 
 const wanted = signal(keptAs('reference', (text) => (Number(text) >= 0.1 && Number(text) <= 3 ? text : null), '0.6'));
@@ -112,31 +113,6 @@ function Reference() {
   );
 }
 
-function Picture() {
-  const v = vehicle.value!;
-  void clock.value;
-  const truth = v.truth();
-  const scale = 70; // pixels per metre
-  const ground = 150;
-  const y = ground - 12 - truth.altitude_m * scale;
-  const shift = ((truth.time_s * 40) % 24);
-  const floor = ground - truth.terrain_m * scale;
-  const shift2 = Math.min(0, y - 30); // keep it in view
-  return (
-    <svg class="picture" viewBox={`0 ${shift2} 260 170`} role="img" aria-label={`${w().truth} ${shown(truth.height_m, 2)} m`}>
-      <g class="grid-lines">{[0, 0.5, 1, 1.5, 2, 2.5, 3].map((m) => (<g key={m}><line x1="34" x2="256" y1={ground - m * scale} y2={ground - m * scale} /><text x="4" y={ground - m * scale + 4}>{shown(m)} m</text></g>))}</g>
-      <rect class="earth" x="34" y={floor} width="222" height={Math.max(4, 180 - floor)} />
-      <g class="hatch">{Array.from({ length: 11 }, (_, i) => (<line key={i} x1={44 + i * 24 - shift} x2={36 + i * 24 - shift} y1={floor + 2} y2={floor + 12} />))}</g>
-      {v.laser && <line class="beam" x1="145" x2="145" y1={y} y2={floor} />}
-      <g transform={`translate(145 ${y}) rotate(${(-truth.roll_rad * 180) / Math.PI})`}>
-        <rect class="body" x="-16" y="-9" width="32" height="12" rx="4" />
-        <path class="arm" d="M-46 -8H46M-20 3l-6 9M20 3l6 9" />
-        {[-46, 46].map((x) => (<g key={x}><line class="arm" x1={x} x2={x} y1="-8" y2="-14" /><ellipse class={truth.thrust_n > 0.5 ? 'rotor spin' : 'rotor'} cx={x} cy="-15" rx="20" ry="2.6" /></g>))}
-      </g>
-    </svg>
-  );
-}
-
 export function Simulation() {
   const v = vehicle.value;
   void tick.value;
@@ -149,7 +125,8 @@ export function Simulation() {
   return (
     <section class="card simulation" aria-labelledby="simulation-title">
       <h2 id="simulation-title">{words.simPanel}</h2>
-      <Picture />
+      <Picture vehicle={v} />
+      <Places vehicle={v} changed={() => tick.value++} />
       {live.value?.laser !== 'OK' && live.value?.state === 'GROUND' && v.laser && <p class="hint">{words.firstSteps}</p>}
       <div class="row" role="group" aria-label={words.speed}>
         <span class="row-label">{words.speed}</span>
@@ -162,7 +139,7 @@ export function Simulation() {
         <button class={v.imu ? '' : 'broken'} onClick={act(() => v.setImu(!v.imu))}>{v.imu ? words.unplugImu : words.plugImu}</button>
         <button class={v.radio ? '' : 'broken'} onClick={act(() => v.setRadio(!v.radio))}>{v.radio ? words.cutRadio : words.mendRadio}</button>
         <button onClick={act(() => v.troubleLaser())}>{words.laserTrouble}</button>
-        <button onClick={act(() => v.meetRamp())}>{words.ramp}</button>
+        <button onClick={act(() => v.go())}>{v.place === 'floor' ? words.ramp : words.goTheWay}</button>
         <button class={v.pilot ? 'broken' : ''} onClick={act(() => v.setPilot(!v.pilot))}>{v.pilot ? words.pilotGives : words.pilotTakes}</button>
       </div>
       <Troubles vehicle={v} changed={() => tick.value++} />

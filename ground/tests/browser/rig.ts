@@ -84,9 +84,11 @@ export async function untilLaserIsOk(page: Page): Promise<void> {
   await page.waitForFunction(() => document.querySelectorAll('.big-value')[3]?.textContent === 'OK', undefined, { timeout: 40_000 });
 }
 
-export async function picture(page: Page, name: string): Promise<void> {
+/** Of the page, or of a part of it alone. */
+export async function picture(page: Page, name: string, part?: string): Promise<void> {
+  const path = join(PICTURES, `ground-${name}.png`);
   mkdirSync(PICTURES, { recursive: true });
-  await page.screenshot({ path: join(PICTURES, `ground-${name}.png`) });
+  await (part ? page.locator(part).screenshot({ path }) : page.screenshot({ path }));
 }
 
 /** A port that nobody listens on. */

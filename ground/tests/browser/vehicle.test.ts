@@ -64,6 +64,53 @@ describe('the simulated vehicle, the unmodified firmware as WebAssembly', () => 
     await picture(page, 'replay');
   });
 
+  it('shows the place from the side and from above, with the three beams that end where the ground is', async () => {
+    page = await openPage(browser, site.url);
+    await startVehicle(page, '5×');
+    const heights = (): Promise<number[]> => page.locator('.picture .beam').evaluateAll((beams) => beams.map((beam) => Number((beam as SVGElement).dataset.height)));
+    const side = page.getByRole('img', { name: /^from the side/ });
+    const above = page.getByRole('img', { name: /^from above/ });
+    expect(await above.locator('.block').count()).toBe(0);
+    await button(page, 'Hall').click();
+    await page.waitForFunction(() => document.querySelectorAll('.above .block').length === 11); // a ramp, a platform, a table with its legs, stairs and a wall
+    expect(await above.locator('.way').count()).toBe(1);
+    await untilLaserIsOk(page);
+    await button(page, 'Take off').click();
+    await untilHeight(page, 0.6, 0.06);
+    expect(await heights()).toEqual([0, 0, 0]);
+    await button(page, '1×').click();
+    await button(page, 'Fly the way').click();
+    await page.waitForFunction(() => [...document.querySelectorAll<SVGElement>('.beam')].every((beam) => beam.dataset.height === '0.250'), undefined, { timeout: 20_000 });
+    const ground = (await side.locator('.earth').getAttribute('points'))!.split(' ').map((point) => Number(point.split(',')[1]));
+    expect(Math.min(...ground)).toBeCloseTo(150 - 70 * 0.25, 1); // the platform under it, 70 pixels a metre
+    const spots = await above.locator('.spot').evaluateAll((all) => all.map((spot) => Number(spot.getAttribute('cy'))));
+    expect(spots.every((y) => y > 130 / 2)).toBe(true); // to the right of a vehicle that flies along x
+    await picture(page, 'place', '.pictures');
+    await button(page, 'Unplug laser').click();
+    await page.waitForFunction(() => document.querySelectorAll('.beam, .spot').length === 0);
+  });
+
+  it('flies in a place file of one\'s own, and says what is wrong in one', async () => {
+    page = await openPage(browser, site.url);
+    await startVehicle(page, '5×');
+    const choose = (text: string): Promise<void> => page.locator('.file input').setInputFiles({ name: 'own.place', mimeType: 'text/plain', buffer: Buffer.from(text) });
+    await choose('block 1 0 1 1 0.3\nblok 2');
+    await page.waitForFunction(() => document.querySelector('.places .banner')?.textContent?.startsWith('line 2: '));
+    expect(await page.locator('.above .block').count()).toBe(0);
+    await choose('block 1 0 1 1 0.3\nblock 3 1 1 1 0.5\ngo 0 2 0 0.5');
+    await page.waitForFunction(() => document.querySelectorAll('.above .block').length === 2 && !document.querySelector('.places .banner'));
+    await button(page, 'Power off and on').click();
+    await page.waitForTimeout(500);
+    expect(await page.locator('.above .block').count()).toBe(2); // the place stays
+    await button(page, 'Even floor').click();
+    await page.waitForFunction(() => document.querySelectorAll('.above .block').length === 0);
+    await untilLaserIsOk(page);
+    await button(page, 'Take off').click();
+    await untilHeight(page, 0.6, 0.06);
+    await button(page, 'Send the ramp').click();
+    await page.waitForFunction(() => document.querySelectorAll('.above .block').length === 2);
+  });
+
   it('obeys STOP by Esc and LAND by L from every view, and shows that they were answered', async () => {
     await airborne('2×');
     await tab(page, 'Console').click();

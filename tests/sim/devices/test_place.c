@@ -375,3 +375,26 @@ void test_no_block_is_overlooked(void)
         NEAR(0.02, first_m, cast(x, y, 2.0, direction).distance_m);
     }
 }
+
+void test_a_block_is_told_as_it_is_at_a_time(void)
+{
+    place_block_t told;
+
+    place_init(&place);
+    place_add(&place, &(place_block_t){.length_m = 1.0,
+                                       .width_m = 1.0,
+                                       .bottom_m = -0.1,
+                                       .travel_m = 0.5,
+                                       .travel_mps = 0.25,
+                                       .travel_start_s = 2.0,
+                                       .stay_s = 1.0});
+    place_add(&place, &(place_block_t){.length_m = 1.0, .width_m = 1.0, .there = {3.0, 1.0}});
+    TEST_ASSERT_TRUE(place_block_at(&place, 0, 3.0, &told));
+    NEAR(1e-12, 0.25, told.far_top_m);
+    NEAR(1e-12, 0.25, told.near_top_m);
+    NEAR(1e-12, 0.15, told.bottom_m);
+    TEST_ASSERT_TRUE(place_block_at(&place, 0, 4.5, &told));
+    NEAR(1e-12, 0.5, told.far_top_m);
+    TEST_ASSERT_FALSE(place_block_at(&place, 1, 2.9, &told));
+    TEST_ASSERT_TRUE(place_block_at(&place, 1, 3.5, &told));
+}
