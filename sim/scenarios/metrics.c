@@ -223,7 +223,8 @@ static void watch_landing(metrics_record_t *record, const metrics_sample_t *s)
  * not. */
 static void watch_doubts(metrics_record_t *record, const metrics_sample_t *s)
 {
-    const bool aloft = s->clearance_m > AIRBORNE_M && s->t_s >= METRICS_REFERENCE_S && s->t_s < record->land_s;
+    const bool aloft = s->clearance_m > AIRBORNE_M && s->t_s >= METRICS_REFERENCE_S &&
+                       s->t_s < record->land_s;
     const unsigned risen = s->doubts & ~record->doubts;
 
     if (aloft && s->ours) {

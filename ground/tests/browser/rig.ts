@@ -88,6 +88,7 @@ export async function untilLaserIsOk(page: Page): Promise<void> {
 export async function picture(page: Page, name: string, part?: string): Promise<void> {
   const path = join(PICTURES, `ground-${name}.png`);
   mkdirSync(PICTURES, { recursive: true });
+  if (part) await page.locator(part).evaluate((element) => element.scrollIntoView({ block: 'center' })); // not under the page's head
   await (part ? page.locator(part).screenshot({ path }) : page.screenshot({ path }));
 }
 
