@@ -173,6 +173,7 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
     aim_judge(&flight->aim, &flight->where);
     outputs_tell(&now, flight->aim.out_of_reach, out);
     outputs_drive(driven_n, out);
+    out->bound = (uint16_t)flight->bounds.holds;
     out->imu_fault = flight->axes.fault;
     out->releases = flight_releases(flight, parameters);
 }

@@ -61,6 +61,8 @@ typedef struct {
     flight_state_t state;
     uint16_t flags;  /* FLIGHT_FLAG_* */
     uint16_t doubts; /* DOUBT_*, facts.h */
+    uint16_t rule;   /* that raised the first of them, verdict_reason_t of sense/rules.h; 0: no doubt */
+    uint16_t bound;  /* that holds the thrust, bound_t of bounds.h; 0: none */
     imu_fault_t imu_fault;
     float reference_m;   /* reference in force, 0 = none */
     float estimate_mm;   /* height that the law uses; NAN: not known */

@@ -28,6 +28,7 @@ void outputs_tell(const situation_t *now, bool out_of_reach, flight_outputs_t *o
     out->state = supervisor->state;
     out->flags = flags(now, out_of_reach);
     out->doubts = now->evidence->doubts;
+    out->rule = now->evidence->reason;
     out->reference_m = supervisor->reference_m;
     out->estimate_mm = estimated ? estimator->now.height_m * 1000.0F : measured_mm;
     out->innovation_mm = estimated ? estimator->innovation_m * 1000.0F : NAN;

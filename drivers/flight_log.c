@@ -5,8 +5,8 @@
 #define NOT_THERE 0x8000U
 #define CELL_MAX 32767.0F
 
-static const float steps[] = {1.0F, 0.001F, 10.0F, 1000.0F, 10000.0F}; /* of one unit of the value */
-static const float shown[] = {0.001F, 1.0e-6F, 1.0F, 1.0F, 1.0F};
+static const float steps[] = {1.0F, 0.001F, 1000.0F, 10000.0F}; /* of one unit of the value */
+static const float shown[] = {0.001F, 1.0e-6F, 1.0F, 1.0F};
 typedef char every_scale_has_its_factor[(sizeof shown / sizeof shown[0] == FLIGHT_LOG_SCALE_COUNT) ? 1 : -1];
 typedef char every_scale_has_its_steps[(sizeof steps / sizeof steps[0] == FLIGHT_LOG_SCALE_COUNT) ? 1 : -1];
 

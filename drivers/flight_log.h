@@ -11,8 +11,7 @@
 typedef enum {
     FLIGHT_LOG_MILLI, /* value in mm for a column in m; resolution 1 mm */
     FLIGHT_LOG_MICRO, /* value in us for a column in s; resolution 1 ms */
-    FLIGHT_LOG_1,     /* value in the column's unit; one decimal, +-3276.7 */
-    FLIGHT_LOG_3,     /* the same; three decimals, +-32.767 */
+    FLIGHT_LOG_3,     /* value in the column's unit; three decimals, +-32.767 */
     FLIGHT_LOG_4,     /* the same; four decimals, +-3.2767 */
     FLIGHT_LOG_SCALE_COUNT
 } flight_log_scale_t;

@@ -1,9 +1,14 @@
 /* Each function walks the rows of PUBLISHED once: a macro for each kind of row says what is done with it. */
 #include "firmware/published.h"
 
+#include "control/thrust.h"
+
 #define STATE_SHIFT 12
 #define FLAGS_MASK 0x0FFFU
+#define NAME_MASK 0x00FFU
 #define NOT_HERE(telemetry, source)
+#define NOT_DERIVED(column, log_decimals, csv_decimals, source, function, of)
+#define NO_NAME(column, source, name_of, shift)
 
 #define NUMBER(telemetry, decimals, column, log_decimals, csv_decimals, source, scale) \
     telemetry_field_number(line, telemetry, flight_log_shown(now->source, scale), decimals);
@@ -13,7 +18,7 @@
 void published_telemetry(telemetry_line_t *line, const published_t *now)
 {
     telemetry_begin(line);
-    PUBLISHED(NUMBER, STATE, FLAGS, TEXT)
+    PUBLISHED(NUMBER, NOT_DERIVED, STATE, FLAGS, NO_NAME, TEXT)
     telemetry_end(line);
 }
 #undef NUMBER
@@ -23,44 +28,64 @@ void published_telemetry(telemetry_line_t *line, const published_t *now)
 
 #define NUMBER(telemetry, decimals, column, log_decimals, csv_decimals, source, scale) \
     *cells++ = flight_log_cell(now->source, scale);
+#define NO_NUMBER(telemetry, decimals, column, log_decimals, csv_decimals, source, scale)
+#define NAME(column, source, name_of, shift) \
+    *cells |= (uint16_t)(((uint32_t)now->source & NAME_MASK) << (shift));
 void published_pack(uint16_t cells[PUBLISHED_CELLS], const published_t *now)
 {
     *cells++ = (uint16_t)(now->time_ms & 0xFFFFU);
     *cells++ = (uint16_t)(now->time_ms >> 16);
-    PUBLISHED(NUMBER, NOT_HERE, NOT_HERE, NOT_HERE)
-    *cells = (uint16_t)((uint32_t)now->flight.state << STATE_SHIFT) | (now->flight.flags & FLAGS_MASK);
+    PUBLISHED(NUMBER, NOT_DERIVED, NOT_HERE, NOT_HERE, NO_NAME, NOT_HERE)
+    *cells++ = (uint16_t)((uint32_t)now->flight.state << STATE_SHIFT) | (now->flight.flags & FLAGS_MASK);
+    *cells = 0U;
+    PUBLISHED(NO_NUMBER, NOT_DERIVED, NOT_HERE, NOT_HERE, NAME, NOT_HERE)
 }
 #undef NUMBER
+#undef NAME
 
 #define NUMBER(telemetry, decimals, column, log_decimals, csv_decimals, source, scale) \
     now->source = flight_log_value(*cells++, scale);
+#define DERIVED(column, log_decimals, csv_decimals, source, function, of) now->source = function(now->of);
+#define NAME(column, source, name_of, shift) \
+    now->source = (uint16_t)(((uint32_t)*cells >> (shift)) & NAME_MASK);
 void published_unpack(published_t *now, const uint16_t cells[PUBLISHED_CELLS])
 {
     now->time_ms = (uint32_t)cells[0] | ((uint32_t)cells[1] << 16);
     cells += 2;
-    PUBLISHED(NUMBER, NOT_HERE, NOT_HERE, NOT_HERE)
+    PUBLISHED(NUMBER, NOT_DERIVED, NOT_HERE, NOT_HERE, NO_NAME, NOT_HERE)
     now->flight.state = (flight_state_t)(*cells >> STATE_SHIFT);
-    now->flight.flags = *cells & FLAGS_MASK;
+    now->flight.flags = *cells++ & FLAGS_MASK;
+    PUBLISHED(NO_NUMBER, DERIVED, NOT_HERE, NOT_HERE, NAME, NOT_HERE)
 }
 #undef NUMBER
+#undef NAME
+#undef DERIVED
 
 #define NUMBER(telemetry, decimals, column, log_decimals, csv_decimals, source, scale) \
     flight_log_text(line, column);
+#define DERIVED(column, log_decimals, csv_decimals, source, function, of) flight_log_text(line, column);
 #define NAMED(telemetry, column) flight_log_text(line, column);
+#define NAME(column, source, name_of, shift) flight_log_text(line, column);
 void published_titles(telemetry_line_t *line)
 {
     telemetry_text(line, "t_s");
-    PUBLISHED(NUMBER, NAMED, NAMED, NOT_HERE)
+    PUBLISHED(NUMBER, DERIVED, NAMED, NAMED, NAME, NOT_HERE)
 }
 #undef NUMBER
+#undef DERIVED
 #undef NAMED
+#undef NAME
 
 #define NUMBER(telemetry, decimals, column, log_decimals, csv_decimals, source, scale) \
     flight_log_number(line, flight_log_shown(record->source, scale), log_decimals);
+#define DERIVED(column, log_decimals, csv_decimals, source, function, of) \
+    flight_log_number(line, record->source, log_decimals);
 #define STATE(telemetry, column) flight_log_text(line, flight_state_name(record->flight.state));
 #define FLAGS(telemetry, column) flight_log_count(line, record->flight.flags);
+#define NAME(column, source, name_of, shift) \
+    flight_log_text(line, (record->source != 0U) ? name_of(record->source) : "");
 void published_row(telemetry_line_t *line, const published_t *record)
 {
     flight_log_time(line, record->time_ms);
-    PUBLISHED(NUMBER, STATE, FLAGS, NOT_HERE)
+    PUBLISHED(NUMBER, DERIVED, STATE, FLAGS, NAME, NOT_HERE)
 }

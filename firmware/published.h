@@ -7,7 +7,9 @@
 
 #include <stdint.h>
 
+#include "control/bounds.h"
 #include "control/flight_io.h"
+#include "control/sense/rules.h"
 #include "drivers/flight_log.h"
 #include "drivers/telemetry.h"
 
@@ -19,8 +21,9 @@ typedef struct {
     float roll_rad;   /* NAN: not known */
     float pitch_rad;
     float up_mps2;     /* measured upward acceleration, gravity removed; NAN: no new one */
-    const char *laser; /* zero-terminated names; the next two NULL: not in the line */
+    const char *laser; /* zero-terminated names; the next three NULL: not in the line */
     const char *doubt;
+    const char *limit;
     const char *reset;
     flight_outputs_t flight;
 } published_t;
@@ -28,13 +31,15 @@ typedef struct {
 /* The rows, in the order of the line and of the columns. A name is NULL where the field does not appear.
  *
  *   NUMBER(telemetry, decimals, column, decimals of #LOG, of CSV, source, scale)
+ *   DERIVED(column, decimals of #LOG, of CSV, source, function, of)   in no record: source is function(of)
  *   STATE(telemetry, column)                      the state's name, 4 bits of a record
  *   FLAGS(telemetry, column)                      a sum of bits, 12 bits of a record
- *   TEXT(telemetry, source)                       in the telemetry line alone
+ *   NAME(column, source, name_of, shift)          a number with a name, 0 .. 255; 8 bits of a record; 0:
+ * none, an empty column TEXT(telemetry, source)                       in the telemetry line alone
  *
  * source: a member of published_t. scale: drivers/flight_log.h. */
 /* clang-format off */
-#define PUBLISHED(NUMBER, STATE, FLAGS, TEXT)                                          \
+#define PUBLISHED(NUMBER, DERIVED, STATE, FLAGS, NAME, TEXT)                                    \
     NUMBER("alt", 3U, "meas_m",    3U, 4U, height_mm,            FLIGHT_LOG_MILLI)     \
     NUMBER(NULL,  0U, "est_m",     3U, 4U, flight.estimate_mm,   FLIGHT_LOG_MILLI)     \
     NUMBER(NULL,  0U, "innov_m",   3U, 4U, flight.innovation_mm, FLIGHT_LOG_MILLI)     \
@@ -46,26 +51,32 @@ typedef struct {
     STATE("state", "state")                                                            \
     FLAGS("flags", "flags")                                                            \
     NUMBER(NULL,  0U, "up_mps2",   3U, 4U, up_mps2,              FLIGHT_LOG_3)         \
-    NUMBER(NULL,  0U, "pulse_us",  1U, 2U, flight.pulse_us,      FLIGHT_LOG_1)         \
+    DERIVED("pulse_us", 1U, 2U, flight.pulse_us, thrust_to_pulse_us, flight.thrust_n)  \
     NUMBER(NULL,  0U, "age_s",     3U, 4U, age_us,               FLIGHT_LOG_MICRO)     \
+    NAME("doubt", flight.rule,  rules_name, 0U)                                        \
+    NAME("limit", flight.bound, bound_name, 8U)                                        \
     TEXT("doubt", doubt)                                                               \
+    TEXT("limit", limit)                                                               \
     TEXT("reset", reset)
 /* clang-format on */
 
-/* Cells of 16 bits of one record: time, state with flags, and one for each number. */
+/* Cells of 16 bits of one record: time, state with flags, the names, and one for each number. */
 #define PUBLISHED_ONE_CELL(telemetry, decimals, column, log_decimals, csv_decimals, source, scale) +1U
 #define PUBLISHED_NO_CELL(telemetry, source_or_column)
+#define PUBLISHED_NO_DERIVED(column, log_decimals, csv_decimals, source, function, of)
+#define PUBLISHED_NO_NAME(column, source, name_of, shift)
 #define PUBLISHED_CELLS \
-    (3U PUBLISHED(PUBLISHED_ONE_CELL, PUBLISHED_NO_CELL, PUBLISHED_NO_CELL, PUBLISHED_NO_CELL))
+    (4U PUBLISHED(PUBLISHED_ONE_CELL, PUBLISHED_NO_DERIVED, PUBLISHED_NO_CELL, PUBLISHED_NO_CELL, \
+                  PUBLISHED_NO_NAME, PUBLISHED_NO_CELL))
 
 /* Builds the whole periodic line: "alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0" CR LF. A
  * number that is NAN is "-". The line fits a radio packet for all numbers, when the names have at most 8
- * characters (laser, doubt; 10 for state). With `reset` it fits for numbers in the range of this vehicle. Do
- * not set `doubt` and `reset` together. */
+ * characters (laser; 10 for state). With one of `doubt`, `limit` and `reset` it fits for numbers in the range
+ * of this vehicle. Do not set two of them together. */
 void published_telemetry(telemetry_line_t *line, const published_t *now);
 
-/* Convert to a record and back. A record holds time, numbers, state (0..15) and flags (0..4095). A number
- * beyond its range is limited; NAN is kept. published_unpack() writes only these members. */
+/* Convert to a record and back. A record holds time, numbers, state (0..15), flags (0..4095) and names. A
+ * number beyond its range is limited; NAN is kept. published_unpack() writes only these members. */
 void published_pack(uint16_t cells[PUBLISHED_CELLS], const published_t *now);
 void published_unpack(published_t *now, const uint16_t cells[PUBLISHED_CELLS]);
 

@@ -7,7 +7,6 @@
 #include <xdc/std.h>
 
 #include "firmware/boot.h"
-#include "control/sense/verdict.h"
 #include "firmware/monitor.h"
 #include "firmware/pulse_stream.h"
 #include "firmware/schedule.h"
@@ -26,7 +25,8 @@ static Void release(UArg unused)
     Semaphore_post(tick);
 }
 
-/* The line of a reset tells no doubt: with both it might not fit one packet, and the flags tell it too. */
+/* The line tells one of reset, doubt and limit: with two of them it might not fit one packet. The flags tell
+ * a doubt too, and the recorder all three. */
 static void report(telemetry_line_t *line, const char *reset)
 {
     altitude_sample_t altitude;
@@ -38,8 +38,13 @@ static void report(telemetry_line_t *line, const char *reset)
     flight_status_server_read(&now.flight);
     now.height_mm = ((now.flight.flags & FLIGHT_FLAG_HEIGHT) == 0U) ? altitude.altitude.height_mm : NAN;
     now.laser = urg_status_name(laser.status);
-    now.doubt = (reset == NULL) ? verdict_doubt_name(now.flight.doubts) : NULL;
-    now.reset = reset;
+    if (reset != NULL) {
+        now.reset = reset;
+    } else if (now.flight.rule != VERDICT_NONE) {
+        now.doubt = rules_name(now.flight.rule);
+    } else if (now.flight.bound != BOUND_NONE && now.flight.state != FLIGHT_GROUND) {
+        now.limit = bound_name(now.flight.bound);
+    }
     published_telemetry(line, &now);
 }
 

@@ -376,12 +376,24 @@ void rules_watch(rules_t *rules, const senses_t *senses, const command_t *comman
 }
 
 static const char *const reason_names[] = {
-    [VERDICT_NONE] = "-",          [VERDICT_STEPS] = "steps",      [VERDICT_STIFF] = "stiff",
-    [VERDICT_WHITE] = "white",     [VERDICT_SUNK] = "sunk",        [VERDICT_ALOFT] = "aloft",
-    [VERDICT_UNSEEN] = "unseen",   [VERDICT_STILL] = "still",      [VERDICT_UNPROVED] = "unproved",
-    [VERDICT_RUNAWAY] = "runaway", [VERDICT_NO_CLIMB] = "noclimb", [VERDICT_BOTH] = "both",
-    [VERDICT_VAIN] = "vain",       [VERDICT_FELT] = "felt",        [VERDICT_REST] = "rest",
-    [VERDICT_ALONE] = "alone",     [VERDICT_MOVED] = "moved",      [VERDICT_NO_EFFECT] = "noeffect",
+    [VERDICT_NONE] = "-",
+    [VERDICT_STEPS] = "SIGHT/steps",
+    [VERDICT_STIFF] = "SIGHT/stiff",
+    [VERDICT_WHITE] = "SIGHT/white",
+    [VERDICT_SUNK] = "SIGHT/sunk",
+    [VERDICT_ALOFT] = "SIGHT/aloft",
+    [VERDICT_UNSEEN] = "SIGHT/unseen",
+    [VERDICT_STILL] = "SIGHT/still",
+    [VERDICT_UNPROVED] = "SIGHT/unproved",
+    [VERDICT_RUNAWAY] = "SIGHT/runaway",
+    [VERDICT_NO_CLIMB] = "SIGHT/noclimb",
+    [VERDICT_BOTH] = "SIGHT/both",
+    [VERDICT_VAIN] = "SIGHT/vain",
+    [VERDICT_FELT] = "SIGHT/felt",
+    [VERDICT_REST] = "IMU/rest",
+    [VERDICT_ALONE] = "IMU/alone",
+    [VERDICT_MOVED] = "IMU/moved",
+    [VERDICT_NO_EFFECT] = "THRUST/noeffect",
 };
 typedef char
     every_reason_has_a_name[(sizeof reason_names / sizeof reason_names[0] == VERDICT_COUNT) ? 1 : -1];

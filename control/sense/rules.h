@@ -78,7 +78,7 @@ bool rules_contradict(const rule_case_t *c);
 /* Error of the height by the valid witnesses, mean of both when both are valid. */
 float rules_lost_m(const rule_case_t *c);
 
-/* Name of a rule, lower case: "unseen"; VERDICT_NONE: "-". */
+/* Name of a rule, with the source that it doubts: "SIGHT/unseen"; VERDICT_NONE: "-". */
 const char *rules_name(uint16_t reason);
 
 #endif

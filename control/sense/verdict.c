@@ -169,14 +169,3 @@ verdict_reason_t verdict_reason(const verdict_t *verdict)
     }
     return VERDICT_NONE;
 }
-
-const char *verdict_doubt_name(uint16_t doubts)
-{
-    if ((doubts & DOUBT_SIGHT) != 0U) {
-        return "SIGHT";
-    }
-    if ((doubts & DOUBT_IMU) != 0U) {
-        return "IMU";
-    }
-    return ((doubts & DOUBT_THRUST) != 0U) ? "THRUST" : NULL;
-}

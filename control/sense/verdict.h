@@ -53,10 +53,7 @@ bool verdict_apart(const verdict_t *verdict, const senses_t *senses);
  * when there is none. */
 float verdict_speed_mps(const verdict_t *verdict, const senses_t *senses);
 
-/* Rule of the doubt that verdict_doubt_name() names; VERDICT_NONE: no doubt. */
+/* Rule of the first doubt, in the order SIGHT, IMU, THRUST; VERDICT_NONE: no doubt. */
 verdict_reason_t verdict_reason(const verdict_t *verdict);
-
-/* Name for the telemetry: "SIGHT", "IMU" or "THRUST", of several the first in this order; NULL: no doubt. */
-const char *verdict_doubt_name(uint16_t doubts);
 
 #endif

@@ -413,13 +413,17 @@ static double in_column(double value, flight_log_scale_t scale)
     write_number(csv, in_column((double)now.source, scale), csv_decimals);
 #define STATE(telemetry, column) fprintf(csv, ",%s", flight_state_name(now.flight.state));
 #define FLAGS(telemetry, column) fprintf(csv, ",%u", (unsigned)now.flight.flags);
+#define DERIVED(column, log_decimals, csv_decimals, source, function, of) \
+    write_number(csv, (double)now.source, csv_decimals);
+#define NAME(column, source, name_of, shift) \
+    fprintf(csv, ",%s", (now.source != 0U) ? name_of(now.source) : "");
 #define TEXT(telemetry, source)
 static void write_row(FILE *csv, double t_s, const truth_t *truth)
 {
     const published_t now = published();
 
     fprintf(csv, "%.2f", t_s);
-    PUBLISHED(NUMBER, STATE, FLAGS, TEXT)
+    PUBLISHED(NUMBER, DERIVED, STATE, FLAGS, NAME, TEXT)
     fprintf(csv, ",%.4f,%.4f,%.4f", truth->height_m, truth->altitude_m, truth->terrain_m);
     if (flight.open_loop) {
         write_number(csv, truth->flown_n, 3);

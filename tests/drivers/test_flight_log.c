@@ -23,7 +23,7 @@ static void assert_line(const char *expected)
 
 void test_a_cell_keeps_a_number_within_half_a_step(void)
 {
-    static const float steps[] = {1.0F, 0.001F, 10.0F, 1000.0F, 10000.0F};
+    static const float steps[] = {1.0F, 0.001F, 1000.0F, 10000.0F};
 
     for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
         const flight_log_scale_t scale = (flight_log_scale_t)i;
@@ -71,7 +71,6 @@ void test_a_number_is_shown_in_the_unit_of_its_column(void)
 {
     TEST_ASSERT_EQUAL_FLOAT(0.598F, flight_log_shown(598.0F, FLIGHT_LOG_MILLI));
     TEST_ASSERT_EQUAL_FLOAT(0.081234F, flight_log_shown(81234.0F, FLIGHT_LOG_MICRO));
-    TEST_ASSERT_EQUAL_FLOAT(1383.6F, flight_log_shown(1383.6F, FLIGHT_LOG_1));
     TEST_ASSERT_EQUAL_FLOAT(7.12F, flight_log_shown(7.12F, FLIGHT_LOG_3));
     TEST_ASSERT_EQUAL_FLOAT(-0.05F, flight_log_shown(-0.05F, FLIGHT_LOG_4));
 }

@@ -161,7 +161,6 @@ void test_fast_records_each_frame_with_what_the_cycle_before_it_commanded(void)
 {
     flight_recorder_set_rate(FLIGHT_RECORDER_FAST);
     fly(7.0F);
-    out.pulse_us = 1400.0F;
     in.altitude.height_mm = 600.0F;
     in.height_time_us = in.now_us + 108000U - 10000U;
     in.height_age_us = 72000U;
@@ -170,13 +169,12 @@ void test_fast_records_each_frame_with_what_the_cycle_before_it_commanded(void)
     in.now_us += 100000U;
     frames_before(4U, 20000U);
     out.thrust_n = 8.0F;
-    out.pulse_us = 1315.3F;
     const uint32_t before = held();
 
     take(0U);
     TEST_ASSERT_EQUAL_UINT32(before + 5U, held());
     TEST_ASSERT_FLOAT_WITHIN(0.001F, 8.0F, newest().flight.thrust_n);
-    TEST_ASSERT_FLOAT_WITHIN(0.1F, 1315.3F, newest().flight.pulse_us);
+    TEST_ASSERT_FLOAT_WITHIN(0.05F, thrust_to_pulse_us(8.0F), newest().flight.pulse_us);
     TEST_ASSERT_TRUE_MESSAGE(isnan(newest().up_mps2), "the latest frame has a record of its own");
     for (uint32_t i = 1U; i <= 4U; i++) {
         TEST_ASSERT_FLOAT_WITHIN(0.001F, 7.0F, back(i).flight.thrust_n);

@@ -28,7 +28,7 @@ void setUp(void)
                    .innovation_mm = -12.0F,
                    .reference_m = 0.6F,
                    .thrust_n = 7.123F,
-                   .pulse_us = 1383.6F,
+                   .pulse_us = 1500.0F /* in no record */,
                    .state = FLIGHT_FLYING},
     };
 }
@@ -153,12 +153,17 @@ void test_the_longest_line_has_95_characters_and_one_more_is_not_to_be_sent(void
 
 void test_titles_and_a_row_are_pinned(void)
 {
-    telemetry_begin(&line);
+    telemetry_begin_answer(&line);
     published_titles(&line);
     assert_text("t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags,up_mps2,"
-                "pulse_us,age_s");
+                "pulse_us,age_s,doubt,limit");
     now.flight.flags = 5U;
-    assert_row("123.456,0.598,0.601,-0.012,0.600,7.123,-0.0123,0.0345,FLYING,5,-0.214,1383.6,0.081");
+    assert_row("123.456,0.598,0.601,-0.012,0.600,7.123,-0.0123,0.0345,FLYING,5,-0.214,1393.8,0.081,,");
+    now.flight.rule = VERDICT_NO_EFFECT;
+    now.flight.bound = BOUND_STANDING;
+    assert_row(
+        "123.456,0.598,0.601,-0.012,0.600,7.123,-0.0123,0.0345,FLYING,5,-0.214,1393.8,0.081,THRUST/noeffect,"
+        "STANDING");
 }
 
 void test_the_longest_row_is_pinned(void)
@@ -174,12 +179,13 @@ void test_the_longest_row_is_pinned(void)
                    .innovation_mm = -INFINITY,
                    .reference_m = -99.0F,
                    .thrust_n = -99.0F,
-                   .pulse_us = -9999.0F,
                    .state = FLIGHT_DESCENDING,
+                   .rule = VERDICT_NO_EFFECT,
+                   .bound = BOUND_STANDING,
                    .flags = 65535U},
     };
     assert_row("4294967.295,-32.767,-32.767,-32.767,-32.767,-32.767,-3.2767,-3.2767,DESCENDING,4095,"
-               "-32.767,-3276.7,32.767");
+               "-32.767,1999.7,32.767,THRUST/noeffect,STANDING");
 }
 
 void test_what_is_not_there_leaves_its_column_empty(void)
@@ -195,10 +201,9 @@ void test_what_is_not_there_leaves_its_column_empty(void)
                    .innovation_mm = NAN,
                    .reference_m = NAN,
                    .thrust_n = NAN,
-                   .pulse_us = NAN,
                    .state = FLIGHT_GROUND},
     };
-    assert_row("0.007,,,,,,,,GROUND,0,,,");
+    assert_row("0.007,,,,,,,,GROUND,0,,1999.7,,,");
 }
 
 void test_every_millimetre_of_a_recorded_height_is_written_as_it_is(void)
@@ -213,6 +218,39 @@ void test_every_millimetre_of_a_recorded_height_is_written_as_it_is(void)
         telemetry_begin_answer(&line);
         published_row(&line, &record);
         TEST_ASSERT_EQUAL_STRING_LEN(expected, line.text, strlen(expected));
+    }
+}
+
+void test_every_rule_and_every_limit_is_recorded(void)
+{
+    for (uint16_t rule = 0U; rule < VERDICT_COUNT; rule++) {
+        for (uint16_t bound = 0U; bound < BOUND_COUNT; bound++) {
+            now.flight.rule = rule;
+            now.flight.bound = bound;
+            TEST_ASSERT_EQUAL_UINT16(rule, recorded().flight.rule);
+            TEST_ASSERT_EQUAL_UINT16(bound, recorded().flight.bound);
+        }
+    }
+}
+
+void test_every_rule_and_every_limit_fits_the_packet(void)
+{
+    now.height_mm = -4000.0F;
+    now.laser = "SWITCH"; /* the longest that a flight can show */
+    now.flight.reference_m = 3.0F;
+    now.flight.thrust_n = 11.76F;
+    now.flight.state = FLIGHT_DESCENDING;
+    now.flight.flags = 2047U;
+    for (uint16_t rule = 1U; rule < VERDICT_COUNT; rule++) {
+        now.doubt = rules_name(rule);
+        published_telemetry(&line, &now);
+        TEST_ASSERT_TRUE(!line.overflowed && line.length <= TELEMETRY_LINE_MAX);
+    }
+    now.doubt = NULL;
+    for (uint16_t bound = 1U; bound < BOUND_COUNT; bound++) {
+        now.limit = bound_name(bound);
+        published_telemetry(&line, &now);
+        TEST_ASSERT_TRUE(!line.overflowed && line.length <= TELEMETRY_LINE_MAX);
     }
 }
 

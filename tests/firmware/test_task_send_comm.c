@@ -1,4 +1,6 @@
 /* TaskSendComm: one telemetry line every 200 ms, from the servers to the radio. */
+#include "control/bounds.h"
+#include "control/sense/rules.h"
 #include "firmware/tasks.h"
 
 #include <string.h>
@@ -246,12 +248,25 @@ static bool line_has(const char *word)
 void test_a_doubt_is_told_but_in_the_first_line_after_a_reset(void)
 {
     cause = "WATCHDOG";
-    flight.doubts = DOUBT_IMU;
+    flight.rule = VERDICT_ALONE;
     TEST_ASSERT_FALSE(line_has("doubt:"));
     more_ticks = 1U;
-    TEST_ASSERT_TRUE(line_has("doubt:IMU"));
+    TEST_ASSERT_TRUE(line_has(" doubt:IMU/alone\r\n"));
     cause = NULL;
-    TEST_ASSERT_TRUE(line_has("doubt:IMU"));
-    flight.doubts = 0U;
+    TEST_ASSERT_TRUE(line_has(" doubt:IMU/alone\r\n"));
+    flight.rule = VERDICT_NONE;
     TEST_ASSERT_FALSE(line_has("doubt:"));
+}
+
+void test_a_limit_is_told_off_the_ground_while_nothing_is_doubted(void)
+{
+    flight.state = FLIGHT_FLYING;
+    TEST_ASSERT_FALSE(line_has("limit:"));
+    flight.bound = BOUND_CLIMB;
+    TEST_ASSERT_TRUE(line_has(" limit:CLIMB\r\n"));
+    flight.rule = VERDICT_BOTH;
+    TEST_ASSERT_TRUE(line_has("flags:0 doubt:SIGHT/both\r\n"));
+    flight.rule = VERDICT_NONE;
+    flight.state = FLIGHT_GROUND; /* the idle is one, too */
+    TEST_ASSERT_FALSE(line_has("limit:"));
 }

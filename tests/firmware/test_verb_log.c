@@ -165,10 +165,10 @@ void test_titles_and_rows_end_with_the_sum_of_all_before_it(void)
     TEST_ASSERT_FALSE(verb_log_more());
     TEST_ASSERT_EQUAL_STRING("OK LOG 0 "
                              "t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags,up_mps2,"
-                             "pulse_us,age_s*0299\r\n",
+                             "pulse_us,age_s,doubt,limit*B1A4\r\n",
                              lines[1]);
     TEST_ASSERT_EQUAL_STRING(
-        "OK LOG 1 100.000,0.000,0.000,0.000,0.000,0.000,0.0000,0.0000,FLYING,0,0.000,0.0,0.000*25A5\r\n",
+        "OK LOG 1 100.000,0.000,0.000,0.000,0.000,0.000,0.0000,0.0000,FLYING,0,0.000,0.0,0.000,,*BA39\r\n",
         lines[2]);
 }
 

@@ -15,6 +15,8 @@ import house
 UNITS = {"m": "m", "n": "N", "rad": "rad", "mps": "m/s", "mps2": "m/s²", "us": "us", "s": "s"}
 NUMBER = re.compile(r'NUMBER\((NULL|"\w+"), *(\d+)U, *(NULL|"\w+"), *(\d+)U, *(\d+)U, *[\w.]+, *FLIGHT_LOG_\w+\)')
 OTHER = re.compile(r"(STATE|FLAGS|TEXT)\(([^)]*)\)")
+DERIVED = re.compile(r'DERIVED\("(\w+)", *(\d+)U, *\d+U, *[\w.]+, *\w+, *[\w.]+\)')
+NAME = re.compile(r'NAME\("(\w+)", *[\w.]+, *\w+, *\d+U\)')
 MORE = {"t_s", "height_m", "abs_m", "terrain_m"}  # the time, and what only the PC board knows
 
 
@@ -38,6 +40,10 @@ def published(source):
             columns[column] = (unit_of(column), log_decimals)
             if name_of(telemetry):
                 fields[name_of(telemetry)] = (unit_of(column), decimals)
+        elif derived := DERIVED.search(row):
+            columns[derived.group(1)] = (unit_of(derived.group(1)), derived.group(2))
+        elif name := NAME.search(row):
+            columns[name.group(1)] = ("-", "-")
         elif other:
             names = [name_of(cell) for cell in other.group(2).split(",")]
             if names[0]:

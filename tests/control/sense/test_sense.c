@@ -282,14 +282,6 @@ void test_nothing_is_judged_while_a_pilot_flies(void)
     TEST_ASSERT_EQUAL_UINT16(0U, seen.doubts);
 }
 
-void test_a_doubt_has_a_name_and_the_gravest_is_told(void)
-{
-    TEST_ASSERT_NULL(verdict_doubt_name(0U));
-    TEST_ASSERT_EQUAL_STRING("THRUST", verdict_doubt_name(DOUBT_THRUST));
-    TEST_ASSERT_EQUAL_STRING("IMU", verdict_doubt_name(DOUBT_IMU | DOUBT_THRUST));
-    TEST_ASSERT_EQUAL_STRING("SIGHT", verdict_doubt_name(DOUBT_SIGHT | DOUBT_IMU));
-}
-
 void test_a_glitch_that_returns_to_where_it_began_is_no_ground_that_came_nearer(void)
 {
     fly();
@@ -921,7 +913,7 @@ void test_every_doubt_tells_its_rule(void)
     flown.wanted_m = 0.5F;
     flown.thrust_n = HOVER_N + 1.5F;
     (void)until(DOUBT_SIGHT, 3.0F);
-    TEST_ASSERT_EQUAL_STRING("noclimb", rules_name(seen.reason));
+    TEST_ASSERT_EQUAL_STRING("SIGHT/noclimb", rules_name(seen.reason));
     flown.ordered = flown.grounded = true;
     cycle();
     TEST_ASSERT_EQUAL_STRING("-", rules_name(seen.reason));
