@@ -239,7 +239,8 @@ void test_the_last_seconds_alone_come_quickly(void)
     }
     TEST_ASSERT_TRUE(rows > 60 && rows < 170); /* a landing by the estimate has twice as many */
     TEST_ASSERT_FLOAT_WITHIN(0.2F, 8.0F, (float)(last.t_s - first.t_s));
-    TEST_ASSERT_TRUE(flight.end_s - flight.asked_s < 20.0);
+    TEST_ASSERT_TRUE(flight.end_s - flight.asked_s <
+                     3.0 * 8.0); /* three minutes for a minute, as operator.md says */
 }
 
 void test_law_est_leaves_its_estimate_and_its_innovation(void)
