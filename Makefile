@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly mine plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open site publish test test-long soak format mutants test-ground port size faults fuzz prove bench coverage package others release firmware flash check-ti clean
+.PHONY: help build fly mine lab plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open site publish test test-long soak format mutants test-ground port size faults fuzz prove bench coverage package others release firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -57,6 +57,13 @@ mine: ## Fly a law of your own, FILE=examples/my_law/law_mine.c, beside law EST:
 	@build/plomada fly est-60cm-ramp --csv build/est-60cm-ramp.csv --json build/est-60cm-ramp.json >/dev/null || [ $$? -eq 1 ]
 	@$(python) tools/plot/plot.py build/mine.csv build/est-60cm-ramp.csv -o build/mine.png
 	@$(python) tools/plot/moving.py build/mine.csv build/est-60cm-ramp.csv --title "Your law" --title "Law EST" -o build/mine.svg
+
+lab: ## Mark laboratory N=1 of the course (course/README.md): FILE=your answer, ID=your number
+	@test -n "$(N)" || { echo "usage: make lab N=1 [ID=12345] [FILE=answer]" >&2; exit 2; }
+	@$(setup) build lab
+	@$(MAKE) build >/dev/null
+	+@cmake --build build --target course_marker $(jobs) >/dev/null
+	@python3 -B course/mark/lab.py $(N) $(if $(ID),--id "$(ID)") $(if $(FILE),--file "$(FILE)")
 
 plot: ## Draw LOG=FILE: a flight's CSV (or several), an XCTU console log or text, with or without dumps of #LOG
 	@test -n "$(LOG)" || { echo "usage: make plot LOG=FILE" >&2; exit 2; }

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# setup.sh build|test|port|size|coverage|bench|fuzz|prove|package|others|plot|campaign|ground|site ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
+# setup.sh build|lab|test|port|size|coverage|bench|fuzz|prove|package|others|plot|campaign|ground|site ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
 #
 #   build     C compiler, CMake
+#   lab       Python 3 for the marks of the course
 #   test      Ninja (a third of make's processor time); Ruby and CMock, which generates the mocks; Python 3 for the checks of the house rules; build/format with the
 #             pinned clang-format
 #   port      avr-gcc, its C library, and simavr to run what it makes
@@ -143,6 +144,8 @@ missing_packages() {
             has gcc || has cc || has "${CC:-cc}" || echo gcc
             [ -f /usr/include/stdio.h ] || echo libc6-dev
             has cmake || echo cmake ;;
+        lab)
+            has python3 || echo python3 ;;
         test)
             has ninja || ! has apt-get || ! elevation >/dev/null || echo ninja-build # only faster than make: not worth a failure
             has ruby || echo ruby
@@ -194,7 +197,7 @@ missing_packages() {
             has firefox || has firefox-esr || ! grep -qs '^ID=debian' /etc/os-release || echo firefox-esr
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
         *)
-            say "unknown job '$1'; know build, test, port, size, coverage, bench, fuzz, prove, package, others, plot, campaign, ground, site"
+            say "unknown job '$1'; know build, lab, test, port, size, coverage, bench, fuzz, prove, package, others, plot, campaign, ground, site"
             exit 2 ;;
     esac
 }
@@ -296,7 +299,7 @@ add_modules() {
     cp "$root/ground/package-lock.json" "$root/ground/node_modules/.installed-lock.json"
 }
 
-[ $# -gt 0 ] || { say "usage: setup.sh build|test|port|size|coverage|bench|fuzz|prove|package|others|plot|campaign|ground|site ..."; exit 2; }
+[ $# -gt 0 ] || { say "usage: setup.sh build|lab|test|port|size|coverage|bench|fuzz|prove|package|others|plot|campaign|ground|site ..."; exit 2; }
 
 packages=()
 want_cmock=

@@ -1,0 +1,14 @@
+#include "given_law.h"
+
+static law_step_t given;
+
+void given_law_set(law_step_t law)
+{
+    given = law;
+}
+
+/* The linker finds this one first, and leaves the product's in its archive. */
+float law_pid_step(laws_t *laws, est_law_t *est, const situation_t *now)
+{
+    return given(laws, est, now);
+}
