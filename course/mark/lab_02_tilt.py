@@ -26,7 +26,7 @@ ANGLES = (-210, -140, -90, -50, 50, 90, 140, 210)      # thousandths of a radian
 
 def numbers(draw):
     d, leg, arm = geometry(draw)
-    roll, height = draw.one((90, 140, 210)), draw.whole(500, 1000, 50)
+    roll, height = draw.whole(90, 210, 10), draw.whole(500, 1000, 10)
     drawn = {"level": tilts(draw, (0,), (0,)), "roll": tilts(draw, ANGLES, (0,)), "pitch": tilts(draw, (0,), ANGLES),
              "both": tilts(draw, ANGLES, ANGLES), "aside": aside(draw), "foreseen": (d, leg, arm, 0, height + d + leg, roll, 0)}
     return drawn, [f"The front mirror (s = 0) has d = {d} mm, l = {leg} mm, L = {arm} mm.",

@@ -8,9 +8,9 @@ THRUST_MOST_MN = 350        # the deviation of the thrust: a D that is too large
 
 
 def numbers(draw):
-    hover = draw.whole(70, 74)
-    drawn = {"scenario": scenario(hover / 10, hover / 10, draw.one((0.7, 0.8, 0.9, 1.0)))}
-    return drawn, [f"Your vehicle hovers with {hover / 10} N per motor, and GRAV is so much.",
+    hover = draw.whole(700, 740, 5)
+    drawn = {"scenario": scenario(hover / 100, hover / 100, draw.one((0.7, 0.8, 0.9, 1.0)))}
+    return drawn, [f"Your vehicle hovers with {hover / 100} N per motor, and GRAV is so much.",
                    f"It may rise at most {OVERSHOOT_MOST_MM} mm above the reference, and swing by {SWING_MOST_MM} mm (rms)."]
 
 

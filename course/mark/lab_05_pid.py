@@ -9,10 +9,10 @@ RECOVERY_MOST_S = 3.0
 
 
 def numbers(draw):
-    hovers = [draw.whole(66, 68), draw.whole(69, 71), draw.whole(73, 75)]           # tenths of a newton
-    drawn = {"flights": [scenario(hover / 10, GRAVITY_N) for hover in hovers], "hovers": hovers,
-             "edge": scenario(hovers[2] / 10, GRAVITY_N, platform=True)}
-    return drawn, [f"Three vehicles: they hover with {hovers[0] / 10}, {hovers[1] / 10} and {hovers[2] / 10} N. GRAV is {GRAVITY_N} N for all.",
+    hovers = [draw.whole(665, 685, 5), draw.whole(695, 710, 5), draw.whole(730, 750, 5)]    # hundredths of a newton
+    drawn = {"flights": [scenario(hover / 100, GRAVITY_N) for hover in hovers], "hovers": hovers,
+             "edge": scenario(hovers[2] / 100, GRAVITY_N, platform=True)}
+    return drawn, [f"Three vehicles: they hover with {hovers[0] / 100}, {hovers[1] / 100} and {hovers[2] / 100} N. GRAV is {GRAVITY_N} N for all.",
                    f"Each may be {MEAN_MOST_MM} mm off in the mean. The last two may rise {OVERSHOOT_MOST_MM} mm above the reference."]
 
 
@@ -44,14 +44,14 @@ def means(answer, drawn):
     flights = [answer.fly(text) for text in drawn["flights"]]
     offs = [figure_mm(flight, "hover_mean_error_mm") for flight in flights]
     good = all(rises(flight) and abs(off) <= MEAN_MOST_MM for flight, off in zip(flights, offs))
-    return all_or_nothing(2, good, ", ".join(f"{hover / 10} N {off} mm" for hover, off in zip(drawn["hovers"], offs)))
+    return all_or_nothing(2, good, ", ".join(f"{hover / 100} N {off} mm" for hover, off in zip(drawn["hovers"], offs)))
 
 
 def overshoots(answer, drawn):
     flights = [answer.fly(text) for text in drawn["flights"][1:]]
     overs = [figure_mm(flight, "overshoot_mm") for flight in flights]
     good = all(rises(flight) for flight in flights) and max(overs) <= OVERSHOOT_MOST_MM
-    return all_or_nothing(1, good, ", ".join(f"{hover / 10} N {over} mm" for hover, over in zip(drawn["hovers"][1:], overs)))
+    return all_or_nothing(1, good, ", ".join(f"{hover / 100} N {over} mm" for hover, over in zip(drawn["hovers"][1:], overs)))
 
 
 def recovers(answer, drawn):

@@ -3,7 +3,7 @@
 
 #include "control/altitude.h"
 
-const float foreseen_error_mm = 35.9F;
+const float foreseen_error_mm = 57.0F;
 
 float student_height(const mirror_geometry_t *mirror, float slant_mm, float roll_rad, float pitch_rad)
 {

@@ -2,8 +2,7 @@
 #include "control/between.h"
 #include "control/laws/laws.h"
 
-#define KP_N_PER_M \
-    6.0F /* 0.4 N / 90 mm is 4.4; more, because the tilt costs thrust too. Still more makes it swing more */
+#define KP_N_PER_M 6.0F /* 0.4 N / 90 mm is 4.4; more, because the tilt costs thrust too */
 #define WINDOW_N 3.0F
 
 const float foreseen_error_mm = 66.7F; /* 0.4 N / 6 N/m */

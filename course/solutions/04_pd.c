@@ -3,9 +3,7 @@
 #include "control/laws/laws.h"
 
 #define KP_N_PER_M 6.0F
-#define KD_N_S_PER_M \
-    2.6F /* law PIDT's, as delivered: half of it overshoots, twice of it shakes the motors \
-          */
+#define KD_N_S_PER_M 2.6F /* half of it overshoots, three times shake the motors */
 #define WINDOW_N 3.0F
 
 float law_pid_step(laws_t *laws, est_law_t *est, const situation_t *now)
