@@ -238,6 +238,10 @@ class Facts(unittest.TestCase):
         self.assertEqual(laboratory(8).play(jobs, False), {"middle": 8, "high": 13, "low": 14})
         self.assertEqual(laboratory(8).play(jobs, True), {"high": 8, "middle": 13, "low": 14})
 
+    def test_the_example_of_laboratory_1_is_a_frame(self):
+        lines = re.search(r"```\n(MS.*?)\n\(an empty line\)", page(1).read_text(encoding="utf-8"), re.DOTALL).group(1)
+        self.assertEqual(laboratory(1).driver(PLOMADA, lines + "\n\n"), [19, 84, 8])
+
     def test_the_tasks_use_the_servers_that_laboratory_8_says(self):
         servers = {"imu": "imu", "altitude": "altitude", "laser": "laser", "flight_status": "status", "reference": "reference", "parameter": "parameters"}
         for task, file in (("TaskIMU", "task_imu"), ("TaskReceiveLaser", "task_receive_laser"), ("TaskControl", "task_control"),

@@ -57,7 +57,7 @@ def fly(folder, words):
 class Commands(unittest.TestCase):
     def test_each_that_can_be_run_is_understood(self):
         counted = {"form": 0, "named": 0, "by hand": 0, "run": 0}
-        for page in (*sorted((ROOT / "docs").rglob("*.md")), ROOT / "README.md", ROOT / "CONTRIBUTING.md"):
+        for page in (*sorted((ROOT / "docs").rglob("*.md")), *sorted((ROOT / "course").rglob("*.md")), ROOT / "README.md", ROOT / "CONTRIBUTING.md"):
             told = [(kind(command), command) for command in commands(page.read_text(encoding="utf-8"))]
             with tempfile.TemporaryDirectory() as name:
                 if any(what == "run" for what, _ in told):

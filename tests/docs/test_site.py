@@ -55,7 +55,8 @@ class Site(unittest.TestCase):
     def test_each_page_is_in_it_and_in_its_navigation(self):
         first = {unquote(link) for link in self.pages[self.folder / "index.html"].links}
         there_are = [path.relative_to(ROOT / "docs").with_suffix(".html").as_posix() for path in (ROOT / "docs").rglob("*.md")]
-        for name in (*there_are, "contributing.html", "changelog.html", "driver.html"):
+        for name in (*there_are, "contributing.html", "changelog.html", "driver.html", "course.html",
+                     *(f"course_{path.parent.name}.html" for path in (ROOT / "course").glob("*/README.md"))):
             self.assertTrue((self.folder / name).is_file(), name)
             self.assertIn(name, first, "docs/pages.md does not list it")
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import house
 
-ROOMS = (*house.PRODUCT, "sim", "tests", "tools", "examples", "docs", "hil", "ground")
+ROOMS = (*house.PRODUCT, "sim", "tests", "tools", "examples", "course", "docs", "hil", "ground")
 
 
 def files(the_house):

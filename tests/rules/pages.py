@@ -6,7 +6,7 @@ Usage: pages.py ROOT [PROGRAM]
   each `make TARGET` is in the Makefile; with PROGRAM each option behind `plomada SUBCOMMAND` is in its --help
   each page has its kind in KINDS, and at most as many words as WORDS says of that kind: those of its text. Blocks of code and
   tables are looked up, not read through, so they do not count but on the front page. No limit holds for all pages together.
-  each page in docs/, and CONTRIBUTING.md, says behind its title for whom it is and what he has at its end
+  each page in docs/ and course/, and CONTRIBUTING.md, says behind its title for whom it is and what he has at its end
   lists begin behind an empty line, as the site's Markdown demands (tools/site)
 """
 import re
@@ -18,10 +18,11 @@ import house
 
 # Chosen: 250 words are a minute. The front page in two, all of it; a lesson or a task in ten, what is read in parts in twenty.
 WORDS = {"front": 500, "tutorial": 2500, "how-to": 2500, "reference": 4500, "explanation": 4500}
+LABORATORIES = ("01_frame", "02_tilt", "03_p", "04_pd", "05_pid", "06_windup", "07_response", "08_inversion", "09_estimation", "10_lies")
 KINDS = {
     "front": ("README.md",),
-    "tutorial": ("docs/first_evening.md", "docs/ground.md", "docs/my_law.md", "docs/es/index.md", "docs/es/primera_tarde.md"),
-    "how-to": ("CONTRIBUTING.md", "docs/acceptance.md", "docs/campaign.md", "docs/fit.md", "docs/flashing.md",
+    "tutorial": (*(f"course/{name}/README.md" for name in LABORATORIES), "docs/first_evening.md", "docs/ground.md", "docs/my_law.md", "docs/es/index.md", "docs/es/primera_tarde.md"),
+    "how-to": ("CONTRIBUTING.md", "course/README.md", "docs/acceptance.md", "docs/campaign.md", "docs/fit.md", "docs/flashing.md",
                "docs/recordings.md", "drivers/README.md"),
     "reference": ("CHANGELOG.md", "docs/commands.md", "docs/hardware.md", "docs/memory.md", "docs/operator.md", "docs/pages.md", "docs/razor.md",
                   "docs/scip.md"),
@@ -29,7 +30,7 @@ KINDS = {
                     "docs/reliability.md", "docs/walked.md"),
 }
 PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "drivers/README.md")
-ROOMS = "bsp|ccs_project|cmake|control|docs|drivers|examples|firmware|ground|sim|tests|tools"
+ROOMS = "bsp|ccs_project|cmake|control|course|docs|drivers|examples|firmware|ground|sim|tests|tools"
 # The first words below the title, in the page's language.
 FOR_WHOM = re.compile(r"# .*\n\n(?:> \*\*For\*\* (?:.|\n> )+\*\*At the end\*\* |> \*\*Para\*\* (?:.|\n> )+\*\*Al final\*\* )")
 LINK = re.compile(r"\]\(([^)\s]*)\)")
@@ -40,7 +41,7 @@ USED = re.compile(r"plomada (scip [a-z]+|[a-z]+)((?: +(?:--?)?[^`\s|#;&>]+)*)")
 
 
 def pages(root):
-    return [*sorted((root / "docs").rglob("*.md")), *(root / name for name in PAGES if (root / name).is_file())]
+    return [*sorted((root / "docs").rglob("*.md")), *sorted((root / "course").rglob("*.md")), *(root / name for name in PAGES if (root / name).is_file())]
 
 
 def anchor(title):
@@ -114,7 +115,7 @@ def kind_of(page, kinds):
 
 
 def for_nobody(name, text):
-    if (name.startswith("docs/") or name == "CONTRIBUTING.md") and not FOR_WHOM.match(text):
+    if (name.startswith(("docs/", "course/")) or name == "CONTRIBUTING.md") and not FOR_WHOM.match(text):
         yield "does not say below its title > **For** whom it is, **At the end** what he has"
 
 
