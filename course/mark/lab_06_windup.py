@@ -10,9 +10,9 @@ OVERSHOOT_MOST_MM, MEAN_MOST_MM = 100, 25
 
 
 def numbers(draw):
-    hover, reference = draw.whole(72, 74), draw.one((1.4, 1.5, 1.6))
-    drawn = {"scenario": scenario(hover / 10, GRAVITY_N, reference), "seconds": draw.whole(4, 9)}
-    return drawn, [f"Your vehicle hovers with {hover / 10} N, GRAV is {GRAVITY_N} N, the reference is {reference} m.",
+    hover, reference = draw.whole(715, 740, 5), draw.one((1.4, 1.5, 1.6))
+    drawn = {"scenario": scenario(hover / 100, GRAVITY_N, reference), "seconds": draw.whole(4, 9)}
+    return drawn, [f"Your vehicle hovers with {hover / 100} N, GRAV is {GRAVITY_N} N, the reference is {reference} m.",
                    f"In the questions the error is too large for {drawn['seconds']} s."]
 
 
