@@ -16,27 +16,31 @@ class AnswerPython:
     built = True
 
     def __init__(self, path, plomada):
-        self.path, self.plomada, self.complaints = Path(path), plomada, ""
+        self.path, self.plomada, self.complaints, self.asked = Path(path), plomada, "", {}
 
     def close(self):
         pass
 
     def ask(self, steps):
-        """What each step gave; Refused with the first that fails."""
+        """What each step gave; Refused with the first that fails. The same steps are asked once."""
+        question = json.dumps(steps)
+        if question not in self.asked:
+            self.asked[question] = self.told(question)
+        if isinstance(self.asked[question], str):
+            raise Refused(self.asked[question])
+        return self.asked[question]
+
+    def told(self, question):
+        """A list, or in words what went wrong."""
         with tempfile.TemporaryDirectory() as folder:
             results = Path(folder) / "results.json"
             try:
-                done = subprocess.run([sys.executable, "-B", "-I", RUNNER, self.path, results], input=json.dumps(steps), capture_output=True,
+                done = subprocess.run([sys.executable, "-B", "-I", RUNNER, self.path, results], input=question, capture_output=True,
                                       text=True, check=False, timeout=ENDLESS_S)
             except subprocess.TimeoutExpired:
-                raise Refused("it does not end") from None
+                return "it does not end"
             self.complaints = done.stderr
-            if not results.exists():
-                raise Refused("Python cannot run the file")
-            found = json.loads(results.read_text(encoding="utf-8"))
-        if isinstance(found, str):
-            raise Refused(found)
-        return found
+            return json.loads(results.read_text(encoding="utf-8")) if results.exists() else "Python cannot run the file"
 
     def value(self, name):
         return self.ask([["value", name]])[0]
