@@ -1,6 +1,6 @@
 # The product: the single list of files, read by CMakeLists.txt and by the check of ccs_project/.
 set(CONTROL_SOURCES
-    control/aim.c control/altitude.c control/arming.c control/attitude.c control/bounds.c control/calibration.c
+    control/aim.c control/altitude.c control/arming.c control/attitude.c control/beams.c control/bounds.c control/calibration.c
     control/est/actuator.c control/est/cascade.c control/est/credit.c control/est/deadband.c control/est/effect.c
     control/est/est_law.c control/est/estimator.c control/est/filter.c control/est/hover.c control/est/learning.c
     control/est/let_down.c control/est/lift_off.c control/est/roughness.c control/est/terrain_keep.c control/flight.c

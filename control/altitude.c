@@ -38,6 +38,36 @@ float altitude_at_tilt(const altitude_t *altitude, float roll_rad, float pitch_r
            altitude->arm_mm * sinf(roll_rad) - altitude->fore_mm * sinf(pitch_rad) - altitude->leg_mm;
 }
 
+static uint16_t whole(float steps)
+{
+    return (uint16_t)(steps + 0.5F);
+}
+
+static void add_window(mirror_windows_t *windows, mirror_t mirror, float middle)
+{
+    windows->mirror[windows->count] = mirror;
+    windows->middle[windows->count] = whole(middle);
+    ++windows->count;
+}
+
+mirror_windows_t altitude_windows_of(const parameters_t *parameters)
+{
+    const uint16_t layout = parameters_choice(parameters, PARAMETER_LAYOUT);
+    mirror_windows_t windows = {.count = 0U};
+
+    windows.reach = whole(parameters->value[PARAMETER_SW]);
+    if (layout != LAYOUT_FRONT) {
+        add_window(&windows, MIRROR_AFT, parameters->value[PARAMETER_S1]);
+    }
+    if (layout != LAYOUT_TWO) {
+        add_window(&windows, MIRROR_FRONT, parameters->value[PARAMETER_SF]);
+    }
+    if (layout != LAYOUT_FRONT) {
+        add_window(&windows, MIRROR_FORE, parameters->value[PARAMETER_S2]);
+    }
+    return windows;
+}
+
 static void add_mirror(altitude_t *altitude, const mirror_geometry_t *mirror, const mirror_range_t *range)
 {
     altitude->slant_mm += range->slant_mm;
@@ -47,10 +77,13 @@ static void add_mirror(altitude_t *altitude, const mirror_geometry_t *mirror, co
     altitude->leg_mm += mirror->leg_mm;
     altitude->arm_mm += mirror->arm_mm;
     altitude->fore_mm += mirror->fore_sign * mirror->distance_mm;
+    altitude->later_us += range->later_us;
+    ++altitude->agreeing;
 }
 
 static void divide(altitude_t *altitude, float groups)
 {
+    altitude->later_us /= (int32_t)altitude->agreeing;
     altitude->height_mm /= groups;
     altitude->slant_mm /= groups;
     altitude->distance_mm /= groups;

@@ -48,6 +48,17 @@ typedef struct {
     mirror_geometry_t mirror[MIRROR_COUNT];
 } altitude_geometry_t;
 
+/* Which rays look at the mirrors of LAYOUT, in the order of their steps: `reach` steps to either side of each
+ * middle. Whole steps: a parameter between two is the nearer one. */
+typedef struct {
+    uint16_t count;
+    mirror_t mirror[MIRROR_COUNT];
+    uint16_t middle[MIRROR_COUNT];
+    uint16_t reach;
+} mirror_windows_t;
+
+mirror_windows_t altitude_windows_of(const parameters_t *parameters);
+
 /* Geometry from the parameters. */
 altitude_geometry_t altitude_geometry_of(const parameters_t *parameters);
 /* Geometry from the default parameters. */
@@ -62,6 +73,7 @@ typedef struct {
     float slant_mm;
     float spread_mm; /* largest minus smallest good ray */
     uint16_t good_rays;
+    int32_t later_us; /* when these rays were taken, after the instant of the scan; may be below 0 */
 } mirror_range_t;
 
 typedef struct {
@@ -75,6 +87,8 @@ typedef struct {
     float leg_mm;       /* l */
     float arm_mm;       /* L */
     float fore_mm;      /* s d */
+    int32_t later_us;   /* their rays, after the instant of the scan */
+    uint16_t agreeing;  /* number of the groups that this height is the mean of */
 } altitude_t;
 
 /* Height measured with one mirror, mm. slant_mm: finite. Angles in radians, |angle| < pi/2. */

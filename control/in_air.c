@@ -43,16 +43,9 @@ static kind_t kind_of(parameter_id_t id)
     case PARAMETER_IPITCH:
     case PARAMETER_IDOWN:
     case PARAMETER_IUNIT:
-    case PARAMETER_DF: /* the mirrors' places: the height would jump */
-    case PARAMETER_LF:
-    case PARAMETER_L:
-    case PARAMETER_D1:
-    case PARAMETER_L1:
-    case PARAMETER_D2:
-    case PARAMETER_L2:
         return GROUND_ONLY;
-    default:
-        return FREE;
+    default: /* the mirrors' places: the height would jump */
+        return parameter_table[id].group == PARAMETERS_MIRRORS ? GROUND_ONLY : FREE;
     }
 }
 

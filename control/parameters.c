@@ -28,6 +28,10 @@ typedef char every_down_has_a_name[(sizeof down_names / sizeof down_names[0] == 
 static const char *const axes_names[] = {[AXES_ASSUMED] = "ASSUMED", [AXES_PROVED] = "PROVED"};
 typedef char every_axes_have_a_name[(sizeof axes_names / sizeof axes_names[0] == AXES_COUNT) ? 1 : -1];
 
+static const char *const layout_names[] = {
+    [LAYOUT_FRONT] = "FRONT", [LAYOUT_TWO] = "TWO", [LAYOUT_THREE] = "THREE"};
+typedef char every_layout_has_a_name[(sizeof layout_names / sizeof layout_names[0] == LAYOUT_COUNT) ? 1 : -1];
+
 const parameter_row_t parameter_table[] = {
     [PARAMETER_KP] = {"KP", "N/mm", 0.0F, 1.0F, 0.015F, NULL, PARAMETERS_PD_PID,
                       "PD, PID: proportional gain."},
@@ -108,6 +112,18 @@ const parameter_row_t parameter_table[] = {
                       "Scanner to mirror 2, fore."},
     [PARAMETER_L2] = {"L2", "mm", 0.0F, 500.0F, 105.0F, NULL, PARAMETERS_MIRRORS,
                       "Mirror 2 to the lowest point of the landing gear."},
+    [PARAMETER_LAYOUT] = {"LAYOUT", "-", 0.0F, (float)(LAYOUT_COUNT - 1), (float)LAYOUT_FRONT, layout_names,
+                          PARAMETERS_MIRRORS, "Mirrors read in each scan: front, the other two, or all."},
+    /* Limits: within these no two windows meet, and none leaves the steps that the scanner measures.
+     * Defaults: measured on the vehicle, 5 steps inside each mirror's edges. */
+    [PARAMETER_SF] = {"SF", "step", 345.0F, 423.0F, 389.0F, NULL, PARAMETERS_MIRRORS,
+                      "Middle of the rays on the front mirror."},
+    [PARAMETER_S1] = {"S1", "step", 64.0F, 304.0F, 128.0F, NULL, PARAMETERS_MIRRORS,
+                      "Middle of the rays on mirror 1, aft."},
+    [PARAMETER_S2] = {"S2", "step", 464.0F, 705.0F, 640.0F, NULL, PARAMETERS_MIRRORS,
+                      "Middle of the rays on mirror 2, fore."},
+    [PARAMETER_SW] = {"SW", "steps", 2.0F, 20.0F, 17.0F, NULL, PARAMETERS_MIRRORS,
+                      "Rays to either side of each middle."},
 };
 typedef char
     every_parameter_has_its_row[(sizeof parameter_table / sizeof parameter_table[0] == PARAMETER_COUNT) ? 1
@@ -130,6 +146,18 @@ void parameters_set_seed(parameters_t *parameters)
         parameters->value[seed[i]] = parameter_table[seed[i]].initial;
     }
     parameters->value[PARAMETER_LAW] = (float)LAW_PID;
+    parameters->value[PARAMETER_LAYOUT] = (float)LAYOUT_FRONT;
+    ++parameters->generation;
+}
+
+void parameters_set_older(parameters_t *parameters, uint16_t count)
+{
+    for (uint16_t i = count; i < (uint16_t)PARAMETER_COUNT; ++i) {
+        parameters->value[i] = parameter_table[i].initial;
+    }
+    if (count <= (uint16_t)PARAMETER_LAYOUT) {
+        parameters->value[PARAMETER_LAYOUT] = (float)LAYOUT_FRONT;
+    }
     ++parameters->generation;
 }
 

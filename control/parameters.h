@@ -2,6 +2,8 @@
  * meaning. One row feeds the validation, the answers of #GET and #HELP, `plomada params`, and the command
  * table of the README.
  *
+ * A new row goes to the end, so that sets that are stored still load (firmware/parameter_store.h).
+ *
  * Pure; the caller owns the set. In the firmware the parameter server owns it (firmware/servers.h). */
 #ifndef CONTROL_PARAMETERS_H
 #define CONTROL_PARAMETERS_H
@@ -52,6 +54,11 @@ typedef enum {
     PARAMETER_L1,
     PARAMETER_D2, /* fore mirror, the seed's mirror 2 */
     PARAMETER_L2,
+    PARAMETER_LAYOUT, /* choice, control_layout_t. From here on: not in sets that 0.35 has stored */
+    PARAMETER_SF,     /* steps of the scanner: middle of the rays that look at the front mirror */
+    PARAMETER_S1,     /* aft */
+    PARAMETER_S2,     /* fore */
+    PARAMETER_SW,     /* steps to either side of each middle */
     PARAMETER_COUNT
 } parameter_id_t;
 
@@ -79,6 +86,9 @@ typedef enum { AXIS_ROLL, AXIS_MINUS_ROLL, AXIS_PITCH, AXIS_MINUS_PITCH, AXIS_CO
 typedef enum { DOWN_Z, DOWN_MINUS_Z, DOWN_COUNT } control_down_t;
 /* Whether IROLL and IPITCH are assumed, or proved by tilting the vehicle by hand. */
 typedef enum { AXES_ASSUMED, AXES_PROVED, AXES_COUNT } control_axes_t;
+
+/* Which mirrors are read in each scan: the front one; those aft and fore; all. */
+typedef enum { LAYOUT_FRONT, LAYOUT_TWO, LAYOUT_THREE, LAYOUT_COUNT } control_layout_t;
 
 /* What a parameter is for, so that forty of them are found. */
 typedef enum {
@@ -116,9 +126,13 @@ typedef enum { PARAMETER_ACCEPTED, PARAMETER_OUT_OF_RANGE } parameter_status_t;
 
 void parameters_init(parameters_t *parameters);
 
-/* Sets the seed's law PID as it flew: LAW, RELEASE, KP, KD, KI, USAT, DSAT and GRAV. Other parameters do
- * not change. */
+/* Sets the seed's law PID as it flew: LAW, RELEASE, KP, KD, KI, USAT, DSAT, GRAV and LAYOUT. Other parameters
+ * do not change. */
 void parameters_set_seed(parameters_t *parameters);
+
+/* The parameters from number `count` on become what vehicles flew with before these existed: for a set that
+ * was stored then. */
+void parameters_set_older(parameters_t *parameters, uint16_t count);
 
 /* Whether this law uses the parameter. The gains of PIDT count as used by EST too, because PIDT replaces
  * EST without an estimate. */

@@ -47,8 +47,12 @@ typedef enum {
 } scip_layout_id_t;
 extern const scip_layout_t scip_layouts[]; /* SCIP_LAYOUT_COUNT */
 
-/* Largest number of points in a scan of any layout: THREE_MIRRORS, steps 111..657, with a cluster of 1. */
-#define SCIP_LAYOUT_POINTS_MAX 547U
+/* Largest number of points in a scan of any layout: several groups in steps 44..725, with a cluster of 4. */
+#define SCIP_LAYOUT_POINTS_MAX 171U
+
+/* Layout of groups around these middle steps, which ascend, each `reach` steps to either side. count:
+ * 1..SCIP_GROUPS_MAX. */
+scip_layout_t scip_layout_around(const uint16_t middles[], uint16_t count, uint16_t reach);
 
 typedef struct {
     bool valid;         /* at least half of the group's rays were good */
@@ -60,7 +64,8 @@ typedef struct {
 /* Robust mean distance of one group: the mean of the good rays within 25 mm of their median. So a leg or a
  * rope in front of some rays does not change the mean much. A good ray has at least 20 mm, and less than 4095
  * mm (two characters) or at most 5600 mm (three characters). Rays that are not in the scan count as bad. With
- * a cluster, a ray is a point whose steps are all in the group. */
+ * a cluster, a ray is a point whose steps are all in the group; it tells the nearest of them, so the mean is
+ * raised by what that takes away from rays with such a white noise. */
 scip_group_mean_t scip_group_mean(const scip_scan_t *scan, const scip_group_t *group);
 
 /* The same, with dmin_mm and dmax_mm of *limits (scip_info_limits()) as limits of a good ray. */
@@ -84,9 +89,13 @@ uint16_t scip_step_at_degrees(float degrees);
  * and step 389 is sampled 34 ms after the time stamp. bit_rate: one of SCIP's. */
 uint32_t scip_rays_age_us(const scip_scan_t *scan, uint32_t bit_rate);
 
-/* Smallest cluster with which the layout's stream leaves a tenth of each revolution free. THREE_MIRRORS at
- * 115200 bit/s needs 2: with 1 a scan has 1157 octets, which take longer than a revolution, so the sensor
- * cannot keep up. bit_rate: in bits per second. */
+/* Time from the scan's middle step to that of the group, which may have been sampled before: then it is below
+ * 0. */
+int32_t scip_group_later_us(const scip_scan_t *scan, const scip_group_t *group);
+
+/* Cluster of a layout: 1 for one group and 4 for several, so that the scan is short on the line; more where
+ * its stream would not leave a tenth of each revolution free, as that of THREE_MIRRORS at 19200 bit/s.
+ * bit_rate: in bits per second. */
 uint16_t scip_layout_cluster(const scip_layout_t *layout, uint32_t bit_rate);
 
 /* The range to request for a layout: its steps in whole clusters, without end. Steps that fill no cluster are

@@ -32,16 +32,14 @@ const char *urg_refusal_text(urg_refusal_t refusal)
 bool urg_init(urg_driver_t *urg, const urg_config_t *config, uint16_t *distance_mm, uint16_t values,
               uint32_t now_us)
 {
-    scip_request_t stream;
     if (urg_refusal(config, values) != URG_ACCEPTED) {
         return false;
     }
-    (void)scip_request_scan(&stream, config->stream, &config->range);
     *urg = (urg_driver_t){.fresh = false};
     (void)urg_link_init(&urg->link, config, now_us);
     for (uint16_t i = 0U; i < 2U; i++) {
-        urg->scans[i].distance_mm = &distance_mm[i * stream.points];
-        urg->scans[i].capacity = stream.points;
+        urg->scans[i].distance_mm = &distance_mm[i * (values / 2U)];
+        urg->scans[i].capacity = values / 2U;
     }
     scip_parser_init(&urg->parser);
     scip_parser_scan_into(&urg->parser, &urg->scans[0]);
@@ -152,6 +150,14 @@ bool urg_take_scan(urg_driver_t *urg, scip_scan_t *scan)
         urg->fresh = false;
     }
     return fresh;
+}
+
+bool urg_order(urg_driver_t *urg, const scip_range_t *range)
+{
+    urg_config_t config = urg->link.config;
+    config.range = *range;
+    return urg_refusal(&config, (uint16_t)(2U * urg->scans[0].capacity)) == URG_ACCEPTED &&
+           urg_link_order(&urg->link, range);
 }
 
 void urg_ask(urg_driver_t *urg, scip_info_t *info)

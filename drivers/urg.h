@@ -8,8 +8,8 @@
  *   urg_take_scan()     call it when urg_feed() returned true: the scan
  *
  * More calls are for some callers: urg_line_broken() where the UART reports errors; urg_scan_at() for the
- * shortest search after an outage; urg_ask() for what the sensor tells of itself. The driver uses no clock,
- * port, task or heap.
+ * shortest search after an outage; urg_ask() for what the sensor tells of itself; urg_order() for another
+ * range of steps. The driver uses no clock, port, task or heap.
  *
  * Calling context: one call at a time. When an interrupt calls urg_feed(), disable it during the other calls.
  * No call waits or loops for long. The fields of urg_driver_t are private: use urg_report(). */
@@ -109,6 +109,10 @@ bool urg_next_to_send(urg_driver_t *urg, urg_output_t *output);
 /* Gets the latest complete scan, once. Returns false when there is none. The points are valid until the next
  * scan is complete. */
 bool urg_take_scan(urg_driver_t *urg, scip_scan_t *scan);
+
+/* Orders another range from the sensor: a stream that runs stops for some revolutions. Nothing happens when
+ * it is the present range. Returns false, and does nothing, when urg_refusal() would name a cause. */
+bool urg_order(urg_driver_t *urg, const scip_range_t *range);
 
 /* Asks the sensor for its version, limits and state (VV, PP, II), once; *info is cleared, then written while
  * urg_feed() reads the answers. Before the first stream it costs three answers' time; a stream that runs

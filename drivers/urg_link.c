@@ -201,6 +201,7 @@ static void expect_reply(const step_t *step, scip_kind_t kind)
     urg_link_t *link = step->link;
     step->action->expect = build_request(link, kind, &step->action->request);
     link->waiting = true;
+    link->to_order = link->to_order && kind != link->config.stream;
     link->acknowledged = false;
     link->command = kind;
     link->sent_us = step->now_us;
@@ -1097,6 +1098,8 @@ static void step_stream(const step_t *step)
         link->to_ask = false; /* one interruption, whatever comes of it */
         link->asks_left = URG_QUESTIONS;
         stop_sensor(step);
+    } else if (link->to_order) {
+        stop_sensor(step);
     }
 }
 
@@ -1195,6 +1198,30 @@ void urg_link_ask(urg_link_t *link)
 {
     link->to_ask = true;
     link->told = 0U;
+}
+
+static bool is_same_range(const scip_range_t *a, const scip_range_t *b)
+{
+    return a->first_step == b->first_step && a->last_step == b->last_step && a->cluster == b->cluster &&
+           a->interval == b->interval && a->scans == b->scans;
+}
+
+bool urg_link_order(urg_link_t *link, const scip_range_t *range)
+{
+    urg_config_t config = link->config;
+    scip_request_t stream;
+
+    config.range = *range;
+    if (urg_link_refusal(&config) != URG_ACCEPTED) {
+        return false;
+    }
+    if (!is_same_range(range, &link->config.range)) {
+        (void)scip_request_scan(&stream, config.stream, range);
+        link->config.range = *range;
+        link->scan_octets = stream.scan_octets;
+        link->to_order = true;
+    }
+    return true;
 }
 
 uint16_t urg_link_told(const urg_link_t *link)

@@ -132,6 +132,7 @@ typedef struct {
     uint32_t answered_us;  /* time of the latest answer */
     bool answered;         /* it came at one of the configured rates */
     bool to_ask;           /* VV, PP and II are wanted */
+    bool to_order;         /* the range has changed since the stream was requested */
     uint16_t sweep;        /* of a first search through all rates */
     bool knocking;         /* the present command is part of the search for a sensor that has streamed */
     bool listening;        /* it is at the stream's rate, and no command was sent */
@@ -170,6 +171,11 @@ void urg_link_step(urg_link_t *link, const urg_seen_t *seen, uint32_t now_us, ur
  * is left out. urg_link_told(): how many were answered, 0..URG_QUESTIONS. */
 void urg_link_ask(urg_link_t *link);
 uint16_t urg_link_told(const urg_link_t *link);
+
+/* Orders another range, with the `scans` of it as well: a stream that runs is stopped for some revolutions,
+ * and requested anew. Nothing happens when it is the present range. Returns false, and does nothing, when
+ * urg_link_refusal() would name a cause. */
+bool urg_link_order(urg_link_t *link, const scip_range_t *range);
 
 /* The latest scan was complete at this time. Not needed, but scans come at equal distances: who tells it
  * makes the link listen at the right moments while it searches. Call it for every scan or for none. */

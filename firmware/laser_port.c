@@ -165,6 +165,15 @@ uint32_t laser_port_pause_us(void)
     return pause_us;
 }
 
+void laser_port_order(const scip_range_t *range)
+{
+    UInt key = Hwi_disable();
+
+    /* Of parameters within their limits; one that is refused has never flown. */
+    (void)urg_order(&urg, range);
+    Hwi_restore(key);
+}
+
 void laser_port_step(laser_statistics_t *statistics)
 {
     urg_output_t output;

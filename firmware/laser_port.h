@@ -29,6 +29,10 @@ void laser_port_create(const urg_config_t *config);
 /* Blocks until a scan is complete, then copies the latest scan to *message. TaskReceiveLaser only. */
 void laser_port_wait(laser_message_t *message);
 
+/* Orders these rays from the sensor from the next step on; nothing happens when they are ordered already.
+ * TaskSendLaser only. */
+void laser_port_order(const scip_range_t *range);
+
 /* One step of the driver: sets the rate of the board's UART and sends what the sensor is to be told. Copies
  * the statistics as they are then. TaskSendLaser only. */
 void laser_port_step(laser_statistics_t *statistics);

@@ -3,6 +3,7 @@
 
 #include "bsp/board.h"
 #include "firmware/boot.h"
+#include "firmware/geometry.h"
 #include "firmware/mounting.h"
 #include "firmware/parameter_store.h"
 #include "firmware/servers.h"
@@ -16,6 +17,7 @@ int main(void);
 static void laser_config(urg_config_t *config)
 {
     const uint32_t stored = parameter_store_laser_rate();
+    geometry_t geometry;
 
     config->wait_us = boot_is_restart() ? 0U : LASER_WAIT_US;
     config->first_rate_known = stored > 0U && stored <= LASER_STREAM_RATE;
@@ -23,7 +25,8 @@ static void laser_config(urg_config_t *config)
     config->fastest_rate = LASER_STREAM_RATE;
     config->stream_rate = LASER_STREAM_RATE;
     config->stream = SCIP_STREAM_2;
-    config->range = scip_layout_range(&scip_layouts[LASER_LAYOUT], LASER_STREAM_RATE);
+    geometry_mounted(&geometry);
+    config->range = scip_layout_range(&geometry.layout, LASER_STREAM_RATE);
 }
 
 int main(void)

@@ -11,7 +11,7 @@
 #include "bsp/storage.h"
 
 #define VALUES ((uint16_t)PARAMETER_COUNT)
-#define LASER_RATE VALUES /* place of the scanner's power-up rate; older copies have none */
+#define LASER_RATE VALUES /* place of the scanner's power-up rate, behind the parameters */
 #define SLOTS BSP_STORAGE_SLOTS
 #define NO_SLOT SLOTS
 
@@ -34,23 +34,34 @@ static uint32_t names_of_choices(uint32_t names, const parameter_row_t *row)
     return names;
 }
 
-static uint32_t names_of_all(void)
+/* Of the first `count` parameters of the table. */
+static uint32_t names_of(uint16_t count)
 {
     uint32_t names = 0U;
     uint16_t id;
 
-    for (id = 0U; id < (uint16_t)PARAMETER_COUNT; id++) {
+    for (id = 0U; id < count; id++) {
         names = parameter_image_name(names, parameter_table[id].name);
         names = names_of_choices(names, &parameter_table[id]);
     }
     return names;
 }
 
-static uint32_t names_of(uint16_t count)
+static uint32_t names_with_rate(uint16_t count)
 {
-    const uint32_t names = names_of_all();
+    return parameter_image_name(names_of(count), "laser power-up rate");
+}
 
-    return count > LASER_RATE ? parameter_image_name(names, "laser power-up rate") : names;
+/* New parameters stand at the end of the table, so an older copy holds its beginning; the oldest copies have
+ * no rate behind it. Returns how many parameters it holds, 0 when it is of another firmware. */
+static uint16_t parameters_in(const parameter_image_t *image)
+{
+    const uint16_t count = image->count;
+
+    if (count <= LASER_RATE + 1U && image->names == names_with_rate((uint16_t)(count - 1U))) {
+        return (uint16_t)(count - 1U);
+    }
+    return (count <= VALUES && image->names == names_of(count)) ? count : 0U;
 }
 
 static void look(void)
@@ -63,13 +74,9 @@ static void look(void)
     }
 }
 
-/* Also one of the time when the scanner's rate was not stored. */
 static bool usable(const copy_t *copy, bool foreign_too)
 {
-    const uint16_t count = copy->image.count;
-    const bool ours = (count == VALUES || count == LASER_RATE + 1U) && copy->image.names == names_of(count);
-
-    return copy->status == PARAMETER_IMAGE_GOOD && (ours || foreign_too);
+    return copy->status == PARAMETER_IMAGE_GOOD && (foreign_too || parameters_in(&copy->image) > 0U);
 }
 
 static uint16_t newest(bool foreign_too)
@@ -102,15 +109,17 @@ static parameter_store_status_t why_none(void)
 }
 
 /* Returns the first parameter that its limits refuse, PARAMETER_COUNT when there is none. */
-static parameter_id_t take(parameters_t *parameters, const float *values)
+static parameter_id_t take(parameters_t *parameters, const parameter_image_t *image)
 {
+    const uint16_t count = parameters_in(image);
     uint16_t id;
 
-    for (id = 0U; id < (uint16_t)PARAMETER_COUNT; id++) {
-        if (parameters_set(parameters, (parameter_id_t)id, values[id]) != PARAMETER_ACCEPTED) {
+    for (id = 0U; id < count; id++) {
+        if (parameters_set(parameters, (parameter_id_t)id, image->values[id]) != PARAMETER_ACCEPTED) {
             return (parameter_id_t)id;
         }
     }
+    parameters_set_older(parameters, count);
     return PARAMETER_COUNT;
 }
 
@@ -128,7 +137,7 @@ parameter_store_result_t parameter_store_load(parameters_t *parameters)
     }
     wanted = *parameters;
     result.generation = copies[slot].image.generation;
-    result.parameter = take(&wanted, copies[slot].image.values);
+    result.parameter = take(&wanted, &copies[slot].image);
     if (result.parameter != PARAMETER_COUNT) {
         result.status = PARAMETER_STORE_RANGE;
     } else {
@@ -139,13 +148,18 @@ parameter_store_result_t parameter_store_load(parameters_t *parameters)
 
 static uint32_t laser_rate_in(uint16_t slot)
 {
+    uint16_t place;
     uint16_t i;
 
-    if (slot == NO_SLOT || copies[slot].image.count <= LASER_RATE) {
+    if (slot == NO_SLOT) {
+        return 0U;
+    }
+    place = parameters_in(&copies[slot].image);
+    if (copies[slot].image.count <= place) {
         return 0U;
     }
     for (i = 0U; i < SCIP_BIT_RATES; i++) {
-        if (copies[slot].image.values[LASER_RATE] == (float)scip_bit_rates[i]) {
+        if (copies[slot].image.values[place] == (float)scip_bit_rates[i]) {
             return scip_bit_rates[i];
         }
     }
@@ -163,7 +177,7 @@ static void fill(parameter_image_t *image, const parameters_t *parameters, uint3
     uint16_t id;
 
     image->count = LASER_RATE + 1U;
-    image->names = names_of(image->count);
+    image->names = names_with_rate(VALUES);
     image->values[LASER_RATE] = (float)laser_rate;
     for (id = 0U; id < (uint16_t)PARAMETER_COUNT; id++) {
         image->values[id] = parameters->value[id];

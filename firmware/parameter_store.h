@@ -25,7 +25,8 @@ typedef struct {
 } parameter_store_result_t;
 
 /* Loads the stored values into *parameters, which must already hold a valid set. Changes all values when
- * the status is DONE, else none. */
+ * the status is DONE, else none. What an older firmware did not store becomes what vehicles flew with then,
+ * parameters_set_older(). */
 parameter_store_result_t parameter_store_load(parameters_t *parameters);
 
 /* Saves the values, and the scanner's power-up rate, bits per second; 0: not known, a stored one is kept. On

@@ -2,11 +2,10 @@
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
-#include "control/altitude.h"
+#include "control/beams.h"
 #include "firmware/geometry.h"
 #include "firmware/laser_port.h"
 #include "firmware/monitor.h"
-#include "firmware/mounting.h"
 #include "firmware/schedule.h"
 #include "drivers/scip_layout.h"
 #include "firmware/servers.h"
@@ -14,22 +13,24 @@
 
 static altitude_t height_of(const scip_scan_t *scan, const attitude_t *tilt)
 {
-    const scip_layout_t *layout = &scip_layouts[LASER_LAYOUT];
+    static beams_t beams;
     mirror_range_t ranges[SCIP_GROUPS_MAX];
-    altitude_geometry_t geometry;
+    geometry_t geometry;
     uint16_t i;
 
-    for (i = 0U; i < layout->group_count; i++) {
-        scip_group_mean_t mean = scip_group_mean(scan, &layout->groups[i]);
+    geometry_mounted(&geometry);
+    for (i = 0U; i < geometry.layout.group_count; i++) {
+        scip_group_mean_t mean = scip_group_mean(scan, &geometry.layout.groups[i]);
 
-        ranges[i].mirror = laser_mirrors[LASER_LAYOUT][i];
+        ranges[i].mirror = geometry.windows.mirror[i];
         ranges[i].valid = mean.valid;
         ranges[i].slant_mm = mean.mean_mm;
         ranges[i].spread_mm = mean.spread_mm;
         ranges[i].good_rays = mean.good_rays;
+        ranges[i].later_us = scip_group_later_us(scan, &geometry.layout.groups[i]);
     }
-    geometry_mounted(&geometry);
-    return altitude_from_ranges(&geometry, ranges, layout->group_count, tilt->roll_rad, tilt->pitch_rad);
+    return beams_scan(&beams, &geometry.places, ranges, geometry.layout.group_count, tilt->roll_rad,
+                      tilt->pitch_rad);
 }
 
 static void take(altitude_sample_t *sample, const laser_message_t *message)
@@ -44,7 +45,8 @@ static void take(altitude_sample_t *sample, const laser_message_t *message)
         sample->altitude = altitude;
         sample->sensor_time_ms = message->scan.timestamp_ms;
         sample->arrival_us = message->arrival_us;
-        sample->age_us = scip_rays_age_us(&message->scan, message->bit_rate);
+        sample->age_us = (uint32_t)((int32_t)scip_rays_age_us(&message->scan, message->bit_rate) -
+                                    altitude.later_us);
         sample->sequence++;
     } else {
         sample->heightless++;

@@ -6,7 +6,9 @@
 #include <xdc/std.h>
 
 #include "firmware/alive.h"
+#include "firmware/geometry.h"
 #include "firmware/laser_port.h"
+#include "firmware/mounting.h"
 #include "bsp/led.h"
 #include "firmware/monitor.h"
 #include "firmware/schedule.h"
@@ -55,6 +57,16 @@ static void publish(const urg_report_t *urg)
     laser_server_write(&sample);
 }
 
+static void order_rays(void)
+{
+    geometry_t geometry;
+    scip_range_t range;
+
+    geometry_mounted(&geometry);
+    range = scip_layout_range(&geometry.layout, LASER_STREAM_RATE);
+    laser_port_order(&range);
+}
+
 static Void task_send_laser(UArg unused0, UArg unused1)
 {
     static laser_statistics_t statistics;
@@ -64,6 +76,7 @@ static Void task_send_laser(UArg unused0, UArg unused1)
     for (;;) {
         (void)Semaphore_pend(tick, BIOS_WAIT_FOREVER);
         monitor_begin(MONITOR_SEND_LASER);
+        order_rays();
         laser_port_step(&statistics);
         publish(&statistics.urg);
         show(statistics.urg.status);

@@ -129,7 +129,7 @@ void test_another_bracket_agrees_with_its_ray_model_by_its_seven_parameters(void
         for (int roll = -20; roll <= 20; roll += 10) {
             for (int pitch = -20; pitch <= 20; pitch += 10) {
                 const double r = roll * DEGREE, p = pitch * DEGREE;
-                mirror_range_t range = {other[i].mirror, true, 0.0F, 4.0F, 35U};
+                mirror_range_t range = {other[i].mirror, true, 0.0F, 4.0F, 35U, 0};
 
                 range.slant_mm = (float)ray_from_mm(220.0, &other[i], 600.0, r, p);
                 const altitude_t altitude = altitude_from_ranges(&geometry, &range, 1, (float)r, (float)p);
@@ -188,8 +188,8 @@ void test_nose_up_lengthens_the_fore_ray_and_shortens_the_aft_one(void)
 
 static mirror_range_t range_at(const place_t *place, double height_mm, double roll, double pitch)
 {
-    const mirror_range_t range = {place->mirror, true, (float)ray_mm(place, height_mm, roll, pitch), 4.0F,
-                                  35U};
+    const mirror_range_t range = {place->mirror, true, (float)ray_mm(place, height_mm, roll, pitch),
+                                  4.0F,          35U,  0};
     return range;
 }
 
@@ -222,9 +222,9 @@ void test_the_mean_of_three_mirrors_can_be_tilted_anew(void)
 void test_only_valid_groups_count(void)
 {
     const mirror_range_t ranges[] = {
-        {MIRROR_FRONT, false, 9999.0F, 900.0F, 3U},
-        {MIRROR_FORE, true, 512.0F, 7.0F, 20U},
-        {MIRROR_AFT, true, 533.0F, 11.0F, 15U},
+        {MIRROR_FRONT, false, 9999.0F, 900.0F, 3U, 0},
+        {MIRROR_FORE, true, 512.0F, 7.0F, 20U, 0},
+        {MIRROR_AFT, true, 533.0F, 11.0F, 15U, 0},
     };
     const altitude_t altitude = altitude_from_ranges(&geometry, ranges, 3, 0.0F, 0.0F);
     TEST_ASSERT_TRUE(altitude.valid);
@@ -238,9 +238,9 @@ void test_only_valid_groups_count(void)
 void test_disagreement_is_more_than_50_mm_between_any_two(void)
 {
     mirror_range_t ranges[] = {
-        {MIRROR_FRONT, true, 505.0F, 1.0F, 35U}, /* 300 */
-        {MIRROR_FORE, true, 512.0F, 1.0F, 35U},  /* 300 */
-        {MIRROR_AFT, true, 562.5F, 1.0F, 35U},   /* 349.5 */
+        {MIRROR_FRONT, true, 505.0F, 1.0F, 35U, 0}, /* 300 */
+        {MIRROR_FORE, true, 512.0F, 1.0F, 35U, 0},  /* 300 */
+        {MIRROR_AFT, true, 562.5F, 1.0F, 35U, 0},   /* 349.5 */
     };
     TEST_ASSERT_FALSE(altitude_from_ranges(&geometry, ranges, 3, 0.0F, 0.0F).disagree);
     ranges[2].slant_mm = 563.5F; /* 350.5 */
@@ -253,7 +253,7 @@ void test_disagreement_is_more_than_50_mm_between_any_two(void)
 
 void test_one_group_never_disagrees_even_far_below_zero(void)
 {
-    const mirror_range_t range = {MIRROR_FRONT, true, 100.0F, 1.0F, 35U};
+    const mirror_range_t range = {MIRROR_FRONT, true, 100.0F, 1.0F, 35U, 0};
     const altitude_t altitude = altitude_from_ranges(&geometry, &range, 1, 0.0F, 0.0F);
     TEST_ASSERT_FLOAT_WITHIN(0.001F, -105.0F, altitude.height_mm);
     TEST_ASSERT_FALSE(altitude.disagree);
@@ -261,8 +261,8 @@ void test_one_group_never_disagrees_even_far_below_zero(void)
 
 void test_no_valid_group_is_no_height_and_zeros(void)
 {
-    const mirror_range_t ranges[] = {{MIRROR_FRONT, false, 805.0F, 4.0F, 35U},
-                                     {MIRROR_FORE, false, 805.0F, 4.0F, 35U}};
+    const mirror_range_t ranges[] = {{MIRROR_FRONT, false, 805.0F, 4.0F, 35U, 0},
+                                     {MIRROR_FORE, false, 805.0F, 4.0F, 35U, 0}};
     for (size_t count = 0; count <= 2; count++) {
         const altitude_t altitude = altitude_from_ranges(&geometry, ranges, count, 0.1F, 0.1F);
         TEST_ASSERT_FALSE(altitude.valid);

@@ -110,7 +110,7 @@ void test_the_throttles_owner_the_imus_axes_and_the_mirrors_places_wait_for_the_
     TEST_ASSERT_EQUAL(IN_AIR_NEVER, change(PARAMETER_IPITCH, (float)AXIS_ROLL));
     TEST_ASSERT_EQUAL(IN_AIR_NEVER, change(PARAMETER_IDOWN, (float)DOWN_MINUS_Z));
     TEST_ASSERT_EQUAL(IN_AIR_NEVER, change(PARAMETER_IUNIT, 255.0F));
-    for (int id = PARAMETER_DF; id <= PARAMETER_L2; id++) {
+    for (int id = PARAMETER_DF; id <= PARAMETER_SW; id++) {
         const float value = set.value[id];
 
         TEST_ASSERT_EQUAL(IN_AIR_NEVER, change((parameter_id_t)id, value + 1.0F));

@@ -57,21 +57,39 @@ void test_the_limits_and_defaults_are_those_that_were_released(void)
         const char *name;
         float least, most, initial;
     } rows[] = {
-        {"KP", 0, 1, 0.015F},         {"KD", 0, 1, 0.008F},
-        {"KI", 0, 1, 0.01F},          {"PKP", 0, 50, 6},
-        {"PKI", 0, 50, 1.4F},         {"PKD", 0, 50, 2.6F},
-        {"POSK", 0.25F, 6, 2.3F},     {"VELK", 0.5F, 12, 8},
-        {"VUP", 0.125F, 1.5F, 0.7F},  {"VDN", 0.125F, 1.5F, 1.1F},
-        {"CRATE", 0.125F, 5, 1},      {"GAIN", 0.4F, 2.5F, 1},
-        {"LAG", 0.03F, 0.5F, 0.12F},  {"DELAY", 0.008F, 0.12F, 0.0185F},
-        {"DAMP", 0.5F, 6, 2.5F},      {"CLAG", 0.1F, 1, 0.25F},
-        {"LINK", 0, 60, 0},           {"IDLE", 0, 25, 15},
-        {"IUNIT", 0.5F, 5000, 256},   {"DF", 0, 500, 105},
-        {"LF", 0, 500, 100},          {"L", 0, 500, 220},
-        {"D1", 0, 500, 115},          {"L1", 0, 500, 98},
-        {"D2", 0, 500, 107},          {"L2", 0, 500, 105},
-        {"GRAV", 0, THRUST_MAX_N, 7}, {"USAT", 0, THRUST_MAX_N, 1},
+        {"KP", 0, 1, 0.015F},
+        {"KD", 0, 1, 0.008F},
+        {"KI", 0, 1, 0.01F},
+        {"PKP", 0, 50, 6},
+        {"PKI", 0, 50, 1.4F},
+        {"PKD", 0, 50, 2.6F},
+        {"POSK", 0.25F, 6, 2.3F},
+        {"VELK", 0.5F, 12, 8},
+        {"VUP", 0.125F, 1.5F, 0.7F},
+        {"VDN", 0.125F, 1.5F, 1.1F},
+        {"CRATE", 0.125F, 5, 1},
+        {"GAIN", 0.4F, 2.5F, 1},
+        {"LAG", 0.03F, 0.5F, 0.12F},
+        {"DELAY", 0.008F, 0.12F, 0.0185F},
+        {"DAMP", 0.5F, 6, 2.5F},
+        {"CLAG", 0.1F, 1, 0.25F},
+        {"LINK", 0, 60, 0},
+        {"IDLE", 0, 25, 15},
+        {"IUNIT", 0.5F, 5000, 256},
+        {"DF", 0, 500, 105},
+        {"LF", 0, 500, 100},
+        {"L", 0, 500, 220},
+        {"D1", 0, 500, 115},
+        {"L1", 0, 500, 98},
+        {"D2", 0, 500, 107},
+        {"L2", 0, 500, 105},
+        {"GRAV", 0, THRUST_MAX_N, 7},
+        {"USAT", 0, THRUST_MAX_N, 1},
         {"DSAT", 0, THRUST_MAX_N, 0},
+        {"SF", 345, 423, 389},
+        {"S1", 64, 304, 128},
+        {"S2", 464, 705, 640},
+        {"SW", 2, 20, 17},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const parameter_row_t *row = &parameter_table[find(rows[i].name)];
@@ -126,7 +144,7 @@ void test_every_choice_is_found_by_its_name(void)
         }
     }
     TEST_ASSERT_EQUAL_INT(LAW_COUNT + RELEASE_COUNT + TERRAIN_COUNT + PLANT_COUNT + SEL_COUNT + SUM_COUNT +
-                              2 * AXIS_COUNT + DOWN_COUNT + AXES_COUNT,
+                              2 * AXIS_COUNT + DOWN_COUNT + AXES_COUNT + LAYOUT_COUNT,
                           choices);
 }
 
@@ -230,6 +248,7 @@ void test_the_seeds_set_is_its_law_and_gains_and_nothing_else(void)
     expected.value[PARAMETER_USAT] = 1.0F;
     expected.value[PARAMETER_DSAT] = 0.0F;
     expected.value[PARAMETER_GRAV] = 7.0F;
+    expected.value[PARAMETER_LAYOUT] = (float)LAYOUT_FRONT;
     parameters_set_seed(&parameters);
     TEST_ASSERT_EQUAL_MEMORY(&expected, &parameters, sizeof expected);
 }

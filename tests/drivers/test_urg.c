@@ -520,6 +520,91 @@ void test_who_asks_in_a_stream_is_told_and_the_stream_goes_on(void)
     answer_questions();
 }
 
+void test_another_range_is_ordered_in_a_stream_and_the_stream_goes_on(void)
+{
+    static const scip_range_t half = {372U, 405U, 2U, 0U, 0U};
+    scip_scan_t scan;
+
+    reach_stream();
+    start_streaming();
+    TEST_ASSERT_TRUE(urg_order(&urg, &config.range));
+    TEST_ASSERT_EQUAL_STRING_MESSAGE("", step(), "the same range");
+    TEST_ASSERT_TRUE(urg_order(&urg, &half));
+    TEST_ASSERT_EQUAL_STRING("QT\n", step());
+    (void)feed("QT\n00P\n\n");
+    TEST_ASSERT_EQUAL_STRING("MS0372040502000\n", step());
+    (void)feed("MS0372040502000\n00P\n\n");
+    static char text[200];
+    char data[34];
+    for (size_t i = 0U; i < sizeof data; i++) {
+        data[i] = "0o"[i % 2U];
+    }
+    scip_frames_frame(text, "MS0372040502000", 3000U, data, sizeof data);
+    TEST_ASSERT_TRUE(feed(text));
+    TEST_ASSERT_TRUE(urg_take_scan(&urg, &scan));
+    TEST_ASSERT_EQUAL_UINT16(17U, scan.points);
+    TEST_ASSERT_EQUAL_UINT16(2U, scan.cluster);
+    TEST_ASSERT_EQUAL_STRING("", step());
+    TEST_ASSERT_EQUAL(URG_OK, status());
+    TEST_ASSERT_EQUAL_UINT32(0U, report.restarts);
+}
+
+void test_a_range_ordered_before_the_start_is_the_one_that_is_requested(void)
+{
+    static const scip_range_t half = {372U, 405U, 2U, 0U, 0U};
+
+    TEST_ASSERT_TRUE(urg_order(&urg, &half));
+    TEST_ASSERT_EQUAL_STRING("\nL0\n", step());
+    (void)feed("L0\n0\n\n");
+    (void)step();
+    (void)feed("SCIP2.0\n0\n\n");
+    (void)step();
+    (void)feed("SS250000\n00P\n\n");
+    (void)step();
+    (void)step();
+    (void)feed("QT\n00P\n\n");
+    TEST_ASSERT_EQUAL_STRING("MS0372040502000\n", step());
+}
+
+/* What is on the line and in the memory stays. */
+void test_a_range_that_cannot_be_streamed_or_kept_changes_nothing(void)
+{
+    static const scip_range_t bad[] = {{372U, 407U, 1U, 0U, 0U},
+                                       {406U, 372U, 1U, 0U, 0U},
+                                       {372U, 406U, 0U, 0U, 0U},
+                                       {0U, 769U, 99U, 0U, 0U}};
+
+    reach_stream();
+    start_streaming();
+    for (size_t i = 0U; i < sizeof bad / sizeof bad[0]; i++) {
+        TEST_ASSERT_FALSE(urg_order(&urg, &bad[i]));
+        TEST_ASSERT_TRUE(feed(frame(1100U + 100U * i, "0o")));
+        TEST_ASSERT_EQUAL_STRING("", step());
+    }
+    TEST_ASSERT_TRUE(feed(frame(2000U, "0o")));
+    assert_scan(2000U, 63U);
+}
+
+/* It answers the stop late or never: then the search finds it, and asks for the new range. */
+void test_a_stop_that_is_lost_while_another_range_is_ordered_is_repeated(void)
+{
+    static const scip_range_t half = {372U, 405U, 2U, 0U, 0U};
+    const char *sent = "";
+
+    reach_stream();
+    start_streaming();
+    TEST_ASSERT_TRUE(urg_order(&urg, &half));
+    TEST_ASSERT_EQUAL_STRING("QT\n", step());
+    for (unsigned i = 0U; i < 20U && strstr(sent, "MS0372040502000") == NULL; i++) {
+        (void)feed(frame(1100U + 150U * i, "0o"));
+        sent = step();
+        if (strstr(sent, "QT") != NULL && i > 3U) {
+            (void)feed("QT\n00P\n\n");
+        }
+    }
+    TEST_ASSERT_NOT_NULL(strstr(sent, "MS0372040502000"));
+}
+
 void test_a_question_that_is_refused_is_left_out(void)
 {
     urg_ask(&urg, &info);

@@ -18,7 +18,7 @@
 #include "firmware/version.h"
 #include "unity.h"
 
-#define ANSWERS_MAX 60U
+#define ANSWERS_MAX 80U
 #define ARRIVAL_US 123456U
 
 static parameters_t parameters;

@@ -5,6 +5,7 @@
 #include "mock_BIOS.h"
 #include "mock_board.h"
 #include "mock_boot.h"
+#include "mock_geometry.h"
 #include "mock_servers.h"
 #include "mock_tasks.h"
 #include "mock_parameter_store.h"
@@ -67,6 +68,15 @@ static uint32_t laser_rate(int calls)
     return stored_rate;
 }
 
+/* Mirrors aft and fore. */
+static void geometry(geometry_t *mounted, int calls)
+{
+    static const uint16_t middles[] = {128U, 640U};
+
+    (void)calls;
+    mounted->layout = scip_layout_around(middles, 2U, 17U);
+}
+
 void setUp(void)
 {
     order[0] = '\0';
@@ -87,6 +97,7 @@ void setUp(void)
     parameter_store_laser_rate_Stub(laser_rate);
     bsp_watchdog_start_Stub(watchdog);
     BIOS_start_Stub(bios);
+    geometry_mounted_Stub(geometry);
 }
 
 void tearDown(void) {}
@@ -107,10 +118,9 @@ void test_the_scanner_has_its_rates_and_streams_the_mirrors(void)
     TEST_ASSERT_EQUAL_UINT32(LASER_STREAM_RATE, config.fastest_rate);
     TEST_ASSERT_EQUAL_UINT32(LASER_STREAM_RATE, config.stream_rate);
     TEST_ASSERT_EQUAL(SCIP_STREAM_2, config.stream);
-    const scip_range_t range = scip_layout_range(&scip_layouts[LASER_LAYOUT], LASER_STREAM_RATE);
-    TEST_ASSERT_EQUAL_UINT16(range.first_step, config.range.first_step);
-    TEST_ASSERT_EQUAL_UINT16(range.last_step, config.range.last_step);
-    TEST_ASSERT_EQUAL_UINT16(range.cluster, config.range.cluster);
+    TEST_ASSERT_EQUAL_UINT16(111, config.range.first_step);
+    TEST_ASSERT_EQUAL_UINT16(654, config.range.last_step); /* 136 points of 4 steps */
+    TEST_ASSERT_EQUAL_UINT16(4, config.range.cluster);
 }
 
 void test_a_stored_power_up_rate_is_where_the_scanner_is_looked_for_first(void)

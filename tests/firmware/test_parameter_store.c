@@ -404,6 +404,69 @@ void test_a_copy_without_the_scanners_rate_still_loads(void)
     TEST_ASSERT_EQUAL_UINT32(57600U, parameter_store_laser_rate());
 }
 
+/* As a firmware stored it that did not know LAYOUT and what is behind it. */
+static uint32_t names_of_older(void)
+{
+    uint32_t names = 0U;
+
+    for (uint16_t id = 0U; id < PARAMETER_LAYOUT; id++) {
+        const parameter_row_t *row = &parameter_table[id];
+
+        names = parameter_image_name(names, row->name);
+        for (uint16_t i = 0U; row->choices != NULL && i <= (uint16_t)row->maximum; i++) {
+            names = parameter_image_name(names, row->choices[i]);
+        }
+    }
+    return names;
+}
+
+static void older(parameter_image_t *image)
+{
+    image->count = PARAMETER_LAYOUT;
+    image->names = names_of_older();
+}
+
+static void older_with_rate(parameter_image_t *image)
+{
+    image->values[PARAMETER_LAYOUT] = 57600.0F;
+    image->count = PARAMETER_LAYOUT + 1U;
+    image->names = parameter_image_name(names_of_older(), "laser power-up rate");
+}
+
+void test_a_copy_of_an_older_firmware_loads_and_what_it_lacks_is_as_it_flew_then(void)
+{
+    static void (*const edits[])(parameter_image_t * image) = {older, older_with_rate};
+
+    for (uint16_t i = 0U; i < 2U; i++) {
+        flash_blank();
+        (void)save(6.0F);
+        edit(0U, edits[i]);
+        parameters.value[PARAMETER_LAYOUT] = (float)LAYOUT_TWO; /* in force before #LOAD */
+        parameters.value[PARAMETER_S1] = 200.0F;
+        result = parameter_store_load(&parameters);
+        TEST_ASSERT_EQUAL(PARAMETER_STORE_DONE, result.status);
+        TEST_ASSERT_EQUAL_FLOAT(6.0F, marked());
+        TEST_ASSERT_EQUAL_FLOAT((float)LAYOUT_FRONT, parameters.value[PARAMETER_LAYOUT]);
+        TEST_ASSERT_EQUAL_FLOAT(128.0F, parameters.value[PARAMETER_S1]);
+        TEST_ASSERT_EQUAL_UINT32(i == 0U ? 0U : 57600U, parameter_store_laser_rate());
+        TEST_ASSERT_EQUAL(PARAMETER_STORE_DONE, save(7.0F)); /* keeps the rate */
+        TEST_ASSERT_EQUAL_UINT32(i == 0U ? 0U : 57600U, parameter_store_laser_rate());
+    }
+}
+
+static void older_out_of_range(parameter_image_t *image)
+{
+    older(image);
+    image->values[PARAMETER_KD] = 1.5F;
+}
+
+void test_an_older_copy_with_a_value_out_of_range_changes_nothing(void)
+{
+    (void)save(6.0F);
+    edit(0U, older_out_of_range);
+    assert_nothing_loads(PARAMETER_STORE_RANGE);
+}
+
 static void with_another_rate(parameter_image_t *image)
 {
     image->values[PARAMETER_COUNT] = 9600.0F;

@@ -215,15 +215,16 @@ void test_the_parameters_begin_with_the_tables_values(void)
 
 void test_the_mirrors_have_their_places_from_the_start_and_from_every_writing(void)
 {
-    altitude_geometry_t geometry;
+    geometry_t geometry;
 
     geometry_mounted(&geometry);
-    TEST_ASSERT_EQUAL_FLOAT(parameter_table[PARAMETER_LF].initial, geometry.mirror[MIRROR_FRONT].leg_mm);
+    TEST_ASSERT_EQUAL_FLOAT(parameter_table[PARAMETER_LF].initial,
+                            geometry.places.mirror[MIRROR_FRONT].leg_mm);
     parameters_init(&parameters);
     parameters.value[PARAMETER_LF] = 77.0F;
     parameter_server_write(&parameters);
     geometry_mounted(&geometry);
-    TEST_ASSERT_EQUAL_FLOAT(77.0F, geometry.mirror[MIRROR_FRONT].leg_mm);
+    TEST_ASSERT_EQUAL_FLOAT(77.0F, geometry.places.mirror[MIRROR_FRONT].leg_mm);
 }
 
 void test_each_server_has_a_gate_of_its_own_with_its_name(void)

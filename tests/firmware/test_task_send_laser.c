@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "firmware/geometry.h"
 #include "jobs.h"
 #include "kernel.h"
 #include "mock_alive.h"
@@ -33,6 +34,24 @@ static void step(laser_statistics_t *statistics, int calls)
     (void)calls;
     kernel_note("step");
     *statistics = receiving;
+}
+
+static scip_range_t ordered;
+
+static void order(const scip_range_t *range, int calls)
+{
+    (void)calls;
+    kernel_note("order");
+    ordered = *range;
+}
+
+static void mount(control_layout_t layout)
+{
+    parameters_t parameters;
+
+    parameters_init(&parameters);
+    parameters.value[PARAMETER_LAYOUT] = (float)layout;
+    geometry_mount(&parameters);
 }
 
 static void publish(const laser_sample_t *sample, int calls)
@@ -80,6 +99,8 @@ void setUp(void)
     blue = red = false;
     bsp_time_us_Stub(time_us);
     laser_port_step_Stub(step);
+    laser_port_order_Stub(order);
+    mount(LAYOUT_FRONT);
     laser_port_pause_us_Stub(pause_us);
     laser_server_write_Stub(publish);
     bsp_led_blue_Stub(led_blue);
@@ -142,11 +163,24 @@ void test_nothing_happens_before_150_ms(void)
 void test_each_tick_steps_and_publishes_once(void)
 {
     tick();
-    TEST_ASSERT_EQUAL_STRING("pend step WAIT pend ", kernel.notes);
+    TEST_ASSERT_EQUAL_STRING("pend order step WAIT pend ", kernel.notes);
     receiving.urg.status = URG_STOP1;
     tick();
-    TEST_ASSERT_EQUAL_STRING("pend step STOP1 pend ", kernel.notes);
+    TEST_ASSERT_EQUAL_STRING("pend order step STOP1 pend ", kernel.notes);
     TEST_ASSERT_EQUAL_UINT16(2, writes);
+}
+
+void test_the_rays_are_those_of_the_layout_at_each_step(void)
+{
+    tick();
+    TEST_ASSERT_EQUAL_UINT16(372, ordered.first_step);
+    TEST_ASSERT_EQUAL_UINT16(406, ordered.last_step);
+    TEST_ASSERT_EQUAL_UINT16(1, ordered.cluster);
+    mount(LAYOUT_THREE);
+    tick();
+    TEST_ASSERT_EQUAL_UINT16(111, ordered.first_step);
+    TEST_ASSERT_EQUAL_UINT16(654, ordered.last_step);
+    TEST_ASSERT_EQUAL_UINT16(4, ordered.cluster);
 }
 
 void test_ticks_that_a_late_task_missed_are_not_made_up_for(void)

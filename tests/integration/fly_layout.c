@@ -1,4 +1,4 @@
-/* `plomada fly` alone, linked with one ray layout and bit rate (layouts.cmake). */
+/* `plomada fly` alone, linked with one bit rate (layouts.cmake). */
 #include "tools/plomada/commands.h"
 
 int main(int argc, char **argv)

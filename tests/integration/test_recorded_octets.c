@@ -82,7 +82,7 @@ static void expect_scans(uint16_t first, uint16_t last, uint16_t scans)
 static void compare_scan(void)
 {
     const scip_group_mean_t mean = scip_group_mean(&scan, &scip_layouts[SCIP_LAYOUT_FRONT].groups[0]);
-    const mirror_range_t range = {MIRROR_FRONT, mean.valid, mean.mean_mm, mean.spread_mm, mean.good_rays};
+    const mirror_range_t range = {MIRROR_FRONT, mean.valid, mean.mean_mm, mean.spread_mm, mean.good_rays, 0};
     const altitude_geometry_t geometry = altitude_geometry_of(&parameters);
     const altitude_t altitude = altitude_from_ranges(&geometry, &range, 1, tilt.roll_rad, tilt.pitch_rad);
     unsigned long stamp_ms;

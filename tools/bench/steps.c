@@ -181,7 +181,7 @@ static void prepare_altitude(void)
 static void receive_laser(void)
 {
     const scip_group_mean_t mean = scip_group_mean(&scan, FRONT);
-    const mirror_range_t range = {MIRROR_FRONT, mean.valid, mean.mean_mm, mean.spread_mm, mean.good_rays};
+    const mirror_range_t range = {MIRROR_FRONT, mean.valid, mean.mean_mm, mean.spread_mm, mean.good_rays, 0};
 
     altitude = altitude_from_ranges(&geometry, &range, 1, 0.05F, -0.03F);
 }

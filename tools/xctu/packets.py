@@ -26,6 +26,7 @@ COMMANDS = (
     "#SEL NONE", "#SEL PIN", "#SUM ON", "#SUM OFF*3A0B", "#IDLE 15",
     "#IROLL -ROLL", "#IPITCH PITCH", "#IDOWN Z", "#IUNIT 256", "#IAXES ASSUMED", "#IMU",
     "#DF 105", "#LF 100", "#L 220", "#D1 115", "#L1 98", "#D2 107", "#L2 105",
+    "#LAYOUT FRONT", "#LAYOUT TWO", "#LAYOUT THREE", "#SF 389", "#S1 128", "#S2 640", "#SW 17",
     "#SAVE", "#LOAD", "#DEFAULTS", "#DEFAULTS SEED",
     "#LINK 60", "#CALIBRATE 30 5", "#LINK 0",
     "#PING 1", "#STREAM PULSE", "#STREAM OFF", "#HANG TASK",

@@ -1,0 +1,137 @@
+#include "control/beams.h"
+
+#include <string.h>
+
+#include "unity.h"
+
+static beams_t beams;
+static altitude_geometry_t geometry;
+static mirror_range_t ranges[MIRROR_COUNT];
+
+void setUp(void)
+{
+    memset(&beams, 0, sizeof beams);
+    geometry = altitude_geometry_default();
+}
+
+void tearDown(void) {}
+
+/* Level: the slant of each mirror from its height; 0: it has no distance. */
+static altitude_t scan(float aft_mm, float front_mm, float fore_mm)
+{
+    static const mirror_t order[] = {MIRROR_AFT, MIRROR_FRONT, MIRROR_FORE};
+    const float height_mm[] = {aft_mm, front_mm, fore_mm};
+
+    for (int i = 0; i < 3; i++) {
+        const mirror_geometry_t *at = &geometry.mirror[order[i]];
+        ranges[i] = (mirror_range_t){.mirror = order[i],
+                                     .valid = height_mm[i] != 0.0F,
+                                     .slant_mm = height_mm[i] + at->distance_mm + at->leg_mm,
+                                     .spread_mm = 10.0F,
+                                     .good_rays = 8U,
+                                     .later_us = (i - 1) * 25000};
+    }
+    return beams_scan(&beams, &geometry, ranges, 3U, 0.0F, 0.0F);
+}
+
+static void assert_height(float expected_mm, uint16_t agreeing, int32_t later_us, altitude_t altitude)
+{
+    TEST_ASSERT_TRUE(altitude.valid);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, expected_mm, altitude.height_mm);
+    TEST_ASSERT_EQUAL_UINT16(agreeing, altitude.agreeing);
+    TEST_ASSERT_EQUAL_INT32(later_us, altitude.later_us);
+}
+
+void test_three_that_lie_together_are_their_mean(void)
+{
+    const altitude_t altitude = scan(610.0F, 600.0F, 590.0F);
+
+    assert_height(600.0F, 3U, 0, altitude);
+    TEST_ASSERT_EQUAL_UINT16(24U, altitude.good_rays);
+    TEST_ASSERT_FALSE(altitude.disagree);
+}
+
+/* Each of them, near and far, at any height of the vehicle. */
+void test_one_beam_that_is_blocked_tells_nothing(void)
+{
+    for (float at_mm = 300.0F; at_mm < 2500.0F; at_mm += 100.0F) {
+        assert_height(at_mm, 2U, 12500, scan(-60.0F, at_mm, at_mm));
+        assert_height(at_mm, 2U, 0, scan(at_mm, -60.0F, at_mm));
+        assert_height(at_mm, 2U, -12500, scan(at_mm, at_mm, 3000.0F));
+        TEST_ASSERT_TRUE(scan(at_mm, at_mm, 3000.0F).disagree);
+    }
+}
+
+void test_an_edge_counts_when_the_second_beam_has_passed_it(void)
+{
+    assert_height(600.0F, 2U, -12500, scan(600.0F, 600.0F, 850.0F));
+    assert_height(850.0F, 2U, 12500, scan(600.0F, 850.0F, 850.0F));
+    assert_height(850.0F, 3U, 0, scan(850.0F, 850.0F, 850.0F));
+}
+
+void test_three_that_all_disagree_are_the_middle_one(void)
+{
+    assert_height(600.0F, 1U, 25000, scan(400.0F, 900.0F, 600.0F));
+    assert_height(600.0F, 1U, -25000, scan(600.0F, 500.0F, 900.0F));
+    assert_height(600.0F, 1U, 0, scan(800.0F, 600.0F, 100.0F));
+}
+
+void test_the_nearer_pair_of_three_is_kept(void)
+{
+    assert_height(615.0F, 2U, 12500, scan(565.0F, 600.0F, 630.0F));
+    assert_height(580.0F, 2U, -12500, scan(565.0F, 595.0F, 630.0F));
+}
+
+void test_of_two_the_one_nearer_to_the_height_before_counts(void)
+{
+    (void)scan(600.0F, 600.0F, 600.0F);
+    assert_height(620.0F, 1U, 0, scan(150.0F, 620.0F, 0.0F));
+    assert_height(640.0F, 1U, 25000, scan(0.0F, 1500.0F, 640.0F));
+    assert_height(635.0F, 2U, 12500, scan(0.0F, 640.0F, 630.0F));
+}
+
+void test_of_two_without_a_height_before_the_lower_counts(void)
+{
+    assert_height(300.0F, 1U, 25000, scan(800.0F, 0.0F, 300.0F));
+}
+
+void test_the_only_beam_left_is_the_height(void)
+{
+    (void)scan(600.0F, 600.0F, 600.0F);
+    assert_height(900.0F, 1U, 25000, scan(0.0F, 0.0F, 900.0F));
+}
+
+void test_without_a_beam_there_is_no_height_and_the_one_before_is_kept(void)
+{
+    (void)scan(600.0F, 600.0F, 600.0F);
+    TEST_ASSERT_FALSE(scan(0.0F, 0.0F, 0.0F).valid);
+    assert_height(610.0F, 1U, -25000, scan(610.0F, 2000.0F, 0.0F));
+}
+
+/* Tilted, the three see the same ground over slants that differ by centimetres. */
+void test_heights_are_compared_and_not_slants(void)
+{
+    static const mirror_t order[] = {MIRROR_AFT, MIRROR_FRONT, MIRROR_FORE};
+    const float roll_rad = 0.2F, pitch_rad = -0.15F;
+
+    for (int i = 0; i < 3; i++) {
+        const mirror_geometry_t *at = &geometry.mirror[order[i]];
+        const float none_mm = altitude_under_mirror(at, 0.0F, roll_rad, pitch_rad);
+        const float per_mm = altitude_under_mirror(at, 1.0F, roll_rad, pitch_rad) - none_mm;
+
+        ranges[i] = (mirror_range_t){
+            .mirror = order[i], .valid = true, .slant_mm = (600.0F - none_mm) / per_mm, .good_rays = 8U};
+    }
+    assert_height(600.0F, 3U, 0, beams_scan(&beams, &geometry, ranges, 3U, roll_rad, pitch_rad));
+}
+
+void test_one_mirror_alone_is_what_it_was(void)
+{
+    const mirror_range_t front = {MIRROR_FRONT, true, 805.0F, 12.0F, 35U, 0};
+    const altitude_t expected = altitude_from_ranges(&geometry, &front, 1U, 0.1F, 0.05F);
+    const altitude_t altitude = beams_scan(&beams, &geometry, &front, 1U, 0.1F, 0.05F);
+
+    TEST_ASSERT_EQUAL_FLOAT(expected.height_mm, altitude.height_mm);
+    TEST_ASSERT_EQUAL_FLOAT(expected.slant_mm, altitude.slant_mm);
+    TEST_ASSERT_EQUAL_INT32(0, altitude.later_us);
+}
