@@ -30,7 +30,7 @@
 #define TURN_US 40000U            /* chosen: least time at one rate; see urg_link_pause_us() */
 #define PHASE_US 15000U           /* chosen: the latency of the scans' times and of the steps */
 #define ANSWER_END_US 50000U      /* KNOCK_US behind a command that follows a frame's time at once */
-#define DRIFT 512U                /* chosen: 0.2 %; recorded revolutions take 99.88 ms in place of 100 */
+#define DRIFT 800U                /* recorded revolutions take 99.88 ms in place of 100 */
 #define SETTLE_RATE_US 90000U     /* chosen: two steps of 50 ms, less their jitter */
 #define SEARCH_KNOWN_US 12000000U /* chosen: above the 8 s that a sensor boots */
 #define REQUEST_US 400000U        /* chosen: four revolutions, after which the answer to one has its effect */
@@ -40,9 +40,10 @@
 #define STREAM_SIGNS 3U   /* chosen: between two commands of the search; a wrong guess costs one turn only */
 #define ANSWER_OCTETS 48U /* chosen: two answers to a request; few frames have less */
 #define SIGN_SHARE 4U     /* chosen: at a wrong rate most octets show it; of damaged ones one in eight does */
-#define THERE_US 1000000U /* chosen: no sensor loses its power and boots in that time */
-#define LADDER_TOP 3U     /* steps of the recovery: QT and MS, TM2, RS */
-#define TEXT_OCTETS 400U  /* recorded: II of a UTM-30LX 243, of a URG-04LX 209 */
+#define STRAYS \
+    4U /* chosen: lines that the sensor has still to answer; a late first answer leaves two or three */
+#define LADDER_TOP 3U    /* steps of the recovery: QT and MS, TM2, RS */
+#define TEXT_OCTETS 400U /* recorded: II of a UTM-30LX 243, of a URG-04LX 209 */
 #define HALF 0x80000000UL
 #define LONG_US (2U * URG_STEP_US) /* nothing to wait for */
 #define LONG_SWEEP 3U /* chosen: in every third sweep of a first search answers have FIRST_REPLY_US */
@@ -183,10 +184,11 @@ static uint32_t wrong_rate_signs(const urg_seen_t *seen)
 }
 
 /* A reply, though to other than the awaited, proves the rate: what this sensor heard at another one, it
- * echoes. */
+ * echoes. Not so amid framing errors, which no echo has: at half its rate a reply may end in two LF too. */
 static bool proved_rate(const step_t *step)
 {
-    return step->seen->stray_count != step->link->sent_strays;
+    return step->seen->stray_count != step->link->sent_strays && !step->link->listening &&
+           step->seen->framing_count - step->link->sent_framing < STREAM_SIGNS;
 }
 
 static bool wrong_rate(const step_t *step, uint32_t signs)
@@ -431,12 +433,16 @@ static bool hears_other_rate(const step_t *step)
 static void listen_or_request(const step_t *step)
 {
     urg_link_t *link = step->link;
+    const bool again = link->request_us != 0U;
     link->asking = false;
-    if (step->now_us - link->requested_us >= link->request_us) {
-        link->request_us = 2U * link->request_us < REQUEST_MAX_US ? 2U * link->request_us : REQUEST_MAX_US;
-        knock_at_stream_rate(step);
-    } else {
+    if (step->now_us - link->requested_us < link->request_us) {
         listen(step, listening_us(step));
+        return;
+    }
+    link->request_us = 2U * link->request_us < REQUEST_MAX_US ? 2U * link->request_us : REQUEST_MAX_US;
+    knock_at_stream_rate(step);
+    if (again && knows_power_up_rate(step)) {
+        link->timeout_us = TURN_US; /* its answer shows at the other rate too */
     }
 }
 
@@ -569,10 +575,13 @@ static bool hears_sensor(const step_t *step)
            !wrong_rate(step, 1U);
 }
 
-/* A sensor that was there a moment ago, and is mute now, has stopped. */
-static bool is_there(const step_t *step)
+/* A sensor that was there just now, and is mute, has stopped. If one request has no answer either, that was
+ * another rate. */
+static bool was_there(const step_t *step)
 {
-    return step->link->heard && step->now_us - step->link->heard_us < THERE_US;
+    const bool was = step->link->heard;
+    step->link->heard = false;
+    return was;
 }
 
 static void search_on(const step_t *step)
@@ -580,13 +589,12 @@ static void search_on(const step_t *step)
     urg_link_t *link = step->link;
     if (has_streamed(step) && hears_sensor(step)) {
         link->heard = true;
-        link->heard_us = step->now_us;
     }
     if (!has_streamed(step)) {
         probe_next(step);
     } else if (hears_sensor(step)) {
         hear_on(step);
-    } else if (is_there(step)) {
+    } else if (was_there(step)) {
         knock_at_stream_rate(step);
     } else if (link->rate == link->good_rate && wrong_rate(step, STREAM_SIGNS)) {
         on_late_answer(step);
@@ -639,12 +647,20 @@ static void stop_or_stream(const step_t *step)
     }
 }
 
+/* A late answer to it is heard at the stream's rate. */
+static void order_rate(const step_t *step)
+{
+    step->link->asked_kind = SCIP_BIT_RATE;
+    step->link->asked_rate = step->link->rate;
+    start_command(step, URG_RATE, SCIP_BIT_RATE);
+}
+
 static void rate_or_stop(const step_t *step)
 {
     if (step->link->rate == step->link->config.stream_rate) {
         stop_or_stream(step);
     } else {
-        start_command(step, URG_RATE, SCIP_BIT_RATE);
+        order_rate(step);
     }
 }
 
@@ -768,7 +784,7 @@ static void on_stop_reply(const step_t *step)
     } else if (link->rate == link->config.stream_rate || link->rate_refused) {
         on_stopped(step);
     } else {
-        start_command(step, URG_RATE, SCIP_BIT_RATE);
+        order_rate(step);
     }
 }
 
@@ -853,6 +869,22 @@ static void on_reply(const step_t *step)
     }
 }
 
+/* The sensor answers one line after the other: behind the answer to an earlier one, perhaps damaged on its
+ * way, comes the awaited one. A request that overtakes it is refused ("0B"). */
+static bool hears_stray(const step_t *step)
+{
+    const urg_link_t *link = step->link;
+    const uint32_t strays = step->seen->stray_count - link->seen.stray_count;
+    const uint32_t frames = step->seen->foreign_count - link->seen.foreign_count;
+    return has_streamed(step) && !link->listening && strays != frames &&
+           step->now_us - link->sent_us < STRAYS * KNOCK_US;
+}
+
+static void wait_on(const step_t *step)
+{
+    step->link->timeout_us = step->now_us - step->link->sent_us + KNOCK_US;
+}
+
 /* "E": the sensor is in SCIP1.1. If that is its answer to SCIP2.0, twice, it knows nothing else. */
 static void on_legacy(const step_t *step)
 {
@@ -860,6 +892,10 @@ static void on_legacy(const step_t *step)
     note_answer(step);
     if (link->command != SCIP_SWITCH) {
         start_command(step, URG_SWITCH, SCIP_SWITCH);
+    } else if (has_streamed(step)) { /* it knows SCIP2.0: what it refuses is an earlier line */
+        set_status(step, URG_SWITCH);
+        link->knocking = false;
+        wait_on(step);
     } else if (link->attempt > 1U) {
         set_status(step, URG_OLD);
         link->attempt = 1U; /* asked for ever: the sensor may be replaced */
@@ -958,14 +994,24 @@ static uint32_t answer_timeout_us(const step_t *step)
     return mute ? most_us : link->timeout_us;
 }
 
+/* An answer may begin with what the sensor heard when other rates were probed. Its end tells. */
+static bool may_hear_echo(const step_t *step)
+{
+    return step->link->status == URG_LOST && step->seen->octet_count != step->link->seen.octet_count &&
+           step->seen->framing_count == step->link->sent_framing;
+}
+
 /* While the rate is only a guess, signs of a wrong one answer as well as a time-out. */
 static bool is_silent(const step_t *step)
 {
     const urg_link_t *link = step->link;
+    const uint32_t waited_us = step->now_us - link->sent_us;
     const bool guessing = link->status == URG_STOP1 ||
                           (link->status == URG_LOST && link->command == SCIP_STOP);
-    return step->now_us - link->sent_us >= answer_timeout_us(step) ||
-           (guessing && wrong_rate(step, WRONG_RATE_SIGNS));
+    if (guessing && may_hear_echo(step)) {
+        return waited_us >= answer_timeout_us(step) + TURN_US;
+    }
+    return waited_us >= answer_timeout_us(step) || (guessing && wrong_rate(step, WRONG_RATE_SIGNS));
 }
 
 /* ---- the states ---- */
@@ -992,22 +1038,6 @@ static void cycle_power_in_time(const step_t *step)
         step->link->scan_us = step->now_us;
         step->action->cycle_power = true;
     }
-}
-
-/* The sensor answers one line after the other: behind the answer to an earlier one, perhaps damaged on its
- * way, comes the awaited one. A request that overtakes it is refused ("0B"). */
-static bool hears_stray(const step_t *step)
-{
-    const urg_link_t *link = step->link;
-    const uint32_t strays = step->seen->stray_count - link->seen.stray_count;
-    const uint32_t frames = step->seen->foreign_count - link->seen.foreign_count;
-    return link->knocking && !link->listening && strays != frames &&
-           step->now_us - link->sent_us < 2U * KNOCK_US;
-}
-
-static void wait_on(const step_t *step)
-{
-    step->link->timeout_us = step->now_us - step->link->sent_us + KNOCK_US;
 }
 
 static void follow_rate(const step_t *step)

@@ -144,8 +144,7 @@ typedef struct {
     uint32_t acknowledged_octets; /* counter of octets at that time */
     uint32_t requested_us;        /* when the search sent that request last */
     uint32_t request_us;          /* least time to the next one; 0: none was sent yet */
-    bool heard;                   /* the search has heard octets at the stream's rate that are no scan */
-    uint32_t heard_us;            /* when it did last */
+    bool heard;                   /* the search has just heard octets at the stream's rate that are no scan */
     uint32_t octets_us;           /* the step that has seen octets last */
     uint32_t stepped_us;          /* when the latest step was */
     urg_seen_t seen;              /* what was received up to the previous step */

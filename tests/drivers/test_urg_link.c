@@ -1804,19 +1804,149 @@ void test_a_stream_of_something_else_is_asked_to_be_another_at_once(void)
     TEST_ASSERT_TRUE(action.send);
 }
 
-void test_a_sensor_heard_a_second_ago_is_only_asked_at_its_rate(void)
+/* What the sensor heard when other rates were probed stands before its answer. */
+void test_an_answer_that_begins_with_strange_octets_is_heard_to_its_end(void)
+{
+    for (uint32_t framing = 0; framing < 2; framing++) {
+        reset(0);
+        while (link_.status != URG_LOST) {
+            nothing_after(STEP_US);
+        }
+        const uint32_t rate = link_.rate;
+        seen.octet_count += 13;
+        seen.strange_count += 13;
+        seen.framing_count += framing;
+        nothing_after(100000);
+        TEST_ASSERT_EQUAL(framing == 0, rate == link_.rate);
+        if (framing == 0) {
+            nothing_after(1);
+            TEST_ASSERT_TRUE(rate != link_.rate);
+        }
+    }
+}
+
+/* It has stopped. Without an answer to that, it was heard at another rate. */
+void test_a_sensor_that_was_just_heard_is_asked_once_more_at_its_rate(void)
 {
     listen_between();
     seen.octet_count += 60;
     nothing_after(link_.timeout_us);
-    const uint32_t heard_us = now_us;
     nothing_after(160000);
-    while (now_us - heard_us < 1000000) {
-        TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
-        TEST_ASSERT_TRUE(action.send);
-        nothing_after(130000);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    TEST_ASSERT_TRUE(action.send);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    nothing_after(130000);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+}
+
+static void ask_in_a_search(void)
+{
+    stream_in_time();
+    lose();
+    while (link_.command != SCIP_SWITCH) {
+        next_step();
     }
-    TEST_ASSERT_NOT_EQUAL_UINT32(250000, link_.rate);
+}
+
+static void repeat_the_request(void)
+{
+    ask_in_a_search();
+    while (link_.command != SCIP_STREAM_2 || !action.send) {
+        next_step();
+    }
+}
+
+/* At half its rate an answer has few octets, and its end may look like that of a whole one. */
+void test_an_answer_that_ends_well_at_half_its_rate_is_still_a_late_one(void)
+{
+    listen_between();
+    seen.octet_count += 6;
+    seen.strange_count += 3;
+    seen.stray_count++;
+    nothing_after(40000);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+    repeat_the_request();
+    seen.octet_count += 12;
+    seen.framing_count += 3;
+    seen.stray_count++;
+    nothing_after(40000);
+    nothing_after(130000);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+}
+
+/* A sensor that has just booted must not wait for the answer that nobody gives. */
+void test_a_repeated_request_delays_the_question_by_one_turn(void)
+{
+    repeat_the_request();
+    TEST_ASSERT_EQUAL_UINT32(40000, link_.timeout_us);
+    nothing_after(40000);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+}
+
+/* It has made a line of what it heard at another rate, or of SCIP2.0's end. */
+void test_a_sensor_in_scip11_that_refuses_an_earlier_line_is_asked_again_and_never_old(void)
+{
+    ask_in_a_search();
+    for (uint32_t i = 0; i < 3; i++) {
+        seen.octet_count += 8;
+        seen.legacy_count++;
+        nothing_after(90000);
+        TEST_ASSERT_EQUAL(URG_SWITCH, link_.status);
+        TEST_ASSERT_FALSE(action.send);
+    }
+    nothing_after(129999);
+    TEST_ASSERT_FALSE(action.send);
+    nothing_after(1);
+    TEST_ASSERT_TRUE(action.send);
+    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    seen.legacy_count++;
+    nothing_after(50000);
+    TEST_ASSERT_EQUAL(URG_SWITCH, link_.status);
+}
+
+static void order_the_rate(void)
+{
+    ask_in_a_search();
+    (void)reply_after(50000, SCIP_SWITCH, "0", true);
+    TEST_ASSERT_EQUAL(URG_RATE, link_.status);
+    TEST_ASSERT_TRUE(action.send);
+}
+
+/* While the first answer was awaited SCIP2.0 was sent again: those are refused first. */
+void test_ss_waits_behind_the_answers_to_earlier_lines(void)
+{
+    order_the_rate();
+    for (uint32_t i = 0; i < 4; i++) {
+        seen.octet_count += 13;
+        seen.stray_count++;
+        nothing_after(115000);
+        TEST_ASSERT_EQUAL(URG_RATE, link_.status);
+        TEST_ASSERT_FALSE(action.send);
+    }
+    (void)reply_after(115000, SCIP_BIT_RATE, "00", false);
+    nothing_after(90000);
+    TEST_ASSERT_EQUAL(URG_STREAM, link_.status);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+}
+
+void test_ss_of_a_dialogue_that_is_answered_late_has_changed_the_rate_too(void)
+{
+    order_the_rate();
+    nothing_after(link_.timeout_us);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
+    seen.octet_count += 9;
+    seen.framing_count += 5;
+    nothing_after(40000);
+    TEST_ASSERT_FALSE(action.send);
+    nothing_after(90000);
+    TEST_ASSERT_TRUE(action.send);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
 }
 
 void test_signs_of_another_rate_while_listening_are_a_late_answer(void)
@@ -1863,8 +1993,13 @@ void test_a_stray_answer_gives_the_awaited_one_its_time(void)
     TEST_ASSERT_EQUAL(SCIP_TIME_LEAVE, link_.command);
     TEST_ASSERT_EQUAL_UINT32(210000, link_.timeout_us);
     TEST_ASSERT_FALSE(action.send);
-    seen.stray_count++; /* not for ever */
-    nothing_after(180000);
+    for (uint32_t i = 0; i < 4; i++) { /* not for ever */
+        seen.stray_count++;
+        nothing_after(110000);
+    }
+    TEST_ASSERT_EQUAL(SCIP_TIME_LEAVE, link_.command);
+    seen.stray_count++;
+    nothing_after(130000);
     TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
     TEST_ASSERT_TRUE(action.send);
 }
@@ -2233,7 +2368,7 @@ void test_a_question_ends_where_the_next_frame_is_not_lost(void)
     while (now_us - frame_us < 11000000) {
         nothing_after(urg_link_pause_us(&link_, &seen));
         if (action.send && link_.command == SCIP_SWITCH && link_.timeout_us != 130000) {
-            const uint32_t phase_us = PHASE_US + (now_us - frame_us) / 512U;
+            const uint32_t phase_us = PHASE_US + (now_us - frame_us) / 800U;
             const uint32_t gap_us = REVOLUTION_US - FRAME_US - 2U * phase_us;
             const uint32_t past_us = (now_us - frame_us + REVOLUTION_US - phase_us) % REVOLUTION_US;
             TEST_ASSERT_EQUAL_UINT32(REVOLUTION_US + (gap_us < 50000 ? gap_us : 50000),

@@ -2,8 +2,8 @@
  * (C-42-03320B), from the digest of SCIP1.1 and from recordings of a real sensor of 2008; it shares no line
  * with sim/devices/urg04lx.c, and no belief with the driver:
  *
- *   - a recorded sensor answers once a revolution, 90 to 115 ms after a command, the first command after 381
- * ms;
+ *   - a recorded sensor answers a command of SCIP2.0 once a revolution, 97 to 115 ms later; in SCIP1.1, where
+ *     two answers were recorded, after 8 ms (SCIP2.0) or, the first of all, after 381 (V);
  *   - it powers up at the rate that it was told to store: 19200 as delivered;
  *   - at a wrong rate it hears what the levels on the wire give (uart.h), and that stays in its line;
  *   - the laser needs a revolution before the one that is measured;
@@ -14,10 +14,11 @@
 #include "uart.h"
 
 typedef enum {
-    ANSWERS_SOON,    /* 8 ms after the command, as in SCIP1.1 */
-    ANSWERS_AT_TURN, /* when the present revolution is over */
-    ANSWERS_LATE,    /* 90 to 115 ms after the command */
-    ANSWERS_LATEST,  /* the same, and the first one after power-up 381 ms */
+    ANSWERS_SOON,     /* 8 ms after the command, as in SCIP1.1 */
+    ANSWERS_AT_TURN,  /* when the present revolution is over */
+    ANSWERS_LATE,     /* 90 to 115 ms after the command */
+    ANSWERS_RECORDED, /* drawn from the recorded ones, those of SCIP1.1 and SCIP2.0 apart */
+    ANSWERS_LATEST,   /* 90 to 115 ms, and the first one after power-up 381 ms */
     ANSWERS_COUNT
 } answers_t;
 
@@ -32,7 +33,8 @@ typedef enum {
 typedef struct {
     uint32_t power_up_rate;
     ns_t boot, turn, phase;
-    ns_t settles; /* from the end of SS's reply to the new rate */
+    ns_t settles;  /* from the end of SS's reply to the new rate */
+    uint32_t seed; /* of its answers' times */
     answers_t answers;
 } sensor_config_t;
 

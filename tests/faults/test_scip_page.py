@@ -43,7 +43,7 @@ class Page(unittest.TestCase):
 
     def test_every_block_is_a_command(self):
         self.assertEqual(self.page.count("```"), 2 * len(BLOCK.findall(self.page)))
-        self.assertEqual(len(BLOCK.findall(self.page)), 5)
+        self.assertEqual(len(BLOCK.findall(self.page)), 6)
 
     def test_other_pages_have_the_same_figures(self):
         with open(ROOT / "tools/bench/baseline.csv", encoding="utf-8") as file:
