@@ -9,6 +9,7 @@ import json
 import math
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -28,6 +29,7 @@ import campaign  # noqa: E402
 import fleet  # noqa: E402
 import page  # noqa: E402
 import plan  # noqa: E402
+import situations  # noqa: E402
 import table  # noqa: E402
 import verdict  # noqa: E402
 
@@ -541,6 +543,52 @@ class Page(unittest.TestCase):
                 page_says = plain_number(cell)[0]
                 self.assertLessEqual(abs(page_says - float(found)), 0.02 * page_says + 1.01 * unit,
                                      (law, others, found))
+
+
+class OnPages(unittest.TestCase):
+    """What the pages tell to type, and the files that they show."""
+
+    def setUp(self):
+        self.dir = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.dir)
+        self.addCleanup(plan.LAWS.pop, "MINE", None)
+        self.addCleanup(plan.SETS.pop, "heavy", None)
+
+    def understood(self, words):
+        """Whether these are the arguments of a campaign, of a program that has a law MINE."""
+        program = self.dir / "plomada"
+        program.write_text("#!/bin/sh\necho 'one of: PD|PID|PIDT|EST|MINE'\n", encoding="utf-8")
+        program.chmod(0o755)
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            try:
+                campaign.read_arguments([*words, "--program", str(program)])
+            except SystemExit as end:
+                return end.code == 0        # --help
+        return True
+
+    def test_each_campaign_that_a_page_names_is_understood(self):
+        pages = [*(ROOT / "docs").rglob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
+        typed = {one for each in pages for one in re.findall(r'make campaign (ARGS=(?:"[^"]*"|[^\s`]+))', each.read_text(encoding="utf-8"))}
+        self.assertGreater(len(typed), 9, typed)
+        for line in sorted(typed):
+            words = shlex.split(shlex.split(line)[0].removeprefix("ARGS="))
+            words = [word for at, word in enumerate(words) if "--program" not in (word, *words[at - 1:at])]
+            with self.subTest(line=line):
+                self.assertTrue(self.understood(words))
+        self.assertFalse(self.understood(["--law", "MINE,PIDD"]))
+        self.assertFalse(self.understood(["--lying"]))
+
+    def test_the_plan_the_scenario_and_the_situation_that_a_page_shows_are_ones(self):
+        blocks = re.findall(r"^```\n(.*?)^```", (ROOT / "docs/campaign.md").read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+        own, = (block for block in blocks if block.startswith("{"))
+        plan.extend(json.loads(own))
+        self.assertEqual((plan.LAWS["MINE"].settings, plan.SETS["heavy"].runs), ({"POSK": "2"}, 50))
+        scenario, = (block for block in blocks if block.startswith("like "))
+        situation, = (block for block in blocks if block.startswith("["))
+        (self.dir / "mine.scenario").write_text(scenario, encoding="utf-8")
+        flown = subprocess.run([PROGRAM, "fly", self.dir / "mine.scenario"], capture_output=True, text=True, check=False)
+        self.assertIn(flown.returncode, (0, 1), flown.stderr)
+        self.assertIn("stairs", situations.read("page", situation).situations)
 
 
 if __name__ == "__main__":
