@@ -36,8 +36,8 @@ static const char usage[] =
     "Steps up to 60 from the front (384) can only look at the front mirror, smaller ones at the aft, larger "
     "ones at the\n"
     "fore. The longest row of neighbouring steps is the mirror, its window 5 steps inside either end.\n\n"
-    "Prints a table, and the row for drivers/scip_layout.c.\n"
-    "Exit status: 0 every mirror of a known layout was found, 1 not, 2 usage or unreadable input.\n";
+    "Prints a table, and the commands that tell the firmware.\n"
+    "Exit status: 0 every mirror of a LAYOUT was found, 1 not, 2 usage or unreadable input.\n";
 
 enum { OPT_HEIGHT = 1, OPT_TOLERANCE, OPT_HELP };
 
@@ -201,41 +201,63 @@ static void print_table(const row_t rows[MIRROR_COUNT], const order_t *order)
     }
 }
 
-static const char *layout_row(const row_t rows[MIRROR_COUNT])
+/* LAYOUT with these mirrors; LAYOUT_COUNT: none. */
+static unsigned layout_of(const row_t rows[MIRROR_COUNT])
 {
     const bool front = found(&rows[MIRROR_FRONT]), fore = found(&rows[MIRROR_FORE]),
                aft = found(&rows[MIRROR_AFT]);
 
-    if (front && fore && aft) {
-        return "[SCIP_LAYOUT_THREE_MIRRORS] = { \"three-mirrors\"";
-    }
     if (fore && aft) {
-        return "[SCIP_LAYOUT_TWO_BEAMS] = { \"two-beams\"";
+        return front ? LAYOUT_THREE : LAYOUT_TWO;
     }
-    return front && !fore && !aft ? "[SCIP_LAYOUT_FRONT] = { \"front\"" : NULL;
+    return front && !fore && !aft ? LAYOUT_FRONT : LAYOUT_COUNT;
+}
+
+static bool print_setting(parameter_id_t id, unsigned value)
+{
+    const parameter_row_t *row = &parameter_table[id];
+    const bool fits = value >= row->minimum && value <= row->maximum;
+
+    if (fits) {
+        printf("#%s %u\n", row->name, value);
+    } else {
+        printf("%s would be %u: the firmware takes %g to %g\n", row->name, value, (double)row->minimum,
+               (double)row->maximum);
+    }
+    return fits;
+}
+
+/* One reach for all mirrors: that of the narrowest, so that no window leaves its mirror. */
+static bool print_steps(const row_t rows[MIRROR_COUNT])
+{
+    static const parameter_id_t middles[] = {
+        [MIRROR_FRONT] = PARAMETER_SF, [MIRROR_FORE] = PARAMETER_S2, [MIRROR_AFT] = PARAMETER_S1};
+    unsigned reach = (unsigned)parameter_table[PARAMETER_SW].maximum;
+    bool fit = true;
+
+    for (int i = 0; i < MIRROR_COUNT; i++) {
+        const row_t *row = &rows[ascending[i]];
+
+        if (found(row)) {
+            const unsigned half = (row->steps - 1) / 2 - MARGIN;
+
+            reach = half < reach ? half : reach;
+            fit = print_setting(middles[ascending[i]], (row->first + row->last) / 2) && fit;
+        }
+    }
+    return print_setting(PARAMETER_SW, reach) && fit;
 }
 
 static bool print_layout(const row_t rows[MIRROR_COUNT])
 {
-    const row_t *groups[MIRROR_COUNT];
-    unsigned count = 0;
+    const unsigned layout = layout_of(rows);
 
-    if (layout_row(rows) == NULL) {
-        printf("\nno layout of drivers/scip_layout.c has these mirrors\n");
+    if (layout == LAYOUT_COUNT) {
+        printf("\nno LAYOUT has these mirrors\n");
         return false;
     }
-    for (int i = 0; i < MIRROR_COUNT; i++) {
-        if (found(&rows[ascending[i]])) {
-            groups[count++] = &rows[ascending[i]];
-        }
-    }
-    printf("\n%s, %uU, %uU, %uU, { ", layout_row(rows), groups[0]->first + MARGIN,
-           groups[count - 1]->last - MARGIN, count);
-    for (unsigned i = 0; i < count; i++) {
-        printf("%s{ %uU, %uU }", i > 0 ? ", " : "", groups[i]->first + MARGIN, groups[i]->last - MARGIN);
-    }
-    printf(" } },\n");
-    return true;
+    printf("\n#LAYOUT %s\n", parameter_table[PARAMETER_LAYOUT].choices[layout]);
+    return print_steps(rows);
 }
 
 /* ---- input ---- */
