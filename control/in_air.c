@@ -14,39 +14,37 @@
 
 typedef enum { FREE, GROUND_ONLY, NEWTONS, GAIN, LAW } kind_t;
 
+/* What is not named is 0, FREE; but the mirrors are not. */
+static const kind_t kinds[PARAMETER_COUNT] = {
+    [PARAMETER_GRAV] = NEWTONS,
+    [PARAMETER_USAT] = NEWTONS,
+    [PARAMETER_DSAT] = NEWTONS,
+    [PARAMETER_KP] = GAIN,
+    [PARAMETER_KD] = GAIN,
+    [PARAMETER_KI] = GAIN,
+    [PARAMETER_PKP] = GAIN,
+    [PARAMETER_PKI] = GAIN,
+    [PARAMETER_PKD] = GAIN,
+    [PARAMETER_POSK] = GAIN,
+    [PARAMETER_VELK] = GAIN,
+    [PARAMETER_CRATE] = GAIN, /* the vehicle's model: law EST divides by it */
+    [PARAMETER_GAIN] = GAIN,
+    [PARAMETER_LAG] = GAIN,
+    [PARAMETER_DELAY] = GAIN,
+    [PARAMETER_DAMP] = GAIN,
+    [PARAMETER_CLAG] = GAIN,
+    [PARAMETER_LAW] = LAW,
+    [PARAMETER_SEL] = GROUND_ONLY, /* decides who has the throttle */
+    [PARAMETER_IROLL] = GROUND_ONLY,
+    [PARAMETER_IPITCH] = GROUND_ONLY,
+    [PARAMETER_IDOWN] = GROUND_ONLY,
+    [PARAMETER_IUNIT] = GROUND_ONLY,
+};
+
+/* With the mirrors' places the height would jump. */
 static kind_t kind_of(parameter_id_t id)
 {
-    switch (id) {
-    case PARAMETER_GRAV:
-    case PARAMETER_USAT:
-    case PARAMETER_DSAT:
-        return NEWTONS;
-    case PARAMETER_KP:
-    case PARAMETER_KD:
-    case PARAMETER_KI:
-    case PARAMETER_PKP:
-    case PARAMETER_PKI:
-    case PARAMETER_PKD:
-    case PARAMETER_POSK:
-    case PARAMETER_VELK:
-    case PARAMETER_CRATE: /* the vehicle's model: law EST divides by it */
-    case PARAMETER_GAIN:
-    case PARAMETER_LAG:
-    case PARAMETER_DELAY:
-    case PARAMETER_DAMP:
-    case PARAMETER_CLAG:
-        return GAIN;
-    case PARAMETER_LAW:
-        return LAW;
-    case PARAMETER_SEL: /* decides who has the throttle */
-    case PARAMETER_IROLL:
-    case PARAMETER_IPITCH:
-    case PARAMETER_IDOWN:
-    case PARAMETER_IUNIT:
-        return GROUND_ONLY;
-    default: /* the mirrors' places: the height would jump */
-        return parameter_table[id].group == PARAMETERS_MIRRORS ? GROUND_ONLY : FREE;
-    }
+    return parameter_table[id].group == PARAMETERS_MIRRORS ? GROUND_ONLY : kinds[id];
 }
 
 static bool gives_gravity_alone(const parameters_t *parameters)
