@@ -2,6 +2,10 @@
 
 #include <math.h>
 
+#define RAYS_LEAST \
+    2U /* one ray has no spread: a beam that is blocked or frozen would look as a quiet one \
+        */
+
 typedef char every_mirror_has_its_place_below[(MIRROR_COUNT == 3) ? 1 : -1];
 
 altitude_geometry_t altitude_geometry_of(const parameters_t *parameters)
@@ -102,7 +106,7 @@ altitude_t altitude_from_ranges(const altitude_geometry_t *geometry, const mirro
 
     for (size_t i = 0; i < count; ++i) {
         const mirror_range_t *range = &ranges[i];
-        if (!range->valid) {
+        if (!range->valid || range->good_rays < RAYS_LEAST) {
             continue;
         }
         const mirror_geometry_t *mirror = &geometry->mirror[range->mirror];

@@ -1,6 +1,7 @@
 /* Statistics over the latest scans. Identical scans are copies and are rejected: with a sensor noise of 3 mm,
  * chance makes two scans with the same digits once in some thousands.
- * What breaks: a sensor of one ray has no spread, so for it nothing here is measured. */
+ * What breaks: a height of one ray. altitude_from_ranges() refuses it; readings.h makes groups of single
+ * readings. */
 #include "control/sense/beam.h"
 
 #include <math.h>
@@ -80,13 +81,13 @@ static void watch_slant(beam_t *beam, float slant_mm, float height_m, bool sways
 
 bool beam_scan(beam_t *beam, const altitude_t *altitude, float height_m, bool sways, bool quiet)
 {
-    const bool copy = altitude->spread_mm > 0.0F && altitude->slant_mm == beam->slant_mm &&
+    const bool copy = altitude->good_rays > 1U && altitude->slant_mm == beam->slant_mm &&
                       altitude->spread_mm == beam->spread_mm;
 
     beam->slant_mm = altitude->slant_mm;
     beam->spread_mm = altitude->spread_mm;
     beam->copies = counted(beam->copies, copy, COUNT_MAX);
-    if (altitude->spread_mm > 0.0F && fabsf(altitude->height_mm) <= HEIGHT_MAX_MM) {
+    if (altitude->good_rays > 1U && fabsf(altitude->height_mm) <= HEIGHT_MAX_MM) {
         watch_slant(beam, altitude->slant_mm, height_m, sways, quiet);
     }
     beam->below_ground = !(altitude->height_mm >= (beam->below_ground ? HEIGHT_BACK_MM : HEIGHT_MIN_MM));

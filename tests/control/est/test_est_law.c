@@ -568,7 +568,7 @@ static bool flies_again_heavier(bool gravity_typed)
     set(PARAMETER_GRAV, gravity_typed ? 5.51F : 5.5F);
     run(0.5);
     setr(0.6F);
-    run(6.0);
+    run(10.0);
     return height_m() > 0.4;
 }
 

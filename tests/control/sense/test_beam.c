@@ -27,9 +27,10 @@ static void scan_of(float slope_mm, float noise_mm)
     white_scans(white_before);
     at_m(scan_height_m);
     sways_rad2(sway_before_rad2);
-    TEST_ASSERT_TRUE(senses_scan(
-        &senses,
-        &(altitude_t){.height_mm = 500.0F, .slant_mm = slants_mm[BEAM_SCANS - 1U], .spread_mm = 9.0F}));
+    TEST_ASSERT_TRUE(senses_scan(&senses, &(altitude_t){.height_mm = 500.0F,
+                                                        .slant_mm = slants_mm[BEAM_SCANS - 1U],
+                                                        .good_rays = 35U,
+                                                        .spread_mm = 9.0F}));
     TEST_ASSERT_EQUAL_UINT16(BEAM_SCANS, senses.beam.scans);
 }
 
@@ -70,28 +71,24 @@ void test_less_than_twelve_scans_say_nothing_and_a_moving_one_begins_anew(void)
 {
     for (int scan = 1; scan <= 40; scan++) {
         const altitude_t altitude = {
-            .height_mm = 500.0F, .slant_mm = 700.0F, .spread_mm = 9.0F + (float)(scan % 2)};
+            .height_mm = 500.0F, .slant_mm = 700.0F, .good_rays = 35U, .spread_mm = 9.0F + (float)(scan % 2)};
         TEST_ASSERT_TRUE(senses_scan(&senses, &altitude));
         const int still = (scan < 12) ? 0 : (scan < 27) ? scan - 11 : 16;
         TEST_ASSERT_EQUAL_UINT16(still, senses.beam.still);
         TEST_ASSERT_EQUAL_UINT16(still, senses.beam.rigid);
         TEST_ASSERT_EQUAL(still > 8, beam_is_still(&senses.beam));
     }
-    TEST_ASSERT_TRUE(senses_scan(&senses, &(altitude_t){.slant_mm = 800.0F, .spread_mm = 9.0F}));
+    TEST_ASSERT_TRUE(
+        senses_scan(&senses, &(altitude_t){.slant_mm = 800.0F, .good_rays = 35U, .spread_mm = 9.0F}));
     TEST_ASSERT_EQUAL_UINT16(0U, senses.beam.still);
     TEST_ASSERT_EQUAL_UINT16(0U, senses.beam.rigid);
 }
 
-void test_one_ray_has_no_spread_and_is_neither_a_copy_nor_a_slant(void)
+void test_a_group_that_repeats_every_digit_is_a_copy_also_without_a_spread(void)
 {
-    const altitude_t altitude = {.height_mm = 500.0F, .slant_mm = 700.0F};
-    for (int i = 0; i < 4; i++) {
-        TEST_ASSERT_TRUE(senses_scan(&senses, &altitude));
-    }
-    TEST_ASSERT_EQUAL_UINT16(0U, senses.beam.scans);
-    const altitude_t narrow = {.height_mm = 500.0F, .slant_mm = 700.0F, .spread_mm = 0.0005F};
-    TEST_ASSERT_TRUE(senses_scan(&senses, &narrow)); /* the smallest spread is one */
-    TEST_ASSERT_FALSE(senses_scan(&senses, &narrow));
+    const altitude_t altitude = {.height_mm = 500.0F, .slant_mm = 700.0F, .good_rays = 2U};
+    TEST_ASSERT_TRUE(senses_scan(&senses, &altitude));
+    TEST_ASSERT_FALSE(senses_scan(&senses, &altitude));
     TEST_ASSERT_EQUAL_UINT16(2U, senses.beam.scans);
 }
 
@@ -99,8 +96,10 @@ void test_heights_out_of_reach_leave_the_slants_alone(void)
 {
     static const float heights_mm[] = {-5001.0F, 5001.0F, NAN, -5000.0F, 5000.0F};
     for (int i = 0; i < 5; i++) {
-        (void)senses_scan(&senses,
-                          &(altitude_t){.height_mm = heights_mm[i], .slant_mm = (float)i, .spread_mm = 1.0F});
+        (void)senses_scan(&senses, &(altitude_t){.height_mm = heights_mm[i],
+                                                 .slant_mm = (float)i,
+                                                 .good_rays = 35U,
+                                                 .spread_mm = 1.0F});
         TEST_ASSERT_EQUAL_UINT16((i < 3) ? 0 : i - 2, senses.beam.scans);
     }
 }
@@ -117,7 +116,8 @@ void test_the_limits_of_a_height_belong_to_it(void)
 
 void test_copies_are_counted_to_a_thousand(void)
 {
-    const altitude_t altitude = {.height_mm = 500.0F, .slant_mm = 700.0F, .spread_mm = 9.0F};
+    const altitude_t altitude = {
+        .height_mm = 500.0F, .slant_mm = 700.0F, .good_rays = 35U, .spread_mm = 9.0F};
     (void)senses_scan(&senses, &altitude);
     senses.beam.copies = 998U;
     for (int i = 0; i < 3; i++) {

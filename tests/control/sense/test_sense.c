@@ -76,6 +76,7 @@ static altitude_t scan_of(float height_m)
 
     return world.blocked ? (altitude_t){.height_mm = 1000.0F * height_m,
                                         .slant_mm = 705.0F + noise_mm,
+                                        .good_rays = 35U,
                                         .spread_mm = 18.0F + (float)(world.cycles % 3U)}
                          : (altitude_t){.height_mm = 1000.0F * height_m};
 }
@@ -311,6 +312,7 @@ void test_a_beam_that_does_not_swing_with_the_mirror_is_blocked(void)
             const float noise_mm = (scan % 2 == 0) ? 1.5F : -1.5F;
             const altitude_t altitude = {.slant_mm = 705.0F + noise_mm + (blocked ? 0.0F : swing_mm),
                                          .height_mm = 500.0F + noise_mm + (blocked ? swing_mm : 0.0F),
+                                         .good_rays = 35U,
                                          .spread_mm = 18.0F + (float)(scan % 3)};
             for (int k = 0; k < 4; k++) {
                 frame.median.roll_rad = 0.05F * sinf((float)frame.sequence * 0.1F);
@@ -399,7 +401,8 @@ void test_an_accelerometer_is_not_blamed_by_a_beam_that_may_be_blocked(void)
 /* Whether the height of one more scan is passed on. */
 static bool passes(float height_mm, float slant_mm, float spread_mm)
 {
-    const altitude_t altitude = {.height_mm = height_mm, .slant_mm = slant_mm, .spread_mm = spread_mm};
+    const altitude_t altitude = {
+        .height_mm = height_mm, .slant_mm = slant_mm, .good_rays = 35U, .spread_mm = spread_mm};
 
     sense_a_frame(&altitude);
     return in.height_valid;
@@ -672,7 +675,7 @@ void test_who_tilts_it_by_hand_or_has_heights_does_not_carry_it(void)
     flown.grounded = true;
     for (int k = 0; k < 100; k++) {
         carry(0.1F, 1.0F, 0.05F);
-        (void)passes(500.0F, 0.0F, 0.0F);
+        (void)passes(500.0F, (float)(k % 7), 9.0F);
         TEST_ASSERT_FALSE(seen.in_hands);
     }
 }
@@ -828,6 +831,7 @@ static void give_height(uint32_t sequence, float height_mm, uint32_t time_us)
         .altitude = {.valid = true,
                      .height_mm = height_mm,
                      .slant_mm = 200.0F + height_mm,
+                     .good_rays = 35U,
                      .spread_mm = 9.0F},
         .height_time_us = time_us,
         .height_age_us = 70000U,
@@ -865,7 +869,8 @@ void test_only_inputs_that_are_credible_are_passed_on(void)
     frames[1].level.roll_rad = frames[1].median.roll_rad = 1.0F; /* a jump */
     frames[2].level.roll_rad = frames[2].median.roll_rad = 1.0F;
     in = (flight_inputs_t){.height_valid = true, .height_sequence = 1U, .height_time_us = 1000000U};
-    in.altitude = (altitude_t){.valid = true, .height_mm = 100.0F, .slant_mm = 700.0F, .spread_mm = 9.0F};
+    in.altitude = (altitude_t){
+        .valid = true, .height_mm = 100.0F, .slant_mm = 700.0F, .good_rays = 35U, .spread_mm = 9.0F};
     in.altitude.leg_mm = 100.0F;
     in.frames = frames;
     in.frame_count = 3U;
