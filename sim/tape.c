@@ -112,9 +112,10 @@ void tape_key(const char *key, const char *value)
     fprintf(recorder.out, "%s %s\n", key, value);
 }
 
-void tape_truth(double height_m, double altitude_m, double terrain_m, double thrust_n)
+void tape_truth(const tape_truth_t *truth)
 {
-    fprintf(recorder.out, "truth %.17g %.17g %.17g %.9g\n", height_m, altitude_m, terrain_m, thrust_n);
+    fprintf(recorder.out, "truth %.17g %.17g %.17g %.9g %.17g %.17g %.17g\n", truth->height_m,
+            truth->altitude_m, truth->terrain_m, truth->thrust_n, truth->x_m, truth->y_m, truth->heading_rad);
 }
 
 void tape_stop(void)
@@ -144,10 +145,6 @@ typedef struct {
     char key[16];
     char value[112];
 } entry_t;
-
-typedef struct {
-    double column[TAPE_TRUTHS];
-} truth_t;
 
 typedef struct {
     sim_time_t time;
@@ -269,12 +266,13 @@ static const char *read_level(tape_t *tape, const char *rest)
 
 static const char *read_truth(tape_t *tape, const char *rest)
 {
-    truth_t row = {.column = {[TAPE_TRUTHS - 1] = NAN}};
+    tape_truth_t row = {.thrust_n = NAN, .x_m = NAN, .y_m = NAN, .heading_rad = NAN};
 
-    if (sscanf(rest, "%lf %lf %lf %lf", &row.column[0], &row.column[1], &row.column[2], &row.column[3]) < 3) {
+    if (sscanf(rest, "%lf %lf %lf %lf %lf %lf %lf", &row.height_m, &row.altitude_m, &row.terrain_m,
+               &row.thrust_n, &row.x_m, &row.y_m, &row.heading_rad) < 3) {
         return "truth HEIGHT ABS TERRAIN";
     }
-    *(truth_t *)append(&tape->truth, sizeof row) = row;
+    *(tape_truth_t *)append(&tape->truth, sizeof row) = row;
     return NULL;
 }
 
@@ -381,12 +379,12 @@ const char *tape_value(const tape_t *tape, const char *key, size_t n)
     return NULL;
 }
 
-bool tape_truth_row(const tape_t *tape, size_t row, double truth[TAPE_TRUTHS])
+bool tape_truth_row(const tape_t *tape, size_t row, tape_truth_t *truth)
 {
     if (row >= tape->truth.count) {
         return false;
     }
-    memcpy(truth, ((const truth_t *)tape->truth.items)[row].column, sizeof(truth_t));
+    *truth = ((const tape_truth_t *)tape->truth.items)[row];
     return true;
 }
 

@@ -9,9 +9,10 @@
  *   KEY VALUE                      what the run was: scenario, seed, version, set NAME=VALUE, first_row_ns,
  * rows flash SECTOR OFFSET CELLS      16-bit cells in hex, four digits each; what is not named is erased
  *   octets WIRE T_NS LENGTH_NS HEX the stop bit of the first octet ended at T_NS since power-on, and the
- * others followed without a pause; each lasted LENGTH_NS, ten bits select T_NS 0|1                level of
- * the selector pin truth HEIGHT ABS TERRAIN THRUST      of one row of the log, where a simulated vehicle
- * flew, and what it was commanded (N)
+ * others followed without a pause; each lasted LENGTH_NS, ten bits
+ *   select T_NS 0|1                level of the selector pin
+ *   truth HEIGHT ABS TERRAIN THRUST X Y HEADING    of one row of the log, where a simulated vehicle flew,
+ * what it was commanded (N), and where it was; older recordings end before the thrust, or before X
  *
  * A file that was cut off (a full disk, a pulled plug) is good up to its last whole line. */
 #ifndef SIM_TAPE_H
@@ -28,7 +29,10 @@
 /* After board_power_on(): from here on everything goes to `out`, the flash first. One recording at a time. */
 void tape_record(FILE *out);
 void tape_key(const char *key, const char *value);
-void tape_truth(double height_m, double altitude_m, double terrain_m, double thrust_n);
+typedef struct {
+    double height_m, altitude_m, terrain_m, thrust_n, x_m, y_m, heading_rad;
+} tape_truth_t;
+void tape_truth(const tape_truth_t *truth);
 /* The end, before board_power_off(). */
 void tape_stop(void);
 
@@ -43,9 +47,8 @@ void tape_free(tape_t *tape);
 
 /* The n-th value of a key, from 0; NULL when there is none. */
 const char *tape_value(const tape_t *tape, const char *key, size_t n);
-#define TAPE_TRUTHS 4
-/* False behind the last row. The thrust is NAN where a recording has none. */
-bool tape_truth_row(const tape_t *tape, size_t row, double truth[TAPE_TRUTHS]);
+/* False behind the last row. NAN: the recording does not have it. */
+bool tape_truth_row(const tape_t *tape, size_t row, tape_truth_t *truth);
 /* Instant of the latest thing on the recording. */
 sim_time_t tape_end(const tape_t *tape);
 

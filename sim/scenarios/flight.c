@@ -355,8 +355,8 @@ static void write_titles(FILE *csv)
 
     telemetry_begin_answer(&line);
     published_titles(&line);
-    fprintf(csv, "%.*s,height_m,abs_m,terrain_m%s%s\n", (int)line.length, line.text,
-            flight.open_loop ? ",flown_n" : "", flight.in_place ? ",x_m,y_m,heading_rad" : "");
+    fprintf(csv, "%.*s,height_m,abs_m,terrain_m,x_m,y_m,heading_rad%s\n", (int)line.length, line.text,
+            flight.open_loop ? ",flown_n" : "");
 }
 
 static void write_number(FILE *csv, double value, int decimals)
@@ -366,11 +366,6 @@ static void write_number(FILE *csv, double value, int decimals)
         fprintf(csv, "%.*f", decimals, value);
     }
 }
-
-/* What only the world knows; in a replay also the thrust that the vehicle answered to. */
-typedef struct {
-    double height_m, altitude_m, terrain_m, flown_n, x_m, y_m, heading_rad;
-} truth_t;
 
 /* An acceleration is shown once. */
 static bool new_frame(const imu_sample_t *frame)
@@ -418,18 +413,18 @@ static double in_column(double value, flight_log_scale_t scale)
 #define NAME(column, source, name_of, shift) \
     fprintf(csv, ",%s", (now.source != 0U) ? name_of(now.source) : "");
 #define TEXT(telemetry, source)
-static void write_row(FILE *csv, double t_s, const truth_t *truth)
+static void write_row(FILE *csv, double t_s, const tape_truth_t *truth)
 {
     const published_t now = published();
 
     fprintf(csv, "%.2f", t_s);
     PUBLISHED(NUMBER, DERIVED, STATE, FLAGS, NAME, TEXT)
     fprintf(csv, ",%.4f,%.4f,%.4f", truth->height_m, truth->altitude_m, truth->terrain_m);
+    write_number(csv, truth->x_m, 4);
+    write_number(csv, truth->y_m, 4);
+    write_number(csv, truth->heading_rad, 4);
     if (flight.open_loop) {
-        write_number(csv, truth->flown_n, 3);
-    }
-    if (flight.in_place) {
-        fprintf(csv, ",%.4f,%.4f,%.4f", truth->x_m, truth->y_m, truth->heading_rad);
+        write_number(csv, truth->thrust_n, 3);
     }
     fputc('\n', csv);
 }
@@ -443,14 +438,14 @@ static void record_number(const char *key, sim_time_t value)
 }
 
 /* The first row tells when the log begins, and what its time is counted from. */
-static void record_row(const truth_t *truth)
+static void record_row(const tape_truth_t *truth)
 {
     if (!flight.first_row_recorded) {
         flight.first_row_recorded = true;
         record_number("origin_ns", flight.origin);
         record_number("first_row_ns", timeline_now());
     }
-    tape_truth(truth->height_m, truth->altitude_m, truth->terrain_m, truth->flown_n);
+    tape_truth(truth);
 }
 
 /* What the firmware says that it doubts. */
@@ -490,13 +485,13 @@ static void sample(FILE *csv)
     const metrics_sample_t seen = look(t_s, state);
 
     metrics_add(&flight.record, &seen);
-    const truth_t truth = {.height_m = state->height_m,
-                           .altitude_m = state->altitude_m,
-                           .terrain_m = state->terrain_m,
-                           .flown_n = seen.thrust_n,
-                           .x_m = state->x_m,
-                           .y_m = state->y_m,
-                           .heading_rad = state->heading_rad};
+    const tape_truth_t truth = {.height_m = state->height_m,
+                                .altitude_m = state->altitude_m,
+                                .terrain_m = state->terrain_m,
+                                .thrust_n = seen.thrust_n,
+                                .x_m = state->x_m,
+                                .y_m = state->y_m,
+                                .heading_rad = state->heading_rad};
 
     if (flight.recording) {
         record_row(&truth);
@@ -781,13 +776,10 @@ static sim_time_t number_of(const tape_t *tape, const char *key)
 
 static void replay_rows(const tape_t *tape, sim_time_t first, FILE *csv, size_t *rows)
 {
-    double row[TAPE_TRUTHS];
+    tape_truth_t truth;
 
-    for (*rows = 0; tape_truth_row(tape, *rows, row) && kernel_run_until(first + (sim_time_t)*rows * STEP);
+    for (*rows = 0; tape_truth_row(tape, *rows, &truth) && kernel_run_until(first + (sim_time_t)*rows * STEP);
          (*rows)++) {
-        const truth_t truth = {
-            .height_m = row[0], .altitude_m = row[1], .terrain_m = row[2], .flown_n = row[3]};
-
         write_row(csv, (double)(timeline_now() - flight.origin) * 1e-9, &truth);
     }
 }

@@ -42,7 +42,7 @@ typedef struct {
 
 static unsigned long seeds, first_seed;
 static const char *const laws[] = {"EST", "PID", "PIDT", "PD"};
-#define LAWS (sizeof laws / sizeof laws[0])
+#define LAW_COUNT (sizeof laws / sizeof laws[0])
 
 static unsigned long drawn_seed(void)
 {
@@ -205,12 +205,12 @@ static void bursts_of(const char *law, unsigned long seed, unsigned first, unsig
 void test_a_burst_of_lines_costs_a_hover_a_tenth_of_a_metre_at_most(void)
 {
     if (seeds == 0UL) {
-        for (unsigned i = 0; i < LAWS; i++) {
-            bursts_of(laws[i], first_seed + i, i, LAWS);
+        for (unsigned i = 0; i < LAW_COUNT; i++) {
+            bursts_of(laws[i], first_seed + i, i, LAW_COUNT);
         }
     }
     for (unsigned long seed = first_seed; seed < first_seed + seeds; seed++) {
-        for (unsigned i = 0; i < LAWS; i++) {
+        for (unsigned i = 0; i < LAW_COUNT; i++) {
             bursts_of(laws[i], seed, 0U, 1U);
         }
     }

@@ -344,7 +344,7 @@ void test_a_replay_with_another_law_says_that_nothing_answers_to_it(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(
         strstr(output, "replayed est-60cm-ramp, seed 1: 2601 rows; open loop with LAW=PID\n"), output);
     TEST_ASSERT_GREATER_THAN_size_t(100000, child_read_file("again.csv", again, sizeof again));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(again, ",terrain_m,flown_n\n"), again);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(again, ",terrain_m,x_m,y_m,heading_rad,flown_n\n"), again);
     TEST_ASSERT_EQUAL_INT(2, run("replay recording --set plant.tau=1"));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(output, "no vehicle flies in a replay"), output);
     TEST_ASSERT_EQUAL_INT(2, run("replay no-such-recording"));

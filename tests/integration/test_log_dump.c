@@ -390,7 +390,8 @@ void test_both_logs_have_the_same_columns_and_the_pc_boards_some_more(void)
 
     telemetry_begin_answer(&line);
     published_titles(&line);
-    snprintf(expected, sizeof expected, "%.*s,height_m,abs_m,terrain_m\n", (int)line.length, line.text);
+    snprintf(expected, sizeof expected, "%.*s,height_m,abs_m,terrain_m,x_m,y_m,heading_rad\n",
+             (int)line.length, line.text);
     child_run(fly_with_both_logs, (void *)(size_t) "pid-40cm", &logs, sizeof logs);
     TEST_ASSERT_EQUAL_STRING(expected, logs.titles);
 }

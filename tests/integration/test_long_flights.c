@@ -49,8 +49,7 @@ static void within(const char *name, double least, double most)
     TEST_ASSERT_TRUE_MESSAGE(value >= least && value <= most, message);
 }
 
-/* Of what told the truth. How often law EST does, over seeds: docs/reliability.md, hours of hover; seed 1 has
- * one such doubt in these five hours. */
+/* Of what told the truth. How often law EST does, over seeds: docs/reliability.md, hours of hover. */
 static void doubts_nothing(void)
 {
     within("sight_doubts", 0.0, 0.0);
@@ -61,7 +60,7 @@ static void doubts_nothing(void)
 /* Five hours: four wraps of the microseconds, one of the stamps, which drift away from true time by 0.9 s. */
 void test_five_hours_of_hover_end_on_the_ground_though_radio_and_scanner_are_lost(void)
 {
-    fly("--seed 2 --duration 18000 --set plant.clock_ppm=50 --set LINK=10 --set plant.radio_lost_start=17985 "
+    fly("--duration 18000 --set plant.clock_ppm=50 --set LINK=10 --set plant.radio_lost_start=17985 "
         "--set plant.scanner_restart_start=17997");
     within("hover_rms_mm", 5.0, hypot(12.0, FAN_MM));
     within("hover_mean_error_mm", -5.0 - FAN_MM, 5.0);

@@ -97,7 +97,7 @@ static void fly(void *argument, void *result)
     board_select(true);
     until(24.0);
     type("#SETR 0\n");
-    tape_truth(0.1, 0.2, 0.1 + 0.2, 6.5);
+    tape_truth(&(tape_truth_t){0.1, 0.2, 0.1 + 0.2, 6.5, -0.75, 1.5, 0.25});
     until(order->end_s);
     tape_stop();
     fclose(out);
@@ -184,7 +184,7 @@ void test_keys_and_truth_come_back_as_they_were_written(void)
 {
     order_t order = {1, 25.0, NULL, NULL};
     const char *error = "";
-    double truth[TAPE_TRUTHS];
+    tape_truth_t truth;
     FILE *in;
     tape_t *tape;
 
@@ -195,10 +195,13 @@ void test_keys_and_truth_come_back_as_they_were_written(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(tape, error);
     TEST_ASSERT_EQUAL_STRING("none", tape_value(tape, "scenario", 0));
     TEST_ASSERT_NULL(tape_value(tape, "scenario", 1));
-    TEST_ASSERT_TRUE(tape_truth_row(tape, 0, truth));
-    TEST_ASSERT_EQUAL_DOUBLE(0.1 + 0.2, truth[2]);
-    TEST_ASSERT_EQUAL_DOUBLE(6.5, truth[3]);
-    TEST_ASSERT_FALSE(tape_truth_row(tape, 1, truth));
+    TEST_ASSERT_TRUE(tape_truth_row(tape, 0, &truth));
+    TEST_ASSERT_EQUAL_DOUBLE(0.1 + 0.2, truth.terrain_m);
+    TEST_ASSERT_EQUAL_DOUBLE(6.5, truth.thrust_n);
+    TEST_ASSERT_EQUAL_DOUBLE(-0.75, truth.x_m);
+    TEST_ASSERT_EQUAL_DOUBLE(1.5, truth.y_m);
+    TEST_ASSERT_EQUAL_DOUBLE(0.25, truth.heading_rad);
+    TEST_ASSERT_FALSE(tape_truth_row(tape, 1, &truth));
     TEST_ASSERT_INT64_WITHIN(SIM_S / 10, 25 * SIM_S, tape_end(tape));
     tape_free(tape);
 }

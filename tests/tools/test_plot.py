@@ -158,6 +158,36 @@ class Drawing(Case):
         self.assertIn("flight.csv: ends within a row, which is left out", done.stderr)
 
     @unittest.skipUnless(Path("/dev/full").exists(), "no /dev/full")
+    def placed(self, name, xs, ys):
+        rows = FLIGHT.split()
+        return recording.read(self.write(name, "\n".join([f"{rows[0]},x_m,y_m", *(f"{row},{x},{y}" for row, x, y in zip(rows[1:], xs, ys))]) + "\n"))
+
+    def test_the_way_flown_is_measured_along_the_ground_and_leaves_the_sway_of_a_hover_out(self):
+        there = [0.01 * min(k, 100) for k in range(200)]                                # 1 m along x, then 1 m along y
+        aside = [0.01 * max(k - 100, 0) for k in range(200)]
+        way = plot.way_flown(self.placed("way.csv", there, aside))
+        self.assertAlmostEqual(way[50], 0.5)
+        self.assertAlmostEqual(way[-1], 1.99, delta=plot.STEP_M)
+        self.assertEqual(way, sorted(way))
+        sway = [0.015 * (-1) ** k for k in range(200)]
+        self.assertIsNone(plot.way_flown(self.placed("hover.csv", sway, sway)))
+        self.assertIsNone(plot.way_flown(recording.read(self.write("old.csv", FLIGHT))))
+
+    def test_terrain_is_drawn_against_the_way_where_every_flight_goes_one(self):
+        import matplotlib
+        matplotlib.use("Agg")
+        import matplotlib.pyplot as plt
+        flies = self.placed("flies.csv", [0.01 * k for k in range(200)], [0.0] * 200)
+        stays = self.placed("stays.csv", [0.0] * 200, [0.0] * 200)
+        for recordings, label, end in (([flies], "way flown (m)", 1.99), ([flies, stays], "", None), ([stays], "", None)):
+            figure, axis = plt.subplots()
+            ways = plot.ways_flown(recordings)
+            plot.draw_absolute(axis, recordings, ways, len(recordings) > 1)
+            self.assertEqual((axis.get_xlabel(), ways is None), (label, end is None))
+            if end:
+                self.assertAlmostEqual(axis.get_xlim()[1], end, delta=plot.STEP_M)
+            plt.close(figure)
+
     def test_a_picture_that_cannot_be_written_is_status_2(self):
         (self.dir / "flight.png").symlink_to("/dev/full")
         done = self.plot(self.write("flight.csv", FLIGHT))

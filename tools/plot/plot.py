@@ -38,6 +38,7 @@ FLAG_NAMES = {1: "height", 2: "attitude", 4: "disagree", 8: "too high", 16: "lin
 
 HEIGHT, MEASURED, ESTIMATE, REFERENCE, TERRAIN, THRUST = "#1f5fa8", "#e07a1f", "#2a8f4f", "#333333", "#b79268", "#a0303f"
 FLIGHT_COLOURS = ("#1f5fa8", "#e07a1f", "#2a8f4f", "#a0303f", "#7550a8", "#5a5a5a", "#1a9aa0", "#b3589a")
+STEP_M, STAYS_M = 0.05, 0.5     # chosen: a hover sways by less; a shorter way needs no picture
 QUOTED = (
     ("rise_time_s", "rise", "{:.2f} s"),
     ("overshoot_mm", "overshoot", "{:.0f} mm"),
@@ -171,17 +172,44 @@ def draw_sent(axis, sent, span):
                           rotation=90, ha="left", va="top", fontsize=8, color="#555555")
 
 
-def draw_absolute(axis, recordings, overlay):
+def way_flown(rec):
+    """Metres along the ground up to each sample, in steps of STEP_M: less is the sway of one that stays. None: it stays, or no log of places."""
+    if not rec.has("x_m"):
+        return None
+    xs, ys = rec.columns["x_m"], rec.columns["y_m"]
+    way, last = [0.0] * len(xs), 0
+    for index in range(1, len(xs)):
+        gone = math.hypot(xs[index] - xs[last], ys[index] - ys[last])
+        if gone >= STEP_M:
+            for between in range(last + 1, index + 1):
+                way[between] = way[last] + gone * (between - last) / (index - last)
+            last = index
+    way[last + 1:] = [way[last]] * (len(xs) - last - 1)
+    return way if way[-1] >= STAYS_M else None
+
+
+def draw_absolute(axis, recordings, ways, overlay):
+    """Terrain and vehicle, against the ways flown; None: against the time."""
     rec = recordings[0]
-    axis.fill_between(rec.t, rec.columns["terrain_m"], min(0.0, min(rec.columns["terrain_m"])) - 0.05, color=TERRAIN,
+    across = ways or [flight.t for flight in recordings]
+    axis.fill_between(across[0], rec.columns["terrain_m"], min(0.0, min(rec.columns["terrain_m"])) - 0.05, color=TERRAIN,
                       alpha=0.7, linewidth=0, label="terrain")
-    axis.plot(rec.t, rec.columns["terrain_m"], color=TERRAIN, linewidth=1.2)
+    axis.plot(across[0], rec.columns["terrain_m"], color=TERRAIN, linewidth=1.2)
     for index, flight in enumerate(recordings):
         colour = FLIGHT_COLOURS[index % len(FLIGHT_COLOURS)] if overlay else HEIGHT
-        axis.plot(flight.t, flight.columns["abs_m"], color=colour, linewidth=1.8,
+        axis.plot(across[index], flight.columns["abs_m"], color=colour, linewidth=1.8,
                   label=None if overlay else "vehicle")
     axis.set_ylabel("absolute\nheight (m)")
     axis.set_ylim(bottom=min(0.0, min(rec.columns["terrain_m"])) - 0.05)
+    if ways:
+        axis.set_xlim(0.0, max(way[-1] for way in ways))
+        axis.set_xlabel("way flown (m)", labelpad=1)
+
+
+def ways_flown(recordings):
+    """Of all of them, or None: one stays where it is, or its log tells no places."""
+    ways = [way_flown(rec) for rec in recordings]
+    return None if None in ways else ways
 
 
 def draw_thrust(axis, recordings, overlay):
@@ -216,8 +244,9 @@ def draw(recordings, title, subtitle, path):
         value > 0 for value in recordings[0].columns["flags"])
 
     ratios = [5.0] + ([3.0] if flights else []) + [2.4, 0.42 * bands]
-    figure, axes = plt.subplots(len(ratios), 1, sharex=True, figsize=(12, 9), dpi=100,
-                                gridspec_kw={"height_ratios": ratios, "hspace": 0.12})
+    ways = ways_flown(recordings) if flights else None
+    figure, axes = plt.subplots(len(ratios), 1, figsize=(12, 9), dpi=100,
+                                gridspec_kw={"height_ratios": ratios, "hspace": 0.3 if ways else 0.12})
     axes = list(axes)
     figure.subplots_adjust(left=0.115, right=0.975, top=0.915, bottom=0.1)
     figure.align_ylabels(axes[:-1])
@@ -227,8 +256,12 @@ def draw(recordings, title, subtitle, path):
     draw_height(axes[0], recordings, overlay)
     draw_sent(axes[0], recordings[0].sent, span)
     figure.legend(*axes[0].get_legend_handles_labels(), loc="upper right", bbox_to_anchor=(0.98, 0.99), ncol=4)
+    in_time = [axis for axis in axes if not ways or axis is not axes[1]]
+    for axis in in_time[:-1]:
+        axis.sharex(axes[-1])
+        axis.tick_params(labelbottom=ways is not None and axis is axes[0])
     if flights:
-        draw_absolute(axes[1], recordings, overlay)
+        draw_absolute(axes[1], recordings, ways, overlay)
         if not overlay:
             axes[1].legend(loc="upper right", ncol=2)
     draw_thrust(axes[-2], recordings, overlay)

@@ -11,9 +11,10 @@ from pathlib import Path
 
 RECORDER_COLUMNS = ("t_s", "meas_m", "est_m", "innov_m", "ref_m", "thrust_n", "roll_rad", "pitch_rad", "state", "flags")
 FLIGHT_COLUMNS = RECORDER_COLUMNS + ("height_m", "abs_m", "terrain_m", "pulse_us")     # and what only the PC board knows
+PLACE_COLUMNS = ("x_m", "y_m", "heading_rad")           # of logs since the ground is a place
 OPEN_LOOP_COLUMNS = ("flown_n",)       # of `plomada replay` on a log: the thrust that the vehicle answered to
 FIT_COLUMNS = ("up_mps2", "age_s")     # of logs since #LOG RATE FAST
-KNOWN_COLUMNS = (*FLIGHT_COLUMNS, *OPEN_LOOP_COLUMNS, *FIT_COLUMNS)
+KNOWN_COLUMNS = (*FLIGHT_COLUMNS, *PLACE_COLUMNS, *OPEN_LOOP_COLUMNS, *FIT_COLUMNS)
 TEXT_COLUMNS = ("state", "laser")
 TELEMETRY_PERIOD_S = 0.2
 

@@ -198,7 +198,7 @@ describe('the simulated vehicle, the unmodified firmware as WebAssembly', () => 
     const download = page.waitForEvent('download');
     await button(page, 'Save CSV').click();
     const csv = readFileSync(await (await download).path(), 'utf8').trim().split('\n');
-    expect(`${csv[0]},height_m,abs_m,terrain_m`).toBe(readFileSync(flown, 'utf8').split('\n')[0]); // that of `fly --csv`, but for what only the simulation knows
+    expect(`${csv[0]},height_m,abs_m,terrain_m,x_m,y_m,heading_rad`).toBe(readFileSync(flown, 'utf8').split('\n')[0]); // that of `fly --csv`, but for what only the simulation knows
     const times = csv.slice(1).map((row) => parseFloat(row));
     const steps = times.slice(1).map((t, i) => t - times[i]!);
     expect(Math.min(...steps)).toBeGreaterThan(0);
