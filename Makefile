@@ -61,8 +61,8 @@ mine: ## Fly a law of your own, FILE=examples/my_law/law_mine.c, beside law EST:
 lab: ## Mark laboratory N=1 of the course (course/README.md): FILE=your answer, ID=your number
 	@test -n "$(N)" || { echo "usage: make lab N=1 [ID=12345] [FILE=answer]" >&2; exit 2; }
 	@$(setup) build lab
-	@$(MAKE) build >/dev/null
-	+@cmake --build build --target course_marker $(jobs) >/dev/null
+	@[ -x build/course_marker ] || echo 'make lab: builds the firmware once; that takes a minute or two' >&2
+	@mkdir -p build && { $(MAKE) build && cmake --build build --target course_marker $(jobs); } >build/lab.log 2>&1 || { cat build/lab.log >&2; exit 2; }
 	@python3 -B course/mark/lab.py $(N) $(if $(ID),--id "$(ID)") $(if $(FILE),--file "$(FILE)")
 
 plot: ## Draw LOG=FILE: a flight's CSV (or several), an XCTU console log or text, with or without dumps of #LOG

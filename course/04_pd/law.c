@@ -6,7 +6,7 @@
 #define KD_N_S_PER_M 0.0F /* chosen by you: newtons for each metre per second that it climbs */
 #define WINDOW_N 3.0F     /* the thrust stays so near to GRAV */
 
-float law_pid_step(laws_t *laws, est_law_t *est, const situation_t *now)
+float law_mine_step(laws_t *laws, est_law_t *est, const situation_t *now)
 {
     const height_track_t *height = &now->where->supervisor.height;
     const float error_m = now->where->supervisor.reference_m - height->height_mm * 0.001F;

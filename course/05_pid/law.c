@@ -8,7 +8,7 @@
 #define INTEGRAL_MOST_N 2.0F /* more is no wrong GRAV but a fault */
 #define WINDOW_N 3.0F        /* the thrust stays so near to GRAV */
 
-float law_pid_step(laws_t *laws, est_law_t *est, const situation_t *now)
+float law_mine_step(laws_t *laws, est_law_t *est, const situation_t *now)
 {
     const height_track_t *height = &now->where->supervisor.height;
     const float error_m = now->where->supervisor.reference_m - height->height_mm * 0.001F;

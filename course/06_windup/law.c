@@ -8,7 +8,7 @@
 #define ASCENSION_N 1.0F  /* the limit above GRAV, that of the thesis */
 #define DESCENSION_N 1.0F /* and below */
 
-float law_pid_step(laws_t *laws, est_law_t *est, const situation_t *now)
+float law_mine_step(laws_t *laws, est_law_t *est, const situation_t *now)
 {
     const height_track_t *height = &now->where->supervisor.height;
     const float error_m = now->where->supervisor.reference_m - height->height_mm * 0.001F;

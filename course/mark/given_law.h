@@ -1,4 +1,4 @@
-/* The law of a student, in place of control/laws/law_pid.c. */
+/* The law of a student, as law MINE (cmake/own_law.cmake). */
 #ifndef COURSE_MARK_GIVEN_LAW_H
 #define COURSE_MARK_GIVEN_LAW_H
 

@@ -39,9 +39,9 @@ def near(given, wanted, by=NEAR_MN):
 
 
 def scenario(hover_n, gravity_n, reference_m=REFERENCE_M, platform=False, more=()):
-    """A flight of `plomada fly`, in the words of docs/campaign.md, with a battery that does not sag, so that a hover thrust is one number."""
-    return "\n".join(["like pid-60cm-ramp", "name lab", "set RELEASE SCAN", f"set GRAV {gravity_n}", f"set plant.hover_thrust {hover_n}",
-                      "set plant.sag 0", f"reference {reference_m}", f"platform {'yes' if platform else 'no'}", *more, ""])
+    """A flight of `plomada fly`, in the words of docs/campaign.md, with a battery that does not sag and in calm air, so that a hover thrust is one number."""
+    return "\n".join(["like pid-60cm-ramp", "name lab", "set LAW MINE", f"set GRAV {gravity_n}", f"set plant.hover_thrust {hover_n}",
+                      "set plant.sag 0", "set plant.turbulence 0", f"reference {reference_m}", f"platform {'yes' if platform else 'no'}", *more, ""])
 
 
 def figure_mm(flight, name):

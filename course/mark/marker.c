@@ -49,11 +49,10 @@ static void ask_law(law_step_t law)
     memset(&est, 0, sizeof est);
     memset(&where, 0, sizeof where);
     parameters_init(&parameters);
-    parameters.value[PARAMETER_LAW] = (float)LAW_PID;
-    parameters.value[PARAMETER_RELEASE] = (float)RELEASE_SCAN;
+    parameters.value[PARAMETER_LAW] = (float)LAW_MINE;
     while (fgets(line, sizeof line, stdin) != NULL) {
         height_track_t *height = &where.supervisor.height;
-        const situation_t now = {.parameters = &parameters, .where = &where, .est = &est, .law = LAW_PID};
+        const situation_t now = {.parameters = &parameters, .where = &where, .est = &est, .law = LAW_MINE};
         unsigned long gap_us;
         int is_new;
 
@@ -103,9 +102,9 @@ int main(int argc, char **argv)
     } else if (strcmp(argv[2], "number") == 0 && argc == 4) {
         printf("%ld\n", thousandths((double)*(const float *)named(answer, argv[3])));
     } else if (strcmp(argv[2], "law") == 0) {
-        ask_law((law_step_t)named(answer, "law_pid_step"));
+        ask_law((law_step_t)named(answer, "law_mine_step"));
     } else if (strcmp(argv[2], "fly") == 0) {
-        given_law_set((law_step_t)named(answer, "law_pid_step"));
+        given_law_set((law_step_t)named(answer, "law_mine_step"));
         return command_fly(argc - 2, argv + 2);
     } else {
         return 2;

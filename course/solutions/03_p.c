@@ -7,7 +7,7 @@
 
 const float foreseen_error_mm = 66.7F; /* 0.4 N / 6 N/m */
 
-float law_pid_step(laws_t *laws, est_law_t *est, const situation_t *now)
+float law_mine_step(laws_t *laws, est_law_t *est, const situation_t *now)
 {
     const height_track_t *height = &now->where->supervisor.height;
     const float error_m = now->where->supervisor.reference_m - height->height_mm * 0.001F;

@@ -6,7 +6,7 @@
 #define KD_N_S_PER_M 2.6F /* half of it overshoots, three times shake the motors */
 #define WINDOW_N 3.0F
 
-float law_pid_step(laws_t *laws, est_law_t *est, const situation_t *now)
+float law_mine_step(laws_t *laws, est_law_t *est, const situation_t *now)
 {
     const height_track_t *height = &now->where->supervisor.height;
     const float error_m = now->where->supervisor.reference_m - height->height_mm * 0.001F;

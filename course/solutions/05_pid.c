@@ -9,7 +9,7 @@
 #define NEAR_M 0.3F          /* on its way up it would wind up: laboratory 6 */
 #define WINDOW_N 3.0F
 
-float law_pid_step(laws_t *laws, est_law_t *est, const situation_t *now)
+float law_mine_step(laws_t *laws, est_law_t *est, const situation_t *now)
 {
     const height_track_t *height = &now->where->supervisor.height;
     const float error_m = now->where->supervisor.reference_m - height->height_mm * 0.001F;

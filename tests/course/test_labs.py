@@ -201,7 +201,7 @@ class Misfortunes(unittest.TestCase):
                 (1, "a.py", "", "KeyError: time_ms"),
                 (2, "a.c", "int main(", "could not be built"),
                 (2, "a.c", "int x;", "has no student_height"),
-                (3, "a.c", "float law_pid_step(void) { return *(volatile float *)8; }", "fault of memory"),
+                (3, "a.c", "float law_mine_step(void) { return *(volatile float *)8; }", "fault of memory"),
                 (10, "a.py", "class Judge:\n    def believe(self, *_):\n        return 1\n", "must return True or False")):
             with self.subTest(laboratory=number, answer=text):
                 report, mark = marked(number, self.answer(name, text))
@@ -210,7 +210,7 @@ class Misfortunes(unittest.TestCase):
 
     def test_an_answer_without_end_is_ended(self):
         for module, number, name, text in ((answer_python, 1, "a.py", "while True:\n    pass\n"),
-                                           (answer_c, 3, "a.c", "float law_pid_step(void) { for (;;) { } }")):
+                                           (answer_c, 3, "a.c", "float law_mine_step(void) { for (;;) { } }")):
             before, module.ENDLESS_S = module.ENDLESS_S, 0.5
             try:
                 report, mark = marked(number, self.answer(name, text))

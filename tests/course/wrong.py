@@ -21,7 +21,7 @@ WRONG = {
         "half the D": ([("KD_N_S_PER_M 2.6F", "KD_N_S_PER_M 1.3F")], {"the overshoot in flight"}),
         "twice the D and more": ([("KD_N_S_PER_M 2.6F", "KD_N_S_PER_M 6.5F")], {"the swing in flight", "the motors are quiet: deviation of the thrust"})},
     5: {"each cycle counts the same": ([("error_m * gap_s", "error_m * 0.1F")], {"it adds up by time, not by cycles"}),
-        "the integral is a static variable": ([("laws->pid.integral_n", "kept_n"), ("float law_pid_step", "static float kept_n;\nfloat law_pid_step")],
+        "the integral is a static variable": ([("laws->pid.integral_n", "kept_n"), ("float law_mine_step", "static float kept_n;\nfloat law_mine_step")],
                                               {"the integral is kept where the firmware clears it"}),
         "it adds up on the way up too": ([("NEAR_M 0.3F", "NEAR_M 3.0F")], {"the overshoot"})},
     6: {"the integral stands still at a limit": ([("ASCENSION_N && added_n > 0.0F", "ASCENSION_N"), ("DESCENSION_N && added_n < 0.0F", "DESCENSION_N")],
