@@ -82,7 +82,7 @@ typedef struct {
     float height_mm;    /* may be negative by sensor noise on the ground */
     float slant_mm;     /* mean over the valid groups */
     float spread_mm;    /* largest over the valid groups */
-    uint16_t good_rays; /* sum over the valid groups */
+    uint16_t good_rays; /* sum over the valid groups; 0 where they are not known (a replayed log) */
     float distance_mm;  /* means over the valid groups, for altitude_at_tilt(): d */
     float leg_mm;       /* l */
     float arm_mm;       /* L */

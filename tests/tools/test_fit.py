@@ -4,6 +4,7 @@ import io
 import json
 import random
 import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -142,9 +143,11 @@ class Fit(unittest.TestCase):
         return (sum(x * x for x in off) / len(off))**0.5, done.stderr
 
     def test_replay_of_a_log_flies_it_open_loop_and_names_what_is_not_in_it(self):
+        # Half of the flights are below 0.24 N (seeds 4711 to 4726); some wander off, as an open loop may.
+        same_n = [self.replay(self.fly(seed, {}, "est-60cm-ramp"))[0] for seed in range(4711, 4717)]
+        self.assertLess(statistics.median(same_n), 0.3)
         log = self.fly(4717, {}, "est-60cm-ramp")
-        same_n, told = self.replay(log)
-        self.assertLess(same_n, 0.4)
+        _, told = self.replay(log)
         for word in ("open loop", "accelerations", "octets of scanner", "did not answer"):
             self.assertIn(word, told)
         other_n, _ = self.replay(log, "--set", "LAW=PID")

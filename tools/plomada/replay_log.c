@@ -15,7 +15,6 @@
 #define TELEMETRY_PERIOD_S 0.2
 #define AGE_USUAL_S 0.0705 /* of the front mirror's rays at 250000 bit/s, when their scan arrives */
 #define NEW_RAYS_S 0.02    /* less is rounding */
-#define GOOD_RAYS 35U
 #define STAND_S 2.0
 #define CLIMB_S 2.0
 #define RAMP_S 0.6 /* of the take-off, until it leaves the ground */
@@ -157,7 +156,9 @@ static row_t read_telemetry(const char *line)
     return row;
 }
 
-/* The slant that the formula of altitude.h turns into this height. */
+/* The slant that the formula of altitude.h turns into this height. A log has no rays, and heights in whole
+ * millimetres: so good_rays is 0, and nothing is concluded from how little the slant varies (sense/beam.h).
+ */
 static altitude_t altitude_of(double height_m, double roll_rad, double pitch_rad)
 {
     const mirror_geometry_t front = altitude_geometry_of(&replay.parameters).mirror[MIRROR_FRONT];
@@ -166,7 +167,6 @@ static altitude_t altitude_of(double height_m, double roll_rad, double pitch_rad
     return (altitude_t){.valid = true,
                         .height_mm = (float)(height_m * 1e3),
                         .slant_mm = (float)(above_mm / (cos(roll_rad) * cos(pitch_rad))) + front.distance_mm,
-                        .good_rays = GOOD_RAYS,
                         .distance_mm = front.distance_mm,
                         .leg_mm = front.leg_mm,
                         .arm_mm = front.arm_mm};
