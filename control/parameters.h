@@ -54,7 +54,7 @@ typedef enum {
     PARAMETER_L1,
     PARAMETER_D2, /* fore mirror, the seed's mirror 2 */
     PARAMETER_L2,
-    PARAMETER_LAYOUT, /* choice, control_layout_t. From here on: not in sets that 0.35 has stored */
+    PARAMETER_LAYOUT, /* choice, control_layout_t. From here on: not in sets that were stored before 0.2.0 */
     PARAMETER_SF,     /* steps of the scanner: middle of the rays that look at the front mirror */
     PARAMETER_S1,     /* aft */
     PARAMETER_S2,     /* fore */

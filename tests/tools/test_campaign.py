@@ -58,6 +58,9 @@ def figures(**other):
 
 class Case(unittest.TestCase):
     def setUp(self):
+        laws = mock.patch.dict(plan.LAWS)   # the stand-in's law GLIDE is not the program's
+        laws.start()
+        self.addCleanup(laws.stop)
         self.dir = Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.dir)
         self.out = self.dir / "out"
@@ -298,7 +301,6 @@ class Keeping(Case):
         self.assertIn("is there already", err.getvalue())
 
     def test_a_law_that_only_the_program_has_is_flown_by_its_name(self):
-        self.addCleanup(plan.LAWS.pop, "GLIDE", None)
         status, out, _, flown = self.campaign("--law", "GLIDE,PID", "--set", "nominal", "--runs", "2")
         self.assertEqual((status, flown), (0, 4), out)
         self.assertEqual([("--set LAW=GLIDE" in json.loads(line)["command"]) for line in sorted(self.stored())].count(True), 2)
