@@ -185,11 +185,13 @@ void test_get_alone_lists_every_parameter_once(void)
     }
 }
 
+#define HELP_S 8.0 /* 5 kB at 9600 bit/s */
+
 void test_help_names_every_parameter_and_verb(void)
 {
     char line[64];
 
-    type("#HELP\n", 6, 0.0, 6.0);
+    type("#HELP\n", 6, 0.0, HELP_S);
     for (int i = 0; i < PARAMETER_COUNT; i++) {
         snprintf(line, sizeof line, "OK HELP #%s ", parameter_table[i].name);
         TEST_ASSERT_EQUAL_INT_MESSAGE(1, count_of(line), line);
@@ -244,7 +246,7 @@ static void spoil_every_verb(void)
     int verbs = 0;
 
     refused_count = 0;
-    type("#HELP\n", 6, 0.0, 6.0);
+    type("#HELP\n", 6, 0.0, HELP_S);
     for (const char *at = strstr(talk.terminal.text, begin); at != NULL; at = strstr(at + 1, begin)) {
         char name[16] = "", words[64] = "";
 
