@@ -4,7 +4,7 @@
 
 #include "control/thrust.h"
 
-#define LAW_NAME(name, step, cycles) #name,
+#define LAW_NAME(name, step, cycles) "" #name, /* a literal as all others, of the width of a char */
 static const char *const law_names[] = {LAWS(LAW_NAME)};
 #undef LAW_NAME
 static const char *const release_names[] = {[RELEASE_FREE] = "FREE", [RELEASE_SCAN] = "SCAN"};

@@ -63,7 +63,7 @@ class Flight:
         done = subprocess.run([PROGRAM, "fly", *arguments, "--csv", "-"], capture_output=True, text=True, check=False)
         if done.returncode not in (0, 1):
             raise AssertionError(f"{self}: {done.stderr}")
-        self.rows = [{name: text if name == "state" else float(text or "nan") for name, text in row.items()}
+        self.rows = [{name: text if name in ("state", "doubt", "limit") else float(text or "nan") for name, text in row.items()}
                      for row in csv.DictReader(io.StringIO(done.stdout))]
 
     def __str__(self):
