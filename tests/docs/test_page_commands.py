@@ -4,7 +4,8 @@ Usage: test_page_commands.py ROOT PLOMADA
 
 A command is what begins with `plomada` or `build/plomada` in a block of code or in `...`. The commands of a page are run in its order in one folder,
 which has the files that prepare() makes. A subcommand that is only named must have its --help. What is a form (FILE, [...]) or needs a board, a
-port or a person is counted, not run.
+port or a person is counted, not run. A line of make must have a target, variables and a file that are there: what it then does takes minutes, and has
+tests of its own.
 """
 import re
 import shlex
@@ -54,6 +55,29 @@ def fly(folder, words):
                           errors="replace")
 
 
+def makes(text):
+    """(target, {variable: value}) of each `make TARGET VARIABLE=VALUE ...` of a page."""
+    for block, span in re.findall(r"```\w*\n(.*?)```|`([^`]+)`", text, re.DOTALL):
+        for line in block.splitlines() if block else [" ".join(span.split())]:
+            found = re.fullmatch(r"(?:\$ )?(?:time )?make ([a-z-]+)((?: [A-Z]+=.*)?)", line.strip())
+            if found:
+                words = shlex.split(found.group(2).split(" # ")[0])
+                yield found.group(1), dict(word.strip("[]").split("=", 1) for word in words if "=" in word)
+
+
+def wrong_make(target, given):
+    """What make would not do with it: a target or a variable that the Makefile does not have, a file that is not there."""
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    if not re.search(rf"^{target}:", makefile, re.MULTILINE):
+        return f"no target {target}"
+    for name, value in given.items():
+        if f"$({name})" not in makefile:
+            return f"nothing reads {name}"
+        if name == "FILE" and "/" in value and not FORM.search(value) and not (ROOT / value).exists() and not value.startswith(("my", "answers/")):
+            return f"no file {value}"
+    return None
+
+
 class Commands(unittest.TestCase):
     def test_each_that_can_be_run_is_understood(self):
         counted = {"form": 0, "named": 0, "by hand": 0, "run": 0}
@@ -70,6 +94,17 @@ class Commands(unittest.TestCase):
                             self.assertIn(done.returncode, (0, 1), done.stderr[-300:])
         self.assertGreater(counted["run"], 20, counted)
         self.assertLess(counted["by hand"], 25, counted)
+
+    def test_make_has_each_target_variable_and_file_that_a_page_gives_it(self):
+        found = [(page.name, target, given)
+                 for page in (*(ROOT / "docs").rglob("*.md"), *(ROOT / "course").rglob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md")
+                 for target, given in makes(page.read_text(encoding="utf-8"))]
+        self.assertGreater(sum(1 for _, _, given in found if given), 20)
+        self.assertEqual([(*one, wrong_make(*one[1:])) for one in found if wrong_make(*one[1:])], [])
+
+    def test_a_line_of_make_that_would_do_nothing_is_found(self):
+        for line in ("make fly-away", "make mine FLIE=law.c", "make mine FILE=examples/my_law/none.c", "make lab NUMBER=3"):
+            self.assertIsNotNone(wrong_make(*next(makes(f"`{line}`"))), line)
 
     def test_a_command_that_is_not_understood_is_found(self):
         with tempfile.TemporaryDirectory() as name:
