@@ -156,8 +156,11 @@ bool urg_order(urg_driver_t *urg, const scip_range_t *range)
 {
     urg_config_t config = urg->link.config;
     config.range = *range;
-    return urg_refusal(&config, (uint16_t)(2U * urg->scans[0].capacity)) == URG_ACCEPTED &&
-           urg_link_order(&urg->link, range);
+    if (urg_refusal(&config, (uint16_t)(2U * urg->scans[0].capacity)) != URG_ACCEPTED) {
+        return false;
+    }
+    urg_link_order(&urg->link, range);
+    return true;
 }
 
 void urg_ask(urg_driver_t *urg, scip_info_t *info)

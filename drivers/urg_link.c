@@ -1236,22 +1236,16 @@ static bool is_same_range(const scip_range_t *a, const scip_range_t *b)
            a->interval == b->interval && a->scans == b->scans;
 }
 
-bool urg_link_order(urg_link_t *link, const scip_range_t *range)
+void urg_link_order(urg_link_t *link, const scip_range_t *range)
 {
-    urg_config_t config = link->config;
     scip_request_t stream;
 
-    config.range = *range;
-    if (urg_link_refusal(&config) != URG_ACCEPTED) {
-        return false;
-    }
     if (!is_same_range(range, &link->config.range)) {
-        (void)scip_request_scan(&stream, config.stream, range);
+        (void)scip_request_scan(&stream, link->config.stream, range);
         link->config.range = *range;
         link->scan_octets = stream.scan_octets;
         link->to_order = true;
     }
-    return true;
 }
 
 uint16_t urg_link_told(const urg_link_t *link)

@@ -172,9 +172,9 @@ void urg_link_ask(urg_link_t *link);
 uint16_t urg_link_told(const urg_link_t *link);
 
 /* Orders another range, with the `scans` of it as well: a stream that runs is stopped for some revolutions,
- * and requested anew. Nothing happens when it is the present range. Returns false, and does nothing, when
- * urg_link_refusal() would name a cause. */
-bool urg_link_order(urg_link_t *link, const scip_range_t *range);
+ * and requested anew. Nothing happens when it is the present range. The range is one that
+ * urg_link_refusal() accepts. */
+void urg_link_order(urg_link_t *link, const scip_range_t *range);
 
 /* The latest scan was complete at this time. Not needed, but scans come at equal distances: who tells it
  * makes the link listen at the right moments while it searches. Call it for every scan or for none. */

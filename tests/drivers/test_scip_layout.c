@@ -493,6 +493,23 @@ void test_the_mean_of_clusters_is_not_too_near(void)
     }
 }
 
+/* A point far from the others is no noise: neither the mean nor its correction knows it. */
+void test_a_point_beside_the_mirror_does_not_raise_the_mean_of_clusters(void)
+{
+    float mean_mm[2];
+
+    for (int far = 0; far < 2; far++) {
+        scan = (scip_scan_t){
+            .first_step = 372, .points = 16, .cluster = 2, .characters = 2, .distance_mm = points};
+        for (uint16_t i = 0U; i < scan.points; i++) {
+            points[i] = (uint16_t)(1000U + i % 3U);
+        }
+        points[7] = (uint16_t)((far != 0) ? 3000U : 1001U);
+        mean_mm[far] = mean_of(372, 403).mean_mm;
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.2F, mean_mm[0], mean_mm[1]);
+}
+
 /* 488 points take 1035 octets, nine tenths of a revolution at 115000 bit/s; 489 take 1037. */
 void test_the_cluster_is_the_smallest_whose_scan_leaves_a_tenth_of_the_revolution(void)
 {

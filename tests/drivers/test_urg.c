@@ -549,6 +549,21 @@ void test_another_range_is_ordered_in_a_stream_and_the_stream_goes_on(void)
     TEST_ASSERT_EQUAL_UINT32(0U, report.restarts);
 }
 
+void test_each_number_of_a_range_alone_makes_it_another_one(void)
+{
+    static const scip_range_t other[] = {
+        {373U, 406U, 1U, 0U, 0U}, {372U, 405U, 1U, 0U, 0U}, {372U, 406U, 5U, 0U, 0U},
+        {372U, 406U, 1U, 1U, 0U}, {372U, 406U, 1U, 0U, 5U},
+    };
+    for (size_t i = 0U; i < sizeof other / sizeof other[0]; i++) {
+        setUp();
+        reach_stream();
+        start_streaming();
+        TEST_ASSERT_TRUE(urg_order(&urg, &other[i]));
+        TEST_ASSERT_EQUAL_STRING("QT\n", step());
+    }
+}
+
 void test_a_range_ordered_before_the_start_is_the_one_that_is_requested(void)
 {
     static const scip_range_t half = {372U, 405U, 2U, 0U, 0U};
