@@ -546,7 +546,7 @@ void test_a_vehicle_whose_pin_says_pilot_holds_its_height_for_five_seconds_and_t
     in.has_throttle = false;
     run(4.9);
     TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
-    TEST_ASSERT_DOUBLE_WITHIN(0.2, 0.7, plant.height_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.7F, (float)plant.height_m);
     run_until(FLIGHT_GROUND, 8.0);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, out.thrust_n);
     run(1.0);
@@ -574,10 +574,10 @@ void test_a_vehicle_whose_pin_says_pilot_obeys_an_order_to_land(void)
     in.has_throttle = false;
     run(0.5);
     TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
-    TEST_ASSERT_DOUBLE_WITHIN(0.2, 0.8, plant.height_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.8F, (float)plant.height_m);
     setr(0.0F);
     run(2.0);
-    TEST_ASSERT_DOUBLE_WITHIN(0.2, 0.4, plant.height_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.4F, (float)plant.height_m);
     run_until(FLIGHT_GROUND, 8.0);
     TEST_ASSERT_TRUE(plant.touch_m_s > 0.05 && plant.touch_m_s < 0.6);
 }

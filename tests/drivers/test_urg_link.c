@@ -11,7 +11,7 @@
 #define STEP_US 150000U
 #define STEP_MS 150U
 #define NEVER 1000000U
-#define LOG_MAX 1000
+#define LOG_MAX 600
 #define QUEUE_MAX 400
 
 /* --- a small scripted sensor, written apart from the product

@@ -35,7 +35,7 @@ def without(runner, tests):
 
 def flat(text):
     """The cells stand in one directory: an include of theirs names the file alone."""
-    return re.sub(r'^(#include ")(?:control|drivers|tests/support)/(?:\w+/)*(\w+\.[ch]")', r"\1\2", text, flags=re.MULTILINE)
+    return re.sub(r'^(#include ")(?:(?:control|drivers|tests/support|sense|est|where)/(?:\w+/)*)(\w+\.[ch]")', r"\1\2", text, flags=re.MULTILINE)
 
 
 def generate(generator, test, runner):
