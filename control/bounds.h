@@ -1,6 +1,6 @@
 /* Bounds on the thrust, as intervals that apply in order. The last one that changes the thrust holds; it is
- * published, so that a log says why the thrust was that. Nothing acts behind them but the output against a
- * wrong pin (laws/stuck_pin.h) and the guard (guard.h).
+ * published as `limit`, so that a log says why the thrust was that. Nothing acts behind them but the output
+ * against a wrong pin (laws/stuck_pin.h) and the guard (guard.h).
  *
  * Newtons per motor, seconds. Pure; the caller owns the state. */
 #ifndef CONTROL_BOUNDS_H

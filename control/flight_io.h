@@ -59,10 +59,9 @@ typedef struct {
     float idle_n;   /* minimum of thrust_n: the idle while armed, else 0 */
     float hover_n;  /* hover thrust as far as it is known, where/hover_thrust.h */
     flight_state_t state;
-    uint16_t flags;  /* FLIGHT_FLAG_* */
-    uint16_t doubts; /* DOUBT_*, facts.h */
-    uint16_t rule;   /* that raised the first of them, verdict_reason_t of sense/rules.h; 0: no doubt */
-    uint16_t bound;  /* that holds the thrust, bound_t of bounds.h; 0: none */
+    uint16_t flags; /* FLIGHT_FLAG_* */
+    uint16_t rule;  /* that raised the first doubt, verdict_reason_t of sense/rules.h; 0: none */
+    uint16_t bound; /* that holds the thrust, bound_t of bounds.h; 0: none */
     imu_fault_t imu_fault;
     float reference_m;   /* reference in force, 0 = none */
     float estimate_mm;   /* height that the law uses; NAN: not known */

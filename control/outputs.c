@@ -27,7 +27,6 @@ void outputs_tell(const situation_t *now, bool out_of_reach, flight_outputs_t *o
     out->hover_n = now->where->hover.thrust_n;
     out->state = supervisor->state;
     out->flags = flags(now, out_of_reach);
-    out->doubts = now->evidence->doubts;
     out->rule = now->evidence->reason;
     out->reference_m = supervisor->reference_m;
     out->estimate_mm = estimated ? estimator->now.height_m * 1000.0F : measured_mm;

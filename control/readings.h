@@ -2,8 +2,8 @@
  *
  * control/ takes the height of a group: its mean slant distance, its spread, and the instant to which the
  * mean belongs. A scanner has a group in each scan. A sensor of one ray at 100 Hz has one in each tenth of a
- * second. Without a group nobody can tell a still beam from a quiet one: see sense/beam.h, which refuses a
- * group of one ray.
+ * second. Without a group nobody can tell a still beam from a quiet one: so
+ * altitude_from_ranges() refuses a group of one ray.
  *
  * Its digits must be finer than its noise (a TFmini: set it to millimetres). A group that repeats the one
  * before in every digit is a copy, and is rejected.

@@ -30,7 +30,6 @@ void test_the_outputs_tell_thrust_height_and_flags(void)
     NEAR(0.6F, out.reference_m);
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 520.0F, out.estimate_mm);
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 12.0F, out.innovation_mm);
-    TEST_ASSERT_EQUAL_UINT16(0U, out.doubts);
     mode_is(FLIGHT_MODE_LAW);
     tell();
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 520.0F, out.estimate_mm);
@@ -61,7 +60,6 @@ void test_each_lack_has_its_flag(void)
                                          FLIGHT_FLAG_SIGHT * (DOUBT_SIGHT | DOUBT_THRUST),
                                          FLIGHT_FLAG_ATTITUDE};
         TEST_ASSERT_EQUAL_UINT16(flags[i], out.flags);
-        TEST_ASSERT_EQUAL_UINT16(evidence.doubts, out.doubts);
     }
     setUp();
     set(PARAMETER_LAW, LAW_PID); /* it needs no IMU */

@@ -249,6 +249,14 @@ class Facts(unittest.TestCase):
             used = set(re.findall(r"\b(\w+?)_server_\w+\(", (ROOT / f"firmware/{file}.c").read_text(encoding="utf-8")))
             self.assertEqual({servers[name] for name in used}, set(laboratory(8).FIRMWARE[task]), task)
 
+    def test_a_bound_that_a_page_tells_is_the_one_that_marks(self):
+        for number, words in ((2, f"by less than {laboratory(2).NEAR_UM // 1000} mm"), (2, f"wrong by {laboratory(2).ERROR_NEAR_UM // 1000} mm"),
+                              (3, f"by {laboratory(3).FORESEEN_NEAR_MM} mm"), (5, f"In at most {laboratory(5).RECOVERY_MOST_S:g} s"),
+                              (6, f"at most {laboratory(6).WOUND_MOST_MN / 1000:g} N"),
+                              (10, f"count from {laboratory(10).KNOWN_AFTER_S:g} s"), (10, f"from {laboratory(10).AGAIN_AFTER_S:g} s after")):
+            with self.subTest(laboratory=number, words=words):
+                self.assertIn(words, " ".join(page(number).read_text(encoding="utf-8").split()))
+
     def test_each_page_has_the_points_of_its_laboratory(self):
         for number in lab.LABORATORIES:
             with self.subTest(laboratory=number):

@@ -79,11 +79,26 @@ def compare(title, expected, found):
         yield f"docs/operator.md: the rows of the {title}s are in another order than published"
 
 
+def names(root, path, table):
+    """The names in a table of C: [THING] = "NAME", without the one that says none."""
+    source = re.search(rf"{table}\[\] = {{(.*?)}};", (root / path).read_text(encoding="utf-8"), re.S).group(1)
+    return [name for name in re.findall(r'= "([^"]+)"', source) if name != "-"]
+
+
+def meanings(root, text):
+    """Each rule that doubts and each limit has a row in the document, in the order of the enum, and no row is of another."""
+    for path, table, title in (("control/sense/rules.c", "reason_names", "rule"), ("control/bounds.c", "names", "limit")):
+        rows = re.search(rf"^\| {title} \|.*\n\|[-|]+\|\n((?:\|.*\n)+)", text, re.M)
+        told = re.findall(r"^\| `([^`]+)` \|", rows.group(1), re.M) if rows else []
+        if told != names(root, path, table):
+            yield f"docs/operator.md: the table of each {title} has {told}, {path} {names(root, path, table)}"
+
+
 def check(root):
     fields, columns = published((root / "firmware/published.h").read_text(encoding="utf-8"))
     text = (root / "docs/operator.md").read_text(encoding="utf-8")
     told = {name: row for name, row in documented(text, "column").items() if name not in MORE}
-    return [*compare("field", fields, documented(text, "field")), *compare("column", columns, told)]
+    return [*compare("field", fields, documented(text, "field")), *compare("column", columns, told), *meanings(root, text)]
 
 
 if __name__ == "__main__":

@@ -371,16 +371,22 @@ class Commands(unittest.TestCase):
 class Published(unittest.TestCase):
     HEADER = ('#define PUBLISHED(NUMBER, STATE, FLAGS, TEXT) \\\n    NUMBER("alt", 3U, "meas_m", 3U, 4U, height_mm, FLIGHT_LOG_MILLI) \\\n'
               '    NUMBER(NULL, 0U, "roll_rad", 4U, 4U, roll_rad, FLIGHT_LOG_4) \\\n    TEXT("laser", laser) \\\n'
-              '    STATE("state", "state")\n/* clang-format on */\n')
+              '    STATE("state", "state") \\\n    DERIVED("pulse_us", 1U, 2U, flight.pulse_us, to_pulse, flight.thrust_n) \\\n'
+              '    NAME("limit", flight.bound, bound_name, 8U)\n/* clang-format on */\n')
+    RULES = 'static const char *const reason_names[] = {\n    [NONE] = "-", [STEPS] = "SIGHT/steps", [REST] = "IMU/rest",\n};\n'
+    BOUNDS = 'static const char *const names[] = {\n    [NONE] = "-",\n    [CLIMB] = "CLIMB",\n};\n'
     PAGE = ("| field | unit | decimals | meaning |\n|---|---|---|---|\n| `alt` | m | 3 | height |\n| `laser` | - | - | status |\n"
             "| `state` | - | - | state |\n\n| column | unit | decimals | meaning |\n|---|---|---|---|\n| `t_s` | s | 3 | time |\n"
-            "| `meas_m` | m | 3 | height |\n| `roll_rad` | rad | 4 | roll |\n| `state` | - | - | state |\n")
+            "| `meas_m` | m | 3 | height |\n| `roll_rad` | rad | 4 | roll |\n| `state` | - | - | state |\n"
+            "| `pulse_us` | us | 1 | pulse |\n| `limit` | - | - | limit |\n\n"
+            "| rule | what |\n|---|---|\n| `SIGHT/steps` | steps |\n| `IMU/rest` | rest |\n\n| limit | holds |\n|---|---|\n| `CLIMB` | climb |\n")
 
     def complaints(self, header=HEADER, page=PAGE):
         with tempfile.TemporaryDirectory() as name:
             root = Path(name)
-            for path, text in (("firmware/published.h", header), ("docs/operator.md", page)):
-                (root / path).parent.mkdir()
+            for path, text in (("firmware/published.h", header), ("docs/operator.md", page), ("control/sense/rules.c", self.RULES),
+                               ("control/bounds.c", self.BOUNDS)):
+                (root / path).parent.mkdir(parents=True, exist_ok=True)
                 (root / path).write_text(text, encoding="utf-8")
             return published.check(root)
 
@@ -406,6 +412,11 @@ class Published(unittest.TestCase):
     def test_another_order_is_named(self):
         self.assert_one(self.complaints(page=self.PAGE.replace("| `laser` | - | - | status |\n| `state` | - | - | state |\n",
                                                                "| `state` | - | - | state |\n| `laser` | - | - | status |\n", 1)), "order")
+
+    def test_a_rule_or_a_limit_without_a_row_and_a_row_without_one_are_named(self):
+        self.assert_one(self.complaints(page=self.PAGE.replace("| `IMU/rest` | rest |\n", "")), "rule", "IMU/rest")
+        self.assert_one(self.complaints(page=self.PAGE.replace("`CLIMB`", "`CLIMBS`")), "limit", "CLIMBS")
+        self.assert_one(self.complaints(page=self.PAGE.replace("| limit | holds |", "| bound | holds |")), "limit")
 
     def test_a_row_that_is_none_ends_the_rule(self):
         with self.assertRaises(ValueError):
