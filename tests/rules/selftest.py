@@ -17,6 +17,7 @@ import published
 import sources
 import state
 import version
+import walk
 import words
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -61,6 +62,33 @@ class Sample(unittest.TestCase):
         self.assertTrue(found[0].startswith(start), found[0])
         for word in mentioned:
             self.assertIn(word, found[0])
+
+
+class Walk(Sample):
+    """Calls as (file, function); None ends one."""
+    STEP, A, B, C = ("flight.c", "step"), ("a.c", "a"), ("b.c", "b"), ("c.c", "c")
+
+    def returns(self, *cycle):
+        return walk.returns(cycle, {self.STEP, self.A, self.B, self.C, ("a.c", "later")})
+
+    def test_a_file_that_was_left_counts_when_the_walk_comes_back(self):
+        self.assertEqual(self.returns(self.STEP, self.A, None, self.B, None, ("a.c", "later"), None, None), 1)
+
+    def test_a_file_is_not_left_while_a_function_of_it_is_open(self):
+        self.assertEqual(self.returns(self.STEP, self.A, self.B, None, ("a.c", "later"), None, None, None), 0)
+
+    def test_one_visit_after_another_is_none(self):
+        self.assertEqual(self.returns(self.STEP, self.A, self.B, None, None, self.C, None, None), 0)
+
+    def test_a_loop_is_read_once(self):
+        self.assertEqual(self.returns(self.STEP, self.A, None, self.B, None, self.A, None, self.B, None, None), 0)
+
+    def test_a_question_is_no_place(self):
+        self.assertEqual(self.returns(self.STEP, self.A, None, self.B, None, ("a.c", "is_so"), None, None), 0)
+
+    def test_what_gets_a_pointer_that_is_not_const_changes_something(self):
+        self.write("control/a.c", "static float most_n(const a_t *a, float b)\n{\n}\n\nvoid a_step(a_t *a, const b_t *b)\n{\n}\n")
+        self.assertEqual(walk.changing(house.House(self.root)), {("control/a.c", "a_step")})
 
 
 class GoodHouse(Sample):

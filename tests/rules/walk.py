@@ -1,0 +1,117 @@
+"""Whoever follows one cycle of flight_step() call by call seldom turns back to a file that he had left.
+
+The control room is built with the compiler's hooks at each entry and exit of a function, and flies (walk.c). Of each cycle this takes the
+calls of functions that may change something: one of their arguments is a pointer that is not const. A question, a calculation and what
+stands in a header are no place to walk to: they are answered where they are asked. A call into a file counts as a return when the walk
+has been in that file before, and no function of it is still open. The same call in a loop counts once.
+
+The cycle of a flight with most returns must have fewer than LIMIT, whichever law flies. `walk.py --show LAW` prints that cycle.
+"""
+import argparse
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import house
+import sources
+
+LIMIT = 30
+THING = "control/flight.c:returns"
+EXCUSES = "tests/rules/excuses.txt"
+FLAGS = ("-std=gnu99", "-O0", "-g", "-fno-pie", "-finstrument-functions", "-I.", "-Itests/control")
+HEAD = re.compile(r"^[\w ]+?[ *](\w+)\(([^;{}()]*(?:\([^()]*\)[^;{}()]*)*)\)\s*\{", re.MULTILINE)
+LAW = re.compile(r"^\s*LAW\((\w+),", re.MULTILINE)
+
+
+def changing(the_house):
+    """(file, function) of each function of control/ that may change what its arguments point to."""
+    found = set()
+    for path in the_house.sources("control", ".c"):
+        for name, arguments in HEAD.findall(house.code_only(the_house.text(path))):
+            if any("*" in argument and not argument.strip().startswith("const ") for argument in arguments.split(",")):
+                found.add((path, name))
+    return found
+
+
+def steps(cycle, counts):
+    """(depth, function, whether the walk turned back to its file) of each call of a cycle. A cycle has a function for each entry, None
+    for each exit; counts: the functions that count."""
+    open_calls, seen, known = [], set(), set()
+    for function in cycle:
+        if function is None:
+            open_calls.pop()
+            continue
+        open_calls.append(function)
+        if function not in counts:
+            continue
+        above = [call for call in open_calls[:-1] if call in counts]
+        call = (above[-1] if above else None, function)
+        back = function[0] in seen and function[0] not in {file for file, _ in above} and call not in known
+        seen.add(function[0])
+        known.add(call)
+        yield len(above), function, back
+
+
+def returns(cycle, counts):
+    return sum(back for _, _, back in steps(cycle, counts))
+
+
+def flown(the_house, compiler, addr2line, work):
+    """{law: its cycles}"""
+    program = f"{work}/walk"
+    files = [*sources.listed(the_house)["control"], "tests/rules/walk.c"]
+    objects = []
+    for file in files:
+        objects.append(f"{work}/{file.replace('/', '_')}.o")
+        subprocess.run([compiler, *FLAGS, "-c", file, "-o", objects[-1]], cwd=the_house.root, check=True)
+    subprocess.run([compiler, "-no-pie", *objects, "-o", program, "-lm"], check=True)
+    laws = LAW.findall(the_house.text("control/laws/table.h"))
+    told = {law: subprocess.run([program, str(number)], check=True, capture_output=True, text=True).stdout.split("\n")[:-1]
+            for number, law in enumerate(laws)}
+    addresses = sorted({word[1:] for lines in told.values() for line in lines for word in line.split() if word[0] == ">"})
+    names = subprocess.run([addr2line, "-f", "-e", program], input="\n".join(f"0x{address}" for address in addresses), check=True,
+                           capture_output=True, text=True).stdout.split("\n")
+    functions = {}
+    for number, address in enumerate(addresses):
+        file = names[2 * number + 1].rsplit(":", 1)[0]
+        functions[">" + address] = (file[file.find("control/"):], names[2 * number])
+    return {law: [[functions.get(word) for word in line.split()[1:]] for line in lines] for law, lines in told.items()}
+
+
+def check(the_house, worst):
+    excused = int(house.excuses(the_house, "walk").get(THING, f"{LIMIT - 1}").split()[0])
+    if worst > excused:
+        return [f"{THING}: {worst}, at most {excused}"]
+    if worst < excused and excused >= LIMIT:
+        return [f"{EXCUSES}: {THING} is {worst} now" + ("" if worst >= LIMIT else " and needs no excuse")]
+    return []
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("root", nargs="?", default=Path(__file__).resolve().parents[2])
+    parser.add_argument("--compiler", default="cc")
+    parser.add_argument("--addr2line", default="addr2line")
+    parser.add_argument("--show", metavar="LAW", help="print the cycle of that law with most returns")
+    options = parser.parse_args()
+    the_house = house.House(options.root)
+    with tempfile.TemporaryDirectory() as work:
+        cycles = flown(the_house, options.compiler, options.addr2line, work)
+    counts = changing(the_house)
+    worst = {law: max(cycles[law], key=lambda cycle: returns(cycle, counts)) for law in cycles}
+    if options.show:
+        for depth, (file, function), back in steps(worst[options.show], counts):
+            print(f"{'<-' if back else '  '} {'  ' * depth}{function}  {file}")
+    for law, cycle in worst.items():
+        taken = list(steps(cycle, counts))
+        print(f"{law}: {len(taken)} calls, {sum(back for _, _, back in taken)} returns")
+    house.report(check(the_house, max(returns(cycle, counts) for cycle in worst.values())), "walk")
+
+
+if __name__ == "__main__":
+    if sys.platform != "linux":
+        print("the walk is built with GCC's hooks and read with addr2line: on Linux")
+        sys.exit(77)
+    main()
