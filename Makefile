@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly mine lab plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open site publish test test-long soak format mutants test-ground port size faults fuzz prove bench coverage package others release firmware flash check-ti clean
+.PHONY: help build fly mine lab plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open site publish test test-long soak format mutants test-ground port size faults fuzz prove rta bench coverage package others release firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -193,6 +193,9 @@ fuzz: ## The scanner's parser under libFuzzer for SECONDS=60; what breaks it sta
 prove: ## No octet breaks the drivers: proofs by CBMC, minutes; docs/portability.md says what is proved (ARGS="razor")
 	@$(setup) prove
 	@python3 -B tests/prove/prove.py $(ARGS)
+
+rta: ## Response-time analysis: does every task meet its deadline? (ARGS="plomada --bursts"; docs/realtime.md)
+	@python3 -B tools/rta/rta.py $(or $(ARGS),plomada-est)
 
 bench: ## Instructions of each step of the firmware (callgrind) against tools/bench/baseline.csv
 	@$(setup) build bench

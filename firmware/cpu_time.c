@@ -7,7 +7,7 @@
 
 #define NOBODY CPU_TIME_JOBS /* the idle task, and main() before the kernel runs */
 
-/* Those of Annex IV's table, so that `plomada rta --measured` finds its rows. */
+/* Those of Annex IV's table, so that `rta.py --measured` finds its rows. */
 static const char *const names[] = {
     [CPU_TIME_CLOCK] = "Clock",
     [CPU_TIME_LASER_RECEIVE] = "SCIA_RX",

@@ -63,7 +63,7 @@ bool verb_perf_line(answer_t *answer, uint16_t number)
     return number <= last;
 }
 
-/* Each job, then each gate, numbered from 1: `plomada rta --measured` reads them. */
+/* Each job, then each gate, numbered from 1: `rta.py --measured` reads them. */
 static bool write_cost(answer_t *answer, uint16_t number)
 {
     answer_begin(answer);

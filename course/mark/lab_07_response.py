@@ -1,16 +1,17 @@
-"""Laboratory 7: response times. `plomada rta` is the reference, without context switches."""
-import json
-import subprocess
-import tempfile
+"""Laboratory 7: response times. `tools/rta` is the reference, without context switches."""
+import sys
 from pathlib import Path
 
 from criterion import Criterion, Refused, all_or_nothing, shared
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools/rta"))
+import analysis  # noqa: E402
+
 TITLE = "response times"
 US = 1000                   # a millisecond
+PS_PER_US = 10 ** 6
 BY_HAND = ("A", "B", "C")
 FIVE = ("red", "blue", "green", "white", "black")
-HEADER = "name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings"
 CASES = 8
 
 
@@ -18,22 +19,12 @@ def task(name, cost_us, period_us, deadline_us, blocking_us=0):
     return {"name": name, "cost_us": cost_us, "period_us": period_us, "deadline_us": deadline_us, "blocking_us": blocking_us}
 
 
-def rta(plomada, tasks):
+def rta(tasks):
     """{name: response in us, None: late}, of tasks in the order of their priorities."""
-    rows = [f"{one['name']},task,{len(tasks) - at},{ms(one['period_us'])},{ms(one['deadline_us'])},{ms(one['cost_us'])},{ms(one['blocking_us'])},"
-            f"{1 if one['blocking_us'] else 0}" for at, one in enumerate(tasks)]
-    with tempfile.TemporaryDirectory() as folder:
-        table, found = Path(folder) / "table.csv", Path(folder) / "found.json"
-        table.write_text("\n".join([HEADER, *rows, ""]), encoding="ascii")
-        subprocess.run([plomada, "rta", table, "--switch-ms", "0", "--json", found], capture_output=True, check=False)
-        answers = json.loads(found.read_text(encoding="ascii"))["tasks"]
-    responses = {one["name"]: None if one["response_ms"] is None else round(one["response_ms"] * US) for one in answers}
-    return {one["name"]: responses[one["name"]] if responses[one["name"]] is not None and responses[one["name"]] <= one["deadline_us"] else None
-            for one in tasks}
-
-
-def ms(us):
-    return f"{us // US}.{us % US:03}"
+    table = [analysis.Row(one["name"], analysis.TASK, len(tasks) - at, *(one[of] * PS_PER_US for of in ("period_us", "deadline_us", "cost_us", "blocking_us")),
+                          blockings=1 if one["blocking_us"] else 0) for at, one in enumerate(tasks)]
+    responses = {row.name: (analysis.response(table, analysis.Options(), row), row.deadline) for row in table}
+    return {name: response // PS_PER_US if response <= deadline else None for name, (response, deadline) in responses.items()}
 
 
 def holds(tasks):
@@ -91,7 +82,7 @@ def by_hand(name):
         said = given.get(name) if isinstance(given, dict) else None
         if said is None:
             return 0, "not filled in"
-        good = said * US == rta(answer.plomada, drawn["three"])[name] if isinstance(said, (int, float)) else False
+        good = said * US == rta(drawn["three"])[name] if isinstance(said, (int, float)) else False
         return all_or_nothing(1, good, f"{said!r} ms is " + ("right" if good else "wrong"))
     return check
 
@@ -111,11 +102,11 @@ def responses(points, kind):
         given = answer.calls("response_us", [[one, higher] for one, higher in asked])
         if kind == "late" and all(one is None for one in given):
             raise Refused("never a number")
-        wanted = [right for table in drawn[kind] for right in rta(answer.plomada, table).values()]
+        wanted = [right for table in drawn[kind] for right in rta(table).values()]
         good = sum(one == other for one, other in zip(given, wanted))
         wrong = next((f"; a cost of {one['cost_us']} us below {len(higher)} tasks: {said!r}, not {right!r}"
                       for (one, higher), said, right in zip(asked, given, wanted) if said != right), "")
-        return shared(points, good, len(wanted), f"{good} of {len(wanted)} as plomada rta{wrong}")
+        return shared(points, good, len(wanted), f"{good} of {len(wanted)} as tools/rta{wrong}")
     return check
 
 
@@ -123,7 +114,7 @@ def ordered(answer, drawn):
     given = answer.value("order")
     if not isinstance(given, list) or sorted(map(str, given)) != sorted(FIVE):
         return 0, "not the five names, each once"
-    found = rta(answer.plomada, [next(one for one in drawn["five"] if one["name"] == name) for name in given])
+    found = rta([next(one for one in drawn["five"] if one["name"] == name) for name in given])
     late = [name for name, response in found.items() if response is None]
     return all_or_nothing(2, not late, f"late: {', '.join(late)}" if late else "all deadlines hold")
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const timing_limits_t unlimited = {NULL, SIM_NEVER, SIM_NEVER, SIM_NEVER, -1};
+static const timing_limits_t unlimited = {"", SIM_NEVER, SIM_NEVER, SIM_NEVER, -1};
 
 void timing_init(timing_t *timing, const timing_limits_t *limits, int limit_count)
 {
@@ -12,14 +12,43 @@ void timing_init(timing_t *timing, const timing_limits_t *limits, int limit_coun
     timing->limit_count = limit_count;
 }
 
-static const timing_limits_t *limits_of(const timing_t *timing, const char *name)
+const timing_limits_t *timing_limits_of(const timing_limits_t *limits, int limit_count, const char *name)
 {
-    for (int i = 0; i < timing->limit_count; i++) {
-        if (strcmp(timing->limits[i].name, name) == 0) {
-            return &timing->limits[i];
+    for (int i = 0; i < limit_count; i++) {
+        if (strcmp(limits[i].name, name) == 0) {
+            return &limits[i];
         }
     }
     return &unlimited;
+}
+
+static sim_time_t time_limit(long long ns)
+{
+    return ns < 0 ? SIM_NEVER : (sim_time_t)ns;
+}
+
+int timing_read_limits(FILE *in, timing_limits_t limits[TIMING_JOBS_MAX])
+{
+    char line[256];
+    int count = 0;
+
+    while (fgets(line, sizeof line, in) != NULL) {
+        long long response, deadline, inversion;
+        timing_limits_t limit;
+        int end = 0;
+
+        if (count == TIMING_JOBS_MAX ||
+            sscanf(line, "%31[^,\n],%lld,%lld,%lld,%d\n%n", limit.name, &response, &deadline, &inversion,
+                   &limit.blockings, &end) != 5 ||
+            line[end] != '\0') {
+            return -1;
+        }
+        limit.response = time_limit(response);
+        limit.deadline = time_limit(deadline);
+        limit.inversion = time_limit(inversion);
+        limits[count++] = limit;
+    }
+    return count > 0 ? count : -1;
 }
 
 static timing_job_t *job_of(timing_t *timing, const kernel_job_t *id)
@@ -38,7 +67,7 @@ static timing_job_t *job_of(timing_t *timing, const kernel_job_t *id)
     timing_job_t *job = &timing->job[timing->jobs++];
 
     job->id = *id;
-    job->limits = *limits_of(timing, id->name);
+    job->limits = *timing_limits_of(timing->limits, timing->limit_count, id->name);
     return job;
 }
 

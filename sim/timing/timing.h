@@ -13,9 +13,11 @@
 
 #define TIMING_JOBS_MAX 64
 
+#define TIMING_NAME_SIZE 32
+
 /* Of the task, Swi or Hwi of that name. */
 typedef struct {
-    const char *name;
+    char name[TIMING_NAME_SIZE];
     sim_time_t response;  /* bound of the analysis; SIM_NEVER: none */
     sim_time_t deadline;  /* from the release; SIM_NEVER: none */
     sim_time_t inversion; /* of one job; SIM_NEVER: not limited */
@@ -47,6 +49,14 @@ typedef struct {
     sim_time_t running_since;
     sim_time_t end;
 } timing_t;
+
+/* Reads lines name,response_ns,deadline_ns,inversion_ns,blockings, -1 for what is not limited, as
+ * tools/rta/limits.py writes them. Returns their number, -1 when there is none, when a line is another, or
+ * when there are more than TIMING_JOBS_MAX. */
+int timing_read_limits(FILE *in, timing_limits_t limits[TIMING_JOBS_MAX]);
+
+/* Of that name; where there is none, an entry without limits. */
+const timing_limits_t *timing_limits_of(const timing_limits_t *limits, int limit_count, const char *name);
 
 /* The run begins at virtual time 0. The limits are kept by reference. */
 void timing_init(timing_t *timing, const timing_limits_t *limits, int limit_count);

@@ -171,7 +171,7 @@ class Students(unittest.TestCase):
 
     @staticmethod
     def response(drawn, zero):
-        three = laboratory(7).rta(PLOMADA, drawn["three"])
+        three = laboratory(7).rta(drawn["three"])
         load = sum(100 * one["cost_us"] / one["period_us"] for one in drawn["three"])
         order = [one["name"] for one in sorted(drawn["five"], key=lambda one: one["deadline_us"])]
         return [('{"A": 1, "B": 4, "C": 10}', repr({name: us // 1000 for name, us in three.items()})), ("64.5", f"{load:.1f}"),

@@ -6,8 +6,6 @@
 #include "firmware/probe.h"
 #include "sim/board.h"
 #include "sim/costs.h"
-#include "tools/plomada/measured.h"
-#include "tools/rta/table.h"
 #include "unity.h"
 
 #define TASKS 6
@@ -280,52 +278,21 @@ void test_planted_costs_come_back_to_the_cycle(void)
     TEST_ASSERT_EQUAL_UINT64(costs.job_count + 6, field("OK PERF END", "lines:"));
 }
 
-/* Saved as the radio said it, telemetry between the lines, and read by the analysis. */
-static void read_by_analysis(measured_t *measured, rta_table_t *table)
+/* Saved as the radio said it, telemetry between the lines: tests/tools/rta analyses it. */
+void test_the_costs_of_a_flight_are_saved_whole(void)
 {
-    static const char path[] = "test_perf_saved.txt";
-    rta_error_t error;
-    FILE *file = fopen(path, "w");
-
-    TEST_ASSERT_NOT_NULL(file);
-    TEST_ASSERT_EQUAL_size_t(length, fwrite(text, 1, length, file));
-    (void)fclose(file);
-    TEST_ASSERT_TRUE(measured_read(measured, path));
-    TEST_ASSERT_TRUE(rta_table_read(table, rta_table_builtin("plomada-est"), &error));
-    (void)remove(path);
-}
-
-void test_the_analysis_of_the_simulated_board_is_that_of_its_table(void)
-{
-    const rta_options_t options = {.switches = 57e6, .access = 9.3e6};
-    measured_t measured;
-    rta_table_t table, board;
-    int task[RTA_ROWS_MAX];
-
     run_until_s(12.0);
     type("#SETR 0.6\n");
     run_until_s(30.0);
     length = 0;
     type("#PERF COSTS\n");
     run_until_s(33.0);
-    read_by_analysis(&measured, &table);
-    board = table;
-    measured_apply(&measured, &board);
-    for (int i = 0; i < table.rows; i++) {
-        if (table.row[i].kind != RTA_TASK && board.row[i].whole) {
-            TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(5e3, table.row[i].cost, board.row[i].cost, table.row[i].name);
-        }
-    }
-    const int tasks = rta_tasks(&table, task);
+    TEST_ASSERT_GREATER_THAN_UINT64(0, field("OK PERF END", "lines:"));
+    FILE *file = fopen(COSTS_PATH, "w");
 
-    for (int i = 0; i < tasks; i++) {
-        const double assumed = rta_response(&table, &options, task[i]) / RTA_PS_PER_MS;
-        const double found = rta_response(&board, &options, task[i]) / RTA_PS_PER_MS;
-
-        /* Less: few accesses of the table's 36. More: a wait at a gate is in the cost and in the blocking. */
-        printf("%-18s %.4f ms by the table, %.4f ms as measured\n", table.row[task[i]].name, assumed, found);
-        TEST_ASSERT_TRUE_MESSAGE(found > 0.9 * assumed && found < 1.15 * assumed, table.row[task[i]].name);
-    }
+    TEST_ASSERT_NOT_NULL(file);
+    TEST_ASSERT_EQUAL_size_t(length, fwrite(text, 1, length, file));
+    TEST_ASSERT_EQUAL_INT(0, fclose(file));
 }
 
 /* With an interrupt per octet they were 3690: 1000 ticks, 1010 octets of scans, 2000 of the IMU. */

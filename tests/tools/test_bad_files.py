@@ -35,14 +35,14 @@ class Files(unittest.TestCase):
     @unittest.skipUnless(os.path.exists(FULL), "no /dev/full")
     def test_what_does_not_fit_on_the_disk_is_status_2_whoever_writes_it(self):
         flight = ("fly", "./own.scenario")
-        for words in (("rta", "--json"), (*flight, "--csv"), (*flight, "--json"), (*flight, "--log"), (*flight, "--trace"),
+        for words in ((*flight, "--csv"), (*flight, "--json"), (*flight, "--log"), (*flight, "--trace"),
                       ("replay", "run", "--csv"), ("replay", "flown.csv", "--csv")):
             with self.subTest(words):
                 self.refused(self.plomada(*words, FULL), FULL)
 
     @unittest.skipUnless(os.path.exists(FULL), "no /dev/full")
     def test_what_cannot_be_printed_is_status_2(self):
-        for words in (("list",), ("list", "--plant"), ("params",), ("rta",), ("rta", "--print"), ("--help",), ("--version",), ("fly", "--help"),
+        for words in (("list",), ("list", "--plant"), ("params",), ("--help",), ("--version",), ("fly", "--help"),
                       ("fly", "./own.scenario"), ("fly", "./own.scenario", "--csv", "-"), ("replay", "run"), ("log", "console.log", "-o", "-")):
             with self.subTest(words), open(FULL, "w", encoding="utf-8") as full:
                 self.refused(self.plomada(*words, stdout=full), "stdout")

@@ -15,7 +15,6 @@ int command_list(int argc, char **argv);
 int command_log(int argc, char **argv);
 int command_params(int argc, char **argv);
 int command_replay(int argc, char **argv);
-int command_rta(int argc, char **argv);
 int command_scip(int argc, char **argv);
 
 #endif

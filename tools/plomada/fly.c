@@ -46,9 +46,10 @@ static const char usage[] =
     "  --vehicle FILE      the figures of the vehicle that `make fit` found; a --set behind it wins\n"
     "  --set NAME=VALUE    a telecommand parameter (see `plomada params`) or a plant figure; may be "
     "repeated\n"
-    "  --timing            observed response times, blocking, inversions and latency next to the bounds of "
-    "the analysis\n"
-    "                      (see `plomada rta plomada`); beyond a bound or a deadline the flight is not met\n"
+    "  --timing            observed response times, blocking, inversions and latency\n"
+    "  --limits FILE       the same next to the bounds that tools/rta/limits.py prints; beyond a bound or a "
+    "deadline the\n"
+    "                      flight is not met\n"
     "  --trace FILE        the schedule, for https://ui.perfetto.dev or chrome://tracing; about 2 MB per "
     "second\n"
     "  --cost-scale X      every execution cost and context switch X times, 0.01..100 (default 1)\n"
@@ -101,6 +102,7 @@ enum {
     OPT_SET,
     OPT_VEHICLE,
     OPT_TIMING,
+    OPT_LIMITS,
     OPT_TRACE,
     OPT_COST_SCALE,
     OPT_REALTIME,
@@ -125,6 +127,7 @@ static const struct option long_options[] = {
     {"set", required_argument, NULL, OPT_SET},
     {"vehicle", required_argument, NULL, OPT_VEHICLE},
     {"timing", no_argument, NULL, OPT_TIMING},
+    {"limits", required_argument, NULL, OPT_LIMITS},
     {"trace", required_argument, NULL, OPT_TRACE},
     {"cost-scale", required_argument, NULL, OPT_COST_SCALE},
     {"realtime", no_argument, NULL, OPT_REALTIME},
@@ -144,7 +147,7 @@ typedef struct {
     flight_options_t flight;
     const scenario_t *scenario;
     output_t csv, json, log, trace, record;
-    const char *storage_path, *record_dir, *place_path;
+    const char *storage_path, *record_dir, *place_path, *limits_path;
     double cost_scale;
     bool help, height, timing;
 } request_t;
@@ -243,6 +246,10 @@ static bool read_option(request_t *request, int option, const char *argument)
         return error == NULL || complain(error, argument);
     case OPT_TIMING:
         request->timing = true;
+        return true;
+    case OPT_LIMITS:
+        request->timing = true;
+        request->limits_path = argument;
         return true;
     case OPT_TRACE:
         request->trace.path = argument;
@@ -499,7 +506,10 @@ static int run(request_t *request)
     if (!load_place(request) || !load_storage(request->storage_path) || !open_outputs(request)) {
         return 2;
     }
-    request->flight.costs = measure_begin(request->cost_scale, request->trace.file);
+    request->flight.costs = measure_begin(request->cost_scale, request->trace.file, request->limits_path);
+    if (request->flight.costs == NULL) {
+        return 2;
+    }
     if (!flight_run(request->scenario, &request->flight, &result, &error)) {
         fprintf(stderr, "plomada fly: %s\n", error);
         return 2;

@@ -21,7 +21,6 @@ static const subcommand_t subcommands[] = {
     {"log", command_log, "#LOG dumps in what a terminal or XCTU saved, as CSV"},
     {"params", command_params, "the parameters an operator may set"},
     {"replay", command_replay, "run the firmware again on what a flight recorded at its pins"},
-    {"rta", command_rta, "response-time analysis: does every task meet its deadline?"},
     {"scip", command_scip, "scanner recordings and real scanners: decode, mirrors, record"},
 };
 #define SUBCOMMAND_COUNT (sizeof subcommands / sizeof subcommands[0])

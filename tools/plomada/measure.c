@@ -1,15 +1,10 @@
 #include "measure.h"
 
-#include <math.h>
-#include <stdlib.h>
+#include <errno.h>
 #include <string.h>
 
 #include "sim/costs.h"
 #include "sim/timing/instruments.h"
-#include "tools/rta/analysis.h"
-#include "tools/rta/table.h"
-
-#define PS_PER_NS 1e3
 
 static const char *const release_names[] = {"FREE", "SCAN", "FRAME"};
 _Static_assert(sizeof release_names / sizeof release_names[0] == LATENCY_RELEASES,
@@ -17,100 +12,34 @@ _Static_assert(sizeof release_names / sizeof release_names[0] == LATENCY_RELEASE
 
 static struct {
     costs_stretched_t costs;
-    rta_table_t scan;  /* TaskControl released by the clock or by scans: for the latency then */
-    rta_table_t table; /* released by every height and frame: the most that it may be, so for all else */
-    rta_options_t options;
-    timing_limits_t limits[RTA_ROWS_MAX];
+    timing_limits_t limits[TIMING_JOBS_MAX]; /* of tasks, and of releases by their names */
     int limit_count;
-    sim_time_t latency[LATENCY_RELEASES];
 } measure;
 
-static sim_time_t ns(rta_ps_t time)
+static bool read_limits(const char *path)
 {
-    return isfinite(time) ? (sim_time_t)ceil(time / PS_PER_NS) : SIM_NEVER;
-}
+    FILE *in = path == NULL ? NULL : fopen(path, "r");
 
-/* As costs_stretch() does, in whole nanoseconds; a blocking may be half a nanosecond longer by that. */
-static void load_table(rta_table_t *table, const char *name, double scale)
-{
-    rta_error_t error;
-
-    if (!rta_table_read(table, rta_table_builtin(name), &error)) {
-        abort();
+    measure.limit_count = 0;
+    if (in != NULL) {
+        measure.limit_count = timing_read_limits(in, measure.limits);
+        fclose(in);
     }
-    for (int i = 0; i < table->rows; i++) {
-        rta_row_t *row = &table->row[i];
-
-        row->cost = PS_PER_NS * round(row->cost / PS_PER_NS * scale);
-        row->blocking = PS_PER_NS * ceil(row->blocking / PS_PER_NS * scale + 0.5 * row->blockings);
+    if (path != NULL && (in == NULL || measure.limit_count < 0)) {
+        fprintf(stderr, "plomada fly: %s: %s\n", path,
+                in == NULL ? strerror(errno) : "not the limits that tools/rta/limits.py prints");
+        return false;
     }
+    return true;
 }
 
-static void load_tables(double scale)
+const kernel_costs_t *measure_begin(double cost_scale, FILE *trace, const char *limits_path)
 {
-    measure.options.switches = PS_PER_NS * (double)measure.costs.costs.switches;
-    measure.options.access = PS_PER_NS * (double)measure.costs.costs.gate_access;
-    load_table(&measure.scan, "plomada", scale);
-    load_table(&measure.table, "plomada-est", scale);
-}
-
-static void find_limits(void)
-{
-    int task[RTA_ROWS_MAX];
-
-    measure.limit_count = rta_tasks(&measure.table, task);
-    for (int i = 0; i < measure.limit_count; i++) {
-        const rta_row_t *row = &measure.table.row[task[i]];
-
-        measure.limits[i] = (timing_limits_t){
-            .name = row->name,
-            .response = ns(rta_response(&measure.table, &measure.options, task[i])),
-            .deadline = ns(row->deadline),
-            .inversion = ns(row->blocking),
-            .blockings = row->blockings,
-        };
+    if (!read_limits(limits_path)) {
+        return NULL;
     }
-}
-
-static int row(const rta_table_t *table, const char *name)
-{
-    int index = rta_table_find(table, name, (int)strlen(name));
-
-    if (index < 0) {
-        abort();
-    }
-    return index;
-}
-
-static rta_ps_t chain(const rta_table_t *table, const char *last)
-{
-    const int member[] = {row(table, "Laser_SWI"), row(table, "TaskReceiveLaser"), row(table, last)};
-
-    return rta_chain(table, &measure.options, member, 3);
-}
-
-/* Free-running, an altitude may have to wait for a whole period, then for the job. */
-static void find_latencies(void)
-{
-    const int control = row(&measure.scan, "TaskControl");
-    const int received[] = {row(&measure.scan, "Laser_SWI"), row(&measure.scan, "TaskReceiveLaser")};
-
-    measure.latency[RELEASE_FREE] = ns(rta_chain(&measure.scan, &measure.options, received, 2) +
-                                       measure.scan.row[control].period +
-                                       rta_response(&measure.scan, &measure.options, control));
-    measure.latency[RELEASE_SCAN] = ns(chain(&measure.scan, "TaskControl"));
-    measure.latency[LATENCY_FRAME] = ns(chain(&measure.table, "TaskControl_height"));
-}
-
-const kernel_costs_t *measure_begin(double cost_scale, FILE *trace)
-{
-    const kernel_costs_t *costs = costs_stretch(&measure.costs, &costs_annex_iv, cost_scale);
-
-    load_tables(cost_scale);
-    find_limits();
-    find_latencies();
     instruments_connect(measure.limits, measure.limit_count, trace);
-    return costs;
+    return costs_stretch(&measure.costs, &costs_annex_iv, cost_scale);
 }
 
 void measure_end(void)
@@ -121,6 +50,8 @@ void measure_end(void)
 static bool report_latency(FILE *out, int release)
 {
     const latency_figures_t *figures = &instruments_latency()->by_release[release];
+    const sim_time_t bound =
+        timing_limits_of(measure.limits, measure.limit_count, release_names[release])->response;
 
     if (figures->answers == 0) {
         return true;
@@ -128,14 +59,16 @@ static bool report_latency(FILE *out, int release)
     fprintf(out, "scan's last octet to compare value, release %s: %ld, %.4f to %.4f ms, mean %.4f, bound ",
             release_names[release], figures->answers, (double)figures->shortest / 1e6,
             (double)figures->longest / 1e6, (double)figures->total / (double)figures->answers / 1e6);
-    if (measure.latency[release] == SIM_NEVER) {
+    if (measure.limit_count == 0) {
+        fprintf(out, "not given\n");
+    } else if (bound == SIM_NEVER) {
         fprintf(out, "none: the costs are beyond what can be scheduled\n");
     } else {
-        fprintf(out, "%.4f\n", (double)measure.latency[release] / 1e6);
+        fprintf(out, "%.4f\n", (double)bound / 1e6);
     }
-    if (figures->longest > measure.latency[release]) {
+    if (figures->longest > bound) {
         fprintf(out, "BROKEN: latency of %.4f ms, at most %.4f\n", (double)figures->longest / 1e6,
-                (double)measure.latency[release] / 1e6);
+                (double)bound / 1e6);
         return false;
     }
     return true;

@@ -1,4 +1,4 @@
-/* Measures a flight and holds it against the response-time analysis of this firmware. */
+/* Measures a flight, and holds it against the bounds of the response-time analysis where they are given. */
 #ifndef TOOLS_PLOMADA_MEASURE_H
 #define TOOLS_PLOMADA_MEASURE_H
 
@@ -8,14 +8,15 @@
 #include "sim/ti/sysbios/kernel.h"
 
 /* Before the flight, which is to run with the costs returned: Annex IV's, cost_scale times. trace: NULL, or
- * where the schedule goes. */
-const kernel_costs_t *measure_begin(double cost_scale, FILE *trace);
+ * where the schedule goes. limits_path: NULL, or a file that tools/rta/limits.py wrote for these costs. NULL
+ * when that cannot be read; the reason is on stderr. */
+const kernel_costs_t *measure_begin(double cost_scale, FILE *trace, const char *limits_path);
 
 /* After the flight. The trace is complete. */
 void measure_end(void);
 
-/* After measure_end(): prints what was observed next to its bounds. False: a response, an inversion, a number
- * of blockings or a latency is beyond its bound, or a deadline was missed. */
+/* After measure_end(): prints what was observed, next to its bounds. False: a response, an inversion, a
+ * number of blockings or a latency is beyond its bound, or a deadline was missed. */
 bool measure_report(FILE *out);
 
 #endif

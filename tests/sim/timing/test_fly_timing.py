@@ -2,6 +2,7 @@
 
 Alone: test_fly_timing.py PLOMADA SCRATCH --all flies every scenario with 200 seeds and prints the worst of each task.
 """
+import functools
 import json
 import re
 import subprocess
@@ -10,6 +11,8 @@ import unittest
 from pathlib import Path
 
 import check_trace
+
+ROOT = Path(__file__).resolve().parents[3]
 
 PROGRAM = sys.argv.pop(1)
 SCRATCH = Path(sys.argv.pop(1))
@@ -23,8 +26,19 @@ def plomada(*arguments):
     return subprocess.run([PROGRAM, *arguments], check=False, capture_output=True, text=True)
 
 
-def fly(scenario, *arguments):
-    return plomada("fly", scenario, "--timing", *arguments)
+def rta(script, *arguments):
+    return subprocess.run([sys.executable, "-B", str(ROOT / "tools/rta" / script), *arguments], check=False, capture_output=True, text=True).stdout
+
+
+@functools.cache
+def limits(scale):
+    path = SCRATCH / f"limits-{scale}.csv"
+    path.write_text(rta("limits.py", "--cost-scale", scale), encoding="ascii")
+    return str(path)
+
+
+def fly(scenario, *arguments, scale="1"):
+    return plomada("fly", scenario, "--limits", limits(scale), "--cost-scale", scale, *arguments)
 
 
 def scenarios():
@@ -33,7 +47,7 @@ def scenarios():
 
 def rta_json(table):
     path = SCRATCH / "rta.json"
-    plomada("rta", table, "--json", str(path))
+    rta("rta.py", table, "--json", str(path))
     return path.read_text(encoding="utf-8")
 
 
@@ -65,21 +79,21 @@ class FlyTiming(unittest.TestCase):
         scale = 0.99 * growth()
         for seed in range(1, 13):
             for release in RELEASES:
-                output = fly("pid-60cm-ramp", "--seed", str(seed), "--set", f"RELEASE={release}", "--cost-scale", str(scale)).stdout
+                output = fly("pid-60cm-ramp", "--seed", str(seed), "--set", f"RELEASE={release}", scale=str(scale)).stdout
                 self.assertEqual(broken(output), [], seed)
 
     def test_stretched_costs_stretch_what_is_observed(self):
-        one, two = (TASK.findall(fly("pid-60cm-ramp", "--cost-scale", scale).stdout) for scale in ("1", "2"))
+        one, two = (TASK.findall(fly("pid-60cm-ramp", scale=scale).stdout) for scale in ("1", "2"))
         for (name, _, before, *_), (_, _, after, *_) in zip(one, two):
             self.assertGreater(float(after), 1.7 * float(before), name)
 
     def test_without_a_bound_a_word_is_printed_and_no_number(self):
-        output = fly("pid-60cm-ramp", "--cost-scale", "8").stdout
+        output = fly("pid-60cm-ramp", scale="8").stdout
         self.assertRegex(output, r"release FREE: .* bound none: the costs are beyond what can be scheduled")
         self.assertNotIn("9223372036854", output)
 
     def test_a_flight_that_misses_deadlines_fails_and_says_which(self):
-        result = fly("pid-60cm-ramp", "--cost-scale", "32")
+        result = fly("pid-60cm-ramp", scale="32")
         self.assertEqual(result.returncode, 1)
         self.assertTrue(any("missed deadlines" in line for line in broken(result.stdout)))
 
@@ -126,7 +140,7 @@ class FlyTiming(unittest.TestCase):
 
     def test_nonsense_is_refused(self):
         for arguments in (("--cost-scale", "0"), ("--cost-scale", "x"), ("--cost-scale", "101"), ("--cost-scale", "-1"),
-                          ("--cost-scale", "nan"), ("--trace", "/nowhere/trace.json")):
+                          ("--cost-scale", "nan"), ("--limits", "/nowhere"), ("--limits", str(ROOT / "README.md")), ("--trace", "/nowhere/trace.json")):
             self.assertEqual(plomada("fly", "pid-60cm-ramp", *arguments).returncode, 2, arguments)
 
 

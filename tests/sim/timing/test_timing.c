@@ -298,3 +298,47 @@ void test_jobs_of_one_name_are_told_apart_by_kind_and_number(void)
     at_us(2, KERNEL_RELEASED, &first);
     TEST_ASSERT_EQUAL_INT(3, timing.jobs);
 }
+
+static int read_limits(const char *text, timing_limits_t read[TIMING_JOBS_MAX])
+{
+    FILE *in = tmpfile();
+
+    TEST_ASSERT_NOT_NULL(in);
+    TEST_ASSERT_TRUE(fputs(text, in) >= 0);
+    rewind(in);
+    const int count = timing_read_limits(in, read);
+
+    (void)fclose(in);
+    return count;
+}
+
+void test_limits_are_read_and_a_name_without_any_has_none(void)
+{
+    timing_limits_t read[TIMING_JOBS_MAX];
+
+    TEST_ASSERT_EQUAL_INT(2, read_limits("TaskIMU,1100401,25000000,9301,1\nFREE,113552302,-1,-1,-1\n", read));
+    const timing_limits_t *imu = timing_limits_of(read, 2, "TaskIMU");
+
+    TEST_ASSERT_EQUAL_INT64(1100401, imu->response);
+    TEST_ASSERT_EQUAL_INT64(25000000, imu->deadline);
+    TEST_ASSERT_EQUAL_INT64(9301, imu->inversion);
+    TEST_ASSERT_EQUAL_INT(1, imu->blockings);
+    TEST_ASSERT_EQUAL_INT64(SIM_NEVER, timing_limits_of(read, 2, "FREE")->deadline);
+    TEST_ASSERT_EQUAL_INT64(SIM_NEVER, timing_limits_of(read, 2, "SCAN")->response);
+}
+
+void test_what_are_no_limits_is_refused(void)
+{
+    static const char *const wrong[] = {"",
+                                        "TaskIMU,1,2,3\n",
+                                        "TaskIMU,1,2,3,4,5\n",
+                                        "TaskIMU,1,2,3,4 x\n",
+                                        "TaskIMU,soon,2,3,4\n",
+                                        "A,1,2,3,4\nname,kind,priority\n",
+                                        "a name of more than 31 characters,1,2,3,4\n"};
+    timing_limits_t read[TIMING_JOBS_MAX];
+
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        TEST_ASSERT_EQUAL_INT_MESSAGE(-1, read_limits(wrong[i], read), wrong[i]);
+    }
+}

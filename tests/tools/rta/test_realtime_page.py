@@ -28,7 +28,7 @@ def rewritten(page):
 
 
 def complaints(page):
-    told = shell("build/plomada rta --help") + shell("build/plomada rta plomada-est --print").replace(",", " ")
+    told = shell("python3 tools/rta/rta.py --help") + shell("python3 tools/rta/rta.py plomada-est --print").replace(",", " ")
     found, printed = [], {Decimal(number) for number in NUMBER.findall(told)}
     for command, shown in BLOCK.findall(page):
         output = shell(command)

@@ -1,5 +1,6 @@
-"""`plomada rta` as its users call it. Argument: the plomada program."""
+"""tools/rta/rta.py as its users call it."""
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -7,7 +8,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
-PROGRAM = sys.argv.pop(1)
+PROGRAM = (sys.executable, "-B", str(Path(__file__).resolve().parents[3] / "tools/rta/rta.py"))
+FULL = "/dev/full"
 HEADER = "name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings\n"
 # Burns and Wellings, Real-Time Systems and Programming Languages: responses 3, 6, 20.
 BOOK = HEADER + "a,task,3,7,7,3,0,0\nb,task,2,12,12,3,0,0\nc,task,1,20,20,5,0,0\n"
@@ -19,7 +21,7 @@ class Command(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.dir)
 
     def rta(self, *arguments):
-        done = subprocess.run([PROGRAM, "rta", *arguments], cwd=self.dir, check=False, capture_output=True, text=True)
+        done = subprocess.run([*PROGRAM, *arguments], cwd=self.dir, check=False, capture_output=True, text=True)
         return done.returncode, done.stdout, done.stderr
 
     def write(self, text, name="table.csv"):
@@ -151,10 +153,19 @@ class Command(unittest.TestCase):
             self.assertEqual((status, out), (2, ""), wrong)
             self.assertNotEqual(error, "", wrong)
 
+    @unittest.skipUnless(os.path.exists(FULL), "no /dev/full")
+    def test_what_does_not_fit_on_the_disk_is_status_2(self):
+        self.assertEqual(self.rta("--json", FULL)[0], 2)
+        for words in ((), ("--print",)):
+            with open(FULL, "w", encoding="utf-8") as full:
+                done = subprocess.run([*PROGRAM, *words], stdout=full, stderr=subprocess.PIPE, check=False, text=True)
+            self.assertEqual(done.returncode, 2, words)
+            self.assertIn("No space left", done.stderr)
+
     def test_help(self):
         status, out, _ = self.rta("--help")
         self.assertEqual(status, 0)
-        for option in ("--switch-ms", "--access-ms", "--jitter", "--bursts", "--chain", "--set", "--json", "--print"):
+        for option in ("--switch-ms", "--access-ms", "--jitter", "--bursts", "--chain", "--set", "--measured", "--json", "--print"):
             self.assertIn(option, out)
 
 
