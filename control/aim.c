@@ -23,7 +23,7 @@ float aim_wanted_m(const aim_t *aim, const supervisor_t *supervisor, flight_mode
     return holds ? aim_height_m(aim, supervisor) - supervisor->height.height_mm * 0.001F : NAN;
 }
 
-void aim_float(aim_t *aim, const where_t *where, flight_mode_t mode, flight_mode_t mode_before)
+static void hold_floating(aim_t *aim, const where_t *where, flight_mode_t mode, flight_mode_t mode_before)
 {
     const pilot_state_t *pilot = &where->pilot;
     const float height_m = where->supervisor.height.height_mm * 0.001F;
@@ -36,7 +36,7 @@ void aim_float(aim_t *aim, const where_t *where, flight_mode_t mode, flight_mode
     aim->floating_m = holds ? between(height_m - reach_m, aim->floating_m, height_m + reach_m) : height_m;
 }
 
-void aim_judge(aim_t *aim, const where_t *where)
+static void judge(aim_t *aim, const where_t *where)
 {
     const supervisor_t *supervisor = &where->supervisor;
     const bool acts = supervisor->state == FLIGHT_TAKEOFF || supervisor->state == FLIGHT_FLYING;
@@ -49,4 +49,10 @@ void aim_judge(aim_t *aim, const where_t *where)
                                           supervisor->height.height_mm - supervisor->reference_m * 1000.0F,
                                           supervisor->step_us)
                              : pilot_holds_up(&where->pilot, supervisor->state);
+}
+
+void aim_step(aim_t *aim, const where_t *where, flight_mode_t mode, flight_mode_t mode_before)
+{
+    hold_floating(aim, where, mode, mode_before);
+    judge(aim, where);
 }

@@ -23,12 +23,9 @@ float aim_height_m(const aim_t *aim, const supervisor_t *supervisor);
 /* Reference minus height; NAN when no height is held. */
 float aim_wanted_m(const aim_t *aim, const supervisor_t *supervisor, flight_mode_t mode);
 
-/* FLOATING holds the height at its start. When something else moves the vehicle, the held height follows; at
- * once where a pilot may fly. */
-void aim_float(aim_t *aim, const where_t *where, flight_mode_t mode, flight_mode_t mode_before);
-
-/* Detects a reference that is not reached, in the states in which the law acts, and a landing that does not
- * sink. Writes out_of_reach. */
-void aim_judge(aim_t *aim, const where_t *where);
+/* One cycle. FLOATING holds the height at its start. When something else moves the vehicle, the held height
+ * follows; at once where a pilot may fly. Detects a reference that is not reached, in the states in which the
+ * law acts, and a landing that does not sink. */
+void aim_step(aim_t *aim, const where_t *where, flight_mode_t mode, flight_mode_t mode_before);
 
 #endif

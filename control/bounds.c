@@ -195,21 +195,23 @@ static const struct {
     {BOUND_ACTUATOR, of_actuator},
 };
 
-float bounds_trim_n(bounds_t *bounds, const situation_t *now)
+static float trim_n(bounds_t *bounds, const situation_t *now)
 {
     const where_t *where = now->where;
     const bool unknown = pilot_is_unknown(&where->pilot) && !where->pilot.given_back;
     const bool trims = unknown && now->mode == FLIGHT_MODE_EST_HOLD && est_law_has_acceleration(now->est) &&
                        !pilot_shows_effect(&where->pilot);
     const float below_m = now->aim_m - where->supervisor.height.height_mm * 0.001F;
-    const float trim_n = bounds->trim_n + FLOAT_TRIM_N_PER_M_S * below_m * where_step_s(where);
+    const float more_n = bounds->trim_n + FLOAT_TRIM_N_PER_M_S * below_m * where_step_s(where);
 
-    bounds->trim_n = trims ? between(0.0F, trim_n, FLOAT_TRIM_N) : 0.0F;
+    bounds->trim_n = trims ? between(0.0F, more_n, FLOAT_TRIM_N) : 0.0F;
     return bounds->trim_n;
 }
 
-float bounds_apply(bounds_t *bounds, const situation_t *now, float thrust_n)
+float bounds_apply(bounds_t *bounds, const situation_t *now, float law_n)
 {
+    float thrust_n = law_n + trim_n(bounds, now);
+
     bounds->holds = BOUND_NONE;
     for (uint16_t k = 0U; k < sizeof table / sizeof table[0]; ++k) {
         const interval_t interval = table[k].of(bounds, now);

@@ -26,24 +26,22 @@ typedef struct {
     float sunk_n;     /* how far the window of the held thrust has sunk in the present descent */
     float felt_n;     /* how far felt climbs have lowered the thrust of a descent out of a pilot's hands */
     float standing_n; /* upper limit while a descent tests whether the vehicle stands */
-    float trim_n;     /* added while the throttle is unknown, see bounds_trim_n() */
+    float trim_n;     /* added while the throttle is unknown, see bounds_apply() */
     bound_t holds;    /* BOUND_NONE: the law's thrust is unchanged */
 } bounds_t;
 
-/* FLOATING in a pilot's hands, or given back by him: nothing tells. GRAV is too low rather than too high, so
+/* The bounded thrust. Once in each cycle. law_n: as the law wants it.
+ *
+ * FLOATING in a pilot's hands, or given back by him: nothing tells. GRAV is too low rather than too high, so
  * the vehicle sinks when it is given back, until its effect shows and its hover thrust is learned. Until then
- * more thrust is added while it is too low; never less, and nothing is learned from it. Returns what to add
- * to the law's thrust, >= 0. */
-float bounds_trim_n(bounds_t *bounds, const situation_t *now);
+ * more thrust is added while it is too low; never less, and nothing is learned from it. */
+float bounds_apply(bounds_t *bounds, const situation_t *now, float law_n);
 
-/* The same of the latest cycle. */
+/* What the latest cycle has added so, >= 0. */
 static inline float bounds_added_n(const bounds_t *bounds)
 {
     return bounds->trim_n;
 }
-
-/* The bounded thrust. Once in each cycle. */
-float bounds_apply(bounds_t *bounds, const situation_t *now, float thrust_n);
 
 /* "CLIMB" and so on; BOUND_NONE: "-". */
 const char *bound_name(uint16_t limit);

@@ -37,22 +37,6 @@ static const edge_t last_edges[] = {
     {.came = DOUBT_IMU, .place = IN_THE_AIR, .amend = AMEND_BY_HEIGHTS_ALONE, .engages = true},
 };
 
-void handover_frames(est_law_t *est, const situation_t *before, const flight_inputs_t *in)
-{
-    est_law_predict(est, before->parameters, before->where->contact.airborne, in->frames, in->frame_count,
-                    in->now_us);
-}
-
-void handover_height(est_law_t *est, const situation_t *now, const flight_inputs_t *in)
-{
-    const supervisor_t *supervisor = &now->where->supervisor;
-    const est_height_t height = {&in->altitude, in->height_stamp_ms, in->height_time_us, in->height_age_us};
-
-    if (supervisor->height.is_new) {
-        est_law_fuse_height(est, &height, now->where->contact.airborne, supervisor_is_at_rest(supervisor));
-    }
-}
-
 /* Law EST flies from now on. hover_n: best known hover thrust. */
 static void engage_at(est_law_t *est, where_t *where, const situation_t *now, float hover_n)
 {
@@ -136,9 +120,9 @@ void handover_doubts(handover_t *handover, est_law_t *est, where_t *where, const
     handover->doubts = doubted;
 }
 
-/* From what thrust and heights tell, not from standstill, and with the bias from before; also where the
- * heights are gone. */
-void handover_imu(est_law_t *est, const situation_t *now)
+/* The IMU is back in flight: the estimate starts again. From what thrust and heights tell, not from
+ * standstill, and with the bias from before; also where the heights are gone. */
+static void restart(est_law_t *est, const situation_t *now)
 {
     const evidence_t *evidence = now->evidence;
     estimator_t *estimator = &est->estimator;
@@ -149,6 +133,17 @@ void handover_imu(est_law_t *est, const situation_t *now)
     const float height_m = doubts(evidence, DOUBT_SIGHT) ? estimator->now.height_m
                                                          : evidence->height_m + evidence->moved_m;
     estimator_start(estimator, height_m, evidence->pushed_mps, estimator->felt ? evidence->bias_mps2 : 0.0F);
+}
+
+/* The height of this cycle, if there is one that is believed. */
+static void fuse(est_law_t *est, const situation_t *now, const flight_inputs_t *in)
+{
+    const supervisor_t *supervisor = &now->where->supervisor;
+    const est_height_t height = {&in->altitude, in->height_stamp_ms, in->height_time_us, in->height_age_us};
+
+    if (supervisor->height.is_new) {
+        est_law_fuse_height(est, &height, now->where->contact.airborne, supervisor_is_at_rest(supervisor));
+    }
 }
 
 /* First hover thrust after lift-off: the delivered thrust less what acceleration and drag need. */
@@ -186,7 +181,8 @@ static void notice_lift(est_law_t *est, where_t *where, const situation_t *now)
     }
 }
 
-void handover_contact(est_law_t *est, where_t *where, const situation_t *now, bool has_throttle)
+/* The ground, a pilot's turn and a lift-off. */
+static void touch_or_fly(est_law_t *est, where_t *where, const situation_t *now, bool has_throttle)
 {
     const flight_state_t state = where->supervisor.state;
 
@@ -203,8 +199,12 @@ void handover_contact(est_law_t *est, where_t *where, const situation_t *now, bo
     }
 }
 
-void handover_pilot(est_law_t *est, where_t *where, const situation_t *now, pilot_news_t news, float trim_n)
+void handover_place(est_law_t *est, where_t *where, const situation_t *now, const flight_inputs_t *in,
+                    pilot_news_t news, float trim_n)
 {
+    restart(est, now);
+    fuse(est, now, in);
+    touch_or_fly(est, where, now, in->has_throttle);
     if (news == PILOT_SHOWS_EFFECT) { /* now its hover thrust is learned */
         engage_at(est, where, now, where->hover.thrust_n + trim_n);
     } else if (news == PILOT_IS_SURE) {
@@ -244,27 +244,11 @@ void handover_mode(est_law_t *est, where_t *where, const situation_t *now)
     }
 }
 
-void handover_take_off(est_law_t *est, where_t *where, const situation_t *now)
-{
-    if (now->mode == FLIGHT_MODE_EST_HOLD && !where->contact.airborne &&
-        est_law_take_off(est, now->parameters)) {
-        contact_fly(&where->contact);
-    }
-}
-
-void handover_hover(est_law_t *est, const situation_t *now)
-{
-    est_law_set_sure_hover(est, now->where->hover.thrust_n,
-                           where_descends(now->where) && !now->where->pilot.given_back);
-}
-
 void handover_given_back(est_law_t *est, const situation_t *now)
 {
     const estimate_t *estimate = &est->estimator.now;
     const float share = where_step_s(now->where) / IN_HANDS_S;
 
-    if (now->where->pilot.given_back) {
-        estimator_amend(&est->estimator, 0.0F, estimate->speed_mps * (1.0F - share),
-                        estimate->bias_mps2 + share * estimate->speed_mps / IN_HANDS_BIAS_S);
-    }
+    estimator_amend(&est->estimator, 0.0F, estimate->speed_mps * (1.0F - share),
+                    estimate->bias_mps2 + share * estimate->speed_mps / IN_HANDS_BIAS_S);
 }

@@ -36,10 +36,15 @@ static inline uint16_t imu_first_after(const imu_sample_t *frames, uint16_t coun
     return first;
 }
 
-/* Upward acceleration that the frame's accelerometer measures, gravity removed, m/s2. */
-float imu_up_mps2(const imu_sample_t *frame);
+/* What a frame says about the vertical. */
+typedef struct {
+    float up_mps2; /* upward acceleration that its accelerometer measures, gravity removed */
+    float upright; /* cosine of its tilt */
+} imu_vertical_t;
 
-/* The same; also writes the cosine of the frame's tilt. */
-float imu_up_and_upright(const imu_sample_t *frame, float *upright);
+imu_vertical_t imu_vertical(const imu_sample_t *frame);
+
+/* Its acceleration alone. */
+float imu_up_mps2(const imu_sample_t *frame);
 
 #endif

@@ -16,7 +16,7 @@ static uint16_t flags(const situation_t *now, bool out_of_reach)
                       now->evidence->doubts * FLIGHT_FLAG_SIGHT);
 }
 
-void outputs_tell(const situation_t *now, bool out_of_reach, flight_outputs_t *out)
+void outputs_write(const situation_t *now, bool out_of_reach, float thrust_n, flight_outputs_t *out)
 {
     const supervisor_t *supervisor = &now->where->supervisor;
     const estimator_t *estimator = &now->est->estimator;
@@ -31,10 +31,6 @@ void outputs_tell(const situation_t *now, bool out_of_reach, flight_outputs_t *o
     out->reference_m = supervisor->reference_m;
     out->estimate_mm = estimated ? estimator->now.height_m * 1000.0F : measured_mm;
     out->innovation_mm = estimated ? estimator->innovation_m * 1000.0F : NAN;
-}
-
-void outputs_drive(float thrust_n, flight_outputs_t *out)
-{
     out->thrust_n = thrust_n;
-    out->pulse_us = thrust_to_pulse_us(out->thrust_n);
+    out->pulse_us = thrust_to_pulse_us(thrust_n);
 }

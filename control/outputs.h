@@ -5,11 +5,8 @@
 #include "control/flight_io.h"
 #include "control/situation.h"
 
-/* Everything but the thrust and its pulse, imu_fault and releases. out_of_reach: the vehicle does not get to
- * the reference. */
-void outputs_tell(const situation_t *now, bool out_of_reach, flight_outputs_t *out);
-
-/* Thrust and pulse. thrust_n: as the guard has left it. */
-void outputs_drive(float thrust_n, flight_outputs_t *out);
+/* Everything but bound, imu_fault and releases. out_of_reach: the vehicle does not get to the reference.
+ * thrust_n: as the guard has left it. */
+void outputs_write(const situation_t *now, bool out_of_reach, float thrust_n, flight_outputs_t *out);
 
 #endif

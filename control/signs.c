@@ -57,6 +57,18 @@ command_t signs_of_command(const situation_t *now, const flight_inputs_t *in, fl
     };
 }
 
+est_before_t signs_of_before(const situation_t *now)
+{
+    const where_t *where = now->where;
+
+    return (est_before_t){
+        .airborne = where->contact.airborne,
+        .thrust_n = now->thrust_n,
+        .hover_n = where->hover.thrust_n,
+        .descends = where_lets_down(where),
+    };
+}
+
 /* A pilot may have the vehicle, and nothing tells: without a pin on the ground, or in a descent that began
  * so. Somebody may carry it by hand too: that is not told apart, and a vehicle that flies must not fall. An
  * IMU that has fallen silent does not say so any longer: the descent then ends by its time. */
@@ -117,6 +129,7 @@ landing_signs_t signs_of_landing(const situation_t *now)
 {
     return (landing_signs_t){
         .state = now->where->supervisor.state,
+        .state_us = now->where->supervisor.state_us,
         .height_m = now->where->supervisor.height.height_mm * 0.001F,
         .rocks = now->rocks,
         .powered = now->thrust_n > now->idle_n,

@@ -13,6 +13,9 @@
  * height; NAN: no height is held. */
 command_t signs_of_command(const situation_t *now, const flight_inputs_t *in, float wanted_m);
 
+/* For est_law_predict(): the same for the estimate. */
+est_before_t signs_of_before(const situation_t *now);
+
 /* For supervisor_step(). hands_over: arming.h. */
 vertical_estimate_t signs_of_vertical(const situation_t *now, bool hands_over);
 

@@ -3,10 +3,14 @@
 
 #include "control/credible.h"
 
-void situation_derive(situation_t *now)
+bool situation_is_risen(const where_t *where, const est_law_t *est)
 {
-    const float height_m = now->where->supervisor.height.height_mm * 0.001F;
+    const float height_m = where->supervisor.height.height_mm * 0.001F;
 
-    now->risen = height_m - now->est->lift.ground_m > LOW_MM * 0.001F;
-    now->rocks = now->evidence->rocks && est_law_has_imu(now->est);
+    return height_m - est->lift.ground_m > LOW_MM * 0.001F;
+}
+
+bool situation_is_rocking(const evidence_t *evidence, const est_law_t *est)
+{
+    return evidence->rocks && est_law_has_imu(est);
 }

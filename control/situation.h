@@ -25,7 +25,8 @@ typedef struct {
     bool rocks; /* the tilt moves as in flight; an IMU that has fallen silent does not say so any longer */
 } situation_t;
 
-/* Writes `risen` and `rocks` from the rest. */
-void situation_derive(situation_t *now);
+/* The answers to `risen` and `rocks`. */
+bool situation_is_risen(const where_t *where, const est_law_t *est);
+bool situation_is_rocking(const evidence_t *evidence, const est_law_t *est);
 
 #endif

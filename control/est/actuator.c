@@ -51,3 +51,11 @@ void actuator_advance(actuator_t *actuator, uint32_t time_us)
     }
     lag(actuator, time_us);
 }
+
+actuator_t actuator_at(const actuator_t *actuator, uint32_t time_us)
+{
+    actuator_t then = *actuator;
+
+    actuator_advance(&then, time_us);
+    return then;
+}

@@ -39,4 +39,7 @@ void actuator_command(actuator_t *actuator, float thrust_n, uint32_t now_us);
 /* Moves the model forward to time_us. A time before actuator->time_us changes nothing. */
 void actuator_advance(actuator_t *actuator, uint32_t time_us);
 
+/* The model as it will be then, if no other command is given. */
+actuator_t actuator_at(const actuator_t *actuator, uint32_t time_us);
+
 #endif

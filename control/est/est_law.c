@@ -2,8 +2,8 @@
  * the instant when its command takes effect, DELAY from now: a Smith predictor in state space. The same
  * model gives the estimator the acceleration that the thrust should cause. The noisier the accelerometer, the
  * more weight that acceleration gets.
- * What breaks: the actuator's model needs every command that was really given (est_law_record_command), or
- * hover thrust and prediction drift. While the pilot flies nothing may be learned (est_law_disengage).
+ * What breaks: the actuator's model needs every command that was really given (est_before_t), or hover thrust
+ * and prediction drift. While the pilot flies nothing may be learned (est_law_disengage).
  * Constants marked "fitted": docs/control.md; make tune LAW=EST ARGS="--constants est" repeats the search. */
 #include "control/est/est_law.h"
 
@@ -131,15 +131,38 @@ static void predict_frame(est_law_t *law, const parameters_t *parameters, bool a
     }
 }
 
-void est_law_predict(est_law_t *law, const parameters_t *parameters, bool airborne,
-                     const imu_sample_t *frames, uint16_t count, uint32_t now_us)
+/* The command of the cycle before is on its way to the rotors. */
+static void take_command(est_law_t *law, const parameters_t *parameters, float thrust_n, uint32_t now_us)
 {
-    if (!law->started) {
+    if (law->started) {
+        actuator_command(&law->actuator, deadband_effect(&law->deadband, law->hover.thrust_n, thrust_n),
+                         law->now_us);
+    } else {
         law->started = true;
         law->now_us = now_us;
         actuator_init(&law->actuator, now_us);
     }
     actuator_describe(&law->actuator, parameters->value[PARAMETER_DELAY], parameters->value[PARAMETER_LAG]);
+}
+
+/* The sure hover thrust; a descent that begins goes on from it. */
+static void know_hover(est_law_t *law, float hover_n, bool descends)
+{
+    law->sure_hover_n = hover_n;
+    if (!descends) {
+        let_down_arm(&law->down, hover_n);
+    }
+}
+
+void est_law_predict(est_law_t *law, const parameters_t *parameters, const est_before_t *before,
+                     const imu_sample_t *frames, uint16_t count, uint32_t now_us)
+{
+    take_command(law, parameters, before->thrust_n, now_us);
+    if (!law->flew) {
+        know_hover(law, before->hover_n, before->descends);
+    }
+    law->flew = false;
+    law->left_ground = false;
     if (!is_climb(parameters)) {
         deadband_init(&law->deadband);
     }
@@ -149,7 +172,7 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, bool airbor
     law->heightless_s = at_most(law->heightless_s + law->step_s, AGE_MAX_S);
     law->frameless_s = at_most(law->frameless_s + law->step_s, AGE_MAX_S);
     for (uint16_t i = imu_first_after(frames, count, law->estimator.sequence); i < count; ++i) {
-        predict_frame(law, parameters, airborne, &frames[i]);
+        predict_frame(law, parameters, before->airborne, &frames[i]);
     }
     if (law->frameless_s > FRAMES_FRESH_S) {
         actuator_advance(&law->actuator,
@@ -232,14 +255,6 @@ void est_law_engage(est_law_t *law, float thrust_n, float hover_n)
     cascade_init(&law->cascade, thrust_n);
 }
 
-void est_law_set_sure_hover(est_law_t *law, float hover_n, bool descending)
-{
-    law->sure_hover_n = hover_n;
-    if (!descending) {
-        let_down_arm(&law->down, hover_n);
-    }
-}
-
 void est_law_doubt(est_law_t *law, const est_doubts_t *doubts)
 {
     law->without_authority = doubts->without_authority;
@@ -269,9 +284,7 @@ static cascade_state_t predict_ahead(const est_law_t *law, const cascade_vehicle
 {
     const estimate_t *now = &law->estimator.now;
     const float ahead_s = seconds_between(law->estimator.now_us, law->now_us + law->actuator.delay_us);
-    actuator_t then = law->actuator;
-
-    actuator_advance(&then, law->now_us + law->actuator.delay_us);
+    const actuator_t then = actuator_at(&law->actuator, law->now_us + law->actuator.delay_us);
     const float thrust_n = 0.5F * (law->actuator.thrust_n + then.thrust_n) * vehicle->upright;
     const float acceleration_mps2 = vehicle->authority_mps2_per_n * (thrust_n - vehicle->need_n) -
                                     vehicle->damping_per_s * now->speed_mps;
@@ -300,7 +313,8 @@ static float lift_off_hover_n(est_law_t *law, const cascade_vehicle_t *vehicle, 
     return lifted.thrust_n;
 }
 
-bool est_law_take_off(est_law_t *law, const parameters_t *parameters)
+/* The thrust ramps up. Returns true when the vehicle has left the ground. */
+static bool take_off(est_law_t *law, const parameters_t *parameters)
 {
     const cascade_vehicle_t vehicle = vehicle_model(law, parameters);
     const float gravity_n = parameters->value[PARAMETER_GRAV];
@@ -357,10 +371,10 @@ static float standing_n(est_law_t *law, est_mode_t mode)
     return law->lift.ramp_n;
 }
 
-float est_law_step(est_law_t *law, const parameters_t *parameters, bool airborne, est_mode_t mode,
-                   float reference_m)
+float est_law_step(est_law_t *law, const parameters_t *parameters, const est_order_t *order)
 {
     const float *value = parameters->value;
+    const est_mode_t mode = order->mode;
     const bool landing = mode == EST_MODE_LAND;
     const cascade_gains_t gains = {
         .height_per_s = value[PARAMETER_POSK],
@@ -371,12 +385,15 @@ float est_law_step(est_law_t *law, const parameters_t *parameters, bool airborne
         .below_hover_n = landing ? BRAKE_BELOW_HOVER_N : BELOW_HOVER_N,
     };
 
-    if (!airborne) {
+    law->flew = true;
+    know_hover(law, order->hover_n, order->descends);
+    law->left_ground = !order->airborne && mode == EST_MODE_HOLD && take_off(law, parameters);
+    if (!order->airborne && !law->left_ground) {
         return standing_n(law, mode);
     }
     const cascade_vehicle_t vehicle = vehicle_model(law, parameters);
     const cascade_state_t state = predict_ahead(law, &vehicle);
-    const float speed_mps = speed_setpoint_mps(law, parameters, &gains, &state, mode, reference_m);
+    const float speed_mps = speed_setpoint_mps(law, parameters, &gains, &state, mode, order->reference_m);
     const float thrust_n = cascade_step(&law->cascade, &gains, &vehicle, &state, speed_mps, law->step_s);
 
     let_down_step(&law->down, mode, state.height_m, law->rocks, law->step_s);
@@ -385,8 +402,7 @@ float est_law_step(est_law_t *law, const parameters_t *parameters, bool airborne
     return deadband_compensate(&law->deadband, law->hover.thrust_n, limited_n);
 }
 
-void est_law_record_command(est_law_t *law, float thrust_n)
+bool est_law_left_ground(const est_law_t *law)
 {
-    const float effect_n = deadband_effect(&law->deadband, law->hover.thrust_n, thrust_n);
-    actuator_command(&law->actuator, effect_n, law->now_us);
+    return law->left_ground;
 }

@@ -1,8 +1,8 @@
 /* Law EST: estimator, hover thrust and cascade together. The estimator runs in every cycle, also while
  * another law flies, so EST can take over at any instant.
  *
- * Order in one cycle: est_law_predict(), est_law_fuse_height() if there is a new height, est_law_step() if
- * EST flies, est_law_record_command() with the thrust that was really commanded.
+ * Order in one cycle: est_law_predict() with the thrust that was really commanded in the cycle before,
+ * est_law_fuse_height() if there is a new height, est_law_step() if EST flies.
  *
  * Metres, seconds, newtons per motor; positive is upwards. Times named _us are on one wrapping 32-bit
  * clock. Pure; the caller owns the state. */
@@ -48,14 +48,25 @@ typedef struct {
     float heightless_s;     /* time since the rays of the latest height */
     float frameless_s;      /* time since the latest frame was measured */
     bool rocks;             /* the tilt sways as in flight */
+    bool flew;              /* est_law_step() was called in this cycle */
+    bool left_ground;       /* in this cycle */
 } est_law_t;
 
 void est_law_init(est_law_t *law);
 
-/* Prediction step, once in every cycle. frames: IMU frames, oldest first; borrowed for the call. Frames
- * that were processed before change nothing. airborne: the vehicle has left the ground (contact.h); the same
- * below. now_us: time of the cycle. */
-void est_law_predict(est_law_t *law, const parameters_t *parameters, bool airborne,
+/* What the cycle before has left. */
+typedef struct {
+    bool airborne;  /* the vehicle has left the ground (contact.h); the same below */
+    float thrust_n; /* what was really commanded, also by another law: hover thrust and prediction drift
+                     * without it */
+    float hover_n;  /* the hover thrust as it is known without any present doubt. A descent limits its thrust
+                     * by  the value that it had when the descent began */
+    bool descends;  /* the state is a descent */
+} est_before_t;
+
+/* Prediction step, once in every cycle. frames: IMU frames, oldest first; borrowed for the call. Frames that
+ * were processed before change nothing. now_us: time of the cycle. */
+void est_law_predict(est_law_t *law, const parameters_t *parameters, const est_before_t *before,
                      const imu_sample_t *frames, uint16_t count, uint32_t now_us);
 
 /* A valid new height. */
@@ -80,15 +91,8 @@ bool est_law_ready(const est_law_t *law);
 
 /* Call in every cycle on the ground. airborne: until this cycle the vehicle flew. */
 void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne);
-/* Call before est_law_step() in EST_MODE_HOLD while the vehicle has not left the ground: the thrust ramps up.
- * Returns true when it has left the ground. */
-bool est_law_take_off(est_law_t *law, const parameters_t *parameters);
 /* Call in the air, when EST takes over. hover_n: best known hover thrust. thrust_n: previous command. */
 void est_law_engage(est_law_t *law, float thrust_n, float hover_n);
-
-/* Call in every cycle. hover_n: the hover thrust as it was known before any present doubt. A descent
- * limits its thrust by the value that hover_n had when the descent began. */
-void est_law_set_sure_hover(est_law_t *law, float hover_n, bool descending);
 
 /* What is doubted in this cycle. */
 typedef struct {
@@ -107,12 +111,20 @@ cascade_vehicle_t est_law_vehicle(const est_law_t *law, const parameters_t *para
 /* The pilot has the throttle. Nothing is learned or predicted from the commands until est_law_engage(). */
 void est_law_disengage(est_law_t *law);
 
-/* Thrust command in newtons per motor. reference_m (above the terrain) counts in EST_MODE_HOLD only. */
-float est_law_step(est_law_t *law, const parameters_t *parameters, bool airborne, est_mode_t mode,
-                   float reference_m);
+/* What law EST shall do in this cycle. */
+typedef struct {
+    est_mode_t mode;
+    float reference_m; /* above the terrain, EST_MODE_HOLD only */
+    bool airborne;
+    float hover_n; /* as in est_before_t */
+    bool descends;
+} est_order_t;
 
-/* Records the thrust that was really commanded. Call in every cycle, also when another law flies: without
- * it hover thrust and prediction drift. */
-void est_law_record_command(est_law_t *law, float thrust_n);
+/* Thrust command in newtons per motor. On the ground the thrust ramps up in EST_MODE_HOLD, until the vehicle
+ * has left it. */
+float est_law_step(est_law_t *law, const parameters_t *parameters, const est_order_t *order);
+
+/* True when the vehicle has left the ground in this cycle's est_law_step(). */
+bool est_law_left_ground(const est_law_t *law);
 
 #endif

@@ -91,7 +91,7 @@ static void predict_now(estimator_t *e)
 
     e->now = e->filter.estimate;
     for (uint16_t i = 0U; i < e->frame_count; ++i) {
-        filter_move(&e->now, &e->frames[i].motion, seconds_between(time_us, e->frames[i].time_us));
+        e->now = filter_moved(&e->now, &e->frames[i].motion, seconds_between(time_us, e->frames[i].time_us));
         time_us = e->frames[i].time_us;
     }
     e->now_us = time_us;
@@ -120,7 +120,7 @@ static void append_frame(estimator_t *e, const estimator_frame_t *frame)
     e->frames[e->frame_count] = *frame;
     ++e->frame_count;
     if (before(e->now_us, frame->time_us)) {
-        filter_move(&e->now, &frame->motion, seconds_between(e->now_us, frame->time_us));
+        e->now = filter_moved(&e->now, &frame->motion, seconds_between(e->now_us, frame->time_us));
         e->now_us = frame->time_us;
     }
 }
@@ -192,9 +192,8 @@ static void take_in(estimator_t *e, uint32_t time_us, float up_mps2)
 void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motion_t model)
 {
     const uint32_t time_us = frame->arrival_us - FRAME_AGE_US;
-    float upright;
-    const float told_mps2 = imu_up_and_upright(frame, &upright);
-    const float up_mps2 = frame->has_acceleration ? told_mps2 : 0.0F;
+    const imu_vertical_t told = imu_vertical(frame);
+    const float up_mps2 = frame->has_acceleration ? told.up_mps2 : 0.0F;
     const bool usable = frame->has_acceleration && fabsf(up_mps2) < UP_MAX_MPS2;
 
     if (!is_of_use(e, frame, usable)) {
@@ -211,7 +210,7 @@ void estimator_predict(estimator_t *e, const imu_sample_t *frame, modelled_motio
         .roll_rad = frame->median.roll_rad,
         .pitch_rad = frame->median.pitch_rad,
     };
-    e->upright = upright;
+    e->upright = told.upright;
     e->up_mps2 = usable ? up_mps2 : 0.0F;
     take_in(e, time_us, up_mps2);
     if (usable) {
@@ -281,9 +280,8 @@ static height_outcome_t reject(estimator_t *e, float height_m, float innovation_
 
 static height_outcome_t check_and_fuse(estimator_t *e, float height_m)
 {
-    roughness_measure(&e->roughness, height_m);
     e->innovation_m = height_m - e->filter.estimate.height_m;
-    roughness_watch_bars(&e->roughness, e->innovation_m, e->delayed_us);
+    roughness_step(&e->roughness, height_m, e->innovation_m, e->delayed_us);
     e->confirmed = e->unchecked_count == 0U && innovation_accepted(e, e->innovation_m);
     if (e->unchecked_count == 0U && !e->confirmed) {
         return reject(e, height_m, e->innovation_m);

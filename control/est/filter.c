@@ -49,14 +49,16 @@ static void bound_states(estimate_t *x)
     x->terrain_mps = between(-TERRAIN_MAX_MPS, x->terrain_mps, TERRAIN_MAX_MPS);
 }
 
-void filter_move(estimate_t *x, const motion_t *motion, float dt_s)
+estimate_t filter_moved(const estimate_t *estimate, const motion_t *motion, float dt_s)
 {
-    const float acceleration_mps2 = motion->up_mps2 - motion->share * x->bias_mps2;
+    const float acceleration_mps2 = motion->up_mps2 - motion->share * estimate->bias_mps2;
+    estimate_t x = *estimate;
 
-    x->height_m += (x->speed_mps - x->terrain_mps + 0.5F * acceleration_mps2 * dt_s) * dt_s;
-    x->speed_mps += acceleration_mps2 * dt_s;
-    x->terrain_mps *= at_least(1.0F - dt_s / TERRAIN_TIME_S, 0.0F);
-    bound_states(x);
+    x.height_m += (x.speed_mps - x.terrain_mps + 0.5F * acceleration_mps2 * dt_s) * dt_s;
+    x.speed_mps += acceleration_mps2 * dt_s;
+    x.terrain_mps *= at_least(1.0F - dt_s / TERRAIN_TIME_S, 0.0F);
+    bound_states(&x);
+    return x;
 }
 
 static float limit_variance(float p[FILTER_STATES][FILTER_STATES], uint16_t state)
@@ -167,7 +169,7 @@ void filter_correct(filter_t *filter, filter_state_t state, float innovation, fl
 
 void filter_predict(filter_t *filter, const motion_t *motion, float dt_s, float bias_drift_mps2)
 {
-    filter_move(&filter->estimate, motion, dt_s);
+    filter->estimate = filter_moved(&filter->estimate, motion, dt_s);
     predict_covariance(filter, motion, dt_s, bias_drift_mps2);
 }
 

@@ -34,10 +34,11 @@ typedef struct {
     float covariance[FILTER_STATES][FILTER_STATES]; /* symmetric: [i][j] is kept for i <= j */
 } filter_t;
 
-/* Moves an estimate alone, for dt_s >= 0. */
-void filter_move(estimate_t *estimate, const motion_t *motion, float dt_s);
+/* Where an estimate is after dt_s >= 0. */
+estimate_t filter_moved(const estimate_t *estimate, const motion_t *motion, float dt_s);
 
-/* The same with the covariance. bias_drift_mps2: by how much the bias wanders, m/s2 per root second. */
+/* Moves the filter so, with the covariance. bias_drift_mps2: by how much the bias wanders, m/s2 per root
+ * second. */
 void filter_predict(filter_t *filter, const motion_t *motion, float dt_s, float bias_drift_mps2);
 
 /* A measurement of one state. innovation: measured minus estimated. variance: of the measurement, > 0. */

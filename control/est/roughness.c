@@ -23,7 +23,7 @@ void roughness_init(roughness_t *roughness)
 }
 
 /* The second difference of white noise has six times its variance. */
-void roughness_measure(roughness_t *roughness, float height_m)
+static void measure(roughness_t *roughness, float height_m)
 {
     const float difference_m = height_m - 2.0F * roughness->previous_m[0] + roughness->previous_m[1];
     const float variance = roughness->noise_m * roughness->noise_m;
@@ -41,7 +41,7 @@ float roughness_variance_m2(const roughness_t *roughness)
     return FLOOR_VARIANCE * at_least(noise_m * noise_m - ROUGHNESS_SMOOTH_M * ROUGHNESS_SMOOTH_M, 0.0F);
 }
 
-void roughness_watch_bars(roughness_t *roughness, float innovation_m, uint32_t rays_us)
+static void watch_bars(roughness_t *roughness, float innovation_m, uint32_t rays_us)
 {
     if (fabsf(innovation_m) < BAR_LEAST_M || fabsf(innovation_m) > BAR_MOST_M) {
         return;
@@ -52,4 +52,10 @@ void roughness_watch_bars(roughness_t *roughness, float innovation_m, uint32_t r
     }
     roughness->edge_m = innovation_m;
     roughness->edge_us = rays_us;
+}
+
+void roughness_step(roughness_t *roughness, float height_m, float innovation_m, uint32_t rays_us)
+{
+    measure(roughness, height_m);
+    watch_bars(roughness, innovation_m, rays_us);
 }

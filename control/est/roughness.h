@@ -18,12 +18,9 @@ typedef struct {
 
 void roughness_init(roughness_t *roughness);
 
-/* Each height, also one that is rejected. */
-void roughness_measure(roughness_t *roughness, float height_m);
-
-/* An edge that comes and goes is a bar, and more will follow: the noise rises to that of a rough floor at
- * once. */
-void roughness_watch_bars(roughness_t *roughness, float innovation_m, uint32_t rays_us);
+/* Each height, also one that is rejected. innovation_m: measured minus predicted. An edge that comes and goes
+ * is a bar, and more will follow: the noise rises to that of a rough floor at once. */
+void roughness_step(roughness_t *roughness, float height_m, float innovation_m, uint32_t rays_us);
 
 /* Variance that a rough floor adds to a height, without what a step or a climb adds. */
 float roughness_variance_m2(const roughness_t *roughness);

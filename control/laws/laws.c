@@ -84,7 +84,8 @@ static void take_gravity(laws_t *laws, const situation_t *now)
     laws->gravity_n = gravity_n;
 }
 
-bool laws_step(laws_t *laws, est_law_t *est, const situation_t *now)
+/* The setpoint of the mode. Returns true when the law has gained or lost its integral action. */
+static bool take_sample(laws_t *laws, est_law_t *est, const situation_t *now)
 {
     const law_step_t step = (now->mode == FLIGHT_MODE_LAW) ? law_rows[now->law].step
                                                            : steps_of_mode[now->mode];
@@ -95,7 +96,7 @@ bool laws_step(laws_t *laws, est_law_t *est, const situation_t *now)
     return laws->integral != had_integral;
 }
 
-void laws_stop(laws_t *laws, const situation_t *now)
+static void ramp_down(laws_t *laws, const situation_t *now)
 {
     laws->setpoint_n = now->thrust_n - LANDED_FADE_N_PER_S * where_step_s(now->where);
     laws->transfer_n = 0.0F;
@@ -115,7 +116,8 @@ static bool starts_at_once(const situation_t *now)
            (now->mode_before == FLIGHT_MODE_HOVER && contact_lifts(&now->where->contact));
 }
 
-void laws_transfer(laws_t *laws, const situation_t *now, bool law_changed)
+/* law_changed: the law, or its integral action. */
+static void transfer(laws_t *laws, const situation_t *now, bool law_changed)
 {
     const float hover_n = now->where->hover.thrust_n;
     const bool both_est = modes_use_estimate(now->mode_before) && modes_use_estimate(now->mode);
@@ -131,6 +133,19 @@ void laws_transfer(laws_t *laws, const situation_t *now, bool law_changed)
     } else {
         laws->transfer_n *= TRANSFER_TIME_S / (TRANSFER_TIME_S + where_step_s(now->where));
     }
+}
+
+float laws_step(laws_t *laws, est_law_t *est, const situation_t *now, bool law_changed)
+{
+    bool changed = law_changed;
+
+    if (where_stops(now->where)) {
+        ramp_down(laws, now);
+    } else {
+        changed = take_sample(laws, est, now) || changed;
+    }
+    transfer(laws, now, changed);
+    return laws->setpoint_n + laws->transfer_n;
 }
 
 uint16_t laws_releases(const parameters_t *parameters, flight_mode_t mode)

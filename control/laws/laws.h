@@ -33,23 +33,14 @@ typedef float (*law_step_t)(laws_t *laws, est_law_t *est, const situation_t *now
 /* Initial values, when the mode has changed. The law keeps its integral action only during COASTING. */
 void laws_change(laws_t *laws, const situation_t *now);
 
-/* The setpoint of the mode. Returns true when the law has gained or lost its integral action. */
-bool laws_step(laws_t *laws, est_law_t *est, const situation_t *now);
-
-/* Heights or reference were lost before the vehicle left the ground: the thrust ramps down. */
-void laws_stop(laws_t *laws, const situation_t *now);
-
-/* Bumpless transfer. A mode that takes over in the air starts from the previous thrust, limited to 0.5 N from
+/* The thrust of the mode. Where heights or reference were lost before the vehicle left the ground, it ramps
+ * down.
+ *
+ * Bumpless transfer: a mode that takes over in the air starts from the previous thrust, limited to 0.5 N from
  * hover. The difference then fades with a time constant of 0.4 s. Two exceptions start at once: a descent
  * with a height, and the law on the ground. A change of the law alone starts exactly from the previous
- * thrust. law_changed: it has changed in this cycle, or its integral action has. */
-void laws_transfer(laws_t *laws, const situation_t *now, bool law_changed);
-
-/* The thrust of this cycle, with what is left of a transfer. */
-static inline float laws_thrust_n(const laws_t *laws)
-{
-    return laws->setpoint_n + laws->transfer_n;
-}
+ * thrust. law_changed: it has changed in this cycle. */
+float laws_step(laws_t *laws, est_law_t *est, const situation_t *now, bool law_changed);
 
 /* What the latest descent by heights has needed on top of the hover thrust. */
 static inline float laws_found_n(const laws_t *laws)

@@ -12,7 +12,7 @@
 #define PIN_ABOVE_N 1.0F   /* chosen: a load of a newton */
 #define BLIND_MAX_S 60.0F  /* above DESCENT_TIMEOUT_US in supervisor.c */
 
-void stuck_pin_reset(stuck_pin_t *pin)
+static void reset(stuck_pin_t *pin)
 {
     pin->piloted_s = 0.0F;
     pin->more_n = 0.0F;
@@ -42,12 +42,15 @@ void stuck_pin_step(stuck_pin_t *pin, const situation_t *now)
 {
     const bool piloted = (now->where->supervisor.flags & FLIGHT_FLAG_PILOT) != 0U;
 
+    if (now->mode != now->mode_before) {
+        reset(pin);
+    }
     if (now->mode != FLIGHT_MODE_HOVER) {
         return;
     }
     if (!piloted || pin->piloted_s <= 0.0F) {
         descent_start(&pin->descent, 0.0F);
-        stuck_pin_reset(pin);
+        reset(pin);
     }
     if (piloted) {
         pin->piloted_s += where_step_s(now->where);

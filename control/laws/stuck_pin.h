@@ -18,9 +18,6 @@ typedef struct {
 /* One cycle, in which the mode may be another one too. */
 void stuck_pin_step(stuck_pin_t *pin, const situation_t *now);
 
-/* The mode has changed. */
-void stuck_pin_reset(stuck_pin_t *pin);
-
 /* What is added to the output. */
 static inline float stuck_pin_added_n(const stuck_pin_t *pin)
 {

@@ -45,12 +45,6 @@ void contact_step(contact_t *contact, const contact_signs_t *signs)
     contact->kind = kind_of(contact, state);
 }
 
-void contact_watch_take_off(contact_t *contact, flight_state_t state, uint32_t state_us)
-{
-    contact->gave_up = state == FLIGHT_TAKEOFF ? !contact->airborne && state_us < GAVE_UP_MAX_US
-                                               : contact->gave_up && gives_up(state);
-}
-
 void contact_fly(contact_t *contact)
 {
     contact->airborne = true;
@@ -66,7 +60,13 @@ void contact_lift_off(contact_t *contact)
     contact->gave_up = false;
 }
 
-void contact_land(contact_t *contact, const landing_signs_t *signs)
+static void watch_take_off(contact_t *contact, const landing_signs_t *signs)
+{
+    contact->gave_up = signs->state == FLIGHT_TAKEOFF ? !contact->airborne && signs->state_us < GAVE_UP_MAX_US
+                                                      : contact->gave_up && gives_up(signs->state);
+}
+
+static void watch_landing(contact_t *contact, const landing_signs_t *signs)
 {
     const flight_state_t state = signs->state;
     const bool lands = state == FLIGHT_LANDING || (state == FLIGHT_DESCENDING && contact->touching_s > 0.0F);
@@ -78,7 +78,13 @@ void contact_land(contact_t *contact, const landing_signs_t *signs)
     } else {
         contact->touching_s = 0.0F;
     }
-    contact->kind = kind_of(contact, state);
+}
+
+void contact_watch(contact_t *contact, const landing_signs_t *signs)
+{
+    watch_take_off(contact, signs);
+    watch_landing(contact, signs);
+    contact->kind = kind_of(contact, signs->state);
 }
 
 bool contact_lifts(const contact_t *contact)

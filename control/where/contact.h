@@ -37,10 +37,6 @@ typedef struct {
 /* One cycle, after the supervisor's step and the height of the cycle. */
 void contact_step(contact_t *contact, const contact_signs_t *signs);
 
-/* Later in the cycle, when it is known who has the throttle: did the take-off end on the ground? state_us:
- * time in this state. */
-void contact_watch_take_off(contact_t *contact, flight_state_t state, uint32_t state_us);
-
 /* The firmware's thrust carries the vehicle, from now on; and no longer: it stands, or a pilot flies it. */
 void contact_fly(contact_t *contact);
 void contact_end_flight(contact_t *contact);
@@ -48,18 +44,19 @@ void contact_end_flight(contact_t *contact);
 /* The vehicle has left the ground after all. */
 void contact_lift_off(contact_t *contact);
 
-/* What the end of a cycle shows of a landing. */
+/* What a cycle shows later, when it is known who has the throttle. */
 typedef struct {
     flight_state_t state;
-    float height_m; /* latest height, of the supervisor */
-    bool rocks;     /* the tilt moves as in flight */
-    bool powered;   /* there was more thrust than the idle */
-    bool sees;      /* the heights are not doubted */
+    uint32_t state_us; /* time in it */
+    float height_m;    /* latest height, of the supervisor */
+    bool rocks;        /* the tilt moves as in flight */
+    bool powered;      /* there was more thrust than the idle */
+    bool sees;         /* the heights are not doubted */
     float step_s;
 } landing_signs_t;
 
-/* At the end of the cycle: how near the end of a landing is. */
-void contact_land(contact_t *contact, const landing_signs_t *signs);
+/* Later in the cycle: did the take-off end on the ground, and how near is the end of a landing? */
+void contact_watch(contact_t *contact, const landing_signs_t *signs);
 
 /* A take-off is commanded and the vehicle has not left the ground, whatever height is measured. */
 bool contact_lifts(const contact_t *contact);

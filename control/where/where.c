@@ -16,11 +16,6 @@ float where_gap_s(const where_t *where, uint32_t now_us)
     return supervisor->started ? seconds_at_most(now_us - supervisor->now_us, STEP_MAX_S) : 0.0F;
 }
 
-void where_watch_take_off(where_t *where)
-{
-    contact_watch_take_off(&where->contact, where->supervisor.state, where->supervisor.state_us);
-}
-
 bool where_stops(const where_t *where)
 {
     return contact_stops(&where->contact, where->supervisor.state);
@@ -31,4 +26,9 @@ bool where_descends(const where_t *where)
     const flight_state_t state = where->supervisor.state;
 
     return state == FLIGHT_DESCENDING || state == FLIGHT_LANDING || state == FLIGHT_LOWERING;
+}
+
+bool where_lets_down(const where_t *where)
+{
+    return where_descends(where) && !where->pilot.given_back;
 }

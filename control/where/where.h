@@ -23,8 +23,8 @@ float where_gap_s(const where_t *where, uint32_t now_us);
 
 bool where_descends(const where_t *where);
 
-/* Did the take-off end on the ground? In each cycle, when it is known who has the throttle. */
-void where_watch_take_off(where_t *where);
+/* The same, but for a descent that began in a pilot's hands: its thrust has a rule of its own. */
+bool where_lets_down(const where_t *where);
 
 /* Heights or reference were lost before the vehicle left the ground: the thrust ramps down to 0. */
 bool where_stops(const where_t *where);

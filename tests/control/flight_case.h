@@ -120,7 +120,7 @@ static inline void took_off_in_vain(void)
     const bool was_airborne = contact->airborne;
 
     contact_end_flight(contact);
-    contact_watch_take_off(contact, FLIGHT_TAKEOFF, 0U);
+    contact_watch(contact, &(landing_signs_t){.state = FLIGHT_TAKEOFF});
     contact->airborne = was_airborne;
 }
 

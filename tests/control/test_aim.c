@@ -15,7 +15,7 @@ void tearDown(void) {}
 static void floats_at_m(float height_m)
 {
     at_mm(1000.0F * height_m);
-    aim_float(&aim, &where, FLIGHT_MODE_FLOAT, FLIGHT_MODE_IDLE);
+    aim_step(&aim, &where, FLIGHT_MODE_FLOAT, FLIGHT_MODE_IDLE);
     at_mm(500.0F);
 }
 
@@ -59,12 +59,12 @@ void test_floating_holds_its_first_height_within_its_reach(void)
         unknown(rows[i].throttle_unknown);
         commands_show(rows[i].has_effect);
         floats_at_m(rows[i].before_m);
-        aim_float(&aim, &where, rows[i].mode, rows[i].entered ? FLIGHT_MODE_IDLE : FLIGHT_MODE_EST_HOLD);
+        aim_step(&aim, &where, rows[i].mode, rows[i].entered ? FLIGHT_MODE_IDLE : FLIGHT_MODE_EST_HOLD);
         NEAR(rows[i].held_m, aim_height_m(&aim, &where.supervisor));
     }
     in_state(FLIGHT_FLYING); /* towards its reference; what floating held is forgotten */
     floats_at_m(0.6F);
-    aim_float(&aim, &where, FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_EST_HOLD);
+    aim_step(&aim, &where, FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_EST_HOLD);
     NEAR(0.6F, aim_height_m(&aim, &where.supervisor));
     in_state(FLIGHT_FLOATING);
     NEAR(0.5F, aim_height_m(&aim, &where.supervisor));
@@ -78,7 +78,7 @@ static bool stays_below(flight_state_t state, float reference_m, int cycles)
     cycle_takes_us(10000000U);
     at_mm(300.0F);
     for (int i = 0; i < cycles; i++) {
-        aim_judge(&aim, &where);
+        aim_step(&aim, &where, now.mode, now.mode_before);
     }
     return aim.out_of_reach;
 }
@@ -103,11 +103,11 @@ void test_a_landing_that_somebody_holds_up_does_not_reach_the_ground(void)
                                    .hover_n = 7.0F};
 
     in_state(FLIGHT_LANDING);
-    aim_judge(&aim, &where);
+    aim_step(&aim, &where, now.mode, now.mode_before);
     TEST_ASSERT_FALSE(aim.out_of_reach);
     for (int i = 0; i < 3; i++) {
         (void)pilot_step(&where.pilot, &held_up);
     }
-    aim_judge(&aim, &where);
+    aim_step(&aim, &where, now.mode, now.mode_before);
     TEST_ASSERT_TRUE(aim.out_of_reach);
 }

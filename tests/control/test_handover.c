@@ -24,7 +24,7 @@ static void change_doubts(uint16_t doubted)
 
 static void locate(void)
 {
-    handover_contact(&est, &where, &now, in.has_throttle);
+    handover_place(&est, &where, &now, &in, PILOT_NO_NEWS, 0.0F);
 }
 
 void test_law_est_is_engaged_where_it_takes_over_in_the_air(void)
@@ -269,7 +269,8 @@ void test_a_doubt_of_the_thrust_or_an_unsure_pilot_leaves_the_law_without_author
         setUp();
         unknown(i == 2);
         hovers_at_n(7.3F);
-        handover_hover(&est, &now);
+        est_law_predict(&est, &parameters, &(est_before_t){.airborne = true, .hover_n = 7.3F}, NULL, 0U,
+                        FRAME_AGE_US + 1000U);
         est_hovers_at_n(6.8F);
         change_doubts((i == 1) ? DOUBT_THRUST : 0U);
         NEAR((i != 0) ? 7.3F : 6.8F, est.hover.thrust_n); /* the sure one, then */
@@ -350,7 +351,7 @@ void test_an_imu_that_is_back_starts_the_estimate_from_thrust_and_heights(void)
         evidence.bias_mps2 = 0.25F;
         evidence.pushed_mps = 0.24F;
         evidence.moved_m = 0.05F;
-        handover_imu(&est, &now);
+        locate();
         TEST_ASSERT_EQUAL(rows[i].starts, est.estimator.initialised);
         if (rows[i].starts) {
             NEAR(rows[i].doubted ? 0.5F : 0.75F, est.estimator.now.height_m);
@@ -383,17 +384,12 @@ void test_a_hover_thrust_learned_in_this_flight_survives_a_law_without_the_estim
 /* In a descent out of a pilot's hands, in 0.1 of 2 s. */
 void test_what_was_felt_for_long_is_forgotten_as_a_bias(void)
 {
-    for (int back = 0; back < 2; back++) {
-        setUp();
-        if (back != 0) {
-            given_back(0.06F);
-        }
-        estimated(0.5F, 0.3F, 0.2F);
-        handover_given_back(&est, &now);
-        NEAR((back != 0) ? 0.285F : 0.3F, est.estimator.now.speed_mps);
-        NEAR((back != 0) ? 0.2015F : 0.2F, est.estimator.now.bias_mps2);
-        NEAR((back != 0) ? 0.0F : 0.5F, est.estimator.now.height_m);
-    }
+    given_back(0.06F);
+    estimated(0.5F, 0.3F, 0.2F);
+    handover_given_back(&est, &now);
+    NEAR(0.285F, est.estimator.now.speed_mps);
+    NEAR(0.2015F, est.estimator.now.bias_mps2);
+    NEAR(0.0F, est.estimator.now.height_m);
 }
 
 /* The end of a landing, which is slow while the tilt moves as in flight. */
@@ -407,8 +403,8 @@ void test_law_est_is_told_that_the_tilt_moves(void)
         change_doubts(0U);
         for (uint32_t i = 1U; i <= 20U; i++) {
             estimated(0.01F, 0.0F, 0.0F);
-            est_law_predict(&est, &parameters, true, NULL, 0U, FRAME_AGE_US + 100000U * i);
-            thrust_n[rocks] = est_law_step(&est, &parameters, true, EST_MODE_LAND, 0.0F);
+            est_predicts(true, NULL, 0U, FRAME_AGE_US + 100000U * i);
+            thrust_n[rocks] = est_flies_n(true, EST_MODE_LAND, 0.0F);
         }
     }
     TEST_ASSERT_TRUE(thrust_n[1] > thrust_n[0] + 0.5F);

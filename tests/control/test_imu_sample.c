@@ -14,25 +14,22 @@ void tearDown(void) {}
 
 void test_at_rest_and_level_nothing_accelerates(void)
 {
-    float upright = 0.0F;
-
     TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 0.0F, imu_up_mps2(&frame));
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 0.0F, imu_up_and_upright(&frame, &upright));
-    TEST_ASSERT_EQUAL_FLOAT(1.0F, upright);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 0.0F, imu_vertical(&frame).up_mps2);
+    TEST_ASSERT_EQUAL_FLOAT(1.0F, imu_vertical(&frame).upright);
 }
 
 /* Gravity in the axes of a vehicle that leans: by pitch to its nose, by roll to its right. */
 void test_at_rest_and_tilted_nothing_accelerates_either(void)
 {
     const float roll_rad = 0.3F, pitch_rad = -0.2F;
-    float upright = 0.0F;
 
     frame.median = (attitude_t){.roll_rad = roll_rad, .pitch_rad = pitch_rad};
     frame.down_mps2 = 9.80665F * cosf(pitch_rad) * cosf(roll_rad);
     frame.right_mps2 = 9.80665F * cosf(pitch_rad) * sinf(roll_rad);
     frame.forward_mps2 = -9.80665F * sinf(pitch_rad);
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 0.0F, imu_up_and_upright(&frame, &upright));
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, cosf(pitch_rad) * cosf(roll_rad), upright);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 0.0F, imu_vertical(&frame).up_mps2);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, cosf(pitch_rad) * cosf(roll_rad), imu_vertical(&frame).upright);
 }
 
 void test_more_than_gravity_is_a_climb(void)

@@ -9,7 +9,7 @@ void tearDown(void) {}
 
 static void tell(void)
 {
-    outputs_tell(&now, false, &out);
+    outputs_write(&now, false, 6.5F, &out);
 }
 
 void test_the_outputs_tell_thrust_height_and_flags(void)
@@ -19,7 +19,6 @@ void test_the_outputs_tell_thrust_height_and_flags(void)
     flagged(FLIGHT_FLAG_HEIGHT);
     innovation_is_m(0.012F);
     estimated(0.52F, 0.0F, 0.0F);
-    outputs_drive(6.5F, &out);
     tell();
     NEAR(6.5F, out.thrust_n);
     NEAR(1.7F, out.idle_n);
@@ -52,7 +51,7 @@ void test_each_lack_has_its_flag(void)
         frame_was_s_ago((i == 1 || i == 5) ? 1.0F : 0.0F);
         accelerations_come(i != 2 && i != 5);
         evidence.doubts = (uint16_t)((i == 4) ? (DOUBT_SIGHT | DOUBT_THRUST) : 0U);
-        outputs_tell(&now, i == 3, &out);
+        outputs_write(&now, i == 3, 6.5F, &out);
         static const uint16_t flags[] = {0U,
                                          FLIGHT_FLAG_ATTITUDE,
                                          FLIGHT_FLAG_IMU,

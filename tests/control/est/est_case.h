@@ -14,6 +14,9 @@
 
 static parameters_t parameters;
 static est_law_t est;
+static float commanded_n;  /* in the cycle before */
+static float sure_hover_n; /* and known then */
+static bool descends;
 
 static inline void set(parameter_id_t id, float value)
 {
@@ -112,7 +115,8 @@ static inline void gust_is_n(float gust_n)
 
 static inline void delivers_n(float thrust_n)
 {
-    est.actuator.thrust_n = est.actuator.demand_n = thrust_n;
+    est.actuator.thrust_n = est.actuator.demand_n = commanded_n = thrust_n;
+    est.actuator.count = 0U;
 }
 
 static inline void band_is_n(float band_n)
@@ -145,6 +149,28 @@ static inline void lifts_with(float lift_n, float lift_mps)
     est.lift.up_mps = lift_mps;
 }
 
+/* A cycle begins. */
+static inline void est_predicts(bool airborne, const imu_sample_t *frames, uint16_t count, uint32_t now_us)
+{
+    const est_before_t before = {
+        .airborne = airborne, .thrust_n = commanded_n, .hover_n = sure_hover_n, .descends = descends};
+
+    est_law_predict(&est, &parameters, &before, frames, count, now_us);
+}
+
+/* Law EST flies in this cycle. A vehicle that descends goes on with it until it says otherwise. */
+static inline float est_flies_n(bool airborne, est_mode_t mode, float reference_m)
+{
+    descends = descends || mode != EST_MODE_HOLD;
+    const est_order_t order = {.mode = mode,
+                               .reference_m = reference_m,
+                               .airborne = airborne,
+                               .hover_n = sure_hover_n,
+                               .descends = descends};
+
+    return est_law_step(&est, &parameters, &order);
+}
+
 /* In the air at 0.5 m and at rest, all sensors fresh; hover thrust, thrust and GRAV 7 N. */
 static inline void est_begin(uint32_t now_us)
 {
@@ -155,18 +181,19 @@ static inline void est_begin(uint32_t now_us)
                                 .down_mps2 = IMU_GRAVITY_MPS2};
     const altitude_t altitude = {.valid = true, .slant_mm = 500.0F};
 
+    commanded_n = sure_hover_n = GRAV_N;
+    descends = false;
     parameters_init(&parameters);
     est_law_init(&est);
-    est_law_predict(&est, &parameters, false, NULL, 0U, now_us - FRAME_AGE_US);
+    est_predicts(false, NULL, 0U, now_us - FRAME_AGE_US);
     est_law_reset(&est, &parameters, false);
-    est_law_predict(&est, &parameters, false, &frame, 1U, now_us);
+    est_predicts(false, &frame, 1U, now_us);
     frame_was_s_ago(0.0F);
     height_was_s_ago(0.0F);
     accelerations_come(true);
     (void)estimator_fuse_height(&est.estimator, &altitude, now_us - FRAME_AGE_US, false);
     estimated(0.5F, 0.0F, 0.0F);
     est_law_engage(&est, GRAV_N, GRAV_N);
-    est_law_set_sure_hover(&est, GRAV_N, false);
     delivers_n(GRAV_N);
 }
 

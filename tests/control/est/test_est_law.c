@@ -162,7 +162,7 @@ void test_the_lift_off_acceleration_follows_the_accelerometer_with_80_ms(void)
     est_law_init(&law);
     for (frame.sequence = 1U; frame.sequence <= 12U; frame.sequence++) {
         frame.arrival_us += 20000UL;
-        est_law_predict(&law, &parameters, false, &frame, 1U, frame.arrival_us);
+        est_law_predict(&law, &parameters, &(est_before_t){.airborne = false}, &frame, 1U, frame.arrival_us);
         if (frame.sequence > 1U) { /* the first one only starts the clock */
             missing *= 0.75F;
             TEST_ASSERT_FLOAT_WITHIN(0.02F, 2.0F - missing, law.lift.up_mps2);

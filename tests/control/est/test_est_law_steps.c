@@ -21,20 +21,23 @@ static void airborne(bool is_airborne)
 
 static void predict(const imu_sample_t *frames, uint16_t count)
 {
-    est_law_predict(&est, &parameters, flies, frames, count, clock_us);
+    est_predicts(flies, frames, count, clock_us);
 }
 
 /* A cycle of the law, with the lift-off as contact is told of it. */
 static float step(est_mode_t mode, float reference_m)
 {
-    flies = flies || (mode == EST_MODE_HOLD && est_law_take_off(&est, &parameters));
-    return est_law_step(&est, &parameters, flies, mode, reference_m);
+    const float thrust_n = est_flies_n(flies, mode, reference_m);
+
+    flies = flies || est_law_left_ground(&est);
+    return thrust_n;
 }
 
 static void reset(void)
 {
     est_law_reset(&est, &parameters, flies);
     airborne(false);
+    descends = false;
 }
 
 /* As the hand-over does both. */
@@ -82,6 +85,25 @@ static void pass(float seconds)
     frame_was_s_ago(0.0F);
 }
 
+/* Given now, and in each cycle from now on. */
+static void command_n(float thrust_n)
+{
+    const float step_s = est.step_s;
+
+    commanded_n = thrust_n;
+    predict(NULL, 0U);
+    est.step_s = step_s;
+}
+
+/* A cycle of another law, in which the vehicle does not descend. */
+static void sure_hover_is_n(float hover_n)
+{
+    sure_hover_n = hover_n;
+    descends = false;
+    predict(NULL, 0U);
+    predict(NULL, 0U);
+}
+
 /* The same with a frame at its end; whoever says then what is estimated. */
 static void pass_seeing(float seconds)
 {
@@ -105,7 +127,7 @@ void test_it_begins_with_nothing_known(void)
     airborne(false);
     TEST_ASSERT_FALSE(est_law_has_imu(&est) || est_law_ready(&est));
     TEST_ASSERT_FALSE(est_law_has_acceleration(&est));
-    est_law_predict(&est, &parameters, flies, NULL, 0U, T_US);
+    est_predicts(flies, NULL, 0U, T_US);
     reset();
     NEAR(0.68F * GRAV_N, step(EST_MODE_HOLD, 0.6F)); /* the ramp, no time yet */
 }
@@ -339,7 +361,7 @@ void test_the_step_of_a_cycle_is_between_none_and_half_a_second(void)
 
 void test_a_frame_moves_the_actuators_model(void)
 {
-    est_law_record_command(&est, 8.0F);
+    command_n(8.0F);
     actuator_t expected = est.actuator;
     cycle(0.0F);
     cycle(0.0F);
@@ -350,13 +372,15 @@ void test_a_frame_moves_the_actuators_model(void)
 
 void test_without_frames_for_250_ms_the_actuators_model_moves_with_the_clock(void)
 {
-    est_law_record_command(&est, 8.0F);
+    command_n(8.0F);
     actuator_t expected = est.actuator;
-    for (int i = 1; i <= 10; i++) { /* 250 ms */
-        clock_us += 25000U;
+    for (int i = 1; i <= 5; i++) { /* 250 ms */
+        actuator_command(&expected, 8.0F, clock_us);
+        clock_us += 50000U;
         predict(NULL, 0U);
         NEAR(7.0F, est.actuator.thrust_n);
     }
+    actuator_command(&expected, 8.0F, clock_us);
     clock_us += 100000U;
     predict(NULL, 0U);
     actuator_advance(&expected, clock_us - ESTIMATOR_FRESH_US);
@@ -391,7 +415,7 @@ void test_the_age_of_frames_and_heights_grows_with_the_clock(void)
     clock_us += 250000U;
     predict(NULL, 0U);
     TEST_ASSERT_TRUE(est_law_has_imu(&est));
-    est_law_predict(&est, &parameters, flies, NULL, 0U, clock_us + 1000U);
+    est_predicts(flies, NULL, 0U, clock_us + 1000U);
     TEST_ASSERT_FALSE(est_law_has_imu(&est));
     setUp();
     deaf();
@@ -517,13 +541,13 @@ void test_the_ramp_grows_by_4_newtons_a_second_to_a_third_above_gravity(void)
 /* A battery that has emptied needs more thrust in the next flight. */
 void test_a_flight_leaves_its_hover_thrust_to_the_next_until_grav_changes(void)
 {
-    est_law_set_sure_hover(&est, 7.6F, false);
+    sure_hover_is_n(7.6F);
     stand();
     NEAR(9.6F, est.hover.most_n);
     NEAR(5.0F, est.hover.least_n);
     NEAR(7.0F, est.hover.thrust_n);
     NEAR(0.49F, est.hover.variance_n2);
-    est_law_set_sure_hover(&est, 8.0F, false); /* on the ground: no flight */
+    sure_hover_is_n(8.0F); /* on the ground: no flight */
     stand();
     NEAR(1.35F * 7.6F, most_n());
     set(PARAMETER_GRAV, 1.5F);
@@ -586,7 +610,7 @@ void test_a_climb_rate_autopilot_hovers_in_the_middle_of_the_stick(void)
     for (int flown = 0; flown < 2; flown++) {
         setUp();
         set(PARAMETER_PLANT, PLANT_CLIMB);
-        est_law_set_sure_hover(&est, 7.4F, false);
+        sure_hover_is_n(7.4F);
         airborne(flown != 0);
         stand();
         lifts_at(2.0F);
@@ -744,14 +768,14 @@ void test_a_reset_forgets_the_flight(void)
 void test_a_thrust_without_authority_is_the_sure_one(void)
 {
     gust_is_n(0.3F);
-    est_law_set_sure_hover(&est, 7.5F, false);
+    sure_hover_is_n(7.5F);
     est_law_doubt(&est, &(est_doubts_t){.without_authority = false});
     NEAR(7.0F, est.hover.thrust_n);
     NEAR(0.3F, est.hover.gust_n);
     est_law_doubt(&est, &(est_doubts_t){.without_authority = true});
     NEAR(7.5F, est.hover.thrust_n);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, est.hover.gust_n);
-    est_law_set_sure_hover(&est, 11.0F, false);
+    sure_hover_is_n(11.0F);
     est_law_doubt(&est, &(est_doubts_t){.without_authority = true});
     NEAR(9.0F, est.hover.thrust_n);
 }
@@ -812,9 +836,9 @@ static float sinking_at_most(const cascade_state_t *state)
 static void move_somehow(float height_m, float speed_mps)
 {
     setUp();
-    est_law_record_command(&est, 7.6F);
+    command_n(7.6F);
     pass_seeing(0.1F);
-    est_law_record_command(&est, 7.3F); /* takes effect within the delay */
+    command_n(7.3F); /* takes effect within the delay */
     estimated(height_m, speed_mps, 0.0F);
     terrain_rises(0.1F, 0.0F);
     upright_is(0.97F);
@@ -859,7 +883,7 @@ static float descend(est_mode_t mode, bool wants_more)
 void test_the_ceiling_of_a_descent_starts_above_the_entrys_hover_thrust_and_falls(void)
 {
     NEAR(8.5F, descend(EST_MODE_LAND, true));
-    est_law_set_sure_hover(&est, 8.0F, true);  /* learned since: it is not the entry's */
+    sure_hover_n = 8.0F;                       /* learned since: it is not the entry's */
     NEAR(8.45F, descend(EST_MODE_LAND, true)); /* 0.1 N/s */
     NEAR(7.5F, descend(EST_MODE_SINK, true));
     NEAR(7.4F, descend(EST_MODE_SINK, true));  /* 0.2 N/s */
@@ -869,7 +893,7 @@ void test_the_ceiling_of_a_descent_starts_above_the_entrys_hover_thrust_and_fall
         (void)descend(EST_MODE_LAND, true);
     }
     TEST_ASSERT_EQUAL_FLOAT(0.0F, descend(EST_MODE_LAND, true));
-    est_law_set_sure_hover(&est, 7.2F, false); /* the descent is over */
+    sure_hover_is_n(7.2F); /* the descent is over */
     NEAR(8.7F, descend(EST_MODE_LAND, true));
     reset(); /* and so it is on the ground */
     engage(GRAV_N, GRAV_N);
@@ -883,7 +907,7 @@ void test_without_heights_the_thrust_is_not_cut_too_far(void)
     TEST_ASSERT_TRUE(descend(EST_MODE_LAND, false) < 5.6F);
     setUp();
     hover_init(&est.hover, 1.0F, 0.1F, 0.0F, 9.0F);
-    est_law_set_sure_hover(&est, 1.0F, false);
+    sure_hover_is_n(1.0F);
     const float thrust_n = descend(EST_MODE_SINK, false);
     TEST_ASSERT_TRUE(thrust_n >= 0.0F && thrust_n < 0.5F);
 }
@@ -986,7 +1010,7 @@ void test_ignored_terrain_is_forgotten_within_30_seconds_and_by_a_new_reference(
             pass_seeing(0.1F);
             (void)go_on_n(0.45F, 0.60F);
         }
-        est_law_set_sure_hover(&est, GRAV_N, false);
+        sure_hover_is_n(GRAV_N);
         delivers_n(GRAV_N);
         for (int k = 0; k < 40; k++) { /* until no slew is left */
             pass_seeing(0.025F);
@@ -1026,7 +1050,7 @@ void test_a_command_takes_effect_after_the_delay_and_beyond_the_deadband(void)
     set(PARAMETER_DELAY, 0.03F);
     pass(0.0F);
     band_is_n(0.2F);
-    est_law_record_command(&est, 7.5F);
+    command_n(7.5F);
     actuator_t told = est.actuator;
     actuator_advance(&told, clock_us + 30000U);
     NEAR(GRAV_N, told.thrust_n);

@@ -28,7 +28,7 @@ void test_the_noise_is_a_sixth_of_the_squared_second_difference_over_five_height
     for (int i = 0; i < 4; i++) {
         roughness = (roughness_t){.noise_m = rows[i].before_m,
                                   .previous_m = {rows[i].first_m, rows[i].second_m}};
-        roughness_measure(&roughness, 0.50F);
+        roughness_step(&roughness, 0.50F, 0.0F, T_US);
         const float bend_m = 0.5F - 2.0F * rows[i].first_m + rows[i].second_m;
         const float expected = (i == 0) ? sqrtf(0.8e-4F + 0.2F * bend_m * bend_m / 6.0F) : rows[i].noise_m;
         NEAR(expected, roughness.noise_m);
@@ -50,8 +50,8 @@ void test_a_floor_is_rough_beyond_20_mm(void)
 static void edge(float innovation_m, float edge_m, uint32_t ago_us)
 {
     roughness_init(&roughness);
-    roughness_watch_bars(&roughness, edge_m, T_US - ago_us);
-    roughness_watch_bars(&roughness, innovation_m, T_US);
+    roughness_step(&roughness, 0.0F, edge_m, T_US - ago_us);
+    roughness_step(&roughness, 0.0F, innovation_m, T_US);
 }
 
 void test_an_edge_that_returns_within_a_second_is_a_bar_of_half_its_height(void)
@@ -78,7 +78,7 @@ void test_what_is_lower_than_40_mm_or_higher_than_150_is_no_edge_of_a_bar(void)
     for (int i = 0; i < 2; i++) {
         edge(none_m[i], 0.06F, 1000U);
         NEAR(0.004F, roughness.noise_m);
-        roughness_watch_bars(&roughness, -0.05F, T_US + 1U);
+        roughness_step(&roughness, 0.0F, -0.05F, T_US + 1U);
         NEAR(0.025F, roughness.noise_m);
     }
 }

@@ -14,7 +14,7 @@ void tearDown(void) {}
 static float step_n(flight_mode_t before, flight_mode_t mode)
 {
     mode_changes(before, mode);
-    (void)laws_step(&laws, &est, &now);
+    (void)laws_step(&laws, &est, &now, false);
     return laws.setpoint_n;
 }
 

@@ -19,8 +19,11 @@ void test_law_est_is_asked_to_hold_to_land_or_to_sink(void)
         setUp();
         mode_is(modes[i]);
         est_law_t expected = est;
-        const float expected_n = est_law_step(&expected, &parameters, where.contact.airborne, asked[i], 0.6F);
-        TEST_ASSERT_FALSE(laws_step(&laws, &est, &now));
-        NEAR(expected_n, laws.setpoint_n);
+        const est_order_t order = {.mode = asked[i],
+                                   .reference_m = 0.6F,
+                                   .airborne = where.contact.airborne,
+                                   .hover_n = where.hover.thrust_n};
+        const float expected_n = est_law_step(&expected, &parameters, &order);
+        NEAR(expected_n, laws_step(&laws, &est, &now, false));
     }
 }

@@ -11,7 +11,7 @@ void setUp(void)
     begin();
     memset(&laws, 0, sizeof laws);
     mode_is(FLIGHT_MODE_IDLE);
-    (void)laws_step(&laws, &est, &now); /* it has stood on the ground */
+    (void)laws_step(&laws, &est, &now, false); /* it has stood on the ground */
     pidt_reset(&expected);
     mode_is(FLIGHT_MODE_LAW);
     now.law = LAW_PIDT;
@@ -26,7 +26,7 @@ void tearDown(void) {}
 
 static float step_n(void)
 {
-    (void)laws_step(&laws, &est, &now);
+    (void)laws_step(&laws, &est, &now, false);
     return laws.setpoint_n;
 }
 

@@ -18,7 +18,7 @@ void tearDown(void) {}
 static float step_n(flight_mode_t before, flight_mode_t mode)
 {
     mode_changes(before, mode);
-    (void)laws_step(&laws, &est, &now);
+    (void)laws_step(&laws, &est, &now, false);
     return laws.setpoint_n;
 }
 
@@ -127,65 +127,93 @@ void test_a_descent_starts_from_the_measured_rate(void)
     }
 }
 
-/* 0.3 N is left from a transfer before, in a cycle of 0.1 s. */
+/* 0.3 N is left from a transfer before. */
 static void has_left_0_3_n(void)
 {
-    const float thrust_n = now.thrust_n;
-    const flight_mode_t before = now.mode_before, mode = now.mode;
+    now.thrust_n = 7.3F;
+    mode_is(FLIGHT_MODE_HOVER);
+    NEAR(7.3F, laws_step(&laws, &est, &now, true));
+}
 
-    now.thrust_n = laws.setpoint_n + 0.3F;
-    mode_is(FLIGHT_MODE_LAW);
-    laws_transfer(&laws, &now, true);
-    now.thrust_n = thrust_n;
-    mode_changes(before, mode);
+/* Thrust of the first cycle, less what the mode itself gives. */
+static float transferred_n(bool law_changed)
+{
+    return laws_step(&laws, &est, &now, law_changed) - laws.setpoint_n;
 }
 
 void test_the_thrust_passes_over_without_a_jump(void)
 {
     static const struct {
         flight_mode_t before, now;
-        float thrust_n, transfer_n;
+        float thrust_n, starts_n;
         bool law_changed;
-    } rows[] = {{FLIGHT_MODE_LAW, FLIGHT_MODE_HOVER, 6.8F, -0.2F, false},
-                {FLIGHT_MODE_LAW, FLIGHT_MODE_HOVER, 6.0F, -0.5F, false}, /* half a newton from hover */
-                {FLIGHT_MODE_LAW, FLIGHT_MODE_HOVER, 9.0F, 0.5F, false},
-                {FLIGHT_MODE_LAW, FLIGHT_MODE_LAW, 9.0F, 2.0F, true},
-                {FLIGHT_MODE_LAW, FLIGHT_MODE_IDLE, 6.8F, 0.0F, false},
-                {FLIGHT_MODE_LAW, FLIGHT_MODE_DESCENT, 6.8F, 0.0F, false},
-                {FLIGHT_MODE_LAW, FLIGHT_MODE_EST_LAND, 6.8F, 0.0F, true},
-                {FLIGHT_MODE_IDLE, FLIGHT_MODE_LAW, 6.8F, 0.0F, false},
-                {FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_EST_LAND, 6.8F, 0.24F, false}, /* fades: 0.4 of 0.5 s */
-                {FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_EST_SINK, 6.8F, 0.24F, false},
-                {FLIGHT_MODE_LAW, FLIGHT_MODE_LAW, 6.8F, 0.24F, false},
-                {FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_BLIND_DESCENT, 6.8F, -0.2F, false}};
+    } rows[] = {{FLIGHT_MODE_LAW, FLIGHT_MODE_HOVER, 6.8F, 6.8F, false},
+                {FLIGHT_MODE_LAW, FLIGHT_MODE_HOVER, 6.0F, 6.5F, false}, /* half a newton from hover */
+                {FLIGHT_MODE_LAW, FLIGHT_MODE_HOVER, 9.0F, 7.5F, false},
+                {FLIGHT_MODE_LAW, FLIGHT_MODE_LAW, 9.0F, 9.0F, true},
+                {FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_BLIND_DESCENT, 6.8F, 6.8F, false}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         setUp();
-        (void)step_n(FLIGHT_MODE_HOVER, FLIGHT_MODE_HOVER);
+        has_left_0_3_n();
         mode_changes(rows[i].before, rows[i].now);
         now.thrust_n = rows[i].thrust_n;
+        NEAR(rows[i].starts_n, laws_step(&laws, &est, &now, rows[i].law_changed));
+    }
+}
+
+void test_a_descent_by_heights_a_landing_and_the_ground_start_at_once(void)
+{
+    static const struct {
+        flight_mode_t before, now;
+        bool law_changed;
+    } rows[] = {{FLIGHT_MODE_LAW, FLIGHT_MODE_IDLE, false},
+                {FLIGHT_MODE_LAW, FLIGHT_MODE_DESCENT, false},
+                {FLIGHT_MODE_LAW, FLIGHT_MODE_EST_LAND, true},
+                {FLIGHT_MODE_IDLE, FLIGHT_MODE_LAW, false}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
         has_left_0_3_n();
-        laws_transfer(&laws, &now, rows[i].law_changed);
-        NEAR(rows[i].transfer_n, laws.transfer_n);
+        mode_changes(rows[i].before, rows[i].now);
+        now.thrust_n = 6.8F;
+        NEAR(0.0F, transferred_n(rows[i].law_changed));
     }
     for (int lifts = 0; lifts < 2; lifts++) {
         setUp();
-        (void)step_n(FLIGHT_MODE_HOVER, FLIGHT_MODE_HOVER);
+        has_left_0_3_n();
         mode_changes(FLIGHT_MODE_HOVER, FLIGHT_MODE_EST_HOLD);
         now.thrust_n = 6.8F;
         lifting(lifts != 0);
-        laws_transfer(&laws, &now, false);
-        NEAR((lifts != 0) ? 0.0F : -0.2F, laws.transfer_n);
+        if (lifts != 0) {
+            NEAR(0.0F, transferred_n(false));
+        } else {
+            NEAR(6.8F, laws_step(&laws, &est, &now, false));
+        }
+    }
+}
+
+/* In a cycle of 0.1 s: 0.4 of 0.5 s. */
+void test_what_is_left_of_a_transfer_fades(void)
+{
+    static const struct {
+        flight_mode_t before, now;
+    } rows[] = {{FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_EST_LAND},
+                {FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_EST_SINK},
+                {FLIGHT_MODE_LAW, FLIGHT_MODE_LAW}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        has_left_0_3_n();
+        mode_changes(rows[i].before, rows[i].now);
+        NEAR(0.24F, transferred_n(false));
     }
 }
 
 /* Else the armed idle would go on for a second after a disarming. */
 void test_a_change_of_the_law_on_the_ground_adds_nothing_to_the_idle(void)
 {
-    now.thrust_n = 1.8F;
-    (void)step_n(FLIGHT_MODE_IDLE, FLIGHT_MODE_IDLE);
     has_left_0_3_n();
-    laws_transfer(&laws, &now, true);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, laws.transfer_n);
+    now.thrust_n = 1.8F;
+    mode_is(FLIGHT_MODE_IDLE);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, laws_step(&laws, &est, &now, true));
 }
 
 void test_a_law_that_goes_on_without_the_estimate_starts_near_hover(void)
@@ -198,8 +226,7 @@ void test_a_law_that_goes_on_without_the_estimate_starts_near_hover(void)
         if (lost != 0) {
             lose_the_estimate();
         }
-        laws_transfer(&laws, &now, true);
-        NEAR((lost != 0) ? 0.5F : 2.0F, laws.transfer_n);
+        NEAR((lost != 0) ? 7.5F : 9.0F, laws_step(&laws, &est, &now, true));
     }
 }
 
@@ -246,18 +273,19 @@ void test_each_mode_has_its_thrust(void)
     height_is_new(true, 0U);
     TEST_ASSERT_TRUE(step_n(FLIGHT_MODE_LAW, FLIGHT_MODE_LAW) > GRAV_N + 0.1F);
     est_law_t expected = est;
+    const est_order_t order = {
+        .mode = EST_MODE_HOLD, .reference_m = 0.6F, .airborne = where.contact.airborne, .hover_n = 7.2F};
     now.law = LAW_EST;
-    NEAR(est_law_step(&expected, &parameters, where.contact.airborne, EST_MODE_HOLD, 0.6F),
-         step_n(FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_EST_HOLD));
+    NEAR(est_law_step(&expected, &parameters, &order), step_n(FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_EST_HOLD));
 }
 
 void test_a_take_off_given_up_takes_two_newtons_a_second(void)
 {
     has_left_0_3_n();
     now.thrust_n = 5.0F;
-    laws_stop(&laws, &now);
-    NEAR(4.8F, laws.setpoint_n);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, laws.transfer_n);
+    took_off_in_vain();
+    in_state(FLIGHT_LANDING);
+    NEAR(4.8F, laws_step(&laws, &est, &now, false));
 }
 
 void test_the_release_is_the_laws(void)

@@ -84,7 +84,7 @@ static float thrust_after_n(flight_state_t state, float height_m)
 {
     landing.state = state;
     landing.height_m = height_m;
-    contact_land(&contact, &landing);
+    contact_watch(&contact, &landing);
     return touchdown_limit_n(contact.touching_s, 7.0F);
 }
 
@@ -138,6 +138,11 @@ void test_a_landing_ends_after_more_than_a_second_without_thrust(void)
     }
 }
 
+static void watch(flight_state_t state, uint32_t state_us)
+{
+    contact_watch(&contact, &(landing_signs_t){.state = state, .state_us = state_us});
+}
+
 void test_a_take_off_that_ends_on_the_ground_stops_there(void)
 {
     static const struct {
@@ -152,12 +157,12 @@ void test_a_take_off_that_ends_on_the_ground_stops_there(void)
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         setUp();
         fly(rows[i].airborne);
-        contact_watch_take_off(&contact, FLIGHT_TAKEOFF, rows[i].takeoff_us);
+        watch(FLIGHT_TAKEOFF, rows[i].takeoff_us);
         TEST_ASSERT_FALSE(contact_stops(&contact, FLIGHT_TAKEOFF));
-        contact_watch_take_off(&contact, rows[i].state, 0U);
+        watch(rows[i].state, 0U);
         TEST_ASSERT_EQUAL(rows[i].stops, contact_stops(&contact, rows[i].state));
         TEST_ASSERT_EQUAL(rows[i].stops, contact_ends_without_thrust(&contact));
-        contact_watch_take_off(&contact, FLIGHT_LANDING, 0U);
+        watch(FLIGHT_LANDING, 0U);
         TEST_ASSERT_EQUAL(rows[i].stops, contact_stops(&contact, FLIGHT_LANDING)); /* and later */
         contact_lift_off(&contact); /* it has left the ground after all */
         TEST_ASSERT_FALSE(contact_stops(&contact, FLIGHT_LANDING));
