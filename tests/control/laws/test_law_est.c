@@ -24,6 +24,6 @@ void test_law_est_is_asked_to_hold_to_land_or_to_sink(void)
                                    .airborne = where.contact.airborne,
                                    .hover_n = where.hover.thrust_n};
         const float expected_n = est_law_step(&expected, &parameters, &order);
-        NEAR(expected_n, laws_step(&laws, &est, &now, false));
+        TEST_ASSERT_EQUAL_FLOAT(expected_n, laws_step(&laws, &est, &now, false));
     }
 }
