@@ -7,7 +7,7 @@ set(CONTROL_SOURCES
     control/guard.c control/handover.c control/imu_axes.c control/imu_finding.c control/imu_mapping.c control/imu_sample.c
     control/in_air.c control/laws/descent.c control/laws/law_descent.c control/laws/law_est.c control/laws/law_pid.c
     control/laws/law_pidt.c control/laws/laws.c control/laws/pid.c control/laws/pidt.c control/laws/stuck_pin.c control/median.c
-    control/modes.c control/outputs.c control/parameters.c control/ray_clock.c control/reach.c control/readings.c
+    control/modes.c control/outputs.c control/parameters.c control/ray_clock.c control/reach.c
     control/sense/accelerometer.c control/sense/beam.c control/sense/confirmation.c control/sense/heights.c control/sense/push.c
     control/sense/rules.c control/sense/sense.c control/sense/senses.c control/sense/stand.c control/sense/sway.c
     control/sense/tilt.c control/sense/verdict.c control/sense/witness.c control/signs.c control/situation.c control/thrust.c

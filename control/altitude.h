@@ -98,8 +98,8 @@ float altitude_under_mirror(const mirror_geometry_t *mirror, float slant_mm, flo
  * altitude_from_ranges(), because the formula is linear in the values whose means are kept. */
 float altitude_at_tilt(const altitude_t *altitude, float roll_rad, float pitch_rad);
 
-/* Mean height over the valid groups of two rays or more; a sensor of one ray: readings.h. ranges: `count` of
- * them. Both pointers are borrowed for the call. Angles in radians, |angle| < pi/2. */
+/* Mean height over the valid groups of two rays or more; a sensor of one ray: examples/one_ray. ranges:
+ * `count` of them. Both pointers are borrowed for the call. Angles in radians, |angle| < pi/2. */
 altitude_t altitude_from_ranges(const altitude_geometry_t *geometry, const mirror_range_t *ranges,
                                 size_t count, float roll_rad, float pitch_rad);
 

@@ -1,7 +1,7 @@
 /* Statistics over the latest scans. Identical scans are copies and are rejected: with a sensor noise of 3 mm,
  * chance makes two scans with the same digits once in some thousands.
- * What breaks: a height of one ray. altitude_from_ranges() refuses it; readings.h makes groups of single
- * readings. */
+ * What breaks: a height of one ray. altitude_from_ranges() refuses it; examples/one_ray makes groups of
+ * single readings. */
 #include "control/sense/beam.h"
 
 #include <math.h>

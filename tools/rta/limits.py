@@ -5,6 +5,7 @@ FREE and SCAN, which plomada.csv describes. Costs count in whole nanoseconds, as
 """
 import argparse
 import math
+import signal
 from dataclasses import replace
 
 import analysis
@@ -45,6 +46,7 @@ def latencies(scale, options):
 
 
 def main():
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)      # a reader that has seen enough is no error
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--cost-scale", type=float, default=1.0, metavar="X", help="as that of the flight (default 1)")
     scale = parser.parse_args().cost_scale

@@ -15,6 +15,7 @@ import argparse
 import copy
 import json
 import math
+import signal
 import sys
 
 import analysis
@@ -171,6 +172,7 @@ def run(words):
 
 
 def main():
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)      # a reader that has seen enough is no error
     try:
         status = run(sys.argv[1:])
         sys.stdout.flush()

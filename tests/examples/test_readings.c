@@ -1,6 +1,6 @@
 /* A sensor of one ray at 100 Hz (as a TFmini, in millimetres): its groups, and flights by them. SYNTHETIC:
  * white noise of 5 mm, 10 ms late; the vehicle is that of noisy_plant.h. */
-#include "control/readings.h"
+#include "readings.h"
 #include "control/thrust.h"
 #include "noisy_plant.h"
 #include "unity.h"

@@ -1,4 +1,4 @@
-#include "control/readings.h"
+#include "readings.h"
 
 #include <math.h>
 

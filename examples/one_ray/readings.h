@@ -10,8 +10,8 @@
  *
  * Millimetres; times named _us are on one wrapping 32-bit clock. Pure; the caller owns the state, all zero at
  * first. Context: one Task. */
-#ifndef CONTROL_READINGS_H
-#define CONTROL_READINGS_H
+#ifndef ONE_RAY_READINGS_H
+#define ONE_RAY_READINGS_H
 
 #include <stdbool.h>
 #include <stdint.h>
