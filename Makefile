@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly mine lab plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open site publish test test-long soak format mutants test-ground port size faults fuzz prove rta bench coverage package others release firmware flash check-ti clean
+.PHONY: help build fly mine lab plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open ground-fly site publish test test-long soak format mutants test-ground port size faults fuzz prove rta bench coverage package others release firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -117,6 +117,10 @@ ground-vehicle: ## The simulated vehicle as one WebAssembly module: build-ground
 ground-open: ground ## The same, served on this machine: http://localhost:8123 (FILE=a law of your own, docs/my_law.md)
 	@python3 -B tools/ground/serve.py build-ground 8123
 
+ground-fly: build ## A flight in a program of its own, for the page: ws://localhost:8124 (ARGS=hover-60s, or another scenario)
+	@$(setup) plot ground
+	@$(python) tools/ground/bridge.py 8124 build/plomada fly $(or $(ARGS),hover-60s) --realtime
+
 site: ## The pages as a site with a search: build-site/index.html
 	@$(setup) site
 	@NO_MKDOCS_2_WARNING=1 build/site-tools/bin/mkdocs --quiet build --strict --config-file tools/site/mkdocs.yml
@@ -128,6 +132,7 @@ publish: ground ## The site with the browser page in it, to be put on a web serv
 
 test-ground: ground ## The page's tests: units, then Chromium against the unmodified firmware; the vehicle in wasmtime
 	@$(python) -B tests/ground/test_vehicle.py build/plomada
+	@$(python) -B tests/ground/test_bridge.py build/plomada
 	@cd ground && npm test --silent
 
 test: ## The tests, but for the long ones: under ASan and UBSan, then as released

@@ -120,7 +120,7 @@ function ConnectDialog() {
           <button onClick={() => void openSerial(true)}>{words.serialGo}</button>
         </section>
         <section>
-          <h4>{words.socketTitle}</h4><p>{words.socketText} <code>build/plomada fly hover-60s --realtime --xbee ws:8124</code></p>
+          <h4>{words.socketTitle}</h4><p>{words.socketText} <code>make ground-fly</code></p>
           <label class="address">{words.socketAddress}<input value={address.value} onInput={(event) => (address.value = event.currentTarget.value)} /></label>
           <button onClick={() => { keep('address', address.value); void connectSocket(address.value); }}>{words.socketGo}</button>
         </section>

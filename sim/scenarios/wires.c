@@ -8,7 +8,6 @@
 
 #include "sim/host/pace.h"
 #include "sim/host/port.h"
-#include "sim/host/websocket.h"
 
 const char *const wire_names[] = {"laser", "imu", "xbee"};
 _Static_assert(sizeof wire_names / sizeof wire_names[0] == BOARD_WIRES, "every wire has a name");
@@ -29,27 +28,9 @@ static struct {
     void *heard_context;
 } wires;
 
-static bool is_terminal(const char *device)
+static const char *open_terminal(void)
 {
-    return strcmp(device, WIRES_PTY) == 0 || strncmp(device, WIRES_WEBSOCKET, strlen(WIRES_WEBSOCKET)) == 0;
-}
-
-static const char *open_websocket(const char *number)
-{
-    char *end;
-    const unsigned long tcp_port = strtoul(number, &end, 10);
-
-    if (*number < '0' || *number > '9' || *end != '\0' || tcp_port < 1 || tcp_port > 65535) {
-        return "not a port, 1..65535";
-    }
-    return websocket_open(&wires.terminal, (unsigned)tcp_port);
-}
-
-static const char *open_terminal(const char *device)
-{
-    const char *error = strcmp(device, WIRES_PTY) == 0
-                            ? port_open_pty(&wires.terminal, nominal_rates[BOARD_RADIO])
-                            : open_websocket(device + strlen(WIRES_WEBSOCKET));
+    const char *error = port_open_pty(&wires.terminal, nominal_rates[BOARD_RADIO]);
 
     if (error == NULL) {
         wires.has_terminal = true;
@@ -73,11 +54,11 @@ const char *wires_open(const char *const device[BOARD_WIRES], board_wire_t *fail
 {
     memset(&wires, 0, sizeof wires);
     for (int i = BOARD_WIRES - 1; i >= 0; i--) {
-        const bool terminal = i == BOARD_RADIO && device[i] != NULL && is_terminal(device[i]);
+        const bool terminal = i == BOARD_RADIO && device[i] != NULL && strcmp(device[i], WIRES_PTY) == 0;
         const char *error = NULL;
 
         if (device[i] != NULL) {
-            error = terminal ? open_terminal(device[i]) : open_end((board_wire_t)i, device[i]);
+            error = terminal ? open_terminal() : open_end((board_wire_t)i, device[i]);
         }
         if (error != NULL) {
             *failed = (board_wire_t)i;

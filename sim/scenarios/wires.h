@@ -10,17 +10,16 @@
 extern const char *const wire_names[]; /* BOARD_WIRES */
 
 #define WIRES_PTY "pty"
-#define WIRES_WEBSOCKET "ws:" /* and a port's number */
 
-/* A device's path for each wire, NULL: its model. WIRES_PTY or WIRES_WEBSOCKET for the radio: the model's
- * ground end is a pseudo-terminal or a WebSocket, whose name is printed on stdout. NULL when fine (then
+/* A device's path for each wire, NULL: its model. WIRES_PTY for the radio: the model's ground end is a
+ * pseudo-terminal, whose name is printed on stdout. NULL when fine (then
  * wires_close()), else what failed, on wire *failed. */
 const char *wires_open(const char *const device[BOARD_WIRES], board_wire_t *failed);
 
 /* After board_power_on() and pace_begin(). `heard` gets what the firmware gives to a real radio. */
 void wires_connect(board_terminal_t heard, void *heard_context);
 
-/* The operator's terminal shows an octet; nothing when it is on neither of the two. */
+/* The operator's terminal shows an octet; nothing when it is on none. */
 void wires_show(unsigned octet);
 
 /* Shape of kernel_set_pacer(): gives the ports the firmware's present rates, then waits. */

@@ -16,7 +16,7 @@ import unittest
 from pathlib import Path
 
 FORM = re.compile(r"\b(SCENARIO|FILE|DIR|NAME|ADDRESS|COMMAND|SUBCOMMAND|PATH|DEVICE|SPEC|LINE)\b|\.\.\.|…|\[|(^| )-o$")
-BY_HAND = re.compile(r"/dev/|/tmp/|--realtime|\b(hil|accept|board|laser)\b|ws:|pty|\breal\b")
+BY_HAND = re.compile(r"/dev/|/tmp/|--realtime|\b(hil|accept|board|laser)\b|pty|\breal\b")
 BEGINS = re.compile(r"(?:\$ )?(?:time )?((?:build/|build-mine/)?plomada(?: .*)?)")
 FLIGHT_MOST_S = 120
 

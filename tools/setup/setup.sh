@@ -15,7 +15,7 @@
 #   others    sources of urg_library, hokuyoaist and flexiport in build/others, at the commits of tools/setup/others.txt
 #   plot      Python virtual environment build/venv with the packages of tools/plot/requirements.txt
 #   campaign  the same, and in it those of tools/campaign/requirements.txt; for tuning too, and for some tests
-#   ground    clang, lld, wasi-libc and binaryen for the vehicle in the browser; wasmtime in build/venv; node and the pinned
+#   ground    clang, lld, wasi-libc and binaryen for the vehicle in the browser; wasmtime and websockets in build/venv; node and the pinned
 #             packages of ground/package-lock.json; Chromium and Firefox for its tests
 #   site      Python virtual environment build/site-tools with the packages of tools/site/requirements.txt
 #

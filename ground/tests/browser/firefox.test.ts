@@ -37,7 +37,7 @@ describe.skipIf(leftOut(FIREFOX === null ? 'no Firefox' : null))(`in Firefox, by
   });
 
   it('a program of its own is reached by WebSocket, and its end is told', async () => {
-    board = await startBoard(`ws:${await freePort()}`);
+    board = await startBoard(`${await freePort()}`);
     page = await openPage(browser, site.url);
     await page.getByLabel('Address').fill(board.address);
     await button(page, 'Connect').click();

@@ -184,7 +184,7 @@ describe('what the page has not heard for a second and a half is not shown as so
 
 describe('by WebSocket', () => {
   async function connected(): Promise<void> {
-    board = await startBoard(`ws:${await freePort()}`);
+    board = await startBoard(`${await freePort()}`);
     page = await openPage(browser, site.url);
     await page.getByLabel('Address').fill(board.address);
     await button(page, 'Connect').click();
@@ -228,7 +228,7 @@ describe.skipIf(why !== null)(`by Web Serial${why ? ` (not here: ${why})` : ''}`
 
 describe('a calibration', () => {
   it('is over on the page when nothing is heard any more; the vehicle is told to stop, until it answers', async () => {
-    board = await startBoard(`ws:${await freePort()}`);
+    board = await startBoard(`${await freePort()}`);
     page = await openPage(browser, site.url);
     await page.getByLabel('Address').fill(board.address);
     await button(page, 'Connect').click();

@@ -8,6 +8,8 @@ import { chromium, firefox, type Browser, type Page } from 'playwright-core';
 
 export const ROOT = resolve(import.meta.dirname, '../../..');
 export const PLOMADA = join(ROOT, 'build/plomada');
+const PYTHON = join(ROOT, 'build/venv/bin/python');
+const BRIDGE = join(ROOT, 'tools/ground/bridge.py');
 const SITE = join(ROOT, 'build-ground');
 const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
 /** The system's own, by WebDriver BiDi; null: none here. */
@@ -108,8 +110,10 @@ export interface Board {
 }
 
 /** `plomada fly` in real time, the radio's ground end at `xbee`. */
-export function startBoard(xbee: string): Promise<Board> {
-  const child = spawn(PLOMADA, ['fly', 'hover-60s', '--realtime', '--xbee', xbee], { stdio: ['ignore', 'pipe', 'pipe'] });
+export function startBoard(port: string): Promise<Board> {
+  const flight = [PLOMADA, 'fly', 'hover-60s', '--realtime'];
+  const [program, ...words] = port === 'pty' ? [...flight, '--xbee', 'pty'] : [PYTHON, '-B', BRIDGE, port, ...flight];
+  const child = spawn(program!, words, { stdio: ['ignore', 'pipe', 'pipe'] });
   const over = new Promise<void>((done) => child.on('exit', () => done()));
   return new Promise((done, failed) => {
     let text = '';

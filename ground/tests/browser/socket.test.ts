@@ -11,7 +11,7 @@ let board: Board;
 beforeAll(async () => {
   site = await serveSite();
   browser = await openBrowser();
-  board = await startBoard(`ws:${await freePort()}`);
+  board = await startBoard(`${await freePort()}`);
 });
 afterAll(async () => {
   await browser?.close();
@@ -100,7 +100,7 @@ describe('whose page may fly the simulation', () => {
   ];
   for (const [what, url] of origins) {
     it(`a page ${what} needs the address that the program printed`, async () => {
-      const own = await startBoard(`ws:${await freePort()}`);
+      const own = await startBoard(`${await freePort()}`);
       const elsewhere = await openBrowser(undefined, '--host-resolver-rules=MAP strange.example 127.0.0.1');
       try {
         const other = await openPage(elsewhere, url(site));
@@ -118,7 +118,7 @@ describe('whose page may fly the simulation', () => {
   }
 
   it('a page of this machine needs the port only', async () => {
-    const own = await startBoard(`ws:${await freePort()}`);
+    const own = await startBoard(`${await freePort()}`);
     const other = await openPage(browser, site.url);
     await other.getByLabel('Address').fill(own.address.replace(/\/[0-9a-f]+$/, ''));
     await button(other, 'Connect').click();
