@@ -1,8 +1,8 @@
 """The control room stays a room that one person can hold: small files, small structs, plain functions, no circles.
 
 Counted as architects do, by text: lines of a .c file, members of a struct, decisions of a function (if, for, while, case, ?, &&, ||,
-plus one), the members of other files' structs that flight.c names, includes that come back to where they began, tests that include
-a source. What is above its limit stands in tests/rules/excuses.txt with its figure, and may only fall.
+plus one), the members of other files' structs that flight.c names, includes and calls that come back to where they began, tests that
+include a source. What is above its limit stands in tests/rules/excuses.txt with its figure, and may only fall.
 """
 import re
 
@@ -19,6 +19,8 @@ FLIGHT_NAMES = 12  # members of other files' structs that flight.c names
 DECISION = re.compile(r"\b(?:if|for|while|case)\b|\?|&&|\|\|")
 LABELS = re.compile(r"case\b[^:]*:(?=\s*case\b)")    # labels that stand together are one decision
 STRUCT = re.compile(r"typedef struct(?:\s+\w+)?\s*\{(.*?)\n\}\s*(\w+);", re.DOTALL)
+FUNCTION = re.compile(r"^(?!static\b)\w[\w ]*?[ *](\w+)\([^;{}]*\)\s*\{", re.MULTILINE)    # that others may call
+TABLES = {"control/laws/table.h": "control/laws/laws"}
 EXCUSES = "tests/rules/excuses.txt"
 
 
@@ -36,14 +38,35 @@ def bodies(text):
         yield name, "\n".join(lines[line - 1:line + count + 4]).split("\n}\n")[0]
 
 
-def circles(the_house):
-    """Files of control/ whose includes come back: header and source of one name count as one."""
-    files = the_house.sources("control", ".c", ".h")
+def one_of(path):
+    """Header and source of one name count as one."""
+    return path.rsplit(".", 1)[0]
+
+
+def included(the_house):
+    """{file: files of control/ that it includes}"""
     edges = {}
-    for path in files:
-        one = path.rsplit(".", 1)[0]
-        names = {name.rsplit(".", 1)[0] for _, mark, name in includes.includes(the_house.text(path)) if mark == '"'}
-        edges.setdefault(one, set()).update(names - {one})
+    for path in the_house.sources("control", ".c", ".h"):
+        names = {one_of(name) for _, mark, name in includes.includes(the_house.text(path)) if mark == '"'}
+        edges.setdefault(one_of(path), set()).update(names - {one_of(path)})
+    return edges
+
+
+def called(the_house):
+    """{file: files of control/ whose functions it names}; what the rows of laws/table.h name, laws.c calls."""
+    code = {path: house.code_only(the_house.text(path)) for path in the_house.sources("control", ".c", ".h")}
+    home = {name: one_of(path) for path, text in code.items() if path.endswith(".c") for name in FUNCTION.findall(text)}
+    edges = {}
+    for path, text in code.items():
+        caller = TABLES.get(path, one_of(path))
+        edges.setdefault(caller, set())
+        if path.endswith(".c") or path in TABLES:
+            edges[caller] |= {home[word] for word in set(re.findall(r"\w+", text)) & home.keys()} - {caller}
+    return edges
+
+
+def circles(edges):
+    """Ways that come back to where they began."""
     done, found = set(), []
 
     def visit(node, trail):
@@ -99,7 +122,8 @@ def check(the_house):
         if thing in excused and figure < excused[thing]:
             complaints.append(f"{EXCUSES}: {thing} is {figure} now" + ("" if figure > limit else " and needs no excuse"))
     complaints += [f"{EXCUSES}: {thing} does not exist" for thing in excused if thing not in found]
-    complaints += [f"includes in a circle: {circle}" for circle in circles(the_house)]
+    complaints += [f"includes in a circle: {circle}" for circle in circles(included(the_house))]
+    complaints += [f"calls in a circle: {circle}" for circle in circles(called(the_house))]
     return complaints
 
 

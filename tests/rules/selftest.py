@@ -14,6 +14,7 @@ import mirror
 import pages
 import places
 import published
+import room
 import sources
 import state
 import version
@@ -62,6 +63,24 @@ class Sample(unittest.TestCase):
         self.assertTrue(found[0].startswith(start), found[0])
         for word in mentioned:
             self.assertIn(word, found[0])
+
+
+class Circles(Sample):
+    def test_calls_that_come_back_are_one(self):
+        self.write("control/b.h", "void b(void);\n")
+        self.write("control/b.c", '#include "control/b.h"\nvoid b(void)\n{\n    (void)a();\n}\n')
+        self.assertEqual(room.circles(room.called(house.House(self.root))), [])
+        self.write("control/a.c", '#include "control/a.h"\nint16_t a(void)\n{\n    b();\n    return 1;\n}\n')
+        self.assertEqual(room.circles(room.called(house.House(self.root))), ["control/a -> control/b -> control/a"])
+
+    def test_a_function_of_the_file_alone_is_no_call_of_another(self):
+        self.write("control/b.c", "static int16_t a(void)\n{\n    return 2;\n}\n")
+        self.assertEqual(room.circles(room.called(house.House(self.root))), [])
+
+    def test_includes_that_come_back_are_one(self):
+        self.write("control/b.h", '#include "control/a.h"\n')
+        self.write("control/a.h", '#include "control/b.h"\n')
+        self.assertEqual(room.circles(room.included(house.House(self.root))), ["control/a -> control/b -> control/a"])
 
 
 class Walk(Sample):

@@ -20,7 +20,7 @@ import sources
 
 LIMIT = 30
 FLAGS = ("-std=gnu99", "-O0", "-g", "-fno-pie", "-finstrument-functions", "-I.", "-Itests/control")
-HEAD = re.compile(r"^[\w ]+?[ *](\w+)\(([^;{}()]*(?:\([^()]*\)[^;{}()]*)*)\)\s*\{", re.MULTILINE)
+HEAD = re.compile(r"^\w[\w ]*?[ *](\w+)\(([^;{}()]*(?:\([^()]*\)[^;{}()]*)*)\)\s*\{", re.MULTILINE)
 LAW = re.compile(r"^\s*LAW\((\w+),", re.MULTILINE)
 
 
