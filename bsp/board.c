@@ -81,8 +81,8 @@ static void pull_up_unbonded(void)
     size_t i;
     uint16_t pin;
 
-    for (i = 0U; i < UNBONDED_COUNT; i++) {
-        for (pin = UNBONDED[i].first; pin <= UNBONDED[i].last; pin++) {
+    for (i = 0U; i < UNBONDED_COUNT; ++i) {
+        for (pin = UNBONDED[i].first; pin <= UNBONDED[i].last; ++pin) {
             GPIO_setPadConfig(pin, GPIO_PIN_TYPE_PULLUP);
         }
     }
@@ -99,7 +99,7 @@ void bsp_board_init(void)
     set_clocks();
     bsp_throttle_init();
     bsp_led_red(false);
-    for (i = 0U; i < UART_COUNT; i++) {
+    for (i = 0U; i < UART_COUNT; ++i) {
         open_uart_pins(&UARTS[i]);
     }
     bsp_selector_init();

@@ -14,7 +14,7 @@ void bsp_start(void)
     uint32_t i;
 
     SysCtl_disableWatchdog();
-    for (i = 0U; i < cells; i++) {
+    for (i = 0U; i < cells; ++i) {
         ebss_start[i] = 0U;
     }
 }

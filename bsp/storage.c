@@ -61,7 +61,7 @@ static void forget_lines(void)
 {
     uint16_t line;
 
-    for (line = 0U; line < LINES; line++) {
+    for (line = 0U; line < LINES; ++line) {
         (void)flash_code[line * LINE_DISTANCE];
     }
 }
@@ -112,7 +112,7 @@ void bsp_storage_read(uint16_t slot, uint16_t *cells, uint16_t count)
     uint16_t i;
 
     correct_errors(false);
-    for (i = 0U; i < count; i++) {
+    for (i = 0U; i < count; ++i) {
         cells[i] = stored[i];
     }
     correct_errors(true);
@@ -133,7 +133,7 @@ bool bsp_storage_program(uint16_t slot, uint16_t first, const uint16_t cells[BSP
     bool programmed;
     uint16_t i;
 
-    for (i = 0U; i < BSP_STORAGE_BLOCK; i++) {
+    for (i = 0U; i < BSP_STORAGE_BLOCK; ++i) {
         block[i] = cells[i];
     }
     programmed = open_bank() && finished(Fapi_issueProgrammingCommand(

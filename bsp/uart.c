@@ -80,7 +80,7 @@ void bsp_uart_receive(bsp_uart_t uart, bsp_uart_burst_t *burst)
     burst->count = 0U;
     while (burst->count < BSP_UART_FIFO_DEPTH && SCI_getRxFIFOStatus(base) != SCI_FIFO_RX0) {
         burst->octets[burst->count] = SCI_readCharNonBlocking(base);
-        burst->count++;
+        ++burst->count;
     }
     recover(base, burst);
     SCI_clearInterruptStatus(base, SCI_INT_RXFF);
@@ -93,7 +93,7 @@ uint16_t bsp_uart_transmit(bsp_uart_t uart, const uint16_t *octets, uint16_t cou
 
     while (written < count && SCI_getTxFIFOStatus(base) != SCI_FIFO_TX16) {
         SCI_writeCharNonBlocking(base, octets[written] & 0xFFU);
-        written++;
+        ++written;
     }
     return written;
 }

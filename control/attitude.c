@@ -90,7 +90,7 @@ static bool stirs(float before_rad, float last_rad)
     return step_rad > STIRS_RAD && step_rad < FOLLOWS_RAD;
 }
 
-/* True when the frame before this one, still level, has begun a turn already. A vehicle in the air moves less
+/* True when the frame before this one, level yet, has begun a turn already. A vehicle in the air moves less
  * from frame to frame, a spike more. */
 static bool has_begun(const attitude_filter_t *filter)
 {

@@ -39,7 +39,7 @@ static void lower(calibration_t *calibration, uint16_t step_counts)
     }
     calibration->compare_counts = next;
     calibration->thrust_n = thrust_of(next);
-    calibration->steps++;
+    ++calibration->steps;
 }
 
 static void obey(calibration_t *calibration, const calibration_request_t *request)

@@ -13,7 +13,7 @@
 #include "control/imu_sample.h"
 #include "control/thrust.h"
 
-/* Highest reference. State LOWERING begins 0.8 m above the reference: that is still within the scanner's
+/* Highest reference. State LOWERING begins 0.8 m above the reference: that is within the scanner's
  * 4.095 m. */
 #define FLIGHT_REFERENCE_MAX_M 3.0F
 

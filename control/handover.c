@@ -121,7 +121,7 @@ void handover_doubts(handover_t *handover, est_law_t *est, where_t *where, const
 }
 
 /* The IMU is back in flight: the estimate starts again. From what thrust and heights tell, not from
- * standstill, and with the bias from before; also where the heights are gone. */
+ * rest, and with the bias from before; also where the heights are gone. */
 static void restart(est_law_t *est, const situation_t *now)
 {
     const evidence_t *evidence = now->evidence;
@@ -213,7 +213,7 @@ void handover_place(est_law_t *est, where_t *where, const situation_t *now, cons
 }
 
 /* Law EST takes over. A hover thrust that it has learned in this flight is not learned anew from a vehicle
- * that may still swing. */
+ * that may swing yet. */
 static void take_over(est_law_t *est, where_t *where, const situation_t *now)
 {
     const bool knows = now->mode_before == FLIGHT_MODE_LAW && where->contact.airborne;

@@ -52,7 +52,7 @@ static bool gives_gravity_alone(const parameters_t *parameters)
     return parameters->value[PARAMETER_USAT] == 0.0F && parameters->value[PARAMETER_DSAT] == 0.0F;
 }
 
-/* What the laws PD and PID can still add to the hover thrust, or take away: the less of both. */
+/* What the laws PD and PID can add to the hover thrust, or take away: the less of both. */
 static float margin_n(const parameters_t *parameters, float hover_n)
 {
     const float *value = parameters->value;

@@ -2,7 +2,7 @@
  * meaning. One row feeds the validation, the answers of #GET and #HELP, `plomada params`, and the command
  * table of the README.
  *
- * A new row goes to the end, so that sets that are stored still load (firmware/parameter_store.h).
+ * A new row goes to the end, so that stored sets go on loading (firmware/parameter_store.h).
  *
  * Pure; the caller owns the set. In the firmware the parameter server owns it (firmware/servers.h). */
 #ifndef CONTROL_PARAMETERS_H

@@ -57,7 +57,7 @@ static void wide_multiply_add(wide_t *wide, uint16_t factor, uint16_t addend)
 {
     uint32_t carry = addend;
 
-    for (uint16_t i = 0U; i < wide->used; i++) {
+    for (uint16_t i = 0U; i < wide->used; ++i) {
         carry += (uint32_t)wide->limb[i] * factor;
         wide->limb[i] = (uint16_t)(carry & 0xFFFFU);
         carry >>= LIMB_BITS;
@@ -78,7 +78,7 @@ static bool wide_divide(wide_t *wide, uint16_t divisor)
         remainder %= divisor;
     }
     while (wide->used > 0U && wide->limb[wide->used - 1U] == 0U) {
-        wide->used--;
+        --wide->used;
     }
     return remainder != 0U;
 }
@@ -98,7 +98,7 @@ static uint16_t wide_raise_to(wide_t *wide, uint16_t used)
 
 static bool wide_has_below(const wide_t *wide, uint16_t limb)
 {
-    for (uint16_t i = 0U; i < limb; i++) {
+    for (uint16_t i = 0U; i < limb; ++i) {
         if (wide->limb[i] != 0U) {
             return true;
         }
@@ -151,20 +151,20 @@ static bool round_to_float(const wide_t *wide, bool more, int32_t exponent, floa
     uint32_t half;
 
     while ((window >> drop) >= MANTISSA_END) {
-        drop++;
+        ++drop;
     }
     mantissa = (uint32_t)(window >> drop);
     rest = (uint32_t)(window & (((uint32_t)1U << drop) - 1U));
     half = (uint32_t)1U << (drop - 1U);
     more = more || wide_has_below(wide, low);
     if (rest > half || (rest == half && (more || (mantissa & 1U) != 0U))) {
-        mantissa++;
+        ++mantissa;
     }
 
     unit = exponent + (int32_t)low * LIMB_BITS + (int32_t)drop;
     if (mantissa == MANTISSA_END) {
         mantissa >>= 1;
-        unit++;
+        ++unit;
     }
     if (unit > UNIT_MAX) {
         return false;
@@ -205,7 +205,7 @@ static bool read_sign(reader_t *reader)
     bool minus = next_is(reader, '-');
 
     if (minus || next_is(reader, '+')) {
-        reader->at++;
+        ++reader->at;
     }
     return minus;
 }
@@ -215,7 +215,7 @@ static bool read_digits(reader_t *reader, number_t *number, int16_t place)
 {
     bool any = false;
 
-    for (; next_is_digit(reader); reader->at++) {
+    for (; next_is_digit(reader); ++reader->at) {
         uint16_t digit = (uint16_t)(*reader->at - '0');
 
         any = true;
@@ -241,9 +241,9 @@ static bool read_exponent(reader_t *reader, number_t *number)
     if (!next_is(reader, 'e') && !next_is(reader, 'E')) {
         return true;
     }
-    reader->at++;
+    ++reader->at;
     minus = read_sign(reader);
-    for (; next_is_digit(reader); reader->at++) {
+    for (; next_is_digit(reader); ++reader->at) {
         any = true;
         if (exponent < EXPONENT_MAX) {
             exponent = exponent * 10 + (*reader->at - '0');
@@ -262,7 +262,7 @@ bool decimal_read(const char *text, size_t length, float *value)
     float magnitude;
 
     if (next_is(&reader, '.')) {
-        reader.at++;
+        ++reader.at;
         any = read_digits(&reader, &number, -1) || any;
     }
     if (!any || !read_exponent(&reader, &number) || reader.at != reader.end ||
@@ -281,7 +281,7 @@ static uint64_t scaled(float magnitude, uint16_t decimals)
     uint64_t product = (uint32_t)ldexpf(frexpf(magnitude, &exponent), 24);
     int16_t shift = (int16_t)(24 - exponent - (int16_t)decimals);
 
-    for (uint16_t i = 0U; i < decimals; i++) {
+    for (uint16_t i = 0U; i < decimals; ++i) {
         product *= 5U;
     }
     if (shift <= 0) {
@@ -299,7 +299,7 @@ static size_t write_backwards(char buffer[WRITTEN_MAX], uint64_t number, uint16_
 {
     size_t at = WRITTEN_MAX;
 
-    for (uint16_t place = 0U; place <= decimals || number != 0U; place++) {
+    for (uint16_t place = 0U; place <= decimals || number != 0U; ++place) {
         if (place == decimals && decimals > 0U) {
             buffer[--at] = '.';
         }
@@ -352,7 +352,7 @@ size_t decimal_write_shortest(char *text, size_t capacity, float value)
     }
     length = write_decimals(text, capacity, value, decimals);
     while (length > 0U && decimals < SHORTEST_DECIMALS_MAX && !reads_back(text, length, value)) {
-        decimals++;
+        ++decimals;
         length = write_decimals(text, capacity, value, decimals);
     }
     return length;

@@ -15,9 +15,9 @@ uint16_t line_sum(const char *text, uint16_t length)
 {
     uint16_t sum = START;
 
-    for (uint16_t i = 0U; i < length; i++) {
+    for (uint16_t i = 0U; i < length; ++i) {
         sum = (uint16_t)(sum ^ (((uint32_t)text[i] & 0xFFU) << 8));
-        for (uint16_t bit = 0U; bit < 8U; bit++) {
+        for (uint16_t bit = 0U; bit < 8U; ++bit) {
             sum = shifted(sum);
         }
     }
@@ -28,7 +28,7 @@ void line_sum_write(char digits[LINE_SUM_DIGITS], uint16_t sum)
 {
     static const char hex[] = "0123456789ABCDEF";
 
-    for (uint16_t i = 0U; i < LINE_SUM_DIGITS; i++) {
+    for (uint16_t i = 0U; i < LINE_SUM_DIGITS; ++i) {
         digits[i] = hex[((uint32_t)sum >> (12U - 4U * i)) & 0xFU];
     }
 }

@@ -22,7 +22,7 @@ static uint32_t crc_octet(uint32_t crc, uint16_t octet)
     uint16_t bit;
 
     crc ^= (uint32_t)(octet & 0xFFU);
-    for (bit = 0U; bit < 8U; bit++) {
+    for (bit = 0U; bit < 8U; ++bit) {
         crc = (crc >> 1) ^ (((crc & 1U) != 0U) ? CRC_POLYNOMIAL : UINT32_C(0));
     }
     return crc;
@@ -34,7 +34,7 @@ static uint32_t crc_of(const uint16_t *cells, uint16_t count)
     uint32_t crc = CRC_START;
     uint16_t i;
 
-    for (i = 0U; i < count; i++) {
+    for (i = 0U; i < count; ++i) {
         crc = crc_octet(crc, cells[i]);
         crc = crc_octet(crc, (uint16_t)(cells[i] >> 8));
     }
@@ -76,7 +76,7 @@ uint16_t parameter_image_write(uint16_t cells[PARAMETER_IMAGE_CELLS_MAX], const 
         put(&cells[checked_cells(i)], pattern.bits);
     }
     put(&cells[checked], crc_of(cells, checked));
-    for (; used % PARAMETER_IMAGE_BLOCK != 0U; used++) {
+    for (; used % PARAMETER_IMAGE_BLOCK != 0U; ++used) {
         cells[used] = ERASED;
     }
     return used;
@@ -128,7 +128,7 @@ uint32_t parameter_image_name(uint32_t names, const char *name)
 {
     size_t i;
 
-    for (i = 0U; name[i] != '\0'; i++) {
+    for (i = 0U; name[i] != '\0'; ++i) {
         names = crc_octet(names, (uint16_t)name[i]);
     }
     /* Between two names, where no character can stand: "AB","C" is not "A","BC". */

@@ -34,7 +34,7 @@ static void keep(razor_collector_t *collector, char character)
     razor_text_t *gathered = &collector->gathered;
 
     if (gathered->length == RAZOR_FRAME_MAX) {
-        collector->overlong++;
+        ++collector->overlong;
         razor_collector_broken(collector);
     } else {
         gathered->text[gathered->length++] = character;
@@ -54,7 +54,7 @@ static void begin_part(razor_collector_t *collector)
     if (collector->state == TITLE) {
         drop_part(collector);
     } else if (collector->state == ANGLES) {
-        collector->cut++;
+        ++collector->cut;
         collector->gathered.length = 0U;
     } else if (collector->state == DELIVERED) {
         collector->gathered.length = 0U;
@@ -140,7 +140,7 @@ static bool is_separator(char character)
 /* Exactly three numbers with commas between. */
 static bool read_triple(const char *text, const char *end, float triple[3])
 {
-    for (uint16_t i = 0U; i < 2U; i++) {
+    for (uint16_t i = 0U; i < 2U; ++i) {
         const char *stop = memchr(text, ',', (size_t)(end - text));
 
         if (stop == NULL || !decimal_read(text, (size_t)(stop - text), &triple[i])) {
@@ -163,7 +163,7 @@ static const char *read_acceleration(const char *body, const char *end, float xy
     }
     /* There is a character before it: the title is. */
     if (is_separator(stop[-1])) {
-        stop--;
+        --stop;
     }
     return read_triple(body, stop, xyz) ? next : NULL;
 }

@@ -26,7 +26,7 @@ static slice_t trimmed(slice_t slice)
 {
     uint16_t begin = 0U;
     uint16_t end = 0U;
-    for (uint16_t i = 0U; i < slice.length; i++) {
+    for (uint16_t i = 0U; i < slice.length; ++i) {
         if (slice.text[i] != (octet_t)' ') {
             begin = end == 0U ? i : begin;
             end = (uint16_t)(i + 1U);
@@ -45,7 +45,7 @@ static bool begins_with(slice_t slice, const char *words)
 {
     uint16_t i = 0U;
     while (words[i] != '\0' && i < slice.length && lower(slice.text[i]) == lower((octet_t)words[i])) {
-        i++;
+        ++i;
     }
     return words[i] == '\0';
 }
@@ -82,7 +82,7 @@ static uint16_t read_digits(slice_t slice, uint16_t base, uint16_t most, uint32_
             return 0U;
         }
         *number = *number * base + digit_of(slice.text[i]);
-        i++;
+        ++i;
     }
     return i;
 }
@@ -117,7 +117,7 @@ static void copy(char *text, slice_t value)
     uint16_t i = 0U;
     while (i < value.length && i < SCIP_INFO_TEXT - 1U) {
         text[i] = (char)value.text[i];
-        i++;
+        ++i;
     }
     text[i] = '\0';
 }
@@ -135,7 +135,7 @@ static scip_health_t health_of(slice_t state)
         {"fault", SCIP_HEALTH_TROUBLE},    {"malfunction", SCIP_HEALTH_TROUBLE},
         {"fail", SCIP_HEALTH_TROUBLE},
     };
-    for (size_t i = 0U; i < sizeof rows / sizeof rows[0]; i++) {
+    for (size_t i = 0U; i < sizeof rows / sizeof rows[0]; ++i) {
         if (contains(state, rows[i].words)) {
             return rows[i].health;
         }
@@ -153,7 +153,7 @@ static bool take_text(scip_info_t *info, slice_t key, slice_t value)
         {"VEND", info->vendor}, {"PROD", info->product}, {"FIRM", info->firmware}, {"PROT", info->protocol},
         {"SERI", info->serial}, {"MODL", info->model},   {"MESM", info->mode},     {"STAT", info->state},
     };
-    for (size_t i = 0U; i < sizeof rows / sizeof rows[0]; i++) {
+    for (size_t i = 0U; i < sizeof rows / sizeof rows[0]; ++i) {
         if (begins_with(key, rows[i].key)) {
             copy(rows[i].text, value);
             return true;
@@ -175,7 +175,7 @@ static bool take_small(scip_info_t *info, slice_t key, slice_t value, bool belie
         {"AMIN", &told->amin},     {"AMAX", &told->amax},      {"AFRT", &told->afrt},
         {"SCAN", &told->scan_rpm}, {"SCSP", &info->speed_rpm},
     };
-    for (size_t i = 0U; i < sizeof rows / sizeof rows[0]; i++) {
+    for (size_t i = 0U; i < sizeof rows / sizeof rows[0]; ++i) {
         if (begins_with(key, rows[i].key)) {
             if (believed) {
                 read_small(value, rows[i].number);
@@ -212,7 +212,7 @@ static bool divide(slice_t line, slice_t *key, slice_t *value)
 {
     uint16_t colon = 0U;
     while (colon < line.length && line.text[colon] != (octet_t)':') {
-        colon++;
+        ++colon;
     }
     if (colon == line.length) {
         return false;
@@ -232,13 +232,13 @@ void scip_info_take(scip_info_t *info, const scip_parser_t *parser)
     if (!divide(line, &key, &value) || key.length != 4U ||
         !(take_text(info, key, value) || take_small(info, key, value, believed) ||
           take_other(info, key, value, believed))) {
-        info->unknown++;
+        ++info->unknown;
         return;
     }
     if (begins_with(key, "STAT")) {
         info->health = health_of(value);
     }
-    info->known++;
+    ++info->known;
     info->unproved = (uint16_t)(info->unproved + (believed ? 0U : 1U));
 }
 

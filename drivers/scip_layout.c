@@ -91,7 +91,7 @@ static tally_t tally_all(const uint16_t *rays, size_t count)
 {
     tally_t t = no_ray;
     size_t i = 0U;
-    for (; i < count % 5U; i++) {
+    for (; i < count % 5U; ++i) {
         note_ray(&t, rays[i]);
     }
     for (; i < count; i += 5U) { /* cheaper, and most for the 35 rays of a mirror */
@@ -113,12 +113,12 @@ static bool is_between(uint32_t ray, uint32_t nearest, uint32_t furthest)
 static tally_t tally_between(const uint16_t *rays, size_t count, uint32_t nearest, uint32_t furthest)
 {
     tally_t t = no_ray;
-    for (size_t i = 0U; i < count; i++) {
+    for (size_t i = 0U; i < count; ++i) {
         const uint32_t ray = rays[i];
         if (is_between(ray, nearest, furthest)) {
             note_ray(&t, ray);
         } else {
-            t.bad++;
+            ++t.bad;
         }
     }
     return t;
@@ -140,7 +140,7 @@ static uint16_t count_between(const uint16_t *rays, size_t count, uint32_t least
 {
     const uint32_t span = most - least;
     uint16_t inside = 0U;
-    for (size_t i = 0U; i < count; i++) {
+    for (size_t i = 0U; i < count; ++i) {
         inside = (uint16_t)(inside + (rays[i] - least <= span ? 1U : 0U));
     }
     return inside;
@@ -168,7 +168,7 @@ static uint32_t median_of(const uint16_t *rays, size_t count, const tally_t *goo
 static float mean_deviation(const uint16_t *rays, size_t count, const tally_t *kept, float mean_mm)
 {
     float sum = 0.0F;
-    for (size_t i = 0U; i < count; i++) {
+    for (size_t i = 0U; i < count; ++i) {
         if (is_between(rays[i], kept->least, kept->most)) {
             sum += (float)rays[i] > mean_mm ? (float)rays[i] - mean_mm : mean_mm - (float)rays[i];
         }
@@ -230,7 +230,7 @@ uint16_t scip_group_step_mm(const scip_scan_t *scan, const scip_group_t *group)
     uint16_t before = 0U;
     uint32_t largest = 0U;
     /* A step over a bad ray is none: what lies in between was not seen. */
-    for (uint32_t i = point_from(scan, group->first_step, cluster); i < end; i++) {
+    for (uint32_t i = point_from(scan, group->first_step, cluster); i < end; ++i) {
         const uint16_t distance = scan->distance_mm[i];
         const bool good = distance >= SCIP_CODE_LIMIT_MM && distance <= furthest;
         if (good && before != 0U) {
@@ -286,7 +286,7 @@ scip_layout_t scip_layout_around(const uint16_t middles[], uint16_t count, uint1
 {
     scip_layout_t layout = {.name = "", .group_count = count};
 
-    for (uint16_t i = 0U; i < count; i++) {
+    for (uint16_t i = 0U; i < count; ++i) {
         layout.groups[i].first_step = (uint16_t)(middles[i] - reach);
         layout.groups[i].last_step = (uint16_t)(middles[i] + reach);
     }
@@ -308,7 +308,7 @@ uint16_t scip_layout_cluster(const scip_layout_t *layout, uint32_t bit_rate)
 
     /* The first that fits is the finest. */
     while (cluster < steps && !fits_the_revolution((steps + cluster - 1U) / cluster, bit_rate)) {
-        cluster++;
+        ++cluster;
     }
     return (uint16_t)cluster;
 }

@@ -123,14 +123,14 @@ static bool take_echo(scip_parser_t *parser)
 /* For the caller who looks once: the latest cause. */
 static void count_damage(scip_parser_t *parser, scip_damage_t cause)
 {
-    parser->counters.damaged[cause]++;
+    ++parser->counters.damaged[cause];
     parser->last_damage = cause;
 }
 
 static uint16_t strange_in(const scip_parser_t *parser, uint16_t length)
 {
     uint16_t strange = 0U;
-    for (uint16_t i = 0U; i < length; i++) {
+    for (uint16_t i = 0U; i < length; ++i) {
         strange = (uint16_t)(strange + (parser->line[i] > 0x7FU ? 1U : 0U));
     }
     return strange;
@@ -192,7 +192,7 @@ static scip_damage_t verdict(const check_t *check, uint16_t characters, octet_t 
 static check_t pass(const octet_t *text, uint16_t characters)
 {
     check_t check = nothing_checked;
-    for (uint16_t i = 0U; i < characters; i++) {
+    for (uint16_t i = 0U; i < characters; ++i) {
         (void)six_bits(&check, text[i]);
     }
     return check;
@@ -232,7 +232,7 @@ static void follow_foreign(scip_parser_t *parser)
     if (!foreign_line_fits(parser)) {
         lose_foreign(parser);
     } else if (parser->foreign_line != FOREIGN_MORE) {
-        parser->foreign_line++;
+        ++parser->foreign_line;
     }
 }
 
@@ -263,7 +263,7 @@ static scip_event_t end_of_skipped(scip_parser_t *parser)
     }
     parser->skipping = true;
     follow_foreign(parser);
-    parser->counters.skipped_lines++;
+    ++parser->counters.skipped_lines;
     parser->counters.strange += strange_in(parser, parser->line_length);
     return SCIP_NOTHING;
 }
@@ -465,12 +465,12 @@ static check_t decode_triples(uint16_t *out, uint16_t begun, uint32_t *partial, 
 {
     check_t check = nothing_checked;
     uint32_t point = *partial;
-    for (uint16_t i = 0U; i < characters; i++) {
+    for (uint16_t i = 0U; i < characters; ++i) {
         point = (point << 6) | six_bits(&check, text[i]);
-        begun++;
+        ++begun;
         if (begun == 3U) {
             *out = (uint16_t)(point > 0xFFFFU ? 0xFFFFU : point);
-            out++;
+            ++out;
             point = 0U;
             begun = 0U;
         }
@@ -545,7 +545,7 @@ static bool stamp_follows(const scip_parser_t *parser)
     if (parser->timestamp_ms == parser->last_stamps_ms[0]) {
         return false;
     }
-    for (uint16_t i = 0U; i < parser->stamps; i++) {
+    for (uint16_t i = 0U; i < parser->stamps; ++i) {
         if (((parser->timestamp_ms - parser->last_stamps_ms[i]) & STAMP_MASK) <= STAMP_STEP_MAX_MS) {
             return true;
         }
@@ -574,7 +574,7 @@ static bool take_sequence(scip_parser_t *parser)
     parser->last_stamps_ms[1] = parser->last_stamps_ms[0];
     parser->last_stamps_ms[0] = parser->timestamp_ms;
     if (parser->stamps < 2U) {
-        parser->stamps++;
+        ++parser->stamps;
     }
     parser->doubted = !follows;
     if (follows) {
@@ -617,7 +617,7 @@ static scip_event_t end_of_scan(scip_parser_t *parser)
         parser->awaiting = false;
         parser->state = HUNT;
     }
-    parser->counters.scans++;
+    ++parser->counters.scans;
     return deliver(parser);
 }
 
@@ -643,10 +643,10 @@ static scip_event_t end_of_reply(scip_parser_t *parser)
         parser->gap = true;
         parser->flowing = true;
         parser->state = ECHO;
-        parser->counters.notices++;
+        ++parser->counters.notices;
         return SCIP_NOTICE;
     }
-    parser->counters.replies++;
+    ++parser->counters.replies;
     parser->awaiting = is_stream(&parser->awaited) && has_status(parser, '0', '0');
     if (parser->awaiting) {
         begin_stream(parser);
@@ -661,7 +661,7 @@ static scip_event_t end_of_legacy(scip_parser_t *parser)
         return damage(parser, SCIP_DAMAGE_LENGTH);
     }
     parser->state = HUNT;
-    parser->counters.legacy++;
+    ++parser->counters.legacy;
     return SCIP_LEGACY;
 }
 
@@ -677,7 +677,7 @@ static scip_event_t end_of_text(scip_parser_t *parser)
     parser->text_proved = false;
     if (length >= 2U && line[length - 2U] == (octet_t)';') {
         parser->text_length = (uint16_t)(length - 2U);
-        for (uint16_t i = 0U; i < parser->text_length; i++) {
+        for (uint16_t i = 0U; i < parser->text_length; ++i) {
             sum = (uint16_t)(sum + line[i]);
         }
         parser->text_proved = line[length - 1U] == sum_character(sum);
@@ -773,10 +773,10 @@ static void keep_end_of_line(scip_parser_t *parser)
 {
     const size_t first = parser->gathered + SCIP_LINE_MAX - SCIP_REQUEST_MAX;
     octet_t end[SCIP_REQUEST_MAX];
-    for (uint16_t i = 0U; i < SCIP_REQUEST_MAX; i++) {
+    for (uint16_t i = 0U; i < SCIP_REQUEST_MAX; ++i) {
         end[i] = parser->line[(first + i) % SCIP_LINE_MAX];
     }
-    for (uint16_t i = 0U; i < SCIP_REQUEST_MAX; i++) {
+    for (uint16_t i = 0U; i < SCIP_REQUEST_MAX; ++i) {
         parser->line[i] = end[i];
     }
     parser->line_length = SCIP_REQUEST_MAX;
@@ -794,7 +794,7 @@ static scip_event_t end_long_line(scip_parser_t *parser)
     case ECHO:
         return end_of_other_line(parser);
     case TEXT:
-        parser->counters.skipped_lines++;
+        ++parser->counters.skipped_lines;
         return SCIP_NOTHING;
     default:
         return damage(parser, SCIP_DAMAGE_LENGTH);
@@ -835,7 +835,7 @@ static size_t gather(scip_parser_t *parser, const octet_t *octets, size_t count)
     while (i < count && octet_of(octets[i]) != SCIP_LINE_FEED) {
         parser->line[at] = octet_of(octets[i]);
         at = (at + 1U) % SCIP_LINE_MAX;
-        i++;
+        ++i;
     }
     parser->gathered = (octet_t)at;
     return i;

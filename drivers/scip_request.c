@@ -36,8 +36,8 @@ static void append_symbol(scip_request_t *request, const char *symbol)
 {
     while (*symbol != '\0') {
         request->text[request->text_length] = octet_of((uint16_t)*symbol);
-        request->text_length++;
-        symbol++;
+        ++request->text_length;
+        ++symbol;
     }
 }
 
@@ -47,8 +47,8 @@ static void append_number(scip_request_t *request, uint32_t number, uint16_t dig
     uint16_t position = (uint16_t)(request->text_length + digits);
     request->text_length = position;
     while (digits > 0U) {
-        digits--;
-        position--;
+        --digits;
+        --position;
         request->text[position] = octet_of((uint16_t)(0x30U + (uint16_t)(number % 10U)));
         number /= 10U;
     }
@@ -67,7 +67,7 @@ static void finish(scip_request_t *request)
 {
     request->echo_length = request->text_length;
     request->text[request->text_length] = SCIP_LINE_FEED;
-    request->text_length++;
+    ++request->text_length;
 }
 
 uint16_t scip_scan_octets(scip_kind_t kind, uint16_t points)
@@ -92,7 +92,7 @@ bool scip_request(scip_request_t *request, scip_kind_t kind)
 
 bool scip_request_bit_rate(scip_request_t *request, uint32_t bit_rate)
 {
-    for (size_t i = 0U; i < SCIP_BIT_RATES; i++) {
+    for (size_t i = 0U; i < SCIP_BIT_RATES; ++i) {
         if (scip_bit_rates[i] == bit_rate) {
             begin(request, SCIP_BIT_RATE);
             request->bit_rate = bit_rate;
@@ -139,10 +139,10 @@ static void put_in_front(scip_request_t *request, const char *text, uint16_t len
 {
     const uint16_t before = request->text_length;
     request->text_length = (uint16_t)(before + length);
-    for (uint16_t i = 1U; i <= before; i++) {
+    for (uint16_t i = 1U; i <= before; ++i) {
         request->text[request->text_length - i] = request->text[before - i];
     }
-    for (uint16_t i = 0U; i < length; i++) {
+    for (uint16_t i = 0U; i < length; ++i) {
         request->text[i] = (octet_t)text[i];
     }
 }

@@ -52,7 +52,7 @@ static bool end_line(telecommand_collector_t *collector, char character, char pr
 static void take_back(telecommand_collector_t *collector)
 {
     if (collector->started && !collector->line.overlong) {
-        collector->line.length--;
+        --collector->line.length;
         collector->started = collector->line.length > 0U;
     }
 }
@@ -122,7 +122,7 @@ static uint16_t end_of(const telecommand_line_t *line, uint16_t length)
 {
     uint16_t end = 1U;
 
-    for (uint16_t i = 1U; i < length; i++) {
+    for (uint16_t i = 1U; i < length; ++i) {
         end = telecommand_is_blank(line->text[i]) ? end : (uint16_t)(i + 1U);
     }
     return end;
@@ -159,11 +159,11 @@ static bool is_zero(const char *text, uint16_t length)
     bool any = false;
     uint16_t points = 0U;
 
-    for (uint16_t i = 0U; i < length; i++) {
+    for (uint16_t i = 0U; i < length; ++i) {
         if (text[i] == '0') {
             any = true;
         } else if (text[i] == '.') {
-            points++;
+            ++points;
         } else if (i > 0U || (text[i] != '-' && text[i] != '+')) {
             return false;
         }
@@ -191,7 +191,7 @@ static uint16_t find_sum(const telecommand_line_t *line, uint16_t end)
     uint16_t digits = end;
 
     while (digits > 1U && is_hexadecimal(line->text[digits - 1U])) {
-        digits--;
+        --digits;
     }
     return end - digits == LINE_SUM_DIGITS && line->text[digits - 1U] == SUM_MARK ? (uint16_t)(digits - 1U)
                                                                                   : end;
@@ -202,7 +202,7 @@ static bool sum_is_right(const telecommand_line_t *line, uint16_t sum_at)
     char digits[LINE_SUM_DIGITS];
 
     line_sum_write(digits, line_sum(line->text, sum_at));
-    for (uint16_t i = 0U; i < LINE_SUM_DIGITS; i++) {
+    for (uint16_t i = 0U; i < LINE_SUM_DIGITS; ++i) {
         if (telecommand_upper(line->text[sum_at + 1U + i]) != digits[i]) {
             return false;
         }
@@ -222,7 +222,7 @@ static telecommand_status_t reject(telecommand_t *command, telecommand_status_t 
 static telecommand_status_t take_argument(const telecommand_line_t *line, uint16_t at, uint16_t end,
                                           telecommand_t *command)
 {
-    for (; at < end; at++) {
+    for (; at < end; ++at) {
         const char character = line->text[at];
 
         if (!is_legible(character)) {
@@ -246,7 +246,7 @@ static telecommand_status_t split(const telecommand_line_t *line, uint16_t sum_a
         return TELECOMMAND_EMPTY;
     }
     while (telecommand_is_blank(line->text[at])) {
-        at++;
+        ++at;
     }
     status = take_name(line, &at, end, command);
     return status == TELECOMMAND_OK ? take_argument(line, at, end, command) : status;

@@ -37,7 +37,7 @@ bool urg_init(urg_driver_t *urg, const urg_config_t *config, uint16_t *distance_
     }
     *urg = (urg_driver_t){.fresh = false};
     (void)urg_link_init(&urg->link, config, now_us);
-    for (uint16_t i = 0U; i < 2U; i++) {
+    for (uint16_t i = 0U; i < 2U; ++i) {
         urg->scans[i].distance_mm = &distance_mm[i * (values / 2U)];
         urg->scans[i].capacity = values / 2U;
     }
@@ -133,7 +133,7 @@ bool urg_next_to_send(urg_driver_t *urg, urg_output_t *output)
     if (action->send) {
         output->count = action->request.text_length;
     }
-    for (uint16_t i = 0U; i < output->count; i++) {
+    for (uint16_t i = 0U; i < output->count; ++i) {
         output->octets[i] = action->request.text[i];
     }
     /* Once: a second call must not send it again. */

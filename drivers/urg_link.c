@@ -85,7 +85,7 @@ static uint16_t probe_index(const urg_link_t *link, uint32_t rate)
 {
     uint16_t index = 0U;
     while (probe_rate(link, index) != rate) {
-        index++;
+        ++index;
     }
     return index;
 }
@@ -237,7 +237,7 @@ static void start_command(const step_t *step, urg_status_t status, scip_kind_t k
 
 static void repeat_command(const step_t *step)
 {
-    step->link->attempt++;
+    ++step->link->attempt;
     step->link->line_unknown = true;
     send_command(step, step->link->command);
 }
@@ -669,7 +669,7 @@ static void rate_or_stop(const step_t *step)
 static void count_failure(urg_link_t *link)
 {
     if (link->failures < LADDER_TOP) {
-        link->failures++;
+        ++link->failures;
     }
 }
 
@@ -770,9 +770,9 @@ static void on_stopped(const step_t *step)
 static void on_told(const step_t *step)
 {
     if (is_status(&step->seen->reply, '0', '0')) {
-        step->link->told++;
+        ++step->link->told;
     }
-    step->link->asks_left--;
+    --step->link->asks_left;
     ask_or_stream(step);
 }
 
@@ -975,7 +975,7 @@ static void give_up_command(const step_t *step)
 static void on_silence(const step_t *step)
 {
     urg_link_t *link = step->link;
-    link->timeouts++;
+    ++link->timeouts;
     if (link->attempt < attempts_allowed(step)) {
         repeat_command(step);
     } else if (link->knocking) {
@@ -1122,7 +1122,7 @@ static void step_stream(const step_t *step)
         on_notice(step);
     }
     if (step->now_us - link->scan_us >= link->timeout_us || is_mute(step) || streams_other(step)) {
-        link->restarts++;
+        ++link->restarts;
         begin_search(step);
     } else if (link->to_ask) {
         link->to_ask = false; /* one interruption, whatever comes of it */
@@ -1156,24 +1156,24 @@ void urg_seen_event(urg_seen_t *seen, const scip_parser_t *parser, scip_event_t 
 {
     switch (event) {
     case SCIP_REPLY:
-        seen->reply_count++;
+        ++seen->reply_count;
         seen->reply_kind = parser->awaited.kind;
         seen->reply = parser->reply;
         break;
     case SCIP_SCAN:
-        seen->scan_count++;
+        ++seen->scan_count;
         seen->octets_at_scan = parser->counters.octets; /* a line has just ended */
         seen->scan_remaining = parser->scan->remaining;
         break;
     case SCIP_NOTICE:
-        seen->notice_count++;
+        ++seen->notice_count;
         seen->notice = parser->reply;
         break;
     case SCIP_LEGACY:
-        seen->legacy_count++;
+        ++seen->legacy_count;
         break;
     case SCIP_DAMAGED:
-        seen->damage_count++;
+        ++seen->damage_count;
         break;
     default:
         break;

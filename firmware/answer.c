@@ -18,7 +18,7 @@ bool answer_argument_is(const answer_t *answer, const char *word)
     const telecommand_t *command = answer->command;
     uint16_t i = 0U;
 
-    for (; i < command->argument_length && *word != '\0'; word++) {
+    for (; i < command->argument_length && *word != '\0'; ++word) {
         const char character = command->argument[i++];
 
         if (*word != (telecommand_is_blank(character) ? ' ' : telecommand_upper(character))) {
@@ -26,7 +26,7 @@ bool answer_argument_is(const answer_t *answer, const char *word)
         }
         while (telecommand_is_blank(character) && i < command->argument_length &&
                telecommand_is_blank(command->argument[i])) {
-            i++;
+            ++i;
         }
     }
     return i == command->argument_length && *word == '\0';
@@ -96,7 +96,7 @@ void answer_limits(answer_t *answer, const parameter_row_t *row)
         telemetry_text(line, row->unit);
         return;
     }
-    for (i = 0U; i <= (uint16_t)row->maximum; i++) {
+    for (i = 0U; i <= (uint16_t)row->maximum; ++i) {
         telemetry_text(line, (i > 0U) ? "|" : "");
         telemetry_text(line, row->choices[i]);
     }

@@ -123,7 +123,7 @@ static void set_arm(bool arm)
 
     reference_server_read(&reference);
     reference.arm = arm;
-    reference.arm_sequence++;
+    ++reference.arm_sequence;
     reference_server_write(&reference);
 }
 
@@ -292,7 +292,7 @@ static bool execute(answer_t *answer)
     if (id != PARAMETER_COUNT) {
         return execute_set(answer, id);
     }
-    for (i = 0U; i < VERB_COUNT; i++) {
+    for (i = 0U; i < VERB_COUNT; ++i) {
         if (strlen(verbs[i].name) == command->name_length &&
             strncmp(verbs[i].name, command->name, command->name_length) == 0) {
             return execute_verb(answer, &verbs[i]);
@@ -307,7 +307,7 @@ static void link_alive(uint32_t arrival_us)
 
     reference_server_read(&reference);
     reference.link_time_us = arrival_us;
-    reference.link_sequence++;
+    ++reference.link_sequence;
     reference_server_write(&reference);
 }
 

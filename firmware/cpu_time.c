@@ -51,7 +51,7 @@ static uint16_t find(const void *handle, uint16_t first, uint16_t end, uint16_t 
 {
     uint16_t job;
 
-    for (job = first; job < end; job++) {
+    for (job = first; job < end; ++job) {
         if (records[job].handle == handle) {
             return job;
         }
@@ -87,7 +87,7 @@ static void begin(uint16_t job)
         record->used = 0U;
         record->below = current;
     }
-    record->depth++;
+    ++record->depth;
     current = job;
     Hwi_restore(key);
 }
@@ -98,7 +98,7 @@ static void end(uint16_t job)
     record_t *record = &records[job];
 
     charge();
-    record->depth--;
+    --record->depth;
     if (record->depth == 0U) {
         finish(record);
         current = record->below;
@@ -194,7 +194,7 @@ void cpu_time_reset(void)
     const UInt key = Hwi_disable();
     uint16_t job;
 
-    for (job = 0U; job < (uint16_t)CPU_TIME_JOBS; job++) {
+    for (job = 0U; job < (uint16_t)CPU_TIME_JOBS; ++job) {
         records[job].longest = 0U;
     }
     Hwi_restore(key);

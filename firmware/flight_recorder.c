@@ -51,7 +51,7 @@ static uint32_t tell_ms(uint32_t now_us)
 static void append(const published_t *record)
 {
     published_pack(ring[next % RECORDS], record);
-    next++;
+    ++next;
     if (next - oldest > RECORDS) {
         oldest = next - RECORDS;
     }
@@ -100,7 +100,7 @@ static float take_frames(const flight_inputs_t *in, bool apart)
 {
     float up_mps2 = NAN;
 
-    for (uint16_t i = 0U; i < in->frame_count; i++) {
+    for (uint16_t i = 0U; i < in->frame_count; ++i) {
         const imu_sample_t *frame = &in->frames[i];
         const uint32_t before_us = in->now_us - frame->arrival_us;
 
@@ -186,7 +186,7 @@ uint32_t flight_recorder_since(uint16_t seconds)
         return first;
     }
     while (flight_recorder_read(first - 1U, &record) && newest.time_ms - record.time_ms <= back_ms) {
-        first--;
+        --first;
     }
     return first;
 }

@@ -31,7 +31,7 @@ void imu_exchange_show(const razor_text_t *text, razor_status_t status, const im
     shown.status = status;
     if (status == RAZOR_OK) {
         shown.raw = *raw;
-        shown.frames++;
+        ++shown.frames;
         shown.period_us = arrival_us - shown_us;
         shown_us = arrival_us;
     }

@@ -29,7 +29,7 @@ static uint16_t received(const bsp_uart_burst_t *burst)
         razor_collector_broken(&collector);
         return UART_PORT_BURST;
     }
-    for (i = 0U; i < burst->count; i++) {
+    for (i = 0U; i < burst->count; ++i) {
         if (razor_collect(&collector, octet_of(burst->octets[i]))) {
             fresh.text = collector.gathered;
             fresh.arrival_us = bsp_time_us();

@@ -47,7 +47,7 @@ static void feed(const bsp_uart_burst_t *burst)
     octet_t run[BSP_UART_FIFO_DEPTH];
     uint16_t i;
 
-    for (i = 0U; i < burst->count; i++) {
+    for (i = 0U; i < burst->count; ++i) {
         run[i] = octet_of(burst->octets[i]);
     }
     if (urg_feed(&urg, run, burst->count)) {
@@ -148,7 +148,7 @@ static void send(const urg_output_t *output)
     char text[SCIP_REQUEST_MAX];
     uint16_t i;
 
-    for (i = 0U; i < output->count; i++) {
+    for (i = 0U; i < output->count; ++i) {
         text[i] = (char)octet_of(output->octets[i]);
     }
     if (output->count > 0U) {

@@ -40,7 +40,7 @@ static bool send_next(void)
     if (!xbee_port_spare(&answer->line)) {
         return false;
     }
-    listing.number++;
+    ++listing.number;
     listing.line = more ? listing.line : NULL;
     return true;
 }

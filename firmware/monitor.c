@@ -86,7 +86,7 @@ void monitor_done(monitor_task_t task)
         record->longest_us = response_us;
     }
     if (response_us > deadlines_us[task]) {
-        record->late++;
+        ++record->late;
     }
 }
 
@@ -160,11 +160,11 @@ void monitor_reset(void)
     UInt key = Hwi_disable();
     uint16_t i;
 
-    for (i = 0U; i < (uint16_t)MONITOR_TASKS; i++) {
+    for (i = 0U; i < (uint16_t)MONITOR_TASKS; ++i) {
         records[i].longest_us = 0U;
         records[i].late = 0U;
     }
-    for (i = 0U; i < (uint16_t)MONITOR_SERVERS; i++) {
+    for (i = 0U; i < (uint16_t)MONITOR_SERVERS; ++i) {
         gates[i].longest_wait_us = 0U;
         gates[i].longest_hold = 0U;
     }

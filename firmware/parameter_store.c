@@ -28,7 +28,7 @@ static uint32_t names_of_choices(uint32_t names, const parameter_row_t *row)
 {
     uint16_t i;
 
-    for (i = 0U; row->choices != NULL && i <= (uint16_t)row->maximum; i++) {
+    for (i = 0U; row->choices != NULL && i <= (uint16_t)row->maximum; ++i) {
         names = parameter_image_name(names, row->choices[i]);
     }
     return names;
@@ -40,7 +40,7 @@ static uint32_t names_of(uint16_t count)
     uint32_t names = 0U;
     uint16_t id;
 
-    for (id = 0U; id < count; id++) {
+    for (id = 0U; id < count; ++id) {
         names = parameter_image_name(names, parameter_table[id].name);
         names = names_of_choices(names, &parameter_table[id]);
     }
@@ -68,7 +68,7 @@ static void look(void)
 {
     uint16_t slot;
 
-    for (slot = 0U; slot < SLOTS; slot++) {
+    for (slot = 0U; slot < SLOTS; ++slot) {
         bsp_storage_read(slot, cells, PARAMETER_IMAGE_CELLS_MAX);
         copies[slot].status = parameter_image_read(&copies[slot].image, cells);
     }
@@ -95,7 +95,7 @@ static parameter_store_status_t why_none(void)
     uint16_t slot;
     parameter_store_status_t why = PARAMETER_STORE_EMPTY;
 
-    for (slot = 0U; slot < SLOTS; slot++) {
+    for (slot = 0U; slot < SLOTS; ++slot) {
         const parameter_image_status_t status = copies[slot].status;
 
         if (status == PARAMETER_IMAGE_GOOD || status == PARAMETER_IMAGE_VERSION_UNKNOWN) {
@@ -114,7 +114,7 @@ static parameter_id_t take(parameters_t *parameters, const parameter_image_t *im
     const uint16_t count = parameters_in(image);
     uint16_t id;
 
-    for (id = 0U; id < count; id++) {
+    for (id = 0U; id < count; ++id) {
         if (parameters_set(parameters, (parameter_id_t)id, image->values[id]) != PARAMETER_ACCEPTED) {
             return (parameter_id_t)id;
         }
@@ -158,7 +158,7 @@ static uint32_t laser_rate_in(uint16_t slot)
     if (copies[slot].image.count <= place) {
         return 0U;
     }
-    for (i = 0U; i < SCIP_BIT_RATES; i++) {
+    for (i = 0U; i < SCIP_BIT_RATES; ++i) {
         if (copies[slot].image.values[place] == (float)scip_bit_rates[i]) {
             return scip_bit_rates[i];
         }
@@ -179,7 +179,7 @@ static void fill(parameter_image_t *image, const parameters_t *parameters, uint3
     image->count = LASER_RATE + 1U;
     image->names = names_with_rate(VALUES);
     image->values[LASER_RATE] = (float)laser_rate;
-    for (id = 0U; id < (uint16_t)PARAMETER_COUNT; id++) {
+    for (id = 0U; id < (uint16_t)PARAMETER_COUNT; ++id) {
         image->values[id] = parameters->value[id];
     }
 }
@@ -212,7 +212,7 @@ static bool write(uint16_t slot, const parameter_image_t *image)
         written = program(slot, at);
     }
     bsp_storage_read(slot, read_back, count);
-    for (at = 0U; written && at < count; at++) {
+    for (at = 0U; written && at < count; ++at) {
         written = read_back[at] == cells[at];
     }
     return written;

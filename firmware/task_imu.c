@@ -63,7 +63,7 @@ static void take(imu_sample_t *sample, const imu_raw_t *raw, uint32_t arrival_us
     sample->has_acceleration = raw->has_acceleration;
     imu_map_acceleration(&mapping, raw, &sample->forward_mps2, &sample->right_mps2, &sample->down_mps2);
     sample->arrival_us = arrival_us;
-    sample->sequence++;
+    ++sample->sequence;
 }
 
 /* The offset is taken once after power-up: after a watchdog reset the vehicle may be in the air. */
@@ -97,7 +97,7 @@ static Void task_imu(UArg unused0, UArg unused1)
         if (status == RAZOR_OK) {
             take(&sample, &raw, message.arrival_us);
         } else {
-            sample.malformed++;
+            ++sample.malformed;
         }
         imu_server_write(&sample);
         task_control_imu_arrived();

@@ -19,7 +19,7 @@ static altitude_t height_of(const scip_scan_t *scan, const attitude_t *tilt)
     uint16_t i;
 
     geometry_mounted(&geometry);
-    for (i = 0U; i < geometry.layout.group_count; i++) {
+    for (i = 0U; i < geometry.layout.group_count; ++i) {
         scip_group_mean_t mean = scip_group_mean(scan, &geometry.layout.groups[i]);
 
         ranges[i].mirror = geometry.windows.mirror[i];
@@ -47,9 +47,9 @@ static void take(altitude_sample_t *sample, const laser_message_t *message)
         sample->arrival_us = message->arrival_us;
         sample->age_us = (uint32_t)((int32_t)scip_rays_age_us(&message->scan, message->bit_rate) -
                                     altitude.later_us);
-        sample->sequence++;
+        ++sample->sequence;
     } else {
-        sample->heightless++;
+        ++sample->heightless;
     }
     altitude_server_write(sample);
     task_control_altitude_arrived();

@@ -26,7 +26,7 @@ static uint16_t ticks; /* since the latest release */
 static Void release(UArg unused)
 {
     (void)unused;
-    ticks++;
+    ++ticks;
     if (ticks < PERIOD_TICKS && TICK_US * (uint32_t)ticks < laser_port_pause_us()) {
         return;
     }

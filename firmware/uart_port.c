@@ -49,7 +49,7 @@ static Void poll(UArg unused)
     uint16_t uart;
 
     (void)unused;
-    for (uart = 0U; uart < (uint16_t)BSP_UART_COUNT; uart++) {
+    for (uart = 0U; uart < (uint16_t)BSP_UART_COUNT; ++uart) {
         UInt key = Hwi_disable();
 
         take((bsp_uart_t)uart);
@@ -138,10 +138,10 @@ bool uart_port_send(bsp_uart_t uart, const char *text, uint16_t count)
     bool fits = (uint16_t)(UART_PORT_TRANSMIT_CELLS - port->count) >= count;
     uint16_t i;
 
-    for (i = 0U; fits && i < count; i++) {
+    for (i = 0U; fits && i < count; ++i) {
         port->cells[(uint16_t)(port->head + port->count) % UART_PORT_TRANSMIT_CELLS] = (uint16_t)text[i] &
                                                                                        0xFFU;
-        port->count++;
+        ++port->count;
     }
     feed_transmitter(uart);
     Hwi_restore(key);

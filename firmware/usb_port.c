@@ -43,7 +43,7 @@ void usb_port_step(void)
     answer.command = &perf;
     if (verb_perf_line(&answer, number)) {
         send_line();
-        number++;
+        ++number;
     } else {
         tell_version();
     }

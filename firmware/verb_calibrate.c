@@ -27,7 +27,7 @@ static bool read_whole(const telecommand_t *command, uint16_t *at, uint16_t most
     float number;
 
     while (from < command->argument_length && telecommand_is_blank(command->argument[from])) {
-        from++;
+        ++from;
     }
     *at = from;
     while (*at < command->argument_length && !telecommand_is_blank(command->argument[*at])) {

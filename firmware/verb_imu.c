@@ -42,7 +42,7 @@ static void write_raw(answer_t *answer, const imu_view_t *view)
     uint16_t i;
 
     telemetry_text(&answer->line, " raw:");
-    for (i = 0U; i < view->text.length; i++) {
+    for (i = 0U; i < view->text.length; ++i) {
         const char character = view->text.text[i];
         const char legible = (character >= ' ' && character <= '~') ? character : '|';
 
@@ -113,7 +113,7 @@ static void look(imu_raw_t *raw)
     float figures[5][LOOKS];
     uint16_t i;
 
-    for (i = 0U; i < LOOKS; i++) {
+    for (i = 0U; i < LOOKS; ++i) {
         imu_exchange_look(&view);
         figures[0][i] = view.raw.roll_rad;
         figures[1][i] = view.raw.pitch_rad;

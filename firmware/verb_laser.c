@@ -26,7 +26,7 @@ static void add_damages(answer_t *answer, const laser_statistics_t *statistics)
 {
     uint16_t i;
 
-    for (i = (uint16_t)SCIP_DAMAGE_SUM; i < (uint16_t)SCIP_DAMAGE_COUNT; i++) {
+    for (i = (uint16_t)SCIP_DAMAGE_SUM; i < (uint16_t)SCIP_DAMAGE_COUNT; ++i) {
         answer_count(answer, causes[i], statistics->urg.scip.damaged[i]);
     }
     telemetry_text(&answer->line, " last:");

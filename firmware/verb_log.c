@@ -125,8 +125,8 @@ static bool send_row(telemetry_line_t *line)
     if (!send_numbered(line)) {
         return false;
     }
-    dump.number++;
-    dump.sent++;
+    ++dump.number;
+    ++dump.sent;
     return true;
 }
 

@@ -42,7 +42,7 @@ static void write_waits(answer_t *answer)
     uint16_t i;
 
     telemetry_text(&answer->line, " wait_us");
-    for (i = 0U; i < (uint16_t)MONITOR_SERVERS; i++) {
+    for (i = 0U; i < (uint16_t)MONITOR_SERVERS; ++i) {
         answer_count(answer, servers[i], monitor_longest_wait_us((monitor_server_t)i));
     }
 }

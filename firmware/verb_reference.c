@@ -15,7 +15,7 @@ static void set_reference(float reference_m)
 
     reference_server_read(&reference);
     reference.reference_m = reference_m;
-    reference.sequence++;
+    ++reference.sequence;
     reference_server_write(&reference);
 }
 

@@ -57,8 +57,8 @@ static bool append(queue_t *queue)
         return false;
     }
     put(place(queue, queue->waiting));
-    queue->waiting++;
-    unannounced++;
+    ++queue->waiting;
+    ++unannounced;
     Swi_post(xbee_swi);
     return true;
 }
@@ -67,7 +67,7 @@ static void queue_urgent(void)
 {
     uint16_t i;
 
-    for (i = 0U; i < ordinary.waiting; i++) {
+    for (i = 0U; i < ordinary.waiting; ++i) {
         place(&ordinary, i)->overtaken = true;
     }
     if (!append(&urgent)) {
@@ -82,7 +82,7 @@ static void queue_line(void)
     } else if (telecommand_is_urgent(&collector.line)) {
         queue_urgent();
     } else if (!append(&ordinary)) {
-        lost++;
+        ++lost;
     }
 }
 
@@ -99,7 +99,7 @@ static uint16_t received(const bsp_uart_burst_t *burst)
 {
     uint16_t i;
 
-    for (i = 0U; i < burst->count; i++) {
+    for (i = 0U; i < burst->count; ++i) {
         doubt(burst);
         if (telecommand_collect(&collector, octet_of(burst->octets[i]))) {
             queue_line();
@@ -118,7 +118,7 @@ static Void xbee_swi_run(UArg unused0, UArg unused1)
     (void)unused1;
     unannounced = 0U;
     Hwi_restore(key);
-    for (; fresh > 0U; fresh--) {
+    for (; fresh > 0U; --fresh) {
         Semaphore_post(line_ready);
     }
 }
@@ -156,7 +156,7 @@ uint16_t xbee_port_wait(xbee_message_t *message)
     queue = next_queue();
     *message = *place(queue, 0U);
     queue->oldest = (uint16_t)((queue->oldest + 1U) % queue->places);
-    queue->waiting--;
+    --queue->waiting;
     missed = lost;
     lost = 0U;
     Hwi_restore(key);

@@ -9,7 +9,7 @@
 typedef struct {
     float authority_mps2_per_n;
     float damping_per_s;
-    float hover_n; /* hover thrust in still air */
+    float hover_n; /* hover thrust in calm air */
     float need_n;  /* hover thrust plus gust thrust */
     float upright; /* cos(roll) cos(pitch); 1 where the autopilot compensates the tilt itself */
 } cascade_vehicle_t;

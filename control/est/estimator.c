@@ -34,7 +34,7 @@
 #define STEP_AGREEMENT_M 0.050F       /* chosen: noise of two heights and 0.1 s of climb */
 #define REJECTIONS_MAX 3U             /* chosen: the third height is used whatever it is */
 #define UNCHECKED_AFTER_RESET 2U      /* chosen: two heights give the speed again */
-#define REST_SIGMA_MPS 0.02F          /* chosen: a vehicle on the ground may still shake */
+#define REST_SIGMA_MPS 0.02F          /* chosen: a vehicle on the ground may shake */
 
 #define SPEED_RESET_MAX_MPS 1.0F /* chosen: limit of the speed that survives a reset */
 

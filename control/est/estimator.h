@@ -57,7 +57,7 @@ typedef struct {
     credit_t credit;          /* of the accelerometer */
     roughness_t roughness;    /* of the heights */
     uint16_t rejected_count;  /* rejected heights in a row */
-    uint16_t unchecked_count; /* heights still to be fused without the innovation test */
+    uint16_t unchecked_count; /* heights yet to be fused without the innovation test */
     bool confirmed;           /* the latest height passed the test, or was the second one of a terrain step */
     float rejected_innovation_m; /* innovation of the latest rejected height */
     float innovation_m;          /* innovation of the latest height */

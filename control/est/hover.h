@@ -1,4 +1,4 @@
-/* Hover thrust and gust thrust. The hover thrust is the thrust that holds the vehicle in still air. The
+/* Hover thrust and gust thrust. The hover thrust is the thrust that holds the vehicle in calm air. The
  * gust thrust is what is needed on top of it at the moment. Both are estimated from one sample: the
  * delivered thrust, less the thrust that the measured acceleration needed.
  *

@@ -28,8 +28,8 @@ void lift_off_reset(lift_off_t *lift, float gravity_n, float ground_m)
     lift->ramp_n = RAMP_START * gravity_n;
 }
 
-/* The speed is summed up from standstill; it decays within LIFT_TIME_S, so that an error of the bias does not
- * add up while the vehicle still stands. */
+/* The speed is summed up from rest; it decays within LIFT_TIME_S, so that an error of the bias does not
+ * add up while the vehicle stands. */
 void lift_off_watch(lift_off_t *lift, float felt_mps2, float delivered_n, float dt_s)
 {
     const float share = at_most(dt_s / LIFT_FILTER_S, 1.0F);

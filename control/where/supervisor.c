@@ -202,7 +202,7 @@ static float measured_peak_mm(const supervisor_t *s)
     return peak_mm(s, s->height.height_mm, s->height.rate_mm_s, ahead_s);
 }
 
-/* Ground that was found by stillness: the heights may see past an edge, and go on doing so. */
+/* Ground that was found by its calm, not by heights: the heights may see past an edge, and go on doing so. */
 static void follow_ground(supervisor_t *s)
 {
     if (s->height.is_new) {
@@ -274,7 +274,7 @@ static uint16_t bit(bool condition, uint16_t mask)
     return condition ? mask : 0U;
 }
 
-/* On the ground by its heights. While the tilt still moves, they may be those of a blocked beam. */
+/* On the ground by its heights. While the tilt moves, they may be those of a blocked beam. */
 static bool rests(const supervisor_t *s)
 {
     const bool rocks = s->rocks && s->state_us < REST_ROCKS_MAX_US;

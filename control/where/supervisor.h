@@ -23,7 +23,7 @@ typedef struct {
     bool rocks;       /* the same within the last 0.8 s */
     bool hands_over;  /* #ARM lets the tilt alone tell a pilot's flight, arming.h */
     bool carried;     /* GROUND: no pin tells who has the throttle, there is no height, and a pilot flies;
-                       * DESCENDING: the same may still be so */
+                       * DESCENDING: it may be so yet */
 } vertical_estimate_t;
 
 /* The latest valid height. */
