@@ -78,11 +78,9 @@ static void open_uart_pins(const uart_pins_t *pins)
 
 static void pull_up_unbonded(void)
 {
-    size_t i;
-    uint16_t pin;
 
-    for (i = 0U; i < UNBONDED_COUNT; ++i) {
-        for (pin = UNBONDED[i].first; pin <= UNBONDED[i].last; ++pin) {
+    for (size_t i = 0U; i < UNBONDED_COUNT; ++i) {
+        for (uint16_t pin = UNBONDED[i].first; pin <= UNBONDED[i].last; ++pin) {
             GPIO_setPadConfig(pin, GPIO_PIN_TYPE_PULLUP);
         }
     }
@@ -90,7 +88,6 @@ static void pull_up_unbonded(void)
 
 void bsp_board_init(void)
 {
-    size_t i;
 
     SysCtl_disableWatchdog();
     hold_throttle_low();
@@ -99,7 +96,7 @@ void bsp_board_init(void)
     set_clocks();
     bsp_throttle_init();
     bsp_led_red(false);
-    for (i = 0U; i < UART_COUNT; ++i) {
+    for (size_t i = 0U; i < UART_COUNT; ++i) {
         open_uart_pins(&UARTS[i]);
     }
     bsp_selector_init();

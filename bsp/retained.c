@@ -15,10 +15,9 @@ static block_t block __attribute__((section(".retained")));
 
 static uint32_t add(uint32_t sum, uint32_t word)
 {
-    uint16_t bit;
 
     sum ^= word;
-    for (bit = 0U; bit < 32U; ++bit) {
+    for (uint16_t bit = 0U; bit < 32U; ++bit) {
         sum = ((sum & 1U) != 0U) ? ((sum >> 1) ^ POLYNOMIAL) : (sum >> 1);
     }
     return sum;
@@ -27,9 +26,8 @@ static uint32_t add(uint32_t sum, uint32_t word)
 static uint32_t sum_of(const uint32_t words[BSP_RETAINED_WORDS])
 {
     uint32_t sum = add(FULL, MAGIC);
-    uint16_t i;
 
-    for (i = 0U; i < BSP_RETAINED_WORDS; ++i) {
+    for (uint16_t i = 0U; i < BSP_RETAINED_WORDS; ++i) {
         sum = add(sum, words[i]);
     }
     return sum ^ FULL;
@@ -38,12 +36,11 @@ static uint32_t sum_of(const uint32_t words[BSP_RETAINED_WORDS])
 bool bsp_retained_load(uint32_t words[BSP_RETAINED_WORDS])
 {
     const block_t stored = block;
-    uint16_t i;
 
     if (stored.sum != sum_of(stored.words)) {
         return false;
     }
-    for (i = 0U; i < BSP_RETAINED_WORDS; ++i) {
+    for (uint16_t i = 0U; i < BSP_RETAINED_WORDS; ++i) {
         words[i] = stored.words[i];
     }
     return true;
@@ -51,9 +48,8 @@ bool bsp_retained_load(uint32_t words[BSP_RETAINED_WORDS])
 
 void bsp_retained_store(const uint32_t words[BSP_RETAINED_WORDS])
 {
-    uint16_t i;
 
-    for (i = 0U; i < BSP_RETAINED_WORDS; ++i) {
+    for (uint16_t i = 0U; i < BSP_RETAINED_WORDS; ++i) {
         block.words[i] = words[i];
     }
     block.sum = sum_of(words);

@@ -11,10 +11,9 @@ extern uint16_t ebss_size[];
 void bsp_start(void)
 {
     const uint32_t cells = (uint32_t)(uintptr_t)ebss_size;
-    uint32_t i;
 
     SysCtl_disableWatchdog();
-    for (i = 0U; i < cells; ++i) {
+    for (uint32_t i = 0U; i < cells; ++i) {
         ebss_start[i] = 0U;
     }
 }

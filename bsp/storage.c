@@ -59,9 +59,8 @@ static void correct_errors(bool on)
 /* Cache and prefetch hold lines as they were before an erasure: others take their place. */
 static void forget_lines(void)
 {
-    uint16_t line;
 
-    for (line = 0U; line < LINES; ++line) {
+    for (uint16_t line = 0U; line < LINES; ++line) {
         (void)flash_code[line * LINE_DISTANCE];
     }
 }
@@ -71,22 +70,20 @@ static void forget_lines(void)
  * (F2837x_sci_flash_kernels.c). */
 static bool activate(void)
 {
-    bool active;
 
     correct_errors(false);
     EALLOW;
-    active = Fapi_initializeAPI(F021_CPU0_W0_BASE_ADDRESS, SYSCLK_MHZ) == Fapi_Status_Success &&
-             Fapi_setActiveFlashBank(Fapi_FlashBank0) == Fapi_Status_Success;
+    const bool active = Fapi_initializeAPI(F021_CPU0_W0_BASE_ADDRESS, SYSCLK_MHZ) == Fapi_Status_Success &&
+                        Fapi_setActiveFlashBank(Fapi_FlashBank0) == Fapi_Status_Success;
     correct_errors(true);
     return active;
 }
 
 static bool open_bank(void)
 {
-    bool active;
 
     Flash_claimPumpSemaphore(FLASHPUMPSEMAPHORE_BASE, FLASH_BANK0_WRAPPER);
-    active = activate();
+    const bool active = activate();
     EALLOW;
     return active;
 }
@@ -109,10 +106,9 @@ static bool finished(Fapi_StatusType issued)
 void bsp_storage_read(uint16_t slot, uint16_t *cells, uint16_t count)
 {
     const volatile uint16_t *stored = flash_sectors_m_n[slot];
-    uint16_t i;
 
     correct_errors(false);
-    for (i = 0U; i < count; ++i) {
+    for (uint16_t i = 0U; i < count; ++i) {
         cells[i] = stored[i];
     }
     correct_errors(true);
@@ -130,15 +126,13 @@ bool bsp_storage_erase(uint16_t slot)
 bool bsp_storage_program(uint16_t slot, uint16_t first, const uint16_t cells[BSP_STORAGE_BLOCK])
 {
     uint16 block[BSP_STORAGE_BLOCK];
-    bool programmed;
-    uint16_t i;
 
-    for (i = 0U; i < BSP_STORAGE_BLOCK; ++i) {
+    for (uint16_t i = 0U; i < BSP_STORAGE_BLOCK; ++i) {
         block[i] = cells[i];
     }
-    programmed = open_bank() && finished(Fapi_issueProgrammingCommand(
-                                    (uint32 *)(void *)&flash_sectors_m_n[slot][first], block,
-                                    BSP_STORAGE_BLOCK, 0, 0U, Fapi_AutoEccGeneration));
+    const bool programmed = open_bank() && finished(Fapi_issueProgrammingCommand(
+                                               (uint32 *)(void *)&flash_sectors_m_n[slot][first], block,
+                                               BSP_STORAGE_BLOCK, 0, 0U, Fapi_AutoEccGeneration));
     close_bank();
     return programmed;
 }

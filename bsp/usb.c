@@ -7,7 +7,7 @@
 
 #define USB_PIN DEVICE_GPIO_PIN_SCITXDA
 
-static void take(void)
+static void take_pin(void)
 {
     GPIO_setPinConfig(GPIO_65_GPIO65);
     GPIO_writePin(USB_PIN, 1U);
@@ -26,7 +26,7 @@ static void give_back(void)
 void bsp_usb_transmit(bool on)
 {
     if (on) {
-        take();
+        take_pin();
     } else {
         give_back();
     }

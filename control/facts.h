@@ -26,7 +26,7 @@ typedef struct {
     bool sways;    /* roll and pitch sway as in the air */
     bool calm;     /* they sway as on the ground; between the two neither is certain */
     bool rocks;    /* the tilt has moved by a degree within the last 0.8 s */
-    bool in_hands; /* state GROUND without heights: a pilot flies it, or somebody carries it */
+    bool in_hands; /* state GROUND without heights: a pilot flies it, or somebody holds it */
     bool may_stand;   /* calm for so long that it may stand on the ground: lower the thrust to find out */
     bool stands;      /* too little thrust to fly, no felt fall, and calm: it stands on the ground */
     float upright;    /* cosine of the believed tilt */

@@ -93,7 +93,7 @@ static void decide(imu_axes_t *axes, imu_fault_t seen, float dt_s)
     }
 }
 
-static void take(imu_axes_t *axes, const imu_sample_t *frame, float noise_mps2)
+static void average(imu_axes_t *axes, const imu_sample_t *frame, float noise_mps2)
 {
     const float dt_s = (float)(frame->arrival_us - axes->time_us) * 1.0e-6F;
 
@@ -118,7 +118,7 @@ void imu_axes_step(imu_axes_t *axes, const imu_sample_t *frames, uint16_t count,
 
         axes->sequence = frame->sequence;
         if (grounded && frame->ready && frame->has_acceleration) {
-            take(axes, frame, noise_mps2);
+            average(axes, frame, noise_mps2);
         } else {
             axes->seen_s = 0.0F;
             axes->suspected_s = 0.0F;

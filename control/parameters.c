@@ -82,7 +82,7 @@ const parameter_row_t parameter_table[] = {
     [PARAMETER_LINK] = {"LINK", "s", 0.0F, 60.0F, 0.0F, NULL, PARAMETERS_RADIO,
                         "Longest silence of the link; 0 disarms."},
     [PARAMETER_SUM] = {"SUM", "-", 0.0F, (float)(SUM_COUNT - 1), (float)SUM_OFF, sum_names, PARAMETERS_RADIO,
-                       "Whether every command line must carry its sum."},
+                       "Whether every command line must have its sum."},
     [PARAMETER_SEL] = {"SEL", "-", 0.0F, (float)(SEL_COUNT - 1), (float)SEL_NONE, sel_names,
                        PARAMETERS_THROTTLE, "Whether a pin tells that the pilot has the throttle."},
     [PARAMETER_IDLE] = {"IDLE", "%", 0.0F, 25.0F, 15.0F, NULL, PARAMETERS_THROTTLE,

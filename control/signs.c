@@ -15,7 +15,7 @@ static bool commands_floating(const situation_t *now)
            !pilot_is_unknown(&now->where->pilot);
 }
 
-/* True when the vehicle is in the air, carried by the thrust that is commanded here. */
+/* True when the vehicle is in the air by the thrust that is commanded here. */
 static bool is_off_ground(const situation_t *now, bool has_throttle)
 {
     switch (now->where->supervisor.state) {
@@ -70,7 +70,7 @@ est_before_t signs_of_before(const situation_t *now)
 }
 
 /* A pilot may have the vehicle, and nothing tells: without a pin on the ground, or in a descent that began
- * so. Somebody may carry it by hand too: that is not told apart, and a vehicle that flies must not fall. An
+ * so. Somebody may hold it too: that is not told apart, and a vehicle that flies must not fall. An
  * IMU that has fallen silent does not say so any longer: the descent then ends by its time. */
 static bool may_be_in_hands(const situation_t *now)
 {
@@ -98,7 +98,7 @@ vertical_estimate_t signs_of_vertical(const situation_t *now, bool hands_over)
         .sways = now->evidence->sways,
         .rocks = now->rocks,
         .hands_over = hands_over,
-        .carried = may_be_in_hands(now),
+        .in_hands = may_be_in_hands(now),
     };
 }
 

@@ -124,13 +124,12 @@ static uint16_t limbs_to_divide(int32_t tens)
 static int32_t make_binary(number_t *number)
 {
     int32_t tens = number->exponent; /* to multiply by; if negative, to divide by */
-    uint16_t raised;
 
     for (; tens > 0; tens -= fives(tens)) {
         wide_multiply_add(&number->digits, power_of_five[fives(tens)], 0U);
     }
     tens = -tens;
-    raised = wide_raise_to(&number->digits, limbs_to_divide(tens));
+    const uint16_t raised = wide_raise_to(&number->digits, limbs_to_divide(tens));
     for (; tens > 0; tens -= fives(tens)) {
         number->more |= wide_divide(&number->digits, power_of_five[fives(tens)]);
     }
@@ -145,23 +144,19 @@ static bool round_to_float(const wide_t *wide, bool more, int32_t exponent, floa
     uint64_t window = ((uint64_t)wide->limb[low + 2U] << 32) | ((uint64_t)wide->limb[low + 1U] << 16) |
                       wide->limb[low];
     uint16_t drop = 0U;
-    int32_t unit;
-    uint32_t mantissa;
-    uint32_t rest;
-    uint32_t half;
 
     while ((window >> drop) >= MANTISSA_END) {
         ++drop;
     }
-    mantissa = (uint32_t)(window >> drop);
-    rest = (uint32_t)(window & (((uint32_t)1U << drop) - 1U));
-    half = (uint32_t)1U << (drop - 1U);
+    uint32_t mantissa = (uint32_t)(window >> drop);
+    const uint32_t rest = (uint32_t)(window & (((uint32_t)1U << drop) - 1U));
+    const uint32_t half = (uint32_t)1U << (drop - 1U);
     more = more || wide_has_below(wide, low);
     if (rest > half || (rest == half && (more || (mantissa & 1U) != 0U))) {
         ++mantissa;
     }
 
-    unit = exponent + (int32_t)low * LIMB_BITS + (int32_t)drop;
+    int32_t unit = exponent + (int32_t)low * LIMB_BITS + (int32_t)drop;
     if (mantissa == MANTISSA_END) {
         mantissa >>= 1;
         ++unit;
@@ -176,7 +171,6 @@ static bool round_to_float(const wide_t *wide, bool more, int32_t exponent, floa
 static bool to_float(number_t *number, float *magnitude)
 {
     int32_t order = number->digit_count + number->exponent;
-    int32_t exponent;
 
     if (number->digits.used == 0U || order < ORDER_MIN) {
         *magnitude = 0.0F;
@@ -185,7 +179,7 @@ static bool to_float(number_t *number, float *magnitude)
     if (order > ORDER_MAX) {
         return false;
     }
-    exponent = make_binary(number);
+    const int32_t exponent = make_binary(number);
     return round_to_float(&number->digits, number->more, exponent, magnitude);
 }
 
@@ -234,7 +228,6 @@ static bool read_digits(reader_t *reader, number_t *number, int16_t place)
 /* Takes "e..." if there is one; false when it lacks its digits. */
 static bool read_exponent(reader_t *reader, number_t *number)
 {
-    bool minus;
     bool any = false;
     int32_t exponent = 0;
 
@@ -242,7 +235,7 @@ static bool read_exponent(reader_t *reader, number_t *number)
         return true;
     }
     ++reader->at;
-    minus = read_sign(reader);
+    const bool minus = read_sign(reader);
     for (; next_is_digit(reader); ++reader->at) {
         any = true;
         if (exponent < EXPONENT_MAX) {
@@ -345,12 +338,11 @@ size_t decimal_write_shortest(char *text, size_t capacity, float value)
 {
     float magnitude = fabsf(value);
     uint16_t decimals = 0U;
-    size_t length;
 
     if (!(magnitude < WRITE_END) || (magnitude > 0.0F && magnitude < WRITE_SHORTEST_MIN)) {
         return 0U;
     }
-    length = write_decimals(text, capacity, value, decimals);
+    size_t length = write_decimals(text, capacity, value, decimals);
     while (length > 0U && decimals < SHORTEST_DECIMALS_MAX && !reads_back(text, length, value)) {
         ++decimals;
         length = write_decimals(text, capacity, value, decimals);

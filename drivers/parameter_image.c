@@ -19,10 +19,9 @@ typedef union {
 /* Bit by bit: a table would cost 1 KiB of flash, and a copy is checked at power-up and #SAVE alone. */
 static uint32_t crc_octet(uint32_t crc, uint16_t octet)
 {
-    uint16_t bit;
 
     crc ^= (uint32_t)(octet & 0xFFU);
-    for (bit = 0U; bit < 8U; ++bit) {
+    for (uint16_t bit = 0U; bit < 8U; ++bit) {
         crc = (crc >> 1) ^ (((crc & 1U) != 0U) ? CRC_POLYNOMIAL : UINT32_C(0));
     }
     return crc;
@@ -32,9 +31,8 @@ static uint32_t crc_octet(uint32_t crc, uint16_t octet)
 static uint32_t crc_of(const uint16_t *cells, uint16_t count)
 {
     uint32_t crc = CRC_START;
-    uint16_t i;
 
-    for (i = 0U; i < count; ++i) {
+    for (uint16_t i = 0U; i < count; ++i) {
         crc = crc_octet(crc, cells[i]);
         crc = crc_octet(crc, (uint16_t)(cells[i] >> 8));
     }
@@ -126,9 +124,8 @@ parameter_image_status_t parameter_image_read(parameter_image_t *image,
 
 uint32_t parameter_image_name(uint32_t names, const char *name)
 {
-    size_t i;
 
-    for (i = 0U; name[i] != '\0'; ++i) {
+    for (size_t i = 0U; name[i] != '\0'; ++i) {
         names = crc_octet(names, (uint16_t)name[i]);
     }
     /* Between two names, where no character can stand: "AB","C" is not "A","BC". */

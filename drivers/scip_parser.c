@@ -339,7 +339,6 @@ static scip_event_t end_of_status(scip_parser_t *parser)
 {
     const octet_t *line = parser->line;
     check_t check = nothing_checked;
-    scip_damage_t cause;
     if (line_is_refusal(parser)) {
         parser->state = LEGACY_END;
         return SCIP_NOTHING;
@@ -354,7 +353,7 @@ static scip_event_t end_of_status(scip_parser_t *parser)
     }
     (void)six_bits(&check, line[0]);
     (void)six_bits(&check, line[1]);
-    cause = verdict(&check, 2U, line[2]);
+    const scip_damage_t cause = verdict(&check, 2U, line[2]);
     if (cause != SCIP_DAMAGE_NONE) {
         return damage(parser, cause);
     }

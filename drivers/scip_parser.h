@@ -159,11 +159,10 @@ scip_event_t scip_parser_end_line(scip_parser_t *parser);
 static inline scip_event_t scip_parser_feed(scip_parser_t *parser, octet_t octet)
 {
     const octet_t clean = octet_of(octet);
-    size_t at;
     if (clean == SCIP_LINE_FEED) {
         return scip_parser_end_line(parser);
     }
-    at = parser->gathered;
+    const size_t at = parser->gathered;
     parser->gathered = (octet_t)((at + 1U) % SCIP_LINE_MAX);
     parser->line[at] = clean;
     return SCIP_NOTHING;

@@ -185,7 +185,7 @@ static bool is_hexadecimal(char character)
     return (digit >= '0' && digit <= '9') || (digit >= 'A' && digit <= 'F');
 }
 
-/* Where `*` and the sum begin; end when the line carries none. */
+/* Where `*` and the sum begin; end when the line has none. */
 static uint16_t find_sum(const telecommand_line_t *line, uint16_t end)
 {
     uint16_t digits = end;
@@ -239,7 +239,6 @@ static telecommand_status_t take_argument(const telecommand_line_t *line, uint16
 static telecommand_status_t split(const telecommand_line_t *line, uint16_t sum_at, telecommand_t *command)
 {
     const uint16_t end = end_of(line, sum_at);
-    telecommand_status_t status;
     uint16_t at = 1U;
 
     if (end == 1U) {
@@ -248,7 +247,7 @@ static telecommand_status_t split(const telecommand_line_t *line, uint16_t sum_a
     while (telecommand_is_blank(line->text[at])) {
         ++at;
     }
-    status = take_name(line, &at, end, command);
+    const telecommand_status_t status = take_name(line, &at, end, command);
     return status == TELECOMMAND_OK ? take_argument(line, at, end, command) : status;
 }
 

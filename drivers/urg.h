@@ -82,11 +82,10 @@ bool urg_take_event(urg_driver_t *urg, scip_event_t event);
  * interrupt may call it for every octet. */
 static inline bool urg_feed(urg_driver_t *urg, const octet_t *octets, size_t count)
 {
-    scip_event_t event;
     if (count != 1U) {
         return urg_feed_all(urg, octets, count);
     }
-    event = scip_parser_feed(&urg->parser, octets[0]);
+    const scip_event_t event = scip_parser_feed(&urg->parser, octets[0]);
     return event != SCIP_NOTHING && urg_take_event(urg, event);
 }
 

@@ -22,12 +22,11 @@ void alive_hang(void)
 
 void alive_report(alive_t task)
 {
-    UInt key;
 
     while (hangs && task == ALIVE_SEND_LASER) {
         Task_sleep(HANG_TICKS);
     }
-    key = Hwi_disable();
+    const UInt key = Hwi_disable();
 
     reported = (uint16_t)(reported | (1U << task));
     if (reported == ALL) {

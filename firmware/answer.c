@@ -86,7 +86,6 @@ void answer_count(answer_t *answer, const char *name, uint32_t count)
 void answer_limits(answer_t *answer, const parameter_row_t *row)
 {
     telemetry_line_t *line = &answer->line;
-    uint16_t i;
 
     if (row->choices == NULL) {
         telemetry_number(line, row->minimum);
@@ -96,7 +95,7 @@ void answer_limits(answer_t *answer, const parameter_row_t *row)
         telemetry_text(line, row->unit);
         return;
     }
-    for (i = 0U; i <= (uint16_t)row->maximum; ++i) {
+    for (uint16_t i = 0U; i <= (uint16_t)row->maximum; ++i) {
         telemetry_text(line, (i > 0U) ? "|" : "");
         telemetry_text(line, row->choices[i]);
     }

@@ -36,10 +36,9 @@ static void write_value(answer_t *answer, parameter_id_t id)
 {
     const parameter_row_t *row = &parameter_table[id];
     static parameters_t parameters;
-    float value;
 
     parameter_server_read(&parameters);
-    value = parameters.value[id];
+    const float value = parameters.value[id];
     telemetry_begin(&answer->line);
     telemetry_text(&answer->line, "OK ");
     telemetry_text(&answer->line, row->name);
@@ -55,10 +54,9 @@ static void write_value(answer_t *answer, parameter_id_t id)
 static void report_set(answer_t *answer, parameter_id_t id)
 {
     static parameters_t parameters;
-    control_law_t law;
 
     parameter_server_read(&parameters);
-    law = (control_law_t)(uint16_t)parameters.value[PARAMETER_LAW];
+    const control_law_t law = (control_law_t)(uint16_t)parameters.value[PARAMETER_LAW];
     write_value(answer, id);
     if (!parameter_is_used(id, law)) {
         telemetry_text(&answer->line, " (LAW ");
@@ -226,7 +224,7 @@ static bool execute_help(answer_t *answer)
 }
 
 /* In the air only what the pace there allows. False: refused, and answered. */
-static bool may_change(answer_t *answer, const parameters_t *parameters, parameter_id_t id, float value)
+static bool admit_change(answer_t *answer, const parameters_t *parameters, parameter_id_t id, float value)
 {
     static const char *const reasons[] = {
         [IN_AIR_NEVER] = "not on the ground",
@@ -264,7 +262,7 @@ static bool execute_set(answer_t *answer, parameter_id_t id)
     if (parameters_set(&changed, id, value) != PARAMETER_ACCEPTED) {
         return answer_refuse_range(answer, row);
     }
-    if (!may_change(answer, &parameters, id, value)) {
+    if (!admit_change(answer, &parameters, id, value)) {
         return false;
     }
     if ((id == PARAMETER_IROLL || id == PARAMETER_IPITCH) && value != parameters.value[id]) {
@@ -287,12 +285,11 @@ static bool execute(answer_t *answer)
 {
     const telecommand_t *command = answer->command;
     parameter_id_t id = parameter_find(command->name, command->name_length);
-    uint16_t i;
 
     if (id != PARAMETER_COUNT) {
         return execute_set(answer, id);
     }
-    for (i = 0U; i < VERB_COUNT; ++i) {
+    for (uint16_t i = 0U; i < VERB_COUNT; ++i) {
         if (strlen(verbs[i].name) == command->name_length &&
             strncmp(verbs[i].name, command->name, command->name_length) == 0) {
             return execute_verb(answer, &verbs[i]);

@@ -49,9 +49,8 @@ void cpu_time_watch(cpu_time_job_t job, const void *handle)
 
 static uint16_t find(const void *handle, uint16_t first, uint16_t end, uint16_t unknown)
 {
-    uint16_t job;
 
-    for (job = first; job < end; ++job) {
+    for (uint16_t job = first; job < end; ++job) {
         if (records[job].handle == handle) {
             return job;
         }
@@ -167,10 +166,9 @@ void cpu_time_gate_entered(void)
 uint32_t cpu_time_used(void)
 {
     const UInt key = Hwi_disable();
-    uint32_t used;
 
     charge();
-    used = records[current].used;
+    const uint32_t used = records[current].used;
     Hwi_restore(key);
     return used;
 }
@@ -192,9 +190,8 @@ uint32_t cpu_time_longest(cpu_time_job_t job)
 void cpu_time_reset(void)
 {
     const UInt key = Hwi_disable();
-    uint16_t job;
 
-    for (job = 0U; job < (uint16_t)CPU_TIME_JOBS; ++job) {
+    for (uint16_t job = 0U; job < (uint16_t)CPU_TIME_JOBS; ++job) {
         records[job].longest = 0U;
     }
     Hwi_restore(key);

@@ -13,13 +13,12 @@ static geometry_t mounted;
 void geometry_mount(const parameters_t *parameters)
 {
     static geometry_t geometry;
-    UInt key;
 
     geometry.places = altitude_geometry_of(parameters);
     geometry.windows = altitude_windows_of(parameters);
     geometry.layout = scip_layout_around(geometry.windows.middle, geometry.windows.count,
                                          geometry.windows.reach);
-    key = Hwi_disable();
+    const UInt key = Hwi_disable();
     mounted = geometry;
     Hwi_restore(key);
 }

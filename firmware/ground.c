@@ -2,12 +2,11 @@
 
 #include "firmware/servers.h"
 
-static bool waits(flight_outputs_t *flight)
+static bool waits(const flight_outputs_t *flight)
 {
     reference_sample_t reference;
 
     reference_server_read(&reference);
-    flight_status_server_read(flight);
     return flight->state == FLIGHT_GROUND && flight->reference_m <= 0.0F && reference.reference_m <= 0.0F;
 }
 
@@ -15,6 +14,7 @@ bool ground_idle(void)
 {
     flight_outputs_t flight;
 
+    flight_status_server_read(&flight);
     return waits(&flight) && flight.thrust_n <= 0.0F;
 }
 
@@ -22,6 +22,7 @@ bool ground_waits(void)
 {
     flight_outputs_t flight;
 
+    flight_status_server_read(&flight);
     return waits(&flight) && flight.thrust_n <= flight.idle_n;
 }
 

@@ -23,13 +23,12 @@ static Semaphore_Handle imu_ready;
 /* A frame has no sum of its own: with an error, whichever octet it hit, nothing of the burst is believed. */
 static uint16_t received(const bsp_uart_burst_t *burst)
 {
-    uint16_t i;
 
     if (burst->framing || burst->overrun) {
         razor_collector_broken(&collector);
         return UART_PORT_BURST;
     }
-    for (i = 0U; i < burst->count; ++i) {
+    for (uint16_t i = 0U; i < burst->count; ++i) {
         if (razor_collect(&collector, octet_of(burst->octets[i]))) {
             fresh.text = collector.gathered;
             fresh.arrival_us = bsp_time_us();
@@ -68,10 +67,9 @@ void imu_port_create(void)
 
 void imu_port_wait(imu_message_t *message)
 {
-    UInt key;
 
     (void)Semaphore_pend(imu_ready, BIOS_WAIT_FOREVER);
-    key = Swi_disable();
+    const UInt key = Swi_disable();
     *message = mailbox;
     Swi_restore(key);
 }

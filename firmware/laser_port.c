@@ -45,9 +45,8 @@ static void note_errors(const bsp_uart_burst_t *burst)
 static void feed(const bsp_uart_burst_t *burst)
 {
     octet_t run[BSP_UART_FIFO_DEPTH];
-    uint16_t i;
 
-    for (i = 0U; i < burst->count; ++i) {
+    for (uint16_t i = 0U; i < burst->count; ++i) {
         run[i] = octet_of(burst->octets[i]);
     }
     if (urg_feed(&urg, run, burst->count)) {
@@ -58,11 +57,10 @@ static void feed(const bsp_uart_burst_t *burst)
 /* The last octet of a scan makes an interrupt; where the end is not known, the tick is soon enough. */
 static uint16_t received(const bsp_uart_burst_t *burst)
 {
-    uint16_t expected;
 
     note_errors(burst);
     feed(burst);
-    expected = urg_expected(&urg);
+    const uint16_t expected = urg_expected(&urg);
     return (expected > 0U) ? expected : (uint16_t)UART_PORT_BURST;
 }
 
@@ -110,10 +108,9 @@ void laser_port_create(const urg_config_t *config)
 
 void laser_port_wait(laser_message_t *message)
 {
-    UInt key;
 
     (void)Semaphore_pend(laser_ready, BIOS_WAIT_FOREVER);
-    key = Swi_disable();
+    const UInt key = Swi_disable();
     *message = mailbox;
     Swi_restore(key);
     message->scan.distance_mm = message->distance_mm;
@@ -146,9 +143,8 @@ static void lend_transmitter(urg_status_t status)
 static void send(const urg_output_t *output)
 {
     char text[SCIP_REQUEST_MAX];
-    uint16_t i;
 
-    for (i = 0U; i < output->count; ++i) {
+    for (uint16_t i = 0U; i < output->count; ++i) {
         text[i] = (char)octet_of(output->octets[i]);
     }
     if (output->count > 0U) {

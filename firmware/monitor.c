@@ -133,13 +133,12 @@ void monitor_left(monitor_server_t server, const monitor_access_t *access)
 void monitor_report(monitor_task_t task, monitor_report_t *report)
 {
     Task_Stat stat;
-    UInt key;
 
     Task_stat(records[task].handle, &stat);
     report->name = names[task];
     report->stack_used = (uint32_t)stat.used;
     report->stack_size = (uint32_t)stat.stackSize;
-    key = Hwi_disable();
+    const UInt key = Hwi_disable();
     report->longest_us = records[task].longest_us;
     report->late = records[task].late;
     Hwi_restore(key);
@@ -158,13 +157,12 @@ uint32_t monitor_longest_hold(monitor_server_t server)
 void monitor_reset(void)
 {
     UInt key = Hwi_disable();
-    uint16_t i;
 
-    for (i = 0U; i < (uint16_t)MONITOR_TASKS; ++i) {
+    for (uint16_t i = 0U; i < (uint16_t)MONITOR_TASKS; ++i) {
         records[i].longest_us = 0U;
         records[i].late = 0U;
     }
-    for (i = 0U; i < (uint16_t)MONITOR_SERVERS; ++i) {
+    for (uint16_t i = 0U; i < (uint16_t)MONITOR_SERVERS; ++i) {
         gates[i].longest_wait_us = 0U;
         gates[i].longest_hold = 0U;
     }

@@ -26,9 +26,8 @@ static uint16_t read_back[PARAMETER_IMAGE_CELLS_MAX];
 
 static uint32_t names_of_choices(uint32_t names, const parameter_row_t *row)
 {
-    uint16_t i;
 
-    for (i = 0U; row->choices != NULL && i <= (uint16_t)row->maximum; ++i) {
+    for (uint16_t i = 0U; row->choices != NULL && i <= (uint16_t)row->maximum; ++i) {
         names = parameter_image_name(names, row->choices[i]);
     }
     return names;
@@ -38,9 +37,8 @@ static uint32_t names_of_choices(uint32_t names, const parameter_row_t *row)
 static uint32_t names_of(uint16_t count)
 {
     uint32_t names = 0U;
-    uint16_t id;
 
-    for (id = 0U; id < count; ++id) {
+    for (uint16_t id = 0U; id < count; ++id) {
         names = parameter_image_name(names, parameter_table[id].name);
         names = names_of_choices(names, &parameter_table[id]);
     }
@@ -66,9 +64,8 @@ static uint16_t parameters_in(const parameter_image_t *image)
 
 static void look(void)
 {
-    uint16_t slot;
 
-    for (slot = 0U; slot < SLOTS; ++slot) {
+    for (uint16_t slot = 0U; slot < SLOTS; ++slot) {
         bsp_storage_read(slot, cells, PARAMETER_IMAGE_CELLS_MAX);
         copies[slot].status = parameter_image_read(&copies[slot].image, cells);
     }
@@ -92,10 +89,9 @@ static uint16_t newest(bool foreign_too)
 
 static parameter_store_status_t why_none(void)
 {
-    uint16_t slot;
     parameter_store_status_t why = PARAMETER_STORE_EMPTY;
 
-    for (slot = 0U; slot < SLOTS; ++slot) {
+    for (uint16_t slot = 0U; slot < SLOTS; ++slot) {
         const parameter_image_status_t status = copies[slot].status;
 
         if (status == PARAMETER_IMAGE_GOOD || status == PARAMETER_IMAGE_VERSION_UNKNOWN) {
@@ -109,12 +105,11 @@ static parameter_store_status_t why_none(void)
 }
 
 /* Returns the first parameter that its limits refuse, PARAMETER_COUNT when there is none. */
-static parameter_id_t take(parameters_t *parameters, const parameter_image_t *image)
+static parameter_id_t accept_values(parameters_t *parameters, const parameter_image_t *image)
 {
     const uint16_t count = parameters_in(image);
-    uint16_t id;
 
-    for (id = 0U; id < count; ++id) {
+    for (uint16_t id = 0U; id < count; ++id) {
         if (parameters_set(parameters, (parameter_id_t)id, image->values[id]) != PARAMETER_ACCEPTED) {
             return (parameter_id_t)id;
         }
@@ -127,17 +122,16 @@ parameter_store_result_t parameter_store_load(parameters_t *parameters)
 {
     parameter_store_result_t result = {PARAMETER_STORE_DONE, 0U, PARAMETER_COUNT};
     static parameters_t wanted;
-    uint16_t slot;
 
     look();
-    slot = newest(false);
+    const uint16_t slot = newest(false);
     if (slot == NO_SLOT) {
         result.status = why_none();
         return result;
     }
     wanted = *parameters;
     result.generation = copies[slot].image.generation;
-    result.parameter = take(&wanted, &copies[slot].image);
+    result.parameter = accept_values(&wanted, &copies[slot].image);
     if (result.parameter != PARAMETER_COUNT) {
         result.status = PARAMETER_STORE_RANGE;
     } else {
@@ -148,17 +142,15 @@ parameter_store_result_t parameter_store_load(parameters_t *parameters)
 
 static uint32_t laser_rate_in(uint16_t slot)
 {
-    uint16_t place;
-    uint16_t i;
 
     if (slot == NO_SLOT) {
         return 0U;
     }
-    place = parameters_in(&copies[slot].image);
+    const uint16_t place = parameters_in(&copies[slot].image);
     if (copies[slot].image.count <= place) {
         return 0U;
     }
-    for (i = 0U; i < SCIP_BIT_RATES; ++i) {
+    for (uint16_t i = 0U; i < SCIP_BIT_RATES; ++i) {
         if (copies[slot].image.values[place] == (float)scip_bit_rates[i]) {
             return scip_bit_rates[i];
         }
@@ -174,12 +166,11 @@ uint32_t parameter_store_laser_rate(void)
 
 static void fill(parameter_image_t *image, const parameters_t *parameters, uint32_t laser_rate)
 {
-    uint16_t id;
 
     image->count = LASER_RATE + 1U;
     image->names = names_with_rate(VALUES);
     image->values[LASER_RATE] = (float)laser_rate;
-    for (id = 0U; id < (uint16_t)PARAMETER_COUNT; ++id) {
+    for (uint16_t id = 0U; id < (uint16_t)PARAMETER_COUNT; ++id) {
         image->values[id] = parameters->value[id];
     }
 }
@@ -206,13 +197,12 @@ static bool write(uint16_t slot, const parameter_image_t *image)
 {
     const uint16_t count = parameter_image_write(cells, image);
     bool written = erase(slot);
-    uint16_t at;
 
-    for (at = 0U; written && at < count; at = (uint16_t)(at + BSP_STORAGE_BLOCK)) {
+    for (uint16_t at = 0U; written && at < count; at = (uint16_t)(at + BSP_STORAGE_BLOCK)) {
         written = program(slot, at);
     }
     bsp_storage_read(slot, read_back, count);
-    for (at = 0U; written && at < count; ++at) {
+    for (uint16_t at = 0U; written && at < count; ++at) {
         written = read_back[at] == cells[at];
     }
     return written;
@@ -222,12 +212,10 @@ parameter_store_result_t parameter_store_save(const parameters_t *parameters, ui
 {
     parameter_store_result_t result = {PARAMETER_STORE_DONE, 1U, PARAMETER_COUNT};
     static parameter_image_t image;
-    uint16_t kept;
-    uint16_t latest;
 
     look();
-    latest = newest(true);
-    kept = newest(false);
+    const uint16_t latest = newest(true);
+    uint16_t kept = newest(false);
     fill(&image, parameters, laser_rate > 0U ? laser_rate : laser_rate_in(kept));
     if (latest != NO_SLOT) {
         result.generation = copies[latest].image.generation + 1U;

@@ -115,9 +115,8 @@ uint16_t imu_server_history(imu_sample_t history[IMU_HISTORY])
 {
     IArg key = enter(imu_gate, MONITOR_IMU_SAMPLE);
     uint16_t held = (imu.sequence < IMU_HISTORY) ? (uint16_t)imu.sequence : (uint16_t)IMU_HISTORY;
-    uint16_t i;
 
-    for (i = 0U; i < held; ++i) {
+    for (uint16_t i = 0U; i < held; ++i) {
         history[i] = imu_history[(imu_next + IMU_HISTORY - held + i) % IMU_HISTORY];
     }
     leave(imu_gate, MONITOR_IMU_SAMPLE, key);

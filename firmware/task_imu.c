@@ -39,7 +39,7 @@ static attitude_t tilt_of(const imu_mapping_t *mapping, const attitude_t *median
 }
 
 /* The filter works in the IMU's axes, so that its offset outlasts a change of the mapping. */
-static void take(imu_sample_t *sample, const imu_raw_t *raw, uint32_t arrival_us)
+static void fill_sample(imu_sample_t *sample, const imu_raw_t *raw, uint32_t arrival_us)
 {
     const bool was_ready = filter.ready;
     const attitude_t angles = {
@@ -47,7 +47,6 @@ static void take(imu_sample_t *sample, const imu_raw_t *raw, uint32_t arrival_us
     imu_mapping_t mapping;
     attitude_t level;
     attitude_t median;
-    attitude_t tilt;
 
     imu_exchange_mounted(&mapping);
     sample->ready = attitude_step(&filter, &angles, &level, &median);
@@ -57,7 +56,7 @@ static void take(imu_sample_t *sample, const imu_raw_t *raw, uint32_t arrival_us
     sample->rolled = filter.rolled;
     sample->level = imu_map_angles(&mapping, &level);
     sample->median = imu_map_angles(&mapping, &median);
-    tilt = tilt_of(&mapping, &median);
+    const attitude_t tilt = tilt_of(&mapping, &median);
     sample->tilt_roll_rad = tilt.roll_rad;
     sample->tilt_pitch_rad = tilt.pitch_rad;
     sample->has_acceleration = raw->has_acceleration;
@@ -82,8 +81,6 @@ static Void task_imu(UArg unused0, UArg unused1)
     static imu_message_t message;
     static imu_sample_t sample;
     razor_frame_t frame = {0};
-    razor_status_t status;
-    imu_raw_t raw;
 
     (void)unused0;
     (void)unused1;
@@ -91,11 +88,11 @@ static Void task_imu(UArg unused0, UArg unused1)
     for (;;) {
         imu_port_wait(&message);
         monitor_begin(MONITOR_IMU);
-        status = razor_parse(&message.text, &frame);
-        raw = raw_of(&frame);
+        const razor_status_t status = razor_parse(&message.text, &frame);
+        const imu_raw_t raw = raw_of(&frame);
         imu_exchange_show(&message.text, status, &raw, message.arrival_us);
         if (status == RAZOR_OK) {
-            take(&sample, &raw, message.arrival_us);
+            fill_sample(&sample, &raw, message.arrival_us);
         } else {
             ++sample.malformed;
         }

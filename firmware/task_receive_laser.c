@@ -16,10 +16,9 @@ static altitude_t height_of(const scip_scan_t *scan, const attitude_t *tilt)
     static beams_t beams;
     mirror_range_t ranges[SCIP_GROUPS_MAX];
     geometry_t geometry;
-    uint16_t i;
 
     geometry_mounted(&geometry);
-    for (i = 0U; i < geometry.layout.group_count; ++i) {
+    for (uint16_t i = 0U; i < geometry.layout.group_count; ++i) {
         scip_group_mean_t mean = scip_group_mean(scan, &geometry.layout.groups[i]);
 
         ranges[i].mirror = geometry.windows.mirror[i];
@@ -33,13 +32,12 @@ static altitude_t height_of(const scip_scan_t *scan, const attitude_t *tilt)
                       tilt->pitch_rad);
 }
 
-static void take(altitude_sample_t *sample, const laser_message_t *message)
+static void publish_height(altitude_sample_t *sample, const laser_message_t *message)
 {
     imu_sample_t imu;
-    altitude_t altitude;
 
     imu_server_read(&imu);
-    altitude = height_of(&message->scan, &imu.median);
+    const altitude_t altitude = height_of(&message->scan, &imu.median);
     sample->scan_valid = altitude.valid;
     if (altitude.valid) {
         sample->altitude = altitude;
@@ -65,7 +63,7 @@ static Void task_receive_laser(UArg unused0, UArg unused1)
     for (;;) {
         laser_port_wait(&message);
         monitor_begin(MONITOR_RECEIVE_LASER);
-        take(&sample, &message);
+        publish_height(&sample, &message);
         monitor_done(MONITOR_RECEIVE_LASER);
     }
 }

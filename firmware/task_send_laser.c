@@ -60,10 +60,9 @@ static void publish(const urg_report_t *urg)
 static void order_rays(void)
 {
     geometry_t geometry;
-    scip_range_t range;
 
     geometry_mounted(&geometry);
-    range = scip_layout_range(&geometry.layout, LASER_STREAM_RATE);
+    scip_range_t range = scip_layout_range(&geometry.layout, LASER_STREAM_RATE);
     laser_port_order(&range);
 }
 

@@ -19,14 +19,13 @@ typedef struct {
 
 static uart_port_t ports[BSP_UART_COUNT];
 
-static void take(bsp_uart_t uart)
+static void read_fifo(bsp_uart_t uart)
 {
     uart_port_t *port = &ports[uart];
     bsp_uart_burst_t burst;
-    uint16_t level;
 
     bsp_uart_receive(uart, &burst);
-    level = port->received(&burst);
+    uint16_t level = port->received(&burst);
     if (level > UART_PORT_BURST) {
         level = UART_PORT_BURST;
     }
@@ -38,7 +37,7 @@ static void take(bsp_uart_t uart)
 
 static Void receive_hwi(UArg uart)
 {
-    take((bsp_uart_t)uart);
+    read_fifo((bsp_uart_t)uart);
 }
 
 /* Also where every octet makes an interrupt: an error that rises between the look at the receive status and
@@ -46,13 +45,12 @@ static Void receive_hwi(UArg uart)
  * any more. */
 static Void poll(UArg unused)
 {
-    uint16_t uart;
 
     (void)unused;
-    for (uart = 0U; uart < (uint16_t)BSP_UART_COUNT; ++uart) {
+    for (uint16_t uart = 0U; uart < (uint16_t)BSP_UART_COUNT; ++uart) {
         UInt key = Hwi_disable();
 
-        take((bsp_uart_t)uart);
+        read_fifo((bsp_uart_t)uart);
         Hwi_restore(key);
     }
 }
@@ -61,12 +59,11 @@ static uint16_t feed_run(bsp_uart_t uart)
 {
     uart_port_t *port = &ports[uart];
     uint16_t run = (uint16_t)(UART_PORT_TRANSMIT_CELLS - port->head);
-    uint16_t sent;
 
     if (run > port->count) {
         run = port->count;
     }
-    sent = bsp_uart_transmit(uart, &port->cells[port->head], run);
+    const uint16_t sent = bsp_uart_transmit(uart, &port->cells[port->head], run);
     port->head = (uint16_t)((uint16_t)(port->head + sent) % UART_PORT_TRANSMIT_CELLS);
     port->count = (uint16_t)(port->count - sent);
     return sent;
@@ -136,9 +133,8 @@ bool uart_port_send(bsp_uart_t uart, const char *text, uint16_t count)
     uart_port_t *port = &ports[uart];
     UInt key = Hwi_disable();
     bool fits = (uint16_t)(UART_PORT_TRANSMIT_CELLS - port->count) >= count;
-    uint16_t i;
 
-    for (i = 0U; fits && i < count; ++i) {
+    for (uint16_t i = 0U; fits && i < count; ++i) {
         port->cells[(uint16_t)(port->head + port->count) % UART_PORT_TRANSMIT_CELLS] = (uint16_t)text[i] &
                                                                                        0xFFU;
         ++port->count;

@@ -39,10 +39,9 @@ static void add_choice(answer_t *answer, const parameters_t *parameters, paramet
 
 static void write_raw(answer_t *answer, const imu_view_t *view)
 {
-    uint16_t i;
 
     telemetry_text(&answer->line, " raw:");
-    for (i = 0U; i < view->text.length; ++i) {
+    for (uint16_t i = 0U; i < view->text.length; ++i) {
         const char character = view->text.text[i];
         const char legible = (character >= ' ' && character <= '~') ? character : '|';
 
@@ -111,9 +110,8 @@ static void look(imu_raw_t *raw)
 {
     static imu_view_t view;
     float figures[5][LOOKS];
-    uint16_t i;
 
-    for (i = 0U; i < LOOKS; ++i) {
+    for (uint16_t i = 0U; i < LOOKS; ++i) {
         imu_exchange_look(&view);
         figures[0][i] = view.raw.roll_rad;
         figures[1][i] = view.raw.pitch_rad;
@@ -174,14 +172,13 @@ static bool find_axis(answer_t *answer, parameter_id_t id, const char *word)
 {
     static parameters_t parameters;
     imu_raw_t raw;
-    float before;
 
     if (!level.known) {
         return answer_refuse(answer, "first #IMU LEVEL");
     }
     look(&raw);
     parameter_server_read(&parameters);
-    before = parameters.value[id];
+    const float before = parameters.value[id];
     if (!imu_find_axis(&parameters, id, &level.raw, &raw)) {
         return answer_refuse(answer, "tilt by 8..60 deg about one axis");
     }

@@ -24,9 +24,8 @@ static void add_stream(answer_t *answer, const laser_statistics_t *statistics)
 
 static void add_damages(answer_t *answer, const laser_statistics_t *statistics)
 {
-    uint16_t i;
 
-    for (i = (uint16_t)SCIP_DAMAGE_SUM; i < (uint16_t)SCIP_DAMAGE_COUNT; ++i) {
+    for (uint16_t i = (uint16_t)SCIP_DAMAGE_SUM; i < (uint16_t)SCIP_DAMAGE_COUNT; ++i) {
         answer_count(answer, causes[i], statistics->urg.scip.damaged[i]);
     }
     telemetry_text(&answer->line, " last:");

@@ -39,10 +39,9 @@ static void write_task(answer_t *answer, monitor_task_t task)
 
 static void write_waits(answer_t *answer)
 {
-    uint16_t i;
 
     telemetry_text(&answer->line, " wait_us");
-    for (i = 0U; i < (uint16_t)MONITOR_SERVERS; ++i) {
+    for (uint16_t i = 0U; i < (uint16_t)MONITOR_SERVERS; ++i) {
         answer_count(answer, servers[i], monitor_longest_wait_us((monitor_server_t)i));
     }
 }

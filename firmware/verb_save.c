@@ -43,10 +43,9 @@ static bool report(answer_t *answer, const parameter_store_result_t *result)
 static parameter_store_result_t load(void)
 {
     static parameters_t parameters;
-    parameter_store_result_t result;
 
     parameter_server_read(&parameters);
-    result = parameter_store_load(&parameters);
+    const parameter_store_result_t result = parameter_store_load(&parameters);
     if (result.status == PARAMETER_STORE_DONE) {
         parameter_server_write(&parameters);
     }
@@ -54,7 +53,7 @@ static parameter_store_result_t load(void)
 }
 
 /* False after the refusal. */
-static bool grounded(answer_t *answer)
+static bool admit_on_ground(answer_t *answer)
 {
     return ground_idle() ||
            answer_refuse(answer, ground_waits() ? "motors idle, see #STOP" : "not on the ground");
@@ -64,25 +63,23 @@ bool verb_save(answer_t *answer)
 {
     static parameters_t parameters;
     static laser_sample_t laser;
-    parameter_store_result_t result;
 
-    if (!grounded(answer)) {
+    if (!admit_on_ground(answer)) {
         return false;
     }
     parameter_server_read(&parameters);
     laser_server_read(&laser);
-    result = parameter_store_save(&parameters, laser.power_up_rate);
+    parameter_store_result_t result = parameter_store_save(&parameters, laser.power_up_rate);
     return report(answer, &result);
 }
 
 bool verb_load(answer_t *answer)
 {
-    parameter_store_result_t result;
 
-    if (!grounded(answer)) {
+    if (!admit_on_ground(answer)) {
         return false;
     }
-    result = load();
+    parameter_store_result_t result = load();
     return report(answer, &result);
 }
 
@@ -103,10 +100,9 @@ static bool set_seed(answer_t *answer)
 static bool set_defaults(answer_t *answer)
 {
     static parameters_t parameters;
-    uint32_t generation;
 
     parameter_server_read(&parameters);
-    generation = parameters.generation;
+    const uint32_t generation = parameters.generation;
     parameters_init(&parameters);
     parameters.generation = generation + 1U;
     parameter_server_write(&parameters);
@@ -122,7 +118,7 @@ bool verb_defaults(answer_t *answer)
     if (!seed && answer->command->argument_length > 0U) {
         return answer_refuse(answer, "one of SEED");
     }
-    if (!grounded(answer)) {
+    if (!admit_on_ground(answer)) {
         return false;
     }
     return seed ? set_seed(answer) : set_defaults(answer);

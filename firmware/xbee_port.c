@@ -65,9 +65,8 @@ static bool append(queue_t *queue)
 
 static void queue_urgent(void)
 {
-    uint16_t i;
 
-    for (i = 0U; i < ordinary.waiting; ++i) {
+    for (uint16_t i = 0U; i < ordinary.waiting; ++i) {
         place(&ordinary, i)->overtaken = true;
     }
     if (!append(&urgent)) {
@@ -97,9 +96,8 @@ static void doubt(const bsp_uart_burst_t *burst)
 /* Every octet for itself: commands are short, rare and slow. */
 static uint16_t received(const bsp_uart_burst_t *burst)
 {
-    uint16_t i;
 
-    for (i = 0U; i < burst->count; ++i) {
+    for (uint16_t i = 0U; i < burst->count; ++i) {
         doubt(burst);
         if (telecommand_collect(&collector, octet_of(burst->octets[i]))) {
             queue_line();
@@ -148,16 +146,14 @@ static queue_t *next_queue(void)
 uint16_t xbee_port_wait(xbee_message_t *message)
 {
     queue_t *queue;
-    UInt key;
-    uint16_t missed;
 
     (void)Semaphore_pend(line_ready, BIOS_WAIT_FOREVER);
-    key = Hwi_disable();
+    const UInt key = Hwi_disable();
     queue = next_queue();
     *message = *place(queue, 0U);
     queue->oldest = (uint16_t)((queue->oldest + 1U) % queue->places);
     --queue->waiting;
-    missed = lost;
+    const uint16_t missed = lost;
     lost = 0U;
     Hwi_restore(key);
     return missed;

@@ -44,19 +44,19 @@ static float threshold_mps2(float noise_mps2)
     return at_least(LIFT_OFF_SIGMAS * noise_mps2, LIFT_OFF_MPS2);
 }
 
-bool lift_off_is_seen(lift_off_t *lift, const lift_off_signs_t *signs)
+bool lift_off_is_seen(const lift_off_t *lift, const lift_off_signs_t *signs)
 {
     const float risen_m = signs->height_m - lift->ground_m;
     const float least_m = signs->felt ? LIFT_OFF_M : NO_ACC_LIFT_OFF_M;
     const bool strong = signs->delivered_n > LIFT_OFF_SHARE * signs->gravity_n;
     const bool lifting = risen_m > least_m || lift->up_mps2 > threshold_mps2(signs->noise_mps2);
 
-    lift->ramping = true;
     return risen_m > LIFT_OFF_SURE_M || (strong && lifting);
 }
 
 void lift_off_ramp(lift_off_t *lift, float known_n, float step_s)
 {
+    lift->ramping = true;
     lift->ramp_n = at_most(lift->ramp_n + RAMP_N_PER_S * step_s, RAMP_MOST * known_n);
 }
 

@@ -31,8 +31,8 @@ typedef struct {
     float gravity_n;   /* parameter GRAV */
 } lift_off_signs_t;
 
-/* True when the vehicle has left the ground. The first call begins the ramp. */
-bool lift_off_is_seen(lift_off_t *lift, const lift_off_signs_t *signs);
+/* True when the vehicle has left the ground. */
+bool lift_off_is_seen(const lift_off_t *lift, const lift_off_signs_t *signs);
 
 /* It stands: the ramp goes on for step_s, up to what lifts a vehicle that hovers with known_n. */
 void lift_off_ramp(lift_off_t *lift, float known_n, float step_s);

@@ -9,7 +9,7 @@
 #define STEP_MIN_S 0.02F   /* chosen: scans are 0.1 s apart; a shorter gap is a repeated height */
 #define STEP_MAX_S 0.5F    /* chosen: five scans; a longer one gives no useful derivative */
 
-#define FAR_M 0.40F /* tried 0.25 to 0.5: below a reference of 0.6 m, and there is room to brake */
+#define FAR_M 0.40F       /* tried 0.25 to 0.5: below a reference of 0.6 m, and there is room to brake */
 #define APPROACH_MPS 0.1F /* chosen: slower ones may be a vehicle that needs more thrust */
 
 #define SWING_N 0.8F        /* chosen: three times the usual activity, 0.22 N */

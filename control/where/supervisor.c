@@ -244,8 +244,8 @@ static void observe_hand_over(supervisor_t *s, const flight_inputs_t *in, const 
 {
     s->sways = estimate->sways;
     s->handed_over = estimate->hands_over && s->height.age_us > HEIGHT_LOST_US && in->has_throttle &&
-                     (estimate->carried || (s->pilots && estimate->sways));
-    s->carried = estimate->carried;
+                     (estimate->in_hands || (s->pilots && estimate->sways));
+    s->in_hands = estimate->in_hands;
     s->pilots = !in->has_throttle;
 }
 
@@ -287,7 +287,7 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
     const bool fresh = height_fresh(s);
     const bool reference = s->reference_m > 0.0F;
     const bool descent_timeout = s->state == FLIGHT_DESCENDING && s->state_us >= DESCENT_TIMEOUT_US &&
-                                 !s->carried;
+                                 !s->in_hands;
     const bool lowering_limit = s->state == FLIGHT_LOWERING && s->climb.lowerings == LOWERINGS_MAX;
 
     return (uint16_t)(bit(reference, FLIGHT_IF_REFERENCE) | bit(in->attitude_ready, FLIGHT_IF_READY) |

@@ -22,7 +22,7 @@ typedef struct {
     bool sways;       /* the tilt moves as it does in flight; valid also without `known` */
     bool rocks;       /* the same within the last 0.8 s */
     bool hands_over;  /* #ARM lets the tilt alone tell a pilot's flight, arming.h */
-    bool carried;     /* GROUND: no pin tells who has the throttle, there is no height, and a pilot flies;
+    bool in_hands;    /* GROUND: no pin tells who has the throttle, there is no height, and a pilot flies;
                        * DESCENDING: it may be so yet */
 } vertical_estimate_t;
 
@@ -97,7 +97,7 @@ typedef struct {
     bool pilots; /* the pilot had the throttle in the previous cycle */
     bool sways;  /* the tilt moves as it does in flight */
     bool handed_over;
-    bool carried;
+    bool in_hands;
 } supervisor_t;
 
 /* Starts in GROUND, with nothing known. */

@@ -181,7 +181,7 @@ void test_ground_to_descending_by_a_flying_vehicle_handed_over_without_a_height(
 
 void test_without_a_pin_an_armed_vehicle_that_is_carried_counts_as_handed_over(void)
 {
-    estimate.carried = true;
+    estimate.in_hands = true;
     blind(60000);
     state_is(FLIGHT_GROUND);
     estimate.hands_over = true;
@@ -190,7 +190,7 @@ void test_without_a_pin_an_armed_vehicle_that_is_carried_counts_as_handed_over(v
     estimate.hands_over = false; /* which counts on the ground only */
     blind(60000);
     state_is(FLIGHT_DESCENDING);
-    estimate.carried = false;
+    estimate.in_hands = false;
     blind(100);
     state_is(FLIGHT_GROUND);
 }
@@ -201,7 +201,7 @@ void test_a_pilot_without_heights_gives_it_back_in_vain_when_nobody_has_armed_it
     in.has_throttle = false;
     blind(2000);
     in.has_throttle = true;
-    estimate.carried = true;
+    estimate.in_hands = true;
     blind(60000);
     state_is(FLIGHT_GROUND);
 }
@@ -236,7 +236,7 @@ void test_heights_of_a_vehicle_that_is_tilted_or_has_lost_its_imu_are_not_a_flig
 
 void test_a_vehicle_with_heights_is_not_handed_over_while_it_is_carried(void)
 {
-    estimate.carried = estimate.hands_over = true;
+    estimate.in_hands = estimate.hands_over = true;
     watch(0.0F, 50);
     state_is(FLIGHT_GROUND);
 }

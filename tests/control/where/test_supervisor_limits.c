@@ -339,7 +339,7 @@ void test_a_flight_is_handed_over_when_its_height_is_lost(void)
         begin();
         watch(0.0F, 2);
         see_in_us(0.0F, 100000U);
-        estimate.hands_over = estimate.carried = true;
+        estimate.hands_over = estimate.in_hands = true;
         cycle_us(1500000U + more_us);
         state_is((more_us == 0U) ? FLIGHT_GROUND : FLIGHT_DESCENDING);
     }
