@@ -85,7 +85,7 @@ void test_the_flight_is_described_to_the_consistency_check(void)
 
 static bool may_be_in_hands(void)
 {
-    return signs_of_vertical(&now, false).carried;
+    return signs_of_vertical(&now, false).in_hands;
 }
 
 void test_it_may_be_carried_on_the_ground_without_a_pin_or_in_a_descent_that_began_so(void)
