@@ -20,9 +20,13 @@ void alive_hang(void)
     hangs = true;
 }
 
+/* Serviced by whoever completes the set, not by a task of its own: such a task would go on while the
+ * two hang. The watchdog then bites within its time-out after either of them stops. */
 void alive_report(alive_t task)
 {
 
+    /* It sleeps and does not spin: a spinning task of this priority would starve the tasks below it,
+     * and the test would show that instead of the watchdog. */
     while (hangs && task == ALIVE_SEND_LASER) {
         Task_sleep(HANG_TICKS);
     }

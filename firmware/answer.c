@@ -4,6 +4,8 @@
 
 #include "firmware/xbee_port.h"
 
+/* A line without a readable name is answered too: the operator waits for one answer to each line that
+ * he sends. */
 static void add_name(answer_t *answer)
 {
     if (answer->command->name_length > 0U) {
@@ -13,6 +15,7 @@ static void add_name(answer_t *answer)
     }
 }
 
+/* People type two blanks, tabs and small letters. All blanks between two words count as one. */
 bool answer_argument_is(const answer_t *answer, const char *word)
 {
     const telecommand_t *command = answer->command;
@@ -50,6 +53,7 @@ static void begin_error(answer_t *answer)
 void answer_send(answer_t *answer)
 {
     telemetry_end(&answer->line);
+    /* Half an answer would read as a whole one. So the refusal comes in its place. */
     if (answer->line.overflowed) {
         begin_error(answer);
         telemetry_text(&answer->line, "answer too long");
@@ -87,6 +91,7 @@ void answer_limits(answer_t *answer, const parameter_row_t *row)
 {
     telemetry_line_t *line = &answer->line;
 
+    /* A number has limits; a choice has names, of which the values are the places. */
     if (row->choices == NULL) {
         telemetry_number(line, row->minimum);
         telemetry_text(line, "..");

@@ -23,11 +23,14 @@ const char *boot_cause(void)
     return names[cause];
 }
 
+/* These two come while the vehicle may be in the air. The reset pin is a person at the LaunchPad, so
+ * that start is one from the ground. */
 bool boot_is_restart(void)
 {
     return cause == BSP_RESET_WATCHDOG || cause == BSP_RESET_NMI;
 }
 
+/* A copy of the bits. A cast would round them, and a union is not defined by the language. */
 static uint32_t word_of(float value)
 {
     uint32_t word;
@@ -52,6 +55,7 @@ void boot_keep_offset(const attitude_t *offset)
     bsp_retained_store(words);
 }
 
+/* After power-on the retained memory is anything, and the vehicle stands: the offset is taken anew. */
 bool boot_kept_offset(attitude_t *offset)
 {
     uint32_t words[BSP_RETAINED_WORDS];

@@ -8,6 +8,7 @@
 static calibration_request_t request;
 static calibration_t calibration;
 
+/* The number tells TaskControl that the request is another one, also where its values are the same. */
 static uint16_t ask(calibration_request_t next)
 {
     UInt key = Hwi_disable();
@@ -24,6 +25,7 @@ uint16_t calibrator_start(float idle_percent, uint16_t step_counts, uint16_t per
         .run = true, .idle_percent = idle_percent, .step_counts = step_counts, .period_s = period_s});
 }
 
+/* Called for every line: without the question each line would be a new request. */
 void calibrator_stop(void)
 {
     if (request.run) {

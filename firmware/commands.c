@@ -115,6 +115,8 @@ static bool execute_version(answer_t *answer)
     return true;
 }
 
+/* Read, changed and written in two accesses: no other task writes this server, so nothing comes
+ * between. */
 static void set_arm(bool arm)
 {
     reference_sample_t reference;
@@ -125,6 +127,8 @@ static void set_arm(bool arm)
     reference_server_write(&reference);
 }
 
+/* An IMU that contradicts gravity turns the height the wrong way with the first tilt: better said
+ * before the motors turn. */
 static bool execute_arm(answer_t *answer)
 {
     static parameters_t parameters;
@@ -146,6 +150,7 @@ static bool execute_arm(answer_t *answer)
     return true;
 }
 
+/* In the air it lands first: to disarm there would let the vehicle fall. */
 static bool execute_stop(answer_t *answer)
 {
     set_arm(false);
@@ -258,6 +263,7 @@ static bool execute_set(answer_t *answer, parameter_id_t id)
         return answer_refuse(answer, "not a number");
     }
     parameter_server_read(&parameters);
+    /* The limits are asked on a copy, so that a refused value has changed nothing for anybody. */
     changed = parameters;
     if (parameters_set(&changed, id, value) != PARAMETER_ACCEPTED) {
         return answer_refuse_range(answer, row);
@@ -265,6 +271,7 @@ static bool execute_set(answer_t *answer, parameter_id_t id)
     if (!admit_change(answer, &parameters, id, value)) {
         return false;
     }
+    /* What was proved by hand was proved for the axis of before. */
     if ((id == PARAMETER_IROLL || id == PARAMETER_IPITCH) && value != parameters.value[id]) {
         (void)parameters_set(&changed, PARAMETER_IAXES, (float)AXES_ASSUMED);
     }
@@ -273,6 +280,8 @@ static bool execute_set(answer_t *answer, parameter_id_t id)
     return true;
 }
 
+/* `#ARM 0` looks like the opposite of what it would do. A value that nobody reads is a
+ * misunderstanding. */
 static bool execute_verb(answer_t *answer, const verb_t *verb)
 {
     if (verb->takes != NULL && verb->takes[0] == '\0' && answer->command->argument_length > 0U) {
@@ -298,6 +307,7 @@ static bool execute(answer_t *answer)
     return answer_refuse(answer, "unknown command, try #HELP");
 }
 
+/* Of obeyed lines only: noise that looks like a line is not an operator who is there. */
 static void link_alive(uint32_t arrival_us)
 {
     reference_sample_t reference;
@@ -313,6 +323,7 @@ static bool is_named(const telecommand_t *command, const char *name)
     return strlen(name) == command->name_length && strncmp(name, command->name, command->name_length) == 0;
 }
 
+/* What starts motors, or keeps them turning. All other lines may be obeyed late. */
 static bool starts(const telecommand_t *command)
 {
     return is_named(command, "SETR") || is_named(command, "CALIBRATE") || is_named(command, "ARM");
@@ -343,6 +354,8 @@ static void refuse_line(answer_t *answer, telecommand_status_t status, uint32_t 
     static uint32_t bare_us;
     static bool bare;
 
+    /* Without `#` it is mostly a radio at another rate or another talker. Answers to each of its lines
+     * would fill the air. */
     if (status == TELECOMMAND_BARE) {
         if (bare && arrival_us - bare_us < BARE_ANSWER_US) {
             return;
@@ -367,6 +380,8 @@ void commands_execute(const xbee_message_t *message)
     static answer_t answer;
     const telecommand_status_t status = telecommand_parse(&message->line, sum_required(), &command);
 
+    /* Whatever the line says: in trouble people type anything, and that must end a calibration. A ping
+     * does not, because it keeps the link alive meanwhile. */
     if (status != TELECOMMAND_OK || !is_named(&command, "PING")) {
         calibrator_stop();
     }
@@ -397,6 +412,8 @@ static bool goes_on(void)
     return verb_calibrate_more() || more;
 }
 
+/* Lists and dumps take seconds on this radio. They are sent piece by piece where there is room, so
+ * that a stop never waits behind them. */
 uint32_t commands_continue(void)
 {
     uint32_t free_us = bsp_time_us();
@@ -404,6 +421,8 @@ uint32_t commands_continue(void)
 
     while (held || goes_on()) {
         Task_sleep(CONTINUE_POLL_MS);
+        /* While a list holds a line up, the task is not free for it: that wait is not the line's
+         * response. */
         if (held && !xbee_port_pressing()) {
             free_us = bsp_time_us();
         }
@@ -412,6 +431,8 @@ uint32_t commands_continue(void)
     return free_us;
 }
 
+/* A line that got lost is worse than one that is refused: the operator believes it obeyed. There is no
+ * name to answer to, so their number is told. */
 void commands_report_lost(uint16_t count)
 {
     static telemetry_line_t line;

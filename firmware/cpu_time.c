@@ -82,6 +82,8 @@ static void begin(uint16_t job)
     record_t *record = &records[job];
 
     charge();
+    /* What it interrupted gets the processor back at its end. That need not be who was current when it
+     * was posted. */
     if (record->depth == 0U) {
         record->used = 0U;
         record->below = current;
@@ -146,6 +148,8 @@ Void cpu_time_task_switch(Task_Handle before, Task_Handle now)
     record_t *record = &records[task_of(before)];
 
     charge();
+    /* A task that was preempted has not ended its job, and one that waits at a gate goes on behind it.
+     * Only a wait for its next release ends the job. */
     if (before != NULL && Task_getMode(before) == Task_Mode_BLOCKED && !record->at_gate) {
         finish(record);
     }
@@ -153,6 +157,7 @@ Void cpu_time_task_switch(Task_Handle before, Task_Handle now)
     Hwi_restore(key);
 }
 
+/* The kernel calls the same hook for both waits, and does not say for which. */
 void cpu_time_gate_asked(void)
 {
     records[current].at_gate = true;
@@ -187,6 +192,7 @@ uint32_t cpu_time_longest(cpu_time_job_t job)
     return longest;
 }
 
+/* What the jobs in hand have used stays: their next longest time would be too short otherwise. */
 void cpu_time_reset(void)
 {
     const UInt key = Hwi_disable();

@@ -6,6 +6,8 @@
 #include "bsp/led.h"
 #include "bsp/throttle.h"
 
+/* No thrust. Whether this is right in the air is not asked any more: a program that does not know its
+ * own state must not hold a vehicle up. */
 void fault_make_safe(void)
 {
     bsp_throttle_idle();
@@ -16,11 +18,14 @@ void fault_make_safe(void)
 static void stay_safe(void)
 {
     (void)Hwi_disable();
+    /* Again and again, until the watchdog resets the chip: whatever broke may still write to the pin's
+     * registers. */
     for (;;) {
         fault_make_safe();
     }
 }
 
+/* An error of SYS/BIOS, for instance a stack that overflowed. */
 Void fault_error(Error_Block *error)
 {
     (void)error;
@@ -38,6 +43,7 @@ Void fault_exit(Int status)
     stay_safe();
 }
 
+/* Driverlib's, by this very name: an argument that it does not know. */
 void __error__(const char *file, uint32_t line)
 {
     (void)file;

@@ -39,6 +39,8 @@ static struct {
     uint32_t frame;          /* sequence of the latest frame that was recorded */
 } latest;
 
+/* The clock in microseconds wraps after 71 minutes. This one counts on, and keeps the remainder, so
+ * that it does not lag. */
 static uint32_t tell_ms(uint32_t now_us)
 {
     clock.rest_us += now_us - clock.now_us;
@@ -48,6 +50,8 @@ static uint32_t tell_ms(uint32_t now_us)
     return clock.now_ms;
 }
 
+/* The oldest record goes. A flight's end matters more than its beginning: that is where things went
+ * wrong. */
 static void append(const published_t *record)
 {
     published_pack(ring[next % RECORDS], record);
@@ -76,6 +80,7 @@ static published_t record_of(const flight_inputs_t *in, const flight_outputs_t *
     };
 }
 
+/* A difference beyond half the range is a frame from before, not one of the far future. */
 static bool is_new(const imu_sample_t *frame)
 {
     return frame->sequence - latest.frame < UINT32_C(0x80000000) && frame->sequence != latest.frame &&
@@ -129,6 +134,7 @@ static void keep(const flight_inputs_t *in, published_t *record)
 void flight_recorder_take(const flight_inputs_t *in, const flight_outputs_t *out)
 {
     const bool active = out->state != FLIGHT_GROUND || out->thrust_n > out->idle_n;
+    /* One cycle more than the flight has: it shows the thrust that the landing ended with. */
     const bool wanted = active || clock.active;
     const bool fast = rate == FLIGHT_RECORDER_FAST;
     published_t record = record_of(in, out);
@@ -158,6 +164,8 @@ flight_recorder_span_t flight_recorder_span(void)
     return span;
 }
 
+/* Interrupts are off for the copy only. The numbers are unpacked behind it: that takes longer, and
+ * no interrupt has to wait for it. */
 bool flight_recorder_read(uint32_t number, published_t *record)
 {
     uint16_t cells[PUBLISHED_CELLS];
@@ -174,6 +182,7 @@ bool flight_recorder_read(uint32_t number, published_t *record)
     return there;
 }
 
+/* From the newest record back, not from now: after the landing the last 10 s are those of the flight. */
 uint32_t flight_recorder_since(uint16_t seconds)
 {
     const flight_recorder_span_t span = flight_recorder_span();

@@ -2,6 +2,8 @@
 
 #include "firmware/servers.h"
 
+/* Both references: the server's may be an order that TaskControl has not seen yet, the other one is
+ * what it obeys. */
 static bool waits(const flight_outputs_t *flight)
 {
     reference_sample_t reference;
@@ -26,6 +28,7 @@ bool ground_waits(void)
     return waits(&flight) && flight.thrust_n <= flight.idle_n;
 }
 
+/* A vehicle that has turned over is not in state GROUND either, and nothing holds it up. */
 bool ground_left(void)
 {
     flight_outputs_t flight;

@@ -24,6 +24,8 @@ void imu_exchange_mounted(imu_mapping_t *mapping)
     *mapping = mounted;
 }
 
+/* A frame that could not be read is shown as well: its text tells what the sensor sends instead. Its
+ * values are those of the frame before. */
 void imu_exchange_show(const razor_text_t *text, razor_status_t status, const imu_raw_t *raw,
                        uint32_t arrival_us)
 {

@@ -13,6 +13,8 @@ static const char *const reasons[] = {
 };
 typedef char every_fault_has_a_reason[(sizeof reasons / sizeof reasons[0] == IMU_FAULT_COUNT) ? 1 : -1];
 
+/* On the ground only. In the air a refused order is a vehicle that nobody commands, which is worse
+ * than a wrong axis. */
 bool imu_gate_refuses(answer_t *answer)
 {
     static parameters_t parameters;
@@ -28,6 +30,8 @@ bool imu_gate_refuses(answer_t *answer)
     return true;
 }
 
+/* Unit and down concern the accelerations alone, and the laws do without these: the line is obeyed,
+ * and says what is wrong. */
 void imu_gate_remark(answer_t *answer, bool assumed_too)
 {
     static parameters_t parameters;

@@ -32,6 +32,7 @@ static uint16_t received(const bsp_uart_burst_t *burst)
         if (razor_collect(&collector, octet_of(burst->octets[i]))) {
             fresh.text = collector.gathered;
             fresh.arrival_us = bsp_time_us();
+            /* At the frame's last octet, so that the response of TaskIMU has all waits in it. */
             monitor_released(MONITOR_IMU, fresh.arrival_us);
             Swi_post(imu_swi);
         }
@@ -62,6 +63,8 @@ void imu_port_create(void)
     imu_swi = Swi_create(imu_swi_run, &swi, NULL);
     cpu_time_watch(CPU_TIME_IMU_SWI, imu_swi);
     uart_port_create(BSP_UART_IMU, IMU_BIT_RATE, received);
+    /* Continuous output. The stock firmware streams by itself; one that was switched off over its own
+     * line would stay silent for ever. */
     (void)uart_port_send(BSP_UART_IMU, "#o1", 3U);
 }
 

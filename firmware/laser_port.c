@@ -26,6 +26,8 @@ static laser_message_t mailbox; /* written by Laser_SWI, read by TaskReceiveLase
 static Swi_Handle laser_swi;
 static Semaphore_Handle laser_ready;
 
+/* Stamped here, where the last octet is taken. Any task would stamp it with its own delay in it, and
+ * the estimator would take that for the age of the rays. */
 static void scan_done(void)
 {
     scan_arrival_us = bsp_time_us();
@@ -78,6 +80,8 @@ static Void laser_swi_run(UArg unused0, UArg unused1)
     if (!fresh) {
         return;
     }
+    /* With interrupts on: the copy may be of 171 cells, and octets come meanwhile. The driver fills
+     * its other buffer. */
     mailbox.scan = scan;
     (void)memcpy(mailbox.distance_mm, scan.distance_mm, scan.points * sizeof scan.distance_mm[0]);
     Semaphore_post(laser_ready);
@@ -106,6 +110,8 @@ void laser_port_create(const urg_config_t *config)
     }
 }
 
+/* Swis off is enough, because only Laser_SWI writes the mailbox. Octets are still received during the
+ * copy. */
 void laser_port_wait(laser_message_t *message)
 {
 
@@ -180,7 +186,10 @@ void laser_port_step(laser_statistics_t *statistics)
     rate = output.rate;
     copy_statistics(statistics);
     Hwi_restore(key);
+    /* Before the UART is reopened: the transmitter must be the scanner's again when the first command
+     * leaves. */
     lend_transmitter(statistics->urg.status);
+    /* Before the octets: they are for the sensor at its new rate. */
     if (output.set_rate) {
         uart_port_reopen(BSP_UART_LASER, output.rate);
     }

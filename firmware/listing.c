@@ -11,6 +11,8 @@ static struct {
     answer_t answer;
 } listing;
 
+/* A new list takes the place of one that is being sent: the operator wants what he asked for last. The
+ * command is copied, because its line is gone when the next one comes. */
 bool listing_start(const answer_t *answer, listing_line_t line)
 {
     listing.line = line;
@@ -37,6 +39,8 @@ static bool send_next(void)
         write_end(answer);
     }
     telemetry_end(&answer->line);
+    /* It is made anew next time. A list has no memory but its number, so its values are those of the
+     * instant at which they are sent. */
     if (!xbee_port_spare(&answer->line)) {
         return false;
     }

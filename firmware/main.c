@@ -14,6 +14,8 @@
 
 int main(void);
 
+/* After a watchdog reset the scanner has power and streams: there is nothing to wait for, and perhaps
+ * a vehicle in the air. */
 static void laser_config(urg_config_t *config)
 {
     const uint32_t stored = parameter_store_laser_rate();
@@ -43,7 +45,11 @@ int main(void)
     task_send_laser_create();
     task_send_comm_create();
     task_receive_comm_create();
+    /* Behind all ports: the tick looks at each of them. Octets that come before BIOS_start() wait in
+     * the FIFOs. */
     uart_port_start();
+    /* It answers by the radio, so the port must be there; and the parameters must be in force before
+     * the first control cycle. */
     verb_load_at_start();
     bsp_watchdog_start();
     BIOS_start();

@@ -54,6 +54,8 @@ void monitor_watch(monitor_task_t task, Task_Handle handle)
     cpu_time_watch((cpu_time_job_t)(CPU_TIME_TASK + task), handle);
 }
 
+/* The first release counts. A task that is late is late since then, also when it was released again
+ * meanwhile. */
 void monitor_released(monitor_task_t task, uint32_t when_us)
 {
     record_t *record = &records[task];
@@ -94,6 +96,8 @@ void monitor_asking(monitor_server_t server, monitor_access_t *access)
 {
     access->asked_us = bsp_time_us();
     access->used = cpu_time_used();
+    /* Asked before the gate is entered. Its answer may be old by one task switch: then a hold counts
+     * that had to wait, which is too long and not too short. */
     access->contended = gates[server].held;
     cpu_time_gate_asked();
 }
@@ -111,6 +115,7 @@ void monitor_entered(monitor_server_t server, const monitor_access_t *access)
     }
 }
 
+/* A copy, because behind the gate the next task puts its own there. */
 monitor_access_t monitor_leaving(monitor_server_t server)
 {
     const monitor_access_t access = gates[server].access;
@@ -122,6 +127,7 @@ monitor_access_t monitor_leaving(monitor_server_t server)
 void monitor_left(monitor_server_t server, const monitor_access_t *access)
 {
     const uint32_t hold = cpu_time_used() - access->used;
+    /* Two tasks may have left the same gate one behind the other, and both compare here. */
     const UInt key = Hwi_disable();
 
     if (!access->contended && hold > gates[server].longest_hold) {
@@ -130,6 +136,7 @@ void monitor_left(monitor_server_t server, const monitor_access_t *access)
     Hwi_restore(key);
 }
 
+/* Two of its numbers belong together. The kernel's look at the stack takes long and stands outside. */
 void monitor_report(monitor_task_t task, monitor_report_t *report)
 {
     Task_Stat stat;

@@ -24,6 +24,8 @@ static copy_t copies[SLOTS];
 static uint16_t cells[PARAMETER_IMAGE_CELLS_MAX];
 static uint16_t read_back[PARAMETER_IMAGE_CELLS_MAX];
 
+/* The names belong to the sum as well: a choice is stored as its place, and another order of the names
+ * is another meaning. */
 static uint32_t names_of_choices(uint32_t names, const parameter_row_t *row)
 {
 
@@ -62,6 +64,8 @@ static uint16_t parameters_in(const parameter_image_t *image)
     return (count <= VALUES && image->names == names_of(count)) ? count : 0U;
 }
 
+/* Both copies each time. Nothing about the flash is remembered, so that a copy that was damaged
+ * meanwhile is noticed. */
 static void look(void)
 {
 
@@ -76,6 +80,8 @@ static bool usable(const copy_t *copy, bool foreign_too)
     return copy->status == PARAMETER_IMAGE_GOOD && (foreign_too || parameters_in(&copy->image) > 0U);
 }
 
+/* Of two good copies the newer one. Where a power failure cut the newer one short, the older one is
+ * whole: it was not touched. */
 static uint16_t newest(bool foreign_too)
 {
     const bool first = usable(&copies[0], foreign_too);
@@ -87,6 +93,8 @@ static uint16_t newest(bool foreign_too)
     return first ? 0U : (second ? 1U : NO_SLOT);
 }
 
+/* The operator does different things: a set of another firmware can be typed again, a damaged one says
+ * that the flash wears out. */
 static parameter_store_status_t why_none(void)
 {
     parameter_store_status_t why = PARAMETER_STORE_EMPTY;
@@ -114,6 +122,7 @@ static parameter_id_t accept_values(parameters_t *parameters, const parameter_im
             return (parameter_id_t)id;
         }
     }
+    /* Parameters that the copy does not have get what the firmware of that time did. */
     parameters_set_older(parameters, count);
     return PARAMETER_COUNT;
 }
@@ -129,6 +138,7 @@ parameter_store_result_t parameter_store_load(parameters_t *parameters)
         result.status = why_none();
         return result;
     }
+    /* All or nothing: a set with one value out of range is taken as a whole, or not at all. */
     wanted = *parameters;
     result.generation = copies[slot].image.generation;
     result.parameter = accept_values(&wanted, &copies[slot].image);
@@ -140,6 +150,7 @@ parameter_store_result_t parameter_store_load(parameters_t *parameters)
     return result;
 }
 
+/* A float that is exactly one of the rates. Anything else is no rate, and the scanner is searched. */
 static uint32_t laser_rate_in(uint16_t slot)
 {
 
@@ -175,6 +186,7 @@ static void fill(parameter_image_t *image, const parameters_t *parameters, uint3
     }
 }
 
+/* The flash bank cannot be read while it is changed, and the code of all interrupts lies in it. */
 static bool erase(uint16_t slot)
 {
     UInt key = Hwi_disable();
@@ -201,6 +213,7 @@ static bool write(uint16_t slot, const parameter_image_t *image)
     for (uint16_t at = 0U; written && at < count; at = (uint16_t)(at + BSP_STORAGE_BLOCK)) {
         written = program(slot, at);
     }
+    /* Read back: what counts is what the next start will find. */
     bsp_storage_read(slot, read_back, count);
     for (uint16_t at = 0U; written && at < count; ++at) {
         written = read_back[at] == cells[at];
@@ -216,12 +229,17 @@ parameter_store_result_t parameter_store_save(const parameters_t *parameters, ui
     look();
     const uint16_t latest = newest(true);
     uint16_t kept = newest(false);
+    /* A scanner that was not seen to power up this time has not changed its rate: the stored one is
+     * kept. */
     fill(&image, parameters, laser_rate > 0U ? laser_rate : laser_rate_in(kept));
     if (latest != NO_SLOT) {
+        /* Above that of a foreign set too, or the firmware that wrote it would take its own old set
+         * for the newer one. */
         result.generation = copies[latest].image.generation + 1U;
         kept = (kept != NO_SLOT) ? kept : latest;
     }
     image.generation = result.generation;
+    /* Never over the copy that would be loaded if this one fails. */
     if (!write((kept == 0U) ? 1U : 0U, &image)) {
         result.status = PARAMETER_STORE_FAULT;
     }

@@ -15,6 +15,8 @@ bool pulse_stream_on(void)
     return streaming;
 }
 
+/* In TaskControl, so that there is one line for each pulse. The line is dropped, and nothing waits,
+ * when the radio is busy. */
 void pulse_stream_take(float pulse_us)
 {
     static telemetry_line_t line;

@@ -49,6 +49,8 @@ void servers_create(void)
     reference_gate = gate_create("Reference_server");
     parameter_gate = gate_create("Parameter_server");
     flight_gate = gate_create("FlightStatus_server");
+    /* What depends on the parameters is made here and at each change, not at each use: TaskIMU and
+     * TaskReceiveLaser read it without a gate. */
     parameters_init(&parameters);
     imu_exchange_mount(&parameters);
     geometry_mount(&parameters);
@@ -56,6 +58,8 @@ void servers_create(void)
     flight.flags = FLIGHT_FLAG_HEIGHT | FLIGHT_FLAG_ATTITUDE;
 }
 
+/* GateMutexPri lets the holder inherit the priority of who waits. Without that a task in between could
+ * delay TaskControl for as long as it likes. */
 static IArg enter(GateMutexPri_Handle gate, monitor_server_t server)
 {
     monitor_access_t access;
@@ -69,6 +73,8 @@ static IArg enter(GateMutexPri_Handle gate, monitor_server_t server)
 
 static void leave(GateMutexPri_Handle gate, monitor_server_t server, IArg key)
 {
+    /* The measurement is taken out inside the gate, and compared behind it: it must not lengthen what
+     * it measures. */
     const monitor_access_t access = monitor_leaving(server);
 
     GateMutexPri_leave(gate, key);
@@ -95,6 +101,8 @@ void imu_server_write(const imu_sample_t *sample)
 {
     IArg key = enter(imu_gate, MONITOR_IMU_SAMPLE);
 
+    /* A frame that could not be read changes its counter only. The history is of frames that can be
+     * used. */
     if (sample->sequence != imu.sequence) {
         imu_history[imu_next] = *sample;
         imu_next = (uint16_t)((imu_next + 1U) % IMU_HISTORY);

@@ -26,6 +26,8 @@ static Event_Handle event;
 static UInt in_force;
 static flight_t flight;
 
+/* An event that the law does not wait for is posted all the same: the law may change, and then it is
+ * there. It releases no job, so it is not measured as one. */
 static void post(UInt release)
 {
     if ((release & in_force) != 0U) {
@@ -62,6 +64,8 @@ static UInt events_of(uint16_t releases)
            (((releases & FLIGHT_RELEASE_FRAME) != 0U) ? EVENT_IMU : 0U);
 }
 
+/* The next release of the same kind: later the cycle would act on what the next one already knows
+ * better. */
 static uint32_t deadline_ms(UInt release)
 {
     if ((release & EVENT_IMU) != 0U) {
@@ -70,6 +74,8 @@ static uint32_t deadline_ms(UInt release)
     return ((release & EVENT_ALTITUDE) != 0U) ? TASK_CONTROL_SCAN_DEADLINE_MS : TASK_CONTROL_DEADLINE_MS;
 }
 
+/* The time-out is the last resort: a scanner or an IMU that falls silent must not stop the control,
+ * which has to notice exactly that. */
 static void wait(uint16_t releases)
 {
     in_force = events_of(releases);
@@ -94,9 +100,12 @@ static void read_inputs(const parameters_t *parameters, flight_inputs_t *in)
     const imu_sample_t *imu;
     reference_sample_t reference;
 
+    /* One after the other, not in one gate. Each value has its own instant, and the estimator wants
+     * that, not that all be equally old. */
     altitude_server_read(&altitude);
     imu = read_frames(in);
     reference_server_read(&reference);
+    /* Behind the reads: what was read is then never later than now. */
     in->now_us = bsp_time_us();
     in->height_valid = altitude.scan_valid;
     in->height_time_us = altitude.arrival_us;
@@ -126,6 +135,7 @@ static Void task_control(UArg unused0, UArg unused1)
     (void)unused0;
     (void)unused1;
     parameter_server_read(&parameters);
+    /* Only for the first wait; each cycle tells what releases the next. */
     out.releases = flight_releases(&flight, &parameters);
     for (;;) {
         wait(out.releases);
@@ -133,11 +143,13 @@ static Void task_control(UArg unused0, UArg unused1)
         read_inputs(&parameters, &in);
         flight_step(&flight, &parameters, &in, &out);
         calibrator_overlay(parameters.value[PARAMETER_LINK], &in, &out);
+        /* As soon as it is known. All that only reports comes behind. */
         bsp_throttle_set_pulse_us(out.pulse_us);
         pulse_stream_take(out.pulse_us);
         flight_status_server_write(&out);
         flight_recorder_take(&in, &out);
         monitor_done(MONITOR_CONTROL);
+        /* Last: a task that hangs anywhere above must not service the watchdog. */
         alive_report(ALIVE_CONTROL);
     }
 }

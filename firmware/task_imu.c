@@ -50,6 +50,7 @@ static void fill_sample(imu_sample_t *sample, const imu_raw_t *raw, uint32_t arr
 
     imu_exchange_mounted(&mapping);
     sample->ready = attitude_step(&filter, &angles, &level, &median);
+    /* For a watchdog reset in the air, where it cannot be taken again. */
     if (filter.ready && !was_ready) {
         boot_keep_offset(&filter.offset);
     }
@@ -96,8 +97,12 @@ static Void task_imu(UArg unused0, UArg unused1)
         } else {
             ++sample.malformed;
         }
+        /* Also when nothing could be read: the counter of refused frames is in the sample. Its
+         * sequence stays, so nobody takes it for a new frame. */
         imu_server_write(&sample);
         task_control_imu_arrived();
+        /* When the count is reached, not while it lasts: the release is for the cut, and a cut is made
+         * once. */
         if (sample.rolled == ATTITUDE_ROLLED_FRAMES) {
             task_control_rolls();
         }

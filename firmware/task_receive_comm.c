@@ -30,6 +30,7 @@ static Void task_receive_comm(UArg unused0, UArg unused1)
 
         monitor_released(MONITOR_RECEIVE_COMM, release_of(message.arrival_us, free_us));
         monitor_begin(MONITOR_RECEIVE_COMM);
+        /* Before the line itself, because they came before it. */
         if (lost > 0U) {
             commands_report_lost(lost);
         }

@@ -17,6 +17,8 @@ static altitude_t height_of(const scip_scan_t *scan, const attitude_t *tilt)
     mirror_range_t ranges[SCIP_GROUPS_MAX];
     geometry_t geometry;
 
+    /* For each scan: the operator may have set another layout between the order and this scan. Rays
+     * that were not ordered then are missing, and their group is not valid. */
     geometry_mounted(&geometry);
     for (uint16_t i = 0U; i < geometry.layout.group_count; ++i) {
         scip_group_mean_t mean = scip_group_mean(scan, &geometry.layout.groups[i]);
@@ -36,9 +38,13 @@ static void publish_height(altitude_sample_t *sample, const laser_message_t *mes
 {
     imu_sample_t imu;
 
+    /* The latest tilt, not that of the rays, which are 70 ms older. The estimator corrects that with
+     * its history; the other laws fly as the seed's did. */
     imu_server_read(&imu);
     const altitude_t altitude = height_of(&message->scan, &imu.median);
     sample->scan_valid = altitude.valid;
+    /* Without a height the old one stays, with its own times: the supervisor sees by them how old it
+     * is. */
     if (altitude.valid) {
         sample->altitude = altitude;
         sample->sensor_time_ms = message->scan.timestamp_ms;
@@ -50,6 +56,8 @@ static void publish_height(altitude_sample_t *sample, const laser_message_t *mes
         ++sample->heightless;
     }
     altitude_server_write(sample);
+    /* Also without a height: a law that is released by scans must run to notice that heights are
+     * missing. */
     task_control_altitude_arrived();
 }
 

@@ -36,6 +36,8 @@ static void report(telemetry_line_t *line, const char *reset)
     altitude_server_read(&altitude);
     laser_server_read(&laser);
     flight_status_server_read(&now.flight);
+    /* As the supervisor sees it: a height that it does not count must not look like one on the
+     * operator's screen. */
     now.height_mm = ((now.flight.flags & FLIGHT_FLAG_HEIGHT) == 0U) ? altitude.altitude.height_mm : NAN;
     now.laser = urg_status_name(laser.status);
     if (reset != NULL) {
@@ -59,9 +61,11 @@ static Void task_send_comm(UArg unused0, UArg unused1)
         (void)Semaphore_pend(tick, BIOS_WAIT_FOREVER);
         monitor_begin(MONITOR_SEND_COMM);
         report(&line, reset);
+        /* Both would not fit the radio's 9600 bit/s, and the operator asked for the pulses. */
         if (!pulse_stream_on()) {
             xbee_port_report(&line);
         }
+        /* Told once, by the first line: whoever looks later has it by #PERF. */
         reset = NULL;
         monitor_done(MONITOR_SEND_COMM);
     }

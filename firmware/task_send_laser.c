@@ -44,6 +44,7 @@ static void show(urg_status_t status)
     bsp_led_red(status == URG_LOST);
 }
 
+/* A copy in terms of the firmware: the driver's report is the driver's business, and longer. */
 static void publish(const urg_report_t *urg)
 {
     static laser_sample_t sample;
@@ -57,6 +58,8 @@ static void publish(const urg_report_t *urg)
     laser_server_write(&sample);
 }
 
+/* Each time, because the parameters may have changed. The driver compares, and does nothing when they
+ * have not. */
 static void order_rays(void)
 {
     geometry_t geometry;
@@ -80,6 +83,8 @@ static Void task_send_laser(UArg unused0, UArg unused1)
         publish(&statistics.urg);
         show(statistics.urg.status);
         monitor_done(MONITOR_SEND_LASER);
+        /* Also while no scanner answers: a missing sensor is no reason to reset the vehicle's computer
+         * in the air. */
         alive_report(ALIVE_SEND_LASER);
     }
 }

@@ -19,6 +19,8 @@ typedef struct {
 
 static uart_port_t ports[BSP_UART_COUNT];
 
+/* The receiver says when it wants to be called again. So the last octet of a scan makes an interrupt
+ * at once, and all others wait for half a FIFO. */
 static void read_fifo(bsp_uart_t uart)
 {
     uart_port_t *port = &ports[uart];
@@ -29,6 +31,8 @@ static void read_fifo(bsp_uart_t uart)
     if (level > UART_PORT_BURST) {
         level = UART_PORT_BURST;
     }
+    /* The level is a register of the chip. It changes with a frame's end only, so most calls leave it
+     * alone. */
     if (level != port->level) {
         port->level = level;
         bsp_uart_set_receive_level(uart, level);
@@ -55,6 +59,7 @@ static Void poll(UArg unused)
     }
 }
 
+/* Up to the end of the buffer; the rest of a text that goes round the corner is another run. */
 static uint16_t feed_run(bsp_uart_t uart)
 {
     uart_port_t *port = &ports[uart];
@@ -92,6 +97,7 @@ static Hwi_Handle hwi_create(int16_t number, Hwi_FuncPtr function, bsp_uart_t ua
     return Hwi_create((Int)number, function, &params, NULL);
 }
 
+/* bsp_uart_open() sets the level to one octet, so here it is one too. */
 static void open(bsp_uart_t uart, uint32_t bit_rate)
 {
     bsp_uart_open(uart, bit_rate);
@@ -122,6 +128,7 @@ void uart_port_reopen(bsp_uart_t uart, uint32_t bit_rate)
 {
     UInt key = Hwi_disable();
 
+    /* At the old rate they would be noise at the new one. */
     ports[uart].head = 0U;
     ports[uart].count = 0U;
     open(uart, bit_rate);
@@ -134,6 +141,7 @@ bool uart_port_send(bsp_uart_t uart, const char *text, uint16_t count)
     UInt key = Hwi_disable();
     bool fits = (uint16_t)(UART_PORT_TRANSMIT_CELLS - port->count) >= count;
 
+    /* All or nothing: half a line on the air is a damaged line for whoever reads it. */
     for (uint16_t i = 0U; fits && i < count; ++i) {
         port->cells[(uint16_t)(port->head + port->count) % UART_PORT_TRANSMIT_CELLS] = (uint16_t)text[i] &
                                                                                        0xFFU;

@@ -12,6 +12,8 @@ static bool borrowed;
 static uint16_t number; /* of the next line of #PERF */
 static answer_t answer;
 
+/* A line that does not fit is left out. Nobody is known to listen, and the scanner's start must not
+ * wait. */
 static void send_line(void)
 {
     telemetry_end(&answer.line);
@@ -49,6 +51,7 @@ void usb_port_step(void)
     }
 }
 
+/* Called in each step, so it asks whether there is anything to give back. */
 void usb_port_end(void)
 {
     if (borrowed) {

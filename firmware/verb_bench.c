@@ -24,6 +24,7 @@ bool verb_stream(answer_t *answer)
     return answer_refuse(answer, "one of PULSE|OFF");
 }
 
+/* It ends in a reset. So not with motors that idle either, which would stop. */
 bool verb_hang(answer_t *answer)
 {
     if (!answer_argument_is(answer, "TASK")) {
@@ -32,6 +33,7 @@ bool verb_hang(answer_t *answer)
     if (!ground_idle()) {
         return answer_refuse(answer, "not on the ground");
     }
+    /* Before it hangs, or nobody would know that it was obeyed. */
     (void)answer_word(answer, " TASK");
     alive_hang();
     return true;

@@ -72,6 +72,8 @@ bool verb_calibrate(answer_t *answer)
         return answer_refuse(answer, "not on the ground");
     }
     parameter_server_read(&parameters);
+    /* The vehicle is tied down, and its thrust rises by itself. If the operator's radio fails, only
+     * the link's time-out ends that. */
     if (!(parameters.value[PARAMETER_LINK] > 0.0F)) {
         return answer_refuse(answer, "link not armed, see #LINK");
     }
@@ -102,6 +104,8 @@ static void send_progress(const calibration_t *progress, bool ended)
     telemetry_fixed(&line, progress->thrust_n, THRUST_DECIMALS);
     telemetry_text(&line, " compare:");
     telemetry_count(&line, progress->compare_counts);
+    /* Only when the operator stopped it: he did so at the thrust that just carries the vehicle, which
+     * is the figure that he came for. */
     if (progress->end == CALIBRATION_STOPPED) {
         add_advice(&line, progress->thrust_n);
     }
@@ -117,6 +121,7 @@ bool verb_calibrate_more(void)
         return false;
     }
     calibrator_look(&progress);
+    /* TaskControl has not seen this request yet: the progress is that of the one before. */
     if ((uint16_t)(progress.sequence - report.sequence) > SEQUENCE_AHEAD_MAX) {
         return true;
     }

@@ -43,6 +43,8 @@ static void write_raw(answer_t *answer, const imu_view_t *view)
     telemetry_text(&answer->line, " raw:");
     for (uint16_t i = 0U; i < view->text.length; ++i) {
         const char character = view->text.text[i];
+        /* The text goes into a line of the radio, which a line end of the IMU's would cut. What cannot
+         * be shown is shown as a bar. */
         const char legible = (character >= ' ' && character <= '~') ? character : '|';
 
         telemetry_characters(&answer->line, &legible, 1U);

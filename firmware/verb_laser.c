@@ -40,6 +40,8 @@ bool verb_laser(answer_t *answer)
     laser_server_read(&laser);
     answer_begin(answer);
     add_stream(answer, &statistics);
+    /* Its counters would all be those of a protocol that it does not speak. What helps is one
+     * sentence. */
     if (laser.status == URG_OLD) {
         telemetry_text(&answer->line, " do:update the sensor's firmware to 3.0 or later");
     } else {

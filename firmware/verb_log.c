@@ -25,6 +25,8 @@ static bool say(answer_t *answer, const char *text)
 static bool start(answer_t *answer, uint32_t first)
 {
     dump.number = first;
+    /* Fixed now: a dump in flight would otherwise chase the records that are being written, and never
+     * end. */
     dump.end = flight_recorder_span().next;
     dump.sent = 0U;
     dump.titles = true;
@@ -47,6 +49,7 @@ bool verb_log(answer_t *answer)
         dump.active = false;
         return say(answer, " STOP");
     }
+    /* The dump first: its numbers mean records that are gone then. */
     if (answer_argument_is(answer, "CLEAR")) {
         dump.active = false;
         flight_recorder_clear();
@@ -95,6 +98,7 @@ static bool send_numbered(telemetry_line_t *line)
     return xbee_port_spare(line);
 }
 
+/* They are a numbered line like the others. So a reader knows whether they are whole. */
 static bool send_titles(telemetry_line_t *line)
 {
     begin_numbered(line, 0U);

@@ -40,9 +40,11 @@ bool verb_setr(answer_t *answer)
     if (!decimal_read(command->argument, command->argument_length, &reference_m)) {
         return answer_refuse(answer, "not a number");
     }
+    /* In this form it refuses NaN as well. */
     if (!(reference_m >= limits.minimum && reference_m <= limits.maximum)) {
         return answer_refuse_range(answer, &limits);
     }
+    /* #SETR 0 lands, and landing is never refused. */
     if (reference_m > 0.0F && imu_gate_refuses(answer)) {
         return false;
     }

@@ -53,6 +53,8 @@ static parameter_store_result_t load(void)
 }
 
 /* False after the refusal. */
+/* To erase the flash takes tens of milliseconds without interrupts, and a stored set may change
+ * everything at once. Neither is for a vehicle that flies. */
 static bool admit_on_ground(answer_t *answer)
 {
     return ground_idle() ||
@@ -102,6 +104,7 @@ static bool set_defaults(answer_t *answer)
     static parameters_t parameters;
 
     parameter_server_read(&parameters);
+    /* It counts on: whoever compares it sees that the set is another one. */
     const uint32_t generation = parameters.generation;
     parameters_init(&parameters);
     parameters.generation = generation + 1U;
@@ -131,6 +134,8 @@ void verb_load_at_start(void)
     const parameter_store_result_t result = load();
 
     answer.command = &command;
+    /* A new board has nothing stored, and nothing is wrong with that. All else the operator must know
+     * before he flies. */
     if (result.status != PARAMETER_STORE_EMPTY) {
         (void)report(&answer, &result);
     }

@@ -63,6 +63,8 @@ static bool append(queue_t *queue)
     return true;
 }
 
+/* A stop goes before all that waits. What waits and starts something is marked: it was typed before
+ * the stop, and must not be obeyed behind it. */
 static void queue_urgent(void)
 {
 
@@ -70,10 +72,13 @@ static void queue_urgent(void)
         place(&ordinary, i)->overtaken = true;
     }
     if (!append(&urgent)) {
+        /* Full of stops: the newest takes the last place. It says the same, and its arrival is the one
+         * that counts. */
         put(place(&urgent, XBEE_PORT_URGENT - 1U));
     }
 }
 
+/* A line without `#` has one place: of many only one is answered in a second anyhow. */
 static void queue_line(void)
 {
     if (collector.line.bare) {
@@ -107,6 +112,8 @@ static uint16_t received(const bsp_uart_burst_t *burst)
     return 1U;
 }
 
+/* Two lines may end between two runs of the Swi: a post that comes while one is pending is lost, so
+ * the lines are counted. */
 static Void xbee_swi_run(UArg unused0, UArg unused1)
 {
     UInt key = Hwi_disable();
@@ -159,6 +166,7 @@ uint16_t xbee_port_wait(xbee_message_t *message)
     return missed;
 }
 
+/* It waits for room rather than drop: an answer that is missing reads as a line that was not obeyed. */
 void xbee_port_answer(const telemetry_line_t *line)
 {
     while (!uart_port_send(BSP_UART_XBEE, line->text, line->length)) {
@@ -181,6 +189,8 @@ bool xbee_port_clear(void)
     return uart_port_room(BSP_UART_XBEE) >= SPARE_ROOM;
 }
 
+/* Only what leaves the transmitter nearly empty: an answer or a stop's echo never waits behind more
+ * than 0.2 s of a list. A line longer than that needs all of it. */
 bool xbee_port_spare(const telemetry_line_t *line)
 {
     const uint16_t room = uart_port_room(BSP_UART_XBEE);
@@ -189,6 +199,7 @@ bool xbee_port_spare(const telemetry_line_t *line)
            uart_port_send(BSP_UART_XBEE, line->text, line->length);
 }
 
+/* Four lines may wait. More would be pulses of another time. */
 void xbee_port_stream(const telemetry_line_t *line)
 {
     if (uart_port_room(BSP_UART_XBEE) >= UART_PORT_TRANSMIT_CELLS - 4U * line->length) {
@@ -196,6 +207,7 @@ void xbee_port_stream(const telemetry_line_t *line)
     }
 }
 
+/* Half of the buffer stays free for answers. Telemetry that is left out is told again 0.2 s later. */
 void xbee_port_report(const telemetry_line_t *line)
 {
     if (uart_port_room(BSP_UART_XBEE) >= REPORT_ROOM) {
