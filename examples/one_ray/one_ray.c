@@ -60,13 +60,12 @@ static void keep_reading(uint32_t now_us)
 static uint16_t received(const bsp_uart_burst_t *burst)
 {
     const uint32_t now_us = bsp_time_us();
-    uint16_t i;
 
     if (burst->framing || burst->overrun) {
         tfmini_line_broken(&sensor);
         overruns += burst->overrun ? 1U : 0U;
     }
-    for (i = 0U; i < burst->count; i++) {
+    for (uint16_t i = 0U; i < burst->count; ++i) {
         if (tfmini_feed(&sensor, octet_of(burst->octets[i]), now_us)) {
             keep_reading(now_us);
         }

@@ -37,10 +37,9 @@ static bool is_nonsense(const tfmini_t *sensor)
 static void drop_first(tfmini_t *sensor)
 {
     do {
-        uint16_t i;
 
         --sensor->count;
-        for (i = 0U; i < sensor->count; i++) {
+        for (uint16_t i = 0U; i < sensor->count; ++i) {
             sensor->octets[i] = sensor->octets[i + 1U];
         }
     } while (sensor->count > 0U && is_nonsense(sensor));
@@ -49,9 +48,7 @@ static void drop_first(tfmini_t *sensor)
 static bool sum_is_right(const tfmini_t *sensor)
 {
     uint16_t sum = 0U;
-    uint16_t i;
-
-    for (i = 0U; i + 1U < sensor->count; i++) {
+    for (uint16_t i = 0U; i + 1U < sensor->count; ++i) {
         sum = (uint16_t)(sum + sensor->octets[i]);
     }
     return octet_of(sum) == sensor->octets[sensor->count - 1U];
@@ -70,9 +67,7 @@ static bool take_reading(tfmini_t *sensor)
 
 static void take_reply(tfmini_t *sensor)
 {
-    uint16_t i;
-
-    for (i = 0U; i < REPLY_OCTETS; i++) {
+    for (uint16_t i = 0U; i < REPLY_OCTETS; ++i) {
         if (sensor->octets[i] != octet_of((uint16_t)tfmini_order[i])) {
             return;
         }
