@@ -13,8 +13,8 @@ static void start_next(serial_t *serial)
         return;
     }
     serial->busy = true;
-    serial->line_free = timeline_now();
-    serial->event = timeline_after(llround(1e10 / serial->rate), octet_left, serial);
+    serial->line_free = timeline_now() > serial->held ? timeline_now() : serial->held;
+    serial->event = timeline_at(serial->line_free + llround(1e10 / serial->rate), octet_left, serial);
 }
 
 static void octet_left(void *context)
@@ -59,6 +59,11 @@ void serial_send(serial_t *serial, const void *octets, size_t count)
     start_next(serial);
 }
 
+void serial_hold(serial_t *serial, sim_time_t until)
+{
+    serial->held = until;
+}
+
 bool serial_idle(const serial_t *serial)
 {
     return serial->count == 0;
@@ -72,6 +77,7 @@ void serial_flush(serial_t *serial)
     }
     serial->event = 0;
     serial->busy = false;
+    serial->held = 0;
     serial->head = 0;
     serial->count = 0;
 }

@@ -20,6 +20,7 @@ typedef struct {
     size_t head, count;
     bool busy;
     sim_time_t line_free; /* end of the last stop bit */
+    sim_time_t held;      /* no octet begins before */
     size_t dropped;       /* octets that found the queue full */
     timeline_id_t event;
 } serial_t;
@@ -27,6 +28,7 @@ typedef struct {
 void serial_init(serial_t *serial, double rate, serial_sink_t sink, void *context);
 void serial_set_rate(serial_t *serial, double rate); /* from the next octet on */
 void serial_send(serial_t *serial, const void *octets, size_t count);
+void serial_hold(serial_t *serial, sim_time_t until); /* no further octet begins before */
 bool serial_idle(const serial_t *serial);
 void serial_flush(serial_t *serial); /* drops what has not left yet (power loss) */
 

@@ -407,6 +407,7 @@ static void put_stream_head(scan_t *scan, const char *status)
 
 static void put_stream_frame(scan_t *scan)
 {
+    serial_hold(&scan->urg->line, timeline_now() + scan->urg->config.late);
     put_stream_head(scan, "99");
     put_time(scan->urg, turn_start(scan->urg, scan->turn));
     put_blocks(scan, true);

@@ -43,8 +43,10 @@ typedef struct {
     sim_time_t phase;       /* start of the first revolution after power-up */
     sim_time_t ray_instant; /* of step 389, the middle of 372..406, after the start of a revolution: 34 ms.
                              * The others come as the mirror turns, 97.66 us from step to step */
-    double clock_ratio;     /* sensor clock against true time, 1.0 */
-    bool rounds_down;       /* steps that fill no cluster make no point; else they make the last one */
+    sim_time_t late;    /* a stream's frame leaves so long after the end of its revolution, 0. It stands for
+                         * a longer answer, whose last octet comes so much later */
+    double clock_ratio; /* sensor clock against true time, 1.0 */
+    bool rounds_down;   /* steps that fill no cluster make no point; else they make the last one */
 } urg04lx_config_t;
 
 extern const urg04lx_config_t urg04lx_default;

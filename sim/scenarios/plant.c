@@ -118,6 +118,8 @@ static const figure_t figures[] = {
      "beams so struck: 0 all, 1 front, 2 aft, 3 fore; 4, 5, 6: not 3, 2, 1"},
     {"ray_instant", "s", 0, 0.1, AT(ray_instant_s), 1,
      "of step 389, the front's middle, after the start of a revolution"},
+    {"scan_late", "s", 0, 0.09, AT(scan_late_s), 1,
+     "each scan comes so much later, as a longer answer would"},
     {"scanner_answers", "-", 0, 1, AT(scanner_answers), 1,
      "0: 8 ms after a command; 1: as recorded, once a revolution"},
     {"scanner_rate", "bit/s", 19200, 750000, AT(board.laser.power_up_rate), 1,
@@ -261,6 +263,7 @@ void plant_complete(plant_t *plant)
     plant->board.laser.ray_instant = (sim_time_t)llround(plant->ray_instant_s * 1e9);
     plant->board.laser.clock_ratio = 1.0 + plant->clock_ppm * 1e-6;
     plant->board.laser.boot = (sim_time_t)llround(plant->scanner_boot_s * 1e9);
+    plant->board.laser.late = (sim_time_t)llround(plant->scan_late_s * 1e9);
     plant->board.laser.answers_in_turn = plant->scanner_answers >= 0.5;
     complete_imu(plant);
     seed_course_lay(&plant->ground, plant->board.seed, &plant->place, &plant->course);

@@ -15,7 +15,7 @@ typedef struct {
     board_config_t board;
     double ray_instant_s;
     double clock_ppm; /* of the scanner */
-    double scanner_answers, scanner_boot_s;
+    double scanner_answers, scanner_boot_s, scan_late_s;
     double imu_period_s, imu_age_s;
     double outage_start_s, outage_s;
     double restart_start_s; /* of the scanner */

@@ -392,6 +392,17 @@ void test_the_age_of_the_rays_follows_from_layout_and_bit_rate(void)
     TEST_ASSERT_UINT32_WITHIN(100, 70500 - 23 * 2 * 40, scip_rays_age_us(&scan, 250000));
 }
 
+/* The seed's equations 27 and 28 say 46.3 ms. They count two octets fewer for a short answer and eight for a
+ * long one, and leave out that the middle of the two beams is five steps before that of the front's. */
+void test_the_rays_of_the_seeds_first_bracket_were_47_ms_older_than_those_of_its_last(void)
+{
+    const scip_scan_t two_beams = {.first_step = 249, .points = 271, .cluster = 1, .characters = 2};
+    const scip_scan_t front = {.first_step = 372, .points = 35, .cluster = 1, .characters = 2};
+
+    TEST_ASSERT_UINT32_WITHIN(100, 47400,
+                              scip_rays_age_us(&two_beams, 115200) - scip_rays_age_us(&front, 250000));
+}
+
 void test_several_mirrors_are_asked_for_by_four_steps_a_point(void)
 {
     for (uint16_t i = 0U; i < SCIP_LAYOUT_COUNT; i++) {

@@ -2,6 +2,7 @@
 import math
 import re
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import chapter_4_1  # noqa: E402
 import seed_study  # noqa: E402
 import statements  # noqa: E402
 
+PROGRAM = sys.argv.pop(1) if len(sys.argv) > 1 and Path(sys.argv[1]).is_file() else None
 PAGE = (ROOT / "docs/control.md").read_text(encoding="utf-8")
 
 
@@ -116,12 +118,58 @@ class Statements(unittest.TestCase):
         best = {"good": (None, flights()), "bad": ({"damping": 2.0}, flights(PD_saturated={"hover_rms_mm": 10.0}))}
         held = [s.holds(best["bad"][1]) for s in statements.STATEMENTS]
         self.assertIn(False, held)
-        everything, page = seed_study.table(best), seed_study.table(best, for_page=True)
+        expected = sum(s.holds(flights(PID={"hover_rms_mm": 90.0})) for s in statements.STATEMENTS)
+        self.assertLess(expected, len(held))
+        by_last = {"good": flights(PID={"hover_rms_mm": 90.0}), "bad": flights()}
+        everything, page = seed_study.table(best, by_last), seed_study.table(best, by_last, for_page=True)
         for s, holds in zip(statements.STATEMENTS, held, strict=True):
             self.assertIn(f"| {s.words} ({s.source}) | {s.reading} | yes | {'yes' if holds else '**no**'} |", everything)
             self.assertEqual(f"| {s.words} ({s.source}) | yes | **no** |" in page, not holds)
         self.assertIn(f"| **holds** | {len(held)} of {len(held)} | {sum(held)} of {len(held)} |", page)
+        self.assertIn(f"| holds, if PD had had the last bracket | {expected} of {len(held)} | {len(held)} of {len(held)} |", page)
         self.assertIn("- bad: damping 1/s 2.", page)
+
+
+class Brackets(unittest.TestCase):
+    def test_the_answer_of_the_first_bracket_takes_as_long_as_equations_27_and_28_say(self):
+        self.assertAlmostEqual(statements.line_s(249, 519, 115200), 0.05026, places=5)
+        self.assertAlmostEqual(statements.line_s(372, 406, 250000), 0.00396, places=5)
+        self.assertAlmostEqual(statements.FIRST_BRACKET_LATER_S, 0.0463, places=5)
+
+    def test_what_was_tuned_before_the_pid_flies_by_the_first_bracket_and_the_pid_by_the_last(self):
+        typed = {name: line for name, (_, line, _) in statements.FLIGHTS.items()}
+        for flight, (scenario, *_) in statements.FLIGHTS.items():
+            feedback = typed[flight].get("KP") != "0" and scenario != "no-feedforward"
+            first = {"scan_late": statements.FIRST_BRACKET_LATER_S} if feedback and not flight.startswith("PID") else {}
+            self.assertEqual(seed_study.later(flight, "as flown"), first, flight)
+            self.assertEqual(seed_study.later(flight, seed_study.LAST), {}, flight)
+
+    def test_the_bracket_reaches_the_program(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            heard, program = Path(scratch, "heard"), Path(scratch, "program")
+            program.write_text("#!/bin/sh\n" f'echo "$@" >> {heard}\n'
+                               'while [ "$1" != --json ]; do shift; done; echo \'{"hover_rms_mm": 1}\' > "$2"\n', encoding="utf-8")
+            program.chmod(0o755)
+            for flight, brackets in (("PD saturated", "as flown"), ("PID", "as flown"), ("PD saturated", seed_study.LAST)):
+                seed_study.fly(str(program), "THRUST", {"tau": 0.1}, flight, 7, brackets)
+            lines = heard.read_text(encoding="utf-8").splitlines()
+        self.assertIn(" --set plant.scan_late=0.0463", lines[0])
+        self.assertEqual([("scan_late" in line, "plant.tau=0.1" in line) for line in lines], [(True, True), (False, True), (False, True)])
+
+
+class Flown(unittest.TestCase):
+    """On the default plant, by the program that was given; the study itself flies 20 seeds."""
+    def setUp(self):
+        if PROGRAM is None:
+            self.skipTest("no program given")
+
+    def spread_mm(self, flight, brackets):
+        return statements.spread_mm(seed_study.look(PROGRAM, "THRUST", {}, range(1, 9), (flight,), brackets)[flight])
+
+    def test_pid_oscillates_less_than_pd_of_the_first_bracket_and_not_less_than_pd_of_the_last(self):
+        pid = self.spread_mm("PID", "as flown")
+        self.assertLess(pid, self.spread_mm("PD saturated", "as flown"))
+        self.assertGreater(pid, self.spread_mm("PD saturated", seed_study.LAST))
 
 
 if __name__ == "__main__":

@@ -4,7 +4,8 @@
 The seed tells in words how its laws flew, and never what the throttle commands. This draws N vehicles of two kinds,
 throttle = THRUST and throttle = CLIMB rate (mid-point, deadband, lag free), flies the seed's tests on each, counts the
 statements (statements.py) that hold, searches on around the best, and flies the best of each kind again with seeds that
-the search did not use. A vehicle is the plant's figures, drawn from --seed; all else is the nominal vehicle.
+the search did not use. P and PD fly by the seed's first bracket, PID by its last; at the end the best are judged with the
+last bracket for all, too. A vehicle is the plant's figures, drawn from --seed; all else is the nominal vehicle.
 The table goes to stdout and DIR/seed_study.md, every vehicle with what holds to DIR/seed_study.csv; --page writes
 the statements that do not hold for all into docs/control.md. Exit status 0; 2 usage or a program that does not fly.
 """
@@ -40,6 +41,8 @@ KINDS = {
 MEANT = {"damping": "damping 1/s", "hover_thrust": "hover thrust N", "tau": "motor lag s", "gain": "thrust gain",
          "tdelay": "delay s", "turbulence": "turbulence m/s2", "climb_rate": "rate m/s/N", "climb_neutral": "mid-point N",
          "climb_deadband": "deadband N", "climb_lag": "lag s"}
+MANY = 18          # statements that fit a vehicle well
+LAST = "the last bracket for all"
 CLIMB_AS_DRAWN = {"hover_thrust": 7.4}     # under the autopilot's own speed loop it hardly matters
 
 
@@ -60,9 +63,14 @@ def near(rng, kind, vehicle, width):
     return found
 
 
-def fly(program, kind, vehicle, flight, seed):
+def later(flight, brackets):
+    """Rays of the first bracket come later; LAST: nothing flew by it."""
+    return {"scan_late": statements.FIRST_BRACKET_LATER_S} if brackets != LAST and flight in statements.BY_FIRST_BRACKET else {}
+
+
+def fly(program, kind, vehicle, flight, seed, brackets="as flown"):
     scenario, typed, _ = statements.FLIGHTS[flight]
-    figures = vehicle | (CLIMB_AS_DRAWN if kind == "CLIMB" else {})
+    figures = vehicle | (CLIMB_AS_DRAWN if kind == "CLIMB" else {}) | later(flight, brackets)
     words = [scenario, "--seed", str(seed)]
     words += [word for name, value in figures.items() for word in ("--set", f"plant.{name}={value:.6g}")]
     words += [word for name, value in typed.items() for word in ("--set", f"{name}={value}")]
@@ -84,11 +92,12 @@ def fly(program, kind, vehicle, flight, seed):
         return {name: float(value) for name, value in found.items() if isinstance(value, (int, float))}
 
 
-def look(program, kind, vehicle, seeds):
+def look(program, kind, vehicle, seeds, flights=statements.FLIGHTS, brackets="as flown"):
     """{flight: mean figures}."""
     means = {}
-    for flight, (_, _, once) in statements.FLIGHTS.items():
-        flown = [fly(program, kind, vehicle, flight, seed) for seed in (seeds[:1] if once else seeds)]
+    for flight in flights:
+        once = statements.FLIGHTS[flight][2]
+        flown = [fly(program, kind, vehicle, flight, seed, brackets) for seed in (seeds[:1] if once else seeds)]
         means[flight] = {name: sum(one[name] for one in flown) / len(flown) for name in flown[0]
                          if all(name in one for one in flown)}
     return means
@@ -129,14 +138,20 @@ def figures_of(best):
         yield name, [f"{pick(means):.0f}" for _, means in best.values()]
 
 
-def table(best, for_page=False):
-    """best: {column: (vehicle or None, means)}. The page has the statements that do not hold for all, without how they are judged."""
+def count(means):
+    return f"{sum(judge(means))} of {len(statements.STATEMENTS)}"
+
+
+def table(best, by_last, for_page=False):
+    """best: {column: (vehicle or None, means)}; by_last: {column: means} with the last bracket for all. The page has the
+    statements that do not hold for all, without how they are judged."""
     judged = [judge(means) for _, means in best.values()]
     rows = [(["the seed", "judged by"], list(best))]
     for statement, held in zip(statements.STATEMENTS, zip(*judged, strict=True), strict=True):
         if not (for_page and all(held)):
             rows.append(([f"{statement.words} ({statement.source})", statement.reading], ["yes" if one else "**no**" for one in held]))
-    rows.append((["**holds**", ""], [f"{sum(held)} of {len(statements.STATEMENTS)}" for held in judged]))
+    rows.append((["**holds**", ""], [count(means) for _, means in best.values()]))
+    rows.append((["holds, if PD had had the last bracket", ""], [count(by_last[column]) for column in best]))
     rows += [] if for_page else [([name, ""], cells) for name, cells in figures_of(best)]
     first, *others = ["| " + " | ".join([*(names[:1] if for_page else names), *cells]) + " |" for names, cells in rows]
     columns = len(best) + (1 if for_page else 2)
@@ -164,26 +179,37 @@ def write_csv(path, found):
                                *(int(one) for one in held)])
 
 
+def tally(kind, ranked, confirmed):
+    """How far the search came, and how well its best stand the flights with new seeds."""
+    fit = sum(held >= MANY for held, _, _ in ranked)
+    finals = ", ".join(str(sum(judge(means))) for _, means in confirmed)
+    return (f"{kind}: {MANY} statements or more fit {fit} of {len(ranked)} vehicles, at most {ranked[0][0]} in the search; "
+            f"the finalists with new seeds: {finals}.")
+
+
 def run(arguments):
     rng = random.Random(arguments.seed)
     search_seeds = list(range(1001, 1001 + arguments.flights))
     fresh = list(range(1, 1 + arguments.confirm))
     program = str(arguments.program.resolve())
     progress = fleet.Progress(len(KINDS) * (arguments.vehicles // 2 + 2 * (arguments.vehicles // 4)), what="vehicles")
+    tallies = {}
     found = {kind: search(program, kind, rng, arguments.vehicles, search_seeds, progress) for kind in KINDS}
     best = {"default": (None, look(program, "THRUST", {}, fresh))}
     for kind, ranked in found.items():
         confirmed = [(vehicle, look(program, kind, vehicle, fresh)) for _, vehicle, _ in ranked[:arguments.finalists]]
         best[kind] = max(confirmed, key=lambda pair: sum(judge(pair[1])))
-    text = table(best)
+        tallies[kind] = tally(kind, ranked, confirmed)
+    by_last = {column: means | look(program, column, vehicle or {}, fresh, statements.BY_FIRST_BRACKET, LAST)
+               for column, (vehicle, means) in best.items()}
+    text = table(best, by_last)
     arguments.out.mkdir(parents=True, exist_ok=True)
     write_csv(arguments.out / "seed_study.csv", found)
     (arguments.out / "seed_study.md").write_text(text + "\n", encoding="utf-8")
     print(text)
-    for kind, ranked in found.items():
-        print(f"{kind}: {len(ranked)} vehicles, {ranked[0][0]} statements at most in the search")
+    print("\n".join(tallies.values()))
     if arguments.page:
-        write_page(table(best, for_page=True))
+        write_page(table(best, by_last, for_page=True))
     return 0
 
 

@@ -26,6 +26,18 @@ FLIGHTS = {
     "PID, tugs": ("pid-40cm-tugs", {}, False),
     "PID over the ramp": ("pid-60cm-ramp", {}, False),
 }
+
+
+def line_s(first_step, last_step, bit_rate):
+    """Time of one answer on the line, by the seed's equations 23 to 26."""
+    points = last_step - first_step + 1
+    return 10.0 * (26 + 2 * points + 2 * math.ceil(points / 64) + 1) / bit_rate
+
+
+# The first bracket had two mirrors, whose rays took 90 degrees at 115200 bit/s (equation 27). That of the later flights has
+# one mirror and 250000 bit/s (equation 28). The seed tuned PD before PID (Annex I), and does not say by which bracket.
+FIRST_BRACKET_LATER_S = line_s(249, 519, 115200) - line_s(372, 406, 250000)
+BY_FIRST_BRACKET = ("P", "PD", "PD, KP up", "PD, KP down", "PD, KD up", "PD saturated")
 TRACKED = ("PID over the ramp",)    # its course in time is looked at, not only its metrics
 
 

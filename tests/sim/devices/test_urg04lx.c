@@ -1631,6 +1631,32 @@ void test_the_clock_starts_with_the_power(void)
     TEST_ASSERT_EQUAL_INT64(101007 + 1800 + 34, world_called_at / SIM_MS);
 }
 
+/* Its rays, its time stamp and its octets' rate stay. */
+void test_a_late_frame_ends_so_much_later_and_no_revolution_is_lost(void)
+{
+    sim_time_t ends[2], seen[2];
+    int64_t stamps[2];
+
+    for (int late = 0; late < 2; late++) {
+        config.late = late * 46300 * SIM_US;
+        create_scip2();
+        forget();
+        host("MS0372040601001\n");
+        run_for(SIM_S);
+        stamps[late] = read_frame(heard.text + 21, "99b\n").time_ms;
+        seen[late] = world_called_at;
+        ends[late] = heard.at[heard.count - 1];
+        host("MS0372040601010\n");
+        run_for(2 * SIM_S);
+        TEST_ASSERT_EQUAL_UINT(0, urg04lx_state(urg).revolutions_skipped);
+        tearDown();
+        setUp();
+    }
+    TEST_ASSERT_EQUAL_INT64(stamps[0], stamps[1]);
+    TEST_ASSERT_EQUAL_INT64(seen[0], seen[1]);
+    TEST_ASSERT_EQUAL_INT64(46300 * SIM_US, ends[1] - ends[0]);
+}
+
 void test_the_revolution_is_configurable(void)
 {
     config.revolution = 99 * SIM_MS;
