@@ -13,6 +13,7 @@
 
 #include "device.h"
 #include "bsp/led.h"
+#include "bsp/receiver.h"
 #include "bsp/selector.h"
 #include "bsp/throttle.h"
 #include "bsp/timebase.h"
@@ -100,6 +101,7 @@ void bsp_board_init(void)
         open_uart_pins(&UARTS[i]);
     }
     bsp_selector_init();
+    bsp_receiver_init();
     pull_up_unbonded();
     SysCtl_enablePeripheral(SYSCTL_PERIPH_CLK_TIMER1);
     SysCtl_enablePeripheral(SYSCTL_PERIPH_CLK_TIMER2);

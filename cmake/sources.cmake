@@ -10,7 +10,7 @@ set(CONTROL_SOURCES
     control/modes.c control/outputs.c control/parameters.c control/ray_clock.c control/reach.c
     control/sense/accelerometer.c control/sense/beam.c control/sense/confirmation.c control/sense/heights.c control/sense/push.c
     control/sense/rules.c control/sense/sense.c control/sense/senses.c control/sense/stand.c control/sense/sway.c
-    control/sense/tilt.c control/sense/verdict.c control/sense/witness.c control/signs.c control/situation.c control/thrust.c
+    control/sense/tilt.c control/sense/verdict.c control/sense/witness.c control/signs.c control/situation.c control/stick.c control/stick_orders.c control/thrust.c
     control/where/contact.c control/where/flight_state.c control/where/hover_thrust.c control/where/piloting.c
     control/where/supervisor.c control/where/where.c)
 set(DRIVERS_SOURCES
@@ -18,7 +18,7 @@ set(DRIVERS_SOURCES
     drivers/scip_layout.c drivers/scip_parser.c drivers/scip_request.c drivers/telecommand.c
     drivers/telemetry.c drivers/urg.c drivers/urg_link.c)
 set(BSP_SOURCES
-    bsp/board.c bsp/led.c bsp/reset.c bsp/retained.c bsp/selector.c bsp/start.c bsp/storage.c bsp/throttle.c bsp/timebase.c bsp/uart.c
+    bsp/board.c bsp/led.c bsp/receiver.c bsp/reset.c bsp/retained.c bsp/selector.c bsp/start.c bsp/storage.c bsp/throttle.c bsp/timebase.c bsp/uart.c
     bsp/usb.c bsp/watchdog.c)
 set(FIRMWARE_SOURCES
     firmware/alive.c firmware/answer.c firmware/boot.c firmware/calibrator.c firmware/commands.c firmware/cpu_time.c firmware/fault.c

@@ -20,6 +20,9 @@ typedef char every_sum_has_a_name[(sizeof sum_names / sizeof sum_names[0] == SUM
 static const char *const sel_names[] = {[SEL_NONE] = "NONE", [SEL_PIN] = "PIN"};
 typedef char every_sel_has_a_name[(sizeof sel_names / sizeof sel_names[0] == SEL_COUNT) ? 1 : -1];
 
+static const char *const stick_names[] = {[STICK_NONE] = "NONE", [STICK_PIN] = "PIN"};
+typedef char every_stick_has_a_name[(sizeof stick_names / sizeof stick_names[0] == STICK_COUNT) ? 1 : -1];
+
 static const char *const axis_names[] = {
     [AXIS_ROLL] = "ROLL", [AXIS_MINUS_ROLL] = "-ROLL", [AXIS_PITCH] = "PITCH", [AXIS_MINUS_PITCH] = "-PITCH"};
 typedef char every_axis_has_a_name[(sizeof axis_names / sizeof axis_names[0] == AXIS_COUNT) ? 1 : -1];
@@ -124,6 +127,16 @@ const parameter_row_t parameter_table[] = {
                       "Middle of the rays on mirror 2, fore."},
     [PARAMETER_SW] = {"SW", "steps", 2.0F, 20.0F, 17.0F, NULL, PARAMETERS_MIRRORS,
                       "Rays to either side of each middle."},
+    [PARAMETER_STICK] = {"STICK", "-", 0.0F, (float)(STICK_COUNT - 1), (float)STICK_NONE, stick_names,
+                         PARAMETERS_THROTTLE,
+                         "Whether the pilot's stick sets the height, by a pin; with SEL PIN."},
+    /* Limits: a stick's middle is trimmed by a quarter of its way. A receiver's middle is 1.5 ms; remote
+     * controls of some makers have 1.52 ms, which the dead band takes in. */
+    [PARAMETER_SMID] = {"SMID", "us", 1400.0F, 1600.0F, 1500.0F, NULL, PARAMETERS_THROTTLE,
+                        "Pulse of the stick's middle."},
+    /* Limits: law EST climbs by VUP at most, 0.7 m/s. Default: a reaction of 0.3 s is 9 cm then. */
+    [PARAMETER_SRATE] = {"SRATE", "m/s", 0.05F, 0.7F, 0.3F, NULL, PARAMETERS_THROTTLE,
+                         "How fast the stick moves the reference, at its end."},
 };
 typedef char
     every_parameter_has_its_row[(sizeof parameter_table / sizeof parameter_table[0] == PARAMETER_COUNT) ? 1

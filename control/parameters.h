@@ -59,6 +59,9 @@ typedef enum {
     PARAMETER_S1,     /* aft */
     PARAMETER_S2,     /* fore */
     PARAMETER_SW,     /* steps to either side of each middle */
+    PARAMETER_STICK,  /* choice, control_stick_t */
+    PARAMETER_SMID,   /* us, pulse of the stick's middle */
+    PARAMETER_SRATE,  /* m/s, at an end of the stick */
     PARAMETER_COUNT
 } parameter_id_t;
 
@@ -80,6 +83,9 @@ typedef enum {
     SEL_COUNT
 } control_sel_t; /* how the firmware knows whether the pilot
                   * has the throttle: not at all, or by a pin */
+
+/* How the firmware hears the pilot's throttle stick: not at all, or by a pin. */
+typedef enum { STICK_NONE, STICK_PIN, STICK_COUNT } control_stick_t;
 
 /* Which angle of the IMU is the vehicle's roll (or pitch), and which end of the IMU's z axis points down. */
 typedef enum { AXIS_ROLL, AXIS_MINUS_ROLL, AXIS_PITCH, AXIS_MINUS_PITCH, AXIS_COUNT } control_axis_t;

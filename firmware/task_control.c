@@ -7,10 +7,12 @@
 #include "firmware/alive.h"
 #include "firmware/calibrator.h"
 #include "control/flight.h"
+#include "control/stick_orders.h"
 #include "firmware/flight_recorder.h"
 #include "firmware/monitor.h"
 #include "firmware/pulse_stream.h"
 #include "firmware/schedule.h"
+#include "bsp/receiver.h"
 #include "bsp/selector.h"
 #include "firmware/servers.h"
 #include "firmware/tasks.h"
@@ -25,6 +27,8 @@
 static Event_Handle event;
 static UInt in_force;
 static flight_t flight;
+static stick_t stick;
+static stick_orders_t orders;
 
 /* An event that the law does not wait for is posted all the same: the law may change, and then it is
  * there. It releases no job, so it is not measured as one. */
@@ -126,11 +130,23 @@ static void read_inputs(const parameters_t *parameters, flight_inputs_t *in)
     in->has_throttle = parameters_choice(parameters, PARAMETER_SEL) == SEL_NONE || bsp_selector_ours();
 }
 
+/* Adds what the pilot's stick orders to the operator's requests. before: outputs of the previous cycle. */
+static void read_stick(const parameters_t *parameters, const flight_outputs_t *before, flight_inputs_t *in)
+{
+    static uint32_t read_us;
+    float pulse_us = 0.0F;
+    const bool came = bsp_receiver_take(&pulse_us);
+
+    stick_step(&stick, came, pulse_us, (float)(in->now_us - read_us) * 1.0e-6F);
+    read_us = in->now_us;
+    stick_orders_step(&orders, parameters, &stick, before, in);
+}
+
 static Void task_control(UArg unused0, UArg unused1)
 {
     static parameters_t parameters;
     static flight_inputs_t in;
-    static flight_outputs_t out;
+    static flight_outputs_t out = FLIGHT_OUTPUTS_INITIAL;
 
     (void)unused0;
     (void)unused1;
@@ -141,7 +157,9 @@ static Void task_control(UArg unused0, UArg unused1)
         wait(out.releases);
         parameter_server_read(&parameters);
         read_inputs(&parameters, &in);
+        read_stick(&parameters, &out, &in);
         flight_step(&flight, &parameters, &in, &out);
+        out.flags |= stick_orders_flag(&orders, &parameters, &stick, in.has_throttle);
         calibrator_overlay(parameters.value[PARAMETER_LINK], &in, &out);
         /* As soon as it is known. All that only reports comes behind. */
         bsp_throttle_set_pulse_us(out.pulse_us);
@@ -160,6 +178,8 @@ void task_control_create(void)
     Task_Params task;
 
     flight_init(&flight);
+    stick = (stick_t){.count = 0U};
+    orders = (stick_orders_t){.counts = false};
     event = Event_create(NULL, NULL);
     Clock_Params_init(&clock);
     clock.period = CONTROL_PERIOD_MS;

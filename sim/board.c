@@ -13,6 +13,7 @@
 #include "sim/variables.h"
 
 #define SELECTOR_PIN 3U
+#define STICK_PIN 10U
 
 int firmware_main(void);
 
@@ -35,6 +36,7 @@ static struct {
     rc_mux_t mux;
     pilot_t *pilot;
     board_pin_t pin;
+    stick_wire_t stick;
     board_terminal_t terminal;
     void *terminal_context;
     const kernel_costs_t *costs;
@@ -55,6 +57,7 @@ board_config_t board_config(unsigned long seed)
         .laser = urg04lx_default,
         .imu = razor_default,
         .pilot = PILOT_DEFAULT,
+        .stick = STICK_WIRE_DEFAULT,
         .costs = &costs_annex_iv,
     };
     noise_t phases;
@@ -224,6 +227,8 @@ void board_power_on(const board_config_t *config, board_terminal_t terminal, voi
     board.pilot = seat_pilot(config);
     board.pin = BOARD_PIN_HONEST;
     chip_drive_pin(SELECTOR_PIN, true);
+    stick_wire_init(&board.stick, &config->stick, config->seed);
+    board_stick_pin(config->stick.connected < 0.5);
     lay_wires();
     chip_pwm_connect(throttle_pulse, NULL);
     urg04lx_power(board.laser, true);
@@ -383,9 +388,36 @@ void board_pin(board_pin_t tells)
     drive_selector();
 }
 
+void board_stick_pin(bool high)
+{
+    chip_drive_pin(STICK_PIN, high);
+    for (int i = 0; i < BOARD_PROBES; i++) {
+        if (probes[i].stick != NULL) {
+            probes[i].stick(high);
+        }
+    }
+}
+
+bool board_stick_level(void)
+{
+    return chip_pin(STICK_PIN);
+}
+
+static void stick_falls(void *unused)
+{
+    (void)unused;
+    board_stick_pin(false);
+}
+
 void board_stick(sim_time_t high_ns)
 {
+    const sim_time_t told_ns = stick_wire_pulse(&board.stick, quadrotor_scenario_s(board.quadrotor), high_ns);
+
     rc_mux_receiver_pulse(&board.mux, high_ns);
+    if (told_ns > 0) {
+        board_stick_pin(true);
+        timeline_after(told_ns, stick_falls, NULL);
+    }
 }
 
 double board_pulse_us(void)

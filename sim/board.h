@@ -11,6 +11,7 @@
 #include "sim/devices/quadrotor.h"
 #include "sim/devices/razor9dof.h"
 #include "sim/devices/scene.h"
+#include "sim/devices/stick_wire.h"
 #include "sim/devices/urg04lx.h"
 #include "sim/ti/sysbios/kernel.h"
 
@@ -25,6 +26,7 @@ typedef struct {
     int laser_fault_count;
     razor_config_t imu;
     pilot_config_t pilot;
+    stick_wire_config_t stick;
     const kernel_costs_t *costs;
 } board_config_t;
 
@@ -64,11 +66,13 @@ double board_rate(board_wire_t wire);
  * again. */
 void board_octet(board_wire_t wire, unsigned octet, double bit_ns);
 
-/* Probes: an octet for one of the firmware's UARTs has come, at its stop bit; the selector pin has got a
- * level; a throttle pulse has ended. NULL: none. They stay through board_power_on() and _off(). */
+/* Probes: an octet for one of the firmware's UARTs has come, at its stop bit; the selector's or the stick's
+ * pin has got a level; a throttle pulse has ended. NULL: none. They stay through board_power_on() and _off().
+ */
 typedef struct {
     void (*octet)(board_wire_t wire, unsigned octet, double bit_ns);
     void (*selector)(bool firmware);
+    void (*stick)(bool high);
     void (*pulse)(sim_time_t high_ns);
 } board_probes_t;
 /* Two at most: the timing's and the recording's. */
@@ -81,8 +85,12 @@ void board_select(bool firmware);
 /* What the pin tells: the switch, or always the same, as a broken wire or another threshold does. */
 typedef enum { BOARD_PIN_PILOT, BOARD_PIN_FIRMWARE, BOARD_PIN_HONEST } board_pin_t;
 void board_pin(board_pin_t tells);
-/* A pulse of the receiver's throttle channel; reaches the autopilot while the pilot has the throttle. */
+/* A pulse of the receiver's throttle channel; reaches the autopilot while the pilot has the throttle, and the
+ * firmware's pin by the wire, if it is connected. */
 void board_stick(sim_time_t high_ns);
+/* Level straight onto that pin, for a recording that is played again. */
+void board_stick_pin(bool high);
+bool board_stick_level(void); /* high too while nothing is connected */
 
 bool board_selected(void); /* the firmware has the throttle */
 

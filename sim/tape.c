@@ -1,4 +1,4 @@
-/* Why a replay is the same run. The firmware sees nothing of the world but octets, the selector pin and its
+/* Why a replay is the same run. The firmware sees nothing of the world but octets, two pins and its
  * flash, and time is virtual: with the same at the same instants it does the same. Two things must not differ
  * by a nanosecond: the instants, so they are kept as integers, and the order of what happens at one instant.
  * The timeline runs things of one instant in the order in which they were posted, so an octet is posted here
@@ -77,6 +77,11 @@ static void selected(bool firmware)
     fprintf(recorder.out, "select %" PRId64 " %d\n", timeline_now(), firmware ? 1 : 0);
 }
 
+static void stick_level(bool high)
+{
+    fprintf(recorder.out, "stick %" PRId64 " %d\n", timeline_now(), high ? 1 : 0);
+}
+
 static void write_flash(void)
 {
     static unsigned short cells[CELLS];
@@ -104,7 +109,11 @@ void tape_record(FILE *out)
     recorder.out = out;
     fputs(FIRST_LINE "\n", out);
     write_flash();
-    board_probe(BOARD_PROBE_TAPE, &(board_probes_t){.octet = octet_came, .selector = selected});
+    if (!board_stick_level()) {
+        stick_level(false);
+    }
+    board_probe(BOARD_PROBE_TAPE,
+                &(board_probes_t){.octet = octet_came, .selector = selected, .stick = stick_level});
 }
 
 void tape_key(const char *key, const char *value)
@@ -148,7 +157,8 @@ typedef struct {
 
 typedef struct {
     sim_time_t time;
-    bool firmware;
+    bool stick; /* the stick's pin; else the selector's */
+    bool high;
 } level_t;
 
 struct tape {
@@ -246,13 +256,13 @@ static const char *read_flash(tape_t *tape, const char *rest)
     return NULL;
 }
 
-static const char *read_level(tape_t *tape, const char *rest)
+static const char *read_level(tape_t *tape, bool stick, const char *rest)
 {
     int64_t time;
     int level;
 
     if (sscanf(rest, "%" SCNd64 " %d", &time, &level) != 2 || time < 0 || (level != 0 && level != 1)) {
-        return "select T_NS 0|1";
+        return stick ? "stick T_NS 0|1" : "select T_NS 0|1";
     }
     if (time > TIME_MOST) {
         return "beyond what a run lasts";
@@ -260,7 +270,7 @@ static const char *read_level(tape_t *tape, const char *rest)
     if (time < last_level(&tape->levels)) {
         return "before the level before it";
     }
-    *(level_t *)append(&tape->levels, sizeof(level_t)) = (level_t){time, level == 1};
+    *(level_t *)append(&tape->levels, sizeof(level_t)) = (level_t){time, stick, level == 1};
     return NULL;
 }
 
@@ -302,8 +312,8 @@ static const char *read_line(tape_t *tape, char *line)
     if (strcmp(line, "flash") == 0) {
         return read_flash(tape, rest);
     }
-    if (strcmp(line, "select") == 0) {
-        return read_level(tape, rest);
+    if (strcmp(line, "select") == 0 || strcmp(line, "stick") == 0) {
+        return read_level(tape, line[1] == 't', rest);
     }
     return strcmp(line, "truth") == 0 ? read_truth(tape, rest) : read_key(tape, line, rest);
 }
@@ -455,7 +465,13 @@ static void await_level(void);
 static void set_level(void *unused)
 {
     (void)unused;
-    board_select(((const level_t *)player.tape->levels.items)[player.level].firmware);
+    const level_t *level = &((const level_t *)player.tape->levels.items)[player.level];
+
+    if (level->stick) {
+        board_stick_pin(level->high);
+    } else {
+        board_select(level->high);
+    }
     player.level++;
     await_level();
 }

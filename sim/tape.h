@@ -11,6 +11,7 @@
  *   octets WIRE T_NS LENGTH_NS HEX the stop bit of the first octet ended at T_NS since power-on, and the
  * others followed without a pause; each lasted LENGTH_NS, ten bits
  *   select T_NS 0|1                level of the selector pin
+ *   stick T_NS 0|1                 level of the stick's pin
  *   truth HEIGHT ABS TERRAIN THRUST X Y HEADING    of one row of the log, where a simulated vehicle flew,
  * what it was commanded (N), and where it was; older recordings end before the thrust, or before X
  *

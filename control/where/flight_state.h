@@ -30,6 +30,7 @@ typedef enum {
 #define FLIGHT_FLAG_IMU \
     512U /* doubt IMU: accelerations are not believed; or law EST gets none and flies without them */
 #define FLIGHT_FLAG_THRUST 1024U /* doubt THRUST: commands have no effect */
+#define FLIGHT_FLAG_STICK 2048U  /* STICK PIN, and the stick does not count; set by task_control.c */
 #define FLIGHT_FLAG_REACH \
     128U /* the reference is not reached: over 0.1 m off for 3 s, and no nearer; or a landing does not \
           * sink; set by flight.c */

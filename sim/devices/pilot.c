@@ -19,6 +19,9 @@
 #define OPENED_N 2.35 /* a fifth of the stick: over the 10 % that keep motors running */
 #define PREPARE_S 1.0
 #define FULL_N 11.76
+#define MIDDLE_N 5.88
+#define PUSHED_N 3.76 /* 80 % of the stick's way */
+#define NEAR_M 0.08   /* as well as he sees it */
 
 /* The autopilot's throttle channel. */
 #define NO_THRUST_NS (4166.0 * 480.0)
@@ -87,10 +90,25 @@ static double day_stick_n(pilot_t *pilot, const pilot_view_t *view, double t_s)
 
 static bool holds_corners(const pilot_t *pilot, double t_s)
 {
-    const double stop_s = PILOT_DAY_STOP_S + 1.0;
+    const double stop_s = (pilot->config.by_stick ? PILOT_STICK_TAKE_S : PILOT_DAY_STOP_S) + 1.0;
     const bool starts = t_s >= PILOT_DAY_START_S && t_s < PILOT_DAY_START_S + CORNERS_S;
 
     return starts || (pilot->config.stops_by_sticks && t_s >= stop_s && t_s < stop_s + CORNERS_S);
+}
+
+/* By stick: pushes it until the vehicle is where he wants it. */
+static double push_n(const pilot_t *pilot, const pilot_view_t *view, double t_s)
+{
+    const double missing_m = pilot->config.height_m - view->height_m;
+
+    if (t_s < PILOT_STICK_MIDDLE_S) {
+        return OPENED_N;
+    }
+    if (t_s >= PILOT_STICK_LAND_S) {
+        return 0.0;
+    }
+    return t_s < PILOT_STICK_FLY_S || fabs(missing_m) < NEAR_M ? MIDDLE_N
+                                                               : MIDDLE_N + copysign(PUSHED_N, missing_m);
 }
 
 /* His stick goes on while the firmware has the throttle: the multiplexer drops it. */
@@ -98,8 +116,10 @@ static void live_the_day(pilot_t *pilot, double t_s)
 {
     const unsigned latest = pilot->seen - 1U;
     const pilot_view_t *view = &pilot->views[(latest < pilot->late ? 0U : latest - pilot->late) % VIEWS];
-    const bool mine = t_s < PILOT_DAY_GIVE_S || t_s >= PILOT_DAY_TAKE_S;
-    const double wanted = day_stick_n(pilot, view, t_s);
+    const bool alone = pilot->config.by_stick && t_s >= PILOT_DAY_GIVE_S;
+    const bool mine = t_s < PILOT_DAY_GIVE_S ||
+                      t_s >= (pilot->config.by_stick ? PILOT_STICK_TAKE_S : PILOT_DAY_TAKE_S);
+    const double wanted = alone ? push_n(pilot, view, t_s) : day_stick_n(pilot, view, t_s);
 
     if (pilot->seen == 1U || mine != pilot->flying) {
         pilot->flying = mine;

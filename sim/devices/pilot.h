@@ -23,6 +23,7 @@ typedef struct {
     double delay_s;       /* 0.2, eye to hand */
     double unrest_n;      /* 0.05 rms */
     bool field_day;       /* the whole day instead of turns: see pilot_day_t */
+    bool by_stick;        /* field day: alone, without a radio: the stick sets the height, see below */
     bool stops_by_sticks; /* field day: how he stops the motors, by the autopilot's Stop Type */
 } pilot_config_t;
 
@@ -33,6 +34,14 @@ typedef struct {
     36.0 /* and takes it back in the air, with the stick at trim_n: holds height_m by eye */
 #define PILOT_DAY_LAND_S 41.0 /* lands by eye */
 #define PILOT_DAY_STOP_S 47.0 /* stops the motors */
+
+/* The same day by stick: after he gave the throttle, the stick goes to the middle. He flies to height_m and
+ * stays there, holds the stick down to land, and takes the throttle back with the stick down, which stops the
+ * motors. */
+#define PILOT_STICK_MIDDLE_S (-4.0)
+#define PILOT_STICK_FLY_S 1.0
+#define PILOT_STICK_LAND_S 20.0
+#define PILOT_STICK_TAKE_S 30.0
 
 #define PILOT_DEFAULT \
     { \

@@ -334,12 +334,16 @@ static void plan(const scenario_t *scenario, const flight_options_t *options)
 
     snprintf(reference, sizeof reference, "%g", flight.record.reference_m);
     type_settings(scenario, options);
-    type_complete_at(METRICS_REFERENCE_S, "SETR", reference);
+    if (!scenario->by_stick) {
+        type_complete_at(METRICS_REFERENCE_S, "SETR", reference);
+    }
     for (const later_line_t *line = scenario->later; line->name != NULL; line++) {
         type_complete_at(line->t_s, line->name, line->value);
         plan_reference(line);
     }
-    type_complete_at(flight.record.land_s, "SETR", "0");
+    if (!scenario->by_stick) {
+        type_complete_at(flight.record.land_s, "SETR", "0");
+    }
     timeline_at(at(flight.record.land_s), landing, NULL);
     plant_plan(&flight.plant, NULL, flight.origin);
     plan_pings(options);
@@ -532,6 +536,7 @@ static void configure(const scenario_t *scenario, const flight_options_t *option
         board->quadrotor.sag_per_s *= scenario->land_s / flight.record.land_s;
     }
     board->pilot.field_day = scenario->field_day;
+    board->pilot.by_stick = scenario->by_stick;
     if (scenario->field_day) {
         board->quadrotor.naza.stop_type = NAZA_IMMEDIATELY;
         board->quadrotor.barometer_mps = 0.05;
@@ -743,7 +748,7 @@ bool flight_run(const scenario_t *scenario, const flight_options_t *options, fli
     metrics_begin(&flight.record, reference != NULL ? strtod(reference, NULL) : scenario->reference_m,
                   scenario->platform,
                   !options->realtime && options->duration_s > 0.0 ? options->duration_s : scenario->land_s);
-    flight.record.field_day = scenario->field_day;
+    flight.record.field_day = scenario->field_day && !scenario->by_stick;
     *error = open_devices(options);
     if (*error != NULL) {
         return false;

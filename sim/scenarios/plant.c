@@ -21,6 +21,7 @@ typedef struct {
 #define SCENE(field) offsetof(plant_t, board.scene.field)
 #define IMU(field) offsetof(plant_t, board.imu.field)
 #define PILOT(field) offsetof(plant_t, board.pilot.field)
+#define STICK(field) offsetof(plant_t, board.stick.field)
 
 static const figure_t figures[] = {
     {"airframe", "-", 0, 1, QUAD(airframe), 1,
@@ -189,6 +190,19 @@ static const figure_t figures[] = {
     {"pilot_height", "m", 0, 10, PILOT(height_m), 1, "height that the pilot holds; 0: lands it"},
     {"pilot_trim", "N", 0, 12, PILOT(trim_n), 1, "where the stick is when the turn begins"},
     {"pilot_delay", "s", 0, 1.2, PILOT(delay_s), 1, "from the pilot's eye to the hand"},
+    {"stick", "-", 0, 1, STICK(connected), 1, "1: the receiver's throttle channel is wired to the firmware"},
+    {"stick_offset", "us", -1000, 1000, STICK(offset_us), 1, "added to each pulse of that wire: trim"},
+    {"stick_noise", "us", 0, 1000, STICK(noise_us), 1, "of each pulse, rms"},
+    {"stick_spikes", "-", 0, 1, STICK(spikes), 1, "probability that a pulse has any length up to 3 ms"},
+    {"stick_stuck_us", "us", 1, 3000, STICK(stuck_us), 1, "the pulse is that, whatever the pilot does"},
+    {"stick_stuck_start", "s", -LARGE, LARGE, STICK(stuck.start_s), 1, "scenario time from which on"},
+    {"stick_stuck_length", "s", 0, LARGE, STICK(stuck.length_s), 1, "for how long"},
+    {"stick_frozen_start", "s", -LARGE, LARGE, STICK(frozen.start_s), 1,
+     "scenario time from which the pulse of that moment is repeated"},
+    {"stick_frozen_length", "s", 0, LARGE, STICK(frozen.length_s), 1, "for how long"},
+    {"stick_lost_start", "s", -LARGE, LARGE, STICK(lost.start_s), 1,
+     "scenario time from which that wire has no pulses"},
+    {"stick_lost_length", "s", 0, LARGE, STICK(lost.length_s), 1, "for how long"},
 };
 #define FIGURE_COUNT (sizeof figures / sizeof figures[0])
 

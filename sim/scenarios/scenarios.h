@@ -38,6 +38,8 @@ typedef struct {
     double tug_rate_per_s; /* rope tugs; 0 = none */
     double climb_rate_mps_per_n; /* that the throttle commands; 0 = it commands thrust */
     bool field_day; /* the autopilot's rules for motors, and a pilot who starts them and hands over */
+    bool by_stick;  /* a field day without a radio: the pilot's stick sets the height, from 1 s on, and lands
+                       it */
     const char *climb_settings[SCENARIO_SETTINGS_MAX]; /* instead of those of their names, where the throttle
                                                           commands a climb */
     double land_s;                                     /* #SETR 0 */

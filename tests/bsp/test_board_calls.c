@@ -4,6 +4,7 @@
 #include "device.h"
 #include "mock_gpio.h"
 #include "mock_led.h"
+#include "mock_receiver.h"
 #include "mock_selector.h"
 #include "mock_sysctl.h"
 #include "mock_throttle.h"
@@ -64,6 +65,7 @@ void test_the_whole_start_up_in_its_order(void)
     expect_uart(SYSCTL_PERIPH_CLK_SCIB, 86, GPIO_86_SCITXDB, 87, GPIO_87_SCIRXDB);
     expect_uart(SYSCTL_PERIPH_CLK_SCIC, 89, GPIO_89_SCITXDC, 90, GPIO_90_SCIRXDC);
     bsp_selector_init_Expect();
+    bsp_receiver_init_Expect();
     expect_pull_ups();
     SysCtl_enablePeripheral_Expect(SYSCTL_PERIPH_CLK_TIMER1);
     SysCtl_enablePeripheral_Expect(SYSCTL_PERIPH_CLK_TIMER2);

@@ -10,6 +10,7 @@
 #include "mock_alive.h"
 #include "mock_calibrator.h"
 #include "mock_flight_recorder.h"
+#include "mock_receiver.h"
 #include "mock_selector.h"
 #include "mock_pulse_stream.h"
 #include "mock_servers.h"
@@ -127,6 +128,16 @@ static UInt pend(UInt mask)
     return released_by;
 }
 
+static float heard_us; /* pulse of the receiver in each cycle; 0: none */
+
+static bool receiver_take(float *pulse_us, int calls)
+{
+    (void)calls;
+    kernel_note("stick");
+    *pulse_us = heard_us;
+    return heard_us > 0.0F;
+}
+
 static void overlay(float link_s, const flight_inputs_t *in, flight_outputs_t *out, int calls)
 {
     (void)calls;
@@ -183,6 +194,8 @@ void setUp(void)
     flight_status_server_write_Stub(status_write);
     bsp_throttle_set_pulse_us_Stub(set_pulse);
     bsp_time_us_Stub(time_us);
+    bsp_receiver_take_Stub(receiver_take);
+    heard_us = 0.0F;
     calibrator_overlay_Stub(overlay);
     flight_recorder_take_Stub(record);
     alive_report_Stub(alive);
@@ -239,11 +252,40 @@ void test_the_clock_an_altitude_an_imu_frame_and_a_roll_post_one_event_each(void
 void test_a_cycle_waits_looks_steps_drives_the_throttle_publishes_and_records(void)
 {
     run(2U);
-    TEST_ASSERT_EQUAL_STRING("parameters "
-                             "pend parameters altitude imu reference time step overlay pulse publish record "
-                             "pend parameters altitude imu reference time step overlay pulse publish record "
-                             "pend ",
-                             kernel.notes);
+    TEST_ASSERT_EQUAL_STRING(
+        "parameters "
+        "pend parameters altitude imu reference time stick step overlay pulse publish record "
+        "pend parameters altitude imu reference time stick step overlay pulse publish record "
+        "pend ",
+        kernel.notes);
+}
+
+void test_the_stick_moves_the_reference_of_the_next_step_and_its_absence_is_a_flag(void)
+{
+    parameters.value[PARAMETER_STICK] = (float)STICK_PIN;
+    run(1U);
+    TEST_ASSERT_EQUAL_HEX16(FLIGHT_FLAG_STICK, published[0].flags & FLIGHT_FLAG_STICK);
+    TEST_ASSERT_EQUAL_UINT32(reference.sequence, inputs[0].reference_sequence);
+}
+
+static void push_up(uint16_t wait)
+{
+    heard_us = (wait < 20U) ? 1500.0F : 1100.0F;
+    reference.arm = true;
+    reference.arm_sequence = 1U;
+}
+
+void test_an_armed_vehicle_takes_off_by_the_stick(void)
+{
+    parameters.value[PARAMETER_STICK] = (float)STICK_PIN;
+    parameters.value[PARAMETER_SEL] = (float)SEL_PIN;
+    parameters.value[PARAMETER_IAXES] = (float)AXES_PROVED;
+    bsp_selector_ours_IgnoreAndReturn(true);
+    between = push_up;
+    run(40U);
+    TEST_ASSERT_EQUAL_HEX16(0, published[39].flags & FLIGHT_FLAG_STICK);
+    TEST_ASSERT_EQUAL_UINT32(inputs[0].reference_sequence + 1U, inputs[39].reference_sequence);
+    TEST_ASSERT_EQUAL_FLOAT(0.3F, inputs[39].reference_m);
 }
 
 void test_a_wait_is_for_any_of_its_events_and_at_most_150_ms(void)

@@ -61,8 +61,18 @@ static void type(const char *text)
     board_type(text, strlen(text));
 }
 
-/* What may come to the pins: stored parameters, a damaged and a mute scanner, the pilot's switch, a landing.
- */
+/* The stick stands in the middle, and is pushed up for a second from 17 s on. */
+static void receiver(void *unused)
+{
+    const bool up = timeline_now() >= 17 * SIM_S && timeline_now() < 18 * SIM_S;
+
+    (void)unused;
+    board_stick((up ? 1100 : 1500) * SIM_US);
+    timeline_after(20 * SIM_MS, receiver, NULL);
+}
+
+/* What may come to the pins: stored parameters, a damaged and a mute scanner, the pilot's switch and stick, a
+ * landing. */
 static void fly(void *argument, void *result)
 {
     static const line_fault_spec_t faults[] = {
@@ -76,6 +86,7 @@ static void fly(void *argument, void *result)
 
     config.laser_faults = faults;
     config.laser_fault_count = 2;
+    config.stick.connected = 1.0;
     flash_read_all(cells);
     memset(cells, 0, 200); /* no whole image: the firmware says so */
     flash_write_all(cells);
@@ -83,12 +94,14 @@ static void fly(void *argument, void *result)
     board_power_on(&config, child_terminal_take, &((outcome_t *)result)->radio);
     tape_record(out);
     tape_key("scenario", "none");
+    timeline_after(20 * SIM_MS, receiver, NULL);
     until(13.0);
     type("#LAW EST\n");
     until(13.5);
     type("#KP 0.02\n");
     until(13.7);
     type("#SEL PIN\n");
+    type("#STICK PIN\n");
     until(14.0);
     type("#SETR 0.6\n");
     until(20.0);
@@ -150,6 +163,7 @@ void test_a_replay_gives_the_same_pulses_and_the_same_words_to_the_nanosecond(vo
         TEST_ASSERT_NOT_NULL(strstr(flown.radio.text, "ERR LOAD")); /* the flash came along */
         TEST_ASSERT_NOT_NULL(strstr(flown.radio.text, "state:FLYING"));
         TEST_ASSERT_NOT_NULL(strstr(flown.radio.text, "state:FLOATING")); /* and the pilot's switch */
+        TEST_ASSERT_NOT_NULL(strstr(flown.radio.text, "ref:0.8"));        /* and his stick */
     }
 }
 

@@ -23,7 +23,7 @@ COMMANDS = (
     "#POSK 2.3", "#VELK 8", "#VUP 0.7", "#VDN 1.1",
     "#TERRAIN FOLLOW", "#TERRAIN IGNORE",
     "#PLANT THRUST", "#PLANT CLIMB", "#CRATE 1", "#GAIN 1", "#LAG 0.12", "#DELAY 0.0185", "#DAMP 2.5", "#CLAG 0.25",
-    "#SEL NONE", "#SEL PIN", "#SUM ON", "#SUM OFF*3A0B", "#IDLE 15",
+    "#SEL NONE", "#SEL PIN", "#STICK NONE", "#STICK PIN", "#SMID 1500", "#SRATE 0.3", "#SUM ON", "#SUM OFF*3A0B", "#IDLE 15",
     "#IROLL -ROLL", "#IPITCH PITCH", "#IDOWN Z", "#IUNIT 256", "#IAXES ASSUMED", "#IMU",
     "#DF 105", "#LF 100", "#L 220", "#D1 115", "#L1 98", "#D2 107", "#L2 105",
     "#LAYOUT FRONT", "#LAYOUT TWO", "#LAYOUT THREE", "#SF 389", "#S1 128", "#S2 640", "#SW 17",

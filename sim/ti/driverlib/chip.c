@@ -38,6 +38,7 @@ static void reset_registers(void)
     gpio_reset();
     sci_reset(raise_interrupt);
     epwm_reset();
+    ecap_reset();
 }
 
 void chip_reset(void (*raise)(int interrupt))

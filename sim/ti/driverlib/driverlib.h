@@ -7,10 +7,12 @@
 #include "inc/hw_memmap.h"
 #include "cpu.h"
 #include "cputimer.h"
+#include "ecap.h"
 #include "epwm.h"
 #include "gpio.h"
 #include "pin_map.h"
 #include "sci.h"
 #include "sysctl.h"
+#include "xbar.h"
 
 #endif

@@ -113,8 +113,13 @@ bool chip_pin(uint32_t pin)
 
 void chip_drive_pin(uint32_t pin, bool level)
 {
+    const bool changes = at(pin)->held_low == level;
+
     at(pin)->held_low = !level;
     sci_lines_changed();
+    if (changes) {
+        ecap_pin_changed(pin, level);
+    }
 }
 
 unsigned chip_pin_falls(uint32_t pin)

@@ -50,6 +50,11 @@ void epwm_catch_up(void);
 bool epwm_level(void);
 bool epwm_register(const char *name, uint32_t *value);
 
+/* Time stamps of edges. */
+void ecap_reset(void);
+/* The outside world has changed the level on a pin. */
+void ecap_pin_changed(uint32_t pin, bool level);
+
 /* Watchdog and causes of reset. */
 void watchdog_power_on(void);
 /* All but the causes. */

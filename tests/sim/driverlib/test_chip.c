@@ -901,13 +901,98 @@ static void open_drain(void)
     GPIO_setPadConfig(12, GPIO_PIN_TYPE_OD);
 }
 
+static void other_ecap(void)
+{
+    ECAP_startCounter(0x5020U);
+}
+static void continuous_capture(void)
+{
+    ECAP_setCaptureMode(ECAP1_BASE, ECAP_CONTINUOUS_CAPTURE_MODE, ECAP_EVENT_2);
+}
+static void four_events(void)
+{
+    ECAP_setCaptureMode(ECAP1_BASE, ECAP_ONE_SHOT_CAPTURE_MODE, ECAP_EVENT_4);
+}
+static void capture_without_a_mode(void)
+{
+    SysCtl_enablePeripheral(SYSCTL_PERIPH_CLK_ECAP1);
+    ECAP_reArm(ECAP1_BASE);
+}
+static void other_input(void)
+{
+    XBAR_setInputPin((XBAR_InputNum)0, 10);
+}
+
+static void open_ecap(void)
+{
+    XBAR_setInputPin(XBAR_INPUT7, 10);
+    ECAP_setCaptureMode(ECAP1_BASE, ECAP_ONE_SHOT_CAPTURE_MODE, ECAP_EVENT_2);
+    ECAP_setEventPolarity(ECAP1_BASE, ECAP_EVENT_2, ECAP_EVNT_FALLING_EDGE);
+    ECAP_enableTimeStampCapture(ECAP1_BASE);
+    ECAP_startCounter(ECAP1_BASE);
+    ECAP_reArm(ECAP1_BASE);
+}
+
+static void high_for_a_millisecond(void)
+{
+    chip_drive_pin(10, true);
+    run_for(SIM_MS);
+    chip_drive_pin(10, false);
+    run_for(SIM_MS);
+}
+
+void test_an_ecap_without_its_clock_ignores_what_is_written_and_reads_as_nothing(void)
+{
+    chip_drive_pin(10, false);
+    open_ecap();
+    SysCtl_enablePeripheral(SYSCTL_PERIPH_CLK_ECAP1);
+    high_for_a_millisecond();
+    TEST_ASSERT_EQUAL_HEX16(0, ECAP_getInterruptSource(ECAP1_BASE));
+    open_ecap();
+    high_for_a_millisecond();
+    TEST_ASSERT_EQUAL_HEX16(6, ECAP_getInterruptSource(ECAP1_BASE));
+    SysCtl_disablePeripheral(SYSCTL_PERIPH_CLK_ECAP1);
+    TEST_ASSERT_EQUAL_HEX16(0, ECAP_getInterruptSource(ECAP1_BASE));
+}
+
+void test_an_ecap_stops_at_its_second_event_until_it_is_armed_again(void)
+{
+    chip_drive_pin(10, false);
+    SysCtl_enablePeripheral(SYSCTL_PERIPH_CLK_ECAP1);
+    open_ecap();
+    high_for_a_millisecond();
+    const uint32_t rose = ECAP_getEventTimeStamp(ECAP1_BASE, ECAP_EVENT_1);
+    TEST_ASSERT_EQUAL_UINT32(200000, ECAP_getEventTimeStamp(ECAP1_BASE, ECAP_EVENT_2) - rose);
+    high_for_a_millisecond();
+    TEST_ASSERT_EQUAL_UINT32(rose, ECAP_getEventTimeStamp(ECAP1_BASE, ECAP_EVENT_1));
+    ECAP_reArm(ECAP1_BASE);
+    TEST_ASSERT_EQUAL_HEX16(6, ECAP_getInterruptSource(ECAP1_BASE)); /* only ECCLR clears */
+    ECAP_clearInterrupt(ECAP1_BASE, 6);
+    high_for_a_millisecond();
+    TEST_ASSERT_EQUAL_UINT32(rose + 800000, ECAP_getEventTimeStamp(ECAP1_BASE, ECAP_EVENT_1));
+    TEST_ASSERT_EQUAL_HEX16(6, ECAP_getInterruptSource(ECAP1_BASE));
+}
+
 void test_what_the_model_does_not_know_aborts(void)
 {
-    static void (*const CASES[])(void) = {
-        unknown_register, unknown_sci_register, unknown_pin_field, unknown_pin,
-        unknown_sci,      unknown_epwm,         unknown_timer,     too_fast,
-        seven_bits,       odd_interrupt,        down_count,        compare_b,
-        open_drain};
+    static void (*const CASES[])(void) = {unknown_register,
+                                          unknown_sci_register,
+                                          unknown_pin_field,
+                                          unknown_pin,
+                                          unknown_sci,
+                                          unknown_epwm,
+                                          unknown_timer,
+                                          too_fast,
+                                          seven_bits,
+                                          odd_interrupt,
+                                          down_count,
+                                          compare_b,
+                                          open_drain,
+                                          other_ecap,
+                                          continuous_capture,
+                                          four_events,
+                                          capture_without_a_mode,
+                                          other_input};
     void (*const before)(int) = signal(SIGABRT, aborted);
     volatile unsigned count = 0;
     for (volatile unsigned i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {

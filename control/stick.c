@@ -1,0 +1,58 @@
+/* What breaks: a control cycle of 108 ms sees each fifth pulse. Then a stick that is waggled looks like
+ * noise, and does not count until it rests. */
+#include "control/stick.h"
+
+#include <math.h>
+
+#include "control/between.h"
+#include "control/median.h"
+
+#define SHORTEST_US 800.0F /* chosen: a servo's travel is 1 to 2 ms, or 0.9 to 2.1 ms */
+#define LONGEST_US 2200.0F
+#define TRAVEL_US 400.0F     /* from the middle to an end, at a remote control's delivered travel of 100 % */
+#define SILENT_S 0.35F       /* chosen: two of the longest control cycles, and a pulse of 20 ms */
+#define WANDER_SHARE 0.0625F /* chosen: over some 16 pulses */
+#define NOISY_US 100.0F      /* chosen: a hand that moves the stick from end to end in 0.2 s has 80 */
+#define QUIET_US 50.0F       /* chosen: below the dead band of stick_orders.c */
+
+static void hear(stick_t *stick, float pulse_us)
+{
+    const uint16_t latest = (uint16_t)((stick->next + STICK_PULSES - 1U) % STICK_PULSES);
+
+    if (stick->count > 0U) {
+        const float change_us = fabsf(pulse_us - stick->pulses_us[latest]);
+        stick->wander_us += WANDER_SHARE * (change_us - stick->wander_us);
+    }
+    stick->noisy = stick->wander_us > (stick->noisy ? QUIET_US : NOISY_US);
+    stick->pulses_us[stick->next] = pulse_us;
+    stick->next = (uint16_t)((stick->next + 1U) % STICK_PULSES);
+    stick->count = (uint16_t)(stick->count + ((stick->count < STICK_PULSES) ? 1U : 0U));
+    stick->silence_s = 0.0F;
+}
+
+void stick_step(stick_t *stick, bool came, float pulse_us, float step_s)
+{
+    stick->silence_s = at_most(stick->silence_s + step_s, SILENT_S);
+    if (came && pulse_us >= SHORTEST_US && pulse_us <= LONGEST_US) {
+        hear(stick, pulse_us);
+    } else if (stick->silence_s >= SILENT_S) {
+        stick->count = 0U;
+        stick->wander_us = 0.0F;
+        stick->noisy = false;
+    }
+}
+
+bool stick_is_good(const stick_t *stick)
+{
+    return stick->count == STICK_PULSES && !stick->noisy;
+}
+
+float stick_pulse_us(const stick_t *stick)
+{
+    return median_of(stick->pulses_us, STICK_PULSES);
+}
+
+float stick_up(const stick_t *stick, float middle_us)
+{
+    return between(-1.0F, (middle_us - stick_pulse_us(stick)) / TRAVEL_US, 1.0F);
+}
