@@ -32,13 +32,13 @@ static bool is_wired(const parameters_t *parameters)
 static void order(stick_orders_t *orders, float reference_m)
 {
     orders->reference_m = reference_m;
-    orders->references.by_stick++;
+    ++orders->references.by_stick;
 }
 
 static void arm(stick_orders_t *orders, bool armed)
 {
     orders->arm = armed;
-    orders->arms.by_stick++;
+    ++orders->arms.by_stick;
 }
 
 /* True when the radio has asked for something in this cycle. */
