@@ -118,7 +118,7 @@ ground-open: ground ## The same, served on this machine: http://localhost:8123 (
 	@python3 -B tools/ground/serve.py build-ground 8123
 
 ground-fly: build ## A flight in a program of its own, for the page: ws://localhost:8124 (ARGS=hover-60s, or another scenario)
-	@$(setup) plot ground
+	@$(setup) bridge
 	@$(python) tools/ground/bridge.py 8124 build/plomada fly $(or $(ARGS),hover-60s) --realtime
 
 site: ## The pages as a site with a search: build-site/index.html
@@ -131,6 +131,7 @@ publish: ground ## The site with the browser page in it, to be put on a web serv
 	@rm -rf build-site/fly && cp -r build-ground build-site/fly
 
 test-ground: ground ## The page's tests: units, then Chromium against the unmodified firmware; the vehicle in wasmtime
+	@$(setup) bridge
 	@$(python) -B tests/ground/test_vehicle.py build/plomada
 	@$(python) -B tests/ground/test_bridge.py build/plomada
 	@cd ground && npm test --silent
@@ -150,7 +151,7 @@ test-long: ## The long ones: sweeps of many flights, campaigns, tuning, fuzzing
 	@$(ctest) build -L long -LE soak
 
 soak: ## The longest, nothing skipped: a board in real time, rates over drawn flights, fits of 30 vehicles, proofs; an hour or two
-	@$(setup) prove ground
+	@$(setup) prove ground bridge
 	$(build_tests)
 	@NOTHING_SKIPPED=1 $(ctest) build -L soak
 

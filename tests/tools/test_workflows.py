@@ -13,7 +13,7 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 WORKFLOWS = sorted((ROOT / ".github/workflows").glob("*.y*ml"))
-FOLDERS = [ROOT / name for name in ("tools/plot", "tools/campaign", "tools/format", "tools/scip_package", "tools/site", "ground")]
+FOLDERS = [ROOT / name for name in ("tools/plot", "tools/campaign", "tools/format", "tools/scip_package", "tools/site", "tools/ground", "ground")]
 PINNED = re.compile(r"[\w.-]+/[\w./-]+@[0-9a-f]{40}")
 REQUIREMENT = re.compile(r"^([\w.-]+)==(\S+)((?: \\\n    --hash=sha256:[0-9a-f]{64})*)$", re.MULTILINE)
 # Where a second try, or a failure that nobody hears of, would stand.

@@ -9,7 +9,7 @@ trap 'rm -rf "$scratch"' EXIT
 python3 -m venv "$scratch"
 "$scratch/bin/python" -m pip --quiet install pip-tools
 cd "$root"
-for folder in tools/plot tools/campaign tools/format tools/scip_package tools/site ground; do
+for folder in tools/plot tools/campaign tools/format tools/scip_package tools/site tools/ground ground; do
     "$scratch/bin/pip-compile" --quiet --generate-hashes --allow-unsafe --strip-extras --no-annotate --no-header \
         "$folder/requirements.in" -o "$folder/requirements.txt"
     # From where packages come is the machine's own business.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# setup.sh build|lab|test|port|size|coverage|bench|fuzz|prove|package|others|plot|campaign|ground|site ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
+# setup.sh build|lab|test|port|size|coverage|bench|fuzz|prove|package|others|plot|campaign|bridge|ground|site ...: installs what the named jobs need and the machine lacks (Debian 12 or later).
 #
 #   build     C compiler, CMake
 #   lab       Python 3 for the marks of the course
@@ -15,7 +15,8 @@
 #   others    sources of urg_library, hokuyoaist and flexiport in build/others, at the commits of tools/setup/others.txt
 #   plot      Python virtual environment build/venv with the packages of tools/plot/requirements.txt
 #   campaign  the same, and in it those of tools/campaign/requirements.txt; for tuning too, and for some tests
-#   ground    clang, lld, wasi-libc and binaryen for the vehicle in the browser; wasmtime and websockets in build/venv; node and the pinned
+#   bridge    the virtual environment of plot, and in it the packages of tools/ground/requirements.txt: a flight for the page
+#   ground    clang, lld, wasi-libc and binaryen for the vehicle in the browser; wasmtime in build/venv; node and the pinned
 #             packages of ground/package-lock.json; Chromium and Firefox for its tests
 #   site      Python virtual environment build/site-tools with the packages of tools/site/requirements.txt
 #
@@ -30,6 +31,7 @@ venv=$root/build/venv
 requirements=$root/tools/plot/requirements.txt
 campaign_requirements=$root/tools/campaign/requirements.txt
 ground_requirements=$root/ground/requirements.txt
+bridge_requirements=$root/tools/ground/requirements.txt
 cmock_private=$root/build/cmock
 format=$root/build/format
 format_requirements=$root/tools/format/requirements.txt
@@ -79,6 +81,7 @@ pio_ready() { [ -x "$pio/bin/pio" ] && cmp -s "$pio_requirements" "$pio/requirem
 
 campaign_ready() { venv_ready && cmp -s "$campaign_requirements" "$venv/campaign.txt"; }
 
+bridge_ready() { venv_ready && cmp -s "$bridge_requirements" "$venv/bridge.txt"; }
 ground_ready() { venv_ready && cmp -s "$ground_requirements" "$venv/ground.txt"; }
 modules_ready() { cmp -s "$root/ground/package-lock.json" "$root/ground/node_modules/.installed-lock.json"; }
 
@@ -183,7 +186,7 @@ missing_packages() {
         others)
             has g++ || echo g++
             has git || echo git ;;
-        plot|campaign)
+        plot|campaign|bridge)
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
         site)
             site_ready || venv_maker >/dev/null || echo python3-venv ;;
@@ -197,7 +200,7 @@ missing_packages() {
             has firefox || has firefox-esr || ! grep -qs '^ID=debian' /etc/os-release || echo firefox-esr
             venv_ready || venv_maker >/dev/null || echo python3-venv ;;
         *)
-            say "unknown job '$1'; know build, lab, test, port, size, coverage, bench, fuzz, prove, package, others, plot, campaign, ground, site"
+            say "unknown job '$1'; know build, lab, test, port, size, coverage, bench, fuzz, prove, package, others, plot, campaign, bridge, ground, site"
             exit 2 ;;
     esac
 }
@@ -287,6 +290,12 @@ add_campaign() {
     cp "$campaign_requirements" "$venv/campaign.txt"
 }
 
+add_bridge() {
+    say "adding the packages of tools/ground/requirements.txt to build/venv"
+    pip_install "$venv" "$bridge_requirements" || die "pip could not install tools/ground/requirements.txt (see above)"
+    cp "$bridge_requirements" "$venv/bridge.txt"
+}
+
 add_ground() {
     say "adding the packages of ground/requirements.txt to build/venv"
     pip_install "$venv" "$ground_requirements" || die "pip could not install ground/requirements.txt (see above)"
@@ -299,13 +308,14 @@ add_modules() {
     cp "$root/ground/package-lock.json" "$root/ground/node_modules/.installed-lock.json"
 }
 
-[ $# -gt 0 ] || { say "usage: setup.sh build|lab|test|port|size|coverage|bench|fuzz|prove|package|others|plot|campaign|ground|site ..."; exit 2; }
+[ $# -gt 0 ] || { say "usage: setup.sh build|lab|test|port|size|coverage|bench|fuzz|prove|package|others|plot|campaign|bridge|ground|site ..."; exit 2; }
 
 packages=()
 want_cmock=
 want_venv=
 want_cbmc=
 want_campaign=
+want_bridge=
 want_ground=
 want_modules=
 want_format=
@@ -327,6 +337,9 @@ for job in "$@"; do
         campaign)
             venv_ready || want_venv=yes
             campaign_ready || want_campaign=yes ;;
+        bridge)
+            venv_ready || want_venv=yes
+            bridge_ready || want_bridge=yes ;;
         ground)
             venv_ready || want_venv=yes
             ground_ready || want_ground=yes
@@ -350,6 +363,7 @@ fi
 [ -z "$want_cbmc" ] || "$here/unpack_cbmc.sh" "$root/build/cbmc"
 [ -z "$want_venv" ] || own_venv "$venv" "$requirements"
 [ -z "$want_campaign" ] || add_campaign
+[ -z "$want_bridge" ] || add_bridge
 [ -z "$want_ground" ] || add_ground
 [ -z "$want_modules" ] || add_modules
 [ -z "$want_format" ] || own_venv "$format" "$format_requirements"
