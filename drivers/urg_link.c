@@ -406,6 +406,7 @@ static void ask_at(const step_t *step, uint32_t rate, scip_kind_t kind, uint32_t
     step->link->asking = true;
     step->link->asked_rate = rate;
     step->link->asked_kind = kind;
+    step->link->asked_us = step->now_us;
     knock(step, rate, kind, timeout_us);
 }
 
@@ -430,6 +431,32 @@ static bool hears_other_rate(const step_t *step)
     return link->knocking && wrong_rate(step, STREAM_SIGNS) && (late || (link->asking && framing));
 }
 
+static void note_answer(const step_t *step)
+{
+    urg_link_t *link = step->link;
+    link->answered = link->rate == link->config.first_rate || link->rate == link->config.stream_rate;
+    link->answered_us = step->now_us;
+    if (link->request_us > REQUEST_US) {
+        link->request_us = REQUEST_US; /* it is there, so a request may be what it waits for */
+    }
+}
+
+static bool has_answered_since(const step_t *step, uint32_t then_us)
+{
+    return step->link->answered && step->now_us - step->link->answered_us < step->now_us - then_us;
+}
+
+/* A sensor that has answered since its stream ended waits for the request. One that has not, nor to two
+ * requests, is without power, or out of hearing: and what it makes of a request while it boots, at another
+ * rate, is one line more to be answered before SCIP2.0. */
+static uint32_t next_request_us(const step_t *step)
+{
+    if (step->link->request_us == 0U) { /* the first one: at once */
+        return 0U;
+    }
+    return has_answered_since(step, step->link->scan_us) ? REQUEST_US : REQUEST_MAX_US;
+}
+
 static void listen_or_request(const step_t *step)
 {
     urg_link_t *link = step->link;
@@ -439,11 +466,19 @@ static void listen_or_request(const step_t *step)
         listen(step, listening_us(step));
         return;
     }
-    link->request_us = 2U * link->request_us < REQUEST_MAX_US ? 2U * link->request_us : REQUEST_MAX_US;
+    link->request_us = next_request_us(step);
     knock_at_stream_rate(step);
     if (again && knows_power_up_rate(step)) {
         link->timeout_us = TURN_US; /* its answer shows at the other rate too */
     }
+}
+
+/* A sensor that takes long to its first answer has to answer every question that was asked meanwhile, one
+ * after the other. Two of them in the time of a late first answer cost least: a third costs an answer more,
+ * and with one alone the sensor waits longer for it. */
+static bool asks_too_soon(const step_t *step)
+{
+    return knows_power_up_rate(step) && step->now_us - step->link->asked_us < FIRST_REPLY_US / 2U - PHASE_US;
 }
 
 /* By turns: the stream's rate, where a frame or the answer to a request may come, and those of a power-up. */
@@ -451,6 +486,8 @@ static void knock_next(const step_t *step)
 {
     if (step->link->asking) {
         listen_or_request(step);
+    } else if (asks_too_soon(step)) {
+        listen(step, listening_us(step));
     } else {
         ask(step);
     }
@@ -469,6 +506,9 @@ static void await_new_rate(const step_t *step)
 static void on_late_answer(const step_t *step)
 {
     urg_link_t *link = step->link;
+    if (knows_power_up_rate(step)) { /* else it may be anything */
+        note_answer(step);
+    }
     if (link->asked_kind == SCIP_BIT_RATE) {
         link->asked_kind = SCIP_SWITCH;
         link->request_us = REQUEST_US;
@@ -575,6 +615,15 @@ static bool hears_sensor(const step_t *step)
            !wrong_rate(step, 1U);
 }
 
+/* At the stream's rate an answer of twice that rate, or more, is a few octets, with or without a fault. Of a
+ * frame there would be more. */
+static bool hears_faster(const step_t *step)
+{
+    const urg_link_t *link = step->link;
+    return knows_power_up_rate(step) && link->asked_rate > link->rate && link->rate == link->good_rate &&
+           step->seen->octet_count != link->sent_octets && hears_few(step);
+}
+
 /* A sensor that was there just now, and is mute, has stopped. If one request has no answer either, that was
  * another rate. */
 static bool was_there(const step_t *step)
@@ -587,12 +636,12 @@ static bool was_there(const step_t *step)
 static void search_on(const step_t *step)
 {
     urg_link_t *link = step->link;
-    if (has_streamed(step) && hears_sensor(step)) {
-        link->heard = true;
-    }
     if (!has_streamed(step)) {
         probe_next(step);
+    } else if (hears_faster(step)) {
+        on_late_answer(step);
     } else if (hears_sensor(step)) {
+        link->heard = true;
         hear_on(step);
     } else if (was_there(step)) {
         knock_at_stream_rate(step);
@@ -824,13 +873,6 @@ static void on_stream_reply(const step_t *step)
     }
 }
 
-static void note_answer(const step_t *step)
-{
-    urg_link_t *link = step->link;
-    link->answered = link->rate == link->config.first_rate || link->rate == link->config.stream_rate;
-    link->answered_us = step->now_us;
-}
-
 static void on_reply(const step_t *step)
 {
     note_answer(step);
@@ -904,29 +946,38 @@ static void on_legacy(const step_t *step)
 
 /* ---- silence ---- */
 
+/* A sensor that has accepted the request may scan: a second one would cost a frame. */
+static bool may_have_missed_request(const step_t *step)
+{
+    return has_streamed(step) && step->link->status == URG_STREAM && !step->link->acknowledged;
+}
+
+/* A sensor that may be at another rate is asked once. Where it was heard, only the answer was lost. */
+static uint16_t stop_attempts(const step_t *step)
+{
+    const uint16_t unheard = step->link->status == URG_STOP2 ? 2U : 1U;
+    return heard_clean(step) ? 3U : unheard;
+}
+
+static bool is_worth_repeating(const step_t *step)
+{
+    const scip_kind_t command = step->link->command;
+    if (command == step->link->config.stream) {
+        return may_have_missed_request(step);
+    }
+    if (command == SCIP_LASER_OFF_1) {
+        return heard_clean(step);
+    }
+    return is_question(command) ||
+           ((command == SCIP_SWITCH || command == SCIP_TIME_LEAVE) && !step->link->knocking);
+}
+
 static uint16_t attempts_allowed(const step_t *step)
 {
-    switch (step->link->command) {
-    case SCIP_LASER_OFF_1:
-        return heard_clean(step) ? 2U : 1U;
-    case SCIP_STOP:
-        if (heard_clean(step)) { /* only the answer was lost */
-            return 3U;
-        }
-        return step->link->status == URG_STOP2 ? 2U : 1U;
-    case SCIP_SWITCH:
-    case SCIP_TIME_LEAVE:
-        return step->link->knocking ? 1U : 2U;
-    case SCIP_VERSION:
-    case SCIP_PARAMETERS:
-    case SCIP_STATE:
-        return 2U;
-    case SCIP_STREAM_2:
-    case SCIP_STREAM_3:
-        return has_streamed(step) && step->link->status == URG_STREAM && !step->link->acknowledged ? 2U : 1U;
-    default:
-        return 1U;
+    if (step->link->command == SCIP_STOP) {
+        return stop_attempts(step);
     }
+    return is_worth_repeating(step) ? 2U : 1U;
 }
 
 /* After a stream, octets that are no scan are a damaged one, and without an answer the request may be lost.

@@ -140,6 +140,7 @@ typedef struct {
     bool acknowledged;     /* the sensor has accepted the present request for the stream */
     uint16_t asked;        /* position of the latest other rate in the search */
     uint32_t asked_rate;   /* of the latest such turn */
+    uint32_t asked_us;     /* when it began */
     scip_kind_t asked_kind;
     uint32_t acknowledged_octets; /* counter of octets at that time */
     uint32_t requested_us;        /* when the search sent that request last */

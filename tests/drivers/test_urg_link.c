@@ -709,11 +709,8 @@ void test_a_lost_sensor_is_first_looked_for_where_it_can_be(void)
         }
     }
     TEST_ASSERT_GREATER_THAN_UINT(25, asked_count - begin);
-    TEST_ASSERT_EQUAL_UINT(4, requests);
-    for (uint32_t i = 2; i < 4; i++) { /* more and more seldom */
-        TEST_ASSERT_GREATER_THAN_UINT32(requests_ms[i - 1] - requests_ms[i - 2] + 2 * STEP_MS,
-                                        requests_ms[i] - requests_ms[i - 1]);
-    }
+    TEST_ASSERT_EQUAL_UINT(2, requests); /* 8 s from each other */
+    TEST_ASSERT_UINT32_WITHIN(2 * STEP_MS, 8000 + STEP_MS, requests_ms[1] - requests_ms[0]);
     begin = asked_count;
     steps(30);
     TEST_ASSERT_EQUAL_STRING("\nSCIP2.0\n", asked[asked_count - 1].text);
@@ -1881,10 +1878,47 @@ void test_an_answer_that_ends_well_at_half_its_rate_is_still_a_late_one(void)
 void test_a_repeated_request_delays_the_question_by_one_turn(void)
 {
     repeat_the_request();
+    const uint32_t asked_us = link_.asked_us;
     TEST_ASSERT_EQUAL_UINT32(40000, link_.timeout_us);
     nothing_after(40000);
+    while (link_.command != SCIP_SWITCH || !action.send) {
+        next_step();
+    }
     TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
-    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT32(3U * REVOLUTION_US, now_us - asked_us);
+}
+
+/* A late first answer takes 381 ms, and each question of that time is answered behind it. */
+void test_no_three_questions_lie_within_the_time_of_a_late_first_answer(void)
+{
+    uint32_t questions = 0, asked_us = 0;
+    stream_in_time();
+    const uint32_t begun_us = now_us;
+    lose();
+    while (now_us - begun_us < 11000000) {
+        next_step();
+        if (action.send && link_.command == SCIP_SWITCH) {
+            TEST_ASSERT_TRUE(questions == 0 || now_us - asked_us >= 185000);
+            TEST_ASSERT_TRUE(questions == 0 || now_us - asked_us <= 3 * REVOLUTION_US);
+            asked_us = now_us;
+            questions++;
+        }
+    }
+    TEST_ASSERT_GREATER_THAN_UINT32(45, questions);
+}
+
+/* 13 octets at twice the stream's rate are four at most, and may be heard without a fault. */
+void test_a_few_octets_are_the_late_answer_of_a_sensor_that_powers_up_at_a_faster_rate(void)
+{
+    for (uint32_t signs = 0; signs < 3; signs++) {
+        listen_between();
+        link_.config.first_rate = link_.asked_rate = 500000;
+        seen.octet_count += 1 + signs;
+        seen.framing_count += signs;
+        nothing_after(link_.timeout_us);
+        TEST_ASSERT_EQUAL_UINT32(500000, link_.rate);
+        TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+    }
 }
 
 /* It has made a line of what it heard at another rate, or of SCIP2.0's end. */
@@ -2189,7 +2223,9 @@ void test_where_frames_leave_no_time_an_answer_is_awaited_for_130_ms(void)
         nothing_after(link_.timeout_us);
         TEST_ASSERT_TRUE(link_.listening);
         TEST_ASSERT_EQUAL(whole == 1, link_.timeout_us == 160000);
-        nothing_after(link_.timeout_us);
+        do {
+            nothing_after(link_.timeout_us);
+        } while (whole == 0 && link_.listening);
         TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
         TEST_ASSERT_TRUE(whole == 0 || link_.timeout_us == 130000);
     }
@@ -2313,24 +2349,31 @@ void test_a_first_word_is_said_twice_where_octets_are_clean(void)
     TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
 }
 
-/* Each costs a frame of a sensor that streams out of hearing. */
-void test_requests_of_a_search_come_at_distances_that_double_up_to_8_s(void)
+static uint32_t next_request_after_us(void)
 {
-    static const uint32_t distances_us[] = {400000, 800000, 1600000, 3200000};
-    uint32_t before_us = 0, requests = 0;
+    const uint32_t before_us = now_us;
+    do {
+        nothing_after(urg_link_pause_us(&link_, &seen));
+    } while (!action.send || link_.command != SCIP_STREAM_2);
+    return now_us - before_us;
+}
+
+/* Each costs a frame of a sensor that streams out of hearing, and an answer's time of one that boots. */
+void test_requests_of_a_search_come_each_8_s_and_each_0_4_s_to_a_sensor_that_has_answered(void)
+{
     stream_in_time();
     lose();
-    while (requests < 5) {
-        nothing_after(urg_link_pause_us(&link_, &seen));
-        if (action.send && link_.command == SCIP_STREAM_2) {
-            if (requests > 0) {
-                TEST_ASSERT_UINT32_WITHIN(170000, distances_us[requests - 1] + 170000, now_us - before_us);
-            }
-            before_us = now_us;
-            requests++;
-        }
+    (void)next_request_after_us();
+    TEST_ASSERT_UINT32_WITHIN(170000, 400000 + 170000, next_request_after_us());
+    TEST_ASSERT_UINT32_WITHIN(170000, 8000000 + 170000, next_request_after_us());
+    while (link_.command != SCIP_SWITCH) {
+        next_step();
     }
-    TEST_ASSERT_EQUAL_UINT32(6400000, link_.request_us);
+    (void)reply_after(100000, SCIP_SWITCH, "0", true);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+    (void)next_request_after_us();
+    TEST_ASSERT_UINT32_WITHIN(170000, 400000 + 170000, next_request_after_us());
+    TEST_ASSERT_UINT32_WITHIN(170000, 400000 + 170000, next_request_after_us());
     while (!link_.listening) {
         nothing_after(link_.timeout_us);
     }
@@ -2376,7 +2419,7 @@ void test_a_question_ends_where_the_next_frame_is_not_lost(void)
             over_a_frame++;
         }
     }
-    TEST_ASSERT_GREATER_THAN_UINT32(4, over_a_frame);
+    TEST_ASSERT_GREATER_THAN_UINT32(1, over_a_frame);
 }
 
 /* One sign of another rate among few octets is enough: nobody was heard. */
@@ -2387,7 +2430,7 @@ void test_an_octet_with_a_framing_error_is_nobody(void)
         seen.octet_count += 3;
         seen.framing_count += signs;
         nothing_after(link_.timeout_us);
-        TEST_ASSERT_EQUAL_UINT32(signs == 0 ? 250000 : 115200, link_.rate);
+        TEST_ASSERT_EQUAL(signs == 0, link_.heard);
     }
 }
 

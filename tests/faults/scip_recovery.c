@@ -204,26 +204,69 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The driver's figures, and where a sensor's own times allow no less. First answers after 381 ms:
- *
- *   power: the search's turn 0.2, the first answer 0.381, those of a second SCIP2.0 and of what the sensor
- * made of an MS at another rate 0.115 each, of SS 0.115, its new rate 0.09, of MS 0.115, a revolution for the
- *          laser and up to two until the first one is measured 0.3, its octets 0.01: 1.44.
- *          Its two characters at twice the stream's rate may look like one clean one: a request in vain and
- *          the next turn, 0.13 and 0.2.
- *   power, an unknown rate: a turn for each of four rates is in 2.0 s, 0.3 more for one more; where the first
- *          answer is late they have two.
- *   start: the rate is to be found first.
+/* What a recovery takes at most is the sum of who waits for whom. The sensor's parts are those of sensor.h:
  */
-static const double power_most_s[] = {1.0, 1.0, 1.0, 1.44, 1.44},
-                    unlearned_most_s[] = {2.0, 2.0, 2.0, 4.0, 4.0},
-                    start_most_s[] = {2.0, 2.0, 2.0, 3.2, 3.2};
+#define ANSWER_S 0.115       /* of a late sensor: to a command, and to each line that came before it */
+#define FIRST_ANSWER_S 0.381 /* of a slow one, to the first line after power-up */
+#define FIRST_SCAN_S 0.3     /* two revolutions until the laser is on, and the one that is measured */
+/* The driver's, docs/scip.md, "Time without scans": */
+#define TURN_S 0.2     /* between two questions at a known power-up rate */
+#define RATE_S 0.3     /* for one of several rates */
+#define NEW_RATE_S 0.1 /* from the answer to SS to the next command, in ticks of 10 ms */
+#define IN_VAIN_S 0.4  /* an answer that was heard too late, sought at the rate asked last */
+#define FASTER_S 0.42  /* one of a faster rate, taken for the stream's: two requests and a revolution */
+#define PROBE_S 0.17   /* for one rate in a start, besides the octets */
+#define L0_S 0.26
+#define TICKS_S 0.02 /* in which the host notices the answers to SCIP2.0 and to SS */
+#define STREAM_RATE 250000
+
+/* On the line: SCIP2.0 and SS with their answers, then MS with its answer and a frame. */
+static double line_s(uint32_t rate)
+{
+    return 45 * 10.0 / rate + 139 * 10.0 / STREAM_RATE;
+}
+
+/* Where the sensor powers up at the stream's rate, MS itself is the question: SCIP1.1 refuses it. */
+static double to_stream_s(uint32_t rate)
+{
+    const double other_s = rate == STREAM_RATE ? ANSWER_S : ANSWER_S + NEW_RATE_S;
+    return other_s + ANSWER_S + FIRST_SCAN_S + line_s(rate) + TICKS_S;
+}
+
+static bool is_slow(answers_t answers)
+{
+    return answers >= ANSWERS_RECORDED;
+}
+
+/* A question comes; a slow sensor hears the next one too, and answers both. */
+static double learnt_bound_s(answers_t answers, uint32_t rate)
+{
+    return TURN_S + (is_slow(answers) ? FIRST_ANSWER_S + ANSWER_S : ANSWER_S) + to_stream_s(rate);
+}
+
+/* Each rate has its turn, and leaves a line to be answered. The host does not stay for a slow first answer:
+ * it is taken for another's, and that of the second round is heard. */
+static double unlearned_bound_s(answers_t answers, uint32_t rate)
+{
+    const size_t others = (rate > STREAM_RATE ? POWER_UP_RATES : RATES) - 1;
+    const double round_s = TURN_S + (double)others * RATE_S;
+    const double in_vain_s = IN_VAIN_S + (rate > STREAM_RATE ? FASTER_S : 0.0);
+    return (is_slow(answers) ? 2 * round_s + in_vain_s : round_s) + 2 * ANSWER_S + to_stream_s(rate);
+}
 
 static double power_bound_s(answers_t answers, uint32_t rate, bool learnt)
 {
-    const bool late = answers >= ANSWERS_RECORDED, double_rate = rate > 250000;
-    return learnt ? power_most_s[answers] + (late && double_rate ? 0.33 : 0.0)
-                  : unlearned_most_s[answers] + (double_rate ? 2 * (late ? 0.6 : 0.3) : 0.0);
+    return learnt ? learnt_bound_s(answers, rate) : unlearned_bound_s(answers, rate);
+}
+
+/* The must, from an idle sensor. Where it is the first answer of all that is slow, the second round through
+ * the rates has it; QT and SCIP2.0 are two answers more. A probe waits for 120 octets too. */
+static double start_bound_s(answers_t answers, bool scip2)
+{
+    const double octets_s = 1200.0 * (1.0 / 19200 + 1.0 / 57600 + 1.0 / 115200 + 1.0 / 250000 + 1.0 / 500000 +
+                                      1.0 / 750000);
+    const double round_s = POWER_UP_RATES * PROBE_S + octets_s;
+    return scip2 || !is_slow(answers) ? 2.0 : L0_S + 2 * round_s + 2 * ANSWER_S + to_stream_s(19200);
 }
 
 static const double damage_most_s = 0.5, stop_most_s = 0.8;
@@ -411,7 +454,7 @@ static void print_starts(void)
                 }
                 snprintf(what, sizeof what, "first scan, idle in %s at %u, answers %s",
                          scip2 ? "SCIP2.0" : "SCIP1.1", (unsigned)rates[i], answer_names[answers]);
-                show(what, seconds, START_TRIALS, start_most_s[answers]);
+                show(what, seconds, START_TRIALS, start_bound_s(answers, scip2 != 0));
             }
         }
     }
