@@ -146,6 +146,16 @@ void test_a_stick_that_jumps_about_is_not_believed_until_it_is_quiet(void)
 
 void test_what_it_was_before_a_silence_does_not_count_as_noise(void)
 {
+    for (int i = 0; i < 40; i++) {
+        hear((i % 2 == 0) ? 1300.0F : 1700.0F, 1);
+    }
+    TEST_ASSERT_FALSE(stick_is_good(&stick));
+    silence(1.0F);
+    hear(1700.0F, 3);
+    TEST_ASSERT_TRUE(stick_is_good(&stick));
+    hear(1650.0F, 1);
+    TEST_ASSERT_TRUE(stick_is_good(&stick));
+    setUp();
     hear(1100.0F, 20);
     silence(1.0F);
     hear(1900.0F, 3);

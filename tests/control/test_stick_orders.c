@@ -352,6 +352,18 @@ void test_a_throttle_that_the_pilot_opens_before_the_hand_over_arms_and_shut_aga
     TEST_ASSERT_FALSE(in.arm);
 }
 
+/* Between 8 and 12 % nothing changes. */
+void test_a_throttle_that_rests_at_ten_percent_neither_arms_nor_disarms(void)
+{
+    in.has_throttle = false;
+    (void)held(1900.0F, 5.0F);
+    TEST_ASSERT_EQUAL_UINT32(0, in.arm_sequence);
+    (void)held(1800.0F, 1.0F);
+    (void)held(1900.0F, 5.0F);
+    TEST_ASSERT_EQUAL_UINT32(1, in.arm_sequence);
+    TEST_ASSERT_TRUE(in.arm);
+}
+
 void test_a_shut_throttle_does_not_take_back_what_the_radio_armed(void)
 {
     in.has_throttle = false;
