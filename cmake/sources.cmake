@@ -27,4 +27,4 @@ set(FIRMWARE_SOURCES
     firmware/task_imu.c
     firmware/task_receive_comm.c firmware/task_receive_laser.c firmware/task_send_comm.c firmware/task_send_laser.c
     firmware/uart_port.c firmware/usb_port.c firmware/verb_bench.c firmware/verb_calibrate.c firmware/verb_imu.c firmware/verb_laser.c firmware/verb_log.c firmware/verb_perf.c firmware/verb_reference.c
-    firmware/verb_save.c firmware/xbee_port.c)
+    firmware/verb_save.c firmware/verb_stick.c firmware/xbee_port.c)

@@ -66,13 +66,14 @@ typedef struct {
     float reference_m;   /* reference in force, 0 = none */
     float estimate_mm;   /* height that the law uses; NAN: not known */
     float innovation_mm; /* latest height minus predicted height; NAN where nothing is predicted */
+    float stick_us;      /* pulse of the pilot's stick; NAN: none to believe; set by task_control.c */
     uint16_t releases;   /* FLIGHT_RELEASE_*: events that release the next cycle */
 } flight_outputs_t;
 
 /* Before the first cycle. */
 #define FLIGHT_OUTPUTS_INITIAL \
     { \
-        .pulse_us = THRUST_IDLE_PULSE_US, .estimate_mm = NAN, .innovation_mm = NAN \
+        .pulse_us = THRUST_IDLE_PULSE_US, .estimate_mm = NAN, .innovation_mm = NAN, .stick_us = NAN \
     }
 
 #endif

@@ -175,6 +175,7 @@ static const verb_t verbs[] = {
     {"LOG", verb_log, "[SECONDS|CLEAR|STOP|RATE FAST|RATE SLOW]", "the flight recorder as CSV"},
     {"CALIBRATE", verb_calibrate, "[COUNTS [SECONDS]]",
      "thrust step by step, tied down; any line but #PING ends it"},
+    {"RC", verb_rc, "", "the pulse of the pilot's stick, and whether it counts"},
     {"LASER", verb_laser, "", "the scanner's state, rate, frames and errors by cause"},
     {"IMU", verb_imu, "[LEVEL|RIGHT|NOSE]",
      "what the IMU sends; finds its unit and axes from how the vehicle is held"},

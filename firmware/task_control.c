@@ -160,6 +160,7 @@ static Void task_control(UArg unused0, UArg unused1)
         read_stick(&parameters, &out, &in);
         flight_step(&flight, &parameters, &in, &out);
         out.flags |= stick_orders_flag(&orders, &parameters, &stick, in.has_throttle);
+        out.stick_us = stick_is_good(&stick) ? stick_pulse_us(&stick) : NAN;
         calibrator_overlay(parameters.value[PARAMETER_LINK], &in, &out);
         /* As soon as it is known. All that only reports comes behind. */
         bsp_throttle_set_pulse_us(out.pulse_us);

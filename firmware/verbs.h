@@ -15,6 +15,9 @@ bool verb_laser(answer_t *answer);
  * `NOSE` find unit and axes; on the ground without thrust only. */
 bool verb_imu(answer_t *answer);
 
+/* verb_stick.c: `#RC` shows the pulse of the pilot's stick, and whether it counts, or why not. */
+bool verb_rc(answer_t *answer);
+
 /* verb_perf.c: `#PERF` shows the cause of the reset, the processor load, per task response time, missed
  * deadlines and stack, and per server the longest wait. `#PERF RESET` clears the values that can be
  * cleared. */

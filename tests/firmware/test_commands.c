@@ -496,6 +496,7 @@ void test_every_command_that_help_tells_of_is_known(void)
     static char told[ANSWERS_MAX][TELEMETRY_ANSWER_MAX + 1U];
     uint16_t count;
 
+    verb_rc_Stub(verb);
     verb_laser_Stub(verb);
     verb_imu_Stub(verb);
     verb_perf_Stub(verb);

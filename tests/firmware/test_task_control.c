@@ -2,6 +2,7 @@
  * what comes out (--wrap). A script changes the servers from wait to wait. */
 #include "firmware/tasks.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "control/flight.h"
@@ -286,6 +287,8 @@ void test_an_armed_vehicle_takes_off_by_the_stick(void)
     TEST_ASSERT_EQUAL_HEX16(0, published[39].flags & FLIGHT_FLAG_STICK);
     TEST_ASSERT_EQUAL_UINT32(inputs[0].reference_sequence + 1U, inputs[39].reference_sequence);
     TEST_ASSERT_EQUAL_FLOAT(0.3F, inputs[39].reference_m);
+    TEST_ASSERT_EQUAL_FLOAT(1100.0F, published[39].stick_us);
+    TEST_ASSERT_TRUE(isnan(published[0].stick_us));
 }
 
 void test_a_wait_is_for_any_of_its_events_and_at_most_150_ms(void)

@@ -31,7 +31,7 @@ COMMANDS = (
     "#LINK 60", "#CALIBRATE 30 5", "#LINK 0",
     "#PING 1", "#STREAM PULSE", "#STREAM OFF", "#HANG TASK",
     "#LOG 10", "#LOG", "#LOG STOP", "#LOG CLEAR",
-    "#GET", "#GET KP", "#LASER", "#PERF", "#PERF RESET", "#VERSION", "#HELP",
+    "#GET", "#GET KP", "#RC", "#LASER", "#PERF", "#PERF RESET", "#VERSION", "#HELP",
 )
 
 
