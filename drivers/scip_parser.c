@@ -127,11 +127,17 @@ static void count_damage(scip_parser_t *parser, scip_damage_t cause)
     parser->last_damage = cause;
 }
 
+/* No octet of SCIP: above 7FH, or zero. A much slower sender leaves zeros alone, its start bits. */
+static bool is_strange(octet_t octet)
+{
+    return octet == 0U || octet > 0x7FU;
+}
+
 static uint16_t strange_in(const scip_parser_t *parser, uint16_t length)
 {
     uint16_t strange = 0U;
     for (uint16_t i = 0U; i < length; ++i) {
-        strange = (uint16_t)(strange + (parser->line[i] > 0x7FU ? 1U : 0U));
+        strange = (uint16_t)(strange + (is_strange(parser->line[i]) ? 1U : 0U));
     }
     return strange;
 }

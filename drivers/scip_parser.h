@@ -73,8 +73,9 @@ typedef struct {
 
 /* Counters wrap at 2^32. */
 typedef struct {
-    uint32_t octets;  /* up to the latest line end; see scip_parser_octets() */
-    uint32_t strange; /* likewise, octets above 7FH, which SCIP does not have: a wrong rate, or damage */
+    uint32_t octets; /* up to the latest line end; see scip_parser_octets() */
+    uint32_t
+        strange; /* likewise, octets that SCIP does not have, zero and above 7FH: a wrong rate, or damage */
     uint32_t replies;
     uint32_t scans; /* good scans, delivered or not */
     uint32_t notices;
@@ -141,7 +142,7 @@ void scip_parser_scan_into(scip_parser_t *parser, scip_scan_t *scan);
  * the cause. */
 void scip_parser_line_broken(scip_parser_t *parser);
 
-/* Received octets, and those above 7FH among them, the present line included. Of a line longer than its
+/* Received octets, and the strange ones among them, the present line included. Of a line longer than its
  * memory only what its memory holds. */
 uint32_t scip_parser_octets(const scip_parser_t *parser);
 uint32_t scip_parser_strange(const scip_parser_t *parser);

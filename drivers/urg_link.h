@@ -63,7 +63,7 @@ typedef struct {
     scip_reply_t notice; /* latest hardware notice */
     uint32_t octet_count;
     uint32_t framing_count; /* framing errors of the UART: wrong rate, or a bad cable */
-    uint32_t strange_count; /* octets above 7FH: a wrong rate, also where the UART reports no errors */
+    uint32_t strange_count; /* zero or above 7FH: a wrong rate, also where the UART reports no errors */
     uint32_t stray_count;   /* replies to other than the awaited request, and scans of another one */
     uint32_t foreign_count; /* of them scans of another request; scip_parser.h, `foreign` */
     uint32_t damage_count;  /* damaged replies and scans, all causes */

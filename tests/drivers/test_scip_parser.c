@@ -2158,6 +2158,17 @@ void test_answers_without_points_are_no_scans_of_another_request(void)
     TEST_ASSERT_EQUAL_UINT32(0, parser.counters.foreign);
 }
 
+void test_octets_that_scip_does_not_have_are_strange_and_all_others_are_not(void)
+{
+    for (unsigned octet = 0; octet < 256; octet++) {
+        const uint32_t before = scip_parser_strange(&parser);
+        (void)feed(octet);
+        TEST_ASSERT_EQUAL_UINT32(octet == 0 || octet > 0x7F ? 1 : 0, scip_parser_strange(&parser) - before);
+        (void)feed_text("\n");
+        TEST_ASSERT_EQUAL_UINT32(octet == 0 || octet > 0x7F ? 1 : 0, scip_parser_strange(&parser) - before);
+    }
+}
+
 void test_of_a_line_that_never_ends_its_memory_is_counted(void)
 {
     for (unsigned i = 1; i <= 600; i++) {
