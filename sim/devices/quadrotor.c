@@ -29,6 +29,7 @@
 #define ROTOR_RADIUS_M 0.127
 #define ROTOR_ABOVE_GEAR_M 0.28
 #define TUG_TAU_S 0.12
+#define ROPE_LOSS 0.3 /* chosen: of critical damping, a cord of nylon */
 
 #define ATTITUDE_DAMPING 0.4
 #define HEADING_RAD M_PI /* due south: the heading crosses the wrap all the time */
@@ -70,6 +71,7 @@ const quadrotor_config_t quadrotor_default = {.gain = 1.0,
                                               .naza = {NAZA_ALWAYS_ARMED},
                                               .tug_rate_per_s = 0.0,
                                               .tug_mps2 = -1.5,
+                                              .rope_per_s2 = 60.0,
                                               .airframe = 0.0,
                                               .rotors = ROTORS_DEFAULT,
                                               .lag2_s = 0.0,
@@ -292,18 +294,30 @@ static double gust_mps2(const quadrotor_t *q)
                                                                                     : 0.0;
 }
 
+/* A taut rope is a spring with some loss; it never pushes. */
+static double rope_mps2(const quadrotor_t *q)
+{
+    const double beyond_m = q->state.altitude_m - q->config.rope_m;
+
+    if (q->config.rope_m <= 0.0 || beyond_m <= 0.0) {
+        return 0.0;
+    }
+    const double loss_mps2 = 2.0 * ROPE_LOSS * sqrt(q->config.rope_per_s2) * q->state.speed_mps;
+    return fmin(-q->config.rope_per_s2 * beyond_m - loss_mps2, 0.0);
+}
+
 static double disturbance_mps2(quadrotor_t *q)
 {
     q->turbulence_mps2 = q->turbulence_mps2 * q->turbulence_keep +
                          q->turbulence_drive * white(&q->turbulence_noise);
     if (q->config.tug_rate_per_s <= 0.0) {
-        return q->turbulence_mps2;
+        return q->turbulence_mps2 + rope_mps2(q);
     }
     q->tug_mps2 *= q->tug_keep;
     if (noise_uniform(&q->tug_noise, 0.0, 1.0) < q->tug_probability) {
         q->tug_mps2 += q->config.tug_mps2;
     }
-    return q->turbulence_mps2 + q->tug_mps2;
+    return q->turbulence_mps2 + q->tug_mps2 + rope_mps2(q);
 }
 
 static void swing(axis_t *axis, double w, double drive, double rest_rad)

@@ -54,6 +54,8 @@ typedef struct {
     naza_config_t naza; /* always armed */
     double tug_rate_per_s; /* 0; 0.4 in tug runs */
     double tug_mps2;       /* -1.5 */
+    double rope_m;         /* 0: none; else the height above the floor at which a rope is taut */
+    double rope_per_s2;    /* 60: Hooke's law, 180 N/m on 3 kg (chosen: a cord and the hand that holds it) */
     double airframe;       /* 0: the simple one; 1: rotors.h, which does without gain, tau and damping */
     rotors_config_t rotors;
     double lag2_s;        /* 0: of the autopilot, before the motors */

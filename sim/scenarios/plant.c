@@ -77,6 +77,8 @@ static const figure_t figures[] = {
      "climb that the barometer makes up at the ground, rms"},
     {"tug_rate", "1/s", 0, 1000, QUAD(tug_rate_per_s), 1, "rope tugs"},
     {"tug", "m/s2", -100, 100, QUAD(tug_mps2), 1, "of one rope tug"},
+    {"rope", "m", 0, 10, QUAD(rope_m), 1, "length of a rope to the floor, taut above it; 0: none"},
+    {"rope_pull", "1/s2", 0, 5000, QUAD(rope_per_s2), 1, "what it pulls then, m/s2 for each metre"},
     {"platform", "m", -10, 10, AT(ground.platform_m), 1, "height of the ramp's platform; < 0: a pit"},
     {"floor_rms_mm", "mm", 0, 10000, AT(ground.rough_rms_m), 1e-3,
      "uneven floor under the flight, which then advances at 0.4 m/s"},

@@ -887,6 +887,19 @@ void test_every_stream_of_noise_has_its_own_seeds(void)
     TEST_ASSERT_TRUE(rest[0].yaw_rad != rest[1].yaw_rad);
 }
 
+void test_a_rope_holds_the_vehicle_where_it_is_taut_and_never_pushes_it(void)
+{
+    calm.rope_m = 0.5;
+    start(&calm, NULL, 12);
+    fly(4.0, 8.4); /* a newton more than hovers */
+    const quadrotor_state_t s = now();
+    NEAR(0.01, 0.5 + G * 1.0 / 7.4 / 60.0, s.altitude_m); /* where its pull is the newton's push */
+    NEAR(0.02, 0.0, s.speed_mps);
+    fly(0.5, 6.9);
+    TEST_ASSERT_TRUE(now().altitude_m < 0.5); /* slack: it falls as without */
+    TEST_ASSERT_TRUE(now().speed_mps < 0.0);
+}
+
 void test_tugs_leave_the_other_noises_alone(void)
 {
     quadrotor_config_t tugged = quadrotor_default;
