@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly mine lab plot scan campaign fit tune verdict seed-study ground ground-vehicle ground-open ground-fly site publish test test-long soak format mutants test-ground port size faults fuzz prove rta bench coverage package others release firmware flash check-ti clean
+.PHONY: help build fly mine lab plot scan campaign fit tune verdict why seed-study ground ground-vehicle ground-open ground-fly site publish test test-long soak format mutants test-ground port size faults fuzz prove rta bench coverage package others release firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -92,6 +92,12 @@ tune: ## Search the gains of LAW=EST on drawn vehicles, or on VEHICLE=build/vehi
 	@$(setup) build campaign
 	@$(MAKE) build
 	@$(python) $(if $(VEHICLE),tools/fit/tune_vehicle.py $(VEHICLE) --law $(or $(LAW),EST),tools/tune/tune.py $(LAW)) $(ARGS)
+
+why: ## Why did it fly so? LOG=FILE of `plomada log`, fly --csv or --record, or a saved console; two sentences and build/why.png
+	@test -n "$(LOG)" || { echo "usage: make why LOG=FILE [ARGS=--help]" >&2; exit 2; }
+	@$(setup) build campaign
+	@$(MAKE) build
+	@build/plomada why "$(LOG)" $(ARGS)
 
 verdict: ## Did the forecast of `make tune VEHICLE=` hold in LOG=next.csv? And what in the model was wrong
 	@test -n "$(LOG)" || { echo "usage: make verdict LOG=next.csv" >&2; exit 2; }

@@ -42,7 +42,6 @@ void answer_begin(answer_t *answer)
     add_name(answer);
 }
 
-/* Begun anew, whatever stands in the line already: a refusal may come in the middle of an answer. */
 static void begin_error(answer_t *answer)
 {
     telemetry_begin_answer(&answer->line);
@@ -63,7 +62,6 @@ void answer_send(answer_t *answer)
     xbee_port_answer(&answer->line);
 }
 
-/* Always false, so that a command can refuse and return in one line. */
 bool answer_refuse(answer_t *answer, const char *reason)
 {
     begin_error(answer);
@@ -72,7 +70,6 @@ bool answer_refuse(answer_t *answer, const char *reason)
     return false;
 }
 
-/* With the limits: the operator in the field has no manual at hand. */
 bool answer_refuse_range(answer_t *answer, const parameter_row_t *row)
 {
     begin_error(answer);

@@ -96,7 +96,6 @@ static bool execute_get(answer_t *answer)
     return true;
 }
 
-/* The text comes back, so that a page can tell the answer to this ping from that to the one before. */
 static bool execute_ping(answer_t *answer)
 {
     answer_begin(answer);
@@ -292,7 +291,6 @@ static bool execute_verb(answer_t *answer, const verb_t *verb)
     return verb->execute(answer);
 }
 
-/* Parameters first; no verb may have the name of one. */
 static bool execute(answer_t *answer)
 {
     const telecommand_t *command = answer->command;
@@ -369,7 +367,6 @@ static void refuse_line(answer_t *answer, telecommand_status_t status, uint32_t 
     (void)answer_refuse(answer, reasons[status]);
 }
 
-/* Asked for each line, because the line before it may have changed it. */
 static bool sum_required(void)
 {
     static parameters_t parameters;

@@ -67,7 +67,6 @@ static void charge(void)
     since = now;
 }
 
-/* A job's own processor time. Its response time, with all that preempted it, is the monitor's. */
 static void finish(record_t *record)
 {
     if (record->used > record->longest) {
@@ -138,7 +137,6 @@ Void cpu_time_swi_end(Swi_Handle swi)
     end(swi_of(swi));
 }
 
-/* NULL is what the kernel tells at the first switch, out of main(). */
 static uint16_t task_of(Task_Handle task)
 {
     return (task == NULL) ? NOBODY : find(task, CPU_TIME_TASK, CPU_TIME_JOBS, NOBODY);

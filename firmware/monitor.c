@@ -79,7 +79,6 @@ void monitor_begin(monitor_task_t task)
     record->pending = false;
 }
 
-/* No lock: each record is written by its own task alone, and the reader turns interrupts off. */
 void monitor_done(monitor_task_t task)
 {
     record_t *record = &records[task];
@@ -93,7 +92,6 @@ void monitor_done(monitor_task_t task)
     }
 }
 
-/* Into the caller's memory: before the gate is entered two tasks may be here at once. */
 void monitor_asking(monitor_server_t server, monitor_access_t *access)
 {
     access->asked_us = bsp_time_us();

@@ -15,8 +15,6 @@
 #define STATE(telemetry, column) telemetry_field_text(line, telemetry, flight_state_name(now->flight.state));
 #define FLAGS(telemetry, column) telemetry_field_count(line, telemetry, now->flight.flags);
 #define TEXT(telemetry, source) telemetry_field_text(line, telemetry, now->source);
-/* Fields that are not in the telemetry have an empty macro, so one table serves all readers, and a
- * field cannot be in the log with another meaning than on the air. */
 void published_telemetry(telemetry_line_t *line, const published_t *now)
 {
     telemetry_begin(line);
@@ -33,8 +31,6 @@ void published_telemetry(telemetry_line_t *line, const published_t *now)
 #define NO_NUMBER(telemetry, decimals, column, log_decimals, csv_decimals, source, scale)
 #define NAME(column, source, name_of, shift) \
     *cells |= (uint16_t)(((uint32_t)now->source & NAME_MASK) << (shift));
-/* A record is as small as it can be: state and flags share a cell, and both names share one. With a
- * cell more in each record the recorder holds fewer of them. */
 void published_pack(uint16_t cells[PUBLISHED_CELLS], const published_t *now)
 {
     *cells++ = (uint16_t)(now->time_ms & 0xFFFFU);
@@ -52,8 +48,6 @@ void published_pack(uint16_t cells[PUBLISHED_CELLS], const published_t *now)
 #define DERIVED(column, log_decimals, csv_decimals, source, function, of) now->source = function(now->of);
 #define NAME(column, source, name_of, shift) \
     now->source = (uint16_t)(((uint32_t)*cells >> (shift)) & NAME_MASK);
-/* What can be computed from the rest is not stored. It is computed here, behind the numbers that it
- * comes from. */
 void published_unpack(published_t *now, const uint16_t cells[PUBLISHED_CELLS])
 {
     now->time_ms = (uint32_t)cells[0] | ((uint32_t)cells[1] << 16);
@@ -72,7 +66,6 @@ void published_unpack(published_t *now, const uint16_t cells[PUBLISHED_CELLS])
 #define DERIVED(column, log_decimals, csv_decimals, source, function, of) flight_log_text(line, column);
 #define NAMED(telemetry, column) flight_log_text(line, column);
 #define NAME(column, source, name_of, shift) flight_log_text(line, column);
-/* By the same walk as the rows, so a title cannot stand above another column's numbers. */
 void published_titles(telemetry_line_t *line)
 {
     telemetry_text(line, "t_s");

@@ -25,7 +25,6 @@ static reference_sample_t reference;
 static parameters_t parameters;
 static flight_outputs_t flight = FLIGHT_OUTPUTS_INITIAL;
 
-/* The values themselves stay static: nobody can write them past the gates. */
 const altitude_sample_t *const probe_altitude = &altitude;
 const imu_sample_t *const probe_imu = &imu;
 const laser_sample_t *const probe_laser = &laser;
@@ -120,8 +119,6 @@ void imu_server_read(imu_sample_t *sample)
     leave(imu_gate, MONITOR_IMU_SAMPLE, key);
 }
 
-/* All frames in one access: between two accesses a frame could come, and the same one be read twice or
- * never. */
 uint16_t imu_server_history(imu_sample_t history[IMU_HISTORY])
 {
     IArg key = enter(imu_gate, MONITOR_IMU_SAMPLE);
@@ -172,8 +169,6 @@ void parameter_server_write(const parameters_t *set)
 
     parameters = *set;
     leave(parameter_gate, MONITOR_PARAMETERS, key);
-    /* Behind the gate, because no other module is called inside one. Only TaskReceiveComm writes this
-     * server, so no other set comes between. */
     imu_exchange_mount(set);
     geometry_mount(set);
 }

@@ -18,7 +18,6 @@
 
 static Semaphore_Handle tick;
 
-/* Stamped at the tick, so that the response has in it what keeps this task waiting. */
 static Void release(UArg unused)
 {
     (void)unused;

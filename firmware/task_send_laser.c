@@ -69,7 +69,6 @@ static void order_rays(void)
     laser_port_order(&range);
 }
 
-/* The order of rays goes first: the driver's step then already works with it. */
 static Void task_send_laser(UArg unused0, UArg unused1)
 {
     static laser_statistics_t statistics;

@@ -35,8 +35,6 @@ void usb_port_start(void)
     tell_version();
 }
 
-/* One line in each step: the one before has left the transmitter by then. Behind the last comes the
- * version again, so that who opens the port late sees all of it. */
 void usb_port_step(void)
 {
     static const telecommand_t perf = {.name = "PERF", .name_length = 4U};

@@ -37,7 +37,6 @@ static void add_choice(answer_t *answer, const parameters_t *parameters, paramet
     telemetry_text(&answer->line, parameter_table[id].choices[parameters_choice(parameters, id)]);
 }
 
-/* Raw before anything else: what an unknown firmware of the IMU sends is seen here, and nowhere else. */
 static void write_raw(answer_t *answer, const imu_view_t *view)
 {
 
@@ -131,8 +130,6 @@ static void look(imu_raw_t *raw)
     raw->z_counts = median_of(figures[4], LOOKS);
 }
 
-/* First how it lies, because each tilt is measured from there. Unit and direction of gravity show in
- * the same look. */
 static bool find_level(answer_t *answer)
 {
     static parameters_t parameters;
@@ -147,8 +144,6 @@ static bool find_level(answer_t *answer)
         add_value(answer, "IUNIT", parameters.value[PARAMETER_IUNIT], 2U);
         add_choice(answer, &parameters, PARAMETER_IDOWN);
     } else {
-        /* Said, and nothing is changed: angles are known all the same, and the laws can do without
-         * accelerations. */
         telemetry_text(&answer->line,
                        level.raw.has_acceleration ? " accelerations in no known unit" : " no accelerations");
     }
@@ -180,7 +175,6 @@ static bool find_axis(answer_t *answer, parameter_id_t id, const char *word)
     static parameters_t parameters;
     imu_raw_t raw;
 
-    /* Without it a vehicle that stands on a slope would have its slope taken for the tilt of the hand. */
     if (!level.known) {
         return answer_refuse(answer, "first #IMU LEVEL");
     }

@@ -32,8 +32,6 @@ static void add_damages(answer_t *answer, const laser_statistics_t *statistics)
     telemetry_text(&answer->line, causes[statistics->urg.last_damage]);
 }
 
-/* Of the driver what has happened since power-up, of the server how it stands now: the telemetry tells
- * the same word. */
 bool verb_laser(answer_t *answer)
 {
     static laser_statistics_t statistics;

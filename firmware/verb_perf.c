@@ -37,8 +37,6 @@ static void write_task(answer_t *answer, monitor_task_t task)
     telemetry_count(&answer->line, report.stack_size);
 }
 
-/* Waits of the servers in one line, and not with their tasks: a gate is shared, and the question is
- * which one is too dear. */
 static void write_waits(answer_t *answer)
 {
 
@@ -88,7 +86,6 @@ static bool write_cost(answer_t *answer, uint16_t number)
     return true;
 }
 
-/* The worst values of a flight begin with those of the start, which say nothing about it. */
 static bool reset(answer_t *answer)
 {
     monitor_reset();
@@ -98,8 +95,6 @@ static bool reset(answer_t *answer)
     return true;
 }
 
-/* Both answers are lists: their lines do not fit the transmitter beside telemetry, and a stop must get
- * through meanwhile. */
 bool verb_perf(answer_t *answer)
 {
     if (answer_argument_is(answer, "RESET")) {

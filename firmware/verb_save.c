@@ -13,8 +13,6 @@ static const char *const reasons[] = {
     [PARAMETER_STORE_FAULT] = "storage fault",
 };
 
-/* Names the parameter: the limits have changed since it was stored, and the operator must set this one
- * anew. */
 static bool refuse_stored(answer_t *answer, const parameter_row_t *row)
 {
     telemetry_begin_answer(&answer->line);
@@ -42,7 +40,6 @@ static bool report(answer_t *answer, const parameter_store_result_t *result)
     return true;
 }
 
-/* A copy first: a set that is refused half way has changed nothing. */
 static parameter_store_result_t load(void)
 {
     static parameters_t parameters;
@@ -64,7 +61,6 @@ static bool admit_on_ground(answer_t *answer)
            answer_refuse(answer, ground_waits() ? "motors idle, see #STOP" : "not on the ground");
 }
 
-/* With the rate that the scanner was seen to power up at: the next start finds it at once by that. */
 bool verb_save(answer_t *answer)
 {
     static parameters_t parameters;

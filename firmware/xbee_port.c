@@ -43,8 +43,6 @@ static xbee_message_t *place(const queue_t *queue, uint16_t at)
     return &queue->lines[(uint16_t)(queue->oldest + at) % queue->places];
 }
 
-/* With its arrival: the link's time-out counts from the line's end, not from when the task comes to
- * it. */
 static void put(xbee_message_t *message)
 {
     message->line = collector.line;
@@ -144,8 +142,6 @@ void xbee_port_create(void)
     uart_port_create(BSP_UART_XBEE, XBEE_BIT_RATE, received);
 }
 
-/* Lines without `#` before the ordinary ones: they are refused at once, and cost nothing but their
- * answer. */
 static queue_t *next_queue(void)
 {
     if (urgent.waiting > 0U) {
@@ -188,7 +184,6 @@ bool xbee_port_pressing(void)
     return urgent.waiting > 0U || bare.waiting > 0U;
 }
 
-/* Asked before an ordinary line is taken, so that its answer does not wait in the middle of a command. */
 bool xbee_port_clear(void)
 {
     return uart_port_room(BSP_UART_XBEE) >= SPARE_ROOM;

@@ -23,7 +23,7 @@ KINDS = {
     "front": ("README.md",),
     "tutorial": (*(f"course/{name}/README.md" for name in LABORATORIES), "docs/first_evening.md", "docs/ground.md", "docs/my_law.md", "docs/es/index.md", "docs/es/primera_tarde.md"),
     "how-to": ("CONTRIBUTING.md", "course/README.md", "docs/acceptance.md", "docs/campaign.md", "docs/fit.md", "docs/flashing.md",
-               "docs/recordings.md", "drivers/README.md"),
+               "docs/recordings.md", "docs/why.md", "drivers/README.md"),
     "reference": ("CHANGELOG.md", "docs/commands.md", "docs/hardware.md", "docs/memory.md", "docs/operator.md", "docs/pages.md", "docs/razor.md",
                   "docs/scip.md"),
     "explanation": ("docs/architecture.md", "docs/control.md", "docs/flight_states.md", "docs/portability.md", "docs/realtime.md",

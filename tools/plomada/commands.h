@@ -16,5 +16,6 @@ int command_log(int argc, char **argv);
 int command_params(int argc, char **argv);
 int command_replay(int argc, char **argv);
 int command_scip(int argc, char **argv);
+int command_why(int argc, char **argv);
 
 #endif

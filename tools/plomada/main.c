@@ -22,6 +22,7 @@ static const subcommand_t subcommands[] = {
     {"params", command_params, "the parameters an operator may set"},
     {"replay", command_replay, "run the firmware again on what a flight recorded at its pins"},
     {"scip", command_scip, "scanner recordings and real scanners: decode, mirrors, record"},
+    {"why", command_why, "why a flight went so: tries each cause on its log"},
 };
 #define SUBCOMMAND_COUNT (sizeof subcommands / sizeof subcommands[0])
 

@@ -14,8 +14,9 @@ FLIGHT_COLUMNS = RECORDER_COLUMNS + ("height_m", "abs_m", "terrain_m", "pulse_us
 PLACE_COLUMNS = ("x_m", "y_m", "heading_rad")           # of logs since the ground is a place
 OPEN_LOOP_COLUMNS = ("flown_n",)       # of `plomada replay` on a log: the thrust that the vehicle answered to
 FIT_COLUMNS = ("up_mps2", "age_s")     # of logs since #LOG RATE FAST
-KNOWN_COLUMNS = (*FLIGHT_COLUMNS, *PLACE_COLUMNS, *OPEN_LOOP_COLUMNS, *FIT_COLUMNS)
-TEXT_COLUMNS = ("state", "laser")
+NAME_COLUMNS = ("doubt", "limit")      # of logs that say which rule doubts, and which limit holds
+KNOWN_COLUMNS = (*FLIGHT_COLUMNS, *PLACE_COLUMNS, *OPEN_LOOP_COLUMNS, *FIT_COLUMNS, *NAME_COLUMNS)
+TEXT_COLUMNS = ("state", "laser", *NAME_COLUMNS)
 TELEMETRY_PERIOD_S = 0.2
 
 # 02-05-2015 11:44:56.017,-,RECV,23534554...
@@ -26,7 +27,7 @@ ANSWER = re.compile(r"^(OK|ERR)( |$)")
 
 
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d{1,3})?")
-WORD = re.compile(r"[A-Z_]*")
+WORD = re.compile(r"[A-Z_]*(/[a-z]+)?")
 MARK = "\ufeff"                 # some programs begin a text with it
 OCTETS_MAX = 200_000_000        # a flight of an hour has 50 million
 # What a column can hold. Heights: the scanner sees 4.095 m, its code has twelve bits (docs/scip.md); the reference is 0 to 3 m,

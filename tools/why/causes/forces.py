@@ -1,0 +1,177 @@
+"""What pushes the vehicle beside its own thrust, or in its place."""
+import numpy
+
+import model as physics
+from causes.case import Finding, wider
+from causes.floor import WORTH
+from vehicle import G, lagged, model_of, response, whitened
+
+TUG_S = 0.12                    # a rope's pull dies away: TUG_TAU_S of sim/devices/quadrotor.c
+TUG_MPS2 = 2.0
+TUG_EVERY_S = 0.05
+TUGS_PER_S, TUGS_MOST = 0.7, 25
+ROPE_PER_S2 = 60.0              # pull of a taut rope on a vehicle of 3 kg, for each metre: sim/devices/quadrotor.h
+ROPE_SPAN_M, ROPE_STEP_M, ROPE_LEAST_M = 0.6, 0.03, 0.1
+EFFECT_HEALTHY, EFFECT_FAULTY = 0.4, 6.0        # ground effect beyond that of Cheeseman and Bennett, times
+GROWTH_HEALTHY, GROWTH_FAULTY = 0.0012, 0.01    # of the hover thrust, 1/s
+CALM_MPS2, CALM_TAU_S = 0.25, 0.5       # the air of a healthy flight
+EFFECT_SHARE = 0.2              # so well the thrust's effect is known
+HAND_MPS2 = 10.0                # what holds the vehicle in the thrust's place, not known
+PILOT_FLAG, TOLD = 64, 12.0     # the selector's pin says that he flies: no healthy flight has that
+WINDOW_S = 0.5                  # places where a pilot may begin and end
+WINDOW_LEAST_S = 1.5
+
+
+def push_columns(span, f, pushes):
+    return numpy.array([response(span, push, f["damping"]) for push in pushes]).T
+
+
+def tugs_at(times):
+    def columns(span, f):
+        since = span.grid_s[None, :] - numpy.asarray(times)[:, None]
+        return push_columns(span, f, numpy.where(since >= 0.0, -numpy.exp(-numpy.maximum(since, 0.0) / TUG_S), 0.0))
+    return columns
+
+
+def tug_times(spans):
+    return numpy.concatenate([numpy.arange(span.begin - 0.3, span.end - 0.2, TUG_EVERY_S) for span in spans])
+
+
+def calm(model):
+    """The same vehicle in healthy air: what pushes it stands out."""
+    usual = dict(model.figures, turbulence=min(model.figures["turbulence"], CALM_MPS2), turbulence_tau=CALM_TAU_S)
+    return model_of(model.kind, model.spans, usual).solve()
+
+
+def slopes(model, make):
+    """Curvature and slope of the log-likelihood by the size of each column, the vehicle's own figures free."""
+    z = numpy.vstack([whitened(span, gains, make(span, model.figures)) for span, gains in zip(model.spans, model.gains)])
+    z = z * model.robust[:, None]
+    a, rest = model.design * model.robust[:, None], model.rest * model.robust
+    shared = a.T @ z
+    return z.T @ z - shared.T @ numpy.linalg.solve(model.information, shared), z.T @ rest
+
+
+def ropes(case):
+    """Sudden pulls downwards. Pulls upwards would be gusts: as many of them speak against ropes."""
+    times = tug_times(case.spans)
+    usual = calm(case.model)
+    curvature, slope = slopes(usual, tugs_at(times))
+    down, up = (pursued(curvature, sign * slope, 1.0 / (TUGS_PER_S * TUG_EVERY_S)) for sign in (1.0, -1.0))
+    at = times[down[0]]
+    held = Finding(*taut(case))
+    if not len(at):
+        return held
+    nats, model = case.again(start=usual.figures, extra=[tugs_at(at)], sigmas=[TUG_MPS2] * len(at))
+    seconds = sum(span.end - span.begin for span in case.spans)
+    nats += len(at) * numpy.log(TUGS_PER_S * TUG_EVERY_S) - TUGS_PER_S * seconds - max(up[2], 0.0)      # Poisson: such pulls come so often
+    pulls = Finding(nats, {"count": len(at), "mps2": float(numpy.median(model.linear[-len(at):]))}, model, [(t, t + 2.0 * TUG_S) for t in at])
+    return max(pulls, held, key=lambda found: found.nats)
+
+
+def rope_columns(length_m):
+    """Of a rope that is taut above a height and pulls in proportion, m/s2 for each metre."""
+    def columns(span, f):
+        return push_columns(span, f, [-numpy.maximum(span.height_m - length_m, 0.0)])
+    return columns
+
+
+def taut(case):
+    """One rope that ends at a height: (nats, words, model)."""
+    highest = max(float(span.ray_m.max()) for span in case.spans if len(span.ray_m))
+    best = (0.0, None)
+    for length_m in numpy.arange(max(highest - ROPE_SPAN_M, ROPE_LEAST_M), highest - 0.02, ROPE_STEP_M):
+        nats, size, _ = case.model.gain(rope_columns(length_m), ROPE_PER_S2)
+        if size[0] > 0.0 and nats[0] > best[0]:
+            best = (float(nats[0]), length_m)
+    if best[1] is None or best[0] < WORTH:
+        return 0.0, {}, None
+    gained, model = case.again(extra=[rope_columns(best[1])], sigmas=[ROPE_PER_S2], means=[ROPE_PER_S2])
+    return gained - numpy.log(ROPE_SPAN_M / ROPE_STEP_M), {"rope_m": best[1]}, model
+
+
+def pursued(curvature, slope, looks):
+    """As floor.pursue(), of pulls of one sign."""
+    chosen, nats, size = [], 0.0, numpy.zeros(0)
+    own, left = numpy.diag(curvature).copy(), slope.copy()
+    while len(chosen) < TUGS_MOST:
+        precision = numpy.maximum(own, 1e-9) + 1.0 / TUG_MPS2**2
+        each = 0.5 * numpy.maximum(left, 0.0)**2 / precision - 0.5 * numpy.log(precision * TUG_MPS2**2) - numpy.log(looks)
+        each[chosen] = -numpy.inf
+        best = int(numpy.argmax(each))
+        if each[best] < WORTH:
+            break
+        chosen.append(best)
+        nats += float(each[best])
+        inner = curvature[numpy.ix_(chosen, chosen)] + numpy.eye(len(chosen)) / TUG_MPS2**2
+        outer = curvature[:, chosen]
+        size = numpy.linalg.solve(inner, slope[chosen])
+        left = slope - outer @ size
+        own = numpy.diag(curvature) - (outer * numpy.linalg.solve(inner, outer.T).T).sum(1)
+    return numpy.array(chosen, int), size, nats
+
+
+def effect_columns(span, f):
+    """Of one more time the ground effect."""
+    ratio = physics.ROTOR_RADIUS_M / (4.0 * (numpy.maximum(span.height_m, 0.0) + physics.ROTOR_ABOVE_GEAR_M))
+    return push_columns(span, f, [G * 2.0 * ratio**2 / (1.0 - 2.0 * ratio**2)**2 * span.upright])
+
+
+def ground(case):
+    _, size, spread = case.model.gain(effect_columns, 30.0)
+    nats = wider(float(size[0]), float(spread[0]), EFFECT_HEALTHY, EFFECT_FAULTY) if size[0] > 0.0 else -2.0
+    return Finding(nats, {"times": 1.0 + float(size[0])})
+
+
+def growth_columns(span, f):
+    """Of a hover thrust that grows by one in a second."""
+    air = physics.ground_effect(span.height_m) * span.upright
+    return push_columns(span, f, [-(span.grid_s - span.log_middle) * G * air])
+
+
+def battery(case):
+    _, size, spread = case.model.gain(growth_columns, 0.1)
+    own = case.model.linear_figure("growth") * case.model.hover_n() / G if case.model.kind == "THRUST" else 0.0
+    growth = float(size[0]) + own
+    nats = wider(growth - 0.0007, float(spread[0]), GROWTH_HEALTHY, GROWTH_FAULTY) if growth > 0.0 else -2.0
+    return Finding(nats, {"percent": 100.0 * growth * 60.0})
+
+
+def windows(spans):
+    found = []
+    for span in spans:
+        edges = numpy.arange(span.begin, span.end, WINDOW_S)
+        found += [(a, b) for a in edges for b in [*edges[edges >= a + WINDOW_LEAST_S], span.end + 1.0]]
+    return found
+
+
+def held_columns(places):
+    """In each window the thrust has no effect, and another one holds the vehicle."""
+    def columns(span, f):
+        thrust = lagged(span, f)
+        air = physics.ground_effect(span.height_m) * span.upright
+        inside = [(span.grid_s >= a) & (span.grid_s < b) for a, b in places]
+        return push_columns(span, f, [*(-thrust * air * here for here in inside), *(air * here for here in inside)])
+    return columns
+
+
+def pilot(case):
+    """A while in which the commanded thrust does nothing, and a hand moves the vehicle."""
+    if case.model.kind != "THRUST":
+        return Finding(0.0)
+    places = windows(case.spans)
+    model = calm(case.model)
+    count = len(places)
+    b = case.model.linear_figure("authority")
+    curvature, slope = slopes(model, held_columns(places))
+    own = numpy.diag(curvature)
+    cross = numpy.diag(curvature[:count, count:])
+    p, q = own[:count] + 1.0 / (EFFECT_SHARE * b)**2, own[count:] + 1.0 / HAND_MPS2**2
+    u, v = slope[:count] + b / (EFFECT_SHARE * b)**2, slope[count:]
+    determinant = p * q - cross**2
+    nats = 0.5 * (u * (q * u - cross * v) + v * (p * v - cross * u)) / determinant - 0.5 * numpy.log(determinant)
+    best = places[int(numpy.argmax(nats))]
+    gained, found = case.again(start=model.figures, extra=[held_columns([best])], sigmas=[EFFECT_SHARE * b, HAND_MPS2], means=[b, 0.0], loud=[best])
+    known = case.flight.column["flags"].astype(int) & PILOT_FLAG
+    told = TOLD if known[case.flight.aloft()].mean() > 0.02 else 0.0
+    return Finding(gained - numpy.log(count) + told, {"from": best[0], "to": min(best[1], case.spans[-1].end)}, found, [best])

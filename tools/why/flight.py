@@ -1,0 +1,130 @@
+"""A flight as evidence: what the columns of its log hold, without the columns of the truth that a simulated flight has.
+
+Every reader is that of tools/plot/recording.py; dumps within a console are taken out by `plomada log`, a recording of the pins is
+flown again by `plomada replay`.
+"""
+import math
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tools/plot"), str(ROOT / "tools/fit")]
+import flight_log  # noqa: E402
+import recording  # noqa: E402
+
+Unfit = recording.Unreadable
+NEEDED = ("t_s", "meas_m", "ref_m", "thrust_n", "roll_rad", "pitch_rad", "state", "flags", "up_mps2", "age_s")
+WORDS = ("state", "doubt", "limit")
+GROUNDED = ("GROUND", "")
+ALOFT_M = 0.07
+LEAST_S, LEAST_HEIGHTS = 3.0, 25        # of a flight: less tells nothing of the vehicle
+SPAN_S = 1.5                    # of a span
+GAP_S = 0.5                     # rows are missing
+
+
+@dataclass
+class Flight:
+    name: str
+    column: dict                # name: array, of NEEDED, innov_m, est_m and WORDS
+    new: numpy.ndarray          # rows with a height that was not there before
+    rays_s: numpy.ndarray       # instant of the rays of each row's height, as the firmware believes
+    felt: numpy.ndarray         # rows with an acceleration
+    late_s: float               # a row shows what came up to twice so long before it
+    spans: list                 # [(begin, end)] in the air
+
+    @property
+    def t_s(self):
+        return self.column["t_s"]
+
+    def aloft(self):
+        inside = numpy.zeros(len(self.t_s), bool)
+        for begin, end in self.spans:
+            inside |= (self.t_s >= begin) & (self.t_s <= end)
+        return inside
+
+    def seconds(self):
+        return sum(end - begin for begin, end in self.spans)
+
+
+def dumps_of(path, program, scratch):
+    copy = Path(scratch, path.name)
+    copy.write_bytes(recording.octets_of(path))
+    done = subprocess.run([program, "log", str(copy)], check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    found = sorted(Path(scratch).glob("*.csv"), key=lambda file: file.stat().st_size)
+    if not found:
+        raise Unfit(f"{path}: {done.stderr.strip()[:200]}")
+    return found[-1]            # the longest
+
+
+def replayed(path, program, scratch):
+    csv = Path(scratch, "replay.csv")
+    done = subprocess.run([program, "replay", str(path), "--csv", str(csv)], check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    if done.returncode == 2 or not csv.exists():
+        raise Unfit(f"{path}: {done.stderr.strip()[:200]}")
+    return csv
+
+
+def read(path, program):
+    """Raises Unfit, or OSError."""
+    path = Path(path)
+    with tempfile.TemporaryDirectory(prefix="plomada-") as scratch:
+        csv = path
+        if path.is_dir():
+            csv = replayed(path, program, scratch)
+        elif recording.has_dump(path):
+            csv = dumps_of(path, program, scratch)
+        found = recording.read(csv)
+    if found.kind not in ("flight", "recorder"):
+        raise Unfit(f"{path}: telemetry alone, five lines a second, does not tell why; type #LOG after the flight and save it "
+                    "(docs/operator.md, flight recorder)")
+    return flight_of(path, found)
+
+
+def flight_of(path, found):
+    missing = [name for name in NEEDED if name not in found.columns]
+    if missing:
+        raise Unfit(f"{path}: no column {', '.join(missing)}")
+    column = {name: numpy.array(found.columns[name]) for name in (*NEEDED, "innov_m", "est_m")}
+    for name in WORDS:
+        column[name] = numpy.array(found.columns.get(name, [""] * len(found.t)))
+    for name, what in (("meas_m", "heights"), ("thrust_n", "thrust"), ("roll_rad", "roll"), ("pitch_rad", "pitch")):
+        if numpy.isnan(column[name]).all():
+            raise Unfit(f"{path}: no {what}: {name} is empty")
+    for name in ("thrust_n", "ref_m", "flags"):
+        column[name] = flight_log.filled(column["t_s"], column[name])
+    t_s = column["t_s"]
+    rays_s = t_s - column["age_s"]
+    new, latest = numpy.zeros(len(t_s), bool), -math.inf
+    for k in numpy.flatnonzero(~numpy.isnan(rays_s) & ~numpy.isnan(column["meas_m"])):
+        if rays_s[k] > latest + 0.02:
+            new[k], latest = True, rays_s[k]
+    late_s = flight_log.PC_ROW_S / 2.0 if found.kind == "flight" else 0.0
+    felt = ~numpy.isnan(column["up_mps2"])
+    flight = Flight(Path(path).stem, column, new, rays_s, felt, late_s, [])
+    flight.spans = spans_of(flight)
+    if flight.seconds() < LEAST_S and not (column["ref_m"] > 0.0).any():
+        raise Unfit(f"{path}: no flight: {flight.seconds():.1f} s in the air, and no reference")
+    return flight
+
+
+def spans_of(flight):
+    """In the air: neither state GROUND nor a height of the ground, and no rows missing. Heights may be missing."""
+    t_s, c = flight.t_s, flight.column
+    height_m = flight_log.filled(t_s, c["meas_m"])
+    good = numpy.array([state not in GROUNDED for state in c["state"]]) & (height_m > ALOFT_M)
+    found, begin = [], None
+    for k in range(len(t_s)):
+        torn = k > 0 and t_s[k] - t_s[k - 1] > GAP_S
+        if begin is not None and (torn or not good[k]):
+            found.append((begin, t_s[k - 1]))
+            begin = None
+        if begin is None and good[k]:
+            begin = t_s[k]
+    if begin is not None:
+        found.append((begin, t_s[-1]))
+    return [(a, b) for a, b in found if b - a >= SPAN_S]

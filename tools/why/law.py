@@ -1,0 +1,85 @@
+"""What the law did: its gains as the log shows them, and where it could not go on.
+
+Every law gives, for small errors, a thrust that falls with the height's error and with the climb, around a thrust that moves
+slowly (an integral, or what EST has learned). So the gains are found by least squares from the log alone, whoever set them.
+"""
+from dataclasses import dataclass
+
+import numpy
+
+from flight import flight_log
+
+KNOT_S = 4.0                    # the slow thrust: straight lines between knots
+SPEED_S = 0.05                  # half the time over which an estimate's speed is taken
+CUT_N = 0.02                    # so near to its extreme the thrust is at a limit
+LEAST = 60                      # rows
+WITHIN_M = 0.15                 # the cascade is no straight line farther off
+
+
+@dataclass
+class Law:
+    estimator: bool             # the estimator flew it
+    rows: int
+    p_n_per_m: float            # 0 where it could not be found
+    d_n_s_per_m: float
+    sigma: tuple                # standard deviations of the logarithms of both
+    fits: float                 # share of the thrust's motion that these gains explain
+    at_most: float              # share of the rows at the greatest thrust of the flight, and at the least
+    at_least: float
+    range_n: tuple
+    first_n: float              # thrust as the take-off begins
+    begun_n: float              # slow thrust as the flight begins
+
+
+def runs_at(values, extreme):
+    return float(numpy.mean(numpy.abs(values - extreme) < CUT_N))
+
+
+def of(flight, delay_s=0.0):
+    c, t_s = flight.column, flight.t_s
+    flying = (c["state"] == "FLYING") & (c["ref_m"] > 0.0)
+    estimator = bool(numpy.mean(~numpy.isnan(c["innov_m"][flying])) > 0.5) if flying.any() else True
+    takeoff = numpy.flatnonzero((c["state"] == "TAKEOFF") & (c["thrust_n"] > 0.5))
+    first_n = float(c["thrust_n"][takeoff[0]]) if len(takeoff) else numpy.nan
+    law = Law(estimator, int(flying.sum()), 0.0, 0.0, (9.0, 9.0), 0.0, 0.0, 0.0, (0.0, 0.0), first_n, numpy.nan)
+    if law.rows < LEAST:
+        return law
+    thrust = c["thrust_n"][flying]
+    law.range_n = float(thrust.min()), float(thrust.max())
+    law.at_least, law.at_most = runs_at(thrust, thrust.min()), runs_at(thrust, thrust.max())
+    height, speed, use = motion(flight, estimator)
+    error = c["ref_m"] - height
+    free = flying & use & (c["limit"] == "") & (c["doubt"] == "") & (numpy.abs(error) < WITHIN_M)
+    free &= (c["thrust_n"] > law.range_n[0] + CUT_N) & (c["thrust_n"] < law.range_n[1] - CUT_N)
+    if free.sum() < LEAST:
+        return law
+    knots = numpy.arange(t_s[flying][0], t_s[flying][-1] + KNOT_S, KNOT_S)
+    slow = numpy.array([numpy.interp(t_s[free], knots, row) for row in numpy.eye(len(knots))]).T
+    design = numpy.column_stack([error[free], -speed[free], slow])
+    ridge = 1e-3 * numpy.eye(design.shape[1])
+    information = design.T @ design + ridge
+    found = numpy.linalg.solve(information, design.T @ (c["thrust_n"][free]))
+    rest = c["thrust_n"][free] - design @ found
+    moves = c["thrust_n"][free] - slow @ numpy.linalg.lstsq(slow, c["thrust_n"][free], rcond=None)[0]
+    law.fits = 1.0 - float((rest**2).mean() / max((moves**2).mean(), 1e-12))
+    law.p_n_per_m, law.d_n_s_per_m = float(found[0]), float(found[1])
+    spread = numpy.sqrt(numpy.diag(numpy.linalg.inv(information))[:2] * (rest**2).mean() * 5.0)     # neighbours are alike
+    law.sigma = tuple(spread / numpy.maximum(numpy.abs(found[:2]), 1e-3))
+    law.begun_n = float(found[2])
+    return law
+
+
+def motion(flight, estimator):
+    """Height and speed as the law saw them, and which rows tell both."""
+    c, t_s = flight.column, flight.t_s
+    if estimator:
+        known = ~numpy.isnan(c["est_m"])
+        height = flight_log.filled(t_s, c["est_m"])
+        speed = (numpy.interp(t_s + SPEED_S, t_s, height) - numpy.interp(t_s - SPEED_S, t_s, height)) / (2.0 * SPEED_S)
+        return height, speed, known
+    at = numpy.flatnonzero(flight.new)
+    slope = numpy.zeros(len(at))
+    gap = numpy.diff(flight.rays_s[at])
+    slope[1:] = numpy.diff(c["meas_m"][at]) / numpy.maximum(gap, 0.02)
+    latest = numpy.clip(numpy.searchsorted(at, numpy.arange(len(t_s)), "right") - 1, 0, len(at) - 1)
+    return c["meas_m"][at][latest], slope[latest], t_s - t_s[at][latest] < 0.12

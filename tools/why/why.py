@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""why.py LOG [--out FILE]: why did it fly so?
+
+LOG is a CSV of `plomada log` or of `plomada fly --csv`, a saved console with a dump of #LOG, or the directory of `fly --record`. The
+vehicle is found in its own flight. Then each cause is tried: how much more likely is the flight with it than without? The causes
+come in the order of that, in nats; two sentences say what happened and what to do, and FILE (build/why.png) shows it. It says so when it
+does not know, or when nothing is wrong. docs/why.md tells more. Exit status: 0; 2 usage, or a log that does not hold what is needed.
+"""
+import argparse
+import math
+import os
+import sys
+from pathlib import Path
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")       # matrices of four rows
+
+sys.path[:0] = [str(Path(__file__).resolve().parent), str(Path(__file__).resolve().parents[1] / "fit")]
+import causes  # noqa: E402
+import flight  # noqa: E402
+import law  # noqa: E402
+import vehicle  # noqa: E402
+import without  # noqa: E402
+from causes.case import Case  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[2]
+WORTH = 3.5                     # nats: what is less than 33 times as likely as nothing is not named
+NOISES, FAR = ("turbulence", "acc_noise", "height_noise"), 3.0  # standard deviations of what healthy flights have
+
+
+class Silent:
+    def step(self, name):
+        pass
+
+
+class Progress:
+    """On stderr, what is tried."""
+
+    def step(self, name):
+        print(f"{name} ...", file=sys.stderr, flush=True)
+
+
+def ask(path, program, progress=None):
+    """(flight, case, {cause: Finding} in the order of their likelihood). Raises flight.Unfit, OSError."""
+    progress = progress or Silent()
+    seen = flight.read(path, program)
+    spans = vehicle.spans_of(seen)
+    flew = seen.seconds() >= flight.LEAST_S and sum(len(span.ray_s) for span in spans) >= flight.LEAST_HEIGHTS
+    progress.step("the vehicle in its flight")
+    case = Case(seen, spans, vehicle.fit("THRUST", spans) if flew else None, law.of(seen))
+    found = {}
+    for key, cause in causes.TABLE.items():
+        if flew or cause.without_flight:
+            progress.step(cause.name)
+            found[key] = cause.try_it(case)
+    return case, dict(sorted(found.items(), key=lambda pair: -pair[1].nats))
+
+
+def verdict(found):
+    """The keys that are worth naming, the most likely one first."""
+    return [key for key, finding in found.items() if finding.nats > WORTH]
+
+
+def sentences(case, found):
+    named = verdict(found)
+    if named:
+        return [causes.TABLE[named[0]].what(found[named[0]]), causes.TABLE[named[0]].do(found[named[0]])]
+    if case.model is None:
+        return ["It does not know: the vehicle did not fly, and nothing in the log says why."]
+    if unwell(case):
+        return ["It does not know: the vehicle moved as no healthy one does, and none of the causes tells why."]
+    return ["Nothing found: the flight is as likely as that of a healthy vehicle."]
+
+
+def unwell(case):
+    """Whether what the equations leave is more than a healthy flight has."""
+    return any(abs(math.log(case.model.figures[name] / vehicle.FIGURES[name][0])) > FAR * vehicle.FIGURES[name][1] for name in NOISES)
+
+
+def without_it(case, found):
+    """(the flight without the likeliest cause, a sentence of it). (None, ""): there is none, or it cannot be told."""
+    named = verdict(found)
+    if not named or case.model is None:
+        return None, ""
+    flown = without.fly(case, named[0], found[named[0]])
+    was, would = without.hover_rms_mm(case), without.rms_mm(flown) if flown is not None else None
+    if was is None or would is None:
+        return flown, ""
+    return flown, f"It hovered {was:.0f} mm rms off its reference; without this the same vehicle would have been {would:.0f} mm off."
+
+
+def table(found):
+    named = verdict(found)
+    lines = ["", "nats  cause (* likelier than nothing)"]
+    lines += [f"{finding.nats:6.1f} {'*' if key in named else ' '} {causes.TABLE[key].name}" for key, finding in found.items()]
+    return "\n".join(lines)
+
+
+def read_arguments(argv):
+    parser = argparse.ArgumentParser(prog="plomada why", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("log", type=Path, metavar="LOG")
+    parser.add_argument("--out", type=Path, default=ROOT / "build/why.png", metavar="FILE")
+    parser.add_argument("--program", type=Path, default=ROOT / "build/plomada", help=argparse.SUPPRESS)
+    return parser.parse_args(argv)
+
+
+def main(argv=None):
+    arguments = read_arguments(argv)
+    try:
+        arguments.out.parent.mkdir(parents=True, exist_ok=True)     # said before the work
+        case, found = ask(arguments.log, arguments.program, Progress())
+    except (flight.Unfit, OSError) as error:
+        print(f"why: {error}", file=sys.stderr)
+        return 2
+    flown, would = without_it(case, found)
+    said = sentences(case, found)
+    print("\n".join([*said, *([would] if would else []), table(found)]))
+    import picture  # noqa: PLC0415  Matplotlib takes its second: what is wrong with a log is told before
+    try:
+        picture.draw(arguments.out, " ".join(said), case, [(causes.TABLE[key].name, finding) for key, finding in found.items()], flown)
+    except (OSError, ValueError) as error:
+        print(f"why: {arguments.out}: {error}", file=sys.stderr)
+        return 2
+    print(f"\n{arguments.out}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
