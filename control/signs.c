@@ -6,6 +6,8 @@
 #include "control/credible.h"
 
 #define HEAVIEST 1.2F   /* hover thrust of the heaviest vehicle, in GRAV */
+#define LIGHTEST 0.8F   /* the same of the lightest one */
+#define LIGHTEST_N 5.9F /* and of the nominal vehicle: GRAV may be too high */
 #define HEAVIEST_N 8.9F /* the same of the nominal vehicle, 7.4 N: the seed flew with GRAV 0 too */
 
 /* FLOATING, and the throttle is certainly the firmware's. */
@@ -119,6 +121,7 @@ guard_case_t signs_of_guard(const situation_t *now, float wanted_n)
         .wanted_n = wanted_n,
         .idle_n = now->idle_n,
         .heaviest_n = at_least(HEAVIEST * now->parameters->value[PARAMETER_GRAV], HEAVIEST_N),
+        .lightest_n = at_most(LIGHTEST * now->parameters->value[PARAMETER_GRAV], LIGHTEST_N),
         .step_s = where_step_s(now->where),
         .ordered = state != FLIGHT_GROUND && state != FLIGHT_CUT,
         .confirmed = !now->evidence->unconfirmed,

@@ -159,7 +159,7 @@ void test_contact_is_told_state_height_and_tilt(void)
     TEST_ASSERT_FALSE(signs_of_landing(&now).sees);
 }
 
-void test_the_guard_is_told_of_a_fifth_above_grav_and_of_an_order_off_the_ground(void)
+void test_the_guard_is_told_of_a_fifth_to_either_side_of_grav_and_of_an_order_off_the_ground(void)
 {
     now.idle_n = 0.8F;
     guard_case_t told = signs_of_guard(&now, 7.7F);
@@ -167,11 +167,13 @@ void test_the_guard_is_told_of_a_fifth_above_grav_and_of_an_order_off_the_ground
     NEAR(7.7F, told.wanted_n);
     NEAR(0.8F, told.idle_n);
     NEAR(8.9F, told.heaviest_n);
+    NEAR(5.6F, told.lightest_n);
     NEAR(0.1F, told.step_s);
     evidence.unconfirmed = true;
     set(PARAMETER_GRAV, 8.0F);
     told = signs_of_guard(&now, 7.7F);
     NEAR(9.6F, told.heaviest_n);
+    NEAR(5.9F, told.lightest_n);
     TEST_ASSERT_FALSE(told.confirmed);
     for (int state = 0; state < FLIGHT_STATE_COUNT; state++) {
         in_state((flight_state_t)state);

@@ -81,7 +81,9 @@ FAULTS = [
     ("scip_parser", "any_line_is_copied", "scip_parser.c", "if (more == count)", "if (more > count)"),
     ("scip_parser", "any_burst_is_taken_apart", "scip_parser.c", "count - taken, event);\n    }", "count, event);\n    }"),
     ("guard", "any_thrust_is_within_idle_and_full", "guard.c", "between(idle_n, now->wanted_n, THRUST_MAX_N)", "now->wanted_n"),
-    ("guard", "no_order_is_no_thrust", "guard.c", "now->ordered ? thrust_n : idle_n", "thrust_n"),
-    ("guard", "any_unseen_impulse_is_bounded", "guard.c", "if (unseen_ns > GUARD_UNSEEN_NS)", "if (unseen_ns > GUARD_UNSEEN_NS && now->step_s > 0.1F)"),
+    ("guard", "no_order_is_no_thrust", "guard.c", "return idle_n;", "return wanted_n;"),
+    ("guard", "any_unseen_impulse_is_bounded", "guard.c", "if (unseen_ns > GUARD_UNSEEN_NS)", "if (unseen_ns > GUARD_UNSEEN_NS && step_s > 0.1F)"),
+    ("guard", "any_fall_is_bounded", "guard.c", "if (more_ns > GUARD_FALL_NS)", "if (more_ns > GUARD_FALL_NS && thrust_n > 0.1F)"),
+    ("guard", "any_thrust_fades_slowly", "guard.c", "thrust_n - GUARD_FADE_N_PER_S * step_s", "thrust_n - 2.0F * GUARD_FADE_N_PER_S * step_s"),
     ("guard", "any_impulse_is_one", "guard.c", "return more_n * step_s;", "return more_n * (step_s - 0.1F);"),
 ]

@@ -28,7 +28,7 @@ POINTERS = ("distance_mm",)     # members that are no arrays
 # Proved by themselves, as NAME_itself(). A call of NAME() goes to the harness: it proves what NAME needs and gives any answer
 # that NAME_itself() was proved to give.
 APART = {
-    "guard": ["impulse_ns"],
+    "guard": ["impulse_ns", "faded_n"],
     "decimal": ["wide_multiply_add", "wide_divide", "wide_raise_to", "make_binary", "round_to_float", "to_float", "decimal_read",
                 "scaled", "write_backwards", "write_decimals"],
     "scip_info": ["trimmed", "begins_with", "contains", "read_digits", "read_small", "copy", "health_of", "divide"],
@@ -69,7 +69,8 @@ PROOFS = [
      ["any_block_is_passed", "any_pairs_are_decoded", "any_triples_are_decoded", "any_triples_are_decoded_behind_one",
       "any_triples_are_decoded_behind_two"]),
     ("scip_parser", ["scip_request"], 14, ["any_burst_is_taken_apart", "blocks_are_taken_one_by_one"]),
-    ("guard", [], 2, ["any_thrust_is_within_idle_and_full", "no_order_is_no_thrust", "any_unseen_impulse_is_bounded", "any_impulse_is_one"]),
+    ("guard", [], 2, ["any_thrust_is_within_idle_and_full", "no_order_is_no_thrust", "any_unseen_impulse_is_bounded", "any_fall_is_bounded", "any_thrust_fades_slowly",
+                      "any_impulse_is_one"]),
 ]
 # Of control/ what the guard is made of.
 GUARD = ("guard.c", "guard.h", "between.h", "thrust.h")
