@@ -2,9 +2,8 @@
 
 #include <math.h>
 
-#define RAYS_LEAST \
-    2U /* one ray has no spread: a beam that is blocked or frozen would look as a quiet one \
-        */
+/* one ray has no spread: a beam that is blocked or frozen would look as a quiet one */
+#define RAYS_LEAST 2U
 
 typedef char every_mirror_has_its_place_below[(MIRROR_COUNT == 3) ? 1 : -1];
 

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 #include "control/seconds.h"
 #include "control/thrust.h"
 #include "control/touchdown.h"
@@ -15,11 +16,10 @@
 #define CLIMB_MARGIN_MPS 0.4F /* chosen: room for an overshoot of the climb rate above VUP */
 #define SWITCH_MPS 0.1F       /* chosen: that much below the climb rate two speeds switch the limit on */
 
-#define UNCHECKED_ABOVE_N 0.5F /* chosen: as TRANSFER_START_N in laws.c */
 #define UNCHECKED_BELOW_N 1.0F /* chosen: twice that */
 
 #define NO_AUTHORITY_WINDOW_N 0.6F /* chosen: 0.8 m/s2 */
-#define HELD_SINK_N_PER_S 0.2F     /* chosen: as SINK_FADE_N_PER_S in est_law.c */
+#define HELD_SINK_N_PER_S 0.2F     /* chosen: as SINK_FADE_N_PER_S in let_down.c */
 #define UNKNOWN_WINDOW_N 2.0F      /* chosen: as HOVER_BOUND_N in est_law.c */
 
 #define BACK_BELOW_N 0.5F         /* chosen: by the vehicle model a sink rate of 0.3 m/s */
@@ -32,8 +32,8 @@
 #define BACK_BRAKE_N 1.8F         /* chosen: what the two before may have sunk */
 #define BACK_MAX_S 60.0F          /* above DESCENT_TIMEOUT_US in supervisor.c */
 
-#define STANDING_N_PER_S \
-    1.0F /* chosen: in 2 s too low to fly; the accelerometer shows a fall before it is fast */
+/* chosen: in 2 s too low to fly; the accelerometer shows a fall before it is fast */
+#define STANDING_N_PER_S 1.0F
 
 #define FLOAT_TRIM_N 0.4F         /* chosen: GRAV is trimmed so much too low, or less */
 #define FLOAT_TRIM_N_PER_M_S 8.0F /* tried 4 and 8: half of it after a second 25 mm too low */
@@ -101,7 +101,7 @@ static interval_t of_coasting(bounds_t *bounds, const situation_t *now)
                            now->est->estimator.unchecked_count > 0U;
 
     (void)bounds;
-    return unchecked ? about(now->where->hover.thrust_n, UNCHECKED_BELOW_N, UNCHECKED_ABOVE_N) : anything;
+    return unchecked ? about(now->where->hover.thrust_n, UNCHECKED_BELOW_N, NEAR_HOVER_N) : anything;
 }
 
 /* A pilot may fly, or has given the throttle back: nothing tells. So the thrust stays just below the best

@@ -8,10 +8,14 @@
 #define HEIGHT_MIN_MM (-50.0F) /* chosen: no noise reaches 50 mm below the ground */
 #define HEIGHT_MAX_MM 5000.0F  /* above the scanner's 4095 mm */
 
-#define LOW_MM \
-    80.0F /* chosen: above REST_BELOW_MM in supervisor.c; so low the vehicle may touch the ground */
+/* chosen: above REST_BELOW_MM in supervisor.c; so low the vehicle may touch the ground */
+#define LOW_MM 80.0F
 #define LOW_M 0.08F
 #define IN_THE_AIR_M 0.04F /* chosen: ten times the noise of a height */
+
+/* chosen: 0.7 m/s2. So near the hover thrust a command is kept that nobody stands for: of another mode,
+ * without frames, heights or a checked speed */
+#define NEAR_HOVER_N 0.5F
 
 #define HEIGHT_FRESH_US UINT32_C(300000) /* three scans of 0.1 s */
 #define HEIGHT_FRESH_S 0.3F

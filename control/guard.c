@@ -4,6 +4,7 @@
 #include "control/guard.h"
 
 #include "control/between.h"
+#include "control/seconds.h"
 #include "control/thrust.h"
 
 static float impulse_ns(float more_n, float step_s)
@@ -56,7 +57,7 @@ float guard_step(guard_t *guard, const guard_case_t *now)
     const float wanted_n = between(idle_n, now->wanted_n, THRUST_MAX_N);
     const float heaviest_n = between(idle_n, now->heaviest_n, THRUST_MAX_N);
     const float lightest_n = between(idle_n, now->lightest_n, heaviest_n);
-    const float step_s = between(0.0F, now->step_s, GUARD_STEP_MAX_S);
+    const float step_s = between(0.0F, now->step_s, CYCLE_MAX_S);
 
     if (!now->ordered) {
         *guard = (guard_t){.sure_n = idle_n};

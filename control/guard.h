@@ -16,12 +16,11 @@
 
 #include <stdbool.h>
 
-#define GUARD_UNSEEN_NS \
-    6.0F /* chosen: twice what a take-off's ramp and a full climb make, 3 N for a second */
+/* chosen: twice what a take-off's ramp and a full climb make, 3 N for a second */
+#define GUARD_UNSEEN_NS 6.0F
 /* Tried: 351 flights, 300 of them under lies, make 2.4 at most, the same without lies 0.7. */
 #define GUARD_FALL_NS 3.0F
 #define GUARD_FADE_N_PER_S 2.0F /* as LANDED_FADE_N_PER_S in touchdown.h: the quickest end of a landing */
-#define GUARD_STEP_MAX_S 0.5F   /* chosen: longer pauses count as this long */
 
 typedef struct {
     float unseen_ns; /* impulse above the heaviest hover thrust since a climb was confirmed */

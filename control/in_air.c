@@ -4,12 +4,11 @@
 
 #include <math.h>
 
+#include "control/where/hover_thrust.h"
+
 #define WINDOW_US UINT32_C(10000000) /* chosen: two time constants of a hover thrust that is learned anew */
-#define STEP_N 0.2F /* chosen: PD then hangs 43 mm lower with the least KP that flew, 0.00466 */
-#define SHARE 0.25F /* chosen: half of what makes a loop swing that is tuned to half its limit */
-#define REACH_N \
-    1.5F              /* as HOVER_MARGIN_N in hover_thrust.c: farther from GRAV no hover thrust is believed \
-                       */
+#define STEP_N 0.2F   /* chosen: PD then hangs 43 mm lower with the least KP that flew, 0.00466 */
+#define SHARE 0.25F   /* chosen: half of what makes a loop swing that is tuned to half its limit */
 #define MARGIN_N 0.3F /* chosen: 0.4 m/s2 to brake with */
 
 typedef enum { FREE, GROUND_ONLY, NEWTONS, GAIN, LAW } kind_t;
@@ -70,7 +69,7 @@ static in_air_t judge_newtons(const parameters_t *now, parameter_id_t id, float 
     parameters_t then = *now;
 
     then.value[id] = to;
-    if (fabsf(then.value[PARAMETER_GRAV] - hover_n) > REACH_N) {
+    if (fabsf(then.value[PARAMETER_GRAV] - hover_n) > HOVER_THRUST_MARGIN_N) {
         return IN_AIR_OFF_HOVER;
     }
     if (alone && id == PARAMETER_GRAV) {

@@ -14,17 +14,14 @@
 #include "control/credible.h"
 #include "control/seconds.h"
 
-#define STEP_MAX_S 0.5F /* chosen: longer pauses count as this long */
-
 #define HOVER_BOUND_N 2.0F           /* mass 20 % off (1.4 N), battery, gusts; see hover_thrust.c */
 #define HOVER_SIGMA_START_N 0.7F     /* half of a mass 20 % off */
 #define NEUTRAL_SIGMA_N 0.07F        /* chosen: the thrust in the middle of the stick is known well */
-#define HOVER_SIGMA_TAKE_OVER_N 0.5F /* chosen: as TRANSFER_START_N in laws.c */
+#define HOVER_SIGMA_TAKE_OVER_N 0.5F /* chosen: as NEAR_HOVER_N in credible.h */
 #define MODEL_NOISE_MPS2 0.84F       /* fitted */
 #define HEIGHTS_MISSING_S 0.2F       /* two scans of 0.1 s */
 #define FRAMES_FRESH_S ((float)ESTIMATOR_FRESH_US * 1.0e-6F)
 #define FRAMES_LATE_S 0.15F          /* chosen: a frame of an IMU as slow as 0.1 s, and its age */
-#define LATE_WINDOW_N 0.5F           /* chosen: as TRANSFER_START_N in laws.c */
 #define AGE_MAX_S 3600.0F            /* chosen: one hour; the counters stop here */
 #define MODEL_NOISE_ALONE_MPS2 0.15F /* chosen: a biased accelerometer drifts away, the model does not */
 #define GUST_MPS2_PER_M 39.2F        /* fitted as 28 N/m on a vehicle that hovers at 7 N */
@@ -117,7 +114,7 @@ static void predict_frame(est_law_t *law, const parameters_t *parameters, bool a
     used.has_acceleration = frame->has_acceleration && !law->accelerations_doubted;
     estimator_predict(&law->estimator, &used, modelled_motion(law, parameters, airborne));
     const float dt_s = seconds_between(before_us, law->estimator.now_us);
-    if (dt_s <= 0.0F || dt_s > STEP_MAX_S) {
+    if (dt_s <= 0.0F || dt_s > CYCLE_MAX_S) {
         return;
     }
     actuator_advance(&law->actuator, law->estimator.now_us);
@@ -167,7 +164,7 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const est_b
         deadband_init(&law->deadband);
     }
     law->authority_mps2_per_n = vehicle_model(law, parameters).authority_mps2_per_n;
-    law->step_s = between(0.0F, seconds_between(law->now_us, now_us), STEP_MAX_S);
+    law->step_s = between(0.0F, seconds_between(law->now_us, now_us), CYCLE_MAX_S);
     law->now_us = now_us;
     law->heightless_s = at_most(law->heightless_s + law->step_s, AGE_MAX_S);
     law->frameless_s = at_most(law->frameless_s + law->step_s, AGE_MAX_S);
@@ -358,7 +355,7 @@ static float without_frames_n(const est_law_t *law, float thrust_n)
     const float hover_n = law->hover.thrust_n;
 
     return (law->frameless_s > FRAMES_LATE_S)
-               ? between(hover_n - LATE_WINDOW_N, thrust_n, hover_n + LATE_WINDOW_N)
+               ? between(hover_n - NEAR_HOVER_N, thrust_n, hover_n + NEAR_HOVER_N)
                : thrust_n;
 }
 

@@ -16,7 +16,7 @@
 #define SINK_ABOVE_HOVER_N 0.5F /* chosen: room for gusts at first */
 #define SINK_BELOW_HOVER_N 1.3F /* chosen: by the vehicle model a sink rate of at most 0.7 m/s */
 #define SINK_FADE_N_PER_S 0.2F  /* chosen: at the hover thrust after 2.5 s */
-#define LAND_ABOVE_HOVER_N 1.5F /* chosen: as HOVER_MARGIN_N in hover_thrust.c */
+#define LAND_ABOVE_HOVER_N 1.5F /* chosen: as HOVER_THRUST_MARGIN_N in hover_thrust.h */
 #define LAND_FADE_N_PER_S 0.1F  /* chosen: at the hover thrust after 15 s */
 
 void let_down_reset(let_down_t *down)

@@ -5,7 +5,7 @@
 #include "control/between.h"
 
 #define TERRAIN_KEEP_S 30.0F        /* chosen: drift of the summed terrain height is forgotten */
-#define LOWEST_OVER_TERRAIN_M 0.15F /* the height of OFF_GROUND in supervisor.c */
+#define LOWEST_OVER_TERRAIN_M 0.15F /* the height of OFF_GROUND_MM in supervisor.c */
 
 void terrain_keep_start(terrain_keep_t *keep, float terrain_m)
 {

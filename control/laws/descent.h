@@ -4,6 +4,8 @@
 #ifndef CONTROL_DESCENT_H
 #define CONTROL_DESCENT_H
 
+#define DESCENT_BLIND_MAX_S \
+    60.0F /* above DESCENT_TIMEOUT_US in supervisor.c; longer ones count as this long */
 #define DESCENT_RATE_MM_S 300.0F /* above 0.6 m; below it falls to 0.15 m/s at the ground */
 
 #include <stdbool.h>

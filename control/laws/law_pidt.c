@@ -8,7 +8,6 @@
 #define WINDOW_N 3.0F                   /* chosen: 0.4 g to either side */
 #define INSTEAD_SHARE 0.65F             /* tried 0.6 to 1: of its gains, for vehicles that shake with them */
 #define HEIGHT_LATE_US UINT32_C(170000) /* a scan of 0.1 s is missing */
-#define LATE_N 0.5F                     /* chosen: as TRANSFER_START_N in laws.c */
 
 float law_pidt_step(laws_t *laws, est_law_t *est, const situation_t *now)
 {
@@ -33,7 +32,7 @@ float law_pidt_step(laws_t *laws, est_law_t *est, const situation_t *now)
         return pidt_step(&laws->pidt, &gains, now->aim_m, height->height_mm * 0.001F, gap_s);
     }
     if (height->age_us > HEIGHT_LATE_US && now->where->contact.airborne) { /* do not hold a push for long */
-        return between(hover_n - LATE_N, laws->setpoint_n, hover_n + LATE_N);
+        return between(hover_n - NEAR_HOVER_N, laws->setpoint_n, hover_n + NEAR_HOVER_N);
     }
     return laws->setpoint_n;
 }

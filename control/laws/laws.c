@@ -3,11 +3,11 @@
 #include "control/laws/laws.h"
 
 #include "control/between.h"
+#include "control/credible.h"
 #include "control/flight_io.h"
 #include "control/touchdown.h"
 
-#define TRANSFER_TIME_S 0.4F  /* chosen: four scans */
-#define TRANSFER_START_N 0.5F /* chosen: 0.7 m/s2 */
+#define TRANSFER_TIME_S 0.4F /* chosen: four scans */
 
 static float no_thrust(laws_t *laws, est_law_t *est, const situation_t *now)
 {
@@ -128,7 +128,7 @@ static void transfer(laws_t *laws, const situation_t *now, bool law_changed)
     } else if (law_changed && !loses_estimate(now)) {
         laws->transfer_n = now->thrust_n - laws->setpoint_n;
     } else if (changed) {
-        laws->transfer_n = between(hover_n - TRANSFER_START_N, now->thrust_n, hover_n + TRANSFER_START_N) -
+        laws->transfer_n = between(hover_n - NEAR_HOVER_N, now->thrust_n, hover_n + NEAR_HOVER_N) -
                            laws->setpoint_n;
     } else {
         laws->transfer_n *= TRANSFER_TIME_S / (TRANSFER_TIME_S + where_step_s(now->where));

@@ -10,7 +10,6 @@
 #define PIN_TRUSTED_S 5.0F /* chosen: a loose contact is over sooner */
 #define PIN_BELOW_N 2.0F   /* chosen: a load of a newton let go, and a newton to sink */
 #define PIN_ABOVE_N 1.0F   /* chosen: a load of a newton */
-#define BLIND_MAX_S 60.0F  /* above DESCENT_TIMEOUT_US in supervisor.c */
 
 static void reset(stuck_pin_t *pin)
 {
@@ -27,7 +26,7 @@ static float descent_n(stuck_pin_t *pin, const situation_t *now)
     const bool holds = pin->piloted_s < PIN_TRUSTED_S && !supervisor->land;
 
     if (height->age_us > HEIGHT_LOST_US) {
-        return holds ? hover_n : descent_blind(hover_n, seconds_at_most(height->age_us, BLIND_MAX_S));
+        return holds ? hover_n : descent_blind(hover_n, seconds_at_most(height->age_us, DESCENT_BLIND_MAX_S));
     }
     if (!height->is_new) {
         return hover_n + pin->more_n;

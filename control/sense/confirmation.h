@@ -11,7 +11,7 @@
 #include "control/sense/heights.h"
 
 #define CONFIRMATION_SUNK 3U       /* chosen: 0.3 s; `sunk` stops here */
-#define CONFIRMATION_QUIET_M 0.10F /* chosen: as CONTENT_M in verdict.c */
+#define CONFIRMATION_QUIET_M 0.10F /* chosen: as CONTENT_M in rules.c */
 
 typedef struct {
     bool unconfirmed;   /* after a take-off or a step towards the vehicle: no climb has shown since */

@@ -37,7 +37,7 @@
 #define MOVED_M 0.30F        /* chosen: above BOTH_M, so that the agreement is about a real motion */
 #define PUSH_N 0.7F          /* chosen: a tenth of GRAV as delivered, 7 N */
 #define VAIN_S 3.0F          /* chosen: twice AGREED_S, because only one witness is left */
-#define VAIN_MPS 0.12F       /* chosen: below LAND_MPS in est_law.c, 0.15 m/s */
+#define VAIN_MPS 0.12F       /* chosen: below LAND_MPS in let_down.c, 0.15 m/s */
 #define VAIN_M 0.15F         /* chosen: above CONTENT_M */
 #define RUN_AWAY_MPS 0.7F    /* chosen: above the speed of unconfirmed climbs, 0.35 and 0.6 m/s */
 #define RUN_AWAY_M 0.38F     /* chosen: between BOTH_M and AGAINST_M */

@@ -2,7 +2,7 @@
  * accelerometer may be wrong from before, and may drift. */
 #include "control/sense/stand.h"
 
-#define FALL_MPS 0.8F      /* chosen: above SINK_MAX_MPS in est_law.c, 0.6 m/s */
+#define FALL_MPS 0.8F      /* chosen: above SINK_MAX_MPS in let_down.c, 0.6 m/s */
 #define STANDS_S 0.6F      /* chosen: 24 frames */
 #define CALM_S 1.0F        /* chosen: two thirds of SWAY_TIME_S in sway.c */
 #define CALM_TIME_S 2.0F   /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in that time */

@@ -10,7 +10,7 @@
 #include <stdbool.h>
 
 #define WITNESS_OLD_S 2.0F   /* chosen: full leak and correction after that time; running_s stops here */
-#define WITNESS_STEP_M 0.10F /* chosen: above INNOVATION_LIMIT_MAX_M in height_gate.c, 0.08 m */
+#define WITNESS_STEP_M 0.10F /* chosen: above INNOVATION_LIMIT_MAX_M in estimator.c, 0.08 m */
 
 typedef struct {
     float speed_mps; /* predicted vertical speed */

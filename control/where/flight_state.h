@@ -27,13 +27,13 @@ typedef enum {
 #define FLIGHT_FLAG_TILT 32U    /* tilted over 45 degrees, or CUT */
 #define FLIGHT_FLAG_PILOT 64U   /* the pilot has the throttle */
 #define FLIGHT_FLAG_SIGHT 256U  /* doubt SIGHT: heights are not believed, facts.h */
-#define FLIGHT_FLAG_IMU \
-    512U /* doubt IMU: accelerations are not believed; or law EST gets none and flies without them */
+/* doubt IMU: accelerations are not believed; or law EST gets none and flies without them */
+#define FLIGHT_FLAG_IMU 512U
 #define FLIGHT_FLAG_THRUST 1024U /* doubt THRUST: commands have no effect */
 #define FLIGHT_FLAG_STICK 2048U  /* STICK PIN, and the stick does not count; set by task_control.c */
-#define FLIGHT_FLAG_REACH \
-    128U /* the reference is not reached: over 0.1 m off for 3 s, and no nearer; or a landing does not \
-          * sink; set by flight.c */
+/* the reference is not reached: over 0.1 m off for 3 s, and no nearer; or a landing does not sink; set by
+ * flight.c */
+#define FLIGHT_FLAG_REACH 128U
 
 /* Name as in the telemetry: "GROUND" and so on. Zero-terminated, static. */
 const char *flight_state_name(flight_state_t state);
@@ -44,31 +44,27 @@ const char *flight_state_name(flight_state_t state);
 #define FLIGHT_IF_HEIGHT 4U      /* the latest valid height is at most 0.3 s old */
 #define FLIGHT_IF_LOST 8U        /* the latest valid height is more than 1.5 s old, or there never was one */
 #define FLIGHT_IF_OFF_GROUND 16U /* fresh height above 0.15 m */
-#define FLIGHT_IF_ALOFT \
-    32U /* fresh heights above 0.15 m and level (see below) for 1 s, and the tilt moves as in flight */
-#define FLIGHT_IF_AT_REST \
-    64U /* fresh heights below 0.05 m that did not fall by 0.02 m, for 1.2 s in \
-         * the present state. In LANDING and DESCENDING also: for 0.6 s too \
-         * little thrust to fly, and no measured fall */
-#define FLIGHT_IF_TOO_HIGH \
-    128U /* the vehicle will go above reference + 0.8 m. With an estimate: after \
-          * 0.25 s more of the present climb and a braking of 4 m/s2. From \
-          * heights: two in a row, each with its own climb for 0.15 s more; for \
-          * 0.4 s more when there has been no estimate for 0.35 s */
-#define FLIGHT_IF_RECOVERED \
-    256U                                /* fresh height, and the predicted end of the motion (if there is an \
-                                         * estimate) is below reference + 0.3 m */
+/* fresh heights above 0.15 m and level (see below) for 1 s, and the tilt moves as in flight */
+#define FLIGHT_IF_ALOFT 32U
+/* fresh heights below 0.05 m that did not fall by 0.02 m, for 1.2 s in the present state. In LANDING and
+ * DESCENDING also: for 0.6 s too little thrust to fly, and no measured fall */
+#define FLIGHT_IF_AT_REST 64U
+/* the vehicle will go above reference + 0.8 m. With an estimate: after 0.25 s more of the present climb and a
+ * braking of 4 m/s2. From heights: two in a row, each with its own climb for 0.15 s more; for 0.4 s more when
+ * there has been no estimate for 0.35 s */
+#define FLIGHT_IF_TOO_HIGH 128U
+/* fresh height, and the predicted end of the motion (if there is an estimate) is below reference + 0.3 m */
+#define FLIGHT_IF_RECOVERED 256U
 #define FLIGHT_IF_LAND 512U             /* #SETR 0 arrived in this cycle */
 #define FLIGHT_IF_DESCENT_TIMEOUT 1024U /* 45 s in DESCENDING: its thrust has fallen to 0 */
 #define FLIGHT_IF_TILTED 2048U          /* three fresh attitudes in a row over 45 degrees */
 #define FLIGHT_IF_LEVEL 4096U           /* fresh attitude within 20 degrees */
-#define FLIGHT_IF_LOWERING_LIMIT \
-    8192U                             /* third LOWERING since the reference was set, or since 20 s of \
-                                       * FLYING: the law cannot fly this vehicle */
+/* third LOWERING since the reference was set, or since 20 s of FLYING: the law cannot fly this vehicle */
+#define FLIGHT_IF_LOWERING_LIMIT 8192U
 #define FLIGHT_IF_HAS_THROTTLE 16384U /* the pilot does not have the throttle */
-#define FLIGHT_IF_HANDED_OVER \
-    32768U /* #ARM was given on the ground, there is no height, the tilt moves as in flight, and the pilot \
-            * gave the throttle back in this cycle; without a pin he may have */
+/* #ARM was given on the ground, there is no height, the tilt moves as in flight, and the pilot gave the
+ * throttle back in this cycle; without a pin he may have */
+#define FLIGHT_IF_HANDED_OVER 32768U
 #define FLIGHT_IF_ALL 65535U
 
 typedef struct {

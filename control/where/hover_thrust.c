@@ -6,9 +6,8 @@
 #include "control/between.h"
 #include "control/thrust.h"
 
-#define HOVER_MARGIN_N 1.5F /* mass 20 % off; below the 2 N of law EST, because no law corrects it here */
-#define HOVER_TIME_S 2.5F   /* chosen: a mean over the swings of the seed's law */
-#define SETTLE_S 0.6F       /* chosen: six scans; until then the estimate is copied */
+#define HOVER_TIME_S 2.5F /* chosen: a mean over the swings of the seed's law */
+#define SETTLE_S 0.6F     /* chosen: six scans; until then the estimate is copied */
 
 static void learn(hover_thrust_t *hover, const hover_lesson_t *lesson)
 {
@@ -60,5 +59,5 @@ void hover_thrust_lift_off(hover_thrust_t *hover, float thrust_n)
 
 float hover_thrust_near(float gravity_n, float thrust_n)
 {
-    return between(gravity_n - HOVER_MARGIN_N, thrust_n, gravity_n + HOVER_MARGIN_N);
+    return between(gravity_n - HOVER_THRUST_MARGIN_N, thrust_n, gravity_n + HOVER_THRUST_MARGIN_N);
 }

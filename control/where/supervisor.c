@@ -12,10 +12,9 @@
 #include "control/credible.h"
 
 #define ATTITUDE_FRESH_US UINT32_C(250000) /* ten frames of 25 ms */
-#define ALOFT_HELD_US \
-    UINT32_C(1000000)                  /* chosen: a pilot who flies, not one who lifts the vehicle by hand \
-                                        */
-#define REST_HELD_US UINT32_C(1200000) /* chosen: a bounce is shorter */
+/* chosen: a pilot who flies, not one who lifts the vehicle by hand */
+#define ALOFT_HELD_US UINT32_C(1000000)
+#define REST_HELD_US UINT32_C(1200000)        /* chosen: a bounce is shorter */
 #define REST_ROCKS_MAX_US UINT32_C(20000000)  /* chosen: above the time of a landing from 4 m */
 #define LINK_HOLD_US UINT32_C(5000000)        /* chosen: the flag warns for 5 s, then the vehicle lands */
 #define DESCENT_TIMEOUT_US UINT32_C(45000000) /* the thrust of a blind descent has fallen to 0, descent.c */

@@ -2,18 +2,16 @@
 
 #include "control/seconds.h"
 
-#define STEP_MAX_S 0.5F /* chosen: longer pauses count as this long */
-
 float where_step_s(const where_t *where)
 {
-    return seconds_at_most(where->supervisor.step_us, STEP_MAX_S);
+    return seconds_at_most(where->supervisor.step_us, CYCLE_MAX_S);
 }
 
 float where_gap_s(const where_t *where, uint32_t now_us)
 {
     const supervisor_t *supervisor = &where->supervisor;
 
-    return supervisor->started ? seconds_at_most(now_us - supervisor->now_us, STEP_MAX_S) : 0.0F;
+    return supervisor->started ? seconds_at_most(now_us - supervisor->now_us, CYCLE_MAX_S) : 0.0F;
 }
 
 bool where_stops(const where_t *where)

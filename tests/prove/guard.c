@@ -7,10 +7,10 @@ static float commanded_ns; /* the impulse that was counted last in a cycle */
 
 static float impulse_ns(float more_n, float step_s)
 {
-    PROVE(more_n >= 0.0F && more_n <= THRUST_MAX_N && step_s >= 0.0F && step_s <= GUARD_STEP_MAX_S,
+    PROVE(more_n >= 0.0F && more_n <= THRUST_MAX_N && step_s >= 0.0F && step_s <= CYCLE_MAX_S,
           "a thrust and a time");
     commanded_ns = nondet_float();
-    ASSUME(commanded_ns >= 0.0F && commanded_ns <= THRUST_MAX_N * GUARD_STEP_MAX_S);
+    ASSUME(commanded_ns >= 0.0F && commanded_ns <= THRUST_MAX_N * CYCLE_MAX_S);
     return commanded_ns;
 }
 
@@ -18,10 +18,10 @@ static float faded_to_n; /* what is needed, after the cycle's fading */
 
 static float faded_n(float thrust_n, float step_s)
 {
-    PROVE(thrust_n >= 0.0F && thrust_n <= THRUST_MAX_N && step_s >= 0.0F && step_s <= GUARD_STEP_MAX_S,
+    PROVE(thrust_n >= 0.0F && thrust_n <= THRUST_MAX_N && step_s >= 0.0F && step_s <= CYCLE_MAX_S,
           "a thrust and a time");
     faded_to_n = nondet_float();
-    ASSUME(faded_to_n <= thrust_n && faded_to_n >= -GUARD_FADE_N_PER_S * GUARD_STEP_MAX_S);
+    ASSUME(faded_to_n <= thrust_n && faded_to_n >= -GUARD_FADE_N_PER_S * CYCLE_MAX_S);
     return faded_to_n;
 }
 
@@ -30,10 +30,10 @@ void any_thrust_fades_slowly(void)
     const float thrust_n = nondet_float();
     const float step_s = nondet_float();
 
-    ASSUME(thrust_n >= 0.0F && thrust_n <= THRUST_MAX_N && step_s >= 0.0F && step_s <= GUARD_STEP_MAX_S);
+    ASSUME(thrust_n >= 0.0F && thrust_n <= THRUST_MAX_N && step_s >= 0.0F && step_s <= CYCLE_MAX_S);
     const float then_n = faded_n_itself(thrust_n, step_s);
 
-    PROVE(then_n <= thrust_n && then_n >= -GUARD_FADE_N_PER_S * GUARD_STEP_MAX_S, "less, and not by more");
+    PROVE(then_n <= thrust_n && then_n >= -GUARD_FADE_N_PER_S * CYCLE_MAX_S, "less, and not by more");
 }
 
 void any_impulse_is_one(void)
@@ -41,7 +41,7 @@ void any_impulse_is_one(void)
     const float more_n = nondet_float();
     const float step_s = nondet_float();
 
-    ASSUME(more_n >= 0.0F && more_n <= THRUST_MAX_N && step_s >= 0.0F && step_s <= GUARD_STEP_MAX_S);
+    ASSUME(more_n >= 0.0F && more_n <= THRUST_MAX_N && step_s >= 0.0F && step_s <= CYCLE_MAX_S);
     PROVE(impulse_ns_itself(more_n, step_s) >= 0.0F, "not below nothing");
 }
 
@@ -93,7 +93,7 @@ void any_unseen_impulse_is_bounded(void)
 
     ASSUME(guard.unseen_ns >= 0.0F && guard.unseen_ns <= GUARD_UNSEEN_NS);
     ASSUME(now.heaviest_n >= 0.0F && now.heaviest_n <= THRUST_MAX_N && now.idle_n <= now.heaviest_n);
-    ASSUME(now.step_s >= 0.0F && now.step_s <= GUARD_STEP_MAX_S);
+    ASSUME(now.step_s >= 0.0F && now.step_s <= CYCLE_MAX_S);
     now.ordered = true;
     now.confirmed = false;
     const float before_ns = guard.unseen_ns;
@@ -114,7 +114,7 @@ void any_fall_is_bounded(void)
     ASSUME(guard.sure_n >= 0.0F && guard.sure_n <= THRUST_MAX_N);
     ASSUME(guard.fallen_ns >= 0.0F && guard.fallen_ns <= GUARD_FALL_NS);
     ASSUME(now.lightest_n >= 0.0F && now.lightest_n <= now.heaviest_n && now.heaviest_n <= THRUST_MAX_N);
-    ASSUME(now.step_s >= 0.0F && now.step_s <= GUARD_STEP_MAX_S && now.idle_n <= now.lightest_n);
+    ASSUME(now.step_s >= 0.0F && now.step_s <= CYCLE_MAX_S && now.idle_n <= now.lightest_n);
     now.ordered = true;
     now.confirmed = true; /* any_unseen_impulse_is_bounded() is the other half */
     const float before_ns = guard.fallen_ns;

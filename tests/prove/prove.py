@@ -73,7 +73,7 @@ PROOFS = [
                       "any_impulse_is_one"]),
 ]
 # Of control/ what the guard is made of.
-GUARD = ("guard.c", "guard.h", "between.h", "thrust.h")
+GUARD = ("guard.c", "guard.h", "between.h", "seconds.h", "thrust.h")
 
 
 def find_cbmc():

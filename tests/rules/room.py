@@ -20,6 +20,7 @@ DECISION = re.compile(r"\b(?:if|for|while|case)\b|\?|&&|\|\|")
 LABELS = re.compile(r"case\b[^:]*:(?=\s*case\b)")    # labels that stand together are one decision
 STRUCT = re.compile(r"typedef struct(?:\s+\w+)?\s*\{(.*?)\n\}\s*(\w+);", re.DOTALL)
 FUNCTION = re.compile(r"^(?!static\b)\w[\w ]*?[ *](\w+)\([^;{}]*\)\s*\{", re.MULTILINE)    # that others may call
+ORIGIN = re.compile(r"\b([A-Z][A-Z0-9_]{3,}) (?:in|of) (\w+\.[ch])\b")
 TABLES = {"control/laws/table.h": "control/laws/laws"}
 EXCUSES = "tests/rules/excuses.txt"
 
@@ -82,6 +83,20 @@ def circles(edges):
     return found
 
 
+def origins(the_house):
+    """Constants that say they are as one of another file, which that file does not define, or which is their own."""
+    sources = [path for room in house.PRODUCT for path in the_house.sources(room, ".c", ".h")]
+    complaints = []
+    for path in sources:
+        text = the_house.text(path)
+        for match in ORIGIN.finditer(text):
+            homes = [other for other in sources if other.endswith("/" + match.group(2))]
+            defined = any(re.search(rf"#define {match.group(1)}\b|\b{match.group(1)}\s*[,=}}]", the_house.text(home)) for home in homes)
+            if path in homes or not defined:
+                complaints.append(f"{path}:{house.line_of(text, match.start())}: {match.group()}: it is not defined there")
+    return complaints
+
+
 def flight_names(the_house):
     """Members of structs of other headers that flight.c reaches through a member of its own: flight->a.b counts b."""
     code = house.code_only(the_house.text("control/flight.c"))
@@ -122,6 +137,7 @@ def check(the_house):
         if thing in excused and figure < excused[thing]:
             complaints.append(f"{EXCUSES}: {thing} is {figure} now" + ("" if figure > limit else " and needs no excuse"))
     complaints += [f"{EXCUSES}: {thing} does not exist" for thing in excused if thing not in found]
+    complaints += origins(the_house)
     complaints += [f"includes in a circle: {circle}" for circle in circles(included(the_house))]
     complaints += [f"calls in a circle: {circle}" for circle in circles(called(the_house))]
     return complaints

@@ -83,6 +83,17 @@ class Circles(Sample):
         self.assertEqual(room.circles(room.included(house.House(self.root))), ["control/a -> control/b -> control/a"])
 
 
+class Origins(Sample):
+    def test_a_constant_that_is_as_one_that_is_not_there_is_named(self):
+        self.write("drivers/b.h", "#define LEAST_M 1\n")
+        self.write("control/a.c", "#define MOST_M 2 /* as LEAST_M in b.h */\n")
+        self.assertEqual(room.origins(house.House(self.root)), [])
+        self.write("control/a.c", "#define MOST_M 2 /* as GONE_M in b.h */\n")
+        self.assertEqual(len(room.origins(house.House(self.root))), 1)
+        self.write("control/a.c", "#define MOST_M 2 /* as MOST_M in a.c */\n")
+        self.assertEqual(len(room.origins(house.House(self.root))), 1)
+
+
 class Walk(Sample):
     """Calls as (file, function); None ends one."""
     STEP, A, B, C = ("flight.c", "step"), ("a.c", "a"), ("b.c", "b"), ("c.c", "c")
