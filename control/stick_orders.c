@@ -32,6 +32,7 @@ static bool is_wired(const parameters_t *parameters)
 static void order(stick_orders_t *orders, float reference_m)
 {
     orders->reference_m = reference_m;
+    orders->landing = reference_m == 0.0F;
     ++orders->references.by_stick;
 }
 
@@ -126,7 +127,6 @@ static void fly(stick_orders_t *orders, const parameters_t *parameters, const fl
 
     if (held(orders, lowest && up < -DEAD_BAND, LAND_S, step_s)) {
         order(orders, 0.0F);
-        orders->landing = true;
     } else if (by_m != 0.0F && before->estimate_mm == before->estimate_mm) {
         const float to_m = moved_m(orders, before->reference_m, before->estimate_mm * 0.001F, by_m);
         orders->raised_m += at_least(to_m - before->reference_m, 0.0F);

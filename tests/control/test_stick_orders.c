@@ -300,6 +300,19 @@ void test_up_ends_a_landing_that_the_stick_ordered_and_no_other(void)
     TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 5.0F));
 }
 
+/* It was ordered once, and is over: another landing is not the stick's. */
+void test_up_does_not_end_a_landing_for_another_reason_after_one_by_stick(void)
+{
+    fly_at(STICK_LEAST_M);
+    (void)held(DOWN_US, 1.5F);
+    before.state = FLIGHT_GROUND;
+    (void)held(MIDDLE_US, 1.0F);
+    TEST_ASSERT_EQUAL_UINT(1, held(UP_US, 1.0F));
+    before.state = FLIGHT_LANDING; /* a link that is lost */
+    (void)held(MIDDLE_US, 1.0F);
+    TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 5.0F));
+}
+
 void test_no_state_but_flying_and_the_ground_obeys_it(void)
 {
     static const flight_state_t states[] = {FLIGHT_TAKEOFF, FLIGHT_COASTING, FLIGHT_DESCENDING,
