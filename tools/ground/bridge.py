@@ -70,8 +70,13 @@ class Bridge:
 async def run(port, command):
     loop = asyncio.get_running_loop()
     flight = await asyncio.create_subprocess_exec(*command, "--xbee", "pty", stdout=asyncio.subprocess.PIPE)
+
+    def stop():
+        if flight.returncode is None:       # Ctrl-C reaches the flight by itself
+            flight.terminate()
+
     for number in (signal.SIGINT, signal.SIGTERM):
-        loop.add_signal_handler(number, flight.terminate)
+        loop.add_signal_handler(number, stop)
     try:
         said = (await flight.stdout.readline()).decode()
         if not said.startswith("xbee: "):
@@ -89,9 +94,8 @@ async def run(port, command):
             loop.remove_reader(terminal)
         return flight.returncode
     finally:
-        if flight.returncode is None:
-            flight.terminate()
-            await flight.wait()
+        stop()
+        await flight.wait()
 
 
 def main():
