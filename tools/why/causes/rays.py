@@ -4,7 +4,7 @@ import numpy
 import vehicle
 from causes.case import Finding
 
-LATE_S = (0.06, 0.095)
+LATE_S = (0.055, 0.075, 0.1)
 LATE_USUAL_S = 0.03             # campaigns draw the instant of the rays within 30 ms: that is no fault
 ARM_M = 0.3                     # height per radian: as causes/imu.py
 HEIGHT_FLAG = 1
@@ -12,7 +12,7 @@ BEFORE_S = (0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0)  # before the firmware gave the h
 STILL_M, MAD = 0.003, 0.674     # noise of the mean of 35 rays; median of the absolute deviation, in standard deviations
 METRES = 1.0                    # a height that tells nothing is anywhere within that
 LOST_S = 0.3
-# Rules that say that the thrust does not do what it should: too little of it does the same.
+# Rules that say that the thrust does not do what it should: too little of it does the same. Then the heights themselves must tell.
 PUSHES_IN_VAIN, IN_VAIN = ("SIGHT/noclimb", "SIGHT/vain", "SIGHT/aloft"), 1.0
 SIGHT, GONE = 6.0, 6.0          # nats: 1 healthy flight of 400 shows either (docs/reliability.md), most of these causes do
 
@@ -66,7 +66,7 @@ def rays(case):
     if not lost:
         return Finding(-3.0)
     seconds = sum(b - a for a, b in lost)
-    in_vain = bool(doubts) and set(doubts) <= set(PUSHES_IN_VAIN)
+    in_vain = bool(doubts) and case.model is not None and set(doubts) <= set(PUSHES_IN_VAIN)
     told = IN_VAIN if in_vain else (SIGHT if doubts else 0.0) + (GONE if seconds > LOST_S else 0.0)
     found = Finding(told, {"seconds": seconds, "doubts": doubts, "from": lost[0][0]}, None, lost)
     if case.model is None:
