@@ -88,7 +88,7 @@ class ThePage(unittest.TestCase):
         version = re.search(r"VERSION (\S+)", (ROOT / "tools/scip_package/CMakeLists.txt").read_text(encoding="utf-8")
                             .split("project(plomada_scip")[1]).group(1)
         self.assertEqual(set(re.findall(r"plomada_scip-([\d.]+)\.zip", section())), {version})
-        self.assertEqual(len(commands()), 6)
+        self.assertEqual(len(commands()), 7)
 
 
 if __name__ == "__main__":
