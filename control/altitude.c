@@ -71,55 +71,90 @@ mirror_windows_t altitude_windows_of(const parameters_t *parameters)
     return windows;
 }
 
-static void add_mirror(altitude_t *altitude, const mirror_geometry_t *mirror, const mirror_range_t *range)
+static altitude_t altitude_of(const mirror_geometry_t *mirror, const mirror_range_t *range, float roll_rad,
+                              float pitch_rad)
 {
-    altitude->slant_mm += range->slant_mm;
-    altitude->spread_mm = fmaxf(altitude->spread_mm, range->spread_mm);
-    altitude->good_rays = (uint16_t)(altitude->good_rays + range->good_rays);
-    altitude->distance_mm += mirror->distance_mm;
-    altitude->leg_mm += mirror->leg_mm;
-    altitude->arm_mm += mirror->arm_mm;
-    altitude->fore_mm += mirror->fore_sign * mirror->distance_mm;
-    altitude->later_us += range->later_us;
-    ++altitude->agreeing;
+    return (altitude_t){
+        .valid = range->valid && range->good_rays >= RAYS_LEAST,
+        .height_mm = altitude_under_mirror(mirror, range->slant_mm, roll_rad, pitch_rad),
+        .slant_mm = range->slant_mm,
+        .spread_mm = range->spread_mm,
+        .good_rays = range->good_rays,
+        .distance_mm = mirror->distance_mm,
+        .leg_mm = mirror->leg_mm,
+        .arm_mm = mirror->arm_mm,
+        .fore_mm = mirror->fore_sign * mirror->distance_mm,
+        .later_us = range->later_us,
+        .agreeing = 1U,
+    };
 }
 
-static void divide(altitude_t *altitude, float groups)
+static void add(altitude_t *sum, const altitude_t *one)
 {
-    altitude->later_us /= (int32_t)altitude->agreeing;
-    altitude->height_mm /= groups;
-    altitude->slant_mm /= groups;
-    altitude->distance_mm /= groups;
-    altitude->leg_mm /= groups;
-    altitude->arm_mm /= groups;
-    altitude->fore_mm /= groups;
+    sum->valid = true;
+    sum->height_mm += one->height_mm;
+    sum->slant_mm += one->slant_mm;
+    sum->spread_mm = fmaxf(sum->spread_mm, one->spread_mm);
+    sum->good_rays = (uint16_t)(sum->good_rays + one->good_rays);
+    sum->distance_mm += one->distance_mm;
+    sum->leg_mm += one->leg_mm;
+    sum->arm_mm += one->arm_mm;
+    sum->fore_mm += one->fore_mm;
+    sum->later_us += one->later_us;
+    ++sum->agreeing;
+}
+
+static void divide(altitude_t *sum)
+{
+    const float groups = (float)sum->agreeing;
+
+    sum->later_us /= (int32_t)sum->agreeing;
+    sum->height_mm /= groups;
+    sum->slant_mm /= groups;
+    sum->distance_mm /= groups;
+    sum->leg_mm /= groups;
+    sum->arm_mm /= groups;
+    sum->fore_mm /= groups;
+}
+
+altitude_t altitude_mean(const altitude_t *altitudes, size_t count)
+{
+    altitude_t mean = {.valid = false};
+    float lowest_mm = 0.0F;
+    float highest_mm = 0.0F;
+
+    for (size_t i = 0; i < count; ++i) {
+        const altitude_t *one = &altitudes[i];
+        if (one->valid) {
+            lowest_mm = mean.valid ? fminf(lowest_mm, one->height_mm) : one->height_mm;
+            highest_mm = mean.valid ? fmaxf(highest_mm, one->height_mm) : one->height_mm;
+            add(&mean, one);
+        }
+    }
+    if (mean.valid) {
+        divide(&mean);
+        mean.disagree = highest_mm - lowest_mm > ALTITUDE_DISAGREE_MM;
+    }
+    return mean;
+}
+
+void altitude_of_mirrors(altitude_t *altitudes, const altitude_geometry_t *geometry,
+                         const mirror_range_t *ranges, size_t count, float roll_rad, float pitch_rad)
+{
+    for (size_t m = 0; m < MIRROR_COUNT; ++m) {
+        altitudes[m] = (altitude_t){.valid = false};
+    }
+    for (size_t i = 0; i < count; ++i) {
+        const mirror_t mirror = ranges[i].mirror;
+        altitudes[mirror] = altitude_of(&geometry->mirror[mirror], &ranges[i], roll_rad, pitch_rad);
+    }
 }
 
 altitude_t altitude_from_ranges(const altitude_geometry_t *geometry, const mirror_range_t *ranges,
                                 size_t count, float roll_rad, float pitch_rad)
 {
-    altitude_t altitude = {.valid = false};
-    float groups = 0.0F;
-    float lowest_mm = 0.0F;
-    float highest_mm = 0.0F;
+    altitude_t altitudes[MIRROR_COUNT];
 
-    for (size_t i = 0; i < count; ++i) {
-        const mirror_range_t *range = &ranges[i];
-        if (!range->valid || range->good_rays < RAYS_LEAST) {
-            continue;
-        }
-        const mirror_geometry_t *mirror = &geometry->mirror[range->mirror];
-        const float height_mm = altitude_under_mirror(mirror, range->slant_mm, roll_rad, pitch_rad);
-        lowest_mm = altitude.valid ? fminf(lowest_mm, height_mm) : height_mm;
-        highest_mm = altitude.valid ? fmaxf(highest_mm, height_mm) : height_mm;
-        altitude.valid = true;
-        altitude.height_mm += height_mm;
-        add_mirror(&altitude, mirror, range);
-        groups += 1.0F;
-    }
-    if (altitude.valid) {
-        divide(&altitude, groups);
-        altitude.disagree = highest_mm - lowest_mm > ALTITUDE_DISAGREE_MM;
-    }
-    return altitude;
+    altitude_of_mirrors(altitudes, geometry, ranges, count, roll_rad, pitch_rad);
+    return altitude_mean(altitudes, MIRROR_COUNT);
 }

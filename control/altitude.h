@@ -98,8 +98,16 @@ float altitude_under_mirror(const mirror_geometry_t *mirror, float slant_mm, flo
  * altitude_from_ranges(), because the formula is linear in the values whose means are kept. */
 float altitude_at_tilt(const altitude_t *altitude, float roll_rad, float pitch_rad);
 
-/* Mean height over the valid groups of two rays or more; a sensor of one ray: examples/one_ray. ranges:
- * `count` of them. Both pointers are borrowed for the call. Angles in radians, |angle| < pi/2. */
+/* Writes MIRROR_COUNT altitudes, by mirror_t, each of one mirror alone; not valid where no range is, or fewer
+ * than two rays: one ray has no spread. ranges: `count` of them, one for each mirror at most. The pointers
+ * are borrowed for the call. Angles in radians, |angle| < pi/2. */
+void altitude_of_mirrors(altitude_t *altitudes, const altitude_geometry_t *geometry,
+                         const mirror_range_t *ranges, size_t count, float roll_rad, float pitch_rad);
+
+/* Mean of those that are valid. */
+altitude_t altitude_mean(const altitude_t *altitudes, size_t count);
+
+/* Both of them. */
 altitude_t altitude_from_ranges(const altitude_geometry_t *geometry, const mirror_range_t *ranges,
                                 size_t count, float roll_rad, float pitch_rad);
 

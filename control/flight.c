@@ -5,6 +5,8 @@
  * the previous cycle. */
 #include "control/flight.h"
 
+#include <math.h>
+
 #include "control/outputs.h"
 #include "control/signs.h"
 
@@ -149,5 +151,7 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
     outputs_write(&now, flight->aim.out_of_reach, driven_n, out);
     out->bound = (uint16_t)flight->bounds.holds;
     out->imu_fault = flight->axes.fault;
+    out->height_mm = in->height_valid ? checked.altitude.height_mm : NAN;
+    out->height_mm = in->height_valid ? checked.altitude.height_mm : NAN;
     out->releases = flight_releases(flight, parameters);
 }

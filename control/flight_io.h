@@ -23,6 +23,8 @@ typedef struct {
     uint32_t now_us;
     bool height_valid;          /* the latest scan gave a height; false: altitude is not read */
     altitude_t altitude;        /* a height outside -50 .. 5000 mm, or NaN, counts as not valid */
+    const altitude_t *mirrors;  /* by mirror_t, each mirror's own; `altitude` is their mean. Borrowed for
+                                 * the call; NULL: `altitude` is the only one */
     uint32_t height_time_us;    /* arrival of the latest valid height; undefined before the first */
     uint32_t height_sequence;   /* +1 per valid height; 0 = never one */
     bool attitude_ready;        /* the offset of the angles is known */
@@ -64,6 +66,7 @@ typedef struct {
     uint16_t bound; /* that holds the thrust, bound_t of bounds.h; 0: none */
     imu_fault_t imu_fault;
     float reference_m;   /* reference in force, 0 = none */
+    float height_mm;     /* of the latest scan, believed or not; NAN: that scan gave none */
     float estimate_mm;   /* height that the law uses; NAN: not known */
     float innovation_mm; /* latest height minus predicted height; NAN where nothing is predicted */
     float stick_us;      /* pulse of the pilot's stick; NAN: none to believe; set by task_control.c */
@@ -73,7 +76,8 @@ typedef struct {
 /* Before the first cycle. */
 #define FLIGHT_OUTPUTS_INITIAL \
     { \
-        .pulse_us = THRUST_IDLE_PULSE_US, .estimate_mm = NAN, .innovation_mm = NAN, .stick_us = NAN \
+        .pulse_us = THRUST_IDLE_PULSE_US, .height_mm = NAN, .estimate_mm = NAN, .innovation_mm = NAN, \
+        .stick_us = NAN \
     }
 
 #endif

@@ -71,7 +71,7 @@ static published_t record_of(const flight_inputs_t *in, const flight_outputs_t *
 {
     return (published_t){
         .time_ms = tell_ms(in->now_us),
-        .height_mm = in->height_valid ? in->altitude.height_mm : NAN,
+        .height_mm = out->height_mm,
         .age_us = NAN,
         .roll_rad = in->attitude_ready ? in->roll_rad : NAN,
         .pitch_rad = in->attitude_ready ? in->pitch_rad : NAN,

@@ -20,13 +20,15 @@ void servers_create(void);
 
 /* Altitude server, written by TaskReceiveLaser. */
 typedef struct {
-    altitude_t altitude;     /* latest scan that gave a height */
-    bool scan_valid;         /* the latest scan gave a height */
-    uint32_t sensor_time_ms; /* of that height: the sensor's 24-bit clock */
-    uint32_t arrival_us;     /* last octet of that scan, bsp_time_us() */
-    uint32_t age_us;         /* from its rays to that octet, when nothing delays it */
-    uint32_t sequence;       /* heights so far; 0 = none yet */
-    uint32_t heightless;     /* scans without a height */
+    altitude_t altitude;              /* latest scan that gave a height: mean of its mirrors */
+    altitude_t mirrors[MIRROR_COUNT]; /* each of them, by mirror_t */
+    uint16_t mirror_count;            /* of LAYOUT; 1: altitude tells all */
+    bool scan_valid;                  /* the latest scan gave a height */
+    uint32_t sensor_time_ms;          /* of that height: the sensor's 24-bit clock */
+    uint32_t arrival_us;              /* last octet of that scan, bsp_time_us() */
+    uint32_t age_us;                  /* from its rays to that octet, when nothing delays it */
+    uint32_t sequence;                /* heights so far; 0 = none yet */
+    uint32_t heightless;              /* scans without a height */
 } altitude_sample_t;
 
 void altitude_server_write(const altitude_sample_t *sample);

@@ -100,7 +100,7 @@ static const imu_sample_t *read_frames(flight_inputs_t *in)
 
 static void read_inputs(const parameters_t *parameters, flight_inputs_t *in)
 {
-    altitude_sample_t altitude;
+    static altitude_sample_t altitude; /* the inputs point to its mirrors */
     const imu_sample_t *imu;
     reference_sample_t reference;
 
@@ -117,6 +117,7 @@ static void read_inputs(const parameters_t *parameters, flight_inputs_t *in)
     in->height_stamp_ms = altitude.sensor_time_ms;
     in->height_age_us = altitude.age_us;
     in->altitude = altitude.altitude;
+    in->mirrors = (altitude.mirror_count > 1U) ? altitude.mirrors : NULL;
     in->attitude_ready = imu->ready;
     in->roll_rad = imu->median.roll_rad;
     in->pitch_rad = imu->median.pitch_rad;

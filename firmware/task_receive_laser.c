@@ -2,7 +2,7 @@
 #include <ti/sysbios/knl/Task.h>
 #include <xdc/std.h>
 
-#include "control/beams.h"
+#include "control/altitude.h"
 #include "firmware/geometry.h"
 #include "firmware/laser_port.h"
 #include "firmware/monitor.h"
@@ -11,9 +11,10 @@
 #include "firmware/servers.h"
 #include "firmware/tasks.h"
 
-static altitude_t height_of(const scip_scan_t *scan, const attitude_t *tilt)
+/* The slants of one scan, as heights; returns how many mirrors there are. Which of them are believed is for
+ * control/sense to say. */
+static uint16_t heights_of(altitude_t *mirrors, const scip_scan_t *scan, const attitude_t *tilt)
 {
-    static beams_t beams;
     mirror_range_t ranges[SCIP_GROUPS_MAX];
     geometry_t geometry;
 
@@ -30,23 +31,30 @@ static altitude_t height_of(const scip_scan_t *scan, const attitude_t *tilt)
         ranges[i].good_rays = mean.good_rays;
         ranges[i].later_us = scip_group_later_us(scan, &geometry.layout.groups[i]);
     }
-    return beams_scan(&beams, &geometry.places, ranges, geometry.layout.group_count, tilt->roll_rad,
-                      tilt->pitch_rad);
+    altitude_of_mirrors(mirrors, &geometry.places, ranges, geometry.layout.group_count, tilt->roll_rad,
+                        tilt->pitch_rad);
+    return geometry.layout.group_count;
 }
 
 static void publish_height(altitude_sample_t *sample, const laser_message_t *message)
 {
     imu_sample_t imu;
+    altitude_t mirrors[MIRROR_COUNT];
 
     /* The latest tilt, not that of the rays, which are 70 ms older. The estimator corrects that with
      * its history; the other laws fly as the seed's did. */
     imu_server_read(&imu);
-    const altitude_t altitude = height_of(&message->scan, &imu.median);
+    const uint16_t count = heights_of(mirrors, &message->scan, &imu.median);
+    const altitude_t altitude = altitude_mean(mirrors, MIRROR_COUNT);
     sample->scan_valid = altitude.valid;
     /* Without a height the old one stays, with its own times: the supervisor sees by them how old it
      * is. */
     if (altitude.valid) {
         sample->altitude = altitude;
+        sample->mirror_count = count;
+        for (uint16_t i = 0U; i < MIRROR_COUNT; ++i) {
+            sample->mirrors[i] = mirrors[i];
+        }
         sample->sensor_time_ms = message->scan.timestamp_ms;
         sample->arrival_us = message->arrival_us;
         sample->age_us = (uint32_t)((int32_t)scip_rays_age_us(&message->scan, message->bit_rate) -

@@ -29,16 +29,14 @@ static Void release(UArg unused)
  * a doubt too, and the recorder all three. */
 static void report(telemetry_line_t *line, const char *reset)
 {
-    altitude_sample_t altitude;
     laser_sample_t laser;
     published_t now = {.age_us = NAN, .roll_rad = NAN, .pitch_rad = NAN, .up_mps2 = NAN};
 
-    altitude_server_read(&altitude);
     laser_server_read(&laser);
     flight_status_server_read(&now.flight);
     /* As the supervisor sees it: a height that it does not count must not look like one on the
      * operator's screen. */
-    now.height_mm = ((now.flight.flags & FLIGHT_FLAG_HEIGHT) == 0U) ? altitude.altitude.height_mm : NAN;
+    now.height_mm = ((now.flight.flags & FLIGHT_FLAG_HEIGHT) == 0U) ? now.flight.height_mm : NAN;
     now.laser = urg_status_name(laser.status);
     if (reset != NULL) {
         now.reset = reset;

@@ -3,9 +3,13 @@
  * cycle. */
 #include "control/sense/sense.h"
 
+#include <stddef.h>
+
+#include "control/between.h"
 #include "control/seconds.h"
 
-#define GAP_LONG_S 10.0F /* chosen: longer gaps count as this long; the witnesses restart after 1.5 s */
+#define GAP_LEAST_S 0.02F /* chosen: two scans can not be nearer; the line may deliver two at once */
+#define GAP_LONG_S 10.0F  /* chosen: longer gaps count as this long; the witnesses restart after 1.5 s */
 
 void sense_init(sense_t *sense)
 {
@@ -24,20 +28,56 @@ static void believe_tilt(const tilt_t *tilt, flight_inputs_t *in)
     in->tilted_frames = tilt->tilted;
 }
 
-static void compare_height(sense_t *sense, const command_t *command, const flight_inputs_t *in)
+/* The mirrors of a new scan, each at the believed tilt. */
+static void vote(sense_t *sense, const flight_inputs_t *in, float gap_s)
+{
+    const tilt_t *tilt = &sense->senses.tilt;
+    altitude_t shown[MIRROR_COUNT];
+
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        shown[m] = in->mirrors[m];
+        if (tilt->jumped > 0U) {
+            shown[m].height_mm = altitude_at_tilt(&shown[m], tilt->roll_rad, tilt->pitch_rad);
+        }
+    }
+    mirrors_scan(&sense->senses.mirrors, shown, at_least(gap_s, GAP_LEAST_S),
+                 seconds_at_most(in->height_age_us, GAP_LONG_S), (sense->verdict.doubts & DOUBT_IMU) == 0U);
+}
+
+/* Several mirrors: what they show together takes the place of their mean. Of one: that it agrees with none.
+ */
+static void elect(sense_t *sense, flight_inputs_t *in, bool is_new, float gap_s)
+{
+    mirrors_t *mirrors = &sense->senses.mirrors;
+
+    if (in->mirrors == NULL) {
+        mirrors->agree = false;
+        return;
+    }
+    if (is_new) {
+        vote(sense, in, gap_s);
+    }
+    if (mirrors->altitude.valid) {
+        in->height_age_us += (uint32_t)(in->altitude.later_us - mirrors->altitude.later_us);
+        in->altitude = mirrors->altitude;
+    }
+}
+
+static void compare_height(sense_t *sense, const command_t *command, flight_inputs_t *in)
 {
     const bool is_new = in->height_valid && in->height_sequence != sense->scan_sequence;
+    const float gap_s = seconds_at_most(in->height_time_us - sense->height_time_us, GAP_LONG_S);
 
+    elect(sense, in, is_new, gap_s);
     if (!is_new) {
         return;
     }
     sense->scan_sequence = in->height_sequence;
     sense->scan_fit = senses_scan(&sense->senses, &in->altitude);
     if (sense->scan_fit) {
-        const height_change_t change = senses_height(
-            &sense->senses, in->altitude.height_mm * 0.001F,
-            seconds_at_most(in->height_time_us - sense->height_time_us, GAP_LONG_S),
-            seconds_at_most(in->height_age_us, GAP_LONG_S), (sense->verdict.doubts & DOUBT_SIGHT) == 0U);
+        const height_change_t change = senses_height(&sense->senses, in->altitude.height_mm * 0.001F, gap_s,
+                                                     seconds_at_most(in->height_age_us, GAP_LONG_S),
+                                                     (sense->verdict.doubts & DOUBT_SIGHT) == 0U);
         verdict_height(&sense->verdict, &sense->senses, command, &change);
         sense->height_time_us = in->height_time_us;
     }

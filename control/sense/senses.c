@@ -52,6 +52,7 @@ static void take_frame(senses_t *s, const command_t *command, const imu_sample_t
         accelerometer_restart(&s->accelerometer, push_speed_mps(&s->push, s->heights.rise_mps));
         return;
     }
+    mirrors_frame(&s->mirrors, (mean_mps2 - s->accelerometer.bias_mps2) * dt_s);
     sway_frame(&s->sway, frame, s->heights.height_m, s->standing, dt_s);
     if (command->grounded) {
         watch_ground(s, mean_mps2, dt_s);

@@ -18,6 +18,7 @@
 #include "control/sense/beam.h"
 #include "control/sense/confirmation.h"
 #include "control/sense/heights.h"
+#include "control/sense/mirrors.h"
 #include "control/sense/push.h"
 #include "control/sense/stand.h"
 #include "control/sense/sway.h"
@@ -28,6 +29,7 @@ typedef struct {
     float slower_mps; /* speed of the slower witness, low-passed like heights.rise_mps */
     tilt_t tilt;
     sway_t sway;
+    mirrors_t mirrors;
     beam_t beam;
     heights_t heights;
     confirmation_t confirmation;

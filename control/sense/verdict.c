@@ -115,7 +115,7 @@ static void judge(verdict_t *verdict, senses_t *senses, const command_t *command
         judge_again(verdict, senses, &c, gap_s);
         return;
     }
-    const verdict_reason_t reason = rules_against_sight(&c);
+    const verdict_reason_t reason = senses->mirrors.agree ? VERDICT_NONE : rules_against_sight(&c);
     if (reason != VERDICT_NONE) {
         doubt_sight(verdict, senses, &c, reason);
     } else if (rules_against_thrust(&c) != VERDICT_NONE) {

@@ -16,7 +16,7 @@
 
 #include "bsp/led.h"
 #include "bsp/timebase.h"
-#include "control/beams.h"
+#include "control/altitude.h"
 #include "firmware/alive.h"
 #include "firmware/geometry.h"
 #include "firmware/laser_port.h"
@@ -92,14 +92,13 @@ static bool next(reading_t *reading)
 static void publish(const mirror_range_t *range, uint32_t arrival_us, uint32_t rays_us)
 {
     static altitude_sample_t sample;
-    static beams_t beams;
     geometry_t geometry;
     imu_sample_t imu;
     altitude_t altitude;
 
     geometry_mounted(&geometry);
     imu_server_read(&imu);
-    altitude = beams_scan(&beams, &geometry.places, range, 1U, imu.median.roll_rad, imu.median.pitch_rad);
+    altitude = altitude_from_ranges(&geometry.places, range, 1U, imu.median.roll_rad, imu.median.pitch_rad);
     sample.scan_valid = altitude.valid;
     if (altitude.valid) {
         sample.altitude = altitude;

@@ -391,7 +391,7 @@ static published_t published(void)
     const firmware_view_t firmware = firmware_view();
     const bool height = firmware.altitude.scan_valid, attitude = firmware.imu.ready;
     published_t now = {
-        .height_mm = height ? firmware.altitude.altitude.height_mm : NAN,
+        .height_mm = height ? firmware.flight.height_mm : NAN,
         .age_us = height ? height_age_us(&firmware) : NAN,
         .roll_rad = attitude ? firmware.imu.median.roll_rad : NAN,
         .pitch_rad = attitude ? firmware.imu.median.pitch_rad : NAN,

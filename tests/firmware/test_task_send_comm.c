@@ -15,19 +15,12 @@
 #include "control/facts.h"
 #include "unity.h"
 
-static altitude_sample_t altitude;
 static laser_sample_t laser;
 static flight_outputs_t flight;
 static telemetry_line_t line;
 static uint16_t lines;
 static const char *cause;   /* NULL: not told */
 static uint16_t more_ticks; /* that come while the task runs */
-
-static void altitude_read(altitude_sample_t *sample, int calls)
-{
-    (void)calls;
-    *sample = altitude;
-}
 
 static void laser_read(laser_sample_t *sample, int calls)
 {
@@ -73,16 +66,12 @@ void setUp(void)
     lines = 0U;
     (void)memset(&line, 0, sizeof line);
     (void)memset(&laser, 0, sizeof laser);
-    (void)memset(&altitude, 0, sizeof altitude);
-    altitude.altitude.valid = true;
-    altitude.altitude.height_mm = 598.4F;
-    altitude.altitude.slant_mm = 803.0F;
+    flight.height_mm = 598.4F;
     laser.status = URG_OK;
     flight.thrust_n = 7.123F;
     flight.reference_m = 0.6F;
     flight.state = FLIGHT_FLYING;
     flight.flags = 0U;
-    altitude_server_read_Stub(altitude_read);
     laser_server_read_Stub(laser_read);
     flight_status_server_read_Stub(flight_read);
     xbee_port_report_Stub(report);
@@ -178,13 +167,13 @@ void test_without_a_fresh_height_the_altitude_is_a_dash(void)
 void test_flags_other_than_the_heights_leave_the_altitude(void)
 {
     flight.flags = FLIGHT_FLAG_ATTITUDE | FLIGHT_FLAG_DISAGREE | FLIGHT_FLAG_TOO_HIGH | FLIGHT_FLAG_LINK;
-    altitude.altitude.height_mm = -12.0F;
+    flight.height_mm = -12.0F;
     assert_line("alt:-0.012 ref:0.600 laser:OK thr:7.12 state:FLYING flags:30\r\n");
 }
 
 void test_every_laser_status_and_every_state_is_told_by_its_name_and_fits_the_packet(void)
 {
-    altitude.altitude.height_mm = -4999.0F;
+    flight.height_mm = -4999.0F;
     flight.reference_m = 3.0F;
     flight.thrust_n = 11.76F;
     flight.flags = 30U;

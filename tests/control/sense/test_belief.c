@@ -1,0 +1,266 @@
+#include "control/sense/belief.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "unity.h"
+
+#define GAP_S 0.1F
+
+/* A vehicle as the three mirrors see it, by geometry of its own: an arm of 200 mm to the side for all of
+ * them, and 107 mm fore and aft. */
+static belief_t belief;
+static struct {
+    unsigned long seed;
+    float height_mm, rate_mm_s, roll_rad, pitch_rad;
+    float terrain_mm[MIRROR_COUNT]; /* under each mirror */
+    float blocked_mm[MIRROR_COUNT]; /* 0: not */
+    float own_mm, shared_mm;        /* noise */
+    float gust_mm_s2, sway_rad;
+} world;
+
+static belief_beam_t beams[MIRROR_COUNT];
+
+static float uniform(void)
+{
+    world.seed = (world.seed * 1103515245UL + 12345UL) & 0x7fffffffUL;
+    return (float)(world.seed >> 8) / 8388608.0F;
+}
+
+static float normal(void)
+{
+    float sum = 0.0F;
+
+    for (int k = 0; k < 12; k++) {
+        sum += uniform();
+    }
+    return sum - 6.0F;
+}
+
+static void begin(unsigned long seed)
+{
+    memset(&belief, 0, sizeof belief);
+    memset(&world, 0, sizeof world);
+    world.seed = seed;
+    world.height_mm = 600.0F;
+    world.own_mm = 3.0F;
+    world.gust_mm_s2 = 500.0F;
+    world.sway_rad = 0.04F;
+}
+
+void setUp(void)
+{
+    begin(1UL);
+}
+
+void tearDown(void) {}
+
+/* Hovers: it returns to 600 mm, gusts move it, and it sways. Returns how far it went. */
+static void fly(void)
+{
+    const float pull_mm_s2 = -4.0F * (world.height_mm - 600.0F) - 3.0F * world.rate_mm_s;
+
+    world.rate_mm_s += (pull_mm_s2 + world.gust_mm_s2 * normal()) * GAP_S;
+    world.height_mm += world.rate_mm_s * GAP_S;
+    world.roll_rad += 0.4F * (world.sway_rad * normal() - world.roll_rad);
+    world.pitch_rad += 0.4F * (world.sway_rad * normal() - world.pitch_rad);
+}
+
+static void scan(void)
+{
+    static const float fore_mm[MIRROR_COUNT] = {[MIRROR_FORE] = 107.0F, [MIRROR_AFT] = -107.0F};
+    const float shared_mm = world.shared_mm * normal();
+
+    for (int m = 0; m < MIRROR_COUNT; m++) {
+        const float upright = cosf(world.roll_rad) * cosf(world.pitch_rad);
+        const float lifted_mm = 200.0F * sinf(world.roll_rad) + fore_mm[m] * sinf(world.pitch_rad);
+        const float true_mm = (world.height_mm - world.terrain_mm[m] + lifted_mm) / upright;
+        const float slant_mm = (world.blocked_mm[m] > 0.0F ? world.blocked_mm[m] : true_mm) + shared_mm +
+                               world.own_mm * normal();
+
+        beams[m] = (belief_beam_t){true, slant_mm, slant_mm * upright - lifted_mm};
+    }
+    belief_scan(&belief, beams, GAP_S, 0.0F);
+}
+
+static void hover(int scans)
+{
+    while (scans-- > 0) {
+        fly();
+        scan();
+    }
+}
+
+/* Scans until the liars are these, and no other; -1: not within `most`. */
+static int scans_until(uint16_t liars, int most)
+{
+    for (int k = 1; k <= most; k++) {
+        bool so = true;
+
+        hover(1);
+        for (int m = 0; m < MIRROR_COUNT; m++) {
+            const bool lies = belief_of_lie(&belief, (mirror_t)m) > 0.5F;
+            so = so && lies == ((liars >> m & 1U) != 0U);
+        }
+        if (so) {
+            return k;
+        }
+    }
+    return -1;
+}
+
+static float likeliest_lie(void)
+{
+    float most = 0.0F;
+
+    for (int m = 0; m < MIRROR_COUNT; m++) {
+        most = fmaxf(most, belief_of_lie(&belief, (mirror_t)m));
+    }
+    return most;
+}
+
+void test_before_the_first_scan_nobody_lies_and_after_it_hardly_anybody(void)
+{
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, likeliest_lie());
+    scan();
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-3F, 1.0e-3F, likeliest_lie());
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 1.0F, belief_of_two(&belief, 7U));
+}
+
+/* Any mirror, near and far, with noise that the mirrors share and with noise of their own. */
+void test_one_mirror_that_is_blocked_is_found_within_three_seconds_and_mostly_in_one(void)
+{
+    int quick = 0;
+
+    for (unsigned long seed = 1UL; seed <= 60UL; seed++) {
+        const int m = (int)(seed % 3UL);
+
+        begin(seed);
+        world.own_mm = (seed & 1UL) != 0UL ? 4.0F : 1.0F;
+        world.shared_mm = (seed & 1UL) != 0UL ? 0.0F : 3.0F;
+        hover(30);
+        world.blocked_mm[m] = 60.0F + 2900.0F * uniform();
+        const int scans = scans_until((uint16_t)(1U << m), 31);
+        TEST_ASSERT_INT_WITHIN(15, 16, scans);
+        quick += scans <= 10;
+    }
+    TEST_ASSERT_INT_WITHIN(15, 45, quick);
+}
+
+/* The third one flies, and is right. */
+void test_two_mirrors_blocked_at_one_length_do_not_outvote_the_third(void)
+{
+    for (unsigned long seed = 1UL; seed <= 60UL; seed++) {
+        const int honest = (int)(seed % 3UL);
+
+        begin(seed);
+        hover(30);
+        for (int m = 0; m < MIRROR_COUNT; m++) {
+            world.blocked_mm[m] = (m == honest) ? 0.0F : 300.0F + 5.0F * (float)seed;
+        }
+        TEST_ASSERT_INT_WITHIN(15, 16, scans_until((uint16_t)(7U & ~(1U << honest)), 31));
+    }
+}
+
+/* An hour of flight: every 3 s an edge passes under the mirrors, one after the other, up or down by up to 0.4
+ * m. */
+void test_in_a_healthy_flight_over_steps_hardly_a_scan_disbelieves_a_mirror(void)
+{
+    int scans = 0, disbelieved = 0, alone = 0;
+
+    for (unsigned long seed = 1UL; seed <= 12UL; seed++) {
+        begin(seed);
+        world.shared_mm = (seed & 1UL) != 0UL ? 3.0F : 0.0F;
+        for (int k = 0; k < 100; k++) {
+            const float step_mm = 800.0F * (uniform() - 0.5F);
+
+            for (int m = 0; m < 30; m++) {
+                if (m < 6) {
+                    world.terrain_mm[m / 2] = step_mm;
+                }
+                hover(1);
+                scans++;
+                disbelieved += likeliest_lie() > 0.5F;
+                alone += belief_of_two(&belief, 7U) < 0.99F;
+            }
+        }
+    }
+    TEST_ASSERT_INT_WITHIN(500, 36000, scans);
+    TEST_ASSERT_INT_WITHIN(18, 18, disbelieved); /* one in a thousand */
+    TEST_ASSERT_INT_WITHIN(18, 18, alone);
+}
+
+/* All slants are constants then. Ten minutes. */
+void test_at_rest_nobody_becomes_a_liar(void)
+{
+    float most = 0.0F;
+
+    world.height_mm = 0.0F;
+    for (int k = 0; k < 6000; k++) {
+        scan();
+        most = fmaxf(most, likeliest_lie());
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.05F, 0.0F, most);
+}
+
+void test_a_mirror_that_is_free_again_is_believed_again(void)
+{
+    for (unsigned long seed = 1UL; seed <= 30UL; seed++) {
+        begin(seed);
+        hover(30);
+        world.blocked_mm[MIRROR_FRONT] = 400.0F;
+        hover(60);
+        TEST_ASSERT_FLOAT_WITHIN(0.5F, 1.0F, belief_of_lie(&belief, MIRROR_FRONT));
+        world.blocked_mm[MIRROR_FRONT] = 0.0F;
+        TEST_ASSERT_INT_WITHIN(25, 26, scans_until(0U, 51));
+    }
+}
+
+/* A climb of 3 m/s2 that the accelerometer tells, and one that nothing tells. */
+void test_a_motion_that_the_accelerometer_tells_is_no_evidence_against_anybody(void)
+{
+    for (int m = 0; m < MIRROR_COUNT; m++) {
+        beams[m] = (belief_beam_t){true, 500.0F + 100.0F * (float)m, 500.0F};
+    }
+    for (int k = 0; k < 8; k++) {
+        for (int m = 0; m < MIRROR_COUNT; m++) {
+            beams[m].height_mm += (float)k * 30.0F + 15.0F;
+            beams[m].slant_mm += (float)k * 30.0F + 15.0F;
+        }
+        belief_scan(&belief, beams, GAP_S, 0.3F);
+        TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F, likeliest_lie());
+    }
+    TEST_ASSERT_FLOAT_WITHIN(150.0F, 2400.0F, belief.worlds[0].rate_mm_s);
+}
+
+/* Whatever is told, in whatever time. */
+void test_the_probabilities_are_one_together_and_none_is_lost(void)
+{
+    for (unsigned long seed = 1UL; seed <= 2000UL; seed++) {
+        float sum = 0.0F;
+
+        world.seed = seed;
+        for (int m = 0; m < MIRROR_COUNT; m++) {
+            beams[m].valid = uniform() > 0.3F;
+            beams[m].slant_mm = 20000.0F * (uniform() - 0.5F);
+            beams[m].height_mm = 20000.0F * (uniform() - 0.5F);
+        }
+        belief_scan(&belief, beams, 0.02F + 10.0F * uniform() * uniform(), 40.0F * (uniform() - 0.5F));
+        for (unsigned k = 0U; k < BELIEF_WORLDS; k++) {
+            TEST_ASSERT_TRUE(belief.worlds[k].probability > 0.0F);
+            sum += belief.worlds[k].probability;
+        }
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-3F, 1.0F, sum);
+    }
+}
+
+void test_two_are_two_of_those_that_were_asked_for(void)
+{
+    begin(3UL);
+    hover(30);
+    world.blocked_mm[MIRROR_AFT] = 300.0F;
+    hover(30);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.0F, belief_of_two(&belief, 1U << MIRROR_FRONT | 1U << MIRROR_FORE));
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F, belief_of_two(&belief, 1U << MIRROR_FRONT | 1U << MIRROR_AFT));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, belief_of_two(&belief, 1U << MIRROR_FRONT));
+}
