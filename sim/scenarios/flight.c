@@ -385,13 +385,20 @@ static float height_age_us(const firmware_view_t *firmware)
     return (float)(firmware->now_us - firmware->altitude.arrival_us + firmware->altitude.age_us);
 }
 
+/* Of one mirror as it arrives, between two cycles too; of several what the latest cycle made of them. */
+static float height_mm(const firmware_view_t *firmware)
+{
+    return firmware->altitude.mirror_count > 1U ? firmware->flight.height_mm
+                                                : firmware->altitude.altitude.height_mm;
+}
+
 /* As the firmware knows it at this instant, between two of its cycles too; the pulse as it is at the pin. */
 static published_t published(void)
 {
     const firmware_view_t firmware = firmware_view();
     const bool height = firmware.altitude.scan_valid, attitude = firmware.imu.ready;
     published_t now = {
-        .height_mm = height ? firmware.flight.height_mm : NAN,
+        .height_mm = height ? height_mm(&firmware) : NAN,
         .age_us = height ? height_age_us(&firmware) : NAN,
         .roll_rad = attitude ? firmware.imu.median.roll_rad : NAN,
         .pitch_rad = attitude ? firmware.imu.median.pitch_rad : NAN,
