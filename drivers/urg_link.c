@@ -443,7 +443,7 @@ static void note_answer(const step_t *step)
 
 static bool has_answered_since(const step_t *step, uint32_t then_us)
 {
-    return step->link->answered && step->now_us - step->link->answered_us < step->now_us - then_us;
+    return step->now_us - step->link->answered_us < step->now_us - then_us;
 }
 
 /* A sensor that has answered since its stream ended waits for the request. One that has not, nor to two
