@@ -31,7 +31,8 @@
 #define TASK_SEND_COMM_DEADLINE_MS 200U
 #define TASK_RECEIVE_COMM_DEADLINE_MS 300U
 
-#define TASK_STACK_CELLS 1152U /* docs/memory.md tells how much each task needs */
+#define TASK_STACK_CELLS 1152U         /* docs/memory.md tells how much each task needs */
+#define TASK_CONTROL_STACK_CELLS 1792U /* its own: the belief over three mirrors */
 
 #if CONTROL_PERIOD_MS >= 65535U || CONTROL_TIMEOUT_MS >= 65535U
 #error "SYS/BIOS takes 65535 ticks for ever on a C28x"

@@ -190,6 +190,6 @@ void task_control_create(void)
     Task_Params_init(&task);
     task.instance->name = "TaskControl";
     task.priority = TASK_CONTROL_PRIORITY;
-    task.stackSize = TASK_STACK_CELLS;
+    task.stackSize = TASK_CONTROL_STACK_CELLS;
     monitor_watch(MONITOR_CONTROL, Task_create(task_control, &task, NULL));
 }

@@ -232,7 +232,7 @@ void test_create_makes_an_event_a_clock_of_108_ms_and_one_task_of_priority_4(voi
     TEST_ASSERT_EQUAL_UINT16(1, kernel.task.created);
     TEST_ASSERT_EQUAL_STRING("TaskControl", kernel.task.name);
     TEST_ASSERT_EQUAL_INT(4, kernel.task.params.priority);
-    TEST_ASSERT_EQUAL_UINT64(1152, kernel.task.params.stackSize);
+    TEST_ASSERT_EQUAL_UINT64(1792, kernel.task.params.stackSize);
 }
 
 void test_the_clock_an_altitude_an_imu_frame_and_a_roll_post_one_event_each(void)

@@ -268,13 +268,17 @@ def nested(stacks):
     return len(swis), sum(size for _, size, _ in swis) + (HWI_GROUPS - 1) * hwi + TICK
 
 
+def stack_of(task):
+    """Cells of a task's stack: its own, or that of all others."""
+    return defined("firmware/schedule.h", "TASK_CONTROL_STACK_CELLS" if task == "TaskControl" else "TASK_STACK_CELLS")
+
+
 def stack_tables(release, debug, problems):
     """The stacks as the page shows them; with their deepest paths, and what lies on the stack of the interrupts."""
-    tasks = defined("firmware/schedule.h", "TASK_STACK_CELLS")
     program = defined("ccs_project/app.cfg", "Program.stack")
     rows = []
     for (name, size, way), (_, debug_size, debug_way) in zip(release.worst("task"), debug.worst("task")):
-        rows.append(stack_row(problems, name, (size, debug_size), TASK, tasks, arrows(way if size > debug_size else debug_way)))
+        rows.append(stack_row(problems, name, (size, debug_size), TASK, stack_of(name), arrows(way if size > debug_size else debug_way)))
     rows.append(stack_row(problems, "idle task", (IDLE, IDLE), TASK, defined("ccs_project/app.cfg", "Task.idleTaskStackSize")))
     (levels, size), (_, debug_size) = nested(release), nested(debug)
     contexts = DISPATCH + SWI + (levels - 1) * (CONTEXT + DISPATCH + SWI) + HWI_GROUPS * (CONTEXT + DISPATCH)
@@ -304,7 +308,7 @@ def ram_tables(sizes, problems):
     kept = static(sizes["bsp/retained.c"])
     heap, stack = defined("ccs_project/app.cfg", "BIOS.heapSize"), defined("ccs_project/app.cfg", "Program.stack")
     idle = defined("ccs_project/app.cfg", "Task.idleTaskStackSize")
-    tasks = 6 * defined("firmware/schedule.h", "TASK_STACK_CELLS")
+    tasks = 5 * stack_of("the others") + stack_of("TaskControl")
     limits = [("variables (`.ebss`)", *limit(problems, ".ebss", everything - ring - kept, region("RAMGS311"))),
               ("flight recorder (`.flight_log`)", *limit(problems, ".flight_log", ring, region("RAMGS1215"))),
               ("kept over a reset (`.retained`)", *limit(problems, ".retained", kept, region("RETAINED"))),
