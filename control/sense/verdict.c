@@ -106,6 +106,12 @@ static void judge_imu(verdict_t *verdict, senses_t *senses, const command_t *com
     }
 }
 
+/* Seeing beats suspecting: two mirrors agree about heights that live. Three blocked mirrors agree as well. */
+static bool is_seen(const senses_t *senses)
+{
+    return senses->mirrors.agree && !beam_is_still(&senses->beam);
+}
+
 static void judge(verdict_t *verdict, senses_t *senses, const command_t *command, float gap_s)
 {
     judge_imu(verdict, senses, command);
@@ -115,7 +121,7 @@ static void judge(verdict_t *verdict, senses_t *senses, const command_t *command
         judge_again(verdict, senses, &c, gap_s);
         return;
     }
-    const verdict_reason_t reason = senses->mirrors.agree ? VERDICT_NONE : rules_against_sight(&c);
+    const verdict_reason_t reason = is_seen(senses) ? VERDICT_NONE : rules_against_sight(&c);
     if (reason != VERDICT_NONE) {
         doubt_sight(verdict, senses, &c, reason);
     } else if (rules_against_thrust(&c) != VERDICT_NONE) {
