@@ -1921,6 +1921,28 @@ void test_a_few_octets_are_the_late_answer_of_a_sensor_that_powers_up_at_a_faste
     }
 }
 
+/* More than two answers could be, or nothing, or heard at a rate that is not the stream's. */
+void test_other_octets_are_no_late_answer_of_a_faster_sensor(void)
+{
+    listen_between();
+    const uint32_t stream_rate = link_.good_rate;
+    link_.config.first_rate = link_.asked_rate = 500000;
+    seen.octet_count += 60;
+    nothing_after(link_.timeout_us);
+    TEST_ASSERT_EQUAL_UINT32(stream_rate, link_.rate);
+    TEST_ASSERT_NOT_EQUAL(SCIP_BIT_RATE, link_.command);
+    listen_between();
+    link_.config.first_rate = link_.asked_rate = 500000;
+    nothing_after(link_.timeout_us);
+    TEST_ASSERT_NOT_EQUAL(SCIP_BIT_RATE, link_.command);
+    listen_between();
+    link_.config.first_rate = link_.asked_rate = 500000;
+    link_.rate = 115200;
+    seen.octet_count += 2;
+    nothing_after(link_.timeout_us);
+    TEST_ASSERT_NOT_EQUAL(SCIP_BIT_RATE, link_.command);
+}
+
 /* It has made a line of what it heard at another rate, or of SCIP2.0's end. */
 void test_a_sensor_in_scip11_that_refuses_an_earlier_line_is_asked_again_and_never_old(void)
 {
