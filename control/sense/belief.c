@@ -2,8 +2,7 @@
  * Bar-Shalom 1988), with one model for each set of liars, and mixtures in place of one Gaussian, because a
  * single bad scan must never decide.
  * What breaks: densities that do not integrate to one. A hypothesis whose density is too wide or too narrow
- * wins in silence, in calm air first. Noises are fitted on healthy flights only; rates and shares are what
- * may be tuned on lies. */
+ * wins in silence, in calm air first. Rates and shares may be tuned on lies; noises never. */
 #include "control/sense/belief.h"
 
 #include <math.h>
@@ -321,7 +320,9 @@ void belief_scan(belief_t *belief, const belief_beam_t *beams, float gap_s, floa
         start(belief);
     }
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        told |= (beams[m].valid && has(belief->known, m)) ? (uint16_t)(1U << m) : 0U;
+        if (beams[m].valid && has(belief->known, m)) {
+            told |= (uint16_t)(1U << m);
+        }
     }
     mix(belief, gap_s);
     judge(belief, beams, told, gap_s, gained_mps);

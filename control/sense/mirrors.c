@@ -57,7 +57,9 @@ static uint16_t believe(mirrors_t *mirrors, const altitude_t *shown, float gap_s
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         const bool lies = belief_of_lie(&mirrors->belief, (mirror_t)m) > LIES;
 
-        fit |= (beams[m].valid && !lies) ? (uint16_t)(1U << m) : 0U;
+        if (beams[m].valid && !lies) {
+            fit |= (uint16_t)(1U << m);
+        }
     }
     return fit;
 }
