@@ -100,7 +100,7 @@ static int scans_until(uint16_t liars, int most)
         hover(1);
         for (int m = 0; m < MIRROR_COUNT; m++) {
             const bool lies = belief_of_lie(&belief, (mirror_t)m) > 0.5F;
-            so = so && lies == ((liars >> m & 1U) != 0U);
+            so = so && lies == ((liars & 1U << (unsigned)m) != 0U);
         }
         if (so) {
             return k;
