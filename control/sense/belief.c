@@ -10,7 +10,7 @@
 #include "control/between.h"
 
 /* ---- noise models */
-#define HEIGHT_NOISE_MM 5.0F /* of one mirror's height about the others': 2 to 5 mm by sim/, see scene.h */
+#define HEIGHT_NOISE_MM 5.0F /* chosen: of one mirror's height about the others'; recorded 1 mm at most */
 #define SLANT_NOISE_MM 5.0F  /* of a blocked beam: as HEIGHT_NOISE_MM */
 #define PER_MM 0.0797884561F /* 1 / (sqrt(2 pi) HEIGHT_NOISE_MM) */
 #define STEP_SHARE 0.02F     /* of the scans, for each mirror: an edge passes under it */

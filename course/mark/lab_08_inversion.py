@@ -11,7 +11,7 @@ GATES = ("imu", "altitude", "laser", "status", "reference", "parameters")
 CASES = 12
 # Which server each task of the firmware reads or writes, the most important first: tests/course/ compares it with the sources.
 FIRMWARE = {"TaskIMU": ["imu"], "TaskReceiveLaser": ["imu", "altitude"], "TaskControl": ["imu", "altitude", "reference", "parameters", "status"],
-            "TaskSendLaser": ["laser"], "TaskSendComm": ["altitude", "laser", "status"],
+            "TaskSendLaser": ["laser"], "TaskSendComm": ["laser", "status"],
             "TaskReceiveComm": ["imu", "laser", "reference", "parameters", "status"]}
 
 

@@ -11,7 +11,7 @@ from mkdocs.structure.files import File
 
 ROOT = Path(__file__).resolve().parents[2]
 OUTSIDE = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md", "drivers/README.md": "driver.md",
-           "course/README.md": "course.md",
+           "course/README.md": "course.md", "examples/one_ray/README.md": "one_ray.md",
            **{f"course/{path.parent.name}/README.md": f"course_{path.parent.name}.md" for path in (ROOT / "course").glob("*/README.md")}}
 LINK = re.compile(r"(\]\()([^)\s#]+)(#[^)\s]*)?(\))")
 FLY_NOW = {"en": ("Fly now", "The simulated vehicle, in this browser", "nothing to install"),
