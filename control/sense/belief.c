@@ -43,6 +43,7 @@ typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BEL
 /* ---- gains of the filters: alpha and beta of Kalata 1984 for 0.5 m/s2 */
 #define SHARED_GAIN 0.75F
 #define RATE_GAIN 0.5F
+#define GAP_MOST_S 1.0F  /* chosen: ten scans; after a longer gap no level is known */
 #define OWN_GAIN 0.3F    /* of what one mirror shows alone: slow, it is terrain or noise */
 #define MEAN_MOST 10.0F  /* scans in the mean of a slant */
 #define MEAN_BREAKS 6.0F /* sigmas: it is another constant */
@@ -181,7 +182,8 @@ static void correct(belief_world_t *world, const ways_t *ways, uint16_t told, fl
 {
     const float shared_mm = ways->moved_mm / ways->density;
 
-    world->rate_mm_s += RATE_GAIN * shared_mm / gap_s;
+    /* A rate that nobody tells is not known: the accelerometer alone would carry it away. */
+    world->rate_mm_s = (ways->honest == 0U) ? 0.0F : world->rate_mm_s + RATE_GAIN * shared_mm / gap_s;
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         const float step = ways->stepped[m] / ways->density;
         const float moved_mm = (1.0F - step) * shared_mm;
@@ -320,7 +322,7 @@ void belief_scan(belief_t *belief, const belief_beam_t *beams, float gap_s, floa
         start(belief);
     }
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (beams[m].valid && has(belief->known, m)) {
+        if (beams[m].valid && has(belief->known, m) && gap_s <= GAP_MOST_S) {
             told |= (uint16_t)(1U << m);
         }
     }

@@ -254,6 +254,37 @@ void test_the_probabilities_are_one_together_and_none_is_lost(void)
     }
 }
 
+/* The scanner is silent for 8 s while the vehicle climbs by half a metre: where it is now is no evidence. */
+void test_after_a_long_gap_nobody_is_suspected(void)
+{
+    for (unsigned long seed = 1UL; seed <= 30UL; seed++) {
+        begin(seed);
+        hover(30);
+        world.height_mm += 500.0F;
+        for (int m = 0; m < MIRROR_COUNT; m++) {
+            beams[m].slant_mm += 500.0F;
+            beams[m].height_mm += 500.0F;
+        }
+        belief_scan(&belief, beams, 8.0F, 0.4F);
+        TEST_ASSERT_FLOAT_WITHIN(0.05F, 0.0F, likeliest_lie());
+    }
+}
+
+/* The rays of one mirror are lost for five minutes, and the accelerometer has a bias. */
+void test_a_rate_that_no_mirror_tells_does_not_run_away(void)
+{
+    hover(30);
+    for (int k = 0; k < 3000; k++) {
+        beams[MIRROR_FRONT].valid = false;
+        belief_scan(&belief, beams, GAP_S, 0.02F);
+    }
+    for (unsigned k = 0U; k < BELIEF_WORLDS; ++k) {
+        TEST_ASSERT_FLOAT_WITHIN(1000.0F, 0.0F, belief.worlds[k].rate_mm_s);
+    }
+    hover(10);
+    TEST_ASSERT_FLOAT_WITHIN(0.5F, 0.0F, belief_of_lie(&belief, MIRROR_FRONT));
+}
+
 void test_two_are_two_of_those_that_were_asked_for(void)
 {
     begin(3UL);
