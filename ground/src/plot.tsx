@@ -1,8 +1,10 @@
-import { useEffect, useRef } from 'preact/hooks';
+import { useEffect, useRef, useState } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
+import { Marks } from './marks';
 import type { Mark } from './series';
-import { shown } from './words';
+import type { StoryEvent } from './story';
+import { shown, w } from './words';
 
 export interface Curve {
   label: string;
@@ -17,6 +19,7 @@ export interface PlotData {
   columns: (number | null)[][]; // time first
   states?: string[];
   marks?: Mark[];
+  story?: StoryEvent[]; // in the order of time; given at all: the plot has a line that says what is pointed at
   from?: number;
   to?: number;
 }
@@ -98,6 +101,7 @@ function drawMarks(u: uPlot, marks: Mark[]): void {
 /** Draws what `data` gives; `live` is asked for new data a few times a second. */
 export function Plot(props: { curves: Curve[]; data: () => PlotData; live?: number; height: number; label: string; ref?: never; hold?: boolean; onPlot?: (u: uPlot) => void; key?: string; xLabel?: string; clock?: boolean }) {
   const host = useRef<HTMLDivElement>(null);
+  const [sentence, setSentence] = useState<string | null>(null); // null: the plot tells no story
   const latest = useRef(props);
   latest.current = props;
 
@@ -106,6 +110,11 @@ export function Plot(props: { curves: Curve[]; data: () => PlotData; live?: numb
     let zoomed = false;
     let gone = false;
     let current = props.data();
+    const marks = current.story ? new Marks(w().storyTitle, setSentence) : null;
+    if (marks) {
+      element.append(marks.element);
+      setSentence('');
+    }
     const axes = [...new Set(props.curves.map((c) => c.axis))];
     const axisBase = { stroke: () => css('--muted'), grid: { stroke: () => css('--grid'), width: 1 }, ticks: { show: false }, font: '12px system-ui, sans-serif' };
     const options: uPlot.Options = {
@@ -134,6 +143,7 @@ export function Plot(props: { curves: Curve[]; data: () => PlotData; live?: numb
         draw: [(u) => {
           if (current.states) drawStates(u, current.states);
           if (current.marks) drawMarks(u, current.marks);
+          marks?.place(u, current.story ?? []);
         }],
         setSelect: [(u) => { zoomed = u.select.width > 0; }],
       },
@@ -161,6 +171,7 @@ export function Plot(props: { curves: Curve[]; data: () => PlotData; live?: numb
       resize.disconnect();
       theme.disconnect();
       plot.destroy();
+      marks?.element.remove();
     };
   }, [props.height, props.curves.map((c) => c.label).join(), props.live === undefined ? props.data : null]);
 
@@ -174,7 +185,8 @@ export function Plot(props: { curves: Curve[]; data: () => PlotData; live?: numb
           </span>
         ))}
       </figcaption>
-      <div ref={host} class="plot-host" role="img" aria-label={props.label} />
+      <div ref={host} class="plot-host" role={sentence === null ? 'img' : 'group'} aria-label={props.label} />
+      {sentence !== null && <p class="story-line" role="status">{sentence || w().storyHint}</p>}
     </figure>
   );
 }

@@ -15,6 +15,9 @@ export class Series {
   private readonly state = new Uint8Array(CAPACITY);
   private readonly flags = new Uint16Array(CAPACITY);
   private readonly states: string[] = [];
+  private readonly doubt = new Uint8Array(CAPACITY);
+  private readonly limit = new Uint8Array(CAPACITY);
+  private readonly names: string[] = ['']; // of doubts and limits
   private begin = 0;
   count = 0;
   marks: Mark[] = [];
@@ -32,6 +35,13 @@ export class Series {
     let state = this.states.indexOf(line.state);
     if (state < 0) state = this.states.push(line.state) - 1;
     this.state[at] = state;
+    this.doubt[at] = this.nameOf(line.doubt);
+    this.limit[at] = this.nameOf(line.limit);
+  }
+
+  private nameOf(name = ''): number {
+    const known = this.names.indexOf(name);
+    return known >= 0 ? known : this.names.length < 255 ? this.names.push(name) - 1 : 0;
   }
 
   mark(t: number, text: string): Mark {
@@ -55,9 +65,11 @@ export class Series {
   }
 
   /** What lies within, at most `most` rows of it, with a row of nulls in each gap. */
-  window(from: number, to: number, most = 1500): { columns: (number | null)[][]; states: string[] } {
+  window(from: number, to: number, most = 1500): { columns: (number | null)[][]; states: string[]; doubt: string[]; limit: string[] } {
     const columns: (number | null)[][] = [[], [], [], [], []];
     const states: string[] = [];
+    const doubt: string[] = [];
+    const limit: string[] = [];
     let low = 0;
     let high = this.count;
     while (low < high) {
@@ -76,7 +88,7 @@ export class Series {
       if (t - before > GAP_S * stride && stride === 1) {
         columns[0]!.push((t + before) / 2);
         for (const column of columns.slice(1)) column.push(null);
-        states.push('');
+        for (const names of [states, doubt, limit]) names.push('');
       }
       before = t;
       columns[0]!.push(t);
@@ -85,8 +97,10 @@ export class Series {
       columns[3]!.push(number(this.data.thrust[at]!));
       columns[4]!.push(number(this.data.truth[at]!));
       states.push(this.states[this.state[at]!]!);
+      doubt.push(this.names[this.doubt[at]!]!);
+      limit.push(this.names[this.limit[at]!]!);
     }
-    return { columns, states };
+    return { columns, states, doubt, limit };
   }
 
   /** All that is kept, with the flight recorder's names of columns. */

@@ -5,7 +5,9 @@ import { openSocket } from './link/socket';
 import { openVehicle, VehicleLink } from './link/vehicle';
 import { freshness, type Heard } from './freshness';
 import { keep, kept } from './keep';
-import { LineSplitter, parseLine, type Line, type Telemetry } from './protocol/lines';
+import type { Around, Wall } from './protocol/around';
+import type { Beams } from './protocol/beams';
+import { LineSplitter, parseLine, type Battery, type Line, type Telemetry } from './protocol/lines';
 import { parseHelp, valueOf, type Parameter, type ParameterSet } from './protocol/parameters';
 import { CommandQueue, type Outcome } from './protocol/queue';
 import { LogCollector, logRest } from './protocol/recorder';
@@ -59,6 +61,16 @@ function forgetVehicle(): void {
 }
 export const parameters = ofThisVehicle<Parameter[]>([]);
 export const stored = ofThisVehicle<ParameterSet | null>(null);
+/** The latest scan that the vehicle told of, and when by the link's clock. */
+export const scan = ofThisVehicle<{ beams: Beams; link: number } | null>(null);
+/** What stands around, and how fast the walls come nearer, as told last. */
+export const around = ofThisVehicle<{ around: Around; link: number } | null>(null);
+export const drift = ofThisVehicle<{ walls: Wall[]; link: number } | null>(null);
+/** The battery as it was told last: a full line has no place for it. */
+const batteryTold = ofThisVehicle<{ battery: Battery; link: number } | null>(null);
+const BATTERY_S = 3;
+/** null: not measured, or nothing is known of now. */
+export const batteryNow = computed(() => (live.value && batteryTold.value && heardLast.value && heardLast.value.link - batteryTold.value.link < BATTERY_S * 1000 ? batteryTold.value.battery : null));
 export const storeLine = ofThisVehicle<string | null>(null); // what power-up said of the stored set
 
 /** What a link that is open and says nothing useful is up to. */
@@ -113,6 +125,9 @@ function heard(octets: Uint8Array): void {
       heardAny.value = true;
     }
     if (line.kind === 'telemetry') onTelemetry(line.telemetry);
+    if (line.kind === 'beams') scan.value = { beams: line.beams, link: link.value.now() };
+    if (line.kind === 'around') around.value = { around: line.around, link: link.value.now() };
+    if (line.kind === 'drift') drift.value = { walls: line.walls, link: link.value.now() };
     if (line.kind === 'answer') onAnswer(line);
     queue?.heard(line);
     for (const listener of listeners) listener(line);
@@ -126,6 +141,7 @@ function onTelemetry(telemetry: Telemetry): void {
   series.add(now / 1000, telemetry, vehicle.value ? vehicle.value.truth().height_m : NaN);
   batch(() => {
     heardLast.value = { telemetry, link: now, page: performance.now() };
+    if (telemetry.battery) batteryTold.value = { battery: telemetry.battery, link: now };
     if (telemetry.reset) series.mark(now / 1000, `reset ${telemetry.reset}`).answered = true;
   });
 }

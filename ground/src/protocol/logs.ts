@@ -10,18 +10,25 @@ export interface Note {
 export interface Recording {
   name: string;
   kind: 'csv' | 'console' | 'telemetry';
+  csv: string | null; // octet by octet; null: telemetry, which is none
   time: number[];
   columns: Record<string, number[]>;
+  /** What stands there in words: the rule that doubts, the limit that holds, mirrors that were left out; '' where nothing does. */
+  names: Record<string, string[]>;
   states: string[];
   notes: Note[];
 }
 
+const NAMES = ['doubt', 'limit', 'out'];
+
 export function readCsv(text: string, name: string, kind: Recording['kind'] = 'csv'): Recording {
   const lines = text.split(/\r?\n/).filter((line) => line !== '');
   const titles = (lines[0] ?? '').split(',');
-  const recording: Recording = { name, kind, time: [], columns: {}, states: [], notes: [] };
-  const wanted = titles.map((title, i) => ({ title, i })).filter(({ title }) => title !== 't_s' && title !== 'state');
+  const recording: Recording = { name, kind, csv: text, time: [], columns: {}, names: {}, states: [], notes: [] };
+  const named = titles.map((title, i) => ({ title, i })).filter(({ title }) => NAMES.includes(title));
+  const wanted = titles.map((title, i) => ({ title, i })).filter(({ title }) => title !== 't_s' && title !== 'state' && !NAMES.includes(title));
   for (const { title } of wanted) recording.columns[title] = [];
+  for (const { title } of named) recording.names[title] = [];
   const t = titles.indexOf('t_s');
   const s = titles.indexOf('state');
   if (t < 0) throw new NothingToRead('noTime');
@@ -35,6 +42,7 @@ export function readCsv(text: string, name: string, kind: Recording['kind'] = 'c
     recording.time.push(Number(cells[t]));
     recording.states.push(s >= 0 ? cells[s]! : '');
     for (const { title, i } of wanted) recording.columns[title]!.push(cells[i] === '' ? NaN : Number(cells[i]));
+    for (const { title, i } of named) recording.names[title]!.push(cells[i]!);
   }
   if (cut > 0) recording.notes.push({ kind: 'cut', count: cut });
   return recording;
@@ -55,7 +63,7 @@ export function fromXctu(text: string): string | null {
 const STAMP = /^(\d+(?:\.\d+)?) ([<>]) (.*)$/; // a line of a saved session: milliseconds, direction, text
 
 function fromTelemetry(text: string, name: string): Recording | null {
-  const recording: Recording = { name, kind: 'telemetry', time: [], columns: { meas_m: [], ref_m: [], thrust_n: [], flags: [] }, states: [], notes: [] };
+  const recording: Recording = { name, kind: 'telemetry', csv: null, time: [], columns: { meas_m: [], ref_m: [], thrust_n: [], flags: [] }, names: { doubt: [], limit: [] }, states: [], notes: [] };
   let stamped = NaN;
   let first = NaN;
   for (const raw of text.split(/\r?\n|\r/)) {
@@ -74,6 +82,8 @@ function fromTelemetry(text: string, name: string): Recording | null {
     recording.columns.thrust_n!.push(line.telemetry.thrust);
     recording.columns.flags!.push(line.telemetry.flags);
     recording.states.push(line.telemetry.state);
+    recording.names.doubt!.push(line.telemetry.doubt ?? '');
+    recording.names.limit!.push(line.telemetry.limit ?? '');
   }
   return recording.time.length > 0 ? recording : null;
 }

@@ -39,7 +39,7 @@ async function save(info: SessionInfo): Promise<void> {
 export function ConsoleView() {
   const words = w();
   const end = useRef<HTMLDivElement>(null);
-  const shown = consoleLines.value.filter((line) => telemetry.value || !(line.text.startsWith('alt:') || line.text.startsWith(ALIVE) || /^OK PING alive/i.test(line.text))).slice(-500);
+  const shown = consoleLines.value.filter((line) => telemetry.value || !(/^(alt|mf):/.test(line.text) || line.text.startsWith(ALIVE) || /^OK PING alive/i.test(line.text))).slice(-500);
   useLayoutEffect(() => void (end.current!.scrollTop = end.current!.scrollHeight), []);
   useEffect(() => {
     const list = end.current!;

@@ -2,8 +2,11 @@ import { signal } from '@preact/signals';
 import { useRef } from 'preact/hooks';
 import { keep, keptAs } from '../keep';
 import { Plot, saveFile, savePng, stamp } from '../plot';
-import { clock, command, live, ofThisVehicle, phase, powerCycle, seen, series, vehicle } from '../store';
-import { ago, shown, told, w } from '../words';
+import { batteryNow, clock, command, live, ofThisVehicle, phase, powerCycle, seen, series, vehicle } from '../store';
+import { storyOf } from '../story';
+import { ago, language, shown, told, w } from '../words';
+import { Around } from './around';
+import { Beams } from './beams';
 import { Picture, Places } from './place';
 import { Troubles } from './troubles';
 
@@ -33,7 +36,7 @@ export function Numbers() {
   return (
     <section class={`numbers ${now.kind === 'live' ? '' : 'stale'}`} aria-label={now.kind === 'live' ? words.live : words.link}>
       <Number3 label={words.height} value={shown(t?.height, 2)} unit="m" sub={sub(`${words.reference} ${t && t.reference > 0 ? `${shown(t.reference, 2)} m` : words.none}`)} tone="primary" />
-      <Number3 label={words.thrust} value={shown(t?.thrust, 1)} unit="N" sub={sub(words.perMotor)} />
+      <Number3 label={words.thrust} value={shown(t?.thrust, 1)} unit="N" sub={sub(batteryNow.value ? `${words.perMotor} · ${shown(batteryNow.value.volts, 1)} V` : words.perMotor)} />
       <Number3 label={words.state} value={t?.state ?? '–'} sub={sub(t ? words.states[t.state] ?? '' : '')} tone={`word ${tone(t && (['CUT', 'DESCENDING', 'LOWERING'].includes(t.state) ? 'bad' : t.state !== 'GROUND' && 'good'))}`} />
       <Number3 label={words.laser} value={t?.laser ?? '–'} sub={sub(t ? words.lasers[t.laser] ?? '' : '')} tone={`word ${tone(t?.laser === 'OK' ? 'good' : t?.laser === 'LOST' && 'bad')}`} />
       <Number3 label={words.link} value={t ? shown(now.age / 1000, 1) : '–'} unit="s" sub={now.kind === 'old' ? `${connection === 'open' ? '' : `${words[connection]} · `}${ago(now.age)}` : words[connection]} tone={now.kind === 'old' ? 'bad' : ''} />
@@ -47,6 +50,8 @@ export function Messages() {
   if (now.kind === 'nothing') return null;
   const { flags: bits, state, reference } = now.telemetry;
   const flags: [string, string][] = state === 'GROUND' && reference > 0 ? [words.waitsToTakeOff(shown(reference, 2))] : [];
+  const battery = batteryNow.value;
+  if (battery?.word) flags.push(words.batteryWords[battery.word] ?? words.batteryWord(battery.word, shown(battery.volts, 1)));
   for (let bit = 0; bit < 16; bit++) if (bits & (1 << bit)) flags.push(words.flags[bit] ?? words.unknownFlag(1 << bit));
   if (now.kind === 'old') {
     return (
@@ -163,8 +168,11 @@ export function FlyView() {
   };
   const heights = () => {
     const [from, to] = range();
-    const { columns, states } = series.window(from, to);
-    return { columns: [columns[0]!, columns[1]!, columns[2]!, ...(withTruth ? [columns[4]!] : [])], states, marks: series.marks, from, to };
+    const { columns, states, doubt, limit } = series.window(from, to);
+    const numbers = (column: (number | null)[]): number[] => column.map((value) => value ?? NaN);
+    const heard = states.map((_, i) => i).filter((i) => states[i] !== ''); // not the gaps
+    const story = storyOf({ time: heard.map((i) => columns[0]![i]!), states: heard.map((i) => states[i]!), reference: heard.map((i) => columns[2]![i] ?? 0), height: numbers(heard.map((i) => columns[1]![i]!)), doubt: heard.map((i) => doubt[i]!), limit: heard.map((i) => limit[i]!), out: [] }, language.peek(), false, shown);
+    return { columns: [columns[0]!, columns[1]!, columns[2]!, ...(withTruth ? [columns[4]!] : [])], states, marks: series.marks, story, from, to };
   };
   const thrusts = () => {
     const [from, to] = range();
@@ -187,13 +195,15 @@ export function FlyView() {
             <button class="quiet" onClick={() => saveFile(`plomada-${stamp()}.csv`, series.csv(), 'text/csv')}>{words.saveCsv}</button>
             <button class="quiet" onClick={() => savePng(plots.current, `plomada-${stamp()}.png`)}>{words.savePng}</button>
           </div>
-          <Plot key={`h${withTruth ? 1 : 0}`} curves={curves} data={heights} live={100} hold={held.value} height={300} label={words.height} clock />
+          <Plot key={`h${withTruth ? 1 : 0}${language.value}`} curves={curves} data={heights} live={100} hold={held.value} height={300} label={words.height} clock />
           <Plot curves={[{ label: words.thrust, colour: '--curve-thrust', axis: 'N', fill: true }]} data={thrusts} live={100} hold={held.value} height={150} label={words.thrust} clock />
           <p class="hint">{words.zoomHint}</p>
         </section>
       </div>
       <aside class="fly-side">
         <Reference />
+        <Beams />
+        <Around />
         <Simulation />
       </aside>
     </div>

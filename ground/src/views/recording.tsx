@@ -1,6 +1,8 @@
 import type { Recording } from '../protocol/logs';
 import { Plot, type Curve } from '../plot';
-import { w } from '../words';
+import { story } from '../story';
+import { language, shown, w } from '../words';
+import { Why } from './why';
 
 const CURVES: { column: string; axis: Curve['axis']; colour: string; dash?: number[]; word: 'measured' | 'estimated' | 'reference' | 'truth' }[] = [
   { column: 'meas_m', axis: 'm', colour: '--curve-height', word: 'measured' },
@@ -40,10 +42,10 @@ export function RecordingPlots({ recordings }: { recordings: Recording[] }) {
   const statesAt = new Map(first.time.map((t, i) => [Math.round((t - zero(first)) * 1000), first.states[i]!]));
   let state = '';
   const states = times.map((t) => (state = statesAt.get(t) ?? state));
-  const heightData = { columns: [seconds, ...heights.map((c) => place(first, c.column)), ...others.map((r) => place(r, 'height_m' in r.columns ? 'height_m' : 'meas_m'))], states };
+  const heightData = { columns: [seconds, ...heights.map((c) => place(first, c.column)), ...others.map((r) => place(r, 'height_m' in r.columns ? 'height_m' : 'meas_m'))], states, story: story(first, language.value, shown).map((event) => ({ ...event, t: event.t - zero(first) })) };
   const thrustData = { columns: [seconds, ...recordings.map((r) => place(r, 'thrust_n'))] };
   const thrustCurves = recordings.map((r, i): Curve => ({ label: i === 0 ? words.thrust : r.name, colour: i === 0 ? '--curve-thrust' : OTHERS[(i - 1) % 3]!, axis: 'N' }));
-  const key = recordings.map((r) => `${r.name}${r.time.length}`).join();
+  const key = `${language.value}${recordings.map((r) => `${r.name}${r.time.length}`).join()}`;
   return (
     <div key={key}>
       <Plot curves={heightCurves} data={() => heightData} height={300} label={words.height} />
@@ -51,6 +53,7 @@ export function RecordingPlots({ recordings }: { recordings: Recording[] }) {
       {'roll_rad' in first.columns && (
         <Plot curves={[{ label: words.roll, colour: '--curve-other-1', axis: 'rad' }, { label: words.pitch, colour: '--curve-other-2', axis: 'rad' }]} data={() => ({ columns: [seconds, place(first, 'roll_rad'), place(first, 'pitch_rad')] })} height={130} label={words.attitude} />
       )}
+      <Why recording={first} />
       {recordings.flatMap((r) => r.notes.map((note) => <p class="hint" key={r.name + note.kind}>{r.name}: {words.notes[note.kind]}: {note.count}</p>))}
     </div>
   );

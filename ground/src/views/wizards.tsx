@@ -4,7 +4,7 @@ import { battery, batteryLimits, CELLS, CELLS_MOST } from '../battery';
 import { keep, keptAs } from '../keep';
 import { heightSeen, LIFTED_M, NO_LIFT, rise, type Lift } from '../lift';
 import { typed } from '../protocol/decimal';
-import { borrowLink, command, giveBackLink, listeners, live, ofThisVehicle, parameters, phase, readParameters, stop, storeLine } from '../store';
+import { batteryNow, borrowLink, command, giveBackLink, listeners, live, ofThisVehicle, parameters, phase, readParameters, stop, storeLine } from '../store';
 import type { Line } from '../protocol/lines';
 import { shown, told, w } from '../words';
 
@@ -19,6 +19,13 @@ const LINK_S = 3;
 const cells = signal(keptAs('cells', (text) => (Number(text) >= 2 && Number(text) <= CELLS_MOST ? Math.round(Number(text)) : null), CELLS));
 let lift: Lift = NO_LIFT;
 
+/** What the vehicle measures, if it does; else what was typed. */
+function batteryIs(): ReturnType<typeof battery> {
+  const told = batteryNow.value;
+  if (told?.word) return told.word === 'HIGH' ? 'many' : 'low';
+  return battery(cells.value, told ? told.volts : Number(typed(volts.value)));
+}
+
 export function checks(): Record<string, boolean> {
   const t = live.value;
   const has = (bit: number): boolean => t !== null && (t.flags & bit) === 0;
@@ -32,7 +39,7 @@ export function checks(): Record<string, boolean> {
     flags: t !== null && t.flags === 0,
     settings: t !== null && parameters.value.length > 0 && !(storeLine.value ?? '').startsWith('ERR'),
     tilt: byHand.value.tilt === true || parameters.value.some((p) => p.name === 'IAXES' && p.value === 'PROVED'),
-    battery: battery(cells.value, Number(typed(volts.value))) === 'good',
+    battery: batteryIs() === 'good',
   };
 }
 
@@ -52,7 +59,7 @@ function Checklist() {
         {Object.entries(words.checks).map(([name, [title, text]]) => (
           <li key={name} class={state[name] ? 'done' : ''}>
             <span class="tick" aria-hidden="true">{state[name] ? '✓' : ''}</span>
-            <div><strong>{title}</strong><small>{name === 'battery' ? words.batteryNeeds(shown(limits.least, 1), shown(limits.most, 1)) : text}</small>{name === 'battery' && <small class="problem">{words.batteryIs[battery(cells.value, Number(typed(volts.value)))]}</small>}</div>
+            <div><strong>{title}</strong><small>{name === 'battery' ? words.batteryNeeds(shown(limits.least, 1), shown(limits.most, 1)) : text}</small>{name === 'battery' && <small class="problem">{words.batteryIs[batteryIs()]}</small>}</div>
             <span class="visually-hidden">{state[name] ? '✓' : '–'}</span>
             {name === 'tilt' && <label class="check"><input type="checkbox" checked={byHand.value.tilt === true} onChange={(event) => (byHand.value = { ...byHand.value, tilt: event.currentTarget.checked })} /> {words.doneByHand}</label>}
             {name === 'battery' && (
@@ -61,7 +68,7 @@ function Checklist() {
                   cells.value = Number(event.currentTarget.value);
                   keep('cells', String(cells.value));
                 }}>{Array.from({ length: CELLS_MOST - 1 }, (_, i) => (<option key={i} value={i + 2}>{words.cells(i + 2)}</option>))}</select>
-                <input class="short" inputMode="decimal" aria-label={title} placeholder="V" value={volts.value} onInput={(event) => (volts.value = event.currentTarget.value)} />
+                <input class="short" inputMode="decimal" aria-label={title} placeholder="V" disabled={batteryNow.value !== null} value={batteryNow.value ? shown(batteryNow.value.volts, 1) : volts.value} onInput={(event) => (volts.value = event.currentTarget.value)} />
               </span>
             )}
           </li>

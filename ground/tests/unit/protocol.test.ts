@@ -30,7 +30,26 @@ describe('lines', () => {
   });
   it('keeps what the firmware doubts, and is not confused by fields that it does not know', () => {
     expect(parseLine('alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:512 doubt:IMU')).toMatchObject({ kind: 'telemetry', telemetry: { flags: 512, doubt: 'IMU' } });
-    expect(parseLine('alt:0.598 vz:-0.12 ref:0.600 laser:OK thr:7.12 state:FLYING flags:257 doubt:SIGHT bat:11.1')).toMatchObject({ telemetry: { height: 0.598, reference: 0.6, flags: 257, doubt: 'SIGHT' } });
+    expect(parseLine('alt:0.598 vz:-0.12 ref:0.600 laser:OK thr:7.12 state:FLYING flags:257 doubt:SIGHT wind:11.1')).toMatchObject({ telemetry: { height: 0.598, reference: 0.6, flags: 257, doubt: 'SIGHT' } });
+  });
+  it('tells the battery, with what is wrong, and without a voltage where there is none', () => {
+    const told = (field: string): unknown => (parseLine(`alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0 ${field}`) as { telemetry: { battery?: unknown } }).telemetry.battery;
+    expect(told('limit:CLIMB')).toBeUndefined();
+    expect(told('bat:14.8')).toEqual({ volts: 14.8 });
+    expect(told('bat:14.1/LOW')).toEqual({ volts: 14.1, word: 'LOW' });
+    expect(told('bat:-/ABSENT')).toEqual({ volts: NaN, word: 'ABSENT' });
+  });
+  it('every word on the battery has its sentence in both languages', () => {
+    const words = [...readFileSync('../control/battery.c', 'utf8').matchAll(/\[BATTERY_(\w+)\] = "(\w+)"/g)].map((m) => m[2]!).filter((word) => !['OFF', 'WAITS', 'GOOD'].includes(word));
+    expect(words.length).toBe(6);
+    for (const texts of [en, es]) expect(Object.keys(texts.batteryWords).sort()).toEqual([...words].sort());
+  });
+  it('reads the line of the beams: a dash is not known, and never a zero', () => {
+    expect(parseLine('mf:35,776,9,83,- m1:- m2:0,-,-,-,25 out:-')).toMatchObject({
+      kind: 'beams', beams: { mirrors: { mf: { rays: 35, slant: 776, spread: 9, age: 83, lie: NaN }, m1: null, m2: { rays: 0, slant: NaN, lie: 25 } }, out: [] },
+    });
+    expect(parseLine('mf:8,1,2,3,4 m1:8,1,2,3,99 m2:8,1,2,3,4 out:m1+m2')).toMatchObject({ kind: 'beams', beams: { out: ['m1', 'm2'] } });
+    for (const torn of ['mf:35,776,9,83 m1:- m2:- out:-', 'mf:35,776,9,83,- m1:- m2:-', 'mf:35,776,9,8x,- m1:- m2:- out:-', 'mf:,,,, m1:- m2:- out:-']) expect(parseLine(torn).kind).toBe('other');
   });
   it('takes half a telemetry line for none', () => {
     expect(parseLine('alt:0.5 ref:0.6 laser:OK').kind).toBe('other');
