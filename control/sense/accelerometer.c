@@ -1,31 +1,25 @@
 /* A third-order observer, corrected slowly by the heights. It has a bias of its own: the estimator's bias
  * also contains errors of the thrust model, so with it a wrong thrust model would move both witnesses. What
- * breaks: a bias that is learned while something lies. So it follows in 8 s, and a doubt takes the latest
- * part of it back. */
+ * breaks: a bias that is learned while something lies. So it follows in 8 s. */
 #include "control/sense/accelerometer.h"
 
 #include <math.h>
 
 #include "control/between.h"
 #include "control/credible.h"
+#include "control/sense/sway.h"
 
-#define REST_TIME_S 2.0F     /* chosen: a mean of 80 frames */
-#define REST_HELD_S 1.0F     /* chosen: 40 frames */
-#define REST_UNFIT_MPS2 1.5F /* the largest bias that the estimator represents, BIAS_MAX_MPS2 */
-#define REST_FIT_MPS2 1.2F   /* chosen: hysteresis of a fifth */
+#define REST_UNFIT_MPS2 BIAS_MAX_MPS2          /* no estimate represents more */
+#define REST_FIT_MPS2 (0.8F * REST_UNFIT_MPS2) /* chosen: hysteresis of a fifth */
 
-#define SHAKEN_MPS2 0.9F       /* chosen: about twice the usual noise, NOISE_START_MPS2 in credit.c */
-#define STANDING_TIME_S 1.0F   /* chosen: on the ground the felt speed decays, the bias must not add up */
-#define STANDING_WAY_S 2.0F    /* chosen: nor its way; longer than a lift-off, 0.1 m/s2 make 0.2 m */
+#define SHAKEN_MPS2 0.9F     /* chosen: about twice the usual noise, NOISE_START_MPS2 in credit.c */
+#define STANDING_TIME_S 1.0F /* chosen: on the ground the felt speed decays, the bias must not add up */
+#define STANDING_WAY_S (2.0F * STANDING_TIME_S) /* nor its way: 0.1 m/s2 make 0.2 m */
 #define FELT_LEAK_PER_S 1.8F   /* chosen: 2 x 0.9, critically damped without the bias, poles at 0.9 1/s */
 #define FELT_PULL_PER_S2 0.81F /* 0.9 squared, see FELT_LEAK_PER_S */
 #define BIAS_PULL_PER_S3 0.1F  /* chosen: the bias follows in 8 s, 0.81 / 0.1; slower than the verdicts */
-#define PULLED_TIME_S 2.0F     /* chosen: as WITNESS_OLD_S */
 
-#define IN_HANDS_S 1.5F            /* chosen: above ROCKED_S in sway.c, so that a nudge starts nothing */
-#define IN_HANDS_MOST_S 2.0F       /* the counter stops here */
-#define IN_HANDS_TIME_S 2.0F       /* chosen: above the period of a pilot's swings */
-#define IN_HANDS_BIAS_TIME_S 20.0F /* chosen: ten times that; the bias was measured at rest */
+#define IN_HANDS_MOST_S 2.0F /* the counter stops here */
 
 void accelerometer_init(accelerometer_t *accelerometer)
 {
@@ -94,8 +88,8 @@ void accelerometer_in_hands(accelerometer_t *accelerometer, float mean_mps2, boo
     }
     accelerometer->rested_s = 0.0F;
     const float mps2 = mean_mps2 - accelerometer->bias_mps2;
-    felt->speed_mps += mps2 * dt_s - felt->speed_mps * dt_s / IN_HANDS_TIME_S;
-    accelerometer->bias_mps2 += mps2 * dt_s / IN_HANDS_BIAS_TIME_S;
+    felt->speed_mps += mps2 * dt_s - felt->speed_mps * dt_s / ACCELEROMETER_IN_HANDS_S;
+    accelerometer->bias_mps2 += mps2 * dt_s / ACCELEROMETER_IN_HANDS_BIAS_S;
 }
 
 void accelerometer_was_lifted(accelerometer_t *accelerometer, float rise_mps)
@@ -134,21 +128,11 @@ void accelerometer_compare(accelerometer_t *accelerometer, float rise_m, float g
     const float pull = believed ? age : 0.0F;
 
     witness_compare(felt, rise_m, gap_s, age_s, FELT_LEAK_PER_S * age, FELT_PULL_PER_S2 * pull);
-    accelerometer->pulled_m_s += gap_s * (pull * felt->seen_m - accelerometer->pulled_m_s / PULLED_TIME_S);
     accelerometer->bias_mps2 -= BIAS_PULL_PER_S3 * pull * gap_s * felt->seen_m;
     accelerometer->bias_mps2 = between(-BIAS_MAX_MPS2, accelerometer->bias_mps2, BIAS_MAX_MPS2);
 }
 
-void accelerometer_take_back(accelerometer_t *accelerometer)
-{
-    accelerometer->felt.speed_mps -= FELT_PULL_PER_S2 * accelerometer->pulled_m_s;
-    accelerometer->bias_mps2 = between(
-        -BIAS_MAX_MPS2, accelerometer->bias_mps2 + BIAS_PULL_PER_S3 * accelerometer->pulled_m_s,
-        BIAS_MAX_MPS2);
-    accelerometer->pulled_m_s = 0.0F;
-}
-
 bool accelerometer_is_in_hands(const accelerometer_t *accelerometer)
 {
-    return accelerometer->in_hands_s > IN_HANDS_S;
+    return accelerometer->in_hands_s > SWAY_TIME_S;
 }

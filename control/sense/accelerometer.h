@@ -11,7 +11,13 @@
 
 #include "control/sense/witness.h"
 
-#define ACCELEROMETER_BLOCKS 4U /* chosen: a pilot's lift-off is noticed after two seconds or three */
+#define ACCELEROMETER_BLOCKS \
+    4U /* of a second: a lift-off shows within 3 s, two SWAY_TIME_S; one is being filled */
+
+/* While a pilot flies it without heights, the felt speed fades so, and what lasts of it becomes bias. */
+#define ACCELEROMETER_IN_HANDS_S 2.0F /* chosen: above the period of a pilot's swings */
+#define ACCELEROMETER_IN_HANDS_BIAS_S \
+    (10.0F * ACCELEROMETER_IN_HANDS_S) /* chosen: ten times; the bias was measured at rest */
 
 typedef struct {
     uint32_t sequence; /* latest frame that was processed */
@@ -21,10 +27,8 @@ typedef struct {
     float rested_s;                             /* time at rest that this mean covers, at most 2 s */
     float kept_bias_mps2[ACCELEROMETER_BLOCKS]; /* that mean at the end of the latest seconds, oldest first */
     float block_s;                              /* time since the latter was taken */
-    float bias_mps2; /* of the accelerometer: at rest its mean, in the air corrected by the heights */
-    float shaken;    /* >= 1: divides the witness's innovation when the accelerometer is noisy */
-    float
-        pulled_m_s; /* leaky sum of seen_m over time, metres times seconds: what has corrected the witness */
+    float bias_mps2;  /* of the accelerometer: at rest its mean, in the air corrected by the heights */
+    float shaken;     /* >= 1: divides the witness's innovation when the accelerometer is noisy */
     float in_hands_s; /* how long somebody has had it in his hands on the ground, at most 2 s */
     witness_t felt;
 } accelerometer_t;
@@ -64,9 +68,6 @@ void accelerometer_set_noise(accelerometer_t *accelerometer, float noise_mps2);
  * speed and bias. */
 void accelerometer_compare(accelerometer_t *accelerometer, float rise_m, float gap_s, float age_s,
                            bool believed);
-
-/* The heights are doubted: takes back what they have corrected. */
-void accelerometer_take_back(accelerometer_t *accelerometer);
 
 /* Sum of the innovations, made smaller when the accelerometer is noisy. */
 static inline float accelerometer_off_m(const accelerometer_t *accelerometer)

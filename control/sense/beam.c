@@ -8,9 +8,7 @@
 
 #include "control/credible.h"
 
-#define COPIES_MAX 1U   /* chosen: the second identical scan is rejected; one in a climb misleads the law */
-#define COUNT_MAX 1000U /* chosen: the counter stops here and does not wrap */
-#define HEIGHT_BACK_MM (-30.0F) /* chosen: hysteresis of 20 mm, above five times the noise */
+#define HEIGHT_BACK_MM (HEIGHT_MIN_MM + 3000.0F * HEIGHT_SIGMA_M) /* hysteresis of three sigma */
 
 /* Tried: 960 healthy flights; in none does the thrust contradict the heights while the slant is so still. */
 #define STILL_MM2 4.0F /* tried, see above: 2 mm rms */
@@ -86,12 +84,11 @@ bool beam_scan(beam_t *beam, const altitude_t *altitude, float height_m, bool sw
 
     beam->slant_mm = altitude->slant_mm;
     beam->spread_mm = altitude->spread_mm;
-    beam->copies = counted(beam->copies, copy, COUNT_MAX);
     if (altitude->good_rays > 1U && fabsf(altitude->height_mm) <= HEIGHT_MAX_MM) {
         watch_slant(beam, altitude->slant_mm, height_m, sways, quiet);
     }
     beam->below_ground = !(altitude->height_mm >= (beam->below_ground ? HEIGHT_BACK_MM : HEIGHT_MIN_MM));
-    return beam->copies < COPIES_MAX && !beam->below_ground && altitude->height_mm <= HEIGHT_MAX_MM;
+    return !copy && !beam->below_ground && altitude->height_mm <= HEIGHT_MAX_MM;
 }
 
 void beam_forget_slants(beam_t *beam)

@@ -20,7 +20,6 @@
 typedef struct {
     float slant_mm, spread_mm;   /* of the latest scan */
     bool below_ground;           /* heights so low that no noise explains them: the beam is blocked */
-    uint16_t copies;             /* scans in a row that repeat the scan before */
     float slants_mm[BEAM_SCANS]; /* latest slant distances, oldest first */
     uint16_t scans;              /* number of valid entries in slants_mm */
     bool flat;                   /* these vary by less than 8 mm rms, and the accelerometer is quiet */

@@ -8,17 +8,18 @@
 #include <math.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 
 /* ---- noise models */
-#define HEIGHT_NOISE_MM 5.0F /* chosen: of one mirror's height about the others'; recorded 1 mm at most */
-#define SLANT_NOISE_MM 5.0F  /* of a blocked beam: as HEIGHT_NOISE_MM */
-#define PER_MM 0.0797884561F /* 1 / (sqrt(2 pi) HEIGHT_NOISE_MM) */
-#define STEP_SHARE 0.02F     /* of the scans, for each mirror: an edge passes under it */
-#define STEP_MM 200.0F       /* mean size of these steps (Laplace): stairs of 170 mm, boxes, tables */
-#define STEP_FAR_SHARE 0.02F /* of the steps: as far as the scanner sees */
+#define PER_MM 0.0664903801F  /* 1 / (sqrt(2 pi) BELIEF_NOISE_MM) */
+#define STEP_SHARE 0.04F      /* of the scans, for each mirror: an edge passes under it */
+#define STEP_MM 170.0F        /* mean size of these steps (Laplace): stairs of 170 mm, boxes, tables */
+#define STEP_NEAR_SHARE 0.7F  /* of the steps: a slope begins or ends, or a small edge */
+#define STEP_NEAR_MM 10.0F    /* fitted, docs/control.md */
+#define STEP_FAR_SHARE 0.002F /* of the steps: as far as the scanner sees */
 #define STEP_FAR_PER_MM (1.0F / 8000.0F) /* 4 m up or down */
 #define ODD_SHARE 0.05F /* of a liar's scans: no constant, anything within the 4 m of the scanner */
-#define ODD_PER_MM (1.0F / 4000.0F)
+#define ODD_PER_MM (1.0F / 4000.0F) /* the URG-04LX tells up to 4095 mm */
 
 /* Kinds of motion. Standing, slants and heights are constants, and a liar's slant is no better explained:
  * then nobody is suspected. Else: what the shared motion of a scan is, less what the filter predicts. */
@@ -27,11 +28,11 @@ static const struct {
     float share, sigma_mm;
 } motions[] = {
     {0.2F, 0.0F},  /* it stands */
-    {0.7F, 12.0F}, /* it flies: 2.4 m/s2 that nothing has told, in 0.1 s */
-    {0.1F, 50.0F}, /* a gust, a touch, a slope that begins */
+    {0.6F, 7.0F},  /* it flies: 2.4 m/s2 that nothing has told, in 0.1 s */
+    {0.2F, 20.0F}, /* a gust, a touch, a slope that begins */
 };
 typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BELIEF_MOTIONS) ? 1 : -1];
-#define MOTION_CHANGES 0.1F /* of the scans: the kind of motion is drawn anew, by its share; a second */
+#define MOTION_CHANGES 0.05F /* of the scans: the kind of motion is drawn anew, by its share; a second */
 
 /* ---- rates */
 #define PRIOR 1.0e-3F        /* a mirror lies at power-on */
@@ -41,10 +42,9 @@ typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BEL
 #define LEAST 1.0e-12F       /* no world is ever impossible */
 
 /* ---- gains of the filters: alpha and beta of Kalata 1984 for 0.5 m/s2 */
-#define SHARED_GAIN 0.75F
-#define RATE_GAIN 0.5F
-#define GAP_MOST_S 1.0F  /* chosen: ten scans; after a longer gap no level is known */
-#define OWN_GAIN 0.3F    /* of what one mirror shows alone: slow, it is terrain or noise */
+#define SHARED_GAIN 0.85F
+#define RATE_GAIN 0.42F  /* beta of the same table */
+#define OWN_GAIN 0.42F   /* of what one mirror shows alone: slow, it is terrain or noise */
 #define MEAN_MOST 10.0F  /* scans in the mean of a slant */
 #define MEAN_BREAKS 6.0F /* sigmas: it is another constant */
 
@@ -60,11 +60,11 @@ typedef struct {
     float n, sum_mm, squares_mm2;
 } shown_t;
 
-/* Normal density of these, in that of as many without motion or innovation: HEIGHT_NOISE_MM each, and a
+/* Normal density of these, in that of as many without motion or innovation: BELIEF_NOISE_MM each, and a
  * shared motion. With equal noises the matrix is inverted by hand (Sherman and Morrison 1950). */
 static float density_of_motion(const shown_t *shown, float sigma_mm)
 {
-    const float noise_mm2 = HEIGHT_NOISE_MM * HEIGHT_NOISE_MM;
+    const float noise_mm2 = BELIEF_NOISE_MM * BELIEF_NOISE_MM;
     const float all_mm2 = noise_mm2 + shown->n * sigma_mm * sigma_mm;
     const float square = shown->squares_mm2 - sigma_mm * sigma_mm * shown->sum_mm * shown->sum_mm / all_mm2;
 
@@ -73,8 +73,10 @@ static float density_of_motion(const shown_t *shown, float sigma_mm)
 
 static float density_of_step(float step_mm)
 {
-    return STEP_SHARE * ((1.0F - STEP_FAR_SHARE) * expf(-fabsf(step_mm) / STEP_MM) / (2.0F * STEP_MM) +
-                         STEP_FAR_SHARE * STEP_FAR_PER_MM);
+    return STEP_SHARE *
+           ((1.0F - STEP_FAR_SHARE - STEP_NEAR_SHARE) * expf(-fabsf(step_mm) / STEP_MM) / (2.0F * STEP_MM) +
+            STEP_NEAR_SHARE * expf(-fabsf(step_mm) / STEP_NEAR_MM) / (2.0F * STEP_NEAR_MM) +
+            STEP_FAR_SHARE * STEP_FAR_PER_MM);
 }
 
 /* Of a value that is a constant, known as a mean. */
@@ -83,7 +85,8 @@ static float density_of_constant(float mm, const belief_mean_t *mean)
     const float wider = 1.0F + 1.0F / at_least(mean->count, 1.0F); /* variance, in that of the noise */
     const float off_mm = mm - mean->mm;
 
-    return PER_MM * expf(-0.5F * off_mm * off_mm / (SLANT_NOISE_MM * SLANT_NOISE_MM * wider)) / sqrtf(wider);
+    return PER_MM * expf(-0.5F * off_mm * off_mm / (BELIEF_NOISE_MM * BELIEF_NOISE_MM * wider)) /
+           sqrtf(wider);
 }
 
 /* Densities of one scan, by mirror, if nothing moves. */
@@ -97,6 +100,7 @@ typedef struct {
 typedef struct {
     uint16_t honest;               /* bits: those that tell something in this scan */
     float off_mm[MIRROR_COUNT];    /* height less what the world predicts */
+    float step[MIRROR_COUNT];      /* density of that as a step, of the honest ones */
     float density;                 /* of all ways */
     float stepped[MIRROR_COUNT];   /* of those with a step under this mirror */
     float moved_mm;                /* mean of the others' innovations, times its density */
@@ -126,7 +130,7 @@ static void add_way(const belief_world_t *world, ways_t *ways, uint16_t steps)
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         if (has(steps, m)) {
-            density *= density_of_step(ways->off_mm[m]);
+            density *= ways->step[m];
         } else if (has(ways->honest, m)) {
             density *= (1.0F - STEP_SHARE) * PER_MM;
             shown.n += 1.0F;
@@ -205,6 +209,7 @@ static float world_scan(belief_world_t *world, const belief_beam_t *beams, const
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         ways.off_mm[m] = beams[m].height_mm - world->level_mm[m];
+        ways.step[m] = has(ways.honest, m) ? density_of_step(ways.off_mm[m]) : 0.0F;
     }
     add_stand(world, &ways, constant);
     for (uint16_t steps = 0U; steps < BELIEF_WORLDS; ++steps) {
@@ -275,7 +280,7 @@ static void keep_mean(belief_mean_t *mean, float mm)
 {
     const float off_mm = mm - mean->mm;
 
-    if (mean->count == 0.0F || fabsf(off_mm) > MEAN_BREAKS * SLANT_NOISE_MM) {
+    if (mean->count == 0.0F || fabsf(off_mm) > MEAN_BREAKS * BELIEF_NOISE_MM) {
         *mean = (belief_mean_t){.mm = mm, .count = 1.0F};
         return;
     }
@@ -322,7 +327,7 @@ void belief_scan(belief_t *belief, const belief_beam_t *beams, float gap_s, floa
         start(belief);
     }
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (beams[m].valid && has(belief->known, m) && gap_s <= GAP_MOST_S) {
+        if (beams[m].valid && has(belief->known, m) && gap_s <= HEIGHT_LOST_S) {
             told |= (uint16_t)(1U << m);
         }
     }
@@ -357,6 +362,16 @@ float belief_of_two(const belief_t *belief, uint16_t mirrors)
         const uint16_t honest = mirrors & (uint16_t)~k;
 
         sum += ((honest & (honest - 1U)) != 0U) ? belief->worlds[k].probability : 0.0F;
+    }
+    return sum;
+}
+
+float belief_of_none(const belief_t *belief, uint16_t mirrors)
+{
+    float sum = 0.0F;
+
+    for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
+        sum += ((mirrors & (uint16_t)~k) == 0U) ? belief->worlds[k].probability : 0.0F;
     }
     return sum;
 }

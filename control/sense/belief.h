@@ -19,6 +19,9 @@
 #include "control/altitude.h"
 
 #define BELIEF_WORLDS (1U << MIRROR_COUNT)
+/* Standard deviation of one mirror's height about that of the others, and of a blocked beam's slant. Fitted
+ * on healthy flights, see belief.c; recorded: 1 mm at most. */
+#define BELIEF_NOISE_MM 6.0F
 #define BELIEF_MOTIONS 3U /* belief.c: it stands, it flies, or something pushes it */
 
 /* One mirror in one scan. */
@@ -57,5 +60,8 @@ float belief_of_lie(const belief_t *belief, mirror_t mirror);
 
 /* Probability that at least two of these mirrors do not lie. mirrors: bits. */
 float belief_of_two(const belief_t *belief, uint16_t mirrors);
+
+/* Probability that each of these mirrors lies. mirrors: bits, at least one. */
+float belief_of_none(const belief_t *belief, uint16_t mirrors);
 
 #endif

@@ -4,12 +4,15 @@
 #include "control/sense/confirmation.h"
 
 #include "control/between.h"
+#include "control/credible.h"
 #include "control/sense/witness.h"
 
-#define CONFIRMED_M 0.12F    /* chosen: just above WITNESS_STEP_M */
-#define TERRAIN_FALL_M 0.40F /* chosen: above the edge of the seed's course, 0.25 m */
-#define SUNK_M 0.025F        /* chosen: five times the noise of a height; no vehicle flies below its ground */
-#define QUIET_S 1.0F         /* tried: 60 drawn vehicles whose blocked beam shows the reference; ten scans */
+#define CONFIRMED_M \
+    0.12F /* more than steps that do not show, WITNESS_STEP_M, and 3 HEIGHT_SIGMA_M: 119 mm \
+           */
+#define TERRAIN_FALL_M 0.40F           /* chosen: above the edge of the seed's course, 0.25 m */
+#define SUNK_M (4.0F * HEIGHT_SIGMA_M) /* once an hour by chance; no vehicle flies below its ground */
+#define QUIET_S 1.0F /* tried: 60 drawn vehicles whose blocked beam shows the reference; ten scans */
 
 static void watch_depth(confirmation_t *confirmation, const height_change_t *change, bool standing)
 {
@@ -28,33 +31,32 @@ static bool is_over(const confirmation_t *confirmation, const height_change_t *c
            change->height_m > confirmation->near_m + CONFIRMED_M || confirmation->quiet_s > QUIET_S;
 }
 
-confirmation_event_t confirmation_height(confirmation_t *confirmation, const heights_t *heights,
-                                         const height_change_t *change, bool standing)
+bool confirmation_height(confirmation_t *confirmation, const height_change_t *change, bool standing)
 {
     watch_depth(confirmation, change, standing);
     confirmation->proved = confirmation->proved && !standing;
     const bool first = confirmation_is_first(confirmation);
-    const bool nearer = change->rise_m < 0.0F && !heights_return(heights, change->height_m);
+    const bool nearer = change->rise_m < 0.0F;
 
     if (standing || (change->step && (first || nearer))) {
         confirmation->unconfirmed = true;
         confirmation->near_m = change->height_m;
         confirmation->quiet_s = 0.0F;
-        return CONFIRMATION_BEGINS;
+        return false;
     }
     if (!is_over(confirmation, change)) {
-        return CONFIRMATION_GOES_ON;
+        return false;
     }
     confirmation->proved = confirmation->proved || first;
     confirmation->unconfirmed = false;
-    return first ? CONFIRMATION_FIRST : CONFIRMATION_GOES_ON;
+    return first;
 }
 
 void confirmation_wait(confirmation_t *confirmation, const height_change_t *change, float wanted_m,
                        bool grounded, bool lives)
 {
-    const bool climbs = wanted_m > CONFIRMATION_QUIET_M;
-    const bool content = wanted_m < CONFIRMATION_QUIET_M;
+    const bool climbs = wanted_m > CONTENT_M;
+    const bool content = wanted_m < CONTENT_M;
 
     confirmation->ground_m = grounded ? at_most(change->height_m, 0.0F) : confirmation->ground_m;
     confirmation->sunk = (change->height_m < confirmation->ground_m - SUNK_M && climbs)

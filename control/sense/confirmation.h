@@ -10,8 +10,7 @@
 
 #include "control/sense/heights.h"
 
-#define CONFIRMATION_SUNK 3U       /* chosen: 0.3 s; `sunk` stops here */
-#define CONFIRMATION_QUIET_M 0.10F /* chosen: as CONTENT_M in rules.c */
+#define CONFIRMATION_SUNK 3U /* chosen: 0.3 s; `sunk` stops here */
 
 typedef struct {
     bool unconfirmed;   /* after a take-off or a step towards the vehicle: no climb has shown since */
@@ -24,16 +23,8 @@ typedef struct {
     uint16_t sunk;      /* heights in a row below that while the law wants to climb */
 } confirmation_t;
 
-/* What a height means for the witnesses. */
-typedef enum {
-    CONFIRMATION_GOES_ON,
-    CONFIRMATION_BEGINS, /* from now on the question is whether a climb shows in the heights */
-    CONFIRMATION_FIRST   /* the heights show the first climb since the ground */
-} confirmation_event_t;
-
-/* One height, before heights_update(). standing: on the ground, or not yet off it. */
-confirmation_event_t confirmation_height(confirmation_t *confirmation, const heights_t *heights,
-                                         const height_change_t *change, bool standing);
+/* One height. standing: on the ground, or not yet off it. True: it shows the first climb since the ground. */
+bool confirmation_height(confirmation_t *confirmation, const height_change_t *change, bool standing);
 
 /* The same height, after the witnesses were compared. wanted_m: reference minus height, NAN: none is held.
  * lives: the slant moves. */

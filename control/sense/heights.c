@@ -8,12 +8,8 @@
 #include "control/credible.h"
 #include "control/sense/witness.h"
 
-#define GLITCH_S 0.25F      /* chosen: two scans and a half */
-#define STEPS_TIME_S 2.0F   /* chosen: 20 scans */
-#define STEPS_MAX 12.0F     /* chosen: more than half of the scans of STEPS_TIME_S are steps */
 #define RISE_TIME_S 0.2F    /* chosen: two scans */
 #define WAY_TIME_S 1.0F     /* chosen: ten scans */
-#define MOVED_S 1.0F        /* chosen: as WAY_TIME_S */
 #define MOVES_M 0.15F       /* chosen: nothing in front of a mirror moves so far */
 #define MOVED_LEAST_M 0.10F /* tried 0.10 and 0.15: with the latter a steep ramp was doubted, 2 of 600 */
 #define UNSEEN_MOST_S 2.0F  /* the counter stops here */
@@ -47,28 +43,17 @@ void heights_update(heights_t *heights, const height_change_t *change)
     heights->way_m = breaks ? 0.0F
                             : heights->way_m * (1.0F - at_most(gap_s / WAY_TIME_S, 1.0F)) + change->rise_m;
     heights->unmoved_s = fabsf(heights->way_m) > MOVED_LEAST_M ? 0.0F
-                         : breaks                              ? MOVED_S
-                                                               : at_most(heights->unmoved_s + gap_s, MOVED_S);
-    heights->since_rise_s = (change->step && change->rise_m > 0.0F)
-                                ? 0.0F
-                                : at_most(heights->since_rise_s + gap_s, HEIGHT_LOST_S);
-    heights->before_rise_m = (heights->since_rise_s > 0.0F) ? heights->before_rise_m : heights->height_m;
+                         : breaks                              ? WAY_TIME_S
+                                  : at_most(heights->unmoved_s + gap_s, WAY_TIME_S);
     heights->height_m = change->height_m;
     heights->known = true;
     heights->unseen_s = 0.0F;
     heights->rise_mps += heights_rise_share(gap_s) * (rise_mps - heights->rise_mps);
-    heights->steps = heights->steps * (1.0F - at_most(gap_s / STEPS_TIME_S, 1.0F)) +
-                     (change->step ? 1.0F : 0.0F);
 }
 
 void heights_wait(heights_t *heights, float dt_s)
 {
     heights->unseen_s = at_most(heights->unseen_s + dt_s, UNSEEN_MOST_S);
-}
-
-bool heights_return(const heights_t *heights, float height_m)
-{
-    return heights->since_rise_s < GLITCH_S && fabsf(height_m - heights->before_rise_m) < WITNESS_STEP_M;
 }
 
 bool heights_move(const heights_t *heights)
@@ -78,15 +63,5 @@ bool heights_move(const heights_t *heights)
 
 bool heights_moved(const heights_t *heights)
 {
-    return heights->unmoved_s < MOVED_S;
-}
-
-bool heights_are_steps(const heights_t *heights)
-{
-    return heights->steps > STEPS_MAX;
-}
-
-bool heights_step_less(const heights_t *heights)
-{
-    return heights->steps < STEPS_MAX;
+    return heights->unmoved_s < WAY_TIME_S;
 }

@@ -7,15 +7,12 @@
 #include <stdbool.h>
 
 typedef struct {
-    bool known;          /* at least one height was received */
-    float height_m;      /* latest height */
-    float rise_mps;      /* low-passed rate of the heights, without steps */
-    float way_m;         /* leaky sum of the height changes since the latest step */
-    float unmoved_s;     /* time since way_m was last large, at most 1 s; 1 s after a step */
-    float before_rise_m; /* height before the latest upward step of the height */
-    float since_rise_s;  /* time since that step, at most 1.5 s */
-    float steps;         /* leaky count of the steps */
-    float unseen_s;      /* time on the ground since the latest height, at most 2 s */
+    bool known;      /* at least one height was received */
+    float height_m;  /* latest height */
+    float rise_mps;  /* low-passed rate of the heights, without steps */
+    float way_m;     /* leaky sum of the height changes since the latest step */
+    float unmoved_s; /* time since way_m was last large, at most 1 s; 1 s after a step */
+    float unseen_s;  /* time on the ground since the latest height, at most 2 s */
 } heights_t;
 
 /* One height against the one before. */
@@ -41,18 +38,11 @@ float heights_rise_share(float gap_s);
 /* dt_s on the ground without a height. */
 void heights_wait(heights_t *heights, float dt_s);
 
-/* The height is back at its value before a short upward step: that was a glitch, the terrain did not rise. */
-bool heights_return(const heights_t *heights, float height_m);
-
 /* A thing in front of a mirror stays where it is. So heights that keep moving do not come from a blocked
  * beam. */
 bool heights_move(const heights_t *heights);
 
 /* The same, now or within the last second. */
 bool heights_moved(const heights_t *heights);
-
-/* The height makes steps for more than half of the time, or for less. At half neither is true. */
-bool heights_are_steps(const heights_t *heights);
-bool heights_step_less(const heights_t *heights);
 
 #endif

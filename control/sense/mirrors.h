@@ -1,11 +1,10 @@
 /* Which mirrors are believed in one scan, and the height that they show. A mirror that more probably lies
- * than not (belief.h), or repeats its scan, is left out. Of the others:
+ * than not (belief.h), or repeats its scan, is left out.
  *
- *   three heights   all, when they lie together; else the two that do; else the middle one
- *   two heights     both, when they lie together; else the one nearer to the height before
- *   one height      that one
- *
- * So an edge of the terrain counts when the second beam has passed it. When all are left out, all count.
+ * The height is a mean about the middle one of three, or that one of two that is nearer to the height before.
+ * The farther a mirror's height is from that, the less it counts. So a slope and bars on the floor are a
+ * mean, and an edge counts when the second beam has passed it. When all are left out, all are asked that do
+ * not repeat their scan.
  *
  * Pure; the caller owns the state, all zero at first. Context: one Task. */
 #ifndef CONTROL_SENSE_MIRRORS_H
@@ -24,11 +23,18 @@ typedef struct {
 
 typedef struct {
     belief_t belief;
-    altitude_t altitude;                  /* of the latest scan; not valid before the first */
-    bool agree;                           /* its height is that of two honest mirrors, with 99 % */
+    altitude_t altitude; /* of the latest scan; not valid before the first */
+    bool agree;          /* its height is that of two honest mirrors, with 99 % */
+    bool blind;          /* all that told something in it lie, with 99 % */
+    uint16_t left_out;   /* bits: mirrors of that scan that told something, and do not count in altitude */
+    float disbelieved_s[MIRROR_COUNT];    /* how long each has been, at most 10 s */
     mirror_digits_t latest[MIRROR_COUNT]; /* of each mirror, to find copies */
     float gained_mps, gained_before_mps; /* change of the vertical speed since the scan, and in that before */
 } mirrors_t;
+
+/* Bits: mirrors that are disbelieved. lasting: for so long that no edge explains it; over one, the mirror
+ * that shows what was before looks blocked beside the others. */
+uint16_t mirrors_liars(const mirrors_t *mirrors, bool lasting);
 
 /* One IMU frame: the vertical speed has changed by so much. */
 void mirrors_frame(mirrors_t *mirrors, float gained_mps);
@@ -36,5 +42,9 @@ void mirrors_frame(mirrors_t *mirrors, float gained_mps);
 /* One scan: writes altitude and agree. shown: one altitude for each mirror_t, not valid where it shows none.
  * gap_s: since the scan before, > 0. age_s: of its rays. felt: the accelerometer is believed. */
 void mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float age_s, bool felt);
+
+/* For people. Writes the probability that each mirror lies, and returns the mirrors that were left out, as
+ * bits. */
+uint16_t mirrors_tell(const mirrors_t *mirrors, float lies[MIRROR_COUNT]);
 
 #endif

@@ -2,21 +2,22 @@
 #include "control/sense/push.h"
 
 #include "control/between.h"
+#include "control/seconds.h"
+#include "control/where/hover_thrust.h"
 
-#define STEP_MAX_S 0.5F        /* chosen: longer pauses count as this long; as in where.c */
-#define LAG_S 0.15F            /* LAG of 0.12 s and DELAY of 18.5 ms, as one lag */
-#define PUSHED_LEAK_PER_S 0.4F /* chosen: time constant of 2.5 s, as HOVER_TIME_S in hover_thrust.c */
+#define LAG_S 0.15F                             /* LAG of 0.12 s and DELAY of 18.5 ms, as one lag */
+#define PUSHED_LEAK_PER_S (1.0F / HOVER_TIME_S) /* what the hover thrust is off by is learned so fast */
 
 void push_lag(push_t *push, const command_t *command)
 {
-    const float dt_s = at_most(command->step_s, STEP_MAX_S);
+    const float dt_s = at_most(command->step_s, CYCLE_MAX_S);
 
     push->lagged_n += dt_s / (LAG_S + dt_s) * (command->thrust_n - push->lagged_n);
 }
 
 void push_move(push_t *push, const command_t *command, float upright)
 {
-    const float dt_s = at_most(command->step_s, STEP_MAX_S);
+    const float dt_s = at_most(command->step_s, CYCLE_MAX_S);
     const float excess_mps2 = command->authority_mps2_per_n * (push->lagged_n * upright - command->hover_n);
     const float mps2 = (excess_mps2 - command->damping_per_s * push->pushed.speed_mps) /
                        (1.0F + command->damping_per_s * dt_s);

@@ -13,44 +13,27 @@
 #include "control/between.h"
 #include "control/credible.h"
 
-/* A still slant, see also beam.c. */
-#define RIGID_SCANS 2U     /* chosen: one scan alone may be chance */
-#define NOISE_SCANS 19U    /* tried: at 16 one of 40 healthy flights in FLOATING was doubted */
-#define STILL_BOTH_M 0.10F /* chosen: low, because the still slant is evidence too */
-#define FLAT_FELT_M 0.15F  /* chosen: half of BOTH_M; the thrust must then show AGAINST_M */
-#define FLAT_SCANS 6U      /* tried: without it 1 of 100 healthy flights of climb rates was doubted */
-#define STILL_FELT_M 0.05F /* chosen: half of that; the thrust must then show BOTH_M */
-
 /* A lift-off that the heights do not show. */
-#define SWAYING_S 1.5F     /* chosen: 15 scans; a lift-off that the heights see takes less than a second */
+#define RIGID_SCANS 2U     /* one scan alone may be chance */
 #define STRONG_SHARE 1.3F  /* chosen: of GRAV; lifts the heaviest vehicle, 1.2 of GRAV, at 0.8 m/s2 */
 #define STRONG_COUNTS 3.0F /* chosen: then half a second is enough, which lifts it by 0.1 m */
-#define SWAYING_M 0.05F    /* chosen: ten times the noise of a height */
-#define ALOFT_M 0.08F      /* chosen: as LOW_M */
 
 #define AGAINST_M 0.50F      /* chosen: five times WITNESS_STEP_M */
 #define BOTH_M 0.28F         /* chosen: about half of AGAINST_M, for the second witness */
 #define WITH_M 0.20F         /* chosen: less than that counts as agreement */
 #define ALONE_M 0.60F        /* chosen: above AGAINST_M, because only one witness contradicts */
-#define ALONE_SHARE 0.4F     /* chosen: with the damping wrong, the thrust still shows half of a motion */
 #define NO_AUTHORITY_M 1.30F /* chosen: twice ALONE_M; wrong hover thrust alone makes this witness drift */
 #define MOVED_M 0.30F        /* chosen: above BOTH_M, so that the agreement is about a real motion */
 #define PUSH_N 0.7F          /* chosen: a tenth of GRAV as delivered, 7 N */
-#define VAIN_S 3.0F          /* chosen: twice AGREED_S, because only one witness is left */
-#define VAIN_MPS 0.12F       /* chosen: below LAND_MPS in let_down.c, 0.15 m/s */
-#define VAIN_M 0.15F         /* chosen: above CONTENT_M */
-#define RUN_AWAY_MPS 0.7F    /* chosen: above the speed of unconfirmed climbs, 0.35 and 0.6 m/s */
-#define RUN_AWAY_M 0.38F     /* chosen: between BOTH_M and AGAINST_M */
-#define UNSEEN_MPS 0.6F      /* tried: no healthy flight of 1800; at 0.5 two are doubted */
-#define UNSEEN_FELT_M 0.25F  /* tried: with 0.20 no healthy flight of 1800, with 0.15 two */
-#define UNSEEN_PUSHED_M 0.1F /* chosen: less than UNSEEN_FELT_M, its hover thrust has just been learned */
-#define UNMOVED_MPS 0.2F     /* chosen: heights that change more slowly do not move */
-#define CONTENT_M 0.10F      /* chosen: a law so near its reference is not misled by a wrong height */
-#define CONTENT_SHARE 1.8F   /* chosen: near the reference the limits nearly double */
-#define ALIVE_SHARE 1.4F     /* tried: 1.8 helps no more; a slant that changes with the tilt is not blocked */
-#define UNCONFIRMED_M 0.35F  /* chosen: above BOTH_M; the climb is slow meanwhile */
-#define UNPROVED_M 0.35F     /* chosen: twice what the lift-off of a drawn vehicle shows */
-#define UNCONFIRMED_N 0.2F   /* chosen: a small part of PUSH_N, because the climb is slow */
+#define PUSHED_M 0.15F       /* chosen: above CONTENT_M; a law pushes for such a distance */
+#define NOISE_SCANS 19U      /* tried: at 16 one of 40 healthy flights in FLOATING was doubted */
+#define FLAT_FELT_M (0.5F * BOTH_M) /* the thrust must then show AGAINST_M */
+#define FLAT_SCANS 6U       /* tried: without it 1 of 100 healthy flights of climb rates was doubted */
+#define UNSEEN_MPS 0.6F     /* tried: no healthy flight of 1800; at 0.5 two are doubted */
+#define UNSEEN_FELT_M 0.25F /* tried: with 0.20 no healthy flight of 1800, with 0.15 two */
+#define UNMOVED_MPS 0.2F    /* chosen: heights that change more slowly do not move */
+#define UNSHOWN_M 0.35F     /* chosen: above BOTH_M; a climb that no height has shown is slow meanwhile */
+#define UNSHOWN_N 0.2F      /* chosen: a small part of PUSH_N, because that climb is slow */
 
 rule_case_t rules_case(const rules_t *rules, const senses_t *senses, const command_t *command,
                        bool felt_valid)
@@ -75,18 +58,6 @@ static bool felt_against(const rule_case_t *c, float at_least_m)
     return c->felt_valid && fabsf(c->felt_off_m) > at_least_m;
 }
 
-/* Neither witness contradicts the heights by the smallest limit of any rule below. */
-static bool both_agree(const rule_case_t *c)
-{
-    return fabsf(c->felt->seen_m) < STILL_FELT_M && fabsf(c->pushed->seen_m) < STILL_BOTH_M;
-}
-
-/* Both contradict the heights in the same direction. */
-static bool same_side(const rule_case_t *c)
-{
-    return c->felt->seen_m * c->pushed->seen_m > 0.0F;
-}
-
 static bool heights_rest(const rule_case_t *c)
 {
     return fabsf(c->senses->heights.rise_mps) < UNMOVED_MPS;
@@ -101,26 +72,18 @@ static bool pushes_in_vain(const senses_t *senses, const command_t *command, flo
            senses->push.pushed.seen_m * push_n < 0.0F;
 }
 
-/* Both witnesses contradict the heights in the same direction, by that share of the limits. */
-static bool both_against(const rule_case_t *c, float share)
+/* Both witnesses contradict the heights in the same direction. */
+static bool both_against(const rule_case_t *c)
 {
-    const bool content = fabsf(c->command->wanted_m) < CONTENT_M && !c->senses->beam.flat;
-    const float sure = content ? share * CONTENT_SHARE : share;
-
-    if (!witness_against(c->pushed, sure * BOTH_M)) {
-        return false;
-    }
-    const float pushed_m = c->pushed->seen_m;
-
-    return felt_against(c, sure * BOTH_M) && c->felt_off_m * pushed_m > 0.0F &&
-           at_least(fabsf(c->felt_off_m), fabsf(pushed_m)) > sure * AGAINST_M;
+    return felt_against(c, AGAINST_M) && witness_against(c->pushed, BOTH_M) &&
+           c->felt_off_m * c->pushed->seen_m > 0.0F;
 }
 
 /* ---- rules of DOUBT_SIGHT */
 
-static bool is_steps(const rule_case_t *c)
+static bool is_blind(const rule_case_t *c)
 {
-    return heights_are_steps(&c->senses->heights);
+    return c->senses->mirrors.blind;
 }
 
 static bool is_stiff(const rule_case_t *c)
@@ -145,9 +108,9 @@ static bool is_aloft(const rule_case_t *c)
     const senses_t *s = c->senses;
     const bool odd = s->beam.rigid >= RIGID_SCANS || (s->heights.height_m > LOW_M && beam_is_still(&s->beam));
 
-    return c->rules->swaying_s > SWAYING_S ||
+    return c->rules->swaying_s > SWAY_TIME_S ||
            (c->command->standing && s->confirmation.unconfirmed && odd && sway_as_in_the_air(&s->sway) &&
-            c->rules->felt_least_m < -ALOFT_M);
+            c->rules->felt_least_m < -LOW_M);
 }
 
 /* A beam may be blocked during a climb, so this does not wait until heights_moved() is over. slower_mps lags
@@ -155,129 +118,63 @@ static bool is_aloft(const rule_case_t *c)
 static bool is_unseen(const rule_case_t *c)
 {
     return c->senses->slower_mps - c->senses->heights.rise_mps > UNSEEN_MPS &&
-           c->pushed->seen_m < -UNSEEN_PUSHED_M && c->felt_valid && c->pushed_valid &&
+           c->pushed->seen_m < -WITNESS_STEP_M && c->felt_valid && c->pushed_valid &&
            c->felt_off_m < -UNSEEN_FELT_M && heights_rest(c);
 }
 
-/* The accelerometer does not speak for the heights. */
-static bool felt_moves(const rule_case_t *c)
-{
-    return !c->felt_valid || (same_side(c) && felt_against(c, STILL_FELT_M));
-}
-
-static bool is_rigid(const rule_case_t *c)
-{
-    return c->senses->beam.rigid >= RIGID_SCANS;
-}
-
-/* A flat scan whose slant has changed by noise alone. */
-static bool is_flat(const rule_case_t *c)
-{
-    const beam_t *beam = &c->senses->beam;
-
-    return beam->flat && beam->white >= FLAT_SCANS && felt_against(c, FLAT_FELT_M) &&
-           witness_against(c->pushed, AGAINST_M);
-}
-
+/* The slant has changed by noise alone, or stayed, and the witnesses tell a motion. So a blocked beam is
+ * found that shows about the reference, where no law pushes. The stiller the slant, the less of a motion. */
 static bool is_still(const rule_case_t *c)
 {
-    const bool felt = felt_moves(c);
-    const bool both = felt_against(c, STILL_BOTH_M) && witness_against(c->pushed, STILL_BOTH_M);
-    const bool noise = c->senses->beam.white >= NOISE_SCANS && witness_against(c->pushed, BOTH_M);
+    const beam_t *beam = &c->senses->beam;
+    const bool same_side = c->felt->seen_m * c->pushed->seen_m > 0.0F;
+    const bool flat = beam->flat && beam->white >= FLAT_SCANS && felt_against(c, FLAT_FELT_M) &&
+                      witness_against(c->pushed, AGAINST_M);
+    const bool rigid = beam->rigid >= RIGID_SCANS && felt_against(c, WITNESS_STEP_M) &&
+                       witness_against(c->pushed, WITNESS_STEP_M);
+    const bool noise = beam->white >= NOISE_SCANS && witness_against(c->pushed, BOTH_M);
 
-    return (felt && is_flat(c)) || (felt && both && is_rigid(c)) || (noise && (felt || is_rigid(c)));
+    return ((flat || rigid) && same_side) || (noise && (!c->felt_valid || same_side));
 }
 
 /* It is believed, because it measured g at rest a moment ago. The thrust does not help: the hover thrust is
  * not known yet. */
 static bool is_unproved(const rule_case_t *c)
 {
-    return confirmation_is_first(&c->senses->confirmation) && !heights_move(&c->senses->heights) &&
-           c->felt_valid && c->felt_off_m < -UNPROVED_M;
+    return confirmation_is_first(&c->senses->confirmation) && c->felt_valid && c->felt_off_m < -UNSHOWN_M;
 }
 
-static bool is_runaway(const rule_case_t *c)
-{
-    const float rise_mps = c->senses->heights.rise_mps;
-    const float felt_mps = (c->felt->speed_mps - rise_mps) / c->senses->accelerometer.shaken;
-    const float pushed_mps = c->pushed->speed_mps - rise_mps;
-
-    return heights_rest(c) && felt_mps * pushed_mps > 0.0F && felt_mps * c->felt->seen_m < 0.0F &&
-           at_most(fabsf(felt_mps), fabsf(pushed_mps)) > RUN_AWAY_MPS &&
-           at_most(fabsf(c->felt_off_m), fabsf(c->pushed->seen_m)) > RUN_AWAY_M;
-}
-
-/* The accelerometer does not contradict that. */
 static bool is_no_climb(const rule_case_t *c)
 {
-    const confirmation_t *confirmation = &c->senses->confirmation;
-    const float pushed_m = c->pushed->seen_m;
-    const bool flew = confirmation->proved ||
-                      confirmation->near_m > WITNESS_STEP_M; /* a step after the lift-off moves near_m up */
-
-    return confirmation->unconfirmed && (flew || c->rules->felt_least_m < -WITH_M) &&
-           c->pushed->running_s >= WITNESS_OLD_S && fabsf(pushed_m) > UNCONFIRMED_M &&
-           pushes_in_vain(c->senses, c->command, UNCONFIRMED_N) &&
-           !(felt_against(c, WITH_M) && c->felt_off_m * pushed_m < 0.0F);
+    return c->pushed_valid && c->senses->confirmation.unconfirmed && c->pushed->running_s >= WITNESS_OLD_S &&
+           fabsf(c->pushed->seen_m) > UNSHOWN_M && pushes_in_vain(c->senses, c->command, UNSHOWN_N);
 }
 
-/* The thrust's witness of a vehicle unlike the model drifts, and the accelerometer's bias may jump. */
-static bool is_both(const rule_case_t *c)
-{
-    return heights_rest(c) && both_against(c, (c->senses->beam.still == 0U) ? ALIVE_SHARE : 1.0F);
-}
-
-static bool is_vain(const rule_case_t *c)
-{
-    return c->rules->vain_s > VAIN_S;
-}
-
-/* Near the ground the accelerometer alone is not believed against heights that move: it misses the knocks of
- * a touchdown on a rough floor. */
-static bool is_felt(const rule_case_t *c)
-{
-    return (c->senses->heights.height_m > LOW_M || beam_is_still(&c->senses->beam)) &&
-           felt_against(c, ALONE_M);
-}
-
-/* When a rule is asked, by the witnesses that count. */
-#define ALWAYS 1U   /* whatever else is known */
-#define UNMOVED 2U  /* the heights have not moved lately, and somebody contradicts them */
-#define OF_BOTH 4U  /* and both witnesses count */
-#define OF_PUSH 8U  /* only that of the thrust */
-#define OF_FELT 16U /* only that of the accelerometer, or none */
+/* When a rule is asked. */
+typedef enum {
+    ALWAYS,
+    UNMOVED /* the heights have not moved lately */
+} when_t;
 
 static const struct {
     verdict_reason_t reason;
-    uint16_t when;
+    when_t when;
     bool (*is)(const rule_case_t *c);
 } sight_rules[] = {
-    {VERDICT_STEPS, ALWAYS, is_steps},      {VERDICT_STIFF, ALWAYS, is_stiff},
-    {VERDICT_WHITE, ALWAYS, is_white},      {VERDICT_SUNK, ALWAYS, is_sunk},
-    {VERDICT_ALOFT, ALWAYS, is_aloft},      {VERDICT_UNSEEN, ALWAYS, is_unseen},
-    {VERDICT_STILL, UNMOVED, is_still},     {VERDICT_UNPROVED, UNMOVED, is_unproved},
-    {VERDICT_RUNAWAY, OF_BOTH, is_runaway}, {VERDICT_NO_CLIMB, OF_BOTH | OF_PUSH, is_no_climb},
-    {VERDICT_BOTH, OF_BOTH, is_both},       {VERDICT_VAIN, OF_PUSH, is_vain},
-    {VERDICT_FELT, OF_FELT, is_felt},
+    {VERDICT_BLIND, ALWAYS, is_blind},        {VERDICT_STIFF, ALWAYS, is_stiff},
+    {VERDICT_WHITE, ALWAYS, is_white},        {VERDICT_SUNK, ALWAYS, is_sunk},
+    {VERDICT_ALOFT, ALWAYS, is_aloft},        {VERDICT_UNSEEN, ALWAYS, is_unseen},
+    {VERDICT_STILL, UNMOVED, is_still},       {VERDICT_UNPROVED, UNMOVED, is_unproved},
+    {VERDICT_NO_CLIMB, UNMOVED, is_no_climb},
 };
-
-static uint16_t circumstances(const rule_case_t *c)
-{
-    const uint16_t who = c->pushed_valid ? (c->felt_valid ? OF_BOTH : OF_PUSH) : OF_FELT;
-
-    if (heights_moved(&c->senses->heights) || (c->felt_valid && both_agree(c))) {
-        return ALWAYS;
-    }
-    return (uint16_t)(ALWAYS | UNMOVED | who);
-}
 
 /* The first rule that applies. */
 verdict_reason_t rules_against_sight(const rule_case_t *c)
 {
-    const uint16_t now = circumstances(c);
+    const bool moved = heights_moved(&c->senses->heights);
 
     for (uint16_t k = 0U; k < sizeof sight_rules / sizeof sight_rules[0]; ++k) {
-        if ((sight_rules[k].when & now) != 0U && sight_rules[k].is(c)) {
+        if ((sight_rules[k].when == ALWAYS || !moved) && sight_rules[k].is(c)) {
             return sight_rules[k].reason;
         }
     }
@@ -290,23 +187,18 @@ verdict_reason_t rules_against_sight(const rule_case_t *c)
  * and heights that move are right against both. */
 verdict_reason_t rules_against_imu(const rule_case_t *c)
 {
-    const bool alone = !witness_against(c->pushed, ALONE_SHARE * fabsf(c->felt->seen_m)) ||
-                       c->felt->seen_m * c->pushed->seen_m < 0.0F;
-
-    if (both_agree(c) || beam_is_still(&c->senses->beam) || is_unproved(c)) {
+    if (beam_is_still(&c->senses->beam)) {
         return VERDICT_NONE;
     }
-    if (felt_against(c, ALONE_M) && c->pushed_valid && alone) {
-        return VERDICT_ALONE;
+    if (both_against(c)) {
+        return heights_move(&c->senses->heights) ? VERDICT_MOVED : VERDICT_NONE;
     }
-    return (heights_move(&c->senses->heights) && felt_against(c, AGAINST_M) && both_against(c, 1.0F))
-               ? VERDICT_MOVED
-               : VERDICT_NONE;
+    return (c->pushed_valid && felt_against(c, ALONE_M)) ? VERDICT_ALONE : VERDICT_NONE;
 }
 
 verdict_reason_t rules_against_thrust(const rule_case_t *c)
 {
-    const bool vain = c->senses->confirmation.proved && fabsf(c->command->wanted_m) > VAIN_M &&
+    const bool vain = c->senses->confirmation.proved && fabsf(c->command->wanted_m) > PUSHED_M &&
                       witness_against(c->pushed, NO_AUTHORITY_M) && c->felt_valid &&
                       !felt_against(c, WITH_M) && pushes_in_vain(c->senses, c->command, PUSH_N);
 
@@ -319,11 +211,6 @@ bool rules_agree(const rule_case_t *c)
     const witness_t *mover = c->pushed_valid ? c->pushed : c->felt;
 
     return !felt_against(c, WITH_M) && !witness_against(c->pushed, WITH_M) && mover->moved_m > MOVED_M;
-}
-
-bool rules_contradict(const rule_case_t *c)
-{
-    return felt_against(c, AGAINST_M) || witness_against(c->pushed, AGAINST_M);
 }
 
 /* Error of the height by the valid witnesses, mean of both when both are valid. */
@@ -350,20 +237,12 @@ static void watch_lift_off(rules_t *rules, const senses_t *senses, const command
     const bool sways = senses->confirmation.unconfirmed && sway_as_in_the_air(&senses->sway) &&
                        (strong || beam_is_still(&senses->beam));
 
-    if (!sways || fabsf(height_m - rules->swaying_from_m) > SWAYING_M) {
+    if (!sways || fabsf(height_m - rules->swaying_from_m) > HEIGHT_NO_NOISE_M) {
         rules->swaying_s = 0.0F;
         rules->swaying_from_m = height_m;
     } else {
         rules->swaying_s += strong ? STRONG_COUNTS * gap_s : gap_s;
     }
-}
-
-static void watch_push(rules_t *rules, const senses_t *senses, const command_t *command, float gap_s)
-{
-    const bool vain = pushes_in_vain(senses, command, PUSH_N) && fabsf(senses->heights.rise_mps) < VAIN_MPS &&
-                      fabsf(command->wanted_m) > VAIN_M;
-
-    rules->vain_s = vain ? rules->vain_s + gap_s : 0.0F;
 }
 
 void rules_watch(rules_t *rules, const senses_t *senses, const command_t *command, float gap_s)
@@ -372,12 +251,11 @@ void rules_watch(rules_t *rules, const senses_t *senses, const command_t *comman
 
     rules->felt_least_m = senses->confirmation.unconfirmed ? at_most(rules->felt_least_m, off_m) : 0.0F;
     watch_lift_off(rules, senses, command, gap_s);
-    watch_push(rules, senses, command, gap_s);
 }
 
 static const char *const reason_names[] = {
     [VERDICT_NONE] = "-",
-    [VERDICT_STEPS] = "SIGHT/steps",
+    [VERDICT_BLIND] = "SIGHT/blind",
     [VERDICT_STIFF] = "SIGHT/stiff",
     [VERDICT_WHITE] = "SIGHT/white",
     [VERDICT_SUNK] = "SIGHT/sunk",
@@ -385,11 +263,7 @@ static const char *const reason_names[] = {
     [VERDICT_UNSEEN] = "SIGHT/unseen",
     [VERDICT_STILL] = "SIGHT/still",
     [VERDICT_UNPROVED] = "SIGHT/unproved",
-    [VERDICT_RUNAWAY] = "SIGHT/runaway",
     [VERDICT_NO_CLIMB] = "SIGHT/noclimb",
-    [VERDICT_BOTH] = "SIGHT/both",
-    [VERDICT_VAIN] = "SIGHT/vain",
-    [VERDICT_FELT] = "SIGHT/felt",
     [VERDICT_REST] = "IMU/rest",
     [VERDICT_ALONE] = "IMU/alone",
     [VERDICT_MOVED] = "IMU/moved",

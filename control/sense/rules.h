@@ -16,7 +16,7 @@
 typedef enum {
     VERDICT_NONE,
     /* DOUBT_SIGHT */
-    VERDICT_STEPS,    /* the height makes steps for most of the time */
+    VERDICT_BLIND,    /* every mirror lies, more than 99 % */
     VERDICT_STIFF,    /* the tilt sways, and the slant does not change */
     VERDICT_WHITE,    /* the tilt sways, and the slant contains only white noise for long */
     VERDICT_SUNK,     /* heights below the ground while the law wants to climb */
@@ -24,11 +24,7 @@ typedef enum {
     VERDICT_UNSEEN,   /* both witnesses climb, and the heights have stopped */
     VERDICT_STILL,    /* the witnesses predict a motion, and the slant is still */
     VERDICT_UNPROVED, /* the first climb after the ground shows in the accelerometer only */
-    VERDICT_RUNAWAY,  /* both witnesses have a fast climb or fall, and the heights do not move */
     VERDICT_NO_CLIMB, /* since a step towards the vehicle the thrust has pushed, and no climb has shown */
-    VERDICT_BOTH,     /* both witnesses contradict the heights in the same direction */
-    VERDICT_VAIN,     /* the law has pushed for long, and no height moved */
-    VERDICT_FELT,     /* the accelerometer alone contradicts them; nothing else tells */
     /* DOUBT_IMU */
     VERDICT_REST,  /* at rest it does not measure g */
     VERDICT_ALONE, /* the accelerometer contradicts heights and thrust */
@@ -43,7 +39,6 @@ typedef struct {
     float felt_least_m;   /* smallest sum of the accelerometer's innovations while unconfirmed, <= 0 */
     float swaying_s;      /* how long the tilt has swayed and the slant not, while standing */
     float swaying_from_m; /* height at its start */
-    float vain_s;         /* how long the law has pushed while no height moved */
 } rules_t;
 
 /* What a rule looks at. */
@@ -71,9 +66,6 @@ verdict_reason_t rules_against_thrust(const rule_case_t *c);
 
 /* Heights and witnesses agree, over a real motion. */
 bool rules_agree(const rule_case_t *c);
-
-/* A witness contradicts the heights, whatever the other one says. */
-bool rules_contradict(const rule_case_t *c);
 
 /* Error of the height by the valid witnesses, mean of both when both are valid. */
 float rules_lost_m(const rule_case_t *c);

@@ -6,10 +6,10 @@
 #include <stddef.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 #include "control/seconds.h"
 
-#define GAP_LEAST_S 0.02F /* chosen: two scans can not be nearer; the line may deliver two at once */
-#define GAP_LONG_S 10.0F  /* chosen: longer gaps count as this long; the witnesses restart after 1.5 s */
+#define GAP_LONG_S 10.0F /* any above HEIGHT_LOST_S, from where on no change is fresh */
 
 void sense_init(sense_t *sense)
 {
@@ -26,46 +26,53 @@ static void believe_tilt(const tilt_t *tilt, flight_inputs_t *in)
     in->roll_rad = tilt->roll_rad;
     in->pitch_rad = tilt->pitch_rad;
     in->tilted_frames = tilt->tilted;
+    in->attitude_time_us = (tilt->refuted && tilt->jumped > 0U) ? tilt->accepted_us : in->attitude_time_us;
 }
 
-/* The mirrors of a new scan, each at the believed tilt. */
+/* The mirrors of a new scan, each at the believed tilt. Layout FRONT has one. A shaken accelerometer predicts
+ * no motion: one mirror alone would then be disbelieved. */
 static void vote(sense_t *sense, const flight_inputs_t *in, float gap_s)
 {
     const tilt_t *tilt = &sense->senses.tilt;
-    altitude_t shown[MIRROR_COUNT];
+    altitude_t shown[MIRROR_COUNT] = {{.valid = false}};
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        shown[m] = in->mirrors[m];
+        if (in->mirrors != NULL) {
+            shown[m] = in->mirrors[m];
+        } else if (m == (uint16_t)MIRROR_FRONT) {
+            shown[m] = in->altitude;
+        }
         if (tilt->jumped > 0U) {
             shown[m].height_mm = altitude_at_tilt(&shown[m], tilt->roll_rad, tilt->pitch_rad);
         }
     }
-    mirrors_scan(&sense->senses.mirrors, shown, at_least(gap_s, GAP_LEAST_S),
-                 seconds_at_most(in->height_age_us, GAP_LONG_S), (sense->verdict.doubts & DOUBT_IMU) == 0U);
+    mirrors_scan(&sense->senses.mirrors, shown, at_least(gap_s, SCAN_LEAST_S),
+                 seconds_at_most(in->height_age_us, GAP_LONG_S),
+                 (sense->verdict.doubts & DOUBT_IMU) == 0U && sense->senses.accelerometer.shaken <= 1.0F);
 }
 
-/* Several mirrors: what they show together takes the place of their mean. Of one: that it agrees with none.
- */
+/* What several mirrors show together takes the place of their mean. */
 static void elect(sense_t *sense, flight_inputs_t *in, bool is_new, float gap_s)
 {
     mirrors_t *mirrors = &sense->senses.mirrors;
 
-    if (in->mirrors == NULL) {
-        mirrors->agree = false;
-        return;
-    }
     if (is_new) {
         vote(sense, in, gap_s);
     }
-    if (mirrors->altitude.valid) {
+    if (in->mirrors != NULL && mirrors->altitude.valid) {
         in->height_age_us += (uint32_t)(in->altitude.later_us - mirrors->altitude.later_us);
         in->altitude = mirrors->altitude;
     }
 }
 
+static bool is_new_scan(const sense_t *sense, const flight_inputs_t *in)
+{
+    return in->height_valid && in->height_sequence != sense->scan_sequence;
+}
+
 static void compare_height(sense_t *sense, const command_t *command, flight_inputs_t *in)
 {
-    const bool is_new = in->height_valid && in->height_sequence != sense->scan_sequence;
+    const bool is_new = is_new_scan(sense, in);
     const float gap_s = seconds_at_most(in->height_time_us - sense->height_time_us, GAP_LONG_S);
 
     elect(sense, in, is_new, gap_s);
@@ -91,6 +98,15 @@ static void drop_unfit(const tilt_t *tilt, flight_inputs_t *in)
     }
 }
 
+/* A step of the terrain needs no climb to confirm it when the mirrors agree on it. A take-off does: what
+ * blocks all of them at one length blocks them from there on. */
+static bool is_unconfirmed(const senses_t *s)
+{
+    const bool seen = s->confirmation.proved && s->mirrors.agree && !beam_is_still(&s->beam);
+
+    return s->confirmation.unconfirmed && !seen;
+}
+
 static evidence_t evidence_of(const sense_t *sense)
 {
     const senses_t *s = &sense->senses;
@@ -99,9 +115,9 @@ static evidence_t evidence_of(const sense_t *sense)
     return (evidence_t){
         .doubts = verdict->doubts,
         .reason = (uint16_t)verdict_reason(verdict),
-        .unconfirmed = s->confirmation.unconfirmed,
+        .unconfirmed = is_unconfirmed(s),
         .terrain_fell = s->confirmation.terrain_fell,
-        .teaches = !s->confirmation.unconfirmed && !beam_is_still(&s->beam) && !verdict_apart(verdict, s),
+        .teaches = !s->confirmation.unconfirmed && !beam_is_still(&s->beam),
         .sways = sway_as_in_the_air(&s->sway),
         .calm = sway_is_calm(&s->sway),
         .rocks = sway_rocks(&s->sway),
@@ -109,6 +125,9 @@ static evidence_t evidence_of(const sense_t *sense)
         .may_stand = stand_is_possible(&s->stand),
         .stands = stand_is_sure(&s->stand),
         .upright = s->tilt.upright,
+        .mirrors = {.agree = s->mirrors.agree && !beam_is_still(&s->beam),
+                    .doubted = mirrors_liars(&s->mirrors, false),
+                    .liars = mirrors_liars(&s->mirrors, true)},
         .height_m = s->heights.height_m,
         .rise_mps = s->heights.rise_mps,
         .lost_m = verdict->lost_m,
@@ -120,8 +139,7 @@ static evidence_t evidence_of(const sense_t *sense)
         .pushed_mps = push_speed_mps(&s->push, s->heights.rise_mps),
         .moved_m = push_moved_m(&s->push),
         .speed_mps = verdict_speed_mps(verdict, s),
-        .held_n = verdict->held_n,
-        .held_down = verdict->held_down,
+        .held = {verdict->held_n, verdict->held_down},
     };
 }
 
@@ -129,6 +147,14 @@ evidence_t sense_step(sense_t *sense, const command_t *command, flight_inputs_t 
 {
     senses_t *senses = &sense->senses;
 
+    if (is_new_scan(sense, in)) {
+        const bool all = in->mirrors != NULL;
+        const float gap_s = seconds_at_most(in->height_time_us - sense->height_time_us, GAP_LONG_S);
+
+        tilt_scan(&senses->tilt, all ? in->mirrors : &in->altitude, all ? MIRROR_COUNT : 1U,
+                  senses->heights.height_m * 1000.0F, senses->heights.rise_mps * gap_s * 1000.0F,
+                  !senses->standing);
+    }
     tilt_step(&senses->tilt, in->frames, in->frame_count, in->roll_rad, in->pitch_rad, in->attitude_time_us);
     believe_tilt(&senses->tilt, in);
     senses_frames(senses, command, in->frames, in->frame_count);

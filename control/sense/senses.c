@@ -53,7 +53,7 @@ static void take_frame(senses_t *s, const command_t *command, const imu_sample_t
         return;
     }
     mirrors_frame(&s->mirrors, (mean_mps2 - s->accelerometer.bias_mps2) * dt_s);
-    sway_frame(&s->sway, frame, s->heights.height_m, s->standing, dt_s);
+    sway_frame(&s->sway, frame, s->heights.height_m, dt_s);
     if (command->grounded) {
         watch_ground(s, mean_mps2, dt_s);
     } else {
@@ -72,7 +72,7 @@ void senses_frames(senses_t *senses, const command_t *command, const imu_sample_
         }
         if (!frame->has_acceleration) {
             senses->accelerometer.sequence = frame->sequence;
-            sway_frame_alone(&senses->sway, frame, senses->heights.height_m, senses->standing);
+            sway_frame_alone(&senses->sway, frame, senses->heights.height_m);
             continue;
         }
         const float up_mps2 = imu_up_mps2(frame);
@@ -110,22 +110,10 @@ bool senses_scan(senses_t *senses, const altitude_t *altitude)
  * the witness of the thrust restarts from the rate of the heights. */
 static void confirm(senses_t *s, height_change_t *change)
 {
-    const confirmation_event_t event = confirmation_height(&s->confirmation, &s->heights, change,
-                                                           s->standing);
-
-    change->first_climb = event == CONFIRMATION_FIRST;
-    switch (event) {
-    case CONFIRMATION_BEGINS:
-        witness_forget_sinking(&s->accelerometer.felt);
-        witness_forget_sinking(&s->push.pushed);
-        break;
-    case CONFIRMATION_FIRST:
+    change->first_climb = confirmation_height(&s->confirmation, change, s->standing);
+    if (change->first_climb) {
         s->push.pushed.speed_mps = s->heights.rise_mps;
         senses_forget(s);
-        break;
-    case CONFIRMATION_GOES_ON:
-    default:
-        break;
     }
 }
 

@@ -10,9 +10,9 @@
 #include "control/sense/witness.h"
 
 typedef struct {
-    float stands_s;    /* how long the vehicle has shown the signs of stand_is_sure() */
-    float calm_s;      /* how long the tilt has swayed less than in the air, without a felt fall */
-    float calm_mps[2]; /* low-passed speeds of the two witnesses (felt, pushed) since then */
+    float stands_s; /* how long the vehicle has shown the signs of stand_is_sure() */
+    float calm_s;   /* how long the tilt has swayed less than in the air, without a felt fall */
+    float calm_mps; /* low-passed felt speed since then */
 } stand_t;
 
 /* One frame in the air, as far as the state says. calm: the tilt sways less than in the air. */

@@ -8,16 +8,14 @@
 #include "control/between.h"
 #include "control/credible.h"
 
-#define SWAY_TIME_S 1.5F   /* chosen: 60 frames */
-#define SPIKE_RAD2 1.2e-3F /* chosen: 2 degrees; a wrong frame in ten on the ground is no sway of the air */
-#define SWAY_RAD2 2.5e-4F  /* chosen: 0.9 degrees rms, both angles together; in the air it sways more */
+#define SWAY_RAD2 2.5e-4F     /* chosen: 0.9 degrees rms, both angles together; in the air it sways more */
 #define SWAY_AIR_RAD2 4.0e-4F /* chosen: 1.1 degrees rms; between this and SWAY_RAD2 neither is certain */
 #define SWAY_HAND_RAD2 0.012F /* chosen: 6 degrees rms; who tilts a vehicle by hand tilts it more */
-#define ROCKED_RAD 0.017F     /* chosen: 1 degree, four times the noise of an angle */
+#define ROCKED_RAD 0.017F     /* 1 degree: four sigma of an angle's noise, 0.25 degrees, razor9dof.h */
 #define ROCKED_BELOW_M 0.10F  /* as LANDED_NO_MORE_M in touchdown.h */
 #define ROCKED_S 0.8F         /* chosen: 32 frames; at 0.5 s 2 of 96 blocked flights rested in the air */
 
-static void measure_sway(sway_t *sway, const imu_sample_t *frame, bool standing, float dt_s)
+static void measure_sway(sway_t *sway, const imu_sample_t *frame, float dt_s)
 {
     const float share = dt_s / SWAY_TIME_S; /* dt_s is at most FRAME_GAP_US */
     const float roll_rad = frame->median.roll_rad - sway->mean_rad[0];
@@ -26,8 +24,7 @@ static void measure_sway(sway_t *sway, const imu_sample_t *frame, bool standing,
     sway->mean_rad[0] += share * roll_rad;
     sway->mean_rad[1] += share * pitch_rad;
     const float rad2 = roll_rad * roll_rad + pitch_rad * pitch_rad;
-    sway->swing_rad2 += share * (rad2 - sway->swing_rad2);
-    sway->sway_rad2 += share * ((standing ? at_most(rad2, SPIKE_RAD2) : rad2) - sway->sway_rad2);
+    sway->sway_rad2 += share * (rad2 - sway->sway_rad2);
 }
 
 /* How long the tilt has stayed where it is, near the ground. This ends within a second of a touchdown, where
@@ -44,9 +41,9 @@ static void measure_rocking(sway_t *sway, const imu_sample_t *frame, float dt_s)
     }
 }
 
-void sway_frame(sway_t *sway, const imu_sample_t *frame, float height_m, bool standing, float dt_s)
+void sway_frame(sway_t *sway, const imu_sample_t *frame, float height_m, float dt_s)
 {
-    measure_sway(sway, frame, standing, dt_s);
+    measure_sway(sway, frame, dt_s);
     if (height_m < ROCKED_BELOW_M) {
         measure_rocking(sway, frame, dt_s);
     } else {
@@ -54,13 +51,13 @@ void sway_frame(sway_t *sway, const imu_sample_t *frame, float height_m, bool st
     }
 }
 
-void sway_frame_alone(sway_t *sway, const imu_sample_t *frame, float height_m, bool standing)
+void sway_frame_alone(sway_t *sway, const imu_sample_t *frame, float height_m)
 {
     const uint32_t gap_us = frame->arrival_us - sway->alone_us;
 
     sway->alone_us = frame->arrival_us;
     if (gap_us <= FRAME_GAP_US) {
-        sway_frame(sway, frame, height_m, standing, (float)gap_us * 1.0e-6F);
+        sway_frame(sway, frame, height_m, (float)gap_us * 1.0e-6F);
     }
 }
 
@@ -81,5 +78,5 @@ bool sway_rocks(const sway_t *sway)
 
 bool sway_is_no_hand(const sway_t *sway)
 {
-    return sway->swing_rad2 < SWAY_HAND_RAD2;
+    return sway->sway_rad2 < SWAY_HAND_RAD2;
 }

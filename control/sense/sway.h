@@ -9,21 +9,21 @@
 
 #include "control/imu_sample.h"
 
+#define SWAY_TIME_S 1.5F /* chosen: 60 frames, nearly a period of the sway, 0.6 Hz */
+
 typedef struct {
     float mean_rad[2];   /* low-passed roll and pitch */
     float anchor_rad[2]; /* roll and pitch when they last moved, near the ground */
     float unrocked_s;    /* time since then */
-    float swing_rad2;    /* low-passed mean square of roll and pitch around mean_rad */
-    float sway_rad2;     /* the same; while it stands one wrong frame counts little */
+    float sway_rad2;     /* low-passed mean square of roll and pitch around mean_rad */
     uint32_t alone_us;   /* latest frame without accelerations */
 } sway_t;
 
-/* One accepted frame, dt_s after the one before. height_m: latest height. standing: the vehicle has not left
- * the ground, as far as is known. */
-void sway_frame(sway_t *sway, const imu_sample_t *frame, float height_m, bool standing, float dt_s);
+/* One accepted frame, dt_s after the one before. height_m: latest height. */
+void sway_frame(sway_t *sway, const imu_sample_t *frame, float height_m, float dt_s);
 
 /* The same for a frame that came without accelerations. They have a clock of their own. */
-void sway_frame_alone(sway_t *sway, const imu_sample_t *frame, float height_m, bool standing);
+void sway_frame_alone(sway_t *sway, const imu_sample_t *frame, float height_m);
 
 /* True when roll and pitch sway as in the air: more than 1.1 degrees rms together. */
 bool sway_as_in_the_air(const sway_t *sway);

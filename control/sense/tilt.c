@@ -1,7 +1,8 @@
 /* A spike or a lost frame makes a jump, and a vehicle that turns over makes one too. They differ in what
- * follows: bad frames jump and then turn differently.
- * What breaks: a jump that is never accepted leaves the vehicle without a tilt, so the seventh is accepted
- * whatever it is. */
+ * follows: bad frames jump and then turn differently. And they differ in what the mirrors show: the heights
+ * by all of them agree at the true tilt alone, and go on from the height before.
+ * What breaks: a tilt over 45 degrees cuts the thrust. The seventh jump is accepted whatever it is, unless
+ * the mirrors refute it; and those are asked again in each scan. */
 #include "control/sense/tilt.h"
 
 #include <math.h>
@@ -9,13 +10,12 @@
 #include "control/angle.h"
 #include "control/credible.h"
 
-#define JUMP_RAD 0.35F       /* chosen: 20 degrees within a frame of 25 ms, 800 degrees a second */
-#define STEADY_MIN_RAD 0.05F /* chosen: 110 degrees a second, faster than an attitude that is held */
 #define STEADY_MAX_RAD 0.25F /* as FOLLOWS_RAD in attitude.c; a spike or a lost frame makes one step more */
-#define JUMPS_HELD 6U        /* chosen: a burst of six bad frames shows in six medians */
-#define ANGLE_MAX_RAD 7.0F   /* chosen: above 2 pi */
+#define JUMPS_HELD (ATTITUDE_ROLLED_FRAMES - 1U) /* a burst of bad frames shows in as many medians */
+#define ANGLE_MAX_RAD 7.0F                       /* 2 pi, rounded up */
 #define TILT_GAP_US UINT32_C(250000) /* ten frames of 25 ms: after such a gap any tilt is accepted */
-#define TILTED_MAX 1000U             /* chosen: the counter stops here and does not wrap */
+#define REFUTED_US TILT_GAP_US       /* so long a scan refutes: two may be missing */
+#define TILTED_MAX 1000U             /* any above what is asked: the counter stops here */
 
 void tilt_init(tilt_t *tilt)
 {
@@ -28,7 +28,7 @@ static bool turns_steadily(float accepted_rad, float before_rad, float now_rad, 
     const float step_rad = turn_rad(before_rad, now_rad);
     const float rest_rad = turn_rad(accepted_rad, now_rad) - (float)frames * step_rad;
 
-    return fabsf(step_rad) > STEADY_MIN_RAD && fabsf(step_rad) < STEADY_MAX_RAD &&
+    return fabsf(step_rad) > ATTITUDE_STIRS_RAD && fabsf(step_rad) < STEADY_MAX_RAD &&
            fabsf(rest_rad) < STEADY_MAX_RAD;
 }
 
@@ -42,37 +42,119 @@ static bool turns_on(const tilt_t *tilt, float roll_rad, float pitch_rad)
                                  turns_steadily(tilt->pitch_rad, tilt->told_rad[1], pitch_rad, frames));
 }
 
+static bool is_refuted(const tilt_t *tilt, uint32_t time_us)
+{
+    return tilt->refuted && time_us - tilt->refuted_us <= REFUTED_US;
+}
+
+static bool is_jump(float from_roll_rad, float from_pitch_rad, float roll_rad, float pitch_rad)
+{
+    return arc_rad(from_roll_rad, roll_rad) > ATTITUDE_SPIKE_RAD ||
+           arc_rad(from_pitch_rad, pitch_rad) > ATTITUDE_SPIKE_RAD;
+}
+
+static void believe(tilt_t *tilt, float roll_rad, float pitch_rad)
+{
+    tilt->roll_rad = roll_rad;
+    tilt->pitch_rad = pitch_rad;
+    tilt->upright = cosf(roll_rad) * cosf(pitch_rad);
+}
+
+static void reject(tilt_t *tilt, bool jump, bool refuted)
+{
+    tilt->leapt = (tilt->jumped > 0U) ? tilt->leapt : jump;
+    tilt->jumped = (uint16_t)(tilt->jumped + (tilt->jumped < JUMPS_HELD));
+    if (refuted && is_jump(0.0F, 0.0F, tilt->roll_rad, tilt->pitch_rad)) {
+        believe(tilt, 0.0F, 0.0F); /* what was accepted on the way there was refuted with it */
+    }
+}
+
+/* Must this tilt be rejected? Of a recent one only: after a gap any tilt is accepted that the mirrors do not
+ * refute. */
+static bool is_rejected(tilt_t *tilt, float roll_rad, float pitch_rad, uint32_t time_us)
+{
+    const bool recent = tilt->levelled && time_us - tilt->time_us <= TILT_GAP_US;
+    const bool jump = is_jump(tilt->roll_rad, tilt->pitch_rad, roll_rad, pitch_rad);
+    const bool asked = jump || cosf(roll_rad) * cosf(pitch_rad) < TILTED_COS;
+    const bool refuted = asked && is_refuted(tilt, time_us);
+    const bool held = recent && jump && tilt->jumped < JUMPS_HELD && !turns_on(tilt, roll_rad, pitch_rad);
+
+    if (refuted || held) {
+        reject(tilt, jump, refuted);
+    }
+    return refuted || held;
+}
+
 /* Accepts or rejects one tilt. True: accepted. */
 static bool accept_tilt(tilt_t *tilt, float roll_rad, float pitch_rad, uint32_t time_us)
 {
-    const bool recent = tilt->levelled && time_us - tilt->time_us <= TILT_GAP_US;
-    const bool told = fabsf(roll_rad) < ANGLE_MAX_RAD && fabsf(pitch_rad) < ANGLE_MAX_RAD; /* no NaN */
-    const bool jump = arc_rad(tilt->roll_rad, roll_rad) > JUMP_RAD ||
-                      arc_rad(tilt->pitch_rad, pitch_rad) > JUMP_RAD;
-
-    if (!told) {
+    if (!(fabsf(roll_rad) < ANGLE_MAX_RAD && fabsf(pitch_rad) < ANGLE_MAX_RAD)) { /* NaN too */
         return false;
     }
+    const bool rejected = is_rejected(tilt, roll_rad, pitch_rad, time_us);
+
     tilt->time_us = time_us;
-    if (recent && jump && tilt->jumped < JUMPS_HELD && !turns_on(tilt, roll_rad, pitch_rad)) {
-        ++tilt->jumped;
-        tilt->told_rad[0] = roll_rad;
-        tilt->told_rad[1] = pitch_rad;
+    tilt->told_rad[0] = roll_rad;
+    tilt->told_rad[1] = pitch_rad;
+    if (rejected) {
         return false;
     }
     tilt->levelled = true;
     tilt->jumped = 0U;
-    tilt->roll_rad = roll_rad;
-    tilt->pitch_rad = pitch_rad;
-    tilt->upright = cosf(roll_rad) * cosf(pitch_rad);
+    tilt->accepted_us = time_us;
+    believe(tilt, roll_rad, pitch_rad);
     return true;
+}
+
+/* Adds the squares by which the heights at this tilt are off the one before, a way further; about their own
+ * mean when that one was taken with tilts that led there. Each tilt goes on from its own heights, so a
+ * vehicle that climbs does not leave them. */
+static void judge(tilt_case_t *guess, const altitude_t *shown, uint16_t count, const float tilt_rad[2],
+                  float way_mm, bool goes_on)
+{
+    float sum_mm = 0.0F;
+    float squares_mm2 = 0.0F;
+    float valid = 0.0F;
+
+    guess->height_mm += way_mm;
+    for (uint16_t m = 0U; m < count; ++m) {
+        if (shown[m].valid) {
+            const float off_mm = altitude_at_tilt(&shown[m], tilt_rad[0], tilt_rad[1]) - guess->height_mm;
+
+            sum_mm += off_mm;
+            squares_mm2 += off_mm * off_mm;
+            valid += 1.0F;
+        }
+    }
+    if (valid > 0.0F) {
+        guess->misfit_mm2 += goes_on ? squares_mm2 : squares_mm2 - sum_mm * sum_mm / valid;
+        guess->height_mm += sum_mm / valid;
+    }
+}
+
+void tilt_scan(tilt_t *tilt, const altitude_t *shown, uint16_t count, float height_mm, float way_mm,
+               bool aloft)
+{
+    static const float level_rad[2] = {0.0F, 0.0F};
+    const bool goes_on = tilt->jumped > 0U && tilt->leapt;
+
+    if (tilt->jumped == 0U || !tilt->leapt) {
+        tilt->level = tilt->told = (tilt_case_t){.height_mm = height_mm};
+    }
+    judge(&tilt->level, shown, count, level_rad, way_mm, goes_on);
+    judge(&tilt->told, shown, count, tilt->told_rad, way_mm, goes_on);
+    tilt->refuted = aloft && tilt->levelled && is_jump(0.0F, 0.0F, tilt->told_rad[0], tilt->told_rad[1]) &&
+                    tilt->level.misfit_mm2 < tilt->told.misfit_mm2;
+    tilt->refuted_us = tilt->time_us;
 }
 
 /* Counts tilted frames. The median of a burst of bad frames outlasts it by two: the frame itself must be
  * tilted too. */
 static void count_tilted(tilt_t *tilt, const imu_sample_t *frame)
 {
-    if (frame->rolled == ATTITUDE_ROLLED_FRAMES) {
+    if (is_refuted(tilt, frame->arrival_us)) {
+        tilt->tilted = 0U;
+    } else if (frame->rolled == ATTITUDE_ROLLED_FRAMES) {
         tilt->tilted = TILTED_MAX;
     } else if (tilt->upright >= TILTED_COS) {
         tilt->tilted = 0U;

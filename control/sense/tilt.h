@@ -1,5 +1,6 @@
-/* Which tilt is believed: a tilt that jumps by more than 20 degrees is rejected until six in a row were
- * rejected, or until they show a steady turn.
+/* Which tilt is believed. A tilt that jumps by more than 20 degrees is rejected until six in a row were
+ * rejected, or until they show a steady turn. In the air one that jumps, or is over 45 degrees, is rejected
+ * also while the mirrors refute it: a level vehicle explains their slants better.
  *
  * Radians. Pure; the caller owns the state. Context: one Task. */
 #ifndef CONTROL_SENSE_TILT_H
@@ -8,18 +9,30 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "control/altitude.h"
 #include "control/imu_sample.h"
+
+/* A tilt that may be the true one, since the jump. */
+typedef struct {
+    float height_mm;  /* mean of the mirrors at it, in the latest scan */
+    float misfit_mm2; /* sum of the squares by which the mirrors were off the height before */
+} tilt_case_t;
 
 typedef struct {
     bool levelled;             /* at least one tilt was accepted */
     float roll_rad, pitch_rad; /* latest accepted tilt */
     float upright;             /* its cosine */
     uint16_t jumped;           /* tilts in a row that were rejected because they jumped */
-    float told_rad[2];         /* roll and pitch of the latest of them */
+    float told_rad[2];         /* latest roll and pitch, accepted or not */
     uint16_t tilted;           /* frames in a row above 45 degrees, their accepted tilt too */
     uint32_t time_us;          /* arrival of the latest tilt, accepted or not */
     uint32_t sequence;         /* latest frame that tilt_step() processed */
     uint32_t unfit_sequence;   /* frames up to this one must not be used: their tilt was rejected */
+    uint32_t accepted_us;      /* arrival of the latest accepted tilt */
+    bool leapt;                /* the first of those that were rejected was a jump */
+    tilt_case_t level, told;   /* the vehicle is level, or as it is told */
+    bool refuted;              /* the latest scan refutes told_rad; valid for a while after refuted_us */
+    uint32_t refuted_us;
 } tilt_t;
 
 void tilt_init(tilt_t *tilt);
@@ -30,5 +43,11 @@ void tilt_init(tilt_t *tilt);
  * unfit_sequence. */
 void tilt_step(tilt_t *tilt, const imu_sample_t *frames, uint16_t count, float roll_rad, float pitch_rad,
                uint32_t time_us);
+
+/* One scan: do its slants refute the tilt that is told? shown: `count` of them, those that are not valid
+ * count for nothing. height_mm: the height before; way_mm: from it to this one, by the speed. aloft: false on
+ * the ground, where nothing is refuted. */
+void tilt_scan(tilt_t *tilt, const altitude_t *shown, uint16_t count, float height_mm, float way_mm,
+               bool aloft);
 
 #endif

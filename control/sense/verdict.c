@@ -5,8 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#define AGREED_S 1.5F  /* chosen: 15 scans */
-#define APART_MPS 0.5F /* chosen: about as much as the heights lag behind at a lift-off */
+#define AGREED_S 1.5F /* chosen: 15 scans */
 
 bool verdict_felt_valid(const verdict_t *verdict, const senses_t *senses)
 {
@@ -66,14 +65,11 @@ void verdict_order(verdict_t *verdict, senses_t *senses)
 /* Clears a doubt after enough agreement. */
 static void judge_again(verdict_t *verdict, senses_t *senses, const rule_case_t *c, float gap_s)
 {
-    const bool seen = heights_move(&senses->heights) && heights_step_less(&senses->heights);
-
     verdict->agreed_s = (rules_agree(c) && senses->beam.still < BEAM_STILL_SCANS) ? verdict->agreed_s + gap_s
                                                                                   : 0.0F;
-    if (verdict->agreed_s > AGREED_S || (seen && (verdict->doubts & DOUBT_SIGHT) != 0U)) {
+    if (verdict->agreed_s > AGREED_S ||
+        (heights_move(&senses->heights) && (verdict->doubts & DOUBT_SIGHT) != 0U)) {
         clear_doubt(verdict, DOUBT_SIGHT | DOUBT_THRUST);
-        forget(verdict, senses);
-    } else if (rules_contradict(c)) {
         forget(verdict, senses);
     }
 }
@@ -82,7 +78,6 @@ static void doubt_sight(verdict_t *verdict, senses_t *senses, const rule_case_t 
 {
     set_doubt(verdict, DOUBT_SIGHT, reason);
     verdict->lost_m = rules_lost_m(c);
-    accelerometer_take_back(&senses->accelerometer);
     forget(verdict, senses);
 }
 
@@ -142,15 +137,6 @@ void verdict_height(verdict_t *verdict, senses_t *senses, const command_t *comma
     } else if (!command->grounded) {
         judge(verdict, senses, command, change->gap_s);
     }
-}
-
-bool verdict_apart(const verdict_t *verdict, const senses_t *senses)
-{
-    const accelerometer_t *accelerometer = &senses->accelerometer;
-
-    return verdict_felt_valid(verdict, senses) &&
-           fabsf(accelerometer->felt.speed_mps - senses->heights.rise_mps) >
-               APART_MPS * accelerometer->shaken;
 }
 
 float verdict_speed_mps(const verdict_t *verdict, const senses_t *senses)

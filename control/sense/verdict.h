@@ -46,9 +46,6 @@ void verdict_height(verdict_t *verdict, senses_t *senses, const command_t *comma
 /* The accelerometer's witness is valid and its source is not in doubt. */
 bool verdict_felt_valid(const verdict_t *verdict, const senses_t *senses);
 
-/* Accelerometer and rate of the heights differ by more than 0.5 m/s. */
-bool verdict_apart(const verdict_t *verdict, const senses_t *senses);
-
 /* Vertical speed without the heights: the mean of both witnesses, or the one that is valid and not doubted; 0
  * when there is none. */
 float verdict_speed_mps(const verdict_t *verdict, const senses_t *senses);

@@ -37,11 +37,6 @@ void witness_forget(witness_t *witness)
     witness->off_m = witness->seen_m = witness->moved_m = 0.0F;
 }
 
-void witness_forget_sinking(witness_t *witness)
-{
-    witness->off_m = at_most(witness->off_m, 0.0F);
-}
-
 bool witness_counts(const witness_t *witness)
 {
     return witness->running_s > WARM_S;

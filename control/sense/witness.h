@@ -9,8 +9,10 @@
 
 #include <stdbool.h>
 
-#define WITNESS_OLD_S 2.0F   /* chosen: full leak and correction after that time; running_s stops here */
-#define WITNESS_STEP_M 0.10F /* chosen: above INNOVATION_LIMIT_MAX_M in estimator.c, 0.08 m */
+#define WITNESS_OLD_S 2.0F /* chosen: full leak and correction after that time; running_s stops here */
+/* A change in one scan: more than the estimate takes for a height, INNOVATION_LIMIT_MAX_M in roughness.h, and
+ * three sigma of it: 99 mm. */
+#define WITNESS_STEP_M 0.10F
 
 typedef struct {
     float speed_mps; /* predicted vertical speed */
@@ -34,9 +36,6 @@ void witness_compare(witness_t *witness, float rise_m, float gap_s, float age_s,
 
 /* Clears the sums. */
 void witness_forget(witness_t *witness);
-
-/* Forgets that the heights showed more climb than the witness. */
-void witness_forget_sinking(witness_t *witness);
 
 /* A witness is valid after its first 0.5 s. */
 bool witness_counts(const witness_t *witness);

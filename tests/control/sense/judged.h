@@ -19,7 +19,6 @@ static inline void evidence_begin(void)
     at_m(0.5F);
     came_near_at_m(0.5F);
     last_moved_s_ago(1.0F);
-    rose_s_ago(1.5F);
     senses.accelerometer.felt.running_s = senses.push.pushed.running_s = 2.0F;
     pushes_n(HOVER_N);
     flown = (command_t){.step_s = 0.025F,

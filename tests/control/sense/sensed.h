@@ -46,11 +46,6 @@ static inline void has_agreed_s(float agreed_s)
     verdict.agreed_s = agreed_s;
 }
 
-static inline void pushed_in_vain_s(float vain_s)
-{
-    verdict.rules.vain_s = vain_s;
-}
-
 static inline void felt_least_is_m(float least_m)
 {
     verdict.rules.felt_least_m = least_m;
@@ -74,16 +69,6 @@ static inline void last_moved_s_ago(float unmoved_s)
 static inline void rises_mps(float rise_mps)
 {
     senses.heights.rise_mps = rise_mps;
-}
-
-static inline void has_stepped(float steps)
-{
-    senses.heights.steps = steps;
-}
-
-static inline void rose_s_ago(float since_rise_s)
-{
-    senses.heights.since_rise_s = since_rise_s;
 }
 
 static inline void is_unconfirmed(bool unconfirmed)
@@ -179,11 +164,6 @@ static inline void has_rested_s(float rested_s)
 static inline void rests_at_mps2(float rest_mps2)
 {
     senses.accelerometer.rest_mps2 = rest_mps2;
-}
-
-static inline void was_pulled_m_s(float pulled_m_s)
-{
-    senses.accelerometer.pulled_m_s = pulled_m_s;
 }
 
 static inline void bias_is_mps2(float bias_mps2)

@@ -160,21 +160,6 @@ void test_while_standing_the_felt_speed_dies_within_a_second_and_does_not_count(
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.running_s);
 }
 
-void test_corrections_by_the_heights_are_summed_and_fade_in_two_seconds(void)
-{
-    hover();
-    senses.accelerometer.felt = (witness_t){.running_s = 2.0F};
-    senses.accelerometer.felt.off_m = 0.3F;
-    was_pulled_m_s(0.4F);
-    height(0.5F);
-    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.4F + 0.1F * 0.3F - 0.4F * 0.1F / 2.0F,
-                             senses.accelerometer.pulled_m_s);
-    doubted(DOUBT_SIGHT);
-    senses.accelerometer.felt.off_m = 0.3F;
-    height(0.5F);
-    TEST_ASSERT_FLOAT_WITHIN(0.0005F, 0.41F * 0.95F, senses.accelerometer.pulled_m_s);
-}
-
 void test_a_limit_at_rest_belongs_to_the_state_before(void)
 {
     static const struct {
@@ -204,7 +189,7 @@ static void carry(float unseen_s, float sway_rad2)
     flown.grounded = true;
     feel(0.0F);
     senses.heights.unseen_s = unseen_s;
-    senses.sway.sway_rad2 = senses.sway.swing_rad2 = sway_rad2;
+    senses.sway.sway_rad2 = sway_rad2;
     unrocked_for_s(0.0F);
     in_hands_for_s(0.5F);
     has_rested_s(1.0F);

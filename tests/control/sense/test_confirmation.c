@@ -100,22 +100,6 @@ void test_a_jump_upwards_is_no_first_climb(void)
     }
 }
 
-void test_a_step_towards_the_vehicle_forgets_that_the_heights_showed_more(void)
-{
-    for (int sinks = 0; sinks < 2; sinks++) {
-        hover();
-        senses.accelerometer.felt.running_s = senses.push.pushed.running_s = 2.0F;
-        senses.accelerometer.felt.off_m = (sinks == 0) ? 0.2F : -0.2F;
-        senses.push.pushed.off_m = (sinks == 0) ? 0.3F : -0.3F;
-        height(0.3F);
-        TEST_ASSERT_TRUE(senses.confirmation.unconfirmed);
-        TEST_ASSERT_FLOAT_WITHIN(0.002F, (sinks == 0) ? 0.0F : -0.164F,
-                                 senses.accelerometer.felt.off_m); /* 1.8 1/s of 0.1 s */
-        TEST_ASSERT_FLOAT_WITHIN(0.002F, (sinks == 0) ? 0.0F : -0.288F,
-                                 senses.push.pushed.off_m); /* 0.4 1/s */
-    }
-}
-
 void test_a_law_is_content_below_a_decimetre_of_wanted_climb(void)
 {
     static const float rows[][2] = {{0.09F, 0.3F}, {0.10F, 0.0F}, {0.2F, 0.0F}, {-1.0F, 0.3F}, {NAN, 0.0F}};
@@ -161,36 +145,6 @@ void test_standing_takes_the_proof_back(void)
     TEST_ASSERT_TRUE(senses.confirmation.unconfirmed);
 }
 
-/* The height falls back to back_m, after_s after a step up from 0.5 to 0.8 m. */
-static bool unconfirmed_after(float back_m, int heights)
-{
-    hover();
-    height(0.8F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.since_rise_s);
-    TEST_ASSERT_EQUAL_FLOAT(0.5F, senses.heights.before_rise_m);
-    for (int i = 1; i < heights; i++) {
-        height(0.8F);
-        NEAR(0.1F * (float)i, senses.heights.since_rise_s);
-    }
-    height(back_m);
-    return senses.confirmation.unconfirmed;
-}
-
-void test_a_glitch_is_short_and_ends_where_it_began(void)
-{
-    TEST_ASSERT_FALSE(unconfirmed_after(0.5F, 1));
-    TEST_ASSERT_FALSE(unconfirmed_after(0.595F, 1));
-    TEST_ASSERT_TRUE(unconfirmed_after(0.605F, 1));
-    TEST_ASSERT_FALSE(unconfirmed_after(0.405F, 1));
-    TEST_ASSERT_TRUE(unconfirmed_after(0.395F, 1));
-    TEST_ASSERT_FALSE(unconfirmed_after(0.5F, 3));
-    TEST_ASSERT_TRUE(unconfirmed_after(0.5F, 4));
-    for (int i = 0; i < 20; i++) {
-        height(0.5F);
-    }
-    TEST_ASSERT_EQUAL_FLOAT(1.5F, senses.heights.since_rise_s);
-}
-
 void test_deep_is_a_fall_of_the_terrain_beyond_forty_centimetres(void)
 {
     hover();
@@ -224,21 +178,6 @@ void test_the_least_felt_error_is_kept_while_unconfirmed(void)
     is_unconfirmed(false);
     height(0.5F);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict.rules.felt_least_m);
-}
-
-void test_a_glitch_of_a_quarter_of_a_second_is_none(void)
-{
-    for (int late = 0; late < 2; late++) {
-        hover();
-        rose_s_ago((late != 0) ? 0.25F : 0.249F);
-        senses.heights.before_rise_m = 0.3F;
-        height(0.3F);
-        TEST_ASSERT_EQUAL(late != 0, senses.confirmation.unconfirmed);
-    }
-    hover();
-    height(0.8F);
-    sensed_height(&flown, 0.81F, 0.0005F, 0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.5F, senses.heights.before_rise_m); /* however soon the next height comes */
 }
 
 void test_the_end_of_the_depth_lies_below_its_limit(void)

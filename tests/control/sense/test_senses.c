@@ -114,28 +114,6 @@ void test_the_speed_of_the_slower_witness_lags_by_a_third_per_scan(void)
     }
 }
 
-void test_heights_and_accelerometer_are_apart_by_half_a_metre_per_second(void)
-{
-    static const struct {
-        float felt_mps, rise_mps, shaken, running_s;
-        uint16_t doubts;
-        bool apart;
-    } rows[] = {{0.51F, 0.0F, 1.0F, 1.0F, 0U, true},        {0.50F, 0.0F, 1.0F, 1.0F, 0U, false},
-                {-0.51F, 0.0F, 1.0F, 1.0F, 0U, true},       {0.0F, 0.51F, 1.0F, 1.0F, 0U, true},
-                {0.51F, 0.02F, 1.0F, 1.0F, 0U, false},      {0.51F, 0.0F, 1.1F, 1.0F, 0U, false},
-                {0.56F, 0.0F, 1.1F, 1.0F, 0U, true},        {0.51F, 0.0F, 1.0F, 0.5F, 0U, false},
-                {0.51F, 0.0F, 1.0F, 1.0F, DOUBT_IMU, false}};
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        setUp();
-        senses.accelerometer.felt = (witness_t){.speed_mps = rows[i].felt_mps,
-                                                .running_s = rows[i].running_s};
-        rises_mps(rows[i].rise_mps);
-        shaken_by(rows[i].shaken);
-        doubted(rows[i].doubts);
-        TEST_ASSERT_EQUAL(rows[i].apart, verdict_apart(&verdict, &senses));
-    }
-}
-
 void test_each_of_several_frames_counts(void)
 {
     imu_sample_t frames[3];

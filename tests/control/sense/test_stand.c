@@ -55,28 +55,6 @@ void test_it_stands_while_the_thrust_says_a_fall_of_0_8_that_is_not_felt_for_0_6
     }
 }
 
-/* The speed of the accelerometer may be wrong from before: a second after the tilt became calm only the
- * changes are compared, by half a metre per second. */
-void test_after_a_calm_second_the_changes_of_the_speeds_tell_it_too(void)
-{
-    static const struct {
-        int frames;
-        float from_mps, to_mps;
-        bool stands;
-    } rows[] = {{41, -0.30F, -0.90F, true}, {41, -0.45F, -0.90F, false}, {10, -0.30F, -0.90F, false}};
-    for (int i = 0; i < 3; i++) {
-        setUp();
-        lie(rows[i].frames, -1.0F, rows[i].from_mps);
-        lie(10, -1.0F, rows[i].to_mps);
-        TEST_ASSERT_FALSE(stand_is_sure(&stand));
-        /* the means follow in two seconds, so the fall goes on as it does without a floor */
-        for (int k = 1; k <= 15; k++) {
-            lie(1, -1.0F, rows[i].to_mps - 0.02F * (float)k);
-        }
-        TEST_ASSERT_EQUAL(rows[i].stands, stand_is_sure(&stand));
-    }
-}
-
 void test_a_sway_or_a_witness_that_does_not_count_ends_the_standing(void)
 {
     for (int what = 0; what < 4; what++) {

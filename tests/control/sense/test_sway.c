@@ -22,7 +22,7 @@ static void tilt(float roll_rad, float pitch_rad)
 {
     frame.median.roll_rad = roll_rad;
     frame.median.pitch_rad = pitch_rad;
-    sway_frame(&sway, &frame, 0.05F, false, FRAME_S);
+    sway_frame(&sway, &frame, 0.05F, FRAME_S);
 }
 
 /* Ten seconds to and fro by that much, both angles together, to either side of a mean. */
@@ -131,21 +131,10 @@ void test_the_moves_are_looked_at_near_the_ground_alone(void)
         swing(0.1F, 0.0F);
         frame.median.roll_rad = frame.median.pitch_rad = 0.0F;
         for (int i = 0; i < 60; i++) {
-            sway_frame(&sway, &frame, (high != 0) ? 0.10F : 0.099F, false, FRAME_S);
+            sway_frame(&sway, &frame, (high != 0) ? 0.10F : 0.099F, FRAME_S);
         }
         TEST_ASSERT_TRUE(sway_as_in_the_air(&sway));
         TEST_ASSERT_EQUAL(high != 0, sway_rocks(&sway));
-    }
-}
-
-void test_while_it_stands_a_wrong_frame_counts_little(void)
-{
-    for (int standing = 0; standing < 2; standing++) {
-        setUp();
-        frame.median.roll_rad = 0.5F;
-        sway_frame(&sway, &frame, 0.05F, standing != 0, FRAME_S);
-        TEST_ASSERT_EQUAL(standing == 0, sway_as_in_the_air(&sway));
-        TEST_ASSERT_TRUE(sway_is_no_hand(&sway)); /* which is asked on the ground, of the whole of it */
     }
 }
 
@@ -155,10 +144,10 @@ void test_frames_without_accelerations_have_a_clock_of_their_own(void)
         setUp();
         frame.arrival_us = 1000000U;
         frame.median.roll_rad = 0.5F;
-        sway_frame_alone(&sway, &frame, 0.05F, false);
+        sway_frame_alone(&sway, &frame, 0.05F);
         TEST_ASSERT_TRUE(sway_is_calm(&sway)); /* the first after long */
         frame.arrival_us += 300000U + more_us;
-        sway_frame_alone(&sway, &frame, 0.05F, false);
+        sway_frame_alone(&sway, &frame, 0.05F);
         TEST_ASSERT_EQUAL(more_us == 0U, sway_as_in_the_air(&sway));
     }
 }

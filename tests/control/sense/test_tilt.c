@@ -183,3 +183,147 @@ void test_frames_that_were_level_themselves_are_no_tilt(void)
         TEST_ASSERT_EQUAL_UINT16((level == 0) ? 1U : (level == 1) ? 0U : 1000U, senses.tilt.tilted);
     }
 }
+
+/* ---- what the mirrors show */
+
+/* Writes the slants of three mirrors of a vehicle at this tilt, over even ground: the inverse of
+ * altitude_at_tilt(). */
+static void show(altitude_t shown[MIRROR_COUNT], float height_mm, float roll_rad, float pitch_rad)
+{
+    static const struct {
+        float distance_mm, arm_mm, fore_mm;
+    } places[MIRROR_COUNT] = {{105.0F, 220.0F, 0.0F}, {105.0F, 115.0F, 105.0F}, {105.0F, 115.0F, -105.0F}};
+
+    for (int m = 0; m < MIRROR_COUNT; m++) {
+        altitude_t *one = &shown[m];
+
+        *one = (altitude_t){.valid = true,
+                            .distance_mm = places[m].distance_mm,
+                            .leg_mm = 100.0F,
+                            .arm_mm = places[m].arm_mm,
+                            .fore_mm = places[m].fore_mm};
+        one->slant_mm = one->distance_mm + (height_mm + one->leg_mm + one->arm_mm * sinf(roll_rad) +
+                                            one->fore_mm * sinf(pitch_rad)) /
+                                               (cosf(roll_rad) * cosf(pitch_rad));
+    }
+}
+
+static float astray_mm; /* not 0: the height before */
+
+/* Frames at 40 Hz that tell one tilt, scans at 10 Hz that show another. Returns whether the last was
+ * accepted. */
+static bool tells(const float told_deg[2], const float true_deg[2], float height_mm, uint16_t count,
+                  bool aloft)
+{
+    for (int k = 0; k < 40; k++) {
+        altitude_t shown[MIRROR_COUNT];
+
+        tilt(told_deg[0] * DEGREE_RAD, told_deg[1] * DEGREE_RAD);
+        show(shown, height_mm, true_deg[0] * DEGREE_RAD, true_deg[1] * DEGREE_RAD);
+        if (k % 4 == 3) {
+            tilt_scan(&senses.tilt, shown, count, (astray_mm != 0.0F) ? astray_mm : height_mm, 0.0F, aloft);
+        }
+    }
+    return senses.tilt.jumped == 0U;
+}
+
+void test_a_jump_of_the_attitude_is_not_accepted_while_the_slants_are_those_of_a_level_vehicle(void)
+{
+    static const float level[2] = {0.0F, 0.0F};
+    static const float jumps[][2] = {{30.0F, 0.0F},   {0.0F, -30.0F}, {60.0F, 0.0F},    {-90.0F, 20.0F},
+                                     {120.0F, 10.0F}, {0.0F, 80.0F},  {-170.0F, -20.0F}};
+
+    for (uint16_t count = 1U; count <= MIRROR_COUNT; count = (uint16_t)(count + 2U)) {
+        for (size_t i = 0; i < sizeof jumps / sizeof jumps[0]; i++) {
+            setUp();
+            TEST_ASSERT_TRUE(tells(level, level, 800.0F, count, true));
+            TEST_ASSERT_FALSE(tells(jumps[i], level, 800.0F, count, true));
+            TEST_ASSERT_EQUAL_UINT16(0U, senses.tilt.tilted);
+            TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.tilt.roll_rad);
+            TEST_ASSERT_EQUAL_UINT32(frame.sequence, senses.tilt.unfit_sequence);
+            TEST_ASSERT_TRUE(tells(level, level, 800.0F, count, true));
+        }
+    }
+}
+
+/* 0.8 m/s for a second: at 84 degrees the slants of the end would fit the height of the beginning. */
+void test_a_jump_of_the_attitude_is_not_accepted_in_a_climb(void)
+{
+    for (uint16_t count = 1U; count <= MIRROR_COUNT; count = (uint16_t)(count + 2U)) {
+        setUp();
+        for (int k = 0; k < 80; k++) {
+            altitude_t shown[MIRROR_COUNT];
+            const float height_mm = 500.0F + 20.0F * (float)(k - 40);
+
+            tilt((k >= 40) ? -71.0F * DEGREE_RAD : 0.0F, (k >= 40) ? 43.0F * DEGREE_RAD : 0.0F);
+            show(shown, (height_mm > 500.0F) ? height_mm : 500.0F, 0.0F, 0.0F);
+            if (k % 4 == 3) {
+                tilt_scan(&senses.tilt, shown, count, (k < 44) ? 500.0F : height_mm - 80.0F,
+                          (k < 44) ? 0.0F : 80.0F, true);
+            }
+            TEST_ASSERT_EQUAL_INT((k < 40) ? 1 : 0, (senses.tilt.jumped == 0U) ? 1 : 0);
+            TEST_ASSERT_EQUAL_UINT16(0U, senses.tilt.tilted);
+        }
+    }
+}
+
+void test_a_vehicle_that_is_tilted_like_that_is_believed(void)
+{
+    static const float level[2] = {0.0F, 0.0F};
+    static const float tilts[][2] = {
+        {30.0F, 0.0F}, {0.0F, -30.0F}, {60.0F, 0.0F}, {-50.0F, 20.0F}, {0.0F, 70.0F}};
+
+    for (uint16_t count = 1U; count <= MIRROR_COUNT; count = (uint16_t)(count + 2U)) {
+        for (size_t i = 0; i < sizeof tilts / sizeof tilts[0]; i++) {
+            setUp();
+            TEST_ASSERT_TRUE(tells(level, level, 800.0F, count, true));
+            TEST_ASSERT_TRUE(tells(tilts[i], tilts[i], 800.0F, count, true));
+            TEST_ASSERT_EQUAL_FLOAT(tilts[i][0] * DEGREE_RAD, senses.tilt.roll_rad);
+        }
+    }
+}
+
+void test_on_the_ground_nothing_is_refuted(void)
+{
+    static const float level[2] = {0.0F, 0.0F};
+    static const float over[2] = {90.0F, 0.0F};
+
+    TEST_ASSERT_TRUE(tells(level, level, 0.0F, MIRROR_COUNT, false));
+    TEST_ASSERT_TRUE(tells(over, level, 0.0F, MIRROR_COUNT, false));
+    TEST_ASSERT_TRUE(senses.tilt.tilted > 3U);
+}
+
+/* Slow enough for no jump: the height before has gone astray with the tilt, and goes on doing so. Only what
+ * the mirrors show together tells it. One mirror can not. */
+void test_an_attitude_that_wanders_away_is_refuted_beyond_45_degrees_by_three_mirrors(void)
+{
+    static const float level[2] = {0.0F, 0.0F};
+
+    for (uint16_t count = 1U; count <= MIRROR_COUNT; count = (uint16_t)(count + 2U)) {
+        setUp();
+        for (float deg = 0.0F; deg < 60.0F; deg += 4.0F) {
+            const float told[2] = {deg, 0.0F};
+            astray_mm = 900.0F * cosf(deg * DEGREE_RAD) - 100.0F - 220.0F * sinf(deg * DEGREE_RAD);
+            (void)tells(told, level, 800.0F, count, true);
+            astray_mm = 0.0F;
+            TEST_ASSERT_EQUAL_INT((count == 1U || deg < 45.0F) ? 1 : 0, (senses.tilt.jumped == 0U) ? 1 : 0);
+        }
+        TEST_ASSERT_EQUAL_INT((count == 1U) ? 1 : 0, (senses.tilt.tilted > 3U) ? 1 : 0);
+        TEST_ASSERT_EQUAL_INT((count == 1U) ? 0 : 1, (senses.tilt.roll_rad == 0.0F) ? 1 : 0);
+    }
+}
+
+void test_without_scans_the_seventh_frame_is_accepted_ten_frames_after_the_latest(void)
+{
+    static const float level[2] = {0.0F, 0.0F};
+    static const float over[2] = {90.0F, 0.0F};
+    int frames = 0;
+
+    (void)tells(level, level, 800.0F, MIRROR_COUNT, true);
+    (void)tells(over, level, 800.0F, MIRROR_COUNT, true);
+    while (senses.tilt.jumped > 0U && frames < 100) {
+        tilt(90.0F * DEGREE_RAD, 0.0F);
+        frames++;
+    }
+    TEST_ASSERT_EQUAL_INT(11, frames);
+}

@@ -64,32 +64,19 @@ void test_heights_that_move_end_a_doubt_of_the_sight_alone(void)
 {
     static const struct {
         uint16_t doubts;
-        float way_m, steps;
+        float way_m;
         uint16_t left;
-    } rows[] = {{DOUBT_SIGHT, 0.16F, 0.0F, 0U},
-                {DOUBT_SIGHT, -0.16F, 11.9F, 0U},
-                {DOUBT_SIGHT, 0.15F, 0.0F, DOUBT_SIGHT},
-                {DOUBT_SIGHT, 0.16F, 12.0F, DOUBT_SIGHT},
-                {DOUBT_THRUST, 0.16F, 0.0F, DOUBT_THRUST},
-                {DOUBT_THRUST | DOUBT_SIGHT, 0.16F, 0.0F, 0U}};
+    } rows[] = {{DOUBT_SIGHT, 0.16F, 0U},
+                {DOUBT_SIGHT, -0.16F, 0U},
+                {DOUBT_SIGHT, 0.15F, DOUBT_SIGHT},
+                {DOUBT_THRUST, 0.16F, DOUBT_THRUST},
+                {DOUBT_THRUST | DOUBT_SIGHT, 0.16F, 0U}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         setUp();
         doubted(rows[i].doubts);
         has_moved_m(rows[i].way_m);
-        has_stepped(rows[i].steps);
         TEST_ASSERT_EQUAL_UINT16(rows[i].left, judged(0.0F, 0.0F));
     }
-}
-
-void test_a_doubt_starts_its_sums_again_when_they_grow_past_half_a_metre(void)
-{
-    (void)again(DOUBT_SIGHT, 0.0F, 0.0F, -0.50F, 0.50F);
-    TEST_ASSERT_EQUAL_FLOAT(-0.5F, senses.accelerometer.felt.seen_m);
-    (void)again(DOUBT_SIGHT, 0.0F, 0.0F, -0.51F, 0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.seen_m);
-    (void)again(DOUBT_SIGHT, 0.0F, 0.0F, -0.1F, 0.51F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.seen_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.push.pushed.seen_m);
 }
 
 /* ---- who is judged */

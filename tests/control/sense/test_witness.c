@@ -69,16 +69,6 @@ void test_forgetting_clears_the_sums_and_keeps_the_speed(void)
     TEST_ASSERT_EQUAL_FLOAT(2.0F, witness.running_s);
 }
 
-void test_only_sinking_is_forgotten_at_a_step_towards_the_vehicle(void)
-{
-    witness.off_m = 0.2F;
-    witness_forget_sinking(&witness);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, witness.off_m);
-    witness.off_m = -0.2F;
-    witness_forget_sinking(&witness);
-    TEST_ASSERT_EQUAL_FLOAT(-0.2F, witness.off_m);
-}
-
 void test_a_sum_without_a_number_contradicts_nothing(void)
 {
     witness = (witness_t){.seen_m = NAN, .running_s = 2.0F};

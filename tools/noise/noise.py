@@ -1,0 +1,253 @@
+#!/usr/bin/env python3
+"""noise.py PLOMADA [--flights N] [--seed N] [--fit]: what the noises of control/sense/belief.c are worth on healthy flights.
+
+Each situation of tools/campaign/healthy.toml but *hours* is flown by N drawn vehicles with LAYOUT THREE: half of them with noise that
+the mirrors share, half with noise of each mirror's own. The belief's own C is asked, in the world in which no mirror lies, how likely
+each scan is. Printed: the mean log likelihood of a scan, and the normalised innovation, that is the mean of the squared innovations over
+what the belief expects of them (1 is a noise that is neither too small nor too large), for each row of situations and for all. With
+--fit the noises are searched that make the flights likeliest, and stand beside those in the source.
+"""
+import argparse
+import csv
+import ctypes
+import math
+import re
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy
+from scipy.optimize import minimize
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tools/campaign"))
+import fleet  # noqa: E402
+import plan  # noqa: E402
+import situations  # noqa: E402
+import survey  # noqa: E402
+
+OWN_NOISE = ("--set", "plant.mirror_noise=3", "--set", "plant.common_noise=0")
+FITTED = {"BELIEF_NOISE_MM": (1, 15), "STEP_SHARE": (1e-3, 0.3), "STEP_MM": (50, 1000), "STEP_NEAR_SHARE": (0, 0.95),
+          "STEP_NEAR_MM": (3, 80), "STEP_FAR_SHARE": (1e-4, 0.04), "MOTION_CHANGES": (0.005, 0.9), "SHARED_GAIN": (0.05, 1),
+          "RATE_GAIN": (0.02, 1.5), "OWN_GAIN": (0.01, 1)}
+MOTIONS = {"stands, share": (0.01, 0.8), "flies, share": (0.05, 0.95), "flies, mm": (2, 40), "pushed, mm": (6, 300)}
+DRAWN = 100_000
+FAR_MM = 4000.0     # STEP_FAR_PER_MM's
+HARNESS = r"""
+void noise_set(const float *p)
+{
+%(sets)s
+    PER_MM = 0.39894228F / BELIEF_NOISE_MM;
+    p += %(count)d;
+    motions[0].share = p[0];
+    motions[1].share = p[1];
+    motions[2].share = 1.0F - p[0] - p[1];
+    motions[1].sigma_mm = p[2];
+    motions[2].sigma_mm = p[3];
+}
+
+/* Log likelihood of one flight's scans: gap, gained, then valid, slant, height of each mirror. told[0]: scans, [1]: squared own
+ * innovations of mirrors without a step over their variance, [2]: their number. */
+double noise_of(const float *v, long scans, double *told)
+{
+    belief_t b = {.known = 0U};
+    double sum = 0.0;
+    start(&b);
+    for (long i = 0; i < scans; ++i, v += 11) {
+        belief_beam_t beams[MIRROR_COUNT];
+        constants_t constant;
+        uint16_t known = 0U;
+        for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+            beams[m] = (belief_beam_t){v[2 + 3 * m] != 0.0F, v[3 + 3 * m], v[4 + 3 * m]};
+            constant.slant[m] = density_of_constant(beams[m].slant_mm, &b.slant[m]);
+            constant.height[m] = density_of_constant(beams[m].height_mm, &b.height[m]);
+            known |= (beams[m].valid && has(b.known, m) && v[0] <= HEIGHT_LOST_S) ? (uint16_t)(1U << m) : 0U;
+        }
+        predict(&b.worlds[0], v[0], v[1]);
+        float off[MIRROR_COUNT], mean = 0.0F;
+        for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+            off[m] = beams[m].height_mm - b.worlds[0].level_mm[m];
+            mean += off[m] / (float)MIRROR_COUNT;
+        }
+        if (known == (1U << MIRROR_COUNT) - 1U && fabsf(off[0] - mean) < 4.0F * BELIEF_NOISE_MM &&
+            fabsf(off[1] - mean) < 4.0F * BELIEF_NOISE_MM && fabsf(off[2] - mean) < 4.0F * BELIEF_NOISE_MM) {
+            for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+                told[1] += (double)((off[m] - mean) * (off[m] - mean) / (BELIEF_NOISE_MM * BELIEF_NOISE_MM));
+            }
+            told[2] += MIRROR_COUNT - 1.0;
+        }
+        const float density = world_scan(&b.worlds[0], beams, &constant, known, 0U, v[0]);
+        if (known != 0U) {
+            sum += log(density > 1e-30F ? (double)density : 1e-30);
+            told[0] += 1.0;
+        }
+        for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+            if (beams[m].valid && !has(known, m)) {
+                meet(&b, m, beams[m].height_mm);
+            }
+            if (beams[m].valid) {
+                keep_mean(&b.slant[m], beams[m].slant_mm);
+                keep_mean(&b.height[m], beams[m].height_mm);
+            }
+        }
+    }
+    return sum;
+}
+"""
+
+
+def expected_square(values):
+    """Of one mirror's innovation about the others', over its noise, as noise_of() sums it: what belief.c's own mixture gives. Among the
+    innovations within four noises are small steps, which no scan tells from noise, so this is more than 1."""
+    noise_mm, share, mm, near_share, near_mm, far_share = values[:6]
+    random, size = numpy.random.default_rng(1), (DRAWN, 3)
+    kind = random.random(size)
+    step = numpy.where(kind < near_share, random.laplace(0.0, near_mm, size), random.laplace(0.0, mm, size))
+    step = numpy.where(kind > 1.0 - far_share, random.uniform(-FAR_MM, FAR_MM, size), step)
+    off = numpy.where(random.random(size) < share, step, random.normal(0.0, noise_mm, size))
+    off -= off.mean(axis=1, keepdims=True)
+    near = (numpy.abs(off) < 4.0 * noise_mm).all(axis=1)
+    return (off[near] ** 2).sum() / (2 * near.sum() * noise_mm * noise_mm)
+
+
+class Belief:
+    """belief.c with its noises as variables."""
+
+    def __init__(self):
+        source = (ROOT / "control/sense/belief.c").read_text(encoding="utf-8")
+        header = (ROOT / "control/sense/belief.h").read_text(encoding="utf-8")
+        self.start, text = [], source
+        for name in FITTED:
+            self.start.append(float(re.search(rf"#define {name} ([\d.e-]+)F", source + header)[1]))
+            text = re.sub(rf"#define {name} .*\n", "", text)
+        text = re.sub(r"#define PER_MM .*\n", "", text)
+        rows = re.findall(r"^    \{([\d.]+)F, ([\d.]+)F\},", source, re.M)
+        self.start += [float(rows[0][0]), float(rows[1][0]), float(rows[1][1]), float(rows[2][1])]
+        text = text.replace("static const struct {\n    float share", "static struct {\n    float share")
+        variables = "#undef BELIEF_NOISE_MM\nstatic float " + ", ".join([*FITTED, "PER_MM"]) + ";\n"
+        text = text.replace("#include <math.h>\n", "#include <math.h>\n" + variables, 1)
+        sets = "\n".join(f"    {name} = p[{i}];" for i, name in enumerate(FITTED))
+        with tempfile.TemporaryDirectory(prefix="plomada-") as scratch:
+            Path(scratch, "belief.c").write_text(text + HARNESS % {"sets": sets, "count": len(FITTED)}, encoding="utf-8")
+            library = Path(scratch, "belief.so")
+            subprocess.run(["cc", "-O2", "-std=gnu99", "-shared", "-fPIC", f"-I{ROOT}", "-o", library, Path(scratch, "belief.c"), "-lm"],
+                           check=True)
+            self.library = ctypes.CDLL(str(library))
+        self.library.noise_of.restype = ctypes.c_double
+
+    def likelihood(self, values, flights):
+        """Mean log likelihood of a scan, and the normalised innovation."""
+        figures = numpy.asarray(values, dtype=numpy.float32)
+        self.library.noise_set(figures.ctypes.data_as(ctypes.c_void_p))
+        told = numpy.zeros(3)
+        total = sum(self.library.noise_of(scans.ctypes.data_as(ctypes.c_void_p), ctypes.c_long(len(scans)),
+                                          told.ctypes.data_as(ctypes.c_void_p)) for scans in flights)
+        return total / told[0], told[1] / told[2] / expected_square(values)
+
+
+def mirrors_of(program):
+    """By default: column of the log, sensor to mirror, mirror to gear, arm, fore or aft, and how far its rays point to the fore of its axis."""
+    words = [line.split() for line in subprocess.run([program, "params"], check=True, capture_output=True, text=True).stdout.splitlines()]
+    mm = {row[0]: float(row[4]) for row in words if row[1:2] == ["mm"]}
+    middle = {row[0]: float(row[4]) for row in words if row[1:2] == ["step"]}
+    aside = (middle["SF"] - 384) * math.tau / 1024      # the others' rays stand square, by default
+    side = mm["L"] - mm["DF"]
+    return (("mf", mm["DF"], mm["LF"], mm["L"], 0.0, aside), ("m2", mm["D2"], mm["L2"], side, 1.0, 0.0), ("m1", mm["D1"], mm["L1"], side, -1.0, 0.0))
+
+
+def height_mm(slant_mm, mirror, roll_rad, pitch_rad):
+    """control/altitude.h's equation."""
+    _, distance, leg, arm, fore, aside = mirror
+    return ((slant_mm - distance) * math.cos(pitch_rad) * math.cos(roll_rad) - arm * math.sin(roll_rad)
+            - (fore * distance + aside * slant_mm) * math.sin(pitch_rad) - leg)
+
+
+def scans_of(path, mirrors):
+    """The scans of a flight's CSV, as noise_of() takes them. From the take-off on: at rest nothing moves."""
+    scans, gained_mps, before_mps, scan_s, frame_s, flown = [], 0.0, 0.0, None, None, False
+    with open(path, newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            now_s = float(row["t_s"])
+            if row["up_mps2"]:
+                gained_mps += float(row["up_mps2"]) * (now_s - frame_s if frame_s is not None else 0.0)
+                frame_s = now_s
+            if not row["mf_rays"]:
+                continue
+            flown = flown or row["state"] not in ("GROUND", "ARMED")
+            gap_s = now_s - scan_s if scan_s is not None else 1e3
+            scan_s = now_s
+            late = min(float(row["age_s"]) / gap_s, 1.0)
+            felt_mps, before_mps, gained_mps = (1 - late) * gained_mps + late * before_mps, gained_mps, 0.0
+            scan = [gap_s, felt_mps]
+            for mirror in mirrors:
+                slant = row[mirror[0] + "_mm"]
+                scan += ([1.0, float(slant), height_mm(float(slant), mirror, float(row["roll_rad"]), float(row["pitch_rad"]))]
+                         if slant else [0.0, 0.0, 0.0])
+            if flown:
+                scans.append(scan)
+    return numpy.ascontiguousarray(scans, dtype=numpy.float32).reshape(-1, 11)
+
+
+def fly(program, planned, own, mirrors):
+    """The scans of one flight."""
+    with tempfile.TemporaryDirectory(prefix="plomada-") as scratch:
+        path = Path(scratch, "flight.csv")
+        fleet.fly(program, [*planned.flight.words, *(OWN_NOISE if own else ()), "--csv", str(path)], planned.flight.text)
+        return scans_of(path, mirrors)
+
+
+def fit(belief, flights):
+    """The noises under which the flights are likeliest."""
+    bounds = [*FITTED.values(), *MOTIONS.values()]
+
+    def clipped(logs):
+        return [min(max(math.exp(value), low), high) for value, (low, high) in zip(logs, bounds)]
+
+    def cost(logs):
+        values = clipped(logs)
+        stands, flies = values[len(FITTED):len(FITTED) + 2]
+        near, far = values[3], values[5]
+        return 1e3 if stands + flies > 0.99 or near + far > 0.99 else -belief.likelihood(values, flights)[0]
+
+    best = numpy.log(belief.start)
+    for turn in range(3):
+        best = minimize(cost, best, method="Nelder-Mead", options={"maxfev": 350, "adaptive": True}).x
+        print(f"turn {turn + 1} of 3: {-cost(best):.3f}", file=sys.stderr)
+    return clipped(best)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("--flights", type=int, default=4, help="of each situation (default 4)")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--fit", action="store_true")
+    options = parser.parse_args()
+
+    plan.extend({"laws": {"EST-THREE": {"scenario": "est-60cm-ramp", "settings": {"LAYOUT": "THREE"}}}})
+    healthy = situations.load(situations.HEALTHY)
+    rows = [row for row in healthy.rows() if row != "hours"]
+    planned = survey.planned(healthy, ["EST-THREE"], options.seed, options.flights, False, rows)
+    mirrors = mirrors_of(options.program)
+    with ThreadPoolExecutor() as pool:
+        flown = list(pool.map(lambda job: fly(options.program, job[1], job[0] % 2 == 1, mirrors), enumerate(planned)))
+    belief = Belief()
+    for row in rows:
+        of_row = [scans for one, scans in zip(planned, flown, strict=True) if one.situation.row == row and len(scans)]
+        print(f"{row:18} normalised innovation {belief.likelihood(belief.start, of_row)[1]:.2f}")
+    flights = [scans for scans in flown if len(scans)]
+    likelihood, innovation = belief.likelihood(belief.start, flights)
+    print(f"{len(flights)} flights, {sum(map(len, flights))} scans: log likelihood {likelihood:.3f} a scan, "
+          f"normalised innovation {innovation:.2f}")
+    if options.fit:
+        found = fit(belief, flights)
+        likelihood, innovation = belief.likelihood(found, flights)
+        print(f"fitted: log likelihood {likelihood:.3f} a scan, normalised innovation {innovation:.2f}")
+        for name, used, value in zip([*FITTED, *MOTIONS], belief.start, found):
+            print(f"{name:16} {used:9.4g} {value:9.4g}")
+
+
+if __name__ == "__main__":
+    main()
