@@ -5,9 +5,9 @@
 
 #include "control/between.h"
 
-#define EFFECT_REACH_M 0.14F  /* chosen: below VAIN_M in rules.c */
+#define EFFECT_REACH_M 0.14F  /* chosen: below PUSHED_M in rules.c */
 #define UNKNOWN_REACH_M 0.06F /* tried 0.05 to 0.09; asks for 0.8 N at the delivered gains */
-#define FLOAT_REACH_M 0.30F   /* chosen: three times the distance that counts as reached, reach.c */
+#define FLOAT_REACH_M 0.30F   /* chosen: three times CONTENT_M */
 
 float aim_height_m(const aim_t *aim, const supervisor_t *supervisor)
 {
@@ -20,7 +20,8 @@ float aim_wanted_m(const aim_t *aim, const supervisor_t *supervisor, flight_mode
     const bool holds = state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING || state == FLIGHT_LOWERING ||
                        (state == FLIGHT_FLOATING && mode != FLIGHT_MODE_HOVER);
 
-    return holds ? aim_height_m(aim, supervisor) - supervisor->height.height_mm * 0.001F : NAN;
+    return holds ? aim_height_m(aim, supervisor) - aim->ignored_m - supervisor->height.height_mm * 0.001F
+                 : NAN;
 }
 
 static void hold_floating(aim_t *aim, const where_t *where, flight_mode_t mode, flight_mode_t mode_before)
@@ -46,13 +47,15 @@ static void judge(aim_t *aim, const where_t *where)
     }
     aim->reach_m = supervisor->reference_m;
     aim->out_of_reach = acts ? reach_step(&aim->reach,
-                                          supervisor->height.height_mm - supervisor->reference_m * 1000.0F,
+                                          supervisor->height.height_mm -
+                                              (supervisor->reference_m - aim->ignored_m) * 1000.0F,
                                           supervisor->step_us)
                              : pilot_holds_up(&where->pilot, supervisor->state);
 }
 
-void aim_step(aim_t *aim, const where_t *where, flight_mode_t mode, flight_mode_t mode_before)
+void aim_step(aim_t *aim, const situation_t *now)
 {
-    hold_floating(aim, where, mode, mode_before);
-    judge(aim, where);
+    aim->ignored_m = now->est->terrain.ignored_m;
+    hold_floating(aim, now->where, now->mode, now->mode_before);
+    judge(aim, now->where);
 }

@@ -46,10 +46,26 @@ static uint16_t whole(float steps)
     return (uint16_t)(steps + 0.5F);
 }
 
-static void add_window(mirror_windows_t *windows, mirror_t mirror, float middle)
+/* Seen from the scanner, by the drawing; and where a ray beside the axis by a radian, on the side of larger
+ * steps, meets the ground, in its lengths. */
+static const struct {
+    parameter_id_t middle;
+    float axis_step;
+    float arm, fore;
+} sides[MIRROR_COUNT] = {
+    [MIRROR_FRONT] = {PARAMETER_SF, SCANNER_RIGHT_STEP, 0.0F, 1.0F},
+    [MIRROR_FORE] = {PARAMETER_S2, SCANNER_RIGHT_STEP + 256.0F, -1.0F, 0.0F},
+    [MIRROR_AFT] = {PARAMETER_S1, SCANNER_RIGHT_STEP - 256.0F, 1.0F, 0.0F},
+};
+
+static void add_window(mirror_windows_t *windows, mirror_t mirror, const parameters_t *parameters)
 {
+    const parameter_id_t middle = sides[mirror].middle;
+    const float aside = parameters->value[middle] - parameter_table[middle].initial;
+
     windows->mirror[windows->count] = mirror;
-    windows->middle[windows->count] = whole(middle);
+    windows->middle[windows->count] = whole(parameters->value[middle]);
+    windows->axis[windows->count] = sides[mirror].axis_step + aside;
     ++windows->count;
 }
 
@@ -60,80 +76,73 @@ mirror_windows_t altitude_windows_of(const parameters_t *parameters)
 
     windows.reach = whole(parameters->value[PARAMETER_SW]);
     if (layout != LAYOUT_FRONT) {
-        add_window(&windows, MIRROR_AFT, parameters->value[PARAMETER_S1]);
+        add_window(&windows, MIRROR_AFT, parameters);
     }
     if (layout != LAYOUT_TWO) {
-        add_window(&windows, MIRROR_FRONT, parameters->value[PARAMETER_SF]);
+        add_window(&windows, MIRROR_FRONT, parameters);
     }
     if (layout != LAYOUT_FRONT) {
-        add_window(&windows, MIRROR_FORE, parameters->value[PARAMETER_S2]);
+        add_window(&windows, MIRROR_FORE, parameters);
     }
     return windows;
+}
+
+float altitude_fan(const mirror_range_t *range)
+{
+    const float wide_steps2 = range->wide_steps2 + range->aside_steps * range->aside_steps;
+
+    return 1.0F + 0.5F * SCANNER_STEP_RAD * SCANNER_STEP_RAD * wide_steps2;
 }
 
 static altitude_t altitude_of(const mirror_geometry_t *mirror, const mirror_range_t *range, float roll_rad,
                               float pitch_rad)
 {
-    return (altitude_t){
+    const float aside_rad = range->aside_steps * SCANNER_STEP_RAD;
+    const float slant_mm = range->slant_mm / altitude_fan(range);
+    altitude_t altitude = {
         .valid = range->valid && range->good_rays >= RAYS_LEAST,
-        .height_mm = altitude_under_mirror(mirror, range->slant_mm, roll_rad, pitch_rad),
-        .slant_mm = range->slant_mm,
+        .slant_mm = slant_mm,
         .spread_mm = range->spread_mm,
         .good_rays = range->good_rays,
         .distance_mm = mirror->distance_mm,
         .leg_mm = mirror->leg_mm,
-        .arm_mm = mirror->arm_mm,
-        .fore_mm = mirror->fore_sign * mirror->distance_mm,
+        .arm_mm = mirror->arm_mm + aside_rad * slant_mm * sides[range->mirror].arm,
+        .fore_mm = mirror->fore_sign * mirror->distance_mm + aside_rad * slant_mm * sides[range->mirror].fore,
         .later_us = range->later_us,
-        .agreeing = 1U,
     };
+
+    altitude.height_mm = altitude_at_tilt(&altitude, roll_rad, pitch_rad);
+    return altitude;
 }
 
-static void add(altitude_t *sum, const altitude_t *one)
+const float altitude_weights_equal[MIRROR_COUNT] = {1.0F, 1.0F, 1.0F};
+
+static void add(altitude_t *sum, const altitude_t *one, float weight)
 {
     sum->valid = true;
-    sum->height_mm += one->height_mm;
-    sum->slant_mm += one->slant_mm;
+    sum->height_mm += weight * one->height_mm;
+    sum->slant_mm += weight * one->slant_mm;
     sum->spread_mm = fmaxf(sum->spread_mm, one->spread_mm);
     sum->good_rays = (uint16_t)(sum->good_rays + one->good_rays);
-    sum->distance_mm += one->distance_mm;
-    sum->leg_mm += one->leg_mm;
-    sum->arm_mm += one->arm_mm;
-    sum->fore_mm += one->fore_mm;
-    sum->later_us += one->later_us;
-    ++sum->agreeing;
+    sum->distance_mm += weight * one->distance_mm;
+    sum->leg_mm += weight * one->leg_mm;
+    sum->arm_mm += weight * one->arm_mm;
+    sum->fore_mm += weight * one->fore_mm;
+    sum->later_us += (int32_t)(weight * (float)one->later_us);
 }
 
-static void divide(altitude_t *sum)
-{
-    const float groups = (float)sum->agreeing;
-
-    sum->later_us /= (int32_t)sum->agreeing;
-    sum->height_mm /= groups;
-    sum->slant_mm /= groups;
-    sum->distance_mm /= groups;
-    sum->leg_mm /= groups;
-    sum->arm_mm /= groups;
-    sum->fore_mm /= groups;
-}
-
-altitude_t altitude_mean(const altitude_t *altitudes, size_t count)
+altitude_t altitude_mean(const altitude_t *altitudes, const float *weights, size_t count)
 {
     altitude_t mean = {.valid = false};
-    float lowest_mm = 0.0F;
-    float highest_mm = 0.0F;
+    float sum = 0.0F;
 
     for (size_t i = 0; i < count; ++i) {
-        const altitude_t *one = &altitudes[i];
-        if (one->valid) {
-            lowest_mm = mean.valid ? fminf(lowest_mm, one->height_mm) : one->height_mm;
-            highest_mm = mean.valid ? fmaxf(highest_mm, one->height_mm) : one->height_mm;
-            add(&mean, one);
-        }
+        sum += altitudes[i].valid ? weights[i] : 0.0F;
     }
-    if (mean.valid) {
-        divide(&mean);
-        mean.disagree = highest_mm - lowest_mm > ALTITUDE_DISAGREE_MM;
+    for (size_t i = 0; i < count; ++i) {
+        if (altitudes[i].valid && weights[i] > 0.0F) {
+            add(&mean, &altitudes[i], weights[i] / sum);
+        }
     }
     return mean;
 }
@@ -156,5 +165,5 @@ altitude_t altitude_from_ranges(const altitude_geometry_t *geometry, const mirro
     altitude_t altitudes[MIRROR_COUNT];
 
     altitude_of_mirrors(altitudes, geometry, ranges, count, roll_rad, pitch_rad);
-    return altitude_mean(altitudes, MIRROR_COUNT);
+    return altitude_mean(altitudes, altitude_weights_equal, MIRROR_COUNT);
 }

@@ -6,14 +6,11 @@
 #include "control/credible.h"
 #include "control/median.h"
 
-#define FOLLOWS_RAD 0.30F /* chosen: 690 degrees a second in frames of 25 ms, below a spike of 20 degrees */
-#define FOLLOWS_SPIKE_RAD 0.60F /* chosen: the same in two frames, one of them a spike */
-#define STRAYED_FRAMES 7U       /* chosen: a burst of six bad frames is over */
-#define STRAYED_COUNT 3U        /* chosen: so many of them count as frames of a turn */
-#define BENT_RAD 0.17453293F    /* chosen: 10 degrees, above the tilts of a flight */
-#define STIRS_RAD 0.05F         /* chosen: 115 degrees a second, ten times what gusts and noise do */
-#define RESTS_RAD 0.02F         /* chosen: 46 degrees a second; a vehicle that flies forward stays bent */
-#define BEYOND_FRAMES 3U        /* chosen: one or two beyond 45 degrees may be a gust's */
+#define FOLLOWS_RAD (ATTITUDE_SPIKE_RAD - ATTITUDE_STIRS_RAD) /* below the least spike */
+#define FOLLOWS_SPIKE_RAD (2.0F * FOLLOWS_RAD)                /* in two frames, one of them a spike */
+#define STRAYED_FRAMES ATTITUDE_ROLLED_FRAMES                 /* a burst of bad frames is over */
+#define BENT_RAD 0.17453293F /* 10 degrees: three sigma of the liveliest sway, 3 degrees, rounded up */
+#define RESTS_RAD 0.02F      /* chosen: 46 degrees a second; a vehicle that flies forward stays bent */
 
 void attitude_init(attitude_filter_t *filter)
 {
@@ -87,7 +84,7 @@ static const attitude_t *earlier(const attitude_filter_t *filter, uint16_t frame
 static bool stirs(float before_rad, float last_rad)
 {
     const float step_rad = fabsf(last_rad - before_rad);
-    return step_rad > STIRS_RAD && step_rad < FOLLOWS_RAD;
+    return step_rad > ATTITUDE_STIRS_RAD && step_rad < FOLLOWS_RAD;
 }
 
 /* True when the frame before this one, level yet, has begun a turn already. A vehicle in the air moves less
@@ -105,8 +102,8 @@ static void count_frame(attitude_filter_t *filter, const attitude_t *level, bool
 {
     const bool is_beyond = sure && tilts_beyond(level, TILTED_RAD);
 
-    filter->beyond = (uint16_t)(filter->beyond + (is_beyond && filter->beyond < BEYOND_FRAMES));
-    const bool lies = is_beyond && filter->beyond == BEYOND_FRAMES;
+    filter->beyond = (uint16_t)(filter->beyond + (is_beyond && filter->beyond < ATTITUDE_TILTED_FRAMES));
+    const bool lies = is_beyond && filter->beyond == ATTITUDE_TILTED_FRAMES;
     const uint16_t most = lies ? ATTITUDE_ROLLED_FRAMES : ATTITUDE_ROLLED_FRAMES - 1U;
     filter->rolled = (filter->rolled < most) ? (uint16_t)(filter->rolled + 1U) : most;
 }
@@ -120,7 +117,7 @@ static void count_roll(attitude_filter_t *filter, const attitude_t *level, bool 
         return;
     }
     if (!follows) {
-        filter->rolled = STRAYED_COUNT - 1U;
+        filter->rolled = ATTITUDE_TILTED_FRAMES - 1U;
         filter->beyond = 0U;
     } else if (has_begun(filter)) {
         filter->rolled = 1U;

@@ -14,6 +14,14 @@
 #define ATTITUDE_MEDIAN_FRAMES 5U           /* seed 5.2.1.1 */
 #define ATTITUDE_OFFSET_MAX_RAD 0.17453293F /* 10 degrees; a larger offset is refused, and measured again */
 
+/* A spike of the Razor, 20 degrees, in one angle of 200 (sim/devices/razor9dof.h). */
+#define ATTITUDE_SPIKE_RAD 0.35F
+/* What an angle changes by from frame to frame: four sigma of noise and sway, 13 mrad. The noise is 0.5
+ * degrees in each of both frames, the sway 3 degrees rms at 0.6 Hz (tools/campaign/plan.py). */
+#define ATTITUDE_STIRS_RAD 0.05F
+/* So many tilted frames in a row are no spikes: three are, by chance, once in a million, in 7 hours. */
+#define ATTITUDE_TILTED_FRAMES 3U
+
 typedef struct {
     float roll_rad;
     float pitch_rad;

@@ -12,31 +12,24 @@
 #include "control/touchdown.h"
 
 #define UNCONFIRMED_MPS 0.35F /* chosen: CONFIRMED_M in confirmation.c, 0.12 m, takes 0.35 s at this rate */
-#define TAKEOFF_MPS 0.6F      /* chosen: above UNCONFIRMED_MPS, because every take-off begins unconfirmed */
 #define CLIMB_MARGIN_MPS 0.4F /* chosen: room for an overshoot of the climb rate above VUP */
 #define SWITCH_MPS 0.1F       /* chosen: that much below the climb rate two speeds switch the limit on */
 
-#define UNCHECKED_BELOW_N 1.0F /* chosen: twice that */
+#define UNCHECKED_BELOW_N (2.0F * NEAR_HOVER_N) /* to sink is safer than to climb */
 
-#define NO_AUTHORITY_WINDOW_N 0.6F /* chosen: 0.8 m/s2 */
-#define HELD_SINK_N_PER_S 0.2F     /* chosen: as SINK_FADE_N_PER_S in let_down.c */
-#define UNKNOWN_WINDOW_N 2.0F      /* chosen: as HOVER_BOUND_N in est_law.c */
-
-#define BACK_BELOW_N 0.5F         /* chosen: by the vehicle model a sink rate of 0.3 m/s */
-#define BACK_SUNK_N 1.2F          /* chosen: with BACK_BELOW_N more than a fifth of GRAV */
-#define BACK_FELT_N 2.0F          /* chosen: more than GRAV is off */
-#define BACK_MOVES_MPS 0.35F      /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in IN_HANDS_S of handover.c */
+#define BACK_BELOW_N NEAR_HOVER_N /* sinks at 0.3 m/s */
+#define BACK_MOVES_MPS 0.35F      /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in ACCELEROMETER_IN_HANDS_S */
 #define BACK_N_PER_M 2.0F         /* chosen: a climb of 1 m/s lowers it by 1.5 N before that is forgotten */
 #define BACK_CLIMB_N_PER_MPS 1.0F /* chosen: halves the climb of a vehicle that is lighter by a fifth */
-#define BACK_FALL_N_PER_MPS 2.0F  /* chosen: twice that */
-#define BACK_BRAKE_N 1.8F         /* chosen: what the two before may have sunk */
-#define BACK_MAX_S 60.0F          /* above DESCENT_TIMEOUT_US in supervisor.c */
+#define BACK_FALL_N_PER_MPS (2.0F * BACK_CLIMB_N_PER_MPS)   /* a fall is worse than a climb */
+#define BACK_BRAKE_N (BACK_BELOW_N + HOVER_THRUST_MARGIN_N) /* what these two may have sunk */
+#define BACK_MAX_S 60.0F                                    /* above DESCENT_TIMEOUT_US in supervisor.c */
 
 /* chosen: in 2 s too low to fly; the accelerometer shows a fall before it is fast */
 #define STANDING_N_PER_S 1.0F
 
-#define FLOAT_TRIM_N 0.4F         /* chosen: GRAV is trimmed so much too low, or less */
-#define FLOAT_TRIM_N_PER_M_S 8.0F /* tried 4 and 8: half of it after a second 25 mm too low */
+#define FLOAT_TRIM_N HOVER_THRUST_TRIM_N /* GRAV is trimmed so much too low, or less */
+#define FLOAT_TRIM_N_PER_M_S 8.0F        /* tried 4 and 8: half of it after a second 25 mm too low */
 
 typedef struct {
     float least_n, most_n;
@@ -67,14 +60,14 @@ static float climbing_n(const situation_t *now, float climb_mps)
     return vehicle.damping_per_s * climb_mps / vehicle.authority_mps2_per_n;
 }
 
-/* Limits the climb without use of the estimate. The limit is low while no height has confirmed the climb. */
+/* Limits the climb without use of the estimate. The limit is low while no height has confirmed the climb: a
+ * blocked beam looks like a step towards the vehicle. */
 static interval_t of_climb(bounds_t *bounds, const situation_t *now)
 {
     const evidence_t *evidence = now->evidence;
     const bool takes_off = now->where->supervisor.state == FLIGHT_TAKEOFF;
-    const float unconfirmed_mps = takes_off ? TAKEOFF_MPS : UNCONFIRMED_MPS;
     const float fastest_mps = evidence->unconfirmed
-                                  ? unconfirmed_mps
+                                  ? UNCONFIRMED_MPS
                                   : now->parameters->value[PARAMETER_VUP] + CLIMB_MARGIN_MPS;
     const float switch_mps = fastest_mps - SWITCH_MPS;
     const bool fast = evidence->push_mps > switch_mps &&
@@ -115,8 +108,8 @@ static float given_back_n(bounds_t *bounds, const situation_t *now)
     const float n_per_mps = (felt_mps > 0.0F) ? BACK_CLIMB_N_PER_MPS : BACK_FALL_N_PER_MPS;
 
     bounds->felt_n = between(0.0F, bounds->felt_n + BACK_N_PER_M * felt_mps * where_step_s(where),
-                             BACK_FELT_N);
-    return where->hover.thrust_n - BACK_BELOW_N - at_most(sunk_n, BACK_SUNK_N) - bounds->felt_n -
+                             HOVER_BOUND_N);
+    return where->hover.thrust_n - BACK_BELOW_N - at_most(sunk_n, HOVER_THRUST_MARGIN_N) - bounds->felt_n -
            at_least(n_per_mps * felt_mps, -BACK_BRAKE_N);
 }
 
@@ -129,7 +122,7 @@ static interval_t while_unknown(bounds_t *bounds, const situation_t *now)
 
         return (interval_t){only_n, only_n};
     }
-    return (interval_t){hover_n - UNKNOWN_WINDOW_N - bounds->sunk_n, hover_n + UNKNOWN_WINDOW_N};
+    return (interval_t){hover_n - HOVER_BOUND_N - bounds->sunk_n, hover_n + HOVER_BOUND_N};
 }
 
 /* While commands have no effect, and where a pilot may fly without a pin that reports it, the thrust stays
@@ -142,7 +135,7 @@ static interval_t of_power(bounds_t *bounds, const situation_t *now)
 
     bounds->felt_n = now->where->pilot.given_back ? bounds->felt_n : 0.0F;
     bounds->sunk_n = ((doubted || unknown) && where_descends(now->where))
-                         ? bounds->sunk_n + HELD_SINK_N_PER_S * where_step_s(now->where)
+                         ? bounds->sunk_n + SINK_FADE_N_PER_S * where_step_s(now->where)
                          : 0.0F;
     if (unknown) {
         return while_unknown(bounds, now);
@@ -150,9 +143,8 @@ static interval_t of_power(bounds_t *bounds, const situation_t *now)
     if (!doubted || now->mode == FLIGHT_MODE_IDLE) {
         return anything;
     }
-    const float held_n = now->evidence->held_n - bounds->sunk_n;
-    return now->evidence->held_down ? least(held_n - NO_AUTHORITY_WINDOW_N)
-                                    : most(held_n + NO_AUTHORITY_WINDOW_N);
+    const float held_n = now->evidence->held.hover_n - bounds->sunk_n;
+    return now->evidence->held.down ? least(held_n - NEAR_HOVER_N) : most(held_n + NEAR_HOVER_N);
 }
 
 /* A landing that a height has shown near the ground ends there, also when the next heights are missing or

@@ -1,13 +1,11 @@
 #include "control/calibration.h"
 
 #include "control/thrust.h"
+#include "control/where/hover_thrust.h"
 
-#define COUNTS_PER_PERCENT 20.84F /* 2084 counts from no thrust to full, thrust.h */
-#define IDLE_COUNTS 4166U         /* 2 ms, seed eq. 4-5 */
-#define LIMIT_N 8.5F              /* 1.5 N above the seed's largest hover thrust */
-/* With GRAV at the hover thrust itself the seed's laws cannot come down; 0.4 N below it they fly best on the
- * model (docs/operator.md). */
-#define SEED_MARGIN_N 0.4F
+#define COUNTS_PER_PERCENT 20.84F  /* 2084 counts from no thrust to full, thrust.h */
+#define IDLE_COUNTS 4166U          /* 2 ms, seed eq. 4-5 */
+#define LIMIT_N 8.5F               /* 1.5 N above the seed's largest hover thrust */
 #define LIFTED_MM 100.0F           /* chosen: no rope lets it rise so far */
 #define US_PER_S UINT32_C(1000000) /* microseconds */
 
@@ -97,5 +95,5 @@ float calibration_gravity_n(const parameters_t *parameters, float thrust_n)
 {
     const uint16_t law = parameters_choice(parameters, PARAMETER_LAW);
 
-    return (law == LAW_PD || law == LAW_PID) ? thrust_n - SEED_MARGIN_N : thrust_n;
+    return (law == LAW_PD || law == LAW_PID) ? thrust_n - HOVER_THRUST_TRIM_N : thrust_n;
 }

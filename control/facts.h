@@ -13,6 +13,19 @@
 #define DOUBT_IMU 2U
 #define DOUBT_THRUST 4U
 
+/* Of several mirrors. */
+typedef struct {
+    bool agree;       /* two or more do not lie, with 99 %, and their slants live */
+    uint16_t doubted; /* bits: they are disbelieved */
+    uint16_t liars;   /* bits: those for which that lasts, see mirrors_liars() */
+} mirrors_told_t;
+
+/* When DOUBT_THRUST rose. */
+typedef struct {
+    float hover_n;
+    bool down; /* the law wanted to descend */
+} held_t;
+
 /* What the sensors show, in the present cycle. Made by sense/. */
 typedef struct {
     uint16_t doubts;  /* DOUBT_* */
@@ -21,15 +34,16 @@ typedef struct {
                        * a climb: the beam may be blocked, keep climbs slow */
     bool terrain_fell; /* after a step of more than 0.4 m away from the vehicle, until the heights show a
                         * descent: they may be wrong, keep descents slow */
-    bool teaches;  /* false: learn nothing from the heights: they are unconfirmed, the beam may be blocked, or
-                    * accelerometer and heights differ by more than 0.5 m/s */
-    bool sways;    /* roll and pitch sway as in the air */
-    bool calm;     /* they sway as on the ground; between the two neither is certain */
-    bool rocks;    /* the tilt has moved by a degree within the last 0.8 s */
-    bool in_hands; /* state GROUND without heights: a pilot flies it, or somebody holds it */
-    bool may_stand;   /* calm for so long that it may stand on the ground: lower the thrust to find out */
-    bool stands;      /* too little thrust to fly, no felt fall, and calm: it stands on the ground */
-    float upright;    /* cosine of the believed tilt */
+    bool
+        teaches; /* false: learn nothing from the heights: they are unconfirmed, or the beam may be blocked */
+    bool sways;  /* roll and pitch sway as in the air */
+    bool calm;   /* they sway as on the ground; between the two neither is certain */
+    bool rocks;  /* the tilt has moved by a degree within the last 0.8 s */
+    bool in_hands;  /* state GROUND without heights: a pilot flies it, or somebody holds it */
+    bool may_stand; /* calm for so long that it may stand on the ground: lower the thrust to find out */
+    bool stands;    /* too little thrust to fly, no felt fall, and calm: it stands on the ground */
+    float upright;  /* cosine of the believed tilt */
+    mirrors_told_t mirrors;
     float height_m;   /* latest height that was no copy and within range, believed or not */
     float rise_mps;   /* low-passed rate of the heights, without steps */
     float lost_m;     /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
@@ -41,8 +55,7 @@ typedef struct {
     float pushed_mps; /* the same less the error that the heights have shown; else the rate of the heights */
     float moved_m;    /* way since the rays of the latest height, by the thrust */
     float speed_mps;  /* without the heights: mean of the witnesses that are valid and not doubted, or 0 */
-    float held_n;     /* hover thrust when DOUBT_THRUST rose */
-    bool held_down;   /* the law wanted to descend at that instant */
+    held_t held;
 } evidence_t;
 
 /* What the vehicle was told to do in the previous cycle, and what that should cause. Made by flight.c. */

@@ -102,7 +102,7 @@ static void learn(flight_t *flight, situation_t *now)
 
     hover_thrust_step(&flight->where.hover, &lesson);
     contact_watch(&flight->where.contact, &landing);
-    aim_step(&flight->aim, &flight->where, now->mode, now->mode_before);
+    aim_step(&flight->aim, now);
     now->aim_m = aim_height_m(&flight->aim, &flight->where.supervisor);
 }
 
@@ -122,6 +122,17 @@ static float command(flight_t *flight, const situation_t *now, bool law_changed)
 
     flight->thrust_n = stuck_pin_acts(&flight->pin) ? bounded_n : driven_n;
     return driven_n;
+}
+
+/* What was made of the mirrors. A scan without a height was not voted on. */
+static void tell_mirrors(const flight_t *flight, const flight_inputs_t *in, flight_outputs_t *out)
+{
+    const uint16_t left_out = mirrors_tell(&flight->sense.senses.mirrors, out->lies);
+
+    out->left_out = (in->mirrors != NULL && in->height_valid) ? left_out : 0U;
+    for (uint16_t m = 0U; m < MIRROR_COUNT && in->mirrors == NULL; ++m) {
+        out->lies[m] = NAN;
+    }
 }
 
 uint16_t flight_releases(const flight_t *flight, const parameters_t *parameters)
@@ -151,7 +162,8 @@ void flight_step(flight_t *flight, const parameters_t *parameters, const flight_
     outputs_write(&now, flight->aim.out_of_reach, driven_n, out);
     out->bound = (uint16_t)flight->bounds.holds;
     out->imu_fault = flight->axes.fault;
+    mounts_step(&flight->mounts, parameters, in, &flight->sense.senses.mirrors, out);
     out->height_mm = in->height_valid ? checked.altitude.height_mm : NAN;
-    out->height_mm = in->height_valid ? checked.altitude.height_mm : NAN;
+    tell_mirrors(flight, in, out);
     out->releases = flight_releases(flight, parameters);
 }

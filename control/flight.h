@@ -21,6 +21,7 @@
 #include "control/bounds.h"
 #include "control/modes.h"
 #include "control/parameters.h"
+#include "control/sense/mounts.h"
 #include "control/sense/sense.h"
 #include "control/where/where.h"
 
@@ -29,6 +30,7 @@ typedef struct {
     sense_t sense;
     evidence_t evidence; /* of the present cycle, by `sense` */
     imu_axes_t axes;
+    mounts_t mounts;
     handover_t handover;
     est_law_t est;
     control_law_t law; /* in force; PIDT replaces EST while no estimate is fresh */

@@ -11,6 +11,7 @@
 #include "control/where/flight_state.h"
 #include "control/imu_axes.h"
 #include "control/imu_sample.h"
+#include "control/signal.h"
 #include "control/thrust.h"
 
 /* Highest reference. State LOWERING begins 0.8 m above the reference: that is within the scanner's
@@ -55,29 +56,56 @@ typedef struct {
 #define FLIGHT_RELEASE_HEIGHT 2U /* a scan, with a height or without one */
 #define FLIGHT_RELEASE_FRAME 4U  /* an IMU frame */
 
+/* What three mirrors show of themselves and of the IMU; LAYOUT THREE alone. */
+typedef struct {
+    float rest_mm[MIRROR_COUNT]; /* height by each mirror at the latest rest; NAN: none */
+    uint16_t wrong;              /* bits by mirror_t: at rest it did not show the ground */
+    imu_fault_t imu;             /* of the IMU, sense/plane.h */
+    float off_roll_rad; /* angle that the IMU tells, less the one that the mirrors show; NAN: not known */
+    float off_pitch_rad;
+} flight_mirrors_t;
+
+/* True when the vehicle must not take off: two mirrors would outvote the one that is right. A single one is
+ * outvoted itself. */
+static inline bool flight_mirrors_forbid(const flight_mirrors_t *mirrors)
+{
+    return (mirrors->wrong & (uint16_t)(mirrors->wrong - 1U)) != 0U;
+}
+
 typedef struct {
     float thrust_n; /* commanded, newtons per motor, 0 .. THRUST_MAX_N */
     float pulse_us; /* throttle pulse, thrust.h */
     float idle_n;   /* minimum of thrust_n: the idle while armed, else 0 */
     float hover_n;  /* hover thrust as far as it is known, where/hover_thrust.h */
     flight_state_t state;
-    uint16_t flags; /* FLIGHT_FLAG_* */
-    uint16_t rule;  /* that raised the first doubt, verdict_reason_t of sense/rules.h; 0: none */
-    uint16_t bound; /* that holds the thrust, bound_t of bounds.h; 0: none */
-    imu_fault_t imu_fault;
-    float reference_m;   /* reference in force, 0 = none */
-    float height_mm;     /* of the latest scan, believed or not; NAN: that scan gave none */
-    float estimate_mm;   /* height that the law uses; NAN: not known */
-    float innovation_mm; /* latest height minus predicted height; NAN where nothing is predicted */
-    float stick_us;      /* pulse of the pilot's stick; NAN: none to believe; set by task_control.c */
-    uint16_t releases;   /* FLIGHT_RELEASE_*: events that release the next cycle */
+    uint16_t flags;        /* FLIGHT_FLAG_* */
+    uint16_t rule;         /* that raised the first doubt, verdict_reason_t of sense/rules.h; 0: none */
+    uint16_t bound;        /* that holds the thrust, bound_t of bounds.h; 0: none */
+    imu_fault_t imu_fault; /* by gravity, or by the mirrors */
+    flight_mirrors_t mirrors;
+    float reference_m;        /* reference in force, 0 = none */
+    float height_mm;          /* of the latest scan, believed or not; NAN: that scan gave none */
+    float estimate_mm;        /* height that the law uses; NAN: not known */
+    float innovation_mm;      /* latest height minus predicted height; NAN where nothing is predicted */
+    float stick_us;           /* pulse of the pilot's stick; NAN: none to believe; set by task_control.c */
+    uint16_t battery;         /* battery_verdict_t of battery.h; this and the next set by task_control.c */
+    float battery_v;          /* NAN: not measured */
+    uint16_t releases;        /* FLIGHT_RELEASE_*: events that release the next cycle */
+    float lies[MIRROR_COUNT]; /* probability that this mirror lies, by mirror_t; NAN: nobody asked, LAYOUT has
+                               * one mirror */
+    uint16_t left_out; /* bits: mirrors of the latest scan that gave a height, and that the vote left out */
+    scan_signal_t signal; /* of the latest scan; set by task_control.c */
 } flight_outputs_t;
 
 /* Before the first cycle. */
 #define FLIGHT_OUTPUTS_INITIAL \
     { \
         .pulse_us = THRUST_IDLE_PULSE_US, .height_mm = NAN, .estimate_mm = NAN, .innovation_mm = NAN, \
-        .stick_us = NAN \
+        .stick_us = NAN, .battery_v = NAN, .lies = {NAN, NAN, NAN}, .mirrors = { \
+            .rest_mm = {NAN, NAN, NAN}, \
+            .off_roll_rad = NAN, \
+            .off_pitch_rad = NAN \
+        } \
     }
 
 #endif

@@ -3,10 +3,9 @@
 #include "control/handover.h"
 
 #include "control/between.h"
+#include "control/sense/accelerometer.h"
 
-#define LIFTED_MPS 0.25F      /* chosen: above what a bias of 0.2 m/s2 makes on the ground */
-#define IN_HANDS_S 2.0F       /* as IN_HANDS_TIME_S in accelerometer.c */
-#define IN_HANDS_BIAS_S 10.0F /* chosen: five times that */
+#define LIFTED_MPS 0.25F /* what the largest bias, 0.25 m/s2, adds up to on the ground: STANDING_TIME_S */
 
 /* What the estimate goes on from. */
 typedef enum {
@@ -139,7 +138,11 @@ static void restart(est_law_t *est, const situation_t *now)
 static void fuse(est_law_t *est, const situation_t *now, const flight_inputs_t *in)
 {
     const supervisor_t *supervisor = &now->where->supervisor;
-    const est_height_t height = {&in->altitude, in->height_stamp_ms, in->height_time_us, in->height_age_us};
+    const est_height_t height = {
+        {&in->altitude, in->mirrors, now->evidence->mirrors.doubted, now->evidence->mirrors.liars},
+        in->height_stamp_ms,
+        in->height_time_us,
+        in->height_age_us};
 
     if (supervisor->height.is_new) {
         est_law_fuse_height(est, &height, now->where->contact.airborne, supervisor_is_at_rest(supervisor));
@@ -247,8 +250,8 @@ void handover_mode(est_law_t *est, where_t *where, const situation_t *now)
 void handover_given_back(est_law_t *est, const situation_t *now)
 {
     const estimate_t *estimate = &est->estimator.now;
-    const float share = where_step_s(now->where) / IN_HANDS_S;
+    const float share = where_step_s(now->where) / ACCELEROMETER_IN_HANDS_S;
 
     estimator_amend(&est->estimator, 0.0F, estimate->speed_mps * (1.0F - share),
-                    estimate->bias_mps2 + share * estimate->speed_mps / IN_HANDS_BIAS_S);
+                    estimate->bias_mps2 + share * estimate->speed_mps / ACCELEROMETER_IN_HANDS_BIAS_S);
 }

@@ -8,14 +8,9 @@
 
 #include "control/credible.h"
 
-#define UNIT_SHARE 0.15F   /* chosen: above an accelerometer's errors, below a wrong unit's */
-#define MEAN_S 2.0F        /* chosen: 80 frames */
-#define HELD_S 1.0F        /* chosen: 40 frames */
-#define LEAST_RAD 0.0175F  /* chosen: 1 degree; the check needs a vehicle that stands so far off level */
 #define SHARE_OF_TILT 0.2F /* chosen: a wrong sign makes 2, a wrong axis 1, a moving hand less than 0.2 */
 #define NOISE_RAD_PER_MPS2 0.04F /* five sigma of the mean: 5 sqrt(25 ms / 4 s) / g */
 #define MENDED_SHARE 0.5F        /* chosen: the change must remove at least half of the disagreement */
-#define STEEP_RAD 1.05F          /* chosen: 60 degrees */
 
 typedef struct {
     float roll_rad, pitch_rad;
@@ -69,15 +64,15 @@ static imu_fault_t judge(const imu_axes_t *axes, float noise_mps2)
     const tilt_t told = {axes->roll_rad, axes->pitch_rad};
     const tilt_t felt = {atan2f(axes->right_mps2, axes->down_mps2), atan2f(-axes->forward_mps2, level_mps2)};
     const float apart = apart_rad(told, felt);
-    const float least_rad = fmaxf(LEAST_RAD, NOISE_RAD_PER_MPS2 * noise_mps2);
+    const float least_rad = fmaxf(IMU_OFFSET_RAD, NOISE_RAD_PER_MPS2 * noise_mps2);
 
-    if (fabsf(size_mps2 - IMU_GRAVITY_MPS2) > UNIT_SHARE * IMU_GRAVITY_MPS2) {
+    if (fabsf(size_mps2 - IMU_GRAVITY_MPS2) > IMU_UNIT_SHARE * IMU_GRAVITY_MPS2) {
         return IMU_UNIT;
     }
     if (axes->down_mps2 < 0.0F) {
         return IMU_DOWN;
     }
-    if (apart <= least_rad + SHARE_OF_TILT * size_rad(felt) || size_rad(felt) > STEEP_RAD) {
+    if (apart <= least_rad + SHARE_OF_TILT * size_rad(felt) || size_rad(felt) > IMU_STEEP_RAD) {
         return IMU_SOUND;
     }
     return name_of(told, felt, fmaxf(MENDED_SHARE * apart, least_rad));
@@ -87,8 +82,8 @@ static void decide(imu_axes_t *axes, imu_fault_t seen, float dt_s)
 {
     axes->suspected_s = (seen == axes->suspected) ? axes->suspected_s + dt_s : 0.0F;
     axes->suspected = seen;
-    if (axes->suspected_s > HELD_S) {
-        axes->suspected_s = HELD_S;
+    if (axes->suspected_s > REST_HELD_S) {
+        axes->suspected_s = REST_HELD_S;
         axes->fault = seen;
     }
 }
@@ -99,7 +94,7 @@ static void average(imu_axes_t *axes, const imu_sample_t *frame, float noise_mps
 
     axes->time_us = frame->arrival_us;
     axes->seen_s = (dt_s <= FRAME_GAP_S) ? fminf(axes->seen_s + dt_s, IMU_AXES_SEEN_S) : 0.0F;
-    const float share = (axes->seen_s > 0.0F) ? fminf(dt_s / fminf(axes->seen_s, MEAN_S), 1.0F) : 1.0F;
+    const float share = (axes->seen_s > 0.0F) ? fminf(dt_s / fminf(axes->seen_s, REST_TIME_S), 1.0F) : 1.0F;
     axes->forward_mps2 += share * (frame->forward_mps2 - axes->forward_mps2);
     axes->right_mps2 += share * (frame->right_mps2 - axes->right_mps2);
     axes->down_mps2 += share * (frame->down_mps2 - axes->down_mps2);
@@ -127,14 +122,21 @@ void imu_axes_step(imu_axes_t *axes, const imu_sample_t *frames, uint16_t count,
 }
 
 static const char *const names[] = {
-    [IMU_SOUND] = "-",         [IMU_UNIT] = "UNIT",       [IMU_DOWN] = "DOWN",
-    [IMU_ROLL] = "ROLL",       [IMU_PITCH] = "PITCH",     [IMU_BOTH] = "ROLL+PITCH",
-    [IMU_SWAPPED] = "SWAPPED", [IMU_RADIANS] = "RADIANS", [IMU_OTHER] = "ANGLES"};
+    [IMU_SOUND] = "-",         [IMU_UNIT] = "UNIT",   [IMU_DOWN] = "DOWN",       [IMU_OFFSET] = "OFFSET",
+    [IMU_ROLL] = "ROLL",       [IMU_PITCH] = "PITCH", [IMU_BOTH] = "ROLL+PITCH", [IMU_SWAPPED] = "SWAPPED",
+    [IMU_RADIANS] = "RADIANS", [IMU_OTHER] = "ANGLES"};
 typedef char every_fault_has_a_name[(sizeof names / sizeof names[0] == IMU_FAULT_COUNT) ? 1 : -1];
 
 const char *imu_fault_name(imu_fault_t fault)
 {
     return names[fault];
+}
+
+imu_fault_t imu_axes_worse(imu_fault_t by_gravity, imu_fault_t by_mirrors)
+{
+    const bool instead = by_gravity == IMU_SOUND || (by_gravity < IMU_ROLL && by_mirrors >= IMU_ROLL);
+
+    return instead ? by_mirrors : by_gravity;
 }
 
 bool imu_axes_forbid(imu_fault_t fault, const parameters_t *parameters)

@@ -13,6 +13,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "control/credible.h"
 #include "control/imu_sample.h"
 #include "control/parameters.h"
 
@@ -20,6 +21,7 @@ typedef enum {
     IMU_SOUND,   /* no fault found */
     IMU_UNIT,    /* |a| is more than 15 % off g */
     IMU_DOWN,    /* gravity is measured upwards */
+    IMU_OFFSET,  /* angles off by more than a degree, or a slope; found by the mirrors alone, sense/plane.h */
     IMU_ROLL,    /* roll has the wrong sign */
     IMU_PITCH,   /* pitch has the wrong sign */
     IMU_BOTH,    /* both have the wrong sign */
@@ -38,7 +40,11 @@ typedef struct {
     imu_fault_t fault; /* result of the latest time on the ground */
 } imu_axes_t;
 
-#define IMU_AXES_SEEN_S 3.0F /* chosen: 120 frames */
+#define IMU_UNIT_SHARE \
+    (BIAS_MAX_MPS2 / IMU_GRAVITY_MPS2) /* an accelerometer's errors; a wrong unit's are more */
+#define IMU_AXES_SEEN_S (REST_TIME_S + REST_HELD_S)
+#define IMU_OFFSET_RAD 0.0175F   /* 1 degree: 4 mm of height by the front mirror's arm. Less is not told */
+#define IMU_STEEP_RAD 1.0471976F /* chosen: 60 degrees */
 
 void imu_axes_init(imu_axes_t *axes);
 
@@ -50,6 +56,9 @@ void imu_axes_step(imu_axes_t *axes, const imu_sample_t *frames, uint16_t count,
 
 /* "UNIT", "DOWN", "ROLL" ...; IMU_SOUND: "-". */
 const char *imu_fault_name(imu_fault_t fault);
+
+/* What gravity and the mirrors have found, together: first of all what forbids to take off. */
+imu_fault_t imu_axes_worse(imu_fault_t by_gravity, imu_fault_t by_mirrors);
 
 /* True when the vehicle must not take off, because nobody has proved the axes by tilting (IAXES ASSUMED), and
  * either a fault of the angles was found, or IROLL or IPITCH is not the default. */

@@ -3,11 +3,11 @@
 #include <math.h>
 
 #include "control/angle.h"
+#include "control/imu_axes.h"
 
-#define UNIT_ERROR 0.15F           /* chosen: as UNIT_SHARE in imu_axes.c */
 #define TILT_LEAST_RAD 0.13962634F /* chosen: 8 degrees, a clear movement */
-#define TILT_MOST_RAD 1.0471976F   /* chosen: 60 degrees */
-#define OTHER_SHARE 0.5F           /* chosen: a hand never turns about one axis alone */
+
+#define OTHER_SHARE 0.5F /* chosen: a hand never turns about one axis alone */
 
 /* Razor_AHRS; g; m/s2; thousandths of g. */
 static const float units[] = {256.0F, 1.0F, 9.80665F, 1000.0F};
@@ -18,7 +18,7 @@ bool imu_find_level(parameters_t *parameters, const imu_raw_t *raw)
     const float down_counts = fabsf(raw->z_counts);
 
     for (uint16_t i = 0U; raw->has_acceleration && i < sizeof units / sizeof units[0]; ++i) {
-        if (fabsf(down_counts - units[i]) <= UNIT_ERROR * units[i] && side_counts < 0.5F * down_counts) {
+        if (fabsf(down_counts - units[i]) <= IMU_UNIT_SHARE * units[i] && side_counts < 0.5F * down_counts) {
             (void)parameters_set(parameters, PARAMETER_IUNIT, units[i]);
             (void)parameters_set(parameters, PARAMETER_IDOWN,
                                  (float)((raw->z_counts < 0.0F) ? DOWN_MINUS_Z : DOWN_Z));
@@ -39,7 +39,7 @@ bool imu_find_axis(parameters_t *parameters, parameter_id_t id, const imu_raw_t 
     const control_axis_t minus = by_roll ? AXIS_MINUS_ROLL : AXIS_MINUS_PITCH;
     const float size_rad = fabsf(tilt_rad);
 
-    if (size_rad < TILT_LEAST_RAD || size_rad > TILT_MOST_RAD || fabsf(other_rad) >= OTHER_SHARE * size_rad) {
+    if (size_rad < TILT_LEAST_RAD || size_rad > IMU_STEEP_RAD || fabsf(other_rad) >= OTHER_SHARE * size_rad) {
         return false;
     }
     return parameters_set(parameters, id, (float)((tilt_rad > 0.0F) ? plus : minus)) == PARAMETER_ACCEPTED;

@@ -36,6 +36,8 @@ static const kind_t kinds[PARAMETER_COUNT] = {
     [PARAMETER_SEL] = GROUND_ONLY, /* decides who has the throttle */
     [PARAMETER_STICK] = GROUND_ONLY,
     [PARAMETER_SMID] = GROUND_ONLY,
+    [PARAMETER_CELLS] = GROUND_ONLY, /* but BAT NONE ends what a wrong voltage orders, at any time */
+    [PARAMETER_VDIV] = GROUND_ONLY,
     [PARAMETER_IROLL] = GROUND_ONLY,
     [PARAMETER_IPITCH] = GROUND_ONLY,
     [PARAMETER_IDOWN] = GROUND_ONLY,
@@ -69,7 +71,9 @@ static in_air_t judge_newtons(const parameters_t *now, parameter_id_t id, float 
     parameters_t then = *now;
 
     then.value[id] = to;
-    if (fabsf(then.value[PARAMETER_GRAV] - hover_n) > HOVER_THRUST_MARGIN_N) {
+    const float off_n = fabsf(then.value[PARAMETER_GRAV] - hover_n);
+    /* Towards it is fine: a battery may have taken the hover thrust away from it. */
+    if (off_n > HOVER_THRUST_MARGIN_N && off_n >= fabsf(now->value[PARAMETER_GRAV] - hover_n)) {
         return IN_AIR_OFF_HOVER;
     }
     if (alone && id == PARAMETER_GRAV) {

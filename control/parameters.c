@@ -23,6 +23,15 @@ typedef char every_sel_has_a_name[(sizeof sel_names / sizeof sel_names[0] == SEL
 static const char *const stick_names[] = {[STICK_NONE] = "NONE", [STICK_PIN] = "PIN"};
 typedef char every_stick_has_a_name[(sizeof stick_names / sizeof stick_names[0] == STICK_COUNT) ? 1 : -1];
 
+static const char *const bat_names[] = {[BAT_NONE] = "NONE", [BAT_PIN] = "PIN"};
+typedef char every_bat_has_a_name[(sizeof bat_names / sizeof bat_names[0] == BAT_COUNT) ? 1 : -1];
+static const char *const cells_names[] = {"2S", "3S", "4S", "5S", "6S"};
+typedef char
+    every_count_of_cells_has_a_name[(sizeof cells_names / sizeof cells_names[0] == CELLS_CHOICES) ? 1 : -1];
+
+static const char *const walls_names[] = {[WALLS_OFF] = "OFF", [WALLS_ON] = "ON"};
+typedef char every_walls_has_a_name[(sizeof walls_names / sizeof walls_names[0] == WALLS_COUNT) ? 1 : -1];
+
 static const char *const axis_names[] = {
     [AXIS_ROLL] = "ROLL", [AXIS_MINUS_ROLL] = "-ROLL", [AXIS_PITCH] = "PITCH", [AXIS_MINUS_PITCH] = "-PITCH"};
 typedef char every_axis_has_a_name[(sizeof axis_names / sizeof axis_names[0] == AXIS_COUNT) ? 1 : -1];
@@ -64,7 +73,7 @@ const parameter_row_t parameter_table[] = {
                        "EST: fastest descent to a reference."},
     [PARAMETER_TERRAIN] = {"TERRAIN", "-", 0.0F, (float)(TERRAIN_COUNT - 1), (float)TERRAIN_FOLLOW,
                            terrain_names, PARAMETERS_EST,
-                           "EST: keeps the height above the terrain, or passes over its steps."},
+                           "EST: keeps the height above the terrain, or its altitude."},
     [PARAMETER_PLANT] = {"PLANT", "-", 0.0F, (float)(PLANT_COUNT - 1), (float)PLANT_THRUST, plant_names,
                          PARAMETERS_EST_MODEL, "EST: what the autopilot's throttle commands."},
     [PARAMETER_CRATE] = {"CRATE", "m/s/N", 0.125F, 5.0F, 1.0F, NULL, PARAMETERS_EST_MODEL,
@@ -115,7 +124,7 @@ const parameter_row_t parameter_table[] = {
                       "Scanner to mirror 2, fore."},
     [PARAMETER_L2] = {"L2", "mm", 0.0F, 500.0F, 105.0F, NULL, PARAMETERS_MIRRORS,
                       "Mirror 2 to the lowest point of the landing gear."},
-    [PARAMETER_LAYOUT] = {"LAYOUT", "-", 0.0F, (float)(LAYOUT_COUNT - 1), (float)LAYOUT_FRONT, layout_names,
+    [PARAMETER_LAYOUT] = {"LAYOUT", "-", 0.0F, (float)(LAYOUT_COUNT - 1), (float)LAYOUT_THREE, layout_names,
                           PARAMETERS_MIRRORS, "Mirrors read in each scan: front, the other two, or all."},
     /* Limits: within these no two windows meet, and none leaves the steps that the scanner measures.
      * Defaults: measured on the vehicle, 5 steps inside each mirror's edges. */
@@ -137,6 +146,23 @@ const parameter_row_t parameter_table[] = {
     /* Limits: law EST climbs by VUP at most, 0.7 m/s. Default: a reaction of 0.3 s is 9 cm then. */
     [PARAMETER_SRATE] = {"SRATE", "m/s", 0.05F, 0.7F, 0.3F, NULL, PARAMETERS_THROTTLE,
                          "How fast the stick moves the reference, at its end."},
+    [PARAMETER_BAT] = {"BAT", "-", 0.0F, (float)(BAT_COUNT - 1), (float)BAT_NONE, bat_names,
+                       PARAMETERS_BATTERY, "Whether the battery's voltage is measured, by a pin."},
+    /* The vehicle's battery is 4S, and the 3DR module takes 18 V at most. */
+    [PARAMETER_CELLS] = {"CELLS", "-", 0.0F, (float)(CELLS_CHOICES - 1U), (float)(4U - CELLS_FEWEST),
+                         cells_names, PARAMETERS_BATTERY, "Cells of the battery, in series."},
+    /* Default: ArduPilot's BATT_VOLT_MULT for this module. Limits: half and twice that. */
+    [PARAMETER_VDIV] = {"VDIV", "times", 5.0F, 20.0F, 10.1F, NULL, PARAMETERS_BATTERY,
+                        "Divider of the power module, as a voltmeter tells."},
+    /* Defaults: ArduPilot's of a LiPo, 0.3 V and 0.2 V above the 3.3 V that damage it. Limits: those 3.3 V,
+     * and the 3.9 V of a battery that is two thirds full. */
+    [PARAMETER_VLOW] = {"VLOW", "V", 3.3F, 3.9F, 3.6F, NULL, PARAMETERS_BATTERY,
+                        "Voltage of a cell in flight below which it warns."},
+    [PARAMETER_VLAND] = {"VLAND", "V", 3.3F, 3.9F, 3.5F, NULL, PARAMETERS_BATTERY,
+                         "Voltage of a cell in flight below which it lands."},
+    /* OFF: five lines more in a second are in the way of who reads them in a terminal. */
+    [PARAMETER_WALLS] = {"WALLS", "-", 0.0F, (float)(WALLS_COUNT - 1), (float)WALLS_OFF, walls_names,
+                         PARAMETERS_RADIO, "Whether the radio tells what the rays between the mirrors meet."},
 };
 typedef char
     every_parameter_has_its_row[(sizeof parameter_table / sizeof parameter_table[0] == PARAMETER_COUNT) ? 1

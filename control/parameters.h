@@ -62,6 +62,12 @@ typedef enum {
     PARAMETER_STICK,  /* choice, control_stick_t */
     PARAMETER_SMID,   /* us, pulse of the stick's middle */
     PARAMETER_SRATE,  /* m/s, at an end of the stick */
+    PARAMETER_BAT,    /* choice, control_bat_t */
+    PARAMETER_CELLS,  /* choice: CELLS_FEWEST and more */
+    PARAMETER_VDIV,   /* volts of the battery per volt at the pin */
+    PARAMETER_VLOW,   /* V a cell */
+    PARAMETER_VLAND,  /* V a cell */
+    PARAMETER_WALLS,  /* choice, control_walls_t */
     PARAMETER_COUNT
 } parameter_id_t;
 
@@ -87,6 +93,14 @@ typedef enum {
 /* How the firmware hears the pilot's throttle stick: not at all, or by a pin. */
 typedef enum { STICK_NONE, STICK_PIN, STICK_COUNT } control_stick_t;
 
+/* How the firmware measures the battery: not at all, or by a pin. */
+typedef enum { BAT_NONE, BAT_PIN, BAT_COUNT } control_bat_t;
+#define CELLS_FEWEST 2U /* value 0 of CELLS */
+#define CELLS_CHOICES 5U
+
+/* Whether the radio tells what stands around. */
+typedef enum { WALLS_OFF, WALLS_ON, WALLS_COUNT } control_walls_t;
+
 /* Which angle of the IMU is the vehicle's roll (or pitch), and which end of the IMU's z axis points down. */
 typedef enum { AXIS_ROLL, AXIS_MINUS_ROLL, AXIS_PITCH, AXIS_MINUS_PITCH, AXIS_COUNT } control_axis_t;
 typedef enum { DOWN_Z, DOWN_MINUS_Z, DOWN_COUNT } control_down_t;
@@ -107,6 +121,7 @@ typedef enum {
     PARAMETERS_RADIO,
     PARAMETERS_IMU,
     PARAMETERS_MIRRORS,
+    PARAMETERS_BATTERY,
     PARAMETER_GROUP_COUNT
 } parameter_group_t;
 

@@ -2,9 +2,11 @@
 
 #include <math.h>
 
-#define REACHED_MM 100.0F               /* chosen: ten times the hover error of law EST */
-#define NEARER_MM 50.0F                 /* chosen: half of that */
-#define STUCK_US UINT32_C(3000000)      /* chosen: every law rises within 2.8 s */
+#include "control/credible.h"
+
+#define REACHED_MM (1000.0F * CONTENT_M)
+#define NEARER_MM (0.5F * REACHED_MM)
+
 #define STUCK_MAX_US UINT32_C(60000000) /* the counter stops, it need not wrap */
 
 void reach_reset(reach_t *reach)
@@ -28,7 +30,7 @@ bool reach_step(reach_t *reach, float off_mm, uint32_t step_us)
     if (!reach->on || nearer || reach->above != (off_mm > 0.0F) || distance_mm <= REACHED_MM) {
         begin(reach, off_mm);
     } else if (reach->stuck_us < STUCK_MAX_US) {
-        reach->stuck_us += (step_us < STUCK_US) ? step_us : STUCK_US;
+        reach->stuck_us += (step_us < REACH_RISES_US) ? step_us : REACH_RISES_US;
     }
-    return reach->stuck_us >= STUCK_US;
+    return reach->stuck_us >= REACH_RISES_US;
 }

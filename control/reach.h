@@ -7,6 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#define REACH_RISES_US UINT32_C(3000000) /* chosen: every law rises within 2.8 s */
+
 typedef struct {
     float nearest_mm; /* smallest distance so far, on the present side */
     bool above;

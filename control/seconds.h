@@ -13,7 +13,8 @@ static inline float seconds_between(uint32_t from_us, uint32_t to_us)
     return (float)(int32_t)(to_us - from_us) * 1.0e-6F;
 }
 
-#define CYCLE_MAX_S 0.5F /* chosen: a longer pause of the control task counts as this long */
+#define CYCLE_MAX_S \
+    0.5F /* chosen: a longer pause of the control task, or of the scans, counts as this long */
 
 /* Converts a duration to seconds, limited to at_most_s. duration_us may have the clock's whole range. */
 static inline float seconds_at_most(uint32_t duration_us, float at_most_s)

@@ -7,13 +7,14 @@
 #include "control/between.h"
 #include "control/median.h"
 
-#define SHORTEST_US 800.0F /* chosen: a servo's travel is 1 to 2 ms, or 0.9 to 2.1 ms */
-#define LONGEST_US 2200.0F
+/* ArduPilot, RC_Channel.cpp: the range of RC_MIN and RC_MAX. */
+#define SHORTEST_US 800.0F
+#define LONGEST_US 2200.0F   /* the same */
 #define TRAVEL_US 400.0F     /* from the middle to an end, at a remote control's delivered travel of 100 % */
-#define SILENT_S 0.35F       /* chosen: two of the longest control cycles, and a pulse of 20 ms */
+#define SILENT_S 0.35F       /* two control cycles of 150 ms at most, a pulse of 20 ms, rounded up */
 #define WANDER_SHARE 0.0625F /* chosen: over some 16 pulses */
 #define NOISY_US 100.0F      /* chosen: a hand that moves the stick from end to end in 0.2 s has 80 */
-#define QUIET_US 50.0F       /* chosen: below the dead band of stick_orders.c */
+#define QUIET_US (0.5F * NOISY_US) /* hysteresis */
 
 static void hear(stick_t *stick, float pulse_us)
 {

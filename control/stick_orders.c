@@ -9,19 +9,20 @@
 /* chosen: 60 us of a pulse. PX4 has 0.1 (MPC_HOLD_DZ), for sticks that spring to the middle; a throttle's
  * stick does not. */
 #define DEAD_BAND 0.15F
-#define MIDDLE_S 0.5F      /* chosen: longer than a stick takes from end to end */
-#define RAISED_MOST_M 1.0F /* chosen: half a room */
-#define LEAD_MOST_M 0.3F   /* chosen: what law EST lags behind at 0.7 m/s */
-#define TAKE_OFF_UP 0.3F   /* PX4's FlightTaskManualAltitude::_checkTakeoff() */
-#define TAKE_OFF_S 0.3F    /* chosen: a push, not a touch */
-#define TAKE_OFF_M 0.3F    /* chosen: above the ground's effect */
-#define LAND_S 1.0F        /* chosen: longer than it takes to let go at the lowest reference */
-#define OPEN_PERCENT 12.0F /* chosen: the autopilot's motors stop below 10 % */
-#define SHUT_PERCENT 8.0F
-#define OPEN_S 0.5F      /* chosen: the pilot's stick command takes longer */
-#define STEP_MOST_S 0.2F /* a control cycle comes within 150 ms */
-#define MIDDLE_PERCENT 50.0F
-#define US_PER_PERCENT 10.0F
+#define SETTLED_S 0.5F            /* chosen: so long in the middle, or open: longer than from end to end */
+#define RAISED_MOST_M 1.0F        /* chosen: half a room */
+#define LEAD_MOST_M 0.3F          /* what law EST lags behind as delivered: VUP / POSK, 0.7 m/s by 2.3 1/s */
+#define TAKE_OFF_UP 0.3F          /* PX4's FlightTaskManualAltitude::_checkTakeoff() */
+#define TAKE_OFF_S 0.3F           /* chosen: a push, not a touch */
+#define TAKE_OFF_M LEAD_MOST_M    /* from the ground */
+#define LAND_S 1.0F               /* chosen: longer than it takes to let go at the lowest reference */
+#define MOTORS_STOP_PERCENT 10.0F /* the autopilot stops its motors below it, docs/operator.md */
+#define HYSTERESIS_PERCENT 2.0F   /* chosen */
+#define OPEN_PERCENT (MOTORS_STOP_PERCENT + HYSTERESIS_PERCENT)
+#define SHUT_PERCENT (MOTORS_STOP_PERCENT - HYSTERESIS_PERCENT)
+#define STEP_MOST_S 0.2F     /* a control cycle comes within 150 ms */
+#define MIDDLE_PERCENT 50.0F /* of 0 to 100 */
+#define US_PER_PERCENT 10.0F /* a pulse of 1 to 2 ms */
 
 static bool is_wired(const parameters_t *parameters)
 {
@@ -67,7 +68,7 @@ static void watch_throttle(stick_orders_t *orders, const stick_t *stick, float m
     const bool differs = orders->opened ? percent < SHUT_PERCENT : percent > OPEN_PERCENT;
 
     orders->open_s = differs ? orders->open_s + step_s : 0.0F;
-    if (orders->open_s >= OPEN_S) {
+    if (orders->open_s >= SETTLED_S) {
         orders->open_s = 0.0F;
         orders->opened = !orders->opened;
         arm(orders, orders->opened);
@@ -78,13 +79,13 @@ static void watch_middle(stick_orders_t *orders, float up, float step_s)
 {
     const bool middle = fabsf(up) <= DEAD_BAND;
 
-    orders->middle_s = middle ? at_most(orders->middle_s + step_s, MIDDLE_S) : 0.0F;
+    orders->middle_s = middle ? at_most(orders->middle_s + step_s, SETTLED_S) : 0.0F;
     if (middle) {
         orders->pushed = false;
         orders->raised_m = 0.0F;
         orders->held_s = 0.0F;
     }
-    orders->counts = orders->counts || orders->middle_s >= MIDDLE_S;
+    orders->counts = orders->counts || orders->middle_s >= SETTLED_S;
 }
 
 /* Held so for long enough: an order that is given once. */
@@ -139,13 +140,15 @@ static void fly(stick_orders_t *orders, const parameters_t *parameters, const fl
 static void command(stick_orders_t *orders, const parameters_t *parameters, const flight_outputs_t *before,
                     float up, float step_s)
 {
-    const bool armed = before->state == FLIGHT_GROUND && before->idle_n > 0.0F;
+    const bool armed = before->state == FLIGHT_GROUND && before->idle_n > 0.0F &&
+                       !imu_axes_forbid(before->imu_fault, parameters) &&
+                       !flight_mirrors_forbid(&before->mirrors);
     const bool again = before->state == FLIGHT_LANDING && orders->landing;
     const bool floats = before->state == FLIGHT_FLOATING && before->estimate_mm == before->estimate_mm;
 
     if (before->state == FLIGHT_FLYING) {
         fly(orders, parameters, before, up, step_s);
-    } else if ((armed && !imu_axes_forbid(before->imu_fault, parameters)) || again) {
+    } else if (armed || again) {
         if (held(orders, up > TAKE_OFF_UP, TAKE_OFF_S, step_s)) {
             order(orders, TAKE_OFF_M);
         }

@@ -10,20 +10,20 @@
 #include <stdbool.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 
-#define LANDED_M 0.04F            /* chosen: ten times the height's noise */
-#define LANDED_NO_MORE_M 0.10F    /* chosen: above any bounce */
-#define LANDED_ABOVE_HOVER_N 0.5F /* chosen: room to brake the last centimetres */
-#define LANDED_FADE_N_PER_S 2.0F  /* chosen: no thrust 4 s later */
+#define LANDED_NO_MORE_M 0.10F   /* chosen: above any bounce */
+#define SINK_FADE_N_PER_S 0.2F   /* chosen: without heights at the hover thrust after 2.5 s */
+#define LANDED_FADE_N_PER_S 2.0F /* chosen: no thrust 4 s later */
 #define LANDED_ROCKS_S 0.7F /* chosen: 0.9 N below the hover thrust, more than the ground effect carries */
-#define LANDED_ROCKS_SHARE 0.1F /* chosen: then 0.2 N/s; it sinks at 0.5 m/s and slightly more */
+#define LANDED_ROCKS_SHARE (SINK_FADE_N_PER_S / LANDED_FADE_N_PER_S) /* as without heights */
 
-/* New time near the ground, from the time before (time_s) and one step of dt_s. Below LANDED_M it starts;
- * above LANDED_NO_MORE_M it is 0 again. From LANDED_ROCKS_S on it runs slowly while the tilt sways as in
- * flight (sway_rocks()). */
+/* New time near the ground, from the time before (time_s) and one step of dt_s. Below HEIGHT_NO_NOISE_M it
+ * starts; above LANDED_NO_MORE_M it is 0 again. From LANDED_ROCKS_S on it runs slowly while the tilt sways as
+ * in flight (sway_rocks()). */
 static inline float touchdown_time_s(float time_s, float height_m, bool rocks, float dt_s)
 {
-    const bool low = height_m < LANDED_M || (time_s > 0.0F && height_m < LANDED_NO_MORE_M);
+    const bool low = height_m < HEIGHT_NO_NOISE_M || (time_s > 0.0F && height_m < LANDED_NO_MORE_M);
     const bool slow = rocks && time_s > LANDED_ROCKS_S;
     return low ? time_s + (slow ? LANDED_ROCKS_SHARE : 1.0F) * dt_s : 0.0F;
 }
@@ -32,8 +32,7 @@ static inline float touchdown_time_s(float time_s, float height_m, bool rocks, f
  * time_s is 0. */
 static inline float touchdown_limit_n(float time_s, float hover_n)
 {
-    return (time_s > 0.0F) ? at_least(hover_n + LANDED_ABOVE_HOVER_N - LANDED_FADE_N_PER_S * time_s, 0.0F)
-                           : INFINITY;
+    return (time_s > 0.0F) ? at_least(hover_n + NEAR_HOVER_N - LANDED_FADE_N_PER_S * time_s, 0.0F) : INFINITY;
 }
 
 #endif

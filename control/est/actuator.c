@@ -1,7 +1,5 @@
 #include "control/est/actuator.h"
 
-#define STEP_MAX_S 1.0F /* chosen: eight lags, the rest is done */
-
 void actuator_init(actuator_t *actuator, uint32_t now_us)
 {
     *actuator = (actuator_t){.time_us = now_us};
@@ -37,7 +35,7 @@ static inline void lag(actuator_t *actuator, uint32_t until_us)
 
     if (step_us > 0) {
         const float step_s = (float)step_us * 1.0e-6F;
-        const float share = (step_s < STEP_MAX_S) ? step_s / (actuator->lag_s + 0.5F * step_s) : 1.0F;
+        const float share = step_s / (actuator->lag_s + 0.5F * step_s);
         actuator->thrust_n += ((share < 1.0F) ? share : 1.0F) * (actuator->demand_n - actuator->thrust_n);
         actuator->time_us = until_us;
     }

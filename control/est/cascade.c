@@ -17,12 +17,10 @@
 #define DRAG_SPEED_MPS 0.8F  /* chosen: beyond it the drag helps to brake */
 #define LEAD 1.3F            /* fitted: overdrives the motors' lag */
 #define ABOVE_HOVER_N 3.5F   /* chosen: half of the hover thrust */
-#define LEAST_SHARE 0.25F    /* chosen: the rotors keep turning */
 #define UPRIGHT_MIN 0.8F     /* 37 degrees; more tilt is not compensated further */
 #define SLEW_N_PER_S 60.0F   /* chosen: 1.5 N per IMU frame */
 #define ACTIVITY_MAX_N 1.5F  /* chosen: three times the usual activity */
 #define ACTIVITY_TIME_S 1.0F /* chosen: ten scans */
-#define CALM_MIN 0.4F        /* chosen: keeps two fifths of the gain */
 
 void cascade_init(cascade_t *cascade, float thrust_n)
 {
@@ -45,7 +43,7 @@ static float calm(cascade_t *cascade, float dt_s)
 
     cascade->slow_n += share * off_n;
     cascade->quick_n += share * (off_n * off_n - cascade->quick_n);
-    return between(CALM_MIN, ACTIVITY_MAX_N / sqrtf(at_least(cascade->quick_n, 0.01F)), 1.0F);
+    return between(CASCADE_CALM_MIN, ACTIVITY_MAX_N / sqrtf(at_least(cascade->quick_n, 0.01F)), 1.0F);
 }
 
 float cascade_step(cascade_t *cascade, const cascade_gains_t *gains, const cascade_vehicle_t *vehicle,
@@ -58,7 +56,8 @@ float cascade_step(cascade_t *cascade, const cascade_gains_t *gains, const casca
                             between(-DRAG_SPEED_MPS, state->speed_mps, DRAG_SPEED_MPS);
     const float force_n = (acceleration_mps2 + drag_mps2) / vehicle->authority_mps2_per_n;
     const float steady_n = (vehicle->need_n + force_n) / at_least(vehicle->upright, UPRIGHT_MIN);
-    const float least_n = at_least(vehicle->hover_n - gains->below_hover_n, LEAST_SHARE * vehicle->hover_n);
+    const float least_n = at_least(vehicle->hover_n - gains->below_hover_n,
+                                   THRUST_LEAST_SHARE * vehicle->hover_n);
     const float led_n = between(least_n, state->thrust_n + LEAD * (steady_n - state->thrust_n),
                                 vehicle->hover_n + ABOVE_HOVER_N);
     const float slew_n = SLEW_N_PER_S * dt_s;

@@ -6,6 +6,8 @@
 #include <stdbool.h>
 
 /* Model of the vehicle: acceleration = authority (thrust - hover) - damping speed. */
+#define CASCADE_CALM_MIN 0.4F /* chosen: keeps two fifths of the gain of a loop that swings */
+
 typedef struct {
     float authority_mps2_per_n;
     float damping_per_s;

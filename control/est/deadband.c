@@ -4,10 +4,10 @@
 
 #include "control/between.h"
 
-#define BAND_MAX_N 1.5F  /* chosen: three times the deadband that Cleanflight has by default */
-#define STEEP_N 0.10F    /* chosen: steep, but no jump */
-#define CLEAR_N 0.20F    /* chosen: nearer to neutral the sign of a command tells little */
-#define LEARN_PER_S 3.0F /* chosen: time constant 0.3 s */
+#define BAND_MAX_N 1.5F          /* chosen: three times the deadband that Cleanflight has by default */
+#define STEEP_N 0.10F            /* chosen: steep, but no jump */
+#define CLEAR_N (2.0F * STEEP_N) /* nearer to neutral the sign of a command tells little */
+#define LEARN_PER_S 3.0F         /* chosen: time constant 0.3 s */
 
 void deadband_init(deadband_t *deadband)
 {

@@ -13,24 +13,22 @@
 #include "control/between.h"
 #include "control/credible.h"
 #include "control/seconds.h"
+#include "control/thrust.h"
+#include "control/where/hover_thrust.h"
 
-#define HOVER_BOUND_N 2.0F           /* mass 20 % off (1.4 N), battery, gusts; see hover_thrust.c */
-#define HOVER_SIGMA_START_N 0.7F     /* half of a mass 20 % off */
-#define NEUTRAL_SIGMA_N 0.07F        /* chosen: the thrust in the middle of the stick is known well */
-#define HOVER_SIGMA_TAKE_OVER_N 0.5F /* chosen: as NEAR_HOVER_N in credible.h */
-#define MODEL_NOISE_MPS2 0.84F       /* fitted */
-#define HEIGHTS_MISSING_S 0.2F       /* two scans of 0.1 s */
+#define HOVER_SIGMA_START_N 0.7F /* half of a mass 20 % off */
+#define NEUTRAL_SIGMA_N 0.07F    /* chosen: the thrust in the middle of the stick is known well */
+#define MODEL_NOISE_MPS2 0.84F   /* fitted */
+#define HEIGHTS_MISSING_S 0.2F   /* two scans of 0.1 s */
 #define FRAMES_FRESH_S ((float)ESTIMATOR_FRESH_US * 1.0e-6F)
 #define FRAMES_LATE_S 0.15F          /* chosen: a frame of an IMU as slow as 0.1 s, and its age */
-#define AGE_MAX_S 3600.0F            /* chosen: one hour; the counters stop here */
-#define MODEL_NOISE_ALONE_MPS2 0.15F /* chosen: a biased accelerometer drifts away, the model does not */
+#define AGE_MAX_S 3600.0F            /* any above what is asked: the counters stop here */
+#define MODEL_NOISE_ALONE_MPS2 0.15F /* chosen: what the model is off by with the right hover thrust */
 #define GUST_MPS2_PER_M 39.2F        /* fitted as 28 N/m on a vehicle that hovers at 7 N */
-#define NO_ACC_HEIGHT_S 0.4F         /* chosen: rays of 70 ms, and three scans */
+#define NO_ACC_HEIGHT_S (HEIGHT_FRESH_S + SCAN_S) /* as long as one is fresh; its rays are a scan older */
 
-#define FALL_MPS2 3.96F          /* fitted: 0.4 g */
-#define BELOW_HOVER_N 3.0F       /* chosen: the rotors keep turning */
-#define BRAKE_MPS2 8.0F          /* chosen: turns a climb into a descent */
-#define BRAKE_BELOW_HOVER_N 6.0F /* chosen: may go down to a quarter of the hover thrust */
+#define BELOW_HOVER_N 3.0F /* chosen: the rotors keep turning */
+#define BRAKE_MPS2 8.0F    /* chosen: turns a climb into a descent */
 
 void est_law_init(est_law_t *law)
 {
@@ -71,20 +69,30 @@ static bool heights_missing(const est_law_t *law)
     return law->heightless_s > HEIGHTS_MISSING_S;
 }
 
+/* Of the model without heights: the hover thrust is off by its deviation, and goes on being it. */
+static float alone_mps2(const est_law_t *law, float authority_mps2_per_n)
+{
+    const float hover_mps2 = authority_mps2_per_n * authority_mps2_per_n * law->hover.variance_n2;
+
+    return sqrtf(MODEL_NOISE_ALONE_MPS2 * MODEL_NOISE_ALONE_MPS2 + hover_mps2);
+}
+
 /* Acceleration by the thrust model; known in the air only. Without heights the estimated height is too
  * uncertain to tell. */
 static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_t *parameters, bool airborne)
 {
     const cascade_vehicle_t vehicle = vehicle_model(law, parameters);
     const estimate_t *now = &law->estimator.now;
+    const bool alone = heights_missing(law);
 
     return (modelled_motion_t){
         .known = airborne && !law->without_authority && law->estimator.initialised &&
-                 (now->height_m > IN_THE_AIR_M || heights_missing(law)),
+                 (now->height_m > IN_THE_AIR_M || alone),
         .up_mps2 = vehicle.authority_mps2_per_n * (law->actuator.thrust_n * vehicle.upright -
                                                    (law->estimator.felt ? vehicle.need_n : vehicle.hover_n)) -
                    vehicle.damping_per_s * now->speed_mps,
-        .noise_mps2 = heights_missing(law) ? MODEL_NOISE_ALONE_MPS2 : MODEL_NOISE_MPS2,
+        .noise_mps2 = alone ? alone_mps2(law, vehicle.authority_mps2_per_n) : MODEL_NOISE_MPS2,
+        .bias_mps2 = alone ? sqrtf(law->estimator.filter.covariance[FILTER_BIAS][FILTER_BIAS]) : 0.0F,
     };
 }
 
@@ -146,6 +154,7 @@ static void take_command(est_law_t *law, const parameters_t *parameters, float t
 static void know_hover(est_law_t *law, float hover_n, bool descends)
 {
     law->sure_hover_n = hover_n;
+    law->hover.most_n = at_least(law->hover.most_n, hover_n + (HOVER_BOUND_N - HOVER_THRUST_MARGIN_N));
     if (!descends) {
         let_down_arm(&law->down, hover_n);
     }
@@ -157,6 +166,8 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const est_b
     take_command(law, parameters, before->thrust_n, now_us);
     if (!law->flew) {
         know_hover(law, before->hover_n, before->descends);
+        law->terrain.ignores = false;
+        law->terrain.ignored_m = 0.0F;
     }
     law->flew = false;
     law->left_ground = false;
@@ -177,6 +188,17 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const est_b
     }
 }
 
+/* Ground is passed over by accelerations and by more than one mirror. */
+static height_outcome_t correct(est_law_t *law, const est_height_t *height, bool at_rest)
+{
+    estimator_t *e = &law->estimator;
+
+    estimator_pass_over(e, law->terrain.ignores && terrain_sees_ground(&height->sight, e->passes_over) &&
+                               e->has_frames && e->initialised && e->felt);
+    return e->passes_over ? estimator_fuse_over(e, &height->sight, law->rays_us)
+                          : estimator_fuse_height(e, height->sight.altitude, law->rays_us, at_rest);
+}
+
 void est_law_fuse_height(est_law_t *law, const est_height_t *height, bool airborne, bool at_rest)
 {
     const bool stands = !airborne && lift_off_stands(&law->lift, law->estimator.credit.noise_mps2);
@@ -186,8 +208,8 @@ void est_law_fuse_height(est_law_t *law, const est_height_t *height, bool airbor
     if (law->frameless_s > FRAMES_LATE_S) {
         estimator_forget_frame(&law->estimator);
     }
-    const height_outcome_t outcome = estimator_fuse_height(&law->estimator, height->altitude, law->rays_us,
-                                                           at_rest || stands);
+    const height_outcome_t outcome = correct(law, height, at_rest || stands);
+    ahead_look(&law->ahead, &law->estimator, &height->sight, law->rays_us);
     if (airborne && outcome == HEIGHT_FUSED && law->estimator.felt) {
         const float expected = 1.0F - law->estimator.latest.motion.share;
         hover_nudge(&law->hover,
@@ -235,9 +257,12 @@ void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne
 
     remember_flight(law, gravity_n, airborne);
     law->without_authority = false;
+    law->terrain.arrived_m = 0.0F;
+    law->terrain.ignores = false;
     lift_off_reset(&law->lift, gravity_n, law->estimator.now.height_m);
     let_down_reset(&law->down);
     terrain_keep_start(&law->terrain, law->estimator.terrain_height_m);
+    law->ahead = (ahead_t){.known = 0U};
     start_hover(law, parameters, gravity_n, HOVER_SIGMA_START_N);
     cascade_init(&law->cascade, law->lift.ramp_n);
 }
@@ -247,7 +272,7 @@ void est_law_engage(est_law_t *law, float thrust_n, float hover_n)
     terrain_keep_start(&law->terrain, law->estimator.terrain_height_m);
     law->down.near_ground_s = 0.0F;
     law->hover.thrust_n = between(law->hover.least_n, hover_n, law->hover.most_n);
-    law->hover.variance_n2 = HOVER_SIGMA_TAKE_OVER_N * HOVER_SIGMA_TAKE_OVER_N;
+    law->hover.variance_n2 = NEAR_HOVER_N * NEAR_HOVER_N;
     law->hover.gust_n = 0.0F;
     cascade_init(&law->cascade, thrust_n);
 }
@@ -322,7 +347,6 @@ static bool take_off(est_law_t *law, const parameters_t *parameters)
         .delivered_n = law->actuator.thrust_n,
         .noise_mps2 = law->estimator.credit.noise_mps2,
         .felt = est_law_has_acceleration(law),
-        .gravity_n = gravity_n,
     };
 
     if (!lift_off_is_seen(&law->lift, &signs)) {
@@ -336,17 +360,35 @@ static bool take_off(est_law_t *law, const parameters_t *parameters)
     return true;
 }
 
+/* A command acts after the dead time, and then the motors lag. */
+static float over_ground_to_come_m(const est_law_t *law, float setpoint_m)
+{
+    const uint32_t lag_us = (uint32_t)(law->actuator.lag_s * 1.0e6F);
+
+    return ahead_setpoint_m(&law->ahead, setpoint_m, law->now_us + law->actuator.delay_us + lag_us);
+}
+
 static float speed_setpoint_mps(est_law_t *law, const parameters_t *parameters, const cascade_gains_t *gains,
                                 const cascade_state_t *state, est_mode_t mode, float reference_m)
 {
     const bool follows = parameters_choice(parameters, PARAMETER_TERRAIN) == TERRAIN_FOLLOW;
+    const terrain_keep_how_t how = follows                      ? TERRAIN_KEEP_NOT
+                                   : law->estimator.passes_over ? TERRAIN_KEEP_GROUND
+                                                                : TERRAIN_KEEP_STEPS;
 
+    law->terrain.ignored_m = 0.0F;
+    law->terrain.ignores = false;
     if (mode != EST_MODE_HOLD) {
         return let_down_mps(mode, state->height_m);
     }
-    return cascade_speed_to(gains, state,
-                            terrain_keep_setpoint_m(&law->terrain, reference_m,
-                                                    law->estimator.terrain_height_m, follows, law->step_s));
+    const float setpoint_m = terrain_keep_setpoint_m(&law->terrain, reference_m,
+                                                     law->estimator.terrain_height_m, how, law->step_s);
+    law->terrain.ignored_m = reference_m - setpoint_m;
+    if (fabsf(setpoint_m - state->height_m) < CONTENT_M) {
+        law->terrain.arrived_m = reference_m;
+    }
+    law->terrain.ignores = !follows && law->terrain.arrived_m == reference_m;
+    return cascade_speed_to(gains, state, follows ? over_ground_to_come_m(law, setpoint_m) : setpoint_m);
 }
 
 /* Frames are missing: the latest command may have been an answer to noise, and must not last. */
@@ -378,8 +420,8 @@ float est_law_step(est_law_t *law, const parameters_t *parameters, const est_ord
         .speed_per_s = value[PARAMETER_VELK],
         .up_mps = value[PARAMETER_VUP],
         .down_mps = value[PARAMETER_VDN],
-        .fall_mps2 = landing ? BRAKE_MPS2 : FALL_MPS2,
-        .below_hover_n = landing ? BRAKE_BELOW_HOVER_N : BELOW_HOVER_N,
+        .fall_mps2 = landing ? BRAKE_MPS2 : EST_FALL_MPS2,
+        .below_hover_n = landing ? THRUST_MAX_N : BELOW_HOVER_N,
     };
 
     law->flew = true;

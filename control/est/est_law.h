@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 #include "control/est/actuator.h"
+#include "control/est/ahead.h"
 #include "control/altitude.h"
 #include "control/est/cascade.h"
 #include "control/est/deadband.h"
@@ -24,6 +25,9 @@
 #include "control/est/terrain_keep.h"
 #include "control/parameters.h"
 #include "control/ray_clock.h"
+
+#define EST_FALL_MPS2 3.96F /* fitted: 0.4 g; how hard a climb is braked */
+#define HOVER_BOUND_N 2.0F  /* mass 20 % off (1.4 N), gusts; see hover_thrust.c */
 
 typedef struct {
     estimator_t estimator;
@@ -40,6 +44,7 @@ typedef struct {
     lift_off_t lift;
     let_down_t down;
     terrain_keep_t terrain;
+    ahead_t ahead;
     float sure_hover_n;    /* hover thrust from before the present doubt */
     float flown_hover_n;   /* sure_hover_n at the end of the flight before; 0: none with this GRAV */
     float flown_gravity_n; /* GRAV of that flight */
@@ -71,7 +76,7 @@ void est_law_predict(est_law_t *law, const parameters_t *parameters, const est_b
 
 /* A valid new height. */
 typedef struct {
-    const altitude_t *altitude;
+    terrain_sight_t sight;
     uint32_t stamp_ms;   /* 24-bit sensor time of its scan */
     uint32_t arrival_us; /* of its last octet */
     uint32_t age_us;     /* from its rays to that octet, when nothing delays it */

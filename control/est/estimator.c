@@ -19,22 +19,21 @@
 #define NO_RAYS_US UINT32_C(75000)   /* after other rays: a scan of 0.1 s, less a margin of a frame */
 #define ANGLE_MAX_RAD 3.2F           /* pi, rounded up */
 
-#define HEIGHT_NOISE_M 0.0013F /* fitted */
-#define FLOOR_SIGMAS 6.0F      /* tried: both edges of a bar pass the test, from a wrong speed too */
-#define SPEED_NOISE_MPS2 0.53F /* fitted; what neither accelerometer nor model knows */
-#define FRAME_S 0.025F         /* period of the IMU, seed 5.2.1.1 */
-#define BIAS_DRIFT_MPS2 0.095F /* fitted; m/s2 per root second */
-#define NO_ACC_DRIFT_MPS2 0.4F /* tried 0.1 to 0.8: more follows gusts better and shakes the thrust more */
-#define NO_ACC_NOISE_MPS2 0.4F /* tried 0.1 to 1.5: hardly matters below 1 */
-#define LATE_NOISE_MPS2 3.0F   /* chosen: what law PIDT accelerates by */
+#define HEIGHT_NOISE_M 0.0013F   /* fitted */
+#define FLOOR_SIGMAS 6.0F        /* tried: both edges of a bar pass the test, from a wrong speed too */
+#define SPEED_NOISE_MPS2 0.53F   /* fitted; what neither accelerometer nor model knows */
+#define FRAME_S 0.025F           /* period of the IMU, seed 5.2.1.1 */
+#define BIAS_DRIFT_MPS2 0.095F   /* fitted; m/s2 per root second */
+#define TERRAIN_DRIFT_MPS 0.053F /* fitted; m/s per root second */
+#define OVER_DRIFT_MPS2 0.02F    /* chosen: of the bias, while ramps are told from it; warmth is slower */
+#define NO_ACC_DRIFT_MPS2 0.4F   /* tried 0.1 to 0.8: more follows gusts better and shakes the thrust more */
+#define LATE_NOISE_MPS2 3.0F     /* chosen: what law PIDT accelerates by */
 
 #define INNOVATION_LIMIT_MIN_M 0.053F /* fitted */
-#define INNOVATION_LIMIT_MAX_M 0.080F /* tried: with a wider one a half-seen edge made it fly away */
 #define INNOVATION_LIMIT_SIGMAS 3.0F  /* usual */
-#define STEP_AGREEMENT_M 0.050F       /* chosen: noise of two heights and 0.1 s of climb */
-#define REJECTIONS_MAX 3U             /* chosen: the third height is used whatever it is */
-#define UNCHECKED_AFTER_RESET 2U      /* chosen: two heights give the speed again */
-#define REST_SIGMA_MPS 0.02F          /* chosen: a vehicle on the ground may shake */
+#define REJECTIONS_MAX 3U        /* the third height in a row is used: then none is fresh, HEIGHT_FRESH_US */
+#define UNCHECKED_AFTER_RESET 2U /* two heights give the speed again */
+#define REST_SIGMA_MPS 0.02F     /* chosen: a vehicle on the ground may shake */
 
 #define SPEED_RESET_MAX_MPS 1.0F /* chosen: limit of the speed that survives a reset */
 
@@ -56,7 +55,13 @@ static void predict_to(estimator_t *e, uint32_t to_us, const estimator_frame_t *
     const float dt_s = seconds_between(e->delayed_us, to_us);
 
     e->terrain_height_m += e->filter.estimate.terrain_mps * dt_s;
-    filter_predict(&e->filter, &frame->motion, dt_s, e->felt ? BIAS_DRIFT_MPS2 : NO_ACC_DRIFT_MPS2);
+    const float bias_mps2 = e->passes_over ? OVER_DRIFT_MPS2 : BIAS_DRIFT_MPS2;
+    const filter_drift_t drift = {
+        .bias_mps2 = e->felt ? bias_mps2 : NO_ACC_DRIFT_MPS2,
+        .terrain_mps = e->passes_over ? 0.0F : TERRAIN_DRIFT_MPS,
+    };
+
+    filter_predict(&e->filter, &frame->motion, dt_s, &drift);
     e->delayed_us = to_us;
 }
 
@@ -137,7 +142,6 @@ static void change_source(estimator_t *e, bool felt)
     e->felt = felt;
     e->filter.estimate.bias_mps2 = 0.0F;
     e->now.bias_mps2 = 0.0F;
-    credit_new_source(&e->credit);
     filter_reset_variance(&e->filter, FILTER_BIAS, filter_variance_start(FILTER_BIAS));
 }
 
@@ -155,13 +159,11 @@ static motion_t motion_of(estimator_t *e, const modelled_motion_t *model, float 
     const float modelled_mps2 = model->known ? model->up_mps2 : 0.0F;
 
     if (!e->felt) {
-        return (motion_t){.up_mps2 = modelled_mps2,
-                          .share = model->known ? 1.0F : 0.0F,
-                          .drift = drift_of(0.0F, NO_ACC_NOISE_MPS2)};
+        return (motion_t){
+            .up_mps2 = modelled_mps2, .share = model->known ? 1.0F : 0.0F, .drift = drift_of(0.0F, 0.0F)};
     }
     const float mean_mps2 = e->has_frames ? 0.5F * (up_mps2 + e->up_mps2) : up_mps2;
-    const float off_mps2 = model->known ? mean_mps2 - e->now.bias_mps2 - model->up_mps2 : 0.0F;
-    const float share = credit_share(&e->credit, model, off_mps2, e->roughness.noise_m);
+    const float share = credit_share(&e->credit, model);
     return (motion_t){
         .up_mps2 = share * mean_mps2 + (1.0F - share) * modelled_mps2,
         .share = share,
@@ -260,10 +262,9 @@ static bool innovation_accepted(const estimator_t *e, float innovation_m)
 static height_outcome_t reject(estimator_t *e, float height_m, float innovation_m)
 {
     const float apart_m = fabsf(innovation_m - e->rejected_innovation_m);
-    const bool agrees = e->rejected_count > 0U && apart_m <= STEP_AGREEMENT_M;
+    const bool agrees = e->rejected_count > 0U && apart_m <= INNOVATION_LIMIT_MIN_M;
 
     ++e->rejected_count;
-    credit_edge(&e->credit);
     e->rejected_innovation_m = innovation_m;
     if (agrees) {
         e->terrain_height_m -= innovation_m;
@@ -288,7 +289,6 @@ static height_outcome_t check_and_fuse(estimator_t *e, float height_m)
     }
     e->unchecked_count = (uint16_t)(e->unchecked_count - (e->unchecked_count > 0U));
     e->rejected_count = 0U;
-    credit_height(&e->credit, e->innovation_m);
     filter_correct(&e->filter, FILTER_HEIGHT, e->innovation_m,
                    HEIGHT_NOISE_M * HEIGHT_NOISE_M + roughness_variance_m2(&e->roughness));
     return HEIGHT_FUSED;
@@ -334,6 +334,58 @@ height_outcome_t estimator_fuse_height(estimator_t *e, const altitude_t *altitud
     return outcome;
 }
 
+/* The heights of the mirrors at the instant of `altitude`: each has its own. */
+terrain_heights_t estimator_heights(const estimator_t *e, const terrain_sight_t *sight, uint32_t rays_us)
+{
+    terrain_heights_t heights = {.valid = 0U};
+
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        const altitude_t *one = &sight->mirrors[m];
+        const int32_t later_us = one->later_us - sight->altitude->later_us;
+
+        heights.fore_m[m] = one->fore_mm * 0.001F;
+        if (terrain_is_shown(sight, (mirror_t)m)) {
+            heights.valid |= (uint16_t)(1U << m);
+            heights.height_m[m] = height_at_rays_m(e, one, rays_us + (uint32_t)later_us) -
+                                  e->filter.estimate.speed_mps * 1.0e-6F * (float)later_us;
+        }
+    }
+    return heights;
+}
+
+void estimator_pass_over(estimator_t *e, bool passes_over)
+{
+    if (passes_over == e->passes_over) {
+        return;
+    }
+    e->passes_over = passes_over;
+    e->terrain = (terrain_t){.known = 0U};
+    e->filter.estimate.terrain_mps = 0.0F;
+    filter_reset_variance(&e->filter, FILTER_TERRAIN,
+                          passes_over ? 0.0F : filter_variance_start(FILTER_TERRAIN));
+}
+
+height_outcome_t estimator_fuse_over(estimator_t *e, const terrain_sight_t *sight, uint32_t rays_us)
+{
+    const terrain_heights_t heights = estimator_heights(e, sight, rays_us);
+    const float gap_s = between(SCAN_LEAST_S, seconds_between(e->rays_us, rays_us), CYCLE_MAX_S);
+
+    predict_through(e, rays_us);
+    e->rays_us = e->delayed_us;
+    const float altitude_m = e->filter.estimate.height_m + e->terrain_height_m;
+    const terrain_shown_t shown = terrain_scan(&e->terrain, &heights, altitude_m,
+                                               e->filter.covariance[FILTER_HEIGHT][FILTER_HEIGHT], gap_s);
+    filter_merge(&e->filter, &shown.merge);
+    e->filter.estimate.height_m -= shown.ground_m - e->terrain_height_m;
+    e->terrain_height_m = shown.ground_m;
+    e->innovation_m = shown.innovation_m;
+    e->confirmed = e->unchecked_count == 0U;
+    e->unchecked_count = (uint16_t)(e->unchecked_count - (e->unchecked_count > 0U));
+    e->rejected_count = 0U;
+    predict_now(e);
+    return HEIGHT_FUSED;
+}
+
 void estimator_drop_accelerations(estimator_t *e)
 {
     if (e->felt) {
@@ -348,17 +400,13 @@ void estimator_forget_frame(estimator_t *e)
     e->unchecked_count = UNCHECKED_AFTER_RESET;
 }
 
-bool estimator_accuses(const estimator_t *estimator)
-{
-    return credit_accuses(&estimator->credit);
-}
-
 void estimator_amend(estimator_t *e, float height_m, float speed_mps, float bias_mps2)
 {
     e->filter.estimate.height_m += height_m - e->now.height_m;
     e->filter.estimate.speed_mps += speed_mps - e->now.speed_mps;
     e->filter.estimate.bias_mps2 = bias_mps2;
     e->filter.estimate.terrain_mps = 0.0F;
+    e->terrain = (terrain_t){.known = 0U};
     filter_reset_covariance(&e->filter);
     filter_bound(&e->filter);
     predict_now(e);

@@ -25,9 +25,10 @@
 #include "control/est/credit.h"
 #include "control/est/filter.h"
 #include "control/est/roughness.h"
+#include "control/est/terrain.h"
 #include "control/imu_sample.h"
 
-#define ESTIMATOR_FRAMES 16U                /* chosen: 0.4 s of frames; a height is 0.07 s old */
+#define ESTIMATOR_FRAMES 16U /* 0.4 s: a height is fresh for 0.3 s, and its rays are a scan older */
 #define ESTIMATOR_FRESH_US UINT32_C(250000) /* the estimate is not used when its frames are older */
 
 typedef struct {
@@ -56,6 +57,8 @@ typedef struct {
     uint32_t sequence;
     credit_t credit;          /* of the accelerometer */
     roughness_t roughness;    /* of the heights */
+    bool passes_over;         /* estimator_pass_over() */
+    terrain_t terrain;        /* meanwhile */
     uint16_t rejected_count;  /* rejected heights in a row */
     uint16_t unchecked_count; /* heights yet to be fused without the innovation test */
     bool confirmed;           /* the latest height passed the test, or was the second one of a terrain step */
@@ -79,15 +82,23 @@ void estimator_predict(estimator_t *estimator, const imu_sample_t *frame, modell
 height_outcome_t estimator_fuse_height(estimator_t *estimator, const altitude_t *altitude, uint32_t rays_us,
                                        bool at_rest);
 
+/* Whether the ground under each mirror is a state (terrain.h), as TERRAIN IGNORE needs it: then the estimated
+ * altitude stays where a ramp begins, and no height is a terrain rate. Starts and ends anew at a change. */
+void estimator_pass_over(estimator_t *estimator, bool passes_over);
+
+/* Correction with the heights of the mirrors, where they show the ground (terrain_sees_ground()), while it
+ * passes over the terrain and was initialised. */
+height_outcome_t estimator_fuse_over(estimator_t *estimator, const terrain_sight_t *sight, uint32_t rays_us);
+
+/* The heights of the mirrors in the latest scan, at its instant; rays_us as it was given with it. */
+terrain_heights_t estimator_heights(const estimator_t *estimator, const terrain_sight_t *sight,
+                                    uint32_t rays_us);
+
 /* The model alone predicts from now on, until a frame with accelerations comes. */
 void estimator_drop_accelerations(estimator_t *estimator);
 
 /* The frames are late: until the next one comes, the heights alone tell the speed, and nothing the bias. */
 void estimator_forget_frame(estimator_t *estimator);
-
-/* Heights and the modelled acceleration agree, or did within 0.8 s, that the accelerometer is wrong. It
- * has next to no weight then. */
-bool estimator_accuses(const estimator_t *estimator);
 
 /* Overwrites height, speed and bias. For use when the latest heights were wrong. */
 void estimator_amend(estimator_t *estimator, float height_m, float speed_mps, float bias_mps2);

@@ -9,12 +9,12 @@
 #include "control/between.h"
 #include "control/credible.h"
 
-#define HEIGHT_DRIFT_M 0.0047F   /* fitted; m per root second */
-#define TERRAIN_DRIFT_MPS 0.053F /* fitted; m/s per root second */
-#define TERRAIN_TIME_S 1.0F      /* chosen: a slope lasts about a second */
-#define SPEED_MAX_MPS 4.0F       /* chosen: above what the vehicle reaches */
-#define TERRAIN_MAX_MPS 0.5F     /* chosen: the seed's ramp rises by 0.36 m/s */
-#define VARIANCE_MIN 1.0e-7F     /* of any state; chosen: above the rounding of 32-bit floats */
+#define HEIGHT_DRIFT_M 0.0047F /* fitted; m per root second */
+#define TERRAIN_TIME_S 1.0F    /* chosen: a slope lasts about a second */
+#define TERRAIN_MAX_MPS 0.5F   /* chosen: the seed's ramp rises by 0.36 m/s */
+#define VARIANCE_MIN \
+    1.0e-7F /* of any state: the rounding of 32-bit floats, FLT_EPSILON, of the highest, 1 \
+             */
 
 /* Of height (m2), speed (m2/s2), bias (m2/s4), terrain rate (m2/s2). Chosen. Highest: 1 m, 1 m/s, 0.5 m/s2,
  * 0.5 m/s. At the start: 1 cm, 0.2 m/s, 0.3 m/s2, 0.05 m/s. */
@@ -92,7 +92,8 @@ static inline void bound_covariance(float p[FILTER_STATES][FILTER_STATES])
 
 /* P = F P F' + Q, on one half of the symmetric matrix. Row of F: height 1, dt, -half, -dt; speed 0, 1,
  * -slope, 0; bias 0, 0, 1, 0; terrain 0, 0, 0, decay. */
-static void predict_covariance(filter_t *filter, const motion_t *motion, float dt_s, float bias_drift_mps2)
+static void predict_covariance(filter_t *filter, const motion_t *motion, float dt_s,
+                               const filter_drift_t *drift)
 {
     float(*const p)[FILTER_STATES] = filter->covariance;
     const float decay = at_least(1.0F - dt_s / TERRAIN_TIME_S, 0.0F);
@@ -124,10 +125,10 @@ static void predict_covariance(filter_t *filter, const motion_t *motion, float d
                                        slope * p[FILTER_BIAS][FILTER_TERRAIN]) *
                                       decay;
     p[FILTER_SPEED][FILTER_BIAS] = speed_bias;
-    p[FILTER_BIAS][FILTER_BIAS] += bias_drift_mps2 * bias_drift_mps2 * dt_s;
+    p[FILTER_BIAS][FILTER_BIAS] += drift->bias_mps2 * drift->bias_mps2 * dt_s;
     p[FILTER_BIAS][FILTER_TERRAIN] *= decay;
     p[FILTER_TERRAIN][FILTER_TERRAIN] = p[FILTER_TERRAIN][FILTER_TERRAIN] * decay * decay +
-                                        TERRAIN_DRIFT_MPS * TERRAIN_DRIFT_MPS * dt_s;
+                                        drift->terrain_mps * drift->terrain_mps * dt_s;
     bound_covariance(p);
 }
 
@@ -167,10 +168,29 @@ void filter_correct(filter_t *filter, filter_state_t state, float innovation, fl
     bound_covariance(p);
 }
 
-void filter_predict(filter_t *filter, const motion_t *motion, float dt_s, float bias_drift_mps2)
+void filter_merge(filter_t *filter, const filter_merge_t *merge)
+{
+    float(*const p)[FILTER_STATES] = filter->covariance;
+    const float speed = p[FILTER_HEIGHT][FILTER_SPEED];
+    const float bias = p[FILTER_HEIGHT][FILTER_BIAS];
+
+    filter->estimate.height_m += p[FILTER_HEIGHT][FILTER_HEIGHT] * merge->pull_per_m;
+    filter->estimate.speed_mps += speed * merge->pull_per_m;
+    filter->estimate.bias_mps2 += bias * merge->pull_per_m;
+    p[FILTER_SPEED][FILTER_SPEED] -= speed * speed * merge->less_per_m2;
+    p[FILTER_SPEED][FILTER_BIAS] -= speed * bias * merge->less_per_m2;
+    p[FILTER_BIAS][FILTER_BIAS] -= bias * bias * merge->less_per_m2;
+    p[FILTER_HEIGHT][FILTER_SPEED] *= merge->kept;
+    p[FILTER_HEIGHT][FILTER_BIAS] *= merge->kept;
+    p[FILTER_HEIGHT][FILTER_HEIGHT] = merge->variance_m2;
+    bound_states(&filter->estimate);
+    bound_covariance(p);
+}
+
+void filter_predict(filter_t *filter, const motion_t *motion, float dt_s, const filter_drift_t *drift)
 {
     filter->estimate = filter_moved(&filter->estimate, motion, dt_s);
-    predict_covariance(filter, motion, dt_s, bias_drift_mps2);
+    predict_covariance(filter, motion, dt_s, drift);
 }
 
 void filter_bound(filter_t *filter)

@@ -13,7 +13,6 @@
 #define GUST_NOISE_N 0.48F      /* fitted: above this noise gusts are followed less */
 #define GUST_TIME_S 0.76F       /* fitted: how long a gust lasts */
 #define GUST_MAX_N 1.0F         /* chosen: 1.4 m/s2 */
-#define SHARE_MAX 0.5F          /* chosen: one sample never decides alone */
 
 void hover_init(hover_t *hover, float thrust_n, float sigma_n, float least_n, float most_n)
 {
@@ -35,7 +34,7 @@ void hover_step(hover_t *hover, float seen_n, float noise_n, float dt_s)
     const float noise_n2 = SLOW_SHARE * noise_n * noise_n;
     const float unexplained_n = seen_n - hover->thrust_n - hover->gust_n;
     const float quiet = at_most(GUST_NOISE_N * GUST_NOISE_N / (noise_n * noise_n), 1.0F);
-    const float gust_share = at_most(GUST_RATE_PER_S * quiet * dt_s, SHARE_MAX);
+    const float gust_share = at_most(GUST_RATE_PER_S * quiet * dt_s, 1.0F);
 
     hover->variance_n2 += DRIFT_N2_PER_S * dt_s;
     const float gain = hover->variance_n2 / (hover->variance_n2 + noise_n2);

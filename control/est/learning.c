@@ -23,7 +23,7 @@ void learning_by_accelerations(hover_t *hover, deadband_t *deadband, const estim
     const float seen_n = lesson->delivered_n * vehicle->upright - taken_n;
     const float doubt_n = SPEED_DOUBT_N_PER_MPS * fabsf(now->speed_mps);
 
-    if (!lesson->confirmed || estimator->unchecked_count > 0U || estimator_accuses(estimator)) {
+    if (!lesson->confirmed || estimator->unchecked_count > 0U) {
         hover_fade_gust(hover, lesson->dt_s);
         return; /* no height confirms the estimated speed */
     }

@@ -4,19 +4,13 @@
 #include "control/est/let_down.h"
 
 #include "control/between.h"
+#include "control/credible.h"
 #include "control/thrust.h"
 #include "control/touchdown.h"
+#include "control/where/hover_thrust.h"
 
-#define LAND_MPS 0.15F          /* chosen: touches at 0.15 m/s, a drop from 1 mm */
-#define LAND_PER_S 0.25F        /* chosen: with LAND_MPS 0.4 m/s from 1 m */
-#define LAND_MAX_MPS 0.40F      /* chosen: from 1 m down within 5 s */
 #define SINK_MPS 0.28F          /* chosen: without heights the touchdown comes without warning */
-#define SINK_PER_S 0.07F        /* chosen: 0.35 m/s at 1 m */
-#define SINK_MAX_MPS 0.6F       /* chosen: from 3 m down within 10 s */
-#define SINK_ABOVE_HOVER_N 0.5F /* chosen: room for gusts at first */
 #define SINK_BELOW_HOVER_N 1.3F /* chosen: by the vehicle model a sink rate of at most 0.7 m/s */
-#define SINK_FADE_N_PER_S 0.2F  /* chosen: at the hover thrust after 2.5 s */
-#define LAND_ABOVE_HOVER_N 1.5F /* chosen: as HOVER_THRUST_MARGIN_N in hover_thrust.h */
 #define LAND_FADE_N_PER_S 0.1F  /* chosen: at the hover thrust after 15 s */
 
 void let_down_reset(let_down_t *down)
@@ -35,14 +29,13 @@ float let_down_mps(est_mode_t mode, float height_m)
 {
     const float over_m = at_least(height_m, 0.0F);
 
-    return (mode == EST_MODE_SINK) ? -at_most(SINK_MPS + SINK_PER_S * over_m, SINK_MAX_MPS)
-                                   : -at_most(LAND_MPS + LAND_PER_S * over_m, LAND_MAX_MPS);
+    return (mode == EST_MODE_SINK) ? -SINK_MPS : -at_most(LAND_MPS + LAND_PER_S * over_m, LAND_MAX_MPS);
 }
 
 void let_down_step(let_down_t *down, est_mode_t mode, float height_m, bool rocks, float step_s)
 {
     const bool sinks = mode == EST_MODE_SINK;
-    const float above_n = sinks ? SINK_ABOVE_HOVER_N : LAND_ABOVE_HOVER_N;
+    const float above_n = sinks ? NEAR_HOVER_N : HOVER_THRUST_MARGIN_N;
     const float fade_n_per_s = sinks ? SINK_FADE_N_PER_S : LAND_FADE_N_PER_S;
 
     down->near_ground_s = (mode == EST_MODE_LAND)

@@ -7,6 +7,10 @@
 
 #include <stdbool.h>
 
+#define LAND_MPS 0.15F                                /* chosen: touches at 0.15 m/s, a drop from 1 mm */
+#define LAND_MAX_MPS 0.40F                            /* chosen: from 1 m down within 5 s */
+#define LAND_PER_S ((LAND_MAX_MPS - LAND_MPS) / 1.0F) /* slower within the last metre */
+
 typedef enum {
     EST_MODE_HOLD, /* hold reference_m */
     EST_MODE_LAND, /* descend; slow down near the ground, and fade the thrust out there */

@@ -1,25 +1,23 @@
-/* Accelerometer or height show the lift-off. Both may be noisy, so both count only together with enough
- * thrust to lift the lightest vehicle. What breaks: a lift-off that is seen too early gives too small a hover
- * thrust, and the vehicle drops; one that is seen too late gives too large a one, and it jumps. */
+/* Accelerometer or height show the lift-off. What breaks: a lift-off that is seen too early gives too small a
+ * hover thrust, and the vehicle drops; one that is seen too late gives too large a one, and it jumps. */
 #include "control/est/lift_off.h"
 
 #include <math.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 #include "control/touchdown.h"
 
-#define RAMP_START 0.68F         /* below the lightest vehicle, 0.8 of GRAV */
-#define RAMP_N_PER_S 4.0F        /* chosen: leaves the ground in 0.6 s */
-#define RAMP_MOST 1.35F          /* above the heaviest vehicle, 1.2 of GRAV */
-#define LIFT_OFF_M 0.030F        /* chosen: ten times the noise of a height */
-#define NO_ACC_LIFT_OFF_M 0.035F /* chosen: five times the noise of a height on a noisy vehicle, 7 mm */
-#define LIFT_OFF_SURE_M 0.1F     /* chosen: a height that no noise makes */
-#define LIFT_OFF_MPS2 0.9F       /* chosen: twice the accelerometer's usual noise */
-#define LIFT_OFF_SIGMAS 1.2F     /* chosen: of the measured noise, on a mean of three frames */
-#define LIFT_OFF_SHARE 0.7F      /* chosen: below the lightest vehicle, 0.8 of GRAV */
-#define LIFT_FILTER_S 0.08F      /* chosen: three frames */
-#define LIFT_TIME_S 1.0F         /* as STANDING_TIME_S in accelerometer.c */
-#define STANDS_SHARE 0.4F        /* chosen: of the acceleration that is a lift-off */
+#define RAMP_START 0.68F                   /* below the lightest vehicle, 0.8 of GRAV */
+#define RAMP_N_PER_S 4.0F                  /* chosen: leaves the ground in 0.6 s */
+#define RAMP_MOST 1.35F                    /* above the heaviest vehicle, 1.2 of GRAV */
+#define LIFT_OFF_M (5.0F * HEIGHT_SIGMA_M) /* one scan of three million by chance */
+#define LIFT_OFF_MPS2 \
+    0.9F                     /* five sigma of a Razor's noise, 0.4 m/s2, behind LIFT_FILTER_S: of 0.43 of it \
+                              */
+#define LIFT_OFF_SIGMAS 1.2F /* chosen: of the measured noise, on a mean of three frames */
+#define LIFT_FILTER_S 0.08F  /* chosen: three frames */
+#define LIFT_TIME_S 1.0F     /* as STANDING_TIME_S in accelerometer.c */
 
 void lift_off_reset(lift_off_t *lift, float gravity_n, float ground_m)
 {
@@ -47,11 +45,8 @@ static float threshold_mps2(float noise_mps2)
 bool lift_off_is_seen(const lift_off_t *lift, const lift_off_signs_t *signs)
 {
     const float risen_m = signs->height_m - lift->ground_m;
-    const float least_m = signs->felt ? LIFT_OFF_M : NO_ACC_LIFT_OFF_M;
-    const bool strong = signs->delivered_n > LIFT_OFF_SHARE * signs->gravity_n;
-    const bool lifting = risen_m > least_m || lift->up_mps2 > threshold_mps2(signs->noise_mps2);
 
-    return risen_m > LIFT_OFF_SURE_M || (strong && lifting);
+    return risen_m > LIFT_OFF_M || lift->up_mps2 > threshold_mps2(signs->noise_mps2);
 }
 
 void lift_off_ramp(lift_off_t *lift, float known_n, float step_s)
@@ -67,7 +62,7 @@ void lift_off_give_up(lift_off_t *lift, float step_s)
 
 bool lift_off_stands(const lift_off_t *lift, float noise_mps2)
 {
-    return lift->ramping && lift->up_mps2 < STANDS_SHARE * threshold_mps2(noise_mps2);
+    return lift->ramping && lift->up_mps2 < threshold_mps2(noise_mps2);
 }
 
 /* The thrust ramps by r newtons a second, so after t seconds the vehicle has risen by a r t^3 / 6 (a:

@@ -28,7 +28,6 @@ typedef struct {
     float delivered_n; /* thrust */
     float noise_mps2;  /* rms noise of the accelerometer */
     bool felt;         /* accelerations are measured */
-    float gravity_n;   /* parameter GRAV */
 } lift_off_signs_t;
 
 /* True when the vehicle has left the ground. */

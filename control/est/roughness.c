@@ -6,14 +6,13 @@
 #include <math.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 
-#define FLOOR_START_M 0.004F     /* chosen: about the noise of a height over a smooth floor */
-#define FLOOR_MAX_M 0.080F       /* chosen: as INNOVATION_LIMIT_MAX_M in estimator.c */
+#define FLOOR_START_M 0.004F     /* of a smooth floor: MIRROR_NOISE_MM of sense/plane.c */
 #define FLOOR_SHARE 0.20F        /* tried: a slower mean knows bars of 60 mm only after the take-off */
-#define FLOOR_CLIP 9.0F          /* chosen: 3 sigma, so that one edge counts little */
+#define FLOOR_CLIP (3.0F * 3.0F) /* 3 sigma of what is measured, one in 370: an edge counts little */
 #define FLOOR_VARIANCE 0.5F      /* tried: more, and the vehicle swings by the thrust model alone */
 #define BAR_US UINT32_C(1000000) /* chosen: two edges within that time are a bar, and more will follow */
-#define BAR_LEAST_M 0.040F       /* chosen: ten times the noise of a height */
 #define BAR_MOST_M 0.15F         /* chosen: higher ones are edges or wrong scans, which are rejected */
 #define BAR_SHARE 0.5F           /* rms of a height that is half of the time on the bar */
 
@@ -30,7 +29,7 @@ static void measure(roughness_t *roughness, float height_m)
     const float seen = at_most(difference_m * difference_m / 6.0F, FLOOR_CLIP * variance);
 
     roughness->noise_m = between(FLOOR_START_M, sqrtf(variance + FLOOR_SHARE * (seen - variance)),
-                                 FLOOR_MAX_M);
+                                 INNOVATION_LIMIT_MAX_M);
     roughness->previous_m[1] = roughness->previous_m[0];
     roughness->previous_m[0] = height_m;
 }
@@ -43,12 +42,12 @@ float roughness_variance_m2(const roughness_t *roughness)
 
 static void watch_bars(roughness_t *roughness, float innovation_m, uint32_t rays_us)
 {
-    if (fabsf(innovation_m) < BAR_LEAST_M || fabsf(innovation_m) > BAR_MOST_M) {
+    if (fabsf(innovation_m) < HEIGHT_NO_NOISE_M || fabsf(innovation_m) > BAR_MOST_M) {
         return;
     }
     if (innovation_m * roughness->edge_m < 0.0F && rays_us - roughness->edge_us < BAR_US) {
         const float bar_m = at_most(fabsf(innovation_m), fabsf(roughness->edge_m));
-        roughness->noise_m = between(roughness->noise_m, BAR_SHARE * bar_m, FLOOR_MAX_M);
+        roughness->noise_m = between(roughness->noise_m, BAR_SHARE * bar_m, INNOVATION_LIMIT_MAX_M);
     }
     roughness->edge_m = innovation_m;
     roughness->edge_us = rays_us;

@@ -7,6 +7,8 @@
 
 #include <stdint.h>
 
+/* of the test of a height, estimator.c; tried: with a wider one a half-seen edge made it fly away */
+#define INNOVATION_LIMIT_MAX_M 0.080F
 #define ROUGHNESS_SMOOTH_M 0.020F /* chosen: edges and the vehicle's own motion measure less */
 
 typedef struct {

@@ -10,13 +10,22 @@
 typedef struct {
     float reference_m; /* of the previous cycle */
     float terrain_m;   /* height of the terrain for which it was set */
+    float ignored_m;   /* of the reference over the present terrain; 0: it is followed */
+    float arrived_m;   /* reference that was reached in this flight; 0: none yet */
+    bool ignores;      /* the terrain, as ordered and once the reference was reached */
 } terrain_keep_t;
 
 /* The law starts: what the terrain has done before does not count. terrain_m: its summed height now. */
 void terrain_keep_start(terrain_keep_t *keep, float terrain_m);
 
-/* Height to hold. follows: the height above the present terrain counts, as with a new reference. */
-float terrain_keep_setpoint_m(terrain_keep_t *keep, float reference_m, float terrain_m, bool follows,
-                              float step_s);
+typedef enum {
+    TERRAIN_KEEP_NOT,   /* the height above the present terrain counts, as with a new reference */
+    TERRAIN_KEEP_STEPS, /* terrain_m is a sum of steps and rates: it drifts */
+    TERRAIN_KEEP_GROUND /* terrain_m is a state (terrain.h): it drifts on ramps only */
+} terrain_keep_how_t;
+
+/* Height to hold above the present terrain. */
+float terrain_keep_setpoint_m(terrain_keep_t *keep, float reference_m, float terrain_m,
+                              terrain_keep_how_t how, float step_s);
 
 #endif

@@ -26,7 +26,7 @@ float law_pidt_step(laws_t *laws, est_law_t *est, const situation_t *now)
     };
 
     if (height->is_new || !laws->pidt.primed) {
-        const float gap_s = seconds_at_most(est->rays_us - laws->pidt_rays_us, HEIGHT_FRESH_S);
+        const float gap_s = seconds_at_most(est->rays_us - laws->pidt_rays_us, CYCLE_MAX_S);
 
         laws->pidt_rays_us = est->rays_us;
         return pidt_step(&laws->pidt, &gains, now->aim_m, height->height_mm * 0.001F, gap_s);

@@ -4,10 +4,10 @@
 #include <stdbool.h>
 
 #include "control/between.h"
+#include "control/credible.h"
+#include "control/est/cascade.h"
 
 #define LOW_PASS_S 0.0199F /* chosen: 8 Hz */
-#define STEP_MIN_S 0.02F   /* chosen: scans are 0.1 s apart; a shorter gap is a repeated height */
-#define STEP_MAX_S 0.5F    /* chosen: five scans; a longer one gives no useful derivative */
 
 #define FAR_M 0.40F       /* tried 0.25 to 0.5: below a reference of 0.6 m, and there is room to brake */
 #define APPROACH_MPS 0.1F /* chosen: slower ones may be a vehicle that needs more thrust */
@@ -15,8 +15,7 @@
 #define SWING_N 0.8F        /* chosen: three times the usual activity, 0.22 N */
 #define SWINGS_FREE 3.0F    /* chosen: an edge and the swing back make two */
 #define SWINGS_TIME_S 10.0F /* chosen: a loop that has swung would swing again */
-#define CALM_PER_SWING 0.1F /* chosen: nine swings take the gain to CALM_MIN */
-#define CALM_MIN 0.4F       /* chosen: keeps two fifths of the gain; as in cascade.c */
+#define CALM_PER_SWING 0.1F /* chosen: nine swings take the gain to CASCADE_CALM_MIN */
 
 void pidt_reset(pidt_state_t *state)
 {
@@ -53,12 +52,12 @@ static float calm(pidt_state_t *state, float action_n, float dt_s)
     if (turned || fabsf(action_n) > fabsf(state->peak_n)) {
         state->peak_n = action_n;
     }
-    return between(CALM_MIN, 1.0F - CALM_PER_SWING * (state->swings - SWINGS_FREE), 1.0F);
+    return between(CASCADE_CALM_MIN, 1.0F - CALM_PER_SWING * (state->swings - SWINGS_FREE), 1.0F);
 }
 
 float pidt_step(pidt_state_t *state, const pidt_gains_t *gains, float reference_m, float height_m, float dt_s)
 {
-    const bool steady = state->primed && dt_s >= STEP_MIN_S && dt_s <= STEP_MAX_S;
+    const bool steady = state->primed && dt_s >= SCAN_LEAST_S && dt_s <= HEIGHT_FRESH_S;
     const float step_s = steady ? dt_s : 0.0F;
     const float error_m = reference_m - height_m;
 

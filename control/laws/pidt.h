@@ -29,7 +29,7 @@ void pidt_reset(pidt_state_t *state);
 /* Clears the previous height only; the integral stays. */
 void pidt_resume(pidt_state_t *state);
 
-/* One sample with a new height, dt_s after the previous one. When dt_s is outside 0.02 .. 0.5 s, or not
+/* One sample with a new height, dt_s after the previous one. When dt_s is outside 0.02 .. 0.3 s, or not
  * primed, this sample has no derivative and is not integrated. Returns newtons per motor, within least_n
  * .. most_n. */
 float pidt_step(pidt_state_t *state, const pidt_gains_t *gains, float reference_m, float height_m,

@@ -7,9 +7,9 @@
 #include "control/seconds.h"
 #include "control/thrust.h"
 
-#define PIN_TRUSTED_S 5.0F /* chosen: a loose contact is over sooner */
-#define PIN_BELOW_N 2.0F   /* chosen: a load of a newton let go, and a newton to sink */
-#define PIN_ABOVE_N 1.0F   /* chosen: a load of a newton */
+#define PIN_TRUSTED_S 5.0F               /* chosen: a loose contact is over sooner */
+#define PIN_BELOW_N (2.0F * PIN_ABOVE_N) /* the load is let go, and as much to sink */
+#define PIN_ABOVE_N 1.0F                 /* chosen: a load of a newton */
 
 static void reset(stuck_pin_t *pin)
 {

@@ -2,10 +2,8 @@
  * sign, and reached by the supervisor's state alone. */
 #include "control/where/contact.h"
 
+#include "control/reach.h"
 #include "control/touchdown.h"
-
-#define GAVE_UP_MAX_US UINT32_C(3000000) /* chosen: the take-off's ramp in est_law.c ends after 1.2 s */
-#define UNPOWERED_S 1.0F                 /* chosen: a free fall of 5 m */
 
 static bool takes_off(flight_state_t state)
 {
@@ -62,7 +60,7 @@ void contact_lift_off(contact_t *contact)
 
 static void watch_take_off(contact_t *contact, const landing_signs_t *signs)
 {
-    contact->gave_up = signs->state == FLIGHT_TAKEOFF ? !contact->airborne && signs->state_us < GAVE_UP_MAX_US
+    contact->gave_up = signs->state == FLIGHT_TAKEOFF ? !contact->airborne && signs->state_us < REACH_RISES_US
                                                       : contact->gave_up && gives_up(signs->state);
 }
 

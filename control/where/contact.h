@@ -10,6 +10,10 @@
 
 #include "control/where/flight_state.h"
 
+#define UNPOWERED_S \
+    1.0F /* chosen: a free fall of 5 m: so long without enough thrust, and it does not sink \
+          */
+
 typedef enum {
     CONTACT_GROUND,  /* on the ground, without a take-off */
     CONTACT_LIFTING, /* a take-off is commanded, and the vehicle has not left the ground, as far as is known

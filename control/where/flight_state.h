@@ -31,6 +31,8 @@ typedef enum {
 #define FLIGHT_FLAG_IMU 512U
 #define FLIGHT_FLAG_THRUST 1024U /* doubt THRUST: commands have no effect */
 #define FLIGHT_FLAG_STICK 2048U  /* STICK PIN, and the stick does not count; set by task_control.c */
+/* at rest a mirror does not show the ground, or the mirrors show another tilt than the IMU tells */
+#define FLIGHT_FLAG_MIRRORS 4096U
 /* the reference is not reached: over 0.1 m off for 3 s, and no nearer; or a landing does not sink; set by
  * flight.c */
 #define FLIGHT_FLAG_REACH 128U

@@ -10,8 +10,14 @@
 /* mass 20 % off; below the 2 N of law EST, because no law corrects it here */
 #define HOVER_THRUST_MARGIN_N 1.5F
 
+/* So far below it GRAV is trimmed: with GRAV at the hover thrust itself the seed's laws cannot come down, and
+ * with this they fly best on the model (docs/operator.md). */
+#define HOVER_THRUST_TRIM_N 0.4F
+#define HOVER_TIME_S 2.5F /* chosen: a mean over the swings of the seed's law */
+
 typedef struct {
-    float thrust_n;  /* within 1.5 N of GRAV */
+    float thrust_n;  /* within 1.5 N of GRAV, and up to worn_n above that */
+    float worn_n;    /* >= 0: what an emptying battery has moved that limit since the lift-off */
     bool learned;    /* learned in this flight; it stays valid while the pilot has the throttle */
     float learned_s; /* how long it has been learned, at most 2.5 s */
 } hover_thrust_t;

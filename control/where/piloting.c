@@ -4,12 +4,12 @@
 
 #include "control/between.h"
 #include "control/credible.h"
+#include "control/laws/descent.h"
+#include "control/where/contact.h"
+#include "control/where/hover_thrust.h"
 
 #define GIVEN_BACK_N_PER_S 0.06F /* chosen: little, because the pilot may fly on for long */
 #define BY_PIN_N_PER_S 0.15F     /* chosen: more, because with a pin it begins when he gives it back */
-#define VAIN_LANDING_N 1.5F      /* chosen: by the vehicle model a sink rate of 0.9 m/s */
-#define VAIN_LANDING_S 1.0F      /* chosen: twice as long as a landing begins with so little thrust */
-#define LANDS_MPS 0.3F           /* chosen: three quarters of the sink rate of a landing */
 
 static void watch_descent(pilot_state_t *pilot, const pilot_signs_t *signs)
 {
@@ -24,13 +24,13 @@ static void watch_descent(pilot_state_t *pilot, const pilot_signs_t *signs)
 /* LANDING: how long it has had far too little thrust to fly, and does not sink. */
 static void watch_landing(pilot_state_t *pilot, const pilot_signs_t *signs)
 {
-    const bool weak = pilot_is_unknown(pilot) || signs->thrust_n < signs->hover_n - VAIN_LANDING_N;
-    const bool sinks = signs->height_mm < LOW_MM || signs->rise_mps < -LANDS_MPS;
+    const bool weak = pilot_is_unknown(pilot) || signs->thrust_n < signs->hover_n - HOVER_THRUST_MARGIN_N;
+    const bool sinks = signs->height_mm < LOW_MM || signs->rise_mps < -0.001F * DESCENT_RATE_MM_S;
 
     if (!weak || sinks || signs->entered) {
         pilot->vain_s = 0.0F;
     } else {
-        pilot->vain_s = at_most(pilot->vain_s + signs->step_s, VAIN_LANDING_S);
+        pilot->vain_s = at_most(pilot->vain_s + signs->step_s, UNPOWERED_S);
     }
 }
 
@@ -52,7 +52,7 @@ static pilot_news_t watch_effect(pilot_state_t *pilot, const pilot_signs_t *sign
 
 bool pilot_holds_up(const pilot_state_t *pilot, flight_state_t state)
 {
-    return state == FLIGHT_LANDING && pilot->vain_s >= VAIN_LANDING_S;
+    return state == FLIGHT_LANDING && pilot->vain_s >= UNPOWERED_S;
 }
 
 pilot_news_t pilot_step(pilot_state_t *pilot, const pilot_signs_t *signs)

@@ -8,8 +8,10 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "control/attitude.h"
 #include "control/between.h"
 #include "control/credible.h"
+#include "control/est/est_law.h"
 
 #define ATTITUDE_FRESH_US UINT32_C(250000) /* ten frames of 25 ms */
 /* chosen: a pilot who flies, not one who lifts the vehicle by hand */
@@ -20,21 +22,19 @@
 #define DESCENT_TIMEOUT_US UINT32_C(45000000) /* the thrust of a blind descent has fallen to 0, descent.c */
 #define AGE_MAX_US UINT32_C(3600000000)       /* one hour: below the wrap of 71 minutes */
 
-#define OFF_GROUND_MM 150.0F           /* chosen: over the ground effect and any noise */
-#define REST_BELOW_MM 50.0F            /* chosen: ten times the height's noise */
-#define REST_FALL_MM 20.0F             /* chosen: four times the height's noise */
-#define TOO_HIGH_MM 800.0F             /* chosen: above any overshoot, below the scanner's end at 3.9 m */
+#define OFF_GROUND_MM 150.0F /* chosen: over the ground effect and any noise */
+#define REST_FALL_MM 20.0F   /* three HEIGHT_SIGMA_M, 19.2 mm */
+/* Above the highest reference, 3 m, the scanner sees 0.89 m more: 4.095 m less 0.205 m of the front mirror's
+ * way. Rounded down. */
+#define TOO_HIGH_MM 800.0F
 #define RECOVERED_MM 300.0F            /* chosen: below the seed's usual overshoot */
-#define TOO_HIGH_HEIGHTS 2U            /* chosen: one height may be wrong */
-#define RATE_MAX_MM_S 3000.0F          /* chosen: above what the vehicle reaches */
+#define TOO_HIGH_HEIGHTS 2U            /* one height may be wrong */
 #define RATE_CHANGE_MAX_MM_S2 10000.0F /* 1 g: the vehicle cannot change its speed faster */
 #define CLIMB_AHEAD_S 0.40F /* sum of the age of a height, one more scan, and the lag of the motors */
-#define CLIMB_AHEAD_ESTIMATED_S 0.15F     /* chosen: less, as a step of the terrain looks like a climb */
-#define ESTIMATE_AHEAD_S 0.25F            /* chosen: delay and lag of the motors, and a margin */
-#define ESTIMATE_HELD_US UINT32_C(350000) /* chosen: three scans and a half */
-#define BRAKE_MPS2 4.0F     /* chosen: braking at a quarter of the hover thrust, less a margin */
-#define TILTED_ATTITUDES 3U /* chosen: one or two may be spikes of the IMU */
-#define LOWERINGS_MAX 3U    /* chosen: a third failure means that the law cannot fly the vehicle */
+#define CLIMB_AHEAD_ESTIMATED_S 0.15F /* chosen: less, as a step of the terrain looks like a climb */
+#define ESTIMATE_AHEAD_S 0.25F        /* chosen: delay and lag of the motors, and a margin */
+#define ESTIMATE_HELD_US (HEIGHT_FRESH_US + UINT32_C(50000)) /* and half a scan: give or take */
+#define LOWERINGS_MAX 3U /* chosen: a third failure means that the law cannot fly the vehicle */
 #define LOWERINGS_FORGOTTEN_US UINT32_C(20000000) /* chosen: the length of the seed's flights */
 #define LEVEL_COS 0.93969262F                     /* chosen: 20 degrees */
 
@@ -83,7 +83,8 @@ static float rate_after(const height_track_t *before, float height_mm, uint32_t 
     }
     const float gap_s = (float)gap_us * 1.0e-6F;
     const float change_mm_s = RATE_CHANGE_MAX_MM_S2 * gap_s;
-    const float rate_mm_s = between(-RATE_MAX_MM_S, (height_mm - before->height_mm) / gap_s, RATE_MAX_MM_S);
+    const float most_mm_s = 1000.0F * SPEED_MAX_MPS;
+    const float rate_mm_s = between(-most_mm_s, (height_mm - before->height_mm) / gap_s, most_mm_s);
     return between(before->rate_mm_s - change_mm_s, rate_mm_s, before->rate_mm_s + change_mm_s);
 }
 
@@ -117,12 +118,12 @@ static void observe_attitude(supervisor_t *s, const flight_inputs_t *in, float u
         s->attitude.level = upright > LEVEL_COS;
     }
     if (in->frames != NULL) {
-        s->attitude.tilted_count = (in->tilted_frames < TILTED_ATTITUDES) ? in->tilted_frames
-                                                                          : TILTED_ATTITUDES;
+        s->attitude.tilted_count = (in->tilted_frames < ATTITUDE_TILTED_FRAMES) ? in->tilted_frames
+                                                                                : ATTITUDE_TILTED_FRAMES;
     } else if (counts) {
         const bool tilted = upright < TILTED_COS;
         s->attitude.tilted_count = tilted ? (uint16_t)(s->attitude.tilted_count +
-                                                       (s->attitude.tilted_count < TILTED_ATTITUDES))
+                                                       (s->attitude.tilted_count < ATTITUDE_TILTED_FRAMES))
                                           : 0U;
     }
 }
@@ -190,7 +191,7 @@ static float peak_mm(const supervisor_t *s, float height_mm, float rate_mm_s, fl
 {
     const float climb_mm_s = at_least(rate_mm_s, 0.0F);
     return height_mm - s->reference_m * 1000.0F +
-           climb_mm_s * (ahead_s + climb_mm_s * (0.0005F / BRAKE_MPS2));
+           climb_mm_s * (ahead_s + climb_mm_s * (0.0005F / EST_FALL_MPS2));
 }
 
 /* A step of the terrain looks like a climb, but not to an estimate: heights have less to say where there is
@@ -216,7 +217,7 @@ static void observe_ground(supervisor_t *s)
 {
     const float height_mm = s->height.height_mm;
     const bool fresh = height_fresh(s);
-    const bool resting = fresh && height_mm < REST_BELOW_MM &&
+    const bool resting = fresh && height_mm < GROUND_WITHIN_MM &&
                          height_mm >= s->ground.rest_from_mm - REST_FALL_MM;
 
     follow_ground(s);
@@ -298,7 +299,7 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
                       bit(fresh && recovered(s), FLIGHT_IF_RECOVERED) | bit(s->land, FLIGHT_IF_LAND) |
                       bit(descent_timeout, FLIGHT_IF_DESCENT_TIMEOUT) |
                       bit(lowering_limit, FLIGHT_IF_LOWERING_LIMIT) |
-                      bit(s->attitude.tilted_count == TILTED_ATTITUDES, FLIGHT_IF_TILTED) |
+                      bit(s->attitude.tilted_count == ATTITUDE_TILTED_FRAMES, FLIGHT_IF_TILTED) |
                       bit(is_level(s), FLIGHT_IF_LEVEL) | bit(s->handed_over, FLIGHT_IF_HANDED_OVER) |
                       bit(in->has_throttle, FLIGHT_IF_HAS_THROTTLE));
 }

@@ -24,7 +24,8 @@ typedef struct {
     double acceleration_bias_m_s2;
     double height_noise_mm;
     double tilt_rad;   /* amplitude of roll, 0.6 Hz */
-    double fallen_rad; /* added to the roll that the IMU tells */
+    double fallen_rad; /* of the roll: the IMU tells it, and the rays go that way */
+    double lied_rad;   /* added to the roll that the IMU tells */
     double glitch;     /* probability of a height 350 mm off */
     bool imu_mute;
     bool no_acceleration;
@@ -84,7 +85,8 @@ static inline void noisy_frame(noisy_t *n, uint32_t clock_us)
     f->forward_mps2 = 0.0F;
     f->right_mps2 = (float)(felt * sin(roll));
     f->down_mps2 = (float)(felt * cos(roll));
-    f->median.roll_rad = (float)noisy_roll(n, NOISY_FRAME_AGE_US + 50000U) + (float)n->fallen_rad;
+    f->median.roll_rad = (float)noisy_roll(n, NOISY_FRAME_AGE_US + 50000U) +
+                         (float)(n->fallen_rad + n->lied_rad);
     f->median.pitch_rad = 0.0F;
     f->level = f->median;
     f->tilt_roll_rad = f->median.roll_rad;
@@ -92,7 +94,7 @@ static inline void noisy_frame(noisy_t *n, uint32_t clock_us)
 
 static inline void noisy_height(noisy_t *n, flight_inputs_t *in, uint32_t clock_us)
 {
-    const double roll = noisy_roll(n, 72500U);
+    const double roll = noisy_roll(n, 72500U) + n->fallen_rad;
     const double wrong_mm = noisy_uniform(n) < n->glitch ? 350.0 : 0.0;
     const altitude_geometry_t geometry = altitude_geometry_default();
     mirror_range_t range = {.mirror = MIRROR_FRONT, .valid = true, .good_rays = 35U};

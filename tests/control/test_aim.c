@@ -11,11 +11,20 @@ void setUp(void)
 
 void tearDown(void) {}
 
+static void step(flight_mode_t mode, flight_mode_t before)
+{
+    situation_t then = now;
+
+    then.mode = mode;
+    then.mode_before = before;
+    aim_step(&aim, &then);
+}
+
 /* FLOATING holds this height, and the vehicle is at 0.5 m. */
 static void floats_at_m(float height_m)
 {
     at_mm(1000.0F * height_m);
-    aim_step(&aim, &where, FLIGHT_MODE_FLOAT, FLIGHT_MODE_IDLE);
+    step(FLIGHT_MODE_FLOAT, FLIGHT_MODE_IDLE);
     at_mm(500.0F);
 }
 
@@ -36,6 +45,16 @@ void test_a_wanted_height_is_there_while_one_is_held(void)
             TEST_ASSERT_TRUE(isnan(aim_wanted_m(&aim, &where.supervisor, now.mode)));
         }
     }
+}
+
+void test_what_the_law_ignores_is_not_wanted(void)
+{
+    in_state(FLIGHT_FLYING);
+    const float wanted_m = aim_wanted_m(&aim, &where.supervisor, now.mode);
+
+    est.terrain.ignored_m = 0.25F;
+    step(FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_EST_HOLD);
+    NEAR(wanted_m - 0.25F, aim_wanted_m(&aim, &where.supervisor, now.mode));
 }
 
 void test_floating_holds_its_first_height_within_its_reach(void)
@@ -59,12 +78,12 @@ void test_floating_holds_its_first_height_within_its_reach(void)
         unknown(rows[i].throttle_unknown);
         commands_show(rows[i].has_effect);
         floats_at_m(rows[i].before_m);
-        aim_step(&aim, &where, rows[i].mode, rows[i].entered ? FLIGHT_MODE_IDLE : FLIGHT_MODE_EST_HOLD);
+        step(rows[i].mode, rows[i].entered ? FLIGHT_MODE_IDLE : FLIGHT_MODE_EST_HOLD);
         NEAR(rows[i].held_m, aim_height_m(&aim, &where.supervisor));
     }
     in_state(FLIGHT_FLYING); /* towards its reference; what floating held is forgotten */
     floats_at_m(0.6F);
-    aim_step(&aim, &where, FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_EST_HOLD);
+    step(FLIGHT_MODE_EST_HOLD, FLIGHT_MODE_EST_HOLD);
     NEAR(0.6F, aim_height_m(&aim, &where.supervisor));
     in_state(FLIGHT_FLOATING);
     NEAR(0.5F, aim_height_m(&aim, &where.supervisor));
@@ -78,7 +97,7 @@ static bool stays_below(flight_state_t state, float reference_m, int cycles)
     cycle_takes_us(10000000U);
     at_mm(300.0F);
     for (int i = 0; i < cycles; i++) {
-        aim_step(&aim, &where, now.mode, now.mode_before);
+        step(now.mode, now.mode_before);
     }
     return aim.out_of_reach;
 }
@@ -103,11 +122,11 @@ void test_a_landing_that_somebody_holds_up_does_not_reach_the_ground(void)
                                    .hover_n = 7.0F};
 
     in_state(FLIGHT_LANDING);
-    aim_step(&aim, &where, now.mode, now.mode_before);
+    step(now.mode, now.mode_before);
     TEST_ASSERT_FALSE(aim.out_of_reach);
     for (int i = 0; i < 3; i++) {
         (void)pilot_step(&where.pilot, &held_up);
     }
-    aim_step(&aim, &where, now.mode, now.mode_before);
+    step(now.mode, now.mode_before);
     TEST_ASSERT_TRUE(aim.out_of_reach);
 }

@@ -694,14 +694,17 @@ void test_the_hover_thrust_is_found_in_flight_and_given_up_on_the_ground(void)
     }
 }
 
-void test_the_hover_thrust_stays_within_a_newton_and_a_half_of_gravity(void)
+/* 0.06 N/s beyond it, as fast as a battery falls. */
+void test_the_hover_thrust_leaves_a_newton_and_a_half_about_gravity_slowly(void)
 {
     board(9.5, 2.4);
     calm_law();
     set(PARAMETER_USAT, 4.0F);
     hover_at(0.8F);
-    run(20.0);
-    TEST_ASSERT_EQUAL_FLOAT(8.5F, flight.where.hover.thrust_n);
+    const float before_n = flight.where.hover.thrust_n;
+    TEST_ASSERT_TRUE(before_n >= 8.5F && before_n < 9.0F);
+    run(5.0);
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, before_n + 0.3F, flight.where.hover.thrust_n);
     set(PARAMETER_GRAV, 11.0F);
     run(0.2);
     TEST_ASSERT_TRUE(flight.where.hover.thrust_n >= 9.5F && flight.where.hover.thrust_n <= 11.76F);
@@ -959,7 +962,7 @@ void test_random_inputs_never_leave_the_actuators_range(void)
     unsigned seen = 0;
     snprintf(seed, sizeof seed, "seed %u", SEED);
     TEST_MESSAGE(seed);
-    for (int i = 0; i < 300000; i++) {
+    for (int32_t i = 0; i < 300000; i++) {
         in.now_us += 1000U * any(i % 1000 == 0 ? 4000000U : 150U);
         if ((i / 400) % 5 != 4) {
             any_height((i / 2000) % 2 == 0);
@@ -986,7 +989,7 @@ void test_random_inputs_never_leave_the_actuators_range(void)
 void test_with_the_seeds_parameters_the_thrust_is_never_cut_off_the_ground(void)
 {
     int landings = 0;
-    for (int i = 0; i < 300000; i++) {
+    for (int32_t i = 0; i < 300000; i++) {
         const flight_state_t before = out.state;
         in.now_us += 1000U * any(150U);
         if ((i / 100) % 7 != 6) {
@@ -1002,4 +1005,31 @@ void test_with_the_seeds_parameters_the_thrust_is_never_cut_off_the_ground(void)
         landings += out.state == FLIGHT_LANDING;
     }
     TEST_ASSERT_TRUE(landings > 1000);
+}
+
+/* One mirror is asked by nobody whether it lies: that is not known, and not "0 %". */
+void test_the_vote_is_told_where_there_was_one_and_else_is_not_known(void)
+{
+    altitude_t mirrors[MIRROR_COUNT];
+
+    control();
+    for (int m = 0; m < MIRROR_COUNT; m++) {
+        TEST_ASSERT_TRUE(isnan(out.lies[m]));
+        mirrors[m] = (altitude_t){.valid = true,
+                                  .height_mm = (m == MIRROR_AFT) ? 900.0F : 20.0F,
+                                  .slant_mm = 220.0F,
+                                  .good_rays = 8U};
+    }
+    in.mirrors = mirrors;
+    in.altitude = altitude_mean(mirrors, altitude_weights_equal, MIRROR_COUNT);
+    in.height_valid = true;
+    in.height_sequence++;
+    control();
+    TEST_ASSERT_EQUAL_UINT16(1U << MIRROR_AFT, out.left_out);
+    for (int m = 0; m < MIRROR_COUNT; m++) {
+        TEST_ASSERT_TRUE(out.lies[m] >= 0.0F && out.lies[m] <= 1.0F);
+    }
+    in.height_valid = false;
+    control();
+    TEST_ASSERT_EQUAL_UINT16_MESSAGE(0U, out.left_out, "a scan without a height was not voted on");
 }

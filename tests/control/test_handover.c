@@ -388,7 +388,7 @@ void test_what_was_felt_for_long_is_forgotten_as_a_bias(void)
     estimated(0.5F, 0.3F, 0.2F);
     handover_given_back(&est, &now);
     NEAR(0.285F, est.estimator.now.speed_mps);
-    NEAR(0.2015F, est.estimator.now.bias_mps2);
+    NEAR(0.20075F, est.estimator.now.bias_mps2);
     NEAR(0.0F, est.estimator.now.height_m);
 }
 

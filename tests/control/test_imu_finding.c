@@ -99,13 +99,13 @@ void test_too_little_too_much_or_about_both_axes_sets_nothing(void)
     TEST_ASSERT_EQUAL_MEMORY(&before, &parameters, sizeof before);
 }
 
-void test_a_unit_is_known_within_fifteen_percent_and_a_side_below_half_of_it(void)
+void test_a_unit_is_known_within_the_largest_bias_and_a_side_below_half_of_it(void)
 {
     static const struct {
         float x_counts, y_counts, z_counts;
         bool found;
-    } rows[] = {{0, 0, 294.3F, true},   {0, 0, 294.5F, false},    {0, 0, -217.7F, true},
-                {0, 0, -217.5F, false}, {99, 79, 256.0F, true},   {99, 82, 256.0F, false},
+    } rows[] = {{0, 0, 295.1F, true},   {0, 0, 295.2F, false},    {0, 0, -216.9F, true},
+                {0, 0, -216.8F, false}, {99, 79, 256.0F, true},   {99, 82, 256.0F, false},
                 {127, 0, 256.0F, true}, {0, -129, 256.0F, false}, {0, 0, 0.0005F, false}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         setUp();

@@ -103,6 +103,13 @@ void test_with_no_window_gravity_may_step_within_reach_of_the_hover_thrust(void)
     TEST_ASSERT_EQUAL(IN_AIR_TOO_MANY_N, change(PARAMETER_USAT, 1.0F));
 }
 
+/* A battery has taken the hover thrust 2 N away from GRAV. */
+void test_gravity_may_come_nearer_to_a_hover_thrust_that_went_away(void)
+{
+    TEST_ASSERT_EQUAL(IN_AIR_OFF_HOVER, in_air_change(&pace, &set, PARAMETER_GRAV, 6.8F, 9.4F, now_us));
+    TEST_ASSERT_EQUAL(IN_AIR_FINE, in_air_change(&pace, &set, PARAMETER_GRAV, 7.1F, 9.4F, now_us));
+}
+
 void test_the_throttles_owner_the_imus_axes_and_the_mirrors_places_wait_for_the_ground(void)
 {
     TEST_ASSERT_EQUAL(IN_AIR_NEVER, change(PARAMETER_SEL, (float)SEL_PIN));

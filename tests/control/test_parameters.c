@@ -144,7 +144,8 @@ void test_every_choice_is_found_by_its_name(void)
         }
     }
     TEST_ASSERT_EQUAL_INT(LAW_COUNT + RELEASE_COUNT + TERRAIN_COUNT + PLANT_COUNT + SEL_COUNT + SUM_COUNT +
-                              2 * AXIS_COUNT + DOWN_COUNT + AXES_COUNT + LAYOUT_COUNT + STICK_COUNT,
+                              2 * AXIS_COUNT + DOWN_COUNT + AXES_COUNT + LAYOUT_COUNT + STICK_COUNT +
+                              BAT_COUNT + (int)CELLS_CHOICES + WALLS_COUNT,
                           choices);
 }
 

@@ -268,6 +268,17 @@ void test_it_takes_off_neither_an_unarmed_vehicle_nor_one_whose_imu_is_against_g
     TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 5.0F));
 }
 
+void test_one_mirror_without_ground_takes_off_and_two_do_not(void)
+{
+    before.idle_n = 1.76F;
+    before.mirrors.wrong = 1U << MIRROR_FORE | 1U << MIRROR_AFT;
+    (void)held(MIDDLE_US, 1.0F);
+    TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 5.0F));
+    before.mirrors.wrong = 1U << MIRROR_AFT;
+    (void)held(MIDDLE_US, 1.0F);
+    TEST_ASSERT_EQUAL_UINT(1, held(UP_US, 5.0F));
+}
+
 void test_down_sinks_to_the_lowest_reference_and_held_there_lands(void)
 {
     fly_at(0.6F);

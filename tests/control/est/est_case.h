@@ -54,11 +54,6 @@ static inline void noise_is_mps2(float noise_mps2)
     est.estimator.credit.noise_mps2 = noise_mps2;
 }
 
-static inline void accused(void)
-{
-    est.estimator.credit.accused_frames = 5U;
-}
-
 static inline void lose_the_estimate(void)
 {
     est.estimator.initialised = false;

@@ -116,7 +116,7 @@ void test_a_command_that_shakes_is_calmed_and_comes_back(void)
 void test_the_command_stays_in_its_range_whatever_the_state(void)
 {
     uint32_t bits = 5U;
-    for (int i = 0; i < 50000; i++) {
+    for (int32_t i = 0; i < 50000; i++) {
         float any[4];
         for (int k = 0; k < 4; k++) {
             bits = bits * 1664525U + 1013904223U;

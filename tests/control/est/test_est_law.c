@@ -892,10 +892,25 @@ void test_a_tilt_over_45_degrees_cuts(void)
     world.tilt_rad = 0.0;
     world.fallen_rad = 1.0;
     run(0.18); /* in one jump */
-    TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
+    TEST_ASSERT_NOT_EQUAL(FLIGHT_CUT, out.state);
     run(0.11);
     TEST_ASSERT_EQUAL(FLIGHT_CUT, out.state);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, out.thrust_n);
     TEST_ASSERT_EQUAL_FLOAT(THRUST_IDLE_PULSE_US, out.pulse_us);
     TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_TILT, out.flags & FLIGHT_FLAG_TILT);
+}
+
+void test_a_tilt_over_45_degrees_that_the_rays_do_not_show_does_not_cut(void)
+{
+    hover_at(0.6F);
+    world.tilt_rad = 0.0;
+    world.lied_rad = 1.0;
+    run(3.0);
+    TEST_ASSERT_EQUAL(FLIGHT_FLYING, out.state);
+    measure(3.0, 0.6);
+    TEST_ASSERT_TRUE(largest_error_m < 0.2);
+    world.lied_rad = 0.0;
+    measure(3.0, 0.6);
+    TEST_ASSERT_TRUE(largest_error_m < 0.2);
+    TEST_ASSERT_EQUAL_INT(0, world.body.contacts);
 }

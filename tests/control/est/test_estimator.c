@@ -229,7 +229,7 @@ void test_the_accelerometers_noise_is_measured(void)
 
 void test_noise_gives_the_expectation_its_share(void)
 {
-    const modelled_motion_t expected = {true, 0.0F, 0.84F};
+    const modelled_motion_t expected = {true, 0.0F, 0.84F, 0.0F};
     for (int i = 0; i < 300; i++) {
         imu_sample_t f = frame();
         time_us += 25000U;
@@ -382,7 +382,7 @@ void test_the_covariance_stays_positive_through_anything(void)
     char seed[32];
     snprintf(seed, sizeof seed, "seed %u", SEED);
     TEST_MESSAGE(seed);
-    for (int i = 0; i < 60000; i++) {
+    for (int32_t i = 0; i < 60000; i++) {
         noise_rms = (i / 5000) % 2 == 0 ? 0.4 : 4.0;
         acceleration = 30.0 * (uniform() - 0.5);
         speed_mps = 0.0;
@@ -402,7 +402,7 @@ void test_a_million_quiet_steps_do_not_wear_the_covariance_down(void)
 {
     bias = 0.0;
     noise_rms = 0.01;
-    for (int i = 0; i < 50000; i++) {
+    for (int32_t i = 0; i < 50000; i++) {
         (void)see(0.5);
     }
     assert_sound();
@@ -516,49 +516,40 @@ void test_bars_on_the_floor_are_noise_and_a_single_edge_is_not(void)
     }
 }
 
-/* 4 m/s2 that the thrust does not explain: the model's motion goes on until somebody judges. */
-/* Off by 2.6 m/s2 from what the thrust should do, for 0.6 s; heights: as the accelerometer says, or as the
- * thrust does. */
-void test_an_accelerometer_that_thrust_and_heights_accuse_has_no_weight(void)
-{
-    for (int gust = 0; gust < 2; gust++) {
-        setUp();
-        hover();
-        const double start_m = height_m;
-        for (int i = 1; i <= 24; i++) {
-            const modelled_motion_t still = {.known = true, .up_mps2 = 0.0F, .noise_mps2 = 0.84F};
-            const double gone_s = 0.025 * (i - 3); /* the height is 75 ms old */
-            time_us += 25000U;
-            imu_sample_t f = frame();
-            f.down_mps2 += 2.6F;
-            estimator_predict(&e, &f, still);
-            if (i % 4 == 0) {
-                const altitude_t a = altitude(start_m + (gust != 0 ? 1.3 * gone_s * gone_s : 0.0));
-                (void)estimator_fuse_height(&e, &a, time_us - 75000U, false);
-            }
-        }
-        TEST_ASSERT_EQUAL(gust == 0, estimator_accuses(&e));
-        TEST_ASSERT_TRUE((e.latest.motion.share < 0.05F) == (gust == 0));
-    }
-}
+/* ---- terrain that is passed over */
 
-void test_an_accelerometer_far_from_the_thrusts_motion_counts_less(void)
+/* One scan of three mirrors, whose grounds lie so high. */
+static void see_over(const float *ground_m)
 {
-    const modelled_motion_t still = {.known = true, .up_mps2 = 0.0F, .noise_mps2 = 0.84F};
+    altitude_t mirrors[MIRROR_COUNT];
 
-    hover();
-    for (int i = 0; i < 12; i++) {
-        time_us += 25000U;
-        imu_sample_t f = frame();
-        f.down_mps2 += 4.0F;
-        estimator_predict(&e, &f, still);
+    for (int m = 0; m < (int)MIRROR_COUNT; m++) {
+        mirrors[m] = altitude(height_m - (double)ground_m[m]);
+        mirrors[m].valid = true;
     }
-    TEST_ASSERT_TRUE(e.latest.motion.share < 0.15F);
-    TEST_ASSERT_FLOAT_WITHIN(0.3F, 4.0F, e.credit.off_model_mps2);
-    for (int i = 0; i < 20; i++) {
+    for (int i = 0; i < 4; i++) {
         time_us += 25000U;
         const imu_sample_t f = frame();
-        estimator_predict(&e, &f, still);
+        estimator_predict(&e, &f, (modelled_motion_t){.known = false});
     }
-    TEST_ASSERT_TRUE(e.latest.motion.share > 0.6F);
+    const terrain_sight_t sight = {&mirrors[0], mirrors, 0U, 0U};
+    TEST_ASSERT_TRUE(terrain_sees_ground(&sight, e.passes_over));
+    (void)estimator_fuse_over(&e, &sight, time_us - 75000U);
+}
+
+void test_ground_that_is_passed_over_moves_the_height_and_not_the_altitude(void)
+{
+    hover();
+    const float before_m = e.now.height_m + e.terrain_height_m;
+
+    estimator_pass_over(&e, true);
+    for (int k = 0; k < 30; k++) {
+        const float way_m = 0.04F * (float)(k - 10); /* an edge of 0.2 m, mirror by mirror */
+        see_over((const float[]){way_m > 0.0F ? 0.2F : 0.0F, way_m > -0.1F ? 0.2F : 0.0F,
+                                 way_m > 0.1F ? 0.2F : 0.0F});
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, before_m, e.now.height_m + e.terrain_height_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, before_m - 0.2F, e.now.height_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.05F, 0.0F, e.now.speed_mps);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, e.now.terrain_mps);
 }

@@ -22,7 +22,9 @@ void tearDown(void) {}
 static void predict(float dt_s, float up_mps2, float share)
 {
     const motion_t motion = {.up_mps2 = up_mps2, .share = share};
-    filter_predict(&filter, &motion, dt_s, 0.095F);
+    const filter_drift_t drift = {0.095F, 0.053F};
+
+    filter_predict(&filter, &motion, dt_s, &drift);
 }
 
 void test_it_begins_with_nothing_but_assumptions(void)
@@ -82,7 +84,7 @@ void test_the_covariance_is_propagated_as_the_text_book_says(void)
 
         memcpy(p, correlated, sizeof p);
         memcpy(filter.covariance, correlated, sizeof p);
-        filter_predict(&filter, &motion, 0.2F, bias_drifts[k]);
+        filter_predict(&filter, &motion, 0.2F, &(filter_drift_t){bias_drifts[k], 0.053F});
         textbook(p, 0.8F, 0.2F, q);
         for (unsigned i = 0; i < N; i++) {
             for (unsigned j = i; j < N; j++) {
@@ -198,4 +200,41 @@ void test_a_reset_variance_has_no_correlations_left(void)
             TEST_ASSERT_EQUAL_FLOAT((i == FILTER_BIAS && j == i) ? 0.03F : expected, filter.covariance[i][j]);
         }
     }
+}
+
+/* A single hypothesis that is believed is the filter's own correction. */
+void test_a_merge_of_one_hypothesis_is_a_correction(void)
+{
+    filter_t corrected;
+    const float variance = 0.03F;
+
+    memcpy(filter.covariance, correlated, sizeof correlated);
+    corrected = filter;
+    const float per_sum = 1.0F / (correlated[0][0] + variance);
+    filter_correct(&corrected, FILTER_HEIGHT, 0.1F, variance);
+    filter_merge(&filter, &(filter_merge_t){.pull_per_m = 0.1F * per_sum,
+                                            .less_per_m2 = per_sum,
+                                            .kept = 1.0F - correlated[0][0] * per_sum,
+                                            .variance_m2 = correlated[0][0] * variance * per_sum});
+    NEAR(corrected.estimate.height_m, filter.estimate.height_m);
+    NEAR(corrected.estimate.speed_mps, filter.estimate.speed_mps);
+    NEAR(corrected.estimate.bias_mps2, filter.estimate.bias_mps2);
+    for (unsigned i = 0; i < FILTER_TERRAIN; i++) {
+        for (unsigned j = i; j < FILTER_TERRAIN; j++) {
+            TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, corrected.covariance[i][j], filter.covariance[i][j]);
+        }
+    }
+}
+
+/* The ground has moved: speed and bias are known as before, the height anew. */
+void test_a_merge_that_believes_nothing_only_measures_the_height_anew(void)
+{
+    memcpy(filter.covariance, correlated, sizeof correlated);
+    filter_merge(&filter, &(filter_merge_t){.variance_m2 = 0.01F});
+    NEAR(0.0F, filter.estimate.speed_mps);
+    TEST_ASSERT_EQUAL_FLOAT(0.01F, filter.covariance[FILTER_HEIGHT][FILTER_HEIGHT]);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, filter.covariance[FILTER_HEIGHT][FILTER_SPEED]);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, filter.covariance[FILTER_HEIGHT][FILTER_BIAS]);
+    TEST_ASSERT_EQUAL_FLOAT(correlated[1][1], filter.covariance[FILTER_SPEED][FILTER_SPEED]);
+    TEST_ASSERT_EQUAL_FLOAT(correlated[1][2], filter.covariance[FILTER_SPEED][FILTER_BIAS]);
 }

@@ -16,7 +16,8 @@ void tearDown(void) {}
 
 static float setpoint_m(float reference_m, float terrain_m, bool follows)
 {
-    return terrain_keep_setpoint_m(&keep, reference_m, terrain_m, follows, 0.1F);
+    return terrain_keep_setpoint_m(&keep, reference_m, terrain_m,
+                                   follows ? TERRAIN_KEEP_NOT : TERRAIN_KEEP_STEPS, 0.1F);
 }
 
 void test_ignored_terrain_moves_the_setpoint_by_its_height(void)
@@ -27,6 +28,16 @@ void test_ignored_terrain_moves_the_setpoint_by_its_height(void)
     NEAR(0.55F + 0.05F * 0.1F / 30.0F, setpoint_m(0.60F, 0.10F, false)); /* forgotten within 30 s */
     NEAR(0.60F, setpoint_m(0.60F, 0.10F, true));
     NEAR(0.60F, setpoint_m(0.60F, 0.10F, false));
+}
+
+void test_ground_that_is_a_state_is_forgotten_ten_times_slower(void)
+{
+    (void)setpoint_m(0.60F, 0.0F, false);
+    (void)setpoint_m(0.60F, 0.1F, false);
+    const float before_m = terrain_keep_setpoint_m(&keep, 0.60F, 0.1F, TERRAIN_KEEP_GROUND, 0.0F);
+    (void)terrain_keep_setpoint_m(&keep, 0.60F, 0.1F, TERRAIN_KEEP_GROUND, 1.0F);
+    const float after_m = terrain_keep_setpoint_m(&keep, 0.60F, 0.1F, TERRAIN_KEEP_GROUND, 0.0F);
+    NEAR(before_m + (0.60F - before_m) / 300.0F, after_m);
 }
 
 void test_a_start_forgets_what_the_terrain_has_done(void)

@@ -52,6 +52,14 @@ void test_pidt_gets_its_gains_and_the_time_between_rays(void)
     NEAR(expected_n(0.52F, 0.1F), see_n(0.52F, 100000U));
 }
 
+void test_a_pause_longer_than_a_height_is_fresh_is_no_derivative(void)
+{
+    (void)see_n(0.49F, 0U);
+    (void)see_n(0.5F, 100000U);
+    NEAR(GRAV_N + 4.0F * -0.3F + laws.pidt.integral_n, see_n(0.9F, 310000U));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, laws.pidt.rate_mps);
+}
+
 void test_between_two_heights_pidt_holds_its_thrust(void)
 {
     (void)see_n(0.49F, 0U);
@@ -85,17 +93,6 @@ void test_in_place_of_est_pidt_has_0_65_of_its_gains(void)
     (void)see_n(0.49F, 0U);
     NEAR(expected_n(0.5F, 0.12F), see_n(0.5F, 120000U));
     NEAR(expected_n(0.52F, 0.1F), see_n(0.52F, 100000U));
-}
-
-void test_a_long_gap_of_rays_counts_as_300_ms(void)
-{
-    float setpoint_n[2];
-    for (uint32_t i = 0U; i < 2U; i++) {
-        setUp();
-        (void)see_n(0.4F, 0U);
-        setpoint_n[i] = see_n(0.5F, 300000U + 500000U * i);
-    }
-    NEAR(setpoint_n[0], setpoint_n[1]);
 }
 
 /* What is held is at most half a newton from hover after 0.17 s without a height. */

@@ -46,10 +46,7 @@ static void state_text(unsigned *first, char *text, size_t size)
 
 static FILE *open_document(void)
 {
-    char path[1024];
-    strcpy(path, __FILE__);
-    strcpy(strstr(path, "tests/control/"), "docs/flight_states.md");
-    return fopen(path, "r");
+    return fopen(FIXTURES "/../../docs/flight_states.md", "r");
 }
 
 void test_the_document_shows_the_same_table(void)

@@ -106,17 +106,44 @@ void test_nothing_is_learned_without_sight(void)
     NEAR(GRAV_N, learn_n());
 }
 
-void test_it_stays_within_one_and_a_half_newton_of_gravity(void)
+void test_it_stays_within_one_and_a_half_newton_of_gravity_and_what_a_battery_takes_in_a_cycle(void)
 {
     static const struct {
         float gravity_n, estimated_n, hover_n;
-    } rows[] = {{7.0F, 9.0F, 8.5F}, {7.0F, 5.0F, 5.5F}, {0.5F, -1.0F, 0.0F}, {11.5F, 13.0F, THRUST_MAX_N}};
+    } rows[] = {{7.0F, 9.0F, 8.506F}, {7.0F, 5.0F, 5.5F}, {0.5F, -1.0F, 0.0F}, {11.5F, 13.0F, THRUST_MAX_N}};
     for (int i = 0; i < 4; i++) {
         setUp();
         lesson.gravity_n = rows[i].gravity_n;
         lesson.estimated_n = rows[i].estimated_n;
         NEAR(rows[i].hover_n, learn_n());
     }
+}
+
+/* 0.06 N/s: a gust of 10 s moves the limit by 0.6 N, a battery in its time by all that it takes. */
+void test_a_battery_that_empties_moves_the_upper_limit_slowly_and_only_that(void)
+{
+    lesson.estimated_n = 10.0F;
+    learned_for(100);
+    NEAR(8.5F + 0.6F, hover.thrust_n);
+    learned_for(1000);
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, 10.0F, hover.thrust_n);
+    lesson.estimated_n = 4.0F;
+    learned_for(1000);
+    NEAR(5.5F, hover.thrust_n);
+}
+
+void test_the_limit_stands_while_nothing_is_learned_and_is_forgotten_on_the_ground(void)
+{
+    lesson.estimated_n = 10.0F;
+    learned_for(1000);
+    lesson.sees = false;
+    learned_for(1000);
+    TEST_ASSERT_FLOAT_WITHIN(0.05F, 10.0F, hover.thrust_n);
+    lesson.grounded = true;
+    NEAR(GRAV_N, learn_n());
+    lesson.grounded = false;
+    lesson.sees = true;
+    NEAR(8.506F, learn_n());
 }
 
 void test_a_descent_by_heights_corrects_it(void)

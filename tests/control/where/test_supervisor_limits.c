@@ -171,7 +171,7 @@ void test_beside_an_estimate_the_heights_look_less_far_ahead(void)
 
 void test_an_estimate_looks_ahead_by_a_quarter_of_a_second(void)
 {
-    static const float below_mm = 500.0F + 800.0F - 250.0F - 125.0F;
+    static const float below_mm = 500.0F + 800.0F - 250.0F - 126.26F; /* 1 m/s by 3.96 m/s2 */
 
     for (int above = 0; above < 2; above++) {
         begin();
