@@ -12,6 +12,7 @@
 #include <stddef.h>
 
 #include "device.h"
+#include "bsp/voltmeter.h"
 #include "bsp/led.h"
 #include "bsp/receiver.h"
 #include "bsp/selector.h"
@@ -106,4 +107,5 @@ void bsp_board_init(void)
     SysCtl_enablePeripheral(SYSCTL_PERIPH_CLK_TIMER1);
     SysCtl_enablePeripheral(SYSCTL_PERIPH_CLK_TIMER2);
     bsp_time_init();
+    bsp_voltmeter_init();
 }

@@ -28,8 +28,8 @@ PAGE 1:
     LS45SARAM : origin = 0x00A000, length = 0x001000
     RAMGS02   : origin = 0x00C000, length = 0x002FF0
     RETAINED  : origin = 0x00EFF0, length = 0x000010    /* of GS2; outlives a reset */
-    RAMGS311  : origin = 0x00F000, length = 0x008FF8
-    RAMGS1215 : origin = 0x018000, length = 0x004000
+    RAMGS39   : origin = 0x00F000, length = 0x0067F8
+    RAMGS915  : origin = 0x015800, length = 0x006800    /* from within GS9 on */
 }
 
 SECTIONS
@@ -52,12 +52,12 @@ SECTIONS
 
     .stack      : > LS45SARAM,  PAGE = 1
     .ebss:taskStackSection : > RAMGS02, PAGE = 1
-    .ebss       : > RAMGS311,   PAGE = 1, START(_ebss_start), SIZE(_ebss_size)
-    .data       : > RAMGS311,   PAGE = 1
-    .esysmem    : > RAMGS311,   PAGE = 1
-    .cio        : > RAMGS311,   PAGE = 1
+    .ebss       : > RAMGS39,    PAGE = 1, START(_ebss_start), SIZE(_ebss_size)
+    .data       : > RAMGS39,    PAGE = 1
+    .esysmem    : > RAMGS39,    PAGE = 1
+    .cio        : > RAMGS39,    PAGE = 1
     .retained   : > RETAINED,   PAGE = 1
-    .flight_log : > RAMGS1215,  PAGE = 1
+    .flight_log : > RAMGS915,   PAGE = 1
 }
 
 /* COFF puts an underscore before C's names. */

@@ -21,15 +21,16 @@ typedef char
 
 /* By how much the mean of clusters is too near, in mean deviations of these clusters: for 1, 2, ... 8 steps.
  * A cluster tells the nearest of its rays. Order statistics of white normal noise (Harter, 1961): mean of the
- * least of n, over its standard deviation, over the 0.75 that the mean deviation of eight such values is of
- * that. */
-static const float nearer_by[] = {0.0F, 0.91F, 1.51F, 1.96F, 2.32F, 2.62F, 2.88F, 3.11F};
+ * least of n, over its standard deviation; over the sqrt(2 / pi) that a mean deviation is of that. */
+static const float nearer_by[] = {0.0F, 0.86F, 1.42F, 1.84F, 2.18F, 2.46F, 2.71F, 2.92F};
 #define NEARER_ROWS (sizeof nearer_by / sizeof nearer_by[0])
 
 #define REVOLUTION_US 100000U  /* data sheet, 600 rpm */
 #define STEP_FRONT_MIDDLE 389U /* middle of layout FRONT, 372..406 */
 #define RAYS_FRONT_US 34000U   /* assumed: from the time stamp to that step, as the plant's model */
 #define HANDLING_US 460U       /* assumed: sensor's start and receiver's interrupt; gives FRONT 70.5 ms */
+
+#define TURN_RAD 6.2831853F
 
 typedef struct {
     uint32_t sum, least, most;
@@ -74,7 +75,8 @@ static uint32_t point_from(const scip_scan_t *scan, uint32_t step, uint32_t clus
 /* Number of points that end before the step. */
 static uint32_t points_before(const scip_scan_t *scan, uint32_t step, uint32_t cluster)
 {
-    return smaller(steps_into(scan, step) / cluster, scan->points);
+    const uint32_t into = steps_into(scan, step);
+    return smaller(cluster == 1U ? into : into / cluster, scan->points);
 }
 
 /* A ray that may be bad is noted too; tally() looks at the extremes afterwards. */
@@ -130,7 +132,7 @@ static tally_t tally(const scip_scan_t *scan, uint32_t begin, uint32_t end, cons
     const uint16_t *rays = &scan->distance_mm[begin];
     const uint32_t furthest = largest_distance(scan, limits);
     const tally_t t = tally_all(rays, (size_t)(end - begin));
-    return is_between(t.least, limits->dmin_mm, furthest) && is_between(t.most, limits->dmin_mm, furthest)
+    return t.least >= limits->dmin_mm && t.most <= furthest
                ? t
                : tally_between(rays, (size_t)(end - begin), limits->dmin_mm, furthest);
 }
@@ -164,16 +166,61 @@ static uint32_t median_of(const uint16_t *rays, size_t count, const tally_t *goo
     return low;
 }
 
-/* Mean deviation from the mean of the rays between the two. */
-static float mean_deviation(const uint16_t *rays, size_t count, const tally_t *kept, float mean_mm)
+/* Mean and variance of the places, 0, 1, 2, .., of those rays that are between the two. */
+static void find_places(const uint16_t *rays, size_t count, uint32_t least, uint32_t most, float *mean,
+                        float *variance)
 {
+    uint32_t kept = 0U, sum = 0U, squares = 0U;
+    for (size_t i = 0U; i < count; ++i) {
+        const uint32_t one = is_between(rays[i], least, most) ? 1U : 0U;
+        kept += one;
+        sum += one * (uint32_t)i;
+        squares += one * (uint32_t)i * (uint32_t)i;
+    }
+    *mean = (float)sum / (float)kept;
+    *variance = (float)squares / (float)kept - *mean * *mean;
+}
+
+/* A plane as a fan of rays sees it: a line, and the second order of 1 / cos. */
+typedef struct {
+    float mean_mm, slope_mm, bent_mm; /* by point, and by the square of points */
+    float at, at2;                    /* of the points: mean, variance */
+} plane_t;
+
+static float aside_mm(const plane_t *plane, uint16_t ray, size_t i)
+{
+    const float x = (float)i - plane->at;
+    return (float)ray - plane->mean_mm - plane->slope_mm * x - plane->bent_mm * (x * x - plane->at2);
+}
+
+static plane_t plane_of(const uint16_t *rays, size_t count, const tally_t *kept, float mean_mm,
+                        float point_rad)
+{
+    plane_t plane = {.mean_mm = mean_mm, .bent_mm = 0.5F * mean_mm * point_rad * point_rad};
+    float sum = 0.0F;
+    find_places(rays, count, kept->least, kept->most, &plane.at, &plane.at2);
+    for (size_t i = 0U; i < count; ++i) {
+        if (is_between(rays[i], kept->least, kept->most)) {
+            sum += ((float)i - plane.at) * aside_mm(&plane, rays[i], i);
+        }
+    }
+    plane.slope_mm = plane.at2 > 0.0F ? sum / ((float)((uint32_t)count - kept->bad) * plane.at2) : 0.0F;
+    return plane;
+}
+
+/* Mean deviation from the plane of the rays between the two. The plane is their own: its mean and its slope
+ * follow two of them. So it is the sum over sqrt(n (n - 2)), which is n - 1 within 1 % for eight rays. */
+static float mean_deviation(const uint16_t *rays, size_t count, const tally_t *kept, const plane_t *plane)
+{
+    const uint32_t kept_rays = (uint32_t)count - kept->bad;
     float sum = 0.0F;
     for (size_t i = 0U; i < count; ++i) {
         if (is_between(rays[i], kept->least, kept->most)) {
-            sum += (float)rays[i] > mean_mm ? (float)rays[i] - mean_mm : mean_mm - (float)rays[i];
+            const float off_mm = aside_mm(plane, rays[i], i);
+            sum += off_mm > 0.0F ? off_mm : -off_mm;
         }
     }
-    return sum / (float)((uint32_t)count - kept->bad);
+    return kept_rays > 2U ? sum / (float)(kept_rays - 1U) : 0.0F;
 }
 
 /* The good rays within NEAR_MEDIAN_MM of their median. */
@@ -186,9 +233,11 @@ static tally_t near_median(const uint16_t *rays, size_t count, const tally_t *go
 }
 
 static float too_near_by(const uint16_t *rays, size_t count, const tally_t *kept, uint32_t cluster,
-                         float mean_mm)
+                         float mean_mm, uint16_t turn_steps)
 {
-    return nearer_by[smaller(cluster, NEARER_ROWS) - 1U] * mean_deviation(rays, count, kept, mean_mm);
+    const float point_rad = (float)cluster * TURN_RAD / (float)turn_steps;
+    const plane_t plane = plane_of(rays, count, kept, mean_mm, point_rad);
+    return nearer_by[smaller(cluster, NEARER_ROWS) - 1U] * mean_deviation(rays, count, kept, &plane);
 }
 
 scip_group_mean_t scip_group_mean_within(const scip_scan_t *scan, const scip_group_t *group,
@@ -196,30 +245,57 @@ scip_group_mean_t scip_group_mean_within(const scip_scan_t *scan, const scip_gro
 {
     const uint32_t behind = group->last_step + (uint32_t)1U;
     const uint32_t cluster = steps_per_point(scan);
-    const uint32_t rays = (behind - group->first_step) / cluster;
+    const uint32_t steps = behind - group->first_step;
     const uint32_t end = points_before(scan, behind, cluster);
     const uint32_t begin = smaller(point_from(scan, group->first_step, cluster), end);
-    tally_t t = tally(scan, begin, end, limits);
     const uint16_t *const seen = &scan->distance_mm[begin];
     const size_t count = (size_t)(end - begin);
-    scip_group_mean_t mean = {.good_rays = (uint16_t)(end - begin - t.bad)};
-    if (mean.good_rays > 0U) {
-        mean.spread_mm = (uint16_t)(t.most - t.least);
-        mean.valid = 2U * mean.good_rays >= rays;
-        if (mean.spread_mm > NEAR_MEDIAN_MM) { /* mostly all are near */
-            t = near_median(seen, count, &t);
-        }
-        mean.mean_mm = (float)t.sum / (float)((uint32_t)count - t.bad);
-        if (cluster > 1U) {
-            mean.mean_mm += too_near_by(seen, count, &t, cluster, mean.mean_mm);
-        }
+    tally_t t = tally(scan, begin, end, limits);
+    const uint32_t good = end - begin - t.bad, spread = t.most - t.least;
+    if (t.bad == count) {
+        return (scip_group_mean_t){.valid = false};
     }
-    return mean;
+    if (spread > NEAR_MEDIAN_MM) { /* mostly all are near */
+        t = near_median(seen, count, &t);
+    }
+    const float mean_mm = (float)t.sum / (float)((uint32_t)count - t.bad);
+    return (scip_group_mean_t){
+        .valid = 2U * good >= steps / cluster,
+        .mean_mm = mean_mm +
+                   (cluster > 1U ? too_near_by(seen, count, &t, cluster, mean_mm, limits->ares) : 0.0F),
+        .spread_mm = (uint16_t)spread,
+        .good_rays = (uint16_t)good,
+        .nearest_mm = (uint16_t)t.least,
+        .furthest_mm = (uint16_t)t.most,
+    };
 }
 
 scip_group_mean_t scip_group_mean(const scip_scan_t *scan, const scip_group_t *group)
 {
     return scip_group_mean_within(scan, group, &scip_limits_urg04lx);
+}
+
+scip_group_steps_t scip_group_steps(const scip_scan_t *scan, const scip_group_t *group,
+                                    const scip_group_mean_t *mean)
+{
+    const uint32_t cluster = steps_per_point(scan);
+    const uint32_t end = points_before(scan, group->last_step + (uint32_t)1U, cluster);
+    const uint32_t begin = smaller(point_from(scan, group->first_step, cluster), end);
+    const float wide = (float)cluster;
+    float at = 0.0F, at2 = 0.0F;
+    if (mean->good_rays > 0U && mean->good_rays == end - begin &&
+        mean->furthest_mm - mean->nearest_mm == mean->spread_mm) { /* mostly all are in the mean */
+        const float rays = (float)mean->good_rays;
+        at = 0.5F * (rays - 1.0F);
+        at2 = (rays * rays - 1.0F) / 12.0F;
+    } else if (mean->good_rays > 0U) {
+        find_places(&scan->distance_mm[begin], (size_t)(end - begin), mean->nearest_mm, mean->furthest_mm,
+                    &at, &at2);
+    }
+    return (scip_group_steps_t){
+        .mean = (float)(scan->first_step + begin * cluster) + at * wide + 0.5F * (wide - 1.0F),
+        .variance = at2 * wide * wide + (wide * wide - 1.0F) / 12.0F,
+    };
 }
 
 uint16_t scip_group_step_mm(const scip_scan_t *scan, const scip_group_t *group)

@@ -59,18 +59,29 @@ typedef struct {
     float mean_mm;      /* mean of the good rays near their median; 0 when there is none */
     uint16_t spread_mm; /* largest minus smallest good ray */
     uint16_t good_rays;
+    uint16_t nearest_mm, furthest_mm; /* of the rays in mean_mm; 0 when there is none */
 } scip_group_mean_t;
 
 /* Robust mean distance of one group: the mean of the good rays within 25 mm of their median. So a leg or a
  * rope in front of some rays does not change the mean much. A good ray has at least 20 mm, and less than 4095
  * mm (two characters) or at most 5600 mm (three characters). Rays that are not in the scan count as bad. With
  * a cluster, a ray is a point whose steps are all in the group; it tells the nearest of them, so the mean is
- * raised by what that takes away from rays with such a white noise. */
+ * raised by what that takes away from rays with such a white noise. What is no noise is the plane that the
+ * group looks at: its slope, and that a ray aside of the group's middle is longer. */
 scip_group_mean_t scip_group_mean(const scip_scan_t *scan, const scip_group_t *group);
 
 /* The same, with dmin_mm and dmax_mm of *limits (scip_info_limits()) as limits of a good ray. */
 scip_group_mean_t scip_group_mean_within(const scip_scan_t *scan, const scip_group_t *group,
                                          const scip_limits_t *limits);
+
+/* Where the rays in a group's mean are: their steps. With a cluster, a point is a ray in each of its steps. A
+ * group of no rays is one ray at its first step. mean: of the same scan and group. */
+typedef struct {
+    float mean;
+    float variance;
+} scip_group_steps_t;
+scip_group_steps_t scip_group_steps(const scip_scan_t *scan, const scip_group_t *group,
+                                    const scip_group_mean_t *mean);
 
 /* Largest difference between two neighbouring good rays of the group, mm; 0 when no two good rays are
  * neighbours. Good rays as in scip_group_mean(). Over any slope of the ground the difference is small. It is

@@ -773,13 +773,15 @@ void scip_parser_line_broken(scip_parser_t *parser)
     begin_line(parser);
 }
 
-/* The memory is a ring by now: its newest octets to its begin. */
+/* The memory is a ring by now: its newest octets to its begin. Its strange ones are counted already, and in
+ * no echo: blanks in their place. */
 static void keep_end_of_line(scip_parser_t *parser)
 {
     const size_t first = parser->gathered + SCIP_LINE_MAX - SCIP_REQUEST_MAX;
     octet_t end[SCIP_REQUEST_MAX];
     for (uint16_t i = 0U; i < SCIP_REQUEST_MAX; ++i) {
-        end[i] = parser->line[(first + i) % SCIP_LINE_MAX];
+        const octet_t octet = parser->line[(first + i) % SCIP_LINE_MAX];
+        end[i] = is_strange(octet) ? (octet_t)' ' : octet;
     }
     for (uint16_t i = 0U; i < SCIP_REQUEST_MAX; ++i) {
         parser->line[i] = end[i];

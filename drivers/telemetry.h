@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define TELEMETRY_ANSWER_MAX 240U /* longest line: an answer may take several packets */
+#define TELEMETRY_ANSWER_MAX 256U /* longest line, the titles of #LOG: an answer may take several packets */
 #define TELEMETRY_LINE_MAX 95U    /* one XBee packet, with the line end */
 
 typedef struct {

@@ -1076,7 +1076,6 @@ static void on_scan(const step_t *step)
     link->failures = 0U;
     link->good_rate = link->rate;
     link->scan_us = step->now_us;
-    link->frame_us = link->timed ? link->frame_us : step->now_us;
     link->timeout_us = scan_timeout_us(link);
     if (link->config.range.scans != 0U && step->seen->scan_remaining == 0U) {
         send_command(step, link->config.stream);

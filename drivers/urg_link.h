@@ -128,7 +128,7 @@ typedef struct {
     uint32_t sent_strays;  /* counter of stray replies at that time */
     uint32_t sent_foreign; /* counter of another request's scans at that time */
     uint32_t good_rate;    /* rate at which scans were received; 0: none yet */
-    uint32_t frame_us;     /* time of the latest scan: as told, else that of the step which has seen it */
+    uint32_t frame_us;     /* time of the latest scan, as told */
     uint32_t answered_us;  /* time of the latest answer */
     bool answered;         /* it came at one of the configured rates */
     bool to_ask;           /* VV, PP and II are wanted */

@@ -11,6 +11,7 @@
 #include "firmware/calibrator.h"
 #include "firmware/ground.h"
 #include "firmware/imu_gate.h"
+#include "firmware/mirror_gate.h"
 #include "drivers/decimal.h"
 #include "control/in_air.h"
 #include "control/parameters.h"
@@ -136,7 +137,7 @@ static bool execute_arm(answer_t *answer)
     if (!ground_waits()) {
         return answer_refuse(answer, "not on the ground");
     }
-    if (imu_gate_refuses(answer)) {
+    if (imu_gate_refuses(answer) || mirror_gate_refuses(answer)) {
         return false;
     }
     set_arm(true);
@@ -146,6 +147,7 @@ static bool execute_arm(answer_t *answer)
     telemetry_number(&answer->line, parameters.value[PARAMETER_IDLE]);
     telemetry_text(&answer->line, "%");
     imu_gate_remark(answer, true);
+    mirror_gate_remark(answer);
     answer_send(answer);
     return true;
 }
@@ -175,9 +177,12 @@ static const verb_t verbs[] = {
     {"CALIBRATE", verb_calibrate, "[COUNTS [SECONDS]]",
      "thrust step by step, tied down; any line but #PING ends it"},
     {"RC", verb_rc, "", "the pulse of the pilot's stick, and whether it counts"},
+    {"VOLTS", verb_volts, "", "the battery: its voltage, that of a cell, and how it is"},
     {"LASER", verb_laser, "", "the scanner's state, rate, frames and errors by cause"},
     {"IMU", verb_imu, "[LEVEL|RIGHT|NOSE]",
      "what the IMU sends; finds its unit and axes from how the vehicle is held"},
+    {"MIRRORS", verb_mirrors, "",
+     "whether each mirror showed the ground at rest, and what they tell of the IMU"},
     {"PERF", verb_perf, "[COSTS|RESET]",
      "responses, deadlines, stacks, load, waits; processor times; RESET clears them"},
     {"STREAM", verb_stream, "PULSE|OFF", "the pulse of each control cycle in place of telemetry"},

@@ -10,6 +10,7 @@
 #include "control/est/estimator.h"
 
 #define RECORDS FLIGHT_RECORDER_RECORDS
+#define FRONT_CELLS (PUBLISHED_CELLS / 2U)
 #define CYCLE_MIN_MS 45U
 #define SAME_INSTANT_US UINT32_C(3000) /* a frame that releases a cycle is not recorded apart from it */
 #define US_PER_MS 1000U
@@ -17,9 +18,12 @@
 
 /* Above 10000H there is memory that stacks cannot use. */
 #ifdef __TMS320C28XX__
-#pragma DATA_SECTION(ring, ".flight_log")
+#pragma DATA_SECTION(front, ".flight_log")
+#pragma DATA_SECTION(back, ".flight_log")
 #endif
-static uint16_t ring[RECORDS][PUBLISHED_CELLS];
+/* Halves of the same records: an array may have 32767 octets at most where an int has 16 bits. */
+static uint16_t front[RECORDS][FRONT_CELLS];
+static uint16_t back[RECORDS][PUBLISHED_CELLS - FRONT_CELLS];
 static uint32_t oldest; /* changed by both tasks */
 static uint32_t next;
 static flight_recorder_rate_t rate;
@@ -37,6 +41,7 @@ static struct {
     uint32_t height_time_us; /* arrival of its height */
     uint32_t height_age_us;  /* that it had then */
     uint32_t frame;          /* sequence of the latest frame that was recorded */
+    uint32_t scans;          /* so many had come when the beams were recorded last */
 } latest;
 
 /* The clock in microseconds wraps after 71 minutes. This one counts on, and keeps the remainder, so
@@ -54,7 +59,11 @@ static uint32_t tell_ms(uint32_t now_us)
  * wrong. */
 static void append(const published_t *record)
 {
-    published_pack(ring[next % RECORDS], record);
+    uint16_t cells[PUBLISHED_CELLS];
+
+    published_pack(cells, record);
+    (void)memcpy(front[next % RECORDS], cells, sizeof front[0]);
+    (void)memcpy(back[next % RECORDS], &cells[FRONT_CELLS], sizeof back[0]);
     ++next;
     if (next - oldest > RECORDS) {
         oldest = next - RECORDS;
@@ -76,8 +85,19 @@ static published_t record_of(const flight_inputs_t *in, const flight_outputs_t *
         .roll_rad = in->attitude_ready ? in->roll_rad : NAN,
         .pitch_rad = in->attitude_ready ? in->pitch_rad : NAN,
         .up_mps2 = NAN,
+        .beams = flight_beams_none(),
         .flight = *out,
     };
+}
+
+/* Each scan once: what its beams showed goes on counting until the next one. */
+static flight_beams_t new_beams(const flight_inputs_t *in, const flight_outputs_t *out)
+{
+    if (out->signal.scans == latest.scans) {
+        return flight_beams_none();
+    }
+    latest.scans = out->signal.scans;
+    return published_beams_of(out, in->now_us);
 }
 
 /* A difference beyond half the range is a frame from before, not one of the far future. */
@@ -146,6 +166,7 @@ void flight_recorder_take(const flight_inputs_t *in, const flight_outputs_t *out
     clock.active = active;
     keep(in, &record);
     if (due) {
+        record.beams = new_beams(in, out);
         append(&record);
     }
 }
@@ -173,7 +194,8 @@ bool flight_recorder_read(uint32_t number, published_t *record)
     const bool there = number - oldest < next - oldest;
 
     if (there) {
-        (void)memcpy(cells, ring[number % RECORDS], sizeof cells);
+        (void)memcpy(cells, front[number % RECORDS], sizeof front[0]);
+        (void)memcpy(&cells[FRONT_CELLS], back[number % RECORDS], sizeof back[0]);
     }
     Hwi_restore(key);
     if (there) {

@@ -17,7 +17,7 @@
 #include "firmware/published.h"
 
 /* The linker has room for so many cells (ccs_project/plomada.cmd): wider records are fewer. */
-#define FLIGHT_RECORDER_RECORDS (16250U / PUBLISHED_CELLS)
+#define FLIGHT_RECORDER_RECORDS (26250U / PUBLISHED_CELLS)
 
 typedef enum { FLIGHT_RECORDER_SLOW, FLIGHT_RECORDER_FAST } flight_recorder_rate_t;
 

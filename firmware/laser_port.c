@@ -96,6 +96,7 @@ void laser_port_create(const urg_config_t *config)
     (void)urg_init(&urg, config, points, (uint16_t)(sizeof points / sizeof points[0]), bsp_time_us());
     rate = config->first_rate;
     overruns = 0U;
+    mailbox.scan.points = 0U;
     Semaphore_Params_init(&semaphore);
     semaphore.mode = Semaphore_Mode_BINARY;
     laser_ready = Semaphore_create(0, &semaphore, NULL);
@@ -120,6 +121,20 @@ void laser_port_wait(laser_message_t *message)
     *message = mailbox;
     Swi_restore(key);
     message->scan.distance_mm = message->distance_mm;
+}
+
+bool laser_port_newer(laser_message_t *message)
+{
+    const UInt key = Swi_disable();
+    const bool newer = mailbox.scan.points > 0U &&
+                       (message->scan.points == 0U || mailbox.arrival_us != message->arrival_us);
+
+    if (newer) {
+        *message = mailbox;
+    }
+    Swi_restore(key);
+    message->scan.distance_mm = message->distance_mm;
+    return newer;
 }
 
 static void copy_statistics(laser_statistics_t *statistics)

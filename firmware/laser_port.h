@@ -29,6 +29,10 @@ void laser_port_create(const urg_config_t *config);
 /* Blocks until a scan is complete, then copies the latest scan to *message. TaskReceiveLaser only. */
 void laser_port_wait(laser_message_t *message);
 
+/* Copies the latest scan to *message when it is another one than *message holds. Returns false, and copies
+ * nothing, when it is that one or when there is none yet. Zero *message before the first call. Any task. */
+bool laser_port_newer(laser_message_t *message);
+
 /* Orders these rays from the sensor from the next step on; nothing happens when they are ordered already.
  * TaskSendLaser only. */
 void laser_port_order(const scip_range_t *range);

@@ -13,6 +13,7 @@
 #include "control/flight_io.h"
 #include "control/imu_sample.h"
 #include "control/parameters.h"
+#include "control/signal.h"
 #include "drivers/urg_link.h"
 
 /* Creates all gates. Call once from main(). */
@@ -29,6 +30,7 @@ typedef struct {
     uint32_t age_us;                  /* from its rays to that octet, when nothing delays it */
     uint32_t sequence;                /* heights so far; 0 = none yet */
     uint32_t heightless;              /* scans without a height */
+    scan_signal_t signal;             /* of the latest scan, with a height or without one */
 } altitude_sample_t;
 
 void altitude_server_write(const altitude_sample_t *sample);

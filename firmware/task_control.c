@@ -5,6 +5,7 @@
 #include <xdc/std.h>
 
 #include "firmware/alive.h"
+#include "control/battery_orders.h"
 #include "firmware/calibrator.h"
 #include "control/flight.h"
 #include "control/stick_orders.h"
@@ -18,6 +19,7 @@
 #include "firmware/tasks.h"
 #include "bsp/throttle.h"
 #include "bsp/timebase.h"
+#include "bsp/voltmeter.h"
 
 #define EVENT_PERIOD Event_Id_00
 #define EVENT_ALTITUDE Event_Id_01
@@ -29,6 +31,8 @@ static UInt in_force;
 static flight_t flight;
 static stick_t stick;
 static stick_orders_t orders;
+static battery_t battery;
+static battery_orders_t battery_orders;
 
 /* An event that the law does not wait for is posted all the same: the law may change, and then it is
  * there. It releases no job, so it is not measured as one. */
@@ -98,7 +102,7 @@ static const imu_sample_t *read_frames(flight_inputs_t *in)
     return &history[(in->frame_count > 0U) ? in->frame_count - 1U : 0U];
 }
 
-static void read_inputs(const parameters_t *parameters, flight_inputs_t *in)
+static void read_inputs(const parameters_t *parameters, flight_inputs_t *in, scan_signal_t *signal)
 {
     static altitude_sample_t altitude; /* the inputs point to its mirrors */
     const imu_sample_t *imu;
@@ -118,6 +122,7 @@ static void read_inputs(const parameters_t *parameters, flight_inputs_t *in)
     in->height_age_us = altitude.age_us;
     in->altitude = altitude.altitude;
     in->mirrors = (altitude.mirror_count > 1U) ? altitude.mirrors : NULL;
+    *signal = altitude.signal;
     in->attitude_ready = imu->ready;
     in->roll_rad = imu->median.roll_rad;
     in->pitch_rad = imu->median.pitch_rad;
@@ -143,6 +148,19 @@ static void read_stick(const parameters_t *parameters, const flight_outputs_t *b
     stick_orders_step(&orders, parameters, &stick, before, in);
 }
 
+/* Adds what an empty battery orders to the requests of operator and stick. */
+static void read_battery(const parameters_t *parameters, const flight_outputs_t *before, flight_inputs_t *in)
+{
+    static uint32_t read_us;
+    float pin_v = 0.0F;
+    const bool came = bsp_voltmeter_take(&pin_v);
+
+    battery_step(&battery, parameters, came, pin_v, before->state != FLIGHT_GROUND,
+                 (float)(in->now_us - read_us) * 1.0e-6F);
+    read_us = in->now_us;
+    battery_orders_step(&battery_orders, battery_verdict(&battery, parameters), before, in);
+}
+
 static Void task_control(UArg unused0, UArg unused1)
 {
     static parameters_t parameters;
@@ -157,11 +175,14 @@ static Void task_control(UArg unused0, UArg unused1)
     for (;;) {
         wait(out.releases);
         parameter_server_read(&parameters);
-        read_inputs(&parameters, &in);
+        read_inputs(&parameters, &in, &out.signal);
         read_stick(&parameters, &out, &in);
+        read_battery(&parameters, &out, &in);
         flight_step(&flight, &parameters, &in, &out);
         out.flags |= stick_orders_flag(&orders, &parameters, &stick, in.has_throttle);
         out.stick_us = stick_is_good(&stick) ? stick_pulse_us(&stick) : NAN;
+        out.battery = (uint16_t)battery_verdict(&battery, &parameters);
+        out.battery_v = (out.battery == (uint16_t)BATTERY_OFF) ? NAN : battery_v(&battery);
         calibrator_overlay(parameters.value[PARAMETER_LINK], &in, &out);
         /* As soon as it is known. All that only reports comes behind. */
         bsp_throttle_set_pulse_us(out.pulse_us);
@@ -182,6 +203,8 @@ void task_control_create(void)
     flight_init(&flight);
     stick = (stick_t){.count = 0U};
     orders = (stick_orders_t){.counts = false};
+    battery = (battery_t){.believed = false};
+    battery_orders = (battery_orders_t){.landing = false};
     event = Event_create(NULL, NULL);
     Clock_Params_init(&clock);
     clock.period = CONTROL_PERIOD_MS;

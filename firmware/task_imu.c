@@ -5,6 +5,7 @@
 
 #include "control/attitude.h"
 #include "control/imu_mapping.h"
+#include "control/imu_repeat.h"
 #include "firmware/boot.h"
 #include "firmware/imu_exchange.h"
 #include "firmware/imu_port.h"
@@ -81,6 +82,7 @@ static Void task_imu(UArg unused0, UArg unused1)
 {
     static imu_message_t message;
     static imu_sample_t sample;
+    static imu_repeat_t repeat;
     razor_frame_t frame = {0};
 
     (void)unused0;
@@ -92,13 +94,13 @@ static Void task_imu(UArg unused0, UArg unused1)
         const razor_status_t status = razor_parse(&message.text, &frame);
         const imu_raw_t raw = raw_of(&frame);
         imu_exchange_show(&message.text, status, &raw, message.arrival_us);
-        if (status == RAZOR_OK) {
+        if (status == RAZOR_OK && !imu_repeats(&repeat, &raw)) {
             fill_sample(&sample, &raw, message.arrival_us);
         } else {
             ++sample.malformed;
         }
-        /* Also when nothing could be read: the counter of refused frames is in the sample. Its
-         * sequence stays, so nobody takes it for a new frame. */
+        /* Also when nothing could be read, or nothing new: the counter of refused frames is in the sample.
+         * Its sequence stays, so nobody takes it for a new frame. */
         imu_server_write(&sample);
         task_control_imu_arrived();
         /* When the count is reached, not while it lasts: the release is for the cut, and a cut is made

@@ -2,12 +2,27 @@
 
 #include <stddef.h>
 
+#include "control/battery_orders.h"
 #include "control/flight_io.h"
 #include "drivers/decimal.h"
 #include "firmware/imu_gate.h"
+#include "firmware/mirror_gate.h"
 #include "firmware/servers.h"
 
 static const parameter_row_t limits = {.name = "SETR", .unit = "m", .maximum = FLIGHT_REFERENCE_MAX_M};
+
+/* So that nobody waits for a take-off that does not come. */
+static bool battery_refuses(answer_t *answer)
+{
+    flight_outputs_t flight;
+
+    flight_status_server_read(&flight);
+    if (!battery_orders_forbid((battery_verdict_t)flight.battery, flight.state)) {
+        return false;
+    }
+    (void)answer_refuse(answer, "battery EMPTY, see #VOLTS");
+    return true;
+}
 
 static void set_reference(float reference_m)
 {
@@ -45,13 +60,15 @@ bool verb_setr(answer_t *answer)
         return answer_refuse_range(answer, &limits);
     }
     /* #SETR 0 lands, and landing is never refused. */
-    if (reference_m > 0.0F && imu_gate_refuses(answer)) {
+    if (reference_m > 0.0F &&
+        (imu_gate_refuses(answer) || mirror_gate_refuses(answer) || battery_refuses(answer))) {
         return false;
     }
     set_reference(reference_m + 0.0F); /* -0 becomes 0 */
     verb_reference_write_value(answer);
     if (reference_m > 0.0F) {
         imu_gate_remark(answer, false);
+        mirror_gate_remark(answer);
     }
     answer_send(answer);
     return true;

@@ -15,8 +15,15 @@ bool verb_laser(answer_t *answer);
  * `NOSE` find unit and axes; on the ground without thrust only. */
 bool verb_imu(answer_t *answer);
 
+/* verb_mirrors.c: `#MIRRORS` shows what each mirror showed at the latest rest, which of them did not show the
+ * ground, and what they tell of the IMU. With LAYOUT THREE. */
+bool verb_mirrors(answer_t *answer);
+
 /* verb_stick.c: `#RC` shows the pulse of the pilot's stick, and whether it counts, or why not. */
 bool verb_rc(answer_t *answer);
+
+/* verb_battery.c: `#VOLTS` shows the voltage of the battery and of a cell, and how it is. */
+bool verb_volts(answer_t *answer);
 
 /* verb_perf.c: `#PERF` shows the cause of the reset, the processor load, per task response time, missed
  * deadlines and stack, and per server the longest wait. `#PERF RESET` clears the values that can be

@@ -9,6 +9,7 @@
 #include "mock_sysctl.h"
 #include "mock_throttle.h"
 #include "mock_timebase.h"
+#include "mock_voltmeter.h"
 #include "unity.h"
 
 /* CMock's count of calls across all mocks: what makes their order strict. */
@@ -70,5 +71,6 @@ void test_the_whole_start_up_in_its_order(void)
     SysCtl_enablePeripheral_Expect(SYSCTL_PERIPH_CLK_TIMER1);
     SysCtl_enablePeripheral_Expect(SYSCTL_PERIPH_CLK_TIMER2);
     bsp_time_init_Expect();
+    bsp_voltmeter_init_Expect();
     bsp_board_init();
 }

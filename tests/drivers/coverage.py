@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-TESTS = [f"test_{name}" for name in ("scip_family", "scip_info", "scip_layout", "scip_parser", "scip_request", "urg", "urg_link")]
+TESTS = [f"test_{name}" for name in ("scip_family", "scip_free", "scip_info", "scip_layout", "scip_parser", "scip_request", "urg", "urg_link")]
 TRIALS = [["power"], ["stops"], ["starts"], ["damage", "100"]]
 SKIPPED = 77
 

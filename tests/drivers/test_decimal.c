@@ -202,6 +202,7 @@ void test_too_large_is_refused_from_the_midpoint_behind_the_largest_float_on(voi
     assert_reads(-FLT_MAX, "-340282356779733661637539395458142568447");
     assert_reads(FLT_MAX, "34028235677973366163753939545814e7");
     assert_refused("34028235677973366163753939545815e7", 34U);
+    assert_refused("3.4028238e38", 12U); /* 2^128 and three quarters of a unit of 24 bits */
     assert_refused("3.5e38", 6U);
     assert_refused("-1e39", 5U);
     assert_refused("1e999999999999999999999", 23U);
@@ -211,6 +212,7 @@ void test_too_large_is_refused_from_the_midpoint_behind_the_largest_float_on(voi
 void test_too_small_reads_as_zero(void)
 {
     assert_reads(FLT_MIN, "1.17549435e-38");
+    assert_reads(FLT_MIN, "1.1754944e-38"); /* and three quarters of a unit of 24 bits */
     /* 2^-126 - 2^-151 = 1.175494316e-38 is where rounding to 24 bits turns */
     assert_reads(FLT_MIN, "1.17549432e-38");
     assert_reads(0.0F, "1.17549431e-38");

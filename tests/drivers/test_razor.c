@@ -376,6 +376,19 @@ void test_a_frame_without_end_is_dropped_and_counted_and_the_next_is_whole(void)
     assert_counts(1U, 0U, 0U, 3U);
 }
 
+/* A text of the sensor's menu; the accelerations before it stay. */
+void test_a_line_with_another_title_may_be_of_any_length(void)
+{
+    char text[RAZOR_FRAME_MAX + 1U];
+
+    memset(text, '1', sizeof text);
+    feed("#A-C=1,2,3\r\n#TEXT ");
+    feed_octets(text, sizeof text);
+    feed("\r\n#YPR=4,5,6\r\n");
+    assert_counts(1U, 0U, 0U, 0U);
+    assert_acceleration(1.0, 2.0, 3.0, &stream.frame[0]);
+}
+
 void test_the_longest_frame_that_fits_is_accepted(void)
 {
     char text[RAZOR_FRAME_MAX + 1U];

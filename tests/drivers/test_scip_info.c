@@ -212,7 +212,7 @@ void test_a_line_ends_where_it_ends(void)
     TEST_ASSERT_EQUAL_UINT16(20, info.told.dmin_mm);
 }
 
-/* Alone in its memory: sanitizers see a look beyond it. */
+/* Alone in its memory: sanitizers see a look beyond it. Of the second line there is only ';' and its sum. */
 void test_a_line_without_a_colon_is_looked_at_no_further(void)
 {
     scip_parser_t *alone = malloc(sizeof *alone);
@@ -222,6 +222,10 @@ void test_a_line_without_a_colon_is_looked_at_no_further(void)
     alone->text_length = alone->line_length = SCIP_LINE_MAX;
     scip_info_take(&info, alone);
     TEST_ASSERT_EQUAL_UINT16(1, info.unknown);
+    alone->text_length = 0;
+    alone->line_length = 2;
+    scip_info_take(&info, alone);
+    TEST_ASSERT_EQUAL_UINT16(2, info.unknown);
     free(alone);
 }
 

@@ -35,6 +35,13 @@ static scip_group_mean_t mean_of(uint16_t first, uint16_t last)
     return scip_group_mean(&scan, &group);
 }
 
+static scip_group_steps_t steps_of(uint16_t first, uint16_t last)
+{
+    const scip_group_t group = {first, last};
+    const scip_group_mean_t mean = scip_group_mean(&scan, &group);
+    return scip_group_steps(&scan, &group, &mean);
+}
+
 /* --- the table
  * ---------------------------------------------------------------------------------------------------- */
 
@@ -181,6 +188,7 @@ void test_rays_that_the_scan_does_not_hold_are_bad(void)
     TEST_ASSERT_EQUAL_UINT16(0, mean_of(0, 371).good_rays);
     TEST_ASSERT_EQUAL_UINT16(0, mean_of(407, 500).good_rays);
     TEST_ASSERT_FALSE(mean_of(500, 600).valid);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, steps_of(407, 500).variance);
     scan.points = 0;
     TEST_ASSERT_EQUAL_UINT16(0, mean_of(372, 406).good_rays);
 }
@@ -191,21 +199,51 @@ void test_with_a_cluster_a_ray_is_a_point_wholly_inside_the_group(void)
     scan.cluster = 5;
     scan.points = 20; /* 100..104, 105..109, .. 195..199 */
     for (uint16_t i = 0; i < 20; i++) {
-        points[i] = (uint16_t)(500 + i);
+        points[i] = (uint16_t)(500 + i + (i == 3 ? 6 : 0));
     }
     scip_group_mean_t mean = mean_of(110, 124);
     TEST_ASSERT_EQUAL_UINT16(3, mean.good_rays);
-    /* 502, 503, 504 and 2.32 mean deviations of 2/3: each point is the nearest of five rays */
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, 504.547F, mean.mean_mm);
+    /* 502, 509, 504: from their line -2, 4, -2; what 1 / cos bends at 505 mm adds 0.08, 0.16, 0.08 to that.
+     * One of three points is free; 2.18 such mean deviations, because each point is the nearest of five rays
+     */
+    TEST_ASSERT_FLOAT_WITHIN(0.05F, 505.0F + 2.18F * (8.0F + 0.32F) / 2.0F, mean.mean_mm);
+    TEST_ASSERT_EQUAL_FLOAT(117.0F, steps_of(110, 124).mean);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, (15.0F * 15.0F - 1.0F) / 12.0F, steps_of(110, 124).variance);
     mean = mean_of(109, 125);
     TEST_ASSERT_EQUAL_UINT16(3, mean.good_rays);
     TEST_ASSERT_TRUE(mean.valid);
     mean = mean_of(111, 123);
     TEST_ASSERT_EQUAL_UINT16(1, mean.good_rays);
-    TEST_ASSERT_EQUAL_FLOAT(503.0F, mean.mean_mm);
+    TEST_ASSERT_EQUAL_FLOAT(509.0F, mean.mean_mm);
+    TEST_ASSERT_EQUAL_FLOAT(117.0F, steps_of(111, 123).mean);
+    TEST_ASSERT_EQUAL_FLOAT(2.0F, steps_of(111, 123).variance);
     TEST_ASSERT_EQUAL_UINT16(0, mean_of(111, 114).good_rays);
     TEST_ASSERT_FALSE(mean_of(111, 114).valid);
     TEST_ASSERT_EQUAL_UINT16(20, mean_of(100, 199).good_rays);
+}
+
+/* A tilted fan above level ground, as its rays tell it without noise: whole millimetres, the nearest of four.
+ */
+void test_a_plane_that_a_cluster_looks_at_aslant_is_no_noise(void)
+{
+    scan.first_step = 372;
+    scan.cluster = 4;
+    scan.points = 8;
+    for (int slope = -10; slope <= 10; slope += 5) {
+        double mean_mm = 0.0, nearest_mm = 0.0;
+
+        for (int i = 0; i < 32; i++) {
+            const double a = (372 + i - 384) * 0.006135923, q = tan(slope * 0.0174533);
+            const double ray_mm = 105.0 + 700.0 / (cos(a) - q * sin(a));
+
+            mean_mm += ray_mm / 32.0;
+            nearest_mm = (i % 4 == 0) ? ray_mm : fmin(nearest_mm, ray_mm);
+            points[i / 4] = (uint16_t)lround(nearest_mm);
+        }
+        /* As noise the slope alone would add 12 mm at 10 degrees. The nearest of four is up to 1.1 mm nearer.
+         */
+        TEST_ASSERT_FLOAT_WITHIN(1.2F, (float)mean_mm, mean_of(372, 406).mean_mm);
+    }
 }
 
 void test_with_a_cluster_of_two_every_point_has_two_steps(void)
@@ -296,10 +334,12 @@ void test_a_leg_in_front_of_fewer_than_half_of_the_rays_does_not_move_the_mean(v
 }
 
 /* A slow reference: sort the good rays, take the lower median, then the mean of what is near it. */
-static scip_group_mean_t reference_mean(uint16_t begin, uint16_t end, uint16_t furthest)
+static scip_group_mean_t reference_mean(uint16_t begin, uint16_t end, uint16_t furthest,
+                                        scip_group_steps_t *where)
 {
     uint16_t sorted[35], count = 0;
-    uint32_t sum = 0, near = 0;
+    uint32_t sum = 0, near = 0, steps = 0,
+             steps2 = 0; /* steps behind 372: whole numbers, exact where double is float */
     scip_group_mean_t mean = {.good_rays = 0};
     for (uint16_t i = begin; i < end; i++) {
         uint16_t at = count;
@@ -319,7 +359,16 @@ static scip_group_mean_t reference_mean(uint16_t begin, uint16_t end, uint16_t f
             near++;
         }
     }
+    for (uint16_t i = begin; i < end; i++) {
+        const int32_t off = (int32_t)points[i] - (count > 0 ? (int32_t)sorted[(count - 1) / 2] : 0);
+        if (points[i] >= 20 && points[i] <= furthest && off >= -25 && off <= 25) {
+            steps += i;
+            steps2 += (uint32_t)i * i;
+        }
+    }
     if (count > 0) {
+        where->mean = 372.0F + (float)steps / (float)near;
+        where->variance = (float)(near * steps2 - steps * steps) / (float)(near * near);
         mean.mean_mm = (float)sum / (float)near;
         mean.spread_mm = (uint16_t)(sorted[count - 1] - sorted[0]);
     }
@@ -342,11 +391,17 @@ void test_the_mean_is_that_of_the_good_rays_within_25_mm_of_their_median(void)
             points[i] = (uint16_t)(base + (noise >> 8) % width * ((noise >> 30) == 0U ? 3U : 1U));
             points[i] = (noise >> 25) % 5U == 0U && run % 5U == 0U ? 7U : points[i];
         }
-        const scip_group_mean_t expected = reference_mean(begin, end, 4094);
+        scip_group_steps_t where = {.mean = 0.0F};
+        const scip_group_mean_t expected = reference_mean(begin, end, 4094, &where);
         const scip_group_mean_t mean = mean_of((uint16_t)(372 + begin), (uint16_t)(372 + end - 1));
         TEST_ASSERT_EQUAL_UINT16(expected.good_rays, mean.good_rays);
         TEST_ASSERT_EQUAL_UINT16(expected.spread_mm, mean.spread_mm);
         TEST_ASSERT_FLOAT_WITHIN(0.001F, expected.mean_mm, mean.mean_mm);
+        const scip_group_steps_t steps = steps_of((uint16_t)(372 + begin), (uint16_t)(372 + end - 1));
+        if (expected.good_rays > 0U) {
+            TEST_ASSERT_FLOAT_WITHIN(0.001F, where.mean, steps.mean);
+            TEST_ASSERT_FLOAT_WITHIN(0.001F, where.variance, steps.variance);
+        }
         TEST_ASSERT_EQUAL(2 * expected.good_rays >= end - begin, mean.valid);
     }
 }
@@ -444,6 +499,7 @@ void test_a_layout_around_its_middles_is_that_of_the_vehicle(void)
     TEST_ASSERT_EQUAL_UINT16(3U, three.group_count);
     TEST_ASSERT_EQUAL_MEMORY(of_table->groups, three.groups, sizeof three.groups);
     TEST_ASSERT_EQUAL_UINT16(1U, front.group_count);
+    TEST_ASSERT_EQUAL_UINT16(0U, front.groups[1].first_step); /* one middle is read, and no more */
     TEST_ASSERT_EQUAL_UINT16(372U, front.first_step);
     TEST_ASSERT_EQUAL_UINT16(406U, front.last_step);
 }
@@ -459,6 +515,15 @@ void test_each_mirror_was_seen_at_its_own_time(void)
     TEST_ASSERT_INT32_WITHIN(100, 630, scip_group_later_us(&seen, &three->groups[1]));
     TEST_ASSERT_INT32_WITHIN(100, 25100, scip_group_later_us(&seen, &three->groups[2]));
     TEST_ASSERT_EQUAL_INT32(0, scip_group_later_us(&alone, &scip_layouts[SCIP_LAYOUT_FRONT].groups[0]));
+}
+
+/* The lower one of the two in the middle, of group and scan alike. */
+void test_a_scan_of_an_even_number_of_steps_was_seen_when_its_group_was(void)
+{
+    const scip_scan_t even = {.first_step = 372, .points = 34, .cluster = 1, .characters = 2};
+    const scip_group_t whole = {372, 405};
+
+    TEST_ASSERT_EQUAL_INT32(0, scip_group_later_us(&even, &whole));
 }
 
 static unsigned long draw;
@@ -502,6 +567,79 @@ void test_the_mean_of_clusters_is_not_too_near(void)
         }
         TEST_ASSERT_FLOAT_WITHIN_MESSAGE(1.0F, 1000.0F, (float)(sum_mm / 60.0), "mean, mm");
     }
+}
+
+/* Mean deviation of points from the plane that they show: level ground at their mean distance, and their own
+ * slope. Less two of them, because mean and slope are theirs. */
+static double off_plane_mm(uint16_t count, uint16_t cluster)
+{
+    const double step_rad = 0.006135923 * cluster, middle = 0.5 * (count - 1);
+    double mean = 0.0, aslant = 0.0, wide = 0.0, bent = 0.0, sum = 0.0;
+
+    for (uint16_t i = 0U; i < count; i++) {
+        mean += (double)points[i] / count;
+        aslant += (i - middle) * points[i];
+        wide += (i - middle) * (i - middle);
+    }
+    for (uint16_t i = 0U; i < count; i++) {
+        bent = 0.5 * mean * step_rad * step_rad * ((i - middle) * (i - middle) - wide / count);
+        sum += fabs(points[i] - mean - aslant / wide * (i - middle) - bent);
+    }
+    return sum / (count - 1.0);
+}
+
+/* Eight points, every second one 4 mm farther; a point behind them in memory, as near as they are, is another
+ * mirror's. The factors are the drivers' table. */
+void test_the_mean_of_clusters_is_raised_by_the_table_up_to_eight_steps_and_no_more_beyond(void)
+{
+    static const double raised_by[] = {0.0, 0.86, 1.42, 1.84, 2.18, 2.46, 2.71, 2.92, 2.92, 2.92};
+
+    for (uint16_t cluster = 1U; cluster <= 10U; cluster++) {
+        scan = (scip_scan_t){
+            .first_step = 372, .points = 9, .cluster = cluster, .characters = 2, .distance_mm = points};
+        for (uint16_t i = 0U; i < 8U; i++) {
+            points[i] = (uint16_t)(1000U + 4U * (i % 2U));
+        }
+        points[8] = 1004U;
+        const scip_group_mean_t mean = mean_of(372, (uint16_t)(371U + 8U * cluster));
+        TEST_ASSERT_EQUAL_UINT16(8U, mean.good_rays);
+        TEST_ASSERT_FLOAT_WITHIN(
+            0.001F, (float)(1002.0 + off_plane_mm(8U, cluster) * raised_by[cluster - 1U]), mean.mean_mm);
+    }
+}
+
+void test_bad_rays_take_no_part_in_the_deviation_of_clusters(void)
+{
+    scan = (scip_scan_t){
+        .first_step = 372, .points = 8, .cluster = 2, .characters = 2, .distance_mm = points};
+    for (uint16_t i = 0U; i < 8U; i++) {
+        points[i] = (uint16_t)(i < 6U ? 1000U + 4U * (i % 2U) : 7U);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, (float)(1002.0 + off_plane_mm(6U, 2U) * 0.86),
+                             mean_of(372, 387).mean_mm);
+}
+
+void test_two_points_have_a_plane_of_their_own_and_nothing_added(void)
+{
+    scan = (scip_scan_t){
+        .first_step = 372, .points = 2, .cluster = 8, .characters = 2, .distance_mm = points};
+    points[0] = 600U;
+    points[1] = 604U;
+    TEST_ASSERT_FLOAT_WITHIN(0.0F, 602.0F, mean_of(372, 387).mean_mm);
+}
+
+/* A group in the middle of a scan: its points begin behind its first step. */
+void test_of_clusters_of_two_those_of_the_group_alone_count(void)
+{
+    scan = (scip_scan_t){
+        .first_step = 372, .points = 16, .cluster = 2, .characters = 2, .distance_mm = points};
+    for (uint16_t i = 0U; i < scan.points; i++) {
+        points[i] = (uint16_t)(i >= 4U && i < 8U ? 600U : 900U);
+    }
+    const scip_group_mean_t mean = mean_of(380, 387);
+    TEST_ASSERT_EQUAL_UINT16(4U, mean.good_rays);
+    TEST_ASSERT_EQUAL_UINT16(0U, mean.spread_mm);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 600.0F, mean.mean_mm); /* a plane is bent by that */
 }
 
 /* A point far from the others is no noise: neither the mean nor its correction knows it. */

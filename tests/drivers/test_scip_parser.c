@@ -1781,6 +1781,32 @@ void test_a_damaged_frame_in_one_burst_makes_what_single_octets_make(void)
     }
 }
 
+void test_a_frame_with_octets_too_many_or_too_few_in_one_burst_makes_what_single_octets_make(void)
+{
+    static const char *const inserted[] = {"ab", "9\n", "\n9", "\n\n", "abc", "ab\n", "99b\n"};
+    put_run(&front);
+    for (size_t at = begins[1]; at < begins[2]; at++) {
+        for (size_t i = 0; i < sizeof inserted / sizeof inserted[0]; i++) {
+            const size_t more = strlen(inserted[i]);
+            faulty = wire;
+            memmove(&faulty.octets[at + more], &wire.octets[at],
+                    (wire.length - at) * sizeof faulty.octets[0]);
+            for (size_t k = 0; k < more; k++) {
+                faulty.octets[at + k] = (unsigned)inserted[i][k];
+            }
+            faulty.length = wire.length + more;
+            compare_ways(&faulty, faulty.length);
+        }
+        for (size_t less = 2; less < 5; less++) {
+            faulty = wire;
+            memmove(&faulty.octets[at], &wire.octets[at + less],
+                    (wire.length - at - less) * sizeof faulty.octets[0]);
+            faulty.length = wire.length - less;
+            compare_ways(&faulty, faulty.length);
+        }
+    }
+}
+
 static scip_event_t feed_whole(const char *text)
 {
     octet_t octets[400];
@@ -2130,16 +2156,18 @@ void test_awaited_scans_with_a_damaged_echo_are_no_other_stream(void)
 
 void test_a_broken_line_and_damage_within_a_scan_end_a_row_of_others(void)
 {
-    for (unsigned broken = 0; broken < 2; broken++) {
+    for (unsigned where = 0; where < 3; where++) { /* no line of the frame, one within it, its last one */
         stream_front();
         feed_other(0, NOWHERE, NOWHERE);
-        if (broken == 1) {
+        if (where == 0) {
             scip_parser_line_broken(&parser);
         } else {
             wire.length = 0;
             put_numbered_frame(&wire, &front, 1);
-            wire.octets[40] ^= 1U;
+            wire.octets[40] ^= where == 1 ? 1U : 0U;
+            wire.length -= where == 2;
             (void)feed_range(&wire, 0, wire.length);
+            (void)feed_text(where == 2 ? "x\n" : "");
         }
         feed_other(2, NOWHERE, NOWHERE);
         TEST_ASSERT_EQUAL_UINT32(0, parser.counters.foreign);
@@ -2166,6 +2194,29 @@ void test_octets_that_scip_does_not_have_are_strange_and_all_others_are_not(void
         TEST_ASSERT_EQUAL_UINT32(octet == 0 || octet > 0x7F ? 1 : 0, scip_parser_strange(&parser) - before);
         (void)feed_text("\n");
         TEST_ASSERT_EQUAL_UINT32(octet == 0 || octet > 0x7F ? 1 : 0, scip_parser_strange(&parser) - before);
+    }
+}
+
+/* In a frame's block; in a line longer than its memory, in its end and before; in a line that breaks. */
+void test_strange_octets_stay_counted_once_however_their_line_ends(void)
+{
+    for (unsigned how = 0; how < 4; how++) {
+        stream_front();
+        wire.length = 0;
+        put_numbered_frame(&wire, &front, 1);
+        wire.octets[40] = 0x80U;
+        if (how == 1 || how == 3) {
+            for (unsigned i = 0; i < 300U; i++) {
+                (void)feed(i == (how == 1 ? 290 : 200) ? 0x80U : 'x');
+            }
+        } else {
+            (void)feed_range(&wire, 0, how == 0 ? wire.length : 45);
+        }
+        if (how == 2) {
+            scip_parser_line_broken(&parser);
+        }
+        (void)feed_text("\nMS0372040601000\n");
+        TEST_ASSERT_EQUAL_UINT32(1, scip_parser_strange(&parser));
     }
 }
 

@@ -168,7 +168,7 @@ void test_a_line_is_ended_whole_or_marked_at_every_length(void)
     }
 }
 
-void test_an_answer_may_have_240_characters_and_not_one_more(void)
+void test_an_answer_may_have_256_characters_and_not_one_more(void)
 {
     char filler[TELEMETRY_ANSWER_MAX + 1U];
 
@@ -177,7 +177,7 @@ void test_an_answer_may_have_240_characters_and_not_one_more(void)
         telemetry_begin_answer(&line);
         telemetry_characters(&line, filler, length);
         telemetry_end(&line);
-        TEST_ASSERT_EQUAL(length > 238U, line.overflowed);
+        TEST_ASSERT_EQUAL(length > 254U, line.overflowed);
         if (!line.overflowed) {
             TEST_ASSERT_EQUAL(length + 2U, line.length);
             TEST_ASSERT_EQUAL_STRING_LEN("\r\n", &line.text[length], 2);

@@ -184,6 +184,29 @@ void test_the_step_behind_a_missing_frame_is_asked_for_as_soon_as_it_is_known(vo
     TEST_ASSERT_EQUAL_UINT32(urg_pause_us(&urg), report.pause_us);
 }
 
+/* Octets that came since the latest step count: in a stream the next frame has begun, in a search it is news.
+ */
+void test_what_was_fed_since_the_latest_step_changes_the_pause(void)
+{
+    static const octet_t strange[] = {0x80U, 0x80U, 0x80U};
+
+    reach_stream();
+    (void)feed(frame(32U, "9H"));
+    urg_scan_at(&urg, now_us + STEP_US - 30000U);
+    (void)step();
+    TEST_ASSERT_EQUAL_UINT32(100000U, urg_pause_us(&urg));
+    (void)feed("M");
+    TEST_ASSERT_EQUAL_UINT32(150000U, urg_pause_us(&urg));
+    (void)step();
+    (void)step();
+    (void)step();
+    (void)step();
+    TEST_ASSERT_EQUAL(URG_LOST, status());
+    TEST_ASSERT_GREATER_THAN_UINT32(40000U, urg_pause_us(&urg));
+    (void)urg_feed(&urg, strange, 3U);
+    TEST_ASSERT_EQUAL_UINT32(40000U, urg_pause_us(&urg));
+}
+
 /* The longest command: LF, TM2, LF, MS with its range, LF. */
 void test_a_lost_stream_is_asked_for_behind_an_end_of_line_and_of_time_mode(void)
 {
@@ -242,7 +265,7 @@ void test_line_errors_end_the_reply_under_way_and_tell_a_wrong_rate(void)
     (void)step();
     (void)feed("L0\n");
     urg_line_broken(&urg, 1U);
-    (void)feed("0\n");
+    (void)feed("0\n\n");
     TEST_ASSERT_EQUAL_STRING("", step());
     TEST_ASSERT_EQUAL(URG_STOP1, status());
     urg_line_broken(&urg, 0U);
@@ -544,8 +567,12 @@ void test_another_range_is_ordered_in_a_stream_and_the_stream_goes_on(void)
     TEST_ASSERT_TRUE(urg_take_scan(&urg, &scan));
     TEST_ASSERT_EQUAL_UINT16(17U, scan.points);
     TEST_ASSERT_EQUAL_UINT16(2U, scan.cluster);
-    TEST_ASSERT_EQUAL_STRING("", step());
-    TEST_ASSERT_EQUAL(URG_OK, status());
+    for (unsigned long i = 1U; i < 5U; i++) { /* one interruption, no more */
+        TEST_ASSERT_EQUAL_STRING("", step());
+        TEST_ASSERT_EQUAL(URG_OK, status());
+        scip_frames_frame(text, "MS0372040502000", 3000U + 100U * i, data, sizeof data);
+        TEST_ASSERT_TRUE(feed(text));
+    }
     TEST_ASSERT_EQUAL_UINT32(0U, report.restarts);
 }
 

@@ -1585,6 +1585,9 @@ static void stream_in_time(void)
     steps_to_ok();
     TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_, &seen));
     seen.scan_count++;
+    seen.framing_count = 1000; /* of a long life: what counts is what comes after a command */
+    seen.strange_count = 500;
+    seen.stray_count = 100;
     urg_link_scan_at(&link_, now_us);
     nothing_after(20000);
     TEST_ASSERT_EQUAL(URG_OK, link_.status);
@@ -1632,7 +1635,10 @@ void test_the_own_rate_follows_the_sensors_after_90_ms(void)
     }
     (void)reply_after(20000, SCIP_SWITCH, "0", true);
     (void)reply_after(20000, SCIP_BIT_RATE, "00", false);
-    nothing_after(89999);
+    TEST_ASSERT_EQUAL_UINT32(90000, urg_link_pause_us(&link_, &seen));
+    nothing_after(30000);
+    TEST_ASSERT_EQUAL_UINT32(60000, urg_link_pause_us(&link_, &seen));
+    nothing_after(59999);
     TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
     nothing_after(1);
     TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
@@ -1701,6 +1707,12 @@ void test_news_shorten_the_pause_in_a_search(void)
     seen.stray_count++;
     TEST_ASSERT_EQUAL_UINT32(40000, urg_link_pause_us(&link_, &seen));
     seen.stray_count--;
+    seen.framing_count += 2;
+    TEST_ASSERT_GREATER_THAN_UINT32(40000, urg_link_pause_us(&link_, &seen));
+    seen.strange_count++;
+    TEST_ASSERT_EQUAL_UINT32(40000, urg_link_pause_us(&link_, &seen));
+    seen.framing_count -= 2;
+    seen.strange_count--;
     seen.scan_count++;
     TEST_ASSERT_EQUAL_UINT32(40000, urg_link_pause_us(&link_, &seen));
 }
@@ -1941,6 +1953,11 @@ void test_other_octets_are_no_late_answer_of_a_faster_sensor(void)
     seen.octet_count += 2;
     nothing_after(link_.timeout_us);
     TEST_ASSERT_NOT_EQUAL(SCIP_BIT_RATE, link_.command);
+    listen_between();
+    link_.config.first_rate = link_.asked_rate = stream_rate; /* no faster one */
+    seen.octet_count += 2;
+    nothing_after(link_.timeout_us);
+    TEST_ASSERT_TRUE(link_.heard);
 }
 
 /* It has made a line of what it heard at another rate, or of SCIP2.0's end. */
@@ -2049,12 +2066,15 @@ void test_a_stray_answer_gives_the_awaited_one_its_time(void)
     TEST_ASSERT_EQUAL(SCIP_TIME_LEAVE, link_.command);
     TEST_ASSERT_EQUAL_UINT32(210000, link_.timeout_us);
     TEST_ASSERT_FALSE(action.send);
-    for (uint32_t i = 0; i < 4; i++) { /* not for ever */
+    for (uint32_t i = 0; i < 4; i++) { /* not for ever: until 520 ms behind the command */
         seen.stray_count++;
-        nothing_after(110000);
+        nothing_after(i < 3 ? 110000 : 109999);
     }
     TEST_ASSERT_EQUAL(SCIP_TIME_LEAVE, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(519999 + 130000, link_.timeout_us);
     seen.stray_count++;
+    nothing_after(1);
+    TEST_ASSERT_EQUAL_UINT32(519999 + 130000, link_.timeout_us);
     nothing_after(130000);
     TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
     TEST_ASSERT_TRUE(action.send);
@@ -2420,6 +2440,15 @@ void test_every_third_round_of_a_first_search_waits_for_late_answers(void)
             nothing_after(600000);
         }
     }
+    reset(0);
+    config.first_rate = config.stream_rate = config.fastest_rate = 19200; /* a round of one rate */
+    TEST_ASSERT_TRUE(urg_link_init(&link_, &config, now_us));
+    nothing_after(0);
+    nothing_after(500000);
+    for (uint32_t round = 0; round < 9; round++) {
+        TEST_ASSERT_EQUAL(round % 3 == 2, link_.timeout_us > 400000);
+        nothing_after(600000);
+    }
 }
 
 /* From the end of a frame's time, which grows with the time since the latest frame, to an answer's time; or
@@ -2432,13 +2461,14 @@ void test_a_question_ends_where_the_next_frame_is_not_lost(void)
     lose();
     while (now_us - frame_us < 11000000) {
         nothing_after(urg_link_pause_us(&link_, &seen));
-        if (action.send && link_.command == SCIP_SWITCH && link_.timeout_us != 130000) {
+        if (action.send && link_.command == SCIP_SWITCH) {
             const uint32_t phase_us = PHASE_US + (now_us - frame_us) / 800U;
             const uint32_t gap_us = REVOLUTION_US - FRAME_US - 2U * phase_us;
             const uint32_t past_us = (now_us - frame_us + REVOLUTION_US - phase_us) % REVOLUTION_US;
-            TEST_ASSERT_EQUAL_UINT32(REVOLUTION_US + (gap_us < 50000 ? gap_us : 50000),
-                                     past_us + link_.timeout_us);
-            over_a_frame++;
+            const uint32_t end_us = gap_us < 50000 ? gap_us : 50000;
+            const bool over = past_us < end_us + 40000;
+            TEST_ASSERT_EQUAL_UINT32(over ? REVOLUTION_US + end_us - past_us : 130000, link_.timeout_us);
+            over_a_frame += over;
         }
     }
     TEST_ASSERT_GREATER_THAN_UINT32(1, over_a_frame);
@@ -2467,20 +2497,43 @@ void test_a_question_has_the_time_of_400_octets(void)
     TEST_ASSERT_EQUAL_UINT32(260000 + (action.request.text_length + 400U) * 41, link_.timeout_us);
 }
 
-/* Heard while a request waits for its answer: the time of the request is over first. */
-void test_a_late_answer_in_the_time_of_a_request_is_noticed_behind_it(void)
+static void request_in_a_search(void)
 {
     stream_in_time();
     lose();
     while (link_.asked_kind != SCIP_SWITCH || link_.command != SCIP_STREAM_2 || !action.send) {
         nothing_after(link_.timeout_us);
     }
-    seen.octet_count += 3;
-    seen.framing_count += 3;
-    nothing_after(link_.timeout_us);
-    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
-    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
-    TEST_ASSERT_TRUE(action.send);
+}
+
+/* Heard while a request waits for its answer: the time of the request is over first. */
+void test_a_late_answer_in_the_time_of_a_request_is_noticed_behind_it(void)
+{
+    for (uint32_t framing = 0; framing < 2; framing++) {
+        request_in_a_search();
+        seen.octet_count += 3;
+        seen.framing_count += framing == 1 ? 3 : 0;
+        seen.strange_count += framing == 0 ? 3 : 0;
+        nothing_after(20000);
+        TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+        nothing_after(link_.timeout_us - 20000);
+        TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+        TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+        TEST_ASSERT_TRUE(action.send);
+    }
+}
+
+/* The sensor echoes what it has heard at another rate: strange octets, and a right end. */
+void test_a_whole_answer_to_nonsense_proves_the_rate(void)
+{
+    request_in_a_search();
+    seen.octet_count += 12;
+    seen.strange_count += 4;
+    seen.stray_count++;
+    nothing_after(20000);
+    nothing_after(130000);
+    TEST_ASSERT_TRUE(link_.heard);
+    TEST_ASSERT_EQUAL_UINT32(250000, link_.rate);
 }
 
 void test_a_scan_in_a_listening_window_ends_the_search(void)
@@ -2506,12 +2559,290 @@ void test_a_first_word_is_said_once_where_an_octet_is_not_clean(void)
 void test_a_step_leaves_room_for_the_one_behind_a_mute_revolution(void)
 {
     stream_in_time();
+    urg_link_scan_at(&link_, now_us + 20000); /* mute 150 ms from now */
+    TEST_ASSERT_EQUAL_UINT32(110000, urg_link_pause_us(&link_, &seen));
     urg_link_scan_at(&link_, now_us + 30000); /* mute 160 ms from now */
     TEST_ASSERT_EQUAL_UINT32(120000, urg_link_pause_us(&link_, &seen));
     urg_link_scan_at(&link_, now_us + 59999);
     TEST_ASSERT_EQUAL_UINT32(149999, urg_link_pause_us(&link_, &seen));
     urg_link_scan_at(&link_, now_us + 60000);
     TEST_ASSERT_EQUAL_UINT32(150000, urg_link_pause_us(&link_, &seen));
+}
+
+/* ---- and of what only a long life shows ---- */
+
+/* Where the sensor powers up at the stream's rate, TM2 and MS go together: the time of two answers. */
+void test_a_request_behind_the_end_of_time_mode_has_the_time_of_two_answers(void)
+{
+    stream_in_time();
+    link_.config.first_rate = link_.good_rate;
+    lose();
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(2 * 130000, link_.timeout_us);
+}
+
+/* Behind the time of the latest frame, which may be early or late; in the last 20 ms it is the one behind.
+ * The second stream is of every fourth revolution, and lost 50 ms behind a frame. */
+void test_a_listening_window_ends_where_the_next_frame_must_be_there(void)
+{
+    for (uint32_t k = 0; k < 20; k++) {
+        const uint32_t fourth = k % 2, late_us = 2700 * k; /* of a step */
+        const uint32_t period_us = fourth == 0 ? REVOLUTION_US : 4 * REVOLUTION_US;
+        uint32_t windows = 0;
+        stream_in_time();
+        if (fourth == 1) {
+            stream_every_fourth();
+            link_.config.first_rate_known = true;
+            urg_link_scan_at(&link_, now_us);
+            scan_after(1000);
+            seen.notice = (scip_reply_t){{'5', '0'}, false, 0};
+            seen.notice_count++;
+            nothing_after(49000);
+        }
+        const uint32_t frame_us = link_.frame_us;
+        lose();
+        while (now_us - frame_us < 6000000) {
+            nothing_after(urg_link_pause_us(&link_, &seen) + late_us);
+            if (link_.listening && link_.sent_us == now_us) {
+                const uint32_t phase_us = PHASE_US + (now_us - frame_us) / 800U;
+                const uint32_t left_us = period_us - (now_us - frame_us + period_us - phase_us) % period_us;
+                TEST_ASSERT_EQUAL_UINT32(left_us < 20000 ? left_us + period_us : left_us, link_.timeout_us);
+                windows++;
+            }
+        }
+        TEST_ASSERT_GREATER_THAN_UINT32(5, windows);
+    }
+}
+
+/* Who does not tell the times of the scans: an answer's time, and a revolution where the rate is a guess. */
+void test_without_the_times_of_the_scans_a_question_has_the_time_of_an_answer(void)
+{
+    for (uint32_t known = 0; known < 2; known++) {
+        uint32_t questions = 0;
+        reset(0);
+        steps_to_ok();
+        link_.config.first_rate_known = known == 1;
+        lose();
+        for (uint32_t i = 0; i < 100; i++) {
+            nothing_after(urg_link_pause_us(&link_, &seen));
+            if (action.send && link_.command == SCIP_SWITCH) {
+                TEST_ASSERT_EQUAL_UINT32(known == 1 ? 130000 : 230000, link_.timeout_us);
+                questions++;
+            }
+        }
+        TEST_ASSERT_GREATER_THAN_UINT32(10, questions);
+    }
+}
+
+/* Within a revolution and 30 ms the next octets of a stream may still come. */
+void test_octets_of_a_moment_ago_are_no_silence(void)
+{
+    for (uint32_t quiet_us = 110000; quiet_us <= 150000; quiet_us += 40000) {
+        listen_between();
+        seen.octet_count += 101;
+        nothing_after(link_.timeout_us);
+        TEST_ASSERT_TRUE(link_.listening);
+        seen.octet_count += 50;
+        nothing_after(160000 - quiet_us);
+        nothing_after(quiet_us);
+        TEST_ASSERT_EQUAL(quiet_us > 130000, action.send);
+    }
+}
+
+void test_what_the_parser_counts_of_others_is_seen(void)
+{
+    scip_parser_t own;
+    urg_seen_t told = {.stray_count = 0};
+    scip_parser_init(&own);
+    own.counters.stray = 5;
+    own.counters.foreign = 2;
+    urg_seen_octets(&told, &own);
+    TEST_ASSERT_EQUAL_UINT32(5, told.stray_count);
+    TEST_ASSERT_EQUAL_UINT32(2, told.foreign_count);
+}
+
+/* The sensor has restarted while it was asked. What it was not asked any more is not asked much later. */
+void test_questions_that_a_restart_has_cut_short_are_not_asked_behind_a_later_order(void)
+{
+    static const scip_range_t other = {372, 405, 1, 0, 0};
+    stream_in_time();
+    urg_link_ask(&link_);
+    nothing_after(20000);
+    (void)reply_after(100000, SCIP_STOP, "00", false);
+    TEST_ASSERT_EQUAL(SCIP_VERSION, link_.command);
+    seen.legacy_count++;
+    nothing_after(100000);
+    (void)reply_after(100000, SCIP_SWITCH, "00", false);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+    urg_link_scan_at(&link_, now_us + 100000);
+    scan_after(100000);
+    urg_link_order(&link_, &other);
+    nothing_after(20000);
+    TEST_ASSERT_EQUAL(SCIP_STOP, link_.command);
+    (void)reply_after(100000, SCIP_STOP, "00", false);
+    TEST_ASSERT_EQUAL(SCIP_STREAM_2, link_.command);
+}
+
+/* 129 points: 295 octets. */
+void test_another_range_has_the_times_of_its_own_frames(void)
+{
+    static const scip_range_t other = {372, 500, 1, 0, 0};
+    stream_in_time();
+    urg_link_order(&link_, &other);
+    nothing_after(20000);
+    (void)reply_after(100000, SCIP_STOP, "00", false);
+    TEST_ASSERT_EQUAL_UINT32(260000 + (16 + 21 + 295) * 41, link_.timeout_us);
+    scan_after(100000);
+    TEST_ASSERT_EQUAL_UINT32(2 * REVOLUTION_US + 295 * 41 + 250000, link_.timeout_us);
+}
+
+/* MD of the whole circle takes two revolutions and a tenth at 115200: a frame comes with every third. */
+void test_frames_longer_than_a_revolution_are_late_behind_their_own_time(void)
+{
+    reset(0);
+    config.stream_rate = 115200;
+    config.stream = SCIP_STREAM_3;
+    config.range = (scip_range_t){0, 768, 1, 0, 0};
+    TEST_ASSERT_TRUE(urg_link_init(&link_, &config, now_us));
+    link_.status = URG_OK;
+    link_.good_rate = link_.rate;
+    urg_link_scan_at(&link_, now_us);
+    scan_after(0);
+    nothing_after(329999);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
+    nothing_after(1);
+    TEST_ASSERT_EQUAL(URG_LOST, link_.status);
+}
+
+/* Its power-up rate is not known: a late answer is that to the rate asked last, and is asked for again there.
+ */
+void test_a_late_answer_to_an_unknown_rate_is_asked_for_at_the_rate_asked_last(void)
+{
+    stream_in_time();
+    link_.config.first_rate_known = false;
+    lose();
+    uint32_t asked_rate = 0;
+    while (!link_.listening || asked_rate == 0 || asked_rate == link_.config.first_rate) {
+        nothing_after(link_.timeout_us);
+        asked_rate = action.send && link_.command == SCIP_SWITCH ? link_.rate : asked_rate;
+    }
+    seen.octet_count += 3;
+    seen.framing_count += 3;
+    nothing_after(20000);
+    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(asked_rate, link_.rate);
+}
+
+/* The search has ordered it already. */
+void test_a_range_ordered_in_a_search_costs_no_second_interruption(void)
+{
+    static const scip_range_t other = {372, 500, 1, 0, 0};
+    listen_between();
+    urg_link_order(&link_, &other);
+    seen.octet_count += 202; /* of the range before */
+    seen.foreign_count++;
+    nothing_after(20000);
+    TEST_ASSERT_TRUE(action.send);
+    urg_link_scan_at(&link_, now_us + 50000);
+    scan_after(50000);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
+    for (uint32_t i = 0; i < 5; i++) {
+        urg_link_scan_at(&link_, now_us + REVOLUTION_US);
+        scan_after(REVOLUTION_US);
+        TEST_ASSERT_EQUAL(URG_OK, link_.status);
+        TEST_ASSERT_FALSE(action.send);
+    }
+}
+
+/* What was taken for a late answer to SS was noise: the same noise behind it is the answer to SCIP2.0. And
+ * the sensor has left time mode before: no TM2 any more. */
+void test_noise_is_taken_for_a_late_answer_to_ss_only_once(void)
+{
+    stream_in_time();
+    lose();
+    nothing_after(link_.timeout_us);
+    TEST_ASSERT_EQUAL(SCIP_TIME_LEAVE, link_.command);
+    for (uint32_t i = 0; i < 4 && link_.command != SCIP_BIT_RATE; i++) {
+        seen.octet_count += 3;
+        seen.framing_count += 3;
+        nothing_after(50000);
+        while (link_.rate == 250000 && !action.send) {
+            next_step();
+        }
+    }
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+    for (uint32_t i = 0; i < 40; i++) {
+        next_step();
+        TEST_ASSERT_NOT_EQUAL(SCIP_TIME_LEAVE, link_.command);
+    }
+}
+
+/* Octets of another rate just behind the loss: the sensor has restarted, and need not be waited for. */
+void test_signs_of_another_rate_end_the_first_window_of_a_search_at_once(void)
+{
+    stream_in_time();
+    seen.octet_count++;
+    lose();
+    TEST_ASSERT_TRUE(link_.listening);
+    seen.octet_count += 3;
+    seen.framing_count += 3;
+    nothing_after(20000);
+    TEST_ASSERT_EQUAL_UINT32(115200, link_.rate);
+}
+
+/* Who was heard in an earlier search, and streamed again, is not asked as if it had just been heard. */
+void test_what_an_earlier_search_has_heard_says_nothing_in_the_next_one(void)
+{
+    listen_between();
+    seen.octet_count += 101;
+    nothing_after(link_.timeout_us);
+    TEST_ASSERT_TRUE(link_.heard);
+    urg_link_scan_at(&link_, now_us);
+    scan_after(50000);
+    TEST_ASSERT_EQUAL(URG_OK, link_.status);
+    seen.octet_count++;
+    lose();
+    TEST_ASSERT_TRUE(link_.listening);
+    nothing_after(link_.timeout_us);
+    TEST_ASSERT_EQUAL(SCIP_SWITCH, link_.command);
+}
+
+/* After the late answer, as after one in time, the request comes each 0.4 s, not each 8. */
+void test_a_sensor_whose_late_answer_was_heard_is_asked_for_its_scans_each_0_4_s(void)
+{
+    stream_in_time();
+    lose();
+    (void)next_request_after_us();
+    (void)next_request_after_us();
+    while (!link_.listening) {
+        nothing_after(link_.timeout_us);
+    }
+    seen.octet_count += 3;
+    seen.framing_count += 3;
+    nothing_after(20000);
+    TEST_ASSERT_EQUAL(SCIP_BIT_RATE, link_.command);
+    for (uint32_t i = 0; i < 3; i++) {
+        TEST_ASSERT_UINT32_WITHIN(470000, 100000 + 470000, next_request_after_us());
+    }
+}
+
+/* No answer for 8 s, then scans of another request: the sensor is there. */
+void test_a_stream_of_something_else_makes_requests_frequent_again(void)
+{
+    stream_in_time();
+    lose();
+    (void)next_request_after_us();
+    (void)next_request_after_us();
+    while (!link_.listening) {
+        nothing_after(link_.timeout_us);
+    }
+    TEST_ASSERT_EQUAL_UINT32(8000000, link_.request_us);
+    seen.octet_count += 202;
+    seen.foreign_count++;
+    nothing_after(20000);
+    TEST_ASSERT_TRUE(action.send);
+    TEST_ASSERT_EQUAL_UINT32(400000, link_.request_us);
 }
 
 /* The parser forgets octets of a line that is longer than its memory; what was told stays told. */

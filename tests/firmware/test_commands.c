@@ -497,6 +497,8 @@ void test_every_command_that_help_tells_of_is_known(void)
     uint16_t count;
 
     verb_rc_Stub(verb);
+    verb_volts_Stub(verb);
+    verb_mirrors_Stub(verb);
     verb_laser_Stub(verb);
     verb_imu_Stub(verb);
     verb_perf_Stub(verb);

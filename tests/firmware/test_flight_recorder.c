@@ -276,6 +276,30 @@ void test_no_millisecond_is_lost_to_rounding(void)
     TEST_ASSERT_UINT32_WITHIN(1, 100777U, newest().time_ms - first_ms);
 }
 
+/* What a scan showed stands in the first record that knows of it, and in no other: a scan that comes again
+ * and again would look like a scanner that lives. */
+void test_each_scan_is_recorded_once(void)
+{
+    fly(7.0F);
+    out.signal = (scan_signal_t){.scans = 100U};
+    for (int i = 0; i < 8; i++) {
+        if (i % 2 == 0) {
+            out.signal.scans++;
+            out.signal.arrival_us = in.now_us + 48000U;
+            out.signal.beams[MIRROR_FRONT] = (beam_signal_t){true, i != 4, 30U, 612.0F, 9.0F, 70000U};
+        }
+        take(50000U);
+        const flight_beam_t front = newest().beams.beam[FLIGHT_BEAM_F];
+
+        TEST_ASSERT_EQUAL(i % 2 == 0, !isnan(front.rays));
+        TEST_ASSERT_EQUAL(i % 2 == 0 && i != 4, !isnan(front.slant_mm));
+        TEST_ASSERT_TRUE(isnan(newest().beams.beam[FLIGHT_BEAM_1].rays));
+        if (i == 0) {
+            TEST_ASSERT_FLOAT_WITHIN(2000.0F, 72000.0F, front.age_us);
+        }
+    }
+}
+
 void test_overwritten_and_future_records_are_not_read(void)
 {
     flight_recorder_span_t span;

@@ -65,6 +65,25 @@ void test_wrong_angles_are_refused_on_the_ground_alone(void)
     }
 }
 
+void test_what_the_mirrors_have_found_is_refused_with_their_name(void)
+{
+    flight.imu_fault = flight.mirrors.imu = IMU_PITCH;
+    TEST_ASSERT_TRUE(imu_gate_refuses(&answer));
+    TEST_ASSERT_EQUAL_STRING("ERR ARM IMU PITCH against the mirrors, see #MIRRORS", sent);
+    flight.imu_fault = flight.mirrors.imu = IMU_SWAPPED;
+    TEST_ASSERT_TRUE(imu_gate_refuses(&answer));
+    TEST_ASSERT_EQUAL_STRING("ERR ARM IMU SWAPPED: roll is pitch, see #MIRRORS", sent);
+    parameters.value[PARAMETER_IAXES] = (float)AXES_PROVED;
+    TEST_ASSERT_FALSE(imu_gate_refuses(&answer));
+}
+
+void test_an_offset_may_be_a_slope_and_is_not_refused(void)
+{
+    flight.imu_fault = flight.mirrors.imu = IMU_OFFSET;
+    TEST_ASSERT_FALSE(imu_gate_refuses(&answer));
+    remark(true, "OK ARM (IMU OFFSET or a slope, see #MIRRORS)");
+}
+
 void test_wrong_accelerations_are_not_refused_but_remarked_upon(void)
 {
     flight.imu_fault = IMU_UNIT;

@@ -420,6 +420,27 @@ void test_a_message_copied_out_is_the_tasks_own(void)
     assert_scan(1000U, 700U);
 }
 
+void test_another_reader_gets_each_scan_once_and_takes_none_away(void)
+{
+    static laser_message_t other;
+
+    (void)memset(&other, 0, sizeof other);
+    start_stream();
+    TEST_ASSERT_FALSE(laser_port_newer(&other));
+    feed(scan_text(1000U, 700U));
+    TEST_ASSERT_TRUE(laser_port_newer(&other));
+    TEST_ASSERT_EQUAL_UINT16(700U, other.scan.distance_mm[0]);
+    TEST_ASSERT_EQUAL_PTR(other.distance_mm, other.scan.distance_mm);
+    TEST_ASSERT_FALSE(laser_port_newer(&other));
+    TEST_ASSERT_EQUAL_UINT16(700U, other.scan.distance_mm[0]);
+    wait();
+    assert_scan(1000U, 700U);
+    feed(scan_text(1100U, 2000U));
+    TEST_ASSERT_TRUE(laser_port_newer(&other));
+    TEST_ASSERT_EQUAL_UINT16(2000U, other.scan.distance_mm[0]);
+    wait();
+}
+
 void test_a_scan_comes_once(void)
 {
     start_stream();

@@ -10,6 +10,8 @@
 
 #include "unity.h"
 
+#define NO_BEAMS ",,,,,,,,,,,,,,,,"
+
 static telemetry_line_t line;
 static published_t now;
 
@@ -23,11 +25,13 @@ void setUp(void)
         .roll_rad = -0.0123F,
         .pitch_rad = 0.0345F,
         .up_mps2 = -0.214F,
+        .beams = flight_beams_none(),
         .laser = "OK",
         .flight = {.estimate_mm = 601.0F,
                    .innovation_mm = -12.0F,
                    .reference_m = 0.6F,
                    .thrust_n = 7.123F,
+                   .battery_v = NAN,
                    .pulse_us = 1500.0F /* in no record */,
                    .state = FLIGHT_FLYING},
     };
@@ -156,14 +160,21 @@ void test_titles_and_a_row_are_pinned(void)
     telemetry_begin_answer(&line);
     published_titles(&line);
     assert_text("t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags,up_mps2,"
-                "pulse_us,age_s,doubt,limit");
+                "pulse_us,age_s,bat_v,doubt,limit,bat,mf_rays,mf_mm,mf_spread_mm,mf_ms,mf_lie,m1_rays,m1_mm,"
+                "m1_spread_mm,"
+                "m1_ms,m1_lie,m2_rays,m2_mm,m2_spread_mm,m2_ms,m2_lie,out");
     now.flight.flags = 5U;
-    assert_row("123.456,0.598,0.601,-0.012,0.600,7.123,-0.0123,0.0345,FLYING,5,-0.214,1393.8,0.081,,");
+    assert_row(
+        "123.456,0.598,0.601,-0.012,0.600,7.123,-0.0123,0.0345,FLYING,5,-0.214,1393.8,0.081,,,," NO_BEAMS);
     now.flight.rule = VERDICT_NO_EFFECT;
     now.flight.bound = BOUND_STANDING;
     assert_row(
-        "123.456,0.598,0.601,-0.012,0.600,7.123,-0.0123,0.0345,FLYING,5,-0.214,1393.8,0.081,THRUST/noeffect,"
-        "STANDING");
+        "123.456,0.598,0.601,-0.012,0.600,7.123,-0.0123,0.0345,FLYING,5,-0.214,1393.8,0.081,,THRUST/noeffect,"
+        "STANDING," NO_BEAMS);
+    now.flight.battery = BATTERY_LOW;
+    now.flight.battery_v = 14.376F;
+    assert_row("123.456,0.598,0.601,-0.012,0.600,7.123,-0.0123,0.0345,FLYING,5,-0.214,1393.8,0.081,14.38,"
+               "THRUST/noeffect,STANDING,LOW" NO_BEAMS);
 }
 
 void test_the_longest_row_is_pinned(void)
@@ -182,10 +193,40 @@ void test_the_longest_row_is_pinned(void)
                    .state = FLIGHT_DESCENDING,
                    .rule = VERDICT_NO_EFFECT,
                    .bound = BOUND_STANDING,
+                   .battery = BATTERY_FROZEN,
+                   .battery_v = -99.0F,
                    .flags = 65535U},
+        .beams = {.left_out = 7U},
     };
+    for (uint16_t m = 0U; m < FLIGHT_BEAM_COUNT; m++) {
+        now.beams.beam[m] = (flight_beam_t){1e6F, 1e6F, 1e6F, 1e9F, 1.0F};
+    }
     assert_row("4294967.295,-32.767,-32.767,-32.767,-32.767,-32.767,-3.2767,-3.2767,DESCENDING,4095,"
-               "-32.767,1999.7,32.767,THRUST/noeffect,STANDING");
+               "-32.767,1999.7,32.767,-32.77,THRUST/"
+               "noeffect,STANDING,FROZEN,62,4095,254,248,100,62,4095,254,248,100,62,4095,"
+               "254,248,100,mf+m1+m2");
+}
+
+/* With "OK LOG 1228 " before it, and its sum and line end behind it. */
+void test_the_titles_and_the_longest_row_fit_an_answer(void)
+{
+    telemetry_begin_answer(&line);
+    telemetry_text(&line, "OK LOG 0 ");
+    published_titles(&line);
+    telemetry_sum(&line);
+    telemetry_end(&line);
+    TEST_ASSERT_FALSE(line.overflowed);
+}
+
+void test_a_row_tells_each_beam_and_who_was_left_out(void)
+{
+    now.beams.beam[FLIGHT_BEAM_F] = (flight_beam_t){35.0F, 612.0F, 9.0F, 84000.0F, 0.0F};
+    now.beams.beam[FLIGHT_BEAM_1] = (flight_beam_t){8.0F, 131.0F, 4.0F, 108000.0F, 1.0F};
+    now.beams.beam[FLIGHT_BEAM_2].rays = 1.0F;
+    now.beams.left_out = 1U << FLIGHT_BEAM_1;
+    assert_row(
+        "123.456,0.598,0.601,-0.012,0.600,7.123,-0.0123,0.0345,FLYING,0,-0.214,1393.8,0.081,,,,,35,612,9,84,"
+        "0,8,131,4,108,100,1,,,,,m1");
 }
 
 void test_what_is_not_there_leaves_its_column_empty(void)
@@ -201,9 +242,11 @@ void test_what_is_not_there_leaves_its_column_empty(void)
                    .innovation_mm = NAN,
                    .reference_m = NAN,
                    .thrust_n = NAN,
+                   .battery_v = NAN,
                    .state = FLIGHT_GROUND},
+        .beams = flight_beams_none(),
     };
-    assert_row("0.007,,,,,,,,GROUND,0,,1999.7,,,");
+    assert_row("0.007,,,,,,,,GROUND,0,,1999.7,,,,," NO_BEAMS);
 }
 
 void test_every_millimetre_of_a_recorded_height_is_written_as_it_is(void)
@@ -221,14 +264,17 @@ void test_every_millimetre_of_a_recorded_height_is_written_as_it_is(void)
     }
 }
 
-void test_every_rule_and_every_limit_is_recorded(void)
+void test_every_rule_every_limit_and_every_word_on_the_battery_is_recorded(void)
 {
     for (uint16_t rule = 0U; rule < VERDICT_COUNT; rule++) {
         for (uint16_t bound = 0U; bound < BOUND_COUNT; bound++) {
             now.flight.rule = rule;
             now.flight.bound = bound;
-            TEST_ASSERT_EQUAL_UINT16(rule, recorded().flight.rule);
-            TEST_ASSERT_EQUAL_UINT16(bound, recorded().flight.bound);
+            now.flight.battery = (uint16_t)((rule + bound) % BATTERY_VERDICT_COUNT);
+            const published_t record = recorded();
+            TEST_ASSERT_EQUAL_UINT16(rule, record.flight.rule);
+            TEST_ASSERT_EQUAL_UINT16(bound, record.flight.bound);
+            TEST_ASSERT_EQUAL_UINT16(now.flight.battery, record.flight.battery);
         }
     }
 }
@@ -252,6 +298,16 @@ void test_every_rule_and_every_limit_fits_the_packet(void)
         published_telemetry(&line, &now);
         TEST_ASSERT_TRUE(!line.overflowed && line.length <= TELEMETRY_LINE_MAX);
     }
+    now.limit = NULL;
+    now.battery = "14.8/ABSENT";
+    published_telemetry(&line, &now);
+    TEST_ASSERT_TRUE(!line.overflowed && line.length <= TELEMETRY_LINE_MAX);
+}
+
+void test_the_battery_is_one_field_more(void)
+{
+    now.battery = "14.1/LOW";
+    assert_telemetry("alt:0.598 ref:0.600 laser:OK thr:7.12 state:FLYING flags:0 bat:14.1/LOW\r\n");
 }
 
 void test_every_state_is_recorded(void)
@@ -263,4 +319,37 @@ void test_every_state_is_recorded(void)
         TEST_ASSERT_EQUAL_UINT16(4095U, recorded().flight.flags);
         TEST_ASSERT_EQUAL_UINT32(123456U, recorded().time_ms);
     }
+}
+
+static flight_beams_t told(uint32_t now_us)
+{
+    return published_beams_of(&now.flight, now_us);
+}
+
+void test_the_beams_are_those_of_the_latest_scan_and_their_age_goes_on(void)
+{
+    now.flight.signal = (scan_signal_t){.scans = 7U, .arrival_us = UINT32_C(4294967000)};
+    now.flight.signal.beams[MIRROR_AFT] = (beam_signal_t){true, true, 8U, 612.4F, 9.0F, 70500U};
+    now.flight.signal.beams[MIRROR_FORE] = (beam_signal_t){true, false, 1U, 3.0F, 3.0F, 3U};
+    now.flight.lies[MIRROR_AFT] = 0.75F;
+    now.flight.left_out = 1U << MIRROR_AFT;
+    const flight_beams_t beams = told(200U);
+
+    TEST_ASSERT_EQUAL_FLOAT(8.0F, beams.beam[FLIGHT_BEAM_1].rays);
+    TEST_ASSERT_EQUAL_FLOAT(612.4F, beams.beam[FLIGHT_BEAM_1].slant_mm);
+    TEST_ASSERT_EQUAL_FLOAT(9.0F, beams.beam[FLIGHT_BEAM_1].spread_mm);
+    TEST_ASSERT_EQUAL_FLOAT(70996.0F, beams.beam[FLIGHT_BEAM_1].age_us);
+    TEST_ASSERT_EQUAL_FLOAT(0.75F, beams.beam[FLIGHT_BEAM_1].lie);
+    TEST_ASSERT_EQUAL_FLOAT(1.0F, beams.beam[FLIGHT_BEAM_2].rays);
+    TEST_ASSERT_TRUE(isnan(beams.beam[FLIGHT_BEAM_2].slant_mm) &&
+                     isnan(beams.beam[FLIGHT_BEAM_2].spread_mm) && isnan(beams.beam[FLIGHT_BEAM_2].age_us));
+    TEST_ASSERT_TRUE(isnan(beams.beam[FLIGHT_BEAM_F].rays));
+    TEST_ASSERT_EQUAL_UINT16(1U << FLIGHT_BEAM_1, beams.left_out);
+}
+
+void test_before_the_first_scan_no_beam_is_known(void)
+{
+    now.flight.signal = (scan_signal_t){.scans = 0U};
+    now.flight.signal.beams[MIRROR_FRONT].looked = true;
+    TEST_ASSERT_TRUE(isnan(told(0U).beam[FLIGHT_BEAM_F].rays));
 }

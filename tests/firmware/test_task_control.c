@@ -17,6 +17,7 @@
 #include "mock_servers.h"
 #include "mock_throttle.h"
 #include "mock_timebase.h"
+#include "mock_voltmeter.h"
 #include "control/thrust.h"
 #include "unity.h"
 
@@ -139,6 +140,16 @@ static bool receiver_take(float *pulse_us, int calls)
     return heard_us > 0.0F;
 }
 
+static float pin_v; /* voltage of the battery's divider in each cycle */
+
+static bool voltmeter_take(float *volts, int calls)
+{
+    (void)calls;
+    kernel_note("volts");
+    *volts = pin_v;
+    return true;
+}
+
 static void overlay(float link_s, const flight_inputs_t *in, flight_outputs_t *out, int calls)
 {
     (void)calls;
@@ -196,6 +207,8 @@ void setUp(void)
     bsp_throttle_set_pulse_us_Stub(set_pulse);
     bsp_time_us_Stub(time_us);
     bsp_receiver_take_Stub(receiver_take);
+    pin_v = 0.0F;
+    bsp_voltmeter_take_Stub(voltmeter_take);
     heard_us = 0.0F;
     calibrator_overlay_Stub(overlay);
     flight_recorder_take_Stub(record);
@@ -255,8 +268,8 @@ void test_a_cycle_waits_looks_steps_drives_the_throttle_publishes_and_records(vo
     run(2U);
     TEST_ASSERT_EQUAL_STRING(
         "parameters "
-        "pend parameters altitude imu reference time stick step overlay pulse publish record "
-        "pend parameters altitude imu reference time stick step overlay pulse publish record "
+        "pend parameters altitude imu reference time stick volts step overlay pulse publish record "
+        "pend parameters altitude imu reference time stick volts step overlay pulse publish record "
         "pend ",
         kernel.notes);
 }
@@ -289,6 +302,24 @@ void test_an_armed_vehicle_takes_off_by_the_stick(void)
     TEST_ASSERT_EQUAL_FLOAT(0.3F, inputs[39].reference_m);
     TEST_ASSERT_EQUAL_FLOAT(1100.0F, published[39].stick_us);
     TEST_ASSERT_TRUE(isnan(published[0].stick_us));
+}
+
+void test_without_a_battery_none_is_published(void)
+{
+    pin_v = 1.6F;
+    run(100U);
+    TEST_ASSERT_EQUAL_UINT16(BATTERY_OFF, published[99].battery);
+    TEST_ASSERT_TRUE(isnan(published[99].battery_v));
+}
+
+void test_the_battery_is_read_in_each_cycle_and_published(void)
+{
+    parameters.value[PARAMETER_BAT] = (float)BAT_PIN;
+    pin_v = 1.5F;
+    run(100U);
+    TEST_ASSERT_EQUAL_UINT16(BATTERY_GOOD, published[99].battery);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F, 15.15F, published[99].battery_v);
+    TEST_ASSERT_EQUAL_UINT32(reference.sequence, inputs[99].reference_sequence);
 }
 
 void test_a_wait_is_for_any_of_its_events_and_at_most_150_ms(void)
@@ -384,6 +415,7 @@ void test_every_value_of_the_servers_reaches_its_own_place_in_the_inputs(void)
     altitude.age_us = 12345U;
     altitude.sequence = 4U;
     altitude.heightless = 5U;
+    altitude.signal = (scan_signal_t){.scans = 6U, .arrival_us = 0xFFFE0002U};
     imu.ready = true;
     imu.level.roll_rad = 0.6F;
     imu.level.pitch_rad = 0.7F;

@@ -125,11 +125,12 @@ static void frame(const char *text)
     frame_count++;
 }
 
+/* The yaw lives, as that of every Razor does: frames that repeat are none. */
 static void angles(double yaw, double pitch, double roll)
 {
     char text[RAZOR_FRAME_MAX];
 
-    (void)snprintf(text, sizeof text, "#YPR=%.2f,%.2f,%.2f", yaw, pitch, roll);
+    (void)snprintf(text, sizeof text, "#YPR=%.2f,%.2f,%.2f", yaw + 0.01 * (frame_count % 2U), pitch, roll);
     frame(text);
 }
 
@@ -247,10 +248,25 @@ void test_a_malformed_frame_is_counted_and_changes_nothing_else(void)
     TEST_ASSERT_EQUAL_UINT32(written[20].malformed + kinds, written[21U + kinds].malformed);
 }
 
+void test_a_frame_that_comes_again_and_again_is_refused_from_the_sixth_time_on(void)
+{
+    for (int k = 0; k < 9; k++) {
+        frame("#YPR=1.00,2.00,3.00");
+    }
+    frame("#YPR=1.01,2.00,3.00");
+    kernel_run_task();
+    for (uint16_t n = 0; n < 10U; n++) {
+        const uint16_t refused = (n < 5U) ? 0U : (n < 9U) ? (uint16_t)(n - 4U) : 4U;
+
+        TEST_ASSERT_EQUAL_UINT32(written[0].malformed + refused, written[n].malformed);
+        TEST_ASSERT_EQUAL_UINT32(written[0].sequence + n - refused, written[n].sequence);
+    }
+}
+
 void test_malformed_frames_do_not_count_towards_the_offset(void)
 {
     for (uint16_t n = 0; n < OFFSET_FRAMES - 1U; n++) {
-        angles(0.0, 1.0, 1.0);
+        angles(0.02 * n, 1.0, 1.0);
         frame("#YPR=nan,1.00,1.00");
     }
     angles(0.0, 1.0, 1.0);
@@ -352,5 +368,5 @@ void test_a_new_mapping_acts_from_the_next_frame_and_keeps_the_offset(void)
     imu_exchange_look(&view);
     TEST_ASSERT_EQUAL(RAZOR_OK, view.status);
     TEST_ASSERT_FLOAT_WITHIN(1e-5F, 6.0F * RAD_PER_DEGREE, view.raw.roll_rad);
-    TEST_ASSERT_EQUAL_STRING_LEN("#YPR=0.00,0.00,6.00", view.text.text, view.text.length);
+    TEST_ASSERT_EQUAL_STRING_LEN("#YPR=0.01,0.00,6.00", view.text.text, view.text.length);
 }

@@ -1,8 +1,10 @@
 /* TaskSendComm: one telemetry line every 200 ms, from the servers to the radio. */
+#include "control/battery.h"
 #include "control/bounds.h"
 #include "control/sense/rules.h"
 #include "firmware/tasks.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "jobs.h"
@@ -10,6 +12,7 @@
 #include "mock_boot.h"
 #include "mock_pulse_stream.h"
 #include "mock_servers.h"
+#include "mock_surroundings.h"
 #include "mock_timebase.h"
 #include "mock_xbee_port.h"
 #include "control/facts.h"
@@ -18,7 +21,9 @@
 static laser_sample_t laser;
 static flight_outputs_t flight;
 static telemetry_line_t line;
-static uint16_t lines;
+static uint16_t lines; /* but those of the beams */
+static telemetry_line_t beams;
+static uint16_t beams_lines;
 static const char *cause;   /* NULL: not told */
 static uint16_t more_ticks; /* that come while the task runs */
 
@@ -37,6 +42,11 @@ static void flight_read(flight_outputs_t *status, int calls)
 static void report(const telemetry_line_t *text, int calls)
 {
     (void)calls;
+    if (memcmp(text->text, "mf:", 3) == 0) {
+        beams = *text;
+        beams_lines++;
+        return;
+    }
     kernel_note("report");
     line = *text;
     lines++;
@@ -52,6 +62,54 @@ static const char *boot(int calls)
     return cause;
 }
 
+/* What stands around, when there is something to tell of it. */
+static const char *around; /* NULL: nothing */
+static uint16_t around_lines;
+static bool room; /* in the transmitter */
+
+static bool surroundings(telemetry_line_t *text, const flight_outputs_t *status, int calls)
+{
+    (void)calls;
+    TEST_ASSERT_EQUAL_FLOAT(flight.height_mm, status->height_mm);
+    if (around != NULL) {
+        telemetry_begin(text);
+        telemetry_text(text, around);
+        telemetry_end(text);
+    }
+    return around != NULL;
+}
+
+static bool warns;
+static uint16_t drift_lines;
+
+static bool warn(int calls)
+{
+    (void)calls;
+    return warns;
+}
+
+static bool drift(telemetry_line_t *text, int calls)
+{
+    (void)calls;
+    telemetry_begin(text);
+    telemetry_text(text, "drift:-");
+    telemetry_end(text);
+    return around != NULL;
+}
+
+static bool spare(const telemetry_line_t *text, int calls)
+{
+    (void)calls;
+    kernel_note("spare");
+    if (memcmp(text->text, "drift", 5) == 0) {
+        drift_lines++;
+        return room;
+    }
+    TEST_ASSERT_EQUAL_STRING_LEN(around, text->text, strlen(around));
+    around_lines = (uint16_t)(around_lines + (room ? 1U : 0U));
+    return room;
+}
+
 static bool streaming;
 
 static bool stream_on(int calls)
@@ -63,7 +121,7 @@ static bool stream_on(int calls)
 void setUp(void)
 {
     kernel_reset();
-    lines = 0U;
+    lines = beams_lines = 0U;
     (void)memset(&line, 0, sizeof line);
     (void)memset(&laser, 0, sizeof laser);
     flight.height_mm = 598.4F;
@@ -75,6 +133,15 @@ void setUp(void)
     laser_server_read_Stub(laser_read);
     flight_status_server_read_Stub(flight_read);
     xbee_port_report_Stub(report);
+    surroundings_line_Stub(surroundings);
+    surroundings_warn_Stub(warn);
+    surroundings_drift_Stub(drift);
+    warns = false;
+    drift_lines = 0U;
+    xbee_port_spare_Stub(spare);
+    around = NULL;
+    around_lines = 0U;
+    room = true;
     pulse_stream_on_Stub(stream_on);
     streaming = false;
     boot_cause_Stub(boot);
@@ -128,6 +195,32 @@ void test_each_tick_sends_one_line(void)
         TEST_ASSERT_EQUAL_UINT16(n, lines);
     }
     TEST_ASSERT_EQUAL_STRING("pend report pend pend report pend pend report pend ", kernel.notes);
+}
+
+void test_what_stands_around_comes_behind_each_line_and_gives_way_to_lists(void)
+{
+    around = "w:-z-B";
+    for (uint16_t n = 0; n < 5U; n++) {
+        kernel.clock.function(kernel.clock.params.arg);
+        kernel_run_task();
+        room = n < 2U;
+    }
+    TEST_ASSERT_EQUAL_UINT16(5, lines);
+    TEST_ASSERT_EQUAL_UINT16(1, beams_lines);
+    TEST_ASSERT_EQUAL_UINT16(3, around_lines);
+    TEST_ASSERT_EQUAL_UINT16(1, drift_lines);
+    TEST_ASSERT_EQUAL_STRING_LEN("pend report spare pend ", kernel.notes, 23);
+}
+
+void test_a_warning_goes_as_telemetry_does_and_not_behind_a_list(void)
+{
+    around = "w:-z-B near:90,120,50";
+    warns = true;
+    room = false;
+    kernel.clock.function(kernel.clock.params.arg);
+    kernel_run_task();
+    TEST_ASSERT_EQUAL_STRING("pend report report pend ", kernel.notes);
+    TEST_ASSERT_EQUAL_STRING_LEN(around, line.text, strlen(around));
 }
 
 void test_the_line_stays_away_while_the_pulses_are_streamed(void)
@@ -215,6 +308,26 @@ void test_the_first_line_alone_tells_the_cause_of_the_reset(void)
                                  line.length);
 }
 
+/* The first of them says what the second says; the fifth has something to add. */
+void test_each_second_a_line_tells_the_beams(void)
+{
+    const char expected[] = "mf:35,612,9,71,- m1:- m2:- out:-\r\n";
+
+    flight.signal = (scan_signal_t){.scans = 1U, .arrival_us = 4711U};
+    flight.signal.beams[MIRROR_FRONT] = (beam_signal_t){true, true, 35U, 612.0F, 9.0F, 70500U};
+    flight.lies[MIRROR_FRONT] = NAN;
+    run(4U);
+    TEST_ASSERT_EQUAL_UINT16(0U, beams_lines);
+    lines = 0U;
+    run(1U);
+    TEST_ASSERT_EQUAL_UINT16(1U, beams_lines);
+    TEST_ASSERT_EQUAL_STRING_LEN(expected, beams.text, sizeof expected - 1U);
+    TEST_ASSERT_EQUAL_UINT16(sizeof expected - 1U, beams.length);
+    lines = 0U;
+    run(10U);
+    TEST_ASSERT_EQUAL_UINT16(3U, beams_lines);
+}
+
 void test_every_job_is_measured_from_the_tick_that_released_it(void)
 {
     run(3U);
@@ -253,9 +366,62 @@ void test_a_limit_is_told_off_the_ground_while_nothing_is_doubted(void)
     TEST_ASSERT_FALSE(line_has("limit:"));
     flight.bound = BOUND_CLIMB;
     TEST_ASSERT_TRUE(line_has(" limit:CLIMB\r\n"));
-    flight.rule = VERDICT_BOTH;
-    TEST_ASSERT_TRUE(line_has("flags:0 doubt:SIGHT/both\r\n"));
+    flight.rule = VERDICT_UNSEEN;
+    TEST_ASSERT_TRUE(line_has("flags:0 doubt:SIGHT/unseen\r\n"));
     flight.rule = VERDICT_NONE;
     flight.state = FLIGHT_GROUND; /* the idle is one, too */
     TEST_ASSERT_FALSE(line_has("limit:"));
+}
+
+void test_without_a_battery_the_line_has_none(void)
+{
+    TEST_ASSERT_FALSE(line_has("bat:"));
+    flight.battery_v = 14.8F;
+    TEST_ASSERT_FALSE(line_has("bat:"));
+}
+
+void test_the_battery_is_told_behind_all_others_where_it_fits(void)
+{
+    (void)line_has(""); /* the first after a reset tells its cause */
+    flight = (flight_outputs_t)FLIGHT_OUTPUTS_INITIAL;
+    flight.state = FLIGHT_FLYING;
+    flight.battery = BATTERY_GOOD;
+    flight.battery_v = 14.83F;
+    TEST_ASSERT_TRUE(line_has("flags:0 bat:14.8\r\n"));
+    flight.bound = BOUND_CLIMB;
+    TEST_ASSERT_TRUE(line_has(" limit:CLIMB bat:14.8\r\n"));
+    flight.rule = VERDICT_UNPROVED;
+    flight.state = FLIGHT_DESCENDING;
+    flight.flags = 1280U;
+    flight.height_mm = -1234.0F;
+    flight.reference_m = flight.thrust_n = 3.0F;
+    TEST_ASSERT_TRUE(line_has(" doubt:SIGHT/unproved\r\n") || line_has(" doubt:SIGHT/unproved bat:14.8\r\n"));
+}
+
+void test_a_battery_that_warns_has_the_place_of_a_limit_and_takes_turns_with_a_doubt(void)
+{
+    (void)line_has("");
+    flight = (flight_outputs_t)FLIGHT_OUTPUTS_INITIAL;
+    flight.state = FLIGHT_FLYING;
+    flight.battery = BATTERY_LOW;
+    flight.battery_v = 14.13F;
+    flight.bound = BOUND_CLIMB;
+    TEST_ASSERT_TRUE(line_has("flags:0 bat:14.1/LOW\r\n"));
+    flight.rule = VERDICT_ALONE;
+    bool doubt = false, alone = false;
+    for (int i = 0; i < 2; i++) {
+        const bool told = line_has(" doubt:IMU/alone bat:14.1/LOW\r\n");
+        doubt = doubt || told;
+        alone = alone || !told;
+    }
+    TEST_ASSERT_TRUE(doubt && alone);
+}
+
+void test_a_battery_that_tells_nothing_is_a_dash(void)
+{
+    (void)line_has("");
+    flight = (flight_outputs_t)FLIGHT_OUTPUTS_INITIAL;
+    flight.battery = BATTERY_ABSENT;
+    flight.battery_v = NAN;
+    TEST_ASSERT_TRUE(line_has("flags:0 bat:-/ABSENT\r\n"));
 }

@@ -60,7 +60,8 @@ static flight_recorder_span_t look(int calls)
 static bool read(uint32_t number, published_t *record, int calls)
 {
     (void)calls;
-    *record = (published_t){.time_ms = number * 1000U, .flight.state = FLIGHT_FLYING};
+    *record = (published_t){
+        .time_ms = number * 1000U, .beams = flight_beams_none(), .flight.state = FLIGHT_FLYING};
     return number - span.oldest < span.next - span.oldest;
 }
 
@@ -163,12 +164,17 @@ void test_titles_and_rows_end_with_the_sum_of_all_before_it(void)
 {
     (void)type("");
     TEST_ASSERT_FALSE(verb_log_more());
-    TEST_ASSERT_EQUAL_STRING("OK LOG 0 "
-                             "t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags,up_mps2,"
-                             "pulse_us,age_s,doubt,limit*B1A4\r\n",
-                             lines[1]);
     TEST_ASSERT_EQUAL_STRING(
-        "OK LOG 1 100.000,0.000,0.000,0.000,0.000,0.000,0.0000,0.0000,FLYING,0,0.000,0.0,0.000,,*BA39\r\n",
+        "OK LOG 0 "
+        "t_s,meas_m,est_m,innov_m,ref_m,thrust_n,roll_rad,pitch_rad,state,flags,up_mps2,"
+        "pulse_us,age_s,bat_v,doubt,limit,bat,mf_rays,mf_mm,mf_spread_mm,mf_ms,mf_lie,m1_rays,"
+        "m1_mm,m1_spread_mm,m1_ms,m1_lie,m2_rays,m2_mm,m2_spread_mm,m2_ms,m2_lie,"
+        "out*5F9E\r\n",
+        lines[1]);
+    TEST_ASSERT_EQUAL_STRING(
+        "OK LOG 1 "
+        "100.000,0.000,0.000,0.000,0.000,0.000,0.0000,0.0000,FLYING,0,0.000,0.0,0.000,0.00,,,,"
+        ",,,,,,,,,,,,,,,*6AF7\r\n",
         lines[2]);
 }
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "control/battery.h"
 #include "control/flight_io.h"
 #include "mock_servers.h"
 #include "mock_xbee_port.h"
@@ -104,6 +105,19 @@ void test_the_limits_are_0_and_the_highest_reference(void)
     assert_refused("ERR SETR not a number", "nan");
     assert_refused("ERR SETR not a number", "0.6 m");
     assert_refused("ERR SETR value missing", "");
+}
+
+/* Nobody waits for a take-off that does not come. In the air every order counts. */
+void test_on_the_ground_an_empty_battery_refuses_a_reference_and_never_a_landing(void)
+{
+    flight.battery = BATTERY_EMPTY;
+    assert_refused("ERR SETR battery EMPTY, see #VOLTS", "0.6");
+    TEST_ASSERT_TRUE(type(verb_setr, "SETR", "0"));
+    flight.state = FLIGHT_FLYING;
+    TEST_ASSERT_TRUE(type(verb_setr, "SETR", "0.6"));
+    flight.state = FLIGHT_GROUND;
+    flight.battery = BATTERY_LOW;
+    TEST_ASSERT_TRUE(type(verb_setr, "SETR", "0.6"));
 }
 
 void test_land_and_stop_withdraw_the_reference_whatever_stands_behind_them(void)

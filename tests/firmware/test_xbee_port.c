@@ -494,13 +494,13 @@ void test_a_line_of_a_long_answer_leaves_at_most_a_fifth_of_a_second_to_go(void)
     TEST_ASSERT_EQUAL_UINT16(0, kernel.task.sleeps);
 }
 
-/* One of 240 characters never leaves so little behind it. */
+/* One of 256 characters never leaves so little behind it. */
 void test_a_line_longer_than_that_goes_when_nothing_else_is_to_go(void)
 {
     telemetry_line_t line;
 
     telemetry_begin_answer(&line);
-    while (line.length < 240U) {
+    while (line.length < TELEMETRY_ANSWER_MAX) {
         telemetry_text(&line, "x");
     }
     room = UART_PORT_TRANSMIT_CELLS - 1U;
@@ -509,7 +509,7 @@ void test_a_line_longer_than_that_goes_when_nothing_else_is_to_go(void)
     TEST_ASSERT_TRUE(xbee_port_spare(&line));
 }
 
-/* What is let in then, 240 characters at most, leaves a report the half of the buffer that it needs. */
+/* What is let in then, 256 characters at most, leaves a report the half of the buffer that it needs. */
 void test_the_radio_is_clear_while_a_fifth_of_a_second_is_to_go(void)
 {
     room = UART_PORT_TRANSMIT_CELLS - 193U;
