@@ -1,5 +1,6 @@
 #include "sim/board.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -14,6 +15,9 @@
 
 #define SELECTOR_PIN 3U
 #define STICK_PIN 10U
+#define BATTERY_CHANNEL 0U
+#define BATTERY_OHM 1350.0 /* 13.7 kOhm and 1.5 kOhm of the module: 10.1 to 1 */
+#define BATTERY_STEP (20 * SIM_MS)
 
 int firmware_main(void);
 
@@ -37,6 +41,8 @@ static struct {
     pilot_t *pilot;
     board_pin_t pin;
     stick_wire_t stick;
+    lipo_t battery;
+    double hover_n;
     board_terminal_t terminal;
     void *terminal_context;
     const kernel_costs_t *costs;
@@ -58,6 +64,7 @@ board_config_t board_config(unsigned long seed)
         .imu = razor_default,
         .pilot = PILOT_DEFAULT,
         .stick = STICK_WIRE_DEFAULT,
+        .battery = LIPO_DEFAULT,
         .costs = &costs_annex_iv,
     };
     noise_t phases;
@@ -201,6 +208,31 @@ static void create_laser(const board_config_t *config)
                                  board.laser_faults);
 }
 
+static void battery_goes_on(void *unused)
+{
+    const quadrotor_state_t *state = quadrotor_state(board.quadrotor);
+    const double terminal_v = lipo_draw(&board.battery, state->thrust_n / board.hover_n,
+                                        (double)BATTERY_STEP * 1e-9);
+
+    (void)unused;
+    quadrotor_set_volts(board.quadrotor, lipo_share(&board.battery, terminal_v));
+    if (board.battery.config.connected >= 0.5) {
+        board_battery_pin(
+            lround(lipo_pin_v(&board.battery, quadrotor_scenario_s(board.quadrotor), terminal_v) * 1e6));
+    }
+    timeline_after(BATTERY_STEP, battery_goes_on, NULL);
+}
+
+static void connect_battery(const board_config_t *config)
+{
+    lipo_init(&board.battery, &config->battery, config->seed);
+    board.hover_n = config->quadrotor.hover_thrust_n;
+    chip_drive_analog(BATTERY_CHANNEL, 0.0, BATTERY_OHM);
+    if (config->battery.connected >= 0.5 || config->quadrotor.volts_power > 0.0) {
+        battery_goes_on(NULL);
+    }
+}
+
 /* The world goes on, and so does what is on the wires. */
 static void restart(void *unused)
 {
@@ -229,6 +261,7 @@ void board_power_on(const board_config_t *config, board_terminal_t terminal, voi
     chip_drive_pin(SELECTOR_PIN, true);
     stick_wire_init(&board.stick, &config->stick, config->seed);
     board_stick_pin(config->stick.connected < 0.5);
+    connect_battery(config);
     lay_wires();
     chip_pwm_connect(throttle_pulse, NULL);
     urg04lx_power(board.laser, true);
@@ -353,6 +386,7 @@ bool board_selected(void)
 void board_change(const board_config_t *config)
 {
     quadrotor_change(board.quadrotor, &config->quadrotor);
+    board.hover_n = config->quadrotor.hover_thrust_n;
     board.scene.config = config->scene;
     razor9dof_change(board.imu, &config->imu);
 }
@@ -394,6 +428,16 @@ void board_stick_pin(bool high)
     for (int i = 0; i < BOARD_PROBES; i++) {
         if (probes[i].stick != NULL) {
             probes[i].stick(high);
+        }
+    }
+}
+
+void board_battery_pin(long microvolts)
+{
+    chip_drive_analog(BATTERY_CHANNEL, (double)microvolts * 1e-6, BATTERY_OHM);
+    for (int i = 0; i < BOARD_PROBES; i++) {
+        if (probes[i].battery != NULL) {
+            probes[i].battery(microvolts);
         }
     }
 }

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "sim/devices/lipo.h"
 #include "sim/devices/line_fault.h"
 #include "sim/devices/pilot.h"
 #include "sim/devices/quadrotor.h"
@@ -27,6 +28,7 @@ typedef struct {
     razor_config_t imu;
     pilot_config_t pilot;
     stick_wire_config_t stick;
+    lipo_config_t battery;
     const kernel_costs_t *costs;
 } board_config_t;
 
@@ -67,12 +69,14 @@ double board_rate(board_wire_t wire);
 void board_octet(board_wire_t wire, unsigned octet, double bit_ns);
 
 /* Probes: an octet for one of the firmware's UARTs has come, at its stop bit; the selector's or the stick's
- * pin has got a level; a throttle pulse has ended. NULL: none. They stay through board_power_on() and _off().
+ * pin has got a level, or the battery's another voltage; a throttle pulse has ended. NULL: none. They stay
+ * through board_power_on() and _off().
  */
 typedef struct {
     void (*octet)(board_wire_t wire, unsigned octet, double bit_ns);
     void (*selector)(bool firmware);
     void (*stick)(bool high);
+    void (*battery)(long microvolts);
     void (*pulse)(sim_time_t high_ns);
 } board_probes_t;
 /* Two at most: the timing's and the recording's. */
@@ -91,6 +95,8 @@ void board_stick(sim_time_t high_ns);
 /* Level straight onto that pin, for a recording that is played again. */
 void board_stick_pin(bool high);
 bool board_stick_level(void); /* high too while nothing is connected */
+/* Voltage on the battery's pin. While a battery is connected the board sets it by itself, every 20 ms. */
+void board_battery_pin(long microvolts);
 
 bool board_selected(void); /* the firmware has the throttle */
 

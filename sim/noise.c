@@ -1,6 +1,10 @@
 #include "sim/noise.h"
 
+#include <math.h>
 #include <stdbool.h>
+
+#define PARTS 0x1p53
+#define HALF (UINT64_C(1) << 52)
 
 /* Only integer arithmetic and IEEE additions, products and divisions: no library function whose last digit
  * depends on the machine. */
@@ -27,9 +31,15 @@ uint64_t noise_bits(noise_t *noise)
     return z ^ (z >> 31);
 }
 
+/* In parts of PARTS. */
+static uint64_t part(noise_t *noise)
+{
+    return noise_bits(noise) >> 11;
+}
+
 static double unit(noise_t *noise)
 {
-    return (double)(noise_bits(noise) >> 11) * 0x1p-53;
+    return (double)part(noise) / PARTS;
 }
 
 double noise_uniform(noise_t *noise, double low, double high)
@@ -37,14 +47,14 @@ double noise_uniform(noise_t *noise, double low, double high)
     return low + (high - low) * unit(noise);
 }
 
-/* True with probability exp(-p), 0 <= p <= 1: the run p > u1 > u2 > ... has even length (von Neumann 1951).
- */
-static bool chance_exp(noise_t *noise, double p)
+/* True with probability exp(-p), 0 <= p <= 1, in parts, rounded up: the run p > u1 > u2 > ... has even length
+ * (von Neumann 1951). */
+static bool chance_exp(noise_t *noise, uint64_t p)
 {
     bool even = true;
 
-    for (double last = p;;) {
-        double u = unit(noise);
+    for (uint64_t last = p;;) {
+        const uint64_t u = part(noise);
 
         if (u >= last) {
             return even;
@@ -54,7 +64,7 @@ static bool chance_exp(noise_t *noise, double p)
     }
 }
 
-static bool chances_exp(noise_t *noise, double p, int trials)
+static bool chances_exp(noise_t *noise, uint64_t p, int trials)
 {
     while (trials > 0 && chance_exp(noise, p)) {
         trials--;
@@ -68,15 +78,15 @@ double noise_gauss(noise_t *noise)
     for (;;) {
         int k = 0;
 
-        while (chance_exp(noise, 0.5)) {
+        while (chance_exp(noise, HALF)) {
             k++;
         }
-        if (!chances_exp(noise, 0.5, k * (k - 1))) {
+        if (!chances_exp(noise, HALF, k * (k - 1))) {
             continue;
         }
         double x = unit(noise);
 
-        if (chances_exp(noise, x * (2 * k + x) / (2 * k + 2), k + 1)) {
+        if (chances_exp(noise, (uint64_t)ceil(x * (2 * k + x) / (2 * k + 2) * PARTS), k + 1)) {
             return (noise_bits(noise) >> 63) != 0 ? -(k + x) : k + x;
         }
     }

@@ -1,4 +1,4 @@
-/* Why a replay is the same run. The firmware sees nothing of the world but octets, two pins and its
+/* Why a replay is the same run. The firmware sees nothing of the world but octets, three pins and its
  * flash, and time is virtual: with the same at the same instants it does the same. Two things must not differ
  * by a nanosecond: the instants, so they are kept as integers, and the order of what happens at one instant.
  * The timeline runs things of one instant in the order in which they were posted, so an octet is posted here
@@ -82,6 +82,11 @@ static void stick_level(bool high)
     fprintf(recorder.out, "stick %" PRId64 " %d\n", timeline_now(), high ? 1 : 0);
 }
 
+static void battery_volts(long microvolts)
+{
+    fprintf(recorder.out, "battery %" PRId64 " %ld\n", timeline_now(), microvolts);
+}
+
 static void write_flash(void)
 {
     static unsigned short cells[CELLS];
@@ -112,8 +117,10 @@ void tape_record(FILE *out)
     if (!board_stick_level()) {
         stick_level(false);
     }
-    board_probe(BOARD_PROBE_TAPE,
-                &(board_probes_t){.octet = octet_came, .selector = selected, .stick = stick_level});
+    board_probe(BOARD_PROBE_TAPE, &(board_probes_t){.octet = octet_came,
+                                                    .selector = selected,
+                                                    .stick = stick_level,
+                                                    .battery = battery_volts});
 }
 
 void tape_key(const char *key, const char *value)
@@ -155,10 +162,21 @@ typedef struct {
     char value[112];
 } entry_t;
 
+typedef enum { PIN_SELECT, PIN_STICK, PIN_BATTERY, PINS } pin_t;
+static const struct {
+    const char *word;
+    long most;
+    const char *form;
+} pins[PINS] = {
+    [PIN_SELECT] = {"select", 1, "select T_NS 0|1"},
+    [PIN_STICK] = {"stick", 1, "stick T_NS 0|1"},
+    [PIN_BATTERY] = {"battery", 5000000, "battery T_NS MICROVOLTS"},
+};
+
 typedef struct {
     sim_time_t time;
-    bool stick; /* the stick's pin; else the selector's */
-    bool high;
+    pin_t pin;
+    long value; /* a level, or microvolts */
 } level_t;
 
 struct tape {
@@ -256,13 +274,14 @@ static const char *read_flash(tape_t *tape, const char *rest)
     return NULL;
 }
 
-static const char *read_level(tape_t *tape, bool stick, const char *rest)
+static const char *read_level(tape_t *tape, pin_t pin, const char *rest)
 {
     int64_t time;
-    int level;
+    long value;
 
-    if (sscanf(rest, "%" SCNd64 " %d", &time, &level) != 2 || time < 0 || (level != 0 && level != 1)) {
-        return stick ? "stick T_NS 0|1" : "select T_NS 0|1";
+    if (sscanf(rest, "%" SCNd64 " %ld", &time, &value) != 2 || time < 0 || value < 0 ||
+        value > pins[pin].most) {
+        return pins[pin].form;
     }
     if (time > TIME_MOST) {
         return "beyond what a run lasts";
@@ -270,7 +289,7 @@ static const char *read_level(tape_t *tape, bool stick, const char *rest)
     if (time < last_level(&tape->levels)) {
         return "before the level before it";
     }
-    *(level_t *)append(&tape->levels, sizeof(level_t)) = (level_t){time, stick, level == 1};
+    *(level_t *)append(&tape->levels, sizeof(level_t)) = (level_t){time, pin, value};
     return NULL;
 }
 
@@ -312,8 +331,10 @@ static const char *read_line(tape_t *tape, char *line)
     if (strcmp(line, "flash") == 0) {
         return read_flash(tape, rest);
     }
-    if (strcmp(line, "select") == 0 || strcmp(line, "stick") == 0) {
-        return read_level(tape, line[1] == 't', rest);
+    for (int pin = 0; pin < PINS; pin++) {
+        if (strcmp(line, pins[pin].word) == 0) {
+            return read_level(tape, (pin_t)pin, rest);
+        }
     }
     return strcmp(line, "truth") == 0 ? read_truth(tape, rest) : read_key(tape, line, rest);
 }
@@ -467,10 +488,12 @@ static void set_level(void *unused)
     (void)unused;
     const level_t *level = &((const level_t *)player.tape->levels.items)[player.level];
 
-    if (level->stick) {
-        board_stick_pin(level->high);
+    if (level->pin == PIN_BATTERY) {
+        board_battery_pin(level->value);
+    } else if (level->pin == PIN_STICK) {
+        board_stick_pin(level->value == 1);
     } else {
-        board_select(level->high);
+        board_select(level->value == 1);
     }
     player.level++;
     await_level();

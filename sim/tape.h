@@ -12,6 +12,7 @@
  * others followed without a pause; each lasted LENGTH_NS, ten bits
  *   select T_NS 0|1                level of the selector pin
  *   stick T_NS 0|1                 level of the stick's pin
+ *   battery T_NS MICROVOLTS        voltage on the battery's pin
  *   truth HEIGHT ABS TERRAIN THRUST X Y HEADING    of one row of the log, where a simulated vehicle flew,
  * what it was commanded (N), and where it was; older recordings end before the thrust, or before X
  *

@@ -141,7 +141,7 @@ typedef struct {
 
 /* A half space: what lies behind the plane is `depth` inside; the depth grows by `rate` for a metre of ray.
  */
-static void clip(crossing_t *crossing, double depth, double rate, double norm, bool top)
+static inline void clip(crossing_t *crossing, double depth, double rate, double norm, bool top)
 {
     if (fabs(rate) < LEVEL) {
         crossing->outside = crossing->outside || depth < 0.0;
@@ -162,20 +162,34 @@ static double slope_of(const place_block_t *block)
     return block->length_m > 0.0 ? (block->far_top_m - block->near_top_m) / block->length_m : 0.0;
 }
 
+/* Planes that are crossed later never bring it back. */
+static bool misses(crossing_t *crossing)
+{
+    crossing->outside = crossing->outside || crossing->enter_m >= crossing->leave_m;
+    return crossing->outside;
+}
+
 static crossing_t cross(const place_block_t *block, const local_t *ray)
 {
     crossing_t crossing = {.enter_m = -INFINITY, .leave_m = INFINITY};
-    const double slope = slope_of(block), middle_m = 0.5 * (block->near_top_m + block->far_top_m);
     const double half_m = 0.5 * block->length_m, wide_m = 0.5 * block->width_m;
 
     clip(&crossing, half_m - ray->u, -ray->du, 1.0, false);
     clip(&crossing, half_m + ray->u, ray->du, 1.0, false);
+    if (misses(&crossing)) {
+        return crossing;
+    }
     clip(&crossing, wide_m - ray->v, -ray->dv, 1.0, false);
     clip(&crossing, wide_m + ray->v, ray->dv, 1.0, false);
+    if (misses(&crossing)) {
+        return crossing;
+    }
+    const double slope = slope_of(block), middle_m = 0.5 * (block->near_top_m + block->far_top_m);
+
     clip(&crossing, ray->w - block->bottom_m, ray->dw, 1.0, false);
     clip(&crossing, middle_m + slope * ray->u - ray->w, slope * ray->du - ray->dw, sqrt(1.0 + slope * slope),
          true);
-    crossing.outside = crossing.outside || crossing.enter_m >= crossing.leave_m;
+    (void)misses(&crossing);
     return crossing;
 }
 

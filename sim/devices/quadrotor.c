@@ -50,6 +50,7 @@ const quadrotor_config_t quadrotor_default = {.gain = 1.0,
                                               .damping_per_s = 2.4,
                                               .hover_thrust_n = 7.4,
                                               .sag_per_s = 0.001,
+                                              .volts_power = 0.0,
                                               .hover_jump_n = 0.0,
                                               .hover_jump_start_s = 10.0,
                                               .turbulence_mps2 = 0.2,
@@ -107,6 +108,7 @@ struct quadrotor {
     size_t head, waiting;
     sim_time_t last_pulse;
     double demand_n, lag;
+    double volts;            /* share, of the battery */
     double followed_n, lag2; /* the demand behind the autopilot's second lag */
     rotors_t rotors;
     const place_t *place;
@@ -123,6 +125,10 @@ struct quadrotor {
     noise_t turbulence_noise, tug_noise;
 
     axis_t roll, pitch;
+    double roll_cosine, pitch_cosine;
+    struct {
+        double cosine, sine;
+    } heading; /* as the feet are asked for */
     double attitude_radps, attitude_drive, yaw_drift_rad;
     noise_t yaw_noise;
 
@@ -156,6 +162,13 @@ static void prepare_steps(quadrotor_t *q)
                         sqrt(4.0 * ATTITUDE_DAMPING * pow(q->attitude_radps, 3.0) * STEP_S);
 }
 
+/* After each change of the tilt. */
+static void tilted(quadrotor_t *q)
+{
+    q->roll_cosine = cos(q->state.roll_rad);
+    q->pitch_cosine = cos(q->state.pitch_rad);
+}
+
 quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const place_t *place, const course_t *course,
                               unsigned long seed)
 {
@@ -168,6 +181,7 @@ quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const place_t *p
     q->clock = timeline_now();
     q->last_pulse = q->clock;
     q->origin = SIM_NEVER;
+    q->volts = 1.0;
     q->counting = true;
     q->state.altitude_m = config->anchored ? config->bench_height_m
                                            : place_below(q->place, 0.0, 0.0, HIGH_M, 0.0).at.z;
@@ -176,6 +190,7 @@ quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const place_t *p
     q->state.yaw_rad = config->anchored ? 0.0 : HEADING_RAD;
     naza_init(&q->naza, &config->naza);
     q->state.motors = q->naza.running;
+    tilted(q);
     rotors_init(&q->rotors, &config->rotors);
     travel_init(&q->travel, course);
     prepare_noise(q, seed);
@@ -224,7 +239,7 @@ static void follow_rules(quadrotor_t *q)
                               .corners = q->corners,
                               .manual = q->manual,
                               .on_ground = s->on_ground,
-                              .tilt_rad = acos(cos(s->roll_rad) * cos(s->pitch_rad))};
+                              .tilt_rad = acos(q->roll_cosine * q->pitch_cosine)};
 
     naza_step(&q->naza, &in, STEP_S);
     q->state.motor_stops += s->motors && !q->naza.running && s->height_m > ALOFT_M;
@@ -342,6 +357,7 @@ static void rotate(quadrotor_t *q, double t_s)
     }
     q->state.roll_rad = q->roll.angle_rad + q->tumble_rad;
     q->state.pitch_rad = q->pitch.angle_rad;
+    tilted(q);
 
     const double wander = q->yaw_drift_rad +
                           share * noise_uniform(&q->yaw_noise, -YAW_STEP_RAD, YAW_STEP_RAD);
@@ -370,7 +386,7 @@ static double lift_mps2(const quadrotor_t *q, double t_s)
         return 0.0;
     }
     const double excess = q->config.gain * (s->thrust_n - hover_n(q, t_s)) / q->config.hover_thrust_n;
-    return GRAVITY_MPS2 * (1.0 + excess) * ground_effect(q) * cos(s->roll_rad) * cos(s->pitch_rad);
+    return GRAVITY_MPS2 * (1.0 + excess) * ground_effect(q) * q->roll_cosine * q->pitch_cosine;
 }
 
 /* Lift less drag. */
@@ -380,16 +396,26 @@ static double air_mps2(quadrotor_t *q, double t_s)
     if (q->config.airframe < 0.5) {
         return lift_mps2(q, t_s) - GRAVITY_MPS2 - q->config.damping_per_s * s->speed_mps;
     }
-    const double upright = cos(s->roll_rad) * cos(s->pitch_rad);
+    const double upright = q->roll_cosine * q->pitch_cosine;
     return GRAVITY_MPS2 * (rotors_thrust(&q->rotors, s->speed_mps) * ground_effect(q) * upright - 1.0) -
            rotors_drag_mps2(&q->rotors, s->speed_mps, upright);
+}
+
+/* Newtons that lift as much with a full battery as what the autopilot gives does with this one. */
+static double with_volts(const quadrotor_t *q, double given_n)
+{
+    const double power = q->config.volts_power;
+    if (power == 0.0 || q->volts == 1.0) {
+        return given_n;
+    }
+    return given_n * pow(q->volts, q->config.airframe < 0.5 ? power : power / q->config.rotors.exponent);
 }
 
 /* The motors one step later. */
 static void spin(quadrotor_t *q, double t_s)
 {
     quadrotor_state_t *s = &q->state;
-    const double given_n = autopilot_n(q);
+    const double given_n = with_volts(q, autopilot_n(q));
     q->followed_n = q->lag2 < 1.0 ? q->followed_n + q->lag2 * (given_n - q->followed_n) : given_n;
     if (q->config.airframe < 0.5) {
         s->thrust_n += q->lag * (q->followed_n - s->thrust_n);
@@ -443,14 +469,28 @@ typedef struct {
 
 static place_hit_t below(const quadrotor_t *q, double fore_m, double right_m, double t_s)
 {
-    const double c = cos(q->state.heading_rad), s = sin(q->state.heading_rad);
+    const double c = q->heading.cosine, s = q->heading.sine;
 
     return place_below(q->place, q->travel.x_m + c * fore_m + s * right_m,
                        q->travel.y_m + s * fore_m - c * right_m, q->state.altitude_m, t_s);
 }
 
-static ground_t ground_below(const quadrotor_t *q, double t_s)
+/* How fast a slope carries a vehicle up that moves onto it: what is left of its speed along the slope after
+ * the impact, upwards. v s / (1 + s^2) for slope s: v / 2 at most, so that no edge of a rough floor gives
+ * more than the vehicle had. */
+static double climb_mps(const place_hit_t *hit, double vx_mps, double vy_mps)
 {
+    const double rise_mps = hit->slope_x * vx_mps + hit->slope_y * vy_mps;
+    const double speed_m2ps2 = vx_mps * vx_mps + vy_mps * vy_mps;
+
+    return speed_m2ps2 > 0.0 ? rise_mps * speed_m2ps2 / (speed_m2ps2 + rise_mps * rise_mps) : 0.0;
+}
+
+static ground_t ground_below(quadrotor_t *q, double t_s)
+{
+    q->heading.cosine = cos(q->state.heading_rad);
+    q->heading.sine = sin(q->state.heading_rad);
+
     place_hit_t highest = below(q, 0.0, 0.0, t_s);
     const double centre_m = highest.at.z;
     const bool far = q->state.altitude_m > centre_m + SLIPS_OFF_M + CONTACT_ARMED_M; /* nothing carries */
@@ -463,8 +503,7 @@ static ground_t ground_below(const quadrotor_t *q, double t_s)
         }
     }
     return (ground_t){centre_m, highest.at.z,
-                      highest.rises_mps + highest.slope_x * q->travel.vx_mps +
-                          highest.slope_y * q->travel.vy_mps};
+                      highest.rises_mps + climb_mps(&highest, q->travel.vx_mps, q->travel.vy_mps)};
 }
 
 static void collide(quadrotor_t *q, double t_s)
@@ -480,7 +519,7 @@ static void collide(quadrotor_t *q, double t_s)
 static void advance(quadrotor_t *q, double t_s, double air_mps2)
 {
     quadrotor_state_t *s = &q->state;
-    const double upright = cos(s->roll_rad) * cos(s->pitch_rad);
+    const double upright = q->roll_cosine * q->pitch_cosine;
     const double lift_mps2 = fmax(air_mps2 + GRAVITY_MPS2, 0.0) / fmax(upright, 0.1);
 
     travel_step(&q->travel, STEP_S, s->heading_rad, s->roll_rad, s->pitch_rad, lift_mps2, s->on_ground);
@@ -500,6 +539,7 @@ static void hold(quadrotor_t *q)
     if ((double)q->clock * 1e-9 >= q->config.bench_roll_start_s) {
         s->roll_rad = q->config.bench_roll_rad;
         s->pitch_rad = q->config.bench_pitch_rad;
+        tilted(q);
     }
 }
 
@@ -551,6 +591,12 @@ void quadrotor_follow(quadrotor_t *quadrotor, const course_t *course)
 {
     bring_up(quadrotor);
     travel_follow(&quadrotor->travel, course);
+}
+
+void quadrotor_set_volts(quadrotor_t *quadrotor, double share)
+{
+    bring_up(quadrotor);
+    quadrotor->volts = share;
 }
 
 void quadrotor_pulse(quadrotor_t *quadrotor, sim_time_t high_ns)

@@ -7,6 +7,11 @@
  * the thrust; its integral carries weight, drag and battery. On the ground the motors idle until the throttle
  * asks for a climb. Signals lost count as the lowest throttle: a descent.
  *
+ * The same throttle lifts less when the battery's voltage falls, by volts_power. ArduPilot reckons with the
+ * share s(v) = (1 - e) v + e v^2 of the thrust at the share v of the voltage
+ * (update_lift_max_from_batt_voltage), with e = MOT_THST_EXPO, 0.65, of about 100 propellers; 0.5 for 5 inch,
+ * 0.8 for 30. Near v = 1 that is the power 1 + e. An autopilot may compensate as ArduPilot does: power 0.
+ *
  * Two airframes: one whose thrust is in proportion to the throttle, with one lag and a damping that is always
  * the same (what a simple estimator assumes); and that of rotors.h.
  *
@@ -32,6 +37,7 @@ typedef struct {
     double damping_per_s;         /* D 2.4 */
     double hover_thrust_n;        /* TH0 7.4 */
     double sag_per_s;             /* 0.001 */
+    double volts_power;           /* 0: the battery's voltage does not change the thrust */
     double hover_jump_n;          /* 0: more hover thrust from hover_jump_start_s on: a load, a lost blade */
     double hover_jump_start_s;    /* 10 */
     double turbulence_mps2;       /* 0.2 rms */
@@ -107,6 +113,8 @@ void quadrotor_pulse(quadrotor_t *quadrotor, sim_time_t high_ns);
 const quadrotor_state_t *quadrotor_state(quadrotor_t *quadrotor);
 /* Scenario time now; far below 0 before its origin is known. */
 double quadrotor_scenario_s(const quadrotor_t *quadrotor);
+/* The battery's voltage, as a share of that for which hover_thrust_n holds; 1 until it is told. */
+void quadrotor_set_volts(quadrotor_t *quadrotor, double share);
 /* The autopilot's mode: Manual, or Attitude as it is at first. */
 void quadrotor_set_manual(quadrotor_t *quadrotor, bool manual);
 /* Both sticks of the remote control in the lower corners, or not any more. */

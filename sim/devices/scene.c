@@ -22,6 +22,10 @@ const scene_config_t scene_default = {.ray_sigma_mm = 5.0,
                                       .sight_blocked_span = {SPAN_POWER_ON_S, SPAN_FOR_GOOD_S},
                                       .frozen = {SPAN_FOR_GOOD_S, SPAN_FOR_GOOD_S},
                                       .struck_beam = 0.0,
+                                      .missing_mirror = 0.0,
+                                      .around_lost = 0.0,
+                                      .around_garbage = 0.0,
+                                      .around_holder_mm = 0.0,
                                       .spot_rad = 0.0,
                                       .sunlight = 0.0,
                                       .edge_m = 0.0,
@@ -31,6 +35,10 @@ const scene_config_t scene_default = {.ray_sigma_mm = 5.0,
 #define FAR_CODE 0      /* nothing in reach */
 #define DAZZLED_CODE 18 /* too much light */
 #define NEIGHBOURS_CODE 7
+#define GARBAGE_FROM_MM 20.0 /* a distance, and no code */
+#define GARBAGE_TO_MM 4094.0
+#define HOLDER_FIRST 460 /* chosen: a third of what the rays between two mirrors see */
+#define HOLDER_LAST 530
 #define SKYWARD 0.1         /* cosine from which on an edge is no nearer */
 #define EDGE_LOST (3.0 / 9) /* the recording in scene.h */
 
@@ -44,6 +52,7 @@ void scene_init(scene_t *scene, const scene_config_t *config, quadrotor_t *quadr
     noise_init(&scene->wander_noise, seed, "laser wander");
     noise_init(&scene->glitch_noise, seed, "laser glitches");
     noise_init(&scene->lost_noise, seed, "laser lost rays");
+    noise_init(&scene->around_noise, seed, "laser around");
     noise_init(&scene->surface_noise, seed, "laser surfaces");
     scene->wander_mm = config->wander_sigma_mm * noise_gauss(&scene->wander_noise);
     scene->wandered_s = 0.0;
@@ -125,8 +134,8 @@ static int told_mm(scene_t *scene, const look_t *look, int mirror, int step, ray
     return (int)lround(echo.mm + noise.shared_mm + noise.own_mm * surface_noise(echo.signal, far_m, sun));
 }
 
-/* Whether a fault of the sight acts on this mirror's beam. */
-static bool is_struck(const scene_t *scene, int mirror)
+/* Whether a number of scene_config_t names this mirror, or all. */
+static bool is_named(double which, int mirror)
 {
     static const unsigned beams[] = {~0U,
                                      1U << BRACKET_FRONT,
@@ -136,7 +145,32 @@ static bool is_struck(const scene_t *scene, int mirror)
                                      1U << BRACKET_FRONT | 1U << BRACKET_FORE,
                                      1U << BRACKET_AFT | 1U << BRACKET_FORE};
 
-    return (beams[lround(scene->config.struck_beam)] >> mirror & 1U) != 0U;
+    return (beams[lround(which)] >> mirror & 1U) != 0U;
+}
+
+/* Whether a fault of the sight acts on this mirror's beam. */
+static bool is_struck(const scene_t *scene, int mirror)
+{
+    return is_named(scene->config.struck_beam, mirror);
+}
+
+/* One bracket is mounted. Rays are asked for on the mirrors that it has, so it is the one of three when the
+ * aft mirror's are among them, and then nothing stands where the other one has its two. */
+static bool is_mounted(const urg_rays_t *asked, int mirror)
+{
+    const bool three = asked->first_step <= bracket_mirrors[BRACKET_AFT].last_step;
+
+    return mirror <= BRACKET_FORE || !three;
+}
+
+/* The mirror that bends this ray; < 0: none. */
+static int mirror_at(const scene_t *scene, const urg_rays_t *asked, int step)
+{
+    const int mirror = bracket_mirror_at(step);
+    const double missing = scene->config.missing_mirror;
+    const bool gone = missing >= 0.5 && mirror >= 0 && is_named(missing, mirror);
+
+    return mirror >= 0 && !gone && is_mounted(asked, mirror) ? mirror : -1;
 }
 
 static bool lost(scene_t *scene, int mirror, double t_s)
@@ -243,12 +277,30 @@ static int bent_mm(scene_t *scene, const look_t *look, int mirror, int step)
     return told_mm(scene, look, mirror, step, noise);
 }
 
+/* A ray that goes straight on: what stands around, or a lie of it. */
+static int free_mm(scene_t *scene, const look_t *look, int step)
+{
+    const scene_config_t *c = &scene->config;
+    const ray_noise_t noise = noise_of_ray(scene, look, step);
+
+    if (happens(&scene->around_noise, c->around_lost)) {
+        return FAR_CODE;
+    }
+    if (happens(&scene->around_noise, c->around_garbage)) {
+        return (int)noise_uniform(&scene->around_noise, GARBAGE_FROM_MM, GARBAGE_TO_MM);
+    }
+    if (c->around_holder_mm > 0.0 && step >= HOLDER_FIRST && step <= HOLDER_LAST) {
+        return (int)lround(c->around_holder_mm + noise.shared_mm + noise.own_mm);
+    }
+    return told_mm(scene, look, -1, step, noise);
+}
+
 static int measured_mm(scene_t *scene, const look_t *look, int step)
 {
-    const int mirror = bracket_mirror_at(step);
+    const int mirror = mirror_at(scene, look->asked, step);
 
-    if (mirror < 0) { /* what stands around */
-        return told_mm(scene, look, mirror, step, noise_of_ray(scene, look, step));
+    if (mirror < 0) {
+        return free_mm(scene, look, step);
     }
     if (scene->turn.broken && is_struck(scene, mirror) && (step - look->asked->first_step) % 2 == 1) {
         return (int)noise_uniform(&scene->glitch_noise, 0.0, 19.0);

@@ -43,11 +43,18 @@ typedef struct {
     span_t sight_blocked_span; /* since power-on */
     span_t frozen; /* the sensor gives the distances of its latest scan again and again; its clock runs on.
                     * Never */
-    double struck_beam; /* 0: the four before act on every beam; 1: on the front mirror's alone, 2: on that
-                         * of mirror 1, aft; 3: of mirror 2, fore; 4: front and aft; 5: front and fore; 6: aft
-                         * and fore */
-    double spot_rad;    /* half the width of what a ray lights, 0: a line. Recorded: 6e-3, one step */
-    double sunlight;    /* 0..1, everywhere */
+    double struck_beam;    /* 0: the four before act on every beam; 1: on the front mirror's alone, 2: on that
+                            * of mirror 1, aft; 3: of mirror 2, fore; 4: front and aft; 5: front and fore; 6: aft
+                            * and fore */
+    double missing_mirror; /* 0: none; else as struck_beam: these are not there, or the rays asked for pass
+                            * beside them. What they should bend goes straight on, to what stands around */
+    double
+        around_lost; /* share of the rays that no mirror bends, each scan others, that come back too weak */
+    double around_garbage;   /* share of them that tell any distance: sunlight */
+    double around_holder_mm; /* 0: none; a holder or a leg of the vehicle stands so far off before a third of
+                              * those between the front and the fore mirror */
+    double spot_rad;         /* half the width of what a ray lights, 0: a line. Recorded: 6e-3, one step */
+    double sunlight;         /* 0..1, everywhere */
     double edge_m; /* what the beam sees lies that much higher than what the gear will stand on; < 0: beyond
                     * the edge of a table */
     double edge_start_s; /* 0 */
@@ -58,7 +65,8 @@ extern const scene_config_t scene_default;
 typedef struct {
     scene_config_t config;
     quadrotor_t *quadrotor;
-    noise_t ray_noise, common_noise, mirror_noise, wander_noise, glitch_noise, lost_noise, surface_noise;
+    noise_t ray_noise, common_noise, mirror_noise, wander_noise, glitch_noise, lost_noise, surface_noise,
+        around_noise;
     double wander_mm, wandered_s;
     struct { /* what the rays of this revolution share */
         double common_mm, mirror_mm[BRACKET_MIRRORS];

@@ -44,6 +44,9 @@ const surface_t *surface_find(const char *name)
 /* The share of its gloss that comes back along the ray. */
 static double glint(const surface_t *surface, double incidence_cos)
 {
+    if (surface->gloss <= 0.0) {
+        return 0.0;
+    }
     const double off = acos(fmin(incidence_cos, 1.0)) / LOBE_RAD;
 
     return surface->gloss * exp(-off * off);

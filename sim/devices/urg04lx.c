@@ -192,23 +192,32 @@ static int64_t next_turn(const urg04lx_t *urg)
     return turning < 0 ? 0 : turning / urg->config.revolution + 1;
 }
 
-static int last_at_once(const scan_t *scan)
+static int last_at_once(const scan_t *scan, int from)
 {
-    const int last = scan->next + URG_RAYS_AT_ONCE - 1;
+    const int last = from + URG_RAYS_AT_ONCE - 1;
 
     return last < scan->last ? last : scan->last;
 }
 
-/* The mirror looks at the middle of the steps that are sampled together. */
+/* The mirror looks at the middle of the steps that are sampled together, from this one on. */
+static sim_time_t nominal(const scan_t *scan, int from)
+{
+    const urg04lx_t *urg = scan->urg;
+    const double middle = 0.5 * (from + last_at_once(scan, from)) - INSTANT_STEP;
+
+    return turn_start(urg, scan->turn) + urg->config.ray_instant +
+           (sim_time_t)llround(middle / STEPS_IN_A_TURN * (double)urg->config.revolution);
+}
+
+/* Where the revolution has no room for the ray_instant that was set, all its rays come later, or all earlier:
+ * the mirror turns evenly. */
 static sim_time_t instant(const scan_t *scan)
 {
     const urg04lx_t *urg = scan->urg;
-    const double middle = 0.5 * (scan->next + last_at_once(scan)) - INSTANT_STEP;
-    const sim_time_t nominal = turn_start(urg, scan->turn) + urg->config.ray_instant +
-                               (sim_time_t)llround(middle / STEPS_IN_A_TURN * (double)urg->config.revolution);
-    const sim_time_t start = turn_start(urg, scan->turn), over = turn_start(urg, scan->turn + 1);
+    const sim_time_t too_early = turn_start(urg, scan->turn) - nominal(scan, scan->first);
+    const sim_time_t too_late = nominal(scan, scan->last) - turn_start(urg, scan->turn + 1);
 
-    return nominal < start ? start : nominal < over ? nominal : over;
+    return nominal(scan, scan->next) + (too_early > 0 ? too_early : 0) - (too_late > 0 ? too_late : 0);
 }
 
 static void sample(void *context)
@@ -218,7 +227,7 @@ static void sample(void *context)
     const urg_rays_t rays = {.first_step = scan->first,
                              .last_step = scan->last,
                              .from_step = scan->next,
-                             .to_step = last_at_once(scan)};
+                             .to_step = last_at_once(scan, scan->next)};
 
     urg->world(urg->world_context, &rays, scan->distance_mm + rays.from_step);
     scan->next = rays.to_step + 1;

@@ -43,6 +43,7 @@ static struct {
     place_file_t place;   /* valid while in_place */
     bool open_loop;       /* the vehicle answers to the flight as flown */
     uint32_t shown_frame; /* sequence of the latest in the log */
+    uint32_t shown_scan;
     unsigned pings;
     double ping_every_s;
 } flight;
@@ -392,6 +393,16 @@ static float height_mm(const firmware_view_t *firmware)
                                                 : firmware->altitude.altitude.height_mm;
 }
 
+/* A scan is shown once, when the control cycle has it. */
+static flight_beams_t new_beams(const firmware_view_t *firmware)
+{
+    const uint32_t scans = firmware->flight.signal.scans;
+    const bool unseen = scans != flight.shown_scan;
+
+    flight.shown_scan = scans;
+    return unseen ? published_beams_of(&firmware->flight, firmware->now_us) : flight_beams_none();
+}
+
 /* As the firmware knows it at this instant, between two of its cycles too; the pulse as it is at the pin. */
 static published_t published(void)
 {
@@ -403,6 +414,7 @@ static published_t published(void)
         .roll_rad = attitude ? firmware.imu.median.roll_rad : NAN,
         .pitch_rad = attitude ? firmware.imu.median.pitch_rad : NAN,
         .up_mps2 = new_frame(&firmware.imu) ? imu_up_mps2(&firmware.imu) : NAN,
+        .beams = new_beams(&firmware),
         .flight = firmware.flight,
     };
 
@@ -421,15 +433,26 @@ static double in_column(double value, flight_log_scale_t scale)
 #define FLAGS(telemetry, column) fprintf(csv, ",%u", (unsigned)now.flight.flags);
 #define DERIVED(column, log_decimals, csv_decimals, source, function, of) \
     write_number(csv, (double)now.source, csv_decimals);
-#define NAME(column, source, name_of, shift) \
+#define NAME(column, source, name_of, shift, bits) \
     fprintf(csv, ",%s", (now.source != 0U) ? name_of(now.source) : "");
 #define TEXT(telemetry, source)
+#define SET(column, source) fprintf(csv, ",%s", flight_beams_names(now.source));
+#define BEAM(column, name) write_beam(csv, &now.beams.beam[name]);
+static void write_beam(FILE *csv, const flight_beam_t *beam)
+{
+    write_number(csv, (double)beam->rays, 0);
+    write_number(csv, (double)beam->slant_mm, 1);
+    write_number(csv, (double)beam->spread_mm, 0);
+    write_number(csv, (double)beam->age_us * 1e-3, 1);
+    write_number(csv, (double)beam->lie * 100.0, 1);
+}
+
 static void write_row(FILE *csv, double t_s, const tape_truth_t *truth)
 {
     const published_t now = published();
 
     fprintf(csv, "%.2f", t_s);
-    PUBLISHED(NUMBER, DERIVED, STATE, FLAGS, NAME, TEXT)
+    PUBLISHED(NUMBER, DERIVED, STATE, FLAGS, NAME, TEXT, BEAM, SET)
     fprintf(csv, ",%.4f,%.4f,%.4f", truth->height_m, truth->altitude_m, truth->terrain_m);
     write_number(csv, truth->x_m, 4);
     write_number(csv, truth->y_m, 4);

@@ -22,6 +22,7 @@ typedef struct {
 #define IMU(field) offsetof(plant_t, board.imu.field)
 #define PILOT(field) offsetof(plant_t, board.pilot.field)
 #define STICK(field) offsetof(plant_t, board.stick.field)
+#define BATTERY(field) offsetof(plant_t, board.battery.field)
 
 static const figure_t figures[] = {
     {"airframe", "-", 0, 1, QUAD(airframe), 1,
@@ -41,6 +42,8 @@ static const figure_t figures[] = {
      "that much more by the square of the tilt's sine (airframe 1)"},
     {"hover_thrust", "N", 0.1, 100, QUAD(hover_thrust_n), 1, "hover thrust per motor TH0"},
     {"sag", "1/s", -1, 1, QUAD(sag_per_s), 1, "battery sag: growth of the hover thrust's command"},
+    {"volts_power", "-", 0, 4, QUAD(volts_power), 1,
+     "thrust goes with the battery's voltage to the power of it; 0: compensated"},
     {"hover_jump", "N", -100, 100, QUAD(hover_jump_n), 1,
      "and that much more from then on: a load, a lost blade; < 0: a load let go"},
     {"hover_jump_start", "s", -LARGE, LARGE, QUAD(hover_jump_start_s), 1, "scenario time at which"},
@@ -80,8 +83,12 @@ static const figure_t figures[] = {
     {"rope", "m", 0, 10, QUAD(rope_m), 1, "length of a rope to the floor, taut above it; 0: none"},
     {"rope_pull", "1/s2", 0, 5000, QUAD(rope_per_s2), 1, "what it pulls then, m/s2 for each metre"},
     {"platform", "m", -10, 10, AT(ground.platform_m), 1, "height of the ramp's platform; < 0: a pit"},
+    {"course_speed", "m/s", 0.05, 2, AT(ground.speed_mps), 1,
+     "over that ramp; its edge comes at 11 s all the same"},
+    {"course_nose_deg", "deg", -180, 180, AT(ground.nose_rad), M_PI / 180.0,
+     "from that way to the nose; 180: tail first"},
     {"floor_rms_mm", "mm", 0, 10000, AT(ground.rough_rms_m), 1e-3,
-     "uneven floor under the flight, which then advances at 0.4 m/s"},
+     "uneven floor under the flight, which then advances"},
     {"floor_tau", "s", 1e-2, 1000, AT(ground.rough_s), 1, "its correlation time at that speed"},
     {"bars_mm", "mm", -1000, 1000, AT(ground.bars_m), 1e-3, "bars on the floor"},
     {"bars_period", "s", 1e-2, 1000, AT(ground.bars_s), 1, "from bar to bar at that speed"},
@@ -108,6 +115,11 @@ static const figure_t figures[] = {
     {"rays_lost_start", "s", -LARGE, LARGE, SCENE(rays_lost_span.start_s), 1,
      "scenario time from which on; -1000: from power-on"},
     {"rays_lost_length", "s", 0, LARGE, SCENE(rays_lost_span.length_s), 1, "for how long"},
+    {"around_lost", "-", 0, 1, SCENE(around_lost), 1,
+     "share of the rays between the mirrors that find too little light"},
+    {"around_garbage", "-", 0, 1, SCENE(around_garbage), 1, "share of them that tell any distance"},
+    {"around_holder", "mm", 0, 4000, SCENE(around_holder_mm), 1,
+     "a holder stands so far off before a third of those ahead; 0: none"},
     {"sight_blocked", "-", 0, 1, SCENE(sight_blocked), 1,
      "share of the rays that see a thing in front of the mirror"},
     {"block_mm", "mm", 20, 4000, SCENE(block_mm), 1, "at that distance, with ray_noise"},
@@ -119,6 +131,8 @@ static const figure_t figures[] = {
     {"scan_frozen_length", "s", 0, LARGE, SCENE(frozen.length_s), 1, "for how long"},
     {"struck_beam", "-", 0, 6, SCENE(struck_beam), 1,
      "beams so struck: 0 all, 1 front, 2 aft, 3 fore; 4, 5, 6: not 3, 2, 1"},
+    {"missing_mirror", "-", 0, 6, SCENE(missing_mirror), 1,
+     "not there: 0 none, 1 front, 2 aft, 3 fore; 4, 5, 6: not 3, 2, 1"},
     {"ray_instant", "s", 0, 0.1, AT(ray_instant_s), 1,
      "of step 389, the front's middle, after the start of a revolution"},
     {"scan_late", "s", 0, 0.09, AT(scan_late_s), 1,
@@ -205,6 +219,25 @@ static const figure_t figures[] = {
     {"stick_lost_start", "s", -LARGE, LARGE, STICK(lost.start_s), 1,
      "scenario time from which that wire has no pulses"},
     {"stick_lost_length", "s", 0, LARGE, STICK(lost.length_s), 1, "for how long"},
+    {"battery", "-", 0, 1, BATTERY(connected), 1, "1: the power module's voltage is wired to the firmware"},
+    {"battery_cells", "-", 1, 8, BATTERY(cells), 1, "in series"},
+    {"battery_charge", "-", 0, 1, BATTERY(charge), 1, "at power-on"},
+    {"battery_capacity", "Ah", 0.05, 50, BATTERY(capacity_ah), 1, "when full"},
+    {"battery_ohm", "Ohm", 0, 0.5, BATTERY(resistance_ohm), 1,
+     "of all cells and leads: what the voltage sags by"},
+    {"battery_amps", "A", 0, 200, BATTERY(hover_a), 1, "in a hover; with the thrust to the power of 1.5"},
+    {"battery_divider", "-", 1, 100, BATTERY(divider), 1, "the power module's, truly"},
+    {"battery_noise", "V", 0, 20, BATTERY(noise_v), 1, "of each reading, rms"},
+    {"battery_loose", "-", 0, 1, BATTERY(loose), 1, "probability that a reading finds that wire open"},
+    {"battery_stuck_v", "V", 0, 50, BATTERY(stuck_v), 1, "the voltage is told as that, with its noise"},
+    {"battery_stuck_start", "s", -LARGE, LARGE, BATTERY(stuck.start_s), 1, "scenario time from which on"},
+    {"battery_stuck_length", "s", 0, LARGE, BATTERY(stuck.length_s), 1, "for how long"},
+    {"battery_frozen_start", "s", -LARGE, LARGE, BATTERY(frozen.start_s), 1,
+     "scenario time from which the reading of that moment is repeated"},
+    {"battery_frozen_length", "s", 0, LARGE, BATTERY(frozen.length_s), 1, "for how long"},
+    {"battery_lost_start", "s", -LARGE, LARGE, BATTERY(lost.start_s), 1,
+     "scenario time from which that wire is open"},
+    {"battery_lost_length", "s", 0, LARGE, BATTERY(lost.length_s), 1, "for how long"},
 };
 #define FIGURE_COUNT (sizeof figures / sizeof figures[0])
 

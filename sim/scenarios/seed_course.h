@@ -16,7 +16,9 @@
 typedef struct {
     bool ramp;                               /* ramp and platform, or none */
     double platform_m;                       /* 0.25; < 0: a pit; 0: none */
-    double ramp_start_s, ramp_end_s, edge_s; /* 7.3, 8, 11 */
+    double ramp_start_s, ramp_end_s, edge_s; /* 7.3, 8, 11: at any speed */
+    double speed_mps;                        /* over the ramp; 0.4 */
+    double nose_rad;                         /* from the way to the nose: pi flies tail first */
     double rough_rms_m;                      /* 0: even. The whole floor but for the platform */
     double rough_s;                          /* its correlation length at that speed */
     double bars_m;                           /* their height, < 0: grooves; 0: none */

@@ -99,11 +99,35 @@ static void step(void)
     uart_send(&host.to_sensor, (const char *)output.octets, output.count);
 }
 
+static ns_t up_to(ns_t when, ns_t grid)
+{
+    return (when + grid - 1) / grid * grid;
+}
+
+static ns_t least(ns_t a, ns_t b)
+{
+    return a < b ? a : b;
+}
+
+static ns_t step_due(void)
+{
+    const ns_t due = host.stepped_at + (ns_t)urg_pause_us(&host.urg) * US;
+    return host.running ? up_to(due > host.now ? due : host.now + 1, HOST_TICK) : NEVER;
+}
+
+/* The next tick at which anything happens, or the one that ends a span: most of a trial is silence. */
+static ns_t next_tick(ns_t end)
+{
+    const ns_t lines = least(uart_due(&host.to_sensor), uart_due(&host.to_host));
+    const ns_t due = least(least(lines, sensor_due(host.sensor, host.now)), least(step_due(), end));
+    return up_to(due > host.now ? due : host.now + 1, TICK);
+}
+
 static void run_for(ns_t span)
 {
     const ns_t end = host.now + span;
     while (host.now < end) {
-        host.now += TICK;
+        host.now = next_tick(end);
         uart_run(&host.to_sensor, host.now);
         sensor_run(host.sensor, host.now);
         uart_run(&host.to_host, host.now);
@@ -334,21 +358,20 @@ static double after_power_cycle_s(uint32_t power_up_rate, answers_t answers, uns
     return seconds < 0.0 ? 99.0 : seconds;
 }
 
-static void print_power(void)
+static void print_power(unsigned trials)
 {
     double seconds[POWER_TRIALS];
     char what[80];
     for (knowledge_t knowledge = 0; knowledge < KNOWLEDGE_COUNT; knowledge++) {
         for (answers_t answers = 0; answers < ANSWERS_COUNT; answers++) {
             for (size_t i = 0; i < POWER_UP_RATES; i++) {
-                for (unsigned trial = 0; trial < POWER_TRIALS; trial++) {
+                for (unsigned trial = 0; trial < trials; trial++) {
                     seconds[trial] = after_power_cycle_s(rates[i], answers, trial, knowledge);
                 }
                 snprintf(what, sizeof what, "boots at %u, answers %s%s", (unsigned)rates[i],
                          answer_names[answers], knowledge_names[knowledge]);
 
-                show(what, seconds, POWER_TRIALS,
-                     power_bound_s(answers, rates[i], knowledge != RATE_UNKNOWN));
+                show(what, seconds, trials, power_bound_s(answers, rates[i], knowledge != RATE_UNKNOWN));
             }
         }
     }
@@ -463,19 +486,20 @@ static void print_starts(void)
 int main(int argc, char **argv)
 {
     const char *what = argc > 1 ? argv[1] : "";
+    const unsigned trials = argc > 2 ? (unsigned)atoi(argv[2]) : 0;
     printf("Trial n: seed n of the octets' faults and of the answers' times.\n");
     printf("%-60s %5s %7s %7s %7s %7s %7s\n", "without scans beyond the trouble, s", "times", "median",
            "19 of 20", "most", "bound", "beyond");
     if (strcmp(what, "power") == 0) {
-        print_power();
+        print_power(trials > 0 && trials < POWER_TRIALS ? trials : POWER_TRIALS);
     } else if (strcmp(what, "damage") == 0) {
-        print_damage(argc > 2 ? (unsigned)atoi(argv[2]) : DAMAGE_TRIALS);
+        print_damage(trials > 0 ? trials : DAMAGE_TRIALS);
     } else if (strcmp(what, "stops") == 0) {
         print_stops();
     } else if (strcmp(what, "starts") == 0) {
         print_starts();
     } else {
-        fprintf(stderr, "usage: scip_recovery power|damage [TRIALS]|stops|starts\n");
+        fprintf(stderr, "usage: scip_recovery power|damage [TRIALS] | stops|starts\n");
         return 2;
     }
     return holds ? 0 : 1;

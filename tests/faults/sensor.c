@@ -392,6 +392,23 @@ void sensor_run(sensor_t *sensor, ns_t now)
     }
 }
 
+static ns_t sooner(ns_t one, bool other_counts, ns_t other)
+{
+    return other_counts && other < one ? other : one;
+}
+
+ns_t sensor_due(const sensor_t *sensor, ns_t now)
+{
+    ns_t due = NEVER;
+    if (sensor->on) {
+        due = sooner(due, !sensor->ready, sensor->on_at + sensor->config.boot);
+        due = sooner(due, sensor->streaming, sensor->measured_at);
+        due = sooner(due, sensor->answer_at != 0, sensor->answer_at);
+        due = sooner(due, sensor->next_rate != RATE_NONE, now); /* it looks whether its line is free */
+    }
+    return due;
+}
+
 /* ---- life ---- */
 
 static void forget(sensor_t *sensor)

@@ -50,6 +50,8 @@ void sensor_leave_in_scip2(sensor_t *sensor, uint32_t rate, ns_t now);
 /* An octet that its UART heard. */
 void sensor_hears(sensor_t *sensor, unsigned octet, bool framing_error, ns_t now);
 void sensor_run(sensor_t *sensor, ns_t now);
+/* Before that time sensor_run() does nothing, unless it hears something first; NEVER. */
+ns_t sensor_due(const sensor_t *sensor, ns_t now);
 bool sensor_streams(const sensor_t *sensor);
 unsigned sensor_distance_mm(unsigned step);
 

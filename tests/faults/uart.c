@@ -126,3 +126,11 @@ void uart_run(uart_t *uart, ns_t now)
     }
     hear(uart, now);
 }
+
+ns_t uart_due(uart_t *uart)
+{
+    const ns_t edge = start_edge(uart);
+    const ns_t sent = uart->count > 0 ? uart->free_at : NEVER;
+    const ns_t heard = edge >= 0 ? edge + uart->receiver_bit * 19 / 2 : NEVER;
+    return sent < heard ? sent : heard;
+}

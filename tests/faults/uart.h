@@ -14,7 +14,8 @@ typedef int64_t ns_t;
 #define US ((ns_t)1000)
 #define MS (1000 * US)
 #define S (1000 * MS)
-#define TICK (100 * US) /* uart_run() is called at least as often */
+#define TICK (100 * US) /* uart_run() is called as often while anything is due */
+#define NEVER INT64_MAX
 
 typedef void (*uart_sink_t)(void *context, unsigned octet, bool framing_error);
 
@@ -44,5 +45,7 @@ void uart_flush(uart_t *uart, ns_t now);
 bool uart_idle(const uart_t *uart, ns_t now);
 /* Everything on the line up to now. */
 void uart_run(uart_t *uart, ns_t now);
+/* Before that time uart_run() does nothing, unless somebody else does something first; NEVER. */
+ns_t uart_due(uart_t *uart);
 
 #endif

@@ -39,6 +39,7 @@ static void reset_registers(void)
     sci_reset(raise_interrupt);
     epwm_reset();
     ecap_reset();
+    adc_reset();
 }
 
 void chip_reset(void (*raise)(int interrupt))

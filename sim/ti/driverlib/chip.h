@@ -54,6 +54,10 @@ unsigned chip_pin_falls(uint32_t pin);
 /* Level that the outside world puts on an input pin. */
 void chip_drive_pin(uint32_t pin, bool level);
 
+/* Voltage that the outside world puts on analog input ADCINA<channel>, and the resistance behind it. Stays
+ * through every reset. */
+void chip_drive_analog(uint32_t channel, double volts, double ohms);
+
 /* Whether a store to a protected register takes effect now: between EALLOW and EDIS. Without it the chip
  * ignores the store, and says nothing. */
 bool chip_protected_writable(void);

@@ -5,6 +5,7 @@
 
 #include "inc/hw_ints.h"
 #include "inc/hw_memmap.h"
+#include "adc.h"
 #include "cpu.h"
 #include "cputimer.h"
 #include "ecap.h"

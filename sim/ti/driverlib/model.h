@@ -55,6 +55,9 @@ void ecap_reset(void);
 /* The outside world has changed the level on a pin. */
 void ecap_pin_changed(uint32_t pin, bool level);
 
+/* Analog-to-digital converter. */
+void adc_reset(void);
+
 /* Watchdog and causes of reset. */
 void watchdog_power_on(void);
 /* All but the causes. */

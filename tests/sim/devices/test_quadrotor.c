@@ -407,6 +407,48 @@ void test_the_battery_sags_from_the_origin_on(double t_s, double hover_n)
     NEAR(5e-4, G * (1.0 + (s.thrust_n - hover_n) / 7.4), lift(&s));
 }
 
+/* At the same throttle. By the power 2 a tenth of the voltage less is 19 % of the thrust less. */
+TEST_CASE(0.0, 0.9, 1.0)
+TEST_CASE(1.0, 0.9, 0.9)
+TEST_CASE(2.0, 0.9, 0.81)
+TEST_CASE(2.0, 1.0, 1.0)
+TEST_CASE(2.0, 0.0, 0.0)
+void test_the_thrust_falls_with_the_voltage(double power, double volts, double lifts)
+{
+    quadrotor_config_t drained = calm;
+    drained.volts_power = power;
+    drained.sag_per_s = 0.0;
+    start(&drained, NULL, 1);
+    fly(3.0, 9.0);
+    NEAR(1e-3, 9.0, now().thrust_n);
+    quadrotor_set_volts(quad, volts);
+    fly(3.0, 9.0);
+    NEAR(1e-3, 9.0 * lifts, now().thrust_n);
+}
+
+/* On the other airframe too the thrust goes with the voltage, however it goes with the throttle. */
+TEST_CASE(1.0)
+TEST_CASE(1.5)
+TEST_CASE(2.0)
+void test_rotors_carry_less_with_less_voltage(double exponent)
+{
+    double rest_n[2];
+
+    for (int low = 0; low < 2; low++) {
+        quadrotor_config_t drained = calm;
+        drained.airframe = 1.0;
+        drained.rotors.exponent = exponent;
+        drained.volts_power = 2.0;
+        drained.sag_per_s = 0.0;
+        start(&drained, NULL, 1);
+        quadrotor_set_volts(quad, low ? 0.9 : 1.0);
+        fly(3.0, 5.0); /* it stays on the ground: no climb changes the thrust */
+        TEST_ASSERT_TRUE(now().on_ground);
+        rest_n[low] = now().thrust_n;
+    }
+    NEAR(5e-3, 0.81, rest_n[1] / rest_n[0]);
+}
+
 TEST_CASE(9.98, 7.4)
 TEST_CASE(10.02, 8.4)
 void test_a_load_comes_at_its_time_and_stays(double t_s, double hover_n)
@@ -1226,6 +1268,27 @@ void test_a_bar_lifts_a_low_vehicle_and_does_not_throw_it(void)
     }
     TEST_ASSERT_TRUE(highest_m < 0.12);
     TEST_ASSERT_TRUE(now().on_ground);
+}
+
+/* It gives no more than half of the speed with which the vehicle moves onto it, and 15 % for the rebound. */
+void test_a_floor_however_rough_throws_nothing_up_faster_than_it_came(void)
+{
+    double fastest_mps = 0.0;
+    place_t rough;
+
+    place_init(&rough);
+    place_roughen(&rough, &(place_rough_t){0.06, 0.016}, 1);
+    way = &along;
+    start(&calm, &rough, 1);
+    quadrotor_set_origin(quad, 0);
+    fly(0.7, 7.6);
+    for (int i = 0; i < 400; i++) {
+        fly(0.0136, 7.3);
+        const quadrotor_state_t s = now();
+        fastest_mps = fmax(fastest_mps, s.speed_mps);
+    }
+    TEST_ASSERT_TRUE(now().x_m > 0.5);
+    TEST_ASSERT_TRUE(fastest_mps > 0.0 && fastest_mps < 0.9);
 }
 
 void test_a_vehicle_and_its_ground_change_in_flight_and_it_flies_on_from_where_it_is(void)

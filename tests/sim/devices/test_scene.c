@@ -438,6 +438,25 @@ void test_a_fault_may_strike_two_beams(double beams, int front_mm, int aft_mm, i
     TEST_ASSERT_EQUAL_INT(fore_mm, all_mm[640]);
 }
 
+/* What it should bend goes on to a wall 1 m before the nose, or to the right. */
+TEST_CASE(1.0, 1885, 813, 812)
+TEST_CASE(3.0, 805, 813, 0)
+TEST_CASE(6.0, 805, 0, 0)
+void test_where_a_mirror_is_missing_its_rays_see_what_stands_around(double missing, int front_mm, int aft_mm,
+                                                                    int fore_mm)
+{
+    place_init(&place);
+    TEST_ASSERT_TRUE(place_add(
+        &place,
+        &(place_block_t){.y_m = -2.5, .length_m = 4.0, .width_m = 1.0, .near_top_m = 2.0, .far_top_m = 2.0}));
+    calm.missing_mirror = missing;
+    start_in_place();
+    sweep();
+    TEST_ASSERT_EQUAL_INT(front_mm, all_mm[384]);
+    TEST_ASSERT_EQUAL_INT(aft_mm, all_mm[128]);
+    TEST_ASSERT_EQUAL_INT(fore_mm, all_mm[640]);
+}
+
 /* Lifted by 350 mm, or each second ray a code. */
 void test_a_glitch_strikes_the_beams_that_faults_strike(void)
 {

@@ -1304,7 +1304,7 @@ void test_each_step_is_measured_as_the_mirror_turns_past_it(void)
 /* Where the front is looked at so early or late that other steps would fall into other revolutions. */
 TEST_CASE(0)
 TEST_CASE(100)
-void test_no_step_is_measured_outside_its_revolution(int front_ms)
+void test_no_step_is_measured_outside_its_revolution_and_the_mirror_turns_evenly(int front_ms)
 {
     config.phase = 30 * SIM_MS;
     config.ray_instant = front_ms * SIM_MS;
@@ -1315,6 +1315,7 @@ void test_no_step_is_measured_outside_its_revolution(int front_ms)
     for (int step = 44; step <= 725; step++) {
         TEST_ASSERT_TRUE(step_at[step] >= 1130 * SIM_MS && step_at[step] <= 1230 * SIM_MS);
     }
+    TEST_ASSERT_DOUBLE_WITHIN(0.4, 50.0, (double)(step_at[640] - step_at[128]) * 1e-6);
 }
 
 /* 35 steps in groups of five. */

@@ -125,3 +125,33 @@ void test_a_ramp_may_be_met_from_any_place_at_any_time(void)
     NEAR(1e-9, 0.0, place_below(&place, 5.0 + 0.34, 0.0, 10.0, 0.0).at.z);
     NEAR(1e-9, 0.125, place_below(&place, 5.0 + 0.4 - 0.0533333333 + 0.14, 0.0, 10.0, 0.0).at.z);
 }
+
+/* The seed's times hold at any speed: the ramp is longer, not later. */
+TEST_CASE(0.3)
+TEST_CASE(0.5)
+TEST_CASE(1.0)
+void test_at_another_speed_it_is_where_the_seeds_was_when_the_seeds_was(double speed_mps)
+{
+    double x_m;
+
+    wanted.speed_mps = speed_mps;
+    seed_course_lay(&wanted, 1, &place, &course);
+    NEAR(1e-3, 0.125, ground_m(7.65, &x_m));
+    NEAR(1e-3, 0.25, ground_m(10.99, &x_m));
+    NEAR(1e-3, 0.0, ground_m(11.01, &x_m));
+    NEAR(0.01, speed_mps * (11.01 - 5.3) - 0.5 * speed_mps * speed_mps / COURSE_MPS2, x_m);
+}
+
+void test_tail_first_it_has_turned_round_before_the_ramp(void)
+{
+    course_point_t point;
+
+    wanted.nose_rad = M_PI;
+    seed_course_lay(&wanted, 1, &place, &course);
+    course_begin(&point);
+    for (double t_s = 0.0; t_s < wanted.ramp_start_s - 0.5; t_s += STEP_S) {
+        course_step(&course, &point, t_s, STEP_S);
+    }
+    NEAR(1e-6, 0.0, remainder(point.heading_rad - M_PI, 2.0 * M_PI));
+    TEST_ASSERT_TRUE(point.x_m > 0.3);
+}
