@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly mine lab plot scan campaign fit tune verdict why seed-study ground ground-vehicle ground-open ground-fly site publish test test-long soak format mutants test-ground port size faults fuzz prove rta bench coverage package others release firmware flash check-ti clean
+.PHONY: help build fly mine lab plot scan campaign fit tune verdict why noise seed-study ground ground-vehicle ground-open ground-fly site publish test test-long soak format mutants test-ground port size faults fuzz prove rta bench coverage package others release firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -65,7 +65,7 @@ lab: ## Mark laboratory N=1 of the course (course/README.md): FILE=your answer, 
 	@mkdir -p build && { $(MAKE) build && cmake --build build --target course_marker $(jobs); } >build/lab.log 2>&1 || { cat build/lab.log >&2; exit 2; }
 	@python3 -B course/mark/lab.py $(N) $(if $(ID),--id "$(ID)") $(if $(FILE),--file "$(FILE)")
 
-plot: ## Draw LOG=FILE: a flight's CSV (or several), an XCTU console log or text, with or without dumps of #LOG
+plot: ## Draw LOG=FILE and say what happened: a flight's CSV (or several), an XCTU console log or text, with or without dumps of #LOG
 	@test -n "$(LOG)" || { echo "usage: make plot LOG=FILE" >&2; exit 2; }
 	@$(setup) build plot
 	@$(MAKE) build
@@ -110,6 +110,11 @@ seed-study: ## Which autopilot did the seed fly? And its simulations of chapter 
 	@$(python) tools/seed_study/chapter_4_1.py -o build/chapter-4-1.png
 	@$(python) tools/seed_study/seed_study.py $(ARGS)
 
+noise: ## What the noises of the belief over three mirrors are worth on healthy flights; ARGS=--fit searches them (ARGS=--help)
+	@$(setup) build campaign
+	@$(MAKE) build
+	@$(python) tools/noise/noise.py build/plomada $(ARGS)
+
 ground: build ground-vehicle ## The browser page, to be published or opened as it is: build-ground/index.html
 	@cd ground && npm run --silent build
 	@printf '%s\n' "$(CURDIR)/build-ground/index.html"
@@ -148,6 +153,7 @@ test: ## The tests, but for the long ones: under ASan and UBSan, then as release
 	@$(ctest) build-sanitize -LE long
 	@printf '\n== tests as released ==\n'
 	@$(ctest) build -LE long
+	@$(ctest) --spent 300 build-sanitize build
 
 test-long: ## The long ones: sweeps of many flights, campaigns, tuning, fuzzing
 	$(build_tests)

@@ -1,4 +1,6 @@
 """run.py BUILD [OPTION...]: ctest in the build directory BUILD with these options; its last lines say what did not run, and why.
+run.py --spent SECONDS BUILD...: the processor time of the latest run in each BUILD, beside what all may take. It tells, and fails nothing:
+how fast a processor is, no test decides.
 
 A test is skipped by exit status 77 (the last line that it prints is the reason), by Unity's TEST_IGNORE_MESSAGE or by unittest's
 skipTest. A label that is left out (-LE) is counted. The exit status is ctest's; with NOTHING_SKIPPED=1 in the environment, as in
@@ -7,6 +9,7 @@ every job that exists to run them, it is 1 too when a test was skipped that EXCU
 import json
 import os
 import re
+import resource
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -52,13 +55,34 @@ def summary(build, options, rows):
     return lines
 
 
+def processor_s():
+    """User and system, of all that ctest has started and waited for."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def spent_file(build):
+    return Path(build).resolve() / "Testing/processor_s"
+
+
+def spent(most_s, builds):
+    each = {build: float(spent_file(build).read_text(encoding="ascii")) for build in builds}
+    total_s = sum(each.values())
+    words = " and ".join(f"{seconds:.0f} s in {build}" for build, seconds in each.items())
+    return f"processor time: {words}: {total_s:.0f} s, {'MORE than' if total_s > most_s else 'of'} the {most_s:.0f} s that they may take"
+
+
 def main():
+    if sys.argv[1] == "--spent":
+        print(spent(float(sys.argv[2]), sys.argv[3:]))
+        return
     build, *options = sys.argv[1:]
     report = Path(build).resolve() / "Testing" / "run.xml"
     report.parent.mkdir(exist_ok=True)
     report.unlink(missing_ok=True)
     status = subprocess.run(["ctest", "--output-on-failure", f"-j{os.cpu_count()}", "--test-output-size-passed", "1000000", "--no-tests=error",
                              "--output-junit", str(report), "--test-dir", build, *options], check=False).returncode
+    spent_file(build).write_text(f"{processor_s():.1f}\n", encoding="ascii")
     rows = list(skipped(report)) if report.exists() else []
     print("\n".join(summary(build, options, rows)))
     unexcused = sorted({name for name, _, _ in rows} - set(EXCUSED))

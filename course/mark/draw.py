@@ -10,11 +10,13 @@ ID = re.compile(r"[A-Za-z0-9._-]{1,32}")
 
 class Draw:
     def __init__(self, laboratory, student):
-        self.key, self.count = f"plomada course {laboratory} {student}", 0
+        self.key, self.count = hashlib.sha256(f"plomada course {laboratory} {student} ".encode("ascii")), 0
 
     def bits(self):
         self.count += 1
-        return int.from_bytes(hashlib.sha256(f"{self.key} {self.count}".encode("ascii")).digest()[:8], "big")
+        numbered = self.key.copy()
+        numbered.update(b"%d" % self.count)
+        return int.from_bytes(numbered.digest()[:8], "big")
 
     def whole(self, least, most, step=1):
         """One of least, least + step, ... most."""

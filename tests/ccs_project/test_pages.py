@@ -34,8 +34,9 @@ class Wiring(unittest.TestCase):
         self.rows = {row[0]: row for row in tables(HARDWARE) if len(row) == 7}
 
     def test_every_pin_of_the_board_is_in_the_table_and_no_other(self):
-        pins = board_pins() + [("J8.80", "GPIO2", "EPWM2A", "to"), ("J8.79", "GPIO3", "selector", "from"), ("J8.78", "GPIO10", "eCAP1", "from")]
-        self.assertEqual(len(pins), 9)
+        pins = board_pins() + [("J8.80", "GPIO2", "EPWM2A", "to"), ("J8.79", "GPIO3", "selector", "from"), ("J8.78", "GPIO10", "eCAP1", "from"),
+                               ("J3.27", "ADCINA0", "ADC A", "from")]
+        self.assertEqual(len(pins), 10)
         for header, *expected in pins:
             self.assertEqual(self.rows[header][1:4], expected, header)
         self.assertEqual(sorted(row for row in self.rows if row.startswith("J")), sorted(pin[0] for pin in pins))
@@ -46,6 +47,8 @@ class Wiring(unittest.TestCase):
         self.assertIn("high = LaunchPad, low = pilot", self.rows["J8.79"][5])
         self.assertIn("GPIO_setPinConfig(GPIO_10_GPIO10)", code("bsp/receiver.c"))
         self.assertIn("pulses on GPIO10 (J8.78), timed by eCAP1", text("bsp/receiver.h").replace("\n * ", " "))
+        self.assertIn("ADC_CH_ADCIN0,", code("bsp/voltmeter.c"))
+        self.assertIn("ADCINA0 (J3.27), ADC A", text("bsp/voltmeter.h").replace("\n * ", " "))
 
     def test_rates_are_the_firmwares(self):
         rates = {"SCIA": (constant("firmware/mounting.h", "LASER_FIRST_RATE"), constant("firmware/mounting.h", "LASER_STREAM_RATE")),
@@ -65,7 +68,7 @@ class Wiring(unittest.TestCase):
     def test_the_drawing_shows_every_pin_and_is_well_formed(self):
         drawing = "\n".join(element.text or "" for element in ElementTree.parse(REPOSITORY / "docs/images/wiring.svg").iter())
         for header, gpio, function, _ in board_pins() + [("J8.80", "GPIO2", "ePWM2A", "to"), ("J8.79", "GPIO3", "selector", "from"),
-                                                         ("J8.78", "GPIO10", "eCAP1", "from")]:
+                                                         ("J8.78", "GPIO10", "eCAP1", "from"), ("J3.27", "ADCINA0", "ADC A", "from")]:
             self.assertRegex(drawing, rf"{gpio} {function}\s+{re.escape(header)}\b")
 
     def test_pulse_and_period_are_the_throttles(self):

@@ -7,6 +7,7 @@ which has the files that prepare() makes. A subcommand that is only named must h
 port or a person is counted, not run. A line of make must have a target, variables and a file that are there: what it then does takes minutes, and has
 tests of its own.
 """
+import functools
 import re
 import shlex
 import subprocess
@@ -24,7 +25,7 @@ FLIGHT_MOST_S = 120
 def commands(text):
     """Those of a page, in its order, without what a shell would do with their output."""
     for block, span in re.findall(r"```\w*\n(.*?)```|`([^`]+)`", text, re.DOTALL):
-        for line in block.splitlines() if block else [" ".join(span.split())]:
+        for line in block.replace("\\\n", " ").splitlines() if block else [" ".join(span.split())]:
             found = BEGINS.fullmatch(line.strip())
             if found:
                 yield re.split(r" +[#|>]| >|>(?=\w)| &", found.group(1))[0].strip()
@@ -38,6 +39,15 @@ def kind(command):
     return "by hand" if BY_HAND.search(command) else "run"
 
 
+@functools.cache
+def flown():
+    """(console with a dump, log) of one flight: the dump comes by radio and takes minutes, so all pages share it."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        assert fly(folder, "fly experiment --log console.log --csv console.csv").returncode == 0
+        return (folder / "console.log").read_bytes(), (folder / "console.csv").read_bytes()
+
+
 def prepare(folder):
     """What the pages speak of: a program, the repository's folders, a console with a dump, a scanner's recording."""
     for name in ("build", "build-mine"):
@@ -45,7 +55,9 @@ def prepare(folder):
         (folder / name / "plomada").symlink_to(PLOMADA)
     for name in ("docs", "examples", "tests"):
         (folder / name).symlink_to(ROOT / name)
-    fly(folder, "fly experiment --log console.log --csv build/console.csv")
+    console, log = flown()
+    (folder / "console.log").write_bytes(console)
+    (folder / "build/console.csv").write_bytes(log)
     (folder / "build/vehicle.json").write_text('{"plant.hover_thrust": {"value": 7.2}}', encoding="utf-8")
     (folder / "room.bin").write_bytes((ROOT / "tests/fixtures/scip/real_md_0384.bin").read_bytes())
 
@@ -58,7 +70,7 @@ def fly(folder, words):
 def makes(text):
     """(target, {variable: value}) of each `make TARGET VARIABLE=VALUE ...` of a page."""
     for block, span in re.findall(r"```\w*\n(.*?)```|`([^`]+)`", text, re.DOTALL):
-        for line in block.splitlines() if block else [" ".join(span.split())]:
+        for line in block.replace("\\\n", " ").splitlines() if block else [" ".join(span.split())]:
             found = re.fullmatch(r"(?:\$ )?(?:time )?make ([a-z-]+)((?: [A-Z]+=.*)?)", line.strip())
             if found:
                 words = shlex.split(found.group(2).split(" # ")[0])

@@ -3,8 +3,8 @@
 It shares nothing with sim/ and tests/faults/: whoever compares them compares two readings of the specification. All times are
 microseconds of a clock that the caller keeps; nothing here waits.
 
-As a program: hokuyo.py --link PATH [--rate N] [--first-reply-ms N] [--boot-ms N] serves it on a pseudo-terminal, by the wall clock.
-SIGUSR1 takes its power away, SIGUSR2 gives it back.
+As a program: hokuyo.py --link PATH [--rate N] [--first-reply-ms N] [--boot-ms N] [--burst] serves it on a pseudo-terminal, by the wall
+clock. SIGUSR1 takes its power away, SIGUSR2 gives it back.
 """
 import argparse
 import bisect
@@ -78,6 +78,12 @@ class Line:
 
     def high(self, at_us):
         return bisect.bisect_right(self.edges, at_us) % 2 == 0
+
+    def next_us(self):
+        """When hear() gives something again, if nobody drives the line meanwhile; None."""
+        at = bisect.bisect_left(self.edges, self.heard_to)
+        at += at % 2
+        return self.edges[at] + 9.5e6 / self.rate if at < len(self.edges) else None
 
     def hear(self, now_us):
         """(time, octet, framing error) of each octet whose stop bit has been sampled by now."""
@@ -171,6 +177,17 @@ class Urg:
         if self.is_ready(now_us):
             self.answer(now_us)
             self.measure(now_us)
+
+    def quiet_until_us(self):
+        """When run() does something again, if nothing comes meanwhile; None."""
+        due = [self.to_sensor.next_us()]
+        if self.next_rate is not None:
+            due.append(self.sends_to)
+        if self.queue:
+            due.append(max(self.next_us or 0, self.sends_to, self.ready_us))
+        if self.stream is not None:
+            due.append(max(self.frame_us + self.measured_us(), self.ready_us))
+        return min((at_us for at_us in due if at_us is not None), default=None)
 
     def hear(self, octet, at_us):
         if octet in (0x0A, 0x0D):
@@ -383,11 +400,14 @@ class Urg:
 
 TCGETS2 = 0x802C542A    # <asm/ioctls.h>; termios.tcgetattr knows rates with a name alone
 BEHIND_MAX_US = 20_000
+PACKET, PAUSE_US = 64, 2000     # of a full-speed USB device; chosen: longer than between two octets
 
 
 class Terminal:
-    def __init__(self, urg):
-        self.urg = urg
+    """burst: octets leave in packets, as from the sensor's own USB plug."""
+
+    def __init__(self, urg, burst=False):
+        self.urg, self.burst, self.packet = urg, burst, b""
         self.master, self.slave = os.openpty()
         tty.setraw(self.slave)
         os.set_blocking(self.master, False)
@@ -414,9 +434,15 @@ class Terminal:
         while self.now_us < now_us:
             self.now_us = min(self.now_us + 1000, now_us)
             self.urg.run(self.now_us)
-            heard = bytes(octet for _, octet, _ in self.urg.to_host.hear(self.now_us))
-            if heard:
-                os.write(self.master, heard)
+            self.packet += bytes(octet for _, octet, _ in self.urg.to_host.hear(self.now_us))
+            self.hand_over()
+
+    def hand_over(self):
+        pauses = not self.burst or self.now_us - self.urg.sends_to >= PAUSE_US
+        ready = len(self.packet) if pauses else len(self.packet) // PACKET * PACKET
+        if ready:
+            os.write(self.master, self.packet[:ready])
+            self.packet = self.packet[ready:]
 
 
 def main():
@@ -425,8 +451,9 @@ def main():
     parser.add_argument("--rate", type=int, choices=RATES, default=19200)
     parser.add_argument("--boot-ms", type=int, default=2000)
     parser.add_argument("--first-reply-ms", type=int, default=381)
+    parser.add_argument("--burst", action="store_true", help="octets leave in packets, as from the sensor's own USB plug")
     words = parser.parse_args()
-    terminal = Terminal(Urg(words.rate, 1000 * words.boot_ms, first_reply_us=1000 * words.first_reply_ms))
+    terminal = Terminal(Urg(words.rate, 1000 * words.boot_ms, first_reply_us=1000 * words.first_reply_ms), words.burst)
     signal.signal(signal.SIGUSR1, lambda *_: terminal.urg.power(False, terminal.now_us))
     signal.signal(signal.SIGUSR2, lambda *_: terminal.urg.power(True, terminal.now_us))
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))

@@ -1,8 +1,9 @@
 """examples/scanner on a sensor of another hand (hokuyo.py): in the sensor's own time, and on a pseudo-terminal by the wall clock; and
 what `plomada laser` answers to the same questions.
 
-Usage: test_hokuyo.py PIPE_BOARD PROGRAM PLOMADA
+Usage: test_hokuyo.py PIPE_BOARD PROGRAM PLOMADA TRIALS    TRIALS: sensors of each kind and rate, 1 to 5
 """
+import math
 import os
 import re
 import select
@@ -19,7 +20,8 @@ from pathlib import Path
 import hokuyo
 
 PIPE_BOARD, PROGRAM, PLOMADA = sys.argv[1:4]
-del sys.argv[1:4]
+TRIALS = int(sys.argv[4])
+del sys.argv[1:5]
 STEP_US, READ_MOST, WAIT_US = 500, 32, 5000     # board_uart_read() of posix.c waits so long at most
 S = 1_000_000
 STRAIGHT_AHEAD_MM = hokuyo.distance_mm(384)     # the mean of 367..401, each a millimetre farther than the one before
@@ -28,7 +30,6 @@ SLOW = {"first_reply_us": 381_000}
 AT_REVOLUTIONS = {"first_reply_us": 100_000, "at_revolutions": True}
 # docs/scip.md, "Time without scans". "So, but first 381" is a sum there; 0.01 for the 5 ms of a read and of a step.
 FAST_MOST_S, SLOW_MOST_S, IDLE_MOST_S = 1.0, 1.38, 2.0
-TRIALS = 5
 PATIENCE_S = 60     # of the wall clock, on a machine at work
 
 
@@ -46,17 +47,19 @@ class Bench:
     def __exit__(self, *_):
         self.board.communicate()
 
-    def pass_time(self):
-        self.now_us += STEP_US
+    def pass_time(self, end_us):
+        """To the next step at which anything is due, or to the end."""
+        due = [at_us for at_us in (self.urg.quiet_until_us(), self.urg.to_host.next_us(), end_us) if at_us is not None]
+        self.now_us += STEP_US * max(1, math.ceil((min(due) - self.now_us) / STEP_US))
         self.urg.run(self.now_us)
         for _, octet, broken in self.urg.to_host.hear(self.now_us):
             self.heard.append(octet)
             self.errors += broken and self.tells_errors
 
     def answer_read(self):
-        begun_us = self.now_us
-        while not self.heard and self.now_us - begun_us < WAIT_US:
-            self.pass_time()
+        end_us = self.now_us + WAIT_US
+        while not self.heard and self.now_us < end_us:
+            self.pass_time(end_us)
         now, self.heard = self.heard[:READ_MOST], self.heard[READ_MOST:]
         self.board.stdin.write(f"{self.now_us} {self.errors} {bytes(now).hex() or '-'}\n")
         self.board.stdin.flush()

@@ -30,12 +30,14 @@ void child_run(child_work_t work, void *argument, void *result, size_t size)
     pid_t pid;
 
     TEST_ASSERT_EQUAL_INT(0, pipe(ends));
+    fflush(stdout); /* else the child says it again */
     pid = fork();
     TEST_ASSERT_NOT_EQUAL(-1, pid);
     if (pid == 0) {
         close(ends[0]);
         work(argument, result);
         write_all(ends[1], result, size);
+        fflush(stdout);
         _exit(0);
     }
     close(ends[1]);
@@ -113,6 +115,7 @@ typedef struct {
     const char *scenario;
     unsigned long seed;
     const char *const *assignments;
+    double land_s; /* 0: the scenario's own */
 } order_t;
 
 static void fly(void *argument, void *result)
@@ -122,6 +125,7 @@ static void fly(void *argument, void *result)
     const char *error = NULL;
 
     options.seed = order->seed;
+    options.duration_s = order->land_s;
     for (int i = 0; order->assignments != NULL && order->assignments[i] != NULL; i++) {
         if (flight_override(&options, order->assignments[i]) != NULL) {
             _exit(4);
@@ -132,13 +136,19 @@ static void fly(void *argument, void *result)
     }
 }
 
-void child_fly(const char *scenario, unsigned long seed, const char *const *assignments,
-               flight_result_t *result)
+void child_fly_until(const char *scenario, unsigned long seed, const char *const *assignments, double land_s,
+                     flight_result_t *result)
 {
-    order_t order = {scenario, seed, assignments};
+    order_t order = {scenario, seed, assignments, land_s};
 
     child_run(fly, &order, result, sizeof *result);
     TEST_ASSERT_TRUE_MESSAGE(result->started, "the sensors did not come up");
+}
+
+void child_fly(const char *scenario, unsigned long seed, const char *const *assignments,
+               flight_result_t *result)
+{
+    child_fly_until(scenario, seed, assignments, 0.0, result);
 }
 
 void child_terminal_take(void *terminal, unsigned octet)

@@ -16,6 +16,9 @@ void child_run(child_work_t work, void *argument, void *result, size_t size);
 /* One flight; assignments are --set texts, NULL ends. */
 void child_fly(const char *scenario, unsigned long seed, const char *const *assignments,
                flight_result_t *result);
+/* The landing command at land_s of the scenario's time, in place of its own. */
+void child_fly_until(const char *scenario, unsigned long seed, const char *const *assignments, double land_s,
+                     flight_result_t *result);
 
 /* Flights of seeds 1 to `seeds`; prints the means that a tuner reads. Fails the test when one did not start
  * or halted. */

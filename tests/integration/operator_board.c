@@ -3,18 +3,25 @@
  * what the operator's terminal has received meanwhile, and a line with a point.
  *
  *   on [running]                power on; what was stored is kept. Held on the ground, switch at the pilot;
- * or free, motors running whatever is commanded, the firmware's throttle type TEXT                   a line,
- * Enter behind it wait SECONDS hold METRES ROLL PITCH      in two seconds brought there and held: degrees,
- * right side and nose up free                        let go: flies by its own motors switch pilot|launchpad
+ *                               or free, motors running whatever is commanded, the firmware's throttle
+ *   type TEXT                   a line, Enter behind it
+ *   wait SECONDS
+ *   hold METRES ROLL PITCH      in two seconds brought there and held: degrees, right side and nose up
+ *   free                        let go: flies by its own motors
+ *   switch pilot|launchpad
  *   stick SHARE                 of the throttle's range
  *   corners on|off              both sticks in the lower corners
  *   laser on|off, imu on|off    its plug
  *   mirror covered|free
+ *   keep                        a copy goes on from here
+ *   back                        the copy ends, and what it went through has not happened
  *   truth                       answers `= height_m thrust_n motors` */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "sim/board.h"
 #include "sim/timeline.h"
@@ -128,6 +135,17 @@ static void type(const char *text)
     board_type("\r", 1U);
 }
 
+/* Returns in the copy; then again, in whoever was copied, when the copy was told to go back. */
+static void keep(void)
+{
+    int status = 1;
+    const pid_t copy = fork();
+
+    if (copy != 0 && (waitpid(copy, &status, 0) != copy || status != 0)) {
+        exit(1);
+    }
+}
+
 static void obey(const char *order, const char *rest)
 {
     const bool on = strcmp(rest, "on") == 0;
@@ -155,6 +173,10 @@ static void obey(const char *order, const char *rest)
     } else if (strcmp(order, "mirror") == 0) {
         config.scene.rays_lost = strcmp(rest, "covered") == 0 ? 1.0 : 0.0;
         board_change(&config);
+    } else if (strcmp(order, "keep") == 0) {
+        keep();
+    } else if (strcmp(order, "back") == 0) {
+        _exit(0); /* whoever was copied answers */
     } else if (strcmp(order, "truth") == 0) {
         tell_truth();
     } else {

@@ -1,4 +1,5 @@
 """The board of operator_board.c, and a person who types at it with pauses."""
+import contextlib
 import re
 import subprocess
 
@@ -34,6 +35,15 @@ class OperatorBoard:
 
     def clear(self):
         self.heard = []
+
+    @contextlib.contextmanager
+    def tried(self):
+        """What is done with the board in here has not happened afterwards."""
+        before = [*self.heard], [*self.all]
+        self.order("keep")
+        yield
+        self.order("back")
+        self.heard, self.all = before
 
     def type(self, line):
         self.order(f"type {line}")

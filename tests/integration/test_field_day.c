@@ -1,6 +1,6 @@
 /* The field day, from the sticks that start the motors to the pilot's own landing: both Stop Types, with and
  * without the selector's pin, an autopilot whose throttle is thrust and one whose throttle is a climb rate.
- * Pinned to two seeds; test_rates.py asks how often it goes well.
+ * Pinned to one seed; test_rates.py asks how often it goes well.
  */
 #include <stdio.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "child.h"
 #include "unity.h"
 
-#define SEEDS 2UL
+#define SEEDS 1UL
 
 void setUp(void) {}
 void tearDown(void) {}

@@ -1,6 +1,6 @@
 """docs/first_evening.md, typed as it stands at a person's pace, with each "You see" looked for.
 
-Usage: test_first_evening.py ROOT OPERATOR_BOARD PLOMADA
+Usage: test_first_evening.py ROOT OPERATOR_BOARD PLOMADA [Slow]    Slow: by somebody who takes twice the time
 
 From the page come the lines to type, what is to be seen, and their order. What hands and the pilot do meanwhile is told by the page's
 own words (DONE): a phrase that the page has lost, or a sentence that this test does not understand, fails.
@@ -39,6 +39,14 @@ DONE = {
     r"Half a minute later": ["wait 15"],
     r"Ten seconds later": [],
 }
+# (step, what it says, what is not so)
+LIES = ((9, "`OK PING 1`", "`OK PING 2`"), (13, "from 0.48 to 0.52", "from 0.53 to 0.57"),
+        (17, "`#IMU NOSE`", "`#IMU TAIL`"), (21, "`state:TAKEOFF`", "`state:FLYING`"),
+        (22, "**Type** `#ARM`. **You see** `thr:1.76`. Pilot", "Pilot"),
+        (28, "`#LINK 60`. **You see** `OK LINK 60`", "`#LINK 2`. **You see** `OK LINK 2`"),
+        (30, "**Type** `#ARM`. **You see** `OK ARM idle:15%`. Pilot: start the motors, switch to *LaunchPad*. "
+             "**Type** `#SETR 0.3`", "**Type** `#SETR 0.3`"),
+        (33, "**type** `#PING 1`", "**type** `#STOP`. **You see** `state:FLYING`"))
 SENTENCE = re.compile(r"\*\*(Type|You see)\*\*((?:`[^`]*`|[^`])*?(?:\.(?=\s|$)|(?=\n\n)|$))", re.IGNORECASE)
 SPAN = re.compile(r"`([^`]+)`")
 RANGE = re.compile(r"`(\w+)` from\s+(-?[\d.]+) to (-?[\d.]*\d)")
@@ -75,7 +83,7 @@ def pattern(seen):
     return ".*".join(re.escape(piece) for piece in re.split("…", re.sub(r"\s+", " ", seen)))
 
 
-class Evening(unittest.TestCase):
+class Typist(unittest.TestCase):
     maxDiff = None
 
     def fail_at(self, what):
@@ -152,35 +160,40 @@ class Evening(unittest.TestCase):
         for order in DONE[phrase]:
             self.board.order(order)
 
-    def spend(self, page, pause_s=PAUSE_S, seed=1):
+    def walk(self, text):
+        self.text = text
+        for kind, part in parts(text):
+            {"do": self.act, "type": self.type, "you see": self.look}[kind](part)
+
+    def found_out(self, text, says, instead):
+        """The step, where its page lies: it must not get through."""
+        line = re.sub(r"\n {3,}", " ", text)
+        self.assertIn(says, line)
+        typed, done = [*self.typed], {*self.done}
+        with self.subTest(step=self.step), self.board.tried(), self.assertRaisesRegex(AssertionError, rf"^step {self.step}: "):
+            self.walk(line.replace(says, instead))
+        self.typed, self.done = typed, done
+
+    def spend(self, pause_s=PAUSE_S, seed=1, lies=()):
         self.typed, self.done = [], set()
         with OperatorBoard(BOARD, pause_s, seed) as self.board:
-            for self.step, self.text in steps(page):
-                for kind, text in parts(self.text):
-                    {"do": self.act, "type": self.type, "you see": self.look}[kind](text)
+            for self.step, text in steps(PAGE.read_text(encoding="utf-8")):
+                for _, says, instead in (lie for lie in lies if lie[0] == self.step):
+                    self.found_out(text, says, instead)
+                self.walk(text)
 
-    def test_every_line_of_the_page_does_what_the_page_says(self):
-        self.spend(PAGE.read_text(encoding="utf-8"))
+
+class Slow(Typist):
+    def test_who_takes_twice_the_time_gets_through_it_too(self):
+        self.spend(2 * PAUSE_S)
+
+
+class Evening(Typist):
+    def test_every_line_of_the_page_does_what_the_page_says_and_a_page_that_lies_is_found_out(self):
+        self.spend(lies=LIES)
         self.assertEqual(self.step, 33, "steps are lost")
         self.assertEqual(set(DONE) - self.done, set(), "the page does not say this any more")
         self.assertGreaterEqual(len(self.typed), 37)
-
-    def test_who_takes_twice_the_time_gets_through_it_too(self):
-        self.spend(PAGE.read_text(encoding="utf-8"), 2 * PAUSE_S)
-
-    def test_a_page_that_says_what_is_not_so_is_found_out(self):
-        page = re.sub(r"\n {3,}", " ", PAGE.read_text(encoding="utf-8"))   # each step one line
-        for step, says, instead in ((9, "`OK PING 1`", "`OK PING 2`"), (13, "from 0.48 to 0.52", "from 0.53 to 0.57"),
-                                    (17, "`#IMU NOSE`", "`#IMU TAIL`"), (21, "`state:TAKEOFF`", "`state:FLYING`"),
-                                    (22, "**Type** `#ARM`. **You see** `thr:1.76`. Pilot", "Pilot"),
-                                    (28, "`#LINK 60`. **You see** `OK LINK 60`", "`#LINK 2`. **You see** `OK LINK 2`"),
-                                    (30, "**Type** `#ARM`. **You see** `OK ARM idle:15%`. Pilot: start the motors, switch to *LaunchPad*. "
-                                         "**Type** `#SETR 0.3`", "**Type** `#SETR 0.3`"),
-                                    (33, "**type** `#PING 1`", "**type** `#STOP`. **You see** `state:FLYING`")):
-            with self.subTest(step=step):
-                self.assertIn(says, page)
-                with self.assertRaisesRegex(AssertionError, rf"^step {step}: "):
-                    self.spend(page.replace(says, instead))
 
     def test_nothing_to_type_stands_outside_of_a_sentence_that_says_type(self):
         for number, text in steps(PAGE.read_text(encoding="utf-8")):
@@ -193,4 +206,4 @@ class Evening(unittest.TestCase):
 if __name__ == "__main__":
     ROOT, BOARD = Path(sys.argv[1]), sys.argv[2]
     PAGE = ROOT / "docs/first_evening.md"
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=sys.argv[:1], defaultTest=sys.argv[4:] or "Evening")

@@ -101,6 +101,8 @@ static void fly(void *argument, void *result)
 
     config.quadrotor.hover_thrust_n = order->hover_n;
     board_power_on(&config, NULL, NULL);
+    (void)kernel_run_until(SIM_S);
+    board_type("#LAYOUT FRONT\n", strlen("#LAYOUT FRONT\n")); /* the bounds are of its height */
     (void)kernel_run_until(13 * SIM_S);
     snprintf(lines, sizeof lines, "%s#SETR %g\n", order->commands, REFERENCE_M);
     board_type(lines, strlen(lines));

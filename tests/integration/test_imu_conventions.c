@@ -13,13 +13,14 @@
 #define DEG (M_PI / 180.0)
 #define TYPED_S 16.0 /* scans arrive, the IMU's zero is taken, gravity was looked at */
 #define LISTEN_S 2.5
+#define LINES 18U
 
 void setUp(void) {}
 void tearDown(void) {}
 
 typedef struct {
     board_config_t config;
-    const char *lines[6]; /* typed a second apart */
+    const char *lines[LINES]; /* typed a second apart */
 } order_t;
 
 typedef struct {
@@ -37,7 +38,7 @@ static void operate(void *argument, void *result)
 
     board_power_on(&order->config, child_terminal_take, &s->terminal);
     kernel_run_until((sim_time_t)(TYPED_S * 1e9));
-    for (unsigned i = 0; i < 6U && order->lines[i] != NULL; i++) {
+    for (unsigned i = 0; i < LINES && order->lines[i] != NULL; i++) {
         board_type(order->lines[i], strlen(order->lines[i]));
         kernel_run_until(timeline_now() + SIM_S);
     }
@@ -204,6 +205,106 @@ void test_an_imu_that_looks_backwards_is_found_by_raising_the_right_side(void)
     assert_said("OK IMU RIGHT IROLL:ROLL IAXES:ASSUMED");
 }
 
+/* ---- what three mirrors tell, LAYOUT THREE */
+
+static void order_lines(order_t *order, const char *const *lines, unsigned count)
+{
+    for (unsigned i = 0; i < count; i++) {
+        order->lines[i] = lines[i];
+    }
+}
+
+/* The IMU lies level, so gravity tells nothing. It flies, lands, and does not fly again. */
+static void assert_named_in_flight(const order_t *order, const char *refused, const char *told)
+{
+    static const char *const lines[] = {
+        "#LAYOUT THREE\n", "#PING 1\n", "#SETR 0.6\n", "#PING 1\n", "#PING 1\n", "#PING 1\n",
+        "#PING 1\n",       "#PING 1\n", "#SETR 0\n",   "#PING 1\n", "#PING 1\n", "#PING 1\n",
+        "#PING 1\n",       "#PING 1\n", "#PING 1\n",   "#PING 1\n", "#ARM\n",    "#MIRRORS\n"};
+    order_t flown = *order;
+
+    order_lines(&flown, lines, LINES);
+    run(&flown);
+    assert_said(refused);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(seen.terminal.text, told), seen.terminal.text);
+    TEST_ASSERT_EQUAL_STRING("GROUND", flight_state_name(seen.flight.state));
+    TEST_ASSERT_NOT_EQUAL(0, seen.flight.flags & FLIGHT_FLAG_MIRRORS);
+}
+
+void test_what_gravity_cannot_tell_of_roll_the_mirrors_tell_in_flight(void)
+{
+    order_t order = {.config = board_config(31)};
+    order.config.imu.roll_sign = -1.0;
+    assert_named_in_flight(&order, "ERR ARM IMU ROLL against the mirrors, see #MIRRORS", " imu:ROLL\r\n");
+}
+
+void test_an_imu_that_looks_backwards_is_found_in_flight(void)
+{
+    order_t order = {.config = board_config(32)};
+    order.config.imu.turned = 1.0;
+    assert_named_in_flight(&order, "ERR ARM IMU ROLL+PITCH against the mirrors, see #MIRRORS",
+                           " imu:ROLL+PITCH\r\n");
+}
+
+/* ---- mirrors at rest, LAYOUT THREE */
+
+static order_t order_at_rest(unsigned long seed)
+{
+    static const char *const lines[] = {"#IAXES PROVED\n", "#LAYOUT THREE\n", "#PING 1\n", "#PING 1\n",
+                                        "#PING 1\n",       "#MIRRORS\n",      "#ARM\n"};
+    order_t order = {.config = board_config(seed)};
+
+    order_lines(&order, lines, sizeof lines / sizeof lines[0]);
+    return order;
+}
+
+void test_mirrors_that_show_the_ground_let_it_arm_without_a_word(void)
+{
+    const order_t order = order_at_rest(33);
+    run(&order);
+    assert_said("OK ARM idle:15%");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(seen.terminal.text, " wrong:- "), seen.terminal.text);
+    TEST_ASSERT_EQUAL(0, seen.flight.flags & FLIGHT_FLAG_MIRRORS);
+}
+
+void test_a_mirror_that_is_missing_is_named_when_it_arms(void)
+{
+    order_t order = order_at_rest(34);
+    order.config.scene.missing_mirror = 3.0;
+    run(&order);
+    assert_said("OK ARM idle:15% (mirror FORE shows no ground, see #MIRRORS)");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(seen.terminal.text, " fore_mm:- "), seen.terminal.text);
+    TEST_ASSERT_NOT_EQUAL(0, seen.flight.flags & FLIGHT_FLAG_MIRRORS);
+}
+
+void test_rays_beside_a_mirror_are_named_when_it_arms(void)
+{
+    order_t order = order_at_rest(35);
+    order.lines[2] = "#S1 180\n";
+    run(&order);
+    assert_said("OK ARM idle:15% (mirror AFT shows no ground, see #MIRRORS)");
+}
+
+void test_a_length_that_is_eight_centimetres_wrong_is_named_when_it_arms(void)
+{
+    order_t order = order_at_rest(36);
+    order.lines[2] = "#L2 185\n";
+    run(&order);
+    assert_said("OK ARM idle:15% (mirror FORE shows no ground, see #MIRRORS)");
+}
+
+void test_two_missing_mirrors_do_not_arm_and_the_front_one_alone_does(void)
+{
+    order_t order = order_at_rest(37);
+    order.config.scene.missing_mirror = 6.0;
+    order.lines[7] = "#LAYOUT FRONT\n";
+    order.lines[8] = "#PING 1\n";
+    order.lines[9] = "#ARM\n";
+    run(&order);
+    assert_said("ERR ARM two mirrors show no ground, see #MIRRORS");
+    assert_said("OK ARM idle:15%");
+}
+
 /* ---- a sound one is never refused */
 
 void test_a_sound_imu_is_not_refused_however_it_lies_and_shakes(void)
@@ -217,6 +318,6 @@ void test_a_sound_imu_is_not_refused_however_it_lies_and_shakes(void)
         order.config.imu.acceleration_bias_mps2 = seed % 2 ? 0.8 : -0.8;
         run(&order);
         printf("seed %lu\n", seed);
-        assert_said("OK SETR 0.5");
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(seen.terminal.text, "\nOK SETR 0.5"), seen.terminal.text);
     }
 }

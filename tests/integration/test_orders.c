@@ -64,7 +64,7 @@ void setUp(void)
 {
     const char *count = getenv("ORDERS_VEHICLES"), *seed = getenv("ORDERS_SEED");
 
-    vehicles = count != NULL ? (unsigned)strtoul(count, NULL, 10) : 40U;
+    vehicles = count != NULL ? (unsigned)strtoul(count, NULL, 10) : 30U;
     first_seed = seed == NULL ? 1UL : strcmp(seed, "new") == 0 ? drawn_seed() : strtoul(seed, NULL, 10);
 }
 

@@ -72,6 +72,8 @@ static void play(void *argument, void *result)
     config.quadrotor.bench_height_m = HEIGHT_M;
     board_power_on(&config, NULL, NULL);
     board_connect(BOARD_IMU, NULL, NULL);
+    kernel_run_until(500 * SIM_MS);
+    board_type("#LAYOUT FRONT\n", strlen("#LAYOUT FRONT\n")); /* the height of one mirror has a formula */
     kernel_run_until((sim_time_t)(STARTED_S * 1e9));
     while (next < end) {
         const char *lf = memchr(next, '\n', (size_t)(end - next));

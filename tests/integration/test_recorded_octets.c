@@ -81,8 +81,16 @@ static void expect_scans(uint16_t first, uint16_t last, uint16_t scans)
 /* The next line of expected.csv against what the product makes of the scan. */
 static void compare_scan(void)
 {
-    const scip_group_mean_t mean = scip_group_mean(&scan, &scip_layouts[SCIP_LAYOUT_FRONT].groups[0]);
-    const mirror_range_t range = {MIRROR_FRONT, mean.valid, mean.mean_mm, mean.spread_mm, mean.good_rays, 0};
+    const scip_group_t *const front = &scip_layouts[SCIP_LAYOUT_FRONT].groups[0];
+    const scip_group_mean_t mean = scip_group_mean(&scan, front);
+    const scip_group_steps_t steps = scip_group_steps(&scan, front, &mean);
+    const mirror_range_t range = {.mirror = MIRROR_FRONT,
+                                  .valid = mean.valid,
+                                  .slant_mm = mean.mean_mm,
+                                  .spread_mm = mean.spread_mm,
+                                  .good_rays = mean.good_rays,
+                                  .aside_steps = steps.mean - SCANNER_RIGHT_STEP,
+                                  .wide_steps2 = steps.variance};
     const altitude_geometry_t geometry = altitude_geometry_of(&parameters);
     const altitude_t altitude = altitude_from_ranges(&geometry, &range, 1, tilt.roll_rad, tilt.pitch_rad);
     unsigned long stamp_ms;

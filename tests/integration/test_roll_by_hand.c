@@ -42,6 +42,7 @@ static void hold(void *argument, void *result)
     config.quadrotor.bench_roll_start_s = HELD_S;
     board_power_on(&config, NULL, NULL);
     kernel_run_until(500 * SIM_MS);
+    board_type("#LAYOUT FRONT\n", strlen("#LAYOUT FRONT\n"));
     board_type(order->command, strlen(order->command));
     while ((double)timeline_now() * 1e-9 < END_S && kernel_run_until(timeline_now() + SIM_MS)) {
         if ((double)timeline_now() * 1e-9 > LOOK_S && probe_altitude->scan_valid &&

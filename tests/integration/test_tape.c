@@ -87,6 +87,7 @@ static void fly(void *argument, void *result)
     config.laser_faults = faults;
     config.laser_fault_count = 2;
     config.stick.connected = 1.0;
+    config.battery.connected = 1.0;
     flash_read_all(cells);
     memset(cells, 0, 200); /* no whole image: the firmware says so */
     flash_write_all(cells);
@@ -102,6 +103,7 @@ static void fly(void *argument, void *result)
     until(13.7);
     type("#SEL PIN\n");
     type("#STICK PIN\n");
+    type("#BAT PIN\n");
     until(14.0);
     type("#SETR 0.6\n");
     until(20.0);
@@ -164,6 +166,7 @@ void test_a_replay_gives_the_same_pulses_and_the_same_words_to_the_nanosecond(vo
         TEST_ASSERT_NOT_NULL(strstr(flown.radio.text, "state:FLYING"));
         TEST_ASSERT_NOT_NULL(strstr(flown.radio.text, "state:FLOATING")); /* and the pilot's switch */
         TEST_ASSERT_NOT_NULL(strstr(flown.radio.text, "ref:0.8"));        /* and his stick */
+        TEST_ASSERT_NOT_NULL(strstr(flown.radio.text, "bat:16."));        /* and the battery */
     }
 }
 

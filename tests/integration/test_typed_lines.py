@@ -2,8 +2,8 @@
 
 Usage: test_typed_lines.py ROOT OPERATOR_BOARD PLOMADA
 
-A line is what a page writes as `#VERB ...`, also in a block of code. Each is typed on a fresh board that stands on the ground, with
-its sensors up and LINK set. What needs more than that is named in BEFORE; what a page only speaks of, in SPOKEN_OF. A bare name of a
+A line is what a page writes as `#VERB ...`, also in a block of code. Each is typed on a board that stands on the ground, with its
+sensors up and LINK set, and has heard no other of them. What needs more than that is named in BEFORE; what a page only speaks of, in SPOKEN_OF. A bare name of a
 parameter is spoken of: it must be one.
 """
 import re
@@ -33,12 +33,14 @@ def lines_of(page):
 
 class TypedLines(unittest.TestCase):
     def answer(self, board, line):
-        for order in READY + BEFORE.get(line, []):
-            board.order(order)
-        board.clear()
-        board.order(f"type {line}")
-        board.wait(1)
-        return next((answer for answer in board.answers()), "no answer")
+        with board.tried():
+            for order in BEFORE.get(line, []):
+                board.order(order)
+            board.clear()
+            board.order(f"type {line}")
+            board.wait(1)
+            answers = board.answers()
+        return next(iter(answers), "no answer")
 
     def test_each_is_answered_by_ok(self):
         pages = [*sorted((ROOT / "docs").rglob("*.md")), ROOT / "README.md", ROOT / "CHANGELOG.md"]
@@ -47,6 +49,8 @@ class TypedLines(unittest.TestCase):
         self.assertIn("GRAV", parameters)
         seen = {}
         with OperatorBoard(BOARD) as board:
+            for order in READY:
+                board.order(order)
             for page in pages:
                 for line in lines_of(page):
                     if line in SPOKEN_OF or line[1:] in parameters:

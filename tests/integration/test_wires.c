@@ -109,11 +109,12 @@ void test_a_radio_on_a_port_carries_commands_and_telemetry_at_9600(void)
 /* 40 frames a second, level. */
 static void be_the_imu(long span_ms)
 {
-    static const char frame[] = "#A-C=0.00,0.00,256.00\r\n#YPR=10.00,0.50,-0.50\r\n";
+    static const char *const frames[2] = {"#A-C=0.00,0.00,256.00\r\n#YPR=10.00,0.50,-0.50\r\n",
+                                          "#A-C=0.00,0.00,256.00\r\n#YPR=10.01,0.50,-0.50\r\n"};
     const long begin_ms = now_ms();
 
     for (long k = 0; k * 25 < span_ms; k++) {
-        port_write(&device, (const unsigned char *)frame, strlen(frame));
+        port_write(&device, (const unsigned char *)frames[k % 2], strlen(frames[k % 2]));
         while (now_ms() < begin_ms + (k + 1) * 25) {
             usleep(2000);
         }

@@ -1,4 +1,5 @@
 """What a C28x and SYS/BIOS refuse, or do otherwise than a PC, and a text can show. docs/portability.md has the reasons."""
+import functools
 import re
 import sys
 from pathlib import Path
@@ -44,15 +45,26 @@ def sizes(the_house):
                 yield at(path, text, match.start(), "sizeof counts cells, not octets")
 
 
-def visible(the_house, path, text):
-    """The file with the headers of its room."""
-    return text + "".join(code(the_house, header) for header in the_house.sources(path.split("/")[0], ".h"))
+@functools.cache
+def headers(the_house, room):
+    return "".join(code(the_house, header) for header in the_house.sources(room, ".h"))
+
+
+# Of a room's headers, which each of its files sees.
+@functools.cache
+def found_in_headers(the_house, room, pattern):
+    return tuple(re.findall(pattern, headers(the_house, room)))
+
+
+def visible(the_house, path, text, pattern):
+    """What a pattern finds in the file and in the headers of its room."""
+    return *re.findall(pattern, text), *found_in_headers(the_house, path.split("/")[0], pattern)
 
 
 def widths(the_house, path, text):
     """{name: bits} of the unsigned variables and members that the file can see."""
     found = {}
-    for bits, names in re.findall(r"\buint(16|32|64)_t\s+([^;(){}]*)[;,)=]", visible(the_house, path, text)):
+    for bits, names in visible(the_house, path, text, r"\buint(16|32|64)_t\s+([^;(){}]*)[;,)=]"):
         for name in re.findall(rf"(?:^|,)\s*\**\s*(?:const\s+)?({NAME})", names):
             found[name] = max(int(bits), found.get(name, 0))
     return found
@@ -122,7 +134,7 @@ def characters(the_house):
             for match in re.finditer(rf"(?:\+\+|--)\s*{name}\b|(?<![.>\w]){name}\s*(?:\+\+|--|[-+*/%&|^]=|<<=|>>=)|\[\s*{name}\s*\]",
                                      text):
                 yield at(path, text, match.start(), f"arithmetic on the plain char {name}")
-        for name in set(re.findall(rf"\bchar\s+({NAME})\s*\[", visible(the_house, path, text))):
+        for name in set(visible(the_house, path, text, rf"\bchar\s+({NAME})\s*\[")):
             for match in re.finditer(rf"\b{name}\[[^\]]*\]\s*(?:\+\+|--|[-+*/%&|^]=|<<=|>>=)", text):
                 yield at(path, text, match.start(), f"arithmetic on the plain char {name}[]")
 

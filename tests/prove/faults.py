@@ -46,6 +46,8 @@ FAULTS = [
     ("urg_link", "steps_in_a_stream", "urg_link.c", "    link->asked_rate = link->config.first_rate;\n", "    link->asked_rate = 0U;\n"),
     ("urg_link", "any_rate_has_its_place", "urg_link.c", "scip_bit_rates[index - 2U]", "scip_bit_rates[index]"),
     ("urg_link", "any_place_has_a_next_one", "urg_link.c", "(index + 1U) % PROBES", "(index + 1U)"),
+    ("urg_link", "any_octets_have_their_time", "urg_link.c", "octets * (10000000U / link->rate + 1U)", "octets * (10000000U / (link->rate - 19200U) + 1U)"),
+    ("urg_link", "any_stream_has_its_times", "urg_link.c", "((uint32_t)link->config.range.interval + 1U)", "((uint32_t)link->config.range.interval)"),
     ("urg_link", "any_request_is_built", "scip_request.c", "append_number(request, asked.interval, 1U)", "append_number(request, asked.interval, 2U)"),
     ("urg_link", "any_request_has_a_line_end_first", "scip_request.c", "i <= before; ++i", "i <= before + 1U; ++i"),
     ("urg_link", "any_request_leaves_time_mode_first", "scip_request.c", "i < length; ++i) {\n        request->text[i]",

@@ -35,7 +35,7 @@ APART = {
     "scip_parser": ["gather", "line_in_place", "line_by_copy", "scip_parser_end_line", "decode_pairs", "decode_triples", "pass",
                     "strange_in", "block_in_place", "blocks_in_place"],
     "scip_request": ["scip_request_end_line_first", "scip_request_leave_time_first"],
-    "urg_link": ["build_request", "probe_index", "next_probe"],
+    "urg_link": ["build_request", "probe_index", "next_probe", "wire_us", "frame_us", "scan_period_us", "past_us", "late_us"],
 }
 
 # Harness, sources besides it, rounds of a loop at most (proved too), functions. A harness that includes its source has none.
@@ -59,7 +59,7 @@ PROOFS = [
       "any_state_has_a_health", "any_line_is_taken", "any_limits_give_directions"]),
     ("urg_link", ["scip_request"], 21,
      ["starts_sound", "steps_in_wait", "steps_in_a_stream", "any_request_is_built", "any_request_has_a_line_end_first",
-      "any_request_leaves_time_mode_first", "any_rate_has_its_place", "any_place_has_a_next_one"]),
+      "any_request_leaves_time_mode_first", "any_rate_has_its_place", "any_place_has_a_next_one", "any_octets_have_their_time", "any_stream_has_its_times"]),
     ("scip_parser", ["scip_request"], 258, ["strange_octets_are_counted", "line_ends_in_text"]),
     ("scip_parser", ["scip_request"], 130,
      ["starts_sound", "orders_leave_it_sound", "octets_leave_it_sound", "line_ends_in_hunt", "line_ends_in_echo",

@@ -75,6 +75,43 @@ void scip_request_leave_time_first(scip_request_t *request)
     request->text_length = (uint16_t)(nondet_bool() ? request->text_length + 4U : OWN_MOST + 5U);
 }
 
+/* ---- times ---- */
+
+/* Only comparisons ask for them: any time is proved for. Their divisors are. */
+static uint32_t wire_us(const urg_link_t *link, uint32_t octets)
+{
+    (void)octets;
+    PROVE(link == &link_ && is_one_of_scips(link->rate), "a rate of SCIP");
+    return any_time();
+}
+
+static uint32_t frame_us(const urg_link_t *link)
+{
+    PROVE(link == &link_, "the link's own stream");
+    return any_time();
+}
+
+static uint32_t scan_period_us(const urg_link_t *link)
+{
+    const uint32_t period_us = any_time();
+
+    PROVE(link == &link_, "the link's own stream");
+    ASSUME(period_us > 0U);
+    return period_us;
+}
+
+static uint32_t past_us(const step_t *step)
+{
+    PROVE(step->link == &link_, "the link's own stream");
+    return any_time();
+}
+
+static uint32_t late_us(const urg_link_t *link)
+{
+    PROVE(link == &link_, "the link's own stream");
+    return any_time();
+}
+
 /* ---- the order of the search ---- */
 
 static uint16_t any_place(void)
@@ -155,6 +192,24 @@ void steps_in_a_dialogue(void)
 
     ASSUME(status < URG_STATUS_COUNT && status != URG_WAIT && status != URG_OK);
     step_from(status);
+}
+
+void any_octets_have_their_time(void)
+{
+    any_sound_link();
+    ASSUME(is_one_of_scips(link_.rate));
+    (void)wire_us_itself(&link_, any_time());
+}
+
+void any_stream_has_its_times(void)
+{
+    const step_t step = {&link_, &seen, any_time(), &action};
+
+    any_sound_link();
+    (void)frame_us_itself(&link_);
+    PROVE(scan_period_us_itself(&link_) > 0U, "a period");
+    (void)past_us_itself(&step);
+    (void)late_us_itself(&link_);
 }
 
 void any_request_is_built(void)

@@ -3,6 +3,7 @@
 A check is a function of a House that returns its complaints, each "path:line: what is wrong".
 """
 import argparse
+import functools
 import re
 import sys
 from pathlib import Path
@@ -47,6 +48,7 @@ def without_comments(text):
     return COMMENT_OR_LITERAL.sub(lambda match: blank(match) if match.group()[0] == "/" else match.group(), text)
 
 
+@functools.cache    # the rules ask for the same files again
 def code_only(text):
     """C without comments, string and character literals; lines and columns stay."""
     return COMMENT_OR_LITERAL.sub(blank, text)

@@ -12,11 +12,14 @@ from pathlib import Path
 
 import house
 
-UNITS = {"m": "m", "n": "N", "rad": "rad", "mps": "m/s", "mps2": "m/s²", "us": "us", "s": "s"}
+UNITS = {"m": "m", "n": "N", "v": "V", "rad": "rad", "mps": "m/s", "mps2": "m/s²", "us": "us", "s": "s"}
 NUMBER = re.compile(r'NUMBER\((NULL|"\w+"), *(\d+)U, *(NULL|"\w+"), *(\d+)U, *(\d+)U, *[\w.]+, *FLIGHT_LOG_\w+\)')
 OTHER = re.compile(r"(STATE|FLAGS|TEXT)\(([^)]*)\)")
 DERIVED = re.compile(r'DERIVED\("(\w+)", *(\d+)U, *\d+U, *[\w.]+, *\w+, *[\w.]+\)')
-NAME = re.compile(r'NAME\("(\w+)", *[\w.]+, *\w+, *\d+U\)')
+BEAM = re.compile(r'BEAM\("(\w+)", *\w+\)')
+SET = re.compile(r'SET\("(\w+)", *[\w.]+\)')
+NAME = re.compile(r'NAME\("(\w+)", *[\w.]+, *\w+, *\d+U, *\d+U\)')
+PARTS = {"rays": ("-", "0"), "mm": ("mm", "0"), "spread_mm": ("mm", "0"), "ms": ("ms", "0"), "lie": ("%", "0")}  # of a beam
 MORE = {"t_s", "height_m", "abs_m", "terrain_m"}  # the time, and what only the PC board knows
 
 
@@ -29,9 +32,9 @@ def unit_of(column):
 
 
 def published(source):
-    """({telemetry field: (unit, decimals)}, {column: (unit, decimals)}), in the order of the table."""
+    """({telemetry field: (unit, decimals)}, {column: (unit, decimals)}), in the order of the table; the beams' parts one by one."""
     rows = re.search(r"#define PUBLISHED\(NUMBER.*?(?=\n/\* clang-format on)", source, re.S).group(0).split("\\\n")[1:]
-    fields, columns = {}, {}
+    fields, columns, beams = {}, {}, []
     for row in rows:
         number, other = NUMBER.search(row), OTHER.search(row)
         if number:
@@ -42,7 +45,12 @@ def published(source):
                 fields[name_of(telemetry)] = (unit_of(column), decimals)
         elif derived := DERIVED.search(row):
             columns[derived.group(1)] = (unit_of(derived.group(1)), derived.group(2))
+        elif beam := BEAM.search(row):
+            beams.append(beam.group(1))
         elif name := NAME.search(row):
+            columns[name.group(1)] = ("-", "-")
+        elif name := SET.search(row):
+            columns |= {f"{mirror}_{part}": told for part, told in PARTS.items() for mirror in beams}
             columns[name.group(1)] = ("-", "-")
         elif other:
             names = [name_of(cell) for cell in other.group(2).split(",")]

@@ -5,6 +5,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import chosen
 import commands
 import house
 import includes
@@ -92,6 +93,42 @@ class Origins(Sample):
         self.assertEqual(len(room.origins(house.House(self.root))), 1)
         self.write("control/a.c", "#define MOST_M 2 /* as MOST_M in a.c */\n")
         self.assertEqual(len(room.origins(house.House(self.root))), 1)
+
+
+class Chosen(Sample):
+    def count(self, text):
+        self.write("control/a.c", text)
+        return [name for _, _, name in chosen.choices(house.House(self.root))]
+
+    def test_a_constant_that_says_chosen_or_tried_counts(self):
+        self.assertEqual(self.count("#define A_M 0.5F /* chosen: half */\n#define B_M 2U /* Tried 1 to 3 */\n"), ["A_M", "B_M"])
+
+    def test_a_comment_that_goes_on_or_stands_above_or_below_counts(self):
+        self.assertEqual(self.count("#define A_M \\\n    0.5F /* a length,\n          * chosen */\n"), ["A_M"])
+        self.assertEqual(self.count("/* chosen: half of it,\n * about */\n#define A_M 0.5F\n"), ["A_M"])
+        self.assertEqual(self.count("int16_t a; /* chosen */\n#define A_M 5\n"), [])
+
+    def test_a_measure_without_a_comment_counts_and_a_flag_does_not(self):
+        self.assertEqual(self.count("#define A_M 0.5F\n#define B_US UINT32_C(300000)\n#define FLAG 4U\n"), ["A_M", "B_US"])
+
+    def test_a_source_or_a_formula_does_not_count(self):
+        self.assertEqual(self.count("#define A_M 0.5F /* data sheet, 3.1 */\n#define B_M (3.0F * NOISE_M)\n#define C_M NOISE_M\n"), [])
+
+    def test_a_formula_with_a_factor_that_is_chosen_counts(self):
+        self.assertEqual(self.count("#define B_M (3.3F * NOISE_M) /* chosen */\n"), ["B_M"])
+
+    def test_a_table_counts_once(self):
+        self.assertEqual(self.count("/* Chosen. */\nstatic const float most[2] = {1.0F, 2.0F};\n"), ["most"])
+
+    def test_a_word_in_the_code_is_no_source(self):
+        self.assertEqual(self.count("int16_t chosen = 0;\n/* the chosen law */\nint16_t b;\n"), [])
+
+    def test_one_more_than_excused_is_named_and_far_fewer_are(self):
+        self.write("tests/rules/excuses.txt", "chosen control:constants 1 made by hand\n")
+        self.write("control/a.c", "#define A_M 0.5F /* chosen */\n#define B_M 0.5F /* chosen */\n")
+        self.assert_one(chosen, "control:constants: 2 ")
+        self.write("tests/rules/excuses.txt", "chosen control:constants 9 made by hand\n")
+        self.assert_one(chosen, "tests/rules/excuses.txt: ")
 
 
 class Walk(Sample):
@@ -430,13 +467,16 @@ class Published(unittest.TestCase):
     HEADER = ('#define PUBLISHED(NUMBER, STATE, FLAGS, TEXT) \\\n    NUMBER("alt", 3U, "meas_m", 3U, 4U, height_mm, FLIGHT_LOG_MILLI) \\\n'
               '    NUMBER(NULL, 0U, "roll_rad", 4U, 4U, roll_rad, FLIGHT_LOG_4) \\\n    TEXT("laser", laser) \\\n'
               '    STATE("state", "state") \\\n    DERIVED("pulse_us", 1U, 2U, flight.pulse_us, to_pulse, flight.thrust_n) \\\n'
-              '    NAME("limit", flight.bound, bound_name, 8U)\n/* clang-format on */\n')
+              '    NAME("limit", flight.bound, bound_name, 7U, 5U) \\\n    BEAM("mf", MIRROR_FRONT) \\\n    BEAM("m1", MIRROR_AFT) \\\n'
+              '    SET("out", beams.left_out)\n/* clang-format on */\n')
     RULES = 'static const char *const reason_names[] = {\n    [NONE] = "-", [STEPS] = "SIGHT/steps", [REST] = "IMU/rest",\n};\n'
     BOUNDS = 'static const char *const names[] = {\n    [NONE] = "-",\n    [CLIMB] = "CLIMB",\n};\n'
     PAGE = ("| field | unit | decimals | meaning |\n|---|---|---|---|\n| `alt` | m | 3 | height |\n| `laser` | - | - | status |\n"
             "| `state` | - | - | state |\n\n| column | unit | decimals | meaning |\n|---|---|---|---|\n| `t_s` | s | 3 | time |\n"
             "| `meas_m` | m | 3 | height |\n| `roll_rad` | rad | 4 | roll |\n| `state` | - | - | state |\n"
-            "| `pulse_us` | us | 1 | pulse |\n| `limit` | - | - | limit |\n\n"
+            "| `pulse_us` | us | 1 | pulse |\n| `limit` | - | - | limit |\n| `mf_rays`, `m1_rays` | - | 0 | rays |\n"
+            "| `mf_mm`, `m1_mm` | mm | 0 | slant |\n| `mf_spread_mm`, `m1_spread_mm` | mm | 0 | spread |\n"
+            "| `mf_ms`, `m1_ms` | ms | 0 | age |\n| `mf_lie`, `m1_lie` | % | 0 | liar |\n| `out` | - | - | left out |\n\n"
             "| rule | what |\n|---|---|\n| `SIGHT/steps` | steps |\n| `IMU/rest` | rest |\n\n| limit | holds |\n|---|---|\n| `CLIMB` | climb |\n")
 
     def complaints(self, header=HEADER, page=PAGE):
@@ -470,6 +510,10 @@ class Published(unittest.TestCase):
     def test_another_order_is_named(self):
         self.assert_one(self.complaints(page=self.PAGE.replace("| `laser` | - | - | status |\n| `state` | - | - | state |\n",
                                                                "| `state` | - | - | state |\n| `laser` | - | - | status |\n", 1)), "order")
+
+    def test_a_part_of_a_beam_without_a_row_or_with_another_unit_is_named(self):
+        self.assert_one(self.complaints(page=self.PAGE.replace("| `mf_ms`, `m1_ms` |", "| `mf_ms` |")), "column", "m1_ms")
+        self.assertEqual(len(self.complaints(page=self.PAGE.replace("| % | 0 | liar", "| - | 0 | liar"))), 2)
 
     def test_a_rule_or_a_limit_without_a_row_and_a_row_without_one_are_named(self):
         self.assert_one(self.complaints(page=self.PAGE.replace("| `IMU/rest` | rest |\n", "")), "rule", "IMU/rest")

@@ -561,8 +561,8 @@ class OnPages(unittest.TestCase):
         program = self.dir / "plomada"
         program.write_text("#!/bin/sh\necho 'one of: PD|PID|PIDT|EST|MINE'\n", encoding="utf-8")
         program.chmod(0o755)
-        plan.LAWS.pop("EST-THREE", None)            # of the line before
-        self.addCleanup(plan.LAWS.pop, "EST-THREE", None)
+        plan.LAWS.pop("EST-FRONT", None)            # of the line before
+        self.addCleanup(plan.LAWS.pop, "EST-FRONT", None)
         with contextlib.chdir(ROOT), contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             try:
                 campaign.read_arguments([*words, "--program", str(program)])

@@ -31,10 +31,11 @@ class Fit(unittest.TestCase):
         self.dir = Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.dir)
 
-    def fly(self, seed, plant, scenario="experiment"):
+    def fly(self, seed, plant, scenario="experiment", settings=None):
         """What the chip's recorder holds, as an operator saves it and `plomada log` reads it."""
         path = self.dir / f"{seed}.csv"
         words = [word for name, value in plant.items() for word in ("--set", f"plant.{name}={value}")]
+        words += [word for name, value in (settings or {}).items() for word in ("--set", f"{name}={value}")]
         # A log that is asked for before the vehicle is down goes on, and its oldest row may be overwritten meanwhile.
         subprocess.run([PROGRAM, "fly", scenario, "--seed", str(seed), "--until-down", "20", *words, "--log", path.with_suffix(".log")],
                        check=False, stdout=subprocess.DEVNULL)
@@ -89,6 +90,49 @@ class Fit(unittest.TestCase):
             self.assertLess(vehicle[key]["low"], true, f"{key}: {vehicle[key]}")
             self.assertGreater(vehicle[key]["high"], true, f"{key}: {vehicle[key]}")
         self.assertLess(abs(vehicle["response"]["value"] - 0.125), 0.045, vehicle["response"])
+
+    def fly_batteries(self, power, charges, measured="PIN"):
+        plant = {"battery": 1, "volts_power": power, "sag": 0}
+        logs = []
+        for number, charge in enumerate(charges):
+            logs.append(self.fly(4730 + number, plant | {"battery_charge": charge}, settings={"BAT": measured}))
+        return logs
+
+    # Without the voltage the second flight's hover thrust is that of another vehicle, and the fit bends its other figures to it.
+    def test_the_hover_thrust_goes_with_the_voltage_that_the_logs_have(self):
+        done, vehicle = self.fit(*self.fly_batteries(1.65, (1.0, 0.25)))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        power, hovers = vehicle["volts_power"], vehicle["hover_over_volts"]
+        self.assertLess(power["low"], 1.65)
+        self.assertGreater(power["high"], 1.65)
+        self.assertLess(power["high"] - power["low"], 0.6)
+        self.assertLess(abs(hovers[-1][1] - 7.4), 0.03 * 7.4, hovers)       # of the full one
+        self.assertGreater(hovers[0][1], hovers[-1][1] + 1.2)
+        self.assertIn("by the voltage to the power of -", done.stdout)
+        again = subprocess.run([PROGRAM, "fly", "est-60cm-ramp", "--vehicle", self.dir / "vehicle.json"], check=False, stdout=subprocess.DEVNULL)
+        self.assertIn(again.returncode, (0, 1))
+        self.assertEqual(len(forecast.draws(forecast.load_vehicle(self.dir / "vehicle.json"), 3, 1)), 3)
+
+    def test_an_autopilot_that_compensates_is_seen_as_one(self):
+        power = self.fit(*self.fly_batteries(0, (1.0, 0.25)))[1]["volts_power"]
+        self.assertLess(abs(power["value"]), 0.3)
+        self.assertLess(power["low"], 0.0)
+        self.assertGreater(power["high"], 0.0)
+
+    def test_a_voltage_that_is_not_measured_or_not_believed_is_none(self):
+        good, = self.fly_batteries(1.65, (1.0,))
+        titles, *rows = good.read_text().splitlines()
+        place = titles.split(",").index("bat")
+        doubted = self.dir / "doubted.csv"
+        doubted.write_text("\n".join([titles, *(",".join([*cells[:place], "JUMPS", *cells[place + 1:]]) for cells in (row.split(",") for row in rows))]) + "\n")
+        measured = flight_log.stretches(good)
+        unmeasured, = self.fly_batteries(1.65, (0.9,), "NONE")
+        others = [flight_log.stretches(path) for path in (doubted, unmeasured)]
+        self.assertAlmostEqual(model.compare_volts(measured), 16.2, delta=0.3)
+        for other in others:
+            self.assertIsNone(other[0].volts)
+            self.assertIsNone(model.compare_volts([*measured, *other]))
+            self.assertNotIn("volts_power", model.Likelihood("THRUST", other).names)
 
     def test_a_flight_that_the_supervisor_lowered_now_and_then_is_one_stretch(self):
         vehicle = {"hover_thrust": 7.8647, "tau": 0.1304, "tdelay": 0.0177, "damping": 1.508, "gain": 1.2455, "common_noise": 5.08}
@@ -203,7 +247,7 @@ class BadLogs(unittest.TestCase):
                 return text(lambda cells, at: cells | {"t_s": f"{change(float(cells['t_s']), at):g}"})
 
             for what, octets, reason in (
-                    ("millimetres", text(lambda cells, _: cells | {"meas_m": f"{1e3 * float(cells['meas_m'] or 0):g}"}), r":2: meas_m: -\d\.\d is not in metres"),
+                    ("millimetres", text(lambda cells, _: cells | {"meas_m": f"{1e3 * float(cells['meas_m'] or 0):g}"}), r":2: meas_m: -\d+(\.\d)? is not in metres"),
                     ("milliseconds", times(lambda t, _: 1000 * t), ": t_s: .*no time of a flight in seconds"),
                     ("a jump", times(lambda t, at: t + (1e5 if at > 700 else 0)), ":701: t_s: from 6.98 to 100007"),
                     ("a long jump", times(lambda t, at: t + (1e15 if at > 700 else 0)), ":701: t_s: 1e[+]15 is not in seconds"),

@@ -11,6 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/plot"))
+import belief  # noqa: E402
 import plot  # noqa: E402
 import recording  # noqa: E402
 
@@ -110,6 +111,12 @@ class Reading(Case):
         self.assertEqual(rec.columns["laser"], ["OK", "LOST", "OK"])
         self.assertEqual(rec.columns["thrust_n"], [7.12, 6.9, 7.12])
 
+    def test_the_line_of_the_beams_takes_no_time_either_and_is_no_damage(self):
+        beams = "mf:8,776,9,83,0 m1:8,804,28,108,99 m2:- out:m1"
+        rec = recording.read(self.write("seen.txt", "".join((LINE + "\r\n") * 5 + beams + "\r\n" for _ in range(4))))
+        self.assertEqual((len(rec.t), rec.damaged), (20, 0))
+        self.assertAlmostEqual(rec.t[-1], 19 * 0.2)
+
     def test_a_console_log_split_anywhere_gives_the_same_lines(self):
         text = f"{LINE}\r\nOK SETR 0.6\r\n{GAP}\r\n{LINE}\r\n"
         for size in range(1, len(text) + 1):
@@ -146,8 +153,10 @@ class Drawing(Case):
         return subprocess.run([sys.executable, "-B", ROOT / "tools/plot/plot.py", *arguments], capture_output=True, text=True,
                               check=False)
 
-    def assert_picture(self, done, path):
-        self.assertEqual((done.returncode, done.stderr, done.stdout.strip()), (0, "", str(path)))
+    def assert_picture(self, done, path, told=True):
+        printed = [str(path), *([str(path.with_suffix(".html"))] if told else [])]
+        self.assertEqual((done.returncode, done.stderr, done.stdout.splitlines()), (0, "", printed))
+        self.assertEqual(path.with_suffix(".html").exists(), told)
         head = path.read_bytes()[:24]
         self.assertEqual(head[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(struct.unpack(">II", head[16:]), (1200, 900))
@@ -199,7 +208,7 @@ class Drawing(Case):
         self.write("flight.json", '{"overshoot_mm": 12.5, "rise_time_s": null}')
         other = self.write("other.csv", FLIGHT.replace(",0.6,", ",0.5,"))
         self.assert_picture(self.plot(flight), self.dir / "flight.png")
-        self.assert_picture(self.plot(flight, other, "-o", self.dir / "two/both.png"), self.dir / "two/both.png")
+        self.assert_picture(self.plot(flight, other, "-o", self.dir / "two/both.png"), self.dir / "two/both.png", told=False)
         log = self.console([f"02-05-2015 11:44:56.100,0,RECV,{(LINE + chr(10)).encode().hex()}",
                             "02-05-2015 11:44:56.150,0,SENT,23474554" + "0A"])
         self.assert_picture(self.plot(log, "-o", f"{self.dir}/"), self.dir / "console.png")
@@ -207,6 +216,21 @@ class Drawing(Case):
         self.assert_picture(self.plot(text), self.dir / "text.png")
         flown = self.write("flown.csv", RECORDER)
         self.assert_picture(self.plot(flown), self.dir / "flown.png")
+
+    def test_the_page_beside_the_picture_says_each_event_where_its_mark_is(self):
+        self.assert_picture(self.plot(self.write("flown.csv", RECORDER.replace("FLYING", "TAKEOFF", 10).replace("75.292,0.59", "75.292,0.89"))), self.dir / "flown.png")
+        page = (self.dir / "flown.html").read_text(encoding="utf-8")
+        marks = re.findall(r'<button data-kind="(\w+)" style="left:([\d.]+)%;top:([\d.]+)%" aria-label="([^"]*)"', page)
+        self.assertEqual([(kind, text) for kind, _, _, text in marks],
+                         [("takeoff", "70.0 s: Take-off to 0.60 m."), ("down", "75.3 s: An edge: the ground falls away by 0.30 m.")])
+        across = [float(left) for _, left, _, _ in marks]
+        self.assertAlmostEqual(across[0], 11.5, delta=0.1)      # the axis begins there
+        self.assertAlmostEqual(across[1], 97.5, delta=0.3)      # and ends there: 75.292 is the last row
+        self.assertEqual(re.findall(r"<li>(.*)</li>", page), [text for *_, text in marks])
+
+    def test_names_in_a_file_are_no_html(self):
+        self.plot(self.write("a<b>&.csv", RECORDER))
+        self.assertIn("<h1>a&lt;b&gt;&amp;</h1>", (self.dir / "a<b>&.html").read_text(encoding="utf-8"))
 
     def test_what_another_law_would_have_commanded_is_drawn_as_open_loop(self):
         titles, *rows = FLIGHT.splitlines()
@@ -232,6 +256,19 @@ class Drawing(Case):
             done = self.plot(*arguments)
             self.assertEqual((done.returncode, done.stdout, done.stderr.count("\n")), (2, "", 1), done.stderr)
             self.assertIn(reason, done.stderr)
+
+    def test_the_belief_is_drawn_from_a_flight_that_tells_it_and_from_no_other(self):
+        titles, *rows = FLIGHT.splitlines()
+        cells = ",".join(f"{mirror}_{what}" for mirror in ("mf", "m1", "m2") for what in ("mm", "lie"))
+        told = self.write("told.csv", "\n".join([f"{titles},{cells}", *(f"{row},{',,,,,' if k % 10 else '400,99.9,800,0,810,0.1'}" for k, row in enumerate(rows))]) + "\n")
+        out = self.dir / "belief.png"
+        self.assertEqual(belief.told(recording.read(told), "mf_lie")[1][:2], [99.9, 99.9])
+        for words, code in (((told, "-o", out, "--mark", "0.5 blocked", "--to", "1.5"), 0), ((self.write("front.csv", FLIGHT), "-o", out), 2),
+                            ((self.dir / "none.csv",), 2), ((told, "-o", out, "--mark", "soon blocked"), 2)):
+            done = subprocess.run([sys.executable, "-B", ROOT / "tools/plot/belief.py", *words], capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertEqual(bool(done.stderr), code == 2, done.stderr)
+        self.assertEqual(out.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
 
     def test_stretches_of_equal_values(self):
         self.assertEqual(list(plot.runs([0, 1, 2, 3], "aabb")), [(0, 2, "a"), (2, 4, "b")])

@@ -17,6 +17,7 @@ set_tests_properties(left PROPERTIES SKIP_RETURN_CODE 77)
 add_test(NAME unit COMMAND "${CMAKE_COMMAND}" -E echo "test_x.c:12:test_one:IGNORE: no display")
 add_test(NAME python COMMAND python3 "${CMAKE_SOURCE_DIR}/python.py" -v)
 add_test(NAME terse COMMAND python3 "${CMAKE_SOURCE_DIR}/python.py")
+add_test(NAME busy COMMAND python3 -c "import time\\nwhile time.process_time() < 0.6: pass")
 add_test(NAME hours COMMAND "${CMAKE_COMMAND}" -E false)
 set_tests_properties(hours PROPERTIES LABELS long)
 add_test(NAME check_ti COMMAND sh -c "echo no headers; exit 77")
@@ -71,6 +72,16 @@ class Run(unittest.TestCase):
     def test_what_nobody_can_install_without_a_licence_is_excused_by_name_and_told(self):
         status, lines = self.run_tests("-R", "check_ti", nothing_skipped="1")
         self.assertEqual((status, lines[-1]), (0, "skipped: check_ti: no headers"))
+
+    def test_the_processor_time_of_runs_is_told_beside_what_they_may_take_and_fails_nothing(self):
+        def told(most_s):
+            done = subprocess.run([sys.executable, "-B", RUN, "--spent", most_s, "build"], cwd=self.build.parent, capture_output=True,
+                                  text=True, check=True)
+            return done.stdout
+
+        self.run_tests("-R", "busy")
+        self.assertRegex(told("300"), r"^processor time: 1 s in build: 1 s, of the 300 s that they may take\n$")
+        self.assertRegex(told("0.5"), r", MORE than the 0 s")
 
     def test_a_run_that_finds_no_test_fails(self):
         self.assertNotEqual(self.run_tests("-L", "nowhere")[0], 0)

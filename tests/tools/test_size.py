@@ -137,7 +137,7 @@ class Limits(unittest.TestCase):
         return problems
 
     def test_the_variables_fit_their_region_and_not_a_cell_more(self):
-        room = size.region("RAMGS311")
+        room = size.region("RAMGS39")
         self.assertEqual(self.ram(**{"firmware/a.c": room}), [])
         self.assertEqual(self.ram(**{"firmware/a.c": room + 1}), [f".ebss: {room + 1} of {room} cells"])
 

@@ -1,4 +1,7 @@
-"""tools/campaign, surveys: what a situation means, what counts as wrong, and how often it is said to happen. Argument: the plomada program."""
+"""tools/campaign, surveys: what a situation means, what counts as wrong, and how often it is said to happen.
+
+Usage: test_survey.py PLOMADA [draws]    draws: three draws of each situation are flown, one of them held out; without it one, of another kind in turn
+"""
 import contextlib
 import io
 import json
@@ -16,6 +19,7 @@ from unittest import mock
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = sys.argv.pop(1)
+DRAWS = {"draws": 3, "situations": 1}.get("".join(sys.argv[1:]))  # of each situation; None: every fourth situation is flown, once
 sys.path.insert(0, str(ROOT / "tools/campaign"))
 import campaign  # noqa: E402
 import fleet  # noqa: E402
@@ -24,7 +28,7 @@ import plan  # noqa: E402
 import situations  # noqa: E402
 import survey  # noqa: E402
 
-TABLES = {name: situations.load(name) for name in (situations.HEALTHY, situations.LIES)}
+TABLES = {name: situations.load(name) for name in situations.TABLES}
 GOOD = {"started": True, "halted": False, "highest_mm": 100.0, "touch_speed_mps": 0.3, "off_aloft": 0, "down_s": 4.0, "deceived_s": 0.0,
         "landed_unordered": 0, "takeovers": 0, "off_s": 0.0, "sight_doubts": 0, "imu_doubts": 0, "thrust_doubts": 0, "aloft_s": 36.0,
         "collided": 0}
@@ -100,7 +104,7 @@ class Meaning(unittest.TestCase):
                 self.assertEqual((len(parts), len({part.row for part in parts})), (mix, mix))
                 self.assertTrue(all(part.sources for part in parts))
                 seen |= {part.name for part in parts}
-            self.assertEqual(seen, {one.name for one in TABLES["lies"].situations.values() if one.sources})
+            self.assertEqual(seen, {one.name for one in TABLES["lies"].situations.values() if one.sources and not one.alone})
 
     def test_every_law_flies_the_same_and_every_number_another(self):
         seen = set()
@@ -148,7 +152,7 @@ class Meaning(unittest.TestCase):
 class Tables(unittest.TestCase):
     def test_there_are_as_many_as_were_asked_for(self):
         self.assertGreaterEqual(len(TABLES["healthy"].situations), 40)
-        self.assertEqual([len(of_table.rows()) for of_table in TABLES.values()], [16, 20])
+        self.assertEqual([len(of_table.rows()) for of_table in TABLES.values()], [16, 20, 8])
         names = [situation.slug for of_table in TABLES.values() for situation in of_table.situations.values()]
         self.assertEqual(len(names), len(set(names)))
 
@@ -158,14 +162,15 @@ class Tables(unittest.TestCase):
         for of in TABLES["healthy"].situations.values():
             self.assertEqual((of.fault, of.sources), ([], ()))
 
-    # Ordered down at 3 s: what is wrong in a draw is told before the flight.
+    # Ordered down at 3 s, and seen for a second more: what is wrong in a draw is told before the flight.
     def test_the_program_takes_every_situation(self):
         def fly(of):
             of_table, name, held_out, number = of
             one = flight(of_table, name, "PID" if number % 2 else "EST", number, held_out)
-            return fleet.fly(PROGRAM, [*one.words, "--duration", "3"], one.text)
+            return fleet.fly(PROGRAM, [*one.words, "--duration", "3", "--until-down", "1"], one.text)
 
-        all_of = [(of_table, name, number > 2, number) for of_table in TABLES.values() for name in of_table.situations for number in (1, 2, 3)]
+        all_of = [(of_table, name, number > 2, number) for of_table in TABLES.values() for at, name in enumerate(of_table.situations)
+                  for number in ((1, 2, 3) if DRAWS == 3 else (1 + at % 3,)) if DRAWS or at % 4 == 0]
         with ThreadPoolExecutor(2) as pool:
             for of, figures in zip(all_of, pool.map(fly, all_of), strict=True):
                 self.assertFalse(figures["halted"], of[1:])
@@ -199,6 +204,16 @@ class Judging(unittest.TestCase):
             self.assertEqual(harm.wrong(GOOD | {name: beyond}), healthy, name)
             self.assertEqual(harm.lied_to(GOOD | {name: beyond}, ()), lied, name)
         self.assertEqual(harm.wrong(GOOD | {"started": False, "down_s": None}), ["did not start"])
+
+    # A battery that is truly empty lands its vehicle; what it must not do is to strike the ground, and a wire's lie must not land at all.
+    def test_a_landing_is_wrong_unless_the_situation_says_that_it_may_be_right(self):
+        landed = GOOD | {"landed_unordered": 1}
+        for name, landing in (("measured", ["landed unordered"]), ("voltage-absurd", ["landed unordered"]), ("voltage-frozen-low", ["landed unordered"]),
+                              ("low-at-take-off", []), ("empties-in-flight", []), ("voltage-plausible", [])):
+            flight = survey.find(f"{name}/1/EST")
+            self.assertEqual(flight.verdicts(landed), landing, name)
+            self.assertEqual(flight.verdicts(landed | {"touch_speed_mps": 0.9}), [*landing, "struck"], name)
+            self.assertIn("\nset BAT PIN\n", flight.flight.text)
 
     def test_to_doubt_who_lies_is_no_doubt_of_the_truth(self):
         both = GOOD | {"sight_doubts": 2, "thrust_doubts": 1}
@@ -270,12 +285,12 @@ class Saying(unittest.TestCase):
         copy = self.dir / "page.md"
         shutil.copy(survey.PAGE, copy)
         with mock.patch.object(survey, "PAGE", copy), contextlib.redirect_stderr(io.StringIO()):
-            for block in ("healthy", "lies", "held-out"):
+            for block in ("healthy", "lies", "battery", "held-out"):
                 survey.write(block, f"\nwritten {block}\n\nso\n")
                 self.assertEqual(survey.compare(block, f"\nwritten {block}\n\nso\n"), [])
                 self.assertEqual(survey.compare(block, f"\nmore of {block}\n\nother\n"), [])
                 self.assertIn("+other", survey.compare(block, f"\nwritten {block}\n\nother\n"))
-        self.assertEqual(copy.read_text(encoding="utf-8").count("\nwritten "), 3)
+        self.assertEqual(copy.read_text(encoding="utf-8").count("\nwritten "), 4)
 
     def test_the_rows_of_the_page_are_those_of_the_tables(self):
         for name, of_table in TABLES.items():
@@ -305,4 +320,4 @@ class Saying(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(argv=[sys.argv[0]], defaultTest="Tables" if DRAWS else None)

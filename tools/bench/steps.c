@@ -181,7 +181,14 @@ static void prepare_altitude(void)
 static void receive_laser(void)
 {
     const scip_group_mean_t mean = scip_group_mean(&scan, FRONT);
-    const mirror_range_t range = {MIRROR_FRONT, mean.valid, mean.mean_mm, mean.spread_mm, mean.good_rays, 0};
+    const scip_group_steps_t steps = scip_group_steps(&scan, FRONT, &mean);
+    const mirror_range_t range = {.mirror = MIRROR_FRONT,
+                                  .valid = mean.valid,
+                                  .slant_mm = mean.mean_mm,
+                                  .spread_mm = mean.spread_mm,
+                                  .good_rays = mean.good_rays,
+                                  .aside_steps = steps.mean - SCANNER_RIGHT_STEP,
+                                  .wide_steps2 = steps.variance};
 
     altitude = altitude_from_ranges(&geometry, &range, 1, 0.05F, -0.03F);
 }
@@ -346,6 +353,39 @@ static void prepare_est_control(void)
     REQUIRE(flight.mode == FLIGHT_MODE_EST_HOLD && out.flags == 0);
 }
 
+/* The same with three mirrors, whose heights are judged first. */
+static altitude_t mirrors[MIRROR_COUNT];
+
+static void next_three_cycle(void)
+{
+    static const mirror_range_t seen = {.valid = true, .good_rays = 8U};
+    mirror_range_t ranges[MIRROR_COUNT];
+
+    next_est_cycle();
+    for (uint16_t m = 0U; m < MIRROR_COUNT; m++) {
+        const float other_mm = (in.height_sequence & 1U) != 0U ? 2.0F : 0.0F; /* no copy of the one before */
+
+        ranges[m] = seen;
+        ranges[m].mirror = (mirror_t)m;
+        ranges[m].slant_mm = 600.0F + geometry.mirror[m].distance_mm + geometry.mirror[m].leg_mm + other_mm;
+        ranges[m].spread_mm = 11.0F + other_mm;
+    }
+    altitude_of_mirrors(mirrors, &geometry, ranges, MIRROR_COUNT, 0.0F, 0.0F);
+    in.altitude = altitude_mean(mirrors, altitude_weights_equal, MIRROR_COUNT);
+}
+
+static void prepare_three_control(void)
+{
+    geometry = altitude_geometry_default();
+    prepare_est_control();
+    in.mirrors = mirrors;
+    for (unsigned i = 0; i < 200U; i++) {
+        next_three_cycle();
+        control();
+    }
+    REQUIRE(flight.mode == FLIGHT_MODE_EST_HOLD && out.flags == 0);
+}
+
 /* ---- TaskSendComm, TaskReceiveComm: a telemetry line; a command, and the answer to it ---- */
 
 static telemetry_line_t line;
@@ -408,6 +448,7 @@ static const struct {
     {"TaskReceiveLaser", prepare_altitude, receive_laser, nothing},
     {"TaskControl", prepare_control, control, next_cycle},
     {"TaskControl_EST", prepare_est_control, control, next_est_cycle},
+    {"TaskControl_THREE", prepare_three_control, control, next_three_cycle},
     {"TaskSendLaser", prepare_link, send_laser, next_tick},
     {"TaskSendComm", nothing, send_comm, nothing},
     {"TaskReceiveComm", prepare_command, receive_comm, nothing},

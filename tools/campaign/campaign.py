@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """campaign.py [--law L,L] [--set S,S] [--runs N] [--page] ...: flies each law on many vehicles.
-campaign.py --healthy [N] | --lies [N] [--law L,L] [--only SITUATION,ROW] [--held-out] [--page] ...: flies them in many situations.
+campaign.py --healthy [N] | --lies [N] | --battery [N] [--law L,L] [--only SITUATION,ROW] [--held-out] [--page] ...: flies them in many situations.
 campaign.py --fly SITUATION/NUMBER/LAW: flies one of those again, and says what it did.
 campaign.py --resume [--out DIR]: goes on with the campaign in DIR, with the options it was begun with.
 
@@ -9,7 +9,7 @@ Flights run in processes of their own through Dask, on this machine or on the cl
 kept at once in DIR/flights.jsonl, with the command that flies it again, seed, program and vehicle; a rerun flies only what is missing there, and what another program or other draws
 would fly anew. A folder has one campaign, and one with options has its own. Then come the table and the verdicts on stdout, and in DIR campaign.csv, campaign.json and campaign.png.
 The campaign without options is the one in docs/control.md: its tables must be these, or --page writes them.
-With --healthy or --lies the laws fly N times in each situation of tools/campaign/healthy.toml or lies.toml: law EST, the others N / 4 times. Then
+With --healthy, --lies or --battery the laws fly N times in each situation of tools/campaign/healthy.toml, lies.toml or battery.toml: law EST, the others N / 4 times. Then
 come the rates by situation, by row and by law; docs/reliability.md has the rows, and --page writes them. --held-out draws from
 those parts of the ranges that nothing may be tuned on.
 docs/campaign.md tells more. Exit status: 0; 1 a law does not reach what it must, or the page says otherwise; 2 usage or a program that does not fly; 130 interrupted.
@@ -134,9 +134,9 @@ def choose(parser, arguments):
     except argparse.ArgumentTypeError as error:
         parser.error(str(error))
     if surveyed(arguments) and (arguments.set_words or arguments.vehicle or arguments.runs):
-        parser.error("--healthy and --lies go without --set, --vehicle and --runs")
+        parser.error("--healthy, --lies and --battery go without --set, --vehicle and --runs")
     if (arguments.only or arguments.held_out) and not surveyed(arguments):
-        parser.error("--only and --held-out go with --healthy or --lies")
+        parser.error("--only and --held-out go with --healthy, --lies or --battery")
 
 
 def read_arguments(argv):
@@ -157,7 +157,7 @@ def read_arguments(argv):
     parser.add_argument("--held-out", action="store_true", help="from the parts of the ranges that are kept out of every tuning")
     parser.add_argument("--fly", metavar="FLIGHT", help="one of them again: SITUATION/NUMBER/LAW")
     parser.add_argument("--seed", type=positive, default=1, help="of the draws (1)")
-    parser.add_argument("--page", action="store_true", help="writes the tables of docs/control.md and its picture; with --healthy or --lies one of "
+    parser.add_argument("--page", action="store_true", help="writes the tables of docs/control.md and its picture; with --healthy, --lies or --battery one of "
                              "docs/reliability.md")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster (default: this machine's processors)")
     parser.add_argument("--program", type=Path, default=ROOT / "build/plomada", help="default: build/plomada")

@@ -1,4 +1,4 @@
-"""What a flight of a survey is: one situation of healthy.toml or lies.toml, each of its figures drawn in its range.
+"""What a flight of a survey is: one situation of healthy.toml, lies.toml or battery.toml, each of its figures drawn in its range.
 
 A situation is data. docs/campaign.md tells how one is written; the tables are read by load(). What its words mean:
 
@@ -9,6 +9,8 @@ A situation is data. docs/campaign.md tells how one is written; the tables are r
   at       lines "SECONDS COMMAND" of a scenario file
   fault    of the scanner's line, as `plomada fly --fault` takes them
   reference, land    of the flight; else those of its table
+  may      verdicts that are right here
+  alone    true: it is no part of a mix
 
 A text between braces in them is arithmetic: {x + length / 2}, with min, max, and i, the turn of a line that is written so often.
 
@@ -26,12 +28,13 @@ from pathlib import Path
 import plan
 
 HERE = Path(__file__).resolve().parent
-HEALTHY, LIES = "healthy", "lies"
+HEALTHY, LIES, BATTERY = "healthy", "lies", "battery"
+TABLES = (HEALTHY, LIES, BATTERY)
 HELD_OUT = ((0.3, 0.4), (0.8, 0.9))     # of each range, as parts of its length; chosen: inside, so that a tuning sees both sides
 DOWN_WITHIN_S = 60
 SOURCES = ("sight", "IMU", "thrust")
 BRACES = re.compile(r"\{([^{}]*)\}")
-WORDS = {"says", "row", "draw", "set", "place", "at", "fault", "reference", "land", "laws", "lies", "mix", "runs"}
+WORDS = {"says", "row", "draw", "set", "place", "at", "fault", "reference", "land", "laws", "lies", "mix", "alone", "runs", "may"}
 
 
 class Wrong(ValueError):
@@ -124,7 +127,7 @@ class Situation:
         return re.sub(r"\W+", "-", self.name)
 
     def __getattr__(self, name):
-        return self.words.get(name, {"draw": {}, "set": {}, "place": [], "at": [], "fault": []}.get(name))
+        return self.words.get(name, {"draw": {}, "set": {}, "place": [], "at": [], "fault": [], "may": [], "alone": False}.get(name))
 
 
 @dataclass(frozen=True)
@@ -222,7 +225,7 @@ class Draft:
 
 def mixed(table, count, rng):
     """So many situations that lie, each of another row: two of one row would be one, since the later sets what the earlier has set."""
-    rows = [lying for of_row in table.rows().values() if (lying := [one for one in of_row if one.sources])]
+    rows = [lying for of_row in table.rows().values() if (lying := [one for one in of_row if one.sources and not one.alone])]
     return [rng.choice(of_row) for of_row in rng.sample(rows, count)]
 
 

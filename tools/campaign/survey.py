@@ -1,4 +1,4 @@
-"""Surveys: every law in every situation of a table, healthy.toml or lies.toml; and what is said of them."""
+"""Surveys: every law in every situation of a table, healthy.toml, lies.toml or battery.toml; and what is said of them."""
 import contextlib
 import difflib
 import hashlib
@@ -20,7 +20,7 @@ from scipy import stats
 PAGE = Path(__file__).resolve().parents[2] / "docs/reliability.md"
 FIRST = "EST"               # flies every number of a situation, the other laws one in OTHERS
 OTHERS = 4
-RUNS = {situations.HEALTHY: 20, situations.LIES: 40}
+RUNS = {situations.HEALTHY: 20, situations.LIES: 40, situations.BATTERY: 40}
 ERROR = rate.ERROR / 2      # on each side: bounds of 95 % confidence
 HELD_OUT = "held-out"
 
@@ -51,7 +51,8 @@ class Planned:
         return fleet.key(digest, [text, *self.flight.words])
 
     def verdicts(self, figures):
-        return harm.wrong(figures) if self.table == situations.HEALTHY else harm.lied_to(figures, self.flight.sources)
+        found = harm.lied_to(figures, self.flight.sources) if self.table == situations.LIES else harm.wrong(figures)
+        return [title for title in found if title not in self.situation.may]
 
 
 def one(of_table, situation, law, number, seed=1, held_out=False):
@@ -88,7 +89,7 @@ def find(name, seed=1):
     slug, number, law, *rest = [*name.split("/"), "", ""][:max(3, name.count("/") + 1)]
     if law not in plan.LAWS or not number.isdigit() or int(number) < 1 or rest not in ([], [HELD_OUT]):
         raise situations.Wrong(f"{name}: not of the form SITUATION/NUMBER/LAW or SITUATION/NUMBER/LAW/{HELD_OUT}")
-    for of_table in map(situations.load, (situations.HEALTHY, situations.LIES)):
+    for of_table in map(situations.load, situations.TABLES):
         for situation in of_table.situations.values():
             if situation.slug == slug:
                 return one(of_table, situation, law, int(number), seed, bool(rest))
@@ -205,7 +206,8 @@ def lies_cells(first, others):
 
 LIES_HEAD = ["flights", "harmed %", "mishandled %", "flew up %", "struck %", "deceived %", "doubted the truth %", "highest m",
              "hardest m/s", "other laws harmed %", "other laws mishandled %"]
-CELLS = {situations.HEALTHY: (HEALTHY_HEAD, healthy_cells), situations.LIES: (LIES_HEAD, lies_cells)}
+CELLS = {situations.HEALTHY: (HEALTHY_HEAD, healthy_cells), situations.LIES: (LIES_HEAD, lies_cells),
+         situations.BATTERY: (HEALTHY_HEAD, healthy_cells)}
 
 
 def lines_of(name, flown, by):

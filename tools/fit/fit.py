@@ -37,6 +37,7 @@ MEANING = {
     "tdelay": ("dead time behind the pulse", "quick doublets of the reference: experiment"),
     "damping": ("of a climb, by the air", "a climb of half a metre at full VUP, and down again"),
     "sag": ("growth of the hover thrust, battery", "hover for a minute"),
+    "volts_power": ("thrust goes with the battery's voltage to the power of it; 0: compensated", "a log with a full battery, one with a low one"),
     "climb_neutral": ("throttle that commands no climb", "hover for 20 s"),
     "climb_rate": ("climb that a newton commands", "steps of the reference of 0.3 m, held: experiment"),
     "climb_deadband": ("to either side of the middle", "small steps of the reference, up and down: experiment"),
@@ -54,7 +55,7 @@ MEANING = {
     "authority": ("", ""),
     "response": ("", ""),
 }
-NOT_OF_THE_PLANT = ("height_noise", "climb_wander", *model.BEYOND["THRUST"])
+NOT_OF_THE_PLANT = ("height_noise", "climb_wander", *model.BEYOND["THRUST"], *model.VOLTS["THRUST"])
 SIMULATED = {"THRUST": "thrust", "CLIMB": "a climb rate"}
 
 
@@ -86,8 +87,19 @@ def hover_over_time(found, stretches):
     for stretch in stretches:
         for t_s in numpy.linspace(stretch.grid_s[0], stretch.grid_s[-1], HOVER_STEPS):
             hover_n = found.figures["hover_thrust"] * (1.0 + found.figures["sag"] * (t_s - stretch.begin_s))
+            if stretch.volts_share is not None:
+                hover_n /= numpy.interp(t_s, stretch.grid_s, stretch.volts_share)**found.figures["volts_power"]
             rows.append([round(float(t_s), 2), round(float(hover_n), 3)])
     return rows
+
+
+def hover_over_volts(found, stretches, volts):
+    """[[V, N]] at the lowest, the mean and the highest voltage of the flights."""
+    if found.kind == "CLIMB" or volts is None:
+        return []
+    levels = numpy.concatenate([stretch.volts for stretch in stretches])
+    return [[round(float(v), 2), round(found.figures["hover_thrust"] * (volts / v)**found.figures["volts_power"], 3)]
+            for v in (levels.min(), volts, levels.max())]
 
 
 def told(found, name):
@@ -120,13 +132,13 @@ def beyond(found):
     return result
 
 
-def vehicle_of(found, other, stretches, logs, rng):
+def vehicle_of(found, other, stretches, logs, rng, volts):
     heights = sum(len(stretch.ray_s) for stretch in stretches)
     telling = other.loss - found.loss
     result = {"throttle": found.kind, "throttle_told": telling > TELLING, "better_by": round(telling, 1)}
     for name in found.table:
         value, interval = found.figures[name], found.interval(name)
-        least = -math.inf if name in ("acc_bias", "sag", "slower", "curve", "inflow") else 0.0  # a deadband, a dead time
+        least = -math.inf if name in ("acc_bias", "sag", "volts_power", "slower", "curve", "inflow") else 0.0  # a deadband, a dead time
         key = name if name in NOT_OF_THE_PLANT else f"plant.{name}"
         result[key] = bounded(value, *interval, least, found.simple.get(name)) | {"told": told(found, name)}
     noise = result["height_noise"]
@@ -137,6 +149,7 @@ def vehicle_of(found, other, stretches, logs, rng):
     result |= derived(found, rng)
     result["outliers"] = {"value": found.outliers / heights, "of": heights}
     result["hover_over_time"] = hover_over_time(found, stretches)
+    result["hover_over_volts"] = hover_over_volts(found, stretches, volts)
     result["names"] = list(found.likelihood.names)
     result["units"] = [float(unit) for unit in found.units]
     result["covariance"] = [[float(cell) for cell in row] for row in found.covariance]
@@ -148,9 +161,10 @@ def vehicle_of(found, other, stretches, logs, rng):
 def fit_logs(logs):
     """(vehicle for JSON, the fit, stretches). Raises flight_log.Unfit."""
     stretches = [stretch for log in logs for stretch in flight_log.stretches(log)]
+    volts = model.compare_volts(stretches)
     fits = sorted((model.fit(kind, stretches) for kind in model.KINDS), key=lambda fit: fit.loss)
     rng = numpy.random.default_rng(1)
-    return vehicle_of(fits[0], fits[1], stretches, logs, rng), fits[0], stretches
+    return vehicle_of(fits[0], fits[1], stretches, logs, rng, volts), fits[0], stretches
 
 
 def number(value):
@@ -169,6 +183,11 @@ def text(vehicle):
     if vehicle["hover_over_time"]:
         (t0, n0), (t1, n1) = vehicle["hover_over_time"][0], vehicle["hover_over_time"][-1]
         lines.append(f"hover thrust: {n0:.2f} N at {t0:.0f} s, {n1:.2f} N at {t1:.0f} s of the log")
+    if vehicle["hover_over_volts"]:
+        (low_v, most_n), _, (high_v, least_n) = vehicle["hover_over_volts"]
+        power = vehicle["volts_power"]
+        lines.append(f"hover thrust: {least_n:.2f} N at {high_v:.1f} V, {most_n:.2f} N at {low_v:.1f} V: by the voltage to the power of "
+                     f"{-power['value']:.1f} [{-power['high']:.1f} .. {-power['low']:.1f}]")
     lines += [f"beyond the model, forecasts do not know it: {sentence}" for sentence in vehicle["beyond"]]
     lines.append(f"heights that no noise explains: {100 * vehicle['outliers']['value']:.1f} % of {vehicle['outliers']['of']}")
     lines.append("")

@@ -17,6 +17,7 @@ SETTLED_S = 0.5                 # after the take-off
 LEAST_S = 5.0                   # of a stretch
 GAP_S = 0.3                     # between two heights: what is behind it is another stretch
 ALOFT_M = 0.08
+BELIEVED = ("GOOD", "LOW", "EMPTY")     # words of the battery: its voltage is one
 PC_ROW_S = 0.010                # of fly --csv: what is new in a row came within it
 
 
@@ -93,6 +94,18 @@ def stretches(path):
     return found
 
 
+def volts_of(c, t_s, grid):
+    """The line through a stretch's voltages: they fall with the charge, and what a load makes of them passes. None: not measured."""
+    if "bat_v" not in c or "bat" not in c:
+        return None
+    told = numpy.array([word in BELIEVED for word in c["bat"]]) & ~numpy.isnan(c["bat_v"])
+    within = told & (t_s >= grid[0]) & (t_s <= grid[-1])
+    if within.sum() < 0.5 * ((t_s >= grid[0]) & (t_s <= grid[-1])).sum():
+        return None
+    slope, level = numpy.polyfit(t_s[within] - grid[0], c["bat_v"][within], 1)
+    return level + slope * (grid - grid[0])
+
+
 def stretch_of(c, t_s, late_s, instant, new, frames, span):
     begin, end = span
     grid = numpy.arange(begin - 0.5, end, model.STEP_S)
@@ -103,4 +116,4 @@ def stretch_of(c, t_s, late_s, instant, new, frames, span):
     upright = numpy.cos(filled(t_s, c["roll_rad"])) * numpy.cos(filled(t_s, c["pitch_rad"]))
     return model.Stretch(grid, c["thrust_n"][at], numpy.interp(grid, t_s - 0.05, upright),
                          numpy.interp(grid, instant[new], c["meas_m"][new]), instant[rays], c["meas_m"][rays],
-                         felt_s[felt], c["up_mps2"][felt], float(t_s[0]))
+                         felt_s[felt], c["up_mps2"][felt], float(t_s[0]), volts=volts_of(c, t_s, grid))

@@ -61,7 +61,7 @@ def load_forecast(path):
 
 def plant_of(kind, figures):
     """Plant figures for --set."""
-    unknown = ("height_noise", "climb_wander", *model.BEYOND[kind])
+    unknown = ("height_noise", "climb_wander", *model.BEYOND[kind], *model.VOLTS[kind])
     plant = {name: value for name, value in figures.items() if name not in unknown}
     plant["common_noise"] = math.sqrt(max((1e3 * figures["height_noise"])**2 - 25.0 / 35.0, 0.01))
     plant["tdelay"] = max(plant["tdelay"], 0.0)

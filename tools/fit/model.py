@@ -93,7 +93,10 @@ KINDS = {"THRUST": THRUST, "CLIMB": CLIMB}
 BEYOND = {"THRUST": {"slower": Figure(0.0, 0.5, "-", logarithmic=False), "curve": Figure(0.0, 0.5, "-", logarithmic=False),
                      "inflow": Figure(0.0, 0.5, "-", logarithmic=False), "inflow_lag": Figure(0.07, 0.4, "s")},
           "CLIMB": {}}
-TABLES = {kind: table | BEYOND[kind] for kind, table in KINDS.items()}
+# With logs that have the battery's voltage: the thrust at one throttle goes with it to the power of this. 0: the autopilot
+# compensates. 1.65 by ArduPilot's MOT_THST_EXPO (sim/devices/quadrotor.h), 2 by a thrust that goes with the square of the speed.
+VOLTS = {"THRUST": {"volts_power": Figure(1.0, 0.8, "-", logarithmic=False)}, "CLIMB": {}}
+TABLES = {kind: table | BEYOND[kind] | VOLTS[kind] for kind, table in KINDS.items()}
 TELLS = 16.0                    # twice a log-likelihood, expected and reached: less is no proof of a figure of BEYOND
 
 
@@ -110,6 +113,8 @@ class Stretch:
     up_mps2: numpy.ndarray      # upwards, gravity removed
     begin_s: float = 0.0        # of the log: sag counts from there
     kept: numpy.ndarray = field(default=None)   # which heights are no outliers
+    volts: numpy.ndarray = field(default=None)  # of the battery, on the grid; None: not measured
+    volts_share: numpy.ndarray = field(default=None)    # of the mean of all stretches
 
 
 def lagged(signal, lag_s):
@@ -143,6 +148,18 @@ def ground_effect(height_m):
     return 1.0 / (1.0 - 2.0 * ratio**2)
 
 
+def compare_volts(stretches):
+    """Sets each stretch's share of their mean voltage, and returns that mean. None: not all have been measured."""
+    for stretch in stretches:
+        stretch.volts_share = None
+    if any(stretch.volts is None for stretch in stretches):
+        return None
+    mean_v = float(numpy.mean([stretch.volts.mean() for stretch in stretches]))
+    for stretch in stretches:
+        stretch.volts_share = stretch.volts / mean_v
+    return mean_v
+
+
 def thrust_motion(stretch, batch):
     """Speeds and accelerations by the commands alone, (batch, grid)."""
     both = [one_thrust_motion(stretch, f) for f in batch]
@@ -157,6 +174,8 @@ def one_thrust_motion(stretch, f):
     else:
         thrust_n = lagged(command_n, f["tau"])
     hover_n = f["hover_thrust"] * (1.0 + f["sag"] * (stretch.grid_s - stretch.begin_s))
+    if "volts_power" in f:
+        thrust_n = thrust_n * stretch.volts_share**f["volts_power"]
     change = (thrust_n - hover_n) / f["hover_thrust"]
     share = 1.0 + f["gain"] * change + f.get("curve", 0.0) * change**2
     push = GRAVITY_MPS2 * (share * ground_effect(stretch.height_m) * stretch.upright - 1.0)
@@ -314,7 +333,8 @@ class Likelihood:
     def __init__(self, kind, stretches, held=None, beyond=False):
         """held: figures that are not searched; beyond: whether those of BEYOND are, too."""
         self.kind, self.stretches, self.held = kind, stretches, held or {}
-        self.table = TABLES[kind] if beyond else KINDS[kind]
+        measured = all(stretch.volts_share is not None for stretch in stretches)
+        self.table = KINDS[kind] | (BEYOND[kind] if beyond else {}) | (VOLTS[kind] if measured else {})
         self.names = [name for name in self.table if name not in self.held]
         self.center = numpy.array([self.table[name].prior()[0] for name in self.names])
         self.weight = numpy.array([1.0 / self.table[name].prior()[1]**2 for name in self.names])
@@ -417,7 +437,7 @@ class Fit:
 def start_of(kind, stretches):
     """Figures to begin with: the thrust that was needed on average hovers."""
     mean_n = float(numpy.mean(numpy.concatenate([stretch.thrust_n for stretch in stretches])))
-    figures = {name: figure.median for name, figure in KINDS[kind].items()}
+    figures = {name: figure.median for name, figure in (KINDS[kind] | VOLTS[kind]).items()}
     figures["hover_thrust" if kind == "THRUST" else "climb_neutral"] = mean_n
     return figures
 

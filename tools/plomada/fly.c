@@ -36,6 +36,7 @@ static const char usage[] =
     "  --log FILE          what an operator saves who types #LOG RATE FAST before the flight and #LOG after "
     "it: all lines\n"
     "                      of the radio. `plomada log FILE` makes a CSV of it, for `make fit`\n"
+    "  --radio FILE        all lines of the radio, and neither of these orders: #LOG answers for minutes\n"
     "  --json FILE         metrics. - as FILE of --csv or --json is stdout; the table then goes to stderr\n"
     "  --storage FILE      the chip's flash: what #SAVE has stored there in one run is in force in the next. "
     "Without it the\n"
@@ -95,6 +96,7 @@ enum {
     OPT_CSV,
     OPT_JSON,
     OPT_LOG,
+    OPT_RADIO,
     OPT_STORAGE,
     OPT_RECORD,
     OPT_SET,
@@ -120,6 +122,7 @@ static const struct option long_options[] = {
     {"csv", required_argument, NULL, OPT_CSV},
     {"json", required_argument, NULL, OPT_JSON},
     {"log", required_argument, NULL, OPT_LOG},
+    {"radio", required_argument, NULL, OPT_RADIO},
     {"storage", required_argument, NULL, OPT_STORAGE},
     {"record", required_argument, NULL, OPT_RECORD},
     {"set", required_argument, NULL, OPT_SET},
@@ -227,8 +230,12 @@ static bool read_option(request_t *request, int option, const char *argument)
         request->json.path = argument;
         return true;
     case OPT_LOG:
+    case OPT_RADIO:
+        if (request->log.path != NULL) {
+            return complain("one of --log and --radio, once", argument);
+        }
         request->log.path = argument;
-        request->flight.dump = true;
+        request->flight.dump = option == OPT_LOG;
         return true;
     case OPT_STORAGE:
         request->storage_path = argument;
@@ -297,8 +304,8 @@ static bool check_arguments(const request_t *request)
 {
     const flight_options_t *options = &request->flight;
 
-    if (request->flight.dump && (request->scenario->bench || options->realtime)) {
-        return complain("goes with a flight in virtual time", "--log");
+    if (request->log.path != NULL && (request->scenario->bench || options->realtime)) {
+        return complain("goes with a flight in virtual time", options->dump ? "--log" : "--radio");
     }
     if (request->scenario->bench) {
         return true;

@@ -10,7 +10,7 @@ static const char *const group_names[] = {
     [PARAMETERS_PIDT] = "pidt",           [PARAMETERS_EST] = "est",
     [PARAMETERS_EST_MODEL] = "est-model", [PARAMETERS_THROTTLE] = "throttle",
     [PARAMETERS_RADIO] = "radio",         [PARAMETERS_IMU] = "imu",
-    [PARAMETERS_MIRRORS] = "mirrors",
+    [PARAMETERS_MIRRORS] = "mirrors",     [PARAMETERS_BATTERY] = "battery",
 };
 _Static_assert(sizeof group_names / sizeof group_names[0] == PARAMETER_GROUP_COUNT, "every group has a name");
 

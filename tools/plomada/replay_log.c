@@ -7,9 +7,10 @@
 
 #include "control/flight.h"
 #include "firmware/schedule.h"
+#include "replay_mirrors.h"
 
 #define LINE_MAX_OCTETS 512
-#define COLUMNS_MAX 40
+#define COLUMNS_MAX 64
 #define FRAMES 16U
 #define GRAVITY_MPS2 9.80665
 #define TELEMETRY_PERIOD_S 0.2
@@ -25,9 +26,10 @@
 #define TIME_MOST_S 1e6                /* eleven days */
 #define BYTE_ORDER_MARK "\xEF\xBB\xBF" /* some programs begin a text with it */
 
-typedef enum { T_S, MEAS_M, REF_M, THRUST_N, ROLL_RAD, PITCH_RAD, UP_MPS2, AGE_S, FIELD_COUNT } field_t;
-static const char *const fields[] = {"t_s",      "meas_m",    "ref_m",   "thrust_n",
-                                     "roll_rad", "pitch_rad", "up_mps2", "age_s"};
+typedef enum { T_S, MEAS_M, REF_M, THRUST_N, ROLL_RAD, PITCH_RAD, UP_MPS2, AGE_S, MIRRORS } field_t;
+#define FIELD_COUNT (MIRRORS + REPLAY_MIRRORS_CELLS)
+static const char *const fields[FIELD_COUNT] = {
+    "t_s", "meas_m", "ref_m", "thrust_n", "roll_rad", "pitch_rad", "up_mps2", "age_s", REPLAY_MIRRORS_TITLES};
 
 typedef struct {
     double value[FIELD_COUNT]; /* NAN: not there */
@@ -41,6 +43,8 @@ static struct {
     flight_inputs_t in;
     flight_outputs_t out;
     imu_sample_t frames[FRAMES];
+    altitude_t mirrors[MIRROR_COUNT];
+    bool several; /* more than one mirror is in the log */
     double rays_s, cycle_s, reference_m;
     uint32_t sequence; /* of the frames */
     unsigned long rows, heights, accelerations, settled;
@@ -156,25 +160,25 @@ static row_t read_telemetry(const char *line)
     return row;
 }
 
-/* The slant that the formula of altitude.h turns into this height. A log has no rays, and heights in whole
- * millimetres: so good_rays is 0, and nothing is concluded from how little the slant varies (sense/beam.h).
- */
-static altitude_t altitude_of(double height_m, double roll_rad, double pitch_rad)
-{
-    const mirror_geometry_t front = altitude_geometry_of(&replay.parameters).mirror[MIRROR_FRONT];
-    const double above_mm = height_m * 1e3 + (double)front.leg_mm + (double)front.arm_mm * sin(roll_rad);
-
-    return (altitude_t){.valid = true,
-                        .height_mm = (float)(height_m * 1e3),
-                        .slant_mm = (float)(above_mm / (cos(roll_rad) * cos(pitch_rad))) + front.distance_mm,
-                        .distance_mm = front.distance_mm,
-                        .leg_mm = front.leg_mm,
-                        .arm_mm = front.arm_mm};
-}
-
 static uint32_t microseconds(double t_s)
 {
     return (uint32_t)(long long)llround(t_s * 1e6);
+}
+
+/* A row of nobody's, or of a log without the mirrors' columns, has the height alone. */
+static void take_mirrors(const row_t *row, double roll_rad, double pitch_rad)
+{
+    const altitude_geometry_t places = altitude_geometry_of(&replay.parameters);
+    const attitude_t tilt = {.roll_rad = (float)roll_rad, .pitch_rad = (float)pitch_rad};
+
+    if (replay_mirrors_told(&row->value[MIRRORS]) > 0) {
+        const mirror_windows_t windows = altitude_windows_of(&replay.parameters);
+
+        replay_mirrors_read(replay.mirrors, &row->value[MIRRORS], row->value[AGE_S], &places, &windows,
+                            &tilt);
+    } else {
+        replay_mirrors_make(replay.mirrors, row->value[MEAS_M], replay.several, &places, &tilt);
+    }
 }
 
 static bool take_height(const row_t *row, double roll_rad, double pitch_rad)
@@ -187,7 +191,9 @@ static bool take_height(const row_t *row, double roll_rad, double pitch_rad)
     }
     replay.rays_s = rays_s;
     replay.heights++;
-    replay.in.altitude = altitude_of(row->value[MEAS_M], roll_rad, pitch_rad);
+    take_mirrors(row, roll_rad, pitch_rad);
+    replay.in.altitude = altitude_mean(replay.mirrors, altitude_weights_equal, MIRROR_COUNT);
+    replay.in.mirrors = replay.several ? replay.mirrors : NULL;
     replay.in.height_time_us = microseconds(row->value[T_S]);
     replay.in.height_age_us = microseconds(row->value[AGE_S]);
     replay.in.height_stamp_ms = (uint32_t)llround(rays_s * 1e3) & UINT32_C(0xFFFFFF);
@@ -290,6 +296,9 @@ static void step_between(const row_t *like, double t_s, double height_m, double 
     row.value[MEAS_M] = height_m;
     row.value[UP_MPS2] = up_mps2;
     row.value[AGE_S] = age_s;
+    for (int f = MIRRORS; f < FIELD_COUNT; f++) {
+        row.value[f] = NAN;
+    }
     step(&row);
 }
 
@@ -352,11 +361,11 @@ static void tell(void)
             "open loop over %lu rows: %lu heights, %lu accelerations%s%s. The vehicle did not answer to this "
             "thrust.\n"
             "Not in a log: the octets of scanner, IMU and radio, when each came, damaged frames, single "
-            "rays; what was "
-            "before its first row.\n",
+            "rays%s; what was before its first row.\n",
             replay.rows, replay.heights, replay.accelerations - replay.settled,
             replay.telemetry ? ", level assumed" : "",
-            replay.accelerations == replay.settled ? " (without them EST flies by thrust and heights)" : "");
+            replay.accelerations == replay.settled ? " (without them EST flies by thrust and heights)" : "",
+            replay.several ? "" : ", each mirror's height");
 }
 
 /* *is_row: whether the line is one of the flight. */
@@ -396,6 +405,7 @@ static char *next_line(FILE *in, char line[LINE_MAX_OCTETS])
 
 static void fly_row(FILE *csv, const row_t *row, row_t *last)
 {
+    replay.several = replay.several || replay_mirrors_told(&row->value[MIRRORS]) > 1;
     if (replay.rows++ == 0U) {
         settle(row);
     } else {

@@ -243,7 +243,7 @@ bool world_pin_still(void)
 
 static bool means_something(const char *text)
 {
-    static const char *const begins[] = {"OK ", "ERR ", "alt:"};
+    static const char *const begins[] = {"OK ", "ERR ", "alt:", "mf:", "w:", "drift:"};
 
     for (size_t i = 0; i < sizeof begins / sizeof begins[0]; i++) {
         if (strncmp(text, begins[i], strlen(begins[i])) == 0) {

@@ -4,7 +4,8 @@
 FILE is a flight CSV of `plomada fly --csv`, the flight recorder's (`#LOG`, docs/operator.md), a console log saved by
 XCTU, or telemetry text as a terminal captured it; the kind is found from the content. Several flight CSVs are drawn over
 one another. PNG may be a directory; by default the picture lies beside the first FILE. Where FILE.json of `plomada fly --json` lies beside a CSV, its metrics are quoted.
-The path of the picture is printed. Exit 2 when a FILE cannot be read.
+The path of the picture is printed. Of one flight its events are numbered, and a page beside the picture, of the same name, says each in a
+sentence: its path is printed below. Exit 2 when a FILE cannot be read.
 """
 import argparse
 import json
@@ -16,6 +17,7 @@ import tempfile
 from pathlib import Path
 
 import recording
+import told
 
 os.environ.setdefault("MPLCONFIGDIR", os.path.join(sys.prefix, "matplotlib"))
 
@@ -34,7 +36,7 @@ STATE_COLOURS = {
 LASER_COLOURS = {"OK": "#7bc47f", "WAIT": "#c9c9c9"}
 OTHER_COLOURS = ("#5fa8a8", "#b08968", "#a3b18a", "#cdb4db", "#6d8fb3")
 FLAG_NAMES = {1: "height", 2: "attitude", 4: "disagree", 8: "too high", 16: "link", 32: "tilt", 64: "pilot", 128: "out of reach", 256: "sight in doubt",
-              512: "IMU in doubt", 1024: "thrust in doubt", 2048: "stick does not count"}
+              512: "IMU in doubt", 1024: "thrust in doubt", 2048: "stick does not count", 4096: "mirrors: see #MIRRORS"}
 
 HEIGHT, MEASURED, ESTIMATE, REFERENCE, TERRAIN, THRUST = "#1f5fa8", "#e07a1f", "#2a8f4f", "#333333", "#b79268", "#a0303f"
 FLIGHT_COLOURS = ("#1f5fa8", "#e07a1f", "#2a8f4f", "#a0303f", "#7550a8", "#5a5a5a", "#1a9aa0", "#b3589a")
@@ -227,7 +229,7 @@ def draw_thrust(axis, recordings, overlay):
 
 
 def draw(recordings, title, subtitle, path):
-    """Draws recordings (several: flights only) into the PNG `path`, 1200 x 900."""
+    """Draws recordings (several: flights only) into the PNG `path`, 1200 x 900. Returns the page that tells of one; several: None."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
@@ -270,8 +272,11 @@ def draw(recordings, title, subtitle, path):
         axes[-1].spines[spine].set_visible(False)
     axes[-1].set_xlabel("time (s)")
     axes[-1].set_xlim(span)
+    found = [] if overlay else told.draw(axes[0], recordings[0], span)
     figure.savefig(path)
+    page = None if overlay else told.write(path, title, figure.canvas.get_width_height()[0], told.places(figure, axes[0], found))
     plt.close(figure)
+    return page
 
 
 def describe(paths, recordings):
@@ -320,8 +325,10 @@ def draw_files(files, output):
             print(f"plot: {file}: ends within a row, which is left out; the flight may have gone on", file=sys.stderr)
     path = picture_path(output, files[0])
     path.parent.mkdir(parents=True, exist_ok=True)
-    draw(recordings, *describe(files, recordings), path)
+    page = draw(recordings, *describe(files, recordings), path)
     print(path.resolve())
+    if page:
+        print(page.resolve())
 
 
 def groups(files):

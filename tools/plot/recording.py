@@ -14,8 +14,12 @@ FLIGHT_COLUMNS = RECORDER_COLUMNS + ("height_m", "abs_m", "terrain_m", "pulse_us
 PLACE_COLUMNS = ("x_m", "y_m", "heading_rad")           # of logs since the ground is a place
 OPEN_LOOP_COLUMNS = ("flown_n",)       # of `plomada replay` on a log: the thrust that the vehicle answered to
 FIT_COLUMNS = ("up_mps2", "age_s")     # of logs since #LOG RATE FAST
-NAME_COLUMNS = ("doubt", "limit")      # of logs that say which rule doubts, and which limit holds
-KNOWN_COLUMNS = (*FLIGHT_COLUMNS, *PLACE_COLUMNS, *OPEN_LOOP_COLUMNS, *FIT_COLUMNS, *NAME_COLUMNS)
+BATTERY_COLUMNS = ("bat_v",)
+# Of logs that say which rule doubts, which limit holds, how the battery is, and which mirrors the vote left out.
+NAME_COLUMNS = ("doubt", "limit", "bat", "out")
+# Of logs since all mirrors are told: of each its good rays, slant, their spread, age and probability to lie (docs/operator.md).
+BEAM_COLUMNS = tuple(f"{mirror}_{what}" for mirror in ("mf", "m1", "m2") for what in ("rays", "mm", "spread_mm", "ms", "lie"))
+KNOWN_COLUMNS = (*FLIGHT_COLUMNS, *PLACE_COLUMNS, *OPEN_LOOP_COLUMNS, *FIT_COLUMNS, *BATTERY_COLUMNS, *NAME_COLUMNS, *BEAM_COLUMNS)
 TEXT_COLUMNS = ("state", "laser", *NAME_COLUMNS)
 TELEMETRY_PERIOD_S = 0.2
 
@@ -23,11 +27,11 @@ TELEMETRY_PERIOD_S = 0.2
 CONSOLE_LINE = re.compile(r"^\d+-\d+-\d+ (\d+):(\d\d):(\d\d)\.(\d{3}),[^,]*,(SENT|RECV),([0-9A-Fa-f ]*)$")
 CONSOLE_START = re.compile(r"^\d+-\d+-\d+ \d+:\d\d:\d\d\.\d{3},")
 FIELD = re.compile(r"(\w+):(\S+)")
-ANSWER = re.compile(r"^(OK|ERR)( |$)")
+ANSWER = re.compile(r"^(OK|ERR)( |$)|^mf:")       # or the line of the beams: neither takes one of the 200 ms
 
 
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d{1,3})?")
-WORD = re.compile(r"[A-Z_]*(/[a-z]+)?")
+WORD = re.compile(r"[A-Z_]*(/[a-z]+)?|m[f12](\+m[f12])*")
 MARK = "\ufeff"                 # some programs begin a text with it
 OCTETS_MAX = 200_000_000        # a flight of an hour has 50 million
 # What a column can hold. Heights: the scanner sees 4.095 m, its code has twelve bits (docs/scip.md); the reference is 0 to 3 m,
@@ -217,7 +221,7 @@ class Assembler:
 
 
 def read_telemetry(recording, timed_lines):
-    columns = {name: [] for name in ("t_s", "meas_m", "ref_m", "thrust_n", "state", "laser", "flags")}
+    columns = {name: [] for name in ("t_s", "meas_m", "ref_m", "thrust_n", "state", "laser", "flags", "doubt", "limit")}
     for t, line in timed_lines:
         if ANSWER.match(line.strip()):
             continue
@@ -231,6 +235,8 @@ def read_telemetry(recording, timed_lines):
                 "state": cell_of("state", fields["state"]),
                 "laser": cell_of("laser", fields["laser"]),
                 "flags": number(fields["flags"], "flags"),
+                "doubt": cell_of("doubt", fields.get("doubt", "")),
+                "limit": cell_of("limit", fields.get("limit", "")),
             }
         except (KeyError, ValueError):
             recording.damaged += 1

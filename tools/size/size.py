@@ -309,8 +309,8 @@ def ram_tables(sizes, problems):
     heap, stack = defined("ccs_project/app.cfg", "BIOS.heapSize"), defined("ccs_project/app.cfg", "Program.stack")
     idle = defined("ccs_project/app.cfg", "Task.idleTaskStackSize")
     tasks = 5 * stack_of("the others") + stack_of("TaskControl")
-    limits = [("variables (`.ebss`)", *limit(problems, ".ebss", everything - ring - kept, region("RAMGS311"))),
-              ("flight recorder (`.flight_log`)", *limit(problems, ".flight_log", ring, region("RAMGS1215"))),
+    limits = [("variables (`.ebss`)", *limit(problems, ".ebss", everything - ring - kept, region("RAMGS39"))),
+              ("flight recorder (`.flight_log`)", *limit(problems, ".flight_log", ring, region("RAMGS915"))),
               ("kept over a reset (`.retained`)", *limit(problems, ".retained", kept, region("RETAINED"))),
               ("six task stacks, of the heap", *limit(problems, "heap", tasks, heap)),
               ("heap and idle task, below 10000H", *limit(problems, ".ebss:taskStackSection", heap + idle, region("RAMGS02"))),

@@ -7,7 +7,7 @@ import math
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy
@@ -22,7 +22,7 @@ NEEDED = ("t_s", "meas_m", "ref_m", "thrust_n", "roll_rad", "pitch_rad", "state"
 WORDS = ("state", "doubt", "limit")
 GROUNDED = ("GROUND", "")
 ALOFT_M = 0.07
-LEAST_S, LEAST_HEIGHTS = 3.0, 25        # of a flight: less tells nothing of the vehicle
+LEAST_S, LEAST_HEIGHTS = 1.5, 12        # of a flight: less tells nothing of the vehicle
 SPAN_S = 1.5                    # of a span
 GAP_S = 0.5                     # rows are missing
 
@@ -36,6 +36,7 @@ class Flight:
     felt: numpy.ndarray         # rows with an acceleration
     late_s: float               # a row shows what came up to twice so long before it
     spans: list                 # [(begin, end)] in the air
+    beams: dict = field(default_factory=dict)   # columns of single mirrors, where the log has them
 
     @property
     def t_s(self):
@@ -99,24 +100,37 @@ def flight_of(path, found):
         column[name] = flight_log.filled(column["t_s"], column[name])
     t_s = column["t_s"]
     rays_s = t_s - column["age_s"]
-    new, latest = numpy.zeros(len(t_s), bool), -math.inf
-    for k in numpy.flatnonzero(~numpy.isnan(rays_s) & ~numpy.isnan(column["meas_m"])):
-        if rays_s[k] > latest + 0.02:
-            new[k], latest = True, rays_s[k]
+    new = scans_of(rays_s, column["meas_m"])
     late_s = flight_log.PC_ROW_S / 2.0 if found.kind == "flight" else 0.0
     felt = ~numpy.isnan(column["up_mps2"])
-    flight = Flight(Path(path).stem, column, new, rays_s, felt, late_s, [])
+    beams = {name: numpy.array(found.columns[name]) for name in recording.BEAM_COLUMNS if name in found.columns}
+    flight = Flight(Path(path).stem, column, new, rays_s, felt, late_s, [], beams)
     flight.spans = spans_of(flight)
     if flight.seconds() < LEAST_S and not (column["ref_m"] > 0.0).any():
         raise Unfit(f"{path}: no flight: {flight.seconds():.1f} s in the air, and no reference")
     return flight
 
 
-def spans_of(flight):
+def scans_of(rays_s, meas_m):
+    """The first row of each scan that has its height: a CSV of 100 Hz may tell the age of a scan a row before its height."""
+    new, latest, scan = numpy.zeros(len(rays_s), bool), -math.inf, []
+    known = numpy.flatnonzero(~numpy.isnan(rays_s) & ~numpy.isnan(meas_m))
+    for k in [*known, None]:
+        if k is not None and rays_s[k] <= latest + 0.02:
+            scan.append(k)
+            continue
+        if scan:
+            new[next(row for row in scan if meas_m[row] == meas_m[scan[-1]])] = True
+        if k is not None:
+            latest, scan = rays_s[k], [k]
+    return new
+
+
+def spans_of(flight, aloft_m=ALOFT_M):
     """In the air: neither state GROUND nor a height of the ground, and no rows missing. Heights may be missing."""
     t_s, c = flight.t_s, flight.column
     height_m = flight_log.filled(t_s, c["meas_m"])
-    good = numpy.array([state not in GROUNDED for state in c["state"]]) & (height_m > ALOFT_M)
+    good = numpy.array([state not in GROUNDED for state in c["state"]]) & (height_m > aloft_m)
     found, begin = [], None
     for k in range(len(t_s)):
         torn = k > 0 and t_s[k] - t_s[k - 1] > GAP_S

@@ -1,7 +1,8 @@
 """What the law did: its gains as the log shows them, and where it could not go on.
 
 Every law gives, for small errors, a thrust that falls with the height's error and with the climb, around a thrust that moves
-slowly (an integral, or what EST has learned). So the gains are found by least squares from the log alone, whoever set them.
+slowly (an integral, or what EST has learned). So the gains are found by least squares from the log alone, whoever set them. EST and
+PIDT lower their gains while the loop swings, which hides what was set: this share is computed again from the log, as the firmware does it.
 """
 from dataclasses import dataclass
 
@@ -12,8 +13,14 @@ from flight import flight_log
 KNOT_S = 4.0                    # the slow thrust: straight lines between knots
 SPEED_S = 0.05                  # half the time over which an estimate's speed is taken
 CUT_N = 0.02                    # so near to its extreme the thrust is at a limit
+PERIOD_S = 0.13                 # of the slowest law, 108 ms, and a row
 LEAST = 60                      # rows
 WITHIN_M = 0.15                 # the cascade is no straight line farther off
+CALM_MIN = 0.4                  # control/est/cascade.h, and control/laws/pidt.c, as the next five
+ACTIVITY_MAX_N, ACTIVITY_TIME_S = 1.5, 1.0
+SWING_N, SWINGS_FREE, SWINGS_TIME_S, CALM_PER_SWING = 0.8, 3.0, 10.0, 0.1
+FAR_M = 0.4
+ROUNDS = 4                      # gains and PIDT's calming tell each other
 
 
 @dataclass
@@ -27,6 +34,7 @@ class Law:
     at_most: float              # share of the rows at the greatest thrust of the flight, and at the least
     at_least: float
     range_n: tuple
+    stays_s: list               # how long the thrust stayed at either, each time
     first_n: float              # thrust as the take-off begins
     begun_n: float              # slow thrust as the flight begins
 
@@ -35,18 +43,31 @@ def runs_at(values, extreme):
     return float(numpy.mean(numpy.abs(values - extreme) < CUT_N))
 
 
-def of(flight, delay_s=0.0):
+def stays_at(t_s, there):
+    """A law that acts on a noisy slope leaves its limit for one period and comes back: that is one stay."""
+    edges = numpy.flatnonzero(numpy.diff(numpy.concatenate(([0], there.astype(int), [0]))))
+    stays = []
+    for begin, end in ((t_s[a], t_s[min(b, len(t_s) - 1)]) for a, b in zip(edges[::2], edges[1::2])):
+        if stays and begin - stays[-1][1] < PERIOD_S:
+            stays[-1][1] = end
+        else:
+            stays.append([begin, end])
+    return [float(end - begin) for begin, end in stays]
+
+
+def of(flight):
     c, t_s = flight.column, flight.t_s
     flying = (c["state"] == "FLYING") & (c["ref_m"] > 0.0)
     estimator = bool(numpy.mean(~numpy.isnan(c["innov_m"][flying])) > 0.5) if flying.any() else True
     takeoff = numpy.flatnonzero((c["state"] == "TAKEOFF") & (c["thrust_n"] > 0.5))
     first_n = float(c["thrust_n"][takeoff[0]]) if len(takeoff) else numpy.nan
-    law = Law(estimator, int(flying.sum()), 0.0, 0.0, (9.0, 9.0), 0.0, 0.0, 0.0, (0.0, 0.0), first_n, numpy.nan)
+    law = Law(estimator, int(flying.sum()), 0.0, 0.0, (9.0, 9.0), 0.0, 0.0, 0.0, (0.0, 0.0), [], first_n, numpy.nan)
     if law.rows < LEAST:
         return law
     thrust = c["thrust_n"][flying]
     law.range_n = float(thrust.min()), float(thrust.max())
     law.at_least, law.at_most = runs_at(thrust, thrust.min()), runs_at(thrust, thrust.max())
+    law.stays_s = [stay for extreme in law.range_n for stay in stays_at(t_s, flying & (numpy.abs(c["thrust_n"] - extreme) < CUT_N))]
     height, speed, use = motion(flight, estimator)
     error = c["ref_m"] - height
     free = flying & use & (c["limit"] == "") & (c["doubt"] == "") & (numpy.abs(error) < WITHIN_M)
@@ -55,10 +76,14 @@ def of(flight, delay_s=0.0):
         return law
     knots = numpy.arange(t_s[flying][0], t_s[flying][-1] + KNOT_S, KNOT_S)
     slow = numpy.array([numpy.interp(t_s[free], knots, row) for row in numpy.eye(len(knots))]).T
-    design = numpy.column_stack([error[free], -speed[free], slow])
-    ridge = 1e-3 * numpy.eye(design.shape[1])
-    information = design.T @ design + ridge
-    found = numpy.linalg.solve(information, design.T @ (c["thrust_n"][free]))
+    share = cascade_calm(t_s, c["thrust_n"], flying) if estimator else numpy.ones(len(t_s))
+    for _ in range(1 if estimator else ROUNDS):
+        design = numpy.column_stack([(share * error)[free], -(share * speed)[free], slow])
+        ridge = 1e-3 * numpy.eye(design.shape[1])
+        information = design.T @ design + ridge
+        found = numpy.linalg.solve(information, design.T @ (c["thrust_n"][free]))
+        if not estimator:
+            share = pidt_calm(flight, flying, found[0] * numpy.clip(error, -FAR_M, FAR_M) - found[1] * speed)
     rest = c["thrust_n"][free] - design @ found
     moves = c["thrust_n"][free] - slow @ numpy.linalg.lstsq(slow, c["thrust_n"][free], rcond=None)[0]
     law.fits = 1.0 - float((rest**2).mean() / max((moves**2).mean(), 1e-12))
@@ -67,6 +92,35 @@ def of(flight, delay_s=0.0):
     law.sigma = tuple(spread / numpy.maximum(numpy.abs(found[:2]), 1e-3))
     law.begun_n = float(found[2])
     return law
+
+
+def cascade_calm(t_s, thrust_n, flying):
+    """calm() of control/est/cascade.c, of each row."""
+    share, slow, quick, before = numpy.ones(len(t_s)), None, 0.0, None
+    for k in numpy.flatnonzero(flying):
+        if slow is None:
+            slow, before = thrust_n[k], t_s[k]
+        of = min((t_s[k] - before) / ACTIVITY_TIME_S, 1.0)
+        off, before = thrust_n[k] - slow, t_s[k]
+        slow += of * off
+        quick += of * (off * off - quick)
+        share[k] = numpy.clip(ACTIVITY_MAX_N / numpy.sqrt(max(quick, 0.01)), CALM_MIN, 1.0)
+    return share
+
+
+def pidt_calm(flight, flying, action_n):
+    """calm() of control/laws/pidt.c, of each row."""
+    share, now, swings, peak, before = numpy.ones(len(action_n)), 1.0, 0.0, 0.0, None
+    for k in numpy.flatnonzero(flying):
+        if flight.new[k]:
+            action, at = action_n[k], flight.rays_s[k]
+            swings *= 1.0 - min((at - before) / SWINGS_TIME_S, 1.0) if before is not None else 1.0
+            turned = action * peak < 0.0
+            swings += 1.0 if turned and abs(peak) > SWING_N else 0.0
+            peak = action if turned or abs(action) > abs(peak) else peak
+            now, before = float(numpy.clip(1.0 - CALM_PER_SWING * (swings - SWINGS_FREE), CALM_MIN, 1.0)), at
+        share[k] = now
+    return share
 
 
 def motion(flight, estimator):

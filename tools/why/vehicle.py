@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy
 from scipy.linalg import expm
-from scipy.signal import lfilter
+from scipy.signal import cont2discrete, lfilter, ss2tf
 
 import flight as flights
 import model
@@ -26,15 +26,18 @@ TERRAIN_TAU_S = 0.4             # of a floor that wanders under the beam: docs/c
 DIFFERENCE = 1e-3               # of a figure, in its prior's spread
 REACH, FARTHEST = 2.0, 5.0      # of one step, and of all, in the same
 ENOUGH = 0.05                   # nats that a step still gains
+# Of the rays, beside what the firmware believes: campaigns draw their instant within 20 ms of it, and that is no fault.
+AGE_SPREAD_S, AGE_STEP_S, AGE_MOST_S = 0.012, 0.01, 0.03
 MOVES = ("tau", "tdelay", "damping", "neutral", "deadband")     # the figures that the columns depend on
 HUBER = 4.0                     # standard deviations from which on one datum counts no more than that
 
-# name: (median, spread of the logarithm): as tools/fit/model.py
-FIGURES = {"tau": (0.11, 0.3), "tdelay": (0.015, 0.6), "damping": (2.2, 0.35), "turbulence": (0.22, 0.3), "turbulence_tau": (0.5, 0.3),
+# name: (median, spread of the logarithm) of healthy vehicles: tools/campaign/plan.py, a little wider
+FIGURES = {"tau": (0.115, 0.2), "tdelay": (0.012, 0.5), "damping": (2.2, 0.25), "turbulence": (0.22, 0.3), "turbulence_tau": (0.5, 0.3),
            "acc_noise": (0.5, 0.35), "height_noise": (0.0045, 0.3)}
 TERRAIN = {"terrain": (0.02, 0.5)}
 # Standard deviations of the linear figures around what they are without news.
 GROWTH, OFFSET = 0.0012, 0.3
+AUTHORITY = 0.25                # m/s2 for each newton: mass and effect, +-20 % each, in tools/campaign/plan.py
 
 
 @dataclass
@@ -59,6 +62,8 @@ class Span:
     steps: numpy.ndarray = None
     sorted: numpy.ndarray = None
     log_middle: float = 0.0             # middle of the flight: growth counts from there
+    first: tuple = FIRST                # height and speed as the span begins, rms
+    free_s: float = -math.inf           # until then the ground carries the vehicle, and no push moves it
 
     def order(self):
         times = numpy.concatenate((self.ray_s, self.frame_s))
@@ -110,6 +115,7 @@ def spans_of(flight):
 
 def response(span, push, damping):
     """What a push of the vehicle (m/s2 on the grid) makes of its heights and accelerations, at the span's events."""
+    push = numpy.where(span.grid_s < span.free_s, 0.0, push)
     keep = math.exp(-STEP_S * damping)
     half = (1.0 - keep) / damping / 2.0
     speed = lfilter([half, half], [1.0, -keep], push)
@@ -124,32 +130,44 @@ def lagged(span, f, thrust=None):
     return model.lagged(model.delayed(span.grid_s, thrust, f["tdelay"] + model.PULSE_S), f["tau"])
 
 
-def discrete(f):
-    """Of the errors' states (height, speed, turbulence, and the floor's own height where the floor wanders): transition and noise over a
-    time (Van Loan)."""
+def errors_of(f, begins=FIRST):
+    """(rate of change, noise, first variance, what an acceleration sees, what a height sees) of the errors'
+    states: height, speed, turbulence, and the floor's own height where the floor wanders; or those of an autopilot's loop."""
+    if "neutral" in f:
+        loop = {"climb_lag": 1.0 / f["damping"], "damping": AIR_DAMPING, "climb_rate": CLIMB_RATE, "climb_wander": CLIMB_WANDER_MPS}
+        a, q, first, felt = model.climb_errors(f | loop)
+        return a, q, first, felt, numpy.eye(len(a))[0]
     d, decay, terrain = f["damping"], 1.0 / f["turbulence_tau"], f.get("terrain", 0.0)
     a = numpy.array([[0.0, 1.0, 0.0, 0.0], [0.0, -d, 1.0, 0.0], [0.0, 0.0, -decay, 0.0], [0.0, 0.0, 0.0, -1.0 / TERRAIN_TAU_S]])
     q = numpy.diag([0.0, 0.0, 2.0 * f["turbulence"]**2 * decay, 2.0 * terrain**2 / TERRAIN_TAU_S])
-    pair = numpy.zeros((8, 8))
+    first = numpy.diag([*begins, f["turbulence"], terrain])**2
+    return a, q, first, numpy.array([0.0, -d, 1.0, 0.0]), numpy.array([1.0, 0.0, 0.0, 1.0])
+
+
+def discrete(a, q):
+    """Transition and noise over a time (Van Loan). loud: the air pushes LOUD times as much."""
+    n = len(a)
+    pair = numpy.zeros((2 * n, 2 * n))
 
     def over(step_s, loud):
-        pair[:4, :4], pair[:4, 4:], pair[4:, 4:] = -a, q * numpy.array([1.0, 1.0, LOUD**2 if loud else 1.0, 1.0]), a.T
+        noise = q.copy()
+        noise[2, 2] *= LOUD**2 if loud else 1.0
+        pair[:n, :n], pair[:n, n:], pair[n:, n:] = -a, noise, a.T
         e = expm(pair * step_s)
-        transition = e[4:, 4:].T
-        return transition, transition @ e[:4, 4:]
+        transition = e[n:, n:].T
+        return transition, transition @ e[:n, n:]
     return over
 
 
 def gains_of(span, f, loud=()):
     """Of the filter: for each event the transition, the row, the gain and the standard deviation of the prediction. loud: [(begin, end)]
     in which something else than the turbulence pushes, LOUD times as much."""
-    over = discrete(f)
+    a, q, p, *rows = errors_of(f, span.first)
+    over = discrete(a, q)
     inside = numpy.zeros(len(span.time_s), bool)
     for begin, end in loud:
         inside |= (span.time_s >= begin) & (span.time_s < end)
     known = {key: over(key[0] * EVENT_S, key[1]) for key in set(zip(span.steps.tolist(), inside.tolist())) if key[0] > 0}
-    p = numpy.diag([FIRST[0]**2, FIRST[1]**2, f["turbulence"]**2, f.get("terrain", 0.0)**2])
-    rows = (numpy.array([0.0, -f["damping"], 1.0, 0.0]), numpy.array([1.0, 0.0, 0.0, 1.0]))
     noise = (f["acc_noise"]**2, f["height_noise"]**2)
     found = []
     for step, high, noisy in zip(span.steps.tolist(), span.is_height.tolist(), inside.tolist()):
@@ -168,7 +186,7 @@ def gains_of(span, f, loud=()):
 
 def whitened(span, gains, columns, weights=None):
     """columns: (events, any). Prediction errors in standard deviations."""
-    x = numpy.zeros((4, columns.shape[1]))
+    x = numpy.zeros((len(gains[0][1]) if gains else 4, columns.shape[1]))
     result = numpy.empty_like(columns)
     for k, (transition, row, gain, sigma) in enumerate(gains):
         if transition is not None:
@@ -277,18 +295,31 @@ def thrust_columns(span, f):
     return numpy.array(columns).T
 
 
+def climb_response(span, wanted, f):
+    """What an autopilot makes of the climb rate that it is asked for: the loop of model.climb_motion(), within the motors' limits."""
+    loop = model.climb_loop({"climb_lag": 1.0 / f["damping"], "tau": f["tau"], "damping": AIR_DAMPING})
+    lag_s = 1.0 / f["damping"]
+    command = numpy.array([0.0, 1.0 / (lag_s * f["tau"]), 1.0 / (lag_s * model.CLIMB_INTEGRAL_S)])
+    discrete_loop = cont2discrete((loop, command[:, None], numpy.eye(3), numpy.zeros((3, 1))), STEP_S)
+    over, under = ss2tf(*discrete_loop[:4])
+    speed, motors = (lfilter(over[row], under, wanted) for row in (0, 1))
+    path = numpy.concatenate(([0.0], numpy.cumsum(0.5 * (speed[1:] + speed[:-1])) * STEP_S))
+    return span.merged(numpy.interp(span.ray_s, span.grid_s, path), numpy.interp(span.frame_s, span.grid_s, motors - AIR_DAMPING * speed))
+
+
 def climb_columns(span, f):
-    thrust = lagged(span, f)
-    off = thrust - f["neutral"]
+    off = model.delayed(span.grid_s, span.thrust_n, f["tdelay"] + model.PULSE_S) - f["neutral"]
     beyond = numpy.sign(off) * numpy.maximum(numpy.abs(off) - f["deadband"], 0.0)
-    columns = [response(span, beyond, f["damping"]), span.merged(numpy.zeros(len(span.ray_s)), numpy.ones(len(span.frame_s)))]
-    return numpy.array(columns).T
+    beyond[span.grid_s < span.begin] = 0.0      # on the ground the motors' limits hold: what is wrong with that the first variance has
+    return numpy.array([climb_response(span, beyond, f), span.merged(numpy.zeros(len(span.ray_s)), numpy.ones(len(span.frame_s)))]).T
 
 
 BASE = {"THRUST": thrust_columns, "CLIMB": climb_columns}
-LINEAR = {"THRUST": (["authority", "rest", "growth", "offset"], (1.4, 0.0, 0.0007, 0.0), (0.5, 3.0, GROWTH, OFFSET)),
-          "CLIMB": (["rate", "offset"], (2.5, 0.0), (1.5, OFFSET))}
-CLIMB_FIGURES = FIGURES | {"damping": (4.0, 0.3), "neutral": (6.5, 0.15), "deadband": (0.25, 0.7)}
+LINEAR = {"THRUST": (["authority", "rest", "growth", "offset"], (1.4, 0.0, 0.0007, 0.0), (AUTHORITY, 3.0, GROWTH, OFFSET)),
+          "CLIMB": (["rate", "offset"], (0.8, 0.0), (0.5, OFFSET))}
+# `damping` is one by the lag of the autopilot's loop: so fast it holds its climb rate against the air.
+CLIMB_FIGURES = FIGURES | {"damping": (2.8, 0.3), "neutral": (6.5, 0.15), "deadband": (0.25, 0.7)}
+AIR_DAMPING, CLIMB_RATE, CLIMB_WANDER_MPS = 2.0, 0.8, 0.02      # medians of tools/fit/model.py
 
 
 def model_of(kind, spans, figures, extra=(), sigmas=(), means=(), loud=()):
@@ -321,7 +352,8 @@ def solve_together(models):
 
 def whitened_together(span, batch, loud, data):
     """(prediction errors in standard deviations (events, batch, columns), the deviations (events, batch))."""
-    overs = [discrete(f) for f in batch]
+    errors = [errors_of(f, span.first) for f in batch]
+    overs = [discrete(a, q) for a, q, *_ in errors]
     inside = numpy.zeros(len(span.time_s), bool)
     for begin, end in loud:
         inside |= (span.time_s >= begin) & (span.time_s < end)
@@ -331,14 +363,9 @@ def whitened_together(span, batch, loud, data):
             pairs = [over(key[0] * EVENT_S, key[1]) for over in overs]
             known[key] = numpy.array([t for t, _ in pairs]), numpy.array([q for _, q in pairs])
     count = len(batch)
-    p = numpy.zeros((count, 4, 4))
-    felt_row, height_row = numpy.zeros((count, 4)), numpy.zeros((count, 4))
-    for place, f in enumerate(batch):
-        p[place] = numpy.diag([FIRST[0]**2, FIRST[1]**2, f["turbulence"]**2, f.get("terrain", 0.0)**2])
-        felt_row[place] = 0.0, -f["damping"], 1.0, 0.0
-    height_row[:, (0, 3)] = 1.0
+    p, felt_row, height_row = (numpy.array([each[place] for each in errors]) for place in (2, 3, 4))
     noise = [numpy.array([f[name]**2 for f in batch]) for name in ("acc_noise", "height_noise")]
-    x = numpy.zeros((count, 4, data.shape[2]))
+    x = numpy.zeros((count, p.shape[1], data.shape[2]))
     white, sigmas = numpy.empty_like(data), numpy.empty((len(data), count))
     for k, (step, high, noisy) in enumerate(zip(span.steps.tolist(), span.is_height.tolist(), inside.tolist())):
         if step > 0:
@@ -392,3 +419,21 @@ def fit(kind, spans, start=None, rounds=8, terrain=False, **with_cause):
     best = made(best_units).solve()
     best.score = -best_cost
     return best
+
+
+def fit_aged(kind, spans):
+    """(age, spans, their fit): the flight without a cause, its rays as much older or younger as is usual and likely."""
+    def aged(age_s):
+        older = [changed(span, age_s) for span in spans]
+        found = fit(kind, older, known[0.0][1].figures if known else None)
+        return older, found, found.score - 0.5 * (age_s / AGE_SPREAD_S)**2
+    known = {}
+    known[0.0] = aged(0.0)
+    best = 0.0
+    for sign in (1.0, -1.0):
+        while abs(nearby := round(best + sign * AGE_STEP_S, 3)) <= AGE_MOST_S and nearby not in known:
+            known[nearby] = aged(nearby)
+            if known[nearby][2] < known[best][2]:
+                break
+            best = nearby
+    return best, *known[best][:2]

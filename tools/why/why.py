@@ -16,6 +16,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")       # matrices of four rows
 
 sys.path[:0] = [str(Path(__file__).resolve().parent), str(Path(__file__).resolve().parents[1] / "fit")]
 import causes  # noqa: E402
+import commanded  # noqa: E402
 import flight  # noqa: E402
 import law  # noqa: E402
 import vehicle  # noqa: E402
@@ -46,7 +47,10 @@ def ask(path, program, progress=None):
     spans = vehicle.spans_of(seen)
     flew = seen.seconds() >= flight.LEAST_S and sum(len(span.ray_s) for span in spans) >= flight.LEAST_HEIGHTS
     progress.step("the vehicle in its flight")
-    case = Case(seen, spans, vehicle.fit("THRUST", spans) if flew else None, law.of(seen))
+    age_s, spans, model = vehicle.fit_aged("THRUST", spans) if flew else (0.0, spans, None)
+    progress.step("what was set")
+    flown = law.of(seen)
+    case = Case(seen, spans, model, flown, commanded.of(seen, program, flown) if flew else None, age_s)
     found = {}
     for key, cause in causes.TABLE.items():
         if flew or cause.without_flight:
@@ -85,7 +89,10 @@ def without_it(case, found):
     was, would = without.hover_rms_mm(case), without.rms_mm(flown) if flown is not None else None
     if was is None or would is None:
         return flown, ""
-    return flown, f"It hovered {was:.0f} mm rms off its reference; without this the same vehicle would have been {would:.0f} mm off."
+    hovered = f"It hovered {was:.0f} mm rms off its reference"
+    if would >= was:
+        return flown, f"{hovered}; without this the same vehicle would not have been nearer."
+    return flown, f"{hovered}; without this the same vehicle would have been {would:.0f} mm off."
 
 
 def table(found):

@@ -23,15 +23,16 @@ COMMANDS = (
     "#POSK 2.3", "#VELK 8", "#VUP 0.7", "#VDN 1.1",
     "#TERRAIN FOLLOW", "#TERRAIN IGNORE",
     "#PLANT THRUST", "#PLANT CLIMB", "#CRATE 1", "#GAIN 1", "#LAG 0.12", "#DELAY 0.0185", "#DAMP 2.5", "#CLAG 0.25",
-    "#SEL NONE", "#SEL PIN", "#STICK NONE", "#STICK PIN", "#SMID 1500", "#SRATE 0.3", "#SUM ON", "#SUM OFF*3A0B", "#IDLE 15",
-    "#IROLL -ROLL", "#IPITCH PITCH", "#IDOWN Z", "#IUNIT 256", "#IAXES ASSUMED", "#IMU",
+    "#SEL NONE", "#SEL PIN", "#STICK NONE", "#STICK PIN", "#SMID 1500", "#SRATE 0.3", "#BAT NONE", "#BAT PIN", "#CELLS 4S", "#VDIV 10.1", "#VLOW 3.6", "#VLAND 3.5",
+    "#WALLS ON", "#WALLS OFF", "#SUM ON", "#SUM OFF*3A0B", "#IDLE 15",
+    "#IROLL -ROLL", "#IPITCH PITCH", "#IDOWN Z", "#IUNIT 256", "#IAXES ASSUMED", "#IMU", "#MIRRORS",
     "#DF 105", "#LF 100", "#L 220", "#D1 115", "#L1 98", "#D2 107", "#L2 105",
     "#LAYOUT FRONT", "#LAYOUT TWO", "#LAYOUT THREE", "#SF 389", "#S1 128", "#S2 640", "#SW 17",
     "#SAVE", "#LOAD", "#DEFAULTS", "#DEFAULTS SEED",
     "#LINK 60", "#CALIBRATE 30 5", "#LINK 0",
     "#PING 1", "#STREAM PULSE", "#STREAM OFF", "#HANG TASK",
     "#LOG 10", "#LOG", "#LOG STOP", "#LOG CLEAR",
-    "#GET", "#GET KP", "#RC", "#LASER", "#PERF", "#PERF RESET", "#VERSION", "#HELP",
+    "#GET", "#GET KP", "#RC", "#VOLTS", "#LASER", "#PERF", "#PERF RESET", "#VERSION", "#HELP",
 )
 
 

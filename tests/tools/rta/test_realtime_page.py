@@ -2,6 +2,7 @@
 
 With a second argument --write: puts into the page what its commands print now. The text's own figures are for you.
 """
+import functools
 import re
 import subprocess
 import sys
@@ -18,7 +19,9 @@ NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?![\w]|\.\d)")
 FIGURE = re.compile(r"(?<![\w.])(\d+\.\d+|\d+(?=\s+(?:ms|µs|%)))(\s+µs)?")
 
 
+@functools.cache
 def shell(command):
+    """What it prints: the same each time."""
     return subprocess.run(command.replace("build/plomada", f"'{PROGRAM}'"), shell=True, cwd=ROOT, check=False, capture_output=True,
                           text=True).stdout
 

@@ -3,6 +3,7 @@ from dataclasses import dataclass
 from typing import Callable
 
 from causes import autopilot, floor, forces, imu, rays, settings
+from causes import ground as ground_effect
 
 
 @dataclass(frozen=True)
@@ -43,15 +44,34 @@ def floor_what(found):
     return f"The heights jump {w['count']} times by about {w['mm']:.0f} mm, and the vehicle does not: edges, or colours of the floor."
 
 
+def mirrors_of(w):
+    """"the aft mirror", "the front and the aft mirror", "all mirrors", "the beam"."""
+    names = w.get("mirrors")
+    if names is None:
+        return "the beam"
+    if len(names) == w["of"] > 1:
+        return "all mirrors"
+    return " and ".join(f"the {name}" for name in names) + " mirror"
+
+
 def rays_what(found):
     w = found.words
+    who = mirrors_of(w)
+    if "mm" in w:
+        at = " and ".join(f"{mm / 1e3:.2f}" for mm in sorted({round(mm, -1) for mm in w["mm"]}))
+        honest = "no mirror saw it" if len(w["mirrors"]) == w["of"] else "the others outvoted it" if w["told"] else "the vote did not find it"
+        return (f"From {w['from']:.1f} to {w['to']:.1f} s {who} showed a thing {at} m along its rays, and not the ground; {honest}.")
+    if w["blind"] and len(w["mirrors"]) < w["of"]:
+        return f"From {w['from']:.1f} s on {who} saw nothing, {w['seconds']:.1f} s in all, while the others did."
     how = f"did not believe its heights ({w['doubts'][0]})" if w["doubts"] else "had no heights"
-    return f"From {w['from']:.1f} s on the firmware {how}, {w['seconds']:.1f} s in all."
+    seen = "" if "mirrors" not in w else f"; {who} saw nothing" if w["blind"] else f"; {who} showed something else than the ground"
+    return f"From {w['from']:.1f} s on the firmware {how}, {w['seconds']:.1f} s in all{seen}."
 
 
 def rays_do(found):
-    return ("Look for what blocks the beam: a cable, a leg, a dirty mirror." if found.words.get("wrong") else
-            "Look at the floor (black, wet, glass) and the scanner's line; type #LASER.")
+    w = found.words
+    return (f"Look for what stands before {mirrors_of(w)}: a cable, a leg, dirt." if w.get("wrong") else
+            "Look at the floor (black, wet, glass), at the mirror and at the scanner's line; type #LASER and #MIRRORS.")
 
 
 def vibration_what(found):
@@ -84,7 +104,7 @@ TABLE = {
     "ropes": Cause("ropes", forces.ropes, ropes_what, said("Give the ropes more slack, and see what else may hold the vehicle.")),
     "pilot": Cause("a pilot", forces.pilot, lambda found: f"From {found.words['from']:.1f} to {found.words['to']:.1f} s the commanded thrust did nothing: somebody else had the throttle.",
                    said("Ask the pilot; wire the selector's pin and set #SEL PIN.")),
-    "ground": Cause("ground effect", forces.ground, lambda found: f"Near the ground the thrust carries more: {found.words['times']:.1f} times what is usual.",
+    "ground": Cause("ground effect", ground_effect.ground, lambda found: f"Near the ground the thrust carries more: {found.words['times']:.1f} times what is usual.",
                     said("Fly higher, above two rotor diameters.")),
     "battery": Cause("battery", forces.battery, lambda found: f"The hover thrust grew by {found.words['percent']:.0f} % a minute.",
                      said("Charge the battery, or take one that is less worn.")),

@@ -2,7 +2,9 @@
 from dataclasses import dataclass, field
 
 import numpy
+from scipy.special import log_ndtr
 
+import mirrors
 import vehicle
 
 
@@ -12,6 +14,15 @@ class Case:
     spans: list
     model: object               # vehicle.Model of nothing: the likelihood that a cause must beat
     law: object                 # law.Law
+    told: object = None         # commanded.Settings, where the firmware flies this log again
+    age_s: float = 0.0          # of the rays in `spans`, beside what the firmware believes: within what is usual
+    shake: tuple = None         # of causes/imu.py, once it was asked for
+    seen: object = None         # mirrors.Liars, once asked for
+
+    def liars(self):
+        if self.seen is None:
+            self.seen = mirrors.liars(mirrors.scans_of(self.flight))
+        return self.seen
 
     def again(self, spans=None, start=None, **with_cause):
         """The likelihood with a cause, its noises found anew, from those of nothing or from `start`: (nats gained, vehicle.Model)."""
@@ -34,3 +45,12 @@ def normal(x, sigma):
 def wider(x, spread, healthy, faulty):
     """Log Bayes factor of a figure x, known within spread, that healthy vehicles have within `healthy` of 0 and a cause anywhere within `faulty`."""
     return float(normal(x, numpy.hypot(spread, faulty)) - normal(x, numpy.hypot(spread, healthy)))
+
+
+def even(x, sigma, least, most):
+    """Log density of a figure x, known within sigma, that lies anywhere between least and most, equally likely."""
+    low, high = (least - x) / sigma, (most - x) / sigma
+    if low > 0.0:
+        low, high = -high, -low
+    above, below = log_ndtr(high), log_ndtr(low)        # of the left tail, where a difference of logarithms keeps its digits
+    return float(above + numpy.log1p(-numpy.exp(below - above)) - numpy.log(most - least))

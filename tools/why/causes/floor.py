@@ -1,6 +1,7 @@
 """The floor: steps of the heights that no motion explains, few or many."""
 import numpy
 
+import mirrors
 from causes.case import Finding
 from vehicle import whitened
 
@@ -71,6 +72,18 @@ def pursue(curvature, slope, sigma, count_most=STEPS_MOST):
 
 
 def floor(case):
+    """The heights against the vehicle's motion, and the mirrors against each other where there are three and none of them lies."""
+    found = heights(case)
+    if case.liars().nats > 0.0:
+        return found
+    nats, mm = mirrors.terrain(mirrors.scans_of(case.flight))
+    if nats > 0.0 and found.nats < WORTH:       # the heights alone say nothing; the mirrors do
+        found.words |= {"count": 0, "mm": max(mm, found.words["mm"] if not found.words["count"] else 0.0)}
+    found.nats += nats
+    return found
+
+
+def heights(case):
     """Steps, few (an edge, another colour) or many (a rough floor); the better of the two."""
     curvature, slope, times = projected(case.model)
     chosen, _, _ = pursue(curvature, slope, STEP_M)

@@ -2,7 +2,7 @@
 import numpy
 
 import model as physics
-from causes.case import Finding, wider
+from causes.case import Finding, even
 from causes.floor import WORTH
 from vehicle import G, lagged, model_of, response, whitened
 
@@ -10,10 +10,10 @@ TUG_S = 0.12                    # a rope's pull dies away: TUG_TAU_S of sim/devi
 TUG_MPS2 = 2.0
 TUG_EVERY_S = 0.05
 TUGS_PER_S, TUGS_MOST = 0.7, 25
-ROPE_PER_S2 = 60.0              # pull of a taut rope on a vehicle of 3 kg, for each metre: sim/devices/quadrotor.h
+ROPE_PER_S2, ROPE_SPREAD = 60.0, 25.0   # pull of a taut rope on a vehicle of 3 kg, for each metre: sim/devices/quadrotor.c
 ROPE_SPAN_M, ROPE_STEP_M, ROPE_LEAST_M = 0.6, 0.03, 0.1
-EFFECT_HEALTHY, EFFECT_FAULTY = 0.4, 6.0        # ground effect beyond that of Cheeseman and Bennett, times
-GROWTH_HEALTHY, GROWTH_FAULTY = 0.0012, 0.01    # of the hover thrust, 1/s
+# Of the hover thrust, 1/s: up to 0.0015 in campaigns; of a battery that is nearly empty, up to 0.0124 (tools/why/planted.py).
+GROWTH_HEALTHY, GROWTH_FAULTY = 0.0015, (0.0015, 0.0124)
 CALM_MPS2, CALM_TAU_S = 0.25, 0.5       # the air of a healthy flight
 EFFECT_SHARE = 0.2              # so well the thrust's effect is known
 HAND_MPS2 = 10.0                # what holds the vehicle in the thrust's place, not known
@@ -86,7 +86,7 @@ def taut(case):
             best = (float(nats[0]), length_m)
     if best[1] is None or best[0] < WORTH:
         return 0.0, {}, None
-    gained, model = case.again(extra=[rope_columns(best[1])], sigmas=[ROPE_PER_S2], means=[ROPE_PER_S2])
+    gained, model = case.again(extra=[rope_columns(best[1])], sigmas=[ROPE_SPREAD], means=[ROPE_PER_S2])
     return gained - numpy.log(ROPE_SPAN_M / ROPE_STEP_M), {"rope_m": best[1]}, model
 
 
@@ -99,7 +99,7 @@ def pursued(curvature, slope, looks):
         each = 0.5 * numpy.maximum(left, 0.0)**2 / precision - 0.5 * numpy.log(precision * TUG_MPS2**2) - numpy.log(looks)
         each[chosen] = -numpy.inf
         best = int(numpy.argmax(each))
-        if each[best] < WORTH:
+        if each[best] < 0.0:        # likelier without it: what its place costs is in the odds already
             break
         chosen.append(best)
         nats += float(each[best])
@@ -111,30 +111,21 @@ def pursued(curvature, slope, looks):
     return numpy.array(chosen, int), size, nats
 
 
-def effect_columns(span, f):
-    """Of one more time the ground effect."""
-    ratio = physics.ROTOR_RADIUS_M / (4.0 * (numpy.maximum(span.height_m, 0.0) + physics.ROTOR_ABOVE_GEAR_M))
-    return push_columns(span, f, [G * 2.0 * ratio**2 / (1.0 - 2.0 * ratio**2)**2 * span.upright])
-
-
-def ground(case):
-    _, size, spread = case.model.gain(effect_columns, 30.0)
-    nats = wider(float(size[0]), float(spread[0]), EFFECT_HEALTHY, EFFECT_FAULTY) if size[0] > 0.0 else -2.0
-    return Finding(nats, {"times": 1.0 + float(size[0])})
-
-
-def growth_columns(span, f):
-    """Of a hover thrust that grows by one in a second."""
-    air = physics.ground_effect(span.height_m) * span.upright
-    return push_columns(span, f, [-(span.grid_s - span.log_middle) * G * air])
+def growth(model):
+    """(growth of the hover thrust, 1/s, its standard deviation), as the flight alone tells it: what is expected of it is taken out again."""
+    place = model.names.index("growth")
+    to_share = model.hover_n() / G
+    variance = numpy.linalg.inv(model.information)[place, place]
+    told = max(1.0 / variance - 1.0 / model.spread[place]**2, 1e-6 / variance)
+    mean = (model.linear[place] / variance - model.prior[place] / model.spread[place]**2) / told
+    return float(mean) * to_share, float(told**-0.5) * to_share
 
 
 def battery(case):
-    _, size, spread = case.model.gain(growth_columns, 0.1)
-    own = case.model.linear_figure("growth") * case.model.hover_n() / G if case.model.kind == "THRUST" else 0.0
-    growth = float(size[0]) + own
-    nats = wider(growth - 0.0007, float(spread[0]), GROWTH_HEALTHY, GROWTH_FAULTY) if growth > 0.0 else -2.0
-    return Finding(nats, {"percent": 100.0 * growth * 60.0})
+    if case.model.kind != "THRUST":
+        return Finding(-2.0)
+    grew, sigma = growth(case.model)
+    return Finding(even(grew, sigma, *GROWTH_FAULTY) - even(grew, sigma, 0.0, GROWTH_HEALTHY), {"percent": 100.0 * grew * 60.0})
 
 
 def windows(spans):

@@ -33,18 +33,24 @@ def lines_of(frequency_hz):
     return columns
 
 
+def shake(case):
+    """(nats, Hz, sizes of cosine and sine) of the likeliest line in the accelerations."""
+    if case.shake is None:
+        nats, size, _ = case.model.gain(lines_of(FREQUENCY_HZ), SHAKE_MPS2)
+        count = len(FREQUENCY_HZ)
+        both = nats[:count] + nats[count:]
+        best = int(numpy.argmax(both))
+        case.shake = float(both[best]) - numpy.log(count), float(FREQUENCY_HZ[best]), size[[best, best + count]]
+    return case.shake
+
+
 def vibration(case):
-    nats, size, _ = case.model.gain(lines_of(FREQUENCY_HZ), SHAKE_MPS2)
-    count = len(FREQUENCY_HZ)
-    both = nats[:count] + nats[count:]
-    best = int(numpy.argmax(both))
+    line, hz, size = shake(case)
     noise = case.model.figures["acc_noise"]
-    line = float(both[best]) - numpy.log(count)
     off = numpy.log(noise / NOISE_MPS2)
     hiss = wider(off, 0.03, NOISE_HEALTHY, NOISE_FAULTY) if off > 0.0 else -2.0
-    hz = float(FREQUENCY_HZ[best])
-    words = {"hz": hz, "mps2": float(numpy.hypot(size[best], size[best + count])), "noise": noise, "line": line > hiss}
+    words = {"hz": hz, "mps2": float(numpy.hypot(*size)), "noise": noise, "line": line > hiss}
     if line > WORTH_ANEW:
         gained, model = case.again(extra=[lines_of(numpy.array([hz]))], sigmas=[SHAKE_MPS2] * 2)
-        return Finding(max(gained - numpy.log(count), hiss), words, model)
+        return Finding(max(gained - numpy.log(len(FREQUENCY_HZ)), hiss), words, model)
     return Finding(max(line, hiss), words)

@@ -1,0 +1,98 @@
+"""test_terrain.py PROGRAM: #TERRAIN IGNORE holds the altitude over ramp, platform and edge, with three mirrors.
+
+Twenty flights of the seed's course by the nominal vehicle, of which at most one may be off the altitude by more than 0.08 m; the same for
+other heights of the platform; and drawn vehicles of both airframes, 0.2 to 0.6 m/s, obstacles of 5 to 40 cm: most within 0.08 m, none
+near the ground. `#TERRAIN FOLLOW` goes up, or there would be nothing to ignore.
+"""
+import csv
+import random
+import statistics
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tools/campaign"))
+import plan  # noqa: E402
+
+PROGRAM = ""
+REFERENCE_M, MUST_M = 0.6, 0.08
+HOVERS_S, LANDS_S = 6.0, 20.0
+THREE = {"LAYOUT": "THREE", "TERRAIN": "IGNORE"}
+# At most one flight of twenty may miss a bound, as in test_rates.py.
+OF_TWENTY = 20
+
+
+def fly(words, typed, until_s=LANDS_S):
+    """Rows of the log while it flies: altitude and height."""
+    with tempfile.TemporaryDirectory() as scratch:
+        log = Path(scratch) / "x.csv"
+        settings = [word for name, value in typed.items() for word in ("--set", f"{name}={value}")]
+        done = subprocess.run([PROGRAM, "fly", *words, "--csv", log, *settings], capture_output=True, text=True, check=False, timeout=120)
+        if not log.exists():
+            raise AssertionError(f"{words}: {done.stdout}{done.stderr}")
+        with log.open(encoding="utf-8") as rows:
+            return [(float(row["abs_m"]), float(row["height_m"])) for row in csv.DictReader(rows) if HOVERS_S < float(row["t_s"]) < until_s]
+
+
+def off_m(rows, reference_m):
+    return max(abs(altitude - reference_m) for altitude, _ in rows)
+
+
+def course(seed, **typed):
+    return off_m(fly(["est-60cm-ramp", "--seed", str(seed)], THREE | typed), REFERENCE_M)
+
+
+def drawn(number):
+    """How far off, and how near to the ground."""
+    rng = random.Random(f"terrain {number}")
+    figures = plan.draws("terrain", number)
+    vehicle = {f"plant.{name}": figures[name] for name in plan.VEHICLE} | {
+        "plant.hover_thrust": figures["hover_untrimmed"], "plant.airframe": rng.randrange(2)}
+    height_m, speed_mps, platform_m, reference_m = rng.uniform(0.05, 0.4), rng.uniform(0.2, 0.6), rng.uniform(0.6, 2.4), rng.uniform(0.7, 1)
+    ramp_m, ends_m = 0.28, 1.28 + platform_m      # the seed's ramp, 1 m ahead
+    land_s = HOVERS_S + (ends_m + 1.2) / speed_mps + 2
+    with tempfile.NamedTemporaryFile("w", suffix=".scenario", encoding="utf-8") as scenario:
+        scenario.write(f"""like est-60cm-ramp
+name drawn
+platform no
+reference {reference_m}
+land {land_s}
+end {land_s + 1}
+place ramp {1 + ramp_m / 2} 0 {ramp_m} 4 0 {height_m}
+place block {1 + ramp_m + platform_m / 2} 0 {platform_m} 4 {height_m}
+place go {HOVERS_S} {ends_m + 1.2} 0 {speed_mps}
+""")
+        scenario.flush()
+        rows = fly([scenario.name, "--seed", str(number)], THREE | vehicle, land_s)
+    return off_m(rows, reference_m), min(height for _, height in rows)
+
+
+class Ignored(unittest.TestCase):
+    def test_the_seeds_course_is_ignored_within_8_cm_by_nineteen_of_twenty(self):
+        worst = sorted(course(seed) for seed in range(1, OF_TWENTY + 1))
+        print("the seed's course, off the altitude:", *(f"{off:.3f}" for off in worst))
+        self.assertLessEqual(worst[-2], MUST_M)
+
+    def test_platforms_of_15_to_40_cm_too(self):
+        for height_m in (0.15, 0.4):
+            worst = sorted(course(seed, **{"plant.platform": height_m}) for seed in range(1, OF_TWENTY // 2 + 1))
+            print(f"a platform of {height_m} m:", *(f"{off:.3f}" for off in worst))
+            self.assertLessEqual(worst[-2], MUST_M, height_m)
+
+    def test_followed_it_goes_up(self):
+        self.assertGreater(course(1, TERRAIN="FOLLOW"), 0.25)
+
+    def test_most_drawn_vehicles_ignore_it_and_none_touches_the_ground(self):
+        flights = [drawn(number) for number in range(1, 31)]
+        worst = sorted(off for off, _ in flights)
+        print("drawn vehicles, off the altitude:", *(f"{off:.3f}" for off in worst))
+        self.assertLessEqual(statistics.median(worst), MUST_M)
+        self.assertGreater(min(height for _, height in flights), 0.05)
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv[1]
+    unittest.main(argv=sys.argv[:1], verbosity=2)

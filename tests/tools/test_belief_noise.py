@@ -1,0 +1,70 @@
+"""test_belief_noise.py PLOMADA: the noises of control/sense/belief.c fit healthy flights, and their search finds a noise that was put in."""
+import sys
+import unittest
+from pathlib import Path
+
+import numpy
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tools/noise"))
+sys.path.append(str(ROOT / "tools/campaign"))
+import noise  # noqa: E402
+import plan  # noqa: E402
+import situations  # noqa: E402
+import survey  # noqa: E402
+
+PROGRAM = ""
+SEED = 7  # not one of those that the noises were fitted on
+
+
+def made(sigma_mm, scans=3000, seed=1):
+    """Three mirrors over flat ground, each with a noise of its own, on a vehicle that goes up and down."""
+    random = numpy.random.default_rng(seed)
+    heights = 800.0 + 300.0 * numpy.sin(numpy.arange(scans) * 0.1)
+    values = numpy.zeros((scans, 11), dtype=numpy.float32)
+    values[:, 0] = 0.1
+    for mirror in range(3):
+        values[:, 2 + 3 * mirror] = 1.0
+        values[:, 4 + 3 * mirror] = heights + random.normal(0.0, sigma_mm, scans)
+        values[:, 3 + 3 * mirror] = values[:, 4 + 3 * mirror] + 205.0
+    return values
+
+
+class Noise(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.belief = noise.Belief()
+
+    def test_healthy_flights_are_as_noisy_as_the_source_says(self):
+        plan.extend({"laws": {"EST-THREE": {"scenario": "est-60cm-ramp", "settings": {"LAYOUT": "THREE"}}}})
+        healthy = situations.load(situations.HEALTHY)
+        planned = survey.planned(healthy, ["EST-THREE"], SEED, 1, False, ["draughts", "edges", "slopes", "stairs", "vehicle"])
+        mirrors = noise.mirrors_of(PROGRAM)
+        flights = [noise.fly(PROGRAM, flight, i % 2 == 1, mirrors) for i, flight in enumerate(planned)]
+        self.assertGreater(sum(map(len, flights)), 2000)
+        _, innovation = self.belief.likelihood(self.belief.start, flights)
+        print(f"normalised innovation {innovation:.2f} of {len(flights)} flights, seed {SEED}")
+        self.assertGreater(innovation, 0.8)
+        self.assertLess(innovation, 1.2)
+
+    def test_what_is_expected_of_an_innovation_is_that_of_noise_and_small_steps_together(self):
+        self.assertAlmostEqual(noise.expected_square([6.0, 0.0, *self.belief.start[2:]]), 1.0, delta=0.01)
+        self.assertAlmostEqual(noise.expected_square([6.0, 1.0, 170.0, 1.0, 2.0, 0.0]), 2 * 2.0 ** 2 / 6.0 ** 2, delta=0.01)
+        self.assertGreater(noise.expected_square(self.belief.start), 1.05)
+
+    def test_a_noise_that_is_too_small_or_too_large_is_less_likely_and_shows(self):
+        flights = [made(6.0)]
+        likely = {}
+        for sigma_mm in (3.0, 6.0, 12.0):
+            likely[sigma_mm], innovation = self.belief.likelihood([sigma_mm, *self.belief.start[1:]], flights)
+            expected = (6.0 / sigma_mm) ** 2
+            if sigma_mm > 3.0:  # innovations beyond 4 sigmas are no part of it
+                self.assertGreater(innovation, 0.9 * expected)
+                self.assertLess(innovation, 1.6 * expected)  # the level of each mirror is known by its noise too
+        self.assertGreater(likely[6.0], likely[3.0] + 0.1)
+        self.assertGreater(likely[6.0], likely[12.0] + 0.1)
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv.pop(1)
+    unittest.main()
