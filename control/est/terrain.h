@@ -61,7 +61,6 @@ typedef struct {
 #define TERRAIN_LEAST_M 0.15F
 
 /* What a scan may bring where the ground is level. */
-#define TERRAIN_STEP_M 0.15F     /* mean size of a step (Laplace), as belief.c */
 #define TERRAIN_STEP_LEVEL 0.01F /* share of the scans with one, for each mirror; tried 0.005 to 0.015 */
 
 typedef struct {

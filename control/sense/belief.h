@@ -7,42 +7,16 @@
  *                       seldom a step of the terrain, under this mirror alone
  *
  * The tilt tells them apart: it moves the slant of a true beam as the geometry says, and that of a blocked
- * one not at all. The thrust is not asked. The accelerometer only helps to predict the shared motion.
+ * one not at all. The accelerometer predicts the shared motion. That it lies is a kind of motion: what it
+ * tells is held against the thrust, and where they contradict each other, it need not count.
  *
  * Millimetres and seconds. Pure; the caller owns the state, all zero at first. Context: one Task. */
 #ifndef CONTROL_SENSE_BELIEF_H
 #define CONTROL_SENSE_BELIEF_H
 
-#include <stdbool.h>
-#include <stdint.h>
-
-#include "control/altitude.h"
+#include "control/sense/belief_world.h"
 
 #define BELIEF_WORLDS (1U << MIRROR_COUNT)
-/* Standard deviation of one mirror's height about that of the others, and of a blocked beam's slant. Fitted
- * on healthy flights, see belief.c; recorded: 1 mm at most. */
-#define BELIEF_NOISE_MM 6.0F
-#define BELIEF_MOTIONS 3U /* belief.c: it stands, it flies, or something pushes it */
-
-/* One mirror in one scan. */
-typedef struct {
-    bool valid; /* false: it tells nothing in this scan, and what is believed of it stays */
-    float slant_mm, height_mm;
-} belief_beam_t;
-
-/* The world in which one set of mirrors lies. */
-typedef struct {
-    float probability;             /* of all worlds together: 1 */
-    float rate_mm_s;               /* of the heights of the honest mirrors */
-    float level_mm[MIRROR_COUNT];  /* of the height of each mirror */
-    float motions[BELIEF_MOTIONS]; /* probability of each kind of motion; together 1 */
-} belief_world_t;
-
-/* A running mean of the latest scans. */
-typedef struct {
-    float mm;
-    float count; /* of so many, up to a most */
-} belief_mean_t;
 
 typedef struct {
     belief_world_t worlds[BELIEF_WORLDS]; /* bit m of the index: mirror m lies */
@@ -51,9 +25,8 @@ typedef struct {
     uint16_t known;                       /* bits: mirrors that have told something before */
 } belief_t;
 
-/* One scan. beams: one for each mirror_t. gap_s: since the scan before, > 0. gained_mps: change of the
- * vertical speed in that time, by the accelerometer; 0 where it is not believed. */
-void belief_scan(belief_t *belief, const belief_beam_t *beams, float gap_s, float gained_mps);
+/* One scan. beams: one for each mirror_t. gap_s: since the scan before, > 0. */
+void belief_scan(belief_t *belief, const belief_beam_t *beams, float gap_s, belief_felt_t felt);
 
 /* Probability that this mirror lies; 0 before the first scan. */
 float belief_of_lie(const belief_t *belief, mirror_t mirror);

@@ -18,18 +18,32 @@
 
 void mirrors_frame(mirrors_t *mirrors, float gained_mps)
 {
-    mirrors->gained_mps += gained_mps;
+    mirrors->felt.gained_mps += gained_mps;
 }
 
-/* What the heights will show of it: their rays are older than the frames. */
-static float gained_mps(mirrors_t *mirrors, float gap_s, float age_s)
+void mirrors_thrust(mirrors_t *mirrors, float gained_mps)
+{
+    mirrors->pushed.gained_mps += gained_mps;
+}
+
+/* What the heights will show of it: their rays are older than the frames. late: share of the gap. */
+static float shown_mps(mirrors_motion_t *motion, float late)
+{
+    const float shown_mps = (1.0F - late) * motion->gained_mps + late * motion->before_mps;
+
+    motion->before_mps = motion->gained_mps;
+    motion->gained_mps = 0.0F;
+    return shown_mps;
+}
+
+static belief_felt_t felt_of(mirrors_t *mirrors, float gap_s, float age_s, bool believed)
 {
     const float late = at_most(age_s / gap_s, 1.0F);
-    const float shown_mps = (1.0F - late) * mirrors->gained_mps + late * mirrors->gained_before_mps;
+    const float felt_mps = shown_mps(&mirrors->felt, late);
+    const float pushed_mps = shown_mps(&mirrors->pushed, late);
+    const belief_felt_t nothing = {.gained_mps = 0.0F};
 
-    mirrors->gained_before_mps = mirrors->gained_mps;
-    mirrors->gained_mps = 0.0F;
-    return shown_mps;
+    return believed ? (belief_felt_t){felt_mps, (felt_mps - pushed_mps) / gap_s} : nothing;
 }
 
 /* Identical digits are no new scan, see beam.c. */
@@ -61,7 +75,7 @@ uint16_t mirrors_liars(const mirrors_t *mirrors, bool lasting)
 }
 
 /* Returns those that are believed, as bits; all that do not repeat their scan when none is. */
-static uint16_t believe(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float speed_mps)
+static uint16_t believe(mirrors_t *mirrors, const altitude_t *shown, float gap_s, belief_felt_t felt)
 {
     belief_beam_t beams[MIRROR_COUNT];
     uint16_t fresh = 0U;
@@ -75,7 +89,7 @@ static uint16_t believe(mirrors_t *mirrors, const altitude_t *shown, float gap_s
         }
         beams[m] = (belief_beam_t){valid, shown[m].slant_mm, shown[m].height_mm};
     }
-    belief_scan(&mirrors->belief, beams, gap_s, speed_mps);
+    belief_scan(&mirrors->belief, beams, gap_s, felt);
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         const bool lies = belief_of_lie(&mirrors->belief, (mirror_t)m) > LIES;
 
@@ -156,8 +170,7 @@ static uint16_t weightless(const float weights[MIRROR_COUNT])
 
 void mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float age_s, bool felt)
 {
-    const float speed_mps = gained_mps(mirrors, gap_s, age_s);
-    const uint16_t voters = believe(mirrors, shown, gap_s, felt ? speed_mps : 0.0F);
+    const uint16_t voters = believe(mirrors, shown, gap_s, felt_of(mirrors, gap_s, age_s, felt));
     float weights[MIRROR_COUNT];
 
     if (voters == 0U) {

@@ -21,6 +21,11 @@ typedef struct {
     float slant_mm, spread_mm;
 } mirror_digits_t;
 
+/* Change of the vertical speed since the latest scan, and from the scan before to that. */
+typedef struct {
+    float gained_mps, before_mps;
+} mirrors_motion_t;
+
 typedef struct {
     belief_t belief;
     altitude_t altitude; /* of the latest scan; not valid before the first */
@@ -29,15 +34,18 @@ typedef struct {
     uint16_t left_out;   /* bits: mirrors of that scan that told something, and do not count in altitude */
     float disbelieved_s[MIRROR_COUNT];    /* how long each has been, at most 10 s */
     mirror_digits_t latest[MIRROR_COUNT]; /* of each mirror, to find copies */
-    float gained_mps, gained_before_mps; /* change of the vertical speed since the scan, and in that before */
+    mirrors_motion_t felt, pushed;        /* by the accelerometer, and by the thrust */
 } mirrors_t;
 
 /* Bits: mirrors that are disbelieved. lasting: for so long that no edge explains it; over one, the mirror
  * that shows what was before looks blocked beside the others. */
 uint16_t mirrors_liars(const mirrors_t *mirrors, bool lasting);
 
-/* One IMU frame: the vertical speed has changed by so much. */
+/* One IMU frame: by the accelerometer the vertical speed has changed by so much. */
 void mirrors_frame(mirrors_t *mirrors, float gained_mps);
+
+/* One cycle in which the thrust alone carries the vehicle: by it the speed has changed by so much. */
+void mirrors_thrust(mirrors_t *mirrors, float gained_mps);
 
 /* One scan: writes altitude and agree. shown: one altitude for each mirror_t, not valid where it shows none.
  * gap_s: since the scan before, > 0. age_s: of its rays. felt: the accelerometer is believed. */

@@ -18,8 +18,8 @@ typedef struct {
 void push_lag(push_t *push, const command_t *command);
 
 /* Dead reckoning, once in each cycle in which the thrust alone carries the vehicle. upright: cosine of the
- * tilt. */
-void push_move(push_t *push, const command_t *command, float upright);
+ * tilt. Returns the change of the vertical speed, in metres per second. */
+float push_move(push_t *push, const command_t *command, float upright);
 
 /* Adds the innovation of one height. */
 void push_compare(push_t *push, float rise_m, float gap_s, float age_s);

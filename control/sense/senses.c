@@ -96,7 +96,7 @@ void senses_thrust(senses_t *senses, const command_t *command, bool felt_valid)
     if (!command->off_ground || stands) {
         witness_start(&senses->push.pushed, felt_tells ? felt->speed_mps : 0.0F);
     } else {
-        push_move(&senses->push, command, senses->tilt.upright);
+        mirrors_thrust(&senses->mirrors, push_move(&senses->push, command, senses->tilt.upright));
     }
 }
 

@@ -1,4 +1,4 @@
-"""test_belief_noise.py PLOMADA: the noises of control/sense/belief.c fit healthy flights, and their search finds a noise that was put in."""
+"""test_belief_noise.py PLOMADA: the noises of control/sense/belief_world.c fit healthy flights, and their search finds a noise that was put in."""
 import sys
 import unittest
 from pathlib import Path
@@ -21,12 +21,12 @@ def made(sigma_mm, scans=3000, seed=1):
     """Three mirrors over flat ground, each with a noise of its own, on a vehicle that goes up and down."""
     random = numpy.random.default_rng(seed)
     heights = 800.0 + 300.0 * numpy.sin(numpy.arange(scans) * 0.1)
-    values = numpy.zeros((scans, 11), dtype=numpy.float32)
+    values = numpy.zeros((scans, 12), dtype=numpy.float32)
     values[:, 0] = 0.1
     for mirror in range(3):
-        values[:, 2 + 3 * mirror] = 1.0
-        values[:, 4 + 3 * mirror] = heights + random.normal(0.0, sigma_mm, scans)
-        values[:, 3 + 3 * mirror] = values[:, 4 + 3 * mirror] + 205.0
+        values[:, 3 + 3 * mirror] = 1.0
+        values[:, 5 + 3 * mirror] = heights + random.normal(0.0, sigma_mm, scans)
+        values[:, 4 + 3 * mirror] = values[:, 5 + 3 * mirror] + 205.0
     return values
 
 
@@ -39,13 +39,19 @@ class Noise(unittest.TestCase):
         plan.extend({"laws": {"EST-THREE": {"scenario": "est-60cm-ramp", "settings": {"LAYOUT": "THREE"}}}})
         healthy = situations.load(situations.HEALTHY)
         planned = survey.planned(healthy, ["EST-THREE"], SEED, 1, False, ["draughts", "edges", "slopes", "stairs", "vehicle"])
-        mirrors = noise.mirrors_of(PROGRAM)
-        flights = [noise.fly(PROGRAM, flight, i % 2 == 1, mirrors) for i, flight in enumerate(planned)]
+        mirrors, values = noise.mirrors_of(PROGRAM), noise.values_of(PROGRAM)
+        flights = [noise.fly(PROGRAM, flight, i % 2 == 1, mirrors, values) for i, flight in enumerate(planned)]
         self.assertGreater(sum(map(len, flights)), 2000)
         _, innovation = self.belief.likelihood(self.belief.start, flights)
         print(f"normalised innovation {innovation:.2f} of {len(flights)} flights, seed {SEED}")
         self.assertGreater(innovation, 0.8)
         self.assertLess(innovation, 1.2)
+        sigma, share, times = self.belief.start[noise.NAMES.index("STRANGE_MPS2"):][:3]
+        expected = (1 - share + share * times ** 2) * sigma ** 2
+        strange = numpy.concatenate(flights)[:, 2]
+        print(f"the accelerometer beyond the thrust: {numpy.mean(strange ** 2) / expected:.2f} of the expected mean square")
+        self.assertGreater(numpy.mean(strange ** 2), 0.5 * expected)
+        self.assertLess(numpy.mean(strange ** 2), 1.5 * expected)
 
     def test_what_is_expected_of_an_innovation_is_that_of_noise_and_small_steps_together(self):
         self.assertAlmostEqual(noise.expected_square([6.0, 0.0, *self.belief.start[2:]]), 1.0, delta=0.01)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""noise.py PLOMADA [--flights N] [--seed N] [--fit]: what the noises of control/sense/belief.c are worth on healthy flights.
+"""noise.py PLOMADA [--flights N] [--seed N] [--fit]: what the noises of control/sense/belief_world.c are worth on healthy flights.
 
 Each situation of tools/campaign/healthy.toml but *hours* is flown by N drawn vehicles with LAYOUT THREE: half of them with noise that
 the mirrors share, half with noise of each mirror's own. The belief's own C is asked, in the world in which no mirror lies, how likely
@@ -31,8 +31,9 @@ import survey  # noqa: E402
 OWN_NOISE = ("--set", "plant.mirror_noise=3", "--set", "plant.common_noise=0")
 FITTED = {"BELIEF_NOISE_MM": (1, 15), "STEP_SHARE": (1e-3, 0.3), "STEP_MM": (50, 1000), "STEP_NEAR_SHARE": (0, 0.95),
           "STEP_NEAR_MM": (3, 80), "STEP_FAR_SHARE": (1e-4, 0.04), "MOTION_CHANGES": (0.005, 0.9), "SHARED_GAIN": (0.05, 1),
-          "RATE_GAIN": (0.02, 1.5), "OWN_GAIN": (0.01, 1)}
+          "RATE_GAIN": (0.02, 1.5), "OWN_GAIN": (0.01, 1), "STRANGE_MPS2": (0.1, 5), "STRANGE_FAR_SHARE": (1e-3, 0.5), "STRANGE_FAR": (1.1, 10)}
 MOTIONS = {"stands, share": (0.01, 0.8), "flies, share": (0.05, 0.95), "flies, mm": (2, 40), "pushed, mm": (6, 300)}
+NAMES = list(FITTED)
 DRAWN = 100_000
 FAR_MM = 4000.0     # STEP_FAR_PER_MM's
 HARNESS = r"""
@@ -43,53 +44,51 @@ void noise_set(const float *p)
     p += %(count)d;
     motions[0].share = p[0];
     motions[1].share = p[1];
-    motions[2].share = 1.0F - p[0] - p[1];
+    motions[2].share = 1.0F - p[0] - p[1] - motions[FELT_LIES].share;
     motions[1].sigma_mm = p[2];
     motions[2].sigma_mm = p[3];
 }
 
-/* Log likelihood of one flight's scans: gap, gained, then valid, slant, height of each mirror. told[0]: scans, [1]: squared own
+/* Log likelihood of one flight's scans: gap, gained, strange, then valid, slant, height of each mirror. told[0]: scans, [1]: squared own
  * innovations of mirrors without a step over their variance, [2]: their number. */
 double noise_of(const float *v, long scans, double *told)
 {
     belief_t b = {.known = 0U};
     double sum = 0.0;
     start(&b);
-    for (long i = 0; i < scans; ++i, v += 11) {
+    for (long i = 0; i < scans; ++i, v += 12) {
         belief_beam_t beams[MIRROR_COUNT];
-        constants_t constant;
-        uint16_t known = 0U;
+        belief_scan_t scan = {.beams = beams, .gap_s = v[0], .felt = {v[1], v[2]}};
         for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-            beams[m] = (belief_beam_t){v[2 + 3 * m] != 0.0F, v[3 + 3 * m], v[4 + 3 * m]};
-            constant.slant[m] = density_of_constant(beams[m].slant_mm, &b.slant[m]);
-            constant.height[m] = density_of_constant(beams[m].height_mm, &b.height[m]);
-            known |= (beams[m].valid && has(b.known, m) && v[0] <= HEIGHT_LOST_S) ? (uint16_t)(1U << m) : 0U;
+            beams[m] = (belief_beam_t){v[3 + 3 * m] != 0.0F, v[4 + 3 * m], v[5 + 3 * m]};
+            scan.told |= (beams[m].valid && belief_has(b.known, m) && v[0] <= HEIGHT_LOST_S) ? (uint16_t)(1U << m) : 0U;
         }
-        predict(&b.worlds[0], v[0], v[1]);
+        belief_world_look(&scan, b.slant, b.height);
+        belief_world_t foretold = b.worlds[0];
+        predict(&foretold, &scan);
         float off[MIRROR_COUNT], mean = 0.0F;
         for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-            off[m] = beams[m].height_mm - b.worlds[0].level_mm[m];
+            off[m] = beams[m].height_mm - foretold.level_mm[m];
             mean += off[m] / (float)MIRROR_COUNT;
         }
-        if (known == (1U << MIRROR_COUNT) - 1U && fabsf(off[0] - mean) < 4.0F * BELIEF_NOISE_MM &&
+        if (scan.told == (1U << MIRROR_COUNT) - 1U && fabsf(off[0] - mean) < 4.0F * BELIEF_NOISE_MM &&
             fabsf(off[1] - mean) < 4.0F * BELIEF_NOISE_MM && fabsf(off[2] - mean) < 4.0F * BELIEF_NOISE_MM) {
             for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
                 told[1] += (double)((off[m] - mean) * (off[m] - mean) / (BELIEF_NOISE_MM * BELIEF_NOISE_MM));
             }
             told[2] += MIRROR_COUNT - 1.0;
         }
-        const float density = world_scan(&b.worlds[0], beams, &constant, known, 0U, v[0]);
-        if (known != 0U) {
+        const float density = belief_world_scan(&b.worlds[0], &scan, 0U);
+        if (scan.told != 0U) {
             sum += log(density > 1e-30F ? (double)density : 1e-30);
             told[0] += 1.0;
         }
         for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-            if (beams[m].valid && !has(known, m)) {
+            if (beams[m].valid && !belief_has(scan.told, m)) {
                 meet(&b, m, beams[m].height_mm);
             }
             if (beams[m].valid) {
-                keep_mean(&b.slant[m], beams[m].slant_mm);
-                keep_mean(&b.height[m], beams[m].height_mm);
+                keep_means(&b.slant[m], &b.height[m], &beams[m]);
             }
         }
     }
@@ -99,7 +98,7 @@ double noise_of(const float *v, long scans, double *told)
 
 
 def expected_square(values):
-    """Of one mirror's innovation about the others', over its noise, as noise_of() sums it: what belief.c's own mixture gives. Among the
+    """Of one mirror's innovation about the others', over its noise, as noise_of() sums it: what belief_world.c's own mixture gives. Among the
     innovations within four noises are small steps, which no scan tells from noise, so this is more than 1."""
     noise_mm, share, mm, near_share, near_mm, far_share = values[:6]
     random, size = numpy.random.default_rng(1), (DRAWN, 3)
@@ -113,11 +112,12 @@ def expected_square(values):
 
 
 class Belief:
-    """belief.c with its noises as variables."""
+    """belief.c and belief_world.c with the noises as variables."""
 
     def __init__(self):
-        source = (ROOT / "control/sense/belief.c").read_text(encoding="utf-8")
-        header = (ROOT / "control/sense/belief.h").read_text(encoding="utf-8")
+        room = ROOT / "control/sense"
+        source = "".join((room / name).read_text(encoding="utf-8") for name in ("belief_world.c", "belief.c"))
+        header = (room / "belief_world.h").read_text(encoding="utf-8")
         self.start, text = [], source
         for name in FITTED:
             self.start.append(float(re.search(rf"#define {name} ([\d.e-]+)F", source + header)[1]))
@@ -157,6 +157,12 @@ def mirrors_of(program):
     return (("mf", mm["DF"], mm["LF"], mm["L"], 0.0, aside), ("m2", mm["D2"], mm["L2"], side, 1.0, 0.0), ("m1", mm["D1"], mm["L1"], side, -1.0, 0.0))
 
 
+def values_of(program):
+    """The parameters' values."""
+    rows = (line.split() for line in subprocess.run([program, "params"], check=True, capture_output=True, text=True).stdout.splitlines())
+    return {row[0]: float(row[4]) for row in rows if row[0] in ("GAIN", "GRAV", "DAMP")}
+
+
 def height_mm(slant_mm, mirror, roll_rad, pitch_rad):
     """control/altitude.h's equation."""
     _, distance, leg, arm, fore, aside = mirror
@@ -164,38 +170,78 @@ def height_mm(slant_mm, mirror, roll_rad, pitch_rad):
             - (fore * distance + aside * slant_mm) * math.sin(pitch_rad) - leg)
 
 
-def scans_of(path, mirrors):
+class Thrust:
+    """What the thrust and the vehicle's model tell of the vertical speed: control/sense/push.c's equations."""
+
+    LAG_S = 0.15
+
+    def __init__(self, rows, values):
+        self.authority = values["GAIN"] * 9.81 / values["GRAV"]     # m/s2 per N
+        self.damping = values["DAMP"]
+        flown = [float(row["thrust_n"]) for row in rows if row["state"] == "FLYING"]
+        self.hover_n = float(numpy.median(flown)) if flown else values["GRAV"]
+        self.lagged_n = self.speed_mps = 0.0
+
+    def gained_mps(self, row, dt_s):
+        """In the time since the row before."""
+        self.lagged_n += dt_s / (self.LAG_S + dt_s) * (float(row["thrust_n"]) - self.lagged_n)
+        if row["state"] in ("GROUND", "ARMED"):
+            self.speed_mps = 0.0
+            return 0.0
+        upright = math.cos(float(row["roll_rad"])) * math.cos(float(row["pitch_rad"]))
+        excess_mps2 = self.authority * (self.lagged_n * upright - self.hover_n)
+        gained_mps = (excess_mps2 - self.damping * self.speed_mps) / (1.0 + self.damping * dt_s) * dt_s
+        self.speed_mps += gained_mps
+        return gained_mps
+
+
+class Motion:
+    """Change of the speed, as control/sense/mirrors.c holds it against the rays' time."""
+
+    def __init__(self):
+        self.gained_mps = self.before_mps = 0.0
+
+    def shown_mps(self, late):
+        shown, self.before_mps, self.gained_mps = (1 - late) * self.gained_mps + late * self.before_mps, self.gained_mps, 0.0
+        return shown
+
+
+def scans_of(path, mirrors, values):
     """The scans of a flight's CSV, as noise_of() takes them. From the take-off on: at rest nothing moves."""
-    scans, gained_mps, before_mps, scan_s, frame_s, flown = [], 0.0, 0.0, None, None, False
     with open(path, newline="", encoding="utf-8") as file:
-        for row in csv.DictReader(file):
-            now_s = float(row["t_s"])
-            if row["up_mps2"]:
-                gained_mps += float(row["up_mps2"]) * (now_s - frame_s if frame_s is not None else 0.0)
-                frame_s = now_s
-            if not row["mf_rays"]:
-                continue
-            flown = flown or row["state"] not in ("GROUND", "ARMED")
-            gap_s = now_s - scan_s if scan_s is not None else 1e3
-            scan_s = now_s
-            late = min(float(row["age_s"]) / gap_s, 1.0)
-            felt_mps, before_mps, gained_mps = (1 - late) * gained_mps + late * before_mps, gained_mps, 0.0
-            scan = [gap_s, felt_mps]
-            for mirror in mirrors:
-                slant = row[mirror[0] + "_mm"]
-                scan += ([1.0, float(slant), height_mm(float(slant), mirror, float(row["roll_rad"]), float(row["pitch_rad"]))]
-                         if slant else [0.0, 0.0, 0.0])
-            if flown:
-                scans.append(scan)
-    return numpy.ascontiguousarray(scans, dtype=numpy.float32).reshape(-1, 11)
+        rows = list(csv.DictReader(file))
+    scans, scan_s, frame_s, row_s, flown = [], None, None, 0.0, False
+    thrust, felt, pushed = Thrust(rows, values), Motion(), Motion()
+    for row in rows:
+        now_s = float(row["t_s"])
+        pushed.gained_mps += thrust.gained_mps(row, now_s - row_s)
+        row_s = now_s
+        if row["up_mps2"]:
+            felt.gained_mps += float(row["up_mps2"]) * (now_s - frame_s if frame_s is not None else 0.0)
+            frame_s = now_s
+        if not row["mf_rays"]:
+            continue
+        flown = flown or row["state"] not in ("GROUND", "ARMED")
+        gap_s = now_s - scan_s if scan_s is not None else 1e3
+        scan_s = now_s
+        late = min(float(row["age_s"]) / gap_s, 1.0)
+        felt_mps = felt.shown_mps(late)
+        scan = [gap_s, felt_mps, (felt_mps - pushed.shown_mps(late)) / gap_s]
+        for mirror in mirrors:
+            slant = row[mirror[0] + "_mm"]
+            scan += ([1.0, float(slant), height_mm(float(slant), mirror, float(row["roll_rad"]), float(row["pitch_rad"]))]
+                     if slant else [0.0, 0.0, 0.0])
+        if flown:
+            scans.append(scan)
+    return numpy.ascontiguousarray(scans, dtype=numpy.float32).reshape(-1, 12)
 
 
-def fly(program, planned, own, mirrors):
+def fly(program, planned, own, mirrors, values):
     """The scans of one flight."""
     with tempfile.TemporaryDirectory(prefix="plomada-") as scratch:
         path = Path(scratch, "flight.csv")
         fleet.fly(program, [*planned.flight.words, *(OWN_NOISE if own else ()), "--csv", str(path)], planned.flight.text)
-        return scans_of(path, mirrors)
+        return scans_of(path, mirrors, values)
 
 
 def fit(belief, flights):
@@ -230,9 +276,9 @@ def main():
     healthy = situations.load(situations.HEALTHY)
     rows = [row for row in healthy.rows() if row != "hours"]
     planned = survey.planned(healthy, ["EST-THREE"], options.seed, options.flights, False, rows)
-    mirrors = mirrors_of(options.program)
+    mirrors, values = mirrors_of(options.program), values_of(options.program)
     with ThreadPoolExecutor() as pool:
-        flown = list(pool.map(lambda job: fly(options.program, job[1], job[0] % 2 == 1, mirrors), enumerate(planned)))
+        flown = list(pool.map(lambda job: fly(options.program, job[1], job[0] % 2 == 1, mirrors, values), enumerate(planned)))
     belief = Belief()
     for row in rows:
         of_row = [scans for one, scans in zip(planned, flown, strict=True) if one.situation.row == row and len(scans)]
@@ -241,6 +287,9 @@ def main():
     likelihood, innovation = belief.likelihood(belief.start, flights)
     print(f"{len(flights)} flights, {sum(map(len, flights))} scans: log likelihood {likelihood:.3f} a scan, "
           f"normalised innovation {innovation:.2f}")
+    strange = numpy.sort(numpy.abs(numpy.concatenate(flights)[:, 2]))
+    told = ", ".join(f"{share:g} % {strange[int(share / 100 * (len(strange) - 1))]:.2f}" for share in (50, 68, 90, 95, 99, 99.9))
+    print(f"the accelerometer beyond the thrust, m/s2: {told}")
     if options.fit:
         found = fit(belief, flights)
         likelihood, innovation = belief.likelihood(found, flights)

@@ -131,6 +131,8 @@ void test_of_two_the_one_nearer_to_the_height_before_counts(void)
     (void)scan(600.0F, 600.0F, 600.0F);
     assert_height(620.0F, 1U, 0, scan(150.0F, 620.0F, 0.0F));
     assert_height(640.0F, 1U, 25000, scan(0.0F, 1500.0F, 640.0F));
+    forget(); /* a front mirror that jumps to 1500 mm and back may lie */
+    (void)scan(600.0F, 600.0F, 600.0F);
     TEST_ASSERT_FLOAT_WITHIN(0.1F, 635.0F, scan(0.0F, 640.0F, 630.0F).height_mm);
 }
 

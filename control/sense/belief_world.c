@@ -1,0 +1,291 @@
+/* Likelihood of one scan in one world, and the filter of that world. Mixtures stand in place of one Gaussian,
+ * because a single bad scan must never decide: a step of the terrain, kinds of motion, an accelerometer that
+ * lies. All ways are summed in which the scan can have come about.
+ * What breaks: densities that do not integrate to one. A hypothesis whose density is too wide or too narrow
+ * wins in silence, in calm air first. Shares may be tuned on lies; noises never. */
+#include "control/sense/belief_world.h"
+
+#include <math.h>
+
+#include "control/between.h"
+
+/* ---- noise models */
+#define PER_MM 0.0664903801F  /* 1 / (sqrt(2 pi) BELIEF_NOISE_MM) */
+#define STEP_SHARE 0.04F      /* of the scans, for each mirror: an edge passes under it */
+#define STEP_MM 170.0F        /* mean size of these steps (Laplace): stairs of 170 mm, boxes, tables */
+#define STEP_NEAR_SHARE 0.7F  /* of the steps: a slope begins or ends, or a small edge */
+#define STEP_NEAR_MM 10.0F    /* fitted, docs/control.md */
+#define STEP_FAR_SHARE 0.002F /* of the steps: as far as the scanner sees */
+#define STEP_FAR_PER_MM (1.0F / 8000.0F) /* 4 m up or down */
+#define ODD_SHARE 0.05F /* of a liar's scans: no constant, anything within the 4 m of the scanner */
+#define ODD_PER_MM (1.0F / 4000.0F) /* the URG-04LX tells up to 4095 mm */
+
+/* Kinds of motion. Standing, slants and heights are constants, and a liar's slant is no better explained:
+ * then nobody is suspected. Else: what the shared motion of a scan is, less what the filter predicts. */
+#define STANDS 0U
+#define FELT_LIES 3U
+static const struct {
+    float share, sigma_mm;
+} motions[] = {
+    {0.2F, 0.0F},    /* it stands */
+    {0.6F, 7.0F},    /* it flies: 2.4 m/s2 that nothing has told, in 0.1 s */
+    {0.198F, 20.0F}, /* a gust, a touch, a slope that begins */
+    {0.002F, 20.0F}, /* any of these, it stands too, and the accelerometer does not tell it */
+};
+typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BELIEF_MOTIONS) ? 1 : -1];
+#define MOTION_CHANGES 0.05F /* of the scans: the kind of motion is drawn anew, by its share; a second */
+
+/* What a sound accelerometer tells beyond the thrust, or of a vehicle that stands: measured on healthy
+ * flights by make noise. A lying one tells anything within its range. */
+#define STRANGE_MPS2 0.7F
+#define STRANGE_FAR_SHARE 0.1F  /* measured: the tail, of the scans */
+#define STRANGE_FAR 2.0F        /* measured: its deviation, in that of the others */
+#define LIE_PER_MPS2 0.0254930F /* 1 / 4 g: the Razor's ADXL345 is set to 2 g each way */
+
+/* ---- gains of the filters: alpha and beta of Kalata 1984 for 0.5 m/s2 */
+#define SHARED_GAIN 0.85F
+#define RATE_GAIN 0.42F /* beta of the same table */
+#define OWN_GAIN 0.42F  /* of what one mirror shows alone: slow, it is terrain or noise */
+
+/* ---- densities */
+
+/* What one set of honest mirrors shows without a step: n innovations, their sum and that of their squares. */
+typedef struct {
+    float n, sum_mm, squares_mm2;
+} shown_t;
+
+/* Normal density of these, in that of as many without motion or innovation: BELIEF_NOISE_MM each, and a
+ * shared motion. With equal noises the matrix is inverted by hand (Sherman and Morrison 1950). */
+static float density_of_motion(const shown_t *shown, float sigma_mm)
+{
+    const float noise_mm2 = BELIEF_NOISE_MM * BELIEF_NOISE_MM;
+    const float all_mm2 = noise_mm2 + shown->n * sigma_mm * sigma_mm;
+    const float square = shown->squares_mm2 - sigma_mm * sigma_mm * shown->sum_mm * shown->sum_mm / all_mm2;
+
+    return expf(-0.5F * square / noise_mm2) * sqrtf(noise_mm2 / all_mm2);
+}
+
+static float density_of_step(float step_mm)
+{
+    return STEP_SHARE *
+           ((1.0F - STEP_FAR_SHARE - STEP_NEAR_SHARE) * expf(-fabsf(step_mm) / STEP_MM) / (2.0F * STEP_MM) +
+            STEP_NEAR_SHARE * expf(-fabsf(step_mm) / STEP_NEAR_MM) / (2.0F * STEP_NEAR_MM) +
+            STEP_FAR_SHARE * STEP_FAR_PER_MM);
+}
+
+/* Of a value that is a constant, known as a mean. */
+static float density_of_constant(float mm, const belief_mean_t *mean)
+{
+    const float wider = 1.0F + 1.0F / at_least(mean->count, 1.0F); /* variance, in that of the noise */
+    const float off_mm = mm - mean->mm;
+
+    return PER_MM * expf(-0.5F * off_mm * off_mm / (BELIEF_NOISE_MM * BELIEF_NOISE_MM * wider)) /
+           sqrtf(wider);
+}
+
+static float density_of_strange(float mps2)
+{
+    const float sigmas = mps2 / STRANGE_MPS2;
+    const float tail = sigmas / STRANGE_FAR;
+
+    return ((1.0F - STRANGE_FAR_SHARE) * expf(-0.5F * sigmas * sigmas) +
+            STRANGE_FAR_SHARE / STRANGE_FAR * expf(-0.5F * tail * tail)) *
+           (0.398942280F / STRANGE_MPS2);
+}
+
+/* ---- one world */
+
+/* One scan in one world, while the ways are summed in which it can have come about. */
+typedef struct {
+    uint16_t honest;               /* bits: those that tell something in this scan */
+    float off_mm[MIRROR_COUNT];    /* height less what the world predicts */
+    float step[MIRROR_COUNT];      /* density of that as a step, of the honest ones */
+    float density;                 /* of all ways */
+    float stepped[MIRROR_COUNT];   /* of those with a step under this mirror */
+    float moved_mm;                /* mean of the others' innovations, times its density */
+    float motions[BELIEF_MOTIONS]; /* of those with this kind of motion */
+} ways_t;
+
+/* As the mirrors show it if so much way was not foretold. */
+static shown_t without(const shown_t *shown, float foretold_mm)
+{
+    const float moved_mm = shown->n * foretold_mm;
+
+    return (shown_t){.n = shown->n,
+                     .sum_mm = shown->sum_mm + moved_mm,
+                     .squares_mm2 = shown->squares_mm2 + foretold_mm * (2.0F * shown->sum_mm + moved_mm)};
+}
+
+/* Adds the way in which the honest mirrors show this, times what the steps under the others cost. Returns its
+ * density. */
+static float add_motions(const belief_world_t *world, ways_t *ways, const belief_scan_t *scan,
+                         const shown_t *shown, float density)
+{
+    float sum = 0.0F;
+
+    for (uint16_t k = STANDS + 1U; k < BELIEF_MOTIONS; ++k) {
+        const shown_t of_kind = without(shown, scan->foretold_mm[k]);
+        const float share = (k == FELT_LIES) ? 1.0F - motions[STANDS].share : 1.0F;
+        const float of_motion = density * world->motions[k] * share * scan->of_felt[k] *
+                                density_of_motion(&of_kind, motions[k].sigma_mm);
+
+        ways->motions[k] += of_motion;
+        ways->moved_mm += of_motion * of_kind.sum_mm / at_least(shown->n, 1.0F);
+        sum += of_motion;
+    }
+    return sum;
+}
+
+/* The way in which the terrain steps under these mirrors. */
+static void add_way(const belief_world_t *world, ways_t *ways, const belief_scan_t *scan, uint16_t steps)
+{
+    shown_t shown = {.n = 0.0F};
+    float density = 1.0F;
+
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        if (belief_has(steps, m)) {
+            density *= ways->step[m];
+        } else if (belief_has(ways->honest, m)) {
+            density *= (1.0F - STEP_SHARE) * PER_MM;
+            shown.n += 1.0F;
+            shown.sum_mm += ways->off_mm[m];
+            shown.squares_mm2 += ways->off_mm[m] * ways->off_mm[m];
+        }
+    }
+    density = add_motions(world, ways, scan, &shown, density);
+    ways->density += density;
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        ways->stepped[m] += belief_has(steps, m) ? density : 0.0F;
+    }
+}
+
+/* The way in which it stands, on the ground or in calm air. */
+static void add_stand(const belief_world_t *world, ways_t *ways, const belief_scan_t *scan)
+{
+    const float sound = world->motions[STANDS] * scan->of_felt[STANDS];
+    const float lies = world->motions[FELT_LIES] * motions[STANDS].share * scan->of_felt[FELT_LIES];
+    float density = 1.0F;
+    float sum_mm = 0.0F;
+    float n = 0.0F;
+
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        if (belief_has(ways->honest, m)) {
+            density *= scan->height[m];
+            sum_mm += ways->off_mm[m];
+            n += 1.0F;
+        }
+    }
+    ways->density += (sound + lies) * density;
+    ways->motions[STANDS] = sound * density;
+    ways->motions[FELT_LIES] = lies * density;
+    ways->moved_mm += density *
+                      ((sound + lies) * sum_mm / at_least(n, 1.0F) + lies * scan->foretold_mm[FELT_LIES]);
+}
+
+static void predict(belief_world_t *world, const belief_scan_t *scan)
+{
+    const float gained_mm_s = 1000.0F * scan->felt.gained_mps;
+
+    world->rate_mm_s += gained_mm_s;
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        world->level_mm[m] += (world->rate_mm_s - 0.5F * gained_mm_s) * scan->gap_s;
+    }
+}
+
+/* As probably as the accelerometer lies, what it has foretold is taken back. */
+static void take_back(belief_world_t *world, ways_t *ways, const belief_scan_t *scan)
+{
+    const float lies = ways->motions[FELT_LIES] / ways->density;
+    const float foretold_mm = scan->foretold_mm[FELT_LIES] * lies;
+
+    world->rate_mm_s -= 1000.0F * scan->felt.gained_mps * lies;
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        world->level_mm[m] -= foretold_mm;
+        ways->off_mm[m] += foretold_mm;
+    }
+}
+
+static void correct_motions(belief_world_t *world, const ways_t *ways)
+{
+    for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
+        world->motions[k] = MOTION_CHANGES * motions[k].share +
+                            (1.0F - MOTION_CHANGES) * ways->motions[k] / ways->density;
+    }
+}
+
+/* The filter follows what the honest ones share, and each mirror's own part slowly, but a step at once. */
+static void correct(belief_world_t *world, const ways_t *ways, const belief_scan_t *scan)
+{
+    const float shared_mm = ways->moved_mm / ways->density;
+
+    /* A rate that nobody tells is not known: the accelerometer alone would carry it away. */
+    world->rate_mm_s = (ways->honest == 0U) ? 0.0F : world->rate_mm_s + RATE_GAIN * shared_mm / scan->gap_s;
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        const float step = ways->stepped[m] / ways->density;
+        const float moved_mm = (1.0F - step) * shared_mm;
+        const float gain = OWN_GAIN + (1.0F - OWN_GAIN) * step;
+
+        if (belief_has(ways->honest, m)) {
+            world->level_mm[m] += SHARED_GAIN * moved_mm + gain * (ways->off_mm[m] - moved_mm);
+        } else if (belief_has(scan->told, m)) {
+            world->level_mm[m] += SHARED_GAIN * ways->off_mm[m];
+        }
+    }
+}
+
+/* Density of what the liars show. liars: those that tell something. */
+static float density_of_lies(const belief_scan_t *scan, uint16_t liars)
+{
+    float density = 1.0F;
+
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        density *= belief_has(liars, m) ? (1.0F - ODD_SHARE) * scan->slant[m] + ODD_SHARE * ODD_PER_MM : 1.0F;
+    }
+    return density;
+}
+
+float belief_world_scan(belief_world_t *world, const belief_scan_t *scan, uint16_t liars)
+{
+    ways_t ways = {.honest = scan->told & (uint16_t)~liars};
+
+    predict(world, scan);
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        ways.off_mm[m] = scan->beams[m].height_mm - world->level_mm[m];
+        ways.step[m] = belief_has(ways.honest, m) ? density_of_step(ways.off_mm[m]) : 0.0F;
+    }
+    add_stand(world, &ways, scan);
+    for (uint16_t steps = 0U; steps < (1U << MIRROR_COUNT); ++steps) {
+        if ((steps & (uint16_t)~ways.honest) == 0U) {
+            add_way(world, &ways, scan, steps);
+        }
+    }
+    take_back(world, &ways, scan);
+    correct_motions(world, &ways);
+    correct(world, &ways, scan);
+    return ways.density * density_of_lies(scan, scan->told & liars);
+}
+
+void belief_world_look(belief_scan_t *scan, const belief_mean_t *slant, const belief_mean_t *height)
+{
+    const float gained_mps2 = scan->felt.gained_mps / scan->gap_s;
+    const float moving = density_of_strange(scan->felt.strange_mps2);
+
+    for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
+        scan->of_felt[k] = moving;
+        scan->foretold_mm[k] = 0.0F;
+    }
+    scan->of_felt[STANDS] = density_of_strange(gained_mps2);
+    scan->of_felt[FELT_LIES] = LIE_PER_MPS2;
+    scan->foretold_mm[FELT_LIES] = 500.0F * scan->felt.gained_mps * scan->gap_s;
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        scan->slant[m] = density_of_constant(scan->beams[m].slant_mm, &slant[m]);
+        scan->height[m] = density_of_constant(scan->beams[m].height_mm, &height[m]);
+    }
+}
+
+void belief_world_start(belief_world_t *world)
+{
+    for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
+        world->motions[k] = motions[k].share;
+    }
+}

@@ -1,0 +1,72 @@
+/* One scan in one world of belief.h: how likely it is there, and the filter of that world. In a world one set
+ * of mirrors lies.
+ *
+ * Millimetres and seconds. Pure; the caller owns the state. Context: one Task. */
+#ifndef CONTROL_SENSE_BELIEF_WORLD_H
+#define CONTROL_SENSE_BELIEF_WORLD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "control/altitude.h"
+
+/* Standard deviation of one mirror's height about that of the others, and of a blocked beam's slant. Fitted
+ * on healthy flights, see belief_world.c; recorded: 1 mm at most. */
+#define BELIEF_NOISE_MM 6.0F
+#define BELIEF_MOTIONS \
+    4U /* belief_world.c: it stands, it flies, something pushes it, the accelerometer lies */
+
+/* One mirror in one scan. */
+typedef struct {
+    bool valid; /* false: it tells nothing in this scan, and what is believed of it stays */
+    float slant_mm, height_mm;
+} belief_beam_t;
+
+/* What else is known of a scan's motion. All zero where the accelerometer is not believed. */
+typedef struct {
+    float gained_mps;   /* change of the vertical speed since the scan before, by the accelerometer */
+    float strange_mps2; /* its mean acceleration, less that of the thrust and the vehicle's model */
+} belief_felt_t;
+
+/* The filter of the world in which one set of mirrors lies. */
+typedef struct {
+    float probability;             /* of all worlds together: 1 */
+    float rate_mm_s;               /* of the heights of the honest mirrors */
+    float level_mm[MIRROR_COUNT];  /* of the height of each mirror */
+    float motions[BELIEF_MOTIONS]; /* probability of each kind of motion; together 1 */
+} belief_world_t;
+
+/* A running mean of the latest scans. */
+typedef struct {
+    float mm;
+    float count; /* of so many, up to a most */
+} belief_mean_t;
+
+/* One scan, and what of it is alike in all worlds. */
+typedef struct {
+    const belief_beam_t *beams; /* one for each mirror_t */
+    uint16_t told;              /* bits: mirrors that tell something now, and did before */
+    float gap_s;                /* since the scan before, > 0 */
+    belief_felt_t felt;
+    float slant[MIRROR_COUNT], height[MIRROR_COUNT]; /* densities, if nothing moves */
+    float of_felt[BELIEF_MOTIONS];     /* density of what the accelerometer tells, by kind of motion */
+    float foretold_mm[BELIEF_MOTIONS]; /* way that it has foretold, and that does not count there */
+} belief_scan_t;
+
+/* Before the first scan. */
+void belief_world_start(belief_world_t *world);
+
+/* Fills the densities of a scan whose other members are set. slant, height: means of the scans before, one
+ * for each mirror_t. */
+void belief_world_look(belief_scan_t *scan, const belief_mean_t *slant, const belief_mean_t *height);
+
+/* Moves the filter by one scan. liars: bits, the mirrors that lie in this world. Returns the density of the
+ * scan there. */
+float belief_world_scan(belief_world_t *world, const belief_scan_t *scan, uint16_t liars);
+
+static inline bool belief_has(uint16_t set, uint16_t mirror)
+{
+    return (set & (1U << mirror)) != 0U;
+}
+
+#endif

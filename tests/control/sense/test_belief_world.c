@@ -1,0 +1,114 @@
+#include "control/sense/belief_world.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "unity.h"
+
+#define GAP_S 0.1F
+
+static belief_world_t world;
+static belief_beam_t beams[MIRROR_COUNT];
+static belief_mean_t slant[MIRROR_COUNT], height[MIRROR_COUNT];
+static belief_scan_t scan;
+
+/* A vehicle at 500 mm that has stood for ten scans; every mirror tells. */
+void setUp(void)
+{
+    memset(&world, 0, sizeof world);
+    belief_world_start(&world);
+    for (int m = 0; m < MIRROR_COUNT; m++) {
+        world.level_mm[m] = 500.0F;
+        beams[m] = (belief_beam_t){true, 700.0F, 500.0F};
+        slant[m] = (belief_mean_t){700.0F, 10.0F};
+        height[m] = (belief_mean_t){500.0F, 10.0F};
+    }
+    scan = (belief_scan_t){.beams = beams, .told = 7U, .gap_s = GAP_S};
+}
+
+void tearDown(void) {}
+
+/* The density of this scan, in a copy of the world. */
+static float density(uint16_t liars)
+{
+    belief_world_t copy = world;
+
+    belief_world_look(&scan, slant, height);
+    return belief_world_scan(&copy, &scan, liars);
+}
+
+/* Of one mirror, whatever its height: steps reach 4 m up and down. The accelerometer's part is the same for
+ * each height, when it tells nothing. */
+void test_the_density_of_an_honest_height_is_one_over_all_heights(void)
+{
+    float sum = 0.0F;
+
+    scan.told = 1U << MIRROR_FRONT;
+    for (float at_mm = -3500.0F; at_mm < 4500.0F; at_mm += 1.0F) {
+        beams[MIRROR_FRONT].height_mm = at_mm;
+        sum += density(0U);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.0F, sum / scan.of_felt[0]);
+}
+
+void test_the_density_of_a_liars_slant_is_one_over_the_scanners_range(void)
+{
+    float sum = 0.0F;
+
+    scan.told = 1U << MIRROR_FRONT;
+    for (float at_mm = 0.0F; at_mm < 4000.0F; at_mm += 1.0F) {
+        beams[MIRROR_FRONT].slant_mm = at_mm;
+        sum += density(1U << MIRROR_FRONT);
+    }
+    beams[MIRROR_FRONT].slant_mm = 700.0F;
+    scan.told = 0U;
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.0F, sum / density(0U));
+}
+
+void test_the_densities_of_what_the_accelerometer_tells_are_one_over_its_range(void)
+{
+    float standing = 0.0F, moving = 0.0F, lying = 0.0F;
+
+    for (float mps2 = -2.0F * 9.80665F; mps2 < 2.0F * 9.80665F; mps2 += 0.01F) {
+        scan.felt = (belief_felt_t){mps2 * GAP_S, mps2};
+        belief_world_look(&scan, slant, height);
+        standing += 0.01F * scan.of_felt[0];
+        moving += 0.01F * scan.of_felt[1];
+        lying += 0.01F * scan.of_felt[BELIEF_MOTIONS - 1U];
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.0F, standing);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.0F, moving);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.0F, lying);
+}
+
+static void go(float higher_mm)
+{
+    for (int m = 0; m < MIRROR_COUNT; m++) {
+        beams[m].height_mm = 500.0F + higher_mm;
+        beams[m].slant_mm = 700.0F + higher_mm;
+    }
+    belief_world_look(&scan, slant, height);
+    (void)belief_world_scan(&world, &scan, 0U);
+}
+
+/* 4 m/s2 for 0.1 s are 20 mm. */
+void test_what_the_accelerometer_and_the_thrust_tell_is_believed(void)
+{
+    scan.felt = (belief_felt_t){.gained_mps = 0.4F};
+    go(20.0F);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F, world.motions[BELIEF_MOTIONS - 1U]);
+    TEST_ASSERT_FLOAT_WITHIN(20.0F, 400.0F, world.rate_mm_s);
+    TEST_ASSERT_FLOAT_WITHIN(1.0F, 520.0F, world.level_mm[MIRROR_AFT]);
+}
+
+/* The thrust and the heights tell of none of it. */
+void test_what_the_accelerometer_alone_tells_is_taken_back(void)
+{
+    scan.felt = (belief_felt_t){0.4F, 4.0F};
+    for (int k = 0; k < 5; k++) {
+        go(0.0F);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 1.0F, world.motions[BELIEF_MOTIONS - 1U]);
+    TEST_ASSERT_FLOAT_WITHIN(60.0F, 0.0F, world.rate_mm_s);
+    TEST_ASSERT_FLOAT_WITHIN(3.0F, 500.0F, world.level_mm[MIRROR_AFT]);
+}
