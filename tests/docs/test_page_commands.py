@@ -41,10 +41,10 @@ def kind(command):
 
 @functools.cache
 def flown():
-    """(console with a dump, log) of one flight: the dump comes by radio and takes minutes, so all pages share it."""
+    """(console with a dump, log) of one short flight: the dump comes by radio and takes minutes, so all pages share it."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        assert fly(folder, "fly experiment --log console.log --csv console.csv").returncode == 0
+        assert fly(folder, "fly experiment --duration 8 --log console.log --csv console.csv").returncode == 0
         return (folder / "console.log").read_bytes(), (folder / "console.csv").read_bytes()
 
 

@@ -4,6 +4,7 @@ A check is a function of a House that returns its complaints, each "path:line: w
 """
 import argparse
 import functools
+import os
 import re
 import sys
 from pathlib import Path
@@ -12,6 +13,10 @@ PRODUCT = ("control", "drivers", "bsp", "firmware")
 COMMENT_OR_LITERAL = re.compile(
     r"//(?:\\\n|[^\n])*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'", re.DOTALL)
 LEFT_OUT = ("build", ".git", "__pycache__", "node_modules", ".vscode", ".idea")
+
+
+def belongs(name):
+    return name not in LEFT_OUT and not name.startswith("build-")
 
 
 class House:
@@ -30,13 +35,16 @@ class House:
         return sorted(self.path(file) for file in base.rglob("*") if file.is_file() and file.suffix in suffixes)
 
     def files(self):
-        """Every text file that belongs to the repository."""
-        for file in sorted(self.root.rglob("*")):
-            parts = file.relative_to(self.root).parts
-            if any(part in LEFT_OUT or part.startswith("build-") for part in parts) or not file.is_file():
-                continue
-            if b"\0" not in file.read_bytes()[:4096]:
-                yield self.path(file)
+        """Every text file that belongs to the repository. What was built, thousands of files, is not entered."""
+        found = []
+        for folder, folders, names in os.walk(self.root):
+            folders[:] = [name for name in folders if belongs(name)]
+            found += [Path(folder, name) for name in names if belongs(name)]
+        for file in sorted(file for file in found if file.is_file()):
+            with file.open("rb") as opened:
+                if b"\0" in opened.read(4096):
+                    continue
+            yield self.path(file)
 
 
 def blank(match):

@@ -112,7 +112,7 @@ class Source:
         self.known = {**known, **structs(self.whole)}
         self.returns = {**returns, **dict((name, kind) for kind, name in RETURNS.findall(self.whole))}
         self.ends = [match.end() for match in re.finditer(r"^\}", self.whole, re.MULTILINE)]
-        self.variables = {}
+        self.variables, self.outside = {}, {}
         for match in DECLARED.finditer(without_members(self.whole)):
             for name in re.findall(r"\w+", re.sub(r"\[[^\]]*\]", "", match.group(2))):
                 self.variables.setdefault(name, []).append((match.start(), match.group(1)))
@@ -127,9 +127,15 @@ class Source:
         begin = max((end for end in self.ends if end <= offset), default=0)
         told = [(place, kind) for place, kind in self.variables.get(name, ()) if place < offset]
         own = [kind for place, kind in told if place >= begin]
-        outside = [kind for place, kind in told if self.whole.count("{", 0, place) == self.whole.count("}", 0, place)]
+        outside = [kind for place, kind in told if self.is_outside(place)]
         whole_struct = [kind for place, kind in told if kind == name]
         return (own or outside or whole_struct or [self.returns.get(name)])[-1]
+
+    def is_outside(self, offset):
+        """Of every brace."""
+        if offset not in self.outside:
+            self.outside[offset] = self.whole.count("{", 0, offset) == self.whole.count("}", 0, offset)
+        return self.outside[offset]
 
     def kind(self, end):
         """Type of the expression that ends before the offset; None where it cannot be told."""

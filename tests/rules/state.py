@@ -5,6 +5,7 @@
   - the product: no extern and no prototype in a .c file; an extern in a header names what its own room defines.
     Excused (excuses.txt): what the linker's script defines.
 """
+import functools
 import re
 
 import house
@@ -24,21 +25,22 @@ def bare(text):
     return re.sub(r"^[ \t]*#(?:\\\n|[^\n])*", house.blank, house.code_only(text), flags=re.MULTILINE)
 
 
+@functools.cache    # the rule asks for the same files again
 def outside(code):
-    """The code outside of every brace; lines and columns stay, braces too."""
+    """The code outside of every brace; lines and columns stay, the outermost braces too."""
     out, depth = [], 0
-    for character in code:
-        depth -= character == "}"
-        out.append(character if depth == 0 or character == "\n" else " ")
-        depth += character == "{"
+    for part in re.split(r"([{}])", code):
+        depth -= part == "}"
+        out.append(part if depth == 0 else re.sub(r"[^\n]", " ", part))
+        depth += part == "{"
     return "".join(out)
 
 
 def statements(code):
     """(offset, text) of each declaration outside of functions; a function's body ends one too."""
-    start = 0
-    for match in re.finditer(r";|(?<=\))(\s*)\{[^}]*\}", outside(code)):
-        text = outside(code)[start:match.start()] if match.group() == ";" else ""
+    start, code = 0, outside(code)
+    for match in re.finditer(r";|(?<=\))(\s*)\{[^}]*\}", code):
+        text = code[start:match.start()] if match.group() == ";" else ""
         if text.strip():
             yield start + len(text) - len(text.lstrip()), " ".join(re.sub(r"\{\s*\}", "{}", text).split())
         start = match.end()

@@ -1,4 +1,5 @@
 """The words of cmake/poison.txt do not occur where they are banned."""
+import functools
 import re
 
 import house
@@ -8,6 +9,11 @@ POISON = "cmake/poison.txt"
 SPARED = (POISON, "tests/rules/selftest.py", "tests/fixtures/")
 PART = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
+
+
+@functools.cache
+def parts_of(identifier):
+    return frozenset(part.lower() for part in PART.findall(identifier))
 
 
 class Ban:
@@ -29,8 +35,7 @@ class Ban:
             yield from ((match.start(), match.group().strip() or "blank") for match in self.expression.finditer(text))
             return
         for match in IDENTIFIER.finditer(text):
-            parts = {part.lower() for part in PART.findall(match.group())} if self.match == "parts" else {match.group()}
-            if parts & self.words:
+            if match.group() in self.words if self.match == "words" else parts_of(match.group()) & self.words:
                 yield match.start(), match.group()
 
 

@@ -1,4 +1,6 @@
 """tools/plot: reading the four kinds of recordings, refusing all else, and a picture of each."""
+import contextlib
+import io
 import math
 import re
 import shutil
@@ -149,9 +151,21 @@ class Reading(Case):
 
 
 class Drawing(Case):
+    def program(self, name, *arguments):
+        return subprocess.run([sys.executable, "-B", ROOT / f"tools/plot/{name}.py", *arguments], capture_output=True, text=True, check=False)
+
+    def called(self, tool, *arguments):
+        """As its program, which Matplotlib lets wait for half a second each time."""
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            try:
+                status = tool.main([str(word) for word in arguments])
+            except SystemExit as ended:     # argparse
+                status = ended.code
+        return subprocess.CompletedProcess(arguments, status, out.getvalue(), err.getvalue())
+
     def plot(self, *arguments):
-        return subprocess.run([sys.executable, "-B", ROOT / "tools/plot/plot.py", *arguments], capture_output=True, text=True,
-                              check=False)
+        return self.called(plot, *arguments)
 
     def assert_picture(self, done, path, told=True):
         printed = [str(path), *([str(path.with_suffix(".html"))] if told else [])]
@@ -166,7 +180,6 @@ class Drawing(Case):
         self.assertEqual(done.returncode, 0)
         self.assertIn("flight.csv: ends within a row, which is left out", done.stderr)
 
-    @unittest.skipUnless(Path("/dev/full").exists(), "no /dev/full")
     def placed(self, name, xs, ys):
         rows = FLIGHT.split()
         return recording.read(self.write(name, "\n".join([f"{rows[0]},x_m,y_m", *(f"{row},{x},{y}" for row, x, y in zip(rows[1:], xs, ys))]) + "\n"))
@@ -197,9 +210,17 @@ class Drawing(Case):
                 self.assertAlmostEqual(axis.get_xlim()[1], end, delta=plot.STEP_M)
             plt.close(figure)
 
+    def test_the_program_draws_as_a_call_of_it_does(self):
+        flown = self.write("flown.csv", RECORDER)
+        self.assert_picture(self.program("plot", flown), self.dir / "flown.png")
+        by_program = (self.dir / "flown.png").read_bytes()
+        self.assert_picture(self.plot(flown), self.dir / "flown.png")
+        self.assertEqual((self.dir / "flown.png").read_bytes(), by_program)
+
+    @unittest.skipUnless(Path("/dev/full").exists(), "no /dev/full")
     def test_a_picture_that_cannot_be_written_is_status_2(self):
         (self.dir / "flight.png").symlink_to("/dev/full")
-        done = self.plot(self.write("flight.csv", FLIGHT))
+        done = self.program("plot", self.write("flight.csv", FLIGHT))
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("No space left", done.stderr)
 
@@ -265,10 +286,11 @@ class Drawing(Case):
         self.assertEqual(belief.told(recording.read(told), "mf_lie")[1][:2], [99.9, 99.9])
         for words, code in (((told, "-o", out, "--mark", "0.5 blocked", "--to", "1.5"), 0), ((self.write("front.csv", FLIGHT), "-o", out), 2),
                             ((self.dir / "none.csv",), 2), ((told, "-o", out, "--mark", "soon blocked"), 2)):
-            done = subprocess.run([sys.executable, "-B", ROOT / "tools/plot/belief.py", *words], capture_output=True, text=True, check=False)
+            done = self.called(belief, *words)
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertEqual(bool(done.stderr), code == 2, done.stderr)
         self.assertEqual(out.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(self.program("belief", self.dir / "none.csv").returncode, 2)
 
     def test_stretches_of_equal_values(self):
         self.assertEqual(list(plot.runs([0, 1, 2, 3], "aabb")), [(0, 2, "a"), (2, 4, "b")])

@@ -1,4 +1,6 @@
 """tools/rta/rta.py as its users call it."""
+import contextlib
+import io
 import json
 import os
 import shutil
@@ -8,7 +10,11 @@ import tempfile
 import unittest
 from pathlib import Path
 
-PROGRAM = (sys.executable, "-B", str(Path(__file__).resolve().parents[3] / "tools/rta/rta.py"))
+TOOL = Path(__file__).resolve().parents[3] / "tools/rta"
+PROGRAM = (sys.executable, "-B", str(TOOL / "rta.py"))
+sys.path.insert(0, str(TOOL))
+import rta  # noqa: E402
+
 FULL = "/dev/full"
 HEADER = "name,kind,priority,period_ms,deadline_ms,cost_ms,blocking_ms,blockings\n"
 # Burns and Wellings, Real-Time Systems and Programming Languages: responses 3, 6, 20.
@@ -20,9 +26,28 @@ class Command(unittest.TestCase):
         self.dir = Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.dir)
 
-    def rta(self, *arguments):
+    def program(self, *arguments):
         done = subprocess.run([*PROGRAM, *arguments], cwd=self.dir, check=False, capture_output=True, text=True)
         return done.returncode, done.stdout, done.stderr
+
+    def rta(self, *arguments):
+        """As the program, without a start of Python each time."""
+        out, err, before, words = io.StringIO(), io.StringIO(), os.getcwd(), sys.argv
+        os.chdir(self.dir)
+        sys.argv = [PROGRAM[-1], *arguments]
+        try:
+            with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+                status = rta.main()
+        except SystemExit as ended:     # argparse
+            status = ended.code
+        finally:
+            os.chdir(before)
+            sys.argv = words
+        return status, out.getvalue(), err.getvalue()
+
+    def test_the_program_says_what_a_call_of_it_does(self):
+        for words in (("seed",), ("--bogus",), ("no-such-file",)):
+            self.assertEqual(self.program(*words), self.rta(*words), words)
 
     def write(self, text, name="table.csv"):
         (self.dir / name).write_text(text, encoding="utf-8", newline="")
