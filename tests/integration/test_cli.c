@@ -313,6 +313,8 @@ static void forget_recording(void)
     remove(SCRATCH "/recording/flight.plomada");
 }
 
+/* As released that is every scenario, so that each meets its expectations with this seed too; test_flights
+ * flies the first one. */
 void test_a_replay_gives_the_log_of_every_scenario_octet_for_octet(void)
 {
     static char flown[2000000], again[2000000];
@@ -324,7 +326,7 @@ void test_a_replay_gives_the_log_of_every_scenario_octet_for_octet(void)
         snprintf(words, sizeof words, "fly %s --seed 3 --csv flown.csv --record recording >metrics.txt",
                  scenarios[i].name);
         forget_recording();
-        TEST_ASSERT_LESS_THAN_INT_MESSAGE(2, run(words), output);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, run(words), output);
         TEST_ASSERT_EQUAL_INT_MESSAGE(0, run("replay recording --csv again.csv"), output);
         const size_t count = child_read_file("flown.csv", flown, sizeof flown);
         TEST_ASSERT_GREATER_THAN_size_t_MESSAGE(100000, count, scenarios[i].name);

@@ -58,7 +58,7 @@ def returns(cycle, counts):
 
 
 def flown(the_house, compiler, addr2line, work):
-    """{law: its cycles}"""
+    """{law: its cycles, each walk once however often it is flown}"""
     program = f"{work}/walk"
     files = [*sources.listed(the_house)["control"], "tests/rules/walk.c"]
     objects = []
@@ -67,16 +67,18 @@ def flown(the_house, compiler, addr2line, work):
         subprocess.run([compiler, *FLAGS, "-c", file, "-o", objects[-1]], cwd=the_house.root, check=True)
     subprocess.run([compiler, "-no-pie", *objects, "-o", program, "-lm"], check=True)
     laws = LAW.findall(the_house.text("control/laws/table.h"))
-    told = {law: subprocess.run([program, str(number)], check=True, capture_output=True, text=True).stdout.split("\n")[:-1]
-            for number, law in enumerate(laws)}
-    addresses = sorted({word[1:] for lines in told.values() for line in lines for word in line.split() if word[0] == ">"})
+    told = {}
+    for number, law in enumerate(laws):
+        out = subprocess.run([program, str(number)], check=True, capture_output=True, text=True).stdout
+        told[law] = dict.fromkeys(line.partition(" ")[2] for line in out.split("\n")[:-1])
+    addresses = sorted({word[1:] for walks in told.values() for walk in walks for word in walk.split() if word[0] == ">"})
     names = subprocess.run([addr2line, "-f", "-e", program], input="\n".join(f"0x{address}" for address in addresses), check=True,
                            capture_output=True, text=True).stdout.split("\n")
     functions = {}
     for number, address in enumerate(addresses):
         file = names[2 * number + 1].rsplit(":", 1)[0]
         functions[">" + address] = (file[file.find("control/"):], names[2 * number])
-    return {law: [[functions.get(word) for word in line.split()[1:]] for line in lines] for law, lines in told.items()}
+    return {law: [[functions.get(word) for word in walk.split()] for walk in walks] for law, walks in told.items()}
 
 
 def main():
