@@ -553,17 +553,18 @@ class OnPages(unittest.TestCase):
     def setUp(self):
         self.dir = Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.dir)
-        self.addCleanup(plan.LAWS.pop, "MINE", None)
-        self.addCleanup(plan.SETS.pop, "heavy", None)
+        for table_of in (plan.LAWS, plan.SETS):     # what a page's plan adds is gone after each test
+            kept = mock.patch.dict(table_of)
+            kept.start()
+            self.addCleanup(kept.stop)
 
     def understood(self, words):
         """Whether these are the arguments of a campaign, of a program that has a law MINE."""
         program = self.dir / "plomada"
         program.write_text("#!/bin/sh\necho 'one of: PD|PID|PIDT|EST|MINE'\n", encoding="utf-8")
         program.chmod(0o755)
-        plan.LAWS.pop("EST-FRONT", None)            # of the line before
-        self.addCleanup(plan.LAWS.pop, "EST-FRONT", None)
-        with contextlib.chdir(ROOT), contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+        with mock.patch.dict(plan.LAWS), mock.patch.dict(plan.SETS), contextlib.chdir(ROOT), \
+                contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             try:
                 campaign.read_arguments([*words, "--program", str(program)])
             except SystemExit as end:
