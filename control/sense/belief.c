@@ -8,7 +8,7 @@
 #include "control/credible.h"
 
 #define PRIOR 1.0e-3F        /* a mirror lies at power-on */
-#define LIES_PER_S 1.0e-3F   /* it begins to: once in 17 minutes, far more than a healthy bracket */
+#define LIES_PER_S 2.0e-5F   /* it begins to: once in 14 hours of flight */
 #define TOGETHER_SHARE 0.1F  /* of these: a common cause, any set at once (beta factor, IEC 61508-6) */
 #define TRUTHS_PER_S 2.0e-2F /* and ends to, after 50 s */
 #define LEAST 1.0e-12F       /* no world is ever impossible */
@@ -27,14 +27,31 @@ static void start(belief_t *belief)
     }
 }
 
-/* One mirror begins to lie, or ends to, in this world and in that which differs by it alone. */
-static void turn(belief_world_t *true_world, belief_world_t *lie_world, float gap_s)
+/* Mirror m begins to lie, or ends to, in this world and in that which differs by it alone. */
+static void turn(belief_world_t *true_world, belief_world_t *lie_world, uint16_t m, float gap_s)
 {
     const float begins = true_world->probability * at_most(LIES_PER_S * gap_s, 0.5F);
     const float ends = lie_world->probability * at_most(TRUTHS_PER_S * gap_s, 0.5F);
 
     true_world->probability += ends - begins;
     lie_world->probability += begins - ends;
+    lie_world->begun[m] += begins;
+}
+
+/* Of a world's probability, a part has come by so many mirrors that have begun to lie together. */
+static void begin_together(belief_world_t *world, uint16_t liars, float probability)
+{
+    world->probability += probability;
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        world->begun[m] = belief_has(liars, m) ? probability : 0.0F;
+    }
+}
+
+static void share_begun(belief_world_t *world)
+{
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        world->begun[m] = at_most(world->begun[m] / world->probability, 1.0F);
+    }
 }
 
 static void mix(belief_t *belief, float gap_s)
@@ -44,14 +61,17 @@ static void mix(belief_t *belief, float gap_s)
 
     worlds[0].probability -= together;
     for (uint16_t k = 1U; k < BELIEF_WORLDS; ++k) {
-        worlds[k].probability += together / (float)(BELIEF_WORLDS - 1U);
+        begin_together(&worlds[k], k, together / (float)(BELIEF_WORLDS - 1U));
     }
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
             if (!belief_has(k, m)) {
-                turn(&worlds[k], &worlds[k | (1U << m)], gap_s);
+                turn(&worlds[k], &worlds[k | (1U << m)], m, gap_s);
             }
         }
+    }
+    for (uint16_t k = 1U; k < BELIEF_WORLDS; ++k) {
+        share_begun(&worlds[k]);
     }
 }
 
@@ -158,4 +178,25 @@ float belief_of_none(const belief_t *belief, uint16_t mirrors)
         sum += ((mirrors & (uint16_t)~k) == 0U) ? belief->worlds[k].probability : 0.0F;
     }
     return sum;
+}
+
+/* Of a kind of motion, in all worlds. */
+static float of_motion(const belief_t *belief, uint16_t kind)
+{
+    float sum = 0.0F;
+
+    for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
+        sum += belief->worlds[k].probability * belief->worlds[k].motions[kind];
+    }
+    return sum;
+}
+
+float belief_of_felt(const belief_t *belief)
+{
+    return of_motion(belief, BELIEF_FELT_LIES);
+}
+
+float belief_of_move(const belief_t *belief)
+{
+    return 1.0F - of_motion(belief, BELIEF_STANDS) - of_motion(belief, BELIEF_FELT_LIES);
 }

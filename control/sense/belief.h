@@ -34,6 +34,11 @@ float belief_of_lie(const belief_t *belief, mirror_t mirror);
 /* Probability that at least two of these mirrors do not lie. mirrors: bits. */
 float belief_of_two(const belief_t *belief, uint16_t mirrors);
 
+/* Probability that the accelerometer lies, and that the vehicle moves. It moves, or stands, or nothing tells
+ * because the accelerometer lies. */
+float belief_of_felt(const belief_t *belief);
+float belief_of_move(const belief_t *belief);
+
 /* Probability that each of these mirrors lies. mirrors: bits, at least one. */
 float belief_of_none(const belief_t *belief, uint16_t mirrors);
 

@@ -22,13 +22,12 @@
 
 /* Kinds of motion. Standing, slants and heights are constants, and a liar's slant is no better explained:
  * then nobody is suspected. Else: what the shared motion of a scan is, less what the filter predicts. */
-#define STANDS 0U
-#define FELT_LIES 3U
 static const struct {
     float share, sigma_mm;
 } motions[] = {
     {0.2F, 0.0F},    /* it stands */
-    {0.6F, 7.0F},    /* it flies: 2.4 m/s2 that nothing has told, in 0.1 s */
+    {0.3F, 3.0F},    /* it flies in calm air, as the accelerometer tells */
+    {0.3F, 7.0F},    /* it flies: 2.4 m/s2 that nothing has told, in 0.1 s */
     {0.198F, 20.0F}, /* a gust, a touch, a slope that begins */
     {0.002F, 20.0F}, /* any of these, it stands too, and the accelerometer does not tell it */
 };
@@ -123,9 +122,9 @@ static float add_motions(const belief_world_t *world, ways_t *ways, const belief
 {
     float sum = 0.0F;
 
-    for (uint16_t k = STANDS + 1U; k < BELIEF_MOTIONS; ++k) {
+    for (uint16_t k = BELIEF_STANDS + 1U; k < BELIEF_MOTIONS; ++k) {
         const shown_t of_kind = without(shown, scan->foretold_mm[k]);
-        const float share = (k == FELT_LIES) ? 1.0F - motions[STANDS].share : 1.0F;
+        const float share = (k == BELIEF_FELT_LIES) ? 1.0F - motions[BELIEF_STANDS].share : 1.0F;
         const float of_motion = density * world->motions[k] * share * scan->of_felt[k] *
                                 density_of_motion(&of_kind, motions[k].sigma_mm);
 
@@ -162,8 +161,8 @@ static void add_way(const belief_world_t *world, ways_t *ways, const belief_scan
 /* The way in which it stands, on the ground or in calm air. */
 static void add_stand(const belief_world_t *world, ways_t *ways, const belief_scan_t *scan)
 {
-    const float sound = world->motions[STANDS] * scan->of_felt[STANDS];
-    const float lies = world->motions[FELT_LIES] * motions[STANDS].share * scan->of_felt[FELT_LIES];
+    const float sound = world->motions[BELIEF_STANDS] * scan->of_felt[BELIEF_STANDS];
+    const float lies = world->motions[BELIEF_FELT_LIES] * motions[BELIEF_STANDS].share * scan->of_felt[BELIEF_FELT_LIES];
     float density = 1.0F;
     float sum_mm = 0.0F;
     float n = 0.0F;
@@ -176,10 +175,10 @@ static void add_stand(const belief_world_t *world, ways_t *ways, const belief_sc
         }
     }
     ways->density += (sound + lies) * density;
-    ways->motions[STANDS] = sound * density;
-    ways->motions[FELT_LIES] = lies * density;
+    ways->motions[BELIEF_STANDS] = sound * density;
+    ways->motions[BELIEF_FELT_LIES] = lies * density;
     ways->moved_mm += density *
-                      ((sound + lies) * sum_mm / at_least(n, 1.0F) + lies * scan->foretold_mm[FELT_LIES]);
+                      ((sound + lies) * sum_mm / at_least(n, 1.0F) + lies * scan->foretold_mm[BELIEF_FELT_LIES]);
 }
 
 static void predict(belief_world_t *world, const belief_scan_t *scan)
@@ -190,13 +189,16 @@ static void predict(belief_world_t *world, const belief_scan_t *scan)
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         world->level_mm[m] += (world->rate_mm_s - 0.5F * gained_mm_s) * scan->gap_s;
     }
+    for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
+        world->motions[k] += MOTION_CHANGES * (motions[k].share - world->motions[k]);
+    }
 }
 
 /* As probably as the accelerometer lies, what it has foretold is taken back. */
 static void take_back(belief_world_t *world, ways_t *ways, const belief_scan_t *scan)
 {
-    const float lies = ways->motions[FELT_LIES] / ways->density;
-    const float foretold_mm = scan->foretold_mm[FELT_LIES] * lies;
+    const float lies = ways->motions[BELIEF_FELT_LIES] / ways->density;
+    const float foretold_mm = scan->foretold_mm[BELIEF_FELT_LIES] * lies;
 
     world->rate_mm_s -= 1000.0F * scan->felt.gained_mps * lies;
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
@@ -208,8 +210,7 @@ static void take_back(belief_world_t *world, ways_t *ways, const belief_scan_t *
 static void correct_motions(belief_world_t *world, const ways_t *ways)
 {
     for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
-        world->motions[k] = MOTION_CHANGES * motions[k].share +
-                            (1.0F - MOTION_CHANGES) * ways->motions[k] / ways->density;
+        world->motions[k] = ways->motions[k] / ways->density;
     }
 }
 
@@ -233,13 +234,16 @@ static void correct(belief_world_t *world, const ways_t *ways, const belief_scan
     }
 }
 
-/* Density of what the liars show. liars: those that tell something. */
-static float density_of_lies(const belief_scan_t *scan, uint16_t liars)
+/* Density of what the liars show. liars: those that tell something. What has just come before a mirror stands
+ * anywhere. */
+static float density_of_lies(const belief_world_t *world, const belief_scan_t *scan, uint16_t liars)
 {
     float density = 1.0F;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        density *= belief_has(liars, m) ? (1.0F - ODD_SHARE) * scan->slant[m] + ODD_SHARE * ODD_PER_MM : 1.0F;
+        const float anywhere = world->begun[m] + (1.0F - world->begun[m]) * ODD_SHARE;
+
+        density *= belief_has(liars, m) ? (1.0F - anywhere) * scan->slant[m] + anywhere * ODD_PER_MM : 1.0F;
     }
     return density;
 }
@@ -262,7 +266,7 @@ float belief_world_scan(belief_world_t *world, const belief_scan_t *scan, uint16
     take_back(world, &ways, scan);
     correct_motions(world, &ways);
     correct(world, &ways, scan);
-    return ways.density * density_of_lies(scan, scan->told & liars);
+    return ways.density * density_of_lies(world, scan, scan->told & liars);
 }
 
 void belief_world_look(belief_scan_t *scan, const belief_mean_t *slant, const belief_mean_t *height)
@@ -274,9 +278,9 @@ void belief_world_look(belief_scan_t *scan, const belief_mean_t *slant, const be
         scan->of_felt[k] = moving;
         scan->foretold_mm[k] = 0.0F;
     }
-    scan->of_felt[STANDS] = density_of_strange(gained_mps2);
-    scan->of_felt[FELT_LIES] = LIE_PER_MPS2;
-    scan->foretold_mm[FELT_LIES] = 500.0F * scan->felt.gained_mps * scan->gap_s;
+    scan->of_felt[BELIEF_STANDS] = density_of_strange(gained_mps2);
+    scan->of_felt[BELIEF_FELT_LIES] = LIE_PER_MPS2;
+    scan->foretold_mm[BELIEF_FELT_LIES] = 500.0F * scan->felt.gained_mps * scan->gap_s;
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         scan->slant[m] = density_of_constant(scan->beams[m].slant_mm, &slant[m]);
         scan->height[m] = density_of_constant(scan->beams[m].height_mm, &height[m]);

@@ -13,8 +13,10 @@
 /* Standard deviation of one mirror's height about that of the others, and of a blocked beam's slant. Fitted
  * on healthy flights, see belief_world.c; recorded: 1 mm at most. */
 #define BELIEF_NOISE_MM 6.0F
-#define BELIEF_MOTIONS \
-    4U /* belief_world.c: it stands, it flies, something pushes it, the accelerometer lies */
+/* belief_world.c: it stands, flies in calm air, flies, something pushes it, the accelerometer lies */
+#define BELIEF_MOTIONS 5U
+#define BELIEF_STANDS 0U
+#define BELIEF_FELT_LIES 4U
 
 /* One mirror in one scan. */
 typedef struct {
@@ -34,6 +36,7 @@ typedef struct {
     float rate_mm_s;               /* of the heights of the honest mirrors */
     float level_mm[MIRROR_COUNT];  /* of the height of each mirror */
     float motions[BELIEF_MOTIONS]; /* probability of each kind of motion; together 1 */
+    float begun[MIRROR_COUNT];     /* that a mirror which lies here has begun to since the scan before */
 } belief_world_t;
 
 /* A running mean of the latest scans. */

@@ -174,7 +174,7 @@ void mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     float weights[MIRROR_COUNT];
 
     if (voters == 0U) {
-        mirrors->agree = mirrors->blind = false;
+        mirrors->agree = mirrors->blind = mirrors->felt_lies = mirrors->moves = false;
         mirrors->left_out = 0U;
         return;
     }
@@ -183,6 +183,8 @@ void mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     mirrors->left_out = told(shown) & weightless(weights);
     const float honest = belief_of_two(&mirrors->belief, voters);
     mirrors->agree = honest > AGREE;
+    mirrors->felt_lies = belief_of_felt(&mirrors->belief) > AGREE;
+    mirrors->moves = belief_of_move(&mirrors->belief) > AGREE;
     mirrors->blind = belief_of_none(&mirrors->belief, voters) > AGREE;
     mirrors->altitude.disagree = honest < 1.0F - LIES;
 }

@@ -31,6 +31,8 @@ typedef struct {
     altitude_t altitude; /* of the latest scan; not valid before the first */
     bool agree;          /* its height is that of two honest mirrors, with 99 % */
     bool blind;          /* all that told something in it lie, with 99 % */
+    bool felt_lies;      /* the accelerometer does, with 99 % */
+    bool moves;          /* the vehicle does, with 99 % */
     uint16_t left_out;   /* bits: mirrors of that scan that told something, and do not count in altitude */
     float disbelieved_s[MIRROR_COUNT];    /* how long each has been, at most 10 s */
     mirror_digits_t latest[MIRROR_COUNT]; /* of each mirror, to find copies */

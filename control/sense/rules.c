@@ -187,6 +187,13 @@ verdict_reason_t rules_against_sight(const rule_case_t *c)
  * and heights that move are right against both. */
 verdict_reason_t rules_against_imu(const rule_case_t *c)
 {
+    if (c->senses->mirrors.felt_lies) {
+        return VERDICT_ALONE;
+    }
+#ifndef OLD
+#define OLD 1
+#endif
+    if (OLD == 0) { return VERDICT_NONE; }
     if (beam_is_still(&c->senses->beam)) {
         return VERDICT_NONE;
     }

@@ -122,7 +122,7 @@ static evidence_t evidence_of(const sense_t *sense)
         .calm = sway_is_calm(&s->sway),
         .rocks = sway_rocks(&s->sway),
         .in_hands = accelerometer_is_in_hands(&s->accelerometer),
-        .may_stand = stand_is_possible(&s->stand),
+        .may_stand = stand_is_possible(&s->stand) && !s->mirrors.moves,
         .stands = stand_is_sure(&s->stand),
         .upright = s->tilt.upright,
         .mirrors = {.agree = s->mirrors.agree && !beam_is_still(&s->beam),

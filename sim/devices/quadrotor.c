@@ -193,6 +193,7 @@ quadrotor_t *quadrotor_create(const quadrotor_config_t *config, const place_t *p
     tilted(q);
     rotors_init(&q->rotors, &config->rotors);
     travel_init(&q->travel, course);
+    q->travel.pace = fmin(1.0, config->attitude_hz / quadrotor_default.attitude_hz);
     prepare_noise(q, seed);
     prepare_steps(q);
     return q;

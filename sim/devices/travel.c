@@ -4,7 +4,7 @@
 #include <stddef.h>
 
 #define GRAVITY_MPS2 9.80665
-/* A loop that settles in 3 s, well below the attitude's 0.6 Hz. */
+/* A loop that settles in 3 s, well below the attitude's 0.6 Hz. It goes at the pace of a slower attitude. */
 #define PLACE_PER_S2 1.0
 #define SPEED_PER_S 1.6
 #define LEAN_MAX_RAD 0.35
@@ -15,7 +15,7 @@
 
 void travel_init(travel_t *travel, const course_t *course)
 {
-    *travel = (travel_t){.course = course};
+    *travel = (travel_t){.course = course, .pace = 1.0};
     course_begin(&travel->wanted);
 }
 
@@ -46,8 +46,8 @@ void travel_steer(travel_t *travel, double t_s, double step_s, double heading_ra
     if (travel->course == NULL) {
         return;
     }
-    const double place_per_s2 = travel->course->carried ? 0.0 : PLACE_PER_S2;
-    const double speed_per_s = travel->course->carried ? 0.0 : SPEED_PER_S;
+    const double place_per_s2 = travel->course->carried ? 0.0 : PLACE_PER_S2 * travel->pace * travel->pace;
+    const double speed_per_s = travel->course->carried ? 0.0 : SPEED_PER_S * travel->pace;
     if (!waits(travel)) {
         course_step(travel->course, &travel->wanted, t_s, step_s);
     }

@@ -44,7 +44,7 @@ void noise_set(const float *p)
     p += %(count)d;
     motions[0].share = p[0];
     motions[1].share = p[1];
-    motions[2].share = 1.0F - p[0] - p[1] - motions[FELT_LIES].share;
+    motions[2].share = 1.0F - p[0] - p[1] - motions[BELIEF_FELT_LIES].share;
     motions[1].sigma_mm = p[2];
     motions[2].sigma_mm = p[3];
 }
