@@ -108,15 +108,32 @@ static void meet(belief_t *belief, uint16_t mirror, float height_mm)
     belief->known |= (uint16_t)(1U << mirror);
 }
 
+/* A mirror that has told nothing yet makes no difference: this world is the same as that without its lie. */
+static void take_filter(belief_world_t *world, const belief_world_t *same)
+{
+    const float probability = world->probability;
+
+    *world = *same;
+    world->probability = probability;
+}
+
 static void judge(belief_t *belief, belief_scan_t *scan)
 {
+    float density[BELIEF_WORLDS];
     float sum = 0.0F;
 
     belief_world_look(scan, belief->slant, belief->height);
     for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
         belief_world_t *world = &belief->worlds[k];
+        const uint16_t known = k & belief->known;
 
-        world->probability *= belief_world_scan(world, scan, k);
+        if (known == k) {
+            density[k] = belief_world_scan(world, scan, k);
+        } else {
+            take_filter(world, &belief->worlds[known]);
+            density[k] = density[known];
+        }
+        world->probability *= density[k];
         sum += world->probability;
     }
     for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {

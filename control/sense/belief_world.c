@@ -54,14 +54,22 @@ typedef struct {
 } shown_t;
 
 /* Normal density of these, in that of as many without motion or innovation: BELIEF_NOISE_MM each, and a
- * shared motion. With equal noises the matrix is inverted by hand (Sherman and Morrison 1950). */
-static float density_of_motion(const shown_t *shown, float sigma_mm)
+ * shared motion. With equal noises the matrix is inverted by hand (Sherman and Morrison 1950). norm: of
+ * norm_of_motion(). */
+static float density_of_motion(const shown_t *shown, float sigma_mm, float norm)
 {
     const float noise_mm2 = BELIEF_NOISE_MM * BELIEF_NOISE_MM;
     const float all_mm2 = noise_mm2 + shown->n * sigma_mm * sigma_mm;
     const float square = shown->squares_mm2 - sigma_mm * sigma_mm * shown->sum_mm * shown->sum_mm / all_mm2;
 
-    return expf(-0.5F * square / noise_mm2) * sqrtf(noise_mm2 / all_mm2);
+    return expf(-0.5F * square / noise_mm2) * norm;
+}
+
+static float norm_of_motion(float n, float sigma_mm)
+{
+    const float noise_mm2 = BELIEF_NOISE_MM * BELIEF_NOISE_MM;
+
+    return sqrtf(noise_mm2 / (noise_mm2 + n * sigma_mm * sigma_mm));
 }
 
 static float density_of_step(float step_mm)
@@ -123,13 +131,16 @@ static float add_motions(const belief_world_t *world, ways_t *ways, const belief
     float sum = 0.0F;
 
     for (uint16_t k = BELIEF_STANDS + 1U; k < BELIEF_MOTIONS; ++k) {
-        const shown_t of_kind = without(shown, scan->foretold_mm[k]);
         const float share = (k == BELIEF_FELT_LIES) ? 1.0F - motions[BELIEF_STANDS].share : 1.0F;
-        const float of_motion = density * world->motions[k] * share * scan->of_felt[k] *
-                                density_of_motion(&of_kind, motions[k].sigma_mm);
+        float of_motion = density * world->motions[k] * share * scan->of_felt[k];
 
+        if (shown->n > 0.0F) { /* else nothing tells the motion */
+            const shown_t of_kind = without(shown, scan->foretold_mm[k]);
+
+            of_motion *= density_of_motion(&of_kind, motions[k].sigma_mm, scan->norm[k][(uint16_t)shown->n]);
+            ways->moved_mm += of_motion * of_kind.sum_mm / shown->n;
+        }
         ways->motions[k] += of_motion;
-        ways->moved_mm += of_motion * of_kind.sum_mm / at_least(shown->n, 1.0F);
         sum += of_motion;
     }
     return sum;
@@ -258,7 +269,7 @@ float belief_world_scan(belief_world_t *world, const belief_scan_t *scan, uint16
         ways.step[m] = belief_has(ways.honest, m) ? density_of_step(ways.off_mm[m]) : 0.0F;
     }
     add_stand(world, &ways, scan);
-    for (uint16_t steps = 0U; steps < (1U << MIRROR_COUNT); ++steps) {
+    for (uint16_t steps = 0U; steps <= ways.honest; ++steps) {
         if ((steps & (uint16_t)~ways.honest) == 0U) {
             add_way(world, &ways, scan, steps);
         }
@@ -277,6 +288,9 @@ void belief_world_look(belief_scan_t *scan, const belief_mean_t *slant, const be
     for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
         scan->of_felt[k] = moving;
         scan->foretold_mm[k] = 0.0F;
+        for (uint16_t n = 0U; n <= MIRROR_COUNT; ++n) {
+            scan->norm[k][n] = norm_of_motion((float)n, motions[k].sigma_mm);
+        }
     }
     scan->of_felt[BELIEF_STANDS] = density_of_strange(gained_mps2);
     scan->of_felt[BELIEF_FELT_LIES] = LIE_PER_MPS2;

@@ -52,6 +52,7 @@ typedef struct {
     float gap_s;                /* since the scan before, > 0 */
     belief_felt_t felt;
     float slant[MIRROR_COUNT], height[MIRROR_COUNT]; /* densities, if nothing moves */
+    float norm[BELIEF_MOTIONS][MIRROR_COUNT + 1U];   /* of the density of so many honest mirrors' motion */
     float of_felt[BELIEF_MOTIONS];     /* density of what the accelerometer tells, by kind of motion */
     float foretold_mm[BELIEF_MOTIONS]; /* way that it has foretold, and that does not count there */
 } belief_scan_t;

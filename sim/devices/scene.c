@@ -15,6 +15,10 @@ const scene_config_t scene_default = {.ray_sigma_mm = 5.0,
                                       .warm_up_mm = 0.0,
                                       .warm_up_s = 1800.0,
                                       .glitch_probability = 0.0,
+                                      .outlier_mm = 0.0,
+                                      .outlier_run = 4.0,
+                                      .outlier_every = 20.0,
+                                      .outlier_start_s = 0.0,
                                       .rays_lost = 0.0,
                                       .rays_lost_span = {SPAN_POWER_ON_S, SPAN_FOR_GOOD_S},
                                       .sight_blocked = 0.0,
@@ -56,6 +60,7 @@ void scene_init(scene_t *scene, const scene_config_t *config, quadrotor_t *quadr
     noise_init(&scene->surface_noise, seed, "laser surfaces");
     scene->wander_mm = config->wander_sigma_mm * noise_gauss(&scene->wander_noise);
     scene->wandered_s = 0.0;
+    scene->turns = 0;
     memset(&scene->turn, 0, sizeof scene->turn);
     memset(scene->latest_mm, 0, sizeof scene->latest_mm);
 }
@@ -201,8 +206,19 @@ double scene_height_m(const scene_t *scene)
            edge_m(scene, quadrotor_scenario_s(scene->quadrotor));
 }
 
+/* Of a revolution: again and again so many in a row are too far. */
+static double outlier_mm(scene_t *scene, double t_s)
+{
+    const scene_config_t *c = &scene->config;
+
+    return c->outlier_mm != 0.0 && t_s >= c->outlier_start_s &&
+                   fmod((double)scene->turns++, c->outlier_every) < c->outlier_run
+               ? c->outlier_mm
+               : 0.0;
+}
+
 /* A revolution's own draws. */
-static void begin_turn(scene_t *scene)
+static void begin_turn(scene_t *scene, double t_s)
 {
     const scene_config_t *c = &scene->config;
 
@@ -220,6 +236,7 @@ static void begin_turn(scene_t *scene)
         scene->turn.broken = noise_uniform(&scene->glitch_noise, 0.0, 1.0) < 0.5;
         scene->turn.lift_mm = scene->turn.broken ? 0.0 : GLITCH_LIFT_MM;
     }
+    scene->turn.lift_mm += outlier_mm(scene, t_s);
 }
 
 /* First order, up to now. */
@@ -322,7 +339,7 @@ void scene_scan(void *context, const urg_rays_t *rays, int *distance_mm)
     const look_t look = look_now(scene, rays);
 
     if (rays->from_step == rays->first_step) {
-        begin_turn(scene);
+        begin_turn(scene, look.t_s);
     }
     for (int step = rays->from_step; step <= rays->to_step; step++) {
         if (!is_frozen(scene, look.t_s, step)) {

@@ -35,6 +35,10 @@ typedef struct {
     double warm_up_s;       /* 1800 */
     double glitch_probability; /* per scan, 0; half of them break every second ray, half lift all rays by 350
                                   mm */
+    double outlier_mm; /* 0; the struck beams tell that much too far, in outlier_run scans of outlier_every */
+    double outlier_run;     /* 4 */
+    double outlier_every;   /* 20 */
+    double outlier_start_s; /* 0 */
     double rays_lost; /* share of the rays, each scan others, that find too little light: a code below 20 */
     span_t rays_lost_span; /* since power-on */
     double sight_blocked;  /* share of the rays asked for on a mirror, always the first ones, that see a thing
@@ -68,9 +72,10 @@ typedef struct {
     noise_t ray_noise, common_noise, mirror_noise, wander_noise, glitch_noise, lost_noise, surface_noise,
         around_noise;
     double wander_mm, wandered_s;
-    struct { /* what the rays of this revolution share */
+    long turns; /* revolutions since the first outlier could come */
+    struct {    /* what the rays of this revolution share */
         double common_mm, mirror_mm[BRACKET_MIRRORS];
-        double lift_mm; /* of a glitch */
+        double lift_mm; /* of a glitch, or an outlier */
         bool broken;    /* by one */
         int ray_step;   /* measured last, */
         double ray_mm;  /* its noise */

@@ -509,7 +509,8 @@ static metrics_sample_t look(double t_s, const quadrotor_state_t *truth)
                                          cos(truth->roll_rad) * cos(truth->pitch_rad) > UPRIGHT,
                               .flagged = out.flags != 0U,
                               .estimate_m = (double)out.estimate_mm * 1e-3,
-                              .seen_m = board_seen_m()};
+                              .seen_m = board_seen_m(),
+                              .altitude_m = truth->altitude_m};
 }
 
 static void sample(FILE *csv)

@@ -6,6 +6,7 @@
 #define OVERSHOOT_END_S 5.5
 #define SETTLED_S 5.0
 #define WITHIN_MM 50.0
+#define SETTLED_FOR_S 0.5
 #define MAX_ERROR_START_S 6.0
 #define AGAIN_START_S 33.0
 #define AGAIN_END_S 36.0
@@ -23,15 +24,24 @@
 #define REACHED_WITHIN_S 8.0 /* twice what a climb of 3 m takes with VUP as delivered, 0.7 m/s */
 
 const char *const metric_names[] = {
-    "rise_time_s",    "overshoot_mm", "hover_rms_mm",   "hover_mean_error_mm",
-    "terrain_rms_mm", "recovery_s",   "undershoot_mm",  "ground_contacts",
-    "thrust_std_n",   "scans",        "scans_rejected", "commands_ok",
-    "commands_err",   "max_error_mm", "highest_mm",     "touch_speed_mps",
-    "takeovers",      "cuts",         "off_aloft",      "down_s",
-    "stopped_s",      "deceived_s",   "flagged_s",      "again_rms_mm",
-    "by_eye_rms_mm",  "motor_stops",  "motors_at_end",  "landed_unordered",
-    "sight_doubts",   "imu_doubts",   "thrust_doubts",  "off_s",
-    "aloft_s",        "collided",
+    "rise_time_s",     "overshoot_mm",
+    "hover_rms_mm",    "hover_mean_error_mm",
+    "terrain_rms_mm",  "recovery_s",
+    "settled_s",       "undershoot_mm",
+    "ground_contacts", "thrust_std_n",
+    "scans",           "scans_rejected",
+    "commands_ok",     "commands_err",
+    "max_error_mm",    "altitude_error_mm",
+    "highest_mm",      "touch_speed_mps",
+    "takeovers",       "cuts",
+    "off_aloft",       "down_s",
+    "stopped_s",       "deceived_s",
+    "flagged_s",       "again_rms_mm",
+    "by_eye_rms_mm",   "motor_stops",
+    "motors_at_end",   "landed_unordered",
+    "sight_doubts",    "imu_doubts",
+    "thrust_doubts",   "off_s",
+    "aloft_s",         "collided",
 };
 _Static_assert(sizeof metric_names / sizeof metric_names[0] == METRIC_COUNT, "every metric has a name");
 
@@ -104,6 +114,7 @@ static void find_extremes(metrics_record_t *record, const metrics_sample_t *s)
     }
     if (s->t_s >= MAX_ERROR_START_S && s->t_s <= record->land_s) {
         record->largest_mm = fmax(record->largest_mm, fabs(off_mm));
+        record->altitude_mm = fmax(record->altitude_mm, fabs(s->altitude_m - record->wanted_m) * 1000.0);
     }
 }
 
@@ -277,6 +288,8 @@ static void gather(metrics_record_t *record, const metrics_sample_t *s)
     if (t >= METRICS_EDGE_S && t <= METRICS_RECOVERY_END_S) {
         record->undershoot_mm = fmax(record->undershoot_mm, -off_mm);
         record->last_off_s = fabs(off_mm) > WITHIN_MM ? t : record->last_off_s;
+        record->unsettled_s = t < record->unsettled_s + SETTLED_FOR_S ? record->last_off_s
+                                                                      : record->unsettled_s;
     }
 }
 
@@ -293,6 +306,7 @@ void metrics_begin(metrics_record_t *record, double reference_m, bool terrain, d
                                  .tenth_s = NAN,
                                  .ninety_s = NAN,
                                  .last_off_s = METRICS_EDGE_S,
+                                 .unsettled_s = METRICS_EDGE_S,
                                  .highest_mm = -INFINITY,
                                  .hardest_mps = NAN,
                                  .off_since_s = NAN,
@@ -365,10 +379,12 @@ void metrics_compute(const metrics_record_t *record, metrics_t *metrics)
     value[METRIC_THRUST_STD_N] = deviation(&record->thrust);
     value[METRIC_TERRAIN_RMS_MM] = record->terrain ? rms(&record->ramp) : NAN;
     value[METRIC_RECOVERY_S] = record->terrain ? record->last_off_s - METRICS_EDGE_S : NAN;
+    value[METRIC_SETTLED_S] = record->terrain ? record->unsettled_s - METRICS_EDGE_S : NAN;
     value[METRIC_UNDERSHOOT_MM] = record->terrain ? record->undershoot_mm : NAN;
     value[METRIC_TOUCH_SPEED_MPS] = record->hardest_mps;
     value[METRIC_HIGHEST_MM] = isfinite(record->highest_mm) ? record->highest_mm : NAN;
     value[METRIC_MAX_ERROR_MM] = record->largest_mm;
+    value[METRIC_ALTITUDE_ERROR_MM] = record->altitude_mm;
     value[METRIC_TAKEOVERS] = record->takeovers;
     value[METRIC_CUTS] = record->cuts;
     value[METRIC_OFF_ALOFT] = record->off_aloft;

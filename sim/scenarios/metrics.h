@@ -30,6 +30,7 @@ typedef struct {
     bool flagged;      /* the firmware doubts something, and says so */
     double estimate_m; /* the height that the law acts on; NAN: none */
     double seen_m;     /* the true height above what the beam sees */
+    double altitude_m; /* above the floor, whatever stands on it */
 } metrics_sample_t;
 
 typedef enum {
@@ -40,6 +41,8 @@ typedef enum {
     METRIC_TERRAIN_RMS_MM, /* 7.2-15 s */
     METRIC_RECOVERY_S, /* last instant in 11.02-15 s with |error| > 50 mm, minus 11.02; 3.98 if never within
                         */
+    METRIC_SETTLED_S, /* after the edge: the last instant with |error| > 50 mm before half a second within it,
+                       * minus 11.02. A later gust is not the edge's */
     METRIC_UNDERSHOOT_MM, /* deepest below the reference, 11.02-15 s, at least 0 */
     METRIC_GROUND_CONTACTS,
     METRIC_THRUST_STD_N, /* of the commanded thrust over the hover windows */
@@ -47,9 +50,10 @@ typedef enum {
     METRIC_SCANS_REJECTED,
     METRIC_COMMANDS_OK,
     METRIC_COMMANDS_ERR,
-    METRIC_MAX_ERROR_MM, /* largest |height - reference|, 6 s to the landing command */
-    METRIC_HIGHEST_MM,   /* above the highest reference ordered so far, from the first one to the end of the
-                            flight */
+    METRIC_MAX_ERROR_MM,      /* largest |height - reference|, 6 s to the landing command */
+    METRIC_ALTITUDE_ERROR_MM, /* largest |altitude above the floor - reference in force|, likewise */
+    METRIC_HIGHEST_MM, /* above the highest reference ordered so far, from the first one to the end of the
+                          flight */
     METRIC_TOUCH_SPEED_MPS, /* hardest touch: fastest fall within the last 30 mm; NAN when it never came down
                              */
     METRIC_TAKEOVERS, /* times that the supervisor took over before the landing command; on the way down to a
@@ -104,7 +108,8 @@ typedef struct {
     metrics_moments_t hover, thrust, ramp, again, by_eye;
     double tenth_s, ninety_s; /* first time at 10 and 90 % of the reference; NAN: not yet */
     double overshoot_mm, undershoot_mm, last_off_s;
-    double largest_mm, highest_mm;
+    double unsettled_s; /* last_off_s before half a second within */
+    double largest_mm, altitude_mm, highest_mm;
     bool dropped; /* it stood without thrust on a platform that went away */
     double fall_mps, hardest_mps;
     bool airborne;

@@ -11,6 +11,8 @@ A situation is data. docs/campaign.md tells how one is written; the tables are r
   reference, land    of the flight; else those of its table
   may      verdicts that are right here
   alone    true: it is no part of a mix
+  of, laws, any_of    of musts.toml, which tells them
+  course   true: over the seed's course, its platform as high as the figure `platform` says
 
 A text between braces in them is arithmetic: {x + length / 2}, with min, max, and i, the turn of a line that is written so often.
 
@@ -34,7 +36,7 @@ HELD_OUT = ((0.3, 0.4), (0.8, 0.9))     # of each range, as parts of its length;
 DOWN_WITHIN_S = 60
 SOURCES = ("sight", "IMU", "thrust")
 BRACES = re.compile(r"\{([^{}]*)\}")
-WORDS = {"says", "row", "draw", "set", "place", "at", "fault", "reference", "land", "laws", "lies", "mix", "alone", "runs", "may"}
+WORDS = {"says", "row", "draw", "set", "place", "at", "fault", "reference", "land", "laws", "lies", "mix", "alone", "runs", "may", "course", "of", "any_of"}
 
 
 class Wrong(ValueError):
@@ -127,7 +129,7 @@ class Situation:
         return re.sub(r"\W+", "-", self.name)
 
     def __getattr__(self, name):
-        return self.words.get(name, {"draw": {}, "set": {}, "place": [], "at": [], "fault": [], "may": [], "alone": False}.get(name))
+        return self.words.get(name, {"draw": {}, "set": {}, "place": [], "at": [], "fault": [], "may": [], "alone": False, "course": False, "laws": [], "any_of": []}.get(name))
 
 
 @dataclass(frozen=True)
@@ -200,11 +202,13 @@ class Draft:
         self.known["hover"] = self.figures["hover_thrust"]
         self.place, self.at, self.faults, self.sources = [], [], [], []
         self.reference = self.land = None
+        self.course = "no"
 
     def add(self, situation, rng, where):
         self.known |= draw_all(situation.draw, rng, self.held_out, where)
         self.reference = situation.reference or self.reference
         self.land = situation.land or self.land
+        self.course = "yes" if situation.course else self.course
         for name, value in situation.set.items():
             (self.typed if name.isupper() else self.figures)[name] = filled(value, self.known)
         self.place += written(situation.place, self.known, rng, self.held_out, where)
@@ -213,7 +217,7 @@ class Draft:
         self.sources += situation.sources
 
     def text(self, name, law):
-        lines = [f"like {law.scenario}", f"name {name}", "platform no"]
+        lines = [f"like {law.scenario}", f"name {name}", f"platform {self.course}"]
         lines += [f"set {key} {value}" for key, value in {**law.settings, **self.typed}.items()]
         lines += [f"set plant.{key} {shown(value)}" for key, value in self.figures.items()]
         lines += [f"place {line}" for line in self.place]

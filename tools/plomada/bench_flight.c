@@ -183,7 +183,8 @@ static void sample(sim_time_t origin)
                                    .on_ground = state->on_ground,
                                    .may_cut = true,
                                    .estimate_m = NAN,
-                                   .seen_m = state->height_m};
+                                   .seen_m = state->height_m,
+                                   .altitude_m = state->altitude_m};
 
     metrics_add(&record, &seen);
 }

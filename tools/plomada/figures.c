@@ -19,6 +19,8 @@ static const char *meaning(metric_t metric)
         return "the same over ramp and platform, rms; 0 is best";
     case METRIC_RECOVERY_S:
         return "from the platform's edge until it stays within 50 mm; 3.97 and more: never did";
+    case METRIC_SETTLED_S:
+        return "the same until it has stayed within 50 mm for half a second";
     case METRIC_UNDERSHOOT_MM:
         return "deepest below the reference after the edge; 0 is best";
     case METRIC_GROUND_CONTACTS:
@@ -35,6 +37,8 @@ static const char *meaning(metric_t metric)
         return "commands that were refused; 0 is good";
     case METRIC_MAX_ERROR_MM:
         return "largest distance from the reference, from 6 s to the landing command";
+    case METRIC_ALTITUDE_ERROR_MM:
+        return "the same above the floor, whatever stands on it; of interest with TERRAIN IGNORE";
     case METRIC_HIGHEST_MM:
         return "highest above the reference in the whole flight";
     case METRIC_TOUCH_SPEED_MPS:

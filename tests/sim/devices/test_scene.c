@@ -477,6 +477,32 @@ void test_a_glitch_strikes_the_beams_that_faults_strike(void)
     TEST_ASSERT_TRUE(lifted > 8 && broken > 8);
 }
 
+/* Three of each five revolutions. */
+void test_outliers_come_back_in_runs(void)
+{
+    place_init(&place);
+    calm.outlier_mm = 400.0;
+    calm.outlier_run = 3.0;
+    calm.outlier_every = 5.0;
+    calm.struck_beam = 3.0;
+    start_in_place();
+    for (int n = 0; n < 12; n++) {
+        sweep();
+        TEST_ASSERT_EQUAL_INT(805, all_mm[384]);
+        TEST_ASSERT_EQUAL_INT(n % 5 < 3 ? 812 + 400 : 812, all_mm[640]);
+    }
+}
+
+void test_outliers_begin_when_they_are_told_to(void)
+{
+    place_init(&place);
+    calm.outlier_mm = 400.0;
+    calm.outlier_start_s = 1000.0;
+    start_in_place();
+    sweep();
+    TEST_ASSERT_EQUAL_INT(805, all_mm[384]);
+}
+
 /* The rays at 128, 384 and 385 of a revolution. */
 static void three_rays(void)
 {

@@ -126,6 +126,38 @@ static void lose_the_platform(double height_m)
     ticks++;
 }
 
+/* 0.4 s off after the edge, then within; a gust 2 s later counts for the recovery alone. */
+void test_a_later_gust_is_not_the_edges(void)
+{
+    metrics_begin(&record, 0.6, true, LAND_S);
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    go(11.02, 0.6);
+    go(11.03, 0.7);
+    go(11.41, 0.7);
+    go(11.42, 0.6);
+    go(13.41, 0.6);
+    go(13.42, 0.7);
+    go(13.5, 0.6);
+    go(LAND_S, 0.6);
+    NEAR(0.03, 0.4, value(METRIC_SETTLED_S));
+    NEAR(0.05, 2.44, value(METRIC_RECOVERY_S));
+}
+
+void test_the_altitude_counts_from_the_floor(void)
+{
+    now.altitude_m = 0.6;
+    go(1.0, 0.0);
+    go(2.0, 0.6);
+    go(8.0, 0.6);
+    now.altitude_m = 0.7;
+    go(9.0, 0.6);
+    now.altitude_m = 0.6;
+    go(LAND_S, 0.6);
+    NEAR(1e-6, 100.0, value(METRIC_ALTITUDE_ERROR_MM));
+    NEAR(0.1, 0.0, value(METRIC_MAX_ERROR_MM));
+}
+
 void test_a_pilots_flight_that_ends_on_the_ground_is_a_touch_whatever_the_law_commands(void)
 {
     now.thrust_n = 0.0;
