@@ -37,15 +37,15 @@ static const edge_t last_edges[] = {
 };
 
 /* Law EST flies from now on. hover_n: best known hover thrust. */
-static void engage_at(est_law_t *est, where_t *where, const situation_t *now, float hover_n)
+static void engage_at(est_law_t *est, where_t *where, float hover_n)
 {
     contact_fly(&where->contact);
-    est_law_engage(est, now->thrust_n, hover_n);
+    est_law_engage(est, hover_n);
 }
 
-static void engage(est_law_t *est, where_t *where, const situation_t *now)
+static void engage(est_law_t *est, where_t *where)
 {
-    engage_at(est, where, now, where->hover.thrust_n);
+    engage_at(est, where, where->hover.thrust_n);
 }
 
 static void amend(est_law_t *est, const evidence_t *evidence, amend_t how)
@@ -91,7 +91,7 @@ static void tell(est_law_t *est, where_t *where, const edge_t *edges, uint16_t c
         }
         amend(est, now->evidence, edge->amend);
         if (edge->engages) {
-            engage(est, where, now);
+            engage(est, where);
         }
     }
 }
@@ -180,7 +180,7 @@ static void notice_lift(est_law_t *est, where_t *where, const situation_t *now)
     if (est_law_ready(est) && felt_mps(now->evidence) > LIFTED_MPS) {
         hover_thrust_lift_off(&where->hover, lifting_n(now));
         contact_lift_off(&where->contact);
-        engage(est, where, now);
+        engage(est, where);
     }
 }
 
@@ -198,7 +198,7 @@ static void touch_or_fly(est_law_t *est, where_t *where, const situation_t *now,
     } else if (where->contact.gave_up && state != FLIGHT_TAKEOFF) {
         notice_lift(est, where, now);
     } else if (now->mode == FLIGHT_MODE_LAW && !where->contact.airborne && flies(now)) {
-        engage_at(est, where, now, lifting_n(now));
+        engage_at(est, where, lifting_n(now));
     }
 }
 
@@ -209,9 +209,9 @@ void handover_place(est_law_t *est, where_t *where, const situation_t *now, cons
     fuse(est, now, in);
     touch_or_fly(est, where, now, in->has_throttle);
     if (news == PILOT_SHOWS_EFFECT) { /* now its hover thrust is learned */
-        engage_at(est, where, now, where->hover.thrust_n + trim_n);
+        engage_at(est, where, where->hover.thrust_n + trim_n);
     } else if (news == PILOT_IS_SURE) {
-        engage(est, where, now);
+        engage(est, where);
     }
 }
 
@@ -223,10 +223,10 @@ static void take_over(est_law_t *est, where_t *where, const situation_t *now)
     const hover_t learned = est->hover;
 
     if (!knows) {
-        engage(est, where, now);
+        engage(est, where);
         return;
     }
-    engage_at(est, where, now, learned.thrust_n);
+    engage_at(est, where, learned.thrust_n);
     est->hover.variance_n2 = learned.variance_n2;
 }
 

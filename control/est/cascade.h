@@ -1,13 +1,13 @@
 /* Cascade control: height error -> vertical speed -> acceleration -> thrust. Heights in metres, speeds in
- * m/s, positive upwards. Thrust in newtons per motor. Pure; the caller owns the state. */
+ * m/s, positive upwards. Thrust in newtons per motor. Pure, without a state. */
 #ifndef CONTROL_CASCADE_H
 #define CONTROL_CASCADE_H
 
 #include <stdbool.h>
 
-/* Model of the vehicle: acceleration = authority (thrust - hover) - damping speed. */
-#define CASCADE_CALM_MIN 0.4F /* chosen: keeps two fifths of the gain of a loop that swings */
+#define EST_FALL_MPS2 3.96F /* RISE_MAX_MPS2 of cascade.c: how hard a climb is braked */
 
+/* Model of the vehicle: acceleration = authority (thrust - hover) - damping speed. */
 typedef struct {
     float authority_mps2_per_n;
     float damping_per_s;
@@ -20,8 +20,6 @@ typedef struct {
     float height_per_s;     /* height error (m) -> vertical speed (m/s) */
     float speed_per_s;      /* speed error (m/s) -> acceleration (m/s2) */
     float up_mps, down_mps; /* limits of climb and descent, both > 0 */
-    float fall_mps2;        /* limit of the downward acceleration, > 0 */
-    float below_hover_n;    /* limit of the thrust below the hover thrust, > 0 */
 } cascade_gains_t;
 
 /* Predicted state of the vehicle at the instant when the next command takes effect. */
@@ -32,21 +30,12 @@ typedef struct {
     float thrust_n; /* delivered thrust at that instant, from the commands already given */
 } cascade_state_t;
 
-typedef struct {
-    float thrust_n; /* previous command */
-    float quick_n;  /* mean square of the quick changes of the command, N2 */
-    float slow_n;   /* slow mean of the command */
-} cascade_t;
-
-void cascade_init(cascade_t *cascade, float thrust_n);
-
 /* Vertical speed (m/s, against the earth) that brings the vehicle to reference_m above the terrain. It
  * includes the speed of the terrain. */
 float cascade_speed_to(const cascade_gains_t *gains, const cascade_state_t *state, float reference_m);
 
-/* Thrust for the wanted speed_mps, within the actuator's range 0 .. THRUST_MAX_N. dt_s > 0: time since the
- * step before. */
-float cascade_step(cascade_t *cascade, const cascade_gains_t *gains, const cascade_vehicle_t *vehicle,
-                   const cascade_state_t *state, float speed_mps, float dt_s);
+/* Thrust for the wanted speed_mps: a quarter of the hover thrust at least, THRUST_MAX_N at most. */
+float cascade_thrust_n(const cascade_gains_t *gains, const cascade_vehicle_t *vehicle,
+                       const cascade_state_t *state, float speed_mps);
 
 #endif

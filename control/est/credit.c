@@ -7,15 +7,13 @@
 #include "control/between.h"
 #include "control/imu_sample.h"
 
-#define NOISE_START_MPS2 0.4F                      /* assumed of a Razor on a flying frame */
 #define NOISE_MIN_MPS2 (IMU_GRAVITY_MPS2 / 256.0F) /* one count of the Razor */
-#define NOISE_SHARE 0.02F                          /* chosen: mean over 50 frames */
-#define FRAMES_IN_A_SECOND 40.0F                   /* of 25 ms */
+#define FRAMES_IN_A_SECOND 40.0F                   /* of 25 ms; the noise is their mean */
 #define NOISE_CLIP (4.0F * 4.0F) /* 4 sigma of what is measured, one in 16 000: a spike counts little */
 
 void credit_init(credit_t *credit)
 {
-    *credit = (credit_t){.noise_mps2 = NOISE_START_MPS2};
+    *credit = (credit_t){.noise_mps2 = CREDIT_NOISE_MPS2};
 }
 
 void credit_restart(credit_t *credit, float up_mps2)
@@ -32,7 +30,7 @@ void credit_measure_noise(credit_t *credit, float up_mps2)
     const float variance = credit->noise_mps2 * credit->noise_mps2;
     const float seen = at_most(difference_mps2 * difference_mps2 / 6.0F, NOISE_CLIP * variance);
 
-    credit->noise_mps2 = at_least(sqrtf(variance + NOISE_SHARE * (seen - variance)), NOISE_MIN_MPS2);
+    credit->noise_mps2 = at_least(sqrtf(variance + (seen - variance) / FRAMES_IN_A_SECOND), NOISE_MIN_MPS2);
     credit->previous_mps2[1] = credit->previous_mps2[0];
     credit->previous_mps2[0] = up_mps2;
 }

@@ -7,6 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#define CREDIT_NOISE_MPS2 0.4F /* rms, assumed of a Razor on a flying frame */
+
 /* Acceleration that the thrust should cause. */
 typedef struct {
     bool known;

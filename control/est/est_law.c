@@ -19,16 +19,14 @@
 #define HOVER_SIGMA_START_N 0.7F /* half of a mass 20 % off */
 #define NEUTRAL_SIGMA_N 0.07F    /* chosen: the thrust in the middle of the stick is known well */
 #define MODEL_NOISE_MPS2 0.84F   /* fitted */
-#define HEIGHTS_MISSING_S 0.2F   /* two scans of 0.1 s */
+/* The model does not know the air. Of turbulence of 0.2 m/s2 that lasts 0.5 s (sim/devices/quadrotor.c) the
+ * mean of a second is left, as of the accelerometer's noise (credit.c): 0.2 sqrt(1 - 0.5 (1 - exp(-2))). */
+#define AIR_MPS2 0.15F
+#define HEIGHTS_MISSING_S 0.2F /* two scans of 0.1 s */
 #define FRAMES_FRESH_S ((float)ESTIMATOR_FRESH_US * 1.0e-6F)
-#define FRAMES_LATE_S 0.15F          /* chosen: a frame of an IMU as slow as 0.1 s, and its age */
-#define AGE_MAX_S 3600.0F            /* any above what is asked: the counters stop here */
-#define MODEL_NOISE_ALONE_MPS2 0.15F /* chosen: what the model is off by with the right hover thrust */
-#define GUST_MPS2_PER_M 39.2F        /* fitted as 28 N/m on a vehicle that hovers at 7 N */
+#define AGE_MAX_S 3600.0F                         /* any above what is asked: the counters stop here */
+#define GUST_MPS2_PER_M 39.2F                     /* fitted as 28 N/m on a vehicle that hovers at 7 N */
 #define NO_ACC_HEIGHT_S (HEIGHT_FRESH_S + SCAN_S) /* as long as one is fresh; its rays are a scan older */
-
-#define BELOW_HOVER_N 3.0F /* chosen: the rotors keep turning */
-#define BRAKE_MPS2 8.0F    /* chosen: turns a climb into a descent */
 
 void est_law_init(est_law_t *law)
 {
@@ -74,7 +72,7 @@ static float alone_mps2(const est_law_t *law, float authority_mps2_per_n)
 {
     const float hover_mps2 = authority_mps2_per_n * authority_mps2_per_n * law->hover.variance_n2;
 
-    return sqrtf(MODEL_NOISE_ALONE_MPS2 * MODEL_NOISE_ALONE_MPS2 + hover_mps2);
+    return sqrtf(AIR_MPS2 * AIR_MPS2 + hover_mps2);
 }
 
 /* Acceleration by the thrust model; known in the air only. Without heights the estimated height is too
@@ -205,7 +203,7 @@ void est_law_fuse_height(est_law_t *law, const est_height_t *height, bool airbor
 
     law->rays_us = ray_clock_step(&law->ray_clock, height->stamp_ms, height->arrival_us, height->age_us);
     law->heightless_s = seconds_between(law->rays_us, law->now_us);
-    if (law->frameless_s > FRAMES_LATE_S) {
+    if (law->frameless_s > FRAMES_FRESH_S) {
         estimator_forget_frame(&law->estimator);
     }
     const height_outcome_t outcome = correct(law, height, at_rest || stands);
@@ -264,17 +262,15 @@ void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne
     terrain_keep_start(&law->terrain, law->estimator.terrain_height_m);
     law->ahead = (ahead_t){.known = 0U};
     start_hover(law, parameters, gravity_n, HOVER_SIGMA_START_N);
-    cascade_init(&law->cascade, law->lift.ramp_n);
 }
 
-void est_law_engage(est_law_t *law, float thrust_n, float hover_n)
+void est_law_engage(est_law_t *law, float hover_n)
 {
     terrain_keep_start(&law->terrain, law->estimator.terrain_height_m);
     law->down.near_ground_s = 0.0F;
     law->hover.thrust_n = between(law->hover.least_n, hover_n, law->hover.most_n);
     law->hover.variance_n2 = NEAR_HOVER_N * NEAR_HOVER_N;
     law->hover.gust_n = 0.0F;
-    cascade_init(&law->cascade, thrust_n);
 }
 
 void est_law_doubt(est_law_t *law, const est_doubts_t *doubts)
@@ -356,7 +352,6 @@ static bool take_off(est_law_t *law, const parameters_t *parameters)
     const float hover_n = lift_off_hover_n(law, &vehicle, &signs);
     start_hover(law, parameters, is_climb(parameters) ? known_n : hover_n,
                 neutral ? NEUTRAL_SIGMA_N : HOVER_SIGMA_START_N);
-    cascade_init(&law->cascade, law->lift.ramp_n);
     return true;
 }
 
@@ -391,16 +386,6 @@ static float speed_setpoint_mps(est_law_t *law, const parameters_t *parameters, 
     return cascade_speed_to(gains, state, follows ? over_ground_to_come_m(law, setpoint_m) : setpoint_m);
 }
 
-/* Frames are missing: the latest command may have been an answer to noise, and must not last. */
-static float without_frames_n(const est_law_t *law, float thrust_n)
-{
-    const float hover_n = law->hover.thrust_n;
-
-    return (law->frameless_s > FRAMES_LATE_S)
-               ? between(hover_n - NEAR_HOVER_N, thrust_n, hover_n + NEAR_HOVER_N)
-               : thrust_n;
-}
-
 /* The thrust on the ground: of the ramp, or of its end. */
 static float standing_n(est_law_t *law, est_mode_t mode)
 {
@@ -414,14 +399,11 @@ float est_law_step(est_law_t *law, const parameters_t *parameters, const est_ord
 {
     const float *value = parameters->value;
     const est_mode_t mode = order->mode;
-    const bool landing = mode == EST_MODE_LAND;
     const cascade_gains_t gains = {
         .height_per_s = value[PARAMETER_POSK],
         .speed_per_s = value[PARAMETER_VELK],
         .up_mps = value[PARAMETER_VUP],
         .down_mps = value[PARAMETER_VDN],
-        .fall_mps2 = landing ? BRAKE_MPS2 : EST_FALL_MPS2,
-        .below_hover_n = landing ? THRUST_MAX_N : BELOW_HOVER_N,
     };
 
     law->flew = true;
@@ -433,11 +415,10 @@ float est_law_step(est_law_t *law, const parameters_t *parameters, const est_ord
     const cascade_vehicle_t vehicle = vehicle_model(law, parameters);
     const cascade_state_t state = predict_ahead(law, &vehicle);
     const float speed_mps = speed_setpoint_mps(law, parameters, &gains, &state, mode, order->reference_m);
-    const float thrust_n = cascade_step(&law->cascade, &gains, &vehicle, &state, speed_mps, law->step_s);
+    const float thrust_n = cascade_thrust_n(&gains, &vehicle, &state, speed_mps);
 
     let_down_step(&law->down, mode, state.height_m, law->rocks, law->step_s);
-    const float limited_n = let_down_limit_n(&law->down, mode, without_frames_n(law, thrust_n),
-                                             law->hover.thrust_n);
+    const float limited_n = let_down_limit_n(&law->down, mode, thrust_n, law->hover.thrust_n);
     return deadband_compensate(&law->deadband, law->hover.thrust_n, limited_n);
 }
 

@@ -26,8 +26,7 @@
 #include "control/parameters.h"
 #include "control/ray_clock.h"
 
-#define EST_FALL_MPS2 3.96F /* fitted: 0.4 g; how hard a climb is braked */
-#define HOVER_BOUND_N 2.0F  /* mass 20 % off (1.4 N), gusts; see hover_thrust.c */
+#define HOVER_BOUND_N 2.0F /* mass 20 % off (1.4 N), gusts; see hover_thrust.c */
 
 typedef struct {
     estimator_t estimator;
@@ -35,8 +34,7 @@ typedef struct {
     actuator_t actuator;
     hover_t hover;
     deadband_t deadband; /* used only with PLANT CLIMB */
-    cascade_t cascade;
-    bool started; /* now_us has a value */
+    bool started;        /* now_us has a value */
     uint32_t now_us;
     float step_s;               /* duration of the latest cycle */
     uint32_t rays_us;           /* when the rays of the latest height were taken */
@@ -96,8 +94,8 @@ bool est_law_ready(const est_law_t *law);
 
 /* Call in every cycle on the ground. airborne: until this cycle the vehicle flew. */
 void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne);
-/* Call in the air, when EST takes over. hover_n: best known hover thrust. thrust_n: previous command. */
-void est_law_engage(est_law_t *law, float thrust_n, float hover_n);
+/* Call in the air, when EST takes over. hover_n: best known hover thrust. */
+void est_law_engage(est_law_t *law, float hover_n);
 
 /* What is doubted in this cycle. */
 typedef struct {

@@ -12,6 +12,7 @@
 
 #include "control/between.h"
 #include "control/credible.h"
+#include "control/est/cascade.h"
 #include "control/seconds.h"
 
 #define FRAME_AGE_US UINT32_C(23600) /* 15 ms within the Razor (assumed), 8.6 ms on the wire */
@@ -19,23 +20,21 @@
 #define NO_RAYS_US UINT32_C(75000)   /* after other rays: a scan of 0.1 s, less a margin of a frame */
 #define ANGLE_MAX_RAD 3.2F           /* pi, rounded up */
 
-#define HEIGHT_NOISE_M 0.0013F   /* fitted */
-#define FLOOR_SIGMAS 6.0F        /* tried: both edges of a bar pass the test, from a wrong speed too */
+#define HEIGHT_NOISE_M 0.0013F /* fitted */
+#define FLOOR_SIGMAS 6.0F /* tried 3 and 4: on a ramp the rejected heights made it climb 0.14 m too high */
 #define SPEED_NOISE_MPS2 0.53F   /* fitted; what neither accelerometer nor model knows */
 #define FRAME_S 0.025F           /* period of the IMU, seed 5.2.1.1 */
 #define BIAS_DRIFT_MPS2 0.095F   /* fitted; m/s2 per root second */
 #define TERRAIN_DRIFT_MPS 0.053F /* fitted; m/s per root second */
 #define OVER_DRIFT_MPS2 0.02F    /* chosen: of the bias, while ramps are told from it; warmth is slower */
-#define NO_ACC_DRIFT_MPS2 0.4F   /* tried 0.1 to 0.8: more follows gusts better and shakes the thrust more */
-#define LATE_NOISE_MPS2 3.0F     /* chosen: what law PIDT accelerates by */
+#define NO_ACC_DRIFT_MPS2 \
+    0.4F /* of turbulence of 0.2 m/s2 that lasts 0.5 s (quadrotor.c): 0.2 sqrt(2 / 0.5) */
 
 #define INNOVATION_LIMIT_MIN_M 0.053F /* fitted */
 #define INNOVATION_LIMIT_SIGMAS 3.0F  /* usual */
 #define REJECTIONS_MAX 3U        /* the third height in a row is used: then none is fresh, HEIGHT_FRESH_US */
 #define UNCHECKED_AFTER_RESET 2U /* two heights give the speed again */
 #define REST_SIGMA_MPS 0.02F     /* chosen: a vehicle on the ground may shake */
-
-#define SPEED_RESET_MAX_MPS 1.0F /* chosen: limit of the speed that survives a reset */
 
 static bool before(uint32_t a_us, uint32_t b_us)
 {
@@ -238,12 +237,15 @@ static void initialise_at(estimator_t *e, float height_m)
     e->initialised = true;
 }
 
+/* The speed may be anything; one beyond a standard deviation of that does not survive. */
 static void reset_to_height(estimator_t *e, float height_m)
 {
-    filter_reset_variance(&e->filter, FILTER_SPEED, filter_variance_most(FILTER_SPEED));
+    const float variance = filter_variance_most(FILTER_SPEED);
+    const float most_mps = sqrtf(variance);
+
+    filter_reset_variance(&e->filter, FILTER_SPEED, variance);
     filter_reset_variance(&e->filter, FILTER_BIAS, filter_variance_start(FILTER_BIAS));
-    e->filter.estimate.speed_mps = between(-SPEED_RESET_MAX_MPS, e->filter.estimate.speed_mps,
-                                           SPEED_RESET_MAX_MPS);
+    e->filter.estimate.speed_mps = between(-most_mps, e->filter.estimate.speed_mps, most_mps);
     reset_height(e, height_m);
     e->unchecked_count = UNCHECKED_AFTER_RESET;
 }
@@ -395,7 +397,7 @@ void estimator_drop_accelerations(estimator_t *e)
 
 void estimator_forget_frame(estimator_t *e)
 {
-    e->latest.motion = (motion_t){.drift = drift_of(LATE_NOISE_MPS2, 0.0F)};
+    e->latest.motion = (motion_t){.drift = drift_of(EST_FALL_MPS2, 0.0F)};
     filter_reset_variance(&e->filter, FILTER_BIAS, e->filter.covariance[FILTER_BIAS][FILTER_BIAS]);
     e->unchecked_count = UNCHECKED_AFTER_RESET;
 }

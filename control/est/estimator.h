@@ -97,7 +97,8 @@ terrain_heights_t estimator_heights(const estimator_t *estimator, const terrain_
 /* The model alone predicts from now on, until a frame with accelerations comes. */
 void estimator_drop_accelerations(estimator_t *estimator);
 
-/* The frames are late: until the next one comes, the heights alone tell the speed, and nothing the bias. */
+/* The frames are missing: until the next one comes, the heights alone tell the speed, and nothing the bias.
+ * What flies meanwhile accelerates as hard as law EST. */
 void estimator_forget_frame(estimator_t *estimator);
 
 /* Overwrites height, speed and bias. For use when the latest heights were wrong. */

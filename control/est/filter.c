@@ -11,14 +11,18 @@
 
 #define HEIGHT_DRIFT_M 0.0047F /* fitted; m per root second */
 #define TERRAIN_TIME_S 1.0F    /* chosen: a slope lasts about a second */
-#define TERRAIN_MAX_MPS 0.5F   /* chosen: the seed's ramp rises by 0.36 m/s */
 #define VARIANCE_MIN \
-    1.0e-7F /* of any state: the rounding of 32-bit floats, FLT_EPSILON, of the highest, 1 \
+    1.0e-7F /* of any state: the rounding of 32-bit floats, FLT_EPSILON, of one of 1 \
              */
 
-/* Of height (m2), speed (m2/s2), bias (m2/s4), terrain rate (m2/s2). Chosen. Highest: 1 m, 1 m/s, 0.5 m/s2,
- * 0.5 m/s. At the start: 1 cm, 0.2 m/s, 0.3 m/s2, 0.05 m/s. */
-static const float variance_max[FILTER_STATES] = {1.0F, 1.0F, 0.25F, 0.25F};
+/* Variance of a figure of which nothing is known but that it lies within -most .. most. */
+#define UNIFORM(most) ((most) * (most) / 3.0F)
+
+/* Of height (m2), speed (m2/s2), bias (m2/s4), terrain rate (m2/s2): within what they can be (credible.h);
+ * the height within 0 .. HEIGHT_MAX_MM. */
+static const float variance_max[FILTER_STATES] = {UNIFORM(0.5e-3F * HEIGHT_MAX_MM), UNIFORM(SPEED_MAX_MPS),
+                                                  UNIFORM(BIAS_MAX_MPS2), UNIFORM(SPEED_MAX_MPS)};
+/* chosen: 1 cm, 0.2 m/s, 0.3 m/s2, 0.05 m/s */
 static const float variance_start[FILTER_STATES] = {1.0e-4F, 0.04F, 0.09F, 0.0025F};
 
 static inline float *covariance_of(float p[FILTER_STATES][FILTER_STATES], uint16_t i, uint16_t j)
@@ -46,7 +50,7 @@ static void bound_states(estimate_t *x)
 {
     x->speed_mps = between(-SPEED_MAX_MPS, x->speed_mps, SPEED_MAX_MPS);
     x->bias_mps2 = between(-BIAS_MAX_MPS2, x->bias_mps2, BIAS_MAX_MPS2);
-    x->terrain_mps = between(-TERRAIN_MAX_MPS, x->terrain_mps, TERRAIN_MAX_MPS);
+    x->terrain_mps = between(-SPEED_MAX_MPS, x->terrain_mps, SPEED_MAX_MPS);
 }
 
 estimate_t filter_moved(const estimate_t *estimate, const motion_t *motion, float dt_s)

@@ -12,7 +12,7 @@
 #define GUST_RATE_PER_S 2.1F    /* fitted */
 #define GUST_NOISE_N 0.48F      /* fitted: above this noise gusts are followed less */
 #define GUST_TIME_S 0.76F       /* fitted: how long a gust lasts */
-#define GUST_MAX_N 1.0F         /* chosen: 1.4 m/s2 */
+#define GUST_MAX_N 1.07F /* five sigma of the strongest air of plan.py: 5 * 0.3 m/s2 * 7 N / 9.81 m/s2 */
 
 void hover_init(hover_t *hover, float thrust_n, float sigma_n, float least_n, float most_n)
 {

@@ -8,10 +8,11 @@
 #include "control/between.h"
 #include "control/credible.h"
 
-#define SPEED_DOUBT_N_PER_MPS 0.5F /* chosen: the damping may be wrong by a quarter */
-#define NO_ACC_TIME_S 3.0F         /* tried 1.5 to 6: the model's bias becomes hover thrust */
-#define NO_ACC_CLIMB_TIME_S 30.0F  /* tried 3 to 30: the middle of the stick is known well */
-#define NO_ACC_DEADBAND 0.1F       /* tried 0 to 1: the model's bias tells the deadband late */
+/* The damping is within 1.5 .. 3 1/s (plan.py), so its standard deviation is 1.5 / sqrt(12) = 0.43 1/s: times
+ * 7 N / 9.81 m/s2. */
+#define SPEED_DOUBT_N_PER_MPS 0.31F
+#define NO_ACC_TIME_S 3.0F   /* tried 1.5 to 6: the model's bias becomes hover thrust */
+#define NO_ACC_DEADBAND 0.1F /* tried 0 to 1: the model's bias tells the deadband late */
 
 void learning_by_accelerations(hover_t *hover, deadband_t *deadband, const estimator_t *estimator,
                                const lesson_t *lesson)
@@ -40,8 +41,7 @@ void learning_by_accelerations(hover_t *hover, deadband_t *deadband, const estim
 void learning_by_model(hover_t *hover, deadband_t *deadband, estimator_t *estimator, const lesson_t *lesson)
 {
     const cascade_vehicle_t *vehicle = &lesson->vehicle;
-    const float time_s = lesson->is_climb ? NO_ACC_CLIMB_TIME_S : NO_ACC_TIME_S;
-    const float moved_mps2 = lesson->dt_s / time_s * estimator->now.bias_mps2;
+    const float moved_mps2 = lesson->dt_s / NO_ACC_TIME_S * estimator->now.bias_mps2;
     const float before_n = hover->thrust_n;
 
     if (!lesson->confirmed) {

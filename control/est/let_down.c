@@ -9,10 +9,6 @@
 #include "control/touchdown.h"
 #include "control/where/hover_thrust.h"
 
-#define SINK_MPS 0.28F          /* chosen: without heights the touchdown comes without warning */
-#define SINK_BELOW_HOVER_N 1.3F /* chosen: by the vehicle model a sink rate of at most 0.7 m/s */
-#define LAND_FADE_N_PER_S 0.1F  /* chosen: at the hover thrust after 15 s */
-
 void let_down_reset(let_down_t *down)
 {
     down->ceiling_n = THRUST_MAX_N;
@@ -29,20 +25,20 @@ float let_down_mps(est_mode_t mode, float height_m)
 {
     const float over_m = at_least(height_m, 0.0F);
 
-    return (mode == EST_MODE_SINK) ? -SINK_MPS : -at_most(LAND_MPS + LAND_PER_S * over_m, LAND_MAX_MPS);
+    return (mode == EST_MODE_SINK) ? -LAND_MAX_MPS : -at_most(LAND_MPS + LAND_PER_S * over_m, LAND_MAX_MPS);
 }
 
 void let_down_step(let_down_t *down, est_mode_t mode, float height_m, bool rocks, float step_s)
 {
     const bool sinks = mode == EST_MODE_SINK;
     const float above_n = sinks ? NEAR_HOVER_N : HOVER_THRUST_MARGIN_N;
-    const float fade_n_per_s = sinks ? SINK_FADE_N_PER_S : LAND_FADE_N_PER_S;
 
     down->near_ground_s = (mode == EST_MODE_LAND)
                               ? touchdown_time_s(down->near_ground_s, height_m, rocks, step_s)
                               : 0.0F;
     if (mode != EST_MODE_HOLD) {
-        down->ceiling_n = at_most(down->ceiling_n - fade_n_per_s * step_s, down->entry_hover_n + above_n);
+        down->ceiling_n = at_most(down->ceiling_n - SINK_FADE_N_PER_S * step_s,
+                                  down->entry_hover_n + above_n);
         down->ceiling_n = at_least(down->ceiling_n, 0.0F);
     }
 }
@@ -51,7 +47,7 @@ void let_down_step(let_down_t *down, est_mode_t mode, float height_m, bool rocks
  */
 static float least_n(const let_down_t *down, est_mode_t mode)
 {
-    return (mode == EST_MODE_SINK) ? at_least(down->entry_hover_n - SINK_BELOW_HOVER_N, 0.0F) : 0.0F;
+    return (mode == EST_MODE_SINK) ? at_least(down->entry_hover_n - HOVER_THRUST_MARGIN_N, 0.0F) : 0.0F;
 }
 
 static float most_n(const let_down_t *down, est_mode_t mode, float hover_n)

@@ -6,18 +6,18 @@
 
 #include "control/between.h"
 #include "control/credible.h"
+#include "control/est/credit.h"
 #include "control/touchdown.h"
 
 #define RAMP_START 0.68F                   /* below the lightest vehicle, 0.8 of GRAV */
 #define RAMP_N_PER_S 4.0F                  /* chosen: leaves the ground in 0.6 s */
 #define RAMP_MOST 1.35F                    /* above the heaviest vehicle, 1.2 of GRAV */
 #define LIFT_OFF_M (5.0F * HEIGHT_SIGMA_M) /* one scan of three million by chance */
-#define LIFT_OFF_MPS2 \
-    0.9F                     /* five sigma of a Razor's noise, 0.4 m/s2, behind LIFT_FILTER_S: of 0.43 of it \
-                              */
-#define LIFT_OFF_SIGMAS 1.2F /* chosen: of the measured noise, on a mean of three frames */
-#define LIFT_FILTER_S 0.08F  /* chosen: three frames */
-#define LIFT_TIME_S 1.0F     /* as STANDING_TIME_S in accelerometer.c */
+#define LIFT_FILTER_S 0.08F                /* chosen: three frames */
+#define LIFT_FILTER_SHARE 0.43F            /* what is left of a frame's noise behind it */
+#define LIFT_OFF_SIGMAS 3.0F               /* usual: of the measured noise, */
+#define LIFT_OFF_MPS2 (5.0F * LIFT_FILTER_SHARE * CREDIT_NOISE_MPS2) /* and five of a Razor's */
+#define LIFT_TIME_S 1.0F /* as STANDING_TIME_S in accelerometer.c */
 
 void lift_off_reset(lift_off_t *lift, float gravity_n, float ground_m)
 {
@@ -39,7 +39,7 @@ void lift_off_watch(lift_off_t *lift, float felt_mps2, float delivered_n, float 
 
 static float threshold_mps2(float noise_mps2)
 {
-    return at_least(LIFT_OFF_SIGMAS * noise_mps2, LIFT_OFF_MPS2);
+    return at_least(LIFT_OFF_SIGMAS * LIFT_FILTER_SHARE * noise_mps2, LIFT_OFF_MPS2);
 }
 
 bool lift_off_is_seen(const lift_off_t *lift, const lift_off_signs_t *signs)

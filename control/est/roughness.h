@@ -7,9 +7,13 @@
 
 #include <stdint.h>
 
+#include "control/credible.h"
+
 /* of the test of a height, estimator.c; tried: with a wider one a half-seen edge made it fly away */
 #define INNOVATION_LIMIT_MAX_M 0.080F
-#define ROUGHNESS_SMOOTH_M 0.020F /* chosen: edges and the vehicle's own motion measure less */
+#define ROUGHNESS_SMOOTH_M \
+    (3.0F * HEIGHT_SIGMA_M) /* the noisiest scanner's, one scan in 370, is no floor \
+                             */
 
 typedef struct {
     float previous_m[2]; /* the two previous heights */

@@ -5,21 +5,19 @@
 #include "control/seconds.h"
 #include "control/thrust.h"
 
-#define WINDOW_N 3.0F                   /* chosen: 0.4 g to either side */
-#define INSTEAD_SHARE 0.65F             /* tried 0.6 to 1: of its gains, for vehicles that shake with them */
-#define HEIGHT_LATE_US UINT32_C(170000) /* a scan of 0.1 s is missing */
+#define WINDOW_N \
+    (EST_FALL_MPS2 * 7.0F / IMU_GRAVITY_MPS2) /* what a vehicle that hovers at 7 N accelerates by */
+#define HEIGHT_LATE_US UINT32_C(170000)       /* a scan of 0.1 s is missing */
 
 float law_pidt_step(laws_t *laws, est_law_t *est, const situation_t *now)
 {
     const height_track_t *height = &now->where->supervisor.height;
     const float *value = now->parameters->value;
-    const bool instead = parameters_choice(now->parameters, PARAMETER_LAW) == LAW_EST;
-    const float share = instead ? INSTEAD_SHARE : 1.0F;
     const float hover_n = now->where->hover.thrust_n;
     const pidt_gains_t gains = {
-        .kp_n_per_m = share * value[PARAMETER_PKP],
-        .ki_n_per_m_s = share * value[PARAMETER_PKI],
-        .kd_n_s_per_m = share * value[PARAMETER_PKD],
+        .kp_n_per_m = value[PARAMETER_PKP],
+        .ki_n_per_m_s = value[PARAMETER_PKI],
+        .kd_n_s_per_m = value[PARAMETER_PKD],
         .gravity_n = value[PARAMETER_GRAV],
         .most_n = at_most(value[PARAMETER_GRAV] + WINDOW_N, THRUST_MAX_N),
         .least_n = at_least(value[PARAMETER_GRAV] - WINDOW_N, 0.0F),

@@ -60,7 +60,7 @@ static void resume_law(laws_t *laws, const situation_t *now)
 void laws_change(laws_t *laws, const situation_t *now)
 {
     if (now->mode == FLIGHT_MODE_DESCENT) {
-        descent_start(&laws->descent, now->where->supervisor.height.rate_mm_s);
+        descent_start(&laws->descent);
     }
     if (now->mode == FLIGHT_MODE_LAW) {
         resume_law(laws, now);
@@ -121,8 +121,10 @@ static void transfer(laws_t *laws, const situation_t *now, bool law_changed)
 {
     const float hover_n = now->where->hover.thrust_n;
     const bool both_est = modes_use_estimate(now->mode_before) && modes_use_estimate(now->mode);
-    const bool changed = now->mode_before != now->mode && !both_est;
+    const bool floats = now->where->supervisor.state == FLIGHT_FLOATING;
+    const bool changed = (now->mode_before != now->mode && !both_est) || (laws->floated && !floats);
 
+    laws->floated = floats;
     if (now->mode == FLIGHT_MODE_IDLE || (changed && starts_at_once(now))) {
         laws->transfer_n = 0.0F;
     } else if (law_changed && !loses_estimate(now)) {

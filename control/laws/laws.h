@@ -19,12 +19,12 @@ typedef struct {
     pid_state_t pid;
     bool integral; /* the law had an integral action in its previous sample */
     pidt_state_t pidt;
+    bool floated;          /* the state of the cycle before was FLOATING: the thrust stayed near hover */
     float gravity_n;       /* GRAV of the previous cycle */
     uint32_t pidt_rays_us; /* rays of the height before, law PIDT */
     descent_t descent;
-    float blind_ahead_s; /* by which a blind descent is ahead of its time */
-    float setpoint_n;    /* thrust that the mode computes */
-    float transfer_n;    /* added to setpoint_n; fades to 0: bumpless transfer between modes */
+    float setpoint_n; /* thrust that the mode computes */
+    float transfer_n; /* added to setpoint_n; fades to 0: bumpless transfer between modes */
 } laws_t;
 
 /* One law. Returns the setpoint. est: the state of law EST. */

@@ -5,7 +5,6 @@
 
 #include "control/between.h"
 #include "control/credible.h"
-#include "control/est/cascade.h"
 
 #define LOW_PASS_S 0.0199F /* chosen: 8 Hz */
 
@@ -15,7 +14,6 @@
 #define SWING_N 0.8F        /* chosen: three times the usual activity, 0.22 N */
 #define SWINGS_FREE 3.0F    /* chosen: an edge and the swing back make two */
 #define SWINGS_TIME_S 10.0F /* chosen: a loop that has swung would swing again */
-#define CALM_PER_SWING 0.1F /* chosen: nine swings take the gain to CASCADE_CALM_MIN */
 
 void pidt_reset(pidt_state_t *state)
 {
@@ -39,8 +37,8 @@ static void differentiate(pidt_state_t *state, float height_m, float dt_s)
     state->primed = true;
 }
 
-/* Below 1 after swings to and fro: the gains are too high for this vehicle. action_n: what proportional and
- * derivative part ask for. */
+/* Below 1 after swings to and fro: the gains are too high for this vehicle; twice as many, half of them.
+ * action_n: what proportional and derivative part ask for. */
 static float calm(pidt_state_t *state, float action_n, float dt_s)
 {
     const bool turned = action_n * state->peak_n < 0.0F;
@@ -52,7 +50,7 @@ static float calm(pidt_state_t *state, float action_n, float dt_s)
     if (turned || fabsf(action_n) > fabsf(state->peak_n)) {
         state->peak_n = action_n;
     }
-    return between(CASCADE_CALM_MIN, 1.0F - CALM_PER_SWING * (state->swings - SWINGS_FREE), 1.0F);
+    return SWINGS_FREE / at_least(state->swings, SWINGS_FREE);
 }
 
 float pidt_step(pidt_state_t *state, const pidt_gains_t *gains, float reference_m, float height_m, float dt_s)

@@ -31,7 +31,7 @@ static float descent_n(stuck_pin_t *pin, const situation_t *now)
     if (!height->is_new) {
         return hover_n + pin->more_n;
     }
-    pin->descent.sink_mm_s = holds ? 0.0F : pin->descent.sink_mm_s;
+    pin->descent.holds = holds;
     pin->descent.rocks = now->rocks;
     return descent_step(&pin->descent, hover_n, height->height_mm, height->rate_mm_s,
                         seconds_at_most(height->gap_us, HEIGHT_FRESH_S));
@@ -48,7 +48,7 @@ void stuck_pin_step(stuck_pin_t *pin, const situation_t *now)
         return;
     }
     if (!piloted || pin->piloted_s <= 0.0F) {
-        descent_start(&pin->descent, 0.0F);
+        descent_start(&pin->descent);
         reset(pin);
     }
     if (piloted) {

@@ -119,12 +119,6 @@ static inline void band_is_n(float band_n)
     est.deadband.band_n = band_n;
 }
 
-/* The thrust that it goes on from. */
-static inline float goes_on_from_n(void)
-{
-    return est.cascade.thrust_n;
-}
-
 /* ---- take-off */
 
 static inline void ground_was_at_m(float height_m)
@@ -188,7 +182,7 @@ static inline void est_begin(uint32_t now_us)
     accelerations_come(true);
     (void)estimator_fuse_height(&est.estimator, &altitude, now_us - FRAME_AGE_US, false);
     estimated(0.5F, 0.0F, 0.0F);
-    est_law_engage(&est, GRAV_N, GRAV_N);
+    est_law_engage(&est, GRAV_N);
     delivers_n(GRAV_N);
 }
 

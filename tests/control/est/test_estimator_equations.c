@@ -288,7 +288,7 @@ void test_a_height_of_a_smooth_floor_has_a_noise_of_1_3_mm(void)
 void test_a_height_of_a_rough_floor_has_its_noise_too(void)
 {
     memset(filter->covariance, 0, sizeof filter->covariance);
-    filter->covariance[FILTER_HEIGHT][FILTER_HEIGHT] = 0.5F * (0.8F * 0.0009F - 0.0004F) + R_M2;
+    filter->covariance[FILTER_HEIGHT][FILTER_HEIGHT] = 0.8F * 0.0009F - 0.0192F * 0.0192F + R_M2;
     roughness->noise_m = 0.03F;
     roughness->previous_m[0] = roughness->previous_m[1] = 0.51F;
     (void)see(0.51F);
@@ -317,8 +317,8 @@ void test_the_bound_of_an_innovation_is_three_sigma_within_53_and_80_mm(void)
         TEST_ASSERT_FALSE(passes(0.01F, 0.004F, 0.0805F * side));
         TEST_ASSERT_TRUE(passes(1.0e-6F, 0.03F, 0.1600F * side)); /* 6 x 26.8 mm */
         TEST_ASSERT_FALSE(passes(1.0e-6F, 0.03F, 0.1620F * side));
-        TEST_ASSERT_FALSE(passes(1.0e-6F, 0.0223F, 0.0800F * side)); /* 19.9 mm: smooth */
-        TEST_ASSERT_TRUE(passes(1.0e-6F, 0.0225F, 0.0900F * side));  /* 20.1 mm: rough */
+        TEST_ASSERT_FALSE(passes(1.0e-6F, 0.0214F, 0.0800F * side)); /* 19.1 mm: smooth */
+        TEST_ASSERT_TRUE(passes(1.0e-6F, 0.0216F, 0.0900F * side));  /* 19.3 mm: rough */
     }
 }
 
@@ -327,7 +327,7 @@ static height_outcome_t second(float apart_m, uint16_t rejected)
 {
     setUp();
     filter->estimate.terrain_mps = 0.2F;
-    filter->estimate.speed_mps = 1.5F;
+    filter->estimate.speed_mps = 3.0F;
     for (uint16_t i = rejected; i > 0U; i--) {
         TEST_ASSERT_EQUAL(HEIGHT_REJECTED, see((i == 2U) ? 0.9F : 0.7F));
     }
@@ -341,7 +341,7 @@ void test_two_rejected_heights_within_53_mm_are_a_step_of_the_terrain(void)
     NEAR(-0.2495F, e.terrain_height_m);
     NEAR(0.7495F, filter->estimate.height_m);
     NEAR(0.0F, filter->estimate.terrain_mps);
-    NEAR(1.5F, filter->estimate.speed_mps);
+    NEAR(3.0F, filter->estimate.speed_mps);
     TEST_ASSERT_FLOAT_WITHIN(1.0e-9F, R_M2, filter->covariance[FILTER_HEIGHT][FILTER_HEIGHT]);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, filter->covariance[FILTER_HEIGHT][FILTER_SPEED]);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, filter->covariance[FILTER_HEIGHT][FILTER_BIAS]);
@@ -366,8 +366,8 @@ void test_the_third_rejected_height_starts_the_filter_anew(void)
 {
     TEST_ASSERT_EQUAL(HEIGHT_RESET, second(0.1F, 2U));
     NEAR(0.8F, filter->estimate.height_m);
-    NEAR(1.0F, filter->estimate.speed_mps); /* and no more */
-    NEAR(1.0F, filter->covariance[FILTER_SPEED][FILTER_SPEED]);
+    NEAR(sqrtf(16.0F / 3.0F), filter->estimate.speed_mps); /* and no more */
+    NEAR(16.0F / 3.0F, filter->covariance[FILTER_SPEED][FILTER_SPEED]);
     NEAR(0.09F, filter->covariance[FILTER_BIAS][FILTER_BIAS]);
     TEST_ASSERT_EQUAL_UINT16(2U, e.unchecked_count);
     TEST_ASSERT_FALSE(e.confirmed);
@@ -491,7 +491,7 @@ void test_a_forgotten_frame_leaves_the_speed_to_the_heights(void)
     estimator_forget_frame(&e);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, e.latest.motion.up_mps2);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, e.latest.motion.share);
-    NEAR((0.53F * 0.53F + 9.0F) * 0.025F, e.latest.motion.drift);
+    NEAR((0.53F * 0.53F + 3.96F * 3.96F) * 0.025F, e.latest.motion.drift);
     NEAR(0.03F, filter->covariance[FILTER_BIAS][FILTER_BIAS]);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, filter->covariance[FILTER_SPEED][FILTER_BIAS]);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, filter->covariance[FILTER_HEIGHT][FILTER_BIAS]);

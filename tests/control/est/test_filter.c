@@ -118,11 +118,11 @@ void test_speed_bias_and_slope_have_limits(void)
 {
     for (float side = -1.0F; side < 2.0F; side += 2.0F) {
         filter.estimate = (estimate_t){
-            .speed_mps = 4.1F * side, .bias_mps2 = 1.6F * side, .terrain_mps = 0.6F * side};
+            .speed_mps = 4.1F * side, .bias_mps2 = 1.6F * side, .terrain_mps = 4.1F * side};
         predict(1.0e-6F, 0.0F, 0.0F);
         NEAR(4.0F * side, filter.estimate.speed_mps);
         NEAR(1.5F * side, filter.estimate.bias_mps2);
-        NEAR(0.5F * side, filter.estimate.terrain_mps);
+        NEAR(4.0F * side, filter.estimate.terrain_mps);
         filter.estimate = (estimate_t){
             .speed_mps = 3.9F * side, .bias_mps2 = 1.4F * side, .terrain_mps = 0.49F * side};
         filter_bound(&filter);
@@ -143,27 +143,28 @@ void test_a_variance_has_limits_and_shrinks_with_its_row(void)
 
         for (unsigned i = 0; i < N; i++) {
             for (unsigned j = i; j < N; j++) {
-                filter.covariance[i][j] = (i == j) ? 0.1F : 0.012F;
+                filter.covariance[i][j] = (i == j) ? 0.05F : 0.012F;
             }
         }
         filter.covariance[state][state] = 1.44F * most;
-        predict(1.0e-6F, 0.0F, 0.0F);
+        predict(1.0e-7F, 0.0F, 0.0F);
         for (unsigned i = 0; i < N; i++) {
             for (unsigned j = i; j < N; j++) {
-                const float other = (i == state || j == state) ? 0.010F : 0.012F;
+                const float other = (i == state || j == state) ? 0.01F : 0.012F;
                 TEST_ASSERT_FLOAT_WITHIN(3.0e-6F,
                                          (i != j)       ? other
                                          : (i == state) ? most
-                                                        : 0.1F,
+                                                        : 0.05F,
                                          filter.covariance[i][j]);
             }
         }
         memset(filter.covariance, 0, sizeof filter.covariance);
-        predict(1.0e-6F, 0.0F, 0.0F);
+        predict(1.0e-7F, 0.0F, 0.0F);
         TEST_ASSERT_FLOAT_WITHIN(1.0e-10F, 1.0e-7F, filter.covariance[state][state]);
     }
-    TEST_ASSERT_EQUAL_FLOAT(1.0F, filter_variance_most(FILTER_HEIGHT));
-    TEST_ASSERT_EQUAL_FLOAT(0.25F, filter_variance_most(FILTER_TERRAIN));
+    TEST_ASSERT_EQUAL_FLOAT(2.5F * 2.5F / 3.0F,
+                            filter_variance_most(FILTER_HEIGHT)); /* anywhere within 0 .. 5 m */
+    TEST_ASSERT_EQUAL_FLOAT(16.0F / 3.0F, filter_variance_most(FILTER_TERRAIN));
 }
 
 /* As sure as the filter: half of it, and what is correlated follows. */

@@ -42,10 +42,10 @@ static bool lifts(float up_mps2, float noise_mps2, float height_m, float thrust_
 
 void test_it_is_off_the_ground_by_acceleration_or_height(void)
 {
-    TEST_ASSERT_TRUE(lifts(0.91F, 0.4F, 0.0F, 4.91F, true));
-    TEST_ASSERT_FALSE(lifts(0.89F, 0.4F, 0.0F, 4.91F, true));
-    TEST_ASSERT_TRUE(lifts(1.21F, 1.0F, 0.0F, 4.91F, true));
-    TEST_ASSERT_FALSE(lifts(1.19F, 1.0F, 0.0F, 4.91F, true)); /* 1.2 sigma */
+    TEST_ASSERT_TRUE(lifts(0.87F, 0.4F, 0.0F, 4.91F, true));
+    TEST_ASSERT_FALSE(lifts(0.85F, 0.4F, 0.0F, 4.91F, true));
+    TEST_ASSERT_TRUE(lifts(1.30F, 1.0F, 0.0F, 4.91F, true));
+    TEST_ASSERT_FALSE(lifts(1.28F, 1.0F, 0.0F, 4.91F, true)); /* three sigma behind the low-pass */
     TEST_ASSERT_TRUE(lifts(0.0F, 0.4F, 0.0321F, 4.91F, true));
     TEST_ASSERT_FALSE(lifts(0.0F, 0.4F, 0.0319F, 4.91F, true));
 }
@@ -97,11 +97,11 @@ void test_on_the_ramp_a_vehicle_that_does_not_accelerate_stands(void)
         bool ramping;
         float up_mps2, noise_mps2;
         bool stands;
-    } rows[] = {{true, 0.89F, 0.4F, true},
-                {true, 0.91F, 0.4F, false},
+    } rows[] = {{true, 0.85F, 0.4F, true},
+                {true, 0.87F, 0.4F, false},
                 {false, 0.0F, 0.4F, false},
-                {true, 1.19F, 1.0F, true},
-                {true, 1.21F, 1.0F, false}};
+                {true, 1.28F, 1.0F, true},
+                {true, 1.30F, 1.0F, false}};
 
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         setUp();

@@ -37,14 +37,13 @@ void test_the_noise_is_a_sixth_of_the_squared_second_difference_over_five_height
     }
 }
 
-/* What is beyond 20 mm counts by half. */
-void test_a_floor_is_rough_beyond_20_mm(void)
+void test_a_floor_is_rough_beyond_three_sigma_of_a_smooth_one(void)
 {
     TEST_ASSERT_EQUAL_FLOAT(0.0F, roughness_variance_m2(&roughness));
-    roughness.noise_m = 0.0199F;
+    roughness.noise_m = 0.0191F;
     TEST_ASSERT_EQUAL_FLOAT(0.0F, roughness_variance_m2(&roughness));
     roughness.noise_m = 0.03F;
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-9F, 0.5F * (0.0009F - 0.0004F), roughness_variance_m2(&roughness));
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-9F, 0.0009F - 0.0192F * 0.0192F, roughness_variance_m2(&roughness));
 }
 
 static void edge(float innovation_m, float edge_m, uint32_t ago_us)
@@ -66,14 +65,14 @@ void test_an_edge_that_returns_within_a_second_is_a_bar_of_half_its_height(void)
     NEAR(0.004F, roughness.noise_m);
     edge(-0.041F, 0.06F, 1U);
     NEAR(0.0205F, roughness.noise_m);
-    edge(-0.149F, 0.149F, 1U);
-    NEAR(0.0745F, roughness.noise_m);
+    edge(-0.159F, 0.159F, 1U);
+    NEAR(0.0795F, roughness.noise_m);
 }
 
 /* It is none, so the edge before it stays the latest one. */
-void test_what_is_lower_than_40_mm_or_higher_than_150_is_no_edge_of_a_bar(void)
+void test_what_is_lower_than_40_mm_or_higher_than_160_is_no_edge_of_a_bar(void)
 {
-    static const float none_m[] = {-0.039F, -0.151F};
+    static const float none_m[] = {-0.039F, -0.161F};
 
     for (int i = 0; i < 2; i++) {
         edge(none_m[i], 0.06F, 1000U);

@@ -69,12 +69,13 @@ void test_between_two_heights_pidt_holds_its_thrust(void)
     TEST_ASSERT_EQUAL_FLOAT(before_n, step_n());
 }
 
-/* The window is 3 N to either side of GRAV, within the actuator's. */
+/* The window is 2.83 N to either side of GRAV, within the actuator's. */
 void test_pidt_stays_in_a_window_about_gravity(void)
 {
     static const struct {
         float gravity_n, aim_m, thrust_n;
-    } rows[] = {{7.0F, 3.0F, 10.0F}, {7.0F, -3.0F, 4.0F}, {2.0F, -3.0F, 0.0F}, {9.0F, 3.0F, THRUST_MAX_N}};
+    } rows[] = {
+        {7.0F, 3.0F, 9.8267F}, {7.0F, -3.0F, 4.1733F}, {2.0F, -3.0F, 0.0F}, {9.0F, 3.0F, THRUST_MAX_N}};
 
     for (int i = 0; i < 4; i++) {
         setUp();
@@ -85,10 +86,10 @@ void test_pidt_stays_in_a_window_about_gravity(void)
     }
 }
 
-void test_in_place_of_est_pidt_has_0_65_of_its_gains(void)
+void test_in_place_of_est_pidt_has_all_of_its_gains(void)
 {
     set(PARAMETER_LAW, (float)LAW_EST);
-    gains = (pidt_gains_t){2.6F, 0.65F, 1.95F, GRAV_N, 10.0F, 4.0F};
+    gains = (pidt_gains_t){4.0F, 1.0F, 3.0F, GRAV_N, 10.0F, 4.0F};
     (void)expected_n(0.49F, 0.0F);
     (void)see_n(0.49F, 0U);
     NEAR(expected_n(0.5F, 0.12F), see_n(0.5F, 120000U));
@@ -102,10 +103,10 @@ void test_pidt_does_not_hold_a_push_while_heights_are_late(void)
         uint32_t age_us;
         bool airborne;
         float aim_m, held_n, then_n;
-    } rows[] = {{170000U, true, 3.0F, 10.0F, 10.0F},
-                {170001U, true, 3.0F, 10.0F, 7.7F},
-                {170001U, true, -3.0F, 4.0F, 6.7F},
-                {170001U, false, 3.0F, 10.0F, 10.0F}};
+    } rows[] = {{170000U, true, 3.0F, 9.8267F, 9.8267F},
+                {170001U, true, 3.0F, 9.8267F, 7.7F},
+                {170001U, true, -3.0F, 4.1733F, 6.7F},
+                {170001U, false, 3.0F, 9.8267F, 9.8267F}};
     for (int i = 0; i < 4; i++) {
         setUp();
         hovers_at_n(7.2F);
