@@ -11,8 +11,10 @@
 
 #include "control/between.h"
 #include "control/credible.h"
+#include "control/where/hover_thrust.h"
 
-#define SINK_FADE_N_PER_S 0.2F   /* chosen: without heights at the hover thrust after 2.5 s */
+/* Without heights: at the hover thrust after the time over which that was learned */
+#define SINK_FADE_N_PER_S (NEAR_HOVER_N / HOVER_TIME_S)
 #define LANDED_FADE_N_PER_S 2.0F /* chosen: no thrust 4 s later */
 /* 0.94 N below the hover thrust, more than the ground carries: by Cheeseman and Bennett, 1 / (1 - (R / 4 z)^2),
  * 11 % of 8.4 N, the heaviest vehicle's hover thrust, by rotors of R 0.127 m at z 0.1 m. */
