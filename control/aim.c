@@ -4,10 +4,9 @@
 #include <math.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 
-#define EFFECT_REACH_M 0.14F  /* chosen: below PUSHED_M in rules.c */
 #define UNKNOWN_REACH_M 0.06F /* tried 0.05 to 0.09; asks for 0.8 N at the delivered gains */
-#define FLOAT_REACH_M 0.30F   /* chosen: three times CONTENT_M */
 
 float aim_height_m(const aim_t *aim, const supervisor_t *supervisor)
 {
@@ -30,9 +29,8 @@ static void hold_floating(aim_t *aim, const where_t *where, flight_mode_t mode, 
     const float height_m = where->supervisor.height.height_mm * 0.001F;
     const bool holds = modes_hold(mode_before) && where->supervisor.state == FLIGHT_FLOATING &&
                        mode != FLIGHT_MODE_HOVER;
-    const float reach_m = pilot_shows_effect(pilot) ? EFFECT_REACH_M
-                          : pilot_is_unknown(pilot) ? UNKNOWN_REACH_M
-                                                    : FLOAT_REACH_M;
+    const bool unsure = pilot_is_unknown(pilot) && !pilot_shows_effect(pilot);
+    const float reach_m = unsure ? UNKNOWN_REACH_M : LAW_REACH_M;
 
     aim->floating_m = holds ? between(height_m - reach_m, aim->floating_m, height_m + reach_m) : height_m;
 }

@@ -10,7 +10,6 @@
 #define FOLLOWS_SPIKE_RAD (2.0F * FOLLOWS_RAD)                /* in two frames, one of them a spike */
 #define STRAYED_FRAMES ATTITUDE_ROLLED_FRAMES                 /* a burst of bad frames is over */
 #define BENT_RAD 0.17453293F /* 10 degrees: three sigma of the liveliest sway, 3 degrees, rounded up */
-#define RESTS_RAD 0.02F      /* chosen: 46 degrees a second; a vehicle that flies forward stays bent */
 
 void attitude_init(attitude_filter_t *filter)
 {
@@ -146,7 +145,7 @@ static void watch_roll(attitude_filter_t *filter, const attitude_t *level)
         }
         return;
     }
-    const bool rests = are_close(&filter->followed, level, RESTS_RAD);
+    const bool rests = are_close(&filter->followed, level, ATTITUDE_STIRS_RAD);
     filter->followed = *level;
     filter->strayed = 0U;
     count_roll(filter, level, follows, rests);

@@ -12,8 +12,7 @@
 #define CELL_LOAD_V 0.3F /* PX4, BAT1_V_LOAD_DROP: from a light load to full throttle */
 
 #define LOW_S 10.0F /* ArduPilot, BATT_LOW_TIMER */
-#define MEAN_S 2.0F /* chosen: a gust of the simulation lasts 1 s */
-#define GOOD_S 1.0F /* chosen: readings come, or do not, for as long as a loose contact needs to show */
+#define MEAN_S 1.0F /* PX4, battery.cpp: the filter of the voltage. Readings are good or bad over the same time */
 #define BELIEVE_SHARE 0.75F /* three good readings of four */
 #define DOUBT_SHARE 0.5F    /* as many others as good ones */
 
@@ -54,7 +53,7 @@ static void count(battery_t *battery, battery_verdict_t verdict, float step_s)
 {
     const float is_good = (verdict == BATTERY_GOOD) ? 1.0F : 0.0F;
 
-    battery->good += share_of(step_s, GOOD_S) * (is_good - battery->good);
+    battery->good += share_of(step_s, MEAN_S) * (is_good - battery->good);
     battery->believed = battery->good > (battery->believed ? DOUBT_SHARE : BELIEVE_SHARE);
     if (verdict != BATTERY_GOOD) {
         battery->why = (uint16_t)verdict;
@@ -131,11 +130,11 @@ void battery_step(battery_t *battery, const parameters_t *parameters, bool came,
 {
     const float step_s = at_most(since_s, CYCLE_MAX_S);
 
-    battery->silent_s = came ? 0.0F : at_most(battery->silent_s + step_s, GOOD_S);
+    battery->silent_s = came ? 0.0F : at_most(battery->silent_s + step_s, MEAN_S);
     if (came) {
         read(battery, pin_v * parameters->value[PARAMETER_VDIV], cells_of(parameters), step_s);
         watch(battery, pin_v, in_air, step_s);
-    } else if (battery->silent_s >= GOOD_S) {
+    } else if (battery->silent_s >= MEAN_S) {
         count(battery, BATTERY_ABSENT, step_s);
         battery->latest_v = NAN;
     }

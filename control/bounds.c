@@ -7,21 +7,20 @@
 
 #include "control/between.h"
 #include "control/credible.h"
+#include "control/laws/descent.h"
 #include "control/seconds.h"
+#include "control/sense/accelerometer.h"
 #include "control/thrust.h"
 #include "control/touchdown.h"
 
-#define UNCONFIRMED_MPS 0.35F /* chosen: CONFIRMED_M in confirmation.c, 0.12 m, takes 0.35 s at this rate */
-#define CLIMB_MARGIN_MPS 0.4F /* chosen: room for an overshoot of the climb rate above VUP */
-#define SWITCH_MPS 0.1F       /* chosen: that much below the climb rate two speeds switch the limit on */
+#define UNCONFIRMED_MPS (0.001F * DESCENT_RATE_MM_S) /* no faster than a descent */
 
 #define UNCHECKED_BELOW_N (2.0F * NEAR_HOVER_N) /* to sink is safer than to climb */
 
 #define BACK_BELOW_N NEAR_HOVER_N /* sinks at 0.3 m/s */
-#define BACK_MOVES_MPS 0.35F      /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in ACCELEROMETER_IN_HANDS_S */
+/* What the largest bias of an accelerometer, 0.25 m/s2 (tools/campaign/plan.py), makes of the speed */
+#define BACK_MOVES_MPS (0.25F * ACCELEROMETER_IN_HANDS_S)
 #define BACK_N_PER_M 2.0F         /* chosen: a climb of 1 m/s lowers it by 1.5 N before that is forgotten */
-#define BACK_CLIMB_N_PER_MPS 1.0F /* chosen: halves the climb of a vehicle that is lighter by a fifth */
-#define BACK_FALL_N_PER_MPS (2.0F * BACK_CLIMB_N_PER_MPS)   /* a fall is worse than a climb */
 #define BACK_BRAKE_N (BACK_BELOW_N + HOVER_THRUST_MARGIN_N) /* what these two may have sunk */
 #define BACK_MAX_S 60.0F                                    /* above DESCENT_TIMEOUT_US in supervisor.c */
 
@@ -60,22 +59,18 @@ static float climbing_n(const situation_t *now, float climb_mps)
     return vehicle.damping_per_s * climb_mps / vehicle.authority_mps2_per_n;
 }
 
-/* Limits the climb without use of the estimate. The limit is low while no height has confirmed the climb: a
- * blocked beam looks like a step towards the vehicle. */
+/* Limits the climb without use of the estimate while no height has confirmed it: a blocked beam looks like a
+ * step towards the vehicle. */
 static interval_t of_climb(bounds_t *bounds, const situation_t *now)
 {
     const evidence_t *evidence = now->evidence;
     const bool takes_off = now->where->supervisor.state == FLIGHT_TAKEOFF;
-    const float fastest_mps = evidence->unconfirmed
-                                  ? UNCONFIRMED_MPS
-                                  : now->parameters->value[PARAMETER_VUP] + CLIMB_MARGIN_MPS;
-    const float switch_mps = fastest_mps - SWITCH_MPS;
-    const bool fast = evidence->push_mps > switch_mps &&
-                      (!takes_off || doubts(evidence, DOUBT_IMU) || felt_mps(evidence) > switch_mps);
+    const bool fast = evidence->push_mps > UNCONFIRMED_MPS &&
+                      (!takes_off || doubts(evidence, DOUBT_IMU) || felt_mps(evidence) > UNCONFIRMED_MPS);
 
     (void)bounds;
-    return (fast && modes_hold_reference(now->mode, now->law))
-               ? most(now->where->hover.thrust_n + climbing_n(now, fastest_mps))
+    return (evidence->unconfirmed && fast && modes_hold_reference(now->mode, now->law))
+               ? most(now->where->hover.thrust_n + climbing_n(now, UNCONFIRMED_MPS))
                : anything;
 }
 
@@ -105,12 +100,11 @@ static float given_back_n(bounds_t *bounds, const situation_t *now)
     const float speed_mps = now->est->estimator.now.speed_mps;
     const float felt_mps = speed_mps - between(-BACK_MOVES_MPS, speed_mps, BACK_MOVES_MPS);
     const float sunk_n = where->pilot.sink_n_per_s * seconds_at_most(where->supervisor.state_us, BACK_MAX_S);
-    const float n_per_mps = (felt_mps > 0.0F) ? BACK_CLIMB_N_PER_MPS : BACK_FALL_N_PER_MPS;
 
     bounds->felt_n = between(0.0F, bounds->felt_n + BACK_N_PER_M * felt_mps * where_step_s(where),
                              HOVER_BOUND_N);
     return where->hover.thrust_n - BACK_BELOW_N - at_most(sunk_n, HOVER_THRUST_MARGIN_N) - bounds->felt_n -
-           at_least(n_per_mps * felt_mps, -BACK_BRAKE_N);
+           at_least(climbing_n(now, felt_mps), -BACK_BRAKE_N);
 }
 
 static interval_t while_unknown(bounds_t *bounds, const situation_t *now)

@@ -1,12 +1,12 @@
 #include "control/calibration.h"
 
+#include "control/credible.h"
 #include "control/thrust.h"
 #include "control/where/hover_thrust.h"
 
 #define COUNTS_PER_PERCENT 20.84F  /* 2084 counts from no thrust to full, thrust.h */
 #define IDLE_COUNTS 4166U          /* 2 ms, seed eq. 4-5 */
 #define LIMIT_N 8.5F               /* 1.5 N above the seed's largest hover thrust */
-#define LIFTED_MM 100.0F           /* chosen: no rope lets it rise so far */
 #define US_PER_S UINT32_C(1000000) /* microseconds */
 
 static float thrust_of(uint16_t compare_counts)
@@ -16,7 +16,7 @@ static float thrust_of(uint16_t compare_counts)
 
 static calibration_end_t reason_to_end(float link_s, const flight_inputs_t *in, const flight_outputs_t *out)
 {
-    const bool low = in->height_valid && in->altitude.height_mm <= LIFTED_MM;
+    const bool low = in->height_valid && in->altitude.height_mm <= LOW_MM;
 
     if (out->state != FLIGHT_GROUND || out->reference_m > 0.0F) {
         return CALIBRATION_STATE;

@@ -5,9 +5,11 @@
 #include "control/angle.h"
 #include "control/imu_axes.h"
 
-#define TILT_LEAST_RAD 0.13962634F /* chosen: 8 degrees, a clear movement */
-
-#define OTHER_SHARE 0.5F /* chosen: a hand never turns about one axis alone */
+/* A hand never turns about one axis alone. Halfway between one axis and both alike: tan(22.5 degrees). */
+#define OTHER_SHARE 0.41421356F
+/* 8.5 degrees: there noise makes OTHER_SHARE of the tilt at five sigma. Of a turn it is 0.71 degrees, 0.5 of
+ * each of two frames (tools/campaign/plan.py): 5 * 0.71 / 0.414. */
+#define TILT_LEAST_RAD 0.14835299F
 
 /* Razor_AHRS; g; m/s2; thousandths of g. */
 static const float units[] = {256.0F, 1.0F, 9.80665F, 1000.0F};

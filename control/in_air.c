@@ -6,7 +6,7 @@
 
 #include "control/where/hover_thrust.h"
 
-#define WINDOW_US UINT32_C(10000000) /* chosen: two time constants of a hover thrust that is learned anew */
+#define WINDOW_US ((uint32_t)(4.0e6F * HOVER_TIME_S)) /* 98 % of a hover thrust is learned anew */
 #define STEP_N 0.2F   /* chosen: PD then hangs 43 mm lower with the least KP that flew, 0.00466 */
 #define SHARE 0.25F   /* chosen: half of what makes a loop swing that is tuned to half its limit */
 #define MARGIN_N 0.3F /* chosen: 0.4 m/s2 to brake with */

@@ -3,23 +3,19 @@
 #include <math.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 #include "control/imu_axes.h"
 #include "control/seconds.h"
 
 /* chosen: 60 us of a pulse. PX4 has 0.1 (MPC_HOLD_DZ), for sticks that spring to the middle; a throttle's
  * stick does not. */
 #define DEAD_BAND 0.15F
-#define SETTLED_S 0.5F            /* chosen: so long in the middle, or open: longer than from end to end */
+#define HELD_S 1.0F               /* what the stick says so long is meant: PX4, COM_RC_ARM_HYST */
 #define RAISED_MOST_M 1.0F        /* chosen: half a room */
-#define LEAD_MOST_M 0.3F          /* what law EST lags behind as delivered: VUP / POSK, 0.7 m/s by 2.3 1/s */
+#define LEAD_MOST_M LAW_REACH_M
 #define TAKE_OFF_UP 0.3F          /* PX4's FlightTaskManualAltitude::_checkTakeoff() */
-#define TAKE_OFF_S 0.3F           /* chosen: a push, not a touch */
 #define TAKE_OFF_M LEAD_MOST_M    /* from the ground */
-#define LAND_S 1.0F               /* chosen: longer than it takes to let go at the lowest reference */
 #define MOTORS_STOP_PERCENT 10.0F /* the autopilot stops its motors below it, docs/operator.md */
-#define HYSTERESIS_PERCENT 2.0F   /* chosen */
-#define OPEN_PERCENT (MOTORS_STOP_PERCENT + HYSTERESIS_PERCENT)
-#define SHUT_PERCENT (MOTORS_STOP_PERCENT - HYSTERESIS_PERCENT)
 #define STEP_MOST_S 0.2F     /* a control cycle comes within 150 ms */
 #define MIDDLE_PERCENT 50.0F /* of 0 to 100 */
 #define US_PER_PERCENT 10.0F /* a pulse of 1 to 2 ms */
@@ -65,10 +61,10 @@ static bool listen(stick_orders_t *orders, const flight_inputs_t *in)
 static void watch_throttle(stick_orders_t *orders, const stick_t *stick, float middle_us, float step_s)
 {
     const float percent = MIDDLE_PERCENT + (middle_us - stick_pulse_us(stick)) / US_PER_PERCENT;
-    const bool differs = orders->opened ? percent < SHUT_PERCENT : percent > OPEN_PERCENT;
+    const bool differs = orders->opened ? percent < MOTORS_STOP_PERCENT : percent > MOTORS_STOP_PERCENT;
 
     orders->open_s = differs ? orders->open_s + step_s : 0.0F;
-    if (orders->open_s >= SETTLED_S) {
+    if (orders->open_s >= HELD_S) {
         orders->open_s = 0.0F;
         orders->opened = !orders->opened;
         arm(orders, orders->opened);
@@ -79,20 +75,20 @@ static void watch_middle(stick_orders_t *orders, float up, float step_s)
 {
     const bool middle = fabsf(up) <= DEAD_BAND;
 
-    orders->middle_s = middle ? at_most(orders->middle_s + step_s, SETTLED_S) : 0.0F;
+    orders->middle_s = middle ? at_most(orders->middle_s + step_s, HELD_S) : 0.0F;
     if (middle) {
         orders->pushed = false;
         orders->raised_m = 0.0F;
         orders->held_s = 0.0F;
     }
-    orders->counts = orders->counts || orders->middle_s >= SETTLED_S;
+    orders->counts = orders->counts || orders->middle_s >= HELD_S;
 }
 
 /* Held so for long enough: an order that is given once. */
-static bool held(stick_orders_t *orders, bool so, float for_s, float step_s)
+static bool held(stick_orders_t *orders, bool so, float step_s)
 {
     orders->held_s = (so && !orders->pushed) ? orders->held_s + step_s : 0.0F;
-    if (orders->held_s < for_s) {
+    if (orders->held_s < HELD_S) {
         return false;
     }
     orders->held_s = 0.0F;
@@ -126,7 +122,7 @@ static void fly(stick_orders_t *orders, const parameters_t *parameters, const fl
     const float by_m = rate_mps(up, parameters->value[PARAMETER_SRATE]) * step_s;
     const bool lowest = before->reference_m <= STICK_LEAST_M;
 
-    if (held(orders, lowest && up < -DEAD_BAND, LAND_S, step_s)) {
+    if (held(orders, lowest && up < -DEAD_BAND, step_s)) {
         order(orders, 0.0F);
     } else if (by_m != 0.0F && before->estimate_mm == before->estimate_mm) {
         const float to_m = moved_m(orders, before->reference_m, before->estimate_mm * 0.001F, by_m);
@@ -149,7 +145,7 @@ static void command(stick_orders_t *orders, const parameters_t *parameters, cons
     if (before->state == FLIGHT_FLYING) {
         fly(orders, parameters, before, up, step_s);
     } else if (armed || again) {
-        if (held(orders, up > TAKE_OFF_UP, TAKE_OFF_S, step_s)) {
+        if (held(orders, up > TAKE_OFF_UP, step_s)) {
             order(orders, TAKE_OFF_M);
         }
     } else if (floats) {

@@ -4,7 +4,7 @@
  * before he hands over arms (arming.h), as #ARM does. Commands by radio go on to count: the latest order
  * wins.
  *
- * A stick may lie, so four things limit what it can do. It counts only after it was in the middle for half a
+ * A stick may lie, so four things limit what it can do. It counts only after it was in the middle for a
  * second: not when it hangs at an end at power-on or at a hand-over. One push up raises the reference by a
  * metre at most. The reference stays within 0.3 m of the height. And it counts only where a pin tells who has
  * the throttle, because else it is the pilot's thrust.
@@ -16,11 +16,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "control/credible.h"
 #include "control/flight_io.h"
 #include "control/parameters.h"
 #include "control/stick.h"
 
-#define STICK_LEAST_M 0.2F /* chosen: lowest reference; below 0.15 m a height counts as the ground's */
+/* Lowest reference: what a hover is off by keeps above the heights that may be the ground's. */
+#define STICK_LEAST_M (LOW_M + CONTENT_M)
 
 /* Requests of one kind. Their sum is the sequence that the flight sees. */
 typedef struct {

@@ -11,19 +11,22 @@
 
 #include "control/between.h"
 #include "control/credible.h"
+#include "control/where/hover_thrust.h"
 
-#define LANDED_NO_MORE_M 0.10F   /* chosen: above any bounce */
-#define SINK_FADE_N_PER_S 0.2F   /* chosen: without heights at the hover thrust after 2.5 s */
+/* Without heights: at the hover thrust after the time over which that was learned */
+#define SINK_FADE_N_PER_S (NEAR_HOVER_N / HOVER_TIME_S)
 #define LANDED_FADE_N_PER_S 2.0F /* chosen: no thrust 4 s later */
-#define LANDED_ROCKS_S 0.7F /* chosen: 0.9 N below the hover thrust, more than the ground effect carries */
+/* 0.94 N below the hover thrust, more than the ground carries: by Cheeseman and Bennett, 1 / (1 - (R / 4 z)^2),
+ * 11 % of 8.4 N, the heaviest vehicle's hover thrust, by rotors of R 0.127 m at z 0.1 m. */
+#define LANDED_ROCKS_S 0.72F
 #define LANDED_ROCKS_SHARE (SINK_FADE_N_PER_S / LANDED_FADE_N_PER_S) /* as without heights */
 
 /* New time near the ground, from the time before (time_s) and one step of dt_s. Below HEIGHT_NO_NOISE_M it
- * starts; above LANDED_NO_MORE_M it is 0 again. From LANDED_ROCKS_S on it runs slowly while the tilt sways as
+ * starts; above LOW_M it is 0 again. From LANDED_ROCKS_S on it runs slowly while the tilt sways as
  * in flight (sway_rocks()). */
 static inline float touchdown_time_s(float time_s, float height_m, bool rocks, float dt_s)
 {
-    const bool low = height_m < HEIGHT_NO_NOISE_M || (time_s > 0.0F && height_m < LANDED_NO_MORE_M);
+    const bool low = height_m < HEIGHT_NO_NOISE_M || (time_s > 0.0F && height_m < LOW_M);
     const bool slow = rocks && time_s > LANDED_ROCKS_S;
     return low ? time_s + (slow ? LANDED_ROCKS_SHARE : 1.0F) * dt_s : 0.0F;
 }

@@ -7,14 +7,33 @@
 #include "control/seconds.h"
 #include "control/thrust.h"
 
-#define PIN_TRUSTED_S 5.0F               /* chosen: a loose contact is over sooner */
-#define PIN_BELOW_N (2.0F * PIN_ABOVE_N) /* the load is let go, and as much to sink */
-#define PIN_ABOVE_N 1.0F                 /* chosen: a load of a newton */
+#define PIN_TRUSTED_S 5.0F /* it warns first: PX4, COM_FAIL_ACT_T */
+/* A wrong height may ask for it: so much climbs at 1.2 m/s at most, the speed of a hard touch, with the lightest
+ * vehicle, 5.6 N, and the least damping, 1.5 1/s (tools/campaign/plan.py): 1.2 m/s * 1.5 1/s * 5.6 N / 9.81 m/s2.
+ */
+#define PIN_ABOVE_N 1.0F
+#define PIN_BELOW_N (2.0F * PIN_ABOVE_N) /* a load of a newton is let go, and as much to sink */
 
 static void reset(stuck_pin_t *pin)
 {
     pin->piloted_s = 0.0F;
     pin->more_n = 0.0F;
+    pin->vain_s = 0.0F;
+}
+
+/* A vehicle with so little thrust sinks, unless a pilot holds it up: where/piloting.c asks a landing the same.
+ * Once it is known, it stays known for this turn. He may give the throttle back before the pin tells, so then the
+ * thrust stays near the hover thrust. */
+static bool is_in_vain(stuck_pin_t *pin, const situation_t *now)
+{
+    const height_track_t *height = &now->where->supervisor.height;
+    const bool weak = pin->more_n < -HOVER_THRUST_MARGIN_N;
+    const bool stays = height->age_us <= HEIGHT_FRESH_US && height->rate_mm_s >= -DESCENT_RATE_MM_S;
+
+    if (pin->vain_s < UNPOWERED_S) {
+        pin->vain_s = (weak && stays) ? pin->vain_s + where_step_s(now->where) : 0.0F;
+    }
+    return pin->vain_s >= UNPOWERED_S;
 }
 
 /* Thrust of a descent by heights, or without them; it only holds the height while the pin is trusted. */
@@ -54,7 +73,8 @@ void stuck_pin_step(stuck_pin_t *pin, const situation_t *now)
     if (piloted) {
         pin->piloted_s += where_step_s(now->where);
         const float wanted_n = descent_n(pin, now) - now->where->hover.thrust_n;
-        const float least_n = (pin->descent.near_ground_s > 0.0F) ? -THRUST_MAX_N : -PIN_BELOW_N;
+        const float sunk_n = is_in_vain(pin, now) ? NEAR_HOVER_N : PIN_BELOW_N;
+        const float least_n = (pin->descent.near_ground_s > 0.0F) ? -THRUST_MAX_N : -sunk_n;
 
         pin->more_n = at_least(between(least_n, wanted_n, PIN_ABOVE_N), now->idle_n - now->thrust_n);
     }

@@ -12,6 +12,7 @@
 typedef struct {
     float piloted_s; /* for how long the pin has said so */
     float more_n;    /* added to the output */
+    float vain_s;    /* how long that has been too little to fly, and it does not sink */
     descent_t descent;
 } stuck_pin_t;
 

@@ -12,7 +12,7 @@
 #define SWAY_AIR_RAD2 4.0e-4F /* chosen: 1.1 degrees rms; between this and SWAY_RAD2 neither is certain */
 #define SWAY_HAND_RAD2 0.012F /* chosen: 6 degrees rms; who tilts a vehicle by hand tilts it more */
 #define ROCKED_RAD 0.017F     /* 1 degree: four sigma of an angle's noise, 0.25 degrees, razor9dof.h */
-#define ROCKED_BELOW_M 0.10F  /* as LANDED_NO_MORE_M in touchdown.h */
+#define ROCKED_BELOW_M LOW_M  /* as in touchdown.h */
 #define ROCKED_S 0.8F         /* chosen: 32 frames; at 0.5 s 2 of 96 blocked flights rested in the air */
 
 static void measure_sway(sway_t *sway, const imu_sample_t *frame, float dt_s)

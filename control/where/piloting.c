@@ -5,11 +5,11 @@
 #include "control/between.h"
 #include "control/credible.h"
 #include "control/laws/descent.h"
+#include "control/touchdown.h"
 #include "control/where/contact.h"
 #include "control/where/hover_thrust.h"
 
 #define GIVEN_BACK_N_PER_S 0.06F /* chosen: little, because the pilot may fly on for long */
-#define BY_PIN_N_PER_S 0.15F     /* chosen: more, because with a pin it begins when he gives it back */
 
 static void watch_descent(pilot_state_t *pilot, const pilot_signs_t *signs)
 {
@@ -17,7 +17,8 @@ static void watch_descent(pilot_state_t *pilot, const pilot_signs_t *signs)
         pilot->given_back = false;
     } else if (signs->handed_over && signs->entered) {
         pilot->given_back = true;
-        pilot->sink_n_per_s = signs->has_pin ? BY_PIN_N_PER_S : GIVEN_BACK_N_PER_S;
+        /* a pin tells that he has given it back: then as without heights */
+        pilot->sink_n_per_s = signs->has_pin ? SINK_FADE_N_PER_S : GIVEN_BACK_N_PER_S;
     }
 }
 

@@ -14,29 +14,33 @@
 #include "control/est/est_law.h"
 
 #define ATTITUDE_FRESH_US UINT32_C(250000) /* ten frames of 25 ms */
-/* chosen: a pilot who flies, not one who lifts the vehicle by hand */
-#define ALOFT_HELD_US UINT32_C(1000000)
-#define REST_HELD_US UINT32_C(1200000)        /* chosen: a bounce is shorter */
-#define REST_ROCKS_MAX_US UINT32_C(20000000)  /* chosen: above the time of a landing from 4 m */
-#define LINK_HOLD_US UINT32_C(5000000)        /* chosen: the flag warns for 5 s, then the vehicle lands */
+#define REST_HELD_US ((uint32_t)(REST_HELD_S * 1.0e6F)) /* on the ground; and off it, in a pilot's hands */
+/* A landing from 4.095 m, the scanner's range, is over: 11.7 s at 0.3 m/s down to 0.6 m, 2.8 s from there
+ * (log(0.3 / 0.15) by 0.25 1/s, laws/descent.h), and REST_HELD_S. */
+#define REST_ROCKS_MAX_US UINT32_C(15500000)
+#define LINK_HOLD_US UINT32_C(5000000)        /* it warns first: PX4, COM_FAIL_ACT_T */
 #define DESCENT_TIMEOUT_US UINT32_C(45000000) /* the thrust of a blind descent has fallen to 0, descent.c */
 #define AGE_MAX_US UINT32_C(3600000000)       /* one hour: below the wrap of 71 minutes */
 
-#define OFF_GROUND_MM 150.0F /* chosen: over the ground effect and any noise */
 #define REST_FALL_MM 20.0F   /* three HEIGHT_SIGMA_M, 19.2 mm */
 /* Above the highest reference, 3 m, the scanner sees 0.89 m more: 4.095 m less 0.205 m of the front mirror's
  * way. Rounded down. */
 #define TOO_HIGH_MM 800.0F
-#define RECOVERED_MM 300.0F            /* chosen: below the seed's usual overshoot */
+#define RECOVERED_MM (1000.0F * LAW_REACH_M) /* the law reaches it again without help */
 #define TOO_HIGH_HEIGHTS 2U            /* one height may be wrong */
 #define RATE_CHANGE_MAX_MM_S2 10000.0F /* 1 g: the vehicle cannot change its speed faster */
 #define CLIMB_AHEAD_S 0.40F /* sum of the age of a height, one more scan, and the lag of the motors */
-#define CLIMB_AHEAD_ESTIMATED_S 0.15F /* chosen: less, as a step of the terrain looks like a climb */
-#define ESTIMATE_AHEAD_S 0.25F        /* chosen: delay and lag of the motors, and a margin */
+/* The slowest vehicle of tools/campaign/plan.py: lag of the motors 150 ms, delay 20 ms, a pulse 14 ms; a
+ * frame 25 ms and 15 ms old. */
+#define ESTIMATE_AHEAD_S 0.22F
 #define ESTIMATE_HELD_US (HEIGHT_FRESH_US + UINT32_C(50000)) /* and half a scan: give or take */
-#define LOWERINGS_MAX 3U /* chosen: a third failure means that the law cannot fly the vehicle */
+/* The law cannot fly the vehicle. Of healthy flights of 45 s by law EST 6.2 % are taken over
+ * (docs/reliability.md). So within LOWERINGS_FORGOTTEN_US a second one comes by chance once in 36, a third
+ * once in 1300. */
+#define LOWERINGS_MAX 3U
 #define LOWERINGS_FORGOTTEN_US UINT32_C(20000000) /* chosen: the length of the seed's flights */
-#define LEVEL_COS 0.93969262F                     /* chosen: 20 degrees */
+/* 18 degrees: six sigma of the liveliest sway, 3 degrees (tools/campaign/plan.py), as for heights */
+#define LEVEL_COS 0.95105652F
 
 void supervisor_init(supervisor_t *supervisor)
 {
@@ -198,7 +202,7 @@ static float peak_mm(const supervisor_t *s, float height_mm, float rate_mm_s, fl
  * one. */
 static float measured_peak_mm(const supervisor_t *s)
 {
-    const float ahead_s = supervisor_has_estimate(s) ? CLIMB_AHEAD_ESTIMATED_S : CLIMB_AHEAD_S;
+    const float ahead_s = supervisor_has_estimate(s) ? 0.0F : CLIMB_AHEAD_S;
     return peak_mm(s, s->height.height_mm, s->height.rate_mm_s, ahead_s);
 }
 
@@ -222,7 +226,7 @@ static void observe_ground(supervisor_t *s)
 
     follow_ground(s);
     /* a height shows nothing while the tilt that corrects it is not known, or looks past the ground */
-    update_hold(&s->ground.aloft, fresh && is_level(s) && height_mm > s->ground.height_mm + OFF_GROUND_MM,
+    update_hold(&s->ground.aloft, fresh && is_level(s) && height_mm > s->ground.height_mm + LOW_MM,
                 s->step_us);
     update_hold(&s->ground.rest, resting, s->step_us);
     s->ground.rest_from_mm = resting ? s->ground.rest_from_mm : height_mm;
@@ -292,8 +296,8 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
 
     return (uint16_t)(bit(reference, FLIGHT_IF_REFERENCE) | bit(in->attitude_ready, FLIGHT_IF_READY) |
                       bit(fresh, FLIGHT_IF_HEIGHT) | bit(s->height.age_us > HEIGHT_LOST_US, FLIGHT_IF_LOST) |
-                      bit(fresh && s->height.height_mm > OFF_GROUND_MM, FLIGHT_IF_OFF_GROUND) |
-                      bit(s->ground.aloft.for_us >= ALOFT_HELD_US && s->sways, FLIGHT_IF_ALOFT) |
+                      bit(fresh && s->height.height_mm > LOW_MM, FLIGHT_IF_OFF_GROUND) |
+                      bit(s->ground.aloft.for_us >= REST_HELD_US && s->sways, FLIGHT_IF_ALOFT) |
                       bit(s->stands || rests(s), FLIGHT_IF_AT_REST) |
                       bit(fresh && reference && too_high(s), FLIGHT_IF_TOO_HIGH) |
                       bit(fresh && recovered(s), FLIGHT_IF_RECOVERED) | bit(s->land, FLIGHT_IF_LAND) |

@@ -59,7 +59,7 @@ export const en = {
     ['Heights in doubt', 'The laser contradicts the IMU and the thrust. Something in its sight, or a step below: look, and land.'],
     ['Accelerations not used', 'The IMU sends none, or they contradict gravity or the heights: units, signs, mounting. Law EST flies on without them. Check by #IMU before the next flight.'],
     ['Thrust has no effect', 'The vehicle does not follow the commands: motors off, throttle not handed over, or the pilot flies.'],
-    ['The stick does not count', 'Put it in the middle for half a second. If that does not help: no pulses, noise, SMID, or SEL is not PIN. The height is held.'],
+    ['The stick does not count', 'Put it in the middle for a second. If that does not help: no pulses, noise, SMID, or SEL is not PIN. The height is held.'],
     ['Mirrors or IMU mounted wrongly', 'At rest a mirror does not show the ground, or the mirrors show another tilt than the IMU. #MIRRORS tells which.'],
   ] as [string, string][],
   batteryWords: {

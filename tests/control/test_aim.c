@@ -70,8 +70,8 @@ void test_floating_holds_its_first_height_within_its_reach(void)
                 {false, false, false, FLIGHT_MODE_FLOAT, 0.1F, 0.2F},
                 {false, true, false, FLIGHT_MODE_EST_HOLD, 0.9F, 0.56F},
                 {false, true, false, FLIGHT_MODE_EST_HOLD, 0.1F, 0.44F},
-                {false, true, true, FLIGHT_MODE_EST_HOLD, 0.9F, 0.64F},
-                {false, true, true, FLIGHT_MODE_EST_HOLD, 0.1F, 0.36F}};
+                {false, true, true, FLIGHT_MODE_EST_HOLD, 0.9F, 0.8F},
+                {false, true, true, FLIGHT_MODE_EST_HOLD, 0.1F, 0.2F}};
     for (int i = 0; i < 9; i++) {
         setUp();
         in_state(FLIGHT_FLOATING);

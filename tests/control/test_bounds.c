@@ -83,24 +83,23 @@ static float climbing_n(flight_state_t state, flight_mode_t mode, bool unconfirm
 void test_a_climb_has_a_thrust_by_the_vehicles_model(void)
 {
     const float per_mps = 2.5F * 7.0F / 9.80665F; /* newtons against the drag of 1 m/s */
-    NEAR(7.0F + 0.35F * per_mps, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_EST_HOLD, true, 0.26F, 0.0F));
-    NEAR(11.0F, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_EST_HOLD, true, 0.24F, 0.0F));
-    NEAR(7.0F + 1.1F * per_mps, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_EST_HOLD, false, 1.01F, 0.0F));
-    NEAR(11.0F, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_EST_HOLD, false, 0.99F, 0.0F));
-    NEAR(7.0F + 0.35F * per_mps, climbing_n(FLIGHT_TAKEOFF, FLIGHT_MODE_EST_HOLD, true, 0.26F, 0.26F));
-    NEAR(11.0F, climbing_n(FLIGHT_TAKEOFF, FLIGHT_MODE_EST_HOLD, true, 0.24F, 0.26F));
-    NEAR(11.0F, climbing_n(FLIGHT_TAKEOFF, FLIGHT_MODE_EST_HOLD, true, 0.26F, 0.24F));
-    NEAR(11.0F, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_LAW, true, 0.3F, 0.0F)); /* law EST does not fly */
-    NEAR(11.0F, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_DESCENT, true, 0.3F, 0.0F));
+    NEAR(7.0F + 0.3F * per_mps, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_EST_HOLD, true, 0.31F, 0.0F));
+    NEAR(11.0F, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_EST_HOLD, true, 0.29F, 0.0F));
+    NEAR(11.0F, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_EST_HOLD, false, 2.0F, 0.0F));
+    NEAR(7.0F + 0.3F * per_mps, climbing_n(FLIGHT_TAKEOFF, FLIGHT_MODE_EST_HOLD, true, 0.31F, 0.31F));
+    NEAR(11.0F, climbing_n(FLIGHT_TAKEOFF, FLIGHT_MODE_EST_HOLD, true, 0.29F, 0.31F));
+    NEAR(11.0F, climbing_n(FLIGHT_TAKEOFF, FLIGHT_MODE_EST_HOLD, true, 0.31F, 0.29F));
+    NEAR(11.0F, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_LAW, true, 0.4F, 0.0F)); /* law EST does not fly */
+    NEAR(11.0F, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_DESCENT, true, 0.4F, 0.0F));
     now.law = LAW_PIDT;
-    NEAR(7.0F + 0.35F * per_mps, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_LAW, true, 0.3F, 0.0F));
-    NEAR(11.0F, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_FLOAT, true, 0.3F, 0.0F));
+    NEAR(7.0F + 0.3F * per_mps, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_LAW, true, 0.4F, 0.0F));
+    NEAR(11.0F, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_FLOAT, true, 0.4F, 0.0F));
     NEAR(6.5F, bounded_n(6.5F));
 }
 
 void test_a_descent_over_a_far_fall_of_the_terrain_has_one_too(void)
 {
-    const float least_n = 7.0F - 0.35F * 2.5F * 7.0F / 9.80665F;
+    const float least_n = 7.0F - 0.3F * 2.5F * 7.0F / 9.80665F;
     NEAR(3.0F, bounded_n(3.0F));
     evidence.terrain_fell = true;
     NEAR(least_n, bounded_n(3.0F));
@@ -211,7 +210,7 @@ static float given_back_n(uint32_t state_us, float felt_mps, float before_n)
     setUp();
     given_back(0.06F);
     in_state_for_us(FLIGHT_DESCENDING, state_us);
-    estimated(0.0F, 0.35F + before_n, 0.0F); /* 2 N per metre beyond 0.35 m/s, for half a second */
+    estimated(0.0F, 0.5F + before_n, 0.0F); /* 2 N per metre beyond 0.5 m/s, for half a second */
     cycle_takes_us(500000U);
     (void)bounded_n(3.0F);
     cycle_takes_us(100000U);
@@ -235,11 +234,12 @@ void test_a_vehicle_given_back_without_heights_has_a_thrust_below_hover_that_sin
 
 void test_a_vehicle_given_back_that_feels_a_climb_gives_less_and_a_fall_more(void)
 {
-    NEAR(7.0F - 0.5F - 0.2F - 1.0F, given_back_n(0U, 1.35F, 0.0F)); /* 1 m/s beyond: 2 N in a second */
+    const float per_mps = 2.5F * 7.0F / 9.80665F; /* what the drag of 1 m/s takes */
+    NEAR(7.0F - 0.5F - 0.2F - per_mps, given_back_n(0U, 1.5F, 0.0F)); /* 1 m/s beyond: 2 N in a second */
     NEAR(0.2F, lowered_n());
-    NEAR(7.0F - 0.5F + 1.0F, given_back_n(0U, -0.85F, 0.0F));
+    NEAR(7.0F - 0.5F + 0.5F * per_mps, given_back_n(0U, -1.0F, 0.0F));
     NEAR(0.0F, lowered_n()); /* no more than what climbs have lowered */
-    NEAR(7.0F - 0.5F - 0.9F + 1.0F, given_back_n(0U, -0.85F, 1.0F));
+    NEAR(7.0F - 0.5F - 0.9F + 0.5F * per_mps, given_back_n(0U, -1.0F, 1.0F));
     NEAR(7.0F - 0.5F + 2.0F, given_back_n(0U, -2.0F, 0.0F));
     (void)given_back_n(0U, 3.0F, 1.95F);
     NEAR(2.0F, lowered_n());

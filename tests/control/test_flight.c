@@ -591,7 +591,7 @@ void test_what_is_put_out_against_a_wrong_pin_is_gone_at_the_hand_back(void)
     held_by_a_pilot(1.0, 12.0);
     TEST_ASSERT_EQUAL(FLIGHT_FLOATING, out.state);
     TEST_ASSERT_FLOAT_WITHIN(0.3F, 7.4F, flight.where.hover.thrust_n);
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, flight.where.hover.thrust_n - 2.0F, out.thrust_n);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, flight.where.hover.thrust_n - 0.5F, out.thrust_n);
     in.has_throttle = true;
     run_until(FLIGHT_FLYING, 0.2);
     TEST_ASSERT_FLOAT_WITHIN(0.01F, flight.where.hover.thrust_n, out.thrust_n);

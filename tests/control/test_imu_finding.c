@@ -132,18 +132,18 @@ static bool turned(float level_rad, float roll_rad, float pitch_rad)
     return imu_find_axis(&parameters, PARAMETER_IROLL, &level, &raw);
 }
 
-void test_a_turn_is_8_to_60_degrees_about_one_axis(void)
+void test_a_turn_is_8_and_a_half_to_60_degrees_about_one_axis(void)
 {
     static const float levels_rad[] = {0.0F, 3.1F, -3.1F};
     for (int i = 0; i < 3; i++) {
         for (float side = -1.0F; side < 2.0F; side += 2.0F) {
-            TEST_ASSERT_TRUE(turned(levels_rad[i], 0.141F * side, 0.0F));
+            TEST_ASSERT_TRUE(turned(levels_rad[i], 0.150F * side, 0.0F));
             TEST_ASSERT_EQUAL_UINT16(side > 0.0F ? AXIS_ROLL : AXIS_MINUS_ROLL, choice(PARAMETER_IROLL));
-            TEST_ASSERT_FALSE(turned(levels_rad[i], 0.138F * side, 0.0F));
+            TEST_ASSERT_FALSE(turned(levels_rad[i], 0.147F * side, 0.0F));
             TEST_ASSERT_TRUE(turned(levels_rad[i], 1.046F * side, 0.0F));
             TEST_ASSERT_FALSE(turned(levels_rad[i], 1.049F * side, 0.0F));
-            TEST_ASSERT_TRUE(turned(levels_rad[i], 0.3F * side, 0.148F));
-            TEST_ASSERT_FALSE(turned(levels_rad[i], 0.3F * side, -0.152F));
+            TEST_ASSERT_TRUE(turned(levels_rad[i], 0.3F * side, 0.123F));
+            TEST_ASSERT_FALSE(turned(levels_rad[i], 0.3F * side, -0.126F));
         }
     }
     TEST_ASSERT_TRUE(turned(0.0F, 0.1F, -0.3F));

@@ -27,8 +27,8 @@ void test_an_unhindered_reply_shows_its_rays_70_ms_before(void)
 void test_a_late_reply_does_not_make_its_rays_later(void)
 {
     TEST_ASSERT_EQUAL_INT32(0, error_us(1000U, 7000000U, 7000000U));
-    TEST_ASSERT_INT_WITHIN(400, 0, error_us(1100U, 7120000U, 7100000U));
-    TEST_ASSERT_INT_WITHIN(800, 0, error_us(1200U, 7245000U, 7200000U));
+    TEST_ASSERT_INT_WITHIN(500, 0, error_us(1100U, 7120000U, 7100000U));
+    TEST_ASSERT_INT_WITHIN(1000, 0, error_us(1200U, 7245000U, 7200000U));
     TEST_ASSERT_EQUAL_INT32(0, error_us(1300U, 7300000U, 7300000U));
 }
 

@@ -14,14 +14,14 @@ static bool has_risen(float height_mm, float ground_m)
     return situation_is_risen(&where, &est);
 }
 
-void test_it_has_risen_when_it_is_eight_centimetres_above_what_was_measured_on_the_ground(void)
+void test_it_has_risen_when_it_is_nine_centimetres_above_what_was_measured_on_the_ground(void)
 {
-    TEST_ASSERT_TRUE(has_risen(81.0F, 0.0F));
-    TEST_ASSERT_FALSE(has_risen(79.0F, 0.0F));
-    TEST_ASSERT_FALSE(has_risen(379.0F, 0.3F)); /* something blocked the beam there */
-    TEST_ASSERT_TRUE(has_risen(381.0F, 0.3F));
-    TEST_ASSERT_TRUE(has_risen(61.0F, -0.02F));
-    TEST_ASSERT_FALSE(has_risen(59.0F, -0.02F));
+    TEST_ASSERT_TRUE(has_risen(91.0F, 0.0F));
+    TEST_ASSERT_FALSE(has_risen(89.0F, 0.0F));
+    TEST_ASSERT_FALSE(has_risen(389.0F, 0.3F)); /* something blocked the beam there */
+    TEST_ASSERT_TRUE(has_risen(391.0F, 0.3F));
+    TEST_ASSERT_TRUE(has_risen(71.0F, -0.02F));
+    TEST_ASSERT_FALSE(has_risen(69.0F, -0.02F));
     TEST_ASSERT_FALSE(has_risen(-5.0F, 0.0F));
 }
 

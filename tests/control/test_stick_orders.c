@@ -82,7 +82,7 @@ static void fly_at(float reference_m)
     before.state = FLIGHT_FLYING;
     before.reference_m = reference_m;
     before.estimate_mm = 1000.0F * reference_m;
-    (void)held(MIDDLE_US, 1.0F);
+    (void)held(MIDDLE_US, 1.5F);
 }
 
 static uint16_t flag(void)
@@ -190,7 +190,7 @@ void test_a_touch_of_the_middle_is_not_enough(void)
     before.reference_m = 0.6F;
     before.estimate_mm = 600.0F;
     for (int i = 0; i < 10; i++) {
-        TEST_ASSERT_EQUAL_UINT(0, held(MIDDLE_US, 0.4F));
+        TEST_ASSERT_EQUAL_UINT(0, held(MIDDLE_US, 0.9F));
         TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 2.0F));
     }
 }
@@ -203,7 +203,7 @@ void test_after_it_was_missing_it_counts_only_from_the_middle_again(void)
     }
     TEST_ASSERT_EQUAL_HEX16(FLIGHT_FLAG_STICK, flag());
     TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 5.0F));
-    (void)held(MIDDLE_US, 1.0F);
+    (void)held(MIDDLE_US, 1.5F);
     TEST_ASSERT_EQUAL_HEX16(0, flag());
     TEST_ASSERT_TRUE(held(UP_US, 1.0F) > 10U);
 }
@@ -250,8 +250,8 @@ void test_noise_about_the_middle_does_not_move_the_reference_away(void)
 
 void test_up_takes_off_an_armed_vehicle_once(void)
 {
-    (void)held(MIDDLE_US, 1.0F);
-    TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 0.3F)); /* two cycles late, and 0.3 s */
+    (void)held(MIDDLE_US, 1.5F);
+    TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 1.0F)); /* two cycles late, and a second */
     TEST_ASSERT_EQUAL_UINT(1, held(UP_US, 10.0F));
     NEAR(0.3F, in.reference_m);
 }
@@ -259,12 +259,12 @@ void test_up_takes_off_an_armed_vehicle_once(void)
 void test_it_takes_off_neither_an_unarmed_vehicle_nor_one_whose_imu_is_against_gravity(void)
 {
     before.idle_n = 0.0F;
-    (void)held(MIDDLE_US, 1.0F);
+    (void)held(MIDDLE_US, 1.5F);
     TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 5.0F));
     before.idle_n = 1.76F;
     parameters.value[PARAMETER_IAXES] = (float)AXES_ASSUMED;
     before.imu_fault = IMU_ROLL;
-    (void)held(MIDDLE_US, 1.0F);
+    (void)held(MIDDLE_US, 1.5F);
     TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 5.0F));
 }
 
@@ -272,10 +272,10 @@ void test_one_mirror_without_ground_takes_off_and_two_do_not(void)
 {
     before.idle_n = 1.76F;
     before.mirrors.wrong = 1U << MIRROR_FORE | 1U << MIRROR_AFT;
-    (void)held(MIDDLE_US, 1.0F);
+    (void)held(MIDDLE_US, 1.5F);
     TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 5.0F));
     before.mirrors.wrong = 1U << MIRROR_AFT;
-    (void)held(MIDDLE_US, 1.0F);
+    (void)held(MIDDLE_US, 1.5F);
     TEST_ASSERT_EQUAL_UINT(1, held(UP_US, 5.0F));
 }
 
@@ -302,7 +302,7 @@ void test_up_ends_a_landing_that_the_stick_ordered_and_no_other(void)
     (void)held(DOWN_US, 1.5F);
     before.state = FLIGHT_LANDING;
     (void)held(MIDDLE_US, 0.2F);
-    TEST_ASSERT_EQUAL_UINT(1, held(UP_US, 1.0F));
+    TEST_ASSERT_EQUAL_UINT(1, held(UP_US, 1.5F));
     NEAR(0.3F, in.reference_m);
     radio_reference_m = 0.0F;
     radio_references++;
@@ -318,7 +318,7 @@ void test_up_does_not_end_a_landing_for_another_reason_after_one_by_stick(void)
     (void)held(DOWN_US, 1.5F);
     before.state = FLIGHT_GROUND;
     (void)held(MIDDLE_US, 1.0F);
-    TEST_ASSERT_EQUAL_UINT(1, held(UP_US, 1.0F));
+    TEST_ASSERT_EQUAL_UINT(1, held(UP_US, 1.5F));
     before.state = FLIGHT_LANDING; /* a link that is lost */
     (void)held(MIDDLE_US, 1.0F);
     TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 5.0F));
@@ -342,7 +342,7 @@ void test_a_vehicle_that_floats_is_held_where_it_is_from_the_middle(void)
     before.state = FLIGHT_FLOATING;
     before.estimate_mm = 850.0F;
     TEST_ASSERT_EQUAL_UINT(0, held(1300.0F, 2.0F));
-    (void)held(MIDDLE_US, 0.6F);
+    (void)held(MIDDLE_US, 1.1F);
     NEAR(0.85F, in.reference_m);
     setUp();
     before.state = FLIGHT_FLOATING;
@@ -363,7 +363,7 @@ void test_a_throttle_that_the_pilot_opens_before_the_hand_over_arms_and_shut_aga
     in.has_throttle = false;
     (void)held(SHUT_US, 2.0F);
     TEST_ASSERT_EQUAL_UINT32(0, in.arm_sequence);
-    (void)held(1800.0F, 0.4F);
+    (void)held(1800.0F, 0.9F);
     TEST_ASSERT_EQUAL_UINT32(0, in.arm_sequence);
     (void)held(1800.0F, 1.0F);
     TEST_ASSERT_EQUAL_UINT32(1, in.arm_sequence);
@@ -371,7 +371,7 @@ void test_a_throttle_that_the_pilot_opens_before_the_hand_over_arms_and_shut_aga
     in.has_throttle = true;
     (void)held(MIDDLE_US, 5.0F);
     in.has_throttle = false;
-    (void)held(SHUT_US, 1.0F);
+    (void)held(SHUT_US, 1.5F);
     TEST_ASSERT_EQUAL_UINT32(2, in.arm_sequence);
     TEST_ASSERT_FALSE(in.arm);
 }
@@ -382,7 +382,7 @@ void test_a_throttle_that_rests_at_ten_percent_neither_arms_nor_disarms(void)
     in.has_throttle = false;
     (void)held(1900.0F, 5.0F);
     TEST_ASSERT_EQUAL_UINT32(0, in.arm_sequence);
-    (void)held(1800.0F, 1.0F);
+    (void)held(1800.0F, 1.5F);
     (void)held(1900.0F, 5.0F);
     TEST_ASSERT_EQUAL_UINT32(1, in.arm_sequence);
     TEST_ASSERT_TRUE(in.arm);

@@ -104,11 +104,11 @@ void test_at_the_ground_the_thrust_only_falls_whatever_the_rate_says(void)
     TEST_ASSERT_EQUAL_FLOAT(0.0F, before_n);
 }
 
-void test_a_height_of_100_mm_ends_what_holds_at_the_ground(void)
+void test_a_height_of_90_mm_ends_what_holds_at_the_ground(void)
 {
     (void)descent_step(&descent, 7.0F, 30.0F, -150.0F, 2.0F);
-    TEST_ASSERT_TRUE(descent_step(&descent, 7.0F, 99.0F, -150.0F, 0.0F) < 4.0F);
-    TEST_ASSERT_TRUE(descent_step(&descent, 7.0F, 101.0F, -150.0F, 0.0F) > 6.0F);
+    TEST_ASSERT_TRUE(descent_step(&descent, 7.0F, 89.0F, -150.0F, 0.0F) < 4.0F);
+    TEST_ASSERT_TRUE(descent_step(&descent, 7.0F, 91.0F, -150.0F, 0.0F) > 6.0F);
 }
 
 void test_a_new_descent_forgets_the_trim(void)

@@ -151,6 +151,34 @@ void test_near_the_ground_a_tilt_that_moves_makes_the_end_slow(void)
     TEST_ASSERT_TRUE(more_n[1] > more_n[0] + 0.5F);
 }
 
+/* It wants to sink, and for a second has too little thrust to fly: somebody else holds the vehicle. */
+void test_a_vehicle_that_does_not_sink_is_a_pilots_and_the_output_stays_near_the_hover_thrust(void)
+{
+    float least_n = 0.0F;
+
+    said_for(60);
+    for (int i = 0; i < 120; i++) {
+        height_is(500.0F, 0.0F, 100000U, true);
+        least_n = fminf(least_n, added_n());
+    }
+    TEST_ASSERT_TRUE(least_n < -1.5F);
+    NEAR(-0.5F, pin.more_n);
+    height_is(500.0F, -400.0F, 100000U, true); /* he descends */
+    TEST_ASSERT_TRUE(added_n() >= -0.5F);
+    height_is(500.0F, 0.0F, 100000U, true);
+    NEAR(-0.5F, added_n());
+}
+
+void test_one_that_sinks_is_not_a_pilots(void)
+{
+    said_for(60);
+    for (int i = 0; i < 60; i++) { /* lighter by a newton: it needs so little */
+        height_is(500.0F, (pin.more_n < -1.5F) ? -310.0F : 100.0F, 100000U, true);
+        (void)added_n();
+    }
+    TEST_ASSERT_TRUE(pin.more_n < -1.0F);
+}
+
 void test_the_hover_thrust_is_not_its_business(void)
 {
     said_for(60);

@@ -310,13 +310,13 @@ static uint16_t lift_off(float height_m, uint16_t rigid, uint16_t still, float s
 
 void test_a_climb_felt_before_an_odd_beam_shows_it_doubts_the_heights(void)
 {
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, lift_off(0.0F, 2U, 0U, 4.1e-4F, -0.081F));
-    TEST_ASSERT_EQUAL_UINT16(0U, lift_off(0.0F, 2U, 0U, 4.1e-4F, -0.080F));
-    TEST_ASSERT_EQUAL_UINT16(0U, lift_off(0.0F, 2U, 0U, 4.0e-4F, -0.081F));
-    TEST_ASSERT_EQUAL_UINT16(0U, lift_off(0.0F, 1U, 0U, 4.1e-4F, -0.081F));
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, lift_off(0.081F, 0U, 9U, 4.1e-4F, -0.081F));
-    TEST_ASSERT_EQUAL_UINT16(0U, lift_off(0.08F, 0U, 9U, 4.1e-4F, -0.081F));
-    TEST_ASSERT_EQUAL_UINT16(0U, lift_off(0.081F, 0U, 8U, 4.1e-4F, -0.081F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, lift_off(0.0F, 2U, 0U, 4.1e-4F, -0.091F));
+    TEST_ASSERT_EQUAL_UINT16(0U, lift_off(0.0F, 2U, 0U, 4.1e-4F, -0.090F));
+    TEST_ASSERT_EQUAL_UINT16(0U, lift_off(0.0F, 2U, 0U, 4.0e-4F, -0.091F));
+    TEST_ASSERT_EQUAL_UINT16(0U, lift_off(0.0F, 1U, 0U, 4.1e-4F, -0.091F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, lift_off(0.091F, 0U, 9U, 4.1e-4F, -0.091F));
+    TEST_ASSERT_EQUAL_UINT16(0U, lift_off(0.09F, 0U, 9U, 4.1e-4F, -0.091F));
+    TEST_ASSERT_EQUAL_UINT16(0U, lift_off(0.091F, 0U, 8U, 4.1e-4F, -0.091F));
 }
 
 void test_a_vehicle_that_is_off_the_ground_is_not_asked_about_its_lift_off(void)

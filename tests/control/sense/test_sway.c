@@ -131,7 +131,7 @@ void test_the_moves_are_looked_at_near_the_ground_alone(void)
         swing(0.1F, 0.0F);
         frame.median.roll_rad = frame.median.pitch_rad = 0.0F;
         for (int i = 0; i < 60; i++) {
-            sway_frame(&sway, &frame, (high != 0) ? 0.10F : 0.099F, FRAME_S);
+            sway_frame(&sway, &frame, (high != 0) ? 0.09F : 0.089F, FRAME_S);
         }
         TEST_ASSERT_TRUE(sway_as_in_the_air(&sway));
         TEST_ASSERT_EQUAL(high != 0, sway_rocks(&sway));

@@ -144,7 +144,7 @@ void test_a_descent_handed_over_without_heights_is_the_pilots_to_its_end(void)
             TEST_ASSERT_EQUAL(rows[i].given_back, pilot.given_back);
             TEST_ASSERT_EQUAL(rows[i].given_back, pilot_is_unknown(&pilot));
             if (rows[i].given_back) {
-                NEAR((pin != 0) ? 0.15F : 0.06F, pilot.sink_n_per_s);
+                NEAR((pin != 0) ? 0.2F : 0.06F, pilot.sink_n_per_s);
             }
         }
     }

@@ -61,12 +61,12 @@ void test_takeoff_to_lowering_when_too_high(void)
     state_is(FLIGHT_LOWERING);
 }
 
-void test_takeoff_to_flying_above_150_mm(void)
+void test_takeoff_to_flying_above_90_mm(void)
 {
     take_off();
-    watch(150.0F, 1);
+    watch(90.0F, 1);
     state_is(FLIGHT_TAKEOFF);
-    watch(150.5F, 1);
+    watch(90.5F, 1);
     state_is(FLIGHT_FLYING);
 }
 
@@ -255,9 +255,9 @@ void test_a_beam_past_an_edge_does_not_lift_a_vehicle_that_stands(void)
     watch(700.0F, 1);
     state_is(FLIGHT_GROUND);
     watch(700.0F, 40);
-    watch(840.0F, 40);
+    watch(780.0F, 40);
     state_is(FLIGHT_GROUND);
-    watch(860.0F, 12); /* somebody flies it */
+    watch(800.0F, 12); /* somebody flies it */
     state_is(FLIGHT_FLOATING);
 }
 
@@ -270,9 +270,9 @@ void test_the_first_height_after_a_blind_descent_is_the_ground_and_so_is_any_low
     watch(500.0F, 20);
     state_is(FLIGHT_GROUND);
     watch(10.0F, 3);
-    watch(151.0F, 20);
+    watch(91.0F, 20);
     state_is(FLIGHT_GROUND);
-    watch(170.0F, 12);
+    watch(110.0F, 12);
     state_is(FLIGHT_FLOATING);
 }
 
@@ -300,7 +300,7 @@ void test_a_descent_and_a_landing_end_where_the_vehicle_stands_and_a_flight_does
 void test_floating_to_ground_at_rest(void)
 {
     floating();
-    watch(10.0F, 13); /* the first only starts the comparison */
+    watch(10.0F, 11); /* the first only starts the comparison */
     state_is(FLIGHT_FLOATING);
     watch(10.0F, 1);
     state_is(FLIGHT_GROUND);
@@ -382,7 +382,7 @@ void test_landing_to_descending_without_height(void)
 void test_landing_to_ground_at_rest(void)
 {
     land();
-    watch(49.0F, 13);
+    watch(49.0F, 11);
     state_is(FLIGHT_LANDING);
     watch(49.0F, 1);
     state_is(FLIGHT_GROUND);
@@ -401,9 +401,9 @@ void test_heights_alone_are_no_ground_while_the_tilt_moves(void)
     setUp();
     land();
     estimate.rocks = true;
-    watch(20.0F, 190);
+    watch(20.0F, 150);
     state_is(FLIGHT_LANDING);
-    watch(20.0F, 15);
+    watch(20.0F, 7);
     state_is(FLIGHT_GROUND);
 }
 
@@ -618,7 +618,7 @@ void test_cut_to_floating_only_by_a_pilot_who_holds_it_aloft_and_upright(void)
     watch(500.0F, 20);
     state_is(FLIGHT_CUT);
     in.roll_rad = 0.0F;
-    watch(140.0F, 2);
+    watch(80.0F, 2);
     watch(500.0F, 10);
     state_is(FLIGHT_CUT);
     watch(500.0F, 1);
@@ -759,10 +759,10 @@ void test_cut_to_ground_level_and_at_rest(void)
     watch(500.0F, 3);
     watch(20.0F, 20);
     state_is(FLIGHT_CUT); /* lies on its side */
-    tilt(21.0F);
+    tilt(19.0F);
     watch(20.0F, 10);
     state_is(FLIGHT_CUT);
-    tilt(19.0F);
+    tilt(17.0F);
     watch(20.0F, 1);
     state_is(FLIGHT_GROUND);
     TEST_ASSERT_EQUAL_UINT16(0, s.flags);
@@ -1305,7 +1305,7 @@ void test_a_reference_that_is_no_height_is_ignored(void)
 void test_the_pilots_height_must_be_held_without_a_break(void)
 {
     watch(400.0F, 9);
-    watch(150.0F, 1);
+    watch(90.0F, 1);
     watch(400.0F, 7);
     state_is(FLIGHT_GROUND);
     blind(400); /* stale */
