@@ -4,7 +4,7 @@ It shares nothing with sim/ and tests/faults/: whoever compares them compares tw
 microseconds of a clock that the caller keeps; nothing here waits.
 
 As a program: hokuyo.py --link PATH [--rate N] [--first-reply-ms N] [--boot-ms N] [--burst] serves it on a pseudo-terminal, by the wall
-clock. SIGUSR1 takes its power away, SIGUSR2 gives it back.
+clock. SIGUSR1 takes its power away, SIGUSR2 gives it back. At its end it says how long the machine withheld its time.
 """
 import argparse
 import bisect
@@ -470,6 +470,7 @@ def main():
             terminal.step()
     finally:
         os.unlink(words.link)
+        print(f"behind {terminal.lost_us // 1000} ms", flush=True)
 
 
 if __name__ == "__main__":
