@@ -3,15 +3,19 @@
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 #include <windows.h>
 
 #include "board.h"
 
-#define WAIT_MS 5 /* less than an eighth of what urg_pause_us() asks for at least */
+#define PATIENCE_S 12 /* a sensor starts within 10, and has its first scan 2 later */
+#define WAIT_MS 5     /* less than an eighth of what urg_pause_us() asks for at least */
 
 static const char *device;
 static HANDLE port = INVALID_HANDLE_VALUE;
 static volatile sig_atomic_t stopped;
+static bool silent = true; /* not a scan yet */
+static time_t begun;
 
 static void stop(int signal_number)
 {
@@ -107,6 +111,7 @@ void board_cycle_sensor_power(void) {}
 
 void board_show(bool valid, uint16_t distance_mm)
 {
+    silent = false;
     if (valid) {
         printf("%u mm\n", (unsigned)distance_mm);
     } else {
@@ -117,6 +122,10 @@ void board_show(bool valid, uint16_t distance_mm)
 
 bool board_runs(void)
 {
+    if (silent && time(NULL) - begun > PATIENCE_S) {
+        silent = false;
+        fprintf(stderr, "scanner: no scan yet: the right port? its 5 V? RX and TX crossed? I go on trying\n");
+    }
     return stopped == 0;
 }
 
@@ -129,6 +138,7 @@ int main(int argc, char **argv)
         return 2;
     }
     device = argv[1];
+    begun = time(NULL);
     signal(SIGINT, stop);
     refused = scanner_run();
     if (refused != NULL) {

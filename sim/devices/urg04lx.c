@@ -25,8 +25,8 @@
 #define TROUBLE_ENDS 50 /* first code that ends a measurement */
 #define TROUBLE_OVER 98
 #define VERIFY_TURNS 10
-/* From `V` to its echo, the first octets on the wire, of a recorded URG-04LX (two logs in gearbox's
- * hokuyo_aist: 380.0 and 381 ms). */
+/* From `V` to its echo, the latest of three recorded first answers (logs of hokuyo_aist; the others took 64
+ * and 10 ms). docs/scip.md, "A late first answer". */
 #define FIRST_ANSWER (381 * SIM_MS)
 
 typedef struct {

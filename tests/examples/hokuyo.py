@@ -4,7 +4,7 @@ It shares nothing with sim/ and tests/faults/: whoever compares them compares tw
 microseconds of a clock that the caller keeps; nothing here waits.
 
 As a program: hokuyo.py --link PATH [--rate N] [--first-reply-ms N] [--boot-ms N] [--burst] serves it on a pseudo-terminal, by the wall
-clock. SIGUSR1 takes its power away, SIGUSR2 gives it back.
+clock. SIGUSR1 takes its power away, SIGUSR2 gives it back. At its end it says how long the machine withheld its time.
 """
 import argparse
 import bisect
@@ -124,12 +124,14 @@ class Stream:
 
 class Urg:
     """One sensor, its power off at first. reply_us: least and most time to an answer; first_reply_us: to the first one after
-    power-up; at_revolutions: an answer comes with the next revolution in place of that."""
+    power-up; at_revolutions: an answer comes with the next revolution in place of that; hears_us: it hears what comes so long before
+    the end of its boot, and answers it then."""
 
     def __init__(self, power_up_rate=19200, boot_us=2_000_000, reply_us=(90_000, 115_000), first_reply_us=381_000, at_revolutions=False,
-                 turn_us=REVOLUTION_US, seed=1):
+                 hears_us=0, turn_us=REVOLUTION_US, seed=1):
         self.power_up_rate, self.boot_us, self.turn_us = power_up_rate, boot_us, turn_us
         self.reply_us, self.first_reply_us, self.at_revolutions = reply_us, first_reply_us, at_revolutions
+        self.hears_us = hears_us
         self.dice = random.Random(seed)
         self.to_sensor, self.to_host = Line(power_up_rate), Line(power_up_rate)
         self.ready_us = None        # end of its boot; None: no power
@@ -164,12 +166,15 @@ class Urg:
     def is_ready(self, now_us):
         return self.ready_us is not None and now_us >= self.ready_us
 
+    def hears(self, at_us):
+        return self.ready_us is not None and at_us >= self.ready_us - self.hears_us
+
     # ---- what it hears ----
 
     def run(self, now_us):
         """Up to this time. Call it each millisecond or more often."""
         for at_us, octet, _ in list(self.to_sensor.hear(now_us)):
-            if self.is_ready(at_us):
+            if self.hears(at_us):
                 self.hear(octet, at_us)
         if self.next_rate is not None and now_us >= self.sends_to:
             self.rate = self.to_sensor.rate = self.next_rate
@@ -212,7 +217,7 @@ class Urg:
         if command == "TM1":
             return asked_us + self.dice.randint(*FAST_US)
         if self.replies == 0:
-            return asked_us + self.first_reply_us
+            return max(asked_us + self.first_reply_us, self.ready_us)
         if self.at_revolutions:
             turns = (asked_us - self.turned_us) // self.turn_us + 1
             return self.turned_us + turns * self.turn_us
@@ -465,6 +470,7 @@ def main():
             terminal.step()
     finally:
         os.unlink(words.link)
+        print(f"behind {terminal.lost_us // 1000} ms", flush=True)
 
 
 if __name__ == "__main__":

@@ -28,6 +28,7 @@ SHORT_BOOT_US = S // 10
 STRAIGHT_AHEAD_MM = hokuyo.distance_mm(384)     # the mean of 367..401, each a millimetre farther than the one before
 FAST = {"first_reply_us": 100_000}
 SLOW = {"first_reply_us": 381_000}
+HEARS = {"first_reply_us": 100_000, "hears_us": 381_000}    # the other reading of the one late answer, docs/scip.md
 AT_REVOLUTIONS = {"first_reply_us": 100_000, "at_revolutions": True}
 # docs/scip.md, "Time without scans". "So, but first 381" is a sum there; 0.01 for the 5 ms of a read and of a step.
 FAST_MOST_S, SLOW_MOST_S, IDLE_MOST_S = 1.0, 1.38, 2.0
@@ -123,6 +124,10 @@ class InItsOwnTime(unittest.TestCase):
 
     def test_so_it_is_where_the_answers_come_at_revolutions_and_the_port_tells_no_errors(self):
         self.assert_blind_at_most(FAST_MOST_S, AT_REVOLUTIONS, tells_errors=False)
+
+    def test_so_it_is_where_the_sensor_hears_before_it_answers(self):
+        self.assert_blind_at_most(FAST_MOST_S, HEARS)
+        self.assert_blind_at_most(FAST_MOST_S, HEARS, tells_errors=False)
 
     def test_a_first_answer_after_381_ms_costs_what_the_page_adds_up(self):
         self.assert_blind_at_most(SLOW_MOST_S, SLOW)

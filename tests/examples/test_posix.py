@@ -2,6 +2,7 @@
 
 Usage: test_posix.py PROGRAM PLOMADA
 """
+import os
 import re
 import subprocess
 import sys
@@ -51,6 +52,15 @@ class OnALine(unittest.TestCase):
         said = scanner.communicate(timeout=20)[1]
         self.assertEqual(scanner.returncode, 1)
         self.assertEqual(said, f"scanner: {self.link}: is gone\n")
+
+    def test_a_port_without_a_sensor_gets_a_hint(self):
+        master, slave = os.openpty()
+        self.addCleanup(os.close, master)
+        self.addCleanup(os.close, slave)
+        scanner = self.program(SCANNER, os.ttyname(slave))
+        self.assertIn("no scan yet", scanner.stderr.readline())
+        scanner.terminate()
+        self.assertEqual(scanner.wait(), 0)
 
     def test_what_is_no_serial_port_and_nothing_at_all_are_named(self):
         for arguments, words, status in (((self.link,), f"scanner: {self.link}: No such file or directory\n", 1),

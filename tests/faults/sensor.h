@@ -2,8 +2,9 @@
  * (C-42-03320B), from the digest of SCIP1.1 and from recordings of a real sensor of 2008; it shares no line
  * with sim/devices/urg04lx.c, and no belief with the driver:
  *
- *   - a recorded sensor answers a command of SCIP2.0 once a revolution, 97 to 115 ms later; in SCIP1.1, where
- *     two answers were recorded, after 8 ms (SCIP2.0) or, the first of all, after 381 (V);
+ *   - a recorded sensor answers a command of SCIP2.0 once a revolution, 84 to 115 ms later; in SCIP1.1 after
+ *     8, 64 or 98 ms. One first answer took 380: docs/scip.md, "A late first answer", has what it may mean.
+ *     Either the sensor hears what comes while it starts up, or its first answer is slow;
  *   - it powers up at the rate that it was told to store: 19200 as delivered;
  *   - at a wrong rate it hears what the levels on the wire give (uart.h), and that stays in its line;
  *   - the laser needs a revolution before the one that is measured;
@@ -17,7 +18,9 @@ typedef enum {
     ANSWERS_SOON,     /* 8 ms after the command, as in SCIP1.1 */
     ANSWERS_AT_TURN,  /* when the present revolution is over */
     ANSWERS_LATE,     /* 90 to 115 ms after the command */
-    ANSWERS_RECORDED, /* drawn from the recorded ones, those of SCIP1.1 and SCIP2.0 apart */
+    ANSWERS_HEARS,    /* so; what came in the last 381 ms of its boot is answered from the end of that on */
+    ANSWERS_RECORDED, /* hears likewise; drawn from the recorded ones, those of SCIP1.1 and SCIP2.0 apart */
+    ANSWERS_DRAWN,    /* 90 to 115 ms, and the first one after power-up 90 to 400 ms */
     ANSWERS_LATEST,   /* 90 to 115 ms, and the first one after power-up 381 ms */
     ANSWERS_COUNT
 } answers_t;

@@ -26,18 +26,23 @@
         } \
     } while (0)
 
-/* ---- the scanner: one MS frame of 35 points, 101 octets, by urg_feed() and urg_take_scan() to the mean
- * distance ---- */
+/* ---- the scanner: one MS frame by urg_feed() and urg_take_scan() to the mean distance: of 35 points, 101
+ * octets; and of three mirrors, 136 points, 309 octets, to the scan ---- */
 
 #define FRAME_N 101
+#define THREE_N 309
+#define THREE_POINTS 136U
 #define FRONT (&scip_layouts[SCIP_LAYOUT_FRONT].groups[0])
+#define THREE (&scip_layouts[SCIP_LAYOUT_THREE_MIRRORS])
 
-static octet_t frame[FRAME_N];
+static octet_t frame[THREE_N];
 static uint32_t stamp_ms;
 static bool leg; /* in front of a fifth of the rays */
 static urg_driver_t urg;
 static scip_scan_t scan;
-static uint16_t points[2 * 35];
+static uint16_t points[2 * THREE_POINTS];
+static char order[16]; /* of the stream, as the sensor echoes it */
+static unsigned frame_points;
 static volatile float mean_mm;
 
 static size_t put_sum(size_t from, size_t to)
@@ -68,21 +73,20 @@ static unsigned ray_mm(unsigned i)
 
 static void next_frame(void)
 {
-    size_t at = 20;
+    size_t at = 20, block = 26;
 
-    memcpy(frame, "MS0372040601000\n99b\n", at);
+    memcpy(frame, order, 15);
+    memcpy(&frame[15], "\n99b\n", 5);
     stamp_ms += 100;
     at = put_sum(20, put_value(at, stamp_ms, 4));
-    for (unsigned i = 0; i < 32; i++) {
+    for (unsigned i = 0; i < frame_points; i++) {
         at = put_value(at, ray_mm(i), 2);
+        if (i % 32 == 31 || i + 1 == frame_points) {
+            block = at = put_sum(block, at);
+        }
     }
-    at = put_sum(26, at);
-    for (unsigned i = 32; i < 35; i++) {
-        at = put_value(at, ray_mm(i), 2);
-    }
-    at = put_sum(at - 6, at);
     frame[at++] = '\n';
-    REQUIRE(at == FRAME_N);
+    REQUIRE(at == (frame_points == 35 ? FRAME_N : THREE_N));
 }
 
 /* What was sent, as the sensor answers it: the first two commands as SCIP1.1. */
@@ -106,12 +110,18 @@ static bool streams(void)
     return report.status == URG_STREAM && report.seen.reply_kind == SCIP_STREAM_2;
 }
 
-static void begin_stream(void)
+static void begin_stream_of(scip_range_t range, unsigned count)
 {
-    const urg_config_t config = {0, 115200, 115200, 0, SCIP_STREAM_2, {372, 406, 1, 0, 0}, 0, false};
+    const urg_config_t config = {0, 115200, 115200, 0, SCIP_STREAM_2, range, 0, false};
+    scip_request_t request;
     urg_output_t output;
 
-    REQUIRE(urg_init(&urg, &config, points, 70, 0));
+    REQUIRE(scip_request_scan(&request, SCIP_STREAM_2, &range));
+    for (unsigned i = 0; i < 15; i++) {
+        order[i] = (char)request.text[i];
+    }
+    frame_points = count;
+    REQUIRE(urg_init(&urg, &config, points, 2 * count, 0));
     for (uint32_t steps_done = 1; !streams(); steps_done++) {
         REQUIRE(steps_done < 20);
         urg_step(&urg, steps_done * 150000U);
@@ -120,6 +130,16 @@ static void begin_stream(void)
         }
     }
     next_frame();
+}
+
+static void begin_stream(void)
+{
+    begin_stream_of((scip_range_t){372, 406, 1, 0, 0}, 35);
+}
+
+static void begin_stream_of_three(void)
+{
+    begin_stream_of(scip_layout_range(THREE, 250000), THREE_POINTS);
 }
 
 static void use_scan(void)
@@ -153,6 +173,22 @@ static void scip_frame_by_octet(void)
     }
 }
 
+static void scip_three(void)
+{
+    if (urg_feed(&urg, frame, THREE_N)) {
+        (void)urg_take_scan(&urg, &scan);
+    }
+}
+
+static void scip_three_by_octet(void)
+{
+    for (unsigned i = 0; i < THREE_N; i++) {
+        if (urg_feed(&urg, &frame[i], 1)) {
+            (void)urg_take_scan(&urg, &scan);
+        }
+    }
+}
+
 static void begin_stream_with_leg(void)
 {
     leg = true;
@@ -163,6 +199,17 @@ static void next_scip_frame(void)
 {
     REQUIRE(mean_mm > 616.0F && mean_mm < 618.0F);
     mean_mm = 0.0F;
+    next_frame();
+}
+
+/* A point of four steps tells the nearest; the mean is raised by what that takes away. */
+static void next_three(void)
+{
+    for (unsigned i = 0; i < THREE->group_count; i++) {
+        const float three_mm = scip_group_mean(&scan, &THREE->groups[i]).mean_mm;
+        REQUIRE(three_mm > 616.0F && three_mm < 630.0F);
+    }
+    scan.points = 0;
     next_frame();
 }
 
@@ -443,6 +490,8 @@ static const struct {
     {"scip_frame_with_leg", begin_stream_with_leg, scip_frame, next_scip_frame},
     {"scip_frame_by_16", begin_stream, scip_frame_by_16, next_scip_frame},
     {"scip_frame_by_octet", begin_stream, scip_frame_by_octet, next_scip_frame},
+    {"scip_three", begin_stream_of_three, scip_three, next_three},
+    {"scip_three_by_octet", begin_stream_of_three, scip_three_by_octet, next_three},
     {"imu_octets", prepare_imu_octets, imu_octets, nothing},
     {"TaskIMU", prepare_imu, imu, nothing},
     {"TaskReceiveLaser", prepare_altitude, receive_laser, nothing},
