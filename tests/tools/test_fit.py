@@ -187,9 +187,9 @@ class Fit(unittest.TestCase):
         return (sum(x * x for x in off) / len(off))**0.5, done.stderr
 
     def test_replay_of_a_log_flies_it_open_loop_and_names_what_is_not_in_it(self):
-        # Half of the flights are below 0.24 N (seeds 4711 to 4726); some wander off, as an open loop may.
+        # Half of the flights are below 0.06 N (seeds 4711 to 4726). What the log lacks can turn a vote of the mirrors: 1 of 16 lands by that.
         same_n = [self.replay(self.fly(seed, {}, "est-60cm-ramp"))[0] for seed in range(4711, 4717)]
-        self.assertLess(statistics.median(same_n), 0.3)
+        self.assertLess(statistics.median(same_n), 0.1)
         log = self.fly(4717, {}, "est-60cm-ramp")
         _, told = self.replay(log)
         for word in ("open loop", "accelerations", "octets of scanner", "did not answer"):

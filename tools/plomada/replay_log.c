@@ -285,6 +285,11 @@ static void step(const row_t *row)
     replay.in.roll_rad = (float)roll_rad;
     replay.in.pitch_rad = (float)pitch_rad;
     flight_step(&replay.flight, &replay.parameters, &replay.in, &replay.out);
+    /* The next heights and accelerations answer to the flown thrust. By the one of this replay the estimator
+     * would take its own error for another hover thrust, and keep it. */
+    if (!isnan(row->value[THRUST_N])) {
+        replay.flight.thrust_n = (float)row->value[THRUST_N];
+    }
 }
 
 /* A row of nobody's: what the one it is made of says of tilt, at this time and height. age_s: of its rays. */
@@ -312,6 +317,7 @@ static void settle(const row_t *first)
     row_t row = *first;
 
     row.value[REF_M] = 0.0;
+    row.value[THRUST_N] = NAN;
     for (unsigned long i = 0; (double)i * FRAME_S < before_s; i++) {
         const double s = (double)i * FRAME_S, age_s = AGE_USUAL_S + (double)(i % FRAMES_A_SCAN) * FRAME_S;
         const double done = fmin(fmax((s - STAND_S) / CLIMB_S, 0.0), 1.0);
