@@ -47,11 +47,17 @@ static void begin_together(belief_world_t *world, uint16_t liars, float probabil
     }
 }
 
-static void share_begun(belief_world_t *world)
+/* As far as a world's lies have just begun, its motion is that of the world in which nobody lies. */
+static void share_begun(belief_world_t *world, const belief_world_t *honest)
 {
+    float begun = 0.0F;
+
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         world->begun[m] = at_most(world->begun[m] / world->probability, 1.0F);
+        begun = at_least(begun, world->begun[m]);
     }
+    world->rate_mm_s += begun * (honest->rate_mm_s - world->rate_mm_s);
+    world->push_off_mps2 += begun * (honest->push_off_mps2 - world->push_off_mps2);
 }
 
 static void mix(belief_t *belief, float gap_s)
@@ -71,7 +77,7 @@ static void mix(belief_t *belief, float gap_s)
         }
     }
     for (uint16_t k = 1U; k < BELIEF_WORLDS; ++k) {
-        share_begun(&worlds[k]);
+        share_begun(&worlds[k], &worlds[0]);
     }
 }
 

@@ -26,8 +26,9 @@ typedef struct {
 
 /* What else is known of a scan's motion. All zero where the accelerometer is not believed. */
 typedef struct {
-    float gained_mps;   /* change of the vertical speed since the scan before, by the accelerometer */
-    float strange_mps2; /* its mean acceleration, less that of the thrust and the vehicle's model */
+    float gained_mps; /* change of the vertical speed since the scan before, by the accelerometer */
+    float pushed_mps; /* by the thrust, without the air's drag; 0 where it does not carry the vehicle */
+    float dragged;    /* share of the vertical speed that the drag has taken meanwhile; 0 as above */
 } belief_felt_t;
 
 /* The filter of the world in which one set of mirrors lies. */
@@ -37,6 +38,7 @@ typedef struct {
     float level_mm[MIRROR_COUNT];  /* of the height of each mirror */
     float motions[BELIEF_MOTIONS]; /* probability of each kind of motion; together 1 */
     float begun[MIRROR_COUNT];     /* that a mirror which lies here has begun to since the scan before */
+    float push_off_mps2;           /* what the model of the thrust is off by */
 } belief_world_t;
 
 /* A running mean of the latest scans. */
@@ -51,10 +53,10 @@ typedef struct {
     uint16_t told;              /* bits: mirrors that tell something now, and did before */
     float gap_s;                /* since the scan before, > 0 */
     belief_felt_t felt;
+    float slant_off_mm[MIRROR_COUNT]; /* from what a liar repeats */
     float slant[MIRROR_COUNT], height[MIRROR_COUNT]; /* densities, if nothing moves */
     float norm[BELIEF_MOTIONS][MIRROR_COUNT + 1U];   /* of the density of so many honest mirrors' motion */
-    float of_felt[BELIEF_MOTIONS];     /* density of what the accelerometer tells, by kind of motion */
-    float foretold_mm[BELIEF_MOTIONS]; /* way that it has foretold, and that does not count there */
+    float of_stand; /* density of what the accelerometer tells, if it stands */
 } belief_scan_t;
 
 /* Before the first scan. */

@@ -18,32 +18,34 @@
 
 void mirrors_frame(mirrors_t *mirrors, float gained_mps)
 {
-    mirrors->felt.gained_mps += gained_mps;
+    mirrors->felt.gained += gained_mps;
 }
 
-void mirrors_thrust(mirrors_t *mirrors, float gained_mps)
+void mirrors_thrust(mirrors_t *mirrors, float gained_mps, float dragged)
 {
-    mirrors->pushed.gained_mps += gained_mps;
+    mirrors->pushed.gained += gained_mps;
+    mirrors->dragged.gained += dragged;
 }
 
 /* What the heights will show of it: their rays are older than the frames. late: share of the gap. */
-static float shown_mps(mirrors_motion_t *motion, float late)
+static float shown(mirrors_motion_t *motion, float late)
 {
-    const float shown_mps = (1.0F - late) * motion->gained_mps + late * motion->before_mps;
+    const float shown = (1.0F - late) * motion->gained + late * motion->before;
 
-    motion->before_mps = motion->gained_mps;
-    motion->gained_mps = 0.0F;
-    return shown_mps;
+    motion->before = motion->gained;
+    motion->gained = 0.0F;
+    return shown;
 }
 
 static belief_felt_t felt_of(mirrors_t *mirrors, float gap_s, float age_s, bool believed)
 {
     const float late = at_most(age_s / gap_s, 1.0F);
-    const float felt_mps = shown_mps(&mirrors->felt, late);
-    const float pushed_mps = shown_mps(&mirrors->pushed, late);
+    const belief_felt_t felt = {.gained_mps = shown(&mirrors->felt, late),
+                                .pushed_mps = shown(&mirrors->pushed, late),
+                                .dragged = shown(&mirrors->dragged, late)};
     const belief_felt_t nothing = {.gained_mps = 0.0F};
 
-    return believed ? (belief_felt_t){felt_mps, (felt_mps - pushed_mps) / gap_s} : nothing;
+    return believed ? felt : nothing;
 }
 
 /* Identical digits are no new scan, see beam.c. */

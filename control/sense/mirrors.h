@@ -23,7 +23,7 @@ typedef struct {
 
 /* Change of the vertical speed since the latest scan, and from the scan before to that. */
 typedef struct {
-    float gained_mps, before_mps;
+    float gained, before;
 } mirrors_motion_t;
 
 typedef struct {
@@ -36,7 +36,7 @@ typedef struct {
     uint16_t left_out;   /* bits: mirrors of that scan that told something, and do not count in altitude */
     float disbelieved_s[MIRROR_COUNT];    /* how long each has been, at most 10 s */
     mirror_digits_t latest[MIRROR_COUNT]; /* of each mirror, to find copies */
-    mirrors_motion_t felt, pushed;        /* by the accelerometer, and by the thrust */
+    mirrors_motion_t felt, pushed, dragged; /* m/s by the accelerometer, by the thrust; share by the drag */
 } mirrors_t;
 
 /* Bits: mirrors that are disbelieved. lasting: for so long that no edge explains it; over one, the mirror
@@ -46,8 +46,9 @@ uint16_t mirrors_liars(const mirrors_t *mirrors, bool lasting);
 /* One IMU frame: by the accelerometer the vertical speed has changed by so much. */
 void mirrors_frame(mirrors_t *mirrors, float gained_mps);
 
-/* One cycle in which the thrust alone carries the vehicle: by it the speed has changed by so much. */
-void mirrors_thrust(mirrors_t *mirrors, float gained_mps);
+/* One cycle in which the thrust alone carries the vehicle: by it the speed has changed by so much, and by the
+ * drag by this share of the speed. */
+void mirrors_thrust(mirrors_t *mirrors, float gained_mps, float dragged);
 
 /* One scan: writes altitude and agree. shown: one altitude for each mirror_t, not valid where it shows none.
  * gap_s: since the scan before, > 0. age_s: of its rays. felt: the accelerometer is believed. */

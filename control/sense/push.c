@@ -15,7 +15,7 @@ void push_lag(push_t *push, const command_t *command)
     push->lagged_n += dt_s / (LAG_S + dt_s) * (command->thrust_n - push->lagged_n);
 }
 
-float push_move(push_t *push, const command_t *command, float upright)
+void push_move(push_t *push, const command_t *command, float upright, float *gained_mps, float *dragged)
 {
     const float dt_s = at_most(command->step_s, CYCLE_MAX_S);
     const float excess_mps2 = command->authority_mps2_per_n * (push->lagged_n * upright - command->hover_n);
@@ -23,7 +23,8 @@ float push_move(push_t *push, const command_t *command, float upright)
                        (1.0F + command->damping_per_s * dt_s);
 
     witness_move(&push->pushed, mps2, dt_s);
-    return mps2 * dt_s;
+    *gained_mps = excess_mps2 * dt_s;
+    *dragged = command->damping_per_s * dt_s;
 }
 
 void push_compare(push_t *push, float rise_m, float gap_s, float age_s)

@@ -18,8 +18,9 @@ typedef struct {
 void push_lag(push_t *push, const command_t *command);
 
 /* Dead reckoning, once in each cycle in which the thrust alone carries the vehicle. upright: cosine of the
- * tilt. Returns the change of the vertical speed, in metres per second. */
-float push_move(push_t *push, const command_t *command, float upright);
+ * tilt. Writes the change of the vertical speed by the thrust alone, in metres per second, and the share of
+ * it that the drag takes. */
+void push_move(push_t *push, const command_t *command, float upright, float *gained_mps, float *dragged);
 
 /* Adds the innovation of one height. */
 void push_compare(push_t *push, float rise_m, float gap_s, float age_s);

@@ -96,7 +96,10 @@ void senses_thrust(senses_t *senses, const command_t *command, bool felt_valid)
     if (!command->off_ground || stands) {
         witness_start(&senses->push.pushed, felt_tells ? felt->speed_mps : 0.0F);
     } else {
-        mirrors_thrust(&senses->mirrors, push_move(&senses->push, command, senses->tilt.upright));
+        float gained_mps, dragged;
+
+        push_move(&senses->push, command, senses->tilt.upright, &gained_mps, &dragged);
+        mirrors_thrust(&senses->mirrors, gained_mps, dragged);
     }
 }
 

@@ -49,22 +49,26 @@ void noise_set(const float *p)
     motions[2].sigma_mm = p[3];
 }
 
-/* Log likelihood of one flight's scans: gap, gained, strange, then valid, slant, height of each mirror. told[0]: scans, [1]: squared own
- * innovations of mirrors without a step over their variance, [2]: their number. */
-double noise_of(const float *v, long scans, double *told)
+/* Log likelihood of one flight's scans: gap, gained, pushed, dragged, then valid, slant, height of each mirror. told[0]: scans, [1]:
+ * squared own innovations of mirrors without a step over their variance, [2]: their number. strange: for each scan, what the
+ * accelerometer tells beyond the thrust. */
+double noise_of(const float *v, long scans, double *told, float *strange)
 {
     belief_t b = {.known = 0U};
     double sum = 0.0;
     start(&b);
-    for (long i = 0; i < scans; ++i, v += 12) {
+    for (long i = 0; i < scans; ++i, v += 13) {
         belief_beam_t beams[MIRROR_COUNT];
-        belief_scan_t scan = {.beams = beams, .gap_s = v[0], .felt = {v[1], v[2]}};
+        belief_scan_t scan = {.beams = beams, .gap_s = v[0], .felt = {v[1], v[2], v[3]}};
         for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-            beams[m] = (belief_beam_t){v[3 + 3 * m] != 0.0F, v[4 + 3 * m], v[5 + 3 * m]};
+            beams[m] = (belief_beam_t){v[4 + 3 * m] != 0.0F, v[5 + 3 * m], v[6 + 3 * m]};
             scan.told |= (beams[m].valid && belief_has(b.known, m) && v[0] <= HEIGHT_LOST_S) ? (uint16_t)(1U << m) : 0U;
         }
         belief_world_look(&scan, b.slant, b.height);
         belief_world_t foretold = b.worlds[0];
+        ways_t ways;
+        feel(&foretold, &ways, &scan);
+        strange[i] = ways.strange_mps2 - foretold.push_off_mps2;
         predict(&foretold, &scan);
         float off[MIRROR_COUNT], mean = 0.0F;
         for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
@@ -142,8 +146,10 @@ class Belief:
         figures = numpy.asarray(values, dtype=numpy.float32)
         self.library.noise_set(figures.ctypes.data_as(ctypes.c_void_p))
         told = numpy.zeros(3)
+        self.strange_mps2 = [numpy.zeros(len(scans), dtype=numpy.float32) for scans in flights]
         total = sum(self.library.noise_of(scans.ctypes.data_as(ctypes.c_void_p), ctypes.c_long(len(scans)),
-                                          told.ctypes.data_as(ctypes.c_void_p)) for scans in flights)
+                                          told.ctypes.data_as(ctypes.c_void_p), strange.ctypes.data_as(ctypes.c_void_p))
+                    for scans, strange in zip(flights, self.strange_mps2, strict=True))
         return total / told[0], told[1] / told[2] / expected_square(values)
 
 
@@ -180,30 +186,36 @@ class Thrust:
         self.damping = values["DAMP"]
         flown = [float(row["thrust_n"]) for row in rows if row["state"] == "FLYING"]
         self.hover_n = float(numpy.median(flown)) if flown else values["GRAV"]
-        self.lagged_n = self.speed_mps = 0.0
+        self.lagged_n = 0.0
 
-    def gained_mps(self, row, dt_s):
-        """In the time since the row before."""
+    def pushed(self, row, dt_s):
+        """In the time since the row before: change of the speed in m/s, and the share of the speed that the drag takes."""
         self.lagged_n += dt_s / (self.LAG_S + dt_s) * (float(row["thrust_n"]) - self.lagged_n)
         if row["state"] in ("GROUND", "ARMED"):
-            self.speed_mps = 0.0
-            return 0.0
+            return 0.0, 0.0
         upright = math.cos(float(row["roll_rad"])) * math.cos(float(row["pitch_rad"]))
-        excess_mps2 = self.authority * (self.lagged_n * upright - self.hover_n)
-        gained_mps = (excess_mps2 - self.damping * self.speed_mps) / (1.0 + self.damping * dt_s) * dt_s
-        self.speed_mps += gained_mps
-        return gained_mps
+        return self.authority * (self.lagged_n * upright - self.hover_n) * dt_s, self.damping * dt_s
 
 
 class Motion:
-    """Change of the speed, as control/sense/mirrors.c holds it against the rays' time."""
+    """A change of the speed, as control/sense/mirrors.c holds it against the rays' time."""
 
     def __init__(self):
-        self.gained_mps = self.before_mps = 0.0
+        self.gained = self.before = 0.0
 
-    def shown_mps(self, late):
-        shown, self.before_mps, self.gained_mps = (1 - late) * self.gained_mps + late * self.before_mps, self.gained_mps, 0.0
+    def shown(self, late):
+        shown, self.before, self.gained = (1 - late) * self.gained + late * self.before, self.gained, 0.0
         return shown
+
+
+def bias_mps2(rows):
+    """Of the accelerometer, at rest before the take-off."""
+    rest = []
+    for row in rows:
+        if row["state"] not in ("GROUND", "ARMED"):
+            break
+        rest += [float(row["up_mps2"])] if row["up_mps2"] else []
+    return float(numpy.mean(rest)) if rest else 0.0
 
 
 def scans_of(path, mirrors, values):
@@ -211,13 +223,15 @@ def scans_of(path, mirrors, values):
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     scans, scan_s, frame_s, row_s, flown = [], None, None, 0.0, False
-    thrust, felt, pushed = Thrust(rows, values), Motion(), Motion()
+    thrust, felt, pushed, dragged, bias = Thrust(rows, values), Motion(), Motion(), Motion(), bias_mps2(rows)
     for row in rows:
         now_s = float(row["t_s"])
-        pushed.gained_mps += thrust.gained_mps(row, now_s - row_s)
+        by_thrust, by_drag = thrust.pushed(row, now_s - row_s)
+        pushed.gained += by_thrust
+        dragged.gained += by_drag
         row_s = now_s
         if row["up_mps2"]:
-            felt.gained_mps += float(row["up_mps2"]) * (now_s - frame_s if frame_s is not None else 0.0)
+            felt.gained += (float(row["up_mps2"]) - bias) * (now_s - frame_s if frame_s is not None else 0.0)
             frame_s = now_s
         if not row["mf_rays"]:
             continue
@@ -225,15 +239,14 @@ def scans_of(path, mirrors, values):
         gap_s = now_s - scan_s if scan_s is not None else 1e3
         scan_s = now_s
         late = min(float(row["age_s"]) / gap_s, 1.0)
-        felt_mps = felt.shown_mps(late)
-        scan = [gap_s, felt_mps, (felt_mps - pushed.shown_mps(late)) / gap_s]
+        scan = [gap_s, felt.shown(late), pushed.shown(late), dragged.shown(late)]
         for mirror in mirrors:
             slant = row[mirror[0] + "_mm"]
             scan += ([1.0, float(slant), height_mm(float(slant), mirror, float(row["roll_rad"]), float(row["pitch_rad"]))]
                      if slant else [0.0, 0.0, 0.0])
         if flown:
             scans.append(scan)
-    return numpy.ascontiguousarray(scans, dtype=numpy.float32).reshape(-1, 12)
+    return numpy.ascontiguousarray(scans, dtype=numpy.float32).reshape(-1, 13)
 
 
 def fly(program, planned, own, mirrors, values):
@@ -287,7 +300,7 @@ def main():
     likelihood, innovation = belief.likelihood(belief.start, flights)
     print(f"{len(flights)} flights, {sum(map(len, flights))} scans: log likelihood {likelihood:.3f} a scan, "
           f"normalised innovation {innovation:.2f}")
-    strange = numpy.sort(numpy.abs(numpy.concatenate(flights)[:, 2]))
+    strange = numpy.sort(numpy.abs(numpy.concatenate(belief.strange_mps2)))
     told = ", ".join(f"{share:g} % {strange[int(share / 100 * (len(strange) - 1))]:.2f}" for share in (50, 68, 90, 95, 99, 99.9))
     print(f"the accelerometer beyond the thrust, m/s2: {told}")
     if options.fit:
