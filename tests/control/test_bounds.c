@@ -234,7 +234,7 @@ void test_a_vehicle_given_back_without_heights_has_a_thrust_below_hover_that_sin
 
 void test_a_vehicle_given_back_that_feels_a_climb_gives_less_and_a_fall_more(void)
 {
-    const float per_mps = 2.5F * 7.0F / 9.80665F; /* what the drag of 1 m/s takes */
+    const float per_mps = 2.5F * 7.0F / 9.80665F;                     /* what the drag of 1 m/s takes */
     NEAR(7.0F - 0.5F - 0.2F - per_mps, given_back_n(0U, 1.3F, 0.0F)); /* 1 m/s beyond: 2 N in a second */
     NEAR(0.2F, lowered_n());
     NEAR(7.0F - 0.5F + 0.5F * per_mps, given_back_n(0U, -0.8F, 0.0F));
