@@ -12,7 +12,8 @@
 #define CELL_LOAD_V 0.3F /* PX4, BAT1_V_LOAD_DROP: from a light load to full throttle */
 
 #define LOW_S 10.0F /* ArduPilot, BATT_LOW_TIMER */
-#define MEAN_S 1.0F /* PX4, battery.cpp: the filter of the voltage. Readings are good or bad over the same time */
+#define MEAN_S \
+    1.0F /* PX4, battery.cpp: the filter of the voltage. Readings are good or bad over the same time */
 #define BELIEVE_SHARE 0.75F /* three good readings of four */
 #define DOUBT_SHARE 0.5F    /* as many others as good ones */
 

@@ -9,8 +9,8 @@
 #include "control/credible.h"
 
 #define SHARE_OF_TILT 0.2F /* chosen: a wrong sign makes 2, a wrong axis 1, a moving hand less than 0.2 */
-/* Halfway between a change that removes all of the disagreement and one that removes nothing: the noise of both
- * is the same, so this is the likeliest border. */
+/* Halfway between a change that removes all of the disagreement and one that removes nothing: the noise of
+ * both is the same, so this is the likeliest border. */
 #define MENDED_SHARE 0.5F
 #define NOISE_RAD_PER_MPS2 0.04F /* five sigma of the mean: 5 sqrt(25 ms / 4 s) / g */
 

@@ -9,12 +9,12 @@
 
 /* ArduPilot, RC_Channel.cpp: the range of RC_MIN and RC_MAX. */
 #define SHORTEST_US 800.0F
-#define LONGEST_US 2200.0F   /* the same */
-#define TRAVEL_US 400.0F     /* from the middle to an end, at a remote control's delivered travel of 100 % */
-#define PULSE_S 0.02F        /* period of a remote control's pulses */
-#define SILENT_S 0.35F       /* two control cycles of 150 ms at most, a pulse of 20 ms, rounded up */
+#define LONGEST_US 2200.0F /* the same */
+#define TRAVEL_US 400.0F   /* from the middle to an end, at a remote control's delivered travel of 100 % */
+#define PULSE_S 0.02F      /* period of a remote control's pulses */
+#define SILENT_S 0.35F     /* two control cycles of 150 ms at most, a pulse of 20 ms, rounded up */
 #define WANDER_SHARE (PULSE_S / SILENT_S) /* over the time after which silence is noticed */
-#define NOISY_US 100.0F      /* chosen: a hand that moves the stick from end to end in 0.2 s has 80 */
+#define NOISY_US 100.0F            /* chosen: a hand that moves the stick from end to end in 0.2 s has 80 */
 #define QUIET_US (0.5F * NOISY_US) /* hysteresis */
 
 static void hear(stick_t *stick, float pulse_us)

@@ -10,15 +10,15 @@
 /* chosen: 60 us of a pulse. PX4 has 0.1 (MPC_HOLD_DZ), for sticks that spring to the middle; a throttle's
  * stick does not. */
 #define DEAD_BAND 0.15F
-#define HELD_S 1.0F               /* what the stick says so long is meant: PX4, COM_RC_ARM_HYST */
-#define RAISED_MOST_M 1.0F        /* chosen: half a room */
+#define HELD_S 1.0F        /* what the stick says so long is meant: PX4, COM_RC_ARM_HYST */
+#define RAISED_MOST_M 1.0F /* chosen: half a room */
 #define LEAD_MOST_M LAW_REACH_M
 #define TAKE_OFF_UP 0.3F          /* PX4's FlightTaskManualAltitude::_checkTakeoff() */
 #define TAKE_OFF_M LEAD_MOST_M    /* from the ground */
 #define MOTORS_STOP_PERCENT 10.0F /* the autopilot stops its motors below it, docs/operator.md */
-#define STEP_MOST_S 0.2F     /* a control cycle comes within 150 ms */
-#define MIDDLE_PERCENT 50.0F /* of 0 to 100 */
-#define US_PER_PERCENT 10.0F /* a pulse of 1 to 2 ms */
+#define STEP_MOST_S 0.2F          /* a control cycle comes within 150 ms */
+#define MIDDLE_PERCENT 50.0F      /* of 0 to 100 */
+#define US_PER_PERCENT 10.0F      /* a pulse of 1 to 2 ms */
 
 static bool is_wired(const parameters_t *parameters)
 {

@@ -4,11 +4,11 @@
 #ifndef CONTROL_THRUST_H
 #define CONTROL_THRUST_H
 
-#define THRUST_MAX_N 11.76F      /* seed eq. 4-5: where the pulse is 1 ms */
+#define THRUST_MAX_N 11.76F /* seed eq. 4-5: where the pulse is 1 ms */
 /* Of the hover thrust; the rotors keep turning. IDLE as delivered, 15 % of the throttle, is 1.76 N: a quarter
  * of the seed's 7 N. */
 #define THRUST_LEAST_SHARE 0.25F
-#define THRUST_STEP_US 0.48F     /* the seed's resolution of the pulse */
+#define THRUST_STEP_US 0.48F                            /* the seed's resolution of the pulse */
 #define THRUST_IDLE_PULSE_US (4166.0F * THRUST_STEP_US) /* no thrust, "2 ms" */
 #define THRUST_FULL_PULSE_US (2082.0F * THRUST_STEP_US) /* full thrust, "1 ms" */
 

@@ -16,8 +16,8 @@
 /* Without heights: at the hover thrust after the time over which that was learned */
 #define SINK_FADE_N_PER_S (NEAR_HOVER_N / HOVER_TIME_S)
 #define LANDED_FADE_N_PER_S 2.0F /* chosen: no thrust 4 s later */
-/* 0.94 N below the hover thrust, more than the ground carries: by Cheeseman and Bennett, 1 / (1 - (R / 4 z)^2),
- * 11 % of 8.4 N, the heaviest vehicle's hover thrust, by rotors of R 0.127 m at z 0.1 m. */
+/* 0.94 N below the hover thrust, more than the ground carries: by Cheeseman and Bennett, 1 / (1 - (R / 4
+ * z)^2), 11 % of 8.4 N, the heaviest vehicle's hover thrust, by rotors of R 0.127 m at z 0.1 m. */
 #define LANDED_ROCKS_S 0.72F
 #define LANDED_ROCKS_SHARE (SINK_FADE_N_PER_S / LANDED_FADE_N_PER_S) /* as without heights */
 

@@ -8,8 +8,9 @@
 #include "control/thrust.h"
 
 #define PIN_TRUSTED_S 5.0F /* it warns first: PX4, COM_FAIL_ACT_T */
-/* A wrong height may ask for it: so much climbs at 1.2 m/s at most, the speed of a hard touch, with the lightest
- * vehicle, 5.6 N, and the least damping, 1.5 1/s (tools/campaign/plan.py): 1.2 m/s * 1.5 1/s * 5.6 N / 9.81 m/s2.
+/* A wrong height may ask for it: so much climbs at 1.2 m/s at most, the speed of a hard touch, with the
+ * lightest vehicle, 5.6 N, and the least damping, 1.5 1/s (tools/campaign/plan.py): 1.2 m/s * 1.5 1/s * 5.6 N
+ * / 9.81 m/s2.
  */
 #define PIN_ABOVE_N 1.0F
 #define PIN_BELOW_N (2.0F * PIN_ABOVE_N) /* a load of a newton is let go, and as much to sink */
@@ -21,9 +22,9 @@ static void reset(stuck_pin_t *pin)
     pin->vain_s = 0.0F;
 }
 
-/* A vehicle with so little thrust sinks, unless a pilot holds it up: where/piloting.c asks a landing the same.
- * Once it is known, it stays known for this turn. He may give the throttle back before the pin tells, so then the
- * thrust stays near the hover thrust. */
+/* A vehicle with so little thrust sinks, unless a pilot holds it up: where/piloting.c asks a landing the
+ * same. Once it is known, it stays known for this turn. He may give the throttle back before the pin tells,
+ * so then the thrust stays near the hover thrust. */
 static bool is_in_vain(stuck_pin_t *pin, const situation_t *now)
 {
     const height_track_t *height = &now->where->supervisor.height;

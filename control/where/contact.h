@@ -11,7 +11,9 @@
 #include "control/credible.h"
 #include "control/where/flight_state.h"
 
-#define UNPOWERED_S REST_HELD_S /* so long without enough thrust, and it does not sink: a free fall of 5 m */
+#define UNPOWERED_S \
+    REST_HELD_S /* so long without enough thrust, and it does not sink: a free fall of 5 m \
+                 */
 
 typedef enum {
     CONTACT_GROUND,  /* on the ground, without a take-off */

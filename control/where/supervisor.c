@@ -13,7 +13,7 @@
 #include "control/credible.h"
 #include "control/est/est_law.h"
 
-#define ATTITUDE_FRESH_US UINT32_C(250000) /* ten frames of 25 ms */
+#define ATTITUDE_FRESH_US UINT32_C(250000)              /* ten frames of 25 ms */
 #define REST_HELD_US ((uint32_t)(REST_HELD_S * 1.0e6F)) /* on the ground; and off it, in a pilot's hands */
 /* A landing from 4.095 m, the scanner's range, is over: 11.7 s at 0.3 m/s down to 0.6 m, 2.8 s from there
  * (log(0.3 / 0.15) by 0.25 1/s, laws/descent.h), and REST_HELD_S. */
@@ -22,13 +22,13 @@
 #define DESCENT_TIMEOUT_US UINT32_C(45000000) /* the thrust of a blind descent has fallen to 0, descent.c */
 #define AGE_MAX_US UINT32_C(3600000000)       /* one hour: below the wrap of 71 minutes */
 
-#define REST_FALL_MM 20.0F   /* three HEIGHT_SIGMA_M, 19.2 mm */
+#define REST_FALL_MM 20.0F /* three HEIGHT_SIGMA_M, 19.2 mm */
 /* Above the highest reference, 3 m, the scanner sees 0.89 m more: 4.095 m less 0.205 m of the front mirror's
  * way. Rounded down. */
 #define TOO_HIGH_MM 800.0F
 #define RECOVERED_MM (1000.0F * LAW_REACH_M) /* the law reaches it again without help */
-#define TOO_HIGH_HEIGHTS 2U            /* one height may be wrong */
-#define RATE_CHANGE_MAX_MM_S2 10000.0F /* 1 g: the vehicle cannot change its speed faster */
+#define TOO_HIGH_HEIGHTS 2U                  /* one height may be wrong */
+#define RATE_CHANGE_MAX_MM_S2 10000.0F       /* 1 g: the vehicle cannot change its speed faster */
 #define CLIMB_AHEAD_S 0.40F /* sum of the age of a height, one more scan, and the lag of the motors */
 /* The slowest vehicle of tools/campaign/plan.py: lag of the motors 150 ms, delay 20 ms, a pulse 14 ms; a
  * frame 25 ms and 15 ms old. */

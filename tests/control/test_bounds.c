@@ -210,7 +210,7 @@ static float given_back_n(uint32_t state_us, float felt_mps, float before_n)
     setUp();
     given_back(0.06F);
     in_state_for_us(FLIGHT_DESCENDING, state_us);
-    estimated(0.0F, 0.5F + before_n, 0.0F); /* 2 N per metre beyond 0.5 m/s, for half a second */
+    estimated(0.0F, 0.3F + before_n, 0.0F); /* 2 N per metre beyond 0.3 m/s, for half a second */
     cycle_takes_us(500000U);
     (void)bounded_n(3.0F);
     cycle_takes_us(100000U);
@@ -234,12 +234,12 @@ void test_a_vehicle_given_back_without_heights_has_a_thrust_below_hover_that_sin
 
 void test_a_vehicle_given_back_that_feels_a_climb_gives_less_and_a_fall_more(void)
 {
-    const float per_mps = 2.5F * 7.0F / 9.80665F; /* what the drag of 1 m/s takes */
-    NEAR(7.0F - 0.5F - 0.2F - per_mps, given_back_n(0U, 1.5F, 0.0F)); /* 1 m/s beyond: 2 N in a second */
+    const float per_mps = 2.5F * 7.0F / 9.80665F;                     /* what the drag of 1 m/s takes */
+    NEAR(7.0F - 0.5F - 0.2F - per_mps, given_back_n(0U, 1.3F, 0.0F)); /* 1 m/s beyond: 2 N in a second */
     NEAR(0.2F, lowered_n());
-    NEAR(7.0F - 0.5F + 0.5F * per_mps, given_back_n(0U, -1.0F, 0.0F));
+    NEAR(7.0F - 0.5F + 0.5F * per_mps, given_back_n(0U, -0.8F, 0.0F));
     NEAR(0.0F, lowered_n()); /* no more than what climbs have lowered */
-    NEAR(7.0F - 0.5F - 0.9F + 0.5F * per_mps, given_back_n(0U, -1.0F, 1.0F));
+    NEAR(7.0F - 0.5F - 0.9F + 0.5F * per_mps, given_back_n(0U, -0.8F, 1.0F));
     NEAR(7.0F - 0.5F + 2.0F, given_back_n(0U, -2.0F, 0.0F));
     (void)given_back_n(0U, 3.0F, 1.95F);
     NEAR(2.0F, lowered_n());
