@@ -907,7 +907,7 @@ void test_the_ceiling_of_a_descent_starts_above_the_entrys_hover_thrust_and_fall
 
 void test_without_heights_the_thrust_is_not_cut_too_far(void)
 {
-    NEAR(5.5F, descend(EST_MODE_SINK, false)); /* 1.5 N below the entry's */
+    NEAR(6.5F, descend(EST_MODE_SINK, false)); /* 0.5 N below the entry's */
     setUp();
     TEST_ASSERT_TRUE(descend(EST_MODE_LAND, false) < 5.6F);
     setUp();
