@@ -29,9 +29,8 @@ float cascade_thrust_n(const cascade_gains_t *gains, const cascade_vehicle_t *ve
 {
     const float acceleration_mps2 = between(
         -EST_FALL_MPS2, gains->speed_per_s * (speed_mps - state->speed_mps), RISE_MAX_MPS2);
-    /* beyond the speeds that are flown, the drag helps to brake */
-    const float drag_mps2 = vehicle->damping_per_s *
-                            between(-gains->down_mps, state->speed_mps, gains->up_mps);
+    /* beyond the speed of a climb the drag helps to brake, also a fall */
+    const float drag_mps2 = vehicle->damping_per_s * between(-gains->up_mps, state->speed_mps, gains->up_mps);
     const float force_n = (acceleration_mps2 + drag_mps2) / vehicle->authority_mps2_per_n;
     const float steady_n = (vehicle->need_n + force_n) / at_least(vehicle->upright, UPRIGHT_MIN);
     const float led_n = state->thrust_n + LEAD * (steady_n - state->thrust_n);

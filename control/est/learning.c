@@ -8,9 +8,9 @@
 #include "control/between.h"
 #include "control/credible.h"
 
-/* The damping is within 1.5 .. 3 1/s (plan.py), so its standard deviation is 1.5 / sqrt(12) = 0.43 1/s: times
- * 7 N / 9.81 m/s2. */
-#define SPEED_DOUBT_N_PER_MPS 0.31F
+/* The damping is anywhere in 1.5 .. 3 1/s (plan.py): off DAMP, 2.4 1/s, by sqrt(1.5^2 / 12 + 0.15^2) = 0.46
+ * 1/s rms; times 7 N / 9.81 m/s2. */
+#define SPEED_DOUBT_N_PER_MPS 0.33F
 #define NO_ACC_TIME_S 3.0F   /* tried 1.5 to 6: the model's bias becomes hover thrust */
 #define NO_ACC_DEADBAND 0.1F /* tried 0 to 1: the model's bias tells the deadband late */
 

@@ -47,7 +47,7 @@ void let_down_step(let_down_t *down, est_mode_t mode, float height_m, bool rocks
  */
 static float least_n(const let_down_t *down, est_mode_t mode)
 {
-    return (mode == EST_MODE_SINK) ? at_least(down->entry_hover_n - HOVER_THRUST_MARGIN_N, 0.0F) : 0.0F;
+    return (mode == EST_MODE_SINK) ? at_least(down->entry_hover_n - NEAR_HOVER_N, 0.0F) : 0.0F;
 }
 
 static float most_n(const let_down_t *down, est_mode_t mode, float hover_n)

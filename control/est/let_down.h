@@ -9,10 +9,6 @@
 
 #include "control/laws/descent.h"
 
-#define LAND_MPS 0.15F                                /* chosen: touches at 0.15 m/s, a drop from 1 mm */
-#define LAND_MAX_MPS (0.001F * DESCENT_RATE_MM_S)     /* as every descent */
-#define LAND_PER_S ((LAND_MAX_MPS - LAND_MPS) / 0.6F) /* slower within the last 0.6 m */
-
 typedef enum {
     EST_MODE_HOLD, /* hold reference_m */
     EST_MODE_LAND, /* descend; slow down near the ground, and fade the thrust out there */

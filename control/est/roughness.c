@@ -11,6 +11,8 @@
 #define FLOOR_START_M 0.004F     /* of a smooth floor: MIRROR_NOISE_MM of sense/plane.c */
 #define FLOOR_SHARE 0.20F        /* tried: a slower mean knows bars of 60 mm only after the take-off */
 #define FLOOR_CLIP (3.0F * 3.0F) /* 3 sigma of what is measured, one in 370: an edge counts little */
+#define FLOOR_VARIANCE \
+    0.5F /* tried 1: it swings by the thrust model alone, to 0.5 m too high behind a ramp */
 #define BAR_US UINT32_C(1000000) /* chosen: two edges within that time are a bar, and more will follow */
 #define BAR_SHARE 0.5F           /* rms of a height that is half of the time on the bar */
 /* Higher ones would be noise beyond what any floor has: edges or wrong scans, which are rejected. */
@@ -37,7 +39,7 @@ static void measure(roughness_t *roughness, float height_m)
 float roughness_variance_m2(const roughness_t *roughness)
 {
     const float noise_m = roughness->noise_m;
-    return at_least(noise_m * noise_m - ROUGHNESS_SMOOTH_M * ROUGHNESS_SMOOTH_M, 0.0F);
+    return FLOOR_VARIANCE * at_least(noise_m * noise_m - ROUGHNESS_SMOOTH_M * ROUGHNESS_SMOOTH_M, 0.0F);
 }
 
 static void watch_bars(roughness_t *roughness, float innovation_m, uint32_t rays_us)

@@ -1,8 +1,6 @@
 #include "control/laws/descent.h"
 
 #include "control/between.h"
-#include "control/est/est_law.h"
-#include "control/est/let_down.h"
 #include "control/thrust.h"
 #include "control/touchdown.h"
 
@@ -12,6 +10,7 @@
 #define BRAKE_BEYOND_MM_S 1000.0F  /* a climb of 0.7 m/s and more */
 #define TRIM_GAIN_N_PER_MM 0.0010F /* chosen: 0.3 N/s at the whole rate */
 #define FADE_N_PER_S2 0.004F       /* chosen: 7 N are gone after 40 s */
+#define TRIM_MAX_N 2.0F            /* a hover thrust wrong by a fifth, and gusts */
 
 static float flare_mm_s(float height_mm)
 {
@@ -28,7 +27,7 @@ static float rate_action_n(float error_mm_s, float hover_n)
 {
     const float climb_mm_s = at_most(error_mm_s + BRAKE_BEYOND_MM_S, 0.0F);
     const float action_n = SINK_SHARE * hover_n / DESCENT_RATE_MM_S * (error_mm_s + BRAKE_SHARE * climb_mm_s);
-    return at_most(action_n, HOVER_BOUND_N);
+    return at_most(action_n, TRIM_MAX_N);
 }
 
 float descent_step(descent_t *descent, float hover_n, float height_mm, float rate_mm_s, float dt_s)
@@ -37,8 +36,8 @@ float descent_step(descent_t *descent, float hover_n, float height_mm, float rat
     const float error_mm_s = -sink_mm_s - rate_mm_s;
     const float sink_n = SINK_SHARE * hover_n * sink_mm_s / DESCENT_RATE_MM_S;
 
-    descent->trim_n = between(-HOVER_BOUND_N, descent->trim_n + TRIM_GAIN_N_PER_MM * error_mm_s * dt_s,
-                              HOVER_BOUND_N);
+    descent->trim_n = between(-TRIM_MAX_N, descent->trim_n + TRIM_GAIN_N_PER_MM * error_mm_s * dt_s,
+                              TRIM_MAX_N);
     const float setpoint_n = at_least(hover_n - sink_n + descent->trim_n + rate_action_n(error_mm_s, hover_n),
                                       THRUST_LEAST_SHARE * hover_n);
     descent->near_ground_s = touchdown_time_s(descent->near_ground_s, height_mm * 0.001F, descent->rocks,

@@ -8,6 +8,10 @@
     60.0F /* above DESCENT_TIMEOUT_US in supervisor.c; longer ones count as this long */
 #define DESCENT_RATE_MM_S 300.0F /* above 0.6 m; below it falls to 0.15 m/s at the ground */
 
+#define LAND_MPS 0.15F /* chosen: touches at 0.15 m/s, a drop from 1 mm */
+#define LAND_MAX_MPS (0.001F * DESCENT_RATE_MM_S)
+#define LAND_PER_S ((LAND_MAX_MPS - LAND_MPS) / 0.6F) /* slower within the last 0.6 m */
+
 #include <stdbool.h>
 
 typedef struct {

@@ -116,15 +116,22 @@ static bool starts_at_once(const situation_t *now)
            (now->mode_before == FLIGHT_MODE_HOVER && contact_lifts(&now->where->contact));
 }
 
+/* The mode has changed, but not from law EST to itself; or the thrust need not stay near hover any more. */
+static bool changes(laws_t *laws, const situation_t *now)
+{
+    const bool both_est = modes_use_estimate(now->mode_before) && modes_use_estimate(now->mode);
+    const bool floated = laws->floated;
+
+    laws->floated = now->where->supervisor.state == FLIGHT_FLOATING;
+    return (now->mode_before != now->mode && !both_est) || (floated && !laws->floated);
+}
+
 /* law_changed: the law, or its integral action. */
 static void transfer(laws_t *laws, const situation_t *now, bool law_changed)
 {
     const float hover_n = now->where->hover.thrust_n;
-    const bool both_est = modes_use_estimate(now->mode_before) && modes_use_estimate(now->mode);
-    const bool floats = now->where->supervisor.state == FLIGHT_FLOATING;
-    const bool changed = (now->mode_before != now->mode && !both_est) || (laws->floated && !floats);
+    const bool changed = changes(laws, now);
 
-    laws->floated = floats;
     if (now->mode == FLIGHT_MODE_IDLE || (changed && starts_at_once(now))) {
         laws->transfer_n = 0.0F;
     } else if (law_changed && !loses_estimate(now)) {

@@ -12,7 +12,7 @@
 #define REST_UNFIT_MPS2 BIAS_MAX_MPS2          /* no estimate represents more */
 #define REST_FIT_MPS2 (0.8F * REST_UNFIT_MPS2) /* chosen: hysteresis of a fifth */
 
-#define SHAKEN_MPS2 0.9F     /* chosen: about twice the usual noise, NOISE_START_MPS2 in credit.c */
+#define SHAKEN_MPS2 0.9F     /* chosen: about twice the usual noise, CREDIT_NOISE_MPS2 in credit.h */
 #define STANDING_TIME_S 1.0F /* chosen: on the ground the felt speed decays, the bias must not add up */
 #define STANDING_WAY_S (2.0F * STANDING_TIME_S) /* nor its way: 0.1 m/s2 make 0.2 m */
 #define FELT_LEAK_PER_S 1.8F   /* chosen: 2 x 0.9, critically damped without the bias, poles at 0.9 1/s */

@@ -1,8 +1,8 @@
 """What the law did: its gains as the log shows them, and where it could not go on.
 
 Every law gives, for small errors, a thrust that falls with the height's error and with the climb, around a thrust that moves
-slowly (an integral, or what EST has learned). So the gains are found by least squares from the log alone, whoever set them. EST and
-PIDT lower their gains while the loop swings, which hides what was set: this share is computed again from the log, as the firmware does it.
+slowly (an integral, or what EST has learned). So the gains are found by least squares from the log alone, whoever set them. PIDT
+lowers its gains while the loop swings, which hides what was set: this share is computed again from the log, as the firmware does it.
 """
 from dataclasses import dataclass
 
@@ -16,10 +16,7 @@ CUT_N = 0.02                    # so near to its extreme the thrust is at a limi
 PERIOD_S = 0.13                 # of the slowest law, 108 ms, and a row
 LEAST = 60                      # rows
 WITHIN_M = 0.15                 # the cascade is no straight line farther off
-CALM_MIN = 0.4                  # control/est/cascade.h, and control/laws/pidt.c, as the next five
-ACTIVITY_MAX_N, ACTIVITY_TIME_S = 1.5, 1.0
-SWING_N, SWINGS_FREE, SWINGS_TIME_S, CALM_PER_SWING = 0.8, 3.0, 10.0, 0.1
-FAR_M = 0.4
+SWING_N, SWINGS_FREE, SWINGS_TIME_S, FAR_M = 0.8, 3.0, 10.0, 0.4    # control/laws/pidt.c
 ROUNDS = 4                      # gains and PIDT's calming tell each other
 
 
@@ -76,7 +73,7 @@ def of(flight):
         return law
     knots = numpy.arange(t_s[flying][0], t_s[flying][-1] + KNOT_S, KNOT_S)
     slow = numpy.array([numpy.interp(t_s[free], knots, row) for row in numpy.eye(len(knots))]).T
-    share = cascade_calm(t_s, c["thrust_n"], flying) if estimator else numpy.ones(len(t_s))
+    share = numpy.ones(len(t_s))
     for _ in range(1 if estimator else ROUNDS):
         design = numpy.column_stack([(share * error)[free], -(share * speed)[free], slow])
         ridge = 1e-3 * numpy.eye(design.shape[1])
@@ -94,20 +91,6 @@ def of(flight):
     return law
 
 
-def cascade_calm(t_s, thrust_n, flying):
-    """calm() of control/est/cascade.c, of each row."""
-    share, slow, quick, before = numpy.ones(len(t_s)), None, 0.0, None
-    for k in numpy.flatnonzero(flying):
-        if slow is None:
-            slow, before = thrust_n[k], t_s[k]
-        of = min((t_s[k] - before) / ACTIVITY_TIME_S, 1.0)
-        off, before = thrust_n[k] - slow, t_s[k]
-        slow += of * off
-        quick += of * (off * off - quick)
-        share[k] = numpy.clip(ACTIVITY_MAX_N / numpy.sqrt(max(quick, 0.01)), CALM_MIN, 1.0)
-    return share
-
-
 def pidt_calm(flight, flying, action_n):
     """calm() of control/laws/pidt.c, of each row."""
     share, now, swings, peak, before = numpy.ones(len(action_n)), 1.0, 0.0, 0.0, None
@@ -118,7 +101,7 @@ def pidt_calm(flight, flying, action_n):
             turned = action * peak < 0.0
             swings += 1.0 if turned and abs(peak) > SWING_N else 0.0
             peak = action if turned or abs(action) > abs(peak) else peak
-            now, before = float(numpy.clip(1.0 - CALM_PER_SWING * (swings - SWINGS_FREE), CALM_MIN, 1.0)), at
+            now, before = SWINGS_FREE / max(swings, SWINGS_FREE), at
         share[k] = now
     return share
 

@@ -118,9 +118,9 @@ void test_the_acceleration_is_limited_upwards_and_downwards(void)
     TEST_ASSERT_FLOAT_WITHIN(1e-3F, 7.4F - 3.96F / 4.0F, step(-2.0F));
 }
 
-void test_the_drag_that_is_met_ends_at_the_speeds_that_are_flown(void)
+void test_the_drag_that_is_met_ends_at_the_speed_of_a_climb(void)
 {
-    static const float speeds_mps[][2] = {{0.4F, 0.4F}, {2.0F, 0.5F}, {-1.2F, -1.2F}, {-3.0F, -1.3F}};
+    static const float speeds_mps[][2] = {{0.4F, 0.4F}, {2.0F, 0.5F}, {-0.4F, -0.4F}, {-3.0F, -0.5F}};
     vehicle.authority_mps2_per_n = 4.0F;
     vehicle.damping_per_s = 2.0F;
     for (int i = 0; i < 4; i++) {

@@ -288,7 +288,7 @@ void test_a_height_of_a_smooth_floor_has_a_noise_of_1_3_mm(void)
 void test_a_height_of_a_rough_floor_has_its_noise_too(void)
 {
     memset(filter->covariance, 0, sizeof filter->covariance);
-    filter->covariance[FILTER_HEIGHT][FILTER_HEIGHT] = 0.8F * 0.0009F - 0.0192F * 0.0192F + R_M2;
+    filter->covariance[FILTER_HEIGHT][FILTER_HEIGHT] = 0.5F * (0.8F * 0.0009F - 0.0192F * 0.0192F) + R_M2;
     roughness->noise_m = 0.03F;
     roughness->previous_m[0] = roughness->previous_m[1] = 0.51F;
     (void)see(0.51F);

@@ -57,9 +57,9 @@ void test_a_hover_thrust_that_is_learned_in_the_descent_does_not_count(void)
 
 void test_without_heights_the_thrust_is_not_cut_too_far(void)
 {
-    NEAR(5.5F, step_n(EST_MODE_SINK, 0.0F, 0.1F)); /* 1.5 N below the entry's */
+    NEAR(6.5F, step_n(EST_MODE_SINK, 0.0F, 0.1F)); /* 0.5 N below the entry's */
     NEAR(0.0F, step_n(EST_MODE_LAND, 0.0F, 0.1F));
-    let_down_arm(&down, 1.0F);
+    let_down_arm(&down, 0.4F);
     NEAR(0.0F, step_n(EST_MODE_SINK, -1.0F, 0.1F));
 }
 
