@@ -310,7 +310,7 @@ class Strengths(unittest.TestCase):
                 self.assertFalse(of.shown(of.healthy))
 
     def test_the_table_counts_the_flights_that_runs_printed(self):
-        told = [acceptance.Told("hot", 0, planted.plan_of("hot", "x", 0, share), named, (), 1.0) for share, named in
+        told = [acceptance.Told("hot", 0, planted.plan_of("hot", "x", 0, share), named, named, (), 1.0) for share, named in
                 ((0.1, []), (0.5, ["hot"]), (0.9, ["hot"]), (0.95, ["mode"]))]
         row = next(line for line in acceptance.table([each.line() for each in told] + ["nonsense"]).splitlines() if line.startswith("| hot "))
         self.assertIn("| 0 of 1 | 1 of 1 | 1 of 2 |", row)
