@@ -310,7 +310,7 @@ class Strengths(unittest.TestCase):
                 self.assertFalse(of.shown(of.healthy))
 
     def test_the_table_counts_the_flights_that_runs_printed(self):
-        told = [acceptance.Told("hot", 0, planted.plan_of("hot", "x", 0, share), named, (), 1.0) for share, named in
+        told = [acceptance.Told("hot", 0, planted.plan_of("hot", "x", 0, share), named, named, (), 1.0) for share, named in
                 ((0.1, []), (0.5, ["hot"]), (0.9, ["hot"]), (0.95, ["mode"]))]
         row = next(line for line in acceptance.table([each.line() for each in told] + ["nonsense"]).splitlines() if line.startswith("| hot "))
         self.assertIn("| 0 of 1 | 1 of 1 | 1 of 2 |", row)
@@ -440,6 +440,22 @@ class Likelihood(unittest.TestCase):
         age_s, sigma_s = rays.peak(known, 0.06)
         self.assertAlmostEqual(age_s, 0.063, places=6)
         self.assertAlmostEqual(sigma_s, math.hypot(0.004, rays.METHOD_S), places=6)
+
+
+class Guesses(unittest.TestCase):
+    def found(self, **nats):
+        return {key: cases.Finding(value) for key, value in nats.items()}
+
+    def test_behind_nothing_found_stands_a_cause_that_is_too_weak_to_be_named_and_says_so(self):
+        weak = self.found(hot=1.6, floor=0.9, grav=-1.0)
+        self.assertEqual(why.guesses(weak), [None, "hot"])
+        self.assertIn("gains too hot, 5 times as likely as nothing. To be named takes 33 times", why.hint(weak))
+
+    def test_a_cause_that_is_named_is_the_first_guess_and_one_that_is_no_likelier_than_nothing_is_none(self):
+        for found, guesses in ((self.found(floor=9.0, hot=4.0, grav=3.7), ["floor", "hot"]), (self.found(floor=9.0, hot=2.0), ["floor"]),
+                               (self.found(hot=0.5), [None]), ({}, [None])):
+            self.assertEqual(why.guesses(found), guesses)
+            self.assertEqual(why.hint(found), "")
 
 
 class Law(unittest.TestCase):

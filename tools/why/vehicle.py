@@ -34,7 +34,7 @@ HUBER = 4.0                     # standard deviations from which on one datum co
 # name: (median, spread of the logarithm) of healthy vehicles: tools/campaign/plan.py, a little wider
 FIGURES = {"tau": (0.115, 0.2), "tdelay": (0.012, 0.5), "damping": (2.2, 0.25), "turbulence": (0.22, 0.3), "turbulence_tau": (0.5, 0.3),
            "acc_noise": (0.5, 0.35), "height_noise": (0.0045, 0.3)}
-TERRAIN = {"terrain": (0.02, 0.5)}
+TERRAIN = {"terrain": (0.012, 0.6)}     # m rms: gravel of 3 to 20 mm, a pile of 30 mm (tools/why/planted.py), a little wider
 # Standard deviations of the linear figures around what they are without news.
 GROWTH, OFFSET = 0.0012, 0.3
 AUTHORITY = 0.25                # m/s2 for each newton: mass and effect, +-20 % each, in tools/campaign/plan.py

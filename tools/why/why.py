@@ -25,6 +25,7 @@ from causes.case import Case  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 WORTH = 3.5                     # nats: what is less than 33 times as likely as nothing is not named
+HINT = math.log(2.0)            # what is less than twice as likely as nothing is not even mentioned
 NOISES, FAR = ("turbulence", "acc_noise", "height_noise"), 3.0  # standard deviations of what healthy flights have
 
 
@@ -62,6 +63,20 @@ def ask(path, program, progress=None):
 def verdict(found):
     """The keys that are worth naming, the most likely one first."""
     return [key for key, finding in found.items() if finding.nats > WORTH]
+
+
+def guesses(found):
+    """What it says first, second and so on; None: nothing found. Behind that stands a cause that is likelier than nothing, though not by WORTH."""
+    return (verdict(found) or [None, *(key for key, finding in found.items() if finding.nats > HINT)])[:2]
+
+
+def hint(found):
+    """Of the cause behind `nothing found`. "": there is none."""
+    told = guesses(found)
+    if told[0] is not None or len(told) < 2:
+        return ""
+    return (f"If there is anything, it is this: {causes.TABLE[told[1]].name}, {math.exp(found[told[1]].nats):.0f} times as likely as nothing. "
+            f"To be named takes {math.exp(WORTH):.0f} times.")
 
 
 def sentences(case, found):
@@ -119,7 +134,7 @@ def main(argv=None):
         print(f"why: {error}", file=sys.stderr)
         return 2
     flown, would = without_it(case, found)
-    said = sentences(case, found)
+    said = [*sentences(case, found), *filter(None, [hint(found)])]
     print("\n".join([*said, *([would] if would else []), table(found)]))
     import picture  # noqa: PLC0415  Matplotlib takes its second: what is wrong with a log is told before
     try:

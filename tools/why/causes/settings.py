@@ -5,6 +5,7 @@ import numpy
 
 import begun
 from causes.case import Finding, even
+from causes.forces import GROWTH_FAULTY, growth
 from vehicle import G
 
 # Of delivered gains on a vehicle whose throttle has the effect that its hover thrust tells: acceleration per metre and per metre per
@@ -13,49 +14,67 @@ USUAL = {True: (14.5, 3.5), False: (8.0, 3.2)}
 SEEN = 0.2                      # rms error of the logarithm of gains that were read off the thrusts alone
 # What flies well: the delivered gains on the vehicle in the middle. PIDT's newtons are not divided by the vehicle's mass.
 CASCADE = {"VELK": 8.0, "POSK": 2.3}
-PIDT, MIDDLE_MPS2_PER_N = {"PKP": 6.0, "PKD": 2.6}, G / 7.0
-KNOWN = 0.055                   # rms error of the logarithm, of 68 flights: the effect of a newton is found so well; the gains within 0.01
+PIDT, MIDDLE_N = {"PKP": 6.0, "PKD": 2.6}, 7.0
+KNOWN = 0.03                    # rms error of the logarithm of the gains that the firmware told: VELK / GAIN 0.02, POSK 0.02, of PIDT less
 # What is drawn of healthy vehicles and of others (tools/why/planted.py): a newton's effect, +-20 % and a little more; masses, +-15 % (rms);
 # gains that somebody set, 1.2 to 3.2 times too hot or too cold.
 EFFECT_WITHIN, MASS, FAULTY = math.log(1.25), 0.087, (math.log(1.2), math.log(3.2))
+EFFECTS = numpy.linspace(-EFFECT_WITHIN, EFFECT_WITHIN, 41)
+EFFECT_METHOD = 0.04            # rms, of the logarithm: what the equations leave out, beside what the noise makes of the effect
 TRIM_N, TRIM_FAULTY_N = 0.6, 2.8
 HOVER_KNOWN_N = 0.1             # the thrust that a flight of some seconds hovers with: 0.25 m/s2 of turbulence for half a second each
 STAY_SWING_S, STAY_FAULTY_S = 0.25, 1.0 # mean stay at a limit (exponential): of a loop that swings twice a second, of a window too narrow
 REFUSED_S = 3.0
 
 
-def heat(case):
-    """(how much hotter the loop is than that of a vehicle that flies well, a logarithm; its standard deviation). None: not known."""
+def gains(case):
+    """(how much hotter the gains are than those of a vehicle that flies well, on one whose newton has the effect that its hover thrust tells: a
+    logarithm; its standard deviation). None: not known."""
     if case.model is None or case.model.kind != "THRUST":
         return None
-    b = case.model.linear_figure("authority")
+    hover_n = case.model.hover_n()
     if case.told is None:
-        return seen_heat(case.law, b)
+        return seen_gains(case.law, hover_n)
     value = case.told.value
-    if case.law.estimator:
-        effect = b * (case.model.hover_n() + case.told.above_n) / G      # EST divides by the hover thrust that it has learned
-        return (math.log(value["VELK"] / CASCADE["VELK"] / value["GAIN"] * effect) + 0.5 * math.log(value["POSK"] / CASCADE["POSK"]),
-                KNOWN)
-    return sum(0.5 * math.log(value[name] * b / (usual * MIDDLE_MPS2_PER_N)) for name, usual in PIDT.items()), KNOWN
+    if case.law.estimator:          # EST divides by the hover thrust that it has learned
+        return (math.log(value["VELK"] / CASCADE["VELK"] / value["GAIN"] * (1.0 + case.told.above_n / hover_n))
+                + 0.5 * math.log(value["POSK"] / CASCADE["POSK"]), KNOWN)
+    return sum(0.5 * math.log(value[name] * MIDDLE_N / (usual * hover_n)) for name, usual in PIDT.items()), KNOWN
 
 
-def seen_heat(law, b):
+def seen_gains(law, hover_n):
     """By the thrusts alone: of a law that the firmware does not fly again."""
     if law.p_n_per_m <= 0.0 and law.d_n_s_per_m <= 0.0 or law.fits < 0.2:
         return None
-    known = [(math.log(max(b * value, 0.05 * usual) / usual), max(sigma, SEEN))
+    known = [(math.log(max(G / hover_n * value, 0.05 * usual) / usual), max(sigma, SEEN))
              for value, usual, sigma in zip((law.p_n_per_m, law.d_n_s_per_m), USUAL[law.estimator], law.sigma)]
     weight = [1.0 / sigma**2 for _, sigma in known]
     return sum(w * value for w, (value, _) in zip(weight, known)) / sum(weight), SEEN
 
 
+def effects(model):
+    """Log-likelihood of each of EFFECTS by the flight alone: of what a newton does, by what the hover thrust tells. What is expected of it is taken
+    out again: every vehicle has one of EFFECTS, whatever was set."""
+    place = model.names.index("authority")
+    variance = numpy.linalg.inv(model.information)[place, place]
+    told = max(1.0 / variance - 1.0 / model.spread[place]**2, 1e-3 / variance)
+    mean = (model.linear[place] / variance - model.prior[place] / model.spread[place]**2) / told
+    expected = G / model.hover_n() * numpy.exp(EFFECTS)
+    return -0.5 * (mean - expected)**2 / (1.0 / told + (EFFECT_METHOD * expected)**2)
+
+
 def too(case, sign):
-    known = heat(case)
+    """The loop's gain on its vehicle, the newton's effect integrated out: of a loop that somebody set so, against a healthy one."""
+    known = gains(case)
     if known is None:
         return Finding(-1.0)
-    value, spread = known
-    healthy = even(value, math.hypot(spread, 0.0 if case.law.estimator else MASS), -EFFECT_WITHIN, EFFECT_WITHIN)
-    return Finding(even(sign * value, spread, *FAULTY) - healthy, {"times": math.exp(value)})
+    (value, spread), by_effect = known, effects(case.model)
+    healthy_spread = math.hypot(spread, 0.0 if case.law.estimator else MASS)
+    faulty, healthy = (numpy.logaddexp.reduce(by_effect + each) for each in (
+        [even(sign * (value + effect), spread, *FAULTY) for effect in EFFECTS],
+        [even(value + effect, healthy_spread, -EFFECT_WITHIN, EFFECT_WITHIN) for effect in EFFECTS]))
+    likely = numpy.exp(by_effect - by_effect.max())
+    return Finding(float(faulty - healthy), {"times": math.exp(value + float(likely @ EFFECTS / likely.sum()))})
 
 
 def hot(case):
@@ -80,10 +99,19 @@ def grav(case):
     known = grav_n(case) if case.model.kind == "THRUST" else None
     if known is None:
         return Finding(-1.0)
-    (set_n, sigma_n), hover_n = known, case.model.hover_n()
-    off_n, spread_n = set_n - hover_n, math.hypot(sigma_n, HOVER_KNOWN_N)
+    (set_n, sigma_n), (hover_n, hover_sigma_n) = known, hover_at_first(case)
+    off_n, spread_n = set_n - hover_n, math.hypot(sigma_n, hover_sigma_n)
     nats = even(off_n, spread_n, -TRIM_FAULTY_N, TRIM_FAULTY_N) - even(off_n, spread_n, -TRIM_N, TRIM_N)
     return Finding(nats, {"grav": set_n, "hover": hover_n})
+
+
+def hover_at_first(case):
+    """(hover thrust as the flight begins, its standard deviation): there GRAV was set for it. Where it grows, its middle is another."""
+    grew, sigma = growth(case.model)
+    grew = min(max(grew, 0.0), GROWTH_FAULTY[1])
+    before_s = case.model.spans[0].log_middle - case.model.spans[0].begin
+    hover_n = case.model.hover_n()
+    return hover_n * (1.0 - grew * before_s), math.hypot(HOVER_KNOWN_N, hover_n * sigma * before_s)
 
 
 def grav_n(case):
