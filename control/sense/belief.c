@@ -8,7 +8,7 @@
 #include "control/credible.h"
 
 #define PRIOR 1.0e-3F        /* a mirror lies at power-on */
-#define LIES_PER_S 2.0e-5F   /* it begins to: once in 14 hours of flight */
+#define LIES_PER_S 1.0e-4F   /* it begins to: once in three hours of flight */
 #define TOGETHER_SHARE 0.1F  /* of these: a common cause, any set at once (beta factor, IEC 61508-6) */
 #define TRUTHS_PER_S 2.0e-2F /* and ends to, after 50 s */
 #define LEAST 1.0e-12F       /* no world is ever impossible */
@@ -147,9 +147,20 @@ static void judge(belief_t *belief, belief_scan_t *scan)
     }
 }
 
+/* A motion that nothing tells is an acceleration. After n scans it makes n squared times the way of one scan,
+ * and a rate that is wrong by n times its change in one scan. The filter corrects that by RATE_GAIN. */
+static float loosen(belief_t *belief, float gap_s)
+{
+    const float scans = at_least(gap_s / SCAN_S, 1.0F);
+    const float loose = at_least(scans * scans, 1.0F + 2.0F * belief->missed);
+
+    belief->missed = at_least(scans - 1.0F, (1.0F - BELIEF_RATE_GAIN) * belief->missed);
+    return loose;
+}
+
 void belief_scan(belief_t *belief, const belief_beam_t *beams, float gap_s, belief_felt_t felt)
 {
-    belief_scan_t scan = {.beams = beams, .gap_s = gap_s, .felt = felt};
+    belief_scan_t scan = {.beams = beams, .gap_s = gap_s, .loose = loosen(belief, gap_s), .felt = felt};
 
     if (belief->known == 0U) {
         start(belief);

@@ -22,6 +22,7 @@ typedef struct {
     belief_world_t worlds[BELIEF_WORLDS]; /* bit m of the index: mirror m lies */
     belief_mean_t slant[MIRROR_COUNT];    /* what a liar repeats */
     belief_mean_t height[MIRROR_COUNT];   /* what stands still on the ground */
+    float missed;                         /* scans: the rate is less sure by so many */
     uint16_t known;                       /* bits: mirrors that have told something before */
 } belief_t;
 

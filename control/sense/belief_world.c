@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 
 /* ---- noise models */
 #define PER_MM 0.0664903801F  /* 1 / (sqrt(2 pi) BELIEF_NOISE_MM) */
@@ -21,6 +22,7 @@
 /* Scans whose mirrors go wrong together: one of the sensor's own noises, docs/scip.md. Which share of it the
  * mirrors share is not known: both are as likely. */
 #define LIARS_SHARE_MM BELIEF_NOISE_MM
+#define FROZEN_SHARE 0.5F /* of the lies that begin: a scan that freezes, or something that comes; not known */
 #define ODD_PER_MM (1.0F / 4000.0F) /* the URG-04LX tells up to 4095 mm */
 
 /* Kinds of motion. Standing, slants and heights are constants, and a liar's slant is no better explained:
@@ -46,8 +48,8 @@ typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BEL
 
 /* ---- gains of the filters: alpha and beta of Kalata 1984 for 0.5 m/s2 */
 #define SHARED_GAIN 0.85F
-#define RATE_GAIN 0.42F /* beta of the same table */
 #define PUSH_GAIN 0.1F    /* chosen: the hover thrust is learned in a second */
+#define PUSH_OFF_MPS2 2.0F /* GRAV of a vehicle whose mass is off by 20 %, as tools/campaign/plan.py draws */
 #define BLIND_GAIN 0.03F  /* chosen: s; the drag tells the speed in 1.4 s */
 #define OWN_GAIN 0.42F  /* of what one mirror shows alone: slow, it is terrain or noise */
 
@@ -146,7 +148,7 @@ static float add_motions(const belief_world_t *world, ways_t *ways, const belief
         if (shown->n > 0.0F) { /* else nothing tells the motion */
             const shown_t of_kind = without(shown, ways->foretold_mm[k]);
 
-            of_motion *= density_of_motion(&of_kind, motions[k].sigma_mm, scan->norm[k][(uint16_t)shown->n]);
+            of_motion *= density_of_motion(&of_kind, scan->sigma_mm[k], scan->norm[k][(uint16_t)shown->n]);
             ways->moved_mm += of_motion * of_kind.sum_mm / shown->n;
         }
         ways->motions[k] += of_motion;
@@ -207,8 +209,10 @@ static void feel(const belief_world_t *world, ways_t *ways, const belief_scan_t 
 {
     const belief_felt_t *felt = &scan->felt;
     const float drag_mps = felt->dragged * (0.001F * world->rate_mm_s + 0.5F * felt->gained_mps);
+    const bool carried = felt->dragged > 0.0F;
 
-    ways->strange_mps2 = (felt->gained_mps - felt->pushed_mps + drag_mps) / scan->gap_s;
+    ways->strange_mps2 = carried ? (felt->gained_mps - felt->pushed_mps + drag_mps) / scan->gap_s
+                                 : world->push_off_mps2;
     const float moving = density_of_strange(ways->strange_mps2 - world->push_off_mps2);
     for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
         ways->of_felt[k] = moving;
@@ -217,7 +221,7 @@ static void feel(const belief_world_t *world, ways_t *ways, const belief_scan_t 
     ways->of_felt[BELIEF_STANDS] = scan->of_stand;
     ways->of_felt[BELIEF_FELT_LIES] = LIE_PER_MPS2;
     /* If it lies, the thrust foretells the motion. */
-    ways->untrue_mps = (felt->dragged > 0.0F) ? (ways->strange_mps2 - world->push_off_mps2) * scan->gap_s
+    ways->untrue_mps = carried ? (ways->strange_mps2 - world->push_off_mps2) * scan->gap_s
                                               : felt->gained_mps;
     ways->foretold_mm[BELIEF_FELT_LIES] = 500.0F * ways->untrue_mps * scan->gap_s;
 }
@@ -263,8 +267,13 @@ static void correct_rate(belief_world_t *world, const ways_t *ways, const belief
     const float off_mps2 = ways->strange_mps2 - world->push_off_mps2;
 
     if (ways->honest != 0U) {
-        world->rate_mm_s += RATE_GAIN * shared_mm / scan->gap_s;
-        world->push_off_mps2 += (scan->felt.dragged > 0.0F) ? PUSH_GAIN * off_mps2 : 0.0F;
+        world->rate_mm_s += BELIEF_RATE_GAIN * shared_mm / scan->gap_s;
+        const float sound = 1.0F - ways->motions[BELIEF_FELT_LIES] / ways->density;
+
+        if (scan->felt.dragged > 0.0F) {
+            world->push_off_mps2 = between(-PUSH_OFF_MPS2, world->push_off_mps2 + PUSH_GAIN * sound * off_mps2,
+                                           PUSH_OFF_MPS2);
+        }
     } else if (scan->felt.dragged > 0.0F) {
         world->rate_mm_s -= 1000.0F * BLIND_GAIN * off_mps2;
     } else {
@@ -287,18 +296,20 @@ static void correct(belief_world_t *world, const ways_t *ways, const belief_scan
             world->level_mm[m] += SHARED_GAIN * moved_mm + gain * (ways->off_mm[m] - moved_mm);
         } else if (belief_has(scan->told, m)) {
             world->level_mm[m] += SHARED_GAIN * ways->off_mm[m];
+        } else {
+            world->level_mm[m] += SHARED_GAIN * shared_mm;
         }
     }
 }
 
 /* Density of what the liars show, if each has a noise of its own. What has just come before a mirror stands
- * anywhere. */
+ * anywhere, unless the mirror has frozen. */
 static float density_of_own(const belief_world_t *world, const belief_scan_t *scan, uint16_t liars)
 {
     float density = 1.0F;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        const float anywhere = world->begun[m] + (1.0F - world->begun[m]) * ODD_SHARE;
+        const float anywhere = ODD_SHARE + (1.0F - FROZEN_SHARE - ODD_SHARE) * world->begun[m];
 
         density *= belief_has(liars, m) ? (1.0F - anywhere) * scan->slant[m] + anywhere * ODD_PER_MM : 1.0F;
     }
@@ -313,7 +324,7 @@ static float density_of_shared(const belief_world_t *world, const belief_scan_t 
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         if (belief_has(liars, m)) {
-            density *= (1.0F - world->begun[m]) * (1.0F - ODD_SHARE) * PER_MM;
+            density *= (1.0F - ODD_SHARE - (1.0F - FROZEN_SHARE - ODD_SHARE) * world->begun[m]) * PER_MM;
             shown.n += 1.0F;
             shown.sum_mm += scan->slant_off_mm[m];
             shown.squares_mm2 += scan->slant_off_mm[m] * scan->slant_off_mm[m];
@@ -358,8 +369,9 @@ void belief_world_look(belief_scan_t *scan, const belief_mean_t *slant, const be
     const float lift_mps2 = scan->felt.pushed_mps / scan->gap_s; /* no vehicle stands that its thrust lifts */
 
     for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
+        scan->sigma_mm[k] = motions[k].sigma_mm * scan->loose;
         for (uint16_t n = 0U; n <= MIRROR_COUNT; ++n) {
-            scan->norm[k][n] = norm_of_motion((float)n, motions[k].sigma_mm);
+            scan->norm[k][n] = norm_of_motion((float)n, scan->sigma_mm[k]);
         }
     }
     scan->of_stand = density_of_strange(gained_mps2) * density_of_strange(at_least(lift_mps2, 0.0F)) /

@@ -13,6 +13,9 @@
 /* Standard deviation of one mirror's height about that of the others, and of a blocked beam's slant. Fitted
  * on healthy flights, see belief_world.c; recorded: 1 mm at most. */
 #define BELIEF_NOISE_MM 6.0F
+/* Of the filters: beta of Kalata 1984 for 0.5 m/s2; alpha is in belief_world.c. */
+#define BELIEF_RATE_GAIN 0.42F
+
 /* belief_world.c: it stands, flies in calm air, flies, something pushes it, the accelerometer lies */
 #define BELIEF_MOTIONS 5U
 #define BELIEF_STANDS 0U
@@ -52,9 +55,11 @@ typedef struct {
     const belief_beam_t *beams; /* one for each mirror_t */
     uint16_t told;              /* bits: mirrors that tell something now, and did before */
     float gap_s;                /* since the scan before, > 0 */
+    float loose;                /* >= 1: the motions vary more by this factor, because scans were missing */
     belief_felt_t felt;
     float slant_off_mm[MIRROR_COUNT]; /* from what a liar repeats */
     float slant[MIRROR_COUNT], height[MIRROR_COUNT]; /* densities, if nothing moves */
+    float sigma_mm[BELIEF_MOTIONS];                  /* of each kind of motion, since the scan before */
     float norm[BELIEF_MOTIONS][MIRROR_COUNT + 1U];   /* of the density of so many honest mirrors' motion */
     float of_stand; /* density of what the accelerometer tells, if it stands */
 } belief_scan_t;

@@ -27,12 +27,13 @@ void mirrors_thrust(mirrors_t *mirrors, float gained_mps, float dragged)
     mirrors->dragged.gained += dragged;
 }
 
-/* What the heights will show of it: their rays are older than the frames. late: share of the gap. */
+/* What this scan shows of it: its rays are older than the frames. late: share of the gap; that is left for the
+ * next scan. */
 static float shown(mirrors_motion_t *motion, float late)
 {
-    const float shown = (1.0F - late) * motion->gained + late * motion->before;
+    const float shown = (1.0F - late) * motion->gained + motion->left;
 
-    motion->before = motion->gained;
+    motion->left = late * motion->gained;
     motion->gained = 0.0F;
     return shown;
 }

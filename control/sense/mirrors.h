@@ -21,9 +21,9 @@ typedef struct {
     float slant_mm, spread_mm;
 } mirror_digits_t;
 
-/* Change of the vertical speed since the latest scan, and from the scan before to that. */
+/* A change since the latest scan, and what was left of the time before, because that scan's rays are older. */
 typedef struct {
-    float gained, before;
+    float gained, left;
 } mirrors_motion_t;
 
 typedef struct {

@@ -9,11 +9,13 @@
 #include "control/credible.h"
 #include "control/seconds.h"
 
+#define HELD_UP_S (0.5F * SCAN_S) /* the frames of the scan's time are then those of another scan */
 #define GAP_LONG_S 10.0F /* any above HEIGHT_LOST_S, from where on no change is fresh */
 
 void sense_init(sense_t *sense)
 {
     *sense = (sense_t){.scan_fit = false};
+    ray_clock_init(&sense->ray_clock);
     senses_init(&sense->senses);
 }
 
@@ -29,10 +31,30 @@ static void believe_tilt(const tilt_t *tilt, flight_inputs_t *in)
     in->attitude_time_us = (tilt->refuted && tilt->jumped > 0U) ? tilt->accepted_us : in->attitude_time_us;
 }
 
-/* The mirrors of a new scan, each at the believed tilt. Layout FRONT has one. A shaken accelerometer predicts
- * no motion: one mirror alone would then be disbelieved. */
-static void vote(sense_t *sense, const flight_inputs_t *in, float gap_s)
+/* When the rays of a new scan were taken, by the sensor's own clock. Returns how long the scan was held up on
+ * its way. */
+static float held_up_s(sense_t *sense, const flight_inputs_t *in, float *gap_s)
 {
+    const uint32_t before_us = sense->rays_us;
+    const uint32_t at_once_us = in->height_time_us - in->height_age_us;
+
+    sense->rays_us = ray_clock_step(&sense->ray_clock, in->height_stamp_ms, in->height_time_us,
+                                    in->height_age_us);
+    *gap_s = seconds_at_most(sense->rays_us - before_us, GAP_LONG_S);
+    if (*gap_s < HELD_UP_S) { /* no scanner is so fast: several have waited together */
+        *gap_s = SCAN_S;
+        return SCAN_S;
+    }
+    return seconds_at_most(at_once_us - sense->rays_us, GAP_LONG_S);
+}
+
+/* The mirrors of a new scan, each at the believed tilt. Layout FRONT has one. A shaken accelerometer predicts
+ * no motion: one mirror alone would then be disbelieved. Nor does one whose frames are of another time than
+ * the scan. */
+static void vote(sense_t *sense, const flight_inputs_t *in)
+{
+    float gap_s;
+    const bool held_up = held_up_s(sense, in, &gap_s) > HELD_UP_S;
     const tilt_t *tilt = &sense->senses.tilt;
     altitude_t shown[MIRROR_COUNT] = {{.valid = false}};
 
@@ -46,18 +68,18 @@ static void vote(sense_t *sense, const flight_inputs_t *in, float gap_s)
             shown[m].height_mm = altitude_at_tilt(&shown[m], tilt->roll_rad, tilt->pitch_rad);
         }
     }
-    mirrors_scan(&sense->senses.mirrors, shown, at_least(gap_s, SCAN_LEAST_S),
-                 seconds_at_most(in->height_age_us, GAP_LONG_S),
-                 (sense->verdict.doubts & DOUBT_IMU) == 0U && sense->senses.accelerometer.shaken <= 1.0F);
+    mirrors_scan(&sense->senses.mirrors, shown, gap_s, seconds_at_most(in->height_age_us, GAP_LONG_S),
+                 (sense->verdict.doubts & DOUBT_IMU) == 0U && sense->senses.accelerometer.shaken <= 1.0F &&
+                     !held_up);
 }
 
 /* What several mirrors show together takes the place of their mean. */
-static void elect(sense_t *sense, flight_inputs_t *in, bool is_new, float gap_s)
+static void elect(sense_t *sense, flight_inputs_t *in, bool is_new)
 {
     mirrors_t *mirrors = &sense->senses.mirrors;
 
     if (is_new) {
-        vote(sense, in, gap_s);
+        vote(sense, in);
     }
     if (in->mirrors != NULL && mirrors->altitude.valid) {
         in->height_age_us += (uint32_t)(in->altitude.later_us - mirrors->altitude.later_us);
@@ -75,7 +97,7 @@ static void compare_height(sense_t *sense, const command_t *command, flight_inpu
     const bool is_new = is_new_scan(sense, in);
     const float gap_s = seconds_at_most(in->height_time_us - sense->height_time_us, GAP_LONG_S);
 
-    elect(sense, in, is_new, gap_s);
+    elect(sense, in, is_new);
     if (!is_new) {
         return;
     }

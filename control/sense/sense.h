@@ -12,12 +12,15 @@
 
 #include "control/facts.h"
 #include "control/flight_io.h"
+#include "control/ray_clock.h"
 #include "control/sense/senses.h"
 #include "control/sense/verdict.h"
 
 typedef struct {
     senses_t senses;
     verdict_t verdict;
+    ray_clock_t ray_clock;
+    uint32_t rays_us;        /* when the rays of the latest scan were taken */
     uint32_t scan_sequence;  /* latest scan that was checked */
     uint32_t height_time_us; /* latest height that was compared with the witnesses */
     bool scan_fit;           /* the latest scan's height may be used */

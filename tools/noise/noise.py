@@ -31,7 +31,7 @@ import survey  # noqa: E402
 OWN_NOISE = ("--set", "plant.mirror_noise=3", "--set", "plant.common_noise=0")
 FITTED = {"BELIEF_NOISE_MM": (1, 15), "STEP_SHARE": (1e-3, 0.3), "STEP_MM": (50, 1000), "STEP_NEAR_SHARE": (0, 0.95),
           "STEP_NEAR_MM": (3, 80), "STEP_FAR_SHARE": (1e-4, 0.04), "MOTION_CHANGES": (0.005, 0.9), "SHARED_GAIN": (0.05, 1),
-          "RATE_GAIN": (0.02, 1.5), "OWN_GAIN": (0.01, 1), "STRANGE_MPS2": (0.1, 5), "STRANGE_FAR_SHARE": (1e-3, 0.5), "STRANGE_FAR": (1.1, 10)}
+          "BELIEF_RATE_GAIN": (0.02, 1.5), "OWN_GAIN": (0.01, 1), "STRANGE_MPS2": (0.1, 5), "STRANGE_FAR_SHARE": (1e-3, 0.5), "STRANGE_FAR": (1.1, 10)}
 MOTIONS = {"stands, share": (0.01, 0.8), "flies, share": (0.05, 0.95), "flies, mm": (2, 40), "pushed, mm": (6, 300)}
 NAMES = list(FITTED)
 DRAWN = 100_000
@@ -59,7 +59,7 @@ double noise_of(const float *v, long scans, double *told, float *strange)
     start(&b);
     for (long i = 0; i < scans; ++i, v += 13) {
         belief_beam_t beams[MIRROR_COUNT];
-        belief_scan_t scan = {.beams = beams, .gap_s = v[0], .felt = {v[1], v[2], v[3]}};
+        belief_scan_t scan = {.beams = beams, .gap_s = v[0], .loose = loosen(&b, v[0]), .felt = {v[1], v[2], v[3]}};
         for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
             beams[m] = (belief_beam_t){v[4 + 3 * m] != 0.0F, v[5 + 3 * m], v[6 + 3 * m]};
             scan.told |= (beams[m].valid && belief_has(b.known, m) && v[0] <= HEIGHT_LOST_S) ? (uint16_t)(1U << m) : 0U;
@@ -130,7 +130,7 @@ class Belief:
         rows = re.findall(r"^    \{([\d.]+)F, ([\d.]+)F\},", source, re.M)
         self.start += [float(rows[0][0]), float(rows[1][0]), float(rows[1][1]), float(rows[2][1])]
         text = text.replace("static const struct {\n    float share", "static struct {\n    float share")
-        variables = "#undef BELIEF_NOISE_MM\nstatic float " + ", ".join([*FITTED, "PER_MM"]) + ";\n"
+        variables = "#undef BELIEF_NOISE_MM\n#undef BELIEF_RATE_GAIN\nstatic float " + ", ".join([*FITTED, "PER_MM"]) + ";\n"
         text = text.replace("#include <math.h>\n", "#include <math.h>\n" + variables, 1)
         sets = "\n".join(f"    {name} = p[{i}];" for i, name in enumerate(FITTED))
         with tempfile.TemporaryDirectory(prefix="plomada-") as scratch:
@@ -201,10 +201,10 @@ class Motion:
     """A change of the speed, as control/sense/mirrors.c holds it against the rays' time."""
 
     def __init__(self):
-        self.gained = self.before = 0.0
+        self.gained = self.left = 0.0
 
     def shown(self, late):
-        shown, self.before, self.gained = (1 - late) * self.gained + late * self.before, self.gained, 0.0
+        shown, self.left, self.gained = (1 - late) * self.gained + self.left, late * self.gained, 0.0
         return shown
 
 

@@ -149,9 +149,12 @@ void test_one_mirror_that_is_blocked_is_found_within_three_seconds_and_mostly_in
     TEST_ASSERT_INT_WITHIN(15, 45, quick);
 }
 
-/* The third one flies, and is right. */
+/* The third one flies, and is right. That two lie is far less probable than that one does, and so it takes
+ * longer to be sure of. */
 void test_two_mirrors_blocked_at_one_length_do_not_outvote_the_third(void)
 {
+    int quick = 0;
+
     for (unsigned long seed = 1UL; seed <= 60UL; seed++) {
         const int honest = (int)(seed % 3UL);
 
@@ -160,8 +163,12 @@ void test_two_mirrors_blocked_at_one_length_do_not_outvote_the_third(void)
         for (int m = 0; m < MIRROR_COUNT; m++) {
             world.blocked_mm[m] = (m == honest) ? 0.0F : 300.0F + 5.0F * (float)seed;
         }
-        TEST_ASSERT_INT_WITHIN(15, 16, scans_until((uint16_t)(7U & ~(1U << honest)), 31));
+        const int scans = scans_until((uint16_t)(7U & ~(1U << honest)), 60);
+
+        TEST_ASSERT_GREATER_THAN_INT(0, scans);
+        quick += scans <= 30;
     }
+    TEST_ASSERT_GREATER_THAN_INT(50, quick);
 }
 
 /* An hour of flight: every 3 s an edge passes under the mirrors, one after the other, up or down by up to 0.4
@@ -249,7 +256,7 @@ void test_an_accelerometer_that_lies_makes_no_mirror_a_liar(void)
             const float told_mps2 = once ? (k == 0 ? 9.0F : 0.0F) : jump_mps2;
 
             fly();
-            felt = (belief_felt_t){told_mps2 * GAP_S, told_mps2};
+            felt = (belief_felt_t){.gained_mps = told_mps2 * GAP_S, .dragged = 0.24F};
             scan();
             TEST_ASSERT_FLOAT_WITHIN(0.5F, 0.0F, likeliest_lie()); /* beyond it is left out: mirrors.c */
         }
@@ -262,6 +269,7 @@ void test_a_motion_that_accelerometer_and_thrust_tell_finds_three_that_are_block
 {
     for (unsigned long seed = 1UL; seed <= 20UL; seed++) {
         bool found = false;
+        float speed_mps = 0.0F;
 
         begin(seed);
         world.sway_rad = 0.0F;
@@ -270,7 +278,9 @@ void test_a_motion_that_accelerometer_and_thrust_tell_finds_three_that_are_block
             world.blocked_mm[m] = world.height_mm;
         }
         for (int k = 0; k < 60 && !found; k++) {
-            felt = (belief_felt_t){.gained_mps = (k / 10 % 2 == 0) ? 0.2F : -0.2F};
+            felt = (belief_felt_t){.gained_mps = (k / 10 % 2 == 0) ? 0.2F : -0.2F, .dragged = 0.24F};
+            felt.pushed_mps = felt.gained_mps + felt.dragged * (speed_mps + 0.5F * felt.gained_mps);
+            speed_mps += felt.gained_mps;
             scan();
             found = belief_of_none(&belief, 7U) > 0.99F;
         }
@@ -291,7 +301,7 @@ void test_the_probabilities_are_one_together_and_none_is_lost(void)
             beams[m].height_mm = 20000.0F * (uniform() - 0.5F);
         }
         belief_scan(&belief, beams, 0.02F + 10.0F * uniform() * uniform(),
-                    (belief_felt_t){40.0F * (uniform() - 0.5F), 40.0F * (uniform() - 0.5F)});
+                    (belief_felt_t){40.0F * (uniform() - 0.5F), 40.0F * (uniform() - 0.5F), uniform()});
         for (unsigned k = 0U; k < BELIEF_WORLDS; k++) {
             TEST_ASSERT_TRUE(belief.worlds[k].probability > 0.0F);
             sum += belief.worlds[k].probability;
