@@ -19,9 +19,7 @@
 #define STEP_FAR_SHARE 0.002F /* of the steps: as far as the scanner sees */
 #define STEP_FAR_PER_MM (1.0F / 8000.0F) /* 4 m up or down */
 #define ODD_SHARE 0.05F /* of a liar's scans: no constant, anything within the 4 m of the scanner */
-/* Scans whose mirrors go wrong together: one of the sensor's own noises, docs/scip.md. Which share of it the
- * mirrors share is not known: both are as likely. */
-#define LIARS_SHARE_MM BELIEF_NOISE_MM
+#define SHARED_MM BELIEF_NOISE_MM /* of a noise that all mirrors share, in what is constant but for it */
 #define FROZEN_SHARE 0.5F /* of the lies that begin: a scan that freezes, or something that comes; not known */
 #define ODD_PER_MM (1.0F / 4000.0F) /* the URG-04LX tells up to 4095 mm */
 
@@ -114,7 +112,7 @@ typedef struct {
     uint16_t honest;               /* bits: those that tell something in this scan */
     float off_mm[MIRROR_COUNT];    /* height less what the world predicts */
     float step[MIRROR_COUNT];      /* density of that as a step, of the honest ones */
-    float strange_mps2;            /* the accelerometer, less thrust and drag at the speed of this world */
+    float strange_mps2; /* the accelerometer, less thrust and drag at the speed of this world, as it knows them */
     float of_felt[BELIEF_MOTIONS]; /* density of what the accelerometer tells, by kind of motion */
     float untrue_mps; /* part of what the accelerometer tells that is not so, if it lies */
     float foretold_mm[BELIEF_MOTIONS]; /* way that it has foretold, and that does not count there */
@@ -180,11 +178,35 @@ static void add_way(const belief_world_t *world, ways_t *ways, const belief_scan
     }
 }
 
+/* Density of constants that share one noise. off_mm: from what each repeats. Where one noise is shared and
+ * where each has its own is not known: both are as likely, of what lies and of what stands. */
+static float density_of_shared(const float *off_mm, uint16_t mirrors)
+{
+    shown_t shown = {.n = 0.0F};
+    float density = 1.0F;
+
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        if (belief_has(mirrors, m)) {
+            density *= PER_MM;
+            shown.n += 1.0F;
+            shown.sum_mm += off_mm[m];
+            shown.squares_mm2 += off_mm[m] * off_mm[m];
+        }
+    }
+    return density * density_of_motion(&shown, SHARED_MM, norm_of_motion(shown.n, SHARED_MM));
+}
+
+static bool are_several(uint16_t mirrors)
+{
+    return (mirrors & (mirrors - 1U)) != 0U;
+}
+
 /* The way in which it stands, on the ground or in calm air. */
 static void add_stand(const belief_world_t *world, ways_t *ways, const belief_scan_t *scan)
 {
     const float sound = world->motions[BELIEF_STANDS] * ways->of_felt[BELIEF_STANDS];
-    const float lies = world->motions[BELIEF_FELT_LIES] * motions[BELIEF_STANDS].share * ways->of_felt[BELIEF_FELT_LIES];
+    const float lies = world->motions[BELIEF_FELT_LIES] * motions[BELIEF_STANDS].share *
+                       ways->of_felt[BELIEF_FELT_LIES];
     float density = 1.0F;
     float sum_mm = 0.0F;
     float n = 0.0F;
@@ -196,11 +218,14 @@ static void add_stand(const belief_world_t *world, ways_t *ways, const belief_sc
             n += 1.0F;
         }
     }
+    if (are_several(ways->honest)) {
+        density = 0.5F * (density + density_of_shared(scan->height_off_mm, ways->honest));
+    }
     ways->density += (sound + lies) * density;
     ways->motions[BELIEF_STANDS] = sound * density;
     ways->motions[BELIEF_FELT_LIES] = lies * density;
-    ways->moved_mm += density *
-                      ((sound + lies) * sum_mm / at_least(n, 1.0F) + lies * ways->foretold_mm[BELIEF_FELT_LIES]);
+    ways->moved_mm += density * ((sound + lies) * sum_mm / at_least(n, 1.0F) +
+                                 lies * ways->foretold_mm[BELIEF_FELT_LIES]);
 }
 
 /* What the accelerometer tells beyond the thrust depends on the speed, by the drag: a world in which the
@@ -211,9 +236,9 @@ static void feel(const belief_world_t *world, ways_t *ways, const belief_scan_t 
     const float drag_mps = felt->dragged * (0.001F * world->rate_mm_s + 0.5F * felt->gained_mps);
     const bool carried = felt->dragged > 0.0F;
 
-    ways->strange_mps2 = carried ? (felt->gained_mps - felt->pushed_mps + drag_mps) / scan->gap_s
-                                 : world->push_off_mps2;
-    const float moving = density_of_strange(ways->strange_mps2 - world->push_off_mps2);
+    ways->strange_mps2 = (felt->gained_mps - felt->pushed_mps + drag_mps) / scan->gap_s -
+                         (carried ? world->push_off_mps2 : 0.0F);
+    const float moving = density_of_strange(ways->strange_mps2);
     for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
         ways->of_felt[k] = moving;
         ways->foretold_mm[k] = 0.0F;
@@ -221,8 +246,7 @@ static void feel(const belief_world_t *world, ways_t *ways, const belief_scan_t 
     ways->of_felt[BELIEF_STANDS] = scan->of_stand;
     ways->of_felt[BELIEF_FELT_LIES] = LIE_PER_MPS2;
     /* If it lies, the thrust foretells the motion. */
-    ways->untrue_mps = carried ? (ways->strange_mps2 - world->push_off_mps2) * scan->gap_s
-                                              : felt->gained_mps;
+    ways->untrue_mps = ways->strange_mps2 * scan->gap_s;
     ways->foretold_mm[BELIEF_FELT_LIES] = 500.0F * ways->untrue_mps * scan->gap_s;
 }
 
@@ -264,18 +288,16 @@ static void correct_motions(belief_world_t *world, const ways_t *ways)
 static void correct_rate(belief_world_t *world, const ways_t *ways, const belief_scan_t *scan,
                          float shared_mm)
 {
-    const float off_mps2 = ways->strange_mps2 - world->push_off_mps2;
-
     if (ways->honest != 0U) {
         world->rate_mm_s += BELIEF_RATE_GAIN * shared_mm / scan->gap_s;
         const float sound = 1.0F - ways->motions[BELIEF_FELT_LIES] / ways->density;
 
         if (scan->felt.dragged > 0.0F) {
-            world->push_off_mps2 = between(-PUSH_OFF_MPS2, world->push_off_mps2 + PUSH_GAIN * sound * off_mps2,
+            world->push_off_mps2 = between(-PUSH_OFF_MPS2, world->push_off_mps2 + PUSH_GAIN * sound * ways->strange_mps2,
                                            PUSH_OFF_MPS2);
         }
     } else if (scan->felt.dragged > 0.0F) {
-        world->rate_mm_s -= 1000.0F * BLIND_GAIN * off_mps2;
+        world->rate_mm_s -= 1000.0F * BLIND_GAIN * ways->strange_mps2;
     } else {
         world->rate_mm_s = 0.0F;
     }
@@ -302,43 +324,35 @@ static void correct(belief_world_t *world, const ways_t *ways, const belief_scan
     }
 }
 
-/* Density of what the liars show, if each has a noise of its own. What has just come before a mirror stands
- * anywhere, unless the mirror has frozen. */
+/* What has just come before a mirror stands anywhere, unless the mirror has frozen. */
+static float anywhere(const belief_world_t *world, uint16_t m)
+{
+    return ODD_SHARE + (1.0F - FROZEN_SHARE - ODD_SHARE) * world->begun[m];
+}
+
+/* Density of what the liars show, if each has a noise of its own. */
 static float density_of_own(const belief_world_t *world, const belief_scan_t *scan, uint16_t liars)
 {
     float density = 1.0F;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        const float anywhere = ODD_SHARE + (1.0F - FROZEN_SHARE - ODD_SHARE) * world->begun[m];
+        const float odd = anywhere(world, m);
 
-        density *= belief_has(liars, m) ? (1.0F - anywhere) * scan->slant[m] + anywhere * ODD_PER_MM : 1.0F;
+        density *= belief_has(liars, m) ? (1.0F - odd) * scan->slant[m] + odd * ODD_PER_MM : 1.0F;
     }
     return density;
-}
-
-/* The same, if they share one noise: they stay as they are, but for that. */
-static float density_of_shared(const belief_world_t *world, const belief_scan_t *scan, uint16_t liars)
-{
-    shown_t shown = {.n = 0.0F};
-    float density = 1.0F;
-
-    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (belief_has(liars, m)) {
-            density *= (1.0F - ODD_SHARE - (1.0F - FROZEN_SHARE - ODD_SHARE) * world->begun[m]) * PER_MM;
-            shown.n += 1.0F;
-            shown.sum_mm += scan->slant_off_mm[m];
-            shown.squares_mm2 += scan->slant_off_mm[m] * scan->slant_off_mm[m];
-        }
-    }
-    return density * density_of_motion(&shown, LIARS_SHARE_MM, norm_of_motion(shown.n, LIARS_SHARE_MM));
 }
 
 /* liars: those that tell something. */
 static float density_of_lies(const belief_world_t *world, const belief_scan_t *scan, uint16_t liars)
 {
     const float own = density_of_own(world, scan, liars);
+    float stay = 1.0F;
 
-    return ((liars & (liars - 1U)) == 0U) ? own : 0.5F * (own + density_of_shared(world, scan, liars));
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        stay *= belief_has(liars, m) ? 1.0F - anywhere(world, m) : 1.0F;
+    }
+    return are_several(liars) ? 0.5F * (own + stay * density_of_shared(scan->slant_off_mm, liars)) : own;
 }
 
 float belief_world_scan(belief_world_t *world, const belief_scan_t *scan, uint16_t liars)
@@ -378,6 +392,7 @@ void belief_world_look(belief_scan_t *scan, const belief_mean_t *slant, const be
                      density_of_strange(0.0F);
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         scan->slant_off_mm[m] = scan->beams[m].slant_mm - slant[m].mm;
+        scan->height_off_mm[m] = scan->beams[m].height_mm - height[m].mm;
         scan->slant[m] = density_of_constant(scan->beams[m].slant_mm, &slant[m]);
         scan->height[m] = density_of_constant(scan->beams[m].height_mm, &height[m]);
     }

@@ -57,7 +57,7 @@ typedef struct {
     float gap_s;                /* since the scan before, > 0 */
     float loose;                /* >= 1: the motions vary more by this factor, because scans were missing */
     belief_felt_t felt;
-    float slant_off_mm[MIRROR_COUNT]; /* from what a liar repeats */
+    float slant_off_mm[MIRROR_COUNT], height_off_mm[MIRROR_COUNT]; /* from what each repeats */
     float slant[MIRROR_COUNT], height[MIRROR_COUNT]; /* densities, if nothing moves */
     float sigma_mm[BELIEF_MOTIONS];                  /* of each kind of motion, since the scan before */
     float norm[BELIEF_MOTIONS][MIRROR_COUNT + 1U];   /* of the density of so many honest mirrors' motion */

@@ -68,7 +68,7 @@ double noise_of(const float *v, long scans, double *told, float *strange)
         belief_world_t foretold = b.worlds[0];
         ways_t ways;
         feel(&foretold, &ways, &scan);
-        strange[i] = ways.strange_mps2 - foretold.push_off_mps2;
+        strange[i] = ways.strange_mps2;
         predict(&foretold, &scan);
         float off[MIRROR_COUNT], mean = 0.0F;
         for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {

@@ -236,7 +236,7 @@ void test_a_motion_that_the_accelerometer_tells_is_no_evidence_against_anybody(v
             beams[m].height_mm += (float)k * 30.0F + 15.0F;
             beams[m].slant_mm += (float)k * 30.0F + 15.0F;
         }
-        belief_scan(&belief, beams, GAP_S, (belief_felt_t){.gained_mps = 0.3F});
+        belief_scan(&belief, beams, GAP_S, (belief_felt_t){.gained_mps = 0.3F, .pushed_mps = 0.3F});
         TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F, likeliest_lie());
     }
     TEST_ASSERT_FLOAT_WITHIN(150.0F, 2400.0F, belief.worlds[0].rate_mm_s);

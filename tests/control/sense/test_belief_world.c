@@ -72,7 +72,7 @@ void test_the_density_of_what_the_accelerometer_tells_is_one_over_its_range(void
 
     scan.told = 0U;
     for (float mps2 = -2.0F * 9.80665F; mps2 < 2.0F * 9.80665F; mps2 += 0.01F) {
-        scan.felt = (belief_felt_t){.gained_mps = mps2 * GAP_S, .dragged = 1.0e-6F};
+        scan.felt = (belief_felt_t){.gained_mps = mps2 * GAP_S};
         sum += 0.01F * density(0U);
     }
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.0F, sum);
@@ -129,7 +129,7 @@ static void go(float higher_mm)
 /* 4 m/s2 for 0.1 s are 20 mm. */
 void test_what_the_accelerometer_and_the_thrust_tell_is_believed(void)
 {
-    scan.felt = (belief_felt_t){.gained_mps = 0.4F};
+    scan.felt = (belief_felt_t){.gained_mps = 0.4F, .pushed_mps = 0.4F};
     go(20.0F);
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F, world.motions[BELIEF_MOTIONS - 1U]);
     TEST_ASSERT_FLOAT_WITHIN(20.0F, 400.0F, world.rate_mm_s);
