@@ -15,7 +15,7 @@
 
 /* Of several mirrors. */
 typedef struct {
-    bool agree;       /* two or more do not lie, with 99 %, and their slants live */
+    bool agree;       /* two or more do not lie, with 99 % */
     uint16_t doubted; /* bits: they are disbelieved */
     uint16_t liars;   /* bits: those for which that lasts, see mirrors_liars() */
 } mirrors_told_t;

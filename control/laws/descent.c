@@ -9,6 +9,8 @@
 #define BRAKE_SHARE 2.0F           /* and so thrice in all */
 #define BRAKE_BEYOND_MM_S 1000.0F  /* a climb of 0.7 m/s and more */
 #define TRIM_GAIN_N_PER_MM 0.0010F /* chosen: 0.3 N/s at the whole rate */
+#define CLIMB_TRIM_GAIN_N_PER_MM (3.0F * TRIM_GAIN_N_PER_MM) /* chosen: three times, so that no climb lasts */
+#define SINK_SLEW_MM_S2 DESCENT_RATE_MM_S                    /* the whole rate after 1 s */
 #define FADE_N_PER_S2 0.004F       /* chosen: 7 N are gone after 40 s */
 #define TRIM_MAX_N 2.0F            /* a hover thrust wrong by a fifth, and gusts */
 
@@ -17,9 +19,9 @@ static float flare_mm_s(float height_mm)
     return at_most(1000.0F * LAND_MPS + LAND_PER_S * at_least(height_mm, 0.0F), DESCENT_RATE_MM_S);
 }
 
-void descent_start(descent_t *descent)
+void descent_start(descent_t *descent, float rate_mm_s)
 {
-    *descent = (descent_t){.trim_n = 0.0F};
+    *descent = (descent_t){.sink_mm_s = between(0.0F, -rate_mm_s, DESCENT_RATE_MM_S)};
 }
 
 /* By the model of the vehicle each mm/s of error needs as much thrust as each mm/s of the descent does. */
@@ -32,12 +34,14 @@ static float rate_action_n(float error_mm_s, float hover_n)
 
 float descent_step(descent_t *descent, float hover_n, float height_mm, float rate_mm_s, float dt_s)
 {
-    const float sink_mm_s = descent->holds ? 0.0F : flare_mm_s(height_mm);
-    const float error_mm_s = -sink_mm_s - rate_mm_s;
-    const float sink_n = SINK_SHARE * hover_n * sink_mm_s / DESCENT_RATE_MM_S;
+    const float faster_mm_s = at_most(descent->sink_mm_s + SINK_SLEW_MM_S2 * dt_s, flare_mm_s(height_mm));
 
-    descent->trim_n = between(-TRIM_MAX_N, descent->trim_n + TRIM_GAIN_N_PER_MM * error_mm_s * dt_s,
-                              TRIM_MAX_N);
+    descent->sink_mm_s = descent->holds ? 0.0F : faster_mm_s;
+    const float error_mm_s = -descent->sink_mm_s - rate_mm_s;
+    const float sink_n = SINK_SHARE * hover_n * descent->sink_mm_s / DESCENT_RATE_MM_S;
+    const float trim_gain = (rate_mm_s > 0.0F) ? CLIMB_TRIM_GAIN_N_PER_MM : TRIM_GAIN_N_PER_MM;
+
+    descent->trim_n = between(-TRIM_MAX_N, descent->trim_n + trim_gain * error_mm_s * dt_s, TRIM_MAX_N);
     const float setpoint_n = at_least(hover_n - sink_n + descent->trim_n + rate_action_n(error_mm_s, hover_n),
                                       THRUST_LEAST_SHARE * hover_n);
     descent->near_ground_s = touchdown_time_s(descent->near_ground_s, height_mm * 0.001F, descent->rocks,

@@ -1,6 +1,6 @@
 /* Descent at a limited speed, with heights or without. The given hover thrust may be wrong by a fifth.
  * Used when law EST's estimate is not fresh. Newtons per motor; speeds in mm/s, positive upwards, except
- * DESCENT_RATE_MM_S. Pure; the caller owns the state. */
+ * the sink rate. Pure; the caller owns the state. */
 #ifndef CONTROL_DESCENT_H
 #define CONTROL_DESCENT_H
 
@@ -15,14 +15,16 @@
 #include <stdbool.h>
 
 typedef struct {
+    float sink_mm_s;     /* present wanted sink rate, > 0 is downwards */
     float trim_n;        /* correction to hover_n, learned in this descent from the vertical speed */
     float near_ground_s; /* time within 40 mm of the ground */
     bool rocks;          /* set before each step: the tilt sways as in flight */
     bool holds;          /* set before each step: do not sink, hold the height */
 } descent_t;
 
-/* Call before the first step of a descent. */
-void descent_start(descent_t *descent);
+/* Call before the first step of a descent. rate_mm_s: present vertical speed, > 0 is up. The wanted sink
+ * rate starts from it. */
+void descent_start(descent_t *descent, float rate_mm_s);
 
 /* One step with a new height, dt_s after the previous one. rate_mm_s: vertical speed, > 0 is up. A climb
  * of 0.7 m/s or more is braked harder. Within 40 mm of the ground the upper limit of the thrust falls by 2

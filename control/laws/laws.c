@@ -60,7 +60,7 @@ static void resume_law(laws_t *laws, const situation_t *now)
 void laws_change(laws_t *laws, const situation_t *now)
 {
     if (now->mode == FLIGHT_MODE_DESCENT) {
-        descent_start(&laws->descent);
+        descent_start(&laws->descent, now->where->supervisor.height.rate_mm_s);
     }
     if (now->mode == FLIGHT_MODE_LAW) {
         resume_law(laws, now);

@@ -68,7 +68,7 @@ void stuck_pin_step(stuck_pin_t *pin, const situation_t *now)
         return;
     }
     if (!piloted || pin->piloted_s <= 0.0F) {
-        descent_start(&pin->descent);
+        descent_start(&pin->descent, 0.0F);
         reset(pin);
     }
     if (piloted) {

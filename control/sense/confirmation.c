@@ -11,7 +11,6 @@
     0.12F /* more than steps that do not show, WITNESS_STEP_M, and 3 HEIGHT_SIGMA_M: 119 mm \
            */
 #define TERRAIN_FALL_M 0.40F           /* chosen: above the edge of the seed's course, 0.25 m */
-#define SUNK_M (4.0F * HEIGHT_SIGMA_M) /* once an hour by chance; no vehicle flies below its ground */
 #define QUIET_S 1.0F /* tried: 60 drawn vehicles whose blocked beam shows the reference; ten scans */
 
 static void watch_depth(confirmation_t *confirmation, const height_change_t *change, bool standing)
@@ -52,15 +51,7 @@ bool confirmation_height(confirmation_t *confirmation, const height_change_t *ch
     return first;
 }
 
-void confirmation_wait(confirmation_t *confirmation, const height_change_t *change, float wanted_m,
-                       bool grounded, bool lives)
+void confirmation_wait(confirmation_t *confirmation, const height_change_t *change, float wanted_m)
 {
-    const bool climbs = wanted_m > CONTENT_M;
-    const bool content = wanted_m < CONTENT_M;
-
-    confirmation->ground_m = grounded ? at_most(change->height_m, 0.0F) : confirmation->ground_m;
-    confirmation->sunk = (change->height_m < confirmation->ground_m - SUNK_M && climbs)
-                             ? (uint16_t)(confirmation->sunk + (confirmation->sunk < CONFIRMATION_SUNK))
-                             : 0U;
-    confirmation->quiet_s = (content && lives) ? confirmation->quiet_s + change->gap_s : 0.0F;
+    confirmation->quiet_s = (wanted_m < CONTENT_M) ? confirmation->quiet_s + change->gap_s : 0.0F;
 }

@@ -6,30 +6,23 @@
 #define CONTROL_SENSE_CONFIRMATION_H
 
 #include <stdbool.h>
-#include <stdint.h>
 
 #include "control/sense/heights.h"
-
-#define CONFIRMATION_SUNK 3U /* chosen: 0.3 s; `sunk` stops here */
 
 typedef struct {
     bool unconfirmed;   /* after a take-off or a step towards the vehicle: no climb has shown since */
     bool proved;        /* the heights have confirmed a climb since the ground */
     float near_m;       /* height after the step that made `unconfirmed` true */
-    float quiet_s;      /* how long the law has not wanted to climb, and the slant moves */
+    float quiet_s;      /* how long the law has not wanted to climb */
     bool terrain_fell;  /* the terrain has fallen far, and no descent has shown in the heights since */
     float after_fall_m; /* height after that step */
-    float ground_m;     /* latest height in state GROUND, at most 0: a pilot may lift it there */
-    uint16_t sunk;      /* heights in a row below that while the law wants to climb */
 } confirmation_t;
 
 /* One height. standing: on the ground, or not yet off it. True: it shows the first climb since the ground. */
 bool confirmation_height(confirmation_t *confirmation, const height_change_t *change, bool standing);
 
-/* The same height, after the witnesses were compared. wanted_m: reference minus height, NAN: none is held.
- * lives: the slant moves. */
-void confirmation_wait(confirmation_t *confirmation, const height_change_t *change, float wanted_m,
-                       bool grounded, bool lives);
+/* The same height, after the witnesses were compared. wanted_m: reference minus height, NAN: none is held. */
+void confirmation_wait(confirmation_t *confirmation, const height_change_t *change, float wanted_m);
 
 /* The first climb since the ground is still to come. */
 static inline bool confirmation_is_first(const confirmation_t *confirmation)

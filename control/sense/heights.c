@@ -9,9 +9,6 @@
 #include "control/sense/witness.h"
 
 #define RISE_TIME_S 0.2F    /* chosen: two scans */
-#define WAY_TIME_S 1.0F     /* chosen: ten scans */
-#define MOVES_M 0.15F       /* chosen: nothing in front of a mirror moves so far */
-#define MOVED_LEAST_M 0.10F /* tried 0.10 and 0.15: with the latter a steep ramp was doubted, 2 of 600 */
 #define UNSEEN_MOST_S 2.0F  /* the counter stops here */
 
 height_change_t heights_change(const heights_t *heights, float height_m, float gap_s, float age_s)
@@ -29,39 +26,18 @@ height_change_t heights_change(const heights_t *heights, float height_m, float g
     };
 }
 
-float heights_rise_share(float gap_s)
-{
-    return gap_s / (RISE_TIME_S + gap_s);
-}
-
 void heights_update(heights_t *heights, const height_change_t *change)
 {
-    const bool breaks = change->step || !change->fresh;
     const float gap_s = change->gap_s;
     const float rise_mps = change->step ? heights->rise_mps : change->rise_m / at_least(gap_s, 0.01F);
 
-    heights->way_m = breaks ? 0.0F
-                            : heights->way_m * (1.0F - at_most(gap_s / WAY_TIME_S, 1.0F)) + change->rise_m;
-    heights->unmoved_s = fabsf(heights->way_m) > MOVED_LEAST_M ? 0.0F
-                         : breaks                              ? WAY_TIME_S
-                                  : at_most(heights->unmoved_s + gap_s, WAY_TIME_S);
     heights->height_m = change->height_m;
     heights->known = true;
     heights->unseen_s = 0.0F;
-    heights->rise_mps += heights_rise_share(gap_s) * (rise_mps - heights->rise_mps);
+    heights->rise_mps += gap_s / (RISE_TIME_S + gap_s) * (rise_mps - heights->rise_mps);
 }
 
 void heights_wait(heights_t *heights, float dt_s)
 {
     heights->unseen_s = at_most(heights->unseen_s + dt_s, UNSEEN_MOST_S);
-}
-
-bool heights_move(const heights_t *heights)
-{
-    return fabsf(heights->way_m) > MOVES_M;
-}
-
-bool heights_moved(const heights_t *heights)
-{
-    return heights->unmoved_s < WAY_TIME_S;
 }

@@ -1,4 +1,4 @@
-/* How the heights move: rate, way since the latest step, steps of the terrain.
+/* How the heights move: rate, and steps of the terrain.
  *
  * Metres and seconds. Pure; the caller owns the state, all zero at first. Context: one Task. */
 #ifndef CONTROL_SENSE_HEIGHTS_H
@@ -10,8 +10,6 @@ typedef struct {
     bool known;      /* at least one height was received */
     float height_m;  /* latest height */
     float rise_mps;  /* low-passed rate of the heights, without steps */
-    float way_m;     /* leaky sum of the height changes since the latest step */
-    float unmoved_s; /* time since way_m was last large, at most 1 s; 1 s after a step */
     float unseen_s;  /* time on the ground since the latest height, at most 2 s */
 } heights_t;
 
@@ -32,17 +30,7 @@ height_change_t heights_change(const heights_t *heights, float height_m, float g
 /* Takes the height over. */
 void heights_update(heights_t *heights, const height_change_t *change);
 
-/* Share of a low pass with the time constant of rise_mps. */
-float heights_rise_share(float gap_s);
-
 /* dt_s on the ground without a height. */
 void heights_wait(heights_t *heights, float dt_s);
-
-/* A thing in front of a mirror stays where it is. So heights that keep moving do not come from a blocked
- * beam. */
-bool heights_move(const heights_t *heights);
-
-/* The same, now or within the last second. */
-bool heights_moved(const heights_t *heights);
 
 #endif

@@ -177,7 +177,7 @@ void mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     float weights[MIRROR_COUNT];
 
     if (voters == 0U) {
-        mirrors->agree = mirrors->blind = mirrors->felt_lies = mirrors->moves = false;
+        mirrors->agree = mirrors->sees = mirrors->blind = mirrors->felt_lies = mirrors->moves = false;
         mirrors->left_out = 0U;
         return;
     }
@@ -188,7 +188,9 @@ void mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     mirrors->agree = honest > AGREE;
     mirrors->felt_lies = belief_of_felt(&mirrors->belief) > AGREE;
     mirrors->moves = belief_of_move(&mirrors->belief) > AGREE;
-    mirrors->blind = belief_of_none(&mirrors->belief, voters) > AGREE;
+    const float none = belief_of_none(&mirrors->belief, voters);
+    mirrors->blind = none > AGREE;
+    mirrors->sees = none < 1.0F - AGREE && belief_of_move(&mirrors->belief) > LIES;
     mirrors->altitude.disagree = honest < 1.0F - LIES;
 }
 

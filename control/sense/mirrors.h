@@ -30,6 +30,7 @@ typedef struct {
     belief_t belief;
     altitude_t altitude; /* of the latest scan; not valid before the first */
     bool agree;          /* its height is that of two honest mirrors, with 99 % */
+    bool sees;           /* with 99 % not all that told something in it lie, and it rather moves than stands */
     bool blind;          /* all that told something in it lie, with 99 % */
     bool felt_lies;      /* the accelerometer does, with 99 % */
     bool moves;          /* the vehicle does, with 99 % */

@@ -124,9 +124,7 @@ static void drop_unfit(const tilt_t *tilt, flight_inputs_t *in)
  * blocks all of them at one length blocks them from there on. */
 static bool is_unconfirmed(const senses_t *s)
 {
-    const bool seen = s->confirmation.proved && s->mirrors.agree && !beam_is_still(&s->beam);
-
-    return s->confirmation.unconfirmed && !seen;
+    return s->confirmation.unconfirmed && !(s->confirmation.proved && s->mirrors.agree);
 }
 
 static evidence_t evidence_of(const sense_t *sense)
@@ -139,7 +137,7 @@ static evidence_t evidence_of(const sense_t *sense)
         .reason = (uint16_t)verdict_reason(verdict),
         .unconfirmed = is_unconfirmed(s),
         .terrain_fell = s->confirmation.terrain_fell,
-        .teaches = !s->confirmation.unconfirmed && !beam_is_still(&s->beam),
+        .teaches = !s->confirmation.unconfirmed,
         .sways = sway_as_in_the_air(&s->sway),
         .calm = sway_is_calm(&s->sway),
         .rocks = sway_rocks(&s->sway),
@@ -147,7 +145,7 @@ static evidence_t evidence_of(const sense_t *sense)
         .may_stand = stand_is_possible(&s->stand) && !s->mirrors.moves,
         .stands = stand_is_sure(&s->stand),
         .upright = s->tilt.upright,
-        .mirrors = {.agree = s->mirrors.agree && !beam_is_still(&s->beam),
+        .mirrors = {.agree = s->mirrors.agree,
                     .doubted = mirrors_liars(&s->mirrors, false),
                     .liars = mirrors_liars(&s->mirrors, true)},
         .height_m = s->heights.height_m,

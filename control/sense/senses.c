@@ -105,8 +105,7 @@ void senses_thrust(senses_t *senses, const command_t *command, bool felt_valid)
 
 bool senses_scan(senses_t *senses, const altitude_t *altitude)
 {
-    return beam_scan(&senses->beam, altitude, senses->heights.height_m, sway_as_in_the_air(&senses->sway),
-                     senses->accelerometer.shaken <= 1.0F);
+    return beam_scan(&senses->beam, altitude);
 }
 
 /* What a height means for the witnesses. At the first climb the hover thrust was not known well until now, so
@@ -140,13 +139,8 @@ height_change_t senses_height(senses_t *senses, float height_m, float gap_s, flo
 
     change.step = change.step && !witness_follows(felt, change.rise_m, gap_s) &&
                   !witness_follows(pushed, change.rise_m, gap_s);
-    if (change.step) {
-        beam_forget_slants(&senses->beam);
-    }
     confirm(senses, &change);
     heights_update(&senses->heights, &change);
-    senses->slower_mps += heights_rise_share(gap_s) *
-                          (at_most(felt->speed_mps, pushed->speed_mps) - senses->slower_mps);
     if (change.fresh) {
         compare(senses, &change, believed);
     } else {

@@ -26,7 +26,6 @@
 
 typedef struct {
     bool standing;    /* on the ground, or take-off commanded and not yet off the ground */
-    float slower_mps; /* speed of the slower witness, low-passed like heights.rise_mps */
     tilt_t tilt;
     sway_t sway;
     mirrors_t mirrors;

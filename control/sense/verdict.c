@@ -14,7 +14,7 @@ bool verdict_felt_valid(const verdict_t *verdict, const senses_t *senses)
 
 static rule_case_t case_of(const verdict_t *verdict, const senses_t *senses, const command_t *command)
 {
-    return rules_case(&verdict->rules, senses, command, verdict_felt_valid(verdict, senses));
+    return rules_case(senses, command, verdict_felt_valid(verdict, senses));
 }
 
 static void forget(verdict_t *verdict, senses_t *senses)
@@ -62,21 +62,22 @@ void verdict_order(verdict_t *verdict, senses_t *senses)
     forget(verdict, senses);
 }
 
-/* Clears a doubt after enough agreement. */
+/* The sight is back when the belief says so, and when what it sees moves. The thrust counts again after enough
+ * agreement. */
 static void judge_again(verdict_t *verdict, senses_t *senses, const rule_case_t *c, float gap_s)
 {
-    verdict->agreed_s = (rules_agree(c) && senses->beam.still < BEAM_STILL_SCANS) ? verdict->agreed_s + gap_s
-                                                                                  : 0.0F;
-    if (verdict->agreed_s > AGREED_S ||
-        (heights_move(&senses->heights) && (verdict->doubts & DOUBT_SIGHT) != 0U)) {
+    verdict->agreed_s = rules_agree(c) ? verdict->agreed_s + gap_s : 0.0F;
+    const bool over = ((verdict->doubts & DOUBT_SIGHT) != 0U) ? senses->mirrors.sees
+                                                              : verdict->agreed_s > AGREED_S;
+    if (over) {
         clear_doubt(verdict, DOUBT_SIGHT | DOUBT_THRUST);
         forget(verdict, senses);
     }
 }
 
-static void doubt_sight(verdict_t *verdict, senses_t *senses, const rule_case_t *c, verdict_reason_t reason)
+static void doubt_sight(verdict_t *verdict, senses_t *senses, const rule_case_t *c)
 {
-    set_doubt(verdict, DOUBT_SIGHT, reason);
+    set_doubt(verdict, DOUBT_SIGHT, VERDICT_BLIND);
     verdict->lost_m = rules_lost_m(c);
     forget(verdict, senses);
 }
@@ -89,36 +90,25 @@ static void doubt_thrust(verdict_t *verdict, senses_t *senses, const command_t *
     forget(verdict, senses);
 }
 
-static void judge_imu(verdict_t *verdict, senses_t *senses, const command_t *command)
+static void judge_imu(verdict_t *verdict, senses_t *senses)
 {
-    const rule_case_t c = case_of(verdict, senses, command);
-    const verdict_reason_t reason = ((verdict->doubts & DOUBT_IMU) == 0U) ? rules_against_imu(&c)
-                                                                          : VERDICT_NONE;
-
-    if (reason != VERDICT_NONE) {
-        set_doubt(verdict, DOUBT_IMU, reason);
+    if ((verdict->doubts & DOUBT_IMU) == 0U && senses->mirrors.felt_lies) {
+        set_doubt(verdict, DOUBT_IMU, VERDICT_ALONE);
         forget(verdict, senses);
     }
 }
 
-/* Seeing beats suspecting: two mirrors agree about heights that live. Three blocked mirrors agree as well. */
-static bool is_seen(const senses_t *senses)
-{
-    return senses->mirrors.agree && !beam_is_still(&senses->beam);
-}
-
 static void judge(verdict_t *verdict, senses_t *senses, const command_t *command, float gap_s)
 {
-    judge_imu(verdict, senses, command);
+    judge_imu(verdict, senses);
     const rule_case_t c = case_of(verdict, senses, command);
 
     if ((verdict->doubts & (DOUBT_SIGHT | DOUBT_THRUST)) != 0U) {
         judge_again(verdict, senses, &c, gap_s);
         return;
     }
-    const verdict_reason_t reason = is_seen(senses) ? VERDICT_NONE : rules_against_sight(&c);
-    if (reason != VERDICT_NONE) {
-        doubt_sight(verdict, senses, &c, reason);
+    if (senses->mirrors.blind) {
+        doubt_sight(verdict, senses, &c);
     } else if (rules_against_thrust(&c) != VERDICT_NONE) {
         doubt_thrust(verdict, senses, command);
     }
@@ -128,9 +118,7 @@ void verdict_height(verdict_t *verdict, senses_t *senses, const command_t *comma
                     const height_change_t *change)
 {
     verdict->agreed_s = change->first_climb ? 0.0F : verdict->agreed_s;
-    rules_watch(&verdict->rules, senses, command, change->gap_s);
-    confirmation_wait(&senses->confirmation, change, command->wanted_m, command->grounded,
-                      beam_lives(&senses->beam));
+    confirmation_wait(&senses->confirmation, change, command->wanted_m);
     if (!command->ours) {
         forget(verdict, senses);
         witness_start(&senses->accelerometer.felt, senses->heights.rise_mps);

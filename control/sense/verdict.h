@@ -25,7 +25,6 @@ typedef struct {
     uint16_t doubts; /* DOUBT_* */
     verdict_reason_t
         reasons[VERDICT_DOUBTS]; /* of the doubts SIGHT, IMU, THRUST; VERDICT_NONE: not doubted */
-    rules_t rules;
     float lost_m;   /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
     float agreed_s; /* how long heights and witnesses have agreed during a doubt */
     float held_n;   /* hover thrust when DOUBT_THRUST rose */

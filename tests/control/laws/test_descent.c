@@ -8,7 +8,7 @@ static descent_t descent;
 
 void setUp(void)
 {
-    descent_start(&descent);
+    descent_start(&descent, 0.0F);
 }
 
 void tearDown(void) {}
@@ -31,7 +31,7 @@ void test_too_fast_is_more_thrust_and_too_slow_is_less(void)
 /* At the rate that it wants nothing is learned. */
 static bool wants_mm_s(float sink_mm_s, float height_mm)
 {
-    descent_start(&descent);
+    descent_start(&descent, 0.0F);
     (void)descent_step(&descent, 7.0F, height_mm, -sink_mm_s, 1.0F);
     return fabsf(descent.trim_n) < 1.0e-5F;
 }
@@ -114,7 +114,7 @@ void test_a_height_of_90_mm_ends_what_holds_at_the_ground(void)
 void test_a_new_descent_forgets_the_trim(void)
 {
     (void)descent_step(&descent, 7.0F, 2000.0F, 0.0F, 0.1F);
-    descent_start(&descent);
+    descent_start(&descent, 0.0F);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, descent.trim_n);
 }
 
@@ -130,7 +130,7 @@ void test_on_the_ground_the_thrust_fades_and_slowly_while_the_tilt_moves(void)
     float thrust_n[2] = {0.0F, 0.0F};
 
     for (int rocks = 0; rocks < 2; rocks++) {
-        descent_start(&descent);
+        descent_start(&descent, 0.0F);
         for (int i = 0; i < 20; i++) {
             descent.rocks = rocks != 0;
             thrust_n[rocks] = descent_step(&descent, 7.0F, 0.0F, 0.0F, 0.1F);
@@ -172,7 +172,7 @@ void test_a_new_descent_begins_in_the_air(void)
 {
     descent.near_ground_s = 2.0F;
     descent.rocks = descent.holds = true;
-    descent_start(&descent);
+    descent_start(&descent, 0.0F);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, descent.near_ground_s);
     TEST_ASSERT_FALSE(descent.rocks || descent.holds);
 }

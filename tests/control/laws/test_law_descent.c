@@ -26,7 +26,7 @@ static float descend_n(void)
 void test_a_descent_by_heights_samples_new_heights_and_its_start(void)
 {
     descent_t expected;
-    descent_start(&expected);
+    descent_start(&expected, 0.0F);
     hovers_at_n(7.3F);
     height_is(500.0F, -100.0F, 100000U, false);
     const float first_n = descent_step(&expected, 7.3F, 500.0F, -100.0F, 0.0F);
