@@ -114,6 +114,7 @@ void handover_doubts(handover_t *handover, est_law_t *est, where_t *where, const
                                                 (pilot_is_unknown(pilot) && !pilot_shows_effect(pilot)),
                            .accelerations = (doubted & DOUBT_IMU) != 0U,
                            .rocks = now->rocks,
+                           .seen = now->evidence->mirrors.agree,
                        });
     tell(est, where, last_edges, sizeof last_edges / sizeof last_edges[0], &change, now);
     handover->doubts = doubted;

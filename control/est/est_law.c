@@ -285,6 +285,7 @@ void est_law_doubt(est_law_t *law, const est_doubts_t *doubts)
     }
     law->accelerations_doubted = doubts->accelerations;
     law->rocks = doubts->rocks;
+    law->seen = doubts->seen;
 }
 
 cascade_vehicle_t est_law_vehicle(const est_law_t *law, const parameters_t *parameters)
@@ -417,7 +418,7 @@ float est_law_step(est_law_t *law, const parameters_t *parameters, const est_ord
     const float speed_mps = speed_setpoint_mps(law, parameters, &gains, &state, mode, order->reference_m);
     const float thrust_n = cascade_thrust_n(&gains, &vehicle, &state, speed_mps);
 
-    let_down_step(&law->down, mode, state.height_m, law->rocks, law->step_s);
+    let_down_step(&law->down, mode, state.height_m, law->rocks, law->seen, law->step_s);
     const float limited_n = let_down_limit_n(&law->down, mode, thrust_n, law->hover.thrust_n);
     return deadband_compensate(&law->deadband, law->hover.thrust_n, limited_n);
 }

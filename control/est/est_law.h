@@ -51,6 +51,7 @@ typedef struct {
     float heightless_s;     /* time since the rays of the latest height */
     float frameless_s;      /* time since the latest frame was measured */
     bool rocks;             /* the tilt sways as in flight */
+    bool seen;              /* two mirrors agree on the heights */
     bool flew;              /* est_law_step() was called in this cycle */
     bool left_ground;       /* in this cycle */
 } est_law_t;
@@ -103,6 +104,7 @@ typedef struct {
                              * them, and the hover thrust is the sure one */
     bool accelerations; /* the accelerometer is wrong (doubt IMU): accelerations in the frames are ignored */
     bool rocks;         /* the tilt moves as it does in flight, see touchdown.h */
+    bool seen;          /* two mirrors agree on the heights: a landing needs no ceiling of the thrust */
 } est_doubts_t;
 
 /* Call in every cycle, after est_law_predict(). */

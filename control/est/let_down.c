@@ -1,6 +1,7 @@
 /* The ceiling starts from the hover thrust that was sure when the descent began, and it only falls. Neither
  * learning during the descent nor a change of the kind of descent raises it again. What breaks: a ceiling
- * that follows what a descent teaches can rise with a wrong height, and the vehicle climbs away. */
+ * that follows what a descent teaches can rise with a wrong height, and the vehicle climbs away. Where two
+ * mirrors agree on the heights, a landing needs none: below it a gust would press the vehicle to the ground. */
 #include "control/est/let_down.h"
 
 #include "control/between.h"
@@ -28,7 +29,7 @@ float let_down_mps(est_mode_t mode, float height_m)
     return (mode == EST_MODE_SINK) ? -LAND_MAX_MPS : -at_most(LAND_MPS + LAND_PER_S * over_m, LAND_MAX_MPS);
 }
 
-void let_down_step(let_down_t *down, est_mode_t mode, float height_m, bool rocks, float step_s)
+void let_down_step(let_down_t *down, est_mode_t mode, float height_m, bool rocks, bool seen, float step_s)
 {
     const bool sinks = mode == EST_MODE_SINK;
     const float above_n = sinks ? NEAR_HOVER_N : HOVER_THRUST_MARGIN_N;
@@ -36,7 +37,7 @@ void let_down_step(let_down_t *down, est_mode_t mode, float height_m, bool rocks
     down->near_ground_s = (mode == EST_MODE_LAND)
                               ? touchdown_time_s(down->near_ground_s, height_m, rocks, step_s)
                               : 0.0F;
-    if (mode != EST_MODE_HOLD) {
+    if (mode == EST_MODE_SINK || (mode == EST_MODE_LAND && !seen)) {
         down->ceiling_n = at_most(down->ceiling_n - SINK_FADE_N_PER_S * step_s,
                                   down->entry_hover_n + above_n);
         down->ceiling_n = at_least(down->ceiling_n, 0.0F);

@@ -36,22 +36,18 @@ static bool felt_against(const rule_case_t *c, float at_least_m)
     return c->felt_valid && fabsf(c->felt_off_m) > at_least_m;
 }
 
-/* The thrust pushes towards the reference, and the heights do not follow. */
-static bool pushes_in_vain(const senses_t *senses, const command_t *command)
+bool rules_push_in_vain(const rule_case_t *c)
 {
-    const float push_n = senses->push.lagged_n - command->hover_n;
+    const float push_n = c->senses->push.lagged_n - c->command->hover_n;
 
-    return fabsf(push_n) > PUSH_N && push_n * command->wanted_m > 0.0F &&
-           senses->push.pushed.seen_m * push_n < 0.0F;
+    return fabsf(push_n) > PUSH_N && push_n * c->command->wanted_m > 0.0F && c->pushed->seen_m * push_n < 0.0F;
 }
 
-verdict_reason_t rules_against_thrust(const rule_case_t *c)
+bool rules_against_thrust(const rule_case_t *c)
 {
-    const bool vain = c->senses->confirmation.proved && fabsf(c->command->wanted_m) > PUSHED_M &&
-                      witness_against(c->pushed, NO_AUTHORITY_M) && c->felt_valid &&
-                      !felt_against(c, WITH_M) && pushes_in_vain(c->senses, c->command);
-
-    return vain ? VERDICT_NO_EFFECT : VERDICT_NONE;
+    return c->senses->confirmation.proved && !c->senses->effect.has_effect && fabsf(c->command->wanted_m) > PUSHED_M &&
+           witness_against(c->pushed, NO_AUTHORITY_M) && c->felt_valid && !felt_against(c, WITH_M) &&
+           rules_push_in_vain(c);
 }
 
 /* Heights and witnesses agree, over a real motion. */

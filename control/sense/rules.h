@@ -34,8 +34,12 @@ typedef struct {
 /* The case of this height. The pointers are borrowed for as long as it is asked. */
 rule_case_t rules_case(const senses_t *senses, const command_t *command, bool felt_valid);
 
-/* What the thrust contradicts, or VERDICT_NONE. */
-verdict_reason_t rules_against_thrust(const rule_case_t *c);
+/* The thrust pushes towards the reference, and the heights do not follow. */
+bool rules_push_in_vain(const rule_case_t *c);
+
+/* It has done so for long, its changes have no effect either, and the accelerometer agrees with the heights.
+ * Else a gust pushes harder. */
+bool rules_against_thrust(const rule_case_t *c);
 
 /* Heights and witnesses agree, over a real motion. */
 bool rules_agree(const rule_case_t *c);

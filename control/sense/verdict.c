@@ -62,16 +62,18 @@ void verdict_order(verdict_t *verdict, senses_t *senses)
     forget(verdict, senses);
 }
 
-/* The sight is back when the belief says so, and when what it sees moves. The thrust counts again after enough
- * agreement. */
-static void judge_again(verdict_t *verdict, senses_t *senses, const rule_case_t *c, float gap_s)
+static void end_doubt(verdict_t *verdict, senses_t *senses, uint16_t doubt)
+{
+    clear_doubt(verdict, doubt);
+    forget(verdict, senses);
+}
+
+/* The thrust counts again after enough agreement. */
+static void judge_thrust_again(verdict_t *verdict, senses_t *senses, const rule_case_t *c, float gap_s)
 {
     verdict->agreed_s = rules_agree(c) ? verdict->agreed_s + gap_s : 0.0F;
-    const bool over = ((verdict->doubts & DOUBT_SIGHT) != 0U) ? senses->mirrors.sees
-                                                              : verdict->agreed_s > AGREED_S;
-    if (over) {
-        clear_doubt(verdict, DOUBT_SIGHT | DOUBT_THRUST);
-        forget(verdict, senses);
+    if (verdict->agreed_s > AGREED_S) {
+        end_doubt(verdict, senses, DOUBT_THRUST);
     }
 }
 
@@ -85,7 +87,7 @@ static void doubt_sight(verdict_t *verdict, senses_t *senses, const rule_case_t 
 static void doubt_thrust(verdict_t *verdict, senses_t *senses, const command_t *command)
 {
     set_doubt(verdict, DOUBT_THRUST, VERDICT_NO_EFFECT);
-    verdict->held_n = command->hover_n;
+    verdict->held_n = verdict->sure_n; /* in vain the hover thrust learns what is not so */
     verdict->held_down = command->wanted_m < 0.0F;
     forget(verdict, senses);
 }
@@ -98,20 +100,41 @@ static void judge_imu(verdict_t *verdict, senses_t *senses)
     }
 }
 
+/* The belief tells whether the sight lies, and when what it sees moves again. */
+static void judge_sight(verdict_t *verdict, senses_t *senses, const rule_case_t *c)
+{
+    if ((verdict->doubts & DOUBT_SIGHT) == 0U && senses->mirrors.blind) {
+        doubt_sight(verdict, senses, c);
+    } else if ((verdict->doubts & DOUBT_SIGHT) != 0U && senses->mirrors.sees) {
+        end_doubt(verdict, senses, DOUBT_SIGHT);
+    }
+}
+
+/* It is held against the heights, so only while these are believed. */
+static void judge_thrust(verdict_t *verdict, senses_t *senses, const command_t *command, float gap_s)
+{
+    const rule_case_t c = case_of(verdict, senses, command);
+
+    if (!rules_push_in_vain(&c)) {
+        verdict->sure_n = command->hover_n;
+    }
+    if ((verdict->doubts & DOUBT_SIGHT) != 0U) {
+        return;
+    }
+    if ((verdict->doubts & DOUBT_THRUST) != 0U) {
+        judge_thrust_again(verdict, senses, &c, gap_s);
+    } else if (rules_against_thrust(&c)) {
+        doubt_thrust(verdict, senses, command);
+    }
+}
+
 static void judge(verdict_t *verdict, senses_t *senses, const command_t *command, float gap_s)
 {
     judge_imu(verdict, senses);
     const rule_case_t c = case_of(verdict, senses, command);
 
-    if ((verdict->doubts & (DOUBT_SIGHT | DOUBT_THRUST)) != 0U) {
-        judge_again(verdict, senses, &c, gap_s);
-        return;
-    }
-    if (senses->mirrors.blind) {
-        doubt_sight(verdict, senses, &c);
-    } else if (rules_against_thrust(&c) != VERDICT_NONE) {
-        doubt_thrust(verdict, senses, command);
-    }
+    judge_sight(verdict, senses, &c);
+    judge_thrust(verdict, senses, command, gap_s);
 }
 
 void verdict_height(verdict_t *verdict, senses_t *senses, const command_t *command,

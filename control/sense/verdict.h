@@ -27,7 +27,8 @@ typedef struct {
         reasons[VERDICT_DOUBTS]; /* of the doubts SIGHT, IMU, THRUST; VERDICT_NONE: not doubted */
     float lost_m;   /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
     float agreed_s; /* how long heights and witnesses have agreed during a doubt */
-    float held_n;   /* hover thrust when DOUBT_THRUST rose */
+    float sure_n;   /* hover thrust when the thrust last did not push in vain */
+    float held_n;   /* the same, when DOUBT_THRUST rose */
     bool held_down; /* the law wanted to descend at that instant */
 } verdict_t;
 
