@@ -112,6 +112,7 @@ typedef struct {
     uint16_t honest;               /* bits: those that tell something in this scan */
     float off_mm[MIRROR_COUNT];    /* height less what the world predicts */
     float step[MIRROR_COUNT];      /* density of that as a step, of the honest ones */
+    float gained_mps;   /* change of the speed that is foretold */
     float strange_mps2; /* the accelerometer, less thrust and drag at the speed of this world, as it knows them */
     float of_felt[BELIEF_MOTIONS]; /* density of what the accelerometer tells, by kind of motion */
     float untrue_mps; /* part of what the accelerometer tells that is not so, if it lies */
@@ -233,11 +234,13 @@ static void add_stand(const belief_world_t *world, ways_t *ways, const belief_sc
 static void feel(const belief_world_t *world, ways_t *ways, const belief_scan_t *scan)
 {
     const belief_felt_t *felt = &scan->felt;
-    const float drag_mps = felt->dragged * (0.001F * world->rate_mm_s + 0.5F * felt->gained_mps);
-    const bool carried = felt->dragged > 0.0F;
+    const float off_mps = (felt->dragged > 0.0F) ? world->push_off_mps2 * scan->gap_s : 0.0F;
+    const float rate_mps = 0.001F * world->rate_mm_s;
+    const float half = 0.5F * felt->dragged; /* the speed that is gained meanwhile is dragged for half of it */
+    const float thrust_mps = (felt->pushed_mps + off_mps - felt->dragged * rate_mps) / (1.0F + half);
 
-    ways->strange_mps2 = (felt->gained_mps - felt->pushed_mps + drag_mps) / scan->gap_s -
-                         (carried ? world->push_off_mps2 : 0.0F);
+    ways->gained_mps = felt->untold ? thrust_mps : felt->gained_mps;
+    ways->strange_mps2 = (1.0F + half) * (ways->gained_mps - thrust_mps) / scan->gap_s;
     const float moving = density_of_strange(ways->strange_mps2);
     for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
         ways->of_felt[k] = moving;
@@ -245,14 +248,14 @@ static void feel(const belief_world_t *world, ways_t *ways, const belief_scan_t 
     }
     ways->of_felt[BELIEF_STANDS] = scan->of_stand;
     ways->of_felt[BELIEF_FELT_LIES] = LIE_PER_MPS2;
-    /* If it lies, the thrust foretells the motion. */
+    /* If it lies, or tells nothing, the thrust foretells the motion. */
     ways->untrue_mps = ways->strange_mps2 * scan->gap_s;
     ways->foretold_mm[BELIEF_FELT_LIES] = 500.0F * ways->untrue_mps * scan->gap_s;
 }
 
-static void predict(belief_world_t *world, const belief_scan_t *scan)
+static void predict(belief_world_t *world, const ways_t *ways, const belief_scan_t *scan)
 {
-    const float gained_mm_s = 1000.0F * scan->felt.gained_mps;
+    const float gained_mm_s = 1000.0F * ways->gained_mps;
 
     world->rate_mm_s += gained_mm_s;
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
@@ -288,18 +291,19 @@ static void correct_motions(belief_world_t *world, const ways_t *ways)
 static void correct_rate(belief_world_t *world, const ways_t *ways, const belief_scan_t *scan,
                          float shared_mm)
 {
-    if (ways->honest != 0U) {
-        world->rate_mm_s += BELIEF_RATE_GAIN * shared_mm / scan->gap_s;
-        const float sound = 1.0F - ways->motions[BELIEF_FELT_LIES] / ways->density;
+    const float stands = ways->motions[BELIEF_STANDS] / ways->density;
+    const float flies = 1.0F - stands - ways->motions[BELIEF_FELT_LIES] / ways->density;
+    const bool carried = scan->felt.dragged > 0.0F;
 
-        if (scan->felt.dragged > 0.0F) {
-            world->push_off_mps2 = between(-PUSH_OFF_MPS2, world->push_off_mps2 + PUSH_GAIN * sound * ways->strange_mps2,
-                                           PUSH_OFF_MPS2);
-        }
-    } else if (scan->felt.dragged > 0.0F) {
-        world->rate_mm_s -= 1000.0F * BLIND_GAIN * ways->strange_mps2;
+    if (ways->honest != 0U) {
+        const float off_mps2 = world->push_off_mps2 + PUSH_GAIN * flies * ways->strange_mps2;
+
+        world->rate_mm_s += BELIEF_RATE_GAIN * shared_mm / scan->gap_s;
+        world->push_off_mps2 = carried ? between(-PUSH_OFF_MPS2, off_mps2, PUSH_OFF_MPS2)
+                                       : world->push_off_mps2;
     } else {
-        world->rate_mm_s = 0.0F;
+        world->rate_mm_s -= 1000.0F * BLIND_GAIN * ways->strange_mps2;
+        world->rate_mm_s *= carried ? 1.0F - stands : 0.0F;
     }
 }
 
@@ -360,7 +364,7 @@ float belief_world_scan(belief_world_t *world, const belief_scan_t *scan, uint16
     ways_t ways = {.honest = scan->told & (uint16_t)~liars};
 
     feel(world, &ways, scan);
-    predict(world, scan);
+    predict(world, &ways, scan);
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         ways.off_mm[m] = scan->beams[m].height_mm - world->level_mm[m];
         ways.step[m] = belief_has(ways.honest, m) ? density_of_step(ways.off_mm[m]) : 0.0F;
@@ -379,7 +383,7 @@ float belief_world_scan(belief_world_t *world, const belief_scan_t *scan, uint16
 
 void belief_world_look(belief_scan_t *scan, const belief_mean_t *slant, const belief_mean_t *height)
 {
-    const float gained_mps2 = scan->felt.gained_mps / scan->gap_s;
+    const float gained_mps2 = scan->felt.untold ? 0.0F : scan->felt.gained_mps / scan->gap_s;
     const float lift_mps2 = scan->felt.pushed_mps / scan->gap_s; /* no vehicle stands that its thrust lifts */
 
     for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {

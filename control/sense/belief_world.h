@@ -27,8 +27,9 @@ typedef struct {
     float slant_mm, height_mm;
 } belief_beam_t;
 
-/* What else is known of a scan's motion. All zero where the accelerometer is not believed. */
+/* What else is known of a scan's motion. */
 typedef struct {
+    bool untold;      /* the accelerometer tells nothing, or is not believed: gained_mps is not read */
     float gained_mps; /* change of the vertical speed since the scan before, by the accelerometer */
     float pushed_mps; /* by the thrust, without the air's drag; 0 where it does not carry the vehicle */
     float dragged;    /* share of the vertical speed that the drag has taken meanwhile; 0 as above */

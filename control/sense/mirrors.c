@@ -38,15 +38,16 @@ static float shown(mirrors_motion_t *motion, float late)
     return shown;
 }
 
-static belief_felt_t felt_of(mirrors_t *mirrors, float gap_s, float age_s, bool believed)
+static belief_felt_t felt_of(mirrors_t *mirrors, float gap_s, float age_s, bool believed, bool held_up)
 {
     const float late = at_most(age_s / gap_s, 1.0F);
-    const belief_felt_t felt = {.gained_mps = shown(&mirrors->felt, late),
+    const belief_felt_t felt = {.untold = !believed,
+                                .gained_mps = shown(&mirrors->felt, late),
                                 .pushed_mps = shown(&mirrors->pushed, late),
                                 .dragged = shown(&mirrors->dragged, late)};
-    const belief_felt_t nothing = {.gained_mps = 0.0F};
+    const belief_felt_t nothing = {.untold = true};
 
-    return believed ? felt : nothing;
+    return held_up ? nothing : felt;
 }
 
 /* Identical digits are no new scan, see beam.c. */
@@ -171,9 +172,10 @@ static uint16_t weightless(const float weights[MIRROR_COUNT])
     return set;
 }
 
-void mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float age_s, bool felt)
+void mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float age_s, bool felt,
+                  bool held_up)
 {
-    const uint16_t voters = believe(mirrors, shown, gap_s, felt_of(mirrors, gap_s, age_s, felt));
+    const uint16_t voters = believe(mirrors, shown, gap_s, felt_of(mirrors, gap_s, age_s, felt, held_up));
     float weights[MIRROR_COUNT];
 
     if (voters == 0U) {

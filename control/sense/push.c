@@ -8,23 +8,38 @@
 #define LAG_S 0.15F                             /* LAG of 0.12 s and DELAY of 18.5 ms, as one lag */
 #define PUSHED_LEAK_PER_S (1.0F / HOVER_TIME_S) /* what the hover thrust is off by is learned so fast */
 
+static float step_s(const command_t *command)
+{
+    return at_most(command->step_s, CYCLE_MAX_S);
+}
+
 void push_lag(push_t *push, const command_t *command)
 {
-    const float dt_s = at_most(command->step_s, CYCLE_MAX_S);
+    const float dt_s = step_s(command);
 
     push->lagged_n += dt_s / (LAG_S + dt_s) * (command->thrust_n - push->lagged_n);
 }
 
-void push_move(push_t *push, const command_t *command, float upright, float *gained_mps, float *dragged)
+float push_lift_mps(const push_t *push, const command_t *command, float upright)
 {
-    const float dt_s = at_most(command->step_s, CYCLE_MAX_S);
-    const float excess_mps2 = command->authority_mps2_per_n * (push->lagged_n * upright - command->hover_n);
-    const float mps2 = (excess_mps2 - command->damping_per_s * push->pushed.speed_mps) /
-                       (1.0F + command->damping_per_s * dt_s);
+    return command->authority_mps2_per_n * (push->lagged_n * upright - command->hover_n) * step_s(command);
+}
 
-    witness_move(&push->pushed, mps2, dt_s);
-    *gained_mps = excess_mps2 * dt_s;
-    *dragged = command->damping_per_s * dt_s;
+float push_dragged(const command_t *command)
+{
+    return command->damping_per_s * step_s(command);
+}
+
+void push_move(push_t *push, const command_t *command, float upright)
+{
+    const float dragged = push_dragged(command);
+    const float gained_mps = (push_lift_mps(push, command, upright) - dragged * push->pushed.speed_mps) /
+                             (1.0F + dragged);
+    const float dt_s = step_s(command);
+
+    if (dt_s > 0.0F) {
+        witness_move(&push->pushed, gained_mps / dt_s, dt_s);
+    }
 }
 
 void push_compare(push_t *push, float rise_m, float gap_s, float age_s)

@@ -18,9 +18,13 @@ typedef struct {
 void push_lag(push_t *push, const command_t *command);
 
 /* Dead reckoning, once in each cycle in which the thrust alone carries the vehicle. upright: cosine of the
- * tilt. Writes the change of the vertical speed by the thrust alone, in metres per second, and the share of
- * it that the drag takes. */
-void push_move(push_t *push, const command_t *command, float upright, float *gained_mps, float *dragged);
+ * tilt. */
+void push_move(push_t *push, const command_t *command, float upright);
+
+/* Change of the vertical speed in this cycle by thrust and weight alone, and the share of that speed that the
+ * drag takes. On the ground it does not move, whatever they say. */
+float push_lift_mps(const push_t *push, const command_t *command, float upright);
+float push_dragged(const command_t *command);
 
 /* Adds the innovation of one height. */
 void push_compare(push_t *push, float rise_m, float gap_s, float age_s);

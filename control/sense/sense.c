@@ -69,8 +69,9 @@ static void vote(sense_t *sense, const flight_inputs_t *in)
         }
     }
     mirrors_scan(&sense->senses.mirrors, shown, gap_s, seconds_at_most(in->height_age_us, GAP_LONG_S),
-                 (sense->verdict.doubts & DOUBT_IMU) == 0U && sense->senses.accelerometer.shaken <= 1.0F &&
-                     !held_up);
+                 verdict_felt_valid(&sense->verdict, &sense->senses) &&
+                     sense->senses.accelerometer.shaken <= 1.0F,
+                 held_up);
 }
 
 /* What several mirrors show together takes the place of their mean. */

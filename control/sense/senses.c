@@ -100,10 +100,11 @@ void senses_thrust(senses_t *senses, const command_t *command, bool felt_valid)
     if (!command->off_ground || stands) {
         witness_start(&senses->push.pushed, felt_tells ? felt->speed_mps : 0.0F);
     } else {
-        float gained_mps, dragged;
-
-        push_move(&senses->push, command, senses->tilt.upright, &gained_mps, &dragged);
-        mirrors_thrust(&senses->mirrors, gained_mps, dragged);
+        push_move(&senses->push, command, senses->tilt.upright);
+    }
+    if (!command->grounded) {
+        mirrors_thrust(&senses->mirrors, push_lift_mps(&senses->push, command, senses->tilt.upright),
+                       push_dragged(command));
     }
 }
 

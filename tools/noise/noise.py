@@ -59,7 +59,7 @@ double noise_of(const float *v, long scans, double *told, float *strange)
     start(&b);
     for (long i = 0; i < scans; ++i, v += 13) {
         belief_beam_t beams[MIRROR_COUNT];
-        belief_scan_t scan = {.beams = beams, .gap_s = v[0], .loose = loosen(&b, v[0]), .felt = {v[1], v[2], v[3]}};
+        belief_scan_t scan = {.beams = beams, .gap_s = v[0], .loose = loosen(&b, v[0]), .felt = {false, v[1], v[2], v[3]}};
         for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
             beams[m] = (belief_beam_t){v[4 + 3 * m] != 0.0F, v[5 + 3 * m], v[6 + 3 * m]};
             scan.told |= (beams[m].valid && belief_has(b.known, m) && v[0] <= HEIGHT_LOST_S) ? (uint16_t)(1U << m) : 0U;
@@ -69,7 +69,7 @@ double noise_of(const float *v, long scans, double *told, float *strange)
         ways_t ways;
         feel(&foretold, &ways, &scan);
         strange[i] = ways.strange_mps2;
-        predict(&foretold, &scan);
+        predict(&foretold, &ways, &scan);
         float off[MIRROR_COUNT], mean = 0.0F;
         for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
             off[m] = beams[m].height_mm - foretold.level_mm[m];
