@@ -121,7 +121,7 @@ void test_time_without_a_height_is_counted_on_the_ground_up_to_two_seconds(void)
     for (int i = 0; i < 40; i++) {
         feel(0.0F);
     }
-    NEAR(1.0F, senses.heights.unseen_s);
+    NEAR(1.025F, senses.heights.unseen_s);
     for (int i = 0; i < 80; i++) {
         feel(0.0F);
     }
