@@ -62,8 +62,8 @@ void verdict_order(verdict_t *verdict, senses_t *senses)
     forget(verdict, senses);
 }
 
-/* The sight is back when the belief says so, and when what it sees moves. The thrust counts again after enough
- * agreement. */
+/* The sight is back when the belief says so, and when what it sees moves. The thrust counts again after
+ * enough agreement. */
 static void judge_again(verdict_t *verdict, senses_t *senses, const rule_case_t *c, float gap_s)
 {
     verdict->agreed_s = rules_agree(c) ? verdict->agreed_s + gap_s : 0.0F;

@@ -395,7 +395,8 @@ void test_the_battery_is_told_behind_all_others_where_it_fits(void)
     flight.flags = 1280U;
     flight.height_mm = -1234.0F;
     flight.reference_m = flight.thrust_n = 3.0F;
-    TEST_ASSERT_TRUE(line_has(" doubt:THRUST/noeffect\r\n") || line_has(" doubt:THRUST/noeffect bat:14.8\r\n"));
+    TEST_ASSERT_TRUE(line_has(" doubt:THRUST/noeffect\r\n") ||
+                     line_has(" doubt:THRUST/noeffect bat:14.8\r\n"));
 }
 
 void test_a_battery_that_warns_has_the_place_of_a_limit_and_takes_turns_with_a_doubt(void)

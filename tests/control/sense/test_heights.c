@@ -16,7 +16,7 @@ void test_a_height_moves_the_rate_and_the_sums(void)
     senses.push.pushed.off_m = -0.02F;
     sensed_height(&flown, 0.53F, 0.1F, 0.1F);
     NEAR(0.1F + (0.3F - 0.1F) / 3.0F, senses.heights.rise_mps); /* 0.1 of 0.2 + 0.1 s */
-    NEAR(0.13F, senses.accelerometer.felt.seen_m); /* 0.07 + 0.03, and 0.3 m/s x 0.1 s of age */
+    NEAR(0.13F, senses.accelerometer.felt.seen_m);              /* 0.07 + 0.03, and 0.3 m/s x 0.1 s of age */
     NEAR(0.1F - 0.18F * 0.13F, senses.accelerometer.felt.off_m);
     NEAR(0.3F + 0.081F * 0.13F, senses.accelerometer.felt.speed_mps);
     VERY_NEAR(-0.01F * 0.13F, senses.accelerometer.bias_mps2);

@@ -12,7 +12,7 @@ static mirror_range_t ranges[MIRROR_COUNT];
 static const mirror_t order[] = {MIRROR_AFT, MIRROR_FRONT, MIRROR_FORE};
 
 static float gap_s, age_s; /* of each scan, and of its rays */
-static float copied_mm; /* a mirror at this height gives the same digits in each scan */
+static float copied_mm;    /* a mirror at this height gives the same digits in each scan */
 
 static void forget(void)
 {
@@ -263,7 +263,8 @@ static void sway(int k, float blocked_mm)
 }
 
 /* The tilt alone tells it, here: no thrust, and an accelerometer that feels nothing. */
-void test_mirrors_that_are_all_blocked_agree_no_more_within_four_seconds_and_lie_by_nine_in_ten_within_eight(void)
+void test_mirrors_that_are_all_blocked_agree_no_more_within_four_seconds_and_lie_by_nine_in_ten_within_eight(
+    void)
 {
     for (int k = 0; k < 100; k++) {
         sway(k, 0.0F);
@@ -343,7 +344,8 @@ static void vehicle_moves(float mps2)
     for (long k = lroundf(gap_s / STEP_S); k > 0; k--) {
         const float before_mm = height_then_mm(0.0F);
 
-        mirrors_thrust(&mirrors, (mps2 - vehicle.touch_mps2 + 2.4F * vehicle.speed_mps) * STEP_S, 2.4F * STEP_S);
+        mirrors_thrust(&mirrors, (mps2 - vehicle.touch_mps2 + 2.4F * vehicle.speed_mps) * STEP_S,
+                       2.4F * STEP_S);
         mirrors_frame(&mirrors, (mps2 + vehicle.lie_mps2) * STEP_S);
         vehicle.speed_mps += mps2 * STEP_S;
         vehicle.height_mm[++vehicle.step % STEPS] = before_mm + 1000.0F * vehicle.speed_mps * STEP_S;
@@ -509,8 +511,10 @@ void test_one_scan_of_a_wrong_accelerometer_is_no_doubt(void)
 /* From rest to 1 m/s and back to rest, in gaps that are not of one length, with rays of any age. */
 void test_what_the_frames_tell_counts_once_whatever_the_gaps(void)
 {
-    static const float gaps_s[][4] = {{0.1F, 0.1F, 0.1F, 0.1F}, {0.05F, 0.15F, 0.05F, 0.15F},
-                                      {0.1F, 0.2F, 0.1F, 0.3F}, {0.15F, 0.1F, 0.05F, 0.1F}};
+    static const float gaps_s[][4] = {{0.1F, 0.1F, 0.1F, 0.1F},
+                                      {0.05F, 0.15F, 0.05F, 0.15F},
+                                      {0.1F, 0.2F, 0.1F, 0.3F},
+                                      {0.15F, 0.1F, 0.05F, 0.1F}};
     static const float ages_s[] = {0.0F, 0.05F, 0.08F, 0.1F};
 
     for (unsigned row = 0U; row < 16U; row++) {

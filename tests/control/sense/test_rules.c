@@ -111,7 +111,7 @@ void test_agreement_is_within_two_decimetres_of_each_witness_over_three_of_motio
     static const struct {
         float felt_m, pushed_m, moved_m;
         bool agree;
-    } rows[] = {{0.19F, -0.19F, 0.31F, true}, {0.21F, 0.0F, 0.31F, false}, {-0.21F, 0.0F, 0.31F, false},
+    } rows[] = {{0.19F, -0.19F, 0.31F, true}, {0.21F, 0.0F, 0.31F, false},  {-0.21F, 0.0F, 0.31F, false},
                 {0.0F, 0.21F, 0.31F, false},  {0.0F, -0.21F, 0.31F, false}, {0.0F, 0.0F, 0.29F, false}};
 
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {

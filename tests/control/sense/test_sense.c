@@ -105,7 +105,8 @@ static altitude_t scan(float roll_rad)
     for (int m = 0; m < MIRROR_COUNT; m++) {
         const float slant_mm = isfinite(world.shown_m)
                                    ? slant_of((mirror_t)m, 1000.0F * world.shown_m, 0.0F)
-                                   : slant_of((mirror_t)m, 1000.0F * (world.height_m - world.terrain_m), roll_rad);
+                                   : slant_of((mirror_t)m, 1000.0F * (world.height_m - world.terrain_m),
+                                              roll_rad);
         ranges[m] = (mirror_range_t){.mirror = (mirror_t)m,
                                      .valid = true,
                                      .slant_mm = slant_mm + 3.0F * noise(),

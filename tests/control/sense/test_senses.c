@@ -143,7 +143,8 @@ void test_the_thrust_tells_the_belief_its_motion_where_it_alone_carries_the_vehi
     static const struct {
         bool off_ground;
         float height_m, gained_mps, dragged;
-    } rows[] = {{true, 0.5F, 1.4F * 0.025F, 2.5F * 0.025F}, {false, 0.5F, 0.0F, 0.0F}, {true, 0.08F, 0.0F, 0.0F}};
+    } rows[] = {
+        {true, 0.5F, 1.4F * 0.025F, 2.5F * 0.025F}, {false, 0.5F, 0.0F, 0.0F}, {true, 0.08F, 0.0F, 0.0F}};
 
     for (int i = 0; i < 3; i++) {
         hover();

@@ -119,10 +119,14 @@ void test_at_rest_an_accelerometer_is_doubted_beyond_one_and_a_half_and_fit_agai
     static const struct {
         float rested_s, rest_mps2;
         uint16_t before, after;
-    } rows[] = {{1.01F, 1.51F, 0U, DOUBT_IMU},         {1.01F, -1.51F, 0U, DOUBT_IMU},
-                {1.01F, 1.49F, 0U, 0U},                {0.99F, 1.51F, 0U, 0U},
-                {1.01F, 1.21F, DOUBT_IMU, DOUBT_IMU},  {1.01F, 1.19F, DOUBT_IMU, 0U},
-                {0.99F, 0.0F, DOUBT_IMU, DOUBT_IMU},   {1.01F, 1.19F, 7U, DOUBT_SIGHT | DOUBT_THRUST}};
+    } rows[] = {{1.01F, 1.51F, 0U, DOUBT_IMU},
+                {1.01F, -1.51F, 0U, DOUBT_IMU},
+                {1.01F, 1.49F, 0U, 0U},
+                {0.99F, 1.51F, 0U, 0U},
+                {1.01F, 1.21F, DOUBT_IMU, DOUBT_IMU},
+                {1.01F, 1.19F, DOUBT_IMU, 0U},
+                {0.99F, 0.0F, DOUBT_IMU, DOUBT_IMU},
+                {1.01F, 1.19F, 7U, DOUBT_SIGHT | DOUBT_THRUST}};
 
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         setUp();
