@@ -1,5 +1,5 @@
-/* What breaks: a height of one ray. altitude_from_ranges() refuses it; examples/one_ray makes groups of single
- * readings. */
+/* What breaks: a height of one ray. altitude_from_ranges() refuses it; examples/one_ray makes groups of
+ * single readings. */
 #include "control/sense/beam.h"
 
 #include "control/credible.h"

@@ -14,8 +14,8 @@ typedef struct {
     bool below_ground;         /* heights so low that no noise explains them: the beam is blocked */
 } beam_t;
 
-/* One scan, exactly once. Returns true when the scan's height may be used: it is within -50 .. 5000 mm, and the
- * scan is no copy of the one before. */
+/* One scan, exactly once. Returns true when the scan's height may be used: it is within -50 .. 5000 mm, and
+ * the scan is no copy of the one before. */
 bool beam_scan(beam_t *beam, const altitude_t *altitude);
 
 #endif

@@ -27,13 +27,22 @@ static void start(belief_t *belief)
     }
 }
 
-/* Mirror m begins to lie, or ends to, in this world and in that which differs by it alone. */
+/* So much of a world's probability has just come from another: its motion is, too. */
+static void take_motion(belief_world_t *world, const belief_world_t *other, float share)
+{
+    world->rate_mm_s += share * (other->rate_mm_s - world->rate_mm_s);
+    world->push_off_mps2 += share * (other->push_off_mps2 - world->push_off_mps2);
+}
+
+/* Mirror m begins to lie, or ends to, in this world and in that which differs by it alone. A blocked vehicle
+ * that climbs still climbs when a mirror sees again: else each mirror alone would look honest without end. */
 static void turn(belief_world_t *true_world, belief_world_t *lie_world, uint16_t m, float gap_s)
 {
     const float begins = true_world->probability * at_most(LIES_PER_S * gap_s, 0.5F);
     const float ends = lie_world->probability * at_most(TRUTHS_PER_S * gap_s, 0.5F);
 
     true_world->probability += ends - begins;
+    take_motion(true_world, lie_world, ends / true_world->probability);
     lie_world->probability += begins - ends;
     lie_world->begun[m] += begins;
 }
@@ -56,8 +65,7 @@ static void share_begun(belief_world_t *world, const belief_world_t *honest)
         world->begun[m] = at_most(world->begun[m] / world->probability, 1.0F);
         begun = at_least(begun, world->begun[m]);
     }
-    world->rate_mm_s += begun * (honest->rate_mm_s - world->rate_mm_s);
-    world->push_off_mps2 += begun * (honest->push_off_mps2 - world->push_off_mps2);
+    take_motion(world, honest, begun);
 }
 
 static void mix(belief_t *belief, float gap_s)

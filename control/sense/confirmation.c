@@ -10,8 +10,8 @@
 #define CONFIRMED_M \
     0.12F /* more than steps that do not show, WITNESS_STEP_M, and 3 HEIGHT_SIGMA_M: 119 mm \
            */
-#define TERRAIN_FALL_M 0.40F           /* chosen: above the edge of the seed's course, 0.25 m */
-#define QUIET_S 1.0F /* tried: 60 drawn vehicles whose blocked beam shows the reference; ten scans */
+#define TERRAIN_FALL_M 0.40F /* chosen: above the edge of the seed's course, 0.25 m */
+#define QUIET_S 1.0F         /* tried: 60 drawn vehicles whose blocked beam shows the reference; ten scans */
 
 static void watch_depth(confirmation_t *confirmation, const height_change_t *change, bool standing)
 {

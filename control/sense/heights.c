@@ -8,8 +8,8 @@
 #include "control/credible.h"
 #include "control/sense/witness.h"
 
-#define RISE_TIME_S 0.2F    /* chosen: two scans */
-#define UNSEEN_MOST_S 2.0F  /* the counter stops here */
+#define RISE_TIME_S 0.2F   /* chosen: two scans */
+#define UNSEEN_MOST_S 2.0F /* the counter stops here */
 
 height_change_t heights_change(const heights_t *heights, float height_m, float gap_s, float age_s)
 {

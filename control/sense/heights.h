@@ -7,10 +7,10 @@
 #include <stdbool.h>
 
 typedef struct {
-    bool known;      /* at least one height was received */
-    float height_m;  /* latest height */
-    float rise_mps;  /* low-passed rate of the heights, without steps */
-    float unseen_s;  /* time on the ground since the latest height, at most 2 s */
+    bool known;     /* at least one height was received */
+    float height_m; /* latest height */
+    float rise_mps; /* low-passed rate of the heights, without steps */
+    float unseen_s; /* time on the ground since the latest height, at most 2 s */
 } heights_t;
 
 /* One height against the one before. */

@@ -1,8 +1,8 @@
-/* Who has the throttle? Where nothing tells, the thrust does: a pilot, or somebody who holds the vehicle, makes
- * it push in vain. The source is analytical redundancy, any text on fault detection.
+/* Who has the throttle? Where nothing tells, the thrust does: a pilot, or somebody who holds the vehicle,
+ * makes it push in vain. The source is analytical redundancy, any text on fault detection.
  *
- * What breaks: a limit that is too low doubts the thrust in a gust, and then it may not push against that. The
- * limits have to be above the drift of the witnesses in healthy flights. */
+ * What breaks: a limit that is too low doubts the thrust in a gust, and then it may not push against that.
+ * The limits have to be above the drift of the witnesses in healthy flights. */
 #include "control/sense/rules.h"
 
 #include <math.h>
@@ -68,11 +68,8 @@ float rules_lost_m(const rule_case_t *c)
 }
 
 static const char *const reason_names[] = {
-    [VERDICT_NONE] = "-",
-    [VERDICT_BLIND] = "SIGHT/blind",
-    [VERDICT_REST] = "IMU/rest",
-    [VERDICT_ALONE] = "IMU/alone",
-    [VERDICT_NO_EFFECT] = "THRUST/noeffect",
+    [VERDICT_NONE] = "-",          [VERDICT_BLIND] = "SIGHT/blind",         [VERDICT_REST] = "IMU/rest",
+    [VERDICT_ALONE] = "IMU/alone", [VERDICT_NO_EFFECT] = "THRUST/noeffect",
 };
 typedef char
     every_reason_has_a_name[(sizeof reason_names / sizeof reason_names[0] == VERDICT_COUNT) ? 1 : -1];

@@ -10,7 +10,7 @@
 #include "control/seconds.h"
 
 #define HELD_UP_S (0.5F * SCAN_S) /* the frames of the scan's time are then those of another scan */
-#define GAP_LONG_S 10.0F /* any above HEIGHT_LOST_S, from where on no change is fresh */
+#define GAP_LONG_S 10.0F          /* any above HEIGHT_LOST_S, from where on no change is fresh */
 
 void sense_init(sense_t *sense)
 {

@@ -26,7 +26,7 @@
 #include "control/sense/tilt.h"
 
 typedef struct {
-    bool standing;    /* on the ground, or take-off commanded and not yet off the ground */
+    bool standing; /* on the ground, or take-off commanded and not yet off the ground */
     tilt_t tilt;
     sway_t sway;
     mirrors_t mirrors;

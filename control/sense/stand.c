@@ -5,10 +5,10 @@
 #include "control/est/let_down.h"
 
 #define FALL_MPS (2.0F * FELL_MPS)
-#define STANDS_S 0.6F                  /* chosen: 24 frames */
-#define CALM_S 1.0F                    /* chosen: two thirds of SWAY_TIME_S in sway.h */
-#define CALM_TIME_S 2.0F               /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in that time */
-#define FELL_MPS 0.4F /* chosen: a third faster than any landing */
+#define STANDS_S 0.6F    /* chosen: 24 frames */
+#define CALM_S 1.0F      /* chosen: two thirds of SWAY_TIME_S in sway.h */
+#define CALM_TIME_S 2.0F /* chosen: a bias of 0.15 m/s2 makes 0.3 m/s in that time */
+#define FELL_MPS 0.4F    /* chosen: a third faster than any landing */
 
 static void watch_calm(stand_t *stand, const witness_t *felt, bool calm, float dt_s)
 {

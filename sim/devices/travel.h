@@ -20,7 +20,8 @@ typedef struct {
     double x_m, y_m, vx_mps, vy_mps;
     double roll_rad, pitch_rad; /* asked for */
     bool standing;
-    double pace; /* of whoever steers; 1: of an attitude of 0.6 Hz or more, a slower one needs a slower hand */
+    double
+        pace; /* of whoever steers; 1: of an attitude of 0.6 Hz or more, a slower one needs a slower hand */
 } travel_t;
 
 /* The course is borrowed. */

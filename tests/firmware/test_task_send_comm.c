@@ -366,8 +366,8 @@ void test_a_limit_is_told_off_the_ground_while_nothing_is_doubted(void)
     TEST_ASSERT_FALSE(line_has("limit:"));
     flight.bound = BOUND_CLIMB;
     TEST_ASSERT_TRUE(line_has(" limit:CLIMB\r\n"));
-    flight.rule = VERDICT_UNSEEN;
-    TEST_ASSERT_TRUE(line_has("flags:0 doubt:SIGHT/unseen\r\n"));
+    flight.rule = VERDICT_BLIND;
+    TEST_ASSERT_TRUE(line_has("flags:0 doubt:SIGHT/blind\r\n"));
     flight.rule = VERDICT_NONE;
     flight.state = FLIGHT_GROUND; /* the idle is one, too */
     TEST_ASSERT_FALSE(line_has("limit:"));
@@ -390,12 +390,13 @@ void test_the_battery_is_told_behind_all_others_where_it_fits(void)
     TEST_ASSERT_TRUE(line_has("flags:0 bat:14.8\r\n"));
     flight.bound = BOUND_CLIMB;
     TEST_ASSERT_TRUE(line_has(" limit:CLIMB bat:14.8\r\n"));
-    flight.rule = VERDICT_UNPROVED;
+    flight.rule = VERDICT_NO_EFFECT;
     flight.state = FLIGHT_DESCENDING;
     flight.flags = 1280U;
     flight.height_mm = -1234.0F;
     flight.reference_m = flight.thrust_n = 3.0F;
-    TEST_ASSERT_TRUE(line_has(" doubt:SIGHT/unproved\r\n") || line_has(" doubt:SIGHT/unproved bat:14.8\r\n"));
+    TEST_ASSERT_TRUE(line_has(" doubt:THRUST/noeffect\r\n") ||
+                     line_has(" doubt:THRUST/noeffect bat:14.8\r\n"));
 }
 
 void test_a_battery_that_warns_has_the_place_of_a_limit_and_takes_turns_with_a_doubt(void)

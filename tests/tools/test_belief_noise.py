@@ -21,12 +21,12 @@ def made(sigma_mm, scans=3000, seed=1):
     """Three mirrors over flat ground, each with a noise of its own, on a vehicle that goes up and down."""
     random = numpy.random.default_rng(seed)
     heights = 800.0 + 300.0 * numpy.sin(numpy.arange(scans) * 0.1)
-    values = numpy.zeros((scans, 12), dtype=numpy.float32)
+    values = numpy.zeros((scans, 13), dtype=numpy.float32)
     values[:, 0] = 0.1
     for mirror in range(3):
-        values[:, 3 + 3 * mirror] = 1.0
-        values[:, 5 + 3 * mirror] = heights + random.normal(0.0, sigma_mm, scans)
-        values[:, 4 + 3 * mirror] = values[:, 5 + 3 * mirror] + 205.0
+        values[:, 4 + 3 * mirror] = 1.0
+        values[:, 6 + 3 * mirror] = heights + random.normal(0.0, sigma_mm, scans)
+        values[:, 5 + 3 * mirror] = values[:, 6 + 3 * mirror] + 205.0
     return values
 
 
@@ -48,7 +48,7 @@ class Noise(unittest.TestCase):
         self.assertLess(innovation, 1.2)
         sigma, share, times = self.belief.start[noise.NAMES.index("STRANGE_MPS2"):][:3]
         expected = (1 - share + share * times ** 2) * sigma ** 2
-        strange = numpy.concatenate(flights)[:, 2]
+        strange = numpy.concatenate(self.belief.strange_mps2)
         print(f"the accelerometer beyond the thrust: {numpy.mean(strange ** 2) / expected:.2f} of the expected mean square")
         self.assertGreater(numpy.mean(strange ** 2), 0.5 * expected)
         self.assertLess(numpy.mean(strange ** 2), 1.5 * expected)
@@ -57,6 +57,17 @@ class Noise(unittest.TestCase):
         self.assertAlmostEqual(noise.expected_square([6.0, 0.0, *self.belief.start[2:]]), 1.0, delta=0.01)
         self.assertAlmostEqual(noise.expected_square([6.0, 1.0, 170.0, 1.0, 2.0, 0.0]), 2 * 2.0 ** 2 / 6.0 ** 2, delta=0.01)
         self.assertGreater(noise.expected_square(self.belief.start), 1.05)
+
+    def test_what_the_accelerometer_tells_beyond_the_thrust_is_told_scan_by_scan(self):
+        flights = [made(6.0, 40), made(6.0, 25, 2)]
+        flights[0][:, 1], flights[0][:, 2] = 0.05, 0.02     # 0.5 m/s2 felt and 0.2 pushed, without a drag
+        flights[1][:, 1:4] = 0.0, 0.0, 0.24                 # a drag of 2.4 1/s on a speed that the heights tell
+        self.belief.likelihood(self.belief.start, flights)
+        beyond, dragged = self.belief.strange_mps2
+        self.assertEqual((len(beyond), len(dragged)), (40, 25))
+        numpy.testing.assert_allclose(beyond, 0.3, atol=1e-5)
+        self.assertGreater(numpy.abs(dragged).max(), 0.2)   # 0.3 m/s at most, less what the hover thrust is taken to be off by
+        self.assertLess(numpy.abs(dragged).max(), 2.4 * 0.6)
 
     def test_a_noise_that_is_too_small_or_too_large_is_less_likely_and_shows(self):
         flights = [made(6.0)]

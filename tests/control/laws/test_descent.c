@@ -8,7 +8,7 @@ static descent_t descent;
 
 void setUp(void)
 {
-    descent_start(&descent, 0.0F);
+    descent_start(&descent, -DESCENT_RATE_MM_S); /* it sinks as fast as it wants to */
 }
 
 void tearDown(void) {}
@@ -28,10 +28,10 @@ void test_too_fast_is_more_thrust_and_too_slow_is_less(void)
     TEST_ASSERT_FLOAT_WITHIN(0.001F, right_n - 0.3407F, descent_step(&descent, 7.0F, 2000.0F, -100.0F, 0.0F));
 }
 
-/* At the rate that it wants nothing is learned. */
+/* A vehicle that sinks already: at the rate that it wants nothing is learned. */
 static bool wants_mm_s(float sink_mm_s, float height_mm)
 {
-    descent_start(&descent, 0.0F);
+    descent_start(&descent, -1000.0F);
     (void)descent_step(&descent, 7.0F, height_mm, -sink_mm_s, 1.0F);
     return fabsf(descent.trim_n) < 1.0e-5F;
 }
@@ -43,6 +43,63 @@ void test_the_wanted_rate_is_constant_above_0_6_m_and_half_of_it_at_the_ground(v
     TEST_ASSERT_TRUE(wants_mm_s(225.0F, 300.0F));
     TEST_ASSERT_TRUE(wants_mm_s(150.0F, 0.0F));
     TEST_ASSERT_TRUE(wants_mm_s(150.0F, -50.0F));
+    TEST_ASSERT_FALSE(wants_mm_s(295.0F, 3000.0F));
+    TEST_ASSERT_FALSE(wants_mm_s(305.0F, 3000.0F));
+}
+
+void test_the_wanted_rate_flares_without_a_jump(void)
+{
+    float before_mm_s = 150.0F;
+
+    for (int height = -50; height <= 1000; height += 10) {
+        descent_start(&descent, -1000.0F);
+        (void)descent_step(&descent, 7.0F, (float)height, 0.0F, 0.0F);
+        TEST_ASSERT_TRUE(descent.sink_mm_s >= before_mm_s && descent.sink_mm_s < before_mm_s + 2.6F);
+        TEST_ASSERT_TRUE(height > 200 || descent.sink_mm_s <= 200.0F);
+        before_mm_s = descent.sink_mm_s;
+    }
+    TEST_ASSERT_EQUAL_FLOAT(DESCENT_RATE_MM_S, before_mm_s);
+}
+
+void test_the_wanted_rate_starts_at_the_present_one_and_is_whole_after_a_second(void)
+{
+    static const float rates_mm_s[] = {0.0F, 400.0F, -120.0F, -299.0F, -1000.0F};
+
+    for (int i = 0; i < 5; i++) {
+        const float start_mm_s = fminf(fmaxf(-rates_mm_s[i], 0.0F), DESCENT_RATE_MM_S);
+
+        descent_start(&descent, rates_mm_s[i]);
+        for (int step = 0; step <= 10; step++) {
+            const float wanted_mm_s = fminf(start_mm_s + 30.0F * (float)step, DESCENT_RATE_MM_S);
+
+            TEST_ASSERT_FLOAT_WITHIN(0.01F, wanted_mm_s, descent.sink_mm_s);
+            (void)descent_step(&descent, 7.0F, 2000.0F, rates_mm_s[i], 0.1F);
+        }
+        TEST_ASSERT_FLOAT_WITHIN(0.01F, DESCENT_RATE_MM_S, descent.sink_mm_s);
+    }
+}
+
+/* So the thrust of a vehicle that hovers begins at its hover thrust. */
+void test_a_descent_from_rest_begins_without_a_jump_of_the_thrust(void)
+{
+    descent_start(&descent, 0.0F);
+    float before_n = descent_step(&descent, 7.0F, 2000.0F, 0.0F, 0.0F);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 7.0F, before_n);
+    for (int i = 0; i < 10; i++) { /* 0.5 N for the sink, as much for the rate, and the trim, in a second */
+        const float thrust_n = descent_step(&descent, 7.0F, 2000.0F, 0.0F, 0.1F);
+
+        TEST_ASSERT_TRUE(thrust_n < before_n && thrust_n > before_n - 0.14F);
+        before_n = thrust_n;
+    }
+}
+
+void test_after_a_hold_the_rate_grows_again_from_nothing(void)
+{
+    descent.holds = true;
+    (void)descent_step(&descent, 7.0F, 2000.0F, -300.0F, 0.1F);
+    descent.holds = false;
+    (void)descent_step(&descent, 7.0F, 2000.0F, -30.0F, 0.1F);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 30.0F, descent.sink_mm_s);
 }
 
 void test_while_it_holds_it_wants_no_rate(void)
@@ -50,6 +107,18 @@ void test_while_it_holds_it_wants_no_rate(void)
     descent.holds = true;
     TEST_ASSERT_FLOAT_WITHIN(1e-5F, 7.0F, descent_step(&descent, 7.0F, 2000.0F, 0.0F, 1.0F));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, descent.trim_n);
+}
+
+/* 1 mN for each mm of way, and 3 mN while it climbs. */
+void test_the_trim_is_learned_three_times_as_fast_while_it_climbs(void)
+{
+    static const float rows[][2] = {{-100.0F, -0.02F}, {0.0F, -0.03F}, {0.1F, -0.09003F}, {100.0F, -0.12F}};
+
+    for (int i = 0; i < 4; i++) {
+        setUp();
+        (void)descent_step(&descent, 7.0F, 2000.0F, rows[i][0], 0.1F);
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, rows[i][1], descent.trim_n);
+    }
 }
 
 void test_the_trim_is_learned_slowly_and_within_two_newtons(void)

@@ -15,10 +15,8 @@ static inline void evidence_begin(void)
 {
     sensed_begin();
     senses.heights.known = senses.confirmation.proved = true;
-    still_scans(1U); /* the slant may be that of a blocked beam */
     at_m(0.5F);
     came_near_at_m(0.5F);
-    last_moved_s_ago(1.0F);
     senses.accelerometer.felt.running_s = senses.push.pushed.running_s = 2.0F;
     pushes_n(HOVER_N);
     flown = (command_t){.step_s = 0.025F,

@@ -46,7 +46,6 @@ static inline void hover(void)
     senses.heights.known = senses.confirmation.proved = true;
     at_m(0.5F);
     came_near_at_m(0.5F);
-    last_moved_s_ago(1.0F);
     flown.wanted_m = 0.5F;
 }
 

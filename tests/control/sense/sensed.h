@@ -36,34 +36,25 @@ static inline void doubted(uint16_t doubts)
     verdict.doubts = doubts;
 }
 
-static inline void has_swayed_s(float swaying_s)
+/* By the mirrors of the latest scan, with 99 %. */
+static inline void all_lie(bool lie)
 {
-    verdict.rules.swaying_s = swaying_s;
+    senses.mirrors.blind = lie;
+}
+
+static inline void one_sees_a_motion(bool sees)
+{
+    senses.mirrors.sees = sees;
+}
+
+static inline void accelerometer_lies(bool lies)
+{
+    senses.mirrors.felt_lies = lies;
 }
 
 static inline void has_agreed_s(float agreed_s)
 {
     verdict.agreed_s = agreed_s;
-}
-
-static inline void felt_least_is_m(float least_m)
-{
-    verdict.rules.felt_least_m = least_m;
-}
-
-static inline void swayed_from_m(float height_m)
-{
-    verdict.rules.swaying_from_m = height_m;
-}
-
-static inline void has_moved_m(float way_m)
-{
-    senses.heights.way_m = way_m;
-}
-
-static inline void last_moved_s_ago(float unmoved_s)
-{
-    senses.heights.unmoved_s = unmoved_s;
 }
 
 static inline void rises_mps(float rise_mps)
@@ -96,31 +87,6 @@ static inline void terrain_fell(bool fell)
     senses.confirmation.terrain_fell = fell;
 }
 
-static inline void ground_is_m(float ground_m)
-{
-    senses.confirmation.ground_m = ground_m;
-}
-
-static inline void still_scans(uint16_t still)
-{
-    senses.beam.still = still;
-}
-
-static inline void rigid_scans(uint16_t rigid)
-{
-    senses.beam.rigid = rigid;
-}
-
-static inline void white_scans(uint16_t white)
-{
-    senses.beam.white = white;
-}
-
-static inline void slants_known(uint16_t scans)
-{
-    senses.beam.scans = scans;
-}
-
 static inline void pushes_n(float lagged_n)
 {
     senses.push.lagged_n = lagged_n;
@@ -144,11 +110,6 @@ static inline void felt_is(witness_t felt)
 static inline void pushed_is(witness_t pushed)
 {
     senses.push.pushed = pushed;
-}
-
-static inline void slower_is_mps(float slower_mps)
-{
-    senses.slower_mps = slower_mps;
 }
 
 static inline void shaken_by(float shaken)

@@ -68,7 +68,7 @@ static void fly(void)
     world.pitch_rad += 0.4F * (world.sway_rad * normal() - world.pitch_rad);
 }
 
-static void scan(void)
+static void scan_after(float gap_s)
 {
     static const float fore_mm[MIRROR_COUNT] = {[MIRROR_FORE] = 107.0F, [MIRROR_AFT] = -107.0F};
     const float shared_mm = world.shared_mm * normal();
@@ -82,7 +82,12 @@ static void scan(void)
 
         beams[m] = (belief_beam_t){true, slant_mm, slant_mm * upright - lifted_mm};
     }
-    belief_scan(&belief, beams, GAP_S, felt);
+    belief_scan(&belief, beams, gap_s, felt);
+}
+
+static void scan(void)
+{
+    scan_after(GAP_S);
 }
 
 static void hover(int scans)
@@ -286,6 +291,82 @@ void test_a_motion_that_accelerometer_and_thrust_tell_finds_three_that_are_block
         }
         TEST_ASSERT_TRUE(found);
     }
+}
+
+/* It climbs on and on at one speed, by 0.38 m/s: no single one of them looks honest in turn, with a hover
+ * thrust that is wrong. */
+void test_three_that_are_blocked_lie_for_as_long_as_the_thrust_tells_a_climb(void)
+{
+    for (unsigned long seed = 1UL; seed <= 20UL; seed++) {
+        float speed_mps = 0.0F;
+        int sure = 0;
+
+        begin(seed);
+        hover(30);
+        for (int m = 0; m < MIRROR_COUNT; m++) {
+            world.blocked_mm[m] = 300.0F;
+        }
+        for (int k = 0; k < 200; k++) {
+            felt = (belief_felt_t){.pushed_mps = 0.092F, .dragged = 0.24F};
+            felt.gained_mps = (felt.pushed_mps - felt.dragged * speed_mps) / (1.0F + 0.5F * felt.dragged);
+            speed_mps += felt.gained_mps;
+            fly();
+            scan();
+            sure += k >= 100 && belief_of_none(&belief, 7U) > 0.99F;
+        }
+        TEST_ASSERT_INT_WITHIN(2, 98, sure);
+    }
+}
+
+/* Scans are missed, and meanwhile something pushes it by 3 m/s2, of which nothing tells. It goes on at the
+ * speed that it has then. */
+void test_a_push_while_scans_were_missed_makes_no_liar(void)
+{
+    for (unsigned long seed = 1UL; seed <= 60UL; seed++) {
+        const float missed_s = 0.2F + 0.1F * (float)(seed % 8UL);
+        const float push_mm_s2 = (seed & 1UL) != 0UL ? 3000.0F : -3000.0F;
+        float most = 0.0F;
+
+        begin(seed);
+        hover(30);
+        const float rate_mm_s = push_mm_s2 * missed_s;
+        float higher_mm = 0.5F * rate_mm_s * missed_s;
+        const float from_mm = world.height_mm;
+
+        for (int k = 0; k < 20; k++) {
+            world.height_mm = from_mm + higher_mm;
+            scan_after(k == 0 ? missed_s : GAP_S);
+            most = fmaxf(most, likeliest_lie());
+            higher_mm += rate_mm_s * GAP_S;
+        }
+        TEST_ASSERT_FLOAT_WITHIN(0.05F, 0.0F, most);
+    }
+}
+
+/* Scans until one mirror is found that is blocked, two seconds after a gap. */
+static int scans_to_find_after(unsigned long seed, float gap_s)
+{
+    begin(seed);
+    hover(30);
+    fly();
+    scan_after(gap_s);
+    hover(20);
+    world.blocked_mm[seed % 3UL] = 60.0F + 2900.0F * uniform();
+    const int scans = scans_until((uint16_t)(1U << (seed % 3UL)), 31);
+
+    TEST_ASSERT_INT_WITHIN(15, 16, scans);
+    return scans;
+}
+
+void test_two_seconds_after_missed_scans_it_doubts_as_soon_as_ever(void)
+{
+    int after = 0, ever = 0;
+
+    for (unsigned long seed = 1UL; seed <= 150UL; seed++) {
+        after += scans_to_find_after(seed, 1.0F);
+        ever += scans_to_find_after(seed, GAP_S);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 1.0F, (float)after / (float)ever);
 }
 
 /* Whatever is told, in whatever time. */

@@ -44,47 +44,49 @@ void test_a_law_that_is_content_for_a_second_confirms(void)
     }
 }
 
-void test_a_slant_of_noise_is_no_contentment(void)
+void test_contentment_begins_anew_whenever_the_law_wants_to_climb(void)
 {
-    for (uint16_t still = 0U; still < 2U; still++) {
-        hover();
-        content_for_s(0.2F);
-        still_scans(still);
-        flown.wanted_m = 0.0F;
+    hover();
+    is_unconfirmed(true);
+    for (int scan = 0; scan < 30; scan++) { /* 0.9 s of contentment, again and again */
+        flown.wanted_m = (scan % 10 == 9) ? 0.11F : 0.0F;
         height(0.5F);
-        NEAR(still == 0U ? 0.3F : 0.0F, senses.confirmation.quiet_s);
+        TEST_ASSERT_TRUE(senses.confirmation.unconfirmed);
+    }
+    flown.wanted_m = 0.0F;
+    for (int scan = 0; scan < 12; scan++) {
+        TEST_ASSERT_TRUE(scan > 9 || senses.confirmation.unconfirmed);
+        height(0.5F);
+    }
+    TEST_ASSERT_FALSE(senses.confirmation.unconfirmed);
+}
+
+void test_a_height_after_a_loss_confirms_because_nothing_contradicts_it(void)
+{
+    static const struct {
+        float gap_s;
+        bool unconfirmed;
+    } rows[] = {{1.49F, true}, {1.5F, false}};
+    for (int i = 0; i < 2; i++) {
+        hover();
+        is_unconfirmed(true);
+        sensed_height(&flown, 0.5F, rows[i].gap_s, 0.0F);
+        TEST_ASSERT_EQUAL(rows[i].unconfirmed, senses.confirmation.unconfirmed);
     }
 }
 
-void test_a_slant_with_a_step_in_it_proves_no_contentment_until_twelve_scans_later(void)
+/* So a step of WITNESS_STEP_M in one scan, which is no step of the terrain, is a climb. */
+void test_a_climb_of_a_decimetre_in_one_scan_that_a_witness_tells_confirms(void)
 {
-    static const struct {
-        uint16_t scans;
-        float quiet_s;
-    } rows[] = {{0U, 0.3F}, {1U, 0.0F}, {11U, 0.0F}, {12U, 0.3F}};
-    for (int i = 0; i < 4; i++) {
+    for (int told = 0; told < 2; told++) {
         hover();
-        content_for_s(0.2F);
-        slants_known(rows[i].scans);
-        flown.wanted_m = 0.0F;
-        height(0.5F);
-        NEAR(rows[i].quiet_s, senses.confirmation.quiet_s);
-    }
-}
-
-void test_the_ground_is_the_latest_height_in_state_ground_but_none_that_a_pilot_lifts_it_to(void)
-{
-    static const struct {
-        bool grounded;
-        float height_m, ground_m;
-    } rows[] = {{true, -0.02F, -0.02F}, {true, 0.01F, 0.0F}, {true, 0.9F, 0.0F}, {false, -0.02F, -0.01F}};
-    for (int i = 0; i < 4; i++) {
-        hover();
-        flown.grounded = rows[i].grounded;
-        flown.standing = true;
-        ground_is_m(-0.01F);
-        height(rows[i].height_m);
-        NEAR(rows[i].ground_m, senses.confirmation.ground_m);
+        is_proved(false);
+        is_unconfirmed(true);
+        came_near_at_m(0.5F);
+        felt_is((witness_t){.speed_mps = (told != 0) ? 1.0F : 0.0F, .running_s = 2.0F});
+        height(0.64F);
+        TEST_ASSERT_EQUAL(told == 0, senses.confirmation.unconfirmed);
+        TEST_ASSERT_EQUAL(told != 0, senses.confirmation.proved);
     }
 }
 
@@ -162,22 +164,6 @@ void test_deep_is_a_fall_of_the_terrain_beyond_forty_centimetres(void)
     terrain_fell(true);
     height(0.2F); /* a step back */
     TEST_ASSERT_FALSE(senses.confirmation.terrain_fell);
-}
-
-void test_the_least_felt_error_is_kept_while_unconfirmed(void)
-{
-    hover();
-    is_unconfirmed(true);
-    felt_least_is_m(-0.05F);
-    senses.accelerometer.felt.off_m = -0.1F;
-    height(0.5F);
-    NEAR(-0.1F, verdict.rules.felt_least_m);
-    senses.accelerometer.felt.off_m = 0.1F;
-    height(0.5F);
-    NEAR(-0.1F, verdict.rules.felt_least_m);
-    is_unconfirmed(false);
-    height(0.5F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict.rules.felt_least_m);
 }
 
 void test_the_end_of_the_depth_lies_below_its_limit(void)

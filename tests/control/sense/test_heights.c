@@ -7,18 +7,16 @@ void setUp(void)
 
 void tearDown(void) {}
 
-void test_a_height_moves_the_rate_the_way_and_the_sums(void)
+void test_a_height_moves_the_rate_and_the_sums(void)
 {
     hover();
     senses.accelerometer.felt = (witness_t){.speed_mps = 0.3F, .running_s = 2.0F};
-    has_moved_m(0.1F);
     rises_mps(0.1F);
     senses.accelerometer.felt.off_m = 0.07F;
     senses.push.pushed.off_m = -0.02F;
     sensed_height(&flown, 0.53F, 0.1F, 0.1F);
     NEAR(0.1F + (0.3F - 0.1F) / 3.0F, senses.heights.rise_mps); /* 0.1 of 0.2 + 0.1 s */
-    NEAR(0.1F * 0.9F + 0.03F, senses.heights.way_m);
-    NEAR(0.13F, senses.accelerometer.felt.seen_m); /* 0.07 + 0.03, and 0.3 m/s x 0.1 s of age */
+    NEAR(0.13F, senses.accelerometer.felt.seen_m);              /* 0.07 + 0.03, and 0.3 m/s x 0.1 s of age */
     NEAR(0.1F - 0.18F * 0.13F, senses.accelerometer.felt.off_m);
     NEAR(0.3F + 0.081F * 0.13F, senses.accelerometer.felt.speed_mps);
     VERY_NEAR(-0.01F * 0.13F, senses.accelerometer.bias_mps2);
@@ -60,23 +58,17 @@ void test_a_long_gap_leaks_all_of_a_sum_and_one_of_a_second_and_a_half_forgets(v
     hover();
     senses.accelerometer.felt = (witness_t){.off_m = 0.1F, .running_s = 2.0F};
     senses.push.pushed = (witness_t){.off_m = 0.1F, .running_s = 2.0F};
-    has_moved_m(0.1F);
     sensed_height(&flown, 0.5F, 1.4F, 0.0F);
     VERY_NEAR(0.0F, senses.accelerometer.felt.off_m);
     NEAR(0.044F, senses.push.pushed.off_m);
-    VERY_NEAR(0.0F, senses.heights.way_m);
     hover();
     senses.accelerometer.felt = (witness_t){.off_m = 0.1F, .seen_m = 0.1F, .running_s = 2.0F};
     pushed_is(senses.accelerometer.felt);
-    has_moved_m(0.1F);
-    last_moved_s_ago(0.0F);
     is_unconfirmed(true);
     sensed_height(&flown, 0.52F, 1.5F, 0.0F);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.off_m);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.push.pushed.off_m);
     TEST_ASSERT_EQUAL_FLOAT(0.1F, senses.accelerometer.felt.seen_m);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.way_m);
-    TEST_ASSERT_EQUAL_FLOAT(1.0F, senses.heights.unmoved_s);
     TEST_ASSERT_FALSE(senses.confirmation.unconfirmed);
 }
 
@@ -93,19 +85,16 @@ void test_what_neither_witness_explains_is_a_step_of_the_terrain(void)
         hover();
         senses.accelerometer.felt = (witness_t){.speed_mps = rows[i].felt_mps, .running_s = 0.1F};
         senses.push.pushed = (witness_t){.speed_mps = rows[i].pushed_mps, .running_s = 0.1F};
-        has_moved_m(0.06F);
         rises_mps(0.06F);
-        last_moved_s_ago(0.5F);
         height(0.5F + rows[i].rise_m);
         if (rows[i].step) {
-            TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.way_m);
-            TEST_ASSERT_EQUAL_FLOAT(1.0F, senses.heights.unmoved_s);
             TEST_ASSERT_EQUAL_FLOAT(0.06F, senses.heights.rise_mps);
             NEAR(0.1F * rows[i].felt_mps,
                  senses.accelerometer.felt.seen_m); /* taken as if the witness had been right */
             NEAR(0.1F * rows[i].pushed_mps, senses.push.pushed.seen_m);
         } else {
-            NEAR(0.054F + rows[i].rise_m, senses.heights.way_m);
+            NEAR(0.06F + (10.0F * rows[i].rise_m - 0.06F) / 3.0F, senses.heights.rise_mps);
+            NEAR(rows[i].rise_m, senses.push.pushed.seen_m);
         }
     }
 }
@@ -113,29 +102,32 @@ void test_what_neither_witness_explains_is_a_step_of_the_terrain(void)
 void test_witnesses_that_have_not_begun_explain_nothing(void)
 {
     hover();
+    senses.accelerometer.felt.speed_mps = senses.push.pushed.speed_mps = 1.0F;
     height(0.615F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.way_m); /* a step */
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.rise_mps); /* a step */
     hover();
     height(0.595F);
-    NEAR(0.095F, senses.heights.way_m);
+    NEAR(0.95F / 3.0F, senses.heights.rise_mps);
     setUp();
     height(0.9F); /* the first height */
     TEST_ASSERT_TRUE(senses.heights.known);
 }
 
-void test_heights_that_have_moved_are_remembered_for_a_second(void)
+void test_time_without_a_height_is_counted_on_the_ground_up_to_two_seconds(void)
 {
     hover();
-    has_moved_m(0.2F);
-    height(0.5F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.unmoved_s);
-    has_moved_m(0.0F);
-    height(0.5F);
-    NEAR(0.1F, senses.heights.unmoved_s);
-    for (int i = 0; i < 10; i++) {
-        height(0.5F);
+    flown.grounded = true;
+    feel(0.0F);
+    for (int i = 0; i < 40; i++) {
+        feel(0.0F);
     }
-    TEST_ASSERT_EQUAL_FLOAT(1.0F, senses.heights.unmoved_s);
+    NEAR(1.025F, senses.heights.unseen_s);
+    for (int i = 0; i < 80; i++) {
+        feel(0.0F);
+    }
+    NEAR(2.0F, senses.heights.unseen_s);
+    height(0.5F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.heights.unseen_s);
 }
 
 void test_a_rate_is_of_ten_milliseconds_at_least(void)

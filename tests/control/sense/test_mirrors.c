@@ -11,7 +11,8 @@ static mirror_range_t ranges[MIRROR_COUNT];
 
 static const mirror_t order[] = {MIRROR_AFT, MIRROR_FRONT, MIRROR_FORE};
 
-static float copied_mm; /* a mirror at this height gives the same digits in each scan */
+static float gap_s, age_s; /* of each scan, and of its rays */
+static float copied_mm;    /* a mirror at this height gives the same digits in each scan */
 
 static void forget(void)
 {
@@ -21,6 +22,8 @@ static void forget(void)
 void setUp(void)
 {
     forget();
+    gap_s = 0.1F;
+    age_s = 0.08F;
     copied_mm = -1.0F;
     geometry = altitude_geometry_default();
 }
@@ -32,7 +35,7 @@ static altitude_t look(float roll_rad, float pitch_rad)
     altitude_t shown[MIRROR_COUNT];
 
     altitude_of_mirrors(shown, &geometry, ranges, 3U, roll_rad, pitch_rad);
-    mirrors_scan(&mirrors, shown, 0.1F, 0.08F, true);
+    mirrors_scan(&mirrors, shown, gap_s, age_s, true);
     return mirrors.altitude;
 }
 
@@ -260,7 +263,8 @@ static void sway(int k, float blocked_mm)
 }
 
 /* The tilt alone tells it, here: no thrust, and an accelerometer that feels nothing. */
-void test_mirrors_that_are_all_blocked_agree_no_more_within_four_seconds_and_lie_by_nine_in_ten_within_eight(void)
+void test_mirrors_that_are_all_blocked_agree_no_more_within_four_seconds_and_lie_by_nine_in_ten_within_eight(
+    void)
 {
     for (int k = 0; k < 100; k++) {
         sway(k, 0.0F);
@@ -299,4 +303,237 @@ void test_a_mirror_that_is_disbelieved_is_doubted_at_once_and_lies_when_that_las
     }
     TEST_ASSERT_EQUAL_HEX16(0U, mirrors_liars(&mirrors, false));
     TEST_ASSERT_EQUAL_HEX16(0U, mirrors_liars(&mirrors, true));
+}
+
+/* ---- what all of them tell together */
+
+#define STEP_S 0.005F
+#define STEPS 64 /* of the height, 0.32 s, for rays that are old */
+
+/* A vehicle that moves as it is told; its thrust tells of all of it but a touch, and the accelerometer of all
+ * of it, plus a lie. */
+static struct {
+    float height_mm[STEPS], speed_mps, touch_mps2, lie_mps2, blocked_mm;
+    unsigned step, seed;
+} vehicle;
+
+static float noise_mm(void)
+{
+    vehicle.seed = vehicle.seed * 1664525U + 1013904223U;
+    return (float)((int)(vehicle.seed >> 24) - 128) / 128.0F * 5.0F; /* 2.9 mm rms */
+}
+
+static void vehicle_begin(unsigned seed)
+{
+    forget();
+    memset(&vehicle, 0, sizeof vehicle);
+    vehicle.seed = seed;
+    for (int k = 0; k < STEPS; k++) {
+        vehicle.height_mm[k] = 800.0F;
+    }
+}
+
+static float height_then_mm(float ago_s)
+{
+    return vehicle.height_mm[(vehicle.step - (unsigned)lroundf(ago_s / STEP_S)) % STEPS];
+}
+
+/* One gap with this acceleration, and the scan at its end. */
+static void vehicle_moves(float mps2)
+{
+    for (long k = lroundf(gap_s / STEP_S); k > 0; k--) {
+        const float before_mm = height_then_mm(0.0F);
+
+        mirrors_thrust(&mirrors, (mps2 - vehicle.touch_mps2 + 2.4F * vehicle.speed_mps) * STEP_S,
+                       2.4F * STEP_S);
+        mirrors_frame(&mirrors, (mps2 + vehicle.lie_mps2) * STEP_S);
+        vehicle.speed_mps += mps2 * STEP_S;
+        vehicle.height_mm[++vehicle.step % STEPS] = before_mm + 1000.0F * vehicle.speed_mps * STEP_S;
+    }
+    const float seen_mm = (vehicle.blocked_mm > 0.0F) ? vehicle.blocked_mm : height_then_mm(age_s);
+
+    (void)scan(seen_mm + noise_mm(), seen_mm + noise_mm(), seen_mm + noise_mm());
+}
+
+/* Up and down, by 0.5 m/s2 and 0.5 s each. */
+static void vehicle_swings(int scans)
+{
+    for (int k = 0; k < scans; k++) {
+        vehicle_moves((k % 20 < 5 || k % 20 >= 15) ? 0.5F : -0.5F);
+    }
+}
+
+void test_before_the_first_scan_nothing_is_seen_and_nothing_doubted(void)
+{
+    TEST_ASSERT_FALSE(mirrors.sees || mirrors.blind || mirrors.moves || mirrors.felt_lies);
+}
+
+void test_a_vehicle_that_moves_is_seen_to_move(void)
+{
+    int moves = 0;
+
+    for (unsigned seed = 1U; seed <= 20U; seed++) {
+        vehicle_begin(seed);
+        vehicle_swings(10);
+        for (int k = 0; k < 40; k++) {
+            vehicle_swings(1);
+            TEST_ASSERT_FALSE(mirrors.blind || mirrors.felt_lies);
+            TEST_ASSERT_TRUE(!mirrors.moves || mirrors.sees); /* who is surer of it rather thinks so */
+        }
+        vehicle_moves(3.0F);
+        vehicle_moves(0.0F);
+        vehicle_moves(0.0F);
+        moves += mirrors.moves && mirrors.sees;
+    }
+    TEST_ASSERT_INT_WITHIN(1, 19, moves);
+}
+
+/* Then nobody can tell a block from the ground: neither sight nor a lie. */
+void test_what_stands_is_not_seen_to_move_and_nobody_lies(void)
+{
+    for (unsigned seed = 1U; seed <= 20U; seed++) {
+        vehicle_begin(seed);
+        for (int k = 0; k < 200; k++) {
+            vehicle_moves(0.0F);
+            TEST_ASSERT_FALSE(mirrors.blind || mirrors.felt_lies || mirrors.moves);
+            TEST_ASSERT_FALSE(k > 40 && mirrors.sees);
+        }
+    }
+}
+
+void test_a_scan_without_any_mirror_is_neither_blind_nor_sight(void)
+{
+    vehicle_begin(1U);
+    vehicle_swings(20);
+    vehicle_moves(3.0F);
+    (void)scan(0.0F, 0.0F, 0.0F);
+    TEST_ASSERT_FALSE(mirrors.sees || mirrors.blind);
+}
+
+/* All three at once: a climb at 0.5 m/s of which no mirror tells, for 5 s. */
+void test_a_climb_that_no_mirror_shows_is_blind_within_two_seconds_and_stays_so(void)
+{
+    for (unsigned seed = 1U; seed <= 40U; seed++) {
+        int found = -1;
+
+        vehicle_begin(seed);
+        vehicle_swings(30);
+        vehicle.blocked_mm = 500.0F;
+        for (int k = 0; k < 50; k++) {
+            vehicle_moves((k < 5) ? 1.0F : 0.0F);
+            found = (found < 0 && mirrors.blind) ? k : found;
+            TEST_ASSERT_TRUE(found < 0 || mirrors.blind);
+            const float none = belief_of_none(&mirrors.belief, 7U);
+
+            TEST_ASSERT_EQUAL(none > 0.99F, mirrors.blind);
+            TEST_ASSERT_FALSE(mirrors.sees && none > 0.01F);
+        }
+        TEST_ASSERT_INT_WITHIN(9, 11, found);
+    }
+}
+
+/* The mirrors are free again, and it moves: within 2 s one sees. */
+void test_sight_comes_back_with_a_motion(void)
+{
+    for (unsigned seed = 1U; seed <= 40U; seed++) {
+        int seen = -1;
+
+        vehicle_begin(seed);
+        vehicle_swings(30);
+        vehicle.blocked_mm = 500.0F;
+        for (int k = 0; k < 40; k++) {
+            vehicle_moves((k < 5) ? 1.0F : 0.0F);
+        }
+        TEST_ASSERT_FALSE(mirrors.sees);
+        vehicle.blocked_mm = 0.0F;
+        for (int k = 0; k < 30; k++) {
+            vehicle_moves((k < 10) ? -1.0F : 0.0F);
+            seen = (seen < 0 && mirrors.sees) ? k : seen;
+        }
+        TEST_ASSERT_INT_WITHIN(10, 10, seen);
+        TEST_ASSERT_FALSE(mirrors.blind);
+    }
+}
+
+void test_an_accelerometer_that_jumps_lies_and_no_mirror_does(void)
+{
+    static const float lies_mps2[] = {-10.0F, -6.0F, -4.0F, 4.0F, 6.0F, 10.0F};
+
+    for (unsigned seed = 0U; seed < 60U; seed++) {
+        int found = -1;
+
+        vehicle_begin(seed + 1U);
+        vehicle_swings(30);
+        vehicle.lie_mps2 = lies_mps2[seed % 6U];
+        for (int k = 0; k < 30; k++) {
+            vehicle_swings(1);
+            found = (found < 0 && mirrors.felt_lies) ? k : found;
+            TEST_ASSERT_FALSE(mirrors.blind);
+            TEST_ASSERT_FALSE(mirrors.moves && mirrors.felt_lies);
+            TEST_ASSERT_EQUAL_HEX16(0U, mirrors_liars(&mirrors, true));
+        }
+        TEST_ASSERT_INT_WITHIN(5, 5, found); /* within a second */
+    }
+}
+
+/* 0.6 m/s within a scan, of which the thrust does not tell: all mirrors show it. */
+void test_a_touch_is_no_lie_of_anybody(void)
+{
+    for (unsigned seed = 1U; seed <= 20U; seed++) {
+        vehicle_begin(seed);
+        vehicle_swings(30);
+        for (int k = 0; k < 24; k++) {
+            vehicle.touch_mps2 = (k == 0) ? 6.0F : (k == 3) ? -6.0F : 0.0F;
+            vehicle_moves(vehicle.touch_mps2);
+            TEST_ASSERT_FALSE(mirrors.felt_lies || mirrors.blind);
+        }
+        TEST_ASSERT_EQUAL_HEX16(0U, mirrors_liars(&mirrors, false));
+    }
+}
+
+/* 5 m/s2 for a scan, of which nobody else tells. */
+void test_one_scan_of_a_wrong_accelerometer_is_no_doubt(void)
+{
+    for (unsigned seed = 1U; seed <= 20U; seed++) {
+        vehicle_begin(seed);
+        vehicle_swings(30);
+        vehicle.lie_mps2 = (seed % 2U == 0U) ? 5.0F : -5.0F;
+        vehicle_moves(0.0F);
+        vehicle.lie_mps2 = 0.0F;
+        for (int k = 0; k < 20; k++) {
+            TEST_ASSERT_FALSE(mirrors.felt_lies || mirrors.blind);
+            vehicle_swings(1);
+        }
+        TEST_ASSERT_EQUAL_HEX16(0U, mirrors_liars(&mirrors, false));
+    }
+}
+
+/* From rest to 1 m/s and back to rest, in gaps that are not of one length, with rays of any age. */
+void test_what_the_frames_tell_counts_once_whatever_the_gaps(void)
+{
+    static const float gaps_s[][4] = {{0.1F, 0.1F, 0.1F, 0.1F},
+                                      {0.05F, 0.15F, 0.05F, 0.15F},
+                                      {0.1F, 0.2F, 0.1F, 0.3F},
+                                      {0.15F, 0.1F, 0.05F, 0.1F}};
+    static const float ages_s[] = {0.0F, 0.05F, 0.08F, 0.1F};
+
+    for (unsigned row = 0U; row < 16U; row++) {
+        float time_s = 0.0F;
+
+        vehicle_begin(row + 1U);
+        age_s = ages_s[row % 4U];
+        for (unsigned k = 0U; time_s < 3.0F; k++) {
+            gap_s = gaps_s[row / 4U][k % 4U];
+            time_s += gap_s;
+            vehicle_moves((time_s < 1.05F) ? 1.0F : (time_s < 2.05F) ? 0.0F : -1.0F);
+            TEST_ASSERT_FALSE(mirrors.felt_lies || mirrors.blind);
+        }
+        const float told_mps = vehicle.speed_mps;
+
+        for (int k = 0; k < 3; k++) {
+            gap_s = 0.1F;
+            vehicle_moves(0.0F);
+        }
+        TEST_ASSERT_FLOAT_WITHIN(0.06F, told_mps, 0.001F * mirrors.belief.worlds[0].rate_mm_s);
+    }
 }

@@ -102,18 +102,6 @@ void test_the_speed_without_heights_is_that_of_the_witnesses_that_are_left(void)
     TEST_ASSERT_EQUAL_FLOAT(0.0F, sensed_felt_mps());
 }
 
-void test_the_speed_of_the_slower_witness_lags_by_a_third_per_scan(void)
-{
-    for (int row = 0; row < 2; row++) {
-        hover();
-        slower_is_mps(0.1F);
-        senses.accelerometer.felt = (witness_t){.speed_mps = (row == 0) ? 0.4F : 1.0F, .running_s = 0.1F};
-        senses.push.pushed = (witness_t){.speed_mps = (row == 0) ? 1.0F : 0.4F, .running_s = 0.1F};
-        height(0.5F);
-        TEST_ASSERT_FLOAT_WITHIN(0.001F, 0.2F, senses.slower_mps);
-    }
-}
-
 void test_each_of_several_frames_counts(void)
 {
     imu_sample_t frames[3];
@@ -133,4 +121,41 @@ void test_each_of_several_frames_counts(void)
     tilt_step(&senses.tilt, frames, 3U, 0.0F, 0.0F, 0U);
     TEST_ASSERT_EQUAL_UINT16(3U, senses.tilt.tilted);
     TEST_ASSERT_EQUAL_UINT32(4U, senses.tilt.sequence);
+}
+
+/* The belief is told what the frames and the thrust say of the motion, in the air and on the ground. */
+void test_frames_tell_the_belief_a_change_of_speed_less_the_bias(void)
+{
+    for (int grounded = 0; grounded < 2; grounded++) {
+        setUp();
+        flown.grounded = grounded != 0;
+        bias_is_mps2(0.25F);
+        feel(1.0F);
+        const float before_mps = senses.mirrors.felt.gained;
+        const float bias_mps2 = senses.accelerometer.bias_mps2;
+        feel(1.0F);
+        NEAR((1.0F - bias_mps2) * 0.025F, senses.mirrors.felt.gained - before_mps);
+    }
+}
+
+void test_the_thrust_tells_the_belief_its_motion_where_it_alone_carries_the_vehicle(void)
+{
+    static const struct {
+        bool off_ground;
+        float height_m, gained_mps, dragged;
+    } rows[] = {
+        {true, 0.5F, 1.4F * 0.025F, 2.5F * 0.025F}, {false, 0.5F, 0.0F, 0.0F}, {true, 0.08F, 0.0F, 0.0F}};
+
+    for (int i = 0; i < 3; i++) {
+        hover();
+        flown.damping_per_s = 2.5F;
+        flown.off_ground = rows[i].off_ground;
+        flown.hover_n = 6.0F;
+        flown.thrust_n = 7.0F;
+        pushes_n(7.0F);
+        at_m(rows[i].height_m);
+        sensed_thrust(&flown);
+        NEAR(rows[i].gained_mps, senses.mirrors.pushed.gained);
+        NEAR(rows[i].dragged, senses.mirrors.dragged.gained);
+    }
 }

@@ -8,90 +8,223 @@ void setUp(void)
 
 void tearDown(void) {}
 
-/* ---- the end of a doubt */
+/* ---- the sight */
 
-/* A doubt, and agreement of agreed_s over a motion of moved_m. */
-static uint16_t again(uint16_t doubts, float agreed_s, float moved_m, float felt_m, float pushed_m)
+void test_mirrors_that_all_lie_are_doubted_at_once_whatever_the_witnesses_tell(void)
+{
+    static const float offs_m[] = {-0.7F, 0.0F, 0.7F};
+
+    for (int i = 0; i < 9; i++) {
+        setUp();
+        TEST_ASSERT_EQUAL_UINT16(0U, judged(offs_m[i % 3], offs_m[i / 3]));
+        all_lie(true);
+        TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(offs_m[i % 3], offs_m[i / 3]));
+        TEST_ASSERT_EQUAL(VERDICT_BLIND, verdict_reason(&verdict));
+    }
+}
+
+void test_a_doubt_of_the_sight_keeps_the_error_of_the_height_and_starts_the_sums_anew(void)
+{
+    all_lie(true);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(-0.52F, -0.30F));
+    NEAR(-0.41F, verdict.lost_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.seen_m);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.push.pushed.off_m);
+    (void)judged(3.0F, 3.0F); /* it was lost when the doubt rose, not now */
+    NEAR(-0.41F, verdict.lost_m);
+}
+
+void test_the_error_is_told_by_the_thrust_alone_while_the_accelerometer_is_doubted(void)
+{
+    doubted(DOUBT_IMU);
+    all_lie(true);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.7F, -0.3F));
+    NEAR(-0.3F, verdict.lost_m);
+}
+
+void test_the_sight_is_back_when_a_mirror_sees_a_motion_and_not_before(void)
+{
+    all_lie(true);
+    (void)judged(0.0F, 0.0F);
+    for (int scan = 0; scan < 100; scan++) { /* the belief wavers: neither sure of a lie nor of sight */
+        all_lie(scan % 2 == 0);
+        TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
+    }
+    all_lie(false);
+    one_sees_a_motion(true);
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
+    TEST_ASSERT_EQUAL(VERDICT_NONE, verdict_reason(&verdict));
+}
+
+/* Witnesses drift while nothing corrects them: they do not say that the sight is back, nor that it is not. */
+void test_the_agreement_of_the_witnesses_neither_ends_nor_keeps_a_doubt_of_the_sight(void)
+{
+    static const float offs_m[] = {0.0F, 3.0F};
+
+    for (int i = 0; i < 2; i++) {
+        setUp();
+        doubted(DOUBT_SIGHT);
+        has_agreed_s(1.51F);
+        senses.push.pushed.moved_m = 0.31F;
+        TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(offs_m[i], offs_m[i]));
+        one_sees_a_motion(true);
+        TEST_ASSERT_EQUAL_UINT16(0U, judged(offs_m[i], offs_m[i]));
+    }
+}
+
+/* ---- the accelerometer */
+
+void test_an_accelerometer_that_lies_is_doubted_and_the_sums_that_it_spoilt_start_anew(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(5.0F, 0.0F));
+    accelerometer_lies(true);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, judged(5.0F, 0.0F));
+    TEST_ASSERT_EQUAL(VERDICT_ALONE, verdict_reason(&verdict));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.seen_m);
+}
+
+void test_a_lie_that_is_over_leaves_the_doubt_of_the_accelerometer_to_the_ground(void)
+{
+    accelerometer_lies(true);
+    (void)judged(0.0F, 0.0F);
+    accelerometer_lies(false);
+    one_sees_a_motion(true);
+    for (int scan = 0; scan < 100; scan++) {
+        TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, judged(0.0F, 0.0F));
+    }
+}
+
+void test_a_lie_that_lasts_does_not_clear_the_sums_again_and_again(void)
+{
+    accelerometer_lies(true);
+    (void)judged(0.0F, 0.0F);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, judged(0.0F, -0.5F));
+    NEAR(-0.5F, senses.push.pushed.seen_m);
+}
+
+void test_mirrors_and_accelerometer_can_be_doubted_together_and_the_sight_is_named_first(void)
+{
+    all_lie(true);
+    accelerometer_lies(true);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT | DOUBT_IMU, judged(0.0F, 0.0F));
+    TEST_ASSERT_EQUAL(VERDICT_BLIND, verdict_reason(&verdict));
+    all_lie(false);
+    one_sees_a_motion(true);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, judged(0.0F, 0.0F));
+    TEST_ASSERT_EQUAL(VERDICT_ALONE, verdict_reason(&verdict));
+}
+
+void test_at_rest_an_accelerometer_is_doubted_beyond_one_and_a_half_and_fit_again_below_one_point_two(void)
+{
+    static const struct {
+        float rested_s, rest_mps2;
+        uint16_t before, after;
+    } rows[] = {{1.01F, 1.51F, 0U, DOUBT_IMU},
+                {1.01F, -1.51F, 0U, DOUBT_IMU},
+                {1.01F, 1.49F, 0U, 0U},
+                {0.99F, 1.51F, 0U, 0U},
+                {1.01F, 1.21F, DOUBT_IMU, DOUBT_IMU},
+                {1.01F, 1.19F, DOUBT_IMU, 0U},
+                {0.99F, 0.0F, DOUBT_IMU, DOUBT_IMU},
+                {1.01F, 1.19F, 7U, DOUBT_SIGHT | DOUBT_THRUST}};
+
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        doubted(rows[i].before);
+        has_rested_s(rows[i].rested_s);
+        rests_at_mps2(rows[i].rest_mps2);
+        verdict_rest(&verdict, &senses.accelerometer);
+        TEST_ASSERT_EQUAL_UINT16(rows[i].after, verdict.doubts);
+    }
+}
+
+/* ---- the thrust */
+
+static uint16_t thrust_again(float agreed_s, float moved_m, float felt_m, float pushed_m)
 {
     setUp();
-    doubted(doubts);
+    doubted(DOUBT_THRUST);
     has_agreed_s(agreed_s);
     senses.push.pushed.moved_m = moved_m;
     return judged(felt_m, pushed_m);
 }
 
-void test_agreement_of_a_second_and_a_half_over_a_motion_ends_a_doubt(void)
+void test_agreement_of_a_second_and_a_half_over_a_motion_ends_a_doubt_of_the_thrust(void)
 {
-    TEST_ASSERT_EQUAL_UINT16(0U, again(DOUBT_SIGHT, 1.51F, 0.31F, 0.0F, 0.0F));
-    TEST_ASSERT_EQUAL_UINT16(0U, again(DOUBT_THRUST, 1.51F, 0.31F, 0.2F, -0.2F));
+    TEST_ASSERT_EQUAL_UINT16(0U, thrust_again(1.51F, 0.31F, 0.2F, -0.2F));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.seen_m);
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, again(DOUBT_SIGHT | DOUBT_IMU, 1.51F, 0.31F, 0.0F, 0.0F));
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.50F, 0.31F, 0.0F, 0.0F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, thrust_again(1.50F, 0.31F, 0.0F, 0.0F));
     TEST_ASSERT_EQUAL_FLOAT(1.5F, verdict.agreed_s);
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.51F, 0.30F, 0.0F, 0.0F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, thrust_again(1.51F, 0.30F, 0.0F, 0.0F));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict.agreed_s);
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.51F, 0.31F, 0.21F, 0.0F));
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, again(DOUBT_SIGHT, 1.51F, 0.31F, 0.0F, 0.21F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, thrust_again(1.51F, 0.31F, 0.21F, 0.0F));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, thrust_again(1.51F, 0.31F, 0.0F, 0.21F));
 }
 
 void test_the_motion_is_the_accelerometers_where_the_thrust_does_not_count(void)
 {
-    doubted(DOUBT_SIGHT);
-    has_agreed_s(1.51F);
-    senses.push.pushed.running_s = 0.5F;
-    senses.accelerometer.felt.moved_m = 0.31F;
-    TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
-    setUp();
-    doubted(DOUBT_SIGHT);
-    has_agreed_s(1.51F);
-    senses.accelerometer.felt.moved_m = 0.31F;
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
-}
-
-void test_a_slant_of_noise_alone_does_not_agree(void)
-{
-    for (uint16_t still = 15U; still <= 16U; still++) {
+    for (int pushed = 0; pushed < 2; pushed++) {
         setUp();
-        doubted(DOUBT_SIGHT);
+        doubted(DOUBT_THRUST);
         has_agreed_s(1.51F);
-        senses.push.pushed.moved_m = 0.31F;
-        still_scans(still);
-        TEST_ASSERT_EQUAL_UINT16((still == 15U) ? 0U : DOUBT_SIGHT, judged(0.0F, 0.0F));
+        senses.push.pushed.running_s = (pushed != 0) ? 2.0F : 0.5F;
+        senses.accelerometer.felt.moved_m = 0.31F;
+        TEST_ASSERT_EQUAL_UINT16((pushed != 0) ? DOUBT_THRUST : 0U, judged(0.0F, 0.0F));
     }
 }
 
-void test_heights_that_move_end_a_doubt_of_the_sight_alone(void)
+void test_a_mirror_that_sees_does_not_give_the_thrust_back(void)
 {
-    static const struct {
-        uint16_t doubts;
-        float way_m;
-        uint16_t left;
-    } rows[] = {{DOUBT_SIGHT, 0.16F, 0U},
-                {DOUBT_SIGHT, -0.16F, 0U},
-                {DOUBT_SIGHT, 0.15F, DOUBT_SIGHT},
-                {DOUBT_THRUST, 0.16F, DOUBT_THRUST},
-                {DOUBT_THRUST | DOUBT_SIGHT, 0.16F, 0U}};
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        setUp();
-        doubted(rows[i].doubts);
-        has_moved_m(rows[i].way_m);
-        TEST_ASSERT_EQUAL_UINT16(rows[i].left, judged(0.0F, 0.0F));
-    }
+    doubted(DOUBT_THRUST);
+    one_sees_a_motion(true);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, judged(0.0F, 0.0F));
 }
 
 /* ---- who is judged */
 
+/* What would raise each doubt. */
+static void everything_lies(void)
+{
+    all_lie(true);
+    accelerometer_lies(true);
+    pushes_n(HOVER_N + 1.0F);
+}
+
 void test_on_the_ground_and_under_a_pilot_nothing_is_judged(void)
 {
+    everything_lies();
     flown.grounded = true;
-    TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.7F, -0.7F));
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.7F, -1.4F));
     TEST_ASSERT_EQUAL_FLOAT(-0.7F, senses.accelerometer.felt.seen_m);
     setUp();
+    everything_lies();
     flown.ours = false;
     rises_mps(0.3F);
     senses.accelerometer.felt.speed_mps = 1.0F;
-    TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.7F, -0.7F));
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(-0.7F, -1.4F));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.push.pushed.seen_m);
     TEST_ASSERT_EQUAL_FLOAT(0.3F, senses.accelerometer.felt.speed_mps);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.running_s);
+}
+
+void test_on_the_ground_and_under_a_pilot_no_doubt_ends_either(void)
+{
+    for (int grounded = 0; grounded < 2; grounded++) {
+        setUp();
+        doubted(DOUBT_SIGHT);
+        one_sees_a_motion(true);
+        flown.grounded = grounded != 0;
+        flown.ours = grounded != 0;
+        TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(0.0F, 0.0F));
+    }
+}
+
+void test_an_order_ends_the_doubts_of_sight_and_thrust_with_their_reasons(void)
+{
+    all_lie(true);
+    accelerometer_lies(true);
+    (void)judged(0.0F, 0.0F);
+    verdict_order(&verdict, &senses);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, verdict.doubts);
+    TEST_ASSERT_EQUAL(VERDICT_ALONE, verdict_reason(&verdict));
 }
