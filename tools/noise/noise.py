@@ -32,7 +32,8 @@ OWN_NOISE = ("--set", "plant.mirror_noise=3", "--set", "plant.common_noise=0")
 FITTED = {"BELIEF_NOISE_MM": (1, 15), "STEP_SHARE": (1e-3, 0.3), "STEP_MM": (50, 1000), "STEP_NEAR_SHARE": (0, 0.95),
           "STEP_NEAR_MM": (3, 80), "STEP_FAR_SHARE": (1e-4, 0.04), "MOTION_CHANGES": (0.005, 0.9), "SHARED_GAIN": (0.05, 1),
           "BELIEF_RATE_GAIN": (0.02, 1.5), "OWN_GAIN": (0.01, 1), "STRANGE_MPS2": (0.1, 5), "STRANGE_FAR_SHARE": (1e-3, 0.5), "STRANGE_FAR": (1.1, 10)}
-MOTIONS = {"stands, share": (0.01, 0.8), "flies, share": (0.05, 0.95), "flies, mm": (2, 40), "pushed, mm": (6, 300)}
+MOTIONS = {"stands, share": (0.01, 0.8), "calm, share": (0.01, 0.8), "flies, share": (0.01, 0.8), "calm, mm": (0.5, 6),
+           "flies, mm": (2, 40), "pushed, mm": (6, 300)}
 NAMES = list(FITTED)
 DRAWN = 100_000
 FAR_MM = 4000.0     # STEP_FAR_PER_MM's
@@ -42,11 +43,12 @@ void noise_set(const float *p)
 %(sets)s
     PER_MM = 0.39894228F / BELIEF_NOISE_MM;
     p += %(count)d;
-    motions[0].share = p[0];
-    motions[1].share = p[1];
-    motions[2].share = 1.0F - p[0] - p[1] - motions[BELIEF_FELT_LIES].share;
-    motions[1].sigma_mm = p[2];
-    motions[2].sigma_mm = p[3];
+    motions[3].share = 1.0F - motions[BELIEF_FELT_LIES].share;
+    for (int k = 0; k < 3; ++k) {
+        motions[k].share = p[k];
+        motions[3].share -= p[k];
+        motions[k + 1].sigma_mm = p[3 + k];
+    }
 }
 
 /* Log likelihood of one flight's scans: gap, gained, pushed, dragged, then valid, slant, height of each mirror. told[0]: scans, [1]:
@@ -128,7 +130,7 @@ class Belief:
             text = re.sub(rf"#define {name} .*\n", "", text)
         text = re.sub(r"#define PER_MM .*\n", "", text)
         rows = re.findall(r"^    \{([\d.]+)F, ([\d.]+)F\},", source, re.M)
-        self.start += [float(rows[0][0]), float(rows[1][0]), float(rows[1][1]), float(rows[2][1])]
+        self.start += [float(row[0]) for row in rows[:3]] + [float(row[1]) for row in rows[1:4]]
         text = text.replace("static const struct {\n    float share", "static struct {\n    float share")
         variables = "#undef BELIEF_NOISE_MM\n#undef BELIEF_RATE_GAIN\nstatic float " + ", ".join([*FITTED, "PER_MM"]) + ";\n"
         text = text.replace("#include <math.h>\n", "#include <math.h>\n" + variables, 1)
@@ -266,9 +268,8 @@ def fit(belief, flights):
 
     def cost(logs):
         values = clipped(logs)
-        stands, flies = values[len(FITTED):len(FITTED) + 2]
         near, far = values[3], values[5]
-        return 1e3 if stands + flies > 0.99 or near + far > 0.99 else -belief.likelihood(values, flights)[0]
+        return 1e3 if sum(values[len(FITTED):len(FITTED) + 3]) > 0.99 or near + far > 0.99 else -belief.likelihood(values, flights)[0]
 
     best = numpy.log(belief.start)
     for turn in range(3):

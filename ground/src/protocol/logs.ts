@@ -13,7 +13,7 @@ export interface Recording {
   csv: string | null; // octet by octet; null: telemetry, which is none
   time: number[];
   columns: Record<string, number[]>;
-  /** What stands there in words: the rule that doubts, the limit that holds, mirrors that were left out; '' where nothing does. */
+  /** What stands there in words: the reason of a doubt, the limit that holds, mirrors that were left out; '' where nothing does. */
   names: Record<string, string[]>;
   states: string[];
   notes: Note[];

@@ -63,12 +63,12 @@ describe('the picture of the scan', () => {
 
   it('tells a liar, a mirror that sees other ground, one that sees nothing, and wide rays from each other', async () => {
     let line = 'mf:8,776,9,83,0 m1:8,131,4,108,99 m2:1,-,-,-,25 out:m1';
-    await tells(() => line, `${TELEMETRY} doubt:SIGHT/unseen`);
+    await tells(() => line, `${TELEMETRY} doubt:SIGHT/blind`);
     await judged('m1', 'liar');
     await judged('m2', 'blind');
     expect(await row('m1')).toMatch(/108\s+99$/);
     expect(await row('m2')).toMatch(/1\s+–\s+–\s+–\s+25$/);
-    expect(await page.locator('.beams .banner').innerText()).toContain('SIGHT/unseen: accelerometer and thrust climb, and the heights have stopped.');
+    expect(await page.locator('.beams .banner').innerText()).toContain('SIGHT/blind: no mirror is believed: the vehicle moves, and their slants do not follow.');
     await picture(page, 'beams', '.beams');
     line = 'mf:8,805,159,83,0 m1:8,807,6,108,0 m2:8,557,8,58,3 out:m2';
     await judged('mf', 'wide');

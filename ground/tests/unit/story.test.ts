@@ -46,7 +46,7 @@ describe('the story of a flight', () => {
       ref: t < 3 ? 0.6 : t < 9 ? 1 : 0,
       meas: t < 5 ? 0.6 : t < 6 ? 0.35 : 0.6,
       limit: t < 0.75 ? 'CLIMB' : t < 0.8 ? '' : t < 0.9 ? 'CLIMB' : t > 4 && t < 4.2 ? 'POWER' : t > 11 ? 'ACTUATOR' : '',
-      doubt: t >= 8 && t < 9.2 ? 'SIGHT/unseen' : '',
+      doubt: t >= 8 && t < 9.2 ? 'SIGHT/blind' : '',
       out: t >= 6.4 && t < 6.8 ? 'm1+m2' : t >= 7 && t < 7.1 ? 'mf' : '',
     })));
     expect(words(events)).toEqual([
@@ -57,7 +57,7 @@ describe('the story of a flight', () => {
       '76.00 An edge: the ground falls away by 0.25 m.',
       '76.40 The vote leaves out the aft mirror and the fore mirror for 0.4 s.',
       '78.00 The height is lost: it holds its thrust.',
-      '78.00 A doubt, for 1.2 s: accelerometer and thrust climb, and the heights have stopped.',
+      '78.00 A doubt, for 1.2 s: no mirror is believed: the vehicle moves, and their slants do not follow.',
       '79.00 The reference goes to 0: it lands.',
       '81.00 It is on the ground.',
     ]);
@@ -82,7 +82,7 @@ describe('the story of a flight', () => {
   it('tells of telemetry what it has', () => {
     const line = (state: string, more = ''): string => `alt:0.598 ref:0.600 laser:OK thr:7.12 state:${state} flags:0${more}\r\n`;
     const text = line('GROUND').repeat(5) + 'mf:35,776,9,83,- m1:- m2:- out:-\r\n' + line('FLYING').repeat(5) + line('FLYING', ' doubt:IMU/alone').repeat(5) + line('GROUND').repeat(3);
-    expect(words(both('seen.txt', text))).toEqual(['1.00 Take-off to 0.60 m.', '2.00 A doubt, for 1.0 s: the accelerometer contradicts heights and thrust.', '3.00 It is on the ground.']);
+    expect(words(both('seen.txt', text))).toEqual(['1.00 Take-off to 0.60 m.', '2.00 A doubt, for 1.0 s: the accelerometer tells another motion than mirrors and thrust.', '3.00 It is on the ground.']);
   });
 
   it.skipIf(!existsSync(PLOMADA))('is the same of flights of the firmware, with one mirror and with three', () => {

@@ -17,8 +17,6 @@ STILL_M, MAD = 0.003, 0.674     # noise of the mean of 35 rays; median of the ab
 JUST_S = 0.02
 METRES = 1.0                    # a height that tells nothing is anywhere within that
 LOST_S = 0.3
-# Rules that say that the thrust does not do what it should: too little of it does the same. Then the heights themselves must tell.
-PUSHES_IN_VAIN, IN_VAIN = ("SIGHT/noclimb", "SIGHT/aloft"), 1.0
 LIES = 0.5                      # over it the vote leaves a mirror out
 BLIND_SPOT_S, BLIND_FAULTY_S = 0.15, 3.0        # mean stay without a slant (exponential): a spot on the floor passes a mirror; a fault stays
 SIGHT, GONE = 6.0, 6.0          # nats: 1 healthy flight of 400 shows either (docs/reliability.md), most of these causes do
@@ -128,8 +126,7 @@ def heights(case):
     if not lost:
         return Finding(-3.0)
     seconds = sum(b - a for a, b in lost)
-    in_vain = bool(doubts) and set(doubts) <= set(PUSHES_IN_VAIN)
-    told = IN_VAIN if in_vain else (SIGHT if doubts else 0.0) + (GONE if seconds > LOST_S else 0.0)
+    told = (SIGHT if doubts else 0.0) + (GONE if seconds > LOST_S else 0.0)
     found = Finding(told, {"seconds": seconds, "doubts": doubts, "from": lost[0][0], "to": lost[-1][1]}, None, lost)
     if case.model is None:
         return found
