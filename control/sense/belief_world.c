@@ -37,11 +37,11 @@ static const struct {
 typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BELIEF_MOTIONS) ? 1 : -1];
 #define MOTION_CHANGES 0.05F /* of the scans: the kind of motion is drawn anew, by its share; a second */
 
-/* What a sound accelerometer tells beyond the thrust, or of a vehicle that stands: measured on healthy
- * flights by make noise. A lying one tells anything within its range. */
-#define STRANGE_MPS2 0.7F
-#define STRANGE_FAR_SHARE 0.1F  /* measured: the tail, of the scans */
-#define STRANGE_FAR 2.0F        /* measured: its deviation, in that of the others */
+/* What a sound accelerometer tells beyond the thrust, or of a vehicle that stands: fitted on healthy flights,
+ * make noise ARGS=--fit. A lying one tells anything within its range. */
+#define STRANGE_MPS2 0.45F
+#define STRANGE_FAR_SHARE 0.25F /* fitted: the tail, of the scans */
+#define STRANGE_FAR 2.25F       /* fitted: its deviation, in that of the others */
 #define LIE_PER_MPS2 0.0254930F /* 1 / 4 g: the Razor's ADXL345 is set to 2 g each way */
 
 /* ---- gains of the filters: alpha and beta of Kalata 1984 for 0.5 m/s2 */

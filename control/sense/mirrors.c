@@ -179,7 +179,7 @@ void mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     float weights[MIRROR_COUNT];
 
     if (voters == 0U) {
-        mirrors->agree = mirrors->sees = mirrors->blind = mirrors->felt_lies = mirrors->moves = false;
+        mirrors->agree = mirrors->sees = mirrors->suspected = mirrors->blind = mirrors->felt_lies = mirrors->moves = false;
         mirrors->left_out = 0U;
         return;
     }
@@ -191,8 +191,9 @@ void mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     mirrors->felt_lies = belief_of_felt(&mirrors->belief) > AGREE;
     mirrors->moves = belief_of_move(&mirrors->belief) > AGREE;
     const float none = belief_of_none(&mirrors->belief, voters);
+    mirrors->suspected = none > 1.0F - AGREE;
     mirrors->blind = none > AGREE;
-    mirrors->sees = none < 1.0F - AGREE && belief_of_move(&mirrors->belief) > LIES;
+    mirrors->sees = !mirrors->suspected && belief_of_move(&mirrors->belief) > LIES;
     mirrors->altitude.disagree = honest < 1.0F - LIES;
 }
 

@@ -31,6 +31,7 @@ typedef struct {
     altitude_t altitude; /* of the latest scan; not valid before the first */
     bool agree;          /* its height is that of two honest mirrors, with 99 % */
     bool sees;           /* with 99 % not all that told something in it lie, and it rather moves than stands */
+    bool suspected;      /* all that told something in it may lie, with more than 1 % */
     bool blind;          /* all that told something in it lie, with 99 % */
     bool felt_lies;      /* the accelerometer does, with 99 % */
     bool moves;          /* the vehicle does, with 99 % */

@@ -122,10 +122,13 @@ static void drop_unfit(const tilt_t *tilt, flight_inputs_t *in)
 }
 
 /* A step of the terrain needs no climb to confirm it when the mirrors agree on it. A take-off does: what
- * blocks all of them at one length blocks them from there on. */
+ * blocks all of them at one length blocks them from there on. A climb that may be none is slow: that costs
+ * little, so little suspicion is enough. */
 static bool is_unconfirmed(const senses_t *s)
 {
-    return s->confirmation.unconfirmed && !(s->confirmation.proved && s->mirrors.agree);
+    const bool unshown = s->confirmation.unconfirmed && !(s->confirmation.proved && s->mirrors.agree);
+
+    return unshown || s->mirrors.suspected;
 }
 
 static evidence_t evidence_of(const sense_t *sense)
@@ -138,7 +141,7 @@ static evidence_t evidence_of(const sense_t *sense)
         .reason = (uint16_t)verdict_reason(verdict),
         .unconfirmed = is_unconfirmed(s),
         .terrain_fell = s->confirmation.terrain_fell,
-        .teaches = !s->confirmation.unconfirmed,
+        .teaches = !s->confirmation.unconfirmed && !s->mirrors.suspected,
         .sways = sway_as_in_the_air(&s->sway),
         .calm = sway_is_calm(&s->sway),
         .rocks = sway_rocks(&s->sway),
