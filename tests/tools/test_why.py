@@ -475,13 +475,6 @@ class Law(unittest.TestCase):
         self.assertLess(law.pidt_calm(seen, flying, 1.5 * to_and_fro)[-1], 0.5)
         self.assertEqual(law.pidt_calm(seen, flying, 0.5 * to_and_fro)[-1], 1.0)
 
-    def test_the_cascade_has_its_gain_lowered_while_the_command_shakes(self):
-        t_s = 0.025 * numpy.arange(400)
-        shakes = 7.0 + 3.0 * numpy.sin(12.0 * t_s)
-        flying = numpy.ones(400, bool)
-        self.assertAlmostEqual(law.cascade_calm(t_s, shakes, flying)[-1], 1.5 / (3.0 / math.sqrt(2.0)), delta=0.08)
-        self.assertEqual(law.cascade_calm(t_s, 7.0 + 0.1 * (shakes - 7.0), flying)[-1], 1.0)
-
     def test_grav_is_read_from_the_first_thrusts_of_a_pidt_flight(self):
         state = law.Law(False, 0, 0.0, 0.0, (9.0, 9.0), 0.0, 0.0, 0.0, (0.0, 0.0), [], 5.8, numpy.nan)
         gathered = 1.4 * 0.4 * 0.1 * numpy.arange(20)

@@ -554,6 +554,133 @@ void test_heights_out_of_reach_are_none(void)
     }
 }
 
+/* ---- the line to the scanner */
+
+/* Scans that wait on the line, with the scanner's own time. */
+static struct {
+    struct {
+        altitude_t mirrors[MIRROR_COUNT];
+        uint32_t stamp_ms;
+    } scans[8];
+    int count;
+} line;
+
+static void turn_of_the_scanner(void)
+{
+    (void)scan(frame.median.roll_rad);
+    memcpy(line.scans[line.count].mirrors, mirrors, sizeof mirrors);
+    line.scans[line.count].stamp_ms = frame.arrival_us / 1000U;
+    line.count++;
+}
+
+/* One cycle; `delivers`: the oldest scan that waits comes with it. */
+static void cycle_of_the_line(bool turns, bool delivers)
+{
+    move();
+    frame.median.roll_rad = 0.05F * sinf((float)frame.sequence * 0.1F);
+    frame.level = frame.median;
+    in.roll_rad = frame.median.roll_rad;
+    frame.sequence++;
+    frame.arrival_us += 25000U;
+    if (turns) {
+        turn_of_the_scanner();
+    }
+    in.now_us = in.attitude_time_us = frame.arrival_us;
+    in.frames = &frame;
+    in.frame_count = 1U;
+    in.height_valid = delivers && line.count > 0;
+    if (in.height_valid) {
+        in.height_sequence++;
+        in.height_time_us = frame.arrival_us;
+        in.height_stamp_ms = line.scans[0].stamp_ms;
+        memcpy(mirrors, line.scans[0].mirrors, sizeof mirrors);
+        in.mirrors = world.three ? mirrors : NULL;
+        in.altitude = world.three ? altitude_mean(mirrors, altitude_weights_equal, MIRROR_COUNT)
+                                  : mirrors[MIRROR_FRONT];
+        line.count--;
+        memmove(&line.scans[0], &line.scans[1], sizeof line.scans - sizeof line.scans[0]);
+    }
+    seen = sense_step(&it, &flown, &in);
+}
+
+/* Up and down; each second the line holds what comes for so many turns of the scanner, and then gives it
+ * cycle by cycle. */
+static void fly_by_a_line_that_holds(int turns, int seconds)
+{
+    line.count = 0;
+    for (int k = 0; k < 40 * seconds; k++) {
+        flown.thrust_n = HOVER_N + (((k / 60) % 2 == 0) ? 3.0F : -3.0F);
+        flown.wanted_m = ((k / 60) % 2 == 0) ? 0.5F : -0.5F;
+        cycle_of_the_line(k % 4 == 3, k % 40 >= 4 * turns);
+        TEST_ASSERT_EQUAL_UINT16(0U, seen.doubts);
+        TEST_ASSERT_EQUAL_UINT16(0U, seen.mirrors.liars);
+    }
+}
+
+void test_a_line_that_holds_scans_up_makes_nobody_a_liar(void)
+{
+    for (uint32_t flight = 0U; flight < FLIGHTS; flight++) {
+        fly_anew(flight);
+        fly_by_a_line_that_holds((int)(flight / 2U) % 6, 20);
+    }
+}
+
+/* The belief after a scan, before which the frames told of this acceleration. together: with three that have
+ * waited, of which it is the second. */
+static belief_t belief_after(float felt_mps2, bool together)
+{
+    setUp();
+    fly();
+    line.count = 0;
+    for (int k = 1; k <= 12; k++) {
+        cycle_of_the_line(k % 4 == 0, !together);
+    }
+    if (together) {
+        cycle_of_the_line(false, true);
+    }
+    world.felt_lie_mps2 = felt_mps2;
+    for (int k = (together ? 4 : 1); k <= 4; k++) {
+        cycle_of_the_line(k == 4 && !together, true);
+    }
+    TEST_ASSERT_EQUAL_INT(together ? 1 : 0, line.count);
+    return it.senses.mirrors.belief;
+}
+
+/* The frames since the scan before are of another time than its rays. */
+void test_what_frames_tell_is_not_shown_to_a_scan_that_waited_with_others(void)
+{
+    for (int together = 0; together < 2; together++) {
+        const belief_t still = belief_after(0.0F, together != 0);
+        const belief_t pushed = belief_after(3.0F, together != 0);
+
+        TEST_ASSERT_EQUAL(together != 0, memcmp(&still, &pushed, sizeof still) == 0);
+    }
+}
+
+void test_rays_are_timed_by_the_scanners_own_clock(void)
+{
+    static const uint32_t late_us[] = {0U, 40000U, 10000U, 30000U, 0U, 45000U};
+    uint32_t before_us = 0U;
+
+    for (uint32_t k = 0U; k < 60U; k++) {
+        in.height_sequence++;
+        in.height_valid = true;
+        in.height_stamp_ms = 5000U + 100U * k;
+        in.height_time_us = 1000000U + 100000U * k + late_us[k % 6U];
+        in.height_age_us = 70000U;
+        in.altitude = (altitude_t){.valid = true,
+                                   .height_mm = 500.0F,
+                                   .slant_mm = 700.0F + (float)k,
+                                   .good_rays = 35U,
+                                   .spread_mm = 9.0F};
+        seen = sense_step(&it, &flown, &in);
+        if (k > 0U) {
+            TEST_ASSERT_UINT32_WITHIN(2100U, 100000U, it.rays_us - before_us); /* 0.5 % of drift */
+        }
+        before_us = it.rays_us;
+    }
+}
+
 /* ---- accelerometer */
 
 static void rest(float lie_mps2, float seconds)
