@@ -9,6 +9,7 @@
 
 #include "control/between.h"
 #include "control/credible.h"
+#include "control/where/hover_thrust.h"
 
 /* ---- noise models */
 #define PER_MM 0.0664903801F  /* 1 / (sqrt(2 pi) BELIEF_NOISE_MM) */
@@ -46,7 +47,7 @@ typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BEL
 
 /* ---- gains of the filters: alpha and beta of Kalata 1984 for 0.5 m/s2 */
 #define SHARED_GAIN 0.85F
-#define PUSH_GAIN 0.1F    /* chosen: the hover thrust is learned in a second */
+#define PUSH_GAIN (SCAN_S / HOVER_TIME_S) /* what the hover thrust is off by is learned as in push.c */
 #define PUSH_OFF_MPS2 2.0F /* GRAV of a vehicle whose mass is off by 20 %, as tools/campaign/plan.py draws */
 #define BLIND_GAIN 0.03F  /* chosen: s; the drag tells the speed in 1.4 s */
 #define OWN_GAIN 0.42F  /* of what one mirror shows alone: slow, it is terrain or noise */
