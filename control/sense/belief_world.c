@@ -287,7 +287,8 @@ static void correct_motions(belief_world_t *world, const ways_t *ways)
     }
 }
 
-/* The heights tell the rate, and what the thrust is off by is learned at it. Where none tells it, the thrust
+/* The heights tell the rate, and what the thrust is off by is learned at it, from the accelerometer or from
+ * them. Where none tells it, the thrust
  * and the drag do; without these it is not known, and the accelerometer alone would carry it away. */
 static void correct_rate(belief_world_t *world, const ways_t *ways, const belief_scan_t *scan,
                          float shared_mm)
@@ -297,9 +298,11 @@ static void correct_rate(belief_world_t *world, const ways_t *ways, const belief
     const bool carried = scan->felt.dragged > 0.0F;
 
     if (ways->honest != 0U) {
-        const float off_mps2 = world->push_off_mps2 + PUSH_GAIN * flies * ways->strange_mps2;
+        const float more_mm_s = BELIEF_RATE_GAIN * shared_mm / scan->gap_s;
+        const float felt_mps2 = scan->felt.untold ? 0.001F * more_mm_s / scan->gap_s : ways->strange_mps2;
+        const float off_mps2 = world->push_off_mps2 + PUSH_GAIN * flies * felt_mps2;
 
-        world->rate_mm_s += BELIEF_RATE_GAIN * shared_mm / scan->gap_s;
+        world->rate_mm_s += more_mm_s;
         world->push_off_mps2 = carried ? between(-PUSH_OFF_MPS2, off_mps2, PUSH_OFF_MPS2)
                                        : world->push_off_mps2;
     } else {

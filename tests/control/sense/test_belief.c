@@ -382,7 +382,10 @@ void test_the_probabilities_are_one_together_and_none_is_lost(void)
             beams[m].height_mm = 20000.0F * (uniform() - 0.5F);
         }
         belief_scan(&belief, beams, 0.02F + 10.0F * uniform() * uniform(),
-                    (belief_felt_t){40.0F * (uniform() - 0.5F), 40.0F * (uniform() - 0.5F), uniform()});
+                    (belief_felt_t){.untold = uniform() < 0.3F,
+                                    .gained_mps = 40.0F * (uniform() - 0.5F),
+                                    .pushed_mps = 40.0F * (uniform() - 0.5F),
+                                    .dragged = uniform()});
         for (unsigned k = 0U; k < BELIEF_WORLDS; k++) {
             TEST_ASSERT_TRUE(belief.worlds[k].probability > 0.0F);
             sum += belief.worlds[k].probability;

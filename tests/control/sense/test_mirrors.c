@@ -35,7 +35,7 @@ static altitude_t look(float roll_rad, float pitch_rad)
     altitude_t shown[MIRROR_COUNT];
 
     altitude_of_mirrors(shown, &geometry, ranges, 3U, roll_rad, pitch_rad);
-    mirrors_scan(&mirrors, shown, gap_s, age_s, true);
+    mirrors_scan(&mirrors, shown, gap_s, age_s, true, false);
     return mirrors.altitude;
 }
 
