@@ -16,10 +16,12 @@
 /* Of the filters: beta of Kalata 1984 for 0.5 m/s2; alpha is in belief_world.c. */
 #define BELIEF_RATE_GAIN 0.42F
 
-/* belief_world.c: it stands, flies in calm air, flies, something pushes it, the accelerometer lies */
-#define BELIEF_MOTIONS 5U
+/* belief_world.c: it stands, flies in calm air, flies, something pushes it, somebody else flies or holds it, the
+ * accelerometer lies */
+#define BELIEF_MOTIONS 6U
 #define BELIEF_STANDS 0U
-#define BELIEF_FELT_LIES 4U
+#define BELIEF_HELD 4U
+#define BELIEF_FELT_LIES 5U
 
 /* One mirror in one scan. */
 typedef struct {

@@ -90,8 +90,8 @@ void senses_frames(senses_t *senses, const command_t *command, const imu_sample_
 void senses_thrust(senses_t *senses, const command_t *command, bool felt_valid)
 {
     const witness_t *felt = &senses->accelerometer.felt;
-    const bool stands = senses->heights.known && senses->heights.height_m < LOW_M &&
-                        !sway_as_in_the_air(&senses->sway);
+    const bool sways = sway_as_in_the_air(&senses->sway);
+    const bool stands = senses->heights.known && senses->heights.height_m < LOW_M && !sways;
     const bool felt_tells = !command->grounded && felt_valid && witness_counts(felt);
 
     accelerometer_set_noise(&senses->accelerometer, command->noise_mps2);
@@ -102,7 +102,8 @@ void senses_thrust(senses_t *senses, const command_t *command, bool felt_valid)
     } else {
         push_move(&senses->push, command, senses->tilt.upright);
     }
-    if (!command->grounded) {
+    /* Also where the heights show no lift-off, but not while it may stand there without power. */
+    if (!command->grounded && (sways || (command->off_ground && !stands))) {
         mirrors_thrust(&senses->mirrors, push_lift_mps(&senses->push, command, senses->tilt.upright),
                        push_dragged(command));
     }

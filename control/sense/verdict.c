@@ -142,7 +142,9 @@ void verdict_height(verdict_t *verdict, senses_t *senses, const command_t *comma
 {
     verdict->agreed_s = change->first_climb ? 0.0F : verdict->agreed_s;
     confirmation_wait(&senses->confirmation, change, command->wanted_m);
+    verdict->sure_n = command->grounded ? command->hover_n : verdict->sure_n;
     if (!command->ours) {
+        verdict->sure_n = command->hover_n;
         forget(verdict, senses);
         witness_start(&senses->accelerometer.felt, senses->heights.rise_mps);
     } else if (!command->grounded) {

@@ -31,7 +31,7 @@ import survey  # noqa: E402
 OWN_NOISE = ("--set", "plant.mirror_noise=3", "--set", "plant.common_noise=0")
 FITTED = {"BELIEF_NOISE_MM": (1, 15), "STEP_SHARE": (1e-3, 0.3), "STEP_MM": (50, 1000), "STEP_NEAR_SHARE": (0, 0.95),
           "STEP_NEAR_MM": (3, 80), "STEP_FAR_SHARE": (1e-4, 0.04), "MOTION_CHANGES": (0.005, 0.9), "SHARED_GAIN": (0.05, 1),
-          "BELIEF_RATE_GAIN": (0.02, 1.5), "OWN_GAIN": (0.01, 1), "STRANGE_MPS2": (0.1, 5), "STRANGE_FAR_SHARE": (1e-3, 0.5), "STRANGE_FAR": (1.1, 10)}
+          "BELIEF_RATE_GAIN": (0.02, 1.5), "OWN_GAIN": (0.01, 1), "STRANGE_MPS2": (0.1, 5)}
 MOTIONS = {"stands, share": (0.01, 0.8), "calm, share": (0.01, 0.8), "flies, share": (0.01, 0.8), "calm, mm": (0.5, 6),
            "flies, mm": (2, 40), "pushed, mm": (6, 300)}
 NAMES = list(FITTED)
@@ -43,7 +43,7 @@ void noise_set(const float *p)
 %(sets)s
     PER_MM = 0.39894228F / BELIEF_NOISE_MM;
     p += %(count)d;
-    motions[3].share = 1.0F - motions[BELIEF_FELT_LIES].share;
+    motions[3].share = 1.0F - motions[BELIEF_HELD].share - motions[BELIEF_FELT_LIES].share;
     for (int k = 0; k < 3; ++k) {
         motions[k].share = p[k];
         motions[3].share -= p[k];

@@ -63,6 +63,8 @@ void test_a_thrust_away_from_the_reference_is_not_in_vain(void)
 
 void test_a_thrust_that_was_never_proved_or_has_no_second_witness_is_not_doubted(void)
 {
+    pushes_n(HOVER_N);
+    (void)judged(0.0F, 0.0F); /* so it does not push in vain */
     pushes_n(HOVER_N + 1.0F);
     is_proved(false);
     TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, -1.4F));
