@@ -557,11 +557,12 @@ void test_heights_out_of_reach_are_none(void)
 /* ---- the line to the scanner */
 
 /* Scans that wait on the line, with the scanner's own time. */
+typedef struct {
+    altitude_t mirrors[MIRROR_COUNT];
+    uint32_t stamp_ms;
+} waiting_t;
 static struct {
-    struct {
-        altitude_t mirrors[MIRROR_COUNT];
-        uint32_t stamp_ms;
-    } scans[8];
+    waiting_t scans[8];
     int count;
 } line;
 
