@@ -1,7 +1,8 @@
 /* The ceiling starts from the hover thrust that was sure when the descent began, and it only falls. Neither
  * learning during the descent nor a change of the kind of descent raises it again. What breaks: a ceiling
  * that follows what a descent teaches can rise with a wrong height, and the vehicle climbs away. Where two
- * mirrors agree on the heights, a landing needs none: below it a gust would press the vehicle to the ground. */
+ * mirrors agree on the heights, a landing needs none: below it a gust would press the vehicle to the ground.
+ */
 #include "control/est/let_down.h"
 
 #include "control/between.h"

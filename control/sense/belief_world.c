@@ -19,9 +19,10 @@
 #define STEP_NEAR_MM 10.0F    /* fitted, docs/control.md */
 #define STEP_FAR_SHARE 0.002F /* of the steps: as far as the scanner sees */
 #define STEP_FAR_PER_MM (1.0F / 8000.0F) /* 4 m up or down */
-#define ODD_SHARE 0.05F /* of a liar's scans: no constant, anything within the 4 m of the scanner */
+#define ODD_SHARE 0.05F           /* of a liar's scans: no constant, anything within the 4 m of the scanner */
 #define SHARED_MM BELIEF_NOISE_MM /* of a noise that all mirrors share, in what is constant but for it */
-#define FROZEN_SHARE 0.5F /* of the lies that begin: a scan that freezes, or something that comes; not known */
+#define FROZEN_SHARE \
+    0.5F /* of the lies that begin: a scan that freezes, or something that comes; not known */
 #define ODD_PER_MM (1.0F / 4000.0F) /* the URG-04LX tells up to 4095 mm */
 
 /* Kinds of motion. Standing, slants and heights are constants, and a liar's slant is no better explained:
@@ -39,18 +40,20 @@ static const struct {
 typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BELIEF_MOTIONS) ? 1 : -1];
 #define MOTION_CHANGES 0.05F /* of the scans: the kind of motion is drawn anew, by its share; a second */
 
-/* What a sound accelerometer tells beyond the thrust, or of a vehicle that stands: a Student t of three degrees
- * of freedom, whose percentiles make noise prints beside those of healthy flights. A Gaussian has no such tail.
- * A lying one tells anything within its range. */
-#define STRANGE_MPS2 0.5F /* fitted: its scale */
+/* What a sound accelerometer tells beyond the thrust, or of a vehicle that stands: a Student t of three
+ * degrees of freedom, whose percentiles make noise prints beside those of healthy flights. A Gaussian has no
+ * such tail. A lying one tells anything within its range. */
+#define STRANGE_MPS2 0.5F       /* fitted: its scale */
 #define LIE_PER_MPS2 0.0254930F /* 1 / 4 g: the Razor's ADXL345 is set to 2 g each way */
 
 /* ---- gains of the filters: alpha and beta of Kalata 1984 for 0.5 m/s2 */
 #define SHARED_GAIN 0.85F
 #define PUSH_GAIN (SCAN_S / HOVER_TIME_S) /* what the hover thrust is off by is learned as in push.c */
-#define PUSH_OFF_MPS2 2.0F /* GRAV of a vehicle whose mass is off by 20 %, as tools/campaign/plan.py draws */
-#define BLIND_GAIN 0.03F  /* chosen: s; the drag tells the speed in 1.4 s */
-#define OWN_GAIN 0.42F  /* of what one mirror shows alone: slow, it is terrain or noise */
+#define PUSH_OFF_MPS2 \
+    2.0F                 /* GRAV of a vehicle whose mass is off by 20 %, as tools/campaign/plan.py draws \
+                          */
+#define BLIND_GAIN 0.03F /* chosen: s; the drag tells the speed in 1.4 s */
+#define OWN_GAIN 0.42F   /* of what one mirror shows alone: slow, it is terrain or noise */
 
 /* ---- densities */
 
@@ -108,18 +111,19 @@ static float density_of_strange(float mps2)
 
 /* One scan in one world, while the ways are summed in which it can have come about. */
 typedef struct {
-    uint16_t honest;               /* bits: those that tell something in this scan */
-    float off_mm[MIRROR_COUNT];    /* height less what the world predicts */
-    float step[MIRROR_COUNT];      /* density of that as a step, of the honest ones */
-    float gained_mps;   /* change of the speed that is foretold */
-    float strange_mps2; /* the accelerometer, less thrust and drag at the speed of this world, as it knows them */
-    float of_felt[BELIEF_MOTIONS]; /* density of what the accelerometer tells, by kind of motion */
-    float untrue_mps; /* part of what the accelerometer tells that is not so, if it lies */
+    uint16_t honest;            /* bits: those that tell something in this scan */
+    float off_mm[MIRROR_COUNT]; /* height less what the world predicts */
+    float step[MIRROR_COUNT];   /* density of that as a step, of the honest ones */
+    float gained_mps;           /* change of the speed that is foretold */
+    float strange_mps2; /* the accelerometer, less thrust and drag at the speed of this world, as it knows
+                           them */
+    float of_felt[BELIEF_MOTIONS];     /* density of what the accelerometer tells, by kind of motion */
+    float untrue_mps;                  /* part of what the accelerometer tells that is not so, if it lies */
     float foretold_mm[BELIEF_MOTIONS]; /* way that it has foretold, and that does not count there */
     float density;                     /* of all ways */
-    float stepped[MIRROR_COUNT];   /* of those with a step under this mirror */
-    float moved_mm;                /* mean of the others' innovations, times its density */
-    float motions[BELIEF_MOTIONS]; /* of those with this kind of motion */
+    float stepped[MIRROR_COUNT];       /* of those with a step under this mirror */
+    float moved_mm;                    /* mean of the others' innovations, times its density */
+    float motions[BELIEF_MOTIONS];     /* of those with this kind of motion */
 } ways_t;
 
 /* As the mirrors show it if so much way was not foretold. */
@@ -235,7 +239,8 @@ static void feel(const belief_world_t *world, ways_t *ways, const belief_scan_t 
     const belief_felt_t *felt = &scan->felt;
     const float off_mps = (felt->dragged > 0.0F) ? world->push_off_mps2 * scan->gap_s : 0.0F;
     const float rate_mps = 0.001F * world->rate_mm_s;
-    const float half = 0.5F * felt->dragged; /* the speed that is gained meanwhile is dragged for half of it */
+    const float half = 0.5F *
+                       felt->dragged; /* the speed that is gained meanwhile is dragged for half of it */
     const float thrust_mps = (felt->pushed_mps + off_mps - felt->dragged * rate_mps) / (1.0F + half);
 
     ways->gained_mps = felt->untold ? thrust_mps : felt->gained_mps;

@@ -16,8 +16,8 @@
 /* Of the filters: beta of Kalata 1984 for 0.5 m/s2; alpha is in belief_world.c. */
 #define BELIEF_RATE_GAIN 0.42F
 
-/* belief_world.c: it stands, flies in calm air, flies, something pushes it, somebody else flies or holds it, the
- * accelerometer lies */
+/* belief_world.c: it stands, flies in calm air, flies, something pushes it, somebody else flies or holds it,
+ * the accelerometer lies */
 #define BELIEF_MOTIONS 6U
 #define BELIEF_STANDS 0U
 #define BELIEF_HELD 4U
@@ -61,10 +61,10 @@ typedef struct {
     float loose;                /* >= 1: the motions vary more by this factor, because scans were missing */
     belief_felt_t felt;
     float slant_off_mm[MIRROR_COUNT], height_off_mm[MIRROR_COUNT]; /* from what each repeats */
-    float slant[MIRROR_COUNT], height[MIRROR_COUNT]; /* densities, if nothing moves */
-    float sigma_mm[BELIEF_MOTIONS];                  /* of each kind of motion, since the scan before */
-    float norm[BELIEF_MOTIONS][MIRROR_COUNT + 1U];   /* of the density of so many honest mirrors' motion */
-    float of_stand; /* density of what the accelerometer tells, if it stands */
+    float slant[MIRROR_COUNT], height[MIRROR_COUNT];               /* densities, if nothing moves */
+    float sigma_mm[BELIEF_MOTIONS];                /* of each kind of motion, since the scan before */
+    float norm[BELIEF_MOTIONS][MIRROR_COUNT + 1U]; /* of the density of so many honest mirrors' motion */
+    float of_stand;                                /* density of what the accelerometer tells, if it stands */
 } belief_scan_t;
 
 /* Before the first scan. */

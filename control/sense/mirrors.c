@@ -27,8 +27,8 @@ void mirrors_thrust(mirrors_t *mirrors, float gained_mps, float dragged)
     mirrors->dragged.gained += dragged;
 }
 
-/* What this scan shows of it: its rays are older than the frames. late: share of the gap; that is left for the
- * next scan. */
+/* What this scan shows of it: its rays are older than the frames. late: share of the gap; that is left for
+ * the next scan. */
 static float shown(mirrors_motion_t *motion, float late)
 {
     const float shown = (1.0F - late) * motion->gained + motion->left;
@@ -179,7 +179,8 @@ void mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     float weights[MIRROR_COUNT];
 
     if (voters == 0U) {
-        mirrors->agree = mirrors->sees = mirrors->suspected = mirrors->blind = mirrors->felt_lies = mirrors->moves = false;
+        mirrors->agree = mirrors->sees = mirrors->suspected = mirrors->blind = mirrors->felt_lies =
+            mirrors->moves = false;
         mirrors->left_out = 0U;
         return;
     }

@@ -21,7 +21,8 @@ typedef struct {
     float slant_mm, spread_mm;
 } mirror_digits_t;
 
-/* A change since the latest scan, and what was left of the time before, because that scan's rays are older. */
+/* A change since the latest scan, and what was left of the time before, because that scan's rays are older.
+ */
 typedef struct {
     float gained, left;
 } mirrors_motion_t;
@@ -30,14 +31,14 @@ typedef struct {
     belief_t belief;
     altitude_t altitude; /* of the latest scan; not valid before the first */
     bool agree;          /* its height is that of two honest mirrors, with 99 % */
-    bool sees;           /* with 99 % not all that told something in it lie, and it rather moves than stands */
-    bool suspected;      /* all that told something in it may lie, with more than 1 % */
-    bool blind;          /* all that told something in it lie, with 99 % */
-    bool felt_lies;      /* the accelerometer does, with 99 % */
-    bool moves;          /* the vehicle does, with 99 % */
-    uint16_t left_out;   /* bits: mirrors of that scan that told something, and do not count in altitude */
-    float disbelieved_s[MIRROR_COUNT];    /* how long each has been, at most 10 s */
-    mirror_digits_t latest[MIRROR_COUNT]; /* of each mirror, to find copies */
+    bool sees;         /* with 99 % not all that told something in it lie, and it rather moves than stands */
+    bool suspected;    /* all that told something in it may lie, with more than 1 % */
+    bool blind;        /* all that told something in it lie, with 99 % */
+    bool felt_lies;    /* the accelerometer does, with 99 % */
+    bool moves;        /* the vehicle does, with 99 % */
+    uint16_t left_out; /* bits: mirrors of that scan that told something, and do not count in altitude */
+    float disbelieved_s[MIRROR_COUNT];      /* how long each has been, at most 10 s */
+    mirror_digits_t latest[MIRROR_COUNT];   /* of each mirror, to find copies */
     mirrors_motion_t felt, pushed, dragged; /* m/s by the accelerometer, by the thrust; share by the drag */
 } mirrors_t;
 

@@ -40,14 +40,15 @@ bool rules_push_in_vain(const rule_case_t *c)
 {
     const float push_n = c->senses->push.lagged_n - c->command->hover_n;
 
-    return fabsf(push_n) > PUSH_N && push_n * c->command->wanted_m > 0.0F && c->pushed->seen_m * push_n < 0.0F;
+    return fabsf(push_n) > PUSH_N && push_n * c->command->wanted_m > 0.0F &&
+           c->pushed->seen_m * push_n < 0.0F;
 }
 
 bool rules_against_thrust(const rule_case_t *c)
 {
-    return c->senses->confirmation.proved && !c->senses->effect.has_effect && fabsf(c->command->wanted_m) > PUSHED_M &&
-           witness_against(c->pushed, NO_AUTHORITY_M) && c->felt_valid && !felt_against(c, WITH_M) &&
-           rules_push_in_vain(c);
+    return c->senses->confirmation.proved && !c->senses->effect.has_effect &&
+           fabsf(c->command->wanted_m) > PUSHED_M && witness_against(c->pushed, NO_AUTHORITY_M) &&
+           c->felt_valid && !felt_against(c, WITH_M) && rules_push_in_vain(c);
 }
 
 /* Heights and witnesses agree, over a real motion. */

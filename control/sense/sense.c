@@ -4,6 +4,7 @@
 #include "control/sense/sense.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #include "control/between.h"
 #include "control/credible.h"
@@ -14,7 +15,7 @@
 
 void sense_init(sense_t *sense)
 {
-    *sense = (sense_t){.scan_fit = false};
+    (void)memset(sense, 0, sizeof *sense); /* an assignment would need as much stack */
     ray_clock_init(&sense->ray_clock);
     senses_init(&sense->senses);
 }

@@ -3,13 +3,14 @@
 #include "control/sense/senses.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "control/between.h"
 #include "control/credible.h"
 
 void senses_init(senses_t *senses)
 {
-    *senses = (senses_t){.standing = false};
+    (void)memset(senses, 0, sizeof *senses); /* an assignment would need as much stack */
     tilt_init(&senses->tilt);
     accelerometer_init(&senses->accelerometer);
     effect_init(&senses->effect);
@@ -87,26 +88,32 @@ void senses_frames(senses_t *senses, const command_t *command, const imu_sample_
     }
 }
 
+/* The belief hears of it also where the heights show no lift-off, but not while the vehicle may stand there
+ * without power. */
+static void tell_thrust(senses_t *senses, const command_t *command, bool carries)
+{
+    if (carries || (sway_as_in_the_air(&senses->sway) && !command->grounded)) {
+        mirrors_thrust(&senses->mirrors, push_lift_mps(&senses->push, command, senses->tilt.upright),
+                       push_dragged(command));
+    }
+}
+
 void senses_thrust(senses_t *senses, const command_t *command, bool felt_valid)
 {
     const witness_t *felt = &senses->accelerometer.felt;
-    const bool sways = sway_as_in_the_air(&senses->sway);
-    const bool stands = senses->heights.known && senses->heights.height_m < LOW_M && !sways;
+    const bool low = senses->heights.known && senses->heights.height_m < LOW_M;
+    const bool carries = command->off_ground && !(low && !sway_as_in_the_air(&senses->sway));
     const bool felt_tells = !command->grounded && felt_valid && witness_counts(felt);
 
     accelerometer_set_noise(&senses->accelerometer, command->noise_mps2);
     senses->standing = command->grounded || command->standing;
     push_lag(&senses->push, command);
-    if (!command->off_ground || stands) {
-        witness_start(&senses->push.pushed, felt_tells ? felt->speed_mps : 0.0F);
-    } else {
+    if (carries) {
         push_move(&senses->push, command, senses->tilt.upright);
+    } else {
+        witness_start(&senses->push.pushed, felt_tells ? felt->speed_mps : 0.0F);
     }
-    /* Also where the heights show no lift-off, but not while it may stand there without power. */
-    if (!command->grounded && (sways || (command->off_ground && !stands))) {
-        mirrors_thrust(&senses->mirrors, push_lift_mps(&senses->push, command, senses->tilt.upright),
-                       push_dragged(command));
-    }
+    tell_thrust(senses, command, carries && !command->grounded);
 }
 
 bool senses_scan(senses_t *senses, const altitude_t *altitude)

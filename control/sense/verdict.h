@@ -25,11 +25,11 @@ typedef struct {
     uint16_t doubts; /* DOUBT_* */
     verdict_reason_t
         reasons[VERDICT_DOUBTS]; /* of the doubts SIGHT, IMU, THRUST; VERDICT_NONE: not doubted */
-    float lost_m;   /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
-    float agreed_s; /* how long heights and witnesses have agreed during a doubt */
-    float sure_n;   /* hover thrust when the thrust last did not push in vain */
-    float held_n;   /* the same, when DOUBT_THRUST rose */
-    bool held_down; /* the law wanted to descend at that instant */
+    float lost_m;                /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
+    float agreed_s;              /* how long heights and witnesses have agreed during a doubt */
+    float sure_n;                /* hover thrust when the thrust last did not push in vain */
+    float held_n;                /* the same, when DOUBT_THRUST rose */
+    bool held_down;              /* the law wanted to descend at that instant */
 } verdict_t;
 
 /* After the frames of a cycle: an accelerometer that does not measure g at rest is doubted. */
