@@ -33,7 +33,7 @@ void test_a_stock_razor_flies_nearly_as_well_as_one_with_accelerations(void)
 {
     fly("est-60cm-ramp", NULL);
     TEST_ASSERT_DOUBLE_WITHIN(3.5, 12.6, flights.mean[METRIC_HOVER_RMS_MM]);
-    TEST_ASSERT_DOUBLE_WITHIN(5.0, 62.8, flights.mean[METRIC_TERRAIN_RMS_MM]); /* 20 other seeds: 62.8 */
+    TEST_ASSERT_DOUBLE_WITHIN(5.0, 58.0, flights.mean[METRIC_TERRAIN_RMS_MM]); /* seeds 401 to 420: 58.0 */
 }
 
 void test_a_stock_razor_flies_a_vehicle_that_the_thrust_model_does_not_describe(void)

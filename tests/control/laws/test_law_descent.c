@@ -64,11 +64,22 @@ void test_a_tilt_that_moves_makes_the_end_of_a_descent_slow(void)
     TEST_ASSERT_TRUE(thrust_n[1] > thrust_n[0] + 0.5F);
 }
 
-void test_a_blind_descent_is_as_old_as_its_state(void)
+void test_time_runs_three_times_as_fast_in_a_blind_descent_whose_tilt_is_still(void)
 {
     hovers_at_n(7.2F);
     in_state_for_us(FLIGHT_DESCENDING, 10000000U);
+    sway(false);
     NEAR(descent_blind(7.2F, 10.0F), step_n(FLIGHT_MODE_HOVER, FLIGHT_MODE_BLIND_DESCENT));
+    mode_is(FLIGHT_MODE_BLIND_DESCENT); /* 0.1 s */
+    NEAR(descent_blind(7.2F, 10.2F), step_n(FLIGHT_MODE_BLIND_DESCENT, FLIGHT_MODE_BLIND_DESCENT));
+    NEAR(descent_blind(7.2F, 10.4F), step_n(FLIGHT_MODE_BLIND_DESCENT, FLIGHT_MODE_BLIND_DESCENT));
+    evidence.calm = false;
+    NEAR(descent_blind(7.2F, 10.4F), step_n(FLIGHT_MODE_BLIND_DESCENT, FLIGHT_MODE_BLIND_DESCENT));
+    sway(false);
+    frame_was_s_ago(0.3F); /* an IMU that tells nothing is still too */
+    NEAR(descent_blind(7.2F, 10.4F), step_n(FLIGHT_MODE_BLIND_DESCENT, FLIGHT_MODE_BLIND_DESCENT));
+    frame_was_s_ago(0.0F);
+    NEAR(descent_blind(7.2F, 10.0F), step_n(FLIGHT_MODE_HOVER, FLIGHT_MODE_BLIND_DESCENT)); /* anew */
 }
 
 void test_a_blind_descent_ends_after_a_minute(void)
