@@ -23,6 +23,8 @@ static void start(belief_t *belief)
         for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
             belief->worlds[k].probability *= belief_has(k, m) ? PRIOR : 1.0F - PRIOR;
         }
+        belief->worlds[k].probability += (k != 0U) ? TOGETHER_SHARE * PRIOR / (float)(BELIEF_WORLDS - 1U)
+                                                   : -TOGETHER_SHARE * PRIOR;
         belief_world_start(&belief->worlds[k]);
     }
 }

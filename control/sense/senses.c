@@ -7,6 +7,7 @@
 
 #include "control/between.h"
 #include "control/credible.h"
+#include "control/laws/descent.h"
 
 void senses_init(senses_t *senses)
 {
@@ -89,10 +90,12 @@ void senses_frames(senses_t *senses, const command_t *command, const imu_sample_
 }
 
 /* The belief hears of it also where the heights show no lift-off, but not while the vehicle may stand there
- * without power. */
-static void tell_thrust(senses_t *senses, const command_t *command, bool carries)
+ * without power: it has to sway, or to feel a climb that is no drift. */
+static void tell_thrust(senses_t *senses, const command_t *command, bool carries, float felt_mps)
 {
-    if (carries || (sway_as_in_the_air(&senses->sway) && !command->grounded)) {
+    const bool lifts = sway_as_in_the_air(&senses->sway) || felt_mps > LAND_MAX_MPS;
+
+    if (!command->grounded && (carries || lifts)) {
         mirrors_thrust(&senses->mirrors, push_lift_mps(&senses->push, command, senses->tilt.upright),
                        push_dragged(command));
     }
@@ -113,7 +116,7 @@ void senses_thrust(senses_t *senses, const command_t *command, bool felt_valid)
     } else {
         witness_start(&senses->push.pushed, felt_tells ? felt->speed_mps : 0.0F);
     }
-    tell_thrust(senses, command, carries && !command->grounded);
+    tell_thrust(senses, command, carries, felt_tells ? felt->speed_mps : 0.0F);
 }
 
 bool senses_scan(senses_t *senses, const altitude_t *altitude)
