@@ -6,14 +6,13 @@
 #include "control/flight.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "control/outputs.h"
 #include "control/signs.h"
 
 void flight_init(flight_t *flight)
 {
-    (void)memset(flight, 0, sizeof *flight); /* an assignment would need as much stack */
+    *flight = (flight_t){.thrust_n = 0.0F};
     supervisor_init(&flight->where.supervisor);
     sense_init(&flight->sense);
     imu_axes_init(&flight->axes);

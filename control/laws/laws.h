@@ -24,8 +24,8 @@ typedef struct {
     uint32_t pidt_rays_us; /* rays of the height before, law PIDT */
     descent_t descent;
     float blind_ahead_s; /* by which a blind descent is ahead of its time */
-    float setpoint_n; /* thrust that the mode computes */
-    float transfer_n; /* added to setpoint_n; fades to 0: bumpless transfer between modes */
+    float setpoint_n;    /* thrust that the mode computes */
+    float transfer_n;    /* added to setpoint_n; fades to 0: bumpless transfer between modes */
 } laws_t;
 
 /* One law. Returns the setpoint. est: the state of law EST. */

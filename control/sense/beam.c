@@ -8,11 +8,6 @@
 
 bool beam_scan(beam_t *beam, const altitude_t *altitude)
 {
-    const bool copy = altitude->good_rays > 1U && altitude->slant_mm == beam->slant_mm &&
-                      altitude->spread_mm == beam->spread_mm;
-
-    beam->slant_mm = altitude->slant_mm;
-    beam->spread_mm = altitude->spread_mm;
     beam->below_ground = !(altitude->height_mm >= (beam->below_ground ? HEIGHT_BACK_MM : HEIGHT_MIN_MM));
-    return !copy && !beam->below_ground && altitude->height_mm <= HEIGHT_MAX_MM;
+    return !beam->below_ground;
 }

@@ -202,30 +202,22 @@ float belief_of_lie(const belief_t *belief, mirror_t mirror)
     return sum;
 }
 
-float belief_of_two(const belief_t *belief, uint16_t mirrors)
+float belief_of_honest(const belief_t *belief, uint16_t mirrors, uint16_t count)
 {
     float sum = 0.0F;
 
     for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
-        const uint16_t honest = mirrors & (uint16_t)~k;
+        uint16_t found = 0U;
 
-        sum += ((honest & (honest - 1U)) != 0U) ? belief->worlds[k].probability : 0.0F;
+        for (uint16_t honest = mirrors & (uint16_t)~k; honest != 0U; honest &= (uint16_t)(honest - 1U)) {
+            ++found;
+        }
+        sum += (found >= count) ? belief->worlds[k].probability : 0.0F;
     }
     return sum;
 }
 
-float belief_of_none(const belief_t *belief, uint16_t mirrors)
-{
-    float sum = 0.0F;
-
-    for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
-        sum += ((mirrors & (uint16_t)~k) == 0U) ? belief->worlds[k].probability : 0.0F;
-    }
-    return sum;
-}
-
-/* Of a kind of motion, in all worlds. */
-static float of_motion(const belief_t *belief, uint16_t kind)
+float belief_of_motion(const belief_t *belief, uint16_t kind)
 {
     float sum = 0.0F;
 
@@ -233,14 +225,4 @@ static float of_motion(const belief_t *belief, uint16_t kind)
         sum += belief->worlds[k].probability * belief->worlds[k].motions[kind];
     }
     return sum;
-}
-
-float belief_of_felt(const belief_t *belief)
-{
-    return of_motion(belief, BELIEF_FELT_LIES);
-}
-
-float belief_of_move(const belief_t *belief)
-{
-    return 1.0F - of_motion(belief, BELIEF_STANDS) - of_motion(belief, BELIEF_FELT_LIES);
 }

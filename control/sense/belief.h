@@ -32,15 +32,16 @@ void belief_scan(belief_t *belief, const belief_beam_t *beams, float gap_s, beli
 /* Probability that this mirror lies; 0 before the first scan. */
 float belief_of_lie(const belief_t *belief, mirror_t mirror);
 
-/* Probability that at least two of these mirrors do not lie. mirrors: bits. */
-float belief_of_two(const belief_t *belief, uint16_t mirrors);
-
-/* Probability that the accelerometer lies, and that the vehicle moves. It moves, or stands, or nothing tells
- * because the accelerometer lies. */
-float belief_of_felt(const belief_t *belief);
-float belief_of_move(const belief_t *belief);
+/* Probability that at least so many of these mirrors do not lie. mirrors: bits. */
+float belief_of_honest(const belief_t *belief, uint16_t mirrors, uint16_t count);
 
 /* Probability that each of these mirrors lies. mirrors: bits, at least one. */
-float belief_of_none(const belief_t *belief, uint16_t mirrors);
+static inline float belief_of_none(const belief_t *belief, uint16_t mirrors)
+{
+    return 1.0F - belief_of_honest(belief, mirrors, 1U);
+}
+
+/* Probability of a kind of motion: BELIEF_STANDS, BELIEF_FELT_LIES. */
+float belief_of_motion(const belief_t *belief, uint16_t kind);
 
 #endif

@@ -337,33 +337,20 @@ static void correct(belief_world_t *world, const ways_t *ways, const belief_scan
     }
 }
 
-/* What has just come before a mirror stands anywhere, unless the mirror has frozen. */
-static float anywhere(const belief_world_t *world, uint16_t m)
-{
-    return ODD_SHARE + (1.0F - FROZEN_SHARE - ODD_SHARE) * world->begun[m];
-}
-
-/* Density of what the liars show, if each has a noise of its own. */
-static float density_of_own(const belief_world_t *world, const belief_scan_t *scan, uint16_t liars)
-{
-    float density = 1.0F;
-
-    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        const float odd = anywhere(world, m);
-
-        density *= belief_has(liars, m) ? (1.0F - odd) * scan->slant[m] + odd * ODD_PER_MM : 1.0F;
-    }
-    return density;
-}
-
-/* liars: those that tell something. */
+/* Density of what the liars show. What has just come before a mirror stands anywhere, unless the mirror has
+ * frozen. liars: those that tell something. */
 static float density_of_lies(const belief_world_t *world, const belief_scan_t *scan, uint16_t liars)
 {
-    const float own = density_of_own(world, scan, liars);
+    float own = 1.0F;
     float stay = 1.0F;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        stay *= belief_has(liars, m) ? 1.0F - anywhere(world, m) : 1.0F;
+        const float odd = ODD_SHARE + (1.0F - FROZEN_SHARE - ODD_SHARE) * world->begun[m];
+
+        if (belief_has(liars, m)) {
+            own *= (1.0F - odd) * scan->slant[m] + odd * ODD_PER_MM;
+            stay *= 1.0F - odd;
+        }
     }
     return are_several(liars) ? 0.5F * (own + stay * density_of_shared(scan->slant_off_mm, liars)) : own;
 }

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "control/between.h"
+#include "control/credible.h"
 
 #define RELIEF_MM 75.0F          /* chosen: what ground differs by under one vehicle; stairs are 170 mm */
 #define RELIEF_SIGMAS 3.0F       /* beyond, it is another ground */
@@ -50,14 +51,13 @@ static belief_felt_t felt_of(mirrors_t *mirrors, float gap_s, float age_s, bool 
     return held_up ? nothing : felt;
 }
 
-/* Identical digits are no new scan, see beam.c. */
-static bool is_copy(mirrors_t *mirrors, uint16_t m, const altitude_t *shown)
+/* Identical digits are no new scan: with a sensor noise of 3 mm, chance makes them once in some thousands. */
+static bool is_copy(mirror_digits_t *latest, const altitude_t *shown)
 {
-    const bool copy = shown->good_rays > 1U && shown->slant_mm == mirrors->latest[m].slant_mm &&
-                      shown->spread_mm == mirrors->latest[m].spread_mm;
+    const bool copy = shown->good_rays > 1U && shown->slant_mm == latest->slant_mm &&
+                      shown->spread_mm == latest->spread_mm;
 
-    mirrors->latest[m].slant_mm = shown->slant_mm;
-    mirrors->latest[m].spread_mm = shown->spread_mm;
+    *latest = (mirror_digits_t){shown->slant_mm, shown->spread_mm};
     return copy;
 }
 
@@ -86,7 +86,8 @@ static uint16_t believe(mirrors_t *mirrors, const altitude_t *shown, float gap_s
     uint16_t fit = 0U;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        const bool valid = shown[m].valid && !is_copy(mirrors, m, &shown[m]);
+        const bool valid = shown[m].valid && fabsf(shown[m].height_mm) <= HEIGHT_MAX_MM &&
+                           !is_copy(&mirrors->latest[m], &shown[m]);
 
         if (valid) {
             fresh |= (uint16_t)(1U << m);
@@ -148,31 +149,19 @@ static void weigh(float weights[MIRROR_COUNT], const altitude_t *shown, uint16_t
     }
 }
 
-static uint16_t told(const altitude_t *shown)
+static uint16_t left_out_of(const altitude_t *shown, const float weights[MIRROR_COUNT])
 {
     uint16_t set = 0U;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (shown[m].valid) {
+        if (shown[m].valid && weights[m] == 0.0F) {
             set |= (uint16_t)(1U << m);
         }
     }
     return set;
 }
 
-static uint16_t weightless(const float weights[MIRROR_COUNT])
-{
-    uint16_t set = 0U;
-
-    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (weights[m] == 0.0F) {
-            set |= (uint16_t)(1U << m);
-        }
-    }
-    return set;
-}
-
-void mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float age_s, bool felt,
+bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float age_s, bool felt,
                   bool held_up)
 {
     const uint16_t voters = believe(mirrors, shown, gap_s, felt_of(mirrors, gap_s, age_s, felt, held_up));
@@ -182,20 +171,25 @@ void mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
         mirrors->agree = mirrors->sees = mirrors->suspected = mirrors->blind = mirrors->felt_lies =
             mirrors->moves = false;
         mirrors->left_out = 0U;
-        return;
+        return false;
     }
     weigh(weights, shown, voters, &mirrors->altitude);
     mirrors->altitude = altitude_mean(shown, weights, MIRROR_COUNT);
-    mirrors->left_out = told(shown) & weightless(weights);
-    const float honest = belief_of_two(&mirrors->belief, voters);
+    mirrors->left_out = left_out_of(shown, weights);
+    const belief_t *belief = &mirrors->belief;
+    const float honest = belief_of_honest(belief, voters, 2U);
+    const float none = belief_of_none(belief, voters);
+    const float felt_lies = belief_of_motion(belief, BELIEF_FELT_LIES);
+    const float moves = 1.0F - belief_of_motion(belief, BELIEF_STANDS) - felt_lies;
+
     mirrors->agree = honest > AGREE;
-    mirrors->felt_lies = belief_of_felt(&mirrors->belief) > AGREE;
-    mirrors->moves = belief_of_move(&mirrors->belief) > AGREE;
-    const float none = belief_of_none(&mirrors->belief, voters);
+    mirrors->felt_lies = felt_lies > AGREE;
+    mirrors->moves = moves > AGREE;
     mirrors->suspected = none > 1.0F - AGREE;
     mirrors->blind = none > AGREE;
-    mirrors->sees = !mirrors->suspected && belief_of_move(&mirrors->belief) > LIES;
+    mirrors->sees = !mirrors->suspected && moves > LIES;
     mirrors->altitude.disagree = honest < 1.0F - LIES;
+    return true;
 }
 
 uint16_t mirrors_tell(const mirrors_t *mirrors, float lies[MIRROR_COUNT])

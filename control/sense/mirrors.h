@@ -53,10 +53,11 @@ void mirrors_frame(mirrors_t *mirrors, float gained_mps);
  * drag by this share of the speed. */
 void mirrors_thrust(mirrors_t *mirrors, float gained_mps, float dragged);
 
-/* One scan: writes altitude and agree. shown: one altitude for each mirror_t, not valid where it shows none.
- * gap_s: since the scan before, > 0. age_s: of its rays. felt: the accelerometer is believed; else the thrust
+/* One scan: writes altitude and agree. Returns false when it tells nothing: each mirror repeats its digits,
+ * or is out of reach (5000 mm). shown: one altitude for each mirror_t, not valid where it shows none. gap_s:
+ * since the scan before, > 0. age_s: of its rays. felt: the accelerometer is believed; else the thrust
  * foretells the motion. held_up: the scan comes late, so what was felt is not of its time. */
-void mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float age_s, bool felt,
+bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float age_s, bool felt,
                   bool held_up);
 
 /* For people. Writes the probability that each mirror lies, and returns the mirrors that were left out, as

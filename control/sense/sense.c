@@ -4,7 +4,6 @@
 #include "control/sense/sense.h"
 
 #include <stddef.h>
-#include <string.h>
 
 #include "control/between.h"
 #include "control/credible.h"
@@ -15,7 +14,6 @@
 
 void sense_init(sense_t *sense)
 {
-    (void)memset(sense, 0, sizeof *sense); /* an assignment would need as much stack */
     ray_clock_init(&sense->ray_clock);
     senses_init(&sense->senses);
 }
@@ -52,7 +50,7 @@ static float held_up_s(sense_t *sense, const flight_inputs_t *in, float *gap_s)
 /* The mirrors of a new scan, each at the believed tilt. Layout FRONT has one. A shaken accelerometer predicts
  * no motion: one mirror alone would then be disbelieved. Nor does one whose frames are of another time than
  * the scan. */
-static void vote(sense_t *sense, const flight_inputs_t *in)
+static bool vote(sense_t *sense, const flight_inputs_t *in)
 {
     float gap_s;
     const bool held_up = held_up_s(sense, in, &gap_s) > HELD_UP_S;
@@ -69,20 +67,15 @@ static void vote(sense_t *sense, const flight_inputs_t *in)
             shown[m].height_mm = altitude_at_tilt(&shown[m], tilt->roll_rad, tilt->pitch_rad);
         }
     }
-    mirrors_scan(&sense->senses.mirrors, shown, gap_s, seconds_at_most(in->height_age_us, GAP_LONG_S),
-                 verdict_felt_valid(&sense->verdict, &sense->senses) &&
-                     sense->senses.accelerometer.shaken <= 1.0F,
-                 held_up);
+    return mirrors_scan(&sense->senses.mirrors, shown, gap_s, seconds_at_most(in->height_age_us, GAP_LONG_S),
+                        verdict_felt_valid(&sense->verdict, &sense->senses) &&
+                            sense->senses.accelerometer.shaken <= 1.0F,
+                        held_up);
 }
 
 /* What several mirrors show together takes the place of their mean. */
-static void elect(sense_t *sense, flight_inputs_t *in, bool is_new)
+static void elect(const mirrors_t *mirrors, flight_inputs_t *in)
 {
-    mirrors_t *mirrors = &sense->senses.mirrors;
-
-    if (is_new) {
-        vote(sense, in);
-    }
     if (in->mirrors != NULL && mirrors->altitude.valid) {
         in->height_age_us += (uint32_t)(in->altitude.later_us - mirrors->altitude.later_us);
         in->altitude = mirrors->altitude;
@@ -99,12 +92,14 @@ static void compare_height(sense_t *sense, const command_t *command, flight_inpu
     const bool is_new = is_new_scan(sense, in);
     const float gap_s = seconds_at_most(in->height_time_us - sense->height_time_us, GAP_LONG_S);
 
-    elect(sense, in, is_new);
+    const bool tells = is_new && vote(sense, in);
+
+    elect(&sense->senses.mirrors, in);
     if (!is_new) {
         return;
     }
     sense->scan_sequence = in->height_sequence;
-    sense->scan_fit = senses_scan(&sense->senses, &in->altitude);
+    sense->scan_fit = tells && senses_scan(&sense->senses, &in->altitude);
     if (sense->scan_fit) {
         const height_change_t change = senses_height(&sense->senses, in->altitude.height_mm * 0.001F, gap_s,
                                                      seconds_at_most(in->height_age_us, GAP_LONG_S),

@@ -26,7 +26,7 @@ typedef struct {
     bool scan_fit;           /* the latest scan's height may be used */
 } sense_t;
 
-/* Clears the state: no doubt, nothing known. Call once before the first cycle. */
+/* Begins a state that is all zero: no doubt, nothing known. Call once before the first cycle. */
 void sense_init(sense_t *sense);
 
 /* Once in each cycle. command: of the previous cycle. Removes from *in what must not be used: heights in

@@ -3,7 +3,6 @@
 #include "control/sense/senses.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "control/between.h"
 #include "control/credible.h"
@@ -11,7 +10,6 @@
 
 void senses_init(senses_t *senses)
 {
-    (void)memset(senses, 0, sizeof *senses); /* an assignment would need as much stack */
     tilt_init(&senses->tilt);
     accelerometer_init(&senses->accelerometer);
     effect_init(&senses->effect);

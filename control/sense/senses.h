@@ -39,6 +39,7 @@ typedef struct {
     stand_t stand;
 } senses_t;
 
+/* Begins a state that is all zero. */
 void senses_init(senses_t *senses);
 
 /* Moves the accelerometer's witness, once in each cycle. frames: oldest first, borrowed for the call; frames

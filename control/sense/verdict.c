@@ -111,20 +111,18 @@ static void judge_sight(verdict_t *verdict, senses_t *senses, const rule_case_t 
 }
 
 /* It is held against the heights, so only while these are believed. */
-static void judge_thrust(verdict_t *verdict, senses_t *senses, const command_t *command, float gap_s)
+static void judge_thrust(verdict_t *verdict, senses_t *senses, const rule_case_t *c, float gap_s)
 {
-    const rule_case_t c = case_of(verdict, senses, command);
-
-    if (!rules_push_in_vain(&c)) {
-        verdict->sure_n = command->hover_n;
+    if (!rules_push_in_vain(c)) {
+        verdict->sure_n = c->command->hover_n;
     }
     if ((verdict->doubts & DOUBT_SIGHT) != 0U) {
         return;
     }
     if ((verdict->doubts & DOUBT_THRUST) != 0U) {
-        judge_thrust_again(verdict, senses, &c, gap_s);
-    } else if (rules_against_thrust(&c)) {
-        doubt_thrust(verdict, senses, command);
+        judge_thrust_again(verdict, senses, c, gap_s);
+    } else if (rules_against_thrust(c)) {
+        doubt_thrust(verdict, senses, c->command);
     }
 }
 
@@ -134,7 +132,7 @@ static void judge(verdict_t *verdict, senses_t *senses, const command_t *command
     const rule_case_t c = case_of(verdict, senses, command);
 
     judge_sight(verdict, senses, &c);
-    judge_thrust(verdict, senses, command, gap_s);
+    judge_thrust(verdict, senses, &c, gap_s);
 }
 
 void verdict_height(verdict_t *verdict, senses_t *senses, const command_t *command,
@@ -142,13 +140,14 @@ void verdict_height(verdict_t *verdict, senses_t *senses, const command_t *comma
 {
     verdict->agreed_s = change->first_climb ? 0.0F : verdict->agreed_s;
     confirmation_wait(&senses->confirmation, change, command->wanted_m);
-    verdict->sure_n = command->grounded ? command->hover_n : verdict->sure_n;
+    if (command->ours && !command->grounded) {
+        judge(verdict, senses, command, change->gap_s);
+        return;
+    }
+    verdict->sure_n = command->hover_n;
     if (!command->ours) {
-        verdict->sure_n = command->hover_n;
         forget(verdict, senses);
         witness_start(&senses->accelerometer.felt, senses->heights.rise_mps);
-    } else if (!command->grounded) {
-        judge(verdict, senses, command, change->gap_s);
     }
 }
 

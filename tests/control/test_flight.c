@@ -68,12 +68,18 @@ static bool released(void)
     return plant.height_new;
 }
 
+/* Slant and height differ by the legs of the mirror, 100 mm here. */
+static altitude_t seen_at(float height_mm)
+{
+    return (altitude_t){.valid = true, .height_mm = height_mm, .slant_mm = height_mm + 100.0F};
+}
+
 static void advance(void)
 {
     plant_step(&plant);
     if (plant.height_new) {
         in.height_valid = true;
-        in.altitude.height_mm = (float)plant.seen_mm;
+        in.altitude = seen_at((float)plant.seen_mm);
         in.height_time_us = plant.seen_us + clock_us;
         in.height_sequence++;
     }
@@ -366,7 +372,7 @@ static void direct(float height_mm, bool is_new)
     plant.time_us += 100000U;
     if (is_new) {
         in.height_valid = true;
-        in.altitude.height_mm = height_mm;
+        in.altitude = seen_at(height_mm);
         in.height_time_us = plant.time_us + clock_us;
         in.height_sequence++;
     }
@@ -452,7 +458,7 @@ void test_a_change_of_law_with_release_scan_waits_for_the_next_height(void)
 {
     set(PARAMETER_RELEASE, (float)RELEASE_SCAN);
     direct_flight();
-    for (int i = 0; i < 20; i++) {
+    for (int i = 0; i < 10; i++) {
         direct(420.0F, true);
     }
     const float before_n = out.thrust_n;
@@ -694,7 +700,8 @@ void test_the_hover_thrust_is_found_in_flight_and_given_up_on_the_ground(void)
     }
 }
 
-/* 0.06 N/s beyond it, as fast as a battery falls. */
+/* 0.06 N/s beyond it, as fast as a battery falls. Not for longer than 4 s: heights without noise that stand
+ * still look like those of a blocked beam. */
 void test_the_hover_thrust_leaves_a_newton_and_a_half_about_gravity_slowly(void)
 {
     board(9.5, 2.4);
@@ -703,8 +710,8 @@ void test_the_hover_thrust_leaves_a_newton_and_a_half_about_gravity_slowly(void)
     hover_at(0.8F);
     const float before_n = flight.where.hover.thrust_n;
     TEST_ASSERT_TRUE(before_n >= 8.5F && before_n < 9.0F);
-    run(5.0);
-    TEST_ASSERT_FLOAT_WITHIN(0.02F, before_n + 0.3F, flight.where.hover.thrust_n);
+    run(4.0);
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, before_n + 0.24F, flight.where.hover.thrust_n);
     set(PARAMETER_GRAV, 11.0F);
     run(0.2);
     TEST_ASSERT_TRUE(flight.where.hover.thrust_n >= 9.5F && flight.where.hover.thrust_n <= 11.76F);
@@ -929,9 +936,9 @@ static void any_height(bool flown)
     if (any(10) < 9) {
         in.height_sequence++;
         in.height_time_us = in.now_us - any(120000);
-        in.altitude.height_mm = any(20) == 0 ? wrong[any(6)]
-                                : flown      ? 300.0F + (float)any(900)
-                                             : (float)any(4100) - 100.0F;
+        in.altitude = seen_at(any(20) == 0 ? wrong[any(6)]
+                              : flown      ? 300.0F + (float)any(900)
+                                           : (float)any(4100) - 100.0F);
     }
 }
 

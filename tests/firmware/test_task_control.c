@@ -540,7 +540,9 @@ void test_on_the_ground_the_pulse_is_idle_and_the_status_says_so(void)
 static void climb(uint16_t wait)
 {
     altitude.scan_valid = true;
+    altitude.altitude.valid = true;
     altitude.altitude.height_mm = (wait < 40U) ? 15.0F * (float)wait : 600.0F;
+    altitude.altitude.slant_mm = 100.0F + altitude.altitude.height_mm;
     altitude.arrival_us = now_us + 100000U;
     altitude.sequence++;
     imu.ready = true;

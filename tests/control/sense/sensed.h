@@ -20,6 +20,7 @@ static verdict_t verdict;
 
 static inline void sensed_begin(void)
 {
+    memset(&senses, 0, sizeof senses);
     senses_init(&senses);
     memset(&verdict, 0, sizeof verdict);
 }

@@ -131,7 +131,7 @@ void test_before_the_first_scan_nobody_lies_and_after_it_hardly_anybody(void)
     TEST_ASSERT_EQUAL_FLOAT(0.0F, likeliest_lie());
     scan();
     TEST_ASSERT_FLOAT_WITHIN(1.0e-3F, 1.0e-3F, likeliest_lie());
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 1.0F, belief_of_two(&belief, 7U));
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 1.0F, belief_of_honest(&belief, 7U, 2U));
 }
 
 /* Any mirror, near and far, with noise that the mirrors share and with noise of their own. */
@@ -195,7 +195,7 @@ void test_in_a_healthy_flight_over_steps_hardly_a_scan_disbelieves_a_mirror(void
                 hover(1);
                 scans++;
                 disbelieved += likeliest_lie() > 0.5F;
-                alone += belief_of_two(&belief, 7U) < 0.99F;
+                alone += belief_of_honest(&belief, 7U, 2U) < 0.99F;
             }
         }
     }
@@ -431,7 +431,9 @@ void test_two_are_two_of_those_that_were_asked_for(void)
     hover(30);
     world.blocked_mm[MIRROR_AFT] = 300.0F;
     hover(30);
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.0F, belief_of_two(&belief, 1U << MIRROR_FRONT | 1U << MIRROR_FORE));
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F, belief_of_two(&belief, 1U << MIRROR_FRONT | 1U << MIRROR_AFT));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, belief_of_two(&belief, 1U << MIRROR_FRONT));
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.0F,
+                             belief_of_honest(&belief, 1U << MIRROR_FRONT | 1U << MIRROR_FORE, 2U));
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F,
+                             belief_of_honest(&belief, 1U << MIRROR_FRONT | 1U << MIRROR_AFT, 2U));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, belief_of_honest(&belief, 1U << MIRROR_FRONT, 2U));
 }

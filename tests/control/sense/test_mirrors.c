@@ -230,6 +230,57 @@ void test_a_mirror_that_repeats_its_scan_is_left_out(void)
     }
 }
 
+static bool tells(float slant_mm, uint16_t good_rays, float spread_mm)
+{
+    const altitude_t shown[MIRROR_COUNT] = {[MIRROR_FRONT] = {.valid = true,
+                                                              .height_mm = slant_mm - 200.0F,
+                                                              .slant_mm = slant_mm,
+                                                              .good_rays = good_rays,
+                                                              .spread_mm = spread_mm}};
+
+    return mirrors_scan(&mirrors, shown, gap_s, age_s, true, false);
+}
+
+void test_a_group_that_repeats_every_digit_tells_nothing_also_without_a_spread(void)
+{
+    TEST_ASSERT_TRUE(tells(700.0F, 2U, 0.0F));
+    TEST_ASSERT_FALSE(tells(700.0F, 2U, 0.0F));
+}
+
+void test_a_slant_or_a_spread_that_differs_is_another_scan(void)
+{
+    TEST_ASSERT_TRUE(tells(700.0F, 35U, 9.0F));
+    TEST_ASSERT_TRUE(tells(700.1F, 35U, 9.0F));
+    TEST_ASSERT_TRUE(tells(700.1F, 35U, 9.1F));
+    TEST_ASSERT_TRUE(tells(700.0F, 35U, 9.0F)); /* that before the latest */
+}
+
+void test_one_ray_alone_is_no_copy_of_another(void)
+{
+    TEST_ASSERT_TRUE(tells(700.0F, 1U, 0.0F));
+    TEST_ASSERT_TRUE(tells(700.0F, 1U, 0.0F));
+}
+
+void test_a_copy_tells_nothing_however_often_it_comes(void)
+{
+    TEST_ASSERT_TRUE(tells(700.0F, 35U, 9.0F));
+    for (uint32_t i = 0; i < 70000U; i++) { /* more than a counter of 16 bits holds */
+        TEST_ASSERT_FALSE(tells(700.0F, 35U, 9.0F));
+    }
+    TEST_ASSERT_TRUE(tells(700.0F, 35U, 8.0F));
+}
+
+void test_what_is_out_of_reach_tells_nothing_and_leaves_nothing_behind(void)
+{
+    static const float odd_mm[] = {5000.1F, NAN, INFINITY, -INFINITY, 1e38F, -1e38F};
+
+    for (unsigned i = 0U; i < sizeof odd_mm / sizeof odd_mm[0]; i++) {
+        TEST_ASSERT_FALSE(tells(odd_mm[i] + 200.0F, 35U, (float)i));
+        TEST_ASSERT_TRUE(tells(700.0F, 35U, (float)i));
+        TEST_ASSERT_FLOAT_WITHIN(0.01F, 500.0F, mirrors.altitude.height_mm);
+    }
+}
+
 /* What the accelerometer has told counts when the rays are so old, once, and only while it is believed. */
 void test_two_that_agree_are_known_to_agree_and_one_alone_is_not(void)
 {
@@ -314,7 +365,7 @@ void test_a_mirror_that_is_disbelieved_is_doubted_at_once_and_lies_when_that_las
  * of it, plus a lie. */
 static struct {
     float height_mm[STEPS], speed_mps, touch_mps2, lie_mps2, blocked_mm;
-    unsigned step, seed;
+    unsigned step, swings, seed;
 } vehicle;
 
 static float noise_mm(void)
@@ -359,7 +410,9 @@ static void vehicle_moves(float mps2)
 static void vehicle_swings(int scans)
 {
     for (int k = 0; k < scans; k++) {
-        vehicle_moves((k % 20 < 5 || k % 20 >= 15) ? 0.5F : -0.5F);
+        const unsigned phase = vehicle.swings++ % 20U;
+
+        vehicle_moves((phase < 5U || phase >= 15U) ? 0.5F : -0.5F);
     }
 }
 
