@@ -357,11 +357,13 @@ static bool take_off(est_law_t *law, const parameters_t *parameters)
 }
 
 /* A command acts after the dead time, and then the motors lag. */
-static float over_ground_to_come_m(const est_law_t *law, float setpoint_m)
+static float over_ground_to_come_m(const est_law_t *law, const cascade_gains_t *gains, float setpoint_m)
 {
+    const ahead_reach_t reach = {.up_m = gains->up_mps / gains->height_per_s,
+                                 .down_m = gains->down_mps / gains->height_per_s};
     const uint32_t lag_us = (uint32_t)(law->actuator.lag_s * 1.0e6F);
 
-    return ahead_setpoint_m(&law->ahead, setpoint_m, law->now_us + law->actuator.delay_us + lag_us);
+    return ahead_setpoint_m(&law->ahead, &reach, setpoint_m, law->now_us + law->actuator.delay_us + lag_us);
 }
 
 static float speed_setpoint_mps(est_law_t *law, const parameters_t *parameters, const cascade_gains_t *gains,
@@ -384,7 +386,8 @@ static float speed_setpoint_mps(est_law_t *law, const parameters_t *parameters, 
         law->terrain.arrived_m = reference_m;
     }
     law->terrain.ignores = !follows && law->terrain.arrived_m == reference_m;
-    return cascade_speed_to(gains, state, follows ? over_ground_to_come_m(law, setpoint_m) : setpoint_m);
+    return cascade_speed_to(gains, state,
+                            follows ? over_ground_to_come_m(law, gains, setpoint_m) : setpoint_m);
 }
 
 /* The thrust on the ground: of the ramp, or of its end. */

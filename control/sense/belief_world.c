@@ -57,10 +57,26 @@ typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BEL
 
 /* ---- densities */
 
-/* What one set of honest mirrors shows without a step: n innovations, their sum and that of their squares. */
+/* What a set of mirrors shows: n innovations, their sum and that of their squares. */
 typedef struct {
     float n, sum_mm, squares_mm2;
+    float of_noise; /* density of none of them, each with its own noise */
 } shown_t;
+
+static shown_t shown_by(uint16_t mirrors, const float off_mm[MIRROR_COUNT])
+{
+    shown_t shown = {.of_noise = 1.0F};
+
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        if (belief_has(mirrors, m)) {
+            shown.n += 1.0F;
+            shown.sum_mm += off_mm[m];
+            shown.squares_mm2 += off_mm[m] * off_mm[m];
+            shown.of_noise *= PER_MM;
+        }
+    }
+    return shown;
+}
 
 /* Normal density of these, in that of as many without motion or innovation: BELIEF_NOISE_MM each, and a
  * shared motion. With equal noises the matrix is inverted by hand (Sherman and Morrison 1950). norm: of
@@ -162,18 +178,13 @@ static float add_motions(const belief_world_t *world, ways_t *ways, const belief
 /* The way in which the terrain steps under these mirrors. */
 static void add_way(const belief_world_t *world, ways_t *ways, const belief_scan_t *scan, uint16_t steps)
 {
-    shown_t shown = {.n = 0.0F};
-    float density = 1.0F;
+    const shown_t shown = shown_by(ways->honest & (uint16_t)~steps, ways->off_mm);
+    float density = shown.of_noise;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (belief_has(steps, m)) {
-            density *= ways->step[m];
-        } else if (belief_has(ways->honest, m)) {
-            density *= (1.0F - STEP_SHARE) * PER_MM;
-            shown.n += 1.0F;
-            shown.sum_mm += ways->off_mm[m];
-            shown.squares_mm2 += ways->off_mm[m] * ways->off_mm[m];
-        }
+        density *= belief_has(steps, m)          ? ways->step[m]
+                   : belief_has(ways->honest, m) ? 1.0F - STEP_SHARE
+                                                 : 1.0F;
     }
     density = add_motions(world, ways, scan, &shown, density);
     ways->density += density;
@@ -184,20 +195,11 @@ static void add_way(const belief_world_t *world, ways_t *ways, const belief_scan
 
 /* Density of constants that share one noise. off_mm: from what each repeats. Where one noise is shared and
  * where each has its own is not known: both are as likely, of what lies and of what stands. */
-static float density_of_shared(const float *off_mm, uint16_t mirrors)
+static float density_of_shared(const float off_mm[MIRROR_COUNT], uint16_t mirrors)
 {
-    shown_t shown = {.n = 0.0F};
-    float density = 1.0F;
+    const shown_t shown = shown_by(mirrors, off_mm);
 
-    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (belief_has(mirrors, m)) {
-            density *= PER_MM;
-            shown.n += 1.0F;
-            shown.sum_mm += off_mm[m];
-            shown.squares_mm2 += off_mm[m] * off_mm[m];
-        }
-    }
-    return density * density_of_motion(&shown, SHARED_MM, norm_of_motion(shown.n, SHARED_MM));
+    return shown.of_noise * density_of_motion(&shown, SHARED_MM, norm_of_motion(shown.n, SHARED_MM));
 }
 
 static bool are_several(uint16_t mirrors)
@@ -211,16 +213,11 @@ static void add_stand(const belief_world_t *world, ways_t *ways, const belief_sc
     const float sound = world->motions[BELIEF_STANDS] * ways->of_felt[BELIEF_STANDS];
     const float lies = world->motions[BELIEF_FELT_LIES] * motions[BELIEF_STANDS].share *
                        ways->of_felt[BELIEF_FELT_LIES];
+    const shown_t shown = shown_by(ways->honest, ways->off_mm);
     float density = 1.0F;
-    float sum_mm = 0.0F;
-    float n = 0.0F;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (belief_has(ways->honest, m)) {
-            density *= scan->height[m];
-            sum_mm += ways->off_mm[m];
-            n += 1.0F;
-        }
+        density *= belief_has(ways->honest, m) ? scan->height[m] : 1.0F;
     }
     if (are_several(ways->honest)) {
         density = 0.5F * (density + density_of_shared(scan->height_off_mm, ways->honest));
@@ -228,7 +225,7 @@ static void add_stand(const belief_world_t *world, ways_t *ways, const belief_sc
     ways->density += (sound + lies) * density;
     ways->motions[BELIEF_STANDS] = sound * density;
     ways->motions[BELIEF_FELT_LIES] = lies * density;
-    ways->moved_mm += density * ((sound + lies) * sum_mm / at_least(n, 1.0F) +
+    ways->moved_mm += density * ((sound + lies) * shown.sum_mm / at_least(shown.n, 1.0F) +
                                  lies * ways->foretold_mm[BELIEF_FELT_LIES]);
 }
 

@@ -5,6 +5,7 @@
  * which took the estimator off its track. */
 #include "control/sense/mirrors.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "control/between.h"
@@ -96,7 +97,8 @@ static uint16_t believe(mirrors_t *mirrors, const altitude_t *shown, float gap_s
     }
     belief_scan(&mirrors->belief, beams, gap_s, felt);
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        const bool lies = belief_of_lie(&mirrors->belief, (mirror_t)m) > LIES;
+        mirrors->lies[m] = belief_of_lie(&mirrors->belief, (mirror_t)m);
+        const bool lies = mirrors->lies[m] > LIES;
 
         mirrors->disbelieved_s[m] = lies ? at_most(mirrors->disbelieved_s[m] + gap_s, DISBELIEVED_MOST_S)
                                          : 0.0F;
@@ -127,12 +129,13 @@ static float nearer_of(const float heights_mm[MIRROR_COUNT], const altitude_t *b
     return (before->valid && before->height_mm > middle_mm) ? high_mm : low_mm;
 }
 
-/* Writes how much each of these mirrors counts. */
-static void weigh(float weights[MIRROR_COUNT], const altitude_t *shown, uint16_t voters,
-                  const altitude_t *before)
+/* Writes how much each of these mirrors counts. Returns those that tell something and do not count. */
+static uint16_t weigh(float weights[MIRROR_COUNT], const mirrors_t *mirrors, const altitude_t *shown,
+                      uint16_t voters)
 {
     float heights_mm[MIRROR_COUNT];
     uint16_t count = 0U;
+    uint16_t left_out = 0U;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         if (has(voters, m)) {
@@ -140,25 +143,19 @@ static void weigh(float weights[MIRROR_COUNT], const altitude_t *shown, uint16_t
         }
     }
     const float centre_mm = (count == 3U)   ? middle_of(heights_mm)
-                            : (count == 2U) ? nearer_of(heights_mm, before)
+                            : (count == 2U) ? nearer_of(heights_mm, &mirrors->altitude)
                                             : heights_mm[0];
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         const float off = (shown[m].height_mm - centre_mm) / RELIEF_MM;
+        const bool counts = has(voters, m) && fabsf(off) < RELIEF_SIGMAS;
+        const float honest = at_least(1.0F - mirrors->lies[m], FLT_EPSILON);
 
-        weights[m] = (has(voters, m) && fabsf(off) < RELIEF_SIGMAS) ? expf(-0.5F * off * off) : 0.0F;
-    }
-}
-
-static uint16_t left_out_of(const altitude_t *shown, const float weights[MIRROR_COUNT])
-{
-    uint16_t set = 0U;
-
-    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (shown[m].valid && weights[m] == 0.0F) {
-            set |= (uint16_t)(1U << m);
+        weights[m] = counts ? honest * expf(-0.5F * off * off) : 0.0F;
+        if (shown[m].valid && !counts) {
+            left_out |= (uint16_t)(1U << m);
         }
     }
-    return set;
+    return left_out;
 }
 
 bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float age_s, bool felt,
@@ -173,9 +170,8 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
         mirrors->left_out = 0U;
         return false;
     }
-    weigh(weights, shown, voters, &mirrors->altitude);
+    mirrors->left_out = weigh(weights, mirrors, shown, voters);
     mirrors->altitude = altitude_mean(shown, weights, MIRROR_COUNT);
-    mirrors->left_out = left_out_of(shown, weights);
     const belief_t *belief = &mirrors->belief;
     const float honest = belief_of_honest(belief, voters, 2U);
     const float none = belief_of_none(belief, voters);
@@ -195,7 +191,7 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
 uint16_t mirrors_tell(const mirrors_t *mirrors, float lies[MIRROR_COUNT])
 {
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        lies[m] = belief_of_lie(&mirrors->belief, (mirror_t)m);
+        lies[m] = mirrors->lies[m];
     }
     return mirrors->left_out;
 }

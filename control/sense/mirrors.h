@@ -37,6 +37,7 @@ typedef struct {
     bool felt_lies;    /* the accelerometer does, with 99 % */
     bool moves;        /* the vehicle does, with 99 % */
     uint16_t left_out; /* bits: mirrors of that scan that told something, and do not count in altitude */
+    float lies[MIRROR_COUNT];               /* the probability that each lies */
     float disbelieved_s[MIRROR_COUNT];      /* how long each has been, at most 10 s */
     mirror_digits_t latest[MIRROR_COUNT];   /* of each mirror, to find copies */
     mirrors_motion_t felt, pushed, dragged; /* m/s by the accelerometer, by the thrust; share by the drag */

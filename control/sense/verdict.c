@@ -23,26 +23,10 @@ static void forget(verdict_t *verdict, senses_t *senses)
     verdict->agreed_s = 0.0F;
 }
 
-/* Writes the reason of each of the given doubts. */
-static void give_reason(verdict_t *verdict, uint16_t doubt, verdict_reason_t reason)
-{
-    for (uint16_t k = 0U; k < VERDICT_DOUBTS; ++k) {
-        if ((doubt & (1U << k)) != 0U) {
-            verdict->reasons[k] = reason;
-        }
-    }
-}
-
-static void set_doubt(verdict_t *verdict, uint16_t doubt, verdict_reason_t reason)
-{
-    verdict->doubts |= doubt;
-    give_reason(verdict, doubt, reason);
-}
-
-static void clear_doubt(verdict_t *verdict, uint16_t doubt)
+static void end_doubt(verdict_t *verdict, senses_t *senses, uint16_t doubt)
 {
     verdict->doubts &= (uint16_t)~doubt;
-    give_reason(verdict, doubt, VERDICT_NONE);
+    forget(verdict, senses);
 }
 
 void verdict_rest(verdict_t *verdict, const accelerometer_t *accelerometer)
@@ -50,22 +34,16 @@ void verdict_rest(verdict_t *verdict, const accelerometer_t *accelerometer)
     const rest_t rest = accelerometer_judge_rest(accelerometer);
 
     if (rest == REST_UNFIT && (verdict->doubts & DOUBT_IMU) == 0U) {
-        set_doubt(verdict, DOUBT_IMU, VERDICT_REST);
+        verdict->doubts |= DOUBT_IMU;
+        verdict->why_imu = VERDICT_REST;
     } else if (rest == REST_FIT) {
-        clear_doubt(verdict, DOUBT_IMU);
+        verdict->doubts &= (uint16_t)~DOUBT_IMU;
     }
 }
 
 void verdict_order(verdict_t *verdict, senses_t *senses)
 {
-    clear_doubt(verdict, DOUBT_SIGHT | DOUBT_THRUST);
-    forget(verdict, senses);
-}
-
-static void end_doubt(verdict_t *verdict, senses_t *senses, uint16_t doubt)
-{
-    clear_doubt(verdict, doubt);
-    forget(verdict, senses);
+    end_doubt(verdict, senses, DOUBT_SIGHT | DOUBT_THRUST);
 }
 
 /* The thrust counts again after enough agreement. */
@@ -79,14 +57,14 @@ static void judge_thrust_again(verdict_t *verdict, senses_t *senses, const rule_
 
 static void doubt_sight(verdict_t *verdict, senses_t *senses, const rule_case_t *c)
 {
-    set_doubt(verdict, DOUBT_SIGHT, VERDICT_BLIND);
+    verdict->doubts |= DOUBT_SIGHT;
     verdict->lost_m = rules_lost_m(c);
     forget(verdict, senses);
 }
 
 static void doubt_thrust(verdict_t *verdict, senses_t *senses, const command_t *command)
 {
-    set_doubt(verdict, DOUBT_THRUST, VERDICT_NO_EFFECT);
+    verdict->doubts |= DOUBT_THRUST;
     verdict->held_n = verdict->sure_n; /* in vain the hover thrust learns what is not so */
     verdict->held_down = command->wanted_m < 0.0F;
     forget(verdict, senses);
@@ -95,7 +73,8 @@ static void doubt_thrust(verdict_t *verdict, senses_t *senses, const command_t *
 static void judge_imu(verdict_t *verdict, senses_t *senses)
 {
     if ((verdict->doubts & DOUBT_IMU) == 0U && senses->mirrors.felt_lies) {
-        set_doubt(verdict, DOUBT_IMU, VERDICT_ALONE);
+        verdict->doubts |= DOUBT_IMU;
+        verdict->why_imu = VERDICT_ALONE;
         forget(verdict, senses);
     }
 }
@@ -166,10 +145,11 @@ float verdict_speed_mps(const verdict_t *verdict, const senses_t *senses)
 
 verdict_reason_t verdict_reason(const verdict_t *verdict)
 {
-    for (uint16_t k = 0U; k < VERDICT_DOUBTS; ++k) {
-        if (verdict->reasons[k] != VERDICT_NONE) {
-            return verdict->reasons[k];
-        }
+    if ((verdict->doubts & DOUBT_SIGHT) != 0U) {
+        return VERDICT_BLIND;
     }
-    return VERDICT_NONE;
+    if ((verdict->doubts & DOUBT_IMU) != 0U) {
+        return verdict->why_imu;
+    }
+    return (verdict->doubts != 0U) ? VERDICT_NO_EFFECT : VERDICT_NONE;
 }

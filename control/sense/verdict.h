@@ -19,17 +19,14 @@
 #include "control/sense/rules.h"
 #include "control/sense/senses.h"
 
-#define VERDICT_DOUBTS 3U /* SIGHT, IMU, THRUST */
-
 typedef struct {
-    uint16_t doubts; /* DOUBT_* */
-    verdict_reason_t
-        reasons[VERDICT_DOUBTS]; /* of the doubts SIGHT, IMU, THRUST; VERDICT_NONE: not doubted */
-    float lost_m;                /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
-    float agreed_s;              /* how long heights and witnesses have agreed during a doubt */
-    float sure_n;                /* hover thrust when the thrust last did not push in vain */
-    float held_n;                /* the same, when DOUBT_THRUST rose */
-    bool held_down;              /* the law wanted to descend at that instant */
+    uint16_t doubts;          /* DOUBT_* */
+    verdict_reason_t why_imu; /* of DOUBT_IMU, while there is one */
+    float lost_m;             /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
+    float agreed_s;           /* how long heights and witnesses have agreed during a doubt */
+    float sure_n;             /* hover thrust when the thrust last did not push in vain */
+    float held_n;             /* the same, when DOUBT_THRUST rose */
+    bool held_down;           /* the law wanted to descend at that instant */
 } verdict_t;
 
 /* After the frames of a cycle: an accelerometer that does not measure g at rest is doubted. */
@@ -50,7 +47,7 @@ bool verdict_felt_valid(const verdict_t *verdict, const senses_t *senses);
  * when there is none. */
 float verdict_speed_mps(const verdict_t *verdict, const senses_t *senses);
 
-/* Rule of the first doubt, in the order SIGHT, IMU, THRUST; VERDICT_NONE: no doubt. */
+/* Reason of the first doubt, in the order SIGHT, IMU, THRUST; VERDICT_NONE: no doubt. */
 verdict_reason_t verdict_reason(const verdict_t *verdict);
 
 #endif

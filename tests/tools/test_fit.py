@@ -135,10 +135,10 @@ class Fit(unittest.TestCase):
             self.assertNotIn("volts_power", model.Likelihood("THRUST", other).names)
 
     def test_a_flight_that_the_supervisor_lowered_now_and_then_is_one_stretch(self):
-        vehicle = {"hover_thrust": 7.8647, "tau": 0.1304, "tdelay": 0.0177, "damping": 1.508, "gain": 1.2455, "common_noise": 5.08}
+        vehicle = {"hover_thrust": 8.8, "tau": 0.15, "tdelay": 0.03, "damping": 1.2, "gain": 1.25, "common_noise": 5}
         path = self.dir / "lowered.csv"
         words = [word for name, value in vehicle.items() for word in ("--set", f"plant.{name}={value}")]
-        subprocess.run([PROGRAM, "fly", "experiment", "--seed", "301000701", *words, "--csv", path], check=False,
+        subprocess.run([PROGRAM, "fly", "experiment", "--seed", "2", *words, "--csv", path], check=False,
                        stdout=subprocess.DEVNULL)
         self.assertIn(",LOWERING,", path.read_text())
         found = flight_log.stretches(path)
@@ -176,18 +176,19 @@ class Fit(unittest.TestCase):
         self.assertIn("no accelerations", done.stderr)
 
     def replay(self, log, *words):
-        """(rms of the thrust in state FLYING less the flown one, what was told)."""
+        """(nine tenths of the thrusts in state FLYING are as near to the flown ones, what was told)."""
         out = self.dir / "replayed.csv"
         done = subprocess.run([PROGRAM, "replay", log, *words, "--csv", out], capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
         rows = [row.split(",") for row in out.read_text().splitlines()]
         thrust, flown, state = (rows[0].index(name) for name in ("thrust_n", "flown_n", "state"))
-        off = [float(row[thrust]) - float(row[flown]) for row in rows[1:] if row[state] == "FLYING"]
-        self.assertGreater(len(off), 60)
-        return (sum(x * x for x in off) / len(off))**0.5, done.stderr
+        off_n = sorted(abs(float(row[thrust]) - float(row[flown])) for row in rows[1:] if row[state] == "FLYING")
+        self.assertGreater(len(off_n), 60)
+        return off_n[len(off_n) * 9 // 10], done.stderr
 
     def test_replay_of_a_log_flies_it_open_loop_and_names_what_is_not_in_it(self):
-        # Half of the flights are below 0.06 N (seeds 4711 to 4726). What the log lacks can turn a vote of the mirrors: 1 of 16 lands by that.
+        # 14 of 16 flights (seeds 4711 to 4726). On a ramp what the log lacks can turn a vote of the mirrors or a gate of the estimator: then
+        # the thrust is another one for half a second.
         same_n = [self.replay(self.fly(seed, {}, "est-60cm-ramp"))[0] for seed in range(4711, 4717)]
         self.assertLess(statistics.median(same_n), 0.1)
         log = self.fly(4717, {}, "est-60cm-ramp")

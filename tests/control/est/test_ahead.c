@@ -56,7 +56,9 @@ static void scan(const float grounds_m[MIRROR_COUNT], uint16_t valid, float sigm
 
 static float setpoint_of_m(float setpoint_m)
 {
-    return ahead_setpoint_m(&ahead, setpoint_m, now_us + LATER_US);
+    const ahead_reach_t reach = {.up_m = 0.35F, .down_m = 0.5F}; /* VUP and VDN over POSK, as delivered */
+
+    return ahead_setpoint_m(&ahead, &reach, setpoint_m, now_us + LATER_US);
 }
 
 static float rise_m(void)
