@@ -2,7 +2,7 @@
  * So the vote does not ask who is right, but which height the vehicle's middle most probably has. It is a
  * mean about the middle one, whose weights fall smoothly (a redescending M-estimate, Huber 1981). With a
  * limit in place of the weights the height jumped by 35 mm whenever another pair lay nearest: on slopes,
- * which took the estimator off its track. */
+ * which took the estimator off its track. A mirror also counts as much as it is probably honest. */
 #include "control/sense/mirrors.h"
 
 #include <float.h>

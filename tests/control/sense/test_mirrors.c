@@ -281,6 +281,30 @@ void test_what_is_out_of_reach_tells_nothing_and_leaves_nothing_behind(void)
     }
 }
 
+/* Half believed, it is still among the others, and moves the height less than they do. */
+void test_a_mirror_counts_as_much_as_it_is_probably_honest(void)
+{
+    bool half = false;
+
+    for (int k = 0; k < 40; k++) {
+        const float at_mm = 600.0F + 15.0F * (float)((k * 7) % 5);
+        const float blocked_mm = 630.0F + (float)(k % 2);
+        const altitude_t altitude = scan(at_mm, at_mm + 1.0F, (k < 5) ? at_mm - 1.0F : blocked_mm);
+        float lies[MIRROR_COUNT];
+
+        if ((mirrors_tell(&mirrors, lies) & (1U << MIRROR_FORE)) == 0U && lies[MIRROR_FORE] > 0.05F) {
+            const float honest = 1.0F - lies[MIRROR_FORE];
+            const float equal_mm = (2.0F * at_mm + 1.0F + blocked_mm) / 3.0F;
+            const float soft_mm = (2.0F * at_mm + 1.0F + honest * blocked_mm) / (2.0F + honest);
+
+            half = true;
+            TEST_ASSERT_FLOAT_WITHIN(0.1F * fabsf(equal_mm - at_mm) + 0.5F, soft_mm, altitude.height_mm);
+            TEST_ASSERT_TRUE(fabsf(soft_mm - altitude.height_mm) <= fabsf(equal_mm - altitude.height_mm));
+        }
+    }
+    TEST_ASSERT_TRUE(half);
+}
+
 /* What the accelerometer has told counts when the rays are so old, once, and only while it is believed. */
 void test_two_that_agree_are_known_to_agree_and_one_alone_is_not(void)
 {
