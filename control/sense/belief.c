@@ -70,23 +70,32 @@ static void share_begun(belief_world_t *world, const belief_world_t *honest)
     take_motion(world, honest, begun);
 }
 
+/* Without a mirror that has told nothing yet. */
+static bool are_known(const belief_t *belief, uint16_t liars)
+{
+    return (liars & (uint16_t)~belief->known) == 0U;
+}
+
 static void mix(belief_t *belief, float gap_s)
 {
     belief_world_t *worlds = belief->worlds;
-    const float together = worlds[0].probability * at_most(TOGETHER_SHARE * LIES_PER_S * gap_s, 0.5F);
+    const float together = worlds[0].probability * at_most(TOGETHER_SHARE * LIES_PER_S * gap_s, 0.5F) /
+                           (float)(BELIEF_WORLDS - 1U);
 
-    worlds[0].probability -= together;
-    for (uint16_t k = 1U; k < BELIEF_WORLDS; ++k) {
-        begin_together(&worlds[k], k, together / (float)(BELIEF_WORLDS - 1U));
+    for (uint16_t k = 1U; k <= belief->known; ++k) {
+        if (are_known(belief, k)) {
+            begin_together(&worlds[k], k, together);
+            worlds[0].probability -= together;
+        }
     }
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
-            if (!belief_has(k, m)) {
+        for (uint16_t k = 0U; k <= belief->known; ++k) {
+            if (belief_has(belief->known & (uint16_t)~k, m)) {
                 turn(&worlds[k], &worlds[k | (1U << m)], m, gap_s);
             }
         }
     }
-    for (uint16_t k = 1U; k < BELIEF_WORLDS; ++k) {
+    for (uint16_t k = 1U; k <= belief->known; ++k) {
         share_begun(&worlds[k], &worlds[0]);
     }
 }
@@ -115,15 +124,6 @@ static void keep_means(belief_mean_t *slant, belief_mean_t *height, const belief
     keep_mean(height, beam->height_mm);
 }
 
-/* A mirror that tells something for the first time has its level from that. */
-static void meet(belief_t *belief, uint16_t mirror, float height_mm)
-{
-    for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
-        belief->worlds[k].level_mm[mirror] = height_mm;
-    }
-    belief->known |= (uint16_t)(1U << mirror);
-}
-
 /* A mirror that has told nothing yet makes no difference: this world is the same as that without its lie. */
 static void take_filter(belief_world_t *world, const belief_world_t *same)
 {
@@ -131,6 +131,20 @@ static void take_filter(belief_world_t *world, const belief_world_t *same)
 
     *world = *same;
     world->probability = probability;
+}
+
+/* A mirror that tells something for the first time has its level from that. */
+static void meet(belief_t *belief, uint16_t mirror, float height_mm)
+{
+    const uint16_t bit = (uint16_t)(1U << mirror);
+
+    for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
+        if ((k & bit & (uint16_t)~belief->known) != 0U) {
+            take_filter(&belief->worlds[k], &belief->worlds[k & (uint16_t)~bit]);
+        }
+        belief->worlds[k].level_mm[mirror] = height_mm;
+    }
+    belief->known |= bit;
 }
 
 static void judge(belief_t *belief, belief_scan_t *scan)
@@ -141,14 +155,8 @@ static void judge(belief_t *belief, belief_scan_t *scan)
     belief_world_look(scan, belief->slant, belief->height);
     for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
         belief_world_t *world = &belief->worlds[k];
-        const uint16_t known = k & belief->known;
 
-        if (known == k) {
-            density[k] = belief_world_scan(world, scan, k);
-        } else {
-            take_filter(world, &belief->worlds[known]);
-            density[k] = density[known];
-        }
+        density[k] = are_known(belief, k) ? belief_world_scan(world, scan, k) : density[k & belief->known];
         world->probability *= density[k];
         sum += world->probability;
     }
@@ -159,18 +167,21 @@ static void judge(belief_t *belief, belief_scan_t *scan)
 
 /* A motion that nothing tells is an acceleration. After n scans it makes n squared times the way of one scan,
  * and a rate that is wrong by n times its change in one scan. The filter corrects that by RATE_GAIN. */
-static float loosen(belief_t *belief, float gap_s)
+static void loosen(belief_t *belief, float gap_s)
 {
     const float scans = at_least(gap_s / SCAN_S, 1.0F);
     const float loose = at_least(scans * scans, 1.0F + 2.0F * belief->missed);
 
     belief->missed = at_least(scans - 1.0F, (1.0F - BELIEF_RATE_GAIN) * belief->missed);
-    return loose;
+    if (loose != belief->loose) {
+        belief->loose = loose;
+        belief_world_loosen(belief->motion, loose);
+    }
 }
 
 void belief_scan(belief_t *belief, const belief_beam_t *beams, float gap_s, belief_felt_t felt)
 {
-    belief_scan_t scan = {.beams = beams, .gap_s = gap_s, .loose = loosen(belief, gap_s), .felt = felt};
+    belief_scan_t scan = {.beams = beams, .gap_s = gap_s, .motion = belief->motion, .felt = felt};
 
     if (belief->known == 0U) {
         start(belief);
@@ -180,6 +191,7 @@ void belief_scan(belief_t *belief, const belief_beam_t *beams, float gap_s, beli
             scan.told |= (uint16_t)(1U << m);
         }
     }
+    loosen(belief, gap_s);
     mix(belief, gap_s);
     judge(belief, &scan);
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
@@ -222,7 +234,7 @@ float belief_of_motion(const belief_t *belief, uint16_t kind)
     float sum = 0.0F;
 
     for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
-        sum += belief->worlds[k].probability * belief->worlds[k].motions[kind];
+        sum += belief->worlds[k].probability * belief->worlds[k & belief->known].motions[kind];
     }
     return sum;
 }

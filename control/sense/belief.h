@@ -23,7 +23,9 @@ typedef struct {
     belief_mean_t slant[MIRROR_COUNT];    /* what a liar repeats */
     belief_mean_t height[MIRROR_COUNT];   /* what stands still on the ground */
     float missed;                         /* scans: the rate is less sure by so many */
-    uint16_t known;                       /* bits: mirrors that have told something before */
+    float loose; /* >= 1: the motions vary more by this factor, because scans were missing */
+    belief_motion_t motion[MIRROR_COUNT][BELIEF_MOTIONS]; /* by loose */
+    uint16_t known;                                       /* bits: mirrors that have told something before */
 } belief_t;
 
 /* One scan. beams: one for each mirror_t. gap_s: since the scan before, > 0. */

@@ -32,9 +32,9 @@ static const struct {
 } motions[] = {
     {0.2F, 0.0F},    /* it stands */
     {0.3F, 3.0F},    /* it flies in calm air, as the accelerometer tells */
-    {0.3F, 7.0F},    /* it flies: 2.4 m/s2 that nothing has told, in 0.1 s */
     {0.196F, 20.0F}, /* a gust, a touch, a slope that begins */
-    {0.002F, 7.0F},  /* it flies, and the thrust has no effect */
+    {0.3F, 7.0F},    /* it flies: 2.4 m/s2 that nothing has told, in 0.1 s */
+    {0.002F, 7.0F},  /* the same, and the thrust has no effect */
     {0.002F, 20.0F}, /* any of these, it stands too, and the accelerometer does not tell it */
 };
 typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BELIEF_MOTIONS) ? 1 : -1];
@@ -59,7 +59,8 @@ typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BEL
 
 /* What a set of mirrors shows: n innovations, their sum and that of their squares. */
 typedef struct {
-    float n, sum_mm, squares_mm2;
+    uint16_t n;
+    float sum_mm, squares_mm2;
     float of_noise; /* density of none of them, each with its own noise */
 } shown_t;
 
@@ -69,7 +70,7 @@ static shown_t shown_by(uint16_t mirrors, const float off_mm[MIRROR_COUNT])
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         if (belief_has(mirrors, m)) {
-            shown.n += 1.0F;
+            ++shown.n;
             shown.sum_mm += off_mm[m];
             shown.squares_mm2 += off_mm[m] * off_mm[m];
             shown.of_noise *= PER_MM;
@@ -78,23 +79,23 @@ static shown_t shown_by(uint16_t mirrors, const float off_mm[MIRROR_COUNT])
     return shown;
 }
 
-/* Normal density of these, in that of as many without motion or innovation: BELIEF_NOISE_MM each, and a
- * shared motion. With equal noises the matrix is inverted by hand (Sherman and Morrison 1950). norm: of
- * norm_of_motion(). */
-static float density_of_motion(const shown_t *shown, float sigma_mm, float norm)
+/* A motion that these share, beside the noise of each: by hand, as the noises are equal (Sherman and Morrison
+ * 1950). */
+static belief_motion_t motion_of(uint16_t n, float sigma_mm)
 {
     const float noise_mm2 = BELIEF_NOISE_MM * BELIEF_NOISE_MM;
-    const float all_mm2 = noise_mm2 + shown->n * sigma_mm * sigma_mm;
-    const float square = shown->squares_mm2 - sigma_mm * sigma_mm * shown->sum_mm * shown->sum_mm / all_mm2;
+    const float all_mm2 = noise_mm2 + (float)n * sigma_mm * sigma_mm;
 
-    return expf(-0.5F * square / noise_mm2) * norm;
+    return (belief_motion_t){.norm = sqrtf(noise_mm2 / all_mm2),
+                             .shared = 0.5F * sigma_mm * sigma_mm / (all_mm2 * noise_mm2)};
 }
 
-static float norm_of_motion(float n, float sigma_mm)
+/* Normal density of these, in that of as many without motion or innovation. */
+static float density_of_motion(float sum_mm, float squares_mm2, const belief_motion_t *motion)
 {
-    const float noise_mm2 = BELIEF_NOISE_MM * BELIEF_NOISE_MM;
+    const float half_per_mm2 = 0.5F / (BELIEF_NOISE_MM * BELIEF_NOISE_MM);
 
-    return sqrtf(noise_mm2 / (noise_mm2 + n * sigma_mm * sigma_mm));
+    return motion->norm * expf(motion->shared * sum_mm * sum_mm - half_per_mm2 * squares_mm2);
 }
 
 static float density_of_step(float step_mm)
@@ -133,50 +134,51 @@ typedef struct {
     float gained_mps;           /* change of the speed that is foretold */
     float strange_mps2; /* the accelerometer, less thrust and drag at the speed of this world, as it knows
                            them */
-    float of_felt[BELIEF_MOTIONS];     /* density of what the accelerometer tells, by kind of motion */
-    float untrue_mps;                  /* part of what the accelerometer tells that is not so, if it lies */
-    float foretold_mm[BELIEF_MOTIONS]; /* way that it has foretold, and that does not count there */
-    float density;                     /* of all ways */
-    float stepped[MIRROR_COUNT];       /* of those with a step under this mirror */
-    float moved_mm;                    /* mean of the others' innovations, times its density */
-    float motions[BELIEF_MOTIONS];     /* of those with this kind of motion */
+    float kinds[BELIEF_MOTIONS];   /* of what the accelerometer tells, with that kind of motion */
+    float untrue_mps;              /* part of what the accelerometer tells that is not so, if it lies */
+    float foretold_mm;             /* way that it has foretold then */
+    float density;                 /* of all ways */
+    float stepped[MIRROR_COUNT];   /* of those with a step under this mirror */
+    float moved_mm;                /* mean of the others' innovations, times its density */
+    float motions[BELIEF_MOTIONS]; /* of those with this kind of motion */
 } ways_t;
 
-/* As the mirrors show it if so much way was not foretold. */
-static shown_t without(const shown_t *shown, float foretold_mm)
+/* If the accelerometer lies, the way that it has foretold was not flown. */
+static float density_of_untold(const shown_t *shown, float foretold_mm, const belief_motion_t *motion)
 {
-    const float moved_mm = shown->n * foretold_mm;
+    const float moved_mm = (float)shown->n * foretold_mm;
 
-    return (shown_t){.n = shown->n,
-                     .sum_mm = shown->sum_mm + moved_mm,
-                     .squares_mm2 = shown->squares_mm2 + foretold_mm * (2.0F * shown->sum_mm + moved_mm)};
+    return density_of_motion(shown->sum_mm + moved_mm,
+                             shown->squares_mm2 + foretold_mm * (2.0F * shown->sum_mm + moved_mm), motion);
 }
 
 /* Adds the way in which the honest mirrors show this, times what the steps under the others cost. Returns its
  * density. */
-static float add_motions(const belief_world_t *world, ways_t *ways, const belief_scan_t *scan,
-                         const shown_t *shown, float density)
+static float add_motions(ways_t *ways, const belief_motion_t *motion, const shown_t *shown, float density)
 {
+    float lies = density * ways->kinds[BELIEF_FELT_LIES] * (1.0F - motions[BELIEF_STANDS].share);
     float sum = 0.0F;
+    float told = density;
 
-    for (uint16_t k = BELIEF_STANDS + 1U; k < BELIEF_MOTIONS; ++k) {
-        const float share = (k == BELIEF_FELT_LIES) ? 1.0F - motions[BELIEF_STANDS].share : 1.0F;
-        float of_motion = density * world->motions[k] * share * ways->of_felt[k];
-
-        if (shown->n > 0.0F) { /* else nothing tells the motion */
-            const shown_t of_kind = without(shown, ways->foretold_mm[k]);
-
-            of_motion *= density_of_motion(&of_kind, scan->sigma_mm[k], scan->norm[k][(uint16_t)shown->n]);
-            ways->moved_mm += of_motion * of_kind.sum_mm / shown->n;
+    for (uint16_t k = BELIEF_STANDS + 1U; k < BELIEF_FELT_LIES; ++k) {
+        if (shown->n > 0U && k != BELIEF_HELD) { /* it moves as the kind before */
+            told = density * density_of_motion(shown->sum_mm, shown->squares_mm2, &motion[k]);
         }
+        const float of_motion = told * ways->kinds[k];
+
         ways->motions[k] += of_motion;
         sum += of_motion;
     }
-    return sum;
+    if (shown->n > 0U) { /* else nothing tells the motion */
+        lies *= density_of_untold(shown, ways->foretold_mm, &motion[BELIEF_FELT_LIES]);
+        ways->moved_mm += (sum + lies) * shown->sum_mm / (float)shown->n + lies * ways->foretold_mm;
+    }
+    ways->motions[BELIEF_FELT_LIES] += lies;
+    return sum + lies;
 }
 
 /* The way in which the terrain steps under these mirrors. */
-static void add_way(const belief_world_t *world, ways_t *ways, const belief_scan_t *scan, uint16_t steps)
+static void add_way(ways_t *ways, const belief_scan_t *scan, uint16_t steps)
 {
     const shown_t shown = shown_by(ways->honest & (uint16_t)~steps, ways->off_mm);
     float density = shown.of_noise;
@@ -186,7 +188,7 @@ static void add_way(const belief_world_t *world, ways_t *ways, const belief_scan
                    : belief_has(ways->honest, m) ? 1.0F - STEP_SHARE
                                                  : 1.0F;
     }
-    density = add_motions(world, ways, scan, &shown, density);
+    density = add_motions(ways, scan->motion[(shown.n > 0U) ? shown.n - 1U : 0U], &shown, density);
     ways->density += density;
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         ways->stepped[m] += belief_has(steps, m) ? density : 0.0F;
@@ -198,8 +200,9 @@ static void add_way(const belief_world_t *world, ways_t *ways, const belief_scan
 static float density_of_shared(const float off_mm[MIRROR_COUNT], uint16_t mirrors)
 {
     const shown_t shown = shown_by(mirrors, off_mm);
+    const belief_motion_t motion = motion_of(shown.n, SHARED_MM);
 
-    return shown.of_noise * density_of_motion(&shown, SHARED_MM, norm_of_motion(shown.n, SHARED_MM));
+    return shown.of_noise * density_of_motion(shown.sum_mm, shown.squares_mm2, &motion);
 }
 
 static bool are_several(uint16_t mirrors)
@@ -208,11 +211,10 @@ static bool are_several(uint16_t mirrors)
 }
 
 /* The way in which it stands, on the ground or in calm air. */
-static void add_stand(const belief_world_t *world, ways_t *ways, const belief_scan_t *scan)
+static void add_stand(ways_t *ways, const belief_scan_t *scan)
 {
-    const float sound = world->motions[BELIEF_STANDS] * ways->of_felt[BELIEF_STANDS];
-    const float lies = world->motions[BELIEF_FELT_LIES] * motions[BELIEF_STANDS].share *
-                       ways->of_felt[BELIEF_FELT_LIES];
+    const float sound = ways->kinds[BELIEF_STANDS];
+    const float lies = ways->kinds[BELIEF_FELT_LIES] * motions[BELIEF_STANDS].share;
     const shown_t shown = shown_by(ways->honest, ways->off_mm);
     float density = 1.0F;
 
@@ -225,8 +227,8 @@ static void add_stand(const belief_world_t *world, ways_t *ways, const belief_sc
     ways->density += (sound + lies) * density;
     ways->motions[BELIEF_STANDS] = sound * density;
     ways->motions[BELIEF_FELT_LIES] = lies * density;
-    ways->moved_mm += density * ((sound + lies) * shown.sum_mm / at_least(shown.n, 1.0F) +
-                                 lies * ways->foretold_mm[BELIEF_FELT_LIES]);
+    ways->moved_mm += density * ((sound + lies) * shown.sum_mm / at_least((float)shown.n, 1.0F) +
+                                 lies * ways->foretold_mm);
 }
 
 /* What the accelerometer tells beyond the thrust depends on the speed, by the drag: a world in which the
@@ -244,19 +246,18 @@ static void feel(const belief_world_t *world, ways_t *ways, const belief_scan_t 
     ways->strange_mps2 = (1.0F + half) * (ways->gained_mps - thrust_mps) / scan->gap_s;
     const float moving = density_of_strange(ways->strange_mps2);
     for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
-        ways->of_felt[k] = moving;
-        ways->foretold_mm[k] = 0.0F;
+        ways->kinds[k] = moving;
     }
-    ways->of_felt[BELIEF_STANDS] = scan->of_stand;
+    ways->kinds[BELIEF_STANDS] = scan->of_stand;
     /* Where the thrust foretells, it is not tried whether it lies too: that would explain all. */
-    ways->of_felt[BELIEF_HELD] = felt->untold ? 0.0F : density_of_strange(felt->gained_mps / scan->gap_s);
-    ways->of_felt[BELIEF_FELT_LIES] = LIE_PER_MPS2;
+    ways->kinds[BELIEF_HELD] = felt->untold ? 0.0F : density_of_strange(felt->gained_mps / scan->gap_s);
+    ways->kinds[BELIEF_FELT_LIES] = LIE_PER_MPS2;
     /* If it lies, or tells nothing, the thrust foretells the motion. */
     ways->untrue_mps = ways->strange_mps2 * scan->gap_s;
-    ways->foretold_mm[BELIEF_FELT_LIES] = 500.0F * ways->untrue_mps * scan->gap_s;
+    ways->foretold_mm = 500.0F * ways->untrue_mps * scan->gap_s;
 }
 
-static void predict(belief_world_t *world, const ways_t *ways, const belief_scan_t *scan)
+static void predict(belief_world_t *world, ways_t *ways, const belief_scan_t *scan)
 {
     const float gained_mm_s = 1000.0F * ways->gained_mps;
 
@@ -266,6 +267,7 @@ static void predict(belief_world_t *world, const ways_t *ways, const belief_scan
     }
     for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
         world->motions[k] += MOTION_CHANGES * (motions[k].share - world->motions[k]);
+        ways->kinds[k] *= world->motions[k];
     }
 }
 
@@ -273,7 +275,7 @@ static void predict(belief_world_t *world, const ways_t *ways, const belief_scan
 static void take_back(belief_world_t *world, ways_t *ways)
 {
     const float lies = ways->motions[BELIEF_FELT_LIES] / ways->density;
-    const float foretold_mm = ways->foretold_mm[BELIEF_FELT_LIES] * lies;
+    const float foretold_mm = ways->foretold_mm * lies;
 
     world->rate_mm_s -= 1000.0F * ways->untrue_mps * lies;
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
@@ -362,10 +364,10 @@ float belief_world_scan(belief_world_t *world, const belief_scan_t *scan, uint16
         ways.off_mm[m] = scan->beams[m].height_mm - world->level_mm[m];
         ways.step[m] = belief_has(ways.honest, m) ? density_of_step(ways.off_mm[m]) : 0.0F;
     }
-    add_stand(world, &ways, scan);
+    add_stand(&ways, scan);
     for (uint16_t steps = 0U; steps <= ways.honest; ++steps) {
         if ((steps & (uint16_t)~ways.honest) == 0U) {
-            add_way(world, &ways, scan, steps);
+            add_way(&ways, scan, steps);
         }
     }
     take_back(world, &ways);
@@ -374,17 +376,20 @@ float belief_world_scan(belief_world_t *world, const belief_scan_t *scan, uint16
     return ways.density * density_of_lies(world, scan, scan->told & liars);
 }
 
+void belief_world_loosen(belief_motion_t motion[MIRROR_COUNT][BELIEF_MOTIONS], float loose)
+{
+    for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
+        for (uint16_t n = 1U; n <= MIRROR_COUNT; ++n) {
+            motion[n - 1U][k] = motion_of(n, motions[k].sigma_mm * loose);
+        }
+    }
+}
+
 void belief_world_look(belief_scan_t *scan, const belief_mean_t *slant, const belief_mean_t *height)
 {
     const float gained_mps2 = scan->felt.untold ? 0.0F : scan->felt.gained_mps / scan->gap_s;
     const float lift_mps2 = scan->felt.pushed_mps / scan->gap_s; /* no vehicle stands that its thrust lifts */
 
-    for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
-        scan->sigma_mm[k] = motions[k].sigma_mm * scan->loose;
-        for (uint16_t n = 0U; n <= MIRROR_COUNT; ++n) {
-            scan->norm[k][n] = norm_of_motion((float)n, scan->sigma_mm[k]);
-        }
-    }
     scan->of_stand = density_of_strange(gained_mps2) * density_of_strange(at_least(lift_mps2, 0.0F)) /
                      density_of_strange(0.0F);
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {

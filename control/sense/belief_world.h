@@ -16,8 +16,8 @@
 /* Of the filters: beta of Kalata 1984 for 0.5 m/s2; alpha is in belief_world.c. */
 #define BELIEF_RATE_GAIN 0.42F
 
-/* belief_world.c: it stands, flies in calm air, flies, something pushes it, somebody else flies or holds it,
- * the accelerometer lies */
+/* belief_world.c: it stands, flies in calm air, something pushes it, it flies, somebody else flies or holds
+ * it, the accelerometer lies */
 #define BELIEF_MOTIONS 6U
 #define BELIEF_STANDS 0U
 #define BELIEF_HELD 4U
@@ -53,22 +53,29 @@ typedef struct {
     float count; /* of so many, up to a most */
 } belief_mean_t;
 
+/* What mirrors share in one kind of motion, in their density: its factor, and 1/mm2 of the exponent, of the
+ * square of their sum. */
+typedef struct {
+    float norm, shared;
+} belief_motion_t;
+
 /* One scan, and what of it is alike in all worlds. */
 typedef struct {
     const belief_beam_t *beams; /* one for each mirror_t */
     uint16_t told;              /* bits: mirrors that tell something now, and did before */
     float gap_s;                /* since the scan before, > 0 */
-    float loose;                /* >= 1: the motions vary more by this factor, because scans were missing */
     belief_felt_t felt;
     float slant_off_mm[MIRROR_COUNT], height_off_mm[MIRROR_COUNT]; /* from what each repeats */
     float slant[MIRROR_COUNT], height[MIRROR_COUNT];               /* densities, if nothing moves */
-    float sigma_mm[BELIEF_MOTIONS];                /* of each kind of motion, since the scan before */
-    float norm[BELIEF_MOTIONS][MIRROR_COUNT + 1U]; /* of the density of so many honest mirrors' motion */
-    float of_stand;                                /* density of what the accelerometer tells, if it stands */
+    belief_motion_t (*motion)[BELIEF_MOTIONS]; /* since the scan before, of 1, 2 and 3 mirrors */
+    float of_stand;                            /* density of what the accelerometer tells, if it stands */
 } belief_scan_t;
 
 /* Before the first scan. */
 void belief_world_start(belief_world_t *world);
+
+/* Fills what 1, 2 and 3 mirrors share. loose: >= 1, the motions vary more by this factor. */
+void belief_world_loosen(belief_motion_t motion[MIRROR_COUNT][BELIEF_MOTIONS], float loose);
 
 /* Fills the densities of a scan whose other members are set. slant, height: means of the scans before, one
  * for each mirror_t. */

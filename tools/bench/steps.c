@@ -330,12 +330,19 @@ static void control(void)
     flight_step(&flight, &parameters, &in, &out);
 }
 
+static void see(float height_mm)
+{
+    in.altitude.valid = true;
+    in.altitude.height_mm = height_mm;
+    in.altitude.slant_mm = height_mm + 100.0F; /* the legs of the mirror */
+}
+
 static void next_cycle(void)
 {
     in.now_us += 108000U;
     in.height_time_us = in.now_us - 20000U;
     in.height_sequence++;
-    in.altitude.height_mm = in.altitude.height_mm < 600.0F ? in.altitude.height_mm + 10.0F : 595.0F;
+    see(in.altitude.height_mm < 600.0F ? in.altitude.height_mm + 10.0F : 595.0F);
     in.attitude_time_us = in.now_us - 10000U;
 }
 
@@ -344,13 +351,14 @@ static void prepare_control(void)
     parameters_init(&parameters);
     parameters.value[PARAMETER_LAW] = (float)LAW_PID;
     flight_init(&flight);
-    in = (flight_inputs_t){
-        .height_valid = true, .altitude.height_mm = 10.0F, .attitude_ready = true, .has_throttle = true};
+    in = (flight_inputs_t){.height_valid = true, .attitude_ready = true, .has_throttle = true};
     for (unsigned i = 0; i < 200; i++) {
         in.reference_m = 0.6F;
         in.reference_sequence = i < 20 ? 0 : 1;
-        in.altitude.height_mm = i < 20 ? 10.0F : in.altitude.height_mm;
         next_cycle();
+        if (i < 20U) {
+            see((i % 2U == 0U) ? 20.0F : 17.0F);
+        }
         control();
     }
     REQUIRE(out.state == FLIGHT_FLYING && out.flags == 0);
@@ -383,8 +391,7 @@ static void next_est_cycle(void)
     in.height_age_us = 70500U;
     in.height_stamp_ms += 100U;
     in.height_sequence++;
-    in.altitude.height_mm = fminf(in.altitude.height_mm + 10.0F, 600.0F);
-    in.altitude.slant_mm = in.altitude.height_mm;
+    see(in.altitude.height_mm < 600.0F ? in.altitude.height_mm + 10.0F : 595.0F);
 }
 
 static void prepare_est_control(void)

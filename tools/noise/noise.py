@@ -32,8 +32,8 @@ OWN_NOISE = ("--set", "plant.mirror_noise=3", "--set", "plant.common_noise=0")
 FITTED = {"BELIEF_NOISE_MM": (1, 15), "STEP_SHARE": (1e-3, 0.3), "STEP_MM": (50, 1000), "STEP_NEAR_SHARE": (0, 0.95),
           "STEP_NEAR_MM": (3, 80), "STEP_FAR_SHARE": (1e-4, 0.04), "MOTION_CHANGES": (0.005, 0.9), "SHARED_GAIN": (0.05, 1),
           "BELIEF_RATE_GAIN": (0.02, 1.5), "OWN_GAIN": (0.01, 1), "STRANGE_MPS2": (0.1, 5)}
-MOTIONS = {"stands, share": (0.01, 0.8), "calm, share": (0.01, 0.8), "flies, share": (0.01, 0.8), "calm, mm": (0.5, 6),
-           "flies, mm": (2, 40), "pushed, mm": (6, 300)}
+MOTIONS = {"stands, share": (0.01, 0.8), "calm, share": (0.01, 0.8), "pushed, share": (0.01, 0.8), "calm, mm": (0.5, 6),
+           "pushed, mm": (6, 300), "flies, mm": (2, 40)}
 NAMES = list(FITTED)
 DRAWN = 100_000
 FAR_MM = 4000.0     # STEP_FAR_PER_MM's
@@ -61,7 +61,8 @@ double noise_of(const float *v, long scans, double *told, float *strange)
     start(&b);
     for (long i = 0; i < scans; ++i, v += 13) {
         belief_beam_t beams[MIRROR_COUNT];
-        belief_scan_t scan = {.beams = beams, .gap_s = v[0], .loose = loosen(&b, v[0]), .felt = {false, v[1], v[2], v[3]}};
+        belief_scan_t scan = {.beams = beams, .gap_s = v[0], .motion = b.motion, .felt = {false, v[1], v[2], v[3]}};
+        loosen(&b, v[0]);
         for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
             beams[m] = (belief_beam_t){v[4 + 3 * m] != 0.0F, v[5 + 3 * m], v[6 + 3 * m]};
             scan.told |= (beams[m].valid && belief_has(b.known, m) && v[0] <= HEIGHT_LOST_S) ? (uint16_t)(1U << m) : 0U;

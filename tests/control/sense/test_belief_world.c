@@ -11,6 +11,7 @@ static belief_world_t world;
 static belief_beam_t beams[MIRROR_COUNT];
 static belief_mean_t slant[MIRROR_COUNT], height[MIRROR_COUNT];
 static belief_scan_t scan;
+static belief_motion_t motion[MIRROR_COUNT][BELIEF_MOTIONS];
 
 /* A vehicle at 500 mm that has stood for ten scans; every mirror tells. */
 void setUp(void)
@@ -23,7 +24,8 @@ void setUp(void)
         slant[m] = (belief_mean_t){700.0F, 10.0F};
         height[m] = (belief_mean_t){500.0F, 10.0F};
     }
-    scan = (belief_scan_t){.beams = beams, .told = 7U, .gap_s = GAP_S};
+    scan = (belief_scan_t){.beams = beams, .told = 7U, .gap_s = GAP_S, .motion = motion};
+    belief_world_loosen(motion, 1.0F);
 }
 
 void tearDown(void) {}
