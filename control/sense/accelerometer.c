@@ -59,7 +59,7 @@ static void keep_bias(accelerometer_t *accelerometer, float dt_s)
 
 void accelerometer_rest(accelerometer_t *accelerometer, float dt_s)
 {
-    accelerometer->in_hands_s = 0.0F;
+    accelerometer->in_hands_s = accelerometer->beyond_s = 0.0F;
     keep_bias(accelerometer, dt_s);
     accelerometer->rested_s = at_most(accelerometer->rested_s + dt_s, REST_TIME_S);
     accelerometer->rest_mps2 += at_most(dt_s / accelerometer->rested_s, 1.0F) *
@@ -129,7 +129,15 @@ void accelerometer_compare(accelerometer_t *accelerometer, float rise_m, float g
 
     witness_compare(felt, rise_m, gap_s, age_s, FELT_LEAK_PER_S * age, FELT_PULL_PER_S2 * pull);
     accelerometer->bias_mps2 -= BIAS_PULL_PER_S3 * pull * gap_s * felt->seen_m;
+    accelerometer->beyond_s = (fabsf(accelerometer->bias_mps2) < BIAS_MAX_MPS2)
+                                  ? 0.0F
+                                  : at_most(accelerometer->beyond_s + gap_s, 2.0F * REST_HELD_S);
     accelerometer->bias_mps2 = between(-BIAS_MAX_MPS2, accelerometer->bias_mps2, BIAS_MAX_MPS2);
+}
+
+bool accelerometer_is_beyond(const accelerometer_t *accelerometer)
+{
+    return accelerometer->beyond_s > REST_HELD_S;
 }
 
 bool accelerometer_is_in_hands(const accelerometer_t *accelerometer)

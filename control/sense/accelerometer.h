@@ -28,6 +28,7 @@ typedef struct {
     float kept_bias_mps2[ACCELEROMETER_BLOCKS]; /* that mean at the end of the latest seconds, oldest first */
     float block_s;                              /* time since the latter was taken */
     float bias_mps2;  /* of the accelerometer: at rest its mean, in the air corrected by the heights */
+    float beyond_s;   /* how long that has been BIAS_MAX_MPS2, at most 2 s */
     float shaken;     /* >= 1: divides the witness's innovation when the accelerometer is noisy */
     float in_hands_s; /* how long somebody has had it in his hands on the ground, at most 2 s */
     witness_t felt;
@@ -79,5 +80,8 @@ static inline float accelerometer_off_m(const accelerometer_t *accelerometer)
  * a pilot flies it, or somebody carries it; a nudge or a wrong frame is over sooner. Then the speed is
  * valid. */
 bool accelerometer_is_in_hands(const accelerometer_t *accelerometer);
+
+/* In the air the heights have told for a second that it is off by more than any bias, BIAS_MAX_MPS2. */
+bool accelerometer_is_beyond(const accelerometer_t *accelerometer);
 
 #endif

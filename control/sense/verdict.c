@@ -72,7 +72,8 @@ static void doubt_thrust(verdict_t *verdict, senses_t *senses, const command_t *
 
 static void judge_imu(verdict_t *verdict, senses_t *senses)
 {
-    if ((verdict->doubts & DOUBT_IMU) == 0U && senses->mirrors.felt_lies) {
+    if ((verdict->doubts & DOUBT_IMU) == 0U &&
+        (senses->mirrors.felt_lies || accelerometer_is_beyond(&senses->accelerometer))) {
         verdict->doubts |= DOUBT_IMU;
         verdict->why_imu = VERDICT_ALONE;
         forget(verdict, senses);

@@ -53,6 +53,13 @@ static inline void accelerometer_lies(bool lies)
     senses.mirrors.felt_lies = lies;
 }
 
+/* For so long no bias has explained what it tells. */
+static inline void bias_is_beyond_s(float beyond_s)
+{
+    senses.accelerometer.bias_mps2 = 1.6F;
+    senses.accelerometer.beyond_s = beyond_s;
+}
+
 static inline void has_agreed_s(float agreed_s)
 {
     verdict.agreed_s = agreed_s;

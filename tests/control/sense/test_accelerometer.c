@@ -127,6 +127,39 @@ void test_an_unfit_accelerometer_is_one_and_a_half_off_for_a_second(void)
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, rested(DOUBT_SIGHT | DOUBT_IMU, 1.0F, 0.0F));
 }
 
+/* Heights that stand, and an accelerometer that tells this all the time. */
+static bool is_beyond_after_s(float lie_mps2, float time_s)
+{
+    accelerometer_t told;
+
+    memset(&told, 0, sizeof told);
+    for (int k = 0; k < (int)(time_s / 0.025F + 0.5F); k++) {
+        accelerometer_move(&told, lie_mps2, false, 0.025F);
+        if (k % 4 == 3) {
+            accelerometer_compare(&told, 0.0F, 0.1F, 0.07F, true);
+        }
+    }
+    TEST_ASSERT_TRUE(fabsf(told.bias_mps2) <= 1.5F);
+    return accelerometer_is_beyond(&told);
+}
+
+void test_in_the_air_an_accelerometer_is_beyond_when_no_bias_explains_it(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        TEST_ASSERT_TRUE(is_beyond_after_s(2.3F * (float)sign, 12.0F));
+        TEST_ASSERT_FALSE(is_beyond_after_s(2.3F * (float)sign, 1.0F));
+        TEST_ASSERT_FALSE(is_beyond_after_s(1.2F * (float)sign, 600.0F));
+    }
+}
+
+void test_rest_ends_what_was_beyond(void)
+{
+    accelerometer_t told = {.beyond_s = 2.0F};
+
+    accelerometer_rest(&told, 0.025F);
+    TEST_ASSERT_FALSE(accelerometer_is_beyond(&told));
+}
+
 void test_a_pilot_that_lifts_the_vehicle_spoils_the_rest(void)
 {
     for (int standing = 0; standing < 2; standing++) {

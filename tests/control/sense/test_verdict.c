@@ -83,6 +83,15 @@ void test_an_accelerometer_that_lies_is_doubted_and_the_sums_that_it_spoilt_star
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.seen_m);
 }
 
+void test_one_whose_bias_is_beyond_any_is_doubted_too(void)
+{
+    bias_is_beyond_s(0.9F);
+    TEST_ASSERT_EQUAL_UINT16(0U, judged(0.0F, 0.0F));
+    bias_is_beyond_s(1.1F);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, judged(0.0F, 0.0F));
+    TEST_ASSERT_EQUAL(VERDICT_ALONE, verdict_reason(&verdict));
+}
+
 void test_a_lie_that_is_over_leaves_the_doubt_of_the_accelerometer_to_the_ground(void)
 {
     accelerometer_lies(true);
