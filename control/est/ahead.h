@@ -44,8 +44,8 @@ void ahead_scan(ahead_t *ahead, const terrain_heights_t *heights, float altitude
  * that is disbelieved shows no ground: nothing is known then. */
 void ahead_look(ahead_t *ahead, const estimator_t *estimator, const terrain_sight_t *sight, uint32_t rays_us);
 
-/* Errors of the height from which on the vehicle climbs and sinks no faster. Ground that is farther away asks
- * for no more, and what shows it is rather no ground. */
+/* Errors of the height from which on the vehicle climbs and sinks no faster: ground that is farther away asks
+ * for no more. */
 typedef struct {
     float up_m, down_m; /* > 0 */
 } ahead_reach_t;

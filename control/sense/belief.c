@@ -70,7 +70,8 @@ static void share_begun(belief_world_t *world, const belief_world_t *honest)
     take_motion(world, honest, begun);
 }
 
-/* Without a mirror that has told nothing yet. */
+/* None of these liars has told nothing yet. The other worlds keep their probability, and their filters are
+ * not read: meet() begins them. */
 static bool are_known(const belief_t *belief, uint16_t liars)
 {
     return (liars & (uint16_t)~belief->known) == 0U;

@@ -158,13 +158,13 @@ static float add_motions(ways_t *ways, const belief_motion_t *motion, const show
 {
     float lies = density * ways->kinds[BELIEF_FELT_LIES] * (1.0F - motions[BELIEF_STANDS].share);
     float sum = 0.0F;
-    float told = density;
+    float of_heights = density;
 
     for (uint16_t k = BELIEF_STANDS + 1U; k < BELIEF_FELT_LIES; ++k) {
         if (shown->n > 0U && k != BELIEF_HELD) { /* it moves as the kind before */
-            told = density * density_of_motion(shown->sum_mm, shown->squares_mm2, &motion[k]);
+            of_heights = density * density_of_motion(shown->sum_mm, shown->squares_mm2, &motion[k]);
         }
-        const float of_motion = told * ways->kinds[k];
+        const float of_motion = of_heights * ways->kinds[k];
 
         ways->motions[k] += of_motion;
         sum += of_motion;
@@ -292,8 +292,8 @@ static void correct_motions(belief_world_t *world, const ways_t *ways)
 }
 
 /* The heights tell the rate, and what the thrust is off by is learned at it, from the accelerometer or from
- * them. Where none tells it, the thrust
- * and the drag do; without these it is not known, and the accelerometer alone would carry it away. */
+ * them. Where none tells it, the thrust and the drag do; without these it is not known, and the accelerometer
+ * alone would carry it away. */
 static void correct_rate(belief_world_t *world, const ways_t *ways, const belief_scan_t *scan,
                          float shared_mm)
 {

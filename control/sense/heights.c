@@ -8,8 +8,15 @@
 #include "control/credible.h"
 #include "control/sense/witness.h"
 
-#define RISE_TIME_S 0.2F   /* chosen: two scans */
-#define UNSEEN_MOST_S 2.0F /* the counter stops here */
+#define RISE_TIME_S 0.2F                                   /* chosen: two scans */
+#define UNSEEN_MOST_S 2.0F                                 /* the counter stops here */
+#define BACK_MM (HEIGHT_MIN_MM + 3000.0F * HEIGHT_SIGMA_M) /* hysteresis of three sigma */
+
+bool heights_can_be(heights_t *heights, float height_mm)
+{
+    heights->below_ground = !(height_mm >= (heights->below_ground ? BACK_MM : HEIGHT_MIN_MM));
+    return !heights->below_ground;
+}
 
 height_change_t heights_change(const heights_t *heights, float height_m, float gap_s, float age_s)
 {

@@ -7,10 +7,11 @@
 #include <stdbool.h>
 
 typedef struct {
-    bool known;     /* at least one height was received */
-    float height_m; /* latest height */
-    float rise_mps; /* low-passed rate of the heights, without steps */
-    float unseen_s; /* time on the ground since the latest height, at most 2 s */
+    bool known;        /* at least one height was received */
+    float height_m;    /* latest height */
+    float rise_mps;    /* low-passed rate of the heights, without steps */
+    float unseen_s;    /* time on the ground since the latest height, at most 2 s */
+    bool below_ground; /* so low that no noise explains it: the beam is blocked */
 } heights_t;
 
 /* One height against the one before. */
@@ -23,6 +24,9 @@ typedef struct {
     bool step;        /* a step of the terrain: no witness explains the change */
     bool first_climb; /* it shows the first climb since the ground */
 } height_change_t;
+
+/* One scan, exactly once. Returns true when this can be a height: it is no less than -50 mm. */
+bool heights_can_be(heights_t *heights, float height_mm);
 
 /* What the change is, before it is taken over. step: as far as the heights alone tell. */
 height_change_t heights_change(const heights_t *heights, float height_m, float gap_s, float age_s);

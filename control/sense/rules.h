@@ -16,7 +16,7 @@ typedef enum {
     VERDICT_NONE,
     VERDICT_BLIND,     /* DOUBT_SIGHT: every mirror lies, more than 99 % */
     VERDICT_REST,      /* DOUBT_IMU: at rest the accelerometer does not measure g */
-    VERDICT_ALONE,     /* DOUBT_IMU: it lies, more than 99 % */
+    VERDICT_ALONE,     /* DOUBT_IMU: it lies, more than 99 %, or no bias explains it */
     VERDICT_NO_EFFECT, /* DOUBT_THRUST: it pushes in vain, and the accelerometer agrees with the heights */
     VERDICT_COUNT
 } verdict_reason_t;

@@ -62,6 +62,7 @@ static bool vote(sense_t *sense, const flight_inputs_t *in)
             shown[m] = in->mirrors[m];
         } else if (m == (uint16_t)MIRROR_FRONT) {
             shown[m] = in->altitude;
+            shown[m].valid = true; /* in->height_valid tells it */
         }
         if (tilt->jumped > 0U) {
             shown[m].height_mm = altitude_at_tilt(&shown[m], tilt->roll_rad, tilt->pitch_rad);
@@ -99,7 +100,7 @@ static void compare_height(sense_t *sense, const command_t *command, flight_inpu
         return;
     }
     sense->scan_sequence = in->height_sequence;
-    sense->scan_fit = tells && senses_scan(&sense->senses, &in->altitude);
+    sense->scan_fit = tells && heights_can_be(&sense->senses.heights, in->altitude.height_mm);
     if (sense->scan_fit) {
         const height_change_t change = senses_height(&sense->senses, in->altitude.height_mm * 0.001F, gap_s,
                                                      seconds_at_most(in->height_age_us, GAP_LONG_S),

@@ -117,11 +117,6 @@ void senses_thrust(senses_t *senses, const command_t *command, bool felt_valid)
     tell_thrust(senses, command, carries, felt_tells ? felt->speed_mps : 0.0F);
 }
 
-bool senses_scan(senses_t *senses, const altitude_t *altitude)
-{
-    return beam_scan(&senses->beam, altitude);
-}
-
 /* What a height means for the witnesses. At the first climb the hover thrust was not known well until now, so
  * the witness of the thrust restarts from the rate of the heights. */
 static void confirm(senses_t *s, height_change_t *change)

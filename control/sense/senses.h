@@ -16,7 +16,6 @@
 #include "control/facts.h"
 #include "control/imu_sample.h"
 #include "control/sense/accelerometer.h"
-#include "control/sense/beam.h"
 #include "control/sense/confirmation.h"
 #include "control/sense/heights.h"
 #include "control/sense/mirrors.h"
@@ -30,7 +29,6 @@ typedef struct {
     tilt_t tilt;
     sway_t sway;
     mirrors_t mirrors;
-    beam_t beam;
     heights_t heights;
     confirmation_t confirmation;
     accelerometer_t accelerometer;
@@ -49,10 +47,6 @@ void senses_frames(senses_t *senses, const command_t *command, const imu_sample_
 
 /* Moves the thrust's witness, once in each cycle. felt_valid: the accelerometer is not doubted. */
 void senses_thrust(senses_t *senses, const command_t *command, bool felt_valid);
-
-/* Checks one scan. Call exactly once for each new scan, before senses_height(). Returns true when its height
- * may be used. */
-bool senses_scan(senses_t *senses, const altitude_t *altitude);
 
 /* Compares one accepted height with both witnesses. height_m: the height. gap_s: time since the height
  * before, > 0. age_s: time since its rays were taken. believed: heights correct the accelerometer's witness.

@@ -24,7 +24,7 @@ void replay_mirrors_read(altitude_t *mirrors, const double cells[REPLAY_MIRRORS_
 
 /* Writes the heights of mirrors over level ground, where the log has the height alone. several: of all
  * mirrors; else of the front mirror. It has no rays: so good_rays is 0, and nothing is concluded from how
- * little the slant varies (sense/beam.h). */
+ * little the slant varies (sense/mirrors.h). */
 void replay_mirrors_make(altitude_t *mirrors, double height_m, bool several,
                          const altitude_geometry_t *places, const attitude_t *tilt);
 

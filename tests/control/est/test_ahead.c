@@ -137,6 +137,28 @@ void test_the_first_edge_of_all_moves_the_setpoint_little_since_the_direction_is
     TEST_ASSERT_TRUE(rise_m() < 0.06F);
 }
 
+/* A beam that is blocked far away looks like an edge of metres. */
+void test_ground_out_of_reach_asks_for_no_more_than_ground_at_it(void)
+{
+    static const float at_m[] = {0.35F, 3.0F, -0.5F, -3.0F};
+    const float level_m[MIRROR_COUNT] = {0.0F};
+    float moved_m[4];
+
+    for (int k = 0; k < 4; ++k) {
+        const float met_m[MIRROR_COUNT] = {[MIRROR_FORE] = at_m[k]};
+
+        setUp();
+        scan(level_m, ALL, 0.0F);
+        scan(met_m, ALL, 0.0F);
+        ahead.nose = 0.5F;
+        ahead.tail = 0.0F;
+        moved_m[k] = rise_m();
+    }
+    TEST_ASSERT_TRUE(moved_m[0] > 0.05F && moved_m[2] < -0.05F);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, moved_m[0], moved_m[1]);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, moved_m[2], moved_m[3]);
+}
+
 void test_a_foot_under_one_mirror_again_and_again_moves_it_little(void)
 {
     const float foot_m[MIRROR_COUNT] = {[MIRROR_FORE] = 0.25F};

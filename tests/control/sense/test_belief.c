@@ -17,6 +17,7 @@ static struct {
     float blocked_mm[MIRROR_COUNT]; /* 0: not */
     float own_mm, shared_mm;        /* noise */
     float gust_mm_s2, sway_rad;
+    bool alone; /* only the front mirror tells */
 } world;
 
 static belief_beam_t beams[MIRROR_COUNT];
@@ -80,7 +81,8 @@ static void scan_after(float gap_s)
         const float slant_mm = (world.blocked_mm[m] > 0.0F ? world.blocked_mm[m] : true_mm) + shared_mm +
                                world.own_mm * normal();
 
-        beams[m] = (belief_beam_t){true, slant_mm, slant_mm * upright - lifted_mm};
+        beams[m] = (belief_beam_t){!world.alone || m == MIRROR_FRONT, slant_mm,
+                                   slant_mm * upright - lifted_mm};
     }
     belief_scan(&belief, beams, gap_s, felt);
 }
@@ -391,6 +393,29 @@ void test_the_probabilities_are_one_together_and_none_is_lost(void)
             sum += belief.worlds[k].probability;
         }
         TEST_ASSERT_FLOAT_WITHIN(1.0e-3F, 1.0F, sum);
+    }
+}
+
+/* #LAYOUT FRONT for ten minutes, and then THREE: who has told nothing is no liar, and makes nobody one. */
+void test_mirrors_that_join_late_are_believed_and_found_out_as_ever(void)
+{
+    for (unsigned long seed = 1UL; seed <= 10UL; seed++) {
+        begin(seed);
+        world.alone = true;
+        hover(6000);
+        TEST_ASSERT_TRUE(likeliest_lie() < 0.05F);
+        world.alone = false;
+        hover(1);
+        for (unsigned k = 1U; k < BELIEF_WORLDS; k++) { /* without its lie, which is told from nothing yet */
+            TEST_ASSERT_EQUAL_FLOAT(belief.worlds[k & (1U << MIRROR_FRONT)].rate_mm_s,
+                                    belief.worlds[k].rate_mm_s);
+        }
+        hover(19);
+        TEST_ASSERT_TRUE(likeliest_lie() < 0.05F);
+        world.blocked_mm[MIRROR_FORE] = 400.0F;
+        const int scans = scans_until(1U << MIRROR_FORE, 40);
+        TEST_ASSERT_TRUE_MESSAGE(scans > 0 && scans <= 30,
+                                 "one that joined late is found within three seconds");
     }
 }
 
