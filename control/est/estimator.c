@@ -225,7 +225,7 @@ static void reset_height(estimator_t *e, float height_m)
     e->filter.estimate.terrain_mps = 0.0F;
     filter_reset_variance(&e->filter, FILTER_HEIGHT, HEIGHT_NOISE_M * HEIGHT_NOISE_M);
     filter_reset_variance(&e->filter, FILTER_TERRAIN, filter_variance_start(FILTER_TERRAIN));
-    e->rejected_count = 0U;
+    e->rejected.count = 0U;
 }
 
 static void initialise_at(estimator_t *e, float height_m)
@@ -263,18 +263,20 @@ static bool innovation_accepted(const estimator_t *e, float innovation_m)
 
 static height_outcome_t reject(estimator_t *e, float height_m, float innovation_m)
 {
-    const float apart_m = fabsf(innovation_m - e->rejected_innovation_m);
-    const bool agrees = e->rejected_count > 0U && apart_m <= INNOVATION_LIMIT_MIN_M;
+    const float apart_m = fabsf(innovation_m - e->rejected.innovation_m);
+    const uint16_t wait = dips_wait(&e->dips, innovation_m);
+    const bool lasts = e->rejected.count > 0U && e->rejected.count >= wait;
 
-    ++e->rejected_count;
-    e->rejected_innovation_m = innovation_m;
-    if (agrees) {
+    ++e->rejected.count;
+    e->rejected.innovation_m = innovation_m;
+    if (lasts && apart_m <= INNOVATION_LIMIT_MIN_M) {
         e->terrain_height_m -= innovation_m;
         reset_height(e, height_m);
         e->confirmed = true;
+        dips_step(&e->dips, innovation_m);
         return HEIGHT_TERRAIN_STEP;
     }
-    if (e->rejected_count == REJECTIONS_MAX) {
+    if (e->rejected.count >= REJECTIONS_MAX + wait) {
         reset_to_height(e, height_m);
         return HEIGHT_RESET;
     }
@@ -285,12 +287,14 @@ static height_outcome_t check_and_fuse(estimator_t *e, float height_m)
 {
     e->innovation_m = height_m - e->filter.estimate.height_m;
     roughness_step(&e->roughness, height_m, e->innovation_m, e->delayed_us);
+    dips_scan(&e->dips);
     e->confirmed = e->unchecked_count == 0U && innovation_accepted(e, e->innovation_m);
     if (e->unchecked_count == 0U && !e->confirmed) {
         return reject(e, height_m, e->innovation_m);
     }
     e->unchecked_count = (uint16_t)(e->unchecked_count - (e->unchecked_count > 0U));
-    e->rejected_count = 0U;
+    dips_over(&e->dips, e->rejected.count, e->rejected.innovation_m);
+    e->rejected.count = 0U;
     filter_correct(&e->filter, FILTER_HEIGHT, e->innovation_m,
                    HEIGHT_NOISE_M * HEIGHT_NOISE_M + roughness_variance_m2(&e->roughness));
     return HEIGHT_FUSED;
@@ -383,7 +387,7 @@ height_outcome_t estimator_fuse_over(estimator_t *e, const terrain_sight_t *sigh
     e->innovation_m = shown.innovation_m;
     e->confirmed = e->unchecked_count == 0U;
     e->unchecked_count = (uint16_t)(e->unchecked_count - (e->unchecked_count > 0U));
-    e->rejected_count = 0U;
+    e->rejected.count = 0U;
     predict_now(e);
     return HEIGHT_FUSED;
 }
@@ -420,7 +424,7 @@ void estimator_start(estimator_t *e, float height_m, float speed_mps, float bias
 
     estimator_amend(e, height_m, speed_mps, bias_mps2);
     filter_reset_variance(&e->filter, FILTER_BIAS, variance);
-    e->rejected_count = 0U;
+    e->rejected.count = 0U;
     e->unchecked_count = UNCHECKED_AFTER_RESET;
     e->initialised = true;
 }

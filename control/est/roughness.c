@@ -1,6 +1,7 @@
 /* What breaks: innovations would also contain the noise of the accelerometer; so the heights are compared
- * with each other. Over bars the filter takes small edges for speed, and after a large one the next change of
- * the height. */
+ * with each other. An edge or a wrong scan is no noise, or after some of them none would be rejected any
+ * more: a height that is off by more than a bar begins anew. Over bars the filter takes small edges for
+ * speed, and after a large one the next change of the height. */
 #include "control/est/roughness.h"
 
 #include <math.h>
@@ -23,6 +24,12 @@ void roughness_init(roughness_t *roughness)
     *roughness = (roughness_t){.noise_m = FLOOR_START_M};
 }
 
+static void keep(roughness_t *roughness, float height_m)
+{
+    roughness->previous_m[1] = roughness->previous_m[0];
+    roughness->previous_m[0] = height_m;
+}
+
 /* The second difference of white noise has six times its variance. */
 static void measure(roughness_t *roughness, float height_m)
 {
@@ -32,8 +39,6 @@ static void measure(roughness_t *roughness, float height_m)
 
     roughness->noise_m = between(FLOOR_START_M, sqrtf(variance + FLOOR_SHARE * (seen - variance)),
                                  INNOVATION_LIMIT_MAX_M);
-    roughness->previous_m[1] = roughness->previous_m[0];
-    roughness->previous_m[0] = height_m;
 }
 
 float roughness_variance_m2(const roughness_t *roughness)
@@ -57,6 +62,13 @@ static void watch_bars(roughness_t *roughness, float innovation_m, uint32_t rays
 
 void roughness_step(roughness_t *roughness, float height_m, float innovation_m, uint32_t rays_us)
 {
-    measure(roughness, height_m);
+    if (fabsf(innovation_m) > BAR_MOST_M) {
+        roughness->in_a_row = 0U;
+    } else if (roughness->in_a_row < 2U) {
+        ++roughness->in_a_row;
+    } else {
+        measure(roughness, height_m);
+    }
+    keep(roughness, height_m);
     watch_bars(roughness, innovation_m, rays_us);
 }

@@ -17,6 +17,7 @@
 
 typedef struct {
     float previous_m[2]; /* the two previous heights */
+    uint16_t in_a_row;   /* of these, since an edge or a wrong scan */
     float noise_m;       /* measured rms noise of the heights */
     float edge_m;        /* latest innovation as high as a bar */
     uint32_t edge_us;    /* instant of its rays */

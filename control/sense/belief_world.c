@@ -35,10 +35,11 @@ static const struct {
     {0.196F, 20.0F}, /* a gust, a touch, a slope that begins */
     {0.3F, 7.0F},    /* it flies: 2.4 m/s2 that nothing has told, in 0.1 s */
     {0.002F, 7.0F},  /* the same, and the thrust has no effect */
-    {0.002F, 20.0F}, /* any of these, it stands too, and the accelerometer does not tell it */
+    {0.002F, 7.0F},  /* any of these, it stands too, and the thrust tells it, not the accelerometer */
 };
 typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BELIEF_MOTIONS) ? 1 : -1];
 #define MOTION_CHANGES 0.05F /* of the scans: the kind of motion is drawn anew, by its share; a second */
+#define PUSHED_SHARE 0.2F    /* of the scans in which the accelerometer lies, as of the others */
 
 /* What a sound accelerometer tells beyond the thrust, or of a vehicle that stands: a Student t of three
  * degrees of freedom, whose percentiles make noise prints beside those of healthy flights. A Gaussian has no
@@ -57,23 +58,36 @@ typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BEL
 
 /* ---- densities */
 
+static bool are_several(uint16_t mirrors)
+{
+    return (mirrors & (mirrors - 1U)) != 0U;
+}
+
+/* A push that the accelerometer does not tell is a touch, or a rate that changes: over after one scan. It
+ * lasts where the accelerometer tells nothing: a gust. And where one mirror alone is honest: else that mirror
+ * would be the liar whenever the accelerometer lies a little. */
+static bool is_alone(uint16_t honest)
+{
+    return !are_several(honest);
+}
+
 /* What a set of mirrors shows: n innovations, their sum and that of their squares. */
 typedef struct {
     uint16_t n;
     float sum_mm, squares_mm2;
-    float of_noise; /* density of none of them, each with its own noise */
+    float density; /* of their noise, if no innovation were there */
 } shown_t;
 
 static shown_t shown_by(uint16_t mirrors, const float off_mm[MIRROR_COUNT])
 {
-    shown_t shown = {.of_noise = 1.0F};
+    shown_t shown = {.density = 1.0F};
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         if (belief_has(mirrors, m)) {
             ++shown.n;
             shown.sum_mm += off_mm[m];
             shown.squares_mm2 += off_mm[m] * off_mm[m];
-            shown.of_noise *= PER_MM;
+            shown.density *= PER_MM;
         }
     }
     return shown;
@@ -143,13 +157,17 @@ typedef struct {
     float motions[BELIEF_MOTIONS]; /* of those with this kind of motion */
 } ways_t;
 
-/* If the accelerometer lies, the way that it has foretold was not flown. */
-static float density_of_untold(const shown_t *shown, float foretold_mm, const belief_motion_t *motion)
+/* If the accelerometer lies, the way that it has foretold was not flown: it flies as the thrust tells, or
+ * something pushes it. */
+static float density_of_untold(const shown_t *shown, float foretold_mm, const belief_motion_t *motion,
+                               float pushed)
 {
     const float moved_mm = (float)shown->n * foretold_mm;
+    const float sum_mm = shown->sum_mm + moved_mm;
+    const float squares_mm2 = shown->squares_mm2 + foretold_mm * (sum_mm + shown->sum_mm);
+    const float flies = density_of_motion(sum_mm, squares_mm2, &motion[BELIEF_FELT_LIES]);
 
-    return density_of_motion(shown->sum_mm + moved_mm,
-                             shown->squares_mm2 + foretold_mm * (2.0F * shown->sum_mm + moved_mm), motion);
+    return flies + pushed * (density_of_motion(sum_mm, squares_mm2, &motion[BELIEF_PUSHED]) - flies);
 }
 
 /* Adds the way in which the honest mirrors show this, times what the steps under the others cost. Returns its
@@ -170,7 +188,8 @@ static float add_motions(ways_t *ways, const belief_motion_t *motion, const show
         sum += of_motion;
     }
     if (shown->n > 0U) { /* else nothing tells the motion */
-        lies *= density_of_untold(shown, ways->foretold_mm, &motion[BELIEF_FELT_LIES]);
+        lies *= density_of_untold(shown, ways->foretold_mm, motion,
+                                  is_alone(ways->honest) ? 1.0F : PUSHED_SHARE);
         ways->moved_mm += (sum + lies) * shown->sum_mm / (float)shown->n + lies * ways->foretold_mm;
     }
     ways->motions[BELIEF_FELT_LIES] += lies;
@@ -181,7 +200,7 @@ static float add_motions(ways_t *ways, const belief_motion_t *motion, const show
 static void add_way(ways_t *ways, const belief_scan_t *scan, uint16_t steps)
 {
     const shown_t shown = shown_by(ways->honest & (uint16_t)~steps, ways->off_mm);
-    float density = shown.of_noise;
+    float density = shown.density;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         density *= belief_has(steps, m)          ? ways->step[m]
@@ -202,12 +221,7 @@ static float density_of_shared(const float off_mm[MIRROR_COUNT], uint16_t mirror
     const shown_t shown = shown_by(mirrors, off_mm);
     const belief_motion_t motion = motion_of(shown.n, SHARED_MM);
 
-    return shown.of_noise * density_of_motion(shown.sum_mm, shown.squares_mm2, &motion);
-}
-
-static bool are_several(uint16_t mirrors)
-{
-    return (mirrors & (mirrors - 1U)) != 0U;
+    return shown.density * density_of_motion(shown.sum_mm, shown.squares_mm2, &motion);
 }
 
 /* The way in which it stands, on the ground or in calm air. */
@@ -257,6 +271,18 @@ static void feel(const belief_world_t *world, ways_t *ways, const belief_scan_t 
     ways->foretold_mm = 500.0F * ways->untrue_mps * scan->gap_s;
 }
 
+/* The kinds of motion before the scan. push_ends: probability that a push is over; see is_alone(). */
+static void draw_motion(belief_world_t *world, float push_ends)
+{
+    const float ended = (push_ends - MOTION_CHANGES) * world->motions[BELIEF_PUSHED];
+    const float anew = MOTION_CHANGES + ended;
+
+    for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
+        world->motions[k] += anew * motions[k].share - MOTION_CHANGES * world->motions[k];
+    }
+    world->motions[BELIEF_PUSHED] -= ended;
+}
+
 static void predict(belief_world_t *world, ways_t *ways, const belief_scan_t *scan)
 {
     const float gained_mm_s = 1000.0F * ways->gained_mps;
@@ -265,8 +291,8 @@ static void predict(belief_world_t *world, ways_t *ways, const belief_scan_t *sc
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         world->level_mm[m] += (world->rate_mm_s - 0.5F * gained_mm_s) * scan->gap_s;
     }
+    draw_motion(world, (scan->felt.untold || is_alone(ways->honest)) ? MOTION_CHANGES : 1.0F);
     for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
-        world->motions[k] += MOTION_CHANGES * (motions[k].share - world->motions[k]);
         ways->kinds[k] *= world->motions[k];
     }
 }

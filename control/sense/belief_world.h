@@ -20,6 +20,7 @@
  * it, the accelerometer lies */
 #define BELIEF_MOTIONS 6U
 #define BELIEF_STANDS 0U
+#define BELIEF_PUSHED 2U
 #define BELIEF_HELD 4U
 #define BELIEF_FELT_LIES 5U
 

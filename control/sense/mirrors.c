@@ -166,7 +166,7 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
 
     if (voters == 0U) {
         mirrors->agree = mirrors->sees = mirrors->suspected = mirrors->blind = mirrors->felt_lies =
-            mirrors->moves = false;
+            mirrors->felt_may_lie = mirrors->moves = false;
         mirrors->left_out = 0U;
         return false;
     }
@@ -179,7 +179,8 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     const float moves = 1.0F - belief_of_motion(belief, BELIEF_STANDS) - felt_lies;
 
     mirrors->agree = honest > AGREE;
-    mirrors->felt_lies = felt_lies > AGREE;
+    mirrors->felt_lies = felt_lies > AGREE && mirrors->felt_may_lie;
+    mirrors->felt_may_lie = felt_lies > AGREE;
     mirrors->moves = moves > AGREE;
     mirrors->suspected = none > 1.0F - AGREE;
     mirrors->blind = none > AGREE;

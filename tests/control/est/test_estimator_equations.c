@@ -290,6 +290,7 @@ void test_a_height_of_a_rough_floor_has_its_noise_too(void)
     memset(filter->covariance, 0, sizeof filter->covariance);
     filter->covariance[FILTER_HEIGHT][FILTER_HEIGHT] = 0.5F * (0.8F * 0.0009F - 0.0192F * 0.0192F) + R_M2;
     roughness->noise_m = 0.03F;
+    roughness->in_a_row = 2U;
     roughness->previous_m[0] = roughness->previous_m[1] = 0.51F;
     (void)see(0.51F);
     TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 0.026833F, roughness->noise_m);
@@ -302,6 +303,7 @@ static bool passes(float variance_m2, float floor_m, float innovation_m)
     setUp();
     filter->covariance[FILTER_HEIGHT][FILTER_HEIGHT] = variance_m2;
     roughness->noise_m = floor_m;
+    roughness->in_a_row = 2U;
     roughness->previous_m[0] = roughness->previous_m[1] = 0.5F + innovation_m;
     return see(0.5F + innovation_m) == HEIGHT_FUSED && e.confirmed;
 }
@@ -315,8 +317,8 @@ void test_the_bound_of_an_innovation_is_three_sigma_within_53_and_80_mm(void)
         TEST_ASSERT_FALSE(passes(6.0e-4F, 0.004F, 0.0739F * side));
         TEST_ASSERT_TRUE(passes(0.01F, 0.004F, 0.0795F * side));
         TEST_ASSERT_FALSE(passes(0.01F, 0.004F, 0.0805F * side));
-        TEST_ASSERT_TRUE(passes(1.0e-6F, 0.03F, 0.1600F * side)); /* 6 x 26.8 mm */
-        TEST_ASSERT_FALSE(passes(1.0e-6F, 0.03F, 0.1620F * side));
+        TEST_ASSERT_TRUE(passes(1.0e-6F, 0.0264F, 0.1410F * side)); /* 6 x 23.6 mm */
+        TEST_ASSERT_FALSE(passes(1.0e-6F, 0.0264F, 0.1425F * side));
         TEST_ASSERT_FALSE(passes(1.0e-6F, 0.0214F, 0.0800F * side)); /* 19.1 mm: smooth */
         TEST_ASSERT_TRUE(passes(1.0e-6F, 0.0216F, 0.0900F * side));  /* 19.3 mm: rough */
     }

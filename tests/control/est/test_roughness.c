@@ -3,6 +3,7 @@
 #include "unity.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 #define NEAR(expected, actual) TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, expected, actual)
 #define T_US UINT32_C(400000) /* the time before it wraps */
@@ -26,14 +27,30 @@ void test_the_noise_is_a_sixth_of_the_squared_second_difference_over_five_height
                 {0.080F, 0.10F, 0.50F, 0.080F}};
 
     for (int i = 0; i < 4; i++) {
-        roughness = (roughness_t){.noise_m = rows[i].before_m,
-                                  .previous_m = {rows[i].first_m, rows[i].second_m}};
+        roughness = (roughness_t){
+            .noise_m = rows[i].before_m, .in_a_row = 2U, .previous_m = {rows[i].first_m, rows[i].second_m}};
         roughness_step(&roughness, 0.50F, 0.0F, T_US);
         const float bend_m = 0.5F - 2.0F * rows[i].first_m + rows[i].second_m;
         const float expected = (i == 0) ? sqrtf(0.8e-4F + 0.2F * bend_m * bend_m / 6.0F) : rows[i].noise_m;
         NEAR(expected, roughness.noise_m);
         NEAR(0.50F, roughness.previous_m[0]);
         NEAR(rows[i].first_m, roughness.previous_m[1]);
+    }
+}
+
+/* Runs of outliers, 0.4 m too high for four scans, must not make their own noise: else the third is fused. */
+void test_runs_of_wrong_heights_are_no_noise_of_the_floor(void)
+{
+    for (int scan = 0; scan < 100; scan++) {
+        const bool wrong = scan % 10 >= 6;
+        const float height_m = (wrong ? 0.9F : 0.5F) + ((scan % 2 == 0) ? 0.003F : -0.003F);
+
+        roughness_step(&roughness, height_m, wrong ? 0.4F : 0.003F, T_US);
+        if (scan > 6 &&
+            scan % 10 == 6) { /* the first right one is off, too, when the wrong ones were believed */
+            roughness_step(&roughness, 0.5F, -0.4F, T_US);
+        }
+        TEST_ASSERT_FLOAT_WITHIN(0.0025F, 0.0045F, roughness.noise_m);
     }
 }
 

@@ -186,7 +186,7 @@ void test_it_is_told_which_mirror_is_left_out_and_how_probably_it_lies(void)
     TEST_ASSERT_EQUAL_UINT16(0U, mirrors_tell(&mirrors, lies));
     forget();
     for (int i = 0; i < 30; i++) { /* something in front of the first one */
-        const float at_mm = 600.0F + 60.0F * (float)((i * 7) % 5);
+        const float at_mm = 600.0F + 10.0F * (float)((i * 7) % 5);
 
         (void)scan(-60.0F + (float)(i % 2), at_mm, at_mm + 1.0F);
     }
