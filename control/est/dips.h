@@ -18,8 +18,8 @@ typedef struct {
 /* Before the height of each scan is tested. */
 void dips_scan(dips_t *dips);
 
-/* Heights in a row that are rejected before they are believed, beyond the usual ones. innovation_m: of the
- * latest, measured minus predicted; > 0 where the ground falls. */
+/* So many heights in a row are rejected before a fall of the ground is believed; 0: as without dips.
+ * innovation_m: of the latest, measured minus predicted; > 0 where the ground falls. */
 uint16_t dips_wait(const dips_t *dips, float innovation_m);
 
 /* So many heights in a row were rejected, the latest with this innovation, and the next one was as predicted:
