@@ -35,12 +35,12 @@
 #define FRONT (&scip_layouts[SCIP_LAYOUT_FRONT].groups[0])
 #define THREE (&scip_layouts[SCIP_LAYOUT_THREE_MIRRORS])
 
-static octet_t frame[THREE_N];
+static octet_t frame[THREE_N] __attribute__((aligned(64))); /* as the C library's copying depends on it */
 static uint32_t stamp_ms;
 static bool leg; /* in front of a fifth of the rays */
-static urg_driver_t urg;
-static scip_scan_t scan;
-static uint16_t points[2 * THREE_POINTS];
+static urg_driver_t urg __attribute__((aligned(64)));
+static scip_scan_t scan __attribute__((aligned(64)));
+static uint16_t points[2 * THREE_POINTS] __attribute__((aligned(64)));
 static char order[16]; /* of the stream, as the sensor echoes it */
 static unsigned frame_points;
 static volatile float mean_mm;
