@@ -1,5 +1,5 @@
-/* Dips: the ground falls away and comes back within some scans. Then the heights were wrong: no ground does
- * so under a hovering vehicle. What made one dip makes the next one, so for a while a fall of the ground must
+/* Dips: the ground falls away and comes back within some scans. Then the heights were wrong, or
+ * the ground had a gap. What made one dip makes the next one, so for a while a fall of the ground must
  * last longer than the dip did before it is believed. A rise of the ground never waits: it is dangerous.
  *
  * Metres; one call each scan. Pure; the caller owns the state, all zero at first. Context: one Task. */

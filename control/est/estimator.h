@@ -11,8 +11,8 @@
  * Innovation test: a height whose innovation exceeds a bound of at most 80 mm is rejected. Two rejected
  * heights in a row that agree are a step of the terrain. The third rejected height in a row always resets
  * the filter's height, with a large covariance. The next two heights are then fused without the test. So
- * no state of the filter can reject heights for ever. After a dip (dips.h) a fall of the ground waits for
- * so many heights more as the dip had, six at most.
+ * no state of the filter can reject heights for ever. After a dip (dips.h) a fall of the ground must last
+ * longer than the dip did, and the reset waits for so many heights more: six at most.
  *
  * Metres, seconds, 32-bit float; positive is upwards. Times are in microseconds on one wrapping 32-bit
  * clock. Pure; the caller owns the state. */

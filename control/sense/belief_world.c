@@ -39,7 +39,7 @@ static const struct {
 };
 typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BELIEF_MOTIONS) ? 1 : -1];
 #define MOTION_CHANGES 0.05F /* of the scans: the kind of motion is drawn anew, by its share; a second */
-#define PUSHED_SHARE 0.2F    /* of the scans in which the accelerometer lies, as of the others */
+#define PUSHED_SHARE 0.2F /* chosen: of the scans in which the accelerometer lies; about as of the others */
 
 /* What a sound accelerometer tells beyond the thrust, or of a vehicle that stands: a Student t of three
  * degrees of freedom, whose percentiles make noise prints beside those of healthy flights. A Gaussian has no
@@ -57,19 +57,6 @@ typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BEL
 #define OWN_GAIN 0.42F   /* of what one mirror shows alone: slow, it is terrain or noise */
 
 /* ---- densities */
-
-static bool are_several(uint16_t mirrors)
-{
-    return (mirrors & (mirrors - 1U)) != 0U;
-}
-
-/* A push that the accelerometer does not tell is a touch, or a rate that changes: over after one scan. It
- * lasts where the accelerometer tells nothing: a gust. And where one mirror alone is honest: else that mirror
- * would be the liar whenever the accelerometer lies a little. */
-static bool is_alone(uint16_t honest)
-{
-    return !are_several(honest);
-}
 
 /* What a set of mirrors shows: n innovations, their sum and that of their squares. */
 typedef struct {
@@ -189,7 +176,7 @@ static float add_motions(ways_t *ways, const belief_motion_t *motion, const show
     }
     if (shown->n > 0U) { /* else nothing tells the motion */
         lies *= density_of_untold(shown, ways->foretold_mm, motion,
-                                  is_alone(ways->honest) ? 1.0F : PUSHED_SHARE);
+                                  belief_has_several(ways->honest) ? PUSHED_SHARE : 1.0F);
         ways->moved_mm += (sum + lies) * shown->sum_mm / (float)shown->n + lies * ways->foretold_mm;
     }
     ways->motions[BELIEF_FELT_LIES] += lies;
@@ -235,7 +222,7 @@ static void add_stand(ways_t *ways, const belief_scan_t *scan)
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         density *= belief_has(ways->honest, m) ? scan->height[m] : 1.0F;
     }
-    if (are_several(ways->honest)) {
+    if (belief_has_several(ways->honest)) {
         density = 0.5F * (density + density_of_shared(scan->height_off_mm, ways->honest));
     }
     ways->density += (sound + lies) * density;
@@ -271,7 +258,8 @@ static void feel(const belief_world_t *world, ways_t *ways, const belief_scan_t 
     ways->foretold_mm = 500.0F * ways->untrue_mps * scan->gap_s;
 }
 
-/* The kinds of motion before the scan. push_ends: probability that a push is over; see is_alone(). */
+/* The kinds of motion before the scan. push_ends: probability that a push is over. One that the accelerometer
+ * does not tell is a touch, or a rate that changes: over after one scan. */
 static void draw_motion(belief_world_t *world, float push_ends)
 {
     const float ended = (push_ends - MOTION_CHANGES) * world->motions[BELIEF_PUSHED];
@@ -286,12 +274,14 @@ static void draw_motion(belief_world_t *world, float push_ends)
 static void predict(belief_world_t *world, ways_t *ways, const belief_scan_t *scan)
 {
     const float gained_mm_s = 1000.0F * ways->gained_mps;
+    /* a gust; or with one mirror alone, which would else lie whenever the accelerometer is off a little */
+    const bool push_lasts = scan->felt.untold || !belief_has_several(ways->honest);
 
     world->rate_mm_s += gained_mm_s;
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         world->level_mm[m] += (world->rate_mm_s - 0.5F * gained_mm_s) * scan->gap_s;
     }
-    draw_motion(world, (scan->felt.untold || is_alone(ways->honest)) ? MOTION_CHANGES : 1.0F);
+    draw_motion(world, push_lasts ? MOTION_CHANGES : 1.0F);
     for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
         ways->kinds[k] *= world->motions[k];
     }
@@ -377,7 +367,8 @@ static float density_of_lies(const belief_world_t *world, const belief_scan_t *s
             stay *= 1.0F - odd;
         }
     }
-    return are_several(liars) ? 0.5F * (own + stay * density_of_shared(scan->slant_off_mm, liars)) : own;
+    return belief_has_several(liars) ? 0.5F * (own + stay * density_of_shared(scan->slant_off_mm, liars))
+                                     : own;
 }
 
 float belief_world_scan(belief_world_t *world, const belief_scan_t *scan, uint16_t liars)

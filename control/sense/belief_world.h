@@ -91,4 +91,10 @@ static inline bool belief_has(uint16_t set, uint16_t mirror)
     return (set & (1U << mirror)) != 0U;
 }
 
+/* The set has two mirrors or more. */
+static inline bool belief_has_several(uint16_t set)
+{
+    return (set & (set - 1U)) != 0U;
+}
+
 #endif

@@ -179,7 +179,7 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     const float moves = 1.0F - belief_of_motion(belief, BELIEF_STANDS) - felt_lies;
 
     mirrors->agree = honest > AGREE;
-    mirrors->felt_lies = felt_lies > AGREE && (mirrors->felt_may_lie || (voters & (voters - 1U)) == 0U);
+    mirrors->felt_lies = felt_lies > AGREE && (mirrors->felt_may_lie || !belief_has_several(voters));
     mirrors->felt_may_lie = felt_lies > AGREE;
     mirrors->moves = moves > AGREE;
     mirrors->suspected = none > 1.0F - AGREE;

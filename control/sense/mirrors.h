@@ -35,9 +35,8 @@ typedef struct {
     bool suspected;    /* all that told something in it may lie, with more than 1 % */
     bool blind;        /* all that told something in it lie, with 99 % */
     bool felt_may_lie; /* the accelerometer does, with 99 %, in this scan */
-    bool felt_lies; /* and, where several mirrors tell, in the scan before: that doubt lasts until the ground
-                     */
-    bool moves;     /* the vehicle does, with 99 % */
+    bool felt_lies;    /* and where several mirrors count, in the scan before too */
+    bool moves;        /* the vehicle does, with 99 % */
     uint16_t left_out; /* bits: mirrors of that scan that told something, and do not count in altitude */
     float lies[MIRROR_COUNT];               /* the probability that each lies */
     float disbelieved_s[MIRROR_COUNT];      /* how long each has been, at most 10 s */

@@ -23,8 +23,8 @@ import sources  # noqa: E402
 
 M68K = ("m68k-linux-gnu-gcc", "-std=gnu99", "-m68040", "-malign-int", "-fno-math-errno", "-fshort-wchar", "-w", "-include",
         HERE / "cells.h")
-# An AVR saves its 8-bit registers one by one, 36 octets a function; a C28x saves all that a function must in four or five words. So a routine
-# saves them here: else a function would seem to cost what only an AVR pays.
+# A function of an AVR saves up to 18 registers of 8 bits (avr-gcc's ABI), one of a C28x up to 7 (SPRU514, tables 7-2 and 7-3). So a routine
+# saves them here: else each function would seem to cost what only an AVR pays.
 AVR = ("avr-gcc", "-mmcu=atmega2560", "-std=gnu99", "-Os", "-mcall-prologues", "-w")
 GRAPH = ("-fstack-usage", "-fcallgraph-info=su")
 RELEASE = ("-O2", "-fno-inline", *GRAPH)    # inlined or not, the frames of a path add up; apart they have names

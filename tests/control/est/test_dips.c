@@ -85,6 +85,15 @@ void test_a_dip_that_was_not_believed_counts_and_one_wrong_height_does_not(void)
     TEST_ASSERT_EQUAL_UINT16(5U, dips_wait(&dips, 0.4F));
 }
 
+/* Whatever comes: else each wait could make the next one longer, and heights were rejected for ever. */
+void test_no_wait_is_longer_than_six_scans(void)
+{
+    for (uint16_t rejected = 2; rejected < 60000; rejected = (uint16_t)(rejected + 1 + rejected / 4)) {
+        dips_over(&dips, rejected, 0.4F);
+        TEST_ASSERT_EQUAL_UINT16(rejected < 6 ? rejected : 6, dips_wait(&dips, 0.4F));
+    }
+}
+
 void test_a_dip_is_forgotten_after_ten_seconds(void)
 {
     dip(4, 0.4F, -0.4F);

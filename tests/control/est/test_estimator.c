@@ -302,6 +302,54 @@ void test_two_that_agree_are_a_step_of_the_terrain(void)
     TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.75));
 }
 
+/* Four heights 0.4 m too far, and again: the second time nothing follows them. */
+static void run_of_outliers(int heights, height_outcome_t second)
+{
+    for (int i = 0; i < heights; i++) {
+        const height_outcome_t outcome = see(0.9);
+
+        if (i == 1) {
+            TEST_ASSERT_EQUAL(second, outcome);
+        }
+    }
+}
+
+static void six_right_ones(void)
+{
+    for (int i = 0; i < 6; i++) {
+        (void)see(0.5);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.5F, e.now.height_m);
+}
+
+void test_outliers_that_came_back_are_not_followed_again(void)
+{
+    hover();
+    run_of_outliers(4, HEIGHT_TERRAIN_STEP);
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.9F, e.now.height_m);
+    six_right_ones();
+    for (int run = 0; run < 5; run++) {
+        run_of_outliers(4, HEIGHT_REJECTED);
+        TEST_ASSERT_FLOAT_WITHIN(0.03F, 0.5F, e.now.height_m);
+        six_right_ones();
+    }
+}
+
+/* An edge after a dip is an edge, three heights late; and what rises is followed as ever. */
+void test_after_a_dip_ground_that_stays_is_believed(void)
+{
+    hover();
+    run_of_outliers(4, HEIGHT_TERRAIN_STEP);
+    six_right_ones();
+    TEST_ASSERT_EQUAL(HEIGHT_REJECTED, see(0.2));
+    TEST_ASSERT_EQUAL(HEIGHT_TERRAIN_STEP, see(0.2));
+    for (int i = 0; i < 4; i++) {
+        TEST_ASSERT_EQUAL(HEIGHT_REJECTED, see(0.9));
+    }
+    TEST_ASSERT_EQUAL(HEIGHT_TERRAIN_STEP, see(0.9));
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.9F, e.now.height_m);
+}
+
 void test_the_third_in_a_row_starts_anew_whatever_it_says(void)
 {
     hover();

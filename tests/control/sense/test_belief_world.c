@@ -138,6 +138,31 @@ void test_what_the_accelerometer_and_the_thrust_tell_is_believed(void)
     TEST_ASSERT_FLOAT_WITHIN(1.0F, 520.0F, world.level_mm[MIRROR_AFT]);
 }
 
+/* 25 mm that nothing has told, in one scan, and in the next none. As long as a push lasts it explains
+ * everything, so it must not last where it would have been felt. */
+static float pushed_after(bool untold, uint16_t told)
+{
+    setUp();
+    scan.told = told;
+    scan.felt.untold = untold;
+    go(25.0F);
+    TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.85F, world.motions[BELIEF_PUSHED]);
+    world.rate_mm_s = 0.0F;
+    for (int m = 0; m < MIRROR_COUNT; m++) {
+        world.level_mm[m] = 525.0F;
+    }
+    go(25.0F);
+    return world.motions[BELIEF_PUSHED];
+}
+
+void test_a_push_lasts_where_nothing_would_tell_it_or_one_mirror_alone_does(void)
+{
+    TEST_ASSERT_FLOAT_WITHIN(0.08F, 0.08F, pushed_after(false, 7U));
+    TEST_ASSERT_FLOAT_WITHIN(0.08F, 0.08F, pushed_after(false, 5U));
+    TEST_ASSERT_FLOAT_WITHIN(0.35F, 0.65F, pushed_after(false, 1U));
+    TEST_ASSERT_FLOAT_WITHIN(0.35F, 0.65F, pushed_after(true, 7U));
+}
+
 /* The thrust and the heights tell of none of it. */
 void test_what_the_accelerometer_alone_tells_is_taken_back(void)
 {
