@@ -1,4 +1,5 @@
 """A board in real time on pseudo-terminals, and who talks to it. For test_hil.py and test_accept.py."""
+import functools
 import json
 import os
 import re
@@ -10,11 +11,43 @@ import unittest
 from pathlib import Path
 
 NO_VERDICT = 3      # this machine was too busy: real time was none
+LATE_MS = 10        # one cycle of the control; measured on an idle PC: 3 to 6
+TRIES = 4
+lags_ms = []        # of each board and each flight since the test began
 
 
 def no_verdict():
     """Neither passed nor failed, and said so: a run in which nothing may be skipped fails (tests/run.py)."""
     raise unittest.SkipTest("no verdict: this machine was too busy for real time")
+
+
+def note_lag(output):
+    lags_ms.extend(int(found) for found in re.findall(r"this PC was at most (\d+) ms behind the wall clock", output))
+
+
+def once_more_if_late(test):
+    """What fails while this PC was late says nothing of the board: the test begins again. What fails in real time has failed."""
+    @functools.wraps(test)
+    def in_real_time(self):
+        for _ in range(TRIES):
+            lags_ms.clear()
+            try:
+                return test(self)
+            except AssertionError:
+                if max(lags_ms, default=0) <= LATE_MS:
+                    raise
+                print(f"this PC was {max(lags_ms)} ms behind the wall clock: once more", flush=True)
+            except unittest.SkipTest:
+                print("no verdict: once more", flush=True)
+        no_verdict()
+    return in_real_time
+
+
+def by_the_wall_clock(case):
+    """Each test of a case in which boards fly by the wall clock."""
+    for name in unittest.defaultTestLoader.getTestCaseNames(case):
+        setattr(case, name, once_more_if_late(getattr(case, name)))
+    return case
 
 
 class Board:
@@ -37,18 +70,13 @@ class Board:
     def __exit__(self, *unused):
         self.process.terminate()
         self.status = self.process.wait(timeout=30)
+        self.log.seek(0)
+        note_lag(self.log.read())
         self.log.close()
         self.directory.cleanup()
 
     def power_cycle(self):
         self.process.send_signal(signal.SIGUSR1)
-
-    def lagged(self):
-        """The board itself was not in real time; known once it has ended."""
-        self.process.terminate()
-        self.process.wait(timeout=30)
-        self.log.seek(0)
-        return "behind the wall clock" in self.log.read()
 
 
 def hil(program, scenario, defects=(), patience=60, pin=False):
@@ -59,8 +87,9 @@ def hil(program, scenario, defects=(), patience=60, pin=False):
         with Board(program, *pulses, *(word for defect in defects for word in ("--defect", defect))) as board:
             done = subprocess.run([program, "hil", scenario, *board.lines, *pulses, "--patience", str(patience)],
                                   capture_output=True, text=True, timeout=400, check=False)
-            if done.returncode == NO_VERDICT or board.lagged():
-                no_verdict()
+    note_lag(done.stdout)
+    if done.returncode == NO_VERDICT:
+        no_verdict()
     return done.returncode, done.stdout + done.stderr
 
 

@@ -55,6 +55,7 @@ def failed(found):
     return {item["item"] for item in found["items"] if item["verdict"] == "FAIL"}
 
 
+@bench.by_the_wall_clock
 class Short(unittest.TestCase):
     def test_a_board_that_is_right_passes_and_the_report_says_who_when_and_what(self):
         status, output, found, markdown = run(items="radio,boot,ping,scanner,rates,pulse,save")
@@ -103,6 +104,7 @@ class Short(unittest.TestCase):
             self.assertEqual(subprocess.run([PROGRAM, "accept", *lines, *words], capture_output=True, check=False).returncode, 2)
 
 
+@bench.by_the_wall_clock
 class Long(unittest.TestCase):
     def test_a_board_that_is_right_passes_every_item_that_needs_nobody(self):
         status, output, found, _ = run(flight_s=60)

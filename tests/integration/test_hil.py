@@ -22,6 +22,7 @@ def widest_mm(scenario):
     return max(bench.virtual(PROGRAM, scenario, seed)["hover_rms_mm"] for seed in range(1, 6))
 
 
+@bench.by_the_wall_clock
 class Short(unittest.TestCase):
     def test_the_ramp_is_flown_as_in_virtual_time(self):
         status, output = bench.hil(PROGRAM, "est-60cm-ramp")
@@ -81,6 +82,31 @@ class Short(unittest.TestCase):
             self.assertEqual(board.process.wait(timeout=20), 0)
             self.assertFalse(any(os.path.islink(path) for path in board.wires.values()))
 
+    def test_a_board_that_this_pc_stopped_says_how_late_it_was(self):
+        with bench.Board(PROGRAM) as board:
+            time.sleep(0.5)
+            board.process.send_signal(signal.SIGSTOP)
+            time.sleep(0.2)
+            board.process.send_signal(signal.SIGCONT)
+            time.sleep(0.5)
+        self.assertGreater(max(bench.lags_ms), 180)
+
+    def test_what_fails_on_a_pc_that_was_late_begins_again_and_what_fails_in_real_time_fails(self):
+        for lag_ms, tries in ((bench.LATE_MS + 1, 2), (bench.LATE_MS, 1)):
+            begun = []
+
+            def test(unused, begun=begun, lag_ms=lag_ms):
+                begun.append(lag_ms)
+                bench.lags_ms.append(lag_ms)
+                if len(begun) == 1:
+                    raise AssertionError
+            try:
+                bench.once_more_if_late(test)(None)
+            except AssertionError:
+                self.assertEqual(tries, 1)
+            self.assertEqual(len(begun), tries)
+        bench.lags_ms.clear()
+
     def test_a_signal_at_the_moment_the_links_appear_is_obeyed(self):
         for _ in range(10):
             with bench.Board(PROGRAM, wait=0) as board:
@@ -90,6 +116,7 @@ class Short(unittest.TestCase):
                 self.assertFalse(any(os.path.islink(path) for path in board.wires.values()))
 
 
+@bench.by_the_wall_clock
 class Long(unittest.TestCase):
     def fly(self, scenario):
         status, output = bench.hil(PROGRAM, scenario)
