@@ -113,6 +113,7 @@ void handover_doubts(handover_t *handover, est_law_t *est, where_t *where, const
                            .without_authority = (doubted & DOUBT_THRUST) != 0U ||
                                                 (pilot_is_unknown(pilot) && !pilot_shows_effect(pilot)),
                            .accelerations = (doubted & DOUBT_IMU) != 0U,
+                           .no_effect = now->evidence->no_effect,
                            .rocks = now->rocks,
                            .seen = now->evidence->mirrors.agree,
                        });
@@ -220,7 +221,8 @@ void handover_place(est_law_t *est, where_t *where, const situation_t *now, cons
  * that may swing yet. */
 static void take_over(est_law_t *est, where_t *where, const situation_t *now)
 {
-    const bool knows = now->mode_before == FLIGHT_MODE_LAW && where->contact.airborne;
+    const bool flew = now->mode_before == FLIGHT_MODE_LAW || now->mode_before == FLIGHT_MODE_DESCENT;
+    const bool knows = flew && where->contact.airborne;
     const hover_t learned = est->hover;
 
     if (!knows) {

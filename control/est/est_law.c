@@ -100,7 +100,7 @@ static void learn(est_law_t *law, const parameters_t *parameters, float dt_s)
         .vehicle = vehicle_model(law, parameters),
         .delivered_n = law->actuator.thrust_n,
         .is_climb = is_climb(parameters),
-        .confirmed = law->heightless_s <= HEIGHT_FRESH_S && !law->without_authority,
+        .confirmed = law->heightless_s <= HEIGHT_FRESH_S && !law->without_authority && !law->no_effect,
         .dt_s = dt_s,
     };
 
@@ -255,6 +255,7 @@ void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne
 
     remember_flight(law, gravity_n, airborne);
     law->without_authority = false;
+    law->no_effect = false;
     law->terrain.arrived_m = 0.0F;
     law->terrain.ignores = false;
     lift_off_reset(&law->lift, gravity_n, law->estimator.now.height_m);
@@ -276,6 +277,7 @@ void est_law_engage(est_law_t *law, float hover_n)
 void est_law_doubt(est_law_t *law, const est_doubts_t *doubts)
 {
     law->without_authority = doubts->without_authority;
+    law->no_effect = doubts->no_effect;
     if (doubts->without_authority) {
         law->hover.thrust_n = between(law->hover.least_n, law->sure_hover_n, law->hover.most_n);
         law->hover.gust_n = 0.0F;

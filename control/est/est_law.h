@@ -48,6 +48,7 @@ typedef struct {
     float flown_gravity_n; /* GRAV of that flight */
     bool accelerations_doubted;
     bool without_authority; /* doubt THRUST: commands have no effect */
+    bool no_effect;         /* they rather have none: nothing is learned */
     float heightless_s;     /* time since the rays of the latest height */
     float frameless_s;      /* time since the latest frame was measured */
     bool rocks;             /* the tilt sways as in flight */
@@ -102,6 +103,7 @@ void est_law_engage(est_law_t *law, float hover_n);
 typedef struct {
     bool without_authority; /* commands have no effect (doubt THRUST): nothing is learned or predicted from
                              * them, and the hover thrust is the sure one */
+    bool no_effect;         /* they rather have none, in the latest scan: nothing is learned from them */
     bool accelerations; /* the accelerometer is wrong (doubt IMU): accelerations in the frames are ignored */
     bool rocks;         /* the tilt moves as it does in flight, see touchdown.h */
     bool seen;          /* two mirrors agree on the heights: a landing needs no ceiling of the thrust */

@@ -166,7 +166,7 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
 
     if (voters == 0U) {
         mirrors->agree = mirrors->sees = mirrors->suspected = mirrors->blind = mirrors->felt_lies =
-            mirrors->felt_may_lie = mirrors->moves = false;
+            mirrors->felt_may_lie = mirrors->moves = mirrors->no_effect = false;
         mirrors->left_out = 0U;
         return false;
     }
@@ -182,6 +182,7 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     mirrors->felt_lies = felt_lies > AGREE && (mirrors->felt_may_lie || !belief_has_several(voters));
     mirrors->felt_may_lie = felt_lies > AGREE;
     mirrors->moves = moves > AGREE;
+    mirrors->no_effect = belief_of_motion(belief, BELIEF_HELD) > AGREE;
     mirrors->suspected = none > 1.0F - AGREE;
     mirrors->blind = none > AGREE;
     mirrors->sees = !mirrors->suspected && moves > LIES;

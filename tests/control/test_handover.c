@@ -272,6 +272,15 @@ void test_a_doubt_of_the_thrust_or_an_unsure_pilot_leaves_the_law_without_author
         NEAR((i != 0) ? 7.3F : 6.8F, est.hover.thrust_n); /* the sure one, then */
     }
     setUp();
+    for (int i = 0; i < 2; i++) { /* while it is only probable, the law goes on with what it knows */
+        evidence.no_effect = i == 0;
+        est_hovers_at_n(6.8F);
+        change_doubts(0U);
+        TEST_ASSERT_EQUAL(evidence.no_effect, est.no_effect);
+        TEST_ASSERT_FALSE(est.without_authority);
+        NEAR(6.8F, est.hover.thrust_n);
+    }
+    setUp();
     change_doubts(DOUBT_THRUST);
     hovers_at_n(7.4F);
     est_hovers_at_n(6.8F);
@@ -361,9 +370,12 @@ void test_a_hover_thrust_learned_in_this_flight_survives_a_law_without_the_estim
     static const struct {
         flight_mode_t before;
         bool airborne, knows;
-    } rows[] = {
-        {FLIGHT_MODE_LAW, true, true}, {FLIGHT_MODE_LAW, false, false}, {FLIGHT_MODE_FLOAT, true, false}};
-    for (int i = 0; i < 3; i++) {
+    } rows[] = {{FLIGHT_MODE_LAW, true, true},
+                {FLIGHT_MODE_LAW, false, false},
+                {FLIGHT_MODE_DESCENT, true, true},
+                {FLIGHT_MODE_DESCENT, false, false},
+                {FLIGHT_MODE_FLOAT, true, false}};
+    for (int i = 0; i < 5; i++) {
         setUp();
         airborne(rows[i].airborne);
         est_hovers_at_n(7.6F);

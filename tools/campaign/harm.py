@@ -65,10 +65,10 @@ def doubted(figures, lying=()):
     return any(doubts(figures, lying).values())
 
 
-def wrong(figures):
-    """What a healthy flight did wrong, by the titles of the verdicts."""
+def wrong(figures, lying=()):
+    """What a healthy flight did wrong, by the titles of the verdicts. lying: sources whose doubt is right."""
     found = [title for title, is_so in (UNASKED | GENTLE).items() if is_so(figures)]
-    found += [f"doubted {source}" for source, times in doubts(figures).items() if times]
+    found += [f"doubted {source}" for source, times in doubts(figures, lying).items() if times]
     return found + ["deceived"] * deceived(figures) + ["did not start"] * (not figures["started"])
 
 

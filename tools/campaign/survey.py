@@ -51,7 +51,8 @@ class Planned:
         return fleet.key(digest, [text, *self.flight.words])
 
     def verdicts(self, figures):
-        found = harm.lied_to(figures, self.flight.sources) if self.table == situations.LIES else harm.wrong(figures)
+        judge = harm.lied_to if self.table == situations.LIES else harm.wrong
+        found = judge(figures, self.flight.sources)
         return [title for title in found if title not in self.situation.may]
 
 

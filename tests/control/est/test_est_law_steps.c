@@ -189,12 +189,12 @@ void test_the_hover_thrust_is_learned_by_newton(void)
 
 void test_nothing_is_learned_that_no_height_confirms(void)
 {
-    for (int why = 0; why < 7; why++) {
+    for (int why = 0; why < 8; why++) {
         setUp();
         height_was_s_ago((why == 1) ? 0.28F : 0.27F);
-        est_law_doubt(&est, &(est_doubts_t){.without_authority = why == 3});
+        est_law_doubt(&est, &(est_doubts_t){.without_authority = why == 3, .no_effect = why == 7});
         airborne(why != 4);
-        estimated((why >= 5) ? 0.035F : 0.045F, 0.0F, 0.0F);
+        estimated((why == 5 || why == 6) ? 0.035F : 0.045F, 0.0F, 0.0F);
         if (why == 2) {
             unchecked();
         }
@@ -746,10 +746,17 @@ void test_a_reset_forgets_the_flight(void)
 {
     float thrust_n[2];
 
-    est_law_doubt(&est, &(est_doubts_t){.without_authority = true});
+    est_law_doubt(&est, &(est_doubts_t){.without_authority = true, .no_effect = true});
     reset();
     airborne(true);
     TEST_ASSERT_TRUE(model_share() > 0.01F);
+    setUp();
+    est_law_doubt(&est, &(est_doubts_t){.no_effect = true});
+    reset();
+    airborne(true);
+    estimated(0.5F, 0.0F, 0.0F);
+    cycle(1.0F);
+    assert_learned(true);
     setUp();
     for (int k = 0; k < 10; k++) {
         pass_seeing(0.1F);
