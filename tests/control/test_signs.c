@@ -127,6 +127,17 @@ void test_the_supervisor_hears_of_an_estimate_that_a_height_has_confirmed(void)
     TEST_ASSERT_TRUE(signs_of_vertical(&now, true).sways && signs_of_vertical(&now, true).rocks);
 }
 
+void test_two_mirrors_that_agree_are_told_to_the_supervisor_where_law_est_flies(void)
+{
+    static const control_law_t laws[] = {LAW_EST, LAW_EST, LAW_PIDT};
+
+    for (int i = 0; i < 3; i++) {
+        now.law = laws[i];
+        evidence.mirrors.agree = i != 1;
+        TEST_ASSERT_EQUAL(i == 0, signs_of_vertical(&now, false).seen);
+    }
+}
+
 void test_it_stands_by_the_sensors_or_without_thrust_where_contact_ends_so(void)
 {
     TEST_ASSERT_FALSE(signs_of_vertical(&now, false).stands);
