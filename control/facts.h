@@ -13,9 +13,10 @@
 #define DOUBT_IMU 2U
 #define DOUBT_THRUST 4U
 
-/* Of several mirrors. */
+/* By the belief about the mirrors. */
 typedef struct {
     bool agree;       /* two or more do not lie, with 99 % */
+    bool no_effect;   /* the thrust has none, with 99 % */
     uint16_t doubted; /* bits: they are disbelieved */
     uint16_t liars;   /* bits: those for which that lasts, see mirrors_liars() */
 } mirrors_told_t;
@@ -34,8 +35,8 @@ typedef struct {
                        * a climb: the beam may be blocked, keep climbs slow */
     bool terrain_fell; /* after a step of more than 0.4 m away from the vehicle, until the heights show a
                         * descent: they may be wrong, keep descents slow */
-    bool teaches;      /* false: learn nothing from the heights: they are unconfirmed, or no_effect */
-    bool no_effect;    /* the thrust rather has none in the latest scan */
+    bool teaches;      /* false: learn nothing from the heights: they are unconfirmed, or the thrust has
+                        * no effect */
     bool sways;        /* roll and pitch sway as in the air */
     bool calm;         /* they sway as on the ground; between the two neither is certain */
     bool rocks;        /* the tilt has moved by a degree within the last 0.8 s */

@@ -84,7 +84,7 @@ static modelled_motion_t modelled_motion(const est_law_t *law, const parameters_
     const bool alone = heights_missing(law);
 
     return (modelled_motion_t){
-        .known = airborne && !law->without_authority && law->estimator.initialised &&
+        .known = airborne && !law->doubted.without_authority && law->estimator.initialised &&
                  (now->height_m > IN_THE_AIR_M || alone),
         .up_mps2 = vehicle.authority_mps2_per_n * (law->actuator.thrust_n * vehicle.upright -
                                                    (law->estimator.felt ? vehicle.need_n : vehicle.hover_n)) -
@@ -100,7 +100,8 @@ static void learn(est_law_t *law, const parameters_t *parameters, float dt_s)
         .vehicle = vehicle_model(law, parameters),
         .delivered_n = law->actuator.thrust_n,
         .is_climb = is_climb(parameters),
-        .confirmed = law->heightless_s <= HEIGHT_FRESH_S && !law->without_authority && !law->no_effect,
+        .confirmed = law->heightless_s <= HEIGHT_FRESH_S && !law->doubted.without_authority &&
+                     !law->doubted.no_effect,
         .dt_s = dt_s,
     };
 
@@ -117,7 +118,7 @@ static void predict_frame(est_law_t *law, const parameters_t *parameters, bool a
     const uint32_t before_us = law->estimator.now_us;
     imu_sample_t used = *frame;
 
-    used.has_acceleration = frame->has_acceleration && !law->accelerations_doubted;
+    used.has_acceleration = frame->has_acceleration && !law->doubted.accelerations;
     estimator_predict(&law->estimator, &used, modelled_motion(law, parameters, airborne));
     const float dt_s = seconds_between(before_us, law->estimator.now_us);
     if (dt_s <= 0.0F || dt_s > CYCLE_MAX_S) {
@@ -254,8 +255,8 @@ void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne
     const float gravity_n = parameters->value[PARAMETER_GRAV];
 
     remember_flight(law, gravity_n, airborne);
-    law->without_authority = false;
-    law->no_effect = false;
+    law->doubted.without_authority = false;
+    law->doubted.no_effect = false;
     law->terrain.arrived_m = 0.0F;
     law->terrain.ignores = false;
     lift_off_reset(&law->lift, gravity_n, law->estimator.now.height_m);
@@ -276,18 +277,14 @@ void est_law_engage(est_law_t *law, float hover_n)
 
 void est_law_doubt(est_law_t *law, const est_doubts_t *doubts)
 {
-    law->without_authority = doubts->without_authority;
-    law->no_effect = doubts->no_effect;
     if (doubts->without_authority) {
         law->hover.thrust_n = between(law->hover.least_n, law->sure_hover_n, law->hover.most_n);
         law->hover.gust_n = 0.0F;
     }
-    if (doubts->accelerations && !law->accelerations_doubted) {
+    if (doubts->accelerations && !law->doubted.accelerations) {
         estimator_drop_accelerations(&law->estimator);
     }
-    law->accelerations_doubted = doubts->accelerations;
-    law->rocks = doubts->rocks;
-    law->seen = doubts->seen;
+    law->doubted = *doubts;
 }
 
 cascade_vehicle_t est_law_vehicle(const est_law_t *law, const parameters_t *parameters)
@@ -423,7 +420,7 @@ float est_law_step(est_law_t *law, const parameters_t *parameters, const est_ord
     const float speed_mps = speed_setpoint_mps(law, parameters, &gains, &state, mode, order->reference_m);
     const float thrust_n = cascade_thrust_n(&gains, &vehicle, &state, speed_mps);
 
-    let_down_step(&law->down, mode, state.height_m, law->rocks, law->seen, law->step_s);
+    let_down_step(&law->down, mode, state.height_m, law->doubted.rocks, law->doubted.seen, law->step_s);
     const float limited_n = let_down_limit_n(&law->down, mode, thrust_n, law->hover.thrust_n);
     return deadband_compensate(&law->deadband, law->hover.thrust_n, limited_n);
 }

@@ -28,6 +28,16 @@
 
 #define HOVER_BOUND_N 2.0F /* mass 20 % off (1.4 N), gusts; see hover_thrust.c */
 
+/* What is doubted in this cycle. */
+typedef struct {
+    bool without_authority; /* commands have no effect (doubt THRUST): nothing is learned or predicted from
+                             * them, and the hover thrust is the sure one */
+    bool no_effect;         /* the same, with 99 % in the latest scan alone: nothing is learned from them */
+    bool accelerations; /* the accelerometer is wrong (doubt IMU): accelerations in the frames are ignored */
+    bool rocks;         /* the tilt moves as it does in flight, see touchdown.h */
+    bool seen;          /* two mirrors agree on the heights: a landing needs no ceiling of the thrust */
+} est_doubts_t;
+
 typedef struct {
     estimator_t estimator;
     ray_clock_t ray_clock;
@@ -46,15 +56,11 @@ typedef struct {
     float sure_hover_n;    /* hover thrust from before the present doubt */
     float flown_hover_n;   /* sure_hover_n at the end of the flight before; 0: none with this GRAV */
     float flown_gravity_n; /* GRAV of that flight */
-    bool accelerations_doubted;
-    bool without_authority; /* doubt THRUST: commands have no effect */
-    bool no_effect;         /* they rather have none: nothing is learned */
-    float heightless_s;     /* time since the rays of the latest height */
-    float frameless_s;      /* time since the latest frame was measured */
-    bool rocks;             /* the tilt sways as in flight */
-    bool seen;              /* two mirrors agree on the heights */
-    bool flew;              /* est_law_step() was called in this cycle */
-    bool left_ground;       /* in this cycle */
+    est_doubts_t doubted;
+    float heightless_s; /* time since the rays of the latest height */
+    float frameless_s;  /* time since the latest frame was measured */
+    bool flew;          /* est_law_step() was called in this cycle */
+    bool left_ground;   /* in this cycle */
 } est_law_t;
 
 void est_law_init(est_law_t *law);
@@ -98,16 +104,6 @@ bool est_law_ready(const est_law_t *law);
 void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne);
 /* Call in the air, when EST takes over. hover_n: best known hover thrust. */
 void est_law_engage(est_law_t *law, float hover_n);
-
-/* What is doubted in this cycle. */
-typedef struct {
-    bool without_authority; /* commands have no effect (doubt THRUST): nothing is learned or predicted from
-                             * them, and the hover thrust is the sure one */
-    bool no_effect;         /* they rather have none, in the latest scan: nothing is learned from them */
-    bool accelerations; /* the accelerometer is wrong (doubt IMU): accelerations in the frames are ignored */
-    bool rocks;         /* the tilt moves as it does in flight, see touchdown.h */
-    bool seen;          /* two mirrors agree on the heights: a landing needs no ceiling of the thrust */
-} est_doubts_t;
 
 /* Call in every cycle, after est_law_predict(). */
 void est_law_doubt(est_law_t *law, const est_doubts_t *doubts);

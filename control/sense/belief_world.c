@@ -314,14 +314,14 @@ static void correct_rate(belief_world_t *world, const ways_t *ways, const belief
                          float shared_mm)
 {
     const float stands = ways->motions[BELIEF_STANDS] / ways->density;
-    const float pushes = 1.0F - stands -
-                         (ways->motions[BELIEF_FELT_LIES] + ways->motions[BELIEF_HELD]) / ways->density;
+    /* A load is learned too where it first looks like a thrust without effect: that parts it from a pilot. */
+    const float flies = 1.0F - stands - ways->motions[BELIEF_FELT_LIES] / ways->density;
     const bool carried = scan->felt.dragged > 0.0F;
 
     if (ways->honest != 0U) {
         const float more_mm_s = BELIEF_RATE_GAIN * shared_mm / scan->gap_s;
         const float felt_mps2 = scan->felt.untold ? 0.001F * more_mm_s / scan->gap_s : ways->strange_mps2;
-        const float off_mps2 = world->push_off_mps2 + PUSH_GAIN * pushes * felt_mps2;
+        const float off_mps2 = world->push_off_mps2 + PUSH_GAIN * flies * felt_mps2;
 
         world->rate_mm_s += more_mm_s;
         world->push_off_mps2 = carried ? between(-PUSH_OFF_MPS2, off_mps2, PUSH_OFF_MPS2)

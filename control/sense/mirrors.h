@@ -37,7 +37,7 @@ typedef struct {
     bool felt_may_lie; /* the accelerometer does, with 99 %, in this scan */
     bool felt_lies;    /* and where several mirrors count, in the scan before too */
     bool moves;        /* the vehicle does, with 99 % */
-    bool no_effect;    /* the thrust rather has none: a pilot has it, or somebody holds the vehicle */
+    bool no_effect;    /* the thrust has none, with 99 %: a pilot flies, or somebody holds the vehicle */
     uint16_t left_out; /* bits: mirrors of that scan that told something, and do not count in altitude */
     float lies[MIRROR_COUNT];               /* the probability that each lies */
     float disbelieved_s[MIRROR_COUNT];      /* how long each has been, at most 10 s */

@@ -273,11 +273,11 @@ void test_a_doubt_of_the_thrust_or_an_unsure_pilot_leaves_the_law_without_author
     }
     setUp();
     for (int i = 0; i < 2; i++) { /* while it is only probable, the law goes on with what it knows */
-        evidence.no_effect = i == 0;
+        evidence.mirrors.no_effect = i == 0;
         est_hovers_at_n(6.8F);
         change_doubts(0U);
-        TEST_ASSERT_EQUAL(evidence.no_effect, est.no_effect);
-        TEST_ASSERT_FALSE(est.without_authority);
+        TEST_ASSERT_EQUAL(evidence.mirrors.no_effect, est.doubted.no_effect);
+        TEST_ASSERT_FALSE(est.doubted.without_authority);
         NEAR(6.8F, est.hover.thrust_n);
     }
     setUp();
