@@ -35,8 +35,7 @@ typedef struct {
                        * a climb: the beam may be blocked, keep climbs slow */
     bool terrain_fell; /* after a step of more than 0.4 m away from the vehicle, until the heights show a
                         * descent: they may be wrong, keep descents slow */
-    bool teaches;      /* false: learn nothing from the heights: they are unconfirmed, or the thrust has
-                        * no effect */
+    bool teaches;      /* false: learn nothing from the heights: they are unconfirmed */
     bool sways;        /* roll and pitch sway as in the air */
     bool calm;         /* they sway as on the ground; between the two neither is certain */
     bool rocks;        /* the tilt has moved by a degree within the last 0.8 s */

@@ -113,7 +113,7 @@ void handover_doubts(handover_t *handover, est_law_t *est, where_t *where, const
                            .without_authority = (doubted & DOUBT_THRUST) != 0U ||
                                                 (pilot_is_unknown(pilot) && !pilot_shows_effect(pilot)),
                            .accelerations = (doubted & DOUBT_IMU) != 0U,
-                           .no_effect = now->evidence->mirrors.no_effect,
+                           .no_effect = situation_without_effect(now),
                            .rocks = now->rocks,
                            .seen = now->evidence->mirrors.agree,
                        });

@@ -101,7 +101,6 @@ vertical_estimate_t signs_of_vertical(const situation_t *now, bool hands_over)
         .rocks = now->rocks,
         .hands_over = hands_over,
         .in_hands = may_be_in_hands(now),
-        .seen = now->law == LAW_EST && now->evidence->mirrors.agree,
     };
 }
 
@@ -191,7 +190,7 @@ hover_lesson_t signs_of_hover(const situation_t *now)
         .flies = state == FLIGHT_TAKEOFF || state == FLIGHT_FLYING || floats,
         .sees = (supervisor->flags & FLIGHT_FLAG_HEIGHT) == 0U &&
                 !doubts(now->evidence, DOUBT_SIGHT | DOUBT_THRUST),
-        .teaches = now->evidence->teaches,
+        .teaches = now->evidence->teaches && !situation_without_effect(now),
         .estimated = est_law_ready(now->est) && now->where->contact.airborne,
         .estimated_n = now->est->hover.thrust_n,
         .holds = state == FLIGHT_FLYING || floats,

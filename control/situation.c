@@ -14,3 +14,9 @@ bool situation_is_rocking(const evidence_t *evidence, const est_law_t *est)
 {
     return evidence->rocks && est_law_has_imu(est);
 }
+
+bool situation_without_effect(const situation_t *now)
+{
+    return now->evidence->mirrors.no_effect &&
+           parameters_choice(now->parameters, PARAMETER_PLANT) != PLANT_CLIMB;
+}

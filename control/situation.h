@@ -29,4 +29,8 @@ typedef struct {
 bool situation_is_risen(const where_t *where, const est_law_t *est);
 bool situation_is_rocking(const evidence_t *evidence, const est_law_t *est);
 
+/* The thrust has no effect, with 99 %. With PLANT CLIMB it is not asked: there the throttle orders a climb
+ * rate, and that no acceleration follows is what it asks for. */
+bool situation_without_effect(const situation_t *now);
+
 #endif

@@ -138,7 +138,7 @@ static evidence_t evidence_of(const sense_t *sense)
         .reason = (uint16_t)verdict_reason(verdict),
         .unconfirmed = is_unconfirmed(s),
         .terrain_fell = s->confirmation.terrain_fell,
-        .teaches = !s->confirmation.unconfirmed && !s->mirrors.suspected && !s->mirrors.no_effect,
+        .teaches = !s->confirmation.unconfirmed && !s->mirrors.suspected,
         .sways = sway_as_in_the_air(&s->sway),
         .calm = sway_is_calm(&s->sway),
         .rocks = sway_rocks(&s->sway),

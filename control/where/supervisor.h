@@ -21,11 +21,9 @@ typedef struct {
     float upright;    /* cosine of the tilt of *in; valid also without `known` */
     bool sways;       /* the tilt moves as it does in flight; valid also without `known` */
     bool rocks;       /* the same within the last 0.8 s */
-    bool seen; /* two mirrors agree on the height, and law EST flies: above the reference is a fall of the
-                * ground */
-    bool hands_over; /* #ARM lets the tilt alone tell a pilot's flight, arming.h */
-    bool in_hands;   /* GROUND: no pin tells who has the throttle, there is no height, and a pilot flies;
-                      * DESCENDING: it may be so yet */
+    bool hands_over;  /* #ARM lets the tilt alone tell a pilot's flight, arming.h */
+    bool in_hands;    /* GROUND: no pin tells who has the throttle, there is no height, and a pilot flies;
+                       * DESCENDING: it may be so yet */
 } vertical_estimate_t;
 
 /* The latest valid height. */
@@ -98,7 +96,6 @@ typedef struct {
     bool rocks;  /* landing or descending, and the tilt moves as it does in flight */
     bool pilots; /* the pilot had the throttle in the previous cycle */
     bool sways;  /* the tilt moves as it does in flight */
-    bool seen;   /* by two mirrors that agree, and law EST flies */
     bool handed_over;
     bool in_hands;
 } supervisor_t;

@@ -277,6 +277,10 @@ void test_a_doubt_of_the_thrust_or_an_unsure_pilot_leaves_the_law_without_author
         est_hovers_at_n(6.8F);
         change_doubts(0U);
         TEST_ASSERT_EQUAL(evidence.mirrors.no_effect, est.doubted.no_effect);
+        set(PARAMETER_PLANT, (float)PLANT_CLIMB); /* orders a rate: no acceleration is what it asks for */
+        change_doubts(0U);
+        TEST_ASSERT_FALSE(est.doubted.no_effect);
+        set(PARAMETER_PLANT, (float)PLANT_THRUST);
         TEST_ASSERT_FALSE(est.doubted.without_authority);
         NEAR(6.8F, est.hover.thrust_n);
     }

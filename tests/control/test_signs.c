@@ -127,17 +127,6 @@ void test_the_supervisor_hears_of_an_estimate_that_a_height_has_confirmed(void)
     TEST_ASSERT_TRUE(signs_of_vertical(&now, true).sways && signs_of_vertical(&now, true).rocks);
 }
 
-void test_two_mirrors_that_agree_are_told_to_the_supervisor_where_law_est_flies(void)
-{
-    static const control_law_t laws[] = {LAW_EST, LAW_EST, LAW_PIDT};
-
-    for (int i = 0; i < 3; i++) {
-        now.law = laws[i];
-        evidence.mirrors.agree = i != 1;
-        TEST_ASSERT_EQUAL(i == 0, signs_of_vertical(&now, false).seen);
-    }
-}
-
 void test_it_stands_by_the_sensors_or_without_thrust_where_contact_ends_so(void)
 {
     TEST_ASSERT_FALSE(signs_of_vertical(&now, false).stands);
@@ -236,6 +225,9 @@ void test_the_lesson_of_a_hover_thrust_is_of_the_estimate_in_the_air(void)
     NEAR(7.5F, lesson.thrust_n);
     NEAR(GRAV_N, lesson.gravity_n);
     TEST_ASSERT_TRUE(lesson.estimated && lesson.teaches);
+    evidence.mirrors.no_effect = true;
+    TEST_ASSERT_FALSE(signs_of_hover(&now).teaches);
+    evidence.mirrors.no_effect = false;
     evidence.teaches = false;
     airborne(false); /* an estimate of a vehicle on the ground is none */
     lesson = signs_of_hover(&now);
