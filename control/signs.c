@@ -101,7 +101,6 @@ vertical_estimate_t signs_of_vertical(const situation_t *now, bool hands_over)
         .rocks = now->rocks,
         .hands_over = hands_over,
         .in_hands = may_be_in_hands(now),
-        .returns = now->law == LAW_EST && now->evidence->mirrors.agree && estimate->speed_mps <= 0.0F,
     };
 }
 

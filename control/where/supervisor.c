@@ -247,7 +247,6 @@ static void observe_estimate(supervisor_t *s, const vertical_estimate_t *estimat
 static void observe_hand_over(supervisor_t *s, const flight_inputs_t *in, const vertical_estimate_t *estimate)
 {
     s->sways = estimate->sways;
-    s->returns = estimate->returns;
     s->handed_over = estimate->hands_over && s->height.age_us > HEIGHT_LOST_US && in->has_throttle &&
                      (estimate->in_hands || (s->pilots && estimate->sways));
     s->in_hands = estimate->in_hands;
@@ -266,8 +265,7 @@ static void observe_climb(supervisor_t *s)
 
 static bool too_high(const supervisor_t *s)
 {
-    return !s->returns &&
-           (s->climb.too_high_count == TOO_HIGH_HEIGHTS || s->climb.estimated_peak_mm > TOO_HIGH_MM);
+    return s->climb.too_high_count == TOO_HIGH_HEIGHTS || s->climb.estimated_peak_mm > TOO_HIGH_MM;
 }
 
 static bool recovered(const supervisor_t *s)

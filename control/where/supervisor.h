@@ -21,8 +21,6 @@ typedef struct {
     float upright;    /* cosine of the tilt of *in; valid also without `known` */
     bool sways;       /* the tilt moves as it does in flight; valid also without `known` */
     bool rocks;       /* the same within the last 0.8 s */
-    bool returns;     /* law EST flies, two mirrors agree on the height, and it sinks already: the ground has
-                       * fallen */
     bool hands_over;  /* #ARM lets the tilt alone tell a pilot's flight, arming.h */
     bool in_hands;    /* GROUND: no pin tells who has the throttle, there is no height, and a pilot flies;
                        * DESCENDING: it may be so yet */
@@ -95,10 +93,9 @@ typedef struct {
     /* The latest state and conditions that made no transition; FLIGHT_STATE_COUNT: none. */
     flight_state_t kept_state;
     uint16_t kept_conditions;
-    bool rocks;   /* landing or descending, and the tilt moves as it does in flight */
-    bool pilots;  /* the pilot had the throttle in the previous cycle */
-    bool sways;   /* the tilt moves as it does in flight */
-    bool returns; /* law EST sinks already, to ground that two mirrors agree on */
+    bool rocks;  /* landing or descending, and the tilt moves as it does in flight */
+    bool pilots; /* the pilot had the throttle in the previous cycle */
+    bool sways;  /* the tilt moves as it does in flight */
     bool handed_over;
     bool in_hands;
 } supervisor_t;

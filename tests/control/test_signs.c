@@ -127,18 +127,6 @@ void test_the_supervisor_hears_of_an_estimate_that_a_height_has_confirmed(void)
     TEST_ASSERT_TRUE(signs_of_vertical(&now, true).sways && signs_of_vertical(&now, true).rocks);
 }
 
-void test_it_returns_where_law_est_sinks_to_ground_that_two_mirrors_agree_on(void)
-{
-    static const control_law_t laws[] = {LAW_EST, LAW_EST, LAW_PIDT, LAW_EST};
-
-    for (int i = 0; i < 4; i++) {
-        now.law = laws[i];
-        evidence.mirrors.agree = i != 1;
-        estimated(1.9F, (i == 3) ? 0.01F : -0.01F, 0.0F);
-        TEST_ASSERT_EQUAL(i == 0, signs_of_vertical(&now, false).returns);
-    }
-}
-
 void test_it_stands_by_the_sensors_or_without_thrust_where_contact_ends_so(void)
 {
     TEST_ASSERT_FALSE(signs_of_vertical(&now, false).stands);

@@ -104,8 +104,8 @@ class Short(unittest.TestCase):
                 bench.once_more_if_late(test)(None)
             except AssertionError:
                 self.assertEqual(tries, 1)
+            bench.lags_ms.clear()      # else this test itself would begin again
             self.assertEqual(len(begun), tries)
-        bench.lags_ms.clear()
 
     def test_a_signal_at_the_moment_the_links_appear_is_obeyed(self):
         for _ in range(10):

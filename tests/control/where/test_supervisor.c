@@ -102,19 +102,6 @@ void test_flying_to_lowering_when_too_high_twice(void)
     TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_TOO_HIGH, s.flags);
 }
 
-/* Law EST over an edge, a slope that falls. */
-void test_no_height_is_too_high_from_which_law_est_sinks_already(void)
-{
-    fly();
-    estimate.returns = true;
-    watch(2500.0F, 10);
-    state_is(FLIGHT_FLYING);
-    TEST_ASSERT_EQUAL_UINT16(0, s.flags);
-    estimate.returns = false;
-    watch(2500.0F, 1);
-    state_is(FLIGHT_LOWERING);
-}
-
 void test_a_climb_counts_for_0_4_seconds_and_its_brake_and_a_descent_not_at_all(void)
 {
     fly();
