@@ -95,6 +95,8 @@ vertical_estimate_t signs_of_vertical(const situation_t *now, bool hands_over)
         .known = est_law_ready(now->est) && estimator->confirmed,
         .height_mm = estimate->height_m * 1000.0F,
         .climb_mm_s = (estimate->speed_mps - estimate->terrain_mps) * 1000.0F,
+        .felt_mm_s = now->evidence->felt_mps * 1000.0F,
+        .tells_falls = now->law == LAW_EST && now->evidence->mirrors.agree && now->evidence->felt_valid,
         .stands = now->evidence->stands || without_thrust,
         .upright = now->evidence->upright,
         .sways = now->evidence->sways,

@@ -42,7 +42,7 @@ const char *flight_state_name(flight_state_t state);
 
 /* Conditions, as bits of one word. */
 #define FLIGHT_IF_REFERENCE 1U   /* a reference above 0 is in force */
-#define FLIGHT_IF_READY 2U       /* the IMU's offset is known */
+#define FLIGHT_IF_READY 2U       /* the IMU's offset is known, and its frames are fresh */
 #define FLIGHT_IF_HEIGHT 4U      /* the latest valid height is at most 0.3 s old */
 #define FLIGHT_IF_LOST 8U        /* the latest valid height is more than 1.5 s old, or there never was one */
 #define FLIGHT_IF_OFF_GROUND 16U /* fresh height above 0.15 m */

@@ -26,9 +26,10 @@
 /* Above the highest reference, 3 m, the scanner sees 0.89 m more: 4.095 m less 0.205 m of the front mirror's
  * way. Rounded down. */
 #define TOO_HIGH_MM 800.0F
-#define RECOVERED_MM (1000.0F * LAW_REACH_M) /* the law reaches it again without help */
-#define TOO_HIGH_HEIGHTS 2U                  /* one height may be wrong */
-#define RATE_CHANGE_MAX_MM_S2 10000.0F       /* 1 g: the vehicle cannot change its speed faster */
+#define RECOVERED_MM (1000.0F * LAW_REACH_M)  /* the law reaches it again without help */
+#define FLOWN_MM (TOO_HIGH_MM - RECOVERED_MM) /* flown, where no ground has fallen */
+#define TOO_HIGH_HEIGHTS 2U                   /* one height may be wrong */
+#define RATE_CHANGE_MAX_MM_S2 10000.0F        /* 1 g: the vehicle cannot change its speed faster */
 #define CLIMB_AHEAD_S 0.40F /* sum of the age of a height, one more scan, and the lag of the motors */
 /* The slowest vehicle of tools/campaign/plan.py: lag of the motors 150 ms, delay 20 ms, a pulse 14 ms; a
  * frame 25 ms and 15 ms old. */
@@ -180,6 +181,12 @@ static bool is_level(const supervisor_t *s)
     return s->attitude.level && attitude_fresh(s);
 }
 
+/* An IMU that has fallen silent tells no tilt, however well its zero is known. */
+static bool is_ready(const supervisor_t *s, const flight_inputs_t *in)
+{
+    return in->attitude_ready && attitude_fresh(s);
+}
+
 bool supervisor_is_at_rest(const supervisor_t *supervisor)
 {
     return supervisor->state == FLIGHT_GROUND && supervisor->ground.rest.on;
@@ -253,6 +260,21 @@ static void observe_hand_over(supervisor_t *s, const flight_inputs_t *in, const 
     s->pilots = !in->has_throttle;
 }
 
+/* How much of its height it has flown: by the accelerometer, which does not feel the terrain. A law that
+ * returns sinks at least as fast as a descent does. */
+static void observe_flown(supervisor_t *s, const vertical_estimate_t *estimate)
+{
+    climb_watch_t *climb = &s->climb;
+    const float more_mm = (estimate->felt_mm_s + DESCENT_RATE_MM_S) * (float)s->step_us * 1.0e-6F;
+
+    if (measured_peak_mm(s) < RECOVERED_MM) {
+        climb->flown_mm = 0.0F;
+    } else if (estimate->tells_falls) {
+        climb->flown_mm = between(0.0F, climb->flown_mm + more_mm, FLOWN_MM);
+    }
+    climb->fallen = estimate->tells_falls && climb->flown_mm < FLOWN_MM;
+}
+
 static void observe_climb(supervisor_t *s)
 {
     if (s->height.is_new) {
@@ -265,7 +287,8 @@ static void observe_climb(supervisor_t *s)
 
 static bool too_high(const supervisor_t *s)
 {
-    return s->climb.too_high_count == TOO_HIGH_HEIGHTS || s->climb.estimated_peak_mm > TOO_HIGH_MM;
+    return !s->climb.fallen &&
+           (s->climb.too_high_count == TOO_HIGH_HEIGHTS || s->climb.estimated_peak_mm > TOO_HIGH_MM);
 }
 
 static bool recovered(const supervisor_t *s)
@@ -294,7 +317,7 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
                                  !s->in_hands;
     const bool lowering_limit = s->state == FLIGHT_LOWERING && s->climb.lowerings == LOWERINGS_MAX;
 
-    return (uint16_t)(bit(reference, FLIGHT_IF_REFERENCE) | bit(in->attitude_ready, FLIGHT_IF_READY) |
+    return (uint16_t)(bit(reference, FLIGHT_IF_REFERENCE) | bit(is_ready(s, in), FLIGHT_IF_READY) |
                       bit(fresh, FLIGHT_IF_HEIGHT) | bit(s->height.age_us > HEIGHT_LOST_US, FLIGHT_IF_LOST) |
                       bit(fresh && s->height.height_mm > LOW_MM, FLIGHT_IF_OFF_GROUND) |
                       bit(s->ground.aloft.for_us >= REST_HELD_US && s->sways, FLIGHT_IF_ALOFT) |
@@ -311,11 +334,10 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
 static uint16_t flags(const supervisor_t *s, uint16_t met, float link_s, const flight_inputs_t *in)
 {
     const bool fresh = height_fresh(s);
-    const bool level = in->attitude_ready && attitude_fresh(s);
     const bool lowering = s->state == FLIGHT_LOWERING || (met & FLIGHT_IF_TOO_HIGH) != 0U;
     const bool tilted = s->state == FLIGHT_CUT || (met & FLIGHT_IF_TILTED) != 0U;
 
-    return (uint16_t)(bit(!fresh, FLIGHT_FLAG_HEIGHT) | bit(!level, FLIGHT_FLAG_ATTITUDE) |
+    return (uint16_t)(bit(!fresh, FLIGHT_FLAG_HEIGHT) | bit(!is_ready(s, in), FLIGHT_FLAG_ATTITUDE) |
                       bit(fresh && in->altitude.disagree, FLIGHT_FLAG_DISAGREE) |
                       bit(lowering, FLIGHT_FLAG_TOO_HIGH) |
                       bit(link_silent(s, link_s, 0U), FLIGHT_FLAG_LINK) | bit(tilted, FLIGHT_FLAG_TILT) |
@@ -360,6 +382,7 @@ void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs
     observe_ground(supervisor);
     observe_hand_over(supervisor, in, estimate);
     observe_climb(supervisor);
+    observe_flown(supervisor, estimate);
 
     const uint16_t met = conditions(supervisor, in);
     if (supervisor->state != supervisor->kept_state || met != supervisor->kept_conditions) {

@@ -16,6 +16,8 @@ typedef struct {
     bool known; /* false: height and climb are not read */
     float height_mm;
     float climb_mm_s; /* > 0 is up, relative to the terrain */
+    float felt_mm_s;  /* vertical speed by the accelerometer, > 0 is up: the terrain is no part of it */
+    bool tells_falls; /* of the ground from climbs: law EST flies, two mirrors agree, felt_mm_s is believed */
     bool stands;      /* too little thrust to fly, and no fall is measured; valid also
                        * without `known` */
     float upright;    /* cosine of the tilt of *in; valid also without `known` */
@@ -70,6 +72,8 @@ typedef struct {
 typedef struct {
     uint16_t too_high_count;
     uint16_t lowerings;      /* see FLIGHT_IF_LOWERING_LIMIT */
+    float flown_mm;          /* above a descent at 0.3 m/s that began near the reference; at most FLOWN_MM */
+    bool fallen;             /* its height above the reference was not flown: the ground has fallen */
     float estimated_peak_mm; /* predicted top of the motion, above the reference; NAN: no estimate */
     uint32_t estimate_age_us;
 } climb_watch_t;

@@ -1005,6 +1005,7 @@ void test_with_the_seeds_parameters_the_thrust_is_never_cut_off_the_ground(void)
         if (any(50) == 0) {
             setr(any(4) == 0 ? 0.0F : 0.6F);
         }
+        in.attitude_time_us = in.now_us;
         in.attitude_ready = true;
         flight_step(&flight, &parameters, &in, &out);
         TEST_ASSERT_TRUE(out.state != FLIGHT_GROUND || before == FLIGHT_GROUND);

@@ -127,6 +127,18 @@ void test_the_supervisor_hears_of_an_estimate_that_a_height_has_confirmed(void)
     TEST_ASSERT_TRUE(signs_of_vertical(&now, true).sways && signs_of_vertical(&now, true).rocks);
 }
 
+void test_falls_of_the_ground_are_told_by_the_accelerometer_where_two_mirrors_agree_and_law_est_flies(void)
+{
+    for (int missing = 0; missing < 4; missing++) {
+        now.law = (missing == 1) ? LAW_PIDT : LAW_EST;
+        evidence.mirrors.agree = missing != 2;
+        evidence.felt_valid = missing != 3;
+        evidence.felt_mps = -0.4F;
+        TEST_ASSERT_EQUAL(missing == 0, signs_of_vertical(&now, false).tells_falls);
+    }
+    TEST_ASSERT_EQUAL_FLOAT(-400.0F, signs_of_vertical(&now, false).felt_mm_s);
+}
+
 void test_it_stands_by_the_sensors_or_without_thrust_where_contact_ends_so(void)
 {
     TEST_ASSERT_FALSE(signs_of_vertical(&now, false).stands);

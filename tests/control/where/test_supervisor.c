@@ -102,6 +102,54 @@ void test_flying_to_lowering_when_too_high_twice(void)
     TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_TOO_HIGH, s.flags);
 }
 
+/* Scans of 0.1 s from 2 m above the reference until it is lowered; at most 40. */
+static int scans_until_lowered(float felt_mm_s)
+{
+    int scans = 0;
+
+    fly();
+    estimate.tells_falls = true;
+    estimate.felt_mm_s = felt_mm_s;
+    while (s.state == FLIGHT_FLYING && scans < 40) {
+        watch(2500.0F, 1);
+        scans++;
+    }
+    return scans;
+}
+
+/* Over an edge or a slope that falls. Half a metre was flown, or was not sunk by as a descent would. */
+void test_no_height_is_too_high_by_which_the_ground_has_fallen(void)
+{
+    TEST_ASSERT_EQUAL_INT(40, scans_until_lowered(-310.0F));
+    TEST_ASSERT_EQUAL_UINT16(0, s.flags);
+    estimate.tells_falls = false;
+    watch(2500.0F, 1);
+    state_is(FLIGHT_LOWERING);
+}
+
+void test_a_height_that_was_flown_is_too_high_wherever_the_ground_is(void)
+{
+    TEST_ASSERT_INT_WITHIN(1, 5, scans_until_lowered(700.0F));
+}
+
+void test_a_law_that_does_not_return_over_fallen_ground_is_lowered(void)
+{
+    TEST_ASSERT_INT_WITHIN(1, 17, scans_until_lowered(0.0F));
+}
+
+void test_near_the_reference_what_was_flown_is_forgotten(void)
+{
+    fly();
+    estimate.tells_falls = true;
+    estimate.felt_mm_s = 700.0F;
+    watch(2500.0F, 4);
+    watch(500.0F, 3);
+    watch(2500.0F, 4);
+    state_is(FLIGHT_FLYING);
+    watch(2500.0F, 2);
+    state_is(FLIGHT_LOWERING);
+}
+
 void test_a_climb_counts_for_0_4_seconds_and_its_brake_and_a_descent_not_at_all(void)
 {
     fly();
@@ -232,6 +280,23 @@ void test_heights_of_a_vehicle_that_is_tilted_or_has_lost_its_imu_are_not_a_flig
     state_is(FLIGHT_GROUND);
     watch(700.0F, 12);
     state_is(FLIGHT_FLOATING);
+}
+
+void test_nothing_takes_off_whose_imu_has_fallen_silent_since_its_zero_is_known(void)
+{
+    watch(0.0F, 5);
+    for (int i = 0; i < 10; i++) {
+        see(0.0F);
+        in.now_us += 100000U; /* and no attitude */
+        if (i == 4) {
+            setr(0.5F);
+        }
+        step();
+        state_is(FLIGHT_GROUND);
+    }
+    TEST_ASSERT_EQUAL_UINT16(FLIGHT_FLAG_ATTITUDE, s.flags);
+    watch(0.0F, 1);
+    state_is(FLIGHT_TAKEOFF);
 }
 
 void test_a_vehicle_with_heights_is_not_handed_over_while_it_is_carried(void)
