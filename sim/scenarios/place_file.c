@@ -227,6 +227,12 @@ static bool obey_floor(const order_t *order)
     return read_surface(order, order->name[0], &order->file->place.floor[0]);
 }
 
+static bool obey_carried(const order_t *order)
+{
+    order->file->course.carried = true;
+    return true;
+}
+
 static bool obey_tiles(const order_t *order)
 {
     order->file->place.tile_m = order->value[0];
@@ -329,6 +335,7 @@ static const verb_t verbs[] = {
      true,
      0},
     {"go", {SECONDS("START"), X_Y, {"SPEED", 0.01, 10}}, obey_go, true, false, 0},
+    {"carried", {{NULL, 0, 0}}, obey_carried, false, false, 0},
     {"floor", {{NULL, 0, 0}}, obey_floor, false, false, 1},
     {"tiles", {SIZE("SIZE")}, obey_tiles, false, false, 2},
     {"sun", {X_Y, SIZE("LENGTH"), SIZE("WIDTH"), {"STRENGTH", 0, 1}}, obey_sun, true, false, 0},

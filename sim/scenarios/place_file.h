@@ -11,6 +11,7 @@
  *   lift    X Y LENGTH WIDTH TRAVEL SPEED START STAY   level with the floor; rises, stays, and sinks again
  *   foot    X Y LENGTH WIDTH HEIGHT START SECONDS      a block that is there for a while
  *   go      START X Y SPEED                   a leg of the way
+ *   carried                                   along the way exactly, as on a rail; else a pilot flies it
  *   floor   NAME                              its surface
  *   tiles   NAME NAME SIZE                    the floor in squares of two surfaces, a corner at 0 0
  *   sun     X Y LENGTH WIDTH STRENGTH         sunlight on everything over there, 0 to 1

@@ -106,6 +106,10 @@ void test_the_way_has_its_legs(void)
     NEAR(1e-12, 0.0, file.course.legs[0].turn_radps);
     NEAR(1e-12, M_PI, file.course.legs[1].heading_rad);
     TEST_ASSERT_TRUE(file.course.legs[1].turn_radps > 0.0);
+    TEST_ASSERT_FALSE(file.course.carried);
+    read("go 5 7.5 0 0.4\ncarried\n");
+    TEST_ASSERT_TRUE(file.course.carried);
+    refuse("carried 1", 1, "carried: 1: one word too many");
 }
 
 void test_a_fault_is_named_with_its_line(void)
