@@ -29,7 +29,7 @@ typedef struct {
     float block_s;                              /* time since the latter was taken */
     float bias_mps2;  /* of the accelerometer: at rest its mean, in the air corrected by the heights */
     float beyond_s;   /* how long that has been BIAS_MAX_MPS2, at most 2 s */
-    float shaken;     /* >= 1: divides the witness's innovation when the accelerometer is noisy */
+    float shaken;     /* >= 1, more when it is noisy: its speed counts so much less */
     float in_hands_s; /* how long somebody has had it in his hands on the ground, at most 2 s */
     witness_t felt;
 } accelerometer_t;
@@ -69,12 +69,6 @@ void accelerometer_set_noise(accelerometer_t *accelerometer, float noise_mps2);
  * speed and bias. */
 void accelerometer_compare(accelerometer_t *accelerometer, float rise_m, float gap_s, float age_s,
                            bool believed);
-
-/* Sum of the innovations, made smaller when the accelerometer is noisy. */
-static inline float accelerometer_off_m(const accelerometer_t *accelerometer)
-{
-    return accelerometer->felt.seen_m / accelerometer->shaken;
-}
 
 /* True in state GROUND without heights, when the tilt has swayed as in the air and gone on moving for 1.5 s:
  * a pilot flies it, or somebody carries it; a nudge or a wrong frame is over sooner. Then the speed is

@@ -16,7 +16,7 @@
 #define LIES 0.5F                /* more probably than not */
 #define LIAR_S 2.0F              /* chosen: the bracket is 0.22 m long, which takes 1.1 s at 0.2 m/s */
 #define DISBELIEVED_MOST_S 10.0F /* the counter stops here */
-#define AGREE 0.99F              /* one wrong in a hundred: then the rules of rules.c are not asked */
+#define AGREE 0.99F              /* one wrong in a hundred */
 
 void mirrors_frame(mirrors_t *mirrors, float gained_mps)
 {
@@ -166,7 +166,7 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
 
     if (voters == 0U) {
         mirrors->agree = mirrors->sees = mirrors->suspected = mirrors->blind = mirrors->felt_lies =
-            mirrors->felt_may_lie = mirrors->moves = mirrors->no_effect = false;
+            mirrors->felt_may_lie = mirrors->moves = mirrors->unpushed = mirrors->no_effect = false;
         mirrors->left_out = 0U;
         return false;
     }
@@ -176,13 +176,16 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     const float honest = belief_of_honest(belief, voters, 2U);
     const float none = belief_of_none(belief, voters);
     const float felt_lies = belief_of_motion(belief, BELIEF_FELT_LIES);
-    const float moves = 1.0F - belief_of_motion(belief, BELIEF_STANDS) - felt_lies;
+    const float stands = belief_of_motion(belief, BELIEF_STANDS);
+    const float held = belief_of_motion(belief, BELIEF_HELD);
+    const float moves = 1.0F - stands - felt_lies;
 
     mirrors->agree = honest > AGREE;
     mirrors->felt_lies = felt_lies > AGREE && (mirrors->felt_may_lie || !belief_has_several(voters));
     mirrors->felt_may_lie = felt_lies > AGREE;
     mirrors->moves = moves > AGREE;
-    mirrors->no_effect = belief_of_motion(belief, BELIEF_HELD) > AGREE;
+    mirrors->no_effect = held > AGREE;
+    mirrors->unpushed = held + stands > AGREE;
     mirrors->suspected = none > 1.0F - AGREE;
     mirrors->blind = none > AGREE;
     mirrors->sees = !mirrors->suspected && moves > LIES;

@@ -37,6 +37,7 @@ typedef struct {
     bool felt_may_lie; /* the accelerometer does, with 99 %, in this scan */
     bool felt_lies;    /* and where several mirrors count, in the scan before too */
     bool moves;        /* the vehicle does, with 99 % */
+    bool unpushed;     /* nothing moves it, or the thrust has no effect, with 99 % */
     bool no_effect;    /* the thrust has none, with 99 %: a pilot flies, or somebody holds the vehicle */
     uint16_t left_out; /* bits: mirrors of that scan that told something, and do not count in altitude */
     float lies[MIRROR_COUNT];               /* the probability that each lies */

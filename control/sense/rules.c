@@ -1,8 +1,7 @@
 /* Who has the throttle? Where nothing tells, the thrust does: a pilot, or somebody who holds the vehicle,
- * makes it push in vain. The source is analytical redundancy, any text on fault detection.
+ * makes it push in vain. That it has no effect the belief tells, scan by scan (belief_world.c).
  *
- * What breaks: a limit that is too low doubts the thrust in a gust, and then it may not push against that.
- * The limits have to be above the drift of the witnesses in healthy flights. */
+ * What breaks: a thrust that is doubted in a gust may not push against that. */
 #include "control/sense/rules.h"
 
 #include <math.h>
@@ -11,11 +10,7 @@
 #include "control/between.h"
 #include "control/credible.h"
 
-#define WITH_M 0.20F         /* chosen: less than that counts as agreement */
-#define NO_AUTHORITY_M 1.30F /* chosen: wrong hover thrust alone makes this witness drift */
-#define MOVED_M 0.30F        /* chosen: above WITH_M, so that the agreement is about a real motion */
-#define PUSH_N 0.7F          /* chosen: a tenth of GRAV as delivered, 7 N */
-#define PUSHED_M 0.15F       /* chosen: above CONTENT_M; a law pushes for such a distance */
+#define PUSH_N 0.7F /* chosen: a tenth of GRAV as delivered, 7 N */
 
 rule_case_t rules_case(const senses_t *senses, const command_t *command, bool felt_valid)
 {
@@ -24,16 +19,9 @@ rule_case_t rules_case(const senses_t *senses, const command_t *command, bool fe
         .command = command,
         .felt = &senses->accelerometer.felt,
         .pushed = &senses->push.pushed,
-        .felt_off_m = accelerometer_off_m(&senses->accelerometer),
         .felt_valid = felt_valid,
         .pushed_valid = witness_counts(&senses->push.pushed),
     };
-}
-
-/* The heights contradict the witness of the accelerometer by more than at_least_m. */
-static bool felt_against(const rule_case_t *c, float at_least_m)
-{
-    return c->felt_valid && fabsf(c->felt_off_m) > at_least_m;
 }
 
 bool rules_push_in_vain(const rule_case_t *c)
@@ -46,17 +34,7 @@ bool rules_push_in_vain(const rule_case_t *c)
 
 bool rules_against_thrust(const rule_case_t *c)
 {
-    return c->senses->confirmation.proved && !c->senses->effect.has_effect &&
-           fabsf(c->command->wanted_m) > PUSHED_M && witness_against(c->pushed, NO_AUTHORITY_M) &&
-           c->felt_valid && !felt_against(c, WITH_M) && rules_push_in_vain(c);
-}
-
-/* Heights and witnesses agree, over a real motion. */
-bool rules_agree(const rule_case_t *c)
-{
-    const witness_t *mover = c->pushed_valid ? c->pushed : c->felt;
-
-    return !felt_against(c, WITH_M) && !witness_against(c->pushed, WITH_M) && mover->moved_m > MOVED_M;
+    return c->senses->confirmation.proved && c->senses->mirrors.unpushed && rules_push_in_vain(c);
 }
 
 /* Error of the height by the valid witnesses, mean of both when both are valid. */

@@ -12,7 +12,6 @@ void senses_init(senses_t *senses)
 {
     tilt_init(&senses->tilt);
     accelerometer_init(&senses->accelerometer);
-    effect_init(&senses->effect);
 }
 
 void senses_forget(senses_t *senses)
@@ -52,9 +51,6 @@ static void take_frame(senses_t *s, const command_t *command, const imu_sample_t
     if (gap_us > FRAME_GAP_US) {
         accelerometer_restart(&s->accelerometer, push_speed_mps(&s->push, s->heights.rise_mps));
         return;
-    }
-    if (dt_s > 0.0F) {
-        effect_step(&s->effect, command->authority_mps2_per_n * s->push.lagged_n, mean_mps2, dt_s);
     }
     mirrors_frame(&s->mirrors, (mean_mps2 - s->accelerometer.bias_mps2) * dt_s);
     sway_frame(&s->sway, frame, s->heights.height_m, dt_s);

@@ -12,7 +12,6 @@
 #include <stdint.h>
 
 #include "control/altitude.h"
-#include "control/est/effect.h"
 #include "control/facts.h"
 #include "control/imu_sample.h"
 #include "control/sense/accelerometer.h"
@@ -33,7 +32,6 @@ typedef struct {
     confirmation_t confirmation;
     accelerometer_t accelerometer;
     push_t push;
-    effect_t effect; /* of the thrust, on what the accelerometer tells */
     stand_t stand;
 } senses_t;
 

@@ -1,11 +1,13 @@
-/* Doubts come and go. Which source contradicts the others, and for how long, is for rules.c to say.
+/* Doubts come and go, as the belief tells.
  * What breaks: after each verdict the sums of the witnesses start anew, or the same evidence counts twice. */
 #include "control/sense/verdict.h"
 
 #include <math.h>
 #include <stddef.h>
 
-#define AGREED_S 1.5F /* chosen: 15 scans */
+#include "control/between.h"
+
+#define LASTS_S 1.5F /* chosen: 15 scans, which the belief tells more often than not */
 
 bool verdict_felt_valid(const verdict_t *verdict, const senses_t *senses)
 {
@@ -20,7 +22,7 @@ static rule_case_t case_of(const verdict_t *verdict, const senses_t *senses, con
 static void forget(verdict_t *verdict, senses_t *senses)
 {
     senses_forget(senses);
-    verdict->agreed_s = 0.0F;
+    verdict->contrary_s = 0.0F;
 }
 
 static void end_doubt(verdict_t *verdict, senses_t *senses, uint16_t doubt)
@@ -44,15 +46,6 @@ void verdict_rest(verdict_t *verdict, const accelerometer_t *accelerometer)
 void verdict_order(verdict_t *verdict, senses_t *senses)
 {
     end_doubt(verdict, senses, DOUBT_SIGHT | DOUBT_THRUST);
-}
-
-/* The thrust counts again after enough agreement. */
-static void judge_thrust_again(verdict_t *verdict, senses_t *senses, const rule_case_t *c, float gap_s)
-{
-    verdict->agreed_s = rules_agree(c) ? verdict->agreed_s + gap_s : 0.0F;
-    if (verdict->agreed_s > AGREED_S) {
-        end_doubt(verdict, senses, DOUBT_THRUST);
-    }
 }
 
 static void doubt_sight(verdict_t *verdict, senses_t *senses, const rule_case_t *c)
@@ -90,18 +83,26 @@ static void judge_sight(verdict_t *verdict, senses_t *senses, const rule_case_t 
     }
 }
 
-/* It is held against the heights, so only while these are believed. */
+/* It is held against the heights, so only while these are believed. The belief forgets a motion within a
+ * second, so what it tells has to last. */
 static void judge_thrust(verdict_t *verdict, senses_t *senses, const rule_case_t *c, float gap_s)
 {
+    const bool doubted = (verdict->doubts & DOUBT_THRUST) != 0U;
+    const bool contrary = doubted ? !senses->mirrors.unpushed : rules_against_thrust(c);
+
     if (!rules_push_in_vain(c)) {
         verdict->sure_n = c->command->hover_n;
     }
     if ((verdict->doubts & DOUBT_SIGHT) != 0U) {
         return;
     }
-    if ((verdict->doubts & DOUBT_THRUST) != 0U) {
-        judge_thrust_again(verdict, senses, c, gap_s);
-    } else if (rules_against_thrust(c)) {
+    verdict->contrary_s = between(0.0F, verdict->contrary_s + (contrary ? gap_s : -gap_s), LASTS_S);
+    if (!contrary || verdict->contrary_s < LASTS_S) {
+        return;
+    }
+    if (doubted) {
+        end_doubt(verdict, senses, DOUBT_THRUST);
+    } else {
         doubt_thrust(verdict, senses, c->command);
     }
 }
@@ -118,7 +119,7 @@ static void judge(verdict_t *verdict, senses_t *senses, const command_t *command
 void verdict_height(verdict_t *verdict, senses_t *senses, const command_t *command,
                     const height_change_t *change)
 {
-    verdict->agreed_s = change->first_climb ? 0.0F : verdict->agreed_s;
+    verdict->contrary_s = change->first_climb ? 0.0F : verdict->contrary_s;
     confirmation_wait(&senses->confirmation, change, command->wanted_m);
     if (command->ours && !command->grounded) {
         judge(verdict, senses, command, change->gap_s);

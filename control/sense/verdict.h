@@ -5,7 +5,7 @@
  *   the thrust contradicts both others          DOUBT_THRUST: a pilot flies, or something holds the vehicle;
  *                                               the thrust stays near the last known hover thrust
  *
- * Which of them contradicts is for rules.h to say.
+ * The belief tells which of them contradicts (mirrors.h).
  *
  * Metres, seconds, newtons per motor. Pure; the caller owns the state, all zero at first. Context: one
  * Task. */
@@ -23,10 +23,10 @@ typedef struct {
     uint16_t doubts;          /* DOUBT_* */
     verdict_reason_t why_imu; /* of DOUBT_IMU, while there is one */
     float lost_m;             /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
-    float agreed_s;           /* how long heights and witnesses have agreed during a doubt */
-    float sure_n;             /* hover thrust when the thrust last did not push in vain */
-    float held_n;             /* the same, when DOUBT_THRUST rose */
-    bool held_down;           /* the law wanted to descend at that instant */
+    float contrary_s; /* how long the belief has told the contrary of DOUBT_THRUST, less how long not */
+    float sure_n;     /* hover thrust when the thrust last did not push in vain */
+    float held_n;     /* the same, when DOUBT_THRUST rose */
+    bool held_down;   /* the law wanted to descend at that instant */
 } verdict_t;
 
 /* After the frames of a cycle: an accelerometer that does not measure g at rest is doubted. */

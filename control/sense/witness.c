@@ -18,7 +18,6 @@ void witness_move(witness_t *witness, float mps2, float dt_s)
 {
     witness->off_m -= (witness->speed_mps + 0.5F * mps2 * dt_s) * dt_s;
     witness->speed_mps += mps2 * dt_s;
-    witness->moved_m += fabsf(witness->speed_mps) * dt_s;
     witness->running_s = at_most(witness->running_s + dt_s, WITNESS_OLD_S);
 }
 
@@ -34,7 +33,7 @@ void witness_compare(witness_t *witness, float rise_m, float gap_s, float age_s,
 
 void witness_forget(witness_t *witness)
 {
-    witness->off_m = witness->seen_m = witness->moved_m = 0.0F;
+    witness->off_m = witness->seen_m = 0.0F;
 }
 
 bool witness_counts(const witness_t *witness)
@@ -46,9 +45,4 @@ bool witness_follows(const witness_t *witness, float rise_m, float gap_s)
 {
     return witness->running_s > 0.0F &&
            fabsf(rise_m - witness->speed_mps * gap_s) <= WITNESS_STEP_M + GAP_ALLOWS_MPS * gap_s;
-}
-
-bool witness_against(const witness_t *witness, float at_least_m)
-{
-    return witness_counts(witness) && fabsf(witness->seen_m) > at_least_m;
 }

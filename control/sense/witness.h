@@ -18,7 +18,6 @@ typedef struct {
     float speed_mps; /* predicted vertical speed */
     float off_m;     /* leaky sum of the innovations: measured minus predicted change of the height */
     float seen_m;    /* off_m at the instant when the rays of the latest height were taken */
-    float moved_m;   /* length of the predicted path since the sums were last cleared, >= 0 */
     float running_s; /* time since its start, at most WITNESS_OLD_S */
 } witness_t;
 
@@ -42,8 +41,5 @@ bool witness_counts(const witness_t *witness);
 
 /* True when this witness explains the change of the height: then the change is no step of the terrain. */
 bool witness_follows(const witness_t *witness, float rise_m, float gap_s);
-
-/* The heights contradict this witness by more than at_least_m. */
-bool witness_against(const witness_t *witness, float at_least_m);
 
 #endif

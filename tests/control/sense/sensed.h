@@ -60,9 +60,14 @@ static inline void bias_is_beyond_s(float beyond_s)
     senses.accelerometer.beyond_s = beyond_s;
 }
 
-static inline void has_agreed_s(float agreed_s)
+static inline void has_no_effect(bool no_effect)
 {
-    verdict.agreed_s = agreed_s;
+    senses.mirrors.unpushed = senses.mirrors.no_effect = no_effect;
+}
+
+static inline void has_told_the_contrary_for_s(float contrary_s)
+{
+    verdict.contrary_s = contrary_s;
 }
 
 static inline void rises_mps(float rise_mps)

@@ -69,14 +69,12 @@ void test_a_new_order_on_the_ground_forgets_and_one_in_the_air_does_not(void)
         flown.ordered = true;
         flown.grounded = grounded != 0;
         doubted(DOUBT_SIGHT | DOUBT_IMU | DOUBT_THRUST);
-        senses.accelerometer.felt.seen_m = senses.accelerometer.felt.off_m =
-            senses.accelerometer.felt.moved_m = verdict.agreed_s = 0.4F;
+        senses.accelerometer.felt.seen_m = senses.accelerometer.felt.off_m = verdict.contrary_s = 0.4F;
         sensed_thrust(&flown);
         TEST_ASSERT_EQUAL_UINT16((grounded != 0) ? DOUBT_IMU : 7U, verdict.doubts);
         TEST_ASSERT_EQUAL_FLOAT((grounded != 0) ? 0.0F : 0.4F, senses.accelerometer.felt.seen_m);
         TEST_ASSERT_EQUAL_FLOAT((grounded != 0) ? 0.0F : 0.4F, senses.accelerometer.felt.off_m);
-        TEST_ASSERT_EQUAL_FLOAT((grounded != 0) ? 0.0F : 0.4F, senses.accelerometer.felt.moved_m);
-        TEST_ASSERT_EQUAL_FLOAT((grounded != 0) ? 0.0F : 0.4F, verdict.agreed_s);
+        TEST_ASSERT_EQUAL_FLOAT((grounded != 0) ? 0.0F : 0.4F, verdict.contrary_s);
     }
 }
 

@@ -57,15 +57,13 @@ void test_the_sight_is_back_when_a_mirror_sees_a_motion_and_not_before(void)
 }
 
 /* Witnesses drift while nothing corrects them: they do not say that the sight is back, nor that it is not. */
-void test_the_agreement_of_the_witnesses_neither_ends_nor_keeps_a_doubt_of_the_sight(void)
+void test_the_witnesses_neither_end_nor_keep_a_doubt_of_the_sight(void)
 {
     static const float offs_m[] = {0.0F, 3.0F};
 
     for (int i = 0; i < 2; i++) {
         setUp();
         doubted(DOUBT_SIGHT);
-        has_agreed_s(1.51F);
-        senses.push.pushed.moved_m = 0.31F;
         TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(offs_m[i], offs_m[i]));
         one_sees_a_motion(true);
         TEST_ASSERT_EQUAL_UINT16(0U, judged(offs_m[i], offs_m[i]));
@@ -149,42 +147,50 @@ void test_at_rest_an_accelerometer_is_doubted_beyond_one_and_a_half_and_fit_agai
 
 /* ---- the thrust */
 
-static uint16_t thrust_again(float agreed_s, float moved_m, float felt_m, float pushed_m)
+static uint16_t thrust_again(float contrary_s, bool no_effect)
 {
     setUp();
     doubted(DOUBT_THRUST);
-    has_agreed_s(agreed_s);
-    senses.push.pushed.moved_m = moved_m;
-    return judged(felt_m, pushed_m);
+    has_told_the_contrary_for_s(contrary_s);
+    has_no_effect(no_effect);
+    return judged(0.0F, 0.0F);
 }
 
-void test_agreement_of_a_second_and_a_half_over_a_motion_ends_a_doubt_of_the_thrust(void)
+void test_an_effect_for_a_second_and_a_half_ends_a_doubt_of_the_thrust(void)
 {
-    TEST_ASSERT_EQUAL_UINT16(0U, thrust_again(1.51F, 0.31F, 0.2F, -0.2F));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.seen_m);
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, thrust_again(1.50F, 0.31F, 0.0F, 0.0F));
-    TEST_ASSERT_EQUAL_FLOAT(1.5F, verdict.agreed_s);
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, thrust_again(1.51F, 0.30F, 0.0F, 0.0F));
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict.agreed_s);
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, thrust_again(1.51F, 0.31F, 0.21F, 0.0F));
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, thrust_again(1.51F, 0.31F, 0.0F, 0.21F));
+    TEST_ASSERT_EQUAL_UINT16(0U, thrust_again(1.5F, false));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict.contrary_s);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, thrust_again(1.49F, false));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, thrust_again(1.5F, true));
 }
 
-void test_the_motion_is_the_accelerometers_where_the_thrust_does_not_count(void)
+/* Fifteen scans, or more where some of them tell nothing; as many must tell the contrary again. */
+void test_the_thrust_is_doubted_when_most_scans_of_a_second_and_a_half_tell_that_it_has_no_effect(void)
 {
-    for (int pushed = 0; pushed < 2; pushed++) {
+    static const struct {
+        int every, scans; /* one of so many tells nothing */
+    } rows[] = {{1000, 15}, {5, 25}};
+
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        int scans = 0;
+
         setUp();
-        doubted(DOUBT_THRUST);
-        has_agreed_s(1.51F);
-        senses.push.pushed.running_s = (pushed != 0) ? 2.0F : 0.5F;
-        senses.accelerometer.felt.moved_m = 0.31F;
-        TEST_ASSERT_EQUAL_UINT16((pushed != 0) ? DOUBT_THRUST : 0U, judged(0.0F, 0.0F));
+        pushes_n(HOVER_N + 1.0F);
+        while (verdict.doubts == 0U && scans < 100) {
+            scans++;
+            has_no_effect(scans % rows[i].every != 0);
+            senses.push.pushed.off_m = -0.4F;
+            sensed_height(&flown, senses.heights.height_m, 0.1F, 0.0F);
+        }
+        TEST_ASSERT_INT_WITHIN(2, rows[i].scans, scans);
+        TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, verdict.doubts);
     }
 }
 
 void test_a_mirror_that_sees_does_not_give_the_thrust_back(void)
 {
     doubted(DOUBT_THRUST);
+    has_no_effect(true);
     one_sees_a_motion(true);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, judged(0.0F, 0.0F));
 }
