@@ -138,6 +138,7 @@ class Fit(unittest.TestCase):
         vehicle = {"hover_thrust": 8.8, "tau": 0.15, "tdelay": 0.03, "damping": 1.2, "gain": 1.25, "common_noise": 5}
         path = self.dir / "lowered.csv"
         words = [word for name, value in vehicle.items() for word in ("--set", f"plant.{name}={value}")]
+        words += ["--set", "LAYOUT=FRONT"]      # three mirrors tell a step of the reference from a climb
         subprocess.run([PROGRAM, "fly", "experiment", "--seed", "2", *words, "--csv", path], check=False,
                        stdout=subprocess.DEVNULL)
         self.assertIn(",LOWERING,", path.read_text())
