@@ -7,7 +7,7 @@
 
 #include "control/between.h"
 
-#define LASTS_S 1.5F /* chosen: 15 scans, which the belief tells more often than not */
+#define LASTS_S 1.5F /* chosen: 15 more scans that tell it than scans that do not */
 
 bool verdict_felt_valid(const verdict_t *verdict, const senses_t *senses)
 {

@@ -23,7 +23,7 @@ typedef struct {
     uint16_t doubts;          /* DOUBT_* */
     verdict_reason_t why_imu; /* of DOUBT_IMU, while there is one */
     float lost_m;             /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
-    float contrary_s; /* how long the belief has told the contrary of DOUBT_THRUST, less how long not */
+    float contrary_s; /* time of scans against the present verdict on the thrust, less that of the others */
     float sure_n;     /* hover thrust when the thrust last did not push in vain */
     float held_n;     /* the same, when DOUBT_THRUST rose */
     bool held_down;   /* the law wanted to descend at that instant */

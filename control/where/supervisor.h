@@ -16,8 +16,10 @@ typedef struct {
     bool known; /* false: height and climb are not read */
     float height_mm;
     float climb_mm_s; /* > 0 is up, relative to the terrain */
-    float felt_mm_s;  /* vertical speed by the accelerometer, > 0 is up: the terrain is no part of it */
-    bool tells_falls; /* of the ground from climbs: law EST flies, two mirrors agree, felt_mm_s is believed */
+    float felt_mm_s;  /* vertical speed by the accelerometer, > 0 is up: the terrain is no part of it; valid
+                       * also without `known` */
+    bool tells_falls; /* felt_mm_s tells ground that falls from a climb: law EST flies, two mirrors agree, and
+                       * the accelerometer is believed */
     bool stands;      /* too little thrust to fly, and no fall is measured; valid also
                        * without `known` */
     float upright;    /* cosine of the tilt of *in; valid also without `known` */
