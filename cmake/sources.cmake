@@ -9,7 +9,7 @@ set(CONTROL_SOURCES
     control/laws/law_pidt.c control/laws/laws.c control/laws/pid.c control/laws/pidt.c control/laws/stuck_pin.c control/median.c
     control/modes.c control/outputs.c control/parameters.c control/ray_clock.c control/reach.c control/sense/accelerometer.c
     control/sense/belief.c control/sense/belief_world.c control/sense/confirmation.c control/sense/heights.c control/sense/mirrors.c
-    control/sense/mounts.c control/sense/plane.c control/sense/push.c control/sense/rules.c control/sense/sense.c control/sense/senses.c control/sense/stand.c
+    control/sense/mounts.c control/sense/plane.c control/sense/push.c control/sense/sense.c control/sense/senses.c control/sense/stand.c
     control/sense/sway.c control/sense/tilt.c control/sense/verdict.c control/sense/witness.c control/signs.c
     control/sense/zeros.c control/situation.c control/stick.c control/stick_orders.c control/thrust.c control/where/contact.c
     control/where/flight_state.c control/where/hover_thrust.c control/where/piloting.c control/where/supervisor.c

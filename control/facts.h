@@ -30,7 +30,7 @@ typedef struct {
 /* What the sensors show, in the present cycle. Made by sense/. */
 typedef struct {
     uint16_t doubts;  /* DOUBT_* */
-    uint16_t reason;  /* rule that raised the latest doubt, verdict_reason_t of sense/rules.h; 0: none */
+    uint16_t reason;  /* what raised the latest doubt, verdict_reason_t of sense/verdict.h; 0: none */
     bool unconfirmed; /* after a take-off or a step of the terrain towards the vehicle, until the heights show
                        * a climb: the beam may be blocked, keep climbs slow */
     bool terrain_fell; /* after a step of more than 0.4 m away from the vehicle, until the heights show a

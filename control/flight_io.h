@@ -79,7 +79,7 @@ typedef struct {
     float hover_n;  /* hover thrust as far as it is known, where/hover_thrust.h */
     flight_state_t state;
     uint16_t flags;        /* FLIGHT_FLAG_* */
-    uint16_t rule;         /* that raised the first doubt, verdict_reason_t of sense/rules.h; 0: none */
+    uint16_t reason;       /* of the first doubt, verdict_reason_t of sense/verdict.h; 0: none */
     uint16_t bound;        /* that holds the thrust, bound_t of bounds.h; 0: none */
     imu_fault_t imu_fault; /* by gravity, or by the mirrors */
     flight_mirrors_t mirrors;

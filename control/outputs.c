@@ -27,7 +27,7 @@ void outputs_write(const situation_t *now, bool out_of_reach, float thrust_n, fl
     out->hover_n = now->where->hover.thrust_n;
     out->state = supervisor->state;
     out->flags = flags(now, out_of_reach);
-    out->rule = now->evidence->reason;
+    out->reason = now->evidence->reason;
     out->reference_m = supervisor->reference_m;
     out->estimate_mm = estimated ? estimator->now.height_m * 1000.0F : measured_mm;
     out->innovation_mm = estimated ? estimator->innovation_m * 1000.0F : NAN;

@@ -10,7 +10,7 @@
 #include "control/battery.h"
 #include "control/bounds.h"
 #include "control/flight_io.h"
-#include "control/sense/rules.h"
+#include "control/sense/verdict.h"
 #include "drivers/flight_beams.h"
 #include "drivers/flight_log.h"
 #include "drivers/telemetry.h"
@@ -62,7 +62,7 @@ typedef struct {
     DERIVED("pulse_us", 1U, 2U, flight.pulse_us, thrust_to_pulse_us, flight.thrust_n)  \
     NUMBER(NULL,  0U, "age_s",     3U, 4U, age_us,               FLIGHT_LOG_MICRO)     \
     NUMBER(NULL,  0U, "bat_v",     2U, 3U, flight.battery_v,     FLIGHT_LOG_3)         \
-    NAME("doubt", flight.rule,    rules_name,   0U,  7U)                               \
+    NAME("doubt", flight.reason,  verdict_name, 0U,  7U)                               \
     NAME("limit", flight.bound,   bound_name,   7U,  5U)                               \
     NAME("bat",   flight.battery, battery_name, 12U, 4U)                               \
     BEAM("mf", FLIGHT_BEAM_F)                                                          \

@@ -76,8 +76,8 @@ static void report(telemetry_line_t *line, const flight_outputs_t *flight, const
     turn = warns && !turn;
     if (reset != NULL) {
         now.reset = reset;
-    } else if (now.flight.rule != VERDICT_NONE && !turn) {
-        now.doubt = rules_name(now.flight.rule);
+    } else if (now.flight.reason != VERDICT_NONE && !turn) {
+        now.doubt = verdict_name(now.flight.reason);
     } else if (!warns && now.flight.bound != BOUND_NONE && now.flight.state != FLIGHT_GROUND) {
         now.limit = bound_name(now.flight.bound);
     }

@@ -1,5 +1,6 @@
 /* Doubts come and go, as the belief tells.
- * What breaks: after each verdict the sums of the witnesses start anew, or the same evidence counts twice. */
+ * What breaks: a thrust that is doubted in a gust may not push against that. After each verdict the sums of
+ * the witnesses start anew, or the same evidence counts twice. */
 #include "control/sense/verdict.h"
 
 #include <math.h>
@@ -7,6 +8,7 @@
 
 #include "control/between.h"
 
+#define PUSH_N 0.7F  /* chosen: a tenth of GRAV as delivered, 7 N */
 #define LASTS_S 1.5F /* chosen: 15 more scans that tell it than scans that do not */
 
 bool verdict_felt_valid(const verdict_t *verdict, const senses_t *senses)
@@ -14,9 +16,25 @@ bool verdict_felt_valid(const verdict_t *verdict, const senses_t *senses)
     return witness_counts(&senses->accelerometer.felt) && (verdict->doubts & DOUBT_IMU) == 0U;
 }
 
-static rule_case_t case_of(const verdict_t *verdict, const senses_t *senses, const command_t *command)
+/* The thrust pushes towards the reference, and the heights do not follow. */
+static bool pushes_in_vain(const senses_t *senses, const command_t *command)
 {
-    return rules_case(senses, command, verdict_felt_valid(verdict, senses));
+    const float push_n = senses->push.lagged_n - command->hover_n;
+
+    return fabsf(push_n) > PUSH_N && push_n * command->wanted_m > 0.0F &&
+           senses->push.pushed.seen_m * push_n < 0.0F;
+}
+
+/* Error of the height by the witnesses that count, mean of both when both do. */
+static float lost_m(const verdict_t *verdict, const senses_t *senses)
+{
+    const witness_t *felt = &senses->accelerometer.felt;
+    const witness_t *pushed = &senses->push.pushed;
+
+    if (!witness_counts(pushed)) {
+        return felt->seen_m;
+    }
+    return verdict_felt_valid(verdict, senses) ? 0.5F * (felt->seen_m + pushed->seen_m) : pushed->seen_m;
 }
 
 static void forget(verdict_t *verdict, senses_t *senses)
@@ -48,10 +66,10 @@ void verdict_order(verdict_t *verdict, senses_t *senses)
     end_doubt(verdict, senses, DOUBT_SIGHT | DOUBT_THRUST);
 }
 
-static void doubt_sight(verdict_t *verdict, senses_t *senses, const rule_case_t *c)
+static void doubt_sight(verdict_t *verdict, senses_t *senses)
 {
     verdict->doubts |= DOUBT_SIGHT;
-    verdict->lost_m = rules_lost_m(c);
+    verdict->lost_m = lost_m(verdict, senses);
     forget(verdict, senses);
 }
 
@@ -74,24 +92,27 @@ static void judge_imu(verdict_t *verdict, senses_t *senses)
 }
 
 /* The belief tells whether the sight lies, and when what it sees moves again. */
-static void judge_sight(verdict_t *verdict, senses_t *senses, const rule_case_t *c)
+static void judge_sight(verdict_t *verdict, senses_t *senses)
 {
     if ((verdict->doubts & DOUBT_SIGHT) == 0U && senses->mirrors.blind) {
-        doubt_sight(verdict, senses, c);
+        doubt_sight(verdict, senses);
     } else if ((verdict->doubts & DOUBT_SIGHT) != 0U && senses->mirrors.sees) {
         end_doubt(verdict, senses, DOUBT_SIGHT);
     }
 }
 
-/* It is held against the heights, so only while these are believed. The belief forgets a motion within a
- * second, so what it tells has to last. */
-static void judge_thrust(verdict_t *verdict, senses_t *senses, const rule_case_t *c, float gap_s)
+/* A pilot, or somebody who holds the vehicle, makes the thrust push in vain. That it has no effect the belief
+ * tells, scan by scan. It forgets a motion within a second, so what it tells has to last. A gust pushes
+ * harder. The thrust is held against the heights, so only while these are believed. */
+static void judge_thrust(verdict_t *verdict, senses_t *senses, const command_t *command, float gap_s)
 {
     const bool doubted = (verdict->doubts & DOUBT_THRUST) != 0U;
-    const bool contrary = doubted ? !senses->mirrors.unpushed : rules_against_thrust(c);
+    const bool in_vain = pushes_in_vain(senses, command);
+    const bool against = senses->confirmation.proved && senses->mirrors.unpushed && in_vain;
+    const bool contrary = doubted ? !senses->mirrors.unpushed : against;
 
-    if (!rules_push_in_vain(c)) {
-        verdict->sure_n = c->command->hover_n;
+    if (!in_vain) {
+        verdict->sure_n = command->hover_n;
     }
     if ((verdict->doubts & DOUBT_SIGHT) != 0U) {
         return;
@@ -103,17 +124,15 @@ static void judge_thrust(verdict_t *verdict, senses_t *senses, const rule_case_t
     if (doubted) {
         end_doubt(verdict, senses, DOUBT_THRUST);
     } else {
-        doubt_thrust(verdict, senses, c->command);
+        doubt_thrust(verdict, senses, command);
     }
 }
 
 static void judge(verdict_t *verdict, senses_t *senses, const command_t *command, float gap_s)
 {
     judge_imu(verdict, senses);
-    const rule_case_t c = case_of(verdict, senses, command);
-
-    judge_sight(verdict, senses, &c);
-    judge_thrust(verdict, senses, &c, gap_s);
+    judge_sight(verdict, senses);
+    judge_thrust(verdict, senses, command, gap_s);
 }
 
 void verdict_height(verdict_t *verdict, senses_t *senses, const command_t *command,
@@ -154,4 +173,16 @@ verdict_reason_t verdict_reason(const verdict_t *verdict)
         return verdict->why_imu;
     }
     return (verdict->doubts != 0U) ? VERDICT_NO_EFFECT : VERDICT_NONE;
+}
+
+static const char *const reason_names[] = {
+    [VERDICT_NONE] = "-",          [VERDICT_BLIND] = "SIGHT/blind",         [VERDICT_REST] = "IMU/rest",
+    [VERDICT_ALONE] = "IMU/alone", [VERDICT_NO_EFFECT] = "THRUST/noeffect",
+};
+typedef char
+    every_reason_has_a_name[(sizeof reason_names / sizeof reason_names[0] == VERDICT_COUNT) ? 1 : -1];
+
+const char *verdict_name(uint16_t reason)
+{
+    return reason_names[reason];
 }

@@ -16,8 +16,17 @@
 #include <stdint.h>
 
 #include "control/facts.h"
-#include "control/sense/rules.h"
 #include "control/sense/senses.h"
+
+/* What raised a doubt. */
+typedef enum {
+    VERDICT_NONE,
+    VERDICT_BLIND,     /* DOUBT_SIGHT: every mirror lies, more than 99 % */
+    VERDICT_REST,      /* DOUBT_IMU: at rest the accelerometer does not measure g */
+    VERDICT_ALONE,     /* DOUBT_IMU: it lies, more than 99 %, or no bias explains it */
+    VERDICT_NO_EFFECT, /* DOUBT_THRUST: it pushes in vain, and has no effect, more than 99 % */
+    VERDICT_COUNT
+} verdict_reason_t;
 
 typedef struct {
     uint16_t doubts;          /* DOUBT_* */
@@ -49,5 +58,8 @@ float verdict_speed_mps(const verdict_t *verdict, const senses_t *senses);
 
 /* Reason of the first doubt, in the order SIGHT, IMU, THRUST; VERDICT_NONE: no doubt. */
 verdict_reason_t verdict_reason(const verdict_t *verdict);
+
+/* Its name, with the source that is doubted: "SIGHT/blind"; VERDICT_NONE: "-". reason: a verdict_reason_t. */
+const char *verdict_name(uint16_t reason);
 
 #endif

@@ -91,7 +91,7 @@ export function storyOf(told: Told, language: 'en' | 'es', whole: boolean, numbe
     add(step.start, kind, words[kind].replace('{step}', number(rounded(Math.abs(step.metres), 2))));
   }
 
-  for (const [start, end, rule] of stretches(t, told.doubt, TOGETHER_S)) add(start, 'doubt', lasting(words.doubt, start, end, known(words.rules, rule)));
+  for (const [start, end, reason] of stretches(t, told.doubt, TOGETHER_S)) add(start, 'doubt', lasting(words.doubt, start, end, known(words.reasons, reason)));
   for (const [start, end, limit] of stretches(t, told.limit.map((name, i) => (states[i] === 'GROUND' ? '' : name)), TOGETHER_S)) {
     if (end - start >= LIMIT_LEAST_S) add(start, 'limit', lasting(words.limit, start, end, known(words.limits, limit)));
   }

@@ -166,7 +166,7 @@ void test_titles_and_a_row_are_pinned(void)
     now.flight.flags = 5U;
     assert_row(
         "123.456,0.598,0.601,-0.012,0.600,7.123,-0.0123,0.0345,FLYING,5,-0.214,1393.8,0.081,,,," NO_BEAMS);
-    now.flight.rule = VERDICT_NO_EFFECT;
+    now.flight.reason = VERDICT_NO_EFFECT;
     now.flight.bound = BOUND_STANDING;
     assert_row(
         "123.456,0.598,0.601,-0.012,0.600,7.123,-0.0123,0.0345,FLYING,5,-0.214,1393.8,0.081,,THRUST/noeffect,"
@@ -191,7 +191,7 @@ void test_the_longest_row_is_pinned(void)
                    .reference_m = -99.0F,
                    .thrust_n = -99.0F,
                    .state = FLIGHT_DESCENDING,
-                   .rule = VERDICT_NO_EFFECT,
+                   .reason = VERDICT_NO_EFFECT,
                    .bound = BOUND_STANDING,
                    .battery = BATTERY_FROZEN,
                    .battery_v = -99.0F,
@@ -268,11 +268,11 @@ void test_every_rule_every_limit_and_every_word_on_the_battery_is_recorded(void)
 {
     for (uint16_t rule = 0U; rule < VERDICT_COUNT; rule++) {
         for (uint16_t bound = 0U; bound < BOUND_COUNT; bound++) {
-            now.flight.rule = rule;
+            now.flight.reason = rule;
             now.flight.bound = bound;
             now.flight.battery = (uint16_t)((rule + bound) % BATTERY_VERDICT_COUNT);
             const published_t record = recorded();
-            TEST_ASSERT_EQUAL_UINT16(rule, record.flight.rule);
+            TEST_ASSERT_EQUAL_UINT16(rule, record.flight.reason);
             TEST_ASSERT_EQUAL_UINT16(bound, record.flight.bound);
             TEST_ASSERT_EQUAL_UINT16(now.flight.battery, record.flight.battery);
         }
@@ -288,7 +288,7 @@ void test_every_rule_and_every_limit_fits_the_packet(void)
     now.flight.state = FLIGHT_DESCENDING;
     now.flight.flags = 2047U;
     for (uint16_t rule = 1U; rule < VERDICT_COUNT; rule++) {
-        now.doubt = rules_name(rule);
+        now.doubt = verdict_name(rule);
         published_telemetry(&line, &now);
         TEST_ASSERT_TRUE(!line.overflowed && line.length <= TELEMETRY_LINE_MAX);
     }

@@ -1,7 +1,7 @@
 /* TaskSendComm: one telemetry line every 200 ms, from the servers to the radio. */
 #include "control/battery.h"
 #include "control/bounds.h"
-#include "control/sense/rules.h"
+#include "control/sense/verdict.h"
 #include "firmware/tasks.h"
 
 #include <math.h>
@@ -350,13 +350,13 @@ static bool line_has(const char *word)
 void test_a_doubt_is_told_but_in_the_first_line_after_a_reset(void)
 {
     cause = "WATCHDOG";
-    flight.rule = VERDICT_ALONE;
+    flight.reason = VERDICT_ALONE;
     TEST_ASSERT_FALSE(line_has("doubt:"));
     more_ticks = 1U;
     TEST_ASSERT_TRUE(line_has(" doubt:IMU/alone\r\n"));
     cause = NULL;
     TEST_ASSERT_TRUE(line_has(" doubt:IMU/alone\r\n"));
-    flight.rule = VERDICT_NONE;
+    flight.reason = VERDICT_NONE;
     TEST_ASSERT_FALSE(line_has("doubt:"));
 }
 
@@ -366,9 +366,9 @@ void test_a_limit_is_told_off_the_ground_while_nothing_is_doubted(void)
     TEST_ASSERT_FALSE(line_has("limit:"));
     flight.bound = BOUND_CLIMB;
     TEST_ASSERT_TRUE(line_has(" limit:CLIMB\r\n"));
-    flight.rule = VERDICT_BLIND;
+    flight.reason = VERDICT_BLIND;
     TEST_ASSERT_TRUE(line_has("flags:0 doubt:SIGHT/blind\r\n"));
-    flight.rule = VERDICT_NONE;
+    flight.reason = VERDICT_NONE;
     flight.state = FLIGHT_GROUND; /* the idle is one, too */
     TEST_ASSERT_FALSE(line_has("limit:"));
 }
@@ -390,7 +390,7 @@ void test_the_battery_is_told_behind_all_others_where_it_fits(void)
     TEST_ASSERT_TRUE(line_has("flags:0 bat:14.8\r\n"));
     flight.bound = BOUND_CLIMB;
     TEST_ASSERT_TRUE(line_has(" limit:CLIMB bat:14.8\r\n"));
-    flight.rule = VERDICT_NO_EFFECT;
+    flight.reason = VERDICT_NO_EFFECT;
     flight.state = FLIGHT_DESCENDING;
     flight.flags = 1280U;
     flight.height_mm = -1234.0F;
@@ -408,7 +408,7 @@ void test_a_battery_that_warns_has_the_place_of_a_limit_and_takes_turns_with_a_d
     flight.battery_v = 14.13F;
     flight.bound = BOUND_CLIMB;
     TEST_ASSERT_TRUE(line_has("flags:0 bat:14.1/LOW\r\n"));
-    flight.rule = VERDICT_ALONE;
+    flight.reason = VERDICT_ALONE;
     bool doubt = false, alone = false;
     for (int i = 0; i < 2; i++) {
         const bool told = line_has(" doubt:IMU/alone bat:14.1/LOW\r\n");

@@ -94,8 +94,8 @@ def names(root, path, table):
 
 
 def meanings(root, text):
-    """Each rule that doubts and each limit has a row in the document, in the order of the enum, and no row is of another."""
-    for path, table, title in (("control/sense/rules.c", "reason_names", "rule"), ("control/bounds.c", "names", "limit")):
+    """Each reason of a doubt and each limit has a row in the document, in the order of the enum, and no row is of another."""
+    for path, table, title in (("control/sense/verdict.c", "reason_names", "doubt"), ("control/bounds.c", "names", "limit")):
         rows = re.search(rf"^\| {title} \|.*\n\|[-|]+\|\n((?:\|.*\n)+)", text, re.M)
         told = re.findall(r"^\| `([^`]+)` \|", rows.group(1), re.M) if rows else []
         if told != names(root, path, table):

@@ -469,7 +469,7 @@ class Published(unittest.TestCase):
               '    STATE("state", "state") \\\n    DERIVED("pulse_us", 1U, 2U, flight.pulse_us, to_pulse, flight.thrust_n) \\\n'
               '    NAME("limit", flight.bound, bound_name, 7U, 5U) \\\n    BEAM("mf", MIRROR_FRONT) \\\n    BEAM("m1", MIRROR_AFT) \\\n'
               '    SET("out", beams.left_out)\n/* clang-format on */\n')
-    RULES = 'static const char *const reason_names[] = {\n    [NONE] = "-", [STEPS] = "SIGHT/steps", [REST] = "IMU/rest",\n};\n'
+    REASONS = 'static const char *const reason_names[] = {\n    [NONE] = "-", [STEPS] = "SIGHT/steps", [REST] = "IMU/rest",\n};\n'
     BOUNDS = 'static const char *const names[] = {\n    [NONE] = "-",\n    [CLIMB] = "CLIMB",\n};\n'
     PAGE = ("| field | unit | decimals | meaning |\n|---|---|---|---|\n| `alt` | m | 3 | height |\n| `laser` | - | - | status |\n"
             "| `state` | - | - | state |\n\n| column | unit | decimals | meaning |\n|---|---|---|---|\n| `t_s` | s | 3 | time |\n"
@@ -477,12 +477,12 @@ class Published(unittest.TestCase):
             "| `pulse_us` | us | 1 | pulse |\n| `limit` | - | - | limit |\n| `mf_rays`, `m1_rays` | - | 0 | rays |\n"
             "| `mf_mm`, `m1_mm` | mm | 0 | slant |\n| `mf_spread_mm`, `m1_spread_mm` | mm | 0 | spread |\n"
             "| `mf_ms`, `m1_ms` | ms | 0 | age |\n| `mf_lie`, `m1_lie` | % | 0 | liar |\n| `out` | - | - | left out |\n\n"
-            "| rule | what |\n|---|---|\n| `SIGHT/steps` | steps |\n| `IMU/rest` | rest |\n\n| limit | holds |\n|---|---|\n| `CLIMB` | climb |\n")
+            "| doubt | what |\n|---|---|\n| `SIGHT/steps` | steps |\n| `IMU/rest` | rest |\n\n| limit | holds |\n|---|---|\n| `CLIMB` | climb |\n")
 
     def complaints(self, header=HEADER, page=PAGE):
         with tempfile.TemporaryDirectory() as name:
             root = Path(name)
-            for path, text in (("firmware/published.h", header), ("docs/operator.md", page), ("control/sense/rules.c", self.RULES),
+            for path, text in (("firmware/published.h", header), ("docs/operator.md", page), ("control/sense/verdict.c", self.REASONS),
                                ("control/bounds.c", self.BOUNDS)):
                 (root / path).parent.mkdir(parents=True, exist_ok=True)
                 (root / path).write_text(text, encoding="utf-8")
@@ -516,7 +516,7 @@ class Published(unittest.TestCase):
         self.assertEqual(len(self.complaints(page=self.PAGE.replace("| % | 0 | liar", "| - | 0 | liar"))), 2)
 
     def test_a_rule_or_a_limit_without_a_row_and_a_row_without_one_are_named(self):
-        self.assert_one(self.complaints(page=self.PAGE.replace("| `IMU/rest` | rest |\n", "")), "rule", "IMU/rest")
+        self.assert_one(self.complaints(page=self.PAGE.replace("| `IMU/rest` | rest |\n", "")), "doubt", "IMU/rest")
         self.assert_one(self.complaints(page=self.PAGE.replace("`CLIMB`", "`CLIMBS`")), "limit", "CLIMBS")
         self.assert_one(self.complaints(page=self.PAGE.replace("| limit | holds |", "| bound | holds |")), "limit")
 

@@ -115,8 +115,8 @@ def told(sentence, start, end, what):
 def named(rec, words):
     """Doubts, limits in the air, and mirrors that were left out."""
     t, state = rec.t, rec.columns["state"]
-    for start, end, rule in stretches(t, rec.columns.get("doubt", []), TOGETHER_S):
-        yield start, "doubt", told(words["doubt"], start, end, words["rules"].get(rule, rule))
+    for start, end, reason in stretches(t, rec.columns.get("doubt", []), TOGETHER_S):
+        yield start, "doubt", told(words["doubt"], start, end, words["reasons"].get(reason, reason))
     limits = [limit if state[i] != "GROUND" else "" for i, limit in enumerate(rec.columns.get("limit", []))]
     for start, end, limit in stretches(t, limits, TOGETHER_S):
         if end - start >= LIMIT_LEAST_S:

@@ -71,7 +71,7 @@ export function Beams() {
     return { mirror, beam, judgement: judge(beam, told.beams.out.includes(mirror)) };
   });
   const cell = (value: number | undefined): string => shown(value);
-  const doubt = now?.doubt ? (texts.rules as Record<string, string>)[now.doubt] ?? '' : '';
+  const doubt = now?.doubt ? (texts.reasons as Record<string, string>)[now.doubt] ?? '' : '';
   const limit = now?.limit ? (texts.limits as Record<string, string>)[now.limit] ?? '' : '';
   return (
     <section class={`card beams ${old ? 'stale' : ''}`} aria-labelledby="beams-title">

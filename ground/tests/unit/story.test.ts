@@ -101,7 +101,7 @@ describe('the story of a flight', () => {
   it('has a sentence for each rule and each limit of the firmware, in both languages', () => {
     const names = (path: string, table: string): string[] => [...new RegExp(`${table}\\[\\] = \\{(.*?)\\};`, 's').exec(readFileSync(join(ROOT, path), 'utf8'))![1]!.matchAll(/= "([^"]+)"/g)].map((m) => m[1]!).filter((name) => name !== '-');
     for (const language of ['en', 'es'] as const) {
-      expect(Object.keys(texts[language].rules)).toEqual(names('control/sense/rules.c', 'reason_names'));
+      expect(Object.keys(texts[language].reasons)).toEqual(names('control/sense/verdict.c', 'reason_names'));
       expect(Object.keys(texts[language].limits)).toEqual(names('control/bounds.c', 'names'));
     }
   });

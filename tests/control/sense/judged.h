@@ -1,4 +1,4 @@
-/* The evidence is written into the state, and one height is judged: for the tests of rules and verdict. */
+/* The evidence is written into the state, and one height is judged: for the tests of the verdict. */
 #ifndef TESTS_CONTROL_SENSE_JUDGED_H
 #define TESTS_CONTROL_SENSE_JUDGED_H
 

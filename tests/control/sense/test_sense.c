@@ -1196,17 +1196,17 @@ void test_every_doubt_tells_its_rule(void)
     flown.wanted_m = 0.5F;
     flown.thrust_n = HOVER_N + 1.5F;
     (void)until(DOUBT_SIGHT, 3.0F);
-    TEST_ASSERT_EQUAL_STRING("SIGHT/blind", rules_name(seen.reason));
+    TEST_ASSERT_EQUAL_STRING("SIGHT/blind", verdict_name(seen.reason));
     flown.ordered = flown.grounded = true;
     cycle();
-    TEST_ASSERT_EQUAL_STRING("-", rules_name(seen.reason));
+    TEST_ASSERT_EQUAL_STRING("-", verdict_name(seen.reason));
 }
 
-void test_no_two_rules_have_one_name(void)
+void test_no_two_reasons_have_one_name(void)
 {
     for (uint16_t a = 0U; a < VERDICT_COUNT; a++) {
         for (uint16_t b = (uint16_t)(a + 1U); b < VERDICT_COUNT; b++) {
-            TEST_ASSERT_TRUE(strcmp(rules_name(a), rules_name(b)) != 0);
+            TEST_ASSERT_TRUE(strcmp(verdict_name(a), verdict_name(b)) != 0);
         }
     }
 }

@@ -42,6 +42,14 @@ void test_the_error_is_told_by_the_thrust_alone_while_the_accelerometer_is_doubt
     NEAR(-0.3F, verdict.lost_m);
 }
 
+void test_the_error_is_told_by_the_accelerometer_alone_while_the_thrust_is_not_known(void)
+{
+    senses.push.pushed.running_s = 0.4F;
+    all_lie(true);
+    (void)judged(-0.52F, -0.30F);
+    NEAR(-0.52F, verdict.lost_m);
+}
+
 void test_the_sight_is_back_when_a_mirror_sees_a_motion_and_not_before(void)
 {
     all_lie(true);
@@ -193,6 +201,60 @@ void test_a_mirror_that_sees_does_not_give_the_thrust_back(void)
     has_no_effect(true);
     one_sees_a_motion(true);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, judged(0.0F, 0.0F));
+}
+
+/* The belief has told it for long enough, and tells it in this scan too. */
+static uint16_t powerless(float push_n, float wanted_m, float pushed_m)
+{
+    setUp();
+    flown.hover_n = 0.0F; /* so that the difference is exact */
+    has_told_the_contrary_for_s(1.5F);
+    has_no_effect(true);
+    pushes_n(push_n);
+    flown.wanted_m = wanted_m;
+    return judged(0.0F, pushed_m);
+}
+
+void test_a_thrust_that_pushes_in_vain_is_doubted_where_the_belief_tells_no_effect(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, powerless(0.71F, 0.5F, -0.01F));
+    TEST_ASSERT_FALSE(verdict.held_down);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.push.pushed.seen_m);
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, powerless(-0.71F, -0.01F, 0.01F));
+    TEST_ASSERT_TRUE(verdict.held_down);
+    TEST_ASSERT_EQUAL_UINT16(0U, powerless(0.70F, 0.5F, -0.01F));
+    TEST_ASSERT_EQUAL_UINT16(0U, powerless(-0.70F, -0.5F, 0.01F));
+}
+
+void test_a_thrust_that_does_more_than_it_should_is_not_in_vain(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(0U, powerless(0.71F, 0.5F, 1.31F));
+    TEST_ASSERT_EQUAL_UINT16(0U, powerless(-0.71F, -0.5F, -1.31F));
+}
+
+void test_a_thrust_away_from_the_reference_is_not_in_vain(void)
+{
+    TEST_ASSERT_EQUAL_UINT16(0U, powerless(0.71F, -0.5F, -1.31F));
+    TEST_ASSERT_EQUAL_UINT16(0U, powerless(0.71F, NAN, -1.31F));
+}
+
+static uint16_t in_vain(bool proved, bool no_effect)
+{
+    has_told_the_contrary_for_s(1.5F);
+    is_proved(proved);
+    has_no_effect(no_effect);
+    return judged(0.0F, -1.4F);
+}
+
+void test_a_thrust_that_was_never_proved_or_may_have_an_effect_is_not_doubted(void)
+{
+    pushes_n(HOVER_N);
+    (void)judged(0.0F, 0.0F); /* so it does not push in vain */
+    pushes_n(HOVER_N + 1.0F);
+    TEST_ASSERT_EQUAL_UINT16(0U, in_vain(false, true));
+    TEST_ASSERT_EQUAL_UINT16(0U, in_vain(true, false));
+    TEST_ASSERT_EQUAL_UINT16(DOUBT_THRUST, in_vain(true, true));
+    TEST_ASSERT_EQUAL_FLOAT(HOVER_N, verdict.held_n);
 }
 
 /* ---- who is judged */
