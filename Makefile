@@ -162,7 +162,7 @@ test-long: ## The long ones: sweeps of many flights, campaigns, tuning, fuzzing
 	@printf '\n== long tests as released ==\n'
 	@$(ctest) build -L long -LE soak
 
-soak: ## The longest, nothing skipped: a board in real time, rates over drawn flights, fits of 30 vehicles, proofs; an hour or two
+soak: ## The longest, nothing skipped: a board in real time, rates over drawn flights, planted causes, fits of 30 vehicles, proofs; an hour or two
 	@$(setup) prove ground bridge
 	$(build_tests)
 	@NOTHING_SKIPPED=1 $(ctest) build -L soak

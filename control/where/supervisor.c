@@ -35,9 +35,9 @@
  * frame 25 ms and 15 ms old. */
 #define ESTIMATE_AHEAD_S 0.22F
 #define ESTIMATE_HELD_US (HEIGHT_FRESH_US + UINT32_C(50000)) /* and half a scan: give or take */
-/* The law cannot fly the vehicle. Of healthy flights of 45 s by law EST 6.2 % are taken over
- * (docs/reliability.md). So within LOWERINGS_FORGOTTEN_US a second one comes by chance once in 36, a third
- * once in 1300. */
+/* The law cannot fly the vehicle. By law EST 8 of 990 healthy flights are taken over, in 13.1 h
+ * (docs/reliability.md). So within LOWERINGS_FORGOTTEN_US a second one comes by chance once in 290, a third
+ * once in 87000. */
 #define LOWERINGS_MAX 3U
 #define LOWERINGS_FORGOTTEN_US UINT32_C(20000000) /* chosen: the length of the seed's flights */
 /* 18 degrees: six sigma of the liveliest sway, 3 degrees (tools/campaign/plan.py), as for heights */

@@ -11,7 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 TESTS = [f"test_{name}" for name in ("scip_family", "scip_free", "scip_info", "scip_layout", "scip_parser", "scip_request", "urg", "urg_link")]
-TRIALS = [["power"], ["stops"], ["starts"], ["damage", "100"]]
+TRIALS = [["power", "6"], ["stops"], ["starts"], ["damage", "100"]]
 SKIPPED = 77
 
 

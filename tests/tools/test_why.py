@@ -134,7 +134,7 @@ class Short(OfTenSeconds):
 
 
 class Gains(OfTenSeconds):
-    """As the firmware tells them, by many replays. `make test-long` asks these."""
+    """As the firmware tells them, by many replays. `make soak` asks these."""
 
     def test_the_firmware_that_flies_the_log_again_tells_which_gains_were_set(self):
         for law_name, gains, within in (("EST", {"VELK": 5.5}, 0.15), ("PIDT", {"PKP": 9.5, "PKD": 3.4, "PKI": 1.9}, 0.03)):
@@ -164,7 +164,7 @@ class Gains(OfTenSeconds):
 
 
 class Planted(Flights):
-    """Whole flights. `make test-long` asks these."""
+    """Whole flights. `make soak` asks these."""
 
     def first(self, cause, number=0, seed=SEED, share=None, **settings_too):
         plan = planted.plan_of(cause, seed, number, share)
