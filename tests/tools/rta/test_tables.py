@@ -1,6 +1,7 @@
 """The tables of the seed and of this firmware: what they must be, and what the analysis says of them. Argument: an answer to `#PERF COSTS` of
 the simulated board.
 """
+import csv
 import re
 import sys
 import unittest
@@ -133,11 +134,19 @@ class Tables(unittest.TestCase):
         self.load("plomada")
         before, control = self.table, self.row("TaskControl")
         self.load("plomada-est")
-        cycles = [replace(control, name=name, period=period * PS_PER_MS, deadline=25 * PS_PER_MS)
-                  for name, period in (("TaskControl", 25), ("TaskControl_height", 100))]
+        cycles = [replace(control, name=name, period=period * PS_PER_MS, deadline=25 * PS_PER_MS, cost=cost)
+                  for name, period, cost in (("TaskControl", 25, control.cost), ("TaskControl_height", 100, self.row("TaskControl_height").cost))]
         at = before.index(control)
         self.assertEqual(self.table, before[:at] + cycles + before[at + 1:])
         self.assertTrue(self.holds())
+
+    def test_a_cycle_with_three_mirrors_costs_so_many_times_the_seeds_as_it_has_instructions(self):
+        """tools/bench/baseline.csv; of the seed's law the same bench counts TaskControl."""
+        with (ROOT / "tools/bench/baseline.csv").open(encoding="utf-8") as file:
+            counted = {row["step"]: int(row["instructions"]) for row in csv.DictReader(file)}
+        self.load("plomada-est")
+        ratio = self.row("TaskControl_height").cost / self.row("TaskControl").cost
+        self.assertAlmostEqual(ratio, counted["TaskControl_THREE"] / counted["TaskControl"], delta=0.05)
 
     def test_octets_wait_as_the_fifo_levels_let_them(self):
         """bsp/uart.h and firmware/uart_port.h: so many octets may wait for an interrupt, and come at once."""
@@ -187,8 +196,9 @@ class Tables(unittest.TestCase):
             self.assertAlmostEqual(float(re.search(rf"\.{name} = US\(([\d.]+)\)", text)[1]), 1000 * float(told), msg=name)
 
     def test_the_analysis_of_the_simulated_board_is_that_of_its_table(self):
-        """Less: few accesses of the table's. More: a wait at a gate is in the cost and in the blocking."""
+        """Less: few accesses of the table's. More: a wait at a gate is in the cost and in the blocking. There each cycle costs the same."""
         self.load("plomada-est")
+        tables.assign(self.table, [f"TaskControl_height.cost_ms={ms(self.row('TaskControl').cost)}"])
         board = measured.apply(self.table, *measured.read(ANSWER))
         for row, other in zip(self.table, board):
             if row.kind != TASK and other.whole:
