@@ -4,7 +4,6 @@
 #include "control/sense/verdict.h"
 
 #include <math.h>
-#include <stddef.h>
 
 #include "control/between.h"
 

@@ -264,22 +264,22 @@ void test_every_millimetre_of_a_recorded_height_is_written_as_it_is(void)
     }
 }
 
-void test_every_rule_every_limit_and_every_word_on_the_battery_is_recorded(void)
+void test_every_reason_every_limit_and_every_word_on_the_battery_is_recorded(void)
 {
-    for (uint16_t rule = 0U; rule < VERDICT_COUNT; rule++) {
+    for (uint16_t reason = 0U; reason < VERDICT_COUNT; reason++) {
         for (uint16_t bound = 0U; bound < BOUND_COUNT; bound++) {
-            now.flight.reason = rule;
+            now.flight.reason = reason;
             now.flight.bound = bound;
-            now.flight.battery = (uint16_t)((rule + bound) % BATTERY_VERDICT_COUNT);
+            now.flight.battery = (uint16_t)((reason + bound) % BATTERY_VERDICT_COUNT);
             const published_t record = recorded();
-            TEST_ASSERT_EQUAL_UINT16(rule, record.flight.reason);
+            TEST_ASSERT_EQUAL_UINT16(reason, record.flight.reason);
             TEST_ASSERT_EQUAL_UINT16(bound, record.flight.bound);
             TEST_ASSERT_EQUAL_UINT16(now.flight.battery, record.flight.battery);
         }
     }
 }
 
-void test_every_rule_and_every_limit_fits_the_packet(void)
+void test_every_reason_and_every_limit_fits_the_packet(void)
 {
     now.height_mm = -4000.0F;
     now.laser = "SWITCH"; /* the longest that a flight can show */
@@ -287,8 +287,8 @@ void test_every_rule_and_every_limit_fits_the_packet(void)
     now.flight.thrust_n = 11.76F;
     now.flight.state = FLIGHT_DESCENDING;
     now.flight.flags = 2047U;
-    for (uint16_t rule = 1U; rule < VERDICT_COUNT; rule++) {
-        now.doubt = verdict_name(rule);
+    for (uint16_t reason = 1U; reason < VERDICT_COUNT; reason++) {
+        now.doubt = verdict_name(reason);
         published_telemetry(&line, &now);
         TEST_ASSERT_TRUE(!line.overflowed && line.length <= TELEMETRY_LINE_MAX);
     }

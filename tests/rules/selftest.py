@@ -515,7 +515,7 @@ class Published(unittest.TestCase):
         self.assert_one(self.complaints(page=self.PAGE.replace("| `mf_ms`, `m1_ms` |", "| `mf_ms` |")), "column", "m1_ms")
         self.assertEqual(len(self.complaints(page=self.PAGE.replace("| % | 0 | liar", "| - | 0 | liar"))), 2)
 
-    def test_a_rule_or_a_limit_without_a_row_and_a_row_without_one_are_named(self):
+    def test_a_doubt_or_a_limit_without_a_row_and_a_row_without_one_are_named(self):
         self.assert_one(self.complaints(page=self.PAGE.replace("| `IMU/rest` | rest |\n", "")), "doubt", "IMU/rest")
         self.assert_one(self.complaints(page=self.PAGE.replace("`CLIMB`", "`CLIMBS`")), "limit", "CLIMBS")
         self.assert_one(self.complaints(page=self.PAGE.replace("| limit | holds |", "| bound | holds |")), "limit")

@@ -15,7 +15,7 @@ PLACE_COLUMNS = ("x_m", "y_m", "heading_rad")           # of logs since the grou
 OPEN_LOOP_COLUMNS = ("flown_n",)       # of `plomada replay` on a log: the thrust that the vehicle answered to
 FIT_COLUMNS = ("up_mps2", "age_s")     # of logs since #LOG RATE FAST
 BATTERY_COLUMNS = ("bat_v",)
-# Of logs that say which rule doubts, which limit holds, how the battery is, and which mirrors the vote left out.
+# Of logs that say what is doubted, which limit holds, how the battery is, and which mirrors the vote left out.
 NAME_COLUMNS = ("doubt", "limit", "bat", "out")
 # Of logs since all mirrors are told: of each its good rays, slant, their spread, age and probability to lie (docs/operator.md).
 BEAM_COLUMNS = tuple(f"{mirror}_{what}" for mirror in ("mf", "m1", "m2") for what in ("rays", "mm", "spread_mm", "ms", "lie"))

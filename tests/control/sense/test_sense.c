@@ -1188,7 +1188,7 @@ void test_frames_after_a_rejected_one_are_passed_on(void)
 
 /* ---- names */
 
-void test_every_doubt_tells_its_rule(void)
+void test_every_doubt_tells_its_reason(void)
 {
     fly();
     TEST_ASSERT_EQUAL_UINT16(VERDICT_NONE, seen.reason);
