@@ -14,10 +14,8 @@
 #define LASTS_S 3.7F   /* a direction, on the seed's course: ramp at 7.3 s, edge at 11.0 s */
 #define BEGINS 0.05F   /* chosen: unknown is neither, until grounds follow each other */
 #define MEETS 0.04F    /* of the scans, for a mirror that leads: STEP_SHARE of belief_world.c, fitted */
-#define ALONE \
-    (1.0F / 600.0F)   /* of the scans, for each mirror, where none leads: one edge in the 20 s of the seed's \
-                         flight, under three */
-#define SIDEWAYS 0.5F /* of the flight without a mirror that leads; not known */
+#define SIDEWAYS \
+    0.15F /* of the flight without a mirror that leads; chosen: 0.3 follows a blocked mirror by 5 cm */
 #define CHANGE_M \
     0.010198F             /* of one scan's height against another's: root of 2 (6 mm^2 + 4 mm^2), terrain.h */
 #define MILLIMETRE 0.001F /* the least length that a parameter tells: D1 and D2 may be 0 */
@@ -80,7 +78,7 @@ static float in_a_row(const ahead_t *ahead, const grounds_t *grounds, uint16_t l
            as_another(grounds, trails, MIRROR_FRONT, ahead->way_m[trails]);
 }
 
-/* A vehicle that hovers meets few edges, and one that flies sideways has them under all mirrors at once. */
+/* Hovering, a ground steps seldom; sideways, all step at once. */
 static float without_leader(const grounds_t *grounds)
 {
     const float middle_m = grounds->changed_m[MIRROR_FRONT];
@@ -88,7 +86,7 @@ static float without_leader(const grounds_t *grounds)
     float sideways = SIDEWAYS * on_its_own(middle_m, MEETS);
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        hovers *= on_its_own(grounds->changed_m[m], ALONE);
+        hovers *= on_its_own(grounds->changed_m[m], TERRAIN_STEP_LEVEL);
         if (m != MIRROR_FRONT) {
             sideways *= normal(grounds->changed_m[m] - middle_m, CHANGE_M);
         }

@@ -124,7 +124,7 @@ void test_after_one_edge_the_next_is_expected_from_the_mirror_that_leads(float s
     TEST_ASSERT_FLOAT_WITHIN(0.005F, 0.0F, rise_m());
 }
 
-void test_the_first_edge_of_all_moves_the_setpoint_by_a_third_of_it_since_the_direction_is_not_known(void)
+void test_the_first_edge_of_all_moves_the_setpoint_little_since_the_direction_is_not_known(void)
 {
     const float met_m[MIRROR_COUNT] = {[MIRROR_FORE] = 0.25F};
     const float level_m[MIRROR_COUNT] = {0.0F};
@@ -133,7 +133,8 @@ void test_the_first_edge_of_all_moves_the_setpoint_by_a_third_of_it_since_the_di
         scan(level_m, ALL, 0.0F);
     }
     scan(met_m, ALL, 0.0F);
-    TEST_ASSERT_FLOAT_WITHIN(0.03F, 0.09F, rise_m()); /* of 0.25 */
+    TEST_ASSERT_TRUE(rise_m() > 0.0F);
+    TEST_ASSERT_TRUE(rise_m() < 0.06F);
 }
 
 /* A beam that is blocked far away looks like an edge of metres. */
@@ -206,7 +207,7 @@ void test_what_is_known_of_the_direction_is_forgotten_over_level_ground(void)
 
     fly_to(edge_up, 1.16F + 0.4F * 5.0F, 0.4F, 1.0F);
     TEST_ASSERT_TRUE(ahead.nose < 0.05F + (known - 0.05F) / 2.718F + 0.01F);
-    TEST_ASSERT_TRUE(ahead.nose > 0.1F);
+    TEST_ASSERT_TRUE(ahead.nose > 0.15F);
     fly_to(edge_up, 1.16F + 0.4F * 60.0F, 0.4F, 1.0F);
     TEST_ASSERT_TRUE(ahead.nose < 0.05F && ahead.nose > 0.01F);
 }
