@@ -14,8 +14,9 @@
 #define LASTS_S 3.7F   /* a direction, on the seed's course: ramp at 7.3 s, edge at 11.0 s */
 #define BEGINS 0.05F   /* chosen: unknown is neither, until grounds follow each other */
 #define MEETS 0.04F    /* of the scans, for a mirror that leads: STEP_SHARE of belief_world.c, fitted */
-#define SIDEWAYS \
-    0.15F /* of the flight without a mirror that leads; chosen: 0.3 follows a blocked mirror by 5 cm */
+/* Of the flight that is neither: sideways, to either side as often as nose or tail first. With 0.3 a blocked
+ * mirror was followed by 5 cm. */
+#define SIDEWAYS (2.0F * BEGINS / (1.0F - 2.0F * BEGINS))
 #define CHANGE_M \
     0.010198F             /* of one scan's height against another's: root of 2 (6 mm^2 + 4 mm^2), terrain.h */
 #define MILLIMETRE 0.001F /* the least length that a parameter tells: D1 and D2 may be 0 */
