@@ -171,10 +171,13 @@ static float count(mirrors_t *mirrors, const float weights[MIRROR_COUNT])
         before += mirrors->weights[m];
     }
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        const belief_step_t step = belief_of_step(&mirrors->belief, (mirror_t)m);
         const float weight = weights[m] / sum;
 
-        stepped_mm += weight * step.stepped_mm + (weight - mirrors->weights[m]) * step.foreseen_mm;
+        if (weight > 0.0F || mirrors->weights[m] > 0.0F) {
+            const belief_step_t step = belief_of_step(&mirrors->belief, (mirror_t)m);
+
+            stepped_mm += weight * step.stepped_mm + (weight - mirrors->weights[m]) * step.foreseen_mm;
+        }
         mirrors->weights[m] = weight;
     }
     return (before > 0.0F) ? stepped_mm : 0.0F;
