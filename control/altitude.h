@@ -97,7 +97,6 @@ typedef struct {
     bool valid; /* false: no group was valid, the other fields are 0 */
     bool
         disagree; /* several mirrors, and more probably than not no two are honest; sense/mirrors.h sets it */
-    float stepped_mm;   /* of its change: by steps of the ground, not by the vehicle; likewise */
     float height_mm;    /* may be negative by sensor noise on the ground */
     float slant_mm;     /* along the axis, mean over the valid groups */
     float spread_mm;    /* largest over the valid groups */

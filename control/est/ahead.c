@@ -14,9 +14,6 @@
 #define LASTS_S 3.7F   /* a direction, on the seed's course: ramp at 7.3 s, edge at 11.0 s */
 #define BEGINS 0.05F   /* chosen: unknown is neither, until grounds follow each other */
 #define MEETS 0.04F    /* of the scans, for a mirror that leads: STEP_SHARE of belief_world.c, fitted */
-/* Of the flight that is neither: sideways, to either side as often as nose or tail first. With 0.3 a blocked
- * mirror was followed by 5 cm. */
-#define SIDEWAYS (2.0F * BEGINS / (1.0F - 2.0F * BEGINS))
 #define CHANGE_M \
     0.010198F             /* of one scan's height against another's: root of 2 (6 mm^2 + 4 mm^2), terrain.h */
 #define MILLIMETRE 0.001F /* the least length that a parameter tells: D1 and D2 may be 0 */
@@ -79,20 +76,14 @@ static float in_a_row(const ahead_t *ahead, const grounds_t *grounds, uint16_t l
            as_another(grounds, trails, MIRROR_FRONT, ahead->way_m[trails]);
 }
 
-/* Hovering, a ground steps seldom; sideways, all step at once. */
-static float without_leader(const grounds_t *grounds)
+static float each_on_its_own(const grounds_t *grounds)
 {
-    const float middle_m = grounds->changed_m[MIRROR_FRONT];
-    float hovers = 1.0F - SIDEWAYS;
-    float sideways = SIDEWAYS * on_its_own(middle_m, MEETS);
+    float density = 1.0F;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        hovers *= on_its_own(grounds->changed_m[m], TERRAIN_STEP_LEVEL);
-        if (m != MIRROR_FRONT) {
-            sideways *= normal(grounds->changed_m[m] - middle_m, CHANGE_M);
-        }
+        density *= on_its_own(grounds->changed_m[m], TERRAIN_STEP_LEVEL);
     }
-    return hovers + sideways;
+    return density;
 }
 
 static void learn(ahead_t *ahead, const grounds_t *grounds)
@@ -102,7 +93,7 @@ static void learn(ahead_t *ahead, const grounds_t *grounds)
     const float tail = ahead->tail + anew * (BEGINS - ahead->tail);
     const float is_nose = nose * in_a_row(ahead, grounds, MIRROR_FORE, MIRROR_AFT);
     const float is_tail = tail * in_a_row(ahead, grounds, MIRROR_AFT, MIRROR_FORE);
-    const float sum = is_nose + is_tail + (1.0F - nose - tail) * without_leader(grounds);
+    const float sum = is_nose + is_tail + (1.0F - nose - tail) * each_on_its_own(grounds);
 
     ahead->nose = (sum > 0.0F) ? is_nose / sum : 0.0F;
     ahead->tail = (sum > 0.0F) ? is_tail / sum : 0.0F;

@@ -8,7 +8,7 @@
  *   nose first   the ground under the fore mirror is new. That of the middle becomes what was under the fore
  *                mirror, or a part of it, and that of the aft mirror what was under the middle
  *   tail first   the other way round
- *   neither      hovering, a ground steps seldom, and follows no other; sideways, all step alike
+ *   neither      a ground steps seldom, and follows no other
  *
  * Each has a likelihood, and what is probable was so in the scan before or begins now: a hidden Markov model
  * (Rabiner 1989). Over level ground nothing tells the direction, and what was known of it is forgotten.

@@ -1,17 +1,18 @@
 /* A Kalman filter with a delayed time horizon, as in PX4's EKF2. A height is 70 ms old when it arrives. So
  * the filter stays at the instant of the latest rays, and keeps the IMU frames since then. A height is fused
  * at its own instant; then the frames predict the state up to now.
- * What breaks: an innovation test without a reset rejects heights for ever once the state is wrong (in
- * simulation the vehicle flew away to 11 m). So three rejections reset the height. Constants marked "fitted":
- * docs/control.md; make tune LAW=EST ARGS="--constants est" searches them again. */
+ * What breaks: an innovation test
+ * without a reset rejects heights for ever once the state is wrong (in simulation the vehicle flew away to
+ * 11 m). So three rejections reset the height. Constants marked "fitted": docs/control.md;
+ * make tune LAW=EST ARGS="--constants est" searches them again. */
 #include "control/est/estimator.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #include "control/between.h"
 #include "control/credible.h"
 #include "control/est/cascade.h"
-#include "control/est/terrain_ways.h"
 #include "control/seconds.h"
 
 #define FRAME_AGE_US UINT32_C(23600) /* 15 ms within the Razor (assumed), 8.6 ms on the wire */
@@ -31,8 +32,6 @@
 
 #define INNOVATION_LIMIT_MIN_M 0.053F /* fitted */
 #define INNOVATION_LIMIT_SIGMAS 3.0F  /* usual */
-/* of the ground: three sigmas of one mirror's height against the scan before; less is noise */
-#define STEP_SEEN_M (3.0F * 1.41421356F * TERRAIN_OWN_M)
 #define REJECTIONS_MAX 3U        /* the third height in a row is used: then none is fresh, HEIGHT_FRESH_US */
 #define UNCHECKED_AFTER_RESET 2U /* two heights give the speed again */
 #define REST_SIGMA_MPS 0.02F     /* chosen: a vehicle on the ground may shake */
@@ -284,21 +283,8 @@ static height_outcome_t reject(estimator_t *e, float height_m, float innovation_
     return HEIGHT_REJECTED;
 }
 
-/* The mirrors have shown that the ground has stepped, and not the vehicle. So this is no innovation. */
-static void step_ground(estimator_t *e, float stepped_m)
+static height_outcome_t check_and_fuse(estimator_t *e, float height_m)
 {
-    e->filter.estimate.height_m += stepped_m;
-    e->terrain_height_m -= stepped_m;
-    e->filter.estimate.terrain_mps = 0.0F;
-    e->filter.covariance[FILTER_HEIGHT][FILTER_HEIGHT] += TERRAIN_OWN_M * TERRAIN_OWN_M;
-    filter_reset_variance(&e->filter, FILTER_TERRAIN, filter_variance_start(FILTER_TERRAIN));
-}
-
-static height_outcome_t check_and_fuse(estimator_t *e, float height_m, float stepped_m)
-{
-    if (fabsf(stepped_m) > STEP_SEEN_M && e->unchecked_count == 0U) {
-        step_ground(e, stepped_m);
-    }
     e->innovation_m = height_m - e->filter.estimate.height_m;
     roughness_step(&e->roughness, height_m, e->innovation_m, e->delayed_us);
     dips_scan(&e->dips);
@@ -340,7 +326,7 @@ height_outcome_t estimator_fuse_height(estimator_t *e, const altitude_t *altitud
     predict_through(e, rays_us);
     e->rays_us = e->delayed_us;
     if (e->initialised) {
-        outcome = check_and_fuse(e, height_m, 0.001F * altitude->stepped_mm);
+        outcome = check_and_fuse(e, height_m);
     } else {
         initialise_at(e, height_m);
     }

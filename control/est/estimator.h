@@ -9,11 +9,10 @@
  * through these frames. A height that is 70 ms old is therefore fused as exactly as a fresh one.
  *
  * Innovation test: a height whose innovation exceeds a bound of at most 80 mm is rejected. Two rejected
- * heights in a row that agree are a step of the terrain. One that several mirrors show (altitude_t,
- * stepped_mm) is no innovation: it moves the height at once, and not the speed. The third rejected height in
- * a row always resets the filter's height, with a large covariance. The next two heights are then fused
- * without the test. So no state of the filter can reject heights for ever. After a dip (dips.h) a fall of the
- * ground must last longer than the dip did, and the reset waits for so many heights more: six at most.
+ * heights in a row that agree are a step of the terrain. The third rejected height in a row always resets
+ * the filter's height, with a large covariance. The next two heights are then fused without the test. So
+ * no state of the filter can reject heights for ever. After a dip (dips.h) a fall of the ground must last
+ * longer than the dip did, and the reset waits for so many heights more: six at most.
  *
  * Metres, seconds, 32-bit float; positive is upwards. Times are in microseconds on one wrapping 32-bit
  * clock. Pure; the caller owns the state. */

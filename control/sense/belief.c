@@ -230,19 +230,6 @@ float belief_of_honest(const belief_t *belief, uint16_t mirrors, uint16_t count)
     return sum;
 }
 
-belief_step_t belief_of_step(const belief_t *belief, mirror_t mirror)
-{
-    belief_step_t sum = {0.0F, 0.0F};
-
-    for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
-        const belief_step_t *step = &belief->worlds[k & belief->known].step[mirror];
-
-        sum.foreseen_mm += belief->worlds[k].probability * step->foreseen_mm;
-        sum.stepped_mm += belief->worlds[k].probability * step->stepped_mm;
-    }
-    return sum;
-}
-
 float belief_of_motion(const belief_t *belief, uint16_t kind)
 {
     float sum = 0.0F;

@@ -43,9 +43,6 @@ static inline float belief_of_none(const belief_t *belief, uint16_t mirrors)
     return 1.0F - belief_of_honest(belief, mirrors, 1U);
 }
 
-/* What the latest scan has shown of this mirror's height, on average over the worlds. */
-belief_step_t belief_of_step(const belief_t *belief, mirror_t mirror);
-
 /* Probability of a kind of motion: BELIEF_STANDS, BELIEF_FELT_LIES. */
 float belief_of_motion(const belief_t *belief, uint16_t kind);
 

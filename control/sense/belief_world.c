@@ -140,7 +140,6 @@ typedef struct {
     float foretold_mm;             /* way that it has foretold then */
     float density;                 /* of all ways */
     float stepped[MIRROR_COUNT];   /* of those with a step under this mirror */
-    float alone[MIRROR_COUNT];     /* and another mirror without one */
     float moved_mm;                /* mean of the others' innovations, times its density */
     float motions[BELIEF_MOTIONS]; /* of those with this kind of motion */
 } ways_t;
@@ -199,7 +198,6 @@ static void add_way(ways_t *ways, const belief_scan_t *scan, uint16_t steps)
     ways->density += density;
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         ways->stepped[m] += belief_has(steps, m) ? density : 0.0F;
-        ways->alone[m] += (belief_has(steps, m) && shown.n > 0U) ? density : 0.0F;
     }
 }
 
@@ -344,9 +342,6 @@ static void correct(belief_world_t *world, const ways_t *ways, const belief_scan
         const float step = ways->stepped[m] / ways->density;
         const float moved_mm = (1.0F - step) * shared_mm;
         const float gain = OWN_GAIN + (1.0F - OWN_GAIN) * step;
-        const float stepped = ways->alone[m] / ways->density;
-
-        world->step[m] = (belief_step_t){world->level_mm[m], stepped * (ways->off_mm[m] - moved_mm)};
 
         if (belief_has(ways->honest, m)) {
             world->level_mm[m] += SHARED_GAIN * moved_mm + gain * (ways->off_mm[m] - moved_mm);

@@ -38,22 +38,14 @@ typedef struct {
     float dragged;    /* share of the vertical speed that the drag has taken meanwhile; 0 as above */
 } belief_felt_t;
 
-/* One mirror's height in one scan. */
-typedef struct {
-    float foreseen_mm; /* before the scan */
-    float
-        stepped_mm; /* of its change: a step of the ground under it, while another mirror shows the motion */
-} belief_step_t;
-
 /* The filter of the world in which one set of mirrors lies. */
 typedef struct {
-    float probability;                /* of all worlds together: 1 */
-    float rate_mm_s;                  /* of the heights of the honest mirrors */
-    float level_mm[MIRROR_COUNT];     /* of the height of each mirror */
-    float motions[BELIEF_MOTIONS];    /* probability of each kind of motion; together 1 */
-    float begun[MIRROR_COUNT];        /* that a mirror which lies here has begun to since the scan before */
-    belief_step_t step[MIRROR_COUNT]; /* in the latest scan */
-    float push_off_mps2;              /* what the model of the thrust is off by */
+    float probability;             /* of all worlds together: 1 */
+    float rate_mm_s;               /* of the heights of the honest mirrors */
+    float level_mm[MIRROR_COUNT];  /* of the height of each mirror */
+    float motions[BELIEF_MOTIONS]; /* probability of each kind of motion; together 1 */
+    float begun[MIRROR_COUNT];     /* that a mirror which lies here has begun to since the scan before */
+    float push_off_mps2;           /* what the model of the thrust is off by */
 } belief_world_t;
 
 /* A running mean of the latest scans. */

@@ -158,31 +158,6 @@ static uint16_t weigh(float weights[MIRROR_COUNT], const mirrors_t *mirrors, con
     return left_out;
 }
 
-/* How much of the height's change is the ground's. It has stepped under a mirror, or other mirrors count now
- * than before: those over another ground. */
-static float count(mirrors_t *mirrors, const float weights[MIRROR_COUNT])
-{
-    float sum = 0.0F;
-    float before = 0.0F;
-    float stepped_mm = 0.0F;
-
-    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        sum += weights[m];
-        before += mirrors->weights[m];
-    }
-    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        const float weight = weights[m] / sum;
-
-        if (weight > 0.0F || mirrors->weights[m] > 0.0F) {
-            const belief_step_t step = belief_of_step(&mirrors->belief, (mirror_t)m);
-
-            stepped_mm += weight * step.stepped_mm + (weight - mirrors->weights[m]) * step.foreseen_mm;
-        }
-        mirrors->weights[m] = weight;
-    }
-    return (before > 0.0F) ? stepped_mm : 0.0F;
-}
-
 bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float age_s, bool felt,
                   bool held_up)
 {
@@ -193,14 +168,10 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
         mirrors->agree = mirrors->sees = mirrors->suspected = mirrors->blind = mirrors->felt_lies =
             mirrors->felt_may_lie = mirrors->moves = mirrors->unpushed = mirrors->no_effect = false;
         mirrors->left_out = 0U;
-        for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-            mirrors->weights[m] = 0.0F;
-        }
         return false;
     }
     mirrors->left_out = weigh(weights, mirrors, shown, voters);
     mirrors->altitude = altitude_mean(shown, weights, MIRROR_COUNT);
-    mirrors->altitude.stepped_mm = count(mirrors, weights);
     const belief_t *belief = &mirrors->belief;
     const float honest = belief_of_honest(belief, voters, 2U);
     const float none = belief_of_none(belief, voters);

@@ -40,10 +40,9 @@ typedef struct {
     bool unpushed;     /* nothing moves it, or the thrust has no effect, with 99 % */
     bool no_effect;    /* the thrust has none, with 99 %: a pilot flies, or somebody holds the vehicle */
     uint16_t left_out; /* bits: mirrors of that scan that told something, and do not count in altitude */
-    float weights[MIRROR_COUNT];          /* how much each has counted in altitude; together 1, or none has */
-    float lies[MIRROR_COUNT];             /* the probability that each lies */
-    float disbelieved_s[MIRROR_COUNT];    /* how long each has been, at most 10 s */
-    mirror_digits_t latest[MIRROR_COUNT]; /* of each mirror, to find copies */
+    float lies[MIRROR_COUNT];               /* the probability that each lies */
+    float disbelieved_s[MIRROR_COUNT];      /* how long each has been, at most 10 s */
+    mirror_digits_t latest[MIRROR_COUNT];   /* of each mirror, to find copies */
     mirrors_motion_t felt, pushed, dragged; /* m/s by the accelerometer, by the thrust; share by the drag */
 } mirrors_t;
 

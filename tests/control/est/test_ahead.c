@@ -212,25 +212,6 @@ void test_what_is_known_of_the_direction_is_forgotten_over_level_ground(void)
     TEST_ASSERT_TRUE(ahead.nose < 0.05F && ahead.nose > 0.01F);
 }
 
-/* The middle takes over what the fore mirror has shown. */
-void test_one_edge_under_two_mirrors_in_a_row_is_a_direction(void)
-{
-    const float level_m[MIRROR_COUNT] = {0.0F};
-    const float met_m[MIRROR_COUNT] = {[MIRROR_FORE] = 0.25F};
-    const float followed_m[MIRROR_COUNT] = {[MIRROR_FORE] = 0.25F, [MIRROR_FRONT] = 0.25F};
-
-    for (int i = 0; i < 100; ++i) {
-        scan(level_m, ALL, 0.0F);
-    }
-    scan(met_m, ALL, 0.0F);
-    const float met = ahead.nose;
-
-    ground_m = 0.25F;
-    scan(followed_m, ALL, 0.0F);
-    TEST_ASSERT_TRUE(ahead.nose > 0.95F && ahead.nose > met);
-    TEST_ASSERT_TRUE(ahead.tail < 0.01F);
-}
-
 void test_grounds_that_step_alike_under_all_mirrors_tell_no_direction(void)
 {
     const float high_m[MIRROR_COUNT] = {0.25F, 0.25F, 0.25F};

@@ -137,55 +137,6 @@ void test_an_old_height_is_fused_where_it_belongs(void)
     TEST_ASSERT_FLOAT_WITHIN(0.03F, 1.0F, e.now.speed_mps);
 }
 
-/* The next height, step_m off what it was: so much of it is told to be the ground's. */
-static height_outcome_t fuse_step(double step_m, float told_m)
-{
-    for (int i = 0; i < 20; i++) {
-        move();
-    }
-    altitude_t a = altitude(seen_m(15U) + step_m);
-
-    a.stepped_mm = told_m * 1000.0F;
-    return estimator_fuse_height(&e, &a, time_us - 75000U, false);
-}
-
-void test_a_step_that_mirrors_have_shown_moves_the_height_at_once_and_not_the_speed(void)
-{
-    for (double step_m = -0.5; step_m < 0.6; step_m += 0.25) {
-        setUp();
-        fly(10.0, 0.003);
-        const float ground_m = e.terrain_height_m;
-        const height_outcome_t outcome = fuse_step(step_m, (float)step_m);
-
-        TEST_ASSERT_EQUAL(HEIGHT_FUSED, outcome);
-        TEST_ASSERT_FLOAT_WITHIN(0.02F, (float)(height_m + step_m), e.now.height_m);
-        TEST_ASSERT_FLOAT_WITHIN(0.02F, ground_m - (float)step_m, e.terrain_height_m);
-        TEST_ASSERT_FLOAT_WITHIN(0.1F, (float)speed_mps, e.now.speed_mps);
-        TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.15F, e.now.bias_mps2);
-        assert_sound();
-    }
-}
-
-/* What no mirror shows alone, the test decides as before: the second of two that agree. */
-void test_a_step_that_no_mirror_has_shown_waits_for_a_second_height(void)
-{
-    fly(10.0, 0.003);
-    TEST_ASSERT_EQUAL(HEIGHT_REJECTED, fuse_step(0.25, 0.0F));
-    TEST_ASSERT_EQUAL(HEIGHT_TERRAIN_STEP, fuse_step(0.25, 0.0F));
-}
-
-/* 3 sigmas: 25 mm. */
-void test_a_step_that_is_as_small_as_noise_is_none(void)
-{
-    fly(10.0, 0.003);
-    const float ground_m = e.terrain_height_m;
-
-    (void)fuse_step(0.025, 0.025F);
-    TEST_ASSERT_FLOAT_WITHIN(0.004F, ground_m, e.terrain_height_m);
-    (void)fuse_step(0.026, 0.026F);
-    TEST_ASSERT_FLOAT_WITHIN(0.004F, ground_m - 0.026F, e.terrain_height_m);
-}
-
 void test_no_height_no_estimate(void)
 {
     for (int i = 0; i < 100; i++) {

@@ -96,46 +96,6 @@ void test_an_edge_counts_when_the_second_beam_has_passed_it(void)
     assert_height(850.0F, 3U, 0, scan(850.0F, 850.0F, 850.0F));
 }
 
-/* Over a course of edges, either way, from either end: the sum of the steps is the ground's. */
-void test_an_edge_that_two_beams_have_passed_is_a_step_and_no_motion(void)
-{
-    for (float step_mm = -400.0F; step_mm <= 400.0F; step_mm += 160.0F) {
-        for (int tail_first = 0; tail_first < 2; ++tail_first) {
-            const float first_mm = 600.0F + (tail_first ? 0.0F : step_mm);
-            float stepped_mm = 0.0F;
-
-            forget();
-            for (int i = 0; i < 10; ++i) {
-                stepped_mm += scan(600.0F, 600.0F, 600.0F).stepped_mm;
-            }
-            TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.0F, stepped_mm);
-            stepped_mm += scan(1200.0F + step_mm - first_mm, 600.0F, first_mm).stepped_mm;
-            TEST_ASSERT_FLOAT_WITHIN(25.0F, 0.0F, stepped_mm);
-            stepped_mm += scan(1200.0F + step_mm - first_mm, 600.0F + step_mm, first_mm).stepped_mm;
-            TEST_ASSERT_FLOAT_WITHIN(25.0F, step_mm, stepped_mm);
-            stepped_mm += scan(600.0F + step_mm, 600.0F + step_mm, 600.0F + step_mm).stepped_mm;
-            TEST_ASSERT_FLOAT_WITHIN(25.0F, step_mm, stepped_mm);
-        }
-    }
-}
-
-void test_what_all_mirrors_show_is_no_step_of_the_ground(void)
-{
-    for (int i = 0; i < 10; ++i) {
-        (void)scan(600.0F, 600.0F, 600.0F);
-    }
-    TEST_ASSERT_FLOAT_WITHIN(5.0F, 0.0F, scan(660.0F, 660.0F, 660.0F).stepped_mm);
-    TEST_ASSERT_FLOAT_WITHIN(5.0F, 0.0F, scan(1060.0F, 1060.0F, 1060.0F).stepped_mm);
-}
-
-/* After a scan without any, nothing is known of what counted before. */
-void test_after_a_scan_without_heights_there_is_no_step(void)
-{
-    (void)scan(600.0F, 600.0F, 600.0F);
-    (void)scan(0.0F, 0.0F, 0.0F);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, scan(900.0F, 900.0F, 600.0F).stepped_mm);
-}
-
 void test_three_far_apart_are_the_middle_one(void)
 {
     assert_height(600.0F, 1U, 25000, scan(300.0F, 900.0F, 600.0F));
