@@ -6,13 +6,14 @@
 #include "control/flight.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "control/outputs.h"
 #include "control/signs.h"
 
 void flight_init(flight_t *flight)
 {
-    *flight = (flight_t){.thrust_n = 0.0F};
+    memset(flight, 0, sizeof *flight); /* a compound literal would lie on the stack of main() */
     supervisor_init(&flight->where.supervisor);
     sense_init(&flight->sense);
     imu_axes_init(&flight->axes);

@@ -8,7 +8,6 @@
 
 #include "control/between.h"
 #include "control/seconds.h"
-#include "control/est/terrain_ways.h"
 
 #define SPEED_MPS 0.4F /* at which the seed's course is flown, sim/scenarios/seed_course.h */
 #define LASTS_S 3.7F   /* a direction, on the seed's course: ramp at 7.3 s, edge at 11.0 s */
@@ -66,7 +65,7 @@ static float as_another(const grounds_t *grounds, uint16_t m, uint16_t leads, fl
     const float spread_m = 0.5F * (1.0F - part) * off_m;
     const float follows = normal(changed_m - mean_m, sqrtf(CHANGE_M * CHANGE_M + spread_m * spread_m));
 
-    return part * follows + (1.0F - part) * on_its_own(changed_m, TERRAIN_STEP_LEVEL);
+    return part * follows + (1.0F - part) * on_its_own(changed_m, TERRAIN_STEP);
 }
 
 static float in_a_row(const ahead_t *ahead, const grounds_t *grounds, uint16_t leads, uint16_t trails)
@@ -81,7 +80,7 @@ static float each_on_its_own(const grounds_t *grounds)
     float density = 1.0F;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        density *= on_its_own(grounds->changed_m[m], TERRAIN_STEP_LEVEL);
+        density *= on_its_own(grounds->changed_m[m], TERRAIN_STEP);
     }
     return density;
 }

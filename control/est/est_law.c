@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "control/between.h"
 #include "control/credible.h"
@@ -30,7 +31,7 @@
 
 void est_law_init(est_law_t *law)
 {
-    *law = (est_law_t){.now_us = 0U};
+    memset(law, 0, sizeof *law); /* as in flight.c */
     estimator_init(&law->estimator);
     ray_clock_init(&law->ray_clock);
 }

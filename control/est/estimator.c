@@ -1,14 +1,14 @@
 /* A Kalman filter with a delayed time horizon, as in PX4's EKF2. A height is 70 ms old when it arrives. So
  * the filter stays at the instant of the latest rays, and keeps the IMU frames since then. A height is fused
  * at its own instant; then the frames predict the state up to now.
- * What breaks: an innovation test
- * without a reset rejects heights for ever once the state is wrong (in simulation the vehicle flew away to
- * 11 m). So three rejections reset the height. Constants marked "fitted": docs/control.md;
- * make tune LAW=EST ARGS="--constants est" searches them again. */
+ * What breaks: an innovation test without a reset rejects heights for ever once the state is wrong (in
+ * simulation the vehicle flew away to 11 m). So three rejections reset the height. Constants marked "fitted":
+ * docs/control.md; make tune LAW=EST ARGS="--constants est" searches them again. */
 #include "control/est/estimator.h"
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "control/between.h"
 #include "control/credible.h"
@@ -43,7 +43,8 @@ static bool before(uint32_t a_us, uint32_t b_us)
 
 void estimator_init(estimator_t *estimator)
 {
-    *estimator = (estimator_t){.upright = 1.0F};
+    memset(estimator, 0, sizeof *estimator); /* as in flight.c */
+    estimator->upright = 1.0F;
     filter_reset_covariance(&estimator->filter);
     credit_init(&estimator->credit);
     roughness_init(&estimator->roughness);
@@ -61,6 +62,7 @@ static void predict_to(estimator_t *e, uint32_t to_us, const estimator_frame_t *
     };
 
     filter_predict(&e->filter, &frame->motion, dt_s, &drift);
+    terrain_predict(&e->terrain, &frame->motion, dt_s, bias_mps2);
     e->delayed_us = to_us;
 }
 
@@ -365,10 +367,23 @@ void estimator_pass_over(estimator_t *e, bool passes_over)
         return;
     }
     e->passes_over = passes_over;
-    e->terrain = (terrain_t){.known = 0U};
+    e->terrain.count = 0U;
     e->filter.estimate.terrain_mps = 0.0F;
     filter_reset_variance(&e->filter, FILTER_TERRAIN,
                           passes_over ? 0.0F : filter_variance_start(FILTER_TERRAIN));
+}
+
+/* The filter goes on from what the scan means. */
+static void take_shown(estimator_t *e, const terrain_shown_t *shown)
+{
+    e->filter.estimate.height_m = shown->altitude_m - shown->ground_m;
+    e->filter.estimate.speed_mps = shown->speed_mps;
+    e->filter.estimate.bias_mps2 = shown->bias_mps2;
+    filter_reset_variance(&e->filter, FILTER_HEIGHT, TERRAIN_OWN_M * TERRAIN_OWN_M);
+    filter_reset_variance(&e->filter, FILTER_SPEED, shown->speed_variance);
+    filter_reset_variance(&e->filter, FILTER_BIAS, shown->bias_variance);
+    filter_bound(&e->filter);
+    e->terrain_height_m = shown->ground_m;
 }
 
 height_outcome_t estimator_fuse_over(estimator_t *e, const terrain_sight_t *sight, uint32_t rays_us)
@@ -379,12 +394,10 @@ height_outcome_t estimator_fuse_over(estimator_t *e, const terrain_sight_t *sigh
     predict_through(e, rays_us);
     e->rays_us = e->delayed_us;
     const float altitude_m = e->filter.estimate.height_m + e->terrain_height_m;
-    const terrain_shown_t shown = terrain_scan(&e->terrain, &heights, altitude_m,
-                                               e->filter.covariance[FILTER_HEIGHT][FILTER_HEIGHT], gap_s);
-    filter_merge(&e->filter, &shown.merge);
-    e->filter.estimate.height_m -= shown.ground_m - e->terrain_height_m;
-    e->terrain_height_m = shown.ground_m;
-    e->innovation_m = shown.innovation_m;
+    terrain_begin(&e->terrain, &e->filter, altitude_m);
+    const terrain_shown_t shown = terrain_scan(&e->terrain, &heights, gap_s);
+    take_shown(e, &shown);
+    e->innovation_m = shown.altitude_m - altitude_m;
     e->confirmed = e->unchecked_count == 0U;
     e->unchecked_count = (uint16_t)(e->unchecked_count - (e->unchecked_count > 0U));
     e->rejected.count = 0U;
@@ -412,7 +425,7 @@ void estimator_amend(estimator_t *e, float height_m, float speed_mps, float bias
     e->filter.estimate.speed_mps += speed_mps - e->now.speed_mps;
     e->filter.estimate.bias_mps2 = bias_mps2;
     e->filter.estimate.terrain_mps = 0.0F;
-    e->terrain = (terrain_t){.known = 0U};
+    e->terrain.count = 0U;
     filter_reset_covariance(&e->filter);
     filter_bound(&e->filter);
     predict_now(e);

@@ -172,25 +172,6 @@ void filter_correct(filter_t *filter, filter_state_t state, float innovation, fl
     bound_covariance(p);
 }
 
-void filter_merge(filter_t *filter, const filter_merge_t *merge)
-{
-    float(*const p)[FILTER_STATES] = filter->covariance;
-    const float speed = p[FILTER_HEIGHT][FILTER_SPEED];
-    const float bias = p[FILTER_HEIGHT][FILTER_BIAS];
-
-    filter->estimate.height_m += p[FILTER_HEIGHT][FILTER_HEIGHT] * merge->pull_per_m;
-    filter->estimate.speed_mps += speed * merge->pull_per_m;
-    filter->estimate.bias_mps2 += bias * merge->pull_per_m;
-    p[FILTER_SPEED][FILTER_SPEED] -= speed * speed * merge->less_per_m2;
-    p[FILTER_SPEED][FILTER_BIAS] -= speed * bias * merge->less_per_m2;
-    p[FILTER_BIAS][FILTER_BIAS] -= bias * bias * merge->less_per_m2;
-    p[FILTER_HEIGHT][FILTER_SPEED] *= merge->kept;
-    p[FILTER_HEIGHT][FILTER_BIAS] *= merge->kept;
-    p[FILTER_HEIGHT][FILTER_HEIGHT] = merge->variance_m2;
-    bound_states(&filter->estimate);
-    bound_covariance(p);
-}
-
 void filter_predict(filter_t *filter, const motion_t *motion, float dt_s, const filter_drift_t *drift)
 {
     filter->estimate = filter_moved(&filter->estimate, motion, dt_s);

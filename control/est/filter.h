@@ -48,17 +48,6 @@ void filter_predict(filter_t *filter, const motion_t *motion, float dt_s, const 
 /* A measurement of one state. innovation: measured minus estimated. variance: of the measurement, > 0. */
 void filter_correct(filter_t *filter, filter_state_t state, float innovation, float variance);
 
-/* Several hypotheses about one height, merged. Each is a correction along the height's column of the
- * covariance, or leaves the states alone and only says anew how high the vehicle is. */
-typedef struct {
-    float pull_per_m;  /* the states move by this times their covariance with the height */
-    float less_per_m2; /* and the covariances of speed and bias shrink by this times both of theirs */
-    float kept;        /* share that is left of the covariances with the height, 0 .. 1 */
-    float variance_m2; /* of the height afterwards, > 0 */
-} filter_merge_t;
-
-void filter_merge(filter_t *filter, const filter_merge_t *merge);
-
 /* Overwrites the estimate where the caller knows better; within its bounds. */
 void filter_bound(filter_t *filter);
 

@@ -1,33 +1,28 @@
-/* What breaks: a covariance that is kept against the start. After a slide of the ground the height above it
- * is known as well as ever, and only the altitude is not; so the variance belongs to the height above the
- * ground of now. And a rate that is not remembered: a ramp explains each scan as well as a sinking vehicle
- * does, and only that all mirrors rise by what the first one has shown tells them apart. The belief about
- * liars (sense/belief.h) is not asked: it takes the one mirror that still shows level ground for blocked
- * while two climb a ramp (0.999 in simulation), because only here the motion is known. */
+/* What breaks: one Gaussian for all ways after each scan. The wrong rate carries all mirrors with it, the law
+ * follows, and what it does then agrees with it. The belief about liars (sense/belief.h) is not asked: it
+ * takes the one mirror that still shows level ground for blocked while two climb a ramp (0.999 in
+ * simulation), because only here the motion is known. */
 #include "control/est/terrain.h"
 
 #include <math.h>
 #include <stddef.h>
 
 #include "control/between.h"
-#include "control/est/terrain_ways.h"
 
-/* ---- noise models: see terrain.h and terrain_ways.h */
+/* ---- noise models: see terrain.h */
 #define RAMP_MPS 0.4F          /* rms of a rate, as the seed's ramp: 0.25 m in 0.7 s */
 #define RAMP_DRIFT_MPS2_2 0.1F /* (m/s)2 a second: half of RAMP_MPS in 0.4 s */
 
 /* ---- shares of the scans, for each mirror */
-#define STEP_UNEVEN 0.05F  /* and more where it is not */
 #define RAMP_BEGINS 0.005F /* one of 200: the seed's course has one ramp in 20 s */
-#define RAMP_UNEVEN 0.1F
 #define RAMP_GOES_ON 0.85F /* the seed's ramp takes 7 scans, 0.7 s: 1 - 1/7 */
 #define RAMP_NEXT 0.2F     /* of a mirror, where another one is on it: 0.2 m of bracket at 0.4 m/s */
-#define MOVES_MOST 0.95F   /* one that stays is never impossible */
 
-#define UNEVEN_M 0.012F   /* a difference of the grounds that shows: twice TERRAIN_OWN_M */
-#define EVEN_SHARE 0.005F /* of a scan: the mirrors' own errors are known after 20 s */
+/* ---- a ramp's rate is its slope times the speed over it */
+#define SPEED_MPS 1.0F /* of that speed; the seed's vehicle and a careful pilot fly 0.3 to 0.6 m/s */
+#define SPOTS_M 0.12F  /* between the spots of two mirrors; the default geometry */
 
-#define FLAT_VARIANCE (RAMP_MPS * RAMP_MPS)
+#define NO_WAY 1.0e-6F /* a way that is less probable before the scan is not computed */
 
 static bool has(uint16_t set, uint16_t mirror)
 {
@@ -54,123 +49,234 @@ bool terrain_sees_ground(const terrain_sight_t *sight, bool begun)
     return shown > 1U;
 }
 
-/* ---- from scan to scan */
-
-/* How uneven the ground under the mirrors is, 0 .. 1. */
-static float unevenness(const terrain_t *terrain)
+void terrain_begin(terrain_t *terrain, const filter_t *filter, float altitude_m)
 {
-    float low_m = INFINITY;
-    float high_m = -INFINITY;
+    terrain_hypothesis_t *const first = &terrain->kept[0];
+
+    if (terrain->count != 0U) {
+        return;
+    }
+    terrain->known = 0U;
+    terrain->count = 1U;
+    for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
+        terrain_hypothesis_free(first, i, 0.0F);
+        first->x[i] = 0.0F;
+    }
+    first->share = 1.0F;
+    first->ramps = 0U;
+    first->x[TERRAIN_ALTITUDE] = altitude_m;
+    first->x[TERRAIN_SPEED] = filter->estimate.speed_mps;
+    first->x[TERRAIN_BIAS] = filter->estimate.bias_mps2;
+    for (uint16_t i = 0U; i <= (uint16_t)TERRAIN_BIAS; ++i) {
+        first->p[i][i] = filter->covariance[i][i];
+    }
+}
+
+void terrain_predict(terrain_t *terrain, const motion_t *motion, float dt_s, float bias_mps2)
+{
+    for (uint16_t i = 0U; i < terrain->count; ++i) {
+        terrain_hypothesis_predict(&terrain->kept[i], motion, dt_s, bias_mps2);
+    }
+}
+
+/* ---- the ways of one scan */
+
+/* Bits of the mirrors that tell a height, and under which the ground steps or rises. */
+typedef struct {
+    uint16_t told, steps, rises;
+} way_t;
+
+/* Probability of a way before the scan, after mirrors that were on a ramp. */
+static float prior_of(uint16_t ramps, const way_t *way)
+{
+    float share = 1.0F;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (has(terrain->known, m)) {
-            low_m = at_most(low_m, terrain->ground_m[m] - terrain->even_m[m]);
-            high_m = at_least(high_m, terrain->ground_m[m] - terrain->even_m[m]);
+        const float begins = RAMP_BEGINS + ((ramps != 0U) ? RAMP_NEXT : 0.0F);
+        const float rises = has(ramps, m) ? RAMP_GOES_ON : begins;
+
+        if (has(way->rises, m)) {
+            share *= rises;
+        } else if (has(way->told, m)) {
+            share *= (1.0F - rises) * (has(way->steps, m) ? TERRAIN_STEP : 1.0F - TERRAIN_STEP);
         }
     }
-    const float sigmas = (high_m > low_m) ? (high_m - low_m) / UNEVEN_M : 0.0F;
-    return 1.0F - expf(-0.5F * sigmas * sigmas);
+    return share;
 }
 
-/* Probabilities before the scan. */
-static void expect(const terrain_t *terrain, terrain_ways_t *w, float gap_s)
+/* The grounds under some mirrors. */
+typedef struct {
+    float sum_m, low_m, high_m, count;
+} grounds_t;
+
+static grounds_t grounds_of(const terrain_hypothesis_t *h, uint16_t set)
 {
-    const float uneven = unevenness(terrain);
-    float most = 0.0F;
-
-    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        most = at_least(most, terrain->ramp[m]);
-    }
-    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        const float on = RAMP_GOES_ON * terrain->ramp[m] + RAMP_NEXT * (most - terrain->ramp[m]);
-
-        w->steps[m] = TERRAIN_STEP_LEVEL + STEP_UNEVEN * uneven;
-        w->rises[m] = at_most(RAMP_BEGINS + (RAMP_UNEVEN + on) * uneven, MOVES_MOST - w->steps[m]);
-    }
-    w->rise_m = terrain->rise_mps * gap_s;
-    w->rise_m2 = (terrain->rise_variance + RAMP_DRIFT_MPS2_2 * gap_s) * gap_s * gap_s;
-}
-
-/* A mirror that tells something for the first time has its ground from that. */
-static void meet(terrain_t *terrain, uint16_t mirror, float ground_m)
-{
-    terrain->rise_variance = (terrain->known == 0U) ? FLAT_VARIANCE : terrain->rise_variance;
-    terrain->known |= (uint16_t)(1U << mirror);
-    terrain->ground_m[mirror] = ground_m;
-    terrain->even_m[mirror] = ground_m;
-    terrain->ramp[mirror] = 0.0F;
-}
-
-/* The grounds, and the ramp: none is a new one, of any rate. */
-static void learn(terrain_t *terrain, const terrain_ways_t *w, float gap_s)
-{
-    const float rise_mps = w->risen / (w->density * gap_s);
-    const float squares = w->risen_2 / (w->density * gap_s * gap_s) +
-                          (1.0F - w->ramp / w->density) * FLAT_VARIANCE;
-
-    terrain->rise_mps = rise_mps;
-    terrain->rise_variance = squares - rise_mps * rise_mps;
-    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (has(w->told, m)) {
-            terrain->ramp[m] = w->on_ramp[m] / w->density;
-            terrain->ground_m[m] += w->ground_m[m] / w->density;
-        }
-        terrain->even_m[m] += EVEN_SHARE * (terrain->ground_m[m] - terrain->even_m[m]);
-    }
-}
-
-/* The middle one of three, the mean of two. */
-static float middle_m(const terrain_t *terrain, uint16_t set)
-{
-    float sum_m = 0.0F;
-    float low_m = INFINITY;
-    float high_m = -INFINITY;
-    float count = 0.0F;
+    grounds_t grounds = {.low_m = INFINITY, .high_m = -INFINITY};
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         if (has(set, m)) {
-            sum_m += terrain->ground_m[m];
-            low_m = at_most(low_m, terrain->ground_m[m]);
-            high_m = at_least(high_m, terrain->ground_m[m]);
-            count += 1.0F;
+            const float ground_m = h->x[terrain_ground_of(m)];
+
+            grounds.sum_m += ground_m;
+            grounds.low_m = at_most(grounds.low_m, ground_m);
+            grounds.high_m = at_least(grounds.high_m, ground_m);
+            grounds.count += 1.0F;
         }
     }
-    return (count > 2.0F) ? sum_m - low_m - high_m : sum_m / count;
+    return grounds;
 }
 
-static filter_merge_t merge_of(const terrain_ways_t *w)
+/* How well a rate goes with the slope that two mirrors or more on the ramp show. */
+static float steepness(const terrain_hypothesis_t *h)
 {
-    const float pull = w->pull / w->density;
+    const grounds_t grounds = grounds_of(h, h->ramps);
+    const float apart_m = grounds.high_m - grounds.low_m;
+    const float slope_2 = (apart_m * apart_m + 2.0F * TERRAIN_OWN_M * TERRAIN_OWN_M) / (SPOTS_M * SPOTS_M);
+    const float rate_mps = h->x[TERRAIN_RATE];
+    const float rate_2 = h->p[TERRAIN_RATE][TERRAIN_RATE] + slope_2 * SPEED_MPS * SPEED_MPS;
 
-    return (filter_merge_t){
-        .pull_per_m = pull,
-        .less_per_m2 = (w->gain - w->pull_2) / w->density + pull * pull,
-        .kept = w->kept / w->density,
-        .variance_m2 = w->after_m2 / w->density,
-    };
+    return (grounds.count < 2.0F) ? 1.0F : expf(-0.5F * rate_mps * rate_mps / rate_2);
 }
 
-terrain_shown_t terrain_scan(terrain_t *terrain, const terrain_heights_t *heights, float altitude_m,
-                             float variance_m2, float gap_s)
+/* The scan came about in this way. Its share becomes its density. */
+static void go_on(terrain_hypothesis_t *h, const terrain_heights_t *heights, const way_t *way, float gap_s)
 {
-    terrain_ways_t w = {.variance_m2 = variance_m2,
-                        .common_m2 = variance_m2 + TERRAIN_COMMON_M * TERRAIN_COMMON_M};
-    terrain_shown_t shown = {.merge = {.kept = 1.0F, .variance_m2 = variance_m2}};
-
-    w.told = heights->valid & terrain->known;
+    terrain_hypothesis_rise(h, way->rises, gap_s);
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (has(heights->valid, m) && !has(terrain->known, m)) {
-            meet(terrain, m, altitude_m - heights->height_m[m]);
+        if (has(way->told, m) && !has(way->steps, m)) {
+            h->share *= terrain_hypothesis_correct(h, m, heights->height_m[m]);
         }
-        w.off_m[m] = heights->height_m[m] - (altitude_m - terrain->ground_m[m]);
     }
-    expect(terrain, &w, gap_s);
-    terrain_ways_add(&w);
-    if (w.told != 0U && w.density > 0.0F) {
-        shown.merge = merge_of(&w);
-        shown.innovation_m = w.off / w.density;
-        learn(terrain, &w, gap_s);
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        if (has(way->steps, m)) {
+            const float off_m = heights->height_m[m] - (h->x[TERRAIN_ALTITUDE] - h->x[terrain_ground_of(m)]);
+
+            h->share *= expf(-fabsf(off_m) / TERRAIN_STEP_M) / (2.0F * TERRAIN_STEP_M);
+            terrain_hypothesis_meet(h, m, heights->height_m[m]);
+        }
     }
-    shown.ground_m = middle_m(terrain, heights->valid);
-    return shown;
+    h->share *= steepness(h);
+}
+
+/* Among the next ones: with one that tells the same, or in a free place, or in place of the least. Returns
+ * how many these are then. */
+static uint16_t keep(terrain_hypothesis_t *next, uint16_t count, const terrain_hypothesis_t *way)
+{
+    uint16_t least = 0U;
+
+    if (!(way->share > 0.0F)) {
+        return count;
+    }
+    for (uint16_t i = 0U; i < count; ++i) {
+        if (terrain_hypothesis_alike(&next[i], way)) {
+            terrain_hypothesis_merge(&next[i], way);
+            return count;
+        }
+        least = (next[i].share < next[least].share) ? i : least;
+    }
+    if (count < TERRAIN_KEPT) {
+        next[count] = *way;
+        return (uint16_t)(count + 1U);
+    }
+    if (next[least].share < way->share) {
+        next[least] = *way;
+    }
+    return count;
+}
+
+/* All ways that go on from one hypothesis. */
+static uint16_t branch(terrain_t *t, const terrain_hypothesis_t *from, const terrain_heights_t *heights,
+                       float gap_s, uint16_t count)
+{
+    way_t way = {.told = heights->valid & t->known};
+
+    for (way.rises = 0U; way.rises <= way.told; ++way.rises) {
+        const bool all_at_once = from->ramps == 0U && way.rises == (1U << (uint16_t)MIRROR_COUNT) - 1U;
+
+        for (way.steps = 0U; way.steps <= way.told && !all_at_once; ++way.steps) {
+            const bool is_way = ((way.steps | way.rises) & (uint16_t)~way.told) == 0U &&
+                                (way.steps & way.rises) == 0U;
+            const float prior = is_way ? from->share * prior_of(from->ramps, &way) : 0.0F;
+
+            if (prior >= NO_WAY) {
+                t->way = *from;
+                t->way.share = prior;
+                go_on(&t->way, heights, &way, gap_s);
+                count = keep(t->next, count, &t->way);
+            }
+        }
+    }
+    return count;
+}
+
+/* Before a scan: the common noise, the drift of a ramp's rate, and grounds that are met. */
+static void expect(terrain_hypothesis_t *h, const terrain_heights_t *heights, uint16_t met, float gap_s)
+{
+    h->p[TERRAIN_ALTITUDE][TERRAIN_ALTITUDE] += TERRAIN_COMMON_M * TERRAIN_COMMON_M;
+    if (h->ramps == 0U) {
+        h->x[TERRAIN_RATE] = 0.0F;
+        terrain_hypothesis_free(h, TERRAIN_RATE, RAMP_MPS * RAMP_MPS);
+    }
+    h->p[TERRAIN_RATE][TERRAIN_RATE] += RAMP_DRIFT_MPS2_2 * gap_s;
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        if (has(met, m)) {
+            terrain_hypothesis_meet(h, m, heights->height_m[m]);
+        }
+    }
+}
+
+/* The next ones become those that are kept, where any way is possible. */
+static void take_over(terrain_t *t, uint16_t count)
+{
+    float sum = 0.0F;
+
+    for (uint16_t i = 0U; i < count; ++i) {
+        sum += t->next[i].share;
+    }
+    if (!(sum > 0.0F)) {
+        return;
+    }
+    t->count = count;
+    for (uint16_t i = 0U; i < count; ++i) {
+        t->kept[i] = t->next[i];
+        t->kept[i].share /= sum;
+    }
+}
+
+/* ---- what it means */
+
+/* The ground under the middle one of three mirrors, the mean of two. */
+static float middle_m(const terrain_hypothesis_t *h, uint16_t set)
+{
+    const grounds_t grounds = grounds_of(h, set);
+
+    return (grounds.count > 2.0F) ? grounds.sum_m - grounds.low_m - grounds.high_m
+                                  : grounds.sum_m / grounds.count;
+}
+
+terrain_shown_t terrain_scan(terrain_t *t, const terrain_heights_t *heights, float gap_s)
+{
+    const uint16_t met = heights->valid & (uint16_t)~t->known;
+    uint16_t count = 0U;
+
+    for (uint16_t i = 0U; i < t->count; ++i) {
+        expect(&t->kept[i], heights, met, gap_s);
+    }
+    for (uint16_t i = 0U; i < t->count; ++i) {
+        count = branch(t, &t->kept[i], heights, gap_s, count);
+    }
+    take_over(t, count);
+    t->known |= met;
+    t->way = t->kept[0];
+    for (uint16_t i = 1U; i < t->count; ++i) {
+        terrain_hypothesis_merge(&t->way, &t->kept[i]);
+    }
+    return (terrain_shown_t){
+        .altitude_m = t->way.x[TERRAIN_ALTITUDE],
+        .speed_mps = t->way.x[TERRAIN_SPEED],
+        .bias_mps2 = t->way.x[TERRAIN_BIAS],
+        .speed_variance = t->way.p[TERRAIN_SPEED][TERRAIN_SPEED],
+        .bias_variance = t->way.p[TERRAIN_BIAS][TERRAIN_BIAS],
+        .ground_m = middle_m(&t->way, heights->valid),
+    };
 }

@@ -1,11 +1,10 @@
 /* The ground under each mirror as a state, for TERRAIN IGNORE: what of a height's change is the vehicle's
  * motion, and what is the ground's.
  *
- *   height_i = altitude - ground_i + common + own_i
+ *   height_i = altitude - ground_i + own_i
  *
- *   altitude   above the ground of the start: of the Kalman filter (filter.h), whose variance is given here
- *   common     noise that a scan's heights share, 4 mm rms
- *   own_i      noise of each, 6 mm rms: rays, and the tilt's error times the mirror's lever
+ *   own_i    noise of each mirror, 6 mm rms: rays, and the tilt's error times the mirror's lever
+ *   common   noise that a scan's heights share, 4 mm rms: the altitude takes it, as a step of its own
  *
  * From scan to scan the ground under a mirror does one of three things:
  *
@@ -14,16 +13,17 @@
  *   it rises   at the rate of a ramp, or falls. One rate counts for all mirrors: N(0, 0.4 m/s) when a ramp
  *              begins, then what the mirrors on it have shown, with a drift of 0.3 m/s per root second
  *
- * Every combination is a way in which the scan can have come about. Its probability is that of the mirrors'
- * states times the density of the heights in it, where altitude and rate are Gaussian. The ways are merged
- * into one estimate after each scan (first-order generalised pseudo-Bayes; Blom and Bar-Shalom 1988). So
- * while one mirror still shows the ground of before, the altitude is known; the two others learn the ramp
- * meanwhile; and while all are on it, the ramp's rate tells, with accelerometer and thrust.
+ * Every combination is a way in which the scan can have come about. Each way goes on from each hypothesis
+ * that is kept, and makes a new one, whose probability is that of the mirrors' states times the density of
+ * the heights in it. Those that tell the same are merged, and the most probable ones are kept for the next
+ * scan (multiple hypothesis tracking; Reid 1979, Blackman 2004). One scan cannot tell "the fore mirror is on
+ * a ramp, and the vehicle rises" from "the aft mirror's ground falls"; some scans can.
  *
- * What is assumed: the fore mirror or another one meets a ramp first, and the speed over it lasts. A ramp
- * goes on only while the grounds under the mirrors differ: level ground that sinks under all mirrors alike is
- * a climb. Ground that rises evenly under all of them, slower than the accelerometer can tell (some
- * 0.05 m/s), is taken for a sinking vehicle. One mirror alone shows too little; it is not asked.
+ * What is assumed: one mirror or two meet a ramp first, not all in one scan. A ramp that rises fast is steep,
+ * because nobody flies faster than SPEED_MPS: where the mirrors on it show the same ground, level ground has
+ * no rate, and heights that grow are a climb. Ground that rises evenly under all mirrors, slower than the
+ * accelerometer can tell (some 0.05 m/s), is taken for a sinking vehicle. One mirror alone shows too little;
+ * it is not asked.
  *
  * Metres, seconds. Pure; the caller owns the state, all zero at first. Context: one Task. */
 #ifndef CONTROL_TERRAIN_H
@@ -34,6 +34,10 @@
 
 #include "control/altitude.h"
 #include "control/est/filter.h"
+#include "control/est/terrain_hypothesis.h"
+
+#define TERRAIN_COMMON_M 0.004F /* sim/devices/scene.h: 3 mm of a scan, drawn up to 6 */
+#define TERRAIN_STEP_M 0.15F    /* mean size of a step (Laplace), as belief_world.c */
 
 /* What the mirrors show in one scan. */
 typedef struct {
@@ -60,27 +64,33 @@ typedef struct {
  * in supervisor.c. */
 #define TERRAIN_LEAST_M 0.15F
 
-/* What a scan may bring where the ground is level. */
-#define TERRAIN_STEP_LEVEL 0.01F /* share of the scans with one, for each mirror; tried 0.005 to 0.015 */
+/* What a scan may bring. */
+#define TERRAIN_STEP 0.01F /* share of the scans with one, for each mirror; tried 0.003 and 0.03 */
+
+#define TERRAIN_KEPT 6U /* tried 2, 4 and 8 */
 
 typedef struct {
     uint16_t known; /* bits: mirrors whose ground is known */
-    float ground_m[MIRROR_COUNT];
-    float even_m[MIRROR_COUNT];    /* ground_m of level ground: the mirrors' own errors */
-    float ramp[MIRROR_COUNT];      /* probability that it was on a ramp in the latest scan */
-    float rise_mps, rise_variance; /* of the ramp; variance in m2/s2 */
+    uint16_t count; /* of the hypotheses that are kept; 0: to be begun */
+    terrain_hypothesis_t kept[TERRAIN_KEPT];
+    terrain_hypothesis_t next[TERRAIN_KEPT], way; /* of one scan: too large for a stack */
 } terrain_t;
 
-/* What a scan means for the filter of the altitude; see filter_merge(). */
+/* What a scan means. */
 typedef struct {
-    filter_merge_t merge;
-    float innovation_m; /* what of the heights' change is the vehicle's, against the prediction */
-    float ground_m;     /* under the middle mirror: the altitude less this is the height */
+    float altitude_m, speed_mps, bias_mps2; /* means */
+    float speed_variance, bias_variance;
+    float ground_m; /* under the middle mirror: the altitude less this is the height */
 } terrain_shown_t;
 
-/* One scan with at least one height. altitude_m: predicted, above the ground of the start. variance_m2: of
- * that prediction, against the ground of the scan before. gap_s > 0: since then. */
-terrain_shown_t terrain_scan(terrain_t *terrain, const terrain_heights_t *heights, float altitude_m,
-                             float variance_m2, float gap_s);
+/* Begins with what a filter knows, where no hypothesis is kept. altitude_m: above the ground of the start. */
+void terrain_begin(terrain_t *terrain, const filter_t *filter, float altitude_m);
+
+/* Moves those that are kept over dt_s; bias_mps2: drift of the bias, per root second. */
+void terrain_predict(terrain_t *terrain, const motion_t *motion, float dt_s, float bias_mps2);
+
+/* One scan with at least one height, gap_s > 0 after the one before. Before: terrain_begin(). Heights that no
+ * hypothesis explains, not even by steps, change nothing. */
+terrain_shown_t terrain_scan(terrain_t *terrain, const terrain_heights_t *heights, float gap_s);
 
 #endif

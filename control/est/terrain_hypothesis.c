@@ -1,0 +1,116 @@
+/* Theory: any text on Kalman filters. What breaks: a covariance that is left out. A rate that is thought
+ * independent of the speed takes a part of each innovation, and then a hovering vehicle slides down a ramp
+ * with it. */
+#include "control/est/terrain_hypothesis.h"
+
+#include <math.h>
+
+#include "control/between.h"
+
+#define PER_ROOT_2PI 0.398942280F /* 1 / sqrt(2 pi) */
+#define OWN_M2 (TERRAIN_OWN_M * TERRAIN_OWN_M)
+
+/* ---- one Gaussian tells two hypotheses whose means are nearer than this together */
+#define ALIKE_M 0.01F       /* two heights of a mirror: TERRAIN_OWN_M times root 2 */
+#define ALIKE_MPS 0.05F     /* what the filter knows of a speed between two heights: sqrt of its variance */
+#define ALIKE_RATE_MPS 0.1F /* ALIKE_M in a scan */
+
+void terrain_hypothesis_free(terrain_hypothesis_t *h, uint16_t state, float variance)
+{
+    for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
+        h->p[state][i] = 0.0F;
+        h->p[i][state] = 0.0F;
+    }
+    h->p[state][state] = variance;
+}
+
+/* One state becomes itself plus `by` times another: mean and covariance. */
+static void add(terrain_hypothesis_t *h, uint16_t state, uint16_t other, float by)
+{
+    h->x[state] += by * h->x[other];
+    for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
+        h->p[state][i] += by * h->p[other][i];
+    }
+    for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
+        h->p[i][state] += by * h->p[i][other];
+    }
+}
+
+void terrain_hypothesis_predict(terrain_hypothesis_t *h, const motion_t *motion, float dt_s, float bias_mps2)
+{
+    add(h, TERRAIN_ALTITUDE, TERRAIN_SPEED, dt_s);
+    add(h, TERRAIN_ALTITUDE, TERRAIN_BIAS, -0.5F * motion->share * dt_s * dt_s);
+    add(h, TERRAIN_SPEED, TERRAIN_BIAS, -motion->share * dt_s);
+    h->x[TERRAIN_ALTITUDE] += 0.5F * motion->up_mps2 * dt_s * dt_s;
+    h->x[TERRAIN_SPEED] += motion->up_mps2 * dt_s;
+    h->p[TERRAIN_SPEED][TERRAIN_SPEED] += motion->drift * dt_s;
+    h->p[TERRAIN_BIAS][TERRAIN_BIAS] += bias_mps2 * bias_mps2 * dt_s;
+}
+
+void terrain_hypothesis_rise(terrain_hypothesis_t *h, uint16_t ramps, float gap_s)
+{
+    h->ramps = ramps;
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        if ((ramps & (1U << m)) != 0U) {
+            add(h, terrain_ground_of(m), TERRAIN_RATE, gap_s);
+        }
+    }
+}
+
+float terrain_hypothesis_correct(terrain_hypothesis_t *h, uint16_t mirror, float height_m)
+{
+    const uint16_t ground = terrain_ground_of(mirror);
+    const float innovation_m = height_m - (h->x[TERRAIN_ALTITUDE] - h->x[ground]);
+    float row[TERRAIN_STATES];
+
+    for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
+        row[i] = h->p[TERRAIN_ALTITUDE][i] - h->p[ground][i];
+    }
+    const float per_sum = 1.0F / (at_least(row[TERRAIN_ALTITUDE] - row[ground], 0.0F) + OWN_M2);
+    for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
+        const float gain = row[i] * per_sum;
+
+        h->x[i] += gain * innovation_m;
+        for (uint16_t j = i; j < TERRAIN_STATES; ++j) {
+            h->p[i][j] -= gain * row[j];
+            h->p[j][i] = h->p[i][j];
+        }
+    }
+    return PER_ROOT_2PI * sqrtf(per_sum) * expf(-0.5F * innovation_m * innovation_m * per_sum);
+}
+
+void terrain_hypothesis_meet(terrain_hypothesis_t *h, uint16_t mirror, float height_m)
+{
+    const uint16_t ground = terrain_ground_of(mirror);
+
+    terrain_hypothesis_free(h, ground, 0.0F);
+    h->x[ground] = -height_m;
+    add(h, ground, TERRAIN_ALTITUDE, 1.0F);
+    h->p[ground][ground] += OWN_M2;
+}
+
+bool terrain_hypothesis_alike(const terrain_hypothesis_t *a, const terrain_hypothesis_t *b)
+{
+    const float off = (a->x[TERRAIN_ALTITUDE] - b->x[TERRAIN_ALTITUDE]) / ALIKE_M;
+    const float speed = (a->x[TERRAIN_SPEED] - b->x[TERRAIN_SPEED]) / ALIKE_MPS;
+    const float rate = (a->ramps == 0U) ? 0.0F : (a->x[TERRAIN_RATE] - b->x[TERRAIN_RATE]) / ALIKE_RATE_MPS;
+
+    return a->ramps == b->ramps && off * off + speed * speed + rate * rate < 1.0F;
+}
+
+void terrain_hypothesis_merge(terrain_hypothesis_t *into, const terrain_hypothesis_t *other)
+{
+    const float share = other->share / (into->share + other->share);
+    float apart[TERRAIN_STATES];
+
+    for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
+        apart[i] = other->x[i] - into->x[i];
+        into->x[i] += share * apart[i];
+    }
+    for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
+        for (uint16_t j = 0U; j < TERRAIN_STATES; ++j) {
+            into->p[i][j] += share * (other->p[i][j] - into->p[i][j] + (1.0F - share) * apart[i] * apart[j]);
+        }
+    }
+    into->share += other->share;
+}

@@ -1,0 +1,124 @@
+/* One hypothesis about vehicle, ramp and ground: against the estimator's own filter, and against arithmetic
+ * by hand. */
+#include "control/est/terrain_hypothesis.h"
+#include "control/est/terrain.h"
+#include "unity.h"
+
+#include <math.h>
+#include <string.h>
+
+#define DT_S 0.025F
+#define FORE ((uint16_t)MIRROR_FORE)
+
+static terrain_hypothesis_t h;
+
+void setUp(void)
+{
+    memset(&h, 0, sizeof h);
+    h.share = 1.0F;
+    h.x[TERRAIN_ALTITUDE] = 0.6F;
+    h.x[TERRAIN_SPEED] = 0.2F;
+    h.x[TERRAIN_BIAS] = 0.1F;
+    h.x[TERRAIN_RATE] = 0.4F;
+    h.p[TERRAIN_ALTITUDE][TERRAIN_ALTITUDE] = 1.0e-4F;
+    h.p[TERRAIN_SPEED][TERRAIN_SPEED] = 0.04F;
+    h.p[TERRAIN_BIAS][TERRAIN_BIAS] = 0.09F;
+    h.p[TERRAIN_RATE][TERRAIN_RATE] = 0.16F;
+}
+
+void tearDown(void) {}
+
+/* filter.c adds 4.7 mm per root second to the height; here the common noise is that. */
+void test_it_is_predicted_as_the_estimators_filter_is(void)
+{
+    const motion_t motion = {.up_mps2 = 0.7F, .share = 0.6F, .drift = 0.02F};
+    const filter_drift_t drift = {.bias_mps2 = 0.02F};
+    filter_t filter = {.estimate = {.height_m = 0.6F, .speed_mps = 0.2F, .bias_mps2 = 0.1F}};
+
+    for (int i = 0; i < 3; i++) {
+        filter.covariance[i][i] = h.p[i][i];
+    }
+    for (int k = 0; k < 20; k++) {
+        filter_predict(&filter, &motion, DT_S, &drift);
+        terrain_hypothesis_predict(&h, &motion, DT_S, drift.bias_mps2);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, filter.estimate.height_m, h.x[TERRAIN_ALTITUDE]);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, filter.estimate.speed_mps, h.x[TERRAIN_SPEED]);
+    TEST_ASSERT_FLOAT_WITHIN(2.0e-5F, filter.covariance[0][0], h.p[0][0]);
+    for (int i = 0; i < 3; i++) {
+        for (int j = (i == 0) ? 1 : i; j < 3; j++) {
+            TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, filter.covariance[i][j], h.p[i][j]);
+            TEST_ASSERT_EQUAL_FLOAT(h.p[i][j], h.p[j][i]);
+        }
+    }
+}
+
+/* variance 1e-4 + 36e-6: gain 0.735 */
+void test_a_height_corrects_the_altitude_and_tells_its_density(void)
+{
+    const float sum = 1.0e-4F + TERRAIN_OWN_M * TERRAIN_OWN_M;
+    const float density = terrain_hypothesis_correct(&h, FORE, 0.62F);
+
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 0.6F + 0.02F * 1.0e-4F / sum, h.x[TERRAIN_ALTITUDE]);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-8F, 1.0e-4F * TERRAIN_OWN_M * TERRAIN_OWN_M / sum, h.p[0][0]);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.398942F / sqrtf(sum) * expf(-0.5F * 4.0e-4F / sum), density);
+    TEST_ASSERT_EQUAL_FLOAT(0.2F, h.x[TERRAIN_SPEED]);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, h.x[TERRAIN_GROUND]); /* nothing is unknown of it */
+}
+
+void test_ground_that_is_met_is_as_unsure_as_the_altitude_and_moves_with_it(void)
+{
+    terrain_hypothesis_meet(&h, FORE, 0.5F);
+    const uint16_t ground = terrain_ground_of(FORE);
+
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.1F, h.x[ground]);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-9F, 1.0e-4F, h.p[ground][TERRAIN_ALTITUDE]);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-9F, 1.0e-4F + TERRAIN_OWN_M * TERRAIN_OWN_M, h.p[ground][ground]);
+    (void)terrain_hypothesis_correct(&h, (uint16_t)MIRROR_AFT, 0.61F); /* its ground is known: 0 */
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, h.x[TERRAIN_ALTITUDE] - 0.5F, h.x[ground]);
+}
+
+void test_a_ramp_moves_the_grounds_on_it_and_ties_them_to_its_rate(void)
+{
+    terrain_hypothesis_rise(&h, 1U << FORE, 0.1F);
+    TEST_ASSERT_EQUAL_HEX16(1U << FORE, h.ramps);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.04F, h.x[terrain_ground_of(FORE)]);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.016F, h.p[terrain_ground_of(FORE)][TERRAIN_RATE]);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, h.x[terrain_ground_of((uint16_t)MIRROR_AFT)]);
+    (void)terrain_hypothesis_correct(&h, FORE, 0.54F); /* 20 mm less than the rate told */
+    TEST_ASSERT_TRUE(h.x[TERRAIN_RATE] > 0.5F && h.x[TERRAIN_RATE] < 0.6F);
+    TEST_ASSERT_FLOAT_WITHIN(0.003F, 0.6F, h.x[TERRAIN_ALTITUDE]);
+}
+
+void test_two_that_are_merged_have_the_mean_and_the_spread_of_both(void)
+{
+    terrain_hypothesis_t other = h;
+
+    h.share = 3.0F;
+    other.x[TERRAIN_SPEED] = 0.6F;
+    other.p[TERRAIN_SPEED][TERRAIN_SPEED] = 0.08F;
+    terrain_hypothesis_merge(&h, &other);
+    TEST_ASSERT_EQUAL_FLOAT(4.0F, h.share);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.3F, h.x[TERRAIN_SPEED]);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.05F + 0.25F * 0.75F * 0.16F, h.p[TERRAIN_SPEED][TERRAIN_SPEED]);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 1.0e-4F, h.p[TERRAIN_ALTITUDE][TERRAIN_ALTITUDE]);
+}
+
+void test_alike_are_those_with_the_same_mirrors_on_a_ramp_and_the_same_motion(void)
+{
+    terrain_hypothesis_t other = h;
+
+    TEST_ASSERT_TRUE(terrain_hypothesis_alike(&h, &other));
+    other.x[TERRAIN_RATE] = -0.4F; /* no mirror is on a ramp: its rate means nothing */
+    TEST_ASSERT_TRUE(terrain_hypothesis_alike(&h, &other));
+    h.ramps = 1U;
+    TEST_ASSERT_FALSE(terrain_hypothesis_alike(&h, &other));
+    other.ramps = 1U;
+    TEST_ASSERT_FALSE(terrain_hypothesis_alike(&h, &other));
+    other = h;
+    other.x[TERRAIN_ALTITUDE] += 0.012F;
+    TEST_ASSERT_FALSE(terrain_hypothesis_alike(&h, &other));
+    other = h;
+    other.x[TERRAIN_SPEED] -= 0.06F;
+    TEST_ASSERT_FALSE(terrain_hypothesis_alike(&h, &other));
+}
