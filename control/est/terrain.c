@@ -22,7 +22,7 @@
 #define SPEED_MPS 1.0F /* of that speed; the seed's vehicle and a careful pilot fly 0.3 to 0.6 m/s */
 #define SPOTS_M 0.12F  /* between the spots of two mirrors; the default geometry */
 
-#define NO_WAY 1.0e-6F /* a way that is less probable before the scan is not computed */
+#define NO_WAY 1.0e-4F /* of the density of the best way: less than that is not kept */
 
 static bool has(uint16_t set, uint16_t mirror)
 {
@@ -81,13 +81,8 @@ void terrain_predict(terrain_t *terrain, const motion_t *motion, float dt_s, flo
 
 /* ---- the ways of one scan */
 
-/* Bits of the mirrors that tell a height, and under which the ground steps or rises. */
-typedef struct {
-    uint16_t told, steps, rises;
-} way_t;
-
-/* Probability of a way before the scan, after mirrors that were on a ramp. */
-static float prior_of(uint16_t ramps, const way_t *way)
+/* Probability of the mirrors that rise with a ramp, before the scan, after those that were on one. */
+static float prior_of(uint16_t ramps, uint16_t told, uint16_t rising)
 {
     float share = 1.0F;
 
@@ -95,10 +90,8 @@ static float prior_of(uint16_t ramps, const way_t *way)
         const float begins = RAMP_BEGINS + ((ramps != 0U) ? RAMP_NEXT : 0.0F);
         const float rises = has(ramps, m) ? RAMP_GOES_ON : begins;
 
-        if (has(way->rises, m)) {
-            share *= rises;
-        } else if (has(way->told, m)) {
-            share *= (1.0F - rises) * (has(way->steps, m) ? TERRAIN_STEP : 1.0F - TERRAIN_STEP);
+        if (has(told, m)) {
+            share *= has(rising, m) ? rises : 1.0F - rises;
         }
     }
     return share;
@@ -138,20 +131,31 @@ static float steepness(const terrain_hypothesis_t *h)
     return (grounds.count < 2.0F) ? 1.0F : expf(-0.5F * rate_mps * rate_mps / rate_2);
 }
 
-/* The scan came about in this way. Its share becomes its density. */
-static void go_on(terrain_hypothesis_t *h, const terrain_heights_t *heights, const way_t *way, float gap_s)
+/* Density of the heights of those mirrors that do not rise, where these step and the others stay. */
+static float density_of(const terrain_look_t *look, uint16_t staying, uint16_t steps)
 {
-    terrain_hypothesis_rise(h, way->rises, gap_s);
+    float density = 1.0F;
+
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (has(way->told, m) && !has(way->steps, m)) {
-            h->share *= terrain_hypothesis_correct(h, m, heights->height_m[m]);
+        if (has(steps, m)) {
+            density *= TERRAIN_STEP * expf(-fabsf(look->off_m[m]) / TERRAIN_STEP_M) / (2.0F * TERRAIN_STEP_M);
+        } else if (has(staying, m)) {
+            density *= 1.0F - TERRAIN_STEP;
+        }
+    }
+    return density;
+}
+
+/* The scan came about so. */
+static void go_on(terrain_hypothesis_t *h, const terrain_heights_t *heights, uint16_t told, uint16_t steps)
+{
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        if (has(told, m) && !has(steps, m)) {
+            terrain_hypothesis_correct(h, m, heights->height_m[m]);
         }
     }
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        if (has(way->steps, m)) {
-            const float off_m = heights->height_m[m] - (h->x[TERRAIN_ALTITUDE] - h->x[terrain_ground_of(m)]);
-
-            h->share *= expf(-fabsf(off_m) / TERRAIN_STEP_M) / (2.0F * TERRAIN_STEP_M);
+        if (has(steps, m)) {
             terrain_hypothesis_meet(h, m, heights->height_m[m]);
         }
     }
@@ -164,9 +168,6 @@ static uint16_t keep(terrain_hypothesis_t *next, uint16_t count, const terrain_h
 {
     uint16_t least = 0U;
 
-    if (!(way->share > 0.0F)) {
-        return count;
-    }
     for (uint16_t i = 0U; i < count; ++i) {
         if (terrain_hypothesis_alike(&next[i], way)) {
             terrain_hypothesis_merge(&next[i], way);
@@ -184,26 +185,43 @@ static uint16_t keep(terrain_hypothesis_t *next, uint16_t count, const terrain_h
     return count;
 }
 
+/* All ways in which the same mirrors have risen. */
+static uint16_t step(terrain_t *t, const terrain_heights_t *heights, uint16_t told, uint16_t count)
+{
+    const terrain_look_t look = terrain_hypothesis_look(&t->risen, heights->height_m);
+    const uint16_t staying = told & (uint16_t)~t->risen.ramps;
+
+    for (uint16_t steps = 0U; steps <= staying; ++steps) {
+        const bool is_way = (steps & (uint16_t)~staying) == 0U;
+        const float density = is_way ? t->risen.share * density_of(&look, staying, steps) *
+                                           terrain_look_density(look, told & (uint16_t)~steps)
+                                     : 0.0F;
+
+        if (density > NO_WAY * t->best) {
+            t->best = at_least(t->best, density);
+            t->way = t->risen;
+            t->way.share = density;
+            go_on(&t->way, heights, told, steps);
+            count = keep(t->next, count, &t->way);
+        }
+    }
+    return count;
+}
+
 /* All ways that go on from one hypothesis. */
 static uint16_t branch(terrain_t *t, const terrain_hypothesis_t *from, const terrain_heights_t *heights,
                        float gap_s, uint16_t count)
 {
-    way_t way = {.told = heights->valid & t->known};
+    const uint16_t told = heights->valid & t->known;
 
-    for (way.rises = 0U; way.rises <= way.told; ++way.rises) {
-        const bool all_at_once = from->ramps == 0U && way.rises == (1U << (uint16_t)MIRROR_COUNT) - 1U;
+    for (uint16_t rising = 0U; rising <= told; ++rising) {
+        const bool all_at_once = from->ramps == 0U && rising == (1U << (uint16_t)MIRROR_COUNT) - 1U;
 
-        for (way.steps = 0U; way.steps <= way.told && !all_at_once; ++way.steps) {
-            const bool is_way = ((way.steps | way.rises) & (uint16_t)~way.told) == 0U &&
-                                (way.steps & way.rises) == 0U;
-            const float prior = is_way ? from->share * prior_of(from->ramps, &way) : 0.0F;
-
-            if (prior >= NO_WAY) {
-                t->way = *from;
-                t->way.share = prior;
-                go_on(&t->way, heights, &way, gap_s);
-                count = keep(t->next, count, &t->way);
-            }
+        if ((rising & (uint16_t)~told) == 0U && !all_at_once) {
+            t->risen = *from;
+            t->risen.share *= prior_of(from->ramps, told, rising);
+            terrain_hypothesis_rise(&t->risen, rising, gap_s);
+            count = step(t, heights, told, count);
         }
     }
     return count;
@@ -259,6 +277,7 @@ terrain_shown_t terrain_scan(terrain_t *t, const terrain_heights_t *heights, flo
     const uint16_t met = heights->valid & (uint16_t)~t->known;
     uint16_t count = 0U;
 
+    t->best = 0.0F;
     for (uint16_t i = 0U; i < t->count; ++i) {
         expect(&t->kept[i], heights, met, gap_s);
     }

@@ -73,7 +73,8 @@ typedef struct {
     uint16_t known; /* bits: mirrors whose ground is known */
     uint16_t count; /* of the hypotheses that are kept; 0: to be begun */
     terrain_hypothesis_t kept[TERRAIN_KEPT];
-    terrain_hypothesis_t next[TERRAIN_KEPT], way; /* of one scan: too large for a stack */
+    terrain_hypothesis_t next[TERRAIN_KEPT], risen, way; /* of one scan: too large for a stack */
+    float best;                                          /* density of the best way so far */
 } terrain_t;
 
 /* What a scan means. */

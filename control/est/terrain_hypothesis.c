@@ -7,7 +7,7 @@
 
 #include "control/between.h"
 
-#define PER_ROOT_2PI 0.398942280F /* 1 / sqrt(2 pi) */
+#define PER_2PI 0.159154943F /* 1 / (2 pi) */
 #define OWN_M2 (TERRAIN_OWN_M * TERRAIN_OWN_M)
 
 /* ---- one Gaussian tells two hypotheses whose means are nearer than this together */
@@ -57,7 +57,51 @@ void terrain_hypothesis_rise(terrain_hypothesis_t *h, uint16_t ramps, float gap_
     }
 }
 
-float terrain_hypothesis_correct(terrain_hypothesis_t *h, uint16_t mirror, float height_m)
+terrain_look_t terrain_hypothesis_look(const terrain_hypothesis_t *h, const float height_m[MIRROR_COUNT])
+{
+    terrain_look_t look;
+
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        const uint16_t ground = terrain_ground_of(m);
+
+        look.off_m[m] = height_m[m] - (h->x[TERRAIN_ALTITUDE] - h->x[ground]);
+        for (uint16_t n = 0U; n < MIRROR_COUNT; ++n) {
+            const uint16_t other = terrain_ground_of(n);
+
+            look.sum_m2[m][n] = h->p[TERRAIN_ALTITUDE][TERRAIN_ALTITUDE] - h->p[TERRAIN_ALTITUDE][other] -
+                                h->p[ground][TERRAIN_ALTITUDE] + h->p[ground][other];
+        }
+        look.sum_m2[m][m] = at_least(look.sum_m2[m][m], 0.0F) + OWN_M2;
+    }
+    return look;
+}
+
+/* One after the other; each corrects what is expected of those behind it. */
+float terrain_look_density(terrain_look_t look, uint16_t set)
+{
+    float squares = 0.0F;
+    float scale = 1.0F;
+
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        if ((set & (1U << m)) != 0U) {
+            const float per_sum = 1.0F / look.sum_m2[m][m];
+
+            squares += look.off_m[m] * look.off_m[m] * per_sum;
+            scale *= PER_2PI * per_sum;
+            for (uint16_t n = (uint16_t)(m + 1U); n < MIRROR_COUNT; ++n) {
+                const float part = look.sum_m2[n][m] * per_sum;
+
+                look.off_m[n] -= part * look.off_m[m];
+                for (uint16_t k = (uint16_t)(m + 1U); k < MIRROR_COUNT; ++k) {
+                    look.sum_m2[n][k] -= part * look.sum_m2[m][k];
+                }
+            }
+        }
+    }
+    return sqrtf(scale) * expf(-0.5F * squares);
+}
+
+void terrain_hypothesis_correct(terrain_hypothesis_t *h, uint16_t mirror, float height_m)
 {
     const uint16_t ground = terrain_ground_of(mirror);
     const float innovation_m = height_m - (h->x[TERRAIN_ALTITUDE] - h->x[ground]);
@@ -76,7 +120,6 @@ float terrain_hypothesis_correct(terrain_hypothesis_t *h, uint16_t mirror, float
             h->p[j][i] = h->p[i][j];
         }
     }
-    return PER_ROOT_2PI * sqrtf(per_sum) * expf(-0.5F * innovation_m * innovation_m * per_sum);
 }
 
 void terrain_hypothesis_meet(terrain_hypothesis_t *h, uint16_t mirror, float height_m)

@@ -50,8 +50,20 @@ void terrain_hypothesis_predict(terrain_hypothesis_t *hypothesis, const motion_t
 /* The ground under these mirrors has risen with the ramp for gap_s. */
 void terrain_hypothesis_rise(terrain_hypothesis_t *hypothesis, uint16_t ramps, float gap_s);
 
-/* Corrects it with a mirror's height. Returns the density of that height. */
-float terrain_hypothesis_correct(terrain_hypothesis_t *hypothesis, uint16_t mirror, float height_m);
+/* How far each height is off what is predicted, and the covariances of that. */
+typedef struct {
+    float off_m[MIRROR_COUNT];
+    float sum_m2[MIRROR_COUNT][MIRROR_COUNT];
+} terrain_look_t;
+
+terrain_look_t terrain_hypothesis_look(const terrain_hypothesis_t *hypothesis,
+                                       const float height_m[MIRROR_COUNT]);
+
+/* Density of the heights of these mirrors, together. */
+float terrain_look_density(terrain_look_t look, uint16_t set);
+
+/* Corrects it with a mirror's height. */
+void terrain_hypothesis_correct(terrain_hypothesis_t *hypothesis, uint16_t mirror, float height_m);
 
 /* The ground under this mirror is what its height tells; it was not known, or has stepped. */
 void terrain_hypothesis_meet(terrain_hypothesis_t *hypothesis, uint16_t mirror, float height_m);

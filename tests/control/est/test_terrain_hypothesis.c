@@ -57,13 +57,32 @@ void test_it_is_predicted_as_the_estimators_filter_is(void)
 void test_a_height_corrects_the_altitude_and_tells_its_density(void)
 {
     const float sum = 1.0e-4F + TERRAIN_OWN_M * TERRAIN_OWN_M;
-    const float density = terrain_hypothesis_correct(&h, FORE, 0.62F);
+    const float height_m[MIRROR_COUNT] = {0.62F, 0.62F, 0.62F};
+    const float density = terrain_look_density(terrain_hypothesis_look(&h, height_m), 1U << FORE);
+
+    terrain_hypothesis_correct(&h, FORE, 0.62F);
 
     TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, 0.6F + 0.02F * 1.0e-4F / sum, h.x[TERRAIN_ALTITUDE]);
     TEST_ASSERT_FLOAT_WITHIN(1.0e-8F, 1.0e-4F * TERRAIN_OWN_M * TERRAIN_OWN_M / sum, h.p[0][0]);
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.398942F / sqrtf(sum) * expf(-0.5F * 4.0e-4F / sum), density);
     TEST_ASSERT_EQUAL_FLOAT(0.2F, h.x[TERRAIN_SPEED]);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, h.x[TERRAIN_GROUND]); /* nothing is unknown of it */
+}
+
+/* The density of all at once is that of each, after those before it have corrected the hypothesis. */
+void test_the_density_of_three_heights_is_that_of_one_after_the_other(void)
+{
+    const float height_m[MIRROR_COUNT] = {0.61F, 0.58F, 0.595F};
+    float one_by_one = 1.0F;
+
+    terrain_hypothesis_rise(&h, 1U << FORE, 0.1F);
+    const float at_once = terrain_look_density(terrain_hypothesis_look(&h, height_m), 7U);
+    for (uint16_t m = 0U; m < MIRROR_COUNT; m++) {
+        one_by_one *= terrain_look_density(terrain_hypothesis_look(&h, height_m), (uint16_t)(1U << m));
+        terrain_hypothesis_correct(&h, m, height_m[m]);
+    }
+    TEST_ASSERT_TRUE(at_once > 0.1F);
+    TEST_ASSERT_FLOAT_WITHIN(0.001F * at_once, at_once, one_by_one);
 }
 
 void test_ground_that_is_met_is_as_unsure_as_the_altitude_and_moves_with_it(void)
@@ -74,7 +93,7 @@ void test_ground_that_is_met_is_as_unsure_as_the_altitude_and_moves_with_it(void
     TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.1F, h.x[ground]);
     TEST_ASSERT_FLOAT_WITHIN(1.0e-9F, 1.0e-4F, h.p[ground][TERRAIN_ALTITUDE]);
     TEST_ASSERT_FLOAT_WITHIN(1.0e-9F, 1.0e-4F + TERRAIN_OWN_M * TERRAIN_OWN_M, h.p[ground][ground]);
-    (void)terrain_hypothesis_correct(&h, (uint16_t)MIRROR_AFT, 0.61F); /* its ground is known: 0 */
+    terrain_hypothesis_correct(&h, (uint16_t)MIRROR_AFT, 0.61F); /* its ground is known: 0 */
     TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, h.x[TERRAIN_ALTITUDE] - 0.5F, h.x[ground]);
 }
 
@@ -85,7 +104,7 @@ void test_a_ramp_moves_the_grounds_on_it_and_ties_them_to_its_rate(void)
     TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.04F, h.x[terrain_ground_of(FORE)]);
     TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.016F, h.p[terrain_ground_of(FORE)][TERRAIN_RATE]);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, h.x[terrain_ground_of((uint16_t)MIRROR_AFT)]);
-    (void)terrain_hypothesis_correct(&h, FORE, 0.54F); /* 20 mm less than the rate told */
+    terrain_hypothesis_correct(&h, FORE, 0.54F); /* 20 mm less than the rate told */
     TEST_ASSERT_TRUE(h.x[TERRAIN_RATE] > 0.5F && h.x[TERRAIN_RATE] < 0.6F);
     TEST_ASSERT_FLOAT_WITHIN(0.003F, 0.6F, h.x[TERRAIN_ALTITUDE]);
 }
