@@ -22,7 +22,8 @@
 #define SPEED_MPS 1.0F /* of that speed; the seed's vehicle and a careful pilot fly 0.3 to 0.6 m/s */
 #define SPOTS_M 0.12F  /* between the spots of two mirrors; the default geometry */
 
-#define NO_WAY 1.0e-4F /* of the density of the best way: less than that is not kept */
+#define PER_OWN 66.4903801F /* 1 / (sqrt(2 pi) TERRAIN_OWN_M) */
+#define NO_WAY 1.0e-4F      /* of the density of the best way: less than that is not kept */
 
 static bool has(uint16_t set, uint16_t mirror)
 {
@@ -131,14 +132,16 @@ static float steepness(const terrain_hypothesis_t *h)
     return (grounds.count < 2.0F) ? 1.0F : expf(-0.5F * rate_mps * rate_mps / rate_2);
 }
 
-/* Density of the heights of those mirrors that do not rise, where these step and the others stay. */
-static float density_of(const terrain_look_t *look, uint16_t staying, uint16_t steps)
+/* What the mirrors that do not rise add to the density of a way: those that step, and those that stay. As all
+ * densities here it is counted in the densest that a height can have, PER_OWN: so no way is denser than its
+ * share before the scan. */
+static float steps_of(const float *stepped, uint16_t staying, uint16_t steps)
 {
     float density = 1.0F;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         if (has(steps, m)) {
-            density *= TERRAIN_STEP * expf(-fabsf(look->off_m[m]) / TERRAIN_STEP_M) / (2.0F * TERRAIN_STEP_M);
+            density *= stepped[m];
         } else if (has(staying, m)) {
             density *= 1.0F - TERRAIN_STEP;
         }
@@ -190,13 +193,17 @@ static uint16_t step(terrain_t *t, const terrain_heights_t *heights, uint16_t to
 {
     const terrain_look_t look = terrain_hypothesis_look(&t->risen, heights->height_m);
     const uint16_t staying = told & (uint16_t)~t->risen.ramps;
+    float stepped[MIRROR_COUNT];
 
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        stepped[m] = TERRAIN_STEP * expf(-fabsf(look.off_m[m]) / TERRAIN_STEP_M) /
+                     (2.0F * TERRAIN_STEP_M * PER_OWN);
+    }
     for (uint16_t steps = 0U; steps <= staying; ++steps) {
         const bool is_way = (steps & (uint16_t)~staying) == 0U;
-        const float density = is_way ? t->risen.share * density_of(&look, staying, steps) *
-                                           terrain_look_density(look, told & (uint16_t)~steps)
-                                     : 0.0F;
+        float density = is_way ? t->risen.share * steps_of(stepped, staying, steps) : 0.0F;
 
+        density *= (density > NO_WAY * t->best) ? terrain_look_density(look, told & (uint16_t)~steps) : 0.0F;
         if (density > NO_WAY * t->best) {
             t->best = at_least(t->best, density);
             t->way = t->risen;
@@ -217,9 +224,12 @@ static uint16_t branch(terrain_t *t, const terrain_hypothesis_t *from, const ter
     for (uint16_t rising = 0U; rising <= told; ++rising) {
         const bool all_at_once = from->ramps == 0U && rising == (1U << (uint16_t)MIRROR_COUNT) - 1U;
 
-        if ((rising & (uint16_t)~told) == 0U && !all_at_once) {
+        const bool is_way = (rising & (uint16_t)~told) == 0U && !all_at_once;
+        const float share = is_way ? from->share * prior_of(from->ramps, told, rising) : 0.0F;
+
+        if (share > NO_WAY * t->best) {
             t->risen = *from;
-            t->risen.share *= prior_of(from->ramps, told, rising);
+            t->risen.share = share;
             terrain_hypothesis_rise(&t->risen, rising, gap_s);
             count = step(t, heights, told, count);
         }
@@ -243,20 +253,23 @@ static void expect(terrain_hypothesis_t *h, const terrain_heights_t *heights, ui
     }
 }
 
-/* The next ones become those that are kept, where any way is possible. */
+/* The next ones become those that are kept, where any way is possible. The most probable is the first: it
+ * tells early which ways are not worth a look. */
 static void take_over(terrain_t *t, uint16_t count)
 {
+    uint16_t first = 0U;
     float sum = 0.0F;
 
     for (uint16_t i = 0U; i < count; ++i) {
         sum += t->next[i].share;
+        first = (t->next[i].share > t->next[first].share) ? i : first;
     }
     if (!(sum > 0.0F)) {
         return;
     }
     t->count = count;
     for (uint16_t i = 0U; i < count; ++i) {
-        t->kept[i] = t->next[i];
+        t->kept[i] = t->next[(first + i) % count];
         t->kept[i].share /= sum;
     }
 }

@@ -7,7 +7,6 @@
 
 #include "control/between.h"
 
-#define PER_2PI 0.159154943F /* 1 / (2 pi) */
 #define OWN_M2 (TERRAIN_OWN_M * TERRAIN_OWN_M)
 
 /* ---- one Gaussian tells two hypotheses whose means are nearer than this together */
@@ -87,7 +86,7 @@ float terrain_look_density(terrain_look_t look, uint16_t set)
             const float per_sum = 1.0F / look.sum_m2[m][m];
 
             squares += look.off_m[m] * look.off_m[m] * per_sum;
-            scale *= PER_2PI * per_sum;
+            scale *= OWN_M2 * per_sum;
             for (uint16_t n = (uint16_t)(m + 1U); n < MIRROR_COUNT; ++n) {
                 const float part = look.sum_m2[n][m] * per_sum;
 

@@ -59,7 +59,7 @@ typedef struct {
 terrain_look_t terrain_hypothesis_look(const terrain_hypothesis_t *hypothesis,
                                        const float height_m[MIRROR_COUNT]);
 
-/* Density of the heights of these mirrors, together. */
+/* Density of the heights of these mirrors, together: of the densest that TERRAIN_OWN_M allows, 0 .. 1. */
 float terrain_look_density(terrain_look_t look, uint16_t set);
 
 /* Corrects it with a mirror's height. */

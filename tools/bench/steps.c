@@ -409,6 +409,7 @@ static void prepare_est_control(void)
 
 /* The same with three mirrors, whose heights are judged first. */
 static altitude_t mirrors[MIRROR_COUNT];
+static float ground_mm[MIRROR_COUNT];
 
 static void next_three_cycle(void)
 {
@@ -421,7 +422,8 @@ static void next_three_cycle(void)
 
         ranges[m] = seen;
         ranges[m].mirror = (mirror_t)m;
-        ranges[m].slant_mm = 600.0F + geometry.mirror[m].distance_mm + geometry.mirror[m].leg_mm + other_mm;
+        ranges[m].slant_mm = 600.0F - ground_mm[m] + geometry.mirror[m].distance_mm +
+                             geometry.mirror[m].leg_mm + other_mm;
         ranges[m].spread_mm = 11.0F + other_mm;
     }
     altitude_of_mirrors(mirrors, &geometry, ranges, MIRROR_COUNT, 0.0F, 0.0F);
@@ -438,6 +440,41 @@ static void prepare_three_control(void)
         control();
     }
     REQUIRE(flight.mode == FLIGHT_MODE_EST_HOLD && out.flags == 0);
+}
+
+/* The same by TERRAIN IGNORE, on the seed's ramp, 250 mm in 280 mm, at 0.4 m/s. The fore mirror meets it
+ * first. */
+static float way_mm;
+
+static void next_ignore_cycle(void)
+{
+    static const float ahead_mm[MIRROR_COUNT] = {
+        [MIRROR_FRONT] = 0.0F, [MIRROR_FORE] = 107.0F, [MIRROR_AFT] = -115.0F};
+
+    way_mm += 40.0F;
+    for (uint16_t m = 0U; m < MIRROR_COUNT; m++) {
+        const float on_mm = fmaxf(0.0F, fminf(280.0F, way_mm + ahead_mm[m]));
+
+        ground_mm[m] = on_mm * 250.0F / 280.0F;
+    }
+    next_three_cycle();
+}
+
+static void prepare_ignore_control(void)
+{
+    prepare_three_control();
+    parameters.value[PARAMETER_TERRAIN] = (float)TERRAIN_IGNORE;
+    for (unsigned i = 0; i < 100U; i++) {
+        next_three_cycle();
+        control();
+    }
+    way_mm = -160.0F;
+    for (unsigned i = 0; i < 4U; i++) {
+        next_ignore_cycle();
+        control();
+    }
+    next_ignore_cycle();
+    REQUIRE(flight.mode == FLIGHT_MODE_EST_HOLD && flight.est.estimator.passes_over);
 }
 
 /* ---- TaskSendComm, TaskReceiveComm: a telemetry line; a command, and the answer to it ---- */
@@ -505,6 +542,7 @@ static const struct {
     {"TaskControl", prepare_control, control, next_cycle},
     {"TaskControl_EST", prepare_est_control, control, next_est_cycle},
     {"TaskControl_THREE", prepare_three_control, control, next_three_cycle},
+    {"TaskControl_IGNORE", prepare_ignore_control, control, next_ignore_cycle},
     {"TaskSendLaser", prepare_link, send_laser, next_tick},
     {"TaskSendComm", nothing, send_comm, nothing},
     {"TaskReceiveComm", prepare_command, receive_comm, nothing},
