@@ -35,12 +35,12 @@ def at(path, text, offset, what):
 
 def sizes(the_house):
     """sizeof counts cells of 16 bits: of wire data it says nothing, so only elements are counted with it; what the firmware
-    copies whole may be measured for the copy, and memcmp() counts in cells too."""
+    copies whole may be measured for the copy, and memcmp() and memset() count in cells too."""
     for path, text in each(the_house, house.PRODUCT):
         bare = COUNT_OF.sub(house.blank, text)
         for match in re.finditer(r"\bsizeof\b", bare):
             statement = bare[bare.rfind(";", 0, match.start()) + 1:match.start()]
-            measured = r"\bmem(?:cpy|set|move|cmp)\(" if path.startswith("firmware/") else r"\bmemcmp\("
+            measured = r"\bmem(?:cpy|set|move|cmp)\(" if path.startswith("firmware/") else r"\bmem(?:cmp|set)\("
             if not re.search(measured, statement):
                 yield at(path, text, match.start(), "sizeof counts cells, not octets")
 

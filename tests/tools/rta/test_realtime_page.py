@@ -54,7 +54,7 @@ class Page(unittest.TestCase):
 
     def test_every_block_is_a_command(self):
         self.assertEqual(self.page.count("```"), 2 * len(BLOCK.findall(self.page)))
-        self.assertEqual(len(BLOCK.findall(self.page)), 6)
+        self.assertEqual(len(BLOCK.findall(self.page)), 7)
 
     def test_a_changed_figure_is_noticed(self):
         for figure, other in (("5.0730   294.9270", "5.0731   294.9270"), ("not 29.7308", "not 29.7309"), ("57 µs", "58 µs"),

@@ -147,6 +147,10 @@ class Tables(unittest.TestCase):
         self.load("plomada-est")
         ratio = self.row("TaskControl_height").cost / self.row("TaskControl").cost
         self.assertAlmostEqual(ratio, counted["TaskControl_THREE"] / counted["TaskControl"], delta=0.05)
+        page = (ROOT / "docs/realtime.md").read_text(encoding="utf-8")
+        ignoring = float(re.search(r"--set TaskControl_height\.cost_ms=([\d.]+)", page).group(1))
+        self.assertAlmostEqual(ignoring / (self.row("TaskControl").cost / PS_PER_MS), counted["TaskControl_IGNORE"] / counted["TaskControl"],
+                               delta=0.05)
 
     def test_octets_wait_as_the_fifo_levels_let_them(self):
         """bsp/uart.h and firmware/uart_port.h: so many octets may wait for an interrupt, and come at once."""
