@@ -222,8 +222,7 @@ static uint16_t branch(terrain_t *t, const terrain_hypothesis_t *from, const ter
     const uint16_t told = heights->valid & t->known;
 
     for (uint16_t rising = 0U; rising <= told; ++rising) {
-        const bool all_at_once = from->ramps == 0U && rising == (1U << (uint16_t)MIRROR_COUNT) - 1U;
-        const bool is_way = (rising & (uint16_t)~told) == 0U && !all_at_once;
+        const bool is_way = (rising & (uint16_t)~told) == 0U;
         const float share = is_way ? from->share * prior_of(from->ramps, told, rising) : 0.0F;
 
         if (share > NO_WAY * t->best) {

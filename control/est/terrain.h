@@ -19,11 +19,11 @@
  * scan (multiple hypothesis tracking; Reid 1979, Blackman 2004). One scan cannot tell "the fore mirror is on
  * a ramp, and the vehicle rises" from "the aft mirror's ground falls"; some scans can.
  *
- * What is assumed: one mirror or two meet a ramp first, not all in one scan. A ramp that rises fast is steep,
- * because nobody flies faster than SPEED_MPS: where the mirrors on it show the same ground, level ground has
- * no rate, and heights that grow are a climb. Ground that rises evenly under all mirrors, slower than the
- * accelerometer can tell (some 0.05 m/s), is taken for a sinking vehicle. One mirror alone shows too little;
- * it is not asked.
+ * What is assumed: one mirror or two meet a ramp first; that all do in one scan is too rare to be looked at.
+ * A ramp that rises fast is steep, because nobody flies faster than 1 m/s: where the mirrors on it show the
+ * same ground, it is none, and heights that grow are a climb. Ground that rises evenly under all mirrors,
+ * slower than the accelerometer can tell (some 0.05 m/s), is taken for a sinking vehicle. One mirror alone
+ * shows too little; it is not asked.
  *
  * Metres, seconds. Pure; the caller owns the state, all zero at first. Context: one Task. */
 #ifndef CONTROL_TERRAIN_H

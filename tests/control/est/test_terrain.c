@@ -170,6 +170,22 @@ void test_level_ground_that_falls_under_all_mirrors_alike_is_a_climb(void)
     TEST_ASSERT_FLOAT_WITHIN(0.05F, 0.15F, shown.speed_mps);
 }
 
+/* 0.3 m/s for 0.4 s, of which the accelerometer tells nothing. A ramp of that rate would be steep. */
+void test_a_lurch_over_level_ground_is_no_ramp(void)
+{
+    for (int starts = 20; starts < 40; starts++) {
+        const float step_m = (starts % 2 == 0) ? 0.03F : -0.03F;
+
+        setUp();
+        for (int k = 0; k < starts + 20; k++) {
+            altitude_m += (k >= starts && k < starts + 4) ? step_m : 0.0F;
+            x_m = -1.5F;
+            fly(0.0F, ALL);
+        }
+        TEST_ASSERT_FLOAT_WITHIN(0.015F, altitude_m, shown.altitude_m);
+    }
+}
+
 void test_a_mirror_that_tells_nothing_keeps_its_ground_and_is_met_once(void)
 {
     for (int i = 0; i < 5; i++) {
