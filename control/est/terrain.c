@@ -60,7 +60,7 @@ void terrain_begin(terrain_t *terrain, const filter_t *filter, float altitude_m)
     terrain->known = 0U;
     terrain->count = 1U;
     for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
-        terrain_hypothesis_free(first, i, 0.0F);
+        terrain_hypothesis_reset_variance(first, i, 0.0F);
         first->x[i] = 0.0F;
     }
     first->share = 1.0F;
@@ -191,19 +191,21 @@ static uint16_t keep(terrain_hypothesis_t *next, uint16_t count, const terrain_h
 /* All ways in which the same mirrors have risen. */
 static uint16_t step(terrain_t *t, const terrain_heights_t *heights, uint16_t told, uint16_t count)
 {
-    const terrain_look_t look = terrain_hypothesis_look(&t->risen, heights->height_m);
+    const terrain_innovation_t innovation = terrain_hypothesis_innovation(&t->risen, heights->height_m);
     const uint16_t staying = told & (uint16_t)~t->risen.ramps;
     float stepped[MIRROR_COUNT];
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        stepped[m] = TERRAIN_STEP * expf(-fabsf(look.off_m[m]) / TERRAIN_STEP_M) /
+        stepped[m] = TERRAIN_STEP * expf(-fabsf(innovation.off_m[m]) / TERRAIN_STEP_M) /
                      (2.0F * TERRAIN_STEP_M * PER_OWN);
     }
     for (uint16_t steps = 0U; steps <= staying; ++steps) {
         const bool is_way = (steps & (uint16_t)~staying) == 0U;
         float density = is_way ? t->risen.share * steps_of(stepped, staying, steps) : 0.0F;
 
-        density *= (density > NO_WAY * t->best) ? terrain_look_density(look, told & (uint16_t)~steps) : 0.0F;
+        density *= (density > NO_WAY * t->best)
+                       ? terrain_innovation_density(innovation, told & (uint16_t)~steps)
+                       : 0.0F;
         if (density > NO_WAY * t->best) {
             t->best = at_least(t->best, density);
             t->way = t->risen;
@@ -241,7 +243,7 @@ static void expect(terrain_hypothesis_t *h, const terrain_heights_t *heights, ui
     h->p[TERRAIN_ALTITUDE][TERRAIN_ALTITUDE] += TERRAIN_COMMON_M * TERRAIN_COMMON_M;
     if (h->ramps == 0U) {
         h->x[TERRAIN_RATE] = 0.0F;
-        terrain_hypothesis_free(h, TERRAIN_RATE, RAMP_MPS * RAMP_MPS);
+        terrain_hypothesis_reset_variance(h, TERRAIN_RATE, RAMP_MPS * RAMP_MPS);
     }
     h->p[TERRAIN_RATE][TERRAIN_RATE] += RAMP_DRIFT_MPS2_2 * gap_s;
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {

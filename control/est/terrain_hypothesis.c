@@ -14,7 +14,7 @@
 #define ALIKE_MPS 0.05F     /* what the filter knows of a speed between two heights: sqrt of its variance */
 #define ALIKE_RATE_MPS 0.1F /* ALIKE_M in a scan */
 
-void terrain_hypothesis_free(terrain_hypothesis_t *h, uint16_t state, float variance)
+void terrain_hypothesis_reset_variance(terrain_hypothesis_t *h, uint16_t state, float variance)
 {
     for (uint16_t i = 0U; i < TERRAIN_STATES; ++i) {
         h->p[state][i] = 0.0F;
@@ -56,43 +56,45 @@ void terrain_hypothesis_rise(terrain_hypothesis_t *h, uint16_t ramps, float gap_
     }
 }
 
-terrain_look_t terrain_hypothesis_look(const terrain_hypothesis_t *h, const float height_m[MIRROR_COUNT])
+terrain_innovation_t terrain_hypothesis_innovation(const terrain_hypothesis_t *h,
+                                                   const float height_m[MIRROR_COUNT])
 {
-    terrain_look_t look;
+    terrain_innovation_t innovation;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         const uint16_t ground = terrain_ground_of(m);
 
-        look.off_m[m] = height_m[m] - (h->x[TERRAIN_ALTITUDE] - h->x[ground]);
+        innovation.off_m[m] = height_m[m] - (h->x[TERRAIN_ALTITUDE] - h->x[ground]);
         for (uint16_t n = 0U; n < MIRROR_COUNT; ++n) {
             const uint16_t other = terrain_ground_of(n);
 
-            look.sum_m2[m][n] = h->p[TERRAIN_ALTITUDE][TERRAIN_ALTITUDE] - h->p[TERRAIN_ALTITUDE][other] -
-                                h->p[ground][TERRAIN_ALTITUDE] + h->p[ground][other];
+            innovation.covariance_m2[m][n] = h->p[TERRAIN_ALTITUDE][TERRAIN_ALTITUDE] -
+                                             h->p[TERRAIN_ALTITUDE][other] - h->p[ground][TERRAIN_ALTITUDE] +
+                                             h->p[ground][other];
         }
-        look.sum_m2[m][m] = at_least(look.sum_m2[m][m], 0.0F) + OWN_M2;
+        innovation.covariance_m2[m][m] = at_least(innovation.covariance_m2[m][m], 0.0F) + OWN_M2;
     }
-    return look;
+    return innovation;
 }
 
 /* One after the other; each corrects what is expected of those behind it. */
-float terrain_look_density(terrain_look_t look, uint16_t set)
+float terrain_innovation_density(terrain_innovation_t innovation, uint16_t set)
 {
     float squares = 0.0F;
     float scale = 1.0F;
 
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         if ((set & (1U << m)) != 0U) {
-            const float per_sum = 1.0F / look.sum_m2[m][m];
+            const float per_sum = 1.0F / innovation.covariance_m2[m][m];
 
-            squares += look.off_m[m] * look.off_m[m] * per_sum;
+            squares += innovation.off_m[m] * innovation.off_m[m] * per_sum;
             scale *= OWN_M2 * per_sum;
             for (uint16_t n = (uint16_t)(m + 1U); n < MIRROR_COUNT; ++n) {
-                const float part = look.sum_m2[n][m] * per_sum;
+                const float part = innovation.covariance_m2[n][m] * per_sum;
 
-                look.off_m[n] -= part * look.off_m[m];
+                innovation.off_m[n] -= part * innovation.off_m[m];
                 for (uint16_t k = (uint16_t)(m + 1U); k < MIRROR_COUNT; ++k) {
-                    look.sum_m2[n][k] -= part * look.sum_m2[m][k];
+                    innovation.covariance_m2[n][k] -= part * innovation.covariance_m2[m][k];
                 }
             }
         }
@@ -125,7 +127,7 @@ void terrain_hypothesis_meet(terrain_hypothesis_t *h, uint16_t mirror, float hei
 {
     const uint16_t ground = terrain_ground_of(mirror);
 
-    terrain_hypothesis_free(h, ground, 0.0F);
+    terrain_hypothesis_reset_variance(h, ground, 0.0F);
     h->x[ground] = -height_m;
     add(h, ground, TERRAIN_ALTITUDE, 1.0F);
     h->p[ground][ground] += OWN_M2;

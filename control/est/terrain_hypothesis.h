@@ -41,7 +41,7 @@ static inline uint16_t terrain_ground_of(uint16_t mirror)
 }
 
 /* Gives one state a variance, and no covariance. */
-void terrain_hypothesis_free(terrain_hypothesis_t *hypothesis, uint16_t state, float variance);
+void terrain_hypothesis_reset_variance(terrain_hypothesis_t *hypothesis, uint16_t state, float variance);
 
 /* Moves it over dt_s; bias_mps2: drift of the bias, per root second. */
 void terrain_hypothesis_predict(terrain_hypothesis_t *hypothesis, const motion_t *motion, float dt_s,
@@ -53,14 +53,14 @@ void terrain_hypothesis_rise(terrain_hypothesis_t *hypothesis, uint16_t ramps, f
 /* How far each height is off what is predicted, and the covariances of that. */
 typedef struct {
     float off_m[MIRROR_COUNT];
-    float sum_m2[MIRROR_COUNT][MIRROR_COUNT];
-} terrain_look_t;
+    float covariance_m2[MIRROR_COUNT][MIRROR_COUNT];
+} terrain_innovation_t;
 
-terrain_look_t terrain_hypothesis_look(const terrain_hypothesis_t *hypothesis,
-                                       const float height_m[MIRROR_COUNT]);
+terrain_innovation_t terrain_hypothesis_innovation(const terrain_hypothesis_t *hypothesis,
+                                                   const float height_m[MIRROR_COUNT]);
 
 /* Density of the heights of these mirrors, together: of the densest that TERRAIN_OWN_M allows, 0 .. 1. */
-float terrain_look_density(terrain_look_t look, uint16_t set);
+float terrain_innovation_density(terrain_innovation_t innovation, uint16_t set);
 
 /* Corrects it with a mirror's height. */
 void terrain_hypothesis_correct(terrain_hypothesis_t *hypothesis, uint16_t mirror, float height_m);

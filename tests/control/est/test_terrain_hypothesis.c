@@ -58,7 +58,7 @@ void test_a_height_corrects_the_altitude_and_tells_its_density(void)
 {
     const float sum = 1.0e-4F + TERRAIN_OWN_M * TERRAIN_OWN_M;
     const float height_m[MIRROR_COUNT] = {0.62F, 0.62F, 0.62F};
-    const float density = terrain_look_density(terrain_hypothesis_look(&h, height_m), 1U << FORE);
+    const float density = terrain_innovation_density(terrain_hypothesis_innovation(&h, height_m), 1U << FORE);
 
     terrain_hypothesis_correct(&h, FORE, 0.62F);
 
@@ -76,9 +76,10 @@ void test_the_density_of_three_heights_is_that_of_one_after_the_other(void)
     float one_by_one = 1.0F;
 
     terrain_hypothesis_rise(&h, 1U << FORE, 0.1F);
-    const float at_once = terrain_look_density(terrain_hypothesis_look(&h, height_m), 7U);
+    const float at_once = terrain_innovation_density(terrain_hypothesis_innovation(&h, height_m), 7U);
     for (uint16_t m = 0U; m < MIRROR_COUNT; m++) {
-        one_by_one *= terrain_look_density(terrain_hypothesis_look(&h, height_m), (uint16_t)(1U << m));
+        one_by_one *= terrain_innovation_density(terrain_hypothesis_innovation(&h, height_m),
+                                                 (uint16_t)(1U << m));
         terrain_hypothesis_correct(&h, m, height_m[m]);
     }
     TEST_ASSERT_TRUE(at_once > 1.0e-5F && at_once < 1.0F);
