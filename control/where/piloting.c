@@ -35,14 +35,21 @@ static void watch_landing(pilot_state_t *pilot, const pilot_signs_t *signs)
     }
 }
 
-/* FLOATING without a pin: does the vehicle do what is commanded? */
+/* A landing too: a vehicle that has lost a load sinks as little as one that a pilot holds up, but it obeys.
+ */
+static bool shows_effect_in(flight_state_t state)
+{
+    return state == FLIGHT_FLOATING || state == FLIGHT_LANDING;
+}
+
+/* The throttle is unknown: does the vehicle do what is commanded? */
 static pilot_news_t watch_effect(pilot_state_t *pilot, const pilot_signs_t *signs, bool begins)
 {
     const uint32_t since_us = signs->frame_us - pilot->effect_us;
     const bool had_effect = pilot->effect.has_effect;
 
     pilot->effect_us = signs->frame_us;
-    if (begins || signs->state != FLIGHT_FLOATING || !signs->felt || since_us > FRAME_GAP_US) {
+    if (begins || !shows_effect_in(signs->state) || !signs->felt || since_us > FRAME_GAP_US) {
         effect_init(&pilot->effect);
     } else if (since_us > 0U) {
         effect_step(&pilot->effect, signs->pushed_mps2, signs->felt_mps2, (float)since_us * 1.0e-6F);

@@ -18,7 +18,7 @@ typedef struct {
     bool given_back;    /* DESCENDING that began in a pilot's hands, without heights */
     float sink_n_per_s; /* rate at which its thrust sinks */
     float vain_s;       /* how long a landing has had too little thrust to fly, and it does not sink */
-    effect_t effect;    /* valid while the throttle is unknown; judged in FLOATING */
+    effect_t effect;    /* valid while the throttle is unknown; judged in FLOATING and LANDING */
     uint32_t effect_us; /* latest frame in it */
 } pilot_state_t;
 

@@ -274,6 +274,18 @@ class Pilots(unittest.TestCase):
                 turn = [int(row["flags"]) for row in flight.after(LAND_S) if row["t_s"] < flight.given_back_s()]
                 self.assertTrue(any(flags & (128 + 1024) for flags in turn), f"not told: {flight}")
 
+    def test_a_load_that_is_let_go_before_the_landing_does_not_fly_it_away(self):
+        """Without so much of its weight it looks as if a pilot held it up, and nothing would be learned any more. So it was in the two
+        pinned flights."""
+        def lighter(rng):
+            return ({"hover_jump": -rng.uniform(1.3, 1.8), "hover_jump_start": LAND_S - rng.uniform(0.2, 2.0)}, {"SEL": "NONE"}, UNTIL_DOWN)
+
+        pinned = [Flight("EST", kind, seed, lighter) for kind, seed in (("nominal", 4711001), ("drawn 0", 4711002))] if of_many() else []
+        for flight in pinned or flights(("EST",), ("nominal", "drawn 0"), lighter):
+            self.assertEqual(flight.rows[-1]["state"], "GROUND", f"still in the air: {flight}")
+            self.at_most(0.8, flight.touch_mps(), flight, "m/s at the touch")
+            self.at_most(2.0, max(row["height_m"] for row in flight.rows), flight, "m high")
+
     def test_whoever_gives_it_back_gives_back_a_vehicle_that_flies_and_stops(self):
         for pin in ("PIN", "NONE"):
             for flight in flights(("EST", "PID", "PIDT", "PD"), ("nominal", "drawn 0"), pilot(pin, 0.8, 1.4)):
@@ -284,6 +296,17 @@ class Pilots(unittest.TestCase):
 
 
 class Losses(unittest.TestCase):
+    def test_a_lift_off_that_is_noise_does_not_keep_it_on_the_ground(self):
+        """In the two pinned flights the accelerometer's noise tells a lift-off of a vehicle that stands."""
+        def noisy(mps2):
+            return lambda rng: ({"acc_noise": mps2 or rng.uniform(0.4, 1.2)}, {}, [])
+
+        pinned = [Flight("EST", "nominal", seed, noisy(mps2)) for seed, mps2 in ((7071, 0.8), (7159, 1.2))] if of_many() else []
+        for flight in pinned or flights(("EST",), VEHICLES, noisy(None)):
+            up = [row for row in flight.after(6.0) if row["t_s"] < LAND_S]
+            self.assertGreater(min(row["height_m"] for row in up), 0.3, f"it stays down: {flight}")
+            self.assertEqual({row["state"] for row in up}, {"FLYING"}, str(flight))
+
     def test_a_laser_lost_at_lift_off_stops_the_motors_and_its_return_starts_none(self):
         for flight in flights(("EST", "PID"), VEHICLES,
                               lambda rng: (silent(1.0 + rng.uniform(0.3, 1.2), rng.uniform(4.0, 12.0)), {}, [])):

@@ -482,6 +482,7 @@ static bool lifts(float lift_mps2, float noise_mps2, float height_m, float thrus
     ground_was_at_m(0.02F);
     estimated(0.02F + height_m, 0.0F, 0.0F);
     delivers_n(thrust_n);
+    lifts_with(thrust_n, 0.0F);
     lifts_at(lift_mps2);
     (void)ramp_n();
     return flies;
@@ -489,12 +490,22 @@ static bool lifts(float lift_mps2, float noise_mps2, float height_m, float thrus
 
 void test_it_is_off_the_ground_by_acceleration_or_height(void)
 {
-    TEST_ASSERT_TRUE(lifts(0.87F, 0.4F, 0.0F, 4.91F));
-    TEST_ASSERT_FALSE(lifts(0.85F, 0.4F, 0.0F, 4.91F));
-    TEST_ASSERT_TRUE(lifts(1.30F, 1.0F, 0.0F, 4.91F));
-    TEST_ASSERT_FALSE(lifts(1.28F, 1.0F, 0.0F, 4.91F)); /* three sigma behind the low-pass */
+    TEST_ASSERT_TRUE(lifts(0.87F, 0.4F, 0.0F, 6.6F));
+    TEST_ASSERT_FALSE(lifts(0.85F, 0.4F, 0.0F, 6.6F));
+    TEST_ASSERT_TRUE(lifts(1.30F, 1.0F, 0.0F, 6.6F));
+    TEST_ASSERT_FALSE(lifts(1.28F, 1.0F, 0.0F, 6.6F)); /* three sigma behind the low-pass */
     TEST_ASSERT_TRUE(lifts(0.0F, 0.4F, 0.0321F, 4.91F));
     TEST_ASSERT_FALSE(lifts(0.0F, 0.4F, 0.0319F, 4.91F));
+}
+
+void test_a_lift_off_below_5_5_newtons_asks_for_twice_the_acceleration(void)
+{
+    const float least_n = 5.5F + 1.0F / AUTHORITY; /* GRAV less 1.5 N, and what 1 m/s2 takes */
+
+    TEST_ASSERT_TRUE(lifts(1.0F, 0.4F, 0.0F, least_n + 0.01F));
+    TEST_ASSERT_FALSE(lifts(1.0F, 0.4F, 0.0F, least_n - 0.01F));
+    TEST_ASSERT_TRUE(lifts(1.73F, 0.4F, 0.0F, 4.91F));
+    TEST_ASSERT_FALSE(lifts(1.71F, 0.4F, 0.0F, 4.91F));
 }
 
 void test_without_accelerations_the_height_alone_shows_it(void)

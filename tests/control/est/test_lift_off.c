@@ -50,6 +50,23 @@ void test_it_is_off_the_ground_by_acceleration_or_height(void)
     TEST_ASSERT_FALSE(lifts(0.0F, 0.4F, 0.0319F, 4.91F, true));
 }
 
+void test_an_acceleration_that_tells_too_small_a_hover_thrust_must_be_twice_as_large(void)
+{
+    lift_off_signs_t signs = {.height_m = GROUND_M, .noise_mps2 = 0.4F, .felt = true, .least_n = 5.5F};
+
+    for (int light = 0; light < 2; light++) {
+        signs.hover_n = (light != 0) ? 5.49F : 5.5F;
+        setUp();
+        feel((light != 0) ? 1.71F : 0.85F);
+        TEST_ASSERT_FALSE(lift_off_is_seen(&lift, &signs));
+        feel((light != 0) ? 1.73F : 0.87F);
+        TEST_ASSERT_TRUE(lift_off_is_seen(&lift, &signs));
+    }
+    setUp(); /* its height shows it too */
+    signs.height_m = GROUND_M + 0.0321F;
+    TEST_ASSERT_TRUE(lift_off_is_seen(&lift, &signs));
+}
+
 void test_without_accelerations_the_height_alone_shows_it(void)
 {
     TEST_ASSERT_TRUE(lifts(0.0F, 0.4F, 0.0321F, 7.0F, false));

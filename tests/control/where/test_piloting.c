@@ -61,7 +61,15 @@ void test_its_end_off_the_ground_is_news(void)
     }
 }
 
-/* One frame of FLOATING without a pin, whose accelerometer measures what the commands ask for. */
+/* In frame i the accelerometer measures what the commands ask for. */
+static void obeys(int i)
+{
+    signs.frame_us += 25000U;
+    signs.pushed_mps2 = 1.4F * (7.0F + 0.5F * (float)(i % 3));
+    signs.felt_mps2 = signs.pushed_mps2 - 9.0F;
+}
+
+/* One frame of FLOATING without a pin. */
 static pilot_news_t float_a_frame(uint32_t step_us, bool felt)
 {
     signs.frame_us += step_us;
@@ -75,9 +83,8 @@ static pilot_news_t obey(void)
     pilot_news_t news = PILOT_NO_NEWS;
 
     for (int i = 0; i < 100 && news == PILOT_NO_NEWS; i++) {
-        signs.pushed_mps2 = 1.4F * (7.0F + 0.5F * (float)(i % 3));
-        signs.felt_mps2 = signs.pushed_mps2 - 9.0F;
-        news = float_a_frame(25000U, true);
+        obeys(i);
+        news = float_a_frame(0U, true);
         TEST_ASSERT_EQUAL(news == PILOT_SHOWS_EFFECT, pilot_shows_effect(&pilot));
     }
     return news;
@@ -180,6 +187,20 @@ void test_a_landing_with_too_little_thrust_to_fly_that_does_not_sink_is_in_vain(
     signs.entered = true; /* another landing */
     (void)step(FLIGHT_LANDING);
     TEST_ASSERT_FALSE(pilot_holds_up(&pilot, FLIGHT_LANDING));
+}
+
+void test_a_landing_in_vain_that_obeys_shows_that_the_throttle_is_ours(void)
+{
+    pilot_news_t news = PILOT_NO_NEWS;
+
+    TEST_ASSERT_TRUE(in_vain(5.0F, 500.0F, 0.0F));
+    for (int i = 0; i < 100 && news == PILOT_NO_NEWS; i++) {
+        TEST_ASSERT_FALSE(pilot_shows_effect(&pilot));
+        obeys(i);
+        news = step(FLIGHT_LANDING);
+    }
+    TEST_ASSERT_EQUAL(PILOT_SHOWS_EFFECT, news);
+    TEST_ASSERT_TRUE(pilot_is_unknown(&pilot) && pilot_shows_effect(&pilot));
 }
 
 void test_without_a_pin_a_landing_in_vain_leaves_the_throttle_unknown(void)
