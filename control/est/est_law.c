@@ -260,6 +260,9 @@ void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne
     law->doubted.no_effect = false;
     law->terrain.arrived_m = 0.0F;
     law->terrain.ignores = false;
+    if (heights_missing(law)) { /* it stands there still, and the accelerometer alone would carry it away */
+        estimator_forget_height(&law->estimator);
+    }
     lift_off_reset(&law->lift, gravity_n, law->estimator.now.height_m);
     let_down_reset(&law->down);
     terrain_keep_start(&law->terrain, law->estimator.terrain_height_m);

@@ -55,10 +55,26 @@ def failed(found):
     return {item["item"] for item in found["items"] if item["verdict"] == "FAIL"}
 
 
+# Of the short ones: the defect, and the items that are asked.
+SHORT = {None: "radio,boot,ping,scanner,rates,pulse,save", "pulse-inverted": "radio,pulse", "fast": "radio,rates"}
+
+
+def at_once(trials):
+    """{defect: what run() returns}. Each takes a minute or more by the clock and little of the processor."""
+    with concurrent.futures.ThreadPoolExecutor(max_workers=4) as pool:
+        return dict(zip(trials, pool.map(run, trials, trials.values())))
+
+
 @bench.by_the_wall_clock
 class Short(unittest.TestCase):
-    def test_a_board_that_is_right_passes_and_the_report_says_who_when_and_what(self):
-        status, output, found, markdown = run(items="radio,boot,ping,scanner,rates,pulse,save")
+    def test_a_board_that_is_right_passes_and_what_is_wrong_with_another_is_named(self):
+        results = at_once(SHORT)
+        self.passes(*results[None])
+        self.names("pulse", results["pulse-inverted"])
+        self.assertIn("xbee 9889 bit/s (+3.01 %)", self.names("rates", results["fast"]))    # both ends just bear it
+
+    def passes(self, status, output, found, markdown):
+        """And the report says who, when and what."""
         self.assertEqual(status, 0, output)
         self.assertEqual(failed(found), set())
         self.assertEqual({item["item"]: item["verdict"] for item in found["items"]}["pulse"], "pass")
@@ -71,16 +87,11 @@ class Short(unittest.TestCase):
         self.assertIn("# Acceptance of a board: passed", markdown)
         self.assertIn("| Throttle pulse | pass | measured:", markdown)
 
-    def test_an_inverted_pulse_is_named(self):
-        status, output, found, _ = run("pulse-inverted", items="radio,pulse")
+    def names(self, item, result):
+        status, output, found, _ = result
         self.assertEqual(status, 1, output)
-        self.assertEqual(failed(found), {"pulse"})
-
-    def test_a_bit_time_that_both_ends_just_bear_is_named(self):
-        status, output, found, _ = run("fast", items="radio,rates")
-        self.assertEqual(status, 1, output)
-        self.assertEqual(failed(found), {"rates"})
-        self.assertIn("xbee 9889 bit/s (+3.01 %)", output)
+        self.assertEqual(failed(found), {item})
+        return output
 
     def test_interrupted_it_goes_on_where_it_was(self):
         with tempfile.TemporaryDirectory() as directory, bench.Board(PROGRAM) as board:
@@ -115,9 +126,7 @@ class Long(unittest.TestCase):
         self.assertLessEqual(skipped, {"supplies", "leds", "version"})
 
     def test_every_defect_is_named(self):
-        # Some at a time: each takes minutes by the clock and little of the processor.
-        with concurrent.futures.ThreadPoolExecutor(max_workers=4) as pool:
-            results = dict(zip(DEFECTS, pool.map(run, DEFECTS)))
+        results = at_once(dict.fromkeys(DEFECTS))
         for defect, (item, consequences) in DEFECTS.items():
             with self.subTest(defect):
                 status, output, found, _ = results[defect]

@@ -46,6 +46,11 @@ COUNTED = {
 }
 
 
+def three_digits(value):
+    """1190, not 1.19e+03."""
+    return f"{float(f'{value:.3g}'):.10g}"
+
+
 @dataclass(frozen=True)
 class Must:
     name: str
@@ -185,7 +190,7 @@ class Row:
         m = self.must
         bound = f"{m.figure} {m.most:g}" if m.figure else ", ".join(m.counts)
         values = sorted(figures[m.figure] for _, figures in self.flown if figures[m.figure] is not None) if m.figure else []
-        spread = f"{statistics.median(values):.3g}; {table.percentile(values, 0.95):.3g}; {values[-1]:.3g}" if values else ""
+        spread = "; ".join(map(three_digits, (statistics.median(values), table.percentile(values, 0.95), values[-1]))) if values else ""
         aim = (survey.share(self.flown, lambda _, figures: m.beyond_aim(figures)) + f", aim {m.aim:g}" if m.figure else
                f"aim {100 * m.aim_share:g} %" if m.aim_share else "")
         return [f"- {self.situation}" if self.situation else m.says, self.law, str(len(self.flown)), str(self.count),

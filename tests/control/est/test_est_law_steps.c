@@ -752,6 +752,17 @@ void test_an_engaged_law_starts_from_the_hover_thrust(void)
     NEAR(5.0F, est.hover.thrust_n);
 }
 
+/* Two scans: without them the accelerometer's bias carries the estimate of a vehicle that stands away. */
+void test_on_the_ground_an_estimate_without_heights_is_forgotten(void)
+{
+    for (int i = 0; i < 2; i++) {
+        setUp();
+        height_was_s_ago((i == 0) ? 0.19F : 0.21F);
+        reset();
+        TEST_ASSERT_EQUAL(i == 0, est.estimator.initialised);
+    }
+}
+
 /* What a landing, a doubt or the terrain of a flight has left counts no longer in the next. */
 void test_a_reset_forgets_the_flight(void)
 {
