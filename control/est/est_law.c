@@ -251,6 +251,15 @@ static void remember_flight(est_law_t *law, float gravity_n, bool airborne)
     }
 }
 
+/* It stands where it stood. Without heights the accelerometer's bias would carry the estimate away, and the
+ * next height would look like a lift-off. */
+static void hold_ground(est_law_t *law)
+{
+    if (heights_missing(law) && law->estimator.initialised) {
+        estimator_amend(&law->estimator, law->lift.ground_m, 0.0F, law->estimator.now.bias_mps2);
+    }
+}
+
 void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne)
 {
     const float gravity_n = parameters->value[PARAMETER_GRAV];
@@ -260,10 +269,9 @@ void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne
     law->doubted.no_effect = false;
     law->terrain.arrived_m = 0.0F;
     law->terrain.ignores = false;
-    if (heights_missing(law)) { /* it stands there still, and the accelerometer alone would carry it away */
-        estimator_forget_height(&law->estimator);
-    }
-    lift_off_reset(&law->lift, gravity_n, law->estimator.now.height_m);
+    hold_ground(law);
+    lift_off_reset(&law->lift, gravity_n,
+                   heights_missing(law) ? law->lift.ground_m : law->estimator.now.height_m);
     let_down_reset(&law->down);
     terrain_keep_start(&law->terrain, law->estimator.terrain_height_m);
     law->ahead = (ahead_t){.known = 0U};

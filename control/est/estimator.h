@@ -109,12 +109,6 @@ void estimator_drop_accelerations(estimator_t *estimator);
  * What flies meanwhile accelerates as hard as law EST. */
 void estimator_forget_frame(estimator_t *estimator);
 
-/* Of a vehicle that stands: the next height tells where, at once, and the bias anew. */
-static inline void estimator_forget_height(estimator_t *estimator)
-{
-    estimator->initialised = false;
-}
-
 /* Overwrites height, speed and bias. For use when the latest heights were wrong. */
 void estimator_amend(estimator_t *estimator, float height_m, float speed_mps, float bias_mps2);
 
