@@ -25,9 +25,9 @@
 #define AIR_MPS2 0.15F
 #define HEIGHTS_MISSING_S 0.2F /* two scans of 0.1 s */
 #define FRAMES_FRESH_S ((float)ESTIMATOR_FRESH_US * 1.0e-6F)
-#define AGE_MAX_S 3600.0F                         /* any above what is asked: the counters stop here */
-#define GUST_MPS2_PER_M 39.2F                     /* fitted as 28 N/m on a vehicle that hovers at 7 N */
-#define NO_ACC_HEIGHT_S (HEIGHT_FRESH_S + SCAN_S) /* as long as one is fresh; its rays are a scan older */
+#define AGE_MAX_S 3600.0F                       /* any above what is asked: the counters stop here */
+#define GUST_MPS2_PER_M 39.2F                   /* fitted as 28 N/m on a vehicle that hovers at 7 N */
+#define HEIGHT_USED_S (HEIGHT_FRESH_S + SCAN_S) /* as long as one is fresh; its rays are a scan older */
 
 void est_law_init(est_law_t *law)
 {
@@ -225,7 +225,7 @@ bool est_law_has_imu(const est_law_t *law)
 bool est_law_ready(const est_law_t *law)
 {
     return law->estimator.initialised && est_law_has_imu(law) &&
-           (law->estimator.felt || law->heightless_s <= NO_ACC_HEIGHT_S);
+           (law->estimator.felt || law->heightless_s <= HEIGHT_USED_S);
 }
 
 bool est_law_has_acceleration(const est_law_t *law)
@@ -252,12 +252,15 @@ static void remember_flight(est_law_t *law, float gravity_n, bool airborne)
 }
 
 /* It stands where it stood. Without heights the accelerometer's bias would carry the estimate away, and the
- * next height would look like a lift-off. */
-static void hold_ground(est_law_t *law)
+ * next height would look like a lift-off. Returns the height of the ground. */
+static float hold_ground_m(est_law_t *law)
 {
-    if (heights_missing(law) && law->estimator.initialised) {
+    const bool unseen = law->heightless_s > HEIGHT_USED_S && law->estimator.initialised;
+
+    if (unseen) {
         estimator_amend(&law->estimator, law->lift.ground_m, 0.0F, law->estimator.now.bias_mps2);
     }
+    return unseen ? law->lift.ground_m : law->estimator.now.height_m;
 }
 
 void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne)
@@ -269,9 +272,7 @@ void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne
     law->doubted.no_effect = false;
     law->terrain.arrived_m = 0.0F;
     law->terrain.ignores = false;
-    hold_ground(law);
-    lift_off_reset(&law->lift, gravity_n,
-                   heights_missing(law) ? law->lift.ground_m : law->estimator.now.height_m);
+    lift_off_reset(&law->lift, gravity_n, hold_ground_m(law));
     let_down_reset(&law->down);
     terrain_keep_start(&law->terrain, law->estimator.terrain_height_m);
     law->ahead = (ahead_t){.known = 0U};

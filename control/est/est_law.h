@@ -100,7 +100,8 @@ bool est_law_has_acceleration(const est_law_t *law);
  * accelerations only while heights are fresh. */
 bool est_law_ready(const est_law_t *law);
 
-/* Call in every cycle on the ground. airborne: until this cycle the vehicle flew. */
+/* Call in every cycle on the ground. airborne: until this cycle the vehicle flew. While no heights come, the
+ * estimate stays where it stood. */
 void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne);
 /* Call in the air, when EST takes over. hover_n: best known hover thrust. */
 void est_law_engage(est_law_t *law, float hover_n);
