@@ -251,8 +251,8 @@ static void remember_flight(est_law_t *law, float gravity_n, bool airborne)
     }
 }
 
-/* It stands where it stood. Without heights the accelerometer's bias would carry the estimate away, and the
- * next height would look like a lift-off. Returns the height of the ground. */
+/* The height of the ground. Without heights it stands where it stood: the accelerometer's bias would carry it
+ * away, and the next height would look like a lift-off. */
 static float hold_ground_m(est_law_t *law)
 {
     const bool unseen = law->heightless_s > HEIGHT_USED_S && law->estimator.initialised;
