@@ -255,12 +255,11 @@ static void remember_flight(est_law_t *law, float gravity_n, bool airborne)
  * away, and the next height would look like a lift-off. */
 static float hold_ground_m(est_law_t *law)
 {
-    const bool unseen = law->heightless_s > HEIGHT_USED_S && law->estimator.initialised;
-
-    if (unseen) {
-        estimator_amend(&law->estimator, law->lift.ground_m, 0.0F, law->estimator.now.bias_mps2);
+    if (law->heightless_s <= HEIGHT_USED_S || !law->estimator.initialised) {
+        return law->estimator.now.height_m;
     }
-    return unseen ? law->lift.ground_m : law->estimator.now.height_m;
+    estimator_amend(&law->estimator, law->lift.ground_m, 0.0F, law->estimator.now.bias_mps2);
+    return law->lift.ground_m;
 }
 
 void est_law_reset(est_law_t *law, const parameters_t *parameters, bool airborne)
