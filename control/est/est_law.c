@@ -327,19 +327,14 @@ static cascade_state_t predict_ahead(const est_law_t *law, const cascade_vehicle
     };
 }
 
-static float felt_hover_n(const lift_off_t *lift, const cascade_vehicle_t *vehicle)
-{
-    const float drag_mps2 = vehicle->damping_per_s * at_least(lift->up_mps, 0.0F);
-
-    return lift->thrust_n - (lift->up_mps2 + drag_mps2) / vehicle->authority_mps2_per_n;
-}
-
 /* The thrust at the moment of the lift-off is the first hover thrust. Without accelerations the heights show
  * that moment late. */
 static float lift_off_hover_n(est_law_t *law, const cascade_vehicle_t *vehicle, const lift_off_signs_t *signs)
 {
     if (signs->felt) {
-        return signs->hover_n;
+        const float drag_mps2 = vehicle->damping_per_s * at_least(law->lift.up_mps, 0.0F);
+
+        return law->lift.thrust_n - (law->lift.up_mps2 + drag_mps2) / vehicle->authority_mps2_per_n;
     }
     const lifted_t lifted = lift_off_by_height(&law->lift, signs, law->heightless_s,
                                                vehicle->authority_mps2_per_n);
@@ -360,8 +355,9 @@ static bool take_off(est_law_t *law, const parameters_t *parameters)
         .delivered_n = law->actuator.thrust_n,
         .noise_mps2 = law->estimator.credit.noise_mps2,
         .felt = est_law_has_acceleration(law),
-        .hover_n = felt_hover_n(&law->lift, &vehicle),
-        .least_n = is_climb(parameters) ? -INFINITY : gravity_n - HOVER_THRUST_MARGIN_N,
+        .most_mps2 = is_climb(parameters) ? INFINITY
+                                          : vehicle.authority_mps2_per_n *
+                                                (law->lift.thrust_n - gravity_n + HOVER_THRUST_MARGIN_N),
     };
 
     if (!lift_off_is_seen(&law->lift, &signs)) {

@@ -17,8 +17,6 @@
 #define LIFT_FILTER_SHARE 0.43F            /* what is left of a frame's noise behind it */
 #define LIFT_OFF_SIGMAS 3.0F               /* usual: of the measured noise, */
 #define LIFT_OFF_MPS2 (5.0F * LIFT_FILTER_SHARE * CREDIT_NOISE_MPS2) /* and five of a Razor's */
-#define LIGHT_TIMES \
-    2.0F /* ten sigmas of a Razor's: so far noise does not reach, and a lift-off does 0.1 s later */
 #define LIFT_TIME_S 1.0F /* as STANDING_TIME_S in accelerometer.c */
 
 void lift_off_reset(lift_off_t *lift, float gravity_n, float ground_m)
@@ -47,9 +45,9 @@ static float threshold_mps2(float noise_mps2)
 bool lift_off_is_seen(const lift_off_t *lift, const lift_off_signs_t *signs)
 {
     const float risen_m = signs->height_m - lift->ground_m;
-    const float times = (signs->hover_n < signs->least_n) ? LIGHT_TIMES : 1.0F;
+    const float up_mps2 = fminf(lift->up_mps2, signs->most_mps2);
 
-    return risen_m > LIFT_OFF_M || lift->up_mps2 > times * threshold_mps2(signs->noise_mps2);
+    return risen_m > LIFT_OFF_M || up_mps2 > threshold_mps2(signs->noise_mps2);
 }
 
 void lift_off_ramp(lift_off_t *lift, float known_n, float step_s)

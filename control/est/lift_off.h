@@ -28,12 +28,10 @@ typedef struct {
     float delivered_n; /* thrust */
     float noise_mps2;  /* rms noise of the accelerometer */
     bool felt;         /* accelerations are measured */
-    float hover_n;     /* hover thrust that a lift-off by them would tell now; without them: any */
-    float least_n;     /* GRAV says that no vehicle hovers with less */
+    float most_mps2;   /* as the lightest vehicle would accelerate at lift->thrust_n; more is noise */
 } lift_off_signs_t;
 
-/* True when the vehicle has left the ground. An acceleration that tells a smaller hover thrust than can be is
- * noise, unless it is twice as large. */
+/* True when the vehicle has left the ground. */
 bool lift_off_is_seen(const lift_off_t *lift, const lift_off_signs_t *signs);
 
 /* It stands: the ramp goes on for step_s, up to what lifts a vehicle that hovers with known_n. */

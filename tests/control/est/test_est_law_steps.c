@@ -498,14 +498,12 @@ void test_it_is_off_the_ground_by_acceleration_or_height(void)
     TEST_ASSERT_FALSE(lifts(0.0F, 0.4F, 0.0319F, 4.91F));
 }
 
-void test_a_lift_off_below_5_5_newtons_asks_for_twice_the_acceleration(void)
+void test_an_acceleration_beyond_that_of_the_lightest_vehicle_is_noise(void)
 {
-    const float least_n = 5.5F + 1.0F / AUTHORITY; /* GRAV less 1.5 N, and what 1 m/s2 takes */
+    const float thrust_n = 5.5F + 0.86F / AUTHORITY; /* GRAV less 1.5 N, and what the threshold takes */
 
-    TEST_ASSERT_TRUE(lifts(1.0F, 0.4F, 0.0F, least_n + 0.01F));
-    TEST_ASSERT_FALSE(lifts(1.0F, 0.4F, 0.0F, least_n - 0.01F));
-    TEST_ASSERT_TRUE(lifts(1.73F, 0.4F, 0.0F, 4.91F));
-    TEST_ASSERT_FALSE(lifts(1.71F, 0.4F, 0.0F, 4.91F));
+    TEST_ASSERT_TRUE(lifts(3.0F, 0.4F, 0.0F, thrust_n + 0.01F));
+    TEST_ASSERT_FALSE(lifts(3.0F, 0.4F, 0.0F, thrust_n - 0.01F));
 }
 
 void test_without_accelerations_the_height_alone_shows_it(void)
