@@ -35,6 +35,7 @@ typedef struct {
     bool untold;      /* the accelerometer tells nothing, or is not believed: gained_mps is not read */
     float gained_mps; /* change of the vertical speed since the scan before, by the accelerometer */
     float pushed_mps; /* by the thrust, without the air's drag; 0 where it does not carry the vehicle */
+    float owed_mps;   /* of the thrust that is commanded, and not there yet: how sure pushed_mps is */
     float dragged;    /* share of the vertical speed that the drag has taken meanwhile; 0 as above */
 } belief_felt_t;
 
@@ -69,6 +70,7 @@ typedef struct {
     float slant_off_mm[MIRROR_COUNT], height_off_mm[MIRROR_COUNT]; /* from what each repeats */
     float slant[MIRROR_COUNT], height[MIRROR_COUNT];               /* densities, if nothing moves */
     belief_motion_t (*motion)[BELIEF_MOTIONS]; /* since the scan before, of 1, 2 and 3 mirrors */
+    float strange_mps2;                        /* scale of what the accelerometer tells beyond the thrust */
     float of_stand;                            /* density of what the accelerometer tells, if it stands */
 } belief_scan_t;
 

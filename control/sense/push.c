@@ -25,6 +25,11 @@ float push_lift_mps(const push_t *push, const command_t *command, float upright)
     return command->authority_mps2_per_n * (push->lagged_n * upright - command->hover_n) * step_s(command);
 }
 
+float push_owed_mps(const push_t *push, const command_t *command, float upright)
+{
+    return command->authority_mps2_per_n * (command->thrust_n - push->lagged_n) * upright * step_s(command);
+}
+
 float push_dragged(const command_t *command)
 {
     return command->damping_per_s * step_s(command);

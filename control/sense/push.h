@@ -26,6 +26,9 @@ void push_move(push_t *push, const command_t *command, float upright);
 float push_lift_mps(const push_t *push, const command_t *command, float upright);
 float push_dragged(const command_t *command);
 
+/* Change of the speed in this cycle that the motors still owe: they lag behind the command. */
+float push_owed_mps(const push_t *push, const command_t *command, float upright);
+
 /* Adds the innovation of one height. */
 void push_compare(push_t *push, float rise_m, float gap_s, float age_s);
 

@@ -360,8 +360,8 @@ static void rotate(quadrotor_t *q, double t_s)
     q->state.pitch_rad = q->pitch.angle_rad;
     tilted(q);
 
-    const double wander = q->yaw_drift_rad +
-                          share * noise_uniform(&q->yaw_noise, -YAW_STEP_RAD, YAW_STEP_RAD);
+    const double turn_rad = noise_uniform(&q->yaw_noise, -YAW_STEP_RAD, YAW_STEP_RAD);
+    const double wander = q->yaw_drift_rad + (q->state.on_ground ? 0.0 : turn_rad); /* its feet stick */
     q->yaw_drift_rad = fmin(fmax(wander, -YAW_DRIFT_RAD), YAW_DRIFT_RAD);
     q->state.heading_rad = q->travel.wanted.heading_rad - q->yaw_drift_rad;
     q->state.yaw_rad = remainder(HEADING_RAD - q->state.heading_rad, 2.0 * M_PI);

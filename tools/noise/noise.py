@@ -20,6 +20,7 @@ from pathlib import Path
 
 import numpy
 from scipy.optimize import minimize
+from scipy.stats import t as student
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "tools/campaign"))
@@ -31,11 +32,13 @@ import survey  # noqa: E402
 OWN_NOISE = ("--set", "plant.mirror_noise=3", "--set", "plant.common_noise=0")
 FITTED = {"BELIEF_NOISE_MM": (1, 15), "STEP_SHARE": (1e-3, 0.3), "STEP_MM": (50, 1000), "STEP_NEAR_SHARE": (0, 0.95),
           "STEP_NEAR_MM": (3, 80), "STEP_FAR_SHARE": (1e-4, 0.04), "MOTION_CHANGES": (0.005, 0.9), "SHARED_GAIN": (0.05, 1),
-          "BELIEF_RATE_GAIN": (0.02, 1.5), "OWN_GAIN": (0.01, 1), "STRANGE_MPS2": (0.1, 5)}
+          "BELIEF_RATE_GAIN": (0.02, 1.5), "OWN_GAIN": (0.01, 1), "STRANGE_MPS2": (0.1, 5), "OWED_SHARE": (0.01, 2)}
 MOTIONS = {"stands, share": (0.01, 0.8), "calm, share": (0.01, 0.8), "pushed, share": (0.01, 0.8), "calm, mm": (0.5, 6),
            "pushed, mm": (6, 300), "flies, mm": (2, 40)}
 NAMES = list(FITTED)
 DRAWN = 100_000
+ON_GROUND_M = 0.01    # the ground carries it, whatever the thrust says
+SHARES = (50, 68, 95, 99)
 FAR_MM = 4000.0     # STEP_FAR_PER_MM's
 HARNESS = r"""
 void noise_set(const float *p)
@@ -51,27 +54,28 @@ void noise_set(const float *p)
     }
 }
 
-/* Log likelihood of one flight's scans: gap, gained, pushed, dragged, then valid, slant, height of each mirror. told[0]: scans, [1]:
+/* Log likelihood of one flight's scans: gap, gained, pushed, owed, dragged, then valid, slant, height of each mirror. told[0]: scans, [1]:
  * squared own innovations of mirrors without a step over their variance, [2]: their number. strange: for each scan, what the
- * accelerometer tells beyond the thrust. */
+ * accelerometer tells beyond the thrust, and how far it may. */
 double noise_of(const float *v, long scans, double *told, float *strange)
 {
     belief_t b = {.known = 0U};
     double sum = 0.0;
     start(&b);
-    for (long i = 0; i < scans; ++i, v += 13) {
+    for (long i = 0; i < scans; ++i, v += 14) {
         belief_beam_t beams[MIRROR_COUNT];
-        belief_scan_t scan = {.beams = beams, .gap_s = v[0], .motion = b.motion, .felt = {false, v[1], v[2], v[3]}};
+        belief_scan_t scan = {.beams = beams, .gap_s = v[0], .motion = b.motion, .felt = {false, v[1], v[2], v[3], v[4]}};
         loosen(&b, v[0]);
         for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-            beams[m] = (belief_beam_t){v[4 + 3 * m] != 0.0F, v[5 + 3 * m], v[6 + 3 * m]};
+            beams[m] = (belief_beam_t){v[5 + 3 * m] != 0.0F, v[6 + 3 * m], v[7 + 3 * m]};
             scan.told |= (beams[m].valid && belief_has(b.known, m) && v[0] <= HEIGHT_LOST_S) ? (uint16_t)(1U << m) : 0U;
         }
         belief_world_look(&scan, b.slant, b.height);
         belief_world_t foretold = b.worlds[0];
         ways_t ways;
         feel(&foretold, &ways, &scan);
-        strange[i] = ways.strange_mps2;
+        strange[2 * i] = ways.strange_mps2;
+        strange[2 * i + 1] = scan.strange_mps2;
         predict(&foretold, &ways, &scan);
         float off[MIRROR_COUNT], mean = 0.0F;
         for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
@@ -149,7 +153,7 @@ class Belief:
         figures = numpy.asarray(values, dtype=numpy.float32)
         self.library.noise_set(figures.ctypes.data_as(ctypes.c_void_p))
         told = numpy.zeros(3)
-        self.strange_mps2 = [numpy.zeros(len(scans), dtype=numpy.float32) for scans in flights]
+        self.strange_mps2 = [numpy.zeros((len(scans), 2), dtype=numpy.float32) for scans in flights]
         total = sum(self.library.noise_of(scans.ctypes.data_as(ctypes.c_void_p), ctypes.c_long(len(scans)),
                                           told.ctypes.data_as(ctypes.c_void_p), strange.ctypes.data_as(ctypes.c_void_p))
                     for scans, strange in zip(flights, self.strange_mps2, strict=True))
@@ -192,12 +196,14 @@ class Thrust:
         self.lagged_n = 0.0
 
     def pushed(self, row, dt_s):
-        """In the time since the row before: change of the speed in m/s, and the share of the speed that the drag takes."""
+        """In the time since the row before: change of the speed in m/s, what of it the motors still owe, and the share of the speed that the
+        drag takes."""
         self.lagged_n += dt_s / (self.LAG_S + dt_s) * (float(row["thrust_n"]) - self.lagged_n)
-        if row["state"] in ("GROUND", "ARMED"):
-            return 0.0, 0.0
+        if row["state"] in ("GROUND", "ARMED") or float(row["height_m"]) < ON_GROUND_M:
+            return 0.0, 0.0, 0.0
         upright = math.cos(float(row["roll_rad"])) * math.cos(float(row["pitch_rad"]))
-        return self.authority * (self.lagged_n * upright - self.hover_n) * dt_s, self.damping * dt_s
+        owed_n = abs(float(row["thrust_n"]) - self.lagged_n) * upright
+        return self.authority * (self.lagged_n * upright - self.hover_n) * dt_s, self.authority * owed_n * dt_s, self.damping * dt_s
 
 
 class Motion:
@@ -226,11 +232,12 @@ def scans_of(path, mirrors, values):
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     scans, scan_s, frame_s, row_s, flown = [], None, None, 0.0, False
-    thrust, felt, pushed, dragged, bias = Thrust(rows, values), Motion(), Motion(), Motion(), bias_mps2(rows)
+    thrust, felt, pushed, owed, dragged, bias = Thrust(rows, values), Motion(), Motion(), Motion(), Motion(), bias_mps2(rows)
     for row in rows:
         now_s = float(row["t_s"])
-        by_thrust, by_drag = thrust.pushed(row, now_s - row_s)
+        by_thrust, to_come, by_drag = thrust.pushed(row, now_s - row_s)
         pushed.gained += by_thrust
+        owed.gained += to_come
         dragged.gained += by_drag
         row_s = now_s
         if row["up_mps2"]:
@@ -242,14 +249,14 @@ def scans_of(path, mirrors, values):
         gap_s = now_s - scan_s if scan_s is not None else 1e3
         scan_s = now_s
         late = min(float(row["age_s"]) / gap_s, 1.0)
-        scan = [gap_s, felt.shown(late), pushed.shown(late), dragged.shown(late)]
+        scan = [gap_s, felt.shown(late), pushed.shown(late), owed.shown(late), dragged.shown(late)]
         for mirror in mirrors:
             slant = row[mirror[0] + "_mm"]
             scan += ([1.0, float(slant), height_mm(float(slant), mirror, float(row["roll_rad"]), float(row["pitch_rad"]))]
                      if slant else [0.0, 0.0, 0.0])
         if flown:
             scans.append(scan)
-    return numpy.ascontiguousarray(scans, dtype=numpy.float32).reshape(-1, 13)
+    return numpy.ascontiguousarray(scans, dtype=numpy.float32).reshape(-1, 14)
 
 
 def fly(program, planned, own, mirrors, values):
@@ -279,6 +286,11 @@ def fit(belief, flights):
     return clipped(best)
 
 
+def percentiles(values):
+    """Of sorted ones."""
+    return ", ".join(f"{share:g} % {values[int(share / 100 * (len(values) - 1))]:.2f}" for share in SHARES)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
@@ -302,9 +314,14 @@ def main():
     likelihood, innovation = belief.likelihood(belief.start, flights)
     print(f"{len(flights)} flights, {sum(map(len, flights))} scans: log likelihood {likelihood:.3f} a scan, "
           f"normalised innovation {innovation:.2f}")
-    strange = numpy.sort(numpy.abs(numpy.concatenate(belief.strange_mps2)))
-    told = ", ".join(f"{share:g} % {strange[int(share / 100 * (len(strange) - 1))]:.2f}" for share in (50, 68, 90, 95, 99, 99.9))
-    print(f"the accelerometer beyond the thrust, m/s2: {told}")
+    strange = numpy.concatenate(belief.strange_mps2)
+    scales = numpy.sort(numpy.abs(strange[:, 0] / strange[:, 1]))
+    print(f"the accelerometer beyond the thrust, over its scale: {percentiles(scales)}; Student's t: "
+          + ", ".join(f"{student.ppf(0.5 + 0.005 * share, 3):.2f}" for share in SHARES))
+    for low, high in ((0.0, 0.7), (0.7, 1.0), (1.0, 1.5), (1.5, 9.0)):
+        of_scale = strange[(strange[:, 1] >= low) & (strange[:, 1] < high)]
+        if len(of_scale):
+            print(f"  scale {low:.1f} to {high:.1f} m/s2, {len(of_scale):6} scans: {percentiles(numpy.sort(numpy.abs(of_scale[:, 0])))} m/s2")
     if options.fit:
         found = fit(belief, flights)
         likelihood, innovation = belief.likelihood(found, flights)

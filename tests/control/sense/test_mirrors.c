@@ -419,7 +419,7 @@ static void vehicle_moves(float mps2)
     for (long k = lroundf(gap_s / STEP_S); k > 0; k--) {
         const float before_mm = height_then_mm(0.0F);
 
-        mirrors_thrust(&mirrors, (mps2 - vehicle.touch_mps2 + 2.4F * vehicle.speed_mps) * STEP_S,
+        mirrors_thrust(&mirrors, (mps2 - vehicle.touch_mps2 + 2.4F * vehicle.speed_mps) * STEP_S, 0.0F,
                        2.4F * STEP_S);
         mirrors_frame(&mirrors, (mps2 + vehicle.lie_mps2) * STEP_S);
         vehicle.speed_mps += mps2 * STEP_S;
