@@ -178,6 +178,7 @@ static void rock(const vehicle_t *v, noise_t *noise, int seconds, double *most_n
     }
 }
 
+/* The means of the IMU's angles forget a garbled line with a time constant of 2 s (REST_TIME_S). */
 static void calm_down(const vehicle_t *v)
 {
     const board_config_t config = calm(v);
@@ -186,7 +187,7 @@ static void calm_down(const vehicle_t *v)
     board_power_imu(true);
     board_pin(BOARD_PIN_HONEST);
     board_select(true);
-    (void)kernel_run_until(timeline_now() + 5 * SIM_S);
+    (void)kernel_run_until(timeline_now() + 8 * SIM_S);
 }
 
 static void fly_and_land(seen_t *seen)
