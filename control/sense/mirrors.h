@@ -40,11 +40,11 @@ typedef struct {
     bool unpushed;     /* nothing moves it, or the thrust has no effect, with 99 % */
     bool no_effect;    /* the thrust has none, with 99 %: a pilot flies, or somebody holds the vehicle */
     uint16_t left_out; /* bits: mirrors of that scan that told something, and do not count in altitude */
-    float lies[MIRROR_COUNT];             /* the probability that each lies */
-    float disbelieved_s[MIRROR_COUNT];    /* how long each has been, at most 10 s */
-    mirror_digits_t latest[MIRROR_COUNT]; /* of each mirror, to find copies */
-    mirrors_motion_t felt, pushed, owed,
-        dragged; /* m/s by the accelerometer, by the thrust; share by the drag */
+    float lies[MIRROR_COUNT];               /* the probability that each lies */
+    float disbelieved_s[MIRROR_COUNT];      /* how long each has been, at most 10 s */
+    mirror_digits_t latest[MIRROR_COUNT];   /* of each mirror, to find copies */
+    mirrors_motion_t felt, pushed, dragged; /* m/s by the accelerometer, by the thrust; share by the drag */
+    mirrors_motion_t owed;                  /* m/s that the motors still owe */
 } mirrors_t;
 
 /* Bits: mirrors that are disbelieved. lasting: for so long that no edge explains it; over one, the mirror
@@ -55,7 +55,7 @@ uint16_t mirrors_liars(const mirrors_t *mirrors, bool lasting);
 void mirrors_frame(mirrors_t *mirrors, float gained_mps);
 
 /* One cycle in which the thrust alone carries the vehicle: by it the speed has changed by so much, and by the
- * drag by this share of the speed. */
+ * drag by this share of the speed. owed_mps: what the motors still owe of it, up or down. */
 void mirrors_thrust(mirrors_t *mirrors, float gained_mps, float owed_mps, float dragged);
 
 /* One scan: writes altitude and agree. Returns false when it tells nothing: each mirror repeats its digits,
