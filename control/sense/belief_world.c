@@ -45,8 +45,8 @@ typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BEL
  * degrees of freedom, whose percentiles make noise prints beside those of healthy flights. A Gaussian has no
  * such tail. While the thrust changes, it tells more beyond the model's. A lying one tells anything within
  * its range. */
-#define STRANGE_MPS2 0.5F /* fitted: its scale */
-#define OWED_SHARE 0.29F  /* and of what the motors owe: LAG is off by it, rms, on the vehicles of plan.py */
+#define STRANGE_MPS2 0.5F       /* fitted: its scale */
+#define UNDELIVERED_SHARE 0.29F /* rms error of LAG, on the vehicles of plan.py: so unsure is that part */
 #define LIE_PER_MPS2 0.0254930F /* 1 / 4 g: the Razor's ADXL345 is set to 2 g each way */
 
 /* ---- gains of the filters: alpha and beta of Kalata 1984 for 0.5 m/s2 */
@@ -411,9 +411,9 @@ void belief_world_look(belief_scan_t *scan, const belief_mean_t *slant, const be
 {
     const float gained_mps2 = scan->felt.untold ? 0.0F : scan->felt.gained_mps / scan->gap_s;
     const float lift_mps2 = scan->felt.pushed_mps / scan->gap_s; /* no vehicle stands that its thrust lifts */
-    const float owed_mps2 = OWED_SHARE * scan->felt.owed_mps / scan->gap_s;
+    const float undelivered_mps2 = UNDELIVERED_SHARE * scan->felt.undelivered_mps / scan->gap_s;
 
-    scan->strange_mps2 = sqrtf(STRANGE_MPS2 * STRANGE_MPS2 + owed_mps2 * owed_mps2);
+    scan->strange_mps2 = sqrtf(STRANGE_MPS2 * STRANGE_MPS2 + undelivered_mps2 * undelivered_mps2);
     scan->of_stand = density_of_strange(gained_mps2, STRANGE_MPS2) *
                      density_of_strange(at_least(lift_mps2, 0.0F), STRANGE_MPS2) /
                      density_of_strange(0.0F, STRANGE_MPS2);

@@ -32,11 +32,12 @@ typedef struct {
 
 /* What else is known of a scan's motion. */
 typedef struct {
-    bool untold;      /* the accelerometer tells nothing, or is not believed: gained_mps is not read */
-    float gained_mps; /* change of the vertical speed since the scan before, by the accelerometer */
-    float pushed_mps; /* by the thrust, without the air's drag; 0 where it does not carry the vehicle */
-    float owed_mps;   /* >= 0, by what the motors still owe: how unsure pushed_mps is */
-    float dragged;    /* share of the vertical speed that the drag has taken meanwhile; 0 as above */
+    bool untold;           /* the accelerometer tells nothing, or is not believed: gained_mps is not read */
+    float gained_mps;      /* change of the vertical speed since the scan before, by the accelerometer */
+    float pushed_mps;      /* by the thrust, without the air's drag; 0 where it does not carry the vehicle */
+    float undelivered_mps; /* >= 0, by the thrust that is commanded and not delivered yet: so unsure is
+                              pushed_mps */
+    float dragged;         /* share of the vertical speed that the drag has taken meanwhile; 0 as above */
 } belief_felt_t;
 
 /* The filter of the world in which one set of mirrors lies. */

@@ -23,9 +23,9 @@ void mirrors_frame(mirrors_t *mirrors, float gained_mps)
     mirrors->felt.gained += gained_mps;
 }
 
-void mirrors_thrust(mirrors_t *mirrors, float gained_mps, float owed_mps, float dragged)
+void mirrors_thrust(mirrors_t *mirrors, float gained_mps, float undelivered_mps, float dragged)
 {
-    mirrors->owed.gained += fabsf(owed_mps);
+    mirrors->undelivered.gained += fabsf(undelivered_mps);
     mirrors->pushed.gained += gained_mps;
     mirrors->dragged.gained += dragged;
 }
@@ -47,7 +47,7 @@ static belief_felt_t felt_of(mirrors_t *mirrors, float gap_s, float age_s, bool 
     const belief_felt_t felt = {.untold = !believed,
                                 .gained_mps = shown(&mirrors->felt, late),
                                 .pushed_mps = shown(&mirrors->pushed, late),
-                                .owed_mps = shown(&mirrors->owed, late),
+                                .undelivered_mps = shown(&mirrors->undelivered, late),
                                 .dragged = shown(&mirrors->dragged, late)};
     const belief_felt_t nothing = {.untold = true};
 

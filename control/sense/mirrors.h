@@ -44,7 +44,7 @@ typedef struct {
     float disbelieved_s[MIRROR_COUNT];      /* how long each has been, at most 10 s */
     mirror_digits_t latest[MIRROR_COUNT];   /* of each mirror, to find copies */
     mirrors_motion_t felt, pushed, dragged; /* m/s by the accelerometer, by the thrust; share by the drag */
-    mirrors_motion_t owed;                  /* m/s that the motors still owe */
+    mirrors_motion_t undelivered;           /* m/s of what is commanded and not delivered yet */
 } mirrors_t;
 
 /* Bits: mirrors that are disbelieved. lasting: for so long that no edge explains it; over one, the mirror
@@ -55,8 +55,9 @@ uint16_t mirrors_liars(const mirrors_t *mirrors, bool lasting);
 void mirrors_frame(mirrors_t *mirrors, float gained_mps);
 
 /* One cycle in which the thrust alone carries the vehicle: by it the speed has changed by so much, and by the
- * drag by this share of the speed. owed_mps: what the motors still owe of it, up or down. */
-void mirrors_thrust(mirrors_t *mirrors, float gained_mps, float owed_mps, float dragged);
+ * drag by this share of the speed. undelivered_mps: by the thrust that is
+ * commanded and not delivered yet, up or down. */
+void mirrors_thrust(mirrors_t *mirrors, float gained_mps, float undelivered_mps, float dragged);
 
 /* One scan: writes altitude and agree. Returns false when it tells nothing: each mirror repeats its digits,
  * or is out of reach (5000 mm). shown: one altitude for each mirror_t, not valid where it shows none. gap_s:

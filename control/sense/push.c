@@ -25,7 +25,7 @@ float push_lift_mps(const push_t *push, const command_t *command, float upright)
     return command->authority_mps2_per_n * (push->lagged_n * upright - command->hover_n) * step_s(command);
 }
 
-float push_owed_mps(const push_t *push, const command_t *command, float upright)
+float push_undelivered_mps(const push_t *push, const command_t *command, float upright)
 {
     return command->authority_mps2_per_n * (command->thrust_n - push->lagged_n) * upright * step_s(command);
 }

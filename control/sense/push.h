@@ -26,8 +26,8 @@ void push_move(push_t *push, const command_t *command, float upright);
 float push_lift_mps(const push_t *push, const command_t *command, float upright);
 float push_dragged(const command_t *command);
 
-/* Change of the speed in this cycle that the motors still owe: they lag behind the command. */
-float push_owed_mps(const push_t *push, const command_t *command, float upright);
+/* Change of the speed in this cycle by the thrust that is commanded and not delivered yet. */
+float push_undelivered_mps(const push_t *push, const command_t *command, float upright);
 
 /* Adds the innovation of one height. */
 void push_compare(push_t *push, float rise_m, float gap_s, float age_s);

@@ -91,7 +91,8 @@ static void tell_thrust(senses_t *senses, const command_t *command, bool carries
 
     if (!command->grounded && (carries || lifts)) {
         mirrors_thrust(&senses->mirrors, push_lift_mps(&senses->push, command, senses->tilt.upright),
-                       push_owed_mps(&senses->push, command, senses->tilt.upright), push_dragged(command));
+                       push_undelivered_mps(&senses->push, command, senses->tilt.upright),
+                       push_dragged(command));
     }
 }
 

@@ -32,7 +32,7 @@ import survey  # noqa: E402
 OWN_NOISE = ("--set", "plant.mirror_noise=3", "--set", "plant.common_noise=0")
 FITTED = {"BELIEF_NOISE_MM": (1, 15), "STEP_SHARE": (1e-3, 0.3), "STEP_MM": (50, 1000), "STEP_NEAR_SHARE": (0, 0.95),
           "STEP_NEAR_MM": (3, 80), "STEP_FAR_SHARE": (1e-4, 0.04), "MOTION_CHANGES": (0.005, 0.9), "SHARED_GAIN": (0.05, 1),
-          "BELIEF_RATE_GAIN": (0.02, 1.5), "OWN_GAIN": (0.01, 1), "STRANGE_MPS2": (0.1, 5), "OWED_SHARE": (0.01, 2)}
+          "BELIEF_RATE_GAIN": (0.02, 1.5), "OWN_GAIN": (0.01, 1), "STRANGE_MPS2": (0.1, 5), "UNDELIVERED_SHARE": (0.01, 2)}
 MOTIONS = {"stands, share": (0.01, 0.8), "calm, share": (0.01, 0.8), "pushed, share": (0.01, 0.8), "calm, mm": (0.5, 6),
            "pushed, mm": (6, 300), "flies, mm": (2, 40)}
 NAMES = list(FITTED)
@@ -54,7 +54,7 @@ void noise_set(const float *p)
     }
 }
 
-/* Log likelihood of one flight's scans: gap, gained, pushed, owed, dragged, then valid, slant, height of each mirror. told[0]: scans, [1]:
+/* Log likelihood of one flight's scans: gap, gained, pushed, undelivered, dragged, then valid, slant, height of each mirror. told[0]: scans, [1]:
  * squared own innovations of mirrors without a step over their variance, [2]: their number. strange: for each scan, what the
  * accelerometer tells beyond the thrust, and how far it may. */
 double noise_of(const float *v, long scans, double *told, float *strange)
@@ -196,14 +196,14 @@ class Thrust:
         self.lagged_n = 0.0
 
     def pushed(self, row, dt_s):
-        """In the time since the row before: change of the speed in m/s, what of it the motors still owe, and the share of the speed that the
+        """In the time since the row before: change of the speed in m/s, the same by thrust that is not delivered yet, and the share of the speed that the
         drag takes."""
         self.lagged_n += dt_s / (self.LAG_S + dt_s) * (float(row["thrust_n"]) - self.lagged_n)
         if row["state"] in ("GROUND", "ARMED") or float(row["height_m"]) < ON_GROUND_M:
             return 0.0, 0.0, 0.0
         upright = math.cos(float(row["roll_rad"])) * math.cos(float(row["pitch_rad"]))
-        owed_n = abs(float(row["thrust_n"]) - self.lagged_n) * upright
-        return self.authority * (self.lagged_n * upright - self.hover_n) * dt_s, self.authority * owed_n * dt_s, self.damping * dt_s
+        undelivered_n = abs(float(row["thrust_n"]) - self.lagged_n) * upright
+        return self.authority * (self.lagged_n * upright - self.hover_n) * dt_s, self.authority * undelivered_n * dt_s, self.damping * dt_s
 
 
 class Motion:
@@ -232,12 +232,12 @@ def scans_of(path, mirrors, values):
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     scans, scan_s, frame_s, row_s, flown = [], None, None, 0.0, False
-    thrust, felt, pushed, owed, dragged, bias = Thrust(rows, values), Motion(), Motion(), Motion(), Motion(), bias_mps2(rows)
+    thrust, felt, pushed, undelivered, dragged, bias = Thrust(rows, values), Motion(), Motion(), Motion(), Motion(), bias_mps2(rows)
     for row in rows:
         now_s = float(row["t_s"])
         by_thrust, to_come, by_drag = thrust.pushed(row, now_s - row_s)
         pushed.gained += by_thrust
-        owed.gained += to_come
+        undelivered.gained += to_come
         dragged.gained += by_drag
         row_s = now_s
         if row["up_mps2"]:
@@ -249,7 +249,7 @@ def scans_of(path, mirrors, values):
         gap_s = now_s - scan_s if scan_s is not None else 1e3
         scan_s = now_s
         late = min(float(row["age_s"]) / gap_s, 1.0)
-        scan = [gap_s, felt.shown(late), pushed.shown(late), owed.shown(late), dragged.shown(late)]
+        scan = [gap_s, felt.shown(late), pushed.shown(late), undelivered.shown(late), dragged.shown(late)]
         for mirror in mirrors:
             slant = row[mirror[0] + "_mm"]
             scan += ([1.0, float(slant), height_mm(float(slant), mirror, float(row["roll_rad"]), float(row["pitch_rad"]))]

@@ -68,13 +68,13 @@ void test_the_density_of_a_liars_slant_is_one_over_the_scanners_range(void)
 }
 
 /* Of all kinds of motion together; no mirror tells, and the thrust carries nothing. */
-static float density_over_its_range(float owed_mps)
+static float density_over_its_range(float undelivered_mps)
 {
     float sum = 0.0F;
 
     scan.told = 0U;
     for (float mps2 = -2.0F * 9.80665F; mps2 < 2.0F * 9.80665F; mps2 += 0.01F) {
-        scan.felt = (belief_felt_t){.gained_mps = mps2 * GAP_S, .owed_mps = owed_mps};
+        scan.felt = (belief_felt_t){.gained_mps = mps2 * GAP_S, .undelivered_mps = undelivered_mps};
         sum += 0.01F * density(0U);
     }
     return sum;
@@ -181,7 +181,7 @@ static const struct {
     {0.348F, 0.070F, {19.5F, 22.1F, 7.7F}},
 };
 
-static float lies_in_the_swing(float owed_mps)
+static float lies_in_the_swing(float undelivered_mps)
 {
     setUp();
     memcpy(world.motions, (const float[BELIEF_MOTIONS]){0.0F, 0.083F, 0.021F, 0.801F, 0.0F, 0.095F},
@@ -190,7 +190,7 @@ static float lies_in_the_swing(float owed_mps)
     for (unsigned k = 0U; k < sizeof swing / sizeof swing[0]; k++) {
         scan.felt = (belief_felt_t){.gained_mps = swing[k].gained_mps,
                                     .pushed_mps = swing[k].pushed_mps,
-                                    .owed_mps = owed_mps,
+                                    .undelivered_mps = undelivered_mps,
                                     .dragged = 0.24F};
         for (int m = 0; m < MIRROR_COUNT; m++) {
             beams[m].height_mm = world.level_mm[m] +
@@ -203,7 +203,7 @@ static float lies_in_the_swing(float owed_mps)
     return world.motions[BELIEF_FELT_LIES];
 }
 
-void test_what_the_motors_still_owe_is_no_lie_of_the_accelerometer(void)
+void test_a_thrust_that_is_not_delivered_yet_is_no_lie_of_the_accelerometer(void)
 {
     TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.8F, lies_in_the_swing(0.0F));
     TEST_ASSERT_FLOAT_WITHIN(0.05F, 0.05F, lies_in_the_swing(0.3F));

@@ -408,6 +408,17 @@ static void vehicle_begin(unsigned seed)
     }
 }
 
+/* Up and down make the thrust as unsure. The rays are 0.08 s old, so four fifths wait for the next scan. */
+void test_a_thrust_that_is_not_delivered_yet_counts_up_and_down_at_the_time_of_the_rays(void)
+{
+    mirrors_thrust(&mirrors, 0.0F, 0.02F, 0.0F);
+    mirrors_thrust(&mirrors, 0.0F, -0.03F, 0.0F);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.05F, mirrors.undelivered.gained);
+    (void)scan(500.0F, 500.0F, 500.0F);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-6F, 0.04F, mirrors.undelivered.left);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, mirrors.undelivered.gained);
+}
+
 static float height_then_mm(float ago_s)
 {
     return vehicle.height_mm[(vehicle.step - (unsigned)lroundf(ago_s / STEP_S)) % STEPS];

@@ -31,13 +31,13 @@ void test_the_pushed_speed_is_the_models(void)
     VERY_NEAR(-(0.2F + 0.5F * 0.41905F * 0.025F) * 0.025F, senses.push.pushed.off_m);
 }
 
-void test_the_motors_owe_what_is_commanded_and_has_not_come(void)
+void test_what_is_commanded_and_not_delivered_yet_has_the_sign_of_the_change(void)
 {
     flown.thrust_n = 7.0F;
     senses.push.lagged_n = 9.0F;
-    NEAR(1.4F * -2.0F * 0.95F * 0.025F, push_owed_mps(&senses.push, &flown, 0.95F));
+    NEAR(1.4F * -2.0F * 0.95F * 0.025F, push_undelivered_mps(&senses.push, &flown, 0.95F));
     senses.push.lagged_n = 7.0F;
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, push_owed_mps(&senses.push, &flown, 0.95F));
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, push_undelivered_mps(&senses.push, &flown, 0.95F));
 }
 
 void test_after_a_gap_the_thrusts_witness_tells_speed_and_way(void)
