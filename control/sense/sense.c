@@ -27,7 +27,9 @@ static void believe_tilt(const tilt_t *tilt, flight_inputs_t *in)
     in->roll_rad = tilt->roll_rad;
     in->pitch_rad = tilt->pitch_rad;
     in->tilted_frames = tilt->tilted;
-    in->attitude_time_us = (tilt->refuted && tilt->jumped > 0U) ? tilt->accepted_us : in->attitude_time_us;
+    if (tilt->against_nats > 0.0F && tilt->jumped > 0U) {
+        in->attitude_time_us = tilt->accepted_us;
+    }
 }
 
 /* When the rays of a new scan were taken, by the sensor's own clock. Returns how long the scan was held up on
@@ -165,17 +167,29 @@ static evidence_t evidence_of(const sense_t *sense)
     };
 }
 
+/* Do the slants refute the tilt? Those of mirrors that are doubted tell nothing. */
+static void scan_tilt(sense_t *sense, const flight_inputs_t *in)
+{
+    senses_t *senses = &sense->senses;
+    const float gap_s = seconds_at_most(in->height_time_us - sense->height_time_us, GAP_LONG_S);
+    const uint16_t liars = mirrors_liars(&senses->mirrors, false);
+    altitude_t shown[MIRROR_COUNT] = {in->altitude};
+
+    for (uint16_t m = 0U; m < MIRROR_COUNT && in->mirrors != NULL; ++m) {
+        shown[m] = in->mirrors[m];
+        shown[m].valid = shown[m].valid && (liars & (1U << m)) == 0U;
+    }
+    tilt_scan(&senses->tilt, shown, (in->mirrors != NULL) ? MIRROR_COUNT : 1U,
+              senses->heights.height_m * 1000.0F, senses->heights.rise_mps * gap_s * 1000.0F,
+              !senses->standing);
+}
+
 evidence_t sense_step(sense_t *sense, const command_t *command, flight_inputs_t *in)
 {
     senses_t *senses = &sense->senses;
 
     if (is_new_scan(sense, in)) {
-        const bool all = in->mirrors != NULL;
-        const float gap_s = seconds_at_most(in->height_time_us - sense->height_time_us, GAP_LONG_S);
-
-        tilt_scan(&senses->tilt, all ? in->mirrors : &in->altitude, all ? MIRROR_COUNT : 1U,
-                  senses->heights.height_m * 1000.0F, senses->heights.rise_mps * gap_s * 1000.0F,
-                  !senses->standing);
+        scan_tilt(sense, in);
     }
     tilt_step(&senses->tilt, in->frames, in->frame_count, in->roll_rad, in->pitch_rad, in->attitude_time_us);
     believe_tilt(&senses->tilt, in);

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "control/angle.h"
+#include "control/between.h"
 #include "control/credible.h"
 
 #define STEADY_MAX_RAD 0.25F /* as FOLLOWS_RAD in attitude.c; a spike or a lost frame makes one step more */
@@ -16,6 +17,10 @@
 #define TILT_GAP_US UINT32_C(250000) /* ten frames of 25 ms: after such a gap any tilt is accepted */
 #define REFUTED_US TILT_GAP_US       /* so long a scan refutes: two may be missing */
 #define TILTED_MAX 1000U             /* any above what is asked: the counter stops here */
+/* Evidence is a logarithm of a ratio of likelihoods, in nats. */
+#define SURE_NATS 4.6F /* 99 % */
+#define SCAN_NATS 3.0F /* one scan in 20 shows ground that is no plane, and then tells nothing */
+#define MOST_NATS (SURE_NATS + SCAN_NATS) /* one such scan leaves it sure */
 
 void tilt_init(tilt_t *tilt)
 {
@@ -44,7 +49,7 @@ static bool turns_on(const tilt_t *tilt, float roll_rad, float pitch_rad)
 
 static bool is_refuted(const tilt_t *tilt, uint32_t time_us)
 {
-    return tilt->refuted && time_us - tilt->refuted_us <= REFUTED_US;
+    return tilt->against_nats > 0.0F && time_us - tilt->refuted_us <= REFUTED_US;
 }
 
 static bool is_jump(float from_roll_rad, float from_pitch_rad, float roll_rad, float pitch_rad)
@@ -75,8 +80,8 @@ static bool is_rejected(tilt_t *tilt, float roll_rad, float pitch_rad, uint32_t 
 {
     const bool recent = tilt->levelled && time_us - tilt->time_us <= TILT_GAP_US;
     const bool jump = is_jump(tilt->roll_rad, tilt->pitch_rad, roll_rad, pitch_rad);
-    const bool asked = jump || cosf(roll_rad) * cosf(pitch_rad) < TILTED_COS;
-    const bool refuted = asked && is_refuted(tilt, time_us);
+    const bool strange = jump || cosf(roll_rad) * cosf(pitch_rad) < TILTED_COS;
+    const bool refuted = is_refuted(tilt, time_us) && (strange || tilt->against_nats > SURE_NATS);
     const bool held = recent && jump && tilt->jumped < JUMPS_HELD && !turns_on(tilt, roll_rad, pitch_rad);
 
     if (refuted || held) {
@@ -106,46 +111,53 @@ static bool accept_tilt(tilt_t *tilt, float roll_rad, float pitch_rad, uint32_t 
     return true;
 }
 
-/* Adds the squares by which the heights at this tilt are off the one before, a way further; about their own
+/* Squares by which the heights at this tilt are off the one before, a way further; about their own
  * mean when that one was taken with tilts that led there. Each tilt goes on from its own heights, so a
  * vehicle that climbs does not leave them. */
-static void judge(tilt_case_t *guess, const altitude_t *shown, uint16_t count, const float tilt_rad[2],
-                  float way_mm, bool goes_on)
+static float misfit_mm2(float *height_mm, const altitude_t *shown, uint16_t count, const float tilt_rad[2],
+                        float way_mm, bool goes_on)
 {
     float sum_mm = 0.0F;
     float squares_mm2 = 0.0F;
     float valid = 0.0F;
 
-    guess->height_mm += way_mm;
+    *height_mm += way_mm;
     for (uint16_t m = 0U; m < count; ++m) {
         if (shown[m].valid) {
-            const float off_mm = altitude_at_tilt(&shown[m], tilt_rad[0], tilt_rad[1]) - guess->height_mm;
+            const float off_mm = altitude_at_tilt(&shown[m], tilt_rad[0], tilt_rad[1]) - *height_mm;
 
             sum_mm += off_mm;
             squares_mm2 += off_mm * off_mm;
             valid += 1.0F;
         }
     }
-    if (valid > 0.0F) {
-        guess->misfit_mm2 += goes_on ? squares_mm2 : squares_mm2 - sum_mm * sum_mm / valid;
-        guess->height_mm += sum_mm / valid;
+    if (valid == 0.0F) {
+        return 0.0F;
     }
+    *height_mm += sum_mm / valid;
+    return goes_on ? squares_mm2 : squares_mm2 - sum_mm * sum_mm / valid;
 }
 
 void tilt_scan(tilt_t *tilt, const altitude_t *shown, uint16_t count, float height_mm, float way_mm,
                bool aloft)
 {
     static const float level_rad[2] = {0.0F, 0.0F};
+    const float noise_mm = 1000.0F * HEIGHT_SIGMA_M;
     const bool goes_on = tilt->jumped > 0U && tilt->leapt;
 
-    if (tilt->jumped == 0U || !tilt->leapt) {
-        tilt->level = tilt->told = (tilt_case_t){.height_mm = height_mm};
+    if (!goes_on) {
+        tilt->level_mm = tilt->told_mm = height_mm;
     }
-    judge(&tilt->level, shown, count, level_rad, way_mm, goes_on);
-    judge(&tilt->told, shown, count, tilt->told_rad, way_mm, goes_on);
-    tilt->refuted = aloft && tilt->levelled && is_jump(0.0F, 0.0F, tilt->told_rad[0], tilt->told_rad[1]) &&
-                    tilt->level.misfit_mm2 < tilt->told.misfit_mm2;
+    const float level_mm2 = misfit_mm2(&tilt->level_mm, shown, count, level_rad, way_mm, goes_on);
+    const float told_mm2 = misfit_mm2(&tilt->told_mm, shown, count, tilt->told_rad, way_mm, goes_on);
+    const float nats = (told_mm2 - level_mm2) / (2.0F * noise_mm * noise_mm);
+
     tilt->refuted_us = tilt->time_us;
+    tilt->against_nats = (aloft && tilt->levelled &&
+                          is_jump(0.0F, 0.0F, tilt->told_rad[0], tilt->told_rad[1]))
+                             ? between(-MOST_NATS, tilt->against_nats + between(-SCAN_NATS, nats, SCAN_NATS),
+                                       MOST_NATS)
+                             : 0.0F;
 }
 
 /* Counts tilted frames. The median of a burst of bad frames outlasts it by two: the frame itself must be

@@ -12,12 +12,6 @@
 #include "control/altitude.h"
 #include "control/imu_sample.h"
 
-/* A tilt that may be the true one, since the jump. */
-typedef struct {
-    float height_mm;  /* mean of the mirrors at it, in the latest scan */
-    float misfit_mm2; /* sum of the squares by which the mirrors were off the height before */
-} tilt_case_t;
-
 typedef struct {
     bool levelled;             /* at least one tilt was accepted */
     float roll_rad, pitch_rad; /* latest accepted tilt */
@@ -30,8 +24,8 @@ typedef struct {
     uint32_t unfit_sequence;   /* frames up to this one must not be used: their tilt was rejected */
     uint32_t accepted_us;      /* arrival of the latest accepted tilt */
     bool leapt;                /* the first of those that were rejected was a jump */
-    tilt_case_t level, told;   /* the vehicle is level, or as it is told */
-    bool refuted;              /* the latest scan refutes told_rad; valid for a while after refuted_us */
+    float level_mm, told_mm;   /* height by the latest scan, if the vehicle is level, or as it is told */
+    float against_nats;        /* > 0: the scans refute told_rad; valid for a while after refuted_us */
     uint32_t refuted_us;
 } tilt_t;
 
