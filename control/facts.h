@@ -68,6 +68,7 @@ typedef struct {
     bool ordered;    /* a new #SETR in this cycle; on the ground it clears DOUBT_SIGHT and DOUBT_THRUST */
     float thrust_n;  /* commanded thrust, less the dead band */
     float authority_mps2_per_n, damping_per_s; /* vehicle model, as in cascade.h */
+    float lag_s;                               /* of the thrust: dead time and motors as one lag, > 0 */
     float hover_n;                             /* sure hover thrust, where/hover_thrust.h */
     float wanted_m;   /* reference minus height, > 0: the law wants to climb; NAN: no height is held */
     float noise_mps2; /* rms noise of the accelerometer, measured by the estimator */

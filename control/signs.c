@@ -54,6 +54,7 @@ command_t signs_of_command(const situation_t *now, const flight_inputs_t *in, fl
         .hover_n = hover_n,
         .authority_mps2_per_n = vehicle.authority_mps2_per_n,
         .damping_per_s = vehicle.damping_per_s,
+        .lag_s = now->parameters->value[PARAMETER_DELAY] + now->parameters->value[PARAMETER_LAG],
         .wanted_m = wanted_m,
         .noise_mps2 = now->est->estimator.credit.noise_mps2,
     };

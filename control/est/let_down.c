@@ -1,7 +1,7 @@
 /* The ceiling starts from the hover thrust that was sure when the descent began, and it only falls. Neither
  * learning during the descent nor a change of the kind of descent raises it again. What breaks: a ceiling
  * that follows what a descent teaches can rise with a wrong height, and the vehicle climbs away. Where two
- * mirrors agree on the heights, a landing needs none: below it a gust would press the vehicle to the ground.
+ * mirrors agree on the heights, a landing has none: below it a gust would press the vehicle to the ground.
  */
 #include "control/est/let_down.h"
 
@@ -35,6 +35,7 @@ void let_down_step(let_down_t *down, est_mode_t mode, float height_m, bool rocks
     const bool sinks = mode == EST_MODE_SINK;
     const float above_n = sinks ? NEAR_HOVER_N : HOVER_THRUST_MARGIN_N;
 
+    down->seen = seen;
     down->near_ground_s = (mode == EST_MODE_LAND)
                               ? touchdown_time_s(down->near_ground_s, height_m, rocks, step_s)
                               : 0.0F;
@@ -56,7 +57,7 @@ static float most_n(const let_down_t *down, est_mode_t mode, float hover_n)
 {
     const float low_n = touchdown_limit_n(down->near_ground_s, hover_n);
 
-    return (mode == EST_MODE_LAND) ? at_most(down->ceiling_n, low_n) : down->ceiling_n;
+    return (mode == EST_MODE_LAND) ? (down->seen ? low_n : at_most(down->ceiling_n, low_n)) : down->ceiling_n;
 }
 
 float let_down_limit_n(const let_down_t *down, est_mode_t mode, float thrust_n, float hover_n)

@@ -19,6 +19,7 @@ typedef struct {
     float entry_hover_n; /* sure hover thrust at the start of the present descent */
     float ceiling_n;     /* upper limit of the thrust in a descent */
     float near_ground_s; /* time near the ground while landing, see touchdown.h */
+    bool seen;           /* two mirrors agree on the heights: a landing has no ceiling */
 } let_down_t;
 
 /* No descent: it stands on the ground. */

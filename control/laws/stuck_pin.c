@@ -14,27 +14,37 @@
  */
 #define PIN_ABOVE_N 1.0F
 #define PIN_BELOW_N (2.0F * PIN_ABOVE_N) /* a load of a newton is let go, and as much to sink */
+#define VAIN_S 0.7F                      /* 1 / damping, 1.5 1/s at the least: most of the sinking is there */
+#define RISES_MM (1000.0F * LAW_REACH_M) /* more than a pilot who holds a height */
 
 static void reset(stuck_pin_t *pin)
 {
     pin->piloted_s = 0.0F;
     pin->more_n = 0.0F;
     pin->vain_s = 0.0F;
+    pin->obeys = false;
 }
 
-/* A vehicle with so little thrust sinks, unless a pilot holds it up: where/piloting.c asks a landing the
- * same. Once it is known, it stays known for this turn. He may give the throttle back before the pin tells,
- * so then the thrust stays near the hover thrust. */
+/* A vehicle with so little thrust sinks, unless a pilot holds it up. He moves it to and fro, so a moment of
+ * sinking takes back no more than a moment. Once that is known, the thrust returns near the hover thrust,
+ * because he may give the throttle back before the pin tells. That is a test too: a vehicle that has only
+ * lost a load rises then, so it obeys. Both stay known for this turn. */
 static bool is_in_vain(stuck_pin_t *pin, const situation_t *now)
 {
     const height_track_t *height = &now->where->supervisor.height;
-    const bool weak = pin->more_n < -HOVER_THRUST_MARGIN_N;
-    const bool stays = height->age_us <= HEIGHT_FRESH_US && height->rate_mm_s >= -DESCENT_RATE_MM_S;
+    const bool fresh = height->age_us <= HEIGHT_FRESH_US;
 
-    if (pin->vain_s < UNPOWERED_S) {
-        pin->vain_s = (weak && stays) ? pin->vain_s + where_step_s(now->where) : 0.0F;
+    if (pin->vain_s < VAIN_S) {
+        const float step_s = where_step_s(now->where);
+        const bool stays = fresh && height->rate_mm_s >= -0.5F * pin->descent.sink_mm_s;
+        const bool weak = pin->more_n < -HOVER_THRUST_MARGIN_N;
+
+        pin->vain_s = weak ? at_least(pin->vain_s + (stays ? step_s : -step_s), 0.0F) : 0.0F;
+        pin->vain_mm = height->height_mm;
+    } else {
+        pin->obeys = pin->obeys || (fresh && height->height_mm > pin->vain_mm + RISES_MM);
     }
-    return pin->vain_s >= UNPOWERED_S;
+    return pin->vain_s >= VAIN_S && !pin->obeys;
 }
 
 /* Thrust of a descent by heights, or without them; it only holds the height while the pin is trusted. */

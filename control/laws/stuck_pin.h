@@ -13,6 +13,8 @@ typedef struct {
     float piloted_s; /* for how long the pin has said so */
     float more_n;    /* added to the output */
     float vain_s;    /* how long that has been too little to fly, and it does not sink */
+    float vain_mm;   /* height at which that was known */
+    bool obeys;      /* it rose when the thrust returned */
     descent_t descent;
 } stuck_pin_t;
 

@@ -5,7 +5,6 @@
 #include "control/seconds.h"
 #include "control/where/hover_thrust.h"
 
-#define LAG_S 0.15F                             /* LAG of 0.12 s and DELAY of 18.5 ms, as one lag */
 #define PUSHED_LEAK_PER_S (1.0F / HOVER_TIME_S) /* what the hover thrust is off by is learned so fast */
 
 static float step_s(const command_t *command)
@@ -17,7 +16,7 @@ void push_lag(push_t *push, const command_t *command)
 {
     const float dt_s = step_s(command);
 
-    push->lagged_n += dt_s / (LAG_S + dt_s) * (command->thrust_n - push->lagged_n);
+    push->lagged_n += dt_s / (command->lag_s + dt_s) * (command->thrust_n - push->lagged_n);
 }
 
 float push_lift_mps(const push_t *push, const command_t *command, float upright)

@@ -153,11 +153,14 @@ void tilt_scan(tilt_t *tilt, const altitude_t *shown, uint16_t count, float heig
     const float nats = (told_mm2 - level_mm2) / (2.0F * noise_mm * noise_mm);
 
     tilt->refuted_us = tilt->time_us;
-    tilt->against_nats = (aloft && tilt->levelled &&
-                          is_jump(0.0F, 0.0F, tilt->told_rad[0], tilt->told_rad[1]))
-                             ? between(-MOST_NATS, tilt->against_nats + between(-SCAN_NATS, nats, SCAN_NATS),
-                                       MOST_NATS)
-                             : 0.0F;
+    if (!aloft || !tilt->levelled || !is_jump(0.0F, 0.0F, tilt->told_rad[0], tilt->told_rad[1])) {
+        tilt->against_nats = 0.0F;
+    } else if (goes_on) {
+        tilt->against_nats += nats;
+    } else {
+        tilt->against_nats = between(-MOST_NATS, tilt->against_nats + between(-SCAN_NATS, nats, SCAN_NATS),
+                                     MOST_NATS);
+    }
 }
 
 /* Counts tilted frames. The median of a burst of bad frames outlasts it by two: the frame itself must be

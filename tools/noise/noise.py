@@ -186,11 +186,10 @@ def height_mm(slant_mm, mirror, roll_rad, pitch_rad):
 class Thrust:
     """What the thrust and the vehicle's model tell of the vertical speed: control/sense/push.c's equations."""
 
-    LAG_S = 0.15
-
     def __init__(self, rows, values):
         self.authority = values["GAIN"] * 9.81 / values["GRAV"]     # m/s2 per N
         self.damping = values["DAMP"]
+        self.lag_s = values["LAG"] + values["DELAY"]
         flown = [float(row["thrust_n"]) for row in rows if row["state"] == "FLYING"]
         self.hover_n = float(numpy.median(flown)) if flown else values["GRAV"]
         self.lagged_n = 0.0
@@ -198,7 +197,7 @@ class Thrust:
     def pushed(self, row, dt_s):
         """In the time since the row before: change of the speed in m/s, the same by thrust that is not delivered yet, and the share of the speed that the
         drag takes."""
-        self.lagged_n += dt_s / (self.LAG_S + dt_s) * (float(row["thrust_n"]) - self.lagged_n)
+        self.lagged_n += dt_s / (self.lag_s + dt_s) * (float(row["thrust_n"]) - self.lagged_n)
         if row["state"] in ("GROUND", "ARMED") or float(row["height_m"]) < ON_GROUND_M:
             return 0.0, 0.0, 0.0
         upright = math.cos(float(row["roll_rad"])) * math.cos(float(row["pitch_rad"]))

@@ -57,6 +57,9 @@ void test_a_landing_that_two_mirrors_see_has_no_ceiling_and_a_descent_without_he
     let_down_arm(&down, 7.0F);
     let_down_step(&down, EST_MODE_SINK, 1.0F, false, true, 0.1F);
     NEAR(7.5F, let_down_limit_n(&down, EST_MODE_SINK, 11.0F, 7.0F));
+    let_down_step(&down, EST_MODE_LAND, 1.0F, false, true, 0.1F); /* they have come back */
+    NEAR(11.0F, let_down_limit_n(&down, EST_MODE_LAND, 11.0F, 7.0F));
+    NEAR(7.48F, step_n(EST_MODE_LAND, 20.0F, 0.1F));
 }
 
 void test_a_hover_thrust_that_is_learned_in_the_descent_does_not_count(void)

@@ -169,6 +169,47 @@ void test_a_vehicle_that_does_not_sink_is_a_pilots_and_the_output_stays_near_the
     NEAR(-0.5F, added_n());
 }
 
+static void told(int scans, float height_mm, float rate_mm_s)
+{
+    for (int i = 0; i < scans; i++) {
+        height_is(height_mm, rate_mm_s, 100000U, true);
+        (void)added_n();
+    }
+}
+
+/* A pilot sways: every fourth scan shows that it sinks. It is doubted after as much more that does not. */
+void test_a_moment_of_sinking_takes_back_a_moment(void)
+{
+    said_for(90);
+    told(3, 500.0F, 0.0F);
+    pin.vain_s = 0.3F;
+    pin.more_n = -1.9F;
+    told(1, 500.0F, -400.0F);
+    NEAR(0.2F, pin.vain_s);
+    pin.more_n = -1.9F;
+    told(1, 500.0F, 0.0F);
+    NEAR(0.3F, pin.vain_s);
+    pin.more_n = -1.4F; /* enough to fly with */
+    told(1, 500.0F, 0.0F);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, pin.vain_s);
+}
+
+void test_one_that_rises_by_0_3_m_when_the_thrust_returns_obeys_and_is_lowered_for_this_turn(void)
+{
+    said_for(60);
+    told(120, 500.0F, 0.0F);
+    NEAR(-0.5F, pin.more_n);
+    told(5, 799.0F, 100.0F);
+    NEAR(-0.5F, pin.more_n);
+    told(1, 801.0F, 100.0F);
+    NEAR(-2.0F, pin.more_n);
+    told(60, 500.0F, 0.0F); /* it was known before */
+    NEAR(-2.0F, pin.more_n);
+    flagged(0U);
+    (void)added_n();
+    TEST_ASSERT_FALSE(pin.obeys);
+}
+
 void test_one_that_sinks_is_not_a_pilots(void)
 {
     said_for(60);

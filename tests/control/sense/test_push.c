@@ -7,9 +7,10 @@ void setUp(void)
 
 void tearDown(void) {}
 
-void test_the_thrust_arrives_through_a_lag_of_150_ms(void)
+void test_the_thrust_arrives_through_the_lag_of_the_command(void)
 {
     flown.thrust_n = 7.0F;
+    flown.lag_s = 0.15F;
     sensed_thrust(&flown);
     NEAR(1.0F, senses.push.lagged_n); /* 0.025 / 0.175 */
     flown.step_s = 3.0F;
