@@ -9,10 +9,8 @@
 #include "control/est/credit.h"
 #include "control/touchdown.h"
 
-#define RAMP_START 0.68F /* below the lightest vehicle, 0.8 of GRAV */
-/* Real motors lag by 0.03 to 0.15 s, LAG says 0.12 (sim/devices/rotors.h, tools/campaign/plan.py). So the
- * thrust at lift-off is told by 0.2 N too low at most. */
-#define RAMP_N_PER_S 2.0F
+#define RAMP_START 0.68F                   /* below the lightest vehicle, 0.8 of GRAV */
+#define RAMP_N_PER_S 4.0F                  /* chosen: leaves the ground in 0.6 s */
 #define RAMP_MOST 1.35F                    /* above the heaviest vehicle, 1.2 of GRAV */
 #define LIFT_OFF_M (5.0F * HEIGHT_SIGMA_M) /* one scan of three million by chance */
 #define LIFT_FILTER_S 0.08F                /* chosen: three frames */

@@ -173,7 +173,7 @@ def mirrors_of(program):
 def values_of(program):
     """The parameters' values."""
     rows = (line.split() for line in subprocess.run([program, "params"], check=True, capture_output=True, text=True).stdout.splitlines())
-    return {row[0]: float(row[4]) for row in rows if row[0] in ("GAIN", "GRAV", "DAMP")}
+    return {row[0]: float(row[4]) for row in rows if row[0] in ("GAIN", "GRAV", "DAMP", "LAG", "DELAY")}
 
 
 def height_mm(slant_mm, mirror, roll_rad, pitch_rad):

@@ -7,7 +7,7 @@ import numpy
 
 from law import CUT_N, FAR_M
 
-RELEASED, RAMP_N_PER_S = 0.68, 2.0      # of GRAV: where EST's take-off begins, and how fast it goes on (control/est/lift_off.c)
+RELEASED, RAMP_N_PER_S = 0.68, 4.0      # of GRAV: where EST's take-off begins, and how fast it goes on (control/est/lift_off.c)
 CYCLE_S, FIRST_S, FIRST_SIGMA_S = 0.025, 0.022, 0.006   # the ramp's first step: a frame of the IMU, or what a height left of it
 EVEN = 12.0**0.5                # of an interval in which all is as likely: its width by the standard deviation
 BEGINNING_S = 2.0

@@ -701,7 +701,7 @@ void test_a_reference_given_to_a_floating_vehicle_starts_within_half_a_newton_of
 {
     for (uint32_t seed = 1U; seed <= 10U; seed++) {
         board(seed);
-        for (int i = 0; i < 5000; i++) { /* a pilot holds it, until the ramp is near the hover thrust */
+        for (int i = 0; i < 4000; i++) { /* a pilot holds it */
             advance();
             world.body.height_m = 0.5;
             world.body.speed_m_s = 0.0;

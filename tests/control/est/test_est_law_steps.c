@@ -355,12 +355,12 @@ void test_the_step_of_a_cycle_is_between_none_and_half_a_second(void)
     stand();
     const float from_n = 0.68F * GRAV_N;
     pass(0.03F);
-    NEAR(from_n + 0.06F, ramp_n());
+    NEAR(from_n + 0.12F, ramp_n());
     pass(1.0F);
-    NEAR(from_n + 1.06F, ramp_n());
+    NEAR(from_n + 2.12F, ramp_n());
     clock_us -= 1000U;
     pass(0.0F);
-    NEAR(from_n + 1.06F, ramp_n());
+    NEAR(from_n + 2.12F, ramp_n());
 }
 
 void test_a_frame_moves_the_actuators_model(void)
@@ -532,13 +532,13 @@ static float most_n(void)
     return thrust_n;
 }
 
-void test_the_ramp_grows_by_2_newtons_a_second_to_a_third_above_gravity(void)
+void test_the_ramp_grows_by_4_newtons_a_second_to_a_third_above_gravity(void)
 {
     stand();
     pass(0.1F);
-    TEST_ASSERT_FLOAT_WITHIN(1.0e-3F, 0.68F * 7.0F + 0.2F, ramp_n());
-    pass(0.1F);
     TEST_ASSERT_FLOAT_WITHIN(1.0e-3F, 0.68F * 7.0F + 0.4F, ramp_n());
+    pass(0.1F);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-3F, 0.68F * 7.0F + 0.8F, ramp_n());
     NEAR(1.35F * 7.0F, most_n());
     NEAR(1.35F * 7.0F - 0.2F, step(EST_MODE_LAND, 0.0F)); /* 2 N/s down */
     for (int i = 0; i < 50; i++) {
@@ -643,7 +643,7 @@ void test_a_climb_rate_autopilot_hovers_in_the_middle_of_the_stick(void)
     }
 }
 
-/* The thrust grows by 2 N/s: after t the vehicle has risen by a 2 t3 / 6. At 40 mm t is 0.44 s. */
+/* The thrust grows by 4 N/s: after t the vehicle has risen by a 4 t3 / 6. At 40 mm t is 0.22 s. */
 void test_without_accelerations_the_height_tells_when_it_left_the_ground(void)
 {
     stand();
@@ -651,10 +651,10 @@ void test_without_accelerations_the_height_tells_when_it_left_the_ground(void)
     estimated(0.54F, 0.0F, 0.0F);
     delivers_n(7.9F);
     height_was_s_ago(0.05F);
-    const float jerk = 2.0F * AUTHORITY;
+    const float jerk = 4.0F * AUTHORITY;
     const float t = cbrtf(6.0F * 0.04F / jerk) + 0.05F;
     (void)ramp_n();
-    NEAR(7.9F - 2.0F * t, est.hover.thrust_n);
+    NEAR(7.9F - 4.0F * t, est.hover.thrust_n);
     NEAR(0.5F + jerk * t * t * t / 6.0F, est.estimator.now.height_m);
     NEAR(0.5F * jerk * t * t, est.estimator.now.speed_mps);
     NEAR(0.0F, est.estimator.now.bias_mps2);
