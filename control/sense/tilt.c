@@ -1,6 +1,8 @@
 /* A spike or a lost frame makes a jump, and a vehicle that turns over makes one too. They differ in what
  * follows: bad frames jump and then turn differently. And they differ in what the mirrors show: the heights
  * by all of them agree at the true tilt alone, and go on from the height before.
+ * A tilt that wanders away makes no jump, so there the evidence of
+ * the scans is summed up: one scan over an edge must not decide.
  * What breaks: a tilt over 45 degrees cuts the thrust. The seventh jump is accepted whatever it is, unless
  * the mirrors refute it; and those are asked again in each scan. */
 #include "control/sense/tilt.h"

@@ -1,6 +1,7 @@
 /* Which tilt is believed. A tilt that jumps by more than 20 degrees is rejected until six in a row were
  * rejected, or until they show a steady turn. In the air one that jumps, or is over 45 degrees, is rejected
- * also while the mirrors refute it: a level vehicle explains their slants better.
+ * also while the mirrors refute it: a level vehicle explains their slants better. One beyond 20 degrees is,
+ * too, when the scans in sum refute it with 99 %.
  *
  * Radians. Pure; the caller owns the state. Context: one Task. */
 #ifndef CONTROL_SENSE_TILT_H
@@ -25,7 +26,7 @@ typedef struct {
     uint32_t accepted_us;      /* arrival of the latest accepted tilt */
     bool leapt;                /* the first of those that were rejected was a jump */
     float level_mm, told_mm;   /* height by the latest scan, if the vehicle is level, or as it is told */
-    float against_nats;        /* > 0: the scans refute told_rad; valid for a while after refuted_us */
+    float against_nats;        /* the scans' evidence against told_rad; valid for a while after refuted_us */
     uint32_t refuted_us;
 } tilt_t;
 
