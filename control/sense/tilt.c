@@ -83,7 +83,8 @@ static bool is_rejected(tilt_t *tilt, float roll_rad, float pitch_rad, uint32_t 
     const bool recent = tilt->levelled && time_us - tilt->time_us <= TILT_GAP_US;
     const bool jump = is_jump(tilt->roll_rad, tilt->pitch_rad, roll_rad, pitch_rad);
     const bool strange = jump || cosf(roll_rad) * cosf(pitch_rad) < TILTED_COS;
-    const bool refuted = is_refuted(tilt, time_us) && (strange || tilt->against_nats > SURE_NATS);
+    const bool far = is_jump(0.0F, 0.0F, roll_rad, pitch_rad);
+    const bool refuted = is_refuted(tilt, time_us) && (strange || (far && tilt->against_nats > SURE_NATS));
     const bool held = recent && jump && tilt->jumped < JUMPS_HELD && !turns_on(tilt, roll_rad, pitch_rad);
 
     if (refuted || held) {
@@ -140,6 +141,16 @@ static float misfit_mm2(float *height_mm, const altitude_t *shown, uint16_t coun
     return goes_on ? squares_mm2 : squares_mm2 - sum_mm * sum_mm / valid;
 }
 
+static bool any_shows(const altitude_t *shown, uint16_t count)
+{
+    bool any = false;
+
+    for (uint16_t m = 0U; m < count; ++m) {
+        any = any || shown[m].valid;
+    }
+    return any;
+}
+
 void tilt_scan(tilt_t *tilt, const altitude_t *shown, uint16_t count, float height_mm, float way_mm,
                bool aloft)
 {
@@ -154,7 +165,9 @@ void tilt_scan(tilt_t *tilt, const altitude_t *shown, uint16_t count, float heig
     const float told_mm2 = misfit_mm2(&tilt->told_mm, shown, count, tilt->told_rad, way_mm, goes_on);
     const float nats = (told_mm2 - level_mm2) / (2.0F * noise_mm * noise_mm);
 
-    tilt->refuted_us = tilt->time_us;
+    if (any_shows(shown, count)) {
+        tilt->refuted_us = tilt->time_us;
+    }
     if (!aloft || !tilt->levelled || !is_jump(0.0F, 0.0F, tilt->told_rad[0], tilt->told_rad[1])) {
         tilt->against_nats = 0.0F;
     } else if (goes_on) {

@@ -355,6 +355,38 @@ void test_one_scan_that_shows_the_tilt_does_not_cut_a_vehicle_whose_attitude_has
     }
 }
 
+void test_a_level_tilt_is_accepted_at_once_after_one_that_was_refuted(void)
+{
+    static const float level[2] = {0.0F, 0.0F};
+    float told[2] = {0.0F, 0.0F};
+
+    for (; told[0] < 32.0F; told[0] += 4.0F) {
+        (void)tells(told, level, 800.0F, MIRROR_COUNT, true);
+    }
+    TEST_ASSERT_TRUE(senses.tilt.jumped > 0U);
+    tilt(5.0F * DEGREE_RAD, 0.0F); /* before the next scan */
+    TEST_ASSERT_EQUAL_UINT16(0U, senses.tilt.jumped);
+    TEST_ASSERT_EQUAL_FLOAT(5.0F * DEGREE_RAD, senses.tilt.roll_rad);
+}
+
+void test_scans_that_show_nothing_do_not_go_on_refuting(void)
+{
+    static const float level[2] = {0.0F, 0.0F};
+    static const altitude_t nothing[MIRROR_COUNT] = {{.valid = false}};
+    float told[2] = {0.0F, 0.0F};
+    int frames = 0;
+
+    for (; told[0] < 32.0F; told[0] += 4.0F) {
+        (void)tells(told, level, 800.0F, MIRROR_COUNT, true);
+    }
+    while (senses.tilt.jumped > 0U && frames < 100) {
+        tilt_scan(&senses.tilt, nothing, MIRROR_COUNT, 800.0F, 0.0F, true);
+        tilt(28.0F * DEGREE_RAD, 0.0F);
+        frames++;
+    }
+    TEST_ASSERT_EQUAL_INT(11, frames);
+}
+
 void test_without_scans_the_seventh_frame_is_accepted_ten_frames_after_the_latest(void)
 {
     static const float level[2] = {0.0F, 0.0F};
