@@ -141,16 +141,6 @@ static float misfit_mm2(float *height_mm, const altitude_t *shown, uint16_t coun
     return goes_on ? squares_mm2 : squares_mm2 - sum_mm * sum_mm / valid;
 }
 
-static bool any_shows(const altitude_t *shown, uint16_t count)
-{
-    bool any = false;
-
-    for (uint16_t m = 0U; m < count; ++m) {
-        any = any || shown[m].valid;
-    }
-    return any;
-}
-
 void tilt_scan(tilt_t *tilt, const altitude_t *shown, uint16_t count, float height_mm, float way_mm,
                bool aloft)
 {
@@ -165,9 +155,7 @@ void tilt_scan(tilt_t *tilt, const altitude_t *shown, uint16_t count, float heig
     const float told_mm2 = misfit_mm2(&tilt->told_mm, shown, count, tilt->told_rad, way_mm, goes_on);
     const float nats = (told_mm2 - level_mm2) / (2.0F * noise_mm * noise_mm);
 
-    if (any_shows(shown, count)) {
-        tilt->refuted_us = tilt->time_us;
-    }
+    tilt->refuted_us = tilt->time_us; /* mirrors that show nothing leave the sum as it was */
     if (!aloft || !tilt->levelled || !is_jump(0.0F, 0.0F, tilt->told_rad[0], tilt->told_rad[1])) {
         tilt->against_nats = 0.0F;
     } else if (goes_on) {
