@@ -83,8 +83,8 @@ static bool is_rejected(tilt_t *tilt, float roll_rad, float pitch_rad, uint32_t 
     const bool recent = tilt->levelled && time_us - tilt->time_us <= TILT_GAP_US;
     const bool jump = is_jump(tilt->roll_rad, tilt->pitch_rad, roll_rad, pitch_rad);
     const bool strange = jump || cosf(roll_rad) * cosf(pitch_rad) < TILTED_COS;
-    const bool far = is_jump(0.0F, 0.0F, roll_rad, pitch_rad);
-    const bool refuted = is_refuted(tilt, time_us) && (strange || (far && tilt->against_nats > SURE_NATS));
+    const bool tilted = is_jump(0.0F, 0.0F, roll_rad, pitch_rad);
+    const bool refuted = is_refuted(tilt, time_us) && (strange || (tilted && tilt->against_nats > SURE_NATS));
     const bool held = recent && jump && tilt->jumped < JUMPS_HELD && !turns_on(tilt, roll_rad, pitch_rad);
 
     if (refuted || held) {
