@@ -1,7 +1,7 @@
 # The product: the single list of files, read by CMakeLists.txt and by the check of ccs_project/.
 set(CONTROL_SOURCES
     control/aim.c control/altitude.c control/approach.c control/arming.c control/around.c control/attitude.c control/battery.c control/battery_orders.c control/bounds.c control/calibration.c
-    control/est/actuator.c control/est/cascade.c control/est/credit.c control/est/deadband.c control/est/dips.c control/est/effect.c
+    control/est/actuator.c control/est/cascade.c control/est/credit.c control/est/deadband.c control/est/dips.c control/est/effect.c control/est/innovation.c
     control/est/est_law.c control/est/estimator.c control/est/filter.c control/est/hover.c control/est/learning.c
     control/est/ahead.c control/est/let_down.c control/est/lift_off.c control/est/roughness.c control/est/terrain.c control/est/terrain_hypothesis.c control/est/terrain_keep.c control/flight.c
     control/guard.c control/handover.c control/imu_axes.c control/imu_finding.c control/imu_mapping.c control/imu_repeat.c control/imu_sample.c

@@ -97,6 +97,8 @@ typedef struct {
     bool valid; /* false: no group was valid, the other fields are 0 */
     bool
         disagree; /* several mirrors, and more probably than not no two are honest; sense/mirrors.h sets it */
+    uint16_t ground;    /* number of the ground below: another one after each scan in which it may have
+                         * stepped, 0: not known; likewise */
     float height_mm;    /* may be negative by sensor noise on the ground */
     float slant_mm;     /* along the axis, mean over the valid groups */
     float spread_mm;    /* largest over the valid groups */

@@ -75,11 +75,20 @@ static interval_t of_climb(bounds_t *bounds, const situation_t *now)
                : anything;
 }
 
+/* A blocked beam looks like a step away from the vehicle, too. While all mirrors may lie and are believed, it
+ * may sink onto ground that they do not show. */
+static bool may_sink_blindly(const evidence_t *evidence)
+{
+    return evidence->mirrors.suspected && !doubts(evidence, DOUBT_SIGHT) && evidence->push_mps < 0.0F;
+}
+
 /* The same downwards, after a far step of the terrain that no descent has confirmed. */
 static interval_t of_descent(bounds_t *bounds, const situation_t *now)
 {
+    const bool slow = now->evidence->terrain_fell || may_sink_blindly(now->evidence);
+
     (void)bounds;
-    return (now->evidence->terrain_fell && modes_hold_reference(now->mode, now->law))
+    return (slow && modes_hold_reference(now->mode, now->law))
                ? least(now->where->hover.thrust_n - climbing_n(now, UNCONFIRMED_MPS))
                : anything;
 }

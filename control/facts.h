@@ -17,6 +17,7 @@
 typedef struct {
     bool agree;       /* two or more do not lie, with 99 % */
     bool no_effect;   /* the thrust has none, with 99 % */
+    bool suspected;   /* all may lie, with more than 1 % */
     uint16_t doubted; /* bits: they are disbelieved */
     uint16_t liars;   /* bits: those for which that lasts, see mirrors_liars() */
 } mirrors_told_t;

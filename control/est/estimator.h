@@ -8,11 +8,8 @@
  * (`delayed_us`). The frames since then are kept. The present estimate (`now`) is the filter's, predicted
  * through these frames. A height that is 70 ms old is therefore fused as exactly as a fresh one.
  *
- * Innovation test: a height whose innovation exceeds a bound of at most 80 mm is rejected. Two rejected
- * heights in a row that agree are a step of the terrain. The third rejected height in a row always resets
- * the filter's height, with a large covariance. The next two heights are then fused without the test. So
- * no state of the filter can reject heights for ever. After a dip (dips.h) a fall of the ground must last
- * longer than the dip did, and the reset waits for so many heights more: six at most.
+ * Which heights are used, innovation.h tells. A reset of the filter's height makes its covariance large, and
+ * the next two heights are fused without a test.
  *
  * Metres, seconds, 32-bit float; positive is upwards. Times are in microseconds on one wrapping 32-bit
  * clock. Pure; the caller owns the state. */
@@ -24,8 +21,8 @@
 
 #include "control/altitude.h"
 #include "control/est/credit.h"
-#include "control/est/dips.h"
 #include "control/est/filter.h"
+#include "control/est/innovation.h"
 #include "control/est/roughness.h"
 #include "control/est/terrain.h"
 #include "control/imu_sample.h"
@@ -38,14 +35,6 @@ typedef struct {
     motion_t motion;  /* since the frame before */
     float roll_rad, pitch_rad;
 } estimator_frame_t;
-
-/* Heights in a row that have failed the innovation test. */
-typedef struct {
-    uint16_t count;
-    float innovation_m; /* of the latest */
-} estimator_rejected_t;
-
-typedef enum { HEIGHT_FUSED, HEIGHT_REJECTED, HEIGHT_TERRAIN_STEP, HEIGHT_RESET } height_outcome_t;
 
 typedef struct {
     bool initialised; /* at least one frame and, after it, one height were received; or estimator_start() */
@@ -63,17 +52,16 @@ typedef struct {
     uint16_t frame_count;
     bool has_frames; /* at least one frame was received */
     uint32_t sequence;
-    credit_t credit;               /* of the accelerometer */
-    roughness_t roughness;         /* of the heights */
-    dips_t dips;                   /* falls of the ground that came back */
-    bool passes_over;              /* estimator_pass_over() */
-    terrain_t terrain;             /* meanwhile */
-    estimator_rejected_t rejected; /* heights in a row */
-    uint16_t unchecked_count;      /* heights yet to be fused without the innovation test */
-    bool confirmed;         /* the latest height passed the test, or was the second one of a terrain step */
-    float innovation_m;     /* innovation of the latest height */
-    float terrain_height_m; /* terrain height above the terrain of the start: its steps plus its integrated
-                             * rate */
+    credit_t credit;          /* of the accelerometer */
+    roughness_t roughness;    /* of the heights */
+    bool passes_over;         /* estimator_pass_over() */
+    terrain_t terrain;        /* meanwhile */
+    innovation_test_t test;   /* of the heights */
+    uint16_t unchecked_count; /* heights yet to be fused without the innovation test */
+    bool confirmed;           /* the latest height passed the test, or was the second one of a terrain step */
+    float innovation_m;       /* innovation of the latest height */
+    float terrain_height_m;   /* terrain height above the terrain of the start: its steps plus its integrated
+                               * rate */
 } estimator_t;
 
 void estimator_init(estimator_t *estimator);

@@ -14,7 +14,7 @@
  */
 #define PIN_ABOVE_N 1.0F
 #define PIN_BELOW_N (2.0F * PIN_ABOVE_N) /* a load of a newton is let go, and as much to sink */
-#define VAIN_S 0.7F                      /* 1 / damping, 1.5 1/s at the least: most of the sinking is there */
+#define VAIN_S 0.7F /* chosen of 0.5, 0.7 and 1 by lies: about 1 / damping, 1.5 1/s at the least */
 #define RISES_MM (1000.0F * LAW_REACH_M) /* more than a pilot who holds a height */
 
 static void reset(stuck_pin_t *pin)

@@ -10,6 +10,7 @@
 #define PRIOR 1.0e-3F        /* a mirror lies at power-on */
 #define LIES_PER_S 1.0e-4F   /* it begins to: once in three hours of flight */
 #define TOGETHER_SHARE 0.1F  /* of these: a common cause, any set at once (beta factor, IEC 61508-6) */
+#define BETWEEN_RAYS 0.25F   /* of a scan's time: two mirrors are 256 steps of 1024 apart, docs/hardware.md */
 #define TRUTHS_PER_S 2.0e-2F /* and ends to, after 50 s */
 #define LEAST 1.0e-12F       /* no world is ever impossible */
 
@@ -58,6 +59,63 @@ static void begin_together(belief_world_t *world, uint16_t liars, float probabil
     }
 }
 
+/* ---- something comes before several mirrors at once */
+
+/* Rays are taken one mirror after the other: aft, front, fore. */
+static uint16_t rank_of(uint16_t mirror)
+{
+    return (mirror == (uint16_t)MIRROR_AFT) ? 0U : (uint16_t)(mirror + 1U);
+}
+
+static uint16_t first_of(uint16_t set)
+{
+    uint16_t first = MIRROR_COUNT;
+
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        first = (belief_has(set, m) && rank_of(m) < first) ? rank_of(m) : first;
+    }
+    return first;
+}
+
+static uint16_t last_of(uint16_t set)
+{
+    uint16_t last = 0U;
+
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        last = (belief_has(set, m) && rank_of(m) > last) ? rank_of(m) : last;
+    }
+    return last;
+}
+
+/* It comes between two scans: then all of these show it in the next one. */
+static float at_once(uint16_t liars)
+{
+    return 1.0F - BETWEEN_RAYS * (float)(last_of(liars) - first_of(liars));
+}
+
+/* How probable a world is, and that all its lies have begun in the scan before, by a common cause. */
+static float just_begun(const belief_world_t *world, uint16_t liars)
+{
+    const float common = belief_has_several(liars) ? 1.0F : TOGETHER_SHARE / (float)(BELIEF_WORLDS - 1U);
+    float begun = 1.0F;
+
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        begun = belief_has(liars, m) ? at_most(begun, world->begun[m]) : begun;
+    }
+    return common * begun * world->probability;
+}
+
+/* It has come after the rays of some: these show it a scan later than the rest. Without this, three that were
+ * blocked by one thing looked like three steps of the terrain. */
+static void follow(belief_world_t *world, belief_world_t *before, uint16_t later, float probability)
+{
+    before->probability -= probability;
+    world->probability += probability;
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        world->begun[m] += belief_has(later, m) ? probability : 0.0F;
+    }
+}
+
 /* As far as a world's lies have just begun, its motion is that of the world in which nobody lies. */
 static void share_begun(belief_world_t *world, const belief_world_t *honest)
 {
@@ -77,18 +135,34 @@ static bool are_known(const belief_t *belief, uint16_t liars)
     return (liars & (uint16_t)~belief->known) == 0U;
 }
 
+/* begun: just_begun() of each world. */
+static void follow_all(belief_t *belief, const float begun[BELIEF_WORLDS])
+{
+    for (uint16_t k = 1U; k <= belief->known; ++k) {
+        for (uint16_t later = 1U; later <= belief->known; ++later) {
+            if (are_known(belief, later | k) && last_of(later) < first_of(k)) {
+                follow(&belief->worlds[k | later], &belief->worlds[k], later,
+                       BETWEEN_RAYS * (float)(first_of(k) - last_of(later)) * begun[k]);
+            }
+        }
+    }
+}
+
 static void mix(belief_t *belief, float gap_s)
 {
     belief_world_t *worlds = belief->worlds;
     const float together = worlds[0].probability * at_most(TOGETHER_SHARE * LIES_PER_S * gap_s, 0.5F) /
                            (float)(BELIEF_WORLDS - 1U);
+    float begun[BELIEF_WORLDS];
 
     for (uint16_t k = 1U; k <= belief->known; ++k) {
+        begun[k] = just_begun(&worlds[k], k);
         if (are_known(belief, k)) {
-            begin_together(&worlds[k], k, together);
-            worlds[0].probability -= together;
+            begin_together(&worlds[k], k, at_once(k) * together);
+            worlds[0].probability -= at_once(k) * together;
         }
     }
+    follow_all(belief, begun);
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         for (uint16_t k = 0U; k <= belief->known; ++k) {
             if (belief_has(belief->known & (uint16_t)~k, m)) {
@@ -226,6 +300,16 @@ float belief_of_honest(const belief_t *belief, uint16_t mirrors, uint16_t count)
             ++found;
         }
         sum += (found >= count) ? belief->worlds[k].probability : 0.0F;
+    }
+    return sum;
+}
+
+float belief_of_no_step(const belief_t *belief)
+{
+    float sum = 0.0F;
+
+    for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
+        sum += belief->worlds[k].probability * belief->worlds[k & belief->known].no_step;
     }
     return sum;
 }

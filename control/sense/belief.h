@@ -43,6 +43,10 @@ static inline float belief_of_none(const belief_t *belief, uint16_t mirrors)
     return 1.0F - belief_of_honest(belief, mirrors, 1U);
 }
 
+/* Probability that a mirror is honest, and that in the latest scan the ground did not step under most of the
+ * honest ones: then the heights show how the vehicle moved. */
+float belief_of_no_step(const belief_t *belief);
+
 /* Probability of a kind of motion: BELIEF_STANDS, BELIEF_FELT_LIES. */
 float belief_of_motion(const belief_t *belief, uint16_t kind);
 

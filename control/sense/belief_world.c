@@ -132,6 +132,7 @@ static float density_of_strange(float mps2, float scale_mps2)
 /* One scan in one world, while the ways are summed in which it can have come about. */
 typedef struct {
     uint16_t honest;            /* bits: those that tell something in this scan */
+    uint16_t count;             /* of these */
     float off_mm[MIRROR_COUNT]; /* height less what the world predicts */
     float step[MIRROR_COUNT];   /* density of that as a step, of the honest ones */
     float gained_mps;           /* change of the speed that is foretold */
@@ -141,6 +142,7 @@ typedef struct {
     float untrue_mps;              /* part of what the accelerometer tells that is not so, if it lies */
     float foretold_mm;             /* way that it has foretold then */
     float density;                 /* of all ways */
+    float no_step;                 /* of those without a step under most of the honest ones */
     float stepped[MIRROR_COUNT];   /* of those with a step under this mirror */
     float moved_mm;                /* mean of the others' innovations, times its density */
     float motions[BELIEF_MOTIONS]; /* of those with this kind of motion */
@@ -198,6 +200,7 @@ static void add_way(ways_t *ways, const belief_scan_t *scan, uint16_t steps)
     }
     density = add_motions(ways, scan->motion[(shown.n > 0U) ? shown.n - 1U : 0U], &shown, density);
     ways->density += density;
+    ways->no_step += (2U * shown.n > ways->count) ? density : 0.0F;
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         ways->stepped[m] += belief_has(steps, m) ? density : 0.0F;
     }
@@ -227,6 +230,7 @@ static void add_stand(ways_t *ways, const belief_scan_t *scan)
     if (belief_has_several(ways->honest)) {
         density = 0.5F * (density + density_of_shared(scan->height_off_mm, ways->honest));
     }
+    ways->count = shown.n;
     ways->density += (sound + lies) * density;
     ways->motions[BELIEF_STANDS] = sound * density;
     ways->motions[BELIEF_FELT_LIES] = lies * density;
@@ -395,6 +399,7 @@ float belief_world_scan(belief_world_t *world, const belief_scan_t *scan, uint16
     take_back(world, &ways);
     correct_motions(world, &ways);
     correct(world, &ways, scan);
+    world->no_step = ways.no_step / ways.density;
     return ways.density * density_of_lies(world, scan, scan->told & liars);
 }
 

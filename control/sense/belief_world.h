@@ -47,7 +47,9 @@ typedef struct {
     float level_mm[MIRROR_COUNT];  /* of the height of each mirror */
     float motions[BELIEF_MOTIONS]; /* probability of each kind of motion; together 1 */
     float begun[MIRROR_COUNT];     /* that a mirror which lies here has begun to since the scan before */
-    float push_off_mps2;           /* what the model of the thrust is off by */
+    float no_step; /* that no ground has stepped since the scan before, under most of the honest mirrors; 0:
+                      none told anything */
+    float push_off_mps2; /* what the model of the thrust is off by */
 } belief_world_t;
 
 /* A running mean of the latest scans. */

@@ -160,6 +160,15 @@ static uint16_t weigh(float weights[MIRROR_COUNT], const mirrors_t *mirrors, con
     return left_out;
 }
 
+/* A scan that was held up shows a motion of which nothing is known. Numbers go on after 65535 at 1. */
+static uint16_t number_ground(mirrors_t *mirrors, bool held_up)
+{
+    if (mirrors->ground == 0U || held_up || belief_of_no_step(&mirrors->belief) <= AGREE) {
+        mirrors->ground = (uint16_t)((mirrors->ground < UINT16_MAX) ? mirrors->ground + 1U : 1U);
+    }
+    return mirrors->ground;
+}
+
 bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float age_s, bool felt,
                   bool held_up)
 {
@@ -191,6 +200,7 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     mirrors->suspected = none > 1.0F - AGREE;
     mirrors->blind = none > AGREE;
     mirrors->sees = !mirrors->suspected && moves > LIES;
+    mirrors->altitude.ground = number_ground(mirrors, held_up);
     mirrors->altitude.disagree = honest < 1.0F - LIES;
     return true;
 }

@@ -98,6 +98,7 @@ static void compare_height(sense_t *sense, const command_t *command, flight_inpu
     const bool tells = is_new && vote(sense, in);
 
     elect(&sense->senses.mirrors, in);
+    in->altitude.ground = sense->senses.mirrors.ground;
     if (!is_new) {
         return;
     }
@@ -150,6 +151,7 @@ static evidence_t evidence_of(const sense_t *sense)
         .upright = s->tilt.upright,
         .mirrors = {.agree = s->mirrors.agree,
                     .no_effect = s->mirrors.no_effect,
+                    .suspected = s->mirrors.suspected,
                     .doubted = mirrors_liars(&s->mirrors, false),
                     .liars = mirrors_liars(&s->mirrors, true)},
         .height_m = s->heights.height_m,

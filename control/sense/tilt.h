@@ -17,7 +17,7 @@ typedef struct {
     bool levelled;             /* at least one tilt was accepted */
     float roll_rad, pitch_rad; /* latest accepted tilt */
     float upright;             /* its cosine */
-    uint16_t jumped;           /* tilts in a row that were rejected because they jumped */
+    uint16_t jumped;           /* tilts in a row that were rejected: they jumped, or the scans refuted them */
     float told_rad[2];         /* latest roll and pitch, accepted or not */
     uint16_t tilted;           /* frames in a row above 45 degrees, their accepted tilt too */
     uint32_t time_us;          /* arrival of the latest tilt, accepted or not */

@@ -112,6 +112,22 @@ void test_a_descent_over_a_far_fall_of_the_terrain_has_one_too(void)
     NEAR(3.0F, bounded_n(3.0F));
 }
 
+void test_a_descent_has_one_while_all_mirrors_may_lie_and_it_sinks(void)
+{
+    const float least_n = 7.0F - 0.3F * 2.5F * 7.0F / 9.80665F;
+
+    evidence.push_mps = -0.01F;
+    NEAR(3.0F, bounded_n(3.0F));
+    evidence.mirrors.suspected = true;
+    NEAR(least_n, bounded_n(3.0F));
+    NEAR(8.0F, bounded_n(8.0F));
+    evidence.doubts = DOUBT_SIGHT;
+    NEAR(3.0F, bounded_n(3.0F));
+    evidence.doubts = 0U;
+    evidence.push_mps = 0.01F;
+    NEAR(3.0F, bounded_n(3.0F));
+}
+
 void test_a_thrust_in_doubt_stays_near_the_held_one_on_one_side(void)
 {
     evidence.doubts = DOUBT_THRUST;

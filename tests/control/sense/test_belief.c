@@ -462,3 +462,92 @@ void test_two_are_two_of_those_that_were_asked_for(void)
                              belief_of_honest(&belief, 1U << MIRROR_FRONT | 1U << MIRROR_AFT, 2U));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, belief_of_honest(&belief, 1U << MIRROR_FRONT, 2U));
 }
+
+/* A vehicle that climbs at 0.6 m/s, and its latest scan: over level ground, or with a step under so many
+ * mirrors. */
+static float no_step_after(unsigned long seed, uint16_t stepped, float step_mm)
+{
+    begin(seed);
+    hover(30);
+    felt = (belief_felt_t){.gained_mps = 0.2F, .pushed_mps = 0.2F};
+    for (int k = 0; k < 4; k++) {
+        for (uint16_t m = 0U; m < MIRROR_COUNT; m++) {
+            world.terrain_mm[m] = (k == 3 && m < stepped) ? step_mm : 0.0F;
+        }
+        world.rate_mm_s = 200.0F * (float)k + 100.0F;
+        world.height_mm += world.rate_mm_s * GAP_S;
+        scan();
+    }
+    return belief_of_no_step(&belief);
+}
+
+/* A step under one of three leaves two that show the motion; that one of these has stepped too is not sure to
+ * be wrong. */
+void test_that_no_ground_stepped_is_sure_only_while_no_mirror_shows_a_step(void)
+{
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, belief_of_no_step(&belief));
+    for (unsigned long seed = 1UL; seed <= 40UL; seed++) {
+        TEST_ASSERT_FLOAT_WITHIN(0.005F, 0.995F, no_step_after(seed, 0U, 0.0F));
+        TEST_ASSERT_FLOAT_WITHIN(0.05F, 0.94F, no_step_after(seed, 1U, 170.0F));
+        TEST_ASSERT_FLOAT_WITHIN(0.005F, 0.005F, no_step_after(seed, 2U, 170.0F));
+        TEST_ASSERT_FLOAT_WITHIN(0.005F, 0.005F, no_step_after(seed, 3U, 170.0F));
+        TEST_ASSERT_FLOAT_WITHIN(0.005F, 0.005F, no_step_after(seed, 3U, -400.0F));
+    }
+}
+
+/* Heights that stand show no motion, so they do not tell the ground from a block. */
+void test_heights_that_stand_do_not_show_that_no_ground_stepped(void)
+{
+    begin(1UL);
+    world.gust_mm_s2 = world.sway_rad = 0.0F;
+    hover(60);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.1F, belief_of_no_step(&belief));
+}
+
+void test_a_scan_in_which_no_mirror_tells_shows_no_ground(void)
+{
+    belief_beam_t nothing[MIRROR_COUNT] = {{.valid = false}};
+
+    TEST_ASSERT_TRUE(no_step_after(1UL, 0U, 0.0F) > 0.5F);
+    belief_scan(&belief, nothing, GAP_S, felt);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, belief_of_no_step(&belief));
+}
+
+/* One thing comes before all three mirrors, farther than the ground: these show it a scan before the others.
+ * How probable it is then, that all three lie. */
+static float blocked_after(unsigned long seed, uint16_t first)
+{
+    begin(seed);
+    hover(30);
+    for (int k = 0; k < 2; k++) {
+        for (uint16_t m = 0U; m < MIRROR_COUNT; m++) {
+            world.blocked_mm[m] = (k == 1 || belief_has(first, m)) ? 900.0F : 0.0F;
+        }
+        hover(1);
+    }
+    return belief_of_none(&belief, 7U);
+}
+
+/* Rays are taken aft, front, fore. What comes after the aft rays is seen by front and fore, and by aft a scan
+ * later; no thing is seen the other way round. */
+void test_a_block_that_comes_between_the_rays_is_as_likely_as_one_that_comes_between_the_scans(void)
+{
+    static const uint16_t in_order[] = {1U << MIRROR_FORE, 1U << MIRROR_FORE | 1U << MIRROR_FRONT};
+    static const uint16_t against[] = {1U << MIRROR_AFT, 1U << MIRROR_AFT | 1U << MIRROR_FRONT};
+
+    float between = 0.0F;
+    float otherwise = 0.0F;
+
+    for (unsigned long seed = 1UL; seed <= 40UL; seed++) {
+        const float at_once = blocked_after(seed, 7U);
+
+        for (int k = 0; k < 2; k++) {
+            const float then = blocked_after(seed, in_order[k]);
+
+            TEST_ASSERT_TRUE(then > 0.05F * at_once && then < 5.0F * at_once);
+            between += then;
+            otherwise += blocked_after(seed, against[k]);
+        }
+    }
+    TEST_ASSERT_TRUE(otherwise < 0.2F * between);
+}

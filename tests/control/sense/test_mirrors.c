@@ -625,3 +625,44 @@ void test_what_the_frames_tell_counts_once_whatever_the_gaps(void)
         TEST_ASSERT_FLOAT_WITHIN(0.06F, told_mps, 0.001F * mirrors.belief.worlds[0].rate_mm_s);
     }
 }
+
+void test_the_ground_has_one_number_until_it_steps_or_a_scan_is_held_up(void)
+{
+    vehicle_begin(1U);
+    TEST_ASSERT_EQUAL_UINT16(0U, mirrors.altitude.ground);
+    vehicle_swings(30);
+    const uint16_t ground = mirrors.altitude.ground;
+
+    TEST_ASSERT_NOT_EQUAL_UINT16(0U, ground);
+    vehicle_swings(5);
+    TEST_ASSERT_EQUAL_UINT16(ground, mirrors.altitude.ground);
+    (void)scan(1200.0F, 1200.0F, 1200.0F);
+    TEST_ASSERT_EQUAL_UINT16(ground + 1U, mirrors.altitude.ground);
+    (void)scan(0.0F, 0.0F, 0.0F);
+    TEST_ASSERT_EQUAL_UINT16(ground + 1U, mirrors.altitude.ground);
+}
+
+void test_a_scan_that_was_held_up_has_a_ground_of_its_own(void)
+{
+    altitude_t shown[MIRROR_COUNT];
+
+    for (int held_up = 0; held_up <= 1; held_up++) {
+        vehicle_begin(1U);
+        vehicle_swings(30);
+        const uint16_t ground = mirrors.ground;
+
+        altitude_of_mirrors(shown, &geometry, ranges, 3U, 0.0F, 0.0F);
+        shown[MIRROR_FRONT].spread_mm = 20.0F; /* no copy */
+        mirrors_scan(&mirrors, shown, gap_s, age_s, true, held_up != 0);
+        TEST_ASSERT_EQUAL(held_up != 0 || belief_of_no_step(&mirrors.belief) <= 0.99F,
+                          mirrors.ground != ground);
+    }
+}
+
+void test_a_ground_after_65535_has_the_number_1(void)
+{
+    vehicle_begin(1U);
+    mirrors.ground = UINT16_MAX;
+    vehicle_swings(1); /* the first scan: nothing was there to step from */
+    TEST_ASSERT_EQUAL_UINT16(1U, mirrors.altitude.ground);
+}
