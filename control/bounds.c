@@ -13,6 +13,7 @@
 #include "control/thrust.h"
 #include "control/touchdown.h"
 
+#define BLINDLY_S 1.0F /* chosen: ten scans; what falls is found in fewer, see docs/reliability.md */
 #define UNCONFIRMED_MPS (0.001F * DESCENT_RATE_MM_S) /* no faster than a descent */
 
 #define UNCHECKED_BELOW_N (2.0F * NEAR_HOVER_N) /* to sink is safer than to climb */
@@ -76,18 +77,22 @@ static interval_t of_climb(bounds_t *bounds, const situation_t *now)
 }
 
 /* A blocked beam looks like a step away from the vehicle, too. While all mirrors may lie and are believed, it
- * may sink onto ground that they do not show. */
-static bool may_sink_blindly(const evidence_t *evidence)
+ * may sink onto ground that they do not show. Only for a while: what sinks slowly tells the belief little. */
+static bool sinks_blindly(bounds_t *bounds, const situation_t *now)
 {
-    return evidence->mirrors.suspected && !doubts(evidence, DOUBT_SIGHT) && evidence->push_mps < 0.0F;
+    const evidence_t *evidence = now->evidence;
+    const bool blindly = evidence->mirrors.suspected && !doubts(evidence, DOUBT_SIGHT) &&
+                         evidence->push_mps < 0.0F;
+
+    bounds->blindly_s = blindly ? bounds->blindly_s + where_step_s(now->where) : 0.0F;
+    return blindly && bounds->blindly_s < BLINDLY_S;
 }
 
 /* The same downwards, after a far step of the terrain that no descent has confirmed. */
 static interval_t of_descent(bounds_t *bounds, const situation_t *now)
 {
-    const bool slow = now->evidence->terrain_fell || may_sink_blindly(now->evidence);
+    const bool slow = sinks_blindly(bounds, now) || now->evidence->terrain_fell;
 
-    (void)bounds;
     return (slow && modes_hold_reference(now->mode, now->law))
                ? least(now->where->hover.thrust_n - climbing_n(now, UNCONFIRMED_MPS))
                : anything;

@@ -25,6 +25,7 @@ typedef enum {
 typedef struct {
     float sunk_n;     /* how far the window of the held thrust has sunk in the present descent */
     float felt_n;     /* how far felt climbs have lowered the thrust of a descent out of a pilot's hands */
+    float blindly_s;  /* since it began to sink while all mirrors may lie */
     float standing_n; /* upper limit while a descent tests whether the vehicle stands */
     float trim_n;     /* added while the throttle is unknown, see bounds_apply() */
     bound_t holds;    /* BOUND_NONE: the law's thrust is unchanged */

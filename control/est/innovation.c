@@ -1,8 +1,9 @@
 /* Where the filter and a height differ, the filter is wrong or the ground has stepped. The filter alone
- * cannot tell which; the belief compares the mirrors with each other and with the thrust. What breaks: a test
- * without a reset rejects heights for ever once the state is wrong (in simulation the vehicle flew away to 11
- * m). And one that does not ask the belief takes the word of an accelerometer that lies against three
- * mirrors: the estimate sank while the vehicle climbed by 3 m. */
+ * cannot tell which; the belief compares the mirrors with each other and with the thrust.
+ * What breaks: a test without a reset rejects heights for ever once the state is wrong (in simulation the
+ * vehicle flew away to 11 m). One that does not ask the belief takes the word of an accelerometer that lies
+ * against three mirrors: the estimate sank while the vehicle climbed by 3 m. "fitted": docs/control.md;
+ * make tune LAW=EST ARGS="--constants est" searches it again. */
 #include "control/est/innovation.h"
 
 #include <math.h>
