@@ -84,11 +84,15 @@ static bool sinks_blindly(bounds_t *bounds, const situation_t *now)
     const bool blindly = evidence->mirrors.suspected && !doubts(evidence, DOUBT_SIGHT) &&
                          evidence->push_mps < 0.0F;
 
-    bounds->blindly_s = blindly ? bounds->blindly_s + where_step_s(now->where) : 0.0F;
+    const float step_s = where_step_s(now->where);
+
+    /* scans that tell nothing take a doubt away for a moment: that must not begin a second anew */
+    bounds->blindly_s = between(0.0F, bounds->blindly_s + (blindly ? step_s : -step_s), BLINDLY_S);
     return blindly && bounds->blindly_s < BLINDLY_S;
 }
 
-/* The same downwards, after a far step of the terrain that no descent has confirmed. */
+/* Limits a descent as of_climb() a climb: after a far step of the terrain that no descent has confirmed, and
+ * while it sinks blindly. */
 static interval_t of_descent(bounds_t *bounds, const situation_t *now)
 {
     const bool slow = sinks_blindly(bounds, now) || now->evidence->terrain_fell;

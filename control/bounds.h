@@ -13,7 +13,8 @@
 typedef enum {
     BOUND_NONE,
     BOUND_CLIMB,    /* a climb faster than the reference, or than an unconfirmed height, allows */
-    BOUND_DESCENT,  /* a descent after a far step of the terrain that no height has confirmed */
+    BOUND_DESCENT,  /* a descent after a far step of the terrain that no height has confirmed, or while all
+                       mirrors may lie */
     BOUND_COASTING, /* the IMU was silent, and no heights have checked the speed since */
     BOUND_POWER,    /* commands have no effect, or a pilot may fly */
     BOUND_LANDING,  /* near the ground */
@@ -25,7 +26,7 @@ typedef enum {
 typedef struct {
     float sunk_n;     /* how far the window of the held thrust has sunk in the present descent */
     float felt_n;     /* how far felt climbs have lowered the thrust of a descent out of a pilot's hands */
-    float blindly_s;  /* since it began to sink while all mirrors may lie */
+    float blindly_s;  /* of the latest time in which it sank while all mirrors may lie; 1 s at most */
     float standing_n; /* upper limit while a descent tests whether the vehicle stands */
     float trim_n;     /* added while the throttle is unknown, see bounds_apply() */
     bound_t holds;    /* BOUND_NONE: the law's thrust is unchanged */

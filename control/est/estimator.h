@@ -58,10 +58,10 @@ typedef struct {
     terrain_t terrain;        /* meanwhile */
     innovation_test_t test;   /* of the heights */
     uint16_t unchecked_count; /* heights yet to be fused without the innovation test */
-    bool confirmed;           /* the latest height passed the test, or was the second one of a terrain step */
-    float innovation_m;       /* innovation of the latest height */
-    float terrain_height_m;   /* terrain height above the terrain of the start: its steps plus its integrated
-                               * rate */
+    bool confirmed;     /* the latest height was used by the test, or was the second one of a terrain step */
+    float innovation_m; /* innovation of the latest height */
+    float terrain_height_m; /* terrain height above the terrain of the start: its steps plus its integrated
+                             * rate */
 } estimator_t;
 
 void estimator_init(estimator_t *estimator);

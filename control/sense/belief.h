@@ -44,7 +44,8 @@ static inline float belief_of_none(const belief_t *belief, uint16_t mirrors)
 }
 
 /* Probability that a mirror is honest, and that in the latest scan the ground did not step under most of the
- * honest ones: then the heights show how the vehicle moved. */
+ * honest ones: then the heights show how the vehicle moved. A vehicle that stands shows no motion: about 0.
+ */
 float belief_of_no_step(const belief_t *belief);
 
 /* Probability of a kind of motion: BELIEF_STANDS, BELIEF_FELT_LIES. */

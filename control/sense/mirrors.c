@@ -160,10 +160,11 @@ static uint16_t weigh(float weights[MIRROR_COUNT], const mirrors_t *mirrors, con
     return left_out;
 }
 
-/* A scan that was held up shows a motion of which nothing is known. Numbers go on after 65535 at 1. */
-static uint16_t number_ground(mirrors_t *mirrors, bool held_up)
+/* strange: the scan tells nothing, or was held up, so that nothing is known of the motion that it shows.
+ * Numbers go on after 65535 at 1. */
+static uint16_t number_ground(mirrors_t *mirrors, bool strange)
 {
-    if (mirrors->ground == 0U || held_up || belief_of_no_step(&mirrors->belief) <= AGREE) {
+    if (mirrors->ground == 0U || strange || belief_of_no_step(&mirrors->belief) <= AGREE) {
         mirrors->ground = (uint16_t)((mirrors->ground < UINT16_MAX) ? mirrors->ground + 1U : 1U);
     }
     return mirrors->ground;
@@ -179,6 +180,7 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
         mirrors->agree = mirrors->sees = mirrors->suspected = mirrors->blind = mirrors->felt_lies =
             mirrors->felt_may_lie = mirrors->moves = mirrors->unpushed = mirrors->no_effect = false;
         mirrors->left_out = 0U;
+        (void)number_ground(mirrors, true);
         return false;
     }
     mirrors->left_out = weigh(weights, mirrors, shown, voters);

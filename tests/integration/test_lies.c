@@ -390,8 +390,8 @@ void test_a_jump_of_the_accelerometer_does_not_bring_the_heights_into_doubt(void
     }
 }
 
-/* All three beams show 0.2 m more at once, as over an edge, and the vehicle sinks. Before such a descent was
- * slow while all mirrors may lie, 6 of these 12 touched the ground faster, at 1.33 m/s at most. */
+/* All three beams show 0.2 m more at once, as over an edge, and the vehicle sinks. Without a slow descent
+ * while all mirrors may lie, 6 of these 12 touch the ground faster, at 1.33 m/s at most. */
 static const lie_t farther[] = {
     {{"plant.platform=0", "plant.sight_blocked=1", "plant.sight_blocked_start=10.74", "plant.block_mm=1000"},
      200.0,
