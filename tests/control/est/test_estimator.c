@@ -30,6 +30,8 @@ static double gauss(void)
     return sum;
 }
 
+static uint16_t ground; /* its number, 0: not known */
+
 void setUp(void)
 {
     estimator_init(&e);
@@ -40,14 +42,17 @@ void setUp(void)
     height_m = 0.5;
     speed_mps = acceleration = noise_rms = 0.0;
     bias = 0.15;
+    ground = 0U;
 }
 
 void tearDown(void) {}
 
 static altitude_t altitude(double metres)
 {
-    return (altitude_t){
-        .valid = true, .height_mm = (float)(metres * 1000.0), .slant_mm = (float)(metres * 1000.0)};
+    return (altitude_t){.valid = true,
+                        .ground = ground,
+                        .height_mm = (float)(metres * 1000.0),
+                        .slant_mm = (float)(metres * 1000.0)};
 }
 
 static imu_sample_t frame(void)
@@ -288,6 +293,23 @@ void test_one_glitch_is_not_fused(void)
     TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.5));
     TEST_ASSERT_EQUAL(HEIGHT_REJECTED, see(0.15));
     TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.5));
+}
+
+/* By the number of the ground, which the belief gives. */
+void test_over_the_same_ground_a_height_that_is_far_off_is_a_motion_and_no_step(void)
+{
+    ground = 7U;
+    hover();
+    const float terrain_m = e.terrain_height_m;
+
+    TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.85));
+    TEST_ASSERT_TRUE(e.confirmed);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.85F, e.filter.estimate.height_m);
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, terrain_m, e.terrain_height_m);
+    ground = 8U;
+    TEST_ASSERT_EQUAL(HEIGHT_REJECTED, see(0.3));
+    ground = 7U;
+    TEST_ASSERT_EQUAL(HEIGHT_FUSED, see(0.3)); /* the latest that was used lay over this one */
 }
 
 void test_two_that_agree_are_a_step_of_the_terrain(void)

@@ -267,6 +267,13 @@ void test_a_far_fall_of_the_terrain_is_unconfirmed_until_a_descent_shows(void)
     TEST_ASSERT_EQUAL_UINT16(0U, seen.doubts);
 }
 
+void test_the_number_of_the_ground_is_passed_on_with_the_height(void)
+{
+    fly();
+    TEST_ASSERT_NOT_EQUAL_UINT16(0U, in.altitude.ground);
+    TEST_ASSERT_EQUAL_UINT16(it.senses.mirrors.ground, in.altitude.ground);
+}
+
 void test_a_hover_thrust_a_quarter_of_a_newton_off_is_believed(void)
 {
     flown.hover_n = HOVER_N - 0.25F;
