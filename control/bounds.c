@@ -16,6 +16,10 @@
 #define BLINDLY_S 1.0F /* chosen: ten scans; what falls is found in fewer, see docs/reliability.md */
 #define UNCONFIRMED_MPS (0.001F * DESCENT_RATE_MM_S) /* no faster than a descent */
 
+/* chosen of 0.3 to 0.7: from 0.09 to 0.12 m, so that a height confirms the climb, it takes less than a scan;
+ * by 0.3 a vehicle whose hover thrust was too low fell back */
+#define LIFT_MPS 0.4F
+
 #define UNCHECKED_BELOW_N (2.0F * NEAR_HOVER_N) /* to sink is safer than to climb */
 
 #define BACK_BELOW_N NEAR_HOVER_N /* sinks at 0.3 m/s */
@@ -61,18 +65,53 @@ static float climbing_n(const situation_t *now, float climb_mps)
     return vehicle.damping_per_s * climb_mps / vehicle.authority_mps2_per_n;
 }
 
+/* Thrust above the hover thrust by which the law takes a climb to another speed; it brakes no harder than a
+ * slow descent needs. */
+static float to_speed_n(const situation_t *now, float climb_mps, float wanted_mps)
+{
+    const cascade_vehicle_t vehicle = est_law_vehicle(now->est, now->parameters);
+    const float more_mps2 = now->parameters->value[PARAMETER_VELK] * (wanted_mps - climb_mps);
+
+    return at_least(climbing_n(now, climb_mps) + more_mps2 / vehicle.authority_mps2_per_n, -NEAR_HOVER_N);
+}
+
+/* Of the accelerometer; one that is doubted tells no more than a slow climb. */
+static float told_mps(const evidence_t *evidence)
+{
+    return doubts(evidence, DOUBT_IMU) ? UNCONFIRMED_MPS : evidence->felt_mps / evidence->shaken;
+}
+
+/* Where the thrust tells a climb, it is slow; at the take-off where the accelerometer tells it too. */
+static float slow_n(const situation_t *now, bool takes_off)
+{
+    const evidence_t *evidence = now->evidence;
+    const bool felt = doubts(evidence, DOUBT_IMU) || felt_mps(evidence) > UNCONFIRMED_MPS;
+    const bool fast = evidence->push_mps > UNCONFIRMED_MPS && (!takes_off || felt);
+    const float both_mps = at_least(fminf(evidence->push_mps, told_mps(evidence)), UNCONFIRMED_MPS);
+
+    return fast ? to_speed_n(now, both_mps, UNCONFIRMED_MPS) : THRUST_MAX_N;
+}
+
+/* A lift-off, by the accelerometer alone. The noise of one that is shaken looks like a climb. */
+static float lift_off_n(const situation_t *now)
+{
+    const evidence_t *evidence = now->evidence;
+    const bool tells = !doubts(evidence, DOUBT_IMU) && evidence->shaken <= 1.0F;
+
+    return (tells && now->where->contact.airborne) ? to_speed_n(now, told_mps(evidence), LIFT_MPS)
+                                                   : THRUST_MAX_N;
+}
+
 /* Limits the climb without use of the estimate while no height has confirmed it: a blocked beam looks like a
  * step towards the vehicle. */
 static interval_t of_climb(bounds_t *bounds, const situation_t *now)
 {
-    const evidence_t *evidence = now->evidence;
     const bool takes_off = now->where->supervisor.state == FLIGHT_TAKEOFF;
-    const bool fast = evidence->push_mps > UNCONFIRMED_MPS &&
-                      (!takes_off || doubts(evidence, DOUBT_IMU) || felt_mps(evidence) > UNCONFIRMED_MPS);
+    const float more_n = at_most(slow_n(now, takes_off), takes_off ? lift_off_n(now) : THRUST_MAX_N);
 
     (void)bounds;
-    return (evidence->unconfirmed && fast && modes_hold_reference(now->mode, now->law))
-               ? most(now->where->hover.thrust_n + climbing_n(now, UNCONFIRMED_MPS))
+    return (now->evidence->unconfirmed && modes_hold_reference(now->mode, now->law))
+               ? most(now->where->hover.thrust_n + more_n)
                : anything;
 }
 

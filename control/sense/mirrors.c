@@ -162,12 +162,11 @@ static uint16_t weigh(float weights[MIRROR_COUNT], const mirrors_t *mirrors, con
 
 /* strange: the scan tells nothing, or was held up, so that nothing is known of the motion that it shows.
  * Numbers go on after 65535 at 1. */
-static uint16_t number_ground(mirrors_t *mirrors, bool strange)
+static void number_ground(mirrors_t *mirrors, bool strange)
 {
     if (mirrors->ground == 0U || strange || belief_of_no_step(&mirrors->belief) <= AGREE) {
         mirrors->ground = (uint16_t)((mirrors->ground < UINT16_MAX) ? mirrors->ground + 1U : 1U);
     }
-    return mirrors->ground;
 }
 
 bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float age_s, bool felt,
@@ -180,7 +179,7 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
         mirrors->agree = mirrors->sees = mirrors->suspected = mirrors->blind = mirrors->felt_lies =
             mirrors->felt_may_lie = mirrors->moves = mirrors->unpushed = mirrors->no_effect = false;
         mirrors->left_out = 0U;
-        (void)number_ground(mirrors, true);
+        number_ground(mirrors, true);
         return false;
     }
     mirrors->left_out = weigh(weights, mirrors, shown, voters);
@@ -202,7 +201,7 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     mirrors->suspected = none > 1.0F - AGREE;
     mirrors->blind = none > AGREE;
     mirrors->sees = !mirrors->suspected && moves > LIES;
-    mirrors->altitude.ground = number_ground(mirrors, held_up);
+    number_ground(mirrors, held_up);
     mirrors->altitude.disagree = honest < 1.0F - LIES;
     return true;
 }

@@ -31,7 +31,8 @@ typedef enum {
 #define FLIGHT_FLAG_IMU 512U
 #define FLIGHT_FLAG_THRUST 1024U /* doubt THRUST: commands have no effect */
 #define FLIGHT_FLAG_STICK 2048U  /* STICK PIN, and the stick does not count; set by task_control.c */
-/* at rest a mirror does not show the ground, or the mirrors show another tilt than the IMU tells */
+/* at rest a mirror does not show the ground, or the mirrors show another tilt than the IMU tells; or a
+ * reference waits, because the height at rest is above 0.09 m */
 #define FLIGHT_FLAG_MIRRORS 4096U
 /* the reference is not reached: over 0.1 m off for 3 s, and no nearer; or a landing does not sink; set by
  * flight.c */
@@ -45,8 +46,9 @@ const char *flight_state_name(flight_state_t state);
 #define FLIGHT_IF_READY 2U       /* the IMU's offset is known, and its frames are fresh */
 #define FLIGHT_IF_HEIGHT 4U      /* the latest valid height is at most 0.3 s old */
 #define FLIGHT_IF_LOST 8U        /* the latest valid height is more than 1.5 s old, or there never was one */
-#define FLIGHT_IF_OFF_GROUND 16U /* fresh height above 0.15 m */
-/* fresh heights above 0.15 m and level (see below) for 1 s, and the tilt moves as in flight */
+#define FLIGHT_IF_OFF_GROUND 16U /* fresh height above 0.09 m */
+/* the tilt moves as in flight; and fresh heights above 0.09 m and level (see below) for 1 s, or for 0.15 s
+ * while the pilot has the throttle; then also without any height for 1.5 s, where a reference waits */
 #define FLIGHT_IF_ALOFT 32U
 /* fresh heights below 0.05 m that did not fall by 0.02 m, for 1.2 s in the present state. In LANDING and
  * DESCENDING also: for 0.6 s too little thrust to fly, and no measured fall */

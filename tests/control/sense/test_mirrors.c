@@ -629,15 +629,15 @@ void test_what_the_frames_tell_counts_once_whatever_the_gaps(void)
 void test_the_ground_has_one_number_until_it_steps_or_a_scan_is_held_up(void)
 {
     vehicle_begin(1U);
-    TEST_ASSERT_EQUAL_UINT16(0U, mirrors.altitude.ground);
+    TEST_ASSERT_EQUAL_UINT16(0U, mirrors.ground);
     vehicle_swings(30);
-    const uint16_t ground = mirrors.altitude.ground;
+    const uint16_t ground = mirrors.ground;
 
     TEST_ASSERT_NOT_EQUAL_UINT16(0U, ground);
     vehicle_swings(5);
-    TEST_ASSERT_EQUAL_UINT16(ground, mirrors.altitude.ground);
+    TEST_ASSERT_EQUAL_UINT16(ground, mirrors.ground);
     (void)scan(1200.0F, 1200.0F, 1200.0F);
-    TEST_ASSERT_EQUAL_UINT16(ground + 1U, mirrors.altitude.ground);
+    TEST_ASSERT_EQUAL_UINT16(ground + 1U, mirrors.ground);
     (void)scan(0.0F, 0.0F, 0.0F);
     TEST_ASSERT_EQUAL_UINT16(ground + 2U, mirrors.ground); /* who sees nothing may have missed a step */
 }
@@ -665,5 +665,5 @@ void test_a_ground_after_65535_has_the_number_1(void)
     vehicle_begin(1U);
     mirrors.ground = UINT16_MAX;
     vehicle_swings(1); /* the first scan: nothing was there to step from */
-    TEST_ASSERT_EQUAL_UINT16(1U, mirrors.altitude.ground);
+    TEST_ASSERT_EQUAL_UINT16(1U, mirrors.ground);
 }
