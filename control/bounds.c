@@ -65,41 +65,28 @@ static float climbing_n(const situation_t *now, float climb_mps)
     return vehicle.damping_per_s * climb_mps / vehicle.authority_mps2_per_n;
 }
 
-/* Thrust above the hover thrust by which the law takes a climb to another speed; it brakes no harder than a
- * slow descent needs. */
-static float to_speed_n(const situation_t *now, float climb_mps, float wanted_mps)
-{
-    const cascade_vehicle_t vehicle = est_law_vehicle(now->est, now->parameters);
-    const float more_mps2 = now->parameters->value[PARAMETER_VELK] * (wanted_mps - climb_mps);
-
-    return at_least(climbing_n(now, climb_mps) + more_mps2 / vehicle.authority_mps2_per_n, -NEAR_HOVER_N);
-}
-
-/* Of the accelerometer; one that is doubted tells no more than a slow climb. */
-static float told_mps(const evidence_t *evidence)
-{
-    return doubts(evidence, DOUBT_IMU) ? UNCONFIRMED_MPS : evidence->felt_mps / evidence->shaken;
-}
-
-/* Where the thrust tells a climb, it is slow; at the take-off where the accelerometer tells it too. */
+/* More than the hover thrust while the thrust tells a climb; at the take-off, while the accelerometer does
+ * too. */
 static float slow_n(const situation_t *now, bool takes_off)
 {
     const evidence_t *evidence = now->evidence;
     const bool felt = doubts(evidence, DOUBT_IMU) || felt_mps(evidence) > UNCONFIRMED_MPS;
     const bool fast = evidence->push_mps > UNCONFIRMED_MPS && (!takes_off || felt);
-    const float both_mps = at_least(fminf(evidence->push_mps, told_mps(evidence)), UNCONFIRMED_MPS);
 
-    return fast ? to_speed_n(now, both_mps, UNCONFIRMED_MPS) : THRUST_MAX_N;
+    return fast ? climbing_n(now, UNCONFIRMED_MPS) : THRUST_MAX_N;
 }
 
-/* A lift-off, by the accelerometer alone. The noise of one that is shaken looks like a climb. */
+/* More than the hover thrust by which the law takes a lift-off to LIFT_MPS, by the accelerometer alone; it
+ * brakes no harder than a slow descent needs. The noise of one that is shaken looks like a climb. */
 static float lift_off_n(const situation_t *now)
 {
     const evidence_t *evidence = now->evidence;
     const bool tells = !doubts(evidence, DOUBT_IMU) && evidence->shaken <= 1.0F;
+    const float more_mps2 = now->parameters->value[PARAMETER_VELK] * (LIFT_MPS - evidence->felt_mps);
+    const float more_n = climbing_n(now, evidence->felt_mps) +
+                         more_mps2 / est_law_vehicle(now->est, now->parameters).authority_mps2_per_n;
 
-    return (tells && now->where->contact.airborne) ? to_speed_n(now, told_mps(evidence), LIFT_MPS)
-                                                   : THRUST_MAX_N;
+    return (tells && now->where->contact.airborne) ? at_least(more_n, -NEAR_HOVER_N) : THRUST_MAX_N;
 }
 
 /* Limits the climb without use of the estimate while no height has confirmed it: a blocked beam looks like a

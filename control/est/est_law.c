@@ -436,9 +436,7 @@ float est_law_step(est_law_t *law, const parameters_t *parameters, const est_ord
     const float thrust_n = cascade_thrust_n(&gains, &vehicle, &state, speed_mps);
 
     let_down_step(&law->down, mode, state.height_m, law->doubted.rocks, law->doubted.seen, law->step_s);
-    const float climb_mps = at_least(fminf(order->climb_mps, state.speed_mps), 0.0F);
-    const float braking_n = gains.speed_per_s * climb_mps / vehicle.authority_mps2_per_n;
-    const float limited_n = let_down_limit_n(&law->down, mode, thrust_n, law->hover.thrust_n, braking_n);
+    const float limited_n = let_down_limit_n(&law->down, mode, thrust_n, law->hover.thrust_n);
     return deadband_compensate(&law->deadband, law->hover.thrust_n, limited_n);
 }
 

@@ -122,8 +122,6 @@ typedef struct {
     bool airborne;
     float hover_n; /* as in est_before_t */
     bool descends;
-    float
-        climb_mps; /* of a climb that thrust and accelerometer tell, each without heights: the less of both */
 } est_order_t;
 
 /* Thrust command in newtons per motor. On the ground the thrust ramps up in EST_MODE_HOLD, until the vehicle

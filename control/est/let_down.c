@@ -48,9 +48,9 @@ void let_down_step(let_down_t *down, est_mode_t mode, float height_m, bool rocks
 
 /* Without heights the estimated speed may be wrong. It must not cut the thrust so far that the vehicle falls.
  */
-static float least_n(const let_down_t *down, est_mode_t mode, float braking_n)
+static float least_n(const let_down_t *down, est_mode_t mode)
 {
-    return (mode == EST_MODE_SINK) ? at_least(down->entry_hover_n - NEAR_HOVER_N - braking_n, 0.0F) : 0.0F;
+    return (mode == EST_MODE_SINK) ? at_least(down->entry_hover_n - NEAR_HOVER_N, 0.0F) : 0.0F;
 }
 
 static float most_n(const let_down_t *down, est_mode_t mode, float hover_n)
@@ -60,8 +60,7 @@ static float most_n(const let_down_t *down, est_mode_t mode, float hover_n)
     return (mode == EST_MODE_LAND) ? (down->seen ? low_n : at_most(down->ceiling_n, low_n)) : down->ceiling_n;
 }
 
-float let_down_limit_n(const let_down_t *down, est_mode_t mode, float thrust_n, float hover_n,
-                       float braking_n)
+float let_down_limit_n(const let_down_t *down, est_mode_t mode, float thrust_n, float hover_n)
 {
-    return at_most(at_least(thrust_n, least_n(down, mode, braking_n)), most_n(down, mode, hover_n));
+    return at_most(at_least(thrust_n, least_n(down, mode)), most_n(down, mode, hover_n));
 }

@@ -34,9 +34,7 @@ float let_down_mps(est_mode_t mode, float height_m);
 /* One cycle of step_s. rocks: the tilt moves as in flight. seen: two mirrors agree on the heights. */
 void let_down_step(let_down_t *down, est_mode_t mode, float height_m, bool rocks, bool seen, float step_s);
 
-/* The thrust within the limits of the mode. hover_n: the hover thrust of now. braking_n: >= 0, less thrust
- * that brakes a climb on which all agree. */
-float let_down_limit_n(const let_down_t *down, est_mode_t mode, float thrust_n, float hover_n,
-                       float braking_n);
+/* The thrust within the limits of the mode. hover_n: the hover thrust of now. */
+float let_down_limit_n(const let_down_t *down, est_mode_t mode, float thrust_n, float hover_n);
 
 #endif

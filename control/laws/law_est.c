@@ -1,8 +1,6 @@
 /* Law EST, in its three modes. */
 #include "control/laws/laws.h"
 
-#include <math.h>
-
 static float step(est_law_t *est, const situation_t *now, est_mode_t mode)
 {
     const where_t *where = now->where;
@@ -12,7 +10,6 @@ static float step(est_law_t *est, const situation_t *now, est_mode_t mode)
         .airborne = where->contact.airborne,
         .hover_n = where->hover.thrust_n,
         .descends = where_lets_down(where),
-        .climb_mps = fminf(felt_mps(now->evidence), now->evidence->push_mps),
     };
 
     return est_law_step(est, now->parameters, &order);

@@ -19,7 +19,7 @@ void tearDown(void) {}
 static float step_n(est_mode_t mode, float wanted_n, float step_s)
 {
     let_down_step(&down, mode, 1.0F, false, false, step_s);
-    return let_down_limit_n(&down, mode, wanted_n, 7.0F, 0.0F);
+    return let_down_limit_n(&down, mode, wanted_n, 7.0F);
 }
 
 void test_a_landing_slows_down_towards_the_ground(void)
@@ -52,13 +52,13 @@ void test_the_ceiling_of_a_descent_starts_above_the_entrys_hover_thrust_and_fall
 void test_a_landing_that_two_mirrors_see_has_no_ceiling_and_a_descent_without_heights_has(void)
 {
     let_down_step(&down, EST_MODE_LAND, 1.0F, false, true, 5.0F);
-    NEAR(11.0F, let_down_limit_n(&down, EST_MODE_LAND, 11.0F, 7.0F, 0.0F));
+    NEAR(11.0F, let_down_limit_n(&down, EST_MODE_LAND, 11.0F, 7.0F));
     NEAR(8.5F, step_n(EST_MODE_LAND, 20.0F, 0.1F));
     let_down_arm(&down, 7.0F);
     let_down_step(&down, EST_MODE_SINK, 1.0F, false, true, 0.1F);
-    NEAR(7.5F, let_down_limit_n(&down, EST_MODE_SINK, 11.0F, 7.0F, 0.0F));
+    NEAR(7.5F, let_down_limit_n(&down, EST_MODE_SINK, 11.0F, 7.0F));
     let_down_step(&down, EST_MODE_LAND, 1.0F, false, true, 0.1F); /* they have come back */
-    NEAR(11.0F, let_down_limit_n(&down, EST_MODE_LAND, 11.0F, 7.0F, 0.0F));
+    NEAR(11.0F, let_down_limit_n(&down, EST_MODE_LAND, 11.0F, 7.0F));
     NEAR(7.48F, step_n(EST_MODE_LAND, 20.0F, 0.1F));
 }
 
@@ -66,17 +66,7 @@ void test_a_hover_thrust_that_is_learned_in_the_descent_does_not_count(void)
 {
     NEAR(8.5F, step_n(EST_MODE_LAND, 20.0F, 0.1F));
     let_down_step(&down, EST_MODE_LAND, 1.0F, false, false, 0.1F);
-    TEST_ASSERT_TRUE(let_down_limit_n(&down, EST_MODE_LAND, 20.0F, 9.0F, 0.0F) < 8.5F);
-}
-
-/* The error of the speed is then that of two witnesses at once. */
-void test_without_heights_a_climb_on_which_all_agree_is_braked(void)
-{
-    let_down_step(&down, EST_MODE_SINK, 1.0F, false, false, 0.1F);
-    NEAR(5.7F, let_down_limit_n(&down, EST_MODE_SINK, 0.0F, 7.0F, 0.8F));
-    NEAR(6.0F, let_down_limit_n(&down, EST_MODE_SINK, 6.0F, 7.0F, 0.8F));
-    NEAR(0.0F, let_down_limit_n(&down, EST_MODE_SINK, 0.0F, 7.0F, 8.0F));
-    NEAR(7.5F, let_down_limit_n(&down, EST_MODE_SINK, 9.0F, 7.0F, 0.8F)); /* the ceiling stays */
+    TEST_ASSERT_TRUE(let_down_limit_n(&down, EST_MODE_LAND, 20.0F, 9.0F) < 8.5F);
 }
 
 void test_without_heights_the_thrust_is_not_cut_too_far(void)
@@ -90,7 +80,7 @@ void test_without_heights_the_thrust_is_not_cut_too_far(void)
 static float low_n(est_mode_t mode, bool rocks, float step_s)
 {
     let_down_step(&down, mode, 0.02F, rocks, false, step_s);
-    return let_down_limit_n(&down, mode, 7.2F, 7.0F, 0.0F);
+    return let_down_limit_n(&down, mode, 7.2F, 7.0F);
 }
 
 void test_the_end_of_a_landing_fades_the_thrust_out(void)

@@ -18,14 +18,11 @@ void test_law_est_is_asked_to_hold_to_land_or_to_sink(void)
     for (int i = 0; i < 3; i++) {
         setUp();
         mode_is(modes[i]);
-        feel(0.3F);
-        evidence.push_mps = 0.2F;
         est_law_t expected = est;
         const est_order_t order = {.mode = asked[i],
                                    .reference_m = 0.6F,
                                    .airborne = where.contact.airborne,
-                                   .hover_n = where.hover.thrust_n,
-                                   .climb_mps = 0.2F};
+                                   .hover_n = where.hover.thrust_n};
         const float expected_n = est_law_step(&expected, &parameters, &order);
         TEST_ASSERT_EQUAL_FLOAT(expected_n, laws_step(&laws, &est, &now, false));
     }
