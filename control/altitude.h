@@ -98,7 +98,7 @@ typedef struct {
     bool
         disagree; /* several mirrors, and more probably than not no two are honest; sense/mirrors.h sets it */
     uint16_t ground;    /* number of the ground below: another one after each scan in which it may have
-                         * stepped, 0: not known; sense/mirrors.h sets it too */
+                         * stepped, 0: not known; sense/sense.h sets it too */
     float height_mm;    /* may be negative by sensor noise on the ground */
     float slant_mm;     /* along the axis, mean over the valid groups */
     float spread_mm;    /* largest over the valid groups */

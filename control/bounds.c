@@ -77,16 +77,20 @@ static float slow_n(const situation_t *now, bool takes_off)
 }
 
 /* More than the hover thrust by which the law takes a lift-off to LIFT_MPS, by the accelerometer alone; it
- * brakes no harder than a slow descent needs. The noise of one that is shaken looks like a climb. */
+ * brakes no harder than a slow descent needs. The noise of one that is shaken looks like a climb. An
+ * autopilot whose throttle is a climb rate limits that itself, and does nothing near its neutral. */
 static float lift_off_n(const situation_t *now)
 {
     const evidence_t *evidence = now->evidence;
-    const bool tells = !doubts(evidence, DOUBT_IMU) && evidence->shaken <= 1.0F;
+    const bool tells = !doubts(evidence, DOUBT_IMU) && evidence->shaken <= 1.0F &&
+                       parameters_choice(now->parameters, PARAMETER_PLANT) == PLANT_THRUST;
     const float more_mps2 = now->parameters->value[PARAMETER_VELK] * (LIFT_MPS - evidence->felt_mps);
     const float more_n = climbing_n(now, evidence->felt_mps) +
                          more_mps2 / est_law_vehicle(now->est, now->parameters).authority_mps2_per_n;
 
-    return (tells && now->where->contact.airborne) ? at_least(more_n, -NEAR_HOVER_N) : THRUST_MAX_N;
+    return (tells && now->where->contact.airborne && est_law_has_imu(now->est))
+               ? at_least(more_n, -NEAR_HOVER_N)
+               : THRUST_MAX_N;
 }
 
 /* Limits the climb without use of the estimate while no height has confirmed it: a blocked beam looks like a

@@ -60,8 +60,7 @@ typedef struct {
     float fore_m[MIRROR_COUNT];   /* of each spot, from the lateral axis */
 } terrain_heights_t;
 
-/* The lowest above the ground that a law flies by what it thinks of the ground: the height of OFF_GROUND_MM
- * in supervisor.c. */
+/* The lowest above the ground that a law flies by what it thinks of the ground; docs/control.md, Terrain. */
 #define TERRAIN_LEAST_M 0.15F
 
 /* What a scan may bring. */

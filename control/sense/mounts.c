@@ -32,7 +32,7 @@ static uint16_t axes_of(const parameters_t *parameters)
                       parameters_choice(parameters, PARAMETER_IPITCH));
 }
 
-/* In TAKEOFF it stands, or is 0.15 m high at most. */
+/* In TAKEOFF it stands, or is 0.09 m high at most. */
 static zeros_place_t place_of(flight_state_t state)
 {
     if (state == FLIGHT_GROUND) {

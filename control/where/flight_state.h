@@ -31,8 +31,8 @@ typedef enum {
 #define FLIGHT_FLAG_IMU 512U
 #define FLIGHT_FLAG_THRUST 1024U /* doubt THRUST: commands have no effect */
 #define FLIGHT_FLAG_STICK 2048U  /* STICK PIN, and the stick does not count; set by task_control.c */
-/* at rest a mirror does not show the ground, or the mirrors show another tilt than the IMU tells; or a
- * reference waits, because the height at rest is above 0.09 m */
+/* at rest a mirror does not show the ground, or the mirrors show another tilt than the IMU tells, or the
+ * vehicle stands and its height is above 0.09 m */
 #define FLIGHT_FLAG_MIRRORS 4096U
 /* the reference is not reached: over 0.1 m off for 3 s, and no nearer; or a landing does not sink; set by
  * flight.c */
@@ -47,22 +47,21 @@ const char *flight_state_name(flight_state_t state);
 #define FLIGHT_IF_HEIGHT 4U      /* the latest valid height is at most 0.3 s old */
 #define FLIGHT_IF_LOST 8U        /* the latest valid height is more than 1.5 s old, or there never was one */
 #define FLIGHT_IF_OFF_GROUND 16U /* fresh height above 0.09 m */
-/* the tilt moves as in flight; and fresh heights above 0.09 m and level (see below) for 1 s, or for 0.15 s
- * while the pilot has the throttle; then also without any height for 1.5 s, where a reference waits */
+/* fresh heights above 0.09 m and level (see below) for 1 s, and the tilt moves as in flight */
 #define FLIGHT_IF_ALOFT 32U
-/* fresh heights below 0.05 m that did not fall by 0.02 m, for 1.2 s in the present state. In LANDING and
+/* fresh heights below 0.05 m that did not fall by 0.02 m, for 1 s in the present state. In LANDING and
  * DESCENDING also: for 0.6 s too little thrust to fly, and no measured fall */
 #define FLIGHT_IF_AT_REST 64U
-/* the vehicle will go above reference + 0.8 m. With an estimate: after 0.25 s more of the present climb and a
- * braking of 4 m/s2. From heights: two in a row, each with its own climb for 0.15 s more; for 0.4 s more when
- * there has been no estimate for 0.35 s */
+/* the vehicle will go above reference + 0.8 m. With an estimate: after 0.22 s more of the present climb and a
+ * braking of 4 m/s2. From heights: two in a row; each with its own climb for 0.4 s more when there has been
+ * no estimate for 0.35 s */
 #define FLIGHT_IF_TOO_HIGH 128U
 /* fresh height, and the predicted end of the motion (if there is an estimate) is below reference + 0.3 m */
 #define FLIGHT_IF_RECOVERED 256U
 #define FLIGHT_IF_LAND 512U             /* #SETR 0 arrived in this cycle */
 #define FLIGHT_IF_DESCENT_TIMEOUT 1024U /* 45 s in DESCENDING: its thrust has fallen to 0 */
 #define FLIGHT_IF_TILTED 2048U          /* three fresh attitudes in a row over 45 degrees */
-#define FLIGHT_IF_LEVEL 4096U           /* fresh attitude within 20 degrees */
+#define FLIGHT_IF_LEVEL 4096U           /* fresh attitude within 18 degrees */
 /* third LOWERING since the reference was set, or since 20 s of FLYING: the law cannot fly this vehicle */
 #define FLIGHT_IF_LOWERING_LIMIT 8192U
 #define FLIGHT_IF_HAS_THROTTLE 16384U /* the pilot does not have the throttle */

@@ -18,8 +18,7 @@
 /* A landing from 4.095 m, the scanner's range, is over: 11.7 s at 0.3 m/s down to 0.6 m, 2.8 s from there
  * (log(0.3 / 0.15) by 0.25 1/s, laws/descent.h), and REST_HELD_S. */
 #define REST_ROCKS_MAX_US UINT32_C(15500000)
-#define ALOFT_HELD_US ((uint32_t)(1.5e6F * SCAN_S)) /* a second height has shown it */
-#define LINK_HOLD_US UINT32_C(5000000)              /* it warns first: PX4, COM_FAIL_ACT_T */
+#define LINK_HOLD_US UINT32_C(5000000)        /* it warns first: PX4, COM_FAIL_ACT_T */
 #define DESCENT_TIMEOUT_US UINT32_C(45000000) /* the thrust of a blind descent has fallen to 0, descent.c */
 #define AGE_MAX_US UINT32_C(3600000000)       /* one hour: below the wrap of 71 minutes */
 
@@ -193,6 +192,11 @@ bool supervisor_is_at_rest(const supervisor_t *supervisor)
     return supervisor->state == FLIGHT_GROUND && supervisor->ground.rest.on;
 }
 
+bool supervisor_stands_high(const supervisor_t *supervisor)
+{
+    return supervisor->ground.high.for_us >= HEIGHT_FRESH_US; /* three heights have shown it */
+}
+
 bool supervisor_has_estimate(const supervisor_t *supervisor)
 {
     return supervisor->climb.estimate_age_us <= ESTIMATE_HELD_US;
@@ -222,6 +226,24 @@ static void follow_ground(supervisor_t *s)
                                                : at_most(s->ground.height_mm, s->height.height_mm);
         s->ground.height_mm = at_least(s->ground.height_mm, 0.0F);
         s->ground.sought = false;
+    }
+}
+
+/* It stands, and its mirrors are blocked, or look past what it stands on: its height does not move, nor does
+ * its tilt, and nobody else has the throttle. */
+static void observe_stand(supervisor_t *s, const flight_inputs_t *in, bool sways)
+{
+    ground_watch_t *ground = &s->ground;
+    const float height_mm = s->height.height_mm;
+    const bool stays = fabsf(height_mm - ground->high_from_mm) <= REST_FALL_MM;
+
+    update_hold(&ground->high,
+                s->state == FLIGHT_GROUND && in->has_throttle && !sways && height_fresh(s) &&
+                    height_mm > LOW_MM && stays,
+                s->step_us);
+    ground->high_from_mm = ground->high.on ? ground->high_from_mm : height_mm;
+    if (supervisor_stands_high(s)) {
+        s->reference_m = 0.0F;
     }
 }
 
@@ -310,17 +332,6 @@ static bool rests(const supervisor_t *s)
     return s->ground.rest.for_us >= REST_HELD_US && !rocks;
 }
 
-/* While the pilot has the throttle the output moves nothing, if his pin is right. So two heights in a row are
- * enough, and none where an order waits: else a vehicle whose pin lies falls when he gives the throttle back.
- */
-static bool is_aloft(const supervisor_t *s)
-{
-    const uint32_t held_us = s->pilots ? ALOFT_HELD_US : REST_HELD_US;
-    const bool by_tilt = s->pilots && s->height.age_us > HEIGHT_LOST_US && s->reference_m > 0.0F;
-
-    return s->sways && (s->ground.aloft.for_us >= held_us || by_tilt);
-}
-
 static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
 {
     const bool fresh = height_fresh(s);
@@ -332,7 +343,8 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
     return (uint16_t)(bit(reference, FLIGHT_IF_REFERENCE) | bit(is_ready(s, in), FLIGHT_IF_READY) |
                       bit(fresh, FLIGHT_IF_HEIGHT) | bit(s->height.age_us > HEIGHT_LOST_US, FLIGHT_IF_LOST) |
                       bit(fresh && s->height.height_mm > LOW_MM, FLIGHT_IF_OFF_GROUND) |
-                      bit(is_aloft(s), FLIGHT_IF_ALOFT) | bit(s->stands || rests(s), FLIGHT_IF_AT_REST) |
+                      bit(s->ground.aloft.for_us >= REST_HELD_US && s->sways, FLIGHT_IF_ALOFT) |
+                      bit(s->stands || rests(s), FLIGHT_IF_AT_REST) |
                       bit(fresh && reference && too_high(s), FLIGHT_IF_TOO_HIGH) |
                       bit(fresh && recovered(s), FLIGHT_IF_RECOVERED) | bit(s->land, FLIGHT_IF_LAND) |
                       bit(descent_timeout, FLIGHT_IF_DESCENT_TIMEOUT) |
@@ -347,12 +359,11 @@ static uint16_t flags(const supervisor_t *s, uint16_t met, float link_s, const f
     const bool fresh = height_fresh(s);
     const bool lowering = s->state == FLIGHT_LOWERING || (met & FLIGHT_IF_TOO_HIGH) != 0U;
     const bool tilted = s->state == FLIGHT_CUT || (met & FLIGHT_IF_TILTED) != 0U;
-    const uint16_t stands_high = FLIGHT_IF_REFERENCE | FLIGHT_IF_OFF_GROUND;
-    const bool waits = s->state == FLIGHT_GROUND && (met & stands_high) == stands_high;
 
     return (uint16_t)(bit(!fresh, FLIGHT_FLAG_HEIGHT) | bit(!is_ready(s, in), FLIGHT_FLAG_ATTITUDE) |
                       bit(fresh && in->altitude.disagree, FLIGHT_FLAG_DISAGREE) |
-                      bit(lowering, FLIGHT_FLAG_TOO_HIGH) | bit(waits, FLIGHT_FLAG_MIRRORS) |
+                      bit(lowering, FLIGHT_FLAG_TOO_HIGH) |
+                      bit(supervisor_stands_high(s), FLIGHT_FLAG_MIRRORS) |
                       bit(link_silent(s, link_s, 0U), FLIGHT_FLAG_LINK) | bit(tilted, FLIGHT_FLAG_TILT) |
                       bit(!in->has_throttle, FLIGHT_FLAG_PILOT));
 }
@@ -393,6 +404,7 @@ void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs
     observe_reference(supervisor, link_s, in);
     observe_estimate(supervisor, estimate);
     observe_ground(supervisor);
+    observe_stand(supervisor, in, estimate->sways);
     observe_hand_over(supervisor, in, estimate);
     observe_climb(supervisor);
     observe_flown(supervisor, estimate);

@@ -65,7 +65,8 @@ typedef struct {
 /* The ground below, by heights. */
 typedef struct {
     hold_t aloft, rest;
-    float rest_from_mm;
+    hold_t high; /* it stands on the ground, and its height does not show that */
+    float rest_from_mm, high_from_mm;
     float height_mm; /* measured where it stands, when the height did not show that; else 0 */
     bool sought;     /* the vehicle stands, and no height was measured there yet */
 } ground_watch_t;
@@ -106,6 +107,9 @@ typedef struct {
     bool in_hands;
 } supervisor_t;
 
+/* True when the vehicle stands in GROUND and its height is above 0.09 m: no mirror shows the ground. A
+ * reference is withdrawn then. */
+bool supervisor_stands_high(const supervisor_t *supervisor);
 /* Starts in GROUND, with nothing known. */
 void supervisor_init(supervisor_t *supervisor);
 

@@ -122,6 +122,9 @@ void test_a_lift_off_that_no_height_has_confirmed_climbs_at_400_mm_a_second_by_t
     airborne(false);
     NEAR(11.0F, climbing_n(FLIGHT_TAKEOFF, FLIGHT_MODE_EST_HOLD, true, 0.0F, 1.0F));
     airborne(true);
+    parameters.value[PARAMETER_PLANT] = (float)PLANT_CLIMB;
+    NEAR(11.0F, climbing_n(FLIGHT_TAKEOFF, FLIGHT_MODE_EST_HOLD, true, 0.0F, 1.0F));
+    parameters.value[PARAMETER_PLANT] = (float)PLANT_THRUST;
     evidence.doubts = DOUBT_IMU;
     NEAR(11.0F, climbing_n(FLIGHT_TAKEOFF, FLIGHT_MODE_EST_HOLD, true, 0.0F, 1.0F));
 }

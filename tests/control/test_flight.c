@@ -1002,9 +1002,6 @@ void test_with_the_seeds_parameters_the_thrust_is_never_cut_off_the_ground(void)
         if ((i / 100) % 7 != 6) {
             any_height(true);
         }
-        if (out.state == FLIGHT_GROUND) {
-            in.altitude = seen_at((float)any(50));
-        }
         if (any(50) == 0) {
             setr(any(4) == 0 ? 0.0F : 0.6F);
         }

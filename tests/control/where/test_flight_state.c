@@ -84,9 +84,7 @@ static flight_state_t expected_next(flight_state_t from, unsigned c)
         if (!(c & FLIGHT_IF_ALOFT) && (c & FLIGHT_IF_HANDED_OVER)) {
             return FLIGHT_DESCENDING;
         }
-        return (c & FLIGHT_IF_ALOFT)                                    ? FLIGHT_FLOATING
-               : (go && ours && !tilted && !(c & FLIGHT_IF_OFF_GROUND)) ? FLIGHT_TAKEOFF
-                                                                        : from;
+        return (c & FLIGHT_IF_ALOFT) ? FLIGHT_FLOATING : (go && ours && !tilted) ? FLIGHT_TAKEOFF : from;
     case FLIGHT_TAKEOFF:
     case FLIGHT_FLYING:
         if (!height) {
