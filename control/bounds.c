@@ -16,10 +16,6 @@
 #define BLINDLY_S 1.0F /* chosen: ten scans; what falls is found in fewer, see docs/reliability.md */
 #define UNCONFIRMED_MPS (0.001F * DESCENT_RATE_MM_S) /* no faster than a descent */
 
-/* chosen of 0.3 to 0.7: from 0.09 to 0.12 m, so that a height confirms the climb, it takes less than a scan;
- * by 0.3 a vehicle whose hover thrust was too low fell back */
-#define LIFT_MPS 0.4F
-
 #define UNCHECKED_BELOW_N (2.0F * NEAR_HOVER_N) /* to sink is safer than to climb */
 
 #define BACK_BELOW_N NEAR_HOVER_N /* sinks at 0.3 m/s */
@@ -65,44 +61,32 @@ static float climbing_n(const situation_t *now, float climb_mps)
     return vehicle.damping_per_s * climb_mps / vehicle.authority_mps2_per_n;
 }
 
-/* More than the hover thrust while the thrust tells a climb; at the take-off, while the accelerometer does
- * too. */
-static float slow_n(const situation_t *now, bool takes_off)
+/* More than the hover thrust by which the law brakes a climb to UNCONFIRMED_MPS, no harder than a slow
+ * descent needs. Thrust and accelerometer tell its speed; where they differ, the less of both. */
+static float braking_n(const situation_t *now)
 {
     const evidence_t *evidence = now->evidence;
-    const bool felt = doubts(evidence, DOUBT_IMU) || felt_mps(evidence) > UNCONFIRMED_MPS;
-    const bool fast = evidence->push_mps > UNCONFIRMED_MPS && (!takes_off || felt);
+    const float felt = doubts(evidence, DOUBT_IMU) ? 0.0F : felt_mps(evidence);
+    const float climb_mps = at_least(fminf(evidence->push_mps, felt), UNCONFIRMED_MPS);
+    const float more_mps2 = now->parameters->value[PARAMETER_VELK] * (UNCONFIRMED_MPS - climb_mps);
+    const float authority_mps2_per_n = est_law_vehicle(now->est, now->parameters).authority_mps2_per_n;
 
-    return fast ? climbing_n(now, UNCONFIRMED_MPS) : THRUST_MAX_N;
-}
-
-/* More than the hover thrust by which the law takes a lift-off to LIFT_MPS, by the accelerometer alone; it
- * brakes no harder than a slow descent needs. The noise of one that is shaken looks like a climb. An
- * autopilot whose throttle is a climb rate limits that itself, and does nothing near its neutral. */
-static float lift_off_n(const situation_t *now)
-{
-    const evidence_t *evidence = now->evidence;
-    const bool tells = !doubts(evidence, DOUBT_IMU) && evidence->shaken <= 1.0F &&
-                       parameters_choice(now->parameters, PARAMETER_PLANT) == PLANT_THRUST;
-    const float more_mps2 = now->parameters->value[PARAMETER_VELK] * (LIFT_MPS - evidence->felt_mps);
-    const float more_n = climbing_n(now, evidence->felt_mps) +
-                         more_mps2 / est_law_vehicle(now->est, now->parameters).authority_mps2_per_n;
-
-    return (tells && now->where->contact.airborne && est_law_has_imu(now->est))
-               ? at_least(more_n, -NEAR_HOVER_N)
-               : THRUST_MAX_N;
+    return at_least(climbing_n(now, climb_mps) + more_mps2 / authority_mps2_per_n, -NEAR_HOVER_N);
 }
 
 /* Limits the climb without use of the estimate while no height has confirmed it: a blocked beam looks like a
- * step towards the vehicle. */
+ * step towards the vehicle. The take-off begins at full thrust: a slow one tells the belief little, and
+ * blocked beams were found 0.2 m higher. */
 static interval_t of_climb(bounds_t *bounds, const situation_t *now)
 {
+    const evidence_t *evidence = now->evidence;
     const bool takes_off = now->where->supervisor.state == FLIGHT_TAKEOFF;
-    const float more_n = at_most(slow_n(now, takes_off), takes_off ? lift_off_n(now) : THRUST_MAX_N);
+    const bool fast = evidence->push_mps > UNCONFIRMED_MPS &&
+                      (!takes_off || doubts(evidence, DOUBT_IMU) || felt_mps(evidence) > UNCONFIRMED_MPS);
 
     (void)bounds;
-    return (now->evidence->unconfirmed && modes_hold_reference(now->mode, now->law))
-               ? most(now->where->hover.thrust_n + more_n)
+    return (evidence->unconfirmed && fast && modes_hold_reference(now->mode, now->law))
+               ? most(now->where->hover.thrust_n + braking_n(now))
                : anything;
 }
 

@@ -12,7 +12,7 @@
 
 typedef enum {
     BOUND_NONE,
-    BOUND_CLIMB,    /* a climb, or a lift-off, that no height has confirmed */
+    BOUND_CLIMB,    /* a climb that no height has confirmed */
     BOUND_DESCENT,  /* a descent after a far step of the terrain that no height has confirmed, or while all
                        mirrors may lie */
     BOUND_COASTING, /* the IMU was silent, and no heights have checked the speed since */

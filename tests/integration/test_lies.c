@@ -72,8 +72,15 @@ static const lie_t sights[] = {
 
 /* The blocked beam shows about the reference, so the law is content and drifts. */
 static const lie_t content[] = {
-    {{FLAT, "plant.sight_blocked=0.71", "plant.block_mm=805"}, 800.0, 1.0, 0.0},
-    {{FLAT, "plant.sight_blocked=1", "plant.block_mm=795", "plant.hover_thrust=7.8"}, 800.0, 1.0, 0.0},
+    {{FLAT, "plant.sight_blocked=0.71", "plant.sight_blocked_start=1.4", "plant.block_mm=805"},
+     800.0,
+     1.0,
+     0.0},
+    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=1.4", "plant.block_mm=795",
+      "plant.hover_thrust=7.8"},
+     800.0,
+     1.0,
+     0.0},
     {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=6", "plant.block_mm=739"}, 1500.0, 1.0, 0.0},
     {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=6", "plant.block_mm=750"}, 1500.0, 1.0, 0.0},
 };
@@ -87,7 +94,11 @@ void test_a_blocked_beam_that_shows_the_reference_does_not_fly_the_vehicle_away(
 
 /* Only the thrust tells the truth. */
 static const lie_t alone[] = {
-    {{FLAT, "plant.sight_blocked=1", "plant.block_mm=372", "plant.acc_sign=-1"}, 2000.0, 1.2, 0.0},
+    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=1.4", "plant.block_mm=372",
+      "plant.acc_sign=-1"},
+     2000.0,
+     1.2,
+     0.0},
 };
 
 void test_a_blocked_beam_with_an_accelerometer_upside_down_is_noticed_at_the_lift_off(void)
@@ -104,15 +115,33 @@ void test_a_sight_that_lies_does_not_fly_the_vehicle_away(void)
     }
 }
 
+/* It stands, and its height says otherwise: nothing takes off by the order that is given then. */
+static const lie_t high[] = {
+    {{FLAT, "plant.sight_blocked=1", "plant.block_mm=372"}, 0.0, 0.0, 0.0},
+    {{"plant.platform=0", "plant.sight_blocked=1", "plant.block_mm=640"}, 0.0, 0.0, 0.0},
+};
+
+void test_beams_blocked_since_power_on_that_show_no_ground_lift_nothing(void)
+{
+    for (size_t i = 0; i < sizeof high / sizeof high[0]; i++) {
+        static flight_result_t result;
+
+        child_fly("est-60cm-ramp", FIRST_SEED, high[i].assignments, &result);
+        TEST_ASSERT_NULL(result.halt);
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, result.metrics.value[METRIC_ALOFT_S]);
+    }
+}
+
 /* Light vehicles of weak damping: GRAV carries them up before any height tells. */
 static const lie_t light[] = {
-    {{FLAT, "plant.sight_blocked=1", "plant.block_mm=640", "plant.hover_thrust=6", "plant.damping=1.7"},
+    {{FLAT, "plant.sight_blocked=1", "plant.sight_blocked_start=1.4", "plant.block_mm=640",
+      "plant.hover_thrust=6", "plant.damping=1.7"},
      500.0,
      1.0,
      0.0},
 };
 
-void test_a_light_vehicle_whose_beam_is_blocked_since_power_on_does_not_fly_away(void)
+void test_a_light_vehicle_whose_beam_is_blocked_in_the_take_off_does_not_fly_away(void)
 {
     for (size_t i = 0; i < sizeof light / sizeof light[0]; i++) {
         fly("est-60cm-ramp", &light[i], false);
