@@ -66,17 +66,17 @@ static float climbing_n(const situation_t *now, float climb_mps)
 static float braking_n(const situation_t *now)
 {
     const evidence_t *evidence = now->evidence;
-    const float felt = doubts(evidence, DOUBT_IMU) ? 0.0F : felt_mps(evidence);
-    const float climb_mps = at_least(fminf(evidence->push_mps, felt), UNCONFIRMED_MPS);
+    const float climb_mps = at_least(fminf(evidence->push_mps, felt_mps(evidence)), UNCONFIRMED_MPS);
     const float more_mps2 = now->parameters->value[PARAMETER_VELK] * (UNCONFIRMED_MPS - climb_mps);
     const float authority_mps2_per_n = est_law_vehicle(now->est, now->parameters).authority_mps2_per_n;
 
-    return at_least(climbing_n(now, climb_mps) + more_mps2 / authority_mps2_per_n, -NEAR_HOVER_N);
+    return at_most(at_least(climbing_n(now, climb_mps) + more_mps2 / authority_mps2_per_n, -NEAR_HOVER_N),
+                   climbing_n(now, UNCONFIRMED_MPS));
 }
 
 /* Limits the climb without use of the estimate while no height has confirmed it: a blocked beam looks like a
- * step towards the vehicle. The take-off begins at full thrust: a slow one tells the belief little, and
- * blocked beams were found 0.2 m higher. */
+ * step towards the vehicle. A take-off is not slowed before it is fast: a slow one tells the belief little,
+ * and blocked beams were found 0.2 m higher. */
 static interval_t of_climb(bounds_t *bounds, const situation_t *now)
 {
     const evidence_t *evidence = now->evidence;

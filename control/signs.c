@@ -101,6 +101,7 @@ vertical_estimate_t signs_of_vertical(const situation_t *now, bool hands_over)
         .stands = now->evidence->stands || without_thrust,
         .upright = now->evidence->upright,
         .sways = now->evidence->sways,
+        .calm = now->evidence->calm,
         .rocks = now->rocks,
         .hands_over = hands_over,
         .in_hands = may_be_in_hands(now),

@@ -22,7 +22,8 @@
 #define DESCENT_TIMEOUT_US UINT32_C(45000000) /* the thrust of a blind descent has fallen to 0, descent.c */
 #define AGE_MAX_US UINT32_C(3600000000)       /* one hour: below the wrap of 71 minutes */
 
-#define REST_FALL_MM 20.0F /* three HEIGHT_SIGMA_M, 19.2 mm */
+#define REST_FALL_MM 20.0F                                      /* three HEIGHT_SIGMA_M, 19.2 mm */
+#define STAND_MOVES_MM (3000.0F * HEIGHT_SIGMA_M * 1.41421356F) /* three sigmas of two heights */
 /* Above the highest reference, 3 m, the scanner sees 0.89 m more: 4.095 m less 0.205 m of the front mirror's
  * way. Rounded down. */
 #define TOO_HIGH_MM 800.0F
@@ -192,11 +193,6 @@ bool supervisor_is_at_rest(const supervisor_t *supervisor)
     return supervisor->state == FLIGHT_GROUND && supervisor->ground.rest.on;
 }
 
-bool supervisor_stands_high(const supervisor_t *supervisor)
-{
-    return supervisor->ground.high.for_us >= HEIGHT_FRESH_US; /* three heights have shown it */
-}
-
 bool supervisor_has_estimate(const supervisor_t *supervisor)
 {
     return supervisor->climb.estimate_age_us <= ESTIMATE_HELD_US;
@@ -229,22 +225,35 @@ static void follow_ground(supervisor_t *s)
     }
 }
 
-/* It stands, and its mirrors are blocked, or look past what it stands on: its height does not move, nor does
- * its tilt, and nobody else has the throttle. */
-static void observe_stand(supervisor_t *s, const flight_inputs_t *in, bool sways)
+/* On the ground, by all but its height: the tilt is still, and no pilot hands it over in the air. */
+static bool is_still(const supervisor_t *s, const flight_inputs_t *in, bool calm)
+{
+    return s->state == FLIGHT_GROUND && s->ground.ours.for_us >= HEIGHT_FRESH_US && calm && is_ready(s, in);
+}
+
+/* How long a height above the ground has come, and how long it has stayed. */
+static void watch_height(ground_watch_t *ground, bool high, float height_mm, uint32_t step_us)
+{
+    const bool begins = !ground->watched.on;
+    const bool stays = begins || fabsf(height_mm - ground->high_from_mm) <= STAND_MOVES_MM;
+
+    update_hold(&ground->watched, high, step_us);
+    update_hold(&ground->high, high && stays, step_us);
+    ground->high_from_mm = (ground->high.on && !begins) ? ground->high_from_mm : height_mm;
+}
+
+/* It stands, and its mirrors are blocked, or look past what it stands on. What is found holds until a height
+ * shows the ground, or somebody moves the vehicle. */
+static void observe_stand(supervisor_t *s, const flight_inputs_t *in, bool calm)
 {
     ground_watch_t *ground = &s->ground;
-    const float height_mm = s->height.height_mm;
-    const bool stays = fabsf(height_mm - ground->high_from_mm) <= REST_FALL_MM;
+    const bool low = height_fresh(s) && s->height.height_mm <= LOW_MM;
 
-    update_hold(&ground->high,
-                s->state == FLIGHT_GROUND && in->has_throttle && !sways && height_fresh(s) &&
-                    height_mm > LOW_MM && stays,
-                s->step_us);
-    ground->high_from_mm = ground->high.on ? ground->high_from_mm : height_mm;
-    if (supervisor_stands_high(s)) {
-        s->reference_m = 0.0F;
-    }
+    update_hold(&ground->ours, in->has_throttle, s->step_us);
+    const bool still = is_still(s, in, calm);
+    watch_height(ground, still && height_fresh(s) && !low, s->height.height_mm, s->step_us);
+    ground->stands_high = still && !low && (ground->stands_high || ground->high.for_us >= HEIGHT_FRESH_US);
+    s->reference_m = ground->stands_high ? 0.0F : s->reference_m;
 }
 
 static void observe_ground(supervisor_t *s)
@@ -332,6 +341,14 @@ static bool rests(const supervisor_t *s)
     return s->ground.rest.for_us >= REST_HELD_US && !rocks;
 }
 
+/* While a height above the ground has just come, a reference waits: does the vehicle stand? */
+static bool may_follow_reference(const supervisor_t *s)
+{
+    const bool asks = s->ground.watched.on && s->ground.watched.for_us < HEIGHT_FRESH_US;
+
+    return s->reference_m > 0.0F && !asks;
+}
+
 static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
 {
     const bool fresh = height_fresh(s);
@@ -340,8 +357,9 @@ static uint16_t conditions(const supervisor_t *s, const flight_inputs_t *in)
                                  !s->in_hands;
     const bool lowering_limit = s->state == FLIGHT_LOWERING && s->climb.lowerings == LOWERINGS_MAX;
 
-    return (uint16_t)(bit(reference, FLIGHT_IF_REFERENCE) | bit(is_ready(s, in), FLIGHT_IF_READY) |
-                      bit(fresh, FLIGHT_IF_HEIGHT) | bit(s->height.age_us > HEIGHT_LOST_US, FLIGHT_IF_LOST) |
+    return (uint16_t)(bit(may_follow_reference(s), FLIGHT_IF_REFERENCE) |
+                      bit(is_ready(s, in), FLIGHT_IF_READY) | bit(fresh, FLIGHT_IF_HEIGHT) |
+                      bit(s->height.age_us > HEIGHT_LOST_US, FLIGHT_IF_LOST) |
                       bit(fresh && s->height.height_mm > LOW_MM, FLIGHT_IF_OFF_GROUND) |
                       bit(s->ground.aloft.for_us >= REST_HELD_US && s->sways, FLIGHT_IF_ALOFT) |
                       bit(s->stands || rests(s), FLIGHT_IF_AT_REST) |
@@ -362,8 +380,7 @@ static uint16_t flags(const supervisor_t *s, uint16_t met, float link_s, const f
 
     return (uint16_t)(bit(!fresh, FLIGHT_FLAG_HEIGHT) | bit(!is_ready(s, in), FLIGHT_FLAG_ATTITUDE) |
                       bit(fresh && in->altitude.disagree, FLIGHT_FLAG_DISAGREE) |
-                      bit(lowering, FLIGHT_FLAG_TOO_HIGH) |
-                      bit(supervisor_stands_high(s), FLIGHT_FLAG_MIRRORS) |
+                      bit(lowering, FLIGHT_FLAG_TOO_HIGH) | bit(s->ground.stands_high, FLIGHT_FLAG_MIRRORS) |
                       bit(link_silent(s, link_s, 0U), FLIGHT_FLAG_LINK) | bit(tilted, FLIGHT_FLAG_TILT) |
                       bit(!in->has_throttle, FLIGHT_FLAG_PILOT));
 }
@@ -404,7 +421,7 @@ void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs
     observe_reference(supervisor, link_s, in);
     observe_estimate(supervisor, estimate);
     observe_ground(supervisor);
-    observe_stand(supervisor, in, estimate->sways);
+    observe_stand(supervisor, in, estimate->calm);
     observe_hand_over(supervisor, in, estimate);
     observe_climb(supervisor);
     observe_flown(supervisor, estimate);

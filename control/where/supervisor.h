@@ -24,6 +24,7 @@ typedef struct {
                        * without `known` */
     float upright;    /* cosine of the tilt of *in; valid also without `known` */
     bool sways;       /* the tilt moves as it does in flight; valid also without `known` */
+    bool calm;        /* the tilt is still; between the two neither is certain; valid also without `known` */
     bool rocks;       /* the same within the last 0.8 s */
     bool hands_over;  /* #ARM lets the tilt alone tell a pilot's flight, arming.h */
     bool in_hands;    /* GROUND: no pin tells who has the throttle, there is no height, and a pilot flies;
@@ -65,7 +66,9 @@ typedef struct {
 /* The ground below, by heights. */
 typedef struct {
     hold_t aloft, rest;
-    hold_t high; /* it stands on the ground, and its height does not show that */
+    hold_t ours;          /* the firmware has the throttle */
+    hold_t watched, high; /* it rests with a height above 0.09 m; and that height stays */
+    bool stands_high;     /* so it stands, and its height does not show the ground */
     float rest_from_mm, high_from_mm;
     float height_mm; /* measured where it stands, when the height did not show that; else 0 */
     bool sought;     /* the vehicle stands, and no height was measured there yet */
@@ -107,9 +110,6 @@ typedef struct {
     bool in_hands;
 } supervisor_t;
 
-/* True when the vehicle stands in GROUND and its height is above 0.09 m: no mirror shows the ground. A
- * reference is withdrawn then. */
-bool supervisor_stands_high(const supervisor_t *supervisor);
 /* Starts in GROUND, with nothing known. */
 void supervisor_init(supervisor_t *supervisor);
 
@@ -117,7 +117,7 @@ void supervisor_init(supervisor_t *supervisor);
  * longest silence of the link in seconds; 0 = supervision is off.
  *
  * A #SETR sets the reference. These clear it, so that only a new #SETR flies again: a lost link; entering
- * GROUND, DESCENDING or CUT; a landing after the third LOWERING. */
+ * GROUND, DESCENDING or CUT; a landing after the third LOWERING; standing with a height above 0.09 m. */
 void supervisor_step(supervisor_t *supervisor, float link_s, const flight_inputs_t *in,
                      const vertical_estimate_t *estimate);
 

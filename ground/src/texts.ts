@@ -60,7 +60,7 @@ export const en = {
     ['Accelerations not used', 'The IMU sends none, or they contradict gravity or the heights: units, signs, mounting. Law EST flies on without them. Check by #IMU before the next flight.'],
     ['Thrust has no effect', 'The vehicle does not follow the commands: motors off, throttle not handed over, or the pilot flies.'],
     ['The stick does not count', 'Put it in the middle for a second. If that does not help: no pulses, noise, SMID, or SEL is not PIN. The height is held.'],
-    ['Mirrors or IMU mounted wrongly', 'At rest a mirror does not show the ground, or the mirrors show another tilt than the IMU: #MIRRORS tells which. Nothing takes off above 0.09 m.'],
+    ['Mirrors or IMU mounted wrongly', 'At rest a mirror does not show the ground, or the mirrors show another tilt than the IMU: #MIRRORS tells which. Or it stands, and its height is above 0.09 m: then it does not take off.'],
   ] as [string, string][],
   batteryWords: {
     LOW: ['Battery low', 'Land. When it is empty the vehicle lands by itself.'],
@@ -177,7 +177,7 @@ export const es: Words = {
     ['Aceleraciones sin usar', 'La IMU no las envía, o contradicen a la gravedad o a las alturas: unidades, signos, montaje. La ley EST sigue volando sin ellas. Compruebe con #IMU antes del próximo vuelo.'],
     ['El empuje no hace efecto', 'El vehículo no sigue las órdenes: motores parados, gas sin entregar, o vuela el piloto.'],
     ['La palanca no cuenta', 'Póngala en el centro medio segundo. Si no basta: no hay pulsos, hay ruido, SMID, o SEL no es PIN. La altura se mantiene.'],
-    ['Espejos o IMU mal montados', 'En reposo un espejo no muestra el suelo, o los espejos muestran otra inclinación que la IMU: #MIRRORS dice cuál. Nada despega por encima de 0,09 m.'],
+    ['Espejos o IMU mal montados', 'En reposo un espejo no muestra el suelo, o los espejos muestran otra inclinación que la IMU: #MIRRORS dice cuál. O está en reposo y su altura pasa de 0,09 m: entonces no despega.'],
   ],
   batteryWords: {
     LOW: ['Batería baja', 'Aterrice. Cuando esté vacía, el vehículo aterriza solo.'],
