@@ -138,11 +138,18 @@ static bool are_known(const belief_t *belief, uint16_t liars)
 /* begun: just_begun() of each world. */
 static void follow_all(belief_t *belief, const float begun[BELIEF_WORLDS])
 {
+    uint16_t last[BELIEF_WORLDS];
+
     for (uint16_t k = 1U; k <= belief->known; ++k) {
+        last[k] = last_of(k);
+    }
+    for (uint16_t k = 1U; k <= belief->known; ++k) {
+        const uint16_t first = first_of(k);
+
         for (uint16_t later = 1U; later <= belief->known; ++later) {
-            if (are_known(belief, later | k) && last_of(later) < first_of(k)) {
+            if (last[later] < first && are_known(belief, later | k)) {
                 follow(&belief->worlds[k | later], &belief->worlds[k], later,
-                       BETWEEN_RAYS * (float)(first_of(k) - last_of(later)) * begun[k]);
+                       BETWEEN_RAYS * (float)(first - last[later]) * begun[k]);
             }
         }
     }
@@ -162,7 +169,9 @@ static void mix(belief_t *belief, float gap_s)
             worlds[0].probability -= at_once(k) * together;
         }
     }
-    follow_all(belief, begun);
+    if (belief_has_several(belief->known)) {
+        follow_all(belief, begun);
+    }
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         for (uint16_t k = 0U; k <= belief->known; ++k) {
             if (belief_has(belief->known & (uint16_t)~k, m)) {

@@ -228,7 +228,7 @@ static void follow_ground(supervisor_t *s)
 /* On the ground, by all but its height: the tilt is still, and no pilot hands it over in the air. */
 static bool is_still(const supervisor_t *s, const flight_inputs_t *in, bool calm)
 {
-    return s->state == FLIGHT_GROUND && s->ground.ours.for_us >= HEIGHT_FRESH_US && calm && is_ready(s, in);
+    return s->ground.ours.for_us >= HEIGHT_FRESH_US && calm && is_ready(s, in);
 }
 
 /* How long a height above the ground has come, and how long it has stayed. */
@@ -250,6 +250,10 @@ static void observe_stand(supervisor_t *s, const flight_inputs_t *in, bool calm)
     const bool low = height_fresh(s) && s->height.height_mm <= LOW_MM;
 
     update_hold(&ground->ours, in->has_throttle, s->step_us);
+    if (s->state != FLIGHT_GROUND) {
+        ground->watched.on = ground->high.on = ground->stands_high = false;
+        return;
+    }
     const bool still = is_still(s, in, calm);
     watch_height(ground, still && height_fresh(s) && !low, s->height.height_mm, s->step_us);
     ground->stands_high = still && !low && (ground->stands_high || ground->high.for_us >= HEIGHT_FRESH_US);
