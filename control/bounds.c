@@ -61,17 +61,20 @@ static float climbing_n(const situation_t *now, float climb_mps)
     return vehicle.damping_per_s * climb_mps / vehicle.authority_mps2_per_n;
 }
 
-/* More than the hover thrust by which the law brakes a climb to UNCONFIRMED_MPS, no harder than a slow
- * descent needs. Thrust and accelerometer tell its speed; where they differ, the less of both. */
-static float braking_n(const situation_t *now)
+/* More than the hover thrust, of a climb at UNCONFIRMED_MPS. A faster one that the heights do not show is
+ * braked to it as the law would, no harder than a slow descent needs. Thrust and accelerometer tell its
+ * speed; where they differ, the less of both. */
+static float slow_n(const situation_t *now)
 {
     const evidence_t *evidence = now->evidence;
     const float climb_mps = at_least(fminf(evidence->push_mps, felt_mps(evidence)), UNCONFIRMED_MPS);
     const float more_mps2 = now->parameters->value[PARAMETER_VELK] * (UNCONFIRMED_MPS - climb_mps);
     const float authority_mps2_per_n = est_law_vehicle(now->est, now->parameters).authority_mps2_per_n;
+    const float braking_n = at_least(climbing_n(now, climb_mps) + more_mps2 / authority_mps2_per_n,
+                                     -NEAR_HOVER_N);
+    const float slow_n = climbing_n(now, UNCONFIRMED_MPS);
 
-    return at_most(at_least(climbing_n(now, climb_mps) + more_mps2 / authority_mps2_per_n, -NEAR_HOVER_N),
-                   climbing_n(now, UNCONFIRMED_MPS));
+    return (evidence->rise_mps < 0.5F * UNCONFIRMED_MPS) ? at_most(braking_n, slow_n) : slow_n;
 }
 
 /* Limits the climb without use of the estimate while no height has confirmed it: a blocked beam looks like a
@@ -86,7 +89,7 @@ static interval_t of_climb(bounds_t *bounds, const situation_t *now)
 
     (void)bounds;
     return (evidence->unconfirmed && fast && modes_hold_reference(now->mode, now->law))
-               ? most(now->where->hover.thrust_n + braking_n(now))
+               ? most(now->where->hover.thrust_n + slow_n(now))
                : anything;
 }
 

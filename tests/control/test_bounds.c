@@ -111,6 +111,10 @@ void test_a_climb_that_thrust_and_accelerometer_tell_is_braked_by_the_less_of_bo
     NEAR(braking_n(0.33F), climbing_n(FLIGHT_FLYING, FLIGHT_MODE_EST_HOLD, true, 0.5F, 0.33F));
     NEAR(braking_n(0.33F), climbing_n(FLIGHT_TAKEOFF, FLIGHT_MODE_EST_HOLD, true, 0.5F, 0.33F));
     NEAR(6.5F, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_EST_HOLD, true, 2.0F, 2.0F)); /* as a slow descent */
+    evidence.rise_mps = 0.151F;                                                    /* the heights show it */
+    NEAR(braking_n(0.3F), climbing_n(FLIGHT_FLYING, FLIGHT_MODE_EST_HOLD, true, 2.0F, 2.0F));
+    evidence.rise_mps = 0.149F;
+    NEAR(6.5F, climbing_n(FLIGHT_FLYING, FLIGHT_MODE_EST_HOLD, true, 2.0F, 2.0F));
     parameters.value[PARAMETER_VELK] = 2.0F; /* less than the damping: no more than a slow climb needs */
     NEAR(braking_n(0.3F), climbing_n(FLIGHT_FLYING, FLIGHT_MODE_EST_HOLD, true, 2.0F, 2.0F));
 }
