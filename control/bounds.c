@@ -77,18 +77,24 @@ static float slow_n(const situation_t *now)
     return (evidence->rise_mps < 0.5F * UNCONFIRMED_MPS) ? at_most(braking_n, slow_n) : slow_n;
 }
 
-/* Limits the climb without use of the estimate while no height has confirmed it: a blocked beam looks like a
- * step towards the vehicle. A take-off is not slowed before it is fast: a slow one tells the belief little,
- * and blocked beams were found 0.2 m higher. */
-static interval_t of_climb(bounds_t *bounds, const situation_t *now)
+/* By the thrust; while by its heights the vehicle stands, by the accelerometer too. Too small a hover thrust
+ * looks like a climb there, and its limit would keep the vehicle on the ground. Nor is a take-off slowed
+ * before it is fast: a slow one tells the belief little, and blocked beams were found 0.2 m higher. */
+static bool climbs_fast(const situation_t *now)
 {
     const evidence_t *evidence = now->evidence;
-    const bool takes_off = now->where->supervisor.state == FLIGHT_TAKEOFF;
-    const bool fast = evidence->push_mps > UNCONFIRMED_MPS &&
-                      (!takes_off || doubts(evidence, DOUBT_IMU) || felt_mps(evidence) > UNCONFIRMED_MPS);
+    const bool stands = now->where->supervisor.height.height_mm < LOW_MM;
+    const bool felt = doubts(evidence, DOUBT_IMU) || felt_mps(evidence) > UNCONFIRMED_MPS;
 
+    return evidence->push_mps > UNCONFIRMED_MPS && (!stands || felt);
+}
+
+/* Limits the climb without use of the estimate while no height has confirmed it: a blocked beam looks like a
+ * step towards the vehicle. */
+static interval_t of_climb(bounds_t *bounds, const situation_t *now)
+{
     (void)bounds;
-    return (evidence->unconfirmed && fast && modes_hold_reference(now->mode, now->law))
+    return (now->evidence->unconfirmed && climbs_fast(now) && modes_hold_reference(now->mode, now->law))
                ? most(now->where->hover.thrust_n + slow_n(now))
                : anything;
 }

@@ -65,9 +65,8 @@ typedef struct {
     float off_pitch_rad;
 } flight_mirrors_t;
 
-/* True when the vehicle must not take off: two mirrors would outvote the one that is right. A single one is
- * outvoted itself. */
-static inline bool flight_mirrors_forbid(const flight_mirrors_t *mirrors)
+/* True when two mirrors would outvote the one that is right. A single one is outvoted itself. */
+static inline bool flight_mirrors_outvote(const flight_mirrors_t *mirrors)
 {
     return (mirrors->wrong & (uint16_t)(mirrors->wrong - 1U)) != 0U;
 }
@@ -83,6 +82,7 @@ typedef struct {
     uint16_t bound;        /* that holds the thrust, bound_t of bounds.h; 0: none */
     imu_fault_t imu_fault; /* by gravity, or by the mirrors */
     flight_mirrors_t mirrors;
+    bool stands_high;         /* GROUND, and its height does not show the ground it stands on */
     float reference_m;        /* reference in force, 0 = none */
     float height_mm;          /* of the latest scan, believed or not; NAN: that scan gave none */
     float estimate_mm;        /* height that the law uses; NAN: not known */
@@ -96,6 +96,12 @@ typedef struct {
     uint16_t left_out; /* bits: mirrors of the latest scan that gave a height, and that the vote left out */
     scan_signal_t signal; /* of the latest scan; set by task_control.c */
 } flight_outputs_t;
+
+/* True when the mirrors show too little of the ground to take off by them. */
+static inline bool flight_mirrors_forbid(const flight_outputs_t *flight)
+{
+    return flight->stands_high || flight_mirrors_outvote(&flight->mirrors);
+}
 
 /* Before the first cycle. */
 #define FLIGHT_OUTPUTS_INITIAL \

@@ -28,6 +28,7 @@ void outputs_write(const situation_t *now, bool out_of_reach, float thrust_n, fl
     out->state = supervisor->state;
     out->flags = flags(now, out_of_reach);
     out->reason = now->evidence->reason;
+    out->stands_high = supervisor->ground.stands_high;
     out->reference_m = supervisor->reference_m;
     out->estimate_mm = estimated ? estimator->now.height_m * 1000.0F : measured_mm;
     out->innovation_mm = estimated ? estimator->innovation_m * 1000.0F : NAN;

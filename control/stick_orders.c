@@ -137,8 +137,7 @@ static void command(stick_orders_t *orders, const parameters_t *parameters, cons
                     float up, float step_s)
 {
     const bool armed = before->state == FLIGHT_GROUND && before->idle_n > 0.0F &&
-                       !imu_axes_forbid(before->imu_fault, parameters) &&
-                       !flight_mirrors_forbid(&before->mirrors);
+                       !imu_axes_forbid(before->imu_fault, parameters) && !flight_mirrors_forbid(before);
     const bool again = before->state == FLIGHT_LANDING && orders->landing;
     const bool floats = before->state == FLIGHT_FLOATING && before->estimate_mm == before->estimate_mm;
 

@@ -137,7 +137,7 @@ static bool execute_arm(answer_t *answer)
     if (!ground_waits()) {
         return answer_refuse(answer, "not on the ground");
     }
-    if (imu_gate_refuses(answer) || mirror_gate_refuses(answer)) {
+    if (imu_gate_refuses(answer) || mirror_gate_refuses_arm(answer)) {
         return false;
     }
     set_arm(true);

@@ -5,17 +5,31 @@
 static const char *const names[] = {[MIRROR_FRONT] = "FRONT", [MIRROR_FORE] = "FORE", [MIRROR_AFT] = "AFT"};
 typedef char every_mirror_has_a_name[(sizeof names / sizeof names[0] == MIRROR_COUNT) ? 1 : -1];
 
+static const char two_wrong[] = "two mirrors show no ground, see #MIRRORS";
+static const char none_right[] = "height shows no ground: mirrors blocked, or past an edge";
+
+static bool refuses(answer_t *answer, bool refused, const char *reason)
+{
+    return refused && !answer_refuse(answer, reason);
+}
+
 /* Nothing is refused in the air, as in imu_gate.c. */
-bool mirror_gate_refuses(answer_t *answer)
+bool mirror_gate_refuses_arm(answer_t *answer)
 {
     flight_outputs_t flight;
 
     flight_status_server_read(&flight);
-    if (flight.state != FLIGHT_GROUND || !flight_mirrors_forbid(&flight.mirrors)) {
-        return false;
-    }
-    (void)answer_refuse(answer, "two mirrors show no ground, see #MIRRORS");
-    return true;
+    return flight.state == FLIGHT_GROUND &&
+           refuses(answer, flight_mirrors_outvote(&flight.mirrors), two_wrong);
+}
+
+bool mirror_gate_refuses_reference(answer_t *answer)
+{
+    flight_outputs_t flight;
+
+    flight_status_server_read(&flight);
+    return flight.state == FLIGHT_GROUND &&
+           refuses(answer, flight_mirrors_forbid(&flight), flight.stands_high ? none_right : two_wrong);
 }
 
 void mirror_gate_names(answer_t *answer, uint16_t mirrors)

@@ -61,7 +61,7 @@ bool verb_setr(answer_t *answer)
     }
     /* #SETR 0 lands, and landing is never refused. */
     if (reference_m > 0.0F &&
-        (imu_gate_refuses(answer) || mirror_gate_refuses(answer) || battery_refuses(answer))) {
+        (imu_gate_refuses(answer) || mirror_gate_refuses_reference(answer) || battery_refuses(answer))) {
         return false;
     }
     set_reference(reference_m + 0.0F); /* -0 becomes 0 */

@@ -268,13 +268,17 @@ void test_it_takes_off_neither_an_unarmed_vehicle_nor_one_whose_imu_is_against_g
     TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 5.0F));
 }
 
-void test_one_mirror_without_ground_takes_off_and_two_do_not(void)
+void test_one_mirror_without_ground_takes_off_and_two_or_their_height_do_not(void)
 {
     before.idle_n = 1.76F;
     before.mirrors.wrong = 1U << MIRROR_FORE | 1U << MIRROR_AFT;
     (void)held(MIDDLE_US, 1.5F);
     TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 5.0F));
     before.mirrors.wrong = 1U << MIRROR_AFT;
+    before.stands_high = true;
+    (void)held(MIDDLE_US, 1.5F);
+    TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 5.0F));
+    before.stands_high = false;
     (void)held(MIDDLE_US, 1.5F);
     TEST_ASSERT_EQUAL_UINT(1, held(UP_US, 5.0F));
 }

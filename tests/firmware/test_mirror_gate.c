@@ -47,23 +47,43 @@ static void remark(const char *expected)
     TEST_ASSERT_EQUAL_STRING(expected, sent);
 }
 
-void test_two_mirrors_without_ground_are_refused_on_the_ground_alone(void)
+static void refuses_on_the_ground_alone(bool (*refuses)(answer_t *answer), const char *expected)
 {
-    flight.mirrors.wrong = FORE | AFT;
-    TEST_ASSERT_TRUE(mirror_gate_refuses(&answer));
-    TEST_ASSERT_EQUAL_STRING("ERR ARM two mirrors show no ground, see #MIRRORS", sent);
+    flight.state = FLIGHT_GROUND;
+    TEST_ASSERT_TRUE(refuses(&answer));
+    TEST_ASSERT_EQUAL_STRING(expected, sent);
     for (int state = FLIGHT_GROUND + 1; state < FLIGHT_STATE_COUNT; state++) {
         sent[0] = '\0';
         flight.state = (flight_state_t)state;
-        TEST_ASSERT_FALSE(mirror_gate_refuses(&answer));
+        TEST_ASSERT_FALSE(refuses(&answer));
         TEST_ASSERT_EQUAL_STRING("", sent);
     }
+    sent[0] = '\0';
+}
+
+void test_two_mirrors_without_ground_are_refused_on_the_ground_alone(void)
+{
+    flight.mirrors.wrong = FORE | AFT;
+    refuses_on_the_ground_alone(mirror_gate_refuses_arm, "ERR ARM two mirrors show no ground, see #MIRRORS");
+    refuses_on_the_ground_alone(mirror_gate_refuses_reference,
+                                "ERR ARM two mirrors show no ground, see #MIRRORS");
+}
+
+/* A pilot may take off with blocked mirrors, and hand over in the air. So the motors may be armed. */
+void test_a_height_that_is_not_the_ground_s_refuses_a_reference_and_arms(void)
+{
+    flight.stands_high = true;
+    refuses_on_the_ground_alone(mirror_gate_refuses_reference,
+                                "ERR ARM height shows no ground: mirrors blocked, or past an edge");
+    flight.state = FLIGHT_GROUND;
+    TEST_ASSERT_FALSE(mirror_gate_refuses_arm(&answer));
+    TEST_ASSERT_EQUAL_STRING("", sent);
 }
 
 void test_one_mirror_is_not_refused_but_remarked_upon(void)
 {
     flight.mirrors.wrong = FRONT;
-    TEST_ASSERT_FALSE(mirror_gate_refuses(&answer));
+    TEST_ASSERT_FALSE(mirror_gate_refuses_reference(&answer));
     remark("OK ARM (mirror FRONT shows no ground, see #MIRRORS)");
     flight.state = FLIGHT_FLYING;
     remark("OK ARM");
@@ -71,7 +91,7 @@ void test_one_mirror_is_not_refused_but_remarked_upon(void)
 
 void test_mirrors_that_show_the_ground_are_not_spoken_of(void)
 {
-    TEST_ASSERT_FALSE(mirror_gate_refuses(&answer));
+    TEST_ASSERT_FALSE(mirror_gate_refuses_reference(&answer));
     remark("OK ARM");
 }
 

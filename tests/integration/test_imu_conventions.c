@@ -305,6 +305,22 @@ void test_two_missing_mirrors_do_not_arm_and_the_front_one_alone_does(void)
     assert_said("OK ARM idle:15%");
 }
 
+/* All mirrors at one length, so that none contradicts another. */
+void test_a_blocked_mirror_that_shows_no_ground_is_named_and_takes_no_reference(void)
+{
+    for (unsigned long layout = 0; layout < 2; layout++) {
+        order_t order = {.config = board_config(38 + layout)};
+        order.config.scene.sight_blocked = 1.0;
+        order.config.scene.sight_blocked_span = (span_t){-1.0e12, 2.0e12}; /* no scenario begins here */
+        order.config.scene.block_mm = 640.0;
+        order.lines[0] = layout == 0 ? "#LAYOUT THREE\n" : "#LAYOUT FRONT\n";
+        order.lines[1] = "#PING 1\n";
+        order.lines[2] = "#SETR 0.5\n";
+        assert_stays_down(&order, "ERR SETR height shows no ground: mirrors blocked, or past an edge");
+        TEST_ASSERT_NOT_EQUAL(0, seen.flight.flags & FLIGHT_FLAG_MIRRORS);
+    }
+}
+
 /* ---- a sound one is never refused */
 
 void test_a_sound_imu_is_not_refused_however_it_lies_and_shakes(void)

@@ -309,6 +309,16 @@ class Losses(Case):
             self.assertGreater(min(row["height_m"] for row in up), 0.3, f"it stays down: {flight}")
             self.assertEqual({row["state"] for row in up}, {"FLYING"}, str(flight))
 
+    def test_too_small_a_hover_thrust_does_not_keep_a_low_flight_on_the_ground(self):
+        """Noise tells a lift-off too early, so a hover thrust that is too small. By it the thrust seems to climb, and no height shows that."""
+        def low(mps2):
+            return lambda rng: ({"acc_noise": mps2 or rng.uniform(0.8, 2.4)}, {"SETR": f"{rng.uniform(0.15, 0.3):.2f}"}, [])
+
+        pinned = [Flight("EST", kind, seed, low(2.2)) for kind, seed in (("nominal 1", 8015), ("drawn 1", 8020))] if of_many() else []
+        for flight in pinned or flights(("EST",), VEHICLES, low(None)):
+            up = [row["height_m"] > 0.05 for row in flight.after(8.0) if row["t_s"] < LAND_S]
+            self.assertGreater(sum(up) / len(up), 0.9, f"it stays down: {flight}")
+
     def test_a_laser_lost_at_lift_off_stops_the_motors_and_its_return_starts_none(self):
         for flight in flights(("EST", "PID"), VEHICLES,
                               lambda rng: (silent(1.0 + rng.uniform(0.3, 1.2), rng.uniform(4.0, 12.0)), {}, [])):
