@@ -2,7 +2,7 @@
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 MAKEFLAGS += --no-print-directory
-.PHONY: help build fly mine lab plot scan campaign fit tune verdict why noise seed-study ground ground-vehicle ground-open ground-fly site publish test test-long soak format mutants test-ground port size faults fuzz prove rta bench coverage package others release firmware flash check-ti clean
+.PHONY: help build fly mine lab plot scan campaign fit tune verdict why noise seed-study ground ground-vehicle ground-open ground-fly site publish test test-long soak format ablate mutants test-ground port size faults fuzz prove rta bench coverage package others release firmware flash check-ti clean
 
 setup := tools/setup/setup.sh
 python := build/venv/bin/python -B
@@ -166,6 +166,10 @@ soak: ## The longest, nothing skipped: a board in real time, rates over drawn fl
 	@$(setup) prove ground bridge
 	$(build_tests)
 	@NOTHING_SKIPPED=1 $(ctest) build -L soak
+
+ablate: ## What is each part worth? Flights without it, against the same with it: ARGS="--part dips --lies 8 --seed 2"
+	@$(setup) build campaign
+	@$(python) -B tools/ablate/ablate.py $(ARGS)
 
 mutants: ## Do the unit tests notice small faults? ARGS="--room control --sample 300 --seed 1"; survivors as a diff
 	@$(setup) build test

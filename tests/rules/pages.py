@@ -26,7 +26,7 @@ KINDS = {
                "docs/recordings.md", "docs/why.md", "drivers/README.md"),
     "reference": ("CHANGELOG.md", "docs/commands.md", "docs/hardware.md", "docs/memory.md", "docs/operator.md", "docs/pages.md", "docs/razor.md",
                   "docs/scip.md"),
-    "explanation": ("docs/architecture.md", "docs/control.md", "docs/flight_states.md", "docs/portability.md", "docs/realtime.md",
+    "explanation": ("docs/ablation.md", "docs/architecture.md", "docs/control.md", "docs/flight_states.md", "docs/portability.md", "docs/realtime.md",
                     "docs/reliability.md", "docs/walked.md"),
 }
 PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "drivers/README.md")
