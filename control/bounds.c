@@ -77,16 +77,17 @@ static float slow_n(const situation_t *now)
     return (evidence->rise_mps < 0.5F * UNCONFIRMED_MPS) ? at_most(braking_n, slow_n) : slow_n;
 }
 
-/* By the thrust; while by its heights the vehicle stands, by the accelerometer too. Too small a hover thrust
- * looks like a climb there, and its limit would keep the vehicle on the ground. Nor is a take-off slowed
- * before it is fast: a slow one tells the belief little, and blocked beams were found 0.2 m higher. */
+/* By the thrust. By the accelerometer too, while its heights show the vehicle on the ground yet: too small a
+ * hover thrust looks like a climb there, and its limit would keep it there. Nor is a take-off slowed before
+ * it is fast: a slow one tells the belief little, and blocked beams were found 0.2 m higher. */
 static bool climbs_fast(const situation_t *now)
 {
     const evidence_t *evidence = now->evidence;
-    const bool stands = now->where->supervisor.height.height_mm < LOW_MM;
+    const height_track_t *height = &now->where->supervisor.height;
+    const bool shown_low = height->age_us <= HEIGHT_FRESH_US && height->height_mm < LOW_MM;
     const bool felt = doubts(evidence, DOUBT_IMU) || felt_mps(evidence) > UNCONFIRMED_MPS;
 
-    return evidence->push_mps > UNCONFIRMED_MPS && (!stands || felt);
+    return evidence->push_mps > UNCONFIRMED_MPS && (felt || !(evidence->unshown.first_climb && shown_low));
 }
 
 /* Limits the climb without use of the estimate while no height has confirmed it: a blocked beam looks like a
@@ -94,7 +95,7 @@ static bool climbs_fast(const situation_t *now)
 static interval_t of_climb(bounds_t *bounds, const situation_t *now)
 {
     (void)bounds;
-    return (now->evidence->unconfirmed && climbs_fast(now) && modes_hold_reference(now->mode, now->law))
+    return (now->evidence->unshown.climb && climbs_fast(now) && modes_hold_reference(now->mode, now->law))
                ? most(now->where->hover.thrust_n + slow_n(now))
                : anything;
 }
@@ -118,7 +119,7 @@ static bool sinks_blindly(bounds_t *bounds, const situation_t *now)
  * while it sinks blindly. */
 static interval_t of_descent(bounds_t *bounds, const situation_t *now)
 {
-    const bool slow = sinks_blindly(bounds, now) || now->evidence->terrain_fell;
+    const bool slow = sinks_blindly(bounds, now) || now->evidence->unshown.descent;
 
     return (slow && modes_hold_reference(now->mode, now->law))
                ? least(now->where->hover.thrust_n - climbing_n(now, UNCONFIRMED_MPS))

@@ -22,6 +22,15 @@ typedef struct {
     uint16_t liars;   /* bits: those for which that lasts, see mirrors_liars() */
 } mirrors_told_t;
 
+/* What the heights have not shown yet. */
+typedef struct {
+    bool climb; /* after a take-off or a step of the terrain towards the vehicle, until they show one: the
+                 * beam may be blocked, keep climbs slow */
+    bool first_climb; /* none has shown since the ground */
+    bool descent;     /* after a step of more than 0.4 m away from the vehicle, until they show one: they may
+                       * be wrong, keep descents slow */
+} unshown_t;
+
 /* When DOUBT_THRUST rose. */
 typedef struct {
     float hover_n;
@@ -30,20 +39,17 @@ typedef struct {
 
 /* What the sensors show, in the present cycle. Made by sense/. */
 typedef struct {
-    uint16_t doubts;  /* DOUBT_* */
-    uint16_t reason;  /* what raised the latest doubt, verdict_reason_t of sense/verdict.h; 0: none */
-    bool unconfirmed; /* after a take-off or a step of the terrain towards the vehicle, until the heights show
-                       * a climb: the beam may be blocked, keep climbs slow */
-    bool terrain_fell; /* after a step of more than 0.4 m away from the vehicle, until the heights show a
-                        * descent: they may be wrong, keep descents slow */
-    bool teaches;      /* false: learn nothing from the heights: they are unconfirmed */
-    bool sways;        /* roll and pitch sway as in the air */
-    bool calm;         /* they sway as on the ground; between the two neither is certain */
-    bool rocks;        /* the tilt has moved by a degree within the last 0.8 s */
-    bool in_hands;     /* state GROUND without heights: a pilot flies it, or somebody holds it */
-    bool may_stand;    /* calm for so long that it may stand on the ground: lower the thrust to find out */
-    bool stands;       /* too little thrust to fly, no felt fall, and calm: it stands on the ground */
-    float upright;     /* cosine of the believed tilt */
+    uint16_t doubts; /* DOUBT_* */
+    uint16_t reason; /* what raised the latest doubt, verdict_reason_t of sense/verdict.h; 0: none */
+    unshown_t unshown;
+    bool teaches;   /* false: learn nothing from the heights: they are unconfirmed */
+    bool sways;     /* roll and pitch sway as in the air */
+    bool calm;      /* they sway as on the ground; between the two neither is certain */
+    bool rocks;     /* the tilt has moved by a degree within the last 0.8 s */
+    bool in_hands;  /* state GROUND without heights: a pilot flies it, or somebody holds it */
+    bool may_stand; /* calm for so long that it may stand on the ground: lower the thrust to find out */
+    bool stands;    /* too little thrust to fly, no felt fall, and calm: it stands on the ground */
+    float upright;  /* cosine of the believed tilt */
     mirrors_told_t mirrors;
     float height_m;   /* latest height that was no copy and within range, believed or not */
     float rise_mps;   /* low-passed rate of the heights, without steps */

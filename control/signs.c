@@ -128,7 +128,7 @@ guard_case_t signs_of_guard(const situation_t *now, float wanted_n)
         .lightest_n = at_most(LIGHTEST * now->parameters->value[PARAMETER_GRAV], LIGHTEST_N),
         .step_s = where_step_s(now->where),
         .ordered = state != FLIGHT_GROUND && state != FLIGHT_CUT,
-        .confirmed = !now->evidence->unconfirmed,
+        .confirmed = !now->evidence->unshown.climb,
     };
 }
 

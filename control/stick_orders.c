@@ -136,15 +136,16 @@ static void fly(stick_orders_t *orders, const parameters_t *parameters, const fl
 static void command(stick_orders_t *orders, const parameters_t *parameters, const flight_outputs_t *before,
                     float up, float step_s)
 {
-    const bool armed = before->state == FLIGHT_GROUND && before->idle_n > 0.0F &&
-                       !imu_axes_forbid(before->imu_fault, parameters) && !flight_mirrors_forbid(before);
+    const bool armed = before->state == FLIGHT_GROUND && before->idle_n > 0.0F;
+    const bool refused = armed &&
+                         (imu_axes_forbid(before->imu_fault, parameters) || flight_mirrors_forbid(before));
     const bool again = before->state == FLIGHT_LANDING && orders->landing;
     const bool floats = before->state == FLIGHT_FLOATING && before->estimate_mm == before->estimate_mm;
 
     if (before->state == FLIGHT_FLYING) {
         fly(orders, parameters, before, up, step_s);
     } else if (armed || again) {
-        if (held(orders, up > TAKE_OFF_UP, step_s)) {
+        if (held(orders, up > TAKE_OFF_UP, step_s) && !refused) { /* a refused push does not wait */
             order(orders, TAKE_OFF_M);
         }
     } else if (floats) {

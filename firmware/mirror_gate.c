@@ -29,7 +29,8 @@ bool mirror_gate_refuses_reference(answer_t *answer)
 
     flight_status_server_read(&flight);
     return flight.state == FLIGHT_GROUND &&
-           refuses(answer, flight_mirrors_forbid(&flight), flight.stands_high ? none_right : two_wrong);
+           refuses(answer, flight_mirrors_forbid(&flight),
+                   flight_mirrors_outvote(&flight.mirrors) ? two_wrong : none_right);
 }
 
 void mirror_gate_names(answer_t *answer, uint16_t mirrors)

@@ -139,8 +139,9 @@ static evidence_t evidence_of(const sense_t *sense)
     return (evidence_t){
         .doubts = verdict->doubts,
         .reason = (uint16_t)verdict_reason(verdict),
-        .unconfirmed = is_unconfirmed(s),
-        .terrain_fell = s->confirmation.terrain_fell,
+        .unshown = {.climb = is_unconfirmed(s),
+                    .first_climb = !s->confirmation.proved,
+                    .descent = s->confirmation.terrain_fell},
         .teaches = !s->confirmation.unconfirmed && !s->mirrors.suspected,
         .sways = sway_as_in_the_air(&s->sway),
         .calm = sway_is_calm(&s->sway),

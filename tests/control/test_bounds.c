@@ -77,7 +77,7 @@ static float climbing_n(float height_mm, flight_mode_t mode, bool unconfirmed, f
     in_state(FLIGHT_FLYING);
     at_mm(height_mm);
     mode_is(mode);
-    evidence.unconfirmed = unconfirmed;
+    evidence.unshown.climb = unconfirmed;
     evidence.push_mps = pushed_mps;
     feel(felt_mps);
     return bounded_n(11.0F);
@@ -85,6 +85,7 @@ static float climbing_n(float height_mm, flight_mode_t mode, bool unconfirmed, f
 
 void test_a_climb_has_a_thrust_by_the_vehicles_model(void)
 {
+    evidence.unshown.first_climb = true;
     const float per_mps = 2.5F * 7.0F / 9.80665F; /* newtons against the drag of 1 m/s */
     NEAR(7.0F + 0.3F * per_mps, climbing_n(HIGH_MM, FLIGHT_MODE_EST_HOLD, true, 0.31F, 0.0F));
     NEAR(11.0F, climbing_n(HIGH_MM, FLIGHT_MODE_EST_HOLD, true, 0.29F, 0.0F));
@@ -92,9 +93,17 @@ void test_a_climb_has_a_thrust_by_the_vehicles_model(void)
     NEAR(7.0F + 0.3F * per_mps, climbing_n(LOW_MM - 0.01F, FLIGHT_MODE_EST_HOLD, true, 0.31F, 0.30001F));
     NEAR(11.0F, climbing_n(LOW_MM - 0.01F, FLIGHT_MODE_EST_HOLD, true, 0.29F, 0.31F));
     NEAR(11.0F, climbing_n(LOW_MM - 0.01F, FLIGHT_MODE_EST_HOLD, true, 0.31F, 0.29F));
+    evidence.felt_valid = false;
+    NEAR(11.0F, bounded_n(11.0F));
     evidence.doubts = DOUBT_IMU; /* then the thrust alone tells */
     NEAR(7.0F + 0.3F * per_mps, climbing_n(LOW_MM - 0.01F, FLIGHT_MODE_EST_HOLD, true, 0.31F, 0.0F));
     evidence.doubts = 0U;
+    where.supervisor.height.age_us = HEIGHT_FRESH_US + 1U; /* nor does an old height show the ground */
+    NEAR(7.0F + 0.3F * per_mps, climbing_n(LOW_MM - 0.01F, FLIGHT_MODE_EST_HOLD, true, 0.31F, 0.0F));
+    where.supervisor.height.age_us = 0U;
+    evidence.unshown.first_climb = false; /* blocked in flight, so that they show the ground */
+    NEAR(7.0F + 0.3F * per_mps, climbing_n(LOW_MM - 0.01F, FLIGHT_MODE_EST_HOLD, true, 0.31F, 0.0F));
+    evidence.unshown.first_climb = true;
     NEAR(11.0F, climbing_n(HIGH_MM, FLIGHT_MODE_LAW, true, 0.4F, 0.0F)); /* law EST does not fly */
     NEAR(11.0F, climbing_n(HIGH_MM, FLIGHT_MODE_DESCENT, true, 0.4F, 0.0F));
     now.law = LAW_PIDT;
@@ -113,6 +122,7 @@ static float braking_n(float climb_mps)
 
 void test_a_climb_that_thrust_and_accelerometer_tell_is_braked_by_the_less_of_both(void)
 {
+    evidence.unshown.first_climb = true;
     NEAR(braking_n(0.33F), climbing_n(HIGH_MM, FLIGHT_MODE_EST_HOLD, true, 0.33F, 0.5F));
     NEAR(braking_n(0.33F), climbing_n(HIGH_MM, FLIGHT_MODE_EST_HOLD, true, 0.5F, 0.33F));
     NEAR(braking_n(0.33F), climbing_n(LOW_MM - 0.01F, FLIGHT_MODE_EST_HOLD, true, 0.5F, 0.33F));
@@ -129,7 +139,7 @@ void test_a_descent_over_a_far_fall_of_the_terrain_has_one_too(void)
 {
     const float least_n = 7.0F - 0.3F * 2.5F * 7.0F / 9.80665F;
     NEAR(3.0F, bounded_n(3.0F));
-    evidence.terrain_fell = true;
+    evidence.unshown.descent = true;
     NEAR(least_n, bounded_n(3.0F));
     NEAR(8.0F, bounded_n(8.0F));
     mode_is(FLIGHT_MODE_LAW);

@@ -181,7 +181,7 @@ void test_the_guard_is_told_of_a_fifth_to_either_side_of_grav_and_of_an_order_of
     NEAR(8.9F, told.heaviest_n);
     NEAR(5.6F, told.lightest_n);
     NEAR(0.1F, told.step_s);
-    evidence.unconfirmed = true;
+    evidence.unshown.climb = true;
     set(PARAMETER_GRAV, 8.0F);
     told = signs_of_guard(&now, 7.7F);
     NEAR(9.6F, told.heaviest_n);

@@ -78,6 +78,9 @@ void test_a_height_that_is_not_the_ground_s_refuses_a_reference_and_arms(void)
     flight.state = FLIGHT_GROUND;
     TEST_ASSERT_FALSE(mirror_gate_refuses_arm(&answer));
     TEST_ASSERT_EQUAL_STRING("", sent);
+    flight.mirrors.wrong = FORE | AFT; /* #MIRRORS tells more */
+    refuses_on_the_ground_alone(mirror_gate_refuses_reference,
+                                "ERR ARM two mirrors show no ground, see #MIRRORS");
 }
 
 void test_one_mirror_is_not_refused_but_remarked_upon(void)

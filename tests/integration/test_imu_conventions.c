@@ -306,7 +306,7 @@ void test_two_missing_mirrors_do_not_arm_and_the_front_one_alone_does(void)
 }
 
 /* All mirrors at one length, so that none contradicts another. */
-void test_a_blocked_mirror_that_shows_no_ground_is_named_and_takes_no_reference(void)
+void test_mirrors_that_are_all_blocked_refuse_a_reference(void)
 {
     for (unsigned long layout = 0; layout < 2; layout++) {
         order_t order = {.config = board_config(38 + layout)};
@@ -319,6 +319,17 @@ void test_a_blocked_mirror_that_shows_no_ground_is_named_and_takes_no_reference(
         assert_stays_down(&order, "ERR SETR height shows no ground: mirrors blocked, or past an edge");
         TEST_ASSERT_NOT_EQUAL(0, seen.flight.flags & FLIGHT_FLAG_MIRRORS);
     }
+}
+
+void test_two_blocked_mirrors_of_three_refuse_a_reference_and_say_so(void)
+{
+    order_t order = {.config = board_config(40)};
+    order.config.scene.sight_blocked = 1.0;
+    order.config.scene.sight_blocked_span = (span_t){-1.0e12, 2.0e12};
+    order.config.scene.block_mm = 640.0;
+    order.config.scene.struck_beam = 6.0;
+    order.lines[0] = "#SETR 0.5\n";
+    assert_stays_down(&order, "ERR SETR two mirrors show no ground, see #MIRRORS");
 }
 
 /* ---- a sound one is never refused */

@@ -312,10 +312,13 @@ class Losses(Case):
     def test_too_small_a_hover_thrust_does_not_keep_a_low_flight_on_the_ground(self):
         """Noise tells a lift-off too early, so a hover thrust that is too small. By it the thrust seems to climb, and no height shows that."""
         def low(mps2):
-            return lambda rng: ({"acc_noise": mps2 or rng.uniform(0.8, 2.4)}, {"SETR": f"{rng.uniform(0.15, 0.3):.2f}"}, [])
+            return lambda rng: ({"acc_noise": mps2}, {"SETR": f"{rng.uniform(0.15, 0.3):.2f}"}, [])
+
+        def too_small(rng):     # of such flights 3 of 60 were down for a tenth of the time or more, before it was mended
+            return {"acc_noise": rng.uniform(2.0, 2.4), "hover_thrust": rng.uniform(7.8, 8.2)}, {"GRAV": "7", "SETR": f"{rng.uniform(0.15, 0.25):.2f}"}, []
 
         pinned = [Flight("EST", kind, seed, low(2.2)) for kind, seed in (("nominal 1", 8015), ("drawn 1", 8020))] if of_many() else []
-        for flight in pinned or flights(("EST",), VEHICLES, low(None)):
+        for flight in pinned or flights(("EST",), ("nominal 1",), too_small):
             up = [row["height_m"] > 0.05 for row in flight.after(8.0) if row["t_s"] < LAND_S]
             self.assertGreater(sum(up) / len(up), 0.9, f"it stays down: {flight}")
 
@@ -424,7 +427,7 @@ class Losses(Case):
 
 CASES = (Pilots, Losses)
 # What must never happen: at most one time in a hundred, as in test_rates.py.
-NEVER = ("no_motor", "starts_none", "cut_nothing", "is_not_doubted", "no_thrust")
+NEVER = ("no_motor", "starts_none", "cut_nothing", "is_not_doubted", "no_thrust", "low_flight")
 
 
 def must(test):

@@ -36,7 +36,7 @@ STATE_COLOURS = {
 LASER_COLOURS = {"OK": "#7bc47f", "WAIT": "#c9c9c9"}
 OTHER_COLOURS = ("#5fa8a8", "#b08968", "#a3b18a", "#cdb4db", "#6d8fb3")
 FLAG_NAMES = {1: "height", 2: "attitude", 4: "disagree", 8: "too high", 16: "link", 32: "tilt", 64: "pilot", 128: "out of reach", 256: "sight in doubt",
-              512: "IMU in doubt", 1024: "thrust in doubt", 2048: "stick does not count", 4096: "mirrors: see #MIRRORS"}
+              512: "IMU in doubt", 1024: "thrust in doubt", 2048: "stick does not count", 4096: "mirrors, or the height at rest"}
 
 HEIGHT, MEASURED, ESTIMATE, REFERENCE, TERRAIN, THRUST = "#1f5fa8", "#e07a1f", "#2a8f4f", "#333333", "#b79268", "#a0303f"
 FLIGHT_COLOURS = ("#1f5fa8", "#e07a1f", "#2a8f4f", "#a0303f", "#7550a8", "#5a5a5a", "#1a9aa0", "#b3589a")

@@ -79,7 +79,7 @@ describe('the picture of the scan', () => {
   it('names the limit that holds the thrust', async () => {
     await tells(() => 'mf:35,776,9,83,- m1:- m2:- out:-', `${TELEMETRY} limit:CLIMB`);
     await judged('mf', 'good');
-    expect(await page.locator('.beams .banner').innerText()).toContain('CLIMB: the climb would be too fast');
+    expect(await page.locator('.beams .banner').innerText()).toContain('CLIMB: no height has confirmed the climb');
   });
 
   it('forgets what it showed when nothing more comes of the scans', async () => {

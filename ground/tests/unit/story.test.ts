@@ -51,7 +51,7 @@ describe('the story of a flight', () => {
     })));
     expect(words(events)).toEqual([
       '70.00 Take-off to 0.60 m.',
-      '70.00 A limit holds the thrust for 0.9 s: the climb would be too fast, or is not confirmed yet.',
+      '70.00 A limit holds the thrust for 0.9 s: no height has confirmed the climb: it is kept slow, or braked.',
       '73.00 The reference goes to 1.00 m.',
       '75.00 An edge: the ground comes 0.25 m nearer.',
       '76.00 An edge: the ground falls away by 0.25 m.',

@@ -255,15 +255,15 @@ void test_a_far_fall_of_the_terrain_is_unconfirmed_until_a_descent_shows(void)
     fly();
     world.terrain_m = -0.3F;
     run(0.3F);
-    TEST_ASSERT_FALSE(seen.terrain_fell);
+    TEST_ASSERT_FALSE(seen.unshown.descent);
     world.terrain_m = -0.8F;
     run(0.3F);
-    TEST_ASSERT_TRUE(seen.terrain_fell);
+    TEST_ASSERT_TRUE(seen.unshown.descent);
     flown.thrust_n = HOVER_N - 0.6F;
     run(0.5F);
-    TEST_ASSERT_TRUE(seen.terrain_fell);
+    TEST_ASSERT_TRUE(seen.unshown.descent);
     run(1.0F);
-    TEST_ASSERT_FALSE(seen.terrain_fell);
+    TEST_ASSERT_FALSE(seen.unshown.descent);
     TEST_ASSERT_EQUAL_UINT16(0U, seen.doubts);
 }
 
@@ -323,7 +323,7 @@ void test_a_slow_climb_after_the_ground_came_nearer_at_once_is_doubted_too(void)
         world.shown_m = 0.3F;
         flown.wanted_m = 0.5F;
         run(0.2F);
-        TEST_ASSERT_TRUE(world.three || seen.unconfirmed);
+        TEST_ASSERT_TRUE(world.three || seen.unshown.climb);
         flown.thrust_n = HOVER_N + 0.66F;
         TEST_ASSERT_TRUE(until(DOUBT_SIGHT, 4.0F) < 2.5F);
     }
@@ -335,10 +335,10 @@ void test_a_climb_that_shows_after_a_step_confirms_it(void)
     world.terrain_m = 0.3F;
     flown.wanted_m = 0.3F;
     run(0.2F);
-    TEST_ASSERT_TRUE(seen.unconfirmed);
+    TEST_ASSERT_TRUE(seen.unshown.climb);
     flown.thrust_n = HOVER_N + 0.66F;
     run(1.2F);
-    TEST_ASSERT_FALSE(seen.unconfirmed);
+    TEST_ASSERT_FALSE(seen.unshown.climb);
     TEST_ASSERT_EQUAL_UINT16(0U, seen.doubts);
 }
 
@@ -348,13 +348,13 @@ void test_a_step_that_the_mirrors_agree_on_needs_no_climb(void)
     fly();
     world.terrain_m = 0.3F;
     run(0.2F);
-    TEST_ASSERT_TRUE(seen.unconfirmed);
+    TEST_ASSERT_TRUE(seen.unshown.climb);
     for (int agree = 0; agree < 2; agree++) {
         for (int proved = 0; proved < 2; proved++) {
             it.senses.mirrors.agree = agree != 0;
             it.senses.confirmation.proved = proved != 0;
             sense_a_frame(NULL);
-            TEST_ASSERT_EQUAL_INT((agree != 0 && proved != 0) ? 0 : 1, seen.unconfirmed ? 1 : 0);
+            TEST_ASSERT_EQUAL_INT((agree != 0 && proved != 0) ? 0 : 1, seen.unshown.climb ? 1 : 0);
         }
     }
 }
