@@ -1,4 +1,4 @@
-/* A low pass, slow, so that a fault is doubted before its error is learned; faster at the start of a flight.
+/* The mean since the lift-off, of the last 2.5 s at most: so a fault is doubted before its error is learned.
  *
  * The mass is within 1.5 N of what GRAV says. An emptying battery takes as much again where the autopilot
  * does not compensate, but slowly. So the upper limit follows what is learned, no faster than a battery
@@ -10,8 +10,6 @@
 
 #include "control/between.h"
 #include "control/thrust.h"
-
-#define SETTLE_S 0.6F /* chosen: six scans; until then the estimate is copied */
 
 /* DJI's autopilots move the middle of their stick by up to 30 % of its way, 3.5 N, within a minute of a low
  * battery (owners' logs). A 4S of 5 Ah that empties in a hover, thrust by the square of its voltage: 0.02 at
@@ -26,9 +24,7 @@ static void learn(hover_thrust_t *hover, const hover_lesson_t *lesson)
         return;
     }
     const float target_n = lesson->estimated ? lesson->estimated_n : lesson->thrust_n;
-    const float time_s = !lesson->estimated              ? HOVER_TIME_S
-                         : (hover->learned_s < SETTLE_S) ? lesson->step_s
-                                                         : hover->learned_s;
+    const float time_s = lesson->estimated ? hover->learned_s : HOVER_TIME_S;
 
     hover->thrust_n += at_most(lesson->step_s / at_least(time_s, 0.001F), 1.0F) *
                        (target_n - hover->thrust_n);
