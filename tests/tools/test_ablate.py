@@ -26,10 +26,11 @@ class Parts(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "dips"):
                 part.away(text)
 
-    def test_the_page_has_a_line_for_each_part(self):
+    def test_each_line_of_the_page_is_a_part(self):
         block = ablate.BLOCK.search(ablate.PAGE.read_text(encoding="utf-8")).group()
-        for part in ablate.load():
-            self.assertIn(f"| {part.name} | {part.says} |", block)
+        lines = [line.strip("| ").split(" | ")[:2] for line in block.splitlines() if line.startswith("| ")][1:]
+        self.assertGreater(len(lines), 10)
+        self.assertLessEqual({(name, says) for name, says in lines}, {(part.name, part.says) for part in ablate.load()})
 
 
 class Counts(unittest.TestCase):
