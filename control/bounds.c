@@ -13,7 +13,7 @@
 #include "control/thrust.h"
 #include "control/touchdown.h"
 
-#define BLINDLY_S 1.0F /* chosen: ten scans; what falls is found in fewer, see docs/reliability.md */
+#define BLINDLY_S 1.0F /* chosen: ten scans; what falls is found in fewer, see docs/ablation.md */
 #define UNCONFIRMED_MPS (0.001F * DESCENT_RATE_MM_S) /* no faster than a descent */
 
 #define UNCHECKED_BELOW_N (2.0F * NEAR_HOVER_N) /* to sink is safer than to climb */

@@ -142,10 +142,12 @@ static void command(stick_orders_t *orders, const parameters_t *parameters, cons
     const bool again = before->state == FLIGHT_LANDING && orders->landing;
     const bool floats = before->state == FLIGHT_FLOATING && before->estimate_mm == before->estimate_mm;
 
+    /* a refused push does not wait until somebody has freed the mirrors */
+    orders->pushed = orders->pushed || (refused && up > TAKE_OFF_UP);
     if (before->state == FLIGHT_FLYING) {
         fly(orders, parameters, before, up, step_s);
     } else if (armed || again) {
-        if (held(orders, up > TAKE_OFF_UP, step_s) && !refused) { /* a refused push does not wait */
+        if (held(orders, up > TAKE_OFF_UP, step_s)) {
             order(orders, TAKE_OFF_M);
         }
     } else if (floats) {

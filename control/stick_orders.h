@@ -35,7 +35,7 @@ typedef struct {
     float reference_m;
     bool arm;
     bool counts;     /* it was in the middle, and sets the height since then */
-    bool pushed;     /* an order that one push gives once was given */
+    bool pushed;     /* an order that one push gives once was given, or refused */
     bool opened;     /* the pilot had it open when he last had the throttle on the ground */
     bool landing;    /* LANDING was ordered by the stick */
     float middle_s;  /* how long it has been in the middle */

@@ -1,4 +1,5 @@
-/* The mean since the lift-off, of the last 2.5 s at most: so a fault is doubted before its error is learned.
+/* A mean from the first lesson on, and a low pass of 2.5 s later: so a fault is doubted before its error is
+ * learned.
  *
  * The mass is within 1.5 N of what GRAV says. An emptying battery takes as much again where the autopilot
  * does not compensate, but slowly. So the upper limit follows what is learned, no faster than a battery

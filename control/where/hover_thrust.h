@@ -36,8 +36,8 @@ typedef struct {
     float thrust_n; /* previous command */
 } hover_lesson_t;
 
-/* One cycle. From law EST's estimate, or else the mean of the thrust with a time constant of 2.5 s; in flight
- * and while nothing is doubted. */
+/* One cycle. The mean of law EST's estimate, or else of the thrust, with a time constant of 2.5 s at most; in
+ * flight and while nothing is doubted. */
 void hover_thrust_step(hover_thrust_t *hover, const hover_lesson_t *lesson);
 
 /* A descent by heights has found that more_n more is needed. */

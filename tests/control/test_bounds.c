@@ -91,10 +91,10 @@ void test_a_climb_has_a_thrust_by_the_vehicles_model(void)
     NEAR(11.0F, climbing_n(HIGH_MM, FLIGHT_MODE_EST_HOLD, true, 0.29F, 0.0F));
     NEAR(11.0F, climbing_n(HIGH_MM, FLIGHT_MODE_EST_HOLD, false, 2.0F, 0.0F));
     NEAR(7.0F + 0.3F * per_mps, climbing_n(LOW_MM - 0.01F, FLIGHT_MODE_EST_HOLD, true, 0.31F, 0.30001F));
+    evidence.felt_valid = false; /* a Razor without accelerations */
+    NEAR(11.0F, bounded_n(11.0F));
     NEAR(11.0F, climbing_n(LOW_MM - 0.01F, FLIGHT_MODE_EST_HOLD, true, 0.29F, 0.31F));
     NEAR(11.0F, climbing_n(LOW_MM - 0.01F, FLIGHT_MODE_EST_HOLD, true, 0.31F, 0.29F));
-    evidence.felt_valid = false;
-    NEAR(11.0F, bounded_n(11.0F));
     evidence.doubts = DOUBT_IMU; /* then the thrust alone tells */
     NEAR(7.0F + 0.3F * per_mps, climbing_n(LOW_MM - 0.01F, FLIGHT_MODE_EST_HOLD, true, 0.31F, 0.0F));
     evidence.doubts = 0U;

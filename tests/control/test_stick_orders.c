@@ -277,7 +277,7 @@ void test_one_mirror_without_ground_takes_off_and_two_or_their_height_do_not(voi
     before.mirrors.wrong = 1U << MIRROR_AFT;
     before.stands_high = true;
     (void)held(MIDDLE_US, 1.5F);
-    TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 5.0F));
+    TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 0.8F));
     before.stands_high = false; /* somebody frees the mirrors, and the stick is up yet */
     TEST_ASSERT_EQUAL_UINT(0, held(UP_US, 5.0F));
     (void)held(MIDDLE_US, 1.5F);

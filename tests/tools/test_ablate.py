@@ -40,6 +40,17 @@ class Counts(unittest.TestCase):
         without = dict(zip("abcd", (1, 0, 1, 0), strict=True))
         self.assertEqual((1, 1), ablate.split(flights, whole, without, lambda _, figures: figures == 1))
 
+    def test_a_flight_counts_once_however_many_verdicts_change(self):
+        fine, struck = {"at": 0}, {"at": 2}
+        old = ablate.VERDICTS
+        ablate.VERDICTS = {"harmed": lambda _, figures: figures["at"] > 1, "mishandled": lambda _, figures: figures["at"] > 0}
+        try:
+            self.assertEqual((1, 0), ablate.changed([Flight("a")], {"a": fine}, {"a": struck}))
+            self.assertEqual((0, 1), ablate.changed([Flight("a")], {"a": struck}, {"a": fine}))
+            self.assertEqual((0, 0), ablate.changed([Flight("a")], {"a": fine}, {"a": fine}))
+        finally:
+            ablate.VERDICTS = old
+
     def test_the_sign_test_is_that_of_a_fair_coin(self):
         self.assertEqual(1.0, ablate.sign_test(0, 0))
         self.assertAlmostEqual(0.5 ** 5, ablate.sign_test(5, 0))

@@ -4,10 +4,10 @@
 parts.toml has each part as a change of the source that takes it away. Of a copy of the tree in build/ablate, a program is built without the
 part. It flies the same flights as the program with it: lies and healthy ones of tools/campaign, by EST with three mirrors and with one, by PID and PIDT.
 Each part's line has how many flights differ at all, and of these how many are worse without it and how many better: harmed, mishandled,
-wrong (healthy flights: any verdict; lies: a doubt of the truth, or deceived). The sign test's p tells how probable so uneven a split is by chance
-(Dixon and Mood 1946). A part that changes no flight, or whose loss makes none worse, may go; one that p speaks for stays.
+wrong (healthy flights: any verdict; lies: a doubt of the truth, or deceived). The sign test's p tells how probable so uneven a split of the flights is
+by chance (Dixon and Mood 1946). A part that changes no flight, or whose loss makes none worse, may go, after more flights.
 
---page writes the table of docs/ablation.md. Each flight is kept in build/ablate. Exit status: 0; 2 usage, or a part that is not in the source any more.
+--page writes the table of docs/ablation.md. Each flight is kept in build/ablate. Exit status: 0; 1 a part that is not in the source any more, or does not build; 2 usage.
 """
 import argparse
 import dataclasses
@@ -123,20 +123,35 @@ def sign_test(worse, better):
     return float(stats.binom.sf(worse - 1, worse + better, 0.5)) if worse + better else 1.0
 
 
+def changed(flights, whole, without):
+    """(worse, better) without the part: flights with a verdict that got worse and none that got better, and the other way round."""
+    worse = better = 0
+    for flight in flights:
+        signs = {(split([flight], whole, without, is_so)) for is_so in VERDICTS.values()} - {(0, 0)}
+        worse += signs == {(1, 0)}
+        better += signs == {(0, 1)}
+    return worse, better
+
+
 def compared(part, flights, whole, without):
     """A line of the table."""
     differ = sum(whole[flight.name] != without[flight.name] for flight in flights)
-    splits = {name: split(flights, whole, without, is_so) for name, is_so in VERDICTS.items()}
-    worse, better = (sum(one[k] for one in splits.values()) for k in (0, 1))
-    return [part.name, part.says, f"{differ}", *(f"{one[0]}; {one[1]}" for one in splits.values()), f"{sign_test(worse, better):.2g}"]
+    splits = [split(flights, whole, without, is_so) for is_so in VERDICTS.values()]
+    return [part.name, part.says, f"{differ}", *(f"{worse}; {better}" for worse, better in splits), f"{sign_test(*changed(flights, whole, without)):.2g}"]
 
 
 HEAD = ["part", "what it does", "differ", *(f"{name}: worse; better" for name in VERDICTS), "p"]
 
 
+def commit():
+    """Of the sources: " (1a2b3c4)", or nothing where they are no clone."""
+    done = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
+    return f" ({done.stdout.strip()})" if done.returncode == 0 else ""
+
+
 def rendered(lines, flights, options):
     words = f"--lies {options.lies}" + (f" --seed {options.seed}" if options.seed != 1 else "") + (f" --part {','.join(options.part)}" if options.part else "")
-    return f"\nBy version {fleet.version()}, `make ablate ARGS=\"{words} --page\"`; {flights} flights for each line.\n\n{survey.markdown(HEAD, lines)}\n"
+    return f"\nBy version {fleet.version()}{commit()}, `make ablate ARGS=\"{words} --page\"`; {flights} flights for each line.\n\n{survey.markdown(HEAD, lines)}\n"
 
 
 def run(options, parts):

@@ -41,7 +41,7 @@ static void learned_for(int cycles)
     }
 }
 
-void test_it_takes_the_first_estimate_and_then_the_mean_of_the_latest_2_5_s(void)
+void test_it_follows_the_first_estimates_and_then_their_mean_over_2_5_s(void)
 {
     static const struct {
         int cycles;
