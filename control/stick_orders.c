@@ -133,21 +133,26 @@ static void fly(stick_orders_t *orders, const parameters_t *parameters, const fl
     }
 }
 
+static bool refuses_take_off(const parameters_t *parameters, const flight_outputs_t *before)
+{
+    return imu_axes_forbid(before->imu_fault, parameters) || flight_mirrors_forbid(before);
+}
+
 static void command(stick_orders_t *orders, const parameters_t *parameters, const flight_outputs_t *before,
                     float up, float step_s)
 {
     const bool armed = before->state == FLIGHT_GROUND && before->idle_n > 0.0F;
-    const bool refused = armed &&
-                         (imu_axes_forbid(before->imu_fault, parameters) || flight_mirrors_forbid(before));
     const bool again = before->state == FLIGHT_LANDING && orders->landing;
     const bool floats = before->state == FLIGHT_FLOATING && before->estimate_mm == before->estimate_mm;
+    const bool pushes = up > TAKE_OFF_UP;
 
-    /* a refused push does not wait until somebody has freed the mirrors */
-    orders->pushed = orders->pushed || (refused && up > TAKE_OFF_UP);
+    if (armed && pushes && refuses_take_off(parameters, before)) {
+        orders->pushed = true; /* a refused push does not wait until somebody has freed the mirrors */
+    }
     if (before->state == FLIGHT_FLYING) {
         fly(orders, parameters, before, up, step_s);
     } else if (armed || again) {
-        if (held(orders, up > TAKE_OFF_UP, step_s)) {
+        if (held(orders, pushes, step_s)) {
             order(orders, TAKE_OFF_M);
         }
     } else if (floats) {
