@@ -28,7 +28,7 @@ def note_lag(output):
 
 def note_lost(output):
     """For a flight whose wires damage nothing: frames that the board found damaged lost octets on this PC, so real time was none. A board
-    that damages them itself does so each time: then there is no verdict, which is none."""
+    that damages them itself does so in each try: then there is no verdict, and a run in which nothing may be skipped fails."""
     found = re.search(r"(?m)^damaged: laser (\d+) and imu (\d+) frames found by the board", output)
     if found and max(map(int, found.groups())) > FEW_LOST:
         lags_ms.append(LATE_MS + 1)
