@@ -21,6 +21,7 @@
 void mirrors_frame(mirrors_t *mirrors, float gained_mps)
 {
     mirrors->felt.gained += gained_mps;
+    mirrors->heard = true;
 }
 
 void mirrors_thrust(mirrors_t *mirrors, float gained_mps, float undelivered_mps, float dragged)
@@ -44,13 +45,14 @@ static float shown(mirrors_motion_t *motion, float late)
 static belief_felt_t felt_of(mirrors_t *mirrors, float gap_s, float age_s, bool believed, bool held_up)
 {
     const float late = at_most(age_s / gap_s, 1.0F);
-    const belief_felt_t felt = {.untold = !believed,
+    const belief_felt_t felt = {.untold = !(believed && mirrors->heard),
                                 .gained_mps = shown(&mirrors->felt, late),
                                 .pushed_mps = shown(&mirrors->pushed, late),
                                 .undelivered_mps = shown(&mirrors->undelivered, late),
                                 .dragged = shown(&mirrors->dragged, late)};
     const belief_felt_t nothing = {.untold = true};
 
+    mirrors->heard = false;
     return held_up ? nothing : felt;
 }
 

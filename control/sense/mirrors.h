@@ -46,6 +46,7 @@ typedef struct {
     mirror_digits_t latest[MIRROR_COUNT];   /* of each mirror, to find copies */
     mirrors_motion_t felt, pushed, dragged; /* m/s by the accelerometer, by the thrust; share by the drag */
     mirrors_motion_t undelivered;           /* m/s of what is commanded and not delivered yet */
+    bool heard;                             /* a frame of the accelerometer has come since the latest scan */
 } mirrors_t;
 
 /* Bits: mirrors that are disbelieved. lasting: for so long that no edge explains it; over one, the mirror

@@ -70,10 +70,9 @@ static bool vote(sense_t *sense, const flight_inputs_t *in)
             shown[m].height_mm = altitude_at_tilt(&shown[m], tilt->roll_rad, tilt->pitch_rad);
         }
     }
-    return mirrors_scan(&sense->senses.mirrors, shown, gap_s, seconds_at_most(in->height_age_us, GAP_LONG_S),
-                        verdict_felt_valid(&sense->verdict, &sense->senses) &&
-                            sense->senses.accelerometer.shaken <= 1.0F,
-                        held_up);
+    return mirrors_scan(
+        &sense->senses.mirrors, shown, gap_s, seconds_at_most(in->height_age_us, GAP_LONG_S),
+        (sense->verdict.doubts & DOUBT_IMU) == 0U && sense->senses.accelerometer.shaken <= 1.0F, held_up);
 }
 
 /* What several mirrors show together takes the place of their mean. */

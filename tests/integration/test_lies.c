@@ -403,6 +403,30 @@ void test_a_beam_blocked_during_the_climb_of_a_take_off_does_not_fly_it_away(voi
     }
 }
 
+/* All three are blocked at what they show then, 0.1 m above the ground. The belief did not hear the
+ * accelerometer until half a second after the lift-off: 8 of these 30 flew above 0.8 m over the reference,
+ * and one to 1.3 m. */
+void test_beams_blocked_just_off_the_ground_are_found_by_what_the_take_off_felt(void)
+{
+    static const lie_t lie = {
+        {"plant.platform=0", "plant.sight_blocked=1", "plant.sight_blocked_start=2.2", "plant.block_mm=300"},
+        1000.0,
+        0.8,
+        0.0};
+    int flown_up = 0;
+
+    for (unsigned long seed = 41UL; seed < 71UL; seed++) {
+        static flight_result_t result;
+
+        child_fly("est-60cm-ramp", seed, lie.assignments, &result);
+        TEST_ASSERT_NULL(result.halt);
+        at_most(lie.highest_mm, result.metrics.value[METRIC_HIGHEST_MM], "highest", &lie, seed);
+        at_most(lie.touch_mps, result.metrics.value[METRIC_TOUCH_SPEED_MPS], "touch", &lie, seed);
+        flown_up += result.metrics.value[METRIC_HIGHEST_MM] > 800.0;
+    }
+    TEST_ASSERT_INT_WITHIN(2, 2, flown_up);
+}
+
 /* Of a drawn vehicle of the second airframe; the heights were doubted there, and it fell from 0.9 m: in 78 of
  * 120 flights, seeds 301 to 420. Now 2 of them touch faster than 0.6 m/s. */
 static const lie_t jump = {{FLAT, "plant.airframe=1", "plant.acc_jump=1.6", "plant.acc_jump_start=4.2",
