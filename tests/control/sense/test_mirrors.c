@@ -668,28 +668,34 @@ void test_a_ground_after_65535_has_the_number_1(void)
     TEST_ASSERT_EQUAL_UINT16(1U, mirrors.ground);
 }
 
-/* A motion of 25 mm, of which the frames tell nothing, or that none tells. */
-static float lies_felt_after(bool heard)
+/* Five scans up and five down, faster by 0.4 m/s in each, as the thrust tells. A frame that comes tells
+ * nothing of it. */
+static float lies_felt_after(bool frames)
 {
+    float height_mm = 500.0F;
+    float speed_mps = 0.0F;
+
     vehicle_begin(1U);
     for (int k = 0; k < 20; k++) {
         mirrors_frame(&mirrors, 0.0F);
-        (void)scan(500.0F + noise_mm(), 500.0F + noise_mm(), 500.0F + noise_mm());
+        (void)scan(height_mm + noise_mm(), height_mm + noise_mm(), height_mm + noise_mm());
     }
     for (int k = 1; k <= 10; k++) {
-        if (heard) {
-            mirrors_frame(&mirrors, 2.0F);
+        if (frames) {
+            mirrors_frame(&mirrors, 0.0F);
         }
-        (void)scan(500.0F + noise_mm(), 500.0F + noise_mm(), 500.0F + noise_mm());
+        const float gained_mps = (k <= 5) ? 0.4F : -0.4F;
+
+        mirrors_thrust(&mirrors, gained_mps, 0.0F, 1.0e-6F);
+        height_mm += 100.0F * (speed_mps + 0.5F * gained_mps);
+        speed_mps += gained_mps;
+        (void)scan(height_mm + noise_mm(), height_mm + noise_mm(), height_mm + noise_mm());
     }
     return belief_of_motion(&mirrors.belief, BELIEF_FELT_LIES);
 }
 
-/* 2 m/s a scan, and no height moves: an accelerometer that is heard lies, and one that has told nothing
- * cannot. */
 void test_an_accelerometer_of_which_no_frame_has_come_since_the_scan_before_is_not_heard(void)
 {
-    TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.0F, lies_felt_after(true));
-    TEST_ASSERT_FLOAT_WITHIN(0.05F, 0.0F, lies_felt_after(false));
-    TEST_ASSERT_FALSE(mirrors.heard);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 1.0F, lies_felt_after(true));
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.0F, lies_felt_after(false));
 }
