@@ -53,7 +53,7 @@ typedef struct {
     mirrors_told_t mirrors;
     float height_m;   /* latest height that was no copy and within range, believed or not */
     float rise_mps;   /* low-passed rate of the heights, without steps */
-    float lost_m;     /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
+    float blind_m;    /* height when DOUBT_SIGHT rose, without what the mirrors have shown since they lie */
     float felt_mps;   /* speed of the accelerometer's witness, whatever it is worth */
     bool felt_valid;  /* that witness counts, and is not doubted */
     float shaken;     /* >= 1: a noisy accelerometer's speed counts so much less */
@@ -61,7 +61,7 @@ typedef struct {
     float push_mps;   /* speed of the thrust's witness, whatever it is worth */
     float pushed_mps; /* the same less the error that the heights have shown; else the rate of the heights */
     float moved_m;    /* way since the rays of the latest height, by the thrust */
-    float speed_mps;  /* without the heights: mean of the witnesses that are valid and not doubted, or 0 */
+    float speed_mps;  /* without the heights: by the accelerometer that is not doubted, and the thrust */
     held_t held;
 } evidence_t;
 

@@ -10,9 +10,9 @@
 /* What the estimate goes on from. */
 typedef enum {
     AMEND_NOT,
-    AMEND_WITHOUT_ERROR, /* the error of the heights, speed and bias of the witnesses */
-    AMEND_BY_HEIGHTS,    /* the heights, with the accelerometer's bias */
-    AMEND_BY_HEIGHTS_ALONE
+    AMEND_BLINDLY,         /* height and speed of the worlds in which all mirrors lie */
+    AMEND_BY_HEIGHTS,      /* the heights, with the accelerometer's bias */
+    AMEND_BY_HEIGHTS_ALONE /* the heights, no bias; in doubt of them too, the speed of those worlds */
 } amend_t;
 
 /* Where an edge counts. */
@@ -28,7 +28,7 @@ typedef struct {
 
 /* Before law EST is told what is doubted now, and after it. */
 static const edge_t first_edges[] = {
-    {.came = DOUBT_SIGHT, .place = ANYWHERE, .amend = AMEND_WITHOUT_ERROR},
+    {.came = DOUBT_SIGHT, .place = ANYWHERE, .amend = AMEND_BLINDLY},
     {.came = DOUBT_SIGHT, .gone = DOUBT_THRUST, .place = IN_THE_AIR_OR_UNSEEN, .engages = true},
     {.gone = DOUBT_SIGHT, .place = IN_THE_AIR, .amend = AMEND_BY_HEIGHTS, .engages = true},
 };
@@ -51,15 +51,18 @@ static void engage(est_law_t *est, where_t *where)
 static void amend(est_law_t *est, const evidence_t *evidence, amend_t how)
 {
     switch (how) {
-    case AMEND_WITHOUT_ERROR:
-        estimator_amend(&est->estimator, est->estimator.now.height_m - evidence->lost_m, evidence->speed_mps,
-                        evidence->bias_mps2);
+    case AMEND_BLINDLY:
+        estimator_amend(&est->estimator, evidence->blind_m, evidence->speed_mps, evidence->bias_mps2);
         break;
     case AMEND_BY_HEIGHTS:
         estimator_amend(&est->estimator, evidence->height_m, evidence->rise_mps, evidence->bias_mps2);
         break;
     case AMEND_BY_HEIGHTS_ALONE:
-        estimator_amend(&est->estimator, evidence->height_m, evidence->rise_mps, 0.0F);
+        if (doubts(evidence, DOUBT_SIGHT)) {
+            estimator_amend(&est->estimator, est->estimator.now.height_m, evidence->speed_mps, 0.0F);
+        } else {
+            estimator_amend(&est->estimator, evidence->height_m, evidence->rise_mps, 0.0F);
+        }
         break;
     case AMEND_NOT:
     default:

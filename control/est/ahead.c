@@ -12,7 +12,7 @@
 #define SPEED_MPS 0.4F /* at which the seed's course is flown, sim/scenarios/seed_course.h */
 #define LASTS_S 3.7F   /* a direction, on the seed's course: ramp at 7.3 s, edge at 11.0 s */
 #define BEGINS 0.05F   /* chosen: unknown is neither, until grounds follow each other */
-#define MEETS 0.04F    /* of the scans, for a mirror that leads: STEP_SHARE of belief_world.c, fitted */
+#define MEETS 0.04F    /* of the scans, for a mirror that leads: STEP_SHARE of belief_density.h, fitted */
 #define CHANGE_M \
     0.010198F             /* of one scan's height against another's: root of 2 (6 mm^2 + 4 mm^2), terrain.h */
 #define MILLIMETRE 0.001F /* the least length that a parameter tells: D1 and D2 may be 0 */

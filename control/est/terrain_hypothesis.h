@@ -17,7 +17,7 @@
 #include "control/altitude.h"
 #include "control/est/filter.h"
 
-#define TERRAIN_OWN_M 0.006F /* noise of each mirror: BELIEF_NOISE_MM of sense/belief_world.h, fitted */
+#define TERRAIN_OWN_M 0.006F /* noise of each mirror: BELIEF_NOISE_MM of sense/belief_density.h, fitted */
 
 typedef enum {
     TERRAIN_ALTITUDE,

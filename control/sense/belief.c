@@ -35,6 +35,13 @@ static void take_motion(belief_world_t *world, const belief_world_t *other, floa
 {
     world->rate_mm_s += share * (other->rate_mm_s - world->rate_mm_s);
     world->push_off_mps2 += share * (other->push_off_mps2 - world->push_off_mps2);
+    world->push_known += share * (other->push_known - world->push_known);
+}
+
+/* What has just begun to lie goes on from the height of before. */
+static void take_height(belief_world_t *world, const belief_world_t *other, float share)
+{
+    world->height_mm += share * (other->height_mm - world->height_mm);
 }
 
 /* Mirror m begins to lie, or ends to, in this world and in that which differs by it alone. A blocked vehicle
@@ -47,13 +54,16 @@ static void turn(belief_world_t *true_world, belief_world_t *lie_world, uint16_t
     true_world->probability += ends - begins;
     take_motion(true_world, lie_world, ends / true_world->probability);
     lie_world->probability += begins - ends;
+    take_height(lie_world, true_world, begins / lie_world->probability);
     lie_world->begun[m] += begins;
 }
 
 /* Of a world's probability, a part has come by so many mirrors that have begun to lie together. */
-static void begin_together(belief_world_t *world, uint16_t liars, float probability)
+static void begin_together(belief_world_t *world, const belief_world_t *honest, uint16_t liars,
+                           float probability)
 {
     world->probability += probability;
+    take_height(world, honest, probability / world->probability);
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         world->begun[m] = belief_has(liars, m) ? probability : 0.0F;
     }
@@ -111,6 +121,7 @@ static void follow(belief_world_t *world, belief_world_t *before, uint16_t later
 {
     before->probability -= probability;
     world->probability += probability;
+    take_height(world, before, probability / world->probability);
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         world->begun[m] += belief_has(later, m) ? probability : 0.0F;
     }
@@ -165,7 +176,7 @@ static void mix(belief_t *belief, float gap_s)
     for (uint16_t k = 1U; k <= belief->known; ++k) {
         begun[k] = just_begun(&worlds[k], k);
         if (are_known(belief, k)) {
-            begin_together(&worlds[k], k, at_once(k) * together);
+            begin_together(&worlds[k], &worlds[0], k, at_once(k) * together);
             worlds[0].probability -= at_once(k) * together;
         }
     }
@@ -275,6 +286,7 @@ void belief_scan(belief_t *belief, const belief_beam_t *beams, float gap_s, beli
             scan.told |= (uint16_t)(1U << m);
         }
     }
+    belief->told = scan.told;
     loosen(belief, gap_s);
     mix(belief, gap_s);
     judge(belief, &scan);
@@ -331,4 +343,36 @@ float belief_of_motion(const belief_t *belief, uint16_t kind)
         sum += belief->worlds[k].probability * belief->worlds[k & belief->known].motions[kind];
     }
     return sum;
+}
+
+/* The worlds in which all lie that told something in the latest scan. */
+static bool is_blind(const belief_t *belief, uint16_t liars)
+{
+    return (belief->told & (uint16_t)~liars) == 0U && are_known(belief, liars);
+}
+
+belief_blind_t belief_blind(const belief_t *belief)
+{
+    belief_blind_t blind = {0.0F, 0.0F};
+    float probability = 0.0F;
+
+    for (uint16_t k = 0U; k <= belief->known; ++k) {
+        const belief_world_t *world = &belief->worlds[k];
+
+        if (is_blind(belief, k)) {
+            blind.rate_mm_s += world->probability * world->rate_mm_s * (1.0F - world->motions[BELIEF_STANDS]);
+            blind.height_mm += world->probability * world->height_mm;
+            probability += world->probability;
+        }
+    }
+    blind.rate_mm_s /= at_least(probability, LEAST);
+    blind.height_mm /= at_least(probability, LEAST);
+    return blind;
+}
+
+void belief_land(belief_t *belief)
+{
+    for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
+        belief->worlds[k].push_off_mps2 = belief->worlds[k].push_known = belief->worlds[k].height_mm = 0.0F;
+    }
 }

@@ -26,6 +26,7 @@ typedef struct {
     float loose; /* >= 1: the motions vary more by this factor, because scans were missing */
     belief_motion_t motion[MIRROR_COUNT][BELIEF_MOTIONS]; /* by loose */
     uint16_t known;                                       /* bits: mirrors that have told something before */
+    uint16_t told;                                        /* of these: in the latest scan */
 } belief_t;
 
 /* One scan. beams: one for each mirror_t. gap_s: since the scan before, > 0. */
@@ -50,5 +51,17 @@ float belief_of_no_step(const belief_t *belief);
 
 /* Probability of a kind of motion: BELIEF_STANDS, BELIEF_FELT_LIES. */
 float belief_of_motion(const belief_t *belief, uint16_t kind);
+
+/* If all mirrors lie that told something in the latest scan. */
+typedef struct {
+    float rate_mm_s; /* vertical speed at its rays, by accelerometer and thrust */
+    float height_mm; /* above the ground then: as the heights were before they lied, and by that speed */
+} belief_blind_t;
+
+belief_blind_t belief_blind(const belief_t *belief);
+
+/* It stands on the ground without thrust: its height is 0, whatever all mirrors show, and the next flight's
+ * hover thrust may be another. */
+void belief_land(belief_t *belief);
 
 #endif

@@ -12,13 +12,6 @@
 #include "control/where/hover_thrust.h"
 
 /* ---- noise models */
-#define PER_MM 0.0664903801F  /* 1 / (sqrt(2 pi) BELIEF_NOISE_MM) */
-#define STEP_SHARE 0.04F      /* of the scans, for each mirror: an edge passes under it */
-#define STEP_MM 170.0F        /* mean size of these steps (Laplace): stairs of 170 mm, boxes, tables */
-#define STEP_NEAR_SHARE 0.7F  /* of the steps: a slope begins or ends, or a small edge */
-#define STEP_NEAR_MM 10.0F    /* fitted, docs/control.md */
-#define STEP_FAR_SHARE 0.002F /* of the steps: as far as the scanner sees */
-#define STEP_FAR_PER_MM (1.0F / 8000.0F) /* 4 m up or down */
 #define ODD_SHARE 0.05F           /* of a liar's scans: no constant, anything within the 4 m of the scanner */
 #define SHARED_MM BELIEF_NOISE_MM /* of a noise that all mirrors share, in what is constant but for it */
 #define FROZEN_SHARE \
@@ -41,11 +34,6 @@ typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BEL
 #define MOTION_CHANGES 0.05F /* of the scans: the kind of motion is drawn anew, by its share; a second */
 #define PUSHED_SHARE 0.2F /* chosen: of the scans in which the accelerometer lies; about as of the others */
 
-/* What a sound accelerometer tells beyond the thrust, or of a vehicle that stands: a Student t of three
- * degrees of freedom, whose percentiles make noise prints beside those of healthy flights. A Gaussian has no
- * such tail. While the thrust changes, it tells more beyond the model's. A lying one tells anything within
- * its range. */
-#define STRANGE_MPS2 0.5F       /* fitted: its scale */
 #define UNDELIVERED_SHARE 0.29F /* rms error of LAG, on the vehicles of plan.py: so unsure is that part */
 #define LIE_PER_MPS2 0.0254930F /* 1 / 4 g: the Razor's ADXL345 is set to 2 g each way */
 
@@ -55,7 +43,7 @@ typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BEL
 #define PUSH_OFF_MPS2 \
     2.0F                 /* GRAV of a vehicle whose mass is off by 20 %, as tools/campaign/plan.py draws \
                           */
-#define BLIND_GAIN 0.03F /* chosen: s; the drag tells the speed in 1.4 s */
+#define BLIND_GAIN 0.03F /* chosen: s; the drag tells the speed in 1.4 s, once the thrust is known */
 #define OWN_GAIN 0.42F   /* of what one mirror shows alone: slow, it is terrain or noise */
 
 /* ---- densities */
@@ -101,32 +89,6 @@ static float density_of_motion(float sum_mm, float squares_mm2, const belief_mot
     return motion->norm * expf(motion->shared * sum_mm * sum_mm - half_per_mm2 * squares_mm2);
 }
 
-static float density_of_step(float step_mm)
-{
-    return STEP_SHARE *
-           ((1.0F - STEP_FAR_SHARE - STEP_NEAR_SHARE) * expf(-fabsf(step_mm) / STEP_MM) / (2.0F * STEP_MM) +
-            STEP_NEAR_SHARE * expf(-fabsf(step_mm) / STEP_NEAR_MM) / (2.0F * STEP_NEAR_MM) +
-            STEP_FAR_SHARE * STEP_FAR_PER_MM);
-}
-
-/* Of a value that is a constant, known as a mean. */
-static float density_of_constant(float mm, const belief_mean_t *mean)
-{
-    const float wider = 1.0F + 1.0F / at_least(mean->count, 1.0F); /* variance, in that of the noise */
-    const float off_mm = mm - mean->mm;
-
-    return PER_MM * expf(-0.5F * off_mm * off_mm / (BELIEF_NOISE_MM * BELIEF_NOISE_MM * wider)) /
-           sqrtf(wider);
-}
-
-static float density_of_strange(float mps2, float scale_mps2)
-{
-    const float scales = mps2 / scale_mps2;
-    const float wider = 1.0F + scales * scales / 3.0F;
-
-    return 0.367552597F / (scale_mps2 * wider * wider); /* 2 / (pi sqrt(3)) */
-}
-
 /* ---- one world */
 
 /* One scan in one world, while the ways are summed in which it can have come about. */
@@ -139,6 +101,7 @@ typedef struct {
     float strange_mps2; /* the accelerometer, less thrust and drag at the speed of this world, as it knows
                            them */
     float kinds[BELIEF_MOTIONS];   /* of what the accelerometer tells, with that kind of motion */
+    float way_mm;                  /* that the world predicts */
     float untrue_mps;              /* part of what the accelerometer tells that is not so, if it lies */
     float foretold_mm;             /* way that it has foretold then */
     float density;                 /* of all ways */
@@ -238,6 +201,19 @@ static void add_stand(ways_t *ways, const belief_scan_t *scan)
                                  lies * ways->foretold_mm);
 }
 
+/* No vehicle stands that its thrust lifts. Nor does one whose honest mirrors show air below it, and whose
+ * thrust is too small: it would sink. */
+static float density_of_standing(const belief_world_t *world, uint16_t honest, const belief_scan_t *scan)
+{
+    const float gained_mps2 = scan->felt.untold ? 0.0F : scan->felt.gained_mps / scan->gap_s;
+    const float lift_mps2 = scan->felt.pushed_mps / scan->gap_s;
+    const bool aloft = honest != 0U && world->height_mm > LOW_MM && !scan->felt.untold;
+
+    return density_of_strange(gained_mps2, STRANGE_MPS2) *
+           density_of_strange(aloft ? lift_mps2 : at_least(lift_mps2, 0.0F), STRANGE_MPS2) /
+           density_of_strange(0.0F, STRANGE_MPS2);
+}
+
 /* What the accelerometer tells beyond the thrust depends on the speed, by the drag: a world in which the
  * vehicle climbs fast, and its mirrors do not show it, is contradicted for as long as that lasts. */
 static void feel(const belief_world_t *world, ways_t *ways, const belief_scan_t *scan)
@@ -255,7 +231,7 @@ static void feel(const belief_world_t *world, ways_t *ways, const belief_scan_t 
     for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
         ways->kinds[k] = moving;
     }
-    ways->kinds[BELIEF_STANDS] = scan->of_stand;
+    ways->kinds[BELIEF_STANDS] = density_of_standing(world, ways->honest, scan);
     /* Where the thrust foretells, it is not tried whether it lies too: that would explain all. */
     ways->kinds[BELIEF_HELD] = felt->untold
                                    ? 0.0F
@@ -279,15 +255,30 @@ static void draw_motion(belief_world_t *world, float push_ends)
     world->motions[BELIEF_PUSHED] -= ended;
 }
 
+/* Of a vehicle that moves now, the share that moved before the scan: what has just left the ground has no
+ * speed. */
+static float moved_before(const belief_world_t *world)
+{
+    const float stood = world->motions[BELIEF_STANDS];
+    const float left = stood * MOTION_CHANGES * (1.0F - motions[BELIEF_STANDS].share);
+    const float moves_on = (1.0F - stood) * (1.0F - MOTION_CHANGES * motions[BELIEF_STANDS].share);
+
+    return moves_on / (moves_on + left);
+}
+
 static void predict(belief_world_t *world, ways_t *ways, const belief_scan_t *scan)
 {
     const float gained_mm_s = 1000.0F * ways->gained_mps;
     /* a gust; or with one mirror alone, which would else lie whenever the accelerometer is off a little */
     const bool push_lasts = scan->felt.untold || !belief_has_several(ways->honest);
 
+    if (ways->honest == 0U) {
+        world->rate_mm_s *= moved_before(world);
+    }
+    ways->way_mm = (world->rate_mm_s + 0.5F * gained_mm_s) * scan->gap_s;
     world->rate_mm_s += gained_mm_s;
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        world->level_mm[m] += (world->rate_mm_s - 0.5F * gained_mm_s) * scan->gap_s;
+        world->level_mm[m] += ways->way_mm;
     }
     draw_motion(world, push_lasts ? MOTION_CHANGES : 1.0F);
     for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
@@ -316,14 +307,14 @@ static void correct_motions(belief_world_t *world, const ways_t *ways)
 }
 
 /* The heights tell the rate, and what the thrust is off by is learned at it, from the accelerometer or from
- * them. Where none tells it, the thrust and the drag do; without these it is not known, and the accelerometer
- * alone would carry it away. */
+ * them. Where none tells it, the accelerometer does, and the thrust by its drag: the more, the better the
+ * thrust is known. */
 static void correct_rate(belief_world_t *world, const ways_t *ways, const belief_scan_t *scan,
                          float shared_mm)
 {
-    const float stands = ways->motions[BELIEF_STANDS] / ways->density;
     /* A load is learned too where it first looks like a thrust without effect: that parts it from a pilot. */
-    const float flies = 1.0F - stands - ways->motions[BELIEF_FELT_LIES] / ways->density;
+    const float flies = 1.0F -
+                        (ways->motions[BELIEF_STANDS] + ways->motions[BELIEF_FELT_LIES]) / ways->density;
     const bool carried = scan->felt.dragged > 0.0F;
 
     if (ways->honest != 0U) {
@@ -332,12 +323,31 @@ static void correct_rate(belief_world_t *world, const ways_t *ways, const belief
         const float off_mps2 = world->push_off_mps2 + PUSH_GAIN * flies * felt_mps2;
 
         world->rate_mm_s += more_mm_s;
+        world->push_known += carried ? PUSH_GAIN * flies * (1.0F - world->push_known) : 0.0F;
         world->push_off_mps2 = carried ? between(-PUSH_OFF_MPS2, off_mps2, PUSH_OFF_MPS2)
                                        : world->push_off_mps2;
-    } else {
-        world->rate_mm_s -= 1000.0F * BLIND_GAIN * ways->strange_mps2;
-        world->rate_mm_s *= carried ? 1.0F - stands : 0.0F;
+    } else if (carried) {
+        const float unknown_mps2 = PUSH_OFF_MPS2 * (1.0F - world->push_known);
+        const float sure = STRANGE_MPS2 * STRANGE_MPS2 / variance(STRANGE_MPS2, unknown_mps2);
+        const float untrue = ways->motions[BELIEF_FELT_LIES] / ways->density; /* taken back already */
+
+        world->rate_mm_s -= 1000.0F * BLIND_GAIN * sure * (1.0F - untrue) * ways->strange_mps2;
     }
+}
+
+/* Of the honest mirrors; where none tells it, the rate does. */
+static void correct_height(belief_world_t *world, const ways_t *ways)
+{
+    const float moves = 1.0F - ways->motions[BELIEF_STANDS] / ways->density;
+    float sum_mm = 0.0F;
+    float count = 0.0F;
+
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        sum_mm += belief_has(ways->honest, m) ? world->level_mm[m] : 0.0F;
+        count += belief_has(ways->honest, m) ? 1.0F : 0.0F;
+    }
+    world->height_mm = (count > 0.0F) ? sum_mm / count
+                                      : between(0.0F, world->height_mm + moves * ways->way_mm, HEIGHT_MAX_MM);
 }
 
 /* The filter follows what the honest ones share, and each mirror's own part slowly, but a step at once. */
@@ -359,6 +369,7 @@ static void correct(belief_world_t *world, const ways_t *ways, const belief_scan
             world->level_mm[m] += SHARED_GAIN * shared_mm;
         }
     }
+    correct_height(world, ways);
 }
 
 /* Density of what the liars show. What has just come before a mirror stands anywhere, unless the mirror has
@@ -414,19 +425,14 @@ void belief_world_loosen(belief_motion_t motion[MIRROR_COUNT][BELIEF_MOTIONS], f
 
 void belief_world_look(belief_scan_t *scan, const belief_mean_t *slant, const belief_mean_t *height)
 {
-    const float gained_mps2 = scan->felt.untold ? 0.0F : scan->felt.gained_mps / scan->gap_s;
-    const float lift_mps2 = scan->felt.pushed_mps / scan->gap_s; /* no vehicle stands that its thrust lifts */
     const float undelivered_mps2 = UNDELIVERED_SHARE * scan->felt.undelivered_mps / scan->gap_s;
 
-    scan->strange_mps2 = sqrtf(STRANGE_MPS2 * STRANGE_MPS2 + undelivered_mps2 * undelivered_mps2);
-    scan->of_stand = density_of_strange(gained_mps2, STRANGE_MPS2) *
-                     density_of_strange(at_least(lift_mps2, 0.0F), STRANGE_MPS2) /
-                     density_of_strange(0.0F, STRANGE_MPS2);
+    scan->strange_mps2 = sqrtf(variance(STRANGE_MPS2, undelivered_mps2));
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         scan->slant_off_mm[m] = scan->beams[m].slant_mm - slant[m].mm;
         scan->height_off_mm[m] = scan->beams[m].height_mm - height[m].mm;
-        scan->slant[m] = density_of_constant(scan->beams[m].slant_mm, &slant[m]);
-        scan->height[m] = density_of_constant(scan->beams[m].height_mm, &height[m]);
+        scan->slant[m] = density_of_constant(scan->beams[m].slant_mm, slant[m].mm, slant[m].count);
+        scan->height[m] = density_of_constant(scan->beams[m].height_mm, height[m].mm, height[m].count);
     }
 }
 

@@ -9,10 +9,8 @@
 #include <stdint.h>
 
 #include "control/altitude.h"
+#include "control/sense/belief_density.h"
 
-/* Standard deviation of one mirror's height about that of the others, and of a blocked beam's slant. Fitted
- * on healthy flights, see belief_world.c; recorded: 1 mm at most. */
-#define BELIEF_NOISE_MM 6.0F
 /* Of the filters: beta of Kalata 1984 for 0.5 m/s2; alpha is in belief_world.c. */
 #define BELIEF_RATE_GAIN 0.42F
 
@@ -42,14 +40,16 @@ typedef struct {
 
 /* The filter of the world in which one set of mirrors lies. */
 typedef struct {
-    float probability;             /* of all worlds together: 1 */
-    float rate_mm_s;               /* of the heights of the honest mirrors */
-    float level_mm[MIRROR_COUNT];  /* of the height of each mirror */
+    float probability;            /* of all worlds together: 1 */
+    float rate_mm_s;              /* of the heights of the honest mirrors; where none tells it, if it moves */
+    float level_mm[MIRROR_COUNT]; /* of the height of each mirror */
     float motions[BELIEF_MOTIONS]; /* probability of each kind of motion; together 1 */
     float begun[MIRROR_COUNT];     /* that a mirror which lies here has begun to since the scan before */
     float no_step; /* that no ground has stepped since the scan before, under most of the honest mirrors; 0:
                       none told anything */
     float push_off_mps2; /* what the model of the thrust is off by */
+    float push_known;    /* 0 to 1: share of that which has been learned */
+    float height_mm;     /* mean of the honest mirrors' levels; where none tells it, by the rate */
 } belief_world_t;
 
 /* A running mean of the latest scans. */
@@ -74,7 +74,6 @@ typedef struct {
     float slant[MIRROR_COUNT], height[MIRROR_COUNT];               /* densities, if nothing moves */
     belief_motion_t (*motion)[BELIEF_MOTIONS]; /* since the scan before, of 1, 2 and 3 mirrors */
     float strange_mps2;                        /* scale of what the accelerometer tells beyond the thrust */
-    float of_stand;                            /* density of what the accelerometer tells, if it stands */
 } belief_scan_t;
 
 /* Before the first scan. */

@@ -14,14 +14,41 @@
 #define RELIEF_MM 75.0F          /* chosen: what ground differs by under one vehicle; stairs are 170 mm */
 #define RELIEF_SIGMAS 3.0F       /* beyond, it is another ground */
 #define LIES 0.5F                /* more probably than not */
+#define MOST 0.5F                /* of the gap */
 #define LIAR_S 2.0F              /* chosen: the bracket is 0.22 m long, which takes 1.1 s at 0.2 m/s */
 #define DISBELIEVED_MOST_S 10.0F /* the counter stops here */
 #define AGREE 0.99F              /* one wrong in a hundred */
 
-void mirrors_frame(mirrors_t *mirrors, float gained_mps)
+void mirrors_frame(mirrors_t *mirrors, float gained_mps, float dt_s)
 {
     mirrors->felt.gained += gained_mps;
-    mirrors->heard = true;
+    mirrors->heard.gained += dt_s;
+}
+
+static void drop_motions(mirrors_t *mirrors)
+{
+    const mirrors_motion_t none = {0.0F, 0.0F};
+
+    mirrors->felt = mirrors->heard = mirrors->pushed = mirrors->dragged = mirrors->undelivered = none;
+}
+
+void mirrors_rest(mirrors_t *mirrors, bool unseen)
+{
+    belief_land(&mirrors->belief);
+    if (unseen) {
+        drop_motions(mirrors);
+    }
+}
+
+float mirrors_blind_mps(const mirrors_t *mirrors, bool believed)
+{
+    const mirrors_motion_t *since = (mirrors->felt_told && believed) ? &mirrors->felt : &mirrors->pushed;
+
+    const float rate_mps = 0.001F * belief_blind(&mirrors->belief).rate_mm_s;
+    const float dragged = (since == &mirrors->pushed) ? mirrors->dragged.left + mirrors->dragged.gained
+                                                      : 0.0F;
+
+    return (1.0F - dragged) * rate_mps + since->left + since->gained;
 }
 
 void mirrors_thrust(mirrors_t *mirrors, float gained_mps, float undelivered_mps, float dragged)
@@ -42,18 +69,20 @@ static float shown(mirrors_motion_t *motion, float late)
     return shown;
 }
 
-static belief_felt_t felt_of(mirrors_t *mirrors, float gap_s, float age_s, bool believed, bool held_up)
+/* After a gap of the IMU its frames tell a small part of the scan's motion. */
+static belief_felt_t felt_of(mirrors_t *mirrors, float gap_s, float age_s, bool believed)
 {
     const float late = at_most(age_s / gap_s, 1.0F);
-    const belief_felt_t felt = {.untold = !(believed && mirrors->heard),
-                                .gained_mps = shown(&mirrors->felt, late),
-                                .pushed_mps = shown(&mirrors->pushed, late),
-                                .undelivered_mps = shown(&mirrors->undelivered, late),
-                                .dragged = shown(&mirrors->dragged, late)};
-    const belief_felt_t nothing = {.untold = true};
 
-    mirrors->heard = false;
-    return held_up ? nothing : felt;
+    if (gap_s >= MIRRORS_GAP_MOST_S) { /* the sums are of a longer time */
+        drop_motions(mirrors);
+    }
+    mirrors->felt_told = shown(&mirrors->heard, late) > MOST * gap_s && believed;
+    return (belief_felt_t){.untold = !mirrors->felt_told,
+                           .gained_mps = shown(&mirrors->felt, late),
+                           .pushed_mps = shown(&mirrors->pushed, late),
+                           .undelivered_mps = shown(&mirrors->undelivered, late),
+                           .dragged = shown(&mirrors->dragged, late)};
 }
 
 /* Identical digits are no new scan: with a sensor noise of 3 mm, chance makes them once in some thousands. */
@@ -174,7 +203,9 @@ static void number_ground(mirrors_t *mirrors, bool strange)
 bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float age_s, bool felt,
                   bool held_up)
 {
-    const uint16_t voters = believe(mirrors, shown, gap_s, felt_of(mirrors, gap_s, age_s, felt, held_up));
+    const belief_felt_t nothing = {.untold = true};
+    const belief_felt_t told = felt_of(mirrors, gap_s, age_s, felt && !held_up);
+    const uint16_t voters = believe(mirrors, shown, gap_s, held_up ? nothing : told);
     float weights[MIRROR_COUNT];
 
     if (voters == 0U) {

@@ -16,6 +16,8 @@
 #include "control/altitude.h"
 #include "control/sense/belief.h"
 
+#define MIRRORS_GAP_MOST_S 10.0F /* any above HEIGHT_LOST_S, from where on no change is fresh */
+
 /* What a copy repeats. */
 typedef struct {
     float slant_mm, spread_mm;
@@ -46,15 +48,24 @@ typedef struct {
     mirror_digits_t latest[MIRROR_COUNT];   /* of each mirror, to find copies */
     mirrors_motion_t felt, pushed, dragged; /* m/s by the accelerometer, by the thrust; share by the drag */
     mirrors_motion_t undelivered;           /* m/s of what is commanded and not delivered yet */
-    bool heard;                             /* a frame of the accelerometer has come since the latest scan */
+    mirrors_motion_t heard;                 /* s of which the accelerometer has told something */
+    bool felt_told;                         /* what it told of the latest scan's motion was believed */
 } mirrors_t;
 
 /* Bits: mirrors that are disbelieved. lasting: for so long that no edge explains it; over one, the mirror
  * that shows what was before looks blocked beside the others. */
 uint16_t mirrors_liars(const mirrors_t *mirrors, bool lasting);
 
-/* One IMU frame: by the accelerometer the vertical speed has changed by so much. */
-void mirrors_frame(mirrors_t *mirrors, float gained_mps);
+/* One IMU frame: by the accelerometer the vertical speed has changed by so much in dt_s. */
+void mirrors_frame(mirrors_t *mirrors, float gained_mps, float dt_s);
+
+/* It stands on the ground without thrust. unseen: no height is of use, and what has been felt is no motion.
+ */
+void mirrors_rest(mirrors_t *mirrors, bool unseen);
+
+/* Vertical speed now, if all mirrors lie: by the accelerometer, and the thrust. believed: the accelerometer
+ * is. */
+float mirrors_blind_mps(const mirrors_t *mirrors, bool believed);
 
 /* One cycle in which the thrust alone carries the vehicle: by it the speed has changed by so much, and by the
  * drag by this share of the speed. undelivered_mps: by the thrust that is
@@ -63,8 +74,9 @@ void mirrors_thrust(mirrors_t *mirrors, float gained_mps, float undelivered_mps,
 
 /* One scan: writes altitude and agree. Returns false when it tells nothing: each mirror repeats its digits,
  * or is out of reach (5000 mm). shown: one altitude for each mirror_t, not valid where it shows none. gap_s:
- * since the scan before, > 0. age_s: of its rays. felt: the accelerometer is believed; else the thrust
- * foretells the motion. held_up: the scan comes late, so what was felt is not of its time. */
+ * since the scan before, > 0. age_s: of its rays. felt: the accelerometer is believed; else, and
+ * where its frames miss most of the gap, the thrust foretells the motion. held_up: the scan comes late, so
+ * what was felt is not of its time. */
 bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float age_s, bool felt,
                   bool held_up);
 

@@ -10,7 +10,6 @@
 #include "control/seconds.h"
 
 #define HELD_UP_S (0.5F * SCAN_S) /* the frames of the scan's time are then those of another scan */
-#define GAP_LONG_S 10.0F          /* any above HEIGHT_LOST_S, from where on no change is fresh */
 
 void sense_init(sense_t *sense)
 {
@@ -41,12 +40,12 @@ static float held_up_s(sense_t *sense, const flight_inputs_t *in, float *gap_s)
 
     sense->rays_us = ray_clock_step(&sense->ray_clock, in->height_stamp_ms, in->height_time_us,
                                     in->height_age_us);
-    *gap_s = seconds_at_most(sense->rays_us - before_us, GAP_LONG_S);
+    *gap_s = seconds_at_most(sense->rays_us - before_us, MIRRORS_GAP_MOST_S);
     if (*gap_s < HELD_UP_S) { /* no scanner is so fast: several have waited together */
         *gap_s = SCAN_S;
         return SCAN_S;
     }
-    return seconds_at_most(at_once_us - sense->rays_us, GAP_LONG_S);
+    return seconds_at_most(at_once_us - sense->rays_us, MIRRORS_GAP_MOST_S);
 }
 
 /* The mirrors of a new scan, each at the believed tilt. Layout FRONT has one. A shaken accelerometer predicts
@@ -71,7 +70,7 @@ static bool vote(sense_t *sense, const flight_inputs_t *in)
         }
     }
     return mirrors_scan(
-        &sense->senses.mirrors, shown, gap_s, seconds_at_most(in->height_age_us, GAP_LONG_S),
+        &sense->senses.mirrors, shown, gap_s, seconds_at_most(in->height_age_us, MIRRORS_GAP_MOST_S),
         (sense->verdict.doubts & DOUBT_IMU) == 0U && sense->senses.accelerometer.shaken <= 1.0F, held_up);
 }
 
@@ -92,7 +91,7 @@ static bool is_new_scan(const sense_t *sense, const flight_inputs_t *in)
 static void compare_height(sense_t *sense, const command_t *command, flight_inputs_t *in)
 {
     const bool is_new = is_new_scan(sense, in);
-    const float gap_s = seconds_at_most(in->height_time_us - sense->height_time_us, GAP_LONG_S);
+    const float gap_s = seconds_at_most(in->height_time_us - sense->height_time_us, MIRRORS_GAP_MOST_S);
 
     const bool tells = is_new && vote(sense, in);
 
@@ -105,7 +104,7 @@ static void compare_height(sense_t *sense, const command_t *command, flight_inpu
     sense->scan_fit = tells && heights_can_be(&sense->senses.heights, in->altitude.height_mm);
     if (sense->scan_fit) {
         const height_change_t change = senses_height(&sense->senses, in->altitude.height_mm * 0.001F, gap_s,
-                                                     seconds_at_most(in->height_age_us, GAP_LONG_S),
+                                                     seconds_at_most(in->height_age_us, MIRRORS_GAP_MOST_S),
                                                      (sense->verdict.doubts & DOUBT_SIGHT) == 0U);
         verdict_height(&sense->verdict, &sense->senses, command, &change);
         sense->height_time_us = in->height_time_us;
@@ -156,7 +155,7 @@ static evidence_t evidence_of(const sense_t *sense)
                     .liars = mirrors_liars(&s->mirrors, true)},
         .height_m = s->heights.height_m,
         .rise_mps = s->heights.rise_mps,
-        .lost_m = verdict->lost_m,
+        .blind_m = verdict->blind_m,
         .felt_mps = s->accelerometer.felt.speed_mps,
         .felt_valid = verdict_felt_valid(verdict, s),
         .shaken = s->accelerometer.shaken,
@@ -164,7 +163,7 @@ static evidence_t evidence_of(const sense_t *sense)
         .push_mps = s->push.pushed.speed_mps,
         .pushed_mps = push_speed_mps(&s->push, s->heights.rise_mps),
         .moved_m = push_moved_m(&s->push),
-        .speed_mps = verdict_speed_mps(verdict, s),
+        .speed_mps = mirrors_blind_mps(&s->mirrors, (verdict->doubts & DOUBT_IMU) == 0U),
         .held = {verdict->held_n, verdict->held_down},
     };
 }
@@ -173,7 +172,7 @@ static evidence_t evidence_of(const sense_t *sense)
 static void scan_tilt(sense_t *sense, const flight_inputs_t *in)
 {
     senses_t *senses = &sense->senses;
-    const float gap_s = seconds_at_most(in->height_time_us - sense->height_time_us, GAP_LONG_S);
+    const float gap_s = seconds_at_most(in->height_time_us - sense->height_time_us, MIRRORS_GAP_MOST_S);
     const uint16_t liars = mirrors_liars(&senses->mirrors, false);
     altitude_t shown[MIRROR_COUNT] = {in->altitude};
 

@@ -28,6 +28,7 @@ static void watch_ground(senses_t *s, float mean_mps2, float dt_s)
         accelerometer_in_hands(&s->accelerometer, mean_mps2, sway_is_no_hand(&s->sway), dt_s);
     } else {
         accelerometer_rest(&s->accelerometer, dt_s);
+        mirrors_rest(&s->mirrors, s->heights.unseen_s > HEIGHT_LOST_S);
     }
 }
 
@@ -52,7 +53,7 @@ static void take_frame(senses_t *s, const command_t *command, const imu_sample_t
         accelerometer_restart(&s->accelerometer, push_speed_mps(&s->push, s->heights.rise_mps));
         return;
     }
-    mirrors_frame(&s->mirrors, (mean_mps2 - s->accelerometer.bias_mps2) * dt_s);
+    mirrors_frame(&s->mirrors, (mean_mps2 - s->accelerometer.bias_mps2) * dt_s, dt_s);
     sway_frame(&s->sway, frame, s->heights.height_m, dt_s);
     if (command->grounded) {
         watch_ground(s, mean_mps2, dt_s);

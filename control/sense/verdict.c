@@ -24,18 +24,6 @@ static bool pushes_in_vain(const senses_t *senses, const command_t *command)
            senses->push.pushed.seen_m * push_n < 0.0F;
 }
 
-/* Error of the height by the witnesses that count, mean of both when both do. */
-static float lost_m(const verdict_t *verdict, const senses_t *senses)
-{
-    const witness_t *felt = &senses->accelerometer.felt;
-    const witness_t *pushed = &senses->push.pushed;
-
-    if (!witness_counts(pushed)) {
-        return felt->seen_m;
-    }
-    return verdict_felt_valid(verdict, senses) ? 0.5F * (felt->seen_m + pushed->seen_m) : pushed->seen_m;
-}
-
 static void forget(verdict_t *verdict, senses_t *senses)
 {
     senses_forget(senses);
@@ -65,10 +53,13 @@ void verdict_order(verdict_t *verdict, senses_t *senses)
     end_doubt(verdict, senses, DOUBT_SIGHT | DOUBT_THRUST);
 }
 
-static void doubt_sight(verdict_t *verdict, senses_t *senses)
+static void doubt_sight(verdict_t *verdict, senses_t *senses, float age_s)
 {
+    const bool felt = (verdict->doubts & DOUBT_IMU) == 0U;
+
     verdict->doubts |= DOUBT_SIGHT;
-    verdict->lost_m = lost_m(verdict, senses);
+    verdict->blind_m = 0.001F * belief_blind(&senses->mirrors.belief).height_mm +
+                       mirrors_blind_mps(&senses->mirrors, felt) * age_s;
     forget(verdict, senses);
 }
 
@@ -91,10 +82,10 @@ static void judge_imu(verdict_t *verdict, senses_t *senses)
 }
 
 /* The belief tells whether the sight lies, and when what it sees moves again. */
-static void judge_sight(verdict_t *verdict, senses_t *senses)
+static void judge_sight(verdict_t *verdict, senses_t *senses, float age_s)
 {
     if ((verdict->doubts & DOUBT_SIGHT) == 0U && senses->mirrors.blind) {
-        doubt_sight(verdict, senses);
+        doubt_sight(verdict, senses, age_s);
     } else if ((verdict->doubts & DOUBT_SIGHT) != 0U && senses->mirrors.sees) {
         end_doubt(verdict, senses, DOUBT_SIGHT);
     }
@@ -127,11 +118,12 @@ static void judge_thrust(verdict_t *verdict, senses_t *senses, const command_t *
     }
 }
 
-static void judge(verdict_t *verdict, senses_t *senses, const command_t *command, float gap_s)
+static void judge(verdict_t *verdict, senses_t *senses, const command_t *command,
+                  const height_change_t *change)
 {
     judge_imu(verdict, senses);
-    judge_sight(verdict, senses);
-    judge_thrust(verdict, senses, command, gap_s);
+    judge_sight(verdict, senses, change->age_s);
+    judge_thrust(verdict, senses, command, change->gap_s);
 }
 
 void verdict_height(verdict_t *verdict, senses_t *senses, const command_t *command,
@@ -140,7 +132,7 @@ void verdict_height(verdict_t *verdict, senses_t *senses, const command_t *comma
     verdict->contrary_s = change->first_climb ? 0.0F : verdict->contrary_s;
     confirmation_wait(&senses->confirmation, change, command->wanted_m);
     if (command->ours && !command->grounded) {
-        judge(verdict, senses, command, change->gap_s);
+        judge(verdict, senses, command, change);
         return;
     }
     verdict->sure_n = command->hover_n;
@@ -148,19 +140,6 @@ void verdict_height(verdict_t *verdict, senses_t *senses, const command_t *comma
         forget(verdict, senses);
         witness_start(&senses->accelerometer.felt, senses->heights.rise_mps);
     }
-}
-
-float verdict_speed_mps(const verdict_t *verdict, const senses_t *senses)
-{
-    const float felt_mps = senses->accelerometer.felt.speed_mps;
-    const float pushed_mps = senses->push.pushed.speed_mps;
-    const bool felt = verdict_felt_valid(verdict, senses);
-    const bool pushed = witness_counts(&senses->push.pushed) && (verdict->doubts & DOUBT_THRUST) == 0U;
-
-    if (felt && pushed) {
-        return 0.5F * (felt_mps + pushed_mps);
-    }
-    return felt ? felt_mps : pushed ? pushed_mps : 0.0F;
 }
 
 verdict_reason_t verdict_reason(const verdict_t *verdict)

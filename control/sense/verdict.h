@@ -31,7 +31,7 @@ typedef enum {
 typedef struct {
     uint16_t doubts;          /* DOUBT_* */
     verdict_reason_t why_imu; /* of DOUBT_IMU, while there is one */
-    float lost_m;             /* error of the height when DOUBT_SIGHT rose: measured minus predicted */
+    float blind_m;            /* height when DOUBT_SIGHT rose, by the worlds in which all mirrors lie */
     float contrary_s; /* time of scans against the present verdict on the thrust, less that of the others */
     float sure_n;     /* hover thrust when the thrust last did not push in vain */
     float held_n;     /* the same, when DOUBT_THRUST rose */
@@ -51,10 +51,6 @@ void verdict_height(verdict_t *verdict, senses_t *senses, const command_t *comma
 
 /* The accelerometer's witness is valid and its source is not in doubt. */
 bool verdict_felt_valid(const verdict_t *verdict, const senses_t *senses);
-
-/* Vertical speed without the heights: the mean of both witnesses, or the one that is valid and not doubted; 0
- * when there is none. */
-float verdict_speed_mps(const verdict_t *verdict, const senses_t *senses);
 
 /* Reason of the first doubt, in the order SIGHT, IMU, THRUST; VERDICT_NONE: no doubt. */
 verdict_reason_t verdict_reason(const verdict_t *verdict);

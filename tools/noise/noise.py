@@ -72,7 +72,7 @@ double noise_of(const float *v, long scans, double *told, float *strange)
         }
         belief_world_look(&scan, b.slant, b.height);
         belief_world_t foretold = b.worlds[0];
-        ways_t ways;
+        ways_t ways = {.honest = scan.told};
         feel(&foretold, &ways, &scan);
         strange[2 * i] = ways.strange_mps2;
         strange[2 * i + 1] = scan.strange_mps2;
@@ -123,11 +123,13 @@ def expected_square(values):
 
 
 class Belief:
-    """belief.c and belief_world.c with the noises as variables."""
+    """belief.c, belief_world.c and belief_density.h with the noises as variables."""
 
     def __init__(self):
         room = ROOT / "control/sense"
-        source = "".join((room / name).read_text(encoding="utf-8") for name in ("belief_world.c", "belief.c"))
+        density = (room / "belief_density.h").read_text(encoding="utf-8").partition("#include <math.h>\n")[2].rpartition("#endif")[0]
+        source = ("#define CONTROL_SENSE_BELIEF_DENSITY_H\n#include \"control/sense/belief_world.h\"\n#include <math.h>\n" + density +
+                  "".join((room / name).read_text(encoding="utf-8") for name in ("belief_world.c", "belief.c")))
         header = (room / "belief_world.h").read_text(encoding="utf-8")
         self.start, text = [], source
         for name in FITTED:

@@ -551,3 +551,142 @@ void test_a_block_that_comes_between_the_rays_is_as_likely_as_one_that_comes_bet
     }
     TEST_ASSERT_TRUE(otherwise < 0.2F * between);
 }
+
+/* ---- if all mirrors lie ---- */
+
+static void block_all(void)
+{
+    for (int m = 0; m < MIRROR_COUNT; m++) {
+        world.blocked_mm[m] = world.height_mm;
+    }
+    world.roll_rad = world.pitch_rad = world.rate_mm_s = 0.0F;
+}
+
+/* From rest to 0.5 m/s in two scans, and on; the mirrors do not show it. */
+static void climb(int scans)
+{
+    for (int k = 0; k < scans; k++) {
+        felt = (belief_felt_t){.gained_mps = (k < 2) ? 0.25F : 0.0F, .pushed_mps = 0.12F, .dragged = 0.24F};
+        scan();
+    }
+}
+
+void test_a_climb_that_no_mirror_shows_is_flown_on_from_the_height_before(void)
+{
+    for (unsigned long seed = 1UL; seed <= 20UL; seed++) {
+        begin(seed);
+        hover(100);
+        const float before_mm = world.height_mm;
+
+        block_all();
+        climb(20);
+        TEST_ASSERT_FLOAT_WITHIN(150.0F, 500.0F, belief_blind(&belief).rate_mm_s);
+        /* by 950 mm, and 150 mm/s for 2 s */
+        TEST_ASSERT_FLOAT_WITHIN(300.0F, before_mm + 950.0F, belief_blind(&belief).height_mm);
+    }
+}
+
+/* The step to what blocks them was not flown, nor is it with two mirrors that have lied for long. */
+void test_a_step_to_what_blocks_the_mirrors_was_not_flown(void)
+{
+    for (int liars = 0; liars < MIRROR_COUNT; liars++) {
+        for (unsigned long seed = 1UL; seed <= 10UL; seed++) {
+            begin(seed);
+            hover(50);
+            const float before_mm = world.height_mm;
+
+            for (int m = 0; m < liars; m++) {
+                world.blocked_mm[m] = 250.0F;
+            }
+            hover(100);
+            for (int m = 0; m < MIRROR_COUNT; m++) {
+                world.blocked_mm[m] = before_mm + 1500.0F;
+            }
+            felt = (belief_felt_t){.gained_mps = 0.0F};
+            hover(3);
+            TEST_ASSERT_FLOAT_WITHIN(150.0F, before_mm, belief_blind(&belief).height_mm); /* of 1500 */
+        }
+    }
+}
+
+void test_of_healthy_heights_the_blind_worlds_have_the_same(void)
+{
+    for (unsigned long seed = 1UL; seed <= 20UL; seed++) {
+        begin(seed);
+        for (int k = 0; k < 300; k++) {
+            const float before_mm_s = world.rate_mm_s;
+
+            fly();
+            felt = (belief_felt_t){.gained_mps = 0.001F * (world.rate_mm_s - before_mm_s)};
+            scan();
+            if (k < 50) {
+                continue; /* they begin at 0 */
+            }
+            TEST_ASSERT_FLOAT_WITHIN(250.0F, world.height_mm, belief_blind(&belief).height_mm);
+        }
+    }
+}
+
+/* Blocked while it climbs by a metre, free for 20 s, and blocked anew. */
+void test_what_one_lie_has_lost_the_next_has_not(void)
+{
+    for (unsigned long seed = 1UL; seed <= 20UL; seed++) {
+        begin(seed);
+        hover(100);
+        block_all();
+        climb(20);
+        memset(world.blocked_mm, 0, sizeof world.blocked_mm);
+        felt = (belief_felt_t){.untold = true};
+        hover(200);
+        block_all();
+        hover(2);
+        TEST_ASSERT_FLOAT_WITHIN(200.0F, world.height_mm, belief_blind(&belief).height_mm);
+    }
+}
+
+/* Of what may stand, the speed counts as probably as it moves. */
+void test_what_stands_has_no_speed(void)
+{
+    belief.worlds[0] = (belief_world_t){.probability = 1.0F, .rate_mm_s = 400.0F, .height_mm = 300.0F};
+    belief.worlds[0].motions[BELIEF_STANDS] = 0.75F;
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 100.0F, belief_blind(&belief).rate_mm_s);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 300.0F, belief_blind(&belief).height_mm);
+}
+
+/* Two mirrors are known; only the first tells something. Where it lies, nobody told the truth. */
+void test_mirrors_that_tell_nothing_in_a_scan_do_not_count_in_it(void)
+{
+    belief.known = 3U;
+    belief.told = 1U;
+    for (int k = 0; k < 4; k++) {
+        belief.worlds[k] = (belief_world_t){.probability = 0.25F, .rate_mm_s = 100.0F * (float)k};
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 200.0F, belief_blind(&belief).rate_mm_s); /* of 100 and 300 */
+    belief.told = 3U;
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 300.0F, belief_blind(&belief).rate_mm_s);
+}
+
+/* A mirror sees again: that world takes over what was learned of the thrust, too. */
+void test_what_is_known_of_the_thrust_goes_on_when_the_mirrors_see_again(void)
+{
+    begin(1UL);
+    hover(20);
+    for (int k = 0; k < (int)BELIEF_WORLDS; k++) {
+        belief.worlds[k].push_known = (k == (int)BELIEF_WORLDS - 1) ? 1.0F : 0.0F;
+        belief.worlds[k].probability = (k == (int)BELIEF_WORLDS - 1) ? 1.0F : 1.0e-12F;
+    }
+    felt = (belief_felt_t){.untold = true};
+    scan();
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 1.0F, belief.worlds[BELIEF_WORLDS - 2U].push_known);
+}
+
+void test_on_the_ground_the_height_is_0_and_the_thrust_is_not_known(void)
+{
+    belief.worlds[5] = (belief_world_t){
+        .push_off_mps2 = 1.0F, .push_known = 1.0F, .height_mm = 300.0F, .rate_mm_s = 7.0F};
+    belief_land(&belief);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, belief.worlds[5].push_off_mps2);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, belief.worlds[5].push_known);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, belief.worlds[5].height_mm);
+    TEST_ASSERT_EQUAL_FLOAT(7.0F, belief.worlds[5].rate_mm_s);
+}

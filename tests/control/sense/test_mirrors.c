@@ -432,7 +432,7 @@ static void vehicle_moves(float mps2)
 
         mirrors_thrust(&mirrors, (mps2 - vehicle.touch_mps2 + 2.4F * vehicle.speed_mps) * STEP_S, 0.0F,
                        2.4F * STEP_S);
-        mirrors_frame(&mirrors, (mps2 + vehicle.lie_mps2) * STEP_S);
+        mirrors_frame(&mirrors, (mps2 + vehicle.lie_mps2) * STEP_S, STEP_S);
         vehicle.speed_mps += mps2 * STEP_S;
         vehicle.height_mm[++vehicle.step % STEPS] = before_mm + 1000.0F * vehicle.speed_mps * STEP_S;
     }
@@ -668,24 +668,22 @@ void test_a_ground_after_65535_has_the_number_1(void)
     TEST_ASSERT_EQUAL_UINT16(1U, mirrors.ground);
 }
 
-/* Five scans up and five down, faster by 0.4 m/s in each, as the thrust tells. A frame that comes tells
- * nothing of it. */
-static float lies_felt_after(bool frames)
+/* Five scans up and five down, faster by 0.4 m/s in each, as the thrust tells. Frames that come tell nothing
+ * of it; they cover so much of each scan. */
+static float lies_felt_after(float covered_s)
 {
     float height_mm = 500.0F;
     float speed_mps = 0.0F;
 
     vehicle_begin(1U);
     for (int k = 0; k < 20; k++) {
-        mirrors_frame(&mirrors, 0.0F);
+        mirrors_frame(&mirrors, 0.0F, gap_s);
         (void)scan(height_mm + noise_mm(), height_mm + noise_mm(), height_mm + noise_mm());
     }
     for (int k = 1; k <= 10; k++) {
-        if (frames) {
-            mirrors_frame(&mirrors, 0.0F);
-        }
         const float gained_mps = (k <= 5) ? 0.4F : -0.4F;
 
+        mirrors_frame(&mirrors, 0.0F, covered_s);
         mirrors_thrust(&mirrors, gained_mps, 0.0F, 1.0e-6F);
         height_mm += 100.0F * (speed_mps + 0.5F * gained_mps);
         speed_mps += gained_mps;
@@ -694,8 +692,96 @@ static float lies_felt_after(bool frames)
     return belief_of_motion(&mirrors.belief, BELIEF_FELT_LIES);
 }
 
-void test_an_accelerometer_of_which_no_frame_has_come_since_the_scan_before_is_not_heard(void)
+void test_an_accelerometer_whose_frames_miss_most_of_the_scans_time_is_not_heard(void)
 {
-    TEST_ASSERT_FLOAT_WITHIN(0.1F, 1.0F, lies_felt_after(true));
-    TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.0F, lies_felt_after(false));
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 1.0F, lies_felt_after(0.1F));
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 1.0F, lies_felt_after(0.06F));
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.0F, lies_felt_after(0.04F));
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 0.0F, lies_felt_after(0.0F));
+}
+
+/* ---- the speed, if all mirrors lie ---- */
+
+/* The thrust does not carry it yet, as far as anybody knows: only the accelerometer tells. */
+static void lifts(float mps2, bool heard)
+{
+    for (long k = lroundf(gap_s / STEP_S); k > 0; k--) {
+        if (heard) {
+            mirrors_frame(&mirrors, mps2 * STEP_S, STEP_S);
+        }
+    }
+    (void)scan(40.0F + noise_mm(), 40.0F + noise_mm(), 40.0F + noise_mm());
+}
+
+/* Of what has just left the ground it is not known when, so it is too slow at first. */
+void test_a_take_off_with_blocked_mirrors_has_the_speed_of_the_accelerometer(void)
+{
+    float sum_mps = 0.0F;
+
+    for (unsigned seed = 1U; seed <= 20U; seed++) {
+        vehicle_begin(seed);
+        for (int k = 0; k < 100; k++) {
+            lifts(0.0F, true);
+        }
+        TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.0F, mirrors_blind_mps(&mirrors, true));
+        for (int k = 0; k < 5; k++) {
+            lifts(1.5F, true);
+        }
+        sum_mps += mirrors_blind_mps(&mirrors, true);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.2F, 0.55F, sum_mps / 20.0F);
+}
+
+void test_since_the_latest_scan_the_thrust_tells_where_no_accelerometer_is_heard(void)
+{
+    vehicle_begin(1U);
+    lifts(0.0F, true); /* its frames are of the next scan's time */
+    lifts(0.0F, true);
+    const float before_mps = mirrors_blind_mps(&mirrors, true);
+
+    mirrors_frame(&mirrors, 0.2F, STEP_S);
+    mirrors_thrust(&mirrors, 0.1F, 0.0F, 0.0F);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, before_mps + 0.2F, mirrors_blind_mps(&mirrors, true));
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, before_mps + 0.1F,
+                             mirrors_blind_mps(&mirrors, false)); /* doubted since */
+    mirrors_rest(&mirrors, false);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, before_mps + 0.2F, mirrors_blind_mps(&mirrors, true));
+    mirrors_rest(&mirrors, true);
+    TEST_ASSERT_FLOAT_WITHIN(0.02F, 0.0F, mirrors_blind_mps(&mirrors, true));
+    lifts(0.0F, false);
+    lifts(0.0F, false); /* the frame above was of the scan before */
+    const float unheard_mps = mirrors_blind_mps(&mirrors, true);
+
+    mirrors_frame(&mirrors, 0.2F, STEP_S);
+    mirrors_thrust(&mirrors, 0.1F, 0.0F, 0.0F);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-5F, unheard_mps + 0.1F, mirrors_blind_mps(&mirrors, true));
+}
+
+/* Ten seconds without a scan: what was felt meanwhile is no motion of this one. */
+void test_after_a_long_silence_the_sums_are_dropped(void)
+{
+    vehicle_begin(1U);
+    lifts(0.0F, true);
+    lifts(0.0F, true);
+    mirrors_frame(&mirrors, 5.0F, 60.0F);
+    gap_s = 9.0F;
+    (void)scan(40.0F, 40.0F, 40.0F);
+    TEST_ASSERT_TRUE(mirrors.belief.worlds[BELIEF_WORLDS - 1U].rate_mm_s > 4000.0F);
+    vehicle_begin(1U);
+    gap_s = 0.1F;
+    lifts(0.0F, true);
+    lifts(0.0F, true);
+    mirrors_frame(&mirrors, 5.0F, 60.0F);
+    gap_s = MIRRORS_GAP_MOST_S;
+    (void)scan(40.0F, 40.0F, 40.0F);
+    TEST_ASSERT_FLOAT_WITHIN(50.0F, 0.0F, mirrors.belief.worlds[BELIEF_WORLDS - 1U].rate_mm_s);
+}
+
+/* By the thrust: what lifts a climb of 0.8 m/s evenly is eaten by its drag. */
+void test_since_the_latest_scan_the_drag_counts_where_the_thrust_tells(void)
+{
+    vehicle_begin(1U);
+    mirrors.belief.worlds[0] = (belief_world_t){.probability = 1.0F, .rate_mm_s = 800.0F};
+    mirrors_thrust(&mirrors, 2.4F * 0.8F * STEP_S, 0.0F, 2.4F * STEP_S);
+    TEST_ASSERT_FLOAT_WITHIN(1.0e-4F, 0.8F, mirrors_blind_mps(&mirrors, false));
 }

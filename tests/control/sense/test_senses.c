@@ -78,25 +78,16 @@ void test_a_new_order_on_the_ground_forgets_and_one_in_the_air_does_not(void)
     }
 }
 
-void test_the_speed_without_heights_is_that_of_the_witnesses_that_are_left(void)
+void test_the_felt_speed_is_none_in_doubt_and_less_when_it_is_noisy(void)
 {
     senses.accelerometer.felt = (witness_t){.speed_mps = 0.4F, .running_s = 0.51F};
-    senses.push.pushed = (witness_t){.speed_mps = 0.8F, .running_s = 0.51F};
-    NEAR(0.6F, verdict_speed_mps(&verdict, &senses));
+    NEAR(0.4F, sensed_felt_mps());
     doubted(DOUBT_IMU);
-    NEAR(0.8F, verdict_speed_mps(&verdict, &senses));
-    doubted(DOUBT_THRUST);
-    NEAR(0.4F, verdict_speed_mps(&verdict, &senses));
-    doubted(DOUBT_THRUST | DOUBT_IMU);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict_speed_mps(&verdict, &senses));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, sensed_felt_mps());
     doubted(0U);
     shaken_by(2.0F);
     NEAR(0.2F, sensed_felt_mps());
-    senses.push.pushed.running_s = 0.5F;
-    NEAR(0.4F, verdict_speed_mps(&verdict, &senses));
     senses.accelerometer.felt.running_s = 0.5F;
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, verdict_speed_mps(&verdict, &senses));
     TEST_ASSERT_EQUAL_FLOAT(0.0F, sensed_felt_mps());
 }
 

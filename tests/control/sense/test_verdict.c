@@ -23,31 +23,18 @@ void test_mirrors_that_all_lie_are_doubted_at_once_whatever_the_witnesses_tell(v
     }
 }
 
-void test_a_doubt_of_the_sight_keeps_the_error_of_the_height_and_starts_the_sums_anew(void)
+/* No mirror has told anything before: the world with all its probability is the first. */
+void test_a_doubt_of_the_sight_keeps_the_height_of_the_blind_worlds_and_starts_the_sums_anew(void)
 {
+    senses.mirrors.belief.worlds[0] = (belief_world_t){.probability = 1.0F, .height_mm = 410.0F};
     all_lie(true);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(-0.52F, -0.30F));
-    NEAR(-0.41F, verdict.lost_m);
+    NEAR(0.41F, verdict.blind_m);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.seen_m);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.push.pushed.off_m);
-    (void)judged(3.0F, 3.0F); /* it was lost when the doubt rose, not now */
-    NEAR(-0.41F, verdict.lost_m);
-}
-
-void test_the_error_is_told_by_the_thrust_alone_while_the_accelerometer_is_doubted(void)
-{
-    doubted(DOUBT_IMU);
-    all_lie(true);
-    TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU | DOUBT_SIGHT, judged(0.7F, -0.3F));
-    NEAR(-0.3F, verdict.lost_m);
-}
-
-void test_the_error_is_told_by_the_accelerometer_alone_while_the_thrust_is_not_known(void)
-{
-    senses.push.pushed.running_s = 0.4F;
-    all_lie(true);
-    (void)judged(-0.52F, -0.30F);
-    NEAR(-0.52F, verdict.lost_m);
+    senses.mirrors.belief.worlds[0].height_mm = 3000.0F;
+    (void)judged(3.0F, 3.0F); /* the height is that when the doubt rose, not now */
+    NEAR(0.41F, verdict.blind_m);
 }
 
 void test_the_sight_is_back_when_a_mirror_sees_a_motion_and_not_before(void)
