@@ -124,8 +124,8 @@ void handover_doubts(handover_t *handover, est_law_t *est, where_t *where, const
     handover->doubts = doubted;
 }
 
-/* The IMU is back in flight: the estimate starts again. From what thrust and heights tell, not from
- * rest, and with the bias from before; also where the heights are gone. */
+/* The IMU is back in flight: the estimate starts again. From what thrust and heights tell, or without sight
+ * the belief, not from rest, and with the bias from before; also where the heights are gone. */
 static void restart(est_law_t *est, const situation_t *now)
 {
     const evidence_t *evidence = now->evidence;
@@ -136,7 +136,9 @@ static void restart(est_law_t *est, const situation_t *now)
     }
     const float height_m = doubts(evidence, DOUBT_SIGHT) ? estimator->now.height_m
                                                          : evidence->height_m + evidence->moved_m;
-    estimator_start(estimator, height_m, evidence->pushed_mps, estimator->felt ? evidence->bias_mps2 : 0.0F);
+    const float speed_mps = doubts(evidence, DOUBT_SIGHT) ? evidence->speed_mps : evidence->pushed_mps;
+
+    estimator_start(estimator, height_m, speed_mps, estimator->felt ? evidence->bias_mps2 : 0.0F);
 }
 
 /* The height of this cycle, if there is one that is believed. */

@@ -14,8 +14,7 @@
 /* ---- noise models */
 #define ODD_SHARE 0.05F           /* of a liar's scans: no constant, anything within the 4 m of the scanner */
 #define SHARED_MM BELIEF_NOISE_MM /* of a noise that all mirrors share, in what is constant but for it */
-#define FROZEN_SHARE \
-    0.5F /* of the lies that begin: a scan that freezes, or something that comes; not known */
+#define FROZEN_SHARE 0.5F /* of the lies that begin: a scan that freezes, or something comes; not known */
 #define ODD_PER_MM (1.0F / 4000.0F) /* the URG-04LX tells up to 4095 mm */
 
 /* Kinds of motion. Standing, slants and heights are constants, and a liar's slant is no better explained:
@@ -40,9 +39,8 @@ typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BEL
 /* ---- gains of the filters: alpha and beta of Kalata 1984 for 0.5 m/s2 */
 #define SHARED_GAIN 0.85F
 #define PUSH_GAIN (SCAN_S / HOVER_TIME_S) /* what the hover thrust is off by is learned as in push.c */
-#define PUSH_OFF_MPS2 \
-    2.0F                 /* GRAV of a vehicle whose mass is off by 20 %, as tools/campaign/plan.py draws \
-                          */
+/* GRAV of a vehicle whose mass is off by 20 %, as tools/campaign/plan.py draws */
+#define PUSH_OFF_MPS2 2.0F
 #define BLIND_GAIN 0.03F /* chosen: s; the drag tells the speed in 1.4 s, once the thrust is known */
 #define OWN_GAIN 0.42F   /* of what one mirror shows alone: slow, it is terrain or noise */
 
@@ -201,13 +199,26 @@ static void add_stand(ways_t *ways, const belief_scan_t *scan)
                                  lies * ways->foretold_mm);
 }
 
+/* By the honest mirrors; where none tells it, as flown. */
+static float height_of(const belief_world_t *world, uint16_t honest)
+{
+    float sum_mm = 0.0F;
+    float count = 0.0F;
+
+    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
+        sum_mm += belief_has(honest, m) ? world->level_mm[m] : 0.0F;
+        count += belief_has(honest, m) ? 1.0F : 0.0F;
+    }
+    return (count > 0.0F) ? sum_mm / count : world->height_mm;
+}
+
 /* No vehicle stands that its thrust lifts. Nor does one whose honest mirrors show air below it, and whose
- * thrust is too small: it would sink. */
+ * thrust is too small: it would sink. Where nothing tells whether it does, that would be a guess. */
 static float density_of_standing(const belief_world_t *world, uint16_t honest, const belief_scan_t *scan)
 {
     const float gained_mps2 = scan->felt.untold ? 0.0F : scan->felt.gained_mps / scan->gap_s;
     const float lift_mps2 = scan->felt.pushed_mps / scan->gap_s;
-    const bool aloft = honest != 0U && world->height_mm > LOW_MM && !scan->felt.untold;
+    const bool aloft = honest != 0U && height_of(world, honest) > LOW_MM && !scan->felt.untold;
 
     return density_of_strange(gained_mps2, STRANGE_MPS2) *
            density_of_strange(aloft ? lift_mps2 : at_least(lift_mps2, 0.0F), STRANGE_MPS2) /
@@ -221,8 +232,7 @@ static void feel(const belief_world_t *world, ways_t *ways, const belief_scan_t 
     const belief_felt_t *felt = &scan->felt;
     const float off_mps = (felt->dragged > 0.0F) ? world->push_off_mps2 * scan->gap_s : 0.0F;
     const float rate_mps = 0.001F * world->rate_mm_s;
-    const float half = 0.5F *
-                       felt->dragged; /* the speed that is gained meanwhile is dragged for half of it */
+    const float half = 0.5F * felt->dragged; /* speed that is gained meanwhile is dragged half as long */
     const float thrust_mps = (felt->pushed_mps + off_mps - felt->dragged * rate_mps) / (1.0F + half);
 
     ways->gained_mps = felt->untold ? thrust_mps : felt->gained_mps;
@@ -293,6 +303,7 @@ static void take_back(belief_world_t *world, ways_t *ways)
     const float foretold_mm = ways->foretold_mm * lies;
 
     world->rate_mm_s -= 1000.0F * ways->untrue_mps * lies;
+    ways->way_mm -= foretold_mm;
     for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
         world->level_mm[m] -= foretold_mm;
         ways->off_mm[m] += foretold_mm;
@@ -335,19 +346,14 @@ static void correct_rate(belief_world_t *world, const ways_t *ways, const belief
     }
 }
 
-/* Of the honest mirrors; where none tells it, the rate does. */
+/* What it has flown, where no mirror tells it. */
 static void correct_height(belief_world_t *world, const ways_t *ways)
 {
     const float moves = 1.0F - ways->motions[BELIEF_STANDS] / ways->density;
-    float sum_mm = 0.0F;
-    float count = 0.0F;
 
-    for (uint16_t m = 0U; m < MIRROR_COUNT; ++m) {
-        sum_mm += belief_has(ways->honest, m) ? world->level_mm[m] : 0.0F;
-        count += belief_has(ways->honest, m) ? 1.0F : 0.0F;
-    }
-    world->height_mm = (count > 0.0F) ? sum_mm / count
-                                      : between(0.0F, world->height_mm + moves * ways->way_mm, HEIGHT_MAX_MM);
+    world->height_mm = (ways->honest != 0U)
+                           ? height_of(world, ways->honest)
+                           : between(0.0F, world->height_mm + moves * ways->way_mm, HEIGHT_MAX_MM);
 }
 
 /* The filter follows what the honest ones share, and each mirror's own part slowly, but a step at once. */

@@ -59,8 +59,8 @@ uint16_t mirrors_liars(const mirrors_t *mirrors, bool lasting);
 /* One IMU frame: by the accelerometer the vertical speed has changed by so much in dt_s. */
 void mirrors_frame(mirrors_t *mirrors, float gained_mps, float dt_s);
 
-/* It stands on the ground without thrust. unseen: no height is of use, and what has been felt is no motion.
- */
+/* State GROUND, and nobody is known to carry it. unseen: no height is of use, and what has been felt is no
+ * motion. */
 void mirrors_rest(mirrors_t *mirrors, bool unseen);
 
 /* Vertical speed now, if all mirrors lie: by the accelerometer, and the thrust. believed: the accelerometer

@@ -28,7 +28,6 @@ static void watch_ground(senses_t *s, float mean_mps2, float dt_s)
         accelerometer_in_hands(&s->accelerometer, mean_mps2, sway_is_no_hand(&s->sway), dt_s);
     } else {
         accelerometer_rest(&s->accelerometer, dt_s);
-        mirrors_rest(&s->mirrors, s->heights.unseen_s > HEIGHT_LOST_S);
     }
 }
 
@@ -97,6 +96,13 @@ static void tell_thrust(senses_t *senses, const command_t *command, bool carries
     }
 }
 
+static void rest(senses_t *senses, const command_t *command)
+{
+    if (command->grounded && !accelerometer_is_in_hands(&senses->accelerometer)) {
+        mirrors_rest(&senses->mirrors, senses->heights.unseen_s > HEIGHT_LOST_S);
+    }
+}
+
 void senses_thrust(senses_t *senses, const command_t *command, bool felt_valid)
 {
     const witness_t *felt = &senses->accelerometer.felt;
@@ -113,6 +119,7 @@ void senses_thrust(senses_t *senses, const command_t *command, bool felt_valid)
         witness_start(&senses->push.pushed, felt_tells ? felt->speed_mps : 0.0F);
     }
     tell_thrust(senses, command, carries, felt_tells ? felt->speed_mps : 0.0F);
+    rest(senses, command);
 }
 
 /* What a height means for the witnesses. At the first climb the hover thrust was not known well until now, so

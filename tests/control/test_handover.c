@@ -374,12 +374,13 @@ void test_an_imu_that_is_back_starts_the_estimate_from_thrust_and_heights(void)
         evidence.height_m = 0.7F;
         evidence.bias_mps2 = 0.25F;
         evidence.pushed_mps = 0.24F;
+        evidence.speed_mps = -0.3F;
         evidence.moved_m = 0.05F;
         locate();
         TEST_ASSERT_EQUAL(rows[i].starts, est.estimator.initialised);
         if (rows[i].starts) {
             NEAR(rows[i].doubted ? 0.5F : 0.75F, est.estimator.now.height_m);
-            NEAR(0.24F, est.estimator.now.speed_mps);
+            NEAR(rows[i].doubted ? -0.3F : 0.24F, est.estimator.now.speed_mps);
             NEAR(rows[i].felt ? 0.25F : 0.0F, est.estimator.now.bias_mps2);
         }
     }

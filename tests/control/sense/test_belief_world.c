@@ -92,7 +92,8 @@ static float stands_with(float push_mps2, float height_mm, uint16_t liars)
 {
     setUp();
     scan.told = 1U << MIRROR_FRONT;
-    world.height_mm = height_mm;
+    world.level_mm[MIRROR_FRONT] = world.height_mm = beams[MIRROR_FRONT].height_mm = height_mm;
+    height[MIRROR_FRONT].mm = height_mm;
     scan.felt = (belief_felt_t){.pushed_mps = push_mps2 * GAP_S, .dragged = 0.24F};
     belief_world_look(&scan, slant, height);
     (void)belief_world_scan(&world, &scan, liars);
@@ -118,6 +119,25 @@ void test_no_vehicle_stands_in_the_air_whose_thrust_is_too_small(void)
                                  stands_with(push_mps2, 500.0F, 1U << MIRROR_FRONT) /
                                      stands_with(0.0F, 500.0F, 1U << MIRROR_FRONT));
     }
+}
+
+/* Without the accelerometer the thrust foretells that it sinks: held against one that stands, a vehicle that
+ * a pilot holds would have blocked mirrors. Over the kind that no thrust changes. */
+void test_where_the_accelerometer_tells_nothing_too_small_a_thrust_tells_nothing_of_standing(void)
+{
+    float ratio[2];
+
+    for (int pushed = 0; pushed < 2; pushed++) {
+        setUp();
+        scan.told = 1U << MIRROR_FRONT;
+        world.height_mm = 500.0F;
+        scan.felt = (belief_felt_t){
+            .untold = true, .pushed_mps = (pushed != 0) ? -3.0F * GAP_S : 0.0F, .dragged = 0.24F};
+        belief_world_look(&scan, slant, height);
+        (void)belief_world_scan(&world, &scan, 0U);
+        ratio[pushed] = world.motions[BELIEF_STANDS] / world.motions[BELIEF_FELT_LIES];
+    }
+    TEST_ASSERT_TRUE(ratio[1] > 0.5F * ratio[0]);
 }
 
 #define CALM 1U /* a kind of motion: it flies in calm air */
