@@ -177,6 +177,11 @@ TEST_CASE(3, 700)
 TEST_CASE(4, 800)
 TEST_CASE(5, 900)
 TEST_CASE(6, 1200)
+/* It sinks onto the ground, by heights above the reference; it stayed there, FLYING. */
+TEST_CASE(106, 850)
+TEST_CASE(107, 900)
+TEST_CASE(113, 1000)
+TEST_CASE(114, 950)
 void test_a_blocked_beam_is_doubted_and_it_comes_down(unsigned long seed, int slant)
 {
     take_off(seed);
