@@ -60,8 +60,8 @@ typedef struct {
 
 belief_blind_t belief_blind(const belief_t *belief);
 
-/* It stands on the ground without thrust: its height is 0, whatever all mirrors show, and the next flight's
- * hover thrust may be another. */
+/* State GROUND: where no mirror tells it the height is 0, and the next flight's hover thrust may be another.
+ */
 void belief_land(belief_t *belief);
 
 #endif

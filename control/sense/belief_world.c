@@ -14,7 +14,7 @@
 /* ---- noise models */
 #define ODD_SHARE 0.05F           /* of a liar's scans: no constant, anything within the 4 m of the scanner */
 #define SHARED_MM BELIEF_NOISE_MM /* of a noise that all mirrors share, in what is constant but for it */
-#define FROZEN_SHARE 0.5F /* of the lies that begin: a scan that freezes, or something comes; not known */
+#define FROZEN_SHARE 0.5F         /* of the lies that begin a scan freezes; else something comes: not known */
 #define ODD_PER_MM (1.0F / 4000.0F) /* the URG-04LX tells up to 4095 mm */
 
 /* Kinds of motion. Standing, slants and heights are constants, and a liar's slant is no better explained:
