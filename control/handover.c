@@ -52,7 +52,7 @@ static void amend(est_law_t *est, const evidence_t *evidence, amend_t how)
 {
     switch (how) {
     case AMEND_BLINDLY:
-        estimator_amend(&est->estimator, evidence->blind_m, evidence->speed_mps, evidence->bias_mps2);
+        estimator_amend(&est->estimator, evidence->blind_height_m, evidence->speed_mps, evidence->bias_mps2);
         break;
     case AMEND_BY_HEIGHTS:
         estimator_amend(&est->estimator, evidence->height_m, evidence->rise_mps, evidence->bias_mps2);

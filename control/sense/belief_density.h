@@ -6,6 +6,7 @@
 #define CONTROL_SENSE_BELIEF_DENSITY_H
 
 #include <math.h>
+#include <stdint.h>
 
 /* Standard deviation of one mirror's height about that of the others, and of a blocked beam's slant. Fitted
  * on healthy flights, see belief_world.c; recorded: 1 mm at most. */
@@ -56,6 +57,32 @@ static inline float density_of_strange(float mps2, float scale_mps2)
     const float wider = 1.0F + scales * scales / 3.0F;
 
     return 0.367552597F / (scale_mps2 * wider * wider); /* 2 / (pi sqrt(3)) */
+}
+
+/* What mirrors share in one kind of motion, in their density: its factor, and 1/mm2 of the exponent, of the
+ * square of their sum. */
+typedef struct {
+    float norm, shared;
+} belief_motion_t;
+
+/* A motion that n mirrors share, beside the noise of each: by hand, as the noises are equal (Sherman and
+ * Morrison 1950). */
+static inline belief_motion_t motion_of(uint16_t n, float sigma_mm)
+{
+    const float noise_mm2 = BELIEF_NOISE_MM * BELIEF_NOISE_MM;
+    const float all_mm2 = noise_mm2 + (float)n * sigma_mm * sigma_mm;
+
+    return (belief_motion_t){.norm = sqrtf(noise_mm2 / all_mm2),
+                             .shared = 0.5F * sigma_mm * sigma_mm / (all_mm2 * noise_mm2)};
+}
+
+/* Normal density of their innovations, by sum and sum of squares, in that of as many without motion or
+ * innovation. */
+static inline float density_of_motion(float sum_mm, float squares_mm2, const belief_motion_t *motion)
+{
+    const float half_per_mm2 = 0.5F / (BELIEF_NOISE_MM * BELIEF_NOISE_MM);
+
+    return motion->norm * expf(motion->shared * sum_mm * sum_mm - half_per_mm2 * squares_mm2);
 }
 
 #endif

@@ -22,12 +22,13 @@
 static const struct {
     float share, sigma_mm;
 } motions[] = {
-    {0.2F, 0.0F},    /* it stands */
-    {0.3F, 3.0F},    /* it flies in calm air, as the accelerometer tells */
-    {0.196F, 20.0F}, /* a gust, a touch, a slope that begins */
-    {0.3F, 7.0F},    /* it flies: 2.4 m/s2 that nothing has told, in 0.1 s */
-    {0.002F, 7.0F},  /* the same, and the thrust has no effect */
-    {0.002F, 7.0F},  /* any of these, it stands too, and the thrust tells it, not the accelerometer */
+    {0.2F, 0.0F},     /* it stands */
+    {0.3F, 3.0F},     /* it flies in calm air, as the accelerometer tells */
+    {0.1956F, 20.0F}, /* a gust, a touch, a slope that begins */
+    {0.3F, 7.0F},     /* it flies: 2.4 m/s2 that nothing has told, in 0.1 s */
+    {0.002F, 7.0F},   /* the same, and the thrust has no effect */
+    {0.0004F, 0.0F},  /* it hangs: as it stands, though its thrust would let it sink */
+    {0.002F, 7.0F},   /* any of these, it stands too, and the thrust tells it, not the accelerometer */
 };
 typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BELIEF_MOTIONS) ? 1 : -1];
 #define MOTION_CHANGES 0.05F /* of the scans: the kind of motion is drawn anew, by its share; a second */
@@ -66,25 +67,6 @@ static shown_t shown_by(uint16_t mirrors, const float off_mm[MIRROR_COUNT])
         }
     }
     return shown;
-}
-
-/* A motion that these share, beside the noise of each: by hand, as the noises are equal (Sherman and Morrison
- * 1950). */
-static belief_motion_t motion_of(uint16_t n, float sigma_mm)
-{
-    const float noise_mm2 = BELIEF_NOISE_MM * BELIEF_NOISE_MM;
-    const float all_mm2 = noise_mm2 + (float)n * sigma_mm * sigma_mm;
-
-    return (belief_motion_t){.norm = sqrtf(noise_mm2 / all_mm2),
-                             .shared = 0.5F * sigma_mm * sigma_mm / (all_mm2 * noise_mm2)};
-}
-
-/* Normal density of these, in that of as many without motion or innovation. */
-static float density_of_motion(float sum_mm, float squares_mm2, const belief_motion_t *motion)
-{
-    const float half_per_mm2 = 0.5F / (BELIEF_NOISE_MM * BELIEF_NOISE_MM);
-
-    return motion->norm * expf(motion->shared * sum_mm * sum_mm - half_per_mm2 * squares_mm2);
 }
 
 /* ---- one world */
@@ -130,7 +112,7 @@ static float add_motions(ways_t *ways, const belief_motion_t *motion, const show
     float sum = 0.0F;
     float of_heights = density;
 
-    for (uint16_t k = BELIEF_STANDS + 1U; k < BELIEF_FELT_LIES; ++k) {
+    for (uint16_t k = BELIEF_STANDS + 1U; k < BELIEF_HANGS; ++k) {
         if (shown->n > 0U && k != BELIEF_HELD) { /* it moves as the kind before */
             of_heights = density * density_of_motion(shown->sum_mm, shown->squares_mm2, &motion[k]);
         }
@@ -181,6 +163,7 @@ static float density_of_shared(const float off_mm[MIRROR_COUNT], uint16_t mirror
 static void add_stand(ways_t *ways, const belief_scan_t *scan)
 {
     const float sound = ways->kinds[BELIEF_STANDS];
+    const float hangs = ways->kinds[BELIEF_HANGS];
     const float lies = ways->kinds[BELIEF_FELT_LIES] * motions[BELIEF_STANDS].share;
     const shown_t shown = shown_by(ways->honest, ways->off_mm);
     float density = 1.0F;
@@ -192,14 +175,15 @@ static void add_stand(ways_t *ways, const belief_scan_t *scan)
         density = 0.5F * (density + density_of_shared(scan->height_off_mm, ways->honest));
     }
     ways->count = shown.n;
-    ways->density += (sound + lies) * density;
+    ways->density += (sound + hangs + lies) * density;
     ways->motions[BELIEF_STANDS] = sound * density;
+    ways->motions[BELIEF_HANGS] = hangs * density;
     ways->motions[BELIEF_FELT_LIES] = lies * density;
-    ways->moved_mm += density * ((sound + lies) * shown.sum_mm / at_least((float)shown.n, 1.0F) +
+    ways->moved_mm += density * ((sound + hangs + lies) * shown.sum_mm / at_least((float)shown.n, 1.0F) +
                                  lies * ways->foretold_mm);
 }
 
-/* By the honest mirrors; where none tells it, as flown. */
+/* By the honest mirrors, at least one. */
 static float height_of(const belief_world_t *world, uint16_t honest)
 {
     float sum_mm = 0.0F;
@@ -209,20 +193,24 @@ static float height_of(const belief_world_t *world, uint16_t honest)
         sum_mm += belief_has(honest, m) ? world->level_mm[m] : 0.0F;
         count += belief_has(honest, m) ? 1.0F : 0.0F;
     }
-    return (count > 0.0F) ? sum_mm / count : world->height_mm;
+    return sum_mm / count;
 }
 
 /* No vehicle stands that its thrust lifts. Nor does one whose honest mirrors show air below it, and whose
- * thrust is too small: it would sink. Where nothing tells whether it does, that would be a guess. */
-static float density_of_standing(const belief_world_t *world, uint16_t honest, const belief_scan_t *scan)
+ * thrust is too small: it would sink, or something holds it. Where nothing tells whether it sinks, that would
+ * be a guess. */
+static void stand(const belief_world_t *world, ways_t *ways, const belief_scan_t *scan)
 {
     const float gained_mps2 = scan->felt.untold ? 0.0F : scan->felt.gained_mps / scan->gap_s;
     const float lift_mps2 = scan->felt.pushed_mps / scan->gap_s;
-    const bool aloft = honest != 0U && height_of(world, honest) > LOW_MM && !scan->felt.untold;
+    const float still = density_of_strange(gained_mps2, STRANGE_MPS2) /
+                        density_of_strange(0.0F, STRANGE_MPS2);
+    const float carried = still * density_of_strange(at_least(lift_mps2, 0.0F), STRANGE_MPS2);
 
-    return density_of_strange(gained_mps2, STRANGE_MPS2) *
-           density_of_strange(aloft ? lift_mps2 : at_least(lift_mps2, 0.0F), STRANGE_MPS2) /
-           density_of_strange(0.0F, STRANGE_MPS2);
+    const bool aloft = ways->honest != 0U && height_of(world, ways->honest) > LOW_MM && !scan->felt.untold;
+
+    ways->kinds[BELIEF_STANDS] = aloft ? still * density_of_strange(lift_mps2, STRANGE_MPS2) : carried;
+    ways->kinds[BELIEF_HANGS] = aloft ? carried : 0.0F;
 }
 
 /* What the accelerometer tells beyond the thrust depends on the speed, by the drag: a world in which the
@@ -241,7 +229,7 @@ static void feel(const belief_world_t *world, ways_t *ways, const belief_scan_t 
     for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
         ways->kinds[k] = moving;
     }
-    ways->kinds[BELIEF_STANDS] = density_of_standing(world, ways->honest, scan);
+    stand(world, ways, scan);
     /* Where the thrust foretells, it is not tried whether it lies too: that would explain all. */
     ways->kinds[BELIEF_HELD] = felt->untold
                                    ? 0.0F

@@ -14,13 +14,14 @@
 /* Of the filters: beta of Kalata 1984 for 0.5 m/s2; alpha is in belief_world.c. */
 #define BELIEF_RATE_GAIN 0.42F
 
-/* belief_world.c: it stands, flies in calm air, something pushes it, it flies, somebody else flies or holds
- * it, the accelerometer lies */
-#define BELIEF_MOTIONS 6U
+/* belief_world.c: it stands, flies in calm air, something pushes it, it flies, somebody else flies it,
+ * something holds it still in the air, the accelerometer lies */
+#define BELIEF_MOTIONS 7U
 #define BELIEF_STANDS 0U
 #define BELIEF_PUSHED 2U
 #define BELIEF_HELD 4U
-#define BELIEF_FELT_LIES 5U
+#define BELIEF_HANGS 5U
+#define BELIEF_FELT_LIES 6U
 
 /* One mirror in one scan. */
 typedef struct {
@@ -57,12 +58,6 @@ typedef struct {
     float mm;
     float count; /* of so many, up to a most */
 } belief_mean_t;
-
-/* What mirrors share in one kind of motion, in their density: its factor, and 1/mm2 of the exponent, of the
- * square of their sum. */
-typedef struct {
-    float norm, shared;
-} belief_motion_t;
 
 /* One scan, and what of it is alike in all worlds. */
 typedef struct {

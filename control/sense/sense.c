@@ -155,7 +155,7 @@ static evidence_t evidence_of(const sense_t *sense)
                     .liars = mirrors_liars(&s->mirrors, true)},
         .height_m = s->heights.height_m,
         .rise_mps = s->heights.rise_mps,
-        .blind_m = verdict->blind_m,
+        .blind_height_m = verdict->blind_height_m,
         .felt_mps = s->accelerometer.felt.speed_mps,
         .felt_valid = verdict_felt_valid(verdict, s),
         .shaken = s->accelerometer.shaken,

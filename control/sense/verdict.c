@@ -58,8 +58,8 @@ static void doubt_sight(verdict_t *verdict, senses_t *senses, float age_s)
     const bool felt = (verdict->doubts & DOUBT_IMU) == 0U;
 
     verdict->doubts |= DOUBT_SIGHT;
-    verdict->blind_m = 0.001F * belief_blind(&senses->mirrors.belief).height_mm +
-                       mirrors_blind_mps(&senses->mirrors, felt) * age_s;
+    verdict->blind_height_m = 0.001F * belief_blind(&senses->mirrors.belief).height_mm +
+                              mirrors_blind_mps(&senses->mirrors, felt) * age_s;
     forget(verdict, senses);
 }
 

@@ -31,7 +31,7 @@ typedef enum {
 typedef struct {
     uint16_t doubts;          /* DOUBT_* */
     verdict_reason_t why_imu; /* of DOUBT_IMU, while there is one */
-    float blind_m;            /* height when DOUBT_SIGHT rose, by the worlds in which all mirrors lie */
+    float blind_height_m;     /* height when DOUBT_SIGHT rose, by the worlds in which all mirrors lie */
     float contrary_s; /* time of scans against the present verdict on the thrust, less that of the others */
     float sure_n;     /* hover thrust when the thrust last did not push in vain */
     float held_n;     /* the same, when DOUBT_THRUST rose */

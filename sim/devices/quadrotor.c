@@ -73,6 +73,8 @@ const quadrotor_config_t quadrotor_default = {.gain = 1.0,
                                               .tug_rate_per_s = 0.0,
                                               .tug_mps2 = -1.5,
                                               .rope_per_s2 = 60.0,
+                                              .hang_m = 0.0,
+                                              .hang = {10.0, SPAN_FOR_GOOD_S},
                                               .airframe = 0.0,
                                               .rotors = ROTORS_DEFAULT,
                                               .lag2_s = 0.0,
@@ -310,16 +312,24 @@ static double gust_mps2(const quadrotor_t *q)
                                                                                     : 0.0;
 }
 
-/* A taut rope is a spring with some loss; it never pushes. */
+/* A taut rope is a spring with some loss; it never pushes. beyond_m, leaves_mps: way beyond its end. */
+static double pull_mps2(const quadrotor_t *q, double beyond_m, double leaves_mps)
+{
+    const double loss_mps2 = 2.0 * ROPE_LOSS * sqrt(q->config.rope_per_s2) * leaves_mps;
+
+    return beyond_m > 0.0 ? fmax(q->config.rope_per_s2 * beyond_m + loss_mps2, 0.0) : 0.0;
+}
+
+/* By the rope to the floor, and by that from above. */
 static double rope_mps2(const quadrotor_t *q)
 {
-    const double beyond_m = q->state.altitude_m - q->config.rope_m;
+    const quadrotor_config_t *config = &q->config;
+    const double z_m = q->state.altitude_m;
+    const bool tied = config->rope_m > 0.0;
+    const bool hangs = config->hang_m > 0.0 && span_holds(&config->hang, scenario_s(q));
 
-    if (q->config.rope_m <= 0.0 || beyond_m <= 0.0) {
-        return 0.0;
-    }
-    const double loss_mps2 = 2.0 * ROPE_LOSS * sqrt(q->config.rope_per_s2) * q->state.speed_mps;
-    return fmin(-q->config.rope_per_s2 * beyond_m - loss_mps2, 0.0);
+    return (hangs ? pull_mps2(q, config->hang_m - z_m, -q->state.speed_mps) : 0.0) -
+           (tied ? pull_mps2(q, z_m - config->rope_m, q->state.speed_mps) : 0.0);
 }
 
 static double disturbance_mps2(quadrotor_t *q)

@@ -159,7 +159,7 @@ void test_the_first_hover_thrust_of_another_law_is_newtons(void)
 
 void test_a_doubt_of_the_sight_corrects_the_estimate_by_the_worlds_in_which_all_lie(void)
 {
-    evidence.blind_m = 0.9F;
+    evidence.blind_height_m = 0.9F;
     evidence.speed_mps = 0.3F;
     evidence.bias_mps2 = 0.15F;
     now.thrust_n = 7.7F;
@@ -169,7 +169,7 @@ void test_a_doubt_of_the_sight_corrects_the_estimate_by_the_worlds_in_which_all_
     NEAR(0.3F, est.estimator.now.speed_mps);
     NEAR(0.15F, est.estimator.now.bias_mps2);
     NEAR(7.1F, est.hover.thrust_n);
-    evidence.blind_m = 0.4F;
+    evidence.blind_height_m = 0.4F;
     est_hovers_at_n(6.5F);
     change_doubts(DOUBT_SIGHT); /* once */
     NEAR(0.9F, est.estimator.now.height_m);
@@ -179,7 +179,7 @@ void test_a_doubt_of_the_sight_corrects_the_estimate_by_the_worlds_in_which_all_
 /* The heights that are doubted come to no estimate: neither does their rate. */
 void test_a_doubt_of_the_imu_while_the_sight_is_doubted_keeps_the_height(void)
 {
-    evidence.blind_m = 0.9F;
+    evidence.blind_height_m = 0.9F;
     evidence.height_m = 0.3F;
     evidence.rise_mps = 0.0F;
     evidence.bias_mps2 = 0.15F;

@@ -363,6 +363,39 @@ void test_a_beam_blocked_just_below_the_reference_does_not_fly_it_away(void)
     }
 }
 
+/* A branch, a rope, a hand holds it in the air for 9 s, 0.1 m above the reference, and lets it go. It was
+ * taken for a vehicle that stands by blocked mirrors: of 100 flights 4 had their motors off when they were
+ * let go. */
+void test_what_something_holds_in_the_air_keeps_its_sight_and_flies_on_when_it_is_let_go(void)
+{
+    static const char *const held[] = {"plant.platform=0",
+                                       "plant.hang=0.7",
+                                       "plant.hang_length=9",
+                                       "plant.rope_pull=1000",
+                                       "plant.turbulence=0.05",
+                                       "plant.attitude_rms=0.01",
+                                       NULL};
+    const child_flights_t flights = child_fly_seeds("est-60cm-ramp", 8, held);
+
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, flights.worst[METRIC_SIGHT_DOUBTS]);
+    TEST_ASSERT_TRUE(flights.worst[METRIC_THRUST_DOUBTS] > 0.5); /* right */
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, flights.worst[METRIC_OFF_ALOFT]);
+    TEST_ASSERT_TRUE(flights.worst[METRIC_TOUCH_SPEED_MPS] > 0.05 &&
+                     flights.worst[METRIC_TOUCH_SPEED_MPS] < 0.6);
+}
+
+/* A table carries it, and its one beam has looked past the edge for 7 s: it stands in the air, by too small a
+ * thrust. All of these doubted their sight. */
+void test_what_stands_on_a_table_whose_beam_looks_past_the_edge_keeps_its_sight(void)
+{
+    static const char *const edge[] = {FLAT, "plant.edge_m=-0.8", "plant.edge_start=13", "LAYOUT=FRONT",
+                                       NULL};
+    const child_flights_t flights = child_fly_seeds("est-60cm-ramp", 8, edge);
+
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, flights.worst[METRIC_SIGHT_DOUBTS]);
+    TEST_ASSERT_TRUE(flights.worst[METRIC_STOPPED_S] > 0.0 && flights.worst[METRIC_STOPPED_S] < 12.0);
+}
+
 /* The beam sees a table that is 30 mm higher than the landing gear. For a moment the heights are below the
  * ground, and right: it climbs over, or takes the beam for blocked and lands. */
 void test_a_table_just_above_the_landing_gear_ends_in_a_climb_or_a_soft_landing(void)

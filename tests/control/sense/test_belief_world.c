@@ -86,9 +86,8 @@ void test_the_density_of_what_the_accelerometer_tells_is_one_over_its_range(void
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 1.0F, density_over_its_range(0.4F));
 }
 
-/* By heights that stay, with this thrust above the hover thrust: how probably it stands, over how probably
- * the thrust has no effect. */
-static float stands_with(float push_mps2, float height_mm, uint16_t liars)
+/* By heights that stay, with this thrust above the hover thrust: one scan. */
+static void stays_with(float push_mps2, float height_mm, uint16_t liars)
 {
     setUp();
     scan.told = 1U << MIRROR_FRONT;
@@ -97,7 +96,20 @@ static float stands_with(float push_mps2, float height_mm, uint16_t liars)
     scan.felt = (belief_felt_t){.pushed_mps = push_mps2 * GAP_S, .dragged = 0.24F};
     belief_world_look(&scan, slant, height);
     (void)belief_world_scan(&world, &scan, liars);
+}
+
+/* How probably it stands then, over how probably the thrust has no effect. */
+static float stands_with(float push_mps2, float height_mm, uint16_t liars)
+{
+    stays_with(push_mps2, height_mm, liars);
     return world.motions[BELIEF_STANDS] / world.motions[BELIEF_HELD];
+}
+
+/* How probably something holds it, over the same. */
+static float hangs_with(float push_mps2, float height_mm, uint16_t liars)
+{
+    stays_with(push_mps2, height_mm, liars);
+    return world.motions[BELIEF_HANGS] / world.motions[BELIEF_HELD];
 }
 
 void test_no_vehicle_stands_that_its_thrust_lifts(void)
@@ -119,6 +131,23 @@ void test_no_vehicle_stands_in_the_air_whose_thrust_is_too_small(void)
                                  stands_with(push_mps2, 500.0F, 1U << MIRROR_FRONT) /
                                      stands_with(0.0F, 500.0F, 1U << MIRROR_FRONT));
     }
+}
+
+/* A rope, a branch, a hand: it would sink, and does not. One that is lifted does not hang. */
+void test_what_hangs_in_the_air_does_so_by_any_thrust_that_is_too_small(void)
+{
+    const float still = hangs_with(0.0F, 500.0F, 0U);
+
+    TEST_ASSERT_TRUE(still > 0.0F);
+    for (float push_mps2 = 2.0F; push_mps2 < 6.0F; push_mps2 += 1.0F) {
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-3F, 1.0F, hangs_with(-push_mps2, 500.0F, 0U) / still);
+        TEST_ASSERT_TRUE(hangs_with(push_mps2, 500.0F, 0U) < 0.25F * still);
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, hangs_with(-push_mps2, 40.0F, 0U)); /* on the ground it stands */
+        TEST_ASSERT_EQUAL_FLOAT(0.0F, hangs_with(-push_mps2, 500.0F, 1U << MIRROR_FRONT));
+    }
+    scan.felt = (belief_felt_t){.untold = true, .pushed_mps = -0.3F, .dragged = 0.24F};
+    (void)belief_world_scan(&world, &scan, 0U);
+    TEST_ASSERT_EQUAL_FLOAT(0.0F, world.motions[BELIEF_HANGS]); /* nothing tells that it does not sink */
 }
 
 /* Without the accelerometer the thrust foretells that it sinks: held against one that stands, a vehicle that
@@ -260,7 +289,7 @@ static const struct {
 static float lies_in_the_swing(float undelivered_mps)
 {
     setUp();
-    memcpy(world.motions, (const float[BELIEF_MOTIONS]){0.0F, 0.083F, 0.021F, 0.801F, 0.0F, 0.095F},
+    memcpy(world.motions, (const float[BELIEF_MOTIONS]){0.0F, 0.083F, 0.021F, 0.801F, 0.0F, 0.0F, 0.095F},
            sizeof world.motions);
     world.rate_mm_s = -737.0F;
     for (unsigned k = 0U; k < sizeof swing / sizeof swing[0]; k++) {
@@ -292,7 +321,7 @@ void test_what_the_accelerometer_alone_tells_is_taken_back(void)
     for (int k = 0; k < 5; k++) {
         go(0.0F);
     }
-    TEST_ASSERT_FLOAT_WITHIN(0.1F, 1.0F, world.motions[BELIEF_MOTIONS - 1U]);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 1.0F, world.motions[BELIEF_FELT_LIES]);
     TEST_ASSERT_FLOAT_WITHIN(60.0F, 0.0F, world.rate_mm_s);
     TEST_ASSERT_FLOAT_WITHIN(3.0F, 500.0F, world.level_mm[MIRROR_AFT]);
 }

@@ -314,7 +314,8 @@ void test_heights_that_do_not_show_a_climb_that_both_others_tell_are_doubted(voi
         flown.thrust_n = HOVER_N + 1.5F;
         const float after_s = until(DOUBT_SIGHT, 3.0F);
         TEST_ASSERT_TRUE(after_s > 0.4F && after_s < 1.5F);
-        TEST_ASSERT_FLOAT_WITHIN(0.2F * (world.height_m - from_m) + 0.03F, world.height_m, seen.blind_m);
+        TEST_ASSERT_FLOAT_WITHIN(0.2F * (world.height_m - from_m) + 0.03F, world.height_m,
+                                 seen.blind_height_m);
         TEST_ASSERT_FLOAT_WITHIN(0.3F, world.speed_mps, seen.speed_mps);
     }
 }

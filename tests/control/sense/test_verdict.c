@@ -29,12 +29,12 @@ void test_a_doubt_of_the_sight_keeps_the_height_of_the_blind_worlds_and_starts_t
     senses.mirrors.belief.worlds[0] = (belief_world_t){.probability = 1.0F, .height_mm = 410.0F};
     all_lie(true);
     TEST_ASSERT_EQUAL_UINT16(DOUBT_SIGHT, judged(-0.52F, -0.30F));
-    NEAR(0.41F, verdict.blind_m);
+    NEAR(0.41F, verdict.blind_height_m);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.accelerometer.felt.seen_m);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, senses.push.pushed.off_m);
     senses.mirrors.belief.worlds[0].height_mm = 3000.0F;
     (void)judged(3.0F, 3.0F); /* the height is that when the doubt rose, not now */
-    NEAR(0.41F, verdict.blind_m);
+    NEAR(0.41F, verdict.blind_height_m);
 }
 
 void test_the_sight_is_back_when_a_mirror_sees_a_motion_and_not_before(void)

@@ -961,6 +961,24 @@ void test_a_rope_holds_the_vehicle_where_it_is_taut_and_never_pushes_it(void)
     TEST_ASSERT_TRUE(now().speed_mps < 0.0);
 }
 
+void test_a_rope_from_above_holds_the_vehicle_while_it_is_tied_and_never_pushes_it(void)
+{
+    calm.hang_m = 0.5;
+    calm.hang = (span_t){2.0, 3.0};
+    start(&calm, NULL, 12);
+    quadrotor_set_origin(quad, 0);
+    fly(1.9, 8.4);
+    const double high_m = now().altitude_m;
+    TEST_ASSERT_TRUE(high_m > 0.6);
+    fly(3.0, 6.4); /* a newton less than hovers */
+    NEAR(0.01, 0.5 - G * 1.0 / 7.4 / 60.0,
+         now().altitude_m); /* where its pull is the newton that is missing */
+    NEAR(0.02, 0.0, now().speed_mps);
+    fly(0.5, 6.4);
+    TEST_ASSERT_TRUE(now().altitude_m < 0.4); /* untied */
+    TEST_ASSERT_TRUE(now().speed_mps < -0.2);
+}
+
 void test_tugs_leave_the_other_noises_alone(void)
 {
     quadrotor_config_t tugged = quadrotor_default;
