@@ -126,14 +126,19 @@ static interval_t of_descent(bounds_t *bounds, const situation_t *now)
                : anything;
 }
 
-/* Nothing checks the estimate. */
+/* Nothing checks the estimate; or its heights are doubted and not lost yet, so that the law flies by what it
+ * was amended to: a vehicle that stood on a table hopped by that. */
 static interval_t of_coasting(bounds_t *bounds, const situation_t *now)
 {
     const bool unchecked = now->where->supervisor.state == FLIGHT_COASTING &&
                            now->est->estimator.unchecked_count > 0U;
 
+    const bool unseen = now->where->supervisor.state == FLIGHT_FLYING && doubts(now->evidence, DOUBT_SIGHT);
+
     (void)bounds;
-    return unchecked ? about(now->where->hover.thrust_n, UNCHECKED_BELOW_N, NEAR_HOVER_N) : anything;
+    return unchecked ? about(now->where->hover.thrust_n, UNCHECKED_BELOW_N, NEAR_HOVER_N)
+           : unseen  ? most(now->where->hover.thrust_n + NEAR_HOVER_N)
+                     : anything;
 }
 
 /* A pilot may fly, or has given the throttle back: nothing tells. So the thrust stays just below the best

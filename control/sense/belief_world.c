@@ -22,13 +22,13 @@
 static const struct {
     float share, sigma_mm;
 } motions[] = {
-    {0.2F, 0.0F},     /* it stands */
-    {0.3F, 3.0F},     /* it flies in calm air, as the accelerometer tells */
-    {0.1956F, 20.0F}, /* a gust, a touch, a slope that begins */
-    {0.3F, 7.0F},     /* it flies: 2.4 m/s2 that nothing has told, in 0.1 s */
-    {0.002F, 7.0F},   /* the same, and the thrust has no effect */
-    {0.0004F, 0.0F},  /* it hangs: as it stands, though its thrust would let it sink */
-    {0.002F, 7.0F},   /* any of these, it stands too, and the thrust tells it, not the accelerometer */
+    {0.2F, 0.0F},    /* it stands */
+    {0.3F, 3.0F},    /* it flies in calm air, as the accelerometer tells */
+    {0.196F, 20.0F}, /* a gust, a touch, a slope that begins */
+    {0.3F, 7.0F},    /* it flies: 2.4 m/s2 that nothing has told, in 0.1 s */
+    {0.002F,
+     7.0F}, /* the same, and the thrust has no effect; or, in as many scans as stand, it hangs still */
+    {0.002F, 7.0F}, /* any of these, it stands too, and the thrust tells it, not the accelerometer */
 };
 typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BELIEF_MOTIONS) ? 1 : -1];
 #define MOTION_CHANGES 0.05F /* of the scans: the kind of motion is drawn anew, by its share; a second */
@@ -81,6 +81,8 @@ typedef struct {
     float strange_mps2; /* the accelerometer, less thrust and drag at the speed of this world, as it knows
                            them */
     float kinds[BELIEF_MOTIONS];   /* of what the accelerometer tells, with that kind of motion */
+    bool aloft;                    /* its honest mirrors show air below it */
+    float hangs;                   /* of the same, if it stands still there, and something holds it */
     float way_mm;                  /* that the world predicts */
     float untrue_mps;              /* part of what the accelerometer tells that is not so, if it lies */
     float foretold_mm;             /* way that it has foretold then */
@@ -112,7 +114,7 @@ static float add_motions(ways_t *ways, const belief_motion_t *motion, const show
     float sum = 0.0F;
     float of_heights = density;
 
-    for (uint16_t k = BELIEF_STANDS + 1U; k < BELIEF_HANGS; ++k) {
+    for (uint16_t k = BELIEF_STANDS + 1U; k < BELIEF_FELT_LIES; ++k) {
         if (shown->n > 0U && k != BELIEF_HELD) { /* it moves as the kind before */
             of_heights = density * density_of_motion(shown->sum_mm, shown->squares_mm2, &motion[k]);
         }
@@ -163,7 +165,7 @@ static float density_of_shared(const float off_mm[MIRROR_COUNT], uint16_t mirror
 static void add_stand(ways_t *ways, const belief_scan_t *scan)
 {
     const float sound = ways->kinds[BELIEF_STANDS];
-    const float hangs = ways->kinds[BELIEF_HANGS];
+    const float hangs = ways->hangs;
     const float lies = ways->kinds[BELIEF_FELT_LIES] * motions[BELIEF_STANDS].share;
     const shown_t shown = shown_by(ways->honest, ways->off_mm);
     float density = 1.0F;
@@ -177,7 +179,7 @@ static void add_stand(ways_t *ways, const belief_scan_t *scan)
     ways->count = shown.n;
     ways->density += (sound + hangs + lies) * density;
     ways->motions[BELIEF_STANDS] = sound * density;
-    ways->motions[BELIEF_HANGS] = hangs * density;
+    ways->motions[BELIEF_HELD] = hangs * density;
     ways->motions[BELIEF_FELT_LIES] = lies * density;
     ways->moved_mm += density * ((sound + hangs + lies) * shown.sum_mm / at_least((float)shown.n, 1.0F) +
                                  lies * ways->foretold_mm);
@@ -207,10 +209,9 @@ static void stand(const belief_world_t *world, ways_t *ways, const belief_scan_t
                         density_of_strange(0.0F, STRANGE_MPS2);
     const float carried = still * density_of_strange(at_least(lift_mps2, 0.0F), STRANGE_MPS2);
 
-    const bool aloft = ways->honest != 0U && height_of(world, ways->honest) > LOW_MM && !scan->felt.untold;
-
-    ways->kinds[BELIEF_STANDS] = aloft ? still * density_of_strange(lift_mps2, STRANGE_MPS2) : carried;
-    ways->kinds[BELIEF_HANGS] = aloft ? carried : 0.0F;
+    ways->aloft = ways->honest != 0U && height_of(world, ways->honest) > LOW_MM && !scan->felt.untold;
+    ways->kinds[BELIEF_STANDS] = ways->aloft ? still * density_of_strange(lift_mps2, STRANGE_MPS2) : carried;
+    ways->hangs = ways->aloft ? carried : 0.0F;
 }
 
 /* What the accelerometer tells beyond the thrust depends on the speed, by the drag: a world in which the
@@ -282,6 +283,8 @@ static void predict(belief_world_t *world, ways_t *ways, const belief_scan_t *sc
     for (uint16_t k = 0U; k < BELIEF_MOTIONS; ++k) {
         ways->kinds[k] *= world->motions[k];
     }
+    ways->hangs *= world->motions[BELIEF_HELD] * motions[BELIEF_STANDS].share;
+    ways->kinds[BELIEF_HELD] *= ways->aloft ? 1.0F - motions[BELIEF_STANDS].share : 1.0F;
 }
 
 /* As probably as the accelerometer lies, what it has foretold is taken back. */

@@ -14,14 +14,13 @@
 /* Of the filters: beta of Kalata 1984 for 0.5 m/s2; alpha is in belief_world.c. */
 #define BELIEF_RATE_GAIN 0.42F
 
-/* belief_world.c: it stands, flies in calm air, something pushes it, it flies, somebody else flies it,
- * something holds it still in the air, the accelerometer lies */
-#define BELIEF_MOTIONS 7U
+/* belief_world.c: it stands, flies in calm air, something pushes it, it flies, somebody else flies or holds
+ * it, the accelerometer lies */
+#define BELIEF_MOTIONS 6U
 #define BELIEF_STANDS 0U
 #define BELIEF_PUSHED 2U
 #define BELIEF_HELD 4U
-#define BELIEF_HANGS 5U
-#define BELIEF_FELT_LIES 6U
+#define BELIEF_FELT_LIES 5U
 
 /* One mirror in one scan. */
 typedef struct {

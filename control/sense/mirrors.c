@@ -222,16 +222,15 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     const float none = belief_of_none(belief, voters);
     const float felt_lies = belief_of_motion(belief, BELIEF_FELT_LIES);
     const float stands = belief_of_motion(belief, BELIEF_STANDS);
-    const float hangs = belief_of_motion(belief, BELIEF_HANGS);
-    const float no_effect = belief_of_motion(belief, BELIEF_HELD) + hangs;
-    const float moves = 1.0F - stands - hangs - felt_lies;
+    const float held = belief_of_motion(belief, BELIEF_HELD);
+    const float moves = 1.0F - stands - felt_lies;
 
     mirrors->agree = honest > AGREE;
     mirrors->felt_lies = felt_lies > AGREE && (mirrors->felt_may_lie || !belief_has_several(voters));
     mirrors->felt_may_lie = felt_lies > AGREE;
     mirrors->moves = moves > AGREE;
-    mirrors->no_effect = no_effect > AGREE;
-    mirrors->unpushed = no_effect + stands > AGREE;
+    mirrors->no_effect = held > AGREE;
+    mirrors->unpushed = held + stands > AGREE;
     mirrors->suspected = none > 1.0F - AGREE;
     mirrors->blind = none > AGREE;
     mirrors->sees = !mirrors->suspected && moves > LIES;

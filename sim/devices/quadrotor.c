@@ -29,6 +29,7 @@
 #define ROTOR_RADIUS_M 0.127
 #define ROTOR_ABOVE_GEAR_M 0.28
 #define TUG_TAU_S 0.12
+#define LIFT_MPS 0.2  /* chosen: a hand that lifts the vehicle */
 #define ROPE_LOSS 0.3 /* chosen: of critical damping, a cord of nylon */
 
 #define ATTITUDE_DAMPING 0.4
@@ -124,6 +125,8 @@ struct quadrotor {
 
     double turbulence_mps2, turbulence_keep, turbulence_drive;
     double tug_mps2, tug_keep, tug_probability;
+    bool hangs;
+    double hook_m; /* end of the rope from above */
     noise_t turbulence_noise, tug_noise;
 
     axis_t roll, pitch;
@@ -320,15 +323,17 @@ static double pull_mps2(const quadrotor_t *q, double beyond_m, double leaves_mps
     return beyond_m > 0.0 ? fmax(q->config.rope_per_s2 * beyond_m + loss_mps2, 0.0) : 0.0;
 }
 
-/* By the rope to the floor, and by that from above. */
-static double rope_mps2(const quadrotor_t *q)
+/* By the rope to the floor, and by that from above: it catches the vehicle where it is, and lifts it. */
+static double rope_mps2(quadrotor_t *q)
 {
     const quadrotor_config_t *config = &q->config;
     const double z_m = q->state.altitude_m;
     const bool tied = config->rope_m > 0.0;
     const bool hangs = config->hang_m > 0.0 && span_holds(&config->hang, scenario_s(q));
 
-    return (hangs ? pull_mps2(q, config->hang_m - z_m, -q->state.speed_mps) : 0.0) -
+    q->hook_m = fmin(q->hangs ? q->hook_m + LIFT_MPS * STEP_S : z_m, config->hang_m);
+    q->hangs = hangs;
+    return (hangs ? pull_mps2(q, q->hook_m - z_m, -q->state.speed_mps) : 0.0) -
            (tied ? pull_mps2(q, z_m - config->rope_m, q->state.speed_mps) : 0.0);
 }
 

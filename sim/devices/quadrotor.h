@@ -62,10 +62,10 @@ typedef struct {
     double tug_mps2;       /* -1.5 */
     double rope_m;         /* 0: none; else the height above the floor at which a rope is taut */
     double rope_per_s2;    /* 60: Hooke's law, 180 N/m on 3 kg (chosen: a cord and the hand that holds it) */
-    double hang_m;         /* 0: none; else the height above the floor below which a rope from above holds it,
-                            * or a branch, as stiff as the other rope */
-    span_t hang;           /* from 10 s, for good */
-    double airframe;       /* 0: the simple one; 1: rotors.h, which does without gain, tau and damping */
+    double hang_m; /* 0: none; else the height above the floor at which a hand, a rope from above or a branch
+                      holds it, as stiff as the other rope; from below that it is lifted, at 0.2 m/s */
+    span_t hang;   /* from 10 s, for good */
+    double airframe; /* 0: the simple one; 1: rotors.h, which does without gain, tau and damping */
     rotors_config_t rotors;
     double lag2_s;        /* 0: of the autopilot, before the motors */
     double ground_effect; /* 1, times that of Cheeseman and Bennett */

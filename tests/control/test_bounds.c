@@ -32,6 +32,17 @@ void test_an_estimate_that_no_height_has_checked_coasts_near_the_hover_thrust(vo
     }
 }
 
+/* In FLYING, until its heights count as lost. A thrust that brakes a climb is free. */
+void test_an_estimate_whose_heights_have_just_been_doubted_does_not_push_up(void)
+{
+    hovers_at_n(7.2F);
+    in_state(FLIGHT_FLYING);
+    NEAR(11.0F, bounded_n(11.0F));
+    evidence.doubts = DOUBT_SIGHT;
+    NEAR(7.7F, bounded_n(11.0F));
+    NEAR(4.0F, bounded_n(4.0F));
+}
+
 /* FLOATING without a pin, 0.5 m high, has added so much: 8 N/(m s) in a cycle of 0.1 s. */
 static void has_added_n(float trim_n)
 {

@@ -46,7 +46,7 @@ void noise_set(const float *p)
 %(sets)s
     PER_MM = 0.39894228F / BELIEF_NOISE_MM;
     p += %(count)d;
-    motions[3].share = 1.0F - motions[BELIEF_HELD].share - motions[BELIEF_HANGS].share - motions[BELIEF_FELT_LIES].share;
+    motions[3].share = 1.0F - motions[BELIEF_HELD].share - motions[BELIEF_FELT_LIES].share;
     for (int k = 0; k < 3; ++k) {
         motions[k].share = p[k];
         motions[3].share -= p[k];

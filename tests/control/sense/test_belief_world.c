@@ -105,13 +105,6 @@ static float stands_with(float push_mps2, float height_mm, uint16_t liars)
     return world.motions[BELIEF_STANDS] / world.motions[BELIEF_HELD];
 }
 
-/* How probably something holds it, over the same. */
-static float hangs_with(float push_mps2, float height_mm, uint16_t liars)
-{
-    stays_with(push_mps2, height_mm, liars);
-    return world.motions[BELIEF_HANGS] / world.motions[BELIEF_HELD];
-}
-
 void test_no_vehicle_stands_that_its_thrust_lifts(void)
 {
     for (float push_mps2 = 2.0F; push_mps2 < 6.0F; push_mps2 += 1.0F) {
@@ -133,21 +126,29 @@ void test_no_vehicle_stands_in_the_air_whose_thrust_is_too_small(void)
     }
 }
 
-/* A rope, a branch, a hand: it would sink, and does not. One that is lifted does not hang. */
-void test_what_hangs_in_the_air_does_so_by_any_thrust_that_is_too_small(void)
-{
-    const float still = hangs_with(0.0F, 500.0F, 0U);
+#define CALM 1U /* a kind of motion: it flies in calm air */
 
-    TEST_ASSERT_TRUE(still > 0.0F);
-    for (float push_mps2 = 2.0F; push_mps2 < 6.0F; push_mps2 += 1.0F) {
-        TEST_ASSERT_FLOAT_WITHIN(1.0e-3F, 1.0F, hangs_with(-push_mps2, 500.0F, 0U) / still);
-        TEST_ASSERT_TRUE(hangs_with(push_mps2, 500.0F, 0U) < 0.25F * still);
-        TEST_ASSERT_EQUAL_FLOAT(0.0F, hangs_with(-push_mps2, 40.0F, 0U)); /* on the ground it stands */
-        TEST_ASSERT_EQUAL_FLOAT(0.0F, hangs_with(-push_mps2, 500.0F, 1U << MIRROR_FRONT));
+/* How much more probably the thrust has no effect where it is so much too small than where it is as much too
+ * large, by heights that stay: a kind that flies bears both alike. */
+static float held_by(float missing_mps2, float height_mm, uint16_t liars)
+{
+    float ratio[2];
+
+    for (int lifts = 0; lifts < 2; lifts++) {
+        stays_with((lifts != 0) ? missing_mps2 : -missing_mps2, height_mm, liars);
+        ratio[lifts] = world.motions[BELIEF_HELD] / world.motions[CALM];
     }
-    scan.felt = (belief_felt_t){.untold = true, .pushed_mps = -0.3F, .dragged = 0.24F};
-    (void)belief_world_scan(&world, &scan, 0U);
-    TEST_ASSERT_EQUAL_FLOAT(0.0F, world.motions[BELIEF_HANGS]); /* nothing tells that it does not sink */
+    return ratio[0] / ratio[1];
+}
+
+/* A rope, a branch, a hand: it would sink, and stands still. What is lifted does not hang. */
+void test_something_may_hold_it_still_in_the_air_by_too_small_a_thrust(void)
+{
+    for (float missing_mps2 = 2.0F; missing_mps2 < 6.0F; missing_mps2 += 1.0F) {
+        TEST_ASSERT_FLOAT_WITHIN(0.4F, 1.5F, held_by(missing_mps2, 500.0F, 0U));
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-3F, 1.0F, held_by(missing_mps2, 40.0F, 0U)); /* the ground does */
+        TEST_ASSERT_FLOAT_WITHIN(1.0e-3F, 1.0F, held_by(missing_mps2, 500.0F, 1U << MIRROR_FRONT));
+    }
 }
 
 /* Without the accelerometer the thrust foretells that it sinks: held against one that stands, a vehicle that
@@ -168,8 +169,6 @@ void test_where_the_accelerometer_tells_nothing_too_small_a_thrust_tells_nothing
     }
     TEST_ASSERT_TRUE(ratio[1] > 0.5F * ratio[0]);
 }
-
-#define CALM 1U /* a kind of motion: it flies in calm air */
 
 /* 1.2 m/s of climb at a constant speed: the accelerometer tells nothing, the thrust meets the drag. A world
  * in which no mirror tells it, and that thinks it slower, knows the speed by the drag. */
@@ -289,7 +288,7 @@ static const struct {
 static float lies_in_the_swing(float undelivered_mps)
 {
     setUp();
-    memcpy(world.motions, (const float[BELIEF_MOTIONS]){0.0F, 0.083F, 0.021F, 0.801F, 0.0F, 0.0F, 0.095F},
+    memcpy(world.motions, (const float[BELIEF_MOTIONS]){0.0F, 0.083F, 0.021F, 0.801F, 0.0F, 0.095F},
            sizeof world.motions);
     world.rate_mm_s = -737.0F;
     for (unsigned k = 0U; k < sizeof swing / sizeof swing[0]; k++) {

@@ -489,23 +489,6 @@ void test_what_stands_is_not_seen_to_move_and_nobody_lies(void)
     }
 }
 
-/* Something holds it still in the air, though 4 m/s2 of thrust are missing: more than any load. The thrust is
- * without effect, and the mirrors are honest, for a minute. */
-void test_what_hangs_in_the_air_is_not_blind_and_its_thrust_has_no_effect(void)
-{
-    for (unsigned seed = 1U; seed <= 20U; seed++) {
-        vehicle_begin(seed);
-        vehicle_swings(30);
-        vehicle.touch_mps2 = 4.0F;
-        for (int k = 0; k < 600; k++) {
-            vehicle_moves(0.0F);
-            TEST_ASSERT_FALSE(mirrors.blind || mirrors.felt_lies);
-            TEST_ASSERT_FALSE(k > 40 && mirrors.moves);
-            TEST_ASSERT_TRUE(k < 40 || (mirrors.no_effect && mirrors.unpushed));
-        }
-    }
-}
-
 void test_a_scan_without_any_mirror_is_neither_blind_nor_sight(void)
 {
     vehicle_begin(1U);

@@ -968,8 +968,7 @@ void test_a_rope_from_above_holds_the_vehicle_while_it_is_tied_and_never_pushes_
     start(&calm, NULL, 12);
     quadrotor_set_origin(quad, 0);
     fly(1.9, 8.4);
-    const double high_m = now().altitude_m;
-    TEST_ASSERT_TRUE(high_m > 0.6);
+    TEST_ASSERT_TRUE(now().altitude_m > 0.6);
     fly(3.0, 6.4); /* a newton less than hovers */
     NEAR(0.01, 0.5 - G * 1.0 / 7.4 / 60.0,
          now().altitude_m); /* where its pull is the newton that is missing */
@@ -977,6 +976,21 @@ void test_a_rope_from_above_holds_the_vehicle_while_it_is_tied_and_never_pushes_
     fly(0.5, 6.4);
     TEST_ASSERT_TRUE(now().altitude_m < 0.4); /* untied */
     TEST_ASSERT_TRUE(now().speed_mps < -0.2);
+}
+
+/* At 0.2 m/s, from where it catches it: it throws nothing up. */
+void test_a_hand_lifts_the_vehicle_from_where_it_catches_it(void)
+{
+    calm.hang_m = 3.0;
+    calm.hang = (span_t){1.5, 3.0};
+    start(&calm, NULL, 12);
+    quadrotor_set_origin(quad, 0);
+    fly(1.5, 8.4);
+    const double caught_m = now().altitude_m;
+    TEST_ASSERT_TRUE(caught_m > 0.2);
+    fly(2.5, 6.4);
+    NEAR(0.05, caught_m + 0.5 - G * 1.0 / 7.4 / 60.0, now().altitude_m);
+    NEAR(0.05, 0.2, now().speed_mps);
 }
 
 void test_tugs_leave_the_other_noises_alone(void)
