@@ -51,15 +51,14 @@ typedef struct {
     bool stands;    /* too little thrust to fly, no felt fall, and calm: it stands on the ground */
     float upright;  /* cosine of the believed tilt */
     mirrors_told_t mirrors;
-    float height_m; /* latest height that was no copy and within range, believed or not */
-    float rise_mps; /* low-passed rate of the heights, without steps */
-    float
-        blind_height_m; /* height when DOUBT_SIGHT rose, without what the mirrors have shown since they lie */
-    float felt_mps;     /* speed of the accelerometer's witness, whatever it is worth */
-    bool felt_valid;    /* that witness counts, and is not doubted */
-    float shaken;       /* >= 1: a noisy accelerometer's speed counts so much less */
-    float bias_mps2;    /* of the accelerometer */
-    float push_mps;     /* speed of the thrust's witness, whatever it is worth */
+    float height_m;       /* latest height that was no copy and within range, believed or not */
+    float rise_mps;       /* low-passed rate of the heights, without steps */
+    float blind_height_m; /* when DOUBT_SIGHT rose: without what the mirrors have shown since they lie */
+    float felt_mps;       /* speed of the accelerometer's witness, whatever it is worth */
+    bool felt_valid;      /* that witness counts, and is not doubted */
+    float shaken;         /* >= 1: a noisy accelerometer's speed counts so much less */
+    float bias_mps2;      /* of the accelerometer */
+    float push_mps;       /* speed of the thrust's witness, whatever it is worth */
     float pushed_mps; /* the same less the error that the heights have shown; else the rate of the heights */
     float moved_m;    /* way since the rays of the latest height, by the thrust */
     float speed_mps;  /* without the heights: by the accelerometer that is not doubted, and the thrust */

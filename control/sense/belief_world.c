@@ -26,9 +26,8 @@ static const struct {
     {0.3F, 3.0F},    /* it flies in calm air, as the accelerometer tells */
     {0.196F, 20.0F}, /* a gust, a touch, a slope that begins */
     {0.3F, 7.0F},    /* it flies: 2.4 m/s2 that nothing has told, in 0.1 s */
-    {0.002F,
-     7.0F}, /* the same, and the thrust has no effect; or, in as many scans as stand, it hangs still */
-    {0.002F, 7.0F}, /* any of these, it stands too, and the thrust tells it, not the accelerometer */
+    {0.002F, 7.0F},  /* the same, and the thrust has no effect; or it hangs still, see add_stand() */
+    {0.002F, 7.0F},  /* any of these, it stands too, and the thrust tells it, not the accelerometer */
 };
 typedef char one_line_for_each_motion[(sizeof motions / sizeof motions[0] == BELIEF_MOTIONS) ? 1 : -1];
 #define MOTION_CHANGES 0.05F /* of the scans: the kind of motion is drawn anew, by its share; a second */
@@ -81,7 +80,7 @@ typedef struct {
     float strange_mps2; /* the accelerometer, less thrust and drag at the speed of this world, as it knows
                            them */
     float kinds[BELIEF_MOTIONS];   /* of what the accelerometer tells, with that kind of motion */
-    bool aloft;                    /* its honest mirrors show air below it */
+    bool aloft;                    /* its honest mirrors show air below it, and the accelerometer is heard */
     float hangs;                   /* of the same, if it stands still there, and something holds it */
     float way_mm;                  /* that the world predicts */
     float untrue_mps;              /* part of what the accelerometer tells that is not so, if it lies */
@@ -161,7 +160,8 @@ static float density_of_shared(const float off_mm[MIRROR_COUNT], uint16_t mirror
     return shown.density * density_of_motion(shown.sum_mm, shown.squares_mm2, &motion);
 }
 
-/* The way in which it stands, on the ground or in calm air. */
+/* The way in which it stands, on the ground or in calm air; or hangs, in a share of the scans as of those
+ * that stand. */
 static void add_stand(ways_t *ways, const belief_scan_t *scan)
 {
     const float sound = ways->kinds[BELIEF_STANDS];

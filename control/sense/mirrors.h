@@ -38,7 +38,7 @@ typedef struct {
     bool blind;        /* all that told something in it lie, with 99 % */
     bool felt_may_lie; /* the accelerometer does, with 99 %, in this scan */
     bool felt_lies;    /* and where several mirrors count, in the scan before too */
-    bool moves;        /* the vehicle does, with 99 % */
+    bool moves;        /* the vehicle does, or hangs, with 99 % */
     bool unpushed;     /* nothing moves it, or the thrust has no effect, with 99 % */
     bool no_effect;    /* the thrust has none, with 99 %: a pilot flies, or somebody holds the vehicle */
     uint16_t ground;   /* as in altitude.h; a scan that tells nothing is followed by another one */

@@ -315,12 +315,13 @@ static double gust_mps2(const quadrotor_t *q)
                                                                                     : 0.0;
 }
 
-/* A taut rope is a spring with some loss; it never pushes. beyond_m, leaves_mps: way beyond its end. */
-static double pull_mps2(const quadrotor_t *q, double beyond_m, double leaves_mps)
+/* A taut rope is a spring with some loss; it never pushes. So much longer it is than slack, and grows so
+ * fast. */
+static double pull_mps2(const quadrotor_t *q, double longer_m, double grows_mps)
 {
-    const double loss_mps2 = 2.0 * ROPE_LOSS * sqrt(q->config.rope_per_s2) * leaves_mps;
+    const double loss_mps2 = 2.0 * ROPE_LOSS * sqrt(q->config.rope_per_s2) * grows_mps;
 
-    return beyond_m > 0.0 ? fmax(q->config.rope_per_s2 * beyond_m + loss_mps2, 0.0) : 0.0;
+    return longer_m > 0.0 ? fmax(q->config.rope_per_s2 * longer_m + loss_mps2, 0.0) : 0.0;
 }
 
 /* By the rope to the floor, and by that from above: it catches the vehicle where it is, and lifts it. */
@@ -328,13 +329,15 @@ static double rope_mps2(quadrotor_t *q)
 {
     const quadrotor_config_t *config = &q->config;
     const double z_m = q->state.altitude_m;
+    const double speed_mps = q->state.speed_mps;
     const bool tied = config->rope_m > 0.0;
     const bool hangs = config->hang_m > 0.0 && span_holds(&config->hang, scenario_s(q));
 
     q->hook_m = fmin(q->hangs ? q->hook_m + LIFT_MPS * STEP_S : z_m, config->hang_m);
     q->hangs = hangs;
-    return (hangs ? pull_mps2(q, q->hook_m - z_m, -q->state.speed_mps) : 0.0) -
-           (tied ? pull_mps2(q, z_m - config->rope_m, q->state.speed_mps) : 0.0);
+    const double lifts_mps = q->hook_m < config->hang_m ? LIFT_MPS : 0.0;
+    return (hangs ? pull_mps2(q, q->hook_m - z_m, lifts_mps - speed_mps) : 0.0) -
+           (tied ? pull_mps2(q, z_m - config->rope_m, speed_mps) : 0.0);
 }
 
 static double disturbance_mps2(quadrotor_t *q)
