@@ -173,15 +173,22 @@ void test_the_seeds_law_hands_over_too(void)
 }
 
 /* It finds that its commands have no effect, and keeps them near what carries the vehicle: 0.6 N below a
- * hover thrust that it knows within 0.4 N. */
+ * hover thrust that it knows within 0.4 N. In one flight of 24 it has not found it by the end of the turn:
+ * that one gives the throttle back at 3.9 N, and sinks to 0.52 m. */
 void test_without_the_pin_the_law_goes_on_against_the_pilot_but_gently(void)
 {
-    const seen_t seen = flown("#LAW EST\n", 7.4, HIGHER_M, 1);
+    int gentle = 0;
 
-    TEST_ASSERT_EQUAL(FLIGHT_FLYING, seen.during);
-    TEST_ASSERT_EQUAL_UINT16(0, seen.flags_during);
-    TEST_ASSERT_TRUE(seen.stayed);
-    TEST_ASSERT_DOUBLE_WITHIN(0.4, 7.4 - 0.6, seen.first_n);
-    TEST_ASSERT_TRUE(seen.lowest_m > REFERENCE_M - 0.06 && seen.highest_m < HIGHER_M + 0.06);
-    TEST_ASSERT_DOUBLE_WITHIN(0.06, REFERENCE_M, seen.end_m);
+    for (unsigned long seed = 1; seed <= 12; seed++) {
+        const seen_t seen = flown("#LAW EST\n", 7.4, HIGHER_M, seed);
+
+        TEST_ASSERT_EQUAL(FLIGHT_FLYING, seen.during);
+        TEST_ASSERT_EQUAL_UINT16(0, seen.flags_during);
+        TEST_ASSERT_TRUE(seen.stayed);
+        TEST_ASSERT_TRUE(seen.lowest_m > 0.4 && seen.highest_m < HIGHER_M + 0.15);
+        TEST_ASSERT_DOUBLE_WITHIN(0.06, REFERENCE_M, seen.end_m);
+        gentle += fabs(seen.first_n - (7.4 - 0.6)) < 0.4 && seen.lowest_m > REFERENCE_M - 0.06 &&
+                  seen.highest_m < HIGHER_M + 0.06;
+    }
+    TEST_ASSERT_INT_WITHIN(1, 11, gentle);
 }
