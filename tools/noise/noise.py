@@ -128,7 +128,8 @@ class Belief:
     def __init__(self):
         room = ROOT / "control/sense"
         density = (room / "belief_density.h").read_text(encoding="utf-8").partition("#include <math.h>\n")[2].rpartition("#endif")[0]
-        source = ("#define CONTROL_SENSE_BELIEF_DENSITY_H\n#include \"control/sense/belief_world.h\"\n#include <math.h>\n" + density +
+        source = ("#define CONTROL_SENSE_BELIEF_DENSITY_H\n#include <math.h>\n" + density +
+                  "#include \"control/sense/belief_world.h\"\n#undef BELIEF_RATE_GAIN\n" +
                   "".join((room / name).read_text(encoding="utf-8") for name in ("belief_world.c", "belief.c")))
         header = (room / "belief_world.h").read_text(encoding="utf-8")
         self.start, text = [], source
@@ -139,7 +140,7 @@ class Belief:
         rows = re.findall(r"^    \{([\d.]+)F, ([\d.]+)F\},", source, re.M)
         self.start += [float(row[0]) for row in rows[:3]] + [float(row[1]) for row in rows[1:4]]
         text = text.replace("static const struct {\n    float share", "static struct {\n    float share")
-        variables = "#undef BELIEF_NOISE_MM\n#undef BELIEF_RATE_GAIN\nstatic float " + ", ".join([*FITTED, "PER_MM"]) + ";\n"
+        variables = "static float " + ", ".join([*FITTED, "PER_MM"]) + ";\n"
         text = text.replace("#include <math.h>\n", "#include <math.h>\n" + variables, 1)
         sets = "\n".join(f"    {name} = p[{i}];" for i, name in enumerate(FITTED))
         with tempfile.TemporaryDirectory(prefix="plomada-") as scratch:
