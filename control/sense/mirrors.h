@@ -40,7 +40,7 @@ typedef struct {
     bool felt_lies;    /* and where several mirrors count, in the scan before too */
     bool moves;        /* the vehicle does, or hangs, with 99 % */
     bool unpushed;     /* nothing moves it, or the thrust has no effect, with 99 % */
-    bool no_effect;    /* the thrust has none, with 99 %: a pilot flies, or somebody holds the vehicle */
+    bool no_effect;    /* the thrust has none, with 99 %: a pilot flies, or something holds the vehicle */
     uint16_t ground;   /* as in altitude.h; a scan that tells nothing is followed by another one */
     uint16_t left_out; /* bits: mirrors of that scan that told something, and do not count in altitude */
     float lies[MIRROR_COUNT];               /* the probability that each lies */

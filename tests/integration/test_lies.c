@@ -282,22 +282,28 @@ typedef struct {
     const lie_t *lie;
 } order_t;
 
+static void fly_by(flight_options_t *options, const order_t *order, flight_result_t *result)
+{
+    const char *error = NULL;
+
+    options->seed = order->seed;
+    for (int i = 0; order->lie->assignments[i] != NULL; i++) {
+        if (flight_override(options, order->lie->assignments[i]) != NULL) {
+            _exit(4);
+        }
+    }
+    if (!flight_run(scenario_find("est-60cm-ramp"), options, result, &error)) {
+        _exit(5);
+    }
+}
+
 /* Until the motors are off, at most 60 s after the order to land. */
 static void fly_to_the_end(void *argument, void *result)
 {
     static flight_options_t options;
-    const order_t *order = argument;
-    const char *error = NULL;
 
-    options = (flight_options_t){.seed = order->seed, .patience_s = 60.0};
-    for (int i = 0; order->lie->assignments[i] != NULL; i++) {
-        if (flight_override(&options, order->lie->assignments[i]) != NULL) {
-            _exit(4);
-        }
-    }
-    if (!flight_run(scenario_find("est-60cm-ramp"), &options, result, &error)) {
-        _exit(5);
-    }
+    options = (flight_options_t){.patience_s = 60.0};
+    fly_by(&options, argument, result);
 }
 
 static const lie_t edges[] = {
@@ -398,18 +404,9 @@ static const lie_t sunk[] = {
 static void fly_for_40_s(void *argument, void *result)
 {
     static flight_options_t options;
-    const order_t *order = argument;
-    const char *error = NULL;
 
-    options = (flight_options_t){.seed = order->seed, .duration_s = 40.0};
-    for (int i = 0; order->lie->assignments[i] != NULL; i++) {
-        if (flight_override(&options, order->lie->assignments[i]) != NULL) {
-            _exit(4);
-        }
-    }
-    if (!flight_run(scenario_find("est-60cm-ramp"), &options, result, &error)) {
-        _exit(5);
-    }
+    options = (flight_options_t){.duration_s = 40.0};
+    fly_by(&options, argument, result);
 }
 
 void test_what_has_sunk_onto_the_ground_by_blocked_mirrors_is_not_held_in_the_air(void)
