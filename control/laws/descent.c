@@ -41,7 +41,9 @@ float descent_step(descent_t *descent, float hover_n, float height_mm, float rat
     descent->sink_mm_s = descent->holds ? 0.0F : faster_mm_s;
     const float error_mm_s = -descent->sink_mm_s - rate_mm_s;
     const float sink_n = SINK_SHARE * hover_n * descent->sink_mm_s / DESCENT_RATE_MM_S;
-    const float trim_gain = (rate_mm_s > 0.0F) ? CLIMB_TRIM_GAIN_N_PER_MM : TRIM_GAIN_N_PER_MM;
+    /* one gain where it holds the height: with two, a vehicle that sways about it would lower the thrust */
+    const bool quick = rate_mm_s > 0.0F || descent->holds;
+    const float trim_gain = quick ? CLIMB_TRIM_GAIN_N_PER_MM : TRIM_GAIN_N_PER_MM;
 
     descent->trim_n = between(-TRIM_MAX_N, descent->trim_n + trim_gain * error_mm_s * dt_s, TRIM_MAX_N);
     const float setpoint_n = at_least(hover_n - sink_n + descent->trim_n + rate_action_n(error_mm_s, hover_n),

@@ -28,7 +28,8 @@ static void reset(stuck_pin_t *pin)
 /* A vehicle with so little thrust sinks, unless a pilot holds it up. He moves it to and fro, so a moment of
  * sinking takes back no more than a moment. Once that is known, the thrust returns near the hover thrust,
  * because he may give the throttle back before the pin tells. That is a test too: a vehicle that has only
- * lost a load rises then, so it obeys. Both stay known for this turn. */
+ * lost a load rises then, so it obeys, and hovers with as little as it did not sink with. Both stay known for
+ * this turn. */
 static bool is_in_vain(stuck_pin_t *pin, const situation_t *now)
 {
     const height_track_t *height = &now->where->supervisor.height;
@@ -39,10 +40,11 @@ static bool is_in_vain(stuck_pin_t *pin, const situation_t *now)
         const bool stays = fresh && height->rate_mm_s >= -0.5F * pin->descent.sink_mm_s;
         const bool weak = pin->more_n < -HOVER_THRUST_MARGIN_N;
 
-        pin->vain_s = weak ? at_least(pin->vain_s + (stays ? step_s : -step_s), 0.0F) : 0.0F;
+        pin->vain_s += weak ? at_least(stays ? step_s : -step_s, -pin->vain_s) : 0.0F;
         pin->vain_mm = height->height_mm;
-    } else {
-        pin->obeys = pin->obeys || (fresh && height->height_mm > pin->vain_mm + RISES_MM);
+    } else if (!pin->obeys && fresh && height->height_mm > pin->vain_mm + RISES_MM) {
+        pin->obeys = true;
+        pin->descent.trim_n = -HOVER_THRUST_MARGIN_N;
     }
     return pin->vain_s >= VAIN_S && !pin->obeys;
 }
@@ -83,8 +85,12 @@ void stuck_pin_step(stuck_pin_t *pin, const situation_t *now)
     }
     if (piloted) {
         pin->piloted_s += where_step_s(now->where);
+        const bool in_vain = is_in_vain(pin, now);
+
+        /* where he flies it adds nothing up, so a fall after he has given it back is braked at once */
+        pin->descent.trim_n = in_vain ? 0.0F : pin->descent.trim_n;
         const float wanted_n = descent_n(pin, now) - now->where->hover.thrust_n;
-        const float sunk_n = is_in_vain(pin, now) ? NEAR_HOVER_N : PIN_BELOW_N;
+        const float sunk_n = in_vain ? NEAR_HOVER_N : PIN_BELOW_N;
         const float least_n = (pin->descent.near_ground_s > 0.0F) ? -THRUST_MAX_N : -sunk_n;
 
         pin->more_n = at_least(between(least_n, wanted_n, PIN_ABOVE_N), now->idle_n - now->thrust_n);

@@ -110,6 +110,15 @@ void test_while_it_holds_it_wants_no_rate(void)
 }
 
 /* 1 mN for each mm of way, and 3 mN while it climbs. */
+void test_while_it_holds_a_sway_about_the_height_adds_up_to_nothing(void)
+{
+    descent.holds = true;
+    for (int i = 0; i < 80; i++) {
+        (void)descent_step(&descent, 7.0F, 500.0F, (i % 8 < 4) ? 300.0F : -300.0F, 0.1F);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F, descent.trim_n);
+}
+
 void test_the_trim_is_learned_three_times_as_fast_while_it_climbs(void)
 {
     static const float rows[][2] = {{-100.0F, -0.02F}, {0.0F, -0.03F}, {0.1F, -0.09003F}, {100.0F, -0.12F}};
