@@ -337,6 +337,24 @@ static void see(float height_mm)
     in.altitude.slant_mm = height_mm + 100.0F; /* the legs of the mirror */
 }
 
+/* The vehicle of law EST: what does not obey the thrust is held, and that is another flight. */
+static float height_m, speed_mps, up_mps2;
+
+static void fly(float dt_s)
+{
+    const float drag_mps2 = parameters.value[PARAMETER_DAMP] * speed_mps;
+
+    up_mps2 = (out.thrust_n / parameters.value[PARAMETER_GRAV] - 1.0F) * 9.81F - drag_mps2;
+    speed_mps += up_mps2 * dt_s;
+    height_m += speed_mps * dt_s;
+}
+
+/* No copy of the one before: two millimetres more in every second one. */
+static float ripple_mm(void)
+{
+    return (in.height_sequence & 1U) != 0U ? 2.0F : 0.0F;
+}
+
 static void next_cycle(void)
 {
     in.now_us += 108000U;
@@ -372,11 +390,12 @@ static void next_motion(void)
 {
     memmove(frames, frames + 1, (FRAMES - 1U) * sizeof frames[0]);
     in.now_us += 25000U;
+    fly(0.025F);
     frames[FRAMES - 1U] = (imu_sample_t){.sequence = frames[FRAMES - 2U].sequence + 1U,
                                          .arrival_us = in.now_us,
                                          .ready = true,
                                          .has_acceleration = true,
-                                         .down_mps2 = 9.81F};
+                                         .down_mps2 = 9.81F + up_mps2};
     in.attitude_time_us = in.now_us;
 }
 
@@ -391,7 +410,7 @@ static void next_est_cycle(void)
     in.height_age_us = 70500U;
     in.height_stamp_ms += 100U;
     in.height_sequence++;
-    see(in.altitude.height_mm < 600.0F ? in.altitude.height_mm + 10.0F : 595.0F);
+    see(1000.0F * (height_m - 0.0705F * speed_mps) + ripple_mm());
 }
 
 static void prepare_est_control(void)
@@ -400,6 +419,7 @@ static void prepare_est_control(void)
     parameters.value[PARAMETER_LAW] = (float)LAW_EST;
     in.frames = frames;
     in.frame_count = FRAMES;
+    height_m = 0.6F;
     for (unsigned i = 0; i < 200U; i++) {
         next_est_cycle();
         control();
@@ -418,13 +438,11 @@ static void next_three_cycle(void)
 
     next_est_cycle();
     for (uint16_t m = 0U; m < MIRROR_COUNT; m++) {
-        const float other_mm = (in.height_sequence & 1U) != 0U ? 2.0F : 0.0F; /* no copy of the one before */
-
         ranges[m] = seen;
         ranges[m].mirror = (mirror_t)m;
-        ranges[m].slant_mm = 600.0F - ground_mm[m] + geometry.mirror[m].distance_mm +
-                             geometry.mirror[m].leg_mm + other_mm;
-        ranges[m].spread_mm = 11.0F + other_mm;
+        ranges[m].slant_mm = in.altitude.height_mm - ground_mm[m] + geometry.mirror[m].distance_mm +
+                             geometry.mirror[m].leg_mm;
+        ranges[m].spread_mm = 11.0F + ripple_mm();
     }
     altitude_of_mirrors(mirrors, &geometry, ranges, MIRROR_COUNT, 0.0F, 0.0F);
     in.altitude = altitude_mean(mirrors, altitude_weights_equal, MIRROR_COUNT);
