@@ -9,9 +9,8 @@
 #define BRAKE_SHARE 2.0F           /* and so thrice in all */
 #define BRAKE_BEYOND_MM_S 1000.0F  /* a climb of 0.7 m/s and more */
 #define TRIM_GAIN_N_PER_MM 0.0010F /* chosen: 0.3 N/s at the whole rate */
-#define CLIMB_TRIM_GAIN_N_PER_MM \
-    (3.0F * TRIM_GAIN_N_PER_MM)           /* chosen: three times, so that no climb lasts \
-                                           */
+#define QUICK_TRIM_GAIN_N_PER_MM \
+    (3.0F * TRIM_GAIN_N_PER_MM) /* chosen: three times, so that no climb lasts, of a descent or of a hold */
 #define SINK_SLEW_MM_S2 DESCENT_RATE_MM_S /* the whole rate after 1 s */
 #define FADE_N_PER_S2 0.004F              /* chosen: 7 N are gone after 40 s */
 #define TRIM_MAX_N 2.0F                   /* a hover thrust wrong by a fifth, and gusts */
@@ -41,9 +40,9 @@ float descent_step(descent_t *descent, float hover_n, float height_mm, float rat
     descent->sink_mm_s = descent->holds ? 0.0F : faster_mm_s;
     const float error_mm_s = -descent->sink_mm_s - rate_mm_s;
     const float sink_n = SINK_SHARE * hover_n * descent->sink_mm_s / DESCENT_RATE_MM_S;
-    /* one gain where it holds the height: with two, a vehicle that sways about it would lower the thrust */
+    /* a hold has one gain: with two of them, a vehicle that sways about its height lowers the thrust */
     const bool quick = rate_mm_s > 0.0F || descent->holds;
-    const float trim_gain = quick ? CLIMB_TRIM_GAIN_N_PER_MM : TRIM_GAIN_N_PER_MM;
+    const float trim_gain = quick ? QUICK_TRIM_GAIN_N_PER_MM : TRIM_GAIN_N_PER_MM;
 
     descent->trim_n = between(-TRIM_MAX_N, descent->trim_n + trim_gain * error_mm_s * dt_s, TRIM_MAX_N);
     const float setpoint_n = at_least(hover_n - sink_n + descent->trim_n + rate_action_n(error_mm_s, hover_n),

@@ -28,8 +28,8 @@ static void reset(stuck_pin_t *pin)
 /* A vehicle with so little thrust sinks, unless a pilot holds it up. He moves it to and fro, so a moment of
  * sinking takes back no more than a moment. Once that is known, the thrust returns near the hover thrust,
  * because he may give the throttle back before the pin tells. That is a test too: a vehicle that has only
- * lost a load rises then, so it obeys, and hovers with as little as it did not sink with. Both stay known for
- * this turn. */
+ * lost a load rises then, so it obeys, and what it did not sink with is about its hover thrust. Both stay
+ * known for this turn. */
 static bool is_in_vain(stuck_pin_t *pin, const situation_t *now)
 {
     const height_track_t *height = &now->where->supervisor.height;
@@ -40,7 +40,7 @@ static bool is_in_vain(stuck_pin_t *pin, const situation_t *now)
         const bool stays = fresh && height->rate_mm_s >= -0.5F * pin->descent.sink_mm_s;
         const bool weak = pin->more_n < -HOVER_THRUST_MARGIN_N;
 
-        pin->vain_s += weak ? at_least(stays ? step_s : -step_s, -pin->vain_s) : 0.0F;
+        pin->vain_s = weak ? at_least(pin->vain_s + (stays ? step_s : -step_s), 0.0F) : 0.0F;
         pin->vain_mm = height->height_mm;
     } else if (!pin->obeys && fresh && height->height_mm > pin->vain_mm + RISES_MM) {
         pin->obeys = true;
@@ -60,7 +60,7 @@ static float descent_n(stuck_pin_t *pin, const situation_t *now)
     if (height->age_us > HEIGHT_LOST_US) {
         return holds ? hover_n : descent_blind(hover_n, seconds_at_most(height->age_us, DESCENT_BLIND_MAX_S));
     }
-    if (!height->is_new) {
+    if (!height->is_new || now->evidence->stepped) {
         return hover_n + pin->more_n;
     }
     pin->descent.holds = holds;
@@ -87,7 +87,7 @@ void stuck_pin_step(stuck_pin_t *pin, const situation_t *now)
         pin->piloted_s += where_step_s(now->where);
         const bool in_vain = is_in_vain(pin, now);
 
-        /* where he flies it adds nothing up, so a fall after he has given it back is braked at once */
+        /* his motions may not add up: so a fall is braked at once when he has given it back */
         pin->descent.trim_n = in_vain ? 0.0F : pin->descent.trim_n;
         const float wanted_n = descent_n(pin, now) - now->where->hover.thrust_n;
         const float sunk_n = in_vain ? NEAR_HOVER_N : PIN_BELOW_N;

@@ -40,6 +40,7 @@ void heights_update(heights_t *heights, const height_change_t *change)
 
     heights->height_m = change->height_m;
     heights->known = true;
+    heights->stepped = change->step;
     heights->unseen_s = 0.0F;
     heights->rise_mps += gap_s / (RISE_TIME_S + gap_s) * (rise_mps - heights->rise_mps);
 }

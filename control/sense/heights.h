@@ -9,6 +9,7 @@
 typedef struct {
     bool known;        /* at least one height was received */
     float height_m;    /* latest height */
+    bool stepped;      /* the latest height was a step */
     float rise_mps;    /* low-passed rate of the heights, without steps */
     float unseen_s;    /* time on the ground since the latest height, at most 2 s */
     bool below_ground; /* so low that no noise explains it: the beam is blocked */

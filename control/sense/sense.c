@@ -154,6 +154,7 @@ static evidence_t evidence_of(const sense_t *sense)
                     .doubted = mirrors_liars(&s->mirrors, false),
                     .liars = mirrors_liars(&s->mirrors, true)},
         .height_m = s->heights.height_m,
+        .stepped = s->heights.stepped,
         .rise_mps = s->heights.rise_mps,
         .blind_height_m = verdict->blind_height_m,
         .felt_mps = s->accelerometer.felt.speed_mps,

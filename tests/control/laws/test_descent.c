@@ -109,7 +109,6 @@ void test_while_it_holds_it_wants_no_rate(void)
     TEST_ASSERT_EQUAL_FLOAT(0.0F, descent.trim_n);
 }
 
-/* 1 mN for each mm of way, and 3 mN while it climbs. */
 void test_while_it_holds_a_sway_about_the_height_adds_up_to_nothing(void)
 {
     descent.holds = true;
@@ -119,6 +118,7 @@ void test_while_it_holds_a_sway_about_the_height_adds_up_to_nothing(void)
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.0F, descent.trim_n);
 }
 
+/* 1 mN for each mm of way, and 3 mN while it climbs. */
 void test_the_trim_is_learned_three_times_as_fast_while_it_climbs(void)
 {
     static const float rows[][2] = {{-100.0F, -0.02F}, {0.0F, -0.03F}, {0.1F, -0.09003F}, {100.0F, -0.12F}};

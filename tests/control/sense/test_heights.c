@@ -87,6 +87,7 @@ void test_what_neither_witness_explains_is_a_step_of_the_terrain(void)
         senses.push.pushed = (witness_t){.speed_mps = rows[i].pushed_mps, .running_s = 0.1F};
         rises_mps(0.06F);
         height(0.5F + rows[i].rise_m);
+        TEST_ASSERT_EQUAL(rows[i].step, senses.heights.stepped);
         if (rows[i].step) {
             TEST_ASSERT_EQUAL_FLOAT(0.06F, senses.heights.rise_mps);
             NEAR(0.1F * rows[i].felt_mps,
