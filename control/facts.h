@@ -52,8 +52,7 @@ typedef struct {
     float upright;  /* cosine of the believed tilt */
     mirrors_told_t mirrors;
     float height_m;       /* latest height that was no copy and within range, believed or not */
-    bool stepped;         /* that height was a step: of the terrain, or of what blocks the mirrors. It shows
-                             no motion */
+    bool stepped;         /* no witness explains it: a step of the terrain, or of what blocks the mirrors */
     float rise_mps;       /* low-passed rate of the heights, without steps */
     float blind_height_m; /* when DOUBT_SIGHT rose: without what the mirrors have shown since they lie */
     float felt_mps;       /* speed of the accelerometer's witness, whatever it is worth */

@@ -10,7 +10,7 @@
 #define BRAKE_BEYOND_MM_S 1000.0F  /* a climb of 0.7 m/s and more */
 #define TRIM_GAIN_N_PER_MM 0.0010F /* chosen: 0.3 N/s at the whole rate */
 #define QUICK_TRIM_GAIN_N_PER_MM \
-    (3.0F * TRIM_GAIN_N_PER_MM) /* chosen: three times, so that no climb lasts, of a descent or of a hold */
+    (3.0F * TRIM_GAIN_N_PER_MM) /* chosen: three times, so a climb ends soon, in a descent or a hold */
 #define SINK_SLEW_MM_S2 DESCENT_RATE_MM_S /* the whole rate after 1 s */
 #define FADE_N_PER_S2 0.004F              /* chosen: 7 N are gone after 40 s */
 #define TRIM_MAX_N 2.0F                   /* a hover thrust wrong by a fifth, and gusts */

@@ -1,6 +1,6 @@
 /* Descent at a limited speed, with heights or without. The given hover thrust may be wrong by a fifth.
- * Used when law EST's estimate is not fresh. Newtons per motor; speeds in mm/s, positive upwards, except
- * the sink rate. Pure; the caller owns the state. */
+ * Used when law EST's estimate is not fresh, and by stuck_pin.c. Newtons per motor; speeds in mm/s, positive
+ * upwards, except the sink rate. Pure; the caller owns the state. */
 #ifndef CONTROL_DESCENT_H
 #define CONTROL_DESCENT_H
 
@@ -16,7 +16,7 @@
 
 typedef struct {
     float sink_mm_s;     /* present wanted sink rate, > 0 is downwards */
-    float trim_n;        /* correction to hover_n, learned in this descent from the vertical speed */
+    float trim_n;        /* correction to hover_n, learned from the vertical speed; stuck_pin.c sets it */
     float near_ground_s; /* time within 40 mm of the ground */
     bool rocks;          /* set before each step: the tilt sways as in flight */
     bool holds;          /* set before each step: do not sink, hold the height */
@@ -26,8 +26,8 @@ typedef struct {
  * rate starts from it. */
 void descent_start(descent_t *descent, float rate_mm_s);
 
-/* One step with a new height, dt_s after the previous one. rate_mm_s: vertical speed, > 0 is up. A climb
- * of 0.7 m/s or more is braked harder. Within 40 mm of the ground the upper limit of the thrust falls by 2
+/* One step with a new height, dt_s after the previous one. rate_mm_s: vertical speed, > 0 is up. What
+ * climbs 1 m/s too fast is braked harder. Within 40 mm of the ground the upper limit of the thrust falls by 2
  * N/s, so that nothing lifts the vehicle again. Returns newtons per motor. The minimum is a quarter of
  * hover_n, except within 40 mm of the ground. There is no upper limit to the actuator's range here. */
 float descent_step(descent_t *descent, float hover_n, float height_mm, float rate_mm_s, float dt_s);

@@ -23,14 +23,25 @@ static void reset(stuck_pin_t *pin)
     pin->more_n = 0.0F;
     pin->vain_s = 0.0F;
     pin->obeys = false;
+    pin->stepped = false;
 }
 
-/* A vehicle with so little thrust sinks, unless a pilot holds it up. He moves it to and fro, so a moment of
+/* A new height that is a step shows no motion. Two in a row do: what moves fast and is not felt steps in each
+ * scan. */
+static bool is_step(stuck_pin_t *pin, const situation_t *now)
+{
+    if (now->where->supervisor.height.is_new) {
+        pin->stepped = now->evidence->stepped && !pin->stepped;
+    }
+    return pin->stepped;
+}
+
+/* A vehicle with 1.5 N too little sinks, unless a pilot holds it up. He moves it to and fro, so a moment of
  * sinking takes back no more than a moment. Once that is known, the thrust returns near the hover thrust,
  * because he may give the throttle back before the pin tells. That is a test too: a vehicle that has only
- * lost a load rises then, so it obeys, and what it did not sink with is about its hover thrust. Both stay
- * known for this turn. */
-static bool is_in_vain(stuck_pin_t *pin, const situation_t *now)
+ * lost a load rises then, so it obeys. The thrust with which it did not sink is then about its hover thrust.
+ * Both stay known for this turn. */
+static bool is_in_vain(stuck_pin_t *pin, const situation_t *now, bool step)
 {
     const height_track_t *height = &now->where->supervisor.height;
     const bool fresh = height->age_us <= HEIGHT_FRESH_US;
@@ -42,6 +53,8 @@ static bool is_in_vain(stuck_pin_t *pin, const situation_t *now)
 
         pin->vain_s = weak ? at_least(pin->vain_s + (stays ? step_s : -step_s), 0.0F) : 0.0F;
         pin->vain_mm = height->height_mm;
+    } else if (step) {
+        pin->vain_mm = height->height_mm; /* the pilot has flown over an edge */
     } else if (!pin->obeys && fresh && height->height_mm > pin->vain_mm + RISES_MM) {
         pin->obeys = true;
         pin->descent.trim_n = -HOVER_THRUST_MARGIN_N;
@@ -50,7 +63,7 @@ static bool is_in_vain(stuck_pin_t *pin, const situation_t *now)
 }
 
 /* Thrust of a descent by heights, or without them; it only holds the height while the pin is trusted. */
-static float descent_n(stuck_pin_t *pin, const situation_t *now)
+static float descent_n(stuck_pin_t *pin, const situation_t *now, bool step)
 {
     const supervisor_t *supervisor = &now->where->supervisor;
     const height_track_t *height = &supervisor->height;
@@ -60,7 +73,7 @@ static float descent_n(stuck_pin_t *pin, const situation_t *now)
     if (height->age_us > HEIGHT_LOST_US) {
         return holds ? hover_n : descent_blind(hover_n, seconds_at_most(height->age_us, DESCENT_BLIND_MAX_S));
     }
-    if (!height->is_new || now->evidence->stepped) {
+    if (!height->is_new || step) {
         return hover_n + pin->more_n;
     }
     pin->descent.holds = holds;
@@ -85,11 +98,12 @@ void stuck_pin_step(stuck_pin_t *pin, const situation_t *now)
     }
     if (piloted) {
         pin->piloted_s += where_step_s(now->where);
-        const bool in_vain = is_in_vain(pin, now);
+        const bool step = is_step(pin, now);
+        const bool in_vain = is_in_vain(pin, now, step);
 
-        /* his motions may not add up: so a fall is braked at once when he has given it back */
+        /* his motions must not add up: so a fall is braked at once when he has given it back */
         pin->descent.trim_n = in_vain ? 0.0F : pin->descent.trim_n;
-        const float wanted_n = descent_n(pin, now) - now->where->hover.thrust_n;
+        const float wanted_n = descent_n(pin, now, step) - now->where->hover.thrust_n;
         const float sunk_n = in_vain ? NEAR_HOVER_N : PIN_BELOW_N;
         const float least_n = (pin->descent.near_ground_s > 0.0F) ? -THRUST_MAX_N : -sunk_n;
 

@@ -12,9 +12,10 @@
 typedef struct {
     float piloted_s; /* for how long the pin has said so */
     float more_n;    /* added to the output */
-    float vain_s;    /* how long that has been too little to fly, and it does not sink */
-    float vain_mm;   /* height at which that was known */
-    bool obeys;      /* it rose when the thrust returned */
+    float vain_s;  /* how long that has been too little to fly, and it does not sink, less how long it sank */
+    float vain_mm; /* height at which that was known */
+    bool obeys;    /* it rose when the thrust returned */
+    bool stepped;  /* the latest height was a step, and is left out */
     descent_t descent;
 } stuck_pin_t;
 

@@ -204,9 +204,16 @@ void test_steps_of_the_terrain_are_believed_be_they_as_high_as_they_like(void)
     for (uint32_t flight = 0U; flight < FLIGHTS; flight++) {
         fly_anew(flight);
         for (int i = 0; i < 6; i++) {
+            bool stepped = false;
+
             world.terrain_m = i % 2 == 0 ? -0.8F : 0.0F;
-            run(2.0F);
+            for (int k = 0; k < 12; k++) {
+                run(0.025F);
+                stepped = stepped || seen.stepped;
+            }
+            run(1.7F);
             TEST_ASSERT_EQUAL_UINT16(0U, seen.doubts);
+            TEST_ASSERT_TRUE(stepped && !seen.stepped);
         }
     }
 }
