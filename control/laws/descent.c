@@ -7,7 +7,7 @@
 /* At terminal speed v, damping D: thrust deficit / hover thrust = D v / g. */
 #define SINK_SHARE 0.073F          /* at 0.3 m/s: damping 2.4 1/s * 0.3 m/s / 9.81 m/s2 */
 #define BRAKE_SHARE 2.0F           /* and so thrice in all */
-#define BRAKE_BEYOND_MM_S 1000.0F  /* a climb of 0.7 m/s and more */
+#define BRAKE_BEYOND_MM_S 1000.0F  /* so much above the wanted rate, a climb is too fast */
 #define TRIM_GAIN_N_PER_MM 0.0010F /* chosen: 0.3 N/s at the whole rate */
 #define QUICK_TRIM_GAIN_N_PER_MM \
     (3.0F * TRIM_GAIN_N_PER_MM) /* chosen: three times, so a climb ends soon, in a descent or a hold */
