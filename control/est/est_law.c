@@ -435,7 +435,9 @@ float est_law_step(est_law_t *law, const parameters_t *parameters, const est_ord
     const float speed_mps = speed_setpoint_mps(law, parameters, &gains, &state, mode, order->reference_m);
     const float thrust_n = cascade_thrust_n(&gains, &vehicle, &state, speed_mps);
 
-    let_down_step(&law->down, mode, state.height_m, law->doubted.rocks, law->doubted.seen, law->step_s);
+    let_down_step(&law->down, mode,
+                  &(let_down_signs_t){state.height_m, law->doubted.rocks, law->doubted.seen,
+                                      !law->doubted.without_authority, law->step_s});
     const float limited_n = let_down_limit_n(&law->down, mode, thrust_n, law->hover.thrust_n);
     return deadband_compensate(&law->deadband, law->hover.thrust_n, limited_n);
 }

@@ -2,7 +2,7 @@
  * learning during the descent nor a change of the kind of descent raises it again. What breaks: a ceiling
  * that follows what a descent teaches can rise with a wrong height, and the vehicle climbs away. Where two
  * mirrors agree on the heights, a landing has none: below it a gust would press the vehicle to the ground.
- */
+ * While a pilot holds a landing up, the ceiling waits: else it is below hover at the hand-back. */
 #include "control/est/let_down.h"
 
 #include "control/between.h"
@@ -30,18 +30,18 @@ float let_down_mps(est_mode_t mode, float height_m)
     return (mode == EST_MODE_SINK) ? -LAND_MAX_MPS : -at_most(LAND_MPS + LAND_PER_S * over_m, LAND_MAX_MPS);
 }
 
-void let_down_step(let_down_t *down, est_mode_t mode, float height_m, bool rocks, bool seen, float step_s)
+void let_down_step(let_down_t *down, est_mode_t mode, const let_down_signs_t *signs)
 {
     const bool sinks = mode == EST_MODE_SINK;
     const float above_n = sinks ? NEAR_HOVER_N : HOVER_THRUST_MARGIN_N;
+    const float fade_n = (signs->pushes || sinks) ? SINK_FADE_N_PER_S * signs->step_s : 0.0F;
 
-    down->seen = seen;
-    down->near_ground_s = (mode == EST_MODE_LAND)
-                              ? touchdown_time_s(down->near_ground_s, height_m, rocks, step_s)
-                              : 0.0F;
-    if (mode == EST_MODE_SINK || (mode == EST_MODE_LAND && !seen)) {
-        down->ceiling_n = at_most(down->ceiling_n - SINK_FADE_N_PER_S * step_s,
-                                  down->entry_hover_n + above_n);
+    down->seen = signs->seen;
+    down->near_ground_s = (mode == EST_MODE_LAND) ? touchdown_time_s(down->near_ground_s, signs->height_m,
+                                                                     signs->rocks, signs->step_s)
+                                                  : 0.0F;
+    if (mode == EST_MODE_SINK || (mode == EST_MODE_LAND && !signs->seen)) {
+        down->ceiling_n = at_most(down->ceiling_n - fade_n, down->entry_hover_n + above_n);
         down->ceiling_n = at_least(down->ceiling_n, 0.0F);
     }
 }

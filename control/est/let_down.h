@@ -22,6 +22,15 @@ typedef struct {
     bool seen;           /* two mirrors agree on the heights: a landing has no ceiling */
 } let_down_t;
 
+/* What a cycle shows. */
+typedef struct {
+    float height_m;
+    bool rocks;  /* the tilt moves as in flight */
+    bool seen;   /* two mirrors agree on the heights */
+    bool pushes; /* the thrust has an effect: no pilot holds it up; not read without heights */
+    float step_s;
+} let_down_signs_t;
+
 /* No descent: it stands on the ground. */
 void let_down_reset(let_down_t *down);
 
@@ -31,8 +40,8 @@ void let_down_arm(let_down_t *down, float hover_n);
 /* Vertical speed of a landing or of a descent without heights. */
 float let_down_mps(est_mode_t mode, float height_m);
 
-/* One cycle of step_s. rocks: the tilt moves as in flight. seen: two mirrors agree on the heights. */
-void let_down_step(let_down_t *down, est_mode_t mode, float height_m, bool rocks, bool seen, float step_s);
+/* One cycle. */
+void let_down_step(let_down_t *down, est_mode_t mode, const let_down_signs_t *signs);
 
 /* The thrust within the limits of the mode. hover_n: the hover thrust of now. */
 float let_down_limit_n(const let_down_t *down, est_mode_t mode, float thrust_n, float hover_n);

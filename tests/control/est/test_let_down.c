@@ -18,7 +18,7 @@ void tearDown(void) {}
 /* A cycle high in the air whose law wants wanted_n. */
 static float step_n(est_mode_t mode, float wanted_n, float step_s)
 {
-    let_down_step(&down, mode, 1.0F, false, false, step_s);
+    let_down_step(&down, mode, &(let_down_signs_t){.height_m = 1.0F, .pushes = true, .step_s = step_s});
     return let_down_limit_n(&down, mode, wanted_n, 7.0F);
 }
 
@@ -51,21 +51,35 @@ void test_the_ceiling_of_a_descent_starts_above_the_entrys_hover_thrust_and_fall
 /* A gust may be met with all thrust then. When the mirrors agree no more, the ceiling is there at once. */
 void test_a_landing_that_two_mirrors_see_has_no_ceiling_and_a_descent_without_heights_has(void)
 {
-    let_down_step(&down, EST_MODE_LAND, 1.0F, false, true, 5.0F);
+    let_down_step(&down, EST_MODE_LAND, &(let_down_signs_t){1.0F, false, true, true, 5.0F});
     NEAR(11.0F, let_down_limit_n(&down, EST_MODE_LAND, 11.0F, 7.0F));
     NEAR(8.5F, step_n(EST_MODE_LAND, 20.0F, 0.1F));
     let_down_arm(&down, 7.0F);
-    let_down_step(&down, EST_MODE_SINK, 1.0F, false, true, 0.1F);
+    let_down_step(&down, EST_MODE_SINK, &(let_down_signs_t){1.0F, false, true, true, 0.1F});
     NEAR(7.5F, let_down_limit_n(&down, EST_MODE_SINK, 11.0F, 7.0F));
-    let_down_step(&down, EST_MODE_LAND, 1.0F, false, true, 0.1F); /* they have come back */
+    /* they have come back */
+    let_down_step(&down, EST_MODE_LAND, &(let_down_signs_t){1.0F, false, true, true, 0.1F});
     NEAR(11.0F, let_down_limit_n(&down, EST_MODE_LAND, 11.0F, 7.0F));
     NEAR(7.48F, step_n(EST_MODE_LAND, 20.0F, 0.1F));
+}
+
+/* Seven seconds in a pilot's hands took 1.4 N off it. Without heights nothing tells that he has it. */
+void test_the_ceiling_of_a_landing_waits_while_a_pilot_holds_it_up(void)
+{
+    NEAR(8.5F, step_n(EST_MODE_LAND, 20.0F, 0.1F));
+    let_down_step(&down, EST_MODE_LAND, &(let_down_signs_t){1.0F, true, false, false, 7.0F});
+    NEAR(8.5F, let_down_limit_n(&down, EST_MODE_LAND, 20.0F, 7.0F));
+    NEAR(8.4F, step_n(EST_MODE_LAND, 20.0F, 0.5F));
+    let_down_step(&down, EST_MODE_SINK, &(let_down_signs_t){1.0F, true, false, false, 1.0F});
+    NEAR(7.5F, let_down_limit_n(&down, EST_MODE_SINK, 20.0F, 7.0F));
+    let_down_step(&down, EST_MODE_SINK, &(let_down_signs_t){1.0F, true, false, false, 1.0F});
+    NEAR(7.3F, let_down_limit_n(&down, EST_MODE_SINK, 20.0F, 7.0F));
 }
 
 void test_a_hover_thrust_that_is_learned_in_the_descent_does_not_count(void)
 {
     NEAR(8.5F, step_n(EST_MODE_LAND, 20.0F, 0.1F));
-    let_down_step(&down, EST_MODE_LAND, 1.0F, false, false, 0.1F);
+    let_down_step(&down, EST_MODE_LAND, &(let_down_signs_t){1.0F, false, false, true, 0.1F});
     TEST_ASSERT_TRUE(let_down_limit_n(&down, EST_MODE_LAND, 20.0F, 9.0F) < 8.5F);
 }
 
@@ -79,7 +93,7 @@ void test_without_heights_the_thrust_is_not_cut_too_far(void)
 
 static float low_n(est_mode_t mode, bool rocks, float step_s)
 {
-    let_down_step(&down, mode, 0.02F, rocks, false, step_s);
+    let_down_step(&down, mode, &(let_down_signs_t){0.02F, rocks, false, true, step_s});
     return let_down_limit_n(&down, mode, 7.2F, 7.0F);
 }
 
