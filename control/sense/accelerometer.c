@@ -64,7 +64,10 @@ void accelerometer_rest(accelerometer_t *accelerometer, float dt_s)
     accelerometer->rested_s = at_most(accelerometer->rested_s + dt_s, REST_TIME_S);
     accelerometer->rest_mps2 += at_most(dt_s / accelerometer->rested_s, 1.0F) *
                                 (accelerometer->up_mps2 - accelerometer->rest_mps2);
-    accelerometer->bias_mps2 = accelerometer->rest_mps2;
+    accelerometer->measured = accelerometer->measured || accelerometer->rested_s > REST_HELD_S;
+    if (!accelerometer->measured || accelerometer->rested_s > REST_HELD_S) {
+        accelerometer->bias_mps2 = accelerometer->rest_mps2;
+    }
     witness_start(&accelerometer->felt, 0.0F);
 }
 
@@ -95,7 +98,7 @@ void accelerometer_in_hands(accelerometer_t *accelerometer, float mean_mps2, boo
 void accelerometer_was_lifted(accelerometer_t *accelerometer, float rise_mps)
 {
     if (accelerometer->rested_s > 0.0F) {
-        accelerometer->bias_mps2 = 0.0F;
+        accelerometer->bias_mps2 = accelerometer->kept_bias_mps2[0];
         witness_start(&accelerometer->felt, rise_mps);
     }
 }

@@ -22,9 +22,10 @@
 typedef struct {
     uint32_t sequence; /* latest frame that was processed */
     uint32_t time_us;
-    float up_mps2;                              /* upward acceleration in that frame, gravity removed */
-    float rest_mps2;                            /* its mean at rest */
-    float rested_s;                             /* time at rest that this mean covers, at most 2 s */
+    float up_mps2;   /* upward acceleration in that frame, gravity removed */
+    float rest_mps2; /* its mean at rest */
+    float rested_s;  /* time at rest that this mean covers, at most 2 s */
+    bool measured;   /* it has lasted a second once: a shorter one tells no better bias */
     float kept_bias_mps2[ACCELEROMETER_BLOCKS]; /* that mean at the end of the latest seconds, oldest first */
     float block_s;                              /* time since the latter was taken */
     float bias_mps2;  /* of the accelerometer: at rest its mean, in the air corrected by the heights */
@@ -59,7 +60,8 @@ void accelerometer_move(accelerometer_t *accelerometer, float mean_mps2, bool st
 /* At rest it has been more than 1.5 m/s2 off g for 1 s (unfit), or less than 1.2 m/s2 (fit). */
 rest_t accelerometer_judge_rest(const accelerometer_t *accelerometer);
 
-/* The vehicle left the ground without a take-off of this firmware: what was measured was no rest. */
+/* The vehicle left the ground without a take-off of this firmware: what was measured since is no rest, and
+ * the bias is that of three to four seconds before. */
 void accelerometer_was_lifted(accelerometer_t *accelerometer, float rise_mps);
 
 /* noise_mps2: its rms noise, measured. */

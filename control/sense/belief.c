@@ -335,6 +335,16 @@ float belief_of_no_step(const belief_t *belief)
     return sum;
 }
 
+float belief_of_still(const belief_t *belief)
+{
+    float sum = 0.0F;
+
+    for (uint16_t k = 0U; k < BELIEF_WORLDS; ++k) {
+        sum += belief->worlds[k].probability * belief->worlds[k & belief->known].still;
+    }
+    return sum;
+}
+
 float belief_of_motion(const belief_t *belief, uint16_t kind)
 {
     float sum = 0.0F;

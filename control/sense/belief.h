@@ -49,6 +49,10 @@ static inline float belief_of_none(const belief_t *belief, uint16_t mirrors)
  */
 float belief_of_no_step(const belief_t *belief);
 
+/* That the vehicle has not moved since the scan before: it stands or hangs, also if the accelerometer lies.
+ */
+float belief_of_still(const belief_t *belief);
+
 /* Probability of a kind of motion: BELIEF_STANDS, BELIEF_FELT_LIES. */
 float belief_of_motion(const belief_t *belief, uint16_t kind);
 

@@ -87,6 +87,7 @@ typedef struct {
     float foretold_mm;             /* way that it has foretold then */
     float density;                 /* of all ways */
     float no_step;                 /* of those without a step under most of the honest ones */
+    float still;                   /* of those in which it does not move */
     float stepped[MIRROR_COUNT];   /* of those with a step under this mirror */
     float moved_mm;                /* mean of the others' innovations, times its density */
     float motions[BELIEF_MOTIONS]; /* of those with this kind of motion */
@@ -177,7 +178,8 @@ static void add_stand(ways_t *ways, const belief_scan_t *scan)
         density = 0.5F * (density + density_of_shared(scan->height_off_mm, ways->honest));
     }
     ways->count = shown.n;
-    ways->density += (sound + hangs + lies) * density;
+    ways->still = (sound + hangs + lies) * density;
+    ways->density += ways->still;
     ways->motions[BELIEF_STANDS] = sound * density;
     ways->motions[BELIEF_HELD] = hangs * density;
     ways->motions[BELIEF_FELT_LIES] = lies * density;
@@ -408,6 +410,7 @@ float belief_world_scan(belief_world_t *world, const belief_scan_t *scan, uint16
     correct_motions(world, &ways);
     correct(world, &ways, scan);
     world->no_step = ways.no_step / ways.density;
+    world->still = ways.still / ways.density;
     return ways.density * density_of_lies(world, scan, scan->told & liars);
 }
 

@@ -47,6 +47,7 @@ typedef struct {
     float begun[MIRROR_COUNT];     /* that a mirror which lies here has begun to since the scan before */
     float no_step; /* that no ground has stepped since the scan before, under most of the honest mirrors; 0:
                       none told anything */
+    float still;   /* that it does not move, also if the accelerometer lies */
     float push_off_mps2; /* what the model of the thrust is off by */
     float push_known;    /* 0 to 1: share of that which has been learned */
     float height_mm;     /* mean of the honest mirrors' levels; where none tells it, by the rate */

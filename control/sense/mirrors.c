@@ -10,6 +10,7 @@
 
 #include "control/between.h"
 #include "control/credible.h"
+#include "control/imu_sample.h"
 
 #define RELIEF_MM 75.0F          /* chosen: what ground differs by under one vehicle; stairs are 170 mm */
 #define RELIEF_SIGMAS 3.0F       /* beyond, it is another ground */
@@ -56,6 +57,11 @@ void mirrors_thrust(mirrors_t *mirrors, float gained_mps, float undelivered_mps,
     mirrors->undelivered.gained += fabsf(undelivered_mps);
     mirrors->pushed.gained += gained_mps;
     mirrors->dragged.gained += dragged;
+}
+
+void mirrors_carried(mirrors_t *mirrors, float step_s)
+{
+    mirrors_thrust(mirrors, 0.0F, IMU_GRAVITY_MPS2 * step_s, 0.0F);
 }
 
 /* What this scan shows of it: its rays are older than the frames. late: share of the gap; that is left for
@@ -200,6 +206,22 @@ static void number_ground(mirrors_t *mirrors, bool strange)
     }
 }
 
+static void tell_nothing(mirrors_t *mirrors)
+{
+    mirrors->agree = mirrors->sees = mirrors->suspected = mirrors->blind = false;
+    mirrors->felt_lies = mirrors->felt_may_lie = false;
+    mirrors->stirs = mirrors->moves = mirrors->unpushed = mirrors->no_effect = false;
+    mirrors->left_out = 0U;
+}
+
+void mirrors_wait(mirrors_t *mirrors, float step_s)
+{
+    mirrors->unseen_s = at_most(mirrors->unseen_s + step_s, MIRRORS_GAP_MOST_S);
+    if (mirrors->unseen_s > HEIGHT_LOST_S) {
+        tell_nothing(mirrors);
+    }
+}
+
 bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, float age_s, bool felt,
                   bool held_up)
 {
@@ -208,10 +230,9 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     const uint16_t voters = believe(mirrors, shown, gap_s, held_up ? nothing : told);
     float weights[MIRROR_COUNT];
 
+    mirrors->unseen_s = 0.0F;
     if (voters == 0U) {
-        mirrors->agree = mirrors->sees = mirrors->suspected = mirrors->blind = mirrors->felt_lies =
-            mirrors->felt_may_lie = mirrors->moves = mirrors->unpushed = mirrors->no_effect = false;
-        mirrors->left_out = 0U;
+        tell_nothing(mirrors);
         number_ground(mirrors, true);
         return false;
     }
@@ -228,6 +249,7 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     mirrors->agree = honest > AGREE;
     mirrors->felt_lies = felt_lies > AGREE && (mirrors->felt_may_lie || !belief_has_several(voters));
     mirrors->felt_may_lie = felt_lies > AGREE;
+    mirrors->stirs = 1.0F - belief_of_still(belief) > AGREE;
     mirrors->moves = moves > AGREE;
     mirrors->no_effect = held > AGREE;
     mirrors->unpushed = held + stands > AGREE;

@@ -38,11 +38,13 @@ typedef struct {
     bool blind;        /* all that told something in it lie, with 99 % */
     bool felt_may_lie; /* the accelerometer does, with 99 %, in this scan */
     bool felt_lies;    /* and where several mirrors count, in the scan before too */
+    bool stirs;        /* the vehicle has moved, with 99 %, whatever the accelerometer tells */
     bool moves;        /* the vehicle does, or hangs, with 99 % */
     bool unpushed;     /* nothing moves it, or the thrust has no effect, with 99 % */
     bool no_effect;    /* the thrust has none, with 99 %: a pilot flies, or something holds the vehicle */
     uint16_t ground;   /* as in altitude.h; a scan that tells nothing is followed by another one */
     uint16_t left_out; /* bits: mirrors of that scan that told something, and do not count in altitude */
+    float unseen_s;    /* since that scan, at most 10 s */
     float lies[MIRROR_COUNT];               /* the probability that each lies */
     float disbelieved_s[MIRROR_COUNT];      /* how long each has been, at most 10 s */
     mirror_digits_t latest[MIRROR_COUNT];   /* of each mirror, to find copies */
@@ -71,6 +73,13 @@ float mirrors_blind_mps(const mirrors_t *mirrors, bool believed);
  * drag by this share of the speed. undelivered_mps: by the thrust that is
  * commanded and not delivered yet, up or down. */
 void mirrors_thrust(mirrors_t *mirrors, float gained_mps, float undelivered_mps, float dragged);
+
+/* One cycle of step_s in which somebody else's thrust carries it, or a hand: by up to 1 g, up or down. */
+void mirrors_carried(mirrors_t *mirrors, float step_s);
+
+/* One cycle of step_s without a new scan. What the latest one told is forgotten when it is lost: then it
+ * shows no motion of now, as one that tells nothing. */
+void mirrors_wait(mirrors_t *mirrors, float step_s);
 
 /* One scan: writes altitude and agree. Returns false when it tells nothing: each mirror repeats its digits,
  * or is out of reach (5000 mm). shown: one altitude for each mirror_t, not valid where it shows none. gap_s:

@@ -98,6 +98,7 @@ static void compare_height(sense_t *sense, const command_t *command, flight_inpu
     elect(&sense->senses.mirrors, in);
     in->altitude.ground = sense->senses.mirrors.ground;
     if (!is_new) {
+        mirrors_wait(&sense->senses.mirrors, command->step_s);
         return;
     }
     sense->scan_sequence = in->height_sequence;

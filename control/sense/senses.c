@@ -20,11 +20,14 @@ void senses_forget(senses_t *senses)
     witness_forget(&senses->push.pushed);
 }
 
-/* One frame in state GROUND. */
+/* One frame in state GROUND. What a pilot has lifted, or somebody carries, is not at rest. */
 static void watch_ground(senses_t *s, float mean_mps2, float dt_s)
 {
     heights_wait(&s->heights, dt_s);
-    if (s->heights.unseen_s > HEIGHT_LOST_S && sway_as_in_the_air(&s->sway) && sway_rocks(&s->sway)) {
+    if (s->mirrors.stirs) {
+        accelerometer_was_lifted(&s->accelerometer, s->heights.rise_mps);
+        accelerometer_move(&s->accelerometer, mean_mps2, false, dt_s);
+    } else if (s->heights.unseen_s > HEIGHT_LOST_S && sway_as_in_the_air(&s->sway) && sway_rocks(&s->sway)) {
         accelerometer_in_hands(&s->accelerometer, mean_mps2, sway_is_no_hand(&s->sway), dt_s);
     } else {
         accelerometer_rest(&s->accelerometer, dt_s);
@@ -89,7 +92,9 @@ static void tell_thrust(senses_t *senses, const command_t *command, bool carries
 {
     const bool lifts = sway_as_in_the_air(&senses->sway) || felt_mps > LAND_MAX_MPS;
 
-    if (!command->grounded && (carries || lifts)) {
+    if (command->grounded && senses->mirrors.stirs) { /* its own thrust is 0 */
+        mirrors_carried(&senses->mirrors, command->step_s);
+    } else if (!command->grounded && (carries || lifts)) {
         mirrors_thrust(&senses->mirrors, push_lift_mps(&senses->push, command, senses->tilt.upright),
                        push_undelivered_mps(&senses->push, command, senses->tilt.upright),
                        push_dragged(command));

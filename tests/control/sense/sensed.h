@@ -65,6 +65,11 @@ static inline void has_no_effect(bool no_effect)
     senses.mirrors.unpushed = senses.mirrors.no_effect = no_effect;
 }
 
+static inline void stirs(bool stirs)
+{
+    senses.mirrors.stirs = stirs;
+}
+
 static inline void has_told_the_contrary_for_s(float contrary_s)
 {
     verdict.contrary_s = contrary_s;

@@ -112,6 +112,29 @@ static uint16_t rested(uint16_t doubts, float rested_s, float rest_mps2)
     return verdict.doubts;
 }
 
+/* A pilot's flight without heights looks like a rest for some frames. One of them, 1.5 m/s2, was the bias of
+ * a flight that then climbed for 20 s, 55 m high. */
+void test_a_moment_of_rest_tells_no_bias_once_a_whole_one_has(void)
+{
+    flown.grounded = true;
+    feel(0.3F);
+    NEAR(0.3F, senses.accelerometer.bias_mps2); /* better than none */
+    for (int i = 0; i < 160; i++) {
+        feel(0.1F);
+    }
+    TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.1F, senses.accelerometer.bias_mps2);
+    flown.grounded = false;
+    feel(0.1F);
+    flown.grounded = true;
+    for (int i = 0; i < 40; i++) { /* 1.0 s */
+        feel(1.5F);
+        TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.1F, senses.accelerometer.bias_mps2);
+    }
+    feel(1.5F);
+    feel(1.5F);
+    NEAR(1.5F, senses.accelerometer.bias_mps2);
+}
+
 void test_an_unfit_accelerometer_is_one_and_a_half_off_for_a_second(void)
 {
     TEST_ASSERT_EQUAL_UINT16(DOUBT_IMU, rested(0U, 1.0F, 1.51F));

@@ -158,6 +158,28 @@ void test_without_a_beam_there_is_no_height_and_the_one_before_is_kept(void)
     assert_height(610.0F, 1U, -25000, scan(610.0F, 2000.0F, 0.0F));
 }
 
+/* In 15 cycles of 0.1 s: HEIGHT_LOST_S. It said for ever that the vehicle moves, and its motors ran on the
+ * ground. */
+void test_what_a_scan_told_is_forgotten_when_it_is_lost(void)
+{
+    for (int i = 0; i < 20; i++) {
+        const float at_mm = 600.0F + 30.0F * (float)i; /* a climb */
+        (void)scan(at_mm, at_mm, at_mm);
+    }
+    TEST_ASSERT_TRUE(mirrors.agree && mirrors.moves && mirrors.stirs);
+    for (int cycle = 1; cycle < 15; cycle++) {
+        mirrors_wait(&mirrors, 0.1F);
+    }
+    TEST_ASSERT_TRUE(mirrors.agree && mirrors.moves && mirrors.stirs);
+    mirrors_wait(&mirrors, 0.11F);
+    TEST_ASSERT_FALSE(mirrors.agree || mirrors.moves || mirrors.stirs);
+    for (int i = 0; i < 3; i++) {
+        (void)scan(1200.0F, 1200.0F, 1200.0F);
+    }
+    mirrors_wait(&mirrors, 0.1F);
+    TEST_ASSERT_TRUE(mirrors.agree);
+}
+
 /* A frozen scanner, while the vehicle tilts: no new height comes of it. */
 void test_copies_of_all_three_are_no_scan(void)
 {

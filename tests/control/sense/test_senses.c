@@ -127,6 +127,36 @@ void test_frames_tell_the_belief_a_change_of_speed_less_the_bias(void)
     }
 }
 
+/* A pilot lifts it off in state GROUND: its acceleration is no bias, and not that of the firmware's thrust.
+ * Taken for a bias, a third of the motion was missing, and the belief doubted the accelerometer. */
+void test_what_somebody_lifts_in_state_ground_is_not_at_rest(void)
+{
+    flown.grounded = true;
+    flown.off_ground = false;
+    for (int i = 0; i < 400; i++) { /* ten seconds at rest, with a bias */
+        feel(-0.2F);
+    }
+    NEAR(-0.2F, senses.accelerometer.bias_mps2);
+    height(0.0F);
+    sensed_thrust(&flown);
+    VERY_NEAR(0.0F, senses.mirrors.undelivered.gained);
+    stirs(true);
+    for (int i = 0; i < 40; i++) {
+        feel(2.8F);
+    }
+    NEAR(-0.2F, senses.accelerometer.bias_mps2);
+    TEST_ASSERT_FLOAT_WITHIN(0.1F, 3.0F, senses.accelerometer.felt.speed_mps);
+    height(0.5F);
+    sensed_thrust(&flown);
+    NEAR(G_MPS2 * 0.025F, senses.mirrors.undelivered.gained);
+    VERY_NEAR(0.0F, senses.mirrors.pushed.gained);
+    stirs(false);
+    for (int i = 0; i < 80; i++) {
+        feel(0.1F);
+    }
+    NEAR(0.1F, senses.accelerometer.bias_mps2);
+}
+
 void test_the_thrust_tells_the_belief_its_motion_where_it_alone_carries_the_vehicle(void)
 {
     static const struct {
