@@ -119,7 +119,7 @@ void test_a_moment_of_rest_tells_no_bias_once_a_whole_one_has(void)
     flown.grounded = true;
     feel(0.3F);
     NEAR(0.3F, senses.accelerometer.bias_mps2); /* better than none */
-    for (int i = 0; i < 160; i++) {
+    for (int i = 0; i < 400; i++) {
         feel(0.1F);
     }
     TEST_ASSERT_FLOAT_WITHIN(0.01F, 0.1F, senses.accelerometer.bias_mps2);
