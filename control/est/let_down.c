@@ -2,7 +2,8 @@
  * learning during the descent nor a change of the kind of descent raises it again. What breaks: a ceiling
  * that follows what a descent teaches can rise with a wrong height, and the vehicle climbs away. Where two
  * mirrors agree on the heights, a landing has none: below it a gust would press the vehicle to the ground.
- * While a pilot holds a landing up, the ceiling waits: else it is below hover at the hand-back. */
+ * When a pilot who has held a landing up gives the throttle back, the landing begins then, and so does its
+ * ceiling. What has lost a load looks held up too, but it climbs: its ceiling goes on falling. */
 #include "control/est/let_down.h"
 
 #include "control/between.h"
@@ -30,18 +31,31 @@ float let_down_mps(est_mode_t mode, float height_m)
     return (mode == EST_MODE_SINK) ? -LAND_MAX_MPS : -at_most(LAND_MPS + LAND_PER_S * over_m, LAND_MAX_MPS);
 }
 
+/* At a hand-back the landing begins. What has climbed meanwhile was in nobody's hands: its thrust is too
+ * much. */
+static void watch_pilot(let_down_t *down, est_mode_t mode, const let_down_signs_t *signs)
+{
+    const bool given_back = mode == EST_MODE_LAND && down->held && signs->pushes;
+    const bool climbed = signs->height_m > down->entry_m + LAW_REACH_M;
+
+    down->entry_m = (down->ceiling_n == THRUST_MAX_N) ? signs->height_m : down->entry_m;
+    down->ceiling_n = (given_back && !climbed) ? THRUST_MAX_N : down->ceiling_n;
+    down->held = !signs->pushes;
+}
+
 void let_down_step(let_down_t *down, est_mode_t mode, const let_down_signs_t *signs)
 {
     const bool sinks = mode == EST_MODE_SINK;
     const float above_n = sinks ? NEAR_HOVER_N : HOVER_THRUST_MARGIN_N;
-    const float fade_n = (signs->pushes || sinks) ? SINK_FADE_N_PER_S * signs->step_s : 0.0F;
 
+    watch_pilot(down, mode, signs);
     down->seen = signs->seen;
     down->near_ground_s = (mode == EST_MODE_LAND) ? touchdown_time_s(down->near_ground_s, signs->height_m,
                                                                      signs->rocks, signs->step_s)
                                                   : 0.0F;
     if (mode == EST_MODE_SINK || (mode == EST_MODE_LAND && !signs->seen)) {
-        down->ceiling_n = at_most(down->ceiling_n - fade_n, down->entry_hover_n + above_n);
+        down->ceiling_n = at_most(down->ceiling_n - SINK_FADE_N_PER_S * signs->step_s,
+                                  down->entry_hover_n + above_n);
         down->ceiling_n = at_least(down->ceiling_n, 0.0F);
     }
 }

@@ -19,6 +19,8 @@ typedef struct {
     float entry_hover_n; /* sure hover thrust at the start of the present descent */
     float ceiling_n;     /* upper limit of the thrust in a descent */
     float near_ground_s; /* time near the ground while landing, see touchdown.h */
+    float entry_m;       /* height where the ceiling began */
+    bool held;           /* the thrust had no effect in the cycle before */
     bool seen;           /* two mirrors agree on the heights: a landing has no ceiling */
 } let_down_t;
 
@@ -27,7 +29,7 @@ typedef struct {
     float height_m;
     bool rocks;  /* the tilt moves as in flight */
     bool seen;   /* two mirrors agree on the heights */
-    bool pushes; /* the thrust has an effect: no pilot holds it up; not read without heights */
+    bool pushes; /* the thrust has an effect: no pilot holds it up, as far as known */
     float step_s;
 } let_down_signs_t;
 

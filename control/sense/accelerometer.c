@@ -53,7 +53,7 @@ static void keep_bias(accelerometer_t *accelerometer, float dt_s)
         for (uint16_t k = 1U; k < ACCELEROMETER_BLOCKS; ++k) {
             accelerometer->kept_bias_mps2[k - 1U] = accelerometer->kept_bias_mps2[k];
         }
-        accelerometer->kept_bias_mps2[ACCELEROMETER_BLOCKS - 1U] = accelerometer->rest_mps2;
+        accelerometer->kept_bias_mps2[ACCELEROMETER_BLOCKS - 1U] = accelerometer->bias_mps2;
     }
 }
 

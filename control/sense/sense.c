@@ -130,6 +130,16 @@ static bool is_unconfirmed(const senses_t *s)
     return unshown || s->mirrors.suspected;
 }
 
+/* With heights the belief tells whether it moves. Without them it cannot stand before it has come down, by
+ * the thrust: calm air is as calm as the ground. */
+static bool may_stand(const senses_t *s)
+{
+    const bool lost = s->mirrors.unseen_s > HEIGHT_LOST_S;
+    const bool down = s->heights.height_m + push_moved_m(&s->push) < LOW_M;
+
+    return stand_is_possible(&s->stand) && (lost ? down : !s->mirrors.moves);
+}
+
 static evidence_t evidence_of(const sense_t *sense)
 {
     const senses_t *s = &sense->senses;
@@ -146,7 +156,7 @@ static evidence_t evidence_of(const sense_t *sense)
         .calm = sway_is_calm(&s->sway),
         .rocks = sway_rocks(&s->sway),
         .in_hands = accelerometer_is_in_hands(&s->accelerometer),
-        .may_stand = stand_is_possible(&s->stand) && !s->mirrors.moves,
+        .may_stand = may_stand(s),
         .stands = stand_is_sure(&s->stand),
         .upright = s->tilt.upright,
         .mirrors = {.agree = s->mirrors.agree,

@@ -90,7 +90,8 @@ def field_day(rng):
 HARM = {"highest_mm": harm.HIGH_MM, "touch_speed_mps": harm.TOUCH_MPS}      # where nothing more was required
 LOST = {"highest_mm": 800.0, "touch_speed_mps": 0.8}
 UNDISTURBED = {"takeovers": 0, "ground_contacts": 0, "failed": 0}
-CALM = UNDISTURBED | {"flagged_s": 0.0}
+# Not flagged_s: over an edge the mirrors do disagree, and the flag DISAGREE says so.
+CALM = UNDISTURBED | {"sight_doubts": 0, "imu_doubts": 0, "thrust_doubts": 0}
 NO_CONTACT = {"takeovers": 0, "ground_contacts": 0}
 REQUIREMENTS = {
     # One sensor lies.
