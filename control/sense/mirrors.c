@@ -230,12 +230,12 @@ bool mirrors_scan(mirrors_t *mirrors, const altitude_t *shown, float gap_s, floa
     const uint16_t voters = believe(mirrors, shown, gap_s, held_up ? nothing : told);
     float weights[MIRROR_COUNT];
 
-    mirrors->unseen_s = 0.0F;
     if (voters == 0U) {
         tell_nothing(mirrors);
         number_ground(mirrors, true);
         return false;
     }
+    mirrors->unseen_s = 0.0F;
     mirrors->left_out = weigh(weights, mirrors, shown, voters);
     mirrors->altitude = altitude_mean(shown, weights, MIRROR_COUNT);
     const belief_t *belief = &mirrors->belief;

@@ -44,7 +44,7 @@ typedef struct {
     bool no_effect;    /* the thrust has none, with 99 %: a pilot flies, or something holds the vehicle */
     uint16_t ground;   /* as in altitude.h; a scan that tells nothing is followed by another one */
     uint16_t left_out; /* bits: mirrors of that scan that told something, and do not count in altitude */
-    float unseen_s;    /* since that scan, at most 10 s */
+    float unseen_s;    /* since the latest scan that told something, at most 10 s */
     float lies[MIRROR_COUNT];               /* the probability that each lies */
     float disbelieved_s[MIRROR_COUNT];      /* how long each has been, at most 10 s */
     mirror_digits_t latest[MIRROR_COUNT];   /* of each mirror, to find copies */

@@ -20,11 +20,18 @@ void senses_forget(senses_t *senses)
     witness_forget(&senses->push.pushed);
 }
 
-/* One frame in state GROUND. What a pilot has lifted, or somebody carries, is not at rest. */
+/* A pilot has lifted it, or somebody carries it. A foot below a mirror moves its height too, but not to the
+ * air. */
+static bool is_carried(const senses_t *s)
+{
+    return s->mirrors.stirs && s->heights.height_m > LOW_M;
+}
+
+/* One frame in state GROUND. What is carried is not at rest. */
 static void watch_ground(senses_t *s, float mean_mps2, float dt_s)
 {
     heights_wait(&s->heights, dt_s);
-    if (s->mirrors.stirs) {
+    if (is_carried(s)) {
         accelerometer_was_lifted(&s->accelerometer, s->heights.rise_mps);
         accelerometer_move(&s->accelerometer, mean_mps2, false, dt_s);
     } else if (s->heights.unseen_s > HEIGHT_LOST_S && sway_as_in_the_air(&s->sway) && sway_rocks(&s->sway)) {
@@ -92,7 +99,7 @@ static void tell_thrust(senses_t *senses, const command_t *command, bool carries
 {
     const bool lifts = sway_as_in_the_air(&senses->sway) || felt_mps > LAND_MAX_MPS;
 
-    if (command->grounded && senses->mirrors.stirs) { /* its own thrust is 0 */
+    if (command->grounded && is_carried(senses)) { /* its own thrust is 0 */
         mirrors_carried(&senses->mirrors, command->step_s);
     } else if (!command->grounded && (carries || lifts)) {
         mirrors_thrust(&senses->mirrors, push_lift_mps(&senses->push, command, senses->tilt.upright),
