@@ -2,7 +2,7 @@
  * learning during the descent nor a change of the kind of descent raises it again. What breaks: a ceiling
  * that follows what a descent teaches can rise with a wrong height, and the vehicle climbs away. Where two
  * mirrors agree on the heights, a landing has none: below it a gust would press the vehicle to the ground.
- * When a pilot who has held a landing up gives the throttle back, the landing begins then, and so does its
+ * One exception: a landing that a pilot has held up begins when he gives the throttle back, and so does its
  * ceiling. What has lost a load looks held up too, but it climbs: its ceiling goes on falling. */
 #include "control/est/let_down.h"
 
@@ -31,8 +31,8 @@ float let_down_mps(est_mode_t mode, float height_m)
     return (mode == EST_MODE_SINK) ? -LAND_MAX_MPS : -at_most(LAND_MPS + LAND_PER_S * over_m, LAND_MAX_MPS);
 }
 
-/* At a hand-back the landing begins. What has climbed meanwhile was in nobody's hands: its thrust is too
- * much. */
+/* Has a pilot given the throttle back? What has climbed by LAW_REACH_M meanwhile was probably not held by
+ * one, and its thrust is too large. */
 static void watch_pilot(let_down_t *down, est_mode_t mode, const let_down_signs_t *signs)
 {
     const bool given_back = mode == EST_MODE_LAND && down->held && signs->pushes;

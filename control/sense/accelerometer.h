@@ -26,7 +26,8 @@ typedef struct {
     float rest_mps2; /* its mean at rest */
     float rested_s;  /* time at rest that this mean covers, at most 2 s */
     bool measured;   /* it has lasted a second once: a shorter one tells no better bias */
-    float kept_bias_mps2[ACCELEROMETER_BLOCKS]; /* that mean at the end of the latest seconds, oldest first */
+    float kept_bias_mps2[ACCELEROMETER_BLOCKS]; /* the bias at the end of the latest seconds at rest, oldest
+                                                   first */
     float block_s;                              /* time since the latter was taken */
     float bias_mps2;  /* of the accelerometer: at rest its mean, in the air corrected by the heights */
     float beyond_s;   /* how long that has been BIAS_MAX_MPS2, at most 2 s */
